@@ -1,0 +1,419 @@
+// The program itself, run as a user runs it.
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "shared_data.h"
+
+namespace limber {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+struct Result {
+  int code = -1;  // exit code, or 128 + signal
+  std::string out, error;
+};
+
+// A running limber with all three streams on pipes or files.
+class Running {
+ public:
+  Running(const std::vector<std::string>& arguments, const fs::path& folder) : folder_(folder) {
+    int input[2];
+    EXPECT_EQ(pipe2(input, O_CLOEXEC), 0);
+    input_ = input[1];
+    pid_ = fork();
+    if (pid_ == 0) {
+      redirect(input[0], 0);
+      redirect(open((folder / "stdout").c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0600), 1);
+      redirect(open((folder / "stderr").c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0600), 2);
+      if (chdir(folder.c_str()) != 0) _exit(126);
+      std::vector<char*> argv = {const_cast<char*>(LIMBER_PROGRAM)};
+      for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+      argv.push_back(nullptr);
+      execv(LIMBER_PROGRAM, argv.data());
+      _exit(127);
+    }
+    close(input[0]);
+  }
+  ~Running() {
+    if (input_ >= 0) close(input_);
+  }
+
+  void feed(const std::string& bytes) {
+    std::size_t done = 0;
+    while (done < bytes.size()) {
+      const ssize_t wrote = write(input_, bytes.data() + done, bytes.size() - done);
+      if (wrote <= 0) break;
+      done += static_cast<std::size_t>(wrote);
+    }
+  }
+  void signal(int number) {
+    ASSERT_GT(pid_, 0);  // -1 would be everybody
+    kill(pid_, number);
+  }
+
+  Result wait() {
+    close(input_);
+    return waitWithOpenInput();
+  }
+  Result waitWithOpenInput() {
+    int status = 0;
+    waitpid(pid_, &status, 0);
+    Result result;
+    result.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    result.out = slurp("stdout");
+    result.error = slurp("stderr");
+    return result;
+  }
+
+ private:
+  static void redirect(int from, int to) { dup2(from, to); }
+  std::string slurp(const char* name) const {
+    std::ifstream file(folder_ / name, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+
+  fs::path folder_;
+  pid_t pid_ = -1;
+  int input_ = -1;
+};
+
+class Cli : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    ::signal(SIGPIPE, SIG_IGN);
+    std::string pattern = (fs::temp_directory_path() / "limber_cli_XXXXXX").string();
+    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+    folder_ = pattern;
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  Result run(const std::vector<std::string>& arguments, const std::string& input = {}) {
+    Running running(arguments, folder_);
+    running.feed(input);
+    return running.wait();
+  }
+  std::string content(const std::string& name) const {
+    std::ifstream file(folder_ / name, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+  void put(const std::string& name, const std::string& bytes) const {
+    std::ofstream(folder_ / name, std::ios::binary) << bytes;
+  }
+  // Everything in the folder but the captured streams.
+  std::vector<std::string> files() const {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder_)) {
+      const std::string name = entry.path().filename().string();
+      if (name != "stdout" && name != "stderr") names.push_back(name);
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+  }
+  void makeRobot() { ASSERT_EQ(run({"sample", "robot", "-o", "robot.glb", "--quiet"}).code, 0); }
+  // For the validator, which looks at every glTF file that a test leaves.
+  void keep(const std::string& name) const {
+    fs::copy_file(folder_ / name, testing::testOutputFolder() / ("cli_" + name), fs::copy_options::overwrite_existing);
+  }
+
+  fs::path folder_;
+};
+
+// One line, from limber, and no crash.
+void expectOneLine(const Result& result, int code) {
+  EXPECT_EQ(result.code, code);
+  EXPECT_THAT(result.error, StartsWith("limber: "));
+  EXPECT_EQ(std::count(result.error.begin(), result.error.end(), '\n'), 1) << result.error;
+  EXPECT_EQ(result.out, "");
+}
+
+TEST_F(Cli, EveryCommandHasHelpWithAnExample) {
+  EXPECT_THAT(run({"--help"}).out,
+              AllOf(HasSubstr("rig"), HasSubstr("info"), HasSubstr("preview"), HasSubstr("sample")));
+  for (const char* command : {"rig", "info", "preview", "sample", "evaluate"}) {
+    const Result help = run({command, "--help"});
+    EXPECT_EQ(help.code, 0);
+    EXPECT_THAT(help.out, AllOf(HasSubstr("Example"), HasSubstr(std::string("limber ") + command)));
+  }
+  EXPECT_THAT(run({"rig", "--help"}).out, AllOf(HasSubstr("sphere-mesh"), HasSubstr("bone-heat"), HasSubstr("Thiery")));
+  EXPECT_THAT(run({"--version"}).out, StartsWith("limber "));
+}
+
+TEST_F(Cli, WrongUsageIsOneLineAndCodeTwo) {
+  for (const std::vector<std::string>& arguments :
+       std::vector<std::vector<std::string>>{{},
+                                             {"fly"},
+                                             {"rig"},
+                                             {"rig", "a.glb"},
+                                             {"rig", "a.glb", "-o", "b.glb", "--handles", "0"},
+                                             {"rig", "a.glb", "-o", "b.glb", "--max-influences", "9"},
+                                             {"rig", "a.glb", "-o", "b.glb", "--handles", "many"},
+                                             {"rig", "a.glb", "-o", "b.glb", "--keep-skeleton", "--replace-rig"},
+                                             {"rig", "a.glb", "-o", "b.glb", "--keep-skeleton", "--handles", "3"},
+                                             {"rig", "a.glb", "-o", "-", "--json", "-"},
+                                             {"rig", "a.glb", "-o", "b.glb", "--json", "b.glb"},
+                                             {"pose", "a.glb", "-o", "b.glb", "--deformer", "linear-blend"},
+                                             {"info"},
+                                             {"sample", "stool"}}) {
+    expectOneLine(run(arguments), 2);
+  }
+}
+
+TEST_F(Cli, RigsAModelAndAccountsForIt) {
+  makeRobot();
+  const Result result = run({"rig", "robot.glb", "--handles", "12", "-o", "out.glb", "--json", "report.json"});
+  EXPECT_EQ(result.code, 0) << result.error;
+  EXPECT_EQ(result.error, "");  // no progress in a pipe
+  EXPECT_THAT(result.out, AllOf(HasSubstr("weld"), HasSubstr("12 joints"), HasSubstr("total"), HasSubstr("out.glb")));
+
+  const auto report = nlohmann::json::parse(content("report.json"));
+  EXPECT_EQ(report.at("counts").at("pieces"), 23);
+  EXPECT_GE(report.at("counts").at("joints"), 12);
+  EXPECT_LE(report.at("counts").at("joints"), 13);  // one more as the root of loose pieces
+  EXPECT_EQ(report.at("methods").at("rigger"), "sphere-mesh");
+  EXPECT_FALSE(report.at("stages").empty());
+  double sum = 0;
+  for (const auto& stage : report.at("stages")) sum += stage.at("seconds").get<double>();
+  EXPECT_NEAR(report.at("seconds").get<double>(), sum, 1e-9);
+
+  const auto info = nlohmann::json::parse(run({"info", "out.glb", "--json"}).out);
+  EXPECT_EQ(info.at("joints"), report.at("counts").at("joints"));
+  EXPECT_EQ(info.at("weights").at("without_weights"), 0);
+  EXPECT_LT(info.at("weights").at("largest_sum_error").get<double>(), 1e-5);
+  EXPECT_LE(info.at("weights").at("most_influences"), 4);
+  keep("out.glb");
+}
+
+TEST_F(Cli, QuietIsQuiet) {
+  makeRobot();
+  const Result result = run({"rig", "robot.glb", "-q", "-o", "out.glb"});
+  EXPECT_EQ(result.code, 0);
+  EXPECT_EQ(result.out + result.error, "");
+}
+
+TEST_F(Cli, StandardInputAndOutputCarryTheSameBytesAsFiles) {
+  makeRobot();
+  ASSERT_EQ(run({"rig", "robot.glb", "--handles", "9", "-q", "-o", "out.glb"}).code, 0);
+  const Result piped = run({"rig", "-", "--handles", "9", "-o", "-"}, content("robot.glb"));
+  EXPECT_EQ(piped.code, 0);
+  EXPECT_TRUE(piped.out == content("out.glb"));
+  EXPECT_THAT(piped.error, HasSubstr("total"));  // the account gives way to the file
+}
+
+TEST_F(Cli, WritesGltfWithItsBuffer) {
+  makeRobot();
+  EXPECT_EQ(run({"rig", "robot.glb", "--handles", "9", "-q", "-o", "out.gltf"}).code, 0);
+  EXPECT_EQ(nlohmann::json::parse(run({"info", "out.gltf", "--json"}).out).at("format"), "gltf");
+  EXPECT_GT(files().size(), 2u);
+}
+
+TEST_F(Cli, TheInputMayBeReplaced) {
+  makeRobot();
+  EXPECT_EQ(run({"rig", "robot.glb", "--handles", "9", "-q", "-o", "robot.glb"}).code, 0);
+  EXPECT_GE(nlohmann::json::parse(run({"info", "robot.glb", "--json"}).out).at("joints"), 9);
+  EXPECT_EQ(files(), std::vector<std::string>{"robot.glb"});
+}
+
+TEST_F(Cli, ARiggedModelIsRefusedWithBothWaysOut) {
+  makeRobot();
+  ASSERT_EQ(run({"rig", "robot.glb", "--handles", "9", "-q", "-o", "rigged.glb"}).code, 0);
+  const Result refused = run({"rig", "rigged.glb", "-o", "again.glb"});
+  expectOneLine(refused, 1);
+  EXPECT_THAT(refused.error, AllOf(HasSubstr("--replace-rig"), HasSubstr("--keep-skeleton"), HasSubstr("rigged.glb")));
+  EXPECT_FALSE(fs::exists(folder_ / "again.glb"));
+
+  EXPECT_EQ(run({"rig", "rigged.glb", "--replace-rig", "--handles", "6", "-q", "-o", "replaced.glb"}).code, 0);
+  EXPECT_LE(nlohmann::json::parse(run({"info", "replaced.glb", "--json"}).out).at("joints"), 7);
+  EXPECT_EQ(run({"rig", "rigged.glb", "--keep-skeleton", "-q", "-o", "kept.glb"}).code, 0);
+  const auto names = [&](const char* file) {
+    return nlohmann::json::parse(run({"info", file, "--json"}).out).at("joint_names");
+  };
+  EXPECT_EQ(names("kept.glb"), names("rigged.glb"));
+}
+
+TEST_F(Cli, BadInputIsOneLineAndLeavesNoFile) {
+  makeRobot();
+  put("empty.glb", "");
+  put("text.glb", "this is no model");
+  put("cut.glb", content("robot.glb").substr(0, 5000));
+  put("points.obj", "v 0 0 0\nv 1 0 0\n");
+  const std::vector<std::string> before = files();
+  for (const char* name : {"empty.glb", "text.glb", "cut.glb", "points.obj", "missing.glb", "."}) {
+    expectOneLine(run({"rig", name, "-o", "out.glb", "--json", "report.json"}), 1);
+    expectOneLine(run({"preview", name, "-o", "out.png"}), 1);
+  }
+  expectOneLine(run({"rig", "robot.glb", "-o", "nowhere/out.glb"}), 1);
+  EXPECT_EQ(files(), before);
+}
+
+TEST_F(Cli, UnknownNamesListTheKnownOnes) {
+  makeRobot();
+  EXPECT_THAT(run({"rig", "robot.glb", "-o", "o.glb", "--rigger", "magic"}).error, HasSubstr("sphere-mesh"));
+  EXPECT_THAT(run({"rig", "robot.glb", "-o", "o.glb", "--skinning", "magic"}).error, HasSubstr("bone-heat"));
+  EXPECT_THAT(run({"sample", "unicorn", "-o", "o.glb"}).error, HasSubstr("quadruped"));
+  EXPECT_THAT(run({"preview", "robot.glb", "-o", "o.png", "--show", "magic"}).error, HasSubstr("weights"));
+  EXPECT_THAT(run({"preview", "robot.glb", "-o", "o.png", "--view", "magic"}).error, HasSubstr("three-quarter"));
+}
+
+TEST_F(Cli, TheOutputsNameIsCheckedBeforeAnyWork) {
+  for (const char* name : {"out.fbx", "out", "out.png"}) {
+    const Result result = run({"rig", "missing.glb", "-o", name});
+    expectOneLine(result, 1);
+    EXPECT_THAT(result.error, AllOf(HasSubstr(name), HasSubstr(".glb"), Not(HasSubstr("missing"))));
+  }
+}
+
+TEST_F(Cli, StrictTakesWarningsAsErrors) {
+  put("sliver.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 4 2\nf 2 4 3\nf 1 3 4\nf 1 1 2\n");
+  const Result lenient = run({"rig", "sliver.obj", "--handles", "1", "-o", "out.glb"});
+  ASSERT_EQ(lenient.code, 0) << lenient.error;
+  ASSERT_THAT(lenient.out, HasSubstr("warning"));
+  expectOneLine(run({"rig", "sliver.obj", "--handles", "1", "-o", "strict.glb", "--strict"}), 1);
+  EXPECT_FALSE(fs::exists(folder_ / "strict.glb"));
+}
+
+TEST_F(Cli, DrawsEveryKindOfPicture) {
+  makeRobot();
+  ASSERT_EQ(run({"rig", "robot.glb", "--handles", "9", "-q", "-o", "rigged.glb"}).code, 0);
+  for (const char* show : {"model", "handles", "weights", "bones"}) {
+    EXPECT_EQ(run({"preview", "rigged.glb", "--show", show, "--size", "80x60", "-o", "picture.png"}).code, 0);
+    const std::string png = content("picture.png");
+    EXPECT_THAT(png, StartsWith("\x89PNG"));
+    EXPECT_EQ(png.substr(16, 8), std::string("\0\0\0\x50\0\0\0\x3c", 8));  // width and height
+  }
+  expectOneLine(run({"preview", "robot.glb", "--show", "handles", "-o", "none.png"}), 1);
+  for (const char* size : {"80", "80x", "0x0", "99999x10", "80x60x3"}) {
+    expectOneLine(run({"preview", "robot.glb", "--size", size, "-o", "none.png"}), 1);
+  }
+  EXPECT_FALSE(fs::exists(folder_ / "none.png"));
+}
+
+TEST_F(Cli, WeightsAreComparedWithThemselvesAndWithOthers) {
+  makeRobot();
+  ASSERT_EQ(run({"rig", "robot.glb", "--handles", "9", "-q", "-o", "truth.glb"}).code, 0);
+  const auto same = nlohmann::json::parse(run({"evaluate", "weights", "truth.glb", "truth.glb", "--json"}).out);
+  EXPECT_EQ(same.at("l1"), 0);
+  ASSERT_EQ(run({"rig", "truth.glb", "--keep-skeleton", "--max-influences", "1", "-q", "-o", "hard.glb"}).code, 0);
+  const auto other = nlohmann::json::parse(run({"evaluate", "weights", "hard.glb", "truth.glb", "--json"}).out);
+  EXPECT_GT(other.at("l1").get<double>(), 0.01);
+  const Result table = run({"evaluate", "skinning", "."});
+  EXPECT_EQ(table.code, 0) << table.error;
+  EXPECT_THAT(table.out, HasSubstr("truth"));
+  expectOneLine(run({"evaluate", "weights", "robot.glb", "truth.glb"}), 1);
+}
+
+TEST_F(Cli, AReportThatCannotBeWrittenLeavesNoModel) {
+  makeRobot();
+  for (const char* name : {"out.glb", "out.gltf"}) {
+    expectOneLine(run({"rig", "robot.glb", "--handles", "9", "-o", name, "--json", "nowhere/report.json"}), 1);
+  }
+  EXPECT_EQ(files(), std::vector<std::string>{"robot.glb"});
+}
+
+class CliPose : public Cli {
+ protected:
+  void SetUp() override {
+    Cli::SetUp();
+    makeRobot();
+    ASSERT_EQ(run({"rig", "robot.glb", "--handles", "9", "-q", "-o", "rigged.glb"}).code, 0);
+    joint_ = info("rigged.glb").at("joint_names").back().get<std::string>();
+  }
+  nlohmann::json info(const char* name) { return nlohmann::json::parse(run({"info", name, "--json"}).out); }
+
+  std::string joint_;
+};
+
+TEST_F(CliPose, APoseKeepsTheRig) {
+  const Result result = run({"pose", "rigged.glb", "--turn", joint_ + "=y:30", "-o", "posed.glb"});
+  EXPECT_EQ(result.code, 0) << result.error;
+  EXPECT_EQ(info("posed.glb").at("joint_names"), info("rigged.glb").at("joint_names"));
+  EXPECT_EQ(info("posed.glb").at("weights"), info("rigged.glb").at("weights"));
+  EXPECT_NE(content("posed.glb"), content("rigged.glb"));
+  keep("posed.glb");
+}
+
+TEST_F(CliPose, BakesToMeshFormats) {
+  for (const char* name : {"posed.obj", "posed.stl", "posed.ply"}) {
+    const Result result = run({"pose", "rigged.glb", "--turn", joint_ + "=y:30", "--bake", "-o", name});
+    EXPECT_EQ(result.code, 0) << result.error;
+    EXPECT_EQ(info(name).at("triangles"), info("rigged.glb").at("triangles")) << name;
+  }
+}
+
+TEST_F(CliPose, AnUnknownJointIsOneLineAndLeavesNoFile) {
+  const std::vector<std::string> before = files();
+  const Result result = run({"pose", "rigged.glb", "--turn", "no such joint=y:30", "-o", "posed.glb"});
+  expectOneLine(result, 1);
+  EXPECT_THAT(result.error, HasSubstr("no such joint"));
+  EXPECT_EQ(files(), before);
+}
+
+TEST_F(Cli, InterruptedWhileWaitingForInput) {
+  Running running({"rig", "-", "-o", "out.glb"}, folder_);
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));  // until it reads
+  running.signal(SIGINT);
+  const Result result = running.waitWithOpenInput();
+  expectOneLine(result, 130);
+  EXPECT_TRUE(files().empty());
+}
+
+// A bumpy ball of binary PLY, large enough to be at work for a while.
+std::string largeModel() {
+  constexpr int kRings = 600, kAround = 600;
+  std::string body;
+  const auto put = [&](const auto& value) { body.append(reinterpret_cast<const char*>(&value), sizeof(value)); };
+  for (int r = 0; r < kRings; ++r) {
+    for (int i = 0; i < kAround; ++i) {
+      const double v = 3.14159265 * (r + 0.5) / kRings, u = 2 * 3.14159265 * i / kAround;
+      const double radius = 1 + 0.2 * std::sin(9 * u) * std::sin(7 * v);
+      for (const double x : {std::sin(v) * std::cos(u), std::cos(v), std::sin(v) * std::sin(u)}) put(float(radius * x));
+    }
+  }
+  int faces = 0;
+  for (int r = 0; r + 1 < kRings; ++r) {
+    for (int i = 0; i < kAround; ++i) {
+      const int a = r * kAround + i, b = r * kAround + (i + 1) % kAround;
+      for (const std::array<int, 3>& face : {std::array<int, 3>{a, b, b + kAround}, {a, b + kAround, a + kAround}}) {
+        put(static_cast<unsigned char>(3));
+        for (const int v : face) put(v);
+        ++faces;
+      }
+    }
+  }
+  std::ostringstream header;
+  header << "ply\nformat binary_little_endian 1.0\nelement vertex " << kRings * kAround
+         << "\nproperty float x\nproperty float y\nproperty float z\nelement face " << faces
+         << "\nproperty list uchar int vertex_indices\nend_header\n";
+  return header.str() + body;
+}
+
+TEST_F(Cli, InterruptedAtWorkItLeavesNoFile) {
+  put("large.ply", largeModel());
+  Running running({"rig", "large.ply", "-o", "out.glb", "--json", "report.json"}, folder_);
+  std::this_thread::sleep_for(std::chrono::milliseconds(400));
+  running.signal(SIGTERM);
+  expectOneLine(running.wait(), 130);
+  EXPECT_EQ(files(), std::vector<std::string>{"large.ply"});
+}
+
+}  // namespace
+}  // namespace limber

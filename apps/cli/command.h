@@ -1,0 +1,51 @@
+// What the subcommands share: how they are added, and where they print.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include <CLI/CLI.hpp>
+
+#include "limber/asset/asset.h"
+#include "limber/core/progress.h"
+
+namespace limber::cli {
+
+// Each adds its subcommand with a callback that runs it. The callback throws limber::Error.
+void addRigCommand(CLI::App& program);
+void addInfoCommand(CLI::App& program);
+void addPreviewCommand(CLI::App& program);
+void addSampleCommand(CLI::App& program);
+void addEvaluateCommand(CLI::App& program);
+void addPoseCommand(CLI::App& program);
+
+// Options that most commands have.
+struct Common {
+  bool quiet = false;
+  int threads = 0;
+
+  void addTo(CLI::App& command);
+  void apply() const;  // sets the number of threads
+};
+
+// The account of what was done: on standard output, or on standard error where that carries a file.
+class Account {
+ public:
+  Account(bool quiet, std::string_view output) : quiet_(quiet), toError_(output == "-") {}
+  void line(std::string_view text) const;
+
+ private:
+  bool quiet_, toError_;
+};
+
+void printWarnings(const Account& account, const Warnings& warnings);
+// Throws an Error that names the first warning if there is one.
+void refuseWarnings(const Warnings& warnings);
+std::string joinNames(const std::vector<std::string>& names);
+
+// Throws Error kBadArgument unless the name ends in one of the extensions (".glb") or is "-".
+void checkOutput(std::string_view path, std::initializer_list<std::string_view> extensions);
+
+void writeText(const std::string& path, const std::string& text);
+
+}  // namespace limber::cli

@@ -1,0 +1,137 @@
+// limber evaluate: how good a result is, in figures.
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "command.h"
+#include "limber/asset/read.h"
+#include "limber/core/file.h"
+#include "limber/evaluate/ik_evaluation.h"
+#include "limber/evaluate/weight_report.h"
+#include "limber/evaluate/weight_table.h"
+#include "limber/pipeline/auto_rig.h"
+#include "progress_line.h"
+
+namespace limber::cli {
+
+namespace {
+
+struct WeightsOptions {
+  std::string result, truth;
+  bool json = false;
+};
+
+void runWeights(const WeightsOptions& options) {
+  const WeightComparison comparison = compareWeights(readAsset(options.result), readAsset(options.truth));
+  if (options.json) {
+    fmt::print("{}\n", toJson(comparison).dump(2));
+  } else {
+    fmt::print("{}", toText(comparison));
+  }
+}
+
+struct SkinningOptions {
+  std::string folder, references, output = "-", method = "bone-heat";
+  Common common;
+};
+
+void runSkinning(const SkinningOptions& options) {
+  options.common.apply();
+  checkOutput(options.output, {".md"});
+  AutoRigOptions rig;
+  rig.skinning = findWeightMethod(options.method).name;
+  rig.existingRig = ExistingRig::kKeepSkeleton;
+  std::vector<WeightReference> references;
+  if (!options.references.empty()) {
+    const Bytes text = readFile(options.references);
+    references = parseWeightReferences({reinterpret_cast<const char*>(text.data()), text.size()});
+  }
+
+  TerminalProgress progress(options.common.quiet);
+  Warnings skipped;
+  const auto reweight = [&](Asset& asset) {
+    Progress unheard;
+    autoRig(asset, rig, unheard);
+  };
+  const auto rows = compareFolder(options.folder, reweight, *progress, skipped);
+  writeText(options.output, weightPage(rows, references));
+  printWarnings(Account(options.common.quiet, options.output), skipped);
+}
+
+struct SolverOptions {
+  IkEvaluationOptions evaluation;
+  bool json = false;
+  Common common;
+};
+
+void runIk(const SolverOptions& options) {
+  TerminalProgress progress(options.common.quiet);
+  const std::vector<IkScore> scores = evaluateIk(options.evaluation, *progress);
+  fmt::print("{}", options.json ? ikScoreJson(scores) : ikScoreTable(scores));
+}
+
+void addIk(CLI::App& evaluate) {
+  auto options = std::make_shared<SolverOptions>();
+  CLI::App* command =
+      evaluate.add_subcommand("ik", "Run every inverse kinematics method over the same sets of problems");
+  command->add_option("--problems", options->evaluation.problems, "problems in each set")
+      ->check(CLI::Range(1, 100000).description(""))
+      ->type_name("N")
+      ->capture_default_str();
+  command->add_option("--solver", options->evaluation.methods, "only these methods; limber pose --help lists them")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
+  command->add_flag("--json", options->json, "print JSON");
+  command->add_flag("--quiet,-q", options->common.quiet, "draw no progress");
+  command->footer(
+      "Chains of 3, 10, 30 and 100 joints and a humanoid of 60 joints with five effectors; targets in reach, at its\n"
+      "border and out of it; with and without joint limits. A problem counts as solved within a thousandth of the\n"
+      "chain's length; one that cannot be solved, when the method says that it is out of reach.\n"
+      "\nExample:\n  limber evaluate ik --problems 100 --solver fabrik --solver dls");
+  command->callback([options] { runIk(*options); });
+}
+
+void addWeights(CLI::App& evaluate) {
+  auto options = std::make_shared<WeightsOptions>();
+  CLI::App* command = evaluate.add_subcommand("weights", "Compare the skin weights of two files of one model");
+  command->add_option("RESULT", options->result, "the model whose weights are judged")->required();
+  command->add_option("TRUTH", options->truth, "the same model with weights to come near to")->required();
+  command->add_flag("--json", options->json, "print JSON");
+  command->footer(
+      "Prints the mean L1 distance, precision and recall of influences above 1/256, the deformation error in 20\n"
+      "random poses of up to 30 degrees at each joint (percent of the bounding box's diagonal, fixed seed), the\n"
+      "smoothness over edges, and the vertices left out.\n"
+      "\nExample:\n  limber rig person.glb --keep-skeleton -o weighted.glb\n"
+      "  limber evaluate weights weighted.glb person.glb --json");
+  command->callback([options] { runWeights(*options); });
+}
+
+void addSkinning(CLI::App& evaluate) {
+  auto options = std::make_shared<SkinningOptions>();
+  CLI::App* command = evaluate.add_subcommand(
+      "skinning", "Make the weights of a folder of rigged models anew and compare with their own");
+  command->add_option("FOLDER", options->folder, "a folder of .glb and .gltf with artists' rigs")->required();
+  command->add_option("-o,--output", options->output, "the page to write, in Markdown; - is standard output")
+      ->type_name("FILE")
+      ->capture_default_str();
+  command->add_option("--references", options->references, "another program's figures for the same files, as TSV")
+      ->type_name("FILE");
+  command->add_option("--skinning", options->method, "how weights are made; limber rig --help lists the methods")
+      ->type_name("NAME")
+      ->capture_default_str();
+  options->common.addTo(*command);
+  command->footer("Example:\n  limber evaluate skinning characters -o weights.md");
+  command->callback([options] { runSkinning(*options); });
+}
+
+}  // namespace
+
+void addEvaluateCommand(CLI::App& program) {
+  CLI::App* evaluate = program.add_subcommand("evaluate", "Measure how good weights and solvers are");
+  evaluate->require_subcommand(1);
+  evaluate->footer("Example:\n  limber evaluate weights result.glb truth.glb");
+  addWeights(*evaluate);
+  addSkinning(*evaluate);
+  addIk(*evaluate);
+}
+
+}  // namespace limber::cli

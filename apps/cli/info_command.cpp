@@ -1,0 +1,146 @@
+// limber info: what is in a file.
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "command.h"
+#include "limber/asset/read.h"
+#include "limber/evaluate/asset_info.h"
+
+namespace limber::cli {
+
+namespace {
+
+struct Options {
+  std::string input;
+  bool json = false;
+};
+
+Json toJson(const Vec3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+Json weightsJson(const SkinWeightInfo& weights) {
+  return {{"vertices", weights.vertices},
+          {"without_weights", weights.withoutWeights},
+          {"min", weights.least},
+          {"max", weights.greatest},
+          {"largest_sum_error", weights.largestSumError},
+          {"most_influences", weights.mostInfluences}};
+}
+
+Json infoJson(const std::string& file, const AssetInfo& info) {
+  Json json = {{"file", file},
+               {"format", info.format},
+               {"vertices", info.storedVertices},
+               {"scene_vertices", info.sceneVertices}};
+  const SurfaceInfo surface = info.surface.value_or(SurfaceInfo{});
+  json["triangles"] = surface.triangles;
+  json["welded_vertices"] = surface.weldedVertices;
+  json["pieces"] = surface.pieces;
+  json["watertight"] = info.surface && surface.watertight();
+  json["open_edges"] = surface.openEdges;
+  json["crowded_edges"] = surface.crowdedEdges;
+  if (info.bounds.empty()) {
+    json["bounds"] = nullptr;
+  } else {
+    json["bounds"] = {{"min", toJson(info.bounds.min)}, {"max", toJson(info.bounds.max)}};
+  }
+  json["nodes"] = info.nodes;
+  json["meshes"] = info.meshes;
+  json["primitives"] = info.primitives;
+  json["materials"] = info.materials;
+  json["textures"] = info.textures;
+  json["images"] = info.images;
+  json["skins"] = info.skins;
+  json["joints"] = info.joints.size();
+  json["joint_names"] = info.joints;
+  json["weights"] = info.weights ? weightsJson(*info.weights) : Json();
+  json["clips"] = Json::array();
+  for (const ClipInfo& clip : info.clips) {
+    json["clips"].push_back({{"name", clip.name}, {"seconds", clip.seconds}, {"channels", clip.channels}});
+  }
+  json["extensions"] = info.extensions;
+  json["warnings"] = Json::array();
+  for (const Warning& warning : info.warnings.items()) {
+    json["warnings"].push_back(
+        {{"kind", warning.kind}, {"message", warning.message}, {"where", warning.where}, {"count", warning.count}});
+  }
+  return json;
+}
+
+void printField(std::string_view name, const std::string& value) {
+  fmt::print("{:<16}{}\n", name, value);
+}
+
+void printSurface(const AssetInfo& info) {
+  if (!info.surface) {
+    printField("triangles", "none");
+    return;
+  }
+  const SurfaceInfo& surface = *info.surface;
+  printField("triangles", fmt::to_string(surface.triangles));
+  printField("welded", fmt::format("{} vertices at different places", surface.weldedVertices));
+  printField("pieces", fmt::to_string(surface.pieces));
+  printField("watertight", surface.watertight() ? "yes"
+                                                : fmt::format("no: {} edges with one triangle, {} with more than two",
+                                                              surface.openEdges, surface.crowdedEdges));
+  const Vec3 size = info.bounds.size();
+  printField("size", fmt::format("{:.4g} x {:.4g} x {:.4g} m, from ({:.4g}, {:.4g}, {:.4g})", size.x(), size.y(),
+                                 size.z(), info.bounds.min.x(), info.bounds.min.y(), info.bounds.min.z()));
+}
+
+void printRig(const AssetInfo& info) {
+  printField("joints", fmt::to_string(info.joints.size()));
+  if (!info.joints.empty()) printField("", joinNames(info.joints));
+  if (!info.weights) return;
+  const SkinWeightInfo& weights = *info.weights;
+  printField("skin weights",
+             fmt::format("{:.3g} to {:.3g}, largest |sum - 1| {:.2g}, at most {} influences", weights.least,
+                         weights.greatest, weights.largestSumError, weights.mostInfluences));
+  printField("without weights", fmt::format("{} vertices", weights.withoutWeights));
+}
+
+void print(const std::string& file, const AssetInfo& info) {
+  printField("file", file);
+  printField("format", info.format);
+  std::string vertices = fmt::to_string(info.storedVertices);
+  if (info.sceneVertices != info.storedVertices) vertices += fmt::format(" stored, {} shown", info.sceneVertices);
+  printField("vertices", vertices);
+  printSurface(info);
+  printField("meshes", fmt::format("{} with {} primitives on {} nodes", info.meshes, info.primitives, info.nodes));
+  printField("materials", fmt::format("{}, {} textures, {} images", info.materials, info.textures, info.images));
+  printRig(info);
+  printField("clips", fmt::to_string(info.clips.size()));
+  for (const ClipInfo& clip : info.clips) {
+    printField("", fmt::format("{}: {:.3f} s, {} channels", clip.name.empty() ? "(no name)" : clip.name, clip.seconds,
+                               clip.channels));
+  }
+  if (!info.extensions.empty()) printField("extensions", joinNames(info.extensions));
+  printWarnings(Account(false, ""), info.warnings);
+}
+
+void run(const Options& options) {
+  const Asset asset = readAsset(options.input);
+  const AssetInfo info = inspectAsset(asset);
+  if (options.json) {
+    fmt::print("{}\n", infoJson(options.input, info).dump(2, ' ', false, Json::error_handler_t::replace));
+  } else {
+    print(options.input, info);
+  }
+}
+
+}  // namespace
+
+void addInfoCommand(CLI::App& program) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand("info", "Tell what is in a file");
+  command->add_option("FILE", options->input, "the file; - is standard input")->required();
+  command->add_flag("--json", options->json, "print JSON");
+  command->footer(
+      "Pieces and watertightness are counted after vertices at equal positions are merged; watertight means that\n"
+      "every edge has exactly two triangles.\n"
+      "\nExample:\n  limber info dragon.glb --json");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace limber::cli

@@ -1,0 +1,60 @@
+// limber: any 3D model becomes limber.
+#include <cstdio>
+#include <exception>
+#include <new>
+
+#include <fmt/format.h>
+
+#include "command.h"
+#include "progress_line.h"
+
+namespace {
+
+constexpr int kFailed = 1, kUsage = 2, kInterrupted = 130;
+
+int fail(const char* what) {
+  if (limber::cli::interrupted()) {
+    fmt::print(stderr, "limber: interrupted\n");
+    return kInterrupted;
+  }
+  fmt::print(stderr, "limber: {}\n", what);
+  return kFailed;
+}
+
+int usage(const CLI::App& program, const std::string& what) {
+  std::string command;
+  for (const CLI::App* at = &program; !at->get_subcommands().empty();) {
+    at = at->get_subcommands().front();
+    command += " " + at->get_name();
+  }
+  fmt::print(stderr, "limber: {} (limber{} --help shows how to call it)\n", what, command);
+  return kUsage;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App program("Makes any 3D model limber: a static mesh goes in, a rigged and skinned character comes out.",
+                   "limber");
+  program.set_version_flag("--version", "limber " LIMBER_VERSION);
+  program.require_subcommand(1);
+  limber::cli::addRigCommand(program);
+  limber::cli::addInfoCommand(program);
+  limber::cli::addPreviewCommand(program);
+  limber::cli::addSampleCommand(program);
+  limber::cli::addEvaluateCommand(program);
+  limber::cli::addPoseCommand(program);
+  program.footer("limber COMMAND --help shows the options of a command, with an example.");
+  try {
+    program.parse(argc, argv);
+    return 0;
+  } catch (const CLI::Success& request) {  // --help, --version
+    return program.exit(request);
+  } catch (const CLI::ParseError& error) {
+    return usage(program, error.what());
+  } catch (const std::bad_alloc&) {
+    return fail("there is not enough memory for this");
+  } catch (const std::exception& error) {
+    return fail(error.what());
+  }
+}

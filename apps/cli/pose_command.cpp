@@ -1,0 +1,195 @@
+// limber pose: the joints of a rigged model are turned, moved and reached, and stand so in the written file.
+
+#include <fmt/format.h>
+
+#include "command.h"
+#include "limber/asset/mesh_export.h"
+#include "limber/asset/pose_io.h"
+#include "limber/asset/read.h"
+#include "limber/asset/write.h"
+#include "limber/ik/ik_solver.h"
+#include "limber/ik/limits_json.h"
+#include "limber/pipeline/pose_asset.h"
+#include "limber/skinning/deformer.h"
+#include "progress_line.h"
+
+namespace limber::cli {
+
+namespace {
+
+struct Options {
+  std::string input, output, posesFile, poseName, limitsFile, deformer = "linear-blend", rootMotion = "fixed";
+  std::vector<std::string> turns, moves, reaches, poles, bases;
+  PoseOptions pose;
+  bool bake = false;
+  Common common;
+};
+
+// The pose of that name; the only one of the file where none is named.
+PoseEdits editsOf(const std::string& file, const std::string& name) {
+  const Bytes bytes = readFile(file);
+  std::vector<NamedPose> poses;
+  try {
+    poses = parsePoses({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  } catch (const Error& error) {
+    throw error.within(file);
+  }
+  if (name.empty() && poses.size() == 1) return poses.front().edits;
+  std::vector<std::string> names;
+  for (NamedPose& pose : poses) {
+    if (!name.empty() && pose.name == name) return std::move(pose.edits);
+    names.push_back(pose.name);
+  }
+  throw Error(ErrorCode::kBadArgument,
+              name.empty() ? "holds several poses" : fmt::format("holds no pose called '{}'", name), file,
+              fmt::format("choose by --pose NAME; there are: {}", joinNames(names)));
+}
+
+// What the file says first, then what the options say.
+PoseEdits collectEdits(const Options& options) {
+  PoseEdits edits;
+  if (!options.posesFile.empty()) edits = editsOf(options.posesFile, options.poseName);
+  for (const std::string& text : options.turns) {
+    const std::vector<JointTurn> turns = parseTurn(text);
+    edits.turns.insert(edits.turns.end(), turns.begin(), turns.end());
+  }
+  for (const std::string& text : options.moves) edits.moves.push_back(parseMove(text));
+  for (const std::string& text : options.reaches) edits.reaches.push_back(parseReach(text));
+  for (const std::string& text : options.poles) parsePole(text, edits);
+  for (const std::string& text : options.bases) parseBase(text, edits);
+  return edits;
+}
+
+RootMotion rootMotionOf(const std::string& name) {
+  if (name == "fixed") return RootMotion::kFixed;
+  if (name == "turn") return RootMotion::kTurn;
+  return RootMotion::kTranslate;
+}
+
+std::optional<JointLimits> readLimits(const std::string& file, const Skeleton& skeleton) {
+  if (file.empty()) return std::nullopt;
+  const Bytes bytes = readFile(file);
+  try {
+    return limitsFromJson({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, skeleton);
+  } catch (const Error& error) {
+    throw error.within(file);
+  }
+}
+
+std::string_view outcomeText(IkOutcome outcome) {
+  switch (outcome) {
+    case IkOutcome::kReached:
+      return "reached";
+    case IkOutcome::kOutOfReach:
+      return "out of reach";
+    case IkOutcome::kStuck:
+      break;
+  }
+  return "not reached, though it may be possible";
+}
+
+void writeResult(Asset& asset, const AssetSkeleton& skeleton, const Pose& pose, const Options& options) {
+  if (!options.bake) {
+    writeNodePose(asset, skeleton, pose);
+    return writeAsset(asset, options.output);
+  }
+  const PosedGeometry posed = posedGeometry(asset, skeleton, pose, options.deformer);
+  if (isMeshFormat(options.output)) return writeMesh(exportMesh(asset, posed.geometry), options.output);
+  freezeGeometry(asset, collectGeometry(asset), posed.geometry.positions, posed.normals);
+  writeAsset(asset, options.output);
+}
+
+void run(Options options) {
+  options.common.apply();
+  if (options.bake) {
+    checkOutput(options.output, {".glb", ".gltf", ".obj", ".stl", ".ply"});
+  } else {
+    checkOutput(options.output, {".glb", ".gltf"});
+  }
+  findIkMethod(options.pose.solver);
+  findDeformer(options.deformer);
+  options.pose.ik.rootMotion = rootMotionOf(options.rootMotion);
+  const PoseEdits edits = collectEdits(options);
+
+  TerminalProgress progress(options.common.quiet);
+  progress->stage("read");
+  Asset asset = readAsset(options.input);
+  if (!hasRig(asset)) {
+    throw Error(ErrorCode::kBadArgument, "the model has no rig to pose", asset.name, "limber rig gives it one");
+  }
+  const AssetSkeleton skeleton = readSkeleton(asset);
+  Pose pose = readNodePose(asset, skeleton);
+  progress->stage("pose");
+  const std::optional<JointLimits> limits = readLimits(options.limitsFile, skeleton.skeleton);
+  const std::vector<ReachReport> reports =
+      editPose(skeleton.skeleton, pose, edits, limits ? &*limits : nullptr, options.pose);
+  progress->stage("write");
+  writeResult(asset, skeleton, pose, options);
+  progress.finish();
+
+  const Account account(options.common.quiet, options.output);
+  for (const ReachReport& report : reports) {
+    account.line(fmt::format("{:<16}{:.6f} m left: {}", report.joint, report.distance, outcomeText(report.outcome)));
+  }
+  printWarnings(account, asset.warnings);
+  if (options.output != "-") account.line(fmt::format("written: {}", options.output));
+}
+
+std::string help() {
+  std::string text = "Solvers:\n";
+  for (const IkMethod& method : ikMethods()) text += fmt::format("  {:<20}{}\n", method.name, method.summary);
+  text += "Deformers:\n";
+  for (const Deformer& deformer : deformers()) text += fmt::format("  {:<20}{}\n", deformer.name, deformer.summary);
+  return text +
+         "\nAll turns are made first, then all moves, then all reaches at once. Axes and points are the world's.\n"
+         "The file that --poses names: {\"poses\": [{\"name\": \"wave\", \"turn\": [{\"joint\": \"head\", \"axis\": "
+         "[0, 1, 0],\n\"degrees\": 30}], \"move\": [{\"joint\": \"hips\", \"offset\": [0, -0.1, 0]}], \"reach\": "
+         "[{\"joint\": \"hand.L\",\n\"target\": [0.4, 1.2, 0.3], \"pole\": [0, 1, -1], \"base\": \"chest\"}]}]}\n"
+         "\nExamples:\n"
+         "  limber pose rigged.glb --turn head=y:30 --move handle_07=0,0.1,0 --reach hand.L=0.4,1.2,0.3 -o posed.glb\n"
+         "  limber pose rigged.glb --poses poses.json --bake -o posed.obj";
+}
+
+}  // namespace
+
+void addPoseCommand(CLI::App& program) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand("pose", "Turn, move and reach the joints of a rigged model");
+  command->add_option("IN", options->input, "the rigged model; - is standard input")->required();
+  command->add_option("-o,--output", options->output, "the .glb or .gltf to write; - is standard output (GLB)")
+      ->required()
+      ->type_name("FILE");
+  const auto addMany = [&](const char* name, std::vector<std::string>& values, const char* description,
+                           const char* form) {
+    command->add_option(name, values, description)->type_name(form)->allow_extra_args(false);
+  };
+  addMany("--turn", options->turns, "turn a joint about axes of the world by degrees", "JOINT=y:30");
+  addMany("--move", options->moves, "move a joint, in metres", "JOINT=x,y,z");
+  addMany("--reach", options->reaches, "bring a joint to a point; the joints above it turn", "JOINT=x,y,z");
+  addMany("--pole", options->poles, "the point to which the middle of a reaching limb bends", "JOINT=x,y,z");
+  addMany("--base", options->bases, "the highest joint that turns for a reaching one (default: the root's children)",
+          "JOINT=JOINT");
+  command->add_option("--poses", options->posesFile, "edits out of a JSON file, made before those of the options")
+      ->type_name("FILE");
+  command->add_option("--pose", options->poseName, "which pose of that file")->type_name("NAME")->needs("--poses");
+  command->add_option("--solver", options->pose.solver, "how joints reach, see below")
+      ->type_name("NAME")
+      ->capture_default_str();
+  command->add_option("--limits", options->limitsFile, "how far joints turn, in JSON (docs/limits.schema.json)")
+      ->type_name("FILE");
+  command->add_option("--root-motion", options->rootMotion, "what the root may do for a reaching joint")
+      ->check(CLI::IsMember({"fixed", "turn", "move"}))
+      ->type_name("WHAT")
+      ->capture_default_str();
+  command->add_flag("--bake", options->bake,
+                    "move the vertices for good and take the rig out; then .obj, .stl and .ply can be written too");
+  command->add_option("--deformer", options->deformer, "how --bake bends the surface, see below")
+      ->type_name("NAME")
+      ->needs("--bake")
+      ->capture_default_str();
+  options->common.addTo(*command);
+  command->footer(help());
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace limber::cli

@@ -1,0 +1,35 @@
+// Progress on a terminal, and Ctrl-C.
+#pragma once
+
+#include "limber/core/progress.h"
+
+namespace limber::cli {
+
+// A Progress that draws one line on standard error while work takes longer than a second, if that is a terminal, and
+// that is cancelled by SIGINT and SIGTERM. One at a time.
+class TerminalProgress {
+ public:
+  explicit TerminalProgress(bool quiet);
+  TerminalProgress(const TerminalProgress&) = delete;
+  TerminalProgress& operator=(const TerminalProgress&) = delete;
+  ~TerminalProgress();
+
+  Progress& operator*() { return progress_; }
+  Progress* operator->() { return &progress_; }
+  // Closes the last stage and takes the line away, so that other text can follow.
+  void finish();
+
+ private:
+  void draw(std::string_view stage, double fraction);
+  void clear();
+
+  bool enabled_;
+  double startedAt_, drawnAt_ = 0;
+  bool drawn_ = false;
+  Progress progress_;
+};
+
+// Has SIGINT or SIGTERM come?
+bool interrupted();
+
+}  // namespace limber::cli

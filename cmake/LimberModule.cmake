@@ -1,0 +1,60 @@
+# limber_module(<folder> [USES <module>...] [PUBLIC <target>...] [PRIVATE <target>...] [TEST_LIBRARIES <target>...])
+#
+# One folder below limber/ is one library target limber_<folder>, alias limber::<folder>. Every *.cpp beside the
+# CMakeLists.txt belongs to it, except *_test.cpp, which become the test program limber_<folder>_tests.
+# USES names the modules that this one may include from: a header of any other module is not found, so a wrong
+# dependency does not build (each module publishes its headers through its own include tree).
+function(limber_module name)
+  cmake_parse_arguments(ARG "" "" "USES;PUBLIC;PRIVATE;TEST_LIBRARIES" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
+  file(GLOB headers CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.h)
+  set(tests ${sources})
+  list(FILTER tests INCLUDE REGEX "_test\\.cpp$")
+  list(FILTER sources EXCLUDE REGEX "_test\\.cpp$")
+  list(FILTER headers EXCLUDE REGEX "_test\\.h$")
+
+  # The module's own include tree: build/.../include/<folder>/limber/<folder> -> source folder.
+  set(tree ${PROJECT_BINARY_DIR}/include/${name})
+  file(MAKE_DIRECTORY ${tree}/limber)
+  if(NOT EXISTS ${tree}/limber/${name})
+    file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR} ${tree}/limber/${name} SYMBOLIC)
+  endif()
+
+  set(target limber_${name})
+  add_library(${target} STATIC ${sources})
+  add_library(limber::${name} ALIAS ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  target_include_directories(${target} PUBLIC
+    $<BUILD_INTERFACE:${tree}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  limber_compile_options(${target})
+  list(TRANSFORM ARG_USES PREPEND limber_)
+  target_link_libraries(${target} PUBLIC ${ARG_USES} ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
+
+  install(TARGETS ${target} EXPORT limberTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/limber/${name})
+  set_property(GLOBAL APPEND PROPERTY LIMBER_MODULES ${target})
+
+  if(LIMBER_TESTS AND tests)
+    add_executable(${target}_tests ${tests})
+    limber_compile_options(${target}_tests)
+    limber_test_helpers(${target}_tests)
+    target_link_libraries(${target}_tests PRIVATE ${target} ${ARG_TEST_LIBRARIES} GTest::gmock GTest::gtest_main)
+    gtest_discover_tests(${target}_tests TEST_PREFIX "${name}." DISCOVERY_TIMEOUT 120 PROPERTIES LABELS unit)
+  endif()
+endfunction()
+
+# The options that every target of ours is compiled with. Floating point is kept the same on every machine
+# (no contraction), so that the same input gives the same bytes.
+function(limber_compile_options target)
+  target_compile_options(${target} PRIVATE -ffp-contract=off -Wall -Wextra -Wshadow -Wnon-virtual-dtor)
+  if(LIMBER_WERROR)
+    target_compile_options(${target} PRIVATE -Werror)
+  endif()
+endfunction()
+
+# What a test program sees besides the code that it tests: tests/shared_data.h.
+function(limber_test_helpers target)
+  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+  target_compile_definitions(${target} PRIVATE LIMBER_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+endfunction()

@@ -1,0 +1,23 @@
+# With emscripten the system's header-only libraries are used, but /usr/include itself must not be searched: its C
+# library headers are the machine's, not WebAssembly's. Each library gets an include folder of its own that holds a
+# link to it, and the target that its package would have given.
+function(limber_system_headers target folder)
+  find_path(${folder}_parent ${folder} PATHS /usr/include /usr/local/include NO_DEFAULT_PATH NO_CMAKE_FIND_ROOT_PATH
+    REQUIRED)
+  set(tree ${PROJECT_BINARY_DIR}/system/${folder})
+  file(MAKE_DIRECTORY ${tree})
+  file(CREATE_LINK ${${folder}_parent}/${folder} ${tree}/${folder} SYMBOLIC)
+  add_library(${target} INTERFACE IMPORTED GLOBAL)
+  target_include_directories(${target} SYSTEM INTERFACE ${tree})
+endfunction()
+
+limber_system_headers(fmt::fmt-header-only fmt)
+target_compile_definitions(fmt::fmt-header-only INTERFACE FMT_HEADER_ONLY=1)
+limber_system_headers(nlohmann_json::nlohmann_json nlohmann)
+find_path(eigen_folder Eigen/Core PATHS /usr/include/eigen3 /usr/local/include/eigen3 NO_DEFAULT_PATH
+  NO_CMAKE_FIND_ROOT_PATH REQUIRED)
+add_library(Eigen3::Eigen INTERFACE IMPORTED GLOBAL)
+target_include_directories(Eigen3::Eigen SYSTEM INTERFACE ${eigen_folder})
+
+add_compile_options(-fwasm-exceptions)
+add_link_options(-fwasm-exceptions)

@@ -1,0 +1,17 @@
+// Compressed geometry inside glTF (meshopt, Draco) turned into plain buffer views and accessors.
+#pragma once
+
+#include "limber/asset/asset.h"
+
+namespace limber {
+
+// Decodes every buffer view under EXT_meshopt_compression or KHR_meshopt_compression and every primitive under
+// KHR_draco_mesh_compression, so that nothing behind here meets them: their extension objects go, the extensions'
+// names go from extensionsUsed and extensionsRequired, compressed bytes that nothing else refers to go, and a warning
+// "decompressed" says so. Data that the file also holds uncompressed are taken as they are.
+//
+// Throws Error kUnsupported where limber is built without the codecs, kBadData where data do not decode to what the
+// accessors promise. Memory is bounded by the size of the compressed data.
+void decompress(Asset& asset);
+
+}  // namespace limber

@@ -1,0 +1,41 @@
+// What the decoders of compressed geometry share.
+#pragma once
+
+#include <cstddef>
+#include <set>
+#include <string>
+
+#include "limber/asset/json_access.h"
+
+namespace limber {
+
+inline constexpr const char* kDraco = "KHR_draco_mesh_compression";
+inline constexpr const char* kMeshopt[] = {"EXT_meshopt_compression", "KHR_meshopt_compression"};
+
+// Memory that decoding may still ask for. Real files grow ten to fifty times; what a small file can claim is held to
+// a multiple of its size.
+class DecodeBudget {
+ public:
+  explicit DecodeBudget(const Asset& asset);
+  bool allows(std::size_t bytes) const { return bytes <= left_; }
+  void take(std::size_t bytes, const std::string& where);  // throws Error kLimit
+
+ private:
+  std::size_t left_;
+};
+
+// What decoding did to the document.
+struct Decoded {
+  std::set<Index> accessors;  // whose values are new
+  std::set<Index> buffers;    // that held compressed bytes
+};
+
+JsonView extensionOf(const JsonView& owner, const char* name);
+void eraseExtension(Json& owner, const char* name);
+bool hasMeshopt(const JsonView& view);
+
+// Decode all buffer views, all primitives. In the builds without codecs they are not there.
+void decodeMeshopt(Asset& asset, DecodeBudget& budget, Decoded& decoded);
+void decodeDraco(Asset& asset, DecodeBudget& budget, Decoded& decoded);
+
+}  // namespace limber

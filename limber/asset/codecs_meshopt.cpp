@@ -1,0 +1,141 @@
+#ifdef LIMBER_CODECS
+
+#include <limits>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+#include <meshoptimizer.h>
+#include <nlohmann/json.hpp>
+
+#include "limber/asset/codecs_detail.h"
+
+namespace limber {
+
+namespace {
+
+// One compressed buffer view.
+struct Encoded {
+  std::size_t view = 0;
+  Index target = 0;  // buffer that the decoded bytes belong to
+  Index source = 0;
+  ByteSpan bytes;
+  std::size_t count = 0, stride = 0;
+  std::string_view mode, filter;
+};
+
+Encoded readEncoded(const Asset& asset, const JsonView& view, const JsonView& extension) {
+  Encoded encoded;
+  encoded.target = view.requireIndex("buffer", asset.buffers.size());
+  if (!asset.buffers[encoded.target].bytes.empty()) view.fail("reaches beyond its buffer");
+  encoded.source = extension.requireIndex("buffer", asset.buffers.size());
+  const Bytes& source = asset.buffers[encoded.source].bytes;
+  const std::size_t offset = extension.count("byteOffset").value_or(0);
+  const std::size_t length = extension.member("byteLength").asCount();
+  if (offset > source.size() || length > source.size() - offset) extension.fail("reaches beyond its buffer");
+  encoded.bytes = ByteSpan(source).subspan(offset, length);
+  encoded.count = extension.member("count").asCount();
+  encoded.stride = extension.member("byteStride").asCount();
+  encoded.mode = extension.text("mode");
+  encoded.filter = extension.text("filter", "NONE");
+  const std::size_t decodedSize = view.member("byteLength").asCount();
+  if (encoded.stride == 0 || encoded.stride > 256 || encoded.count != decodedSize / encoded.stride ||
+      decodedSize % encoded.stride != 0) {
+    extension.fail("its count and byteStride do not make up the byteLength of its buffer view");
+  }
+  return encoded;
+}
+
+// The decoder's own rules, which it only asserts.
+void checkShape(const Encoded& encoded, const JsonView& extension) {
+  const bool isIndex = encoded.mode == "TRIANGLES" || encoded.mode == "INDICES";
+  bool fits =
+      encoded.mode == "ATTRIBUTES" ? encoded.stride % 4 == 0 : isIndex && (encoded.stride == 2 || encoded.stride == 4);
+  if (encoded.mode == "TRIANGLES") fits = fits && encoded.count % 3 == 0;
+  if (encoded.filter == "OCTAHEDRAL") {
+    fits = fits && !isIndex && (encoded.stride == 4 || encoded.stride == 8);
+  } else if (encoded.filter == "QUATERNION") {
+    fits = fits && !isIndex && encoded.stride == 8;
+  } else if (encoded.filter == "EXPONENTIAL") {
+    fits = fits && !isIndex;
+  } else if (encoded.filter != "NONE") {
+    throw Error(ErrorCode::kUnsupported, fmt::format("is compressed with the filter {}", encoded.filter),
+                extension.path(), "export the model without compression");
+  }
+  if (!fits) extension.fail("its mode, filter, count and byteStride do not go together");
+}
+
+int decodeInto(const Encoded& encoded, std::uint8_t* out) {
+  const std::size_t size = encoded.bytes.size();
+  if (encoded.mode == "TRIANGLES") {
+    return meshopt_decodeIndexBuffer(out, encoded.count, encoded.stride, encoded.bytes.data(), size);
+  }
+  if (encoded.mode == "INDICES") {
+    return meshopt_decodeIndexSequence(out, encoded.count, encoded.stride, encoded.bytes.data(), size);
+  }
+  const int result = meshopt_decodeVertexBuffer(out, encoded.count, encoded.stride, encoded.bytes.data(), size);
+  if (result != 0) return result;
+  if (encoded.filter == "OCTAHEDRAL") meshopt_decodeFilterOct(out, encoded.count, encoded.stride);
+  if (encoded.filter == "QUATERNION") meshopt_decodeFilterQuat(out, encoded.count, encoded.stride);
+  if (encoded.filter == "EXPONENTIAL") meshopt_decodeFilterExp(out, encoded.count, encoded.stride);
+  return 0;
+}
+
+std::vector<Encoded> findEncoded(const Asset& asset) {
+  std::vector<Encoded> found;
+  const JsonView views = JsonView(asset).array("bufferViews");
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (!hasMeshopt(views[i])) continue;
+    const JsonView first = extensionOf(views[i], kMeshopt[0]);
+    const JsonView extension = first.exists() ? first : extensionOf(views[i], kMeshopt[1]);
+    found.push_back(readEncoded(asset, views[i], extension));
+    found.back().view = i;
+    checkShape(found.back(), extension);
+  }
+  return found;
+}
+
+}  // namespace
+
+// The decoded bytes fill the buffer that stands for them, one view behind the other, at offsets of our own: those in
+// the file are a claim about memory.
+void decodeMeshopt(Asset& asset, DecodeBudget& budget, Decoded& decoded) {
+  const std::vector<Encoded> views = findEncoded(asset);
+  std::vector<Bytes> filled(asset.buffers.size());
+  std::vector<std::size_t> offsets;
+  for (const Encoded& encoded : views) {
+    const std::string where = fmt::format("bufferViews[{}]", encoded.view);
+    Bytes& out = filled[encoded.target];
+    const std::size_t offset = (out.size() + 3) / 4 * 4, size = encoded.count * encoded.stride;
+    budget.take(size, where);
+    out.resize(offset + size);
+    if (size > 0 && decodeInto(encoded, out.data() + offset) != 0) {
+      throw Error(ErrorCode::kBadData, "its meshopt compressed data are broken", where);
+    }
+    offsets.push_back(offset);
+    decoded.buffers.insert(encoded.source);
+  }
+
+  std::vector<bool> isNew(JsonView(asset).array("bufferViews").size(), false);
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    Json& view = asset.json()["bufferViews"][views[i].view];
+    view["byteOffset"] = offsets[i];
+    for (const char* name : kMeshopt) eraseExtension(view, name);
+    isNew[views[i].view] = true;
+  }
+  for (std::size_t i = 0; i < filled.size(); ++i) {
+    if (filled[i].empty()) continue;
+    asset.json()["buffers"][i]["byteLength"] = filled[i].size();
+    asset.json()["buffers"][i].erase("uri");
+    asset.buffers[i] = {std::move(filled[i]), {}};
+  }
+  const JsonView accessors = JsonView(asset).array("accessors");
+  for (std::size_t i = 0; i < accessors.size(); ++i) {
+    const auto view = accessors[i].index("bufferView", isNew.size());
+    if (view && isNew[*view]) decoded.accessors.insert(static_cast<Index>(i));
+  }
+}
+
+}  // namespace limber
+
+#endif

@@ -1,0 +1,116 @@
+#include "limber/asset/compact_buffers.h"
+
+#include <algorithm>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "limber/asset/accessor_layout.h"
+#include "limber/asset/uri.h"
+
+namespace limber {
+
+namespace {
+
+struct Range {
+  std::size_t begin, end;
+  std::size_t newBegin = 0;
+};
+
+using Ranges = std::vector<Range>;
+
+void sortAndMerge(Ranges& ranges) {
+  std::sort(ranges.begin(), ranges.end(), [](const Range& a, const Range& b) { return a.begin < b.begin; });
+  Ranges merged;
+  for (const Range& range : ranges) {
+    if (!merged.empty() && range.begin <= merged.back().end) {
+      merged.back().end = std::max(merged.back().end, range.end);
+    } else {
+      merged.push_back(range);
+    }
+  }
+  ranges = std::move(merged);
+}
+
+// For each buffer what views cover of it, widened to multiples of four, in rising order without overlap.
+std::vector<Ranges> coveredRanges(const Asset& asset) {
+  std::vector<Ranges> covered(asset.buffers.size());
+  const JsonView views = JsonView(asset).array("bufferViews");
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const Index buffer = views[i].requireIndex("buffer", asset.buffers.size());
+    const ViewLayout view = viewLayout(asset, views[i]);
+    const std::size_t end = std::min((view.offset + view.bytes.size() + 3) / 4 * 4, asset.buffers[buffer].bytes.size());
+    if (!view.bytes.empty()) covered[buffer].push_back({view.offset / 4 * 4, end});
+  }
+  for (Ranges& ranges : covered) sortAndMerge(ranges);
+  return covered;
+}
+
+std::size_t newOffset(const Ranges& ranges, std::size_t offset) {
+  const auto behind = std::upper_bound(ranges.begin(), ranges.end(), offset,
+                                       [](std::size_t value, const Range& range) { return value < range.begin; });
+  if (behind == ranges.begin()) return 0;  // an empty view before all others
+  const Range& range = *std::prev(behind);
+  return range.newBegin + std::min(offset, range.end) - range.begin;
+}
+
+// Keeps only these ranges of a buffer's bytes and says so in them; false if that is all of it.
+bool cutBuffer(Asset& asset, Index buffer, Ranges& ranges) {
+  Bytes& old = asset.buffers[buffer].bytes;
+  Bytes kept;
+  for (Range& range : ranges) {
+    range.newBegin = kept.size();
+    kept.insert(kept.end(), old.begin() + static_cast<std::ptrdiff_t>(range.begin),
+                old.begin() + static_cast<std::ptrdiff_t>(range.end));
+  }
+  if (kept.size() == old.size()) return false;
+  old = std::move(kept);
+  Json& json = asset.json()["buffers"][buffer];
+  json["byteLength"] = old.size();
+  std::string& uri = asset.buffers[buffer].uri;
+  if (!isDataUri(uri)) {
+    uri.clear();
+    json.erase("uri");
+  }
+  return true;
+}
+
+}  // namespace
+
+void dropUnusedBytes(Asset& asset, const std::set<Index>& buffers) {
+  std::vector<Ranges> covered = coveredRanges(asset);
+  std::vector<bool> changed(covered.size(), false);
+  for (const Index buffer : buffers) changed[buffer] = cutBuffer(asset, buffer, covered[buffer]);
+  const JsonView views = JsonView(asset).array("bufferViews");
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const Index buffer = views[i].requireIndex("buffer", covered.size());
+    if (!changed[buffer]) continue;
+    const std::size_t offset = views[i].count("byteOffset").value_or(0);
+    asset.json()["bufferViews"][i]["byteOffset"] = newOffset(covered[buffer], offset);
+  }
+}
+
+void removeEmptyBuffers(Asset& asset) {
+  const JsonView views = JsonView(asset).array("bufferViews");
+  std::vector<bool> named(asset.buffers.size(), false);
+  for (std::size_t i = 0; i < views.size(); ++i) named[views[i].requireIndex("buffer", named.size())] = true;
+
+  std::vector<Index> newIndex;
+  std::vector<Asset::Buffer> kept;
+  Json keptJson = Json::array();
+  for (std::size_t i = 0; i < asset.buffers.size(); ++i) {
+    newIndex.push_back(static_cast<Index>(kept.size()));
+    if (!named[i] && asset.buffers[i].bytes.empty()) continue;
+    kept.push_back(std::move(asset.buffers[i]));
+    keptJson.push_back(std::move(asset.json()["buffers"][i]));
+  }
+  asset.buffers = std::move(kept);
+  asset.json()["buffers"] = std::move(keptJson);
+  if (asset.buffers.empty()) asset.json().erase("buffers");
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    Json& buffer = asset.json()["bufferViews"][i]["buffer"];
+    buffer = newIndex[buffer.get<Index>()];
+  }
+}
+
+}  // namespace limber

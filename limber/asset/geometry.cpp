@@ -1,0 +1,222 @@
+// Walks the default scene and brings every primitive to world space.
+#include "limber/asset/geometry.h"
+
+#include <algorithm>
+#include <set>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "limber/asset/accessor.h"
+#include "limber/asset/bind_pose.h"
+#include "limber/asset/scene_graph.h"
+#include "limber/core/transform.h"
+
+namespace limber {
+
+namespace {
+
+constexpr std::uint64_t kMaxVertices = kNoIndex - 1;
+// Vertices that instances may add to those that the file holds: a few kilobytes of nodes must not ask for gigabytes.
+constexpr std::uint64_t kMaxAddedVertices = 16'000'000;
+
+// The same for instances, which cost memory even where their mesh has no vertices.
+constexpr std::uint64_t kMaxAddedInstances = 1'000'000;
+
+constexpr int kTriangles = 4, kTriangleStrip = 5, kTriangleFan = 6;  // glTF's primitive modes
+
+// One showing of a mesh.
+struct MeshInstance {
+  Index node, mesh, copy;
+  Affine toWorld;
+};
+
+// The accessors of a node's EXT_mesh_gpu_instancing, checked; nothing in them has been read yet.
+struct GpuInstancing {
+  std::optional<Index> translation, rotation, scale;
+  Index count = 0;  // 0 where the node does not use it
+};
+
+GpuInstancing gpuInstancing(const Asset& asset, const Json& node, const std::string& where) {
+  const Json* extensions = member(node, "extensions");
+  const Json* instancing = extensions ? member(*extensions, "EXT_mesh_gpu_instancing") : nullptr;
+  const Json* attributes = instancing ? member(*instancing, "attributes") : nullptr;
+  if (!attributes) return {};
+
+  std::optional<std::size_t> count;
+  const auto find = [&](const char* name, Index components) {
+    const std::optional<Index> accessor = indexMember(*attributes, name);
+    if (!accessor) return accessor;
+    const auto bad = [&](const char* what) {
+      throw Error(ErrorCode::kBadData, what, where + ".extensions.EXT_mesh_gpu_instancing." + name);
+    };
+    if (*accessor >= elementCount(asset, "accessors")) bad("names an accessor that does not exist");
+    const AccessorInfo info = accessorInfo(asset, *accessor);
+    if (info.components != components) bad("has the wrong accessor type");
+    if (count.value_or(info.count) != info.count) bad("is not as long as the other attributes");
+    count = info.count;
+    return accessor;
+  };
+  GpuInstancing result;
+  result.translation = find("TRANSLATION", 3);
+  result.rotation = find("ROTATION", 4);
+  result.scale = find("SCALE", 3);
+  result.count = count.value_or(0);
+  return result;
+}
+
+// The instances' transforms, relative to the node.
+std::vector<Affine> gpuInstances(const Asset& asset, const GpuInstancing& instancing) {
+  const auto read = [&](const std::optional<Index>& accessor) {
+    return accessor ? readFloats(asset, *accessor) : std::vector<float>();
+  };
+  const std::vector<float> translations = read(instancing.translation);
+  const std::vector<float> rotations = read(instancing.rotation);
+  const std::vector<float> scales = read(instancing.scale);
+
+  std::vector<Affine> result(instancing.count);
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    Transform t;
+    if (!translations.empty()) t.translation = Eigen::Map<const Vec3f>(&translations[3 * i]).cast<double>();
+    if (!scales.empty()) t.scale = Eigen::Map<const Vec3f>(&scales[3 * i]).cast<double>();
+    if (!rotations.empty()) t.rotation.coeffs() = Eigen::Map<const Vec4f>(&rotations[4 * i]).cast<double>();
+    t.rotation = t.rotation.norm() > 0 ? t.rotation.normalized() : Quat::Identity();
+    result[i] = t.toAffine();
+  }
+  return result;
+}
+
+// Throws Error kLimit before the memory for too many instances is asked for.
+std::vector<MeshInstance> meshInstances(const Asset& asset) {
+  const SceneGraph graph = readSceneGraph(asset);
+  const BindPose bindPose = readBindPose(asset, graph);
+  const Json& nodes = elements(asset, "nodes");
+  std::vector<MeshInstance> result;
+  std::uint64_t total = 0;
+  const auto count = [&](std::uint64_t added) {
+    total += added;
+    if (total <= nodes.size() + kMaxAddedInstances) return;
+    throw Error(ErrorCode::kLimit, fmt::format("the scene shows {} or more instances of meshes", total), {},
+                "rig the meshes one by one, or with fewer instances");
+  };
+  for (const Index n : graph.order) {
+    const std::optional<Index> mesh = indexMember(nodes[n], "mesh");
+    if (!mesh) continue;
+    if (const std::optional<Index> skin = indexMember(nodes[n], "skin")) {
+      count(1);
+      result.push_back({n, *mesh, 0, bindPose.skinToWorld[*skin]});
+      continue;
+    }
+    const GpuInstancing instancing = gpuInstancing(asset, nodes[n], fmt::format("nodes[{}]", n));
+    count(std::max<std::uint64_t>(1, instancing.count));
+    const std::vector<Affine> copies = gpuInstances(asset, instancing);
+    if (copies.empty()) result.push_back({n, *mesh, 0, bindPose.nodeWorld[n]});
+    for (Index c = 0; c < copies.size(); ++c) result.push_back({n, *mesh, c, bindPose.nodeWorld[n] * copies[c]});
+  }
+  return result;
+}
+
+// The corners of one primitive's triangles, as indices into its own vertices.
+std::vector<Triangle> primitiveTriangles(const Asset& asset, const Json& primitive, Index vertexCount) {
+  const Json* modeMember = member(primitive, "mode");
+  const int mode = modeMember ? modeMember->get<int>() : kTriangles;
+  if (mode != kTriangles && mode != kTriangleStrip && mode != kTriangleFan) return {};
+
+  const std::optional<Index> accessor = indexMember(primitive, "indices");
+  const std::vector<Index> indices = accessor ? readIndices(asset, *accessor) : std::vector<Index>();
+  const std::size_t corners = accessor ? indices.size() : vertexCount;
+  const auto corner = [&](std::size_t i) { return accessor ? indices[i] : static_cast<Index>(i); };
+
+  std::vector<Triangle> triangles;
+  if (mode == kTriangles) {
+    triangles.reserve(corners / 3);
+    for (std::size_t i = 0; i + 2 < corners; i += 3) triangles.push_back({corner(i), corner(i + 1), corner(i + 2)});
+  } else if (mode == kTriangleStrip) {
+    for (std::size_t i = 0; i + 2 < corners; ++i) {
+      triangles.push_back({corner(i), corner(i + 1 + i % 2), corner(i + 2 - i % 2)});
+    }
+  } else {
+    for (std::size_t i = 1; i + 1 < corners; ++i) triangles.push_back({corner(0), corner(i), corner(i + 1)});
+  }
+  return triangles;
+}
+
+class Collector {
+ public:
+  explicit Collector(const Asset& asset) : asset_(asset), meshes_(elements(asset, "meshes")) {}
+
+  Geometry collect() {
+    const std::vector<MeshInstance> instances = meshInstances(asset_);
+    checkSize(instances);
+    geometry_.positions.reserve(vertexCount_);
+    for (const MeshInstance& instance : instances) {
+      const Json& primitives = meshes_[instance.mesh].at("primitives");
+      for (Index p = 0; p < primitives.size(); ++p) addPrimitive(instance, p, primitives[p]);
+    }
+    if (geometry_.triangles.empty()) {
+      throw Error(ErrorCode::kBadData, "the model has no triangle", {}, "limber needs a surface, not points or lines");
+    }
+    return std::move(geometry_);
+  }
+
+ private:
+  static std::optional<Index> positionAccessor(const Json& primitive) {
+    const Json* attributes = member(primitive, "attributes");
+    return attributes ? indexMember(*attributes, "POSITION") : std::nullopt;
+  }
+
+  void checkSize(const std::vector<MeshInstance>& instances) {
+    std::uint64_t stored = 0;
+    std::set<Index> met;
+    for (const MeshInstance& instance : instances) {
+      for (const Json& primitive : meshes_[instance.mesh].at("primitives")) {
+        const std::optional<Index> accessor = positionAccessor(primitive);
+        if (!accessor) continue;
+        const Index count = accessorInfo(asset_, *accessor).count;
+        vertexCount_ += count;
+        if (met.insert(*accessor).second) stored += count;
+      }
+    }
+    if (vertexCount_ > kMaxVertices || vertexCount_ > stored + kMaxAddedVertices) {
+      throw Error(ErrorCode::kLimit, fmt::format("the scene shows {} vertices", vertexCount_), {},
+                  "rig the meshes one by one, or with fewer instances");
+    }
+  }
+
+  void addPrimitive(const MeshInstance& instance, Index index, const Json& primitive) {
+    const std::optional<Index> accessor = positionAccessor(primitive);
+    if (!accessor) return;
+    const std::vector<float> stored = readFloats(asset_, *accessor);
+    const auto first = static_cast<Index>(geometry_.positions.size());
+    const auto count = static_cast<Index>(stored.size() / 3);
+    for (Index v = 0; v < count; ++v) {
+      const Vec3 position = instance.toWorld * Eigen::Map<const Vec3f>(&stored[3 * std::size_t{v}]).cast<double>();
+      geometry_.positions.push_back(position.cast<float>());
+      if (geometry_.positions.back().allFinite()) continue;
+      throw Error(ErrorCode::kBadData, fmt::format("vertex {} has a position that is not a finite number", v),
+                  fmt::format("meshes[{}].primitives[{}]", instance.mesh, index));
+    }
+
+    const bool mirrored = instance.toWorld.linear().determinant() < 0;
+    for (Triangle t : primitiveTriangles(asset_, primitive, count)) {
+      if (mirrored) std::swap(t[1], t[2]);
+      geometry_.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    }
+    geometry_.instances.push_back({instance.node, instance.mesh, index, instance.copy, first, count, instance.toWorld});
+  }
+
+  const Asset& asset_;
+  const Json& meshes_;
+  Geometry geometry_;
+  std::uint64_t vertexCount_ = 0;
+};
+
+}  // namespace
+
+Geometry collectGeometry(const Asset& asset) {
+  return Collector(asset).collect();
+}
+
+}  // namespace limber

@@ -1,0 +1,118 @@
+#include "limber/asset/glb.h"
+
+#include <bit>
+#include <cstring>
+#include <limits>
+
+#include <fmt/format.h>
+
+namespace limber {
+
+static_assert(std::endian::native == std::endian::little, "glTF is little-endian and is read in place");
+
+namespace {
+
+constexpr std::uint32_t kMagic = 0x46546C67;   // "glTF"
+constexpr std::uint32_t kJson = 0x4E4F534A;    // "JSON"
+constexpr std::uint32_t kBinary = 0x004E4942;  // "BIN"
+constexpr std::size_t kHeaderSize = 12, kChunkHeaderSize = 8;
+
+std::uint32_t word(ByteSpan bytes, std::size_t at) {
+  std::uint32_t value;
+  std::memcpy(&value, bytes.data() + at, sizeof(value));
+  return value;
+}
+
+std::size_t padded(std::size_t size) {
+  return (size + 3) / 4 * 4;
+}
+
+// The part of the file that its header speaks of.
+ByteSpan checkHeader(ByteSpan file, Warnings& warnings) {
+  if (file.size() < kHeaderSize) throw Error(ErrorCode::kBadData, "GLB is cut off inside its header");
+  if (const std::uint32_t version = word(file, 4); version != 2) {
+    throw Error(ErrorCode::kUnsupported, fmt::format("GLB is of version {}, limber reads version 2", version), {},
+                "export the model as glTF 2.0");
+  }
+  const std::size_t length = word(file, 8);
+  if (length < kHeaderSize) throw Error(ErrorCode::kBadData, fmt::format("GLB gives its length as {}", length));
+  if (length > file.size()) {
+    throw Error(ErrorCode::kBadData,
+                fmt::format("GLB is cut off: it should have {} bytes and has {}", length, file.size()));
+  }
+  if (length < file.size()) {
+    warnings.add("trailing-bytes", "bytes behind the end of the GLB left out", {}, file.size() - length);
+  }
+  return file.first(length);
+}
+
+void append(Bytes& bytes, std::uint32_t value) {
+  std::uint8_t raw[sizeof(value)];
+  std::memcpy(raw, &value, sizeof(value));
+  bytes.insert(bytes.end(), raw, raw + sizeof(value));
+}
+
+}  // namespace
+
+bool looksLikeGlb(ByteSpan bytes) {
+  return bytes.size() >= 4 && word(bytes, 0) == kMagic;
+}
+
+GlbChunks splitGlb(ByteSpan file, Warnings& warnings) {
+  file = checkHeader(file, warnings);
+  GlbChunks chunks;
+  bool first = true;
+  std::size_t at = kHeaderSize;
+  while (at < file.size()) {
+    if (file.size() - at < kChunkHeaderSize) throw Error(ErrorCode::kBadData, "GLB is cut off inside a chunk's header");
+    const std::size_t size = word(file, at);
+    const std::uint32_t type = word(file, at + 4);
+    at += kChunkHeaderSize;
+    if (size > file.size() - at) {
+      throw Error(ErrorCode::kBadData,
+                  fmt::format("GLB chunk should have {} bytes, but {} are left", size, file.size() - at));
+    }
+    if (first != (type == kJson)) {
+      throw Error(ErrorCode::kBadData, first ? "GLB does not start with a JSON chunk" : "GLB has a second JSON chunk");
+    }
+    const ByteSpan content = file.subspan(at, size);
+    if (type == kJson) {
+      chunks.json = content;
+    } else if (type == kBinary && !chunks.binary) {
+      chunks.binary = content;
+    } else {
+      warnings.add("unknown-chunks", "further chunks of the GLB left out");
+    }
+    first = false;
+    at += size;
+  }
+  if (first) throw Error(ErrorCode::kBadData, "GLB has no JSON chunk");
+  return chunks;
+}
+
+Bytes joinGlb(std::string_view json, ByteSpan binary) {
+  const std::size_t jsonSize = padded(json.size()), binarySize = padded(binary.size());
+  const std::size_t binaryChunk = binary.empty() ? 0 : kChunkHeaderSize + binarySize;
+  const std::size_t length = kHeaderSize + kChunkHeaderSize + jsonSize + binaryChunk;
+  if (length > std::numeric_limits<std::uint32_t>::max()) {
+    throw Error(ErrorCode::kLimit, "the model is too large for a GLB (4 GiB)", {}, "write it as .gltf");
+  }
+  Bytes file;
+  file.reserve(length);
+  append(file, kMagic);
+  append(file, 2);
+  append(file, static_cast<std::uint32_t>(length));
+  append(file, static_cast<std::uint32_t>(jsonSize));
+  append(file, kJson);
+  file.insert(file.end(), json.begin(), json.end());
+  file.resize(kHeaderSize + kChunkHeaderSize + jsonSize, ' ');
+  if (!binary.empty()) {
+    append(file, static_cast<std::uint32_t>(binarySize));
+    append(file, kBinary);
+    file.insert(file.end(), binary.begin(), binary.end());
+    file.resize(length, 0);
+  }
+  return file;
+}
+
+}  // namespace limber

@@ -1,0 +1,37 @@
+// The file system that Assimp sees: the one file in memory, and what the resolver opens beside it.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include <assimp/IOSystem.hpp>
+
+#include "limber/asset/read.h"
+
+namespace limber {
+
+class ImportIo : public Assimp::IOSystem {
+ public:
+  // `mainName` is how Assimp knows the main file. Both views must outlive this object.
+  ImportIo(ByteSpan mainFile, std::string mainName, const Resolver& resolver)
+      : mainFile_(mainFile), mainName_(std::move(mainName)), resolver_(resolver) {}
+
+  bool Exists(const char* path) const override;
+  char getOsSeparator() const override { return '/'; }
+  Assimp::IOStream* Open(const char* path, const char* mode) override;
+  void Close(Assimp::IOStream* stream) override;
+
+  // A side file by the path that the model gives: as it is if that is relative, else by its last part beside the model.
+  std::optional<Bytes> sideFile(std::string_view path) const;
+
+ private:
+  const Bytes* cached(const std::string& path) const;
+
+  ByteSpan mainFile_;
+  std::string mainName_;
+  const Resolver& resolver_;
+  mutable std::map<std::string, std::optional<Bytes>> sideFiles_;
+};
+
+}  // namespace limber

@@ -1,0 +1,39 @@
+// Assimp's materials and textures as glTF's.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include "limber/asset/asset.h"
+#include "limber/asset/import_io.h"
+#include "limber/core/types.h"
+
+struct aiMaterial;
+struct aiScene;
+
+namespace limber {
+
+// Adds materials, and the textures that they use, to one document. Textures are embedded.
+class MaterialImporter {
+ public:
+  MaterialImporter(Asset& asset, const aiScene& scene, const ImportIo& io) : asset_(asset), scene_(scene), io_(io) {}
+
+  // The glTF material of one of the scene's; made at the first call for it.
+  Index material(unsigned index);
+
+ private:
+  Json convert(const aiMaterial& material);
+  // {"index": texture} for the first texture of that kind; none where there is none or it cannot be had.
+  std::optional<Json> textureInfo(const aiMaterial& material, int kind);
+  std::optional<Index> texture(const std::string& path);
+  std::optional<Bytes> imageBytes(const std::string& path);
+
+  Asset& asset_;
+  const aiScene& scene_;
+  const ImportIo& io_;
+  std::map<unsigned, Index> materials_;
+  std::map<std::string, std::optional<Index>> textures_;
+};
+
+}  // namespace limber

@@ -1,0 +1,261 @@
+// Two halves: the child process reads with Assimp, converts, and returns a GLB with its warnings; this process reads
+// that like any other GLB that it does not trust.
+#include "limber/asset/import_model.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstring>
+#include <string>
+
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <fmt/format.h>
+#include <assimp/Importer.hpp>
+#include <nlohmann/json.hpp>
+
+#include "limber/asset/glb.h"
+#include "limber/asset/gltf_document.h"
+#include "limber/asset/import_io.h"
+#include "limber/asset/import_obj.h"
+#include "limber/asset/import_ply.h"
+#include "limber/asset/import_sandbox.h"
+#include "limber/asset/import_scene.h"
+#include "limber/asset/import_skin.h"
+#include "limber/asset/import_text.h"
+#include "limber/asset/write.h"
+
+namespace limber {
+
+namespace {
+
+struct Format {
+  const char* extension;  // as Assimp knows it
+  const char* label;
+};
+constexpr Format kFormats[] = {{"obj", "OBJ"}, {"ply", "PLY"}, {"stl", "STL"},
+                               {"off", "OFF"}, {"fbx", "FBX"}, {"dae", "DAE"}};
+
+const Format* formatNamed(std::string_view extension) {
+  const auto found = std::find_if(std::begin(kFormats), std::end(kFormats),
+                                  [&](const Format& format) { return extension == format.extension; });
+  return found == std::end(kFormats) ? nullptr : found;
+}
+
+std::string extensionOf(std::string_view name) {
+  const std::size_t dot = name.find_last_of('.');
+  std::string extension(dot == std::string_view::npos ? "" : name.substr(dot + 1));
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+// A binary STL says nothing of itself but the number of its triangles, 50 bytes each.
+bool isBinaryStl(ByteSpan bytes) {
+  if (bytes.size() < 84) return false;
+  std::uint32_t triangles = 0;
+  std::memcpy(&triangles, bytes.data() + 80, sizeof triangles);
+  return triangles > 0 && bytes.size() == 84 + 50 * std::uint64_t{triangles};
+}
+
+const Format* formatByContent(ByteSpan bytes) {
+  constexpr std::size_t kHead = 4096;  // a COLLADA file may begin with a long comment
+  std::string head(reinterpret_cast<const char*>(bytes.data()), std::min(bytes.size(), kHead));
+  const auto starts = [&](std::string_view text) { return head.rfind(text, 0) == 0; };
+  const auto holds = [&](std::string_view text) { return head.find(text) != std::string::npos; };
+  if (starts("ply\n") || starts("ply\r")) return formatNamed("ply");
+  if (starts("Kaydara FBX Binary") || starts("; FBX") || holds("FBXHeaderExtension")) return formatNamed("fbx");
+  if (holds("<COLLADA")) return formatNamed("dae");
+  if (starts("OFF") || starts("COFF") || starts("NOFF") || starts("CNOFF")) return formatNamed("off");
+  if (isBinaryStl(bytes) || (starts("solid") && holds("facet"))) return formatNamed("stl");
+  return nullptr;
+}
+
+// Text with a line that begins as an OBJ's vertex does: the last guess, for standard input.
+bool looksLikeObj(ByteSpan bytes) {
+  const std::string head(reinterpret_cast<const char*>(bytes.data()), std::min<std::size_t>(bytes.size(), 65536));
+  return head.find('\0') == std::string::npos && (head.rfind("v ", 0) == 0 || head.find("\nv ") != std::string::npos);
+}
+
+const Format& formatOf(ByteSpan bytes, std::string_view name) {
+  if (const Format* format = formatByContent(bytes)) return *format;
+  if (const Format* format = formatNamed(extensionOf(name))) return *format;
+  if (looksLikeObj(bytes)) return *formatNamed("obj");
+  throw Error(ErrorCode::kUnsupported, "is of a format that limber does not read", {},
+              "it reads GLB, glTF, OBJ, PLY, STL, OFF, FBX and DAE");
+}
+
+// What a file's own lengths and directions are in metres and +Y up.
+struct Convention {
+  double scale = 1;
+  Mat3 axes = Mat3::Identity();
+};
+
+template <typename T>
+T metadata(const aiScene& scene, const char* key, T otherwise) {
+  T value = otherwise;
+  return scene.mMetaData && scene.mMetaData->Get(key, value) ? value : otherwise;
+}
+
+double fbxUnitInCentimetres(const aiScene& scene) {
+  const double unit = metadata<double>(scene, "UnitScaleFactor", 0);
+  const double stored = unit > 0 ? unit : metadata<float>(scene, "UnitScaleFactor", 1);
+  return stored > 0 && std::isfinite(stored) ? stored : 1;
+}
+
+// FBX names the axes that point right, up and out of the screen.
+Convention fbxConvention(const aiScene& scene) {
+  Convention result;
+  result.scale = 0.01 * fbxUnitInCentimetres(scene);
+  Mat3 axes = Mat3::Zero();
+  const char* kNames[] = {"CoordAxis", "UpAxis", "FrontAxis"};
+  for (int row = 0; row < 3; ++row) {
+    const int axis = metadata<std::int32_t>(scene, kNames[row], row);
+    const int sign = metadata<std::int32_t>(scene, (std::string(kNames[row]) + "Sign").c_str(), 1);
+    if (axis >= 0 && axis < 3) axes(row, axis) = sign < 0 ? -1 : 1;
+  }
+  if (std::abs(axes.determinant()) == 1) result.axes = axes;
+  return result;
+}
+
+// Assimp puts a COLLADA file's unit and up axis into the top of its tree.
+Convention daeConvention(aiScene& scene) {
+  Convention result;
+  const Affine top = scaledAffine(scene.mRootNode->mTransformation, 1);
+  const double scale = std::cbrt(std::abs(top.linear().determinant()));
+  if (!(scale > 0) || !std::isfinite(scale)) return result;
+  result.scale = scale;
+  result.axes = top.linear() / scale;
+  scene.mRootNode->mTransformation = aiMatrix4x4();
+  return result;
+}
+
+// STL's normals are those of its facets, as any reader makes them from the corners, and often zero or wrong. Without
+// them facets share their corners, and glTF draws them flat.
+void dropNormals(aiScene& scene) {
+  for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
+    delete[] scene.mMeshes[m]->mNormals;
+    scene.mMeshes[m]->mNormals = nullptr;
+  }
+}
+
+void warnOfConversion(Asset& asset, const Convention& convention) {
+  if (std::abs(convention.scale - 1) > 1e-6) {
+    asset.warnings.add("converted-units",
+                       fmt::format("lengths are converted to metres (1 unit was {:g} m)", convention.scale));
+  }
+  if (!convention.axes.isApprox(Mat3::Identity(), 1e-6)) {
+    asset.warnings.add("converted-axes", "directions are converted to Y up");
+  }
+}
+
+// Assimp's own message, without what is said around it already.
+Error importError(std::string message) {
+  if (message.find("bad_alloc") != std::string::npos) {
+    return Error(ErrorCode::kLimit, "it asks for more memory than a file of its size may");
+  }
+  const std::size_t colon = message.find(": ");
+  if (colon <= 4) message.erase(0, colon + 2);  // "OBJ: "
+  while (!message.empty() && (message.back() == '.' || message.back() == ' ')) message.pop_back();
+  return Error(ErrorCode::kBadData, message.empty() ? "the importer does not say why" : validUtf8(message));
+}
+
+// Assimp fills up what a cut file lacks, or leaves it out.
+void checkComplete(const aiScene& scene, const PlyCounts& announced) {
+  std::uint64_t vertices = 0, faces = 0;
+  for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
+    vertices += scene.mMeshes[m]->mNumVertices;
+    faces += scene.mMeshes[m]->mNumFaces;
+  }
+  if (vertices < announced.vertices || (announced.faces > 0 && faces < announced.faces)) {
+    throw Error(ErrorCode::kBadData, fmt::format("it announces {} vertices and {} faces and holds {} and {}",
+                                                 announced.vertices, announced.faces, vertices, faces));
+  }
+}
+
+Asset readWithAssimp(ByteSpan bytes, const Format& format, const Resolver& resolver) {
+  const std::string mainName = std::string("model.") + format.extension;
+  auto* io = new ImportIo(bytes, mainName, resolver);
+  Assimp::Importer importer;
+  importer.SetIOHandler(io);  // owns it from here
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);  // no made-up mesh where there is only motion
+  const aiScene* scene = importer.ReadFile(mainName, 0);
+  if (scene && format.extension == std::string_view("ply")) checkComplete(*scene, checkPly(bytes));
+  if (scene) scene = importer.ApplyPostProcessing(aiProcess_Triangulate);
+  if (!scene || !scene->mRootNode) throw importError(importer.GetErrorString());
+
+  auto& edited = const_cast<aiScene&>(*scene);  // the importer owns it and is done with it
+  if (format.extension == std::string_view("stl")) dropNormals(edited);
+  Convention convention;
+  if (format.extension == std::string_view("fbx")) convention = fbxConvention(edited);
+  if (format.extension == std::string_view("dae")) convention = daeConvention(edited);
+  Asset asset = convertScene(*scene, *io, convention.scale, convention.axes);
+  warnOfConversion(asset, convention);
+  return asset;
+}
+
+// The document and its warnings in one message: a length in eight bytes, the warnings as JSON, the GLB.
+Bytes pack(const Asset& asset) {
+  Json warnings = Json::array();
+  for (const Warning& w : asset.warnings.items()) warnings.push_back({w.kind, w.message, w.where, w.count});
+  const std::string text = warnings.dump(-1, ' ', false, Json::error_handler_t::replace);
+  const Bytes glb = writeGlb(asset);
+  const std::uint64_t length = text.size();
+  Bytes message(sizeof length + text.size() + glb.size());
+  std::memcpy(message.data(), &length, sizeof length);
+  std::copy(text.begin(), text.end(), message.begin() + sizeof length);
+  std::copy(glb.begin(), glb.end(), message.end() - static_cast<std::ptrdiff_t>(glb.size()));
+  return message;
+}
+
+Asset unpack(ByteSpan message) {
+  std::uint64_t length = 0;
+  if (message.size() < sizeof length) throw Error(ErrorCode::kBadData, "the importer gave no answer");
+  std::memcpy(&length, message.data(), sizeof length);
+  message = message.subspan(sizeof length);
+  if (length > message.size()) throw Error(ErrorCode::kBadData, "the importer gave half an answer");
+  const Json warnings = Json::parse(message.begin(), message.begin() + static_cast<std::ptrdiff_t>(length));
+
+  Warnings ignored;
+  const GlbChunks chunks = splitGlb(message.subspan(length), ignored);
+  Asset asset = readGltfDocument(chunks.json, chunks.binary, {});
+  for (const Json& w : warnings) {
+    asset.warnings.add(w.at(0).get<std::string>(), w.at(1).get<std::string>(), w.at(2).get<std::string>(),
+                       w.at(3).get<std::size_t>());
+  }
+  return asset;
+}
+
+// A text file of a megabyte takes Assimp about a tenth of a second and 20 megabytes; hostile ones get ten times that.
+SandboxLimits limitsFor(std::size_t size) {
+  SandboxLimits limits;
+  limits.memory = (std::size_t{512} << 20) + 200 * size;
+  limits.seconds = 1 + 2 * static_cast<double>(size) / (1 << 20);
+  return limits;
+}
+
+}  // namespace
+
+Asset importModel(ByteSpan bytes, std::string_view name, const Resolver& resolver) {
+  const Format& format = formatOf(bytes, name);
+  try {
+    if (format.extension == std::string_view("ply")) checkPly(bytes);
+    const Bytes message =
+        runIsolated([&] { return pack(readWithAssimp(bytes, format, resolver)); }, limitsFor(bytes.size()));
+    Asset asset = unpack(message);
+    asset.format = format.extension;
+    if (asset.format == "obj") {
+      asset.warnings.add("loose-vertices", "vertices that no face uses are left out", {}, countLooseObjVertices(bytes));
+    }
+    return asset;
+  } catch (const Error& error) {
+    throw Error(error.code(), fmt::format("cannot be read as {}: {}", format.label, error.message()), error.where(),
+                error.remedy());
+  } catch (const Json::exception&) {
+    throw Error(ErrorCode::kBadData, fmt::format("cannot be read as {}", format.label));
+  }
+}
+
+}  // namespace limber

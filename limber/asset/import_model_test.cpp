@@ -1,0 +1,453 @@
+#include "limber/asset/import_model.h"
+
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "limber/asset/accessor.h"
+#include "limber/asset/import_obj.h"
+#include "limber/asset/rig_io.h"
+
+namespace limber {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+// A folder in memory.
+Resolver folder(std::map<std::string, std::string> files) {
+  return [files = std::move(files)](std::string_view uri) -> std::optional<Bytes> {
+    const auto found = files.find(std::string(uri));
+    if (found == files.end()) return std::nullopt;
+    return Bytes(found->second.begin(), found->second.end());
+  };
+}
+
+Asset import(std::string_view text, std::string_view name, const Resolver& resolver = {}) {
+  return readAsset(asBytes(text), name, resolver);
+}
+
+std::vector<std::string> warningKinds(const Asset& asset) {
+  std::vector<std::string> kinds;
+  for (const Warning& w : asset.warnings.items()) kinds.push_back(w.kind);
+  return kinds;
+}
+
+Error errorOf(std::string_view text, std::string_view name) {
+  try {
+    import(text, name);
+  } catch (const Error& error) {
+    return error;
+  }
+  ADD_FAILURE() << name << " was read";
+  return Error(ErrorCode::kCancelled, "");
+}
+
+const Json& primitiveOf(const Asset& asset, Index mesh = 0) {
+  return asset.json()["meshes"][mesh]["primitives"][0];
+}
+
+double areaOf(const Geometry& geometry) {
+  double area = 0;
+  for (const Triangle& t : geometry.triangles) {
+    const Vec3 a = geometry.positions[t[0]].cast<double>(), b = geometry.positions[t[1]].cast<double>(),
+               c = geometry.positions[t[2]].cast<double>();
+    area += 0.5 * (b - a).cross(c - a).norm();
+  }
+  return area;
+}
+
+Vec3 sizeOf(const Geometry& geometry) {
+  Box box;
+  for (const Vec3f& p : geometry.positions) box.add(p.cast<double>());
+  return box.size();
+}
+
+constexpr const char* kSquareObj =
+    "# a square with texture coordinates\n"
+    "mtllib looks.mtl\n"
+    "o square\n"
+    "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
+    "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+    "vn 0 0 1\n"
+    "usemtl red\n"
+    "f 1/1/1 2/2/1 3/3/1 4/4/1\n";
+
+// --- OBJ ---
+
+TEST(ImportObj, AQuadIsTwoTrianglesOverFourVertices) {
+  const Asset asset = import(kSquareObj, "square.obj");
+  EXPECT_EQ(asset.format, "obj");
+  EXPECT_EQ(asset.json()["nodes"][0]["name"], "square");
+  const Geometry geometry = collectGeometry(asset);
+  EXPECT_EQ(geometry.positions.size(), 4u);
+  EXPECT_EQ(geometry.triangles.size(), 2u);
+  EXPECT_DOUBLE_EQ(areaOf(geometry), 1);
+  const Json& attributes = primitiveOf(asset)["attributes"];
+  const std::vector<float> normals = readFloats(asset, attributes["NORMAL"].get<Index>());
+  EXPECT_EQ(std::vector<float>(normals.begin(), normals.begin() + 3), (std::vector<float>{0, 0, 1}));
+  // v counts downwards in glTF: the corner at the origin is at the bottom of the picture.
+  const std::vector<float> uvs = readFloats(asset, attributes["TEXCOORD_0"].get<Index>());
+  for (Index v = 0; v < 4; ++v) {
+    EXPECT_EQ(uvs[2 * v], geometry.positions[v].x());
+    EXPECT_EQ(uvs[2 * v + 1], 1 - geometry.positions[v].y());
+  }
+}
+
+TEST(ImportObj, AConcavePolygonKeepsItsArea) {
+  const Geometry geometry =
+      collectGeometry(import("v 0 0 0\nv 2 0 0\nv 2 2 0\nv 1 0.5 0\nv 0 2 0\nf 1 2 3 4 5\n", "arrow.obj"));
+  EXPECT_EQ(geometry.triangles.size(), 3u);
+  EXPECT_NEAR(areaOf(geometry), 4 - 1.5, 1e-6);
+}
+
+TEST(ImportObj, IndicesMayCountBackwards) {
+  const Geometry geometry = collectGeometry(import("v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n", "t.obj"));
+  EXPECT_TRUE(geometry.positions[geometry.triangles[0][1]].isApprox(Vec3f(1, 0, 0)));
+}
+
+TEST(ImportObj, CornersWithOtherAttributesStayApart) {
+  // Two triangles that share an edge, with a normal of their own each.
+  const Asset asset = import(
+      "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvn 0 0 1\nvn 0 1 0\n"
+      "f 1//1 2//1 3//1\nf 2//2 1//2 4//2\n",
+      "fold.obj");
+  EXPECT_EQ(collectGeometry(asset).positions.size(), 6u);
+}
+
+TEST(ImportObj, MaterialsAndTexturesComeThroughTheResolver) {
+  const std::string png = std::string("\x89PNG\r\n\x1a\n", 8) + "not a real picture";
+  const Asset asset = import(kSquareObj, "square.obj",
+                             folder({{"looks.mtl", "newmtl red\nKd 1 0.5 0.25\nd 0.5\nmap_Kd textures\\skin.png\n"},
+                                     {"textures/skin.png", png}}));
+  const Json& json = asset.json();
+  const Json& material = json["materials"][primitiveOf(asset)["material"].get<Index>()];
+  EXPECT_EQ(material["name"], "red");
+  EXPECT_EQ(material["pbrMetallicRoughness"]["baseColorFactor"], Json::array({1.0, 0.5, 0.25, 0.5}));
+  EXPECT_EQ(material["alphaMode"], "BLEND");
+  EXPECT_EQ(material["pbrMetallicRoughness"]["baseColorTexture"]["index"], 0);
+  const Json& view = json["bufferViews"][json["images"][0]["bufferView"].get<Index>()];
+  const Bytes& buffer = asset.buffers[0].bytes;
+  const auto start = buffer.begin() + view["byteOffset"].get<std::ptrdiff_t>();
+  EXPECT_EQ(std::string(start, start + view["byteLength"].get<std::ptrdiff_t>()), png);
+  EXPECT_TRUE(asset.warnings.empty());
+}
+
+TEST(ImportObj, AMissingTextureIsTold) {
+  const Asset asset =
+      import(kSquareObj, "square.obj", folder({{"looks.mtl", "newmtl red\nKd 1 1 1\nmap_Kd C:/gone/skin.png\n"}}));
+  EXPECT_EQ(warningKinds(asset), std::vector<std::string>{"missing-images"});
+  EXPECT_FALSE(asset.json().contains("textures"));
+}
+
+TEST(ImportObj, NothingOutsideTheFolderIsOpened) {
+  std::vector<std::string> asked;
+  // The importer runs in a process of its own: what it asks for shows in what it gets.
+  const Resolver resolver = [](std::string_view uri) -> std::optional<Bytes> {
+    if (uri.find("..") != std::string_view::npos || uri.rfind('/', 0) == 0) {
+      throw Error(ErrorCode::kBadData, "leaves the folder");
+    }
+    return std::nullopt;
+  };
+  const Asset asset = import("mtllib ../../secret.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "t.obj", resolver);
+  EXPECT_EQ(collectGeometry(asset).triangles.size(), 1u);
+}
+
+TEST(ImportObj, APositionThatIsNoNumberIsRefused) {
+  for (const char* bad : {"nan", "inf", "-inf"}) {
+    const std::string text = std::string("v 0 0 0\nv 1 0 ").append(bad).append("\nv 0 1 0\nf 1 2 3\n");
+    const Error error = errorOf(text, "bad.obj");
+    EXPECT_EQ(error.code(), ErrorCode::kBadData);
+    EXPECT_THAT(error.what(), HasSubstr("bad.obj: cannot be read as OBJ: vertex 1 has a position"));
+  }
+}
+
+TEST(ImportObj, AnIndexOutOfRangeIsRefused) {
+  EXPECT_THAT(errorOf("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n", "bad.obj").what(), HasSubstr("cannot be read as OBJ"));
+}
+
+TEST(ImportObj, LooseVerticesAreCounted) {
+  EXPECT_EQ(countLooseObjVertices(asBytes("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 5 5 5\nv 6 6 6\nf 1/1 2/2 -3\n")), 2u);
+  EXPECT_EQ(countLooseObjVertices(asBytes("v 0 0 0\r\nv 1 0 0\r\n  l 1 2\r\nv 3 3 3\r\n")), 1u);
+  EXPECT_EQ(countLooseObjVertices(asBytes("v 0 0 0\nv 1 0 0\n")), 0u);  // a cloud of points: nothing is left out
+  EXPECT_EQ(countLooseObjVertices(asBytes("v 0 0 0\nf 99999999999999999999 0 -7 x\n")), 0u);
+  const Asset asset = import("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 5 5 5\nf 1 2 3\n", "t.obj");
+  EXPECT_EQ(warningKinds(asset), std::vector<std::string>{"loose-vertices"});
+}
+
+TEST(ImportObj, NormalsWithoutADirectionAreMadeAnew) {
+  const Asset asset = import("v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 0\nf 1//1 2//1 3//1\n", "t.obj");
+  EXPECT_EQ(warningKinds(asset), std::vector<std::string>{"invalid-normals"});
+  const std::vector<float> normals = readFloats(asset, primitiveOf(asset)["attributes"]["NORMAL"].get<Index>());
+  EXPECT_EQ(std::vector<float>(normals.begin(), normals.begin() + 3), (std::vector<float>{0, 0, 1}));
+}
+
+// --- the formats without a scene ---
+
+constexpr const char* kTrianglePly =
+    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+    "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+    "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+    "0 0 0 255 0 0\n1 0 0 0 255 0\n0 1 0 0 0 255\n3 0 1 2\n";
+
+TEST(ImportPly, ColoursComeAlong) {
+  const Asset asset = import(kTrianglePly, "t.ply");
+  EXPECT_EQ(asset.format, "ply");
+  const std::vector<float> colors = readFloats(asset, primitiveOf(asset)["attributes"]["COLOR_0"].get<Index>());
+  ASSERT_EQ(colors.size(), 12u);
+  EXPECT_NEAR(colors[0], 1, 1e-3);
+  EXPECT_NEAR(colors[1], 0, 1e-3);
+  EXPECT_NEAR(colors[10], 1, 1e-3);
+}
+
+TEST(ImportPly, VerticesThatNoFaceUsesStay) {
+  const Asset asset = import(
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+      "0 0 0\n1 0 0\n0 1 0\n9 9 9\n3 0 1 2\n",
+      "t.ply");
+  EXPECT_EQ(collectGeometry(asset).positions.size(), 4u);
+}
+
+TEST(ImportPly, AHeaderWithoutEndIsRefusedAtOnce) {
+  const std::string_view text = kTrianglePly;
+  for (const std::size_t length : {5u, 19u, 40u, 120u}) {
+    EXPECT_THAT(errorOf(text.substr(0, length), "t.ply").what(), HasSubstr("its header has no end"));
+  }
+  EXPECT_THAT(errorOf("ply\nformat ascii 1.0\nelement vertex 4000000000\nend_header\n0 0 0\n", "t.ply").what(),
+              HasSubstr("more elements than it can hold"));
+}
+
+TEST(ImportPly, ACutFileIsNotFilledUp) {
+  const std::string text = kTrianglePly;
+  EXPECT_THROW(import(text.substr(0, text.find("0 1 0 0 0 255")), "t.ply"), Error);  // a vertex and the face are gone
+  EXPECT_THROW(import(text.substr(0, text.find("3 0 1 2")), "t.ply"), Error);
+}
+
+TEST(ImportPly, APointCloudIsReadAndHasNoTriangle) {
+  const Asset asset = import(
+      "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\nend_header\n"
+      "0 0 0\n1 0 0\n",
+      "t.ply");
+  EXPECT_EQ(primitiveOf(asset)["mode"], 0);
+  EXPECT_THROW(collectGeometry(asset), Error);
+}
+
+std::string facet(const char* a, const char* b, const char* c) {
+  std::string text = "facet normal 0 0 0\nouter loop\n";
+  for (const char* corner : {a, b, c}) text.append("vertex ").append(corner).append("\n");
+  return text.append("endloop\nendfacet\n");
+}
+
+TEST(ImportStl, FacetsShareTheirCornersAndHaveNoNormals) {
+  const std::string text = std::string("solid thing\n")
+                               .append(facet("0 0 0", "1 0 0", "0 1 0"))
+                               .append(facet("1 0 0", "1 1 0", "0 1 0"))
+                               .append("endsolid thing\n");
+  const Asset asset = import(text, "t.stl");
+  const Geometry geometry = collectGeometry(asset);
+  EXPECT_EQ(geometry.positions.size(), 4u);
+  EXPECT_DOUBLE_EQ(areaOf(geometry), 1);
+  EXPECT_FALSE(primitiveOf(asset)["attributes"].contains("NORMAL"));
+}
+
+TEST(ImportStl, BinaryIsToldFromItsLength) {
+  std::string bytes(84 + 50, '\0');
+  bytes[80] = 1;
+  const float corners[] = {0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 2, 0};
+  std::memcpy(bytes.data() + 84, corners, sizeof corners);
+  const Asset asset = import(bytes, "standard input");
+  EXPECT_EQ(asset.format, "stl");
+  EXPECT_DOUBLE_EQ(areaOf(collectGeometry(asset)), 2);
+}
+
+TEST(ImportOff, IsRead) {
+  const Asset asset = import("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "t.off");
+  EXPECT_EQ(collectGeometry(asset).triangles.size(), 1u);
+}
+
+TEST(ImportModel, ContentCountsMoreThanTheName) {
+  EXPECT_EQ(import(kTrianglePly, "misnamed.obj").format, "ply");
+  EXPECT_EQ(import(kSquareObj, "standard input").format, "obj");
+  EXPECT_EQ(errorOf("hello there", "notes.txt").code(), ErrorCode::kUnsupported);
+}
+
+// --- FBX ---
+
+std::string fbx(int up, int front, int frontSign, double unit) {
+  const auto axis = [](const char* name, int value) {
+    return std::string("\t\tP: \"")
+               .append(name)
+               .append("\", \"int\", \"Integer\", \"\",")
+               .append(std::to_string(value)) +
+           '\n';
+  };
+  return std::string(
+             "; FBX 7.4.0 project file\nFBXHeaderExtension:  {\n\tFBXHeaderVersion: 1003\n\tFBXVersion: 7400\n}\n")
+      .append("GlobalSettings:  {\n\tVersion: 1000\n\tProperties70:  {\n")
+      .append(axis("UpAxis", up) + axis("UpAxisSign", 1) + axis("FrontAxis", front))
+      .append(axis("FrontAxisSign", frontSign) + axis("CoordAxis", 0) + axis("CoordAxisSign", 1))
+      .append("\t\tP: \"UnitScaleFactor\", \"double\", \"Number\", \"\",")
+      .append(std::to_string(unit))
+      .append("\n\t}\n}\nObjects:  {\n\tGeometry: 100, \"Geometry::Tri\", \"Mesh\" {\n\t\tVertices: *9 {\n")
+      .append("\t\t\ta: 0,0,0,100,0,0,0,0,200\n\t\t}\n\t\tPolygonVertexIndex: *3 {\n\t\t\ta: 0,1,-3\n\t\t}\n\t}\n")
+      .append("\tModel: 200, \"Model::Tri\", \"Mesh\" {\n\t\tVersion: 232\n\t\tProperties70:  {\n")
+      .append("\t\t\tP: \"Lcl Translation\", \"Lcl Translation\", \"\", \"A\",0,0,50\n\t\t}\n\t}\n}\n")
+      .append("Connections:  {\n\tC: \"OO\",200,0\n\tC: \"OO\",100,200\n}\n");
+}
+
+TEST(ImportFbx, CentimetresBecomeMetres) {
+  const Asset asset = import(fbx(1, 2, 1, 1), "t.fbx");
+  EXPECT_EQ(warningKinds(asset), std::vector<std::string>{"converted-units"});
+  const Geometry geometry = collectGeometry(asset);
+  EXPECT_TRUE(sizeOf(geometry).isApprox(Vec3(1, 0, 2), 1e-6));
+  EXPECT_NEAR(geometry.positions[0].z(), 0.5, 1e-6);  // the node's translation is converted too
+  EXPECT_FALSE(asset.json()["nodes"][0].contains("scale"));
+}
+
+TEST(ImportFbx, ZUpBecomesYUp) {
+  const Asset asset = import(fbx(2, 1, -1, 100), "t.fbx");
+  EXPECT_EQ(warningKinds(asset), std::vector<std::string>{"converted-axes"});
+  const Geometry geometry = collectGeometry(asset);
+  EXPECT_TRUE(sizeOf(geometry).isApprox(Vec3(100, 200, 0), 1e-6));
+  EXPECT_NEAR(geometry.positions[0].y(), 50, 1e-4);
+}
+
+// --- COLLADA: a skinned and moving character of two joints ---
+
+constexpr const char* kCharacterDae = R"(<?xml version="1.0" encoding="utf-8"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+ <asset><unit name="centimeter" meter="0.01"/><up_axis>Y_UP</up_axis></asset>
+ <library_geometries><geometry id="body" name="body"><mesh>
+  <source id="p"><float_array id="pa" count="12">0 0 0 100 0 0 0 100 0 0 0 100</float_array>
+   <technique_common><accessor source="#pa" count="4" stride="3">
+    <param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/>
+   </accessor></technique_common></source>
+  <vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+  <triangles count="4"><input semantic="VERTEX" source="#v" offset="0"/><p>0 2 1 0 1 3 0 3 2 1 2 3</p></triangles>
+ </mesh></geometry></library_geometries>
+ <library_controllers><controller id="skin"><skin source="#body">
+  <bind_shape_matrix>1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1</bind_shape_matrix>
+  <source id="j"><Name_array id="ja" count="2">hip chest</Name_array>
+   <technique_common><accessor source="#ja" count="2" stride="1"><param name="JOINT" type="name"/></accessor></technique_common></source>
+  <source id="b"><float_array id="ba" count="32">1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1  1 0 0 0 0 1 0 -50 0 0 1 0 0 0 0 1</float_array>
+   <technique_common><accessor source="#ba" count="2" stride="16"><param name="TRANSFORM" type="float4x4"/></accessor></technique_common></source>
+  <source id="w"><float_array id="wa" count="3">1 0.25 0.75</float_array>
+   <technique_common><accessor source="#wa" count="3" stride="1"><param name="WEIGHT" type="float"/></accessor></technique_common></source>
+  <joints><input semantic="JOINT" source="#j"/><input semantic="INV_BIND_MATRIX" source="#b"/></joints>
+  <vertex_weights count="4"><input semantic="JOINT" source="#j" offset="0"/><input semantic="WEIGHT" source="#w" offset="1"/>
+   <vcount>1 1 2 1</vcount><v>0 0 0 0 0 1 1 2 1 0</v></vertex_weights>
+ </skin></controller></library_controllers>
+ <library_animations><animation id="swing">
+  <source id="t"><float_array id="ta" count="2">0 1.5</float_array>
+   <technique_common><accessor source="#ta" count="2" stride="1"><param name="TIME" type="float"/></accessor></technique_common></source>
+  <source id="o"><float_array id="oa" count="32">1 0 0 0 0 1 0 50 0 0 1 0 0 0 0 1  0 -1 0 0 1 0 0 70 0 0 1 0 0 0 0 1</float_array>
+   <technique_common><accessor source="#oa" count="2" stride="16"><param name="TRANSFORM" type="float4x4"/></accessor></technique_common></source>
+  <source id="i"><Name_array id="ia" count="2">LINEAR LINEAR</Name_array>
+   <technique_common><accessor source="#ia" count="2" stride="1"><param name="INTERPOLATION" type="name"/></accessor></technique_common></source>
+  <sampler id="s"><input semantic="INPUT" source="#t"/><input semantic="OUTPUT" source="#o"/><input semantic="INTERPOLATION" source="#i"/></sampler>
+  <channel source="#s" target="chest/m"/>
+ </animation></library_animations>
+ <library_visual_scenes><visual_scene id="scene">
+  <node id="hip" name="hip" sid="hip" type="JOINT"><matrix sid="m">1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1</matrix>
+   <node id="chest" name="chest" sid="chest" type="JOINT"><matrix sid="m">1 0 0 0 0 1 0 50 0 0 1 0 0 0 0 1</matrix></node></node>
+  <node id="actor" name="actor"><instance_controller url="#skin"><skeleton>#hip</skeleton></instance_controller></node>
+ </visual_scene></library_visual_scenes>
+ <scene><instance_visual_scene url="#scene"/></scene>
+</COLLADA>)";
+
+TEST(ImportDae, SkinAndSkeletonComeInMetres) {
+  const Asset asset = import(kCharacterDae, "t.dae");
+  EXPECT_EQ(warningKinds(asset), std::vector<std::string>{"converted-units"});
+  ASSERT_TRUE(hasRig(asset));
+  const Geometry geometry = collectGeometry(asset);
+  EXPECT_TRUE(sizeOf(geometry).isApprox(Vec3(1, 1, 1), 1e-5));
+  const AssetSkeleton skeleton = readSkeleton(asset);
+  ASSERT_EQ(skeleton.skeleton.jointCount(), 2u);
+  EXPECT_EQ(skeleton.skeleton.joints[1].name, "chest");
+  EXPECT_EQ(skeleton.skeleton.joints[1].parent, 0u);
+  EXPECT_TRUE(restGlobals(skeleton.skeleton)[1].translation().isApprox(Vec3(0, 0.5, 0), 1e-5));
+  const SkinWeights weights = readWeights(asset, geometry, skeleton);
+  for (Index v = 0; v < 4; ++v) {
+    if (!geometry.positions[v].isApprox(Vec3f(0, 1, 0), 1e-5f)) continue;
+    EXPECT_EQ(weights.jointsOf(v)[0], 1u);
+    EXPECT_NEAR(weights.weightsOf(v)[0], 0.75, 1e-6);
+    EXPECT_NEAR(weights.weightsOf(v)[1], 0.25, 1e-6);
+  }
+}
+
+TEST(ImportDae, TheSkinnedMeshStandsAtTheRoot) {
+  const Asset asset = import(kCharacterDae, "t.dae");
+  const Json& nodes = asset.json()["nodes"];
+  const auto& roots = asset.json()["scenes"][0]["nodes"];
+  for (Index n = 0; n < nodes.size(); ++n) {
+    if (!nodes[n].contains("skin")) continue;
+    EXPECT_THAT(roots.get<std::vector<Index>>(), Contains(n));
+    EXPECT_EQ(nodes[n]["name"], "actor");
+    EXPECT_FALSE(nodes[n].contains("translation"));
+  }
+}
+
+TEST(ImportDae, TheClipMovesTheJointInSecondsAndMetres) {
+  const Asset asset = import(kCharacterDae, "t.dae");
+  ASSERT_EQ(asset.json()["animations"].size(), 1u);
+  const Json& clip = asset.json()["animations"][0];
+  bool sawTranslation = false;
+  for (const Json& channel : clip["channels"]) {
+    const Json& sampler = clip["samplers"][channel["sampler"].get<Index>()];
+    const std::vector<float> times = readFloats(asset, sampler["input"].get<Index>());
+    EXPECT_FLOAT_EQ(times.back(), 1.5f);
+    EXPECT_EQ(asset.json()["nodes"][channel["target"]["node"].get<Index>()]["name"], "chest");
+    const std::vector<float> values = readFloats(asset, sampler["output"].get<Index>());
+    if (channel["target"]["path"] == "translation") {
+      sawTranslation = true;
+      EXPECT_NEAR(values[values.size() - 2], 0.7, 1e-6);
+    } else if (channel["target"]["path"] == "rotation") {
+      EXPECT_NEAR(values[values.size() - 1], std::sqrt(0.5), 1e-5);
+    }
+  }
+  EXPECT_TRUE(sawTranslation);
+}
+
+// --- hostile files ---
+
+TEST(ImportModel, EveryTruncationIsAnErrorOrAModel) {
+  std::string stl(84 + 100, '\0');
+  stl[80] = 2;
+  const std::pair<const char*, std::string> files[] = {{"t.obj", kSquareObj},
+                                                       {"t.ply", kTrianglePly},
+                                                       {"t.stl", stl},
+                                                       {"t.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"}};
+  for (const auto& [name, text] : files) {
+    for (std::size_t length = 1; length < text.size(); length += 1 + text.size() / 12) {
+      try {
+        const Asset asset = import(std::string_view(text).substr(0, length), name);
+        checkAsset(asset);
+      } catch (const Error& error) {
+        EXPECT_THAT(error.what(), Not(HasSubstr("\n"))) << name;
+        EXPECT_EQ(std::string(error.what()).rfind(name, 0), 0u) << error.what();
+      }
+    }
+  }
+}
+
+TEST(ImportModel, AnswersOnOneLineWhatAssimpSays) {
+  const Error error = errorOf("ply\nformat ascii 1.0\nend_header\n", "t.ply");
+  EXPECT_EQ(error.code(), ErrorCode::kBadData);
+  EXPECT_THAT(error.what(), HasSubstr("t.ply: cannot be read as PLY: "));
+}
+
+TEST(ImportModel, IsTheSameEveryTime) {
+  const Asset a = import(kCharacterDae, "t.dae"), b = import(kCharacterDae, "t.dae");
+  EXPECT_EQ(a.json(), b.json());
+  EXPECT_EQ(a.buffers[0].bytes, b.buffers[0].bytes);
+}
+
+}  // namespace
+}  // namespace limber

@@ -1,0 +1,33 @@
+// Changes to the node tree that keep everything that refers to it right.
+#pragma once
+
+#include <functional>
+#include <string_view>
+#include <vector>
+
+#include "limber/asset/asset.h"
+#include "limber/core/types.h"
+
+namespace limber {
+
+// A single-precision value as the double that prints shortest: 0.1, not 0.10000000149011612. Throws Error kBadData
+// beyond what single precision can hold.
+double shortDouble(double value);
+
+// Writes a local transform into a node: translation, rotation, scale, each only where it says something; "matrix" where
+// the transform has shear and `mayHaveMatrix` (an animated node may not).
+void setNodeTransform(Json& node, const Affine& local, bool mayHaveMatrix);
+
+// Takes animation channels out for which `drop` is true, with the samplers that nothing uses then, and animations that
+// are left empty. `drop` sees the node, if the channel has one, and the path ("translation", ...).
+void removeChannels(Asset& asset, const std::function<bool(Index node, std::string_view path)>& drop);
+
+// Lets the animation of morph weights of one node drive another.
+void retargetMorphChannels(Asset& asset, Index from, Index to);
+
+// Deletes the nodes for which `keep` is false (#nodes) and renumbers every reference to a node: children, scenes,
+// skins, animation channels (KHR_animation_pointer too), MSFT_lod. Channels of deleted nodes go. Where other extensions
+// seem to name nodes, a warning "node-references" is added to the asset's.
+void deleteNodes(Asset& asset, const std::vector<bool>& keep);
+
+}  // namespace limber

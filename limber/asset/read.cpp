@@ -1,0 +1,97 @@
+#include "limber/asset/read.h"
+
+#include <algorithm>
+#include <cctype>
+#include <new>
+
+#include "limber/asset/codecs.h"
+#include "limber/asset/glb.h"
+#include "limber/asset/gltf_document.h"
+#ifdef LIMBER_IMPORT
+#include "limber/asset/import_model.h"
+#endif
+
+namespace limber {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string extensionOf(std::string_view name) {
+  std::string extension = fs::path(std::string(name)).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+// JSON of any kind: limber's other formats never start with a brace.
+bool looksLikeJson(ByteSpan bytes) {
+  std::size_t at = 0;
+  constexpr std::array<std::uint8_t, 3> kByteOrderMark = {0xef, 0xbb, 0xbf};
+  if (bytes.size() >= 3 && std::equal(kByteOrderMark.begin(), kByteOrderMark.end(), bytes.begin())) at = 3;
+  while (at < bytes.size() && std::isspace(bytes[at])) ++at;
+  return at < bytes.size() && bytes[at] == '{';
+}
+
+Asset readGltf(ByteSpan bytes, const Resolver& resolver) {
+  Asset asset;
+  if (looksLikeGlb(bytes)) {
+    Warnings warnings;
+    const GlbChunks chunks = splitGlb(bytes, warnings);
+    asset = readGltfDocument(chunks.json, chunks.binary, resolver);
+    asset.warnings.append(warnings);
+    asset.format = "glb";
+  } else {
+    asset = readGltfDocument(bytes, std::nullopt, resolver);
+    asset.format = "gltf";
+  }
+  decompress(asset);
+  return asset;
+}
+
+Asset readAny(ByteSpan bytes, std::string_view name, const Resolver& resolver) {
+  if (bytes.empty()) throw Error(ErrorCode::kBadData, "is empty");
+  if (looksLikeGlb(bytes) || looksLikeJson(bytes)) return readGltf(bytes, resolver);
+  const std::string extension = extensionOf(name);
+  if (extension == ".glb") throw Error(ErrorCode::kBadData, "is no GLB: it does not start with \"glTF\"");
+  if (extension == ".gltf") throw Error(ErrorCode::kBadData, "is no glTF: it is not a JSON object");
+#ifdef LIMBER_IMPORT
+  return importModel(bytes, name, resolver);
+#else
+  throw Error(ErrorCode::kUnsupported, "is of a format that limber does not read here", {},
+              "convert it to GLB or glTF, which are read");
+#endif
+}
+
+// Opens files in and below the folder, for as long as they are plain files.
+Resolver folderResolver(const fs::path& folder) {
+  return [folder](std::string_view path) -> std::optional<Bytes> {
+    const fs::path place = folder / fs::path(std::string(path));
+    std::error_code ignored;
+    if (!fs::is_regular_file(place, ignored)) return std::nullopt;
+    return readFile(place);
+  };
+}
+
+}  // namespace
+
+Asset readAsset(ByteSpan bytes, std::string_view name, const Resolver& resolver) {
+  try {
+    Asset asset = readAny(bytes, name, resolver);
+    asset.name = name;
+    checkAsset(asset);
+    return asset;
+  } catch (const Error& error) {
+    throw error.within(name);
+  } catch (const std::bad_alloc&) {
+    throw Error(ErrorCode::kLimit, "does not fit in memory", std::string(name));
+  }
+}
+
+Asset readAsset(const fs::path& path) {
+  const Bytes bytes = readFile(path);
+  if (path == "-") return readAsset(bytes, "standard input");
+  return readAsset(bytes, path.filename().string(), folderResolver(path.parent_path()));
+}
+
+}  // namespace limber

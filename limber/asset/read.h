@@ -1,0 +1,26 @@
+// Files and bytes to an Asset.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string_view>
+
+#include "limber/asset/asset.h"
+
+namespace limber {
+
+// Opens what a document refers to: nullopt if there is no such file. `path` is relative, decoded, with '/', and never
+// leads out of the document's folder (limber refuses such references before asking). A browser gives its own.
+using Resolver = std::function<std::optional<Bytes>(std::string_view path)>;
+
+// The file of that name; "-" is standard input (format told from the content). Format by content first (GLB magic,
+// JSON, "ply", ...), by extension where content does not tell. Throws Error, with the file's name in where(). The
+// result has passed checkAsset.
+Asset readAsset(const std::filesystem::path& path);
+
+// The same from memory. `name` gives the extension and stands in messages. A buffer that cannot be opened is an Error,
+// an image is a warning "missing-images" and stays a reference. Compressed geometry comes out plain, with a warning
+// "decompressed". Time and memory are bounded by the sizes of the file and of what it refers to.
+Asset readAsset(ByteSpan bytes, std::string_view name, const Resolver& resolver = {});
+
+}  // namespace limber

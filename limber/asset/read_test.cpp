@@ -1,0 +1,201 @@
+#include "limber/asset/read.h"
+
+#include <fstream>
+#include <map>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "limber/asset/accessor.h"
+#include "limber/asset/testing/gltf_builder.h"
+#include "limber/asset/testing/temporary_folder.h"
+
+namespace limber {
+namespace {
+
+using ::testing::ElementsAre;
+using testing::everythingModel;
+using testing::GltfBuilder;
+using ::testing::HasSubstr;
+using testing::pngBytes;
+using testing::TemporaryFolder;
+
+struct Failure {
+  ErrorCode code;
+  std::string line;
+};
+
+Failure failureOf(const std::function<void()>& call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    return {error.code(), error.what()};
+  }
+  ADD_FAILURE() << "no error";
+  return {};
+}
+
+Failure failureOf(std::string_view text, std::string_view name = "m.gltf", const Resolver& resolver = {}) {
+  return failureOf([&] { readAsset(asBytes(text), name, resolver); });
+}
+
+// The everything model with its buffer and image in files of these names.
+GltfBuilder modelBeside(const std::string& bufferUri, const std::string& imageUri) {
+  GltfBuilder model = everythingModel();
+  model.json["buffers"] = Json::array({{{"byteLength", model.binary.size()}, {"uri", bufferUri}}});
+  model.json["images"][0] = {{"uri", imageUri}};
+  return model;
+}
+
+std::vector<std::string> warningKinds(const Asset& asset) {
+  std::vector<std::string> kinds;
+  for (const Warning& warning : asset.warnings.items()) kinds.push_back(warning.kind);
+  return kinds;
+}
+
+TEST(ReadAsset, GlbAndGltfHoldTheSame) {
+  const GltfBuilder model = everythingModel();
+  const Asset glb = readAsset(model.glb(), "a.glb"), gltf = readAsset(asBytes(model.gltf()), "a.gltf");
+  EXPECT_EQ(glb.format, "glb");
+  EXPECT_EQ(gltf.format, "gltf");
+  EXPECT_EQ(glb.name, "a.glb");
+  EXPECT_EQ(glb.buffers[0].bytes, model.binary);
+  EXPECT_EQ(gltf.buffers[0].bytes, model.binary);
+  EXPECT_EQ(glb.buffers[0].uri, "");
+  EXPECT_EQ(gltf.buffers[0].uri, "data:application/octet-stream;base64,");
+  EXPECT_TRUE(glb.warnings.empty());
+  EXPECT_EQ(glb.json()["nodes"], model.json["nodes"]);
+  EXPECT_EQ(glb.json()["nodes"][3]["extras"]["large"].get<std::uint64_t>(), 9007199254740993u);
+  EXPECT_THAT(readFloats(glb, 1), ElementsAre(0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1));
+  EXPECT_THAT(readFloats(glb, 8), ElementsAre(0, 0, 0, 1, 2, 3, 0, 0, 0, 4, 5, 6));
+}
+
+TEST(ReadAsset, FormatIsToldFromTheContent) {
+  EXPECT_EQ(readAsset(everythingModel().glb(), "standard input").format, "glb");
+  EXPECT_EQ(readAsset(everythingModel().glb(), "named.obj").format, "glb");
+  EXPECT_EQ(readAsset(asBytes("\xef\xbb\xbf \n{\"asset\":{\"version\":\"2.0\"}}"), "x.stl").format, "gltf");
+  EXPECT_THAT(failureOf("", "x.glb").line, HasSubstr("x.glb: is empty"));
+  EXPECT_THAT(failureOf("solid x", "x.glb").line, HasSubstr("no GLB"));
+  EXPECT_THAT(failureOf("[]", "x.gltf").line, HasSubstr("no glTF"));
+}
+
+TEST(ReadAsset, VersionsOtherThanTwoAreRefused) {
+  EXPECT_EQ(failureOf(R"({"asset":{"version":"1.0"}})").code, ErrorCode::kUnsupported);
+  EXPECT_EQ(failureOf(R"({"asset":{"version":"2.1","minVersion":"2.1"}})").code, ErrorCode::kUnsupported);
+  EXPECT_EQ(failureOf(R"({"asset":{"version":"3.0"}})").code, ErrorCode::kUnsupported);
+  EXPECT_EQ(failureOf(R"({"asset":{"version":"two"}})").code, ErrorCode::kBadData);
+  EXPECT_EQ(failureOf(R"({"asset":{"version":2.0}})").code, ErrorCode::kBadData);
+  EXPECT_EQ(failureOf(R"({"asset":{}})").code, ErrorCode::kBadData);
+  EXPECT_EQ(failureOf(R"({"meshes":{}})").code, ErrorCode::kBadData);
+  EXPECT_NO_THROW(readAsset(asBytes(R"({"asset":{"version":"2.1","minVersion":"2.0"}})"), "m"));
+}
+
+TEST(ReadAsset, ResolverGetsDecodedPaths) {
+  const GltfBuilder model = modelBeside("my%20data/a.bin", "pic.png");
+  const std::map<std::string, Bytes, std::less<>> files = {{"my data/a.bin", model.binary}, {"pic.png", pngBytes()}};
+  const Asset asset =
+      readAsset(asBytes(model.json.dump()), "m.gltf", [&](std::string_view path) -> std::optional<Bytes> {
+        const auto file = files.find(path);
+        return file == files.end() ? std::nullopt : std::optional(file->second);
+      });
+  EXPECT_EQ(asset.buffers[0].bytes, model.binary);
+  EXPECT_EQ(asset.buffers[0].uri, "my%20data/a.bin");
+  ASSERT_EQ(asset.sideFiles.size(), 1u);
+  EXPECT_EQ(asset.sideFiles[0].uri, "pic.png");
+  EXPECT_EQ(asset.sideFiles[0].bytes, pngBytes());
+}
+
+TEST(ReadAsset, MissingBuffersAreErrors) {
+  const std::string text = modelBeside("a.bin", "p.png").json.dump();
+  const Failure failure = failureOf(text);
+  EXPECT_EQ(failure.code, ErrorCode::kFile);
+  EXPECT_THAT(failure.line, HasSubstr("m.gltf: buffers[0]: its file \"a.bin\" is not there"));
+  const Resolver tooShort = [](std::string_view) { return Bytes(3); };
+  EXPECT_EQ(failureOf(text, "m.gltf", tooShort).code, ErrorCode::kBadData);
+  EXPECT_EQ(failureOf(R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":4}]})").code, ErrorCode::kBadData);
+}
+
+TEST(ReadAsset, BuffersOutsideTheFolderAreErrors) {
+  for (const char* uri : {"../a.bin", "/a.bin", "http://host/a.bin", "file:///a.bin", "%2e%2e/a.bin"}) {
+    bool asked = false;
+    const Resolver resolver = [&](std::string_view) {
+      asked = true;
+      return Bytes(100000);
+    };
+    EXPECT_EQ(failureOf(modelBeside(uri, "p.png").json.dump(), "m.gltf", resolver).code, ErrorCode::kBadData);
+    EXPECT_FALSE(asked) << uri;
+  }
+}
+
+TEST(ReadAsset, MissingOrForeignImagesStayReferences) {
+  for (const char* uri : {"lost.png", "../p.png", "http://host/p.png", "C:\\art\\p.png", "notes.txt"}) {
+    const GltfBuilder model = modelBeside("a.bin", uri);
+    const Asset asset =
+        readAsset(asBytes(model.json.dump()), "m.gltf", [&](std::string_view path) -> std::optional<Bytes> {
+          if (path == "a.bin") return model.binary;
+          return path == "notes.txt" ? std::optional(Bytes{'s', 'e', 'c', 'r', 'e', 't'}) : std::nullopt;
+        });
+    EXPECT_TRUE(asset.sideFiles.empty()) << uri;
+    EXPECT_EQ(asset.json()["images"][0]["uri"], uri);
+    EXPECT_THAT(warningKinds(asset), ElementsAre("missing-images"));
+  }
+}
+
+TEST(ReadAsset, FromDiskWithFilesBeside) {
+  const TemporaryFolder folder;
+  const GltfBuilder model = modelBeside("data/a%20b.bin", "p.png");
+  std::filesystem::create_directory(folder.path() / "data");
+  writeFile(folder.path() / "data" / "a b.bin", model.binary);
+  writeFile(folder.path() / "p.png", pngBytes());
+  writeFile(folder.path() / "m.gltf", asBytes(model.json.dump()));
+  const Asset asset = readAsset(folder.path() / "m.gltf");
+  EXPECT_EQ(asset.name, "m.gltf");
+  EXPECT_EQ(asset.buffers[0].bytes, model.binary);
+  EXPECT_EQ(asset.sideFiles.size(), 1u);
+  EXPECT_TRUE(asset.warnings.empty());
+  std::filesystem::remove(folder.path() / "data" / "a b.bin");
+  std::filesystem::create_directory(folder.path() / "data" / "a b.bin");  // no file
+  EXPECT_EQ(failureOf([&] { readAsset(folder.path() / "m.gltf"); }).code, ErrorCode::kFile);
+  EXPECT_EQ(failureOf([&] { readAsset(folder.path() / "none.gltf"); }).code, ErrorCode::kFile);
+}
+
+TEST(ReadAsset, BinaryChunkMayBeLongerThanTheBuffer) {
+  GltfBuilder model = everythingModel();
+  model.json["buffers"] = Json::array({{{"byteLength", model.binary.size()}}});
+  Bytes chunk = model.binary;
+  chunk.resize(chunk.size() + 40);
+  const Asset asset = readAsset(GltfBuilder::glbOf(model.json.dump(), chunk), "m.glb");
+  EXPECT_EQ(asset.buffers[0].bytes, model.binary);
+  chunk.resize(model.binary.size() - 8);
+  EXPECT_THROW(readAsset(GltfBuilder::glbOf(model.json.dump(), chunk), "m.glb"), Error);
+}
+
+TEST(ReadAsset, BytesBehindABuffersEndAreLeftOut) {
+  const GltfBuilder model = modelBeside("a.bin", "p.png");
+  const Asset asset = readAsset(asBytes(model.json.dump()), "m.gltf", [&](std::string_view path) {
+    Bytes longer = path == "a.bin" ? model.binary : pngBytes();
+    longer.resize(longer.size() + 100);
+    return longer;
+  });
+  EXPECT_EQ(asset.buffers[0].bytes, model.binary);
+  EXPECT_THAT(warningKinds(asset), ElementsAre("trailing-bytes"));
+  EXPECT_EQ(asset.warnings.items()[0].count, 100u);
+}
+
+TEST(ReadAsset, OnlyTheFirstBufferIsTheBinaryChunk) {
+  GltfBuilder model = everythingModel();
+  model.json["buffers"] = Json::array({{{"byteLength", model.binary.size()}}, {{"byteLength", 4}}});
+  EXPECT_THROW(readAsset(GltfBuilder::glbOf(model.json.dump(), model.binary), "m.glb"), Error);
+}
+
+TEST(ReadAsset, UnknownRequiredExtensionsAreKept) {
+  GltfBuilder model = everythingModel();
+  model.json["extensionsUsed"] = model.json["extensionsRequired"] = {"EXT_never_heard_of"};
+  model.json["materials"][0]["extensions"]["EXT_never_heard_of"] = {{"texture", 77}};
+  const Asset asset = readAsset(model.glb(), "m.glb");
+  EXPECT_EQ(asset.json()["extensionsRequired"], model.json["extensionsRequired"]);
+  EXPECT_EQ(asset.json()["materials"], model.json["materials"]);
+}
+
+}  // namespace
+}  // namespace limber

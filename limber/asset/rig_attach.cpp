@@ -1,0 +1,122 @@
+// Puts a rig into a document: joint nodes, skins, and weights for every mesh that the scene shows.
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "limber/asset/accessor_sweep.h"
+#include "limber/asset/node_edit.h"
+#include "limber/asset/rig_io.h"
+#include "limber/asset/skinned_nodes.h"
+#include "limber/asset/unique_names.h"
+#include "limber/asset/weight_attributes.h"
+
+namespace limber {
+
+namespace {
+
+constexpr const char* kRigName = "limber_rig";
+constexpr Index kMaxJoints = 65536;  // of one skin: joint indices are unsigned shorts
+
+Json vectorJson(const double* values, int count) {
+  Json result = Json::array();
+  for (int i = 0; i < count; ++i) result.push_back(values[i]);
+  return result;
+}
+
+Transform rounded(Transform t) {
+  for (int i = 0; i < 3; ++i) t.translation[i] = shortDouble(t.translation[i]);
+  for (int i = 0; i < 3; ++i) t.scale[i] = shortDouble(t.scale[i]);
+  for (int i = 0; i < 4; ++i) t.rotation.coeffs()[i] = shortDouble(t.rotation.coeffs()[i]);
+  return t;
+}
+
+Json jointJson(const Joint& joint, const Transform& rest, const std::string& name, bool withRadius) {
+  Json node = Json::object();
+  node["name"] = name;
+  node["translation"] = vectorJson(rest.translation.data(), 3);
+  if (!rest.rotation.coeffs().isApprox(Quat::Identity().coeffs(), 0)) {
+    node["rotation"] = vectorJson(rest.rotation.coeffs().data(), 4);
+  }
+  if (rest.scale != Vec3::Ones()) node["scale"] = vectorJson(rest.scale.data(), 3);
+  if (withRadius) node["extras"]["limber_radius"] = shortDouble(joint.radius);
+  return node;
+}
+
+void checkArguments(const Asset& asset, const Geometry& geometry, const Skeleton& skeleton,
+                    const SkinWeights& weights) {
+  checkSkeleton(skeleton);
+  if (skeleton.joints.empty() || skeleton.jointCount() > kMaxJoints) {
+    throw Error(ErrorCode::kBadArgument,
+                fmt::format("a rig has 1 to {} joints, not {}", kMaxJoints, skeleton.joints.size()));
+  }
+  if (weights.vertexCount() != geometry.positions.size()) {
+    throw Error(ErrorCode::kBadArgument, fmt::format("weights for {} vertices, but the geometry has {}",
+                                                     weights.vertexCount(), geometry.positions.size()));
+  }
+  for (const PrimitiveInstance& instance : geometry.instances) {
+    if (instance.node < elementCount(asset, "nodes") && instance.mesh < elementCount(asset, "meshes")) continue;
+    throw Error(ErrorCode::kBadArgument, "the geometry is not that of this asset");
+  }
+}
+
+// The new joint nodes of an attached rig.
+struct RigNodes {
+  Index root = 0;
+  std::vector<Index> joints;   // #J nodes
+  std::vector<Affine> toBind;  // #J, world -> joint, of the joints as stored
+};
+
+RigNodes addRigNodes(Asset& asset, const Skeleton& skeleton) {
+  UniqueNames names;
+  for (const Json& node : elements(asset, "nodes")) names.add(nameOf(node));
+  Json& nodes = asset.json()["nodes"];
+  RigNodes rig;
+  rig.root = static_cast<Index>(nodes.size());
+  nodes.push_back({{"name", names.add(kRigName)}, {"children", Json::array()}});
+
+  std::vector<Affine> globals;
+  for (Index j = 0; j < skeleton.jointCount(); ++j) {
+    const Joint& joint = skeleton.joints[j];
+    const Transform rest = rounded(joint.rest);
+    const Affine local = rest.toAffine();
+    globals.push_back(joint.parent ? globals[*joint.parent] * local : local);
+    rig.toBind.push_back(globals.back().inverse(Eigen::Affine));
+    if (!rig.toBind.back().matrix().allFinite()) {
+      throw Error(ErrorCode::kBadData, "has a rest transform without an inverse",
+                  fmt::format("joint '{}'", joint.name));
+    }
+    const bool withRadius = skeleton.boneShape == BoneShape::kSphere || joint.radius > 0;
+    const auto node = static_cast<Index>(nodes.size());
+    nodes.push_back(jointJson(joint, rest, names.add(joint.name), withRadius));
+    rig.joints.push_back(node);
+    nodes[joint.parent ? rig.joints[*joint.parent] : rig.root]["children"].push_back(node);
+  }
+  return rig;
+}
+
+}  // namespace
+
+void attachRig(Asset& asset, const Geometry& geometry, const Skeleton& skeleton, const SkinWeights& weights) {
+  checkArguments(asset, geometry, skeleton, weights);
+  std::vector<Index> identity(skeleton.jointCount());
+  for (Index j = 0; j < identity.size(); ++j) identity[j] = j;
+
+  const AccessorSweep unused(asset);
+  SkinnedNodes skinned(asset, geometry);
+  const RigNodes rig = addRigNodes(asset, skeleton);
+  skinned.showInScenes(rig.root);
+  for (const MeshGroup& group : skinned.groups()) {
+    const Index mesh = skinned.meshFor(group);
+    for (Index i = group.firstInstance; i < group.endInstance; ++i) {
+      const PrimitiveInstance& instance = geometry.instances[i];
+      writeWeightAttributes(asset, {mesh, instance.primitive}, instance, weights, identity, skeleton.jointCount());
+    }
+    skinned.place(group, mesh, skinned.addSkin({kRigName, rig.joints, rig.toBind, rig.root}, group.toWorld));
+  }
+  skinned.finish();
+  unused.sweep(asset);
+}
+
+}  // namespace limber

@@ -1,0 +1,554 @@
+#include "limber/asset/rig_io.h"
+
+#include <cmath>
+#include <set>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "limber/asset/scene_builder_test.h"
+#include "limber/asset/scene_graph.h"
+
+namespace limber {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::SceneBuilder;
+using testing::translation;
+
+std::string numbered(std::string name, Index number) {
+  return name.append(std::to_string(number));
+}
+
+// Three joints in a row along x, the last one with a bend to y.
+Skeleton threeJoints() {
+  Skeleton skeleton;
+  skeleton.boneShape = BoneShape::kSphere;
+  const Vec3 steps[] = {{0.1, 0.2, 0.3}, {1, 0, 0}, {0.25, 0.5, 0}};
+  for (Index j = 0; j < 3; ++j) {
+    Joint joint;
+    joint.name = numbered("handle_", j);
+    if (j > 0) joint.parent = j - 1;
+    joint.rest.translation = steps[j];
+    joint.radius = 0.1 * (j + 1);
+    skeleton.joints.push_back(joint);
+  }
+  return skeleton;
+}
+
+// Two influences for each vertex, different from vertex to vertex.
+SkinWeights mixedWeights(std::size_t vertices, Index joints, Index used = 2, Index slots = 4) {
+  SkinWeights weights;
+  weights.slots = slots;
+  weights.joints.assign(vertices * slots, 0);
+  weights.weights.assign(vertices * slots, 0.0f);
+  for (std::size_t v = 0; v < vertices; ++v) {
+    double sum = 0;
+    for (Index i = 0; i < used; ++i) sum += 1.0 / (i + 1 + v % 3);
+    for (Index i = 0; i < used; ++i) {
+      weights.joints[v * slots + i] = static_cast<Index>((v + i) % joints);
+      weights.weights[v * slots + i] = static_cast<float>(1.0 / (i + 1 + v % 3) / sum);
+    }
+  }
+  return weights;
+}
+
+// Linear blend skinning as glTF defines it, straight from the document: the world positions of one skinned primitive.
+std::vector<Vec3> skinnedPositions(const Asset& asset, Index node, Index primitive = 0) {
+  const Json& json = asset.json();
+  const Json& attributes =
+      json["meshes"][json["nodes"][node]["mesh"].get<Index>()]["primitives"][primitive]["attributes"];
+  const Json& skin = json["skins"][json["nodes"][node]["skin"].get<Index>()];
+  const SceneGraph graph = readSceneGraph(asset);
+  const std::vector<float> inverseBinds = readFloats(asset, skin["inverseBindMatrices"].get<Index>());
+  std::vector<Mat4> matrices;
+  for (std::size_t j = 0; j < skin["joints"].size(); ++j) {
+    const Eigen::Map<const Eigen::Matrix4f> inverseBind(&inverseBinds[16 * j]);
+    matrices.push_back(graph.world[skin["joints"][j].get<Index>()].matrix() * inverseBind.cast<double>());
+  }
+  const std::vector<float> stored = readFloats(asset, attributes["POSITION"].get<Index>());
+  std::vector<Vec3> result(stored.size() / 3, Vec3::Zero());
+  for (Index set = 0; attributes.contains(numbered("JOINTS_", set)); ++set) {
+    const auto joints = readIndices(asset, attributes[numbered("JOINTS_", set)].get<Index>());
+    const auto weights = readFloats(asset, attributes[numbered("WEIGHTS_", set)].get<Index>());
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      const Vec4 p(stored[i / 4 * 3], stored[i / 4 * 3 + 1], stored[i / 4 * 3 + 2], 1);
+      result[i / 4] += weights[i] * (matrices.at(joints[i]) * p).head<3>();
+    }
+  }
+  return result;
+}
+
+void expectPositions(const std::vector<Vec3>& actual, std::span<const Vec3f> expected, double tolerance = 1e-5) {
+  ASSERT_EQ(actual.size(), expected.size());
+  for (std::size_t v = 0; v < actual.size(); ++v) {
+    EXPECT_LT((actual[v] - expected[v].cast<double>()).norm(), tolerance) << "vertex " << v;
+  }
+}
+
+std::span<const Vec3f> positionsOf(const Geometry& geometry, const PrimitiveInstance& instance) {
+  return std::span(geometry.positions).subspan(instance.firstVertex, instance.vertexCount);
+}
+
+std::vector<std::string> warningKinds(const Asset& asset) {
+  std::vector<std::string> kinds;
+  for (const Warning& w : asset.warnings.items()) kinds.push_back(w.kind);
+  return kinds;
+}
+
+// The elements of a list that were there before are the same now.
+void expectPrefix(const Json& before, const Json& after, const char* key) {
+  if (!before.contains(key)) return;
+  ASSERT_GE(after[key].size(), before[key].size());
+  for (std::size_t i = 0; i < before[key].size(); ++i) EXPECT_EQ(before[key][i], after[key][i]) << key << " " << i;
+}
+
+void expectBufferKept(const Asset& before, const Asset& after) {
+  const Bytes &a = before.buffers[0].bytes, &b = after.buffers[0].bytes;
+  ASSERT_GE(b.size(), a.size());
+  EXPECT_TRUE(std::equal(a.begin(), a.end(), b.begin()));
+}
+
+struct Attached {
+  Asset before, after;
+  Geometry geometry;
+  SkinWeights weights;
+};
+
+Attached attach(Asset asset, const Skeleton& skeleton = threeJoints(), Index used = 2, Index slots = 4) {
+  Attached result;
+  result.before = asset.clone();
+  result.geometry = collectGeometry(asset);
+  result.weights = mixedWeights(result.geometry.positions.size(), skeleton.jointCount(), used, slots);
+  attachRig(asset, result.geometry, skeleton, result.weights);
+  checkAsset(asset);
+  result.after = std::move(asset);
+  return result;
+}
+
+Index rigRoot(const Asset& asset) {
+  const Json& nodes = asset.json()["nodes"];
+  for (Index n = 0; n < nodes.size(); ++n) {
+    if (nodes[n].value("name", "") == "limber_rig") return n;
+  }
+  ADD_FAILURE() << "no limber_rig";
+  return 0;
+}
+
+// --- attachRig ---
+
+TEST(AttachRig, TheBindPoseShowsTheModelWhereItWas) {
+  SceneBuilder scene;
+  scene.addNode({{"name", "body"}, {"mesh", scene.addTetrahedron()}});
+  const Attached rigged = attach(scene.build());
+  EXPECT_TRUE(hasRig(rigged.after));
+  EXPECT_FALSE(hasRig(rigged.before));
+  expectPositions(skinnedPositions(rigged.after, 0), rigged.geometry.positions);
+}
+
+TEST(AttachRig, AMovedJointTakesItsVerticesAlong) {
+  SceneBuilder scene;
+  scene.addNode({{"mesh", scene.addTetrahedron()}, {"scale", {2, 3, 4}}, {"translation", {1, 1, 1}}});
+  Attached rigged = attach(scene.build());
+  // The middle joint turns a quarter about z.
+  Json& joint = rigged.after.json()["nodes"][rigRoot(rigged.after) + 2];
+  ASSERT_EQ(joint["name"], "handle_1");
+  joint["rotation"] = {0, 0, std::sqrt(0.5), std::sqrt(0.5)};
+
+  const Skeleton skeleton = threeJoints();
+  std::vector<Transform> pose = restLocals(skeleton);
+  pose[1].rotation = Quat(Eigen::AngleAxisd(EIGEN_PI / 2, Vec3::UnitZ()));
+  std::vector<Affine> posed(3);
+  globalTransforms(skeleton, pose, posed);
+  const std::vector<Affine> rest = restGlobals(skeleton);
+  std::vector<Vec3f> expected;
+  for (Index v = 0; v < 4; ++v) {
+    Vec3 sum = Vec3::Zero();
+    for (Index slot = 0; slot < 4; ++slot) {
+      const Index j = rigged.weights.jointsOf(v)[slot];
+      sum += rigged.weights.weightsOf(v)[slot] *
+             (posed[j] * rest[j].inverse() * rigged.geometry.positions[v].cast<double>());
+    }
+    expected.push_back(sum.cast<float>());
+  }
+  const Index moved = static_cast<Index>(rigged.after.json()["nodes"].size() - 1);
+  expectPositions(skinnedPositions(rigged.after, moved), expected);
+  EXPECT_GT((expected[1] - rigged.geometry.positions[1]).norm(), 0.1);  // or the test would say nothing
+}
+
+TEST(AttachRig, NothingElseChanges) {
+  SceneBuilder scene;
+  Json primitive = scene.primitive(SceneBuilder::tetrahedron(), SceneBuilder::tetrahedronTriangles());
+  primitive["attributes"]["NORMAL"] = scene.addPositions({{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 0}});
+  primitive["material"] = 0;
+  primitive["extras"] = {{"tag", 7}};
+  const Index mesh = scene.addMesh(Json::array({primitive}));
+  scene.addNode({{"name", "body"}, {"mesh", mesh}, {"extras", {{"kept", true}}}});
+  scene.addNode({{"name", "lamp"}, {"translation", {1, 2, 3}}});
+  scene.addScene({0, 1});
+  scene.json()["materials"] = Json::array({{{"name", "skin"}}});
+  scene.json()["extras"] = {{"whole", "document"}};
+  const Attached rigged = attach(scene.build());
+  const Json &before = rigged.before.json(), &after = rigged.after.json();
+  for (const char* key : {"asset", "materials", "extras"}) EXPECT_EQ(before[key], after[key]);
+  expectPrefix(before, after, "accessors");
+  expectPrefix(before, after, "bufferViews");
+  expectBufferKept(rigged.before, rigged.after);
+  EXPECT_EQ(after["nodes"][1], before["nodes"][1]);
+
+  Json node = after["nodes"][0];
+  node.erase("skin");
+  EXPECT_EQ(node, before["nodes"][0]);
+  Json attributes = after["meshes"][0]["primitives"][0]["attributes"];
+  EXPECT_EQ(attributes.size(), 4u);
+  attributes.erase("JOINTS_0");
+  attributes.erase("WEIGHTS_0");
+  EXPECT_EQ(attributes, before["meshes"][0]["primitives"][0]["attributes"]);
+  EXPECT_EQ(after["meshes"].size(), 1u);
+  EXPECT_EQ(after["scenes"][0]["nodes"], Json::array({0, 1, rigRoot(rigged.after)}));
+}
+
+TEST(AttachRig, ANodeWithATransformKeepsItAndHandsItsMeshToTheRoot) {
+  SceneBuilder scene;
+  const Index mesh = scene.addTetrahedron();
+  const Index child = scene.addNode({{"name", "child"}});
+  const Json body = {{"name", "body"}, {"children", {child}}, {"translation", {5, 0, 0}}, {"extras", {{"kept", 1}}}};
+  Json withMesh = body;
+  withMesh["mesh"] = mesh;
+  const Index node = scene.addNode(withMesh);
+  const Index parent = scene.addNode({{"children", {node}}, {"scale", {2, 2, 2}}});
+  scene.addScene({parent});
+  const Attached rigged = attach(scene.build());
+  const Json& nodes = rigged.after.json()["nodes"];
+  EXPECT_EQ(nodes[node], body);
+  EXPECT_EQ(nodes[parent], rigged.before.json()["nodes"][parent]);
+  const auto moved = static_cast<Index>(nodes.size() - 1);
+  EXPECT_EQ(nodes[moved]["name"], "body_skinned");
+  EXPECT_EQ(nodes[moved]["mesh"], mesh);
+  EXPECT_FALSE(nodes[moved].contains("translation"));
+  EXPECT_THAT(rigged.after.json()["scenes"][0]["nodes"].get<std::vector<Index>>(), ::testing::Contains(moved));
+  expectPositions(skinnedPositions(rigged.after, moved), rigged.geometry.positions);
+}
+
+TEST(AttachRig, JointsAreNamedOnceAndSayTheirRadius) {
+  SceneBuilder scene;
+  scene.addNode({{"name", "handle_1"}, {"mesh", scene.addTetrahedron()}});
+  const Attached rigged = attach(scene.build());
+  const Json& nodes = rigged.after.json()["nodes"];
+  std::set<std::string> names;
+  for (const Json& node : nodes) EXPECT_TRUE(names.insert(node["name"].get<std::string>()).second) << node["name"];
+  EXPECT_EQ(names.count("handle_1_2"), 1u);
+
+  const Json& root = nodes[rigRoot(rigged.after)];
+  ASSERT_EQ(root["children"].size(), 1u);
+  const Json& first = nodes[root["children"][0].get<Index>()];
+  EXPECT_EQ(first["name"], "handle_0");
+  EXPECT_EQ(first["translation"].dump(), "[0.1,0.2,0.3]");  // as short as single precision allows
+  EXPECT_EQ(first["extras"]["limber_radius"].dump(), "0.1");
+  EXPECT_FALSE(first.contains("rotation"));
+  EXPECT_EQ(rigged.after.json()["skins"][0]["skeleton"], rigRoot(rigged.after));
+}
+
+TEST(AttachRig, EachShowingOfAMeshGetsWeightsOfItsOwn) {
+  SceneBuilder scene;
+  const Index mesh = scene.addTetrahedron();
+  scene.addNode({{"mesh", mesh}});
+  scene.addNode({{"mesh", mesh}});
+  scene.addNode({{"mesh", mesh}, {"translation", {3, 0, 0}}});
+  const Attached rigged = attach(scene.build());
+  const Json& json = rigged.after.json();
+  ASSERT_EQ(json["meshes"].size(), 3u);
+  EXPECT_EQ(json["skins"].size(), 2u);  // two of them stand in the same place
+  const auto attribute = [&](Index m, const char* name) {
+    return json["meshes"][m]["primitives"][0]["attributes"][name];
+  };
+  EXPECT_EQ(attribute(0, "POSITION"), attribute(2, "POSITION"));
+  EXPECT_NE(attribute(0, "WEIGHTS_0"), attribute(1, "WEIGHTS_0"));
+  const Index nodes[] = {0, 1, static_cast<Index>(json["nodes"].size() - 1)};
+  for (std::size_t i = 0; i < 3; ++i) {
+    expectPositions(skinnedPositions(rigged.after, nodes[i]),
+                    positionsOf(rigged.geometry, rigged.geometry.instances[i]));
+  }
+}
+
+TEST(AttachRig, AMeshThatAnotherSceneShowsStaysAsItIs) {
+  SceneBuilder scene;
+  const Index mesh = scene.addTetrahedron();
+  scene.addNode({{"mesh", mesh}});
+  scene.addNode({{"mesh", mesh}});
+  scene.addScene({0});
+  scene.addScene({1});
+  const Attached rigged = attach(scene.build());
+  const Json &before = rigged.before.json(), &after = rigged.after.json();
+  EXPECT_EQ(after["meshes"][0], before["meshes"][0]);
+  EXPECT_EQ(after["nodes"][1], before["nodes"][1]);
+  EXPECT_EQ(after["scenes"][1], before["scenes"][1]);
+  EXPECT_EQ(after["nodes"][0]["mesh"], 1);
+}
+
+TEST(AttachRig, TheRigIsInEverySceneThatShowsTheMesh) {
+  SceneBuilder scene;
+  scene.addNode({{"mesh", scene.addTetrahedron()}});
+  scene.addNode({{"name", "other"}});
+  scene.addScene({0});
+  scene.addScene({1, 0});
+  scene.addScene({1});
+  const Attached rigged = attach(scene.build());
+  const Json& scenes = rigged.after.json()["scenes"];
+  EXPECT_EQ(scenes[0]["nodes"].size(), 2u);
+  EXPECT_EQ(scenes[1]["nodes"].size(), 3u);
+  EXPECT_EQ(scenes[2]["nodes"].size(), 1u);
+}
+
+TEST(AttachRig, MorphWeightsMoveWithTheMesh) {
+  SceneBuilder scene;
+  Json primitive = scene.primitive(SceneBuilder::tetrahedron(), SceneBuilder::tetrahedronTriangles());
+  const Index offsets = scene.addPositions({{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 1}});
+  primitive["targets"] = Json::array({{{"POSITION", offsets}}});
+  const Index node = scene.addNode({{"name", "face"},
+                                    {"mesh", scene.addMesh(Json::array({primitive}))},
+                                    {"weights", {0.5}},
+                                    {"translation", {0, 1, 0}}});
+  scene.addClip(node, "weights", 1);
+  const Attached rigged = attach(scene.build());
+  const Json& json = rigged.after.json();
+  const auto moved = static_cast<Index>(json["nodes"].size() - 1);
+  EXPECT_EQ(json["nodes"][moved]["weights"], Json::array({0.5}));
+  EXPECT_FALSE(json["nodes"][node].contains("weights"));
+  EXPECT_EQ(json["animations"][0]["channels"][0]["target"]["node"], moved);
+  EXPECT_EQ(json["meshes"][0]["primitives"][0]["targets"], Json::array({{{"POSITION", offsets}}}));
+  EXPECT_TRUE(rigged.after.warnings.empty());
+}
+
+TEST(AttachRig, AnAnimationThatMovedTheMeshIsTold) {
+  SceneBuilder scene;
+  const Index platform = scene.addNode({{"mesh", scene.addTetrahedron()}});
+  const Index lift = scene.addNode({{"children", {platform}}});
+  scene.addNode({{"mesh", scene.addTetrahedron()}});
+  scene.addClip(lift, "translation", 3);
+  const Attached rigged = attach(scene.build());
+  ASSERT_EQ(warningKinds(rigged.after), std::vector<std::string>{"node-animation"});
+  EXPECT_EQ(rigged.after.warnings.items()[0].count, 1u);
+  EXPECT_EQ(rigged.after.json()["animations"], rigged.before.json()["animations"]);
+}
+
+TEST(AttachRig, GpuInstancesBecomeNodes) {
+  SceneBuilder scene;
+  const Index mesh = scene.addTetrahedron();
+  const Index moves = scene.addPositions({{0, 0, 0}, {5, 0, 0}});
+  Json attributes = {{"TRANSLATION", moves}};
+  const Index node = scene.addNode(
+      {{"name", "tree"}, {"mesh", mesh}, {"extensions", {{"EXT_mesh_gpu_instancing", {{"attributes", attributes}}}}}});
+  scene.addScene({node});
+  scene.json()["extensionsUsed"] = {"EXT_mesh_gpu_instancing", "KHR_other"};
+  scene.json()["extensionsRequired"] = {"EXT_mesh_gpu_instancing"};
+  const Attached rigged = attach(scene.build());
+  const Json& json = rigged.after.json();
+  EXPECT_EQ(json["nodes"][node], Json({{"name", "tree"}}));
+  EXPECT_EQ(json["extensionsUsed"], Json::array({"KHR_other"}));
+  EXPECT_FALSE(json.contains("extensionsRequired"));
+  EXPECT_EQ(warningKinds(rigged.after), std::vector<std::string>{"expanded-instances"});
+  const auto last = static_cast<Index>(json["nodes"].size() - 1);
+  expectPositions(skinnedPositions(rigged.after, last - 1), positionsOf(rigged.geometry, rigged.geometry.instances[0]));
+  expectPositions(skinnedPositions(rigged.after, last), positionsOf(rigged.geometry, rigged.geometry.instances[1]));
+}
+
+TEST(AttachRig, AFlattenedNodeIsSkinnedFlat) {
+  SceneBuilder scene;
+  scene.addNode({{"mesh", scene.addTetrahedron()}, {"scale", {1, 0, 1}}, {"translation", {0, 2, 0}}});
+  const Attached rigged = attach(scene.build());
+  const auto moved = static_cast<Index>(rigged.after.json()["nodes"].size() - 1);
+  expectPositions(skinnedPositions(rigged.after, moved), rigged.geometry.positions);
+}
+
+TEST(AttachRig, WeightsAreTidy) {
+  SceneBuilder scene;
+  scene.addNode({{"mesh", scene.addTetrahedron()}});
+  Asset asset = scene.build();
+  const Geometry geometry = collectGeometry(asset);
+  SkinWeights weights = mixedWeights(4, 3);
+  for (Index slot = 2; slot < 4; ++slot) weights.joints[slot] = 2;               // unused slots that name a joint
+  for (std::size_t i = 4; i < 8; ++i) weights.weights[i] = i < 7 ? 0.3333f : 0;  // do not sum to 1
+  attachRig(asset, geometry, threeJoints(), weights);
+  const Json& attributes = asset.json()["meshes"][0]["primitives"][0]["attributes"];
+  const auto joints = readIndices(asset, attributes["JOINTS_0"].get<Index>());
+  const auto stored = readFloats(asset, attributes["WEIGHTS_0"].get<Index>());
+  EXPECT_EQ(accessorInfo(asset, attributes["JOINTS_0"].get<Index>()).type, ComponentType::kU8);
+  for (std::size_t v = 0; v < 4; ++v) {
+    float sum = 0;
+    for (std::size_t i = 4 * v; i < 4 * v + 4; ++i) {
+      sum += stored[i];
+      if (stored[i] == 0) {
+        EXPECT_EQ(joints[i], 0u);
+      }
+    }
+    EXPECT_NEAR(sum, 1, 6e-8);  // an ulp
+  }
+  EXPECT_FALSE(attributes.contains("JOINTS_1"));
+}
+
+TEST(AttachRig, EightInfluencesTakeASecondSet) {
+  Skeleton skeleton;
+  for (Index j = 0; j < 9; ++j) {
+    Joint joint;
+    joint.name = numbered("j", j);
+    joint.rest.translation = Vec3(j, 0, 0);
+    skeleton.joints.push_back(joint);
+  }
+  SceneBuilder scene;
+  scene.addNode({{"mesh", scene.addTetrahedron()}});
+  const Attached rigged = attach(scene.build(), skeleton, 7, 8);
+  expectPositions(skinnedPositions(rigged.after, 0), rigged.geometry.positions);
+  EXPECT_TRUE(rigged.after.json()["meshes"][0]["primitives"][0]["attributes"].contains("WEIGHTS_1"));
+  const AssetSkeleton read = readSkeleton(rigged.after);
+  EXPECT_EQ(read.skeleton.joints.size(), 9u);
+  const SkinWeights weights = readWeights(rigged.after, rigged.geometry, read);
+  EXPECT_EQ(weights.slots, 8u);
+  EXPECT_EQ(weights.joints, rigged.weights.joints);
+}
+
+TEST(AttachRig, MoreThan256JointsTakeShorts) {
+  Skeleton skeleton;
+  for (Index j = 0; j < 257; ++j) {
+    Joint joint;
+    joint.name = numbered("j", j);
+    skeleton.joints.push_back(joint);
+  }
+  SceneBuilder scene;
+  scene.addNode({{"mesh", scene.addTetrahedron()}});
+  Asset asset = scene.build();
+  const Geometry geometry = collectGeometry(asset);
+  SkinWeights weights = mixedWeights(4, 1, 1);
+  weights.joints[0] = 256;
+  attachRig(asset, geometry, skeleton, weights);
+  const Index joints = asset.json()["meshes"][0]["primitives"][0]["attributes"]["JOINTS_0"].get<Index>();
+  EXPECT_EQ(accessorInfo(asset, joints).type, ComponentType::kU16);
+  EXPECT_EQ(readIndices(asset, joints)[0], 256u);
+}
+
+TEST(AttachRig, ArgumentsThatDoNotFitAreRefused) {
+  SceneBuilder scene;
+  scene.addNode({{"mesh", scene.addTetrahedron()}});
+  Asset asset = scene.build();
+  const Geometry geometry = collectGeometry(asset);
+  EXPECT_THROW(attachRig(asset, geometry, threeJoints(), mixedWeights(3, 3)), Error);
+  EXPECT_THROW(attachRig(asset, geometry, Skeleton(), mixedWeights(4, 3)), Error);
+  SkinWeights weights = mixedWeights(4, 3);
+  weights.joints[0] = 3;
+  EXPECT_THROW(attachRig(asset, geometry, threeJoints(), weights), Error);
+  weights = mixedWeights(4, 3);
+  weights.weights[5] = std::nanf("");
+  EXPECT_THROW(attachRig(asset, geometry, threeJoints(), weights), Error);
+}
+
+// --- readSkeleton, readWeights ---
+
+TEST(ReadSkeleton, IsWhatWasAttached) {
+  SceneBuilder scene;
+  scene.addNode({{"mesh", scene.addTetrahedron()}, {"scale", {3, 3, 3}}});
+  const Attached rigged = attach(scene.build());
+  const AssetSkeleton read = readSkeleton(rigged.after);
+  const Skeleton made = threeJoints();
+  ASSERT_EQ(read.skeleton.jointCount(), 3u);
+  EXPECT_EQ(read.skeleton.boneShape, BoneShape::kSphere);
+  for (Index j = 0; j < 3; ++j) {
+    EXPECT_EQ(read.skeleton.joints[j].name, made.joints[j].name);
+    EXPECT_EQ(read.skeleton.joints[j].parent, made.joints[j].parent);
+    EXPECT_NEAR(read.skeleton.joints[j].radius, made.joints[j].radius, 1e-7);
+    EXPECT_LT((read.skeleton.joints[j].rest.translation - made.joints[j].rest.translation).norm(), 1e-6);
+  }
+  checkSkeleton(read.skeleton);
+  const SkinWeights weights = readWeights(rigged.after, collectGeometry(rigged.after), read);
+  ASSERT_EQ(weights.slots, 4u);
+  EXPECT_EQ(weights.joints, rigged.weights.joints);
+  for (std::size_t i = 0; i < weights.weights.size(); ++i) {
+    EXPECT_NEAR(weights.weights[i], rigged.weights.weights[i], 1e-6);
+  }
+}
+
+TEST(ReadSkeleton, NodesBetweenJointsBelongToItAndNamesAreUnique) {
+  SceneBuilder scene;
+  const Index mesh = scene.addTetrahedron();
+  const Index hand = scene.addNode({{"name", "bone"}, {"translation", {0, 0, 1}}});
+  const Index helper = scene.addNode({{"children", {hand}}, {"translation", {0, 1, 0}}});
+  const Index aside = scene.addNode({{"name", "end"}});
+  const Index hip = scene.addNode({{"name", "bone"}, {"children", {helper, aside}}, {"translation", {1, 0, 0}}});
+  scene.addNode({{"name", "armature"}, {"children", {hip}}});
+  scene.bindRigidly(mesh, {0, 0, 0, 1});
+  const Index skin = scene.addSkin({hand, hip}, {translation(-1, -1, -1), translation(-1, 0, 0)});
+  scene.addNode({{"mesh", mesh}, {"skin", skin}});
+  const Asset asset = scene.build();
+  const AssetSkeleton read = readSkeleton(asset);
+  checkSkeleton(read.skeleton);
+  EXPECT_EQ(read.jointNode, (std::vector<Index>{hip, helper, hand}));
+  EXPECT_EQ(read.skeleton.joints[2].name, "bone_2");
+  EXPECT_EQ(read.skeleton.boneShape, BoneShape::kSegment);
+  EXPECT_TRUE(restGlobals(read.skeleton)[2].translation().isApprox(Vec3(1, 1, 1), 1e-6));
+  const SkinWeights weights = readWeights(asset, collectGeometry(asset), read);
+  EXPECT_EQ(weights.jointsOf(0)[0], 2u);  // joint 0 of the skin is the hand
+  EXPECT_EQ(weights.jointsOf(3)[0], 0u);
+}
+
+TEST(ReadSkeleton, TakesTheBindPoseOfAPosedFile) {
+  SceneBuilder scene;
+  const Index mesh = scene.addTetrahedron();
+  const Index tip = scene.addNode({{"name", "tip"}, {"translation", {9, 9, 9}}});
+  const Index root = scene.addNode({{"name", "root"}, {"children", {tip}}});
+  scene.bindRigidly(mesh, {0, 0, 0, 1});
+  const Index skin = scene.addSkin({root, tip}, {translation(0, 0, 0), translation(0, -2, 0)});
+  scene.addNode({{"mesh", mesh}, {"skin", skin}});
+  const AssetSkeleton read = readSkeleton(scene.build());
+  EXPECT_TRUE(read.skeleton.joints[1].rest.translation.isApprox(Vec3(0, 2, 0), 1e-6));
+}
+
+TEST(ReadSkeleton, AFileOfJointsAloneHasOne) {
+  SceneBuilder scene;
+  const Index tip = scene.addNode({{"name", "tip"}, {"translation", {0, 1, 0}}});
+  const Index root = scene.addNode({{"name", "root"}, {"children", {tip}}});
+  scene.addSkin({root, tip}, {translation(0, 0, 0), translation(0, -1, 0)});
+  const Asset asset = scene.build();
+  EXPECT_FALSE(hasRig(asset));
+  EXPECT_EQ(readSkeleton(asset).skeleton.jointCount(), 2u);
+}
+
+TEST(ReadWeights, SaysWhatTheFileSays) {
+  SceneBuilder scene;
+  const Index mesh = scene.addTetrahedron();
+  const Index hat = scene.addTetrahedron();
+  const Index loose = scene.addTetrahedron();
+  const Index hatNode = scene.addNode({{"mesh", hat}});
+  const Index tip = scene.addNode({{"name", "tip"}, {"children", {hatNode}}});
+  const Index root = scene.addNode({{"name", "root"}, {"children", {tip}}});
+  const Index skin = scene.addSkin({root, tip}, {});
+  const std::vector<std::uint8_t> joints = {0, 1, 1, 0, 0, 1, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0};
+  const std::vector<float> weights = {0.25f, 0.5f, 0.25f, 0, 0, 0, 0, 0, -1, 0.5f, 0, 0, 3, 0, 0, 0};
+  Asset& asset = scene.asset();
+  const Index j = addAccessor(asset, {4, 4, ComponentType::kU8, false}, joints, 34962);
+  const Index w = addFloatAccessor(asset, weights, 4, 34962);
+  scene.json()["meshes"][mesh]["primitives"][0]["attributes"]["JOINTS_0"] = j;
+  scene.json()["meshes"][mesh]["primitives"][0]["attributes"]["WEIGHTS_0"] = w;
+  scene.addNode({{"mesh", mesh}, {"skin", skin}});
+  scene.addNode({{"mesh", loose}});
+  const Geometry geometry = collectGeometry(asset);
+  const SkinWeights read = readWeights(asset, geometry, readSkeleton(asset));
+  for (const PrimitiveInstance& instance : geometry.instances) {
+    const Index v = instance.firstVertex;
+    if (instance.node == hatNode) {
+      EXPECT_EQ(read.jointsOf(v)[0], 1u);
+      EXPECT_EQ(read.weightsOf(v)[0], 1);
+    } else if (instance.mesh == loose) {
+      EXPECT_EQ(read.weightsOf(v)[0], 0);
+    } else {
+      EXPECT_EQ(read.jointsOf(v)[0], 1u);  // named twice: added up, strongest first
+      EXPECT_EQ(read.weightsOf(v)[0], 0.75f);
+      EXPECT_EQ(read.weightsOf(v)[1], 0.25f);
+      EXPECT_EQ(read.weightsOf(v + 1)[0], 0);
+      EXPECT_EQ(read.weightsOf(v + 2)[0], 0.5f);  // a negative weight counts as none
+      EXPECT_EQ(read.weightsOf(v + 2)[1], 0);
+      EXPECT_EQ(read.weightsOf(v + 3)[0], 3);  // as the file has them
+    }
+  }
+}
+
+}  // namespace
+}  // namespace limber

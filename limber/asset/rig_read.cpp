@@ -1,0 +1,210 @@
+// The skeleton and the weights that a document has.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "limber/asset/accessor.h"
+#include "limber/asset/bind_pose.h"
+#include "limber/asset/rig_io.h"
+#include "limber/asset/unique_names.h"
+
+namespace limber {
+
+bool hasRig(const Asset& asset) {
+  const Json& nodes = elements(asset, "nodes");
+  return std::any_of(nodes.begin(), nodes.end(), [](const Json& node) { return node.contains("skin"); });
+}
+
+namespace {
+
+constexpr const char* kRadiusKey = "limber_radius";
+constexpr Index kMaxSlots = 8;
+
+// Joints, and the nodes that have a joint above and a joint below.
+std::vector<bool> skeletonNodes(const SceneGraph& graph, const std::vector<bool>& isJoint) {
+  std::vector<bool> above(graph.nodeCount(), false), below(isJoint);
+  for (const Index n : graph.allNodes) {
+    if (graph.parent[n]) above[n] = above[*graph.parent[n]] || isJoint[*graph.parent[n]];
+  }
+  for (auto n = graph.allNodes.rbegin(); n != graph.allNodes.rend(); ++n) {
+    if (graph.parent[*n] && below[*n]) below[*graph.parent[*n]] = true;
+  }
+  std::vector<bool> result(isJoint);
+  for (Index n = 0; n < graph.nodeCount(); ++n) result[n] = isJoint[n] || (above[n] && below[n]);
+  return result;
+}
+
+std::optional<double> storedRadius(const Json& node) {
+  const Json* extras = member(node, "extras");
+  const Json* radius = extras && extras->is_object() ? member(*extras, kRadiusKey) : nullptr;
+  if (!radius || !radius->is_number()) return std::nullopt;
+  const double value = radius->get<double>();
+  return std::isfinite(value) && value >= 0 ? std::optional(value) : std::nullopt;
+}
+
+// The rest transform that brings a joint to `bind` below a parent that stands at `parent`; the node's own one where
+// that cannot be.
+Transform restTransform(const Affine& parent, const Affine& bind, const Affine& stored) {
+  const Affine local = parent.inverse(Eigen::Affine) * bind;
+  if (local.matrix().allFinite()) return decompose(local);
+  return stored.matrix().allFinite() ? decompose(stored) : Transform();
+}
+
+}  // namespace
+
+AssetSkeleton readSkeleton(const Asset& asset) {
+  const SceneGraph graph = readSceneGraph(asset);
+  const BindPose pose = readBindPose(asset, graph);
+  const std::vector<bool> wanted = skeletonNodes(graph, pose.isJoint);
+  const Json& nodes = elements(asset, "nodes");
+
+  AssetSkeleton result;
+  UniqueNames names;
+  std::vector<std::optional<Index>> jointOfNode(graph.nodeCount());
+  std::vector<Affine> globals;  // as the rest transforms rebuild them, so that errors do not add up along a chain
+  bool allRadii = true;
+  for (const Index n : graph.allNodes) {
+    if (!wanted[n]) continue;
+    Joint joint;
+    const std::string name = nameOf(nodes[n]);
+    joint.name = names.add(name.empty() ? fmt::format("joint_{}", n) : name);
+    if (graph.parent[n]) joint.parent = jointOfNode[*graph.parent[n]];
+    const Affine above = joint.parent ? globals[*joint.parent] : Affine::Identity();
+    joint.rest = restTransform(above, pose.nodeWorld[n], graph.local[n]);
+    const std::optional<double> radius = storedRadius(nodes[n]);
+    joint.radius = radius.value_or(0);
+    allRadii = allRadii && radius;
+    globals.push_back(above * joint.rest.toAffine());
+    jointOfNode[n] = result.skeleton.jointCount();
+    result.jointNode.push_back(n);
+    result.skeleton.joints.push_back(std::move(joint));
+  }
+  // Only limber's own handle rigs say how thick the model is at every joint.
+  if (allRadii && !result.jointNode.empty()) result.skeleton.boneShape = BoneShape::kSphere;
+  return result;
+}
+
+namespace {
+
+struct Influence {
+  Index joint;
+  float weight;
+};
+
+// The joint sets of one primitive: JOINTS_0 with WEIGHTS_0, and so on.
+struct InfluenceSet {
+  std::vector<Index> joints;
+  std::vector<float> weights;
+};
+
+std::vector<InfluenceSet> readInfluenceSets(const Asset& asset, const Json& primitive) {
+  std::vector<InfluenceSet> sets;
+  const Json* attributes = member(primitive, "attributes");
+  if (!attributes) return sets;
+  for (Index n = 0;; ++n) {
+    const std::optional<Index> joints = indexMember(*attributes, fmt::format("JOINTS_{}", n).c_str());
+    const std::optional<Index> weights = indexMember(*attributes, fmt::format("WEIGHTS_{}", n).c_str());
+    if (!joints || !weights) return sets;
+    InfluenceSet set{readIndices(asset, *joints), readFloats(asset, *weights)};
+    if (set.joints.size() != set.weights.size()) return sets;
+    sets.push_back(std::move(set));
+  }
+}
+
+// Adds to the influence of the same joint, if there is one.
+void addInfluence(std::vector<Influence>& influences, Influence added) {
+  const auto same = std::find_if(influences.begin(), influences.end(),
+                                 [&](const Influence& known) { return known.joint == added.joint; });
+  if (same != influences.end()) {
+    same->weight += added.weight;
+  } else {
+    influences.push_back(added);
+  }
+}
+
+// Fills the weights of one document, instance by instance.
+class WeightReader {
+ public:
+  WeightReader(const Asset& asset, const Geometry& geometry, const AssetSkeleton& skeleton)
+      : asset_(asset), nodes_(elements(asset, "nodes")), graph_(readSceneGraph(asset)), geometry_(geometry) {
+    jointOfNode_.resize(graph_.nodeCount());
+    for (Index j = 0; j < skeleton.jointNode.size(); ++j) jointOfNode_[skeleton.jointNode[j]] = j;
+  }
+
+  SkinWeights read() {
+    result_.slots = 4;
+    for (const PrimitiveInstance& instance : geometry_.instances) {
+      if (nodes_[instance.node].contains("skin") && primitiveOf(instance).at("attributes").contains("JOINTS_1")) {
+        result_.slots = kMaxSlots;
+      }
+    }
+    result_.joints.assign(geometry_.positions.size() * result_.slots, 0);
+    result_.weights.assign(geometry_.positions.size() * result_.slots, 0.0f);
+    for (const PrimitiveInstance& instance : geometry_.instances) {
+      if (const std::optional<Index> skin = indexMember(nodes_[instance.node], "skin")) {
+        readSkinned(instance, *skin);
+      } else {
+        readRigid(instance);
+      }
+    }
+    return std::move(result_);
+  }
+
+ private:
+  const Json& primitiveOf(const PrimitiveInstance& instance) const {
+    return elements(asset_, "meshes")[instance.mesh].at("primitives")[instance.primitive];
+  }
+
+  void readSkinned(const PrimitiveInstance& instance, Index skin) {
+    const std::vector<InfluenceSet> sets = readInfluenceSets(asset_, primitiveOf(instance));
+    const std::vector<Index> skinJoints = readSkinBinding(asset_, skin).joints;
+    std::vector<Influence> influences;
+    for (std::size_t v = 0; v < instance.vertexCount; ++v) {
+      influences.clear();
+      for (const InfluenceSet& set : sets) {
+        for (std::size_t i = 4 * v; i < 4 * v + 4 && i < set.weights.size(); ++i) {
+          if (!(set.weights[i] > 0) || !std::isfinite(set.weights[i]) || set.joints[i] >= skinJoints.size()) continue;
+          if (const auto joint = jointOfNode_[skinJoints[set.joints[i]]]) {
+            addInfluence(influences, {*joint, set.weights[i]});
+          }
+        }
+      }
+      std::stable_sort(influences.begin(), influences.end(),
+                       [](const Influence& a, const Influence& b) { return a.weight > b.weight; });
+      store(instance.firstVertex + v, influences);
+    }
+  }
+
+  void readRigid(const PrimitiveInstance& instance) {
+    std::optional<Index> node = instance.node;
+    while (node && !jointOfNode_[*node]) node = graph_.parent[*node];
+    if (!node) return;
+    const std::vector<Influence> whole = {{*jointOfNode_[*node], 1.0f}};
+    for (std::size_t v = 0; v < instance.vertexCount; ++v) store(instance.firstVertex + v, whole);
+  }
+
+  void store(std::size_t vertex, const std::vector<Influence>& influences) {
+    for (std::size_t i = 0; i < std::min<std::size_t>(result_.slots, influences.size()); ++i) {
+      result_.joints[vertex * result_.slots + i] = influences[i].joint;
+      result_.weights[vertex * result_.slots + i] = influences[i].weight;
+    }
+  }
+
+  const Asset& asset_;
+  const Json& nodes_;
+  SceneGraph graph_;
+  const Geometry& geometry_;
+  std::vector<std::optional<Index>> jointOfNode_;
+  SkinWeights result_;
+};
+
+}  // namespace
+
+SkinWeights readWeights(const Asset& asset, const Geometry& geometry, const AssetSkeleton& skeleton) {
+  return WeightReader(asset, geometry, skeleton).read();
+}
+
+}  // namespace limber

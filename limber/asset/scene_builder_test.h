@@ -1,0 +1,111 @@
+// Small glTF documents made in code, for tests.
+#pragma once
+
+#include <initializer_list>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "limber/asset/accessor.h"
+#include "limber/asset/asset.h"
+#include "limber/core/transform.h"
+#include "limber/core/types.h"
+
+namespace limber::testing {
+
+class SceneBuilder {
+ public:
+  SceneBuilder() { asset_.json()["asset"] = {{"version", "2.0"}}; }
+
+  Asset& asset() { return asset_; }
+  Json& json() { return asset_.json(); }
+  Json& node(Index n) { return json()["nodes"][n]; }
+
+  static std::vector<Vec3f> tetrahedron(const Vec3f& at = Vec3f::Zero(), float size = 1) {
+    return {at, at + size * Vec3f::UnitX(), at + size * Vec3f::UnitY(), at + size * Vec3f::UnitZ()};
+  }
+  // Seen from outside counter-clockwise.
+  static std::vector<Triangle> tetrahedronTriangles() { return {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}; }
+
+  Index addPositions(const std::vector<Vec3f>& positions) {
+    std::vector<float> values;
+    for (const Vec3f& p : positions) values.insert(values.end(), {p.x(), p.y(), p.z()});
+    return addFloatAccessor(asset_, values, 3, 34962, true);
+  }
+  Index addIndices(const std::vector<std::uint32_t>& indices) {
+    return addAccessor(asset_, {static_cast<Index>(indices.size()), 1, ComponentType::kU32, false},
+                       {reinterpret_cast<const std::uint8_t*>(indices.data()), indices.size() * 4}, 34963);
+  }
+  Json primitive(const std::vector<Vec3f>& positions, const std::vector<Triangle>& triangles) {
+    std::vector<std::uint32_t> corners;
+    for (const Triangle& t : triangles) corners.insert(corners.end(), t.begin(), t.end());
+    Json result = {{"attributes", {{"POSITION", addPositions(positions)}}}};
+    if (!corners.empty()) result["indices"] = addIndices(corners);
+    return result;
+  }
+  Index addMesh(Json primitives, const char* name = "mesh") {
+    return add("meshes", {{"name", name}, {"primitives", std::move(primitives)}});
+  }
+  // One tetrahedron as a mesh of its own.
+  Index addTetrahedron(const Vec3f& at = Vec3f::Zero(), float size = 1) {
+    Json primitives = Json::array({primitive(tetrahedron(at, size), tetrahedronTriangles())});
+    return addMesh(std::move(primitives));
+  }
+
+  Index addNode(Json node) { return add("nodes", std::move(node)); }
+  Index addSkin(const std::vector<Index>& joints, const std::vector<Affine>& inverseBinds) {
+    Json skin = {{"joints", joints}};
+    if (!inverseBinds.empty()) {
+      std::vector<float> values;
+      for (const Affine& m : inverseBinds) {
+        for (int i = 0; i < 16; ++i) values.push_back(static_cast<float>(m.matrix()(i % 4, i / 4)));
+      }
+      skin["inverseBindMatrices"] = addFloatAccessor(asset_, values, 16);
+    }
+    return add("skins", std::move(skin));
+  }
+  // JOINTS_0 and WEIGHTS_0 of one primitive: each vertex with one joint of the skin.
+  void bindRigidly(Index mesh, const std::vector<std::uint8_t>& jointOfVertex) {
+    std::vector<std::uint8_t> joints;
+    std::vector<float> weights;
+    for (const std::uint8_t joint : jointOfVertex) {
+      joints.insert(joints.end(), {joint, 0, 0, 0});
+      weights.insert(weights.end(), {1, 0, 0, 0});
+    }
+    const auto count = static_cast<Index>(jointOfVertex.size());
+    const Index j = addAccessor(asset_, {count, 4, ComponentType::kU8, false}, joints, 34962);
+    const Index w = addFloatAccessor(asset_, weights, 4, 34962);
+    Json& attributes = json()["meshes"][mesh]["primitives"][0]["attributes"];
+    attributes["JOINTS_0"] = j;
+    attributes["WEIGHTS_0"] = w;
+  }
+  // A clip with one channel that moves `node` by two keys.
+  void addClip(Index node, const char* path, Index components) {
+    const Index input = addFloatAccessor(asset_, std::vector<float>{0, 1}, 1, 0, true);
+    const Index output = addFloatAccessor(asset_, std::vector<float>(2 * components, 0.5f),
+                                          path == std::string("weights") ? 1 : components);
+    add("animations", {{"channels", {{{"sampler", 0}, {"target", {{"node", node}, {"path", path}}}}}},
+                       {"samplers", {{{"input", input}, {"output", output}}}}});
+  }
+  Index addScene(const std::vector<Index>& roots) { return add("scenes", {{"nodes", roots}}); }
+
+  Asset build() {
+    checkAsset(asset_);
+    return std::move(asset_);
+  }
+
+ private:
+  Index add(const char* kind, Json element) {
+    Json& list = json()[kind];
+    list.push_back(std::move(element));
+    return static_cast<Index>(list.size() - 1);
+  }
+
+  Asset asset_;
+};
+
+inline Affine translation(double x, double y, double z) {
+  return Affine(Eigen::Translation3d(x, y, z));
+}
+
+}  // namespace limber::testing

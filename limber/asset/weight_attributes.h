@@ -1,0 +1,35 @@
+// Weights as vertex attributes of a primitive.
+#pragma once
+
+#include <span>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "limber/asset/geometry.h"
+#include "limber/skeleton/rig.h"
+
+namespace limber {
+
+// New accessors for the weights of source's range of `weights`: an object {"JOINTS_0": accessor, "WEIGHTS_0":
+// accessor}, with JOINTS_1 and WEIGHTS_1 where a vertex has more than four influences.
+//
+// skinJointOf   #J, joint of `weights` -> index into the skin's joints; kNoIndex where the skin lacks it (then no
+// vertex
+//               of the range may use it)
+// Joint indices are unsigned bytes where the skin has at most 256 joints, else unsigned shorts. Weights are floats that
+// sum to 1 in the order stored; an unused slot is joint 0 with weight 0.
+// Throws Error kBadArgument for weights that are negative, not finite or all zero.
+Json addWeightAccessors(Asset& asset, const PrimitiveInstance& source, const SkinWeights& weights,
+                        std::span<const Index> skinJointOf, Index skinJointCount);
+
+// The same, put into the JSON of a primitive in place of the weights that it had.
+struct AttributeTarget {
+  Index mesh = 0, primitive = 0;
+};
+void writeWeightAttributes(Asset& asset, AttributeTarget target, const PrimitiveInstance& source,
+                           const SkinWeights& weights, std::span<const Index> skinJointOf, Index skinJointCount);
+
+// Takes every JOINTS_n and WEIGHTS_n out of a primitive's JSON.
+void eraseWeightAttributes(Json& primitive);
+
+}  // namespace limber

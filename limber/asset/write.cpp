@@ -1,0 +1,143 @@
+#include "limber/asset/write.h"
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <system_error>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "limber/asset/glb.h"
+#include "limber/asset/gltf_document.h"
+#include "limber/asset/gltf_files.h"
+#include "limber/asset/json_access.h"
+#include "limber/asset/json_text.h"
+
+namespace limber {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::size_t appendAligned(Bytes& binary, ByteSpan bytes) {
+  binary.resize((binary.size() + 3) / 4 * 4);
+  const std::size_t start = binary.size();
+  binary.insert(binary.end(), bytes.begin(), bytes.end());
+  return start;
+}
+
+// All buffers one behind the other; moves the document's buffer views along.
+Bytes mergeBuffers(const Asset& asset, Json& json) {
+  Bytes binary;
+  std::vector<std::size_t> start;
+  for (const Asset::Buffer& buffer : asset.buffers) start.push_back(appendAligned(binary, buffer.bytes));
+  const JsonView views = JsonView(asset).array("bufferViews");
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const Index buffer = views[i].requireIndex("buffer", start.size());
+    if (buffer == 0) continue;
+    Json& view = json["bufferViews"][i];
+    view["buffer"] = 0;
+    view["byteOffset"] = start[buffer] + views[i].count("byteOffset").value_or(0);
+  }
+  return binary;
+}
+
+// Images beside the document become buffer views at the end; an image used twice is stored once.
+void embedImages(const Asset& asset, Json& json, Bytes& binary) {
+  std::map<std::string_view, const Asset::SideFile*> files;
+  for (const Asset::SideFile& file : asset.sideFiles) files[file.uri] = &file;
+  std::map<const Asset::SideFile*, std::size_t> viewOf;
+  const JsonView images = JsonView(asset).array("images");
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    const auto file = files.find(images[i].text("uri"));
+    if (file == files.end()) continue;
+    const auto [view, isNew] = viewOf.try_emplace(file->second, json["bufferViews"].size());
+    if (isNew) {
+      const Bytes& bytes = file->second->bytes;
+      const std::size_t offset = appendAligned(binary, bytes);
+      json["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", offset}, {"byteLength", bytes.size()}});
+    }
+    Json& image = json["images"][i];
+    image.erase("uri");
+    image["mimeType"] = imageMediaType(file->second->bytes);
+    image["bufferView"] = view->second;
+  }
+}
+
+// Only one buffer can be the binary chunk. The first one's name and extras stay; the others have none to stand in.
+void setSingleBuffer(Json& json, std::size_t size) {
+  if (size == 0 && !json.contains("buffers")) return;
+  Json buffer = json.contains("buffers") && !json["buffers"].empty() ? json["buffers"][0] : Json::object();
+  buffer.erase("uri");
+  buffer["byteLength"] = size;
+  json["buffers"] = Json::array({std::move(buffer)});
+}
+
+std::string lowerExtension(const fs::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+// The folders that a file needs and that are not there yet; gone again unless kept.
+class NewFolders {
+ public:
+  ~NewFolders() {
+    std::error_code ignored;
+    for (auto folder = made_.rbegin(); folder != made_.rend(); ++folder) fs::remove(*folder, ignored);
+  }
+  void make(const fs::path& folder) {
+    std::error_code problem;
+    if (folder.empty() || fs::exists(folder, problem)) return;
+    make(folder.parent_path());
+    if (!fs::create_directory(folder, problem)) {
+      throw Error(ErrorCode::kFile, "folder cannot be made: " + problem.message(), folder.string());
+    }
+    made_.push_back(folder);
+  }
+  void keep() { made_.clear(); }
+
+ private:
+  std::vector<fs::path> made_;
+};
+
+void writeGltf(const Asset& asset, const fs::path& path, std::vector<OutputFile> outputs) {
+  const GltfFiles files = gltfFiles(asset, path);
+  NewFolders folders;
+  for (const GltfFiles::File& file : files.beside) {
+    outputs.push_back({path.parent_path() / file.path, file.bytes});
+    if (file.path.has_parent_path()) folders.make(outputs.back().path.parent_path());
+  }
+  outputs.push_back({path, asBytes(files.json)});  // last, so that it never stands there without what it refers to
+  writeFiles(outputs);
+  folders.keep();
+}
+
+}  // namespace
+
+Bytes writeGlb(const Asset& asset) {
+  Json json = asset.json();
+  Bytes binary = mergeBuffers(asset, json);
+  embedImages(asset, json, binary);
+  setSingleBuffer(json, binary.size());
+  return joinGlb(dumpJson(json, -1), binary);
+}
+
+void writeAsset(const Asset& asset, const fs::path& path, std::span<const OutputFile> companions) {
+  const std::string extension = lowerExtension(path);
+  if (path == "-" || extension == ".glb") {
+    const Bytes glb = writeGlb(asset);
+    std::vector<OutputFile> outputs(companions.begin(), companions.end());
+    outputs.push_back({path, glb});
+    writeFiles(outputs);
+  } else if (extension == ".gltf") {
+    writeGltf(asset, path, {companions.begin(), companions.end()});
+  } else {
+    throw Error(ErrorCode::kBadArgument, "cannot be written: only GLB and glTF can", path.string(),
+                "give the output a name that ends in .glb or .gltf");
+  }
+}
+
+}  // namespace limber

@@ -1,0 +1,159 @@
+#include "limber/core/file.h"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "limber/core/error.h"
+
+namespace limber {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Closer {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+using File = std::unique_ptr<std::FILE, Closer>;
+
+constexpr std::size_t kChunk = std::size_t{1} << 20;
+
+[[noreturn]] void fail(const fs::path& path, const std::string& what, int reason) {
+  throw Error(ErrorCode::kFile, what + ": " + std::strerror(reason), path.string());
+}
+
+Bytes readStream(std::FILE* stream, const fs::path& path) {
+  Bytes bytes;
+  std::size_t used = 0;
+  while (true) {
+    bytes.resize(used + kChunk);
+    const std::size_t got = std::fread(bytes.data() + used, 1, kChunk, stream);
+    used += got;
+    if (got < kChunk) break;
+  }
+  if (std::ferror(stream)) fail(path, "cannot be read", errno);
+  bytes.resize(used);
+  return bytes;
+}
+
+void writeStream(std::FILE* stream, ByteSpan bytes, const fs::path& path) {
+  if (!bytes.empty() && std::fwrite(bytes.data(), 1, bytes.size(), stream) != bytes.size()) {
+    fail(path, "cannot be written", errno);
+  }
+  if (std::fflush(stream) != 0) fail(path, "cannot be written", errno);
+}
+
+void closeStream(File stream, const fs::path& path) {
+  if (std::fclose(stream.release()) != 0) fail(path, "cannot be written", errno);
+}
+
+// What a link points to, also where nothing is there yet: the link stays, the file behind it is replaced.
+fs::path behindLinks(fs::path path) {
+  constexpr int kMostLinks = 40;
+  std::error_code problem;
+  for (int links = 0; fs::is_symlink(fs::symlink_status(path, problem)); ++links) {
+    if (links == kMostLinks) fail(path, "cannot be written", ELOOP);
+    path = path.parent_path() / fs::read_symlink(path, problem);
+    if (problem) throw Error(ErrorCode::kFile, "cannot be written: " + problem.message(), path.string());
+  }
+  return path;
+}
+
+// Is there a device, a pipe or the like, which must not be replaced by a file?
+bool isNoPlainFile(const fs::path& path) {
+  std::error_code ignored;
+  const fs::file_status status = fs::status(path, ignored);
+  if (fs::is_directory(status)) throw Error(ErrorCode::kFile, "is a folder, not a file", path.string());
+  return fs::exists(status) && !fs::is_regular_file(status);
+}
+
+void writeStraight(const OutputFile& file) {
+  if (file.path == "-") return writeStream(stdout, file.bytes, "standard output");
+  File stream(std::fopen(file.path.string().c_str(), "wb"));
+  if (!stream) fail(file.path, "cannot be written", errno);
+  writeStream(stream.get(), file.bytes, file.path);
+  closeStream(std::move(stream), file.path);
+}
+
+// A file under a temporary name beside its place; gone with this object unless published.
+class PendingFile {
+ public:
+  explicit PendingFile(fs::path place) : place_(std::move(place)) {}
+  PendingFile(PendingFile&& other) noexcept
+      : place_(std::move(other.place_)), temporary_(std::move(other.temporary_)), made_(other.made_) {
+    other.made_ = false;
+  }
+  PendingFile& operator=(PendingFile&&) = delete;
+  ~PendingFile() {
+    std::error_code ignored;
+    if (made_) fs::remove(temporary_, ignored);
+  }
+
+  void write(ByteSpan bytes) {
+    File stream = openBeside();
+    writeStream(stream.get(), bytes, place_);
+    closeStream(std::move(stream), place_);
+  }
+
+  void publish() {
+    std::error_code problem;
+    fs::rename(temporary_, place_, problem);
+    if (problem) throw Error(ErrorCode::kFile, "cannot be written: " + problem.message(), place_.string());
+    made_ = false;
+  }
+
+ private:
+  // Under the first name that nobody has: another run may be writing to the same place.
+  File openBeside() {
+    constexpr int kMostNames = 1000;
+    for (int i = 0; i < kMostNames; ++i) {
+      temporary_ = place_;
+      temporary_ += ".limber-part" + (i == 0 ? std::string() : std::to_string(i));
+      File stream(std::fopen(temporary_.string().c_str(), "wbx"));
+      made_ = stream != nullptr;
+      if (made_) return stream;
+      if (errno != EEXIST) break;
+    }
+    fail(place_, "cannot be written", errno);
+  }
+
+  fs::path place_, temporary_;
+  bool made_ = false;
+};
+
+}  // namespace
+
+Bytes readFile(const fs::path& path) {
+  if (path == "-") return readStream(stdin, "standard input");
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored)) throw Error(ErrorCode::kFile, "is a folder, not a file", path.string());
+  const File stream(std::fopen(path.string().c_str(), "rb"));
+  if (!stream) fail(path, "cannot be opened", errno);
+  return readStream(stream.get(), path);
+}
+
+void writeFiles(std::span<const OutputFile> files) {
+  std::vector<PendingFile> pending;
+  std::vector<const OutputFile*> straight;
+  for (const OutputFile& file : files) {
+    if (file.path == "-" || isNoPlainFile(file.path)) {
+      straight.push_back(&file);
+    } else {
+      pending.emplace_back(behindLinks(file.path)).write(file.bytes);
+    }
+  }
+  for (const OutputFile* file : straight) writeStraight(*file);
+  for (PendingFile& file : pending) file.publish();
+}
+
+void writeFile(const fs::path& path, ByteSpan bytes) {
+  const OutputFile file{path, bytes};
+  writeFiles({&file, 1});
+}
+
+}  // namespace limber

@@ -1,0 +1,159 @@
+#include "limber/evaluate/asset_info.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "limber/asset/accessor.h"
+#include "limber/asset/geometry.h"
+#include "limber/asset/rig_io.h"
+#include "limber/asset/scene_graph.h"
+#include "limber/mesh/components.h"
+#include "limber/mesh/prepare.h"
+
+namespace limber {
+
+namespace {
+
+std::size_t storedVertices(const Asset& asset) {
+  std::set<Index> accessors;
+  for (const Json& mesh : elements(asset, "meshes")) {
+    for (const Json& primitive : mesh.at("primitives")) {
+      const Json* attributes = member(primitive, "attributes");
+      const auto position = attributes ? indexMember(*attributes, "POSITION") : std::nullopt;
+      if (position) accessors.insert(*position);
+    }
+  }
+  std::size_t count = 0;
+  for (const Index accessor : accessors) count += accessorInfo(asset, accessor).count;
+  return count;
+}
+
+Index primitiveCount(const Asset& asset) {
+  std::size_t count = 0;
+  for (const Json& mesh : elements(asset, "meshes")) count += mesh.at("primitives").size();
+  return static_cast<Index>(count);
+}
+
+void countEdges(const TriMesh& mesh, SurfaceInfo& info) {
+  std::vector<std::pair<Index, Index>> edges;
+  edges.reserve(mesh.triangles.size() * 3);
+  for (const Triangle& t : mesh.triangles) {
+    for (std::size_t c = 0; c < 3; ++c) edges.push_back(std::minmax({t[c], t[(c + 1) % 3]}));
+  }
+  std::sort(edges.begin(), edges.end());
+  for (std::size_t i = 0; i < edges.size();) {
+    std::size_t end = i;
+    while (end < edges.size() && edges[end] == edges[i]) ++end;
+    if (end - i == 1) ++info.openEdges;
+    if (end - i > 2) ++info.crowdedEdges;
+    i = end;
+  }
+}
+
+std::optional<SurfaceInfo> inspectSurface(const Geometry& geometry) {
+  try {
+    const PreparedMesh prepared = prepareMesh(geometry.positions, geometry.triangles);
+    SurfaceInfo info;
+    info.weldedVertices = prepared.mesh.vertexCount();
+    info.triangles = prepared.mesh.triangleCount();
+    Index count = 0;
+    const std::vector<Index> pieceOf = vertexComponents(prepared.mesh, &count);
+    std::vector<bool> solid(count, false);
+    for (const Triangle& t : prepared.mesh.triangles) solid[pieceOf[t[0]]] = true;
+    info.pieces = static_cast<Index>(std::count(solid.begin(), solid.end(), true));
+    countEdges(prepared.mesh, info);
+    return info;
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::kBadData) throw;
+    return std::nullopt;  // nothing but degenerate triangles
+  }
+}
+
+SkinWeightInfo inspectWeights(const SkinWeights& weights) {
+  SkinWeightInfo info;
+  for (Index v = 0; v < weights.vertexCount(); ++v) {
+    double sum = 0;
+    Index influences = 0;
+    for (const float weight : weights.weightsOf(v)) {
+      if (weight == 0) continue;
+      info.least = info.vertices == 0 && influences == 0 ? weight : std::min(info.least, weight);
+      info.greatest = std::max(info.greatest, weight);
+      sum += weight;
+      ++influences;
+    }
+    if (influences == 0) {
+      ++info.withoutWeights;
+      continue;
+    }
+    ++info.vertices;
+    info.mostInfluences = std::max(info.mostInfluences, influences);
+    info.largestSumError = std::max(info.largestSumError, std::abs(sum - 1));
+  }
+  return info;
+}
+
+std::vector<ClipInfo> inspectClips(const Asset& asset) {
+  std::vector<ClipInfo> clips;
+  for (const Json& animation : elements(asset, "animations")) {
+    ClipInfo clip;
+    clip.name = nameOf(animation);
+    if (const Json* channels = member(animation, "channels")) clip.channels = static_cast<Index>(channels->size());
+    const Json* samplers = member(animation, "samplers");
+    for (std::size_t s = 0; samplers && s < samplers->size(); ++s) {
+      const auto input = indexMember((*samplers)[s], "input");
+      if (!input) continue;
+      for (const float time : readFloats(asset, *input)) clip.seconds = std::max(clip.seconds, double{time});
+    }
+    clips.push_back(std::move(clip));
+  }
+  return clips;
+}
+
+// The geometry of the scene; empty where it has no triangle.
+Geometry sceneGeometry(const Asset& asset) {
+  try {
+    return collectGeometry(asset);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::kBadData) throw;
+    return {};
+  }
+}
+
+}  // namespace
+
+AssetInfo inspectAsset(const Asset& asset) {
+  AssetInfo info;
+  info.format = asset.format;
+  info.storedVertices = storedVertices(asset);
+  info.nodes = elementCount(asset, "nodes");
+  info.meshes = elementCount(asset, "meshes");
+  info.primitives = primitiveCount(asset);
+  info.materials = elementCount(asset, "materials");
+  info.textures = elementCount(asset, "textures");
+  info.images = elementCount(asset, "images");
+  info.skins = elementCount(asset, "skins");
+  info.clips = inspectClips(asset);
+  info.warnings = asset.warnings;
+  if (const Json* used = member(asset.json(), "extensionsUsed")) {
+    for (const Json& name : *used) {
+      if (name.is_string()) info.extensions.push_back(name.get<std::string>());
+    }
+  }
+
+  const Geometry geometry = sceneGeometry(asset);
+  info.sceneVertices = static_cast<Index>(geometry.positions.size());
+  for (const Vec3f& position : geometry.positions) info.bounds.add(position.cast<double>());
+  if (!geometry.triangles.empty()) info.surface = inspectSurface(geometry);
+  if (hasRig(asset)) {
+    const AssetSkeleton skeleton = readSkeleton(asset);
+    for (const Joint& joint : skeleton.skeleton.joints) info.joints.push_back(joint.name);
+    info.weights = inspectWeights(readWeights(asset, geometry, skeleton));
+  }
+  return info;
+}
+
+}  // namespace limber

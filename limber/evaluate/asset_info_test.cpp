@@ -1,0 +1,124 @@
+#include "limber/evaluate/asset_info.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "limber/asset/accessor.h"
+
+namespace limber {
+namespace {
+
+// Two tetrahedra's worth of triangles: one closed, one with a face missing, each with vertices of its own.
+Asset twoTetrahedra() {
+  Asset asset;
+  asset.json() = {{"asset", {{"version", "2.0"}}}, {"scene", 0}};
+  std::vector<float> positions;
+  std::vector<std::uint16_t> indices;
+  for (int i = 0; i < 2; ++i) {
+    const float x = 5.0f * float(i);
+    for (const float v : {x, 0.f, 0.f, x + 1, 0.f, 0.f, x, 1.f, 0.f, x, 0.f, 1.f}) positions.push_back(v);
+    const int base = 4 * i;
+    for (const int v : {0, 2, 1, 0, 1, 3, 1, 2, 3}) indices.push_back(std::uint16_t(base + v));
+  }
+  for (const int v : {0, 3, 2}) indices.push_back(std::uint16_t(v));
+  const Index position = addFloatAccessor(asset, positions, 3, 34962, true);
+  const Index index = addAccessor(asset, {Index(indices.size()), 1, ComponentType::kU16, false},
+                                  {reinterpret_cast<const std::uint8_t*>(indices.data()), indices.size() * 2}, 34963);
+  asset.json()["meshes"] =
+      Json::array({{{"primitives", Json::array({{{"attributes", {{"POSITION", position}}}, {"indices", index}}})}}});
+  asset.json()["nodes"] = Json::array({{{"mesh", 0}}});
+  asset.json()["scenes"] = Json::array({{{"nodes", {0}}}});
+  asset.format = "glb";
+  return asset;
+}
+
+// Weights for the eight vertices over two joints: the last vertex has none, the one before sums to 0.75.
+void addSkin(Asset& asset) {
+  std::vector<std::uint8_t> joints;
+  std::vector<float> weights;
+  for (int v = 0; v < 8; ++v) {
+    for (const int j : {0, 1, 0, 0}) joints.push_back(std::uint8_t(j));
+    const bool split = v == 2;
+    for (const float w : {v == 7 ? 0.f : v == 6 ? 0.75f : split ? 0.9f : 1.f, split ? 0.1f : 0.f, 0.f, 0.f}) {
+      weights.push_back(w);
+    }
+  }
+  Json& attributes = asset.json()["meshes"][0]["primitives"][0]["attributes"];
+  attributes["JOINTS_0"] = addAccessor(asset, {8, 4, ComponentType::kU8, false}, joints, 34962);
+  attributes["WEIGHTS_0"] = addFloatAccessor(asset, weights, 4, 34962);
+  asset.json()["nodes"] =
+      Json::array({{{"mesh", 0}, {"skin", 0}}, {{"name", "hip"}, {"children", {2}}}, {{"name", "knee"}}});
+  asset.json()["scenes"][0]["nodes"] = {0, 1};
+  asset.json()["skins"] = Json::array({{{"joints", {1, 2}}}});
+}
+
+TEST(InspectAsset, CountsAMesh) {
+  const AssetInfo info = inspectAsset(twoTetrahedra());
+  EXPECT_EQ(info.format, "glb");
+  EXPECT_EQ(info.storedVertices, 8u);
+  EXPECT_EQ(info.sceneVertices, 8u);
+  ASSERT_TRUE(info.surface);
+  EXPECT_EQ(info.surface->triangles, 7u);
+  EXPECT_EQ(info.surface->pieces, 2u);
+  EXPECT_EQ(info.surface->openEdges, 3u);
+  EXPECT_EQ(info.surface->crowdedEdges, 0u);
+  EXPECT_FALSE(info.surface->watertight());
+  EXPECT_EQ(info.bounds.min, Vec3(0, 0, 0));
+  EXPECT_EQ(info.bounds.max, Vec3(6, 1, 1));
+  EXPECT_FALSE(info.weights);
+  EXPECT_TRUE(info.joints.empty());
+}
+
+TEST(InspectAsset, AnInstancedMeshIsStoredOnceAndShownTwice) {
+  Asset asset = twoTetrahedra();
+  asset.json()["nodes"].push_back({{"mesh", 0}, {"translation", {0, 3, 0}}});
+  asset.json()["scenes"][0]["nodes"].push_back(1);
+  const AssetInfo info = inspectAsset(asset);
+  EXPECT_EQ(info.storedVertices, 8u);
+  EXPECT_EQ(info.sceneVertices, 16u);
+  EXPECT_EQ(info.surface->pieces, 4u);
+  EXPECT_EQ(info.bounds.max, Vec3(6, 4, 1));
+}
+
+TEST(InspectAsset, ReadsWeightsAsStored) {
+  Asset asset = twoTetrahedra();
+  addSkin(asset);
+  const AssetInfo info = inspectAsset(asset);
+  EXPECT_THAT(info.joints, ::testing::ElementsAre("hip", "knee"));
+  ASSERT_TRUE(info.weights);
+  EXPECT_EQ(info.weights->vertices, 7u);
+  EXPECT_EQ(info.weights->withoutWeights, 1u);
+  EXPECT_FLOAT_EQ(info.weights->least, 0.1f);
+  EXPECT_FLOAT_EQ(info.weights->greatest, 1.0f);
+  EXPECT_NEAR(info.weights->largestSumError, 0.25, 1e-9);
+  EXPECT_EQ(info.weights->mostInfluences, 2u);
+}
+
+TEST(InspectAsset, ReadsClips) {
+  Asset asset = twoTetrahedra();
+  const Index times = addFloatAccessor(asset, std::vector<float>{0, 1.5f, 2.25f}, 1, 0, true);
+  const Index values = addFloatAccessor(asset, std::vector<float>(9, 0.f), 3);
+  asset.json()["animations"] = Json::array(
+      {{{"name", "hop"},
+        {"samplers", Json::array({{{"input", times}, {"output", values}}})},
+        {"channels", Json::array({{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}})}}});
+  const AssetInfo info = inspectAsset(asset);
+  ASSERT_EQ(info.clips.size(), 1u);
+  EXPECT_EQ(info.clips[0].name, "hop");
+  EXPECT_DOUBLE_EQ(info.clips[0].seconds, 2.25);
+  EXPECT_EQ(info.clips[0].channels, 1u);
+}
+
+TEST(InspectAsset, AFileWithoutATriangleIsToldAsSuch) {
+  Asset asset;
+  asset.json() = {{"asset", {{"version", "2.0"}}}, {"nodes", Json::array({{{"name", "alone"}}})}};
+  const AssetInfo info = inspectAsset(asset);
+  EXPECT_FALSE(info.surface);
+  EXPECT_TRUE(info.bounds.empty());
+  EXPECT_EQ(info.nodes, 1u);
+}
+
+}  // namespace
+}  // namespace limber

@@ -1,0 +1,32 @@
+#include "limber/ik/damped_least_squares.h"
+
+#include "limber/ik/jacobian_iteration.h"
+#include "limber/ik/small_solve.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kShare = 0.1;    // of the squared distance left to go
+constexpr double kLeast = 1e-12;  // of the Gram matrix's trace, against singular ones
+
+class DampedLeastSquares : public JacobianIteration {
+ public:
+  explicit DampedLeastSquares(const IkSystem& system) : JacobianIteration(system) {}
+
+ private:
+  bool heedsCaution() const override { return true; }
+
+  void weighRows(const JacobianRows& rows, Eigen::Ref<Eigen::VectorXd> y) override {
+    const double damping = kShare * rows.caution * y.squaredNorm() + kLeast * rows.gram.diagonal().sum();
+    solveCholesky(rows.gram, damping, y);
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<IkIteration> makeDampedLeastSquares(const IkSystem& system) {
+  return std::make_unique<DampedLeastSquares>(system);
+}
+
+}  // namespace limber

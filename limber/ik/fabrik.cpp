@@ -1,0 +1,293 @@
+#include "limber/ik/fabrik.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "limber/ik/rotation.h"
+#include "limber/ik/rotation_fit.h"
+
+namespace limber {
+
+namespace {
+
+constexpr Index kPatience = 10;      // iterations after which there must have been
+constexpr double kProgress = 0.999;  // this factor on the cost
+
+// 1 / sqrt(1 + x) for |x| < kNearly, to 1e-7, and the better the smaller x: in a chain that settles, bones have nearly
+// their length, and a root and a quotient would take most of the time.
+constexpr double kNearly = 0.05;
+double inverseRootNearOne(double x) {
+  const double x2 = x * x;
+  return (1 - 0.5 * x) + x2 * ((0.375 - 0.3125 * x) + 0.2734375 * x2);
+}
+
+// `joint` moved to the distance `length` from `fixed`, on the line between them.
+inline Vec3 pulled(const Vec3& joint, const Vec3& fixed, const FabrikBone& bone) {
+  const Vec3 line = joint - fixed;
+  const double squared = line.squaredNorm();
+  const double excess = squared * bone.perSquaredLength - 1;
+  if (std::abs(excess) < kNearly) return fixed + line * inverseRootNearOne(excess);
+  // Joints that coincide have no line; any will do, as the next pass moves them again.
+  if (!(squared > 1e-300)) return fixed + bone.length * Vec3::UnitX();
+  return fixed + line * (bone.length / std::sqrt(squared));
+}
+
+}  // namespace
+
+Index fabrikChain(std::span<Vec3> positions, std::span<const FabrikBone> bones, const Vec3& target, double tolerance,
+                  Index budget) {
+  const std::size_t last = positions.size() - 1;
+  const Vec3 base = positions[0];
+  double reach = 0;
+  for (const FabrikBone& bone : bones) reach += bone.length;
+  if ((target - base).norm() >= reach) {
+    for (std::size_t i = 0; i < last; ++i) {
+      positions[i + 1] = pulled(target, positions[i], bones[i]);
+    }
+    return 1;
+  }
+  double checked = (positions[last] - target).squaredNorm();
+  for (Index iteration = 0; iteration < budget; ++iteration) {
+    Vec3 joint = positions[last] = target;
+    for (std::size_t i = last; i-- > 1;) positions[i] = joint = pulled(positions[i], joint, bones[i]);
+    joint = base;
+    for (std::size_t i = 0; i < last; ++i) positions[i + 1] = joint = pulled(positions[i + 1], joint, bones[i]);
+    const double cost = (joint - target).squaredNorm();
+    if (cost <= tolerance * tolerance) return iteration + 1;
+    if (iteration % kPatience != kPatience - 1) continue;
+    if (!(cost < kProgress * checked)) return iteration + 1;
+    checked = cost;
+  }
+  return budget;
+}
+
+namespace {
+
+// A free chain without branches, limits or anything else to mind.
+class FabrikChain : public IkIteration {
+ public:
+  explicit FabrikChain(const IkSystem& system) : positions_(system.nodes.size()), bones_(system.nodes.size() - 1) {}
+
+  static bool fits(const IkSystem& system) {
+    if (system.effectors.size() != 1 || system.limited() || system.nodes[0].slides) return false;
+    const auto free = [](const IkSystem::Node& node) { return node.freedom == 1; };
+    return system.nodes.size() > 1 && std::all_of(system.nodes.begin(), system.nodes.end(), free);
+  }
+
+  Index run(IkSystem& system, Index budget) override {
+    const IkSystem::Effector& effector = system.effectors[0];
+    for (std::size_t n = 0; n < positions_.size(); ++n) {
+      positions_[n] = system.positions[n];
+      if (n > 0) bones_[n - 1] = FabrikBone(system.offsets[n].norm());
+    }
+    const double tolerance = std::max(0.99 * system.options().tolerance, 1e-9) * effector.reach;
+    const Index iterations = fabrikChain(positions_, bones_, effector.target, tolerance, budget);
+    turnBones(system);
+    if (effector.angleScale > 0) {
+      const std::size_t tip = positions_.size() - 1;
+      system.locals[tip] =
+          (system.parentRotation(static_cast<int>(tip)).conjugate() * effector.orientation).normalized();
+      system.globals[tip] = effector.orientation;
+    }
+    return iterations;
+  }
+
+ private:
+  // From the base on, the smallest turn of each bone to where the joints have gone.
+  void turnBones(IkSystem& system) const {
+    Quat parent = system.parentRotation(0);
+    Vec3 position = system.positions[0];
+    const std::size_t last = positions_.size() - 1;
+    for (std::size_t n = 0; n <= last; ++n) {
+      system.positions[n] = position;
+      Quat global = parent * system.locals[n];
+      if (n < last && bones_[n].length > 0) {
+        const Vec3 bone = global * system.offsets[n + 1];
+        const Vec3 wanted = positions_[n + 1] - position;
+        global = (shortestRotation(bone, wanted) * global).normalized();
+        system.locals[n] = parent.conjugate() * global;
+      }
+      system.globals[n] = global;
+      if (n < last) position += global * system.offsets[n + 1];
+      parent = global;
+    }
+  }
+
+  std::vector<Vec3> positions_;
+  std::vector<FabrikBone> bones_;
+};
+
+class FabrikTree : public IkIteration {
+ public:
+  explicit FabrikTree(const IkSystem& system)
+      : goals_(system.nodes.size()),
+        sums_(system.nodes.size()),
+        weights_(system.nodes.size()),
+        best_(system.makeState()) {
+    for (int n = 0; n < system.nodeCount(); ++n) {
+      hangBegin_.push_back(hangs_.size());
+      hangs_.resize(hangs_.size() + system.effectorsBelow(n).size());
+    }
+  }
+
+  Index run(IkSystem& system, Index budget) override {
+    double best = system.cost(), checked = best;
+    system.save(best_);
+    Index done = 0;
+    while (done < budget) {
+      backward(system);
+      forward(system);
+      ++done;
+      const double cost = system.cost();
+      if (cost < best) {
+        best = cost;
+        system.save(best_);
+        if (system.allReached()) return done;
+      }
+      if (done % kPatience != 0) continue;
+      if (!(best < kProgress * checked)) break;
+      checked = best;
+    }
+    system.restore(best_);
+    return done;
+  }
+
+ private:
+  // Where every joint should go: effectors to their targets, a joint above to the centroid, by weight, of where its
+  // children and its own target want it.
+  void backward(const IkSystem& system) {
+    std::fill(sums_.begin(), sums_.end(), Vec3::Zero());
+    std::fill(weights_.begin(), weights_.end(), 0.0);
+    for (const IkSystem::Effector& effector : system.effectors) {
+      const auto n = static_cast<std::size_t>(effector.node);
+      sums_[n] += effector.weight * effector.target;
+      weights_[n] += effector.weight;
+    }
+    for (std::size_t n = system.nodes.size(); n-- > 0;) {
+      goals_[n] = sums_[n] / weights_[n];
+      if (system.nodes[n].parent < 0) continue;
+      const auto p = static_cast<std::size_t>(system.nodes[n].parent);
+      const Vec3 line = system.positions[p] - goals_[n];
+      const double stretch = line.norm();
+      const Vec3 wanted = stretch > 0 ? Vec3(goals_[n] + line * (system.offsets[n].norm() / stretch)) : goals_[n];
+      sums_[p] += weights_[n] * wanted;
+      weights_[p] += weights_[n];
+    }
+  }
+
+  void forward(IkSystem& system) {
+    if (system.limited()) hang(system);
+    for (int n = 0; n < system.nodeCount(); ++n) {
+      const auto i = static_cast<std::size_t>(n);
+      const IkSystem::Node& node = system.nodes[i];
+      if (node.slides) {
+        const Quat parent = system.parentRotation(n);
+        const Vec3 gap = goals_[i] - (system.parentPosition(n) + parent * system.offsets[i]);
+        system.offsets[i] += parent.conjugate() * Vec3(node.freedom * gap);
+        system.limitNode(n);
+      }
+      place(system, n);
+      if (node.freedom > 0) turn(system, n);
+    }
+  }
+
+  // Where each effector hangs in the frames of the joints above it. That holds until a joint below such a frame turns,
+  // which forward() does later.
+  void hang(const IkSystem& system) {
+    for (int n = 0; n < system.nodeCount(); ++n) {
+      const auto i = static_cast<std::size_t>(n);
+      std::size_t slot = hangBegin_[i];
+      for (const int below : system.effectorsBelow(n)) {
+        const int effector = system.effectors[static_cast<std::size_t>(below)].node;
+        const Vec3 way = system.positions[static_cast<std::size_t>(effector)] - system.positions[i];
+        hangs_[slot++] = system.globals[i].conjugate() * way;
+      }
+    }
+  }
+
+  static void place(IkSystem& system, int node) {
+    const auto n = static_cast<std::size_t>(node);
+    const Quat parent = system.parentRotation(node);
+    system.globals[n] = parent * system.locals[n];
+    system.positions[n] = system.parentPosition(node) + parent * system.offsets[n];
+  }
+
+  void turn(IkSystem& system, int node) const {
+    const auto n = static_cast<std::size_t>(node);
+    const IkSystem::Node& info = system.nodes[n];
+    const Quat parent = system.parentRotation(node);
+    Quat wanted = wantedTurn(system, node) * system.globals[n];
+    if (info.limit && info.childCount == 1) wanted = twistAlong(system, node, wanted) * wanted;
+    const Quat local = (parent.conjugate() * wanted).normalized();
+    system.locals[n] = info.freedom < 1 ? system.locals[n].slerp(info.freedom, local) : local;
+    system.limitNode(node);
+    system.globals[n] = parent * system.locals[n];
+  }
+
+  // The turn that points the node's bones to their goals, and the node itself to its orientation.
+  Quat wantedTurn(const IkSystem& system, int node) const {
+    const auto n = static_cast<std::size_t>(node);
+    const IkSystem::Node& info = system.nodes[n];
+    if (info.onlyChild >= 0 && !hasOrientation(system, node)) {
+      const auto child = static_cast<std::size_t>(info.onlyChild);
+      const Vec3 bone = system.globals[n] * system.offsets[child];
+      const Vec3 way = goals_[child] - system.positions[n];
+      if (!(bone.squaredNorm() > 0 && way.squaredNorm() > 0)) return Quat::Identity();
+      return shortestRotation(bone, way);
+    }
+    Mat3 correlation = Mat3::Zero();
+    for (int c = node + 1; c < system.nodeCount() && info.childCount > 0; ++c) {
+      const auto child = static_cast<std::size_t>(c);
+      if (system.nodes[child].parent != node) continue;
+      const Vec3 bone = system.globals[n] * system.offsets[child];
+      correlation += weights_[child] * (goals_[child] - system.positions[n]) * bone.transpose();
+    }
+    for (const int below : system.effectorsBelow(node)) {
+      const IkSystem::Effector& effector = system.effectors[static_cast<std::size_t>(below)];
+      if (effector.node != node || effector.angleScale == 0) continue;
+      const double weight = effector.weight * effector.angleScale * effector.angleScale;
+      correlation += weight * (effector.orientation * system.globals[n].conjugate()).toRotationMatrix();
+    }
+    return bestRotation(correlation);
+  }
+
+  static bool hasOrientation(const IkSystem& system, int node) {
+    for (const int below : system.effectorsBelow(node)) {
+      const IkSystem::Effector& effector = system.effectors[static_cast<std::size_t>(below)];
+      if (effector.node == node && effector.angleScale > 0) return true;
+    }
+    return false;
+  }
+
+  // The turn about the node's bone that brings the effectors nearest to their targets, as they hang now. Without it a
+  // hinge further down could not choose the plane in which it bends.
+  Quat twistAlong(const IkSystem& system, int node, const Quat& global) const {
+    const auto n = static_cast<std::size_t>(node);
+    const Vec3& offset = system.offsets[static_cast<std::size_t>(system.nodes[n].onlyChild)];
+    if (!(offset.squaredNorm() > 0)) return Quat::Identity();
+    const Vec3 axis = (global * offset).normalized();
+    Mat3 correlation = Mat3::Zero();
+    std::size_t slot = hangBegin_[n];
+    for (const int below : system.effectorsBelow(node)) {
+      const IkSystem::Effector& effector = system.effectors[static_cast<std::size_t>(below)];
+      const Vec3 hangs = global * hangs_[slot++];
+      correlation += effector.weight * (effector.target - system.positions[n]) * hangs.transpose();
+    }
+    return Quat(Eigen::AngleAxisd(bestAngle(correlation, axis), axis));
+  }
+
+  std::vector<Vec3> goals_, sums_;
+  std::vector<double> weights_;
+  std::vector<std::size_t> hangBegin_;  // #nodes, into hangs_
+  std::vector<Vec3> hangs_;             // for each node and each effector below it
+  IkSystem::State best_;
+};
+
+}  // namespace
+
+std::unique_ptr<IkIteration> makeFabrik(const IkSystem& system) {
+  if (FabrikChain::fits(system)) return std::make_unique<FabrikChain>(system);
+  return std::make_unique<FabrikTree>(system);
+}
+
+}  // namespace limber

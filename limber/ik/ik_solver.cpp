@@ -1,0 +1,150 @@
+#include "limber/ik/ik_solver.h"
+
+#include <string>
+
+#include "limber/core/error.h"
+#include "limber/ik/ccd.h"
+#include "limber/ik/damped_least_squares.h"
+#include "limber/ik/fabrik.h"
+#include "limber/ik/jacobian_transpose.h"
+#include "limber/ik/pseudo_inverse.h"
+#include "limber/ik/rotation.h"
+#include "limber/ik/selectively_damped.h"
+#include "limber/ik/two_bone.h"
+#include "limber/ik/whole_body.h"
+
+namespace limber {
+
+namespace {
+
+constexpr IkMethod kMethods[] = {
+    {"two-bone", "analytic, for limbs of two bones; bends to a pole", "law of cosines", &makeTwoBone},
+    {"ccd", "cyclic coordinate descent from the tip to the base",
+     "Wang, Chen: A combined optimization method for solving the inverse kinematics problem, 1991", &makeCcdBackward},
+    {"ccd-forward", "cyclic coordinate descent from the base to the tip",
+     "Wang, Chen: A combined optimization method for solving the inverse kinematics problem, 1991", &makeCcdForward},
+    {"fabrik", "forward and backward reaching, for chains and trees",
+     "Aristidou, Chrysanthou, Lasenby: Extending FABRIK with model constraints, 2016", &makeFabrik},
+    {"jacobian-transpose", "steepest descent with steps of Barzilai and Borwein",
+     "Wolovich, Elliott: A computational technique for inverse kinematics, 1984", &makeJacobianTranspose},
+    {"pseudo-inverse", "smallest step by singular values", "Whitney: Resolved motion rate control, 1969",
+     &makePseudoInverse},
+    {"dls", "damped least squares, the damping scaled to what is left to go",
+     "Sugihara: Solvability-unconcerned inverse kinematics by the Levenberg-Marquardt method, 2011",
+     &makeDampedLeastSquares},
+    {"sdls", "selectively damped least squares",
+     "Buss, Kim: Selectively damped least squares for inverse kinematics, 2005", &makeSelectivelyDamped},
+    {"whole-body", "damped least squares with priorities, for many effectors and a moving root",
+     "Baerlocher, Boulic: An inverse kinematics architecture enforcing an arbitrary number of strict priority levels, "
+     "2004",
+     &makeWholeBody},
+};
+
+constexpr double kNudge = 0.1;  // of the way to a random rotation
+constexpr double kSmallestJump = 0.2;
+constexpr double kWorthwhile = 1e-12;
+
+}  // namespace
+
+std::span<const IkMethod> ikMethods() {
+  return kMethods;
+}
+
+const IkMethod& findIkMethod(std::string_view name) {
+  std::string known;
+  for (const IkMethod& method : kMethods) {
+    if (method.name == name) return method;
+    known += (known.empty() ? "" : ", ") + std::string(method.name);
+  }
+  throw Error(ErrorCode::kBadArgument, "no inverse kinematics method is called '" + std::string(name) + "'", {},
+              "there are: " + known);
+}
+
+IkSolver::IkSolver(const IkMethod& method, const Skeleton& skeleton, std::span<const IkTarget> targets,
+                   const JointLimits* limits, const IkOptions& options)
+    : system_(skeleton, targets, limits, options), best_(system_.makeState()) {
+  result_.targets.resize(targets.size());
+  iteration_ = method.make(system_);
+}
+
+const IkResult& IkSolver::solve(Pose& pose, std::span<const IkTarget> targets) {
+  system_.load(pose, targets);
+  result_.iterations = result_.restarts = 0;
+  randomState_ = system_.options().seed;
+
+  system_.save(best_);
+  double best = system_.cost();
+  if (!system_.allReached() || system_.options().referenceGain > 0) attempt(best);
+  while (result_.restarts < system_.options().restarts && worthAnotherTry()) {
+    perturb(result_.restarts++);
+    attempt(best);
+  }
+  report();
+  system_.store(pose);
+  return result_;
+}
+
+// Runs the method from where the system stands, and leaves the best state so far in the system.
+void IkSolver::attempt(double& best) {
+  result_.iterations += iteration_->run(system_, system_.options().maxIterations);
+  const double cost = system_.cost();
+  // Once reached, what the method did besides (a reference pose approached) counts, not the last billionth.
+  if (cost < best * (1 - kWorthwhile) || (system_.allReached() && result_.restarts == 0)) {
+    best = std::min(best, cost);
+    system_.save(best_);
+  } else {
+    system_.restore(best_);
+  }
+}
+
+bool IkSolver::worthAnotherTry() const {
+  for (std::size_t e = 0; e < system_.effectors.size(); ++e) {
+    if (!system_.reached(e) && !system_.outOfReach(e)) return true;
+  }
+  return false;
+}
+
+// splitmix64 (Steele, Lea, Flood 2014), to [0, 1).
+double IkSolver::random() {
+  randomState_ += 0x9e3779b97f4a7c15ULL;
+  std::uint64_t z = randomState_;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
+  z ^= z >> 31;
+  return static_cast<double>(z >> 11) * 0x1p-53;
+}
+
+void IkSolver::perturb(Index restart) {
+  const Index count = system_.options().restarts;
+  const double cooled = count > 2 ? (restart - 1.0) / (count - 2.0) : 0;
+  const double jump = restart == 0 ? kNudge : 1 + cooled * (kSmallestJump - 1);
+  static const JointLimit kFree;
+  for (int n = 0; n < system_.nodeCount(); ++n) {
+    const auto i = static_cast<std::size_t>(n);
+    const IkSystem::Node& node = system_.nodes[i];
+    if (node.freedom == 0) continue;
+    const Vec3 uniform(random(), random(), random());
+    const Quat anywhere = allowedRotation(node.limit ? *node.limit : kFree, uniform);
+    system_.locals[i] = system_.locals[i].slerp(jump, anywhere);
+    system_.limitNode(n);
+  }
+  system_.forward();
+}
+
+void IkSolver::report() {
+  for (std::size_t e = 0; e < system_.effectors.size(); ++e) {
+    IkTargetResult& target = result_.targets[e];
+    target.distance = system_.distance(e);
+    target.angle = system_.angle(e);
+    target.outcome = system_.reached(e)      ? IkOutcome::kReached
+                     : system_.outOfReach(e) ? IkOutcome::kOutOfReach
+                                             : IkOutcome::kStuck;
+  }
+}
+
+IkResult solveIk(const IkMethod& method, const Skeleton& skeleton, Pose& pose, std::span<const IkTarget> targets,
+                 const JointLimits* limits, const IkOptions& options) {
+  return IkSolver(method, skeleton, targets, limits, options).solve(pose, targets);
+}
+
+}  // namespace limber

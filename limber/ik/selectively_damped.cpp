@@ -1,0 +1,77 @@
+#include "limber/ik/selectively_damped.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "limber/ik/jacobian_iteration.h"
+#include "limber/ik/rotation.h"
+#include "limber/ik/small_solve.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kLargestChange = kPi / 4;  // gamma_max of the paper, of any one angle
+
+class SelectivelyDamped : public JacobianIteration {
+ public:
+  explicit SelectivelyDamped(const IkSystem& system) : JacobianIteration(system) {
+    const auto rows = static_cast<Eigen::Index>(system.effectors.size() * 6);
+    vectors_.resize(rows, rows);
+    weights_.resize(rows);
+    std::size_t columns = 0;
+    for (const IkSystem::Node& node : system.nodes) columns += node.slides ? 6 : 3;
+    sizes_.resize(rows / 3, static_cast<Eigen::Index>(columns));
+  }
+
+ private:
+  void weighRows(const JacobianRows& rows, Eigen::Ref<Eigen::VectorXd> y) override {
+    const Eigen::Index m = y.size(), blocks = m / 3, columns = rows.jacobian.cols();
+    for (Eigen::Index c = 0; c < columns; ++c) {
+      for (Eigen::Index b = 0; b < blocks; ++b) sizes_(b, c) = rows.jacobian.col(c).segment<3>(3 * b).norm();
+    }
+    auto vectors = vectors_.topLeftCorner(m, m);
+    symmetricEigen(rows.gram, vectors);
+    const double least = 1e-14 * rows.gram.diagonal().maxCoeff();
+    auto weights = weights_.head(m);
+    weights.setZero();
+    for (Eigen::Index i = 0; i < m; ++i) {
+      if (rows.gram(i, i) > least)
+        weights += weightOf(rows, y, vectors.col(i), std::sqrt(rows.gram(i, i))) * vectors.col(i);
+    }
+    y = weights;
+  }
+
+  // How far to go along one left singular vector: phi_i of the paper, as a multiple of J^T u_i.
+  double weightOf(const JacobianRows& rows, const Eigen::Ref<Eigen::VectorXd>& error,
+                  const Eigen::Ref<const Eigen::VectorXd>& u, double sigma) {
+    const Eigen::Index blocks = error.size() / 3, columns = rows.jacobian.cols();
+    double moves = 0;  // N_i: how far the effectors go for a unit along u
+    for (Eigen::Index b = 0; b < blocks; ++b) moves += u.segment<3>(3 * b).norm();
+    double couldMove = 0;  // M_i: how far they would if all joints moved them the same way
+    double largest = 0;
+    for (Eigen::Index c = 0; c < columns; ++c) {
+      const double v = std::abs(rows.jacobian.col(c).dot(u)) / sigma;
+      largest = std::max(largest, v);
+      couldMove += v * sizes_.col(c).head(blocks).sum();
+    }
+    couldMove /= sigma;
+    const double bound = kLargestChange * std::min(1.0, couldMove > 0 ? moves / couldMove : 1.0);
+    const double wanted = u.dot(error) / sigma;
+    const double allowed =
+        wanted * largest > bound || wanted * largest < -bound ? std::copysign(bound / largest, wanted) : wanted;
+    return allowed / sigma;
+  }
+
+  Eigen::MatrixXd vectors_;
+  Eigen::VectorXd weights_;
+  Eigen::MatrixXd sizes_;  // blocks of three rows x columns: how far a joint moves an effector
+};
+
+}  // namespace
+
+std::unique_ptr<IkIteration> makeSelectivelyDamped(const IkSystem& system) {
+  return std::make_unique<SelectivelyDamped>(system);
+}
+
+}  // namespace limber

@@ -1,0 +1,113 @@
+#include "limber/mesh/prepare.h"
+
+#include <bit>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "limber/core/bits.h"
+
+namespace limber {
+
+namespace {
+
+// Open addressing over vertex indices: each slot holds a welded vertex, keyed by its position's bits.
+class PositionTable {
+ public:
+  explicit PositionTable(std::size_t count) : slots_(std::bit_ceil(2 * count + 2), kNoIndex) {}
+
+  // The welded vertex at `position`, appending it to `welded` if it is new.
+  Index findOrAdd(const Vec3f& position, std::vector<Vec3f>& welded) {
+    const std::size_t mask = slots_.size() - 1;
+    for (std::size_t slot = hash(position) & mask;; slot = (slot + 1) & mask) {
+      if (slots_[slot] == kNoIndex) {
+        slots_[slot] = static_cast<Index>(welded.size());
+        welded.push_back(position);
+        return slots_[slot];
+      }
+      if (welded[slots_[slot]] == position) return slots_[slot];
+    }
+  }
+
+ private:
+  static std::uint64_t hash(const Vec3f& position) {
+    std::uint64_t h = 0;
+    for (int i = 0; i < 3; ++i) {
+      h = (h ^ bitCast<std::uint32_t>(position[i] + 0.0f)) * 0x9e3779b97f4a7c15u;  // + 0 turns -0 into 0
+      h ^= h >> 32;
+    }
+    return h;
+  }
+
+  std::vector<Index> slots_;
+};
+
+void checkInput(std::span<const Vec3f> positions, std::span<const Triangle> triangles) {
+  for (std::size_t v = 0; v < positions.size(); ++v) {
+    if (!positions[v].allFinite()) {
+      throw Error(ErrorCode::kBadData, "has a position that is not a finite number", fmt::format("vertex {}", v));
+    }
+  }
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    for (const Index v : triangles[t]) {
+      if (v < positions.size()) continue;
+      throw Error(ErrorCode::kBadArgument, fmt::format("names vertex {} of {}", v, positions.size()),
+                  fmt::format("triangle {}", t));
+    }
+  }
+}
+
+// Centre and scale of the box of what has triangles: loose points far off must not shrink the model.
+WorkingFrame frameOf(std::span<const Vec3f> positions, std::span<const Triangle> triangles) {
+  Box box;
+  for (const Triangle& triangle : triangles) {
+    for (const Index v : triangle) box.add(positions[v].cast<double>());
+  }
+  WorkingFrame frame;
+  frame.offset = box.center();
+  if (box.longestSide() > 0) frame.scale = box.longestSide();
+  return frame;
+}
+
+constexpr double kFarthest = 1e4;  // longest sides from the centre; what has triangles lies within 0.5
+
+// Only vertices without triangles can lie outside the box; one far off would not fit into single precision.
+void moveToFrame(const WorkingFrame& frame, std::vector<Vec3f>& positions, Warnings& warnings) {
+  for (Vec3f& p : positions) {
+    const Vec3 working = frame.toWorking(p.cast<double>());
+    const Vec3 near = working.cwiseMax(-kFarthest).cwiseMin(kFarthest);
+    if (near != working)
+      warnings.add("far-vertices", "loose vertices far from the model count as nearer than they are");
+    p = near.cast<float>();
+  }
+}
+
+}  // namespace
+
+PreparedMesh prepareMesh(std::span<const Vec3f> positions, std::span<const Triangle> triangles) {
+  checkInput(positions, triangles);
+  PreparedMesh result;
+  TriMesh& mesh = result.mesh;
+
+  PositionTable table(positions.size());
+  result.weldedVertex.reserve(positions.size());
+  mesh.positions.reserve(positions.size());
+  for (const Vec3f& position : positions) result.weldedVertex.push_back(table.findOrAdd(position, mesh.positions));
+
+  mesh.triangles.reserve(triangles.size());
+  for (const Triangle& source : triangles) {
+    const Triangle t = {result.weldedVertex[source[0]], result.weldedVertex[source[1]], result.weldedVertex[source[2]]};
+    if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) mesh.triangles.push_back(t);
+  }
+  result.warnings.add("degenerate-triangles", "triangles with two corners at one place are left out of the computation",
+                      {}, triangles.size() - mesh.triangles.size());
+  if (mesh.triangles.empty()) {
+    throw Error(ErrorCode::kBadData, "the model has no triangle", {}, "limber needs a surface, not points or lines");
+  }
+
+  result.frame = frameOf(mesh.positions, mesh.triangles);
+  moveToFrame(result.frame, mesh.positions, result.warnings);
+  return result;
+}
+
+}  // namespace limber

@@ -1,0 +1,37 @@
+// From a file's vertices to the mesh that the engine works on, and back.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "limber/core/error.h"
+#include "limber/mesh/tri_mesh.h"
+
+namespace limber {
+
+// p_source = scale * p_working + offset
+struct WorkingFrame {
+  double scale = 1;
+  Vec3 offset = Vec3::Zero();
+
+  Vec3 toSource(const Vec3& working) const { return scale * working + offset; }
+  Vec3 toWorking(const Vec3& source) const { return (source - offset) / scale; }
+};
+
+struct PreparedMesh {
+  TriMesh mesh;                     // welded, centred, longest side of the box 1, no degenerate triangle
+  std::vector<Index> weldedVertex;  // source vertex -> vertex of mesh; defined for every source vertex
+  WorkingFrame frame;
+  Warnings warnings;  // kinds: degenerate-triangles, far-vertices
+};
+
+// Welds vertices at equal positions (bit for bit, -0 equal to 0), leaves out triangles that have a repeated vertex
+// after welding (zero-area triangles with three different vertices stay), centres and scales.
+//
+// positions  #S source vertices in world space, finite
+// triangles  indices into positions, in range
+// Throws Error kBadData where no triangle is left ("has no triangle"), and kBadArgument for an index out of range.
+// Cost: O(#S + #F), one hash table.
+PreparedMesh prepareMesh(std::span<const Vec3f> positions, std::span<const Triangle> triangles);
+
+}  // namespace limber

@@ -1,0 +1,168 @@
+// Strings the stages together; holds no method of its own.
+#include "limber/pipeline/auto_rig.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "limber/asset/geometry.h"
+#include "limber/asset/rig_io.h"
+#include "limber/mesh/components.h"
+#include "limber/mesh/prepare.h"
+
+namespace limber {
+
+namespace {
+
+// Puts an asset back as it was unless the work on it was completed. Stages change the JSON and append to buffers, and
+// never touch bytes that were there: so the JSON and the lengths are enough to keep.
+class Rollback {
+ public:
+  explicit Rollback(Asset& asset) : asset_(asset), json_(asset.json()), warnings_(asset.warnings) {
+    for (const Asset::Buffer& buffer : asset.buffers) sizes_.push_back(buffer.bytes.size());
+  }
+  Rollback(const Rollback&) = delete;
+  Rollback& operator=(const Rollback&) = delete;
+  ~Rollback() {
+    if (done_) return;
+    asset_.json().swap(json_);
+    std::swap(asset_.warnings, warnings_);
+    while (asset_.buffers.size() > sizes_.size()) asset_.buffers.pop_back();
+    for (std::size_t b = 0; b < sizes_.size(); ++b) asset_.buffers[b].bytes.resize(sizes_[b]);
+  }
+  void commit() { done_ = true; }
+
+ private:
+  Asset& asset_;
+  Json json_;
+  Warnings warnings_;
+  std::vector<std::size_t> sizes_;
+  bool done_ = false;
+};
+
+// Pieces that have a triangle: loose vertices are none.
+Index pieceCount(const TriMesh& mesh) {
+  Index count = 0;
+  const std::vector<Index> pieceOf = vertexComponents(mesh, &count);
+  std::vector<bool> solid(count, false);
+  for (const Triangle& t : mesh.triangles) solid[pieceOf[t[0]]] = true;
+  return static_cast<Index>(std::count(solid.begin(), solid.end(), true));
+}
+
+[[noreturn]] void refuseRig(const Asset& asset) {
+  throw Error(ErrorCode::kUnsupported, "the model has a rig of its own", asset.name,
+              "--replace-rig takes it out first, --keep-skeleton keeps its skeleton and makes only the weights anew");
+}
+
+// Joints that the file gives weight. Control joints (IK targets, poles, end sites) move no vertex and must not begin
+// to.
+std::vector<bool> deformingJoints(const SkinWeights& weights, Index jointCount) {
+  std::vector<bool> deforms(jointCount, false);
+  for (std::size_t i = 0; i < weights.weights.size(); ++i) {
+    if (weights.weights[i] > 0) deforms[weights.joints[i]] = true;
+  }
+  if (std::none_of(deforms.begin(), deforms.end(), [](bool d) { return d; })) deforms.assign(jointCount, true);
+  return deforms;
+}
+
+// The bones of the asset's own skeleton, in the working space.
+std::vector<Bone> keptBones(const Asset& asset, const Geometry& geometry, const AssetSkeleton& skeleton,
+                            const WorkingFrame& frame) {
+  const std::vector<bool> deforms =
+      deformingJoints(readWeights(asset, geometry, skeleton), skeleton.skeleton.jointCount());
+  std::vector<Bone> bones = bonesOf(skeleton.skeleton);
+  bones.erase(std::remove_if(bones.begin(), bones.end(), [&](const Bone& bone) { return !deforms[bone.joint]; }),
+              bones.end());
+  for (Bone& bone : bones) {
+    bone.a = frame.toWorking(bone.a);
+    bone.b = frame.toWorking(bone.b);
+    bone.radius /= frame.scale;
+  }
+  return bones;
+}
+
+// A skeleton of the working space in world space. Its joints are only moved apart: they keep rotation and scale.
+Skeleton toWorld(Skeleton skeleton, const WorkingFrame& frame) {
+  for (Joint& joint : skeleton.joints) {
+    joint.rest.translation =
+        joint.parent ? Vec3(frame.scale * joint.rest.translation) : frame.toSource(joint.rest.translation);
+    joint.radius *= frame.scale;
+  }
+  return skeleton;
+}
+
+struct Rigged {
+  SkinWeights weights;           // for the source vertices
+  std::optional<Skeleton> made;  // in world space; none where the asset's own was kept
+  AssetSkeleton kept;
+};
+
+Rigged makeRig(const Asset& asset, const Geometry& geometry, const PreparedMesh& prepared,
+               const AutoRigOptions& options, AutoRigReport& report, Progress& progress) {
+  Rigged result;
+  std::vector<Bone> bones;
+  progress.stage("rig");
+  if (options.existingRig == ExistingRig::kKeepSkeleton && hasRig(asset)) {
+    result.kept = readSkeleton(asset);
+    bones = keptBones(asset, geometry, result.kept, prepared.frame);
+    report.joints = result.kept.skeleton.jointCount();
+  } else {
+    AutoRig rig = findRigger(options.rigger).rig(prepared.mesh, options.rig, progress);
+    bones = bonesOf(rig.skeleton);
+    report.joints = rig.skeleton.jointCount();
+    report.suggestions = std::move(rig.suggestions);
+    report.warnings.append(rig.warnings);
+    result.made = toWorld(std::move(rig.skeleton), prepared.frame);
+  }
+
+  progress.stage("skin");
+  WeightResult skin = findWeightMethod(options.skinning).compute(prepared.mesh, bones, options.weights, progress);
+  report.warnings.append(skin.warnings);
+  result.weights = expandWeights(skin.weights, prepared.weldedVertex);
+  return result;
+}
+
+}  // namespace
+
+AutoRigReport autoRig(Asset& asset, const AutoRigOptions& options, Progress& progress) {
+  findRigger(options.rigger);  // a name that is wrong is told before any work
+  findWeightMethod(options.skinning);
+  const bool rigged = hasRig(asset);
+  if (rigged && options.existingRig == ExistingRig::kRefuse) refuseRig(asset);
+  if (!rigged && options.existingRig == ExistingRig::kKeepSkeleton) {
+    throw Error(ErrorCode::kBadArgument, "the model has no skeleton to keep", asset.name, "leave --keep-skeleton out");
+  }
+
+  progress.stage("read geometry");
+  Rollback rollback(asset);
+  if (rigged && options.existingRig == ExistingRig::kReplace) removeRig(asset);
+  const Geometry geometry = collectGeometry(asset);
+
+  progress.stage("weld");
+  AutoRigReport report;
+  const PreparedMesh prepared = prepareMesh(geometry.positions, geometry.triangles);
+  report.sourceVertices = static_cast<Index>(geometry.positions.size());
+  report.weldedVertices = prepared.mesh.vertexCount();
+  report.triangles = prepared.mesh.triangleCount();
+  report.pieces = pieceCount(prepared.mesh);
+  report.warnings.append(prepared.warnings);
+
+  const Rigged rig = makeRig(asset, geometry, prepared, options, report, progress);
+
+  progress.stage("write rig");
+  if (rig.made) {
+    attachRig(asset, geometry, *rig.made, rig.weights);
+  } else {
+    replaceWeights(asset, geometry, rig.kept, rig.weights);
+  }
+  rollback.commit();
+  progress.finish();
+
+  Warnings stageWarnings = std::exchange(report.warnings, asset.warnings);
+  report.warnings.append(stageWarnings);
+  report.stages = progress.stages();
+  return report;
+}
+
+}  // namespace limber

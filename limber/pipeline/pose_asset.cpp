@@ -1,0 +1,101 @@
+#include "limber/pipeline/pose_asset.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "limber/asset/pose_io.h"
+#include "limber/ik/ik_solver.h"
+#include "limber/skinning/deformer.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kRadians = 3.14159265358979323846 / 180;
+constexpr std::size_t kNamesListed = 12;
+
+Index requireJoint(const Skeleton& skeleton, const std::string& name) {
+  if (const std::optional<Index> joint = skeleton.find(name)) return *joint;
+  std::string known;
+  for (std::size_t j = 0; j < std::min(kNamesListed, skeleton.joints.size()); ++j) {
+    known += (j == 0 ? "" : ", ") + skeleton.joints[j].name;
+  }
+  if (skeleton.joints.size() > kNamesListed) known += ", ...";
+  throw Error(ErrorCode::kBadArgument, fmt::format("no joint is called '{}'", name), {}, "there are: " + known);
+}
+
+Affine parentGlobal(const Skeleton& skeleton, const Pose& pose, Index joint) {
+  const std::optional<Index> parent = skeleton.joints[joint].parent;
+  return parent ? poseGlobals(skeleton, pose)[*parent] : Affine::Identity();
+}
+
+void turn(const Skeleton& skeleton, Pose& pose, const JointTurn& edit) {
+  const Index joint = requireJoint(skeleton, edit.joint);
+  const Quat above = decompose(parentGlobal(skeleton, pose, joint)).rotation;
+  const Quat turned(Eigen::AngleAxisd(edit.degrees * kRadians, above.conjugate() * edit.axis));
+  pose.locals[joint].rotation = (turned * pose.locals[joint].rotation).normalized();
+}
+
+void move(const Skeleton& skeleton, Pose& pose, const JointMove& edit) {
+  const Index joint = requireJoint(skeleton, edit.joint);
+  const Vec3 local = parentGlobal(skeleton, pose, joint).linear().inverse() * edit.offset;
+  if (!local.allFinite()) {
+    throw Error(ErrorCode::kBadData, "cannot be moved below a joint with a scale of 0",
+                fmt::format("joint '{}'", edit.joint));
+  }
+  pose.locals[joint].translation += local;
+}
+
+std::vector<ReachReport> reach(const Skeleton& skeleton, Pose& pose, const std::vector<JointReach>& edits,
+                               const JointLimits* limits, const PoseOptions& options) {
+  std::vector<IkTarget> targets;
+  for (const JointReach& edit : edits) {
+    IkTarget target;
+    target.joint = requireJoint(skeleton, edit.joint);
+    target.position = edit.target;
+    target.pole = edit.pole;
+    if (edit.base) target.base = requireJoint(skeleton, *edit.base);
+    targets.push_back(target);
+  }
+  const IkResult result = solveIk(findIkMethod(options.solver), skeleton, pose, targets, limits, options.ik);
+  std::vector<ReachReport> reports;
+  for (std::size_t e = 0; e < edits.size(); ++e) {
+    reports.push_back({edits[e].joint, result.targets[e].distance, result.targets[e].outcome});
+  }
+  return reports;
+}
+
+}  // namespace
+
+std::vector<ReachReport> editPose(const Skeleton& skeleton, Pose& pose, const PoseEdits& edits,
+                                  const JointLimits* limits, const PoseOptions& options) {
+  for (const JointTurn& edit : edits.turns) {
+    turn(skeleton, pose, edit);
+    const Index joint = requireJoint(skeleton, edit.joint);
+    if (limits) pose.locals[joint].rotation = nearestAllowed(limits->joints[joint], pose.locals[joint].rotation);
+  }
+  for (const JointMove& edit : edits.moves) move(skeleton, pose, edit);
+  if (edits.reaches.empty()) return {};
+  return reach(skeleton, pose, edits.reaches, limits, options);
+}
+
+PosedGeometry posedGeometry(const Asset& asset, const AssetSkeleton& skeleton, const Pose& pose,
+                            std::string_view deformer) {
+  PosedGeometry result;
+  result.geometry = collectGeometry(asset);
+  result.normals = readNormals(asset, result.geometry);
+  SkinWeights weights = readWeights(asset, result.geometry, skeleton);
+  normalizeWeights(weights);
+
+  const std::vector<Affine> transforms = skinTransforms(skeleton.skeleton, pose);
+  std::vector<Vec3> centers;
+  for (const Affine& global : restGlobals(skeleton.skeleton)) centers.push_back(global.translation());
+  const Deformer& method = findDeformer(deformer);
+  std::vector<float> scratch(method.scratchSize(skeleton.skeleton.jointCount()));
+  std::vector<Vec3f>& positions = result.geometry.positions;
+  method.deform({positions, result.normals, weights, transforms, centers}, {positions, result.normals}, scratch);
+  return result;
+}
+
+}  // namespace limber

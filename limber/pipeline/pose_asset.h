@@ -1,0 +1,48 @@
+// Poses a rigged Asset: the joints' nodes, or the mesh itself for good.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "limber/asset/asset.h"
+#include "limber/asset/geometry.h"
+#include "limber/asset/rig_io.h"
+#include "limber/ik/ik_problem.h"
+#include "limber/ik/limits.h"
+#include "limber/pipeline/pose_edits.h"
+#include "limber/skeleton/pose.h"
+
+namespace limber {
+
+struct PoseOptions {
+  std::string solver = "whole-body";  // of ikMethods()
+  IkOptions ik;
+};
+
+// What became of one reach, in the order of the edits.
+struct ReachReport {
+  std::string joint;
+  double distance = 0;  // left, metres
+  IkOutcome outcome = IkOutcome::kReached;
+};
+
+// Changes `pose`, given in the world's space, as the edits say. Limits (none: null) are kept by the joints that reach,
+// and bend the joints that were turned. Throws Error kBadArgument naming a joint that is not there, and listing some
+// that are.
+std::vector<ReachReport> editPose(const Skeleton& skeleton, Pose& pose, const PoseEdits& edits,
+                                  const JointLimits* limits = nullptr, const PoseOptions& options = {});
+
+// The vertices of a rigged asset as its joints stand in `pose`, in world space, with normals where the file has some
+// (zero elsewhere).
+//
+// skeleton  readSkeleton(asset) of the asset as it is: where a bind pose lies in the world is told from how the nodes
+//           stand, so a skeleton read before writeNodePose is not that of the asset after it
+// deformer  of deformers(): "linear-blend", ...
+struct PosedGeometry {
+  Geometry geometry;           // moved
+  std::vector<Vec3f> normals;  // #S
+};
+PosedGeometry posedGeometry(const Asset& asset, const AssetSkeleton& skeleton, const Pose& pose,
+                            std::string_view deformer = "linear-blend");
+
+}  // namespace limber

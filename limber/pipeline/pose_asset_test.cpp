@@ -1,0 +1,199 @@
+#include "limber/pipeline/pose_asset.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "limber/asset/accessor.h"
+#include "limber/asset/pose_io.h"
+#include "limber/asset/read.h"
+#include "limber/asset/write.h"
+#include "limber/core/error.h"
+
+namespace limber {
+namespace {
+
+// A strip of six triangles along +Y from 0 to 3, width 0.2, below a node that moves it by (5, 0, 0); then rigged with
+// three joints at y = 0, 1, 2: "hip", "knee", "foot".
+Asset strip() {
+  Asset asset;
+  std::vector<float> positions, normals;
+  std::vector<std::uint16_t> indices;
+  for (int i = 0; i < 4; ++i) {
+    for (const float x : {-0.1f, 0.1f}) {
+      positions.insert(positions.end(), {x, static_cast<float>(i), 0});
+      normals.insert(normals.end(), {0, 0, 1});
+    }
+    const auto v = static_cast<std::uint16_t>(2 * i);
+    for (const int corner : {0, 1, 2, 2, 1, 3}) {
+      if (i < 3) indices.push_back(static_cast<std::uint16_t>(v + corner));
+    }
+  }
+  const Index position = addFloatAccessor(asset, positions, 3, 34962, true);
+  const Index normal = addFloatAccessor(asset, normals, 3, 34962);
+  const auto* bytes = reinterpret_cast<const std::uint8_t*>(indices.data());
+  const AccessorInfo info{static_cast<Index>(indices.size()), 1, ComponentType::kU16, false};
+  const Index index = addAccessor(asset, info, {bytes, 2 * indices.size()}, 34963);
+  Json& json = asset.json();
+  json["asset"] = {{"version", "2.0"}};
+  json["meshes"] = Json::array(
+      {{{"primitives",
+         Json::array({{{"attributes", {{"POSITION", position}, {"NORMAL", normal}}}, {"indices", index}}})}}});
+  json["nodes"] = Json::array({{{"name", "strip"}, {"mesh", 0}, {"translation", {5, 0, 0}}}});
+  json["scenes"] = Json::array({{{"nodes", {0}}}});
+  json["scene"] = 0;
+  return asset;
+}
+
+Asset riggedStrip() {
+  Asset asset = strip();
+  const Geometry geometry = collectGeometry(asset);
+  Skeleton skeleton;
+  for (const char* name : {"hip", "knee", "foot"}) {
+    Joint joint;
+    joint.name = name;
+    if (!skeleton.joints.empty()) joint.parent = skeleton.jointCount() - 1;
+    joint.rest.translation = skeleton.joints.empty() ? Vec3(5, 0, 0) : Vec3(0, 1, 0);
+    skeleton.joints.push_back(joint);
+  }
+  SkinWeights weights;
+  weights.slots = 1;
+  for (Index v = 0; v < 8; ++v) weights.joints.push_back(std::min(v / 2, Index{2}));
+  weights.weights.assign(8, 1.0f);
+  attachRig(asset, geometry, skeleton, weights);
+  checkAsset(asset);
+  return asset;
+}
+
+PoseEdits turned(const char* text) {
+  PoseEdits edits;
+  edits.turns = parseTurn(text);
+  return edits;
+}
+
+Vec3 jointAt(const AssetSkeleton& skeleton, const Pose& pose, const char* name) {
+  return poseGlobals(skeleton.skeleton, pose)[*skeleton.skeleton.find(name)].translation();
+}
+
+TEST(PoseAsset, NodesOfAFreshRigStandInTheBindPose) {
+  const Asset asset = riggedStrip();
+  const AssetSkeleton skeleton = readSkeleton(asset);
+  const Pose pose = readNodePose(asset, skeleton);
+  EXPECT_LT((jointAt(skeleton, pose, "foot") - Vec3(5, 2, 0)).norm(), 1e-6);
+  const PosedGeometry posed = posedGeometry(asset, skeleton, pose);
+  EXPECT_EQ(posed.geometry.positions, collectGeometry(asset).positions);
+}
+
+TEST(PoseAsset, ATurnIsAboutTheWorldsAxisThroughTheJoint) {
+  const Asset asset = riggedStrip();
+  const AssetSkeleton skeleton = readSkeleton(asset);
+  Pose pose = readNodePose(asset, skeleton);
+  editPose(skeleton.skeleton, pose, turned("hip=z:90"));
+  EXPECT_LT((jointAt(skeleton, pose, "foot") - Vec3(3, 0, 0)).norm(), 1e-6);
+  // Again about the world's z, though the knee's own axes have turned by now.
+  editPose(skeleton.skeleton, pose, turned("knee=z:-90"));
+  EXPECT_LT((jointAt(skeleton, pose, "foot") - Vec3(4, 1, 0)).norm(), 1e-6);
+  editPose(skeleton.skeleton, pose, turned("knee=y:90"));
+  EXPECT_LT((jointAt(skeleton, pose, "foot") - Vec3(4, 1, 0)).norm(), 1e-6);
+
+  const PosedGeometry posed = posedGeometry(asset, skeleton, pose);
+  EXPECT_LT((posed.geometry.positions[6].cast<double>() - Vec3(4, 2, 0.1)).norm(), 1e-5);
+  EXPECT_LT((posed.normals[6].cast<double>() - Vec3(1, 0, 0)).norm(), 1e-5);
+}
+
+TEST(PoseAsset, AMoveTakesWhatHangsOnTheJointAlong) {
+  const Asset asset = riggedStrip();
+  const AssetSkeleton skeleton = readSkeleton(asset);
+  Pose pose = readNodePose(asset, skeleton);
+  PoseEdits edits = turned("hip=z:90");
+  edits.moves.push_back(parseMove("knee=0,0.5,0"));
+  editPose(skeleton.skeleton, pose, edits);
+  EXPECT_LT((jointAt(skeleton, pose, "knee") - Vec3(4, 0.5, 0)).norm(), 1e-6);
+  EXPECT_LT((jointAt(skeleton, pose, "foot") - Vec3(3, 0.5, 0)).norm(), 1e-6);
+}
+
+TEST(PoseAsset, AReachTellsWhatIsLeft) {
+  const Asset asset = riggedStrip();
+  const AssetSkeleton skeleton = readSkeleton(asset);
+  Pose pose = readNodePose(asset, skeleton);
+  PoseEdits edits;
+  edits.reaches.push_back(parseReach("foot=6,1,0"));
+  std::vector<ReachReport> reports = editPose(skeleton.skeleton, pose, edits);
+  ASSERT_EQ(reports.size(), 1u);
+  EXPECT_EQ(reports[0].outcome, IkOutcome::kReached);
+  EXPECT_LT((jointAt(skeleton, pose, "foot") - Vec3(6, 1, 0)).norm(), 1e-3);
+
+  edits.reaches[0].target = Vec3(5, 7, 0);
+  reports = editPose(skeleton.skeleton, pose, edits);
+  EXPECT_EQ(reports[0].outcome, IkOutcome::kOutOfReach);
+  EXPECT_NEAR(reports[0].distance, 5, 0.05);
+}
+
+TEST(PoseAsset, AnUnknownJointIsNamedWithThoseThereAre) {
+  const AssetSkeleton skeleton = readSkeleton(riggedStrip());
+  Pose pose = restPose(skeleton.skeleton);
+  try {
+    editPose(skeleton.skeleton, pose, turned("tail=x:10"));
+    FAIL() << "turned a joint that is not there";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), testing::AllOf(testing::HasSubstr("'tail'"), testing::HasSubstr("hip, knee, foot")));
+  }
+}
+
+TEST(PoseIo, AWrittenPoseIsReadAgainAndTouchesOnlyWhatMoved) {
+  Asset asset = riggedStrip();
+  const AssetSkeleton skeleton = readSkeleton(asset);
+  Pose pose = readNodePose(asset, skeleton);
+  const Json before = asset.json();
+  writeNodePose(asset, skeleton, pose);
+  EXPECT_EQ(asset.json(), before);
+
+  editPose(skeleton.skeleton, pose, turned("knee=x:40,y:20"));
+  const PosedGeometry here = posedGeometry(asset, skeleton, pose);
+  writeNodePose(asset, skeleton, pose);
+  checkAsset(asset);
+  const Bytes glb = writeGlb(asset);
+  const Asset back = readAsset(glb, "posed.glb");
+  const AssetSkeleton again = readSkeleton(back);
+  const Pose stands = readNodePose(back, again);
+  EXPECT_LT((jointAt(again, stands, "foot") - jointAt(skeleton, pose, "foot")).norm(), 1e-6);
+  for (std::size_t n = 0; n < before["nodes"].size(); ++n) {
+    const bool moved = n == skeleton.jointNode[1];
+    EXPECT_EQ(asset.json()["nodes"][n] == before["nodes"][n], !moved);
+  }
+  // What is bound stays bound the same way: the vertices stand where the pose takes them.
+  const PosedGeometry there = posedGeometry(back, again, stands);
+  for (std::size_t v = 0; v < here.geometry.positions.size(); ++v) {
+    EXPECT_LT((here.geometry.positions[v] - there.geometry.positions[v]).norm(), 1e-5f);
+  }
+}
+
+TEST(PoseIo, AFrozenMeshStandsInThePoseWithoutARig) {
+  Asset asset = riggedStrip();
+  const AssetSkeleton skeleton = readSkeleton(asset);
+  Pose pose = readNodePose(asset, skeleton);
+  editPose(skeleton.skeleton, pose, turned("hip=z:90"));
+  const PosedGeometry posed = posedGeometry(asset, skeleton, pose);
+  freezeGeometry(asset, collectGeometry(asset), posed.geometry.positions, posed.normals);
+  checkAsset(asset);
+  EXPECT_FALSE(hasRig(asset));
+  EXPECT_FALSE(asset.json().contains("skins"));
+  const Geometry frozen = collectGeometry(asset);
+  EXPECT_EQ(frozen.positions, posed.geometry.positions);
+  EXPECT_EQ(readNormals(asset, frozen), posed.normals);
+  EXPECT_EQ(frozen.triangles, posed.geometry.triangles);
+}
+
+TEST(PoseIo, AMirroredPartKeepsItsOutside) {
+  Asset asset = strip();
+  asset.json()["nodes"][0]["scale"] = {-1, 1, 1};
+  const Geometry geometry = collectGeometry(asset);
+  freezeGeometry(asset, geometry, geometry.positions, readNormals(asset, geometry));
+  checkAsset(asset);
+  const Geometry frozen = collectGeometry(asset);
+  EXPECT_EQ(frozen.positions, geometry.positions);
+  EXPECT_EQ(frozen.triangles, geometry.triangles);
+}
+
+}  // namespace
+}  // namespace limber

@@ -1,0 +1,67 @@
+#include "limber/preview/image.h"
+
+#include <png.h>
+
+#include <algorithm>
+#include <cstddef>
+
+#include "limber/core/error.h"
+
+namespace limber {
+
+namespace {
+
+constexpr std::size_t kChannels = 3;
+
+void checkSize(const Image& image) {
+  const bool sized = image.width > 0 && image.height > 0 &&
+                     image.pixels.size() == kChannels * std::size_t(image.width) * std::size_t(image.height);
+  if (!sized) throw Error(ErrorCode::kBadArgument, "an image's pixels do not match its width and height");
+}
+
+}  // namespace
+
+Bytes encodePng(const Image& image) {
+  checkSize(image);
+  png_image header = {};
+  header.version = PNG_IMAGE_VERSION;
+  header.width = static_cast<png_uint_32>(image.width);
+  header.height = static_cast<png_uint_32>(image.height);
+  header.format = PNG_FORMAT_RGB;
+  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(header);
+  Bytes bytes(size);
+  if (!png_image_write_to_memory(&header, bytes.data(), &size, 0, image.pixels.data(), 0, nullptr)) {
+    throw Error(ErrorCode::kFile, std::string("the picture cannot be written: ") + header.message);
+  }
+  bytes.resize(size);
+  return bytes;
+}
+
+Image contactSheet(std::span<const Image> frames, int columns) {
+  if (frames.empty() || columns < 1)
+    throw Error(ErrorCode::kBadArgument, "a contact sheet needs a picture and a column");
+  for (const Image& frame : frames) {
+    checkSize(frame);
+    if (frame.width != frames[0].width || frame.height != frames[0].height) {
+      throw Error(ErrorCode::kBadArgument, "the pictures of a contact sheet differ in size");
+    }
+  }
+  const int count = static_cast<int>(frames.size());
+  columns = std::min(columns, count);
+  const int rows = (count + columns - 1) / columns;
+  Image sheet{columns * frames[0].width, rows * frames[0].height, {}};
+  const std::size_t frameStride = kChannels * std::size_t(frames[0].width);
+  const std::size_t sheetStride = frameStride * std::size_t(columns);
+  sheet.pixels.assign(sheetStride * std::size_t(sheet.height), 255);
+  for (int i = 0; i < count; ++i) {
+    for (int y = 0; y < frames[0].height; ++y) {
+      const std::size_t row = std::size_t(i / columns) * std::size_t(frames[0].height) + std::size_t(y);
+      std::copy_n(frames[i].pixels.begin() + static_cast<std::ptrdiff_t>(frameStride * std::size_t(y)), frameStride,
+                  sheet.pixels.begin() +
+                      static_cast<std::ptrdiff_t>(row * sheetStride + std::size_t(i % columns) * frameStride));
+    }
+  }
+  return sheet;
+}
+
+}  // namespace limber

@@ -1,0 +1,25 @@
+// A picture in memory, and as a PNG file.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "limber/core/file.h"
+
+namespace limber {
+
+// width * height pixels, rows from the top, three bytes each: red, green, blue in sRGB.
+struct Image {
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> pixels;
+};
+
+// The same image gives the same bytes. Throws Error kBadArgument where the sizes do not match.
+Bytes encodePng(const Image& image);
+
+// Images of equal size side by side, `columns` in a row, left to right and top to bottom; the last row is filled with
+// white. Throws Error kBadArgument where there is none or sizes differ.
+Image contactSheet(std::span<const Image> frames, int columns);
+
+}  // namespace limber

@@ -1,0 +1,285 @@
+#include "limber/preview/render.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "limber/core/error.h"
+#include "limber/core/parallel.h"
+#include "limber/preview/corner_normals.h"
+#include "limber/preview/overlay.h"
+#include "limber/preview/palette.h"
+#include "limber/preview/rasterizer.h"
+#include "limber/preview/studio_light.h"
+
+namespace limber {
+
+namespace {
+
+constexpr int kSmallest = 16, kLargest = 8192;
+constexpr double kDotsBehind = 0.15;  // how much an opaque model covers the dots at its joints
+constexpr double kShadowStrength = 0.62;
+constexpr double kGroundFade = 2.0;  // radii of the model, where the ground's shadow has faded
+
+// A mesh ready to be shaded: attributes by corner or by vertex.
+struct Surface {
+  const ProjectedMesh* mesh = nullptr;
+  std::span<const Vec3f> positions;
+  std::span<const Vec3f> cornerNormals;  // #F * 3, or empty
+  std::span<const Vec3f> vertexNormals;  // where cornerNormals is empty
+  std::span<const Vec3f> colors;         // by vertex
+};
+
+// One piece of surface inside a pixel: samples that agree in normal and depth are shaded once.
+struct Fragment {
+  Vec3 position = Vec3::Zero(), normal = Vec3::Zero(), color = Vec3::Zero();
+  double samples = 0;
+  Vec3 shaded = Vec3::Zero();
+  double opacity = 1;
+
+  void add(const Fragment& other) {
+    position += other.position;
+    normal += other.normal;
+    color += other.color;
+    samples += 1;
+  }
+  void average() {
+    position /= samples;
+    color /= samples;
+    const double length = normal.norm();
+    normal = length > 1e-9 ? Vec3(normal / length) : Vec3(Vec3::UnitY());
+  }
+};
+
+struct PixelFragments {
+  std::array<Fragment, kSamplesPerPixel> fragments;
+  std::size_t count = 0;
+  std::array<std::int8_t, kSamplesPerPixel> ofSample;  // -1: nothing there
+};
+
+class Painter {
+ public:
+  Painter(const Scene& scene, const PreviewOptions& options);
+  Image paint() const;
+
+ private:
+  void paintTile(int column, int row, TileSamples& model, TileSamples& overlay, Image& image) const;
+  void paintPixel(int x, int y, std::size_t sampleBase, const TileSamples& model, const TileSamples& overlay,
+                  std::uint8_t* rgb) const;
+  PixelFragments gather(const Surface& surface, const TileSamples& samples, std::size_t base, int x, int y) const;
+  Fragment attributesAt(const Surface& surface, Index triangle, std::int32_t x, std::int32_t y) const;
+  void shadeModel(Fragment& fragment) const;
+  void shadeOverlay(Fragment& fragment) const;
+  Vec3 background(double x, double y) const;
+
+  const PreviewOptions& options_;
+  std::vector<Vec3f> normals_, colors_;
+  ShapeMesh shapes_;
+  Camera camera_;
+  StudioLight light_;
+  ProjectedMesh model_, overlay_;
+  Surface modelSurface_, overlaySurface_;
+  bool translucent_ = false;
+  Vec3 groundMiddle_ = Vec3::Zero();
+  double groundReach_ = 1;
+};
+
+Camera cameraFor(const Scene& scene, const PreviewOptions& options) {
+  if (!options.frame) return frameCamera(scene.positions, options.view, options.width, options.height);
+  std::array<Vec3f, 8> corners;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      corners[i][axis] = static_cast<float>((i >> axis & 1) ? options.frame->max[axis] : options.frame->min[axis]);
+    }
+  }
+  return frameCamera(corners, options.view, options.width, options.height);
+}
+
+// A fixed frame has a floor of its own: who jumps leaves it.
+double groundOf(const Scene& scene, const PreviewOptions& options) {
+  if (options.frame) return options.frame->min.y();
+  double lowest = scene.positions.front().y();
+  for (const Vec3f& p : scene.positions) lowest = std::min(lowest, double{p.y()});
+  return lowest;
+}
+
+Painter::Painter(const Scene& scene, const PreviewOptions& options)
+    : options_(options),
+      normals_(cornerNormals(scene.positions, scene.triangles)),
+      colors_(surfaceColors(scene, options)),
+      shapes_(overlayShapes(scene, options)),
+      camera_(cameraFor(scene, options)),
+      light_(scene.positions, scene.triangles, options.view.azimuth, groundOf(scene, options)),
+      model_(scene.positions, scene.triangles, camera_),
+      overlay_(shapes_.positions, shapes_.triangles, camera_) {
+  modelSurface_ = {&model_, scene.positions, normals_, {}, colors_};
+  overlaySurface_ = {&overlay_, shapes_.positions, {}, shapes_.normals, shapes_.colors};
+  translucent_ = options.show == PreviewShow::kHandles || options.show == PreviewShow::kBones;
+  Box box;
+  for (const Vec3f& p : scene.positions) box.add(p.cast<double>());
+  groundMiddle_ = box.center();
+  groundMiddle_.y() = light_.groundHeight();
+  groundReach_ = std::max(1e-9, 0.5 * box.diagonal()) * kGroundFade;
+}
+
+Image Painter::paint() const {
+  Image image{options_.width, options_.height, {}};
+  image.pixels.resize(std::size_t(image.width) * std::size_t(image.height) * 3);
+  const int columns = (image.width + kTileSize - 1) / kTileSize, rows = (image.height + kTileSize - 1) / kTileSize;
+  parallelFor(std::size_t(columns) * std::size_t(rows), 4, [&](std::size_t begin, std::size_t end) {
+    TileSamples model, overlay;
+    for (std::size_t tile = begin; tile < end; ++tile) {
+      paintTile(int(tile) % columns, int(tile) / columns, model, overlay, image);
+    }
+  });
+  return image;
+}
+
+void Painter::paintTile(int column, int row, TileSamples& model, TileSamples& overlay, Image& image) const {
+  model.clear();
+  overlay.clear();
+  rasterizeTile(model_, column, row, model);
+  rasterizeTile(overlay_, column, row, overlay);
+  for (int y = 0; y < kTileSize && row * kTileSize + y < image.height; ++y) {
+    for (int x = 0; x < kTileSize && column * kTileSize + x < image.width; ++x) {
+      const int px = column * kTileSize + x, py = row * kTileSize + y;
+      const std::size_t base = (std::size_t(y) * kTileSize + std::size_t(x)) * kSamplesPerPixel;
+      std::uint8_t* rgb = image.pixels.data() + (std::size_t(py) * std::size_t(image.width) + std::size_t(px)) * 3;
+      paintPixel(px, py, base, model, overlay, rgb);
+    }
+  }
+}
+
+Fragment Painter::attributesAt(const Surface& surface, Index number, std::int32_t x, std::int32_t y) const {
+  const Triangle& triangle = surface.mesh->triangles()[number];
+  const Vec3 weights = surface.mesh->barycentric(number, x, y);
+  Fragment fragment;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double w = weights[static_cast<Eigen::Index>(c)];
+    const Vec3f& normal = surface.cornerNormals.empty() ? surface.vertexNormals[triangle[c]]
+                                                        : surface.cornerNormals[std::size_t{number} * 3 + c];
+    fragment.position += w * surface.positions[triangle[c]].cast<double>();
+    fragment.normal += w * normal.cast<double>();
+    fragment.color += w * surface.colors[triangle[c]].cast<double>();
+  }
+  const Vec3 a = surface.positions[triangle[0]].cast<double>();
+  const Vec3 face =
+      (surface.positions[triangle[1]].cast<double>() - a).cross(surface.positions[triangle[2]].cast<double>() - a);
+  // The side that is seen counts, whichever way the file winds its triangles.
+  if (face.dot(camera_.eye - fragment.position) < 0) fragment.normal = -fragment.normal;
+  return fragment;
+}
+
+PixelFragments Painter::gather(const Surface& surface, const TileSamples& samples, std::size_t base, int x,
+                               int y) const {
+  PixelFragments result;
+  result.ofSample.fill(-1);
+  for (std::size_t s = 0; s < kSamplesPerPixel; ++s) {
+    const Index triangle = samples.triangle[base + s];
+    if (triangle == kNoIndex) continue;
+    const Fragment sample =
+        attributesAt(surface, triangle, x * 256 + kSampleOffsets[s][0] * 16, y * 256 + kSampleOffsets[s][1] * 16);
+    std::size_t group = 0;
+    for (; group < result.count; ++group) {
+      const Fragment& other = result.fragments[group];
+      const Vec3 mean = other.position / other.samples;
+      const bool level = (mean - sample.position).squaredNorm() < 0.0001 * (mean - camera_.eye).squaredNorm();
+      if (level && other.normal.dot(sample.normal) > 0.9 * other.normal.norm() * sample.normal.norm()) break;
+    }
+    if (group == result.count) ++result.count;
+    result.fragments[group].add(sample);
+    result.ofSample[s] = static_cast<std::int8_t>(group);
+  }
+  for (std::size_t g = 0; g < result.count; ++g) result.fragments[g].average();
+  return result;
+}
+
+void Painter::shadeModel(Fragment& fragment) const {
+  const Vec3 toViewer = (camera_.eye - fragment.position).normalized();
+  const StudioLight::Shade shade = translucent_ ? light_.shadeUnshadowed(fragment.normal, toViewer)
+                                                : light_.shade(fragment.position, fragment.normal, toViewer);
+  const double grazing = 1 - std::clamp(fragment.normal.dot(toViewer), 0.0, 1.0);
+  const double fresnel = 0.04 + 0.5 * grazing * grazing * grazing * grazing * grazing;
+  fragment.shaded = fragment.color.cwiseProduct(shade.diffuse) + fresnel * 4 * shade.specular;
+  if (translucent_) fragment.opacity = 0.26 + 0.55 * grazing * grazing;
+}
+
+void Painter::shadeOverlay(Fragment& fragment) const {
+  const Vec3 toViewer = (camera_.eye - fragment.position).normalized();
+  const StudioLight::Shade shade = light_.shadeUnshadowed(fragment.normal, toViewer);
+  fragment.shaded = fragment.color.cwiseProduct(shade.diffuse) + 0.25 * shade.specular;
+}
+
+// A bright backdrop, a little darker towards the corners, with the model's shadow on the ground.
+Vec3 Painter::background(double x, double y) const {
+  const double across = 2 * x / options_.width - 1, down = 2 * y / options_.height - 1;
+  const double vignette = 1 - 0.012 * (across * across + down * down);
+  const double level = (0.925 - 0.045 * (0.5 + 0.5 * down)) * vignette;
+  const Vec3 backdrop = level * Vec3(0.985, 0.995, 1.01);
+  const Vec3 ray = camera_.ray(x, y);
+  if (ray.y() >= -1e-6) return backdrop;
+  const Vec3 ground = camera_.eye + ray * ((light_.groundHeight() - camera_.eye.y()) / ray.y());
+  const double away = (ground - groundMiddle_).norm() / groundReach_;
+  if (away >= 1 || ray.dot(ground - camera_.eye) < 0) return backdrop;
+  const double fade = 1 - away * away;
+  return backdrop * (1 - kShadowStrength * fade * fade * (1 - light_.groundLight(ground)));
+}
+
+// Keeps colours up to 0.6 as they are and rolls what is brighter off towards 1.
+double rollOff(double value) {
+  return value < 0.6 ? value : 1 - 0.16 / (value - 0.2);
+}
+
+void Painter::paintPixel(int x, int y, std::size_t base, const TileSamples& modelSamples,
+                         const TileSamples& overlaySamples, std::uint8_t* rgb) const {
+  PixelFragments model = gather(modelSurface_, modelSamples, base, x, y);
+  PixelFragments overlay = gather(overlaySurface_, overlaySamples, base, x, y);
+  for (std::size_t g = 0; g < model.count; ++g) shadeModel(model.fragments[g]);
+  for (std::size_t g = 0; g < overlay.count; ++g) shadeOverlay(overlay.fragments[g]);
+  bool open = false;
+  for (std::size_t s = 0; s < kSamplesPerPixel; ++s) {
+    open = open || (overlay.ofSample[s] < 0 && (translucent_ || model.ofSample[s] < 0));
+  }
+  const Vec3 behind = open ? background(x + 0.5, y + 0.5) : Vec3(Vec3::Zero());
+
+  // Whatever is inside is seen through the whole model, even where it sticks out: one look for all handles.
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t s = 0; s < kSamplesPerPixel; ++s) {
+    Vec3 color = behind;
+    const bool inside = overlay.ofSample[s] >= 0;
+    if (inside) color = overlay.fragments[std::size_t(overlay.ofSample[s])].shaded.unaryExpr(&rollOff);
+    if (model.ofSample[s] >= 0) {
+      const Fragment& front = model.fragments[std::size_t(model.ofSample[s])];
+      const double opacity = inside && !translucent_ ? kDotsBehind : front.opacity;
+      color += opacity * (front.shaded.unaryExpr(&rollOff) - color);
+    }
+    sum += color;
+  }
+  for (int c = 0; c < 3; ++c) rgb[c] = srgbByte(sum[c] / kSamplesPerPixel);
+}
+
+void checkOptions(const Scene& scene, const PreviewOptions& options) {
+  if (options.width < kSmallest || options.height < kSmallest || options.width > kLargest ||
+      options.height > kLargest) {
+    throw Error(ErrorCode::kBadArgument, "a picture is 16 to 8192 pixels wide and high");
+  }
+  if (scene.positions.empty()) throw Error(ErrorCode::kBadArgument, "there is nothing to show");
+}
+
+}  // namespace
+
+PreviewShow parsePreviewShow(std::string_view name) {
+  if (name == "model") return PreviewShow::kModel;
+  if (name == "handles") return PreviewShow::kHandles;
+  if (name == "weights") return PreviewShow::kWeights;
+  if (name == "bones") return PreviewShow::kBones;
+  throw Error(ErrorCode::kBadArgument, "there is no picture of \"" + std::string(name) + "\"", "",
+              "use model, handles, weights or bones");
+}
+
+Image render(const Scene& scene, const PreviewOptions& options) {
+  checkOptions(scene, options);
+  return Painter(scene, options).paint();
+}
+
+}  // namespace limber

@@ -1,0 +1,38 @@
+// A picture of a model, its handles, its bones or its weights, made without a graphics card.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "limber/preview/camera.h"
+#include "limber/preview/image.h"
+#include "limber/preview/scene.h"
+
+namespace limber {
+
+enum class PreviewShow {
+  kModel,
+  kHandles,  // the model translucent, a sphere at each joint
+  kWeights,  // each vertex in the colours of its joints
+  kBones,    // the model translucent, its bones inside
+};
+
+// "model", "handles", "weights", "bones". Throws Error kBadArgument that lists them.
+PreviewShow parsePreviewShow(std::string_view name);
+
+struct PreviewOptions {
+  PreviewShow show = PreviewShow::kModel;
+  int width = 1024, height = 768;  // pixels, 16 to 8192
+  ViewDirection view;
+  std::string joint;         // kWeights: the weight of this joint alone, as heat; empty: all
+  std::optional<Box> frame;  // what has to be in the picture; none: the scene. For the frames of a clip.
+};
+
+// The same scene and options give the same picture, whatever the number of threads. Throws Error kBadArgument where the
+// scene lacks what is to be shown (no joints, no weights, no joint of that name) or the size is out of range.
+// Cost: a fraction of a second for 1024 x 768 and 50k triangles; memory grows with the picture and the triangles.
+Image render(const Scene& scene, const PreviewOptions& options = {});
+
+}  // namespace limber

@@ -1,0 +1,176 @@
+#include "limber/preview/render.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "limber/core/error.h"
+#include "limber/core/parallel.h"
+#include "limber/preview/palette.h"
+#include "limber/preview/shapes.h"
+
+namespace limber {
+namespace {
+
+PreviewOptions smallPicture(PreviewShow show = PreviewShow::kModel) {
+  PreviewOptions options;
+  options.show = show;
+  options.width = 96;
+  options.height = 72;
+  options.view = {0, 6};
+  return options;
+}
+
+// A ball of radius 1 on the ground, with one joint in its left and one in its right half.
+Scene ballScene() {
+  ShapeMesh ball;
+  addSphere(ball, {0, 1, 0}, 1, {0.5f, 0.5f, 0.5f});
+  Scene scene;
+  scene.positions = ball.positions;
+  scene.triangles = ball.triangles;
+  scene.joints = {{"left", {0.5, 1, 0}, std::nullopt, 0.4}, {"right", {-0.5, 1, 0}, Index{0}, 0.4}};
+  scene.bones = {{0, {0.5, 1, 0}, {-0.5, 1, 0}, 0}};
+  scene.weights.slots = 1;
+  for (const Vec3f& p : scene.positions) {
+    scene.weights.joints.push_back(p.x() > 0 ? 0 : 1);
+    scene.weights.weights.push_back(1);
+  }
+  return scene;
+}
+
+struct Pixel {
+  int red, green, blue;
+  int level() const { return red + green + blue; }
+};
+
+Pixel pixelAt(const Image& image, double x, double y) {
+  const std::size_t at = (std::size_t(y * image.height) * std::size_t(image.width) + std::size_t(x * image.width)) * 3;
+  return {image.pixels[at], image.pixels[at + 1], image.pixels[at + 2]};
+}
+
+TEST(Render, ShowsTheModelInFrontOfABrightBackground) {
+  const Image image = render(ballScene(), smallPicture());
+  ASSERT_EQ(image.pixels.size(), std::size_t(96 * 72 * 3));
+  for (const auto& [x, y] : {std::pair(0.02, 0.02), {0.98, 0.02}, {0.02, 0.5}})
+    EXPECT_GT(pixelAt(image, x, y).level(), 3 * 215);
+  EXPECT_LT(pixelAt(image, 0.5, 0.5).level(), 3 * 205);
+  EXPECT_GT(pixelAt(image, 0.42, 0.35).level(), pixelAt(image, 0.5, 0.85).level());  // lit from above, dark below
+}
+
+TEST(Render, ColoursAreThoseOfTheScene) {
+  Scene scene = ballScene();
+  scene.colors.assign(scene.positions.size(), Vec3f(0.6f, 0.02f, 0.02f));
+  const Pixel red = pixelAt(render(scene, smallPicture()), 0.5, 0.5);
+  EXPECT_GT(red.red, 2 * red.green);
+  EXPECT_GT(red.red, 2 * red.blue);
+}
+
+TEST(Render, IsTheSameWithAnyNumberOfThreads) {
+  for (const PreviewShow show :
+       {PreviewShow::kModel, PreviewShow::kHandles, PreviewShow::kWeights, PreviewShow::kBones}) {
+    setThreadCount(1);
+    const Image one = render(ballScene(), smallPicture(show));
+    setThreadCount(4);
+    const Image four = render(ballScene(), smallPicture(show));
+    setThreadCount(0);
+    EXPECT_TRUE(one.pixels == four.pixels);
+  }
+}
+
+TEST(Render, WeightsHaveTheColoursOfTheirJoints) {
+  const Image image = render(ballScene(), smallPicture(PreviewShow::kWeights));
+  // Seen from the front, the model's left (+X) is on the right of the picture.
+  const auto channel = [](const Vec3f& color) {
+    return std::max_element(color.data(), color.data() + 3) - color.data();
+  };
+  const auto brightest = [](const Pixel& p) {
+    const std::array<int, 3> all = {p.red, p.green, p.blue};
+    return std::max_element(all.begin(), all.end()) - all.begin();
+  };
+  EXPECT_EQ(brightest(pixelAt(image, 0.62, 0.62)), channel(jointColor(0)));
+  EXPECT_EQ(brightest(pixelAt(image, 0.38, 0.62)), channel(jointColor(1)));
+}
+
+TEST(Render, TheHeatOfOneJointIsRedWhereItRulesAndBlueWhereNot) {
+  PreviewOptions options = smallPicture(PreviewShow::kWeights);
+  options.joint = "left";
+  const Image image = render(ballScene(), options);
+  const Pixel hot = pixelAt(image, 0.62, 0.62), cold = pixelAt(image, 0.38, 0.62);
+  EXPECT_GT(hot.red, 2 * hot.blue);
+  EXPECT_GT(cold.blue, cold.red);
+}
+
+TEST(Render, HandlesAreRedAndTheirRootIsNot) {
+  const Image image = render(ballScene(), smallPicture(PreviewShow::kHandles));
+  const Pixel root = pixelAt(image, 0.655, 0.5), handle = pixelAt(image, 0.33, 0.5);
+  EXPECT_GT(handle.red, handle.green + 60);
+  EXPECT_GT(root.green, handle.green + 40);
+}
+
+TEST(Render, TheGroundBelowTheModelIsInItsShadow) {
+  PreviewOptions options = smallPicture();
+  options.view = {0, 30};
+  const Image image = render(ballScene(), options);
+  // The key light comes from the upper left, so the shadow falls to the right.
+  EXPECT_LT(pixelAt(image, 0.78, 0.62).level(), pixelAt(image, 0.08, 0.62).level() - 12);
+}
+
+TEST(Render, AFixedFrameKeepsTheCameraStill) {
+  Scene scene = ballScene();
+  PreviewOptions options = smallPicture();
+  options.frame = Box{};
+  options.frame->add({-4, 0, -4});
+  options.frame->add({4, 8, 4});
+  const Image wide = render(scene, options);
+  EXPECT_LT(pixelAt(wide, 0.5, 0.73).level(), 3 * 210);  // the ball is small and low in the picture now
+  EXPECT_GT(pixelAt(wide, 0.5, 0.385).level(), 3 * 215);
+  for (Vec3f& p : scene.positions) p.y() += 4;
+  const Image jump = render(scene, options);
+  EXPECT_LT(pixelAt(jump, 0.5, 0.385).level(), 3 * 210);
+  EXPECT_GT(pixelAt(jump, 0.5, 0.73).level(), 3 * 210);
+}
+
+TEST(Render, SaysWhatIsMissing) {
+  Scene bare = ballScene();
+  bare.joints.clear();
+  bare.weights = {};
+  EXPECT_NO_THROW(render(bare, smallPicture()));
+  for (const PreviewShow show : {PreviewShow::kHandles, PreviewShow::kWeights, PreviewShow::kBones}) {
+    EXPECT_THROW(render(bare, smallPicture(show)), Error);
+  }
+  PreviewOptions unknown = smallPicture(PreviewShow::kWeights);
+  unknown.joint = "tail";
+  EXPECT_THROW(render(ballScene(), unknown), Error);
+  PreviewOptions huge = smallPicture();
+  huge.width = 100000;
+  EXPECT_THROW(render(ballScene(), huge), Error);
+  EXPECT_THROW(render(Scene{}, smallPicture()), Error);
+  EXPECT_THROW(parsePreviewShow("ghosts"), Error);
+}
+
+TEST(Palette, NeighbouringJointsAreToldApart) {
+  for (Index j = 0; j < 60; ++j) {
+    for (Index other = j + 1; other < j + 5; ++other)
+      EXPECT_GT((jointColor(j) - jointColor(other)).norm(), 0.15f) << j << ' ' << other;
+  }
+}
+
+TEST(Palette, SrgbSurvivesTheWayThereAndBack) {
+  for (int level = 0; level < 256; ++level) EXPECT_EQ(srgbByte(linearFromSrgb(level, 0, 0).x()), level);
+}
+
+TEST(Shapes, ASphereIsClosedAndWoundOutwards) {
+  ShapeMesh ball;
+  addSphere(ball, {1, 2, 3}, 0.5, {1, 0, 0});
+  double volume = 0;
+  for (const Triangle& t : ball.triangles) {
+    const auto at = [&](std::size_t c) { return Vec3(ball.positions[t[c]].cast<double>() - Vec3(1, 2, 3)); };
+    volume += at(0).dot(at(1).cross(at(2))) / 6;
+  }
+  EXPECT_NEAR(std::abs(volume), 4.0 / 3 * 3.14159265 * 0.125, 0.02);
+}
+
+}  // namespace
+}  // namespace limber

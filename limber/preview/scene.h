@@ -1,0 +1,34 @@
+// What a picture shows: plain arrays in world space, whatever they came from (a file, a pose, a frame of a clip).
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "limber/skeleton/rig.h"
+
+namespace limber {
+
+class Asset;
+
+struct SceneJoint {
+  std::string name;
+  Vec3 position = Vec3::Zero();
+  std::optional<Index> parent;
+  double radius = 0;  // of the handle; 0 where the skeleton has none
+};
+
+struct Scene {
+  std::vector<Vec3f> positions;
+  std::vector<Triangle> triangles;
+  std::vector<Vec3f> colors;  // linear RGB, one for each vertex; empty: one clay colour
+  std::vector<SceneJoint> joints;
+  std::vector<Bone> bones;  // segments, as bonesOf gives them
+  SkinWeights weights;      // empty, or one row for each vertex, over `joints`
+};
+
+// The model as its file shows it before any clip plays: a rigged one in the pose in which its joints' nodes stand.
+// Colours are the materials' base colours times vertex colours; textures are not read.
+Scene makeScene(const Asset& asset);
+
+}  // namespace limber

@@ -1,0 +1,39 @@
+#include "limber/preview/scene.h"
+
+#include <gtest/gtest.h>
+
+#include "limber/asset/pose_io.h"
+#include "limber/pipeline/auto_rig.h"
+#include "limber/samples/samples.h"
+
+namespace limber {
+namespace {
+
+TEST(Scene, ShowsARiggedModelAsItsJointsStand) {
+  Asset asset = makeSample("stool");
+  AutoRigOptions options;
+  options.rig.handles = 3;
+  Progress progress;
+  autoRig(asset, options, progress);
+  const Scene before = makeScene(asset);
+
+  const AssetSkeleton rig = readSkeleton(asset);
+  Pose pose = readNodePose(asset, rig);
+  pose.locals[0].rotation = Quat(0, 0, 1, 0);  // half a turn about y
+  writeNodePose(asset, rig, pose);
+  const Scene after = makeScene(asset);
+
+  const Vec3 pivot = before.joints[0].position;
+  const auto turned = [&](const Vec3& p) { return Vec3(2 * pivot.x() - p.x(), p.y(), 2 * pivot.z() - p.z()); };
+  ASSERT_EQ(after.positions.size(), before.positions.size());
+  for (std::size_t v = 0; v < before.positions.size(); ++v) {
+    EXPECT_LT((after.positions[v].cast<double>() - turned(before.positions[v].cast<double>())).norm(), 1e-5);
+  }
+  for (std::size_t j = 0; j < before.joints.size(); ++j) {
+    EXPECT_LT((after.joints[j].position - turned(before.joints[j].position)).norm(), 1e-5);
+  }
+  EXPECT_EQ(after.weights.weights, before.weights.weights);
+}
+
+}  // namespace
+}  // namespace limber

@@ -1,0 +1,29 @@
+#include "limber/rigging/auto_rigger.h"
+
+#include "limber/rigging/sphere_mesh_rigger.h"
+
+namespace limber {
+
+namespace {
+
+constexpr RiggerMethod kMethods[] = {
+    {"sphere-mesh", "handles where the model is thick, any number of them",
+     "Thiery, Guy, Boubekeur: Sphere-Meshes, 2013", &rigWithSphereMesh},
+};
+
+}  // namespace
+
+std::span<const RiggerMethod> riggerMethods() {
+  return kMethods;
+}
+
+const RiggerMethod& findRigger(std::string_view name) {
+  std::string known;
+  for (const RiggerMethod& method : kMethods) {
+    if (method.name == name) return method;
+    known += (known.empty() ? "" : ", ") + std::string(method.name);
+  }
+  throw Error(ErrorCode::kBadArgument, "no rigger is called '" + std::string(name) + "'", {}, "there are: " + known);
+}
+
+}  // namespace limber

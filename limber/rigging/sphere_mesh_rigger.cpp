@@ -1,0 +1,131 @@
+#include "limber/rigging/sphere_mesh_rigger.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "limber/rigging/handle_tree.h"
+
+namespace limber {
+
+namespace {
+
+constexpr Index kFewestSuggested = 5, kMostSuggested = 64, kMostListed = 8;
+constexpr Index kUsual = 20;           // handles that suit a character of four limbs and a head
+constexpr double kNeighborhood = 1.4;  // the trend is taken from a count divided by this to one multiplied by it
+
+void checkHandles(const TriMesh& mesh, const RigOptions& options) {
+  if (!options.handles) return;
+  if (*options.handles >= 1 && *options.handles <= mesh.vertexCount()) return;
+  throw Error(ErrorCode::kBadArgument, fmt::format("{} handles are asked for", *options.handles), {},
+              fmt::format("this model can have 1 to {}", mesh.vertexCount()));
+}
+
+// The number in a handle's name: one for each mirror pair or single handle, in the order of the joints.
+std::vector<Index> handleNumbers(const HandleTree& tree, const SphereMeshLevel& level) {
+  std::vector<Index> numbers(tree.order.size(), kNoIndex);
+  Index next = 0;
+  for (const Index handle : tree.order) {
+    const Index image = level.images.empty() ? kNoIndex : level.images[handle];
+    numbers[handle] = image != kNoIndex && numbers[image] != kNoIndex ? numbers[image] : next++;
+  }
+  return numbers;
+}
+
+std::string_view sideOf(Index handle, const SphereMeshLevel& level) {
+  if (level.images.empty() || level.images[handle] == kNoIndex || level.images[handle] == handle) return "";
+  return handle < level.images[handle] ? ".L" : ".R";
+}
+
+// Errors over counts as a curve, both axes logarithmic.
+class ErrorCurve {
+ public:
+  explicit ErrorCurve(std::vector<double> errors) : errors_(std::move(errors)), floor_(1e-6 * errors_[1]) {}
+
+  Index most() const { return static_cast<Index>(errors_.size() - 1); }
+  // Whether one sphere less is worse, and one more is not the same (which it is where two spheres come at once).
+  bool isStep(Index count) const {
+    return errors_[count - 1] > errors_[count] && errors_[count] > errors_[count + 1] && errors_[count] > floor_;
+  }
+  // How much steeper the error falls on the way up to a count than from there on.
+  double bend(Index count) const {
+    const double here = at(count), before = at(count / kNeighborhood), after = at(count * kNeighborhood);
+    return ((before - here) - (here - after)) / std::log(kNeighborhood);
+  }
+
+ private:
+  double at(double count) const {
+    count = std::clamp(count, 1.0, static_cast<double>(most()));
+    const std::size_t low = static_cast<std::size_t>(count), high = std::min<std::size_t>(low + 1, most());
+    const double part = count - static_cast<double>(low);
+    return (1 - part) * std::log(errors_[low] + floor_) + part * std::log(errors_[high] + floor_);
+  }
+
+  std::vector<double> errors_;
+  double floor_;  // less is no error
+};
+
+// Few handles make poor limbs, many are hard to take hold of.
+double distanceFromUsual(Index count) {
+  const double ratio = std::log(static_cast<double>(count) / kUsual);
+  const double width = ratio < 0 ? 0.4 : 0.7;
+  return 0.7 * (ratio / width) * (ratio / width);
+}
+
+}  // namespace
+
+std::vector<HandleSuggestion> suggestHandles(const SphereMesh& spheres) {
+  const ErrorCurve curve(spheres.errors(static_cast<Index>(kMostSuggested * kNeighborhood) + 1));
+  std::vector<HandleSuggestion> steps;
+  const Index most = std::min(kMostSuggested, static_cast<Index>(curve.most() / kNeighborhood));
+  for (Index count = kFewestSuggested; count <= most; ++count) {
+    if (!curve.isStep(count)) continue;
+    const double clearness = curve.bend(count) - distanceFromUsual(count);
+    steps.push_back({count, 1 / (1 + std::exp(-2 * clearness))});
+  }
+  std::stable_sort(steps.begin(), steps.end(), [](const auto& a, const auto& b) { return a.score > b.score; });
+  // Of counts that are nearly the same only the best.
+  std::vector<HandleSuggestion> suggestions;
+  for (const HandleSuggestion& step : steps) {
+    const bool isNew = std::none_of(suggestions.begin(), suggestions.end(), [&](const HandleSuggestion& better) {
+      return 10 * std::max(step.handles, better.handles) < 12 * std::min(step.handles, better.handles);
+    });
+    if (isNew && suggestions.size() < kMostListed) suggestions.push_back(step);
+  }
+  if (suggestions.empty()) suggestions.push_back({std::min(kUsual, spheres.vertexCount()), 0});
+  return suggestions;
+}
+
+Skeleton handleSkeleton(const SphereMesh& spheres, Index count) {
+  const SphereMeshLevel level = spheres.level(count);
+  const HandleTree tree = handleTree(level);
+  const std::vector<Index> numbers = handleNumbers(tree, level);
+  const std::size_t width = std::max<std::size_t>(2, fmt::formatted_size("{}", count - 1));
+  Skeleton skeleton;
+  skeleton.boneShape = BoneShape::kSphere;
+  skeleton.joints.reserve(tree.order.size());
+  for (std::size_t j = 0; j < tree.order.size(); ++j) {
+    const Index handle = tree.order[j];
+    Joint joint;
+    joint.name = fmt::format("handle_{:0{}}{}", numbers[handle], width, sideOf(handle, level));
+    joint.parent = tree.parents[j];
+    joint.rest.translation = level.spheres[handle].center;
+    if (joint.parent) joint.rest.translation -= level.spheres[tree.order[*joint.parent]].center;
+    joint.radius = level.spheres[handle].radius;
+    skeleton.joints.push_back(std::move(joint));
+  }
+  return skeleton;
+}
+
+AutoRig rigWithSphereMesh(const TriMesh& mesh, const RigOptions& options, Progress& progress) {
+  checkHandles(mesh, options);
+  progress.stage("sphere mesh");
+  const SphereMesh spheres = SphereMesh::build(mesh, progress);
+  AutoRig rig;
+  rig.suggestions = suggestHandles(spheres);
+  rig.skeleton = handleSkeleton(spheres, options.handles.value_or(rig.suggestions.front().handles));
+  return rig;
+}
+
+}  // namespace limber

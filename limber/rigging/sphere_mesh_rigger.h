@@ -1,0 +1,23 @@
+// The sphere mesh as a rigger: each sphere becomes a joint that a user can take hold of.
+#pragma once
+
+#include "limber/rigging/auto_rigger.h"
+#include "limber/rigging/sphere_mesh.h"
+
+namespace limber {
+
+// Counts of handles worth choosing, best first: where the error (SphereMesh::errors) falls steeply on the way up and
+// slowly from there on, both in logarithms; counts near 20 before others. There is always at least one. Cost: O(1).
+std::vector<HandleSuggestion> suggestHandles(const SphereMesh& spheres);
+
+// The skeleton of `count` handles: a joint at each sphere's centre with the sphere's radius, without rotation, all in
+// one tree. Names: handle_00 (the root), handle_01, ...; the two of a mirror pair share a number and end in .L (the
+// positive side of the plane: the model's left where it faces +Z) and .R. Throws as SphereMesh::level does. Cost:
+// O(count log #V).
+Skeleton handleSkeleton(const SphereMesh& spheres, Index count);
+
+// Builds the sphere mesh, suggests counts, and makes the skeleton of options.handles handles (default: the best
+// suggestion). Throws Error kBadArgument, before it computes, where there are fewer vertices than handles.
+AutoRig rigWithSphereMesh(const TriMesh& mesh, const RigOptions& options, Progress& progress);
+
+}  // namespace limber

@@ -1,0 +1,10 @@
+// A robot of many pieces, built from parts that are placed by nodes and used several times.
+#pragma once
+
+#include "limber/asset/asset.h"
+
+namespace limber {
+
+Asset makeRobot();
+
+}  // namespace limber

@@ -1,0 +1,125 @@
+#include "limber/samples/samples.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "limber/asset/geometry.h"
+#include "limber/asset/read.h"
+#include "limber/asset/write.h"
+#include "limber/core/error.h"
+#include "limber/core/parallel.h"
+#include "limber/mesh/prepare.h"
+#include "shared_data.h"
+
+namespace limber {
+namespace {
+
+class Samples : public ::testing::TestWithParam<std::string_view> {};
+
+using Point = std::array<float, 3>;
+Point key(float x, float y, float z) {
+  return {x == 0 ? 0.0f : x, y, z};
+}
+
+void expectClosed(const TriMesh& mesh) {
+  std::map<std::pair<Index, Index>, int> directed;
+  for (const Triangle& t : mesh.triangles) {
+    for (std::size_t c = 0; c < 3; ++c) ++directed[{t[c], t[(c + 1) % 3]}];
+  }
+  int wrong = 0;
+  for (const auto& [edge, count] : directed) {
+    const auto back = directed.find({edge.second, edge.first});
+    if (count != 1 || back == directed.end() || back->second != 1) ++wrong;
+  }
+  EXPECT_EQ(wrong, 0) << "edges that do not have one triangle on either side";
+}
+
+void expectSymmetric(const Geometry& geometry) {
+  std::set<Point> points;
+  for (const Vec3f& p : geometry.positions) points.insert(key(p.x(), p.y(), p.z()));
+  int alone = 0;
+  for (const Vec3f& p : geometry.positions) alone += points.count(key(-p.x(), p.y(), p.z())) == 0;
+  EXPECT_EQ(alone, 0) << "vertices without a mirror image";
+}
+
+// Six times the volume that the triangles enclose: positive where they are wound outwards.
+double signedVolume(const Geometry& geometry) {
+  double sum = 0;
+  for (const Triangle& t : geometry.triangles) {
+    const Vec3 a = geometry.positions[t[0]].cast<double>();
+    sum += a.dot(geometry.positions[t[1]].cast<double>().cross(geometry.positions[t[2]].cast<double>()));
+  }
+  return sum;
+}
+
+TEST_P(Samples, IsAClosedSymmetricModelOnItsFeet) {
+  const Asset asset = makeSample(GetParam());
+  checkAsset(asset);
+  const Geometry geometry = collectGeometry(asset);
+  const PreparedMesh prepared = prepareMesh(geometry.positions, geometry.triangles);
+  EXPECT_TRUE(prepared.warnings.empty());
+  EXPECT_GT(prepared.mesh.vertexCount(), 4000u);
+  EXPECT_LT(prepared.mesh.vertexCount(), 12000u);
+  expectClosed(prepared.mesh);
+  expectSymmetric(geometry);
+  EXPECT_GT(signedVolume(geometry), 0);
+  Box box;
+  for (const Vec3f& p : geometry.positions) box.add(p.cast<double>());
+  EXPECT_NEAR(box.min.y(), 0, 2e-3);
+  EXPECT_GT(box.size().minCoeff(), 0.2);
+  EXPECT_LT(box.size().maxCoeff(), 2.0);
+}
+
+TEST_P(Samples, IsTheSameWithAnyNumberOfThreadsAndReadsBack) {
+  setThreadCount(1);
+  const Bytes one = writeGlb(makeSample(GetParam()));
+  setThreadCount(3);
+  const Bytes three = writeGlb(makeSample(GetParam()));
+  setThreadCount(0);
+  EXPECT_TRUE(one == three);
+  const Asset again = readAsset(one, "sample.glb");
+  EXPECT_TRUE(again.warnings.empty());
+  writeFile(testing::testOutputFolder() / ("sample_" + std::string(GetParam()) + ".glb"), one);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Samples, ::testing::Values("stool", "biped", "quadruped", "winged", "robot"),
+                         [](const auto& sample) { return std::string(sample.param); });
+
+TEST(SampleTable, ListsFiveModelsWithASummaryEach) {
+  std::set<std::string_view> names;
+  for (const SampleModel& sample : sampleModels()) {
+    names.insert(sample.name);
+    EXPECT_FALSE(sample.summary.empty());
+  }
+  EXPECT_EQ(names.size(), 5u);
+}
+
+TEST(SampleTable, AnUnknownNameListsTheOthers) {
+  try {
+    makeSample("unicorn");
+    FAIL() << "made a unicorn";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::kBadArgument);
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("stool, biped, quadruped, winged, robot"));
+  }
+}
+
+TEST(Robot, SharesMeshesAmongNodes) {
+  const Asset robot = makeSample("robot");
+  std::map<int, int> uses;
+  for (const Json& node : robot.json()["nodes"]) {
+    if (node.contains("mesh")) ++uses[node["mesh"].get<int>()];
+  }
+  int shared = 0;
+  for (const auto& [mesh, count] : uses) shared += count > 1;
+  EXPECT_GE(shared, 6);
+  EXPECT_GT(collectGeometry(robot).instances.size(), 20u);
+}
+
+}  // namespace
+}  // namespace limber

@@ -1,0 +1,44 @@
+// Skin weights as the equilibrium of heat that flows from each bone over the surface.
+#pragma once
+
+#include <span>
+
+#include <Eigen/Core>
+
+#include "limber/skinning/heat_sources.h"
+#include "limber/skinning/weight_method.h"
+
+namespace limber {
+
+struct BoneHeatOptions {
+  HeatSourceOptions sources;
+  // Weights fade out between these two, so that no vertex hangs on many joints by a thread.
+  double fadeFrom = 0.05;
+  double fadeTo = 0.025;
+  bool pieceRules = true;  // hard parts follow one joint each (PieceRules); only where bones are segments
+};
+
+// Bone heat (Baran, Popović: Automatic Rigging and Animation of 3D Characters, 2007) on the Laplacian of
+// robustLaplacian(), so that every mesh with a triangle gets weights in [0, 1] that sum to 1.
+//
+// Pieces from which no bone is in sight take the weights of the nearest surface point of a piece that does, and are
+// counted in the warning `bridged-pieces`, their vertices in `bridged-vertices`. Where no vertex at all sees a bone,
+// all bones count as in sight (`no-bone-in-sight`).
+//
+// Where bones are segments, PieceRules then binds hard parts whole (`rigid-pieces`) and has pieces that hardly see a
+// bone bridged likewise.
+//
+// mesh   working mesh: centred, longest side 1
+// bones  in the space of the mesh, at least one
+// Throws Error kBadArgument for no bones, for maxInfluences outside 1 to 8, and kCancelled.
+// Cost: one sparse factorisation, and one pair of triangular solves for every eight joints.
+WeightResult boneHeatWeights(const TriMesh& mesh, std::span<const Bone> bones, const WeightOptions& options,
+                             Progress& progress);
+WeightResult boneHeatWeightsWith(const BoneHeatOptions& heat, const TriMesh& mesh, std::span<const Bone> bones,
+                                 const WeightOptions& options, Progress& progress);
+
+// The weights before any cut, #V x (highest joint + 1), without bridging: rows of vertices in pieces that see no bone
+// are 0. For tests and comparisons; memory is that of a dense matrix.
+Eigen::MatrixXd fullBoneHeat(const BoneHeatOptions& heat, const TriMesh& mesh, std::span<const Bone> bones);
+
+}  // namespace limber

@@ -1,0 +1,26 @@
+// What the deformers share between their public functions and the inner loops.
+#pragma once
+
+#include "limber/skinning/deform_kernels.h"
+#include "limber/skinning/deformer.h"
+
+namespace limber {
+
+// Throws Error kBadArgument where the sizes of a call do not match.
+void checkDeformCall(const DeformInput& input, const DeformOutput& output, std::size_t scratchSize,
+                     std::size_t scratchNeeded);
+
+// The joints' maps start at a multiple of 64 bytes in the scratch, so that none of them lies across two lines of cache.
+inline constexpr std::size_t kScratchAlignment = 16;  // floats
+float* alignedScratch(std::span<float> scratch);
+
+// Writes map - identity, kFloatsPerColumns floats.
+void packColumns(const Affine& map, float* to);
+
+// The job for all that the call itself holds; the joints' columns and motions are left to fill in.
+DeformJob deformJob(const DeformInput& input, const DeformOutput& output);
+
+// In parallel, without allocating.
+void runDeformJob(DeformKernel kernel, const DeformJob& job, std::size_t vertexCount);
+
+}  // namespace limber

@@ -1,0 +1,16 @@
+#include "limber/skinning/deform_kernels.h"
+
+#include "limber/skinning/deform_kernels_impl.h"
+
+namespace limber {
+
+const DeformKernels& baselineDeformKernels() {
+  return kKernels;
+}
+
+const DeformKernels& deformKernels() {
+  static const DeformKernels* const avx2 = avx2DeformKernels();
+  return avx2 ? *avx2 : baselineDeformKernels();
+}
+
+}  // namespace limber

@@ -1,0 +1,43 @@
+// The inner loops of the deformers, built once for every machine and once for those with AVX2; the same bits come out
+// of both. What is here is plain numbers on purpose: the second build must share no inline function with the first.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace limber {
+
+// An affine map less the identity, as four columns of four floats; the fourth of each is 0.
+inline constexpr std::size_t kFloatsPerColumns = 16;
+// A unit dual quaternion: real x y z w, dual x y z w.
+inline constexpr std::size_t kFloatsPerMotion = 8;
+
+// Vertices are three floats, one after the other; `slots` joints and weights each.
+struct DeformJob {
+  const float* positions = nullptr;
+  const float* normals = nullptr;
+  float* outPositions = nullptr;
+  float* outNormals = nullptr;
+  const std::uint32_t* joints = nullptr;
+  const float* weights = nullptr;
+  std::uint32_t slots = 0;
+  const float* columns = nullptr;  // #J * kFloatsPerColumns: the joints' maps, or for dual quaternions their scales
+  const float* motions = nullptr;  // #J * kFloatsPerMotion
+};
+
+// Deforms the vertices begin <= v < end.
+using DeformKernel = void (*)(const DeformJob& job, std::size_t begin, std::size_t end);
+
+struct DeformKernels {
+  DeformKernel linear[2][2];   // [four slots?][normals?]
+  DeformKernel dual[2][2][2];  // [four slots?][normals?][scales?]
+};
+
+// Those for the machine that this runs on.
+const DeformKernels& deformKernels();
+
+const DeformKernels& baselineDeformKernels();
+// Null where the machine or the build has no AVX2.
+const DeformKernels* avx2DeformKernels();
+
+}  // namespace limber

@@ -1,0 +1,26 @@
+// Compiled with -mavx2 where the target is x86-64 (see CMakeLists.txt).
+#include "limber/skinning/deform_kernels.h"
+
+#ifdef __AVX2__
+
+#include "limber/skinning/deform_kernels_impl.h"
+
+namespace limber {
+
+const DeformKernels* avx2DeformKernels() {
+  return __builtin_cpu_supports("avx2") ? &kKernels : nullptr;
+}
+
+}  // namespace limber
+
+#else
+
+namespace limber {
+
+const DeformKernels* avx2DeformKernels() {
+  return nullptr;
+}
+
+}  // namespace limber
+
+#endif

@@ -1,0 +1,163 @@
+// Four and eight floats that the compiler keeps in vector registers where the target has such, with the few operations
+// that the deformers' inner loops need. The result does not depend on whether it does. Only for deform_kernels_impl.h.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#define LIMBER_INLINE inline __attribute__((always_inline))
+
+namespace limber {
+namespace {
+
+using Float4 = float __attribute__((vector_size(16)));
+using Int4 = std::int32_t __attribute__((vector_size(16)));
+
+LIMBER_INLINE Float4 loadFloat4(const float* from) {
+  Float4 result;
+  __builtin_memcpy(&result, from, sizeof(result));
+  return result;
+}
+
+LIMBER_INLINE void storeFloat4(Float4 value, float* to) {
+  __builtin_memcpy(to, &value, sizeof(value));
+}
+
+LIMBER_INLINE Float4 broadcast(float value) {
+  return Float4{value, value, value, value};
+}
+
+#ifdef __AVX__
+
+using Float8 = float __attribute__((vector_size(32)));
+
+LIMBER_INLINE Float8 loadFloat8(const float* from) {
+  Float8 result;
+  __builtin_memcpy(&result, from, sizeof(result));
+  return result;
+}
+
+LIMBER_INLINE Float8 joinFloat4(Float4 low, Float4 high) {
+  return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
+}
+
+LIMBER_INLINE Float4 lowHalf(Float8 a) {
+  return __builtin_shufflevector(a, a, 0, 1, 2, 3);
+}
+
+LIMBER_INLINE Float4 highHalf(Float8 a) {
+  return __builtin_shufflevector(a, a, 4, 5, 6, 7);
+}
+
+#else
+
+struct Float8 {
+  Float4 low, high;
+};
+
+LIMBER_INLINE Float8 loadFloat8(const float* from) {
+  return {loadFloat4(from), loadFloat4(from + 4)};
+}
+
+LIMBER_INLINE Float8 joinFloat4(Float4 low, Float4 high) {
+  return {low, high};
+}
+
+LIMBER_INLINE Float4 lowHalf(Float8 a) {
+  return a.low;
+}
+
+LIMBER_INLINE Float4 highHalf(Float8 a) {
+  return a.high;
+}
+
+LIMBER_INLINE Float8 operator+(Float8 a, Float8 b) {
+  return {a.low + b.low, a.high + b.high};
+}
+
+LIMBER_INLINE Float8 operator*(Float8 a, Float8 b) {
+  return {a.low * b.low, a.high * b.high};
+}
+
+LIMBER_INLINE Float8 operator*(float s, Float8 a) {
+  return {s * a.low, s * a.high};
+}
+
+#endif
+
+// {sum of a, sum of b, sum of c, sum of d}
+LIMBER_INLINE Float4 sumEach(Float4 a, Float4 b, Float4 c, Float4 d) {
+  const Float4 ab = __builtin_shufflevector(a, b, 0, 4, 1, 5) + __builtin_shufflevector(a, b, 2, 6, 3, 7);
+  const Float4 cd = __builtin_shufflevector(c, d, 0, 4, 1, 5) + __builtin_shufflevector(c, d, 2, 6, 3, 7);
+  return __builtin_shufflevector(ab, cd, 0, 1, 4, 5) + __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
+}
+
+// v + d, and v itself, sign of zero included, where d is zero.
+LIMBER_INLINE Float4 displaced(Float4 v, Float4 d) {
+  return d == 0.0f ? v : v + d;
+}
+
+// Three-vectors of four vertices, a vertex a lane.
+struct Lanes3 {
+  Float4 x, y, z;
+};
+
+struct Lanes4 {
+  Float4 x, y, z, w;
+};
+
+// Lane i from the i-th argument.
+LIMBER_INLINE Lanes4 transposed(Float4 a, Float4 b, Float4 c, Float4 d) {
+  const Float4 abLow = __builtin_shufflevector(a, b, 0, 4, 1, 5), abHigh = __builtin_shufflevector(a, b, 2, 6, 3, 7);
+  const Float4 cdLow = __builtin_shufflevector(c, d, 0, 4, 1, 5), cdHigh = __builtin_shufflevector(c, d, 2, 6, 3, 7);
+  return {__builtin_shufflevector(abLow, cdLow, 0, 1, 4, 5), __builtin_shufflevector(abLow, cdLow, 2, 3, 6, 7),
+          __builtin_shufflevector(abHigh, cdHigh, 0, 1, 4, 5), __builtin_shufflevector(abHigh, cdHigh, 2, 3, 6, 7)};
+}
+
+LIMBER_INLINE Lanes3 xyzOf(const Lanes4& a) {
+  return {a.x, a.y, a.z};
+}
+
+LIMBER_INLINE Lanes3 loadLanes3(const float* from) {
+  return {Float4{from[0], from[3], from[6], from[9]}, Float4{from[1], from[4], from[7], from[10]},
+          Float4{from[2], from[5], from[8], from[11]}};
+}
+
+LIMBER_INLINE void storeLanes3(const Lanes3& value, float* to) {
+  for (int i = 0; i < 4; ++i) {
+    to[3 * i] = value.x[i];
+    to[3 * i + 1] = value.y[i];
+    to[3 * i + 2] = value.z[i];
+  }
+}
+
+LIMBER_INLINE Lanes3 operator+(const Lanes3& a, const Lanes3& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+
+LIMBER_INLINE Lanes3 operator-(const Lanes3& a, const Lanes3& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+
+LIMBER_INLINE Lanes3 operator*(Float4 s, const Lanes3& a) {
+  return {s * a.x, s * a.y, s * a.z};
+}
+
+LIMBER_INLINE Float4 dot(const Lanes3& a, const Lanes3& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+LIMBER_INLINE Lanes3 cross(const Lanes3& a, const Lanes3& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+LIMBER_INLINE Lanes3 displaced(const Lanes3& v, const Lanes3& d) {
+  return {displaced(v.x, d.x), displaced(v.y, d.y), displaced(v.z, d.z)};
+}
+
+LIMBER_INLINE Float4 squareRoot(Float4 a) {
+  return Float4{__builtin_sqrtf(a[0]), __builtin_sqrtf(a[1]), __builtin_sqrtf(a[2]), __builtin_sqrtf(a[3])};
+}
+
+}  // namespace
+}  // namespace limber

@@ -1,0 +1,39 @@
+// What every method of making skin weights is. One table lists them by name.
+#pragma once
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "limber/core/error.h"
+#include "limber/core/progress.h"
+#include "limber/mesh/tri_mesh.h"
+#include "limber/skeleton/rig.h"
+
+namespace limber {
+
+struct WeightOptions {
+  Index maxInfluences = 4;  // 1 to 8, kept per vertex
+};
+
+struct WeightResult {
+  SkinWeights weights;  // for #V vertices of the mesh; every vertex has at least one influence
+  Warnings warnings;    // names what had to be bridged or repaired
+};
+
+// bones  from bonesOf(); in the space of the mesh
+using WeightFunction = WeightResult (*)(const TriMesh& mesh, std::span<const Bone> bones, const WeightOptions& options,
+                                        Progress& progress);
+
+struct WeightMethod {
+  std::string_view name;     // "bone-heat"
+  std::string_view summary;  // one line for --help
+  std::string_view paper;
+  WeightFunction compute;
+};
+
+std::span<const WeightMethod> weightMethods();
+// Throws Error kBadArgument that lists the names there are.
+const WeightMethod& findWeightMethod(std::string_view name);
+
+}  // namespace limber

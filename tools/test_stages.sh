@@ -1,0 +1,218 @@
+# The stages of ./dev test, in the order in which a mistake shows soonest. Sourced by ./dev, which has configure and
+# compile. A stage that fails ends the run; the last line printed sums up all stages.
+
+total_passed=0 total_failed=0 total_skipped=0
+output=build/test
+
+add_counts() {
+  total_passed=$((total_passed + $1))
+  total_failed=$((total_failed + $2))
+  total_skipped=$((total_skipped + $3))
+}
+
+summary() { echo "$total_passed passed, $total_failed failed, $total_skipped skipped"; }
+
+# stage <title> <function> [argument...]: runs it, prints how long it took; where it fails, sums up and exits.
+stage() {
+  local title=$1 started=$SECONDS
+  shift
+  echo "== $title"
+  if ! "$@"; then
+    [ $total_failed -gt 0 ] || total_failed=1
+    echo "== $title FAILED after $((SECONDS - started)) s"
+    summary
+    exit 1
+  fi
+  echo "   $((SECONDS - started)) s"
+}
+
+# One check of our own, counted as one test.
+check() {
+  local what=$1
+  shift
+  if "$@"; then
+    add_counts 1 0 0
+  else
+    echo "FAILED: $what"
+    add_counts 0 1 0
+    return 1
+  fi
+}
+
+# Adds the counts of a script whose last line is "N passed, N failed", and shows what else it said if it failed.
+counted() {
+  local log=$output/counted.log status=0 counts
+  "$@" >"$log" 2>&1 || status=$?
+  counts=$(tail -n 1 "$log")
+  if [[ $counts =~ ^([0-9]+)\ passed,\ ([0-9]+)\ failed$ ]]; then
+    add_counts "${BASH_REMATCH[1]}" "${BASH_REMATCH[2]}" 0
+    echo "   $counts"
+  elif [ $status -eq 0 ]; then
+    status=1
+  fi
+  [ $status -eq 0 ] || head -n 60 "$log"
+  return $status
+}
+
+# run_ctest <preset> [ctest option...]: its own list of failures and skips is shown, passes are only counted.
+run_ctest() {
+  local preset=$1 junit=$PWD/$output/ctest.xml status=0
+  shift
+  rm -f "$junit"
+  mkdir -p "$output/files_$preset"
+  LIMBER_TEST_OUTPUT=$PWD/$output/files_$preset ctest --test-dir "build/$preset" -j "$jobs" --timeout 600 \
+    --output-on-failure --output-junit "$junit" "$@" </dev/null >"$output/ctest.log" 2>&1 || status=$?
+  if [ ! -f "$junit" ] || [ "$(junit_count tests)" = 0 ]; then
+    tail -n 40 "$output/ctest.log"
+    return 1
+  fi
+  local tests failures skipped
+  tests=$(junit_count tests) failures=$(junit_count failures) skipped=$(($(junit_count skipped) + $(junit_count disabled)))
+  add_counts $((tests - failures - skipped)) "$failures" "$skipped"
+  echo "   $((tests - failures - skipped)) passed, $failures failed, $skipped skipped"
+  if [ "$skipped" -gt 0 ]; then
+    grep -hoE 'the shared models are not there[^"&]*' "$junit" | sort | uniq -c | sed 's/^ */   skipped: /' || true
+  fi
+  [ $status -eq 0 ] || grep -vE '^ *(Start +[0-9]+:|[0-9]+/[0-9]+ Test +#.* (Passed|\*\*\*Skipped))' "$output/ctest.log" | tail -n 150
+  return $status
+}
+
+junit_count() { grep -m1 -oE "^\s*$1=\"[0-9]+\"" "$output/ctest.xml" | grep -oE '[0-9]+'; }
+
+shared_data() {
+  local folder=${LIMBER_SHARED_DATA:-../shared/data}
+  [ -d "$folder" ] && (cd "$folder" && pwd)
+}
+
+broken_files() {
+  local folder
+  folder=$(shared_data)/broken || folder=
+  [ -n "$folder" ] || { echo "   the shared faulty files are not there: damaged samples only"; add_counts 0 0 1; }
+  counted tests/broken_files.sh build/release/limber "$output/broken" $folder
+}
+
+node_packages() {
+  [ node_modules/.package-lock.json -nt package-lock.json ] && return 0
+  npm ci --silent --no-progress </dev/null >"$output/npm.log" 2>&1 || { tail -n 20 "$output/npm.log"; return 1; }
+}
+
+validate_written_files() {
+  node_packages && counted node tools/validate.mjs "$output"
+}
+
+# cmake --install to a folder of its own, then a program that knows nothing but find_package(limber).
+install_and_consume() {
+  local prefix=$PWD/$output/prefix log=$output/consumer.log
+  rm -rf "$prefix" "$output/consumer"
+  {
+    cmake --install build/release --prefix "$prefix" &&
+      cmake -S tests/consumer -B "$output/consumer" -G Ninja -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_BUILD_TYPE=Release &&
+      cmake --build "$output/consumer" && "$output/consumer/consumer"
+  } >"$log" 2>&1 || { tail -n 40 "$log"; return 1; }
+  check "the installed program runs" "$prefix/bin/limber" --version >/dev/null || return 1
+  check "the consumer's output" grep -q '^joints: 12$' "$log"
+}
+
+build_release() {
+  configure release -DLIMBER_TESTS=ON -DLIMBER_BENCH=ON && compile release
+}
+
+build_wasm() {
+  export NODE_PATH=/usr/share/nodejs # Debian's emscripten looks for its own JavaScript packages there
+  configure wasm && compile wasm
+}
+
+wasm_smoke() {
+  build/release/limber sample biped --quiet -o "$output/biped.glb" &&
+    counted node tests/wasm_smoke.mjs build/wasm build/release/limber "$output/biped.glb" "$output/wasm"
+}
+
+build_sanitize() {
+  configure sanitize && compile sanitize
+}
+
+sanitizer_options() {
+  export ASAN_OPTIONS=detect_stack_use_after_return=1:strict_string_checks=1
+  export UBSAN_OPTIONS=print_stacktrace=1
+}
+
+# fuzz_each_target <seconds>: one check for each target.
+fuzz_each_target() {
+  local seconds=$1 target name
+  for target in build/sanitize/fuzz_*; do
+    [ -x "$target" ] && [ ! -d "$target" ] || continue
+    name=$(basename "$target")
+    mkdir -p "build/fuzz/$name" "build/fuzz/$name.seeds"
+    fuzz_seeds "build/fuzz/$name.seeds"
+    check "$name (see build/fuzz/$name.log; the input is beside it)" fuzz_one "$target" "$seconds" || return 1
+  done
+}
+
+fuzz_one() {
+  local name
+  name=$(basename "$1")
+  "$1" "build/fuzz/$name" "build/fuzz/$name.seeds" -max_total_time="$2" -timeout=10 -rss_limit_mb=2048 -max_len=65536 \
+    -artifact_prefix="build/fuzz/$name-" -print_final_stats=1 </dev/null >"build/fuzz/$name.log" 2>&1 ||
+    { tail -n 40 "build/fuzz/$name.log"; return 1; }
+  echo "   $name: $(grep -oE 'number_of_executed_units: [0-9]+' "build/fuzz/$name.log" | grep -oE '[0-9]+') inputs"
+}
+
+# Small files of every kind to start the mutations from: the samples, bare and rigged.
+fuzz_seeds() {
+  local name
+  [ -x build/sanitize/limber ] || return 0
+  for name in stool biped; do
+    build/sanitize/limber sample $name --quiet -o "$1/$name.glb"
+    build/sanitize/limber rig "$1/$name.glb" --handles 3 --quiet -o "$1/$name.gltf"
+  done
+}
+
+run_tests() {
+  local quick= sanitize=
+  for option in "$@"; do
+    case $option in
+      --quick) quick=yes ;;
+      --sanitize) sanitize=yes ;;
+      *) echo "test knows --quick and --sanitize, not $option" >&2; exit 2 ;;
+    esac
+  done
+  rm -rf $output
+  mkdir -p $output
+  if [ -n "$sanitize" ]; then sanitize_stages; else release_stages; fi
+  if [ -z "$sanitize$quick" ]; then remaining_stages; fi
+  summary
+}
+
+release_stages() {
+  if [ -n "$quick" ]; then
+    stage "packages" need "${packages_tests[@]}"
+  else
+    stage "packages" need $(printf '%s\n' "${packages_bench[@]}" "${packages_sanitize[@]}" "${packages_wasm[@]}" \
+      "${packages_node[@]}" | LC_ALL=C sort -u)
+  fi
+  stage "release build, g++ with warnings as errors" build_release
+  stage "unit tests" run_ctest release -LE models
+  if [ -n "$quick" ]; then stage "the project's own samples" run_ctest release -L models -R Samples; fi
+}
+
+remaining_stages() {
+  stage "every model, every count of handles" run_ctest release -L models
+  stage "faulty files, through the program" broken_files
+  stage "WebAssembly build" build_wasm
+  stage "WebAssembly in Node against the native program" wasm_smoke
+  stage "glTF validator over every file written" validate_written_files
+  stage "installed package, and a program built against it" install_and_consume
+  stage "sanitizer build, clang++ with warnings as errors" build_sanitize
+  sanitizer_options
+  stage "unit tests under sanitizers" run_ctest sanitize -LE models
+  LIMBER_MATRIX_HANDLES=10 stage "every model at 10 handles under sanitizers" run_ctest sanitize -L models
+  stage "fuzz targets, a few seconds each" fuzz_each_target 5
+}
+
+sanitize_stages() {
+  stage "packages" need "${packages_sanitize[@]}"
+  stage "sanitizer build, clang++ with warnings as errors" build_sanitize
+  sanitizer_options
+  stage "unit tests under sanitizers" run_ctest sanitize -LE models
+  stage "every model, every count of handles, under sanitizers" run_ctest sanitize -L models
+}
