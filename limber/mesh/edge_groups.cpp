@@ -16,6 +16,7 @@ struct Entry {
 };
 
 void sortFew(Entry* begin, Entry* end) {
+  if (begin == end) return;
   for (Entry* it = begin + 1; it < end; ++it) {
     const Entry entry = *it;
     Entry* at = it;
