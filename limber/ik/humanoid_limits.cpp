@@ -240,14 +240,6 @@ std::span<const HumanoidRange> humanoidRanges() {
   return kRanges;
 }
 
-std::vector<HumanoidJoint> humanoidJointsByName(const Skeleton& skeleton) {
-  std::vector<HumanoidJoint> joints;
-  for (Index j = 0; j < skeleton.jointCount(); ++j) {
-    if (rowOf(skeleton.joints[j].name).row) joints.push_back({skeleton.joints[j].name, j});
-  }
-  return joints;
-}
-
 JointLimits humanoidLimits(const Skeleton& skeleton, std::span<const HumanoidJoint> joints) {
   return LimitBuilder(skeleton, joints).build();
 }

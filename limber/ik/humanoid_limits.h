@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "limber/ik/limits.h"
+#include "limber/skeleton/humanoid_names.h"
 #include "limber/skeleton/skeleton.h"
 
 namespace limber {
@@ -18,15 +19,6 @@ struct HumanoidRange {
   std::string_view source;  // where the figures are from
 };
 std::span<const HumanoidRange> humanoidRanges();
-
-// Which joint plays which bone.
-struct HumanoidJoint {
-  std::string_view bone;  // VRM 1.0 name: "leftUpperArm"
-  Index joint = 0;
-};
-
-// The joints whose names are those of VRM 1.0 bones.
-std::vector<HumanoidJoint> humanoidJointsByName(const Skeleton& skeleton);
 
 // #J limits; joints that play no bone, and the hips, are free. The character faces +Z with its left at +X. Its rest
 // pose may be any in which bones twist as in a T-pose (palms down or forward along the arms): the limits' neutral
