@@ -27,18 +27,14 @@ constexpr std::size_t kChunk = std::size_t{1} << 20;
   throw Error(ErrorCode::kFile, what + ": " + std::strerror(reason), path.string());
 }
 
-Bytes readStream(std::FILE* stream, const fs::path& path) {
-  Bytes bytes;
-  std::size_t used = 0;
-  while (true) {
-    bytes.resize(used + kChunk);
-    const std::size_t got = std::fread(bytes.data() + used, 1, kChunk, stream);
-    used += got;
-    if (got < kChunk) break;
-  }
+void readStream(std::FILE* stream, const fs::path& path, const std::function<void(ByteSpan)>& take) {
+  Bytes piece(kChunk);
+  std::size_t got = 0;
+  do {
+    got = std::fread(piece.data(), 1, piece.size(), stream);
+    if (got > 0) take({piece.data(), got});
+  } while (got == piece.size());
   if (std::ferror(stream)) fail(path, "cannot be read", errno);
-  bytes.resize(used);
-  return bytes;
 }
 
 void writeStream(std::FILE* stream, ByteSpan bytes, const fs::path& path) {
@@ -128,13 +124,19 @@ class PendingFile {
 
 }  // namespace
 
-Bytes readFile(const fs::path& path) {
-  if (path == "-") return readStream(stdin, "standard input");
+void readFileInPieces(const fs::path& path, const std::function<void(ByteSpan)>& take) {
+  if (path == "-") return readStream(stdin, "standard input", take);
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) throw Error(ErrorCode::kFile, "is a folder, not a file", path.string());
   const File stream(std::fopen(path.string().c_str(), "rb"));
   if (!stream) fail(path, "cannot be opened", errno);
-  return readStream(stream.get(), path);
+  readStream(stream.get(), path, take);
+}
+
+Bytes readFile(const fs::path& path) {
+  Bytes bytes;
+  readFileInPieces(path, [&](ByteSpan piece) { bytes.insert(bytes.end(), piece.begin(), piece.end()); });
+  return bytes;
 }
 
 void writeFiles(std::span<const OutputFile> files) {

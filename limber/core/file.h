@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -15,6 +16,10 @@ using ByteSpan = std::span<const std::uint8_t>;
 
 // The whole file; "-" is standard input. Throws Error kFile with the system's reason.
 Bytes readFile(const std::filesystem::path& path);
+
+// Hands the file over in order, in pieces of at most a megabyte that hold only during the call: for files that need not
+// be in memory as a whole. Throws as readFile does, and lets through what `take` throws.
+void readFileInPieces(const std::filesystem::path& path, const std::function<void(ByteSpan)>& take);
 
 // One file of a result that is several (a .gltf, its .bin and its images).
 struct OutputFile {

@@ -40,6 +40,23 @@ class FileTest : public testing::Test {
   fs::path folder_;
 };
 
+TEST_F(FileTest, PiecesAreTheWholeFileInOrder) {
+  for (const std::size_t size : {std::size_t{0}, std::size_t{1}, std::size_t{1} << 20, (std::size_t{5} << 19) + 7}) {
+    Bytes bytes(size);
+    for (std::size_t i = 0; i < size; ++i) bytes[i] = static_cast<std::uint8_t>(i * 2654435761u >> 13);
+    writeFile(folder_ / "pieces", bytes);
+    Bytes joined;
+    std::size_t largest = 0;
+    readFileInPieces(folder_ / "pieces", [&](ByteSpan piece) {
+      largest = std::max(largest, piece.size());
+      joined.insert(joined.end(), piece.begin(), piece.end());
+    });
+    EXPECT_EQ(joined, bytes);
+    EXPECT_LE(largest, std::size_t{1} << 20);
+  }
+  EXPECT_THROW(readFileInPieces(folder_ / "nothing", [](ByteSpan) {}), Error);
+}
+
 TEST_F(FileTest, WhatIsWrittenIsRead) {
   Bytes bytes(3 << 20);
   for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::uint8_t>(i * 31 >> 3);

@@ -1,0 +1,65 @@
+#include "limber/skeleton/motion.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace limber {
+
+namespace {
+
+template <typename Value>
+void keepLonger(const std::vector<Track<Value>>& tracks, const std::vector<float>*& longest) {
+  for (const Track<Value>& track : tracks) {
+    if (!longest || track.times.size() > longest->size()) longest = &track.times;
+  }
+}
+
+}  // namespace
+
+void checkMotion(const Motion& motion) {
+  checkSkeleton(motion.skeleton);
+  for (const Clip& clip : motion.clips) {
+    try {
+      checkClip(clip, motion.skeleton);
+    } catch (const Error& error) {
+      throw error.within(fmt::format("clip '{}'", clip.name));
+    }
+  }
+  if (!(motion.framesPerSecond > 0) || !std::isfinite(motion.framesPerSecond)) {
+    throw Error(ErrorCode::kBadData, fmt::format("has {} frames a second", motion.framesPerSecond));
+  }
+}
+
+std::optional<double> measuredFrameRate(const Clip& clip) {
+  const std::vector<float>* times = nullptr;
+  keepLonger(clip.translations, times);
+  keepLonger(clip.rotations, times);
+  keepLonger(clip.scales, times);
+  if (!times || times->size() < 2) return std::nullopt;
+  std::vector<double> steps;
+  for (std::size_t k = 1; k < times->size(); ++k) steps.push_back(double{(*times)[k]} - (*times)[k - 1]);
+  const auto median = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), median, steps.end());
+  if (!(*median > 0)) return std::nullopt;
+  // Times in single precision: 30 frames a second come out as 29.9999.
+  constexpr double kRounding = 2e-4;
+  const double rate = 1 / *median, whole = std::round(rate);
+  return std::abs(rate - whole) < kRounding * whole ? whole : rate;
+}
+
+Index frameCount(const Clip& clip, double framesPerSecond) {
+  if (!(framesPerSecond > 0) || !std::isfinite(framesPerSecond)) {
+    throw Error(ErrorCode::kBadArgument, fmt::format("{} is no frame rate", framesPerSecond));
+  }
+  const double last = std::round(std::max(0.0, clip.duration()) * framesPerSecond);
+  constexpr double kMostFrames = 1 << 30;
+  if (!(last < kMostFrames)) {
+    throw Error(ErrorCode::kLimit, fmt::format("has {:.0f} frames at {:g} a second", last, framesPerSecond),
+                fmt::format("clip '{}'", clip.name));
+  }
+  return static_cast<Index>(last) + 1;
+}
+
+}  // namespace limber
