@@ -4,7 +4,7 @@ packages_release=(cmake ninja-build g++ libeigen3-dev libcli11-dev libfmt-dev nl
   libmeshoptimizer-dev libdraco-dev libpng-dev libtbb-dev)
 packages_tests=("${packages_release[@]}" libgtest-dev libgmock-dev libembree-dev)
 packages_bench=("${packages_tests[@]}" libbenchmark-dev nodejs)
-packages_sanitize=("${packages_tests[@]}" clang libclang-rt-14-dev)
+packages_sanitize=("${packages_tests[@]}" clang libclang-rt-14-dev lld)
 packages_wasm=(cmake ninja-build libeigen3-dev libfmt-dev nlohmann-json3-dev emscripten nodejs)
 packages_node=(nodejs npm)
 packages_format=(clang-format)
