@@ -165,6 +165,29 @@ fuzz_seeds() {
     build/sanitize/limber sample $name --quiet -o "$1/$name.glb"
     build/sanitize/limber rig "$1/$name.glb" --handles 3 --quiet -o "$1/$name.gltf"
   done
+  cat >"$1/motion.bvh" <<'BVH'
+HIERARCHY
+ROOT Hips
+{
+  OFFSET 0 1 0
+  CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation
+  JOINT Head
+  {
+    OFFSET 0 0.5 0
+    CHANNELS 6 Xposition Yposition Zposition Yrotation Xrotation Zrotation
+    End Site
+    {
+      OFFSET 0 0.2 0
+    }
+  }
+}
+MOTION
+Frames: 3
+Frame Time: 0.033333
+0 1 0 10 20 30 0 0.5 0 1 2 3
+0 1 .5 11 21 31 0 0.5 0 1e1 -2 3
+0 1 1 12 22 32 0 0.6 0 1 2 -3
+BVH
 }
 
 run_tests() {

@@ -46,7 +46,7 @@ class Asset {
   std::vector<Buffer> buffers;  // one for each of json()["buffers"], in order
   std::vector<SideFile> sideFiles;
   std::string name;    // for messages: the file's name
-  std::string format;  // "glb", "gltf", "obj", "ply", "stl", "off", "fbx", "dae"
+  std::string format;  // "glb", "gltf", "obj", "ply", "stl", "off", "fbx", "dae", "bvh"
   Warnings warnings;   // what reading had to convert, decode or leave out
 
  private:

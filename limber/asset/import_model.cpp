@@ -83,7 +83,7 @@ const Format& formatOf(ByteSpan bytes, std::string_view name) {
   if (const Format* format = formatNamed(extensionOf(name))) return *format;
   if (looksLikeObj(bytes)) return *formatNamed("obj");
   throw Error(ErrorCode::kUnsupported, "is of a format that limber does not read", {},
-              "it reads GLB, glTF, OBJ, PLY, STL, OFF, FBX and DAE");
+              "it reads GLB, glTF, OBJ, PLY, STL, OFF, FBX, DAE and BVH");
 }
 
 // What a file's own lengths and directions are in metres and +Y up.

@@ -2,14 +2,14 @@
 #pragma once
 
 #include <string>
-#include <string_view>
+
+#include "limber/asset/utf8.h"
 
 struct aiString;
 
 namespace limber {
 
-// The same text with every byte that is not UTF-8 replaced, so that it may stand in JSON.
-std::string validUtf8(std::string_view text);
+// Valid UTF-8.
 std::string textOf(const aiString& text);
 
 }  // namespace limber

@@ -4,9 +4,11 @@
 #include <cctype>
 #include <new>
 
+#include "limber/asset/bvh_read.h"
 #include "limber/asset/codecs.h"
 #include "limber/asset/glb.h"
 #include "limber/asset/gltf_document.h"
+#include "limber/asset/motion_io.h"
 #ifdef LIMBER_IMPORT
 #include "limber/asset/import_model.h"
 #endif
@@ -63,6 +65,15 @@ Asset readAny(ByteSpan bytes, std::string_view name, const Resolver& resolver) {
 #endif
 }
 
+// The skeleton of a motion as nodes, and its clip.
+Asset readBvhAsset(ByteSpan bytes, std::string_view name) {
+  Asset asset = motionAsset(readBvh(bytes, name));
+  asset.name = name;
+  asset.format = "bvh";
+  checkAsset(asset);
+  return asset;
+}
+
 // Opens files in and below the folder, for as long as they are plain files.
 Resolver folderResolver(const fs::path& folder) {
   return [folder](std::string_view path) -> std::optional<Bytes> {
@@ -76,6 +87,7 @@ Resolver folderResolver(const fs::path& folder) {
 }  // namespace
 
 Asset readAsset(ByteSpan bytes, std::string_view name, const Resolver& resolver) {
+  if (looksLikeBvh(bytes) || extensionOf(name) == ".bvh") return readBvhAsset(bytes, name);
   try {
     Asset asset = readAny(bytes, name, resolver);
     asset.name = name;

@@ -1,0 +1,476 @@
+#include "limber/asset/clip_io.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "limber/asset/accessor.h"
+#include "limber/asset/node_edit.h"
+#include "limber/asset/pose_io.h"
+#include "limber/asset/scene_graph.h"
+#include "limber/asset/unique_names.h"
+
+namespace limber {
+
+namespace {
+
+constexpr const char *kTranslation = "translation", *kRotation = "rotation", *kScale = "scale";
+constexpr double kSame = 1e-6;      // of a length or in radians: the same but for rounding
+constexpr float kStanding = 1e-6f;  // likewise, of a node's own value
+
+void sortUnique(std::vector<float>& times) {
+  std::sort(times.begin(), times.end());
+  times.erase(std::unique(times.begin(), times.end()), times.end());
+}
+
+template <typename Value>
+void append(Track<Value>& track, float time, const Value& value) {
+  track.times.push_back(time);
+  track.values.push_back(value);
+}
+
+template <typename Value>
+Track<Value> constantTrack(const Value& value) {
+  Track<Value> track;
+  append(track, 0.0f, value);
+  return track;
+}
+
+// The tracks of one node.
+struct NodeTracks {
+  std::optional<Track<Vec3f>> translation, scale;
+  std::optional<Track<Eigen::Quaternionf>> rotation;
+
+  bool any() const { return translation || rotation || scale; }
+
+  void addTimes(std::vector<float>& times) const {
+    const auto add = [&](const auto& track) {
+      if (track) times.insert(times.end(), track->times.begin(), track->times.end());
+    };
+    add(translation);
+    add(rotation);
+    add(scale);
+  }
+
+  Transform at(double seconds, const Transform& otherwise) const {
+    Transform result = otherwise;
+    if (translation) result.translation = sampleTrack(*translation, seconds);
+    if (rotation) result.rotation = sampleTrack(*rotation, seconds);
+    if (scale) result.scale = sampleTrack(*scale, seconds);
+    return result;
+  }
+};
+
+// What the nodes above a root joint do to it, if they stand still.
+Affine frameAbove(const SceneGraph& graph, Index node) {
+  return graph.parent[node] ? graph.world[*graph.parent[node]] : Affine::Identity();
+}
+
+// Does the frame only move, turn and scale evenly, so that it can be multiplied into tracks one by one?
+bool isSimilarity(const Affine& frame) {
+  bool sheared = false;
+  const Vec3 scale = decompose(frame, &sheared).scale;
+  constexpr double kTolerance = 1e-6;
+  return !sheared && scale.x() > 0 &&
+         (scale - Vec3::Constant(scale.x())).cwiseAbs().maxCoeff() < kTolerance * scale.x();
+}
+
+// `frame` times what the tracks say. It is a similarity.
+void premultiply(const Affine& frame, NodeTracks& tracks) {
+  const Transform by = decompose(frame);
+  const auto isTangent = [](const auto& track, std::size_t v) {
+    return track.interpolation == Interpolation::kCubic && v % 3 != 1;
+  };
+  if (tracks.translation) {
+    for (std::size_t v = 0; v < tracks.translation->values.size(); ++v) {
+      Vec3f& value = tracks.translation->values[v];
+      const Vec3 turned = frame.linear() * value.cast<double>();
+      value = (isTangent(*tracks.translation, v) ? turned : Vec3(turned + frame.translation())).cast<float>();
+    }
+  }
+  if (tracks.rotation) {
+    for (Eigen::Quaternionf& value : tracks.rotation->values) {
+      value = (by.rotation * value.cast<double>()).cast<float>();
+    }
+  }
+  if (tracks.scale) {
+    for (Vec3f& value : tracks.scale->values) value = (by.scale.x() * value.cast<double>()).cast<float>();
+  }
+}
+
+// Reads the animations of one document.
+class ClipReader {
+ public:
+  ClipReader(const Asset& asset, const AssetSkeleton& skeleton, Warnings& warnings)
+      : asset_(asset), skeleton_(skeleton), warnings_(warnings), graph_(readSceneGraph(asset)) {
+    nodePose_ = readNodePose(asset, skeleton);
+    for (const Affine& global : restGlobals(skeleton.skeleton)) box_.add(global.translation());
+  }
+
+  Clip read(const Json& animation) {
+    Clip clip;
+    clip.name = nameOf(animation);
+    nodes_.clear();
+    static const Json kNone = Json::array();
+    const Json *samplers = member(animation, "samplers"), *channels = member(animation, "channels");
+    for (const Json& channel : samplers&& channels ? *channels : kNone) {
+      const Json* target = member(channel, "target");
+      const std::optional<Index> node = target ? indexMember(*target, "node") : std::nullopt;
+      const std::optional<Index> sampler = indexMember(channel, "sampler");
+      if (!node || !sampler || !target->contains("path") || !target->at("path").is_string()) continue;
+      readChannel(samplers->at(*sampler), target->at("path").get<std::string>(), *node);
+    }
+    for (Index j = 0; j < skeleton_.skeleton.jointCount(); ++j) addJoint(j, clip);
+    return clip;
+  }
+
+ private:
+  void readChannel(const Json& sampler, const std::string& path, Index node) {
+    NodeTracks& tracks = nodes_[node];
+    if (path == kTranslation) tracks.translation = readTrack<Vec3f>(sampler);
+    if (path == kRotation) tracks.rotation = readTrack<Eigen::Quaternionf>(sampler);
+    if (path == kScale) tracks.scale = readTrack<Vec3f>(sampler);
+    if (!tracks.any()) nodes_.erase(node);
+  }
+
+  template <typename Value>
+  std::optional<Track<Value>> readTrack(const Json& sampler) {
+    constexpr bool kIsRotation = std::is_same_v<Value, Eigen::Quaternionf>;
+    constexpr std::size_t kComponents = kIsRotation ? 4 : 3;
+    Track<Value> track;
+    const std::string interpolation = sampler.value("interpolation", "LINEAR");
+    if (interpolation == "STEP") track.interpolation = Interpolation::kStep;
+    if (interpolation == "CUBICSPLINE") track.interpolation = Interpolation::kCubic;
+    const std::size_t valuesPerKey = track.interpolation == Interpolation::kCubic ? 3 : 1;
+    const std::vector<float> times = readFloats(asset_, sampler.at("input").get<Index>());
+    const std::vector<float> numbers = readFloats(asset_, sampler.at("output").get<Index>());
+    const std::size_t keys = std::min(times.size(), numbers.size() / (kComponents * valuesPerKey));
+    for (std::size_t k = 0; k < keys; ++k) {
+      std::array<Value, 3> values;
+      bool valid = std::isfinite(times[k]) && (track.times.empty() || times[k] > track.times.back());
+      for (std::size_t v = 0; v < valuesPerKey; ++v) {
+        values[v] = Value(numbers.data() + kComponents * (k * valuesPerKey + v));
+        const bool isTangent = valuesPerKey == 3 && v != 1;
+        if constexpr (kIsRotation) {
+          const double length = values[v].coeffs().template cast<double>().norm();
+          if (!isTangent && length > 0) values[v].coeffs() /= static_cast<float>(length);
+          valid = valid && values[v].coeffs().allFinite() && (isTangent || length > 0);
+        } else {
+          valid = valid && values[v].allFinite();
+        }
+      }
+      if (!valid) {
+        warnings_.add("invalid-keys", "animation keys that are not finite or not in order are left out");
+        continue;
+      }
+      track.times.push_back(times[k]);
+      track.values.insert(track.values.end(), values.begin(),
+                          values.begin() + static_cast<std::ptrdiff_t>(valuesPerKey));
+    }
+    return track.times.empty() ? std::nullopt : std::optional(std::move(track));
+  }
+
+  void addJoint(Index j, Clip& clip) {
+    const Index node = skeleton_.jointNode[j];
+    NodeTracks tracks;
+    if (const auto known = nodes_.find(node); known != nodes_.end()) tracks = known->second;
+    if (!skeleton_.skeleton.joints[j].parent) {
+      const Affine above = frameAbove(graph_, node);
+      if (movesAbove(node) || (tracks.any() && !isSimilarity(above))) {
+        tracks = sampled(node);
+      } else if (tracks.any()) {
+        premultiply(above, tracks);
+      }
+    }
+    keepStanding(j, tracks);
+    if (tracks.translation) store(clip.translations, j, std::move(*tracks.translation));
+    if (tracks.rotation) store(clip.rotations, j, std::move(*tracks.rotation));
+    if (tracks.scale) store(clip.scales, j, std::move(*tracks.scale));
+  }
+
+  template <typename Value>
+  static void store(std::vector<Track<Value>>& tracks, Index joint, Track<Value> track) {
+    track.joint = joint;
+    tracks.push_back(std::move(track));
+  }
+
+  bool movesAbove(Index node) const {
+    for (std::optional<Index> n = graph_.parent[node]; n; n = graph_.parent[*n]) {
+      if (nodes_.count(*n) > 0) return true;
+    }
+    return false;
+  }
+
+  // The node's movement in the world, at every key of it and of the nodes above it, and between.
+  NodeTracks sampled(Index node) {
+    std::vector<Index> chain;
+    std::vector<float> times;
+    for (std::optional<Index> n = node; n; n = graph_.parent[*n]) {
+      chain.push_back(*n);
+      if (const auto known = nodes_.find(*n); known != nodes_.end()) known->second.addTimes(times);
+    }
+    addTimesBetween(times);
+    warnings_.add("moving-parents",
+                  "root joints have nodes above them that move or are stretched: sampled 60 times a second",
+                  skeleton_.skeleton.joints[0].name);
+    NodeTracks result;
+    result.translation.emplace();
+    result.rotation.emplace();
+    result.scale.emplace();
+    for (const float time : times) {
+      Affine world = Affine::Identity();
+      for (auto n = chain.rbegin(); n != chain.rend(); ++n) {
+        const auto known = nodes_.find(*n);
+        world = world * (known == nodes_.end() ? graph_.local[*n]
+                                               : known->second.at(time, decompose(graph_.local[*n])).toAffine());
+      }
+      const Transform local = decompose(world);
+      Eigen::Quaternionf rotation(local.rotation.cast<float>());
+      auto& rotations = result.rotation->values;
+      if (!rotations.empty() && rotations.back().coeffs().dot(rotation.coeffs()) < 0) rotation.coeffs() *= -1;
+      result.translation->values.emplace_back(local.translation.cast<float>());
+      rotations.push_back(rotation);
+      result.scale->values.emplace_back(local.scale.cast<float>());
+    }
+    result.translation->times = result.rotation->times = result.scale->times = std::move(times);
+    return result;
+  }
+
+  static void addTimesBetween(std::vector<float>& times) {
+    constexpr double kRate = 60, kMostSamples = 1e6;
+    const auto [first, last] = std::minmax_element(times.begin(), times.end());
+    const double begin = *first, samples = (double{*last} - begin) * kRate;
+    for (double i = 1; i < samples && samples < kMostSamples; ++i)
+      times.push_back(static_cast<float>(begin + i / kRate));
+    sortUnique(times);
+  }
+
+  // A part that no channel moves stays where the node has it, which may be off the rest pose.
+  void keepStanding(Index j, NodeTracks& tracks) const {
+    const Transform &stands = nodePose_.locals[j], &rest = skeleton_.skeleton.joints[j].rest;
+    constexpr double kTolerance = 1e-5;
+    const double size = std::max(box_.diagonal(), rest.translation.norm());
+    if (!tracks.translation && (stands.translation - rest.translation).norm() > kTolerance * size) {
+      tracks.translation = constantTrack(Vec3f(stands.translation.cast<float>()));
+    }
+    if (!tracks.rotation && stands.rotation.angularDistance(rest.rotation) > kTolerance) {
+      tracks.rotation = constantTrack(Eigen::Quaternionf(stands.rotation.cast<float>()));
+    }
+    if (!tracks.scale && (stands.scale - rest.scale).norm() > kTolerance * rest.scale.norm()) {
+      tracks.scale = constantTrack(Vec3f(stands.scale.cast<float>()));
+    }
+  }
+
+  const Asset& asset_;
+  const AssetSkeleton& skeleton_;
+  Warnings& warnings_;
+  SceneGraph graph_;
+  Pose nodePose_;
+  Box box_;
+  std::map<Index, NodeTracks> nodes_;  // of the animation being read
+};
+
+// Writes animations into one document.
+class ClipWriter {
+ public:
+  ClipWriter(Asset& asset, const AssetSkeleton& skeleton) : asset_(asset), skeleton_(skeleton) {
+    const SceneGraph graph = readSceneGraph(asset);
+    nodePose_ = readNodePose(asset, skeleton);
+    for (Index j = 0; j < skeleton.skeleton.jointCount(); ++j) {
+      const Index node = skeleton.jointNode[j];
+      nodeLocal_.push_back(decompose(graph.local[node]));
+      const bool root = !skeleton.skeleton.joints[j].parent;
+      frames_.push_back(root ? frameAbove(graph, node) : Affine::Identity());
+    }
+    for (const Json& animation : elements(asset, "animations")) names_.add(nameOf(animation));
+  }
+
+  void write(const Clip& clip) {
+    channels_ = Json::array();
+    samplers_ = Json::array();
+    inputs_.clear();
+    hold_ = durationToHold(clip);
+    std::vector<NodeTracks> joints(skeleton_.skeleton.jointCount());
+    for (const auto& track : clip.translations) joints[track.joint].translation = track;
+    for (const auto& track : clip.rotations) joints[track.joint].rotation = track;
+    for (const auto& track : clip.scales) joints[track.joint].scale = track;
+    for (Index j = 0; j < joints.size(); ++j) writeJoint(j, joints[j]);
+    if (channels_.empty()) {  // glTF wants one
+      addSampler(0, kRotation, constantTrack(Eigen::Quaternionf(nodeLocal_[0].rotation.cast<float>())));
+    }
+    Json animation = Json::object();
+    animation["name"] = names_.add(clip.name.empty() ? "clip" : clip.name);
+    animation["channels"] = std::move(channels_);
+    animation["samplers"] = std::move(samplers_);
+    asset_.json()["animations"].push_back(std::move(animation));
+  }
+
+ private:
+  void writeJoint(Index j, NodeTracks& tracks) {
+    const Joint& joint = skeleton_.skeleton.joints[j];
+    const Transform& stands = nodePose_.locals[j];
+    // All three parts of a root below a frame hang together; elsewhere only those that say something are written.
+    const bool framed = !frames_[j].matrix().isIdentity(0);
+    if (framed && !tracks.any() && same(joint.rest, stands)) return;
+    if (!tracks.translation && (framed || differs(joint.rest.translation, stands.translation))) {
+      tracks.translation = constantTrack(Vec3f(joint.rest.translation.cast<float>()));
+    }
+    if (!tracks.rotation && (framed || joint.rest.rotation.angularDistance(stands.rotation) > kSame)) {
+      tracks.rotation = constantTrack(Eigen::Quaternionf(joint.rest.rotation.cast<float>()));
+    }
+    if (!tracks.scale && (framed || differs(joint.rest.scale, stands.scale))) {
+      tracks.scale = constantTrack(Vec3f(joint.rest.scale.cast<float>()));
+    }
+    if (framed) intoFrame(j, tracks);
+    const Transform& local = nodeLocal_[j];
+    if (tracks.translation) writeTrack(j, kTranslation, *tracks.translation, Vec3f(local.translation.cast<float>()));
+    if (tracks.rotation) {
+      writeTrack(j, kRotation, *tracks.rotation, Eigen::Quaternionf(local.rotation.cast<float>()));
+    }
+    if (tracks.scale) writeTrack(j, kScale, *tracks.scale, Vec3f(local.scale.cast<float>()));
+  }
+
+  static bool differs(const Vec3& a, const Vec3& b) { return (a - b).norm() > kSame * std::max(a.norm(), b.norm()); }
+
+  static bool same(const Transform& a, const Transform& b) {
+    return !differs(a.translation, b.translation) && a.rotation.angularDistance(b.rotation) <= kSame &&
+           !differs(a.scale, b.scale);
+  }
+
+  // From the world to the frame of the node above.
+  void intoFrame(Index j, NodeTracks& tracks) const {
+    const Affine inverse = frames_[j].inverse(Eigen::Affine);
+    if (!inverse.matrix().allFinite()) {
+      throw Error(ErrorCode::kBadData, "stands below a node with a scale of 0, so it cannot be moved",
+                  fmt::format("joint '{}'", skeleton_.skeleton.joints[j].name));
+    }
+    if (isSimilarity(inverse)) return premultiply(inverse, tracks);
+    NodeTracks result;
+    result.translation.emplace();
+    result.rotation.emplace();
+    result.scale.emplace();
+    std::vector<float> times;
+    tracks.addTimes(times);
+    sortUnique(times);
+    for (const float time : times) {
+      const Transform local = decompose(inverse * tracks.at(time, {}).toAffine());
+      append(*result.translation, time, Vec3f(local.translation.cast<float>()));
+      append(*result.rotation, time, Eigen::Quaternionf(local.rotation.cast<float>()));
+      append(*result.scale, time, Vec3f(local.scale.cast<float>()));
+    }
+    tracks = std::move(result);
+  }
+
+  template <typename Value>
+  void writeTrack(Index j, const char* path, const Track<Value>& track, const Value& standing) {
+    const bool cubic = track.interpolation == Interpolation::kCubic;
+    const Value& first = track.values[cubic ? 1 : 0];
+    if (!isConstant(track)) return addSampler(j, path, track);
+    if (isSame(first, standing) && hold_ == 0) return;
+    Track<Value> kept = constantTrack(first);
+    if (hold_ > 0) append(kept, std::exchange(hold_, 0.0f), first);
+    addSampler(j, path, kept);
+  }
+
+  // The clip's duration where only constant tracks last that long, else 0.
+  static float durationToHold(const Clip& clip) {
+    float last = 0;
+    const auto extend = [&](const auto& tracks) {
+      for (const auto& track : tracks) last = isConstant(track) ? last : std::max(last, track.times.back());
+    };
+    extend(clip.translations);
+    extend(clip.rotations);
+    extend(clip.scales);
+    const auto duration = static_cast<float>(clip.duration());
+    return last < duration ? duration : 0;
+  }
+
+  template <typename Value>
+  static bool isConstant(const Track<Value>& track) {
+    const bool cubic = track.interpolation == Interpolation::kCubic;
+    for (std::size_t v = 0; v < track.values.size(); ++v) {
+      const bool tangent = cubic && v % 3 != 1;
+      const auto& value = numbers(track.values[v]);
+      if (tangent ? !value.isZero(0) : value != numbers(track.values[cubic ? 1 : 0])) return false;
+    }
+    return true;
+  }
+
+  static bool isSame(const Vec3f& a, const Vec3f& b) { return a.isApprox(b, kStanding); }
+  static bool isSame(const Eigen::Quaternionf& a, const Eigen::Quaternionf& b) {
+    return std::min((a.coeffs() - b.coeffs()).norm(), (a.coeffs() + b.coeffs()).norm()) < kStanding;
+  }
+
+  static const Vec3f& numbers(const Vec3f& v) { return v; }
+  static const Vec4f& numbers(const Eigen::Quaternionf& q) { return q.coeffs(); }
+
+  template <typename Value>
+  void addSampler(Index j, const char* path, const Track<Value>& track) {
+    std::vector<float> values;
+    for (const Value& value : track.values) {
+      values.insert(values.end(), numbers(value).data(), numbers(value).data() + numbers(value).size());
+    }
+    Json sampler = {{"input", input(track.times)}};
+    if (track.interpolation == Interpolation::kStep) sampler["interpolation"] = "STEP";
+    if (track.interpolation == Interpolation::kCubic) sampler["interpolation"] = "CUBICSPLINE";
+    sampler["output"] = addFloatAccessor(asset_, values, static_cast<Index>(numbers(track.values[0]).size()));
+    const Index node = skeleton_.jointNode[j];
+    channels_.push_back({{"sampler", samplers_.size()}, {"target", {{"node", node}, {"path", path}}}});
+    samplers_.push_back(std::move(sampler));
+    Json& json = asset_.json()["nodes"][node];
+    if (json.contains("matrix")) setNodeTransform(json, nodeLocal_[j].toAffine(), false);
+  }
+
+  Index input(const std::vector<float>& times) {
+    const auto known = inputs_.find(times);
+    if (known != inputs_.end()) return known->second;
+    return inputs_[times] = addFloatAccessor(asset_, times, 1, 0, true);
+  }
+
+  Asset& asset_;
+  const AssetSkeleton& skeleton_;
+  Pose nodePose_;                     // in the world
+  std::vector<Transform> nodeLocal_;  // #J, as the nodes have it
+  std::vector<Affine> frames_;        // #J, above a root joint; identity elsewhere
+  UniqueNames names_;
+  // Of the clip being written:
+  Json channels_, samplers_;
+  std::map<std::vector<float>, Index> inputs_;
+  float hold_ = 0;  // how long the next constant track has to last, so that the clip does
+};
+
+}  // namespace
+
+std::vector<Clip> readClips(const Asset& asset, const AssetSkeleton& skeleton, Warnings& warnings) {
+  ClipReader reader(asset, skeleton, warnings);
+  std::vector<Clip> clips;
+  for (const Json& animation : elements(asset, "animations")) {
+    clips.push_back(reader.read(animation));
+    checkClip(clips.back(), skeleton.skeleton);
+  }
+  return clips;
+}
+
+void addClips(Asset& asset, const AssetSkeleton& skeleton, std::span<const Clip> clips) {
+  const Index nodeCount = elementCount(asset, "nodes");
+  const bool fits =
+      !skeleton.jointNode.empty() && skeleton.jointNode.size() == skeleton.skeleton.joints.size() &&
+      std::all_of(skeleton.jointNode.begin(), skeleton.jointNode.end(), [&](Index node) { return node < nodeCount; });
+  if (!fits) throw Error(ErrorCode::kBadArgument, "the skeleton is not that of this asset");
+  ClipWriter writer(asset, skeleton);
+  for (const Clip& clip : clips) {
+    try {
+      checkClip(clip, skeleton.skeleton);
+      writer.write(clip);
+    } catch (const Error& error) {
+      throw error.within(fmt::format("clip '{}'", clip.name));
+    }
+  }
+}
+
+}  // namespace limber

@@ -1,0 +1,30 @@
+// The clips in an Asset: its animations as values over time of its joints, and back.
+#pragma once
+
+#include <span>
+
+#include "limber/asset/rig_io.h"
+#include "limber/skeleton/clip.h"
+
+namespace limber {
+
+// One clip for each animation of the document (in order, with its name, possibly empty and not unique), over the rest
+// pose of `skeleton`, in the world of the default scene. Each has passed checkClip.
+//
+// A joint without a channel stands as its node does: where that is not its rest pose, the clip has a track of one key.
+// Movement of nodes above a root joint is part of that joint's tracks; it is then sampled at all keys and 60 times a
+// second between (warning "moving-parents"). Keys that are not finite or not later than the one before, and rotations
+// of length 0, are left out (warning "invalid-keys"). Morph weights and movement of other nodes are not part of a clip.
+std::vector<Clip> readClips(const Asset& asset, const AssetSkeleton& skeleton, Warnings& warnings);
+
+// Adds one animation for each clip; nothing else of the document changes, but that a joint that gets a channel has its
+// transform as translation, rotation and scale. Clips without a name become "clip"; names that are there already get a
+// number behind them. `skeleton` is readSkeleton(asset).
+//
+// A joint without a track is kept in its rest pose, also where its node stands otherwise. Values are written as they
+// are, interpolation too; tracks of one value have one key, and none where the node has that value. Tracks of equal
+// times share one accessor. Throws Error kBadArgument where the skeleton is not of that asset, kBadData as checkClip
+// does, with the clip's name, and where a root stands below a node without an inverse (a scale of 0).
+void addClips(Asset& asset, const AssetSkeleton& skeleton, std::span<const Clip> clips);
+
+}  // namespace limber

@@ -1,0 +1,377 @@
+#include "limber/asset/clip_io.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <map>
+#include <random>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "limber/asset/accessor.h"
+#include "limber/asset/motion_io.h"
+#include "limber/asset/read.h"
+#include "limber/asset/scene_graph.h"
+#include "limber/asset/testing/gltf_builder.h"
+#include "limber/asset/write.h"
+#include "shared_data.h"
+
+namespace limber {
+namespace {
+
+namespace fs = std::filesystem;
+
+Quat randomRotation(std::mt19937& random) {
+  std::normal_distribution<double> normal;
+  return Quat(normal(random), normal(random), normal(random), normal(random)).normalized();
+}
+
+Vec3 randomVector(std::mt19937& random) {
+  std::uniform_real_distribution<double> length(-1, 1);
+  return {length(random), length(random), length(random)};
+}
+
+// What the document says at a moment, by the letter of the specification: the world transforms of its nodes.
+std::vector<Affine> nodeWorldsAt(const Asset& asset, const Json& animation, double time) {
+  const SceneGraph graph = readSceneGraph(asset);
+  std::vector<Transform> locals;
+  for (const Affine& local : graph.local) locals.push_back(decompose(local));
+  for (const Json& channel : animation.at("channels")) {
+    const Json& sampler = animation.at("samplers").at(channel.at("sampler").get<std::size_t>());
+    const std::vector<float> times = readFloats(asset, sampler.at("input").get<Index>());
+    const std::vector<float> values = readFloats(asset, sampler.at("output").get<Index>());
+    const std::string path = channel.at("target").at("path"), kind = sampler.value("interpolation", "LINEAR");
+    if (path == "weights" || !channel.at("target").contains("node")) continue;
+    const std::size_t width = path == "rotation" ? 4 : 3;
+    std::size_t k = 0;
+    while (k + 1 < times.size() && times[k + 1] <= time) ++k;
+    const bool between = k + 1 < times.size() && time > times[k];
+    const double span = between ? double{times[k + 1]} - times[k] : 1, u = between ? (time - times[k]) / span : 0;
+    const auto at = [&](std::size_t element) {
+      Eigen::VectorXd v(width);
+      for (std::size_t c = 0; c < width; ++c) v[static_cast<Eigen::Index>(c)] = values[element * width + c];
+      return v;
+    };
+    Eigen::VectorXd value;
+    if (kind == "CUBICSPLINE") {
+      value = at(3 * k + 1);
+      if (between) {
+        value = (2 * u * u * u - 3 * u * u + 1) * at(3 * k + 1) + span * (u * u * u - 2 * u * u + u) * at(3 * k + 2) +
+                (-2 * u * u * u + 3 * u * u) * at(3 * k + 4) + span * (u * u * u - u * u) * at(3 * k + 3);
+      }
+    } else if (kind == "STEP" || !between) {
+      value = at(k);
+    } else if (path == "rotation") {
+      value = Quat(Vec4(at(k))).slerp(u, Quat(Vec4(at(k + 1)))).coeffs();
+    } else {
+      value = (1 - u) * at(k) + u * at(k + 1);
+    }
+    Transform& local = locals[channel.at("target").at("node").get<std::size_t>()];
+    if (path == "rotation") local.rotation = Quat(Vec4(value)).normalized();
+    if (path == "translation") local.translation = value;
+    if (path == "scale") local.scale = value;
+  }
+  std::vector<Affine> worlds(graph.parent.size());
+  for (const Index n : graph.allNodes) {
+    worlds[n] = graph.parent[n] ? worlds[*graph.parent[n]] * locals[n].toAffine() : locals[n].toAffine();
+  }
+  return worlds;
+}
+
+// The largest difference between where the clip and where the document has the joints.
+double largestError(const Asset& asset, const AssetSkeleton& skeleton, const Clip& clip, const Json& animation,
+                    int samples) {
+  double largest = 0;
+  for (int i = 0; i <= samples; ++i) {
+    const double time = clip.duration() * i / samples;
+    Pose pose = restPose(skeleton.skeleton);
+    sampleClip(clip, time, pose);
+    const std::vector<Affine> globals = poseGlobals(skeleton.skeleton, pose);
+    const std::vector<Affine> worlds = nodeWorldsAt(asset, animation, time);
+    for (std::size_t j = 0; j < globals.size(); ++j) {
+      const double size = 1 + worlds[skeleton.jointNode[j]].translation().norm();
+      largest = std::max(largest,
+                         (globals[j].matrix() - worlds[skeleton.jointNode[j]].matrix()).cwiseAbs().maxCoeff() / size);
+    }
+  }
+  return largest;
+}
+
+Motion randomMotion(unsigned seed) {
+  std::mt19937 random(seed);
+  Motion motion;
+  motion.name = "made";
+  for (Index j = 0; j < 7; ++j) {
+    Joint joint;
+    joint.name = fmt::format("joint{}", j);
+    if (j > 0) joint.parent = random() % j;
+    joint.rest.translation = randomVector(random);
+    joint.rest.rotation = randomRotation(random);
+    motion.skeleton.joints.push_back(joint);
+  }
+  const Interpolation kinds[] = {Interpolation::kLinear, Interpolation::kStep, Interpolation::kCubic};
+  for (const Interpolation kind : kinds) {
+    Clip clip;
+    clip.name = fmt::format("clip{}", static_cast<int>(kind));
+    for (Index j = 0; j < 7; ++j) {
+      Track<Eigen::Quaternionf> turns;
+      Track<Vec3f> moves;
+      turns.joint = moves.joint = j;
+      turns.interpolation = moves.interpolation = kind;
+      for (int k = 0; k < 6; ++k) {
+        turns.times.push_back(0.25f * static_cast<float>(k));
+        for (int v = 0; v < (kind == Interpolation::kCubic ? 3 : 1); ++v) {
+          turns.values.emplace_back(randomRotation(random).cast<float>());
+          moves.values.emplace_back(randomVector(random).cast<float>());
+        }
+      }
+      moves.times = turns.times;
+      if (random() % 3 != 0) clip.rotations.push_back(turns);
+      if (random() % 3 == 0) clip.translations.push_back(moves);
+      if (j == 2) {
+        for (Vec3f& value : moves.values) value = Vec3f::Constant(1.5f + 0.5f * value.x());
+        clip.scales.push_back(moves);
+      }
+    }
+    motion.clips.push_back(clip);
+  }
+  return motion;
+}
+
+template <typename Value>
+void expectEqual(const std::vector<Track<Value>>& a, const std::vector<Track<Value>>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t t = 0; t < a.size(); ++t) {
+    EXPECT_EQ(a[t].joint, b[t].joint);
+    EXPECT_EQ(a[t].interpolation, b[t].interpolation);
+    EXPECT_EQ(a[t].times, b[t].times);
+    ASSERT_EQ(a[t].values.size(), b[t].values.size());
+    for (std::size_t v = 0; v < a[t].values.size(); ++v) {
+      if constexpr (std::is_same_v<Value, Vec3f>) {
+        EXPECT_EQ(a[t].values[v], b[t].values[v]);
+      } else {
+        EXPECT_TRUE(a[t].values[v].coeffs().isApprox(b[t].values[v].coeffs(), 1e-6f));
+      }
+    }
+  }
+}
+
+TEST(ClipIo, ReadsBackWhatItWrote) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    const Motion motion = randomMotion(seed);
+    const Bytes bytes = writeGlb(motionAsset(motion));
+    writeFile(limber::testing::testOutputFolder() / fmt::format("clip_io_{}.glb", seed), bytes);
+    const Asset asset = readAsset(bytes, "made.glb");
+    const Motion back = motionOf(asset);
+    ASSERT_EQ(back.clips.size(), 3u);
+    EXPECT_TRUE(back.warnings.empty());
+    EXPECT_EQ(back.framesPerSecond, 4);
+    const AssetSkeleton skeleton = readSkeleton(asset);
+    std::vector<Index> newIndex;
+    for (const Joint& joint : motion.skeleton.joints) newIndex.push_back(*back.skeleton.find(joint.name));
+    for (std::size_t c = 0; c < 3; ++c) {
+      Clip expected = motion.clips[c];
+      const auto renumber = [&](auto& tracks) {
+        for (auto& track : tracks) track.joint = newIndex[track.joint];
+        std::sort(tracks.begin(), tracks.end(), [](const auto& a, const auto& b) { return a.joint < b.joint; });
+      };
+      renumber(expected.translations);
+      renumber(expected.rotations);
+      renumber(expected.scales);
+      EXPECT_EQ(back.clips[c].name, expected.name);
+      expectEqual(back.clips[c].translations, expected.translations);
+      expectEqual(back.clips[c].rotations, expected.rotations);
+      expectEqual(back.clips[c].scales, expected.scales);
+      EXPECT_LT(largestError(asset, skeleton, back.clips[c], asset.json()["animations"][c], 31), 1e-5) << seed;
+    }
+  }
+}
+
+// The same document below a node that moves, turns and scales it.
+Asset belowArmature(const Motion& motion, const Json& armature) {
+  Asset asset = motionAsset(motion);
+  Json& json = asset.json();
+  json["nodes"].push_back(armature);
+  const std::size_t top = json["nodes"].size() - 1;
+  json["nodes"][top]["children"] = json["scenes"][0]["nodes"];
+  json["scenes"][0]["nodes"] = {top};
+  return asset;
+}
+
+const Json kArmature = {{"name", "armature"},
+                        {"translation", {1.0, 2.0, 3.0}},
+                        {"rotation", {-0.70710678, 0.0, 0.0, 0.70710678}},
+                        {"scale", {0.25, 0.25, 0.25}}};
+
+TEST(ClipIo, CarriesNodesAboveTheRootIntoItsTracks) {
+  for (unsigned seed = 0; seed < 10; ++seed) {
+    const Asset asset = belowArmature(randomMotion(seed), kArmature);
+    const AssetSkeleton skeleton = readSkeleton(asset);
+    Warnings warnings;
+    const std::vector<Clip> clips = readClips(asset, skeleton, warnings);
+    EXPECT_TRUE(warnings.empty());
+    for (std::size_t c = 0; c < clips.size(); ++c) {
+      EXPECT_LT(largestError(asset, skeleton, clips[c], asset.json()["animations"][c], 31), 1e-5) << seed;
+    }
+    // And back out of them on writing.
+    Asset other = belowArmature(randomMotion(seed), kArmature);
+    other.json().erase("animations");
+    addClips(other, skeleton, clips);
+    for (std::size_t c = 0; c < clips.size(); ++c) {
+      EXPECT_LT(largestError(other, skeleton, clips[c], other.json()["animations"][c], 31), 1e-5) << seed;
+    }
+    writeAsset(other, limber::testing::testOutputFolder() / fmt::format("clip_io_armature_{}.glb", seed));
+  }
+}
+
+TEST(ClipIo, FollowsMovingNodesAboveTheRoot) {
+  Motion motion = randomMotion(3);
+  motion.clips.erase(motion.clips.begin() + 1, motion.clips.end());
+  Asset asset = belowArmature(motion, kArmature);
+  Json& animation = asset.json()["animations"][0];
+  const std::vector<float> times = {0, 0.3f, 0.9f}, places = {0, 0, 0, 1, 2, 3, 0, 1, 0};
+  const Index input = addFloatAccessor(asset, times, 1, 0, true), output = addFloatAccessor(asset, places, 3);
+  animation["samplers"].push_back({{"input", input}, {"output", output}});
+  const std::size_t armature = asset.json()["nodes"].size() - 1;
+  animation["channels"].push_back(
+      {{"sampler", animation["samplers"].size() - 1}, {"target", {{"node", armature}, {"path", "translation"}}}});
+  const AssetSkeleton skeleton = readSkeleton(asset);
+  Warnings warnings;
+  const Clip clip = readClips(asset, skeleton, warnings).at(0);
+  ASSERT_EQ(warnings.items().size(), 1u);
+  EXPECT_EQ(warnings.items()[0].kind, "moving-parents");
+  EXPECT_LT(largestError(asset, skeleton, clip, animation, 60), 2e-2);  // slerps of two nodes, cut into sixtieths
+}
+
+TEST(ClipIo, LeavesTheRestOfTheDocumentAlone) {
+  const Asset before = readAsset(limber::testing::everythingModel().glb(), "everything.glb");
+  Asset asset = before.clone();
+  const AssetSkeleton skeleton = readSkeleton(asset);
+  Clip clip;
+  clip.name = "turn";
+  clip.rotations.push_back(
+      {1, Interpolation::kLinear, {0, 1}, {Eigen::Quaternionf(1, 0, 0, 0), Eigen::Quaternionf(0, 1, 0, 0)}});
+  addClips(asset, skeleton, {{clip, clip}});
+  checkAsset(asset);
+  for (const auto& [key, value] : before.json().items()) {
+    if (key == "accessors" || key == "bufferViews" || key == "buffers" || key == "animations") {
+      for (std::size_t i = 0; key != "buffers" && i < value.size(); ++i) EXPECT_EQ(asset.json()[key][i], value[i]);
+    } else {
+      EXPECT_EQ(asset.json()[key], value) << key;
+    }
+  }
+  const Bytes &old = before.buffers[0].bytes, &now = asset.buffers[0].bytes;
+  ASSERT_GE(now.size(), old.size());
+  EXPECT_TRUE(std::equal(old.begin(), old.end(), now.begin()));
+  ASSERT_EQ(asset.json()["animations"].size(), 3u);
+  EXPECT_EQ(asset.json()["animations"][1]["name"], "turn_2");
+  EXPECT_EQ(asset.json()["animations"][2]["name"], "turn_3");
+}
+
+TEST(ClipIo, CollapsesWhatStandsStillAndKeepsTheDuration) {
+  Motion motion = randomMotion(2);
+  motion.clips.clear();
+  Clip clip;
+  const Eigen::Quaternionf rest = motion.skeleton.joints[1].rest.rotation.cast<float>(), other(0, 1, 0, 0);
+  clip.rotations.push_back({1, Interpolation::kLinear, {0, 1, 2}, {rest, rest, rest}});
+  clip.rotations.push_back({2, Interpolation::kStep, {0, 1, 2}, {other, other, other}});
+  motion.clips.push_back(clip);
+  const Asset asset = motionAsset(motion);
+  const AssetSkeleton skeleton = readSkeleton(asset);
+  Warnings warnings;
+  const Clip still = readClips(asset, skeleton, warnings).at(0);
+  EXPECT_EQ(still.name, "clip");
+  EXPECT_EQ(still.duration(), 2);
+  std::size_t keys = 0;
+  for (const auto& track : still.rotations) keys += track.times.size();
+  EXPECT_EQ(keys, 3u);  // one track holds the duration, the other has one key
+
+  motion.clips[0].translations.push_back({3, Interpolation::kLinear, {0, 2}, {Vec3f::Zero(), Vec3f::Ones()}});
+  const Asset moving = motionAsset(motion);
+  EXPECT_EQ(moving.json()["animations"][0]["channels"].size(), 2u);  // what stands as the node does is left out
+
+  motion.clips = {Clip()};
+  const Asset empty = motionAsset(motion);
+  checkAsset(empty);
+  EXPECT_EQ(empty.json()["animations"][0]["channels"].size(), 1u);
+  writeAsset(empty, limber::testing::testOutputFolder() / "clip_io_empty.glb");
+}
+
+TEST(ClipIo, StandsAsTheNodesStandWhereNoChannelIs) {
+  Motion motion = randomMotion(5);
+  Asset asset = motionAsset(motion);
+  asset.json()["nodes"][4]["translation"] = {9.0, 8.0, 7.0};  // off the bind pose
+  asset.json()["nodes"][4]["rotation"] = {0.0, 1.0, 0.0, 0.0};
+  const AssetSkeleton skeleton = readSkeleton(asset);
+  Warnings warnings;
+  const std::vector<Clip> clips = readClips(asset, skeleton, warnings);
+  for (std::size_t c = 0; c < clips.size(); ++c) {
+    EXPECT_LT(largestError(asset, skeleton, clips[c], asset.json()["animations"][c], 11), 1e-5);
+  }
+  // Written again, a joint without a track goes to its rest pose and not where the node stands.
+  asset.json().erase("animations");
+  addClips(asset, skeleton, motion.clips);
+  for (std::size_t c = 0; c < clips.size(); ++c) {
+    EXPECT_LT(largestError(asset, skeleton, motion.clips[c], asset.json()["animations"][c], 11), 1e-5);
+  }
+}
+
+TEST(ClipIo, LeavesInvalidKeysOut) {
+  Motion motion = randomMotion(1);
+  motion.clips.erase(motion.clips.begin() + 1, motion.clips.end());
+  Asset asset = motionAsset(motion);
+  const std::vector<float> times = {0, 1, 1, 0.5f, 2, NAN, 3};
+  std::vector<float> turns;
+  for (int k = 0; k < 7; ++k) turns.insert(turns.end(), {0, 0, k == 4 ? 0.0f : 2.0f, 0});
+  const Index input = addFloatAccessor(asset, times, 1), output = addFloatAccessor(asset, turns, 4);
+  Json& sampler = asset.json()["animations"][0]["samplers"][0];
+  sampler = {{"input", input}, {"output", output}};
+  const Json& channel = asset.json()["animations"][0]["channels"][0];
+  ASSERT_EQ(channel["sampler"], 0);
+  asset.json()["animations"][0]["channels"] =
+      Json::array({{{"sampler", 0}, {"target", {{"node", 0}, {"path", "rotation"}}}}});
+  Warnings warnings;
+  const Clip clip = readClips(asset, readSkeleton(asset), warnings).at(0);
+  ASSERT_EQ(clip.rotations.size(), 1u);
+  EXPECT_EQ(clip.rotations[0].times, (std::vector<float>{0, 1, 3}));
+  EXPECT_EQ(clip.rotations[0].values[0].z(), 1);
+  ASSERT_EQ(warnings.items().size(), 1u);
+  EXPECT_EQ(warnings.items()[0].count, 4u);
+}
+
+TEST(ClipIo, RefusesWhatDoesNotFit) {
+  Asset asset = motionAsset(randomMotion(1));
+  AssetSkeleton skeleton = readSkeleton(asset);
+  Clip clip;
+  clip.name = "bad";
+  clip.translations.push_back({99, Interpolation::kLinear, {0}, {Vec3f::Zero()}});
+  EXPECT_THROW(addClips(asset, skeleton, {&clip, 1}), Error);
+  skeleton.jointNode.back() = 1000;
+  EXPECT_THROW(addClips(asset, skeleton, {}), Error);
+}
+
+TEST(ClipIo, ReadsEverySharedMotionAsTheDocumentHasIt) {
+  const std::optional<fs::path> data = limber::testing::sharedDataFolder();
+  if (!data) GTEST_SKIP() << limber::testing::kNoSharedData;
+  std::size_t count = 0;
+  for (const auto& entry : fs::directory_iterator(*data / "motions")) {
+    if (entry.path().extension() != ".glb") continue;
+    SCOPED_TRACE(entry.path().filename().string());
+    const Asset asset = readAsset(entry.path());
+    const AssetSkeleton skeleton = animatedSkeleton(asset);
+    Warnings warnings;
+    const std::vector<Clip> clips = readClips(asset, skeleton, warnings);
+    EXPECT_FALSE(clips.empty());
+    for (std::size_t c = 0; c < clips.size(); c += 5) {
+      EXPECT_LT(largestError(asset, skeleton, clips[c], asset.json()["animations"][c], 3), 1e-4) << clips[c].name;
+    }
+    ++count;
+  }
+  EXPECT_GE(count, 10u);
+}
+
+}  // namespace
+}  // namespace limber

@@ -1,0 +1,169 @@
+#include "limber/asset/motion_io.h"
+
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include "limber/asset/accessor.h"
+#include "limber/asset/clip_io.h"
+#include "limber/asset/node_edit.h"
+#include "limber/asset/scene_graph.h"
+#include "limber/asset/unique_names.h"
+
+namespace limber {
+
+namespace {
+
+std::string stemOf(std::string_view name) {
+  return std::filesystem::path(std::string(name)).stem().string();
+}
+
+// #nodes: does a channel move the node?
+std::vector<bool> animatedNodes(const Asset& asset) {
+  std::vector<bool> animated(elementCount(asset, "nodes"), false);
+  for (const Json& animation : elements(asset, "animations")) {
+    const Json* channels = member(animation, "channels");
+    if (!channels) continue;
+    for (const Json& channel : *channels) {
+      const Json& target = channel.at("target");
+      const std::optional<Index> node = indexMember(target, "node");
+      if (node && target.value("path", "") != "weights") animated[*node] = true;
+    }
+  }
+  return animated;
+}
+
+// Animated nodes, those between, and bare ones below: the ends of bones.
+std::vector<bool> movingTree(const Asset& asset, const SceneGraph& graph) {
+  const std::vector<bool> animated = animatedNodes(asset);
+  std::vector<bool> below(animated), inside(animated), wanted(animated);
+  for (auto n = graph.order.rbegin(); n != graph.order.rend(); ++n) {
+    if (graph.parent[*n] && below[*n]) below[*graph.parent[*n]] = true;
+  }
+  for (const Index n : graph.order) {
+    const Json& node = elements(asset, "nodes")[n];
+    const bool bare = !node.contains("mesh") && !node.contains("camera") && !node.contains("extensions");
+    inside[n] = animated[n] || (graph.parent[n] && inside[*graph.parent[n]] && (bare || below[n]));
+    wanted[n] = inside[n] && graph.shown[n];
+  }
+  return wanted;
+}
+
+Json vectorJson(const Vec3& v) {
+  return {shortDouble(v.x()), shortDouble(v.y()), shortDouble(v.z())};
+}
+
+Json nodeJson(const Joint& joint) {
+  Json node = {{"name", joint.name}, {"translation", vectorJson(joint.rest.translation)}};
+  const Quat& q = joint.rest.rotation;
+  if (q.coeffs() != Quat::Identity().coeffs()) {
+    node["rotation"] = {shortDouble(q.x()), shortDouble(q.y()), shortDouble(q.z()), shortDouble(q.w())};
+  }
+  if (joint.rest.scale != Vec3::Ones()) node["scale"] = vectorJson(joint.rest.scale);
+  return node;
+}
+
+// The nodes of the joints, and one above several roots. Returns the root.
+Index addJointNodes(Asset& asset, const Motion& motion) {
+  Json& nodes = asset.json()["nodes"];
+  std::vector<Index> roots;
+  UniqueNames names;
+  for (Index j = 0; j < motion.skeleton.jointCount(); ++j) {
+    const Joint& joint = motion.skeleton.joints[j];
+    names.add(joint.name);
+    nodes.push_back(nodeJson(joint));
+    if (joint.parent) {
+      nodes[*joint.parent]["children"].push_back(j);
+    } else {
+      roots.push_back(j);
+    }
+  }
+  if (roots.size() == 1) return roots.front();
+  nodes.push_back({{"name", names.add(motion.name.empty() ? "motion" : motion.name)}, {"children", roots}});
+  return static_cast<Index>(nodes.size() - 1);
+}
+
+}  // namespace
+
+AssetSkeleton animatedSkeleton(const Asset& asset) {
+  if (elementCount(asset, "skins") > 0) return readSkeleton(asset);
+  const SceneGraph graph = readSceneGraph(asset);
+  const std::vector<bool> wanted = movingTree(asset, graph);
+  AssetSkeleton result;
+  UniqueNames names;
+  std::vector<std::optional<Index>> jointOfNode(graph.nodeCount());
+  for (const Index n : graph.order) {
+    if (!wanted[n]) continue;
+    Joint joint;
+    const std::string name = nameOf(elements(asset, "nodes")[n]);
+    joint.name = names.add(name.empty() ? "joint_" + std::to_string(n) : name);
+    if (graph.parent[n]) joint.parent = jointOfNode[*graph.parent[n]];
+    joint.rest = decompose(joint.parent ? graph.local[n] : graph.world[n]);
+    jointOfNode[n] = result.skeleton.jointCount();
+    result.jointNode.push_back(n);
+    result.skeleton.joints.push_back(std::move(joint));
+  }
+  if (result.jointNode.empty()) {
+    throw Error(ErrorCode::kBadData, "has neither a skeleton nor anything that moves", asset.name);
+  }
+  return result;
+}
+
+Motion motionOf(const Asset& asset) {
+  const AssetSkeleton skeleton = animatedSkeleton(asset);
+  Motion motion;
+  motion.name = stemOf(asset.name);
+  motion.skeleton = skeleton.skeleton;
+  motion.warnings = asset.warnings;
+  motion.clips = readClips(asset, skeleton, motion.warnings);
+  for (const Clip& clip : motion.clips) {
+    const std::optional<double> rate = measuredFrameRate(clip);
+    if (!rate) continue;
+    motion.framesPerSecond = *rate;
+    break;
+  }
+  return motion;
+}
+
+Motion readMotion(ByteSpan bytes, std::string_view name, const BvhOptions& bvh, const Resolver& resolver) {
+  if (looksLikeBvh(bytes)) return readBvh(bytes, name, bvh);
+  return motionOf(readAsset(bytes, name, resolver));
+}
+
+Motion readMotion(const std::filesystem::path& path, const BvhOptions& bvh) {
+  if (path.extension() == ".bvh") return readBvh(path, bvh);  // in pieces
+  if (path != "-") return motionOf(readAsset(path));
+  const Bytes bytes = readFile(path);
+  return readMotion(bytes, "standard input", bvh);
+}
+
+Asset motionAsset(const Motion& motion) {
+  checkMotion(motion);
+  if (motion.skeleton.joints.empty()) throw Error(ErrorCode::kBadArgument, "the motion has no joint");
+  Asset asset;
+  asset.name = motion.name;
+  asset.warnings = motion.warnings;
+  Json& json = asset.json();
+  json["asset"] = {{"version", "2.0"}, {"generator", "limber"}};
+  json["scene"] = 0;
+  json["scenes"] = Json::array();
+  json["nodes"] = Json::array();
+  const Index root = addJointNodes(asset, motion);
+  json["scenes"].push_back({{"nodes", {root}}});
+
+  AssetSkeleton skeleton;
+  skeleton.skeleton = motion.skeleton;
+  std::vector<float> binds;
+  const std::vector<Affine> inverseBinds = inverseBindOf(motion.skeleton);
+  for (Index j = 0; j < motion.skeleton.jointCount(); ++j) {
+    skeleton.jointNode.push_back(j);
+    for (int i = 0; i < 16; ++i) binds.push_back(static_cast<float>(inverseBinds[j](i % 4, i / 4)));
+  }
+  const Index accessor = addFloatAccessor(asset, binds, 16);
+  json["skins"].push_back(
+      {{"name", motion.name}, {"inverseBindMatrices", accessor}, {"skeleton", root}, {"joints", skeleton.jointNode}});
+  addClips(asset, skeleton, motion.clips);
+  return asset;
+}
+
+}  // namespace limber

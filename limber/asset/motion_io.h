@@ -1,0 +1,32 @@
+// Motions in and out of files.
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+#include "limber/asset/bvh_read.h"
+#include "limber/asset/read.h"
+#include "limber/asset/rig_io.h"
+#include "limber/skeleton/motion.h"
+
+namespace limber {
+
+// The motion in a file: BVH (bvh_read.h), glTF, or any other model with animations that readAsset reads (FBX, DAE).
+// Throws Error as those do, and kBadData where the file has neither a skeleton nor anything that moves. A skeleton
+// without clips is a motion too.
+Motion readMotion(const std::filesystem::path& path, const BvhOptions& bvh = {});
+Motion readMotion(ByteSpan bytes, std::string_view name, const BvhOptions& bvh = {}, const Resolver& resolver = {});
+
+// The motion in a document: its skeleton (animatedSkeleton) and all its clips (readClips).
+Motion motionOf(const Asset& asset);
+
+// What of the document moves: readSkeleton where it has a skin; else one joint for each node that is animated, stands
+// between such, or hangs on one without showing anything itself (the end of a bone). Rest pose is then as the nodes
+// stand. Throws Error kBadData where nothing is animated either.
+AssetSkeleton animatedSkeleton(const Asset& asset);
+
+// A glTF document that holds the motion alone: a node for each joint, a skin that says that they are joints, and the
+// clips. Several roots get a node above them.
+Asset motionAsset(const Motion& motion);
+
+}  // namespace limber
