@@ -4,11 +4,11 @@
 #include <array>
 #include <cmath>
 
+#include "limber/core/numbers.h"
+
 namespace limber::bench {
 
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 // A sphere's grid of rows and columns with two poles: columns * (rows - 1) + 2 vertices.
 TriMesh sphereGrid(Index rows, Index columns) {

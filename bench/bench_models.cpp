@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <nlohmann/json.hpp>
 
 #include "limber/asset/accessor.h"
 #include "limber/asset/write.h"
+#include "limber/core/numbers.h"
 
 namespace limber::bench {
 
@@ -18,7 +18,7 @@ struct Limb {
   double radiusA, radiusB;
 
   double area() const {
-    return std::numbers::pi * ((radiusA + radiusB) * (b - a).norm() + 2 * (radiusA * radiusA + radiusB * radiusB));
+    return kPi * ((radiusA + radiusB) * (b - a).norm() + 2 * (radiusA * radiusA + radiusB * radiusB));
   }
 };
 
@@ -52,15 +52,14 @@ void appendLimb(const Limb& limb, Index rings, Index around, TriMesh& mesh) {
   const Vec3 u = axis.unitOrthogonal(), v = axis.cross(u);
   const Index first = mesh.vertexCount();
   const auto point = [&](double along, double turn) {  // along: 0 at one end, 1 at the other
-    const double angle = along * std::numbers::pi;
+    const double angle = along * kPi;
     const Vec3 center = limb.a + std::clamp(1.5 * along - 0.25, 0.0, 1.0) * (limb.b - limb.a);
     const double radius = limb.radiusA + along * (limb.radiusB - limb.radiusA);
     const Vec3 out = std::cos(turn) * u + std::sin(turn) * v;
     return Vec3f((center + radius * (std::sin(angle) * out - std::cos(angle) * axis)).cast<float>());
   };
   for (Index ring = 1; ring <= rings; ++ring)
-    for (Index i = 0; i < around; ++i)
-      mesh.positions.push_back(point(ring / (rings + 1.0), 2 * std::numbers::pi * i / around));
+    for (Index i = 0; i < around; ++i) mesh.positions.push_back(point(ring / (rings + 1.0), 2 * kPi * i / around));
   const Index bottom = mesh.vertexCount(), top = bottom + 1;
   mesh.positions.push_back(point(0, 0));
   mesh.positions.push_back(point(1, 0));
@@ -84,7 +83,7 @@ TriMesh robot(Index vertices) {
   for (const Limb& limb : limbs()) {
     const double share = vertices * limb.area() / area;
     const double length = (limb.b - limb.a).norm() + limb.radiusA + limb.radiusB;
-    const double girth = std::numbers::pi * (limb.radiusA + limb.radiusB);
+    const double girth = kPi * (limb.radiusA + limb.radiusB);
     const Index around = std::max<Index>(6, static_cast<Index>(std::lround(std::sqrt(share * girth / length))));
     appendLimb(limb, std::max<Index>(3, static_cast<Index>(std::lround(share / around))), around, mesh);
   }
@@ -95,10 +94,10 @@ void writeMeshGlb(const TriMesh& mesh, const std::filesystem::path& path) {
   Asset asset;
   std::vector<float> positions;
   for (const Vec3f& p : mesh.positions) positions.insert(positions.end(), {p.x(), p.y(), p.z()});
-  const Index position = addFloatAccessor(asset, positions, 3, 34962, true);
+  const Index position = addFloatAccessor(asset, positions, 3, kVertexTarget, true);
   const auto* indices = reinterpret_cast<const std::uint8_t*>(mesh.triangles.data());
   const AccessorInfo info{3 * mesh.triangleCount(), 1, ComponentType::kU32};
-  const Index index = addAccessor(asset, info, {indices, mesh.triangles.size() * sizeof(Triangle)}, 34963);
+  const Index index = addAccessor(asset, info, {indices, mesh.triangles.size() * sizeof(Triangle)}, kIndexTarget);
   Json& json = asset.json();
   json["asset"] = {{"version", "2.0"}};
   const Json primitive = {{"attributes", {{"POSITION", position}}}, {"indices", index}};

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -12,6 +11,8 @@
 #include <string_view>
 #include <system_error>
 #include <vector>
+
+#include "limber/core/names.h"
 
 namespace limber::testing {
 
@@ -33,9 +34,7 @@ inline constexpr std::string_view kNoSharedData =
 inline bool isModelFile(const std::filesystem::path& path) {
   static constexpr std::array<std::string_view, 8> kExtensions = {".glb", ".gltf", ".obj", ".ply",
                                                                   ".stl", ".off",  ".fbx", ".dae"};
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = lowerExtension(path);
   return std::find(kExtensions.begin(), kExtensions.end(), extension) != kExtensions.end();
 }
 

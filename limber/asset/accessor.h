@@ -9,6 +9,9 @@
 
 namespace limber {
 
+// What a buffer view holds ("target"): ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER.
+inline constexpr int kVertexTarget = 34962, kIndexTarget = 34963;
+
 enum class ComponentType { kI8 = 5120, kU8 = 5121, kI16 = 5122, kU16 = 5123, kU32 = 5125, kF32 = 5126 };
 
 // What an accessor says of itself. `components` is 1 for SCALAR, 3 for VEC3, 16 for MAT4.
@@ -34,7 +37,7 @@ std::vector<Index> readIndices(const Asset& asset, Index accessor);
 Index addBufferView(Asset& asset, ByteSpan bytes, int target = 0);
 
 // The same with an accessor of its own; returns the accessor's index. bytes.size() == count * components * size of
-// type. `target`: 34962 for vertex attributes, 34963 for indices, 0 for none.
+// type. `target`: kVertexTarget for vertex attributes, kIndexTarget for indices, 0 for none.
 Index addAccessor(Asset& asset, const AccessorInfo& info, ByteSpan bytes, int target = 0);
 Index addFloatAccessor(Asset& asset, std::span<const float> values, Index components, int target = 0,
                        bool withMinMax = false);

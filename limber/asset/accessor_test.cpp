@@ -117,9 +117,9 @@ TEST(Accessor, AddedOnesReadBack) {
   Asset asset = readAsset(testing::everythingModel().glb(), "model.glb");
   const std::size_t buffers = asset.buffers.size();
   const std::vector<std::uint8_t> joints = {1, 2, 3, 4, 250, 0, 0, 9};
-  const Index a = addAccessor(asset, {2, 4, ComponentType::kU8, false}, joints, 34962);
+  const Index a = addAccessor(asset, {2, 4, ComponentType::kU8, false}, joints, kVertexTarget);
   const std::vector<float> values = {1, 5, -2, 0.1f, 3, -8};
-  const Index b = addFloatAccessor(asset, values, 3, 34962, true);
+  const Index b = addFloatAccessor(asset, values, 3, kVertexTarget, true);
   EXPECT_EQ(asset.buffers.size(), buffers);  // the binary chunk grew
   checkAsset(asset);
   const Asset again = readAsset(writeGlb(asset), "again.glb");
@@ -129,7 +129,7 @@ TEST(Accessor, AddedOnesReadBack) {
   EXPECT_EQ(json["min"].get<std::vector<float>>(), (std::vector<float>{0.1f, 3, -8}));
   EXPECT_EQ(json["max"].get<std::vector<float>>(), (std::vector<float>{1, 5, -2}));
   EXPECT_EQ(json["type"], "VEC3");
-  EXPECT_EQ(again.json()["bufferViews"][json["bufferView"].get<Index>()]["target"], 34962);
+  EXPECT_EQ(again.json()["bufferViews"][json["bufferView"].get<Index>()]["target"], kVertexTarget);
 }
 
 TEST(Accessor, AddingToFilesBesideMakesANewBuffer) {

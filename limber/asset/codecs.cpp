@@ -9,6 +9,7 @@
 #include "limber/asset/accessor.h"
 #include "limber/asset/codecs_detail.h"
 #include "limber/asset/compact_buffers.h"
+#include "limber/asset/extensions.h"
 
 namespace limber {
 
@@ -98,15 +99,7 @@ void decode(Asset&, const Found& found, Decoded&) {
 
 // What says of the whole document that it is compressed.
 void dropDeclarations(Asset& asset) {
-  for (const char* list : {"extensionsUsed", "extensionsRequired"}) {
-    if (!JsonView(asset).array(list).exists()) continue;
-    Json& names = asset.json()[list];
-    names.erase(
-        std::remove_if(names.begin(), names.end(),
-                       [](const Json& name) { return name == kDraco || name == kMeshopt[0] || name == kMeshopt[1]; }),
-        names.end());
-    if (names.empty()) asset.json().erase(list);
-  }
+  for (const char* name : {kDraco, kMeshopt[0], kMeshopt[1]}) undeclareExtension(asset.json(), name);
   for (std::size_t i = 0; i < asset.buffers.size(); ++i) {
     for (const char* name : kMeshopt) eraseExtension(asset.json()["buffers"][i], name);
   }
@@ -123,17 +116,6 @@ void DecodeBudget::take(std::size_t bytes, const std::string& where) {
     throw Error(ErrorCode::kLimit, "decompresses to more than a file of this size may hold", where);
   }
   left_ -= bytes;
-}
-
-JsonView extensionOf(const JsonView& owner, const char* name) {
-  return owner.object("extensions").object(name);
-}
-
-void eraseExtension(Json& owner, const char* name) {
-  const auto extensions = owner.find("extensions");
-  if (extensions == owner.end()) return;
-  extensions->erase(name);
-  if (extensions->empty()) owner.erase("extensions");
 }
 
 bool hasMeshopt(const JsonView& view) {

@@ -30,8 +30,6 @@ struct Decoded {
   std::set<Index> buffers;    // that held compressed bytes
 };
 
-JsonView extensionOf(const JsonView& owner, const char* name);
-void eraseExtension(Json& owner, const char* name);
 bool hasMeshopt(const JsonView& view);
 
 // Decode all buffer views, all primitives. In the builds without codecs they are not there.

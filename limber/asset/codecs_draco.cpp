@@ -14,14 +14,15 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "limber/asset/accessor.h"
 #include "limber/asset/accessor_layout.h"
 #include "limber/asset/codecs_detail.h"
+#include "limber/asset/extensions.h"
 
 namespace limber {
 
 namespace {
 
-constexpr int kVertexTarget = 34962, kIndexTarget = 34963;
 constexpr std::uint16_t kBitstream = 0x0202;  // the one that glTF allows
 constexpr int kMaxDecodes = 8;                // of one buffer view
 constexpr double kWeightRounding = 0.05;      // of a sum of weights, at Draco's coarsest usual setting

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "limber/asset/codecs_detail.h"
+#include "limber/asset/extensions.h"
 
 namespace limber {
 

@@ -156,7 +156,7 @@ class Collector {
       for (Index p = 0; p < primitives.size(); ++p) addPrimitive(instance, p, primitives[p]);
     }
     if (geometry_.triangles.empty()) {
-      throw Error(ErrorCode::kBadData, "the model has no triangle", {}, "limber needs a surface, not points or lines");
+      throw Error(ErrorCode::kBadData, "has no triangle", {}, "limber needs a surface, not points or lines");
     }
     return std::move(geometry_);
   }
@@ -216,7 +216,11 @@ class Collector {
 }  // namespace
 
 Geometry collectGeometry(const Asset& asset) {
-  return Collector(asset).collect();
+  try {
+    return Collector(asset).collect();
+  } catch (const Error& error) {
+    throw error.within(asset.name);
+  }
 }
 
 }  // namespace limber

@@ -32,7 +32,7 @@ struct Geometry {
 //
 // Throws Error kLimit above 2^32-2 vertices, where instances of one mesh multiply a small file to many millions of
 // vertices, or above a million instances more than the file has nodes; kBadData where a vertex is not finite or nothing
-// has a triangle. Cost: O(#S + #F).
+// has a triangle; where() begins with the asset's name. Cost: O(#S + #F).
 Geometry collectGeometry(const Asset& asset);
 
 }  // namespace limber

@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "limber/asset/scene_builder_test.h"
+#include "limber/asset/testing/scene_builder.h"
 
 namespace limber {
 namespace {
@@ -144,7 +144,7 @@ TEST(CollectGeometry, QuantisedPositionsAreWhatADrawingProgramSees) {
     padded.insert(padded.end(), bytes.begin() + i, bytes.begin() + i + 6);
     padded.insert(padded.end(), {0, 0});
   }
-  const Index accessor = addAccessor(scene.asset(), {3, 4, ComponentType::kU16, true}, padded, 34962);
+  const Index accessor = addAccessor(scene.asset(), {3, 4, ComponentType::kU16, true}, padded, kVertexTarget);
   scene.json()["accessors"][accessor]["type"] = "VEC3";
   scene.json()["bufferViews"].back()["byteStride"] = 8;
   scene.addNode({{"mesh", scene.addMesh(Json::array({{{"attributes", {{"POSITION", accessor}}}}}))},

@@ -1,12 +1,12 @@
 #include "limber/asset/gltf_document.h"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "limber/asset/images.h"
 #include "limber/asset/json_access.h"
 #include "limber/asset/json_text.h"
 #include "limber/asset/uri.h"
@@ -116,7 +116,7 @@ void loadImages(Asset& asset, const Resolver& resolver) {
     if (known) continue;
     try {
       Bytes bytes = resolve(images[i], uri, resolver);
-      if (imageMediaType(bytes).empty()) images[i].fail(fmt::format("\"{}\" is not an image", uri));
+      if (imageFormat(bytes).mediaType.empty()) images[i].fail(fmt::format("\"{}\" is not an image", uri));
       asset.sideFiles.push_back({uri, std::move(bytes)});
     } catch (const Error& error) {
       asset.warnings.add("missing-images",
@@ -127,24 +127,6 @@ void loadImages(Asset& asset, const Resolver& resolver) {
 }
 
 }  // namespace
-
-std::string_view imageMediaType(ByteSpan bytes) {
-  struct Signature {
-    std::string_view start, mediaType;
-    std::size_t at = 0;
-  };
-  static constexpr std::array<Signature, 5> kSignatures = {{{"\x89PNG\r\n\x1a\n", "image/png"},
-                                                            {"\xff\xd8\xff", "image/jpeg"},
-                                                            {"WEBP", "image/webp", 8},
-                                                            {"\xabKTX 20\xbb", "image/ktx2"},
-                                                            {"DDS ", "image/vnd-ms.dds"}}};
-  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  for (const Signature& signature : kSignatures) {
-    if (text.size() < signature.at + signature.start.size()) continue;
-    if (text.compare(signature.at, signature.start.size(), signature.start) == 0) return signature.mediaType;
-  }
-  return {};
-}
 
 Asset readGltfDocument(ByteSpan text, std::optional<ByteSpan> binary, const Resolver& resolver) {
   Asset asset;

@@ -11,7 +11,4 @@ namespace limber {
 // relative paths). The result is not checked further. Throws Error as readAsset does, without the document's name.
 Asset readGltfDocument(ByteSpan text, std::optional<ByteSpan> binary, const Resolver& resolver);
 
-// The media type that the first bytes of an image tell, empty if it is none that a glTF file may hold.
-std::string_view imageMediaType(ByteSpan bytes);
-
 }  // namespace limber

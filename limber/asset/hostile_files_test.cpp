@@ -10,14 +10,7 @@
 #include "limber/asset/read.h"
 #include "limber/asset/testing/gltf_builder.h"
 #include "limber/asset/write.h"
-
-#if defined(__SANITIZE_ADDRESS__)
-#define LIMBER_ADDRESS_SANITIZER 1
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-#define LIMBER_ADDRESS_SANITIZER 1
-#endif
-#endif
+#include "limber/core/sanitizers.h"
 
 namespace limber {
 namespace {
@@ -60,11 +53,10 @@ Bytes bytesOf(const std::string& text) {
 class HostileFiles : public ::testing::TestWithParam<Bytes> {
  protected:
   void TearDown() override {
-#ifndef LIMBER_ADDRESS_SANITIZER  // which keeps freed memory for a while
+    if (kAddressSanitizer) return;  // which keeps freed memory for a while
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
     EXPECT_LT(usage.ru_maxrss, 300 * 1024);  // KiB; the files have a few
-#endif
   }
 };
 

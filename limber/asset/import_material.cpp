@@ -8,7 +8,7 @@
 #include <assimp/scene.h>
 #include <nlohmann/json.hpp>
 
-#include "limber/asset/gltf_document.h"
+#include "limber/asset/images.h"
 #include "limber/asset/import_text.h"
 
 namespace limber {
@@ -115,7 +115,7 @@ std::optional<Index> MaterialImporter::texture(const std::string& path) {
     asset_.warnings.add("missing-images", "textures that cannot be found are left out", validUtf8(path));
     return std::nullopt;
   }
-  const std::string_view mime = imageMediaType(*bytes);
+  const std::string_view mime = imageFormat(*bytes).mediaType;
   if (mime.empty()) {
     asset_.warnings.add("unsupported-images", "textures that are neither PNG nor JPEG are left out", validUtf8(path));
     return std::nullopt;

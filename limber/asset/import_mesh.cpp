@@ -23,8 +23,7 @@ namespace limber {
 
 namespace {
 
-constexpr int kVertexTarget = 34962, kIndexTarget = 34963;  // ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER
-constexpr int kPoints = 0, kLines = 1, kTriangles = 4;      // primitive modes
+constexpr int kPoints = 0, kLines = 1, kTriangles = 4;  // primitive modes
 
 // A vertex attribute: #V rows of `components` floats.
 struct Attribute {

@@ -3,7 +3,6 @@
 #include "limber/asset/import_model.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstring>
 #include <string>
@@ -25,6 +24,7 @@
 #include "limber/asset/import_skin.h"
 #include "limber/asset/import_text.h"
 #include "limber/asset/write.h"
+#include "limber/core/names.h"
 
 namespace limber {
 
@@ -41,14 +41,6 @@ const Format* formatNamed(std::string_view extension) {
   const auto found = std::find_if(std::begin(kFormats), std::end(kFormats),
                                   [&](const Format& format) { return extension == format.extension; });
   return found == std::end(kFormats) ? nullptr : found;
-}
-
-std::string extensionOf(std::string_view name) {
-  const std::size_t dot = name.find_last_of('.');
-  std::string extension(dot == std::string_view::npos ? "" : name.substr(dot + 1));
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
 }
 
 // A binary STL says nothing of itself but the number of its triangles, 50 bytes each.
@@ -80,7 +72,8 @@ bool looksLikeObj(ByteSpan bytes) {
 
 const Format& formatOf(ByteSpan bytes, std::string_view name) {
   if (const Format* format = formatByContent(bytes)) return *format;
-  if (const Format* format = formatNamed(extensionOf(name))) return *format;
+  const std::string extension = lowerExtension(std::string(name));
+  if (const Format* format = extension.empty() ? nullptr : formatNamed(extension.substr(1))) return *format;
   if (looksLikeObj(bytes)) return *formatNamed("obj");
   throw Error(ErrorCode::kUnsupported, "is of a format that limber does not read", {},
               "it reads GLB, glTF, OBJ, PLY, STL, OFF, FBX, DAE and BVH");

@@ -23,6 +23,7 @@
 #include <string_view>
 
 #include "limber/core/progress.h"
+#include "limber/core/sanitizers.h"
 #endif
 
 namespace limber {
@@ -36,18 +37,6 @@ Bytes runIsolated(const std::function<Bytes()>& work, const SandboxLimits&) {
 #else
 
 namespace {
-
-#if defined(__SANITIZE_ADDRESS__)
-constexpr bool kLimitMemory = false;
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-constexpr bool kLimitMemory = false;
-#else
-constexpr bool kLimitMemory = true;
-#endif
-#else
-constexpr bool kLimitMemory = true;
-#endif
 
 constexpr double kClockPerProcessorTime = 10;  // other programs run too
 
@@ -80,7 +69,7 @@ void applyLimits(const SandboxLimits& limits, std::size_t inherited) {
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_CPU, static_cast<rlim_t>(std::ceil(limits.seconds)));
 #ifdef RLIMIT_AS
-  if (kLimitMemory && inherited > 0) limit(RLIMIT_AS, inherited + limits.memory);
+  if (!kAddressSanitizer && inherited > 0) limit(RLIMIT_AS, inherited + limits.memory);
 #endif
   const int nowhere = open("/dev/null", O_WRONLY);  // what a dying importer prints is no message of ours
   if (nowhere >= 0) {
@@ -215,7 +204,7 @@ class Child {
 Bytes receiveMessage(Child& child, std::size_t memory) {
   Header header;
   child.receive(&header, sizeof header);
-  if (header.length > memory && kLimitMemory) {
+  if (header.length > memory && !kAddressSanitizer) {
     throw Error(ErrorCode::kLimit, "becomes larger than a file of its size may");
   }
   Bytes bytes;

@@ -1,4 +1,5 @@
 #include "limber/asset/import_sandbox.h"
+#include "limber/core/sanitizers.h"
 
 #include <csignal>
 #include <cstdlib>
@@ -14,18 +15,6 @@ namespace limber {
 namespace {
 
 using ::testing::HasSubstr;
-
-#if defined(__SANITIZE_ADDRESS__)
-constexpr bool kAddressSanitizer = true;
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-constexpr bool kAddressSanitizer = true;
-#else
-constexpr bool kAddressSanitizer = false;
-#endif
-#else
-constexpr bool kAddressSanitizer = false;
-#endif
 
 Error errorOf(const std::function<Bytes()>& work, const SandboxLimits& limits = {}) {
   try {

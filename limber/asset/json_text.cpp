@@ -166,4 +166,16 @@ std::string dumpJson(const Json& json, int indent) {
   }
 }
 
+std::string dumpReport(const Json& json, int indent) {
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
+Json toJson(const Warnings& warnings) {
+  Json list = Json::array();
+  for (const Warning& w : warnings.items()) {
+    list.push_back({{"kind", w.kind}, {"message", w.message}, {"where", w.where}, {"count", w.count}});
+  }
+  return list;
+}
+
 }  // namespace limber

@@ -17,4 +17,10 @@ Json parseJson(std::string_view text, Warnings& warnings);
 // indent < 0: no white space. Throws Error kBadData where a string is not UTF-8.
 std::string dumpJson(const Json& json, int indent);
 
+// For what limber says itself: what is not UTF-8 in a name out of a file or of a file is replaced.
+std::string dumpReport(const Json& json, int indent = 2);
+
+// [{"kind", "message", "where", "count"}], in order.
+Json toJson(const Warnings& warnings);
+
 }  // namespace limber

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cctype>
 #include <cstring>
 #include <iterator>
 #include <map>
@@ -12,20 +11,16 @@
 #include <nlohmann/json.hpp>
 
 #include "limber/asset/accessor.h"
+#include "limber/asset/images.h"
 #include "limber/asset/scene_graph.h"
+#include "limber/core/names.h"
+#include "limber/mesh/normals.h"
 
 namespace limber {
 
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "binary formats are written as they lie in memory");
-
-std::string lowerExtension(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
 
 // OBJ and MTL separate names by white space.
 std::string oneWord(std::string name, std::string_view kind, Index element) {
@@ -81,14 +76,9 @@ class SmoothGroups {
 
   // Unit normals from the triangles, one for each vertex.
   std::vector<Vec3f> normals(const Geometry& geometry) const {
+    const std::vector<Vec3> own = areaNormals<Vec3f>(geometry.positions, geometry.triangles);
     std::vector<Vec3> sums(groupOf_.size(), Vec3::Zero());
-    for (const Triangle& t : geometry.triangles) {
-      const Vec3 a = geometry.positions[t[0]].cast<double>();
-      const Vec3 b = geometry.positions[t[1]].cast<double>();
-      const Vec3 c = geometry.positions[t[2]].cast<double>();
-      const Vec3 weighted = (b - a).cross(c - a);
-      for (const Index v : t) sums[groupOf_[v]] += weighted;
-    }
+    for (std::size_t v = 0; v < own.size(); ++v) sums[groupOf_[v]] += own[v];
     std::vector<Vec3f> result(groupOf_.size());
     for (std::size_t v = 0; v < result.size(); ++v) {
       const double length = sums[groupOf_[v]].norm();
@@ -101,28 +91,6 @@ class SmoothGroups {
   std::vector<Index> groupOf_;  // #S, the first vertex of the group
 };
 
-// The bytes of an image: in a buffer view, or in a file that was read with the document. Data URIs are not unpacked.
-std::optional<Bytes> imageBytes(const Asset& asset, const Json& image) {
-  if (const std::optional<Index> viewIndex = indexMember(image, "bufferView")) {
-    const Json& view = asset.json()["bufferViews"][*viewIndex];
-    const Bytes& buffer = asset.buffers[view.at("buffer").get<std::size_t>()].bytes;
-    const std::size_t offset = view.value("byteOffset", std::size_t{0});
-    const std::size_t length = view.at("byteLength").get<std::size_t>();
-    return Bytes(buffer.begin() + static_cast<std::ptrdiff_t>(offset),
-                 buffer.begin() + static_cast<std::ptrdiff_t>(offset + length));
-  }
-  const std::string uri = image.value("uri", "");
-  for (const Asset::SideFile& file : asset.sideFiles) {
-    if (file.uri == uri) return file.bytes;
-  }
-  return std::nullopt;
-}
-
-std::string_view imageExtension(const Bytes& bytes) {
-  constexpr std::array<std::uint8_t, 4> kPng = {0x89, 'P', 'N', 'G'};
-  return bytes.size() >= 4 && std::equal(kPng.begin(), kPng.end(), bytes.begin()) ? ".png" : ".jpg";
-}
-
 // The image of a material's base colour texture as a texture of the mesh, each image once.
 std::optional<Index> exportTexture(const Asset& asset, const Json& material, std::map<Index, Index>& known,
                                    ExportMesh& mesh) {
@@ -132,10 +100,11 @@ std::optional<Index> exportTexture(const Asset& asset, const Json& material, std
   const std::optional<Index> source = indexMember(texture, "source");
   if (!source) return std::nullopt;
   if (const auto found = known.find(*source); found != known.end()) return found->second;
-  std::optional<Bytes> bytes = imageBytes(asset, asset.json()["images"][*source]);
-  if (!bytes) return std::nullopt;
+  std::optional<Bytes> bytes = imageBytes(asset, *source);
+  const std::string_view extension = bytes ? imageFormat(*bytes).extension : std::string_view();
+  if (extension.empty()) return std::nullopt;
   const Index index = static_cast<Index>(mesh.textures.size());
-  mesh.textures.push_back({fmt::format("texture_{}{}", index, imageExtension(*bytes)), std::move(*bytes)});
+  mesh.textures.push_back({fmt::format("texture_{}{}", index, extension), std::move(*bytes)});
   known.emplace(*source, index);
   return index;
 }

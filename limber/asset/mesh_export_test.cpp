@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "limber/asset/accessor.h"
+#include "limber/asset/testing/gltf_builder.h"
 
 namespace limber {
 namespace {
@@ -17,11 +18,11 @@ Asset strip() {
   Asset asset;
   const std::vector<float> positions = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 1};
   const std::vector<float> uvs = {0, 0, 1, 0, 0, 1, 1, 0.25f};
-  const Index position = addFloatAccessor(asset, positions, 3, 34962, true);
-  const Index uv = addFloatAccessor(asset, uvs, 2, 34962);
+  const Index position = addFloatAccessor(asset, positions, 3, kVertexTarget, true);
+  const Index uv = addFloatAccessor(asset, uvs, 2, kVertexTarget);
   const std::vector<std::uint16_t> indices = {0, 1, 2, 2, 1, 3};
   const auto* bytes = reinterpret_cast<const std::uint8_t*>(indices.data());
-  const Index index = addAccessor(asset, {6, 1, ComponentType::kU16, false}, {bytes, 12}, 34963);
+  const Index index = addAccessor(asset, {6, 1, ComponentType::kU16, false}, {bytes, 12}, kIndexTarget);
   Json& json = asset.json();
   json["asset"] = {{"version", "2.0"}};
   json["meshes"] = Json::array(
@@ -35,7 +36,7 @@ Asset strip() {
         {"pbrMetallicRoughness", {{"baseColorFactor", {0.25, 0.5, 1, 1}}, {"baseColorTexture", {{"index", 0}}}}}}});
   json["textures"] = Json::array({{{"source", 0}}});
   json["images"] = Json::array({{{"uri", "cloth.png"}}});
-  asset.sideFiles.push_back({"cloth.png", Bytes{0x89, 'P', 'N', 'G', 1, 2}});
+  asset.sideFiles.push_back({"cloth.png", testing::pngBytes()});
   return asset;
 }
 
@@ -64,7 +65,7 @@ TEST(MeshExport, PartsAreInTheWorldWithMaterialAndTexture) {
   ASSERT_EQ(mesh.materials.size(), 1u);
   EXPECT_EQ(mesh.materials[0].color[0], 0.25f);
   ASSERT_EQ(mesh.textures.size(), 1u);
-  EXPECT_EQ(mesh.textures[0].bytes.size(), 6u);
+  EXPECT_EQ(mesh.textures[0].bytes, testing::pngBytes());
   EXPECT_EQ(mesh.uvs[3], Vec2f(1, 0.75f));
 }
 

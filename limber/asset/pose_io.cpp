@@ -40,8 +40,6 @@ std::span<const float> floatsOf(std::span<const Vec3f> vectors, const PrimitiveI
   return {vectors[instance.firstVertex].data(), std::size_t{3} * instance.vertexCount};
 }
 
-constexpr int kVertexBuffer = 34962, kIndexBuffer = 34963;
-
 // Under a mirroring transform the triangles turn round, so that outside stays outside.
 void turnTriangles(Asset& asset, Json& primitive, const Geometry& geometry, const PrimitiveInstance& instance) {
   std::vector<Index> indices;
@@ -52,16 +50,16 @@ void turnTriangles(Asset& asset, Json& primitive, const Geometry& geometry, cons
   if (indices.empty()) return;
   const auto* bytes = reinterpret_cast<const std::uint8_t*>(indices.data());
   const AccessorInfo info{static_cast<Index>(indices.size()), 1, ComponentType::kU32, false};
-  primitive["indices"] = addAccessor(asset, info, {bytes, sizeof(Index) * indices.size()}, kIndexBuffer);
+  primitive["indices"] = addAccessor(asset, info, {bytes, sizeof(Index) * indices.size()}, kIndexTarget);
   primitive.erase("mode");
 }
 
 void freezePrimitive(Asset& asset, Json& primitive, const Geometry& geometry, const PrimitiveInstance& instance,
                      std::span<const Vec3f> positions, std::span<const Vec3f> normals) {
   Json& attributes = primitive["attributes"];
-  attributes["POSITION"] = addFloatAccessor(asset, floatsOf(positions, instance), 3, kVertexBuffer, true);
+  attributes["POSITION"] = addFloatAccessor(asset, floatsOf(positions, instance), 3, kVertexTarget, true);
   if (attributes.contains("NORMAL")) {
-    attributes["NORMAL"] = addFloatAccessor(asset, floatsOf(normals, instance), 3, kVertexBuffer);
+    attributes["NORMAL"] = addFloatAccessor(asset, floatsOf(normals, instance), 3, kVertexTarget);
   }
   asset.warnings.add("tangents", "parts lose their tangents, which readers make anew", {}, attributes.erase("TANGENT"));
   asset.warnings.add("morph-targets", "parts lose their morph targets, which no longer fit", {},

@@ -6,11 +6,13 @@
 
 #include "limber/asset/bvh_read.h"
 #include "limber/asset/codecs.h"
+#include "limber/asset/extensions.h"
 #include "limber/asset/glb.h"
 #include "limber/asset/gltf_document.h"
 #include "limber/asset/motion_io.h"
 #ifdef LIMBER_IMPORT
 #include "limber/asset/import_model.h"
+#include "limber/core/names.h"
 #endif
 
 namespace limber {
@@ -19,13 +21,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::string extensionOf(std::string_view name) {
-  std::string extension = fs::path(std::string(name)).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
-
 // JSON of any kind: limber's other formats never start with a brace.
 bool looksLikeJson(ByteSpan bytes) {
   std::size_t at = 0;
@@ -33,6 +28,18 @@ bool looksLikeJson(ByteSpan bytes) {
   if (bytes.size() >= 3 && std::equal(kByteOrderMark.begin(), kByteOrderMark.end(), bytes.begin())) at = 3;
   while (at < bytes.size() && std::isspace(bytes[at])) ++at;
   return at < bytes.size() && bytes[at] == '{';
+}
+
+// Text in UTF-16, by its byte order mark or by the zero beside each of its first two letters.
+bool looksLikeUtf16(ByteSpan bytes) {
+  if (bytes.size() < 4) return false;
+  const auto is = [&](std::uint8_t first, std::uint8_t second) { return bytes[0] == first && bytes[1] == second; };
+  const auto letter = [&](std::size_t at) {
+    return (bytes[at] >= 0x20 && bytes[at] < 0x7f) || std::isspace(bytes[at]);
+  };
+  if (is(0xff, 0xfe) || is(0xfe, 0xff)) return true;
+  return (letter(0) && letter(2) && bytes[1] == 0 && bytes[3] == 0) ||
+         (letter(1) && letter(3) && bytes[0] == 0 && bytes[2] == 0);
 }
 
 Asset readGltf(ByteSpan bytes, const Resolver& resolver) {
@@ -48,13 +55,18 @@ Asset readGltf(ByteSpan bytes, const Resolver& resolver) {
     asset.format = "gltf";
   }
   decompress(asset);
+  warnOfUnknownExtensions(asset);
   return asset;
 }
 
 Asset readAny(ByteSpan bytes, std::string_view name, const Resolver& resolver) {
   if (bytes.empty()) throw Error(ErrorCode::kBadData, "is empty");
   if (looksLikeGlb(bytes) || looksLikeJson(bytes)) return readGltf(bytes, resolver);
-  const std::string extension = extensionOf(name);
+  const std::string extension = lowerExtension(std::string(name));
+  // COLLADA is XML, which may well be in UTF-16; the bytes of a binary STL's title are anything.
+  if (extension != ".dae" && extension != ".stl" && looksLikeUtf16(bytes)) {
+    throw Error(ErrorCode::kUnsupported, "is text in UTF-16", {}, "save it as UTF-8");
+  }
   if (extension == ".glb") throw Error(ErrorCode::kBadData, "is no GLB: it does not start with \"glTF\"");
   if (extension == ".gltf") throw Error(ErrorCode::kBadData, "is no glTF: it is not a JSON object");
 #ifdef LIMBER_IMPORT
@@ -87,7 +99,7 @@ Resolver folderResolver(const fs::path& folder) {
 }  // namespace
 
 Asset readAsset(ByteSpan bytes, std::string_view name, const Resolver& resolver) {
-  if (looksLikeBvh(bytes) || extensionOf(name) == ".bvh") return readBvhAsset(bytes, name);
+  if (looksLikeBvh(bytes) || lowerExtension(std::string(name)) == ".bvh") return readBvhAsset(bytes, name);
   try {
     Asset asset = readAny(bytes, name, resolver);
     asset.name = name;

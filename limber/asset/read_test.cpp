@@ -188,12 +188,40 @@ TEST(ReadAsset, OnlyTheFirstBufferIsTheBinaryChunk) {
   EXPECT_THROW(readAsset(GltfBuilder::glbOf(model.json.dump(), model.binary), "m.glb"), Error);
 }
 
+TEST(ReadAsset, TextInUtf16IsToldApart) {
+  const std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  for (const bool bigEndian : {false, true}) {
+    for (const bool marked : {false, true}) {
+      Bytes bytes;
+      const auto put = [&](std::uint8_t low, std::uint8_t high) {
+        bytes.push_back(bigEndian ? high : low);
+        bytes.push_back(bigEndian ? low : high);
+      };
+      if (marked) put(0xff, 0xfe);
+      for (const char c : text) put(static_cast<std::uint8_t>(c), 0);
+      for (const char* name : {"model.obj", "model.gltf", "standard input"}) {
+        try {
+          readAsset(bytes, name);
+          FAIL() << "read UTF-16 as " << name;
+        } catch (const Error& error) {
+          EXPECT_EQ(error.code(), ErrorCode::kUnsupported);
+          EXPECT_EQ(error.message(), "is text in UTF-16");
+        }
+      }
+    }
+  }
+}
+
 TEST(ReadAsset, UnknownRequiredExtensionsAreKept) {
   GltfBuilder model = everythingModel();
   model.json["extensionsUsed"] = model.json["extensionsRequired"] = {"EXT_never_heard_of"};
   model.json["materials"][0]["extensions"]["EXT_never_heard_of"] = {{"texture", 77}};
   const Asset asset = readAsset(model.glb(), "m.glb");
   EXPECT_EQ(asset.json()["extensionsRequired"], model.json["extensionsRequired"]);
+  const Warning& warning = asset.warnings.items().back();
+  EXPECT_EQ(warning.kind, "unknown-extensions");
+  EXPECT_EQ(warning.where, "EXT_never_heard_of");
+  EXPECT_EQ(warning.count, 1u);
   EXPECT_EQ(asset.json()["materials"], model.json["materials"]);
 }
 

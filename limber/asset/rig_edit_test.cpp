@@ -4,8 +4,8 @@
 
 #include "limber/asset/node_edit.h"
 #include "limber/asset/rig_io.h"
-#include "limber/asset/scene_builder_test.h"
 #include "limber/asset/scene_graph.h"
+#include "limber/asset/testing/scene_builder.h"
 
 namespace limber {
 namespace {

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "limber/asset/accessor.h"
+#include "limber/asset/extensions.h"
 #include "limber/asset/node_edit.h"
 
 namespace limber {
@@ -44,21 +45,6 @@ std::array<double, 12> numbersOf(const Affine& affine) {
   std::array<double, 12> numbers;
   for (int i = 0; i < 12; ++i) numbers[i] = affine.matrix()(i % 3, i / 3) + 0.0;
   return numbers;
-}
-
-// Takes one extension out of an object, and "extensions" where nothing else is in it. True if it was there.
-bool eraseExtension(Json& object, const char* name) {
-  const auto extensions = object.find("extensions");
-  if (extensions == object.end() || extensions->erase(name) == 0) return false;
-  if (extensions->empty()) object.erase("extensions");
-  return true;
-}
-
-void eraseFromList(Json& json, const char* list, const char* name) {
-  const auto names = json.find(list);
-  if (names == json.end()) return;
-  names->erase(std::remove(names->begin(), names->end(), name), names->end());
-  if (names->empty()) json.erase(list);
 }
 
 }  // namespace
@@ -207,8 +193,7 @@ void SkinnedNodes::finish() {
     return extensions && extensions->contains(kInstancing);
   });
   if (used) return;
-  eraseFromList(asset_.json(), "extensionsUsed", kInstancing);
-  eraseFromList(asset_.json(), "extensionsRequired", kInstancing);
+  undeclareExtension(asset_.json(), kInstancing);
 }
 
 }  // namespace limber

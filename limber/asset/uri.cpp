@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cstdint>
 
 #include "limber/core/error.h"
+#include "limber/core/names.h"
 
 namespace limber {
 
@@ -68,9 +68,7 @@ std::string percentDecode(std::string_view text) {
 
 bool startsLikeData(std::string_view uri) {
   constexpr std::string_view kScheme = "data:";
-  return uri.size() >= kScheme.size() && std::equal(kScheme.begin(), kScheme.end(), uri.begin(), [](char a, char b) {
-           return a == std::tolower(static_cast<unsigned char>(b));
-         });
+  return lowerCase(uri.substr(0, kScheme.size())) == kScheme;
 }
 
 }  // namespace

@@ -15,8 +15,7 @@ namespace limber {
 
 namespace {
 
-constexpr int kVertexTarget = 34962;  // ARRAY_BUFFER
-constexpr Index kSetSize = 4;         // influences in one JOINTS_n
+constexpr Index kSetSize = 4;  // influences in one JOINTS_n
 
 [[noreturn]] void badWeights(Index vertex, const char* what) {
   throw Error(ErrorCode::kBadArgument, what, fmt::format("weights of vertex {}", vertex));

@@ -1,7 +1,6 @@
 #include "limber/asset/write.h"
 
 #include <algorithm>
-#include <cctype>
 #include <map>
 #include <system_error>
 
@@ -9,10 +8,11 @@
 #include <nlohmann/json.hpp>
 
 #include "limber/asset/glb.h"
-#include "limber/asset/gltf_document.h"
 #include "limber/asset/gltf_files.h"
+#include "limber/asset/images.h"
 #include "limber/asset/json_access.h"
 #include "limber/asset/json_text.h"
+#include "limber/core/names.h"
 
 namespace limber {
 
@@ -60,7 +60,7 @@ void embedImages(const Asset& asset, Json& json, Bytes& binary) {
     }
     Json& image = json["images"][i];
     image.erase("uri");
-    image["mimeType"] = imageMediaType(file->second->bytes);
+    image["mimeType"] = imageFormat(file->second->bytes).mediaType;
     image["bufferView"] = view->second;
   }
 }
@@ -72,13 +72,6 @@ void setSingleBuffer(Json& json, std::size_t size) {
   buffer.erase("uri");
   buffer["byteLength"] = size;
   json["buffers"] = Json::array({std::move(buffer)});
-}
-
-std::string lowerExtension(const fs::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
 }
 
 // The folders that a file needs and that are not there yet; gone again unless kept.

@@ -42,7 +42,9 @@ Error::Error(ErrorCode code, std::string message, std::string where, std::string
 }
 
 Error Error::within(std::string_view outer) const {
-  return Error(code_, message_, where_.empty() ? std::string(outer) : std::string(outer) + ": " + where_, remedy_);
+  const std::string place(outer);
+  if (place.empty() || where_ == place || where_.rfind(place + ": ", 0) == 0) return *this;
+  return Error(code_, message_, where_.empty() ? place : place + ": " + where_, remedy_);
 }
 
 void Warnings::add(std::string_view kind, std::string_view message, std::string_view where, std::size_t count) {

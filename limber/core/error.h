@@ -35,7 +35,8 @@ class Error : public std::exception {
   const std::string& remedy() const { return remedy_; }
   const char* what() const noexcept override { return line_.c_str(); }
 
-  // The same error, said of an element inside `outer` (usually the file's name): where becomes "outer: where".
+  // The same error, said of an element inside `outer` (usually the file's name): where becomes "outer: where", unless
+  // it begins so already.
   Error within(std::string_view outer) const;
 
  private:

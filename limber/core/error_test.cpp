@@ -17,6 +17,9 @@ TEST(Error, WithinPutsTheOuterPlaceInFront) {
   EXPECT_EQ(outer.where(), "fox.glb: buffers[0]");
   EXPECT_EQ(outer.message(), inner.message());
   EXPECT_EQ(Error(ErrorCode::kFile, "cannot be opened").within("a.obj").where(), "a.obj");
+  EXPECT_EQ(outer.within("fox.glb").where(), "fox.glb: buffers[0]");
+  EXPECT_EQ(outer.within("").where(), "fox.glb: buffers[0]");
+  EXPECT_EQ(outer.within("fox").where(), "fox: fox.glb: buffers[0]");
 }
 
 TEST(Warnings, AreCountedByKindInTheOrderMet) {

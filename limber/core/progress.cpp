@@ -1,6 +1,7 @@
 #include "limber/core/progress.h"
 
 #include <chrono>
+#include <utility>
 
 #include "limber/core/error.h"
 
@@ -10,28 +11,59 @@ double secondsNow() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+double totalSeconds(const std::vector<StageTime>& stages) {
+  double sum = 0;
+  for (const StageTime& stage : stages) sum += stage.seconds;
+  return sum;
+}
+
 void Progress::throwIfCancelled() const {
   if (cancelled()) throw Error(ErrorCode::kCancelled, "cancelled");
+}
+
+void Progress::tell(double fraction) const {
+  if (!listener_) return;
+  listener_(inStep_ ? open_.name + ": " + open_.steps.back().name : open_.name, fraction);
 }
 
 void Progress::stage(std::string_view name) {
   throwIfCancelled();
   finish();
-  open_ = name;
+  open_ = {std::string(name), 0, {}};
+  isOpen_ = true;
   openedAt_ = secondsNow();
-  if (listener_) listener_(open_, 0.0);
+  tell(0);
+}
+
+void Progress::step(std::string_view name) {
+  if (!isOpen_) stage("");
+  throwIfCancelled();
+  closeStep();
+  open_.steps.push_back({std::string(name), 0, {}});
+  inStep_ = true;
+  stepOpenedAt_ = secondsNow();
+  tell(0);
 }
 
 void Progress::update(double fraction) {
   throwIfCancelled();
-  if (listener_) listener_(open_, fraction);
+  tell(fraction);
+}
+
+void Progress::closeStep() {
+  if (!inStep_) return;
+  open_.steps.back().seconds = secondsNow() - stepOpenedAt_;
+  tell(1);
+  inStep_ = false;
 }
 
 void Progress::finish() {
-  if (open_.empty()) return;
-  stages_.push_back({open_, secondsNow() - openedAt_});
-  if (listener_) listener_(open_, 1.0);
-  open_.clear();
+  if (!isOpen_) return;
+  closeStep();
+  open_.seconds = secondsNow() - openedAt_;
+  tell(1);
+  stages_.push_back(std::exchange(open_, {}));
+  isOpen_ = false;
 }
 
 }  // namespace limber

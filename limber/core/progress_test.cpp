@@ -26,6 +26,42 @@ TEST(Progress, TellsStagesAndFractionsAndKeepsTheTimes) {
   EXPECT_GE(progress.stages()[0].seconds, 0);
 }
 
+TEST(Progress, StepsLieWithinTheirStage) {
+  std::vector<std::pair<std::string, double>> told;
+  Progress progress([&](std::string_view stage, double fraction) { told.emplace_back(stage, fraction); });
+  progress.stage("skin");
+  progress.step("factorise");
+  progress.update(0.5);
+  progress.step("solve");
+  progress.stage("write");
+  progress.finish();
+  const std::vector<std::pair<std::string, double>> expected = {{"skin", 0},
+                                                                {"skin: factorise", 0},
+                                                                {"skin: factorise", 0.5},
+                                                                {"skin: factorise", 1},
+                                                                {"skin: solve", 0},
+                                                                {"skin: solve", 1},
+                                                                {"skin", 1},
+                                                                {"write", 0},
+                                                                {"write", 1}};
+  EXPECT_EQ(told, expected);
+  ASSERT_EQ(progress.stages().size(), 2u);
+  const StageTime& skin = progress.stages()[0];
+  ASSERT_EQ(skin.steps.size(), 2u);
+  EXPECT_EQ(skin.steps[1].name, "solve");
+  EXPECT_GE(skin.seconds, skin.steps[0].seconds + skin.steps[1].seconds);
+  EXPECT_TRUE(progress.stages()[1].steps.empty());
+}
+
+TEST(Progress, AStepOutsideOfAStageIsKeptToo) {
+  Progress progress;
+  progress.step("solve");
+  progress.step("bridge");
+  progress.finish();
+  ASSERT_EQ(progress.stages().size(), 1u);
+  EXPECT_EQ(progress.stages()[0].steps.size(), 2u);
+}
+
 TEST(Progress, CancelLeavesThroughTheNextCall) {
   Progress progress;
   progress.stage("weld");

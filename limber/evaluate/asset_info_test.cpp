@@ -23,9 +23,10 @@ Asset twoTetrahedra() {
     for (const int v : {0, 2, 1, 0, 1, 3, 1, 2, 3}) indices.push_back(std::uint16_t(base + v));
   }
   for (const int v : {0, 3, 2}) indices.push_back(std::uint16_t(v));
-  const Index position = addFloatAccessor(asset, positions, 3, 34962, true);
-  const Index index = addAccessor(asset, {Index(indices.size()), 1, ComponentType::kU16, false},
-                                  {reinterpret_cast<const std::uint8_t*>(indices.data()), indices.size() * 2}, 34963);
+  const Index position = addFloatAccessor(asset, positions, 3, kVertexTarget, true);
+  const Index index =
+      addAccessor(asset, {Index(indices.size()), 1, ComponentType::kU16, false},
+                  {reinterpret_cast<const std::uint8_t*>(indices.data()), indices.size() * 2}, kIndexTarget);
   asset.json()["meshes"] =
       Json::array({{{"primitives", Json::array({{{"attributes", {{"POSITION", position}}}, {"indices", index}}})}}});
   asset.json()["nodes"] = Json::array({{{"mesh", 0}}});
@@ -46,8 +47,8 @@ void addSkin(Asset& asset) {
     }
   }
   Json& attributes = asset.json()["meshes"][0]["primitives"][0]["attributes"];
-  attributes["JOINTS_0"] = addAccessor(asset, {8, 4, ComponentType::kU8, false}, joints, 34962);
-  attributes["WEIGHTS_0"] = addFloatAccessor(asset, weights, 4, 34962);
+  attributes["JOINTS_0"] = addAccessor(asset, {8, 4, ComponentType::kU8, false}, joints, kVertexTarget);
+  attributes["WEIGHTS_0"] = addFloatAccessor(asset, weights, 4, kVertexTarget);
   asset.json()["nodes"] =
       Json::array({{{"mesh", 0}, {"skin", 0}}, {{"name", "hip"}, {"children", {2}}}, {{"name", "knee"}}});
   asset.json()["scenes"][0]["nodes"] = {0, 1};

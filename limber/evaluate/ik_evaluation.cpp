@@ -280,12 +280,12 @@ std::string ikScoreJson(std::span<const IkScore> scores) {
     const IkScore& s = scores[i];
     json += fmt::format(
         "{}\n  {{\"problems\": \"{}\", \"method\": \"{}\", \"count\": {}, \"solved\": {}, \"iterations\": {:.3f}, "
-        "\"restarts\": {:.3f}, \"medianMicroseconds\": {:.3f}, \"percentile99Microseconds\": {:.3f}, "
-        "\"worstViolation\": {:.3e}}}",
+        "\"restarts\": {:.3f}, \"median_microseconds\": {:.3f}, \"percentile_99_microseconds\": {:.3f}, "
+        "\"worst_violation\": {:.3e}}}",
         i == 0 ? "" : ",", s.set, s.method, s.problems, s.solved, s.iterations, s.restarts, s.medianMicros,
         s.percentile99Micros, s.worstViolation);
   }
-  return json + fmt::format("\n], \"bestWithLimits\": \"{}\"}}\n", bestIkMethodWithLimits(scores));
+  return json + fmt::format("\n], \"best_with_limits\": \"{}\"}}\n", bestIkMethodWithLimits(scores));
 }
 
 }  // namespace limber

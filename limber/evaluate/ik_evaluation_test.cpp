@@ -44,7 +44,7 @@ TEST(IkEvaluation, ScoresWhatMethodsDo) {
   }
   EXPECT_EQ(bestIkMethodWithLimits(scores), "dls");
   EXPECT_NE(ikScoreTable(scores).find("| chain-10 reachable | dls | 100.0 % |"), std::string::npos);
-  EXPECT_NE(ikScoreJson(scores).find("\"bestWithLimits\": \"dls\""), std::string::npos);
+  EXPECT_NE(ikScoreJson(scores).find("\"best_with_limits\": \"dls\""), std::string::npos);
 }
 
 TEST(IkEvaluation, UnknownMethodsAreRefused) {

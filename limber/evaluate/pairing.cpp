@@ -5,6 +5,7 @@
 #include <string_view>
 #include <unordered_map>
 
+#include "limber/mesh/normals.h"
 #include "limber/mesh/tri_mesh.h"
 #include "limber/skeleton/skeleton.h"
 
@@ -29,14 +30,8 @@ bool sameOrder(const TriMesh& from, const TriMesh& to, double tolerance) {
   return true;
 }
 
-// Weighted by area; zero where a vertex has no triangle.
 std::vector<Vec3> vertexNormals(const TriMesh& mesh) {
-  std::vector<Vec3> normals(mesh.vertexCount(), Vec3::Zero());
-  for (const Triangle& t : mesh.triangles) {
-    const Vec3 a = mesh.position(t[0]);
-    const Vec3 normal = (mesh.position(t[1]) - a).cross(mesh.position(t[2]) - a);
-    for (const Index v : t) normals[v] += normal;
-  }
+  std::vector<Vec3> normals = areaNormals<Vec3f>(mesh.positions, mesh.triangles);
   for (Vec3& normal : normals) normal.normalize();
   return normals;
 }

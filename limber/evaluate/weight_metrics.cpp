@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "limber/core/error.h"
+#include "limber/core/numbers.h"
 #include "limber/evaluate/pairing.h"
 #include "limber/evaluate/random_pose.h"
 #include "limber/mesh/prepare.h"
@@ -19,7 +20,7 @@ constexpr Index kSlots = 4;
 constexpr float kInfluence = 1.0f / 256;
 constexpr int kPoses = 20;
 constexpr std::uint64_t kPoseSeed = 1;
-constexpr double kMostTurn = 30 * 3.14159265358979323846 / 180;
+constexpr double kMostTurn = 30 * kDegree;
 
 float weightOf(const SkinWeights& weights, Index vertex, Index joint) {
   float sum = 0;

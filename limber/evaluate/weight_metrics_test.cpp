@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "limber/core/error.h"
+#include "limber/core/numbers.h"
 #include "limber/evaluate/pairing.h"
 #include "limber/evaluate/random_pose.h"
 #include "limber/evaluate/weight_report.h"
@@ -88,7 +89,7 @@ TEST(CompareWeights, DeformationIsTheDistanceInEachPose) {
   std::vector<double> p95;
   for (int pose = 0; pose < 20; ++pose) {
     const std::vector<Affine> skin =
-        skinTransforms(truthStrip().skeleton, randomPose(truthStrip().skeleton, 3.14159265358979323846 / 6, random));
+        skinTransforms(truthStrip().skeleton, randomPose(truthStrip().skeleton, kPi / 6, random));
     const double first = 0.25 * (skin[0] * Vec3(1, 0, 0) - skin[1] * Vec3(1, 0, 0)).norm();
     const double second = (skin[0] * Vec3(0, 1, 0) - skin[1] * Vec3(0, 1, 0)).norm();
     std::vector<double> sorted = {0, 0, first, second};
@@ -203,7 +204,7 @@ TEST(WeightReport, NamesEveryFigure) {
   const Json json = toJson(c);
   EXPECT_EQ(json["unweighted"], 1);
   EXPECT_EQ(json["l1"], c.l1);
-  EXPECT_EQ(json["deformMean"], c.deformMean);
+  EXPECT_EQ(json["deform_mean"], c.deformMean);
   EXPECT_THAT(toText(c), HasSubstr("left out      1 vertices (truth 0)"));
 }
 

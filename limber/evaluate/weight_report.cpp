@@ -7,20 +7,20 @@ namespace limber {
 
 Json toJson(const WeightComparison& c) {
   return {{"vertices", c.vertices},
-          {"unpairedVertices", c.unpairedVertices},
-          {"orderKept", c.orderKept},
+          {"unpaired_vertices", c.unpairedVertices},
+          {"order_kept", c.orderKept},
           {"joints", c.joints},
-          {"usedJoints", c.usedJoints},
-          {"unpairedJoints", c.unpairedJoints},
+          {"used_joints", c.usedJoints},
+          {"unpaired_joints", c.unpairedJoints},
           {"l1", c.l1},
           {"precision", c.precision},
           {"recall", c.recall},
-          {"deformMean", c.deformMean},
-          {"deformP95", c.deformP95},
+          {"deform_mean", c.deformMean},
+          {"deform_p95", c.deformP95},
           {"smoothness", c.smoothness},
-          {"truthSmoothness", c.truthSmoothness},
+          {"truth_smoothness", c.truthSmoothness},
           {"unweighted", c.unweighted},
-          {"truthUnweighted", c.truthUnweighted}};
+          {"truth_unweighted", c.truthUnweighted}};
 }
 
 std::string toText(const WeightComparison& c) {

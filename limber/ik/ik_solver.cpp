@@ -3,6 +3,7 @@
 #include <string>
 
 #include "limber/core/error.h"
+#include "limber/core/names.h"
 #include "limber/ik/ccd.h"
 #include "limber/ik/damped_least_squares.h"
 #include "limber/ik/fabrik.h"
@@ -51,13 +52,7 @@ std::span<const IkMethod> ikMethods() {
 }
 
 const IkMethod& findIkMethod(std::string_view name) {
-  std::string known;
-  for (const IkMethod& method : kMethods) {
-    if (method.name == name) return method;
-    known += (known.empty() ? "" : ", ") + std::string(method.name);
-  }
-  throw Error(ErrorCode::kBadArgument, "no inverse kinematics method is called '" + std::string(name) + "'", {},
-              "there are: " + known);
+  return findByName(kMethods, "inverse kinematics method", name);
 }
 
 IkSolver::IkSolver(const IkMethod& method, const Skeleton& skeleton, std::span<const IkTarget> targets,

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "limber/core/error.h"
+#include "limber/core/numbers.h"
 #include "limber/ik/rotation.h"
 
 namespace limber {
@@ -14,8 +15,6 @@ namespace limber {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr double kDegree = kPi / 180;
 
 // One joint's entry, read with its place at hand for errors.
 class EntryReader {

@@ -3,11 +3,10 @@
 
 #include <cmath>
 
+#include "limber/core/numbers.h"
 #include "limber/core/types.h"
 
 namespace limber {
-
-inline constexpr double kPi = 3.14159265358979323846;
 
 // The rotation by |v| about v.
 inline Quat fromRotationVector(const Vec3& v) {

@@ -1,42 +1,23 @@
 #include "limber/mesh/components.h"
 
-#include <numeric>
-#include <utility>
+#include "limber/core/disjoint_sets.h"
 
 namespace limber {
 
-namespace {
-
-// The lowest vertex of the set, halving the path on the way.
-Index findRoot(std::vector<Index>& parent, Index vertex) {
-  while (parent[vertex] != vertex) {
-    parent[vertex] = parent[parent[vertex]];
-    vertex = parent[vertex];
-  }
-  return vertex;
-}
-
-// The lower root stays, so that every root is the lowest vertex of its piece.
-void unite(std::vector<Index>& parent, Index a, Index b) {
-  a = findRoot(parent, a);
-  b = findRoot(parent, b);
-  if (a > b) std::swap(a, b);
-  parent[b] = a;
-}
-
-}  // namespace
-
 std::vector<Index> vertexComponents(const TriMesh& mesh, Index* count) {
-  std::vector<Index> piece(mesh.vertexCount());
-  std::iota(piece.begin(), piece.end(), Index{0});
+  DisjointSets sets(mesh.vertexCount());
   for (const Triangle& t : mesh.triangles) {
-    unite(piece, t[0], t[1]);
-    unite(piece, t[0], t[2]);
+    sets.unite(t[0], t[1]);
+    sets.unite(t[0], t[2]);
   }
 
-  // Parents are never above their children, so one pass upwards replaces each parent by its piece's number.
+  // A piece's lowest vertex names it, and so has its number before the others ask for it.
+  std::vector<Index> piece(mesh.vertexCount());
   Index pieces = 0;
-  for (Index v = 0; v < mesh.vertexCount(); ++v) piece[v] = piece[v] == v ? pieces++ : piece[piece[v]];
+  for (Index v = 0; v < mesh.vertexCount(); ++v) {
+    const Index first = sets.find(v);
+    piece[v] = first == v ? pieces++ : piece[first];
+  }
   if (count) *count = pieces;
   return piece;
 }

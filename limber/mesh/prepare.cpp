@@ -102,7 +102,7 @@ PreparedMesh prepareMesh(std::span<const Vec3f> positions, std::span<const Trian
   result.warnings.add("degenerate-triangles", "triangles with two corners at one place are left out of the computation",
                       {}, triangles.size() - mesh.triangles.size());
   if (mesh.triangles.empty()) {
-    throw Error(ErrorCode::kBadData, "the model has no triangle", {}, "limber needs a surface, not points or lines");
+    throw Error(ErrorCode::kBadData, "has no triangle", {}, "limber needs a surface, not points or lines");
   }
 
   result.frame = frameOf(mesh.positions, mesh.triangles);

@@ -4,6 +4,7 @@
 #include <numeric>
 #include <span>
 
+#include "limber/core/numbers.h"
 #include "limber/mesh/edge_groups.h"
 #include "limber/mesh/intrinsic_triangulation.h"
 
@@ -45,7 +46,7 @@ void sortAroundEdge(std::vector<Index>& sides, const EdgeGroups& edges, const Tr
   for (const Index side : sides) {
     const Vec3 arm = apex(side);
     double angle = std::atan2(arm.dot(across), arm.dot(reference));
-    if (angle < 0) angle += 2 * M_PI;
+    if (angle < 0) angle += 2 * kPi;
     byAngle.emplace_back(angle, side);
   }
   std::sort(byAngle.begin(), byAngle.end());

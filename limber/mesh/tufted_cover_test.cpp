@@ -1,6 +1,7 @@
 // The cover as a closed surface of glued triangles, before and after its edges are flipped.
 #include <gtest/gtest.h>
 
+#include "limber/core/numbers.h"
 #include "limber/mesh/components.h"
 #include "limber/mesh/intrinsic_triangulation.h"
 #include "limber/mesh/testing/shapes.h"
@@ -76,7 +77,7 @@ TEST_P(TuftedCover, EveryEdgeIsDelaunayInTheEnd) {
     return std::acos(std::clamp((b * b + c * c - a * a) / (2 * b * c), -1.0, 1.0));
   };
   for (Index h = 0; h < t.sideCount(); ++h) {
-    EXPECT_LE(angleOpposite(h) + angleOpposite(t.twin[h]), M_PI + 1e-6);
+    EXPECT_LE(angleOpposite(h) + angleOpposite(t.twin[h]), kPi + 1e-6);
     EXPECT_GE(t.cotangent[h] + t.cotangent[t.twin[h]], -1e-8);
   }
   EXPECT_EQ(delaunayFlips(t), 0u) << "a second pass finds nothing to do";

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "limber/core/error.h"
+#include "limber/core/numbers.h"
 #include "limber/core/parallel.h"
 
 namespace limber {
@@ -13,7 +14,6 @@ namespace {
 
 constexpr int kLevels = 20;          // of the octree: bits for each axis of a code
 constexpr Index kLeafTriangles = 8;  // at most, but on the last level
-constexpr double kPi = 3.14159265358979323846;
 
 // Every third bit of the result is a bit of `value`.
 std::uint64_t spread(std::uint64_t value) {

@@ -1,5 +1,6 @@
 #include "limber/rigging/auto_rigger.h"
 
+#include "limber/core/names.h"
 #include "limber/rigging/sphere_mesh_rigger.h"
 
 namespace limber {
@@ -18,12 +19,7 @@ std::span<const RiggerMethod> riggerMethods() {
 }
 
 const RiggerMethod& findRigger(std::string_view name) {
-  std::string known;
-  for (const RiggerMethod& method : kMethods) {
-    if (method.name == name) return method;
-    known += (known.empty() ? "" : ", ") + std::string(method.name);
-  }
-  throw Error(ErrorCode::kBadArgument, "no rigger is called '" + std::string(name) + "'", {}, "there are: " + known);
+  return findByName(kMethods, "rigger", name);
 }
 
 }  // namespace limber

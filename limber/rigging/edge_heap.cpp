@@ -4,15 +4,6 @@
 
 namespace limber {
 
-void EdgeHeap::fill(const std::vector<float>& keys) {
-  reset(static_cast<Index>(keys.size()));
-  count_ = static_cast<Index>(keys.size());
-  grow(count_);
-  for (Index e = 0; e < count_; ++e) put(e, pack(e, keys[e]));
-  if (count_ < 2) return;
-  for (Index slot = parent(count_ - 1) + 1; slot-- > 0;) siftDown(slot, at(slot));
-}
-
 void EdgeHeap::siftUp(Index slot, std::uint64_t entry) {
   while (slot > 0 && entry < at(parent(slot))) {
     put(slot, at(parent(slot)));

@@ -19,16 +19,10 @@ class EdgeHeap {
     slots_.assign(edgeCount, kNoIndex);
     count_ = 0;
   }
-  // All edges with their keys, in linear time.
-  void fill(const std::vector<float>& keys);
 
   bool empty() const { return count_ == 0; }
-  Index size() const { return count_; }
   Index top() const { return edgeOf(at(0)); }
-  // The i-th entry, 0 being the top: the first entries are among the least.
-  Index edgeAt(Index i) const { return edgeOf(at(i)); }
   bool contains(Index edge) const { return slots_[edge] != kNoIndex; }
-  float key(Index edge) const { return bitCast<float>(static_cast<std::uint32_t>(at(slots_[edge]) >> 32)); }
 
   void insert(Index edge, float key) {
     grow(count_ + 1);

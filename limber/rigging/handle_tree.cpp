@@ -1,8 +1,8 @@
 #include "limber/rigging/handle_tree.h"
 
 #include <algorithm>
-#include <numeric>
 
+#include "limber/core/disjoint_sets.h"
 #include "limber/rigging/piece_links.h"
 
 namespace limber {
@@ -13,9 +13,7 @@ namespace {
 class TreeMaker {
  public:
   explicit TreeMaker(const SphereMeshLevel& level)
-      : level_(level), sets_(level.spheres.size()), neighbors_(level.spheres.size()) {
-    std::iota(sets_.begin(), sets_.end(), Index{0});
-  }
+      : level_(level), sets_(level.spheres.size()), neighbors_(level.spheres.size()) {}
 
   HandleTree run() {
     joinPlane();
@@ -33,16 +31,6 @@ class TreeMaker {
   bool hasLostImage(Index h) const { return !level_.images.empty() && level_.images[h] == kNoIndex; }
   double cost(Index a, Index b) const;
 
-  Index find(Index h) {
-    while (sets_[h] != h) h = sets_[h] = sets_[sets_[h]];
-    return h;
-  }
-  bool unite(Index a, Index b) {
-    a = find(a);
-    b = find(b);
-    sets_[std::max(a, b)] = std::min(a, b);
-    return a != b;
-  }
   void connect(Index a, Index b) {
     neighbors_[a].push_back(b);
     neighbors_[b].push_back(a);
@@ -58,7 +46,7 @@ class TreeMaker {
   double volume(Index h) const { return level_.weights[h] * (level_.spheres[h].radius + 1e-9) + 1e-15; }
 
   const SphereMeshLevel& level_;
-  std::vector<Index> sets_;                    // union-find over orbits
+  DisjointSets sets_;                          // of orbits
   std::vector<std::vector<Index>> neighbors_;  // of the tree, per handle
 };
 
@@ -94,7 +82,7 @@ void TreeMaker::joinPlane() {
   }
   std::vector<VertexPair> joined;
   for (const auto& [a, b] : byCost(within)) {
-    if (!unite(a, b)) continue;
+    if (!sets_.unite(a, b)) continue;
     connect(a, b);
     joined.push_back({place[a], place[b]});
   }
@@ -107,7 +95,7 @@ void TreeMaker::joinPlane() {
     b = plane[b];
   }
   for (const auto& [a, b] : byCost(links)) {
-    if (unite(a, b)) connect(a, b);
+    if (sets_.unite(a, b)) connect(a, b);
   }
 }
 
@@ -122,7 +110,7 @@ void TreeMaker::joinOrbits() {
     }
   }
   for (const auto& [a, b] : byCost(edges)) {
-    if (!unite(orbitOf(a), orbitOf(b))) continue;
+    if (!sets_.unite(orbitOf(a), orbitOf(b))) continue;
     connect(a, b);
     const bool mirrored = imageOf(a) != a || imageOf(b) != b;
     if (mirrored && !hasLostImage(a) && !hasLostImage(b)) connect(imageOf(a), imageOf(b));

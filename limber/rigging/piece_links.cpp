@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <limits>
 
+#include "limber/core/disjoint_sets.h"
 #include "limber/core/parallel.h"
 #include "limber/rigging/point_tree.h"
 
@@ -11,34 +12,9 @@ namespace limber {
 
 namespace {
 
-class PieceSets {
- public:
-  explicit PieceSets(std::size_t count) : parent_(count), count_(static_cast<Index>(count)) {
-    std::iota(parent_.begin(), parent_.end(), Index{0});
-  }
-  Index find(Index i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  // False where both were one piece already.
-  bool unite(Index a, Index b) {
-    a = find(a);
-    b = find(b);
-    if (a == b) return false;
-    parent_[std::max(a, b)] = std::min(a, b);
-    --count_;
-    return true;
-  }
-  Index count() const { return count_; }
-
- private:
-  std::vector<Index> parent_;
-  Index count_;
-};
-
 class PieceLinker {
  public:
-  PieceLinker(std::span<const Vec3f> points, std::span<const VertexPair> edges, PieceSets& sets)
+  PieceLinker(std::span<const Vec3f> points, std::span<const VertexPair> edges, DisjointSets& sets)
       : points_(points), edges_(edges), sets_(sets), tree_(points), pieces_(points.size()) {}
 
   std::vector<VertexPair> run() {
@@ -69,7 +45,7 @@ class PieceLinker {
 
   std::span<const Vec3f> points_;
   std::span<const VertexPair> edges_;
-  PieceSets& sets_;
+  DisjointSets& sets_;
   PointTree tree_;
   std::vector<Index> pieces_;  // per point: the name of its piece at the start of the round
   std::vector<float> clear_;   // per point: no other piece is nearer than this (squared)
@@ -134,7 +110,7 @@ void PieceLinker::joinNearest() {
 }  // namespace
 
 std::vector<VertexPair> pieceLinks(std::span<const Vec3f> points, std::span<const VertexPair> edges) {
-  PieceSets sets(points.size());
+  DisjointSets sets(points.size());
   for (const auto& [a, b] : edges) sets.unite(a, b);
   if (sets.count() <= 1) return {};
   return PieceLinker(points, edges, sets).run();

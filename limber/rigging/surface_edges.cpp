@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "limber/core/numbers.h"
+
 namespace limber {
 
 namespace {
@@ -144,7 +146,7 @@ std::vector<std::int8_t> facingOf(const TriMesh& mesh, FacingSets& sets) {
   for (Index t = 0; t < count; ++t) {
     const Part& part = parts[partOf[rootOf[t]]];
     // A thousandth of the ball of that area: less says nothing about in and out.
-    const double noticeable = 1e-3 * std::sqrt(part.area * part.area * part.area / (36 * 3.14159265358979));
+    const double noticeable = 1e-3 * std::sqrt(part.area * part.area * part.area / (36 * kPi));
     const bool turnPart = std::abs(part.volume) > noticeable ? part.volume < 0 : 2 * part.keptArea < part.area;
     facing[t] = turnPart != sets.turned(t) ? -1 : 1;
   }

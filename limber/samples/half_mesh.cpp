@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "limber/core/parallel.h"
+#include "limber/mesh/normals.h"
 
 namespace limber {
 
@@ -166,12 +167,7 @@ void flipToDelaunay(HalfMesh& mesh, int passes) {
 // turn where the surface is curved.
 std::vector<double> wantedLengths(const HalfMesh& mesh, double edge, const std::vector<DetailRegion>& regions) {
   constexpr double kTurn = 0.5, kFinest = 0.45;  // radians for each edge; part of `edge`
-  std::vector<Vec3> normals(mesh.positions.size(), Vec3::Zero());
-  for (const Triangle& t : mesh.triangles) {
-    const Vec3& a = mesh.positions[t[0]];
-    const Vec3 normal = (mesh.positions[t[1]] - a).cross(mesh.positions[t[2]] - a);
-    for (const Index v : t) normals[v] += normal;
-  }
+  std::vector<Vec3> normals = areaNormals<Vec3>(mesh.positions, mesh.triangles);
   for (std::size_t v = 0; v < normals.size(); ++v) {
     if (mesh.positions[v].x() == 0) normals[v].x() = 0;
     normals[v].normalize();

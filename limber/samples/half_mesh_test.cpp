@@ -6,6 +6,8 @@
 #include <cmath>
 #include <map>
 
+#include "limber/core/numbers.h"
+
 namespace limber {
 namespace {
 
@@ -46,7 +48,7 @@ TEST(Polygonize, ABallIsClosedAndOfItsSize) {
   const Sculpture s = ball(0.5);
   const SymmetricMesh mesh = mirrorHalf(polygonize(s, 0.05), s);
   EXPECT_EQ(eulerNumber(mesh), 2);
-  EXPECT_NEAR(area(mesh), 3.14159265, 0.03);
+  EXPECT_NEAR(area(mesh), kPi, 0.03);
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
     EXPECT_NEAR(mesh.positions[v].norm(), 0.5, 2e-4);
     EXPECT_GT(mesh.normals[v].dot(mesh.positions[v].normalized()), 0.999);
@@ -78,7 +80,7 @@ TEST(Remesh, EdgesComeCloseToTheWantedLengthAndNothingIsLost) {
       const Vec3f u = (mesh.positions[t[(c + 1) % 3]] - p), v = (mesh.positions[t[(c + 2) % 3]] - p);
       longest = std::max(longest, double(u.norm()));
       reach = std::max(reach, double(p.x()));
-      if (u.normalized().dot(v.normalized()) > std::cos(20 * 3.14159265 / 180)) ++thin;
+      if (u.normalized().dot(v.normalized()) > std::cos(20 * kDegree)) ++thin;
     }
   }
   EXPECT_LT(longest, 0.09);

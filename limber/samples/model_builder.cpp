@@ -12,8 +12,6 @@ namespace limber {
 
 namespace {
 
-constexpr int kVertexAttribute = 34962, kTriangleIndices = 34963;
-
 // glTF wants linear colour factors. Within 0.3 % of the sRGB curve, and the same on every machine.
 double linearFactor(int srgb) {
   const double x = srgb / 255.0;
@@ -30,11 +28,11 @@ Index addIndices(Asset& asset, const std::vector<Index>& indices, Index vertexCo
   if (vertexCount > 65535) {
     return addAccessor(asset, {count, 1, ComponentType::kU32, false},
                        {reinterpret_cast<const std::uint8_t*>(indices.data()), indices.size() * sizeof(Index)},
-                       kTriangleIndices);
+                       kIndexTarget);
   }
   const std::vector<std::uint16_t> narrow(indices.begin(), indices.end());
   return addAccessor(asset, {count, 1, ComponentType::kU16, false},
-                     {reinterpret_cast<const std::uint8_t*>(narrow.data()), narrow.size() * 2}, kTriangleIndices);
+                     {reinterpret_cast<const std::uint8_t*>(narrow.data()), narrow.size() * 2}, kIndexTarget);
 }
 
 // The triangles of one material with vertices of their own.
@@ -54,9 +52,9 @@ Json addPrimitive(Asset& asset, const SymmetricMesh& mesh, int material) {
     }
   }
   Json primitive;
-  primitive["attributes"]["POSITION"] = addFloatAccessor(asset, positions, 3, kVertexAttribute, true);
+  primitive["attributes"]["POSITION"] = addFloatAccessor(asset, positions, 3, kVertexTarget, true);
   primitive["attributes"]["NORMAL"] =
-      addAccessor(asset, {count, 3, ComponentType::kF32, false}, bytesOf(normals), kVertexAttribute);
+      addAccessor(asset, {count, 3, ComponentType::kF32, false}, bytesOf(normals), kVertexTarget);
   primitive["indices"] = addIndices(asset, indices, count);
   return primitive;
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "limber/core/error.h"
+#include "limber/core/names.h"
 #include "limber/samples/character.h"
 #include "limber/samples/model_builder.h"
 #include "limber/samples/robot.h"
@@ -39,12 +40,7 @@ std::span<const SampleModel> sampleModels() {
 }
 
 Asset makeSample(std::string_view name) {
-  std::string known;
-  for (const SampleModel& sample : kSamples) {
-    if (sample.name == name) return sample.make();
-    known += (known.empty() ? "" : ", ") + std::string(sample.name);
-  }
-  throw Error(ErrorCode::kBadArgument, "no sample is called '" + std::string(name) + "'", {}, "there are: " + known);
+  return findByName(kSamples, "sample", name).make();
 }
 
 }  // namespace limber

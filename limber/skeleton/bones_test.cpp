@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include "limber/core/numbers.h"
+
 namespace limber {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 Joint joint(const char* name, std::optional<Index> parent, const Vec3& at, const Quat& rotation = Quat::Identity()) {
   return {name, parent, {at, rotation, Vec3::Ones()}, 0};

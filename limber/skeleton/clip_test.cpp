@@ -5,11 +5,10 @@
 #include <gtest/gtest.h>
 
 #include "limber/core/error.h"
+#include "limber/core/numbers.h"
 
 namespace limber {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 Skeleton twoJoints() {
   Skeleton skeleton;
@@ -22,7 +21,7 @@ Skeleton twoJoints() {
 }
 
 Eigen::Quaternionf aboutZ(double degrees) {
-  return Eigen::Quaternionf(Eigen::AngleAxisf(static_cast<float>(degrees * kPi / 180), Vec3f::UnitZ()));
+  return Eigen::Quaternionf(Eigen::AngleAxisf(static_cast<float>(degrees * kDegree), Vec3f::UnitZ()));
 }
 
 Track<Vec3f> slide(Interpolation interpolation) {

@@ -1,4 +1,4 @@
-// A skeleton together with what it moves.
+// Which joints move a vertex, and how much.
 #pragma once
 
 #include <cstdint>
@@ -26,12 +26,5 @@ SkinWeights expandWeights(const SkinWeights& welded, std::span<const Index> weld
 
 // Scales the weights of each vertex to a sum of 1; a vertex without weights stays without.
 void normalizeWeights(SkinWeights& weights);
-
-// Skeleton and inverse bind matrices (#J; mesh space to joint space) in one world space, with weights for the vertices.
-struct Rig {
-  Skeleton skeleton;
-  std::vector<Affine> inverseBind;
-  SkinWeights weights;
-};
 
 }  // namespace limber

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "limber/core/error.h"
+#include "limber/core/names.h"
 #include "limber/skinning/dual_quaternion.h"
 #include "limber/skinning/linear_blend.h"
 
@@ -29,12 +30,7 @@ std::span<const Deformer> deformers() {
 }
 
 const Deformer& findDeformer(std::string_view name) {
-  std::string known;
-  for (const Deformer& deformer : kDeformers) {
-    if (deformer.name == name) return deformer;
-    known += (known.empty() ? "" : ", ") + std::string(deformer.name);
-  }
-  throw Error(ErrorCode::kBadArgument, fmt::format("no deformer is called '{}'", name), {}, "there are: " + known);
+  return findByName(kDeformers, "deformer", name);
 }
 
 void checkWeights(const SkinWeights& weights, Index jointCount) {

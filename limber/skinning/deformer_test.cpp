@@ -11,6 +11,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "limber/core/error.h"
+#include "limber/core/numbers.h"
 #include "limber/core/parallel.h"
 #include "limber/skeleton/pose.h"
 #include "limber/skinning/deform_kernels.h"
@@ -19,8 +20,6 @@ namespace limber {
 namespace {
 
 using testing::HasSubstr;
-
-constexpr double kPi = 3.14159265358979323846;
 
 struct Scene {
   std::vector<Vec3f> positions, normals;

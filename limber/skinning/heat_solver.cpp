@@ -5,6 +5,7 @@
 #include <numeric>
 #include <utility>
 
+#include "limber/core/disjoint_sets.h"
 #include "limber/core/parallel.h"
 
 namespace limber {
@@ -12,21 +13,16 @@ namespace limber {
 namespace {
 
 // Pieces of the graph of the matrix, numbered by the lowest vertex they hold.
-std::vector<int> matrixPieces(const Eigen::SparseMatrix<double>& matrix) {
-  std::vector<int> parent(matrix.cols());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto rootOf = [&parent](int v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
+std::vector<Index> matrixPieces(const Eigen::SparseMatrix<double>& matrix) {
+  DisjointSets sets(matrix.cols());
   for (int column = 0; column < matrix.cols(); ++column) {
     for (Eigen::SparseMatrix<double>::InnerIterator it(matrix, column); it; ++it) {
-      const int a = rootOf(column), b = rootOf(static_cast<int>(it.row()));
-      parent[std::max(a, b)] = std::min(a, b);
+      sets.unite(static_cast<Index>(column), static_cast<Index>(it.row()));
     }
   }
-  for (int v = 0; v < matrix.cols(); ++v) parent[v] = parent[parent[v]];
-  return parent;
+  std::vector<Index> pieces(matrix.cols());
+  for (Index v = 0; v < pieces.size(); ++v) pieces[v] = sets.find(v);
+  return pieces;
 }
 
 }  // namespace
@@ -35,7 +31,7 @@ HeatSolver::HeatSolver(Laplacian laplacian) : laplacian_(std::move(laplacian)), 
 
 void HeatSolver::factorize(const HeatSources& sources) {
   const int vertexCount = static_cast<int>(laplacian_.stiffness.cols());
-  const std::vector<int> piece = matrixPieces(laplacian_.stiffness);
+  const std::vector<Index> piece = matrixPieces(laplacian_.stiffness);
   std::vector<char> fed(vertexCount, 0);  // by piece
   Eigen::VectorXd held(vertexCount);
   for (int v = 0; v < vertexCount; ++v) {

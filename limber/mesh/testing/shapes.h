@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "limber/core/numbers.h"
 #include "limber/mesh/tri_mesh.h"
 
 namespace limber::testing {
@@ -85,7 +86,7 @@ inline TriMesh tube(int around, int rings, bool capped) {
   for (int ring = 0; ring < rings; ++ring) {
     const float x = static_cast<float>(ring) / static_cast<float>(rings - 1) - 0.5f;
     for (int i = 0; i < around; ++i) {
-      const double angle = 2 * M_PI * i / around;
+      const double angle = 2 * kPi * i / around;
       mesh.positions.push_back(
           {x, static_cast<float>(0.1 * std::cos(angle)), static_cast<float>(0.1 * std::sin(angle))});
     }
@@ -116,7 +117,7 @@ inline TriMesh pages(int count) {
   TriMesh mesh;
   mesh.positions = {{0, 0, -0.5f}, {0, 0, 0}, {0, 0, 0.5f}};
   for (int page = 0; page < count; ++page) {
-    const double angle = 2 * M_PI * page / count + 0.1;
+    const double angle = 2 * kPi * page / count + 0.1;
     const Index first = mesh.vertexCount();
     for (const float z : {-0.5f, 0.0f, 0.5f}) {
       mesh.positions.push_back(
@@ -150,7 +151,7 @@ inline TriMesh soup(Index vertices, Index triangles, unsigned seed) {
 inline TriMesh moebius(int segments) {
   TriMesh mesh;
   for (int i = 0; i < segments; ++i) {
-    const double turn = 2 * M_PI * i / segments;
+    const double turn = 2 * kPi * i / segments;
     for (const double side : {-0.15, 0.0, 0.15}) {
       const double radius = 0.35 + side * std::cos(turn / 2);
       mesh.positions.push_back({static_cast<float>(radius * std::cos(turn)),

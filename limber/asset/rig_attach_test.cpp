@@ -1,3 +1,4 @@
+// attachRig.
 #include "limber/asset/rig_io.h"
 
 #include <cmath>
@@ -6,51 +7,23 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "limber/asset/scene_builder_test.h"
 #include "limber/asset/scene_graph.h"
+#include "limber/asset/testing/attached_rig.h"
+#include "limber/asset/testing/scene_builder.h"
 
 namespace limber {
 namespace {
 
+using testing::attach;
+using testing::Attached;
 using ::testing::HasSubstr;
+using testing::mixedWeights;
 using testing::SceneBuilder;
+using testing::threeJoints;
 using testing::translation;
 
 std::string numbered(std::string name, Index number) {
   return name.append(std::to_string(number));
-}
-
-// Three joints in a row along x, the last one with a bend to y.
-Skeleton threeJoints() {
-  Skeleton skeleton;
-  skeleton.boneShape = BoneShape::kSphere;
-  const Vec3 steps[] = {{0.1, 0.2, 0.3}, {1, 0, 0}, {0.25, 0.5, 0}};
-  for (Index j = 0; j < 3; ++j) {
-    Joint joint;
-    joint.name = numbered("handle_", j);
-    if (j > 0) joint.parent = j - 1;
-    joint.rest.translation = steps[j];
-    joint.radius = 0.1 * (j + 1);
-    skeleton.joints.push_back(joint);
-  }
-  return skeleton;
-}
-
-// Two influences for each vertex, different from vertex to vertex.
-SkinWeights mixedWeights(std::size_t vertices, Index joints, Index used = 2, Index slots = 4) {
-  SkinWeights weights;
-  weights.slots = slots;
-  weights.joints.assign(vertices * slots, 0);
-  weights.weights.assign(vertices * slots, 0.0f);
-  for (std::size_t v = 0; v < vertices; ++v) {
-    double sum = 0;
-    for (Index i = 0; i < used; ++i) sum += 1.0 / (i + 1 + v % 3);
-    for (Index i = 0; i < used; ++i) {
-      weights.joints[v * slots + i] = static_cast<Index>((v + i) % joints);
-      weights.weights[v * slots + i] = static_cast<float>(1.0 / (i + 1 + v % 3) / sum);
-    }
-  }
-  return weights;
 }
 
 // Linear blend skinning as glTF defines it, straight from the document: the world positions of one skinned primitive.
@@ -109,23 +82,6 @@ void expectBufferKept(const Asset& before, const Asset& after) {
   EXPECT_TRUE(std::equal(a.begin(), a.end(), b.begin()));
 }
 
-struct Attached {
-  Asset before, after;
-  Geometry geometry;
-  SkinWeights weights;
-};
-
-Attached attach(Asset asset, const Skeleton& skeleton = threeJoints(), Index used = 2, Index slots = 4) {
-  Attached result;
-  result.before = asset.clone();
-  result.geometry = collectGeometry(asset);
-  result.weights = mixedWeights(result.geometry.positions.size(), skeleton.jointCount(), used, slots);
-  attachRig(asset, result.geometry, skeleton, result.weights);
-  checkAsset(asset);
-  result.after = std::move(asset);
-  return result;
-}
-
 Index rigRoot(const Asset& asset) {
   const Json& nodes = asset.json()["nodes"];
   for (Index n = 0; n < nodes.size(); ++n) {
@@ -134,8 +90,6 @@ Index rigRoot(const Asset& asset) {
   ADD_FAILURE() << "no limber_rig";
   return 0;
 }
-
-// --- attachRig ---
 
 TEST(AttachRig, TheBindPoseShowsTheModelWhereItWas) {
   SceneBuilder scene;
@@ -439,115 +393,6 @@ TEST(AttachRig, ArgumentsThatDoNotFitAreRefused) {
   weights = mixedWeights(4, 3);
   weights.weights[5] = std::nanf("");
   EXPECT_THROW(attachRig(asset, geometry, threeJoints(), weights), Error);
-}
-
-// --- readSkeleton, readWeights ---
-
-TEST(ReadSkeleton, IsWhatWasAttached) {
-  SceneBuilder scene;
-  scene.addNode({{"mesh", scene.addTetrahedron()}, {"scale", {3, 3, 3}}});
-  const Attached rigged = attach(scene.build());
-  const AssetSkeleton read = readSkeleton(rigged.after);
-  const Skeleton made = threeJoints();
-  ASSERT_EQ(read.skeleton.jointCount(), 3u);
-  EXPECT_EQ(read.skeleton.boneShape, BoneShape::kSphere);
-  for (Index j = 0; j < 3; ++j) {
-    EXPECT_EQ(read.skeleton.joints[j].name, made.joints[j].name);
-    EXPECT_EQ(read.skeleton.joints[j].parent, made.joints[j].parent);
-    EXPECT_NEAR(read.skeleton.joints[j].radius, made.joints[j].radius, 1e-7);
-    EXPECT_LT((read.skeleton.joints[j].rest.translation - made.joints[j].rest.translation).norm(), 1e-6);
-  }
-  checkSkeleton(read.skeleton);
-  const SkinWeights weights = readWeights(rigged.after, collectGeometry(rigged.after), read);
-  ASSERT_EQ(weights.slots, 4u);
-  EXPECT_EQ(weights.joints, rigged.weights.joints);
-  for (std::size_t i = 0; i < weights.weights.size(); ++i) {
-    EXPECT_NEAR(weights.weights[i], rigged.weights.weights[i], 1e-6);
-  }
-}
-
-TEST(ReadSkeleton, NodesBetweenJointsBelongToItAndNamesAreUnique) {
-  SceneBuilder scene;
-  const Index mesh = scene.addTetrahedron();
-  const Index hand = scene.addNode({{"name", "bone"}, {"translation", {0, 0, 1}}});
-  const Index helper = scene.addNode({{"children", {hand}}, {"translation", {0, 1, 0}}});
-  const Index aside = scene.addNode({{"name", "end"}});
-  const Index hip = scene.addNode({{"name", "bone"}, {"children", {helper, aside}}, {"translation", {1, 0, 0}}});
-  scene.addNode({{"name", "armature"}, {"children", {hip}}});
-  scene.bindRigidly(mesh, {0, 0, 0, 1});
-  const Index skin = scene.addSkin({hand, hip}, {translation(-1, -1, -1), translation(-1, 0, 0)});
-  scene.addNode({{"mesh", mesh}, {"skin", skin}});
-  const Asset asset = scene.build();
-  const AssetSkeleton read = readSkeleton(asset);
-  checkSkeleton(read.skeleton);
-  EXPECT_EQ(read.jointNode, (std::vector<Index>{hip, helper, hand}));
-  EXPECT_EQ(read.skeleton.joints[2].name, "bone_2");
-  EXPECT_EQ(read.skeleton.boneShape, BoneShape::kSegment);
-  EXPECT_TRUE(restGlobals(read.skeleton)[2].translation().isApprox(Vec3(1, 1, 1), 1e-6));
-  const SkinWeights weights = readWeights(asset, collectGeometry(asset), read);
-  EXPECT_EQ(weights.jointsOf(0)[0], 2u);  // joint 0 of the skin is the hand
-  EXPECT_EQ(weights.jointsOf(3)[0], 0u);
-}
-
-TEST(ReadSkeleton, TakesTheBindPoseOfAPosedFile) {
-  SceneBuilder scene;
-  const Index mesh = scene.addTetrahedron();
-  const Index tip = scene.addNode({{"name", "tip"}, {"translation", {9, 9, 9}}});
-  const Index root = scene.addNode({{"name", "root"}, {"children", {tip}}});
-  scene.bindRigidly(mesh, {0, 0, 0, 1});
-  const Index skin = scene.addSkin({root, tip}, {translation(0, 0, 0), translation(0, -2, 0)});
-  scene.addNode({{"mesh", mesh}, {"skin", skin}});
-  const AssetSkeleton read = readSkeleton(scene.build());
-  EXPECT_TRUE(read.skeleton.joints[1].rest.translation.isApprox(Vec3(0, 2, 0), 1e-6));
-}
-
-TEST(ReadSkeleton, AFileOfJointsAloneHasOne) {
-  SceneBuilder scene;
-  const Index tip = scene.addNode({{"name", "tip"}, {"translation", {0, 1, 0}}});
-  const Index root = scene.addNode({{"name", "root"}, {"children", {tip}}});
-  scene.addSkin({root, tip}, {translation(0, 0, 0), translation(0, -1, 0)});
-  const Asset asset = scene.build();
-  EXPECT_FALSE(hasRig(asset));
-  EXPECT_EQ(readSkeleton(asset).skeleton.jointCount(), 2u);
-}
-
-TEST(ReadWeights, SaysWhatTheFileSays) {
-  SceneBuilder scene;
-  const Index mesh = scene.addTetrahedron();
-  const Index hat = scene.addTetrahedron();
-  const Index loose = scene.addTetrahedron();
-  const Index hatNode = scene.addNode({{"mesh", hat}});
-  const Index tip = scene.addNode({{"name", "tip"}, {"children", {hatNode}}});
-  const Index root = scene.addNode({{"name", "root"}, {"children", {tip}}});
-  const Index skin = scene.addSkin({root, tip}, {});
-  const std::vector<std::uint8_t> joints = {0, 1, 1, 0, 0, 1, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0};
-  const std::vector<float> weights = {0.25f, 0.5f, 0.25f, 0, 0, 0, 0, 0, -1, 0.5f, 0, 0, 3, 0, 0, 0};
-  Asset& asset = scene.asset();
-  const Index j = addAccessor(asset, {4, 4, ComponentType::kU8, false}, joints, 34962);
-  const Index w = addFloatAccessor(asset, weights, 4, 34962);
-  scene.json()["meshes"][mesh]["primitives"][0]["attributes"]["JOINTS_0"] = j;
-  scene.json()["meshes"][mesh]["primitives"][0]["attributes"]["WEIGHTS_0"] = w;
-  scene.addNode({{"mesh", mesh}, {"skin", skin}});
-  scene.addNode({{"mesh", loose}});
-  const Geometry geometry = collectGeometry(asset);
-  const SkinWeights read = readWeights(asset, geometry, readSkeleton(asset));
-  for (const PrimitiveInstance& instance : geometry.instances) {
-    const Index v = instance.firstVertex;
-    if (instance.node == hatNode) {
-      EXPECT_EQ(read.jointsOf(v)[0], 1u);
-      EXPECT_EQ(read.weightsOf(v)[0], 1);
-    } else if (instance.mesh == loose) {
-      EXPECT_EQ(read.weightsOf(v)[0], 0);
-    } else {
-      EXPECT_EQ(read.jointsOf(v)[0], 1u);  // named twice: added up, strongest first
-      EXPECT_EQ(read.weightsOf(v)[0], 0.75f);
-      EXPECT_EQ(read.weightsOf(v)[1], 0.25f);
-      EXPECT_EQ(read.weightsOf(v + 1)[0], 0);
-      EXPECT_EQ(read.weightsOf(v + 2)[0], 0.5f);  // a negative weight counts as none
-      EXPECT_EQ(read.weightsOf(v + 2)[1], 0);
-      EXPECT_EQ(read.weightsOf(v + 3)[0], 3);  // as the file has them
-    }
-  }
 }
 
 }  // namespace

@@ -30,11 +30,11 @@ class SceneBuilder {
   Index addPositions(const std::vector<Vec3f>& positions) {
     std::vector<float> values;
     for (const Vec3f& p : positions) values.insert(values.end(), {p.x(), p.y(), p.z()});
-    return addFloatAccessor(asset_, values, 3, 34962, true);
+    return addFloatAccessor(asset_, values, 3, kVertexTarget, true);
   }
   Index addIndices(const std::vector<std::uint32_t>& indices) {
     return addAccessor(asset_, {static_cast<Index>(indices.size()), 1, ComponentType::kU32, false},
-                       {reinterpret_cast<const std::uint8_t*>(indices.data()), indices.size() * 4}, 34963);
+                       {reinterpret_cast<const std::uint8_t*>(indices.data()), indices.size() * 4}, kIndexTarget);
   }
   Json primitive(const std::vector<Vec3f>& positions, const std::vector<Triangle>& triangles) {
     std::vector<std::uint32_t> corners;
@@ -73,8 +73,8 @@ class SceneBuilder {
       weights.insert(weights.end(), {1, 0, 0, 0});
     }
     const auto count = static_cast<Index>(jointOfVertex.size());
-    const Index j = addAccessor(asset_, {count, 4, ComponentType::kU8, false}, joints, 34962);
-    const Index w = addFloatAccessor(asset_, weights, 4, 34962);
+    const Index j = addAccessor(asset_, {count, 4, ComponentType::kU8, false}, joints, kVertexTarget);
+    const Index w = addFloatAccessor(asset_, weights, 4, kVertexTarget);
     Json& attributes = json()["meshes"][mesh]["primitives"][0]["attributes"];
     attributes["JOINTS_0"] = j;
     attributes["WEIGHTS_0"] = w;
