@@ -238,6 +238,7 @@ std::vector<double> SphereMesh::errors(Index mostCount) const {
     sum -= errorOf(static_cast<Index>(i - 1));
     sum += errorOf(m.keptBefore);
     if (m.gone != m.kept) sum += errorOf(m.goneBefore);
+    if (i == 1) sum = 0;  // nothing is merged: what is left is rounding
     const Index before = i > 1 ? merges[i - 2].countAfter : sequence_.initialCount;
     for (Index count = after + 1; count <= std::min(before, mostCount); ++count) errors[count] = std::max(sum, 0.0);
   }

@@ -17,7 +17,7 @@ namespace limber {
 // One number of spheres. Indices in it are handles: 0 to spheres.size().
 struct SphereMeshLevel {
   std::vector<Sphere> spheres;    // in the space of the mesh
-  std::vector<double> weights;    // share of the surface's area that each sphere stands for
+  std::vector<double> weights;    // share of the surface that each sphere stands for, by area
   std::vector<Index> images;      // its mirror image, itself on the plane, kNoIndex if none; empty without symmetry.
                                   // Of two images the first is on the plane's positive side
   std::vector<VertexPair> edges;  // between neighbours, first < second, ordered; they connect all spheres
@@ -27,9 +27,9 @@ struct SphereMeshLevel {
 //
 // The collapse starts from every vertex as a sphere of radius 0 and merges neighbours, cheapest first, into the sphere
 // that is nearest to the planes of all triangles that either stood for (SphereQuadric). Separate pieces are linked
-// where they are nearest. On a model that is its own mirror image a merge and its image are one step, so that spheres
-// come in exact mirror pairs or lie exactly on the plane, at every count up to the number of vertices that have an
-// image.
+// where they are nearest; bits that float about count for less (strayShares). On a model that is its own mirror image a
+// merge and its image are one step, so that spheres come in exact mirror pairs or lie exactly on the plane, at every
+// count up to the number of vertices that have an image.
 class SphereMesh {
  public:
   // Records the whole collapse. Throws Error kBadData for a mesh without vertices, kLimit for more than 2^30.

@@ -5,6 +5,7 @@
 
 #include "limber/rigging/piece_links.h"
 #include "limber/rigging/point_tree.h"
+#include "limber/rigging/stray_pieces.h"
 
 namespace limber {
 
@@ -33,6 +34,7 @@ class Starter {
   CollapseStart run() {
     std::vector<VertexPair> edges = surface_.edges;
     const std::vector<VertexPair> links = pieceLinks(points_, edges);
+    measureSurface(links);
     edges.insert(edges.end(), links.begin(), links.end());
     const std::vector<Index> carriers = mirror_ ? placeLoose(edges) : std::vector<Index>{};
     numberNodes(carriers);
@@ -43,6 +45,7 @@ class Starter {
 
  private:
   std::vector<Index> placeLoose(const std::vector<VertexPair>& edges);
+  void measureSurface(const std::vector<VertexPair>& links);
   void numberNodes(const std::vector<Index>& carriers);
   void addSurface();
   void addEdges(const std::vector<VertexPair>& edges);
@@ -54,8 +57,31 @@ class Starter {
   const std::vector<Vec3f>& points_;
   const SurfaceEdges& surface_;
   const std::optional<MirrorMap>& mirror_;
+  std::vector<Vec3> normals_;    // #F, as long as a third of the area
+  std::vector<double> weights_;  // #F, of one corner; all together weigh 1 where there is a surface
   CollapseStart start_;
 };
+
+void Starter::measureSurface(const std::vector<VertexPair>& links) {
+  const Index count = mesh_.triangleCount();
+  normals_.resize(count);
+  weights_.resize(count);
+  std::vector<double> areas(points_.size(), 0);
+  for (Index t = 0; t < count; ++t) {
+    const Triangle& v = mesh_.triangles[t];
+    const Vec3 a = points_[v[0]].cast<double>(), b = points_[v[1]].cast<double>(), c = points_[v[2]].cast<double>();
+    normals_[t] = (b - a).cross(c - a) * (surface_.facing[t] / 6.0);
+    weights_[t] = normals_[t].norm();
+    for (const Index corner : v) areas[corner] += weights_[t];
+  }
+  if (!links.empty()) {
+    const std::vector<double> shares = strayShares(points_, areas, surface_.edges, links);
+    for (Index t = 0; t < count; ++t) weights_[t] *= shares[mesh_.triangles[t][0]];
+  }
+  const double total = 3 * std::accumulate(weights_.begin(), weights_.end(), 0.0);
+  if (!(total > 0)) return;
+  for (double& weight : weights_) weight /= total;
+}
 
 // Each vertex without an image goes with the vertex with one that is fewest edges away: breadth first from all of
 // those. Returns for each vertex the one it goes with.
@@ -130,14 +156,6 @@ void Starter::addSurface() {
   quadrics.resize(nodes);
   std::vector<PartMoments>& moments = start_.input.moments;
   moments.resize(nodes);
-  std::vector<Vec3> normals(mesh_.triangles.size());  // as long as a third of the area
-  double total = 0;
-  for (Index t = 0; t < mesh_.triangleCount(); ++t) {
-    const Triangle& v = mesh_.triangles[t];
-    const Vec3 a = points_[v[0]].cast<double>(), b = points_[v[1]].cast<double>(), c = points_[v[2]].cast<double>();
-    normals[t] = (b - a).cross(c - a) * (surface_.facing[t] / 6.0);
-    total += 3 * normals[t].norm();
-  }
   // The plane (or, without a normal, the point alone) of one corner: half of it to each of a pair.
   const auto add = [&](Index v, Vec3 normal, double weight) {
     const EdgeEnd end = start_.vertexEnds[v];
@@ -153,16 +171,17 @@ void Starter::addSurface() {
   };
   std::vector<double> weights(points_.size(), 0);
   for (Index t = 0; t < mesh_.triangleCount(); ++t) {
-    const double third = normals[t].norm();
-    if (!(third > 0)) continue;
+    if (!(weights_[t] > 0)) continue;
+    const Vec3 normal = normals_[t].normalized();
     for (const Index v : mesh_.triangles[t]) {
-      add(v, normals[t] / third, third / total);
-      weights[v] += third / total;
+      add(v, normal, weights_[t]);
+      weights[v] += weights_[t];
     }
   }
   // Vertices with (next to) no surface weigh a little, so that they have a place; where there is no surface at all they
   // share the whole.
-  const double least = (total > 0 ? 1e-6 : 1) / static_cast<double>(points_.size());
+  const bool hasSurface = std::any_of(weights_.begin(), weights_.end(), [](double weight) { return weight > 0; });
+  const double least = (hasSurface ? 1e-6 : 1) / static_cast<double>(points_.size());
   for (Index v = 0; v < points_.size(); ++v) {
     if (weights[v] < least) add(v, Vec3::Zero(), least);
   }

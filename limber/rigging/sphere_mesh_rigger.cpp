@@ -120,9 +120,10 @@ Skeleton handleSkeleton(const SphereMesh& spheres, Index count) {
 
 AutoRig rigWithSphereMesh(const TriMesh& mesh, const RigOptions& options, Progress& progress) {
   checkHandles(mesh, options);
-  progress.stage("sphere mesh");
+  progress.step("collapse");
   const SphereMesh spheres = SphereMesh::build(mesh, progress);
   AutoRig rig;
+  progress.step("handles");
   rig.suggestions = suggestHandles(spheres);
   rig.skeleton = handleSkeleton(spheres, options.handles.value_or(rig.suggestions.front().handles));
   return rig;

@@ -179,6 +179,26 @@ TEST(SphereMesh, SpheresLieInTheLimbs) {
   for (const int limb : {2, -2, 3, -3}) EXPECT_TRUE(limbs.count(limb)) << limb;
 }
 
+TEST(SphereMesh, SpecksAboutAModelTakeNoHandles) {
+  const TriMesh body = testing::jittered(testing::blockBiped(1), 0.02f);
+  Box box;
+  for (Index v = 0; v < body.vertexCount(); ++v) box.add(body.position(v));
+  TriMesh speck = testing::octahedron();
+  for (Vec3f& p : speck.positions) p *= static_cast<float>(0.005 * box.longestSide());
+  TriMesh mesh = body;
+  for (int i = 0; i < 16; ++i) {
+    const Vec3 away(1 + 0.1 * (i % 4), 0, 0.3 * (i % 5) - 0.6);
+    mesh = testing::joined(mesh, speck, (box.min + box.longestSide() * away).cast<float>());
+  }
+  const SphereMesh spheres = sphereMesh(mesh);
+  for (const Index count : {3u, 6u, 12u, 20u}) {
+    const std::vector<Index> handles = spheres.vertexHandles(count);
+    const std::set<Index> ofBody(handles.begin(), handles.begin() + body.vertexCount());
+    EXPECT_EQ(ofBody.size(), count);
+  }
+  expectSound(mesh, spheres, mesh.vertexCount());
+}
+
 TEST(SphereMesh, FlippedTrianglesMakeNoDifference) {
   TriMesh mesh = testing::blockBiped(1);
   const SphereMeshLevel level = sphereMesh(mesh).level(20);
