@@ -38,10 +38,12 @@ void run(const Options& options) {
   progress->stage("read");
   const Asset asset = readAsset(options.input);
   progress->stage("draw");
-  const Bytes png = encodePng(render(makeScene(asset), preview));
+  const Scene scene = makeScene(asset);
+  const Bytes png = encodePng(render(scene, preview));
   progress->stage("write");
   writeFile(options.output, png);
   progress.finish();
+  printWarnings(scene.warnings, options.common.quiet);
   Account(options.common.quiet, options.output).line(fmt::format("written: {}", options.output));
 }
 

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "limber/core/numbers.h"
+
 namespace limber {
 namespace {
 
@@ -26,7 +28,7 @@ TEST(CornerNormals, ARoundWallIsSmoothEvenUnwelded) {
   std::vector<Triangle> triangles;
   constexpr int kAround = 24;
   const auto at = [](int i, float y) {
-    const double turn = 2 * 3.14159265358979 * (i % kAround) / kAround;
+    const double turn = 2 * kPi * (i % kAround) / kAround;
     return Vec3f(float(std::cos(turn)), y, float(std::sin(turn)));
   };
   for (int i = 0; i < kAround; ++i) {

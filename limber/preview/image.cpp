@@ -13,13 +13,13 @@ namespace {
 
 constexpr std::size_t kChannels = 3;
 
+}  // namespace
+
 void checkSize(const Image& image) {
   const bool sized = image.width > 0 && image.height > 0 &&
                      image.pixels.size() == kChannels * std::size_t(image.width) * std::size_t(image.height);
   if (!sized) throw Error(ErrorCode::kBadArgument, "an image's pixels do not match its width and height");
 }
-
-}  // namespace
 
 Bytes encodePng(const Image& image) {
   checkSize(image);

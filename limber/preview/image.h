@@ -15,6 +15,9 @@ struct Image {
   std::vector<std::uint8_t> pixels;
 };
 
+// Throws Error kBadArgument where the pixels do not fill the width and height, or these are not positive.
+void checkSize(const Image& image);
+
 // The same image gives the same bytes. Throws Error kBadArgument where the sizes do not match.
 Bytes encodePng(const Image& image);
 

@@ -28,6 +28,7 @@ struct Surface {
   std::span<const Vec3f> cornerNormals;  // #F * 3, or empty
   std::span<const Vec3f> vertexNormals;  // where cornerNormals is empty
   std::span<const Vec3f> colors;         // by vertex
+  const Scene* textured = nullptr;       // the scene whose textures colour it besides
 };
 
 // One piece of surface inside a pixel: samples that agree in normal and depth are shaded once.
@@ -112,8 +113,9 @@ Painter::Painter(const Scene& scene, const PreviewOptions& options)
       light_(scene.positions, scene.triangles, options.view.azimuth, groundOf(scene, options)),
       model_(scene.positions, scene.triangles, camera_),
       overlay_(shapes_.positions, shapes_.triangles, camera_) {
-  modelSurface_ = {&model_, scene.positions, normals_, {}, colors_};
-  overlaySurface_ = {&overlay_, shapes_.positions, {}, shapes_.normals, shapes_.colors};
+  const bool isTextured = options.show == PreviewShow::kModel && !scene.textures.empty();
+  modelSurface_ = {&model_, scene.positions, normals_, {}, colors_, isTextured ? &scene : nullptr};
+  overlaySurface_ = {&overlay_, shapes_.positions, {}, shapes_.normals, shapes_.colors, nullptr};
   translucent_ = options.show == PreviewShow::kHandles || options.show == PreviewShow::kBones;
   Box box;
   for (const Vec3f& p : scene.positions) box.add(p.cast<double>());
@@ -150,6 +152,27 @@ void Painter::paintTile(int column, int row, TileSamples& model, TileSamples& ov
   }
 }
 
+// The texture's colour at a place in a triangle; white where it has none. One level serves the whole triangle: that in
+// which a pixel of the picture has about two in each direction, of which the samples in it see most.
+Vec3 textureColor(const Surface& surface, Index number, const Vec3& weights) {
+  const Scene& scene = *surface.textured;
+  if (scene.textureOf[number] == kNoIndex) return Vec3::Ones();
+  const Texture& texture = *scene.textures[scene.textureOf[number]];
+  const Triangle& triangle = scene.triangles[number];
+  const Vec2f &a = scene.uvs[triangle[0]], &b = scene.uvs[triangle[1]], &c = scene.uvs[triangle[2]];
+  const auto area = [](double x1, double y1, double x2, double y2) { return std::abs(x1 * y2 - x2 * y1); };
+  const auto vertices = surface.mesh->vertices();
+  const auto &pa = vertices[triangle[0]], &pb = vertices[triangle[1]], &pc = vertices[triangle[2]];
+  constexpr double kSubpixels = 256.0 * 256.0;
+  const double seen = area(double(pb.x) - pa.x, double(pb.y) - pa.y, double(pc.x) - pa.x, double(pc.y) - pa.y);
+  const double texels =
+      area(b.x() - a.x(), b.y() - a.y(), c.x() - a.x(), c.y() - a.y()) * texture.width() * texture.height();
+  const double level = seen > 0 && texels > 0 ? 0.5 * std::log2(texels * kSubpixels / seen) - 1 : 0.0;
+  return texture.sample(
+      static_cast<float>(weights[0]) * a + static_cast<float>(weights[1]) * b + static_cast<float>(weights[2]) * c,
+      level);
+}
+
 Fragment Painter::attributesAt(const Surface& surface, Index number, std::int32_t x, std::int32_t y) const {
   const Triangle& triangle = surface.mesh->triangles()[number];
   const Vec3 weights = surface.mesh->barycentric(number, x, y);
@@ -162,6 +185,7 @@ Fragment Painter::attributesAt(const Surface& surface, Index number, std::int32_
     fragment.normal += w * normal.cast<double>();
     fragment.color += w * surface.colors[triangle[c]].cast<double>();
   }
+  if (surface.textured) fragment.color = fragment.color.cwiseProduct(textureColor(surface, number, weights));
   const Vec3 a = surface.positions[triangle[0]].cast<double>();
   const Vec3 face =
       (surface.positions[triangle[1]].cast<double>() - a).cross(surface.positions[triangle[2]].cast<double>() - a);

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "limber/core/error.h"
+#include "limber/core/numbers.h"
 #include "limber/core/parallel.h"
 #include "limber/preview/palette.h"
 #include "limber/preview/shapes.h"
@@ -169,7 +170,7 @@ TEST(Shapes, ASphereIsClosedAndWoundOutwards) {
     const auto at = [&](std::size_t c) { return Vec3(ball.positions[t[c]].cast<double>() - Vec3(1, 2, 3)); };
     volume += at(0).dot(at(1).cross(at(2))) / 6;
   }
-  EXPECT_NEAR(std::abs(volume), 4.0 / 3 * 3.14159265 * 0.125, 0.02);
+  EXPECT_NEAR(std::abs(volume), 4.0 / 3 * kPi * 0.125, 0.02);
 }
 
 }  // namespace

@@ -10,20 +10,23 @@
 #include "limber/asset/scene_graph.h"
 #include "limber/pipeline/pose_asset.h"
 #include "limber/preview/palette.h"
+#include "limber/preview/scene_textures.h"
 
 namespace limber {
 
 namespace {
 
-// Linear RGB of a primitive's material: its base colour factor, a diffuse factor of an older extension, or clay.
-Vec3f materialColor(const Asset& asset, const Json& primitive) {
+// Linear RGB of a primitive's material: its base colour factor; clay where there is none, and for the texture where
+// that is not drawn.
+Vec3f materialColor(const Asset& asset, const Json& primitive, bool isDrawn) {
   const Vec3f clay = linearFromSrgb(190, 181, 172);
   const auto number = indexMember(primitive, "material");
   if (!number) return clay;
   const Json& material = elements(asset, "materials")[*number];
   const Json* metallicRoughness = member(material, "pbrMetallicRoughness");
   const Json* factor = metallicRoughness ? member(*metallicRoughness, "baseColorFactor") : nullptr;
-  const bool textured = metallicRoughness && member(*metallicRoughness, "baseColorTexture");
+  if (isDrawn && !factor) return Vec3f::Ones();
+  const bool textured = !isDrawn && metallicRoughness && member(*metallicRoughness, "baseColorTexture");
   if (!factor || !factor->is_array() || factor->size() < 3) return textured ? clay : Vec3f(Vec3f::Constant(0.8f));
   Vec3f color;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -33,9 +36,9 @@ Vec3f materialColor(const Asset& asset, const Json& primitive) {
   return textured ? Vec3f(color.cwiseProduct(clay)) : color;
 }
 
-void colorInstance(const Asset& asset, const PrimitiveInstance& instance, std::vector<Vec3f>& colors) {
+void colorInstance(const Asset& asset, const PrimitiveInstance& instance, bool isTextured, std::vector<Vec3f>& colors) {
   const Json& primitive = elements(asset, "meshes")[instance.mesh].at("primitives")[instance.primitive];
-  const Vec3f base = materialColor(asset, primitive);
+  const Vec3f base = materialColor(asset, primitive, isTextured);
   std::fill_n(colors.begin() + instance.firstVertex, instance.vertexCount, base);
   const auto accessor = indexMember(primitive.at("attributes"), "COLOR_0");
   if (!accessor) return;
@@ -72,9 +75,12 @@ Scene makeScene(const Asset& asset) {
     geometry = collectGeometry(asset);
   }
   scene.colors.resize(geometry.positions.size());
-  for (const PrimitiveInstance& instance : geometry.instances) colorInstance(asset, instance, scene.colors);
-  scene.positions = std::move(geometry.positions);
   scene.triangles = std::move(geometry.triangles);
+  const std::vector<bool> isTextured = addTextures(asset, geometry, scene);
+  for (std::size_t i = 0; i < geometry.instances.size(); ++i) {
+    colorInstance(asset, geometry.instances[i], isTextured[i], scene.colors);
+  }
+  scene.positions = std::move(geometry.positions);
   return scene;
 }
 

@@ -1,10 +1,13 @@
 // What a picture shows: plain arrays in world space, whatever they came from (a file, a pose, a frame of a clip).
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "limber/core/error.h"
+#include "limber/preview/texture.h"
 #include "limber/skeleton/rig.h"
 
 namespace limber {
@@ -22,13 +25,18 @@ struct Scene {
   std::vector<Vec3f> positions;
   std::vector<Triangle> triangles;
   std::vector<Vec3f> colors;  // linear RGB, one for each vertex; empty: one clay colour
+  // Base colour textures, times which the colours count. All three are empty where nothing has one.
+  std::vector<Vec2f> uvs;        // #V
+  std::vector<Index> textureOf;  // #F: which of `textures`, kNoIndex for none
+  std::vector<std::shared_ptr<const Texture>> textures;
   std::vector<SceneJoint> joints;
   std::vector<Bone> bones;  // segments, as bonesOf gives them
   SkinWeights weights;      // empty, or one row for each vertex, over `joints`
+  Warnings warnings;        // of what cannot be drawn as it is: undrawn-textures
 };
 
 // The model as its file shows it before any clip plays: a rigged one in the pose in which its joints' nodes stand.
-// Colours are the materials' base colours times vertex colours; textures are not read.
+// Colours are the materials' base colours times vertex colours times base colour textures.
 Scene makeScene(const Asset& asset);
 
 }  // namespace limber

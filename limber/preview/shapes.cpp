@@ -3,11 +3,12 @@
 #include <array>
 #include <cmath>
 
+#include "limber/core/numbers.h"
+
 namespace limber {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr int kSphereRings = 16;
 constexpr int kAround = 32;
 constexpr double kBoneWidth = 0.075;  // of its length

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limber/core/numbers.h"
 #include "limber/core/parallel.h"
 
 namespace limber {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kGoldenAngle = 2.39996322972865332;
 constexpr int kMapSize = 448;
 constexpr int kGroundSize = 192;
@@ -18,7 +18,7 @@ constexpr double kBiasTexels = 1.6;    // a surface is lifted by this along its 
 constexpr float kNothing = -1e30f;
 
 Vec3 direction(double azimuth, double elevation) {
-  const double a = azimuth * kPi / 180, e = elevation * kPi / 180;
+  const double a = azimuth * kDegree, e = elevation * kDegree;
   return {std::sin(a) * std::cos(e), std::sin(e), std::cos(a) * std::cos(e)};
 }
 
@@ -35,7 +35,7 @@ Mat3 axesAround(const Vec3& towards) {
 void addLamp(std::vector<DirectionalLight>& lights, const Vec3& middle, double radiusDegrees, int count,
              const Vec3& color) {
   const Mat3 axes = axesAround(middle);
-  const double spread = std::tan(radiusDegrees * kPi / 180);
+  const double spread = std::tan(radiusDegrees * kDegree);
   for (int i = 0; i < count; ++i) {
     const double r = spread * std::sqrt((i + 0.5) / count), turn = i * kGoldenAngle;
     const Vec3 towards = middle + r * (std::cos(turn) * axes.row(0) + std::sin(turn) * axes.row(1)).transpose();

@@ -1,0 +1,15 @@
+// PNG and JPEG files to pixels.
+#pragma once
+
+#include <optional>
+
+#include "limber/preview/image.h"
+
+namespace limber {
+
+// None where the file is neither, is damaged, is a JPEG for print (CMYK), or is larger than 2^24 pixels (2^26 where
+// the file has a byte for every 64 pixels), so that a small file cannot ask for much memory or time. Transparency is
+// left out: colours are as they are stored.
+std::optional<Image> decodeImage(ByteSpan file);
+
+}  // namespace limber

@@ -1,0 +1,97 @@
+#include "limber/preview/scene_textures.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "limber/asset/read.h"
+#include "limber/asset/testing/gltf_builder.h"
+#include "limber/preview/render.h"
+
+namespace limber {
+namespace {
+
+// A square that faces +Z, with texture coordinates from 0 at its upper left to 1 at its lower right, and a picture of
+// four colours: red, green; blue, white.
+testing::GltfBuilder texturedSquare() {
+  testing::GltfBuilder model;
+  const std::vector<float> positions = {-1, 1, 0, 1, 1, 0, -1, -1, 0, 1, -1, 0};
+  const Index position = model.accessor(positions, 5126, "VEC3", 4);
+  model.json["accessors"][position]["min"] = {-1, -1, 0};
+  model.json["accessors"][position]["max"] = {1, 1, 0};
+  const Index uv = model.accessor(std::vector<float>{0, 0, 1, 0, 0, 1, 1, 1}, 5126, "VEC2", 4);
+  const Index indices = model.accessor(std::vector<std::uint16_t>{0, 2, 1, 1, 2, 3}, 5123, "SCALAR", 6);
+  const Index view = model.view(encodePng({2, 2, {255, 0, 0, 0, 255, 0, 0, 0, 255, 255, 255, 255}}));
+  model.push("images", {{"bufferView", view}, {"mimeType", "image/png"}});
+  model.push("samplers", {{"wrapS", 33071}, {"wrapT", 33071}});
+  model.push("textures", {{"source", 0}, {"sampler", 0}});
+  model.push("materials", {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}});
+  const Json primitive = {
+      {"attributes", {{"POSITION", position}, {"TEXCOORD_0", uv}}}, {"indices", indices}, {"material", 0}};
+  model.push("meshes", {{"primitives", Json::array({primitive})}});
+  model.push("nodes", {{"mesh", 0}});
+  model.push("scenes", {{"nodes", {0}}});
+  return model;
+}
+
+Scene sceneOf(const testing::GltfBuilder& model) {
+  return makeScene(readAsset(model.glb(), "square.glb"));
+}
+
+TEST(SceneTextures, APictureOnASquareIsSeenTheRightWayUp) {
+  const Scene scene = sceneOf(texturedSquare());
+  ASSERT_EQ(scene.textures.size(), 1u);
+  EXPECT_EQ(scene.textureOf, (std::vector<Index>{0, 0}));
+  PreviewOptions options;
+  options.width = options.height = 100;
+  options.view = parseView("front");
+  const Image image = render(scene, options);
+  const auto channels = [&](int x, int y) {
+    const std::uint8_t* pixel = image.pixels.data() + 3 * (y * image.width + x);
+    return std::vector<int>{pixel[0], pixel[1], pixel[2]};
+  };
+  const std::vector<int> red = channels(35, 35), green = channels(65, 35), blue = channels(35, 65),
+                         white = channels(65, 65);
+  EXPECT_GT(red[0], 60 + std::max(red[1], red[2]));
+  EXPECT_GT(green[1], 60 + std::max(green[0], green[2]));
+  EXPECT_GT(blue[2], 60 + std::max(blue[0], blue[1]));
+  EXPECT_GT(white[0], 150);
+  EXPECT_LT(*std::max_element(white.begin(), white.end()) - *std::min_element(white.begin(), white.end()), 30);
+}
+
+TEST(SceneTextures, TheTransformOfTheCoordinatesIsFollowed) {
+  testing::GltfBuilder model = texturedSquare();
+  model.json["extensionsUsed"] = {"KHR_texture_transform"};
+  model.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["extensions"]["KHR_texture_transform"] = {
+      {"offset", {0.5, 0.25}}, {"scale", {2, 3}}, {"rotation", EIGEN_PI / 2}};
+  const Scene scene = sceneOf(model);
+  // (u, v) is scaled to (2u, 3v), turned to (3v, -2u), moved.
+  const std::vector<Vec2f> expected = {{0.5f, 0.25f}, {0.5f, -1.75f}, {3.5f, 0.25f}, {3.5f, -1.75f}};
+  ASSERT_EQ(scene.uvs.size(), expected.size());
+  for (std::size_t v = 0; v < expected.size(); ++v) EXPECT_LT((scene.uvs[v] - expected[v]).norm(), 1e-5f) << v;
+}
+
+TEST(SceneTextures, WhatCannotBeDrawnIsCountedAndPlain) {
+  testing::GltfBuilder model = texturedSquare();
+  model.json["images"][0] = {{"uri", "missing.png"}};
+  const Scene scene = sceneOf(model);
+  EXPECT_TRUE(scene.textures.empty());
+  EXPECT_TRUE(scene.textureOf.empty());
+  ASSERT_EQ(scene.warnings.items().size(), 1u);
+  EXPECT_EQ(scene.warnings.items()[0].kind, "undrawn-textures");
+  PreviewOptions options;
+  options.width = options.height = 32;
+  EXPECT_EQ(render(scene, options).width, 32);
+}
+
+TEST(SceneTextures, OneTextureOnSeveralPartsIsDecodedOnce) {
+  testing::GltfBuilder model = texturedSquare();
+  model.json["meshes"][0]["primitives"].push_back(model.json["meshes"][0]["primitives"][0]);
+  model.json["meshes"][0]["primitives"].push_back(model.json["meshes"][0]["primitives"][0]);
+  model.json["meshes"][0]["primitives"][2].erase("material");
+  const Scene scene = sceneOf(model);
+  EXPECT_EQ(scene.textures.size(), 1u);
+  EXPECT_EQ(scene.textureOf, (std::vector<Index>{0, 0, 0, 0, kNoIndex, kNoIndex}));
+}
+
+}  // namespace
+}  // namespace limber
