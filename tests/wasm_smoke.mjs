@@ -29,7 +29,9 @@ for (const handles of [6, 20, 50]) {
     const path = join(output, `wasm_${handles}.glb`);
     writeFileSync(path, result.glb);
     writeFileSync(`${path}.source`, model);
-    assert.ok([handles, handles + 1].includes(result.report.joints), `${result.report.joints} joints`);
+    const { joints } = result.report.counts;
+    assert.ok([handles, handles + 1].includes(joints), `${joints} joints`);
+    assert.equal(result.report.methods.rigger, 'sphere-mesh');
     assert.deepEqual(Buffer.compare(result.glb, nativeRig(handles)), 0, 'the bytes differ');
   };
 }
@@ -43,6 +45,13 @@ cases['an unknown option is an error value'] = () => {
   const { ok, error } = limber.rig(bytes, 'model.glb', { handle: 20 });
   assert.equal(ok, false);
   assert.equal(error.where, 'handle');
+};
+cases['a count too large for the engine is an error value'] = () => {
+  for (const option of ['handles', 'maxInfluences']) {
+    const { ok, error } = limber.rig(bytes, 'model.glb', { [option]: 2 ** 32 + 4 });  // 4, if it wrapped round
+    assert.equal(ok, false);
+    assert.equal(error.where, option);
+  }
 };
 cases['the engine goes on after errors'] = () => {
   assert.ok(limber.rig(bytes, 'model.glb', { handles: 6 }).ok);

@@ -36,14 +36,15 @@ struct Result {
 // A running limber with all three streams on pipes or files.
 class Running {
  public:
-  Running(const std::vector<std::string>& arguments, const fs::path& folder) : folder_(folder) {
+  Running(const std::vector<std::string>& arguments, const fs::path& folder, const fs::path& output = "stdout")
+      : folder_(folder) {
     int input[2];
     EXPECT_EQ(pipe2(input, O_CLOEXEC), 0);
     input_ = input[1];
     pid_ = fork();
     if (pid_ == 0) {
       redirect(input[0], 0);
-      redirect(open((folder / "stdout").c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0600), 1);
+      redirect(open((folder / output).c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0600), 1);
       redirect(open((folder / "stderr").c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0600), 2);
       if (chdir(folder.c_str()) != 0) _exit(126);
       std::vector<char*> argv = {const_cast<char*>(LIMBER_PROGRAM)};
@@ -192,8 +193,16 @@ TEST_F(Cli, RigsAModelAndAccountsForIt) {
   EXPECT_EQ(report.at("methods").at("rigger"), "sphere-mesh");
   EXPECT_FALSE(report.at("stages").empty());
   double sum = 0;
-  for (const auto& stage : report.at("stages")) sum += stage.at("seconds").get<double>();
+  std::vector<std::string> stages;
+  for (const auto& stage : report.at("stages")) {
+    sum += stage.at("seconds").get<double>();
+    stages.push_back(stage.at("name").get<std::string>());
+    double steps = 0;
+    for (const auto& step : stage.value("steps", nlohmann::json::array())) steps += step.at("seconds").get<double>();
+    EXPECT_LE(steps, stage.at("seconds").get<double>() + 1e-9) << stages.back();
+  }
   EXPECT_NEAR(report.at("seconds").get<double>(), sum, 1e-9);
+  EXPECT_EQ(stages, (std::vector<std::string>{"read", "read geometry", "weld", "rig", "skin", "write rig"}));
 
   const auto info = nlohmann::json::parse(run({"info", "out.glb", "--json"}).out);
   EXPECT_EQ(info.at("joints"), report.at("counts").at("joints"));
@@ -274,6 +283,47 @@ TEST_F(Cli, UnknownNamesListTheKnownOnes) {
   EXPECT_THAT(run({"preview", "robot.glb", "-o", "o.png", "--view", "magic"}).error, HasSubstr("three-quarter"));
 }
 
+TEST_F(Cli, AnUnknownCommandIsNamedAndTheKnownOnesListed) {
+  const Result bogus = run({"bogus", "--flag"});
+  expectOneLine(bogus, 2);
+  EXPECT_THAT(bogus.error, AllOf(HasSubstr("'bogus'"), HasSubstr("rig, info")));
+  const Result below = run({"evaluate", "bogus"});
+  expectOneLine(below, 2);
+  EXPECT_THAT(below.error, AllOf(HasSubstr("'bogus'"), HasSubstr("weights, skinning")));
+}
+
+TEST_F(Cli, WhatStandardOutputDoesNotTakeIsAnError) {
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "there is no /dev/full here";
+  makeRobot();
+  for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
+           {"info", "robot.glb"}, {"info", "robot.glb", "--json"}, {"--help"}, {"rig", "robot.glb", "-o", "out.glb"}}) {
+    Running running(arguments, folder_, "/dev/full");
+    const Result result = running.wait();
+    EXPECT_EQ(result.code, 1) << arguments[0];
+    EXPECT_THAT(result.error, HasSubstr("limber: ")) << arguments[0];
+  }
+}
+
+TEST_F(Cli, TakingARigOutSaysWhatWent) {
+  makeRobot();
+  ASSERT_EQ(run({"rig", "robot.glb", "--handles", "9", "-q", "-o", "rigged.glb"}).code, 0);
+  const auto joints = nlohmann::json::parse(run({"info", "rigged.glb", "--json"}).out).at("joints");
+  const Result result = run({"rig", "rigged.glb", "--replace-rig", "-o", "out.glb", "--json", "report.json"});
+  EXPECT_EQ(result.code, 0) << result.error;
+  EXPECT_THAT(result.out, HasSubstr(std::string("taken out: ").append(joints.dump()).append(" joints, 0 clips")));
+  EXPECT_EQ(nlohmann::json::parse(content("report.json")).at("counts").at("removed_joints"), joints);
+}
+
+TEST_F(Cli, ErrorsOfTheGeometryNameTheFile) {
+  put("line.gltf", R"({"asset": {"version": "2.0"}, "nodes": [{}], "scenes": [{"nodes": [0]}], "scene": 0})");
+  for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
+           {"rig", "line.gltf", "-o", "out.glb"}, {"preview", "line.gltf", "-o", "out.png"}}) {
+    const Result result = run(arguments);
+    expectOneLine(result, 1);
+    EXPECT_THAT(result.error, StartsWith("limber: line.gltf: has no triangle"));
+  }
+}
+
 TEST_F(Cli, TheOutputsNameIsCheckedBeforeAnyWork) {
   for (const char* name : {"out.fbx", "out", "out.png"}) {
     const Result result = run({"rig", "missing.glb", "-o", name});
@@ -286,7 +336,8 @@ TEST_F(Cli, StrictTakesWarningsAsErrors) {
   put("sliver.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 4 2\nf 2 4 3\nf 1 3 4\nf 1 1 2\n");
   const Result lenient = run({"rig", "sliver.obj", "--handles", "1", "-o", "out.glb"});
   ASSERT_EQ(lenient.code, 0) << lenient.error;
-  ASSERT_THAT(lenient.out, HasSubstr("warning"));
+  ASSERT_THAT(lenient.error, HasSubstr("warning"));
+  EXPECT_THAT(lenient.out, Not(HasSubstr("warning")));
   expectOneLine(run({"rig", "sliver.obj", "--handles", "1", "-o", "strict.glb", "--strict"}), 1);
   EXPECT_FALSE(fs::exists(folder_ / "strict.glb"));
 }

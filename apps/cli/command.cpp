@@ -1,11 +1,13 @@
 #include "command.h"
 
 #include <algorithm>
-#include <cctype>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 
 #include <fmt/format.h>
 
+#include "limber/core/names.h"
 #include "limber/core/parallel.h"
 
 namespace limber::cli {
@@ -25,10 +27,11 @@ void Account::line(std::string_view text) const {
   if (!quiet_) fmt::print(toError_ ? stderr : stdout, "{}\n", text);
 }
 
-void printWarnings(const Account& account, const Warnings& warnings) {
+void printWarnings(const Warnings& warnings, bool quiet) {
+  if (quiet) return;
   for (const Warning& warning : warnings.items()) {
     const std::string where = warning.where.empty() ? "" : fmt::format(", first at {}", warning.where);
-    account.line(fmt::format("warning: {} {} [{}]{}", warning.count, warning.message, warning.kind, where));
+    fmt::print(stderr, "warning: {} {} [{}]{}\n", warning.count, warning.message, warning.kind, where);
   }
 }
 
@@ -48,9 +51,7 @@ std::string joinNames(const std::vector<std::string>& names) {
 
 void checkOutput(std::string_view path, std::initializer_list<std::string_view> extensions) {
   if (path == "-") return;
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = lowerExtension(path);
   if (std::find(extensions.begin(), extensions.end(), extension) != extensions.end()) return;
   throw Error(ErrorCode::kBadArgument, "the name of the output does not say a format that this command writes",
               std::string(path), fmt::format("end it in {}", fmt::join(extensions, " or ")));
@@ -58,6 +59,14 @@ void checkOutput(std::string_view path, std::initializer_list<std::string_view> 
 
 void writeText(const std::string& path, const std::string& text) {
   writeFile(path, asBytes(text));
+}
+
+void flushOutput() {
+  errno = 0;
+  if (std::fflush(stdout) == 0 && !std::ferror(stdout)) return;
+  throw Error(ErrorCode::kFile,
+              fmt::format("cannot be written: {}", errno != 0 ? std::strerror(errno) : "it is closed"),
+              "standard output");
 }
 
 }  // namespace limber::cli

@@ -38,7 +38,8 @@ class Account {
   bool quiet_, toError_;
 };
 
-void printWarnings(const Account& account, const Warnings& warnings);
+// On standard error, a line for each kind.
+void printWarnings(const Warnings& warnings, bool quiet);
 // Throws an Error that names the first warning if there is one.
 void refuseWarnings(const Warnings& warnings);
 std::string joinNames(const std::vector<std::string>& names);
@@ -47,5 +48,7 @@ std::string joinNames(const std::vector<std::string>& names);
 void checkOutput(std::string_view path, std::initializer_list<std::string_view> extensions);
 
 void writeText(const std::string& path, const std::string& text);
+// Throws Error kFile where standard output did not take all that was printed.
+void flushOutput();
 
 }  // namespace limber::cli

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "command.h"
+#include "limber/asset/json_text.h"
 #include "limber/asset/read.h"
 #include "limber/core/file.h"
 #include "limber/evaluate/ik_evaluation.h"
@@ -23,7 +24,7 @@ struct WeightsOptions {
 void runWeights(const WeightsOptions& options) {
   const WeightComparison comparison = compareWeights(readAsset(options.result), readAsset(options.truth));
   if (options.json) {
-    fmt::print("{}\n", toJson(comparison).dump(2));
+    fmt::print("{}\n", dumpReport(toJson(comparison)));
   } else {
     fmt::print("{}", toText(comparison));
   }
@@ -54,7 +55,7 @@ void runSkinning(const SkinningOptions& options) {
   };
   const auto rows = compareFolder(options.folder, reweight, *progress, skipped);
   writeText(options.output, weightPage(rows, references));
-  printWarnings(Account(options.common.quiet, options.output), skipped);
+  printWarnings(skipped, options.common.quiet);
 }
 
 struct SolverOptions {

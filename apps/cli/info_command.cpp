@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "command.h"
+#include "limber/asset/json_text.h"
 #include "limber/asset/read.h"
 #include "limber/evaluate/asset_info.h"
 
@@ -15,7 +16,7 @@ struct Options {
   bool json = false;
 };
 
-Json toJson(const Vec3& v) {
+Json vectorJson(const Vec3& v) {
   return {v.x(), v.y(), v.z()};
 }
 
@@ -43,7 +44,7 @@ Json infoJson(const std::string& file, const AssetInfo& info) {
   if (info.bounds.empty()) {
     json["bounds"] = nullptr;
   } else {
-    json["bounds"] = {{"min", toJson(info.bounds.min)}, {"max", toJson(info.bounds.max)}};
+    json["bounds"] = {{"min", vectorJson(info.bounds.min)}, {"max", vectorJson(info.bounds.max)}};
   }
   json["nodes"] = info.nodes;
   json["meshes"] = info.meshes;
@@ -60,11 +61,7 @@ Json infoJson(const std::string& file, const AssetInfo& info) {
     json["clips"].push_back({{"name", clip.name}, {"seconds", clip.seconds}, {"channels", clip.channels}});
   }
   json["extensions"] = info.extensions;
-  json["warnings"] = Json::array();
-  for (const Warning& warning : info.warnings.items()) {
-    json["warnings"].push_back(
-        {{"kind", warning.kind}, {"message", warning.message}, {"where", warning.where}, {"count", warning.count}});
-  }
+  json["warnings"] = toJson(info.warnings);
   return json;
 }
 
@@ -116,14 +113,14 @@ void print(const std::string& file, const AssetInfo& info) {
                                clip.channels));
   }
   if (!info.extensions.empty()) printField("extensions", joinNames(info.extensions));
-  printWarnings(Account(false, ""), info.warnings);
+  printWarnings(info.warnings, false);
 }
 
 void run(const Options& options) {
   const Asset asset = readAsset(options.input);
   const AssetInfo info = inspectAsset(asset);
   if (options.json) {
-    fmt::print("{}\n", infoJson(options.input, info).dump(2, ' ', false, Json::error_handler_t::replace));
+    fmt::print("{}\n", dumpReport(infoJson(options.input, info)));
   } else {
     print(options.input, info);
   }

@@ -2,6 +2,8 @@
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -31,6 +33,24 @@ int usage(const CLI::App& program, const std::string& what) {
   return kUsage;
 }
 
+// CLI11 would only say that a subcommand is missing. Empty where the words before the first option name commands.
+std::string wrongCommand(const CLI::App& program, int argc, char** argv) {
+  const CLI::App* at = &program;
+  for (int i = 1; i >= argc || argv[i][0] != '-'; ++i) {
+    std::vector<std::string> known;
+    const CLI::App* next = nullptr;
+    for (const CLI::App* command : at->get_subcommands({})) {
+      known.push_back(command->get_name());
+      if (i < argc && command->get_name() == argv[i]) next = command;
+    }
+    if (known.empty()) return {};
+    if (i >= argc) return fmt::format("a command is missing; there are: {}", limber::cli::joinNames(known));
+    if (!next) return fmt::format("there is no command '{}'; there are: {}", argv[i], limber::cli::joinNames(known));
+    at = next;
+  }
+  return {};
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -45,11 +65,15 @@ int main(int argc, char** argv) {
   limber::cli::addEvaluateCommand(program);
   limber::cli::addPoseCommand(program);
   program.footer("limber COMMAND --help shows the options of a command, with an example.");
+  if (const std::string problem = wrongCommand(program, argc, argv); !problem.empty()) return usage(program, problem);
   try {
-    program.parse(argc, argv);
+    try {
+      program.parse(argc, argv);
+    } catch (const CLI::Success& request) {  // --help, --version
+      program.exit(request);
+    }
+    limber::cli::flushOutput();
     return 0;
-  } catch (const CLI::Success& request) {  // --help, --version
-    return program.exit(request);
   } catch (const CLI::ParseError& error) {
     return usage(program, error.what());
   } catch (const std::bad_alloc&) {

@@ -131,7 +131,7 @@ void run(Options options) {
   for (const ReachReport& report : reports) {
     account.line(fmt::format("{:<16}{:.6f} m left: {}", report.joint, report.distance, outcomeText(report.outcome)));
   }
-  printWarnings(account, asset.warnings);
+  printWarnings(asset.warnings, options.common.quiet);
   if (options.output != "-") account.line(fmt::format("written: {}", options.output));
 }
 

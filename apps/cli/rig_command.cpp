@@ -5,9 +5,10 @@
 #include <nlohmann/json.hpp>
 
 #include "command.h"
+#include "limber/asset/json_text.h"
 #include "limber/asset/read.h"
 #include "limber/asset/write.h"
-#include "limber/pipeline/auto_rig.h"
+#include "limber/pipeline/report_json.h"
 #include "progress_line.h"
 
 namespace limber::cli {
@@ -21,13 +22,8 @@ struct Options {
   Common common;
 };
 
-constexpr double kWorthPrinting = 0.0005;  // seconds
-
-double totalSeconds(const std::vector<StageTime>& stages) {
-  double sum = 0;
-  for (const StageTime& stage : stages) sum += stage.seconds;
-  return sum;
-}
+constexpr double kWorthPrinting = 0.0005;  // seconds; shorter steps are left out of the account
+constexpr std::size_t kNodesListed = 8;
 
 Json reportJson(const Options& options, const std::string& format, const AutoRigReport& report) {
   Json json;
@@ -35,61 +31,73 @@ Json reportJson(const Options& options, const std::string& format, const AutoRig
   json["command"] = "rig";
   json["input"] = {{"file", options.input}, {"format", format}};
   json["output"] = options.output;
-  json["methods"] = {{"rigger", options.rig.rigger}, {"skinning", options.rig.skinning}};
-  json["counts"] = {{"vertices", report.sourceVertices}, {"welded_vertices", report.weldedVertices},
-                    {"triangles", report.triangles},     {"pieces", report.pieces},
-                    {"joints", report.joints},           {"max_influences", options.rig.weights.maxInfluences}};
-  json["seconds"] = totalSeconds(report.stages);
-  json["stages"] = Json::array();
-  for (const StageTime& stage : report.stages) {
-    json["stages"].push_back({{"name", stage.name}, {"seconds", stage.seconds}});
-  }
-  json["suggestions"] = Json::array();
-  for (const HandleSuggestion& suggestion : report.suggestions) {
-    json["suggestions"].push_back({{"handles", suggestion.handles}, {"score", suggestion.score}});
-  }
-  json["warnings"] = Json::array();
-  for (const Warning& warning : report.warnings.items()) {
-    json["warnings"].push_back(
-        {{"kind", warning.kind}, {"message", warning.message}, {"where", warning.where}, {"count", warning.count}});
-  }
+  json.update(toJson(report));
   return json;
+}
+
+std::string counted(std::size_t count, std::string_view one, std::string_view many) {
+  return fmt::format("{} {}", count, count == 1 ? one : many);
 }
 
 // What a stage did, beside its time.
 std::string outcome(const std::string& stage, const AutoRigReport& report) {
-  if (stage == "read geometry") return fmt::format("{} vertices", report.sourceVertices);
-  if (stage == "weld") {
-    return fmt::format("{} vertices, {} triangles, {} {}", report.weldedVertices, report.triangles, report.pieces,
-                       report.pieces == 1 ? "piece" : "pieces");
+  if (stage == "read geometry") {
+    std::string text = counted(report.sourceVertices, "vertex", "vertices");
+    if (report.removedJoints == 0) return text;
+    return text + fmt::format("; taken out: {}, {}", counted(report.removedJoints, "joint", "joints"),
+                              counted(report.removedClips, "clip", "clips"));
   }
-  if (stage == "rig") return fmt::format("{} joints", report.joints);
+  if (stage == "weld") {
+    return fmt::format("{}, {}, {}", counted(report.weldedVertices, "vertex", "vertices"),
+                       counted(report.triangles, "triangle", "triangles"), counted(report.pieces, "piece", "pieces"));
+  }
+  if (stage == "rig") {
+    const std::string joints = counted(report.joints, "joint", "joints");
+    return report.rigger.empty() ? joints + ", kept" : fmt::format("{} ({})", joints, report.rigger);
+  }
+  if (stage == "skin") return fmt::format("at most {} a vertex ({})", report.maxInfluences, report.skinning);
   return "";
 }
 
-void printAccount(const Account& account, const Options& options, const AutoRigReport& report) {
-  std::size_t width = 5;
-  for (const StageTime& stage : report.stages) width = std::max(width, stage.name.size());
-  const auto printStage = [&](std::string_view name, double seconds, const std::string& what) {
+void printStages(const Account& account, const AutoRigReport& report) {
+  constexpr std::string_view kIndent = "  ";
+  std::size_t width = 0;
+  for (const StageTime& stage : report.stages) {
+    width = std::max(width, stage.name.size());
+    for (const StageTime& step : stage.steps) width = std::max(width, kIndent.size() + step.name.size());
+  }
+  const auto print = [&](std::string_view name, double seconds, const std::string& what) {
     account.line(fmt::format("{:<{}}{:>9.3f} s{}{}", name, width, seconds, what.empty() ? "" : "   ", what));
   };
-  std::string what;
   for (const StageTime& stage : report.stages) {
-    const std::string own = outcome(stage.name, report);
-    if (!own.empty()) what = own;
-    // A stage that at once gave way to the method's own stages leaves what it has to say to these.
-    if (stage.seconds < kWorthPrinting && (own.empty() || stage.name == "rig")) continue;
-    printStage(stage.name, stage.seconds, what);
-    what.clear();
+    print(stage.name, stage.seconds, outcome(stage.name, report));
+    for (const StageTime& step : stage.steps) {
+      if (step.seconds >= kWorthPrinting) print(fmt::format("{}{}", kIndent, step.name), step.seconds, "");
+    }
   }
-  printStage("total", totalSeconds(report.stages), "");
+  print("total", totalSeconds(report.stages), "");
+}
+
+void printBridged(const AutoRigReport& report) {
+  for (std::size_t i = 0; i < std::min(report.bridged.size(), kNodesListed); ++i) {
+    const BridgedNode& node = report.bridged[i];
+    fmt::print(stderr, "  bridged in {}: {} of {} vertices\n", node.name, node.bridged, node.vertices);
+  }
+  if (report.bridged.size() > kNodesListed) {
+    fmt::print(stderr, "  and in {} more\n", counted(report.bridged.size() - kNodesListed, "node", "nodes"));
+  }
+}
+
+void printAccount(const Account& account, const Options& options, const AutoRigReport& report) {
+  printStages(account, report);
   if (!report.suggestions.empty()) {
     std::vector<Index> counts;
     for (const HandleSuggestion& suggestion : report.suggestions) counts.push_back(suggestion.handles);
     std::sort(counts.begin(), counts.end());
     account.line(fmt::format("counts of handles that suit this model: {}", fmt::join(counts, ", ")));
   }
-  printWarnings(account, report.warnings);
+  printWarnings(report.warnings, options.common.quiet);
+  if (!options.common.quiet) printBridged(report);
   if (options.output != "-") account.line(fmt::format("written: {}", options.output));
 }
 
@@ -115,7 +123,7 @@ void run(Options options) {
   std::vector<OutputFile> companions;
   if (!options.report.empty()) {
     report.stages = progress->stages();
-    text = reportJson(options, asset.format, report).dump(2) + "\n";
+    text = dumpReport(reportJson(options, asset.format, report)) + "\n";
     companions.push_back({options.report, asBytes(text)});
   }
   writeAsset(asset, options.output, companions);

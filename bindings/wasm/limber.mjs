@@ -9,6 +9,7 @@ import createEngine from './limber_engine.mjs';
  * @typedef {{ handles?: number, maxInfluences?: number, rigger?: string, skinning?: string,
  *             existingRig?: 'refuse' | 'replace' | 'keep-skeleton' }} RigOptions
  * @typedef {{ code: string, message: string, where: string, remedy: string }} LimberError
+ * The report is the one of docs/report.md, from "methods" on.
  * @typedef {{ ok: true, glb: Uint8Array, report: object } | { ok: false, error: LimberError }} RigResult
  */
 
@@ -37,6 +38,9 @@ function rig(engine, file, name, options) {
   const places = inputs.map((bytes) => put(engine, bytes));
   const call = engine._limber_rig(...inputs.flatMap((bytes, i) => [places[i], bytes.length]));
   places.forEach((at) => engine._free(at));
+  if (call === 0) {
+    return { ok: false, error: { code: 'limit', message: 'not enough memory', where: name, remedy: 'try a smaller model' } };
+  }
   const account = JSON.parse(new TextDecoder().decode(
     copyOut(engine, engine._limber_account(call), engine._limber_account_size(call))));
   const result = engine._limber_ok(call)

@@ -2,14 +2,17 @@
 // error is a result like any other. limber.mjs is the typed face of these functions; nobody else calls them.
 #include <cstdint>
 #include <memory>
+#include <new>
 #include <string>
 #include <string_view>
 
 #include <nlohmann/json.hpp>
 
+#include "limber/asset/json_text.h"
 #include "limber/asset/read.h"
 #include "limber/asset/write.h"
 #include "limber/pipeline/auto_rig.h"
+#include "limber/pipeline/report_json.h"
 
 namespace {
 
@@ -33,15 +36,22 @@ limber::ExistingRig existingRigNamed(const std::string& name) {
   refuseOption("existingRig");
 }
 
+// Larger numbers must not wrap round to small ones.
+limber::Index countOf(const std::string& name, const Json& value) {
+  const std::uint64_t count = value.get<std::uint64_t>();
+  if (count >= limber::kNoIndex) refuseOption(name);
+  return static_cast<limber::Index>(count);
+}
+
 limber::AutoRigOptions optionsFrom(std::string_view text) {
   const Json json = Json::parse(text, nullptr, false);
   if (!json.is_object()) throw limber::Error(limber::ErrorCode::kBadArgument, "options are not a JSON object");
   limber::AutoRigOptions options;
   for (const auto& [name, value] : json.items()) {
     if (name == "handles" && value.is_number_unsigned()) {
-      options.rig.handles = value.get<limber::Index>();
+      options.rig.handles = countOf(name, value);
     } else if (name == "maxInfluences" && value.is_number_unsigned()) {
-      options.weights.maxInfluences = value.get<limber::Index>();
+      options.weights.maxInfluences = countOf(name, value);
     } else if (name == "rigger" && value.is_string()) {
       options.rigger = value.get<std::string>();
     } else if (name == "skinning" && value.is_string()) {
@@ -55,35 +65,13 @@ limber::AutoRigOptions optionsFrom(std::string_view text) {
   return options;
 }
 
-Json toJson(const limber::AutoRigReport& report) {
-  Json json = {{"sourceVertices", report.sourceVertices},
-               {"weldedVertices", report.weldedVertices},
-               {"triangles", report.triangles},
-               {"pieces", report.pieces},
-               {"joints", report.joints},
-               {"suggestions", Json::array()},
-               {"warnings", Json::array()},
-               {"stages", Json::array()}};
-  for (const auto& suggestion : report.suggestions)
-    json["suggestions"].push_back({{"handles", suggestion.handles}, {"score", suggestion.score}});
-  for (const auto& warning : report.warnings.items())
-    json["warnings"].push_back(
-        {{"kind", warning.kind}, {"message", warning.message}, {"where", warning.where}, {"count", warning.count}});
-  for (const auto& stage : report.stages) json["stages"].push_back({{"name", stage.name}, {"seconds", stage.seconds}});
-  return json;
-}
-
-// Names out of a file need not be valid UTF-8; the page must still get valid JSON.
-std::string textOf(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
 CallResult failure(const limber::Error& error) {
   CallResult result;
-  result.account = textOf({{"code", std::string(limber::errorCodeName(error.code()))},
-                           {"message", error.message()},
-                           {"where", error.where()},
-                           {"remedy", error.remedy()}});
+  result.account = limber::dumpReport({{"code", std::string(limber::errorCodeName(error.code()))},
+                                       {"message", error.message()},
+                                       {"where", error.where()},
+                                       {"remedy", error.remedy()}},
+                                      -1);
   return result;
 }
 
@@ -92,7 +80,7 @@ CallResult rig(limber::ByteSpan file, std::string_view name, std::string_view op
     limber::Asset asset = limber::readAsset(file, name);
     limber::Progress progress;
     const limber::AutoRigReport report = limber::autoRig(asset, optionsFrom(optionsText), progress);
-    return {true, limber::writeGlb(asset), textOf(toJson(report))};
+    return {true, limber::writeGlb(asset), limber::dumpReport(limber::toJson(report), -1)};
   } catch (const limber::Error& error) {
     return failure(error);
   } catch (const std::bad_alloc&) {
@@ -106,10 +94,17 @@ CallResult rig(limber::ByteSpan file, std::string_view name, std::string_view op
 
 #define LIMBER_EXPORT extern "C" __attribute__((used, visibility("default")))
 
-// The strings need no final zero. The result is the caller's, to be given back to limber_free_result.
+// The strings need no final zero. The result is the caller's, to be given back to limber_free_result; null where there
+// is no memory even to tell what went wrong.
 LIMBER_EXPORT CallResult* limber_rig(const std::uint8_t* file, std::size_t fileSize, const char* name,
                                      std::size_t nameSize, const char* options, std::size_t optionsSize) {
-  return new CallResult(rig({file, fileSize}, {name, nameSize}, {options, optionsSize}));
+  try {
+    auto result = std::make_unique<CallResult>();
+    *result = rig({file, fileSize}, {name, nameSize}, {options, optionsSize});
+    return result.release();
+  } catch (...) {
+    return nullptr;
+  }
 }
 
 LIMBER_EXPORT int limber_ok(const CallResult* result) {

@@ -2,12 +2,17 @@
 #include "limber/pipeline/auto_rig.h"
 
 #include <algorithm>
+#include <iterator>
+#include <map>
+#include <set>
 #include <utility>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "limber/asset/geometry.h"
 #include "limber/asset/rig_io.h"
+#include "limber/asset/scene_graph.h"
 #include "limber/mesh/components.h"
 #include "limber/mesh/prepare.h"
 
@@ -41,14 +46,19 @@ class Rollback {
   bool done_ = false;
 };
 
-// Pieces that have a triangle: loose vertices are none.
-Index pieceCount(const TriMesh& mesh) {
-  Index count = 0;
-  const std::vector<Index> pieceOf = vertexComponents(mesh, &count);
-  std::vector<bool> solid(count, false);
-  for (const Triangle& t : mesh.triangles) solid[pieceOf[t[0]]] = true;
-  return static_cast<Index>(std::count(solid.begin(), solid.end(), true));
-}
+// Pieces of the mesh by vertex, and how many have a triangle: loose vertices are none.
+struct Pieces {
+  std::vector<Index> ofVertex;
+  Index solid = 0;
+
+  explicit Pieces(const TriMesh& mesh) {
+    Index count = 0;
+    ofVertex = vertexComponents(mesh, &count);
+    std::vector<bool> isSolid(count, false);
+    for (const Triangle& t : mesh.triangles) isSolid[ofVertex[t[0]]] = true;
+    solid = static_cast<Index>(std::count(isSolid.begin(), isSolid.end(), true));
+  }
+};
 
 [[noreturn]] void refuseRig(const Asset& asset) {
   throw Error(ErrorCode::kUnsupported, "the model has a rig of its own", asset.name,
@@ -68,9 +78,14 @@ std::vector<bool> deformingJoints(const SkinWeights& weights, Index jointCount) 
 
 // The bones of the asset's own skeleton, in the working space.
 std::vector<Bone> keptBones(const Asset& asset, const Geometry& geometry, const AssetSkeleton& skeleton,
-                            const WorkingFrame& frame) {
+                            const WorkingFrame& frame, Warnings& warnings) {
   const std::vector<bool> deforms =
       deformingJoints(readWeights(asset, geometry, skeleton), skeleton.skeleton.jointCount());
+  const auto first = std::find(deforms.begin(), deforms.end(), true);
+  if (deforms.size() > 1 && std::find(std::next(first), deforms.end(), true) == deforms.end()) {
+    warnings.add("single-joint", "joint alone moves the whole model, as in the file; the others move nothing",
+                 skeleton.skeleton.joints[static_cast<std::size_t>(first - deforms.begin())].name);
+  }
   std::vector<Bone> bones = bonesOf(skeleton.skeleton);
   bones.erase(std::remove_if(bones.begin(), bones.end(), [&](const Bone& bone) { return !deforms[bone.joint]; }),
               bones.end());
@@ -92,24 +107,57 @@ Skeleton toWorld(Skeleton skeleton, const WorkingFrame& frame) {
   return skeleton;
 }
 
+// What became of vertices that no bone reaches: which nodes they belong to, and a warning.
+void reportBridged(const Asset& asset, const Geometry& geometry, const PreparedMesh& prepared, const Pieces& pieces,
+                   const std::vector<Index>& bridged, AutoRigReport& report) {
+  if (bridged.empty()) return;
+  std::vector<bool> isBridged(prepared.mesh.vertexCount(), false), inPiece(prepared.mesh.vertexCount(), false);
+  for (const Index v : bridged) {
+    isBridged[v] = true;
+    inPiece[pieces.ofVertex[v]] = true;
+  }
+  std::map<Index, BridgedNode> nodes;
+  for (const PrimitiveInstance& instance : geometry.instances) {
+    BridgedNode& node = nodes[instance.node];
+    node.vertices += instance.vertexCount;
+    for (Index v = 0; v < instance.vertexCount; ++v) {
+      if (isBridged[prepared.weldedVertex[instance.firstVertex + v]]) ++node.bridged;
+    }
+  }
+  for (auto& [index, node] : nodes) {
+    if (node.bridged == 0) continue;
+    node.name = nameOf(elements(asset, "nodes")[index]);
+    if (node.name.empty()) node.name = fmt::format("nodes[{}]", index);
+    report.bridged.push_back(std::move(node));
+  }
+  std::stable_sort(report.bridged.begin(), report.bridged.end(),
+                   [](const BridgedNode& a, const BridgedNode& b) { return a.bridged > b.bridged; });
+  const std::string& where = report.bridged.front().name;
+  report.warnings.add("bridged-pieces",
+                      "pieces from which no bone is in sight took the weights of the surface nearest to them", where,
+                      static_cast<std::size_t>(std::count(inPiece.begin(), inPiece.end(), true)));
+  report.warnings.add("bridged-vertices", "vertices of such pieces", where, bridged.size());
+}
+
 struct Rigged {
   SkinWeights weights;           // for the source vertices
   std::optional<Skeleton> made;  // in world space; none where the asset's own was kept
   AssetSkeleton kept;
 };
 
-Rigged makeRig(const Asset& asset, const Geometry& geometry, const PreparedMesh& prepared,
+Rigged makeRig(const Asset& asset, const Geometry& geometry, const PreparedMesh& prepared, const Pieces& pieces,
                const AutoRigOptions& options, AutoRigReport& report, Progress& progress) {
   Rigged result;
   std::vector<Bone> bones;
   progress.stage("rig");
-  if (options.existingRig == ExistingRig::kKeepSkeleton && hasRig(asset)) {
+  if (options.existingRig == ExistingRig::kKeepSkeleton) {
     result.kept = readSkeleton(asset);
-    bones = keptBones(asset, geometry, result.kept, prepared.frame);
+    bones = keptBones(asset, geometry, result.kept, prepared.frame, report.warnings);
     report.joints = result.kept.skeleton.jointCount();
   } else {
     AutoRig rig = findRigger(options.rigger).rig(prepared.mesh, options.rig, progress);
     bones = bonesOf(rig.skeleton);
+    report.rigger = options.rigger;
     report.joints = rig.skeleton.jointCount();
     report.suggestions = std::move(rig.suggestions);
     report.warnings.append(rig.warnings);
@@ -119,36 +167,42 @@ Rigged makeRig(const Asset& asset, const Geometry& geometry, const PreparedMesh&
   progress.stage("skin");
   WeightResult skin = findWeightMethod(options.skinning).compute(prepared.mesh, bones, options.weights, progress);
   report.warnings.append(skin.warnings);
+  reportBridged(asset, geometry, prepared, pieces, skin.bridged, report);
   result.weights = expandWeights(skin.weights, prepared.weldedVertex);
   return result;
 }
 
-}  // namespace
-
-AutoRigReport autoRig(Asset& asset, const AutoRigOptions& options, Progress& progress) {
-  findRigger(options.rigger);  // a name that is wrong is told before any work
-  findWeightMethod(options.skinning);
-  const bool rigged = hasRig(asset);
-  if (rigged && options.existingRig == ExistingRig::kRefuse) refuseRig(asset);
-  if (!rigged && options.existingRig == ExistingRig::kKeepSkeleton) {
-    throw Error(ErrorCode::kBadArgument, "the model has no skeleton to keep", asset.name, "leave --keep-skeleton out");
+void takeRigOut(Asset& asset, AutoRigReport& report) {
+  const Index clips = elementCount(asset, "animations");
+  std::set<Index> joints;
+  for (const Json& skin : elements(asset, "skins")) {
+    for (const Json& joint : skin.at("joints")) joints.insert(joint.get<Index>());
   }
+  report.removedJoints = static_cast<Index>(joints.size());
+  removeRig(asset);
+  report.removedClips = clips - elementCount(asset, "animations");
+}
+
+AutoRigReport runStages(Asset& asset, const AutoRigOptions& options, Progress& progress) {
+  AutoRigReport report;
+  report.skinning = options.skinning;
+  report.maxInfluences = options.weights.maxInfluences;
 
   progress.stage("read geometry");
   Rollback rollback(asset);
-  if (rigged && options.existingRig == ExistingRig::kReplace) removeRig(asset);
+  if (options.existingRig == ExistingRig::kReplace && hasRig(asset)) takeRigOut(asset, report);
   const Geometry geometry = collectGeometry(asset);
 
   progress.stage("weld");
-  AutoRigReport report;
   const PreparedMesh prepared = prepareMesh(geometry.positions, geometry.triangles);
+  const Pieces pieces(prepared.mesh);
   report.sourceVertices = static_cast<Index>(geometry.positions.size());
   report.weldedVertices = prepared.mesh.vertexCount();
   report.triangles = prepared.mesh.triangleCount();
-  report.pieces = pieceCount(prepared.mesh);
+  report.pieces = pieces.solid;
   report.warnings.append(prepared.warnings);
 
-  const Rigged rig = makeRig(asset, geometry, prepared, options, report, progress);
+  const Rigged rig = makeRig(asset, geometry, prepared, pieces, options, report, progress);
 
   progress.stage("write rig");
   if (rig.made) {
@@ -163,6 +217,23 @@ AutoRigReport autoRig(Asset& asset, const AutoRigOptions& options, Progress& pro
   report.warnings.append(stageWarnings);
   report.stages = progress.stages();
   return report;
+}
+
+}  // namespace
+
+AutoRigReport autoRig(Asset& asset, const AutoRigOptions& options, Progress& progress) {
+  findRigger(options.rigger);  // a name that is wrong is told before any work
+  findWeightMethod(options.skinning);
+  const bool rigged = hasRig(asset);
+  if (rigged && options.existingRig == ExistingRig::kRefuse) refuseRig(asset);
+  if (!rigged && options.existingRig == ExistingRig::kKeepSkeleton) {
+    throw Error(ErrorCode::kBadArgument, "the model has no skeleton to keep", asset.name, "leave --keep-skeleton out");
+  }
+  try {
+    return runStages(asset, options, progress);
+  } catch (const Error& error) {
+    throw error.within(asset.name);
+  }
 }
 
 }  // namespace limber

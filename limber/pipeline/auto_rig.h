@@ -27,14 +27,26 @@ struct AutoRigOptions {
   ExistingRig existingRig = ExistingRig::kRefuse;
 };
 
+// A node whose mesh has vertices that no bone reaches.
+struct BridgedNode {
+  std::string name;                 // "nodes[3]" where it has none
+  Index vertices = 0, bridged = 0;  // as the scene shows them; those that took the weights of what is nearest
+};
+
 struct AutoRigReport {
+  std::string rigger, skinning;  // the methods that ran; no rigger where the skeleton was kept
   Index sourceVertices = 0, weldedVertices = 0, triangles = 0, pieces = 0, joints = 0;
+  Index maxInfluences = 0;                    // as asked for
+  Index removedJoints = 0, removedClips = 0;  // of the old rig, with ExistingRig::kReplace
   std::vector<HandleSuggestion> suggestions;
-  Warnings warnings;  // of reading and of every stage
+  std::vector<BridgedNode> bridged;  // most vertices first
+  Warnings warnings;                 // of reading and of every stage
   std::vector<StageTime> stages;
 };
 
-// Rigs in place. On an Error the asset is as it was.
+// Rigs in place. Warnings of its own: bridged-pieces and bridged-vertices (the node that has most of them is where),
+// single-joint (the kept skeleton moves everything by one joint). On an Error, whose where() begins with the asset's
+// name, the asset is as it was.
 AutoRigReport autoRig(Asset& asset, const AutoRigOptions& options, Progress& progress);
 
 }  // namespace limber

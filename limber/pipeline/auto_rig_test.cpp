@@ -40,9 +40,10 @@ Asset cigar(double scale = 1) {
   Asset asset;
   asset.name = "cigar.glb";
   asset.json()["asset"] = {{"version", "2.0"}};
-  const Index position = addFloatAccessor(asset, positions, 3, 34962, true);
-  const Index indices = addAccessor(asset, {static_cast<Index>(corners.size()), 1, ComponentType::kU32, false},
-                                    {reinterpret_cast<const std::uint8_t*>(corners.data()), 4 * corners.size()}, 34963);
+  const Index position = addFloatAccessor(asset, positions, 3, kVertexTarget, true);
+  const Index indices =
+      addAccessor(asset, {static_cast<Index>(corners.size()), 1, ComponentType::kU32, false},
+                  {reinterpret_cast<const std::uint8_t*>(corners.data()), 4 * corners.size()}, kIndexTarget);
   const Json primitive = {{"attributes", {{"POSITION", position}}}, {"indices", indices}};
   asset.json()["meshes"] = Json::array({{{"primitives", Json::array({primitive})}}});
   asset.json()["nodes"] = Json::array({{{"name", "cigar"}, {"mesh", 0}}});
@@ -90,14 +91,13 @@ TEST(AutoRig, MakesAStaticModelACharacter) {
   EXPECT_EQ(report.joints, 5u);
   EXPECT_FALSE(report.suggestions.empty());
 
-  // The stages of the whole, with those of the methods between them.
   std::vector<std::string> stages;
-  for (const StageTime& stage : report.stages) {
-    const bool whole = stage.name == "read geometry" || stage.name == "weld" || stage.name == "rig" ||
-                       stage.name == "skin" || stage.name == "write rig";
-    if (whole) stages.push_back(stage.name);
-  }
+  for (const StageTime& stage : report.stages) stages.push_back(stage.name);
   EXPECT_THAT(stages, ElementsAre("read geometry", "weld", "rig", "skin", "write rig"));
+  EXPECT_FALSE(report.stages[2].steps.empty());  // those of the methods
+  EXPECT_FALSE(report.stages[3].steps.empty());
+  EXPECT_EQ(report.rigger, "sphere-mesh");
+  EXPECT_TRUE(report.bridged.empty());
 
   const Geometry geometry = collectGeometry(asset);
   const AssetSkeleton skeleton = readSkeleton(asset);
@@ -161,8 +161,10 @@ TEST(AutoRig, ReplacingTheRigIsRiggingTheBareModel) {
   rig(rigged, withHandles(3));
   AutoRigOptions options = withHandles(4);
   options.existingRig = ExistingRig::kReplace;
-  rig(rigged, options);
-  rig(bare, options);
+  const AutoRigReport report = rig(rigged, options);
+  EXPECT_EQ(report.removedJoints, 3u);
+  EXPECT_EQ(report.removedClips, 0u);
+  EXPECT_EQ(rig(bare, options).removedJoints, 0u);
   EXPECT_EQ(rigged.json()["nodes"], bare.json()["nodes"]);
   const Geometry geometry = collectGeometry(bare);
   EXPECT_EQ(readWeights(rigged, geometry, readSkeleton(rigged)).weights,
@@ -216,6 +218,53 @@ TEST(AutoRig, AJointThatMovedNothingMovesNothingNow) {
   }
 }
 
+TEST(AutoRig, NodesThatNoBoneReachesAreNamed) {
+  Asset asset = cigar();
+  const std::vector<float> dust = {5, -1, 0, 5, -1, 0.1f, 6, -1, 0};
+  const Index position = addFloatAccessor(asset, dust, 3, kVertexTarget, true);
+  const Json primitive = {{"attributes", {{"POSITION", position}}}, {"mode", 0}};  // points
+  asset.json()["meshes"].push_back({{"primitives", Json::array({primitive})}});
+  asset.json()["nodes"].push_back({{"name", "dust"}, {"mesh", 1}});
+  asset.json()["scenes"][0]["nodes"].push_back(1);
+  checkAsset(asset);
+  const AutoRigReport report = rig(asset, withHandles(3));
+  ASSERT_EQ(report.bridged.size(), 1u);
+  EXPECT_EQ(report.bridged[0].name, "dust");
+  EXPECT_EQ(report.bridged[0].vertices, 3u);
+  EXPECT_EQ(report.bridged[0].bridged, 3u);
+  std::map<std::string, Warning> warnings;
+  for (const Warning& warning : report.warnings.items()) warnings[warning.kind] = warning;
+  EXPECT_EQ(warnings["bridged-pieces"].count, 3u);
+  EXPECT_EQ(warnings["bridged-vertices"].count, 3u);
+  EXPECT_EQ(warnings["bridged-vertices"].where, "dust");
+}
+
+TEST(AutoRig, AKeptSkeletonOfWhichOneJointHoldsAllIsWarnedOf) {
+  Asset asset = cigar();
+  const Geometry geometry = collectGeometry(asset);
+  Skeleton skeleton;
+  skeleton.joints = {{"hips", std::nullopt, {}, 0}, {"head", Index{0}, {}, 0}};
+  SkinWeights weights;
+  weights.slots = 1;
+  weights.joints.assign(geometry.positions.size(), 1);
+  weights.weights.assign(geometry.positions.size(), 1);
+  attachRig(asset, geometry, skeleton, weights);
+  AutoRigOptions options;
+  options.existingRig = ExistingRig::kKeepSkeleton;
+  const AutoRigReport report = rig(asset, options);
+  ASSERT_EQ(report.warnings.items().size(), 1u);
+  EXPECT_EQ(report.warnings.items()[0].kind, "single-joint");
+  EXPECT_EQ(report.warnings.items()[0].where, "head");
+}
+
+TEST(AutoRig, ErrorsNameTheFile) {
+  Asset asset = cigar();
+  EXPECT_EQ(errorOf(asset, withHandles(100000)).where(), "cigar.glb");
+  asset.json()["scenes"][0]["nodes"] = Json::array();
+  EXPECT_STREQ(errorOf(asset, withHandles(3)).what(),
+               "cigar.glb: has no triangle (limber needs a surface, not points or lines)");
+}
+
 TEST(AutoRig, KeepingASkeletonThatIsNotThereIsAnError) {
   Asset asset = cigar();
   AutoRigOptions options;
@@ -265,7 +314,7 @@ TEST(AutoRig, WarningsOfReadingAndOfStagesComeTogether) {
   std::vector<std::uint32_t> corners = {0, 0, 1, 0, 1, 2};
   asset.json()["meshes"][0]["primitives"].push_back(asset.json()["meshes"][0]["primitives"][0]);
   const Index indices = addAccessor(asset, {6, 1, ComponentType::kU32, false},
-                                    {reinterpret_cast<const std::uint8_t*>(corners.data()), 24}, 34963);
+                                    {reinterpret_cast<const std::uint8_t*>(corners.data()), 24}, kIndexTarget);
   asset.json()["meshes"][0]["primitives"][1]["indices"] = indices;
   const AutoRigReport report = rig(asset, withHandles(3));
   std::vector<std::string> kinds;

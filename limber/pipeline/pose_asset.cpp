@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "limber/asset/pose_io.h"
+#include "limber/core/numbers.h"
 #include "limber/ik/ik_solver.h"
 #include "limber/skinning/deformer.h"
 
@@ -12,7 +13,6 @@ namespace limber {
 
 namespace {
 
-constexpr double kRadians = 3.14159265358979323846 / 180;
 constexpr std::size_t kNamesListed = 12;
 
 Index requireJoint(const Skeleton& skeleton, const std::string& name) {
@@ -33,7 +33,7 @@ Affine parentGlobal(const Skeleton& skeleton, const Pose& pose, Index joint) {
 void turn(const Skeleton& skeleton, Pose& pose, const JointTurn& edit) {
   const Index joint = requireJoint(skeleton, edit.joint);
   const Quat above = decompose(parentGlobal(skeleton, pose, joint)).rotation;
-  const Quat turned(Eigen::AngleAxisd(edit.degrees * kRadians, above.conjugate() * edit.axis));
+  const Quat turned(Eigen::AngleAxisd(edit.degrees * kDegree, above.conjugate() * edit.axis));
   pose.locals[joint].rotation = (turned * pose.locals[joint].rotation).normalized();
 }
 

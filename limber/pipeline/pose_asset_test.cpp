@@ -29,11 +29,11 @@ Asset strip() {
       if (i < 3) indices.push_back(static_cast<std::uint16_t>(v + corner));
     }
   }
-  const Index position = addFloatAccessor(asset, positions, 3, 34962, true);
-  const Index normal = addFloatAccessor(asset, normals, 3, 34962);
+  const Index position = addFloatAccessor(asset, positions, 3, kVertexTarget, true);
+  const Index normal = addFloatAccessor(asset, normals, 3, kVertexTarget);
   const auto* bytes = reinterpret_cast<const std::uint8_t*>(indices.data());
   const AccessorInfo info{static_cast<Index>(indices.size()), 1, ComponentType::kU16, false};
-  const Index index = addAccessor(asset, info, {bytes, 2 * indices.size()}, 34963);
+  const Index index = addAccessor(asset, info, {bytes, 2 * indices.size()}, kIndexTarget);
   Json& json = asset.json();
   json["asset"] = {{"version", "2.0"}};
   json["meshes"] = Json::array(

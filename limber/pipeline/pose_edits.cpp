@@ -4,14 +4,15 @@
 #include <array>
 #include <cmath>
 #include <initializer_list>
-#include <sstream>
 #include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "limber/asset/json_access.h"
+#include "limber/asset/json_text.h"
 #include "limber/core/error.h"
+#include "limber/core/parse_number.h"
 
 namespace limber {
 
@@ -30,13 +31,10 @@ std::pair<std::string, std::string_view> splitAtEquals(std::string_view text) {
 
 // The whole of `word` as a finite number.
 std::optional<double> numberOf(std::string_view word) {
-  std::istringstream stream{std::string(word)};
-  stream.imbue(std::locale::classic());
-  double value = 0;
-  if (!(stream >> value) || stream.peek() != std::istringstream::traits_type::eof() || !std::isfinite(value)) {
-    return std::nullopt;
-  }
-  return value;
+  const char* at = word.data();
+  const char* const end = at + word.size();
+  const std::optional<double> value = parseNumber(at, end);
+  return value && at == end && std::isfinite(*value) ? value : std::nullopt;
 }
 
 std::vector<std::string_view> splitAtCommas(std::string_view text) {
@@ -152,12 +150,9 @@ JointReach readReach(const JsonView& entry) {
 }  // namespace
 
 std::vector<NamedPose> parsePoses(std::string_view json) {
-  Json document;
-  try {
-    document = Json::parse(json);
-  } catch (const nlohmann::json::exception& error) {
-    throw Error(ErrorCode::kBadData, fmt::format("is no JSON: {}", error.what()));
-  }
+  Warnings warnings;
+  const Json document = parseJson(json, warnings);
+  if (!warnings.empty()) throw Error(ErrorCode::kBadData, warnings.items().front().message);
   const JsonView root(document);
   refuseOtherKeys(root, {"poses"});
   const JsonView list = root.array("poses");

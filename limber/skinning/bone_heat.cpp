@@ -103,17 +103,13 @@ void interpolate(const InfluenceTable& table, const Triangle& triangle, const Ve
   for (std::size_t i = 0; i < count; ++i) result.offer(row, all[i].joint, static_cast<float>(all[i].weight));
 }
 
-// Gives rows without weights those of the nearest surface that has some.
-void bridge(const TriMesh& mesh, const std::vector<Index>& piece, Index pieceCount, InfluenceTable& table,
-            Warnings& warnings) {
+// Gives rows without weights those of the nearest surface that has some. Returns these rows.
+std::vector<Index> bridge(const TriMesh& mesh, InfluenceTable& table) {
   std::vector<Index> bare;
-  std::vector<char> barePiece(pieceCount, 0);
   for (Index v = 0; v < mesh.vertexCount(); ++v) {
-    if (table.weightsOf(v)[0] > 0) continue;
-    bare.push_back(v);
-    barePiece[piece[v]] = 1;
+    if (!(table.weightsOf(v)[0] > 0)) bare.push_back(v);
   }
-  if (bare.empty()) return;
+  if (bare.empty()) return bare;
   std::vector<Index> clothed;
   for (Index t = 0; t < mesh.triangleCount(); ++t) {
     const Triangle& triangle = mesh.triangles[t];
@@ -129,10 +125,7 @@ void bridge(const TriMesh& mesh, const std::vector<Index>& piece, Index pieceCou
       interpolate(source, mesh.triangles[nearest.triangle], nearest.weights, bare[i], table);
     }
   });
-  warnings.add("bridged-pieces",
-               "pieces from which no bone is in sight took the weights of the surface nearest to them", {},
-               static_cast<std::size_t>(std::count(barePiece.begin(), barePiece.end(), 1)));
-  warnings.add("bridged-vertices", "vertices of such pieces", {}, bare.size());
+  return bare;
 }
 
 double faded(double weight, const BoneHeatOptions& heat) {
@@ -175,7 +168,7 @@ WeightResult boneHeatWeightsWith(const BoneHeatOptions& heat, const TriMesh& mes
   checkArguments(mesh, bones, options);
   WeightResult result;
 
-  progress.stage("heat: surface and bones in sight");
+  progress.step("surface and bones in sight");
   Index pieceCount = 0;
   const std::vector<Index> piece = vertexComponents(mesh, &pieceCount);
   HeatProblem problem = setUp(heat, mesh, bones, piece);
@@ -183,24 +176,23 @@ WeightResult boneHeatWeightsWith(const BoneHeatOptions& heat, const TriMesh& mes
     result.warnings.add("no-bone-in-sight", "no bone is in sight of any vertex, so each vertex took the nearest bone");
   }
 
-  progress.stage("heat: factorise");
+  progress.step("factorise");
   problem.solver->factorize(problem.sources);
 
-  progress.stage("heat: solve");
+  progress.step("solve");
   InfluenceTable table = solveStrongest(*problem.solver, mesh.vertexCount(), options.maxInfluences);
   problem.solver.reset();
 
-  progress.stage("heat: bridge pieces");
+  progress.step("bridge pieces");
   std::optional<PieceRules> rules;
   if (heat.pieceRules && pieceCount > 1 && allSegments(bones)) {
     rules.emplace(mesh, bones, piece, pieceCount, problem.sources.pull);
     rules->classify(finish(table, heat));
     rules->dropHardlySeen(table);
   }
-  bridge(mesh, piece, pieceCount, table, result.warnings);
+  result.bridged = bridge(mesh, table);
   result.weights = finish(table, heat);
   if (rules) rules->bindRigid(result.weights, result.warnings);
-  progress.finish();
   return result;
 }
 

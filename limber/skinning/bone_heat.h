@@ -21,9 +21,8 @@ struct BoneHeatOptions {
 // Bone heat (Baran, Popović: Automatic Rigging and Animation of 3D Characters, 2007) on the Laplacian of
 // robustLaplacian(), so that every mesh with a triangle gets weights in [0, 1] that sum to 1.
 //
-// Pieces from which no bone is in sight take the weights of the nearest surface point of a piece that does, and are
-// counted in the warning `bridged-pieces`, their vertices in `bridged-vertices`. Where no vertex at all sees a bone,
-// all bones count as in sight (`no-bone-in-sight`).
+// Pieces from which no bone is in sight take the weights of the nearest surface point of a piece that does; the result
+// lists their vertices. Where no vertex at all sees a bone, all bones count as in sight (`no-bone-in-sight`).
 //
 // Where bones are segments, PieceRules then binds hard parts whole (`rigid-pieces`) and has pieces that hardly see a
 // bone bridged likewise.

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "limber/core/names.h"
 #include "limber/skinning/bone_heat.h"
 
 namespace limber {
@@ -20,13 +21,7 @@ std::span<const WeightMethod> weightMethods() {
 }
 
 const WeightMethod& findWeightMethod(std::string_view name) {
-  std::string known;
-  for (const WeightMethod& method : kMethods) {
-    if (method.name == name) return method;
-    known += (known.empty() ? "" : ", ") + std::string(method.name);
-  }
-  throw Error(ErrorCode::kBadArgument, "no skinning method is called '" + std::string(name) + "'", {},
-              "there are: " + known);
+  return findByName(kMethods, "skinning method", name);
 }
 
 }  // namespace limber

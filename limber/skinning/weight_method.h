@@ -17,8 +17,9 @@ struct WeightOptions {
 };
 
 struct WeightResult {
-  SkinWeights weights;  // for #V vertices of the mesh; every vertex has at least one influence
-  Warnings warnings;    // names what had to be bridged or repaired
+  SkinWeights weights;         // for #V vertices of the mesh; every vertex has at least one influence
+  std::vector<Index> bridged;  // ascending: vertices that no bone reaches, which took the weights of what is nearest
+  Warnings warnings;
 };
 
 // bones  from bonesOf(); in the space of the mesh
