@@ -16,6 +16,7 @@ struct Character {
   std::vector<Vec3f> positions, normals;
   SkinWeights weights;
   std::vector<Affine> transforms;
+  std::vector<Vec3f> rotationCenters;
 };
 
 // Vertices in order along a chain, each bound to four neighbouring joints, as meshes of real characters mostly are.
@@ -28,6 +29,7 @@ Character character(Index vertices, bool scaled) {
   for (Index v = 0; v < vertices; ++v) {
     result.positions.push_back(vector());
     result.normals.push_back(vector().normalized());
+    result.rotationCenters.push_back(vector());
     const Index first = static_cast<Index>(std::size_t{v} * kJoints / vertices);
     for (Index slot = 0; slot < 4; ++slot) result.weights.joints.push_back((first + slot) % kJoints);
     result.weights.weights.insert(result.weights.weights.end(), {0.5f, 0.25f, 0.15f, 0.1f});
@@ -47,7 +49,8 @@ void deform(benchmark::State& state, const char* name, bool normals, bool scaled
   const Deformer& deformer = findDeformer(name);
   std::vector<float> scratch(deformer.scratchSize(kJoints));
   std::vector<Vec3f> positions(bound.positions.size()), turned(normals ? bound.normals.size() : 0);
-  const DeformInput input = {bound.positions, bound.normals, bound.weights, bound.transforms, {}};
+  const DeformInput input = {bound.positions,      bound.normals, bound.weights, bound.transforms, {},
+                             bound.rotationCenters};
   for (auto _ : state) {
     deformer.deform(input, {positions, turned}, scratch);
     benchmark::DoNotOptimize(positions.data());
@@ -61,5 +64,10 @@ BENCHMARK_CAPTURE(deform, linearBlendNormals, "linear-blend", true, false)->Arg(
 BENCHMARK_CAPTURE(deform, dualQuaternion, "dual-quaternion", false, false)->RangeMultiplier(4)->Range(5000, 80000);
 BENCHMARK_CAPTURE(deform, dualQuaternionNormals, "dual-quaternion", true, false)->Arg(20000);
 BENCHMARK_CAPTURE(deform, dualQuaternionScaled, "dual-quaternion", false, true)->Arg(20000);
+BENCHMARK_CAPTURE(deform, centersOfRotation, "centers-of-rotation", false, false)
+    ->RangeMultiplier(4)
+    ->Range(5000, 80000);
+BENCHMARK_CAPTURE(deform, centersOfRotationNormals, "centers-of-rotation", true, false)->Arg(20000);
+BENCHMARK_CAPTURE(deform, centersOfRotationScaled, "centers-of-rotation", false, true)->Arg(20000);
 
 }  // namespace

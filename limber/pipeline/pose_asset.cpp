@@ -8,6 +8,7 @@
 #include "limber/core/numbers.h"
 #include "limber/ik/ik_solver.h"
 #include "limber/skinning/deformer.h"
+#include "limber/skinning/rotation_centers.h"
 
 namespace limber {
 
@@ -94,7 +95,12 @@ PosedGeometry posedGeometry(const Asset& asset, const AssetSkeleton& skeleton, c
   const Deformer& method = findDeformer(deformer);
   std::vector<float> scratch(method.scratchSize(skeleton.skeleton.jointCount()));
   std::vector<Vec3f>& positions = result.geometry.positions;
-  method.deform({positions, result.normals, weights, transforms, centers}, {positions, result.normals}, scratch);
+  std::vector<Vec3f> rotationCenters;
+  if (method.needsRotationCenters) {
+    rotationCenters = limber::rotationCenters(positions, result.geometry.triangles, weights);
+  }
+  method.deform({positions, result.normals, weights, transforms, centers, rotationCenters}, {positions, result.normals},
+                scratch);
   return result;
 }
 

@@ -1,6 +1,7 @@
 #include "limber/skinning/deform_call.h"
 
 #include <fmt/format.h>
+#include <Eigen/SVD>
 
 #include "limber/core/error.h"
 #include "limber/core/parallel.h"
@@ -10,6 +11,19 @@ namespace limber {
 namespace {
 
 constexpr std::size_t kGrain = 8192;  // vertices; 30 to 100 microseconds
+
+constexpr double kRigid = 1e-9;  // largest entry of S - I that is rounding
+
+// The rotation of the polar decomposition; `linear` may mirror or be flat.
+Mat3 nearestRotation(const Mat3& linear) {
+  if ((linear.transpose() * linear - Mat3::Identity()).cwiseAbs().maxCoeff() <= kRigid && linear.determinant() > 0) {
+    return linear;
+  }
+  const Eigen::JacobiSVD<Mat3> svd(linear, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Mat3 flip = Mat3::Identity();
+  if ((svd.matrixU() * svd.matrixV().transpose()).determinant() < 0) flip(2, 2) = -1;
+  return svd.matrixU() * flip * svd.matrixV().transpose();
+}
 
 static_assert(sizeof(Vec3f) == 3 * sizeof(float) && sizeof(Index) == sizeof(std::uint32_t));
 
@@ -31,6 +45,8 @@ void checkDeformCall(const DeformInput& input, const DeformOutput& output, std::
         output.normals.size(), input.normals.size());
   check(input.centers.empty() || input.centers.size() == input.transforms.size(), "joint centers", input.centers.size(),
         input.transforms.size());
+  check(input.rotationCenters.empty() || input.rotationCenters.size() == count, "rotation centers",
+        input.rotationCenters.size(), count);
   check(!input.transforms.empty() || entries == 0, "joint transforms", 0, 1);
   check(scratchSize >= scratchNeeded, "floats of scratch", scratchSize, scratchNeeded);
 }
@@ -49,6 +65,25 @@ void packColumns(const Affine& map, float* to) {
     }
     to[4 * column + 3] = 0;
   }
+}
+
+bool packMotion(const Affine& map, const Vec3& center, float* motion, float* stretchColumns) {
+  const Mat3 rotation = nearestRotation(map.linear());
+  Affine stretch = Affine::Identity();
+  stretch.linear() = rotation.transpose() * map.linear();
+  const bool stretched = (stretch.linear() - Mat3::Identity()).cwiseAbs().maxCoeff() > kRigid;
+  if (!stretched) stretch.linear().setIdentity();
+  stretch.translation() = center - stretch.linear() * center;
+  packColumns(stretch, stretchColumns);
+
+  const Vec3 translation = map * center - rotation * center;
+  const Quat real(rotation);
+  const Quat dual = Quat(0, 0.5 * translation.x(), 0.5 * translation.y(), 0.5 * translation.z()) * real;
+  for (int i = 0; i < 4; ++i) {
+    motion[i] = static_cast<float>(real.coeffs()[i]);
+    motion[4 + i] = static_cast<float>(dual.coeffs()[i]);
+  }
+  return stretched;
 }
 
 DeformJob deformJob(const DeformInput& input, const DeformOutput& output) {

@@ -17,6 +17,10 @@ float* alignedScratch(std::span<float> scratch);
 // Writes map - identity, kFloatsPerColumns floats.
 void packColumns(const Affine& map, float* to);
 
+// map = motion * stretch, the stretch (scale and shear) about `center`: kFloatsPerMotion floats of the rigid motion as
+// a unit dual quaternion, kFloatsPerColumns of the stretch. Returns whether there is any stretch.
+bool packMotion(const Affine& map, const Vec3& center, float* motion, float* stretchColumns);
+
 // The job for all that the call itself holds; the joints' columns and motions are left to fill in.
 DeformJob deformJob(const DeformInput& input, const DeformOutput& output);
 

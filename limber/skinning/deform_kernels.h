@@ -21,8 +21,10 @@ struct DeformJob {
   const std::uint32_t* joints = nullptr;
   const float* weights = nullptr;
   std::uint32_t slots = 0;
-  const float* columns = nullptr;  // #J * kFloatsPerColumns: the joints' maps, or for dual quaternions their scales
-  const float* motions = nullptr;  // #J * kFloatsPerMotion
+  const float* columns = nullptr;    // #J * kFloatsPerColumns: the joints' maps, or for dual quaternions their scales
+  const float* stretches = nullptr;  // #J * kFloatsPerColumns: the scales, where columns are the maps
+  const float* motions = nullptr;    // #J * kFloatsPerMotion
+  const float* rotationCenters = nullptr;  // as positions
 };
 
 // Deforms the vertices begin <= v < end.
@@ -31,6 +33,7 @@ using DeformKernel = void (*)(const DeformJob& job, std::size_t begin, std::size
 struct DeformKernels {
   DeformKernel linear[2][2];   // [four slots?][normals?]
   DeformKernel dual[2][2][2];  // [four slots?][normals?][scales?]
+  DeformKernel centered[2][2][2];
 };
 
 // Those for the machine that this runs on.

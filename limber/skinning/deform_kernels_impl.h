@@ -182,17 +182,53 @@ LIMBER_INLINE void dualBlock(const DeformJob& job, std::size_t v) {
   if (kNormals) storeLanes3(turnedNormals(motions, normals), job.outNormals + 3 * v);
 }
 
+// v' = M c + R S (v - c) about the vertex' centre c: the blended matrix M takes the centre, the blended rotation R and
+// stretch S what stands out from it. Again as displacements, so that nothing moves where all are the identity.
+template <int kSlots, bool kNormals, bool kScales>
+LIMBER_INLINE void centeredBlock(const DeformJob& job, std::size_t v) {
+  const Lanes3 positions = loadLanes3(job.positions + 3 * v);
+  const float* center = job.rotationCenters + 3 * v;
+  Float4 shifts[4];
+  Float8 sums[4];
+  for (int i = 0; i < 4; ++i) {
+    const Influences<kSlots> influences = influencesOf<kSlots>(job, v + i);
+    shifts[i] = displacementBy(blendColumns(job.columns, influences), center + 3 * i);
+    sums[i] = blendMotions(job.motions, influences);
+  }
+  Lanes3 shift = xyzOf(transposed(shifts[0], shifts[1], shifts[2], shifts[3]));
+  Lanes3 arm = positions - loadLanes3(center), normals = {};
+  if (kNormals) normals = loadLanes3(job.normals + 3 * v);
+  if (kScales) {
+    Columns stretches[4];
+    Float4 growths[4];
+    for (int i = 0; i < 4; ++i) {
+      stretches[i] = blendColumns(job.stretches, influencesOf<kSlots>(job, v + i));
+      growths[i] = displacementBy(stretches[i], joinFloat4(broadcast(arm.x[i]), broadcast(arm.y[i])),
+                                  joinFloat4(broadcast(arm.z[i]), broadcast(0)));
+    }
+    const Lanes3 growth = xyzOf(transposed(growths[0], growths[1], growths[2], growths[3]));
+    shift = shift + growth;
+    arm = arm + growth;
+    if (kNormals) normals = normalsAfter(stretches, normals);
+  }
+  const AppliedMotions motions = prepareMotions(sums);
+  storeLanes3(displaced(positions, shift + motions.factor * turnOf(motions, arm)), job.outPositions + 3 * v);
+  if (kNormals) storeLanes3(turnedNormals(motions, normals), job.outNormals + 3 * v);
+}
+
 using DeformBlock = void (*)(const DeformJob& job, std::size_t v);
 
 // The last one to three vertices, as a block with copies of the last.
 template <DeformBlock kBlock>
 void deformRest(const DeformJob& job, std::size_t begin, std::size_t end) {
   constexpr std::uint32_t kMostSlots = 8;
-  float positions[12] = {}, normals[12] = {}, outPositions[12], outNormals[12], weights[4 * kMostSlots] = {};
+  float positions[12] = {}, normals[12] = {}, centers[12] = {}, outPositions[12], outNormals[12],
+        weights[4 * kMostSlots] = {};
   std::uint32_t joints[4 * kMostSlots] = {};
   const std::size_t count = end - begin;
   for (std::size_t i = 0; i < 3 * count; ++i) positions[i] = job.positions[3 * begin + i];
   for (std::size_t i = 0; i < 3 * count && job.normals; ++i) normals[i] = job.normals[3 * begin + i];
+  for (std::size_t i = 0; i < 3 * count && job.rotationCenters; ++i) centers[i] = job.rotationCenters[3 * begin + i];
   for (std::size_t i = 0; i < job.slots * count; ++i) {
     joints[i] = job.joints[job.slots * begin + i];
     weights[i] = job.weights[job.slots * begin + i];
@@ -200,6 +236,7 @@ void deformRest(const DeformJob& job, std::size_t begin, std::size_t end) {
   DeformJob rest = job;
   rest.positions = positions;
   rest.normals = normals;
+  rest.rotationCenters = centers;
   rest.outPositions = outPositions;
   rest.outNormals = outNormals;
   rest.joints = joints;
@@ -221,7 +258,11 @@ constexpr DeformKernels kKernels = {
     {{{&deformRange<dualBlock<0, false, false>>, &deformRange<dualBlock<0, false, true>>},
       {&deformRange<dualBlock<0, true, false>>, &deformRange<dualBlock<0, true, true>>}},
      {{&deformRange<dualBlock<4, false, false>>, &deformRange<dualBlock<4, false, true>>},
-      {&deformRange<dualBlock<4, true, false>>, &deformRange<dualBlock<4, true, true>>}}}};
+      {&deformRange<dualBlock<4, true, false>>, &deformRange<dualBlock<4, true, true>>}}},
+    {{{&deformRange<centeredBlock<0, false, false>>, &deformRange<centeredBlock<0, false, true>>},
+      {&deformRange<centeredBlock<0, true, false>>, &deformRange<centeredBlock<0, true, true>>}},
+     {{&deformRange<centeredBlock<4, false, false>>, &deformRange<centeredBlock<4, false, true>>},
+      {&deformRange<centeredBlock<4, true, false>>, &deformRange<centeredBlock<4, true, true>>}}}};
 
 }  // namespace
 }  // namespace limber

@@ -7,6 +7,7 @@
 
 #include "limber/core/error.h"
 #include "limber/core/names.h"
+#include "limber/skinning/centers_of_rotation.h"
 #include "limber/skinning/dual_quaternion.h"
 #include "limber/skinning/linear_blend.h"
 
@@ -17,10 +18,13 @@ namespace {
 constexpr Deformer kDeformers[] = {
     {"linear-blend", "weighted mean of what each joint alone would do",
      "Magnenat-Thalmann, Laperrière, Thalmann: Joint-Dependent Local Deformations, 1988", &linearBlendScratch,
-     &linearBlend},
+     &linearBlend, false},
     {"dual-quaternion", "weighted mean of the joints' motions; keeps volume where joints twist",
      "Kavan, Collins, Žára, O'Sullivan: Geometric Skinning with Approximate Dual Quaternion Blending, 2008",
-     &dualQuaternionScratch, &dualQuaternion},
+     &dualQuaternionScratch, &dualQuaternion, false},
+    {"centers-of-rotation", "turns each vertex about the middle of what is bound like it; no bulge where joints bend",
+     "Le, Hodgins: Real-time Skeletal Skinning with Optimized Centers of Rotation, 2016", &centersOfRotationScratch,
+     &centersOfRotation, true},
 };
 
 }  // namespace

@@ -15,12 +15,15 @@ namespace limber {
 // transforms  #J, each from where a point is bound to where its joint takes it (skinTransforms)
 // centers     #J joint positions as bound, or empty: the points about which dual quaternions scale, the origin where
 //             empty. Without scale they do not matter.
+// rotationCenters  #V points as bound (rotation_centers.h), for deformers that turn vertices about them; empty for all
+//             others
 struct DeformInput {
   std::span<const Vec3f> positions;
   std::span<const Vec3f> normals;
   const SkinWeights& weights;
   std::span<const Affine> transforms;
   std::span<const Vec3> centers;
+  std::span<const Vec3f> rotationCenters;
 };
 
 // positions  #V
@@ -44,6 +47,7 @@ struct Deformer {
   std::string_view paper;
   std::size_t (*scratchSize)(Index jointCount);  // in floats
   DeformFunction deform;
+  bool needsRotationCenters;  // of DeformInput
 };
 
 std::span<const Deformer> deformers();

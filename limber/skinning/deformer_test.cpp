@@ -26,8 +26,9 @@ struct Scene {
   SkinWeights weights;
   std::vector<Affine> transforms;
   std::vector<Vec3> centers;
+  std::vector<Vec3f> rotationCenters;
 
-  DeformInput input() const { return {positions, normals, weights, transforms, centers}; }
+  DeformInput input() const { return {positions, normals, weights, transforms, centers, rotationCenters}; }
 };
 
 struct Deformed {
@@ -79,6 +80,7 @@ Scene randomScene(Index vertices, Index slots, Maps kind) {
   for (Index v = 0; v < vertices; ++v) {
     scene.positions.push_back(random.vector().cast<float>());
     scene.normals.push_back(random.vector().normalized().cast<float>());
+    scene.rotationCenters.push_back(random.vector().cast<float>());
     std::vector<double> raw;
     for (Index s = 0; s < slots; ++s) raw.push_back(random.in(0.01, 1));
     std::sort(raw.rbegin(), raw.rend());
@@ -134,6 +136,26 @@ Vec3 dualOracle(const Scene& scene, Index v) {
   return r * (stretch * scene.positions[v].cast<double>() + offset) + translation;
 }
 
+// Le, Hodgins 2016, equations 2 to 4, with the stretch as another linear blend.
+Vec3 centeredOracle(const Scene& scene, Index v) {
+  Mat3 stretch = Mat3::Zero();
+  Vec4 turn = Vec4::Zero();
+  std::optional<Quat> pivot;
+  for (Index s = 0; s < scene.weights.slots; ++s) {
+    const double weight = scene.weights.weightsOf(v)[s];
+    const Mat3 linear = scene.transforms[scene.weights.jointsOf(v)[s]].linear();
+    const Mat3 s0 = Eigen::SelfAdjointEigenSolver<Mat3>(linear.transpose() * linear).operatorSqrt();
+    Quat q(Mat3(linear * s0.inverse()));
+    if (!pivot) pivot = q;
+    if (pivot->dot(q) < 0) q.coeffs() = -q.coeffs();
+    turn += weight * q.coeffs();
+    stretch += weight * s0;
+  }
+  const Vec3 center = scene.rotationCenters[v].cast<double>();
+  const Vec3 arm = stretch * (scene.positions[v].cast<double>() - center);
+  return (blendedMatrix(scene, v) * center.homogeneous()).head<3>() + Quat(turn).normalized() * arm;
+}
+
 void expectNear(const Vec3f& actual, const Vec3& wanted, double tolerance, Index v) {
   EXPECT_LE((actual.cast<double>() - wanted).cwiseAbs().maxCoeff(), tolerance)
       << "vertex " << v << ": " << actual.transpose() << " for " << wanted.transpose();
@@ -171,26 +193,42 @@ TEST_P(DeformerTest, DualQuaternionIsTwoPhases) {
   for (Index v = 0; v < s.positions.size(); ++v) expectNear(out.positions[v], dualOracle(s, v), 5e-5, v);
 }
 
+TEST_P(DeformerTest, CentersOfRotationTurnAboutThem) {
+  const Scene s = scene();
+  const Deformed out = run("centers-of-rotation", s);
+  for (Index v = 0; v < s.positions.size(); ++v) expectNear(out.positions[v], centeredOracle(s, v), 5e-5, v);
+}
+
 TEST_P(DeformerTest, BothBuildsOfTheInnerLoopsGiveTheSameBits) {
   const DeformKernels* avx2 = avx2DeformKernels();
   if (!avx2) GTEST_SKIP() << "no AVX2 here";
   const Scene s = scene();
   const std::size_t count = s.positions.size();
-  std::vector<float> columns(kFloatsPerColumns * 9), motions(kFloatsPerMotion * 9);
+  std::vector<float> columns(kFloatsPerColumns * 9), stretches(columns.size()), motions(kFloatsPerMotion * 9);
   Random random;
   for (float& x : columns) x = static_cast<float>(random.in(-1, 1));
+  for (float& x : stretches) x = static_cast<float>(random.in(-1, 1));
   for (float& x : motions) x = static_cast<float>(random.in(-1, 1));
   const auto both = [&](DeformKernel kernel) {
     std::vector<float> out(6 * count);
-    const DeformJob job = {s.positions[0].data(),  s.normals[0].data(),     out.data(),
-                           out.data() + 3 * count, s.weights.joints.data(), s.weights.weights.data(),
-                           s.weights.slots,        columns.data(),          motions.data()};
+    const DeformJob job = {s.positions[0].data(),
+                           s.normals[0].data(),
+                           out.data(),
+                           out.data() + 3 * count,
+                           s.weights.joints.data(),
+                           s.weights.weights.data(),
+                           s.weights.slots,
+                           columns.data(),
+                           stretches.data(),
+                           motions.data(),
+                           s.rotationCenters[0].data()};
     kernel(job, 0, count);
     return out;
   };
   const bool four = s.weights.slots == 4;
   EXPECT_EQ(both(avx2->linear[four][1]), both(baselineDeformKernels().linear[four][1]));
   EXPECT_EQ(both(avx2->dual[four][1][1]), both(baselineDeformKernels().dual[four][1][1]));
+  EXPECT_EQ(both(avx2->centered[four][1][1]), both(baselineDeformKernels().centered[four][1][1]));
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, DeformerTest,
@@ -299,7 +337,8 @@ TEST_P(EveryDeformer, SizesThatDoNotMatchAreRefused) {
   EXPECT_THROW(deformer.deform(s.input(), {out, {}}, scratch), Error);
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, EveryDeformer, testing::Values("linear-blend", "dual-quaternion"));
+INSTANTIATE_TEST_SUITE_P(Methods, EveryDeformer,
+                         testing::Values("linear-blend", "dual-quaternion", "centers-of-rotation"));
 
 // A tube along x, its far half twisted about x: the classic case that tells the two apart.
 Scene twistedMiddle(double angle) {
@@ -331,6 +370,14 @@ TEST(DualQuaternion, ScaleAboutTheJointKeepsTheJoint) {
   s.transforms = {Affine::Identity(), forearm};
   s.centers = {Vec3::Zero(), elbow};
   expectNear(run("dual-quaternion", s).positions[0], elbow, 1e-6, 0);
+}
+
+TEST(CentersOfRotation, AreNeeded) {
+  Scene s = randomScene(10, 4, Maps::kRigid);
+  s.rotationCenters.clear();
+  EXPECT_THROW(run("centers-of-rotation", s), Error);
+  s.rotationCenters.resize(9);
+  EXPECT_THROW(run("centers-of-rotation", s), Error);
 }
 
 TEST(DeformerTable, NamesWhatThereIs) {
