@@ -6,6 +6,7 @@
 #include "limber/asset/mesh_export.h"
 #include "limber/asset/pose_io.h"
 #include "limber/asset/read.h"
+#include "limber/asset/rest_pose.h"
 #include "limber/asset/write.h"
 #include "limber/ik/ik_solver.h"
 #include "limber/ik/limits_json.h"
@@ -21,7 +22,7 @@ struct Options {
   std::string input, output, posesFile, poseName, limitsFile, deformer = "linear-blend", rootMotion = "fixed";
   std::vector<std::string> turns, moves, reaches, poles, bases;
   PoseOptions pose;
-  bool bake = false;
+  bool bake = false, setRest = false;
   Common common;
 };
 
@@ -90,7 +91,7 @@ std::string_view outcomeText(IkOutcome outcome) {
 
 void writeResult(Asset& asset, const AssetSkeleton& skeleton, const Pose& pose, const Options& options) {
   if (!options.bake) {
-    writeNodePose(asset, skeleton, pose);
+    options.setRest ? setRestPose(asset, skeleton, pose) : writeNodePose(asset, skeleton, pose);
     return writeAsset(asset, options.output);
   }
   const PosedGeometry posed = posedGeometry(asset, skeleton, pose, options.deformer);
@@ -147,7 +148,8 @@ std::string help() {
          "[{\"joint\": \"hand.L\",\n\"target\": [0.4, 1.2, 0.3], \"pole\": [0, 1, -1], \"base\": \"chest\"}]}]}\n"
          "\nExamples:\n"
          "  limber pose rigged.glb --turn head=y:30 --move handle_07=0,0.1,0 --reach hand.L=0.4,1.2,0.3 -o posed.glb\n"
-         "  limber pose rigged.glb --poses poses.json --bake -o posed.obj";
+         "  limber pose rigged.glb --poses poses.json --bake -o posed.obj\n"
+         "  limber pose rigged.glb --turn upper_arm.L=z:45 --set-rest -o t_pose.glb";
 }
 
 }  // namespace
@@ -187,6 +189,10 @@ void addPoseCommand(CLI::App& program) {
       ->type_name("NAME")
       ->needs("--bake")
       ->capture_default_str();
+  command
+      ->add_flag("--set-rest", options->setRest,
+                 "make the pose the rest pose: vertices and bind matrices are those of it, clips play as before")
+      ->excludes("--bake");
   options->common.addTo(*command);
   command->footer(help());
   command->callback([options] { run(*options); });

@@ -41,14 +41,9 @@ namespace {
 
 constexpr std::string_view kPointerStart = "/nodes/";
 
-// What a channel's target names: a node, and what of it.
-struct ChannelTarget {
-  std::optional<Index> node;
-  std::string path;
-};
-
 // The pointer of KHR_animation_pointer, null where the target has none.
-Json* pointerOf(Json& target) {
+template <typename AnyJson>
+AnyJson* pointerOf(AnyJson& target) {
   const auto extensions = target.find("extensions");
   if (extensions == target.end()) return nullptr;
   const auto extension = extensions->find("KHR_animation_pointer");
@@ -69,16 +64,8 @@ ChannelTarget parsePointer(const std::string& pointer) {
   return {static_cast<Index>(number), at < pointer.size() ? pointer.substr(at + 1) : std::string()};
 }
 
-ChannelTarget targetOf(Json& channel) {
-  const auto target = channel.find("target");
-  if (target == channel.end()) return {};
-  if (Json* pointer = pointerOf(*target)) return parsePointer(pointer->get<std::string>());
-  const Json* path = member(*target, "path");
-  return {indexMember(*target, "node"), path && path->is_string() ? path->get<std::string>() : std::string()};
-}
-
 void renumberTarget(Json& channel, const std::vector<Index>& newIndex) {
-  const ChannelTarget named = targetOf(channel);
+  const ChannelTarget named = channelTarget(channel);
   if (!named.node || *named.node >= newIndex.size()) return;
   Json& target = channel["target"];
   if (Json* pointer = pointerOf(target)) {
@@ -139,6 +126,14 @@ bool seemsToNameNodes(const Json& value) {
 
 }  // namespace
 
+ChannelTarget channelTarget(const Json& channel) {
+  const Json* target = member(channel, "target");
+  if (!target) return {};
+  if (const Json* pointer = pointerOf(*target)) return parsePointer(pointer->get<std::string>());
+  const Json* path = member(*target, "path");
+  return {indexMember(*target, "node"), path && path->is_string() ? path->get<std::string>() : std::string()};
+}
+
 void removeChannels(Asset& asset, const std::function<bool(Index, std::string_view)>& drop) {
   const auto animations = asset.json().find("animations");
   if (animations == asset.json().end()) return;
@@ -146,7 +141,7 @@ void removeChannels(Asset& asset, const std::function<bool(Index, std::string_vi
   for (Json& animation : *animations) {
     Json channels = Json::array();
     for (Json& channel : animation["channels"]) {
-      const ChannelTarget target = targetOf(channel);
+      const ChannelTarget target = channelTarget(channel);
       if (!target.node || !drop(*target.node, target.path)) channels.push_back(channel);
     }
     if (channels.size() != animation["channels"].size()) {
@@ -170,7 +165,7 @@ void retargetMorphChannels(Asset& asset, Index from, Index to) {
   for (Index n = 0; n < newIndex.size(); ++n) newIndex[n] = n == from ? to : n;
   for (Json& animation : *animations) {
     for (Json& channel : animation["channels"]) {
-      const ChannelTarget target = targetOf(channel);
+      const ChannelTarget target = channelTarget(channel);
       if (target.node == from && target.path.rfind("weights", 0) == 0) renumberTarget(channel, newIndex);
     }
   }

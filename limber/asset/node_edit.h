@@ -2,6 +2,8 @@
 #pragma once
 
 #include <functional>
+#include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -17,6 +19,14 @@ double shortDouble(double value);
 // Writes a local transform into a node: translation, rotation, scale, each only where it says something; "matrix" where
 // the transform has shear and `mayHaveMatrix` (an animated node may not).
 void setNodeTransform(Json& node, const Affine& local, bool mayHaveMatrix);
+
+// What the target of an animation's channel names, by KHR_animation_pointer too: a node, and what of it
+// ("translation").
+struct ChannelTarget {
+  std::optional<Index> node;
+  std::string path;
+};
+ChannelTarget channelTarget(const Json& channel);
 
 // Takes animation channels out for which `drop` is true, with the samplers that nothing uses then, and animations that
 // are left empty. `drop` sees the node, if the channel has one, and the path ("translation", ...).

@@ -10,6 +10,7 @@
 #include "limber/asset/bind_pose.h"
 #include "limber/asset/rig_io.h"
 #include "limber/asset/unique_names.h"
+#include "limber/asset/weight_attributes.h"
 
 namespace limber {
 
@@ -93,26 +94,6 @@ struct Influence {
   Index joint;
   float weight;
 };
-
-// The joint sets of one primitive: JOINTS_0 with WEIGHTS_0, and so on.
-struct InfluenceSet {
-  std::vector<Index> joints;
-  std::vector<float> weights;
-};
-
-std::vector<InfluenceSet> readInfluenceSets(const Asset& asset, const Json& primitive) {
-  std::vector<InfluenceSet> sets;
-  const Json* attributes = member(primitive, "attributes");
-  if (!attributes) return sets;
-  for (Index n = 0;; ++n) {
-    const std::optional<Index> joints = indexMember(*attributes, fmt::format("JOINTS_{}", n).c_str());
-    const std::optional<Index> weights = indexMember(*attributes, fmt::format("WEIGHTS_{}", n).c_str());
-    if (!joints || !weights) return sets;
-    InfluenceSet set{readIndices(asset, *joints), readFloats(asset, *weights)};
-    if (set.joints.size() != set.weights.size()) return sets;
-    sets.push_back(std::move(set));
-  }
-}
 
 // Adds to the influence of the same joint, if there is one.
 void addInfluence(std::vector<Influence>& influences, Influence added) {

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "limber/asset/accessor.h"
+#include "limber/asset/scene_graph.h"
 
 namespace limber {
 
@@ -83,6 +84,20 @@ Index addJoints(Asset& asset, const std::vector<Index>& joints, ComponentType ty
 }
 
 }  // namespace
+
+std::vector<InfluenceSet> readInfluenceSets(const Asset& asset, const Json& primitive) {
+  std::vector<InfluenceSet> sets;
+  const Json* attributes = member(primitive, "attributes");
+  if (!attributes) return sets;
+  for (Index n = 0;; ++n) {
+    const std::optional<Index> joints = indexMember(*attributes, fmt::format("JOINTS_{}", n).c_str());
+    const std::optional<Index> weights = indexMember(*attributes, fmt::format("WEIGHTS_{}", n).c_str());
+    if (!joints || !weights) return sets;
+    InfluenceSet set{readIndices(asset, *joints), readFloats(asset, *weights)};
+    if (set.joints.size() != set.weights.size()) return sets;
+    sets.push_back(std::move(set));
+  }
+}
 
 void eraseWeightAttributes(Json& primitive) {
   const auto attributes = primitive.find("attributes");

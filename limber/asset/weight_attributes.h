@@ -29,6 +29,14 @@ struct AttributeTarget {
 void writeWeightAttributes(Asset& asset, AttributeTarget target, const PrimitiveInstance& source,
                            const SkinWeights& weights, std::span<const Index> skinJointOf, Index skinJointCount);
 
+// The joint sets of one primitive, JOINTS_0 with WEIGHTS_0 and so on: four joints of the skin and four weights for each
+// vertex, as stored.
+struct InfluenceSet {
+  std::vector<Index> joints;
+  std::vector<float> weights;
+};
+std::vector<InfluenceSet> readInfluenceSets(const Asset& asset, const Json& primitive);
+
 // Takes every JOINTS_n and WEIGHTS_n out of a primitive's JSON.
 void eraseWeightAttributes(Json& primitive);
 

@@ -1,0 +1,313 @@
+#include "limber/asset/rest_pose.h"
+
+#include <cmath>
+#include <map>
+#include <set>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "limber/asset/accessor.h"
+#include "limber/asset/accessor_sweep.h"
+#include "limber/asset/bind_pose.h"
+#include "limber/asset/node_edit.h"
+#include "limber/asset/pose_io.h"
+#include "limber/asset/weight_attributes.h"
+
+namespace limber {
+
+namespace {
+
+constexpr int kVertexBuffer = 34962;
+constexpr double kSame = 1e-6;  // relative: transforms of single precision that differ less are one
+
+using Maps = std::vector<Affine>;  // of a mesh's space into itself
+
+Affine inverseOrThrow(const Affine& map, const std::string& where) {
+  const Affine inverse = map.inverse(Eigen::Affine);
+  if (inverse.matrix().allFinite()) return inverse;
+  throw Error(ErrorCode::kBadData, "is made flat by a scale of 0, so the pose cannot become its rest pose", where);
+}
+
+bool sameMap(const Affine& a, const Affine& b) {
+  const double size = 1 + a.matrix().cwiseAbs().maxCoeff();
+  return (a.matrix() - b.matrix()).cwiseAbs().maxCoeff() <= kSame * size;
+}
+
+// Where each vertex of a primitive goes: the weighted sum of its joints' maps. Those without weights stay.
+Maps vertexMaps(const std::vector<InfluenceSet>& sets, std::size_t vertexCount, const Maps& jointMaps,
+                std::size_t& sharedVertices) {
+  Maps maps(vertexCount, Affine::Identity());
+  for (std::size_t v = 0; v < vertexCount; ++v) {
+    double sum = 0;
+    Mat4 blended = Mat4::Zero();
+    const Affine* first = nullptr;
+    bool shared = false;
+    for (const InfluenceSet& set : sets) {
+      for (std::size_t i = 4 * v; i < 4 * v + 4 && i < set.weights.size(); ++i) {
+        const double weight = set.weights[i];
+        if (!(weight > 0) || !std::isfinite(weight) || set.joints[i] >= jointMaps.size()) continue;
+        const Affine& map = jointMaps[set.joints[i]];
+        if (!first) first = &map;
+        shared = shared || !sameMap(*first, map);
+        sum += weight;
+        blended += weight * map.matrix();
+      }
+    }
+    if (!(sum > 0)) continue;
+    maps[v].matrix() = blended / sum;
+    if (shared) ++sharedVertices;
+  }
+  return maps;
+}
+
+// What a map does to directions at right angles to the surface, which stay on their side where it mirrors.
+Mat3 normalMap(const Mat3& linear) {
+  Mat3 cofactors;
+  cofactors.col(0) = linear.col(1).cross(linear.col(2));
+  cofactors.col(1) = linear.col(2).cross(linear.col(0));
+  cofactors.col(2) = linear.col(0).cross(linear.col(1));
+  return linear.determinant() < 0 ? Mat3(-cofactors) : cofactors;
+}
+
+// Moves the vertices of the meshes that one skin shows. Accessors that several primitives share stay shared.
+class VertexMover {
+ public:
+  VertexMover(Asset& asset, Maps jointMaps) : asset_(asset), jointMaps_(std::move(jointMaps)) {}
+
+  std::size_t sharedVertices() const { return sharedVertices_; }
+
+  void move(Json& primitive) {
+    Json& attributes = primitive["attributes"];
+    const std::optional<Index> position = indexMember(attributes, "POSITION");
+    if (!position) return;
+    Source source;
+    source.accessors.push_back(*position);
+    for (const auto& [name, accessor] : attributes.items()) {
+      if (name.rfind("JOINTS_", 0) == 0 || name.rfind("WEIGHTS_", 0) == 0) source.accessors.push_back(accessor);
+    }
+    const auto [maps, isNew] = maps_.try_emplace(source.accessors);
+    if (isNew) {
+      const Index count = accessorInfo(asset_, *position).count;
+      maps->second = vertexMaps(readInfluenceSets(asset_, primitive), count, jointMaps_, sharedVertices_);
+    }
+    source.maps = &maps->second;
+    if (const std::optional<Index> normal = indexMember(attributes, "NORMAL")) {
+      source.accessors.push_back(*normal);
+      source.normals = readFloats(asset_, *normal);
+    }
+    moveAttributes(attributes, source, false);
+    if (const auto targets = primitive.find("targets"); targets != primitive.end()) {
+      for (Json& target : *targets) moveAttributes(target, source, true);
+    }
+  }
+
+ private:
+  struct Source {
+    std::vector<Index> accessors;  // that decide how vertices move
+    const Maps* maps = nullptr;
+    std::vector<float> normals;
+  };
+
+  void moveAttributes(Json& attributes, const Source& source, bool morph) {
+    for (const char* name : {"POSITION", "NORMAL", "TANGENT"}) {
+      const std::optional<Index> accessor = indexMember(attributes, name);
+      if (accessor) attributes[name] = moved(name, *accessor, source, morph);
+    }
+  }
+
+  Index moved(std::string_view name, Index accessor, const Source& source, bool morph) {
+    std::vector<Index> key = source.accessors;
+    key.insert(key.end(), {accessor, static_cast<Index>(name.front()), Index{morph}});
+    const auto [known, isNew] = done_.try_emplace(std::move(key), kNoIndex);
+    if (!isNew) return known->second;
+    std::vector<float> values = readFloats(asset_, accessor);
+    const Index components = accessorInfo(asset_, accessor).components;
+    for (std::size_t v = 0; v < source.maps->size() && components * (v + 1) <= values.size(); ++v) {
+      float* value = &values[components * v];
+      const Affine& map = (*source.maps)[v];
+      const Vec3 before(value[0], value[1], value[2]);
+      Vec3 after;
+      if (name == "POSITION") {
+        after = morph ? Vec3(map.linear() * before) : map * before;
+      } else if (name == "NORMAL") {
+        const float* normal = morph && source.normals.size() >= 3 * (v + 1) ? &source.normals[3 * v] : value;
+        after = normalAfter(map.linear(), before, Vec3(normal[0], normal[1], normal[2]));
+      } else {
+        after = tangentAfter(map.linear(), before, morph);
+        if (!morph && components == 4 && map.linear().determinant() < 0) value[3] = -value[3];
+      }
+      if (!after.allFinite()) after = before;
+      for (int i = 0; i < 3; ++i) value[i] = static_cast<float>(after[i]);
+    }
+    return known->second = addFloatAccessor(asset_, values, components, kVertexBuffer, name == "POSITION");
+  }
+
+  // A morph target's difference of normals is scaled as its normal was to be of unit length again.
+  static Vec3 normalAfter(const Mat3& linear, const Vec3& before, const Vec3& unit) {
+    const Mat3 map = normalMap(linear);
+    return map * before / Vec3(map * unit).norm();
+  }
+
+  static Vec3 tangentAfter(const Mat3& linear, const Vec3& before, bool morph) {
+    const Vec3 turned = linear * before;
+    return turned / (morph ? std::cbrt(std::abs(linear.determinant())) : turned.norm());
+  }
+
+  Asset& asset_;
+  Maps jointMaps_;
+  std::map<std::vector<Index>, Maps> maps_;
+  std::map<std::vector<Index>, Index> done_;
+  std::size_t sharedVertices_ = 0;
+};
+
+// Binds every skin that a mesh is shown with where its joints' nodes stand now, its vertices with it.
+class Rebinder {
+ public:
+  explicit Rebinder(Asset& asset) : asset_(asset), graph_(readSceneGraph(asset)) {}
+
+  // skinToWorld  #skins: where each skin's mesh space lies in the world; it stays there
+  void run(const std::vector<Affine>& skinToWorld) {
+    findUses();
+    std::map<Index, VertexMover> movers;
+    std::size_t sharedVertices = 0;
+    for (const auto& [use, nodes] : nodesOfUse_) {
+      const auto [mesh, skin] = use;
+      auto mover = movers.find(skin);
+      if (mover == movers.end()) {
+        mover = movers.emplace(skin, VertexMover(asset_, rebind(skin, skinToWorld[skin]))).first;
+      }
+      const Index target = meshFor(mesh);
+      Json primitives = asset_.json()["meshes"][target]["primitives"];
+      for (Json& primitive : primitives) mover->second.move(primitive);
+      asset_.json()["meshes"][target]["primitives"] = std::move(primitives);
+      for (const Index node : nodes) asset_.json()["nodes"][node]["mesh"] = target;
+    }
+    for (const auto& [skin, mover] : movers) sharedVertices += mover.sharedVertices();
+    asset_.warnings.add(
+        "shared-vertices",
+        "vertices are shared by joints that moved against each other: clips show them a little otherwise", {},
+        sharedVertices);
+  }
+
+ private:
+  void findUses() {
+    const Json& nodes = elements(asset_, "nodes");
+    std::vector<Index> withoutSkin(elementCount(asset_, "meshes"), 0);
+    for (Index n = 0; n < nodes.size(); ++n) {
+      const std::optional<Index> mesh = indexMember(nodes[n], "mesh"), skin = indexMember(nodes[n], "skin");
+      if (!mesh) continue;
+      if (skin) {
+        nodesOfUse_[{*mesh, *skin}].push_back(n);
+      } else {
+        withoutSkin[*mesh] = 1;
+      }
+    }
+    usesLeft_ = std::move(withoutSkin);
+    for (const auto& use : nodesOfUse_) ++usesLeft_[use.first.first];
+  }
+
+  // New inverse bind matrices; returns where each joint takes the vertices bound to it alone.
+  Maps rebind(Index skin, const Affine& toWorld) {
+    const SkinBinding binding = readSkinBinding(asset_, skin);
+    const Affine fromWorld = inverseOrThrow(toWorld, fmt::format("skins[{}]", skin));
+    Maps maps;
+    std::vector<float> inverseBinds;
+    for (std::size_t j = 0; j < binding.joints.size(); ++j) {
+      const Affine& joint = graph_.world[binding.joints[j]];
+      maps.push_back(fromWorld * joint * binding.inverseBinds[j]);
+      const Affine toJoint = inverseOrThrow(joint, fmt::format("nodes[{}]", binding.joints[j])) * toWorld;
+      for (int i = 0; i < 16; ++i) inverseBinds.push_back(static_cast<float>(toJoint.matrix()(i % 4, i / 4)));
+    }
+    const Index accessor = addFloatAccessor(asset_, inverseBinds, 16);
+    asset_.json()["skins"][skin]["inverseBindMatrices"] = accessor;
+    return maps;
+  }
+
+  // A copy while other uses need the mesh as it was, the mesh itself for the last.
+  Index meshFor(Index mesh) {
+    if (--usesLeft_[mesh] == 0) return mesh;
+    Json& meshes = asset_.json()["meshes"];
+    Json copy = meshes[mesh];
+    meshes.push_back(std::move(copy));
+    return static_cast<Index>(meshes.size() - 1);
+  }
+
+  Asset& asset_;
+  SceneGraph graph_;
+  std::map<std::pair<Index, Index>, std::vector<Index>> nodesOfUse_;  // by mesh and skin
+  std::vector<Index> usesLeft_;                                       // #meshes, by skins, and one without a skin
+};
+
+struct ChangedPart {
+  Index node = 0;
+  const char* path = "";  // "translation", ...
+  std::vector<float> before;
+};
+
+template <typename Vector>
+bool sameNumbers(const Vector& a, const Vector& b) {
+  return (a - b).cwiseAbs().maxCoeff() <= kSame * (1e-1 + a.cwiseAbs().maxCoeff());
+}
+
+template <typename Vector>
+std::vector<float> floatsOf(const Vector& vector) {
+  std::vector<float> values;
+  for (Eigen::Index i = 0; i < vector.size(); ++i) values.push_back(static_cast<float>(vector[i]));
+  return values;
+}
+
+std::vector<ChangedPart> changedParts(const SceneGraph& before, const SceneGraph& after,
+                                      const std::vector<Index>& nodes) {
+  std::vector<ChangedPart> parts;
+  for (const Index n : nodes) {
+    const Transform a = decompose(before.local[n]), b = decompose(after.local[n]);
+    if (!sameNumbers(a.translation, b.translation)) parts.push_back({n, "translation", floatsOf(a.translation)});
+    const Vec4 turned = a.rotation.dot(b.rotation) < 0 ? Vec4(-b.rotation.coeffs()) : b.rotation.coeffs();
+    if (!sameNumbers(a.rotation.coeffs(), turned)) {
+      parts.push_back({n, "rotation", floatsOf(a.rotation.coeffs())});
+    }
+    if (!sameNumbers(a.scale, b.scale)) parts.push_back({n, "scale", floatsOf(a.scale)});
+  }
+  return parts;
+}
+
+// What an animation does not move stays where its node has it, and that has changed.
+void holdInClips(Asset& asset, const std::vector<ChangedPart>& parts) {
+  const auto animations = asset.json().find("animations");
+  if (animations == asset.json().end() || parts.empty()) return;
+  const std::vector<float> start = {0};
+  const Index input = addFloatAccessor(asset, start, 1, 0, true);
+  std::vector<Index> outputs;
+  for (const ChangedPart& part : parts) {
+    outputs.push_back(addFloatAccessor(asset, part.before, static_cast<Index>(part.before.size())));
+  }
+  for (Json& animation : asset.json()["animations"]) {
+    std::set<std::pair<Index, std::string>> driven;
+    for (const Json& channel : animation.at("channels")) {
+      const ChannelTarget target = channelTarget(channel);
+      if (target.node) driven.insert({*target.node, target.path});
+    }
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      if (driven.count({parts[i].node, parts[i].path}) > 0) continue;
+      const auto sampler = static_cast<Index>(animation["samplers"].size());
+      animation["samplers"].push_back({{"input", input}, {"output", outputs[i]}});
+      animation["channels"].push_back(
+          {{"sampler", sampler}, {"target", {{"node", parts[i].node}, {"path", parts[i].path}}}});
+    }
+  }
+}
+
+}  // namespace
+
+void setRestPose(Asset& asset, const AssetSkeleton& skeleton, const Pose& pose) {
+  const AccessorSweep unused(asset);
+  const SceneGraph before = readSceneGraph(asset);
+  const std::vector<Affine> skinToWorld = readBindPose(asset, before).skinToWorld;
+  writeNodePose(asset, skeleton, pose);
+  Rebinder(asset).run(skinToWorld);
+  holdInClips(asset, changedParts(before, readSceneGraph(asset), skeleton.jointNode));
+  unused.sweep(asset);
+}
+
+}  // namespace limber

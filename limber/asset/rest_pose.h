@@ -1,0 +1,26 @@
+// A new rest pose for a rigged Asset: the pose that it stands in becomes the one that it is bound in.
+#pragma once
+
+#include "limber/asset/rig_io.h"
+#include "limber/skeleton/pose.h"
+
+namespace limber {
+
+// Vertices go where linear blend skinning takes them in `pose`, normals, tangents and morph targets with them; the
+// joint nodes stand in the pose, and inverse bind matrices say that this is where the skins are bound. Clips move
+// joints as they did: where an animation left a part of a joint's transform to its node and the node has changed, it is
+// given a key that holds the old one.
+//
+// A vertex whose joints all moved alike from bind pose to `pose` (those of a single joint among them) looks the same at
+// every moment of every clip. One that is shared by joints that moved against each other does in `pose` only; no
+// inverse bind matrices can give more. Warning "shared-vertices" counts these.
+//
+// Mesh copies and skin copies are made where other nodes, not in the scene, show the same. Accessors that nothing uses
+// any more leave the list. Throws Error kBadArgument where `pose` is not of that skeleton, kBadData naming a joint or
+// skin that a scale of 0 makes flat. The asset is then half changed.
+//
+// skeleton  readSkeleton(asset) of the asset as it is
+// pose      as of readNodePose
+void setRestPose(Asset& asset, const AssetSkeleton& skeleton, const Pose& pose);
+
+}  // namespace limber

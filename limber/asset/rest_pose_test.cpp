@@ -1,0 +1,346 @@
+// A new rest pose: what a viewer shows, played here by the book, is the same before and after.
+#include "limber/asset/rest_pose.h"
+
+#include <cmath>
+#include <random>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "limber/asset/bind_pose.h"
+#include "limber/asset/pose_io.h"
+#include "limber/asset/scene_builder_test.h"
+#include "limber/asset/scene_graph.h"
+#include "limber/asset/weight_attributes.h"
+
+namespace limber {
+namespace {
+
+using testing::SceneBuilder;
+
+class Random {
+ public:
+  double in(double low, double high) { return std::uniform_real_distribution<double>(low, high)(generator_); }
+  Vec3 vector() { return {in(-1, 1), in(-1, 1), in(-1, 1)}; }
+  Quat rotation(double most = 1.5) { return Quat(Eigen::AngleAxisd(in(-most, most), vector().normalized())); }
+
+ private:
+  std::mt19937 generator_{11};
+};
+
+Json numbers(const Eigen::Ref<const Eigen::VectorXd>& vector) {
+  Json result = Json::array();
+  for (const double x : vector) result.push_back(static_cast<float>(x));
+  return result;
+}
+
+// hip - chest - arm, hip - leg; their nodes do not stand in the bind pose. Two skins share chest and hip.
+struct Character {
+  SceneBuilder scene;
+  Random random;
+  Index leg, arm, chest, hip, bodySkin, coatSkin;
+  std::vector<Affine> bind;  // by node
+
+  Character() {
+    const auto joint = [&](const char* name, Json children) {
+      bind.push_back(Affine(Eigen::Translation3d(random.vector()) * random.rotation()));
+      Json node = {{"name", name}, {"translation", numbers(random.vector())}};
+      node["rotation"] = numbers(random.rotation().coeffs());
+      if (!children.empty()) node["children"] = std::move(children);
+      return scene.addNode(std::move(node));
+    };
+    leg = joint("leg", Json::array());
+    arm = joint("arm", Json::array());
+    chest = joint("chest", {arm});
+    hip = joint("hip", {chest, leg});
+    bodySkin = scene.addSkin({hip, chest, arm, leg}, inverses({hip, chest, arm, leg}));
+    coatSkin = scene.addSkin({chest, hip}, inverses({chest, hip}));
+  }
+
+  std::vector<Affine> inverses(const std::vector<Index>& joints) const {
+    std::vector<Affine> result;
+    for (const Index j : joints) result.push_back(bind[j].inverse(Eigen::Affine));
+    return result;
+  }
+
+  // A mesh of tetrahedra, each bound rigidly to one of `joints` joints.
+  Index rigidMesh(Index joints) {
+    std::vector<Vec3f> positions;
+    std::vector<Triangle> triangles;
+    std::vector<std::uint8_t> jointOf;
+    for (Index i = 0; i < 6; ++i) {
+      for (Triangle t : SceneBuilder::tetrahedronTriangles()) {
+        for (Index& v : t) v += 4 * i;
+        triangles.push_back(t);
+      }
+      for (const Vec3f& p : SceneBuilder::tetrahedron(random.vector().cast<float>(), 0.3f)) positions.push_back(p);
+      jointOf.insert(jointOf.end(), 4, static_cast<std::uint8_t>(i % joints));
+    }
+    const Index mesh = scene.addMesh(Json::array({scene.primitive(positions, triangles)}));
+    scene.bindRigidly(mesh, jointOf);
+    std::vector<float> normals, tangents, morph;
+    for (std::size_t v = 0; v < positions.size(); ++v) {
+      const Vec3 n = random.vector().normalized(), t = n.unitOrthogonal();
+      for (int k = 0; k < 3; ++k) normals.push_back(static_cast<float>(n[k]));
+      for (int k = 0; k < 3; ++k) tangents.push_back(static_cast<float>(t[k]));
+      tangents.push_back(1);
+      for (int k = 0; k < 3; ++k) morph.push_back(static_cast<float>(random.in(-0.1, 0.1)));
+    }
+    Json& primitive = scene.json()["meshes"][mesh]["primitives"][0];
+    primitive["attributes"]["NORMAL"] = addFloatAccessor(scene.asset(), normals, 3, 34962);
+    primitive["attributes"]["TANGENT"] = addFloatAccessor(scene.asset(), tangents, 4, 34962);
+    primitive["targets"] = {{{"POSITION", addFloatAccessor(scene.asset(), morph, 3, 34962, true)},
+                             {"NORMAL", addFloatAccessor(scene.asset(), morph, 3, 34962)}}};
+    return mesh;
+  }
+
+  void addTurn(Index node, Index keys) {
+    std::vector<float> times, values;
+    for (Index k = 0; k < keys; ++k) {
+      times.push_back(0.5f * static_cast<float>(k));
+      const Quat q = random.rotation();
+      for (int i = 0; i < 4; ++i) values.push_back(static_cast<float>(q.coeffs()[i]));
+    }
+    const Index input = addFloatAccessor(scene.asset(), times, 1, 0, true);
+    const Index output = addFloatAccessor(scene.asset(), values, 4);
+    scene.json()["animations"].push_back(
+        {{"channels", {{{"sampler", 0}, {"target", {{"node", node}, {"path", "rotation"}}}}}},
+         {"samplers", {{{"input", input}, {"output", output}}}}});
+  }
+};
+
+// The nodes' local transforms at a time of an animation, written down from the format's definition.
+std::vector<Transform> localsAt(const Asset& asset, Index animation, double seconds) {
+  std::vector<Transform> locals;
+  for (const Json& node : elements(asset, "nodes")) locals.push_back(decompose(nodeTransform(node)));
+  const Json& source = elements(asset, "animations")[animation];
+  for (const Json& channel : source.at("channels")) {
+    const Json& sampler = source.at("samplers")[channel.at("sampler").get<Index>()];
+    const std::vector<float> times = readFloats(asset, sampler.at("input").get<Index>());
+    const std::vector<float> values = readFloats(asset, sampler.at("output").get<Index>());
+    std::size_t key = 0;
+    while (key + 2 < times.size() && times[key + 1] <= seconds) ++key;
+    const std::size_t next = std::min(key + 1, times.size() - 1);
+    const double span = times[next] - times[key];
+    const double share = span > 0 ? std::clamp((seconds - times[key]) / span, 0.0, 1.0) : 0;
+    const std::string path = channel.at("target").at("path");
+    Transform& local = locals[channel.at("target").at("node").get<Index>()];
+    const auto at = [&](std::size_t k, Index components, Index i) { return double{values[components * k + i]}; };
+    if (path == "rotation") {
+      const Quat a(at(key, 4, 3), at(key, 4, 0), at(key, 4, 1), at(key, 4, 2));
+      const Quat b(at(next, 4, 3), at(next, 4, 0), at(next, 4, 1), at(next, 4, 2));
+      local.rotation = a.normalized().slerp(share, b.normalized());
+    } else {
+      Vec3& vector = path == "translation" ? local.translation : local.scale;
+      for (Index i = 0; i < 3; ++i) vector[i] = (1 - share) * at(key, 3, i) + share * at(next, 3, i);
+    }
+  }
+  return locals;
+}
+
+struct Shown {
+  std::vector<Vec3> positions, normals, tangents, morphed;
+};
+
+// All vertices of all skinned nodes, node by node, as a viewer places them.
+Shown show(const Asset& asset, const std::vector<Transform>& locals) {
+  const SceneGraph graph = readSceneGraph(asset);
+  std::vector<Affine> world(locals.size());
+  for (const Index n : graph.allNodes) {
+    world[n] = (graph.parent[n] ? world[*graph.parent[n]] : Affine::Identity()) * locals[n].toAffine();
+  }
+  Shown result;
+  for (const Json& node : elements(asset, "nodes")) {
+    if (!node.contains("skin")) continue;
+    const SkinBinding binding = readSkinBinding(asset, node.at("skin").get<Index>());
+    for (const Json& primitive : elements(asset, "meshes")[node.at("mesh").get<Index>()].at("primitives")) {
+      const auto read = [&](const Json& attributes, const char* name) {
+        return attributes.contains(name) ? readFloats(asset, attributes.at(name).get<Index>()) : std::vector<float>();
+      };
+      const std::vector<float> p = read(primitive.at("attributes"), "POSITION");
+      const std::vector<float> n = read(primitive.at("attributes"), "NORMAL");
+      const std::vector<float> t = read(primitive.at("attributes"), "TANGENT");
+      const std::vector<float> m =
+          primitive.contains("targets") ? read(primitive.at("targets")[0], "POSITION") : std::vector<float>();
+      const InfluenceSet set = readInfluenceSets(asset, primitive).at(0);
+      for (std::size_t v = 0; 3 * v < p.size(); ++v) {
+        Mat4 map = Mat4::Zero();
+        for (std::size_t i = 4 * v; i < 4 * v + 4; ++i) {
+          const Index j = set.joints[i];
+          map += set.weights[i] * (world[binding.joints[j]] * binding.inverseBinds[j]).matrix();
+        }
+        const Affine affine(map);
+        const Vec3 at(p[3 * v], p[3 * v + 1], p[3 * v + 2]);
+        result.positions.push_back(affine * at);
+        if (!n.empty()) result.normals.push_back(affine.linear() * Vec3(n[3 * v], n[3 * v + 1], n[3 * v + 2]));
+        if (!t.empty()) result.tangents.push_back(affine.linear() * Vec3(t[4 * v], t[4 * v + 1], t[4 * v + 2]));
+        if (!m.empty()) result.morphed.push_back(affine * Vec3(at + Vec3(m[3 * v], m[3 * v + 1], m[3 * v + 2])));
+      }
+    }
+  }
+  return result;
+}
+
+void expectSame(const std::vector<Vec3>& a, const std::vector<Vec3>& b, const char* what) {
+  ASSERT_EQ(a.size(), b.size()) << what;
+  double size = 0, worst = 0;
+  for (std::size_t v = 0; v < a.size(); ++v) {
+    size = std::max(size, a[v].norm());
+    worst = std::max(worst, (a[v] - b[v]).norm());
+  }
+  EXPECT_LE(worst, 1e-5 * size) << what;
+}
+
+void expectClipsLookTheSame(const Asset& before, const Asset& after) {
+  ASSERT_EQ(elementCount(before, "animations"), elementCount(after, "animations"));
+  for (Index animation = 0; animation < elementCount(before, "animations"); ++animation) {
+    for (double seconds = -0.1; seconds < 2; seconds += 0.13) {
+      const Shown a = show(before, localsAt(before, animation, seconds));
+      const Shown b = show(after, localsAt(after, animation, seconds));
+      expectSame(a.positions, b.positions, "positions");
+      expectSame(a.normals, b.normals, "normals");
+      expectSame(a.tangents, b.tangents, "tangents");
+      expectSame(a.morphed, b.morphed, "morph targets");
+    }
+  }
+}
+
+std::vector<Transform> standing(const Asset& asset) {
+  std::vector<Transform> locals;
+  for (const Json& node : elements(asset, "nodes")) locals.push_back(decompose(nodeTransform(node)));
+  return locals;
+}
+
+// The pose of the nodes, with every joint turned and moved.
+Pose otherPose(const Asset& asset, const AssetSkeleton& skeleton, Random& random) {
+  Pose pose = readNodePose(asset, skeleton);
+  for (Transform& local : pose.locals) {
+    local.rotation = (local.rotation * random.rotation()).normalized();
+    local.translation += 0.2 * random.vector();
+  }
+  return pose;
+}
+
+Character dressedCharacter() {
+  Character c;
+  const Index body = c.rigidMesh(4), coat = c.rigidMesh(2), both = c.rigidMesh(2);
+  std::vector<Index> roots = {c.hip};
+  roots.push_back(c.scene.addNode({{"name", "body"}, {"mesh", body}, {"skin", c.bodySkin}}));
+  roots.push_back(c.scene.addNode({{"name", "coat"}, {"mesh", coat}, {"skin", c.coatSkin}}));
+  roots.push_back(c.scene.addNode({{"name", "one"}, {"mesh", both}, {"skin", c.bodySkin}}));
+  roots.push_back(c.scene.addNode({{"name", "other"}, {"mesh", both}, {"skin", c.coatSkin}}));
+  c.scene.addScene(roots);
+  c.addTurn(c.arm, 4);
+  c.addTurn(c.hip, 1);
+  c.addTurn(c.leg, 3);
+  return c;
+}
+
+TEST(RestPose, ClipsLookTheSameAndThePoseIsTheBindPose) {
+  Character c = dressedCharacter();
+  Asset asset = c.scene.build();
+  const Asset before = asset.clone();
+  const AssetSkeleton skeleton = readSkeleton(asset);
+  const Pose pose = otherPose(asset, skeleton, c.random);
+  Asset posed = before.clone();
+  writeNodePose(posed, skeleton, pose);
+
+  setRestPose(asset, skeleton, pose);
+  checkAsset(asset);
+  expectClipsLookTheSame(before, asset);
+  const Shown a = show(posed, standing(posed)), b = show(asset, standing(asset));
+  expectSame(a.positions, b.positions, "positions");
+  expectSame(a.normals, b.normals, "normals");
+  EXPECT_TRUE(asset.warnings.empty());
+
+  const AssetSkeleton after = readSkeleton(asset);
+  const Pose stands = readNodePose(asset, after);
+  for (Index j = 0; j < after.skeleton.jointCount(); ++j) {
+    const Affine rest = after.skeleton.joints[j].rest.toAffine(), now = stands.locals[j].toAffine();
+    EXPECT_LT((rest.matrix() - now.matrix()).cwiseAbs().maxCoeff(), 1e-5) << j;
+  }
+}
+
+TEST(RestPose, AMeshThatIsShownWithoutASkinTooStaysAsItIsThere) {
+  Character c;
+  const Index mesh = c.rigidMesh(2);
+  const Index statue = c.scene.addNode({{"name", "statue"}, {"mesh", mesh}});
+  const Index body = c.scene.addNode({{"name", "body"}, {"mesh", mesh}, {"skin", c.coatSkin}});
+  c.scene.addScene({c.hip, statue, body});
+  c.addTurn(c.chest, 3);
+  Asset asset = c.scene.build();
+  const Asset before = asset.clone();
+  const AssetSkeleton skeleton = readSkeleton(asset);
+  setRestPose(asset, skeleton, otherPose(asset, skeleton, c.random));
+  checkAsset(asset);
+  expectClipsLookTheSame(before, asset);
+  EXPECT_EQ(asset.json()["nodes"][statue], before.json()["nodes"][statue]);
+  EXPECT_EQ(asset.json()["meshes"][mesh]["name"], before.json()["meshes"][mesh]["name"]);
+  const auto positions = [&](const Asset& of) {
+    return readFloats(of, of.json()["meshes"][mesh]["primitives"][0]["attributes"]["POSITION"].get<Index>());
+  };
+  EXPECT_EQ(positions(asset), positions(before));
+}
+
+// The middle of an arm that bends: right in the new rest pose, and the file says that clips cannot be kept there.
+TEST(RestPose, SharedVerticesAreRightInThePoseAndCounted) {
+  Character c;
+  const Index mesh = c.scene.addTetrahedron();
+  const std::vector<std::uint8_t> joints = {0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0};
+  const std::vector<float> weights = {0.5f, 0.5f, 0, 0, 0.25f, 0.75f, 0, 0, 1, 0, 0, 0, 0.5f, 0.5f, 0, 0};
+  Json& attributes = c.scene.json()["meshes"][mesh]["primitives"][0]["attributes"];
+  attributes["JOINTS_0"] = addAccessor(c.scene.asset(), {4, 4, ComponentType::kU8, false}, joints, 34962);
+  attributes["WEIGHTS_0"] = addFloatAccessor(c.scene.asset(), weights, 4, 34962);
+  const Index body = c.scene.addNode({{"name", "body"}, {"mesh", mesh}, {"skin", c.coatSkin}});
+  c.scene.addScene({c.hip, body});
+  Asset asset = c.scene.build();
+  const AssetSkeleton skeleton = readSkeleton(asset);
+  const Pose pose = otherPose(asset, skeleton, c.random);
+  Asset posed = asset.clone();
+  writeNodePose(posed, skeleton, pose);
+  setRestPose(asset, skeleton, pose);
+  expectSame(show(posed, standing(posed)).positions, show(asset, standing(asset)).positions, "positions");
+  ASSERT_EQ(asset.warnings.items().size(), 1u);
+  EXPECT_EQ(asset.warnings.items()[0].kind, "shared-vertices");
+  EXPECT_EQ(asset.warnings.items()[0].count, 3u);
+}
+
+// All joints moved alike: then shared vertices keep their clips too.
+TEST(RestPose, WhatMovesAsAWholeKeepsItsClips) {
+  Character c;
+  const Index mesh = c.scene.addTetrahedron();
+  const std::vector<std::uint8_t> joints = {0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0};
+  const std::vector<float> weights(16, 0.25f);
+  Json& attributes = c.scene.json()["meshes"][mesh]["primitives"][0]["attributes"];
+  attributes["JOINTS_0"] = addAccessor(c.scene.asset(), {4, 4, ComponentType::kU8, false}, joints, 34962);
+  attributes["WEIGHTS_0"] = addFloatAccessor(c.scene.asset(), weights, 4, 34962);
+  const Index body = c.scene.addNode({{"name", "body"}, {"mesh", mesh}, {"skin", c.coatSkin}});
+  c.scene.addScene({c.hip, body});
+  c.addTurn(c.chest, 4);
+  Asset asset = c.scene.build();
+  const Asset before = asset.clone();
+  const AssetSkeleton skeleton = readSkeleton(asset);
+  Pose pose = restPose(skeleton.skeleton);
+  const Affine whole(Eigen::Translation3d(1, 2, 3) * c.random.rotation());
+  const Index root = *skeleton.skeleton.find("hip");
+  pose.locals[root] = decompose(whole * pose.locals[root].toAffine());
+  setRestPose(asset, skeleton, pose);
+  expectClipsLookTheSame(before, asset);
+  EXPECT_TRUE(asset.warnings.empty());
+}
+
+TEST(RestPose, FlatJointsAreRefused) {
+  Character c;
+  const Index mesh = c.rigidMesh(2);
+  c.scene.addScene({c.hip, c.scene.addNode({{"mesh", mesh}, {"skin", c.coatSkin}})});
+  Asset asset = c.scene.build();
+  const AssetSkeleton skeleton = readSkeleton(asset);
+  Pose pose = readNodePose(asset, skeleton);
+  pose.locals[*skeleton.skeleton.find("chest")].scale.setZero();
+  EXPECT_THROW(setRestPose(asset, skeleton, pose), Error);
+  pose.locals.pop_back();
+  EXPECT_THROW(setRestPose(asset, skeleton, pose), Error);
+}
+
+}  // namespace
+}  // namespace limber
