@@ -59,6 +59,45 @@ TEST(ClipPlayer, PlaysWhatTheClipSays) {
   }
 }
 
+// As recorded motion is: every joint at the same times, a few of them with no track, one with a single key, wide turns.
+Clip recorded() {
+  Clip clip;
+  for (Index j = 0; j < 10; ++j) {
+    if (j == 3) continue;
+    Track<Eigen::Quaternionf> turns{j, Interpolation::kLinear, {}, {}};
+    Track<Vec3f> moves{j, Interpolation::kLinear, {}, {}};
+    for (int k = 0; k < (j == 5 ? 1 : 40); ++k) {
+      turns.times.push_back(0.2f + static_cast<float>(k) / 30);
+      const double angle = (j == 8 ? 3.0 : 0.4) * std::sin(0.9 * k + j);
+      turns.values.push_back(Eigen::Quaternionf(
+          Eigen::AngleAxisf(static_cast<float>(angle), Vec3f(1, static_cast<float>(j), -1).normalized())));
+      if (k % 3 == 1) turns.values.back().coeffs() *= -1;
+      moves.values.push_back(Vec3f(static_cast<float>(angle), 0.5f, 0.1f * static_cast<float>(k)));
+    }
+    moves.times = turns.times;
+    clip.rotations.push_back(turns);
+    if (j % 2 == 0) clip.translations.push_back(moves);
+  }
+  return clip;
+}
+
+TEST(ClipPlayer, PlaysRecordedMotion) {
+  const Skeleton skeleton = tree();
+  const Clip clip = recorded();
+  ClipPlayer player(clip, skeleton);
+  std::vector<Eigen::Matrix4f> globals(10);
+  for (int i = 0; i < 3000; ++i) {
+    const double seconds = i < 2000 ? -0.2 + 0.001 * i : std::fmod(1.7 * i, 2.0);
+    player.sample(seconds, globals);
+    Pose pose = restPose(skeleton);
+    sampleClip(clip, seconds, pose);
+    const std::vector<Affine> exact = poseGlobals(skeleton, pose);
+    for (Index j = 0; j < 10; ++j) {
+      EXPECT_LT((globals[j].cast<double>() - exact[j].matrix()).cwiseAbs().maxCoeff(), 5e-5) << seconds << " " << j;
+    }
+  }
+}
+
 TEST(ClipPlayer, ExactlyAtAStepTheNewValueHolds) {
   Skeleton skeleton;
   skeleton.joints.resize(1);
