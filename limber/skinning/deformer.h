@@ -23,7 +23,7 @@ struct DeformInput {
   const SkinWeights& weights;
   std::span<const Affine> transforms;
   std::span<const Vec3> centers;
-  std::span<const Vec3f> rotationCenters;
+  std::span<const Vec3f> rotationCenters = {};
 };
 
 // positions  #V
