@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Makes the documentation's pictures (docs/images) and, where the shared characters are, its table of weights
-# (docs/weights.md). Called by ./dev docs with the program built.
+# Makes the documentation's pictures (docs/images), the comparison of inverse kinematics (docs/ik.md) and, where the
+# shared characters are, its table of weights (docs/weights.md). Called by ./dev docs with the program built.
 set -euo pipefail
 
 limber=build/release/limber images=docs/images work=build/docs
@@ -21,10 +21,12 @@ $limber pose $work/winged_rigged.glb --turn handle_03.L=z:30 --turn handle_03.R=
   -o $work/winged_posed.glb --quiet
 picture winged_posed.glb model dragon_posed.png
 
+$limber evaluate ik --problems 100 --plot $images -o docs/ik.md --quiet
+
 characters=${LIMBER_SHARED_DATA:-../shared/data}/rigged
 if [ -d "$characters" ]; then
   $limber evaluate skinning "$characters" --references docs/data/blender_weights.tsv -o docs/weights.md --quiet
-  echo "Made docs/images and docs/weights.md"
+  echo "Made docs/images, docs/ik.md and docs/weights.md"
 else
-  echo "Made docs/images; docs/weights.md stays as it is: no characters in $characters"
+  echo "Made docs/images and docs/ik.md; docs/weights.md stays as it is: no characters in $characters"
 fi

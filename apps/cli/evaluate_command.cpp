@@ -1,4 +1,6 @@
 // limber evaluate: how good a result is, in figures.
+#include <filesystem>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -7,6 +9,7 @@
 #include "limber/asset/read.h"
 #include "limber/core/file.h"
 #include "limber/evaluate/ik_evaluation.h"
+#include "limber/evaluate/ik_page.h"
 #include "limber/evaluate/weight_report.h"
 #include "limber/evaluate/weight_table.h"
 #include "limber/pipeline/auto_rig.h"
@@ -60,13 +63,32 @@ void runSkinning(const SkinningOptions& options) {
 
 struct SolverOptions {
   IkEvaluationOptions evaluation;
+  std::string plots, page;
   bool json = false;
   Common common;
 };
 
+// Where `folder` lies, seen from a page.
+std::string folderFrom(const std::string& page, const std::string& folder) {
+  const std::filesystem::path here =
+      page == "-" ? std::filesystem::path(".") : std::filesystem::path(page).parent_path();
+  return std::filesystem::absolute(folder).lexically_relative(std::filesystem::absolute(here)).generic_string();
+}
+
 void runIk(const SolverOptions& options) {
+  if (!options.page.empty()) checkOutput(options.page, {".md"});
   TerminalProgress progress(options.common.quiet);
   const std::vector<IkScore> scores = evaluateIk(options.evaluation, *progress);
+  if (!options.plots.empty()) {
+    const std::filesystem::path folder = options.plots;
+    std::filesystem::create_directories(folder);
+    writeText((folder / kIkPlotFiles.solved).string(), ikSolvedPlot(scores));
+    writeText((folder / kIkPlotFiles.time).string(), ikTimePlot(scores));
+  }
+  if (!options.page.empty()) {
+    const std::string plots = options.plots.empty() ? std::string() : folderFrom(options.page, options.plots);
+    return writeText(options.page, ikPage(scores, plots == "." ? "" : plots));
+  }
   fmt::print("{}", options.json ? ikScoreJson(scores) : ikScoreTable(scores));
 }
 
@@ -81,13 +103,18 @@ void addIk(CLI::App& evaluate) {
   command->add_option("--solver", options->evaluation.methods, "only these methods; limber pose --help lists them")
       ->type_name("NAME")
       ->allow_extra_args(false);
+  command->add_option("--plot", options->plots, "write plots of the shares solved and the times there, as SVG")
+      ->type_name("FOLDER");
+  command->add_option("-o,--output", options->page, "write a page in Markdown, with the aims beside the figures")
+      ->type_name("FILE");
   command->add_flag("--json", options->json, "print JSON");
   command->add_flag("--quiet,-q", options->common.quiet, "draw no progress");
   command->footer(
       "Chains of 3, 10, 30 and 100 joints and a humanoid of 60 joints with five effectors; targets in reach, at its\n"
       "border and out of it; with and without joint limits. A problem counts as solved within a thousandth of the\n"
       "chain's length; one that cannot be solved, when the method says that it is out of reach.\n"
-      "\nExample:\n  limber evaluate ik --problems 100 --solver fabrik --solver dls");
+      "\nExample:\n  limber evaluate ik --problems 100 --solver fabrik --solver dls\n"
+      "  limber evaluate ik --plot docs/images -o docs/ik.md");
   command->callback([options] { runIk(*options); });
 }
 

@@ -122,6 +122,19 @@ IkProblem humanoidProblem(const IkProblemSet& set, const JointLimits& anatomy, R
   return problem;
 }
 
+// Hands, feet and head follow circles at walking pace, 60 frames a second.
+IkProblem circleProblem(const IkProblemSet& set, double phase) {
+  IkProblem problem;
+  problem.start = startPose(set.skeleton, set.limits);
+  problem.targets = practiceHumanoidTargets(set.skeleton);
+  for (std::size_t t = 0; t < problem.targets.size(); ++t) {
+    const double angle = phase + static_cast<double>(t);
+    Vec3& position = problem.targets[t].position;
+    position += 0.15 * (Vec3(0, 1, 0) - position) + 0.04 * Vec3(0, std::sin(angle), std::cos(angle));
+  }
+  return problem;
+}
+
 const char* nameOf(IkReach reach) {
   switch (reach) {
     case IkReach::kReachable:
@@ -153,7 +166,9 @@ bool isSolved(const IkProblemSet& set, const IkResult& result) {
                      [](const IkTargetResult& target) { return target.outcome != IkOutcome::kStuck; });
 }
 
-IkScore scoreMethod(const IkMethod& method, const IkProblemSet& set, const IkOptions& options) {
+IkScore scoreMethod(const IkMethod& method, const IkProblemSet& set, IkOptions options) {
+  if (set.tolerance > 0) options.tolerance = set.tolerance;
+  if (set.follows) options.restarts = 0;
   IkScore score;
   score.method = method.name;
   score.set = set.name;
@@ -164,8 +179,9 @@ IkScore scoreMethod(const IkMethod& method, const IkProblemSet& set, const IkOpt
   Pose warmUp = set.problems[0].start;
   solver.solve(warmUp, set.problems[0].targets);
   std::vector<double> times;
+  Pose pose = warmUp;
   for (const IkProblem& problem : set.problems) {
-    Pose pose = problem.start;
+    if (!set.follows) pose = problem.start;
     const double begin = secondsNow();
     const IkResult& result = solver.solve(pose, problem.targets);
     times.push_back(1e6 * (secondsNow() - begin));
@@ -210,6 +226,16 @@ std::vector<IkProblemSet> ikProblemSets(Index count, std::uint64_t seed) {
       for (Index i = 0; i < count; ++i) set.problems.push_back(humanoidProblem(set, anatomy, random));
     }
   }
+  IkProblemSet& exact =
+      sets.emplace_back(emptySet("chain-10", straightChain(10, kChainLength), {}, IkReach::kReachable, false));
+  exact.name = "chain-10 millionth";
+  exact.tolerance = 1e-6;
+  for (Index i = 0; i < count; ++i) exact.problems.push_back(chainProblem(exact, random));
+  IkProblemSet& frames = sets.emplace_back(emptySet("humanoid", humanoid, {}, IkReach::kReachable, false));
+  frames.name = "humanoid frames";
+  frames.follows = true;
+  const double phase = random.uniform(0, 2 * kPi);
+  for (Index i = 0; i < count; ++i) frames.problems.push_back(circleProblem(frames, phase + 2 * kPi * i / 60));
   return sets;
 }
 
@@ -258,6 +284,13 @@ std::string_view bestIkMethodWithLimits(std::span<const IkScore> scores) {
     }
   }
   return best;
+}
+
+const IkScore* findIkScore(std::span<const IkScore> scores, std::string_view method, std::string_view set) {
+  for (const IkScore& score : scores) {
+    if (score.method == method && score.set == set) return &score;
+  }
+  return nullptr;
 }
 
 std::string ikScoreTable(std::span<const IkScore> scores) {

@@ -31,6 +31,8 @@ struct IkProblemSet {
   std::string name;  // "chain-10 reachable", "humanoid reachable limits"
   IkReach reach = IkReach::kReachable;
   bool limited = false;
+  double tolerance = 0;  // of IkOptions; 0: what the evaluation is asked for
+  bool follows = false;  // each problem starts from the answer to the one before, as while dragging
   Skeleton skeleton;
   JointLimits limits;  // all free where not limited
   std::vector<IkProblem> problems;
@@ -38,7 +40,8 @@ struct IkProblemSet {
 
 // Chains of 3, 10, 30 and 100 joints and a humanoid of 60 joints with hands, feet and head as effectors; reachable,
 // borderline (chains and the limited humanoid) and unreachable; free and with limits (chains: hinges and cones in turn;
-// humanoid: humanoidLimits). `count` problems each, the same for the same seed.
+// humanoid: humanoidLimits). Besides, the chain of 10 to a millionth of its length, and the humanoid's effectors on
+// circles, frame by frame. `count` problems each, the same for the same seed.
 std::vector<IkProblemSet> ikProblemSets(Index count, std::uint64_t seed);
 
 // What one method did on one set.
@@ -70,6 +73,9 @@ std::vector<IkScore> evaluateIk(const IkEvaluationOptions& options, Progress& pr
 
 // The method that solves the most of what is reachable or borderline with limits; the faster one where they tie.
 std::string_view bestIkMethodWithLimits(std::span<const IkScore> scores);
+
+// What one method did on the set of that name; null where it was not run.
+const IkScore* findIkScore(std::span<const IkScore> scores, std::string_view method, std::string_view set);
 
 // As a Markdown table, with that method named below, and as JSON.
 std::string ikScoreTable(std::span<const IkScore> scores);
