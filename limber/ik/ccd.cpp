@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "limber/ik/leap.h"
 #include "limber/ik/rotation.h"
 #include "limber/ik/rotation_fit.h"
 
@@ -11,6 +12,7 @@ namespace {
 
 constexpr Index kPatience = 10;      // sweeps after which there must have been
 constexpr double kProgress = 0.999;  // this factor on the cost
+constexpr Index kUnaided = 10;       // sweeps of a single effector before leaps
 
 // From the tip, the k-th free joint from the base turns by k^-kEvenness of its best angle. Whole turns curl the tip up
 // before the base has moved: 70 sweeps for a chain of 10 to a millionth of its length, against 27 (0: whole turns;
@@ -22,8 +24,13 @@ constexpr double kEvenness = 0.4;
 class CcdIteration : public IkIteration {
  public:
   CcdIteration(const IkSystem& system, bool fromTips)
-      : fromTips_(fromTips), positions_(system.effectors.size()), rotations_(system.effectors.size()) {
+      : fromTips_(fromTips),
+        positions_(system.effectors.size()),
+        rotations_(system.effectors.size()),
+        leap_(system),
+        best_(system.makeState()) {
     for (const IkSystem::Effector& effector : system.effectors) {
+      weights_.push_back(effector.weight);
       const IkSystem::Node& node = system.nodes[static_cast<std::size_t>(effector.node)];
       // A free joint at the end of its limb takes any orientation: no other joint need turn for it.
       turnsItself_.push_back(!node.limit && node.freedom == 1 && node.childCount == 0);
@@ -36,18 +43,32 @@ class CcdIteration : public IkIteration {
   }
 
   Index run(IkSystem& system, Index budget) override {
-    double checked = system.cost();
-    Index done = 0;
-    while (done < budget) {
+    const bool several = system.effectors.size() > 1;
+    double best = system.cost(), checked = best;
+    system.save(best_);
+    leap_.restart();
+    weights_[0] = system.effectors[0].weight;
+    for (Index done = 1; done <= budget; ++done) {
+      const bool leaps = several || done > kUnaided;
+      if (leaps) leap_.mark(system);
+      if (several) heedTheFurthest(system, weights_);
       sweep(system);
-      ++done;
-      if (system.allReached()) break;
+      if (system.allReached()) return done;
+      if (!leaps) continue;
+      const double cost = leap_.take(system);
+      if (cost < best) {
+        best = cost;
+        system.save(best_);
+        if (system.allReached()) return done;
+      }
       if (done % kPatience != 0) continue;
-      const double cost = system.cost();
-      if (!(cost < kProgress * checked)) break;
-      checked = cost;
+      if (!(best < kProgress * checked)) {
+        budget = done;
+      }
+      checked = best;
     }
-    return done;
+    if (!(system.cost() <= best)) system.restore(best_);
+    return budget;
   }
 
  private:
@@ -127,10 +148,10 @@ class CcdIteration : public IkIteration {
       const auto e = static_cast<std::size_t>(below);
       const IkSystem::Effector& effector = system.effectors[e];
       if (effector.node != node) {
-        sum += effector.weight * (effector.target - pivot) * (positions_[e] - pivot).transpose();
+        sum += weights_[e] * (effector.target - pivot) * (positions_[e] - pivot).transpose();
       }
       if (angleCounts(system, e, node)) {
-        const double scale = effector.weight * effector.angleScale * effector.angleScale;
+        const double scale = weights_[e] * effector.angleScale * effector.angleScale;
         sum += scale * (effector.orientation * rotations_[e].conjugate()).toRotationMatrix();
       }
     }
@@ -143,10 +164,10 @@ class CcdIteration : public IkIteration {
     for (const int below : system.effectorsBelow(node)) {
       const auto e = static_cast<std::size_t>(below);
       const IkSystem::Effector& effector = system.effectors[e];
-      sum += effector.weight * (effector.target - positions_[e]).squaredNorm();
+      sum += weights_[e] * (effector.target - positions_[e]).squaredNorm();
       if (!angleCounts(system, e, node)) continue;
       const double angle = effector.angleScale * angleBetween(rotations_[e], effector.orientation);
-      sum += effector.weight * angle * angle;
+      sum += weights_[e] * angle * angle;
     }
     return sum;
   }
@@ -206,8 +227,11 @@ class CcdIteration : public IkIteration {
   bool fromTips_;
   std::vector<Vec3> positions_;  // of the effectors, while a sweep goes on
   std::vector<Quat> rotations_;
+  std::vector<double> weights_;  // of the effectors, in this sweep
   std::vector<char> turnsItself_;
   std::vector<double> depths_, shares_;
+  Leap leap_;
+  IkSystem::State best_;
 };
 
 }  // namespace

@@ -35,7 +35,8 @@ struct IkOptions {
   RootMotion rootMotion = RootMotion::kTurn;
 
   // Further attempts, from start poses ever nearer to the best one found, where the first is trapped; the first of them
-  // only nudges. 0 while dragging: another attempt may find another pose than the last frame's.
+  // only nudges. One that still gained when its iterations were used up is gone on with instead. 0 while dragging:
+  // another attempt may find another pose than the last frame's.
   Index restarts = 8;
   std::uint64_t seed = 1;
 

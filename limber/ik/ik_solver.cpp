@@ -26,7 +26,7 @@ constexpr IkMethod kMethods[] = {
      "Wang, Chen: A combined optimization method for solving the inverse kinematics problem, 1991", &makeCcdForward},
     {"fabrik", "forward and backward reaching, for chains and trees",
      "Aristidou, Chrysanthou, Lasenby: Extending FABRIK with model constraints, 2016", &makeFabrik},
-    {"jacobian-transpose", "steepest descent with steps of Barzilai and Borwein",
+    {"jacobian-transpose", "steepest descent that goes on in the last step's direction too",
      "Wolovich, Elliott: A computational technique for inverse kinematics, 1984", &makeJacobianTranspose},
     {"pseudo-inverse", "smallest step by singular values", "Whitney: Resolved motion rate control, 1969",
      &makePseudoInverse},
@@ -44,6 +44,7 @@ constexpr IkMethod kMethods[] = {
 constexpr double kNudge = 0.1;  // of the way to a random rotation
 constexpr double kSmallestJump = 0.2;
 constexpr double kWorthwhile = 1e-12;
+constexpr double kWorthGoingOn = 0.5;  // of the cost before, after all iterations of an attempt
 
 }  // namespace
 
@@ -65,13 +66,15 @@ IkSolver::IkSolver(const IkMethod& method, const Skeleton& skeleton, std::span<c
 const IkResult& IkSolver::solve(Pose& pose, std::span<const IkTarget> targets) {
   system_.load(pose, targets);
   result_.iterations = result_.restarts = 0;
+  stillGaining_ = false;
   randomState_ = system_.options().seed;
 
   system_.save(best_);
   double best = system_.cost();
   if (!system_.allReached() || system_.options().referenceGain > 0) attempt(best);
   while (result_.restarts < system_.options().restarts && worthAnotherTry()) {
-    perturb(result_.restarts++);
+    if (!stillGaining_) perturb(result_.restarts);
+    ++result_.restarts;
     attempt(best);
   }
   report();
@@ -81,8 +84,10 @@ const IkResult& IkSolver::solve(Pose& pose, std::span<const IkTarget> targets) {
 
 // Runs the method from where the system stands, and leaves the best state so far in the system.
 void IkSolver::attempt(double& best) {
-  result_.iterations += iteration_->run(system_, system_.options().maxIterations);
+  const Index iterations = iteration_->run(system_, system_.options().maxIterations);
   const double cost = system_.cost();
+  result_.iterations += iterations;
+  stillGaining_ = iterations >= system_.options().maxIterations && cost < kWorthGoingOn * best;
   // Once reached, what the method did besides (a reference pose approached) counts, not the last billionth.
   if (cost < best * (1 - kWorthwhile) || (system_.allReached() && result_.restarts == 0)) {
     best = std::min(best, cost);

@@ -58,6 +58,7 @@ class IkSolver {
   IkSystem::State best_;
   IkResult result_;
   std::uint64_t randomState_ = 0;
+  bool stillGaining_ = false;  // when the last attempt's iterations were used up
 };
 
 // The same for a single solve.

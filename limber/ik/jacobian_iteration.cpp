@@ -121,7 +121,7 @@ void JacobianIteration::addLevel(int level) {
   const Eigen::MatrixXd& matrix = first ? reduced_ : projected_;
   gramOfRows(begin, end, matrix, !first);
   auto gram = gram_.topLeftCorner(rows, rows);
-  weighRows({matrix.block(begin, 0, rows, columns), gram, iteration_, caution_}, y);
+  weighRows({matrix.block(begin, 0, rows, columns), gram, begin, iteration_, caution_}, y);
   for (Eigen::Index c = 0; c < columns; ++c) step_[c] += matrix.col(c).segment(begin, rows).dot(y);
   if (!last) extendBasis(begin, end);
 }

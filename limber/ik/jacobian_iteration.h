@@ -15,6 +15,7 @@ namespace limber {
 struct JacobianRows {
   Eigen::Ref<const Eigen::MatrixXd> jacobian;  // #rows x #columns
   Eigen::Ref<Eigen::MatrixXd> gram;            // J * J^T; may be overwritten
+  Eigen::Index begin = 0;                      // of the level's rows among all
   Index iteration = 0;                         // of this run
   double caution = 1;                          // doubled and more when a step gained nothing, lowered when one did
 };

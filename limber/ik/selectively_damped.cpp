@@ -12,6 +12,7 @@ namespace limber {
 namespace {
 
 constexpr double kLargestChange = kPi / 4;  // gamma_max of the paper, of any one angle
+constexpr double kEqual = 1e-8;             // singular values whose squares differ by less of the largest are equal
 
 class SelectivelyDamped : public JacobianIteration {
  public:
@@ -19,12 +20,15 @@ class SelectivelyDamped : public JacobianIteration {
     const auto rows = static_cast<Eigen::Index>(system.effectors.size() * 6);
     vectors_.resize(rows, rows);
     weights_.resize(rows);
+    sum_.resize(rows);
     std::size_t columns = 0;
     for (const IkSystem::Node& node : system.nodes) columns += node.slides ? 6 : 3;
     sizes_.resize(rows / 3, static_cast<Eigen::Index>(columns));
   }
 
  private:
+  // Of vectors with equal singular values, as left and right ones have, only the span says anything: of that, the part
+  // of the error in it is taken for the vector. So mirrored problems have mirrored answers.
   void weighRows(const JacobianRows& rows, Eigen::Ref<Eigen::VectorXd> y) override {
     const Eigen::Index m = y.size(), blocks = m / 3, columns = rows.jacobian.cols();
     for (Eigen::Index c = 0; c < columns; ++c) {
@@ -32,14 +36,29 @@ class SelectivelyDamped : public JacobianIteration {
     }
     auto vectors = vectors_.topLeftCorner(m, m);
     symmetricEigen(rows.gram, vectors);
-    const double least = 1e-14 * rows.gram.diagonal().maxCoeff();
+    const double most = rows.gram.diagonal().maxCoeff();
+    Eigen::Ref<Eigen::MatrixXd> gram(rows.gram);
     auto weights = weights_.head(m);
     weights.setZero();
+    auto sum = sum_.head(m);
     for (Eigen::Index i = 0; i < m; ++i) {
-      if (rows.gram(i, i) > least)
-        weights += weightOf(rows, y, vectors.col(i), std::sqrt(rows.gram(i, i))) * vectors.col(i);
+      if (!(gram(i, i) > 1e-14 * most)) continue;
+      sum.setZero();
+      double square = 0;
+      for (Eigen::Index k = m; k-- > i;) {
+        if (std::abs(gram(k, k) - gram(i, i)) > kEqual * most) continue;
+        const double along = vectors.col(k).dot(y);
+        sum += along * vectors.col(k);
+        square += along * along * gram(k, k);
+        if (k > i) gram(k, k) = 0;
+      }
+      const double length = sum.norm();
+      if (!(length > 0)) continue;
+      sum /= length;
+      weights += weightOf(rows, y, sum, std::sqrt(square) / length) * sum;
     }
     y = weights;
+    roundTogether(24, y);  // eigenvectors are right to some 1e-13
   }
 
   // How far to go along one left singular vector: phi_i of the paper, as a multiple of J^T u_i.
@@ -64,7 +83,7 @@ class SelectivelyDamped : public JacobianIteration {
   }
 
   Eigen::MatrixXd vectors_;
-  Eigen::VectorXd weights_;
+  Eigen::VectorXd weights_, sum_;
   Eigen::MatrixXd sizes_;  // blocks of three rows x columns: how far a joint moves an effector
 };
 

@@ -31,6 +31,13 @@ void solveCholesky(Eigen::Ref<Eigen::MatrixXd> a, double damping, Eigen::Ref<Eig
   }
 }
 
+void roundTogether(int bits, Eigen::Ref<Eigen::VectorXd> x) {
+  const double largest = x.lpNorm<Eigen::Infinity>();
+  if (!(largest > 1e-200 && largest < 1e200)) return;
+  const double unit = std::ldexp(1.0, std::ilogb(largest) - bits), perUnit = 1 / unit;
+  for (double& entry : x) entry = unit * std::round(perUnit * entry);
+}
+
 namespace {
 
 // The rotation of rows and columns p and q that makes a(p, q) zero.
