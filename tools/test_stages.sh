@@ -143,7 +143,11 @@ fuzz_each_target() {
     [ -x "$target" ] && [ ! -d "$target" ] || continue
     name=$(basename "$target")
     mkdir -p "build/fuzz/$name" "build/fuzz/$name.seeds"
-    fuzz_seeds "build/fuzz/$name.seeds"
+    if [ -d "tests/fuzz/seeds/$name" ]; then
+      cp "tests/fuzz/seeds/$name"/* "build/fuzz/$name.seeds"
+    else
+      fuzz_seeds "build/fuzz/$name.seeds"
+    fi
     check "$name (see build/fuzz/$name.log; the input is beside it)" fuzz_one "$target" "$seconds" || return 1
   done
 }
