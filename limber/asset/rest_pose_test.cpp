@@ -9,7 +9,7 @@
 
 #include "limber/asset/bind_pose.h"
 #include "limber/asset/pose_io.h"
-#include "limber/asset/scene_builder_test.h"
+#include "limber/asset/testing/scene_builder.h"
 #include "limber/asset/scene_graph.h"
 #include "limber/asset/weight_attributes.h"
 
