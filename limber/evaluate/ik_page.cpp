@@ -44,7 +44,7 @@ std::string colorOf(double share) {
 // A panel with both axes logarithmic.
 struct Axes {
   double left, top, width, height;
-  double leastX = 2.5, mostX = 120, leastY = 0.1, mostY = 10000;
+  double leastX = 2.5, mostX = 120, leastY = 0.1, mostY = 1000;
 
   double x(double value) const { return left + width * std::log(value / leastX) / std::log(mostX / leastX); }
   double y(double value) const {
@@ -120,7 +120,7 @@ std::string goalTable(std::span<const IkScore> scores) {
 
 std::string ikSolvedPlot(std::span<const IkScore> scores) {
   const std::vector<std::string> sets = namesIn(scores, &IkScore::set), methods = namesIn(scores, &IkScore::method);
-  constexpr double kLeft = 200, kTop = 40, kWidth = 76, kHeight = 20;
+  constexpr double kLeft = 200, kTop = 40, kWidth = 100, kHeight = 20;
   std::string svg = svgStart(kLeft + kWidth * static_cast<double>(methods.size()) + 10,
                              kTop + kHeight * static_cast<double>(sets.size()) + 10);
   for (std::size_t m = 0; m < methods.size(); ++m) {
