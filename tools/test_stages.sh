@@ -100,6 +100,39 @@ validate_written_files() {
   node_packages && counted node tools/validate.mjs "$output"
 }
 
+# Motions whose roots rest at the origin: there all programs agree on what a BVH means.
+common_motions() {
+  local folder name
+  folder=$(shared_data)/motions && [ -d "$folder" ] || return 1
+  for name in cmu_mb_12_01_walk cmu_daz_02_01_walk cmu1_jumping_jacks fair1_wave_hello pybvh_example pybvh_test2 boxing_toes; do
+    echo "$folder/$name.bvh"
+  done
+}
+
+motions_in_three() {
+  local motions
+  motions=$(common_motions) || { echo "   skipped: the shared motions are not there"; add_counts 0 0 1; return 0; }
+  node_packages && counted node tests/three_positions.mjs build/release/limber "$output/three" $motions
+}
+
+motions_in_blender() {
+  local motions motion glbs=()
+  motions=$(common_motions) || { echo "   skipped: the shared motions are not there"; add_counts 0 0 1; return 0; }
+  need blender python3-numpy || return 1
+  mkdir -p "$output/blender"
+  for motion in $motions; do
+    glbs+=("$output/blender/$(basename "$motion" .bvh).glb")
+    build/release/limber convert "$motion" "${glbs[-1]}" --quiet || return 1
+  done
+  counted blender_script "${glbs[@]}"
+}
+
+# Blender says goodbye after the script's last line.
+blender_script() {
+  blender --background --factory-startup --python tests/blender_positions.py -- "$@" </dev/null | grep -v '^\(Blender\|$\)'
+  return "${PIPESTATUS[0]}"
+}
+
 # cmake --install to a folder of its own, then a program that knows nothing but find_package(limber).
 install_and_consume() {
   local prefix=$PWD/$output/prefix log=$output/consumer.log
@@ -169,43 +202,22 @@ fuzz_seeds() {
     build/sanitize/limber sample $name --quiet -o "$1/$name.glb"
     build/sanitize/limber rig "$1/$name.glb" --handles 3 --quiet -o "$1/$name.gltf"
   done
-  cat >"$1/motion.bvh" <<'BVH'
-HIERARCHY
-ROOT Hips
-{
-  OFFSET 0 1 0
-  CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation
-  JOINT Head
-  {
-    OFFSET 0 0.5 0
-    CHANNELS 6 Xposition Yposition Zposition Yrotation Xrotation Zrotation
-    End Site
-    {
-      OFFSET 0 0.2 0
-    }
-  }
-}
-MOTION
-Frames: 3
-Frame Time: 0.033333
-0 1 0 10 20 30 0 0.5 0 1 2 3
-0 1 .5 11 21 31 0 0.5 0 1e1 -2 3
-0 1 1 12 22 32 0 0.6 0 1 2 -3
-BVH
 }
 
 run_tests() {
-  local quick= sanitize=
+  local quick= sanitize= blender=
   for option in "$@"; do
     case $option in
       --quick) quick=yes ;;
       --sanitize) sanitize=yes ;;
-      *) echo "test knows --quick and --sanitize, not $option" >&2; exit 2 ;;
+      --blender) blender=yes ;;
+      *) echo "test knows --quick, --sanitize and --blender, not $option" >&2; exit 2 ;;
     esac
   done
   rm -rf $output
   mkdir -p $output
   if [ -n "$sanitize" ]; then sanitize_stages; else release_stages; fi
+  if [ -n "$blender" ]; then stage "motions in Blender" motions_in_blender; fi
   if [ -z "$sanitize$quick" ]; then remaining_stages; fi
   summary
 }
@@ -227,6 +239,7 @@ remaining_stages() {
   stage "faulty files, through the program" broken_files
   stage "WebAssembly build" build_wasm
   stage "WebAssembly in Node against the native program" wasm_smoke
+  stage "motions in three.js" motions_in_three
   stage "glTF validator over every file written" validate_written_files
   stage "installed package, and a program built against it" install_and_consume
   stage "sanitizer build, clang++ with warnings as errors" build_sanitize

@@ -147,10 +147,91 @@ void expectOneLine(const Result& result, int code) {
   EXPECT_EQ(result.out, "");
 }
 
+const std::string kWalk =
+    "HIERARCHY\nROOT Hips\n{\nOFFSET 0 0 0\nCHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation "
+    "Yrotation\nJOINT LeftLeg\n{\nOFFSET 20 -50 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nEnd "
+    "Site\n{\nOFFSET 0 -40 0\n}\n}\nJOINT RightLeg\n{\nOFFSET -20 -50 0\nCHANNELS 3 Zrotation Xrotation "
+    "Yrotation\nEnd Site\n{\nOFFSET 0 -40 0\n}\n}\n}\nMOTION\nFrames: 5\nFrame Time: 0.1\n"
+    "0 90 0 0 0 0 0 30 0 0 0 0\n0 91 10 0 0 0 0 20 0 0 5 0\n0 92 20 0 0 0 0 10 0 0 10 0\n"
+    "0 91 30 0 0 0 0 0 0 0 20 0\n0 90 40 0 0 0 0 -10 0 0 30 0\n";
+
+TEST_F(Cli, ConvertGoesFromBvhToGltfAndBack) {
+  put("walk.bvh", kWalk);
+  const Result there = run({"convert", "walk.bvh", "walk.glb", "--unit", "cm"});
+  EXPECT_EQ(there.code, 0) << there.error;
+  EXPECT_THAT(there.out, AllOf(HasSubstr("5 joints, 1 clips"), HasSubstr("5 frames at 10 a second"),
+                               HasSubstr("written: walk.glb, 1 clips")));
+  keep("walk.glb");
+  const Result info = run({"info", "walk.glb"});
+  EXPECT_THAT(info.out, AllOf(HasSubstr("walk: 0.400 s"), HasSubstr("LeftLeg_end")));
+  EXPECT_EQ(run({"convert", "walk.glb", "back.bvh", "--output-unit", "cm", "-q"}).code, 0);
+  EXPECT_THAT(content("back.bvh"),
+              AllOf(HasSubstr("OFFSET 20 -50 0\n"), HasSubstr("Frames: 5\n"), HasSubstr("\n 0 90 0 ")));
+  EXPECT_THAT(run({"info", "back.bvh"}).out, AllOf(HasSubstr("bvh"), HasSubstr("back: 0.400 s")));
+}
+
+TEST_F(Cli, ConvertCutsMirrorsAndResamples) {
+  put("walk.bvh", kWalk);
+  EXPECT_EQ(run({"convert", "walk.bvh", "-o", "a.bvh", "--trim", "0.1:0.3", "--mirror", "--fps", "20", "-q"}).code, 0);
+  const std::string cut = content("a.bvh"), head = "Frames: 5\nFrame Time: 0.05\n";
+  ASSERT_THAT(cut, HasSubstr(head));
+  std::istringstream row(cut.substr(cut.find(head) + head.size()));
+  for (const double wanted : {0, 91, 10, 0, 0, 0, 0, 5, 0, 0, 20, 0}) {  // the second frame, its legs exchanged
+    double value = 0;
+    row >> value;
+    EXPECT_NEAR(value, wanted, 1e-4);
+  }
+  put("run.bvh", kWalk);
+  EXPECT_EQ(run({"convert", "walk.bvh", "run.bvh", "both.glb", "-q"}).code, 0);
+  EXPECT_THAT(run({"info", "both.glb"}).out, AllOf(HasSubstr("walk: 0.400 s"), HasSubstr("run: 0.400 s")));
+  keep("both.glb");
+  EXPECT_EQ(run({"convert", "both.glb", "each.bvh", "-q"}).code, 0);
+  EXPECT_EQ(content("each_walk.bvh"), content("each_run.bvh"));
+  EXPECT_NE(content("each_walk.bvh"), "");
+  EXPECT_EQ(run({"convert", "both.glb", "one.glb", "--clip", "run", "-q"}).code, 0);
+  EXPECT_THAT(run({"info", "one.glb"}).out, AllOf(HasSubstr("run: 0.400 s"), Not(HasSubstr("walk: "))));
+}
+
+TEST_F(Cli, ConvertRefusesWithOneLine) {
+  put("walk.bvh", kWalk);
+  put("bad.bvh", kWalk + "1 2 3\n4 5 6\n");
+  put("other.bvh", "HIERARCHY\nROOT a\n{\n}\nMOTION\nFrames: 0\nFrame Time: 1\n");
+  const Result bad = run({"convert", "bad.bvh", "bad.glb"});
+  expectOneLine(bad, 1);
+  EXPECT_THAT(bad.error, HasSubstr("bad.bvh: line 33: has 3 of the 12 numbers"));
+  const std::vector<std::vector<std::string>> calls = {{"walk.bvh"},
+                                                       {"walk.bvh", "out.obj"},
+                                                       {"walk.bvh", "out.glb", "--unit", "parsec"},
+                                                       {"walk.bvh", "out.glb", "--trim", "3:1"},
+                                                       {"walk.bvh", "out.glb", "--trim", "now"},
+                                                       {"walk.bvh", "out.glb", "--clip", "swim", "-q"},
+                                                       {"missing.bvh", "out.glb"},
+                                                       {"other.bvh", "out.bvh", "-q"}};
+  for (std::vector<std::string> call : calls) {
+    call.insert(call.begin(), "convert");
+    expectOneLine(run(call), 1);
+  }
+  EXPECT_EQ(run({"convert", "walk.bvh", "other.bvh", "-o", "out.glb", "-q"}).code, 1);
+  EXPECT_EQ(files(), (std::vector<std::string>{"bad.bvh", "other.bvh", "walk.bvh"}));
+}
+
+TEST_F(Cli, PreviewShowsClips) {
+  put("walk.bvh", kWalk);
+  EXPECT_EQ(run({"preview", "walk.bvh", "--frames", "3", "--size", "40x30", "-o", "sheet.png"}).code, 0);
+  EXPECT_EQ(run({"preview", "walk.bvh", "--clip", "walk", "--time", "0.2", "--size", "40x30", "-o", "one.png"}).code,
+            0);
+  EXPECT_EQ(run({"preview", "walk.bvh", "--animate", "--fps", "10", "--size", "40x30", "-o", "moving.png"}).code, 0);
+  EXPECT_THAT(content("sheet.png"), StartsWith("\x89PNG"));
+  EXPECT_THAT(content("moving.png"), AllOf(StartsWith("\x89PNG"), HasSubstr("acTL"), HasSubstr("fdAT")));
+  EXPECT_NE(content("one.png"), "");
+  expectOneLine(run({"preview", "walk.bvh", "--clip", "swim", "-o", "none.png"}), 1);
+  expectOneLine(run({"preview", "walk.bvh", "--time", "1", "--frames", "2", "-o", "none.png"}), 2);
+}
+
 TEST_F(Cli, EveryCommandHasHelpWithAnExample) {
   EXPECT_THAT(run({"--help"}).out,
               AllOf(HasSubstr("rig"), HasSubstr("info"), HasSubstr("preview"), HasSubstr("sample")));
-  for (const char* command : {"rig", "info", "preview", "sample", "evaluate"}) {
+  for (const char* command : {"rig", "info", "preview", "sample", "evaluate", "convert"}) {
     const Result help = run({command, "--help"});
     EXPECT_EQ(help.code, 0);
     EXPECT_THAT(help.out, AllOf(HasSubstr("Example"), HasSubstr(std::string("limber ") + command)));

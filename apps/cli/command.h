@@ -18,6 +18,7 @@ void addPreviewCommand(CLI::App& program);
 void addSampleCommand(CLI::App& program);
 void addEvaluateCommand(CLI::App& program);
 void addPoseCommand(CLI::App& program);
+void addConvertCommand(CLI::App& program);
 
 // Options that most commands have.
 struct Common {

@@ -1,9 +1,14 @@
-// limber preview: a picture of a model or its rig.
+// limber preview: a picture of a model, its rig or its movement.
+#include <algorithm>
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include "command.h"
 #include "limber/asset/read.h"
 #include "limber/core/file.h"
+#include "limber/preview/animation.h"
+#include "limber/preview/apng.h"
 #include "limber/preview/render.h"
 #include "progress_line.h"
 
@@ -12,7 +17,11 @@ namespace limber::cli {
 namespace {
 
 struct Options {
-  std::string input, output, show = "model", size = "1024x768", view = "three-quarter", joint;
+  std::string input, output, show = "model", size, view = "three-quarter", joint, clip;
+  std::optional<double> time;  // seconds
+  int frames = 0;              // of a contact sheet; 0: one picture
+  bool animate = false;
+  double fps = 20;  // of an animation
   Common common;
 };
 
@@ -24,13 +33,48 @@ void parseSize(const std::string& text, PreviewOptions& options) {
   }
 }
 
-void run(const Options& options) {
+bool showsClip(const Options& options) {
+  return options.animate || options.frames > 0 || options.time || !options.clip.empty();
+}
+
+std::vector<double> momentsOf(const Options& options, const Clip& clip) {
+  if (options.animate) {
+    constexpr double kMostFrames = 1000;
+    const double count = std::round(clip.duration() * options.fps);
+    if (count > kMostFrames) {
+      throw Error(ErrorCode::kLimit, fmt::format("the animation would have {:.0f} pictures", count), "",
+                  fmt::format("{:.0f} are the most: choose a smaller --fps, or cut the clip by limber convert --trim",
+                              kMostFrames));
+    }
+    return clipMoments(clip, std::max(1, static_cast<int>(count)), false);
+  }
+  if (options.frames > 0) return clipMoments(clip, options.frames, true);
+  return {options.time.value_or(0)};
+}
+
+// A picture of a moment, a sheet of several, or an animation.
+Bytes clipPicture(const Asset& asset, const Options& options, const PreviewOptions& preview, Warnings& warnings) {
+  const Clip clip = findClip(asset, options.clip);
+  const std::vector<Image> images = renderClip(asset, clip, momentsOf(options, clip), preview, warnings);
+  if (options.animate) return encodeApng(images, options.fps);
+  const int columns = static_cast<int>(std::ceil(std::sqrt(2.0 * static_cast<double>(images.size()))));
+  return encodePng(contactSheet(images, columns));
+}
+
+Bytes stillPicture(const Asset& asset, const PreviewOptions& preview, Warnings& warnings) {
+  const Scene scene = makeScene(asset);
+  warnings = scene.warnings;
+  return encodePng(render(scene, preview));
+}
+
+void run(Options options) {
   options.common.apply();
   checkOutput(options.output, {".png"});
   PreviewOptions preview;
   preview.show = parsePreviewShow(options.show);
   preview.view = parseView(options.view);
   preview.joint = options.joint;
+  if (options.size.empty()) options.size = options.animate || options.frames > 0 ? "320x320" : "1024x768";
   parseSize(options.size, preview);
   if (!options.joint.empty()) preview.show = PreviewShow::kWeights;
 
@@ -38,12 +82,13 @@ void run(const Options& options) {
   progress->stage("read");
   const Asset asset = readAsset(options.input);
   progress->stage("draw");
-  const Scene scene = makeScene(asset);
-  const Bytes png = encodePng(render(scene, preview));
+  Warnings warnings;
+  const Bytes png =
+      showsClip(options) ? clipPicture(asset, options, preview, warnings) : stillPicture(asset, preview, warnings);
   progress->stage("write");
   writeFile(options.output, png);
   progress.finish();
-  printWarnings(scene.warnings, options.common.quiet);
+  printWarnings(warnings, options.common.quiet);
   Account(options.common.quiet, options.output).line(fmt::format("written: {}", options.output));
 }
 
@@ -62,11 +107,32 @@ void addPreviewCommand(CLI::App& program) {
   command->add_option("--view", options->view, "front, side, back, top, three-quarter, or azimuth,elevation in degrees")
       ->type_name("VIEW")
       ->capture_default_str();
-  command->add_option("--size", options->size, "width and height in pixels")->type_name("WxH")->capture_default_str();
+  command
+      ->add_option("--size", options->size,
+                   "width and height in pixels (default 1024x768; of each picture of a clip 320x320)")
+      ->type_name("WxH");
+  command->add_option("--clip", options->clip, "the clip to show (default: the first)")->type_name("NAME");
+  CLI::Option* time = command->add_option("--time", options->time, "a moment of the clip, in seconds")->type_name("S");
+  CLI::Option* frames = command->add_option("--frames", options->frames, "a sheet of so many moments of the clip")
+                            ->check(CLI::Range(1, 400))
+                            ->type_name("N")
+                            ->excludes(time);
+  CLI::Option* animate =
+      command->add_flag("--animate", options->animate, "an animated PNG of the clip")->excludes(time)->excludes(frames);
+  command->add_option("--fps", options->fps, "pictures a second of the animation")
+      ->check(CLI::Range(0.1, 100.0))
+      ->type_name("RATE")
+      ->needs(animate)
+      ->capture_default_str();
   command->add_option("--joint", options->joint, "the weight of this joint alone, from blue (none) to red (all)")
       ->type_name("NAME");
   options->common.addTo(*command);
-  command->footer("Example:\n  limber preview rigged.glb --show handles --view 30,15 -o handles.png");
+  command->footer(
+      "A file with a skeleton and no mesh, such as a BVH, is shown as its bones.\n"
+      "\nExamples:\n"
+      "  limber preview rigged.glb --show handles --view 30,15 -o handles.png\n"
+      "  limber preview walking.glb --frames 8 -o sheet.png\n"
+      "  limber preview walk.bvh --animate -o walk.png");
   command->callback([options] { run(*options); });
 }
 

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "limber/core/numbers.h"
 
 namespace limber {
 
@@ -10,7 +11,7 @@ namespace {
 
 // `q` times the rotation about one axis, by half the angle's cosine and sine.
 void turn(Quat& q, int axis, double degrees) {
-  const double half = degrees * (std::numbers::pi / 360);
+  const double half = degrees * (kPi / 360);
   const double c = std::cos(half), s = std::sin(half);
   const double x = q.x(), y = q.y(), z = q.z(), w = q.w();
   switch (axis) {
@@ -82,7 +83,7 @@ BvhFrames::BvhFrames(std::span<const BvhJoint> joints) {
 }
 
 void BvhFrames::addRotation(Tracks& tracks, const Quat& rotation) {
-  Eigen::Quaternionf value(rotation.normalized().cast<float>());
+  Eigen::Quaternionf value(rotation.cast<float>());
   // q and -q are one rotation, but not the same way there.
   if (!tracks.rotationValues.empty() && tracks.rotationValues.back().coeffs().dot(value.coeffs()) < 0) {
     value.coeffs() = -value.coeffs();

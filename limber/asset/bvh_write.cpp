@@ -4,12 +4,12 @@
 #include <array>
 #include <cmath>
 #include <iterator>
-#include <numbers>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "limber/core/numbers.h"
 #include "limber/skeleton/chain.h"
 
 namespace limber {
@@ -27,7 +27,7 @@ double nearestTurn(double degrees, double before) {
 }
 
 Angles anglesNear(const Mat3& r, const Angles& before) {
-  constexpr double kDegrees = 180 / std::numbers::pi;
+  constexpr double kDegrees = 180 / kPi;
   constexpr double kStraight = 1e-9;  // cosine of X: Z and Y turn about one axis
   const double sx = std::clamp(r(2, 1), -1.0, 1.0), cx = std::hypot(r(0, 1), r(1, 1));
   if (cx < kStraight) {  // Y stays what it was
@@ -86,10 +86,17 @@ class BvhWriter {
   // A chain may be as long as the file; its indentation must not be.
   void indent(std::size_t depth) { bytes_.insert(bytes_.end(), std::min(depth, kDeepestIndentation), '\t'); }
 
-  // A number without the sign of a zero.
-  void outNumber(double value, int digits) {
-    const double shown = std::abs(value) < 0.5 * std::pow(10.0, -digits) ? 0 : value;
-    out(" {:.{}f}", shown, digits);
+  // As many digits as single precision has, without zeros at the end, and no exponent: not every reader knows it.
+  void outNumber(double value, int mostDecimals) {
+    const double size = std::abs(value);
+    int decimals = kSignificantDigits;
+    for (double power = 1; decimals > 0 && size >= power; power *= 10) --decimals;
+    std::string text = fmt::format("{:.{}f}", value, std::min(decimals, mostDecimals));
+    if (text.find('.') != std::string::npos) {
+      while (text.back() == '0') text.pop_back();
+      if (text.back() == '.') text.pop_back();
+    }
+    out(" {}", text == "-0" ? "0" : text);
   }
 
   void findEnds() {
@@ -198,20 +205,20 @@ class BvhWriter {
   void writeOffset(const Vec3& offset, std::size_t depth) {
     indent(depth);
     out("OFFSET");
-    for (int i = 0; i < 3; ++i) outNumber(offset[i] / unit_, kLengthDigits);
+    for (int i = 0; i < 3; ++i) outNumber(offset[i] / unit_, kLengthDecimals);
     out("\n");
   }
 
   void writeFrame(const std::vector<BvhJointFrame>& joints, std::vector<Angles>& angles) {
     for (const Index j : order_) {
-      for (int i = 0; hasPosition_[j] && i < 3; ++i) outNumber(joints[j].position[i] / unit_, kLengthDigits);
+      for (int i = 0; hasPosition_[j] && i < 3; ++i) outNumber(joints[j].position[i] / unit_, kLengthDecimals);
       angles[j] = anglesNear(joints[j].rotation, angles[j]);
-      for (const double angle : angles[j]) outNumber(angle, kAngleDigits);
+      for (const double angle : angles[j]) outNumber(angle, kAngleDecimals);
     }
     out("\n");
   }
 
-  static constexpr int kLengthDigits = 7, kAngleDigits = 6;
+  static constexpr int kSignificantDigits = 7, kLengthDecimals = 7, kAngleDecimals = 6;
   static constexpr std::size_t kDeepestIndentation = 32;
 
   const Skeleton& skeleton_;

@@ -9,6 +9,7 @@
 #include "limber/asset/node_edit.h"
 #include "limber/asset/scene_graph.h"
 #include "limber/asset/unique_names.h"
+#include "limber/core/names.h"
 
 namespace limber {
 
@@ -131,7 +132,7 @@ Motion readMotion(ByteSpan bytes, std::string_view name, const BvhOptions& bvh, 
 }
 
 Motion readMotion(const std::filesystem::path& path, const BvhOptions& bvh) {
-  if (path.extension() == ".bvh") return readBvh(path, bvh);  // in pieces
+  if (lowerExtension(path) == ".bvh") return readBvh(path, bvh);  // in pieces
   if (path != "-") return motionOf(readAsset(path));
   const Bytes bytes = readFile(path);
   return readMotion(bytes, "standard input", bvh);

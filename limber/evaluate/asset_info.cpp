@@ -148,10 +148,10 @@ AssetInfo inspectAsset(const Asset& asset) {
   info.sceneVertices = static_cast<Index>(geometry.positions.size());
   for (const Vec3f& position : geometry.positions) info.bounds.add(position.cast<double>());
   if (!geometry.triangles.empty()) info.surface = inspectSurface(geometry);
-  if (hasRig(asset)) {
+  if (elementCount(asset, "skins") > 0) {  // a motion has a skin that no mesh wears
     const AssetSkeleton skeleton = readSkeleton(asset);
     for (const Joint& joint : skeleton.skeleton.joints) info.joints.push_back(joint.name);
-    info.weights = inspectWeights(readWeights(asset, geometry, skeleton));
+    if (hasRig(asset)) info.weights = inspectWeights(readWeights(asset, geometry, skeleton));
   }
   return info;
 }

@@ -6,11 +6,14 @@
 
 #include "limber/asset/accessor.h"
 #include "limber/asset/geometry.h"
+#include "limber/asset/motion_io.h"
 #include "limber/asset/pose_io.h"
 #include "limber/asset/scene_graph.h"
 #include "limber/pipeline/pose_asset.h"
 #include "limber/preview/palette.h"
 #include "limber/preview/scene_textures.h"
+#include "limber/preview/shapes.h"
+#include "limber/skeleton/clip.h"
 
 namespace limber {
 
@@ -52,28 +55,20 @@ void colorInstance(const Asset& asset, const PrimitiveInstance& instance, bool i
   }
 }
 
-}  // namespace
-
-Scene makeScene(const Asset& asset) {
-  Scene scene;
-  Geometry geometry;
-  if (hasRig(asset)) {
-    const AssetSkeleton rig = readSkeleton(asset);
-    const Pose pose = readNodePose(asset, rig);
-    geometry = posedGeometry(asset, rig, pose).geometry;
-    Skeleton posed = rig.skeleton;
-    for (Index j = 0; j < posed.jointCount(); ++j) posed.joints[j].rest = pose.locals[j];
-    posed.boneShape = BoneShape::kSegment;
-    const std::vector<Affine> globals = restGlobals(posed);
-    for (Index j = 0; j < posed.jointCount(); ++j) {
-      const Joint& joint = posed.joints[j];
-      scene.joints.push_back({joint.name, globals[j].translation(), joint.parent, joint.radius});
-    }
-    scene.bones = bonesOf(posed);
-    scene.weights = readWeights(asset, geometry, rig);
-  } else {
-    geometry = collectGeometry(asset);
+// The joints and bones of a skeleton in a pose.
+void addSkeleton(const Skeleton& skeleton, const Pose& pose, Scene& scene) {
+  Skeleton posed = skeleton;
+  for (Index j = 0; j < posed.jointCount(); ++j) posed.joints[j].rest = pose.locals[j];
+  posed.boneShape = BoneShape::kSegment;
+  const std::vector<Affine> globals = restGlobals(posed);
+  for (Index j = 0; j < posed.jointCount(); ++j) {
+    const Joint& joint = posed.joints[j];
+    scene.joints.push_back({joint.name, globals[j].translation(), joint.parent, joint.radius});
   }
+  scene.bones = bonesOf(posed);
+}
+
+void addSurface(const Asset& asset, Geometry geometry, Scene& scene) {
   scene.colors.resize(geometry.positions.size());
   scene.triangles = std::move(geometry.triangles);
   const std::vector<bool> isTextured = addTextures(asset, geometry, scene);
@@ -81,7 +76,65 @@ Scene makeScene(const Asset& asset) {
     colorInstance(asset, geometry.instances[i], isTextured[i], scene.colors);
   }
   scene.positions = std::move(geometry.positions);
+}
+
+Scene riggedScene(const Asset& asset, const AssetSkeleton& rig, const Pose& pose) {
+  Scene scene;
+  Geometry geometry = posedGeometry(asset, rig, pose).geometry;
+  addSkeleton(rig.skeleton, pose, scene);
+  scene.weights = readWeights(asset, geometry, rig);
+  addSurface(asset, std::move(geometry), scene);
   return scene;
+}
+
+// A skeleton without a mesh: its bones are what is seen.
+Scene boneScene(const Skeleton& skeleton, const Pose& pose) {
+  Scene scene;
+  addSkeleton(skeleton, pose, scene);
+  Box box;
+  for (const SceneJoint& joint : scene.joints) box.add(joint.position);
+  ShapeMesh shapes;
+  for (const Bone& bone : scene.bones) addOctahedralBone(shapes, bone.a, bone.b, jointColor(bone.joint));
+  constexpr double kJointRadius = 0.006;  // of the skeleton's diagonal
+  const double radius = kJointRadius * (box.diagonal() > 0 ? box.diagonal() : 1);
+  const Vec3f dark = linearFromSrgb(96, 104, 118);
+  for (const SceneJoint& joint : scene.joints) addSphere(shapes, joint.position, radius, dark);
+  scene.positions = std::move(shapes.positions);
+  scene.triangles = std::move(shapes.triangles);
+  scene.colors = std::move(shapes.colors);
+  return scene;
+}
+
+// Is there a skeleton, and no mesh that it could move?
+bool isSkeletonAlone(const Asset& asset) {
+  return elementCount(asset, "meshes") == 0 &&
+         (elementCount(asset, "skins") > 0 || elementCount(asset, "animations") > 0);
+}
+
+}  // namespace
+
+Scene makeScene(const Asset& asset) {
+  if (hasRig(asset)) {
+    const AssetSkeleton rig = readSkeleton(asset);
+    return riggedScene(asset, rig, readNodePose(asset, rig));
+  }
+  if (isSkeletonAlone(asset)) {
+    const AssetSkeleton skeleton = animatedSkeleton(asset);
+    return boneScene(skeleton.skeleton, readNodePose(asset, skeleton));
+  }
+  Scene scene;
+  addSurface(asset, collectGeometry(asset), scene);
+  return scene;
+}
+
+Scene sceneAt(const Asset& asset, const Clip& clip, double seconds) {
+  const AssetSkeleton skeleton = animatedSkeleton(asset);
+  Pose pose = restPose(skeleton.skeleton);
+  sampleClip(clip, seconds, pose);
+  if (hasRig(asset)) return riggedScene(asset, skeleton, pose);
+  if (isSkeletonAlone(asset)) return boneScene(skeleton.skeleton, pose);
+  throw Error(ErrorCode::kUnsupported, "its clips move meshes without a skeleton, which limber does not draw",
+              asset.name);
 }
 
 }  // namespace limber

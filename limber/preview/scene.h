@@ -13,6 +13,7 @@
 namespace limber {
 
 class Asset;
+struct Clip;
 
 struct SceneJoint {
   std::string name;
@@ -35,8 +36,13 @@ struct Scene {
   Warnings warnings;        // of what cannot be drawn as it is: undrawn-textures
 };
 
-// The model as its file shows it before any clip plays: a rigged one in the pose in which its joints' nodes stand.
+// The model as its file shows it before any clip plays: a rigged one in the pose in which its joints' nodes stand; a
+// skeleton without a mesh as its bones.
 // Colours are the materials' base colours times vertex colours times base colour textures.
 Scene makeScene(const Asset& asset);
+
+// The same at a moment of a clip over the asset's animatedSkeleton. Throws Error kUnsupported where meshes move without
+// a skin.
+Scene sceneAt(const Asset& asset, const Clip& clip, double seconds);
 
 }  // namespace limber

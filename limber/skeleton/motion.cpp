@@ -43,9 +43,10 @@ std::optional<double> measuredFrameRate(const Clip& clip) {
   const auto median = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
   std::nth_element(steps.begin(), median, steps.end());
   if (!(*median > 0)) return std::nullopt;
-  // Times in single precision: 30 frames a second come out as 29.9999.
-  constexpr double kRounding = 2e-4;
-  const double rate = 1 / *median, whole = std::round(rate);
+  // Times in single precision: late in a long clip the steps are coarse, and 30 frames a second come out as 29.9999.
+  constexpr double kEven = 0.02, kRounding = 2e-5;
+  const double mean = (double{times->back()} - times->front()) / static_cast<double>(times->size() - 1);
+  const double rate = 1 / (std::abs(mean - *median) < kEven * *median ? mean : *median), whole = std::round(rate);
   return std::abs(rate - whole) < kRounding * whole ? whole : rate;
 }
 

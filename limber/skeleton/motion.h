@@ -19,7 +19,7 @@ struct Motion {
 // Throws Error kBadData where the skeleton or a clip breaks its rules or the frame rate is not positive and finite.
 void checkMotion(const Motion& motion);
 
-// Keys a second: one over the median distance between neighbouring keys of the track with the most keys, a whole number
+// Keys a second of the track with the most keys: one over the median distance between neighbours, a whole number
 // where it is one to within rounding; nullopt where no track has two keys.
 std::optional<double> measuredFrameRate(const Clip& clip);
 

@@ -1,0 +1,47 @@
+#include "limber/preview/animation.h"
+
+#include <fmt/format.h>
+
+#include "limber/asset/clip_io.h"
+#include "limber/asset/motion_io.h"
+
+namespace limber {
+
+Clip findClip(const Asset& asset, std::string_view name) {
+  Warnings ignored;  // they are those of the file's motion, not of the picture
+  const AssetSkeleton skeleton = animatedSkeleton(asset);
+  std::vector<Clip> clips = readClips(asset, skeleton, ignored);
+  std::vector<std::string> names;
+  for (Clip& clip : clips) {
+    if (name.empty() || clip.name == name) return std::move(clip);
+    names.push_back(clip.name);
+  }
+  if (name.empty()) return {};
+  throw Error(ErrorCode::kBadArgument, fmt::format("there is no clip called '{}'", name), asset.name,
+              names.empty() ? "the file has no clip" : fmt::format("there are: {}", fmt::join(names, ", ")));
+}
+
+std::vector<double> clipMoments(const Clip& clip, int count, bool withEnd) {
+  if (count < 1) throw Error(ErrorCode::kBadArgument, "a clip is shown in one picture at least");
+  std::vector<double> moments;
+  const int steps = std::max(1, withEnd ? count - 1 : count);
+  for (int i = 0; i < count; ++i) moments.push_back(clip.duration() * i / steps);
+  return moments;
+}
+
+std::vector<Image> renderClip(const Asset& asset, const Clip& clip, std::span<const double> seconds,
+                              PreviewOptions options, Warnings& warnings) {
+  std::vector<Scene> scenes;
+  Box frame;
+  for (const double moment : seconds) {
+    scenes.push_back(sceneAt(asset, clip, moment));
+    for (const Vec3f& position : scenes.back().positions) frame.add(position.cast<double>());
+  }
+  if (!scenes.empty()) warnings = scenes.front().warnings;
+  if (!options.frame) options.frame = frame;
+  std::vector<Image> images;
+  for (const Scene& scene : scenes) images.push_back(render(scene, options));
+  return images;
+}
+
+}  // namespace limber

@@ -1,0 +1,98 @@
+#include "limber/preview/animation.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "limber/asset/clip_io.h"
+#include "limber/asset/motion_io.h"
+#include "limber/asset/pose_io.h"
+#include "limber/core/error.h"
+#include "limber/pipeline/auto_rig.h"
+#include "limber/samples/samples.h"
+
+namespace limber {
+namespace {
+
+Asset riggedStool() {
+  Asset asset = makeSample("stool");
+  AutoRigOptions options;
+  options.rig.handles = 3;
+  Progress progress;
+  autoRig(asset, options, progress);
+  return asset;
+}
+
+// The root goes up by a metre within a second.
+Clip rising() {
+  Clip clip;
+  clip.name = "rise";
+  clip.translations.push_back({0, Interpolation::kLinear, {0, 1}, {Vec3f(0, 0, 0), Vec3f(0, 1, 0)}});
+  return clip;
+}
+
+TEST(Animation, ShowsTheSceneAtAMomentOfAClip) {
+  Asset asset = riggedStool();
+  const AssetSkeleton skeleton = readSkeleton(asset);
+  Clip clip = rising();
+  const Vec3f rest = skeleton.skeleton.joints[0].rest.translation.cast<float>();
+  for (Vec3f& value : clip.translations[0].values) value += rest;
+  addClips(asset, skeleton, {&clip, 1});
+  const Clip found = findClip(asset, "rise");
+  const Scene still = makeScene(asset), begin = sceneAt(asset, found, 0), later = sceneAt(asset, found, 0.25);
+  ASSERT_EQ(later.positions.size(), still.positions.size());
+  for (std::size_t v = 0; v < still.positions.size(); ++v) {
+    EXPECT_LT((begin.positions[v] - still.positions[v]).norm(), 1e-5f);
+    EXPECT_LT((later.positions[v] - still.positions[v] - Vec3f(0, 0.25f, 0)).norm(), 1e-5f);
+  }
+  EXPECT_LT((later.joints[0].position - still.joints[0].position - Vec3(0, 0.25, 0)).norm(), 1e-6);
+}
+
+TEST(Animation, FindsClipsByName) {
+  Asset asset = riggedStool();
+  EXPECT_EQ(findClip(asset, "").duration(), 0);
+  const Clip clip = rising();
+  addClips(asset, readSkeleton(asset), {&clip, 1});
+  EXPECT_EQ(findClip(asset, "").name, "rise");
+  try {
+    findClip(asset, "fall");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("there are: rise"));
+  }
+}
+
+TEST(Animation, ShowsASkeletonAloneAsItsBones) {
+  Motion motion;
+  motion.skeleton.joints.push_back({"hips", std::nullopt, {}, 0});
+  Transform up;
+  up.translation = Vec3(0, 2, 0);
+  motion.skeleton.joints.push_back({"head", Index{0}, up, 0});
+  motion.clips.push_back(rising());
+  const Asset asset = motionAsset(motion);
+  Box still, later;
+  for (const Vec3f& p : makeScene(asset).positions) still.add(p.cast<double>());
+  for (const Vec3f& p : sceneAt(asset, findClip(asset, ""), 1).positions) later.add(p.cast<double>());
+  EXPECT_GE(still.size().y(), 2);
+  EXPECT_LT(still.size().x(), 1);
+  EXPECT_LT((later.center() - still.center() - Vec3(0, 1, 0)).norm(), 1e-5);
+
+  PreviewOptions options;
+  Warnings warnings;
+  options.width = options.height = 64;
+  const std::vector<double> moments = clipMoments(motion.clips[0], 3, true);
+  const std::vector<Image> images = renderClip(asset, motion.clips[0], moments, options, warnings);
+  ASSERT_EQ(images.size(), 3u);
+  EXPECT_NE(images[0].pixels, images[2].pixels);
+  EXPECT_EQ(renderClip(asset, motion.clips[0], moments, options, warnings)[1].pixels, images[1].pixels);
+}
+
+TEST(Animation, MomentsCoverTheClip) {
+  const Clip clip = rising();
+  EXPECT_EQ(clipMoments(clip, 5, true), (std::vector<double>{0, 0.25, 0.5, 0.75, 1}));
+  EXPECT_EQ(clipMoments(clip, 4, false), (std::vector<double>{0, 0.25, 0.5, 0.75}));
+  EXPECT_EQ(clipMoments(clip, 1, true), std::vector<double>{0});
+  EXPECT_THROW(clipMoments(clip, 0, true), Error);
+}
+
+}  // namespace
+}  // namespace limber

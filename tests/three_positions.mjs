@@ -1,0 +1,99 @@
+// Does three.js show a motion that limber wrote as glTF where it shows the BVH that it was read from?
+//
+//   node tests/three_positions.mjs LIMBER OUTPUT_FOLDER MOTION.bvh...
+//
+// Converts each BVH to GLB, loads the BVH with three.js' own BVHLoader and the GLB with its GLTFLoader, plays both, and
+// compares the world positions of all joints at several moments. Then the GLB is converted to BVH, and that is compared
+// with the GLB. Ends with "N passed, N failed".
+import { execFileSync } from 'node:child_process';
+import { mkdirSync, readFileSync } from 'node:fs';
+import { basename, join } from 'node:path';
+import { AnimationMixer, Group, Vector3 } from 'three';
+import { BVHLoader } from 'three/examples/jsm/loaders/BVHLoader.js';
+import { GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js';
+
+const kTolerance = 1e-4; // of the skeleton's size, or metres where it is smaller than one
+const kMoments = 7;
+
+// What a loader gave: the object that plays, and a clip.
+const player = (root, clip) => {
+  const mixer = new AnimationMixer(root);
+  const action = mixer.clipAction(clip);
+  action.setLoop(2200).clampWhenFinished = true; // LoopOnce
+  action.play();
+  return { root, duration: clip.duration, show: (seconds) => { mixer.setTime(seconds); root.updateMatrixWorld(true); } };
+};
+
+function loadBvh(path) {
+  const { skeleton, clip } = new BVHLoader().parse(readFileSync(path, 'latin1'));
+  const root = new Group();
+  for (const bone of skeleton.bones) {
+    if (!bone.parent) root.add(bone);
+  }
+  return player(root, clip);
+}
+
+async function loadGlb(path) {
+  const bytes = readFileSync(path);
+  const gltf = await new GLTFLoader().parseAsync(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.length), '');
+  return player(gltf.scene, gltf.animations[0]);
+}
+
+// three.js takes characters with a meaning in its property paths out of the names of glTF nodes.
+const plain = (name) => name.replace(/\s/g, '_').replace(/[[\].:/]/g, '');
+
+function positions(root) {
+  const found = new Map();
+  root.traverse((object) => {
+    // End sites have no names that both loaders agree on.
+    if (object.isBone && !object.name.startsWith('ENDSITE') && !object.name.endsWith('_end')) {
+      found.set(plain(object.name), object.getWorldPosition(new Vector3()));
+    }
+  });
+  return found;
+}
+
+function largestDistance(a, b) {
+  const duration = Math.min(a.duration, b.duration);
+  let largest = 0, compared = 0, size = 1;
+  for (let i = 0; i < kMoments; ++i) {
+    const seconds = duration * i / (kMoments - 1) * 0.999;
+    a.show(seconds);
+    b.show(seconds);
+    const others = positions(b.root);
+    for (const [name, place] of positions(a.root)) {
+      if (!others.has(name)) throw new Error(`no joint '${name}' in the converted file`);
+      largest = Math.max(largest, place.distanceTo(others.get(name)));
+      size = Math.max(size, place.length());
+      ++compared;
+    }
+  }
+  if (compared < 2 * kMoments) throw new Error('hardly any joint to compare');
+  return largest / size;
+}
+
+const [limber, folder, ...motions] = process.argv.slice(2);
+if (motions.length === 0) {
+  console.error('usage: node tests/three_positions.mjs LIMBER OUTPUT_FOLDER MOTION.bvh...');
+  process.exit(2);
+}
+mkdirSync(folder, { recursive: true });
+let passed = 0, failed = 0;
+for (const motion of motions) {
+  const glb = join(folder, basename(motion).replace(/bvh$/, 'glb')), back = join(folder, basename(motion));
+  try {
+    execFileSync(limber, ['convert', motion, glb, '--up', 'y', '--quiet'], { stdio: ['ignore', 'ignore', 'pipe'] });
+    execFileSync(limber, ['convert', glb, back, '--up', 'y', '--quiet'], { stdio: ['ignore', 'ignore', 'pipe'] });
+    for (const [what, reference, other] of
+        [['BVH against glTF', loadBvh(motion), await loadGlb(glb)], ['glTF against BVH', loadBvh(back), await loadGlb(glb)]]) {
+      const distance = largestDistance(reference, other);
+      distance < kTolerance ? ++passed : ++failed;
+      if (!(distance < kTolerance)) console.log(`${motion}: ${what}: joints are ${distance} apart`);
+    }
+  } catch (error) {
+    ++failed;
+    console.log(`${motion}: ${error.message}`);
+  }
+}
+console.log(`${passed} passed, ${failed} failed`);
+process.exit(failed > 0 ? 1 : 0);
