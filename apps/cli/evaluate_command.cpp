@@ -10,6 +10,7 @@
 #include "limber/core/file.h"
 #include "limber/evaluate/ik_evaluation.h"
 #include "limber/evaluate/ik_page.h"
+#include "limber/evaluate/rig_table.h"
 #include "limber/evaluate/weight_report.h"
 #include "limber/evaluate/weight_table.h"
 #include "limber/pipeline/auto_rig.h"
@@ -31,6 +32,46 @@ void runWeights(const WeightsOptions& options) {
   } else {
     fmt::print("{}", toText(comparison));
   }
+}
+
+struct RigFiles {
+  std::string predicted, truth;
+  bool json = false;
+};
+
+void runRig(const RigFiles& options) {
+  const RigComparison comparison = compareRigs(readAsset(options.predicted), readAsset(options.truth));
+  if (options.json) {
+    fmt::print("{}\n", toJson(comparison).dump(2));
+  } else {
+    fmt::print("{}", toText(comparison));
+  }
+}
+
+struct RiggersOptions {
+  std::vector<std::string> files;
+  std::string output = "-", templateName = "auto";
+  Common common;
+};
+
+void runRiggers(const RiggersOptions& options) {
+  options.common.apply();
+  checkOutput(options.output, {".md"});
+  AutoRigOptions rig;
+  rig.rigger = "template";
+  rig.rig.templateName = options.templateName;
+  rig.existingRig = ExistingRig::kReplace;
+  const auto rerig = [&](Asset& asset) {
+    Progress unheard;
+    const AutoRigReport report = autoRig(asset, rig, unheard);
+    const TemplateMatch& match = report.matches.front();
+    return fmt::format("{} {:.2f}", match.name, match.confidence);
+  };
+  TerminalProgress progress(options.common.quiet);
+  Warnings skipped;
+  const std::vector<std::filesystem::path> files(options.files.begin(), options.files.end());
+  writeText(options.output, rigTable(compareRigsOf(files, rerig, *progress, skipped)));
+  printWarnings(Account(options.common.quiet, options.output), skipped);
 }
 
 struct SkinningOptions {
@@ -118,6 +159,39 @@ void addIk(CLI::App& evaluate) {
   command->callback([options] { runIk(*options); });
 }
 
+void addRig(CLI::App& evaluate) {
+  auto options = std::make_shared<RigFiles>();
+  CLI::App* command = evaluate.add_subcommand("rig", "Compare the skeletons of two files of one model");
+  command->add_option("PREDICTED", options->predicted, "the model whose skeleton is judged")->required();
+  command->add_option("TRUTH", options->truth, "the same model with a skeleton to come near to")->required();
+  command->add_flag("--json", options->json, "print JSON");
+  command->footer(
+      "Prints the Chamfer distances joint to joint, joint to bone and bone to bone in percent of the longest side of "
+      "the\n"
+      "model's box, precision, recall and IoU of joints paired within 5 %, with and without fingers, and how far "
+      "joints\n"
+      "of the same meaning are apart, in percent of the height.\n"
+      "\nExample:\n  limber rig person.glb --replace-rig --template humanoid -o predicted.glb\n"
+      "  limber evaluate rig predicted.glb person.glb --json");
+  command->callback([options] { runRig(*options); });
+}
+
+void addRiggers(CLI::App& evaluate) {
+  auto options = std::make_shared<RiggersOptions>();
+  CLI::App* command =
+      evaluate.add_subcommand("templates", "Rig characters anew from a template and compare with their own skeletons");
+  command->add_option("FILE", options->files, "characters with artists' rigs")->required();
+  command->add_option("--template", options->templateName, "auto, or one by name; limber rig --help lists them")
+      ->type_name("NAME")
+      ->capture_default_str();
+  command->add_option("-o,--output", options->output, "the table to write, in Markdown; - is standard output")
+      ->type_name("FILE")
+      ->capture_default_str();
+  options->common.addTo(*command);
+  command->footer("Example:\n  limber evaluate templates characters/*.glb --template humanoid");
+  command->callback([options] { runRiggers(*options); });
+}
+
 void addWeights(CLI::App& evaluate) {
   auto options = std::make_shared<WeightsOptions>();
   CLI::App* command = evaluate.add_subcommand("weights", "Compare the skin weights of two files of one model");
@@ -154,10 +228,12 @@ void addSkinning(CLI::App& evaluate) {
 }  // namespace
 
 void addEvaluateCommand(CLI::App& program) {
-  CLI::App* evaluate = program.add_subcommand("evaluate", "Measure how good weights and solvers are");
+  CLI::App* evaluate = program.add_subcommand("evaluate", "Measure how good weights, skeletons and solvers are");
   evaluate->require_subcommand(1);
   evaluate->footer("Example:\n  limber evaluate weights result.glb truth.glb");
   addWeights(*evaluate);
+  addRig(*evaluate);
+  addRiggers(*evaluate);
   addSkinning(*evaluate);
   addIk(*evaluate);
 }

@@ -1,5 +1,8 @@
 // limber rig: a static model goes in, a skinned one comes out.
 #include <algorithm>
+#include <filesystem>
+#include <locale>
+#include <sstream>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -9,6 +12,8 @@
 #include "limber/asset/read.h"
 #include "limber/asset/write.h"
 #include "limber/pipeline/report_json.h"
+#include "limber/pipeline/template_file.h"
+#include "limber/rigging/template_skeleton.h"
 #include "progress_line.h"
 
 namespace limber::cli {
@@ -18,6 +23,8 @@ namespace {
 struct Options {
   std::string input, output, report;
   AutoRigOptions rig;
+  std::string templateName, up, front;
+  std::vector<std::string> pins;
   bool replaceRig = false, keepSkeleton = false, strict = false;
   Common common;
 };
@@ -96,9 +103,56 @@ void printAccount(const Account& account, const Options& options, const AutoRigR
     std::sort(counts.begin(), counts.end());
     account.line(fmt::format("counts of handles that suit this model: {}", fmt::join(counts, ", ")));
   }
+  if (!report.matches.empty()) {
+    std::vector<std::string> matches;
+    for (const TemplateMatch& match : report.matches) {
+      matches.push_back(fmt::format("{} ({:.0f} % sure)", match.name, 100 * match.confidence));
+    }
+    account.line(fmt::format("template: {}", fmt::join(matches, ", else ")));
+  }
   printWarnings(report.warnings, options.common.quiet);
   if (!options.common.quiet) printBridged(report);
   if (options.output != "-") account.line(fmt::format("written: {}", options.output));
+}
+
+// "+y", "-z", "x": an axis of the file's space after conversion to glTF's.
+std::optional<Vec3> parseAxis(const std::string& text, std::string_view option) {
+  if (text.empty()) return std::nullopt;
+  const std::size_t at = text[0] == '+' || text[0] == '-' ? 1 : 0;
+  if (text.size() == at + 1) {
+    const char axis = static_cast<char>(text[at] | 0x20);  // lower case
+    if (axis >= 'x' && axis <= 'z') return Vec3((text[0] == '-' ? -1.0 : 1.0) * Vec3::Unit(axis - 'x'));
+  }
+  throw CLI::ValidationError(std::string(option), "takes +x, -x, +y, -y, +z or -z, not " + text);
+}
+
+// "leftHand=0.71,1.43,0.02"
+JointPin parsePin(const std::string& text) {
+  const std::size_t equals = text.rfind('=');
+  JointPin pin;
+  if (equals != std::string::npos && equals > 0) {
+    pin.joint = text.substr(0, equals);
+    std::istringstream numbers(text.substr(equals + 1));
+    numbers.imbue(std::locale::classic());
+    char comma = ',', second = ',', rest = 0;
+    if (numbers >> pin.place.x() >> comma >> pin.place.y() >> second >> pin.place.z() && comma == ',' &&
+        second == ',' && !(numbers >> rest) && pin.place.allFinite()) {
+      return pin;
+    }
+  }
+  throw CLI::ValidationError("--pin", "takes JOINT=x,y,z, not " + text);
+}
+
+// A template's name, or a file whose skeleton becomes the template.
+void chooseTemplate(const std::string& name, AutoRigOptions& rig) {
+  if (name.empty()) return;
+  rig.rigger = "template";
+  rig.rig.templateName = name;
+  if (std::filesystem::path(name).extension().empty()) {
+    if (name != "auto") findTemplate(name);
+    return;
+  }
+  rig.rig.templateSkeleton = readTemplateFile(name);
 }
 
 void run(Options options) {
@@ -109,6 +163,13 @@ void run(Options options) {
   checkOutput(options.output, {".glb", ".gltf"});
   if (options.replaceRig) options.rig.existingRig = ExistingRig::kReplace;
   if (options.keepSkeleton) options.rig.existingRig = ExistingRig::kKeepSkeleton;
+  chooseTemplate(options.templateName, options.rig);
+  options.rig.rig.up = parseAxis(options.up, "--up");
+  options.rig.rig.front = parseAxis(options.front, "--front");
+  if (options.rig.rig.up && options.rig.rig.front && std::abs(options.rig.rig.up->dot(*options.rig.rig.front)) > 0.5) {
+    throw CLI::ValidationError("--front", "must be square to --up");
+  }
+  for (const std::string& pin : options.pins) options.rig.rig.pins.push_back(parsePin(pin));
   findRigger(options.rig.rigger);
   findWeightMethod(options.rig.skinning);
 
@@ -144,12 +205,21 @@ std::string listMethods(std::string_view title, std::span<const Method> methods)
   return text;
 }
 
+std::string listTemplates() {
+  std::string text = "Templates:\n";
+  for (const TemplateSkeleton& skeleton : templateSkeletons()) {
+    text += fmt::format("  {:<18}{}\n", skeleton.name, skeleton.summary);
+  }
+  return text;
+}
+
 std::string help() {
-  return listMethods("Riggers", riggerMethods()) + listMethods("Skinning methods", weightMethods()) +
+  return listMethods("Riggers", riggerMethods()) + listTemplates() + listMethods("Skinning methods", weightMethods()) +
          "\nReads GLB, glTF, OBJ, PLY, STL, OFF, FBX and DAE. The result appears under its name only when it is\n"
          "complete; a file of that name is replaced, also where it is the input.\n"
          "\nExamples:\n"
          "  limber rig dragon.glb --handles 20 -o rigged.glb\n"
+         "  limber rig scan.obj --template humanoid --pin leftHand=0.71,1.43,0.02 -o character.glb\n"
          "  limber rig person.glb --keep-skeleton --max-influences 8 -o weighted.glb --json report.json\n"
          "  curl -s https://example.org/dragon.glb | limber rig - -o - > rigged.glb";
 }
@@ -173,6 +243,16 @@ void addRigCommand(CLI::App& program) {
   command->add_option("--rigger", options->rig.rigger, "how joints are found, see below")
       ->type_name("NAME")
       ->capture_default_str();
+  command
+      ->add_option("--template", options->templateName,
+                   "fit this named skeleton: auto, a name below, or a .glb, .gltf or .json with a skeleton")
+      ->type_name("NAME");
+  command
+      ->add_option("--pin", options->pins, "where a joint of the template must be, as JOINT=x,y,z in the file's space")
+      ->type_name("PIN")
+      ->allow_extra_args(false);
+  command->add_option("--up", options->up, "the model's up, as +y (default: found)")->type_name("AXIS");
+  command->add_option("--front", options->front, "where the model looks, as +z (default: found)")->type_name("AXIS");
   command->add_option("--skinning", options->rig.skinning, "how weights are made, see below")
       ->type_name("NAME")
       ->capture_default_str();
@@ -180,7 +260,8 @@ void addRigCommand(CLI::App& program) {
                                            "take the model's own rig and its joint animation out first");
   command->add_flag("--keep-skeleton", options->keepSkeleton, "keep the model's own skeleton, make its weights anew")
       ->excludes(replace)
-      ->excludes("--handles");
+      ->excludes("--handles")
+      ->excludes("--template");
   command
       ->add_option("--json", options->report,
                    "write a report: stages, seconds, counts, suggestions, warnings; - is standard output")

@@ -17,6 +17,7 @@ namespace {
 constexpr Index kCoarsest = 8;   // spacings, the first cells
 constexpr double kMargin = 2.5;  // spacings from the mesh to the grid's border, at least
 constexpr double kInside = 0.5;  // winding number from which a point lies inside
+constexpr double kClear = 0.3;   // more or less than that, and there is no doubt
 
 }  // namespace
 
@@ -46,14 +47,49 @@ Vec3 SignedDistance::position(std::size_t node) const {
   return origin_ + spacing_ * Vec3(static_cast<double>(x), static_cast<double>(y), static_cast<double>(z));
 }
 
-void SignedDistance::measure(const std::vector<std::size_t>& nodes, const Bvh& surface, const WindingNumber& winding) {
+// Inside or not, told from the nodes of the next coarser level round a node that lies between them.
+std::optional<bool> SignedDistance::knownSide(std::size_t node, Index step, double distance) const {
+  const std::array<std::size_t, 3> place = {node % size_[0], node / size_[0] % size_[1], node / size_[0] / size_[1]};
+  std::array<Index, 3> low, high;
+  int odd = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Index at = static_cast<Index>(place[axis]);
+    const bool between = at % (2 * step) != 0;
+    low[axis] = between ? at - step : at;
+    high[axis] = between ? at + step : at;
+    odd += between;
+  }
+  const double away = std::sqrt(static_cast<double>(odd)) * step * spacing_;
+  for (int c = 0; c < 8; ++c) {
+    const std::size_t corner = nodeAt(c & 1 ? high[0] : low[0], c & 2 ? high[1] : low[1], c & 4 ? high[2] : low[2]);
+    if (clear_[corner] && std::max<double>(distance, std::abs(values_[corner])) > away) return values_[corner] < 0;
+  }
+  return std::nullopt;
+}
+
+// `step`: the level of the nodes; 0 for the first one, which has no coarser.
+void SignedDistance::measure(const std::vector<std::size_t>& nodes, Index step, const Bvh& surface,
+                             const WindingNumber& winding) {
+  std::vector<char> clear(nodes.size());
+  std::vector<float> values(nodes.size());
   parallelFor(nodes.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3 point = position(nodes[i]);
       const double distance = surface.nearestPoint(point).distance;
-      values_[nodes[i]] = static_cast<float>(winding.at(point) > kInside ? -distance : distance);
+      std::optional<bool> inside = step > 0 ? knownSide(nodes[i], step, distance) : std::nullopt;
+      clear[i] = inside.has_value();
+      if (!inside) {
+        const double turns = winding.at(point);
+        inside = turns > kInside;
+        clear[i] = std::abs(turns - kInside) > kClear;
+      }
+      values[i] = static_cast<float>(*inside ? -distance : distance);
     }
   });
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    values_[nodes[i]] = values[i];
+    clear_[nodes[i]] = clear[i];
+  }
 }
 
 // Looks at each cell of 2 * step, whose corners are known: gives the nodes at `step` in it their values, or asks for
@@ -75,7 +111,8 @@ void SignedDistance::settle(Index step, std::vector<char>& known, std::vector<st
         }
         const bool near = nearest <= reach || (inside != 0 && inside != 8);
         for (int n = 0; n < 27; ++n) {
-          const Index dx = static_cast<Index>(n % 3), dy = static_cast<Index>(n / 3 % 3), dz = static_cast<Index>(n / 9);
+          const Index dx = static_cast<Index>(n % 3), dy = static_cast<Index>(n / 3 % 3),
+                      dz = static_cast<Index>(n / 9);
           if (dx != 1 && dy != 1 && dz != 1) continue;  // a corner
           const std::size_t node = nodeAt(x + dx * step, y + dy * step, z + dz * step);
           if (near) {
@@ -104,12 +141,14 @@ void SignedDistance::refine(const Bvh& surface, const WindingNumber& winding) {
       for (Index x = 0; x < size_[0]; x += kCoarsest) wanted.push_back(nodeAt(x, y, z));
     }
   }
-  measure(wanted, surface, winding);
+  clear_.assign(values_.size(), 0);
+  measure(wanted, 0, surface, winding);
   for (Index step = kCoarsest / 2; step > 0; step /= 2) {
     wanted.clear();
     settle(step, known, wanted);
-    measure(wanted, surface, winding);
+    measure(wanted, step, surface, winding);
   }
+  clear_ = {};
 }
 
 double SignedDistance::at(const Vec3& point) const {
@@ -126,8 +165,8 @@ double SignedDistance::at(const Vec3& point) const {
   }
   double sum = 0;
   for (int c = 0; c < 8; ++c) {
-    const double weight = (c & 1 ? part[0] : 1 - part[0]) * (c & 2 ? part[1] : 1 - part[1]) *
-                          (c & 4 ? part[2] : 1 - part[2]);
+    const double weight =
+        (c & 1 ? part[0] : 1 - part[0]) * (c & 2 ? part[1] : 1 - part[1]) * (c & 4 ? part[2] : 1 - part[2]);
     sum += weight * values_[nodeAt(low[0] + (c & 1 ? 1 : 0), low[1] + (c & 2 ? 1 : 0), low[2] + (c & 4 ? 1 : 0))];
   }
   return sum + spacing_ * beyond.norm();

@@ -155,11 +155,14 @@ Rigged makeRig(const Asset& asset, const Geometry& geometry, const PreparedMesh&
     bones = keptBones(asset, geometry, result.kept, prepared.frame, report.warnings);
     report.joints = result.kept.skeleton.jointCount();
   } else {
-    AutoRig rig = findRigger(options.rigger).rig(prepared.mesh, options.rig, progress);
+    RigOptions rigOptions = options.rig;
+    for (JointPin& pin : rigOptions.pins) pin.place = prepared.frame.toWorking(pin.place);
+    AutoRig rig = findRigger(options.rigger).rig(prepared.mesh, rigOptions, progress);
     bones = bonesOf(rig.skeleton);
     report.rigger = options.rigger;
     report.joints = rig.skeleton.jointCount();
     report.suggestions = std::move(rig.suggestions);
+    report.matches = std::move(rig.matches);
     report.warnings.append(rig.warnings);
     result.made = toWorld(std::move(rig.skeleton), prepared.frame);
   }

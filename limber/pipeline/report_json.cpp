@@ -37,6 +37,10 @@ Json toJson(const AutoRigReport& report) {
   for (const HandleSuggestion& suggestion : report.suggestions) {
     json["suggestions"].push_back({{"handles", suggestion.handles}, {"score", suggestion.score}});
   }
+  if (!report.matches.empty()) json["templates"] = Json::array();
+  for (const TemplateMatch& match : report.matches) {
+    json["templates"].push_back({{"name", match.name}, {"confidence", match.confidence}});
+  }
   json["bridged"] = Json::array();
   for (const BridgedNode& node : report.bridged) {
     json["bridged"].push_back({{"node", node.name}, {"vertices", node.vertices}, {"bridged", node.bridged}});

@@ -2,6 +2,7 @@
 
 #include "limber/core/names.h"
 #include "limber/rigging/sphere_mesh_rigger.h"
+#include "limber/rigging/template_rigger.h"
 
 namespace limber {
 
@@ -10,6 +11,8 @@ namespace {
 constexpr RiggerMethod kMethods[] = {
     {"sphere-mesh", "handles where the model is thick, any number of them",
      "Thiery, Guy, Boubekeur: Sphere-Meshes, 2013", &rigWithSphereMesh},
+    {"template", "a named skeleton fitted into the model; --template names it", "after Baran, Popović: Pinocchio, 2007",
+     &rigWithTemplate},
 };
 
 }  // namespace

@@ -14,8 +14,26 @@
 
 namespace limber {
 
+// A joint whose place is given.
+struct JointPin {
+  std::string joint;
+  Vec3 place = Vec3::Zero();  // in the space of the mesh
+};
+
 struct RigOptions {
   std::optional<Index> handles;  // joints wanted, 1 to #V; none: the best suggested count
+
+  // For riggers that fit a named skeleton.
+  std::string templateName = "auto";         // auto: the one that fits best
+  std::optional<Skeleton> templateSkeleton;  // a user's own, in place of that
+  std::optional<Vec3> up, front;             // along an axis of the mesh's space; none: found
+  std::vector<JointPin> pins;
+};
+
+// A template that was tried, and how sure it is that the model is of its kind: 0 to 1.
+struct TemplateMatch {
+  std::string name;
+  double confidence = 0;
 };
 
 // A count of handles worth choosing.
@@ -27,6 +45,7 @@ struct HandleSuggestion {
 struct AutoRig {
   Skeleton skeleton;  // in the space of the mesh
   std::vector<HandleSuggestion> suggestions;
+  std::vector<TemplateMatch> matches;  // the one that was fitted first
   Warnings warnings;
 };
 

@@ -1,0 +1,40 @@
+// Comparisons of skeletons as JSON, as text, and over a folder of rigged characters as a table.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "limber/asset/asset.h"
+#include "limber/core/progress.h"
+#include "limber/evaluate/rig_metrics.h"
+
+namespace limber {
+
+// Every field of the comparison by its name.
+Json toJson(const RigComparison& comparison);
+
+// A few lines for a terminal.
+std::string toText(const RigComparison& comparison);
+
+struct RigTableRow {
+  std::string file;  // without folder and extension
+  std::string note;  // what the rigger said of the fit
+  RigComparison comparison;
+  double seconds = 0;  // to make the rig, reading and writing files left out
+};
+
+// Gives the asset a rig in place of its own; returns what is to be noted in the table.
+using Rerig = std::function<std::string(Asset&)>;
+
+// One row for each of the files that has a rig and triangles, in their order; what cannot be read or compared is
+// counted in `skipped`.
+std::vector<RigTableRow> compareRigsOf(std::span<const std::filesystem::path> files, const Rerig& rerig,
+                                       Progress& progress, Warnings& skipped);
+
+// A Markdown table with a line for each row and one of means.
+std::string rigTable(std::span<const RigTableRow> rows);
+
+}  // namespace limber

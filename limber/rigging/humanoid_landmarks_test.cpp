@@ -1,0 +1,62 @@
+#include "limber/rigging/humanoid_landmarks.h"
+
+#include <gtest/gtest.h>
+
+#include "limber/rigging/template_embedding.h"
+#include "limber/rigging/testing/capsule_person.h"
+
+namespace limber {
+
+namespace {
+
+struct Person {
+  testing::CapsulePerson shape = testing::capsulePerson();
+  BodyVolume body = measureBody(shape.mesh);
+  BodyFrame frame = frameAlong(shape.mesh, body, Vec3::UnitY(), Vec3::UnitZ());
+};
+
+}  // namespace
+
+TEST(HumanoidLandmarks, SectionsAreCutOutOfOnePart) {
+  const Person person;
+  const double y = 0.16;  // of the shins
+  const Vec3 seed = person.frame.toBody({0.1, y, 0.01});
+  const BodySection shin = sectionAt(person.body, person.frame, seed, Vec3::UnitY(), 0.05);
+  ASSERT_FALSE(shin.empty());
+  EXPECT_NEAR(shin.area, M_PI * 0.038 * 0.038, 0.25 * M_PI * 0.038 * 0.038);
+  EXPECT_NEAR(shin.center.x(), 0.085, 0.01);
+  EXPECT_TRUE(shin.contains(shin.center));
+  EXPECT_FALSE(shin.contains(shin.center.cwiseProduct(Vec3(-1, 1, 1))));
+  EXPECT_TRUE(sectionAt(person.body, person.frame, {0.4, 0.3, 0}, Vec3::UnitY(), 0.05).empty());
+}
+
+TEST(HumanoidLandmarks, HipsGoWhereLegsPart) {
+  const Person person;
+  const TemplateSkeleton& skeleton = findTemplate("humanoid");
+  const Index hip = *skeleton.find("leftUpperLeg"), knee = *skeleton.find("leftLowerLeg");
+  std::vector<Vec3> places;
+  for (const TemplateJoint& joint : skeleton.joints) places.push_back(joint.place);
+  places[hip].y() += 0.07;  // an embedding that is off
+  places[*skeleton.find("rightUpperLeg")].y() += 0.07;
+  std::vector<std::optional<Vec3>> pins(places.size());
+  refineHumanoid(skeleton, person.body, person.frame, pins, places);
+  EXPECT_LT((places[hip] - person.frame.toBody(person.shape.hip)).norm(), 0.04);
+  EXPECT_NEAR(places[knee].x(), 0.08, 0.01);
+
+  std::vector<Vec3> pinned = places;
+  pins[hip] = pinned[hip] = Vec3(0.05, 0.6, 0);
+  refineHumanoid(skeleton, person.body, person.frame, pins, pinned);
+  EXPECT_EQ(pinned[hip], *pins[hip]);
+}
+
+TEST(HumanoidLandmarks, LeavesOtherTemplatesAlone) {
+  const Person person;
+  const TemplateSkeleton& skeleton = findTemplate("quadruped");
+  std::vector<Vec3> places;
+  for (const TemplateJoint& joint : skeleton.joints) places.push_back(joint.place);
+  std::vector<Vec3> refined = places;
+  refineHumanoid(skeleton, person.body, person.frame, std::vector<std::optional<Vec3>>(places.size()), refined);
+  EXPECT_EQ(refined, places);
+}
+
+}  // namespace limber

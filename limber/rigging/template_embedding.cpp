@@ -1,0 +1,331 @@
+#include "limber/rigging/template_embedding.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "limber/core/error.h"
+#include "limber/core/parallel.h"
+
+namespace limber {
+
+namespace {
+
+// Weights of the penalties, each of which is about 1 for what is unusual. Heights are body heights.
+constexpr double kOutside = 40;         // for each height of a bone that runs outside
+constexpr double kOutsideDepth = 0.02;  // heights outside that count in full
+constexpr double kSample = 0.03;        // heights between two looks along a bone
+constexpr double kLongestBone = 0.7;    // heights
+constexpr double kOffMiddle = 1.5;      // for a place beside the deepest of its part
+constexpr double kPlaceSpread = 0.22;   // heights, of joints about their place in the template
+constexpr double kTipSpread = 0.12;     // heights up, of tips
+constexpr double kMiddleSpread = 0.02;  // heights, of joints of the middle to the sides
+constexpr double kTipReach = 0.04;      // heights from an end of the model
+constexpr double kNoTip = 4;            // most that a tip away from every end costs
+constexpr double kWorstBone = 25;       // most that length and direction of a bone cost
+
+struct Candidate {
+  Vec3 place = Vec3::Zero();
+  double radius = 0;
+  double offMiddle = 0;  // 0 for the deepest of its part, up to 1
+  double toTip = 0;      // heights to the nearest end of the model
+};
+
+class Embedder {
+ public:
+  // `skeleton` says which joints there are; their places do not matter yet.
+  Embedder(const TemplateSkeleton& skeleton, const BodyVolume& body, const BodyFrame& frame, const TemplatePins& pins,
+           std::size_t mostSpheres)
+      : skeleton_(skeleton),
+        body_(body),
+        frame_(frame),
+        pins_(pins),
+        mostSpheres_(mostSpheres),
+        half_(frame.symmetric()) {
+    for (const std::optional<Vec3>& pin : pins) half_ = half_ && !pin;
+    chooseJoints();
+    gatherCandidates();
+    measurePairs();
+  }
+
+  TemplateEmbedding embed(const TemplateSkeleton& variant) {
+    skeleton_ = variant;
+    solve();
+    return readOff();
+  }
+
+ private:
+  bool isLeftOrMiddle(const TemplateJoint& joint) const { return !joint.mirror || joint.place.x() > 0; }
+
+  // Placed joints and tips that are searched for, each with the one above it.
+  void chooseJoints() {
+    above_.assign(skeleton_.jointCount(), kNoIndex);
+    for (Index j = 0; j < skeleton_.jointCount(); ++j) {
+      const TemplateJoint& joint = skeleton_.joints[j];
+      if (joint.role == TemplateRole::kBetween || (half_ && !isLeftOrMiddle(joint))) continue;
+      std::optional<Index> parent = joint.parent;
+      while (parent && skeleton_.joints[*parent].role == TemplateRole::kBetween)
+        parent = skeleton_.joints[*parent].parent;
+      if (parent) above_[j] = *parent;
+      chosen_.push_back(j);
+    }
+  }
+
+  void add(const Vec3& point) {
+    Candidate candidate;
+    candidate.place = frame_.toBody(point);
+    candidate.radius = -body_.distance->at(point) / frame_.height;
+    candidate.toTip = std::numeric_limits<double>::infinity();
+    for (const BodyTip& tip : body_.tips) {
+      candidate.toTip = std::min(candidate.toTip, (tip.position - point).norm() / frame_.height);
+      if (half_)
+        candidate.toTip = std::min(candidate.toTip, (frame_.mirrored(tip.position) - point).norm() / frame_.height);
+    }
+    candidates_.push_back(candidate);
+  }
+
+  void gatherCandidates() {
+    std::vector<Vec3> points;
+    // Of many spheres every second, third, ...: the deepest alone may all lie in a large head.
+    const std::size_t stride = (body_.spheres.size() + mostSpheres_ - 1) / mostSpheres_;
+    for (std::size_t s = 0; s < body_.spheres.size(); s += stride) points.push_back(body_.spheres[s].center);
+    for (const BodyTip& tip : body_.tips) points.push_back(tip.position);
+    const Vec3 left = frame_.axes.row(0).transpose();
+    for (const Vec3& point : points) {
+      if (!half_) {
+        add(point);
+        continue;
+      }
+      const double x = left.dot(point - frame_.origin) / frame_.height;
+      const Vec3 onPlane = point - x * frame_.height * left;
+      const double depth = -body_.distance->at(onPlane);
+      if (std::abs(x) < 0.03 && depth > 0) add(onPlane);
+      if (std::abs(x) > 0.015 && (x > 0 || body_.distance->at(frame_.mirrored(point)) < 0)) {
+        add(x > 0 ? point : frame_.mirrored(point));
+      }
+    }
+    for (Candidate& c : candidates_) {
+      double deepest = c.radius;
+      for (const Candidate& other : candidates_) {
+        if ((other.place - c.place).squaredNorm() < 2.25 * c.radius * c.radius)
+          deepest = std::max(deepest, other.radius);
+      }
+      c.offMiddle = deepest > 0 ? 1 - c.radius / deepest : 1;
+    }
+    pinned_.assign(skeleton_.jointCount(), kNoIndex);
+    for (const Index j : chosen_) {
+      if (!pins_[j]) continue;
+      pinned_[j] = static_cast<Index>(candidates_.size());
+      add(frame_.fromBody(*pins_[j]));
+      candidates_.back().offMiddle = 0;
+    }
+  }
+
+  double outsidePenalty(const Vec3& a, const Vec3& b) const {
+    const double length = (b - a).norm();
+    if (length > kLongestBone) return kOutside * length;
+    const int steps = std::max(1, static_cast<int>(length / kSample));
+    double outside = 0;
+    for (int s = 0; s < steps; ++s) {
+      const Vec3 place = a + (s + 0.5) / steps * (b - a);
+      const double value = body_.distance->at(frame_.fromBody(place)) / frame_.height;
+      outside += std::clamp(value / kOutsideDepth, 0.0, 1.0);
+    }
+    return kOutside * outside * length / steps;
+  }
+
+  void measurePairs() {
+    const std::size_t count = candidates_.size();
+    pairs_.resize(count * count);
+    parallelFor(count, 8, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t a = begin; a < end; ++a) {
+        for (std::size_t b = 0; b < count; ++b) {
+          Pair& pair = pairs_[a * count + b];
+          const Vec3 bone = candidates_[b].place - candidates_[a].place;
+          const double length = std::max(bone.norm(), 1e-3);
+          pair.direction = (bone / length).cast<float>();
+          pair.logLength = static_cast<float>(std::log(length));
+          if (b > a) pair.outside = static_cast<float>(outsidePenalty(candidates_[a].place, candidates_[b].place));
+        }
+      }
+    });
+    for (std::size_t a = 0; a < count; ++a) {
+      for (std::size_t b = 0; b < a; ++b) pairs_[a * count + b].outside = pairs_[b * count + a].outside;
+    }
+  }
+
+  double placePenalty(Index j, const Candidate& c) const {
+    const TemplateJoint& joint = skeleton_.joints[j];
+    const bool tip = joint.role == TemplateRole::kTip;
+    const Vec3 off = c.place - joint.place;
+    double penalty = kOffMiddle * (tip ? 0 : c.offMiddle * c.offMiddle);
+    const double up = off.y() / (tip ? kTipSpread : kPlaceSpread);
+    penalty += up * up + off.z() * off.z() / (4 * kPlaceSpread * kPlaceSpread);
+    if (!joint.mirror) {
+      penalty += c.place.x() * c.place.x() / (kMiddleSpread * kMiddleSpread);
+    } else {
+      const double inside = joint.place.x() > 0 ? c.place.x() : -c.place.x();
+      const double over = std::min(0.0, inside - 0.01) / kMiddleSpread;
+      penalty += over * over + off.x() * off.x() / (4 * kPlaceSpread * kPlaceSpread);
+    }
+    if (tip) penalty += std::min(kNoTip, c.toTip * c.toTip / (kTipReach * kTipReach));
+    return penalty;
+  }
+
+  struct BoneShape {
+    Vec3f direction;
+    float logLength, lengthWeight, turnWeight;
+  };
+  BoneShape shapeOf(Index j) const {
+    const TemplateJoint& joint = skeleton_.joints[j];
+    const Vec3 bone = joint.place - skeleton_.joints[above_[j]].place;
+    const double length = std::max(bone.norm(), 1e-3);
+    return {(bone / length).cast<float>(), static_cast<float>(std::log(length)),
+            static_cast<float>(1 / (joint.lengthSpread * joint.lengthSpread)),
+            static_cast<float>(2 / (joint.turnSpread * joint.turnSpread))};
+  }
+
+  static float bonePenalty(const BoneShape& shape, float logLength, const Vec3f& direction) {
+    const float stretch = logLength - shape.logLength;
+    const float shapePenalty =
+        shape.lengthWeight * stretch * stretch + shape.turnWeight * (1 - shape.direction.dot(direction));
+    return std::min(static_cast<float>(kWorstBone), shapePenalty);
+  }
+
+  // From the leaves up: what the tree below a joint costs at best, for each place of the joint.
+  void solve() {
+    const std::size_t count = candidates_.size();
+    below_.assign(skeleton_.jointCount(), {});
+    choice_.assign(skeleton_.jointCount(), {});
+    for (const Index j : chosen_) {
+      below_[j].resize(count);
+      for (std::size_t c = 0; c < count; ++c) {
+        const bool allowed = pinned_[j] == kNoIndex || pinned_[j] == c;
+        below_[j][c] = allowed ? static_cast<float>(placePenalty(j, candidates_[c])) : 1e9f;
+      }
+    }
+    for (auto j = chosen_.rbegin(); j != chosen_.rend(); ++j) {
+      if (above_[*j] == kNoIndex) continue;
+      const BoneShape shape = shapeOf(*j);
+      const std::vector<float>& own = below_[*j];
+      std::vector<float>& parent = below_[above_[*j]];
+      choice_[*j].resize(count);
+      parallelFor(count, 16, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t a = begin; a < end; ++a) {
+          float best = std::numeric_limits<float>::infinity();
+          for (std::size_t b = 0; b < count; ++b) {
+            const Pair& pair = pairs_[a * count + b];
+            const float least = own[b] + pair.outside;
+            if (least >= best) continue;
+            const float cost = least + bonePenalty(shape, pair.logLength, pair.direction);
+            if (cost >= best) continue;
+            best = cost;
+            choice_[*j][a] = static_cast<Index>(b);
+          }
+          parent[a] += best;
+        }
+      });
+    }
+  }
+
+  TemplateEmbedding readOff() {
+    TemplateEmbedding result;
+    result.places.assign(skeleton_.jointCount(), Vec3::Zero());
+    result.costs.assign(skeleton_.jointCount(), 0.0);
+    std::vector<Index> at(skeleton_.jointCount(), 0);
+    const std::size_t count = candidates_.size();
+    for (const Index j : chosen_) {
+      if (above_[j] == kNoIndex) {
+        at[j] = static_cast<Index>(std::min_element(below_[j].begin(), below_[j].end()) - below_[j].begin());
+      } else {
+        at[j] = choice_[j][at[above_[j]]];
+        const Pair& pair = pairs_[at[above_[j]] * count + at[j]];
+        result.costs[j] = pair.outside + bonePenalty(shapeOf(j), pair.logLength, pair.direction);
+      }
+      result.places[j] = candidates_[at[j]].place;
+      result.costs[j] += placePenalty(j, candidates_[at[j]]);
+      result.cost += result.costs[j] / static_cast<double>(chosen_.size());
+    }
+    if (half_) {
+      for (const Index j : chosen_) {
+        const std::optional<Index> mirror = skeleton_.joints[j].mirror;
+        if (!mirror) continue;
+        result.places[*mirror] = result.places[j].cwiseProduct(Vec3(-1, 1, 1));
+        result.costs[*mirror] = result.costs[j];
+      }
+    }
+    placeBetween(skeleton_, result.places);
+    return result;
+  }
+
+  struct Pair {
+    Vec3f direction = Vec3f::Zero();
+    float logLength = 0, outside = 0;
+  };
+
+  TemplateSkeleton skeleton_;
+  const BodyVolume& body_;
+  const BodyFrame& frame_;
+  const TemplatePins& pins_;
+  std::size_t mostSpheres_;
+  bool half_;  // the right side mirrors the left one
+  std::vector<Index> chosen_, above_, pinned_;
+  std::vector<Candidate> candidates_;
+  std::vector<Pair> pairs_;                // [above][below]
+  std::vector<std::vector<float>> below_;  // [joint][candidate]
+  std::vector<std::vector<Index>> choice_;
+};
+
+}  // namespace
+
+std::vector<TemplateEmbedding> embedTemplate(std::span<const TemplateSkeleton> variants, const BodyVolume& body,
+                                             const BodyFrame& frame, const TemplatePins& pins,
+                                             std::size_t mostSpheres) {
+  std::vector<TemplateEmbedding> embeddings;
+  if (variants.empty()) return embeddings;
+  for (const TemplateSkeleton& variant : variants) {
+    if (variant.jointCount() != variants.front().jointCount() || pins.size() != variant.jointCount()) {
+      throw Error(ErrorCode::kBadArgument, "variants of a template and its pins must have the same joints",
+                  variant.name);
+    }
+  }
+  Embedder embedder(variants.front(), body, frame, pins, mostSpheres);
+  for (const TemplateSkeleton& variant : variants) embeddings.push_back(embedder.embed(variant));
+  return embeddings;
+}
+
+void placeBetween(const TemplateSkeleton& skeleton, std::vector<Vec3>& places) {
+  const Index count = skeleton.jointCount();
+  const auto between = [&](Index j) { return skeleton.joints[j].role == TemplateRole::kBetween; };
+  // The placed joint above each joint, and below it: a joint between that leads to none goes along with the bone that
+  // the placed joint above it has.
+  std::vector<std::optional<Index>> above(count), below(count), firstBelow(count);
+  for (Index j = 0; j < count; ++j) {
+    if (!skeleton.joints[j].parent) continue;
+    const Index parent = *skeleton.joints[j].parent;
+    above[j] = between(parent) ? above[parent] : std::optional(parent);
+    if (!between(j) && above[j] && !firstBelow[*above[j]]) firstBelow[*above[j]] = j;
+  }
+  for (Index j = count; j-- > 0;) {
+    const std::optional<Index> parent = skeleton.joints[j].parent;
+    const std::optional<Index> own = between(j) ? below[j] : std::optional(j);
+    if (parent && between(*parent) && own) below[*parent] = own;
+  }
+  for (Index j = 0; j < count; ++j) {
+    if (!between(j) || !above[j]) continue;
+    const Vec3 &from = skeleton.joints[*above[j]].place, &start = places[*above[j]];
+    const Vec3 offset = skeleton.joints[j].place - from;
+    const std::optional<Index> end = below[j] ? below[j] : firstBelow[*above[j]];
+    if (!end) {
+      places[j] = start + offset;
+      continue;
+    }
+    const Vec3 bone = skeleton.joints[*end].place - from, found = places[*end] - start;
+    const double squared = std::max(bone.squaredNorm(), 1e-12);
+    const double part = offset.dot(bone) / squared;
+    const double scale = std::sqrt(found.squaredNorm() / squared);
+    places[j] = start + part * found + scale * (Quat::FromTwoVectors(bone, found) * (offset - part * bone));
+  }
+}
+
+}  // namespace limber

@@ -1,0 +1,79 @@
+#include "limber/rigging/template_embedding.h"
+
+#include <gtest/gtest.h>
+
+#include "limber/core/error.h"
+#include "limber/rigging/testing/capsule_person.h"
+
+namespace limber {
+
+namespace {
+
+struct Person {
+  testing::CapsulePerson shape = testing::capsulePerson();
+  BodyVolume body = measureBody(shape.mesh);
+  BodyFrame frame = frameAlong(shape.mesh, body, Vec3::UnitY(), Vec3::UnitZ());
+};
+
+}  // namespace
+
+TEST(TemplateEmbedding, PutsJointsIntoTheirLimbs) {
+  const Person person;
+  const TemplateSkeleton& skeleton = findTemplate("humanoid");
+  const TemplatePins pins(skeleton.jointCount());
+  const TemplateEmbedding embedding = embedTemplate({&skeleton, 1}, person.body, person.frame, pins).front();
+  const auto place = [&](const char* name) { return person.frame.fromBody(embedding.places[*skeleton.find(name)]); };
+  EXPECT_LT((place("leftHand") - person.shape.hand).norm(), 0.08);
+  EXPECT_LT((place("leftLowerArm") - person.shape.elbow).norm(), 0.06);
+  EXPECT_LT((place("leftFoot") - person.shape.ankle).norm(), 0.06);
+  EXPECT_LT((place("leftLowerLeg") - person.shape.knee).norm(), 0.06);
+  for (Index j = 0; j < skeleton.jointCount(); ++j) {  // the body is symmetric
+    const Index mirror = skeleton.joints[j].mirror.value_or(j);
+    EXPECT_LT((embedding.places[mirror] - embedding.places[j].cwiseProduct(Vec3(-1, 1, 1))).norm(), 1e-9);
+  }
+}
+
+TEST(TemplateEmbedding, KeepsPins) {
+  const Person person;
+  const TemplateSkeleton& skeleton = findTemplate("humanoid");
+  TemplatePins pins(skeleton.jointCount());
+  const Vec3 pin(0.2, 0.7, 0.05);
+  pins[*skeleton.find("leftLowerArm")] = pin;
+  const TemplateEmbedding embedding = embedTemplate({&skeleton, 1}, person.body, person.frame, pins).front();
+  EXPECT_LT((embedding.places[*skeleton.find("leftLowerArm")] - pin).norm(), 1e-9);
+}
+
+TEST(TemplateEmbedding, CostsMoreInWhatIsNoPerson) {
+  const Person person;
+  const TemplateSkeleton& skeleton = findTemplate("humanoid");
+  const TemplatePins pins(skeleton.jointCount());
+  TriMesh sausage;
+  testing::addCapsule(sausage, {0, 0.2, 0}, {0, 0.8, 0}, 0.2);
+  const BodyVolume body = measureBody(sausage);
+  const BodyFrame frame = frameAlong(sausage, body, Vec3::UnitY(), Vec3::UnitZ());
+  EXPECT_GT(embedTemplate({&skeleton, 1}, body, frame, pins).front().cost,
+            2 * embedTemplate({&skeleton, 1}, person.body, person.frame, pins).front().cost);
+}
+
+TEST(TemplateEmbedding, RefusesVariantsOfOtherJoints) {
+  const Person person;
+  const std::vector<TemplateSkeleton> variants = {findTemplate("humanoid"), findTemplate("bird")};
+  const TemplatePins pins(variants[0].jointCount());
+  EXPECT_THROW(embedTemplate(variants, person.body, person.frame, pins), Error);
+}
+
+// Joints between go along with their placed neighbours: turned and scaled as these are.
+TEST(TemplateEmbedding, PlacesJointsBetween) {
+  TemplateSkeleton skeleton;
+  skeleton.joints = {{"a", {}, {0, 0, 0}, TemplateRole::kPlaced, 1, 1, {}},
+                     {"b", 0, {0, 0.25, 0}, TemplateRole::kBetween, 1, 1, {}},
+                     {"c", 1, {0, 1, 0}, TemplateRole::kPlaced, 1, 1, {}},
+                     {"d", 2, {0, 2, 0}, TemplateRole::kTip, 1, 1, {}},
+                     {"e", 2, {0.5, 1.5, 0}, TemplateRole::kBetween, 1, 1, {}}};
+  std::vector<Vec3> places = {{0, 0, 0}, {9, 9, 9}, {2, 0, 0}, {4, 0, 0}, {9, 9, 9}};
+  placeBetween(skeleton, places);
+  EXPECT_LT((places[1] - Vec3(0.5, 0, 0)).norm(), 1e-9);
+  EXPECT_LT((places[4] - Vec3(3, -1, 0)).norm(), 1e-9);
+}
+
+}  // namespace limber

@@ -1,0 +1,175 @@
+#include "limber/rigging/template_rigger.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "limber/rigging/body_volume.h"
+#include "limber/rigging/humanoid_landmarks.h"
+#include "limber/rigging/template_embedding.h"
+
+namespace limber {
+
+namespace {
+
+constexpr std::size_t kCoarseSpheres = 120;  // for a first look at every way to stand
+constexpr std::size_t kFramesRefined = 2;    // after it, with all spheres
+constexpr double kLowConfidence = 0.4;
+constexpr double kCostOfDoubt = 2;       // cost at which confidence is a half
+constexpr double kNoPlace = 12;          // cost of a joint from which its limb has no place
+constexpr double kMostAsymmetry = 0.15;  // more than the most symmetric way to stand, of those looked at
+
+struct Fit {
+  TemplateSkeleton skeleton;
+  BodyFrame frame;
+  TemplatePins pins;
+  TemplateEmbedding embedding;
+  double cost = 0;
+};
+
+TemplatePins pinsIn(const TemplateSkeleton& skeleton, const BodyFrame& frame, const std::vector<JointPin>& pins) {
+  TemplatePins places(skeleton.jointCount());
+  for (const JointPin& pin : pins) {
+    const std::optional<Index> joint = skeleton.find(pin.joint);
+    if (!joint) {
+      throw Error(ErrorCode::kBadArgument, fmt::format("the template has no joint '{}' to pin", pin.joint),
+                  skeleton.name, "info --template lists its joints");
+    }
+    places[*joint] = frame.toBody(pin.place);
+  }
+  return places;
+}
+
+// What speaks against a way to stand before the model is looked at: files mostly have +Y or +Z up, and the front
+// towards the viewer.
+double unusual(const BodyFrame& frame) {
+  const Vec3 up = frame.axes.row(1).transpose(), front = frame.axes.row(2).transpose();
+  const bool yUp = up.y() > 0.9, zUp = up.z() > 0.9;
+  const double upCost = yUp ? 0 : zUp ? 0.2 : 0.8;
+  const bool usualFront = yUp ? front.z() > 0.9 : zUp ? front.y() < -0.9 : true;
+  return upCost + (usualFront ? 0 : 0.6);
+}
+
+// One fit for each variant.
+void addFits(const std::vector<TemplateSkeleton>& variants, const BodyVolume& body, const BodyFrame& frame,
+             const std::vector<JointPin>& pins, std::size_t mostSpheres, std::vector<Fit>& fits) {
+  const TemplatePins places = pinsIn(variants.front(), frame, pins);
+  std::vector<TemplateEmbedding> embeddings = embedTemplate(variants, body, frame, places, mostSpheres);
+  for (std::size_t v = 0; v < variants.size(); ++v) {
+    const double cost = embeddings[v].cost + unusual(frame);
+    fits.push_back({variants[v], frame, places, std::move(embeddings[v]), cost});
+  }
+}
+
+// Looks at every way to stand with some of the spheres, and at the best ones with all.
+Fit bestFit(const TemplateSkeleton& skeleton, const BodyVolume& body, const std::vector<BodyFrame>& frames,
+            const std::vector<JointPin>& pins) {
+  double least = 1;
+  for (const BodyFrame& frame : frames) least = std::min(least, frame.asymmetry);
+  const std::vector<TemplateSkeleton> variants = templateVariants(skeleton);
+  const auto cheaper = [](const Fit& a, const Fit& b) { return a.cost < b.cost; };
+  std::vector<Fit> looks;
+  for (const BodyFrame& frame : frames) {
+    if (frame.asymmetry > least + kMostAsymmetry) continue;
+    std::vector<Fit> fits;
+    addFits(variants, body, frame, pins, kCoarseSpheres, fits);
+    looks.push_back(*std::min_element(fits.begin(), fits.end(), cheaper));
+  }
+  std::stable_sort(looks.begin(), looks.end(), cheaper);
+  std::vector<Fit> fits;
+  for (std::size_t i = 0; i < std::min(looks.size(), kFramesRefined); ++i) {
+    addFits(variants, body, looks[i].frame, pins, body.spheres.size(), fits);
+  }
+  return *std::min_element(fits.begin(), fits.end(), cheaper);
+}
+
+double confidenceOf(const Fit& fit) {
+  return 1 / (1 + std::pow(fit.cost / kCostOfDoubt, 3.0));
+}
+
+void warn(const Fit& fit, AutoRig& rig) {
+  for (Index j = 0; j < fit.skeleton.jointCount(); ++j) {
+    if (fit.embedding.costs[j] < kNoPlace) continue;
+    rig.warnings.add("no-place", "joints of the template find no place in the model", fit.skeleton.joints[j].name);
+  }
+  const double confidence = confidenceOf(fit);
+  if (confidence < kLowConfidence) {
+    rig.warnings.add("low-confidence",
+                     fmt::format("the model hardly looks like the template (confidence {:.2f})", confidence),
+                     fit.skeleton.name);
+  }
+}
+
+}  // namespace
+
+Skeleton standingSkeleton(const TemplateSkeleton& skeleton, const std::vector<Vec3>& places, const BodyFrame& frame) {
+  const Index count = skeleton.jointCount();
+  std::vector<std::optional<Index>> next(count);
+  for (Index j = 0; j < count; ++j) {
+    const std::optional<Index> parent = skeleton.joints[j].parent;
+    if (parent && !next[*parent]) next[*parent] = j;
+  }
+  const Vec3 front = frame.axes.row(2).transpose(), up = frame.axes.row(1).transpose();
+  std::vector<Affine> globals(count);
+  std::vector<std::optional<Index>> kept(count);
+  Skeleton result;
+  for (Index j = 0; j < count; ++j) {
+    const TemplateJoint& from = skeleton.joints[j];
+    if (from.role == TemplateRole::kTip) continue;
+    const Vec3 position = frame.fromBody(places[j]);
+    Vec3 bone = next[j] ? Vec3(frame.fromBody(places[*next[j]]) - position) : Vec3(Vec3::Zero());
+    if (!(bone.norm() > 1e-9)) bone = from.parent ? Vec3(globals[*from.parent].linear().col(1)) : up;
+    const Vec3 y = bone.normalized();
+    const Vec3& toward = std::abs(y.dot(front)) > std::cos(EIGEN_PI / 6) ? up : front;
+    const Vec3 z = (toward - toward.dot(y) * y).normalized();
+    Mat3 rotation;
+    rotation << y.cross(z), y, z;
+    globals[j].linear() = rotation;
+    globals[j].translation() = position;
+    globals[j].makeAffine();
+    Joint joint;
+    joint.name = from.name;
+    if (from.parent) joint.parent = kept[*from.parent];
+    const Affine above = from.parent ? globals[*from.parent] : Affine::Identity();
+    joint.rest = decompose(above.inverse(Eigen::Isometry) * globals[j]);
+    joint.rest.scale = Vec3::Ones();
+    kept[j] = result.jointCount();
+    result.joints.push_back(std::move(joint));
+  }
+  return result;
+}
+
+AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress& progress) {
+  std::vector<const TemplateSkeleton*> candidates;
+  TemplateSkeleton own;
+  if (options.templateSkeleton) {
+    own = templateFrom(*options.templateSkeleton, options.templateName);
+    candidates = {&own};
+  } else if (options.templateName == "auto") {
+    for (const TemplateSkeleton& skeleton : templateSkeletons()) candidates.push_back(&skeleton);
+  } else {
+    candidates = {&findTemplate(options.templateName)};
+  }
+  progress.stage("measure body");
+  const BodyVolume body = measureBody(mesh);
+  progress.stage("fit template");
+  const std::vector<BodyFrame> frames = possibleFrames(mesh, body, options.up, options.front);
+  std::vector<Fit> fits;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    progress.update(static_cast<double>(i) / static_cast<double>(candidates.size()));
+    fits.push_back(bestFit(*candidates[i], body, frames, options.pins));
+  }
+  std::stable_sort(fits.begin(), fits.end(), [](const Fit& a, const Fit& b) { return a.cost < b.cost; });
+
+  Fit& best = fits.front();
+  refineHumanoid(best.skeleton, body, best.frame, best.pins, best.embedding.places);
+  placeBetween(best.skeleton, best.embedding.places);
+  AutoRig rig;
+  rig.skeleton = standingSkeleton(best.skeleton, best.embedding.places, best.frame);
+  for (const Fit& fit : fits) rig.matches.push_back({fit.skeleton.name, confidenceOf(fit)});
+  warn(best, rig);
+  return rig;
+}
+
+}  // namespace limber

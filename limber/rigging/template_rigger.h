@@ -1,0 +1,22 @@
+// Template embedding as a rigger: a named skeleton is fitted into the model.
+#pragma once
+
+#include "limber/rigging/auto_rigger.h"
+#include "limber/rigging/body_frame.h"
+#include "limber/rigging/template_skeleton.h"
+
+namespace limber {
+
+// The skeleton of a template whose joints stand at `places` (body space, #J; tips end the bones of leaves and are no
+// joints). Every joint's local +Y points along its bone: to the first joint or tip below it in the template's order, at
+// the end of a chain on in the direction of the bone above. Its local +Z is as near to the body's front as it can be;
+// for a bone that itself points within 30 degrees of front or back, to the body's up. So the two sides mirror each
+// other.
+Skeleton standingSkeleton(const TemplateSkeleton& skeleton, const std::vector<Vec3>& places, const BodyFrame& frame);
+
+// Measures the body, finds the way it stands and the template that fits best (options.templateName, "auto" tries all),
+// embeds and refines it. Warnings: "no-place" for each limb that the model seems to lack, "low-confidence".
+// Throws Error kBadArgument for an unknown template or pinned joint.
+AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress& progress);
+
+}  // namespace limber

@@ -1,0 +1,133 @@
+#include "limber/rigging/template_rigger.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "limber/core/parallel.h"
+#include "limber/rigging/testing/capsule_person.h"
+
+namespace limber {
+
+namespace {
+
+AutoRig rig(const TriMesh& mesh, const RigOptions& options) {
+  Progress progress;
+  return rigWithTemplate(mesh, options, progress);
+}
+
+RigOptions person() {
+  RigOptions options;
+  options.templateName = "humanoid";
+  return options;
+}
+
+Vec3 place(const Skeleton& skeleton, const char* name) {
+  return restGlobals(skeleton)[skeleton.find(name).value()].translation();
+}
+
+bool warnsOf(const AutoRig& result, std::string_view kind) {
+  for (const Warning& warning : result.warnings.items()) {
+    if (warning.kind == kind) return true;
+  }
+  return false;
+}
+
+TriMesh ball() {
+  TriMesh mesh;
+  testing::addCapsule(mesh, {0, 0.49, 0}, {0, 0.51, 0}, 0.49);
+  return mesh;
+}
+
+}  // namespace
+
+TEST(TemplateRigger, NamesTheJointsOfAPerson) {
+  const testing::CapsulePerson body = testing::capsulePerson();
+  const AutoRig result = rig(body.mesh, person());
+  checkSkeleton(result.skeleton);
+  EXPECT_EQ(result.skeleton.jointCount(), 22u);
+  EXPECT_LT((place(result.skeleton, "leftHand") - body.hand).norm(), 0.08);
+  EXPECT_LT((place(result.skeleton, "rightFoot") - body.ankle.cwiseProduct(Vec3(-1, 1, 1))).norm(), 0.05);
+  EXPECT_LT((place(result.skeleton, "leftUpperLeg") - body.hip).norm(), 0.05);
+  EXPECT_TRUE(result.warnings.empty());
+  ASSERT_EQ(result.matches.size(), 1u);
+  EXPECT_GT(result.matches[0].confidence, 0.7);
+}
+
+TEST(TemplateRigger, JointsPointAlongTheirBones) {
+  const AutoRig result = rig(testing::capsulePerson().mesh, person());
+  const Skeleton& skeleton = result.skeleton;
+  const std::vector<Affine> globals = restGlobals(skeleton);
+  for (const auto& [joint, child] : {std::pair("hips", "spine"), std::pair("leftUpperArm", "leftLowerArm"),
+                                     std::pair("rightLowerLeg", "rightFoot"), std::pair("upperChest", "neck")}) {
+    const Vec3 bone = (place(skeleton, child) - place(skeleton, joint)).normalized();
+    EXPECT_LT((globals[skeleton.find(joint).value()].linear().col(1) - bone).norm(), 1e-6) << joint;
+  }
+  for (const char* name : {"UpperArm", "LowerArm", "Hand", "UpperLeg", "Foot", "Toes"}) {
+    const Mat3 left = globals[skeleton.find(std::string("left") + name).value()].linear();
+    const Mat3 right = globals[skeleton.find(std::string("right") + name).value()].linear();
+    const Vec3 turn(-1, 1, 1);
+    EXPECT_LT((left.col(1) - right.col(1).cwiseProduct(turn)).norm(), 1e-6) << name;
+    EXPECT_LT((left.col(2) - right.col(2).cwiseProduct(turn)).norm(), 1e-6) << name;
+    EXPECT_NEAR(left.determinant(), 1, 1e-9);
+  }
+  EXPECT_GT(globals[skeleton.find("leftUpperArm").value()].linear()(2, 2), 0.99);  // +Z to the front
+}
+
+TEST(TemplateRigger, FollowsAModelThatStandsAnotherWay) {
+  const testing::CapsulePerson body = testing::capsulePerson();
+  Mat3 turn;  // +Z up, facing -Y: as modelling programs have it
+  turn << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+  TriMesh lying = body.mesh;
+  for (Vec3f& p : lying.positions) p = turn.cast<float>() * p;
+  EXPECT_LT((place(rig(lying, person()).skeleton, "leftHand") - turn * body.hand).norm(), 0.08);
+
+  const Mat3 about = Eigen::AngleAxisd(EIGEN_PI, Vec3::UnitY()).toRotationMatrix();
+  TriMesh away = body.mesh;
+  for (Vec3f& p : away.positions) p = about.cast<float>() * p;
+  RigOptions options = person();
+  options.up = Vec3::UnitY();
+  options.front = -Vec3::UnitZ();
+  EXPECT_LT((place(rig(away, options).skeleton, "leftHand") - about * body.hand).norm(), 0.08);
+}
+
+TEST(TemplateRigger, KeepsPins) {
+  RigOptions options = person();
+  options.pins = {{"leftHand", {0.4, 0.66, 0.03}}};
+  const Skeleton skeleton = rig(testing::capsulePerson().mesh, options).skeleton;
+  EXPECT_LT((place(skeleton, "leftHand") - Vec3(0.4, 0.66, 0.03)).norm(), 1e-6);
+  options.pins = {{"tail", Vec3::Zero()}};
+  EXPECT_THROW(rig(testing::capsulePerson().mesh, options), Error);
+}
+
+TEST(TemplateRigger, SaysWhereAPersonHasNoPlace) {
+  const AutoRig result = rig(ball(), person());
+  EXPECT_LT(result.matches[0].confidence, 0.4);
+  EXPECT_TRUE(warnsOf(result, "low-confidence"));
+  checkSkeleton(result.skeleton);
+}
+
+TEST(TemplateRigger, FindsTheTemplate) {
+  RigOptions options;
+  const AutoRig result = rig(testing::capsulePerson().mesh, options);
+  EXPECT_EQ(result.matches.size(), templateSkeletons().size());
+  EXPECT_TRUE(result.matches[0].name == "humanoid" || result.matches[0].name == "humanoid-fingers");
+  for (std::size_t i = 1; i < result.matches.size(); ++i) {
+    EXPECT_LE(result.matches[i].confidence, result.matches[i - 1].confidence);
+  }
+  options.templateName = "centaur";
+  EXPECT_THROW(rig(ball(), options), Error);
+}
+
+TEST(TemplateRigger, IsTheSameOnOneThread) {
+  const TriMesh mesh = testing::capsulePerson().mesh;
+  const AutoRig many = rig(mesh, person());
+  setThreadCount(1);
+  const AutoRig one = rig(mesh, person());
+  setThreadCount(0);
+  for (Index j = 0; j < many.skeleton.jointCount(); ++j) {
+    EXPECT_EQ(many.skeleton.joints[j].rest.translation, one.skeleton.joints[j].rest.translation);
+  }
+}
+
+}  // namespace limber

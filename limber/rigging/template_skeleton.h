@@ -1,0 +1,54 @@
+// A named skeleton that is to be fitted into a model, with what is known of how models differ from it.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "limber/skeleton/skeleton.h"
+
+namespace limber {
+
+// Where a joint's place comes from.
+enum class TemplateRole {
+  kPlaced,   // searched for in the model
+  kBetween,  // follows from the placed joints above and below it
+  kTip,      // the end of a limb: searched for at the model's ends; no joint of the result
+};
+
+struct TemplateJoint {
+  std::string name;
+  std::optional<Index> parent;  // before the joint
+  Vec3 place = Vec3::Zero();    // x to the body's left, y up from 0 (lowest) to 1 (highest), z to the front
+  TemplateRole role = TemplateRole::kPlaced;
+  double lengthSpread = 0.4;  // standard deviation of the logarithm of the bone's length (from the placed joint above)
+  double turnSpread = 0.5;    // of its direction, radians
+  std::optional<Index> mirror;  // the joint of the other side; none for joints of the middle
+};
+
+struct TemplateSkeleton {
+  std::string name;
+  std::string summary;  // one line for --help
+  std::vector<TemplateJoint> joints;
+
+  Index jointCount() const { return static_cast<Index>(joints.size()); }
+  std::optional<Index> find(std::string_view joint) const;
+};
+
+// The templates that limber knows: humanoid, humanoid-fingers, quadruped, bird.
+std::span<const TemplateSkeleton> templateSkeletons();
+// Throws Error kBadArgument that lists the names there are.
+const TemplateSkeleton& findTemplate(std::string_view name);
+
+// The template itself, and for a person also with shorter legs and a larger head, as toys and cartoons have them.
+std::vector<TemplateSkeleton> templateVariants(const TemplateSkeleton& skeleton);
+
+// A user's skeleton as a template: places from its rest pose, as it stands (up is +Y, front +Z); joints that part the
+// tree, end it or bend it are placed, the others lie between; every leaf gets a tip. Sides are told by names (left and
+// right, .L and .R) and must mirror each other's places.
+// Throws Error kBadData naming the joint: as checkSkeleton does; no joint at all; all joints at one height.
+TemplateSkeleton templateFrom(const Skeleton& skeleton, std::string_view name);
+
+}  // namespace limber

@@ -1,0 +1,183 @@
+// The templates that limber knows, as tables. Sides stand once, for the left; the right is mirrored.
+#include <array>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "limber/core/error.h"
+#include "limber/rigging/template_skeleton.h"
+
+namespace limber {
+
+namespace {
+
+constexpr TemplateRole kPlaced = TemplateRole::kPlaced, kBetween = TemplateRole::kBetween, kTip = TemplateRole::kTip;
+
+struct Row {
+  std::string_view name, parent;
+  double x, y, z;
+  TemplateRole role;
+  double lengthSpread, turnSpread;
+};
+
+// Places and spreads: means and deviations over artists' rigs (docs/template-rigs.md names them).
+constexpr Row kHumanoid[] = {
+    {"hips", "", 0, 0.50, 0, kPlaced, 0, 0},
+    {"spine", "hips", 0, 0.565, 0, kBetween, 0, 0},
+    {"chest", "spine", 0, 0.645, 0, kBetween, 0, 0},
+    {"upperChest", "chest", 0, 0.73, 0, kPlaced, 0.3, 0.25},
+    {"neck", "upperChest", 0, 0.80, 0, kPlaced, 0.4, 0.3},
+    {"head", "neck", 0, 0.86, 0, kPlaced, 0.4, 0.35},
+    {"headTip", "head", 0, 0.98, 0, kTip, 0.6, 0.35},
+    {"leftShoulder", "upperChest", 0.03, 0.785, 0, kBetween, 0, 0},
+    {"leftUpperArm", "leftShoulder", 0.09, 0.775, 0, kPlaced, 0.3, 0.4},
+    {"leftLowerArm", "leftUpperArm", 0.21, 0.73, 0, kPlaced, 0.3, 0.65},
+    {"leftHand", "leftLowerArm", 0.33, 0.68, 0.01, kPlaced, 0.3, 0.65},
+    {"leftHandTip", "leftHand", 0.43, 0.64, 0.02, kTip, 0.4, 0.7},
+    {"leftUpperLeg", "hips", 0.065, 0.495, 0, kPlaced, 0.35, 0.5},
+    {"leftLowerLeg", "leftUpperLeg", 0.075, 0.275, 0, kPlaced, 0.4, 0.3},
+    {"leftFoot", "leftLowerLeg", 0.08, 0.05, -0.02, kPlaced, 0.4, 0.3},
+    {"leftToes", "leftFoot", 0.085, 0.012, 0.05, kBetween, 0, 0},
+    {"leftToesTip", "leftToes", 0.09, 0.01, 0.09, kTip, 0.4, 0.5},
+};
+
+constexpr Row kHandFingers[] = {
+    {"leftThumbMetacarpal", "leftHand", 0.345, 0.68, 0.025, kBetween, 0, 0},
+    {"leftThumbProximal", "leftThumbMetacarpal", 0.365, 0.67, 0.037, kBetween, 0, 0},
+    {"leftThumbDistal", "leftThumbProximal", 0.38, 0.66, 0.045, kBetween, 0, 0},
+    {"leftIndexProximal", "leftHand", 0.382, 0.658, 0.03, kBetween, 0, 0},
+    {"leftIndexIntermediate", "leftIndexProximal", 0.405, 0.648, 0.033, kBetween, 0, 0},
+    {"leftIndexDistal", "leftIndexIntermediate", 0.419, 0.642, 0.035, kBetween, 0, 0},
+    {"leftMiddleProximal", "leftHand", 0.385, 0.657, 0.016, kBetween, 0, 0},
+    {"leftMiddleIntermediate", "leftMiddleProximal", 0.41, 0.647, 0.017, kBetween, 0, 0},
+    {"leftMiddleDistal", "leftMiddleIntermediate", 0.425, 0.641, 0.018, kBetween, 0, 0},
+    {"leftRingProximal", "leftHand", 0.382, 0.657, 0.003, kBetween, 0, 0},
+    {"leftRingIntermediate", "leftRingProximal", 0.405, 0.647, 0.002, kBetween, 0, 0},
+    {"leftRingDistal", "leftRingIntermediate", 0.419, 0.641, 0.001, kBetween, 0, 0},
+    {"leftLittleProximal", "leftHand", 0.376, 0.657, -0.01, kBetween, 0, 0},
+    {"leftLittleIntermediate", "leftLittleProximal", 0.393, 0.648, -0.012, kBetween, 0, 0},
+    {"leftLittleDistal", "leftLittleIntermediate", 0.404, 0.642, -0.013, kBetween, 0, 0},
+};
+
+constexpr Row kQuadruped[] = {
+    {"hips", "", 0, 0.62, -0.38, kPlaced, 0, 0},
+    {"spine", "hips", 0, 0.63, -0.18, kBetween, 0, 0},
+    {"chest", "spine", 0, 0.62, 0.1, kPlaced, 0.4, 0.4},
+    {"neck", "chest", 0, 0.72, 0.28, kPlaced, 0.5, 0.5},
+    {"head", "neck", 0, 0.88, 0.42, kPlaced, 0.5, 0.6},
+    {"headTip", "head", 0, 0.82, 0.66, kTip, 0.5, 0.8},
+    {"tail", "hips", 0, 0.64, -0.52, kPlaced, 0.6, 0.6},
+    {"tailMiddle", "tail", 0, 0.6, -0.66, kBetween, 0, 0},
+    {"tailTip", "tailMiddle", 0, 0.55, -0.8, kTip, 0.7, 0.9},
+    {"leftFrontUpperLeg", "chest", 0.11, 0.55, 0.18, kPlaced, 0.5, 0.6},
+    {"leftFrontLowerLeg", "leftFrontUpperLeg", 0.12, 0.35, 0.15, kPlaced, 0.4, 0.4},
+    {"leftFrontFoot", "leftFrontLowerLeg", 0.12, 0.1, 0.17, kPlaced, 0.4, 0.35},
+    {"leftFrontFootTip", "leftFrontFoot", 0.12, 0.01, 0.22, kTip, 0.5, 0.6},
+    {"leftHindUpperLeg", "hips", 0.1, 0.55, -0.36, kPlaced, 0.5, 0.8},
+    {"leftHindLowerLeg", "leftHindUpperLeg", 0.12, 0.34, -0.33, kPlaced, 0.4, 0.4},
+    {"leftHindFoot", "leftHindLowerLeg", 0.12, 0.13, -0.42, kPlaced, 0.4, 0.4},
+    {"leftHindFootTip", "leftHindFoot", 0.12, 0.01, -0.36, kTip, 0.5, 0.6},
+};
+
+constexpr Row kBird[] = {
+    {"hips", "", 0, 0.5, -0.1, kPlaced, 0, 0},
+    {"chest", "hips", 0, 0.58, 0.08, kPlaced, 0.5, 0.5},
+    {"neck", "chest", 0, 0.7, 0.22, kPlaced, 0.5, 0.5},
+    {"head", "neck", 0, 0.85, 0.32, kPlaced, 0.6, 0.6},
+    {"headTip", "head", 0, 0.83, 0.5, kTip, 0.6, 0.8},
+    {"tail", "hips", 0, 0.45, -0.3, kPlaced, 0.5, 0.5},
+    {"tailTip", "tail", 0, 0.4, -0.6, kTip, 0.6, 0.6},
+    {"leftUpperWing", "chest", 0.12, 0.62, 0.08, kPlaced, 0.5, 0.6},
+    {"leftLowerWing", "leftUpperWing", 0.4, 0.64, 0.06, kPlaced, 0.5, 0.6},
+    {"leftWingHand", "leftLowerWing", 0.75, 0.62, 0.02, kPlaced, 0.5, 0.6},
+    {"leftWingTip", "leftWingHand", 1.15, 0.6, -0.1, kTip, 0.5, 0.6},
+    {"leftUpperLeg", "hips", 0.09, 0.4, -0.06, kPlaced, 0.5, 0.6},
+    {"leftLowerLeg", "leftUpperLeg", 0.1, 0.25, -0.04, kPlaced, 0.5, 0.5},
+    {"leftFoot", "leftLowerLeg", 0.1, 0.07, -0.06, kPlaced, 0.5, 0.5},
+    {"leftFootTip", "leftFoot", 0.1, 0.01, 0.06, kTip, 0.5, 0.6},
+};
+
+constexpr double kShorterLegs[] = {0.7, 0.4};
+
+constexpr std::string_view kLeft = "left", kRight = "right";
+
+bool ofLeft(std::string_view name) {
+  return name.substr(0, kLeft.size()) == kLeft;
+}
+
+std::string rightName(std::string_view name) {
+  return ofLeft(name) ? std::string(kRight) + std::string(name.substr(kLeft.size())) : std::string(name);
+}
+
+void addRow(TemplateSkeleton& skeleton, const Row& row, bool right) {
+  TemplateJoint joint;
+  joint.name = right ? rightName(row.name) : std::string(row.name);
+  if (!row.parent.empty()) joint.parent = skeleton.find(right ? rightName(row.parent) : std::string(row.parent));
+  joint.place = Vec3(right ? -row.x : row.x, row.y, row.z);
+  joint.role = row.role;
+  joint.lengthSpread = row.lengthSpread;
+  joint.turnSpread = row.turnSpread;
+  skeleton.joints.push_back(std::move(joint));
+}
+
+TemplateSkeleton made(std::string_view name, std::string_view summary, std::span<const Row> rows,
+                      std::span<const Row> more = {}) {
+  TemplateSkeleton skeleton{std::string(name), std::string(summary), {}};
+  std::vector<Row> all(rows.begin(), rows.end());
+  all.insert(all.end(), more.begin(), more.end());
+  for (const Row& row : all) {
+    if (!ofLeft(row.name)) addRow(skeleton, row, false);
+  }
+  for (const bool right : {false, true}) {
+    for (const Row& row : all) {
+      if (ofLeft(row.name)) addRow(skeleton, row, right);
+    }
+  }
+  for (TemplateJoint& joint : skeleton.joints) {
+    if (!ofLeft(joint.name)) continue;
+    joint.mirror = skeleton.find(rightName(joint.name));
+    skeleton.joints[*joint.mirror].mirror = skeleton.find(joint.name);
+  }
+  return skeleton;
+}
+
+}  // namespace
+
+std::span<const TemplateSkeleton> templateSkeletons() {
+  static const std::array<TemplateSkeleton, 4> kTemplates = {
+      made("humanoid", "a person: 22 joints, named as VRM 1.0 does", kHumanoid),
+      made("humanoid-fingers", "a person with 15 finger joints to each hand", kHumanoid, kHandFingers),
+      made("quadruped", "a four-legged animal with neck and tail", kQuadruped),
+      made("bird", "a bird with wings spread, or another winged biped", kBird),
+  };
+  return kTemplates;
+}
+
+const TemplateSkeleton& findTemplate(std::string_view name) {
+  std::string known;
+  for (const TemplateSkeleton& skeleton : templateSkeletons()) {
+    if (skeleton.name == name) return skeleton;
+    known += (known.empty() ? "" : ", ") + skeleton.name;
+  }
+  throw Error(ErrorCode::kBadArgument, fmt::format("no template is called '{}'", name), {}, "there are: " + known);
+}
+
+std::vector<TemplateSkeleton> templateVariants(const TemplateSkeleton& skeleton) {
+  std::vector<TemplateSkeleton> variants = {skeleton};
+  const std::optional<Index> leg = skeleton.find("leftUpperLeg"), hips = skeleton.find("hips"),
+                             neck = skeleton.find("neck"), arm = skeleton.find("leftUpperArm");
+  if (!leg || !hips || !neck || !arm) return variants;
+  const double hipY = skeleton.joints[*hips].place.y();
+  for (const double legs : kShorterLegs) {
+    TemplateSkeleton variant = skeleton;
+    for (TemplateJoint& joint : variant.joints) {
+      const bool tip = joint.role == TemplateRole::kTip && !joint.mirror;  // the top of the head stays
+      double& y = joint.place.y();
+      if (!tip) y = y < hipY ? legs * y : y - (1 - legs) * hipY;
+    }
+    variants.push_back(std::move(variant));
+  }
+  return variants;
+}
+
+}  // namespace limber

@@ -1,0 +1,73 @@
+// Bodies made of capsules round a known skeleton, for tests of what fits skeletons into bodies. Not installed.
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+#include "limber/mesh/tri_mesh.h"
+
+namespace limber::testing {
+
+// A closed capsule round the segment a-b.
+inline void addCapsule(TriMesh& mesh, const Vec3& a, const Vec3& b, double radius) {
+  constexpr int kAround = 16, kRings = 6;  // rings of each half ball
+  const Vec3 axis = (b - a).normalized();
+  const Vec3 side = axis.unitOrthogonal(), other = axis.cross(side);
+  const Index first = mesh.vertexCount();
+  const auto add = [&](const Vec3& p) { mesh.positions.push_back(p.cast<float>()); };
+  add(a - radius * axis);
+  for (int ring = 1; ring <= 2 * kRings; ++ring) {
+    const bool lower = ring <= kRings;
+    const double slope = M_PI / 2 * (lower ? ring - kRings : ring - kRings - 1) / kRings;
+    const Vec3 center = (lower ? a : b) + radius * std::sin(slope) * axis;
+    for (int i = 0; i < kAround; ++i) {
+      const double angle = 2 * M_PI * i / kAround;
+      add(center + radius * std::cos(slope) * (std::cos(angle) * side + std::sin(angle) * other));
+    }
+  }
+  add(b + radius * axis);
+  const Index last = mesh.vertexCount() - 1;
+  const auto at = [&](int ring, int i) { return first + 1 + static_cast<Index>(ring * kAround + i % kAround); };
+  for (int i = 0; i < kAround; ++i) {
+    mesh.triangles.push_back({first, at(0, i + 1), at(0, i)});
+    for (int ring = 0; ring + 1 < 2 * kRings; ++ring) {
+      mesh.triangles.push_back({at(ring, i), at(ring, i + 1), at(ring + 1, i)});
+      mesh.triangles.push_back({at(ring, i + 1), at(ring + 1, i + 1), at(ring + 1, i)});
+    }
+    mesh.triangles.push_back({last, at(2 * kRings - 1, i), at(2 * kRings - 1, i + 1)});
+  }
+}
+
+// A person 1 high, feet on y = 0, facing +Z, its left at +X; arms lowered from level by `arms` radians.
+struct CapsulePerson {
+  TriMesh mesh;
+  Vec3 shoulder, elbow, hand, hip, knee, ankle;  // of the left
+};
+inline CapsulePerson capsulePerson(double arms = 0.3) {
+  CapsulePerson person;
+  person.shoulder = {0.1, 0.78, 0};
+  const Vec3 along(std::cos(arms), -std::sin(arms), 0);
+  person.elbow = person.shoulder + 0.14 * along;
+  person.hand = person.elbow + 0.14 * along;
+  person.hip = {0.07, 0.5, 0};
+  person.knee = {0.08, 0.27, 0};
+  person.ankle = {0.09, 0.045, 0};
+  TriMesh& mesh = person.mesh;
+  addCapsule(mesh, {0, 0.55, 0}, {0, 0.74, 0}, 0.085);  // trunk
+  addCapsule(mesh, {0, 0.78, 0}, {0, 0.86, 0}, 0.03);
+  addCapsule(mesh, {0, 0.9, 0.01}, {0, 0.93, 0.01}, 0.07);
+  for (const double s : {1.0, -1.0}) {
+    const auto sided = [&](const Vec3& p) { return Vec3(s * p.x(), p.y(), p.z()); };
+    addCapsule(mesh, sided({0.03, 0.765, 0}), sided(person.shoulder), 0.04);
+    addCapsule(mesh, sided(person.shoulder), sided(person.elbow), 0.033);
+    addCapsule(mesh, sided(person.elbow), sided(person.hand), 0.028);
+    addCapsule(mesh, sided(person.hand), sided(person.hand + 0.08 * along), 0.025);
+    addCapsule(mesh, sided(person.hip), sided(person.knee), 0.05);
+    addCapsule(mesh, sided(person.knee), sided(person.ankle), 0.038);
+    addCapsule(mesh, sided({0.09, 0.03, -0.01}), sided({0.095, 0.03, 0.1}), 0.03);
+  }
+  for (Vec3f& p : mesh.positions) p.y() = std::max(p.y(), 0.0f);
+  return person;
+}
+
+}  // namespace limber::testing

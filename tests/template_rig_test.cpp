@@ -1,0 +1,98 @@
+// Template rigs of real characters, through the whole of limber, against the skeletons that artists made for them.
+#include <gtest/gtest.h>
+
+#include "limber/asset/read.h"
+#include "limber/asset/write.h"
+#include "limber/core/file.h"
+#include "limber/evaluate/rig_metrics.h"
+#include "limber/pipeline/auto_rig.h"
+#include "limber/samples/samples.h"
+#include "model_checks.h"
+#include "shared_data.h"
+
+namespace limber::testing {
+
+namespace {
+
+AutoRigOptions templateOptions(const std::string& name) {
+  AutoRigOptions options;
+  options.rigger = "template";
+  options.rig.templateName = name;
+  options.existingRig = ExistingRig::kReplace;
+  return options;
+}
+
+struct Rigged {
+  Bytes glb;
+  AutoRigReport report;
+};
+
+Rigged rigged(const Asset& asset, const std::string& name) {
+  Asset copy = asset.clone();
+  Progress progress;
+  Rigged result;
+  result.report = autoRig(copy, templateOptions(name), progress);
+  result.glb = writeGlb(copy);
+  return result;
+}
+
+RigComparison compared(const std::string& file, const std::string& name) {
+  const std::filesystem::path path = *sharedDataFolder() / "rigged" / file;
+  const Asset asset = readAsset(path);
+  const Rigged result = rigged(asset, name);
+  const std::filesystem::path written = testOutputFolder() / ("template_" + path.stem().string() + ".glb");
+  writeFile(written, result.glb);
+  noteSource(written, path);
+  return compareRigs(readAsset(result.glb, "result.glb"), asset);
+}
+
+}  // namespace
+
+class TemplateCharacters : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(TemplateCharacters, ComeNearTheArtistsSkeleton) {
+  if (!sharedDataFolder()) GTEST_SKIP() << kNoSharedData;
+  const RigComparison comparison = compared(GetParam(), "humanoid");
+  EXPECT_LT(comparison.namedMean, 6);
+  EXPECT_LT(comparison.withoutFingers.jointToJoint, 5);
+  for (const NamedJointError& error : comparison.named) {
+    // Left in place of right is off by far more.
+    if (error.bone.find("Hand") != std::string::npos || error.bone.find("Foot") != std::string::npos) {
+      EXPECT_LT(error.percent, 12) << error.bone;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Humanoids, TemplateCharacters,
+                         ::testing::Values("cesium_man.glb", "kaykit_mannequin/manny_med_mod.gltf", "kenney_human.glb",
+                                           "m2m_human_male.glb", "m2m_human_zombie.glb", "makehuman_mixamo.glb",
+                                           "quaternius_knightcharacter.glb", "quaternius_man_king.glb"),
+                         [](const auto& info) {
+                           const std::string stem = std::filesystem::path(info.param).stem().string();
+                           return stem;
+                         });
+
+TEST(TemplateSamples, ABipedIsAPerson) {
+  const Asset asset = makeSample("biped");
+  const Rigged result = rigged(asset, "auto");
+  EXPECT_EQ(result.report.matches.front().name, "humanoid");
+  const Asset after = readAsset(result.glb, "result.glb");
+  const Geometry geometry = collectGeometry(after);
+  const AssetSkeleton rig = readSkeleton(after);
+  expectSoundWeights(readWeights(after, geometry, rig), static_cast<Index>(geometry.positions.size()),
+                     rig.skeleton.jointCount(), 4);
+  const std::vector<Affine> globals = restGlobals(rig.skeleton);
+  const auto place = [&](const char* name) { return Vec3(globals[rig.skeleton.find(name).value()].translation()); };
+  EXPECT_GT(place("leftHand").x(), 0);
+  EXPECT_LT(place("rightFoot").x(), 0);
+  EXPECT_GT(place("head").y(), place("hips").y());
+  writeFile(testOutputFolder() / "template_biped.glb", result.glb);
+}
+
+TEST(TemplateSamples, AStoolIsNoPerson) {
+  const Rigged result = rigged(makeSample("stool"), "humanoid");
+  EXPECT_LT(result.report.matches.front().confidence, 0.6);
+  EXPECT_FALSE(result.report.warnings.empty());
+}
+
+}  // namespace limber::testing
