@@ -23,10 +23,29 @@ picture winged_posed.glb model dragon_posed.png
 
 $limber evaluate ik --problems 100 --plot $images -o docs/ik.md --quiet
 
+for body in biped:humanoid quadruped:quadruped; do
+  sample=${body%:*}
+  $limber sample $sample -o $work/$sample.glb --quiet
+  $limber rig $work/$sample.glb --template ${body#*:} -o $work/${sample}_template.glb --quiet
+  picture ${sample}_template.glb bones ${sample}_template.png
+done
+
 characters=${LIMBER_SHARED_DATA:-../shared/data}/rigged
 if [ -d "$characters" ]; then
   $limber evaluate skinning "$characters" --references docs/data/blender_weights.tsv -o docs/weights.md --quiet
-  echo "Made docs/images, docs/ik.md and docs/weights.md"
+  people=(cesium_man.glb kaykit_mannequin/manny_med_mod.gltf kenney_human.glb m2m_human_{female,male,zombie}.glb
+    makehuman_{cmu_mb,default,game_engine,mixamo}.glb quaternius_cyberpunk_character.glb quaternius_knightcharacter.glb
+    quaternius_{man_casual,man_king,man_spacesuit,platformer_character,woman_casual,woman_scifi,mech_george}.glb
+    robot_expressive.glb)
+  animals=(fox_khronos.glb m2m_fox_{cat,dog,fox}.glb quaternius_{alpaca,cow,horse,wolf,triceratops}.glb)
+  sed -i '/^\*\*People/,$d' docs/template-rigs.md
+  {
+    echo "**People, --template humanoid**" && echo
+    $limber evaluate templates "${people[@]/#/$characters/}" --template humanoid --quiet
+    echo && echo "**Animals, --template quadruped**" && echo
+    $limber evaluate templates "${animals[@]/#/$characters/}" --template quadruped --quiet
+  } >> docs/template-rigs.md
+  echo "Made docs/images, docs/ik.md, docs/weights.md and the tables of docs/template-rigs.md"
 else
   echo "Made docs/images and docs/ik.md; docs/weights.md stays as it is: no characters in $characters"
 fi

@@ -71,7 +71,7 @@ void runRiggers(const RiggersOptions& options) {
   Warnings skipped;
   const std::vector<std::filesystem::path> files(options.files.begin(), options.files.end());
   writeText(options.output, rigTable(compareRigsOf(files, rerig, *progress, skipped)));
-  printWarnings(Account(options.common.quiet, options.output), skipped);
+  printWarnings(skipped, options.common.quiet);
 }
 
 struct SkinningOptions {

@@ -245,7 +245,7 @@ void addRigCommand(CLI::App& program) {
       ->capture_default_str();
   command
       ->add_option("--template", options->templateName,
-                   "fit this named skeleton: auto, a name below, or a .glb, .gltf or .json with a skeleton")
+                   "fit this named skeleton: auto, a name below, or a file with a skeleton (.glb, .bvh, .json, ...)")
       ->type_name("NAME");
   command
       ->add_option("--pin", options->pins, "where a joint of the template must be, as JOINT=x,y,z in the file's space")

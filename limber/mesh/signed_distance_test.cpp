@@ -48,7 +48,9 @@ TEST(SignedDistance, IsTheTreesAnswerNearTheSurface) {
       if (exact > distance.spacing() || exact == 0) continue;
       EXPECT_FLOAT_EQ(std::abs(distance.value(node)), static_cast<float>(exact));
       const double turns = winding.at(point);
-      if (std::abs(turns - 0.5) > 0.1) EXPECT_EQ(distance.value(node) < 0, turns > 0.5);
+      if (std::abs(turns - 0.5) > 0.1) {
+        EXPECT_EQ(distance.value(node) < 0, turns > 0.5);
+      }
     }
   }
 }

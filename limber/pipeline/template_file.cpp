@@ -9,8 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "limber/asset/json_text.h"
-#include "limber/asset/read.h"
-#include "limber/asset/rig_io.h"
+#include "limber/asset/motion_io.h"
 #include "limber/core/file.h"
 
 namespace limber {
@@ -113,9 +112,7 @@ Skeleton readTemplateFile(const std::filesystem::path& path) {
       const Bytes text = readFile(path);
       return parseTemplate({reinterpret_cast<const char*>(text.data()), text.size()});
     }
-    const Asset asset = readAsset(path);
-    if (!hasRig(asset)) throw Error(ErrorCode::kUnsupported, "has no skeleton to serve as a template");
-    return readSkeleton(asset).skeleton;
+    return readMotion(path).skeleton;
   } catch (const Error& error) {
     if (error.where().find(path.string()) != std::string::npos) throw;
     throw error.within(path.string());

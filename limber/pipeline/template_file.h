@@ -13,7 +13,7 @@ namespace limber {
 // joint: a name missing or twice, an unknown parent, a cycle, no joint, a position that is no three finite numbers.
 Skeleton parseTemplate(std::string_view json);
 
-// From a .json as above, or the skeleton in rest pose of any other file that limber reads.
+// From a .json as above, or the skeleton in rest pose of any other file: a model with a rig, or a motion (readMotion).
 Skeleton readTemplateFile(const std::filesystem::path& path);
 
 }  // namespace limber

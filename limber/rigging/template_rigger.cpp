@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "limber/core/numbers.h"
 #include "limber/rigging/body_volume.h"
 #include "limber/rigging/humanoid_landmarks.h"
 #include "limber/rigging/template_embedding.h"
@@ -121,7 +122,7 @@ Skeleton standingSkeleton(const TemplateSkeleton& skeleton, const std::vector<Ve
     Vec3 bone = next[j] ? Vec3(frame.fromBody(places[*next[j]]) - position) : Vec3(Vec3::Zero());
     if (!(bone.norm() > 1e-9)) bone = from.parent ? Vec3(globals[*from.parent].linear().col(1)) : up;
     const Vec3 y = bone.normalized();
-    const Vec3& toward = std::abs(y.dot(front)) > std::cos(EIGEN_PI / 6) ? up : front;
+    const Vec3& toward = std::abs(y.dot(front)) > std::cos(kPi / 6) ? up : front;
     const Vec3 z = (toward - toward.dot(y) * y).normalized();
     Mat3 rotation;
     rotation << y.cross(z), y, z;
@@ -151,9 +152,9 @@ AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress
   } else {
     candidates = {&findTemplate(options.templateName)};
   }
-  progress.stage("measure body");
+  progress.step("measure body");
   const BodyVolume body = measureBody(mesh);
-  progress.stage("fit template");
+  progress.step("fit template");
   const std::vector<BodyFrame> frames = possibleFrames(mesh, body, options.up, options.front);
   std::vector<Fit> fits;
   for (std::size_t i = 0; i < candidates.size(); ++i) {

@@ -52,12 +52,22 @@ void findMirrors(TemplateSkeleton& skeleton) {
   }
 }
 
-// Adds a tip to every leaf, as long as its bone is drawn.
+// Motion files have a joint of such a name where a limb ends.
+bool endsBone(std::string_view name) {
+  constexpr std::string_view kEnd = "_end";
+  return name.size() > kEnd.size() && name.substr(name.size() - kEnd.size()) == kEnd;
+}
+
+// Adds a tip to every leaf that is none, half as long as the bone above.
 void addTips(TemplateSkeleton& skeleton, const std::vector<Index>& children) {
   const Index count = skeleton.jointCount();
   for (Index j = 0; j < count; ++j) {
     if (children[j] > 0) continue;
-    const TemplateJoint& leaf = skeleton.joints[j];
+    TemplateJoint& leaf = skeleton.joints[j];
+    if (endsBone(leaf.name) && leaf.parent) {
+      leaf.role = TemplateRole::kTip;
+      continue;
+    }
     const Vec3 bone = leaf.parent ? Vec3(leaf.place - skeleton.joints[*leaf.parent].place) : Vec3(0, 0.2, 0);
     TemplateJoint tip;
     tip.name = leaf.name + " tip";

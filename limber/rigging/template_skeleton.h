@@ -46,7 +46,8 @@ const TemplateSkeleton& findTemplate(std::string_view name);
 std::vector<TemplateSkeleton> templateVariants(const TemplateSkeleton& skeleton);
 
 // A user's skeleton as a template: places from its rest pose, as it stands (up is +Y, front +Z); joints that part the
-// tree, end it or bend it are placed, the others lie between; every leaf gets a tip. Sides are told by names (left and
+// tree, end it or bend it are placed, the others lie between; every leaf gets a tip, unless it
+// is one by its name ("..._end"). Sides are told by names (left and
 // right, .L and .R) and must mirror each other's places.
 // Throws Error kBadData naming the joint: as checkSkeleton does; no joint at all; all joints at one height.
 TemplateSkeleton templateFrom(const Skeleton& skeleton, std::string_view name);

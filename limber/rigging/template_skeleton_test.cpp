@@ -36,7 +36,9 @@ TEST(TemplateSkeleton, TablesAreSound) {
       const TemplateJoint& joint = skeleton.joints[j];
       SCOPED_TRACE(joint.name);
       EXPECT_TRUE(names.insert(joint.name).second);
-      if (joint.parent) EXPECT_LT(*joint.parent, j);
+      if (joint.parent) {
+        EXPECT_LT(*joint.parent, j);
+      }
       EXPECT_EQ(joint.parent.has_value(), j > 0);
       if (joint.mirror) {
         const TemplateJoint& other = skeleton.joints[*joint.mirror];
@@ -45,7 +47,9 @@ TEST(TemplateSkeleton, TablesAreSound) {
       } else {
         EXPECT_EQ(joint.place.x(), 0);
       }
-      if (joint.role == TemplateRole::kPlaced && j > 0) EXPECT_GT(joint.lengthSpread * joint.turnSpread, 0);
+      if (joint.role == TemplateRole::kPlaced && j > 0) {
+        EXPECT_GT(joint.lengthSpread * joint.turnSpread, 0);
+      }
     }
     EXPECT_EQ(&findTemplate(skeleton.name), &skeleton);
   }
@@ -61,7 +65,9 @@ TEST(TemplateSkeleton, PeopleHaveTheNamesAndParentsOfVrm) {
       EXPECT_NE(std::find(bones.begin(), bones.end(), joint.name), bones.end()) << joint.name;
       const std::optional<std::string_view> parent = humanoidParent(joint.name);
       ASSERT_EQ(parent.has_value(), joint.parent.has_value()) << joint.name;
-      if (parent) EXPECT_EQ(skeleton.joints[*joint.parent].name, *parent);
+      if (parent) {
+        EXPECT_EQ(skeleton.joints[*joint.parent].name, *parent);
+      }
     }
   }
 }
