@@ -67,9 +67,8 @@ INSTANTIATE_TEST_SUITE_P(Humanoids, TemplateCharacters,
                          ::testing::Values("cesium_man.glb", "kaykit_mannequin/manny_med_mod.gltf", "kenney_human.glb",
                                            "m2m_human_male.glb", "m2m_human_zombie.glb", "makehuman_mixamo.glb",
                                            "quaternius_knightcharacter.glb", "quaternius_man_king.glb"),
-                         [](const auto& info) {
-                           const std::string stem = std::filesystem::path(info.param).stem().string();
-                           return stem;
+                         [](const ::testing::TestParamInfo<const char*>& file) {
+                           return std::filesystem::path(file.param).stem().string();
                          });
 
 TEST(TemplateSamples, ABipedIsAPerson) {

@@ -18,7 +18,8 @@ namespace limber {
 
 namespace {
 
-constexpr Index kResolution = 96;        // cells along the longest side
+constexpr double kMostCells = 96;        // along the longest side
+constexpr double kMostNodes = 250000;    // of the grid: fewer cells for what fills its box
 constexpr double kMostSlope = 0.6;       // depth gained for each step: from there on a place is not in the middle
 constexpr double kSphereSpacing = 0.45;  // radii that the centres of two spheres are apart, at least
 constexpr std::size_t kMostSpheres = 700;
@@ -28,6 +29,16 @@ constexpr double kLeastReach = 0.05;  // longest sides
 constexpr double kGaps[] = {1.2, 3, 6, 12, 24};
 constexpr double kGapCost = 5;        // of a way there, times the spacings outside, against one inside
 constexpr double kTogether = 0.9995;  // part of the inside that must hang together
+
+Index resolutionFor(const TriMesh& mesh) {
+  Box box;
+  for (const Triangle& t : mesh.triangles) {
+    for (const Index v : t) box.add(mesh.position(v));
+  }
+  const Vec3 sides = box.size() / std::max(box.longestSide(), 1e-12);
+  const double cells = std::cbrt(kMostNodes / std::max(sides.prod(), 1e-3));
+  return static_cast<Index>(std::clamp(cells, 32.0, kMostCells));
+}
 
 std::vector<bool> turnedPieces(const TriMesh& mesh) {
   Index count = 0;
@@ -204,7 +215,7 @@ BodyVolume measureBody(const TriMesh& mesh) {
   parallelInvoke([&] { surface = std::make_unique<Bvh>(mesh); },
                  [&] { winding = std::make_unique<WindingNumber>(mesh, turnedPieces(mesh)); });
   BodyVolume body;
-  body.distance = std::make_unique<const SignedDistance>(mesh, *surface, *winding, kResolution);
+  body.distance = std::make_unique<const SignedDistance>(mesh, *surface, *winding, resolutionFor(mesh));
   const SignedDistance& distance = *body.distance;
   InsideGraph graph(distance);
   std::vector<std::size_t> inside;
