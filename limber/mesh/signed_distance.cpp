@@ -17,7 +17,6 @@ namespace {
 constexpr Index kCoarsest = 8;   // spacings, the first cells
 constexpr double kMargin = 2.5;  // spacings from the mesh to the grid's border, at least
 constexpr double kInside = 0.5;  // winding number from which a point lies inside
-constexpr double kClear = 0.3;   // more or less than that, and there is no doubt
 
 }  // namespace
 
@@ -47,49 +46,14 @@ Vec3 SignedDistance::position(std::size_t node) const {
   return origin_ + spacing_ * Vec3(static_cast<double>(x), static_cast<double>(y), static_cast<double>(z));
 }
 
-// Inside or not, told from the nodes of the next coarser level round a node that lies between them.
-std::optional<bool> SignedDistance::knownSide(std::size_t node, Index step, double distance) const {
-  const std::array<std::size_t, 3> place = {node % size_[0], node / size_[0] % size_[1], node / size_[0] / size_[1]};
-  std::array<Index, 3> low, high;
-  int odd = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const Index at = static_cast<Index>(place[axis]);
-    const bool between = at % (2 * step) != 0;
-    low[axis] = between ? at - step : at;
-    high[axis] = between ? at + step : at;
-    odd += between;
-  }
-  const double away = std::sqrt(static_cast<double>(odd)) * step * spacing_;
-  for (int c = 0; c < 8; ++c) {
-    const std::size_t corner = nodeAt(c & 1 ? high[0] : low[0], c & 2 ? high[1] : low[1], c & 4 ? high[2] : low[2]);
-    if (clear_[corner] && std::max<double>(distance, std::abs(values_[corner])) > away) return values_[corner] < 0;
-  }
-  return std::nullopt;
-}
-
-// `step`: the level of the nodes; 0 for the first one, which has no coarser.
-void SignedDistance::measure(const std::vector<std::size_t>& nodes, Index step, const Bvh& surface,
-                             const WindingNumber& winding) {
-  std::vector<char> clear(nodes.size());
-  std::vector<float> values(nodes.size());
+void SignedDistance::measure(const std::vector<std::size_t>& nodes, const Bvh& surface, const WindingNumber& winding) {
   parallelFor(nodes.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3 point = position(nodes[i]);
       const double distance = surface.nearestPoint(point).distance;
-      std::optional<bool> inside = step > 0 ? knownSide(nodes[i], step, distance) : std::nullopt;
-      clear[i] = inside.has_value();
-      if (!inside) {
-        const double turns = winding.at(point);
-        inside = turns > kInside;
-        clear[i] = std::abs(turns - kInside) > kClear;
-      }
-      values[i] = static_cast<float>(*inside ? -distance : distance);
+      values_[nodes[i]] = static_cast<float>(winding.at(point) > kInside ? -distance : distance);
     }
   });
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    values_[nodes[i]] = values[i];
-    clear_[nodes[i]] = clear[i];
-  }
 }
 
 // Looks at each cell of 2 * step, whose corners are known: gives the nodes at `step` in it their values, or asks for
@@ -141,14 +105,12 @@ void SignedDistance::refine(const Bvh& surface, const WindingNumber& winding) {
       for (Index x = 0; x < size_[0]; x += kCoarsest) wanted.push_back(nodeAt(x, y, z));
     }
   }
-  clear_.assign(values_.size(), 0);
-  measure(wanted, 0, surface, winding);
+  measure(wanted, surface, winding);
   for (Index step = kCoarsest / 2; step > 0; step /= 2) {
     wanted.clear();
     settle(step, known, wanted);
-    measure(wanted, step, surface, winding);
+    measure(wanted, surface, winding);
   }
-  clear_ = {};
 }
 
 double SignedDistance::at(const Vec3& point) const {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <optional>
 #include <vector>
 
 #include "limber/mesh/tri_mesh.h"
@@ -14,8 +13,7 @@ class WindingNumber;
 
 // Distances to the surface at the nodes of a regular grid round a mesh: negative inside (winding number above a half),
 // positive outside. Found on an adaptive grid: cells that the surface may pass through, or that have nodes of both
-// signs, are halved down to the grid's spacing; nodes in other cells take the distance between their corners'. A node
-// takes the side of a coarser one near it where no surface lies between and that one's winding number is clear.
+// signs, are halved down to the grid's spacing; nodes in other cells take the distance between their corners'.
 //
 // Cost: O(nodes near the surface) queries of both trees, in parallel.
 class SignedDistance {
@@ -38,15 +36,13 @@ class SignedDistance {
 
  private:
   void refine(const Bvh& surface, const WindingNumber& winding);
-  void measure(const std::vector<std::size_t>& nodes, Index step, const Bvh& surface, const WindingNumber& winding);
-  std::optional<bool> knownSide(std::size_t node, Index step, double distance) const;
+  void measure(const std::vector<std::size_t>& nodes, const Bvh& surface, const WindingNumber& winding);
   void settle(Index step, std::vector<char>& known, std::vector<std::size_t>& wanted);
 
   Vec3 origin_ = Vec3::Zero();
   double spacing_ = 1;
   std::array<Index, 3> size_ = {};
   std::vector<float> values_;
-  std::vector<char> clear_;  // nodes whose side is beyond doubt; empty once built
 };
 
 }  // namespace limber

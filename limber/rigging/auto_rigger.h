@@ -24,10 +24,10 @@ struct RigOptions {
   std::optional<Index> handles;  // joints wanted, 1 to #V; none: the best suggested count
 
   // For riggers that fit a named skeleton.
-  std::string templateName = "auto";         // auto: the one that fits best
-  std::optional<Skeleton> templateSkeleton;  // a user's own, in place of that
-  std::optional<Vec3> up, front;             // along an axis of the mesh's space; none: found
-  std::vector<JointPin> pins;
+  std::string templateName = "auto";              // auto: the one that fits best
+  std::optional<Skeleton> templateSkeleton = {};  // a user's own, in place of that
+  std::optional<Vec3> up = {}, front = {};        // along an axis of the mesh's space; none: found
+  std::vector<JointPin> pins = {};
 };
 
 // A template that was tried, and how sure it is that the model is of its kind: 0 to 1.
