@@ -34,8 +34,10 @@ TemplatePins pinsIn(const TemplateSkeleton& skeleton, const BodyFrame& frame, co
   for (const JointPin& pin : pins) {
     const std::optional<Index> joint = skeleton.find(pin.joint);
     if (!joint) {
+      std::string known;
+      for (const TemplateJoint& other : skeleton.joints) known += (known.empty() ? "" : ", ") + other.name;
       throw Error(ErrorCode::kBadArgument, fmt::format("the template has no joint '{}' to pin", pin.joint),
-                  skeleton.name, "info --template lists its joints");
+                  skeleton.name, "it has: " + known);
     }
     places[*joint] = frame.toBody(pin.place);
   }
