@@ -86,17 +86,21 @@ class BvhWriter {
   // A chain may be as long as the file; its indentation must not be.
   void indent(std::size_t depth) { bytes_.insert(bytes_.end(), std::min(depth, kDeepestIndentation), '\t'); }
 
-  // As many digits as single precision has, without zeros at the end, and no exponent: not every reader knows it.
-  void outNumber(double value, int mostDecimals) {
-    const double size = std::abs(value);
-    int decimals = kSignificantDigits;
-    for (double power = 1; decimals > 0 && size >= power; power *= 10) --decimals;
-    std::string text = fmt::format("{:.{}f}", value, std::min(decimals, mostDecimals));
+  // Without zeros at the end, and without an exponent: not every reader knows it.
+  void outNumber(double value, int decimals) {
+    std::string text = fmt::format("{:.{}f}", value, decimals);
     if (text.find('.') != std::string::npos) {
       while (text.back() == '0') text.pop_back();
       if (text.back() == '.') text.pop_back();
     }
     out(" {}", text == "-0" ? "0" : text);
+  }
+
+  // As many digits as single precision has.
+  void outLength(double length) {
+    int decimals = kLengthDigits;
+    for (double power = 1; decimals > 0 && std::abs(length) >= power; power *= 10) --decimals;
+    outNumber(length, decimals);
   }
 
   void findEnds() {
@@ -205,20 +209,20 @@ class BvhWriter {
   void writeOffset(const Vec3& offset, std::size_t depth) {
     indent(depth);
     out("OFFSET");
-    for (int i = 0; i < 3; ++i) outNumber(offset[i] / unit_, kLengthDecimals);
+    for (int i = 0; i < 3; ++i) outLength(offset[i] / unit_);
     out("\n");
   }
 
   void writeFrame(const std::vector<BvhJointFrame>& joints, std::vector<Angles>& angles) {
     for (const Index j : order_) {
-      for (int i = 0; hasPosition_[j] && i < 3; ++i) outNumber(joints[j].position[i] / unit_, kLengthDecimals);
+      for (int i = 0; hasPosition_[j] && i < 3; ++i) outLength(joints[j].position[i] / unit_);
       angles[j] = anglesNear(joints[j].rotation, angles[j]);
       for (const double angle : angles[j]) outNumber(angle, kAngleDecimals);
     }
     out("\n");
   }
 
-  static constexpr int kSignificantDigits = 7, kLengthDecimals = 7, kAngleDecimals = 6;
+  static constexpr int kLengthDigits = 7, kAngleDecimals = 6;
   static constexpr std::size_t kDeepestIndentation = 32;
 
   const Skeleton& skeleton_;
