@@ -499,6 +499,30 @@ TEST_F(CliPose, AnUnknownJointIsOneLineAndLeavesNoFile) {
   EXPECT_EQ(files(), before);
 }
 
+TEST_F(Cli, SessionReplayDoesWhatTheListSays) {
+  fs::create_directory(folder_ / "models");
+  run({"sample", "stool", "-o", "models/stool.glb", "-q"});
+  put("commands.json", R"({"limber_commands": 1, "commands": [{"do": "open_file", "file": "models/stool.glb"},
+    {"do": "set_handles", "count": 8}, {"do": "move_joint", "joint": "handle_00", "offset": [0, 2, 0]}]})");
+  const Result done = run({"session", "replay", "commands.json", "-o", "posed.glb"});
+  EXPECT_EQ(done.code, 0) << done.error;
+  EXPECT_THAT(done.out, HasSubstr("3 commands done: "));
+  const nlohmann::json info = nlohmann::json::parse(run({"info", "posed.glb", "--json"}).out);
+  EXPECT_THAT(info.at("joint_names").size(), ::testing::AnyOf(8, 9));  // two where one has an image
+  EXPECT_EQ(run({"session", "replay", "commands.json", "-o", "posed.stl", "-q"}).out, "");
+}
+
+TEST_F(Cli, SessionReplayNamesTheCommandThatFails) {
+  put("commands.json", R"({"limber_commands": 1, "commands": [{"do": "open_sample", "name": "stool"},
+    {"do": "reset_joint", "joint": "tail"}]})");
+  const Result failed = run({"session", "replay", "commands.json", "-o", "out.glb"});
+  expectOneLine(failed, 1);
+  EXPECT_THAT(failed.error, AllOf(HasSubstr("commands.json: commands[1]"), HasSubstr("'tail'")));
+  put("commands.json", R"({"limber_commands": 1, "commands": [{"do": "open_file", "file": "../secret.glb"}]})");
+  expectOneLine(run({"session", "replay", "commands.json", "-o", "out.glb"}), 1);
+  EXPECT_EQ(files(), std::vector<std::string>{"commands.json"});
+}
+
 TEST_F(Cli, InterruptedWhileWaitingForInput) {
   Running running({"rig", "-", "-o", "out.glb"}, folder_);
   std::this_thread::sleep_for(std::chrono::milliseconds(300));  // until it reads

@@ -19,6 +19,7 @@ void addSampleCommand(CLI::App& program);
 void addEvaluateCommand(CLI::App& program);
 void addPoseCommand(CLI::App& program);
 void addConvertCommand(CLI::App& program);
+void addSessionCommand(CLI::App& program);
 
 // Options that most commands have.
 struct Common {

@@ -86,7 +86,8 @@ Asset readBvhAsset(ByteSpan bytes, std::string_view name) {
   return asset;
 }
 
-// Opens files in and below the folder, for as long as they are plain files.
+}  // namespace
+
 Resolver folderResolver(const fs::path& folder) {
   return [folder](std::string_view path) -> std::optional<Bytes> {
     const fs::path place = folder / fs::path(std::string(path));
@@ -95,8 +96,6 @@ Resolver folderResolver(const fs::path& folder) {
     return readFile(place);
   };
 }
-
-}  // namespace
 
 Asset readAsset(ByteSpan bytes, std::string_view name, const Resolver& resolver) {
   if (looksLikeBvh(bytes) || lowerExtension(std::string(name)) == ".bvh") return readBvhAsset(bytes, name);

@@ -13,6 +13,9 @@ namespace limber {
 // leads out of the document's folder (limber refuses such references before asking). A browser gives its own.
 using Resolver = std::function<std::optional<Bytes>(std::string_view path)>;
 
+// Opens files in and below the folder, for as long as they are plain files.
+Resolver folderResolver(const std::filesystem::path& folder);
+
 // The file of that name; "-" is standard input (format told from the content). Format by content first (GLB magic,
 // JSON, "ply", ...), by extension where content does not tell. Throws Error, with the file's name in where(). The
 // result has passed checkAsset.

@@ -1,0 +1,260 @@
+#include "limber/session/command.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <type_traits>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "limber/asset/json_access.h"
+#include "limber/asset/json_text.h"
+
+namespace limber {
+
+namespace {
+
+constexpr int kVersion = 1;
+
+// In the order of the variant.
+constexpr std::array<std::string_view, 19> kNames = {
+    "open_sample", "open_file",  "set_handles", "choose_methods", "begin_drag", "update_drag",  "end_drag",
+    "cancel_drag", "turn_joint", "move_joint",  "set_ik",         "set_target", "clear_target", "set_limits",
+    "reset_joint", "reset_pose", "mirror_pose", "undo",           "redo"};
+static_assert(kNames.size() == std::variant_size_v<Command>);
+
+// The fields of each command, said once for reading and writing.
+template <class Visitor, class C>
+void visitFields(Visitor&, C&) {}  // those that have none
+template <class Visitor>
+void visitFields(Visitor& field, OpenSample& c) {
+  field("name", c.name);
+}
+template <class Visitor>
+void visitFields(Visitor& field, OpenFile& c) {
+  field("file", c.file);
+}
+template <class Visitor>
+void visitFields(Visitor& field, SetHandles& c) {
+  field("count", c.count);
+}
+template <class Visitor>
+void visitFields(Visitor& field, ChooseMethods& c) {
+  field("rigger", c.rigger);
+  field("skinning", c.skinning);
+}
+template <class Visitor>
+void visitFields(Visitor& field, BeginDrag& c) {
+  field("joint", c.joint);
+  field("mode", c.mode);
+  field("ray", c.ray);
+  field("view", c.view);
+}
+template <class Visitor>
+void visitFields(Visitor& field, UpdateDrag& c) {
+  field("ray", c.ray);
+  field("view", c.view);
+}
+template <class Visitor>
+void visitFields(Visitor& field, TurnJoint& c) {
+  field("joint", c.joint);
+  field("axis", c.axis);
+  field("degrees", c.degrees);
+}
+template <class Visitor>
+void visitFields(Visitor& field, MoveJoint& c) {
+  field("joint", c.joint);
+  field("offset", c.offset);
+}
+template <class Visitor>
+void visitFields(Visitor& field, SetIk& c) {
+  field("on", c.on);
+}
+template <class Visitor>
+void visitFields(Visitor& field, SetTarget& c) {
+  field("joint", c.joint);
+  field("position", c.position);
+}
+template <class Visitor>
+void visitFields(Visitor& field, ClearTarget& c) {
+  field("joint", c.joint);
+}
+template <class Visitor>
+void visitFields(Visitor& field, SetLimits& c) {
+  field("limits", c.limits);
+}
+template <class Visitor>
+void visitFields(Visitor& field, ResetJoint& c) {
+  field("joint", c.joint);
+}
+template <class Visitor>
+void visitFields(Visitor& field, MirrorPose& c) {
+  field("from", c.from);
+}
+
+constexpr std::array<std::pair<DragMode, std::string_view>, 2> kDragModes = {
+    {{DragMode::kMove, "move"}, {DragMode::kTurn, "turn"}}};
+constexpr std::array<std::pair<MirrorFrom, std::string_view>, 3> kMirrorSides = {
+    {{MirrorFrom::kBoth, "both"}, {MirrorFrom::kLeft, "left"}, {MirrorFrom::kRight, "right"}}};
+
+const auto& wordsOf(DragMode) {
+  return kDragModes;
+}
+const auto& wordsOf(MirrorFrom) {
+  return kMirrorSides;
+}
+
+Json vectorJson(const Vec3& v) {
+  return Json::array({v.x(), v.y(), v.z()});
+}
+
+class Writer {
+ public:
+  explicit Writer(Json& json) : json_(json) {}
+
+  template <class T>
+  void operator()(const char* key, const T& value) {
+    if constexpr (std::is_enum_v<T>) {
+      for (const auto& [known, word] : wordsOf(value)) {
+        if (known == value) json_[key] = std::string(word);
+      }
+    } else if constexpr (std::is_same_v<T, Vec3>) {
+      json_[key] = vectorJson(value);
+    } else if constexpr (std::is_same_v<T, Ray>) {
+      json_[key] = {{"origin", vectorJson(value.origin)}, {"direction", vectorJson(value.direction)}};
+    } else {
+      json_[key] = value;
+    }
+  }
+
+ private:
+  Json& json_;
+};
+
+Vec3 readVector(const JsonView& object, const char* key, const Vec3& byDefault) {
+  const JsonView array = object.array(key);
+  if (!array.exists()) return byDefault;
+  if (array.size() != 3) array.fail("is not three numbers");
+  return {array[0].asNumber(), array[1].asNumber(), array[2].asNumber()};
+}
+
+class Reader {
+ public:
+  explicit Reader(const JsonView& object) : object_(object) {}
+
+  void operator()(const char* key, std::string& value) {
+    known_.push_back(key);
+    // The texts that have no default are names, and none is empty.
+    if (!object_.member(key).exists() && value.empty() && key != std::string_view("limits")) {
+      object_.fail(fmt::format("has no \"{}\"", key));
+    }
+    value = object_.text(key, value);
+  }
+  void operator()(const char* key, Index& value) {
+    known_.push_back(key);
+    value = object_.index(key, kNoIndex).value_or(value);
+  }
+  void operator()(const char* key, double& value) {
+    known_.push_back(key);
+    value = object_.number(key, value);
+  }
+  void operator()(const char* key, bool& value) {
+    known_.push_back(key);
+    value = object_.flag(key, value);
+  }
+  void operator()(const char* key, Vec3& value) {
+    known_.push_back(key);
+    value = readVector(object_, key, value);
+  }
+  void operator()(const char* key, Ray& value) {
+    known_.push_back(key);
+    const JsonView ray = object_.object(key);
+    value = {readVector(ray, "origin", value.origin), readVector(ray, "direction", value.direction)};
+  }
+  template <class E>
+  std::enable_if_t<std::is_enum_v<E>> operator()(const char* key, E& value) {
+    known_.push_back(key);
+    if (!object_.member(key).exists()) return;
+    const std::string_view word = object_.text(key);
+    for (const auto& [mode, name] : wordsOf(value)) {
+      if (word != name) continue;
+      value = mode;
+      return;
+    }
+    object_.member(key).fail(fmt::format("cannot be '{}'", word));
+  }
+
+  void refuseOthers() const {
+    object_.forEachMember([&](std::string_view key, const JsonView& value) {
+      if (key == "do" || std::find(known_.begin(), known_.end(), key) != known_.end()) return;
+      value.fail("is not part of this command");
+    });
+  }
+
+ private:
+  const JsonView& object_;
+  std::vector<std::string_view> known_;
+};
+
+// Reads the alternative of that name, trying one after the other.
+template <std::size_t I = 0>
+std::optional<Command> readNamed(std::string_view name, const JsonView& object) {
+  if constexpr (I == std::variant_size_v<Command>) {
+    return std::nullopt;
+  } else {
+    using C = std::variant_alternative_t<I, Command>;
+    if (name != kNames[I]) return readNamed<I + 1>(name, object);
+    C command;
+    Reader reader(object);
+    visitFields(reader, command);
+    reader.refuseOthers();
+    return command;
+  }
+}
+
+Command readCommand(const JsonView& object) {
+  const std::string_view name = object.text("do");
+  std::optional<Command> command = readNamed(name, object);
+  if (!command) object.fail(fmt::format("no command is called '{}'", name));
+  return *std::move(command);
+}
+
+}  // namespace
+
+std::string_view commandName(const Command& command) {
+  return kNames[command.index()];
+}
+
+Json commandToJson(const Command& command) {
+  Json json = {{"do", std::string(commandName(command))}};
+  Writer writer(json);
+  Command copy = command;
+  std::visit([&](auto& c) { visitFields(writer, c); }, copy);
+  return json;
+}
+
+Command commandFromJson(const Json& json) {
+  return readCommand(JsonView(json));
+}
+
+std::string commandsToJson(std::span<const Command> commands) {
+  Json list = Json::array();
+  for (const Command& command : commands) list.push_back(commandToJson(command));
+  return dumpJson({{"limber_commands", kVersion}, {"commands", std::move(list)}}, 1);
+}
+
+std::vector<Command> commandsFromJson(std::string_view text) {
+  Warnings warnings;
+  const Json document = parseJson(text, warnings);
+  const JsonView root(document);
+  if (root.number("limber_commands", 0) != kVersion) root.fail("is no list of commands that limber knows");
+  const JsonView list = root.array("commands");
+  std::vector<Command> commands;
+  for (std::size_t i = 0; i < list.size(); ++i) commands.push_back(readCommand(list[i]));
+  return commands;
+}
+
+}  // namespace limber

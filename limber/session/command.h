@@ -1,0 +1,117 @@
+// What a user can do to a session, each as a value: the page, the command line and a test do the same things, and a
+// list of them replayed gives the same result.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "limber/asset/asset.h"
+#include "limber/core/types.h"
+
+namespace limber {
+
+// Points origin + t * direction, t > 0; the direction need not be a unit vector.
+struct Ray {
+  Vec3 origin = Vec3::Zero();
+  Vec3 direction = -Vec3::UnitZ();
+};
+
+// Joints are named. Positions, axes and rays are in world space.
+
+struct OpenSample {
+  std::string name;  // of sampleModels()
+};
+// The file is asked of the session's resolver; where a model came as bytes this is its name.
+struct OpenFile {
+  std::string file;
+};
+
+// Makes the rig anew and keeps the pose: what the new handles hold goes where the old ones had taken it. A model that
+// came with a rig of its own loses that one.
+struct SetHandles {
+  Index count = 20;
+};
+struct ChooseMethods {
+  std::string rigger = "sphere-mesh";
+  std::string skinning = "bone-heat";
+};
+
+// Move: the joint slides in the plane that faces the camera, and keeps its distance from the camera when that moves.
+// Turn: the joint swings about its parent, around the camera's axis; a root rolls under the pointer like a trackball.
+enum class DragMode { kMove, kTurn };
+struct BeginDrag {
+  std::string joint;
+  DragMode mode = DragMode::kMove;
+  Ray ray;                     // through the pointer
+  Vec3 view = -Vec3::UnitZ();  // where the camera looks
+};
+// Counts from where the drag began: of several updates only the last one matters.
+struct UpdateDrag {
+  Ray ray;
+  Vec3 view = -Vec3::UnitZ();
+};
+struct EndDrag {};
+struct CancelDrag {};
+
+// For exact work: about the joint's own origin, an angle in degrees; and by an offset in metres.
+struct TurnJoint {
+  std::string joint;
+  Vec3 axis = Vec3::UnitY();
+  double degrees = 0;
+};
+struct MoveJoint {
+  std::string joint;
+  Vec3 offset = Vec3::Zero();
+};
+
+// With inverse kinematics on, a joint that is moved takes its limb along, and joints with a target hold on to it.
+struct SetIk {
+  bool on = true;
+};
+struct SetTarget {
+  std::string joint;
+  Vec3 position = Vec3::Zero();
+};
+struct ClearTarget {
+  std::string joint;
+};
+// The text of a limits file (limits_json.h); empty: no limits.
+struct SetLimits {
+  std::string limits;
+};
+
+struct ResetJoint {
+  std::string joint;
+};
+struct ResetPose {};
+// Of a model that is its own mirror image: both sides swap their poses, or one side takes the other's. Left is the
+// mirror plane's positive side.
+enum class MirrorFrom { kBoth, kLeft, kRight };
+struct MirrorPose {
+  MirrorFrom from = MirrorFrom::kBoth;
+};
+
+struct Undo {};
+struct Redo {};
+
+using Command =
+    std::variant<OpenSample, OpenFile, SetHandles, ChooseMethods, BeginDrag, UpdateDrag, EndDrag, CancelDrag, TurnJoint,
+                 MoveJoint, SetIk, SetTarget, ClearTarget, SetLimits, ResetJoint, ResetPose, MirrorPose, Undo, Redo>;
+
+// "set_handles", as in JSON.
+std::string_view commandName(const Command& command);
+
+// {"do": "set_handles", "count": 20}: every field is written; reading, those that are absent keep their default, but a
+// joint, file or name must be there. Throws Error kBadData naming the entry for a command or a field that is not
+// known, or a value of the wrong kind.
+Json commandToJson(const Command& command);
+Command commandFromJson(const Json& json);
+
+// {"limber_commands": 1, "commands": [...]}
+std::string commandsToJson(std::span<const Command> commands);
+std::vector<Command> commandsFromJson(std::string_view text);
+
+}  // namespace limber

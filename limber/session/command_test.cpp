@@ -1,0 +1,95 @@
+#include "limber/session/command.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "limber/core/error.h"
+
+namespace limber {
+namespace {
+
+using testing::HasSubstr;
+
+const Ray kRay{{0.1, 0.2, 3}, {0.25, -0.125, -1}};
+
+// One of each kind, no field at its default.
+std::vector<Command> oneOfEach() {
+  return {OpenSample{"biped"},
+          OpenFile{"models/fox.glb"},
+          SetHandles{37},
+          ChooseMethods{"other", "another"},
+          BeginDrag{"hand.L", DragMode::kTurn, kRay, {0, 0.5, -1}},
+          UpdateDrag{kRay, {1, 0, -1}},
+          EndDrag{},
+          CancelDrag{},
+          TurnJoint{"head", {0, 1.0 / 3, 1}, 12.5},
+          MoveJoint{"hips", {0.1, -0.2, 0.3}},
+          SetIk{false},
+          SetTarget{"foot.R", {1e-17, 2, 3}},
+          ClearTarget{"foot.R"},
+          SetLimits{R"({"limber_limits": 1, "joints": {}})"},
+          ResetJoint{"head"},
+          ResetPose{},
+          MirrorPose{MirrorFrom::kRight},
+          Undo{},
+          Redo{}};
+}
+
+TEST(Command, JsonKeepsEveryCommandAndEveryField) {
+  const std::vector<Command> commands = oneOfEach();
+  ASSERT_EQ(commands.size(), std::variant_size_v<Command>);
+  const std::string text = commandsToJson(commands);
+  const std::vector<Command> back = commandsFromJson(text);
+  ASSERT_EQ(back.size(), commands.size());
+  for (std::size_t i = 0; i < back.size(); ++i) EXPECT_EQ(back[i].index(), i);
+  EXPECT_EQ(commandsToJson(back), text);
+  // Against the values themselves, where reading and writing could agree on a mistake.
+  EXPECT_EQ(std::get<BeginDrag>(back[4]).ray.direction, kRay.direction);
+  EXPECT_EQ(std::get<BeginDrag>(back[4]).mode, DragMode::kTurn);
+  EXPECT_EQ(std::get<TurnJoint>(back[8]).axis.y(), 1.0 / 3);
+  EXPECT_EQ(std::get<SetTarget>(back[11]).position, Vec3(1e-17, 2, 3));
+  EXPECT_EQ(std::get<MirrorPose>(back[16]).from, MirrorFrom::kRight);
+  EXPECT_FALSE(std::get<SetIk>(back[10]).on);
+}
+
+TEST(Command, FieldsThatAreAbsentKeepTheirDefault) {
+  const Command command = commandFromJson(Json{{"do", "begin_drag"}, {"joint", "a"}});
+  EXPECT_EQ(std::get<BeginDrag>(command).mode, DragMode::kMove);
+  EXPECT_EQ(std::get<BeginDrag>(command).view, Vec3(0, 0, -1));
+}
+
+void expectRefused(const char* text, const char* where, const char* why) {
+  try {
+    commandsFromJson(text);
+    ADD_FAILURE() << text << " is taken";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::kBadData);
+    EXPECT_THAT(error.where(), HasSubstr(where)) << text;
+    EXPECT_THAT(error.what(), HasSubstr(why)) << text;
+  }
+}
+
+TEST(Command, WhatIsWrongIsNamed) {
+  expectRefused("{", "", "");
+  expectRefused("{}", "", "no list of commands");
+  expectRefused(R"({"limber_commands": 2, "commands": []})", "", "no list of commands");
+  const auto list = [](const char* entry) {
+    static std::string text;
+    text = std::string(R"({"limber_commands": 1, "commands": [{"do": "undo"}, )") + entry + "]}";
+    return text.c_str();
+  };
+  expectRefused(list("7"), "commands[1]", "object");
+  expectRefused(list(R"({"joint": "a"})"), "commands[1]", "no command is called ''");
+  expectRefused(list(R"({"do": "fly"})"), "commands[1]", "'fly'");
+  expectRefused(list(R"({"do": "undo", "often": 2})"), "commands[1].often", "not part");
+  expectRefused(list(R"({"do": "reset_joint"})"), "commands[1]", "\"joint\"");
+  expectRefused(list(R"({"do": "set_handles", "count": -3})"), "commands[1].count", "");
+  expectRefused(list(R"({"do": "set_handles", "count": 1e300})"), "commands[1].count", "");
+  expectRefused(list(R"({"do": "move_joint", "joint": "a", "offset": [1, 2]})"), "commands[1].offset", "three");
+  expectRefused(list(R"({"do": "mirror_pose", "from": "above"})"), "commands[1].from", "'above'");
+  expectRefused(list(R"({"do": "update_drag", "ray": 1})"), "commands[1].ray", "object");
+}
+
+}  // namespace
+}  // namespace limber

@@ -1,0 +1,147 @@
+#include "limber/session/drag.h"
+
+#include <gtest/gtest.h>
+
+#include "limber/core/error.h"
+#include "limber/ik/rotation.h"
+
+namespace limber {
+namespace {
+
+// root - trunk - two arms of three joints; the first arm along +X at y = 2.
+Skeleton body(BoneShape shape) {
+  Skeleton skeleton;
+  skeleton.boneShape = shape;
+  const auto add = [&](std::optional<Index> parent, const Vec3& at) {
+    Joint joint;
+    joint.name = "joint_" + std::to_string(skeleton.joints.size());
+    joint.parent = parent;
+    joint.rest.translation = at;
+    skeleton.joints.push_back(joint);
+    return skeleton.jointCount() - 1;
+  };
+  const Index root = add(std::nullopt, {0, 1, 0}), trunk = add(root, {0, 1, 0});
+  for (const double side : {1.0, -1.0}) {
+    const Index shoulder = add(trunk, {0.5 * side, 0, 0}), elbow = add(shoulder, {side, 0, 0.1});
+    add(elbow, {side, 0, 0});
+  }
+  return skeleton;
+}
+
+constexpr Index kShoulder = 2, kElbow = 3, kHand = 4, kOtherHand = 7;
+const Vec3 kView(0, 0, -1), kEye(0, 2, 10);
+
+Ray through(const Vec3& point) {
+  return {kEye, point - kEye};
+}
+
+Vec3 at(const Skeleton& skeleton, const Pose& pose, Index joint) {
+  return poseGlobals(skeleton, pose)[joint].translation();
+}
+
+DragScene sceneOf(const Skeleton& skeleton, bool ik = false) {
+  return {&skeleton, nullptr, restPose(skeleton), ik, {}, 1};
+}
+
+TEST(Drag, MoveSlidesInThePlaneThatFacesTheCamera) {
+  const Skeleton skeleton = body(BoneShape::kSphere);
+  const Vec3 hand = at(skeleton, restPose(skeleton), kHand), grip = hand + Vec3(0.05, -0.03, 0), way(-0.4, 0.7, 0);
+  Drag drag(sceneOf(skeleton), kHand, DragMode::kMove, through(grip), kView);
+  const Pose pose = drag.at(through(grip + way), kView).value();
+  EXPECT_LT((at(skeleton, pose, kHand) - hand - way).norm(), 1e-12);
+  EXPECT_LT((at(skeleton, pose, kElbow) - at(skeleton, restPose(skeleton), kElbow)).norm(), 1e-12);
+}
+
+TEST(Drag, ACameraThatWalksPullsTheJointAlong) {
+  const Skeleton skeleton = body(BoneShape::kSphere);
+  const Vec3 hand = at(skeleton, restPose(skeleton), kHand), step(0, 0, -0.5);
+  Drag drag(sceneOf(skeleton), kHand, DragMode::kMove, through(hand), kView);
+  const Ray ray{kEye + step, hand - kEye};
+  EXPECT_LT((at(skeleton, drag.at(ray, kView).value(), kHand) - hand - step).norm(), 1e-12);
+}
+
+TEST(Drag, TurnSwingsAboutTheParentRoundTheCamerasAxis) {
+  for (const BoneShape shape : {BoneShape::kSphere, BoneShape::kSegment}) {
+    const Skeleton skeleton = body(shape);
+    const Pose rest = restPose(skeleton);
+    const Vec3 elbow = at(skeleton, rest, kElbow), hand = at(skeleton, rest, kHand);
+    Drag drag(sceneOf(skeleton), kHand, DragMode::kTurn, through(hand), kView);
+    // A quarter turn: the hand that was to the right of the elbow is above it, whatever the distance of the pointer.
+    const Pose pose = drag.at(through(elbow + Vec3(0, 3, 0)), kView).value();
+    EXPECT_LT((at(skeleton, pose, kHand) - elbow - Vec3(0, 1, 0)).norm(), 1e-9);
+    EXPECT_LT((at(skeleton, pose, kElbow) - elbow).norm(), 1e-12);
+    const Index turned = shape == BoneShape::kSphere ? kHand : kElbow;
+    const Quat rotation(poseGlobals(skeleton, pose)[turned].linear());
+    EXPECT_LT(angleBetween(rotation, Quat(Eigen::AngleAxisd(kPi / 2, Vec3::UnitZ()))), 1e-9);
+  }
+}
+
+TEST(Drag, ATurnedJointLeavesItsSiblingsAlone) {
+  const Skeleton skeleton = body(BoneShape::kSegment);
+  const Pose rest = restPose(skeleton);
+  Drag drag(sceneOf(skeleton), kShoulder, DragMode::kTurn, through(at(skeleton, rest, kShoulder)), kView);
+  const Pose pose = drag.at(through({0.2, 2.4, 0}), kView).value();
+  EXPECT_GT((at(skeleton, pose, kHand) - at(skeleton, rest, kHand)).norm(), 0.5);
+  EXPECT_EQ(at(skeleton, pose, kOtherHand), at(skeleton, rest, kOtherHand));
+}
+
+TEST(Drag, ARootRollsUnderThePointer) {
+  const Skeleton skeleton = body(BoneShape::kSphere);
+  const Vec3 root(0, 1, 0);
+  Drag drag(sceneOf(skeleton), 0, DragMode::kTurn, through(root), kView);
+  const Pose pose = drag.at(through(root + Vec3(0.5, 0, 0)), kView).value();
+  EXPECT_LT((at(skeleton, pose, 0) - root).norm(), 1e-12);
+  // To the right: what faces the camera goes to the right.
+  const Quat rotation(poseGlobals(skeleton, pose)[0].linear());
+  EXPECT_LT(angleBetween(rotation, Quat(Eigen::AngleAxisd(0.5, Vec3::UnitY()))), 1e-9);
+}
+
+TEST(Drag, WithInverseKinematicsTheLimbFollowsAndBonesKeepTheirLength) {
+  const Skeleton skeleton = body(BoneShape::kSphere);
+  const Pose rest = restPose(skeleton);
+  const Vec3 hand = at(skeleton, rest, kHand), goal = hand + Vec3(-0.8, 0.6, 0);
+  Drag drag(sceneOf(skeleton, true), kHand, DragMode::kMove, through(hand), kView);
+  const Pose pose = drag.at(through(goal), kView).value();
+  EXPECT_LT((at(skeleton, pose, kHand) - goal).norm(), 1e-3);
+  for (const Index j : {kShoulder, kElbow, kHand}) {
+    EXPECT_LT((pose.locals[j].translation - rest.locals[j].translation).norm(), 1e-12);
+  }
+  EXPECT_EQ(at(skeleton, pose, kOtherHand), at(skeleton, rest, kOtherHand));
+  EXPECT_GT((at(skeleton, pose, kElbow) - at(skeleton, rest, kElbow)).norm(), 0.05);
+}
+
+TEST(Drag, HeldJointsStayWhereTheyAreWhenTheBodyMoves) {
+  const Skeleton skeleton = body(BoneShape::kSphere);
+  const Pose rest = restPose(skeleton);
+  DragScene scene = sceneOf(skeleton, true);
+  // Bent a little, since a stretched arm cannot follow away.
+  scene.start.locals[kElbow].rotation = Quat(Eigen::AngleAxisd(1.2, Vec3::UnitZ()));
+  const Vec3 hand = at(skeleton, scene.start, kHand);
+  scene.held = {{kHand, hand}};
+  Drag drag(scene, 0, DragMode::kMove, through({0, 1, 0}), kView);
+  const Pose pose = drag.at(through({-0.2, 1.1, 0}), kView).value();
+  EXPECT_LT((at(skeleton, pose, 0) - Vec3(-0.2, 1.1, 0)).norm(), 1e-12);
+  EXPECT_LT((at(skeleton, pose, kHand) - hand).norm(), 1e-3);
+}
+
+TEST(Drag, OnlyTheLastPlaceOfThePointerCounts) {
+  const Skeleton skeleton = body(BoneShape::kSphere);
+  const Vec3 hand = at(skeleton, restPose(skeleton), kHand), goal = hand + Vec3(-0.7, -0.2, 0);
+  Drag straight(sceneOf(skeleton, true), kHand, DragMode::kMove, through(hand), kView);
+  Drag about(sceneOf(skeleton, true), kHand, DragMode::kMove, through(hand), kView);
+  for (int i = 0; i < 50; ++i) about.at(through(hand + Vec3(0.1 * i, std::sin(i), 0)), kView);
+  const Pose a = straight.at(through(goal), kView).value(), b = about.at(through(goal), kView).value();
+  for (Index j = 0; j < a.locals.size(); ++j) EXPECT_EQ(a.locals[j].rotation.coeffs(), b.locals[j].rotation.coeffs());
+}
+
+TEST(Drag, RaysThatMissThePlaneChangeNothing) {
+  const Skeleton skeleton = body(BoneShape::kSphere);
+  Drag drag(sceneOf(skeleton), kHand, DragMode::kMove, through({2.5, 2, 0.1}), kView);
+  EXPECT_FALSE(drag.at({kEye, {1, 0, 0}}, kView));
+  EXPECT_FALSE(drag.at({kEye, {0, 0, 1}}, kView));
+  EXPECT_THROW(drag.at({kEye, {0, 0, 0}}, kView), Error);
+  EXPECT_THROW(drag.at({kEye, kView}, Vec3::Constant(NAN)), Error);
+}
+
+}  // namespace
+}  // namespace limber

@@ -1,0 +1,44 @@
+#include "limber/session/limb_pull.h"
+
+#include "limber/skeleton/chain.h"
+
+namespace limber {
+
+std::optional<Index> limbBase(const Skeleton& skeleton, Index joint) {
+  const std::vector<std::vector<Index>> children = childrenOf(skeleton);
+  const auto parentOf = [&](Index j) { return skeleton.joints[j].parent; };
+  const std::optional<Index> first = parentOf(joint);
+  if (!first || !parentOf(*first)) return std::nullopt;
+  Index base = *first;
+  while (children[base].size() == 1) {
+    const std::optional<Index> above = parentOf(base);
+    if (!parentOf(*above) || children[*above].size() > 1) break;
+    base = *above;
+  }
+  return base;
+}
+
+LimbPull::LimbPull(const Skeleton& skeleton, std::span<const HeldTarget> targets, const JointLimits* limits) {
+  for (std::size_t t = 0; t < targets.size(); ++t) {
+    IkTarget wanted;
+    wanted.joint = targets[t].joint;
+    wanted.position = targets[t].position;
+    wanted.base = limbBase(skeleton, targets[t].joint);
+    if (!wanted.base) continue;
+    used_.push_back(t);
+    wanted_.push_back(wanted);
+  }
+  if (wanted_.empty()) return;
+  IkOptions options;
+  options.rootMotion = RootMotion::kFixed;
+  options.restarts = 0;  // another attempt might find another pose than the frame before
+  solver_.emplace(findIkMethod("whole-body"), skeleton, wanted_, limits, options);
+}
+
+void LimbPull::solve(Pose& pose, std::span<const HeldTarget> targets) {
+  if (!solver_) return;
+  for (std::size_t t = 0; t < used_.size(); ++t) wanted_[t].position = targets[used_[t]].position;
+  solver_->solve(pose, wanted_);
+}
+
+}  // namespace limber

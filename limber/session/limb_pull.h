@@ -1,0 +1,39 @@
+// Inverse kinematics under a user's finger: limbs that follow a joint, and joints that hold on to a place.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "limber/ik/ik_solver.h"
+
+namespace limber {
+
+struct HeldTarget {
+  Index joint = 0;
+  Vec3 position = Vec3::Zero();
+};
+
+// The highest joint that turns when `joint` is pulled: the limb goes up to the joint below the next branch, and at
+// least one joint up. None where there is nothing to turn: at a root, and right below one, which stays where it is.
+std::optional<Index> limbBase(const Skeleton& skeleton, Index joint);
+
+// Several joints pulled at once, each by its limb. Set up once, then solved frame after frame.
+class LimbPull {
+ public:
+  // Joints without a limb are passed over. `skeleton` and `limits` (none: null) must outlive it.
+  LimbPull(const Skeleton& skeleton, std::span<const HeldTarget> targets, const JointLimits* limits);
+
+  // Whether any joint has a limb to turn.
+  bool any() const { return solver_.has_value(); }
+  // `targets` are those of the constructor, at other places. `pose` is the start and becomes the answer; the same start
+  // and targets give the same answer. Throws Error as IkSystem::load does.
+  void solve(Pose& pose, std::span<const HeldTarget> targets);
+
+ private:
+  std::vector<std::size_t> used_;  // of the targets given, those with a limb
+  std::vector<IkTarget> wanted_;
+  std::optional<IkSolver> solver_;
+};
+
+}  // namespace limber

@@ -1,0 +1,22 @@
+// Poses seen in the mirror.
+#pragma once
+
+#include <vector>
+
+#include "limber/rigging/mirror_map.h"
+#include "limber/session/command.h"
+#include "limber/skeleton/pose.h"
+
+namespace limber {
+
+// #J: the joint that stands, in rest pose, at the mirror image of each joint, to within `tolerance` metres; itself on
+// the plane, kNoIndex where there is none. Images are mutual.
+std::vector<Index> mirrorJoints(const Skeleton& skeleton, const MirrorPlane& plane, double tolerance);
+
+// Each joint moves from its rest as its image moved, mirrored; those of the side that is taken from stay, and so do
+// joints without an image. Joints on the plane take the mean of their motion and its mirror image where one side's pose
+// is taken, so that the whole becomes symmetric. `images` from mirrorJoints.
+Pose mirrorPose(const Skeleton& skeleton, const Pose& pose, const MirrorPlane& plane, const std::vector<Index>& images,
+                MirrorFrom from);
+
+}  // namespace limber

@@ -1,0 +1,30 @@
+// What a pointer points at.
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "limber/session/command.h"
+#include "limber/session/rigged_model.h"
+
+namespace limber {
+
+struct PickHit {
+  Index joint = 0;
+  bool onHandle = false;  // else on the surface: the joint that holds it most
+  Vec3 position = Vec3::Zero();
+  double distance = 0;  // along the ray, in metres
+};
+
+// The handle that the ray meets first; else, of those that it passes within `slope` times their distance, the one it
+// passes closest to as seen from the ray's origin: small handles are as large as a finger. A slope of 0 takes them as
+// they are.
+//
+// centers, radii  #J spheres
+std::optional<PickHit> pickHandle(const Ray& ray, std::span<const Vec3> centers, std::span<const double> radii,
+                                  double slope);
+
+// The point of the posed surface that the ray meets first. Cost: O(#F log #F), a tree of the surface as it stands.
+std::optional<PickHit> pickSurface(const Ray& ray, const RiggedModel& model, const Pose& pose);
+
+}  // namespace limber

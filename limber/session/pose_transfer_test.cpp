@@ -1,0 +1,62 @@
+#include "limber/session/pose_transfer.h"
+
+#include <gtest/gtest.h>
+
+#include "limber/samples/samples.h"
+#include "limber/session/testing/models.h"
+
+namespace limber {
+namespace {
+
+double meanDistance(const std::vector<Vec3f>& a, const std::vector<Vec3f>& b) {
+  double sum = 0;
+  for (std::size_t v = 0; v < a.size(); ++v) sum += (a[v] - b[v]).norm();
+  return sum / static_cast<double>(a.size());
+}
+
+TEST(TransferPose, RestStaysRestToTheBit) {
+  const auto few = testing::rigBiped(10), many = testing::rigBiped(30);
+  const Pose pose = transferPose(*few, few->home, *many);
+  for (Index j = 0; j < pose.locals.size(); ++j) {
+    EXPECT_EQ(pose.locals[j].translation, many->home.locals[j].translation);
+    EXPECT_EQ(pose.locals[j].rotation.coeffs(), many->home.locals[j].rotation.coeffs());
+  }
+}
+
+TEST(TransferPose, AModelThatMovesAsAWholeMovesExactly) {
+  const auto few = testing::rigBiped(6), many = testing::rigBiped(40);
+  Pose pose = restPose(few->skeleton());
+  Transform& root = pose.locals[0];
+  root.rotation = Quat(Eigen::AngleAxisd(2.5, Vec3(1, 2, -1).normalized()));
+  root.translation += Vec3(0.5, 3, -1);
+  const std::vector<Vec3f> before = posedPositions(*few, pose);
+  const std::vector<Vec3f> after = posedPositions(*many, transferPose(*few, pose, *many));
+  for (std::size_t v = 0; v < before.size(); ++v) EXPECT_LT((before[v] - after[v]).norm(), 2e-5);
+}
+
+TEST(TransferPose, MoreAndFewerHandlesKeepWhatCanBeKept) {
+  const auto from = testing::rigBiped(20);
+  Pose pose = restPose(from->skeleton());
+  for (Index j = 1; j < pose.locals.size(); j += 3) {
+    pose.locals[j].rotation = Quat(Eigen::AngleAxisd(0.5, Vec3(1, j % 2 ? 1.0 : -1.0, 0.3).normalized()));
+  }
+  const std::vector<Vec3f> posed = posedPositions(*from, pose);
+  const double moved = meanDistance(posed, from->geometry.positions);
+  ASSERT_GT(moved, 0.02);
+  for (const Index handles : {14, 30, 60}) {
+    const auto to = testing::rigBiped(handles);
+    const double left = meanDistance(posed, posedPositions(*to, transferPose(*from, pose, *to)));
+    EXPECT_LT(left, moved * (handles < 20 ? 0.4 : 0.2)) << handles << " handles";
+  }
+}
+
+TEST(TransferPose, NothingGoesFromOneModelToAnother) {
+  Progress progress;
+  const auto stool = makeRiggedModel(makeSample("stool"), {}, progress), person = testing::rigBiped(6);
+  Pose pose = restPose(stool->skeleton());
+  pose.locals[0].translation += Vec3(1, 0, 0);
+  EXPECT_EQ(transferPose(*stool, pose, *person).locals[0].translation, person->home.locals[0].translation);
+}
+
+}  // namespace
+}  // namespace limber

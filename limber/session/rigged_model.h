@@ -1,0 +1,48 @@
+// A model with its rig, ready to be posed: what a session works on between two changes of the rig.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "limber/asset/rig_io.h"
+#include "limber/mesh/tri_mesh.h"
+#include "limber/pipeline/auto_rig.h"
+#include "limber/skeleton/pose.h"
+
+namespace limber {
+
+// Never changed once made, so that a session's undo steps share it.
+struct RiggedModel {
+  Asset asset;  // with the rig, its joints' nodes as in the file
+  AssetSkeleton binding;
+  std::vector<Affine> inverseBind;  // #J
+  std::vector<double> radii;        // #J metres, of the handles to take hold of; above 0
+  Geometry geometry;                // #S vertices in world space, bound
+  std::vector<Vec3f> normals;       // #S, zero where the file has none
+  SkinWeights weights;              // #S, each used vertex sums to 1
+  Pose home;                        // as the joints stand in a fresh rig's file; the bind pose of a rig that was there
+  std::optional<AutoRigReport> report;  // none for a rig that the file came with
+
+  const Skeleton& skeleton() const { return binding.skeleton; }
+};
+
+// `source` with the rig that it has. Throws Error kBadArgument where it has none.
+std::shared_ptr<const RiggedModel> openRiggedModel(const Asset& source);
+
+// A copy of `source`, rigged as autoRig does. Errors and cost as there.
+std::shared_ptr<const RiggedModel> makeRiggedModel(const Asset& source, const AutoRigOptions& options,
+                                                   Progress& progress);
+
+// How thick handles are: the radius of a joint's sphere or, where the skeleton has none, a sixth of its shortest bone;
+// at least a thousandth of `size`.
+std::vector<double> handleRadii(const Skeleton& skeleton, double size);
+
+// Bit for bit.
+bool sameTransform(const Transform& a, const Transform& b);
+bool samePose(const Pose& a, const Pose& b);
+
+// The vertices as the joints stand in `pose` (linear blend).
+std::vector<Vec3f> posedPositions(const RiggedModel& model, const Pose& pose);
+
+}  // namespace limber

@@ -1,0 +1,97 @@
+// The interactive document: a model, its handles, its pose, and everything that a user can do to them.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "limber/asset/read.h"
+#include "limber/ik/limits.h"
+#include "limber/session/command.h"
+#include "limber/session/drag.h"
+#include "limber/session/pick.h"
+#include "limber/session/rigged_model.h"
+
+namespace limber {
+
+// What the user works on, at one moment. Copies share everything large, so that each undo step is one.
+struct SessionState {
+  std::shared_ptr<const RiggedModel> rig;
+  std::string rigger, skinning;  // how it was made; kept for a model with a rig of its own
+  Pose pose;
+  // The pose as it was last set by hand, on the rig that it was set on: other numbers of handles start from it, so that
+  // going there and back again loses nothing.
+  std::shared_ptr<const RiggedModel> authoredRig;
+  Pose authoredPose;
+  bool ik = false;
+  std::vector<HeldTarget> targets;
+  std::string limitsText;  // empty: none
+  std::shared_ptr<const JointLimits> limits;
+};
+
+enum class ExportFormat { kGlb, kObj, kStl, kPly };
+
+// Only the last of several updates of a drag, and of several counts of handles in a row, is recorded, and such counts
+// are one undo step. A command that fails, or is cancelled through `progress`, leaves everything as it was.
+class Session {
+ public:
+  // `files` opens what OpenFile names, and what it refers to.
+  explicit Session(Resolver files = {});
+  ~Session();
+  Session(Session&&) noexcept;
+  Session& operator=(Session&&) noexcept;
+
+  // Throws Error kBadArgument for what makes no sense now: a joint that is not there, a drag that has not begun,
+  // nothing to undo, no model opened. Opening starts a new history.
+  void run(const Command& command, Progress& progress);
+  // The same as OpenFile, for a file whose bytes are at hand. A model without a rig gets one with the best suggested
+  // number of handles; one that saveSession() wrote comes back as it was.
+  void open(ByteSpan bytes, std::string_view name, Progress& progress);
+
+  bool isOpen() const { return state_.rig != nullptr; }
+  // These throw Error kBadArgument while nothing is open.
+  const SessionState& state() const;
+  const Asset& source() const;  // the model as it was opened
+  bool canUndo() const { return !undo_.empty(); }
+  bool canRedo() const { return !redo_.empty(); }
+  std::string_view undoName() const { return undo_.empty() ? std::string_view() : undo_.back().command; }
+  std::string_view redoName() const { return redo_.empty() ? std::string_view() : redo_.back().command; }
+  std::optional<Index> draggedJoint() const;
+
+  // What the ray meets: a handle (see pickHandle) or else the surface.
+  std::optional<PickHit> pick(const Ray& ray, double slope) const;
+  // #J, from where a point is bound to where its joint takes it.
+  std::vector<Affine> skinMatrices() const;
+
+  // GLB: the rigged model, its joints standing in the pose. The others: the posed surface alone, an OBJ without its
+  // materials.
+  Bytes exportModel(ExportFormat format) const;
+  // See session_file.h.
+  Bytes saveSession() const;
+  // What was done since a model was opened; run on a new session with the same files it gives the same bytes.
+  std::span<const Command> record() const { return record_; }
+
+ private:
+  struct Step {
+    std::string_view command;
+    SessionState before;
+  };
+  struct Runner;
+
+  void commit(const Command& command, SessionState next);
+  void remember(const Command& command);
+  void start(Asset source, const Command& command, Progress& progress);
+  void requireOpen() const;
+
+  Resolver files_;
+  std::shared_ptr<const Asset> source_;
+  SessionState state_;
+  std::vector<Step> undo_, redo_;
+  std::unique_ptr<Drag> drag_;
+  std::vector<Command> record_;
+};
+
+}  // namespace limber

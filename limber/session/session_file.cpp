@@ -1,0 +1,106 @@
+#include "limber/session/session_file.h"
+
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include "limber/asset/json_access.h"
+
+namespace limber {
+
+namespace {
+
+constexpr const char* kKey = "limber_session";
+constexpr int kVersion = 1;
+
+template <int N>
+Json numbersJson(const double* values) {
+  Json json = Json::array();
+  for (int i = 0; i < N; ++i) json.push_back(values[i]);
+  return json;
+}
+
+template <int N>
+void readNumbers(const JsonView& object, std::string_view key, double* values) {
+  const JsonView array = object.array(key);
+  if (array.size() != N) array.fail("holds another number of numbers than it should");
+  for (int i = 0; i < N; ++i) values[i] = array[static_cast<std::size_t>(i)].asNumber();
+}
+
+std::string requireText(const JsonView& object, std::string_view key) {
+  const std::string text(object.text(key));
+  if (text.empty()) object.member(key).fail("is missing");
+  return text;
+}
+
+SavedJoint readJoint(const JsonView& entry) {
+  SavedJoint joint{requireText(entry, "joint"), {}};
+  readNumbers<3>(entry, "translation", joint.local.translation.data());
+  readNumbers<4>(entry, "rotation", joint.local.rotation.coeffs().data());
+  readNumbers<3>(entry, "scale", joint.local.scale.data());
+  if (!(std::abs(joint.local.rotation.norm() - 1) < 1e-3)) entry.member("rotation").fail("is not of unit length");
+  return joint;
+}
+
+SavedSession readSession(const JsonView& json) {
+  if (json.number("version", 0) != kVersion) json.fail("was written by another version of limber");
+  SavedSession session;
+  session.ownRig = json.flag("own_rig", false);
+  if (!session.ownRig) {
+    session.rigger = requireText(json, "rigger");
+    session.skinning = requireText(json, "skinning");
+    session.handles = json.requireIndex("handles", kNoIndex);
+  }
+  session.ik = json.flag("ik", false);
+  session.limits = json.text("limits");
+  const JsonView targets = json.array("targets"), pose = json.array("pose");
+  for (std::size_t i = 0; i < targets.size(); ++i) {
+    SavedTarget target{requireText(targets[i], "joint"), {}};
+    readNumbers<3>(targets[i], "position", target.position.data());
+    session.targets.push_back(std::move(target));
+  }
+  for (std::size_t i = 0; i < pose.size(); ++i) session.pose.push_back(readJoint(pose[i]));
+  return session;
+}
+
+}  // namespace
+
+void putSession(Asset& asset, const SavedSession& session) {
+  Json json = {{"version", kVersion}, {"own_rig", session.ownRig}, {"ik", session.ik}};
+  if (!session.ownRig) {
+    json["rigger"] = session.rigger;
+    json["skinning"] = session.skinning;
+    json["handles"] = session.handles;
+  }
+  if (!session.limits.empty()) json["limits"] = session.limits;
+  json["targets"] = Json::array();
+  for (const SavedTarget& target : session.targets) {
+    json["targets"].push_back({{"joint", target.joint}, {"position", numbersJson<3>(target.position.data())}});
+  }
+  json["pose"] = Json::array();
+  for (const SavedJoint& joint : session.pose) {
+    json["pose"].push_back({{"joint", joint.joint},
+                            {"translation", numbersJson<3>(joint.local.translation.data())},
+                            {"rotation", numbersJson<4>(joint.local.rotation.coeffs().data())},
+                            {"scale", numbersJson<3>(joint.local.scale.data())}});
+  }
+  Json& extras = asset.json()["extras"];
+  if (!extras.is_null() && !extras.is_object()) {
+    throw Error(ErrorCode::kUnsupported, "the document's extras are no object, so a session has no place there",
+                asset.name);
+  }
+  extras[kKey] = std::move(json);
+}
+
+std::optional<SavedSession> takeSession(Asset& asset) {
+  const JsonView root(asset);
+  const JsonView extras = root.member("extras");
+  if (!extras.exists() || !extras.json().is_object() || !extras.json().contains(kKey)) return std::nullopt;
+  SavedSession session = readSession(extras.object(kKey));
+  Json& json = asset.json()["extras"];
+  json.erase(kKey);
+  if (json.empty()) asset.json().erase("extras");
+  return session;
+}
+
+}  // namespace limber

@@ -1,0 +1,39 @@
+// A session kept in its model: the file is an ordinary GLB of the model as it was opened, and what was done with it
+// stands in its extras.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "limber/asset/asset.h"
+#include "limber/core/transform.h"
+
+namespace limber {
+
+struct SavedJoint {
+  std::string joint;
+  Transform local;
+};
+struct SavedTarget {
+  std::string joint;
+  Vec3 position = Vec3::Zero();
+};
+
+struct SavedSession {
+  bool ownRig = false;  // the model's own; else made by these methods
+  std::string rigger, skinning;
+  Index handles = 0;
+  bool ik = false;
+  std::vector<SavedTarget> targets;
+  std::string limits;            // text of a limits file; empty: none
+  std::vector<SavedJoint> pose;  // joints that do not stand as in RiggedModel::home
+};
+
+// Puts it into the document's extras. Throws Error kUnsupported where those are no object.
+void putSession(Asset& asset, const SavedSession& session);
+// Takes it out again. Throws Error kBadData naming the entry where it breaks the format; names of joints and methods
+// are not checked.
+std::optional<SavedSession> takeSession(Asset& asset);
+
+}  // namespace limber

@@ -1,0 +1,75 @@
+#include "limber/session/session_state.h"
+
+#include <nlohmann/json.hpp>
+
+namespace limber {
+
+namespace {
+
+Json vectorJson(const Vec3& v) {
+  return Json::array({v.x(), v.y(), v.z()});
+}
+
+Json textOrNull(std::string_view text) {
+  return text.empty() ? Json(nullptr) : Json(std::string(text));
+}
+
+Json jointsJson(const RiggedModel& rig) {
+  const std::vector<Affine> rest = restGlobals(rig.skeleton());
+  Json joints = Json::array();
+  for (Index j = 0; j < rest.size(); ++j) {
+    const Joint& joint = rig.skeleton().joints[j];
+    joints.push_back({{"name", joint.name},
+                      {"parent", joint.parent ? static_cast<int>(*joint.parent) : -1},
+                      {"radius", rig.radii[j]},
+                      {"rest", vectorJson(rest[j].translation())}});
+  }
+  return joints;
+}
+
+Json warningsJson(const Warnings& warnings) {
+  Json list = Json::array();
+  for (const Warning& w : warnings.items()) {
+    list.push_back({{"kind", w.kind}, {"message", w.message}, {"where", w.where}, {"count", w.count}});
+  }
+  return list;
+}
+
+}  // namespace
+
+Json sessionState(const Session& session) {
+  const SessionState& state = session.state();
+  const RiggedModel& rig = *state.rig;
+  Box box;
+  for (const Vec3f& position : rig.geometry.positions) box.add(position.cast<double>());
+  Json json = {
+      {"name", session.source().name},
+      {"vertices", rig.geometry.positions.size()},
+      {"triangles", rig.geometry.triangles.size()},
+      {"box", {{"min", vectorJson(box.min)}, {"max", vectorJson(box.max)}}},
+      {"own_rig", !rig.report},
+      {"rigger", state.rigger},
+      {"skinning", state.skinning},
+      {"most_handles", rig.report ? rig.report->weldedVertices : static_cast<Index>(rig.geometry.positions.size())},
+      {"suggestions", Json::array()},
+      {"joints", jointsJson(rig)},
+      {"ik", state.ik},
+      {"limited", state.limits != nullptr},
+      {"targets", Json::array()},
+      {"dragged", nullptr},
+      {"posed", !samePose(state.pose, rig.home)},
+      {"undo", textOrNull(session.undoName())},
+      {"redo", textOrNull(session.redoName())},
+      {"warnings", warningsJson(rig.report ? rig.report->warnings : rig.asset.warnings)}};
+  if (rig.report) {
+    for (const HandleSuggestion& suggestion : rig.report->suggestions)
+      json["suggestions"].push_back(suggestion.handles);
+  }
+  for (const HeldTarget& target : state.targets) {
+    json["targets"].push_back({{"joint", target.joint}, {"position", vectorJson(target.position)}});
+  }
+  if (const std::optional<Index> joint = session.draggedJoint()) json["dragged"] = *joint;
+  return json;
+}
+
+}  // namespace limber
