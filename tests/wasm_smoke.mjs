@@ -1,4 +1,5 @@
-// The WebAssembly engine in Node against the native program: the same model and options must give the same bytes.
+// The WebAssembly engine in Node against the native program: the same model and options must give the same bytes, and
+// the same commands on a session the same pose.
 //
 //   node tests/wasm_smoke.mjs WASM_BUILD_FOLDER NATIVE_PROGRAM MODEL.glb OUTPUT_FOLDER
 //
@@ -55,6 +56,76 @@ cases['a count too large for the engine is an error value'] = () => {
 };
 cases['the engine goes on after errors'] = () => {
   assert.ok(limber.rig(bytes, 'model.glb', { handles: 6 }).ok);
+};
+
+// The nodes of a GLB, each as one list of numbers.
+function nodesOf(glb) {
+  const buffer = Buffer.from(glb);
+  const { nodes } = JSON.parse(buffer.subarray(20, 20 + buffer.readUInt32LE(12)).toString());
+  return nodes.map((node) => ({
+    name: node.name, numbers: [...(node.translation ?? [0, 0, 0]), ...(node.rotation ?? [0, 0, 0, 1]), ...(node.scale ?? [1, 1, 1])],
+  }));
+}
+
+const session = limber.createSession();
+const run = (command) => {
+  const result = session.run(command);
+  assert.ok(result.ok, `${command.do}: ${result.error?.message}`);
+  return result;
+};
+
+cases['a session: the pose that the native program makes of its record'] = () => {
+  assert.ok(session.open(bytes, 'model.glb').ok);
+  const { joints } = run({ do: 'set_handles', count: 20 }).state;
+  const tip = joints.findLast((joint) => joint.parent > 0);
+  run({ do: 'set_ik', on: true });
+  const [x, y] = tip.rest, view = [0, 0, -1];
+  run({ do: 'begin_drag', joint: tip.name, ray: { origin: [x, y, 9], direction: view }, view });
+  const started = performance.now(), updates = 200;
+  for (let i = 1; i <= updates; ++i) {
+    const { skin } = run({ do: 'update_drag', ray: { origin: [x + 0.001 * i, y + 0.0005 * i, 9], direction: view }, view });
+    assert.equal(skin.length, 16 * joints.length);
+  }
+  console.log(`a drag's update: ${((performance.now() - started) / updates).toFixed(3)} ms at ${joints.length} joints`);
+  run({ do: 'end_drag' });
+  run({ do: 'turn_joint', joint: joints[1].name, axis: [0, 1, 0.5], degrees: 25 });
+  run({ do: 'set_handles', count: 30 });
+  run({ do: 'mirror_pose', from: 'left' });
+  const glb = session.export('glb').bytes;
+  writeFileSync(join(output, 'session.glb'), glb);
+  writeFileSync(join(output, 'model.glb'), bytes);
+  writeFileSync(join(output, 'commands.json'), JSON.stringify(session.record()));
+  const path = join(output, 'session_native.glb');
+  execFileSync(program, ['session', 'replay', join(output, 'commands.json'), '-o', path, '--quiet'], { stdio: ['ignore', 'ignore', 'inherit'] });
+  const here = nodesOf(glb), there = nodesOf(readFileSync(path));
+  assert.equal(here.length, there.length);
+  here.forEach(({ name, numbers }, n) => {
+    assert.equal(name, there[n].name);
+    numbers.forEach((value, i) => assert.ok(Math.abs(value - there[n].numbers[i]) < 1e-5, `${name}: ${value}, ${there[n].numbers[i]}`));
+  });
+};
+cases['a session: an error is a value and changes nothing'] = () => {
+  const before = session.export('session').bytes;
+  for (const command of [{ do: 'fly' }, { do: 'reset_joint', joint: 'none' }, { do: 'set_handles', count: 0 }, { do: 'end_drag' }]) {
+    const { ok, error } = session.run(command);
+    assert.equal(ok, false);
+    assert.notEqual(error.message, '');
+  }
+  assert.equal(session.open(bytes.slice(0, 100), 'cut.glb').ok, false);
+  assert.equal(Buffer.compare(session.export('session').bytes, before), 0);
+};
+cases['a session: surface, picking and a saved session'] = () => {
+  const { model } = session.model(), { handles } = session.handles();
+  assert.equal(model.weights.length / 4, model.positions.length / 3);
+  assert.ok(model.triangles.every((v) => v < model.positions.length / 3));
+  assert.ok(model.joints.every((joint) => joint < handles.length / 4));
+  const [x, y] = handles;
+  assert.equal(session.pick({ origin: [x, y, 9], direction: [0, 0, -1] }, 0).hit.on_handle, true);
+  assert.equal(session.pick({ origin: [99, 99, 9], direction: [0, 0, -1] }, 0).hit, null);
+  const again = limber.createSession();
+  assert.ok(again.open(session.export('session').bytes, 'model.glb').ok);
+  assert.equal(Buffer.compare(again.export('glb').bytes, session.export('glb').bytes), 0);
+  again.free();
 };
 
 let passed = 0, failed = 0;

@@ -29,6 +29,12 @@ for body in biped:humanoid quadruped:quadruped; do
   $limber rig $work/$sample.glb --template ${body#*:} -o $work/${sample}_template.glb --quiet
   picture ${sample}_template.glb bones ${sample}_template.png
 done
+# The page, where its parts are built (./dev studio) and there is a browser to draw it.
+if [ -f dist/index.html ] && command -v chromium >/dev/null; then
+  node apps/studio/tests/pictures.mjs dist $images
+else
+  echo "The pictures of the studio stay as they are: no dist/ (./dev studio makes it), or no chromium"
+fi
 
 characters=${LIMBER_SHARED_DATA:-../shared/data}/rigged
 if [ -d "$characters" ]; then

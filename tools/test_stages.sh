@@ -91,13 +91,8 @@ broken_files() {
   counted tests/broken_files.sh build/release/limber "$output/broken" $folder
 }
 
-node_packages() {
-  [ node_modules/.package-lock.json -nt package-lock.json ] && return 0
-  npm ci --silent --no-progress </dev/null >"$output/npm.log" 2>&1 || { tail -n 20 "$output/npm.log"; return 1; }
-}
-
 validate_written_files() {
-  node_packages && counted node tools/validate.mjs "$output"
+  install_node_packages . && counted node tools/validate.mjs "$output"
 }
 
 # Motions whose roots rest at the origin: there all programs agree on what a BVH means.
@@ -112,7 +107,7 @@ common_motions() {
 motions_in_three() {
   local motions
   motions=$(common_motions) || { echo "   skipped: the shared motions are not there"; add_counts 0 0 1; return 0; }
-  node_packages && counted node tests/three_positions.mjs build/release/limber "$output/three" $motions
+  install_node_packages . && counted node tests/three_positions.mjs build/release/limber "$output/three" $motions
 }
 
 motions_in_blender() {
@@ -150,14 +145,22 @@ build_release() {
   configure release -DLIMBER_TESTS=ON -DLIMBER_BENCH=ON && compile release
 }
 
-build_wasm() {
-  export NODE_PATH=/usr/share/nodejs # Debian's emscripten looks for its own JavaScript packages there
-  configure wasm && compile wasm
-}
-
 wasm_smoke() {
   build/release/limber sample biped --quiet -o "$output/biped.glb" &&
     counted node tests/wasm_smoke.mjs build/wasm build/release/limber "$output/biped.glb" "$output/wasm"
+}
+
+# The page in a browser: skipped where there is none to be had.
+studio_in_browser() {
+  need "${packages_browser[@]}" >/dev/null 2>&1 || true
+  if ! command -v chromium >/dev/null; then
+    echo "   no chromium here: the page is built, and not tried"
+    add_counts 0 0 1
+    return 0
+  fi
+  local faulty
+  faulty=$(shared_data)/broken || faulty=
+  counted node apps/studio/tests/studio_test.mjs dist build/release/limber "$output/studio" $faulty
 }
 
 build_sanitize() {
@@ -204,6 +207,8 @@ fuzz_seeds() {
   done
 }
 
+. tools/studio.sh
+
 run_tests() {
   local quick= sanitize= blender=
   for option in "$@"; do
@@ -240,6 +245,8 @@ remaining_stages() {
   stage "WebAssembly build" build_wasm
   stage "WebAssembly in Node against the native program" wasm_smoke
   stage "motions in three.js" motions_in_three
+  stage "studio: types, bundle" build_studio
+  stage "studio in a browser: mouse, touch, keyboard, bad files" studio_in_browser
   stage "glTF validator over every file written" validate_written_files
   stage "installed package, and a program built against it" install_and_consume
   stage "sanitizer build, clang++ with warnings as errors" build_sanitize

@@ -3,23 +3,60 @@
 //   const limber = await loadLimber(wasmBytes);
 //   const result = limber.rig(glbBytes, 'dragon.glb', { handles: 20 });
 //   if (result.ok) save(result.glb, result.report); else tell(result.error.message);
+//
+//   const session = limber.createSession();
+//   session.run({ do: 'open_sample', name: 'biped' });
+//   session.run({ do: 'turn_joint', joint: 'handle_03.L', axis: [0, 0, 1], degrees: 30 });
+//   save(session.export('glb').bytes);
 import createEngine from './limber_engine.mjs';
 
 /**
  * @typedef {{ handles?: number, maxInfluences?: number, rigger?: string, skinning?: string,
  *             existingRig?: 'refuse' | 'replace' | 'keep-skeleton' }} RigOptions
  * @typedef {{ code: string, message: string, where: string, remedy: string }} LimberError
+ * @typedef {{ ok: false, error: LimberError }} Failure
  * The report is the one of docs/report.md, from "methods" on.
- * @typedef {{ ok: true, glb: Uint8Array, report: object } | { ok: false, error: LimberError }} RigResult
+ * @typedef {{ ok: true, glb: Uint8Array, report: object } | Failure} RigResult
+ *
+ * Vectors in world space, metres.
+ * @typedef {[number, number, number]} Vector
+ * @typedef {{ origin: Vector, direction: Vector }} Ray
+ * @typedef {{ do: string, [field: string]: unknown }} Command as limber/session/command.h has them
+ *
+ * As limber/session/session_state.h describes it.
+ * @typedef {{ name: string, parent: number, radius: number, rest: Vector }} SessionJoint
+ * @typedef {{ name: string, vertices: number, triangles: number, box: { min: Vector, max: Vector }, own_rig: boolean,
+ *             rigger: string, skinning: string, most_handles: number, suggestions: number[], joints: SessionJoint[],
+ *             ik: boolean, limited: boolean, targets: { joint: number, position: Vector }[], dragged: number | null,
+ *             posed: boolean, undo: string | null, redo: string | null,
+ *             warnings: { kind: string, message: string, where: string, count: number }[] }} SessionState
+ *
+ * skin: 16 numbers for each joint, a matrix column by column; state: null after a drag's update.
+ * @typedef {{ ok: true, state: SessionState | null, skin: Float32Array } | Failure} StepResult
+ * @typedef {{ joint: number, on_handle: boolean, position: Vector, distance: number }} PickHit
+ * @typedef {{ positions: Float32Array, normals: Float32Array, uvs: Float32Array, triangles: Uint32Array,
+ *             weights: Float32Array, joints: Uint16Array,
+ *             parts: { name: string, first: number, count: number, material: number | null }[],
+ *             materials: { name: string, color: [number, number, number, number], texture: number | null }[],
+ *             textures: Uint8Array[] }} SurfaceModel four influences for each vertex; the files of the textures
+ * @typedef {'glb' | 'obj' | 'stl' | 'ply' | 'session'} ExportFormat
+ * @typedef {ReturnType<typeof createSession>} Session
  */
 
 /**
  * @param {BufferSource} wasmBinary the content of limber_engine.wasm
- * @returns {Promise<{ rig(file: Uint8Array, name: string, options?: RigOptions): RigResult }>}
+ * @param {{ onProgress?: (stage: string, fraction: number) => void }} [listeners]
  */
-export async function loadLimber(wasmBinary) {
-  const engine = await createEngine({ wasmBinary });
-  return { rig: (file, name, options = {}) => rig(engine, file, name, options) };
+export async function loadLimber(wasmBinary, listeners = {}) {
+  const engine = await createEngine({ wasmBinary, ...listeners });
+  return {
+    /** @type {(file: Uint8Array, name: string, options?: RigOptions) => RigResult} */
+    rig: (file, name, options = {}) => {
+      const result = call(engine, engine._limber_rig, [], file, name, JSON.stringify(options));
+      return result.ok ? { ok: true, glb: result.bytes, report: result.account } : result;
+    },
+    createSession: () => createSession(engine),
+  };
 }
 
 // Copies into the engine's memory. The views on it are taken anew each time: memory that grows replaces them.
@@ -32,20 +69,72 @@ function put(engine, bytes) {
 
 const copyOut = (engine, at, size) => engine.HEAPU8.slice(at, at + size);
 
-function rig(engine, file, name, options) {
+// Calls with `leading` arguments as they are, then bytes and texts, each as a place and a size.
+function call(engine, method, leading, ...inputs) {
   const text = new TextEncoder();
-  const inputs = [file, text.encode(name), text.encode(JSON.stringify(options))];
-  const places = inputs.map((bytes) => put(engine, bytes));
-  const call = engine._limber_rig(...inputs.flatMap((bytes, i) => [places[i], bytes.length]));
+  const blocks = inputs.map((input) => (typeof input === 'string' ? text.encode(input) : input));
+  const places = blocks.map((bytes) => put(engine, bytes));
+  const result = method(...leading, ...blocks.flatMap((bytes, i) => [places[i], bytes.length]));
   places.forEach((at) => engine._free(at));
-  if (call === 0) {
-    return { ok: false, error: { code: 'limit', message: 'not enough memory', where: name, remedy: 'try a smaller model' } };
+  if (result === 0) {
+    return { ok: false, error: { code: 'limit', message: 'not enough memory', where: '', remedy: 'try a smaller model' } };
   }
   const account = JSON.parse(new TextDecoder().decode(
-    copyOut(engine, engine._limber_account(call), engine._limber_account_size(call))));
-  const result = engine._limber_ok(call)
-    ? { ok: true, glb: copyOut(engine, engine._limber_glb(call), engine._limber_glb_size(call)), report: account }
+    copyOut(engine, engine._limber_account(result), engine._limber_account_size(result))));
+  const answer = engine._limber_ok(result)
+    ? { ok: true, bytes: copyOut(engine, engine._limber_bytes(result), engine._limber_bytes_size(result)), account }
     : { ok: false, error: account };
-  engine._limber_free_result(call);
-  return result;
+  engine._limber_free_result(result);
+  return answer;
+}
+
+function createSession(engine) {
+  const handle = engine._limber_session_new();
+  if (handle === 0) throw new RangeError('the engine is out of memory');
+  const step = (result) => result.ok
+    ? { ok: true, state: 'name' in result.account ? result.account : null, skin: new Float32Array(result.bytes.buffer) }
+    : result;
+  return {
+    /** @type {(file: Uint8Array, name: string) => StepResult} */
+    open: (file, name) => step(call(engine, engine._limber_session_open, [handle], file, name)),
+    /** @type {(command: Command) => StepResult} */
+    run: (command) => step(call(engine, engine._limber_session_run, [handle], JSON.stringify(command))),
+    /** A handle, taken to be at least `slope` times its distance wide, or the surface.
+     *  @type {(ray: Ray, slope: number) => { ok: true, hit: PickHit | null } | Failure} */
+    pick: (ray, slope) => {
+      const result = call(engine, engine._limber_session_pick, [handle, ...ray.origin, ...ray.direction, slope]);
+      return result.ok ? { ok: true, hit: result.account } : result;
+    },
+    /** For each joint where it stands, and its radius: x, y, z, r.
+     *  @type {() => { ok: true, handles: Float32Array } | Failure} */
+    handles: () => {
+      const result = call(engine, engine._limber_session_handles, [handle]);
+      return result.ok ? { ok: true, handles: new Float32Array(result.bytes.buffer) } : result;
+    },
+    /** The surface as bound. @type {() => { ok: true, model: SurfaceModel } | Failure} */
+    model: () => {
+      const result = call(engine, engine._limber_session_model, [handle]);
+      return result.ok ? { ok: true, model: surfaceModel(result.bytes, result.account) } : result;
+    },
+    /** @type {(format: ExportFormat) => { ok: true, bytes: Uint8Array } | Failure} */
+    export: (format) => call(engine, engine._limber_session_export, [handle], format),
+    /** What was done since a model was opened, as a list that `limber session replay` runs.
+     *  @type {() => { limber_commands: number, commands: Command[] }} */
+    record: () => call(engine, engine._limber_session_record, [handle]).account,
+    free: () => engine._limber_session_free(handle),
+  };
+}
+
+function surfaceModel(bytes, { arrays, textures, ...rest }) {
+  const view = (Type, { offset, size }) => new Type(bytes.buffer, offset, size / Type.BYTES_PER_ELEMENT);
+  return {
+    positions: view(Float32Array, arrays.positions),
+    normals: view(Float32Array, arrays.normals),
+    uvs: view(Float32Array, arrays.uvs),
+    triangles: view(Uint32Array, arrays.triangles),
+    weights: view(Float32Array, arrays.weights),
+    joints: view(Uint16Array, arrays.joints),
+    textures: textures.map(({ offset, size }) => bytes.slice(offset, offset + size)),
+    ...rest,
+  };
 }

@@ -1,14 +1,12 @@
-// The C boundary of the WebAssembly engine: bytes and JSON in, bytes and JSON out. Nothing is thrown across it: an
-// error is a result like any other. limber.mjs is the typed face of these functions; nobody else calls them.
+// The C boundary of the WebAssembly engine: bytes and JSON in, bytes and JSON out. limber.mjs is the typed face of
+// these functions; nobody else calls them.
 #include <cstdint>
-#include <memory>
-#include <new>
 #include <string>
 #include <string_view>
 
 #include <nlohmann/json.hpp>
 
-#include "limber/asset/json_text.h"
+#include "call_result.h"
 #include "limber/asset/read.h"
 #include "limber/asset/write.h"
 #include "limber/pipeline/auto_rig.h"
@@ -17,13 +15,8 @@
 namespace {
 
 using limber::Json;
-
-// What a call gives: `account` is JSON, the report or the error; `glb` is empty for an error.
-struct CallResult {
-  bool ok = false;
-  limber::Bytes glb;
-  std::string account;
-};
+using limber::wasm::CallResult;
+using limber::wasm::guarded;
 
 [[noreturn]] void refuseOption(const std::string& name) {
   throw limber::Error(limber::ErrorCode::kBadArgument, "no such option, or a value of the wrong kind", name);
@@ -65,56 +58,28 @@ limber::AutoRigOptions optionsFrom(std::string_view text) {
   return options;
 }
 
-CallResult failure(const limber::Error& error) {
-  CallResult result;
-  result.account = limber::dumpReport({{"code", std::string(limber::errorCodeName(error.code()))},
-                                       {"message", error.message()},
-                                       {"where", error.where()},
-                                       {"remedy", error.remedy()}},
-                                      -1);
-  return result;
-}
-
-CallResult rig(limber::ByteSpan file, std::string_view name, std::string_view optionsText) {
-  try {
-    limber::Asset asset = limber::readAsset(file, name);
-    limber::Progress progress;
-    const limber::AutoRigReport report = limber::autoRig(asset, optionsFrom(optionsText), progress);
-    return {true, limber::writeGlb(asset), limber::dumpReport(limber::toJson(report), -1)};
-  } catch (const limber::Error& error) {
-    return failure(error);
-  } catch (const std::bad_alloc&) {
-    return failure({limber::ErrorCode::kLimit, "not enough memory", std::string(name), "try a smaller model"});
-  } catch (const std::exception& error) {
-    return failure({limber::ErrorCode::kBadData, error.what(), std::string(name)});
-  }
-}
-
 }  // namespace
-
-#define LIMBER_EXPORT extern "C" __attribute__((used, visibility("default")))
 
 // The strings need no final zero. The result is the caller's, to be given back to limber_free_result; null where there
 // is no memory even to tell what went wrong.
 LIMBER_EXPORT CallResult* limber_rig(const std::uint8_t* file, std::size_t fileSize, const char* name,
                                      std::size_t nameSize, const char* options, std::size_t optionsSize) {
-  try {
-    auto result = std::make_unique<CallResult>();
-    *result = rig({file, fileSize}, {name, nameSize}, {options, optionsSize});
-    return result.release();
-  } catch (...) {
-    return nullptr;
-  }
+  return guarded({name, nameSize}, [&]() -> CallResult {
+    limber::Asset asset = limber::readAsset({file, fileSize}, {name, nameSize});
+    limber::Progress progress;
+    const limber::AutoRigReport report = limber::autoRig(asset, optionsFrom({options, optionsSize}), progress);
+    return {true, limber::writeGlb(asset), limber::dumpReport(limber::toJson(report), -1)};
+  });
 }
 
 LIMBER_EXPORT int limber_ok(const CallResult* result) {
   return result->ok;
 }
-LIMBER_EXPORT const std::uint8_t* limber_glb(const CallResult* result) {
-  return result->glb.data();
+LIMBER_EXPORT const std::uint8_t* limber_bytes(const CallResult* result) {
+  return result->bytes.data();
 }
-LIMBER_EXPORT std::size_t limber_glb_size(const CallResult* result) {
-  return result->glb.size();
+LIMBER_EXPORT std::size_t limber_bytes_size(const CallResult* result) {
+  return result->bytes.size();
 }
 LIMBER_EXPORT const char* limber_account(const CallResult* result) {
   return result->account.data();

@@ -1,0 +1,42 @@
+// What a program that drives the page (a test, a script that makes pictures) can ask of it.
+import { Vector3 } from 'three';
+import type { SessionState, Vector } from '../engine/messages';
+import type { HandleView } from '../scene/handle_view';
+import type { Viewport } from '../scene/viewport';
+import type { PageStore } from './state';
+import type { Studio } from './studio';
+
+export interface StudioProbe {
+  /** Nothing is asked of the engine that it has not answered. */
+  idle(): boolean;
+  state(): SessionState | null;
+  selected(): number | null;
+  /** Metres. */
+  position(joint: string): Vector;
+  /** Pixels of the page. */
+  place(joint: string): { x: number; y: number };
+}
+
+declare global {
+  var limberStudio: StudioProbe | undefined;
+}
+
+export function exposeStage(studio: Studio, page: PageStore, viewport: Viewport, handles: HandleView) {
+  const position = (name: string) => {
+    const joint = page.now.session?.joints.findIndex((known) => known.name === name) ?? -1;
+    if (joint < 0) throw new Error(`no joint is called ${name}`);
+    return handles.position(joint, new Vector3());
+  };
+  globalThis.limberStudio = {
+    idle: () => studio.idle,
+    state: () => page.now.session,
+    selected: () => page.now.selected,
+    position: (name) => position(name).toArray(),
+    place: (name) => {
+      viewport.camera.updateMatrixWorld();
+      const { x, y } = position(name).project(viewport.camera);
+      const box = viewport.canvas.getBoundingClientRect();
+      return { x: box.left + ((x + 1) / 2) * box.width, y: box.top + ((1 - y) / 2) * box.height };
+    },
+  };
+}

@@ -1,0 +1,47 @@
+// Keys that work wherever the focus is, but in a field of text.
+import type { HandleView } from '../scene/handle_view';
+import type { Viewport } from '../scene/viewport';
+import type { PageStore } from './state';
+import type { Studio } from './studio';
+
+export function bindShortcuts(studio: Studio, page: PageStore, viewport: Viewport, handles: HandleView) {
+  const selected = (act: (joint: number) => void) => () => {
+    if (page.now.selected !== null) act(page.now.selected);
+  };
+  const plain: Record<string, () => void> = {
+    'g': () => page.set({ mode: 'move' }),
+    'r': () => page.set({ mode: 'turn' }),
+    'i': () => void studio.toggleIk(),
+    'm': () => void studio.mirrorPose(),
+    'p': selected((joint) => void studio.togglePin(joint, handles.position(joint).toArray())),
+    'h': () => page.set({ display: page.now.display === 'handles' ? 'surface' : 'handles' }),
+    'f': () => viewport.frameAgain(),
+    'Home': () => viewport.frameAgain(),
+    'Delete': selected((joint) => void studio.resetJoint(joint)),
+    '1': () => viewport.look('front'),
+    '3': () => viewport.look('right'),
+    '7': () => viewport.look('top'),
+    '5': () => viewport.toggleOrthographic(),
+    '?': () => page.set({ help: true }),
+  };
+  const withControl: Record<string, () => void> = {
+    'z': () => void studio.undo(), 'Z': () => void studio.redo(), 'y': () => void studio.redo(),
+    'o': () => document.getElementById('file')?.click(),
+  };
+  addEventListener('keydown', (event) => {
+    const target = event.target as HTMLElement;
+    if (target.matches('input:not([type=range], [type=checkbox]), select, textarea') || page.now.help) return;
+    if (event.altKey && event.key.toLowerCase() === 'r') void studio.resetPose();
+    else if (event.altKey) return;
+    else if (event.ctrlKey || event.metaKey) {
+      const act = withControl[event.shiftKey ? event.key.toUpperCase() : event.key];
+      if (!act) return;
+      act();
+    } else {
+      const act = plain[event.key];
+      if (!act || !page.now.session) return;
+      act();
+    }
+    event.preventDefault();
+  });
+}

@@ -1,0 +1,39 @@
+// What the page shows, in one place.
+import type { LimberError, SessionState, SurfaceModel } from '../engine/messages';
+import { Store } from './store';
+
+export type DragMode = 'move' | 'turn';
+export type Display = 'handles' | 'surface' | 'weights' | 'joint-weights';
+
+export interface Notice {
+  kind: 'error' | 'note';
+  title: string;
+  detail: string;
+}
+
+export interface PageState {
+  session: SessionState | null;
+  model: SurfaceModel | null;
+  mode: DragMode;
+  display: Display;
+  bones: boolean;
+  wireframe: boolean;
+  selected: number | null;
+  hovered: number | null;
+  /** A stage with how far it is; null when nothing takes long. */
+  work: { stage: string; fraction: number } | null;
+  notice: Notice | null;
+  help: boolean;
+}
+
+export type PageStore = Store<PageState>;
+
+export const createPageStore = (): PageStore => new Store<PageState>({
+  session: null, model: null, mode: 'move', display: 'handles', bones: true, wireframe: false,
+  selected: null, hovered: null, work: null, notice: null, help: false,
+});
+
+export function noticeOf(error: LimberError): Notice {
+  const title = error.message.charAt(0).toUpperCase() + error.message.slice(1);
+  return { kind: 'error', title, detail: [error.where, error.remedy].filter((text) => text !== '').join(' \u2014 ') };
+}

@@ -1,0 +1,225 @@
+// Everything that a user can do, each a call on the engine's session; panels and the view call this and nothing else.
+import { EngineClient, EngineError } from '../engine/client';
+import type { Answer, Command, Ray, Stance, Vector } from '../engine/messages';
+import { noticeOf, type PageStore } from './state';
+
+type Step = Answer<'run'>;
+
+const mostFileSize = 500e6;
+const progressDelay = 250; // milliseconds before a wait is shown
+
+const stageNames: Record<string, string> = {
+  'read': 'Reading the model', 'read geometry': 'Reading the surface', 'weld': 'Joining the surface',
+  'rig': 'Finding handles', 'skin': 'Binding the surface', 'write rig': 'Finishing',
+};
+
+export class Studio {
+  /** The joints stand anew; called for every frame of a drag. */
+  onStance: (stance: Stance) => void = () => {};
+  /** A new model was opened: the camera goes to it. */
+  onOpened: () => void = () => {};
+
+  private underWay = 0;
+  private engine = new EngineClient();
+  private showTimer = 0;
+  private stage = { stage: 'Starting', fraction: 0 };
+  private wantedHandles: number | null = null;
+  private askedHandles = 0;
+  private dragUpdate: Command | null = null;
+  private dragging: Promise<void> = Promise.resolve();
+  private dragsLeft = 0;
+
+  constructor(readonly page: PageStore) {
+    this.engine.onBusy = (busy) => this.showWork(busy);
+    this.engine.onProgress = (stage, fraction) => {
+      this.stage = { stage: stageNames[stage.split(':')[0] ?? ''] ?? stage, fraction };
+      if (page.now.work) page.set({ work: this.stage });
+    };
+  }
+
+  /** Nothing that was begun is still under way. */
+  get idle() { return this.underWay === 0 && this.dragsLeft === 0; }
+
+  async openSample(name: string) {
+    await this.guard(async () => this.opened(await this.engine.run({ do: 'open_sample', name })));
+  }
+
+  async openFile(file: File) {
+    if (file.size > mostFileSize) {
+      this.page.set({ notice: { kind: 'error', title: 'This file is too large for a browser', detail: file.name } });
+      return;
+    }
+    await this.guard(async () => this.openBytes(new Uint8Array(await file.arrayBuffer()), file.name));
+  }
+
+  async openAddress(address: string) {
+    await this.guard(async () => {
+      const response = await fetch(address).catch(() => null);
+      if (!response?.ok) {
+        throw new EngineError({
+          code: 'file', message: 'the model cannot be fetched', where: address,
+          remedy: 'the other site must allow it (CORS); or save the file and drop it here',
+        });
+      }
+      const name = decodeURIComponent(new URL(address, location.href).pathname.split('/').pop() ?? 'model.glb');
+      await this.openBytes(new Uint8Array(await response.arrayBuffer()), name);
+    });
+  }
+
+  private async openBytes(bytes: Uint8Array, name: string) {
+    await this.opened(await this.engine.ask({ kind: 'open', bytes, name }));
+  }
+
+  /** The last count asked for counts; those that a slider passes on its way are left out. */
+  async setHandles(count: number) {
+    const underWay = this.wantedHandles !== null;
+    this.wantedHandles = count;
+    if (underWay) return;
+    await this.guard(async () => {
+      for (let next = count; ; next = this.wantedHandles ?? next) {
+        await this.rigged({ do: 'set_handles', count: next });
+        this.askedHandles = next;
+        if (this.wantedHandles === next) return;
+      }
+    });
+    this.wantedHandles = null;
+    this.page.set({});
+  }
+
+  /** Whether a count is on its way. */
+  get settingHandles() { return this.wantedHandles !== null; }
+
+  /** What was asked for: a rig can have a handle more, where two come at once. */
+  get handleCount() {
+    if (this.wantedHandles !== null) return this.wantedHandles;
+    const joints = this.page.now.session?.joints.length ?? 0;
+    return joints === this.askedHandles + 1 ? this.askedHandles : joints;
+  }
+
+  /** Commands that leave the rig as it is. */
+  async run(command: Command) {
+    await this.guard(async () => this.apply(await this.engine.run(command)));
+  }
+
+  async undo() { await this.guard(() => this.rigged({ do: 'undo' })); }
+  async redo() { await this.guard(() => this.rigged({ do: 'redo' })); }
+  async toggleIk() { await this.run({ do: 'set_ik', on: !this.page.now.session?.ik }); }
+  async resetPose() { await this.run({ do: 'reset_pose' }); }
+  async mirrorPose() { await this.run({ do: 'mirror_pose', from: 'both' }); }
+
+  async resetJoint(joint: number) {
+    await this.run({ do: 'reset_joint', joint: this.jointName(joint) });
+  }
+
+  async nudge(joint: number, offset: Vector) {
+    await this.run({ do: 'move_joint', joint: this.jointName(joint), offset });
+  }
+
+  async turn(joint: number, axis: Vector, degrees: number) {
+    await this.run({ do: 'turn_joint', joint: this.jointName(joint), axis, degrees });
+  }
+
+  async togglePin(joint: number, position: Vector) {
+    const pinned = this.page.now.session?.targets.some((target) => target.joint === joint);
+    const name = this.jointName(joint);
+    await this.run(pinned ? { do: 'clear_target', joint: name } : { do: 'set_target', joint: name, position });
+  }
+
+  beginDrag(joint: number, ray: Ray, view: Vector) {
+    const command = { do: 'begin_drag', joint: this.jointName(joint), mode: this.page.now.mode, ray, view };
+    this.page.set({ selected: joint });
+    this.then(() => this.run(command));
+  }
+
+  /** At most one update is on its way; the newest waits. */
+  updateDrag(ray: Ray, view: Vector) {
+    const waiting = this.dragUpdate !== null;
+    this.dragUpdate = { do: 'update_drag', ray, view };
+    if (waiting) return;
+    this.then(async () => {
+      const command = this.dragUpdate;
+      this.dragUpdate = null;
+      if (command) await this.run(command);
+    });
+  }
+
+  endDrag() { this.then(() => this.run({ do: 'end_drag' })); }
+
+  cancelDrag() {
+    this.dragUpdate = null;
+    this.then(() => this.run({ do: 'cancel_drag' }));
+  }
+
+  /** The steps of a drag go one after the other. */
+  private then(step: () => Promise<void>) {
+    ++this.dragsLeft;
+    this.dragging = this.dragging.then(step).finally(() => { --this.dragsLeft; });
+  }
+
+  /** The joint that holds the surface under the pointer. */
+  async selectSurface(ray: Ray, slope: number) {
+    await this.guard(async () => {
+      const hit = await this.engine.ask({ kind: 'pick', ray, slope });
+      this.page.set({ selected: hit?.joint ?? null });
+    });
+  }
+
+  async exportFile(format: 'glb' | 'obj' | 'stl' | 'session'): Promise<Uint8Array | null> {
+    return this.guard(() => this.engine.ask({ kind: 'export', format }));
+  }
+
+  async record(): Promise<string | null> {
+    return this.guard(() => this.engine.ask({ kind: 'record' }));
+  }
+
+  async stop() { await this.engine.cancel(); }
+
+  private jointName(joint: number) { return this.page.now.session?.joints[joint]?.name ?? ''; }
+
+  private async opened(answer: Step) {
+    this.page.set({ selected: null, hovered: null, notice: null });
+    await this.showRig(answer);
+    this.onOpened();
+  }
+
+  private async rigged(command: Command) {
+    await this.showRig(await this.engine.run(command));
+  }
+
+  private async showRig(answer: Step) {
+    const model = await this.engine.ask({ kind: 'model' });
+    const count = answer.state?.joints.length ?? 0;
+    const { selected } = this.page.now;
+    this.page.set({
+      session: answer.state, model, hovered: null, selected: selected !== null && selected < count ? selected : null,
+    });
+    this.onStance(answer.stance);
+  }
+
+  private apply({ state, stance }: Step) {
+    if (state) this.page.set({ session: state });
+    this.onStance(stance);
+  }
+
+  private showWork(busy: boolean) {
+    clearTimeout(this.showTimer);
+    this.stage = { stage: 'Working', fraction: 0 };
+    if (busy) this.showTimer = window.setTimeout(() => this.page.set({ work: this.stage }), progressDelay);
+    else if (this.page.now.work) this.page.set({ work: null });
+  }
+
+  /** What goes wrong is told; the page goes on. */
+  private async guard<T>(act: () => Promise<T>): Promise<T | null> {
+    ++this.underWay;
+    try {
+      return await act();
+    } catch (error) {
+      const told = error instanceof EngineError
+        ? error.error : { code: 'page', message: String(error), where: '', remedy: '' };
+      if (told.code !== 'cancelled') this.page.set({ notice: noticeOf(told) });
+      return null;
+    } finally {
+      --this.underWay;
+    }
+  }
+}

@@ -1,0 +1,105 @@
+// The page's side of the worker: promises, progress, and a way to stop what takes too long.
+import type { Answer, Command, FromWorker, Kind, LimberError, Request, ToWorker } from './messages';
+
+export class EngineError extends Error {
+  constructor(readonly error: LimberError) {
+    super(error.message);
+  }
+  get cancelled() { return this.error.code === 'cancelled'; }
+}
+
+const cancelled: LimberError = { code: 'cancelled', message: 'stopped', where: '', remedy: '' };
+
+interface Waiting {
+  request: Request;
+  resolve(answer: unknown): void;
+  reject(error: EngineError): void;
+}
+
+const changesDocument = (request: Request) => request.kind === 'open' || request.kind === 'run';
+const opens = (request: Request) =>
+  request.kind === 'open' || (request.kind === 'run' && String(request.command.do).startsWith('open_'));
+
+export class EngineClient {
+  onProgress: (stage: string, fraction: number) => void = () => {};
+  onBusy: (busy: boolean) => void = () => {};
+
+  private worker: Worker;
+  private ready: Promise<void>;
+  private waiting = new Map<number, Waiting>();
+  private nextId = 0;
+  /** What was done since a model was opened, so that a new worker can be brought to the same state. */
+  private history: Request[] = [];
+
+  constructor() {
+    [this.worker, this.ready] = this.startWorker();
+  }
+
+  async ask<K extends Kind>(request: Extract<Request, { kind: K }>): Promise<Answer<K>> {
+    await this.ready;
+    return this.send(request);
+  }
+
+  run(command: Command) { return this.ask({ kind: 'run', command }); }
+
+  /** Ends everything under way, and goes back to how the document was before it. */
+  async cancel() {
+    this.worker.terminate();
+    const stopped = [...this.waiting.values()];
+    this.waiting.clear();
+    const history = this.history;
+    this.history = [];
+    let brought: () => void = () => {};
+    [this.worker, this.ready] = this.startWorker();
+    const fresh = this.ready;
+    // Whoever asks meanwhile waits until the document is back.
+    this.ready = new Promise((resolve) => { brought = resolve; });
+    await fresh;
+    for (const request of history) await this.send(request).catch(() => {});
+    brought();
+    stopped.forEach(({ reject }) => reject(new EngineError(cancelled)));
+    this.onBusy(false);
+  }
+
+  private send<K extends Kind>(request: Extract<Request, { kind: K }>): Promise<Answer<K>> {
+    return new Promise((resolve, reject) => {
+      const id = this.nextId++;
+      this.waiting.set(id, { request, resolve: resolve as (answer: unknown) => void, reject });
+      this.onBusy(true);
+      this.worker.postMessage({ id, request } satisfies ToWorker);
+    });
+  }
+
+  private startWorker(): [Worker, Promise<void>] {
+    const worker = new Worker(new URL('./worker.ts', import.meta.url), { type: 'module' });
+    const ready = new Promise<void>((resolve, reject) => {
+      worker.onmessage = ({ data }: MessageEvent<FromWorker>) => {
+        if (data.kind === 'ready') resolve();
+        else if (data.kind === 'broken') reject(new EngineError({ ...cancelled, code: 'engine', message: data.message }));
+        else this.receive(data);
+      };
+      worker.onerror = (event) => reject(new EngineError({ ...cancelled, code: 'engine', message: event.message }));
+    });
+    return [worker, ready];
+  }
+
+  private receive(data: Exclude<FromWorker, { kind: 'ready' } | { kind: 'broken' }>) {
+    if (data.kind === 'progress') return this.onProgress(data.stage, data.fraction);
+    const waiting = this.waiting.get(data.id);
+    if (!waiting) return;
+    this.waiting.delete(data.id);
+    if (this.waiting.size === 0) this.onBusy(false);
+    if (data.kind === 'failed') return waiting.reject(new EngineError(data.error));
+    this.remember(waiting.request);
+    waiting.resolve(data.answer);
+  }
+
+  private remember(request: Request) {
+    if (!changesDocument(request)) return;
+    if (opens(request)) this.history = [];
+    const last = this.history.at(-1);
+    const isUpdate = (r: Request | undefined) => r?.kind === 'run' && r.command.do === 'update_drag';
+    if (isUpdate(request) && isUpdate(last)) this.history.pop();
+    this.history.push(request);
+  }
+}

@@ -1,0 +1,43 @@
+// What the page and the worker that holds the engine say to each other.
+import type {
+  Command, ExportFormat, LimberError, PickHit, Ray, SessionState, SurfaceModel,
+} from '@engine/limber.mjs';
+
+export type { Command, ExportFormat, LimberError, PickHit, Ray, SessionState, SurfaceModel };
+export type Vector = [number, number, number];
+
+/** The joints as they stand: 16 numbers each to move the surface, and x, y, z, radius each to draw handles. */
+export interface Stance {
+  skin: Float32Array;
+  handles: Float32Array;
+}
+
+export type Request =
+  | { kind: 'open'; bytes: Uint8Array; name: string }
+  | { kind: 'run'; command: Command }
+  | { kind: 'pick'; ray: Ray; slope: number }
+  | { kind: 'model' }
+  | { kind: 'export'; format: ExportFormat }
+  | { kind: 'record' };
+
+/** The answer to each kind of request. */
+export interface Answers {
+  open: { state: SessionState; stance: Stance };
+  /** state is null after a drag's update, which changes the stance alone. */
+  run: { state: SessionState | null; stance: Stance };
+  pick: PickHit | null;
+  model: SurfaceModel;
+  export: Uint8Array;
+  record: string;
+}
+
+export type Kind = Request['kind'];
+export type Answer<K extends Kind> = Answers[K];
+
+export type ToWorker = { id: number; request: Request };
+export type FromWorker =
+  | { kind: 'ready' }
+  | { kind: 'broken'; message: string }
+  | { kind: 'progress'; stage: string; fraction: number }
+  | { kind: 'done'; id: number; answer: Answers[Kind] }
+  | { kind: 'failed'; id: number; error: LimberError };

@@ -1,0 +1,24 @@
+// Every key, under ?.
+import type { PageStore } from '../app/state';
+import { button, element } from '../ui/dom';
+
+const keys: [string, string][] = [
+  ['Drag a handle', 'move or turn it'], ['Drag beside', 'turn the view'], ['Wheel, pinch', 'zoom'],
+  ['Right button, two fingers', 'shift the view'], ['Click the surface', 'select its joint'], ['G / R', 'move / turn'],
+  ['I', 'limbs follow'], ['P', 'pin the joint'], ['M', 'mirror the pose'], ['Arrows', 'move or turn the selected joint; with Shift, finely'],
+  ['Delete', 'put the selected joint back'], ['Alt+R', 'put all joints back'], ['Ctrl+Z', 'undo'], ['Ctrl+Shift+Z, Ctrl+Y', 'redo'],
+  ['Escape', 'let go without a change'], ['1, 3, 7', 'from the front, the right, above'], ['5', 'perspective on or off'],
+  ['F, Home', 'the whole model'], ['H', 'handles or surface'], ['Ctrl+O', 'open a file'], ['?', 'this list'],
+];
+
+export function help(page: PageStore): HTMLElement {
+  const dialog = element('dialog', { 'aria-labelledby': 'help-title', id: 'help' },
+    element('h2', { id: 'help-title' }, 'Keyboard and mouse'),
+    element('dl', {}, ...keys.flatMap(([key, does]) => [element('dt', {}, key), element('dd', {}, does)])),
+    button('Close', () => dialog.close(), { kind: 'primary' }));
+  dialog.addEventListener('close', () => page.set({ help: false }));
+  page.watch(({ help: open }) => {
+    if (open && !dialog.open) dialog.showModal();
+  });
+  return dialog;
+}

@@ -1,0 +1,71 @@
+// The joints as a tree: what can be picked in the scene can be picked here.
+import type { SessionState } from '../engine/messages';
+import type { PageStore } from '../app/state';
+import type { Studio } from '../app/studio';
+import type { HandleView } from '../scene/handle_view';
+import { button, element } from '../ui/dom';
+
+export function outliner(studio: Studio, page: PageStore, handles: HandleView): HTMLElement {
+  const list = element('ul', { class: 'joints', role: 'listbox', 'aria-label': 'Joints', tabindex: 0, id: 'joints' });
+  const actions = element('div', { class: 'row actions' });
+  const selectedJoint = () => page.now.selected ?? 0;
+  const pin = button('Pin', () => void studio.togglePin(selectedJoint(), handles.position(selectedJoint()).toArray()), {
+    icon: 'pin', label: 'Hold this joint where it is, with limbs following', keys: 'P', id: 'pin',
+  });
+  const reset = button('Reset joint', () => void studio.resetJoint(selectedJoint()), { icon: 'reset', keys: 'Delete', id: 'reset-joint' });
+  actions.append(pin, reset);
+
+  list.addEventListener('click', (event) => {
+    const row = (event.target as Element).closest<HTMLElement>('[data-joint]');
+    if (row) page.set({ selected: Number(row.dataset['joint']) });
+  });
+  list.addEventListener('keydown', (event) => {
+    const by = { ArrowDown: 1, ArrowUp: -1 }[event.key];
+    const count = page.now.session?.joints.length ?? 0;
+    if (by === undefined || count === 0) return;
+    event.preventDefault();
+    const from = page.now.selected ?? (by > 0 ? -1 : count);
+    page.set({ selected: Math.max(0, Math.min(count - 1, from + by)) });
+  });
+
+  const title = element('h2', {}, 'Joints');
+  page.watch((now, before) => {
+    const { session, selected } = now;
+    title.textContent = session ? `${session.joints.length} joints` : 'Joints';
+    if (session && (session.joints !== before.session?.joints || list.childElementCount === 0)) {
+      const known = before.session?.joints.map((joint) => joint.name).join('\n');
+      if (list.childElementCount === 0 || known !== session.joints.map((joint) => joint.name).join('\n')) {
+        list.replaceChildren(...rows(session));
+      }
+    }
+    const pinned = new Set(session?.targets.map((target) => target.joint));
+    for (const row of list.children as HTMLCollectionOf<HTMLElement>) {
+      const joint = Number(row.dataset['joint']);
+      row.setAttribute('aria-selected', String(joint === selected));
+      row.classList.toggle('pinned', pinned.has(joint));
+      if (joint === selected && selected !== before.selected) {
+        row.scrollIntoView({ block: 'nearest' });
+        list.setAttribute('aria-activedescendant', row.id);
+      }
+    }
+    pin.disabled = reset.disabled = selected === null || !session;
+    pin.setAttribute('aria-pressed', String(selected !== null && pinned.has(selected)));
+  });
+  return element('section', { class: 'card outliner', 'aria-label': 'Outliner' }, title, list, actions);
+}
+
+/** In the order of the tree, each indented below its parent. */
+function rows({ joints }: SessionState): HTMLElement[] {
+  const children = new Map<number, number[]>();
+  joints.forEach(({ parent }, joint) => children.set(parent, [...(children.get(parent) ?? []), joint]));
+  const made: HTMLElement[] = [];
+  const stack = [...(children.get(-1) ?? [])].reverse().map((joint) => ({ joint, depth: 0 }));
+  for (let next = stack.pop(); next; next = stack.pop()) {
+    const { joint, depth } = next;
+    const row = element('li', { role: 'option', id: `joint-${joint}`, 'data-joint': joint }, joints[joint]?.name ?? '');
+    row.style.setProperty('--depth', String(Math.min(depth, 12)));
+    made.push(row);
+    for (const child of [...(children.get(joint) ?? [])].reverse()) stack.push({ joint: child, depth: depth + 1 });
+  }
+  return made;
+}

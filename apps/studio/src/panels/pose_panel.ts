@@ -1,0 +1,102 @@
+// How handles are moved, how many there are, and how the model is shown.
+import type { Display, DragMode, PageState, PageStore } from '../app/state';
+import type { Studio } from '../app/studio';
+import { button, choice, element } from '../ui/dom';
+
+const mostHandles = 200;
+
+export function posePanel(studio: Studio, page: PageStore): HTMLElement {
+  const mode = choice<DragMode>('What dragging a handle does', [
+    { value: 'move', text: 'Move', icon: 'move', keys: 'G' },
+    { value: 'turn', text: 'Turn', icon: 'turn', keys: 'R' },
+  ], (value) => page.set({ mode: value }));
+  const ik = button('Limbs follow', () => void studio.toggleIk(), {
+    icon: 'limb', keys: 'I', label: 'Inverse kinematics: a handle takes its limb along', id: 'ik',
+  });
+  const mirror = button('Mirror', () => void studio.mirrorPose(), { icon: 'mirror', keys: 'M', label: 'Swap the pose of left and right', id: 'mirror' });
+  const reset = button('Reset', () => void studio.resetPose(), { icon: 'reset', keys: 'Alt+R', label: 'Put all joints back', id: 'reset' });
+  const display = choice<Display>('What is shown', [
+    { value: 'handles', text: 'Handles' }, { value: 'surface', text: 'Surface' },
+    { value: 'weights', text: 'Weights' }, { value: 'joint-weights', text: 'One joint' },
+  ], (value) => page.set({ display: value }));
+  const toggle = (text: string, key: 'bones' | 'wireframe') => {
+    const box = element('input', { type: 'checkbox', id: key });
+    box.addEventListener('change', () => page.set({ [key]: box.checked }));
+    page.watch((now) => { box.checked = now[key]; });
+    return element('label', { class: 'check' }, box, text);
+  };
+  page.watch(({ session, mode: nowMode, display: nowDisplay }) => {
+    mode.show(nowMode);
+    display.show(nowDisplay);
+    ik.setAttribute('aria-pressed', String(session?.ik ?? false));
+    ik.disabled = mirror.disabled = !session;
+    reset.disabled = !session?.posed;
+  });
+  return element('section', { class: 'card pose', 'aria-label': 'Posing' },
+    handleCount(studio, page),
+    element('div', { class: 'row' }, mode.root, ik),
+    element('div', { class: 'row' }, mirror, reset),
+    display.root,
+    element('div', { class: 'row checks' }, toggle('Bones', 'bones'), toggle('Wireframe', 'wireframe')));
+}
+
+/** The slider runs evenly over the logarithm of the count: few handles differ more than many. */
+function handleCount(studio: Studio, page: PageStore): HTMLElement {
+  const steps = 1000;
+  const most = ({ session }: PageState) => Math.max(2, Math.min(mostHandles, session?.most_handles ?? mostHandles));
+  const toCount = (place: number) => Math.round(most(page.now) ** (place / steps));
+  const toPlace = (count: number) => Math.round((steps * Math.log(Math.max(1, count))) / Math.log(most(page.now)));
+
+  const number = element('output', { class: 'count', for: 'handles' }, '0');
+  const slider = element('input', { type: 'range', id: 'handles', min: 0, max: steps, step: 1 });
+  slider.addEventListener('input', () => {
+    const count = toCount(slider.valueAsNumber);
+    number.textContent = String(count);
+    slider.setAttribute('aria-valuetext', `${count} handles`);
+    void studio.setHandles(count);
+  });
+  // A step of the keyboard is a handle more or less.
+  slider.addEventListener('keydown', (event) => {
+    const by = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, PageUp: 10, PageDown: -10 }[event.key];
+    if (by === undefined) return;
+    event.preventDefault();
+    const count = Math.max(1, Math.min(most(page.now), studio.handleCount + by));
+    slider.valueAsNumber = toPlace(count);
+    number.textContent = String(count);
+    void studio.setHandles(count);
+  });
+  const marks = element('div', { class: 'marks', role: 'group', 'aria-label': 'Suggested numbers of handles' });
+  let marked = '';
+  page.watch((now) => {
+    slider.disabled = !now.session;
+    if (!now.session) return;
+    const { joints, suggestions } = now.session;
+    if (!studio.settingHandles) {
+      number.textContent = String(joints.length);
+      slider.valueAsNumber = toPlace(studio.handleCount);
+      slider.setAttribute('aria-valuetext', `${joints.length} handles`);
+    }
+    if (suggestions.length === 0 || `${suggestions} ${most(now)}` === marked) return;
+    marked = `${suggestions} ${most(now)}`;
+    marks.replaceChildren(...apart(suggestions.map((count) => ({ count, at: toPlace(count) / steps }))).map(({ count, at }) => {
+      const mark = button(String(count), () => void studio.setHandles(count), {
+        label: `${count} handles${suggestions[0] === count ? ', the best suggestion' : ', suggested'}`,
+      });
+      mark.classList.add('mark');
+      mark.classList.toggle('best', suggestions[0] === count);
+      mark.style.setProperty('--at', String(at));
+      return mark;
+    }));
+  });
+  return element('div', { class: 'handle-count' },
+    element('div', { class: 'row spread' }, element('label', { for: 'handles' }, 'Handles'), number), slider, marks);
+}
+
+/** The best of them that have room beside each other on the scale, in their order on it. */
+function apart<T extends { at: number }>(marks: T[]): T[] {
+  const kept: T[] = [];
+  for (const mark of marks) {
+    if (kept.every(({ at }) => Math.abs(at - mark.at) > 0.07)) kept.push(mark);
+  }
+  return kept.sort((a, b) => a.at - b.at);
+}

@@ -1,0 +1,41 @@
+// What takes long, what went wrong, what the engine had to repair.
+import type { PageStore } from '../app/state';
+import type { Studio } from '../app/studio';
+import { button, element } from '../ui/dom';
+
+export function status(studio: Studio, page: PageStore): HTMLElement {
+  const stage = element('span', {});
+  const bar = element('progress', { max: 1, 'aria-label': 'Progress' });
+  const work = element('div', { class: 'toast work', role: 'status', hidden: true },
+    stage, bar, button('Stop', () => void studio.stop(), { id: 'stop' }));
+
+  const title = element('strong', {}), detail = element('span', { class: 'detail' });
+  const notice = element('div', { class: 'toast notice', role: 'alert', id: 'notice', hidden: true },
+    element('div', { class: 'text' }, title, detail), button('Close', () => page.set({ notice: null }), { id: 'close-notice' }));
+
+  page.watch((now) => {
+    work.hidden = now.work === null;
+    if (now.work) {
+      stage.textContent = now.work.stage;
+      if (now.work.fraction > 0) bar.value = now.work.fraction;
+      else bar.removeAttribute('value');
+    }
+    notice.hidden = now.notice === null;
+    notice.classList.toggle('error', now.notice?.kind === 'error');
+    title.textContent = now.notice?.title ?? '';
+    detail.textContent = now.notice?.detail ?? '';
+  });
+  return element('div', { class: 'status' }, work, notice);
+}
+
+export function facts(page: PageStore): HTMLElement {
+  const line = element('p', { class: 'facts', id: 'facts' });
+  page.watch(({ session }) => {
+    if (!session) return;
+    const repairs = session.warnings.map(({ count, message }) => `${count} ${message}`).join('; ');
+    line.textContent = `${session.vertices.toLocaleString('en')} vertices, ${session.triangles.toLocaleString('en')} triangles`
+      + (session.own_rig ? ', its own rig' : '') + (repairs === '' ? '' : `. Repaired: ${repairs}`);
+    line.title = line.textContent;
+  });
+  return line;
+}

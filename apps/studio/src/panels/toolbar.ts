@@ -1,0 +1,67 @@
+// The bar on top: open, undo, what leaves the page.
+import type { PageStore } from '../app/state';
+import type { Studio } from '../app/studio';
+import type { Viewport } from '../scene/viewport';
+import { button, element, offer } from '../ui/dom';
+
+export const samples = [
+  ['winged', 'Dragon'], ['quadruped', 'Fox'], ['biped', 'Person'], ['robot', 'Robot'], ['stool', 'Stool'],
+] as const;
+
+const types = { glb: 'model/gltf-binary', obj: 'model/obj', stl: 'model/stl', session: 'model/gltf-binary' };
+
+export function toolbar(studio: Studio, page: PageStore, viewport: Viewport): HTMLElement {
+  const file = element('input', { type: 'file', accept: '.glb,.gltf', hidden: true, id: 'file' });
+  file.addEventListener('change', () => {
+    const chosen = file.files?.[0];
+    if (chosen) void studio.openFile(chosen);
+    file.value = '';
+  });
+  const sample = element('select', { 'aria-label': 'Open a sample', class: 'select', id: 'samples' },
+    element('option', { value: '' }, 'Samples'), ...samples.map(([value, text]) => element('option', { value }, text)));
+  sample.addEventListener('change', () => {
+    if (sample.value !== '') void studio.openSample(sample.value);
+    sample.value = '';
+  });
+
+  const stem = () => (page.now.session?.name ?? 'model').replace(/\.[^.]*$/, '');
+  const save = async (format: keyof typeof types) => {
+    const bytes = await studio.exportFile(format);
+    const ending = format === 'session' ? '_session.glb' : `_posed.${format}`;
+    if (bytes) offer(bytes as BlobPart, types[format], stem() + ending);
+  };
+  const savePicture = async () => {
+    const picture = await viewport.picture();
+    if (picture) offer(picture, 'image/png', `${stem()}.png`);
+  };
+  const saveRecord = async () => {
+    const record = await studio.record();
+    if (record) offer(record, 'application/json', `${stem()}_commands.json`);
+  };
+  const exporter = element('select', { 'aria-label': 'Save as another format', class: 'select', id: 'export-as' },
+    ...[['', 'More'], ['obj', 'OBJ, posed surface'], ['stl', 'STL, posed surface'], ['session', 'Session, to go on later'],
+      ['record', 'Commands, for limber session replay'], ['png', 'Picture (PNG)']].map(([value = '', text = '']) => element('option', { value }, text)));
+  exporter.addEventListener('change', () => {
+    const { value } = exporter;
+    exporter.value = '';
+    if (value === 'png') void savePicture();
+    else if (value === 'record') void saveRecord();
+    else if (value === 'obj' || value === 'stl' || value === 'session') void save(value);
+  });
+
+  const undo = button('', () => void studio.undo(), { icon: 'undo', label: 'Undo', keys: 'Ctrl+Z', id: 'undo' });
+  const redo = button('', () => void studio.redo(), { icon: 'redo', label: 'Redo', keys: 'Ctrl+Shift+Z', id: 'redo' });
+  const glb = button('Save GLB', () => void save('glb'), { icon: 'save', kind: 'primary', id: 'save-glb' });
+  const name = element('h1', { class: 'name' }, 'limber');
+  page.watch(({ session }) => {
+    undo.disabled = !session?.undo;
+    redo.disabled = !session?.redo;
+    glb.disabled = exporter.disabled = !session;
+    name.textContent = session?.name ?? 'limber';
+    document.title = session ? `${session.name} \u2013 limber studio` : 'limber studio';
+  });
+  return element('header', { class: 'bar' },
+    button('Open', () => file.click(), { icon: 'open', id: 'open' }), sample, file, name,
+    element('div', { class: 'group' }, undo, redo), element('div', { class: 'group' }, glb, exporter),
+    button('', () => page.set({ help: true }), { icon: 'help', label: 'Keyboard and mouse', keys: '?', id: 'help-button' }));
+}

@@ -1,0 +1,137 @@
+// The model's surface, moved by the engine's matrices on the graphics card.
+import {
+  Bone, BufferAttribute, BufferGeometry, Color, DoubleSide, Group, Material, Matrix4, MeshStandardMaterial,
+  RepeatWrapping, Skeleton, SkinnedMesh, SRGBColorSpace, Texture,
+} from 'three';
+import type { Display } from '../app/state';
+import type { SurfaceModel } from '../engine/messages';
+import { heatColor, jointColor } from './palette';
+
+/** Takes its matrices as they come from the engine instead of making them from bones. */
+class EngineSkeleton extends Skeleton {
+  constructor(joints: number) {
+    super(Array.from({ length: joints }, () => new Bone()));
+  }
+  override update() {}
+  take(matrices: Float32Array) {
+    if (!this.boneTexture) this.computeBoneTexture();
+    this.boneMatrices?.set(matrices);
+    if (this.boneTexture) this.boneTexture.needsUpdate = true;
+  }
+}
+
+async function loadTexture(bytes: Uint8Array): Promise<Texture> {
+  const bitmap = await createImageBitmap(new Blob([bytes as BlobPart]), { imageOrientation: 'flipY' });
+  const texture = new Texture(bitmap);
+  texture.flipY = false;
+  texture.colorSpace = SRGBColorSpace;
+  texture.wrapS = texture.wrapT = RepeatWrapping;
+  texture.anisotropy = 4;
+  texture.needsUpdate = true;
+  return texture;
+}
+
+export class ModelView {
+  readonly root = new Group();
+  onChange: () => void = () => {};
+
+  private model: SurfaceModel | null = null;
+  private skeleton: EngineSkeleton | null = null;
+  private meshes: SkinnedMesh<BufferGeometry, MeshStandardMaterial>[] = [];
+  private geometry: BufferGeometry | null = null;
+
+  show(model: SurfaceModel, joints: number) {
+    this.clear();
+    this.model = model;
+    this.skeleton = new EngineSkeleton(joints);
+    this.geometry = new BufferGeometry();
+    const add = (name: string, attribute: BufferAttribute) => this.geometry?.setAttribute(name, attribute);
+    add('position', new BufferAttribute(model.positions, 3));
+    add('normal', new BufferAttribute(model.normals, 3));
+    if (model.uvs.length > 0) add('uv', new BufferAttribute(model.uvs, 2));
+    add('skinIndex', new BufferAttribute(model.joints, 4));
+    add('skinWeight', new BufferAttribute(model.weights, 4));
+    add('color', new BufferAttribute(new Float32Array(model.positions.length).fill(1), 3));
+    for (const part of model.parts) this.meshes.push(this.addPart(part));
+  }
+
+  take(matrices: Float32Array) {
+    if (this.skeleton && matrices.length === 16 * this.skeleton.bones.length) this.skeleton.take(matrices);
+  }
+
+  setDisplay(display: Display, selected: number | null, wireframe: boolean) {
+    const painted = display === 'weights' || display === 'joint-weights';
+    if (painted) this.paint(display === 'joint-weights' ? selected ?? 0 : null);
+    for (const mesh of this.meshes) {
+      const material = mesh.material;
+      const own = mesh.userData['color'] as Color;
+      material.color.copy(painted ? new Color(1, 1, 1) : own);
+      material.map = painted ? null : (mesh.userData['map'] as Texture | null);
+      material.vertexColors = painted;
+      material.transparent = display === 'handles';
+      material.opacity = display === 'handles' ? 0.36 : 1;
+      material.wireframe = wireframe;
+      material.needsUpdate = true;
+    }
+  }
+
+  private addPart(part: SurfaceModel['parts'][number]) {
+    const geometry = new BufferGeometry();
+    for (const [name, attribute] of Object.entries(this.geometry!.attributes)) geometry.setAttribute(name, attribute);
+    geometry.setIndex(new BufferAttribute(this.model!.triangles.subarray(part.first, part.first + part.count), 1));
+    const source = part.material === null ? null : this.model!.materials[part.material] ?? null;
+    const color = source ? new Color(...source.color.slice(0, 3) as [number, number, number]) : new Color('#b9c0ca');
+    const material = new MeshStandardMaterial({ color, roughness: 0.75, metalness: 0, side: DoubleSide });
+    const mesh = new SkinnedMesh(geometry, material);
+    mesh.bind(this.skeleton!, new Matrix4());
+    mesh.frustumCulled = false;
+    mesh.castShadow = true;
+    mesh.userData = { color, map: null };
+    this.root.add(mesh);
+    const file = source?.texture === null || source === null ? undefined : this.model!.textures[source.texture];
+    if (file) this.addTexture(mesh, file);
+    return mesh;
+  }
+
+  private addTexture(mesh: SkinnedMesh<BufferGeometry, MeshStandardMaterial>, file: Uint8Array) {
+    loadTexture(file).then((texture) => {
+      mesh.userData['map'] = texture;
+      if (!mesh.material.vertexColors) mesh.material.map = texture;
+      mesh.material.needsUpdate = true;
+      this.onChange();
+    }, () => { /* an image that the browser cannot read: the plain colour stays */ });
+  }
+
+  /** Each vertex in the colours of its joints, or as hot as one joint holds it. */
+  private paint(joint: number | null) {
+    const model = this.model!;
+    const colors = this.geometry!.getAttribute('color') as BufferAttribute;
+    const palette = Array.from({ length: this.skeleton!.bones.length }, (_, j) => jointColor(j));
+    const color = new Color();
+    for (let v = 0; v < colors.count; ++v) {
+      let own = 0;
+      color.setRGB(0, 0, 0);
+      for (let i = 4 * v; i < 4 * v + 4; ++i) {
+        const weight = model.weights[i] ?? 0;
+        if (model.joints[i] === joint) own += weight;
+        const of = palette[model.joints[i] ?? 0];
+        if (of && joint === null) color.r += weight * of.r, color.g += weight * of.g, color.b += weight * of.b;
+      }
+      if (joint !== null) color.copy(heatColor(Math.min(1, own)));
+      colors.setXYZ(v, color.r, color.g, color.b);
+    }
+    colors.needsUpdate = true;
+  }
+
+  private clear() {
+    for (const mesh of this.meshes) {
+      (mesh.userData['map'] as Texture | null)?.dispose();
+      (mesh.material as Material).dispose();
+      mesh.geometry.dispose();
+      this.root.remove(mesh);
+    }
+    this.meshes = [];
+    this.skeleton?.dispose();
+    this.geometry?.dispose();
+  }
+}

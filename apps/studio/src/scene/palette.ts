@@ -1,0 +1,20 @@
+// Colours of the scene.
+import { Color } from 'three';
+
+export const handleColor = new Color('#dc2f3c');
+export const rootColor = new Color('#e8a317');
+export const hoverColor = new Color('#ff6b76');
+export const selectedColor = new Color('#2563eb');
+export const pinColor = new Color('#0f9d6b');
+export const boneColor = new Color('#374151');
+
+/** Well apart for neighbours in number: steps of the golden angle round the hues. */
+export function jointColor(joint: number): Color {
+  const hue = (joint * 0.61803398875) % 1;
+  return new Color().setHSL(hue, 0.62, joint % 2 === 0 ? 0.55 : 0.66);
+}
+
+/** From cold, 0, to hot, 1. */
+export function heatColor(weight: number): Color {
+  return new Color().setHSL(0.62 * (1 - weight), 0.75, 0.42 + 0.1 * weight);
+}

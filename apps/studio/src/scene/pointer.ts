@@ -1,0 +1,103 @@
+// Mouse, pen and fingers on the canvas: a handle under one is dragged, anything else moves the camera.
+import { Vector3 } from 'three';
+import type { PageStore } from '../app/state';
+import type { Studio } from '../app/studio';
+import type { HandleView } from './handle_view';
+import type { Viewport } from './viewport';
+
+const slop = { mouse: 12, pen: 16, touch: 24 }; // pixels round a handle's middle that count as it
+const tapDistance = 6;
+
+export class PointerInput {
+  private held: number | null = null;
+  private heldPointer = -1;
+  private down: { x: number; y: number; moved: boolean } | null = null;
+
+  constructor(
+    private viewport: Viewport, private handles: HandleView, private studio: Studio, private page: PageStore,
+  ) {
+    const { canvas } = viewport;
+    // Before the camera's own listener, which then sees that it is not meant.
+    canvas.addEventListener('pointerdown', (event) => this.press(event), { capture: true });
+    canvas.addEventListener('pointermove', (event) => this.move(event));
+    canvas.addEventListener('pointerup', (event) => this.release(event));
+    canvas.addEventListener('pointercancel', () => this.cancel());
+    canvas.addEventListener('pointerleave', () => this.page.set({ hovered: null }));
+    canvas.addEventListener('keydown', (event) => this.key(event));
+  }
+
+  private under(event: PointerEvent): number | null {
+    if (this.page.now.display !== 'handles') return null;
+    const { width, height } = this.viewport.size;
+    const near = slop[event.pointerType as keyof typeof slop] ?? slop.mouse;
+    return this.handles.pick(event.offsetX, event.offsetY, this.viewport.camera, width, height, near);
+  }
+
+  private press(event: PointerEvent) {
+    if (this.held !== null) return event.stopImmediatePropagation(); // a second finger during a drag
+    this.down = { x: event.offsetX, y: event.offsetY, moved: false };
+    const joint = event.button === 0 && event.isPrimary ? this.under(event) : null;
+    if (joint === null) return;
+    event.stopImmediatePropagation();
+    this.viewport.canvas.focus({ preventScroll: true });
+    this.viewport.canvas.setPointerCapture(event.pointerId);
+    this.held = joint;
+    this.heldPointer = event.pointerId;
+    const { ray, view } = this.viewport.ray(event.offsetX, event.offsetY);
+    this.studio.beginDrag(joint, ray, view);
+  }
+
+  private move(event: PointerEvent) {
+    if (this.held !== null && event.pointerId !== this.heldPointer) return;
+    if (this.down && Math.hypot(event.offsetX - this.down.x, event.offsetY - this.down.y) > tapDistance) this.down.moved = true;
+    if (this.held !== null) {
+      const { ray, view } = this.viewport.ray(event.offsetX, event.offsetY);
+      if (this.down?.moved) this.studio.updateDrag(ray, view);
+    } else if (event.buttons === 0 && event.pointerType !== 'touch') {
+      const hovered = this.under(event);
+      if (hovered !== this.page.now.hovered) this.page.set({ hovered });
+      this.viewport.canvas.style.cursor = hovered === null ? '' : 'grab';
+    }
+  }
+
+  private release(event: PointerEvent) {
+    if (this.held !== null && event.pointerId !== this.heldPointer) return;
+    const tapped = this.down && !this.down.moved;
+    if (this.held !== null) {
+      this.held = null;
+      // A tap selects, and is no step to undo.
+      if (tapped) this.studio.cancelDrag();
+      else this.studio.endDrag();
+    } else if (tapped && event.isPrimary) {
+      void this.studio.selectSurface(this.viewport.ray(event.offsetX, event.offsetY).ray, 0);
+    }
+    this.down = null;
+  }
+
+  cancel() {
+    if (this.held === null) return;
+    this.held = null;
+    this.down = null;
+    this.studio.cancelDrag();
+  }
+
+  /** Arrows move or turn the selected joint as the camera sees it. */
+  private key(event: KeyboardEvent) {
+    if (event.key === 'Escape') return this.cancel();
+    const { selected, session, mode } = this.page.now;
+    const step = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
+    if (!step || selected === null || !session || event.ctrlKey || event.metaKey) return;
+    event.preventDefault();
+    const [x = 0, y = 0] = step;
+    const { right, up } = this.viewport.axes();
+    if (mode === 'turn') {
+      const axis = x === 0 ? right : up;
+      void this.studio.turn(selected, axis.toArray(), (x - y) * (event.shiftKey ? 1 : 5));
+      return;
+    }
+    const size = new Vector3(...session.box.max).distanceTo(new Vector3(...session.box.min));
+    const length = size * (event.shiftKey ? 0.002 : 0.01);
+    const offset = right.multiplyScalar(x).addScaledVector(up, y).multiplyScalar(length);
+    void this.studio.nudge(selected, offset.toArray());
+  }
+}

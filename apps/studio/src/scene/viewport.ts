@@ -1,0 +1,202 @@
+// The canvas: camera, light, ground, and frames drawn only when something has changed.
+import {
+  AmbientLight, Box3, CanvasTexture, Color, DirectionalLight, Group, HemisphereLight, LineSegments, BufferGeometry, Float32BufferAttribute,
+  LineBasicMaterial, Mesh, MeshBasicMaterial, OrthographicCamera, PerspectiveCamera, PlaneGeometry, Raycaster, Scene,
+  Vector2, Vector3, WebGLRenderer,
+} from 'three';
+import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
+import type { Ray, Vector } from '../engine/messages';
+
+export type ViewName = 'front' | 'right' | 'top' | 'start';
+
+const viewDirections: Record<ViewName, Vector> = {
+  front: [0, 0, 1], right: [1, 0, 0], top: [0, 1, 0.0001], start: [0.55, 0.3, 1],
+};
+
+export class Viewport {
+  readonly canvas: HTMLCanvasElement;
+  readonly scene = new Scene();
+  readonly controls: OrbitControls;
+  beforeFrame: (camera: PerspectiveCamera | OrthographicCamera) => void = () => {};
+
+  private renderer: WebGLRenderer;
+  private perspective = new PerspectiveCamera(32, 1, 0.01, 1000);
+  private orthographic = new OrthographicCamera(-1, 1, 1, -1, 0.01, 1000);
+  private current: PerspectiveCamera | OrthographicCamera = this.perspective;
+  private ground = new Group();
+  private keyLight = new DirectionalLight(0xffffff, 2.0);
+  private box = new Box3(new Vector3(-1, 0, -1), new Vector3(1, 2, 1));
+  private asked = false;
+
+  constructor() {
+    this.renderer = new WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: false });
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.canvas = this.renderer.domElement;
+    this.canvas.tabIndex = 0;
+    this.canvas.setAttribute('role', 'application');
+    this.canvas.setAttribute('aria-label', 'The model. The list of joints does everything that is done here by pointer.');
+    this.keyLight.position.set(0.6, 1, 0.9);
+    const rim = new DirectionalLight(0xe8efff, 0.7);
+    rim.position.set(-0.8, 0.5, -1);
+    this.scene.add(new HemisphereLight(0xffffff, 0xb8b2aa, 1.25), new AmbientLight(0xffffff, 0.25), this.keyLight, rim, this.ground);
+    this.controls = new OrbitControls(this.perspective, this.canvas);
+    this.controls.enableDamping = false;
+    this.controls.addEventListener('change', () => this.draw());
+    new ResizeObserver(() => this.resize()).observe(this.canvas);
+  }
+
+  get camera() { return this.current; }
+  get size() { return { width: this.canvas.clientWidth, height: this.canvas.clientHeight }; }
+
+  /** Draws with the next frame. */
+  draw() {
+    if (this.asked) return;
+    this.asked = true;
+    requestAnimationFrame(() => {
+      this.asked = false;
+      this.drawNow();
+    });
+  }
+
+  ray(x: number, y: number): { ray: Ray; view: Vector } {
+    const { width, height } = this.size;
+    const caster = new Raycaster();
+    caster.setFromCamera(new Vector2((x / width) * 2 - 1, 1 - (y / height) * 2), this.current);
+    const view = this.current.getWorldDirection(new Vector3());
+    return {
+      ray: { origin: caster.ray.origin.toArray(), direction: caster.ray.direction.toArray() },
+      view: view.toArray(),
+    };
+  }
+
+  /** The camera's right and up, for moves by keyboard. */
+  axes(): { right: Vector3; up: Vector3 } {
+    const elements = this.current.matrixWorld.elements;
+    return { right: new Vector3().fromArray(elements, 0), up: new Vector3().fromArray(elements, 4) };
+  }
+
+  frame(min: Vector, max: Vector) {
+    this.box.set(new Vector3(...min), new Vector3(...max));
+    this.makeGround();
+    this.look('start');
+  }
+
+  look(view: ViewName) {
+    const center = this.box.getCenter(new Vector3());
+    const direction = new Vector3(...viewDirections[view]).normalize();
+    const distance = this.fittingDistance(direction);
+    for (const camera of [this.perspective, this.orthographic]) {
+      camera.position.copy(center).addScaledVector(direction, distance);
+      camera.near = distance / 200;
+      camera.far = distance * 40;
+      camera.zoom = 1;
+    }
+    this.controls.target.copy(center);
+    this.resize();
+    this.controls.update();
+    this.draw();
+  }
+
+  /** Back to where the model fills the view, from the side that is looked from now. */
+  frameAgain() {
+    const center = this.box.getCenter(new Vector3());
+    const offset = this.current.position.clone().sub(this.controls.target).normalize();
+    this.current.position.copy(center).addScaledVector(offset, this.fittingDistance(offset));
+    this.controls.target.copy(center);
+    this.controls.update();
+    this.draw();
+  }
+
+  /** From where, in that direction, all of the box is seen, with a little room round it. */
+  private fittingDistance(direction: Vector3): number {
+    const up = Math.tan((this.perspective.fov * Math.PI) / 360);
+    const across = (up * this.size.width) / Math.max(1, this.size.height);
+    const side = new Vector3(0, 1, 0).cross(direction).normalize(), top = direction.clone().cross(side);
+    const half = this.box.getSize(new Vector3()).multiplyScalar(0.5);
+    let distance = 1e-6;
+    for (let corner = 0; corner < 8; ++corner) {
+      const at = half.clone().multiply(new Vector3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1));
+      const needed = Math.max(Math.abs(at.dot(side)) / across, Math.abs(at.dot(top)) / up);
+      distance = Math.max(distance, at.dot(direction) + 1.12 * needed);
+    }
+    return distance;
+  }
+
+  toggleOrthographic() {
+    const from = this.current;
+    this.current = from === this.perspective ? this.orthographic : this.perspective;
+    this.current.position.copy(from.position);
+    this.current.quaternion.copy(from.quaternion);
+    this.controls.object = this.current;
+    this.resize();
+    this.controls.update();
+    this.draw();
+  }
+
+  async picture(): Promise<Blob | null> {
+    this.drawNow();
+    return new Promise((resolve) => this.canvas.toBlob(resolve, 'image/png'));
+  }
+
+  private drawNow() {
+    this.current.updateMatrixWorld();
+    this.beforeFrame(this.current);
+    this.renderer.render(this.scene, this.current);
+  }
+
+  private resize() {
+    const { width, height } = this.size;
+    if (width === 0 || height === 0) return;
+    this.renderer.setSize(width, height, false);
+    this.perspective.aspect = width / height;
+    this.perspective.updateProjectionMatrix();
+    // As large as the perspective shows the point that the camera turns about.
+    const distance = this.orthographic.position.distanceTo(this.controls.target);
+    const half = distance * Math.tan((this.perspective.fov * Math.PI) / 360);
+    this.orthographic.top = half;
+    this.orthographic.bottom = -half;
+    this.orthographic.left = (-half * width) / height;
+    this.orthographic.right = (half * width) / height;
+    this.orthographic.updateProjectionMatrix();
+    this.draw();
+  }
+
+  /** A grid under the model with its axes in their colours, and a soft shadow. */
+  private makeGround() {
+    this.ground.clear();
+    const size = this.box.getSize(new Vector3()), center = this.box.getCenter(new Vector3());
+    const step = 10 ** Math.floor(Math.log10(Math.max(size.x, size.y, size.z, 1e-6) / 2));
+    const count = Math.ceil((1.5 * Math.max(size.x, size.z, size.y / 2)) / step);
+    const lines: number[] = [], colors: number[] = [];
+    const grid = new Color('#c9ced6'), xAxis = new Color('#d9534f'), zAxis = new Color('#4a7bd0');
+    for (let i = -count; i <= count; ++i) {
+      lines.push(i * step, 0, -count * step, i * step, 0, count * step, -count * step, 0, i * step, count * step, 0, i * step);
+      for (const color of i === 0 ? [zAxis, zAxis, xAxis, xAxis] : [grid, grid, grid, grid]) colors.push(color.r, color.g, color.b);
+    }
+    const geometry = new BufferGeometry();
+    geometry.setAttribute('position', new Float32BufferAttribute(lines, 3));
+    geometry.setAttribute('color', new Float32BufferAttribute(colors, 3));
+    const material = new LineBasicMaterial({ vertexColors: true, transparent: true, opacity: 0.7, depthWrite: false });
+    this.ground.add(new LineSegments(geometry, material), this.makeShadow(size));
+    this.ground.position.set(Math.round(center.x / step) * step, this.box.min.y, Math.round(center.z / step) * step);
+  }
+
+  private makeShadow(size: Vector3): Mesh {
+    const canvas = document.createElement('canvas');
+    canvas.width = canvas.height = 128;
+    const context = canvas.getContext('2d');
+    if (context) {
+      const fade = context.createRadialGradient(64, 64, 0, 64, 64, 64);
+      fade.addColorStop(0, 'rgba(40,45,60,0.42)');
+      fade.addColorStop(0.45, 'rgba(40,45,60,0.16)');
+      fade.addColorStop(1, 'rgba(40,45,60,0)');
+      context.fillStyle = fade;
+      context.fillRect(0, 0, 128, 128);
+    }
+    const material = new MeshBasicMaterial({ map: new CanvasTexture(canvas), transparent: true, depthWrite: false });
+    const shadow = new Mesh(new PlaneGeometry(1.5 * size.x + 0.3 * size.y, 1.5 * size.z + 0.3 * size.y), material);
+    shadow.rotation.x = -Math.PI / 2;
+    shadow.renderOrder = -2;
+    return shadow;
+  }
+}

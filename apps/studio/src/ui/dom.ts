@@ -1,0 +1,82 @@
+// Small pieces of page. Whatever text goes in becomes a text node, never markup.
+type Child = Node | string | null;
+type Attributes = Record<string, string | number | boolean | null>;
+
+export function element<K extends keyof HTMLElementTagNameMap>(
+  tag: K, attributes: Attributes = {}, ...children: Child[]
+): HTMLElementTagNameMap[K] {
+  const made = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) {
+    if (value === null || value === false) continue;
+    made.setAttribute(name, value === true ? '' : String(value));
+  }
+  made.append(...children.filter((child) => child !== null));
+  return made;
+}
+
+const icons = {
+  open: 'M3 17V5h5l2 2h7v10z',
+  undo: 'M8 4 4 8l4 4M4 8h8a4 4 0 0 1 0 8H9',
+  redo: 'm12 4 4 4-4 4m4-4H8a4 4 0 0 0 0 8h3',
+  move: 'M10 2v16M2 10h16M10 2 8 4m2-2 2 2M10 18l-2-2m2 2 2-2M2 10l2-2m-2 2 2 2m14-2-2-2m2 2-2 2',
+  turn: 'M16 10a6 6 0 1 1-2-4.5M14 2v4h-4',
+  limb: 'M4 16 9 10 7 4M9 10l7 2',
+  mirror: 'M10 2v16M7 5 2 15h5zM13 5l5 10h-5z',
+  reset: 'M4 10a6 6 0 1 0 2-4.5M6 2v4h4',
+  save: 'M10 3v9m-4-4 4 4 4-4M4 16h12',
+  camera: 'M3 6h3l2-2h4l2 2h3v10H3zM10 8a3 3 0 1 0 .01 0',
+  help: 'M7.5 7.5a2.5 2.5 0 1 1 3.5 2.3c-.7.3-1 .8-1 1.7M10 14.5v.5',
+  pin: 'M10 18v-6M6 12h8l-2-4V3H8v5z',
+  frame: 'M3 7V3h4M13 3h4v4M17 13v4h-4M7 17H3v-4',
+};
+export type IconName = keyof typeof icons;
+
+export function icon(name: IconName): SVGSVGElement {
+  const svg = document.createElementNS('http://www.w3.org/2000/svg', 'svg');
+  svg.setAttribute('viewBox', '0 0 20 20');
+  svg.setAttribute('aria-hidden', 'true');
+  const path = document.createElementNS('http://www.w3.org/2000/svg', 'path');
+  path.setAttribute('d', icons[name]);
+  svg.append(path);
+  return svg;
+}
+
+export interface ButtonOptions {
+  icon?: IconName;
+  /** Said to a screen reader and shown on hover; the text of the button where there is none. */
+  label?: string;
+  keys?: string;
+  id?: string;
+  kind?: 'plain' | 'primary';
+}
+
+export function button(text: string, act: () => void, options: ButtonOptions = {}): HTMLButtonElement {
+  const label = options.label ?? text;
+  const made = element('button', {
+    type: 'button', class: `button ${options.kind ?? 'plain'}`, id: options.id ?? null,
+    'aria-label': text === '' ? label : null, title: options.keys ? `${label} (${options.keys})` : label,
+  }, options.icon ? icon(options.icon) : null, text === '' ? null : element('span', {}, text));
+  made.addEventListener('click', act);
+  return made;
+}
+
+/** Buttons of which one is pressed. */
+export function choice<T extends string>(
+  label: string, options: { value: T; text: string; icon?: IconName; keys?: string }[], choose: (value: T) => void,
+): { root: HTMLElement; show(value: T): void } {
+  const buttons = options.map(({ value, text, ...rest }) => {
+    const made = button(text, () => choose(value), rest);
+    made.dataset['value'] = value;
+    return made;
+  });
+  return {
+    root: element('div', { class: 'choice', role: 'group', 'aria-label': label }, ...buttons),
+    show: (value) => buttons.forEach((b) => b.setAttribute('aria-pressed', String(b.dataset['value'] === value))),
+  };
+}
+
+export function offer(bytes: BlobPart, type: string, name: string) {
+  const link = element('a', { href: URL.createObjectURL(new Blob([bytes], { type })), download: name });
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+}

@@ -1,0 +1,50 @@
+// A browser with the built page in it, for the tests and for the pictures of the documentation.
+import { createServer } from 'node:http';
+import { existsSync, readFileSync } from 'node:fs';
+import { extname, join, normalize } from 'node:path';
+import { chromium } from 'playwright-core';
+
+const types = { '.html': 'text/html', '.js': 'text/javascript', '.css': 'text/css', '.wasm': 'application/wasm', '.glb': 'model/gltf-binary' };
+export const browserProgram = process.env.LIMBER_BROWSER ?? '/usr/bin/chromium';
+
+/** Serves a folder on a free port of the loopback address. */
+export async function serve(folder) {
+  const server = createServer((request, response) => {
+    const path = decodeURIComponent(new URL(request.url, 'http://localhost').pathname);
+    const file = join(folder, normalize(path === '/' ? '/index.html' : path));
+    if (!file.startsWith(folder) || !existsSync(file)) return response.writeHead(404).end();
+    response.writeHead(200, { 'content-type': types[extname(file)] ?? 'application/octet-stream' }).end(readFileSync(file));
+  });
+  await new Promise((resolve) => server.listen(0, '127.0.0.1', resolve));
+  return { address: `http://127.0.0.1:${server.address().port}/`, close: () => server.close() };
+}
+
+export const launch = () => chromium.launch({
+  executablePath: browserProgram,
+  args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist'],
+});
+
+/** The page once its model stands. What the page throws is collected in `errors`. */
+export async function openStudio(browser, address, { width = 1280, height = 800, touch = false, search = '' } = {}) {
+  const context = await browser.newContext({ viewport: { width, height }, hasTouch: touch, acceptDownloads: true });
+  const page = await context.newPage();
+  page.setDefaultTimeout(120_000);
+  const errors = [];
+  page.on('pageerror', (error) => errors.push(String(error)));
+  page.on('console', (message) => { if (message.type() === 'error') errors.push(message.text()); });
+  await page.goto(address + search);
+  await settled(page);
+  return { page, context, errors };
+}
+
+/** Nothing under way, and the frame drawn. */
+export async function settled(page) {
+  await page.waitForFunction(() => globalThis.limberStudio?.idle() && document.querySelector('#facts').textContent !== '');
+  await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
+}
+
+/** Where a joint is drawn, in pixels of the page. */
+export const jointPlace = (page, name) => page.evaluate((joint) => globalThis.limberStudio.place(joint), name);
+/** Where a joint stands, in metres. */
+export const jointPosition = (page, name) => page.evaluate((joint) => globalThis.limberStudio.position(joint), name);
+export const sessionState = (page) => page.evaluate(() => globalThis.limberStudio.state());

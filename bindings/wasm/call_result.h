@@ -1,0 +1,54 @@
+// What every call across the C boundary gives. Nothing is thrown across it: an error is a result like any other.
+#pragma once
+
+#include <exception>
+#include <new>
+#include <string>
+#include <string_view>
+
+#include <nlohmann/json.hpp>
+
+#include "limber/asset/json_text.h"
+
+#define LIMBER_EXPORT extern "C" __attribute__((used, visibility("default")))
+
+namespace limber::wasm {
+
+// `account` is JSON: what the call tells, or the error. `bytes` is empty for an error.
+struct CallResult {
+  bool ok = false;
+  Bytes bytes;
+  std::string account;
+};
+
+inline CallResult failure(const Error& error) {
+  CallResult result;
+  result.account = dumpReport({{"code", std::string(errorCodeName(error.code()))},
+                               {"message", error.message()},
+                               {"where", error.where()},
+                               {"remedy", error.remedy()}},
+                              -1);
+  return result;
+}
+
+// Runs `call`, which gives a CallResult, and turns what it throws into one. Null where there is no memory even for
+// that.
+template <class Call>
+CallResult* guarded(std::string_view name, Call&& call) noexcept {
+  try {
+    try {
+      return new CallResult(call());
+    } catch (const Error& error) {
+      return new CallResult(failure(error));
+    } catch (const std::bad_alloc&) {
+      return new CallResult(
+          failure({ErrorCode::kLimit, "not enough memory", std::string(name), "try a smaller model"}));
+    } catch (const std::exception& error) {
+      return new CallResult(failure({ErrorCode::kBadData, error.what(), std::string(name)}));
+    }
+  } catch (...) {
+    return nullptr;
+  }
+}
+
+}  // namespace limber::wasm

@@ -1,0 +1,210 @@
+// A session across the C boundary: commands in JSON in, the state in JSON and arrays out. limber.mjs is the typed face
+// of these functions; nobody else calls them.
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+
+#include <emscripten/emscripten.h>
+
+#include "call_result.h"
+#include "limber/asset/json_text.h"
+#include "limber/asset/mesh_export.h"
+#include "limber/session/session.h"
+#include "limber/session/session_state.h"
+
+namespace {
+
+using limber::Bytes;
+using limber::Index;
+using limber::Json;
+using limber::wasm::CallResult;
+using limber::wasm::guarded;
+
+struct SessionHandle {
+  limber::Session session;
+};
+
+std::string textOf(const Json& json) {
+  return limber::dumpReport(json, -1);
+}
+
+// The page's listener, if it gave the engine one.
+void reportProgress(std::string_view stage, double fraction) {
+  EM_ASM(
+      {
+        if (Module["onProgress"]) Module["onProgress"](UTF8ToString($0, $1), $2);
+      },
+      stage.data(), stage.size(), fraction);
+}
+
+template <class T>
+Bytes bytesOf(const std::vector<T>& values) {
+  Bytes bytes(values.size() * sizeof(T));
+  if (!bytes.empty()) std::memcpy(bytes.data(), values.data(), bytes.size());
+  return bytes;
+}
+
+template <class Vector>
+void append(std::vector<float>& values, const Vector& vector) {
+  for (Eigen::Index i = 0; i < vector.size(); ++i) values.push_back(static_cast<float>(vector[i]));
+}
+
+// #J matrices, column by column.
+std::vector<float> skinArray(const limber::Session& session) {
+  std::vector<float> values;
+  for (const limber::Affine& skin : session.skinMatrices()) {
+    for (int column = 0; column < 4; ++column) append(values, skin.matrix().col(column));
+  }
+  return values;
+}
+
+// #J times where the joint is, and its radius.
+std::vector<float> handleArray(const limber::SessionState& state) {
+  std::vector<float> values;
+  const std::vector<limber::Affine> globals = limber::poseGlobals(state.rig->skeleton(), state.pose);
+  for (Index j = 0; j < globals.size(); ++j) {
+    append(values, globals[j].translation());
+    values.push_back(static_cast<float>(state.rig->radii[j]));
+  }
+  return values;
+}
+
+constexpr Index kSlots = 4;  // influences that a page draws with
+
+// The strongest of each vertex, scaled to a sum of 1; a vertex without any follows joint 0.
+void strongest(const limber::SkinWeights& weights, std::vector<std::uint16_t>& joints, std::vector<float>& values) {
+  const std::size_t count = weights.vertexCount();
+  joints.assign(count * kSlots, 0);
+  values.assign(count * kSlots, 0.0f);
+  const Index slots = std::min(kSlots, weights.slots);
+  for (Index v = 0; v < count; ++v) {
+    float sum = 0;
+    for (Index k = 0; k < slots; ++k) sum += weights.weightsOf(v)[k];
+    if (!(sum > 0)) values[std::size_t{v} * kSlots] = 1;
+    for (Index k = 0; k < slots && sum > 0; ++k) {
+      joints[std::size_t{v} * kSlots + k] = static_cast<std::uint16_t>(weights.jointsOf(v)[k]);
+      values[std::size_t{v} * kSlots + k] = weights.weightsOf(v)[k] / sum;
+    }
+  }
+}
+
+// The surface as bound, and what it looks like. The account says where in the bytes each array is: all of 4 byte
+// elements first, then joints, then the textures' files.
+CallResult modelOf(const limber::SessionState& state) {
+  const limber::RiggedModel& rig = *state.rig;
+  const limber::ExportMesh mesh = limber::exportMesh(rig.asset, rig.geometry);
+  CallResult result{true, {}, {}};
+  Json arrays = Json::object();
+  const auto add = [&](const char* name, const Bytes& bytes) {
+    arrays[name] = {{"offset", result.bytes.size()}, {"size", bytes.size()}};
+    result.bytes.insert(result.bytes.end(), bytes.begin(), bytes.end());
+  };
+  std::vector<std::uint16_t> joints;
+  std::vector<float> weights;
+  strongest(rig.weights, joints, weights);
+  add("positions", bytesOf(mesh.positions));
+  add("normals", bytesOf(mesh.normals));
+  add("uvs", bytesOf(mesh.uvs));
+  add("triangles", bytesOf(mesh.triangles));
+  add("weights", bytesOf(weights));
+  add("joints", bytesOf(joints));
+
+  Json json = {
+      {"arrays", nullptr}, {"parts", Json::array()}, {"materials", Json::array()}, {"textures", Json::array()}};
+  for (const limber::ExportPart& part : mesh.parts) {
+    json["parts"].push_back({{"name", part.name},
+                             {"first", 3 * part.firstTriangle},
+                             {"count", 3 * part.triangleCount},
+                             {"material", part.material ? Json(*part.material) : Json(nullptr)}});
+  }
+  for (const limber::ExportMaterial& material : mesh.materials) {
+    const limber::Vec4f& c = material.color;
+    json["materials"].push_back({{"name", material.name},
+                                 {"color", {c[0], c[1], c[2], c[3]}},
+                                 {"texture", material.texture ? Json(*material.texture) : Json(nullptr)}});
+  }
+  for (const limber::ExportTexture& texture : mesh.textures) {
+    json["textures"].push_back({{"offset", result.bytes.size()}, {"size", texture.bytes.size()}});
+    result.bytes.insert(result.bytes.end(), texture.bytes.begin(), texture.bytes.end());
+  }
+  json["arrays"] = std::move(arrays);
+  result.account = textOf(json);
+  return result;
+}
+
+// A drag's updates come once a frame and change nothing but the pose.
+CallResult stateAfter(const limber::Session& session, const limber::Command& command) {
+  const bool frame = std::holds_alternative<limber::UpdateDrag>(command);
+  return {true, bytesOf(skinArray(session)), frame ? "{}" : textOf(limber::sessionState(session))};
+}
+
+Json hitJson(const std::optional<limber::PickHit>& hit) {
+  if (!hit) return nullptr;
+  return {{"joint", hit->joint},
+          {"on_handle", hit->onHandle},
+          {"position", {hit->position.x(), hit->position.y(), hit->position.z()}},
+          {"distance", hit->distance}};
+}
+
+Bytes exported(const limber::Session& session, std::string_view format) {
+  if (format == "glb") return session.exportModel(limber::ExportFormat::kGlb);
+  if (format == "obj") return session.exportModel(limber::ExportFormat::kObj);
+  if (format == "stl") return session.exportModel(limber::ExportFormat::kStl);
+  if (format == "ply") return session.exportModel(limber::ExportFormat::kPly);
+  if (format == "session") return session.saveSession();
+  throw limber::Error(limber::ErrorCode::kBadArgument, "no format is called '" + std::string(format) + "'", {},
+                      "there are: glb, obj, stl, ply, session");
+}
+
+}  // namespace
+
+LIMBER_EXPORT SessionHandle* limber_session_new() {
+  return new (std::nothrow) SessionHandle;
+}
+LIMBER_EXPORT void limber_session_free(SessionHandle* handle) {
+  delete handle;
+}
+
+// Bytes of all but limber_session_export and _model: the skin matrices. The strings need no final zero.
+LIMBER_EXPORT CallResult* limber_session_open(SessionHandle* handle, const std::uint8_t* file, std::size_t fileSize,
+                                              const char* name, std::size_t nameSize) {
+  return guarded({name, nameSize}, [&] {
+    limber::Progress progress(reportProgress);
+    handle->session.open({file, fileSize}, {name, nameSize}, progress);
+    return stateAfter(handle->session, limber::OpenFile{});
+  });
+}
+
+LIMBER_EXPORT CallResult* limber_session_run(SessionHandle* handle, const char* json, std::size_t size) {
+  return guarded({}, [&] {
+    limber::Warnings warnings;
+    const limber::Command command = limber::commandFromJson(limber::parseJson({json, size}, warnings));
+    limber::Progress progress(reportProgress);
+    handle->session.run(command, progress);
+    return stateAfter(handle->session, command);
+  });
+}
+
+LIMBER_EXPORT CallResult* limber_session_pick(const SessionHandle* handle, double ox, double oy, double oz, double dx,
+                                              double dy, double dz, double slope) {
+  return guarded({}, [&]() -> CallResult {
+    return {true, {}, textOf(hitJson(handle->session.pick({{ox, oy, oz}, {dx, dy, dz}}, slope)))};
+  });
+}
+
+LIMBER_EXPORT CallResult* limber_session_handles(const SessionHandle* handle) {
+  return guarded({}, [&]() -> CallResult { return {true, bytesOf(handleArray(handle->session.state())), "{}"}; });
+}
+
+LIMBER_EXPORT CallResult* limber_session_model(const SessionHandle* handle) {
+  return guarded({}, [&] { return modelOf(handle->session.state()); });
+}
+
+LIMBER_EXPORT CallResult* limber_session_export(const SessionHandle* handle, const char* format, std::size_t size) {
+  return guarded({}, [&]() -> CallResult { return {true, exported(handle->session, {format, size}), "{}"}; });
+}
+
+LIMBER_EXPORT CallResult* limber_session_record(const SessionHandle* handle) {
+  return guarded({}, [&]() -> CallResult { return {true, {}, limber::commandsToJson(handle->session.record())}; });
+}

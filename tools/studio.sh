@@ -1,0 +1,20 @@
+# Building the engine as WebAssembly and the page on it. Sourced by ./dev, which has configure and compile.
+
+build_wasm() {
+  export NODE_PATH=/usr/share/nodejs # Debian's emscripten looks for its own JavaScript packages there
+  configure wasm && compile wasm
+}
+
+# install_node_packages <folder>: what its package-lock.json names, unless it is there.
+install_node_packages() {
+  local folder=$1 log=build/npm.log
+  [ "$folder/node_modules/.package-lock.json" -nt "$folder/package-lock.json" ] && return 0
+  mkdir -p build
+  npm --prefix "$folder" ci --silent --no-progress </dev/null >"$log" 2>&1 || { tail -n 20 "$log" >&2; return 1; }
+}
+
+# Types checked, then dist/ made.
+build_studio() {
+  install_node_packages apps/studio || return 1
+  npm --prefix apps/studio run --silent build </dev/null >build/studio.log 2>&1 || { tail -n 40 build/studio.log >&2; return 1; }
+}
