@@ -20,6 +20,9 @@ void addEvaluateCommand(CLI::App& program);
 void addPoseCommand(CLI::App& program);
 void addConvertCommand(CLI::App& program);
 void addSessionCommand(CLI::App& program);
+void addRetargetCommand(CLI::App& program);
+void addAnimateCommand(CLI::App& program);
+void addMotionEvaluation(CLI::App& evaluate);  // a subcommand of evaluate
 
 // Options that most commands have.
 struct Common {

@@ -228,7 +228,8 @@ void addSkinning(CLI::App& evaluate) {
 }  // namespace
 
 void addEvaluateCommand(CLI::App& program) {
-  CLI::App* evaluate = program.add_subcommand("evaluate", "Measure how good weights, skeletons and solvers are");
+  CLI::App* evaluate =
+      program.add_subcommand("evaluate", "Measure how good weights, skeletons, solvers and motions are");
   evaluate->require_subcommand(1);
   evaluate->footer("Example:\n  limber evaluate weights result.glb truth.glb");
   addWeights(*evaluate);
@@ -236,6 +237,7 @@ void addEvaluateCommand(CLI::App& program) {
   addRiggers(*evaluate);
   addSkinning(*evaluate);
   addIk(*evaluate);
+  addMotionEvaluation(*evaluate);
 }
 
 }  // namespace limber::cli

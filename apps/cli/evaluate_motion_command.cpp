@@ -1,0 +1,89 @@
+// limber evaluate motion: how well a character moves as the source of its motion did.
+#include <fmt/format.h>
+
+#include "command.h"
+#include "limber/asset/motion_io.h"
+#include "limber/core/file.h"
+#include "limber/evaluate/motion_metrics.h"
+
+namespace limber::cli {
+
+namespace {
+
+struct Options {
+  std::string result, source, truth, clip, mapFile;
+  bool json = false;
+};
+
+// The clip of that name, else the one named after the source, else the only one.
+const Clip& clipOfResult(const Motion& result, const Motion& source, const std::string& name) {
+  const std::string& wanted = name.empty() ? source.name : name;
+  for (const Clip& clip : result.clips) {
+    if (clip.name == wanted) return clip;
+  }
+  if (name.empty() && result.clips.size() == 1) return result.clips.front();
+  std::vector<std::string> names;
+  for (const Clip& clip : result.clips) names.push_back(clip.name);
+  throw Error(ErrorCode::kBadArgument, fmt::format("has no clip '{}'", wanted), result.name,
+              fmt::format("choose by --clip NAME; there are: {}", joinNames(names)));
+}
+
+Motion readWithClip(const std::string& file) {
+  Motion motion = readMotion(file);
+  if (motion.clips.empty()) throw Error(ErrorCode::kBadArgument, "holds no motion", file);
+  return motion;
+}
+
+void run(const Options& options) {
+  const Motion result = readWithClip(options.result), source = readWithClip(options.source);
+  const Clip& moved = clipOfResult(result, source, options.clip);
+  const Clip& original = source.clips.size() > 1 ? clipOfResult(source, result, moved.name) : source.clips.front();
+  SkeletonMap map;
+  if (options.mapFile.empty()) {
+    map = matchSkeletons(source.skeleton, result.skeleton);
+  } else {
+    const Bytes text = readFile(options.mapFile);
+    map = skeletonMapFromJson({reinterpret_cast<const char*>(text.data()), text.size()}, source.skeleton,
+                              result.skeleton);
+  }
+  const double rate = frameRateOf(original);
+  const PoseSequence from = sampleFrames(source.skeleton, original, rate);
+  PoseSequence to = sampleFrames(result.skeleton, moved, rate);
+  to.poses.resize(from.poses.size(), to.poses.back());
+  const RetargetSetup setup(source.skeleton, result.skeleton, map, {}, &from);
+  const MotionMetrics metrics = measureMotion(setup, from, to);
+  fmt::print("{}", options.json ? motionMetricsJson(metrics) : motionMetricsText(metrics));
+  if (options.truth.empty()) return;
+  const Motion truth = readWithClip(options.truth);
+  PoseSequence right = sampleFrames(truth.skeleton, clipOfResult(truth, source, options.clip), rate);
+  if (truth.skeleton.jointCount() != result.skeleton.jointCount()) {
+    throw Error(ErrorCode::kBadArgument, "has another skeleton than the result", options.truth);
+  }
+  right.poses.resize(from.poses.size(), right.poses.back());
+  const JointError error = jointErrorOf(setup, right, to);
+  fmt::print(options.json ? "{{\"jointError\": {:.6g}, \"rootRelativeJointError\": {:.6g}}}\n"
+                          : "joint error           {:.3g} of height squared, {:.3g} relative to the root\n",
+             error.global, error.rootRelative);
+}
+
+}  // namespace
+
+void addMotionEvaluation(CLI::App& evaluate) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = evaluate.add_subcommand("motion", "Measure how well a character moves as its motion's source");
+  command->add_option("RESULT", options->result, "the character with its clip")->required();
+  command->add_option("--source", options->source, "the motion it came from")->required()->type_name("FILE");
+  command->add_option("--truth", options->truth, "the same character with the clip as it should be")->type_name("FILE");
+  command->add_option("--clip", options->clip, "the clip (default: the one named after the source)")->type_name("NAME");
+  command->add_option("--map", options->mapFile, "which joints follow which, in JSON")->type_name("FILE");
+  command->add_flag("--json", options->json, "print JSON");
+  command->footer(
+      "Prints the angle between the bones' directions, the way of hands and feet against the limb's length, how fast\n"
+      "planted feet slide, how deep feet go below the ground, the jerk against the source's, and how often what is\n"
+      "planted in the source is planted in the result; with --truth the joints' squared distances, too.\n"
+      "\nExample:\n  limber retarget hero.glb walk.bvh -o walking.glb\n"
+      "  limber evaluate motion walking.glb --source walk.bvh");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace limber::cli

@@ -1,0 +1,197 @@
+// limber retarget and limber animate: motions onto a character.
+#include <fmt/format.h>
+
+#include "command.h"
+#include "limber/asset/motion_io.h"
+#include "limber/asset/read.h"
+#include "limber/asset/write.h"
+#include "limber/core/file.h"
+#include "limber/ik/ik_solver.h"
+#include "limber/pipeline/auto_rig.h"
+#include "limber/pipeline/retarget_asset.h"
+#include "progress_line.h"
+
+namespace limber::cli {
+
+namespace {
+
+struct Options {
+  std::string model, output, mapFile, saveMapFile, rootScale = "hip-height", rigger;
+  std::vector<std::string> motions;
+  RetargetAssetOptions retarget;
+  double frameRate = 0, ground = 0;
+  bool noContacts = false, hasGround = false;
+  Common common;
+};
+
+RootScale rootScaleOf(const std::string& name) {
+  if (name == "leg-length") return RootScale::kLegLength;
+  return name == "none" ? RootScale::kNone : RootScale::kHipHeight;
+}
+
+void prepare(Options& options) {
+  options.common.apply();
+  checkOutput(options.output, {".glb", ".gltf"});
+  findRetargetMethod(options.retarget.method);
+  findIkMethod(options.retarget.retarget.solver);
+  options.retarget.retarget.rootScale = rootScaleOf(options.rootScale);
+  options.retarget.retarget.contacts = !options.noContacts;
+  if (options.frameRate > 0) options.retarget.frameRate = options.frameRate;
+  if (options.hasGround) options.retarget.retarget.sourceGround = options.ground;
+  if (!options.mapFile.empty()) {
+    const Bytes text = readFile(options.mapFile);
+    options.retarget.mapJson.emplace(text.begin(), text.end());
+  }
+}
+
+// Adds all motions' clips; the map that is saved is that of the first motion.
+std::vector<RetargetedClip> addMotions(Asset& asset, const Options& options, Progress& progress, Warnings& warnings) {
+  std::vector<RetargetedClip> clips;
+  for (std::size_t i = 0; i < options.motions.size(); ++i) {
+    progress.stage("retarget");
+    const std::string& file = options.motions[i];
+    const Motion motion = readMotion(file);
+    warnings.append(motion.warnings);
+    try {
+      for (RetargetedClip& clip : retargetOnto(asset, motion, options.retarget)) clips.push_back(std::move(clip));
+    } catch (const Error& error) {
+      throw error.within(options.retarget.mapJson ? file + ": " + options.mapFile : file);
+    }
+  }
+  return clips;
+}
+
+void tell(const Options& options, const std::vector<RetargetedClip>& clips, const Warnings& warnings) {
+  const Account account(options.common.quiet, options.output);
+  for (const RetargetedClip& clip : clips) {
+    account.line(fmt::format("{:<24}{} frames at {:g} a second, {} parts matched", clip.name, clip.frames,
+                             clip.framesPerSecond, clip.map.matches.size()));
+  }
+  if (!clips.empty() && !clips.front().doubtful.empty()) {
+    account.line("matches to look at (--save-map writes them all, --map reads them again):");
+    for (const std::string& line : clips.front().doubtful) account.line("  " + line);
+  }
+  printWarnings(account, warnings);
+  if (options.output != "-") account.line(fmt::format("written: {}", options.output));
+}
+
+void write(const Asset& asset, const Options& options, const std::vector<RetargetedClip>& clips) {
+  std::vector<OutputFile> companions;
+  if (!options.saveMapFile.empty()) companions.push_back({options.saveMapFile, asBytes(clips.front().mapJson)});
+  writeAsset(asset, options.output, companions);
+}
+
+void runRetarget(Options options) {
+  prepare(options);
+  TerminalProgress progress(options.common.quiet);
+  progress->stage("read");
+  Asset asset = readAsset(options.model);
+  if (!hasRig(asset)) {
+    throw Error(ErrorCode::kBadArgument, "the model has no rig to move", asset.name, "limber animate rigs it first");
+  }
+  Warnings warnings = asset.warnings;
+  const std::vector<RetargetedClip> clips = addMotions(asset, options, *progress, warnings);
+  progress->stage("write");
+  write(asset, options, clips);
+  progress.finish();
+  tell(options, clips, warnings);
+}
+
+void runAnimate(Options options) {
+  prepare(options);
+  TerminalProgress progress(options.common.quiet);
+  progress->stage("read");
+  Asset asset = readAsset(options.model);
+  Warnings warnings = asset.warnings;
+  const bool rigged = hasRig(asset);
+  if (!rigged) {
+    AutoRigOptions rig;
+    if (!options.rigger.empty()) rig.rigger = options.rigger;
+    const AutoRigReport report = autoRig(asset, rig, *progress);
+    warnings.append(report.warnings);
+  }
+  std::vector<RetargetedClip> clips;
+  try {
+    clips = addMotions(asset, options, *progress, warnings);
+  } catch (const Error& error) {
+    if (rigged || error.code() != ErrorCode::kUnsupported) throw;
+    throw Error(error.code(), error.message(), error.where(),
+                "the joints of the automatic rig have no names that a motion knows: turn the model to stand upright "
+                "with its arms away from the body, or match by --map");
+  }
+  progress->stage("write");
+  write(asset, options, clips);
+  progress.finish();
+  tell(options, clips, warnings);
+}
+
+std::string help(const char* examples) {
+  std::string text = "Methods:\n";
+  for (const RetargetMethod& method : retargetMethods())
+    text += fmt::format("  {:<12}{}\n", method.name, method.summary);
+  return text + "\nMotions: .bvh, and .glb, .gltf, .fbx and .dae with animations. docs/retargeting.md tells more.\n" +
+         "\nExamples:\n" + examples;
+}
+
+void addOptions(CLI::App& command, const std::shared_ptr<Options>& options) {
+  RetargetOptions& retarget = options->retarget.retarget;
+  command.add_option("MOTIONS", options->motions, "files with motions; each becomes a clip named after it")->required();
+  command.add_option("-o,--output", options->output, "the .glb or .gltf to write; - is standard output (GLB)")
+      ->required()
+      ->type_name("FILE");
+  command.add_option("--method", options->retarget.method, "see below")->type_name("NAME")->capture_default_str();
+  command.add_option("--map", options->mapFile, "which joints follow which, in JSON (docs/skeleton_map.schema.json)")
+      ->type_name("FILE");
+  command.add_option("--save-map", options->saveMapFile, "write that map, to correct and use again")->type_name("FILE");
+  command.add_option("--frame-rate", options->frameRate, "frames a second of the clips (default: each motion's own)")
+      ->check(CLI::Range(1.0, 1000.0).description(""))
+      ->type_name("N");
+  command.add_option("--root-scale", options->rootScale, "how far the character goes for a metre of the motion")
+      ->check(CLI::IsMember({"hip-height", "leg-length", "none"}))
+      ->type_name("WHAT")
+      ->capture_default_str();
+  command.add_option("--reach", retarget.reach, "hands: 0 where the turned arms bring them, 1 where the motion's are")
+      ->check(CLI::Range(0.0, 1.0).description(""))
+      ->type_name("D")
+      ->capture_default_str();
+  command.add_option("--solver", retarget.solver, "how limbs reach; limber pose --help lists the solvers")
+      ->type_name("NAME")
+      ->capture_default_str();
+  command.add_flag("--no-contacts", options->noContacts, "let feet slide and hands miss what they touched");
+  command
+      .add_option_function<double>(
+          "--ground",
+          [options](double height) {
+            options->ground = height;
+            options->hasGround = true;
+          },
+          "height of the ground in the motion, in its unit (default: measured)")
+      ->type_name("Y");
+  options->common.addTo(command);
+}
+
+}  // namespace
+
+void addRetargetCommand(CLI::App& program) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand("retarget", "Put motions onto a rigged character");
+  command->add_option("MODEL", options->model, "the rigged model")->required();
+  addOptions(*command, options);
+  command->footer(
+      help("  limber retarget hero.glb motions/*.bvh -o hero_all.glb\n"
+           "  limber retarget hero.glb dance.fbx -o dancing.glb --save-map map.json"));
+  command->callback([options] { runRetarget(*options); });
+}
+
+void addAnimateCommand(CLI::App& program) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand("animate", "Let any model move: rig it if it has no rig, then retarget");
+  command->add_option("MODEL", options->model, "the model, rigged or not")->required();
+  addOptions(*command, options);
+  command->add_option("--rigger", options->rigger, "how a model without a rig gets one; limber rig --help lists them")
+      ->type_name("NAME");
+  command->footer(help("  limber animate scan.obj walk.bvh -o walking.glb"));
+  command->callback([options] { runAnimate(*options); });
+}
+
+}  // namespace limber::cli

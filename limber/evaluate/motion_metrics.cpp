@@ -1,0 +1,265 @@
+#include "limber/evaluate/motion_metrics.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "limber/core/error.h"
+#include "limber/ik/rotation.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kPlantedHeight = 0.03, kPlantedSpeed = 0.15;  // heights, heights a second
+constexpr double kPlantedSeconds = 0.1;
+constexpr double kCut = 12;  // heights a second of any joint: no motion, but a cut
+
+struct LimbName {
+  const char *upper, *lower, *end;
+};
+constexpr std::array<LimbName, 4> kLimbs = {{{"leftUpperArm", "leftLowerArm", "leftHand"},
+                                             {"rightUpperArm", "rightLowerArm", "rightHand"},
+                                             {"leftUpperLeg", "leftLowerLeg", "leftFoot"},
+                                             {"rightUpperLeg", "rightLowerLeg", "rightFoot"}}};
+
+using Positions = std::vector<std::vector<Vec3>>;  // of each frame, #J
+
+Positions positionsOf(const BodyKinematics& kinematics, const PoseSequence& frames) {
+  Positions positions;
+  BodyFrame frame;
+  for (const Pose& pose : frames.poses) {
+    kinematics.globals(pose, frame);
+    positions.push_back(frame.positions);
+  }
+  return positions;
+}
+
+double lowestSole(const SkeletonMap& map, MapSide side, const std::vector<Vec3>& positions) {
+  double y = std::numeric_limits<double>::infinity();
+  for (const Index joint : soleJoints(map, side)) y = std::min(y, positions[joint].y());
+  return y;
+}
+
+double heightOf(const SkeletonMap& map, MapSide side, const NeutralPose& neutral) {
+  const double low = lowestSole(map, side, neutral.positions);
+  double high = pelvisOf(map, side, neutral.positions).y();
+  for (const char* part : {"trunk", "neck", "head"}) {
+    const std::vector<Index>* joints = jointsOfPart(map, side, part);
+    if (joints) high = std::max(high, neutral.positions[joints->back()].y());
+  }
+  return high - low;
+}
+
+// One skeleton's motion as the measures see it.
+struct Seen {
+  Seen(const RetargetSetup& setup, MapSide s, const PoseSequence& sequence)
+      : side(s),
+        kinematics(s == MapSide::kSource ? setup.sourceKinematics : setup.targetKinematics),
+        neutral(s == MapSide::kSource ? setup.sourceNeutral : setup.targetNeutral),
+        positions(positionsOf(kinematics, sequence)),
+        height(heightOf(setup.map, s, neutral)),
+        ground(s == MapSide::kSource ? setup.sourceGround : setup.targetGround),
+        lowest(lowestSole(setup.map, s, neutral.positions)) {}
+
+  // Of a joint over where it is when standing, in heights.
+  double above(std::size_t frame, Index joint) const {
+    return (positions[frame][joint].y() - ground - (neutral.positions[joint].y() - lowest)) / height;
+  }
+  // In heights a second, from the frames before and after.
+  Vec3 velocity(std::size_t frame, Index joint, double seconds) const {
+    const std::size_t before = frame > 0 ? frame - 1 : 0, after = std::min(frame + 1, positions.size() - 1);
+    const double time = static_cast<double>(after - before) * seconds;
+    return (positions[after][joint] - positions[before][joint]) / (time * height);
+  }
+
+  MapSide side;
+  const BodyKinematics& kinematics;
+  const NeutralPose& neutral;
+  Positions positions;
+  double height, ground, lowest;
+};
+
+std::vector<bool> plantedFrames(const Seen& seen, Index joint, double seconds) {
+  const std::size_t count = seen.positions.size();
+  std::vector<bool> planted(count);
+  for (std::size_t f = 0; f < count; ++f) {
+    planted[f] = seen.above(f, joint) < kPlantedHeight && seen.velocity(f, joint, seconds).norm() < kPlantedSpeed;
+  }
+  const auto least = static_cast<std::size_t>(std::ceil(kPlantedSeconds / seconds));
+  for (std::size_t begin = 0; begin < count;) {
+    std::size_t end = begin;
+    while (end < count && planted[end] == planted[begin]) ++end;
+    if (planted[begin] && end - begin < least) {
+      std::fill(planted.begin() + static_cast<std::ptrdiff_t>(begin),
+                planted.begin() + static_cast<std::ptrdiff_t>(end), false);
+    }
+    begin = end;
+  }
+  return planted;
+}
+
+void measureFeet(const RetargetSetup& setup, const Seen& source, const Seen& target, double seconds,
+                 MotionMetrics& metrics) {
+  const std::vector<Index> from = soleJoints(setup.map, MapSide::kSource), to = soleJoints(setup.map, MapSide::kTarget);
+  double count = 0, agreed = 0;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    const std::vector<bool> planted = plantedFrames(source, from[i], seconds);
+    for (std::size_t f = 0; f < planted.size(); ++f) {
+      metrics.penetration = std::max(metrics.penetration, -target.above(f, to[i]));
+      metrics.sourcePenetration = std::max(metrics.sourcePenetration, -source.above(f, from[i]));
+      if (!planted[f]) continue;
+      const Vec3 speed = target.velocity(f, to[i], seconds), sourceSpeed = source.velocity(f, from[i], seconds);
+      metrics.sliding += std::hypot(speed.x(), speed.z());
+      metrics.sourceSliding += std::hypot(sourceSpeed.x(), sourceSpeed.z());
+      agreed += target.above(f, to[i]) < 1.5 * kPlantedHeight && speed.norm() < 1.5 * kPlantedSpeed;
+      ++count;
+    }
+  }
+  metrics.contactAgreement = count > 0 ? agreed / count : 1;
+  metrics.sliding = count > 0 ? metrics.sliding / count : 0;
+  metrics.sourceSliding = count > 0 ? metrics.sourceSliding / count : 0;
+}
+
+void measureLimbs(const RetargetSetup& setup, const Seen& source, const Seen& target, MotionMetrics& metrics) {
+  double bones = 0, limbs = 0;
+  for (const LimbName& limb : kLimbs) {
+    const JointMatch *upper = setup.map.find(limb.upper), *lower = setup.map.find(limb.lower),
+                     *end = setup.map.find(limb.end);
+    if (!upper || !lower || !end) continue;
+    const std::array<Index, 3> s = {upper->source.front(), lower->source.front(), end->source.front()};
+    const std::array<Index, 3> t = {upper->target.front(), lower->target.front(), end->target.front()};
+    const auto length = [](const Seen& seen, const std::array<Index, 3>& j) {
+      const std::vector<Vec3>& rest = seen.neutral.restPositions;
+      return (rest[j[1]] - rest[j[0]]).norm() + (rest[j[2]] - rest[j[1]]).norm();
+    };
+    const double sourceLength = length(source, s), targetLength = length(target, t);
+    for (std::size_t f = 0; f < source.positions.size(); ++f) {
+      const std::vector<Vec3>&a = source.positions[f], &b = target.positions[f];
+      for (std::size_t i = 0; i < 2; ++i) {
+        const Vec3 from = a[s[i + 1]] - a[s[i]], to = b[t[i + 1]] - b[t[i]];
+        metrics.boneDirection += std::atan2(from.cross(to).norm(), from.dot(to)) * 180 / kPi;
+        ++bones;
+      }
+      metrics.endEffector += ((b[t[2]] - b[t[0]]) / targetLength - (a[s[2]] - a[s[0]]) / sourceLength).norm();
+      ++limbs;
+    }
+  }
+  metrics.boneDirection = bones > 0 ? metrics.boneDirection / bones : 0;
+  metrics.endEffector = limbs > 0 ? metrics.endEffector / limbs : 0;
+}
+
+double squaredJerk(const Seen& seen, Index joint, const std::vector<bool>& cut) {
+  double sum = 0;
+  for (std::size_t f = 3; f < seen.positions.size(); ++f) {
+    if (cut[f] || cut[f - 1] || cut[f - 2]) continue;
+    const auto at = [&](std::size_t back) -> const Vec3& { return seen.positions[f - back][joint]; };
+    sum += ((at(0) - at(3) - 3 * (at(1) - at(2))) / seen.height).squaredNorm();
+  }
+  return sum;
+}
+
+void measureJerk(const RetargetSetup& setup, const Seen& source, const Seen& target, double seconds,
+                 MotionMetrics& metrics) {
+  std::vector<bool> cut(source.positions.size());
+  for (std::size_t f = 1; f < cut.size(); ++f) {
+    for (const JointMatch& match : setup.map.matches) {
+      const Vec3 way = source.positions[f][match.source.front()] - source.positions[f - 1][match.source.front()];
+      cut[f] = cut[f] || way.norm() > kCut * source.height * seconds;
+    }
+  }
+  double from = 0, to = 0;
+  for (const LimbName& limb : kLimbs) {
+    for (const char* part : {limb.upper, limb.lower, limb.end}) {
+      const JointMatch* match = setup.map.find(part);
+      if (!match) continue;
+      from += squaredJerk(source, match->source.front(), cut);
+      to += squaredJerk(target, match->target.front(), cut);
+    }
+  }
+  metrics.jerk = from > 0 ? std::sqrt(to / from) : 1;
+}
+
+void checkFrames(const RetargetSetup& setup, const PoseSequence& one, const PoseSequence& other) {
+  if (!setup.person) {
+    throw Error(ErrorCode::kUnsupported, "the motion's measures are those of people, and the skeletons are others'");
+  }
+  if (one.poses.size() != other.poses.size() || one.poses.size() < 5) {
+    throw Error(ErrorCode::kBadArgument,
+                fmt::format("motions of {} and {} frames cannot be compared", one.poses.size(), other.poses.size()), "",
+                "both need the same moments, at least 5");
+  }
+}
+
+}  // namespace
+
+MotionMetrics measureMotion(const RetargetSetup& setup, const PoseSequence& source, const PoseSequence& target) {
+  checkFrames(setup, source, target);
+  const Seen from(setup, MapSide::kSource, source), to(setup, MapSide::kTarget, target);
+  MotionMetrics metrics;
+  metrics.frames = static_cast<Index>(source.poses.size());
+  metrics.matched = static_cast<Index>(setup.map.matches.size());
+  metrics.height = to.height;
+  metrics.sourceHeight = from.height;
+  measureFeet(setup, from, to, source.frameSeconds, metrics);
+  measureLimbs(setup, from, to, metrics);
+  measureJerk(setup, from, to, source.frameSeconds, metrics);
+  return metrics;
+}
+
+JointError jointErrorOf(const RetargetSetup& setup, const PoseSequence& truth, const PoseSequence& target) {
+  checkFrames(setup, truth, target);
+  const Seen right(setup, MapSide::kTarget, truth), given(setup, MapSide::kTarget, target);
+  JointError error;
+  double count = 0;
+  for (std::size_t f = 0; f < truth.poses.size(); ++f) {
+    const std::vector<Vec3>&a = right.positions[f], &b = given.positions[f];
+    const Vec3 shift = pelvisOf(setup.map, MapSide::kTarget, b) - pelvisOf(setup.map, MapSide::kTarget, a);
+    for (const JointMatch& match : setup.map.matches) {
+      const Vec3 off = b[match.target.front()] - a[match.target.front()];
+      error.global += off.squaredNorm();
+      error.rootRelative += (off - shift).squaredNorm();
+      ++count;
+    }
+  }
+  const double scale = 1 / (count * right.height * right.height);
+  return {error.global * scale, error.rootRelative * scale};
+}
+
+std::string motionMetricsText(const MotionMetrics& m) {
+  std::string text;
+  const auto line = [&](const char* name, const std::string& value) { text += fmt::format("{:<22}{}\n", name, value); };
+  line("frames", fmt::format("{}, {} parts of the body", m.frames, m.matched));
+  line("bone direction", fmt::format("{:.2f} degrees", m.boneDirection));
+  line("end effectors", fmt::format("{:.2f} % of the limb", 100 * m.endEffector));
+  line("foot sliding", fmt::format("{:.2f} cm/s ({:.4f} heights/s), source {:.4f}", 100 * m.sliding * m.height,
+                                   m.sliding, m.sourceSliding));
+  line("ground penetration", fmt::format("{:.1f} mm ({:.4f} heights), source {:.4f}", 1000 * m.penetration * m.height,
+                                         m.penetration, m.sourcePenetration));
+  line("jerk", fmt::format("{:.3f} times the source's", m.jerk));
+  line("contact agreement", fmt::format("{:.1f} %", 100 * m.contactAgreement));
+  return text;
+}
+
+std::string motionMetricsJson(const MotionMetrics& m) {
+  const nlohmann::ordered_json json = {{"frames", m.frames},
+                                       {"matchedParts", m.matched},
+                                       {"boneDirectionDegrees", m.boneDirection},
+                                       {"endEffectorShare", m.endEffector},
+                                       {"slidingHeightsPerSecond", m.sliding},
+                                       {"slidingCentimetresPerSecond", 100 * m.sliding * m.height},
+                                       {"sourceSlidingHeightsPerSecond", m.sourceSliding},
+                                       {"penetrationHeights", m.penetration},
+                                       {"penetrationMillimetres", 1000 * m.penetration * m.height},
+                                       {"sourcePenetrationHeights", m.sourcePenetration},
+                                       {"jerkRatio", m.jerk},
+                                       {"contactAgreement", m.contactAgreement},
+                                       {"heightMetres", m.height}};
+  return json.dump(2) + "\n";
+}
+
+}  // namespace limber

@@ -1,0 +1,42 @@
+// How well a character moves as the source of its motion did: feet, ground, bones, smoothness.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "limber/retarget/retarget_clip.h"
+
+namespace limber {
+
+// Lengths in heights of the skeleton they are measured on: from its lowest foot joint to its head's joint, standing.
+// Planted is what stands still in the source: a foot's or the toes' joint within 0.03 heights of where it is when
+// standing and slower than 0.15 heights a second, for a tenth of a second at least.
+struct MotionMetrics {
+  Index frames = 0;
+  Index matched = 0;         // parts of the body that were compared
+  double boneDirection = 0;  // degrees between the directions of upper and lower limbs, mean
+  double endEffector = 0;    // hands and feet seen from shoulder and hip: how far off, in limb lengths, mean
+  double sliding = 0;        // of planted joints along the ground, heights a second, mean
+  double sourceSliding = 0;  // the same joints in the source
+  double penetration = 0;    // how deep a foot's joint goes below where it is when standing, heights, worst
+  double sourcePenetration = 0;
+  double jerk = 0;                      // root mean square jerk of limbs' joints against the source's (1: the same)
+  double contactAgreement = 0;          // share of the source's planted frames that are planted in the result too
+  double height = 1, sourceHeight = 1;  // metres
+};
+
+// `source` and `target` are the same moments of both. People only: throws Error kUnsupported for other skeletons, and
+// kBadArgument where the counts of frames differ or there are fewer than 5.
+MotionMetrics measureMotion(const RetargetSetup& setup, const PoseSequence& source, const PoseSequence& target);
+
+// Against a known answer for the same skeleton: mean of the joints' squared distances, over height squared.
+struct JointError {
+  double global = 0;        // as the joints stand
+  double rootRelative = 0;  // with both pelvises in one place
+};
+JointError jointErrorOf(const RetargetSetup& setup, const PoseSequence& truth, const PoseSequence& target);
+
+std::string motionMetricsText(const MotionMetrics& metrics);
+std::string motionMetricsJson(const MotionMetrics& metrics);
+
+}  // namespace limber

@@ -1,0 +1,52 @@
+#include "limber/pipeline/retarget_asset.h"
+
+#include <fmt/format.h>
+
+#include "limber/asset/clip_io.h"
+#include "limber/core/error.h"
+
+namespace limber {
+
+namespace {
+
+std::string namesOf(const std::vector<Index>& joints, const Skeleton& skeleton) {
+  std::string names;
+  for (const Index joint : joints) names += (names.empty() ? "" : " + ") + skeleton.joints[joint].name;
+  return names;
+}
+
+std::vector<std::string> doubtfulMatches(const SkeletonMap& map, const Skeleton& source, const Skeleton& target) {
+  std::vector<std::string> lines;
+  for (const JointMatch& match : map.matches) {
+    if (match.confidence >= kDoubtful || match.by == MatchedBy::kFile) continue;
+    lines.push_back(
+        fmt::format("{}: {} -> {}", match.part, namesOf(match.source, source), namesOf(match.target, target)));
+  }
+  return lines;
+}
+
+}  // namespace
+
+std::vector<RetargetedClip> retargetOnto(Asset& asset, const Motion& motion, const RetargetAssetOptions& options) {
+  const RetargetMethod& method = findRetargetMethod(options.method);
+  if (!hasRig(asset)) throw Error(ErrorCode::kUnsupported, "the model has no rig to move", asset.name);
+  if (motion.clips.empty()) throw Error(ErrorCode::kUnsupported, "holds no motion", motion.name);
+  const AssetSkeleton character = readSkeleton(asset);
+  const SkeletonMap map = options.mapJson ? skeletonMapFromJson(*options.mapJson, motion.skeleton, character.skeleton)
+                                          : matchSkeletons(motion.skeleton, character.skeleton);
+  std::vector<RetargetedClip> reports;
+  std::vector<Clip> clips;
+  for (const Clip& clip : motion.clips) {
+    const double rate =
+        options.frameRate.value_or(motion.clips.size() == 1 ? motion.framesPerSecond : frameRateOf(clip));
+    clips.push_back(retargetClip(method, motion.skeleton, clip, character.skeleton, map, options.retarget, rate));
+    clips.back().name = motion.clips.size() == 1 ? motion.name : clip.name;
+    reports.push_back({clips.back().name, frameCount(clip, rate), rate, map,
+                       doubtfulMatches(map, motion.skeleton, character.skeleton),
+                       skeletonMapToJson(map, motion.skeleton, character.skeleton)});
+  }
+  addClips(asset, character, clips);
+  return reports;
+}
+
+}  // namespace limber

@@ -1,0 +1,35 @@
+// Motions onto the character in a document.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "limber/asset/rig_io.h"
+#include "limber/retarget/retarget_clip.h"
+#include "limber/skeleton/motion.h"
+
+namespace limber {
+
+struct RetargetAssetOptions {
+  std::string method = "limb-ik";
+  RetargetOptions retarget;
+  std::optional<double> frameRate;     // of the clips; none: each motion's own
+  std::optional<std::string> mapJson;  // joints matched as this map says (skeleton_map.h)
+};
+
+struct RetargetedClip {
+  std::string name;
+  Index frames = 0;
+  double framesPerSecond = 0;
+  SkeletonMap map;
+  std::vector<std::string> doubtful;  // "leftHand: LHand -> hand_l", matches to look at
+  std::string mapJson;                // the map as a file
+};
+
+// A clip for each clip of `motion`, added to the document: called as the motion, or, where it has several, as they are.
+// Throws Error kUnsupported where the document has no rig or the motion no clip, and as matchSkeletons does.
+std::vector<RetargetedClip> retargetOnto(Asset& asset, const Motion& motion, const RetargetAssetOptions& options);
+
+}  // namespace limber

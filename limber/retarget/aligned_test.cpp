@@ -1,0 +1,120 @@
+#include "limber/retarget/aligned.h"
+
+#include <gtest/gtest.h>
+
+#include "limber/retarget/testing/test_motion.h"
+
+namespace limber {
+namespace {
+
+using limber::testing::inRestPose;
+using limber::testing::renamed;
+using limber::testing::scaled;
+using limber::testing::turn;
+using limber::testing::walk;
+using limber::testing::withJointBefore;
+using limber::testing::withOtherAxes;
+using limber::testing::worstDirection;
+
+class Aligned : public ::testing::Test {
+ protected:
+  double directionsOn(const Skeleton& target) {
+    const RetargetSetup setup(person, target, matchSkeletons(person, target), {}, &motion);
+    EXPECT_TRUE(setup.person);
+    return worstDirection(setup, motion, retargetFrames(findRetargetMethod("aligned"), setup, motion));
+  }
+
+  const Skeleton person = practiceHumanoid();
+  const PoseSequence motion = walk(person);
+};
+
+TEST_F(Aligned, TheSameSkeletonMovesTheSame) {
+  for (const RetargetMethod& method : retargetMethods()) {
+    const RetargetSetup setup(person, person, matchSkeletons(person, person), {}, &motion);
+    const PoseSequence result = retargetFrames(method, setup, motion);
+    for (std::size_t f = 0; f < motion.poses.size(); ++f) {
+      const std::vector<Affine> expected = poseGlobals(person, motion.poses[f]);
+      const std::vector<Affine> given = poseGlobals(person, result.poses[f]);
+      for (Index j = 0; j < person.jointCount(); ++j) {
+        ASSERT_LT((expected[j].matrix() - given[j].matrix()).norm(), 1e-5)
+            << method.name << " " << person.joints[j].name << " in frame " << f;
+      }
+    }
+  }
+}
+
+TEST_F(Aligned, OtherNamesAxesAndSizesKeepDirections) {
+  EXPECT_LT(directionsOn(renamed(person)), 1e-5);
+  EXPECT_LT(directionsOn(withOtherAxes(person)), 1e-5);
+  EXPECT_LT(directionsOn(scaled(withOtherAxes(renamed(person)), 3.7)), 1e-5);
+}
+
+// Turns across the bones: how a bone is twisted about itself cannot be seen in where joints are.
+TEST_F(Aligned, OtherRestPosesKeepDirections) {
+  const Skeleton aPose =
+      inRestPose(person, {{"leftUpperArm", turn(Vec3::UnitZ(), -50)}, {"rightUpperArm", turn(Vec3::UnitZ(), 50)}});
+  const Skeleton bent = inRestPose(person, {{"leftUpperArm", turn(Vec3(0, 0.2, -1), 80)},
+                                            {"leftLowerArm", turn(Vec3::UnitY(), -15)},
+                                            {"rightUpperLeg", turn(Vec3::UnitZ(), -40)},
+                                            {"leftUpperLeg", turn(Vec3::UnitZ(), 40)}});
+  EXPECT_LT(directionsOn(aPose), 0.5);
+  EXPECT_LT(directionsOn(withOtherAxes(aPose)), 0.5);
+  EXPECT_LT(directionsOn(bent), 0.5);
+}
+
+TEST_F(Aligned, FurtherTwistAndSpineJointsKeepDirections) {
+  Skeleton more = withJointBefore(person, "leftLowerArm", "leftArmHalf");
+  more = withJointBefore(more, "rightFoot", "rightShinHalf");
+  EXPECT_LT(directionsOn(more), 0.5);
+  EXPECT_LT(directionsOn(withJointBefore(person, "neck", "spineTop")), 0.5);
+}
+
+TEST_F(Aligned, WhichWayTheRestPoseFacesDoesNotMatter) {
+  Skeleton turned = person;
+  turned.joints[0].rest.rotation = turn(Vec3::UnitY(), 90);
+  turned.joints[0].rest.translation = turn(Vec3::UnitY(), 90) * turned.joints[0].rest.translation;
+  EXPECT_LT(directionsOn(turned), 1e-5);
+  Skeleton lying = person;
+  lying.joints[0].rest.rotation = turn(Vec3::UnitX(), 90);
+  lying.joints[0].rest.translation = turn(Vec3::UnitX(), 90) * lying.joints[0].rest.translation;
+  EXPECT_LT(directionsOn(lying), 1e-5) << "up is told by the body, not by an axis";
+}
+
+TEST_F(Aligned, TheWayScalesWithTheHips) {
+  const Skeleton giant = scaled(person, 2.5);
+  const RetargetSetup setup(person, giant, matchSkeletons(person, giant), {}, &motion);
+  EXPECT_NEAR(setup.scale, 2.5, 1e-9);
+  const PoseSequence result = retargetFrames(findRetargetMethod("aligned"), setup, motion);
+  const Vec3 way = motion.poses.back().locals[0].translation - motion.poses.front().locals[0].translation;
+  const Vec3 giants = result.poses.back().locals[0].translation - result.poses.front().locals[0].translation;
+  EXPECT_LT((giants - 2.5 * way).norm(), 1e-6);
+
+  RetargetOptions unscaled;
+  unscaled.rootScale = RootScale::kNone;
+  EXPECT_EQ(RetargetSetup(person, giant, matchSkeletons(person, giant), unscaled, &motion).scale, 1);
+}
+
+TEST_F(Aligned, ThereAndBackAgain) {
+  const Skeleton other = withOtherAxes(scaled(
+      inRestPose(person, {{"leftUpperArm", turn(Vec3::UnitZ(), -45)}, {"rightUpperArm", turn(Vec3::UnitZ(), 45)}}),
+      1.3));
+  for (const char* name : {"aligned", "limb-ik"}) {
+    const RetargetMethod& method = findRetargetMethod(name);
+    const RetargetSetup there(person, other, matchSkeletons(person, other), {}, &motion);
+    const PoseSequence away = retargetFrames(method, there, motion);
+    const RetargetSetup back(other, person, matchSkeletons(other, person), {}, &away);
+    const PoseSequence home = retargetFrames(method, back, away);
+    double sum = 0, count = 0;
+    for (std::size_t f = 0; f < motion.poses.size(); ++f) {
+      const std::vector<Affine> expected = poseGlobals(person, motion.poses[f]);
+      const std::vector<Affine> given = poseGlobals(person, home.poses[f]);
+      for (Index j = 0; j < person.jointCount(); ++j, ++count) {
+        sum += (expected[j].translation() - given[j].translation()).norm();
+      }
+    }
+    EXPECT_LT(sum / count, 0.01 * 1.7) << name;
+  }
+}
+
+}  // namespace
+}  // namespace limber

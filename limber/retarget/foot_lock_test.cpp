@@ -1,0 +1,68 @@
+#include "limber/retarget/foot_lock.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "limber/retarget/plant_detector.h"
+
+namespace limber {
+namespace {
+
+constexpr double kStep = 1.0 / 60;
+
+// A foot that swings forward, slows down, drifts while planted, and leaves again.
+FootLock::Frame frameAt(int i) {
+  FootLock::Frame frame;
+  const double x = i < 30 ? 0.02 * i : i < 90 ? 0.6 + 0.001 * (i - 30) : 0.66 + 0.02 * (i - 90);
+  frame.ankle = Vec3(0.1, 0.08, x);
+  frame.toes = frame.ankle + Vec3(0, -0.06, 0.12);
+  frame.anchor = i >= 30 && i < 90 ? FootAnchor::kToes : FootAnchor::kNone;
+  frame.ankleGround = 0.08;
+  frame.toesGround = 0.02;
+  return frame;
+}
+
+TEST(FootLock, HoldsWhatDriftsAndNeverJumps) {
+  FootLock lock;
+  Vec3 before = frameAt(0).ankle;
+  for (int i = 0; i < 130; ++i) {
+    const FootLock::Frame frame = frameAt(i);
+    const Vec3 out = lock.next(frame, i == 0 ? 0 : kStep, 0.3);
+    EXPECT_LT((out - before).norm(), 0.03) << i;
+    if (i > 55 && i < 90) {
+      EXPECT_LT((out - before).norm(), 1e-4) << i;
+    }
+    if (i < 30) {
+      EXPECT_LT((out - frame.ankle).norm(), 1e-12);
+    }
+    before = out;
+  }
+  EXPECT_LT((before - frameAt(129).ankle).norm(), 0.01) << "free again";
+}
+
+TEST(FootLock, ALockLeftFarBehindIsGivenUp) {
+  FootLock lock;
+  for (int i = 0; i < 200; ++i) {
+    FootLock::Frame frame;
+    frame.ankle = Vec3(0, 0, 0.01 * i);
+    frame.toes = frame.ankle;
+    frame.anchor = FootAnchor::kAnkle;
+    const Vec3 out = lock.next(frame, i == 0 ? 0 : kStep, 0.2);
+    EXPECT_LT((out - frame.ankle).norm(), 0.25) << i;
+  }
+}
+
+TEST(PlantDetector, StandingIsSlowAndLow) {
+  PlantDetector detector(0.9);
+  EXPECT_TRUE(detector.next(Vec3(0, 0, 0), 0, 0));
+  for (int i = 1; i < 20; ++i) EXPECT_TRUE(detector.next(Vec3(0, 0, 0.001 * i), 0, kStep));
+  bool planted = true;
+  for (int i = 1; i < 20; ++i) planted = detector.next(Vec3(0, 0.01 * i, 0.02 + 0.03 * i), 0.01 * i, kStep);
+  EXPECT_FALSE(planted) << "fast";
+  for (int i = 1; i < 20; ++i) planted = detector.next(Vec3(0, 0.3, 0.6), 0.3, kStep);
+  EXPECT_FALSE(planted) << "slow, but high";
+}
+
+}  // namespace
+}  // namespace limber

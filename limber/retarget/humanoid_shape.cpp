@@ -1,0 +1,205 @@
+#include "limber/retarget/humanoid_shape.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "limber/skeleton/chain.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kConfidence = 0.6;
+
+class ShapeReader {
+ public:
+  explicit ShapeReader(const Skeleton& skeleton) : skeleton_(skeleton), children_(childrenOf(skeleton)) {
+    for (const Affine& global : restGlobals(skeleton)) positions_.push_back(global.translation());
+    Box box;
+    for (const Vec3& position : positions_) box.add(position);
+    center_ = box.center();
+    size_ = box.size();
+    ground_ = box.min.y();
+    for (Index j = 0; j < skeleton.jointCount(); ++j) {
+      if (children_[j].empty()) leaves_.push_back(j);
+    }
+  }
+
+  std::vector<HumanoidJoint> read() {
+    const auto feet = lowestPair();
+    if (!feet) return {};
+    const std::optional<Index> hips = fork(feet->first, feet->second);
+    if (!hips) return {};
+    lateral_ = positions_[feet->first] - positions_[feet->second];
+    lateral_.y() = 0;
+    lateral_.normalize();
+    const auto hands = widestPair(*hips, *feet);
+    if (!hands) return {};
+    const std::optional<Index> chest = fork(hands->first, hands->second);
+    if (!chest || !isAncestorOrSelf(skeleton_, *hips, *chest)) return {};
+    if (!leftIsFirst(*feet)) lateral_ = -lateral_;
+
+    give("hips", *hips);
+    for (const Index foot : {feet->first, feet->second}) leg(*hips, foot);
+    for (const Index hand : {hands->first, hands->second}) arm(*chest, hand);
+    trunkAndHead(*hips, *chest);
+    return joints_;
+  }
+
+ private:
+  using Pair = std::pair<Index, Index>;
+
+  void give(std::string_view bone, Index joint) { joints_.push_back({bone, joint, kConfidence}); }
+  void give(bool left, std::string_view leftBone, Index joint) {
+    give(left ? leftBone : mirroredBone(leftBone), joint);
+  }
+  double side(Index joint) const { return lateral_.dot(positions_[joint] - center_); }
+  std::optional<Index> fork(Index a, Index b) const {
+    std::optional<Index> up = a;
+    while (up && !isAncestorOrSelf(skeleton_, *up, b)) up = skeleton_.joints[*up].parent;
+    return up;
+  }
+  // The joints below `from` on the way to `to`.
+  std::vector<Index> way(Index from, Index to) const {
+    std::vector<Index> joints;
+    for (Index j = to; j != from; j = *skeleton_.joints[j].parent) joints.insert(joints.begin(), j);
+    return joints;
+  }
+
+  // Two ends near the ground that lie across the middle from each other and meet high up.
+  std::optional<Pair> lowestPair() const {
+    std::optional<Pair> best;
+    double bestCost = 0;
+    for (std::size_t a = 0; a < leaves_.size(); ++a) {
+      for (std::size_t b = a + 1; b < leaves_.size(); ++b) {
+        const Vec3 &p = positions_[leaves_[a]], &q = positions_[leaves_[b]];
+        const std::optional<Index> meet = fork(leaves_[a], leaves_[b]);
+        const double top = std::max(p.y(), q.y()) - ground_;
+        if (!meet || top > 0.2 * size_.y() || std::abs(p.y() - q.y()) > 0.05 * size_.y()) continue;
+        if (positions_[*meet].y() - ground_ < 0.3 * size_.y()) continue;
+        const double cost = p.y() + q.y() - 2 * ground_ + std::abs(p.z() - q.z());
+        if (!best || cost < bestCost) {
+          best = {leaves_[a], leaves_[b]};
+          bestCost = cost;
+        }
+      }
+    }
+    return best;
+  }
+
+  // Two ends above the hips' height or not, that hang on the trunk and reach furthest to both sides.
+  std::optional<Pair> widestPair(Index hips, const Pair& feet) const {
+    std::optional<Index> far[2];
+    for (const Index leaf : leaves_) {
+      const bool isLeg = fork(leaf, feet.first) != hips || fork(leaf, feet.second) != hips;
+      if (isLeg || !isAncestorOrSelf(skeleton_, hips, leaf)) continue;
+      std::optional<Index>& widest = far[side(leaf) > 0 ? 0 : 1];
+      if (!widest || std::abs(side(leaf)) > std::abs(side(*widest))) widest = leaf;
+    }
+    if (!far[0] || !far[1]) return std::nullopt;
+    const double a = std::abs(side(*far[0])), b = std::abs(side(*far[1]));
+    if (std::min(a, b) < 0.1 * size_.y() || std::abs(a - b) > 0.15 * size_.y()) return std::nullopt;
+    return Pair{*far[0], *far[1]};
+  }
+
+  // Whether the first foot, on the side to which lateral_ points, is the left one.
+  bool leftIsFirst(const Pair& feet) const {
+    Vec3 forward = Vec3::Zero();
+    for (const Index foot : {feet.first, feet.second}) {
+      if (const auto parent = skeleton_.joints[foot].parent) forward += positions_[foot] - positions_[*parent];
+    }
+    forward.y() = 0;
+    if (forward.norm() < 0.02 * size_.y()) forward = Vec3::UnitZ();
+    return Vec3::UnitY().cross(forward).dot(lateral_) > 0;
+  }
+
+  // The joint of `joints` from `first` on whose place is nearest to `share`; leaves `spare` joints behind it.
+  template <typename Share>
+  std::size_t nearest(const std::vector<Index>& joints, std::size_t first, std::size_t spare, double share,
+                      const Share& shareOf) const {
+    std::size_t best = first;
+    for (std::size_t i = first; i + spare < joints.size(); ++i) {
+      if (std::abs(shareOf(joints[i]) - share) < std::abs(shareOf(joints[best]) - share)) best = i;
+    }
+    return best;
+  }
+
+  void leg(Index hips, Index foot) {
+    const std::vector<Index> joints = way(hips, foot);
+    if (joints.size() < 2) return;
+    const double top = positions_[joints.front()].y() - ground_;
+    const auto height = [&](Index joint) { return (positions_[joint].y() - ground_) / std::max(top, 1e-12); };
+    const bool left = side(foot) > 0;
+    const std::size_t upper = nearest(joints, 0, 2, 1, height);
+    const std::size_t lower = nearest(joints, upper + 1, joints.size() > 2 ? 1 : 0, 0.52, height);
+    give(left, "leftUpperLeg", joints[upper]);
+    give(left, "leftLowerLeg", joints[lower]);
+    if (lower + 1 >= joints.size()) return;
+    const std::size_t ankle = nearest(joints, lower + 1, 0, 0.1, height);
+    give(left, "leftFoot", joints[ankle]);
+    if (ankle + 1 < joints.size()) give(left, "leftToes", joints[ankle + 1]);
+  }
+
+  void arm(Index chest, Index hand) {
+    std::vector<Index> joints = way(chest, hand);
+    const bool left = side(hand) > 0;
+    // The hand is where fingers begin.
+    for (std::size_t i = 1; i < joints.size(); ++i) {
+      if (children_[joints[i]].size() > 1 && i >= 2) {
+        joints.resize(i + 1);
+        break;
+      }
+    }
+    if (joints.size() < 2) return;
+    const double reach = std::max((positions_[joints.back()] - positions_[chest]).norm(), 1e-12);
+    const auto share = [&](Index joint) { return (positions_[joint] - positions_[chest]).norm() / reach; };
+    const std::size_t end = joints.size() - 1;
+    if (joints.size() < 3) {
+      give(left, "leftUpperArm", joints[0]);
+      give(left, "leftLowerArm", joints[1]);
+      return;
+    }
+    const std::size_t upper = joints.size() == 3 ? 0 : nearest(joints, 0, 2, 0.25, share);
+    const std::size_t lower = nearest(joints, upper + 1, 1, 0.62, share);
+    if (upper > 0) give(left, "leftShoulder", joints[0]);
+    give(left, "leftUpperArm", joints[upper]);
+    give(left, "leftLowerArm", joints[lower]);
+    give(left, "leftHand", joints[end]);
+  }
+
+  void trunkAndHead(Index hips, Index chest) {
+    const std::vector<Index> trunk = way(hips, chest);
+    if (!trunk.empty()) give("spine", trunk.front());
+    if (trunk.size() > 1) give("chest", trunk[trunk.size() / 2]);
+    if (trunk.size() > 2) give("upperChest", trunk.back());
+    std::optional<Index> top;
+    for (const Index leaf : leaves_) {
+      const bool inTheMiddle = std::abs(side(leaf)) < 0.1 * size_.y();
+      if (!inTheMiddle || !isAncestorOrSelf(skeleton_, chest, leaf) || leaf == chest) continue;
+      if (!top || positions_[leaf].y() > positions_[*top].y()) top = leaf;
+    }
+    if (!top || positions_[*top].y() < positions_[chest].y()) return;
+    const std::vector<Index> joints = way(chest, *top);
+    if (joints.size() == 1) return give("head", joints[0]);
+    give("neck", joints[0]);
+    give("head", joints[joints.size() > 2 ? joints.size() - 2 : 1]);
+  }
+
+  const Skeleton& skeleton_;
+  std::vector<std::vector<Index>> children_;
+  std::vector<Vec3> positions_;
+  std::vector<Index> leaves_;
+  Vec3 center_ = Vec3::Zero(), size_ = Vec3::Zero(), lateral_ = Vec3::UnitX();
+  double ground_ = 0;
+  std::vector<HumanoidJoint> joints_;
+};
+
+}  // namespace
+
+std::vector<HumanoidJoint> humanoidJointsByShape(const Skeleton& skeleton) {
+  if (skeleton.jointCount() < 8) return {};
+  return ShapeReader(skeleton).read();
+}
+
+}  // namespace limber

@@ -1,0 +1,152 @@
+#include "limber/retarget/limb_ik.h"
+
+#include <gtest/gtest.h>
+
+#include "limber/core/error.h"
+#include "limber/retarget/testing/test_motion.h"
+
+namespace limber {
+namespace {
+
+using limber::testing::turn;
+using limber::testing::walk;
+
+// Longer shins, shorter thighs and a wider pelvis than the source's: joint angles alone make the feet slide.
+Skeleton oddlyBuilt() {
+  Skeleton person = practiceHumanoid();
+  for (Joint& joint : person.joints) {
+    if (joint.name == "leftFoot" || joint.name == "rightFoot") joint.rest.translation *= 1.4;
+    if (joint.name == "leftLowerLeg" || joint.name == "rightLowerLeg") joint.rest.translation *= 0.8;
+    if (joint.name == "leftUpperLeg" || joint.name == "rightUpperLeg") joint.rest.translation.x() *= 1.5;
+  }
+  const double lower = restGlobals(practiceHumanoid())[person.find("leftFoot").value()].translation().y() -
+                       restGlobals(person)[person.find("leftFoot").value()].translation().y();
+  person.joints[0].rest.translation.y() += lower;
+  return person;
+}
+
+class LimbIk : public ::testing::Test {
+ protected:
+  PoseSequence by(const char* method, const RetargetOptions& options = {}) {
+    const RetargetSetup setup(person, odd, matchSkeletons(person, odd), options, &motion);
+    return retargetFrames(findRetargetMethod(method), setup, motion);
+  }
+  // Metres that the feet's joints move along the ground once the source's have stood still for a tenth of a second:
+  // these feet stop all at once, and what is at speed when it is planted needs a moment.
+  double sliding(const PoseSequence& result) const {
+    double way = 0;
+    for (const char* foot : {"leftFoot", "rightFoot"}) {
+      const Index from = person.find(foot).value(), to = odd.find(foot).value();
+      int still = 0;
+      for (std::size_t f = 1; f < motion.poses.size(); ++f) {
+        const auto step = [&](const Skeleton& skeleton, const PoseSequence& frames, Index joint) -> Vec3 {
+          return poseGlobals(skeleton, frames.poses[f])[joint].translation() -
+                 poseGlobals(skeleton, frames.poses[f - 1])[joint].translation();
+        };
+        still = step(person, motion, from).norm() < 1e-4 ? still + 1 : 0;
+        if (still <= 6) continue;
+        const Vec3 moved = step(odd, result, to);
+        way += std::hypot(moved.x(), moved.z());
+      }
+    }
+    return way;
+  }
+
+  const Skeleton person = practiceHumanoid(), odd = oddlyBuilt();
+  const PoseSequence motion = walk(person);
+};
+
+TEST_F(LimbIk, PlantedFeetStayPlanted) {
+  EXPECT_LT(sliding(by("limb-ik")), 0.35 * sliding(by("aligned")));
+}
+
+TEST_F(LimbIk, FeetStayAboveTheGround) {
+  const PoseSequence result = by("limb-ik");
+  for (const char* name : {"leftFoot", "rightFoot", "leftToes", "rightToes"}) {
+    const Index joint = odd.find(name).value();
+    const double standing = restGlobals(odd)[joint].translation().y();
+    for (const Pose& pose : result.poses) {
+      ASSERT_GT(poseGlobals(odd, pose)[joint].translation().y(), standing - 0.005) << name;
+    }
+  }
+}
+
+TEST_F(LimbIk, BonesKeepTheirLengths) {
+  const PoseSequence result = by("limb-ik");
+  for (const Pose& pose : result.poses) {
+    for (Index j = 1; j < odd.jointCount(); ++j) {
+      ASSERT_LT((pose.locals[j].translation - odd.joints[j].rest.translation).norm(), 1e-9);
+    }
+  }
+}
+
+TEST_F(LimbIk, HandsReachWhereTheSourcesAre) {
+  Skeleton shortArms = person;
+  for (Joint& joint : shortArms.joints) {
+    if (joint.name == "leftHand" || joint.name == "leftLowerArm") joint.rest.translation *= 0.9;
+  }
+  const PoseSequence still{{restPose(person)}, 1.0 / 30};
+  PoseSequence bent = still;
+  bent.poses[0].locals[person.find("leftLowerArm").value()].rotation = turn(-Vec3::UnitY(), 60);
+  RetargetOptions options;
+  options.reach = 1;
+  for (const char* solver : {"two-bone", "fabrik"}) {
+    options.solver = solver;
+    const RetargetSetup setup(person, shortArms, matchSkeletons(person, shortArms), options, &bent);
+    const PoseSequence result = retargetFrames(findRetargetMethod("limb-ik"), setup, bent);
+    const Index hand = person.find("leftHand").value();
+    EXPECT_LT((poseGlobals(shortArms, result.poses[0])[hand].translation() -
+               poseGlobals(person, bent.poses[0])[hand].translation())
+                  .norm(),
+              0.002)
+        << solver;
+  }
+}
+
+TEST_F(LimbIk, TouchingHandsTouch) {
+  Skeleton broad = person;
+  for (Joint& joint : broad.joints) {
+    if (joint.name == "leftUpperArm" || joint.name == "rightUpperArm") joint.rest.translation.x() *= 1.6;
+  }
+  PoseSequence clap{{restPose(person)}, 1.0 / 30};
+  for (const auto& [side, sign] : {std::pair<std::string, double>{"left", -1}, {"right", 1}}) {
+    clap.poses[0].locals[person.find(side + "UpperArm").value()].rotation = turn(Vec3::UnitY(), sign * 80);
+    clap.poses[0].locals[person.find(side + "LowerArm").value()].rotation = turn(Vec3::UnitY(), sign * 80);
+  }
+  const auto apart = [&](const Skeleton& skeleton, const Pose& pose) {
+    const std::vector<Affine> globals = poseGlobals(skeleton, pose);
+    return (globals[skeleton.find("leftHand").value()].translation() -
+            globals[skeleton.find("rightHand").value()].translation())
+        .norm();
+  };
+  const RetargetSetup setup(person, broad, matchSkeletons(person, broad), {}, &clap);
+  const double wanted = apart(person, clap.poses[0]);
+  ASSERT_LT(wanted, 0.11) << "the source's hands touch";
+  const double aligned = apart(broad, retargetFrames(findRetargetMethod("aligned"), setup, clap).poses[0]);
+  const double solved = apart(broad, retargetFrames(findRetargetMethod("limb-ik"), setup, clap).poses[0]);
+  EXPECT_GT(aligned, wanted + 0.05);
+  EXPECT_NEAR(solved, wanted, 0.01);
+}
+
+TEST_F(LimbIk, FramesComeOneByOne) {
+  const RetargetSetup setup(person, odd, matchSkeletons(person, odd), {}, &motion);
+  const PoseSequence whole = by("limb-ik");
+  const auto live = findRetargetMethod("limb-ik").make(setup);
+  Pose pose = restPose(odd);
+  for (std::size_t f = 0; f < 50; ++f) {
+    live->next(motion.poses[f], f == 0 ? 0 : motion.frameSeconds, pose);
+    for (Index j = 0; j < odd.jointCount(); ++j) {
+      ASSERT_EQ(pose.locals[j].rotation.coeffs(), whole.poses[f].locals[j].rotation.coeffs()) << "no look-ahead";
+    }
+  }
+}
+
+TEST_F(LimbIk, UnknownNamesListTheKnown) {
+  EXPECT_THROW(findRetargetMethod("magic"), Error);
+  RetargetOptions options;
+  options.solver = "magic";
+  EXPECT_THROW(by("limb-ik", options), Error);
+}
+
+}  // namespace
+}  // namespace limber

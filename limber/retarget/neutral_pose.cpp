@@ -1,0 +1,136 @@
+#include "limber/retarget/neutral_pose.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "limber/ik/rotation.h"
+#include "limber/skeleton/chain.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kFootGoesAlong = 25 * kPi / 180;
+constexpr double kNearAxis = 20 * kPi / 180;
+
+std::optional<Index> firstOf(const SkeletonMap& map, MapSide side, std::string_view part) {
+  const std::vector<Index>* joints = jointsOfPart(map, side, part);
+  return joints ? std::optional(joints->front()) : std::nullopt;
+}
+
+// The axis of space that the direction is near to, if it is.
+Vec3 snapped(const Vec3& direction) {
+  Eigen::Index largest = 0;
+  direction.cwiseAbs().maxCoeff(&largest);
+  const Vec3 axis = direction[largest] < 0 ? -Vec3::Unit(largest) : Vec3(Vec3::Unit(largest));
+  return axis.dot(direction.normalized()) > std::cos(kNearAxis) ? axis : Vec3(direction.normalized());
+}
+
+// From left and right limbs, and from the hips to the head.
+Quat bodyFrame(const SkeletonMap& map, MapSide side, const std::vector<Vec3>& positions) {
+  const auto at = [&](std::string_view part) -> std::optional<Vec3> {
+    const std::optional<Index> joint = firstOf(map, side, part);
+    return joint ? std::optional(positions[*joint]) : std::nullopt;
+  };
+  Vec3 left = Vec3::Zero(), up = Vec3::Zero();
+  for (const auto& [one, other] : {std::pair{"leftUpperLeg", "rightUpperLeg"}, {"leftUpperArm", "rightUpperArm"}}) {
+    if (at(one) && at(other)) left += *at(one) - *at(other);
+  }
+  const std::optional<Vec3> hips = at("hips");
+  for (const char* part : {"trunk", "neck", "head"}) {
+    if (hips && at(part)) up += *at(part) - *hips;
+  }
+  for (const char* part : {"leftFoot", "rightFoot"}) {
+    if (hips && at(part)) up += *hips - *at(part);
+  }
+  if (left.norm() < 1e-9 || up.norm() < 1e-9 || left.cross(up).norm() < 1e-6 * left.norm() * up.norm()) {
+    return Quat::Identity();
+  }
+  up = snapped(up);
+  left = snapped((left - left.dot(up) * up).normalized());
+  left = (left - left.dot(up) * up).normalized();
+  Mat3 axes;
+  axes << left, up, left.cross(up);
+  return Quat(axes).conjugate();
+}
+
+// Limb bones, where they point in the neutral pose, and where they end.
+struct LimbBone {
+  std::string_view part, end;
+  Vec3 direction;
+};
+std::array<LimbBone, 8> limbBones() {
+  const Vec3 left = Vec3::UnitX(), right = -Vec3::UnitX(), down = -Vec3::UnitY();
+  return {{{"leftUpperArm", "leftLowerArm", left},
+           {"leftLowerArm", "leftHand", left},
+           {"rightUpperArm", "rightLowerArm", right},
+           {"rightLowerArm", "rightHand", right},
+           {"leftUpperLeg", "leftLowerLeg", down},
+           {"leftLowerLeg", "leftFoot", down},
+           {"rightUpperLeg", "rightLowerLeg", down},
+           {"rightLowerLeg", "rightFoot", down}}};
+}
+
+}  // namespace
+
+const std::vector<Index>* jointsOfPart(const SkeletonMap& map, MapSide side, std::string_view part) {
+  const JointMatch* match = map.find(part);
+  if (!match) return nullptr;
+  return side == MapSide::kSource ? &match->source : &match->target;
+}
+
+NeutralPose neutralPose(const Skeleton& skeleton, const SkeletonMap& map, MapSide side) {
+  NeutralPose pose;
+  std::vector<Vec3> rest;
+  std::vector<Quat> restRotations;
+  for (const Affine& global : restGlobals(skeleton)) rest.push_back(global.translation());
+  pose.toBody = bodyFrame(map, side, rest);
+  std::vector<Quat> turns(skeleton.jointCount(), Quat::Identity());
+  std::vector<std::optional<std::pair<Vec3, Vec3>>> aims(skeleton.jointCount());  // rest direction, neutral direction
+  std::vector<bool> isFoot(skeleton.jointCount());
+  for (Vec3& position : rest) position = pose.toBody * position;
+  for (const LimbBone& bone : limbBones()) {
+    const std::optional<Index> joint = firstOf(map, side, bone.part), end = firstOf(map, side, bone.end);
+    if (joint && end && (rest[*end] - rest[*joint]).norm() > 1e-9) {
+      aims[*joint] = std::pair{Vec3(rest[*end] - rest[*joint]), bone.direction};
+    }
+  }
+  for (const char* foot : {"leftFoot", "rightFoot"}) {
+    if (const std::optional<Index> joint = firstOf(map, side, foot)) isFoot[*joint] = true;
+  }
+
+  pose.positions.resize(skeleton.jointCount());
+  for (Index j = 0; j < skeleton.jointCount(); ++j) {
+    const Joint& joint = skeleton.joints[j];
+    const Quat parentRest = joint.parent ? restRotations[*joint.parent] : pose.toBody;
+    restRotations.push_back((parentRest * joint.rest.rotation).normalized());
+    const Quat above = joint.parent ? turns[*joint.parent] : Quat::Identity();
+    turns[j] = above;
+    if (aims[j]) turns[j] = (shortestRotation(above * aims[j]->first, aims[j]->second) * above).normalized();
+    if (isFoot[j] && angleBetween(Quat::Identity(), above) < kFootGoesAlong) turns[j] = Quat::Identity();
+    pose.rotations.push_back((turns[j] * restRotations[j]).normalized());
+    pose.positions[j] =
+        joint.parent ? Vec3(pose.positions[*joint.parent] + above * (rest[j] - rest[*joint.parent])) : rest[j];
+  }
+  pose.restPositions = std::move(rest);
+  return pose;
+}
+
+Vec3 pelvisOf(const SkeletonMap& map, MapSide side, const std::vector<Vec3>& positions) {
+  const std::optional<Index> left = firstOf(map, side, "leftUpperLeg"), right = firstOf(map, side, "rightUpperLeg");
+  if (left && right) return 0.5 * (positions[*left] + positions[*right]);
+  if (const std::optional<Index> hips = firstOf(map, side, "hips")) return positions[*hips];
+  const JointMatch& first = map.matches.front();
+  return positions[side == MapSide::kSource ? first.source.front() : first.target.front()];
+}
+
+std::vector<Index> soleJoints(const SkeletonMap& map, MapSide side) {
+  std::vector<Index> joints;
+  for (const char* part : {"leftFoot", "rightFoot", "leftToes", "rightToes"}) {
+    if (const std::optional<Index> foot = firstOf(map, side, part)) joints.push_back(*foot);
+  }
+  return joints;
+}
+
+}  // namespace limber

@@ -1,0 +1,35 @@
+// One pose that two skeletons share whatever their rest poses are: against it, turns mean the same in both.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "limber/retarget/skeleton_map.h"
+
+namespace limber {
+
+enum class MapSide { kSource, kTarget };
+
+// The joints of a part on that side, none where it is not matched.
+const std::vector<Index>* jointsOfPart(const SkeletonMap& map, MapSide side, std::string_view part);
+
+// For a person: upright, facing +Z, upper and lower arms straight out to the sides, upper and lower legs straight down.
+// Trunk, neck, head, collars and feet stand as in rest pose, hands and fingers go along with their arms: there the turn
+// from rest says more than the direction (a foot's joint may lie high or low above its toes). A foot that the leg's
+// way to the neutral pose would turn by more than 25 degrees goes along with it, too. For other skeletons: the rest
+// pose.
+struct NeutralPose {
+  Quat toBody;                      // from the skeleton's space to that of the person: up +Y, left +X
+  std::vector<Quat> rotations;      // #J, in the person's space
+  std::vector<Vec3> positions;      // #J, likewise
+  std::vector<Vec3> restPositions;  // #J, in rest pose, in the person's space
+};
+NeutralPose neutralPose(const Skeleton& skeleton, const SkeletonMap& map, MapSide side);
+
+// The middle between the upper legs' joints, else the hips' joint, else the first matched joint.
+Vec3 pelvisOf(const SkeletonMap& map, MapSide side, const std::vector<Vec3>& positions);
+
+// The first joints of feet and toes, as far as both skeletons have them.
+std::vector<Index> soleJoints(const SkeletonMap& map, MapSide side);
+
+}  // namespace limber

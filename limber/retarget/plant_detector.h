@@ -1,0 +1,34 @@
+// When a point of a foot stands on the ground, told as the motion comes, without looking ahead.
+#pragma once
+
+#include <optional>
+
+#include "limber/core/types.h"
+
+namespace limber {
+
+// All lengths in metres of the skeleton that is watched; hip heights make the thresholds independent of its size.
+struct PlantThresholds {
+  double enterSpeed = 0.3, leaveSpeed = 0.5;      // hip heights a second
+  double enterHeight = 0.05, leaveHeight = 0.09;  // hip heights over where the point is when standing
+};
+
+class PlantDetector {
+ public:
+  PlantDetector(double hipHeight, const PlantThresholds& thresholds = {})
+      : hipHeight_(hipHeight), thresholds_(thresholds) {}
+
+  // `height` is that of the point over where it is when standing. The first frame counts as unmoved.
+  bool next(const Vec3& position, double height, double seconds);
+  // Forgets what was, as before the first frame: the motion jumped.
+  void reset();
+
+ private:
+  double hipHeight_;
+  PlantThresholds thresholds_;
+  std::optional<Vec3> before_;
+  Vec3 velocity_ = Vec3::Zero();  // of the last hundredths of a second
+  bool planted_ = false;
+};
+
+}  // namespace limber

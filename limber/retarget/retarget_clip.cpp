@@ -1,0 +1,107 @@
+#include "limber/retarget/retarget_clip.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "limber/core/error.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kMostFrames = 4e6;
+constexpr double kMoved = 1e-7;  // of a translation, metres; of a rotation's components
+
+template <typename Value>
+void longest(const std::vector<Track<Value>>& tracks, const std::vector<float>*& times) {
+  for (const Track<Value>& track : tracks) {
+    if (!times || track.times.size() > times->size()) times = &track.times;
+  }
+}
+
+Quat nearTo(const Quat& rotation, const Quat& before) {
+  return rotation.dot(before) < 0 ? Quat(-rotation.coeffs()) : rotation;
+}
+
+}  // namespace
+
+double frameRateOf(const Clip& clip) {
+  const std::vector<float>* times = nullptr;
+  longest(clip.rotations, times);
+  longest(clip.translations, times);
+  longest(clip.scales, times);
+  if (!times || times->size() < 2) return 30;
+  std::vector<float> steps;
+  for (std::size_t i = 1; i < times->size(); ++i) steps.push_back((*times)[i] - (*times)[i - 1]);
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  return std::clamp(1.0 / static_cast<double>(*middle), 1.0, 1000.0);
+}
+
+PoseSequence sampleFrames(const Skeleton& skeleton, const Clip& clip, double frameRate) {
+  const double last = std::round(clip.duration() * frameRate);
+  if (!(frameRate > 0) || !(last < kMostFrames)) {
+    throw Error(ErrorCode::kLimit, "the motion has too many frames", clip.name, "choose a lower frame rate");
+  }
+  PoseSequence frames;
+  frames.frameSeconds = 1 / frameRate;
+  frames.poses.assign(static_cast<std::size_t>(last) + 1, restPose(skeleton));
+  for (std::size_t f = 0; f < frames.poses.size(); ++f) {
+    sampleClip(clip, static_cast<double>(f) / frameRate, frames.poses[f]);
+  }
+  return frames;
+}
+
+Clip clipOf(const Skeleton& skeleton, const PoseSequence& frames, std::string name) {
+  Clip clip;
+  clip.name = std::move(name);
+  std::vector<float> times;
+  for (std::size_t f = 0; f < frames.poses.size(); ++f) {
+    times.push_back(static_cast<float>(static_cast<double>(f) * frames.frameSeconds));
+  }
+  for (Index j = 0; j < skeleton.jointCount(); ++j) {
+    const Transform& rest = skeleton.joints[j].rest;
+    bool turns = false, moves = false;
+    for (const Pose& pose : frames.poses) {
+      turns = turns || 1 - std::abs(pose.locals[j].rotation.dot(rest.rotation)) > kMoved * kMoved;
+      moves = moves || (pose.locals[j].translation - rest.translation).norm() > kMoved;
+    }
+    if (turns) {
+      Track<Eigen::Quaternionf> track{j, Interpolation::kLinear, times, {}};
+      Quat before = rest.rotation;
+      for (const Pose& pose : frames.poses) {
+        before = nearTo(pose.locals[j].rotation.normalized(), before);
+        track.values.push_back(before.cast<float>());
+      }
+      clip.rotations.push_back(std::move(track));
+    }
+    if (moves) {
+      Track<Vec3f> track{j, Interpolation::kLinear, times, {}};
+      for (const Pose& pose : frames.poses) track.values.push_back(pose.locals[j].translation.cast<float>());
+      clip.translations.push_back(std::move(track));
+    }
+  }
+  return clip;
+}
+
+PoseSequence retargetFrames(const RetargetMethod& method, const RetargetSetup& setup, const PoseSequence& source) {
+  PoseSequence target;
+  target.frameSeconds = source.frameSeconds;
+  target.poses.assign(source.poses.size(), restPose(*setup.target));
+  const std::unique_ptr<FrameRetargeter> retargeter = method.make(setup);
+  for (std::size_t f = 0; f < source.poses.size(); ++f) {
+    retargeter->next(source.poses[f], f == 0 ? 0 : source.frameSeconds, target.poses[f]);
+  }
+  if (method.refine) method.refine(setup, source, target);
+  return target;
+}
+
+Clip retargetClip(const RetargetMethod& method, const Skeleton& source, const Clip& clip, const Skeleton& target,
+                  const SkeletonMap& map, const RetargetOptions& options, double frameRate) {
+  checkClip(clip, source);
+  const PoseSequence frames = sampleFrames(source, clip, frameRate > 0 ? frameRate : frameRateOf(clip));
+  const RetargetSetup setup(source, target, map, options, &frames);
+  return clipOf(target, retargetFrames(method, setup, frames), clip.name);
+}
+
+}  // namespace limber

@@ -1,0 +1,28 @@
+// A whole motion from one skeleton to another.
+#pragma once
+
+#include "limber/retarget/retarget_method.h"
+#include "limber/skeleton/clip.h"
+
+namespace limber {
+
+// The clip at even steps from 0 to its duration, as poses. `frameRate` in frames a second, above 0. Throws Error kLimit
+// for more than 4 million frames.
+PoseSequence sampleFrames(const Skeleton& skeleton, const Clip& clip, double frameRate);
+
+// The frame rate at which the clip's keys lie (the median step of its longest track), 30 where it has one key only.
+double frameRateOf(const Clip& clip);
+
+// Poses as a clip with a key at each frame: rotations of joints that turn, translations of joints that move away from
+// where they rest. Rotations keep the short way from key to key.
+Clip clipOf(const Skeleton& skeleton, const PoseSequence& frames, std::string name);
+
+// The method over all frames of a motion.
+PoseSequence retargetFrames(const RetargetMethod& method, const RetargetSetup& setup, const PoseSequence& source);
+
+// All of it: samples `clip` of skeleton `source` at `frameRate` (0: its own), matches by `map`, and gives a clip of the
+// same name and length for `target`.
+Clip retargetClip(const RetargetMethod& method, const Skeleton& source, const Clip& clip, const Skeleton& target,
+                  const SkeletonMap& map, const RetargetOptions& options = {}, double frameRate = 0);
+
+}  // namespace limber

@@ -1,0 +1,134 @@
+#include "limber/retarget/retarget_setup.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "limber/core/error.h"
+
+namespace limber {
+
+namespace {
+
+// A motion whose lowest steps are this near to the rest pose's feet (in hip heights) stands on the rest pose's ground.
+constexpr double kSameGround = 0.015;
+constexpr double kStill = 0.4;         // hip heights a second: a lowest foot joint slower than this stands
+constexpr double kFewStand = 0.05;     // share of frames; below it the motion never stands (a run)
+constexpr double kBelowGround = 0.05;  // share of frames that may then lie lower than the ground, for noise
+
+double lowest(const std::vector<Index>& joints, const std::vector<Vec3>& positions) {
+  double y = std::numeric_limits<double>::infinity();
+  for (const Index joint : joints) y = std::min(y, positions[joint].y());
+  return y;
+}
+
+std::vector<Index> matchedJoints(const SkeletonMap& map, MapSide side) {
+  std::vector<Index> joints;
+  for (const JointMatch& match : map.matches) {
+    const std::vector<Index>& part = side == MapSide::kSource ? match.source : match.target;
+    joints.insert(joints.end(), part.begin(), part.end());
+  }
+  return joints;
+}
+
+// Feet where both have them, else every joint.
+std::vector<Index> groundJoints(const SkeletonMap& map, MapSide side) {
+  std::vector<Index> joints = soleJoints(map, side);
+  return joints.empty() ? matchedJoints(map, side) : joints;
+}
+
+// Where the feet stand, from a motion: the middle height of what is lowest and still.
+double measuredGround(const BodyKinematics& kinematics, const std::vector<Index>& soles, double hipHeight,
+                      const PoseSequence& motion) {
+  std::vector<double> all, standing;
+  BodyFrame frame, before;
+  for (const Pose& pose : motion.poses) {
+    kinematics.globals(pose, frame);
+    const auto low = std::min_element(
+        soles.begin(), soles.end(), [&](Index a, Index b) { return frame.positions[a].y() < frame.positions[b].y(); });
+    all.push_back(frame.positions[*low].y());
+    const double stillWay = kStill * hipHeight * motion.frameSeconds;
+    const bool still = !before.positions.empty() && (frame.positions[*low] - before.positions[*low]).norm() < stillWay;
+    if (still) standing.push_back(all.back());
+    std::swap(frame, before);
+  }
+  const bool stands = static_cast<double>(standing.size()) > kFewStand * static_cast<double>(all.size());
+  std::vector<double>& heights = stands ? standing : all;
+  const double share = stands ? 0.5 : kBelowGround;
+  const auto rank = heights.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(heights.size()));
+  std::nth_element(heights.begin(), rank, heights.end());
+  return *rank;
+}
+
+double legLength(const SkeletonMap& map, MapSide side, const NeutralPose& pose) {
+  double length = 0;
+  for (const char* name : {"left", "right"}) {
+    const auto at = [&](const char* bone) -> std::optional<Vec3> {
+      const std::vector<Index>* joints = jointsOfPart(map, side, std::string(name) + bone);
+      return joints ? std::optional(pose.restPositions[joints->front()]) : std::nullopt;
+    };
+    const auto upper = at("UpperLeg"), lower = at("LowerLeg"), foot = at("Foot");
+    if (upper && lower && foot) length = std::max(length, (*lower - *upper).norm() + (*foot - *lower).norm());
+  }
+  return length;
+}
+
+double hipHeight(const SkeletonMap& map, MapSide side, const NeutralPose& pose) {
+  return pelvisOf(map, side, pose.positions).y() - lowest(groundJoints(map, side), pose.positions);
+}
+
+double sizeOf(const SkeletonMap& map, MapSide side, const NeutralPose& pose) {
+  Box box;
+  for (const Index joint : matchedJoints(map, side)) box.add(pose.restPositions[joint]);
+  return box.diagonal();
+}
+
+}  // namespace
+
+RetargetSetup::RetargetSetup(const Skeleton& from, const Skeleton& to, SkeletonMap matches,
+                             const RetargetOptions& asked, const PoseSequence* motion)
+    : source(&from),
+      target(&to),
+      map((checkSkeletonMap(matches, from, to), std::move(matches))),
+      options(asked),
+      person(map.find("hips") && map.find("leftUpperLeg") && map.find("rightUpperLeg")),
+      sourceNeutral(neutralPose(from, map, MapSide::kSource)),
+      targetNeutral(neutralPose(to, map, MapSide::kTarget)),
+      sourceKinematics(from, sourceNeutral.toBody),
+      targetKinematics(to, targetNeutral.toBody) {
+  if (person) {
+    sourceHipHeight = hipHeight(map, MapSide::kSource, sourceNeutral);
+    targetHipHeight = hipHeight(map, MapSide::kTarget, targetNeutral);
+  } else {
+    sourceHipHeight = sizeOf(map, MapSide::kSource, sourceNeutral);
+    targetHipHeight = sizeOf(map, MapSide::kTarget, targetNeutral);
+  }
+  if (!(sourceHipHeight > 0) || !(targetHipHeight > 0)) {
+    throw Error(ErrorCode::kBadData, "the rest pose has no height: its joints lie in one place");
+  }
+  scale = targetHipHeight / sourceHipHeight;
+  const double sourceLegs = legLength(map, MapSide::kSource, sourceNeutral);
+  const double targetLegs = legLength(map, MapSide::kTarget, targetNeutral);
+  if (options.rootScale == RootScale::kLegLength && sourceLegs > 0 && targetLegs > 0) scale = targetLegs / sourceLegs;
+  if (options.rootScale == RootScale::kNone) scale = 1;
+
+  const std::vector<Index> soles = groundJoints(map, MapSide::kSource);
+  const double restGround = lowest(soles, sourceNeutral.restPositions);
+  sourceGround = options.sourceGround.value_or(restGround);
+  if (!options.sourceGround && motion && !motion->poses.empty()) {
+    const double measured = measuredGround(sourceKinematics, soles, sourceHipHeight, *motion);
+    if (std::abs(measured - restGround) > kSameGround * sourceHipHeight) sourceGround = measured;
+  }
+  // A rest pose that hangs about the origin instead of standing on it tells nothing about the ground: the target then
+  // stands at the source's height.
+  targetGround = lowest(groundJoints(map, MapSide::kTarget), targetNeutral.restPositions);
+  const bool stands = targetGround > -0.25 * targetHipHeight && targetGround < 0.5 * targetHipHeight;
+  if (!stands) targetGround = sourceGround * scale;
+}
+
+Vec3 RetargetSetup::placeOf(const Vec3& pelvis) const {
+  Vec3 place = scale * pelvis;
+  place.y() = targetGround + scale * (pelvis.y() - sourceGround);
+  return place;
+}
+
+}  // namespace limber

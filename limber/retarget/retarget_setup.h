@@ -1,0 +1,59 @@
+// What every retargeting method starts from: two skeletons, which joint follows which, and how their spaces compare.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "limber/retarget/body_frame.h"
+#include "limber/retarget/neutral_pose.h"
+#include "limber/retarget/skeleton_map.h"
+
+namespace limber {
+
+// Frames of a whole motion, evenly spaced.
+struct PoseSequence {
+  std::vector<Pose> poses;
+  double frameSeconds = 1.0 / 30;
+};
+
+enum class RootScale {
+  kHipHeight,  // from the ground to the hips
+  kLegLength,  // of upper and lower leg
+  kNone,       // the way stays as long as it is
+};
+
+struct RetargetOptions {
+  RootScale rootScale = RootScale::kHipHeight;
+  // limb-ik: where a hand goes. 0: where its turned bones bring it; 1: where the source's hand is, scaled as the root's
+  // way is (Koerner's d).
+  double reach = 0;
+  bool contacts = true;             // limb-ik: keep planted feet and touching hands
+  std::string solver = "two-bone";  // limb-ik, online: of ikMethods()
+  // Height of the ground under the source, metres; none: measured from the motion where there is one, else from the
+  // rest pose.
+  std::optional<double> sourceGround;
+};
+
+// Immutable once made; the skeletons must outlive it. `motion`, if given, is what will be retargeted: it tells where
+// the ground is.
+struct RetargetSetup {
+  RetargetSetup(const Skeleton& source, const Skeleton& target, SkeletonMap map, const RetargetOptions& options,
+                const PoseSequence* motion = nullptr);
+
+  // Where the target's pelvis stands when the source's stands at `pelvis`, both in their person's space.
+  Vec3 placeOf(const Vec3& pelvis) const;
+
+  const Skeleton* source;
+  const Skeleton* target;
+  SkeletonMap map;
+  RetargetOptions options;
+  bool person = false;  // else joints are matched one by one, and all of them may move
+  NeutralPose sourceNeutral, targetNeutral;
+  BodyKinematics sourceKinematics, targetKinematics;
+  double scale = 1;  // target metres for a source metre of the root's way
+  double sourceHipHeight = 1, targetHipHeight = 1;
+  double sourceGround = 0, targetGround = 0;  // heights of the lowest foot joint of someone standing
+};
+
+}  // namespace limber

@@ -1,0 +1,69 @@
+#include "limber/retarget/root_motion.h"
+
+#include "limber/skeleton/chain.h"
+#include "limber/skeleton/humanoid_names.h"
+
+namespace limber {
+
+RootPlacer::RootPlacer(const RetargetSetup& setup) : setup_(setup) {
+  const Skeleton& target = *setup.target;
+  if (!setup.person) {
+    for (const JointMatch& match : setup.map.matches) moved_.push_back(match.target.front());
+    return;
+  }
+  hips_ = setup.map.find("hips")->target.front();
+  moved_.push_back(*hips_);
+  for (const JointMatch& match : setup.map.matches) {
+    const std::optional<std::string_view> above = humanoidParent(match.part);
+    const JointMatch* parent = above ? setup.map.find(*above) : nullptr;
+    if (!parent || match.part == "hips") continue;
+    const Index joint = match.target.front(), end = parent->target.back();
+    if (isAncestorOrSelf(target, *hips_, joint)) continue;
+    const NeutralPose& neutral = setup.targetNeutral;
+    // The offset as it is in rest pose, in the frame of the joint it rides on.
+    const Affine global = restGlobals(target)[end];
+    const Quat restRotation = neutral.toBody * decompose(global).rotation;
+    loose_.push_back(
+        {joint, end, restRotation.conjugate() * (neutral.restPositions[joint] - neutral.restPositions[end])});
+    moved_.push_back(joint);
+  }
+}
+
+void RootPlacer::place(const Pose& source, const BodyFrame& sourceFrame, Pose& target, BodyFrame& frame) const {
+  if (!setup_.person) {
+    for (const JointMatch& match : setup_.map.matches) {
+      const Index s = match.source.front(), t = match.target.front();
+      const Vec3 way = source.locals[s].translation - setup_.source->joints[s].rest.translation;
+      const double unit = setup_.scale * setup_.sourceKinematics.unit(s) / setup_.targetKinematics.unit(t);
+      target.locals[t].translation = setup_.target->joints[t].rest.translation + unit * way;
+    }
+    setup_.targetKinematics.place(target, frame);
+    return;
+  }
+  const Vec3 there = setup_.placeOf(pelvisOf(setup_.map, MapSide::kSource, sourceFrame.positions));
+  movePelvis(there - pelvisOf(setup_.map, MapSide::kTarget, frame.positions), target, frame);
+}
+
+void RootPlacer::movePelvis(const Vec3& shift, Pose& target, BodyFrame& frame) const {
+  if (!hips_) return;
+  const BodyKinematics& kinematics = setup_.targetKinematics;
+  const Quat above = kinematics.parentRotation(*hips_, frame);
+  target.locals[*hips_].translation += (above.conjugate() * shift) / kinematics.unit(*hips_);
+  kinematics.place(target, frame);
+  placeLoose(target, frame);
+}
+
+void RootPlacer::placeLoose(Pose& target, BodyFrame& frame) const {
+  if (loose_.empty()) return;
+  const BodyKinematics& kinematics = setup_.targetKinematics;
+  for (const Loose& loose : loose_) {
+    const Vec3 there = frame.positions[loose.end] + frame.rotations[loose.end] * loose.offset;
+    const Vec3 way = kinematics.parentRotation(loose.joint, frame).conjugate() *
+                     Vec3(there - kinematics.parentPosition(loose.joint, frame));
+    target.locals[loose.joint].translation = way / kinematics.unit(loose.joint);
+    frame.positions[loose.joint] = there;
+  }
+  kinematics.place(target, frame);
+}
+
+}  // namespace limber

@@ -1,0 +1,41 @@
+// How the whole body moves, and what hangs loose on it: shared by the methods.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "limber/retarget/retarget_setup.h"
+
+namespace limber {
+
+// Moves a posed target to where the source's motion has it.
+//
+// People: the hips' translation brings the pelvis to its place. Joints that play a part of a limb without hanging on it
+// (feet that stand at the root, as rigs for inverse kinematics have them) are put where the limb ends. Others: every
+// matched joint's way from rest, scaled.
+class RootPlacer {
+ public:
+  explicit RootPlacer(const RetargetSetup& setup);
+
+  // `frame` are the globals of `target`, whose rotations are final; both are brought up to date.
+  void place(const Pose& source, const BodyFrame& sourceFrame, Pose& target, BodyFrame& frame) const;
+  // Moves the pelvis by `shift`, in the person's space.
+  void movePelvis(const Vec3& shift, Pose& target, BodyFrame& frame) const;
+
+  // The joints whose translation the placing writes.
+  const std::vector<Index>& moved() const { return moved_; }
+
+ private:
+  struct Loose {
+    Index joint, end;  // `joint` rides on `end`
+    Vec3 offset;       // in the frame of `end`, in the person's metres
+  };
+  void placeLoose(Pose& target, BodyFrame& frame) const;
+
+  const RetargetSetup& setup_;
+  std::optional<Index> hips_;
+  std::vector<Loose> loose_;
+  std::vector<Index> moved_;
+};
+
+}  // namespace limber

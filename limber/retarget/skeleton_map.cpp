@@ -1,0 +1,227 @@
+#include "limber/retarget/skeleton_map.h"
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <optional>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "limber/core/error.h"
+#include "limber/retarget/humanoid_shape.h"
+#include "limber/skeleton/chain.h"
+
+namespace limber {
+
+namespace {
+
+// A person as the matching sees it: parts with their joints.
+struct Body {
+  struct Part {
+    std::vector<Index> joints;
+    double confidence = 1;
+  };
+  std::map<std::string, Part, std::less<>> parts;
+  std::vector<std::string> order;  // of the parts
+  MatchedBy by = MatchedBy::kName;
+};
+
+class BodyReader {
+ public:
+  explicit BodyReader(const Skeleton& skeleton) : skeleton_(skeleton) {
+    labels_ = humanoidJointsByName(skeleton);
+    if (!isPerson()) {
+      labels_ = humanoidJointsByShape(skeleton);
+      body_.by = MatchedBy::kShape;
+    }
+  }
+
+  std::optional<Body> read() {
+    if (!isPerson()) return std::nullopt;
+    for (const HumanoidJoint& label : labels_) {
+      const std::string bone(label.bone);
+      if (bone == "spine") {
+        add("trunk", trunk(), label.confidence);
+      } else if (bone == "neck") {
+        add("neck", neck(), label.confidence);
+      } else if (bone != "chest" && bone != "upperChest") {
+        add(bone, withLinks(label), label.confidence);
+      }
+    }
+    return std::move(body_);
+  }
+
+ private:
+  // Hips, and most of what arms and legs consist of.
+  bool isPerson() const {
+    int limbs = 0;
+    for (const char* bone : {"leftUpperArm", "rightUpperArm", "leftUpperLeg", "rightUpperLeg", "leftLowerArm",
+                             "rightLowerArm", "leftLowerLeg", "rightLowerLeg"}) {
+      limbs += jointOf(bone).has_value();
+    }
+    return jointOf("hips") && limbs >= 4;
+  }
+
+  std::optional<Index> jointOf(std::string_view bone) const {
+    for (const HumanoidJoint& label : labels_) {
+      if (label.bone == bone) return label.joint;
+    }
+    return std::nullopt;
+  }
+  bool isLabelled(Index joint) const {
+    return std::any_of(labels_.begin(), labels_.end(), [&](const HumanoidJoint& l) { return l.joint == joint; });
+  }
+
+  void add(const std::string& part, std::vector<Index> joints, double confidence) {
+    if (joints.empty()) return;
+    body_.parts[part] = {std::move(joints), confidence};
+    body_.order.push_back(part);
+  }
+
+  // The joints strictly between two, root to tip; none where one does not hang on the other.
+  std::vector<Index> between(Index above, Index below) const {
+    std::vector<Index> joints;
+    for (std::optional<Index> up = skeleton_.joints[below].parent; up && *up != above;
+         up = skeleton_.joints[*up].parent)
+      joints.insert(joints.begin(), *up);
+    return isAncestorOrSelf(skeleton_, above, below) ? joints : std::vector<Index>{};
+  }
+
+  std::vector<Index> trunk() const {
+    const Index hips = *jointOf("hips");
+    const std::optional<Index> neck = jointOf("neck"), head = jointOf("head");
+    if (neck || head) {
+      std::vector<Index> joints = between(hips, neck ? *neck : *head);
+      if (!joints.empty()) return joints;
+    }
+    std::vector<Index> joints;
+    for (const char* bone : {"spine", "chest", "upperChest"}) {
+      if (const std::optional<Index> joint = jointOf(bone)) joints.push_back(*joint);
+    }
+    return joints;
+  }
+
+  std::vector<Index> neck() const {
+    std::vector<Index> joints = {*jointOf("neck")};
+    if (const std::optional<Index> head = jointOf("head")) {
+      for (const Index joint : between(joints[0], *head)) joints.push_back(joint);
+    }
+    return joints;
+  }
+
+  // A limb's joint, with the links (twist joints, doubled joints) before the limb's next one.
+  std::vector<Index> withLinks(const HumanoidJoint& label) const {
+    std::vector<Index> joints = {label.joint};
+    for (const HumanoidJoint& next : labels_) {
+      if (humanoidParent(next.bone) != label.bone || label.bone == "hips") continue;
+      const std::vector<Index> links = between(label.joint, next.joint);
+      const bool ofOthers = std::any_of(links.begin(), links.end(), [&](Index link) { return isLabelled(link); });
+      const bool isHand = label.bone == "leftHand" || label.bone == "rightHand" || label.bone == "head";
+      if (!ofOthers && !isHand) joints.insert(joints.end(), links.begin(), links.end());
+    }
+    return joints;
+  }
+
+  const Skeleton& skeleton_;
+  std::vector<HumanoidJoint> labels_;
+  Body body_;
+};
+
+SkeletonMap matchBodies(const Body& source, const Body& target) {
+  SkeletonMap map;
+  for (const std::string& part : target.order) {
+    const auto from = source.parts.find(part);
+    if (from == source.parts.end()) continue;
+    const Body::Part& to = target.parts.at(part);
+    const bool byShape = source.by == MatchedBy::kShape || target.by == MatchedBy::kShape;
+    map.matches.push_back({part, from->second.joints, to.joints, std::min(from->second.confidence, to.confidence),
+                           byShape ? MatchedBy::kShape : MatchedBy::kName});
+  }
+  return map;
+}
+
+std::string plainName(std::string_view name) {
+  if (const std::size_t space = name.find_last_of(":|"); space != std::string_view::npos) name.remove_prefix(space + 1);
+  std::string plain;
+  for (const char c : name) {
+    if (c != '_' && c != '.' && c != '-' && c != ' ')
+      plain.push_back(static_cast<char>(std::tolower(static_cast<unsigned char>(c))));
+  }
+  return plain;
+}
+
+SkeletonMap matchNames(const Skeleton& source, const Skeleton& target) {
+  std::map<std::string, Index> byName;
+  for (Index j = 0; j < source.jointCount(); ++j) byName.emplace(plainName(source.joints[j].name), j);
+  SkeletonMap map;
+  std::set<Index> used;
+  for (Index j = 0; j < target.jointCount(); ++j) {
+    const auto found = byName.find(plainName(target.joints[j].name));
+    if (found == byName.end() || !used.insert(found->second).second) continue;
+    const bool same = source.joints[found->second].name == target.joints[j].name;
+    map.matches.push_back({target.joints[j].name, {found->second}, {j}, same ? 1.0 : 0.9, MatchedBy::kName});
+  }
+  return map;
+}
+
+bool sameTree(const Skeleton& a, const Skeleton& b) {
+  return a.jointCount() == b.jointCount() &&
+         std::equal(a.joints.begin(), a.joints.end(), b.joints.begin(),
+                    [](const Joint& one, const Joint& other) { return one.parent == other.parent; });
+}
+
+SkeletonMap matchTrees(const Skeleton& target) {
+  SkeletonMap map;
+  for (Index j = 0; j < target.jointCount(); ++j) {
+    map.matches.push_back({target.joints[j].name, {j}, {j}, 0.6, MatchedBy::kShape});
+  }
+  return map;
+}
+
+}  // namespace
+
+const JointMatch* SkeletonMap::find(std::string_view part) const {
+  const auto found =
+      std::find_if(matches.begin(), matches.end(), [&](const JointMatch& match) { return match.part == part; });
+  return found == matches.end() ? nullptr : &*found;
+}
+
+SkeletonMap matchSkeletons(const Skeleton& source, const Skeleton& target) {
+  // Skeletons of one family, people or not, have most names in common.
+  SkeletonMap names = matchNames(source, target);
+  const std::size_t fewer = std::min(source.jointCount(), target.jointCount());
+  const bool isFamily = names.matches.size() >= 3 && names.matches.size() * 2 > fewer;
+  const std::optional<Body> from = BodyReader(source).read(), to = BodyReader(target).read();
+  if (from && to && (from->by == MatchedBy::kName || to->by == MatchedBy::kName || !isFamily)) {
+    SkeletonMap map = matchBodies(*from, *to);
+    if (map.matches.size() >= 5) return map;
+  }
+  if (isFamily) return names;
+  if (sameTree(source, target)) return matchTrees(target);
+  throw Error(ErrorCode::kUnsupported,
+              fmt::format("the motion's skeleton of {} joints and the character's of {} have too little in common to "
+                          "be matched by names or by form",
+                          source.jointCount(), target.jointCount()),
+              "", "write a map file and give it with --map (docs/retargeting.md)");
+}
+
+void checkSkeletonMap(const SkeletonMap& map, const Skeleton& source, const Skeleton& target) {
+  std::set<Index> moved;
+  std::set<std::string> parts;
+  if (map.matches.empty()) throw Error(ErrorCode::kBadData, "the map matches nothing");
+  for (const JointMatch& match : map.matches) {
+    const auto refuse = [&](const std::string& what) { throw Error(ErrorCode::kBadData, what, match.part); };
+    if (match.source.empty() || match.target.empty()) refuse("has no joint on one side");
+    if (!parts.insert(match.part).second) refuse("is matched twice");
+    for (const Index joint : match.source) {
+      if (joint >= source.jointCount()) refuse("names a joint that the motion does not have");
+    }
+    for (const Index joint : match.target) {
+      if (joint >= target.jointCount()) refuse("names a joint that the character does not have");
+      if (!moved.insert(joint).second) refuse(fmt::format("moves '{}' a second time", target.joints[joint].name));
+    }
+  }
+}
+
+}  // namespace limber

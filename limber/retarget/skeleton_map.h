@@ -1,0 +1,45 @@
+// Which joints of one skeleton take their motion from which joints of another.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "limber/skeleton/skeleton.h"
+
+namespace limber {
+
+enum class MatchedBy { kName, kShape, kFile };
+
+// A part of the body that both skeletons have, with its joints in both, root to tip. Counts may differ: a trunk of
+// three joints moves one of five.
+struct JointMatch {
+  std::string part;  // a humanoid bone ("leftUpperArm"), "trunk", "neck", or the joint's own name
+  std::vector<Index> source, target;
+  double confidence = 1;  // below kDoubtful: worth a look
+  MatchedBy by = MatchedBy::kName;
+};
+
+inline constexpr double kDoubtful = 0.75;
+
+struct SkeletonMap {
+  std::vector<JointMatch> matches;  // parents before children
+
+  const JointMatch* find(std::string_view part) const;
+};
+
+// People are matched bone by bone: by their joints' names, or, where names say nothing, by what hangs where in rest
+// pose; the joints of trunk and neck along their chains, whatever they are called; twist joints inside a limb go with
+// it. Others are matched by equal names (upper and lower case and prefixes aside), or joint by joint where the trees
+// are the same. Throws Error kUnsupported where too little matches to move anything.
+SkeletonMap matchSkeletons(const Skeleton& source, const Skeleton& target);
+
+// Throws Error kBadData naming the part: no joint, one that is not there, or one target joint in two parts.
+void checkSkeletonMap(const SkeletonMap& map, const Skeleton& source, const Skeleton& target);
+
+// A map as a file to correct and use again (docs/skeleton_map.schema.json): joints by name. Reading throws Error
+// kBadData naming the match; joints that a skeleton does not have are an error, too.
+std::string skeletonMapToJson(const SkeletonMap& map, const Skeleton& source, const Skeleton& target);
+SkeletonMap skeletonMapFromJson(std::string_view text, const Skeleton& source, const Skeleton& target);
+
+}  // namespace limber

@@ -1,0 +1,159 @@
+// A person who walks, waves and bends, and the same person with another skeleton: made in code for tests.
+#pragma once
+
+#include <cmath>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "limber/ik/ik_skeletons.h"
+#include "limber/ik/rotation.h"
+#include "limber/retarget/retarget_clip.h"
+#include "limber/skeleton/humanoid_names.h"
+
+namespace limber::testing {
+
+inline Quat turn(const Vec3& axis, double degrees) {
+  return Quat(Eigen::AngleAxisd(degrees * kPi / 180, axis.normalized()));
+}
+
+// The practice humanoid (T-pose, all rotations identities) walks forward, its standing foot exactly still on the
+// ground, while every joint of trunk, arms and hands turns.
+inline PoseSequence walk(const Skeleton& person, std::size_t frames = 120, double framesPerSecond = 60) {
+  PoseSequence sequence;
+  sequence.frameSeconds = 1 / framesPerSecond;
+  const auto joint = [&](const char* name) { return person.find(name).value(); };
+  const Index hips = joint("hips"), leftFoot = joint("leftFoot"), rightFoot = joint("rightFoot");
+  Vec3 planted = Vec3::Zero();
+  int standing = -1;
+  for (std::size_t f = 0; f < frames; ++f) {
+    Pose pose = restPose(person);
+    const double phase = 2 * kPi * static_cast<double>(f) / framesPerSecond;
+    const double swing = 22 * std::sin(phase);
+    const auto legs = [&](const std::string& side, double angle, double knee) {
+      pose.locals[joint((side + "UpperLeg").c_str())].rotation = turn(-Vec3::UnitX(), angle + knee / 2);
+      pose.locals[joint((side + "LowerLeg").c_str())].rotation = turn(Vec3::UnitX(), knee);
+      pose.locals[joint((side + "Foot").c_str())].rotation = turn(-Vec3::UnitX(), knee / 2 - angle);
+    };
+    const double leftLift = std::max(0.0, std::cos(phase)), rightLift = std::max(0.0, -std::cos(phase));
+    legs("left", swing, 10 + 45 * leftLift);
+    legs("right", -swing, 10 + 45 * rightLift);
+    for (const char* part : {"spine", "chest", "neck", "leftUpperArm", "rightLowerArm", "leftHand", "head"}) {
+      const double slow = phase * 0.7 + static_cast<double>(part[0]);
+      pose.locals[joint(part)].rotation = fromRotationVector(0.3 * Vec3(std::sin(slow), std::cos(1.3 * slow), 0.4));
+    }
+    pose.locals[joint("rightUpperArm")].rotation = turn(Vec3::UnitZ(), 40 + 20 * std::sin(phase));
+    // The foot that is not lifted stays where it is.
+    const int stands = leftLift > 0 ? 1 : 0;
+    const Index foot = stands == 0 ? leftFoot : rightFoot;
+    std::vector<Affine> globals = poseGlobals(person, pose);
+    if (standing != stands) {
+      if (standing < 0) {
+        planted = globals[foot].translation();
+      } else {
+        // Where the new standing foot is, with the body still carried by the old one.
+        const Index old = standing == 0 ? leftFoot : rightFoot;
+        planted += globals[foot].translation() - globals[old].translation();
+      }
+      planted.y() = restGlobals(person)[foot].translation().y();
+      standing = stands;
+    }
+    pose.locals[hips].translation += planted - globals[foot].translation();
+    sequence.poses.push_back(std::move(pose));
+  }
+  return sequence;
+}
+
+// The same skeleton with other local axes: every joint's own frame turned, differently for each.
+inline Skeleton withOtherAxes(Skeleton skeleton) {
+  std::vector<Quat> turns;
+  for (Index j = 0; j < skeleton.jointCount(); ++j) {
+    const double n = 1.0 + j;
+    turns.push_back(fromRotationVector(2 * Vec3(std::sin(n), std::sin(2.7 * n), std::sin(5.1 * n))));
+    Transform& rest = skeleton.joints[j].rest;
+    const Quat above = skeleton.joints[j].parent ? turns[*skeleton.joints[j].parent] : Quat::Identity();
+    rest.translation = above.conjugate() * rest.translation;
+    rest.rotation = above.conjugate() * rest.rotation * turns[j];
+  }
+  return skeleton;
+}
+
+inline Skeleton inRestPose(Skeleton skeleton, const std::map<std::string, Quat>& turns) {
+  for (const auto& [name, rotation] : turns) {
+    Quat& rest = skeleton.joints[skeleton.find(name).value()].rest.rotation;
+    rest = rotation * rest;
+  }
+  return skeleton;
+}
+
+inline Skeleton scaled(Skeleton skeleton, double factor) {
+  for (Joint& joint : skeleton.joints) joint.rest.translation *= factor;
+  return skeleton;
+}
+
+// A joint more on the way from the parent of `child` to it.
+inline Skeleton withJointBefore(const Skeleton& skeleton, const std::string& child, const std::string& name) {
+  Skeleton longer;
+  const Index at = skeleton.find(child).value();
+  for (Index j = 0; j < skeleton.jointCount(); ++j) {
+    Joint joint = skeleton.joints[j];
+    if (j == at) {
+      Joint link = joint;
+      link.name = name;
+      link.rest.translation *= 0.4;
+      link.rest.rotation = Quat::Identity();
+      longer.joints.push_back(link);
+      joint.parent = at;
+      joint.rest.translation *= 0.6;
+    } else if (joint.parent && *joint.parent >= at) {
+      joint.parent = *joint.parent + 1;
+    }
+    longer.joints.push_back(joint);
+  }
+  return longer;
+}
+
+// Unreal's names for VRM's.
+inline Skeleton renamed(Skeleton skeleton) {
+  const std::map<std::string, std::string> names = {{"hips", "pelvis"},
+                                                    {"spine", "spine_01"},
+                                                    {"chest", "spine_02"},
+                                                    {"upperChest", "spine_03"},
+                                                    {"neck", "neck_01"},
+                                                    {"leftUpperArm", "upperarm_l"},
+                                                    {"leftLowerArm", "lowerarm_l"},
+                                                    {"leftHand", "hand_l"},
+                                                    {"leftUpperLeg", "thigh_l"},
+                                                    {"leftLowerLeg", "calf_l"},
+                                                    {"leftFoot", "foot_l"},
+                                                    {"leftToes", "ball_l"},
+                                                    {"rightUpperArm", "upperarm_r"},
+                                                    {"rightLowerArm", "lowerarm_r"},
+                                                    {"rightUpperLeg", "thigh_r"},
+                                                    {"rightLowerLeg", "calf_r"}};
+  for (Joint& joint : skeleton.joints) {
+    if (const auto found = names.find(joint.name); found != names.end()) joint.name = found->second;
+  }
+  return skeleton;
+}
+
+// The largest angle, in degrees, between the directions in which the parts of both point, over all frames.
+inline double worstDirection(const RetargetSetup& setup, const PoseSequence& source, const PoseSequence& target) {
+  double worst = 0;
+  BodyFrame a, b;
+  for (std::size_t f = 0; f < source.poses.size(); ++f) {
+    setup.sourceKinematics.globals(source.poses[f], a);
+    setup.targetKinematics.globals(target.poses[f], b);
+    for (const JointMatch& match : setup.map.matches) {
+      const auto above = humanoidParent(match.part);
+      const JointMatch* parent = above ? setup.map.find(*above) : nullptr;
+      if (!parent) continue;
+      const Vec3 from = a.positions[match.source.front()] - a.positions[parent->source.front()];
+      const Vec3 to = b.positions[match.target.front()] - b.positions[parent->target.front()];
+      worst = std::max(worst, std::atan2(from.cross(to).norm(), from.dot(to)) * 180 / kPi);
+    }
+  }
+  return worst;
+}
+
+}  // namespace limber::testing
