@@ -34,7 +34,8 @@ Quat bodyFrame(const SkeletonMap& map, MapSide side, const std::vector<Vec3>& po
     return joint ? std::optional(positions[*joint]) : std::nullopt;
   };
   Vec3 left = Vec3::Zero(), up = Vec3::Zero();
-  for (const auto& [one, other] : {std::pair{"leftUpperLeg", "rightUpperLeg"}, {"leftUpperArm", "rightUpperArm"}}) {
+  for (const auto& [one, other] :
+       {std::pair{"leftUpperLeg", "rightUpperLeg"}, std::pair{"leftUpperArm", "rightUpperArm"}}) {
     if (at(one) && at(other)) left += *at(one) - *at(other);
   }
   const std::optional<Vec3> hips = at("hips");

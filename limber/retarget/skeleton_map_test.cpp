@@ -60,7 +60,7 @@ TEST(SkeletonMap, FamiliesByEqualNames) {
   for (Joint& joint : other.joints) joint.name = "rig:tail_" + joint.name.substr(4);
   EXPECT_EQ(matchSkeletons(snake, other).matches.size(), 9U);
   other.joints.resize(5);
-  for (Joint& joint : other.joints) joint.name = "x" + joint.name.substr(9);
+  for (Joint& joint : other.joints) joint.name.replace(0, 9, "x");
   EXPECT_THROW(matchSkeletons(snake, other), Error);
 }
 
@@ -95,7 +95,7 @@ TEST(SkeletonMap, AnimalsAreNoPeople) {
   Skeleton table;  // four legs, no arms, no head
   for (int i = 0; i < 9; ++i) {
     Joint joint;
-    joint.name = "j" + std::to_string(i);
+    joint.name = std::string("j").append(std::to_string(i));
     if (i > 0) joint.parent = i % 2 == 1 ? 0 : static_cast<Index>(i - 1);
     joint.rest.translation = i == 0 ? Vec3(0, 1, 0) : Vec3(i < 5 ? 0.3 : -0.3, -0.5, i % 4 < 2 ? 0.3 : -0.3);
     table.joints.push_back(joint);
