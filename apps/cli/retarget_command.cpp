@@ -16,7 +16,7 @@ namespace limber::cli {
 namespace {
 
 struct Options {
-  std::string model, output, mapFile, saveMapFile, rootScale = "hip-height", rigger;
+  std::string model, output, mapFile, saveMapFile, rootScale = "hip-height", rigger = "template";
   std::vector<std::string> motions;
   RetargetAssetOptions retarget;
   double frameRate = 0, ground = 0;
@@ -71,7 +71,7 @@ void tell(const Options& options, const std::vector<RetargetedClip>& clips, cons
     account.line("matches to look at (--save-map writes them all, --map reads them again):");
     for (const std::string& line : clips.front().doubtful) account.line("  " + line);
   }
-  printWarnings(account, warnings);
+  printWarnings(warnings, options.common.quiet);
   if (options.output != "-") account.line(fmt::format("written: {}", options.output));
 }
 
@@ -106,7 +106,7 @@ void runAnimate(Options options) {
   const bool rigged = hasRig(asset);
   if (!rigged) {
     AutoRigOptions rig;
-    if (!options.rigger.empty()) rig.rigger = options.rigger;
+    rig.rigger = options.rigger;
     const AutoRigReport report = autoRig(asset, rig, *progress);
     warnings.append(report.warnings);
   }
@@ -189,7 +189,8 @@ void addAnimateCommand(CLI::App& program) {
   command->add_option("MODEL", options->model, "the model, rigged or not")->required();
   addOptions(*command, options);
   command->add_option("--rigger", options->rigger, "how a model without a rig gets one; limber rig --help lists them")
-      ->type_name("NAME");
+      ->type_name("NAME")
+      ->capture_default_str();
   command->footer(help("  limber animate scan.obj walk.bvh -o walking.glb"));
   command->callback([options] { runAnimate(*options); });
 }

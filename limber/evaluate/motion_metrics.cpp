@@ -247,18 +247,18 @@ std::string motionMetricsText(const MotionMetrics& m) {
 
 std::string motionMetricsJson(const MotionMetrics& m) {
   const nlohmann::ordered_json json = {{"frames", m.frames},
-                                       {"matchedParts", m.matched},
-                                       {"boneDirectionDegrees", m.boneDirection},
-                                       {"endEffectorShare", m.endEffector},
-                                       {"slidingHeightsPerSecond", m.sliding},
-                                       {"slidingCentimetresPerSecond", 100 * m.sliding * m.height},
-                                       {"sourceSlidingHeightsPerSecond", m.sourceSliding},
-                                       {"penetrationHeights", m.penetration},
-                                       {"penetrationMillimetres", 1000 * m.penetration * m.height},
-                                       {"sourcePenetrationHeights", m.sourcePenetration},
-                                       {"jerkRatio", m.jerk},
-                                       {"contactAgreement", m.contactAgreement},
-                                       {"heightMetres", m.height}};
+                                       {"matched_parts", m.matched},
+                                       {"bone_direction_degrees", m.boneDirection},
+                                       {"end_effector_share", m.endEffector},
+                                       {"sliding_heights_per_second", m.sliding},
+                                       {"sliding_centimetres_per_second", 100 * m.sliding * m.height},
+                                       {"source_sliding_heights_per_second", m.sourceSliding},
+                                       {"penetration_heights", m.penetration},
+                                       {"penetration_millimetres", 1000 * m.penetration * m.height},
+                                       {"source_penetration_heights", m.sourcePenetration},
+                                       {"jerk_ratio", m.jerk},
+                                       {"contact_agreement", m.contactAgreement},
+                                       {"height_metres", m.height}};
   return json.dump(2) + "\n";
 }
 
