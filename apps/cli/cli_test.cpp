@@ -370,7 +370,7 @@ TEST_F(Cli, AnUnknownCommandIsNamedAndTheKnownOnesListed) {
   EXPECT_THAT(bogus.error, AllOf(HasSubstr("'bogus'"), HasSubstr("rig, info")));
   const Result below = run({"evaluate", "bogus"});
   expectOneLine(below, 2);
-  EXPECT_THAT(below.error, AllOf(HasSubstr("'bogus'"), HasSubstr("weights, skinning")));
+  EXPECT_THAT(below.error, AllOf(HasSubstr("'bogus'"), HasSubstr("weights, rig"), HasSubstr("skinning")));
 }
 
 TEST_F(Cli, WhatStandardOutputDoesNotTakeIsAnError) {
