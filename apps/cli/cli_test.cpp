@@ -1,237 +1,27 @@
 // The program itself, run as a user runs it.
-#include <fcntl.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <poll.h>
-#include <signal.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <array>
 #include <chrono>
-#include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
 
-#include "shared_data.h"
+#include "testing/cli_fixture.h"
 
 namespace limber {
 namespace {
 
-namespace fs = std::filesystem;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
 
-struct Result {
-  int code = -1;  // exit code, or 128 + signal
-  std::string out, error;
-};
-
-// A running limber with all three streams on pipes or files.
-class Running {
- public:
-  Running(const std::vector<std::string>& arguments, const fs::path& folder, const fs::path& output = "stdout")
-      : folder_(folder) {
-    int input[2];
-    EXPECT_EQ(pipe2(input, O_CLOEXEC), 0);
-    input_ = input[1];
-    pid_ = fork();
-    if (pid_ == 0) {
-      redirect(input[0], 0);
-      redirect(open((folder / output).c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0600), 1);
-      redirect(open((folder / "stderr").c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0600), 2);
-      if (chdir(folder.c_str()) != 0) _exit(126);
-      std::vector<char*> argv = {const_cast<char*>(LIMBER_PROGRAM)};
-      for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
-      argv.push_back(nullptr);
-      execv(LIMBER_PROGRAM, argv.data());
-      _exit(127);
-    }
-    close(input[0]);
-  }
-  ~Running() {
-    if (input_ >= 0) close(input_);
-  }
-
-  void feed(const std::string& bytes) {
-    std::size_t done = 0;
-    while (done < bytes.size()) {
-      const ssize_t wrote = write(input_, bytes.data() + done, bytes.size() - done);
-      if (wrote <= 0) break;
-      done += static_cast<std::size_t>(wrote);
-    }
-  }
-  void signal(int number) {
-    ASSERT_GT(pid_, 0);  // -1 would be everybody
-    kill(pid_, number);
-  }
-
-  Result wait() {
-    close(input_);
-    return waitWithOpenInput();
-  }
-  Result waitWithOpenInput() {
-    int status = 0;
-    waitpid(pid_, &status, 0);
-    Result result;
-    result.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-    result.out = slurp("stdout");
-    result.error = slurp("stderr");
-    return result;
-  }
-
- private:
-  static void redirect(int from, int to) { dup2(from, to); }
-  std::string slurp(const char* name) const {
-    std::ifstream file(folder_ / name, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
-
-  fs::path folder_;
-  pid_t pid_ = -1;
-  int input_ = -1;
-};
-
-class Cli : public ::testing::Test {
- protected:
-  void SetUp() override {
-    ::signal(SIGPIPE, SIG_IGN);
-    std::string pattern = (fs::temp_directory_path() / "limber_cli_XXXXXX").string();
-    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-    folder_ = pattern;
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  Result run(const std::vector<std::string>& arguments, const std::string& input = {}) {
-    Running running(arguments, folder_);
-    running.feed(input);
-    return running.wait();
-  }
-  std::string content(const std::string& name) const {
-    std::ifstream file(folder_ / name, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
-  void put(const std::string& name, const std::string& bytes) const {
-    std::ofstream(folder_ / name, std::ios::binary) << bytes;
-  }
-  // Everything in the folder but the captured streams.
-  std::vector<std::string> files() const {
-    std::vector<std::string> names;
-    for (const auto& entry : fs::directory_iterator(folder_)) {
-      const std::string name = entry.path().filename().string();
-      if (name != "stdout" && name != "stderr") names.push_back(name);
-    }
-    std::sort(names.begin(), names.end());
-    return names;
-  }
-  void makeRobot() { ASSERT_EQ(run({"sample", "robot", "-o", "robot.glb", "--quiet"}).code, 0); }
-  // For the validator, which looks at every glTF file that a test leaves.
-  void keep(const std::string& name) const {
-    fs::copy_file(folder_ / name, testing::testOutputFolder() / ("cli_" + name), fs::copy_options::overwrite_existing);
-  }
-
-  fs::path folder_;
-};
-
-// One line, from limber, and no crash.
-void expectOneLine(const Result& result, int code) {
-  EXPECT_EQ(result.code, code);
-  EXPECT_THAT(result.error, StartsWith("limber: "));
-  EXPECT_EQ(std::count(result.error.begin(), result.error.end(), '\n'), 1) << result.error;
-  EXPECT_EQ(result.out, "");
-}
-
-const std::string kWalk =
-    "HIERARCHY\nROOT Hips\n{\nOFFSET 0 0 0\nCHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation "
-    "Yrotation\nJOINT LeftLeg\n{\nOFFSET 20 -50 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nEnd "
-    "Site\n{\nOFFSET 0 -40 0\n}\n}\nJOINT RightLeg\n{\nOFFSET -20 -50 0\nCHANNELS 3 Zrotation Xrotation "
-    "Yrotation\nEnd Site\n{\nOFFSET 0 -40 0\n}\n}\n}\nMOTION\nFrames: 5\nFrame Time: 0.1\n"
-    "0 90 0 0 0 0 0 30 0 0 0 0\n0 91 10 0 0 0 0 20 0 0 5 0\n0 92 20 0 0 0 0 10 0 0 10 0\n"
-    "0 91 30 0 0 0 0 0 0 0 20 0\n0 90 40 0 0 0 0 -10 0 0 30 0\n";
-
-TEST_F(Cli, ConvertGoesFromBvhToGltfAndBack) {
-  put("walk.bvh", kWalk);
-  const Result there = run({"convert", "walk.bvh", "walk.glb", "--unit", "cm"});
-  EXPECT_EQ(there.code, 0) << there.error;
-  EXPECT_THAT(there.out, AllOf(HasSubstr("5 joints, 1 clips"), HasSubstr("5 frames at 10 a second"),
-                               HasSubstr("written: walk.glb, 1 clips")));
-  keep("walk.glb");
-  const Result info = run({"info", "walk.glb"});
-  EXPECT_THAT(info.out, AllOf(HasSubstr("walk: 0.400 s"), HasSubstr("LeftLeg_end")));
-  EXPECT_EQ(run({"convert", "walk.glb", "back.bvh", "--output-unit", "cm", "-q"}).code, 0);
-  EXPECT_THAT(content("back.bvh"),
-              AllOf(HasSubstr("OFFSET 20 -50 0\n"), HasSubstr("Frames: 5\n"), HasSubstr("\n 0 90 0 ")));
-  EXPECT_THAT(run({"info", "back.bvh"}).out, AllOf(HasSubstr("bvh"), HasSubstr("back: 0.400 s")));
-}
-
-TEST_F(Cli, ConvertCutsMirrorsAndResamples) {
-  put("walk.bvh", kWalk);
-  EXPECT_EQ(run({"convert", "walk.bvh", "-o", "a.bvh", "--trim", "0.1:0.3", "--mirror", "--fps", "20", "-q"}).code, 0);
-  const std::string cut = content("a.bvh"), head = "Frames: 5\nFrame Time: 0.05\n";
-  ASSERT_THAT(cut, HasSubstr(head));
-  std::istringstream row(cut.substr(cut.find(head) + head.size()));
-  for (const double wanted : {0, 91, 10, 0, 0, 0, 0, 5, 0, 0, 20, 0}) {  // the second frame, its legs exchanged
-    double value = 0;
-    row >> value;
-    EXPECT_NEAR(value, wanted, 1e-4);
-  }
-  put("run.bvh", kWalk);
-  EXPECT_EQ(run({"convert", "walk.bvh", "run.bvh", "both.glb", "-q"}).code, 0);
-  EXPECT_THAT(run({"info", "both.glb"}).out, AllOf(HasSubstr("walk: 0.400 s"), HasSubstr("run: 0.400 s")));
-  keep("both.glb");
-  EXPECT_EQ(run({"convert", "both.glb", "each.bvh", "-q"}).code, 0);
-  EXPECT_EQ(content("each_walk.bvh"), content("each_run.bvh"));
-  EXPECT_NE(content("each_walk.bvh"), "");
-  EXPECT_EQ(run({"convert", "both.glb", "one.glb", "--clip", "run", "-q"}).code, 0);
-  EXPECT_THAT(run({"info", "one.glb"}).out, AllOf(HasSubstr("run: 0.400 s"), Not(HasSubstr("walk: "))));
-}
-
-TEST_F(Cli, ConvertRefusesWithOneLine) {
-  put("walk.bvh", kWalk);
-  put("bad.bvh", kWalk + "1 2 3\n4 5 6\n");
-  put("other.bvh", "HIERARCHY\nROOT a\n{\n}\nMOTION\nFrames: 0\nFrame Time: 1\n");
-  const Result bad = run({"convert", "bad.bvh", "bad.glb"});
-  expectOneLine(bad, 1);
-  EXPECT_THAT(bad.error, HasSubstr("bad.bvh: line 33: has 3 of the 12 numbers"));
-  const std::vector<std::vector<std::string>> calls = {{"walk.bvh"},
-                                                       {"walk.bvh", "out.obj"},
-                                                       {"walk.bvh", "out.glb", "--unit", "parsec"},
-                                                       {"walk.bvh", "out.glb", "--trim", "3:1"},
-                                                       {"walk.bvh", "out.glb", "--trim", "now"},
-                                                       {"walk.bvh", "out.glb", "--clip", "swim", "-q"},
-                                                       {"missing.bvh", "out.glb"},
-                                                       {"other.bvh", "out.bvh", "-q"}};
-  for (std::vector<std::string> call : calls) {
-    call.insert(call.begin(), "convert");
-    expectOneLine(run(call), 1);
-  }
-  EXPECT_EQ(run({"convert", "walk.bvh", "other.bvh", "-o", "out.glb", "-q"}).code, 1);
-  EXPECT_EQ(files(), (std::vector<std::string>{"bad.bvh", "other.bvh", "walk.bvh"}));
-}
-
-TEST_F(Cli, PreviewShowsClips) {
-  put("walk.bvh", kWalk);
-  EXPECT_EQ(run({"preview", "walk.bvh", "--frames", "3", "--size", "40x30", "-o", "sheet.png"}).code, 0);
-  EXPECT_EQ(run({"preview", "walk.bvh", "--clip", "walk", "--time", "0.2", "--size", "40x30", "-o", "one.png"}).code,
-            0);
-  EXPECT_EQ(run({"preview", "walk.bvh", "--animate", "--fps", "10", "--size", "40x30", "-o", "moving.png"}).code, 0);
-  EXPECT_THAT(content("sheet.png"), StartsWith("\x89PNG"));
-  EXPECT_THAT(content("moving.png"), AllOf(StartsWith("\x89PNG"), HasSubstr("acTL"), HasSubstr("fdAT")));
-  EXPECT_NE(content("one.png"), "");
-  expectOneLine(run({"preview", "walk.bvh", "--clip", "swim", "-o", "none.png"}), 1);
-  expectOneLine(run({"preview", "walk.bvh", "--time", "1", "--frames", "2", "-o", "none.png"}), 2);
-}
-
 TEST_F(Cli, EveryCommandHasHelpWithAnExample) {
   EXPECT_THAT(run({"--help"}).out,
               AllOf(HasSubstr("rig"), HasSubstr("info"), HasSubstr("preview"), HasSubstr("sample")));
-  for (const char* command : {"rig", "info", "preview", "sample", "evaluate", "convert"}) {
+  for (const char* command : {"rig", "info", "preview", "sample", "evaluate", "convert", "pose", "session", "retarget", "animate"}) {
     const Result help = run({command, "--help"});
     EXPECT_EQ(help.code, 0);
     EXPECT_THAT(help.out, AllOf(HasSubstr("Example"), HasSubstr(std::string("limber ") + command)));
@@ -459,68 +249,6 @@ TEST_F(Cli, AReportThatCannotBeWrittenLeavesNoModel) {
     expectOneLine(run({"rig", "robot.glb", "--handles", "9", "-o", name, "--json", "nowhere/report.json"}), 1);
   }
   EXPECT_EQ(files(), std::vector<std::string>{"robot.glb"});
-}
-
-class CliPose : public Cli {
- protected:
-  void SetUp() override {
-    Cli::SetUp();
-    makeRobot();
-    ASSERT_EQ(run({"rig", "robot.glb", "--handles", "9", "-q", "-o", "rigged.glb"}).code, 0);
-    joint_ = info("rigged.glb").at("joint_names").back().get<std::string>();
-  }
-  nlohmann::json info(const char* name) { return nlohmann::json::parse(run({"info", name, "--json"}).out); }
-
-  std::string joint_;
-};
-
-TEST_F(CliPose, APoseKeepsTheRig) {
-  const Result result = run({"pose", "rigged.glb", "--turn", joint_ + "=y:30", "-o", "posed.glb"});
-  EXPECT_EQ(result.code, 0) << result.error;
-  EXPECT_EQ(info("posed.glb").at("joint_names"), info("rigged.glb").at("joint_names"));
-  EXPECT_EQ(info("posed.glb").at("weights"), info("rigged.glb").at("weights"));
-  EXPECT_NE(content("posed.glb"), content("rigged.glb"));
-  keep("posed.glb");
-}
-
-TEST_F(CliPose, BakesToMeshFormats) {
-  for (const char* name : {"posed.obj", "posed.stl", "posed.ply"}) {
-    const Result result = run({"pose", "rigged.glb", "--turn", joint_ + "=y:30", "--bake", "-o", name});
-    EXPECT_EQ(result.code, 0) << result.error;
-    EXPECT_EQ(info(name).at("triangles"), info("rigged.glb").at("triangles")) << name;
-  }
-}
-
-TEST_F(CliPose, AnUnknownJointIsOneLineAndLeavesNoFile) {
-  const std::vector<std::string> before = files();
-  const Result result = run({"pose", "rigged.glb", "--turn", "no such joint=y:30", "-o", "posed.glb"});
-  expectOneLine(result, 1);
-  EXPECT_THAT(result.error, HasSubstr("no such joint"));
-  EXPECT_EQ(files(), before);
-}
-
-TEST_F(Cli, SessionReplayDoesWhatTheListSays) {
-  fs::create_directory(folder_ / "models");
-  run({"sample", "stool", "-o", "models/stool.glb", "-q"});
-  put("commands.json", R"({"limber_commands": 1, "commands": [{"do": "open_file", "file": "models/stool.glb"},
-    {"do": "set_handles", "count": 8}, {"do": "move_joint", "joint": "handle_00", "offset": [0, 2, 0]}]})");
-  const Result done = run({"session", "replay", "commands.json", "-o", "posed.glb"});
-  EXPECT_EQ(done.code, 0) << done.error;
-  EXPECT_THAT(done.out, HasSubstr("3 commands done: "));
-  const nlohmann::json info = nlohmann::json::parse(run({"info", "posed.glb", "--json"}).out);
-  EXPECT_THAT(info.at("joint_names").size(), ::testing::AnyOf(8, 9));  // two where one has an image
-  EXPECT_EQ(run({"session", "replay", "commands.json", "-o", "posed.stl", "-q"}).out, "");
-}
-
-TEST_F(Cli, SessionReplayNamesTheCommandThatFails) {
-  put("commands.json", R"({"limber_commands": 1, "commands": [{"do": "open_sample", "name": "stool"},
-    {"do": "reset_joint", "joint": "tail"}]})");
-  const Result failed = run({"session", "replay", "commands.json", "-o", "out.glb"});
-  expectOneLine(failed, 1);
-  EXPECT_THAT(failed.error, AllOf(HasSubstr("commands.json: commands[1]"), HasSubstr("'tail'")));
-  put("commands.json", R"({"limber_commands": 1, "commands": [{"do": "open_file", "file": "../secret.glb"}]})");
-  expectOneLine(run({"session", "replay", "commands.json", "-o", "out.glb"}), 1);
-  EXPECT_EQ(files(), std::vector<std::string>{"commands.json"});
 }
 
 TEST_F(Cli, InterruptedWhileWaitingForInput) {

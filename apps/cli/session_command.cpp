@@ -68,6 +68,7 @@ void addSessionCommand(CLI::App& program) {
   auto options = std::make_shared<Options>();
   CLI::App* command = program.add_subcommand("session", "Do again what was done in the studio");
   command->require_subcommand(1);
+  command->footer("Example:\n  limber session replay commands.json -o posed.glb");
   CLI::App* replay = command->add_subcommand("replay", "Run a recorded list of commands and write the result");
   replay->add_option("COMMANDS", options->commands, "the list in JSON, as the studio saves it; - is standard input")
       ->required();

@@ -1,0 +1,249 @@
+// Poses, sessions and motions, through the program itself.
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "testing/cli_fixture.h"
+
+namespace limber {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+class CliPose : public Cli {
+ protected:
+  void SetUp() override {
+    Cli::SetUp();
+    makeRobot();
+    ASSERT_EQ(run({"rig", "robot.glb", "--handles", "9", "-q", "-o", "rigged.glb"}).code, 0);
+    joint_ = info("rigged.glb").at("joint_names").back().get<std::string>();
+  }
+  nlohmann::json info(const char* name) { return nlohmann::json::parse(run({"info", name, "--json"}).out); }
+
+  std::string joint_;
+};
+
+TEST_F(CliPose, APoseKeepsTheRig) {
+  const Result result = run({"pose", "rigged.glb", "--turn", joint_ + "=y:30", "-o", "posed.glb"});
+  EXPECT_EQ(result.code, 0) << result.error;
+  EXPECT_EQ(info("posed.glb").at("joint_names"), info("rigged.glb").at("joint_names"));
+  EXPECT_EQ(info("posed.glb").at("weights"), info("rigged.glb").at("weights"));
+  EXPECT_NE(content("posed.glb"), content("rigged.glb"));
+  keep("posed.glb");
+}
+
+TEST_F(CliPose, BakesToMeshFormats) {
+  for (const char* name : {"posed.obj", "posed.stl", "posed.ply"}) {
+    const Result result = run({"pose", "rigged.glb", "--turn", joint_ + "=y:30", "--bake", "-o", name});
+    EXPECT_EQ(result.code, 0) << result.error;
+    EXPECT_EQ(info(name).at("triangles"), info("rigged.glb").at("triangles")) << name;
+  }
+}
+
+TEST_F(CliPose, ANewRestPoseIsWritten) {
+  const Result result = run({"pose", "rigged.glb", "--turn", joint_ + "=y:30", "--set-rest", "-o", "rest.glb"});
+  EXPECT_EQ(result.code, 0) << result.error;
+  EXPECT_EQ(info("rest.glb").at("joint_names"), info("rigged.glb").at("joint_names"));
+  EXPECT_EQ(info("rest.glb").at("weights"), info("rigged.glb").at("weights"));
+  keep("rest.glb");
+}
+
+TEST_F(CliPose, AnUnknownJointIsOneLineAndLeavesNoFile) {
+  const std::vector<std::string> before = files();
+  const Result result = run({"pose", "rigged.glb", "--turn", "no such joint=y:30", "-o", "posed.glb"});
+  expectOneLine(result, 1);
+  EXPECT_THAT(result.error, HasSubstr("no such joint"));
+  EXPECT_EQ(files(), before);
+}
+
+TEST_F(Cli, SessionReplayDoesWhatTheListSays) {
+  fs::create_directory(folder_ / "models");
+  run({"sample", "stool", "-o", "models/stool.glb", "-q"});
+  put("commands.json", R"({"limber_commands": 1, "commands": [{"do": "open_file", "file": "models/stool.glb"},
+    {"do": "set_handles", "count": 8}, {"do": "move_joint", "joint": "handle_00", "offset": [0, 2, 0]}]})");
+  const Result done = run({"session", "replay", "commands.json", "-o", "posed.glb"});
+  EXPECT_EQ(done.code, 0) << done.error;
+  EXPECT_THAT(done.out, HasSubstr("3 commands done: "));
+  const nlohmann::json info = nlohmann::json::parse(run({"info", "posed.glb", "--json"}).out);
+  EXPECT_THAT(info.at("joint_names").size(), ::testing::AnyOf(8, 9));  // two where one has an image
+  EXPECT_EQ(run({"session", "replay", "commands.json", "-o", "posed.stl", "-q"}).out, "");
+}
+
+TEST_F(Cli, SessionReplayNamesTheCommandThatFails) {
+  put("commands.json", R"({"limber_commands": 1, "commands": [{"do": "open_sample", "name": "stool"},
+    {"do": "reset_joint", "joint": "tail"}]})");
+  const Result failed = run({"session", "replay", "commands.json", "-o", "out.glb"});
+  expectOneLine(failed, 1);
+  EXPECT_THAT(failed.error, AllOf(HasSubstr("commands.json: commands[1]"), HasSubstr("'tail'")));
+  put("commands.json", R"({"limber_commands": 1, "commands": [{"do": "open_file", "file": "../secret.glb"}]})");
+  expectOneLine(run({"session", "replay", "commands.json", "-o", "out.glb"}), 1);
+  EXPECT_EQ(files(), std::vector<std::string>{"commands.json"});
+}
+
+const std::string kWalk =
+    "HIERARCHY\nROOT Hips\n{\nOFFSET 0 0 0\nCHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation "
+    "Yrotation\nJOINT LeftLeg\n{\nOFFSET 20 -50 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nEnd "
+    "Site\n{\nOFFSET 0 -40 0\n}\n}\nJOINT RightLeg\n{\nOFFSET -20 -50 0\nCHANNELS 3 Zrotation Xrotation "
+    "Yrotation\nEnd Site\n{\nOFFSET 0 -40 0\n}\n}\n}\nMOTION\nFrames: 5\nFrame Time: 0.1\n"
+    "0 90 0 0 0 0 0 30 0 0 0 0\n0 91 10 0 0 0 0 20 0 0 5 0\n0 92 20 0 0 0 0 10 0 0 10 0\n"
+    "0 91 30 0 0 0 0 0 0 0 20 0\n0 90 40 0 0 0 0 -10 0 0 30 0\n";
+
+TEST_F(Cli, ConvertGoesFromBvhToGltfAndBack) {
+  put("walk.bvh", kWalk);
+  const Result there = run({"convert", "walk.bvh", "walk.glb", "--unit", "cm"});
+  EXPECT_EQ(there.code, 0) << there.error;
+  EXPECT_THAT(there.out, AllOf(HasSubstr("5 joints, 1 clips"), HasSubstr("5 frames at 10 a second"),
+                               HasSubstr("written: walk.glb, 1 clips")));
+  keep("walk.glb");
+  const Result info = run({"info", "walk.glb"});
+  EXPECT_THAT(info.out, AllOf(HasSubstr("walk: 0.400 s"), HasSubstr("LeftLeg_end")));
+  EXPECT_EQ(run({"convert", "walk.glb", "back.bvh", "--output-unit", "cm", "-q"}).code, 0);
+  EXPECT_THAT(content("back.bvh"),
+              AllOf(HasSubstr("OFFSET 20 -50 0\n"), HasSubstr("Frames: 5\n"), HasSubstr("\n 0 90 0 ")));
+  EXPECT_THAT(run({"info", "back.bvh"}).out, AllOf(HasSubstr("bvh"), HasSubstr("back: 0.400 s")));
+}
+
+TEST_F(Cli, ConvertCutsMirrorsAndResamples) {
+  put("walk.bvh", kWalk);
+  EXPECT_EQ(run({"convert", "walk.bvh", "-o", "a.bvh", "--trim", "0.1:0.3", "--mirror", "--fps", "20", "-q"}).code, 0);
+  const std::string cut = content("a.bvh"), head = "Frames: 5\nFrame Time: 0.05\n";
+  ASSERT_THAT(cut, HasSubstr(head));
+  std::istringstream row(cut.substr(cut.find(head) + head.size()));
+  for (const double wanted : {0, 91, 10, 0, 0, 0, 0, 5, 0, 0, 20, 0}) {  // the second frame, its legs exchanged
+    double value = 0;
+    row >> value;
+    EXPECT_NEAR(value, wanted, 1e-4);
+  }
+  put("run.bvh", kWalk);
+  EXPECT_EQ(run({"convert", "walk.bvh", "run.bvh", "both.glb", "-q"}).code, 0);
+  EXPECT_THAT(run({"info", "both.glb"}).out, AllOf(HasSubstr("walk: 0.400 s"), HasSubstr("run: 0.400 s")));
+  keep("both.glb");
+  EXPECT_EQ(run({"convert", "both.glb", "each.bvh", "-q"}).code, 0);
+  EXPECT_EQ(content("each_walk.bvh"), content("each_run.bvh"));
+  EXPECT_NE(content("each_walk.bvh"), "");
+  EXPECT_EQ(run({"convert", "both.glb", "one.glb", "--clip", "run", "-q"}).code, 0);
+  EXPECT_THAT(run({"info", "one.glb"}).out, AllOf(HasSubstr("run: 0.400 s"), Not(HasSubstr("walk: "))));
+}
+
+TEST_F(Cli, ConvertRefusesWithOneLine) {
+  put("walk.bvh", kWalk);
+  put("bad.bvh", kWalk + "1 2 3\n4 5 6\n");
+  put("other.bvh", "HIERARCHY\nROOT a\n{\n}\nMOTION\nFrames: 0\nFrame Time: 1\n");
+  const Result bad = run({"convert", "bad.bvh", "bad.glb"});
+  expectOneLine(bad, 1);
+  EXPECT_THAT(bad.error, HasSubstr("bad.bvh: line 33: has 3 of the 12 numbers"));
+  const std::vector<std::vector<std::string>> calls = {{"walk.bvh"},
+                                                       {"walk.bvh", "out.obj"},
+                                                       {"walk.bvh", "out.glb", "--unit", "parsec"},
+                                                       {"walk.bvh", "out.glb", "--trim", "3:1"},
+                                                       {"walk.bvh", "out.glb", "--trim", "now"},
+                                                       {"walk.bvh", "out.glb", "--clip", "swim", "-q"},
+                                                       {"missing.bvh", "out.glb"},
+                                                       {"other.bvh", "out.bvh", "-q"}};
+  for (std::vector<std::string> call : calls) {
+    call.insert(call.begin(), "convert");
+    expectOneLine(run(call), 1);
+  }
+  EXPECT_EQ(run({"convert", "walk.bvh", "other.bvh", "-o", "out.glb", "-q"}).code, 1);
+  EXPECT_EQ(files(), (std::vector<std::string>{"bad.bvh", "other.bvh", "walk.bvh"}));
+}
+
+TEST_F(Cli, PreviewShowsClips) {
+  put("walk.bvh", kWalk);
+  EXPECT_EQ(run({"preview", "walk.bvh", "--frames", "3", "--size", "40x30", "-o", "sheet.png"}).code, 0);
+  EXPECT_EQ(run({"preview", "walk.bvh", "--clip", "walk", "--time", "0.2", "--size", "40x30", "-o", "one.png"}).code,
+            0);
+  EXPECT_EQ(run({"preview", "walk.bvh", "--animate", "--fps", "10", "--size", "40x30", "-o", "moving.png"}).code, 0);
+  EXPECT_THAT(content("sheet.png"), StartsWith("\x89PNG"));
+  EXPECT_THAT(content("moving.png"), AllOf(StartsWith("\x89PNG"), HasSubstr("acTL"), HasSubstr("fdAT")));
+  EXPECT_NE(content("one.png"), "");
+  expectOneLine(run({"preview", "walk.bvh", "--clip", "swim", "-o", "none.png"}), 1);
+  expectOneLine(run({"preview", "walk.bvh", "--time", "1", "--frames", "2", "-o", "none.png"}), 2);
+}
+
+// A person out of the practice skeleton's proportions, as a BVH: arms to the sides, walking on the spot.
+std::string personBvh(const std::string& prefix) {
+  struct Part {
+    const char *name, *offset;
+    int closes;  // how many joints end after it
+  };
+  const std::vector<Part> parts = {
+      {"Hips", "0 0 0", 0},         {"Spine", "0 12 0", 0},       {"Chest", "0 18 0", 0},      {"Neck", "0 22 0", 0},
+      {"Head", "0 10 0", 2},        {"LeftArm", "16 18 0", 0},    {"LeftForeArm", "28 0 0", 0}, {"LeftHand", "26 0 0", 3},
+      {"RightArm", "-16 18 0", 0},  {"RightForeArm", "-28 0 0", 0}, {"RightHand", "-26 0 0", 5},
+      {"LeftUpLeg", "9 -4 0", 0},   {"LeftLeg", "0 -42 0", 0},    {"LeftFoot", "0 -42 0", 3},
+      {"RightUpLeg", "-9 -4 0", 0}, {"RightLeg", "0 -42 0", 0},   {"RightFoot", "0 -42 0", 4}};
+  std::string text = "HIERARCHY\n";
+  for (const Part& part : parts) {
+    const bool root = &part == parts.data();
+    text += (root ? "ROOT " : "JOINT ") + prefix + part.name + "\n{\nOFFSET " + part.offset + "\nCHANNELS " +
+            (root ? "6 Xposition Yposition Zposition " : "3 ") + "Zrotation Xrotation Yrotation\n";
+    if (part.closes > 0) text += "End Site\n{\nOFFSET 0 0 8\n}\n";
+    for (int i = 0; i < part.closes; ++i) text += "}\n";
+  }
+  text += "MOTION\nFrames: 6\nFrame Time: 0.1\n";
+  for (int f = 0; f < 6; ++f) {
+    text.append("0 90 ").append(std::to_string(2 * f)).append(" 0 0 0");
+    for (std::size_t j = 1; j < parts.size(); ++j) {
+      const bool arm = j == 5 || j == 8;
+      text.append(" ").append(std::to_string(arm ? 10 * f : 0)).append(" 0 0");
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+TEST_F(Cli, RetargetPutsEachMotionIntoTheCharacter) {
+  put("wave.bvh", personBvh("mixamorig:"));
+  put("bow.bvh", personBvh("Bip01 "));
+  EXPECT_EQ(run({"sample", "biped", "-o", "biped.glb", "-q"}).code, 0);
+  EXPECT_EQ(run({"rig", "biped.glb", "--template", "humanoid", "-o", "hero.glb", "-q"}).code, 0);
+  const Result done = run({"retarget", "hero.glb", "wave.bvh", "bow.bvh", "-o", "moving.glb", "--method", "aligned",
+                           "--save-map", "map.json"});
+  EXPECT_EQ(done.code, 0) << done.error;
+  EXPECT_THAT(done.out, AllOf(HasSubstr("wave"), HasSubstr("6 frames at 10 a second"), HasSubstr("written: moving.glb")));
+  EXPECT_THAT(run({"info", "moving.glb"}).out, AllOf(HasSubstr("wave: 0.500 s"), HasSubstr("bow: 0.500 s")));
+  keep("moving.glb");
+  const Result measured = run({"evaluate", "motion", "moving.glb", "--source", "wave.bvh", "--json"});
+  ASSERT_EQ(measured.code, 0) << measured.error;
+  EXPECT_LT(nlohmann::json::parse(measured.out).at("bone_direction_degrees").get<double>(), 0.5);
+  const Result again = run({"retarget", "hero.glb", "wave.bvh", "-o", "again.glb", "--map", "map.json", "-q"});
+  EXPECT_EQ(again.code, 0) << again.error;
+}
+
+TEST_F(Cli, AnimateRigsWhatHasNoRig) {
+  put("wave.bvh", personBvh(""));
+  EXPECT_EQ(run({"sample", "biped", "-o", "biped.glb", "-q"}).code, 0);
+  const Result refused = run({"retarget", "biped.glb", "wave.bvh", "-o", "out.glb", "-q"});
+  expectOneLine(refused, 1);
+  EXPECT_THAT(refused.error, AllOf(HasSubstr("biped.glb"), HasSubstr("limber animate")));
+  EXPECT_EQ(run({"animate", "biped.glb", "wave.bvh", "-o", "waving.glb", "-q"}).code, 0);
+  const std::string info = run({"info", "waving.glb"}).out;
+  EXPECT_THAT(info, AllOf(HasSubstr("wave: 0.500 s"), HasSubstr("leftUpperArm")));
+  keep("waving.glb");
+}
+
+TEST_F(Cli, RetargetRefusesWithOneLineAndLeavesNoFile) {
+  put("hero.bvh", personBvh(""));
+  put("cut.bvh", personBvh("").substr(0, 400));
+  EXPECT_EQ(run({"sample", "biped", "-o", "biped.glb", "-q"}).code, 0);
+  EXPECT_EQ(run({"rig", "biped.glb", "--template", "humanoid", "-o", "hero.glb", "-q"}).code, 0);
+  put("map.json", "{\"matches\": 3}");
+  const std::vector<std::string> before = files();
+  for (const std::vector<std::string>& call : std::vector<std::vector<std::string>>{
+           {"hero.glb", "cut.bvh"}, {"hero.glb", "no.bvh"}, {"hero.glb", "hero.bvh", "--method", "magic"},
+           {"hero.glb", "hero.bvh", "--map", "map.json"}, {"hero.glb", "hero.bvh", "--solver", "magic"}}) {
+    std::vector<std::string> arguments = {"retarget"};
+    arguments.insert(arguments.end(), call.begin(), call.end());
+    arguments.insert(arguments.end(), {"-o", "out.glb", "-q"});
+    expectOneLine(run(arguments), 1);
+  }
+  EXPECT_EQ(files(), before);
+}
+
+}  // namespace
+}  // namespace limber
