@@ -10,9 +10,9 @@
 #include "limber/asset/glb.h"
 #include "limber/asset/gltf_document.h"
 #include "limber/asset/motion_io.h"
+#include "limber/core/names.h"
 #ifdef LIMBER_IMPORT
 #include "limber/asset/import_model.h"
-#include "limber/core/names.h"
 #endif
 
 namespace limber {

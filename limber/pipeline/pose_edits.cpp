@@ -130,9 +130,9 @@ Vec3 requirePoint(const JsonView& object, std::string_view key) {
 JointTurn readTurn(const JsonView& entry) {
   refuseOtherKeys(entry, {"joint", "axis", "degrees"});
   const Vec3 axis = requirePoint(entry, "axis");
-  if (!(axis.norm() > 0)) entry.fail("has an axis of length 0");
+  if (!(axis.stableNorm() > 0)) entry.fail("has an axis of length 0");
   if (!entry.member("degrees").exists()) entry.fail("has no \"degrees\"");
-  return {requireText(entry, "joint"), axis.normalized(), entry.number("degrees", 0)};
+  return {requireText(entry, "joint"), axis.stableNormalized(), entry.number("degrees", 0)};
 }
 
 JointMove readMove(const JsonView& entry) {
