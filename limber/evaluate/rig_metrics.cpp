@@ -164,8 +164,13 @@ void compareNamed(const SkinnedModel& predicted, const SkinnedModel& truth, cons
                                    given = humanoidJointsByName(truth.skeleton);
   const std::vector<Affine> ownGlobals = restGlobals(predicted.skeleton), givenGlobals = restGlobals(truth.skeleton);
   const double height = heightOf(box, given, givenGlobals);
+  const std::optional<Index> ownPelvis = pelvisByName(predicted.skeleton), pelvis = pelvisByName(truth.skeleton);
   for (const std::string_view bone : kCompared) {
-    const std::optional<Vec3> a = placeOf(bone, own, ownGlobals), b = placeOf(bone, given, givenGlobals);
+    std::optional<Vec3> a = placeOf(bone, own, ownGlobals), b = placeOf(bone, given, givenGlobals);
+    if (bone == "hips" && ownPelvis && pelvis) {
+      a = ownGlobals[*ownPelvis].translation();
+      b = givenGlobals[*pelvis].translation();
+    }
     if (a && b) result.named.push_back({std::string(bone), 100 * (*a - *b).norm() / height});
   }
   for (const NamedJointError& error : result.named) {

@@ -280,7 +280,9 @@ class NameReader {
     std::vector<Index> between;
     for (std::optional<Index> up = skeleton_.joints[end].parent; up && *up != *hips;
          up = skeleton_.joints[*up].parent) {
-      if (!taken(*up) || names_[*up].word == BodyWord::kTrunk) between.insert(between.begin(), *up);
+      const BodyWord word = names_[*up].word;
+      if (word == BodyWord::kHips) continue;
+      if (!taken(*up) || word == BodyWord::kTrunk) between.insert(between.begin(), *up);
     }
     if (!isAncestorOrSelf(skeleton_, *hips, end)) return;
     const auto sure = [&](Index joint) { return names_[joint].word == BodyWord::kTrunk ? 0.9 : 0.7; };
@@ -327,6 +329,20 @@ std::string_view mirroredBone(std::string_view bone) {
 
 std::vector<HumanoidJoint> humanoidJointsByName(const Skeleton& skeleton) {
   return NameReader(skeleton).read();
+}
+
+std::optional<Index> pelvisByName(const Skeleton& skeleton) {
+  const std::vector<HumanoidJoint> joints = humanoidJointsByName(skeleton);
+  if (joints.empty() || joints.front().bone != "hips") return std::nullopt;
+  const Index hips = joints.front().joint;
+  const auto spine =
+      std::find_if(joints.begin(), joints.end(), [](const HumanoidJoint& joint) { return joint.bone == "spine"; });
+  if (spine == joints.end()) return hips;
+  for (std::optional<Index> up = skeleton.joints[spine->joint].parent; up && *up != hips;
+       up = skeleton.joints[*up].parent) {
+    if (detail::readBodyName(skeleton.joints[*up].name).word == BodyWord::kHips) return up;
+  }
+  return hips;
 }
 
 }  // namespace limber

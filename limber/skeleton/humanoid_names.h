@@ -36,4 +36,8 @@ struct HumanoidJoint {
 // that are no people get few bones or none.
 std::vector<HumanoidJoint> humanoidJointsByName(const Skeleton& skeleton);
 
+// The joint in the pelvis: the hips, unless these only carry legs and trunk ("Root", on the ground) and a joint on the
+// way to the spine is called hips by its name. That one moves no leg, so it plays no bone. None where hips are unknown.
+std::optional<Index> pelvisByName(const Skeleton& skeleton);
+
 }  // namespace limber

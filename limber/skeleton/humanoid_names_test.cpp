@@ -156,6 +156,22 @@ TEST(HumanoidNames, TheHipsAreWhereLegsAndTrunkPart) {
   EXPECT_EQ(bones.at("spine"), "Spine1");
 }
 
+TEST(HumanoidNames, ThePelvisIsWhereItIsCalledSo) {
+  const auto pelvis = [](const std::string& text) {
+    const Skeleton skeleton = parse(text);
+    return skeleton.joints[pelvisByName(skeleton).value()].name;
+  };
+  const std::string legs = "UpperLeg.L(LowerLeg.L(Foot.L)),UpperLeg.R(LowerLeg.R(Foot.R))";
+  EXPECT_EQ(pelvis("Root(Hips(Abdomen(Torso(Neck(Head))))," + legs + ")"), "Hips");
+  EXPECT_EQ(pelvis("Root(Abdomen(Torso(Neck(Head)))," + legs + ")"), "Root");
+  EXPECT_EQ(pelvis("Hips(Abdomen(Torso(Neck(Head)))," + legs + ")"), "Hips");
+  EXPECT_FALSE(pelvisByName(parse("a(b)")).has_value());
+  // What moves the legs still plays the hips, and what is called hips is no spine.
+  const auto bones = bonesByName("Root(Hips(Abdomen(Torso(Neck(Head))))," + legs + ")");
+  EXPECT_EQ(bones.at("hips"), "Root");
+  EXPECT_EQ(bones.at("spine"), "Abdomen");
+}
+
 TEST(HumanoidNames, AnimalsLegsAreNoPeoples) {
   const auto bones = bonesByName(
       "hips(spine_1(front_leg_upper_l(front_leg_lower_l(front_leg_foot_l)),head),"
