@@ -41,6 +41,7 @@ function(limber_module name)
     limber_compile_options(${target}_tests)
     limber_test_helpers(${target}_tests)
     limber_precompile(${target}_tests limber_core_tests ${limber_precompiled} <gtest/gtest.h> <gmock/gmock.h>)
+    limber_unity(${target}_tests)
     target_link_libraries(${target}_tests PRIVATE ${target} ${ARG_TEST_LIBRARIES} GTest::gmock GTest::gtest_main)
     gtest_discover_tests(${target}_tests TEST_PREFIX "${name}." DISCOVERY_TIMEOUT 120 PROPERTIES LABELS unit)
   endif()
@@ -57,6 +58,14 @@ function(limber_precompile target owner)
     target_precompile_headers(${target} PRIVATE ${ARGN})
   else()
     target_precompile_headers(${target} REUSE_FROM ${owner})
+  endif()
+endfunction()
+
+# limber_unity(<test target>): where LIMBER_UNITY is on, its sources are compiled six at a time: what they include takes
+# most of their time. Names in their anonymous namespaces must differ.
+function(limber_unity target)
+  if(LIMBER_UNITY)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 6)
   endif()
 endfunction()
 

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "limber/asset/accessor.h"
+#include "limber/asset/write.h"
 #include "limber/mesh/prepare.h"
 
 namespace limber::testing {
@@ -191,6 +192,15 @@ std::set<std::size_t> skinAccessors(const Json& document) {
 }
 
 }  // namespace
+
+Rigged rigged(const Asset& asset, const AutoRigOptions& options) {
+  Asset copy = asset.clone();
+  Progress progress;
+  Rigged result;
+  result.report = autoRig(copy, options, progress);
+  result.glb = writeGlb(copy);
+  return result;
+}
 
 void expectJointCount(const AssetSkeleton& rig, Index handles) {
   const Index found = rig.skeleton.jointCount();

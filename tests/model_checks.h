@@ -8,6 +8,13 @@
 
 namespace limber::testing {
 
+// A copy of the model with a rig made by `options`, as a GLB file.
+struct Rigged {
+  Bytes glb;
+  AutoRigReport report;
+};
+Rigged rigged(const Asset& asset, const AutoRigOptions& options);
+
 // Each check adds a test failure with what it found, and says nothing where all is well.
 
 // Exactly `handles` joints, or one more that is the common root.

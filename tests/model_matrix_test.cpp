@@ -37,20 +37,6 @@ std::string nameOf(const std::string& path) {
   return name;
 }
 
-struct Rigged {
-  Bytes glb;
-  AutoRigReport report;
-};
-
-Rigged rigged(const Asset& asset, const AutoRigOptions& options) {
-  Asset copy = asset.clone();
-  Progress progress;
-  Rigged result;
-  result.report = autoRig(copy, options, progress);
-  result.glb = writeGlb(copy);
-  return result;
-}
-
 void writeOutput(const std::string& name, const Bytes& glb, const fs::path& source) {
   const fs::path path = testOutputFolder() / (name + ".glb");
   writeFile(path, glb);

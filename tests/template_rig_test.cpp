@@ -22,24 +22,10 @@ AutoRigOptions templateOptions(const std::string& name) {
   return options;
 }
 
-struct Rigged {
-  Bytes glb;
-  AutoRigReport report;
-};
-
-Rigged rigged(const Asset& asset, const std::string& name) {
-  Asset copy = asset.clone();
-  Progress progress;
-  Rigged result;
-  result.report = autoRig(copy, templateOptions(name), progress);
-  result.glb = writeGlb(copy);
-  return result;
-}
-
 RigComparison compared(const std::string& file, const std::string& name) {
   const std::filesystem::path path = *sharedDataFolder() / "rigged" / file;
   const Asset asset = readAsset(path);
-  const Rigged result = rigged(asset, name);
+  const Rigged result = rigged(asset, templateOptions(name));
   const std::filesystem::path written = testOutputFolder() / ("template_" + path.stem().string() + ".glb");
   writeFile(written, result.glb);
   noteSource(written, path);
@@ -73,7 +59,7 @@ INSTANTIATE_TEST_SUITE_P(Humanoids, TemplateCharacters,
 
 TEST(TemplateSamples, ABipedIsAPerson) {
   const Asset asset = makeSample("biped");
-  const Rigged result = rigged(asset, "auto");
+  const Rigged result = rigged(asset, templateOptions("auto"));
   EXPECT_EQ(result.report.matches.front().name, "humanoid");
   const Asset after = readAsset(result.glb, "result.glb");
   const Geometry geometry = collectGeometry(after);
@@ -89,7 +75,7 @@ TEST(TemplateSamples, ABipedIsAPerson) {
 }
 
 TEST(TemplateSamples, AStoolIsNoPerson) {
-  const Rigged result = rigged(makeSample("stool"), "humanoid");
+  const Rigged result = rigged(makeSample("stool"), templateOptions("humanoid"));
   EXPECT_LT(result.report.matches.front().confidence, 0.6);
   EXPECT_FALSE(result.report.warnings.empty());
 }

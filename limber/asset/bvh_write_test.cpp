@@ -11,19 +11,17 @@
 
 #include "limber/asset/bvh_read.h"
 #include "limber/core/parse_number.h"
+#include "random_values.h"
 #include "shared_data.h"
 
 namespace limber {
 namespace {
 
+using testing::randomRotation;
+
 std::string text(const Motion& motion, const BvhWriteOptions& options = {}) {
   const Bytes bytes = writeBvh(motion, options);
   return {bytes.begin(), bytes.end()};
-}
-
-Quat randomRotation(std::mt19937& random) {
-  std::normal_distribution<double> normal;
-  return Quat(normal(random), normal(random), normal(random), normal(random)).normalized();
 }
 
 // Any rest rotations and scales; tracks for some joints.

@@ -17,17 +17,15 @@
 #include "limber/asset/scene_graph.h"
 #include "limber/asset/testing/gltf_builder.h"
 #include "limber/asset/write.h"
+#include "random_values.h"
 #include "shared_data.h"
 
 namespace limber {
 namespace {
 
-namespace fs = std::filesystem;
+using testing::randomRotation;
 
-Quat randomRotation(std::mt19937& random) {
-  std::normal_distribution<double> normal;
-  return Quat(normal(random), normal(random), normal(random), normal(random)).normalized();
-}
+namespace fs = std::filesystem;
 
 Vec3 randomVector(std::mt19937& random) {
   std::uniform_real_distribution<double> length(-1, 1);

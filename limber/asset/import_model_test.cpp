@@ -12,6 +12,7 @@
 #include "limber/asset/accessor.h"
 #include "limber/asset/import_obj.h"
 #include "limber/asset/rig_io.h"
+#include "warning_kinds.h"
 
 namespace limber {
 namespace {
@@ -19,6 +20,7 @@ namespace {
 using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::Not;
+using testing::warningKinds;
 
 // A folder in memory.
 Resolver folder(std::map<std::string, std::string> files) {
@@ -31,12 +33,6 @@ Resolver folder(std::map<std::string, std::string> files) {
 
 Asset import(std::string_view text, std::string_view name, const Resolver& resolver = {}) {
   return readAsset(asBytes(text), name, resolver);
-}
-
-std::vector<std::string> warningKinds(const Asset& asset) {
-  std::vector<std::string> kinds;
-  for (const Warning& w : asset.warnings.items()) kinds.push_back(w.kind);
-  return kinds;
 }
 
 Error errorOf(std::string_view text, std::string_view name) {
@@ -142,7 +138,7 @@ TEST(ImportObj, MaterialsAndTexturesComeThroughTheResolver) {
 TEST(ImportObj, AMissingTextureIsTold) {
   const Asset asset =
       import(kSquareObj, "square.obj", folder({{"looks.mtl", "newmtl red\nKd 1 1 1\nmap_Kd C:/gone/skin.png\n"}}));
-  EXPECT_EQ(warningKinds(asset), std::vector<std::string>{"missing-images"});
+  EXPECT_EQ(warningKinds(asset.warnings), std::vector<std::string>{"missing-images"});
   EXPECT_FALSE(asset.json().contains("textures"));
 }
 
@@ -178,12 +174,12 @@ TEST(ImportObj, LooseVerticesAreCounted) {
   EXPECT_EQ(countLooseObjVertices(asBytes("v 0 0 0\nv 1 0 0\n")), 0u);  // a cloud of points: nothing is left out
   EXPECT_EQ(countLooseObjVertices(asBytes("v 0 0 0\nf 99999999999999999999 0 -7 x\n")), 0u);
   const Asset asset = import("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 5 5 5\nf 1 2 3\n", "t.obj");
-  EXPECT_EQ(warningKinds(asset), std::vector<std::string>{"loose-vertices"});
+  EXPECT_EQ(warningKinds(asset.warnings), std::vector<std::string>{"loose-vertices"});
 }
 
 TEST(ImportObj, NormalsWithoutADirectionAreMadeAnew) {
   const Asset asset = import("v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 0\nf 1//1 2//1 3//1\n", "t.obj");
-  EXPECT_EQ(warningKinds(asset), std::vector<std::string>{"invalid-normals"});
+  EXPECT_EQ(warningKinds(asset.warnings), std::vector<std::string>{"invalid-normals"});
   const std::vector<float> normals = readFloats(asset, primitiveOf(asset)["attributes"]["NORMAL"].get<Index>());
   EXPECT_EQ(std::vector<float>(normals.begin(), normals.begin() + 3), (std::vector<float>{0, 0, 1}));
 }
@@ -304,7 +300,7 @@ std::string fbx(int up, int front, int frontSign, double unit) {
 
 TEST(ImportFbx, CentimetresBecomeMetres) {
   const Asset asset = import(fbx(1, 2, 1, 1), "t.fbx");
-  EXPECT_EQ(warningKinds(asset), std::vector<std::string>{"converted-units"});
+  EXPECT_EQ(warningKinds(asset.warnings), std::vector<std::string>{"converted-units"});
   const Geometry geometry = collectGeometry(asset);
   EXPECT_TRUE(sizeOf(geometry).isApprox(Vec3(1, 0, 2), 1e-6));
   EXPECT_NEAR(geometry.positions[0].z(), 0.5, 1e-6);  // the node's translation is converted too
@@ -313,7 +309,7 @@ TEST(ImportFbx, CentimetresBecomeMetres) {
 
 TEST(ImportFbx, ZUpBecomesYUp) {
   const Asset asset = import(fbx(2, 1, -1, 100), "t.fbx");
-  EXPECT_EQ(warningKinds(asset), std::vector<std::string>{"converted-axes"});
+  EXPECT_EQ(warningKinds(asset.warnings), std::vector<std::string>{"converted-axes"});
   const Geometry geometry = collectGeometry(asset);
   EXPECT_TRUE(sizeOf(geometry).isApprox(Vec3(100, 200, 0), 1e-6));
   EXPECT_NEAR(geometry.positions[0].y(), 50, 1e-4);
@@ -364,7 +360,7 @@ constexpr const char* kCharacterDae = R"(<?xml version="1.0" encoding="utf-8"?>
 
 TEST(ImportDae, SkinAndSkeletonComeInMetres) {
   const Asset asset = import(kCharacterDae, "t.dae");
-  EXPECT_EQ(warningKinds(asset), std::vector<std::string>{"converted-units"});
+  EXPECT_EQ(warningKinds(asset.warnings), std::vector<std::string>{"converted-units"});
   ASSERT_TRUE(hasRig(asset));
   const Geometry geometry = collectGeometry(asset);
   EXPECT_TRUE(sizeOf(geometry).isApprox(Vec3(1, 1, 1), 1e-5));

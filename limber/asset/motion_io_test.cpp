@@ -23,7 +23,7 @@ const std::string kBvh =
     "Yrotation\nJOINT Spine\n{\nOFFSET 0 0.5 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nEnd Site\n{\nOFFSET 0 0.3 "
     "0\n}\n}\n}\nMOTION\nFrames: 3\nFrame Time: 0.05\n0 1 0 0 0 0 10 0 0\n0 1 1 0 5 0 20 0 0\n0 1 2 0 10 0 30 0 0\n";
 
-double largestDistance(const Motion& a, const Motion& b, double seconds) {
+double largestDistanceAt(const Motion& a, const Motion& b, double seconds) {
   Pose poseA = restPose(a.skeleton), poseB = restPose(b.skeleton);
   sampleClip(a.clips.at(0), seconds, poseA);
   sampleClip(b.clips.at(0), seconds, poseB);
@@ -46,7 +46,7 @@ TEST(MotionIo, BvhComesOutOfGltfAsItWentIn) {
   EXPECT_EQ(back.framesPerSecond, 20);
   ASSERT_EQ(back.skeleton.joints.size(), 3u);
   EXPECT_EQ(back.skeleton.joints[2].name, "Spine_end");
-  for (const double seconds : {0.0, 0.02, 0.07, 0.1}) EXPECT_LT(largestDistance(motion, back, seconds), 1e-6);
+  for (const double seconds : {0.0, 0.02, 0.07, 0.1}) EXPECT_LT(largestDistanceAt(motion, back, seconds), 1e-6);
 }
 
 TEST(MotionIo, ABvhIsAModelToo) {
@@ -71,7 +71,7 @@ TEST(MotionIo, SeveralRootsHangOnOneNode) {
   EXPECT_EQ(asset.json()["scenes"][0]["nodes"].size(), 1u);
   writeAsset(asset, limber::testing::testOutputFolder() / "motion_io_two_roots.glb");
   const Motion back = motionOf(asset);
-  EXPECT_LT(largestDistance(motion, back, 0.5), 1e-6);
+  EXPECT_LT(largestDistanceAt(motion, back, 0.5), 1e-6);
 }
 
 TEST(MotionIo, NodesThatMoveAreJointsWhereThereIsNoSkin) {
@@ -129,7 +129,7 @@ TEST(MotionIo, ReadsEverySharedMotion) {
     const Motion back = readMotion(writeGlb(motionAsset(motion)), "back.glb");
     for (const double part : {0.0, 0.3, 1.0}) {
       const double seconds = part * motion.clips[0].duration();
-      EXPECT_LT(largestDistance(motion, back, seconds), 1e-4);
+      EXPECT_LT(largestDistanceAt(motion, back, seconds), 1e-4);
     }
   }
   EXPECT_GE(count, 40u);

@@ -9,6 +9,7 @@
 #include "limber/asset/accessor.h"
 #include "limber/asset/testing/gltf_builder.h"
 #include "limber/asset/testing/temporary_folder.h"
+#include "warning_kinds.h"
 
 namespace limber {
 namespace {
@@ -19,6 +20,7 @@ using testing::GltfBuilder;
 using ::testing::HasSubstr;
 using testing::pngBytes;
 using testing::TemporaryFolder;
+using testing::warningKinds;
 
 struct Failure {
   ErrorCode code;
@@ -45,12 +47,6 @@ GltfBuilder modelBeside(const std::string& bufferUri, const std::string& imageUr
   model.json["buffers"] = Json::array({{{"byteLength", model.binary.size()}, {"uri", bufferUri}}});
   model.json["images"][0] = {{"uri", imageUri}};
   return model;
-}
-
-std::vector<std::string> warningKinds(const Asset& asset) {
-  std::vector<std::string> kinds;
-  for (const Warning& warning : asset.warnings.items()) kinds.push_back(warning.kind);
-  return kinds;
 }
 
 TEST(ReadAsset, GlbAndGltfHoldTheSame) {
@@ -137,7 +133,7 @@ TEST(ReadAsset, MissingOrForeignImagesStayReferences) {
         });
     EXPECT_TRUE(asset.sideFiles.empty()) << uri;
     EXPECT_EQ(asset.json()["images"][0]["uri"], uri);
-    EXPECT_THAT(warningKinds(asset), ElementsAre("missing-images"));
+    EXPECT_THAT(warningKinds(asset.warnings), ElementsAre("missing-images"));
   }
 }
 
@@ -178,7 +174,7 @@ TEST(ReadAsset, BytesBehindABuffersEndAreLeftOut) {
     return longer;
   });
   EXPECT_EQ(asset.buffers[0].bytes, model.binary);
-  EXPECT_THAT(warningKinds(asset), ElementsAre("trailing-bytes"));
+  EXPECT_THAT(warningKinds(asset.warnings), ElementsAre("trailing-bytes"));
   EXPECT_EQ(asset.warnings.items()[0].count, 100u);
 }
 

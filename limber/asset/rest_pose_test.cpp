@@ -9,8 +9,8 @@
 
 #include "limber/asset/bind_pose.h"
 #include "limber/asset/pose_io.h"
-#include "limber/asset/testing/scene_builder.h"
 #include "limber/asset/scene_graph.h"
+#include "limber/asset/testing/scene_builder.h"
 #include "limber/asset/weight_attributes.h"
 
 namespace limber {
@@ -35,13 +35,13 @@ Json numbers(const Eigen::Ref<const Eigen::VectorXd>& vector) {
 }
 
 // hip - chest - arm, hip - leg; their nodes do not stand in the bind pose. Two skins share chest and hip.
-struct Character {
+struct TwoSkins {
   SceneBuilder scene;
   Random random;
   Index leg, arm, chest, hip, bodySkin, coatSkin;
   std::vector<Affine> bind;  // by node
 
-  Character() {
+  TwoSkins() {
     const auto joint = [&](const char* name, Json children) {
       bind.push_back(Affine(Eigen::Translation3d(random.vector()) * random.rotation()));
       Json node = {{"name", name}, {"translation", numbers(random.vector())}};
@@ -221,8 +221,8 @@ Pose otherPose(const Asset& asset, const AssetSkeleton& skeleton, Random& random
   return pose;
 }
 
-Character dressedCharacter() {
-  Character c;
+TwoSkins dressedCharacter() {
+  TwoSkins c;
   const Index body = c.rigidMesh(4), coat = c.rigidMesh(2), both = c.rigidMesh(2);
   std::vector<Index> roots = {c.hip};
   roots.push_back(c.scene.addNode({{"name", "body"}, {"mesh", body}, {"skin", c.bodySkin}}));
@@ -237,7 +237,7 @@ Character dressedCharacter() {
 }
 
 TEST(RestPose, ClipsLookTheSameAndThePoseIsTheBindPose) {
-  Character c = dressedCharacter();
+  TwoSkins c = dressedCharacter();
   Asset asset = c.scene.build();
   const Asset before = asset.clone();
   const AssetSkeleton skeleton = readSkeleton(asset);
@@ -262,7 +262,7 @@ TEST(RestPose, ClipsLookTheSameAndThePoseIsTheBindPose) {
 }
 
 TEST(RestPose, AMeshThatIsShownWithoutASkinTooStaysAsItIsThere) {
-  Character c;
+  TwoSkins c;
   const Index mesh = c.rigidMesh(2);
   const Index statue = c.scene.addNode({{"name", "statue"}, {"mesh", mesh}});
   const Index body = c.scene.addNode({{"name", "body"}, {"mesh", mesh}, {"skin", c.coatSkin}});
@@ -284,7 +284,7 @@ TEST(RestPose, AMeshThatIsShownWithoutASkinTooStaysAsItIsThere) {
 
 // The middle of an arm that bends: right in the new rest pose, and the file says that clips cannot be kept there.
 TEST(RestPose, SharedVerticesAreRightInThePoseAndCounted) {
-  Character c;
+  TwoSkins c;
   const Index mesh = c.scene.addTetrahedron();
   const std::vector<std::uint8_t> joints = {0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0};
   const std::vector<float> weights = {0.5f, 0.5f, 0, 0, 0.25f, 0.75f, 0, 0, 1, 0, 0, 0, 0.5f, 0.5f, 0, 0};
@@ -307,7 +307,7 @@ TEST(RestPose, SharedVerticesAreRightInThePoseAndCounted) {
 
 // All joints moved alike: then shared vertices keep their clips too.
 TEST(RestPose, WhatMovesAsAWholeKeepsItsClips) {
-  Character c;
+  TwoSkins c;
   const Index mesh = c.scene.addTetrahedron();
   const std::vector<std::uint8_t> joints = {0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0};
   const std::vector<float> weights(16, 0.25f);
@@ -330,7 +330,7 @@ TEST(RestPose, WhatMovesAsAWholeKeepsItsClips) {
 }
 
 TEST(RestPose, FlatJointsAreRefused) {
-  Character c;
+  TwoSkins c;
   const Index mesh = c.rigidMesh(2);
   c.scene.addScene({c.hip, c.scene.addNode({{"mesh", mesh}, {"skin", c.coatSkin}})});
   Asset asset = c.scene.build();

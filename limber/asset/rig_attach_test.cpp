@@ -10,6 +10,7 @@
 #include "limber/asset/scene_graph.h"
 #include "limber/asset/testing/attached_rig.h"
 #include "limber/asset/testing/scene_builder.h"
+#include "warning_kinds.h"
 
 namespace limber {
 namespace {
@@ -21,6 +22,7 @@ using testing::mixedWeights;
 using testing::SceneBuilder;
 using testing::threeJoints;
 using testing::translation;
+using testing::warningKinds;
 
 std::string numbered(std::string name, Index number) {
   return name.append(std::to_string(number));
@@ -61,12 +63,6 @@ void expectPositions(const std::vector<Vec3>& actual, std::span<const Vec3f> exp
 
 std::span<const Vec3f> positionsOf(const Geometry& geometry, const PrimitiveInstance& instance) {
   return std::span(geometry.positions).subspan(instance.firstVertex, instance.vertexCount);
-}
-
-std::vector<std::string> warningKinds(const Asset& asset) {
-  std::vector<std::string> kinds;
-  for (const Warning& w : asset.warnings.items()) kinds.push_back(w.kind);
-  return kinds;
 }
 
 // The elements of a list that were there before are the same now.
@@ -281,7 +277,7 @@ TEST(AttachRig, AnAnimationThatMovedTheMeshIsTold) {
   scene.addNode({{"mesh", scene.addTetrahedron()}});
   scene.addClip(lift, "translation", 3);
   const Attached rigged = attach(scene.build());
-  ASSERT_EQ(warningKinds(rigged.after), std::vector<std::string>{"node-animation"});
+  ASSERT_EQ(warningKinds(rigged.after.warnings), std::vector<std::string>{"node-animation"});
   EXPECT_EQ(rigged.after.warnings.items()[0].count, 1u);
   EXPECT_EQ(rigged.after.json()["animations"], rigged.before.json()["animations"]);
 }
@@ -301,7 +297,7 @@ TEST(AttachRig, GpuInstancesBecomeNodes) {
   EXPECT_EQ(json["nodes"][node], Json({{"name", "tree"}}));
   EXPECT_EQ(json["extensionsUsed"], Json::array({"KHR_other"}));
   EXPECT_FALSE(json.contains("extensionsRequired"));
-  EXPECT_EQ(warningKinds(rigged.after), std::vector<std::string>{"expanded-instances"});
+  EXPECT_EQ(warningKinds(rigged.after.warnings), std::vector<std::string>{"expanded-instances"});
   const auto last = static_cast<Index>(json["nodes"].size() - 1);
   expectPositions(skinnedPositions(rigged.after, last - 1), positionsOf(rigged.geometry, rigged.geometry.instances[0]));
   expectPositions(skinnedPositions(rigged.after, last), positionsOf(rigged.geometry, rigged.geometry.instances[1]));

@@ -7,7 +7,7 @@
 namespace limber {
 namespace {
 
-Bytes bytesOf(std::string_view text) {
+Bytes bytesIn(std::string_view text) {
   return Bytes(text.begin(), text.end());
 }
 
@@ -21,12 +21,12 @@ TEST(Uri, Base64KnownValues) {
                                                           {"fooba", "Zm9vYmE="},
                                                           {"foobar", "Zm9vYmFy"}};
   for (const auto& [plain, encoded] : kVectors) {
-    EXPECT_EQ(encodeBase64(bytesOf(plain)), encoded);
+    EXPECT_EQ(encodeBase64(bytesIn(plain)), encoded);
     const DataUri data = decodeDataUri(std::string("data:application/gltf-buffer;base64,") + encoded);
-    EXPECT_EQ(data.bytes, bytesOf(plain));
+    EXPECT_EQ(data.bytes, bytesIn(plain));
     EXPECT_EQ(data.header, "data:application/gltf-buffer;base64,");
   }
-  EXPECT_EQ(decodeDataUri("data:;base64,Zm8").bytes, bytesOf("fo"));  // padding left out
+  EXPECT_EQ(decodeDataUri("data:;base64,Zm8").bytes, bytesIn("fo"));  // padding left out
 }
 
 TEST(Uri, Base64RoundTripsAllBytes) {

@@ -9,7 +9,7 @@
 namespace limber {
 namespace {
 
-class ParallelFor : public testing::TestWithParam<int> {
+class ParallelFor : public ::testing::TestWithParam<int> {
  protected:
   void SetUp() override { setThreadCount(GetParam()); }
   void TearDown() override { setThreadCount(0); }
@@ -42,7 +42,7 @@ TEST_P(ParallelFor, InvokeRunsBoth) {
   EXPECT_EQ(first + second, 3);
 }
 
-INSTANTIATE_TEST_SUITE_P(Threads, ParallelFor, testing::Values(0, 1, 2));
+INSTANTIATE_TEST_SUITE_P(Threads, ParallelFor, ::testing::Values(0, 1, 2));
 
 TEST(ThreadCount, IsWhatWasSet) {
   setThreadCount(1);

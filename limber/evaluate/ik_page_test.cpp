@@ -8,8 +8,8 @@
 namespace limber {
 namespace {
 
-using testing::HasSubstr;
-using testing::Not;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 IkScore score(const char* method, const char* set, Index solved, double micros, bool limited = false) {
   IkScore result;

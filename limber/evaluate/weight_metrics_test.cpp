@@ -18,8 +18,8 @@
 namespace limber {
 namespace {
 
-using testing::ElementsAre;
-using testing::HasSubstr;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 
 // Four vertices along x, two joints at its ends.
 SkinnedModel strip(std::vector<std::vector<std::pair<Index, float>>> influences) {

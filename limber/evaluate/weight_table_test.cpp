@@ -10,8 +10,8 @@
 namespace limber {
 namespace {
 
-using testing::HasSubstr;
-using testing::Not;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 constexpr const char* kReferences =
     "# a comment\n"

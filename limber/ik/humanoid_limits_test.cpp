@@ -9,7 +9,7 @@
 namespace limber {
 namespace {
 
-class HumanoidLimits : public testing::Test {
+class HumanoidLimits : public ::testing::Test {
  protected:
   HumanoidLimits() : limits(humanoidLimits(skeleton, humanoidJointsByName(skeleton))) {}
 

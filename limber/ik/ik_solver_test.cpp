@@ -10,27 +10,14 @@
 #include "limber/core/error.h"
 #include "limber/ik/ik_skeletons.h"
 #include "limber/ik/rotation.h"
+#include "random_values.h"
 
 namespace limber {
 namespace {
 
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : generator_(seed) {}
-  double uniform(double low = 0, double high = 1) { return std::uniform_real_distribution<>(low, high)(generator_); }
-  Index below(Index count) { return std::uniform_int_distribution<Index>(0, count - 1)(generator_); }
-  Vec3 unitCube() { return Vec3(uniform(), uniform(), uniform()); }
-  Vec3 direction() { return rotation() * Vec3(Vec3::UnitX()); }
-  Quat rotation() {
-    std::normal_distribution<> normal;
-    return Quat(normal(generator_), normal(generator_), normal(generator_), normal(generator_)).normalized();
-  }
+using testing::RandomValues;
 
- private:
-  std::mt19937_64 generator_;
-};
-
-JointLimit randomLimit(Random& random) {
+JointLimit randomLimit(RandomValues& random) {
   JointLimit limit;
   limit.neutral = random.rotation();
   limit.axes = random.rotation();
@@ -68,7 +55,7 @@ JointLimit randomLimit(Random& random) {
   return limit;
 }
 
-Pose randomPose(const Skeleton& skeleton, const JointLimits* limits, Random& random) {
+Pose randomPose(const Skeleton& skeleton, const JointLimits* limits, RandomValues& random) {
   Pose pose = restPose(skeleton);
   for (Index j = 0; j < skeleton.jointCount(); ++j) {
     const Quat turn = random.rotation();
@@ -85,7 +72,7 @@ struct Problem {
 };
 
 // A chain or a tree, with scales here and there; targets where another random pose has them.
-Problem randomProblem(Random& random, Index joints, bool tree, bool limited) {
+Problem randomProblem(RandomValues& random, Index joints, bool tree, bool limited) {
   Problem problem;
   for (Index j = 0; j < joints; ++j) {
     Joint& joint = problem.skeleton.joints.emplace_back();
@@ -129,11 +116,11 @@ double weightedCost(const Problem& problem, const Pose& pose) {
   return sum;
 }
 
-class EveryMethod : public testing::TestWithParam<std::string> {
+class EveryMethod : public ::testing::TestWithParam<std::string> {
  protected:
   const IkMethod& method() const { return findIkMethod(GetParam()); }
   bool isTwoBone() const { return GetParam() == "two-bone"; }
-  Index chainJoints(Random& random) const { return isTwoBone() ? 3 : 2 + random.below(9); }
+  Index chainJoints(RandomValues& random) const { return isTwoBone() ? 3 : 2 + random.below(9); }
 };
 
 void expectBonesKept(const Problem& problem, const Pose& pose) {
@@ -149,7 +136,7 @@ void expectBonesKept(const Problem& problem, const Pose& pose) {
 }
 
 TEST_P(EveryMethod, BonesKeepTheirLengthAndNothingGetsWorse) {
-  Random random(11);
+  RandomValues random(11);
   for (int i = 0; i < 300; ++i) {
     const bool tree = i % 3 == 0 && !isTwoBone();
     Problem problem = randomProblem(random, tree ? 8 : chainJoints(random), tree, false);
@@ -169,7 +156,7 @@ TEST_P(EveryMethod, BonesKeepTheirLengthAndNothingGetsWorse) {
 }
 
 TEST_P(EveryMethod, LimitsHold) {
-  Random random(12);
+  RandomValues random(12);
   for (int i = 0; i < 200; ++i) {
     const bool tree = i % 3 == 0 && !isTwoBone();
     const Problem problem = randomProblem(random, tree ? 7 : chainJoints(random), tree, true);
@@ -189,7 +176,7 @@ TEST_P(EveryMethod, LimitsHold) {
 
 // All of them; of the methods that creep where a chain is nearly straight, 99 %.
 TEST_P(EveryMethod, ReachableTargetsAreReached) {
-  Random random(13);
+  RandomValues random(13);
   int solved = 0, count = 2000;
   for (int i = 0; i < count; ++i) {
     const Problem problem = randomProblem(random, isTwoBone() ? 3 : 3 + random.below(9), false, false);
@@ -205,7 +192,7 @@ TEST_P(EveryMethod, ReachableTargetsAreReached) {
 }
 
 TEST_P(EveryMethod, TargetsOutOfReachAreNamedAndApproached) {
-  Random random(14);
+  RandomValues random(14);
   int stretched = 0;
   double worst = 0;
   for (int i = 0; i < 300; ++i) {
@@ -235,7 +222,7 @@ TEST_P(EveryMethod, TargetsOutOfReachAreNamedAndApproached) {
 }
 
 TEST_P(EveryMethod, TheSameCallGivesTheSameBits) {
-  Random random(15);
+  RandomValues random(15);
   for (int i = 0; i < 20; ++i) {
     const Problem problem = randomProblem(random, isTwoBone() ? 3 : 8, i % 2 == 0 && !isTwoBone(), i % 4 == 0);
     const JointLimits* limits = i % 4 == 0 ? &problem.limits : nullptr;
@@ -252,7 +239,7 @@ TEST_P(EveryMethod, TheSameCallGivesTheSameBits) {
 }
 
 TEST_P(EveryMethod, AnAnswerIsItsOwnAnswer) {
-  Random random(16);
+  RandomValues random(16);
   for (int i = 0; i < 20; ++i) {
     const Problem problem = randomProblem(random, isTwoBone() ? 3 : 7, false, false);
     Pose pose = problem.start;
@@ -267,7 +254,7 @@ TEST_P(EveryMethod, AnAnswerIsItsOwnAnswer) {
 }
 
 TEST_P(EveryMethod, OrientationsAreMet) {
-  Random random(17);
+  RandomValues random(17);
   for (int i = 0; i < 300; ++i) {
     Problem problem = randomProblem(random, isTwoBone() ? 3 : 6, false, false);
     const Quat wanted = random.rotation();
@@ -283,7 +270,7 @@ TEST_P(EveryMethod, OrientationsAreMet) {
 
 // The mirror image of a problem has the mirror image of its answer.
 TEST_P(EveryMethod, MirroredProblemsHaveMirroredAnswers) {
-  Random random(18);
+  RandomValues random(18);
   const auto mirror = [](const Quat& q) { return Quat(q.w(), q.x(), -q.y(), -q.z()); };
   const Vec3 flip(-1, 1, 1);
   for (int i = 0; i < 200; ++i) {
@@ -368,12 +355,12 @@ TEST_P(EveryMethod, BadCallsAreRefused) {
   EXPECT_THROW(solver.solve(squashed, good), Error);
 }
 
-INSTANTIATE_TEST_SUITE_P(Ik, EveryMethod, testing::ValuesIn([] {
+INSTANTIATE_TEST_SUITE_P(Ik, EveryMethod, ::testing::ValuesIn([] {
                            std::vector<std::string> names;
                            for (const IkMethod& method : ikMethods()) names.emplace_back(method.name);
                            return names;
                          }()),
-                         [](const testing::TestParamInfo<std::string>& which) {
+                         [](const ::testing::TestParamInfo<std::string>& which) {
                            std::string name = which.param;
                            std::replace(name.begin(), name.end(), '-', '_');
                            return name;

@@ -6,22 +6,12 @@
 
 #include "limber/core/error.h"
 #include "limber/ik/rotation.h"
+#include "random_values.h"
 
 namespace limber {
 namespace {
 
-class Random {
- public:
-  double uniform(double low = 0, double high = 1) { return std::uniform_real_distribution<>(low, high)(generator_); }
-  Vec3 unitCube() { return Vec3(uniform(), uniform(), uniform()); }
-  Quat rotation() {
-    std::normal_distribution<> normal;
-    return Quat(normal(generator_), normal(generator_), normal(generator_), normal(generator_)).normalized();
-  }
-
- private:
-  std::mt19937_64 generator_{7};
-};
+using testing::RandomValues;
 
 double degrees(double d) {
   return d * kPi / 180;
@@ -52,7 +42,7 @@ std::vector<JointMotion> everyMotion() {
           PlaneJoint{{-0.1, 0.2}, {-0.05, 0.05}}};
 }
 
-JointLimit tilted(const JointMotion& motion, Random& random) {
+JointLimit tilted(const JointMotion& motion, RandomValues& random) {
   JointLimit limit;
   limit.motion = motion;
   limit.neutral = random.rotation();
@@ -80,7 +70,7 @@ Parts partsOf(const JointLimit& limit, const Quat& local) {
 }
 
 TEST(Limits, TheNearestAllowedIsAllowedAndAllowedStays) {
-  Random random;
+  RandomValues random(7);
   for (const JointMotion& motion : everyMotion()) {
     for (int i = 0; i < 500; ++i) {
       const JointLimit limit = tilted(motion, random);
@@ -96,7 +86,7 @@ TEST(Limits, TheNearestAllowedIsAllowedAndAllowedStays) {
 
 // Hinge, pivot and saddle: no allowed rotation of a fine grid is nearer than the one found.
 TEST(Limits, NothingAllowedIsNearer) {
-  Random random;
+  RandomValues random(7);
   for (const JointMotion& motion : {everyMotion()[2], everyMotion()[3], everyMotion()[6]}) {
     for (int i = 0; i < 60; ++i) {
       const JointLimit limit = tilted(motion, random);
@@ -115,7 +105,7 @@ TEST(Limits, NothingAllowedIsNearer) {
 }
 
 TEST(Limits, EllipsesGiveTheNearestPoint) {
-  Random random;
+  RandomValues random(7);
   for (int i = 0; i < 300; ++i) {
     const AngleRange x{-random.uniform(0.05, 2), random.uniform(0.05, 2)};
     const AngleRange z{-random.uniform(0.05, 2), random.uniform(0.05, 2)};
@@ -150,7 +140,7 @@ TEST(Limits, FlatEllipsesAreSegments) {
 }
 
 TEST(Limits, ConesAndBoxesBoundWhatTheySay) {
-  Random random;
+  RandomValues random(7);
   for (int i = 0; i < 2000; ++i) {
     const BallAndSocket ball = std::get<BallAndSocket>(everyMotion()[4]);
     const JointLimit cone = tilted(ball, random);
@@ -172,7 +162,7 @@ TEST(Limits, ConesAndBoxesBoundWhatTheySay) {
 }
 
 TEST(Limits, ReachConesGiveTheNearestDirection) {
-  Random random;
+  RandomValues random(7);
   const ReachCone cone = diamond();
   int inside = 0;
   for (int i = 0; i < 300; ++i) {
@@ -201,7 +191,7 @@ TEST(Limits, ReachConesGiveTheNearestDirection) {
 
 // Small changes of a rotation that is not far outside give small changes of the nearest one.
 TEST(Limits, ProjectionIsContinuous) {
-  Random random;
+  RandomValues random(7);
   for (const JointMotion& motion : everyMotion()) {
     for (int path = 0; path < 40; ++path) {
       const JointLimit limit = tilted(motion, random);
@@ -219,7 +209,7 @@ TEST(Limits, ProjectionIsContinuous) {
 
 // Turning a little about one of the axes keeps an allowed rotation on the limit's surface, to second order.
 TEST(Limits, AxesAreTangents) {
-  Random random;
+  RandomValues random(7);
   const int expected[] = {3, 0, 1, 1, 3, 2, 2, 3, 3, 0};
   for (const JointMotion& motion : everyMotion()) {
     for (int i = 0; i < 100; ++i) {

@@ -23,7 +23,7 @@ Solved rebuilt(const TwoBone& bones) {
   return {middle, middle + turns.middle * Vec3(bones.end - bones.middle)};
 }
 
-class TwoBoneTest : public testing::Test {
+class TwoBoneTest : public ::testing::Test {
  protected:
   Vec3 vector(double size) {
     std::uniform_real_distribution<> uniform(-size, size);

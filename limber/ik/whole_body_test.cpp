@@ -35,7 +35,7 @@ void operator delete(void* memory, std::size_t) noexcept {
 namespace limber {
 namespace {
 
-class WholeBodyTest : public testing::Test {
+class WholeBodyTest : public ::testing::Test {
  protected:
   void bendLegs(Pose& pose) const {
     for (const std::string side : {"left", "right"}) {

@@ -136,7 +136,8 @@ TEST(PoseAsset, AnUnknownJointIsNamedWithThoseThereAre) {
     editPose(skeleton.skeleton, pose, turned("tail=x:10"));
     FAIL() << "turned a joint that is not there";
   } catch (const Error& error) {
-    EXPECT_THAT(error.what(), testing::AllOf(testing::HasSubstr("'tail'"), testing::HasSubstr("hip, knee, foot")));
+    EXPECT_THAT(error.what(),
+                ::testing::AllOf(::testing::HasSubstr("'tail'"), ::testing::HasSubstr("hip, knee, foot")));
   }
 }
 

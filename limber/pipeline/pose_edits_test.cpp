@@ -8,7 +8,7 @@
 namespace limber {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 template <typename Call>
 std::string errorOf(const Call& call) {
@@ -62,7 +62,8 @@ TEST(PoseFile, HoldsNamedPoses) {
   ASSERT_EQ(poses.size(), 2u);
   EXPECT_EQ(poses[0].name, "wave");
   EXPECT_EQ(poses[0].edits.turns[0].axis, Vec3(0, 1, 0));
-  const auto far = parsePoses(R"({"poses": [{"name": "a", "turn": [{"joint": "b", "axis": [0, 1e308, 0], "degrees": 1}]}]})");
+  const auto far =
+      parsePoses(R"({"poses": [{"name": "a", "turn": [{"joint": "b", "axis": [0, 1e308, 0], "degrees": 1}]}]})");
   EXPECT_EQ(far[0].edits.turns[0].axis, Vec3(0, 1, 0));
   EXPECT_EQ(*poses[0].edits.reaches[0].base, "chest");
   EXPECT_EQ(poses[1].edits.moves[0].offset, Vec3(0, -0.1, 0));

@@ -5,15 +5,13 @@
 #include <gtest/gtest.h>
 
 #include "limber/rigging/testing/shape_meshes.h"
+#include "limber/rigging/testing/sphere_mesh_of.h"
 
 namespace limber {
 
 namespace {
 
-SphereMesh sphereMesh(const TriMesh& mesh) {
-  Progress progress;
-  return SphereMesh::build(mesh, progress);
-}
+using testing::sphereMeshOf;
 
 void expectTree(const HandleTree& tree, std::size_t count) {
   ASSERT_EQ(tree.order.size(), count);
@@ -40,7 +38,7 @@ SphereMeshLevel levelOf(const std::vector<Vec3>& centers, std::vector<VertexPair
 TEST(HandleTree, IsATreeWithParentsFirstAtEveryCount) {
   for (const auto& [name, mesh] : testing::meshCatalogue()) {
     SCOPED_TRACE(name);
-    const SphereMesh spheres = sphereMesh(mesh);
+    const SphereMesh spheres = sphereMeshOf(mesh);
     for (Index count = 1; count <= std::min<Index>(80, mesh.vertexCount()); ++count) {
       expectTree(handleTree(spheres.level(count)), count);
     }
@@ -49,7 +47,7 @@ TEST(HandleTree, IsATreeWithParentsFirstAtEveryCount) {
 }
 
 TEST(HandleTree, UsesOnlyNeighborsWithoutSymmetry) {
-  const SphereMesh spheres = sphereMesh(testing::jittered(testing::blockBiped(1), 0.05f));
+  const SphereMesh spheres = sphereMeshOf(testing::jittered(testing::blockBiped(1), 0.05f));
   ASSERT_FALSE(spheres.mirror());
   const SphereMeshLevel level = spheres.level(40);
   const std::set<VertexPair> edges(level.edges.begin(), level.edges.end());
@@ -61,7 +59,7 @@ TEST(HandleTree, UsesOnlyNeighborsWithoutSymmetry) {
 }
 
 TEST(HandleTree, IsItsOwnMirrorImage) {
-  const SphereMesh spheres = sphereMesh(testing::blockBiped(1));
+  const SphereMesh spheres = sphereMeshOf(testing::blockBiped(1));
   for (Index count = 1; count <= 150; ++count) {
     const SphereMeshLevel level = spheres.level(count);
     const HandleTree tree = handleTree(level);
@@ -114,7 +112,7 @@ TEST(HandleTree, TheRootIsInTheMiddle) {
 
 TEST(HandleTree, LimbsHangTogether) {
   // From every handle in a leg or an arm the way to the root stays in that limb until it leaves it for good.
-  const SphereMesh spheres = sphereMesh(testing::blockBiped(2));
+  const SphereMesh spheres = sphereMeshOf(testing::blockBiped(2));
   const auto limbOf = [](const Vec3& c) {
     if (c.y() < 3.8) return c.x() > 0 ? 1 : 2;
     if (std::abs(c.x()) > 2.2) return c.x() > 0 ? 3 : 4;

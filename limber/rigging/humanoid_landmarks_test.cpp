@@ -3,22 +3,14 @@
 #include <gtest/gtest.h>
 
 #include "limber/rigging/template_embedding.h"
-#include "limber/rigging/testing/capsule_person.h"
+#include "limber/rigging/testing/measured_person.h"
 
 namespace limber {
 
-namespace {
-
-struct Person {
-  testing::CapsulePerson shape = testing::capsulePerson();
-  BodyVolume body = measureBody(shape.mesh);
-  BodyFrame frame = frameAlong(shape.mesh, body, Vec3::UnitY(), Vec3::UnitZ());
-};
-
-}  // namespace
+using testing::MeasuredPerson;
 
 TEST(HumanoidLandmarks, SectionsAreCutOutOfOnePart) {
-  const Person person;
+  const MeasuredPerson person;
   const double y = 0.16;  // of the shins
   const Vec3 seed = person.frame.toBody({0.1, y, 0.01});
   const BodySection shin = sectionAt(person.body, person.frame, seed, Vec3::UnitY(), 0.05);
@@ -31,7 +23,7 @@ TEST(HumanoidLandmarks, SectionsAreCutOutOfOnePart) {
 }
 
 TEST(HumanoidLandmarks, HipsGoWhereLegsPart) {
-  const Person person;
+  const MeasuredPerson person;
   const TemplateSkeleton& skeleton = findTemplate("humanoid");
   const Index hip = *skeleton.find("leftUpperLeg"), knee = *skeleton.find("leftLowerLeg");
   std::vector<Vec3> places;
@@ -50,7 +42,7 @@ TEST(HumanoidLandmarks, HipsGoWhereLegsPart) {
 }
 
 TEST(HumanoidLandmarks, LeavesOtherTemplatesAlone) {
-  const Person person;
+  const MeasuredPerson person;
   const TemplateSkeleton& skeleton = findTemplate("quadruped");
   std::vector<Vec3> places;
   for (const TemplateJoint& joint : skeleton.joints) places.push_back(joint.place);

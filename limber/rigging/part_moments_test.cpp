@@ -16,7 +16,7 @@ struct WeightedPoint {
   double weight;
 };
 
-std::vector<WeightedPoint> randomPoints(int count, std::uint64_t seed) {
+std::vector<WeightedPoint> randomWeightedPoints(int count, std::uint64_t seed) {
   TestRandom random(seed);
   std::vector<WeightedPoint> points;
   for (int i = 0; i < count; ++i) {
@@ -32,7 +32,7 @@ PartMoments momentsOf(const std::vector<WeightedPoint>& points) {
 }
 
 TEST(PartMoments, SumSquaredDistances) {
-  const std::vector<WeightedPoint> points = randomPoints(9, 1);
+  const std::vector<WeightedPoint> points = randomWeightedPoints(9, 1);
   const Vec3 center(0.3, -2, 0.7);
   double sum = 0;
   for (const auto& [point, weight] : points) sum += weight * (point - center).squaredNorm();
@@ -40,7 +40,7 @@ TEST(PartMoments, SumSquaredDistances) {
 }
 
 TEST(PartMoments, MirrorWithTheirPoints) {
-  std::vector<WeightedPoint> points = randomPoints(9, 2);
+  std::vector<WeightedPoint> points = randomWeightedPoints(9, 2);
   const PartMoments moments = momentsOf(points), mirrored = moments.mirrored(), both = moments.withMirrorImage();
   for (WeightedPoint& p : points) p.point.x() *= -1;
   PartMoments sum = momentsOf(points);
@@ -54,7 +54,7 @@ TEST(PartMoments, MirrorWithTheirPoints) {
 
 TEST(PartMoments, TheBoundComesFromTheLeastVariance) {
   for (std::uint64_t seed = 1; seed < 80; ++seed) {
-    const std::vector<WeightedPoint> points = randomPoints(2 + static_cast<int>(seed % 12), seed);
+    const std::vector<WeightedPoint> points = randomWeightedPoints(2 + static_cast<int>(seed % 12), seed);
     const PartMoments moments = momentsOf(points);
     Vec3 mean = Vec3::Zero();
     for (const auto& [point, weight] : points) mean += weight / moments.weight * point;

@@ -6,15 +6,13 @@
 
 #include "limber/core/parallel.h"
 #include "limber/rigging/testing/shape_meshes.h"
+#include "limber/rigging/testing/sphere_mesh_of.h"
 
 namespace limber {
 
 namespace {
 
-SphereMesh sphereMesh(const TriMesh& mesh) {
-  Progress progress;
-  return SphereMesh::build(mesh, progress);
-}
+using testing::sphereMeshOf;
 
 void expectConnected(const SphereMeshLevel& level) {
   std::vector<std::vector<Index>> neighbors(level.spheres.size());
@@ -86,7 +84,7 @@ void expectMirrored(const SphereMesh& spheres, Index count) {
 TEST(SphereMesh, ExactlyAsManySpheresAsAskedForOnEveryKindOfMesh) {
   for (const auto& [name, mesh] : testing::meshCatalogue()) {
     SCOPED_TRACE(name);
-    const SphereMesh spheres = sphereMesh(mesh);
+    const SphereMesh spheres = sphereMeshOf(mesh);
     ASSERT_EQ(spheres.vertexCount(), mesh.vertexCount());
     const Index step = std::max<Index>(1, mesh.vertexCount() / 120);
     for (Index count = 1; count <= mesh.vertexCount(); count += count < 60 ? 1 : step)
@@ -97,7 +95,7 @@ TEST(SphereMesh, ExactlyAsManySpheresAsAskedForOnEveryKindOfMesh) {
 
 TEST(SphereMesh, SymmetricModelsHaveMirroredSpheresAtEveryCount) {
   for (const TriMesh& mesh : {testing::shuffled(testing::blockBiped(1)), testing::ball(2)}) {
-    const SphereMesh spheres = sphereMesh(mesh);
+    const SphereMesh spheres = sphereMeshOf(mesh);
     for (Index count = 1; count <= std::min<Index>(mesh.vertexCount(), 210); ++count) expectMirrored(spheres, count);
     expectMirrored(spheres, mesh.vertexCount());
   }
@@ -110,7 +108,7 @@ TEST(SphereMesh, TwoSidesThatTouchNowhereAreMirroredAtEveryCount) {
   for (Triangle& t : image.triangles) std::swap(t[1], t[2]);
   TriMesh both = testing::joined(half, image);
   for (Vec3f& p : both.positions) p.x() += 3;
-  const SphereMesh spheres = sphereMesh(both);
+  const SphereMesh spheres = sphereMeshOf(both);
   for (Index count = 1; count <= both.vertexCount(); ++count) expectMirrored(spheres, count);
 }
 
@@ -123,7 +121,7 @@ TEST(SphereMesh, HoldingTogetherByOneVertexIsMirroredAtEveryCount) {
     for (int i = 0; i < 9; ++i) mesh.positions.push_back({side * (1 + 0.1f * i * i), 0.3f * i, 0.05f * i * (i - 4)});
     for (Index i = 0; i < 8; ++i) mesh.triangles.push_back({0, first + i, first + i + 1});
   }
-  const SphereMesh spheres = sphereMesh(mesh);
+  const SphereMesh spheres = sphereMeshOf(mesh);
   for (Index count = 1; count <= mesh.vertexCount(); ++count) {
     expectMirrored(spheres, count);
     expectConnected(spheres.level(count));
@@ -133,7 +131,7 @@ TEST(SphereMesh, HoldingTogetherByOneVertexIsMirroredAtEveryCount) {
 TEST(SphereMesh, AFewVerticesWithoutAnImageDoNotBreakSymmetry) {
   TriMesh mesh = testing::blockBiped(2);
   for (int i = 0; i < 3; ++i) mesh.positions[static_cast<std::size_t>(40 * i + 7)] += Vec3f(0.1f, 0.2f, 0.05f);
-  const SphereMesh spheres = sphereMesh(mesh);
+  const SphereMesh spheres = sphereMeshOf(mesh);
   ASSERT_TRUE(spheres.mirror());
   const Index matched = spheres.sequence().initialCount;
   ASSERT_LT(matched, mesh.vertexCount());
@@ -143,7 +141,7 @@ TEST(SphereMesh, AFewVerticesWithoutAnImageDoNotBreakSymmetry) {
 
 TEST(SphereMesh, AllVerticesAreTheirOwnSpheresAtTheFullCount) {
   const TriMesh mesh = testing::shuffled(testing::blockBiped());
-  const SphereMesh spheres = sphereMesh(mesh);
+  const SphereMesh spheres = sphereMeshOf(mesh);
   const SphereMeshLevel level = spheres.level(mesh.vertexCount());
   const std::vector<Index> handles = spheres.vertexHandles(mesh.vertexCount());
   for (Index v = 0; v < mesh.vertexCount(); ++v) {
@@ -155,7 +153,7 @@ TEST(SphereMesh, AllVerticesAreTheirOwnSpheresAtTheFullCount) {
 TEST(SphereMesh, ABallIsOneSphere) {
   TriMesh mesh = testing::ball(3);
   for (Vec3f& p : mesh.positions) p = 2 * p + Vec3f(5, 6, 7);
-  const SphereMeshLevel level = sphereMesh(mesh).level(1);
+  const SphereMeshLevel level = sphereMeshOf(mesh).level(1);
   EXPECT_LT((level.spheres[0].center - Vec3(5, 6, 7)).norm(), 1e-5);
   EXPECT_NEAR(level.spheres[0].radius, 2, 0.05);
   EXPECT_TRUE(level.edges.empty());
@@ -163,7 +161,7 @@ TEST(SphereMesh, ABallIsOneSphere) {
 
 TEST(SphereMesh, SpheresLieInTheLimbs) {
   const TriMesh mesh = testing::blockBiped(2);
-  const SphereMesh spheres = sphereMesh(mesh);
+  const SphereMesh spheres = sphereMeshOf(mesh);
   const SphereMeshLevel level = spheres.level(14);
   std::set<int> limbs;
   for (const Sphere& s : level.spheres) {
@@ -190,7 +188,7 @@ TEST(SphereMesh, SpecksAboutAModelTakeNoHandles) {
     const Vec3 away(1 + 0.1 * (i % 4), 0, 0.3 * (i % 5) - 0.6);
     mesh = testing::joined(mesh, speck, (box.min + box.longestSide() * away).cast<float>());
   }
-  const SphereMesh spheres = sphereMesh(mesh);
+  const SphereMesh spheres = sphereMeshOf(mesh);
   for (const Index count : {3u, 6u, 12u, 20u}) {
     const std::vector<Index> handles = spheres.vertexHandles(count);
     const std::set<Index> ofBody(handles.begin(), handles.begin() + body.vertexCount());
@@ -201,9 +199,9 @@ TEST(SphereMesh, SpecksAboutAModelTakeNoHandles) {
 
 TEST(SphereMesh, FlippedTrianglesMakeNoDifference) {
   TriMesh mesh = testing::blockBiped(1);
-  const SphereMeshLevel level = sphereMesh(mesh).level(20);
+  const SphereMeshLevel level = sphereMeshOf(mesh).level(20);
   for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
-  const SphereMeshLevel flipped = sphereMesh(mesh).level(20);
+  const SphereMeshLevel flipped = sphereMeshOf(mesh).level(20);
   for (std::size_t h = 0; h < 20; ++h) {
     EXPECT_LT((level.spheres[h].center - flipped.spheres[h].center).norm(), 1e-5);
     EXPECT_NEAR(level.spheres[h].radius, flipped.spheres[h].radius, 1e-5);
@@ -212,10 +210,10 @@ TEST(SphereMesh, FlippedTrianglesMakeNoDifference) {
 
 TEST(SphereMesh, ScaleAndPlaceMakeNoDifference) {
   const TriMesh mesh = testing::jittered(testing::ball(2), 0.1f);
-  const SphereMeshLevel level = sphereMesh(mesh).level(12);
+  const SphereMeshLevel level = sphereMeshOf(mesh).level(12);
   TriMesh moved = mesh;
   for (Vec3f& p : moved.positions) p = 1024 * p;
-  const SphereMeshLevel large = sphereMesh(moved).level(12);
+  const SphereMeshLevel large = sphereMeshOf(moved).level(12);
   for (std::size_t h = 0; h < 12; ++h) {
     EXPECT_LT((1024 * level.spheres[h].center - large.spheres[h].center).norm(), 1e-3);
   }
@@ -224,9 +222,9 @@ TEST(SphereMesh, ScaleAndPlaceMakeNoDifference) {
 TEST(SphereMesh, TheNumberOfThreadsMakesNoDifference) {
   const TriMesh mesh = testing::jittered(testing::ball(5), 0.02f);
   setThreadCount(1);
-  const SphereMesh one = sphereMesh(mesh);
+  const SphereMesh one = sphereMeshOf(mesh);
   setThreadCount(4);
-  const SphereMesh four = sphereMesh(mesh);
+  const SphereMesh four = sphereMeshOf(mesh);
   setThreadCount(0);
   ASSERT_EQ(one.sequence().merges.size(), four.sequence().merges.size());
   for (std::size_t i = 0; i < one.sequence().merges.size(); ++i) {
@@ -237,7 +235,7 @@ TEST(SphereMesh, TheNumberOfThreadsMakesNoDifference) {
 
 TEST(SphereMesh, EveryVertexBelongsToTheSphereThatItMergedInto) {
   const TriMesh mesh = testing::blockBiped(1);
-  const SphereMesh spheres = sphereMesh(mesh);
+  const SphereMesh spheres = sphereMeshOf(mesh);
   for (const Index count : {3u, 10u, 11u, 24u, 25u}) {
     const SphereMeshLevel level = spheres.level(count);
     const std::vector<Index> handles = spheres.vertexHandles(count);
@@ -258,7 +256,7 @@ TEST(SphereMesh, EveryVertexBelongsToTheSphereThatItMergedInto) {
 
 TEST(SphereMesh, ErrorsFallFromOneSphereToNone) {
   const TriMesh mesh = testing::blockBiped(1);
-  const SphereMesh spheres = sphereMesh(mesh);
+  const SphereMesh spheres = sphereMeshOf(mesh);
   const std::vector<double> errors = spheres.errors(mesh.vertexCount());
   ASSERT_EQ(errors.size(), mesh.vertexCount() + 1);
   EXPECT_EQ(errors.back(), 0);
@@ -279,7 +277,7 @@ TEST(SphereMesh, ErrorsFallFromOneSphereToNone) {
 }
 
 TEST(SphereMesh, RefusesCountsThatItCannotGive) {
-  const SphereMesh spheres = sphereMesh(testing::octahedron());
+  const SphereMesh spheres = sphereMeshOf(testing::octahedron());
   for (const Index count : {0u, 7u, 1000u}) {
     try {
       spheres.level(count);
@@ -290,7 +288,7 @@ TEST(SphereMesh, RefusesCountsThatItCannotGive) {
     }
     EXPECT_THROW(spheres.vertexHandles(count), Error);
   }
-  EXPECT_THROW(sphereMesh(TriMesh{}), Error);
+  EXPECT_THROW(sphereMeshOf(TriMesh{}), Error);
 }
 
 }  // namespace

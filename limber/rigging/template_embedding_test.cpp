@@ -3,22 +3,14 @@
 #include <gtest/gtest.h>
 
 #include "limber/core/error.h"
-#include "limber/rigging/testing/capsule_person.h"
+#include "limber/rigging/testing/measured_person.h"
 
 namespace limber {
 
-namespace {
-
-struct Person {
-  testing::CapsulePerson shape = testing::capsulePerson();
-  BodyVolume body = measureBody(shape.mesh);
-  BodyFrame frame = frameAlong(shape.mesh, body, Vec3::UnitY(), Vec3::UnitZ());
-};
-
-}  // namespace
+using testing::MeasuredPerson;
 
 TEST(TemplateEmbedding, PutsJointsIntoTheirLimbs) {
-  const Person person;
+  const MeasuredPerson person;
   const TemplateSkeleton& skeleton = findTemplate("humanoid");
   const TemplatePins pins(skeleton.jointCount());
   const TemplateEmbedding embedding = embedTemplate({&skeleton, 1}, person.body, person.frame, pins).front();
@@ -34,7 +26,7 @@ TEST(TemplateEmbedding, PutsJointsIntoTheirLimbs) {
 }
 
 TEST(TemplateEmbedding, KeepsPins) {
-  const Person person;
+  const MeasuredPerson person;
   const TemplateSkeleton& skeleton = findTemplate("humanoid");
   TemplatePins pins(skeleton.jointCount());
   const Vec3 pin(0.2, 0.7, 0.05);
@@ -44,7 +36,7 @@ TEST(TemplateEmbedding, KeepsPins) {
 }
 
 TEST(TemplateEmbedding, CostsMoreInWhatIsNoPerson) {
-  const Person person;
+  const MeasuredPerson person;
   const TemplateSkeleton& skeleton = findTemplate("humanoid");
   const TemplatePins pins(skeleton.jointCount());
   TriMesh sausage;
@@ -56,7 +48,7 @@ TEST(TemplateEmbedding, CostsMoreInWhatIsNoPerson) {
 }
 
 TEST(TemplateEmbedding, RefusesVariantsOfOtherJoints) {
-  const Person person;
+  const MeasuredPerson person;
   const std::vector<TemplateSkeleton> variants = {findTemplate("humanoid"), findTemplate("bird")};
   const TemplatePins pins(variants[0].jointCount());
   EXPECT_THROW(embedTemplate(variants, person.body, person.frame, pins), Error);

@@ -9,7 +9,7 @@
 namespace limber {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 const Ray kRay{{0.1, 0.2, 3}, {0.25, -0.125, -1}};
 

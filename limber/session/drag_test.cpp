@@ -4,31 +4,17 @@
 
 #include "limber/core/error.h"
 #include "limber/ik/rotation.h"
+#include "limber/session/testing/two_armed_body.h"
 
 namespace limber {
 namespace {
 
-// root - trunk - two arms of three joints; the first arm along +X at y = 2.
-Skeleton body(BoneShape shape) {
-  Skeleton skeleton;
-  skeleton.boneShape = shape;
-  const auto add = [&](std::optional<Index> parent, const Vec3& at) {
-    Joint joint;
-    joint.name = "joint_" + std::to_string(skeleton.joints.size());
-    joint.parent = parent;
-    joint.rest.translation = at;
-    skeleton.joints.push_back(joint);
-    return skeleton.jointCount() - 1;
-  };
-  const Index root = add(std::nullopt, {0, 1, 0}), trunk = add(root, {0, 1, 0});
-  for (const double side : {1.0, -1.0}) {
-    const Index shoulder = add(trunk, {0.5 * side, 0, 0}), elbow = add(shoulder, {side, 0, 0.1});
-    add(elbow, {side, 0, 0});
-  }
-  return skeleton;
-}
+using testing::kElbow;
+using testing::kHand;
+using testing::kOtherHand;
+using testing::kShoulder;
+using testing::twoArmedBody;
 
-constexpr Index kShoulder = 2, kElbow = 3, kHand = 4, kOtherHand = 7;
 const Vec3 kView(0, 0, -1), kEye(0, 2, 10);
 
 Ray through(const Vec3& point) {
@@ -44,7 +30,7 @@ DragScene sceneOf(const Skeleton& skeleton, bool ik = false) {
 }
 
 TEST(Drag, MoveSlidesInThePlaneThatFacesTheCamera) {
-  const Skeleton skeleton = body(BoneShape::kSphere);
+  const Skeleton skeleton = twoArmedBody(BoneShape::kSphere);
   const Vec3 hand = at(skeleton, restPose(skeleton), kHand), grip = hand + Vec3(0.05, -0.03, 0), way(-0.4, 0.7, 0);
   Drag drag(sceneOf(skeleton), kHand, DragMode::kMove, through(grip), kView);
   const Pose pose = drag.at(through(grip + way), kView).value();
@@ -53,7 +39,7 @@ TEST(Drag, MoveSlidesInThePlaneThatFacesTheCamera) {
 }
 
 TEST(Drag, ACameraThatWalksPullsTheJointAlong) {
-  const Skeleton skeleton = body(BoneShape::kSphere);
+  const Skeleton skeleton = twoArmedBody(BoneShape::kSphere);
   const Vec3 hand = at(skeleton, restPose(skeleton), kHand), step(0, 0, -0.5);
   Drag drag(sceneOf(skeleton), kHand, DragMode::kMove, through(hand), kView);
   const Ray ray{kEye + step, hand - kEye};
@@ -62,7 +48,7 @@ TEST(Drag, ACameraThatWalksPullsTheJointAlong) {
 
 TEST(Drag, TurnSwingsAboutTheParentRoundTheCamerasAxis) {
   for (const BoneShape shape : {BoneShape::kSphere, BoneShape::kSegment}) {
-    const Skeleton skeleton = body(shape);
+    const Skeleton skeleton = twoArmedBody(shape);
     const Pose rest = restPose(skeleton);
     const Vec3 elbow = at(skeleton, rest, kElbow), hand = at(skeleton, rest, kHand);
     Drag drag(sceneOf(skeleton), kHand, DragMode::kTurn, through(hand), kView);
@@ -77,7 +63,7 @@ TEST(Drag, TurnSwingsAboutTheParentRoundTheCamerasAxis) {
 }
 
 TEST(Drag, ATurnedJointLeavesItsSiblingsAlone) {
-  const Skeleton skeleton = body(BoneShape::kSegment);
+  const Skeleton skeleton = twoArmedBody(BoneShape::kSegment);
   const Pose rest = restPose(skeleton);
   Drag drag(sceneOf(skeleton), kShoulder, DragMode::kTurn, through(at(skeleton, rest, kShoulder)), kView);
   const Pose pose = drag.at(through({0.2, 2.4, 0}), kView).value();
@@ -86,7 +72,7 @@ TEST(Drag, ATurnedJointLeavesItsSiblingsAlone) {
 }
 
 TEST(Drag, ARootRollsUnderThePointer) {
-  const Skeleton skeleton = body(BoneShape::kSphere);
+  const Skeleton skeleton = twoArmedBody(BoneShape::kSphere);
   const Vec3 root(0, 1, 0);
   Drag drag(sceneOf(skeleton), 0, DragMode::kTurn, through(root), kView);
   const Pose pose = drag.at(through(root + Vec3(0.5, 0, 0)), kView).value();
@@ -97,7 +83,7 @@ TEST(Drag, ARootRollsUnderThePointer) {
 }
 
 TEST(Drag, WithInverseKinematicsTheLimbFollowsAndBonesKeepTheirLength) {
-  const Skeleton skeleton = body(BoneShape::kSphere);
+  const Skeleton skeleton = twoArmedBody(BoneShape::kSphere);
   const Pose rest = restPose(skeleton);
   const Vec3 hand = at(skeleton, rest, kHand), goal = hand + Vec3(-0.8, 0.6, 0);
   Drag drag(sceneOf(skeleton, true), kHand, DragMode::kMove, through(hand), kView);
@@ -111,7 +97,7 @@ TEST(Drag, WithInverseKinematicsTheLimbFollowsAndBonesKeepTheirLength) {
 }
 
 TEST(Drag, HeldJointsStayWhereTheyAreWhenTheBodyMoves) {
-  const Skeleton skeleton = body(BoneShape::kSphere);
+  const Skeleton skeleton = twoArmedBody(BoneShape::kSphere);
   const Pose rest = restPose(skeleton);
   DragScene scene = sceneOf(skeleton, true);
   // Bent a little, since a stretched arm cannot follow away.
@@ -125,7 +111,7 @@ TEST(Drag, HeldJointsStayWhereTheyAreWhenTheBodyMoves) {
 }
 
 TEST(Drag, OnlyTheLastPlaceOfThePointerCounts) {
-  const Skeleton skeleton = body(BoneShape::kSphere);
+  const Skeleton skeleton = twoArmedBody(BoneShape::kSphere);
   const Vec3 hand = at(skeleton, restPose(skeleton), kHand), goal = hand + Vec3(-0.7, -0.2, 0);
   Drag straight(sceneOf(skeleton, true), kHand, DragMode::kMove, through(hand), kView);
   Drag about(sceneOf(skeleton, true), kHand, DragMode::kMove, through(hand), kView);
@@ -135,7 +121,7 @@ TEST(Drag, OnlyTheLastPlaceOfThePointerCounts) {
 }
 
 TEST(Drag, RaysThatMissThePlaneChangeNothing) {
-  const Skeleton skeleton = body(BoneShape::kSphere);
+  const Skeleton skeleton = twoArmedBody(BoneShape::kSphere);
   Drag drag(sceneOf(skeleton), kHand, DragMode::kMove, through({2.5, 2, 0.1}), kView);
   EXPECT_FALSE(drag.at({kEye, {1, 0, 0}}, kView));
   EXPECT_FALSE(drag.at({kEye, {0, 0, 1}}, kView));

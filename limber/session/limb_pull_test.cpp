@@ -4,29 +4,19 @@
 
 #include <gtest/gtest.h>
 
+#include "limber/session/testing/two_armed_body.h"
+
 namespace limber {
 namespace {
 
-// root - trunk - two arms of three joints, hands last.
-Skeleton body() {
-  Skeleton skeleton;
-  const auto add = [&](std::optional<Index> parent, const Vec3& at) {
-    Joint joint;
-    joint.name = "joint_" + std::to_string(skeleton.joints.size());
-    joint.parent = parent;
-    joint.rest.translation = at;
-    skeleton.joints.push_back(joint);
-    return skeleton.jointCount() - 1;
-  };
-  const Index trunk = add(add(std::nullopt, {0, 1, 0}), {0, 1, 0});
-  for (const double side : {1.0, -1.0}) add(add(add(trunk, {0.5 * side, 0, 0}), {side, 0, 0.1}), {side, 0, 0});
-  return skeleton;
-}
-
-constexpr Index kShoulder = 2, kElbow = 3, kHand = 4, kOtherHand = 7;
+using testing::kElbow;
+using testing::kHand;
+using testing::kOtherHand;
+using testing::kShoulder;
+using testing::twoArmedBody;
 
 TEST(LimbBase, GoesUpToTheNextBranch) {
-  const Skeleton skeleton = body();
+  const Skeleton skeleton = twoArmedBody(BoneShape::kSphere);
   EXPECT_EQ(limbBase(skeleton, kHand), kShoulder);
   EXPECT_EQ(limbBase(skeleton, kElbow), kShoulder);
   EXPECT_EQ(limbBase(skeleton, kShoulder), Index{1});  // the trunk, though it branches: something has to turn
@@ -35,7 +25,7 @@ TEST(LimbBase, GoesUpToTheNextBranch) {
 }
 
 TEST(LimbPull, BringsEveryJointThatHasALimb) {
-  const Skeleton skeleton = body();
+  const Skeleton skeleton = twoArmedBody(BoneShape::kSphere);
   std::array<HeldTarget, 3> targets = {{{kHand, {1.2, 2.9, 0.2}}, {0, {5, 5, 5}}, {kOtherHand, {-1.4, 1.2, -0.1}}}};
   LimbPull pull(skeleton, targets, nullptr);
   ASSERT_TRUE(pull.any());
@@ -51,7 +41,7 @@ TEST(LimbPull, BringsEveryJointThatHasALimb) {
 }
 
 TEST(LimbPull, WithoutALimbNothingMoves) {
-  const Skeleton skeleton = body();
+  const Skeleton skeleton = twoArmedBody(BoneShape::kSphere);
   const std::array<HeldTarget, 1> targets = {{{0, {5, 5, 5}}}};
   LimbPull pull(skeleton, targets, nullptr);
   EXPECT_FALSE(pull.any());

@@ -33,7 +33,7 @@ void run(Session& session, const Command& command) {
   session.run(command, progress);
 }
 
-const Vec3 kView(0, 0, -1), kEye(0, 1, 10);
+const Vec3 kForward(0, 0, -1), kCamera(0, 1, 10);
 
 Vec3 jointAt(const Session& session, Index joint) {
   return poseGlobals(session.state().rig->skeleton(), session.state().pose)[joint].translation();
@@ -46,8 +46,9 @@ Index lastJoint(const Session& session) {
 
 void drag(Session& session, Index joint, DragMode mode, const Vec3& way) {
   const Vec3 from = jointAt(session, joint);
-  run(session, BeginDrag{session.state().rig->skeleton().joints[joint].name, mode, {kEye, from - kEye}, kView});
-  for (const double part : {0.3, 0.8, 1.0}) run(session, UpdateDrag{{kEye, from + part * way - kEye}, kView});
+  run(session,
+      BeginDrag{session.state().rig->skeleton().joints[joint].name, mode, {kCamera, from - kCamera}, kForward});
+  for (const double part : {0.3, 0.8, 1.0}) run(session, UpdateDrag{{kCamera, from + part * way - kCamera}, kForward});
   run(session, EndDrag{});
 }
 
@@ -92,11 +93,12 @@ TEST(Session, ACancelledDragNeverHappened) {
   const Pose before = session.state().pose;
   const std::size_t recorded = session.record().size();
   const std::string_view undo = session.undoName();
-  run(session, BeginDrag{session.state().rig->skeleton().joints[3].name, DragMode::kMove, {kEye, kView}, kView});
+  run(session,
+      BeginDrag{session.state().rig->skeleton().joints[3].name, DragMode::kMove, {kCamera, kForward}, kForward});
   EXPECT_EQ(session.draggedJoint(), Index{3});
   EXPECT_THROW(run(session, Undo{}), Error);
   EXPECT_THROW(run(session, SetHandles{8}), Error);
-  run(session, UpdateDrag{{kEye, kView + Vec3(0.1, 0, 0)}, kView});
+  run(session, UpdateDrag{{kCamera, kForward + Vec3(0.1, 0, 0)}, kForward});
   EXPECT_FALSE(samePose(session.state().pose, before));
   run(session, CancelDrag{});
   EXPECT_TRUE(samePose(session.state().pose, before));
@@ -137,7 +139,8 @@ TEST(Session, FailuresAndCancellationLeaveEverythingAsItWas) {
   for (const Command& bad : std::vector<Command>{
            SetHandles{0}, SetHandles{1000000}, ChooseMethods{"magic", "bone-heat"}, OpenSample{"unicorn"},
            ResetJoint{"no such joint"}, TurnJoint{"no such joint", Vec3::UnitX(), 10}, SetLimits{"{"},
-           BeginDrag{session.state().rig->skeleton().joints[1].name, DragMode::kMove, {kEye, Vec3::Zero()}, kView}}) {
+           BeginDrag{
+               session.state().rig->skeleton().joints[1].name, DragMode::kMove, {kCamera, Vec3::Zero()}, kForward}}) {
     EXPECT_THROW(run(session, bad), Error) << commandName(bad);
   }
   Progress cancelled;
@@ -161,7 +164,7 @@ TEST(Session, IkPullsTheLimbAndTargetsHold) {
   ASSERT_NE(hand, kNoIndex);
   run(session, SetIk{true});
   const Vec3 toBase = jointAt(session, *limbBase(skeleton, hand)) - jointAt(session, hand);
-  Vec3 way = 0.2 * toBase + 0.2 * toBase.norm() * kView.cross(toBase).normalized();
+  Vec3 way = 0.2 * toBase + 0.2 * toBase.norm() * kForward.cross(toBase).normalized();
   way.z() = 0;
   const Vec3 goal = jointAt(session, hand) + way;
   drag(session, hand, DragMode::kMove, way);
@@ -223,9 +226,9 @@ std::size_t tellStory(Session& session) {
   tell(OpenFile{"biped.glb"});
   tell(SetHandles{12});
   tell(SetHandles{24});
-  tell(BeginDrag{joint(0), DragMode::kMove, {kEye, kView}, kView});
-  tell(UpdateDrag{{kEye, Vec3(0.1, 0, -1)}, kView});
-  tell(UpdateDrag{{kEye, Vec3(0.03, 0.02, -1)}, kView});
+  tell(BeginDrag{joint(0), DragMode::kMove, {kCamera, kForward}, kForward});
+  tell(UpdateDrag{{kCamera, Vec3(0.1, 0, -1)}, kForward});
+  tell(UpdateDrag{{kCamera, Vec3(0.03, 0.02, -1)}, kForward});
   tell(EndDrag{});
   tell(TurnJoint{joint(3), Vec3(1, 1, 0), 35});
   tell(SetIk{true});
@@ -233,7 +236,7 @@ std::size_t tellStory(Session& session) {
   tell(MoveJoint{joint(0), Vec3(0, 0.05, 0)});
   tell(Undo{});
   tell(Redo{});
-  tell(BeginDrag{joint(8), DragMode::kTurn, {kEye, kView}, kView});
+  tell(BeginDrag{joint(8), DragMode::kTurn, {kCamera, kForward}, kForward});
   tell(CancelDrag{});
   tell(SetHandles{30});
   tell(MirrorPose{MirrorFrom::kLeft});
@@ -301,11 +304,11 @@ TEST(Session, LimitsBendWhatIsTurned) {
 TEST(Session, PickFindsHandlesBeforeTheSurface) {
   const Session session = opened();
   const Vec3 head = jointAt(session, 1);
-  const auto handle = session.pick({kEye, head - kEye}, 0.01);
+  const auto handle = session.pick({kCamera, head - kCamera}, 0.01);
   ASSERT_TRUE(handle);
   EXPECT_TRUE(handle->onHandle);
-  EXPECT_FALSE(session.pick({kEye, Vec3(0, 1, 0.1)}, 0.01));
-  EXPECT_THROW(session.pick({kEye, Vec3::Zero()}, 0.01), Error);
+  EXPECT_FALSE(session.pick({kCamera, Vec3(0, 1, 0.1)}, 0.01));
+  EXPECT_THROW(session.pick({kCamera, Vec3::Zero()}, 0.01), Error);
 }
 
 TEST(Session, ExportsThePosedSurface) {

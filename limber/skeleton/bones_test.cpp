@@ -7,7 +7,8 @@
 namespace limber {
 namespace {
 
-Joint joint(const char* name, std::optional<Index> parent, const Vec3& at, const Quat& rotation = Quat::Identity()) {
+Joint turnedJoint(const char* name, std::optional<Index> parent, const Vec3& at,
+                  const Quat& rotation = Quat::Identity()) {
   return {name, parent, {at, rotation, Vec3::Ones()}, 0};
 }
 
@@ -15,18 +16,19 @@ Joint joint(const char* name, std::optional<Index> parent, const Vec3& at, const
 Skeleton drawnAlongY() {
   const Quat down(Eigen::AngleAxisd(kPi, Vec3::UnitX())), side(Eigen::AngleAxisd(-kPi / 2, Vec3::UnitZ()));
   Skeleton s;
-  s.joints = {joint("hips", std::nullopt, {0, 1, 0}),   joint("spine", 0, {0, 0.2, 0}),
-              joint("chest", 1, {0, 0.2, 0}),           joint("head", 2, {0, 0.3, 0}),
-              joint("arm", 2, {0.1, 0.2, 0}, side),     joint("forearm", 4, {0, 0.25, 0}),
-              joint("thigh", 0, {0.1, -0.05, 0}, down), joint("shin", 6, {0, 0.4, 0})};
+  s.joints = {turnedJoint("hips", std::nullopt, {0, 1, 0}),   turnedJoint("spine", 0, {0, 0.2, 0}),
+              turnedJoint("chest", 1, {0, 0.2, 0}),           turnedJoint("head", 2, {0, 0.3, 0}),
+              turnedJoint("arm", 2, {0.1, 0.2, 0}, side),     turnedJoint("forearm", 4, {0, 0.25, 0}),
+              turnedJoint("thigh", 0, {0.1, -0.05, 0}, down), turnedJoint("shin", 6, {0, 0.4, 0})};
   return s;
 }
 
 // Joints without rotation, as many tools write them.
 Skeleton drawnWithoutRotations() {
   Skeleton s;
-  s.joints = {joint("hips", std::nullopt, {0, 1, 0}), joint("spine", 0, {0, 0.2, 0}), joint("head", 1, {0, 0, 0.2}),
-              joint("thigh", 0, {0.1, -0.1, 0}), joint("shin", 3, {0, -0.4, 0})};
+  s.joints = {turnedJoint("hips", std::nullopt, {0, 1, 0}), turnedJoint("spine", 0, {0, 0.2, 0}),
+              turnedJoint("head", 1, {0, 0, 0.2}), turnedJoint("thigh", 0, {0.1, -0.1, 0}),
+              turnedJoint("shin", 3, {0, -0.4, 0})};
   return s;
 }
 
@@ -57,7 +59,7 @@ TEST(BonesOf, LeafFollowsTheAxisAsLongAsItsParentIsFar) {
 
 TEST(BonesOf, LeafFarFromItsParentIsCutShort) {
   Skeleton s = drawnAlongY();
-  s.joints.push_back(joint("control", 0, {0, 0, 20}));
+  s.joints.push_back(turnedJoint("control", 0, {0, 0, 20}));
   // Single children are 0.2, 0.25 and 0.4 away.
   expectBone(s, "control", {0, 1, 20}, {0, 1 + 2.5 * 0.25, 20});
 }
@@ -78,21 +80,22 @@ TEST(BonesOf, WithoutACommonAxisThereIsABoneToEachChild) {
 
 TEST(BonesOf, JointsThatAllStandAlikeHaveNoAxis) {
   Skeleton s;
-  s.joints = {joint("root", std::nullopt, {0, 1, 0}), joint("hip", 0, {0.1, 0, 0}), joint("foot", 1, {0, -0.5, 0}),
-              joint("tail", 0, {0, 0, -0.2}), joint("tip", 0, {0, 0.3, 0})};
+  s.joints = {turnedJoint("root", std::nullopt, {0, 1, 0}), turnedJoint("hip", 0, {0.1, 0, 0}),
+              turnedJoint("foot", 1, {0, -0.5, 0}), turnedJoint("tail", 0, {0, 0, -0.2}),
+              turnedJoint("tip", 0, {0, 0.3, 0})};
   EXPECT_EQ(bonesOfJoint(s, "root").size(), 3u);
   expectBone(s, "tail", {0, 1, -0.2}, {0, 1, -0.4});
 }
 
 TEST(BonesOf, LoneJointIsAPoint) {
   Skeleton s;
-  s.joints = {joint("only", std::nullopt, {1, 2, 3})};
+  s.joints = {turnedJoint("only", std::nullopt, {1, 2, 3})};
   expectBone(s, "only", {1, 2, 3}, {1, 2, 3});
 }
 
 TEST(BonesOf, JointOnItsOnlyChildHasNone) {
   Skeleton s = drawnWithoutRotations();
-  s.joints.push_back(joint("end", 4, {0, 0, 0}));
+  s.joints.push_back(turnedJoint("end", 4, {0, 0, 0}));
   EXPECT_TRUE(bonesOfJoint(s, "shin").empty());
 }
 

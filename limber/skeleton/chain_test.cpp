@@ -7,7 +7,7 @@
 namespace limber {
 namespace {
 
-using testing::ElementsAre;
+using ::testing::ElementsAre;
 
 // A trunk 0-1-2 that forks at 2 into 3-4 and 5-6-7, and another root 8.
 Skeleton forked() {

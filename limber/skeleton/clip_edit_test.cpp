@@ -6,14 +6,12 @@
 #include <random>
 
 #include "limber/core/error.h"
+#include "random_values.h"
 
 namespace limber {
 namespace {
 
-Quat randomRotation(std::mt19937& random) {
-  std::normal_distribution<double> normal;
-  return Quat(normal(random), normal(random), normal(random), normal(random)).normalized();
-}
+using testing::randomRotation;
 
 Skeleton chain(Index count) {
   Skeleton skeleton;

@@ -8,11 +8,11 @@
 namespace limber {
 namespace {
 
-using testing::AllOf;
-using testing::Contains;
-using testing::IsSupersetOf;
-using testing::Not;
-using testing::Pair;
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::IsSupersetOf;
+using ::testing::Not;
+using ::testing::Pair;
 
 // "hips(spine(head) legL(footL))": names with their children in brackets.
 Skeleton parse(const std::string& text) {
@@ -100,8 +100,8 @@ TEST(HumanoidNames, LinksBetweenHipsAndLegsPlayNothing) {
         "Hips(LHipJoint(LeftHip(LeftKnee(LeftAnkle))),RHipJoint(RightHip(RightKnee)),lowerback(Chest(Neck(Head))))"}) {
     const auto bones = bonesByName(text);
     EXPECT_THAT(bones, Contains(Pair("hips", "Hips")));
-    EXPECT_THAT(bones.at("leftUpperLeg"), testing::StartsWith("Left"));
-    EXPECT_THAT(bones.at("rightUpperLeg"), testing::StartsWith("Right"));
+    EXPECT_THAT(bones.at("leftUpperLeg"), ::testing::StartsWith("Left"));
+    EXPECT_THAT(bones.at("rightUpperLeg"), ::testing::StartsWith("Right"));
   }
 }
 
@@ -120,8 +120,8 @@ TEST(HumanoidNames, HelpersPlayNothing) {
       "ball_l(ball_leaf_l)),ik_foot_l)),thigh_r(calf_r)),FootTarget.L,PoleTarget.L,handslot.l)");
   EXPECT_THAT(bones, IsSupersetOf(pairs({{"hips", "pelvis"}, {"leftLowerLeg", "calf_l"}, {"leftToes", "ball_l"}})));
   for (const auto& [bone, name] : bones) {
-    EXPECT_THAT(name, AllOf(Not(testing::HasSubstr("twist")), Not(testing::HasSubstr("leaf")),
-                            Not(testing::HasSubstr("Target")), Not(testing::HasSubstr("ik_"))))
+    EXPECT_THAT(name, AllOf(Not(::testing::HasSubstr("twist")), Not(::testing::HasSubstr("leaf")),
+                            Not(::testing::HasSubstr("Target")), Not(::testing::HasSubstr("ik_"))))
         << bone;
   }
 }
@@ -176,7 +176,7 @@ TEST(HumanoidNames, AnimalsLegsAreNoPeoples) {
   const auto bones = bonesByName(
       "hips(spine_1(front_leg_upper_l(front_leg_lower_l(front_leg_foot_l)),head),"
       "back_leg_upper_l(back_leg_lower_l(back_leg_foot_l)),BackLeg.L,FrontUpperLeg.R)");
-  for (const auto& [bone, name] : bones) EXPECT_THAT(bone, Not(testing::HasSubstr("Leg"))) << name;
+  for (const auto& [bone, name] : bones) EXPECT_THAT(bone, Not(::testing::HasSubstr("Leg"))) << name;
 }
 
 TEST(HumanoidNames, AmbiguousNamesAreLessSure) {

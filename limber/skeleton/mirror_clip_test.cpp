@@ -4,13 +4,12 @@
 
 #include <random>
 
+#include "random_values.h"
+
 namespace limber {
 namespace {
 
-Quat randomRotation(std::mt19937& random) {
-  std::normal_distribution<double> normal;
-  return Quat(normal(random), normal(random), normal(random), normal(random)).normalized();
-}
+using testing::randomRotation;
 
 // A symmetric tree (about X = 0.3) whose joints have axes of their own on each side, as rigs do. `names` gives the two
 // sides' names of a joint.

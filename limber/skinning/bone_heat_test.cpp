@@ -10,11 +10,13 @@
 #include "limber/core/parallel.h"
 #include "limber/mesh/components.h"
 #include "limber/mesh/testing/shapes.h"
+#include "warning_kinds.h"
 
 namespace limber {
 namespace {
 
 using testing::catalogue;
+using testing::countOf;
 using testing::NamedMesh;
 
 Bone segment(Index joint, const Vec3& a, const Vec3& b) {
@@ -42,13 +44,6 @@ double weightOf(const SkinWeights& weights, Index vertex, Index joint) {
 WeightResult weightsOf(const TriMesh& mesh, std::span<const Bone> bones, Index maxInfluences = 4) {
   Progress progress;
   return boneHeatWeights(mesh, bones, {maxInfluences}, progress);
-}
-
-std::size_t countOf(const Warnings& warnings, std::string_view kind) {
-  for (const Warning& warning : warnings.items()) {
-    if (warning.kind == kind) return warning.count;
-  }
-  return 0;
 }
 
 // What SkinWeights promises.

@@ -19,7 +19,7 @@
 namespace limber {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 struct Scene {
   std::vector<Vec3f> positions, normals;
@@ -166,7 +166,7 @@ struct Case {
   Maps kind;
 };
 
-class DeformerTest : public testing::TestWithParam<Case> {
+class DeformerTest : public ::testing::TestWithParam<Case> {
  protected:
   Scene scene() const { return randomScene(GetParam().vertices, GetParam().slots, GetParam().kind); }
 };
@@ -232,13 +232,13 @@ TEST_P(DeformerTest, BothBuildsOfTheInnerLoopsGiveTheSameBits) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, DeformerTest,
-                         testing::Values(Case{1, 4, Maps::kRigid}, Case{7, 4, Maps::kRigid}, Case{400, 4, Maps::kRigid},
-                                         Case{64, 1, Maps::kRigid}, Case{65, 3, Maps::kRigid},
-                                         Case{63, 8, Maps::kRigid}, Case{200, 4, Maps::kScaled},
-                                         Case{50, 6, Maps::kScaled}, Case{200, 4, Maps::kSheared},
-                                         Case{61, 2, Maps::kSheared}));
+                         ::testing::Values(Case{1, 4, Maps::kRigid}, Case{7, 4, Maps::kRigid},
+                                           Case{400, 4, Maps::kRigid}, Case{64, 1, Maps::kRigid},
+                                           Case{65, 3, Maps::kRigid}, Case{63, 8, Maps::kRigid},
+                                           Case{200, 4, Maps::kScaled}, Case{50, 6, Maps::kScaled},
+                                           Case{200, 4, Maps::kSheared}, Case{61, 2, Maps::kSheared}));
 
-class EveryDeformer : public testing::TestWithParam<std::string_view> {};
+class EveryDeformer : public ::testing::TestWithParam<std::string_view> {};
 
 std::vector<std::uint32_t> bitsOf(std::span<const Vec3f> vectors) {
   std::vector<std::uint32_t> bits;
@@ -338,7 +338,7 @@ TEST_P(EveryDeformer, SizesThatDoNotMatchAreRefused) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, EveryDeformer,
-                         testing::Values("linear-blend", "dual-quaternion", "centers-of-rotation"));
+                         ::testing::Values("linear-blend", "dual-quaternion", "centers-of-rotation"));
 
 // A tube along x, its far half twisted about x: the classic case that tells the two apart.
 Scene twistedMiddle(double angle) {

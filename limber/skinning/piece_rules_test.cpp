@@ -6,9 +6,12 @@
 #include "limber/mesh/components.h"
 #include "limber/mesh/testing/shapes.h"
 #include "limber/skinning/bone_heat.h"
+#include "warning_kinds.h"
 
 namespace limber {
 namespace {
+
+using testing::countOf;
 
 TriMesh tubeAt(float x, float length, float thickness = 0.5f) {
   return testing::moved(testing::tube(10, 9, true), {length, thickness, thickness}, {x, 0, 0});
@@ -37,13 +40,6 @@ WeightResult heat(const TriMesh& mesh, std::span<const Bone> bones, bool rules =
   BoneHeatOptions options;
   options.pieceRules = rules;
   return boneHeatWeightsWith(options, mesh, bones, {}, progress);
-}
-
-std::size_t countOf(const Warnings& warnings, std::string_view kind) {
-  for (const Warning& warning : warnings.items()) {
-    if (warning.kind == kind) return warning.count;
-  }
-  return 0;
 }
 
 // The joint that the vertices begin <= v < end follow alone, if it is one.

@@ -1,0 +1,16 @@
+// The capsule person with what fitting a template measures of it first. Not installed.
+#pragma once
+
+#include "limber/rigging/body_frame.h"
+#include "limber/rigging/body_volume.h"
+#include "limber/rigging/testing/capsule_person.h"
+
+namespace limber::testing {
+
+struct MeasuredPerson {
+  CapsulePerson shape = capsulePerson();
+  BodyVolume body = measureBody(shape.mesh);
+  BodyFrame frame = frameAlong(shape.mesh, body, Vec3::UnitY(), Vec3::UnitZ());
+};
+
+}  // namespace limber::testing
