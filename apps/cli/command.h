@@ -22,7 +22,8 @@ void addConvertCommand(CLI::App& program);
 void addSessionCommand(CLI::App& program);
 void addRetargetCommand(CLI::App& program);
 void addAnimateCommand(CLI::App& program);
-void addMotionEvaluation(CLI::App& evaluate);  // a subcommand of evaluate
+void addMotionEvaluation(CLI::App& evaluate);  // subcommands of evaluate
+void addRetargetingEvaluation(CLI::App& evaluate);
 
 // Options that most commands have.
 struct Common {

@@ -238,6 +238,7 @@ void addEvaluateCommand(CLI::App& program) {
   addSkinning(*evaluate);
   addIk(*evaluate);
   addMotionEvaluation(*evaluate);
+  addRetargetingEvaluation(*evaluate);
 }
 
 }  // namespace limber::cli

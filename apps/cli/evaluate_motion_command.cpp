@@ -4,7 +4,8 @@
 #include "command.h"
 #include "limber/asset/motion_io.h"
 #include "limber/core/file.h"
-#include "limber/evaluate/motion_metrics.h"
+#include "limber/evaluate/retarget_table.h"
+#include "progress_line.h"
 
 namespace limber::cli {
 
@@ -69,7 +70,54 @@ void run(const Options& options) {
   }
 }
 
+struct MatrixOptions {
+  std::vector<std::string> motions, characters;
+  RetargetTrial trial;
+  std::string output = "-", each;
+  Common common;
+};
+
+void runMatrix(const MatrixOptions& options) {
+  options.common.apply();
+  checkOutput(options.output, {".md"});
+  RetargetTrial trial = options.trial;
+  trial.motions.assign(options.motions.begin(), options.motions.end());
+  trial.characters.assign(options.characters.begin(), options.characters.end());
+  for (const std::string& method : trial.methods) findRetargetMethod(method);
+  TerminalProgress progress(options.common.quiet);
+  Warnings skipped;
+  const std::vector<RetargetScore> scores = scoreRetargeting(trial, *progress, skipped);
+  if (!options.each.empty()) writeText(options.each, retargetScoresTsv(scores));
+  writeText(options.output, retargetMethodTable(scores));
+  printWarnings(skipped, options.common.quiet);
+}
+
 }  // namespace
+
+void addRetargetingEvaluation(CLI::App& evaluate) {
+  auto options = std::make_shared<MatrixOptions>();
+  CLI::App* command =
+      evaluate.add_subcommand("retargeting", "Run the retargeting methods over motions and characters, and compare");
+  command->add_option("--motion", options->motions, "files with motions")->required()->type_name("FILE");
+  command->add_option("--character", options->characters, "rigged characters")->required()->type_name("FILE");
+  command->add_option("--method", options->trial.methods, "only these methods; limber retarget --help lists them")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
+  command->add_option("--most-frames", options->trial.mostFrames, "of each clip")
+      ->check(CLI::Range(5, 1000000).description(""))
+      ->type_name("N")
+      ->capture_default_str();
+  command->add_option("-o,--output", options->output, "the table to write, in Markdown; - is standard output")
+      ->type_name("FILE")
+      ->capture_default_str();
+  command->add_option("--each", options->each, "write the figures of each pair, tab separated")->type_name("FILE");
+  options->common.addTo(*command);
+  command->footer(
+      "The measures are those of limber evaluate motion: means over all pairs of a clip and a character, the worst in\n"
+      "brackets.\n"
+      "\nExample:\n  limber evaluate retargeting --motion motions/*.bvh --character people/*.glb");
+  command->callback([options] { runMatrix(*options); });
+}
 
 void addMotionEvaluation(CLI::App& evaluate) {
   auto options = std::make_shared<Options>();

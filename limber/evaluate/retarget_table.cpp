@@ -1,0 +1,154 @@
+#include "limber/evaluate/retarget_table.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "limber/asset/motion_io.h"
+
+namespace limber {
+
+namespace {
+
+struct Named {
+  std::string name;
+  Skeleton skeleton;
+};
+
+std::vector<Named> readCharacters(std::span<const std::filesystem::path> files, Warnings& skipped) {
+  std::vector<Named> characters;
+  for (const std::filesystem::path& file : files) {
+    try {
+      characters.push_back({file.stem().string(), readMotion(file).skeleton});
+    } catch (const Error& error) {
+      skipped.add("unreadable", "characters that cannot be read left out", error.what());
+    }
+  }
+  return characters;
+}
+
+class Scorer {
+ public:
+  Scorer(const RetargetTrial& trial, Warnings& skipped) : trial_(trial), skipped_(skipped) {
+    for (const RetargetMethod& method : retargetMethods()) {
+      if (trial.methods.empty()) methods_.push_back(&method);
+    }
+    for (const std::string& name : trial.methods) methods_.push_back(&findRetargetMethod(name));
+    characters_ = readCharacters(trial.characters, skipped);
+  }
+
+  void score(const std::filesystem::path& file, std::vector<RetargetScore>& scores) const {
+    const Motion motion = readMotion(file);
+    for (const Clip& clip : motion.clips) {
+      PoseSequence source = sampleFrames(motion.skeleton, clip, frameRateOf(clip));
+      if (source.poses.size() > trial_.mostFrames) source.poses.resize(trial_.mostFrames);
+      if (source.poses.size() < 5) {
+        skipped_.add("short", "clips of less than 5 frames left out", clip.name);
+        continue;
+      }
+      const std::string name = motion.clips.size() == 1 ? motion.name : motion.name + ":" + clip.name;
+      for (const Named& character : characters_) scoreOn(motion.skeleton, source, name, character, scores);
+    }
+  }
+
+ private:
+  void scoreOn(const Skeleton& skeleton, const PoseSequence& source, const std::string& motion, const Named& character,
+               std::vector<RetargetScore>& scores) const {
+    try {
+      const RetargetSetup setup(skeleton, character.skeleton, matchSkeletons(skeleton, character.skeleton), {},
+                                &source);
+      for (const RetargetMethod* method : methods_) {
+        const double start = secondsNow();
+        const PoseSequence result = retargetFrames(*method, setup, source);
+        const double seconds = secondsNow() - start;
+        const double rate = seconds > 0 ? static_cast<double>(source.poses.size()) / seconds : 0;
+        scores.push_back(
+            {motion, character.name, std::string(method->name), measureMotion(setup, source, result), rate});
+      }
+    } catch (const Error& error) {
+      skipped_.add("unmatched", "pairs that cannot be compared left out",
+                   fmt::format("{} on {}: {}", motion, character.name, error.message()));
+    }
+  }
+
+  const RetargetTrial& trial_;
+  Warnings& skipped_;
+  std::vector<const RetargetMethod*> methods_;
+  std::vector<Named> characters_;
+};
+
+// Mean and worst of one measure.
+struct Summary {
+  double sum = 0, worst = 0, count = 0;
+  void add(double value) {
+    sum += value;
+    worst = std::max(worst, value);
+    ++count;
+  }
+  std::string text(int digits) const { return fmt::format("{:.{}f} ({:.{}f})", sum / count, digits, worst, digits); }
+};
+
+}  // namespace
+
+std::vector<RetargetScore> scoreRetargeting(const RetargetTrial& trial, Progress& progress, Warnings& skipped) {
+  std::vector<RetargetScore> scores;
+  const Scorer scorer(trial, skipped);
+  progress.stage("retarget");
+  for (std::size_t i = 0; i < trial.motions.size(); ++i) {
+    progress.update(static_cast<double>(i) / static_cast<double>(trial.motions.size()));
+    try {
+      scorer.score(trial.motions[i], scores);
+    } catch (const Error& error) {
+      if (error.code() == ErrorCode::kCancelled) throw;
+      skipped.add("unreadable-motions", "motions that cannot be read left out", error.what());
+    }
+  }
+  progress.finish();
+  return scores;
+}
+
+std::string retargetMethodTable(std::span<const RetargetScore> scores) {
+  std::vector<std::string> methods;
+  for (const RetargetScore& score : scores) {
+    if (std::find(methods.begin(), methods.end(), score.method) == methods.end()) methods.push_back(score.method);
+  }
+  std::string table =
+      "| method | bones, degrees | hands and feet, % of the limb | sliding, heights/s | of the source "
+      "| below ground, mm of 1.7 m | jerk, times the source's | contacts kept, % | frames/s |\n"
+      "|---|---|---|---|---|---|---|---|---|\n";
+  for (const std::string& method : methods) {
+    Summary bones, ends, sliding, source, depth, jerk, contacts, rate;
+    for (const RetargetScore& score : scores) {
+      if (score.method != method) continue;
+      const MotionMetrics& m = score.metrics;
+      bones.add(m.boneDirection);
+      ends.add(100 * m.endEffector);
+      sliding.add(m.sliding);
+      source.add(m.sourceSliding);
+      depth.add(1700 * m.penetration);
+      jerk.add(m.jerk);
+      contacts.add(100 * m.contactAgreement);
+      rate.add(score.framesPerSecond);
+    }
+    table += fmt::format("| {} | {} | {} | {} | {} | {} | {} | {:.1f} | {:.0f} |\n", method, bones.text(1),
+                         ends.text(1), sliding.text(3), source.text(3), depth.text(1), jerk.text(2),
+                         contacts.sum / contacts.count, rate.sum / rate.count);
+  }
+  return table;
+}
+
+std::string retargetScoresTsv(std::span<const RetargetScore> scores) {
+  std::string text =
+      "motion\tcharacter\tmethod\tbones\tends\tsliding\tsource_sliding\tpenetration\tsource_penetration\tjerk\t"
+      "contacts\tframes_per_second\n";
+  for (const RetargetScore& score : scores) {
+    const MotionMetrics& m = score.metrics;
+    text += fmt::format("{}\t{}\t{}\t{:.3f}\t{:.4f}\t{:.4f}\t{:.4f}\t{:.5f}\t{:.5f}\t{:.3f}\t{:.3f}\t{:.0f}\n",
+                        score.motion, score.character, score.method, m.boneDirection, m.endEffector, m.sliding,
+                        m.sourceSliding, m.penetration, m.sourcePenetration, m.jerk, m.contactAgreement,
+                        score.framesPerSecond);
+  }
+  return text;
+}
+
+}  // namespace limber

@@ -1,0 +1,36 @@
+// Retargeting methods against each other: every motion on every character, as a table.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "limber/core/error.h"
+#include "limber/core/progress.h"
+#include "limber/evaluate/motion_metrics.h"
+
+namespace limber {
+
+struct RetargetScore {
+  std::string motion, character, method;
+  MotionMetrics metrics;
+  double framesPerSecond = 0;  // of the method, on one thread
+};
+
+struct RetargetTrial {
+  std::vector<std::filesystem::path> motions, characters;
+  std::vector<std::string> methods;  // empty: all
+  Index mostFrames = 1000;           // of each clip; what comes later is left out
+};
+
+// A score for each clip of each motion, on each character, by each method, in that order; clips of less than 5 frames
+// and pairs that are no people, or that cannot be matched, are counted in `skipped`.
+std::vector<RetargetScore> scoreRetargeting(const RetargetTrial& trial, Progress& progress, Warnings& skipped);
+
+// A Markdown table with a line for each method: means over the scores, worst values in brackets.
+std::string retargetMethodTable(std::span<const RetargetScore> scores);
+// A line for each score, tab separated, with a heading.
+std::string retargetScoresTsv(std::span<const RetargetScore> scores);
+
+}  // namespace limber
