@@ -18,6 +18,7 @@ namespace {
 constexpr double kPlantedHeight = 0.03, kPlantedSpeed = 0.15;  // heights, heights a second
 constexpr double kPlantedSeconds = 0.1;
 constexpr double kCut = 12;  // heights a second of any joint: no motion, but a cut
+constexpr double kLeastJerk = 2e-5;  // third differences of a joint's places, heights
 
 struct LimbName {
   const char *upper, *lower, *end;
@@ -181,7 +182,9 @@ void measureJerk(const RetargetSetup& setup, const Seen& source, const Seen& tar
       to += squaredJerk(target, match->target.front(), cut);
     }
   }
-  metrics.jerk = from > 0 ? std::sqrt(to / from) : 1;
+  // What hardly moves has no jerk to compare with.
+  const double least = kLeastJerk * kLeastJerk * static_cast<double>(source.positions.size());
+  metrics.jerk = to > least || from > least ? std::sqrt(to / std::max(from, least)) : 1;
 }
 
 void checkFrames(const RetargetSetup& setup, const PoseSequence& one, const PoseSequence& other) {

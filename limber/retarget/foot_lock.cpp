@@ -5,7 +5,8 @@
 namespace limber {
 
 namespace {
-constexpr double kLanding = 40, kLeaving = 16;  // 1/seconds: how fast what is left fades out
+// 1/seconds: how fast what is left fades out; along the ground a foot has to stand at once, down to it there is time.
+constexpr double kLanding = 40, kSettling = 20, kLeaving = 16;
 }
 
 Vec3 FootLock::base(const Frame& frame) const {
@@ -30,11 +31,12 @@ Vec3 FootLock::next(const Frame& frame, double seconds, double slack) {
   }
   // As if the anchor stayed: the base moves, and what is left fades out.
   const Vec3 baseSpeed = (base(frame) - base(*before_)) / seconds;
-  const double rate = anchor_ == FootAnchor::kNone ? kLeaving : kLanding;
-  const double fade = std::exp(-rate * seconds);
-  const Vec3 pull = restSpeed_ + rate * rest_;
-  rest_ = fade * (rest_ + seconds * pull);
-  restSpeed_ = fade * (restSpeed_ - (rate * seconds) * pull);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double rate = anchor_ == FootAnchor::kNone ? kLeaving : axis == 1 ? kSettling : kLanding;
+    const double fade = std::exp(-rate * seconds), pull = restSpeed_[axis] + rate * rest_[axis];
+    rest_[axis] = fade * (rest_[axis] + seconds * pull);
+    restSpeed_[axis] = fade * (restSpeed_[axis] - rate * seconds * pull);
+  }
 
   const bool lost = anchor_ != FootAnchor::kNone && (base(frame) - frame.ankle).norm() > slack;
   if (frame.anchor != anchor_ || lost) change(frame, base(frame) + rest_, baseSpeed + restSpeed_, seconds, lost);

@@ -13,18 +13,44 @@ namespace {
 
 constexpr double kFootGoesAlong = 25 * kPi / 180;
 constexpr double kNearAxis = 20 * kPi / 180;
+constexpr double kOpposite = 100 * kPi / 180;  // between the ways from the hips to the head and to the feet, at least
 
 std::optional<Index> firstOf(const SkeletonMap& map, MapSide side, std::string_view part) {
   const std::vector<Index>* joints = jointsOfPart(map, side, part);
   return joints ? std::optional(joints->front()) : std::nullopt;
 }
 
-// The axis of space that the direction is near to, if it is.
-Vec3 snapped(const Vec3& direction) {
+// The axis of space that the direction is nearest to.
+Vec3 nearestAxis(const Vec3& direction) {
   Eigen::Index largest = 0;
   direction.cwiseAbs().maxCoeff(&largest);
-  const Vec3 axis = direction[largest] < 0 ? -Vec3::Unit(largest) : Vec3(Vec3::Unit(largest));
+  return direction[largest] < 0 ? -Vec3::Unit(largest) : Vec3(Vec3::Unit(largest));
+}
+
+Vec3 snapped(const Vec3& direction) {
+  const Vec3 axis = nearestAxis(direction);
   return axis.dot(direction.normalized()) > std::cos(kNearAxis) ? axis : Vec3(direction.normalized());
+}
+
+// Which ways lead from the hips to the head and to the feet, as far as they are there.
+struct Stance {
+  Vec3 head = Vec3::Zero(), feet = Vec3::Zero();
+};
+Stance stanceOf(const Skeleton& skeleton, const Pose& pose, const SkeletonMap& map, MapSide side) {
+  const std::vector<Affine> globals = poseGlobals(skeleton, pose);
+  const std::optional<Index> hips = firstOf(map, side, "hips"), head = firstOf(map, side, "head");
+  Stance stance;
+  if (!hips || !head) return stance;
+  const Vec3 from = globals[*hips].translation();
+  stance.head = globals[*head].translation() - from;
+  for (const char* part : {"leftFoot", "rightFoot"}) {
+    if (const std::optional<Index> foot = firstOf(map, side, part)) stance.feet += globals[*foot].translation() - from;
+  }
+  return stance;
+}
+
+double angleOf(const Vec3& a, const Vec3& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
 // From left and right limbs, and from the hips to the head.
@@ -48,7 +74,7 @@ Quat bodyFrame(const SkeletonMap& map, MapSide side, const std::vector<Vec3>& po
   if (left.norm() < 1e-9 || up.norm() < 1e-9 || left.cross(up).norm() < 1e-6 * left.norm() * up.norm()) {
     return Quat::Identity();
   }
-  up = snapped(up);
+  up = nearestAxis(up);  // gravity goes along an axis, whatever the back's bend
   left = snapped((left - left.dot(up) * up).normalized());
   left = (left - left.dot(up) * up).normalized();
   Mat3 axes;
@@ -81,11 +107,31 @@ const std::vector<Index>* jointsOfPart(const SkeletonMap& map, MapSide side, std
   return side == MapSide::kSource ? &match->source : &match->target;
 }
 
-NeutralPose neutralPose(const Skeleton& skeleton, const SkeletonMap& map, MapSide side) {
+bool standsUpright(const Skeleton& skeleton, const Pose& pose, const SkeletonMap& map, MapSide side) {
+  const Stance stance = stanceOf(skeleton, pose, map, side);
+  return stance.head.isZero() || stance.feet.isZero() || angleOf(stance.head, stance.feet) > kOpposite;
+}
+
+Pose uprightPose(const Skeleton& skeleton, std::span<const Pose> motion, const SkeletonMap& map, MapSide side) {
+  const Pose rest = restPose(skeleton);
+  if (standsUpright(skeleton, rest, map, side)) return rest;
+  const Pose* best = &rest;
+  double least = kPi;
+  for (const Pose& pose : motion) {
+    const Stance stance = stanceOf(skeleton, pose, map, side);
+    const double off = angleOf(stance.head, Vec3::UnitY()) + angleOf(stance.feet, -Vec3::UnitY());
+    if (!(off < least)) continue;
+    least = off;
+    best = &pose;
+  }
+  return *best;
+}
+
+NeutralPose neutralPose(const Skeleton& skeleton, const Pose& resting, const SkeletonMap& map, MapSide side) {
   NeutralPose pose;
   std::vector<Vec3> rest;
   std::vector<Quat> restRotations;
-  for (const Affine& global : restGlobals(skeleton)) rest.push_back(global.translation());
+  for (const Affine& global : poseGlobals(skeleton, resting)) rest.push_back(global.translation());
   pose.toBody = bodyFrame(map, side, rest);
   std::vector<Quat> turns(skeleton.jointCount(), Quat::Identity());
   std::vector<std::optional<std::pair<Vec3, Vec3>>> aims(skeleton.jointCount());  // rest direction, neutral direction
@@ -105,7 +151,7 @@ NeutralPose neutralPose(const Skeleton& skeleton, const SkeletonMap& map, MapSid
   for (Index j = 0; j < skeleton.jointCount(); ++j) {
     const Joint& joint = skeleton.joints[j];
     const Quat parentRest = joint.parent ? restRotations[*joint.parent] : pose.toBody;
-    restRotations.push_back((parentRest * joint.rest.rotation).normalized());
+    restRotations.push_back((parentRest * resting.locals[j].rotation).normalized());
     const Quat above = joint.parent ? turns[*joint.parent] : Quat::Identity();
     turns[j] = above;
     if (aims[j]) turns[j] = (shortestRotation(above * aims[j]->first, aims[j]->second) * above).normalized();

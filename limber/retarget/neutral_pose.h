@@ -2,9 +2,11 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "limber/retarget/skeleton_map.h"
+#include "limber/skeleton/pose.h"
 
 namespace limber {
 
@@ -18,13 +20,23 @@ const std::vector<Index>* jointsOfPart(const SkeletonMap& map, MapSide side, std
 // from rest says more than the direction (a foot's joint may lie high or low above its toes). A foot that the leg's
 // way to the neutral pose would turn by more than 25 degrees goes along with it, too. For other skeletons: the rest
 // pose.
+//
+// `resting` stands in for the skeleton's rest pose, here and below; uprightPose() tells why.
 struct NeutralPose {
   Quat toBody;                      // from the skeleton's space to that of the person: up +Y, left +X
   std::vector<Quat> rotations;      // #J, in the person's space
   std::vector<Vec3> positions;      // #J, likewise
   std::vector<Vec3> restPositions;  // #J, in rest pose, in the person's space
 };
-NeutralPose neutralPose(const Skeleton& skeleton, const SkeletonMap& map, MapSide side);
+NeutralPose neutralPose(const Skeleton& skeleton, const Pose& resting, const SkeletonMap& map, MapSide side);
+
+// Does the person stand in that pose: legs and head on opposite sides of the hips? Some programs write motions whose
+// rest pose has all bones along one axis; it tells nothing. True for skeletons without legs or head.
+bool standsUpright(const Skeleton& skeleton, const Pose& pose, const SkeletonMap& map, MapSide side);
+
+// The rest pose if the person stands in it, else the pose of the motion that is most like standing: legs down and trunk
+// up (+Y). The rest pose again where no pose stands.
+Pose uprightPose(const Skeleton& skeleton, std::span<const Pose> motion, const SkeletonMap& map, MapSide side);
 
 // The middle between the upper legs' joints, else the hips' joint, else the first matched joint.
 Vec3 pelvisOf(const SkeletonMap& map, MapSide side, const std::vector<Vec3>& positions);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "limber/core/error.h"
 
@@ -9,11 +10,11 @@ namespace limber {
 
 namespace {
 
-// A motion whose lowest steps are this near to the rest pose's feet (in hip heights) stands on the rest pose's ground.
-constexpr double kSameGround = 0.015;
+// A motion whose feet come this near to where they are in rest pose (in hip heights) stands on the rest pose's ground.
+constexpr double kSameGround = 0.08;
 constexpr double kStill = 0.4;         // hip heights a second: a lowest foot joint slower than this stands
 constexpr double kFewStand = 0.05;     // share of frames; below it the motion never stands (a run)
-constexpr double kBelowGround = 0.05;  // share of frames that may then lie lower than the ground, for noise
+constexpr double kBelowGround = 0.05;  // share of frames that may lie lower than the ground, for noise
 
 double lowest(const std::vector<Index>& joints, const std::vector<Vec3>& positions) {
   double y = std::numeric_limits<double>::infinity();
@@ -36,27 +37,39 @@ std::vector<Index> groundJoints(const SkeletonMap& map, MapSide side) {
   return joints.empty() ? matchedJoints(map, side) : joints;
 }
 
-// Where the feet stand, from a motion: the middle height of what is lowest and still.
-double measuredGround(const BodyKinematics& kinematics, const std::vector<Index>& soles, double hipHeight,
-                      const PoseSequence& motion) {
+// Heights of the lowest foot joint over a motion, in all frames and while it is still.
+struct LowestHeights {
   std::vector<double> all, standing;
+};
+LowestHeights lowestHeights(const BodyKinematics& kinematics, const std::vector<Index>& soles, double hipHeight,
+                            const PoseSequence& motion) {
+  LowestHeights heights;
   BodyFrame frame, before;
   for (const Pose& pose : motion.poses) {
     kinematics.globals(pose, frame);
     const auto low = std::min_element(
         soles.begin(), soles.end(), [&](Index a, Index b) { return frame.positions[a].y() < frame.positions[b].y(); });
-    all.push_back(frame.positions[*low].y());
+    heights.all.push_back(frame.positions[*low].y());
     const double stillWay = kStill * hipHeight * motion.frameSeconds;
     const bool still = !before.positions.empty() && (frame.positions[*low] - before.positions[*low]).norm() < stillWay;
-    if (still) standing.push_back(all.back());
+    if (still) heights.standing.push_back(heights.all.back());
     std::swap(frame, before);
   }
-  const bool stands = static_cast<double>(standing.size()) > kFewStand * static_cast<double>(all.size());
-  std::vector<double>& heights = stands ? standing : all;
-  const double share = stands ? 0.5 : kBelowGround;
-  const auto rank = heights.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(heights.size()));
-  std::nth_element(heights.begin(), rank, heights.end());
+  return heights;
+}
+
+double quantile(std::vector<double>& values, double share) {
+  const auto rank = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size()));
+  std::nth_element(values.begin(), rank, values.end());
   return *rank;
+}
+
+// The rest pose's ground where the motion comes down to it; else the middle height of what is lowest and still. People
+// who sit down, lie or jump about are still at many heights, so that middle alone says too little.
+double measuredGround(LowestHeights heights, double restGround, double hipHeight) {
+  if (std::abs(quantile(heights.all, kBelowGround) - restGround) < kSameGround * hipHeight) return restGround;
+  const bool stands = static_cast<double>(heights.standing.size()) > kFewStand * static_cast<double>(heights.all.size());
+  return stands ? quantile(heights.standing, 0.25) : quantile(heights.all, kBelowGround);
 }
 
 double legLength(const SkeletonMap& map, MapSide side, const NeutralPose& pose) {
@@ -76,6 +89,19 @@ double hipHeight(const SkeletonMap& map, MapSide side, const NeutralPose& pose) 
   return pelvisOf(map, side, pose.positions).y() - lowest(groundJoints(map, side), pose.positions);
 }
 
+bool sameBuild(const Skeleton& a, const Skeleton& b) {
+  if (a.jointCount() != b.jointCount()) return false;
+  for (Index j = 0; j < a.jointCount(); ++j) {
+    const Transform &one = a.joints[j].rest, &other = b.joints[j].rest;
+    const double size = 1 + one.translation.norm();
+    if (a.joints[j].parent != b.joints[j].parent || (one.translation - other.translation).norm() > 1e-6 * size ||
+        std::abs(one.rotation.dot(other.rotation)) < 1 - 1e-9) {
+      return false;
+    }
+  }
+  return true;
+}
+
 double sizeOf(const SkeletonMap& map, MapSide side, const NeutralPose& pose) {
   Box box;
   for (const Index joint : matchedJoints(map, side)) box.add(pose.restPositions[joint]);
@@ -91,8 +117,9 @@ RetargetSetup::RetargetSetup(const Skeleton& from, const Skeleton& to, SkeletonM
       map((checkSkeletonMap(matches, from, to), std::move(matches))),
       options(asked),
       person(map.find("hips") && map.find("leftUpperLeg") && map.find("rightUpperLeg")),
-      sourceNeutral(neutralPose(from, map, MapSide::kSource)),
-      targetNeutral(neutralPose(to, map, MapSide::kTarget)),
+      sourceRest(uprightPose(from, motion ? std::span(motion->poses) : std::span<const Pose>(), map, MapSide::kSource)),
+      sourceNeutral(neutralPose(from, sourceRest, map, MapSide::kSource)),
+      targetNeutral(neutralPose(to, sameBuild(from, to) ? sourceRest : restPose(to), map, MapSide::kTarget)),
       sourceKinematics(from, sourceNeutral.toBody),
       targetKinematics(to, targetNeutral.toBody) {
   if (person) {
@@ -115,8 +142,8 @@ RetargetSetup::RetargetSetup(const Skeleton& from, const Skeleton& to, SkeletonM
   const double restGround = lowest(soles, sourceNeutral.restPositions);
   sourceGround = options.sourceGround.value_or(restGround);
   if (!options.sourceGround && motion && !motion->poses.empty()) {
-    const double measured = measuredGround(sourceKinematics, soles, sourceHipHeight, *motion);
-    if (std::abs(measured - restGround) > kSameGround * sourceHipHeight) sourceGround = measured;
+    const LowestHeights heights = lowestHeights(sourceKinematics, soles, sourceHipHeight, *motion);
+    sourceGround = measuredGround(heights, restGround, sourceHipHeight);
   }
   // A rest pose that hangs about the origin instead of standing on it tells nothing about the ground: the target then
   // stands at the source's height.

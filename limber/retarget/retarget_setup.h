@@ -36,7 +36,7 @@ struct RetargetOptions {
 };
 
 // Immutable once made; the skeletons must outlive it. `motion`, if given, is what will be retargeted: it tells where
-// the ground is.
+// the ground is, and how the source stands where its rest pose does not.
 struct RetargetSetup {
   RetargetSetup(const Skeleton& source, const Skeleton& target, SkeletonMap map, const RetargetOptions& options,
                 const PoseSequence* motion = nullptr);
@@ -49,6 +49,7 @@ struct RetargetSetup {
   SkeletonMap map;
   RetargetOptions options;
   bool person = false;  // else joints are matched one by one, and all of them may move
+  Pose sourceRest;      // the rest pose, or what stands in for it (uprightPose)
   NeutralPose sourceNeutral, targetNeutral;
   BodyKinematics sourceKinematics, targetKinematics;
   double scale = 1;  // target metres for a source metre of the root's way

@@ -49,8 +49,19 @@ void RootPlacer::movePelvis(const Vec3& shift, Pose& target, BodyFrame& frame) c
   const BodyKinematics& kinematics = setup_.targetKinematics;
   const Quat above = kinematics.parentRotation(*hips_, frame);
   target.locals[*hips_].translation += (above.conjugate() * shift) / kinematics.unit(*hips_);
-  kinematics.place(target, frame);
+  settle(target, frame);
+}
+
+void RootPlacer::settle(Pose& target, BodyFrame& frame) const {
+  setup_.targetKinematics.place(target, frame);
   placeLoose(target, frame);
+}
+
+Index RootPlacer::carrierOf(Index joint) const {
+  for (const Loose& loose : loose_) {
+    if (loose.joint == joint) return loose.end;
+  }
+  return joint;
 }
 
 void RootPlacer::placeLoose(Pose& target, BodyFrame& frame) const {

@@ -19,8 +19,13 @@ class RootPlacer {
 
   // `frame` are the globals of `target`, whose rotations are final; both are brought up to date.
   void place(const Pose& source, const BodyFrame& sourceFrame, Pose& target, BodyFrame& frame) const;
+  // Brings positions up to date with rotations that were changed, and loose joints to where their limbs end now.
+  void settle(Pose& target, BodyFrame& frame) const;
   // Moves the pelvis by `shift`, in the person's space.
   void movePelvis(const Vec3& shift, Pose& target, BodyFrame& frame) const;
+
+  // The joint that a loose joint rides on; the joint itself where it hangs on the body.
+  Index carrierOf(Index joint) const;
 
   // The joints whose translation the placing writes.
   const std::vector<Index>& moved() const { return moved_; }

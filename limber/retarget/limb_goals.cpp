@@ -1,0 +1,255 @@
+#include "limber/retarget/limb_goals.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "limber/skeleton/chain.h"
+
+namespace limber {
+
+namespace {
+
+// In hip heights of the target.
+constexpr double kTouching = 0.12, kApart = 0.35;  // of two hands
+constexpr double kMostSinking = 0.12;
+constexpr double kFootSlack = 0.5;   // how far a planted foot may be from where the joint angles have it
+constexpr double kStretch = 0.9995;  // of a leg's length: fully stretched knees pop
+constexpr double kSinkRate = 12;     // 1/seconds, back up
+constexpr double kPlantRate = 25;    // 1/seconds, of the smooth flag
+constexpr double kSoftGround = 0.004;
+// Speeds of the source's pelvis or feet, hip heights a second, that are no motion but a cut. Many recordings have a
+// T-pose as their first frame.
+constexpr double kJump = 15, kFirstJump = 4;
+
+double smoothStep(double x) {
+  const double t = std::clamp(x, 0.0, 1.0);
+  return t * t * (3 - 2 * t);
+}
+
+// x where it is above 0, else 0, but without a kink: at most softness / 2 more.
+double softPositive(double x, double softness) {
+  return 0.5 * (x + std::hypot(x, softness));
+}
+
+// A critically damped spring to `wanted`.
+void followPlanting(double wanted, double seconds, double& value, double& speed) {
+  if (seconds <= 0) {
+    value = wanted;
+    speed = 0;
+    return;
+  }
+  const double off = value - wanted, fade = std::exp(-kPlantRate * seconds), pull = speed + kPlantRate * off;
+  value = std::clamp(wanted + fade * (off + seconds * pull), 0.0, 1.0);
+  speed = fade * (speed - kPlantRate * seconds * pull);
+}
+
+std::optional<Limb> findLimb(const RetargetSetup& setup, const RootPlacer& root, const std::string& upper,
+                             const std::string& lower, const std::string& end) {
+  const JointMatch *u = setup.map.find(upper), *l = setup.map.find(lower), *e = setup.map.find(end);
+  if (!u || !l || !e) return std::nullopt;
+  Limb limb;
+  limb.upper = u->target.front();
+  limb.lower = l->target.front();
+  limb.end = e->target.front();
+  limb.sourceUpper = u->source.front();
+  limb.sourceEnd = e->source.front();
+  const Skeleton& target = *setup.target;
+  if (!isAncestorOrSelf(target, limb.upper, limb.lower)) return std::nullopt;
+  if (!isAncestorOrSelf(target, limb.lower, root.carrierOf(limb.end))) return std::nullopt;
+  const std::vector<Vec3>& rest = setup.targetNeutral.restPositions;
+  const double upperLength = (rest[limb.lower] - rest[limb.upper]).norm();
+  const double lowerLength = (rest[limb.end] - rest[limb.lower]).norm();
+  if (!(upperLength > 0) || !(lowerLength > 0)) return std::nullopt;
+  limb.length = upperLength + lowerLength;
+  return limb;
+}
+
+}  // namespace
+
+LimbGoals::LimbGoals(const RetargetSetup& setup, const RootPlacer& root) : setup_(setup) {
+  for (const std::string side : {"left", "right"}) {
+    if (auto leg = findLimb(setup, root, side + "UpperLeg", side + "LowerLeg", side + "Foot")) addLeg(side, *leg);
+  }
+  for (const std::string side : {"left", "right"}) {
+    const auto arm = findLimb(setup, root, side + "UpperArm", side + "LowerArm", side + "Hand");
+    if (!arm) continue;
+    arms_.push_back(*arm);
+    const std::string other = side == "left" ? "right" : "left";
+    std::vector<Surface>& surfaces = surfaces_.emplace_back();
+    addSurface("head", "head", 0.12, 0.35, surfaces);
+    addSurface("hips", "neck", 0.13, 0.19, surfaces);
+    addSurface("leftUpperLeg", "leftLowerLeg", 0.09, 0.15, surfaces);
+    addSurface("rightUpperLeg", "rightLowerLeg", 0.09, 0.15, surfaces);
+    addSurface(other + "LowerArm", other + "Hand", 0.06, 0.12, surfaces);
+  }
+  active_ = setup.person && !isSame();
+}
+
+// Nothing to correct where both neutral poses are one.
+bool LimbGoals::isSame() const {
+  const NeutralPose &a = setup_.sourceNeutral, &b = setup_.targetNeutral;
+  if (a.positions.size() != b.positions.size() || std::abs(setup_.scale - 1) > 1e-9) return false;
+  for (std::size_t j = 0; j < a.positions.size(); ++j) {
+    if ((a.positions[j] - b.positions[j]).norm() > 1e-6 * setup_.targetHipHeight) return false;
+  }
+  return true;
+}
+
+void LimbGoals::addLeg(const std::string& side, const Limb& limb) {
+  Leg leg;
+  static_cast<Limb&>(leg) = limb;
+  const std::vector<Vec3>&source = setup_.sourceNeutral.positions, &target = setup_.targetNeutral.positions;
+  const auto lowest = [&](MapSide where, const std::vector<Vec3>& positions) {
+    double y = std::numeric_limits<double>::infinity();
+    for (const Index joint : soleJoints(setup_.map, where)) y = std::min(y, positions[joint].y());
+    return y;
+  };
+  const double sourceLowest = lowest(MapSide::kSource, source), targetLowest = lowest(MapSide::kTarget, target);
+  leg.ankleGround = setup_.targetGround + target[leg.end].y() - targetLowest;
+  leg.sourceAnkleGround = setup_.sourceGround + source[leg.sourceEnd].y() - sourceLowest;
+  if (const JointMatch* toes = setup_.map.find(side + "Toes")) {
+    leg.toes = toes->target.front();
+    leg.sourceToes = toes->source.front();
+    leg.toesGround = setup_.targetGround + target[*leg.toes].y() - targetLowest;
+    leg.sourceToesGround = setup_.sourceGround + source[*leg.sourceToes].y() - sourceLowest;
+  }
+  legs_.push_back(leg);
+  const PlantDetector detector(setup_.sourceHipHeight);
+  feelers_.push_back({detector, detector, {}});
+}
+
+void LimbGoals::addSurface(const std::string& from, const std::string& to, double touching, double apart,
+                           std::vector<Surface>& surfaces) const {
+  const JointMatch *begin = setup_.map.find(from), *end = setup_.map.find(to);
+  if (!begin || !end) return;
+  surfaces.push_back({{begin->source.front(), end->source.front()},
+                      {begin->target.front(), end->target.front()},
+                      touching,
+                      apart});
+}
+
+FootAnchor LimbGoals::anchorOf(const Leg& leg, Feeler& feeler, const BodyFrame& source, double seconds) const {
+  const Vec3& ankle = source.positions[leg.sourceEnd];
+  const bool heel = feeler.ankle.next(ankle, ankle.y() - leg.sourceAnkleGround, seconds);
+  if (!leg.toes) return heel ? FootAnchor::kAnkle : FootAnchor::kNone;
+  const Vec3& toes = source.positions[*leg.sourceToes];
+  if (feeler.toes.next(toes, toes.y() - leg.sourceToesGround, seconds)) return FootAnchor::kToes;
+  return heel ? FootAnchor::kAnkle : FootAnchor::kNone;
+}
+
+// Nobody moves that fast: what stood before the cut does not count behind it.
+void LimbGoals::forgetAcrossCuts(const BodyFrame& source, double seconds) {
+  std::vector<Vec3>& now = landmarks_[1];
+  now.assign(1, pelvisOf(setup_.map, MapSide::kSource, source.positions));
+  for (const Leg& leg : legs_) now.push_back(source.positions[leg.sourceEnd]);
+  const double jump = (frames_++ == 1 ? kFirstJump : kJump) * setup_.sourceHipHeight * seconds;
+  bool cut = false;
+  for (std::size_t i = 0; i < landmarks_[0].size(); ++i) {
+    cut = cut || (now[i] - landmarks_[0][i]).norm() > jump;
+  }
+  std::swap(landmarks_[0], landmarks_[1]);
+  if (!cut) return;
+  sinking_ = 0;
+  for (Feeler& feeler : feelers_) {
+    feeler.ankle.reset();
+    feeler.toes.reset();
+    feeler.lock.reset();
+  }
+}
+
+void LimbGoals::setFeet(const BodyFrame& source, const BodyFrame& target, double seconds) {
+  forgetAcrossCuts(source, seconds);
+  for (std::size_t i = 0; i < legs_.size(); ++i) {
+    Leg& leg = legs_[i];
+    FootLock::Frame frame;
+    frame.ankle = target.positions[leg.end];
+    frame.toes = leg.toes ? target.positions[*leg.toes] : frame.ankle;
+    frame.anchor = anchorOf(leg, feelers_[i], source, seconds);
+    frame.ankleGround = leg.ankleGround;
+    frame.toesGround = leg.toesGround;
+    leg.goal = feelers_[i].lock.next(frame, seconds, kFootSlack * setup_.targetHipHeight);
+    leg.wanted = true;
+    followPlanting(frame.anchor != FootAnchor::kNone ? 1 : 0, seconds, leg.planted, feelers_[i].plantedSpeed);
+    double below = leg.ankleGround - leg.goal.y();
+    if (leg.toes) below = std::max(below, leg.toesGround - (leg.goal + frame.toes - frame.ankle).y());
+    leg.goal.y() += softPositive(below, kSoftGround * setup_.targetHipHeight * (1 - leg.planted));
+  }
+}
+
+// By the pelvis rising, every leg that is planted would be as long as its joint angles make it: the mean of those ways.
+double LimbGoals::bendKeepingShift(const BodyFrame& target) const {
+  double sum = 0, weights = 0;
+  for (const Leg& leg : legs_) {
+    const Vec3 hip = target.positions[leg.upper], way = leg.goal - hip;
+    const double length = (target.positions[leg.end] - hip).norm(), across = std::hypot(way.x(), way.z());
+    if (way.y() >= 0 || across >= length) continue;
+    sum += leg.planted * (way.y() + std::sqrt(length * length - across * across));
+    weights += leg.planted;
+  }
+  const double most = kMostSinking * setup_.targetHipHeight;
+  return std::clamp(sum / std::max(weights, 1.0), -most, most);
+}
+
+double LimbGoals::pelvisShift(const BodyFrame& target, double seconds) {
+  const double shift = bendKeepingShift(target);
+  double needed = 0;
+  for (const Leg& leg : legs_) {
+    const Vec3 way = leg.goal - target.positions[leg.upper] - Vec3(0, shift, 0);
+    const double length = kStretch * leg.length, across = std::hypot(way.x(), way.z());
+    if (way.norm() <= length || way.y() >= 0) continue;
+    const double down = std::sqrt(std::max(length * length - across * across, 0.0));
+    needed = std::max(needed, -way.y() - down);
+  }
+  needed = std::min(needed, kMostSinking * setup_.targetHipHeight);
+  sinking_ = std::max(needed, sinking_ * std::exp(-kSinkRate * seconds));
+  return shift - sinking_;
+}
+
+double LimbGoals::closeness(double distance, double touching, double apart) const {
+  return smoothStep((apart - distance / setup_.targetHipHeight) / (apart - touching));
+}
+
+void LimbGoals::setHand(Limb& arm, const std::vector<Surface>& surfaces, const BodyFrame& source,
+                        const BodyFrame& target) const {
+  const Vec3 hand = source.positions[arm.sourceEnd];
+  arm.goal = target.positions[arm.end];
+  arm.wanted = setup_.options.reach != 0;
+  if (setup_.options.reach != 0) {
+    const Vec3 pelvis = pelvisOf(setup_.map, MapSide::kSource, source.positions);
+    const Vec3 there = setup_.placeOf(pelvis) + setup_.scale * (hand - pelvis);
+    arm.goal += setup_.options.reach * (there - arm.goal);
+  }
+  if (!setup_.options.contacts) return;
+  Vec3 sum = Vec3::Zero();
+  double weights = 0, strongest = 0;
+  for (const Surface& surface : surfaces) {
+    const Vec3 begin = source.positions[surface.source[0]], bone = source.positions[surface.source[1]] - begin;
+    const double along =
+        bone.squaredNorm() > 0 ? std::clamp((hand - begin).dot(bone) / bone.squaredNorm(), 0.0, 1.0) : 0;
+    const Vec3 away = setup_.scale * (hand - begin - along * bone);
+    const double weight = closeness(away.norm(), surface.touching, surface.apart);
+    if (weight <= 0) continue;
+    const Vec3 from = target.positions[surface.target[0]], to = target.positions[surface.target[1]];
+    sum += weight * weight * (from + along * (to - from) + away - arm.goal);
+    weights += weight * weight;
+    strongest = std::max(strongest, weight);
+  }
+  if (!(weights > 0)) return;
+  arm.goal += strongest / weights * sum;
+  arm.wanted = true;
+}
+
+void LimbGoals::setHands(const BodyFrame& source, const BodyFrame& target) {
+  for (std::size_t a = 0; a < arms_.size(); ++a) setHand(arms_[a], surfaces_[a], source, target);
+  if (!setup_.options.contacts || arms_.size() != 2) return;
+  const Vec3 apart = setup_.scale * (source.positions[arms_[1].sourceEnd] - source.positions[arms_[0].sourceEnd]);
+  const double weight = closeness(apart.norm(), kTouching, kApart);
+  if (weight <= 0) return;
+  const Vec3 change = 0.5 * weight * (apart - (arms_[1].goal - arms_[0].goal));
+  arms_[0].goal -= change;
+  arms_[1].goal += change;
+  arms_[0].wanted = arms_[1].wanted = true;
+}
+
+}  // namespace limber

@@ -1,0 +1,86 @@
+// Where hands and feet have to be: planted feet, the ground, what hands touch. Shared by the methods that solve for it.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "limber/retarget/foot_lock.h"
+#include "limber/retarget/plant_detector.h"
+#include "limber/retarget/root_motion.h"
+
+namespace limber {
+
+// Two bones and what they carry, of the target. The end hangs on the lower joint, or rides on it (RootPlacer).
+struct Limb {
+  Index upper = 0, lower = 0, end = 0;
+  Index sourceUpper = 0, sourceEnd = 0;
+  double length = 0;         // of both bones
+  Vec3 goal = Vec3::Zero();  // where the end has to be, in the person's space
+  bool wanted = false;       // else it may be where it is
+};
+
+struct Leg : Limb {
+  std::optional<Index> toes, sourceToes;
+  double ankleGround = 0, toesGround = 0;              // heights when standing, target
+  double sourceAnkleGround = 0, sourceToesGround = 0;  // likewise, source
+  double planted = 0;                                  // 0 to 1, comes and goes smoothly
+};
+
+// Goals frame after frame, without looking ahead. Nothing jumps when contacts come and go.
+class LimbGoals {
+ public:
+  // Both must outlive this.
+  LimbGoals(const RetargetSetup& setup, const RootPlacer& root);
+
+  // False where nothing needs correcting: no people, or both neutral poses are one.
+  bool active() const { return active_; }
+
+  // Feet that are planted in the source stay where they came down, by their toes while the heel is up; none goes below
+  // the ground. From the globals of both, the target's by joint angles alone.
+  void setFeet(const BodyFrame& source, const BodyFrame& target, double seconds);
+  // How far the pelvis goes up, metres: so that planted legs keep the bend that their joint angles give them, on
+  // average, and down as far as the longest way asks.
+  double pelvisShift(const BodyFrame& target, double seconds);
+  // Hands that are close to the other hand, the head, the trunk, a thigh or the other forearm in the source are as
+  // close in the result, scaled. `reach` as in RetargetOptions.
+  void setHands(const BodyFrame& source, const BodyFrame& target);
+
+  std::vector<Leg>& legs() { return legs_; }
+  std::vector<Limb>& arms() { return arms_; }
+
+ private:
+  // A bone that hands can touch, with distances, in hip heights, at which a touch counts wholly and not at all.
+  struct Surface {
+    std::array<Index, 2> source, target;
+    double touching, apart;
+  };
+  struct Feeler {
+    PlantDetector ankle, toes;
+    FootLock lock;
+    double plantedSpeed = 0;
+  };
+
+  bool isSame() const;
+  void addLeg(const std::string& side, const Limb& limb);
+  void addSurface(const std::string& from, const std::string& to, double touching, double apart,
+                  std::vector<Surface>& surfaces) const;
+  FootAnchor anchorOf(const Leg& leg, Feeler& feeler, const BodyFrame& source, double seconds) const;
+  void forgetAcrossCuts(const BodyFrame& source, double seconds);
+  void setHand(Limb& arm, const std::vector<Surface>& surfaces, const BodyFrame& source, const BodyFrame& target) const;
+  double bendKeepingShift(const BodyFrame& target) const;
+  double closeness(double distance, double touching, double apart) const;
+
+  const RetargetSetup& setup_;
+  std::vector<Leg> legs_;
+  std::vector<Feeler> feelers_;  // of the legs
+  std::vector<Limb> arms_;
+  std::vector<std::vector<Surface>> surfaces_;  // for each arm
+  std::array<std::vector<Vec3>, 2> landmarks_;  // of the frame before, and room for this one's
+  std::size_t frames_ = 0;
+  double sinking_ = 0;
+  bool active_ = true;
+};
+
+}  // namespace limber
