@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "limber/ik/ik_solver.h"
 
@@ -11,5 +12,8 @@ namespace limber {
 // no constant of the model's size and vanishes as the targets are reached (Sugihara 2011; Wampler 1986; Nakamura,
 // Hanafusa 1986).
 std::unique_ptr<IkIteration> makeDampedLeastSquares(const IkSystem& system);
+
+// The same with another willingness of each node to move (#nodes, 0 or more) and another share.
+std::unique_ptr<IkIteration> makeDampedIteration(const IkSystem& system, std::vector<double> gains, double share);
 
 }  // namespace limber

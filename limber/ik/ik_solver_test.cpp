@@ -193,8 +193,6 @@ TEST_P(EveryMethod, ReachableTargetsAreReached) {
 
 TEST_P(EveryMethod, TargetsOutOfReachAreNamedAndApproached) {
   RandomValues random(14);
-  int stretched = 0;
-  double worst = 0;
   for (int i = 0; i < 300; ++i) {
     const Skeleton skeleton = straightChain(isTwoBone() ? 3 : 6, 1);
     Pose pose = randomPose(skeleton, nullptr, random);
@@ -209,15 +207,7 @@ TEST_P(EveryMethod, TargetsOutOfReachAreNamedAndApproached) {
     EXPECT_EQ(result.targets[0].outcome, IkOutcome::kOutOfReach);
     EXPECT_EQ(result.restarts, 0u);
     const double least = (targets[0].position - Vec3(1, 2, 3)).norm() - 1;
-    worst = std::max(worst, result.targets[0].distance - least);
-    if (result.targets[0].distance <= least + 0.02) ++stretched;
-  }
-  // The chain stretches towards the target. Steps without damping now and then stop a little short of straight.
-  if (method().name == "pseudo-inverse") {
-    EXPECT_GE(stretched, 298);
-    EXPECT_LE(worst, 0.05);
-  } else {
-    EXPECT_EQ(stretched, 300);
+    EXPECT_LE(result.targets[0].distance, least + 0.02);  // the chain stretches towards the target
   }
 }
 

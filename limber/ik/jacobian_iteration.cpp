@@ -13,8 +13,10 @@ namespace {
 constexpr double kLongestTurn = kPi / 4;  // of a joint in one iteration
 constexpr int kLimitPasses = 4;
 constexpr int kTries = 10;            // shorter and shorter steps before giving up
+constexpr double kEnough = 0.1;         // of what a step promises to first order
 constexpr Index kPatience = 10;       // iterations after which there must have been
 constexpr double kProgress = 0.9995;  // this factor on the cost
+constexpr int kStepBits = 28;         // of a step that count, so that rounding does not tell left from right
 constexpr double kSettled = 1e-5;     // change of the distance to the reference pose, as a share
 
 }  // namespace
@@ -28,7 +30,10 @@ std::vector<double> freedomsOf(const IkSystem& system) {
 JacobianIteration::JacobianIteration(const IkSystem& system) : JacobianIteration(system, freedomsOf(system)) {}
 
 JacobianIteration::JacobianIteration(const IkSystem& system, std::vector<double> gains)
-    : jacobian_(system, std::move(gains)), before_(system.makeState()), rowsOf_(system.nodes.size()) {
+    : jacobian_(system, std::move(gains)),
+      before_(system.makeState()),
+      gained_(before_),
+      rowsOf_(system.nodes.size()) {
   const Eigen::Index rows = jacobian_.rows(), columns = jacobian_.maxColumns();
   for (int n = 0; n < system.nodeCount(); ++n) {
     std::vector<Eigen::Index>& list = rowsOf_[static_cast<std::size_t>(n)];
@@ -70,7 +75,9 @@ Index JacobianIteration::run(IkSystem& system, Index budget) {
   return budget;
 }
 
-// One step that gains: on the cost, or where all targets are reached and stay so, on the secondary task.
+// One step that gains: on the cost, or where all targets are reached and stay so, on the secondary task. A step to the
+// other side of a valley gains next to nothing, and so would all the steps to and fro after it: a shorter one is tried
+// then, and the better of the two taken.
 bool JacobianIteration::improve(IkSystem& system) {
   const double cost = system.cost();
   const bool reached = system.allReached();
@@ -78,18 +85,39 @@ bool JacobianIteration::improve(IkSystem& system) {
   jacobian_.build(system);
   jacobian_.residual(system, error_);
   system.save(before_);
+  double least = cost;
   for (int i = 0; i < kTries; ++i) {
     findStep(system);
     apply(system);
-    const bool gained = reached ? system.allReached() && referenceDistance(system) < distance : system.cost() < cost;
-    if (gained) {
-      caution_ = std::max(heedsCaution() ? 1e-3 : 1.0, caution_ / 4);
+    const double now = system.cost();
+    const bool gained = reached ? system.allReached() && referenceDistance(system) < distance : now < least;
+    if (gained && (reached || cost - now >= kEnough * firstOrderGain())) {
+      becomeBolder();
       return true;
+    }
+    if (!gained && least < cost) break;
+    if (gained) {
+      least = now;
+      system.save(gained_);
     }
     system.restore(before_);
     caution_ = 4 * std::max(caution_, 0.25);
   }
-  return false;
+  if (!(least < cost)) return false;
+  system.restore(gained_);
+  becomeBolder();
+  return true;
+}
+
+void JacobianIteration::becomeBolder() {
+  caution_ = std::max(heedsCaution() ? 1e-3 : 1.0, caution_ / 4);
+}
+
+// What the step would take off the cost, were the effectors to go on as they begin.
+double JacobianIteration::firstOrderGain() const {
+  double sum = 0;
+  for (Eigen::Index c = 0; c < jacobian_.columns(); ++c) sum += step_[c] * jacobian_.matrix.col(c).dot(error_);
+  return 2 * sum;
 }
 
 void JacobianIteration::findStep(const IkSystem& system) {
@@ -213,6 +241,7 @@ void JacobianIteration::shorten() {
   double factor = longest > kLongestTurn ? kLongestTurn / longest : 1;
   if (!heedsCaution()) factor /= caution_;
   step_.head(jacobian_.columns()) *= factor;
+  roundTogether(kStepBits, step_.head(jacobian_.columns()));
 }
 
 // Finds joints that the step takes beyond their limits, fixes what they can do of it and takes the blocked directions

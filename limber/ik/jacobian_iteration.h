@@ -36,6 +36,8 @@ class JacobianIteration : public IkIteration {
 
  private:
   bool improve(IkSystem& system);
+  void becomeBolder();
+  double firstOrderGain() const;
   void findStep(const IkSystem& system);
   void addLevel(int level);
   void projectLevel(Eigen::Index begin, Eigen::Index end);
@@ -49,7 +51,7 @@ class JacobianIteration : public IkIteration {
   double referenceDistance(const IkSystem& system) const;
 
   IkJacobian jacobian_;
-  IkSystem::State before_;
+  IkSystem::State before_, gained_;
   std::vector<std::vector<Eigen::Index>> rowsOf_;  // #nodes; rows that a node's columns can have entries in
   Eigen::MatrixXd reduced_;                        // the Jacobian without the directions in which limits block
   Eigen::MatrixXd projected_;                      // one level's rows of it, without what higher priorities span

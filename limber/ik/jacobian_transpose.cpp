@@ -1,7 +1,6 @@
 #include "limber/ik/jacobian_transpose.h"
 
 #include "limber/ik/jacobian_iteration.h"
-#include "limber/ik/small_solve.h"
 
 namespace limber {
 
@@ -39,7 +38,6 @@ class JacobianTranspose : public JacobianIteration {
       b = (wantedB * yy - wantedY * yb) / determinant;
     }
     y = a * y + b * before;
-    roundTogether(34, y);
     now_.segment(rows.begin, y.size()) = y;
   }
 

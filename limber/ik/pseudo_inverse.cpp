@@ -7,7 +7,9 @@ namespace limber {
 
 namespace {
 
-// Squared singular values below this share of the largest are taken for 0.
+// Squared singular values below this share of the largest are taken for 0. Where a step gains nothing, more of them
+// are: along a chain that is all but straight only a very long step would reach, and shortened to one that joints can
+// make it would leave nothing of what the other directions have to go.
 constexpr double kNegligible = 1e-6;
 
 class PseudoInverse : public JacobianIteration {
@@ -23,7 +25,7 @@ class PseudoInverse : public JacobianIteration {
     const Eigen::Index m = y.size();
     auto vectors = vectors_.topLeftCorner(m, m);
     symmetricEigen(rows.gram, vectors);
-    const double least = kNegligible * rows.gram.diagonal().maxCoeff();
+    const double least = kNegligible * rows.caution * rows.caution * rows.gram.diagonal().maxCoeff();
     for (Eigen::Index i = 0; i < m; ++i) {
       const double value = rows.gram(i, i);
       coordinates_[i] = value > least ? vectors.col(i).dot(y) / value : 0;

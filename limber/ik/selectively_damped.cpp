@@ -58,7 +58,6 @@ class SelectivelyDamped : public JacobianIteration {
       weights += weightOf(rows, y, sum, std::sqrt(square) / length) * sum;
     }
     y = weights;
-    roundTogether(24, y);  // eigenvectors are right to some 1e-13
   }
 
   // How far to go along one left singular vector: phi_i of the paper, as a multiple of J^T u_i.

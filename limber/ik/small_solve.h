@@ -14,9 +14,9 @@ void solveCholesky(Eigen::Ref<Eigen::MatrixXd> a, double damping, Eigen::Ref<Eig
 // Jacobi's rotations. `a` is overwritten. In no order.
 void symmetricEigen(Eigen::Ref<Eigen::MatrixXd> a, Eigen::Ref<Eigen::MatrixXd> vectors);
 
-// Rounds to multiples of 2^-bits of about the largest entry. Rounding errors differ between left and right; where a
-// straight limb may bend to any side they alone would decide to which, grow from step to step, and give symmetric
-// problems answers that are not.
+// Rounds to multiples of 2^-bits of about the largest entry. Sums over effectors round otherwise for the left than for
+// the right; rounded away from steps before they are made, such differences cannot grow from step to step, and
+// symmetric problems have symmetric answers.
 void roundTogether(int bits, Eigen::Ref<Eigen::VectorXd> x);
 
 }  // namespace limber

@@ -1,16 +1,13 @@
 #include "limber/ik/whole_body.h"
 
-#include <cmath>
-
+#include "limber/ik/damped_least_squares.h"
 #include "limber/ik/jacobian_iteration.h"
-#include "limber/ik/small_solve.h"
 
 namespace limber {
 
 namespace {
 
 constexpr double kShare = 0.05;       // damping, of the squared distance left to go
-constexpr double kLeast = 1e-12;      // of the Gram matrix's trace, against singular ones
 constexpr double kWillingness = 0.3;  // of a joint that carries everything, against one that carries nothing
 
 // A node's freedom, less for one that carries more: its share of the length of all bones.
@@ -31,23 +28,10 @@ std::vector<double> gainsByLoad(const IkSystem& system) {
   return gains;
 }
 
-class WholeBody : public JacobianIteration {
- public:
-  explicit WholeBody(const IkSystem& system) : JacobianIteration(system, gainsByLoad(system)) {}
-
- private:
-  bool heedsCaution() const override { return true; }
-
-  void weighRows(const JacobianRows& rows, Eigen::Ref<Eigen::VectorXd> y) override {
-    const double damping = kShare * rows.caution * y.squaredNorm() + kLeast * rows.gram.diagonal().sum();
-    solveCholesky(rows.gram, damping, y);
-  }
-};
-
 }  // namespace
 
 std::unique_ptr<IkIteration> makeWholeBody(const IkSystem& system) {
-  return std::make_unique<WholeBody>(system);
+  return makeDampedIteration(system, gainsByLoad(system), kShare);
 }
 
 }  // namespace limber
