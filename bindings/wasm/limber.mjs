@@ -27,11 +27,20 @@ import createEngine from './limber_engine.mjs';
  * @typedef {{ name: string, parent: number, radius: number, rest: Vector }} SessionJoint
  * @typedef {{ name: string, vertices: number, triangles: number, box: { min: Vector, max: Vector }, own_rig: boolean,
  *             rigger: string, skinning: string, most_handles: number, suggestions: number[], joints: SessionJoint[],
+ *             motions: { name: string, joints: { name: string, parent: number }[],
+ *                        clips: { name: string, duration: number }[] }[],
+ *             clips: { name: string, duration: number, keys: number[], interpolation: 'step' | 'linear' | 'cubic',
+ *                      source: { motion: string, clip: string, method: string, reach: number,
+ *                                contacts: boolean } | null }[],
+ *             clip: number | null, seconds: number,
+ *             match: { part: string, source: string[], target: string[], confidence: number, by: string }[],
+ *             limits: { [joint: string]: { type: string, [field: string]: unknown } },
  *             ik: boolean, limited: boolean, targets: { joint: number, position: Vector }[], dragged: number | null,
  *             posed: boolean, undo: string | null, redo: string | null,
  *             warnings: { kind: string, message: string, where: string, count: number }[] }} SessionState
  *
- * skin: 16 numbers for each joint, a matrix column by column; state: null after a drag's update.
+ * skin: 16 numbers for each joint, a matrix column by column; state: null after a drag's update
+ * and a moment of a clip.
  * @typedef {{ ok: true, state: SessionState | null, skin: Float32Array } | Failure} StepResult
  * @typedef {{ joint: number, on_handle: boolean, position: Vector, distance: number }} PickHit
  * @typedef {{ positions: Float32Array, normals: Float32Array, uvs: Float32Array, triangles: Uint32Array,
@@ -97,6 +106,14 @@ function createSession(engine) {
   return {
     /** @type {(file: Uint8Array, name: string) => StepResult} */
     open: (file, name) => step(call(engine, engine._limber_session_open, [handle], file, name)),
+    /** Motions of a BVH file or of a model. @type {(file: Uint8Array, name: string) => StepResult} */
+    addMotion: (file, name) => step(call(engine, engine._limber_session_add_motion, [handle], file, name)),
+    /** Where the joints stand that the chosen clip's motion was made for: x, y, z each; empty where there are none.
+     *  @type {() => { ok: true, places: Float32Array } | Failure} */
+    sourceJoints: () => {
+      const result = call(engine, engine._limber_session_source_joints, [handle]);
+      return result.ok ? { ok: true, places: new Float32Array(result.bytes.buffer) } : result;
+    },
     /** @type {(command: Command) => StepResult} */
     run: (command) => step(call(engine, engine._limber_session_run, [handle], JSON.stringify(command))),
     /** A handle, taken to be at least `slope` times its distance wide, or the surface.

@@ -133,9 +133,10 @@ CallResult modelOf(const limber::SessionState& state) {
   return result;
 }
 
-// A drag's updates come once a frame and change nothing but the pose.
+// A drag's updates and a clip's moments come once a frame and change nothing but the pose.
 CallResult stateAfter(const limber::Session& session, const limber::Command& command) {
-  const bool frame = std::holds_alternative<limber::UpdateDrag>(command);
+  const bool frame =
+      std::holds_alternative<limber::UpdateDrag>(command) || std::holds_alternative<limber::SetTime>(command);
   return {true, bytesOf(skinArray(session)), frame ? "{}" : textOf(limber::sessionState(session))};
 }
 
@@ -183,6 +184,23 @@ LIMBER_EXPORT CallResult* limber_session_run(SessionHandle* handle, const char* 
     limber::Progress progress(reportProgress);
     handle->session.run(command, progress);
     return stateAfter(handle->session, command);
+  });
+}
+
+LIMBER_EXPORT CallResult* limber_session_add_motion(SessionHandle* handle, const std::uint8_t* file,
+                                                    std::size_t fileSize, const char* name, std::size_t nameSize) {
+  return guarded({name, nameSize}, [&] {
+    handle->session.addMotion({file, fileSize}, {name, nameSize});
+    return stateAfter(handle->session, limber::AddMotion{});
+  });
+}
+
+// Three numbers for each joint of the skeleton that the chosen clip comes from.
+LIMBER_EXPORT CallResult* limber_session_source_joints(const SessionHandle* handle) {
+  return guarded({}, [&]() -> CallResult {
+    std::vector<float> values;
+    for (const limber::Vec3& place : limber::sourceJoints(handle->session.state().movement)) append(values, place);
+    return {true, bytesOf(values), "{}"};
   });
 }
 

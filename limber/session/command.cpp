@@ -20,10 +20,13 @@ namespace {
 constexpr int kVersion = 1;
 
 // In the order of the variant.
-constexpr std::array<std::string_view, 19> kNames = {
-    "open_sample", "open_file",  "set_handles", "choose_methods", "begin_drag", "update_drag",  "end_drag",
-    "cancel_drag", "turn_joint", "move_joint",  "set_ik",         "set_target", "clear_target", "set_limits",
-    "reset_joint", "reset_pose", "mirror_pose", "undo",           "redo"};
+constexpr std::array<std::string_view, 32> kNames = {
+    "open_sample",  "open_file",   "set_handles", "choose_methods", "begin_drag",  "update_drag",
+    "end_drag",     "cancel_drag", "turn_joint",  "move_joint",     "set_ik",      "set_target",
+    "clear_target", "set_limits",  "reset_joint", "reset_pose",     "mirror_pose", "set_rest_pose",
+    "rename_joint", "add_motion",  "retarget",    "add_clip",       "remove_clip", "rename_clip",
+    "choose_clip",  "set_time",    "set_key",     "move_key",       "delete_key",  "set_interpolation",
+    "undo",         "redo"};
 static_assert(kNames.size() == std::variant_size_v<Command>);
 
 // The fields of each command, said once for reading and writing.
@@ -84,7 +87,7 @@ void visitFields(Visitor& field, ClearTarget& c) {
 }
 template <class Visitor>
 void visitFields(Visitor& field, SetLimits& c) {
-  field("limits", c.limits);
+  field.optional("limits", c.limits);
 }
 template <class Visitor>
 void visitFields(Visitor& field, ResetJoint& c) {
@@ -95,16 +98,75 @@ void visitFields(Visitor& field, MirrorPose& c) {
   field("from", c.from);
 }
 
+template <class Visitor>
+void visitFields(Visitor& field, RenameJoint& c) {
+  field("joint", c.joint);
+  field("name", c.name);
+}
+template <class Visitor>
+void visitFields(Visitor& field, AddMotion& c) {
+  field("file", c.file);
+}
+template <class Visitor>
+void visitFields(Visitor& field, RetargetMotion& c) {
+  field("motion", c.motion);
+  field.optional("clip", c.clip);
+  field("method", c.method);
+  field.optional("map", c.map);
+  field("reach", c.reach);
+  field("contacts", c.contacts);
+}
+template <class Visitor>
+void visitFields(Visitor& field, AddClip& c) {
+  field("clip", c.clip);
+}
+template <class Visitor>
+void visitFields(Visitor& field, RemoveClip& c) {
+  field("clip", c.clip);
+}
+template <class Visitor>
+void visitFields(Visitor& field, RenameClip& c) {
+  field("clip", c.clip);
+  field("name", c.name);
+}
+template <class Visitor>
+void visitFields(Visitor& field, ChooseClip& c) {
+  field.optional("clip", c.clip);
+}
+template <class Visitor>
+void visitFields(Visitor& field, SetTime& c) {
+  field("seconds", c.seconds);
+}
+template <class Visitor>
+void visitFields(Visitor& field, MoveKey& c) {
+  field("from", c.from);
+  field("to", c.to);
+}
+template <class Visitor>
+void visitFields(Visitor& field, DeleteKey& c) {
+  field("seconds", c.seconds);
+}
+template <class Visitor>
+void visitFields(Visitor& field, SetInterpolation& c) {
+  field("interpolation", c.interpolation);
+}
+
 constexpr std::array<std::pair<DragMode, std::string_view>, 2> kDragModes = {
     {{DragMode::kMove, "move"}, {DragMode::kTurn, "turn"}}};
 constexpr std::array<std::pair<MirrorFrom, std::string_view>, 3> kMirrorSides = {
     {{MirrorFrom::kBoth, "both"}, {MirrorFrom::kLeft, "left"}, {MirrorFrom::kRight, "right"}}};
+
+constexpr std::array<std::pair<Interpolation, std::string_view>, 3> kInterpolations = {
+    {{Interpolation::kStep, "step"}, {Interpolation::kLinear, "linear"}, {Interpolation::kCubic, "cubic"}}};
 
 const auto& wordsOf(DragMode) {
   return kDragModes;
 }
 const auto& wordsOf(MirrorFrom) {
   return kMirrorSides;
+}
+const auto& wordsOf(Interpolation) {
+  return kInterpolations;
 }
 
 Json vectorJson(const Vec3& v) {
@@ -129,6 +191,7 @@ class Writer {
       json_[key] = value;
     }
   }
+  void optional(const char* key, const std::string& value) { (*this)(key, value); }
 
  private:
   Json& json_;
@@ -145,12 +208,13 @@ class Reader {
  public:
   explicit Reader(const JsonView& object) : object_(object) {}
 
+  // A text that has no default must be there.
   void operator()(const char* key, std::string& value) {
+    if (!object_.member(key).exists() && value.empty()) object_.fail(fmt::format("has no \"{}\"", key));
+    optional(key, value);
+  }
+  void optional(const char* key, std::string& value) {
     known_.push_back(key);
-    // The texts that have no default are names, and none is empty.
-    if (!object_.member(key).exists() && value.empty() && key != std::string_view("limits")) {
-      object_.fail(fmt::format("has no \"{}\"", key));
-    }
     value = object_.text(key, value);
   }
   void operator()(const char* key, Index& value) {

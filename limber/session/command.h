@@ -10,6 +10,7 @@
 
 #include "limber/asset/asset.h"
 #include "limber/core/types.h"
+#include "limber/skeleton/clip.h"
 
 namespace limber {
 
@@ -94,19 +95,71 @@ struct MirrorPose {
   MirrorFrom from = MirrorFrom::kBoth;
 };
 
+// The pose that the model stands in becomes the one that it is bound in.
+struct SetRestPose {};
+struct RenameJoint {
+  std::string joint, name;
+};
+
+// A file with motions (BVH, or a model with animations), asked of the session's resolver; it is called as the file is,
+// without folder and extension, with a number behind it where that is taken.
+struct AddMotion {
+  std::string file;
+};
+// Puts a clip of a motion onto the model. Again with other options, it takes the place of what it gave before.
+struct RetargetMotion {
+  std::string motion;
+  std::string clip;  // empty: the motion's first
+  std::string method = "limb-ik";
+  std::string map;   // which joint follows which (skeleton_map.h); empty: found
+  double reach = 0;  // RetargetOptions::reach
+  bool contacts = true;
+};
+
+// Clips are named; one at a time is shown. A new clip has no keys.
+struct AddClip {
+  std::string clip;
+};
+struct RemoveClip {
+  std::string clip;
+};
+struct RenameClip {
+  std::string clip, name;
+};
+struct ChooseClip {
+  std::string clip;  // empty: none, and the model stands at rest
+};
+// Shows a moment of the chosen clip; of several only the last one counts, and there is nothing to undo.
+struct SetTime {
+  double seconds = 0;
+};
+// Keys of the chosen clip: the pose becomes one at the moment that is shown.
+struct SetKey {};
+struct MoveKey {
+  double from = 0, to = 0;  // seconds
+};
+struct DeleteKey {
+  double seconds = 0;
+};
+struct SetInterpolation {
+  Interpolation interpolation = Interpolation::kLinear;
+};
+
 struct Undo {};
 struct Redo {};
 
 using Command =
     std::variant<OpenSample, OpenFile, SetHandles, ChooseMethods, BeginDrag, UpdateDrag, EndDrag, CancelDrag, TurnJoint,
-                 MoveJoint, SetIk, SetTarget, ClearTarget, SetLimits, ResetJoint, ResetPose, MirrorPose, Undo, Redo>;
+                 MoveJoint, SetIk, SetTarget, ClearTarget, SetLimits, ResetJoint, ResetPose, MirrorPose, SetRestPose,
+                 RenameJoint, AddMotion, RetargetMotion, AddClip, RemoveClip, RenameClip, ChooseClip, SetTime, SetKey,
+                 MoveKey, DeleteKey, SetInterpolation, Undo, Redo>;
 
 // "set_handles", as in JSON.
 std::string_view commandName(const Command& command);
 
 // {"do": "set_handles", "count": 20}: every field is written; reading, those that are absent keep their default, but a
-// joint, file or name must be there. Throws Error kBadData naming the entry for a command or a field that is not
-// known, or a value of the wrong kind.
+// joint, file, motion or name must be there. Throws Error kBadData naming the entry for a command or a field that is
+// not known, or a value of the wrong kind.
 Json commandToJson(const Command& command);
 Command commandFromJson(const Json& json);
 

@@ -32,6 +32,19 @@ std::vector<Command> oneOfEach() {
           ResetJoint{"head"},
           ResetPose{},
           MirrorPose{MirrorFrom::kRight},
+          SetRestPose{},
+          RenameJoint{"head", "skull"},
+          AddMotion{"motions/walk.bvh"},
+          RetargetMotion{"walk", "fast", "aligned", R"({"matches": []})", 0.25, false},
+          AddClip{"wave"},
+          RemoveClip{"wave"},
+          RenameClip{"wave", "hello"},
+          ChooseClip{"walk"},
+          SetTime{1.0 / 3},
+          SetKey{},
+          MoveKey{0.5, 0.75},
+          DeleteKey{0.75},
+          SetInterpolation{Interpolation::kCubic},
           Undo{},
           Redo{}};
 }
@@ -51,12 +64,21 @@ TEST(Command, JsonKeepsEveryCommandAndEveryField) {
   EXPECT_EQ(std::get<SetTarget>(back[11]).position, Vec3(1e-17, 2, 3));
   EXPECT_EQ(std::get<MirrorPose>(back[16]).from, MirrorFrom::kRight);
   EXPECT_FALSE(std::get<SetIk>(back[10]).on);
+  EXPECT_EQ(std::get<RenameJoint>(back[18]).name, "skull");
+  EXPECT_EQ(std::get<RetargetMotion>(back[20]).clip, "fast");
+  EXPECT_EQ(std::get<RetargetMotion>(back[20]).reach, 0.25);
+  EXPECT_FALSE(std::get<RetargetMotion>(back[20]).contacts);
+  EXPECT_EQ(std::get<MoveKey>(back[27]).to, 0.75);
+  EXPECT_EQ(std::get<SetInterpolation>(back[29]).interpolation, Interpolation::kCubic);
 }
 
 TEST(Command, FieldsThatAreAbsentKeepTheirDefault) {
   const Command command = commandFromJson(Json{{"do", "begin_drag"}, {"joint", "a"}});
   EXPECT_EQ(std::get<BeginDrag>(command).mode, DragMode::kMove);
   EXPECT_EQ(std::get<BeginDrag>(command).view, Vec3(0, 0, -1));
+  const Command retarget = commandFromJson(Json{{"do", "retarget"}, {"motion", "walk"}});
+  EXPECT_EQ(std::get<RetargetMotion>(retarget).method, "limb-ik");
+  EXPECT_TRUE(std::get<RetargetMotion>(retarget).map.empty());
 }
 
 void expectRefused(const char* text, const char* where, const char* why) {
@@ -89,6 +111,8 @@ TEST(Command, WhatIsWrongIsNamed) {
   expectRefused(list(R"({"do": "move_joint", "joint": "a", "offset": [1, 2]})"), "commands[1].offset", "three");
   expectRefused(list(R"({"do": "mirror_pose", "from": "above"})"), "commands[1].from", "'above'");
   expectRefused(list(R"({"do": "update_drag", "ray": 1})"), "commands[1].ray", "object");
+  expectRefused(list(R"({"do": "retarget"})"), "commands[1]", "\"motion\"");
+  expectRefused(list(R"({"do": "set_interpolation", "interpolation": "wavy"})"), "commands[1].interpolation", "'wavy'");
 }
 
 }  // namespace

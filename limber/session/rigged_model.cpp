@@ -3,6 +3,11 @@
 #include <algorithm>
 #include <utility>
 
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "limber/asset/clip_io.h"
+#include "limber/asset/node_edit.h"
 #include "limber/asset/pose_io.h"
 #include "limber/skinning/deformer.h"
 
@@ -28,11 +33,71 @@ std::shared_ptr<RiggedModel> readModel(Asset asset) {
   return model;
 }
 
+void readOwnClips(RiggedModel& model) {
+  for (Clip& clip : readClips(model.asset, model.binding, model.asset.warnings)) {
+    if (clip.translations.empty() && clip.rotations.empty() && clip.scales.empty()) continue;
+    const std::string wanted = clip.name.empty() ? "clip" : clip.name;
+    const auto taken = [&](const std::shared_ptr<const Clip>& known) { return known->name == clip.name; };
+    clip.name = wanted;
+    for (int number = 2; std::any_of(model.clips.begin(), model.clips.end(), taken); ++number) {
+      clip.name = fmt::format("{} {}", wanted, number);
+    }
+    model.clips.push_back(std::make_shared<const Clip>(std::move(clip)));
+  }
+}
+
+bool holds(std::span<const std::shared_ptr<const Clip>> clips, const std::shared_ptr<const Clip>& clip) {
+  return std::find(clips.begin(), clips.end(), clip) != clips.end();
+}
+
 }  // namespace
 
 std::shared_ptr<const RiggedModel> openRiggedModel(const Asset& source) {
   if (!hasRig(source)) throw Error(ErrorCode::kBadArgument, "the model has no rig", source.name);
-  return readModel(source.clone());
+  std::shared_ptr<RiggedModel> model = readModel(source.clone());
+  readOwnClips(*model);
+  return model;
+}
+
+std::shared_ptr<const RiggedModel> renameJoint(const RiggedModel& model, Index joint, const std::string& name) {
+  if (name.empty()) throw Error(ErrorCode::kBadArgument, "a joint needs a name");
+  const std::optional<Index> known = model.skeleton().find(name);
+  if (known && *known != joint) {
+    throw Error(ErrorCode::kBadArgument, fmt::format("there is a joint called '{}' already", name));
+  }
+  auto renamed = std::make_shared<RiggedModel>();
+  renamed->asset = model.asset.clone();
+  renamed->asset.json()["nodes"][model.binding.jointNode[joint]]["name"] = name;
+  renamed->binding = model.binding;
+  renamed->binding.skeleton.joints[joint].name = name;
+  renamed->inverseBind = model.inverseBind;
+  renamed->radii = model.radii;
+  renamed->geometry = model.geometry;
+  renamed->normals = model.normals;
+  renamed->weights = model.weights;
+  renamed->home = model.home;
+  renamed->report = model.report;
+  renamed->clips = model.clips;
+  renamed->renamed = true;
+  return renamed;
+}
+
+Asset assetWithClips(const RiggedModel& model, const Pose& pose, std::span<const std::shared_ptr<const Clip>> clips) {
+  Asset asset = model.asset.clone();
+  writeNodePose(asset, model.binding, pose);
+  const bool untouched = std::all_of(model.clips.begin(), model.clips.end(),
+                                     [&](const std::shared_ptr<const Clip>& own) { return holds(clips, own); });
+  if (!untouched) {
+    std::vector<bool> moves(asset.json().value("nodes", Json::array()).size(), false);
+    for (const Index node : model.binding.jointNode) moves[node] = true;
+    removeChannels(asset, [&](Index node, std::string_view path) { return moves[node] && path != "weights"; });
+  }
+  std::vector<Clip> added;
+  for (const std::shared_ptr<const Clip>& clip : clips) {
+    if (!untouched || !holds(model.clips, clip)) added.push_back(*clip);
+  }
+  addClips(asset, model.binding, added);
+  return asset;
 }
 
 std::shared_ptr<const RiggedModel> makeRiggedModel(const Asset& source, const AutoRigOptions& options,

@@ -3,11 +3,14 @@
 
 #include <memory>
 #include <optional>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "limber/asset/rig_io.h"
 #include "limber/mesh/tri_mesh.h"
 #include "limber/pipeline/auto_rig.h"
+#include "limber/skeleton/clip.h"
 #include "limber/skeleton/pose.h"
 
 namespace limber {
@@ -22,7 +25,9 @@ struct RiggedModel {
   std::vector<Vec3f> normals;       // #S, zero where the file has none
   SkinWeights weights;              // #S, each used vertex sums to 1
   Pose home;                        // as the joints stand in a fresh rig's file; the bind pose of a rig that was there
-  std::optional<AutoRigReport> report;  // none for a rig that the file came with
+  std::optional<AutoRigReport> report;             // none for a rig that the file came with
+  std::vector<std::shared_ptr<const Clip>> clips;  // the file's own that move joints; names unique
+  bool renamed = false;                            // joints are not called as they were
 
   const Skeleton& skeleton() const { return binding.skeleton; }
 };
@@ -33,6 +38,14 @@ std::shared_ptr<const RiggedModel> openRiggedModel(const Asset& source);
 // A copy of `source`, rigged as autoRig does. Errors and cost as there.
 std::shared_ptr<const RiggedModel> makeRiggedModel(const Asset& source, const AutoRigOptions& options,
                                                    Progress& progress);
+
+// The same with another name for a joint, and for its node. Throws Error kBadArgument where the name is empty or
+// another joint's.
+std::shared_ptr<const RiggedModel> renameJoint(const RiggedModel& model, Index joint, const std::string& name);
+
+// The document with its joints standing in `pose` and with these clips in it; clips of the file's own that are not
+// among them go.
+Asset assetWithClips(const RiggedModel& model, const Pose& pose, std::span<const std::shared_ptr<const Clip>> clips);
 
 // How thick handles are: the radius of a joint's sphere or, where the skeleton has none, a sixth of its shortest bone;
 // at least a thousandth of `size`.

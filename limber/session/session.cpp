@@ -7,10 +7,9 @@
 
 #include <fmt/format.h>
 
-#include "limber/asset/mesh_export.h"
-#include "limber/asset/pose_io.h"
+#include "limber/asset/motion_io.h"
+#include "limber/asset/rest_pose.h"
 #include "limber/asset/uri.h"
-#include "limber/asset/write.h"
 #include "limber/ik/limits_json.h"
 #include "limber/pipeline/pose_asset.h"
 #include "limber/rigging/mirror_map.h"
@@ -18,6 +17,7 @@
 #include "limber/session/mirror_pose.h"
 #include "limber/session/pose_transfer.h"
 #include "limber/session/session_file.h"
+#include "limber/session/session_io.h"
 
 namespace limber {
 
@@ -28,12 +28,6 @@ constexpr double kMirrorTolerance = 0.01;                // of the longest side,
 
 [[noreturn]] void refuse(std::string message, std::string where = {}, std::string remedy = {}) {
   throw Error(ErrorCode::kBadArgument, std::move(message), std::move(where), std::move(remedy));
-}
-
-Index requireJoint(const SessionState& state, const std::string& name) {
-  const std::optional<Index> joint = state.rig->skeleton().find(name);
-  if (!joint) refuse(fmt::format("no joint is called '{}'", name));
-  return *joint;
 }
 
 bool sameRig(const RiggedModel& a, const RiggedModel& b) {
@@ -50,11 +44,6 @@ double longestSide(const RiggedModel& rig) {
   return box.longestSide();
 }
 
-void authored(SessionState& state) {
-  state.authoredRig = state.rig;
-  state.authoredPose = state.pose;
-}
-
 // Joints that hold on to a place go back there.
 void holdTargets(SessionState& state) {
   if (!state.ik || state.targets.empty()) return;
@@ -68,13 +57,7 @@ void editPoseOf(SessionState& state, const PoseEdits& edits) {
   authored(state);
 }
 
-void setLimits(SessionState& state, const std::string& text) {
-  state.limits =
-      text.empty() ? nullptr : std::make_shared<const JointLimits>(limitsFromJson(text, state.rig->skeleton()));
-  state.limitsText = text;
-}
-
-// Targets and limits speak of joints by name, so they go with the rig that had those.
+// Targets, limits and clips speak of joints, so they go with the rig that had those.
 void setRig(SessionState& state, std::shared_ptr<const RiggedModel> rig) {
   if (sameRig(*rig, *state.authoredRig)) rig = state.authoredRig;
   state.pose =
@@ -82,6 +65,31 @@ void setRig(SessionState& state, std::shared_ptr<const RiggedModel> rig) {
   state.rig = std::move(rig);
   state.targets.clear();
   setLimits(state, {});
+  const std::vector<std::shared_ptr<const Motion>> motions = std::move(state.movement.motions);
+  state.movement = movementOf(state.rig->clips);
+  state.movement.motions = motions;
+}
+
+// The model as it is becomes the one that was opened.
+void adopt(SessionState& state, Asset asset) {
+  state.base = std::make_shared<const Asset>(std::move(asset));
+  state.rig = openRiggedModel(*state.base);
+  state.pose = state.rig->home;
+}
+
+// The clips are read anew with the model; where they came from is still known.
+void setRestPose(SessionState& state) {
+  Asset asset = assetWithClips(*state.rig, state.rig->home, clipsOf(state.movement));
+  limber::setRestPose(asset, state.rig->binding, state.pose);
+  adopt(state, std::move(asset));
+  Movement read = movementOf(state.rig->clips);
+  for (SessionClip& clip : state.movement.clips) {
+    const auto now = std::find_if(read.clips.begin(), read.clips.end(),
+                                  [&](const SessionClip& known) { return known.clip->name == clip.clip->name; });
+    if (now != read.clips.end()) clip.clip = now->clip;
+  }
+  state.targets.clear();
+  authored(state);
 }
 
 void setTarget(std::vector<HeldTarget>& targets, const HeldTarget& target) {
@@ -99,53 +107,6 @@ void eraseTarget(std::vector<HeldTarget>& targets, Index joint) {
                 targets.end());
 }
 
-SavedSession savedOf(const SessionState& state) {
-  const Skeleton& skeleton = state.rig->skeleton();
-  SavedSession saved;
-  saved.ownRig = !state.rig->report;
-  saved.rigger = state.rigger;
-  saved.skinning = state.skinning;
-  saved.handles = skeleton.jointCount();
-  saved.ik = state.ik;
-  saved.limits = state.limitsText;
-  for (const HeldTarget& target : state.targets) {
-    saved.targets.push_back({skeleton.joints[target.joint].name, target.position});
-  }
-  for (Index j = 0; j < skeleton.jointCount(); ++j) {
-    if (sameTransform(state.pose.locals[j], state.rig->home.locals[j])) continue;
-    saved.pose.push_back({skeleton.joints[j].name, state.pose.locals[j]});
-  }
-  return saved;
-}
-
-void restore(SessionState& state, const SavedSession& saved) {
-  for (const SavedJoint& joint : saved.pose) state.pose.locals[requireJoint(state, joint.joint)] = joint.local;
-  for (const SavedTarget& target : saved.targets) {
-    state.targets.push_back({requireJoint(state, target.joint), target.position});
-  }
-  setLimits(state, saved.limits);
-  state.ik = saved.ik;
-}
-
-SessionState firstState(const Asset& source, const std::optional<SavedSession>& saved, Progress& progress) {
-  AutoRigOptions options;
-  const bool own = saved ? saved->ownRig : hasRig(source);
-  if (saved && !own) {
-    options.rigger = saved->rigger;
-    options.skinning = saved->skinning;
-    options.rig.handles = saved->handles;
-    options.existingRig = hasRig(source) ? ExistingRig::kReplace : ExistingRig::kRefuse;
-  }
-  SessionState state;
-  state.rig = own ? openRiggedModel(source) : makeRiggedModel(source, options, progress);
-  state.rigger = options.rigger;
-  state.skinning = options.skinning;
-  state.pose = saved || !own ? state.rig->home : readNodePose(state.rig->asset, state.rig->binding);
-  if (saved) restore(state, *saved);
-  authored(state);
-  return state;
-}
-
 }  // namespace
 
 // Carries out one command; those that change the document commit a changed copy of its state.
@@ -161,32 +122,29 @@ struct Session::Runner {
   }
 
   void operator()(const OpenSample& c) const { session.start(makeSample(c.name), command, progress); }
-  void operator()(const OpenFile& c) const {
-    // Percent signs and the like belong to the name; what leads out of the folder is refused.
-    const std::string path = localPath(percentEncode(c.file));
-    const std::optional<Bytes> bytes = session.files_ ? session.files_(path) : std::nullopt;
-    if (!bytes) throw Error(ErrorCode::kFile, "cannot be opened", c.file);
-    session.open(*bytes, c.file, progress);
-  }
+  void operator()(const OpenFile& c) const { session.open(session.fileOf(c.file), c.file, progress); }
   void operator()(const SetHandles& c) const {
     SessionState next = state();
+    // A rigger that fits a named skeleton has no use for a number.
+    if (next.rig->report && !next.rig->report->matches.empty()) next.rigger = AutoRigOptions().rigger;
     rig(next, c.count);
     session.commit(command, std::move(next));
   }
   void operator()(const ChooseMethods& c) const {
     SessionState next = state();
+    const bool named = next.rig->report && !next.rig->report->matches.empty() && next.rigger != c.rigger;
     next.rigger = c.rigger;
     next.skinning = c.skinning;
-    rig(next, next.rig->skeleton().jointCount());
+    rig(next, named ? std::nullopt : std::optional(next.rig->skeleton().jointCount()));
     session.commit(command, std::move(next));
   }
-  void rig(SessionState& next, Index handles) const {
+  void rig(SessionState& next, std::optional<Index> handles) const {
     AutoRigOptions options;
     options.rigger = next.rigger;
     options.skinning = next.skinning;
     options.rig.handles = handles;
-    options.existingRig = hasRig(*session.source_) ? ExistingRig::kReplace : ExistingRig::kRefuse;
-    setRig(next, makeRiggedModel(*session.source_, options, progress));
+    options.existingRig = hasRig(*next.base) ? ExistingRig::kReplace : ExistingRig::kRefuse;
+    setRig(next, makeRiggedModel(*next.base, options, progress));
   }
 
   void operator()(const BeginDrag& c) const {
@@ -283,7 +241,8 @@ struct Session::Runner {
     SessionState next = state();
     const Geometry& geometry = next.rig->geometry;
     const std::optional<MirrorMap> mirror = findMirror({geometry.positions, geometry.triangles});
-    if (!mirror) throw Error(ErrorCode::kUnsupported, "the model is not its own mirror image", session.source_->name);
+    if (!mirror)
+      throw Error(ErrorCode::kUnsupported, "the model is not its own mirror image", session.state_.base->name);
     const Skeleton& skeleton = next.rig->skeleton();
     const double tolerance = kMirrorTolerance * longestSide(*next.rig);
     next.pose =
@@ -291,6 +250,78 @@ struct Session::Runner {
     holdTargets(next);
     authored(next);
     session.commit(command, std::move(next));
+  }
+
+  void operator()(const SetRestPose&) const {
+    SessionState next = state();
+    setRestPose(next);
+    session.commit(command, std::move(next));
+  }
+  // Limits speak of joints by name.
+  void operator()(const RenameJoint& c) const {
+    SessionState next = state();
+    next.rig = renameJoint(*next.rig, requireJoint(next, c.joint), c.name);
+    if (next.limits) next.limitsText = limitsToJson(*next.limits, next.rig->skeleton());
+    authored(next);
+    session.commit(command, std::move(next));
+  }
+
+  void operator()(const AddMotion& c) const { session.addMotion(session.fileOf(c.file), c.file); }
+  // What changes clips, and then shows the moment anew.
+  template <class Edit>
+  void move(const Edit& edit) const {
+    SessionState next = state();
+    edit(next);
+    if (next.movement.chosen) show(next);
+    session.commit(command, std::move(next));
+  }
+  static void show(SessionState& next) {
+    next.pose = shownPose(next.movement, next.rig->skeleton());
+    authored(next);
+  }
+  void operator()(const RetargetMotion& c) const {
+    move([&](SessionState& next) { retargetMotion(next.movement, next.rig->skeleton(), c); });
+  }
+  // A clip without keys shows nothing yet: the pose stays.
+  void operator()(const AddClip& c) const {
+    SessionState next = state();
+    addClip(next.movement, c.clip);
+    session.commit(command, std::move(next));
+  }
+  void operator()(const RemoveClip& c) const {
+    move([&](SessionState& next) { removeClip(next.movement, c.clip); });
+  }
+  void operator()(const RenameClip& c) const {
+    SessionState next = state();
+    renameClip(next.movement, c.clip, c.name);
+    session.commit(command, std::move(next));
+  }
+  void operator()(const ChooseClip& c) const {
+    move([&](SessionState& next) {
+      chooseClip(next.movement, c.clip);
+      next.pose = next.rig->home;
+      authored(next);
+    });
+  }
+  void operator()(const SetTime& c) const {
+    state();
+    setTime(session.state_.movement, c.seconds);
+    show(session.state_);
+    session.remember(command);
+  }
+  void operator()(const SetKey&) const {
+    SessionState next = state();
+    setKeyOf(next.movement, next.rig->skeleton(), next.pose);
+    session.commit(command, std::move(next));
+  }
+  void operator()(const MoveKey& c) const {
+    move([&](SessionState& next) { moveKeyOf(next.movement, c.from, c.to); });
+  }
+  void operator()(const DeleteKey& c) const {
+    move([&](SessionState& next) { deleteKeyOf(next.movement, c.seconds); });
+  }
+  void operator()(const SetInterpolation& c) const {
+    move([&](SessionState& next) { setInterpolationOf(next.movement, c.interpolation); });
   }
 
   void operator()(const Undo&) const {
@@ -326,11 +357,24 @@ void Session::open(ByteSpan bytes, std::string_view name, Progress& progress) {
   start(readAsset(bytes, name, files_), OpenFile{std::string(name)}, progress);
 }
 
+// Percent signs and the like belong to the name; what leads out of the folder is refused.
+Bytes Session::fileOf(const std::string& name) const {
+  std::optional<Bytes> bytes = files_ ? files_(localPath(percentEncode(name))) : std::nullopt;
+  if (!bytes) throw Error(ErrorCode::kFile, "cannot be opened", name);
+  return *std::move(bytes);
+}
+
+void Session::addMotion(ByteSpan bytes, std::string_view name) {
+  requireOpen();
+  if (drag_) refuse("a joint is being dragged", {}, "end_drag or cancel_drag comes first");
+  SessionState next = state_;
+  limber::addMotion(next.movement, readMotion(bytes, name, {}, files_));
+  commit(AddMotion{std::string(name)}, std::move(next));
+}
+
 void Session::start(Asset source, const Command& command, Progress& progress) {
   const std::optional<SavedSession> saved = takeSession(source);
-  SessionState state = firstState(source, saved, progress);
-  source_ = std::make_shared<const Asset>(std::move(source));
-  state_ = std::move(state);
+  state_ = startState(std::make_shared<const Asset>(std::move(source)), saved, progress);
   undo_.clear();
   redo_.clear();
   drag_.reset();
@@ -355,7 +399,8 @@ void Session::commit(const Command& command, SessionState next) {
 }
 
 void Session::remember(const Command& command) {
-  const bool onlyLast = std::holds_alternative<UpdateDrag>(command) || std::holds_alternative<SetHandles>(command);
+  const bool onlyLast = std::holds_alternative<UpdateDrag>(command) || std::holds_alternative<SetHandles>(command) ||
+                        std::holds_alternative<SetTime>(command);
   if (onlyLast && record_.back().index() == command.index()) record_.pop_back();
   record_.push_back(command);
 }
@@ -371,7 +416,7 @@ const SessionState& Session::state() const {
 
 const Asset& Session::source() const {
   requireOpen();
-  return *source_;
+  return *state_.base;
 }
 
 std::optional<Index> Session::draggedJoint() const {
@@ -398,22 +443,12 @@ std::vector<Affine> Session::skinMatrices() const {
 
 Bytes Session::exportModel(ExportFormat format) const {
   requireOpen();
-  const RiggedModel& rig = *state_.rig;
-  if (format == ExportFormat::kGlb) {
-    Asset asset = rig.asset.clone();
-    writeNodePose(asset, rig.binding, state_.pose);
-    return writeGlb(asset);
-  }
-  const ExportMesh mesh = exportMesh(rig.asset, posedGeometry(rig.asset, rig.binding, state_.pose).geometry);
-  if (format == ExportFormat::kObj) return encodeObj(mesh, {});
-  return format == ExportFormat::kStl ? encodeStl(mesh) : encodePly(mesh);
+  return exportState(state_, format);
 }
 
 Bytes Session::saveSession() const {
   requireOpen();
-  Asset asset = source_->clone();
-  putSession(asset, savedOf(state_));
-  return writeGlb(asset);
+  return savedState(state_);
 }
 
 }  // namespace limber

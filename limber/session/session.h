@@ -12,6 +12,7 @@
 #include "limber/ik/limits.h"
 #include "limber/session/command.h"
 #include "limber/session/drag.h"
+#include "limber/session/movement.h"
 #include "limber/session/pick.h"
 #include "limber/session/rigged_model.h"
 
@@ -19,6 +20,7 @@ namespace limber {
 
 // What the user works on, at one moment. Copies share everything large, so that each undo step is one.
 struct SessionState {
+  std::shared_ptr<const Asset> base;  // what rigs are made from: as opened, or with another rest pose
   std::shared_ptr<const RiggedModel> rig;
   std::string rigger, skinning;  // how it was made; kept for a model with a rig of its own
   Pose pose;
@@ -30,12 +32,14 @@ struct SessionState {
   std::vector<HeldTarget> targets;
   std::string limitsText;  // empty: none
   std::shared_ptr<const JointLimits> limits;
+  Movement movement;
 };
 
 enum class ExportFormat { kGlb, kObj, kStl, kPly };
 
-// Only the last of several updates of a drag, and of several counts of handles in a row, is recorded, and such counts
-// are one undo step. A command that fails, or is cancelled through `progress`, leaves everything as it was.
+// Only the last of several updates of a drag, counts of handles or moments of a clip in a row is recorded; such counts
+// are one undo step, and moments none. A command that fails, or is cancelled through `progress`, leaves everything as
+// it was.
 class Session {
  public:
   // `files` opens what OpenFile names, and what it refers to.
@@ -50,11 +54,13 @@ class Session {
   // The same as OpenFile, for a file whose bytes are at hand. A model without a rig gets one with the best suggested
   // number of handles; one that saveSession() wrote comes back as it was.
   void open(ByteSpan bytes, std::string_view name, Progress& progress);
+  // The same as AddMotion, for a file whose bytes are at hand. Throws as readMotion does.
+  void addMotion(ByteSpan bytes, std::string_view name);
 
   bool isOpen() const { return state_.rig != nullptr; }
   // These throw Error kBadArgument while nothing is open.
   const SessionState& state() const;
-  const Asset& source() const;  // the model as it was opened
+  const Asset& source() const;  // SessionState::base
   bool canUndo() const { return !undo_.empty(); }
   bool canRedo() const { return !redo_.empty(); }
   std::string_view undoName() const { return undo_.empty() ? std::string_view() : undo_.back().command; }
@@ -66,10 +72,10 @@ class Session {
   // #J, from where a point is bound to where its joint takes it.
   std::vector<Affine> skinMatrices() const;
 
-  // GLB: the rigged model, its joints standing in the pose. The others: the posed surface alone, an OBJ without its
-  // materials.
+  // GLB: the rigged model with its clips, its joints standing in the pose. The others: the posed surface alone, an OBJ
+  // without its materials.
   Bytes exportModel(ExportFormat format) const;
-  // See session_file.h.
+  // See session_file.h. Motions are not part of it, the clips made of them are.
   Bytes saveSession() const;
   // What was done since a model was opened; run on a new session with the same files it gives the same bytes.
   std::span<const Command> record() const { return record_; }
@@ -85,9 +91,9 @@ class Session {
   void remember(const Command& command);
   void start(Asset source, const Command& command, Progress& progress);
   void requireOpen() const;
+  Bytes fileOf(const std::string& name) const;
 
   Resolver files_;
-  std::shared_ptr<const Asset> source_;
   SessionState state_;
   std::vector<Step> undo_, redo_;
   std::unique_ptr<Drag> drag_;

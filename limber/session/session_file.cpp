@@ -53,6 +53,8 @@ SavedSession readSession(const JsonView& json) {
   }
   session.ik = json.flag("ik", false);
   session.limits = json.text("limits");
+  session.clip = json.text("clip");
+  session.seconds = json.number("seconds", 0);
   const JsonView targets = json.array("targets"), pose = json.array("pose");
   for (std::size_t i = 0; i < targets.size(); ++i) {
     SavedTarget target{requireText(targets[i], "joint"), {}};
@@ -73,6 +75,10 @@ void putSession(Asset& asset, const SavedSession& session) {
     json["handles"] = session.handles;
   }
   if (!session.limits.empty()) json["limits"] = session.limits;
+  if (!session.clip.empty()) {
+    json["clip"] = session.clip;
+    json["seconds"] = session.seconds;
+  }
   json["targets"] = Json::array();
   for (const SavedTarget& target : session.targets) {
     json["targets"].push_back({{"joint", target.joint}, {"position", numbersJson<3>(target.position.data())}});

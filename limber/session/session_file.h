@@ -27,6 +27,8 @@ struct SavedSession {
   bool ik = false;
   std::vector<SavedTarget> targets;
   std::string limits;            // text of a limits file; empty: none
+  std::string clip;              // the chosen one; empty: none
+  double seconds = 0;            // the moment of it
   std::vector<SavedJoint> pose;  // joints that do not stand as in RiggedModel::home
 };
 

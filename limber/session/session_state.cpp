@@ -2,6 +2,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "limber/ik/limits_json.h"
+#include "limber/skeleton/keyframes.h"
+
 namespace limber {
 
 namespace {
@@ -35,6 +38,53 @@ Json warningsJson(const Warnings& warnings) {
   return list;
 }
 
+Json motionsJson(const Movement& movement) {
+  Json motions = Json::array();
+  for (const std::shared_ptr<const Motion>& motion : movement.motions) {
+    Json joints = Json::array(), clips = Json::array();
+    for (const Joint& joint : motion->skeleton.joints) {
+      joints.push_back({{"name", joint.name}, {"parent", joint.parent ? static_cast<int>(*joint.parent) : -1}});
+    }
+    for (const Clip& clip : motion->clips) clips.push_back({{"name", clip.name}, {"duration", clip.duration()}});
+    motions.push_back({{"name", motion->name}, {"joints", std::move(joints)}, {"clips", std::move(clips)}});
+  }
+  return motions;
+}
+
+const char* interpolationName(Interpolation interpolation) {
+  if (interpolation == Interpolation::kCubic) return "cubic";
+  return interpolation == Interpolation::kStep ? "step" : "linear";
+}
+
+Json clipsJson(const Movement& movement) {
+  Json clips = Json::array();
+  for (const SessionClip& entry : movement.clips) {
+    const Clip& clip = *entry.clip;
+    Json source = nullptr;
+    if (entry.source) {
+      const RetargetMotion& made = entry.source->command;
+      source = {{"motion", entry.source->motion->name},
+                {"clip", entry.source->motion->clips[entry.source->clip].name},
+                {"method", made.method},
+                {"reach", made.reach},
+                {"contacts", made.contacts}};
+    }
+    clips.push_back({{"name", clip.name},
+                     {"duration", clip.duration()},
+                     {"keys", keyTimes(clip)},
+                     {"interpolation", interpolationName(interpolationOf(clip))},
+                     {"source", std::move(source)}});
+  }
+  return clips;
+}
+
+// Of the chosen clip.
+Json matchJson(const SessionState& state) {
+  if (!state.movement.chosen || !state.movement.clips[*state.movement.chosen].source) return Json::array();
+  const ClipSource& source = *state.movement.clips[*state.movement.chosen].source;
+  return Json::parse(skeletonMapToJson(source.map, source.motion->skeleton, state.rig->skeleton()))["matches"];
+}
+
 }  // namespace
 
 Json sessionState(const Session& session) {
@@ -55,6 +105,12 @@ Json sessionState(const Session& session) {
       {"joints", jointsJson(rig)},
       {"ik", state.ik},
       {"limited", state.limits != nullptr},
+      {"limits", state.limits ? Json::parse(limitsToJson(*state.limits, rig.skeleton()))["joints"] : Json::object()},
+      {"motions", motionsJson(state.movement)},
+      {"clips", clipsJson(state.movement)},
+      {"clip", state.movement.chosen ? Json(*state.movement.chosen) : Json(nullptr)},
+      {"seconds", state.movement.seconds},
+      {"match", matchJson(state)},
       {"targets", Json::array()},
       {"dragged", nullptr},
       {"posed", !samePose(state.pose, rig.home)},

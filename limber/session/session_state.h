@@ -8,6 +8,12 @@ namespace limber {
 
 // {"name", "vertices", "triangles", "box": {"min", "max"}, "own_rig", "rigger", "skinning", "most_handles",
 //  "suggestions": [counts, best first], "joints": [{"name", "parent" (-1: none), "radius", "rest": position}],
+//  "motions": [{"name", "joints": [{"name", "parent"}], "clips": [{"name", "duration"}]}],
+//  "clips": [{"name", "duration", "keys": [seconds], "interpolation", "source": null or {"motion", "clip", "method",
+//  "reach", "contacts"}}], "clip": the chosen one's index or null, "seconds",
+//  "match": of the chosen clip, where it is from a motion: [{"part", "source": [joints], "target": [joints],
+//  "confidence", "by"}],
+//  "limits": {joint's name: limit} as in a limits file,
 //  "ik", "limited", "targets": [{"joint": index, "position"}], "dragged" (a joint's index or null), "posed",
 //  "undo", "redo" (command names or null), "warnings": [{"kind", "message", "where", "count"}]}
 // Throws Error kBadArgument while nothing is open.

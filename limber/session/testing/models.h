@@ -1,9 +1,13 @@
-// A small model made in code, for tests of sessions. Not installed.
+// Small models and a motion made in code, for tests of sessions. Not installed.
 #pragma once
 
+#include "limber/asset/bvh_write.h"
 #include "limber/asset/read.h"
+#include "limber/asset/rig_io.h"
 #include "limber/asset/testing/gltf_builder.h"
+#include "limber/asset/write.h"
 #include "limber/core/error.h"
+#include "limber/retarget/testing/test_motion.h"
 #include "limber/rigging/testing/shape_meshes.h"
 #include "limber/session/rigged_model.h"
 
@@ -28,6 +32,40 @@ inline const Bytes& bipedGlb() {
     builder.json["scenes"] = Json::array({{{"nodes", {0}}}});
     builder.json["scene"] = 0;
     return builder.glb();
+  }();
+  return bytes;
+}
+
+// The same with a rig whose joints have a person's names, each vertex on the nearest.
+inline const Bytes& namedPersonGlb() {
+  static const Bytes bytes = [] {
+    Asset asset = readAsset(bipedGlb(), "person.glb");
+    const Geometry geometry = collectGeometry(asset);
+    const Skeleton skeleton = practiceHumanoid();
+    const std::vector<Affine> joints = restGlobals(skeleton);
+    SkinWeights weights;
+    weights.slots = 1;
+    for (const Vec3f& position : geometry.positions) {
+      Index nearest = 0;
+      const auto distance = [&](Index j) { return (joints[j].translation() - position.cast<double>()).norm(); };
+      for (Index j = 1; j < skeleton.jointCount(); ++j) nearest = distance(j) < distance(nearest) ? j : nearest;
+      weights.joints.push_back(nearest);
+      weights.weights.push_back(1.0f);
+    }
+    attachRig(asset, geometry, skeleton, weights);
+    return writeGlb(asset);
+  }();
+  return bytes;
+}
+
+// One second of walking.
+inline const Bytes& walkBvh() {
+  static const Bytes bytes = [] {
+    Motion motion;
+    motion.skeleton = practiceHumanoid();
+    motion.framesPerSecond = 30;
+    motion.clips.push_back(clipOf(motion.skeleton, walk(motion.skeleton, 31, 30), "walk"));
+    return writeBvh(motion);
   }();
   return bytes;
 }

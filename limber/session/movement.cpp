@@ -1,0 +1,201 @@
+#include "limber/session/movement.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "limber/core/error.h"
+#include "limber/retarget/retarget_clip.h"
+#include "limber/retarget/retarget_method.h"
+#include "limber/skeleton/keyframes.h"
+
+namespace limber {
+
+namespace {
+
+[[noreturn]] void refuse(std::string message) {
+  throw Error(ErrorCode::kBadArgument, std::move(message));
+}
+
+std::optional<std::size_t> findClip(const Movement& movement, const std::string& name) {
+  for (std::size_t c = 0; c < movement.clips.size(); ++c) {
+    if (movement.clips[c].clip->name == name) return c;
+  }
+  return std::nullopt;
+}
+
+std::size_t requireClip(const Movement& movement, const std::string& name) {
+  const std::optional<std::size_t> clip = findClip(movement, name);
+  if (!clip) refuse(fmt::format("no clip is called '{}'", name));
+  return *clip;
+}
+
+void requireFreeName(const Movement& movement, const std::string& name) {
+  if (name.empty()) refuse("a clip needs a name");
+  if (findClip(movement, name)) refuse(fmt::format("there is a clip called '{}' already", name));
+}
+
+// `taken` says whether something has the name.
+template <class Taken>
+std::string freeName(const std::string& wanted, const Taken& taken) {
+  std::string name = wanted;
+  for (int number = 2; taken(name); ++number) name = fmt::format("{} {}", wanted, number);
+  return name;
+}
+
+SessionClip& requireChosen(Movement& movement) {
+  if (!movement.chosen) refuse("no clip is chosen");
+  return movement.clips[*movement.chosen];
+}
+
+// Changes a copy of the chosen clip.
+template <class Edit>
+void editChosen(Movement& movement, const Edit& edit) {
+  SessionClip& chosen = requireChosen(movement);
+  auto clip = std::make_shared<Clip>(*chosen.clip);
+  edit(*clip);
+  chosen.clip = std::move(clip);
+}
+
+std::shared_ptr<const Motion> requireMotion(const Movement& movement, const std::string& name) {
+  for (const std::shared_ptr<const Motion>& motion : movement.motions) {
+    if (motion->name == name) return motion;
+  }
+  refuse(fmt::format("no motion is called '{}'", name));
+}
+
+std::size_t clipOfMotion(const Motion& motion, const std::string& name) {
+  if (motion.clips.empty()) refuse(fmt::format("the motion '{}' has no clip", motion.name));
+  for (std::size_t c = 0; c < motion.clips.size(); ++c) {
+    if (name.empty() || motion.clips[c].name == name) return c;
+  }
+  refuse(fmt::format("the motion '{}' has no clip called '{}'", motion.name, name));
+}
+
+}  // namespace
+
+Movement movementOf(const std::vector<std::shared_ptr<const Clip>>& own) {
+  Movement movement;
+  for (const std::shared_ptr<const Clip>& clip : own) movement.clips.push_back({clip, {}});
+  return movement;
+}
+
+std::vector<std::shared_ptr<const Clip>> clipsOf(const Movement& movement) {
+  std::vector<std::shared_ptr<const Clip>> clips;
+  for (const SessionClip& clip : movement.clips) clips.push_back(clip.clip);
+  return clips;
+}
+
+Pose shownPose(const Movement& movement, const Skeleton& skeleton) {
+  Pose pose = restPose(skeleton);
+  if (const Clip* clip = movement.clip()) sampleClip(*clip, movement.seconds, pose);
+  return pose;
+}
+
+void addMotion(Movement& movement, Motion motion) {
+  motion.name = freeName(motion.name.empty() ? "motion" : motion.name, [&](const std::string& name) {
+    return std::any_of(movement.motions.begin(), movement.motions.end(),
+                       [&](const std::shared_ptr<const Motion>& known) { return known->name == name; });
+  });
+  movement.motions.push_back(std::make_shared<const Motion>(std::move(motion)));
+}
+
+void retargetMotion(Movement& movement, const Skeleton& skeleton, const RetargetMotion& command) {
+  ClipSource source{requireMotion(movement, command.motion), 0, command, {}};
+  const Motion& motion = *source.motion;
+  source.clip = clipOfMotion(motion, command.clip);
+  if (!(command.reach >= 0 && command.reach <= 1)) refuse("the reach is not between 0 and 1");
+  const RetargetMethod& method = findRetargetMethod(command.method);
+  source.map = command.map.empty() ? matchSkeletons(motion.skeleton, skeleton)
+                                   : skeletonMapFromJson(command.map, motion.skeleton, skeleton);
+  RetargetOptions options;
+  options.reach = command.reach;
+  options.contacts = command.contacts;
+  const Clip& clip = motion.clips[source.clip];
+  const double rate = motion.clips.size() == 1 ? motion.framesPerSecond : frameRateOf(clip);
+  Clip made = retargetClip(method, motion.skeleton, clip, skeleton, source.map, options, rate);
+
+  for (std::size_t c = 0; c < movement.clips.size(); ++c) {
+    const std::optional<ClipSource>& known = movement.clips[c].source;
+    if (!known || known->motion != source.motion || known->clip != source.clip) continue;
+    made.name = movement.clips[c].clip->name;
+    movement.clips[c] = {std::make_shared<const Clip>(std::move(made)), std::move(source)};
+    if (movement.chosen != c) movement.seconds = 0;
+    movement.chosen = c;
+    return;
+  }
+  made.name = freeName(motion.clips.size() == 1 || clip.name.empty() ? motion.name : clip.name,
+                       [&](const std::string& name) { return findClip(movement, name).has_value(); });
+  movement.clips.push_back({std::make_shared<const Clip>(std::move(made)), std::move(source)});
+  movement.chosen = movement.clips.size() - 1;
+  movement.seconds = 0;
+}
+
+void addClip(Movement& movement, const std::string& name) {
+  requireFreeName(movement, name);
+  auto clip = std::make_shared<Clip>();
+  clip->name = name;
+  movement.clips.push_back({std::move(clip), {}});
+  movement.chosen = movement.clips.size() - 1;
+  movement.seconds = 0;
+}
+
+void removeClip(Movement& movement, const std::string& name) {
+  const std::size_t clip = requireClip(movement, name);
+  movement.clips.erase(movement.clips.begin() + static_cast<std::ptrdiff_t>(clip));
+  if (movement.chosen == clip) {
+    movement.chosen.reset();
+    movement.seconds = 0;
+  } else if (movement.chosen && *movement.chosen > clip) {
+    --*movement.chosen;
+  }
+}
+
+void renameClip(Movement& movement, const std::string& from, const std::string& to) {
+  const std::size_t at = requireClip(movement, from);
+  if (from == to) return;
+  requireFreeName(movement, to);
+  auto clip = std::make_shared<Clip>(*movement.clips[at].clip);
+  clip->name = to;
+  movement.clips[at].clip = std::move(clip);
+}
+
+void chooseClip(Movement& movement, const std::string& name) {
+  movement.chosen = name.empty() ? std::nullopt : std::optional(requireClip(movement, name));
+  movement.seconds = 0;
+}
+
+void setTime(Movement& movement, double seconds) {
+  requireChosen(movement);
+  if (!std::isfinite(seconds) || seconds < 0) refuse("a moment is not a positive number of seconds");
+  movement.seconds = seconds;
+}
+
+void setKeyOf(Movement& movement, const Skeleton& skeleton, const Pose& pose) {
+  editChosen(movement, [&](Clip& clip) { setKey(clip, skeleton, pose, movement.seconds); });
+}
+
+void moveKeyOf(Movement& movement, double from, double to) {
+  editChosen(movement, [&](Clip& clip) { moveKey(clip, from, to); });
+}
+
+void deleteKeyOf(Movement& movement, double seconds) {
+  editChosen(movement, [&](Clip& clip) { deleteKey(clip, seconds); });
+}
+
+void setInterpolationOf(Movement& movement, Interpolation interpolation) {
+  editChosen(movement, [&](Clip& clip) { setInterpolation(clip, interpolation); });
+}
+
+std::vector<Vec3> sourceJoints(const Movement& movement) {
+  std::vector<Vec3> places;
+  if (!movement.chosen || !movement.clips[*movement.chosen].source) return places;
+  const ClipSource& source = *movement.clips[*movement.chosen].source;
+  Pose pose = restPose(source.motion->skeleton);
+  sampleClip(source.motion->clips[source.clip], movement.seconds, pose);
+  for (const Affine& global : poseGlobals(source.motion->skeleton, pose)) places.push_back(global.translation());
+  return places;
+}
+
+}  // namespace limber

@@ -1,0 +1,250 @@
+#include "limber/session/movement.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "limber/asset/clip_io.h"
+#include "limber/asset/json_text.h"
+#include "limber/core/error.h"
+#include "limber/session/session.h"
+#include "limber/session/session_state.h"
+#include "limber/session/testing/models.h"
+#include "limber/skeleton/keyframes.h"
+
+namespace limber {
+namespace {
+
+using ::testing::ElementsAre;
+
+std::optional<Bytes> movingFiles(std::string_view path) {
+  if (path == "person.glb") return testing::namedPersonGlb();
+  return path == "walk.bvh" ? std::optional<Bytes>(testing::walkBvh()) : std::nullopt;
+}
+
+void act(Session& session, const Command& command) {
+  Progress progress;
+  session.run(command, progress);
+}
+
+Session person() {
+  Session session(movingFiles);
+  act(session, OpenFile{"person.glb"});
+  return session;
+}
+
+Session walking() {
+  Session session = person();
+  act(session, AddMotion{"walk.bvh"});
+  act(session, RetargetMotion{.motion = "walk", .clip = {}, .map = {}});
+  return session;
+}
+
+Quat turnOf(const Session& session, const char* joint) {
+  return session.state().pose.locals[session.state().rig->skeleton().find(joint).value()].rotation;
+}
+
+TEST(Movement, AMotionOntoAModelIsAClipThatCanBeScrubbed) {
+  Session session = person();
+  const Pose before = session.state().pose;
+  act(session, AddMotion{"walk.bvh"});
+  act(session, RetargetMotion{.motion = "walk", .clip = {}, .map = {}, .contacts = false});
+  const Movement& movement = session.state().movement;
+  ASSERT_EQ(movement.clips.size(), 1u);
+  EXPECT_EQ(movement.clip()->name, "walk");
+  EXPECT_NEAR(movement.clip()->duration(), 1, 1e-3);
+  const std::size_t recorded = session.record().size();
+  for (const double seconds : {0.1, 0.5, 0.3}) act(session, SetTime{seconds});
+  EXPECT_EQ(session.record().size(), recorded + 1);
+  EXPECT_EQ(session.undoName(), "retarget");
+  // The model and the motion have the same skeleton: what the walk says at that moment is what is shown.
+  const PoseSequence walk = testing::walk(practiceHumanoid(), 31, 30);
+  for (const char* joint : {"leftUpperLeg", "rightLowerLeg", "chest", "head"}) {
+    const Quat expected = walk.poses[9].locals[practiceHumanoid().find(joint).value()].rotation;
+    EXPECT_LT(turnOf(session, joint).angularDistance(expected), 0.02) << joint;
+  }
+  const std::vector<Vec3> source = sourceJoints(movement);
+  EXPECT_EQ(source.size(), movement.motions[0]->skeleton.joints.size());
+  EXPECT_FALSE(sessionState(session)["match"].empty());
+  act(session, Undo{});
+  EXPECT_TRUE(session.state().movement.clips.empty());
+  EXPECT_TRUE(samePose(session.state().pose, before));
+}
+
+TEST(Movement, AnotherMethodTakesTheClipsPlaceAndAMapIsObeyed) {
+  Session session = walking();
+  act(session, SetTime{0.4});
+  const Quat before = turnOf(session, "leftLowerLeg");
+  act(session, RetargetMotion{.motion = "walk", .clip = {}, .method = "aligned", .map = {}});
+  ASSERT_EQ(session.state().movement.clips.size(), 1u);
+  EXPECT_EQ(session.state().movement.seconds, 0.4);
+  EXPECT_EQ(sessionState(session)["clips"][0]["source"]["method"], "aligned");
+  // Without the right arm in the map it stays at rest.
+  Json map = {{"matches", sessionState(session)["match"]}};
+  Json& matches = map["matches"];
+  for (std::size_t i = matches.size(); i-- > 0;) {
+    if (matches[i]["part"].get<std::string>().rfind("right", 0) == 0) matches.erase(i);
+  }
+  RetargetMotion left{.motion = "walk", .clip = {}, .method = "aligned", .map = map.dump()};
+  act(session, left);
+  EXPECT_LT(turnOf(session, "rightUpperArm").angularDistance(Quat::Identity()), 1e-6);
+  EXPECT_GT(turnOf(session, "leftLowerLeg").angularDistance(Quat::Identity()), 0.05);
+  EXPECT_LT(turnOf(session, "leftLowerLeg").angularDistance(before), 0.3);
+}
+
+TEST(Movement, PosesBecomeKeys) {
+  Session session = person();
+  act(session, AddClip{"nod"});
+  act(session, SetKey{});
+  act(session, SetTime{0.5});
+  act(session, TurnJoint{"head", Vec3::UnitX(), 30});
+  act(session, SetKey{});
+  act(session, SetTime{1});
+  act(session, ResetJoint{"head"});
+  act(session, SetKey{});
+  EXPECT_THAT(keyTimes(*session.state().movement.clip()), ElementsAre(0, 0.5, 1));
+  act(session, SetTime{0.25});
+  EXPECT_NEAR(turnOf(session, "head").angularDistance(Quat::Identity()), 15 * EIGEN_PI / 180, 1e-5);
+  act(session, SetInterpolation{Interpolation::kStep});
+  EXPECT_NEAR(turnOf(session, "head").angularDistance(Quat::Identity()), 0, 1e-5);
+  act(session, MoveKey{0.5, 0.2});
+  EXPECT_NEAR(turnOf(session, "head").angularDistance(Quat::Identity()), 30 * EIGEN_PI / 180, 1e-5);
+  act(session, DeleteKey{0.2});
+  EXPECT_THAT(keyTimes(*session.state().movement.clip()), ElementsAre(0, 1));
+  EXPECT_THROW(act(session, DeleteKey{0.2}), Error);
+  act(session, Undo{});
+  EXPECT_THAT(keyTimes(*session.state().movement.clip()), ElementsAre(0, 0.2f, 1));
+}
+
+TEST(Movement, ClipsAreChosenRenamedAndRemoved) {
+  Session session = walking();
+  act(session, AddClip{"wave"});
+  EXPECT_EQ(session.state().movement.clip()->name, "wave");
+  EXPECT_THROW(act(session, AddClip{"walk"}), Error);
+  act(session, RenameClip{"walk", "stroll"});
+  EXPECT_THROW(act(session, RenameClip{"stroll", "wave"}), Error);
+  EXPECT_THROW(act(session, ChooseClip{"walk"}), Error);
+  act(session, ChooseClip{"stroll"});
+  EXPECT_FALSE(samePose(session.state().pose, session.state().rig->home));
+  act(session, ChooseClip{});
+  EXPECT_TRUE(samePose(session.state().pose, session.state().rig->home));
+  EXPECT_THROW(act(session, SetTime{0}), Error);
+  EXPECT_THROW(act(session, SetKey{}), Error);
+  act(session, RemoveClip{"stroll"});
+  ASSERT_EQ(session.state().movement.clips.size(), 1u);
+  EXPECT_THROW(act(session, RetargetMotion{.motion = "none", .clip = {}, .map = {}}), Error);
+  EXPECT_THROW(act(session, RetargetMotion{.motion = "walk", .clip = "other", .map = {}}), Error);
+  EXPECT_THROW(act(session, RetargetMotion{.motion = "walk", .clip = {}, .map = "{"}), Error);
+  EXPECT_THROW(act(session, RetargetMotion{.motion = "walk", .clip = {}, .map = {}, .reach = 2}), Error);
+  EXPECT_THROW(act(session, AddMotion{"person.png"}), Error);
+  act(session, AddMotion{"walk.bvh"});
+  EXPECT_EQ(session.state().movement.motions[1]->name, "walk 2");
+}
+
+TEST(Movement, ExportedAndSavedClipsComeBack) {
+  Session session = walking();
+  act(session, AddClip{"nod"});
+  act(session, TurnJoint{"head", Vec3::UnitX(), 30});
+  act(session, SetKey{});
+  act(session, RenameJoint{"jaw", "mandible"});
+  act(session, ChooseClip{"walk"});
+  act(session, SetTime{0.5});
+
+  const Bytes glb = session.exportModel(ExportFormat::kGlb);
+  if (const char* folder = std::getenv("LIMBER_TEST_OUTPUT")) {
+    const std::string path = std::string(folder) + "/session_clips.glb";
+    if (std::FILE* file = std::fopen(path.c_str(), "wb")) {
+      std::fwrite(glb.data(), 1, glb.size(), file);
+      std::fclose(file);
+    }
+  }
+  Session exported;
+  Progress progress;
+  exported.open(glb, "out.glb", progress);
+  const Movement& read = exported.state().movement;
+  ASSERT_EQ(read.clips.size(), 2u);
+  EXPECT_EQ(read.clips[1].clip->name, "nod");
+  EXPECT_NEAR(read.clips[0].clip->duration(), 1, 1e-3);
+  EXPECT_TRUE(exported.state().rig->skeleton().find("mandible"));
+  act(exported, ChooseClip{"walk"});
+  act(exported, SetTime{0.5});
+  EXPECT_LT(turnOf(exported, "leftLowerLeg").angularDistance(turnOf(session, "leftLowerLeg")), 1e-5);
+  // Untouched clips stay as the file has them, changed ones are written anew and not twice.
+  EXPECT_EQ(exported.state().rig->clips[0], read.clips[0].clip);
+  act(exported, RemoveClip{"walk"});
+  act(exported, RenameClip{"nod", "yes"});
+  Session third;
+  third.open(exported.exportModel(ExportFormat::kGlb), "third.glb", progress);
+  ASSERT_EQ(third.state().movement.clips.size(), 1u);
+  EXPECT_EQ(third.state().movement.clips[0].clip->name, "yes");
+
+  Session saved;
+  saved.open(session.saveSession(), "saved.glb", progress);
+  ASSERT_TRUE(saved.state().movement.clip());
+  EXPECT_EQ(saved.state().movement.clip()->name, "walk");
+  EXPECT_EQ(saved.state().movement.seconds, 0.5);
+  EXPECT_LT(turnOf(saved, "leftLowerLeg").angularDistance(turnOf(session, "leftLowerLeg")), 1e-5);
+}
+
+TEST(Movement, TheRecordReplayedGivesTheSameBytes) {
+  Session session = walking();
+  act(session, SetTime{0.25});
+  act(session, TurnJoint{"head", Vec3::UnitY(), 20});
+  act(session, SetKey{});
+  act(session, RenameJoint{"head", "skull"});
+  act(session, SetInterpolation{Interpolation::kCubic});
+  act(session, AddClip{"still"});
+  act(session, MoveJoint{"hips", {0.1, 0.2, 0}});
+  act(session, SetRestPose{});
+  act(session, Undo{});
+  act(session, Redo{});
+  Session again(movingFiles);
+  for (const Command& command : commandsFromJson(commandsToJson(session.record()))) act(again, command);
+  EXPECT_EQ(again.exportModel(ExportFormat::kGlb), session.exportModel(ExportFormat::kGlb));
+  EXPECT_EQ(sessionState(again).dump(), sessionState(session).dump());
+}
+
+TEST(Movement, ThePoseBecomesTheRestPose) {
+  Session session(movingFiles);
+  Progress progress;
+  session.open(testing::bipedGlb(), "biped.glb", progress);
+  act(session, SetHandles{12});
+  const std::string name = session.state().rig->skeleton().joints.back().name;
+  act(session, TurnJoint{name, Vec3::UnitZ(), 25});
+  act(session, MoveJoint{session.state().rig->skeleton().joints[0].name, {0, 0.5, 0}});
+  const std::vector<Vec3f> posed = posedPositions(*session.state().rig, session.state().pose);
+  act(session, SetRestPose{});
+  EXPECT_FALSE(sessionState(session)["posed"].get<bool>());
+  double furthest = 0;
+  for (std::size_t v = 0; v < posed.size(); ++v) {
+    furthest = std::max(furthest, double{(session.state().rig->geometry.positions[v] - posed[v]).norm()});
+  }
+  EXPECT_LT(furthest, 1e-5);
+  // Other handles are made for the new shape.
+  act(session, SetHandles{8});
+  double lowest = 1e9;
+  for (const Vec3f& p : session.state().rig->geometry.positions) lowest = std::min(lowest, double{p.y()});
+  EXPECT_NEAR(lowest, 0.5, 0.2);
+  act(session, Undo{});
+  act(session, Undo{});
+  EXPECT_TRUE(sessionState(session)["posed"].get<bool>());
+  EXPECT_EQ(session.state().rig->skeleton().joints.back().name, name);
+}
+
+TEST(Movement, RenamedJointsKeepTheirLimits) {
+  Session session = person();
+  act(session, SetLimits{R"({"limber_limits": 1, "joints": {"leftLowerLeg": {"type": "hinge", "x": [0, 30]}}})"});
+  act(session, RenameJoint{"leftLowerLeg", "shin"});
+  EXPECT_TRUE(sessionState(session)["limits"].contains("shin"));
+  act(session, TurnJoint{"shin", Vec3::UnitX(), 80});
+  EXPECT_NEAR(turnOf(session, "shin").angularDistance(Quat::Identity()), 30 * EIGEN_PI / 180, 1e-6);
+  EXPECT_THROW(act(session, RenameJoint{"shin", "head"}), Error);
+  EXPECT_THROW(act(session, RenameJoint{"shin", ""}), Error);
+  Session again;
+  Progress progress;
+  again.open(session.saveSession(), "again.glb", progress);
+  EXPECT_TRUE(again.state().limits);
+}
+
+}  // namespace
+}  // namespace limber

@@ -1,0 +1,117 @@
+#include "limber/session/session_io.h"
+
+#include <fmt/format.h>
+
+#include "limber/asset/mesh_export.h"
+#include "limber/asset/pose_io.h"
+#include "limber/asset/write.h"
+#include "limber/core/error.h"
+#include "limber/ik/limits_json.h"
+#include "limber/pipeline/pose_asset.h"
+
+namespace limber {
+
+namespace {
+
+// Methods would make the rig again, but not what was done to it since.
+bool keepsRig(const SessionState& state) {
+  return !state.rig->report || state.rig->renamed || !state.movement.clips.empty();
+}
+
+SavedSession savedOf(const SessionState& state) {
+  const Skeleton& skeleton = state.rig->skeleton();
+  SavedSession saved;
+  saved.ownRig = keepsRig(state);
+  saved.rigger = state.rigger;
+  saved.skinning = state.skinning;
+  saved.handles = skeleton.jointCount();
+  saved.ik = state.ik;
+  saved.limits = state.limitsText;
+  for (const HeldTarget& target : state.targets) {
+    saved.targets.push_back({skeleton.joints[target.joint].name, target.position});
+  }
+  if (const Clip* clip = state.movement.clip()) {
+    saved.clip = clip->name;
+    saved.seconds = state.movement.seconds;
+  }
+  // Where it will stand when it is opened without this.
+  const Pose home = saved.ownRig ? restPose(skeleton) : state.rig->home;
+  for (Index j = 0; j < skeleton.jointCount(); ++j) {
+    if (sameTransform(state.pose.locals[j], home.locals[j])) continue;
+    saved.pose.push_back({skeleton.joints[j].name, state.pose.locals[j]});
+  }
+  return saved;
+}
+
+void restore(SessionState& state, const SavedSession& saved) {
+  for (const SavedJoint& joint : saved.pose) state.pose.locals[requireJoint(state, joint.joint)] = joint.local;
+  for (const SavedTarget& target : saved.targets) {
+    state.targets.push_back({requireJoint(state, target.joint), target.position});
+  }
+  setLimits(state, saved.limits);
+  state.ik = saved.ik;
+  if (!saved.clip.empty()) {
+    chooseClip(state.movement, saved.clip);
+    setTime(state.movement, saved.seconds);
+  }
+}
+
+}  // namespace
+
+Index requireJoint(const SessionState& state, const std::string& name) {
+  const std::optional<Index> joint = state.rig->skeleton().find(name);
+  if (!joint) throw Error(ErrorCode::kBadArgument, fmt::format("no joint is called '{}'", name));
+  return *joint;
+}
+
+void setLimits(SessionState& state, const std::string& text) {
+  state.limits =
+      text.empty() ? nullptr : std::make_shared<const JointLimits>(limitsFromJson(text, state.rig->skeleton()));
+  state.limitsText = text;
+}
+
+void authored(SessionState& state) {
+  state.authoredRig = state.rig;
+  state.authoredPose = state.pose;
+}
+
+SessionState startState(std::shared_ptr<const Asset> asset, const std::optional<SavedSession>& saved,
+                        Progress& progress) {
+  const Asset& source = *asset;
+  AutoRigOptions options;
+  const bool own = saved ? saved->ownRig : hasRig(source);
+  if (saved && !own) {
+    options.rigger = saved->rigger;
+    options.skinning = saved->skinning;
+    options.rig.handles = saved->handles;
+    options.existingRig = hasRig(source) ? ExistingRig::kReplace : ExistingRig::kRefuse;
+  }
+  SessionState state;
+  state.base = asset;
+  state.rig = own ? openRiggedModel(source) : makeRiggedModel(source, options, progress);
+  state.rigger = options.rigger;
+  state.skinning = options.skinning;
+  state.pose = saved || !own ? state.rig->home : readNodePose(state.rig->asset, state.rig->binding);
+  state.movement = movementOf(state.rig->clips);
+  if (saved) restore(state, *saved);
+  authored(state);
+  return state;
+}
+
+Bytes exportState(const SessionState& state, ExportFormat format) {
+  const RiggedModel& rig = *state.rig;
+  if (format == ExportFormat::kGlb) return writeGlb(assetWithClips(rig, state.pose, clipsOf(state.movement)));
+  const ExportMesh mesh = exportMesh(rig.asset, posedGeometry(rig.asset, rig.binding, state.pose).geometry);
+  if (format == ExportFormat::kObj) return encodeObj(mesh, {});
+  return format == ExportFormat::kStl ? encodeStl(mesh) : encodePly(mesh);
+}
+
+Bytes savedState(const SessionState& state) {
+  const RiggedModel& rig = *state.rig;
+  Asset asset = keepsRig(state) ? assetWithClips(rig, readNodePose(rig.asset, rig.binding), clipsOf(state.movement))
+                                : state.base->clone();
+  putSession(asset, savedOf(state));
+  return writeGlb(asset);
+}
+
+}  // namespace limber
