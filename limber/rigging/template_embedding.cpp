@@ -18,11 +18,16 @@ constexpr double kSample = 0.03;        // heights between two looks along a bon
 constexpr double kLongestBone = 0.7;    // heights
 constexpr double kOffMiddle = 1.5;      // for a place beside the deepest of its part
 constexpr double kPlaceSpread = 0.22;   // heights, of joints about their place in the template
-constexpr double kTipSpread = 0.12;     // heights up, of tips
+constexpr double kTipSpread = 0.12;     // heights up, of tips on the ground and on top
+constexpr double kHandSpread = 0.3;     // of other tips
+constexpr double kNearEnd = 0.12;       // heights from the ground or the top
 constexpr double kMiddleSpread = 0.02;  // heights, of joints of the middle to the sides
 constexpr double kTipReach = 0.04;      // heights from an end of the model
 constexpr double kNoTip = 4;            // most that a tip away from every end costs
+constexpr double kNearPlane = 0.03;     // heights: such spheres count for the middle
+constexpr double kLineSpacing = 0.02;   // heights of places along the middle line
 constexpr double kWorstBone = 25;       // most that length and direction of a bone cost
+constexpr double kWorstTip = 5;         // of the way to a tip: stumps have no hands and feet
 
 struct Candidate {
   Vec3 place = Vec3::Zero();
@@ -99,11 +104,12 @@ class Embedder {
       const double x = left.dot(point - frame_.origin) / frame_.height;
       const Vec3 onPlane = point - x * frame_.height * left;
       const double depth = -body_.distance->at(onPlane);
-      if (std::abs(x) < 0.03 && depth > 0) add(onPlane);
+      if (std::abs(x) < kNearPlane && depth > 0) add(onPlane);
       if (std::abs(x) > 0.015 && (x > 0 || body_.distance->at(frame_.mirrored(point)) < 0)) {
         add(x > 0 ? point : frame_.mirrored(point));
       }
     }
+    if (half_) addMiddleLine();
     for (Candidate& c : candidates_) {
       double deepest = c.radius;
       for (const Candidate& other : candidates_) {
@@ -118,6 +124,32 @@ class Embedder {
       pinned_[j] = static_cast<Index>(candidates_.size());
       add(frame_.fromBody(*pins_[j]));
       candidates_.back().offMiddle = 0;
+    }
+  }
+
+  // Necks, heads and hips of bulky bodies lie where no medial sphere has its centre: for each height the deepest
+  // places between left and right.
+  void addMiddleLine() {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const MedialSphere& sphere : body_.spheres) {
+      const Vec3 place = frame_.toBody(sphere.center);
+      const double radius = sphere.radius / frame_.height;
+      low = std::min(low, place.z() - radius);
+      high = std::max(high, place.z() + radius);
+    }
+    const double step = 0.5 * body_.distance->spacing() / frame_.height;
+    for (double y = 0.5 * kLineSpacing; y < 1; y += kLineSpacing) {
+      Vec3 deepest = Vec3::Zero();
+      double depth = 0;
+      for (double z = low; z <= high; z += step) {
+        const Vec3 place(0, y, z);
+        const double here = -body_.distance->at(frame_.fromBody(place));
+        if (here > depth) {
+          depth = here;
+          deepest = place;
+        }
+      }
+      if (depth > 0) add(frame_.fromBody(deepest));
     }
   }
 
@@ -159,7 +191,9 @@ class Embedder {
     const bool tip = joint.role == TemplateRole::kTip;
     const Vec3 off = c.place - joint.place;
     double penalty = kOffMiddle * (tip ? 0 : c.offMiddle * c.offMiddle);
-    const double up = off.y() / (tip ? kTipSpread : kPlaceSpread);
+    // Feet are on the ground and the head is on top; hands hang or reach out.
+    const bool outermost = tip && (joint.place.y() < kNearEnd || joint.place.y() > 1 - kNearEnd);
+    const double up = off.y() / (outermost ? kTipSpread : tip ? kHandSpread : kPlaceSpread);
     penalty += up * up + off.z() * off.z() / (4 * kPlaceSpread * kPlaceSpread);
     if (!joint.mirror) {
       penalty += c.place.x() * c.place.x() / (kMiddleSpread * kMiddleSpread);
@@ -174,7 +208,7 @@ class Embedder {
 
   struct BoneShape {
     Vec3f direction;
-    float logLength, lengthWeight, turnWeight;
+    float logLength, lengthWeight, turnWeight, worst;
   };
   BoneShape shapeOf(Index j) const {
     const TemplateJoint& joint = skeleton_.joints[j];
@@ -182,14 +216,15 @@ class Embedder {
     const double length = std::max(bone.norm(), 1e-3);
     return {(bone / length).cast<float>(), static_cast<float>(std::log(length)),
             static_cast<float>(1 / (joint.lengthSpread * joint.lengthSpread)),
-            static_cast<float>(2 / (joint.turnSpread * joint.turnSpread))};
+            static_cast<float>(2 / (joint.turnSpread * joint.turnSpread)),
+            static_cast<float>(joint.role == TemplateRole::kTip ? kWorstTip : kWorstBone)};
   }
 
   static float bonePenalty(const BoneShape& shape, float logLength, const Vec3f& direction) {
     const float stretch = logLength - shape.logLength;
     const float shapePenalty =
         shape.lengthWeight * stretch * stretch + shape.turnWeight * (1 - shape.direction.dot(direction));
-    return std::min(static_cast<float>(kWorstBone), shapePenalty);
+    return std::min(shape.worst, shapePenalty);
   }
 
   // From the leaves up: what the tree below a joint costs at best, for each place of the joint.
@@ -278,19 +313,22 @@ class Embedder {
 
 }  // namespace
 
-std::vector<TemplateEmbedding> embedTemplate(std::span<const TemplateSkeleton> variants, const BodyVolume& body,
+std::vector<TemplateEmbedding> embedTemplate(std::span<const TemplateVariant> variants, const BodyVolume& body,
                                              const BodyFrame& frame, const TemplatePins& pins,
                                              std::size_t mostSpheres) {
   std::vector<TemplateEmbedding> embeddings;
   if (variants.empty()) return embeddings;
-  for (const TemplateSkeleton& variant : variants) {
-    if (variant.jointCount() != variants.front().jointCount() || pins.size() != variant.jointCount()) {
+  for (const auto& [variant, cost] : variants) {
+    if (variant.jointCount() != variants.front().skeleton.jointCount() || pins.size() != variant.jointCount()) {
       throw Error(ErrorCode::kBadArgument, "variants of a template and its pins must have the same joints",
                   variant.name);
     }
   }
-  Embedder embedder(variants.front(), body, frame, pins, mostSpheres);
-  for (const TemplateSkeleton& variant : variants) embeddings.push_back(embedder.embed(variant));
+  Embedder embedder(variants.front().skeleton, body, frame, pins, mostSpheres);
+  for (const TemplateVariant& variant : variants) {
+    embeddings.push_back(embedder.embed(variant.skeleton));
+    embeddings.back().cost += variant.cost;
+  }
   return embeddings;
 }
 

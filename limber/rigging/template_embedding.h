@@ -30,7 +30,7 @@ struct TemplateEmbedding {
 // pins         #J
 // mostSpheres  that are looked at, 1 or more
 // Throws Error kBadArgument where variants do not have the same joints. Cost: O(J S^2) for S spheres.
-std::vector<TemplateEmbedding> embedTemplate(std::span<const TemplateSkeleton> variants, const BodyVolume& body,
+std::vector<TemplateEmbedding> embedTemplate(std::span<const TemplateVariant> variants, const BodyVolume& body,
                                              const BodyFrame& frame, const TemplatePins& pins,
                                              std::size_t mostSpheres = 1000);
 

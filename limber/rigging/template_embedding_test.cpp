@@ -7,13 +7,25 @@
 
 namespace limber {
 
-using testing::MeasuredPerson;
+namespace {
+
+// Measured once for all tests.
+const testing::MeasuredPerson& thePerson() {
+  static const testing::MeasuredPerson person;
+  return person;
+}
+
+std::vector<TemplateVariant> asIs(const TemplateSkeleton& skeleton) {
+  return {{skeleton, 0}};
+}
+
+}  // namespace
 
 TEST(TemplateEmbedding, PutsJointsIntoTheirLimbs) {
-  const MeasuredPerson person;
+  const testing::MeasuredPerson& person = thePerson();
   const TemplateSkeleton& skeleton = findTemplate("humanoid");
   const TemplatePins pins(skeleton.jointCount());
-  const TemplateEmbedding embedding = embedTemplate({&skeleton, 1}, person.body, person.frame, pins).front();
+  const TemplateEmbedding embedding = embedTemplate(asIs(skeleton), person.body, person.frame, pins).front();
   const auto place = [&](const char* name) { return person.frame.fromBody(embedding.places[*skeleton.find(name)]); };
   EXPECT_LT((place("leftHand") - person.shape.hand).norm(), 0.08);
   EXPECT_LT((place("leftLowerArm") - person.shape.elbow).norm(), 0.06);
@@ -26,31 +38,31 @@ TEST(TemplateEmbedding, PutsJointsIntoTheirLimbs) {
 }
 
 TEST(TemplateEmbedding, KeepsPins) {
-  const MeasuredPerson person;
+  const testing::MeasuredPerson& person = thePerson();
   const TemplateSkeleton& skeleton = findTemplate("humanoid");
   TemplatePins pins(skeleton.jointCount());
   const Vec3 pin(0.2, 0.7, 0.05);
   pins[*skeleton.find("leftLowerArm")] = pin;
-  const TemplateEmbedding embedding = embedTemplate({&skeleton, 1}, person.body, person.frame, pins).front();
+  const TemplateEmbedding embedding = embedTemplate(asIs(skeleton), person.body, person.frame, pins).front();
   EXPECT_LT((embedding.places[*skeleton.find("leftLowerArm")] - pin).norm(), 1e-9);
 }
 
 TEST(TemplateEmbedding, CostsMoreInWhatIsNoPerson) {
-  const MeasuredPerson person;
+  const testing::MeasuredPerson& person = thePerson();
   const TemplateSkeleton& skeleton = findTemplate("humanoid");
   const TemplatePins pins(skeleton.jointCount());
   TriMesh sausage;
   testing::addCapsule(sausage, {0, 0.2, 0}, {0, 0.8, 0}, 0.2);
   const BodyVolume body = measureBody(sausage);
   const BodyFrame frame = frameAlong(sausage, body, Vec3::UnitY(), Vec3::UnitZ());
-  EXPECT_GT(embedTemplate({&skeleton, 1}, body, frame, pins).front().cost,
-            2 * embedTemplate({&skeleton, 1}, person.body, person.frame, pins).front().cost);
+  EXPECT_GT(embedTemplate(asIs(skeleton), body, frame, pins).front().cost,
+            2 * embedTemplate(asIs(skeleton), person.body, person.frame, pins).front().cost);
 }
 
 TEST(TemplateEmbedding, RefusesVariantsOfOtherJoints) {
-  const MeasuredPerson person;
-  const std::vector<TemplateSkeleton> variants = {findTemplate("humanoid"), findTemplate("bird")};
-  const TemplatePins pins(variants[0].jointCount());
+  const testing::MeasuredPerson& person = thePerson();
+  const std::vector<TemplateVariant> variants = {{findTemplate("humanoid"), 0}, {findTemplate("bird"), 0}};
+  const TemplatePins pins(variants[0].skeleton.jointCount());
   EXPECT_THROW(embedTemplate(variants, person.body, person.frame, pins), Error);
 }
 

@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t kCoarseSpheres = 120;  // for a first look at every way to stand
 constexpr std::size_t kFramesRefined = 2;    // after it, with all spheres
 constexpr double kLowConfidence = 0.4;
-constexpr double kCostOfDoubt = 2;       // cost at which confidence is a half
+constexpr double kCostOfDoubt = 1.7;     // cost at which confidence is a half
 constexpr double kNoPlace = 12;          // cost of a joint from which its limb has no place
 constexpr double kMostAsymmetry = 0.15;  // more than the most symmetric way to stand, of those looked at
 
@@ -55,13 +55,13 @@ double unusual(const BodyFrame& frame) {
 }
 
 // One fit for each variant.
-void addFits(const std::vector<TemplateSkeleton>& variants, const BodyVolume& body, const BodyFrame& frame,
+void addFits(const std::vector<TemplateVariant>& variants, const BodyVolume& body, const BodyFrame& frame,
              const std::vector<JointPin>& pins, std::size_t mostSpheres, std::vector<Fit>& fits) {
-  const TemplatePins places = pinsIn(variants.front(), frame, pins);
+  const TemplatePins places = pinsIn(variants.front().skeleton, frame, pins);
   std::vector<TemplateEmbedding> embeddings = embedTemplate(variants, body, frame, places, mostSpheres);
   for (std::size_t v = 0; v < variants.size(); ++v) {
     const double cost = embeddings[v].cost + unusual(frame);
-    fits.push_back({variants[v], frame, places, std::move(embeddings[v]), cost});
+    fits.push_back({variants[v].skeleton, frame, places, std::move(embeddings[v]), cost});
   }
 }
 
@@ -70,7 +70,7 @@ Fit bestFit(const TemplateSkeleton& skeleton, const BodyVolume& body, const std:
             const std::vector<JointPin>& pins) {
   double least = 1;
   for (const BodyFrame& frame : frames) least = std::min(least, frame.asymmetry);
-  const std::vector<TemplateSkeleton> variants = templateVariants(skeleton);
+  const std::vector<TemplateVariant> variants = templateVariants(skeleton);
   const auto cheaper = [](const Fit& a, const Fit& b) { return a.cost < b.cost; };
   std::vector<Fit> looks;
   for (const BodyFrame& frame : frames) {

@@ -22,6 +22,12 @@ RigOptions person() {
   return options;
 }
 
+// Rigged once for all tests.
+const AutoRig& riggedPerson() {
+  static const AutoRig result = rig(testing::capsulePerson().mesh, person());
+  return result;
+}
+
 Vec3 place(const Skeleton& skeleton, const char* name) {
   return restGlobals(skeleton)[skeleton.find(name).value()].translation();
 }
@@ -43,7 +49,7 @@ TriMesh ball() {
 
 TEST(TemplateRigger, NamesTheJointsOfAPerson) {
   const testing::CapsulePerson body = testing::capsulePerson();
-  const AutoRig result = rig(body.mesh, person());
+  const AutoRig& result = riggedPerson();
   checkSkeleton(result.skeleton);
   EXPECT_EQ(result.skeleton.jointCount(), 22u);
   EXPECT_LT((place(result.skeleton, "leftHand") - body.hand).norm(), 0.08);
@@ -54,9 +60,30 @@ TEST(TemplateRigger, NamesTheJointsOfAPerson) {
   EXPECT_GT(result.matches[0].confidence, 0.7);
 }
 
+// A toy: stumps for legs, and a head that is half of it.
+TEST(TemplateRigger, FindsTheLimbsOfAToy) {
+  TriMesh toy;
+  testing::addCapsule(toy, {0, 0.2, 0}, {0, 0.32, 0}, 0.12);
+  testing::addCapsule(toy, {0, 0.68, 0}, {0, 0.7, 0}, 0.3);
+  for (const double s : {1.0, -1.0}) {
+    testing::addCapsule(toy, {s * 0.09, 0.07, 0}, {s * 0.09, 0.2, 0}, 0.07);
+    testing::addCapsule(toy, {s * 0.08, 0.34, 0}, {s * 0.4, 0.34, 0}, 0.05);
+  }
+  RigOptions options = person();
+  options.up = Vec3::UnitY();
+  options.front = Vec3::UnitZ();
+  const Skeleton skeleton = rig(toy, options).skeleton;
+  EXPECT_LT(place(skeleton, "leftUpperLeg").y(), 0.25);
+  EXPECT_LT(place(skeleton, "leftFoot").y(), 0.1);
+  EXPECT_LT(std::abs(place(skeleton, "leftFoot").x() - 0.09), 0.06);
+  EXPECT_LT(place(skeleton, "leftUpperArm").y(), 0.42);
+  EXPECT_GT(place(skeleton, "leftHand").x(), 0.25);
+  EXPECT_LT(std::abs(place(skeleton, "leftHand").y() - 0.34), 0.04);
+  EXPECT_GT(place(skeleton, "head").y(), 0.4);
+}
+
 TEST(TemplateRigger, JointsPointAlongTheirBones) {
-  const AutoRig result = rig(testing::capsulePerson().mesh, person());
-  const Skeleton& skeleton = result.skeleton;
+  const Skeleton& skeleton = riggedPerson().skeleton;
   const std::vector<Affine> globals = restGlobals(skeleton);
   for (const auto& [joint, child] : {std::pair("hips", "spine"), std::pair("leftUpperArm", "leftLowerArm"),
                                      std::pair("rightLowerLeg", "rightFoot"), std::pair("upperChest", "neck")}) {
@@ -120,10 +147,9 @@ TEST(TemplateRigger, FindsTheTemplate) {
 }
 
 TEST(TemplateRigger, IsTheSameOnOneThread) {
-  const TriMesh mesh = testing::capsulePerson().mesh;
-  const AutoRig many = rig(mesh, person());
+  const AutoRig& many = riggedPerson();
   setThreadCount(1);
-  const AutoRig one = rig(mesh, person());
+  const AutoRig one = rig(testing::capsulePerson().mesh, person());
   setThreadCount(0);
   for (Index j = 0; j < many.skeleton.jointCount(); ++j) {
     EXPECT_EQ(many.skeleton.joints[j].rest.translation, one.skeleton.joints[j].rest.translation);

@@ -42,8 +42,14 @@ std::span<const TemplateSkeleton> templateSkeletons();
 // Throws Error kBadArgument that lists the names there are.
 const TemplateSkeleton& findTemplate(std::string_view name);
 
-// The template itself, and for a person also with shorter legs and a larger head, as toys and cartoons have them.
-std::vector<TemplateSkeleton> templateVariants(const TemplateSkeleton& skeleton);
+struct TemplateVariant {
+  TemplateSkeleton skeleton;
+  double cost = 0;  // to be added to an embedding's: how rare such bodies are
+};
+
+// The template itself, and for a person also with shorter legs, a larger head and longer arms, as toys and cartoons
+// have them.
+std::vector<TemplateVariant> templateVariants(const TemplateSkeleton& skeleton);
 
 // A user's skeleton as a template: places from its rest pose, as it stands (up is +Y, front +Z); joints that part the
 // tree, end it or bend it are placed, the others lie between; every leaf gets a tip, unless it

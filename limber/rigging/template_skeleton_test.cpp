@@ -72,16 +72,32 @@ TEST(TemplateSkeleton, PeopleHaveTheNamesAndParentsOfVrm) {
   }
 }
 
-TEST(TemplateSkeleton, VariantsShortenTheLegs) {
+TEST(TemplateSkeleton, VariantsHaveOtherProportions) {
   const TemplateSkeleton& person = findTemplate("humanoid");
-  const std::vector<TemplateSkeleton> variants = templateVariants(person);
+  const std::vector<TemplateVariant> variants = templateVariants(person);
   ASSERT_GT(variants.size(), 1u);
   const Index hips = *person.find("hips"), tip = *person.find("headTip"), foot = *person.find("leftFoot");
-  for (std::size_t v = 1; v < variants.size(); ++v) {
-    EXPECT_LT(variants[v].joints[hips].place.y(), variants[v - 1].joints[hips].place.y());
-    EXPECT_LT(variants[v].joints[foot].place.y(), variants[v].joints[hips].place.y());
-    EXPECT_EQ(variants[v].joints[tip].place, person.joints[tip].place);
+  const Index shoulder = *person.find("leftUpperArm"), hand = *person.find("leftHand");
+  const auto armOf = [&](const TemplateSkeleton& skeleton) {
+    return (skeleton.joints[hand].place - skeleton.joints[shoulder].place).norm();
+  };
+  double longestArm = 0, highestHips = 0, lowestHips = 1;
+  for (const TemplateVariant& variant : variants) {
+    const std::vector<TemplateJoint>& joints = variant.skeleton.joints;
+    EXPECT_GE(variant.cost, 0);
+    EXPECT_LT(joints[foot].place.y(), joints[hips].place.y());
+    EXPECT_EQ(joints[tip].place, person.joints[tip].place);
+    for (const TemplateJoint& joint : joints) {
+      if (!joint.mirror) continue;
+      EXPECT_LT((joints[*joint.mirror].place - joint.place.cwiseProduct(Vec3(-1, 1, 1))).norm(), 1e-12) << joint.name;
+    }
+    longestArm = std::max(longestArm, armOf(variant.skeleton));
+    highestHips = std::max(highestHips, joints[hips].place.y());
+    lowestHips = std::min(lowestHips, joints[hips].place.y());
   }
+  EXPECT_EQ(highestHips, person.joints[hips].place.y());
+  EXPECT_LT(lowestHips, 0.25);
+  EXPECT_GT(longestArm, 2 * armOf(person));
   EXPECT_EQ(templateVariants(findTemplate("quadruped")).size(), 1u);
 }
 

@@ -30,11 +30,11 @@ constexpr Row kHumanoid[] = {
     {"head", "neck", 0, 0.86, 0, kPlaced, 0.4, 0.35},
     {"headTip", "head", 0, 0.98, 0, kTip, 0.6, 0.35},
     {"leftShoulder", "upperChest", 0.03, 0.785, 0, kBetween, 0, 0},
-    {"leftUpperArm", "leftShoulder", 0.09, 0.775, 0, kPlaced, 0.3, 0.4},
+    {"leftUpperArm", "leftShoulder", 0.09, 0.775, 0, kPlaced, 0.4, 0.4},
     {"leftLowerArm", "leftUpperArm", 0.21, 0.73, 0, kPlaced, 0.3, 0.65},
     {"leftHand", "leftLowerArm", 0.33, 0.68, 0.01, kPlaced, 0.3, 0.65},
     {"leftHandTip", "leftHand", 0.43, 0.64, 0.02, kTip, 0.4, 0.7},
-    {"leftUpperLeg", "hips", 0.065, 0.495, 0, kPlaced, 0.35, 0.5},
+    {"leftUpperLeg", "hips", 0.065, 0.495, 0, kPlaced, 0.6, 0.5},
     {"leftLowerLeg", "leftUpperLeg", 0.075, 0.275, 0, kPlaced, 0.4, 0.3},
     {"leftFoot", "leftLowerLeg", 0.08, 0.05, -0.02, kPlaced, 0.4, 0.3},
     {"leftToes", "leftFoot", 0.085, 0.012, 0.05, kBetween, 0, 0},
@@ -101,7 +101,19 @@ constexpr Row kBird[] = {
     {"leftFootTip", "leftFoot", 0.1, 0.01, 0.06, kTip, 0.5, 0.6},
 };
 
-constexpr double kShorterLegs[] = {0.7, 0.4};
+// How bodies differ from the humanoid as a whole: toys and cartoons have short legs, large heads, long arms. What is
+// rarer costs more.
+struct Build {
+  double legs;   // their length
+  double trunk;  // height of all below the head, after that
+  double arms;   // their length, after that
+  double cost;
+};
+constexpr Build kBuilds[] = {
+    {1, 1, 1, 0},          {0.7, 1, 1, 0},         {0.4, 1, 1, 0},        {0.7, 0.75, 1, 0.1},   {0.4, 0.75, 1, 0.1},
+    {0.4, 0.55, 1, 0.1},   {0.85, 0.87, 1.7, 0.2}, {1, 1, 1.7, 0.2},      {0.7, 0.75, 1.7, 0.2}, {0.4, 0.75, 1.7, 0.2},
+    {0.4, 0.55, 1.7, 0.2}, {0.85, 0.87, 2.8, 0.3}, {0.7, 0.75, 2.8, 0.3}, {0.4, 0.75, 2.8, 0.3},
+};
 
 constexpr std::string_view kLeft = "left", kRight = "right";
 
@@ -166,18 +178,28 @@ const TemplateSkeleton& findTemplate(std::string_view name) {
   throw Error(ErrorCode::kBadArgument, fmt::format("no template is called '{}'", name), {}, "there are: " + known);
 }
 
-std::vector<TemplateSkeleton> templateVariants(const TemplateSkeleton& skeleton) {
-  std::vector<TemplateSkeleton> variants = {skeleton};
-  const std::optional<Index> leg = skeleton.find("leftUpperLeg"), hips = skeleton.find("hips"),
-                             neck = skeleton.find("neck"), arm = skeleton.find("leftUpperArm");
-  if (!leg || !hips || !neck || !arm) return variants;
+std::vector<TemplateVariant> templateVariants(const TemplateSkeleton& skeleton) {
+  const std::optional<Index> hips = skeleton.find("hips"),
+                             arms[] = {skeleton.find("leftUpperArm"), skeleton.find("rightUpperArm")};
+  if (!hips || !arms[0] || !arms[1] || !skeleton.find("leftUpperLeg") || !skeleton.find("neck")) return {{skeleton, 0}};
   const double hipY = skeleton.joints[*hips].place.y();
-  for (const double legs : kShorterLegs) {
-    TemplateSkeleton variant = skeleton;
-    for (TemplateJoint& joint : variant.joints) {
-      const bool tip = joint.role == TemplateRole::kTip && !joint.mirror;  // the top of the head stays
+  std::vector<TemplateVariant> variants;
+  for (const Build& build : kBuilds) {
+    TemplateVariant variant = {skeleton, build.cost};
+    std::vector<TemplateJoint>& joints = variant.skeleton.joints;
+    for (TemplateJoint& joint : joints) {
+      if (joint.role == TemplateRole::kTip && !joint.mirror) continue;  // the top of the head stays
       double& y = joint.place.y();
-      if (!tip) y = y < hipY ? legs * y : y - (1 - legs) * hipY;
+      y = y < hipY ? build.legs * y : y - (1 - build.legs) * hipY;
+      y *= build.trunk;
+    }
+    for (const std::optional<Index>& arm : arms) {
+      const Vec3 shoulder = joints[*arm].place;
+      std::vector<bool> below(joints.size(), false);
+      for (Index j = *arm + 1; j < variant.skeleton.jointCount(); ++j) {
+        below[j] = joints[j].parent && (*joints[j].parent == *arm || below[*joints[j].parent]);
+        if (below[j]) joints[j].place = shoulder + build.arms * (joints[j].place - shoulder);
+      }
     }
     variants.push_back(std::move(variant));
   }
