@@ -3,11 +3,15 @@ import './style.css';
 import { bindShortcuts } from './app/shortcuts';
 import { createPageStore } from './app/state';
 import { Studio } from './app/studio';
+import { keepSession, keptSession } from './app/keep';
+import { bindPlayer } from './app/player';
 import { exposeStage } from './app/probe';
 import { help } from './panels/help';
 import { outliner } from './panels/outliner';
 import { posePanel } from './panels/pose_panel';
+import { retargetPanel } from './panels/retarget_panel';
 import { facts, status } from './panels/status';
+import { timeline } from './panels/timeline';
 import { samples, toolbar } from './panels/toolbar';
 import { createStage } from './scene/stage';
 import { element } from './ui/dom';
@@ -20,9 +24,12 @@ const app = document.getElementById('app')!;
 app.append(
   toolbar(studio, page, viewport),
   element('main', { class: 'stage' }, viewport.canvas, facts(page)),
-  element('aside', { class: 'side' }, posePanel(studio, page), outliner(studio, page, handles)),
+  element('aside', { class: 'side' }, posePanel(studio, page), retargetPanel(studio, page), outliner(studio, page, handles)),
+  timeline(studio, page),
   status(studio, page), help(page));
 bindShortcuts(studio, page, viewport, handles);
+bindPlayer(studio, page);
+const kept = keepSession(studio, page);
 
 // A model can be dropped anywhere.
 addEventListener('dragover', (event) => {
@@ -39,10 +46,17 @@ addEventListener('drop', (event) => {
   if (file) void studio.openFile(file);
 });
 
-exposeStage(studio, page, viewport, handles);
+exposeStage(studio, page, viewport, handles, kept);
 
-// ?model=address or ?sample=name; else the first sample, so that there is something to take hold of.
+// ?model=address or ?sample=name; else what was worked on last, or the first sample, so that there is something to take
+// hold of.
 const parameters = new URLSearchParams(location.search);
 const address = parameters.get('model');
-if (address) void studio.openAddress(address);
-else void studio.openSample(parameters.get('sample') ?? samples[0][0]);
+const sample = parameters.get('sample');
+async function begin() {
+  if (address) return studio.openAddress(address);
+  const kept = sample === null ? await keptSession() : null;
+  if (kept) await studio.openKept(kept.bytes, kept.name);
+  if (!page.now.session) await studio.openSample(sample ?? samples[0][0]);
+}
+void begin();

@@ -7,6 +7,7 @@ import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { mkdirSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
+import { walkBvh } from './walk_bvh.mjs';
 import { jointPlace, jointPosition, launch, openStudio, serve, sessionState, settled } from './page.mjs';
 
 const [dist, program, output, faulty] = process.argv.slice(2).map((path) => resolve(path));
@@ -45,6 +46,20 @@ async function dragByMouse(from, way) {
 async function download(click) {
   const [file] = await Promise.all([page.waitForEvent('download'), click()]);
   return readFileSync(await file.path());
+}
+
+/** Through the button of the timeline; waits until the clip is on the model. */
+async function openMotion(of, buffer, name) {
+  await of.locator('#motion-file').setInputFiles({ name, mimeType: 'text/plain', buffer });
+  await of.waitForFunction(() => globalThis.limberStudio.state().clips.length > 0 || !document.querySelector('#notice').hidden);
+  if (await of.locator('#notice').isVisible()) assert.fail(await of.locator('#notice').textContent());
+}
+
+const seconds = async (of = page) => Number((await of.locator('#time').textContent()).split('/')[0]);
+
+async function scrub(to) {
+  await page.locator('#scrub').fill(String(to));
+  await settled(page);
 }
 
 /** The translations and rotations of a GLB's nodes, by name. */
@@ -131,6 +146,128 @@ const cases = {
     assert.ok(distance(await jointPosition(page, name), before) > 1e-4);
     await page.keyboard.press('Delete');
     await settled(page);
+  },
+  async 'poses become keys that are played, moved and undone'() {
+    await page.locator('#add-clip').click();
+    await settled(page);
+    await page.locator('#add-key').click();
+    await settled(page);
+    await scrub(1);
+    const name = await freeHandle();
+    const rest = await jointPosition(page, name);
+    await dragByMouse(await jointPlace(page, name), { x: 40, y: -30 });
+    const posed = await jointPosition(page, name);
+    await page.locator('canvas').focus();
+    await page.keyboard.press('k');
+    await settled(page);
+    assert.equal(await page.locator('#keys i').count(), 2);
+    await scrub(0);
+    assert.ok(distance(await jointPosition(page, name), rest) < 1e-4, 'the first key is not the rest pose');
+    await scrub(0.5);
+    const between = await jointPosition(page, name);
+    assert.ok(distance(between, rest) > 1e-3 && distance(between, posed) > 1e-3);
+    await page.locator('#interpolation').selectOption('step');
+    await settled(page);
+    assert.ok(distance(await jointPosition(page, name), rest) < 1e-4);
+    await scrub(0);
+    const mark = await page.locator('#keys i').last().boundingBox(), track = await page.locator('#keys').boundingBox();
+    await page.mouse.move(mark.x + mark.width / 2, mark.y + mark.height / 2);
+    await page.mouse.down();
+    await page.mouse.move(track.x + track.width * 0.25, mark.y + mark.height / 2, { steps: 3 });
+    await page.mouse.up();
+    await settled(page);
+    const [{ keys }] = (await sessionState(page)).clips;
+    assert.ok(keys[1] < 0.7 && keys[1] > 0.3, `the key is at ${keys[1]}`);
+    await page.locator('#play').click();
+    await page.waitForFunction(() => Number(document.querySelector('#scrub').value) > 0.1);
+    await page.locator('#play').click();
+    await settled(page);
+    await page.locator('#remove-clip').click();
+    await settled(page);
+    assert.equal((await sessionState(page)).clips.length, 0);
+  },
+  async 'a joint gets another name, and undo the old one'() {
+    await page.locator('#joints li').nth(2).click();
+    const before = (await sessionState(page)).joints[await page.evaluate(() => globalThis.limberStudio.selected())].name;
+    await page.locator('#rename-joint').click();
+    await page.locator('#rename').fill('knee');
+    await page.keyboard.press('Enter');
+    await settled(page);
+    assert.ok((await jointNames()).includes('knee'));
+    await page.locator('#undo').click();
+    await settled(page);
+    assert.ok((await jointNames()).includes(before) && !(await jointNames()).includes('knee'));
+  },
+  async 'an arrow of the gizmo moves the joint along its axis'() {
+    await page.locator('#gizmo').check();
+    const name = await freeHandle();
+    await page.locator('#joints li', { hasText: name }).first().click();
+    await page.locator('canvas').focus();
+    await page.keyboard.press('1');
+    await page.keyboard.press('g');
+    await settled(page);
+    const place = await jointPlace(page, name), before = await jointPosition(page, name);
+    for (const length of [70, 55, 85]) {
+      await page.mouse.move(place.x, place.y - length, { steps: 2 });
+      await page.mouse.down();
+      await page.mouse.move(place.x, place.y - length - 30, { steps: 3 });
+      await page.mouse.up();
+      await settled(page);
+      if (distance(await jointPosition(page, name), before) > 1e-3) break;
+    }
+    const [x, y, z] = (await jointPosition(page, name)).map((value, i) => value - before[i]);
+    assert.ok(y > 0.01 && Math.abs(x) < y / 20 && Math.abs(z) < y / 20, `${[x, y, z]}`);
+    await page.locator('#gizmo').uncheck();
+    await page.locator('#undo').click();
+    await settled(page);
+  },
+  async 'a motion plays on a model whose handles have no names, and another method takes its place'() {
+    await openMotion(page, Buffer.from(walkBvh()), 'walk.bvh');
+    await page.waitForFunction(() => Number(document.querySelector('#scrub').value) > 0.05);
+    await page.locator('#play').click();
+    await settled(page);
+    const { clips, match } = await sessionState(page);
+    assert.equal(clips[0].name, 'walk');
+    assert.ok(Math.abs(clips[0].duration - 1) < 0.02);
+    assert.ok(match.length >= 12, `${match.length} parts matched`);
+    const foot = match.find(({ part }) => part === 'leftFoot').target.at(-1);
+    await scrub(0.25);
+    const forward = await jointPosition(page, foot);
+    await scrub(0.75);
+    const back = await jointPosition(page, foot);
+    assert.ok(Math.abs(forward[2] - back[2]) > 0.1, 'the foot does not walk');
+    await page.locator('#method').selectOption('aligned');
+    await settled(page);
+    const after = await sessionState(page);
+    assert.deepEqual([after.clips.length, after.clips[0].source.method], [1, 'aligned']);
+    await page.locator('#retarget summary').click();
+    await page.getByLabel('leftHand in the model').selectOption('');
+    await settled(page);
+    assert.ok(!(await sessionState(page)).match.some(({ part }) => part === 'leftHand'));
+    assert.ok((await seconds()) > 0.7);
+    const glb = await download(() => page.locator('#save-glb').click());
+    writeFileSync(join(output, 'walking.glb'), glb);
+    const { animations } = JSON.parse(glb.subarray(20, 20 + glb.readUInt32LE(12)).toString());
+    assert.deepEqual(animations.map((animation) => animation.name), ['walk']);
+  },
+  async 'a reload comes back to what was worked on'() {
+    await page.waitForFunction(() => globalThis.limberStudio.kept());
+    const again = await desk.context.newPage();
+    again.setDefaultTimeout(120_000);
+    await again.goto(server.address);
+    await settled(again);
+    const state = await sessionState(again);
+    assert.equal(state.name, 'biped');
+    assert.equal(state.clips[0].name, 'walk');
+    await again.close();
+  },
+  async 'an OBJ opens'() {
+    const obj = await download(() => page.locator('#export-as').selectOption('obj'));
+    await page.locator('#file').setInputFiles({ name: 'posed.obj', mimeType: 'model/obj', buffer: obj });
+    await page.waitForFunction(() => globalThis.limberStudio.state().name === 'posed.obj');
+    await settled(page);
+    assert.ok((await jointNames()).length >= 3);
+    assert.equal(await page.locator('#notice').isVisible(), false);
   },
   async 'the keys are listed under ?'() {
     await page.keyboard.press('?');

@@ -9,6 +9,8 @@ import type { Studio } from './studio';
 export interface StudioProbe {
   /** Nothing is asked of the engine that it has not answered. */
   idle(): boolean;
+  /** Every change is kept in the browser. */
+  kept(): boolean;
   state(): SessionState | null;
   selected(): number | null;
   /** Metres. */
@@ -21,7 +23,9 @@ declare global {
   var limberStudio: StudioProbe | undefined;
 }
 
-export function exposeStage(studio: Studio, page: PageStore, viewport: Viewport, handles: HandleView) {
+export function exposeStage(
+  studio: Studio, page: PageStore, viewport: Viewport, handles: HandleView, kept: () => boolean,
+) {
   const position = (name: string) => {
     const joint = page.now.session?.joints.findIndex((known) => known.name === name) ?? -1;
     if (joint < 0) throw new Error(`no joint is called ${name}`);
@@ -29,6 +33,7 @@ export function exposeStage(studio: Studio, page: PageStore, viewport: Viewport,
   };
   globalThis.limberStudio = {
     idle: () => studio.idle,
+    kept,
     state: () => page.now.session,
     selected: () => page.now.selected,
     position: (name) => position(name).toArray(),

@@ -1,6 +1,7 @@
 // Keys that work wherever the focus is, but in a field of text.
 import type { HandleView } from '../scene/handle_view';
 import type { Viewport } from '../scene/viewport';
+import { togglePlaying } from './player';
 import type { PageStore } from './state';
 import type { Studio } from './studio';
 
@@ -22,6 +23,9 @@ export function bindShortcuts(studio: Studio, page: PageStore, viewport: Viewpor
     '3': () => viewport.look('right'),
     '7': () => viewport.look('top'),
     '5': () => viewport.toggleOrthographic(),
+    ' ': () => togglePlaying(studio, page),
+    'k': () => { if (page.now.session?.clip != null) void studio.setKey(); },
+    'x': () => page.set({ gizmo: !page.now.gizmo }),
     '?': () => page.set({ help: true }),
   };
   const withControl: Record<string, () => void> = {
@@ -30,6 +34,7 @@ export function bindShortcuts(studio: Studio, page: PageStore, viewport: Viewpor
   };
   addEventListener('keydown', (event) => {
     const target = event.target as HTMLElement;
+    if (event.key === ' ' && target.matches('button, summary')) return; // it is pressed
     if (target.matches('input:not([type=range], [type=checkbox]), select, textarea') || page.now.help) return;
     if (event.altKey && event.key.toLowerCase() === 'r') void studio.resetPose();
     else if (event.altKey) return;

@@ -24,6 +24,13 @@ export interface PageState {
   work: { stage: string; fraction: number } | null;
   notice: Notice | null;
   help: boolean;
+  /** The moment of the chosen clip that is shown, in seconds. */
+  seconds: number;
+  playing: boolean;
+  speed: number;
+  loop: boolean;
+  gizmo: boolean;
+  limits: boolean;
 }
 
 export type PageStore = Store<PageState>;
@@ -31,6 +38,7 @@ export type PageStore = Store<PageState>;
 export const createPageStore = (): PageStore => new Store<PageState>({
   session: null, model: null, mode: 'move', display: 'handles', bones: true, wireframe: false,
   selected: null, hovered: null, work: null, notice: null, help: false,
+  seconds: 0, playing: false, speed: 1, loop: true, gizmo: false, limits: false,
 });
 
 export function noticeOf(error: LimberError): Notice {

@@ -15,7 +15,7 @@ const stageNames: Record<string, string> = {
 
 export class Studio {
   /** The joints stand anew; called for every frame of a drag. */
-  onStance: (stance: Stance) => void = () => {};
+  onStance: (stance: Stance, ofClip: boolean) => void = () => {};
   /** A new model was opened: the camera goes to it. */
   onOpened: () => void = () => {};
 
@@ -28,6 +28,8 @@ export class Studio {
   private dragUpdate: Command | null = null;
   private dragging: Promise<void> = Promise.resolve();
   private dragsLeft = 0;
+  private waitingMoment: number | null = null;
+  private momentUnderWay = false;
 
   constructor(readonly page: PageStore) {
     this.engine.onBusy = (busy) => this.showWork(busy);
@@ -38,7 +40,7 @@ export class Studio {
   }
 
   /** Nothing that was begun is still under way. */
-  get idle() { return this.underWay === 0 && this.dragsLeft === 0; }
+  get idle() { return this.underWay === 0 && this.dragsLeft === 0 && !this.momentUnderWay; }
 
   async openSample(name: string) {
     await this.guard(async () => this.opened(await this.engine.run({ do: 'open_sample', name })));
@@ -49,8 +51,38 @@ export class Studio {
       this.page.set({ notice: { kind: 'error', title: 'This file is too large for a browser', detail: file.name } });
       return;
     }
-    await this.guard(async () => this.openBytes(new Uint8Array(await file.arrayBuffer()), file.name));
+    if (/\.bvh$/i.test(file.name)) return this.openMotion(file);
+    await this.guard(async () => {
+      const bytes = new Uint8Array(await file.arrayBuffer());
+      if (/\.gl(b|tf)$/i.test(file.name)) return this.openBytes(bytes, file.name);
+      const { toGlb } = await import('./import_model');
+      await this.openBytes(await toGlb(bytes, file.name), file.name);
+    });
   }
+
+  /** Plays what moves in the file on the model; a model whose handles have no names is rigged by a template first. */
+  async openMotion(file: File) {
+    await this.guard(async () => {
+      const bytes = new Uint8Array(await file.arrayBuffer());
+      const { state, stance } = await this.engine.ask({ kind: 'motion', bytes, name: file.name });
+      this.apply({ state, stance });
+      const motion = state.motions.at(-1);
+      if (!motion) return;
+      const retarget = { do: 'retarget', motion: motion.name };
+      const clip = { from: this.page.now.session?.clips.length ?? 0 };
+      try {
+        await this.run1(retarget);
+      } catch (error) {
+        const fits = error instanceof EngineError && error.error.code === 'unsupported' && !state.own_rig && state.rigger !== 'template';
+        if (!fits) throw error;
+        await this.rigged({ do: 'choose_methods', rigger: 'template', skinning: state.skinning });
+        await this.run1(retarget);
+      }
+      if ((this.page.now.session?.clips.length ?? 0) > clip.from) this.page.set({ playing: true, display: 'surface' });
+    });
+  }
+
+  private async run1(command: Command) { this.apply(await this.engine.run(command)); }
 
   async openAddress(address: string) {
     await this.guard(async () => {
@@ -65,6 +97,9 @@ export class Studio {
       await this.openBytes(new Uint8Array(await response.arrayBuffer()), name);
     });
   }
+
+  /** A session that this browser kept. */
+  async openKept(bytes: Uint8Array, name: string) { await this.guard(() => this.openBytes(bytes, name)); }
 
   private async openBytes(bytes: Uint8Array, name: string) {
     await this.opened(await this.engine.ask({ kind: 'open', bytes, name }));
@@ -101,6 +136,47 @@ export class Studio {
     await this.guard(async () => this.apply(await this.engine.run(command)));
   }
 
+  /** With another method, map, or how far hands reach; the clip stays in its place. */
+  async retarget(change: { method?: string; reach?: number; contacts?: boolean; map?: string }) {
+    const session = this.page.now.session;
+    const source = session?.clips[session.clip ?? -1]?.source;
+    if (!session || !source) return;
+    const map = change.map ?? JSON.stringify({ matches: session.match });
+    await this.run({ do: 'retarget', ...source, ...change, map });
+  }
+
+  /** At most one moment is on its way; the newest waits. */
+  showMoment(seconds: number) {
+    this.page.set({ seconds });
+    this.waitingMoment = seconds;
+    if (this.momentUnderWay) return;
+    this.momentUnderWay = true;
+    void this.guard(async () => {
+      while (this.waitingMoment !== null) {
+        const next: number = this.waitingMoment;
+        this.waitingMoment = null;
+        const { stance } = await this.engine.run({ do: 'set_time', seconds: next });
+        this.onStance(stance, true);
+      }
+    }).finally(() => { this.momentUnderWay = false; });
+  }
+
+  async setKey() { await this.run({ do: 'set_key' }); }
+  async chooseClip(clip: string) { await this.run({ do: 'choose_clip', clip }); }
+
+  async addClip() {
+    const names = new Set(this.page.now.session?.clips.map((clip) => clip.name));
+    let number = 1;
+    while (names.has(`clip ${number}`)) ++number;
+    await this.run({ do: 'add_clip', clip: `clip ${number}` });
+  }
+
+  async renameJoint(joint: number, name: string) {
+    await this.guard(() => this.rigged({ do: 'rename_joint', joint: this.jointName(joint), name }));
+  }
+
+  async setRestPose() { await this.guard(() => this.rigged({ do: 'set_rest_pose' })); }
+
   async undo() { await this.guard(() => this.rigged({ do: 'undo' })); }
   async redo() { await this.guard(() => this.rigged({ do: 'redo' })); }
   async toggleIk() { await this.run({ do: 'set_ik', on: !this.page.now.session?.ik }); }
@@ -125,8 +201,9 @@ export class Studio {
     await this.run(pinned ? { do: 'clear_target', joint: name } : { do: 'set_target', joint: name, position });
   }
 
-  beginDrag(joint: number, ray: Ray, view: Vector) {
-    const command = { do: 'begin_drag', joint: this.jointName(joint), mode: this.page.now.mode, ray, view };
+  beginDrag(joint: number, ray: Ray, view: Vector, mode = this.page.now.mode) {
+    const command = { do: 'begin_drag', joint: this.jointName(joint), mode, ray, view };
+    if (this.page.now.playing) this.page.set({ playing: false });
     this.page.set({ selected: joint });
     this.then(() => this.run(command));
   }
@@ -191,14 +268,14 @@ export class Studio {
     const count = answer.state?.joints.length ?? 0;
     const { selected } = this.page.now;
     this.page.set({
-      session: answer.state, model, hovered: null, selected: selected !== null && selected < count ? selected : null,
+      session: answer.state, model, seconds: answer.state?.seconds ?? 0, playing: false, hovered: null, selected: selected !== null && selected < count ? selected : null,
     });
-    this.onStance(answer.stance);
+    this.onStance(answer.stance, false);
   }
 
   private apply({ state, stance }: Step) {
-    if (state) this.page.set({ session: state });
-    this.onStance(stance);
+    if (state) this.page.set({ session: state, seconds: state.seconds });
+    this.onStance(stance, false);
   }
 
   private showWork(busy: boolean) {

@@ -16,7 +16,7 @@ interface Waiting {
   reject(error: EngineError): void;
 }
 
-const changesDocument = (request: Request) => request.kind === 'open' || request.kind === 'run';
+const changesDocument = (request: Request) => request.kind !== 'pick' && request.kind !== 'model' && request.kind !== 'export' && request.kind !== 'record';
 const opens = (request: Request) =>
   request.kind === 'open' || (request.kind === 'run' && String(request.command.do).startsWith('open_'));
 
@@ -98,8 +98,9 @@ export class EngineClient {
     if (!changesDocument(request)) return;
     if (opens(request)) this.history = [];
     const last = this.history.at(-1);
-    const isUpdate = (r: Request | undefined) => r?.kind === 'run' && r.command.do === 'update_drag';
-    if (isUpdate(request) && isUpdate(last)) this.history.pop();
+    const frame = (r: Request | undefined) =>
+      (r?.kind === 'run' && (r.command.do === 'update_drag' || r.command.do === 'set_time') ? r.command.do : null);
+    if (frame(request) !== null && frame(request) === frame(last)) this.history.pop();
     this.history.push(request);
   }
 }

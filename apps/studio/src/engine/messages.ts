@@ -10,10 +10,13 @@ export type Vector = [number, number, number];
 export interface Stance {
   skin: Float32Array;
   handles: Float32Array;
+  /** x, y, z of each joint that the chosen clip's motion was made for; empty where it was made here. */
+  source: Float32Array;
 }
 
 export type Request =
   | { kind: 'open'; bytes: Uint8Array; name: string }
+  | { kind: 'motion'; bytes: Uint8Array; name: string }
   | { kind: 'run'; command: Command }
   | { kind: 'pick'; ray: Ray; slope: number }
   | { kind: 'model' }
@@ -23,7 +26,8 @@ export type Request =
 /** The answer to each kind of request. */
 export interface Answers {
   open: { state: SessionState; stance: Stance };
-  /** state is null after a drag's update, which changes the stance alone. */
+  motion: { state: SessionState; stance: Stance };
+  /** state is null after a drag's update and a clip's moment, which change the stance alone. */
   run: { state: SessionState | null; stance: Stance };
   pick: PickHit | null;
   model: SurfaceModel;

@@ -18,13 +18,17 @@ function orThrow<T extends { ok: true }>(result: T | Failure): T {
 }
 
 function stance(session: Session, skin: Float32Array): Stance {
-  return { skin, handles: orThrow(session.handles()).handles };
+  return { skin, handles: orThrow(session.handles()).handles, source: orThrow(session.sourceJoints()).places };
 }
 
 function answer(session: Session, request: Request): Answers[Kind] {
   switch (request.kind) {
     case 'open': {
       const { state, skin } = orThrow(session.open(request.bytes, request.name));
+      return { state, stance: stance(session, skin) };
+    }
+    case 'motion': {
+      const { state, skin } = orThrow(session.addMotion(request.bytes, request.name));
       return { state, stance: stance(session, skin) };
     }
     case 'run': {

@@ -10,16 +10,45 @@ export function outliner(studio: Studio, page: PageStore, handles: HandleView): 
   const actions = element('div', { class: 'row actions' });
   const selectedJoint = () => page.now.selected ?? 0;
   const pin = button('Pin', () => void studio.togglePin(selectedJoint(), handles.position(selectedJoint()).toArray()), {
-    icon: 'pin', label: 'Hold this joint where it is, with limbs following', keys: 'P', id: 'pin',
+    label: 'Hold this joint where it is, with limbs following', keys: 'P', id: 'pin',
   });
-  const reset = button('Reset joint', () => void studio.resetJoint(selectedJoint()), { icon: 'reset', keys: 'Delete', id: 'reset-joint' });
-  actions.append(pin, reset);
+  const reset = button('Reset', () => void studio.resetJoint(selectedJoint()), { label: 'Put this joint back', keys: 'Delete', id: 'reset-joint' });
+  const name = button('Rename', () => rename(), { keys: 'F2', id: 'rename-joint' });
+  actions.append(pin, reset, name);
 
   list.addEventListener('click', (event) => {
     const row = (event.target as Element).closest<HTMLElement>('[data-joint]');
     if (row) page.set({ selected: Number(row.dataset['joint']) });
   });
+  const rename = () => {
+    const joint = page.now.selected, row = joint === null ? null : list.querySelector<HTMLElement>(`#joint-${joint}`);
+    if (joint === null || !row) return;
+    const before = page.now.session?.joints[joint]?.name ?? '';
+    const field = element('input', { class: 'rename', id: 'rename', 'aria-label': 'Name of the joint', value: before });
+    let open = true;
+    const close = (take: boolean) => {
+      if (!open) return;
+      open = false;
+      const name = field.value.trim();
+      row.textContent = before;
+      list.focus();
+      if (take && name !== '' && name !== before) void studio.renameJoint(joint, name);
+    };
+    field.addEventListener('keydown', (event) => {
+      event.stopPropagation();
+      if (event.key === 'Enter' || event.key === 'Escape') close(event.key === 'Enter');
+    });
+    field.addEventListener('blur', () => close(true));
+    row.replaceChildren(field);
+    field.focus();
+    field.select();
+  };
+  list.addEventListener('dblclick', rename);
   list.addEventListener('keydown', (event) => {
+    if (event.key === 'F2') {
+      event.preventDefault();
+      return rename();
+    }
     const by = { ArrowDown: 1, ArrowUp: -1 }[event.key];
     const count = page.now.session?.joints.length ?? 0;
     if (by === undefined || count === 0) return;
@@ -48,7 +77,7 @@ export function outliner(studio: Studio, page: PageStore, handles: HandleView): 
         list.setAttribute('aria-activedescendant', row.id);
       }
     }
-    pin.disabled = reset.disabled = selected === null || !session;
+    pin.disabled = reset.disabled = name.disabled = selected === null || !session;
     pin.setAttribute('aria-pressed', String(selected !== null && pinned.has(selected)));
   });
   return element('section', { class: 'card outliner', 'aria-label': 'Outliner' }, title, list, actions);

@@ -10,16 +10,17 @@ export function posePanel(studio: Studio, page: PageStore): HTMLElement {
     { value: 'move', text: 'Move', icon: 'move', keys: 'G' },
     { value: 'turn', text: 'Turn', icon: 'turn', keys: 'R' },
   ], (value) => page.set({ mode: value }));
-  const ik = button('Limbs follow', () => void studio.toggleIk(), {
-    icon: 'limb', keys: 'I', label: 'Inverse kinematics: a handle takes its limb along', id: 'ik',
+  const ik = button('IK', () => void studio.toggleIk(), {
+    icon: 'limb', keys: 'I', label: 'Limbs follow: inverse kinematics, a handle takes its limb along', id: 'ik',
   });
-  const mirror = button('Mirror', () => void studio.mirrorPose(), { icon: 'mirror', keys: 'M', label: 'Swap the pose of left and right', id: 'mirror' });
-  const reset = button('Reset', () => void studio.resetPose(), { icon: 'reset', keys: 'Alt+R', label: 'Put all joints back', id: 'reset' });
+  const mirror = button('Mirror', () => void studio.mirrorPose(), { keys: 'M', label: 'Swap the pose of left and right', id: 'mirror' });
+  const reset = button('Reset', () => void studio.resetPose(), { keys: 'Alt+R', label: 'Put all joints back', id: 'reset' });
+  const rest = button('Set rest', () => void studio.setRestPose(), { label: 'The pose becomes the one that the model rests in', id: 'rest-pose' });
   const display = choice<Display>('What is shown', [
     { value: 'handles', text: 'Handles' }, { value: 'surface', text: 'Surface' },
     { value: 'weights', text: 'Weights' }, { value: 'joint-weights', text: 'One joint' },
   ], (value) => page.set({ display: value }));
-  const toggle = (text: string, key: 'bones' | 'wireframe') => {
+  const toggle = (text: string, key: 'bones' | 'wireframe' | 'gizmo' | 'limits') => {
     const box = element('input', { type: 'checkbox', id: key });
     box.addEventListener('change', () => page.set({ [key]: box.checked }));
     page.watch((now) => { box.checked = now[key]; });
@@ -30,14 +31,15 @@ export function posePanel(studio: Studio, page: PageStore): HTMLElement {
     display.show(nowDisplay);
     ik.setAttribute('aria-pressed', String(session?.ik ?? false));
     ik.disabled = mirror.disabled = !session;
-    reset.disabled = !session?.posed;
+    reset.disabled = rest.disabled = !session?.posed;
   });
   return element('section', { class: 'card pose', 'aria-label': 'Posing' },
     handleCount(studio, page),
     element('div', { class: 'row' }, mode.root, ik),
-    element('div', { class: 'row' }, mirror, reset),
+    element('div', { class: 'row' }, mirror, reset, rest),
     display.root,
-    element('div', { class: 'row checks' }, toggle('Bones', 'bones'), toggle('Wireframe', 'wireframe')));
+    element('div', { class: 'row checks' }, toggle('Bones', 'bones'), toggle('Wireframe', 'wireframe'),
+      toggle('Gizmo', 'gizmo'), toggle('Limits', 'limits')));
 }
 
 /** The slider runs evenly over the logarithm of the count: few handles differ more than many. */

@@ -11,7 +11,7 @@ export const samples = [
 const types = { glb: 'model/gltf-binary', obj: 'model/obj', stl: 'model/stl', session: 'model/gltf-binary' };
 
 export function toolbar(studio: Studio, page: PageStore, viewport: Viewport): HTMLElement {
-  const file = element('input', { type: 'file', accept: '.glb,.gltf', hidden: true, id: 'file' });
+  const file = element('input', { type: 'file', accept: '.glb,.gltf,.vrm,.obj,.fbx,.stl,.ply,.bvh', hidden: true, id: 'file' });
   file.addEventListener('change', () => {
     const chosen = file.files?.[0];
     if (chosen) void studio.openFile(chosen);

@@ -1,6 +1,6 @@
 // Handles as spheres, and the bones between them.
 import {
-  BufferAttribute, BufferGeometry, Camera, Group, InstancedMesh, LineBasicMaterial, LineSegments, Matrix4,
+  BufferAttribute, BufferGeometry, Camera, Color, Group, InstancedMesh, LineBasicMaterial, LineSegments, Matrix4,
   MeshStandardMaterial, PerspectiveCamera, SphereGeometry, Vector3,
 } from 'three';
 import type { SessionState } from '../engine/messages';
@@ -44,10 +44,20 @@ export class HandleView {
     this.spheres.renderOrder = -1; // before the translucent surface
     const lines = new BufferGeometry();
     lines.setAttribute('position', new BufferAttribute(new Float32Array(6 * joints.length), 3));
-    this.bones = new LineSegments(lines, new LineBasicMaterial({ color: boneColor, transparent: true, opacity: 0.8, depthTest: false }));
+    lines.setAttribute('color', new BufferAttribute(new Float32Array(6 * joints.length), 3));
+    this.bones = new LineSegments(lines, new LineBasicMaterial({ vertexColors: true, transparent: true, opacity: 0.8, depthTest: false }));
     this.bones.frustumCulled = false;
     this.bones.renderOrder = 2;
     this.root.add(this.spheres, this.bones);
+    this.colorBones(joints.map(() => boneColor));
+  }
+
+  /** Each bone in the colour of its joint. */
+  colorBones(colors: Color[]) {
+    const attribute = this.bones?.geometry.getAttribute('color') as BufferAttribute | undefined;
+    if (!attribute || attribute.count !== 2 * colors.length) return;
+    colors.forEach(({ r, g, b }, joint) => attribute.setXYZ(2 * joint, r, g, b).setXYZ(2 * joint + 1, r, g, b));
+    attribute.needsUpdate = true;
   }
 
   take(handles: Float32Array) {

@@ -2,6 +2,7 @@
 import { Vector3 } from 'three';
 import type { PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
+import type { Gizmo } from './gizmo';
 import type { HandleView } from './handle_view';
 import type { Viewport } from './viewport';
 
@@ -14,7 +15,8 @@ export class PointerInput {
   private down: { x: number; y: number; moved: boolean } | null = null;
 
   constructor(
-    private viewport: Viewport, private handles: HandleView, private studio: Studio, private page: PageStore,
+    private viewport: Viewport, private handles: HandleView, private gizmo: Gizmo, private studio: Studio,
+    private page: PageStore,
   ) {
     const { canvas } = viewport;
     // Before the camera's own listener, which then sees that it is not meant.
@@ -36,6 +38,7 @@ export class PointerInput {
   private press(event: PointerEvent) {
     if (this.held !== null) return event.stopImmediatePropagation(); // a second finger during a drag
     this.down = { x: event.offsetX, y: event.offsetY, moved: false };
+    if (this.gizmo.meant) return;
     const joint = event.button === 0 && event.isPrimary ? this.under(event) : null;
     if (joint === null) return;
     event.stopImmediatePropagation();
@@ -68,7 +71,7 @@ export class PointerInput {
       // A tap selects, and is no step to undo.
       if (tapped) this.studio.cancelDrag();
       else this.studio.endDrag();
-    } else if (tapped && event.isPrimary) {
+    } else if (tapped && event.isPrimary && !this.gizmo.meant) {
       void this.studio.selectSurface(this.viewport.ray(event.offsetX, event.offsetY).ray, 0);
     }
     this.down = null;

@@ -1,9 +1,13 @@
 // The scene shows what the page's state says.
 import type { PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
+import { Vector3 } from 'three';
+import { Gizmo } from './gizmo';
 import { HandleView } from './handle_view';
+import { LimitView } from './limit_view';
 import { ModelView } from './model_view';
 import { PointerInput } from './pointer';
+import { matchColors, SourceView } from './source_view';
 import { Viewport } from './viewport';
 
 export interface Stage {
@@ -13,16 +17,27 @@ export interface Stage {
 
 export function createStage(studio: Studio, page: PageStore): Stage {
   const viewport = new Viewport(), model = new ModelView(), handles = new HandleView();
-  viewport.scene.add(handles.root, model.root);
-  new PointerInput(viewport, handles, studio, page);
+  const source = new SourceView(), limits = new LimitView();
+  viewport.scene.add(handles.root, model.root, source.root, limits.root);
+  const gizmo = new Gizmo(viewport, handles, studio, page);
+  new PointerInput(viewport, handles, gizmo, studio, page);
+  const root = new Vector3();
   model.onChange = () => viewport.draw();
   viewport.beforeFrame = (camera) => {
     const { display, bones } = page.now;
-    handles.fit(camera, viewport.size.height, display === 'handles', display === 'handles' && bones);
+    const matched = (page.now.session?.match.length ?? 0) > 0;
+    handles.fit(camera, viewport.size.height, display === 'handles', bones && (display === 'handles' || matched));
   };
-  studio.onStance = (stance) => {
+  studio.onStance = (stance, ofClip) => {
+    const before = root.clone();
     model.take(stance.skin);
     handles.take(stance.handles);
+    source.take(stance.source);
+    limits.take(handles);
+    if (handles.count > 0) handles.position(0, root);
+    // The camera walks along.
+    if (ofClip) viewport.follow(root.x - before.x, root.z - before.z);
+    gizmo.place(viewport);
     viewport.draw();
   };
   studio.onOpened = () => {
@@ -31,7 +46,13 @@ export function createStage(studio: Studio, page: PageStore): Stage {
   };
   page.watch((now, before) => {
     if (now.session && now.model && now.model !== before.model) model.show(now.model, now.session.joints.length);
-    if (now.session && now.session !== before.session) handles.show(now.session.joints);
+    if (now.session && (now.session !== before.session || now.model !== before.model)) {
+      handles.show(now.session.joints);
+      source.show(now.session);
+      limits.show(now.session);
+      handles.colorBones(matchColors(now.session.joints.map(({ name }) => name), now.session.match, 'target'));
+    }
+    limits.root.visible = now.limits;
     const repaint = now.model !== before.model || now.display !== before.display || now.wireframe !== before.wireframe
       || (now.display === 'joint-weights' && now.selected !== before.selected);
     if (repaint) model.setDisplay(now.display, now.selected, now.wireframe);

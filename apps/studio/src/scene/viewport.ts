@@ -27,6 +27,7 @@ export class Viewport {
   private keyLight = new DirectionalLight(0xffffff, 2.0);
   private box = new Box3(new Vector3(-1, 0, -1), new Vector3(1, 2, 1));
   private asked = false;
+  private step = 1; // metres between the ground's lines
 
   constructor() {
     this.renderer = new WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: false });
@@ -107,6 +108,20 @@ export class Viewport {
     this.draw();
   }
 
+  /** Goes along with what walks; the ground stays under it, its lines in their places. */
+  follow(x: number, z: number) {
+    for (const camera of [this.perspective, this.orthographic]) {
+      camera.position.x += x;
+      camera.position.z += z;
+    }
+    this.controls.target.x += x;
+    this.controls.target.z += z;
+    const { x: atX, z: atZ } = this.controls.target;
+    this.ground.position.x = Math.round(atX / this.step) * this.step;
+    this.ground.position.z = Math.round(atZ / this.step) * this.step;
+    this.controls.update();
+  }
+
   /** From where, in that direction, all of the box is seen, with a little room round it. */
   private fittingDistance(direction: Vector3): number {
     const up = Math.tan((this.perspective.fov * Math.PI) / 360);
@@ -166,6 +181,7 @@ export class Viewport {
     this.ground.clear();
     const size = this.box.getSize(new Vector3()), center = this.box.getCenter(new Vector3());
     const step = 10 ** Math.floor(Math.log10(Math.max(size.x, size.y, size.z, 1e-6) / 2));
+    this.step = step;
     const count = Math.ceil((1.5 * Math.max(size.x, size.z, size.y / 2)) / step);
     const lines: number[] = [], colors: number[] = [];
     const grid = new Color('#c9ced6'), xAxis = new Color('#d9534f'), zAxis = new Color('#4a7bd0');

@@ -1,0 +1,74 @@
+// How the chosen clip was brought onto the model, where it comes from a motion: method, reach, which joint follows which.
+import { jointColor } from '../scene/palette';
+import type { PageStore } from '../app/state';
+import type { Studio } from '../app/studio';
+import { element } from '../ui/dom';
+import { chosenClip } from './timeline';
+
+const methods = [
+  ['limb-ik', 'Limbs by IK'], ['aligned', 'Aligned poses'], ['copy-rotations', 'Copied turns'],
+] as const;
+const doubtful = 0.75;
+
+export function retargetPanel(studio: Studio, page: PageStore): HTMLElement {
+  const method = element('select', { class: 'select', id: 'method' }, ...methods.map(([value, text]) => element('option', { value }, text)));
+  method.addEventListener('change', () => void studio.retarget({ method: method.value }));
+  const reach = element('input', { type: 'range', id: 'reach', min: 0, max: 1, step: 0.05 });
+  reach.addEventListener('change', () => void studio.retarget({ reach: reach.valueAsNumber }));
+  const contacts = element('input', { type: 'checkbox', id: 'contacts' });
+  contacts.addEventListener('change', () => void studio.retarget({ contacts: contacts.checked }));
+  const rows = element('tbody');
+  const summary = element('summary', {}, 'Matched joints');
+  const from = element('p', { class: 'from' });
+  let drawn = '';
+  const card = element('section', { class: 'card retarget', 'aria-label': 'Motion', id: 'retarget', hidden: true },
+    element('h2', {}, 'Motion'), from,
+    element('label', { class: 'field' }, 'Method', method),
+    element('label', { class: 'field' }, 'Hands reach', reach),
+    element('label', { class: 'check' }, contacts, 'Feet stay planted'),
+    element('details', {}, summary,
+      element('table', { id: 'match' }, element('thead', {}, element('tr', {}, ...['', 'Motion', 'Model'].map((text) => element('th', {}, text)))), rows)));
+  page.watch(({ session }) => {
+    const clip = chosenClip(session), source = clip?.source ?? null;
+    card.hidden = source === null;
+    if (!session || !clip || !source) return;
+    from.textContent = source.motion;
+    method.value = source.method;
+    reach.valueAsNumber = source.reach;
+    reach.disabled = source.method !== 'limb-ik';
+    contacts.checked = source.contacts;
+    const unsure = session.match.filter((match) => match.by !== 'file' && match.confidence < doubtful).length;
+    summary.textContent = `${session.match.length} parts matched` + (unsure > 0 ? `, ${unsure} to look at` : '');
+    const now = JSON.stringify([session.match, source.motion, session.joints.length]);
+    if (now === drawn) return;
+    drawn = now;
+    const motion = session.motions.find(({ name }) => name === source.motion);
+    const sources = motion?.joints.map(({ name }) => name) ?? [], targets = session.joints.map(({ name }) => name);
+    rows.replaceChildren(...session.match.map((match, index) => {
+      const change = (side: 'source' | 'target') => (joints: string[]) => {
+        const matches = session.match.map((other, i) => (i === index ? { ...other, [side]: joints } : other))
+          .filter((other) => other.source.length > 0 && other.target.length > 0);
+        void studio.retarget({ map: JSON.stringify({ matches }) });
+      };
+      const color = element('i', { class: 'swatch' });
+      color.style.background = `#${jointColor(index).getHexString()}`;
+      const row = element('tr', { title: match.part }, element('td', {}, color),
+        element('td', {}, jointsSelect(`${match.part} in the motion`, sources, match.source, change('source'))),
+        element('td', {}, jointsSelect(`${match.part} in the model`, targets, match.target, change('target'))));
+      row.classList.toggle('unsure', match.by !== 'file' && match.confidence < doubtful);
+      return row;
+    }));
+  });
+  return card;
+}
+
+/** One joint, or a chain that is shown as one choice; none takes the part out of the match. */
+function jointsSelect(label: string, names: string[], now: string[], choose: (joints: string[]) => void): HTMLElement {
+  const chain = now.length > 1;
+  const select = element('select', { class: 'select', 'aria-label': label },
+    chain ? element('option', { value: '\n' }, `${now[0]} \u2026 ${now.at(-1)}`) : null,
+    element('option', { value: '' }, '\u2014'), ...names.map((name) => element('option', { value: name }, name)));
+  select.value = chain ? '\n' : now[0] ?? '';
+  select.addEventListener('change', () => choose(select.value === '' ? [] : [select.value]));
+  return select;
+}

@@ -1,0 +1,129 @@
+// The clips of the model: choose, play, scrub, set keys.
+import { togglePlaying } from '../app/player';
+import type { SessionState } from '../engine/messages';
+import type { PageStore } from '../app/state';
+import type { Studio } from '../app/studio';
+import { button, element } from '../ui/dom';
+
+const mostMarks = 400; // keys that are drawn; recorded motion has one for every frame
+const frame = 1 / 30;
+const room = 2; // seconds that an empty clip shows
+
+type Clip = SessionState['clips'][number];
+export const chosenClip = (session: SessionState | null): Clip | null => session?.clips[session.clip ?? -1] ?? null;
+
+export function timeline(studio: Studio, page: PageStore): HTMLElement {
+  const file = element('input', { type: 'file', accept: '.bvh,.glb,.gltf', hidden: true, id: 'motion-file' });
+  file.addEventListener('change', () => {
+    const chosen = file.files?.[0];
+    if (chosen) void studio.openMotion(chosen);
+    file.value = '';
+  });
+  const clips = element('select', { class: 'select', id: 'clips', 'aria-label': 'The clip that is shown' });
+  clips.addEventListener('change', () => {
+    const name = clips.value;
+    page.set({ playing: false });
+    void studio.chooseClip(name);
+  });
+  const play = button('', () => togglePlaying(studio, page), { icon: 'play', label: 'Play', keys: 'Space', id: 'play' });
+  const time = element('output', { class: 'time', id: 'time' }, '0.00 s');
+  const { track, scrub, show } = scrubber(studio, page);
+
+  const speed = element('select', { class: 'select', id: 'speed', 'aria-label': 'Speed' },
+    ...[0.25, 0.5, 1, 2].map((value) => element('option', { value, selected: value === 1 }, `${value}\u00d7`)));
+  speed.addEventListener('change', () => page.set({ speed: Number(speed.value) }));
+  const loop = button('', () => page.set({ loop: !page.now.loop }), { icon: 'loop', label: 'Again and again', id: 'loop' });
+  const key = button('Key', () => void studio.setKey(), { icon: 'key', keys: 'K', label: 'The pose becomes a key at this moment', id: 'add-key' });
+  const erase = button('', () => void studio.run({ do: 'delete_key', seconds: keyHere(page) ?? 0 }), { icon: 'erase', label: 'Take the key at this moment out', id: 'delete-key' });
+  const between = element('select', { class: 'select', id: 'interpolation', 'aria-label': 'Between keys' },
+    ...[['step', 'Steps'], ['linear', 'Straight'], ['cubic', 'Smooth']].map(([value = '', text = '']) => element('option', { value }, text)));
+  between.addEventListener('change', () => void studio.run({ do: 'set_interpolation', interpolation: between.value }));
+  const add = button('New clip', () => void studio.addClip(), { icon: 'add', label: 'A clip of your own poses', id: 'add-clip' });
+  const motion = button('Open motion', () => file.click(), { icon: 'open', label: 'Play a motion (BVH, GLB) on the model', id: 'open-motion' });
+  const remove = button('', () => void studio.run({ do: 'remove_clip', clip: chosenClip(page.now.session)?.name ?? '' }), { icon: 'erase', label: 'Remove this clip', id: 'remove-clip' });
+
+  const card = element('section', { class: 'card timeline', 'aria-label': 'Timeline', id: 'timeline' },
+    element('div', { class: 'row tools' }, play, clips, add, motion, file,
+      element('div', { class: 'row clip-tools' }, time, speed, loop, key, erase, between, remove)),
+    element('div', { class: 'track' }, scrub, track));
+  let listed = '';
+  page.watch(({ session, seconds, playing, loop: again }) => {
+    const clip = chosenClip(session);
+    const names = session?.clips.map(({ name }) => name) ?? [];
+    if (names.join('\n') !== listed || clips.childElementCount === 0) {
+      listed = names.join('\n');
+      clips.replaceChildren(element('option', { value: '' }, names.length > 0 ? 'No clip' : 'No clips yet'),
+        ...names.map((name) => element('option', { value: name }, name)));
+    }
+    clips.value = clip?.name ?? '';
+    clips.disabled = names.length === 0;
+    const still = !clip || clip.duration <= 0;
+    play.disabled = loop.disabled = speed.disabled = still;
+    play.setAttribute('aria-pressed', String(playing));
+    play.setAttribute('aria-label', playing ? 'Pause' : 'Play');
+    loop.setAttribute('aria-pressed', String(again));
+    key.disabled = remove.disabled = !clip;
+    erase.disabled = keyHere(page) === null;
+    between.disabled = !clip || clip.keys.length === 0;
+    if (clip) between.value = clip.interpolation;
+    add.disabled = motion.disabled = !session;
+    time.textContent = clip ? `${seconds.toFixed(2)} / ${clip.duration.toFixed(2)} s` : '';
+    show(clip, seconds);
+    card.classList.toggle('empty', !clip);
+  });
+  return card;
+}
+
+/** The key under the playhead. */
+function keyHere(page: PageStore): number | null {
+  const { session, seconds } = page.now;
+  return chosenClip(session)?.keys.find((time) => Math.abs(time - seconds) < frame / 4) ?? null;
+}
+
+/** The slider of time with the keys on it, which can be dragged elsewhere. */
+function scrubber(studio: Studio, page: PageStore) {
+  const scrub = element('input', { type: 'range', id: 'scrub', min: 0, max: 1, step: 0.001, 'aria-label': 'Moment of the clip' });
+  const track = element('div', { class: 'keys', id: 'keys' });
+  const span = (clip: Clip) => Math.max(clip.duration, clip.source || clip.keys.length > mostMarks ? 0 : room);
+  scrub.addEventListener('input', () => {
+    const to = scrub.valueAsNumber; // before the page draws the slider where it was
+    page.set({ playing: false });
+    studio.showMoment(to);
+  });
+  let drawn = '';
+  const show = (clip: Clip | null, seconds: number) => {
+    scrub.disabled = !clip;
+    if (!clip) {
+      drawn = '';
+      return track.replaceChildren();
+    }
+    scrub.max = String(Math.max(span(clip), seconds));
+    scrub.step = clip.source ? '0.001' : String(frame);
+    scrub.value = String(seconds);
+    scrub.setAttribute('aria-valuetext', `${seconds.toFixed(2)} seconds`);
+    const now = `${clip.name} ${scrub.max} ${clip.keys}`;
+    if (now === drawn) return;
+    drawn = now;
+    track.replaceChildren(...(clip.keys.length > mostMarks ? [] : clip.keys).map((time) => mark(time, Number(scrub.max))));
+    track.classList.toggle('dense', clip.keys.length > 60);
+  };
+  const mark = (time: number, end: number) => {
+    const made = element('i', { title: `Key at ${time.toFixed(2)} s; drag it to another moment`, 'data-time': time });
+    made.style.setProperty('--at', String(time / end));
+    made.addEventListener('pointerdown', (event) => {
+      event.preventDefault();
+      made.setPointerCapture(event.pointerId);
+      const box = track.getBoundingClientRect();
+      const placeOf = (x: number) => Math.min(end, Math.max(0, Math.round(((x - box.left) / box.width) * end / frame) * frame));
+      made.onpointermove = (move) => made.style.setProperty('--at', String(placeOf(move.clientX) / end));
+      made.onpointerup = (up) => {
+        made.onpointermove = made.onpointerup = null;
+        const to = placeOf(up.clientX);
+        if (Math.abs(to - time) < frame / 2) studio.showMoment(time);
+        else void studio.run({ do: 'move_key', from: time, to });
+      };
+    });
+    return made;
+  };
+  return { track, scrub, show };
+}

@@ -1,0 +1,78 @@
+// Arrows and rings on the selected joint, for exact work.
+import { Object3D, Vector3, type Quaternion } from 'three';
+import { TransformControls } from 'three/examples/jsm/controls/TransformControls.js';
+import type { PageStore } from '../app/state';
+import type { Studio } from '../app/studio';
+import type { HandleView } from './handle_view';
+import type { Viewport } from './viewport';
+
+const view: [number, number, number] = [0, 0, -1];
+
+export class Gizmo {
+  readonly controls: TransformControls;
+  private proxy = new Object3D();
+  private start = new Vector3();
+  private turned: Quaternion = this.proxy.quaternion.clone();
+  private held: number | null = null;
+
+  constructor(viewport: Viewport, private handles: HandleView, private studio: Studio, private page: PageStore) {
+    this.controls = new TransformControls(viewport.camera, viewport.canvas);
+    this.controls.size = 0.8;
+    viewport.scene.add(this.proxy, this.controls.getHelper());
+    this.controls.addEventListener('change', () => viewport.draw());
+    this.controls.addEventListener('dragging-changed', ({ value }) => {
+      viewport.controls.enabled = !value;
+      if (value) this.begin();
+      else this.end();
+    });
+    this.controls.addEventListener('objectChange', () => this.change());
+    page.watch(() => this.place(viewport));
+  }
+
+  /** Whether the pointer is on an arrow or a ring. */
+  get meant() { return this.controls.object !== undefined && this.controls.axis !== null; }
+
+  place(viewport: Viewport) {
+    const { gizmo, selected, mode, display } = this.page.now;
+    this.controls.camera = viewport.camera;
+    if (!gizmo || selected === null || selected >= this.handles.count || display !== 'handles') {
+      this.controls.detach();
+      return;
+    }
+    this.controls.setMode(mode === 'move' ? 'translate' : 'rotate');
+    if (this.held === null) {
+      this.proxy.position.copy(this.handles.position(selected));
+      this.proxy.quaternion.identity();
+    }
+    if (this.controls.object !== this.proxy) this.controls.attach(this.proxy);
+  }
+
+  private begin() {
+    const { selected, mode } = this.page.now;
+    this.held = selected;
+    if (selected === null) return;
+    this.start.copy(this.proxy.position);
+    this.turned = this.proxy.quaternion.clone();
+    // A camera that moves along takes the joint with it, wherever it goes: that is how the arrows' way is told.
+    if (mode === 'move') this.studio.beginDrag(selected, this.ray(), view, 'move');
+  }
+
+  private change() {
+    if (this.held !== null && this.page.now.mode === 'move') this.studio.updateDrag(this.ray(), view);
+  }
+
+  private ray() {
+    const { x, y, z } = this.proxy.position;
+    return { origin: [x, y, z + 1] as [number, number, number], direction: view };
+  }
+
+  private end() {
+    const joint = this.held;
+    this.held = null;
+    if (joint === null) return;
+    if (this.page.now.mode === 'move') return this.studio.endDrag();
+    const { x, y, z, w } = this.proxy.quaternion.clone().multiply(this.turned.invert());
+    const sine = Math.hypot(x, y, z);
+    if (sine > 1e-6) void this.studio.turn(joint, [x / sine, y / sine, z / sine], (2 * Math.atan2(sine, w) * 180) / Math.PI);
+  }
+}
