@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -17,8 +18,11 @@ namespace {
 constexpr std::size_t kCoarseSpheres = 120;  // for a first look at every way to stand
 constexpr std::size_t kFramesRefined = 2;    // after it, with all spheres
 constexpr double kLowConfidence = 0.4;
-constexpr double kCostOfDoubt = 1.7;     // cost at which confidence is a half
-constexpr double kNoPlace = 12;          // cost of a joint from which its limb has no place
+constexpr double kCostOfDoubt = 1.8;  // cost at which confidence is a half
+constexpr double kNoPlace = 12;       // cost of a joint from which its limb has no place
+constexpr double kUnexplained = 2;    // cost of a body that no bone comes near
+constexpr double kNearBone = 0.08;    // heights beyond the surface of a medial sphere
+constexpr double kFarFromBone = 0.25;
 constexpr double kMostAsymmetry = 0.15;  // more than the most symmetric way to stand, of those looked at
 
 struct Fit {
@@ -54,13 +58,44 @@ double unusual(const BodyFrame& frame) {
   return upCost + (usualFront ? 0 : 0.6);
 }
 
+// How far a place is from all bones, beyond `radius`: 0 near one, 1 where kFarFromBone or farther.
+double farFromBones(const TemplateSkeleton& skeleton, const std::vector<Vec3>& places, const Vec3& place,
+                    double radius) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (Index j = 0; j < skeleton.jointCount(); ++j) {
+    if (!skeleton.joints[j].parent) continue;
+    const Vec3 &a = places[*skeleton.joints[j].parent], bone = places[j] - a;
+    const double along = std::clamp((place - a).dot(bone) / std::max(bone.squaredNorm(), 1e-12), 0.0, 1.0);
+    nearest = std::min(nearest, (place - a - along * bone).squaredNorm());
+  }
+  const double beyond = std::sqrt(nearest) - radius;
+  return std::clamp((beyond - kNearBone) / (kFarFromBone - kNearBone), 0.0, 1.0);
+}
+
+// How much of the body no bone comes near, 0 to 1: in equal parts of its medial spheres, and of the ends of its limbs
+// by how far these reach.
+double unexplained(const TemplateSkeleton& skeleton, const std::vector<Vec3>& places, const BodyVolume& body,
+                   const BodyFrame& frame) {
+  double spheres = 0, tips = 0, reach = 0;
+  for (const MedialSphere& sphere : body.spheres) {
+    const double far = farFromBones(skeleton, places, frame.toBody(sphere.center), sphere.radius / frame.height);
+    spheres += far / static_cast<double>(body.spheres.size());
+  }
+  for (const BodyTip& tip : body.tips) {
+    tips += tip.reach * farFromBones(skeleton, places, frame.toBody(tip.position), 0);
+    reach += tip.reach;
+  }
+  return 0.5 * (spheres + tips / std::max(reach, 1e-12));
+}
+
 // One fit for each variant.
 void addFits(const std::vector<TemplateVariant>& variants, const BodyVolume& body, const BodyFrame& frame,
              const std::vector<JointPin>& pins, std::size_t mostSpheres, std::vector<Fit>& fits) {
   const TemplatePins places = pinsIn(variants.front().skeleton, frame, pins);
   std::vector<TemplateEmbedding> embeddings = embedTemplate(variants, body, frame, places, mostSpheres);
   for (std::size_t v = 0; v < variants.size(); ++v) {
-    const double cost = embeddings[v].cost + unusual(frame);
+    const double left = unexplained(variants[v].skeleton, embeddings[v].places, body, frame);
+    const double cost = embeddings[v].cost + unusual(frame) + kUnexplained * left;
     fits.push_back({variants[v].skeleton, frame, places, std::move(embeddings[v]), cost});
   }
 }

@@ -134,6 +134,20 @@ TEST(TemplateRigger, SaysWhereAPersonHasNoPlace) {
   checkSkeleton(result.skeleton);
 }
 
+// A person fits into its seat, and leaves all else as it is.
+TEST(TemplateRigger, AChairIsNoPerson) {
+  TriMesh chair;
+  for (const double x : {-0.2, -0.1, 0.0, 0.1, 0.2}) testing::addCapsule(chair, {x, 0.45, -0.2}, {x, 0.45, 0.2}, 0.06);
+  for (const double x : {-0.22, 0.22}) {
+    testing::addCapsule(chair, {x, 0.03, 0.2}, {x, 0.45, 0.2}, 0.03);
+    testing::addCapsule(chair, {x, 0.03, -0.2}, {x, 0.97, -0.2}, 0.03);
+  }
+  testing::addCapsule(chair, {-0.22, 0.9, -0.2}, {0.22, 0.9, -0.2}, 0.03);
+  const AutoRig result = rig(chair, person());
+  EXPECT_LT(result.matches[0].confidence, 0.4);
+  EXPECT_TRUE(warnsOf(result, "low-confidence"));
+}
+
 TEST(TemplateRigger, FindsTheTemplate) {
   RigOptions options;
   const AutoRig result = rig(testing::capsulePerson().mesh, options);
