@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include <fmt/format.h>
 
@@ -17,6 +18,7 @@ namespace {
 
 constexpr std::size_t kCoarseSpheres = 120;  // for a first look at every way to stand
 constexpr std::size_t kFramesRefined = 2;    // after it, with all spheres
+constexpr std::size_t kVariantsRefined = 4;  // of each of these
 constexpr double kLowConfidence = 0.4;
 constexpr double kCostOfDoubt = 1.8;  // cost at which confidence is a half
 constexpr double kNoPlace = 12;       // cost of a joint from which its limb has no place
@@ -107,17 +109,30 @@ Fit bestFit(const TemplateSkeleton& skeleton, const BodyVolume& body, const std:
   for (const BodyFrame& frame : frames) least = std::min(least, frame.asymmetry);
   const std::vector<TemplateVariant> variants = templateVariants(skeleton);
   const auto cheaper = [](const Fit& a, const Fit& b) { return a.cost < b.cost; };
-  std::vector<Fit> looks;
+  // For each way to stand the variants, best first.
+  struct Look {
+    BodyFrame frame;
+    double cost;
+    std::vector<TemplateVariant> variants;
+  };
+  std::vector<Look> looks;
   for (const BodyFrame& frame : frames) {
     if (frame.asymmetry > least + kMostAsymmetry) continue;
     std::vector<Fit> fits;
     addFits(variants, body, frame, pins, kCoarseSpheres, fits);
-    looks.push_back(*std::min_element(fits.begin(), fits.end(), cheaper));
+    std::vector<std::size_t> order(fits.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return cheaper(fits[a], fits[b]); });
+    order.resize(std::min(order.size(), kVariantsRefined));
+    Look look = {frame, fits[order.front()].cost, {}};
+    for (const std::size_t v : order) look.variants.push_back(variants[v]);
+    looks.push_back(std::move(look));
   }
-  std::stable_sort(looks.begin(), looks.end(), cheaper);
+  std::stable_sort(looks.begin(), looks.end(), [](const Look& a, const Look& b) { return a.cost < b.cost; });
   std::vector<Fit> fits;
   for (std::size_t i = 0; i < std::min(looks.size(), kFramesRefined); ++i) {
-    addFits(variants, body, looks[i].frame, pins, body.spheres.size(), fits);
+    addFits(looks[i].variants, body, looks[i].frame, pins, body.spheres.size(), fits);
   }
   return *std::min_element(fits.begin(), fits.end(), cheaper);
 }
