@@ -18,11 +18,11 @@ import { element } from './ui/dom';
 
 const page = createPageStore();
 const studio = new Studio(page);
-const { viewport, handles } = createStage(studio, page);
+const { viewport, handles, model } = createStage(studio, page);
 
 const app = document.getElementById('app')!;
 app.append(
-  toolbar(studio, page, viewport),
+  toolbar(studio, page, viewport, model),
   element('main', { class: 'stage' }, viewport.canvas, facts(page)),
   element('aside', { class: 'side' }, posePanel(studio, page), retargetPanel(studio, page), outliner(studio, page, handles)),
   timeline(studio, page),

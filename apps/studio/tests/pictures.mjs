@@ -3,6 +3,7 @@
 //   node apps/studio/tests/pictures.mjs DIST OUTPUT_FOLDER
 import { mkdirSync } from 'node:fs';
 import { join, resolve } from 'node:path';
+import { walkBvh } from './walk_bvh.mjs';
 import { jointPlace, launch, openStudio, serve, sessionState, settled } from './page.mjs';
 
 const [dist, output] = process.argv.slice(2).map((path) => resolve(path));
@@ -41,6 +42,21 @@ await picture('studio_posed', { ...desk, search: '?sample=biped' }, async (page)
 });
 await picture('studio_weights', { ...desk, search: '?sample=quadruped' }, async (page) => {
   await page.getByRole('button', { name: 'Weights' }).click();
+  await settled(page);
+});
+await picture('studio_motion', { ...desk, search: '?sample=biped' }, async (page) => {
+  await page.locator('#motion-file').setInputFiles({ name: 'walk.bvh', mimeType: 'text/plain', buffer: Buffer.from(walkBvh()) });
+  await page.waitForFunction(() => globalThis.limberStudio.state().clips.length > 0);
+  await page.locator('#play').click();
+  await settled(page);
+  await page.locator('#scrub').fill('0.2');
+  await page.locator('#retarget summary').click();
+  await settled(page);
+  await page.waitForTimeout(300); // what was pressed has its colour again
+});
+await picture('studio_gizmo', { ...desk, search: '?sample=winged' }, async (page) => {
+  await page.locator('#gizmo').check();
+  await page.locator('#joints li').nth(5).click();
   await settled(page);
 });
 await picture('studio_phone', { width: 390, height: 844, touch: true, search: '?sample=quadruped' }, async () => {});

@@ -269,6 +269,13 @@ const cases = {
     assert.ok((await jointNames()).length >= 3);
     assert.equal(await page.locator('#notice').isVisible(), false);
   },
+  async 'a USDZ holds the posed surface'() {
+    const usdz = await download(() => page.locator('#export-as').selectOption('usdz'));
+    assert.equal(usdz.readUInt32LE(0), 0x04034b50); // a ZIP archive
+    const text = usdz.toString('latin1');
+    assert.match(text, /point3f\[\] points/);
+    assert.doesNotMatch(text, /NaN/);
+  },
   async 'the keys are listed under ?'() {
     await page.keyboard.press('?');
     assert.ok(await page.locator('#help').isVisible());

@@ -12,8 +12,8 @@ export function bindPlayer(studio: Studio, page: PageStore) {
       if (playing) page.set({ playing: false });
       return;
     }
-    // A page that was hidden goes on where it was.
-    let next = seconds + Math.min(0.25, (now - before) / 1000) * speed;
+    // A page that was hidden goes on where it was; the first frame may have begun before it was asked for.
+    let next = seconds + Math.min(0.25, Math.max(0, now - before) / 1000) * speed;
     before = now;
     if (next > clip.duration) next = loop ? next % clip.duration : clip.duration;
     studio.showMoment(next);

@@ -3,7 +3,7 @@ import { togglePlaying } from '../app/player';
 import type { SessionState } from '../engine/messages';
 import type { PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
-import { button, element } from '../ui/dom';
+import { button, element, setIcon } from '../ui/dom';
 
 const mostMarks = 400; // keys that are drawn; recorded motion has one for every frame
 const frame = 1 / 30;
@@ -44,8 +44,8 @@ export function timeline(studio: Studio, page: PageStore): HTMLElement {
 
   const card = element('section', { class: 'card timeline', 'aria-label': 'Timeline', id: 'timeline' },
     element('div', { class: 'row tools' }, play, clips, add, motion, file,
-      element('div', { class: 'row clip-tools' }, time, speed, loop, key, erase, between, remove)),
-    element('div', { class: 'track' }, scrub, track));
+      element('div', { class: 'row clip-tools' }, speed, loop, key, erase, between, remove)),
+    element('div', { class: 'row moment' }, element('div', { class: 'track' }, scrub, track), time));
   let listed = '';
   page.watch(({ session, seconds, playing, loop: again }) => {
     const clip = chosenClip(session);
@@ -60,6 +60,7 @@ export function timeline(studio: Studio, page: PageStore): HTMLElement {
     const still = !clip || clip.duration <= 0;
     play.disabled = loop.disabled = speed.disabled = still;
     play.setAttribute('aria-pressed', String(playing));
+    setIcon(play, playing ? 'pause' : 'play');
     play.setAttribute('aria-label', playing ? 'Pause' : 'Play');
     loop.setAttribute('aria-pressed', String(again));
     key.disabled = remove.disabled = !clip;
@@ -105,7 +106,7 @@ function scrubber(studio: Studio, page: PageStore) {
     if (now === drawn) return;
     drawn = now;
     track.replaceChildren(...(clip.keys.length > mostMarks ? [] : clip.keys).map((time) => mark(time, Number(scrub.max))));
-    track.classList.toggle('dense', clip.keys.length > 60);
+    track.classList.toggle('dense', clip.keys.length > 24);
   };
   const mark = (time: number, end: number) => {
     const made = element('i', { title: `Key at ${time.toFixed(2)} s; drag it to another moment`, 'data-time': time });

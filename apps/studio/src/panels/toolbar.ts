@@ -1,6 +1,7 @@
 // The bar on top: open, undo, what leaves the page.
 import type { PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
+import type { ModelView } from '../scene/model_view';
 import type { Viewport } from '../scene/viewport';
 import { button, element, offer } from '../ui/dom';
 
@@ -10,7 +11,7 @@ export const samples = [
 
 const types = { glb: 'model/gltf-binary', obj: 'model/obj', stl: 'model/stl', session: 'model/gltf-binary' };
 
-export function toolbar(studio: Studio, page: PageStore, viewport: Viewport): HTMLElement {
+export function toolbar(studio: Studio, page: PageStore, viewport: Viewport, model: ModelView): HTMLElement {
   const file = element('input', { type: 'file', accept: '.glb,.gltf,.vrm,.obj,.fbx,.stl,.ply,.bvh', hidden: true, id: 'file' });
   file.addEventListener('change', () => {
     const chosen = file.files?.[0];
@@ -34,17 +35,22 @@ export function toolbar(studio: Studio, page: PageStore, viewport: Viewport): HT
     const picture = await viewport.picture();
     if (picture) offer(picture, 'image/png', `${stem()}.png`);
   };
+  const saveUsdz = async () => {
+    const { toUsdz } = await import('../app/export_usdz');
+    offer(await toUsdz(model.posed()) as BlobPart, 'model/vnd.usdz+zip', `${stem()}_posed.usdz`);
+  };
   const saveRecord = async () => {
     const record = await studio.record();
     if (record) offer(record, 'application/json', `${stem()}_commands.json`);
   };
   const exporter = element('select', { 'aria-label': 'Save as another format', class: 'select', id: 'export-as' },
-    ...[['', 'More'], ['obj', 'OBJ, posed surface'], ['stl', 'STL, posed surface'], ['session', 'Session, to go on later'],
+    ...[['', 'More'], ['obj', 'OBJ, posed surface'], ['stl', 'STL, posed surface'], ['usdz', 'USDZ, for AR Quick Look'], ['session', 'Session, to go on later'],
       ['record', 'Commands, for limber session replay'], ['png', 'Picture (PNG)']].map(([value = '', text = '']) => element('option', { value }, text)));
   exporter.addEventListener('change', () => {
     const { value } = exporter;
     exporter.value = '';
     if (value === 'png') void savePicture();
+    else if (value === 'usdz') void saveUsdz();
     else if (value === 'record') void saveRecord();
     else if (value === 'obj' || value === 'stl' || value === 'session') void save(value);
   });

@@ -1,7 +1,7 @@
 // The model's surface, moved by the engine's matrices on the graphics card.
 import {
-  Bone, BufferAttribute, BufferGeometry, Color, DoubleSide, Group, Material, Matrix4, MeshStandardMaterial,
-  RepeatWrapping, Skeleton, SkinnedMesh, SRGBColorSpace, Texture,
+  Bone, BufferAttribute, BufferGeometry, Color, DoubleSide, Group, Material, Matrix4, Mesh, MeshStandardMaterial,
+  RepeatWrapping, Skeleton, SkinnedMesh, SRGBColorSpace, Texture, Vector3,
 } from 'three';
 import type { Display } from '../app/state';
 import type { SurfaceModel } from '../engine/messages';
@@ -72,6 +72,38 @@ export class ModelView {
       material.opacity = display === 'handles' ? 0.36 : 1;
       material.wireframe = wireframe;
       material.needsUpdate = true;
+    }
+  }
+
+  /** The surface as it stands now, without a skeleton, for programs that know none. */
+  posed(): Group {
+    const group = new Group();
+    const at = new Vector3();
+    for (const mesh of this.meshes) {
+      const geometry = mesh.geometry.clone();
+      const positions = geometry.getAttribute('position') as BufferAttribute;
+      for (let v = 0; v < positions.count; ++v) {
+        this.place(mesh, v, at);
+        positions.setXYZ(v, at.x, at.y, at.z);
+      }
+      for (const name of ['skinIndex', 'skinWeight', 'color']) geometry.deleteAttribute(name);
+      geometry.computeVertexNormals();
+      const material = new MeshStandardMaterial({
+        color: mesh.userData['color'] as Color, map: mesh.userData['map'] as Texture | null, roughness: 0.75, metalness: 0,
+      });
+      group.add(new Mesh(geometry, material));
+    }
+    return group;
+  }
+
+  private place(mesh: SkinnedMesh, vertex: number, at: Vector3) {
+    const model = this.model!, matrices = this.skeleton!.boneMatrices;
+    const from = new Vector3().fromBufferAttribute(mesh.geometry.getAttribute('position') as BufferAttribute, vertex);
+    at.set(0, 0, 0);
+    for (let i = 4 * vertex; i < 4 * vertex + 4; ++i) {
+      const weight = model.weights[i] ?? 0;
+      if (weight === 0 || !matrices) continue;
+      at.addScaledVector(from.clone().applyMatrix4(new Matrix4().fromArray(matrices, 16 * (model.joints[i] ?? 0))), weight);
     }
   }
 

@@ -13,6 +13,7 @@ import { Viewport } from './viewport';
 export interface Stage {
   viewport: Viewport;
   handles: HandleView;
+  model: ModelView;
 }
 
 export function createStage(studio: Studio, page: PageStore): Stage {
@@ -59,5 +60,5 @@ export function createStage(studio: Studio, page: PageStore): Stage {
     handles.paint(now.selected, now.hovered, new Set(now.session?.targets.map((target) => target.joint)));
     viewport.draw();
   });
-  return { viewport, handles };
+  return { viewport, handles, model };
 }

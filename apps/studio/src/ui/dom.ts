@@ -27,7 +27,8 @@ const icons = {
   camera: 'M3 6h3l2-2h4l2 2h3v10H3zM10 8a3 3 0 1 0 .01 0',
   help: 'M7.5 7.5a2.5 2.5 0 1 1 3.5 2.3c-.7.3-1 .8-1 1.7M10 14.5v.5',
   pin: 'M10 18v-6M6 12h8l-2-4V3H8v5z',
-  play: 'M6 4l9 6-9 6zM17.5 4v12',
+  play: 'm6 4 10 6-10 6z',
+  pause: 'M7 4v12M13 4v12',
   loop: 'M4 10a5 5 0 0 1 5-5h6m-3-3 3 3-3 3M16 10a5 5 0 0 1-5 5H5m3 3-3-3 3-3',
   key: 'm10 4 6 6-6 6-6-6z',
   erase: 'M5 6h10M8 6V4h4v2M6 6l1 11h6l1-11',
@@ -45,6 +46,10 @@ export function icon(name: IconName): SVGSVGElement {
   path.setAttribute('d', icons[name]);
   svg.append(path);
   return svg;
+}
+
+export function setIcon(of: HTMLElement, name: IconName) {
+  of.querySelector('path')?.setAttribute('d', icons[name]);
 }
 
 export interface ButtonOptions {
