@@ -1,5 +1,9 @@
 #include "limber/ik/pseudo_inverse.h"
 
+#include <algorithm>
+#include <cmath>
+
+#include "limber/core/numbers.h"
 #include "limber/ik/jacobian_iteration.h"
 #include "limber/ik/small_solve.h"
 
@@ -7,10 +11,8 @@ namespace limber {
 
 namespace {
 
-// Squared singular values below this share of the largest are taken for 0. Where a step gains nothing, more of them
-// are: along a chain that is all but straight only a very long step would reach, and shortened to one that joints can
-// make it would leave nothing of what the other directions have to go.
-constexpr double kNegligible = 1e-6;
+constexpr double kNegligible = 1e-6;      // squared singular values below this share of the largest are taken for 0
+constexpr double kLongestWay = kPi / 4;  // radians, of all joints together, along one singular vector
 
 class PseudoInverse : public JacobianIteration {
  public:
@@ -21,14 +23,24 @@ class PseudoInverse : public JacobianIteration {
   }
 
  private:
+  bool heedsCaution() const override { return true; }
+
+  // Along a chain that is all but straight only a very long step would reach. Were the whole step shortened to one that
+  // joints can make, nothing would be left of what the other directions have to go: so each is shortened by itself.
   void weighRows(const JacobianRows& rows, Eigen::Ref<Eigen::VectorXd> y) override {
     const Eigen::Index m = y.size();
     auto vectors = vectors_.topLeftCorner(m, m);
     symmetricEigen(rows.gram, vectors);
-    const double least = kNegligible * rows.caution * rows.caution * rows.gram.diagonal().maxCoeff();
+    const double least = kNegligible * rows.gram.diagonal().maxCoeff();
+    const double longest = kLongestWay / std::max(1.0, rows.caution);
     for (Eigen::Index i = 0; i < m; ++i) {
       const double value = rows.gram(i, i);
-      coordinates_[i] = value > least ? vectors.col(i).dot(y) / value : 0;
+      if (!(value > least)) {
+        coordinates_[i] = 0;
+        continue;
+      }
+      const double singular = std::sqrt(value);
+      coordinates_[i] = std::clamp(vectors.col(i).dot(y) / singular, -longest, longest) / singular;
     }
     y.setZero();
     for (Eigen::Index i = 0; i < m; ++i) y += coordinates_[i] * vectors.col(i);
