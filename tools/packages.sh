@@ -7,6 +7,7 @@ packages_bench=("${packages_tests[@]}" libbenchmark-dev nodejs)
 packages_sanitize=("${packages_tests[@]}" clang libclang-rt-14-dev lld)
 packages_wasm=(cmake ninja-build libeigen3-dev libfmt-dev nlohmann-json3-dev emscripten nodejs)
 packages_node=(nodejs npm)
+packages_studio=(libcpp-httplib-dev pkg-config) # for the page in the program
 packages_browser=(chromium fonts-dejavu-core)
 packages_format=(clang-format)
 packages_lint=("${packages_tests[@]}" clang clang-tidy)

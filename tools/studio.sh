@@ -13,6 +13,11 @@ install_node_packages() {
   npm --prefix "$folder" ci --silent --no-progress </dev/null >"$log" 2>&1 || { tail -n 20 "$log" >&2; return 1; }
 }
 
+# The program with dist/ in it; tests and benchmarks are left as an earlier configuration has them.
+build_program_with_studio() {
+  configure release -DLIMBER_STUDIO=ON && compile release limber
+}
+
 # Types checked, then dist/ made.
 build_studio() {
   install_node_packages apps/studio || return 1

@@ -142,7 +142,7 @@ install_and_consume() {
 }
 
 build_release() {
-  configure release -DLIMBER_TESTS=ON -DLIMBER_BENCH=ON && compile release
+  configure release -DLIMBER_TESTS=ON -DLIMBER_BENCH=ON -DLIMBER_STUDIO=OFF && compile release
 }
 
 wasm_smoke() {
@@ -161,6 +161,11 @@ studio_in_browser() {
   local faulty
   faulty=$(shared_data)/broken || faulty=
   counted node apps/studio/tests/studio_test.mjs dist build/release/limber "$output/studio" $faulty
+}
+
+studio_in_program() {
+  need "${packages_studio[@]}" && build_program_with_studio &&
+    counted node apps/studio/tests/program_test.mjs build/release/limber dist
 }
 
 build_sanitize() {
@@ -251,6 +256,7 @@ remaining_stages() {
   stage "motions in three.js" motions_in_three
   stage "studio: types, bundle" build_studio
   stage "studio in a browser: mouse, touch, keyboard, bad files" studio_in_browser
+  stage "studio in the program" studio_in_program
   stage "glTF validator over every file written" validate_written_files
   stage "installed package, and a program built against it" install_and_consume
   stage "sanitizer build, clang++ with warnings as errors" build_sanitize

@@ -22,6 +22,7 @@ void addConvertCommand(CLI::App& program);
 void addSessionCommand(CLI::App& program);
 void addRetargetCommand(CLI::App& program);
 void addAnimateCommand(CLI::App& program);
+void addStudioCommand(CLI::App& program);
 void addMotionEvaluation(CLI::App& evaluate);  // subcommands of evaluate
 void addRetargetingEvaluation(CLI::App& evaluate);
 
