@@ -11,19 +11,12 @@ namespace limber {
 
 namespace {
 
-// Heights, but for shares. Fitted with the skeletons that docs/template-rigs.md names.
-constexpr double kHipAboveParting = 1.0;  // half widths of a leg
-constexpr double kHipsBelow = 0.012;      // the legs' upper joints
-constexpr double kNeckAboveShoulders = 0.025;
-constexpr double kHeadAboveNeck = 0.055;
-constexpr double kAnkle = 0.02, kAnkleShare = 0.05;  // of the height of the legs' upper joints
-constexpr double kKnee = 0.49;                       // of the way from hip to ankle
+// Heights, but for shares.
 constexpr double kSeedReach = 0.04;
 constexpr double kLowestParting = 0.3;  // of the way from ankle to hip as embedded: legs that part lower are no legs
 constexpr int kStaysTogether = 3;       // cuts
 
-constexpr double kUpperChest = 0.73;  // of the way from hips to neck
-constexpr double kWidestArm = 0.03;   // square heights of a cut
+constexpr double kWidestArm = 0.03;  // square heights of a cut
 constexpr double kMostMoved = 0.06;
 
 struct Leg {
@@ -208,8 +201,8 @@ std::optional<HumanoidJoints> humanoidJointsOf(const TemplateSkeleton& skeleton)
 class Mover {
  public:
   Mover(const BodyVolume& body, const BodyFrame& frame, const std::vector<std::optional<Vec3>>& pins,
-        std::vector<Vec3>& places)
-      : body_(body), frame_(frame), pins_(pins), places_(places) {}
+        std::vector<Vec3>& places, const HumanoidProportions& proportions)
+      : body_(body), frame_(frame), pins_(pins), places_(places), proportions_(proportions) {}
 
   void legs(const HumanoidJoints& joints) {
     LegFinder finder(body_, frame_, places_, joints.legs[0], joints.legs[1]);
@@ -219,15 +212,15 @@ class Mover {
       const Leg& leg = joints.legs[side];
       double hipY = places_[leg.hip].y();
       if (parted) {
-        hipY = finder.parting() + kHipAboveParting * finder.halfWidth(side);
+        hipY = finder.parting() + proportions_.hipAboveParting * finder.halfWidth(side);
         moveTo(leg.hip, finder.middle(side, hipY));
       }
-      const double ankleY = kAnkle + kAnkleShare * hipY;
+      const double ankleY = proportions_.ankle + proportions_.ankleShare * hipY;
       moveTo(leg.ankle, finder.middle(side, ankleY));
-      moveTo(leg.knee, finder.middle(side, hipY + kKnee * (ankleY - hipY)));
+      moveTo(leg.knee, finder.middle(side, hipY + proportions_.knee * (ankleY - hipY)));
     }
     const Vec3 between = 0.5 * (places_[joints.legs[0].hip] + places_[joints.legs[1].hip]);
-    if (parted) moveTo(joints.hips, {places_[joints.hips].x(), between.y() - kHipsBelow, between.z()});
+    if (parted) moveTo(joints.hips, {places_[joints.hips].x(), between.y() - proportions_.hipsBelow, between.z()});
   }
 
   // Elbow and hand to the middle of the arm; the shoulder on in the direction from the elbow to the middle of the upper
@@ -251,9 +244,9 @@ class Mover {
     const double shoulders = 0.5 * (places_[joints.arms[0].shoulder].y() + places_[joints.arms[1].shoulder].y());
     Vec3 neck = places_[joints.neck], head = places_[joints.head], chest = places_[joints.upperChest];
     const double hips = places_[joints.hips].y();
-    neck.y() = shoulders + kNeckAboveShoulders;
-    head.y() = neck.y() + kHeadAboveNeck;
-    chest.y() = hips + kUpperChest * (neck.y() - hips);
+    neck.y() = shoulders + proportions_.neckAboveShoulders;
+    head.y() = neck.y() + proportions_.headAboveNeck;
+    chest.y() = hips + proportions_.upperChest * (neck.y() - hips);
     for (Vec3* place : {&chest, &neck}) {
       const BodySection section = sectionAt(body_, frame_, *place, Vec3::UnitY(), kSeedReach);
       if (!section.empty()) place->z() = section.center.z();
@@ -281,15 +274,17 @@ class Mover {
   const BodyFrame& frame_;
   const std::vector<std::optional<Vec3>>& pins_;
   std::vector<Vec3>& places_;
+  const HumanoidProportions& proportions_;
 };
 
 }  // namespace
 
 void refineHumanoid(const TemplateSkeleton& skeleton, const BodyVolume& body, const BodyFrame& frame,
-                    const std::vector<std::optional<Vec3>>& pins, std::vector<Vec3>& places) {
+                    const std::vector<std::optional<Vec3>>& pins, std::vector<Vec3>& places,
+                    const HumanoidProportions& proportions) {
   const std::optional<HumanoidJoints> joints = humanoidJointsOf(skeleton);
   if (!joints) return;
-  Mover mover(body, frame, pins, places);
+  Mover mover(body, frame, pins, places, proportions);
   mover.legs(*joints);
   for (const Arm& arm : joints->arms) mover.arm(arm);
   mover.trunk(*joints);

@@ -29,11 +29,24 @@ struct BodySection {
 BodySection sectionAt(const BodyVolume& body, const BodyFrame& frame, const Vec3& seed, const Vec3& normal,
                       double reach);
 
+// How the joints of a person stand to the shapes that show them. Heights, but for shares. tools/fit_template.cpp fits
+// these values.
+struct HumanoidProportions {
+  double hipAboveParting = 1.0;  // the legs' upper joints above the place where the legs part, half widths of a leg
+  double hipsBelow = 0.012;      // the hips, below the legs' upper joints
+  double neckAboveShoulders = 0.025;
+  double headAboveNeck = 0.055;
+  double ankle = 0.02, ankleShare = 0.05;  // of the height of the legs' upper joints
+  double knee = 0.49;                      // of the way from hip to ankle
+  double upperChest = 0.73;                // of the way from hips to neck
+};
+
 // Where a template has the legs and arms of VRM's humanoid: the legs' upper joints go to where the legs part; knees,
 // ankles, elbows and hands to the middle of the limb; shoulders on in the direction of the upper arm; the hips between
 // the legs, the neck and the head above the shoulders, all in the middle between front and back. What a body does not
 // show (a robe hides where legs part) stays where it was. Pinned joints stay. Body space.
 void refineHumanoid(const TemplateSkeleton& skeleton, const BodyVolume& body, const BodyFrame& frame,
-                    const std::vector<std::optional<Vec3>>& pins, std::vector<Vec3>& places);
+                    const std::vector<std::optional<Vec3>>& pins, std::vector<Vec3>& places,
+                    const HumanoidProportions& proportions = {});
 
 }  // namespace limber

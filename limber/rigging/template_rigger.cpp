@@ -27,14 +27,6 @@ constexpr double kNearBone = 0.08;    // heights beyond the surface of a medial 
 constexpr double kFarFromBone = 0.25;
 constexpr double kMostAsymmetry = 0.15;  // more than the most symmetric way to stand, of those looked at
 
-struct Fit {
-  TemplateSkeleton skeleton;
-  BodyFrame frame;
-  TemplatePins pins;
-  TemplateEmbedding embedding;
-  double cost = 0;
-};
-
 TemplatePins pinsIn(const TemplateSkeleton& skeleton, const BodyFrame& frame, const std::vector<JointPin>& pins) {
   TemplatePins places(skeleton.jointCount());
   for (const JointPin& pin : pins) {
@@ -92,7 +84,7 @@ double unexplained(const TemplateSkeleton& skeleton, const std::vector<Vec3>& pl
 
 // One fit for each variant.
 void addFits(const std::vector<TemplateVariant>& variants, const BodyVolume& body, const BodyFrame& frame,
-             const std::vector<JointPin>& pins, std::size_t mostSpheres, std::vector<Fit>& fits) {
+             const std::vector<JointPin>& pins, std::size_t mostSpheres, std::vector<TemplateFit>& fits) {
   const TemplatePins places = pinsIn(variants.front().skeleton, frame, pins);
   std::vector<TemplateEmbedding> embeddings = embedTemplate(variants, body, frame, places, mostSpheres);
   for (std::size_t v = 0; v < variants.size(); ++v) {
@@ -103,12 +95,12 @@ void addFits(const std::vector<TemplateVariant>& variants, const BodyVolume& bod
 }
 
 // Looks at every way to stand with some of the spheres, and at the best ones with all.
-Fit bestFit(const TemplateSkeleton& skeleton, const BodyVolume& body, const std::vector<BodyFrame>& frames,
-            const std::vector<JointPin>& pins) {
+TemplateFit bestFit(const TemplateSkeleton& skeleton, const BodyVolume& body, const std::vector<BodyFrame>& frames,
+                    const std::vector<JointPin>& pins) {
   double least = 1;
   for (const BodyFrame& frame : frames) least = std::min(least, frame.asymmetry);
   const std::vector<TemplateVariant> variants = templateVariants(skeleton);
-  const auto cheaper = [](const Fit& a, const Fit& b) { return a.cost < b.cost; };
+  const auto cheaper = [](const TemplateFit& a, const TemplateFit& b) { return a.cost < b.cost; };
   // For each way to stand the variants, best first.
   struct Look {
     BodyFrame frame;
@@ -118,7 +110,7 @@ Fit bestFit(const TemplateSkeleton& skeleton, const BodyVolume& body, const std:
   std::vector<Look> looks;
   for (const BodyFrame& frame : frames) {
     if (frame.asymmetry > least + kMostAsymmetry) continue;
-    std::vector<Fit> fits;
+    std::vector<TemplateFit> fits;
     addFits(variants, body, frame, pins, kCoarseSpheres, fits);
     std::vector<std::size_t> order(fits.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -130,18 +122,18 @@ Fit bestFit(const TemplateSkeleton& skeleton, const BodyVolume& body, const std:
     looks.push_back(std::move(look));
   }
   std::stable_sort(looks.begin(), looks.end(), [](const Look& a, const Look& b) { return a.cost < b.cost; });
-  std::vector<Fit> fits;
+  std::vector<TemplateFit> fits;
   for (std::size_t i = 0; i < std::min(looks.size(), kFramesRefined); ++i) {
     addFits(looks[i].variants, body, looks[i].frame, pins, body.spheres.size(), fits);
   }
   return *std::min_element(fits.begin(), fits.end(), cheaper);
 }
 
-double confidenceOf(const Fit& fit) {
+double confidenceOf(const TemplateFit& fit) {
   return 1 / (1 + std::pow(fit.cost / kCostOfDoubt, 3.0));
 }
 
-void warn(const Fit& fit, AutoRig& rig) {
+void warn(const TemplateFit& fit, AutoRig& rig) {
   for (Index j = 0; j < fit.skeleton.jointCount(); ++j) {
     if (fit.embedding.costs[j] < kNoPlace) continue;
     rig.warnings.add("no-place", "joints of the template find no place in the model", fit.skeleton.joints[j].name);
@@ -155,6 +147,11 @@ void warn(const Fit& fit, AutoRig& rig) {
 }
 
 }  // namespace
+
+TemplateFit fitTemplate(const TemplateSkeleton& skeleton, const TriMesh& mesh, const BodyVolume& body,
+                        const RigOptions& options) {
+  return bestFit(skeleton, body, possibleFrames(mesh, body, options.up, options.front), options.pins);
+}
 
 Skeleton standingSkeleton(const TemplateSkeleton& skeleton, const std::vector<Vec3>& places, const BodyFrame& frame) {
   const Index count = skeleton.jointCount();
@@ -208,19 +205,20 @@ AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress
   const BodyVolume body = measureBody(mesh);
   progress.step("fit template");
   const std::vector<BodyFrame> frames = possibleFrames(mesh, body, options.up, options.front);
-  std::vector<Fit> fits;
+  std::vector<TemplateFit> fits;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     progress.update(static_cast<double>(i) / static_cast<double>(candidates.size()));
     fits.push_back(bestFit(*candidates[i], body, frames, options.pins));
   }
-  std::stable_sort(fits.begin(), fits.end(), [](const Fit& a, const Fit& b) { return a.cost < b.cost; });
+  std::stable_sort(fits.begin(), fits.end(),
+                   [](const TemplateFit& a, const TemplateFit& b) { return a.cost < b.cost; });
 
-  Fit& best = fits.front();
+  TemplateFit& best = fits.front();
   refineHumanoid(best.skeleton, body, best.frame, best.pins, best.embedding.places);
   placeBetween(best.skeleton, best.embedding.places);
   AutoRig rig;
   rig.skeleton = standingSkeleton(best.skeleton, best.embedding.places, best.frame);
-  for (const Fit& fit : fits) rig.matches.push_back({fit.skeleton.name, confidenceOf(fit)});
+  for (const TemplateFit& fit : fits) rig.matches.push_back({fit.skeleton.name, confidenceOf(fit)});
   warn(best, rig);
   return rig;
 }

@@ -3,6 +3,8 @@
 
 #include "limber/rigging/auto_rigger.h"
 #include "limber/rigging/body_frame.h"
+#include "limber/rigging/body_volume.h"
+#include "limber/rigging/template_embedding.h"
 #include "limber/rigging/template_skeleton.h"
 
 namespace limber {
@@ -13,6 +15,20 @@ namespace limber {
 // for a bone that itself points within 30 degrees of front or back, to the body's up. So the two sides mirror each
 // other.
 Skeleton standingSkeleton(const TemplateSkeleton& skeleton, const std::vector<Vec3>& places, const BodyFrame& frame);
+
+// A template embedded in a body, before the shape of the body refines it.
+struct TemplateFit {
+  TemplateSkeleton skeleton;  // the variant
+  BodyFrame frame;
+  TemplatePins pins;
+  TemplateEmbedding embedding;
+  double cost = 0;
+};
+
+// The way to stand and the variant of the template that fit best. Reads up, front and pins of the options.
+// Throws Error kBadArgument for an unknown pinned joint.
+TemplateFit fitTemplate(const TemplateSkeleton& skeleton, const TriMesh& mesh, const BodyVolume& body,
+                        const RigOptions& options);
 
 // Measures the body, finds the way it stands and the template that fits best (options.templateName, "auto" tries all),
 // embeds and refines it. Warnings: "no-place" for each limb that the model seems to lack, "low-confidence".

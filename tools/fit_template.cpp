@@ -1,0 +1,157 @@
+// Fits the proportions of people (limber/rigging/humanoid_landmarks.h) to characters whose artists named their joints:
+//   limber_fit_template FILE...
+// Coordinate descent on the mean distance of named joints, in percent of the height. Files of one maker often share a
+// skeleton, so each maker (a name's part before the first '_') is also left out once: what the others' fit does on its
+// files is the error to expect of models never seen. Prints both, and the values to put into the header.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "limber/asset/geometry.h"
+#include "limber/asset/read.h"
+#include "limber/asset/rig_io.h"
+#include "limber/core/parallel.h"
+#include "limber/evaluate/skinned_model.h"
+#include "limber/mesh/prepare.h"
+#include "limber/rigging/humanoid_landmarks.h"
+#include "limber/rigging/template_rigger.h"
+#include "limber/skeleton/humanoid_names.h"
+
+using namespace limber;
+
+namespace {
+
+constexpr int kRounds = 3;
+constexpr double kLeastGain = 1e-4;  // percent
+constexpr double kMostError = 15;    // percent that one joint counts at most: a limb not found is not the proportions'
+
+struct Parameter {
+  const char* name;
+  double HumanoidProportions::*value;
+  double step;
+};
+constexpr std::array<Parameter, 8> kParameters = {{
+    {"hipAboveParting", &HumanoidProportions::hipAboveParting, 0.2},
+    {"hipsBelow", &HumanoidProportions::hipsBelow, 0.01},
+    {"neckAboveShoulders", &HumanoidProportions::neckAboveShoulders, 0.01},
+    {"headAboveNeck", &HumanoidProportions::headAboveNeck, 0.01},
+    {"ankle", &HumanoidProportions::ankle, 0.01},
+    {"ankleShare", &HumanoidProportions::ankleShare, 0.02},
+    {"knee", &HumanoidProportions::knee, 0.02},
+    {"upperChest", &HumanoidProportions::upperChest, 0.03},
+}};
+
+struct Character {
+  std::string maker;
+  BodyVolume body;
+  TemplateFit fit;
+  std::vector<std::pair<Index, Vec3>> truth;  // joint of the template, place in body space
+};
+
+Character readCharacter(const std::filesystem::path& file) {
+  Asset asset = readAsset(file);
+  const Skeleton skeleton = readSkinnedModel(asset).skeleton;
+  removeRig(asset);
+  const Geometry geometry = collectGeometry(asset);
+  const PreparedMesh prepared = prepareMesh(geometry.positions, geometry.triangles);
+  Character character;
+  const std::string stem = file.stem().string();
+  character.maker = stem.substr(0, stem.find('_'));
+  character.body = measureBody(prepared.mesh);
+  character.fit = fitTemplate(findTemplate("humanoid"), prepared.mesh, character.body, {});
+  const std::vector<Affine> globals = restGlobals(skeleton);
+  for (const HumanoidJoint& named : humanoidJointsByName(skeleton)) {
+    const std::optional<Index> joint = character.fit.skeleton.find(named.bone);
+    if (!joint || named.bone == "upperChest" || named.bone.find("Shoulder") != std::string_view::npos) continue;
+    const Index source = named.bone == "hips" ? pelvisByName(skeleton).value_or(named.joint) : named.joint;
+    const Vec3 place = prepared.frame.toWorking(globals[source].translation());
+    character.truth.emplace_back(*joint, character.fit.frame.toBody(place));
+  }
+  return character;
+}
+
+double errorOf(const Character& character, const HumanoidProportions& proportions) {
+  const TemplateFit& fit = character.fit;
+  std::vector<Vec3> places = fit.embedding.places;
+  refineHumanoid(fit.skeleton, character.body, fit.frame, fit.pins, places, proportions);
+  placeBetween(fit.skeleton, places);
+  double sum = 0;
+  for (const auto& [joint, place] : character.truth) sum += std::min(kMostError, 100 * (places[joint] - place).norm());
+  return sum / static_cast<double>(std::max<std::size_t>(1, character.truth.size()));
+}
+
+double meanError(const std::vector<const Character*>& characters, const HumanoidProportions& proportions) {
+  std::vector<double> errors(characters.size());
+  parallelFor(characters.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) errors[c] = errorOf(*characters[c], proportions);
+  });
+  double sum = 0;
+  for (const double error : errors) sum += error / static_cast<double>(errors.size());
+  return sum;
+}
+
+HumanoidProportions fitted(const std::vector<const Character*>& characters) {
+  HumanoidProportions best;
+  double least = meanError(characters, best);
+  for (int round = 0; round < kRounds; ++round) {
+    for (const Parameter& parameter : kParameters) {
+      for (const double sign : {1.0, -1.0}) {
+        HumanoidProportions other = best;
+        other.*parameter.value += sign * parameter.step / (1 << round);
+        const double error = meanError(characters, other);
+        if (error > least - kLeastGain) continue;
+        least = error;
+        best = other;
+        break;
+      }
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::vector<Character> characters;
+  std::set<std::string> makers;
+  std::vector<const Character*> all;
+  try {
+    for (int i = 1; i < argc; ++i) characters.push_back(readCharacter(argv[i]));
+  } catch (const Error& error) {
+    fmt::print(stderr, "limber_fit_template: {}\n", error.what());
+    return 1;
+  }
+  if (characters.empty()) {
+    fmt::print(stderr, "usage: limber_fit_template FILE...\n");
+    return 1;
+  }
+  for (const Character& character : characters) {
+    makers.insert(character.maker);
+    all.push_back(&character);
+  }
+  const HumanoidProportions best = fitted(all);
+  fmt::print("named joints of {} files, % of height: {:.3f} as it is, {:.3f} fitted\n", all.size(), meanError(all, {}),
+             meanError(all, best));
+  for (const Parameter& parameter : kParameters) {
+    fmt::print("  {:<20}{:.4f} -> {:.4f}\n", parameter.name, HumanoidProportions().*parameter.value,
+               best.*parameter.value);
+  }
+  double held = 0;
+  for (const std::string& maker : makers) {
+    std::vector<const Character*> others, own;
+    for (const Character* character : all) (character->maker == maker ? own : others).push_back(character);
+    if (others.empty()) continue;
+    const double error = meanError(own, fitted(others));
+    fmt::print("  without {:<12}{:.3f} as it is, {:.3f} by the others' fit ({} files)\n", maker, meanError(own, {}),
+               error, own.size());
+    held += error * static_cast<double>(own.size()) / static_cast<double>(all.size());
+  }
+  fmt::print("left out by maker: {:.3f}\n", held);
+}
