@@ -136,6 +136,7 @@ int main(int argc, char** argv) {
     makers.insert(character.maker);
     all.push_back(&character);
   }
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);
   const HumanoidProportions best = fitted(all);
   fmt::print("named joints of {} files, % of height: {:.3f} as it is, {:.3f} fitted\n", all.size(), meanError(all, {}),
              meanError(all, best));
