@@ -13,7 +13,7 @@ namespace {
 constexpr double kLongestTurn = kPi / 4;  // of a joint in one iteration
 constexpr int kLimitPasses = 4;
 constexpr int kTries = 10;            // shorter and shorter steps before giving up
-constexpr double kEnough = 0.1;         // of what a step promises to first order
+constexpr double kEnough = 0.1;       // of what a step promises to first order
 constexpr Index kPatience = 10;       // iterations after which there must have been
 constexpr double kProgress = 0.9995;  // this factor on the cost
 constexpr int kStepBits = 28;         // of a step that count, so that rounding does not tell left from right
@@ -30,10 +30,7 @@ std::vector<double> freedomsOf(const IkSystem& system) {
 JacobianIteration::JacobianIteration(const IkSystem& system) : JacobianIteration(system, freedomsOf(system)) {}
 
 JacobianIteration::JacobianIteration(const IkSystem& system, std::vector<double> gains)
-    : jacobian_(system, std::move(gains)),
-      before_(system.makeState()),
-      gained_(before_),
-      rowsOf_(system.nodes.size()) {
+    : jacobian_(system, std::move(gains)), before_(system.makeState()), gained_(before_), rowsOf_(system.nodes.size()) {
   const Eigen::Index rows = jacobian_.rows(), columns = jacobian_.maxColumns();
   for (int n = 0; n < system.nodeCount(); ++n) {
     std::vector<Eigen::Index>& list = rowsOf_[static_cast<std::size_t>(n)];
