@@ -48,7 +48,7 @@ import createEngine from './limber_engine.mjs';
  *             parts: { name: string, first: number, count: number, material: number | null }[],
  *             materials: { name: string, color: [number, number, number, number], texture: number | null }[],
  *             textures: Uint8Array[] }} SurfaceModel four influences for each vertex; the files of the textures
- * @typedef {'glb' | 'obj' | 'stl' | 'ply' | 'session'} ExportFormat
+ * @typedef {'glb' | 'obj' | 'stl' | 'ply' | 'bvh' | 'session'} ExportFormat
  * @typedef {ReturnType<typeof createSession>} Session
  */
 

@@ -8,10 +8,12 @@
 #include <emscripten/emscripten.h>
 
 #include "call_result.h"
+#include "limber/asset/bvh_write.h"
 #include "limber/asset/json_text.h"
 #include "limber/asset/mesh_export.h"
 #include "limber/session/session.h"
 #include "limber/session/session_state.h"
+#include "limber/skeleton/keyframes.h"
 
 namespace {
 
@@ -148,14 +150,30 @@ Json hitJson(const std::optional<limber::PickHit>& hit) {
           {"distance", hit->distance}};
 }
 
+// The skeleton with the chosen clip; where none is, with the pose as its only frame.
+Bytes motionOf(const limber::SessionState& state) {
+  limber::Motion motion;
+  motion.name = "limber";
+  motion.skeleton = state.rig->skeleton();
+  if (const limber::Clip* clip = state.movement.clip()) {
+    motion.clips.push_back(*clip);
+    motion.framesPerSecond = limber::measuredFrameRate(*clip).value_or(motion.framesPerSecond);
+  } else {
+    motion.clips.emplace_back().name = "pose";
+    limber::setKey(motion.clips.back(), motion.skeleton, state.pose, 0);
+  }
+  return limber::writeBvh(motion);
+}
+
 Bytes exported(const limber::Session& session, std::string_view format) {
   if (format == "glb") return session.exportModel(limber::ExportFormat::kGlb);
   if (format == "obj") return session.exportModel(limber::ExportFormat::kObj);
   if (format == "stl") return session.exportModel(limber::ExportFormat::kStl);
   if (format == "ply") return session.exportModel(limber::ExportFormat::kPly);
+  if (format == "bvh") return motionOf(session.state());
   if (format == "session") return session.saveSession();
   throw limber::Error(limber::ErrorCode::kBadArgument, "no format is called '" + std::string(format) + "'", {},
-                      "there are: glb, obj, stl, ply, session");
+                      "there are: glb, obj, stl, ply, bvh, session");
 }
 
 }  // namespace

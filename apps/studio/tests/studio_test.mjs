@@ -249,6 +249,18 @@ const cases = {
     writeFileSync(join(output, 'walking.glb'), glb);
     const { animations } = JSON.parse(glb.subarray(20, 20 + glb.readUInt32LE(12)).toString());
     assert.deepEqual(animations.map((animation) => animation.name), ['walk']);
+    // The native program, the same motion beside the list of commands.
+    writeFileSync(join(output, 'walk.bvh'), walkBvh());
+    writeFileSync(join(output, 'walking.json'), await download(() => page.locator('#export-as').selectOption('record')));
+    execFileSync(program, ['session', 'replay', join(output, 'walking.json'), '-o', join(output, 'walking_native.glb'), '--quiet']);
+    const there = nodesOf(readFileSync(join(output, 'walking_native.glb')));
+    for (const [joint, values] of nodesOf(glb)) assert.ok(distance(values, there.get(joint)) < 1e-5, `${joint} stands elsewhere`);
+  },
+  async 'the clip is saved as BVH'() {
+    const bvh = (await download(() => page.locator('#export-as').selectOption('bvh'))).toString();
+    assert.match(bvh, /^HIERARCHY/);
+    assert.equal(Number(/Frames:\s*(\d+)/.exec(bvh)[1]), 31);
+    assert.equal(bvh.match(/\b(ROOT|JOINT)\b/g).length, (await jointNames()).length);
   },
   async 'a reload comes back to what was worked on'() {
     await page.waitForFunction(() => globalThis.limberStudio.kept());

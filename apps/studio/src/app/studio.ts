@@ -241,7 +241,7 @@ export class Studio {
     });
   }
 
-  async exportFile(format: 'glb' | 'obj' | 'stl' | 'session'): Promise<Uint8Array | null> {
+  async exportFile(format: 'glb' | 'obj' | 'stl' | 'bvh' | 'session'): Promise<Uint8Array | null> {
     return this.guard(() => this.engine.ask({ kind: 'export', format }));
   }
 
@@ -274,8 +274,10 @@ export class Studio {
   }
 
   private apply({ state, stance }: Step) {
+    const before = this.page.now.session;
+    const another = state !== null && (state.clip !== before?.clip || state.seconds !== before.seconds);
     if (state) this.page.set({ session: state, seconds: state.seconds });
-    this.onStance(stance, false);
+    this.onStance(stance, another);
   }
 
   private showWork(busy: boolean) {

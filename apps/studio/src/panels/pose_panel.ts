@@ -78,7 +78,7 @@ function handleCount(studio: Studio, page: PageStore): HTMLElement {
       slider.valueAsNumber = toPlace(studio.handleCount);
       slider.setAttribute('aria-valuetext', `${joints.length} handles`);
     }
-    if (suggestions.length === 0 || `${suggestions} ${most(now)}` === marked) return;
+    if (`${suggestions} ${most(now)}` === marked) return;
     marked = `${suggestions} ${most(now)}`;
     marks.replaceChildren(...apart(suggestions.map((count) => ({ count, at: toPlace(count) / steps }))).map(({ count, at }) => {
       const mark = button(String(count), () => void studio.setHandles(count), {

@@ -9,7 +9,7 @@ export const samples = [
   ['winged', 'Dragon'], ['quadruped', 'Fox'], ['biped', 'Person'], ['robot', 'Robot'], ['stool', 'Stool'],
 ] as const;
 
-const types = { glb: 'model/gltf-binary', obj: 'model/obj', stl: 'model/stl', session: 'model/gltf-binary' };
+const types = { glb: 'model/gltf-binary', obj: 'model/obj', stl: 'model/stl', bvh: 'text/plain', session: 'model/gltf-binary' };
 
 export function toolbar(studio: Studio, page: PageStore, viewport: Viewport, model: ModelView): HTMLElement {
   const file = element('input', { type: 'file', accept: '.glb,.gltf,.vrm,.obj,.fbx,.stl,.ply,.bvh', hidden: true, id: 'file' });
@@ -28,7 +28,7 @@ export function toolbar(studio: Studio, page: PageStore, viewport: Viewport, mod
   const stem = () => (page.now.session?.name ?? 'model').replace(/\.[^.]*$/, '');
   const save = async (format: keyof typeof types) => {
     const bytes = await studio.exportFile(format);
-    const ending = format === 'session' ? '_session.glb' : `_posed.${format}`;
+    const ending = format === 'session' ? '_session.glb' : format === 'bvh' ? '.bvh' : `_posed.${format}`;
     if (bytes) offer(bytes as BlobPart, types[format], stem() + ending);
   };
   const savePicture = async () => {
@@ -44,7 +44,7 @@ export function toolbar(studio: Studio, page: PageStore, viewport: Viewport, mod
     if (record) offer(record, 'application/json', `${stem()}_commands.json`);
   };
   const exporter = element('select', { 'aria-label': 'Save as another format', class: 'select', id: 'export-as' },
-    ...[['', 'More'], ['obj', 'OBJ, posed surface'], ['stl', 'STL, posed surface'], ['usdz', 'USDZ, for AR Quick Look'], ['session', 'Session, to go on later'],
+    ...[['', 'More'], ['obj', 'OBJ, posed surface'], ['stl', 'STL, posed surface'], ['bvh', 'BVH, the clip'], ['usdz', 'USDZ, for AR Quick Look'], ['session', 'Session, to go on later'],
       ['record', 'Commands, for limber session replay'], ['png', 'Picture (PNG)']].map(([value = '', text = '']) => element('option', { value }, text)));
   exporter.addEventListener('change', () => {
     const { value } = exporter;
@@ -52,7 +52,7 @@ export function toolbar(studio: Studio, page: PageStore, viewport: Viewport, mod
     if (value === 'png') void savePicture();
     else if (value === 'usdz') void saveUsdz();
     else if (value === 'record') void saveRecord();
-    else if (value === 'obj' || value === 'stl' || value === 'session') void save(value);
+    else if (value === 'obj' || value === 'stl' || value === 'bvh' || value === 'session') void save(value);
   });
 
   const undo = button('', () => void studio.undo(), { icon: 'undo', label: 'Undo', keys: 'Ctrl+Z', id: 'undo' });
