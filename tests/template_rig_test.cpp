@@ -1,7 +1,9 @@
 // Template rigs of real characters, through the whole of limber, against the skeletons that artists made for them.
 #include <gtest/gtest.h>
 
+#include "limber/asset/geometry.h"
 #include "limber/asset/read.h"
+#include "limber/asset/rig_io.h"
 #include "limber/asset/write.h"
 #include "limber/core/file.h"
 #include "limber/evaluate/rig_metrics.h"
@@ -53,6 +55,41 @@ INSTANTIATE_TEST_SUITE_P(Humanoids, TemplateCharacters,
                          ::testing::Values("cesium_man.glb", "kaykit_mannequin/manny_med_mod.gltf", "kenney_human.glb",
                                            "m2m_human_male.glb", "m2m_human_zombie.glb", "makehuman_mixamo.glb",
                                            "quaternius_knightcharacter.glb", "quaternius_man_king.glb"),
+                         [](const ::testing::TestParamInfo<const char*>& file) {
+                           return std::filesystem::path(file.param).stem().string();
+                         });
+
+// People that stand with +Y up and face +Z, arms level or lowered: the hands are where they reach farthest to the
+// sides.
+class TemplatePeople : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(TemplatePeople, HaveHandsAndFeetInTheRightLimbs) {
+  if (!sharedDataFolder()) GTEST_SKIP() << kNoSharedData;
+  const Asset asset = readAsset(*sharedDataFolder() / "meshes" / GetParam());
+  Box box;
+  for (const Vec3f& p : collectGeometry(asset).positions) box.add(p.cast<double>());
+  const Skeleton skeleton =
+      readSkeleton(readAsset(rigged(asset, templateOptions("humanoid")).glb, "result.glb")).skeleton;
+  const std::vector<Affine> globals = restGlobals(skeleton);
+  const auto place = [&](const std::string& name) {
+    return Vec3((globals[skeleton.find(name).value()].translation() - box.center()) / box.size().y());
+  };
+  const double reach = 0.5 * box.size().x() / box.size().y();
+  for (const auto& [side, sign] : {std::pair(std::string("left"), 1.0), std::pair(std::string("right"), -1.0)}) {
+    // In the limb, past the elbow: how near to the wrist is measured where artists' skeletons are known.
+    EXPECT_GT(sign * place(side + "Hand").x(), 0.6 * reach) << side;
+    EXPECT_GT(sign * place(side + "Hand").x(), sign * place(side + "LowerArm").x()) << side;
+    EXPECT_GT(sign * place(side + "Foot").x(), 0.02) << side;
+    EXPECT_LT(place(side + "Foot").y(), -0.4) << side;
+    EXPECT_GT(place(side + "Toes").z(), place(side + "Foot").z()) << side;
+    EXPECT_GT(place(side + "LowerLeg").y(), place(side + "Foot").y() + 0.12) << side;
+  }
+  EXPECT_GT(place("head").y(), 0.25);
+}
+
+INSTANTIATE_TEST_SUITE_P(Meshes, TemplatePeople,
+                         ::testing::Values("human_man.obj", "m2m_human_static.glb", "m2m_human_small_static.glb",
+                                           "m2m_human_a_pose_static.glb"),
                          [](const ::testing::TestParamInfo<const char*>& file) {
                            return std::filesystem::path(file.param).stem().string();
                          });
