@@ -43,6 +43,9 @@ class IkSolver {
   IkSolver(const IkMethod& method, const Skeleton& skeleton, std::span<const IkTarget> targets,
            const JointLimits* limits = nullptr, const IkOptions& options = {});
 
+  // The pose to stay near from now on, in place of IkOptions::reference; of that skeleton.
+  void setReference(const Pose& reference) { system_.setReference(reference); }
+
   // `pose` is the start and becomes the answer. Errors as of IkSystem::load. The result lives until the next call.
   const IkResult& solve(Pose& pose, std::span<const IkTarget> targets);
 

@@ -60,7 +60,7 @@ IkSystem::IkSystem(const Skeleton& skeleton, std::span<const IkTarget> targets, 
   scales_.resize(n, 1.0);
   addEffectors(targets);
   listEffectorsBelow();
-  loadReference();
+  setReference(options_.reference ? *options_.reference : restPose(skeleton));
 }
 
 void IkSystem::checkTargets(std::span<const IkTarget> targets) const {
@@ -170,8 +170,7 @@ std::span<const int> IkSystem::effectorsBelow(int node) const {
   return {below_.data() + belowBegin_[n], static_cast<std::size_t>(belowBegin_[n + 1] - belowBegin_[n])};
 }
 
-void IkSystem::loadReference() {
-  const Pose reference = options_.reference ? *options_.reference : restPose(*skeleton_);
+void IkSystem::setReference(const Pose& reference) {
   loadFrames(reference);
   references = locals;
   referenceOffsets = offsets;

@@ -46,6 +46,8 @@ class IkSystem {
   // kBadArgument where the targets differ from those of the constructor in more than position, orientation, weight and
   // pole, and kUnsupported where a joint above a moving one has a scale that is not uniform.
   void load(const Pose& pose, std::span<const IkTarget> targets);
+  // The pose that `references` tell, in place of the one in the options. Before load().
+  void setReference(const Pose& reference);
   // Writes the nodes' rotations, and translations of those that slide, into `pose`.
   void store(Pose& pose) const;
 
@@ -100,7 +102,6 @@ class IkSystem {
   void setUpNode(const Skeleton& skeleton, const JointLimits* limits, Node& node);
   void checkTargets(std::span<const IkTarget> targets) const;
   void loadFrames(const Pose& pose);
-  void loadReference();
   void updateReach();
 
   const Skeleton* skeleton_;

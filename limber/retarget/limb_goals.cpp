@@ -170,6 +170,7 @@ void LimbGoals::setFeet(const BodyFrame& source, const BodyFrame& target, double
     frame.toesGround = leg.toesGround;
     leg.goal = feelers_[i].lock.next(frame, seconds, kFootSlack * setup_.targetHipHeight);
     leg.wanted = true;
+    leg.anchor = frame.anchor;
     followPlanting(frame.anchor != FootAnchor::kNone ? 1 : 0, seconds, leg.planted, feelers_[i].plantedSpeed);
     double below = leg.ankleGround - leg.goal.y();
     if (leg.toes) below = std::max(below, leg.toesGround - (leg.goal + frame.toes - frame.ankle).y());

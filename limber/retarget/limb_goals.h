@@ -25,6 +25,7 @@ struct Leg : Limb {
   std::optional<Index> toes, sourceToes;
   double ankleGround = 0, toesGround = 0;              // heights when standing, target
   double sourceAnkleGround = 0, sourceToesGround = 0;  // likewise, source
+  FootAnchor anchor = FootAnchor::kNone;               // what holds the foot in this frame
   double planted = 0;                                  // 0 to 1, comes and goes smoothly
 };
 

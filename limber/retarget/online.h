@@ -7,12 +7,10 @@
 
 namespace limber {
 
-// Frame by frame after Choi, Ko (Online motion retargetting, 1999): the ends of the limbs follow where LimbGoals has
-// them, and within the null space of that the joint angles imitate the source's. Between equal skeletons the motion
-// stays as it is.
-//
-// Unlike in "limb-ik", a whole limb's joints share the correction, and hands always follow the source's way: their
-// distances to the shoulder, scaled by the arm's length. About 30 microseconds for each limb and frame.
+// Frame by frame after Choi, Ko (Online motion retargetting, 1999): the ends of the limbs, their places and how they
+// are turned, are the first task (LimbGoals: planted feet, the ground, hands that touch); the second, in its null space,
+// is to imitate the source's joint angles. Damped least squares over each limb's joints. Where feet only ride on their
+// legs they stay where joint angles bring them. Between equal skeletons the motion stays as it is.
 std::unique_ptr<FrameRetargeter> makeOnline(const RetargetSetup& setup);
 
 }  // namespace limber

@@ -1,0 +1,28 @@
+#include "limber/retarget/band_matrix.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace limber {
+
+void BandMatrix::solve(std::vector<double>& right) {
+  const auto begin = [&](std::size_t row) { return row > width_ ? row - width_ : 0; };
+  for (std::size_t i = 0; i < n_; ++i) {
+    for (std::size_t j = begin(i); j <= i; ++j) {
+      double sum = at(i, j);
+      const std::size_t from = std::max(begin(i), begin(j));
+      for (std::size_t k = from; k < j; ++k) sum -= at(i, k) * at(j, k);
+      at(i, j) = j < i ? sum / at(j, j) : std::sqrt(sum);
+    }
+  }
+  for (std::size_t i = 0; i < n_; ++i) {
+    for (std::size_t k = begin(i); k < i; ++k) right[i] -= at(i, k) * right[k];
+    right[i] /= at(i, i);
+  }
+  for (std::size_t i = n_; i-- > 0;) {
+    right[i] /= at(i, i);
+    for (std::size_t k = begin(i); k < i; ++k) right[k] -= at(i, k) * right[i];
+  }
+}
+
+}  // namespace limber
