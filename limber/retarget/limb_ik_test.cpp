@@ -8,22 +8,9 @@
 namespace limber {
 namespace {
 
+using limber::testing::oddlyBuilt;
 using limber::testing::turn;
 using limber::testing::walk;
-
-// Longer shins, shorter thighs and a wider pelvis than the source's: joint angles alone make the feet slide.
-Skeleton oddlyBuilt() {
-  Skeleton person = practiceHumanoid();
-  for (Joint& joint : person.joints) {
-    if (joint.name == "leftFoot" || joint.name == "rightFoot") joint.rest.translation *= 1.4;
-    if (joint.name == "leftLowerLeg" || joint.name == "rightLowerLeg") joint.rest.translation *= 0.8;
-    if (joint.name == "leftUpperLeg" || joint.name == "rightUpperLeg") joint.rest.translation.x() *= 1.5;
-  }
-  const double lower = restGlobals(practiceHumanoid())[person.find("leftFoot").value()].translation().y() -
-                       restGlobals(person)[person.find("leftFoot").value()].translation().y();
-  person.joints[0].rest.translation.y() += lower;
-  return person;
-}
 
 class LimbIk : public ::testing::Test {
  protected:
@@ -31,26 +18,7 @@ class LimbIk : public ::testing::Test {
     const RetargetSetup setup(person, odd, matchSkeletons(person, odd), options, &motion);
     return retargetFrames(findRetargetMethod(method), setup, motion);
   }
-  // Metres that the feet's joints move along the ground once the source's have stood still for a tenth of a second:
-  // these feet stop all at once, and what is at speed when it is planted needs a moment.
-  double sliding(const PoseSequence& result) const {
-    double way = 0;
-    for (const char* foot : {"leftFoot", "rightFoot"}) {
-      const Index from = person.find(foot).value(), to = odd.find(foot).value();
-      int still = 0;
-      for (std::size_t f = 1; f < motion.poses.size(); ++f) {
-        const auto step = [&](const Skeleton& skeleton, const PoseSequence& frames, Index joint) -> Vec3 {
-          return poseGlobals(skeleton, frames.poses[f])[joint].translation() -
-                 poseGlobals(skeleton, frames.poses[f - 1])[joint].translation();
-        };
-        still = step(person, motion, from).norm() < 1e-4 ? still + 1 : 0;
-        if (still <= 6) continue;
-        const Vec3 moved = step(odd, result, to);
-        way += std::hypot(moved.x(), moved.z());
-      }
-    }
-    return way;
-  }
+  double sliding(const PoseSequence& result) const { return limber::testing::slidWay(person, motion, odd, result); }
 
   const Skeleton person = practiceHumanoid(), odd = oddlyBuilt();
   const PoseSequence motion = walk(person);

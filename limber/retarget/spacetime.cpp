@@ -12,12 +12,13 @@ namespace limber {
 
 namespace {
 
-constexpr double kKnotSeconds = 0.08;   // between control points
-constexpr int kSteps = 5;               // of Gauss-Newton
-constexpr double kTurnWeight = 2e-4;    // of a radian of displacement, against a hip height off the goal
-constexpr double kShiftWeight = 4e-3;   // of a hip height that the pelvis is moved, likewise
-constexpr double kTornPlant = 0.1;      // hip heights: a planted point that jumps by more is another plant
-constexpr std::size_t kPerLimb = 6;     // unknowns: the turns of both bones; 3 more for the pelvis
+constexpr double kKnotSeconds = 0.08;  // between control points
+constexpr int kSteps = 5;              // of Gauss-Newton
+constexpr double kTurnWeight = 2e-4;   // of a radian of displacement, against a hip height off the goal
+constexpr double kShiftWeight = 4e-3;  // of a hip height that the pelvis is moved, likewise
+constexpr double kTornPlant = 0.1;     // hip heights: a planted point that jumps by more is another plant
+constexpr double kStandingSpeed = 0.12;  // hip heights a second: of a planted point that counts half
+constexpr std::size_t kPerLimb = 6;    // unknowns: the turns of both bones; 3 more for the pelvis
 
 // Where the ends have to be in one frame, and how much that counts.
 struct FrameGoals {
@@ -50,7 +51,7 @@ class Spacetime {
     for (const Limb& arm : goals_.arms()) limbs_.push_back(arm);
     const std::size_t legs = goals_.legs().size();
     std::vector<std::vector<FootAnchor>> anchors(legs);
-    std::vector<std::vector<Vec3>> points(legs), rolls(legs);
+    std::vector<std::vector<Vec3>> points(legs), rolls(legs), sources(legs);
     BodyFrame from, to;
     for (std::size_t f = 0; f < frames(); ++f) {
       setup_.sourceKinematics.globals(source_.poses[f], from);
@@ -64,6 +65,7 @@ class Spacetime {
         rolls[i].push_back(leg.anchor == FootAnchor::kToes ? Vec3(toes - ankle) : Vec3(Vec3::Zero()));
         points[i].push_back(ankle + rolls[i].back());
         anchors[i].push_back(leg.anchor);
+        sources[i].push_back(from.positions[leg.anchor == FootAnchor::kToes ? *leg.sourceToes : leg.sourceEnd]);
         const bool below = leg.wanted && leg.goal.y() > ankle.y();
         goals.places.push_back(below ? Vec3(ankle.x(), leg.goal.y(), ankle.z()) : ankle);
         goals.weights.push_back(below ? Vec3(0, 1, 0) : Vec3(Vec3::Zero()));
@@ -73,26 +75,44 @@ class Spacetime {
         goals.weights.push_back(arm.wanted ? Vec3(0.3, 0.3, 0.3) : Vec3(Vec3::Zero()));
       }
     }
-    for (std::size_t i = 0; i < legs; ++i) holdPlants(i, anchors[i], points[i], rolls[i]);
+    for (std::size_t i = 0; i < legs; ++i) holdPlants(i, anchors[i], points[i], rolls[i], stillness(sources[i]));
+  }
+
+  // How much each frame of a plant counts: the less, the more the source's foot still or already moves.
+  std::vector<double> stillness(const std::vector<Vec3>& places) const {
+    std::vector<double> weights;
+    const double standing = kStandingSpeed * setup_.sourceHipHeight * target_.frameSeconds;
+    for (std::size_t f = 0; f < places.size(); ++f) {
+      const std::size_t before = f > 0 ? f - 1 : 0, after = std::min(f + 1, places.size() - 1);
+      const double speed =
+          std::max((places[f] - places[before]).norm(), (places[after] - places[f]).norm()) / standing;
+      weights.push_back(1 / (1 + speed * speed * speed * speed));
+    }
+    return weights;
   }
 
   void holdPlants(std::size_t leg, const std::vector<FootAnchor>& anchors, const std::vector<Vec3>& points,
-                  const std::vector<Vec3>& rolls) {
+                  const std::vector<Vec3>& rolls, const std::vector<double>& still) {
     const Leg& limb = goals_.legs()[leg];
     const double torn = kTornPlant * setup_.targetHipHeight;
     for (std::size_t begin = 0; begin < points.size();) {
       std::size_t end = begin + 1;
-      Vec3 sum = points[begin];
+      Vec3 sum = still[begin] * points[begin];
+      double weight = still[begin];
       for (; end < points.size() && anchors[end] == anchors[begin]; ++end) {
         if ((points[end] - points[end - 1]).norm() > torn) break;
-        sum += points[end];
+        sum += still[end] * points[end];
+        weight += still[end];
       }
       if (anchors[begin] != FootAnchor::kNone) {
-        Vec3 place = sum / static_cast<double>(end - begin);
+        // A foot that rolls from its heel onto its toes goes on standing where it stands.
+        const bool goesOn = begin > 0 && anchors[begin - 1] != FootAnchor::kNone &&
+                            (points[begin] - rolls[begin] - points[begin - 1] + rolls[begin - 1]).norm() <= torn;
+        Vec3 place = goesOn ? Vec3(wanted_[begin - 1].places[leg] + rolls[begin]) : Vec3(sum / weight);
         place.y() = anchors[begin] == FootAnchor::kToes ? limb.toesGround : limb.ankleGround;
         for (std::size_t f = begin; f < end; ++f) {
           wanted_[f].places[leg] = place - rolls[f];
-          wanted_[f].weights[leg] = Vec3::Ones();
+          wanted_[f].weights[leg] = Vec3(still[f], std::max(still[f], 0.2), still[f]);
         }
       }
       begin = end;

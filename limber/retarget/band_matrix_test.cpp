@@ -1,0 +1,35 @@
+#include "limber/retarget/band_matrix.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include <Eigen/Dense>
+
+namespace limber {
+namespace {
+
+TEST(BandMatrix, SolvesAsADenseMatrixDoes) {
+  constexpr int kSize = 40, kWidth = 6;
+  // A product of a band with its transpose, hence positive definite.
+  Eigen::MatrixXd band = Eigen::MatrixXd::Zero(kSize, kSize);
+  for (int i = 0; i < kSize; ++i) {
+    for (int j = std::max(0, i - kWidth); j <= i; ++j) band(i, j) = i == j ? 2 + std::cos(i) : std::sin(3.0 * i + j);
+  }
+  const Eigen::MatrixXd dense = band * band.transpose();
+  Eigen::VectorXd right(kSize);
+  BandMatrix matrix(kSize, kWidth);
+  std::vector<double> solution;
+  for (int i = 0; i < kSize; ++i) {
+    solution.push_back(right[i] = std::sin(1.0 + i));
+    for (int j = std::max(0, i - kWidth); j <= i; ++j)
+      matrix.at(static_cast<std::size_t>(i), static_cast<std::size_t>(j)) = dense(i, j);
+  }
+  matrix.solve(solution);
+  const Eigen::VectorXd expected = dense.llt().solve(right);
+  for (int i = 0; i < kSize; ++i)
+    EXPECT_NEAR(solution[static_cast<std::size_t>(i)], expected[i], 1e-8 * (1 + expected.norm()));
+}
+
+}  // namespace
+}  // namespace limber

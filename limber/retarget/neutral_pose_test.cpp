@@ -1,0 +1,53 @@
+#include "limber/retarget/neutral_pose.h"
+
+#include <gtest/gtest.h>
+
+#include "limber/retarget/testing/test_motion.h"
+
+namespace limber {
+namespace {
+
+using limber::testing::inRestPose;
+using limber::testing::turn;
+using limber::testing::withOtherAxes;
+
+class NeutralPoses : public ::testing::Test {
+ protected:
+  Vec3 bone(const Skeleton& skeleton, const char* from, const char* to) const {
+    const NeutralPose pose = neutralPose(skeleton, restPose(skeleton), matchSkeletons(person, skeleton), MapSide::kTarget);
+    return (pose.positions[skeleton.find(to).value()] - pose.positions[skeleton.find(from).value()]).normalized();
+  }
+
+  const Skeleton person = practiceHumanoid();
+};
+
+TEST_F(NeutralPoses, ArmsToTheSidesLegsDownWhateverTheRestPoseIs) {
+  const Skeleton bent = withOtherAxes(inRestPose(person, {{"leftUpperArm", turn(Vec3(0.3, 0.2, -1), 60)},
+                                                          {"rightLowerArm", turn(Vec3::UnitY(), 40)},
+                                                          {"leftUpperLeg", turn(Vec3::UnitZ(), 30)}}));
+  EXPECT_LT((bone(bent, "leftUpperArm", "leftLowerArm") - Vec3::UnitX()).norm(), 1e-9);
+  EXPECT_LT((bone(bent, "rightLowerArm", "rightHand") + Vec3::UnitX()).norm(), 1e-9);
+  EXPECT_LT((bone(bent, "leftUpperLeg", "leftLowerLeg") + Vec3::UnitY()).norm(), 1e-9);
+  EXPECT_LT((bone(bent, "leftLowerLeg", "leftFoot") + Vec3::UnitY()).norm(), 1e-9);
+}
+
+// Motions of some programs have a rest pose in which every bone points the same way.
+TEST_F(NeutralPoses, AFoldedRestPoseGivesWayToAFrameThatStands) {
+  Skeleton folded = person;
+  for (Joint& joint : folded.joints) {
+    if (joint.parent) joint.rest.translation = Vec3(joint.rest.translation.norm(), 0, 0);
+  }
+  const SkeletonMap map = matchSkeletons(person, person);
+  EXPECT_TRUE(standsUpright(person, restPose(person), map, MapSide::kSource));
+  EXPECT_FALSE(standsUpright(folded, restPose(folded), map, MapSide::kSource));
+  Pose standing = restPose(folded), lying = standing;
+  const Quat down = turn(-Vec3::UnitZ(), 90);
+  for (const char* leg : {"leftUpperLeg", "rightUpperLeg"}) standing.locals[folded.find(leg).value()].rotation = down;
+  standing.locals[folded.find("spine").value()].rotation = down.conjugate();
+  const std::vector<Pose> motion = {lying, standing, lying};
+  const Pose chosen = uprightPose(folded, motion, map, MapSide::kSource);
+  EXPECT_TRUE(standsUpright(folded, chosen, map, MapSide::kSource));
+}
+
+}  // namespace
+}  // namespace limber

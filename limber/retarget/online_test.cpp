@@ -1,0 +1,52 @@
+#include "limber/retarget/online.h"
+
+#include <gtest/gtest.h>
+
+#include "limber/retarget/testing/test_motion.h"
+
+namespace limber {
+namespace {
+
+using limber::testing::oddlyBuilt;
+using limber::testing::slidWay;
+using limber::testing::walk;
+
+class Online : public ::testing::Test {
+ protected:
+  PoseSequence by(const char* method) const {
+    const RetargetSetup setup(person, odd, matchSkeletons(person, odd), {}, &motion);
+    return retargetFrames(findRetargetMethod(method), setup, motion);
+  }
+
+  const Skeleton person = practiceHumanoid(), odd = oddlyBuilt();
+  const PoseSequence motion = walk(person);
+};
+
+TEST_F(Online, FeetComeFirst) {
+  EXPECT_LT(slidWay(person, motion, odd, by("online")), 0.35 * slidWay(person, motion, odd, by("aligned")));
+}
+
+TEST_F(Online, FeetKeepHowTheyAreTurned) {
+  const PoseSequence angles = by("aligned"), result = by("online");
+  for (const char* name : {"leftFoot", "rightFoot", "leftHand"}) {
+    const Index joint = odd.find(name).value();
+    for (std::size_t f = 0; f < result.poses.size(); f += 5) {
+      const Mat3 expected = poseGlobals(odd, angles.poses[f])[joint].linear();
+      EXPECT_LT((poseGlobals(odd, result.poses[f])[joint].linear() - expected).norm(), 0.02) << name << " " << f;
+    }
+  }
+}
+
+// The null space is for the joint angles: what no end needs stays as in "aligned".
+TEST_F(Online, OtherJointsTurnAsTheSources) {
+  const PoseSequence angles = by("aligned"), result = by("online");
+  for (const char* name : {"spine", "chest", "head", "leftToes"}) {
+    const Index joint = odd.find(name).value();
+    for (std::size_t f = 0; f < result.poses.size(); f += 5) {
+      EXPECT_LT(angleBetween(angles.poses[f].locals[joint].rotation, result.poses[f].locals[joint].rotation), 1e-6);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace limber
