@@ -44,6 +44,11 @@ if [ -d "$characters" ]; then
     quaternius_{man_casual,man_king,man_spacesuit,platformer_character,woman_casual,woman_scifi,mech_george}.glb
     robot_expressive.glb)
   animals=(fox_khronos.glb m2m_fox_{cat,dog,fox}.glb quaternius_{alpaca,cow,horse,wolf,triceratops}.glb)
+  motions=$(dirname "$characters")/motions
+  table=$($limber evaluate retargeting --motion "$motions"/{boxing_toes,cmu_daz_12_01_walk,cmu_mb_12_01_walk,cmu_daz_09_01_run}.bvh \
+    "$motions"/{fair1_dab,pybvh_example,rokoko_dance}.bvh --most-frames 400 --quiet \
+    --character "$characters"/{cesium_man,m2m_human_male,makehuman_mixamo,quaternius_man_casual}.glb)
+  table="$table" perl -0pi -e 's/(<!-- made by [^\n]*: measures -->\n).*(<!-- end of measures -->)/$1\n$ENV{table}\n\n$2/s' docs/retargeting.md
   sed -i '/^\*\*People/,$d' docs/template-rigs.md
   {
     echo "**People, --template humanoid**" && echo
@@ -51,7 +56,7 @@ if [ -d "$characters" ]; then
     echo && echo "**Animals, --template quadruped**" && echo
     $limber evaluate templates "${animals[@]/#/$characters/}" --template quadruped --quiet
   } >> docs/template-rigs.md
-  echo "Made docs/images, docs/ik.md, docs/weights.md and the tables of docs/template-rigs.md"
+  echo "Made docs/images, docs/ik.md, docs/weights.md and the tables of docs/template-rigs.md, docs/retargeting.md"
 else
   echo "Made docs/images and docs/ik.md; docs/weights.md stays as it is: no characters in $characters"
 fi

@@ -63,7 +63,8 @@ void run(const Options& options) {
   right.poses.resize(from.poses.size(), right.poses.back());
   const JointError error = jointErrorOf(setup, right, to);
   if (options.json) {
-    fmt::print("{{\"joint_error\": {:.6g}, \"root_relative_joint_error\": {:.6g}}}\n", error.global, error.rootRelative);
+    fmt::print("{{\"joint_error\": {:.6g}, \"root_relative_joint_error\": {:.6g}}}\n", error.global,
+               error.rootRelative);
   } else {
     fmt::print("joint error           {:.3g} of height squared, {:.3g} relative to the root\n", error.global,
                error.rootRelative);

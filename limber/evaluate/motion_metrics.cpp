@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kPlantedHeight = 0.03, kPlantedSpeed = 0.15;  // heights, heights a second
 constexpr double kPlantedSeconds = 0.1;
-constexpr double kCut = 12;  // heights a second of any joint: no motion, but a cut
+constexpr double kCut = 12;          // heights a second of any joint: no motion, but a cut
 constexpr double kLeastJerk = 2e-5;  // third differences of a joint's places, heights
 
 struct LimbName {

@@ -7,7 +7,7 @@ namespace limber {
 namespace {
 // 1/seconds: how fast what is left fades out; along the ground a foot has to stand at once, down to it there is time.
 constexpr double kLanding = 40, kSettling = 20, kLeaving = 16;
-}
+}  // namespace
 
 Vec3 FootLock::base(const Frame& frame) const {
   if (anchor_ == FootAnchor::kAnkle) return lock_;

@@ -123,10 +123,8 @@ void LimbGoals::addSurface(const std::string& from, const std::string& to, doubl
                            std::vector<Surface>& surfaces) const {
   const JointMatch *begin = setup_.map.find(from), *end = setup_.map.find(to);
   if (!begin || !end) return;
-  surfaces.push_back({{begin->source.front(), end->source.front()},
-                      {begin->target.front(), end->target.front()},
-                      touching,
-                      apart});
+  surfaces.push_back(
+      {{begin->source.front(), end->source.front()}, {begin->target.front(), end->target.front()}, touching, apart});
 }
 
 FootAnchor LimbGoals::anchorOf(const Leg& leg, Feeler& feeler, const BodyFrame& source, double seconds) const {

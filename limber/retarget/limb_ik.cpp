@@ -60,7 +60,9 @@ class LimbIkRetargeter : public FrameRetargeter {
     return std::make_unique<IkSolver>(findIkMethod(setup_.options.solver), *setup_.target,
                                       std::span<const IkTarget>(&goal, 1), nullptr, options);
   }
-  static IkSolver* solver(const Solvers& solvers, std::size_t i) { return solvers.empty() ? nullptr : solvers[i].get(); }
+  static IkSolver* solver(const Solvers& solvers, std::size_t i) {
+    return solvers.empty() ? nullptr : solvers[i].get();
+  }
 
   void reach(const Limb& limb, IkSolver* solver, bool isLeg, Pose& target) {
     BodyFrame& frame = to();
@@ -82,7 +84,8 @@ class LimbIkRetargeter : public FrameRetargeter {
 
   void turnTwoBones(const Limb& limb, bool isLeg, Pose& target) {
     const BodyFrame& frame = to();
-    TwoBone bones{frame.positions[limb.upper], frame.positions[limb.lower], frame.positions[limb.end], limb.goal, {}, {}};
+    TwoBone bones{
+        frame.positions[limb.upper], frame.positions[limb.lower], frame.positions[limb.end], limb.goal, {}, {}};
     if (isLeg) bones.pole = kneePole(limb, bones);
     const TwoBoneTurns turns = solveTwoBone(bones);
     const BodyKinematics& kinematics = setup_.targetKinematics;

@@ -14,7 +14,8 @@ using limber::testing::withOtherAxes;
 class NeutralPoses : public ::testing::Test {
  protected:
   Vec3 bone(const Skeleton& skeleton, const char* from, const char* to) const {
-    const NeutralPose pose = neutralPose(skeleton, restPose(skeleton), matchSkeletons(person, skeleton), MapSide::kTarget);
+    const NeutralPose pose =
+        neutralPose(skeleton, restPose(skeleton), matchSkeletons(person, skeleton), MapSide::kTarget);
     return (pose.positions[skeleton.find(to).value()] - pose.positions[skeleton.find(from).value()]).normalized();
   }
 

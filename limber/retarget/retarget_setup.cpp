@@ -68,7 +68,8 @@ double quantile(std::vector<double>& values, double share) {
 // who sit down, lie or jump about are still at many heights, so that middle alone says too little.
 double measuredGround(LowestHeights heights, double restGround, double hipHeight) {
   if (std::abs(quantile(heights.all, kBelowGround) - restGround) < kSameGround * hipHeight) return restGround;
-  const bool stands = static_cast<double>(heights.standing.size()) > kFewStand * static_cast<double>(heights.all.size());
+  const bool stands =
+      static_cast<double>(heights.standing.size()) > kFewStand * static_cast<double>(heights.all.size());
   return stands ? quantile(heights.standing, 0.25) : quantile(heights.all, kBelowGround);
 }
 

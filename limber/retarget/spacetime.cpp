@@ -12,13 +12,13 @@ namespace limber {
 
 namespace {
 
-constexpr double kKnotSeconds = 0.08;  // between control points
-constexpr int kSteps = 5;              // of Gauss-Newton
-constexpr double kTurnWeight = 2e-4;   // of a radian of displacement, against a hip height off the goal
-constexpr double kShiftWeight = 4e-3;  // of a hip height that the pelvis is moved, likewise
-constexpr double kTornPlant = 0.1;     // hip heights: a planted point that jumps by more is another plant
+constexpr double kKnotSeconds = 0.08;    // between control points
+constexpr int kSteps = 5;                // of Gauss-Newton
+constexpr double kTurnWeight = 2e-4;     // of a radian of displacement, against a hip height off the goal
+constexpr double kShiftWeight = 4e-3;    // of a hip height that the pelvis is moved, likewise
+constexpr double kTornPlant = 0.1;       // hip heights: a planted point that jumps by more is another plant
 constexpr double kStandingSpeed = 0.12;  // hip heights a second: of a planted point that counts half
-constexpr std::size_t kPerLimb = 6;    // unknowns: the turns of both bones; 3 more for the pelvis
+constexpr std::size_t kPerLimb = 6;      // unknowns: the turns of both bones; 3 more for the pelvis
 
 // Where the ends have to be in one frame, and how much that counts.
 struct FrameGoals {
@@ -84,8 +84,7 @@ class Spacetime {
     const double standing = kStandingSpeed * setup_.sourceHipHeight * target_.frameSeconds;
     for (std::size_t f = 0; f < places.size(); ++f) {
       const std::size_t before = f > 0 ? f - 1 : 0, after = std::min(f + 1, places.size() - 1);
-      const double speed =
-          std::max((places[f] - places[before]).norm(), (places[after] - places[f]).norm()) / standing;
+      const double speed = std::max((places[f] - places[before]).norm(), (places[after] - places[f]).norm()) / standing;
       weights.push_back(1 / (1 + speed * speed * speed * speed));
     }
     return weights;
