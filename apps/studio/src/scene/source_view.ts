@@ -1,5 +1,5 @@
 // The skeleton that a motion was made for, as lines beside the model, its chains in the colours of the match.
-import type { Color } from 'three';
+import { Vector3, type Color } from 'three';
 import { LineMaterial } from 'three/examples/jsm/lines/LineMaterial.js';
 import { LineSegments2 } from 'three/examples/jsm/lines/LineSegments2.js';
 import { LineSegmentsGeometry } from 'three/examples/jsm/lines/LineSegmentsGeometry.js';
@@ -26,6 +26,7 @@ export class SourceView {
   private clip = '';
   private fit: { scale: number; x: number; y: number; z: number } | null = null;
   private box: SessionState['box'] | null = null;
+  private rest = new Vector3();
 
   constructor() {
     this.root = new LineSegments2(new LineSegmentsGeometry(), new LineMaterial({ vertexColors: true, linewidth: 5 }));
@@ -37,6 +38,7 @@ export class SourceView {
     const clip = session.clips[session.clip ?? -1], source = clip?.source;
     const motion = session.motions.find(({ name }) => name === source?.motion);
     this.box = session.box;
+    this.rest.fromArray(session.joints[0]?.rest ?? [0, 0, 0]);
     if (!clip || !source || !motion) {
       this.parents = [];
       this.clip = '';
@@ -55,10 +57,11 @@ export class SourceView {
     this.root.geometry.setColors(new Float32Array(values));
   }
 
-  take(places: Float32Array) {
+  /** `root` is where the model's root stands now: the two set out side by side. */
+  take(places: Float32Array, root: Vector3) {
     this.root.visible = places.length > 0 && places.length === 3 * this.parents.length;
     if (!this.root.visible || !this.box) return;
-    this.fit ??= this.beside(places, this.box);
+    this.fit ??= this.beside(places, this.box, root.clone().sub(this.rest));
     const { scale, x, y, z } = this.fit;
     this.parents.forEach((parent, joint) => {
       [joint, parent < 0 ? joint : parent].forEach((from, end) => this.ends.set([
@@ -69,7 +72,7 @@ export class SourceView {
   }
 
   /** As tall as the model, on its ground, at its side. */
-  private beside(places: Float32Array, { min, max }: SessionState['box']) {
+  private beside(places: Float32Array, { min, max }: SessionState['box'], way: Vector3) {
     const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
     places.forEach((value, i) => {
       low[i % 3] = Math.min(low[i % 3]!, value);
@@ -79,8 +82,8 @@ export class SourceView {
     const scale = tall / Math.max(1e-9, high[1]! - low[1]!);
     const width = scale * (high[0]! - low[0]!);
     return {
-      scale, x: min[0] - 0.15 * tall - width / 2 - (scale * (low[0]! + high[0]!)) / 2,
-      y: min[1] - scale * low[1]!, z: (min[2] + max[2]) / 2 - (scale * (low[2]! + high[2]!)) / 2,
+      scale, x: way.x + min[0] - 0.15 * tall - width / 2 - (scale * (low[0]! + high[0]!)) / 2,
+      y: min[1] - scale * low[1]!, z: way.z + (min[2] + max[2]) / 2 - (scale * (low[2]! + high[2]!)) / 2,
     };
   }
 }

@@ -33,9 +33,9 @@ export function createStage(studio: Studio, page: PageStore): Stage {
     const before = root.clone();
     model.take(stance.skin);
     handles.take(stance.handles);
-    source.take(stance.source);
     limits.take(handles);
     if (handles.count > 0) handles.position(0, root);
+    source.take(stance.source, root);
     // The camera walks along.
     if (ofClip) viewport.follow(root.x - before.x, root.z - before.z);
     gizmo.place(viewport);
