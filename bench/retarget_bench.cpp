@@ -1,0 +1,52 @@
+// Frames a second of the retargeting methods onto a skeleton of 60 joints, on one thread.
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <string>
+
+#include "limber/ik/ik_skeletons.h"
+#include "limber/ik/rotation.h"
+#include "limber/retarget/retarget_method.h"
+
+namespace {
+
+using namespace limber;
+
+// Every joint swings a little; thigh and shin against each other, so that feet come and go.
+PoseSequence swinging(const Skeleton& person) {
+  PoseSequence motion;
+  for (int f = 0; f < 120; ++f) {
+    Pose pose = restPose(person);
+    for (Index j = 1; j < person.jointCount(); ++j) {
+      const double phase = 0.1 * f + j;
+      pose.locals[j].rotation = fromRotationVector(0.3 * Vec3(std::sin(phase), std::cos(1.3 * phase), 0));
+    }
+    motion.poses.push_back(pose);
+  }
+  return motion;
+}
+
+void retargetFrame(benchmark::State& state, const std::string& method) {
+  const Skeleton source = practiceHumanoid();
+  Skeleton target = source;
+  for (Joint& joint : target.joints) {
+    if (joint.name.find("LowerLeg") != std::string::npos) joint.rest.translation *= 0.8;
+  }
+  const PoseSequence motion = swinging(source);
+  const RetargetSetup setup(source, target, matchSkeletons(source, target), {}, &motion);
+  const auto retargeter = findRetargetMethod(method).make(setup);
+  Pose pose = restPose(target);
+  std::size_t frame = 0;
+  for (auto _ : state) {
+    retargeter->next(motion.poses[frame], frame == 0 ? 0 : motion.frameSeconds, pose);
+    benchmark::DoNotOptimize(pose.locals.data());
+    frame = (frame + 1) % motion.poses.size();
+  }
+  state.SetItemsProcessed(state.iterations());
+}
+
+BENCHMARK_CAPTURE(retargetFrame, aligned, "aligned");
+BENCHMARK_CAPTURE(retargetFrame, limb_ik, "limb-ik");
+BENCHMARK_CAPTURE(retargetFrame, online, "online");
+
+}  // namespace
