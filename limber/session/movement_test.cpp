@@ -7,10 +7,12 @@
 #include "limber/asset/clip_io.h"
 #include "limber/asset/json_text.h"
 #include "limber/core/error.h"
+#include "limber/core/file.h"
 #include "limber/session/session.h"
 #include "limber/session/session_state.h"
 #include "limber/session/testing/models.h"
 #include "limber/skeleton/keyframes.h"
+#include "shared_data.h"
 
 namespace limber {
 namespace {
@@ -151,13 +153,7 @@ TEST(Movement, ExportedAndSavedClipsComeBack) {
   act(session, SetTime{0.5});
 
   const Bytes glb = session.exportModel(ExportFormat::kGlb);
-  if (const char* folder = std::getenv("LIMBER_TEST_OUTPUT")) {
-    const std::string path = std::string(folder) + "/session_clips.glb";
-    if (std::FILE* file = std::fopen(path.c_str(), "wb")) {
-      std::fwrite(glb.data(), 1, glb.size(), file);
-      std::fclose(file);
-    }
-  }
+  writeFile(testing::testOutputFolder() / "session_clips.glb", glb);
   Session exported;
   Progress progress;
   exported.open(glb, "out.glb", progress);

@@ -25,6 +25,15 @@ inline const Bytes& bipedGlb() {
     for (const Triangle& t : mesh.triangles) indices.insert(indices.end(), t.begin(), t.end());
     GltfBuilder builder;
     const Index position = builder.accessor(positions, 5126, "VEC3", mesh.positions.size());
+    Vec3f least = mesh.positions[0], most = least;
+    for (const Vec3f& p : mesh.positions) {
+      least = least.cwiseMin(p);
+      most = most.cwiseMax(p);
+    }
+    for (int i = 0; i < 3; ++i) {
+      builder.json["accessors"][position]["min"].push_back(0.17f * least[i]);
+      builder.json["accessors"][position]["max"].push_back(0.17f * most[i]);
+    }
     const Index index = builder.accessor(indices, 5125, "SCALAR", indices.size());
     builder.json["meshes"] =
         Json::array({{{"primitives", Json::array({{{"attributes", {{"POSITION", position}}}, {"indices", index}}})}}});
