@@ -7,7 +7,7 @@ namespace limber {
 
 namespace {
 
-constexpr double kShare = 0.1;
+constexpr double kShare = 0.1;    // damping, of the squared distance left to go
 constexpr double kLeast = 1e-12;  // of the Gram matrix's trace, against singular ones
 
 class DampedLeastSquares : public JacobianIteration {

@@ -1,7 +1,7 @@
 // The scene shows what the page's state says.
+import { Vector3 } from 'three';
 import type { PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
-import { Vector3 } from 'three';
 import { Gizmo } from './gizmo';
 import { HandleView } from './handle_view';
 import { LimitView } from './limit_view';
