@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "limber/core/disjoint_sets.h"
-#include "limber/core/parallel.h"
 #include "limber/rigging/point_tree.h"
 
 namespace limber {
@@ -42,13 +42,13 @@ class PieceLinker {
 
   void joinTouching();
   void joinNearest();
+  std::vector<Candidate> alongTheCurve() const;
 
   std::span<const Vec3f> points_;
   std::span<const VertexPair> edges_;
   DisjointSets& sets_;
   PointTree tree_;
   std::vector<Index> pieces_;  // per point: the name of its piece at the start of the round
-  std::vector<float> clear_;   // per point: no other piece is nearer than this (squared)
   std::vector<VertexPair> links_;
 };
 
@@ -64,19 +64,21 @@ void PieceLinker::joinTouching() {
     }
   }
   constexpr float kTouching = 0.5f;  // of the mean length of a point's edges
-  clear_.assign(points_.size(), 0);
+  std::vector<float> reach(points_.size(), 0);  // squared
+  for (Index v = 0; v < points_.size(); ++v) {
+    if (degree[v] > 0) reach[v] = std::pow(kTouching * sum[v] / static_cast<float>(degree[v]), 2.0f);
+  }
+  const std::vector<float> partReach = tree_.largestOf(reach);
   std::vector<Index> touching(points_.size(), kNoIndex);
-  const std::vector<Index>& order = tree_.order();
-  parallelFor(order.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Index v = order[i];
-      if (degree[v] == 0) continue;
-      const float reach = kTouching * sum[v] / static_cast<float>(degree[v]);
-      const PointTree::Nearest nearest = tree_.nearestOfOtherPiece(v, reach * reach);
-      clear_[v] = nearest.distanceSquared;
-      touching[v] = nearest.point;
-    }
-  });
+  tree_.forNearPairs([&](PointTree::Part part) { return partReach[part]; },
+                     [&](Index a, Index b, float distanceSquared) {
+                       for (const auto& [from, to] : {std::pair(a, b), std::pair(b, a)}) {
+                         if (degree[from] == 0 || distanceSquared > reach[from]) continue;
+                         if (distanceSquared == reach[from] && to >= touching[from]) continue;
+                         reach[from] = distanceSquared;
+                         touching[from] = to;
+                       }
+                     });
   for (Index v = 0; v < touching.size(); ++v) {
     if (touching[v] != kNoIndex) links_.push_back({std::min(v, touching[v]), std::max(v, touching[v])});
   }
@@ -84,20 +86,38 @@ void PieceLinker::joinTouching() {
   refreshPieces();
 }
 
+// Per piece, at its name: the nearest other piece among those that it is beside on the tree's curve. Not the nearest of
+// all, but it is found in one pass, and bounds the search well.
+std::vector<PieceLinker::Candidate> PieceLinker::alongTheCurve() const {
+  constexpr std::size_t kAhead = 4;
+  std::vector<Candidate> best(points_.size());
+  const std::vector<Index>& order = tree_.order();
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    for (std::size_t j = i + 1; j < std::min(order.size(), i + 1 + kAhead); ++j) {
+      const Index a = order[i], b = order[j];
+      if (pieces_[a] == pieces_[b]) continue;
+      const Candidate found{(points_[a] - points_[b]).squaredNorm(), {std::min(a, b), std::max(a, b)}};
+      for (const Index v : {a, b}) best[pieces_[v]] = std::min(best[pieces_[v]], found);
+    }
+  }
+  return best;
+}
+
 // One round of Boruvka's algorithm: every piece to the one nearest to it.
 void PieceLinker::joinNearest() {
-  std::vector<Candidate> best(points_.size());  // per piece, at its name
-  for (const Index v : tree_.order()) {
-    Candidate& own = best[pieces_[v]];
-    if (clear_[v] > own.distanceSquared) continue;
-    const PointTree::Nearest nearest = tree_.nearestOfOtherPiece(v, own.distanceSquared);
-    clear_[v] = nearest.distanceSquared;
-    if (nearest.point == kNoIndex) continue;
-    const Candidate found{nearest.distanceSquared, {std::min(v, nearest.point), std::max(v, nearest.point)}};
-    own = std::min(own, found);
-    Candidate& theirs = best[pieces_[nearest.point]];  // they are no farther from here either
-    theirs = std::min(theirs, found);
-  }
+  std::vector<Candidate> best = alongTheCurve();
+  std::vector<float> reach(points_.size());
+  for (Index v = 0; v < points_.size(); ++v) reach[v] = best[pieces_[v]].distanceSquared;
+  const std::vector<float> partReach = tree_.largestOf(reach);
+  tree_.forNearPairs(
+      [&](PointTree::Part part) {
+        const Index piece = tree_.pieceOf(part);
+        return piece == kNoIndex ? partReach[part] : best[piece].distanceSquared;
+      },
+      [&](Index a, Index b, float distanceSquared) {
+        const Candidate found{distanceSquared, {std::min(a, b), std::max(a, b)}};
+        for (const Index v : {a, b}) best[pieces_[v]] = std::min(best[pieces_[v]], found);
+      });
   const auto unfound = [](const Candidate& candidate) { return candidate.link[0] == kNoIndex; };
   best.erase(std::remove_if(best.begin(), best.end(), unfound), best.end());
   std::sort(best.begin(), best.end());

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -116,24 +117,32 @@ TEST(PieceLinks, JoinThousandsOfPiecesIntoOne) {
   EXPECT_EQ(*std::max_element(pieces.begin(), pieces.end()), 0u);
 }
 
-TEST(PointTree, FindsTheNearestOfAnotherPiece) {
+TEST(PointTree, FindsEveryNearPairOfDifferentPiecesOnce) {
   const std::vector<Vec3f> points = randomPoints(500, 3);
   PointTree tree(points);
   TestRandom random(4);
   std::vector<Index> pieces;
-  for (std::size_t i = 0; i < points.size(); ++i) pieces.push_back(points[i].x() < 0.5f ? 0 : random.below(4));
-  tree.setPieces(pieces);
-  for (Index i = 0; i < points.size(); ++i) {
-    Index best = kNoIndex;
-    for (Index j = 0; j < points.size(); ++j) {
-      if (pieces[j] == pieces[i]) continue;
-      if (best == kNoIndex || (points[j] - points[i]).squaredNorm() < (points[best] - points[i]).squaredNorm())
-        best = j;
-    }
-    EXPECT_EQ(tree.nearestOfOtherPiece(i, 10).point, best);
-    const float least = (points[best] - points[i]).squaredNorm();
-    EXPECT_EQ(tree.nearestOfOtherPiece(i, 0.99f * least).point, kNoIndex);
+  std::vector<float> reach;
+  for (const Vec3f& p : points) {
+    pieces.push_back(p.x() < 0.5f ? 0 : random.below(4));
+    reach.push_back(static_cast<float>(0.02 * random.unit() * random.unit()));
   }
+  tree.setPieces(pieces);
+  const std::vector<float> partReach = tree.largestOf(reach);
+  std::set<VertexPair> found;
+  tree.forNearPairs([&](PointTree::Part part) { return partReach[part]; },
+                    [&](Index a, Index b, float distanceSquared) {
+                      EXPECT_NE(pieces[a], pieces[b]);
+                      EXPECT_EQ(distanceSquared, (points[a] - points[b]).squaredNorm());
+                      EXPECT_TRUE(found.insert({std::min(a, b), std::max(a, b)}).second) << a << " " << b;
+                    });
+  for (Index a = 0; a < points.size(); ++a) {
+    for (Index b = a + 1; b < points.size(); ++b) {
+      if (pieces[a] == pieces[b] || (points[a] - points[b]).squaredNorm() > std::max(reach[a], reach[b])) continue;
+      EXPECT_EQ(found.count({a, b}), 1u) << a << " " << b;
+    }
+  }
+  EXPECT_LT(found.size(), points.size() * points.size() / 20);  // and hardly any others
 }
 
 TEST(MortonOrder, VisitsEveryPointOnceAndKeepsNeighborsTogether) {

@@ -4,7 +4,6 @@
 #include <array>
 #include <bit>
 #include <numeric>
-#include <utility>
 
 namespace limber {
 
@@ -86,36 +85,16 @@ void PointTree::setPieces(std::span<const Index> pieces) {
   }
 }
 
-PointTree::Nearest PointTree::nearestOfOtherPiece(Index point, float mostDistanceSquared) const {
-  const Vec3f p = points_[point];
-  const Index piece = pieces_[point];
-  Nearest best{kNoIndex, mostDistanceSquared};
-  const auto distanceTo = [&](std::size_t node) {
-    return (boxes_[node].min - p).cwiseMax(p - boxes_[node].max).cwiseMax(0.0f).squaredNorm();
-  };
-  std::array<std::pair<float, std::size_t>, 128> stack;
-  std::size_t depth = 0;
-  stack[depth++] = {distanceTo(1), 1};
-  while (depth > 0) {
-    const auto [distance, node] = stack[--depth];
-    if (distance > best.distanceSquared || uniform_[node] == piece) continue;
-    if (node < leaves_) {
-      std::pair<float, std::size_t> near{distanceTo(2 * node), 2 * node}, far{distanceTo(2 * node + 1), 2 * node + 1};
-      if (far.first < near.first) std::swap(near, far);
-      if (far.first <= best.distanceSquared) stack[depth++] = far;
-      if (near.first <= best.distanceSquared) stack[depth++] = near;
-      continue;
-    }
-    const std::size_t begin = (node - leaves_) * kLeafSize;
-    const std::size_t end = std::min<std::size_t>(begin + kLeafSize, order_.size());
-    for (std::size_t i = begin; i < end; ++i) {
-      const Index other = order_[i];
-      if (pieces_[other] == piece) continue;
-      const float d = (points_[other] - p).squaredNorm();
-      if (d < best.distanceSquared || (d == best.distanceSquared && other < best.point)) best = {other, d};
-    }
+std::vector<float> PointTree::largestOf(std::span<const float> values) const {
+  std::vector<float> largest(2 * leaves_, 0);
+  for (std::size_t i = 0; i < order_.size(); ++i) {
+    float& leaf = largest[leaves_ + i / kLeafSize];
+    leaf = std::max(leaf, values[order_[i]]);
   }
-  return best;
+  for (std::size_t node = leaves_ - 1; node > 0; --node) {
+    largest[node] = std::max(largest[2 * node], largest[2 * node + 1]);
+  }
+  return largest;
 }
 
 }  // namespace limber
