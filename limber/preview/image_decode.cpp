@@ -3,6 +3,7 @@
 #include <csetjmp>
 #include <cstddef>
 #include <cstdio>
+#include <utility>
 
 #include <jpeglib.h>
 #include <png.h>
@@ -20,7 +21,7 @@ bool isTooLarge(std::size_t width, std::size_t height, std::size_t fileSize) {
   return pixels > kMost || (pixels > kFree && pixels / 64 > fileSize);
 }
 
-std::optional<Image> decodePng(ByteSpan file) {
+std::optional<DecodedImage> decodePng(ByteSpan file) {
   png_image header = {};
   header.version = PNG_IMAGE_VERSION;
   if (!png_image_begin_read_from_memory(&header, file.data(), file.size())) return std::nullopt;
@@ -31,12 +32,17 @@ std::optional<Image> decodePng(ByteSpan file) {
   header.format = PNG_FORMAT_RGBA;  // without it, libpng would blend with a background
   Bytes rgba(PNG_IMAGE_SIZE(header));
   if (!png_image_finish_read(&header, nullptr, rgba.data(), 0, nullptr)) return std::nullopt;
-  Image image{static_cast<int>(header.width), static_cast<int>(header.height), {}};
-  image.pixels.reserve(rgba.size() / 4 * 3);
+  DecodedImage image{{static_cast<int>(header.width), static_cast<int>(header.height), {}}, {}};
+  image.colors.pixels.reserve(rgba.size() / 4 * 3);
+  bool isOpaque = true;
   for (std::size_t i = 0; i < rgba.size(); i += 4) {
-    image.pixels.insert(image.pixels.end(), rgba.begin() + static_cast<std::ptrdiff_t>(i),
-                        rgba.begin() + static_cast<std::ptrdiff_t>(i + 3));
+    image.colors.pixels.insert(image.colors.pixels.end(), rgba.begin() + static_cast<std::ptrdiff_t>(i),
+                               rgba.begin() + static_cast<std::ptrdiff_t>(i + 3));
+    isOpaque = isOpaque && rgba[i + 3] == 255;
   }
+  if (isOpaque) return image;
+  image.alpha.reserve(rgba.size() / 4);
+  for (std::size_t i = 3; i < rgba.size(); i += 4) image.alpha.push_back(rgba[i]);
   return image;
 }
 
@@ -91,16 +97,16 @@ bool readJpeg(JpegReader& reader, ByteSpan file, Image& image) {
   return true;
 }
 
-std::optional<Image> decodeJpeg(ByteSpan file) {
+std::optional<DecodedImage> decodeJpeg(ByteSpan file) {
   JpegReader reader;
   Image image;
   if (!readJpeg(reader, file, image)) return std::nullopt;
-  return image;
+  return DecodedImage{std::move(image), {}};
 }
 
 }  // namespace
 
-std::optional<Image> decodeImage(ByteSpan file) {
+std::optional<DecodedImage> decodeImage(ByteSpan file) {
   const std::string_view type = imageFormat(file).mediaType;
   if (type == "image/png") return decodePng(file);
   if (type == "image/jpeg") return decodeJpeg(file);

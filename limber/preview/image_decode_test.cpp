@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 #include <jpeglib.h>
 
+#include "limber/preview/testing/rgba_png.h"
+
 namespace limber {
 namespace {
 
@@ -48,22 +50,33 @@ Bytes jpegOf(const Image& image, bool progressive) {
 
 TEST(DecodeImage, ReadsPngAsItWasWritten) {
   const Image image = gradient(19, 7);
-  const std::optional<Image> read = decodeImage(encodePng(image));
+  const std::optional<DecodedImage> read = decodeImage(encodePng(image));
   ASSERT_TRUE(read);
-  EXPECT_EQ(read->width, 19);
-  EXPECT_EQ(read->height, 7);
-  EXPECT_EQ(read->pixels, image.pixels);
+  EXPECT_EQ(read->colors.width, 19);
+  EXPECT_EQ(read->colors.height, 7);
+  EXPECT_EQ(read->colors.pixels, image.pixels);
+}
+
+TEST(DecodeImage, KeepsAlphaWhereThereIsAny) {
+  const std::vector<std::uint8_t> rgba = {9, 8, 7, 0, 6, 5, 4, 255, 3, 2, 1, 99, 0, 50, 100, 255};
+  const std::optional<DecodedImage> read = decodeImage(testing::rgbaPng(2, 2, rgba));
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->colors.pixels, (std::vector<std::uint8_t>{9, 8, 7, 6, 5, 4, 3, 2, 1, 0, 50, 100}));
+  EXPECT_EQ(read->alpha, (std::vector<std::uint8_t>{0, 255, 99, 255}));
+  const std::optional<DecodedImage> opaque = decodeImage(testing::rgbaPng(1, 1, {1, 2, 3, 255}));
+  ASSERT_TRUE(opaque);
+  EXPECT_TRUE(opaque->alpha.empty());
 }
 
 TEST(DecodeImage, ReadsJpegNearly) {
   const Image image = gradient(33, 21);
   for (const bool progressive : {false, true}) {
-    const std::optional<Image> read = decodeImage(jpegOf(image, progressive));
+    const std::optional<DecodedImage> read = decodeImage(jpegOf(image, progressive));
     ASSERT_TRUE(read);
-    EXPECT_EQ(read->width, 33);
-    EXPECT_EQ(read->height, 21);
-    ASSERT_EQ(read->pixels.size(), image.pixels.size());
-    for (std::size_t i = 0; i < image.pixels.size(); ++i) EXPECT_NEAR(read->pixels[i], image.pixels[i], 6) << i;
+    EXPECT_EQ(read->colors.width, 33);
+    EXPECT_EQ(read->colors.height, 21);
+    ASSERT_EQ(read->colors.pixels.size(), image.pixels.size());
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) EXPECT_NEAR(read->colors.pixels[i], image.pixels[i], 6) << i;
   }
 }
 
@@ -74,8 +87,8 @@ TEST(DecodeImage, WhatIsNoWholeImageIsNone) {
   const Image image = gradient(9, 9);
   const Bytes png = encodePng(image);
   for (std::size_t length = 0; length < png.size(); ++length) {
-    const std::optional<Image> read = decodeImage(ByteSpan(png).first(length));
-    EXPECT_FALSE(read && read->pixels != image.pixels) << length;
+    const std::optional<DecodedImage> read = decodeImage(ByteSpan(png).first(length));
+    EXPECT_FALSE(read && read->colors.pixels != image.pixels) << length;
     EXPECT_FALSE(read && length < 60) << length;
   }
   // A JPEG that ends early is filled up with grey, as browsers do; its header must be whole.

@@ -89,7 +89,7 @@ void TileSamples::clear() {
   std::fill(triangle.begin(), triangle.end(), kNoIndex);
 }
 
-void rasterizeTile(const ProjectedMesh& mesh, int column, int row, TileSamples& samples) {
+void rasterizeTile(const ProjectedMesh& mesh, int column, int row, TileSamples& samples, const SampleCover& covers) {
   const std::int32_t left = column * kTileSpan, top = row * kTileSpan;
   for (const Index number : mesh.inTile(column, row)) {
     const Triangle& triangle = mesh.triangles()[number];
@@ -113,6 +113,7 @@ void rasterizeTile(const ProjectedMesh& mesh, int column, int row, TileSamples& 
           const float inverseDepth = static_cast<float>(
               (double(wa) * a.inverseDepth + double(wb) * b.inverseDepth + double(wc) * c.inverseDepth) * scale);
           if (inverseDepth <= samples.inverseDepth[pixel + s]) continue;
+          if (covers && !covers(number, static_cast<std::int32_t>(sx), static_cast<std::int32_t>(sy), s)) continue;
           samples.inverseDepth[pixel + s] = inverseDepth;
           samples.triangle[pixel + s] = number;
         }

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -53,7 +54,12 @@ struct TileSamples {
   void clear();
 };
 
+// Whether there is anything of a triangle at one of a pixel's samples, which stands at (x, y) in 1/256 pixel.
+using SampleCover = std::function<bool(Index triangle, std::int32_t x, std::int32_t y, std::size_t sample)>;
+
 // Draws the mesh's triangles of that tile. The nearest wins, the lower number where two are equally near.
-void rasterizeTile(const ProjectedMesh& mesh, int column, int row, TileSamples& samples);
+// covers  asked for samples inside a triangle that nothing hides so far; empty: yes
+void rasterizeTile(const ProjectedMesh& mesh, int column, int row, TileSamples& samples,
+                   const SampleCover& covers = {});
 
 }  // namespace limber

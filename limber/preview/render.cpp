@@ -28,7 +28,7 @@ struct Surface {
   std::span<const Vec3f> cornerNormals;  // #F * 3, or empty
   std::span<const Vec3f> vertexNormals;  // where cornerNormals is empty
   std::span<const Vec3f> colors;         // by vertex
-  const Scene* textured = nullptr;       // the scene whose textures colour it besides
+  const Scene* materials = nullptr;      // the scene whose materials count besides
 };
 
 // One piece of surface inside a pixel: samples that agree in normal and depth are shaded once.
@@ -81,6 +81,7 @@ class Painter {
   ProjectedMesh model_, overlay_;
   Surface modelSurface_, overlaySurface_;
   bool translucent_ = false;
+  bool seeThrough_ = false;  // some materials are
   Vec3 groundMiddle_ = Vec3::Zero();
   double groundReach_ = 1;
 };
@@ -113,15 +114,46 @@ Painter::Painter(const Scene& scene, const PreviewOptions& options)
       light_(scene.positions, scene.triangles, options.view.azimuth, groundOf(scene, options)),
       model_(scene.positions, scene.triangles, camera_),
       overlay_(shapes_.positions, shapes_.triangles, camera_) {
-  const bool isTextured = options.show == PreviewShow::kModel && !scene.textures.empty();
-  modelSurface_ = {&model_, scene.positions, normals_, {}, colors_, isTextured ? &scene : nullptr};
+  const bool hasMaterials = options.show == PreviewShow::kModel && !scene.materials.empty();
+  modelSurface_ = {&model_, scene.positions, normals_, {}, colors_, hasMaterials ? &scene : nullptr};
   overlaySurface_ = {&overlay_, shapes_.positions, {}, shapes_.normals, shapes_.colors, nullptr};
+  if (hasMaterials) {
+    seeThrough_ = std::any_of(scene.materials.begin(), scene.materials.end(),
+                              [](const SceneMaterial& material) { return !material.isOpaque; });
+  }
   translucent_ = options.show == PreviewShow::kHandles || options.show == PreviewShow::kBones;
   Box box;
   for (const Vec3f& p : scene.positions) box.add(p.cast<double>());
   groundMiddle_ = box.center();
   groundMiddle_.y() = light_.groundHeight();
   groundReach_ = std::max(1e-9, 0.5 * box.diagonal()) * kGroundFade;
+}
+
+const SceneMaterial* materialAt(const Scene& scene, Index triangle) {
+  const Index material = scene.materialOf[triangle];
+  return material == kNoIndex ? nullptr : &scene.materials[material];
+}
+
+Vec2f uvAt(const Scene& scene, const Triangle& triangle, const Vec3& weights) {
+  Vec2f uv = Vec2f::Zero();
+  for (std::size_t c = 0; c < 3; ++c) {
+    uv += static_cast<float>(weights[static_cast<Eigen::Index>(c)]) * scene.uvs[triangle[c]];
+  }
+  return uv;
+}
+
+// Cut-outs as they are cut; what is half transparent covers half of the samples, other ones from triangle to triangle,
+// so that layers over each other let ever less through.
+bool coversSample(const Scene& scene, const ProjectedMesh& mesh, Index number, std::int32_t x, std::int32_t y,
+                  std::size_t sample) {
+  const SceneMaterial* const material = materialAt(scene, number);
+  if (!material || material->isOpaque) return true;
+  double alpha = material->opacity;
+  if (material->texture) {
+    alpha *= material->texture->alphaAt(uvAt(scene, scene.triangles[number], mesh.barycentric(number, x, y)));
+  }
+  if (material->cutoff) return alpha >= *material->cutoff;
+  return alpha * kSamplesPerPixel > static_cast<double>((sample + 3 * number) % kSamplesPerPixel) + 0.5;
 }
 
 Image Painter::paint() const {
@@ -140,7 +172,13 @@ Image Painter::paint() const {
 void Painter::paintTile(int column, int row, TileSamples& model, TileSamples& overlay, Image& image) const {
   model.clear();
   overlay.clear();
-  rasterizeTile(model_, column, row, model);
+  SampleCover covers;
+  if (seeThrough_) {
+    covers = [this](Index triangle, std::int32_t x, std::int32_t y, std::size_t sample) {
+      return coversSample(*modelSurface_.materials, model_, triangle, x, y, sample);
+    };
+  }
+  rasterizeTile(model_, column, row, model, covers);
   rasterizeTile(overlay_, column, row, overlay);
   for (int y = 0; y < kTileSize && row * kTileSize + y < image.height; ++y) {
     for (int x = 0; x < kTileSize && column * kTileSize + x < image.width; ++x) {
@@ -155,9 +193,10 @@ void Painter::paintTile(int column, int row, TileSamples& model, TileSamples& ov
 // The texture's colour at a place in a triangle; white where it has none. One level serves the whole triangle: that in
 // which a pixel of the picture has about two in each direction, of which the samples in it see most.
 Vec3 textureColor(const Surface& surface, Index number, const Vec3& weights) {
-  const Scene& scene = *surface.textured;
-  if (scene.textureOf[number] == kNoIndex) return Vec3::Ones();
-  const Texture& texture = *scene.textures[scene.textureOf[number]];
+  const Scene& scene = *surface.materials;
+  const SceneMaterial* const material = materialAt(scene, number);
+  if (!material || !material->texture) return Vec3::Ones();
+  const Texture& texture = *material->texture;
   const Triangle& triangle = scene.triangles[number];
   const Vec2f &a = scene.uvs[triangle[0]], &b = scene.uvs[triangle[1]], &c = scene.uvs[triangle[2]];
   const auto area = [](double x1, double y1, double x2, double y2) { return std::abs(x1 * y2 - x2 * y1); };
@@ -168,9 +207,7 @@ Vec3 textureColor(const Surface& surface, Index number, const Vec3& weights) {
   const double texels =
       area(b.x() - a.x(), b.y() - a.y(), c.x() - a.x(), c.y() - a.y()) * texture.width() * texture.height();
   const double level = seen > 0 && texels > 0 ? 0.5 * std::log2(texels * kSubpixels / seen) - 1 : 0.0;
-  return texture.sample(
-      static_cast<float>(weights[0]) * a + static_cast<float>(weights[1]) * b + static_cast<float>(weights[2]) * c,
-      level);
+  return texture.sample(uvAt(scene, triangle, weights), level);
 }
 
 Fragment Painter::attributesAt(const Surface& surface, Index number, std::int32_t x, std::int32_t y) const {
@@ -185,7 +222,7 @@ Fragment Painter::attributesAt(const Surface& surface, Index number, std::int32_
     fragment.normal += w * normal.cast<double>();
     fragment.color += w * surface.colors[triangle[c]].cast<double>();
   }
-  if (surface.textured) fragment.color = fragment.color.cwiseProduct(textureColor(surface, number, weights));
+  if (surface.materials) fragment.color = fragment.color.cwiseProduct(textureColor(surface, number, weights));
   const Vec3 a = surface.positions[triangle[0]].cast<double>();
   const Vec3 face =
       (surface.positions[triangle[1]].cast<double>() - a).cross(surface.positions[triangle[2]].cast<double>() - a);

@@ -11,7 +11,7 @@
 #include "limber/asset/scene_graph.h"
 #include "limber/pipeline/pose_asset.h"
 #include "limber/preview/palette.h"
-#include "limber/preview/scene_textures.h"
+#include "limber/preview/scene_materials.h"
 #include "limber/preview/shapes.h"
 #include "limber/skeleton/clip.h"
 
@@ -71,7 +71,7 @@ void addSkeleton(const Skeleton& skeleton, const Pose& pose, Scene& scene) {
 void addSurface(const Asset& asset, Geometry geometry, Scene& scene) {
   scene.colors.resize(geometry.positions.size());
   scene.triangles = std::move(geometry.triangles);
-  const std::vector<bool> isTextured = addTextures(asset, geometry, scene);
+  const std::vector<bool> isTextured = addMaterials(asset, geometry, scene);
   for (std::size_t i = 0; i < geometry.instances.size(); ++i) {
     colorInstance(asset, geometry.instances[i], isTextured[i], scene.colors);
   }

@@ -22,14 +22,22 @@ struct SceneJoint {
   double radius = 0;  // of the handle; 0 where the skeleton has none
 };
 
+// What a colour at each vertex cannot say of a surface.
+struct SceneMaterial {
+  std::shared_ptr<const Texture> texture;  // times which the colours count; none: white
+  bool isOpaque = true;                    // whatever the texture's alpha
+  double opacity = 1;                      // where it is not: times the texture's alpha
+  std::optional<double> cutoff;            // nothing is seen where that is less, and the rest whole
+};
+
 struct Scene {
   std::vector<Vec3f> positions;
   std::vector<Triangle> triangles;
   std::vector<Vec3f> colors;  // linear RGB, one for each vertex; empty: one clay colour
-  // Base colour textures, times which the colours count. All three are empty where nothing has one.
-  std::vector<Vec2f> uvs;        // #V
-  std::vector<Index> textureOf;  // #F: which of `textures`, kNoIndex for none
-  std::vector<std::shared_ptr<const Texture>> textures;
+  // All three are empty where no surface is textured or lets anything through; uvs also where none is textured.
+  std::vector<Vec2f> uvs;         // #V
+  std::vector<Index> materialOf;  // #F: which of `materials`, kNoIndex for none
+  std::vector<SceneMaterial> materials;
   std::vector<SceneJoint> joints;
   std::vector<Bone> bones;  // segments, as bonesOf gives them
   SkinWeights weights;      // empty, or one row for each vertex, over `joints`

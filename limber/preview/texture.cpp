@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
+#include "limber/core/error.h"
 #include "limber/core/parallel.h"
 #include "limber/preview/palette.h"
 
@@ -67,8 +69,12 @@ int wrapped(std::int64_t place, int size, TextureWrap wrap) {
 
 }  // namespace
 
-Texture::Texture(Image image, TextureWrap across, TextureWrap down) : across_(across), down_(down) {
+Texture::Texture(Image image, TextureWrap across, TextureWrap down, std::vector<std::uint8_t> alpha)
+    : alpha_(std::move(alpha)), across_(across), down_(down) {
   checkSize(image);
+  if (!alpha_.empty() && 3 * alpha_.size() != image.pixels.size()) {
+    throw Error(ErrorCode::kBadArgument, "a texture's alpha does not fill its width and height");
+  }
   levels_.push_back(std::move(image));
   while (levels_.back().width > 1 || levels_.back().height > 1) levels_.push_back(halved(levels_.back()));
 }
@@ -83,23 +89,39 @@ Vec3 Texture::sample(const Vec2f& uv, double level) const {
   return (1 - part) * color + part * sampleLevel(levels_[fine + 1], uv);
 }
 
-Vec3 Texture::sampleLevel(const Image& image, const Vec2f& uv) const {
+template <typename Add>
+void Texture::forNearestPixels(int width, int height, const Vec2f& uv, const Add& add) const {
   const auto placeOf = [](float coordinate, int size) {
     constexpr double kFarthest = 1e6;  // pictures away; beyond, floats do not tell pixels apart
     return std::isfinite(coordinate) ? std::clamp<double>(coordinate, -kFarthest, kFarthest) * size - 0.5 : 0.0;
   };
-  const double x = placeOf(uv.x(), image.width), y = placeOf(uv.y(), image.height);
+  const double x = placeOf(uv.x(), width), y = placeOf(uv.y(), height);
   const double left = std::floor(x), top = std::floor(y);
-  const std::array<float, 256>& linear = linearTable();
-  Vec3 color = Vec3::Zero();
   for (int corner = 0; corner < 4; ++corner) {
     const int dx = corner & 1, dy = corner >> 1;
     const double weight = (dx ? x - left : 1 - (x - left)) * (dy ? y - top : 1 - (y - top));
-    const std::uint8_t* const pixel = pixelAt(image, wrapped(std::int64_t(left) + dx, image.width, across_),
-                                              wrapped(std::int64_t(top) + dy, image.height, down_));
-    for (int c = 0; c < 3; ++c) color[c] += weight * linear[pixel[c]];
+    const int column = wrapped(std::int64_t(left) + dx, width, across_);
+    const int row = wrapped(std::int64_t(top) + dy, height, down_);
+    add(std::size_t(row) * std::size_t(width) + std::size_t(column), weight);
   }
+}
+
+Vec3 Texture::sampleLevel(const Image& image, const Vec2f& uv) const {
+  const std::array<float, 256>& linear = linearTable();
+  Vec3 color = Vec3::Zero();
+  forNearestPixels(image.width, image.height, uv, [&](std::size_t pixel, double weight) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      color[static_cast<Eigen::Index>(c)] += weight * linear[image.pixels[3 * pixel + c]];
+    }
+  });
   return color;
+}
+
+double Texture::alphaAt(const Vec2f& uv) const {
+  if (alpha_.empty()) return 1;
+  double alpha = 0;
+  forNearestPixels(width(), height(), uv, [&](std::size_t pixel, double weight) { alpha += weight * alpha_[pixel]; });
+  return alpha / 255;
 }
 
 }  // namespace limber

@@ -16,7 +16,8 @@ class Texture {
   // Makes the smaller levels: each half as wide and high as the one before, down to one pixel, averaged in linear
   // light. Throws Error kBadArgument for an image whose pixels do not match its size. Cost: O(#pixels), 4/3 of their
   // memory.
-  Texture(Image image, TextureWrap across, TextureWrap down);
+  // alpha  a byte for each pixel, 255 where nothing shines through; empty: everywhere
+  Texture(Image image, TextureWrap across, TextureWrap down, std::vector<std::uint8_t> alpha = {});
 
   int width() const { return levels_.front().width; }
   int height() const { return levels_.front().height; }
@@ -26,10 +27,18 @@ class Texture {
   // and between levels. Coordinates that are not finite count as 0.
   Vec3 sample(const Vec2f& uv, double level) const;
 
+  // Of what is seen there, not of what is behind it. In [0, 1], linear between the four nearest pixels of the whole
+  // picture.
+  double alphaAt(const Vec2f& uv) const;
+
  private:
+  // Calls add(pixel, weight) for the four pixels of a picture of that size that are nearest to uv.
+  template <typename Add>
+  void forNearestPixels(int width, int height, const Vec2f& uv, const Add& add) const;
   Vec3 sampleLevel(const Image& image, const Vec2f& uv) const;
 
   std::vector<Image> levels_;
+  std::vector<std::uint8_t> alpha_;
   TextureWrap across_, down_;
 };
 

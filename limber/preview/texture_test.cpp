@@ -56,6 +56,16 @@ TEST(Texture, SmallerLevelsAreMeansOfLight) {
   EXPECT_NEAR(texture.sample({0.25f, 0.25f}, -3).x(), 0, 1e-9);
 }
 
+TEST(Texture, AlphaIsMixedBetweenPixels) {
+  const Texture texture({2, 1, {0, 0, 0, 0, 0, 0}}, TextureWrap::kClamp, TextureWrap::kClamp, {0, 255});
+  EXPECT_EQ(texture.alphaAt({0.25f, 0.5f}), 0);
+  EXPECT_EQ(texture.alphaAt({0.75f, 0.5f}), 1);
+  EXPECT_NEAR(texture.alphaAt({0.5f, 0.5f}), 0.5, 1e-6);
+  const Texture opaque({1, 1, {1, 2, 3}}, TextureWrap::kClamp, TextureWrap::kClamp);
+  EXPECT_EQ(opaque.alphaAt({0.3f, 0.3f}), 1);
+  EXPECT_THROW(Texture({1, 1, {1, 2, 3}}, TextureWrap::kClamp, TextureWrap::kClamp, {1, 2}), Error);
+}
+
 TEST(Texture, AnyShapeAndAnyCoordinateHasAColor) {
   const Texture texture(grey(5, 3, std::vector<int>(15, 188)), TextureWrap::kRepeat, TextureWrap::kMirror);
   for (const float u : {0.0f, 1.0f, -1e30f, 1e30f, std::numeric_limits<float>::quiet_NaN()}) {
