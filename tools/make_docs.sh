@@ -41,7 +41,7 @@ if [ -d "$characters" ]; then
   $limber evaluate skinning "$characters" --references docs/data/blender_weights.tsv -o docs/weights.md --quiet
   people=(cesium_man.glb kaykit_mannequin/manny_med_mod.gltf kenney_human.glb m2m_human_{female,male,zombie}.glb
     makehuman_{cmu_mb,default,game_engine,mixamo}.glb quaternius_cyberpunk_character.glb quaternius_knightcharacter.glb
-    quaternius_{man_casual,man_king,man_spacesuit,platformer_character,woman_casual,woman_scifi,mech_george}.glb
+    quaternius_{man_casual,man_king,man_spacesuit,platformer_character,platformer_character_humanoidrig,woman_casual,woman_scifi,mech_george}.glb
     robot_expressive.glb)
   animals=(fox_khronos.glb m2m_fox_{cat,dog,fox}.glb quaternius_{alpaca,cow,horse,wolf,triceratops}.glb)
   motions=$(dirname "$characters")/motions

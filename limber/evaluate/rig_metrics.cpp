@@ -1,13 +1,13 @@
 #include "limber/evaluate/rig_metrics.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
 
 #include "limber/asset/asset.h"
 #include "limber/evaluate/assignment.h"
+#include "limber/evaluate/body_joints.h"
 #include "limber/skeleton/humanoid_names.h"
 
 namespace limber {
@@ -22,58 +22,13 @@ constexpr std::string_view kCompared[] = {
     "hips",         "spine",    "chest",         "neck",          "head",      "leftUpperArm",
     "leftLowerArm", "leftHand", "rightUpperArm", "rightLowerArm", "rightHand", "leftUpperLeg",
     "leftLowerLeg", "leftFoot", "rightUpperLeg", "rightLowerLeg", "rightFoot"};
-constexpr std::string_view kFingers[] = {"Thumb", "Index", "Middle", "Ring", "Little"};
-
-struct BoneLine {
-  Vec3 a, b;
-};
-struct Figure {
-  std::vector<Vec3> joints;
-  std::vector<BoneLine> bones;
-};
-
-// Joints that count: those marked, and those that have a marked one above and one below.
-std::vector<bool> withBetween(const Skeleton& skeleton, const std::vector<bool>& marked) {
-  const Index count = skeleton.jointCount();
-  std::vector<bool> above(count, false), below(marked), result(marked);
-  for (Index j = 0; j < count; ++j) {
-    if (const auto parent = skeleton.joints[j].parent) above[j] = above[*parent] || marked[*parent];
-  }
-  for (Index j = count; j-- > 0;) {
-    if (below[j] && skeleton.joints[j].parent) below[*skeleton.joints[j].parent] = true;
-  }
-  for (Index j = 0; j < count; ++j) result[j] = marked[j] || (above[j] && below[j]);
-  return result;
-}
-
-std::vector<bool> holdingJoints(const SkinnedModel& model) {
-  std::vector<bool> holds(model.skeleton.jointCount(), false);
-  for (std::size_t i = 0; i < model.weights.weights.size(); ++i) {
-    if (model.weights.weights[i] > 0) holds[model.weights.joints[i]] = true;
-  }
-  return withBetween(model.skeleton, holds);
-}
-
-Figure figureOf(const Skeleton& skeleton, const std::vector<bool>& counts) {
-  const std::vector<Affine> globals = restGlobals(skeleton);
-  Figure figure;
-  for (Index j = 0; j < skeleton.jointCount(); ++j) {
-    if (!counts[j]) continue;
-    figure.joints.push_back(globals[j].translation());
-    std::optional<Index> parent = skeleton.joints[j].parent;
-    while (parent && !counts[*parent]) parent = skeleton.joints[*parent].parent;
-    if (parent) figure.bones.push_back({globals[*parent].translation(), globals[j].translation()});
-  }
-  return figure;
-}
-
 double nearest(const Vec3& point, const std::vector<Vec3>& points) {
   double least = std::numeric_limits<double>::infinity();
   for (const Vec3& other : points) least = std::min(least, (other - point).squaredNorm());
   return std::sqrt(least);
 }
 
-std::vector<Vec3> pointsAlong(const Figure& figure) {
+std::vector<Vec3> pointsAlong(const BodyFigure& figure) {
   if (figure.bones.empty()) return figure.joints;
   std::vector<Vec3> points;
   for (const BoneLine& bone : figure.bones) {
@@ -104,7 +59,7 @@ Index pairsWithin(const std::vector<Vec3>& a, const std::vector<Vec3>& b, double
   return pairs;
 }
 
-RigDistances distancesOf(const Figure& predicted, const Figure& truth, double side) {
+RigDistances distancesOf(const BodyFigure& predicted, const BodyFigure& truth, double side) {
   RigDistances d;
   d.joints = static_cast<Index>(predicted.joints.size());
   d.truthJoints = static_cast<Index>(truth.joints.size());
@@ -120,25 +75,6 @@ RigDistances distancesOf(const Figure& predicted, const Figure& truth, double si
   d.recall = pairs / d.truthJoints;
   d.iou = pairs / (d.joints + d.truthJoints - pairs);
   return d;
-}
-
-bool isFinger(std::string_view bone) {
-  return std::any_of(std::begin(kFingers), std::end(kFingers),
-                     [&](std::string_view finger) { return bone.find(finger) != std::string_view::npos; });
-}
-
-// Without joints that play fingers, and those below them.
-std::vector<bool> withoutFingers(const Skeleton& skeleton, std::vector<bool> counts) {
-  std::vector<bool> finger(skeleton.jointCount(), false);
-  for (const HumanoidJoint& named : humanoidJointsByName(skeleton)) {
-    if (isFinger(named.bone)) finger[named.joint] = true;
-  }
-  for (Index j = 0; j < skeleton.jointCount(); ++j) {
-    const std::optional<Index> parent = skeleton.joints[j].parent;
-    if (parent && finger[*parent]) finger[j] = true;
-    if (finger[j]) counts[j] = false;
-  }
-  return counts;
 }
 
 std::optional<Vec3> placeOf(std::string_view bone, const std::vector<HumanoidJoint>& named,
@@ -187,11 +123,11 @@ RigComparison compareRigs(const SkinnedModel& predicted, const SkinnedModel& tru
     for (const Index v : t) box.add(truth.mesh.position(v));
   }
   const double side = box.longestSide() > 0 ? box.longestSide() : 1;
-  const std::vector<bool> own(predicted.skeleton.jointCount(), true), given = holdingJoints(truth);
+  const std::vector<bool> own(predicted.skeleton.jointCount(), true), given = countedJoints(truth);
   RigComparison result;
   result.all = distancesOf(figureOf(predicted.skeleton, own), figureOf(truth.skeleton, given), side);
-  result.withoutFingers = distancesOf(figureOf(predicted.skeleton, withoutFingers(predicted.skeleton, own)),
-                                      figureOf(truth.skeleton, withoutFingers(truth.skeleton, given)), side);
+  result.withoutFingers = distancesOf(figureOf(predicted.skeleton, bodyJoints(predicted.skeleton, own)),
+                                      figureOf(truth.skeleton, bodyJoints(truth.skeleton, given)), side);
   compareNamed(predicted, truth, box, result);
   return result;
 }

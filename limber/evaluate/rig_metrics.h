@@ -10,6 +10,7 @@ namespace limber {
 
 // Distances in percent of the longest side of the truth's bounding box (RigNet: Xu et al. 2020): mean nearest distance
 // both ways, halved. Bones run from joints to their children; 100 points of each count, whatever its length.
+// Joints in one place count once, and feet that inverse kinematics drives hang on their legs (figureOf).
 // jointToJoint, jointToBone, boneToBone   CD-J2J, CD-J2B, CD-B2B
 // precision, recall, iou                  of joints, paired one to one within 5 % so that the sum of distances is the
 // least;
@@ -32,8 +33,9 @@ struct RigComparison {
   double namedMean = 0, namedWorst = 0;
 };
 
-// All joints of the predicted rig count; of the truth those that hold a vertex, and those between such. Fingers are
-// told by name. Throws Error kUnsupported where one of the two has no rig.
+// All joints of the predicted rig count; of the truth those that move vertices, play a bone of a person, or lie between
+// such (countedJoints). Without fingers: of both what bodyJoints leaves, so no face, ears or things held either.
+// Throws Error kUnsupported where one of the two has no rig.
 RigComparison compareRigs(const SkinnedModel& predicted, const SkinnedModel& truth);
 RigComparison compareRigs(const Asset& predicted, const Asset& truth);
 

@@ -129,8 +129,10 @@ Letter letterOf(char c) {
   return std::isdigit(u) ? Letter::kDigit : Letter::kOther;
 }
 
-// "mixamorig:LeftUpLeg" -> left, up, leg; "LHipJoint" -> l, hip, joint; "finger2-1.L" -> finger, 2, 1, l.
-std::vector<std::string> tokensOf(std::string_view name) {
+}  // namespace
+
+// "LHipJoint" -> l, hip, joint; "finger2-1.L" -> finger, 2, 1, l.
+std::vector<std::string> wordsOfName(std::string_view name) {
   const std::size_t space = name.find_last_of(":|");
   if (space != std::string_view::npos) name.remove_prefix(space + 1);
   std::vector<std::string> tokens;
@@ -149,6 +151,8 @@ std::vector<std::string> tokensOf(std::string_view name) {
   }
   return tokens;
 }
+
+namespace {
 
 bool isNumber(const std::string& token) {
   return letterOf(token.front()) == Letter::kDigit;
@@ -187,7 +191,7 @@ struct Tokens {
 
 Tokens sortTokens(std::string_view name) {
   Tokens sorted;
-  std::vector<std::string> all = tokensOf(name);
+  std::vector<std::string> all = wordsOfName(name);
   for (std::string& token : all) {
     const std::optional<BodySide> side = sideOf(token);
     // OptiTrack's "LUArm", "RFArm".

@@ -1,6 +1,7 @@
 // The words in joints' names, as humanoid_names.cpp reads them. Internal to the module.
 #pragma once
 
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -42,6 +43,9 @@ struct BodyName {
   BodySide side = BodySide::kMiddle;
   double confidence = 0;
 };
+
+// The words of a name in small letters, numbers apart: "mixamorig:LeftUpLeg" -> left, up, leg; "Ear1.R" -> ear, 1, r.
+std::vector<std::string> wordsOfName(std::string_view name);
 
 // Reads one name, without its neighbours. Helpers and ends are kNone.
 BodyName readBodyName(std::string_view name);
