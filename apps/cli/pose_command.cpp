@@ -130,7 +130,7 @@ void run(Options options) {
 
   const Account account(options.common.quiet, options.output);
   for (const ReachReport& report : reports) {
-    account.line(fmt::format("{:<16}{:.6f} m left: {}", report.joint, report.distance, outcomeText(report.outcome)));
+    account.line(fmt::format("{:<16} {:.6f} m left: {}", report.joint, report.distance, outcomeText(report.outcome)));
   }
   printWarnings(asset.warnings, options.common.quiet);
   if (options.output != "-") account.line(fmt::format("written: {}", options.output));

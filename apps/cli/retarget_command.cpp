@@ -64,7 +64,7 @@ std::vector<RetargetedClip> addMotions(Asset& asset, const Options& options, Pro
 void tell(const Options& options, const std::vector<RetargetedClip>& clips, const Warnings& warnings) {
   const Account account(options.common.quiet, options.output);
   for (const RetargetedClip& clip : clips) {
-    account.line(fmt::format("{:<24}{} frames at {:g} a second, {} parts matched", clip.name, clip.frames,
+    account.line(fmt::format("{:<24} {} frames at {:g} a second, {} parts matched", clip.name, clip.frames,
                              clip.framesPerSecond, clip.map.matches.size()));
   }
   if (!clips.empty() && !clips.front().doubtful.empty()) {
