@@ -29,12 +29,7 @@ struct Options {
 // The pose of that name; the only one of the file where none is named.
 PoseEdits editsOf(const std::string& file, const std::string& name) {
   const Bytes bytes = readFile(file);
-  std::vector<NamedPose> poses;
-  try {
-    poses = parsePoses({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-  } catch (const Error& error) {
-    throw error.within(file);
-  }
+  std::vector<NamedPose> poses = parsePoses({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, file);
   if (name.empty() && poses.size() == 1) return poses.front().edits;
   std::vector<std::string> names;
   for (NamedPose& pose : poses) {

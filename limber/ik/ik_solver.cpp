@@ -85,6 +85,7 @@ const IkResult& IkSolver::solve(Pose& pose, std::span<const IkTarget> targets) {
 // Runs the method from where the system stands, and leaves the best state so far in the system.
 void IkSolver::attempt(double& best) {
   const Index iterations = iteration_->run(system_, system_.options().maxIterations);
+  if (system_.symmetric()) system_.forward();
   const double cost = system_.cost();
   result_.iterations += iterations;
   stillGaining_ = iterations >= system_.options().maxIterations && cost < kWorthGoingOn * best;

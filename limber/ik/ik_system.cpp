@@ -60,7 +60,11 @@ IkSystem::IkSystem(const Skeleton& skeleton, std::span<const IkTarget> targets, 
   scales_.resize(n, 1.0);
   addEffectors(targets);
   listEffectorsBelow();
-  setReference(options_.reference ? *options_.reference : restPose(skeleton));
+  setReference(restPose(skeleton));
+  forward();
+  updateReach();
+  mirror_ = IkMirror(*this);
+  if (options_.reference) setReference(*options_.reference);
 }
 
 void IkSystem::checkTargets(std::span<const IkTarget> targets) const {
@@ -211,6 +215,7 @@ void IkSystem::load(const Pose& pose, std::span<const IkTarget> targets) {
     bad(fmt::format("a pose of {} joints for a skeleton of {}", pose.locals.size(), skeleton_->jointCount()), {});
   }
   checkTargets(targets);
+  symmetric_ = false;
   loadFrames(pose);
   if (limited_) {
     for (int n = 0; n < nodeCount(); ++n) limitNode(n);
@@ -229,6 +234,7 @@ void IkSystem::load(const Pose& pose, std::span<const IkTarget> targets) {
       effector.angleScale = effector.reach > 0 ? options_.angleWeight * effector.reach : 1;
     }
   }
+  symmetric_ = mirror_.fits(*this);
 }
 
 void IkSystem::updateReach() {

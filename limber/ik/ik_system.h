@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "limber/ik/ik_mirror.h"
 #include "limber/ik/ik_problem.h"
 #include "limber/ik/limits.h"
 
@@ -52,7 +53,11 @@ class IkSystem {
   void store(Pose& pose) const;
 
   // Global rotations and positions of all nodes from their locals and offsets; the second, of those from `first` on.
-  void forward() { forwardFrom(0); }
+  // Where the problem is symmetric, forward() makes the locals and offsets so first.
+  void forward() {
+    if (symmetric_) mirror_.impose(*this);
+    forwardFrom(0);
+  }
   void forwardFrom(int first);
   // The node's local rotation and offset into its limits. Does not touch globals.
   void limitNode(int node);
@@ -83,6 +88,8 @@ class IkSystem {
 
   int nodeCount() const { return static_cast<int>(nodes.size()); }
   const IkOptions& options() const { return options_; }
+  // Whether start pose, targets, limits and references are the same left and right.
+  bool symmetric() const { return symmetric_; }
   // Effectors at or below a node.
   std::span<const int> effectorsBelow(int node) const;
 
@@ -107,6 +114,8 @@ class IkSystem {
   const Skeleton* skeleton_;
   IkOptions options_;
   bool limited_ = false;
+  bool symmetric_ = false;
+  IkMirror mirror_;
   std::vector<IkTarget> shape_;          // the targets of the constructor
   std::vector<int> nodeOf_;              // #J, -1 for joints that are not nodes
   std::vector<Quat> baseRotations_;      // #nodes; of the parent frame, for bases

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <initializer_list>
+#include <map>
+#include <set>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -149,12 +151,48 @@ struct EntryWriter {
   }
 };
 
+// Refuses a key that stands twice in one object: the parser would keep one of the two without a word.
+class KeyGuard {
+ public:
+  void take(std::size_t depth, const std::string& key) {
+    if (!keys_[depth].insert(key).second) {
+      const bool inEntry = depth >= kEntryDepth && !joint_.empty();
+      throw Error(ErrorCode::kBadData, fmt::format("'{}' stands twice", key),
+                  inEntry ? fmt::format("limits: joint '{}'", joint_) : "limits");
+    }
+    if (depth == kEntryDepth - 1) joint_ = key;
+  }
+  void leave(std::size_t depth) { keys_.erase(keys_.upper_bound(depth), keys_.end()); }
+
+ private:
+  static constexpr std::size_t kEntryDepth = 3;  // of the keys in {"joints": {"elbow": {
+
+  std::map<std::size_t, std::set<std::string>> keys_;  // of the objects that are open, by depth
+  std::string joint_;
+};
+
+Json parse(std::string_view text) {
+  KeyGuard guard;
+  const auto watch = [&guard](int depth, Json::parse_event_t event, Json& value) {
+    const auto level = static_cast<std::size_t>(depth);
+    if (event == Json::parse_event_t::key) guard.take(level, value.get_ref<const std::string&>());
+    if (event == Json::parse_event_t::object_end) guard.leave(level);
+    return true;
+  };
+  try {
+    return Json::parse(text, watch);
+  } catch (const Json::parse_error& error) {
+    throw Error(ErrorCode::kBadData, fmt::format("are not JSON at byte {}", error.byte), "limits");
+  } catch (const Json::out_of_range&) {
+    throw Error(ErrorCode::kBadData, "hold a number that is too large", "limits");
+  }
+}
+
 }  // namespace
 
 JointLimits limitsFromJson(std::string_view text, const Skeleton& skeleton) {
   const auto bad = [](const std::string& what) { throw Error(ErrorCode::kBadData, what, "limits"); };
-  const Json file = Json::parse(text, nullptr, false);
-  if (file.is_discarded()) bad("are not JSON");
+  const Json file = parse(text);
   if (!file.is_object() || !file.contains("limber_limits")) bad("have no \"limber_limits\"");
   if (file["limber_limits"] != 1) bad("are of a version that is not known");
   if (!file.contains("joints") || !file["joints"].is_object()) bad("have no \"joints\"");

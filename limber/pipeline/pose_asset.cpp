@@ -7,6 +7,7 @@
 #include "limber/asset/pose_io.h"
 #include "limber/core/numbers.h"
 #include "limber/ik/ik_solver.h"
+#include "limber/skeleton/chain.h"
 #include "limber/skinning/deformer.h"
 #include "limber/skinning/rotation_centers.h"
 
@@ -16,14 +17,14 @@ namespace {
 
 constexpr std::size_t kNamesListed = 12;
 
-Index requireJoint(const Skeleton& skeleton, const std::string& name) {
+Index requireJoint(const Skeleton& skeleton, const std::string& name, const std::string& where) {
   if (const std::optional<Index> joint = skeleton.find(name)) return *joint;
   std::string known;
   for (std::size_t j = 0; j < std::min(kNamesListed, skeleton.joints.size()); ++j) {
     known += (j == 0 ? "" : ", ") + skeleton.joints[j].name;
   }
   if (skeleton.joints.size() > kNamesListed) known += ", ...";
-  throw Error(ErrorCode::kBadArgument, fmt::format("no joint is called '{}'", name), {}, "there are: " + known);
+  throw Error(ErrorCode::kBadArgument, fmt::format("no joint is called '{}'", name), where, "there are: " + known);
 }
 
 Affine parentGlobal(const Skeleton& skeleton, const Pose& pose, Index joint) {
@@ -32,31 +33,46 @@ Affine parentGlobal(const Skeleton& skeleton, const Pose& pose, Index joint) {
 }
 
 void turn(const Skeleton& skeleton, Pose& pose, const JointTurn& edit) {
-  const Index joint = requireJoint(skeleton, edit.joint);
+  const Index joint = requireJoint(skeleton, edit.joint, edit.where);
   const Quat above = decompose(parentGlobal(skeleton, pose, joint)).rotation;
   const Quat turned(Eigen::AngleAxisd(edit.degrees * kDegree, above.conjugate() * edit.axis));
   pose.locals[joint].rotation = (turned * pose.locals[joint].rotation).normalized();
 }
 
 void move(const Skeleton& skeleton, Pose& pose, const JointMove& edit) {
-  const Index joint = requireJoint(skeleton, edit.joint);
+  const Index joint = requireJoint(skeleton, edit.joint, edit.where);
   const Vec3 local = parentGlobal(skeleton, pose, joint).linear().inverse() * edit.offset;
   if (!local.allFinite()) {
-    throw Error(ErrorCode::kBadData, "cannot be moved below a joint with a scale of 0",
-                fmt::format("joint '{}'", edit.joint));
+    throw Error(ErrorCode::kBadData, fmt::format("joint '{}' cannot be moved below a scale of 0", edit.joint),
+                edit.where);
   }
   pose.locals[joint].translation += local;
+}
+
+IkTarget targetOf(const Skeleton& skeleton, const JointReach& edit) {
+  IkTarget target;
+  target.joint = requireJoint(skeleton, edit.joint, edit.where);
+  target.position = edit.target;
+  target.pole = edit.pole;
+  if (!edit.base) return target;
+  target.base = requireJoint(skeleton, *edit.base, edit.where);
+  if (!isAncestorOrSelf(skeleton, *target.base, target.joint)) {
+    throw Error(ErrorCode::kBadArgument,
+                fmt::format("the base '{}' is not above the joint '{}'", *edit.base, edit.joint), edit.where);
+  }
+  return target;
 }
 
 std::vector<ReachReport> reach(const Skeleton& skeleton, Pose& pose, const std::vector<JointReach>& edits,
                                const JointLimits* limits, const PoseOptions& options) {
   std::vector<IkTarget> targets;
   for (const JointReach& edit : edits) {
-    IkTarget target;
-    target.joint = requireJoint(skeleton, edit.joint);
-    target.position = edit.target;
-    target.pole = edit.pole;
-    if (edit.base) target.base = requireJoint(skeleton, *edit.base);
+    const IkTarget target = targetOf(skeleton, edit);
+    const auto isSame = [&](const IkTarget& other) { return other.joint == target.joint; };
+    if (std::any_of(targets.begin(), targets.end(), isSame)) {
+      throw Error(ErrorCode::kBadArgument, fmt::format("joint '{}' already reaches for another point", edit.joint),
+                  edit.where, "give each joint one point to reach");
+    }
     targets.push_back(target);
   }
   const IkResult result = solveIk(findIkMethod(options.solver), skeleton, pose, targets, limits, options.ik);
@@ -73,7 +89,7 @@ std::vector<ReachReport> editPose(const Skeleton& skeleton, Pose& pose, const Po
                                   const JointLimits* limits, const PoseOptions& options) {
   for (const JointTurn& edit : edits.turns) {
     turn(skeleton, pose, edit);
-    const Index joint = requireJoint(skeleton, edit.joint);
+    const Index joint = requireJoint(skeleton, edit.joint, edit.where);
     if (limits) pose.locals[joint].rotation = nearestAllowed(limits->joints[joint], pose.locals[joint].rotation);
   }
   for (const JointMove& edit : edits.moves) move(skeleton, pose, edit);

@@ -27,8 +27,8 @@ struct ReachReport {
 };
 
 // Changes `pose`, given in the world's space, as the edits say. Limits (none: null) are kept by the joints that reach,
-// and bend the joints that were turned. Throws Error kBadArgument naming a joint that is not there, and listing some
-// that are.
+// and bend the joints that were turned. Throws Error kBadArgument, with the edit's `where`, on a joint that is not
+// there (and lists some that are), a base that is not above its joint, and a joint that reaches for two points.
 std::vector<ReachReport> editPose(const Skeleton& skeleton, Pose& pose, const PoseEdits& edits,
                                   const JointLimits* limits = nullptr, const PoseOptions& options = {});
 

@@ -196,5 +196,42 @@ TEST(PoseIo, AMirroredPartKeepsItsOutside) {
   EXPECT_EQ(frozen.triangles, geometry.triangles);
 }
 
+TEST(PoseAsset, EditsThatCannotBeMadeAreNamedByTheirPlace) {
+  const AssetSkeleton skeleton = readSkeleton(riggedStrip());
+  const auto errorOfPose = [&](const std::string& lists) {
+    const std::vector<NamedPose> poses = parsePoses(R"({"poses": [{"name": "a", )" + lists + "}]}", "p.json");
+    Pose pose = restPose(skeleton.skeleton);
+    try {
+      editPose(skeleton.skeleton, pose, poses[0].edits);
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string("no error");
+  };
+  using ::testing::StartsWith;
+  EXPECT_THAT(errorOfPose(R"("turn": [{"joint": "hip", "axis": [0, 1, 0], "degrees": 1},
+                                      {"joint": "hop", "axis": [0, 1, 0], "degrees": 1}])"),
+              StartsWith("p.json: poses[0].turn[1]: no joint is called 'hop'"));
+  EXPECT_THAT(errorOfPose(R"("move": [{"joint": "hop", "offset": [0, 1, 0]}])"),
+              StartsWith("p.json: poses[0].move[0]: no joint is called 'hop' (there are: hip, knee, foot"));
+  EXPECT_THAT(errorOfPose(R"("reach": [{"joint": "hop", "target": [0, 1, 0]}])"),
+              StartsWith("p.json: poses[0].reach[0]: no joint is called 'hop'"));
+  EXPECT_THAT(errorOfPose(R"("reach": [{"joint": "foot", "target": [0, 1, 0], "base": "hop"}])"),
+              StartsWith("p.json: poses[0].reach[0]: no joint is called 'hop'"));
+  EXPECT_THAT(errorOfPose(R"("reach": [{"joint": "knee", "target": [0, 1, 0], "base": "foot"}])"),
+              StartsWith("p.json: poses[0].reach[0]: the base 'foot' is not above the joint 'knee'"));
+  EXPECT_THAT(
+      errorOfPose(R"("reach": [{"joint": "foot", "target": [5, 1, 0]}, {"joint": "foot", "target": [5, 2, 0]}])"),
+      StartsWith("p.json: poses[0].reach[1]: joint 'foot' already reaches for another point"));
+
+  Pose pose = restPose(skeleton.skeleton);
+  try {
+    editPose(skeleton.skeleton, pose, turned("hop=y:30"));
+    FAIL() << "an unknown joint was turned";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), StartsWith("'hop=y:30': no joint is called 'hop'"));
+  }
+}
+
 }  // namespace
 }  // namespace limber

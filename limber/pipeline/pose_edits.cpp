@@ -18,8 +18,12 @@ namespace limber {
 
 namespace {
 
+std::string inQuotes(std::string_view text) {
+  return fmt::format("'{}'", text);
+}
+
 [[noreturn]] void failText(std::string_view text, std::string message, std::string remedy) {
-  throw Error(ErrorCode::kBadArgument, std::move(message), fmt::format("'{}'", text), std::move(remedy));
+  throw Error(ErrorCode::kBadArgument, std::move(message), inQuotes(text), std::move(remedy));
 }
 
 // Joint names may hold anything but '='; the last one counts, since values hold none.
@@ -74,19 +78,19 @@ std::vector<JointTurn> parseTurn(std::string_view text) {
     const bool axis = word.size() > 2 && word[0] >= 'x' && word[0] <= 'z' && word[1] == ':';
     const std::optional<double> degrees = axis ? numberOf(word.substr(2)) : std::nullopt;
     if (!degrees) failText(text, "has no turn after the '='", "write joint=y:30, an axis and degrees");
-    turns.push_back({joint, Vec3::Unit(word[0] - 'x'), *degrees});
+    turns.push_back({joint, Vec3::Unit(word[0] - 'x'), *degrees, inQuotes(text)});
   }
   return turns;
 }
 
 JointMove parseMove(std::string_view text) {
   const auto [joint, value] = splitAtEquals(text);
-  return {joint, pointOf(text, value)};
+  return {joint, pointOf(text, value), inQuotes(text)};
 }
 
 JointReach parseReach(std::string_view text) {
   const auto [joint, value] = splitAtEquals(text);
-  return {joint, pointOf(text, value), std::nullopt, std::nullopt};
+  return {joint, pointOf(text, value), std::nullopt, std::nullopt, inQuotes(text)};
 }
 
 void parsePole(std::string_view text, PoseEdits& edits) {
@@ -132,42 +136,63 @@ JointTurn readTurn(const JsonView& entry) {
   const Vec3 axis = requirePoint(entry, "axis");
   if (!(axis.stableNorm() > 0)) entry.fail("has an axis of length 0");
   if (!entry.member("degrees").exists()) entry.fail("has no \"degrees\"");
-  return {requireText(entry, "joint"), axis.stableNormalized(), entry.number("degrees", 0)};
+  return {requireText(entry, "joint"), axis.stableNormalized(), entry.number("degrees", 0), entry.path()};
 }
 
 JointMove readMove(const JsonView& entry) {
   refuseOtherKeys(entry, {"joint", "offset"});
-  return {requireText(entry, "joint"), requirePoint(entry, "offset")};
+  return {requireText(entry, "joint"), requirePoint(entry, "offset"), entry.path()};
 }
 
 JointReach readReach(const JsonView& entry) {
   refuseOtherKeys(entry, {"joint", "target", "pole", "base"});
-  JointReach reach{requireText(entry, "joint"), requirePoint(entry, "target"), pointMember(entry, "pole"), {}};
+  JointReach reach{
+      requireText(entry, "joint"), requirePoint(entry, "target"), pointMember(entry, "pole"), {}, entry.path()};
   if (entry.member("base").exists()) reach.base = requireText(entry, "base");
   return reach;
 }
 
-}  // namespace
+NamedPose readPose(const JsonView& entry) {
+  refuseOtherKeys(entry, {"name", "turn", "move", "reach"});
+  NamedPose pose{requireText(entry, "name"), {}};
+  const JsonView turns = entry.array("turn"), moves = entry.array("move"), reaches = entry.array("reach");
+  for (std::size_t k = 0; k < turns.size(); ++k) pose.edits.turns.push_back(readTurn(turns[k]));
+  for (std::size_t k = 0; k < moves.size(); ++k) pose.edits.moves.push_back(readMove(moves[k]));
+  for (std::size_t k = 0; k < reaches.size(); ++k) pose.edits.reaches.push_back(readReach(reaches[k]));
+  return pose;
+}
 
-std::vector<NamedPose> parsePoses(std::string_view json) {
+std::vector<NamedPose> readPoses(std::string_view json) {
   Warnings warnings;
   const Json document = parseJson(json, warnings);
-  if (!warnings.empty()) throw Error(ErrorCode::kBadData, warnings.items().front().message);
   const JsonView root(document);
+  if (!warnings.empty()) root.fail(warnings.items().front().message);
   refuseOtherKeys(root, {"poses"});
   const JsonView list = root.array("poses");
   std::vector<NamedPose> poses;
   for (std::size_t i = 0; i < list.size(); ++i) {
-    refuseOtherKeys(list[i], {"name", "turn", "move", "reach"});
-    NamedPose pose{requireText(list[i], "name"), {}};
-    const JsonView turns = list[i].array("turn"), moves = list[i].array("move"), reaches = list[i].array("reach");
-    for (std::size_t k = 0; k < turns.size(); ++k) pose.edits.turns.push_back(readTurn(turns[k]));
-    for (std::size_t k = 0; k < moves.size(); ++k) pose.edits.moves.push_back(readMove(moves[k]));
-    for (std::size_t k = 0; k < reaches.size(); ++k) pose.edits.reaches.push_back(readReach(reaches[k]));
+    NamedPose pose = readPose(list[i]);
+    const auto hasName = [&](const NamedPose& other) { return other.name == pose.name; };
+    if (std::any_of(poses.begin(), poses.end(), hasName)) list[i].fail("has the name of a pose before it");
     poses.push_back(std::move(pose));
   }
   if (poses.empty()) root.fail("holds no pose");
   return poses;
+}
+
+}  // namespace
+
+std::vector<NamedPose> parsePoses(std::string_view json, std::string_view file) {
+  try {
+    std::vector<NamedPose> poses = readPoses(json);
+    const auto place = [&](auto& edits) {
+      for (auto& edit : edits) edit.where = file.empty() ? edit.where : fmt::format("{}: {}", file, edit.where);
+    };
+    for (NamedPose& pose : poses) place(pose.edits.turns), place(pose.edits.moves), place(pose.edits.reaches);
+    return poses;
+  } catch (const Error& error) {
+    throw error.within(file);
+  }
 }
 
 }  // namespace limber

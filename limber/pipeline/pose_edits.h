@@ -10,16 +10,20 @@
 
 namespace limber {
 
-// All in world space: metres, and the world's axes whichever way the joint's own point.
+// All in world space: metres, and the world's axes whichever way the joint's own point. `where` is the place that an
+// edit was read from, "poses.json: poses[0].turn[1]" or the text itself in quotes: for errors found later, may be
+// empty.
 struct JointTurn {
   std::string joint;
   Vec3 axis = Vec3::UnitY();  // unit vector
   double degrees = 0;         // counter-clockwise seen from the axis' tip; the joint and what hangs on it turn
+  std::string where = {};
 };
 
 struct JointMove {
   std::string joint;
   Vec3 offset = Vec3::Zero();  // the joint and what hangs on it move
+  std::string where = {};
 };
 
 // Inverse kinematics: the joint's origin goes to the target, the joints above it turn.
@@ -28,6 +32,7 @@ struct JointReach {
   Vec3 target = Vec3::Zero();
   std::optional<Vec3> pole;         // the point to which the middle of the limb bends
   std::optional<std::string> base;  // the highest joint that turns
+  std::string where = {};
 };
 
 // Carried out in this order: all turns as listed, all moves as listed, all reaches at once.
@@ -56,7 +61,10 @@ struct NamedPose {
 //             "turn":  [{"joint": "head", "axis": [0, 1, 0], "degrees": 30}],
 //             "move":  [{"joint": "hips", "offset": [0, -0.1, 0]}],
 //             "reach": [{"joint": "hand.L", "target": [0.4, 1.2, 0.3], "pole": [0, 1, -1], "base": "chest"}]}]}
-// Every list may be absent; other keys are refused. Throws Error kBadData with the entry: "poses[0].reach[1].target".
-std::vector<NamedPose> parsePoses(std::string_view json);
+// Every list may be absent; other keys, keys that stand twice and two poses of one name are refused. Throws Error
+// kBadData with the file and the entry: "poses.json: poses[0].reach[1].target".
+//
+// file  what the text was read from, for errors; may be empty
+std::vector<NamedPose> parsePoses(std::string_view json, std::string_view file = {});
 
 }  // namespace limber

@@ -1,5 +1,6 @@
 #include "limber/pipeline/pose_edits.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -82,6 +83,30 @@ TEST(PoseFile, ErrorsNameTheEntry) {
               HasSubstr("poses[0].turn[0]"));
   EXPECT_THAT(errorIn(R"({"poses": [{"name": "a", "move": [{"joint": "b", "offset": [0, "1", 0]}]}]})"),
               HasSubstr("poses[0].move[0].offset[1]"));
+  EXPECT_THAT(errorIn(R"({"poses": [{"name": "a", "move": [{"joint": "b", "offset": [0, null, 0]}]}]})"),
+              HasSubstr("poses[0].move[0].offset[1]"));
+  EXPECT_THAT(errorIn(R"({"poses": [{"name": "a", "move": [{"joint": 7, "offset": [0, 0, 0]}]}]})"),
+              HasSubstr("poses[0].move[0].joint"));
+  EXPECT_THAT(errorIn(R"({"poses": [{"name": "a", "move": {}}]})"), HasSubstr("poses[0].move"));
+  EXPECT_THAT(errorIn(R"({"poses": [{"name": "a"}, {"name": "b"}, {"name": "a"}]})"), HasSubstr("poses[2]"));
+  EXPECT_THAT(errorIn(R"({"poses": [{"name": "a", "name": "b"}]})"), HasSubstr("twice"));
+  for (const char* number : {"NaN", "Infinity", "1e999"}) {
+    const std::string text = fmt::format(
+        R"({{"poses": [{{"name": "a", "turn": [{{"joint": "b", "axis": [0, 1, 0], "degrees": {}}}]}}]}})", number);
+    EXPECT_THAT(errorIn(text.c_str()), HasSubstr("JSON at byte 8")) << number;
+  }
+}
+
+TEST(PoseFile, ErrorsAndEditsNameTheFile) {
+  EXPECT_THAT(errorOf([] { parsePoses("{", "p.json"); }), HasSubstr("p.json: is not valid JSON at byte 2"));
+  EXPECT_THAT(errorOf([] { parsePoses(R"({"poses": [{"name": ""}]})", "p.json"); }), HasSubstr("p.json: poses[0]: "));
+  const std::vector<NamedPose> poses = parsePoses(R"({"poses": [{"name": "a",
+    "turn": [{"joint": "b", "axis": [0, 1, 0], "degrees": 1}, {"joint": "b", "axis": [1, 0, 0], "degrees": 1}],
+    "move": [{"joint": "b", "offset": [0, 0, 0]}], "reach": [{"joint": "b", "target": [0, 0, 0]}]}]})",
+                                                  "p.json");
+  EXPECT_EQ(poses[0].edits.turns[1].where, "p.json: poses[0].turn[1]");
+  EXPECT_EQ(poses[0].edits.moves[0].where, "p.json: poses[0].move[0]");
+  EXPECT_EQ(poses[0].edits.reaches[0].where, "p.json: poses[0].reach[0]");
 }
 
 }  // namespace

@@ -43,12 +43,27 @@ SavedSession savedOf(const SessionState& state) {
   return saved;
 }
 
-void restore(SessionState& state, const SavedSession& saved) {
-  for (const SavedJoint& joint : saved.pose) state.pose.locals[requireJoint(state, joint.joint)] = joint.local;
-  for (const SavedTarget& target : saved.targets) {
-    state.targets.push_back({requireJoint(state, target.joint), target.position});
+// Runs `work`; its errors are said of that entry of the document.
+template <typename Work>
+auto saidOf(const std::string& entry, const Work& work) {
+  try {
+    return work();
+  } catch (const Error& error) {
+    throw error.within(entry);
   }
-  setLimits(state, saved.limits);
+}
+
+void restore(SessionState& state, const SavedSession& saved) {
+  const auto jointOf = [&](const std::string& name, const char* list, std::size_t entry) {
+    return saidOf(fmt::format("extras.limber_session.{}[{}]", list, entry), [&] { return requireJoint(state, name); });
+  };
+  for (std::size_t i = 0; i < saved.pose.size(); ++i) {
+    state.pose.locals[jointOf(saved.pose[i].joint, "pose", i)] = saved.pose[i].local;
+  }
+  for (std::size_t i = 0; i < saved.targets.size(); ++i) {
+    state.targets.push_back({jointOf(saved.targets[i].joint, "targets", i), saved.targets[i].position});
+  }
+  saidOf("extras.limber_session.limits", [&] { setLimits(state, saved.limits); });
   state.ik = saved.ik;
   if (!saved.clip.empty()) {
     chooseClip(state.movement, saved.clip);
