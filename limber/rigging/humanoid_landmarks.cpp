@@ -1,11 +1,10 @@
 #include "limber/rigging/humanoid_landmarks.h"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
-#include <set>
 #include <string>
+
+#include "limber/rigging/body_section.h"
+#include "limber/rigging/leg_finder.h"
 
 namespace limber {
 
@@ -13,158 +12,12 @@ namespace {
 
 // Heights, but for shares.
 constexpr double kSeedReach = 0.04;
-constexpr double kLowestParting = 0.3;  // of the way from ankle to hip as embedded: legs that part lower are no legs
-constexpr int kStaysTogether = 3;       // cuts
-
 constexpr double kWidestArm = 0.03;  // square heights of a cut
 constexpr double kMostMoved = 0.06;
 
-struct Leg {
-  Index hip = 0, knee = 0, ankle = 0;
-};
 struct Arm {
   Index shoulder = 0, elbow = 0, hand = 0;
 };
-
-class LegFinder {
- public:
-  LegFinder(const BodyVolume& body, const BodyFrame& frame, const std::vector<Vec3>& places, const Leg& left,
-            const Leg& right)
-      : body_(body), frame_(frame), places_(places), legs_{left, right} {}
-
-  // Cuts both legs at rising heights until they have grown together.
-  bool findParting() {
-    const double step = body_.distance->spacing() / frame_.height;
-    const double ankle = std::max(places_[legs_[0].ankle].y(), places_[legs_[1].ankle].y()) + 0.02;
-    const double hip = std::max(places_[legs_[0].hip].y(), places_[legs_[1].hip].y());
-    int together = 0;
-    for (double y = ankle; y < hip + 0.15; y += step) {
-      std::array<BodySection, 2> cut;
-      for (int side = 0; side < 2; ++side)
-        cut[side] = sectionAt(body_, frame_, seed(side, y), Vec3::UnitY(), kSeedReach);
-      if (cut[0].empty() || cut[1].empty()) continue;
-      if (cut[0].contains(cut[1].center) || cut[0].center.x() <= cut[1].center.x()) {
-        if (++together == kStaysTogether) {
-          parting_ = y - (kStaysTogether - 1) * step;
-          return known() && parting_ > ankle + kLowestParting * (hip - ankle);
-        }
-        continue;
-      }
-      together = 0;
-      for (int side = 0; side < 2; ++side) sections_[side].push_back(cut[side]);
-    }
-    return false;
-  }
-
-  double parting() const { return parting_; }
-  bool known() const { return sections_[0].size() > 3; }
-
-  // Of the leg just below where it parts from the other one.
-  double halfWidth(int side) const {
-    double sum = 0;
-    const std::size_t count = std::min<std::size_t>(4, sections_[side].size());
-    for (std::size_t i = 0; i < count; ++i) {
-      const BodySection& section = sections_[side][sections_[side].size() - 1 - i];
-      sum += 0.5 * (section.high - section.low) / static_cast<double>(count);
-    }
-    return sum;
-  }
-
-  // The middle of the leg at a height; above where it parts as just below.
-  Vec3 middle(int side, double y) const {
-    const std::vector<BodySection>& cuts = sections_[side];
-    Vec3 sum = Vec3::Zero();
-    double weights = 0;
-    for (const BodySection& cut : cuts) {
-      const double off = (cut.center.y() - std::min(y, cuts.back().center.y() - 0.01)) / 0.02;
-      const double weight = std::exp(-off * off);
-      sum += weight * cut.center;
-      weights += weight;
-    }
-    return weights > 1e-6 ? Vec3(sum.x() / weights, y, sum.z() / weights)
-                          : Vec3(cuts.front().center.x(), y, cuts.front().center.z());
-  }
-
- private:
-  // Upwards from the last cut; first on the embedded shin.
-  Vec3 seed(int side, double y) const {
-    if (!sections_[side].empty()) {
-      const Vec3& last = sections_[side].back().center;
-      return {last.x(), y, last.z()};
-    }
-    const Vec3 &knee = places_[legs_[side].knee], &ankle = places_[legs_[side].ankle];
-    const double part = std::clamp((y - ankle.y()) / std::max(knee.y() - ankle.y(), 1e-3), 0.0, 1.0);
-    Vec3 place = ankle + part * (knee - ankle);
-    place.y() = y;
-    return place;
-  }
-
-  const BodyVolume& body_;
-  const BodyFrame& frame_;
-  const std::vector<Vec3>& places_;
-  std::array<Leg, 2> legs_;
-  std::array<std::vector<BodySection>, 2> sections_;  // upwards
-  double parting_ = 0;
-};
-
-}  // namespace
-
-bool BodySection::contains(const Vec3& place) const {
-  const std::array<int, 2> at = {static_cast<int>(std::lround((place - origin).dot(across) / cell)),
-                                 static_cast<int>(std::lround((place - origin).dot(along) / cell))};
-  return std::binary_search(cells.begin(), cells.end(), at);
-}
-
-BodySection sectionAt(const BodyVolume& body, const BodyFrame& frame, const Vec3& seed, const Vec3& normal,
-                      double reach) {
-  using Cell = std::array<int, 2>;
-  BodySection section;
-  section.origin = seed;
-  section.across = std::abs(normal.x()) < 0.9 ? Vec3((Vec3::UnitX() - normal.x() * normal).normalized())
-                                              : Vec3((Vec3::UnitY() - normal.y() * normal).normalized());
-  section.along = section.across.cross(normal);
-  section.cell = 0.5 * body.distance->spacing() / frame.height;
-  const auto placeOf = [&](double across, double along) {
-    return Vec3(seed + section.cell * (across * section.across + along * section.along));
-  };
-  const auto inside = [&](const Cell& at) { return body.distance->at(frame.fromBody(placeOf(at[0], at[1]))) < 0; };
-  const int around = static_cast<int>(reach / section.cell);
-  Cell nearest = {};
-  int best = std::numeric_limits<int>::max();
-  for (int i = -around; i <= around; ++i) {
-    for (int k = -around; k <= around; ++k) {
-      if (i * i + k * k >= best || !inside({i, k})) continue;
-      best = i * i + k * k;
-      nearest = {i, k};
-    }
-  }
-  if (best == std::numeric_limits<int>::max()) return section;
-
-  std::set<Cell> seen = {nearest};
-  std::vector<Cell> waiting = {nearest};
-  Vec3 sum = Vec3::Zero();
-  while (!waiting.empty()) {
-    const Cell at = waiting.back();
-    waiting.pop_back();
-    section.cells.push_back(at);
-    sum += placeOf(at[0], at[1]);
-    for (const auto& [di, dk] : {Cell{1, 0}, Cell{-1, 0}, Cell{0, 1}, Cell{0, -1}}) {
-      const Cell next = {at[0] + di, at[1] + dk};
-      if (seen.count(next) == 0 && inside(next)) {
-        seen.insert(next);
-        waiting.push_back(next);
-      }
-    }
-  }
-  std::sort(section.cells.begin(), section.cells.end());
-  section.low = section.cells.front()[0] * section.cell;
-  section.high = section.cells.back()[0] * section.cell;
-  section.area = static_cast<double>(section.cells.size()) * section.cell * section.cell;
-  section.center = sum / static_cast<double>(section.cells.size());
-  return section;
-}
-
-namespace {
 
 struct HumanoidJoints {
   std::array<Leg, 2> legs;

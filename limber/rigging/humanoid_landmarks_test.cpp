@@ -8,22 +8,10 @@
 namespace limber {
 
 using testing::MeasuredPerson;
-
-TEST(HumanoidLandmarks, SectionsAreCutOutOfOnePart) {
-  const MeasuredPerson person;
-  const double y = 0.16;  // of the shins
-  const Vec3 seed = person.frame.toBody({0.1, y, 0.01});
-  const BodySection shin = sectionAt(person.body, person.frame, seed, Vec3::UnitY(), 0.05);
-  ASSERT_FALSE(shin.empty());
-  EXPECT_NEAR(shin.area, M_PI * 0.038 * 0.038, 0.25 * M_PI * 0.038 * 0.038);
-  EXPECT_NEAR(shin.center.x(), 0.085, 0.01);
-  EXPECT_TRUE(shin.contains(shin.center));
-  EXPECT_FALSE(shin.contains(shin.center.cwiseProduct(Vec3(-1, 1, 1))));
-  EXPECT_TRUE(sectionAt(person.body, person.frame, {0.4, 0.3, 0}, Vec3::UnitY(), 0.05).empty());
-}
+using testing::measuredPerson;
 
 TEST(HumanoidLandmarks, HipsGoWhereLegsPart) {
-  const MeasuredPerson person;
+  const MeasuredPerson& person = measuredPerson();
   const TemplateSkeleton& skeleton = findTemplate("humanoid");
   const Index hip = *skeleton.find("leftUpperLeg"), knee = *skeleton.find("leftLowerLeg");
   std::vector<Vec3> places;
@@ -42,7 +30,7 @@ TEST(HumanoidLandmarks, HipsGoWhereLegsPart) {
 }
 
 TEST(HumanoidLandmarks, LeavesOtherTemplatesAlone) {
-  const MeasuredPerson person;
+  const MeasuredPerson& person = measuredPerson();
   const TemplateSkeleton& skeleton = findTemplate("quadruped");
   std::vector<Vec3> places;
   for (const TemplateJoint& joint : skeleton.joints) places.push_back(joint.place);

@@ -9,12 +9,6 @@ namespace limber {
 
 namespace {
 
-// Measured once for all tests.
-const testing::MeasuredPerson& thePerson() {
-  static const testing::MeasuredPerson person;
-  return person;
-}
-
 std::vector<TemplateVariant> asIs(const TemplateSkeleton& skeleton) {
   return {{skeleton, 0}};
 }
@@ -22,7 +16,7 @@ std::vector<TemplateVariant> asIs(const TemplateSkeleton& skeleton) {
 }  // namespace
 
 TEST(TemplateEmbedding, PutsJointsIntoTheirLimbs) {
-  const testing::MeasuredPerson& person = thePerson();
+  const testing::MeasuredPerson& person = testing::measuredPerson();
   const TemplateSkeleton& skeleton = findTemplate("humanoid");
   const TemplatePins pins(skeleton.jointCount());
   const TemplateEmbedding embedding = embedTemplate(asIs(skeleton), person.body, person.frame, pins).front();
@@ -38,7 +32,7 @@ TEST(TemplateEmbedding, PutsJointsIntoTheirLimbs) {
 }
 
 TEST(TemplateEmbedding, KeepsPins) {
-  const testing::MeasuredPerson& person = thePerson();
+  const testing::MeasuredPerson& person = testing::measuredPerson();
   const TemplateSkeleton& skeleton = findTemplate("humanoid");
   TemplatePins pins(skeleton.jointCount());
   const Vec3 pin(0.2, 0.7, 0.05);
@@ -48,7 +42,7 @@ TEST(TemplateEmbedding, KeepsPins) {
 }
 
 TEST(TemplateEmbedding, CostsMoreInWhatIsNoPerson) {
-  const testing::MeasuredPerson& person = thePerson();
+  const testing::MeasuredPerson& person = testing::measuredPerson();
   const TemplateSkeleton& skeleton = findTemplate("humanoid");
   const TemplatePins pins(skeleton.jointCount());
   TriMesh sausage;
@@ -60,7 +54,7 @@ TEST(TemplateEmbedding, CostsMoreInWhatIsNoPerson) {
 }
 
 TEST(TemplateEmbedding, RefusesVariantsOfOtherJoints) {
-  const testing::MeasuredPerson& person = thePerson();
+  const testing::MeasuredPerson& person = testing::measuredPerson();
   const std::vector<TemplateVariant> variants = {{findTemplate("humanoid"), 0}, {findTemplate("bird"), 0}};
   const TemplatePins pins(variants[0].skeleton.jointCount());
   EXPECT_THROW(embedTemplate(variants, person.body, person.frame, pins), Error);

@@ -10,6 +10,7 @@
 #include "limber/core/numbers.h"
 #include "limber/rigging/body_volume.h"
 #include "limber/rigging/humanoid_landmarks.h"
+#include "limber/rigging/quadruped_landmarks.h"
 #include "limber/rigging/template_embedding.h"
 
 namespace limber {
@@ -216,6 +217,7 @@ AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress
   TemplateFit& best = fits.front();
   refineHumanoid(best.skeleton, body, best.frame, best.pins, best.embedding.places);
   placeBetween(best.skeleton, best.embedding.places);
+  refineQuadruped(best.skeleton, body, best.frame, best.pins, best.embedding.places);
   AutoRig rig;
   rig.skeleton = standingSkeleton(best.skeleton, best.embedding.places, best.frame);
   for (const TemplateFit& fit : fits) rig.matches.push_back({fit.skeleton.name, confidenceOf(fit)});

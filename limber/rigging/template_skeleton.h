@@ -47,8 +47,8 @@ struct TemplateVariant {
   double cost = 0;  // to be added to an embedding's: how rare such bodies are
 };
 
-// The template itself, and for a person also with shorter legs, a larger head and longer arms, as toys and cartoons
-// have them.
+// The template itself; for a person also with shorter legs, a larger head and longer arms, as toys and cartoons have
+// them; for a four-legged animal also with a low head and a long body.
 std::vector<TemplateVariant> templateVariants(const TemplateSkeleton& skeleton);
 
 // A user's skeleton as a template: places from its rest pose, as it stands (up is +Y, front +Z); joints that part the

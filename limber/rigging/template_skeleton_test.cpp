@@ -98,7 +98,20 @@ TEST(TemplateSkeleton, VariantsHaveOtherProportions) {
   EXPECT_EQ(highestHips, person.joints[hips].place.y());
   EXPECT_LT(lowestHips, 0.25);
   EXPECT_GT(longestArm, 2 * armOf(person));
-  EXPECT_EQ(templateVariants(findTemplate("quadruped")).size(), 1u);
+  EXPECT_EQ(templateVariants(findTemplate("bird")).size(), 1u);
+}
+
+TEST(TemplateSkeleton, AnimalsMayBeLongAndCarryTheirHeadsLow) {
+  const TemplateSkeleton& animal = findTemplate("quadruped");
+  const Index head = *animal.find("head"), tail = *animal.find("tail");
+  double lowest = 1, longest = 0;
+  for (const TemplateVariant& variant : templateVariants(animal)) {
+    EXPECT_GE(variant.cost, 0);
+    lowest = std::min(lowest, variant.skeleton.joints[head].place.y());
+    longest = std::max(longest, variant.skeleton.joints[head].place.z() - variant.skeleton.joints[tail].place.z());
+  }
+  EXPECT_LT(lowest, animal.joints[head].place.y() - 0.1);
+  EXPECT_GT(longest, 1.2 * (animal.joints[head].place.z() - animal.joints[tail].place.z()));
 }
 
 TEST(TemplateSkeleton, OfAUsersSkeleton) {

@@ -65,13 +65,15 @@ constexpr Row kQuadruped[] = {
     {"spine1", "spine", 0, 0.66, -0.07, kBetween, 0, 0},
     {"chest", "spine1", 0, 0.63, 0.1, kPlaced, 0.4, 0.4},
     {"neck", "chest", 0, 0.72, 0.28, kPlaced, 0.5, 0.5},
-    {"head", "neck", 0, 0.88, 0.42, kPlaced, 0.5, 0.6},
+    {"neck1", "neck", 0, 0.8, 0.35, kBetween, 0, 0},
+    {"head", "neck1", 0, 0.88, 0.42, kPlaced, 0.5, 0.6},
     {"headTip", "head", 0, 0.82, 0.66, kTip, 0.5, 0.8},
     {"tail", "hips", 0, 0.64, -0.52, kPlaced, 0.6, 0.6},
     {"tail1", "tail", 0, 0.61, -0.61, kBetween, 0, 0},
     {"tail2", "tail1", 0, 0.58, -0.7, kBetween, 0, 0},
     {"tailTip", "tail2", 0, 0.55, -0.8, kTip, 0.7, 0.9},
-    {"leftFrontUpperLeg", "chest", 0.11, 0.58, 0.19, kPlaced, 0.5, 0.6},
+    {"leftFrontShoulder", "chest", 0.06, 0.62, 0.15, kBetween, 0, 0},
+    {"leftFrontUpperLeg", "leftFrontShoulder", 0.11, 0.58, 0.19, kPlaced, 0.5, 0.6},
     {"leftFrontLowerLeg", "leftFrontUpperLeg", 0.12, 0.36, 0.15, kPlaced, 0.4, 0.4},
     {"leftFrontFoot", "leftFrontLowerLeg", 0.12, 0.12, 0.17, kPlaced, 0.4, 0.35},
     {"leftFrontToes", "leftFrontFoot", 0.12, 0.045, 0.2, kBetween, 0, 0},
@@ -114,6 +116,11 @@ constexpr Build kBuilds[] = {
     {0.4, 0.55, 1, 0.1},   {0.85, 0.87, 1.7, 0.2}, {1, 1, 1.7, 0.2},      {0.7, 0.75, 1.7, 0.2}, {0.4, 0.75, 1.7, 0.2},
     {0.4, 0.55, 1.7, 0.2}, {0.85, 0.87, 2.8, 0.3}, {0.7, 0.75, 2.8, 0.3}, {0.4, 0.75, 2.8, 0.3},
 };
+
+// How animals differ from the quadruped: cows, cats and wolves carry their heads level with their backs.
+constexpr double kLongAnimal = 1.35;
+constexpr double kRareAnimal = 0.05;
+const Vec3 kLowHead(0, 0.04, 0.2), kLowHeadTip(0, -0.06, 0.25);  // from the neck, from the head
 
 constexpr std::string_view kLeft = "left", kRight = "right";
 
@@ -178,7 +185,31 @@ const TemplateSkeleton& findTemplate(std::string_view name) {
   throw Error(ErrorCode::kBadArgument, fmt::format("no template is called '{}'", name), {}, "there are: " + known);
 }
 
+namespace {
+
+// Animals that carry their heads low, and such as are long for their height. Needs a neck, a head and its tip in front.
+std::vector<TemplateVariant> animalVariants(const TemplateSkeleton& skeleton, Index neck, Index head, Index tip) {
+  std::vector<TemplateVariant> variants;
+  for (const bool low : {false, true}) {
+    for (const double length : {1.0, kLongAnimal}) {
+      TemplateVariant variant = {skeleton, low || length > 1 ? kRareAnimal : 0};
+      std::vector<TemplateJoint>& joints = variant.skeleton.joints;
+      if (low) {
+        joints[head].place = joints[neck].place + kLowHead;
+        joints[tip].place = joints[head].place + kLowHeadTip;
+      }
+      for (TemplateJoint& joint : joints) joint.place.z() *= length;
+      variants.push_back(std::move(variant));
+    }
+  }
+  return variants;
+}
+
+}  // namespace
+
 std::vector<TemplateVariant> templateVariants(const TemplateSkeleton& skeleton) {
+  const std::optional<Index> neck = skeleton.find("neck"), head = skeleton.find("head"), tip = skeleton.find("headTip");
+  if (skeleton.find("leftFrontUpperLeg") && neck && head && tip) return animalVariants(skeleton, *neck, *head, *tip);
   const std::optional<Index> hips = skeleton.find("hips"),
                              arms[] = {skeleton.find("leftUpperArm"), skeleton.find("rightUpperArm")};
   if (!hips || !arms[0] || !arms[1] || !skeleton.find("leftUpperLeg") || !skeleton.find("neck")) return {{skeleton, 0}};

@@ -13,4 +13,10 @@ struct MeasuredPerson {
   BodyFrame frame = frameAlong(shape.mesh, body, Vec3::UnitY(), Vec3::UnitZ());
 };
 
+// Measured once for all tests of a program.
+inline const MeasuredPerson& measuredPerson() {
+  static const MeasuredPerson person;
+  return person;
+}
+
 }  // namespace limber::testing

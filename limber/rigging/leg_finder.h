@@ -1,0 +1,47 @@
+// A pair of legs followed from the ground up to where they part.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "limber/rigging/body_section.h"
+
+namespace limber {
+
+// Joints of a template: where a leg begins, bends, and from where on it is looked at.
+struct Leg {
+  Index hip = 0, knee = 0, ankle = 0;
+};
+
+class LegFinder {
+ public:
+  // places  of the template's joints, body space; all arguments must outlive the finder
+  LegFinder(const BodyVolume& body, const BodyFrame& frame, const std::vector<Vec3>& places, const Leg& left,
+            const Leg& right)
+      : body_(body), frame_(frame), places_(places), legs_{left, right} {}
+
+  // Cuts both legs at rising heights until they have grown together. False where they do not, or so low that they are
+  // no legs.
+  bool findParting();
+
+  double parting() const { return parting_; }
+  bool known() const { return sections_[0].size() > 3; }  // whether the legs were seen at all
+
+  // Of the leg just below where it parts from the other one.
+  double halfWidth(int side) const;
+
+  // The middle of the leg at a height; above where it parts as just below.
+  Vec3 middle(int side, double y) const;
+
+ private:
+  Vec3 seed(int side, double y) const;
+
+  const BodyVolume& body_;
+  const BodyFrame& frame_;
+  const std::vector<Vec3>& places_;
+  std::array<Leg, 2> legs_;
+  std::array<std::vector<BodySection>, 2> sections_;  // upwards
+  double parting_ = 0;
+};
+
+}  // namespace limber
