@@ -17,8 +17,9 @@ namespace {
 
 constexpr double kPlantedHeight = 0.03, kPlantedSpeed = 0.15;  // heights, heights a second
 constexpr double kPlantedSeconds = 0.1;
-constexpr double kCut = 12;          // heights a second of any joint: no motion, but a cut
-constexpr double kLeastJerk = 2e-5;  // third differences of a joint's places, heights
+constexpr double kSeenSeconds = 1.0 / 30;  // to each side of a frame, when telling whether a joint stands still
+constexpr double kCut = 12;                // heights a second of any joint: no motion, but a cut
+constexpr double kLeastJerk = 2e-5;        // third differences of a joint's places, heights
 
 struct LimbName {
   const char *upper, *lower, *end;
@@ -71,9 +72,9 @@ struct Seen {
   double above(std::size_t frame, Index joint) const {
     return (positions[frame][joint].y() - ground - (neutral.positions[joint].y() - lowest)) / height;
   }
-  // In heights a second, from the frames before and after.
-  Vec3 velocity(std::size_t frame, Index joint, double seconds) const {
-    const std::size_t before = frame > 0 ? frame - 1 : 0, after = std::min(frame + 1, positions.size() - 1);
+  // In heights a second, from `reach` frames before to as many after.
+  Vec3 velocity(std::size_t frame, Index joint, double seconds, std::size_t reach = 1) const {
+    const std::size_t before = frame > reach ? frame - reach : 0, after = std::min(frame + reach, positions.size() - 1);
     const double time = static_cast<double>(after - before) * seconds;
     return (positions[after][joint] - positions[before][joint]) / (time * height);
   }
@@ -88,8 +89,10 @@ struct Seen {
 std::vector<bool> plantedFrames(const Seen& seen, Index joint, double seconds) {
   const std::size_t count = seen.positions.size();
   std::vector<bool> planted(count);
+  const auto reach = static_cast<std::size_t>(std::max(1.0, std::round(kSeenSeconds / seconds)));
   for (std::size_t f = 0; f < count; ++f) {
-    planted[f] = seen.above(f, joint) < kPlantedHeight && seen.velocity(f, joint, seconds).norm() < kPlantedSpeed;
+    const double speed = seen.velocity(f, joint, seconds, reach).norm();
+    planted[f] = seen.above(f, joint) < kPlantedHeight && speed < kPlantedSpeed;
   }
   const auto least = static_cast<std::size_t>(std::ceil(kPlantedSeconds / seconds));
   for (std::size_t begin = 0; begin < count;) {
@@ -121,6 +124,7 @@ void measureFeet(const RetargetSetup& setup, const Seen& source, const Seen& tar
       ++count;
     }
   }
+  metrics.planted = count / static_cast<double>(std::max<std::size_t>(1, from.size() * source.positions.size()));
   metrics.contactAgreement = count > 0 ? agreed / count : 1;
   metrics.sliding = count > 0 ? metrics.sliding / count : 0;
   metrics.sourceSliding = count > 0 ? metrics.sourceSliding / count : 0;
@@ -239,6 +243,7 @@ std::string motionMetricsText(const MotionMetrics& m) {
   line("frames", fmt::format("{}, {} parts of the body", m.frames, m.matched));
   line("bone direction", fmt::format("{:.2f} degrees", m.boneDirection));
   line("end effectors", fmt::format("{:.2f} % of the limb", 100 * m.endEffector));
+  line("planted", fmt::format("{:.1f} % of the feet's frames", 100 * m.planted));
   line("foot sliding", fmt::format("{:.2f} cm/s ({:.4f} heights/s), source {:.4f}", 100 * m.sliding * m.height,
                                    m.sliding, m.sourceSliding));
   line("ground penetration", fmt::format("{:.1f} mm ({:.4f} heights), source {:.4f}", 1000 * m.penetration * m.height,
@@ -253,6 +258,7 @@ std::string motionMetricsJson(const MotionMetrics& m) {
                                        {"matched_parts", m.matched},
                                        {"bone_direction_degrees", m.boneDirection},
                                        {"end_effector_share", m.endEffector},
+                                       {"planted_share", m.planted},
                                        {"sliding_heights_per_second", m.sliding},
                                        {"sliding_centimetres_per_second", 100 * m.sliding * m.height},
                                        {"source_sliding_heights_per_second", m.sourceSliding},

@@ -10,12 +10,14 @@ namespace limber {
 
 // Lengths in heights of the skeleton they are measured on: from its lowest foot joint to its head's joint, standing.
 // Planted is what stands still in the source: a foot's or the toes' joint within 0.03 heights of where it is when
-// standing and slower than 0.15 heights a second, for a tenth of a second at least.
+// standing and slower than 0.15 heights a second, as seen over a fifteenth of a second (recordings tremble from frame
+// to frame), for a tenth of a second at least.
 struct MotionMetrics {
   Index frames = 0;
   Index matched = 0;         // parts of the body that were compared
   double boneDirection = 0;  // degrees between the directions of upper and lower limbs, mean
   double endEffector = 0;    // hands and feet seen from shoulder and hip: how far off, in limb lengths, mean
+  double planted = 0;        // share of the source's frames in which such a joint is planted, mean over the joints
   double sliding = 0;        // of planted joints along the ground, heights a second, mean
   double sourceSliding = 0;  // the same joints in the source
   double penetration = 0;    // how deep a foot's joint goes below where it is when standing, heights, worst

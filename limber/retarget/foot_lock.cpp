@@ -1,6 +1,6 @@
 #include "limber/retarget/foot_lock.h"
 
-#include <cmath>
+#include "limber/retarget/spring.h"
 
 namespace limber {
 
@@ -33,9 +33,7 @@ Vec3 FootLock::next(const Frame& frame, double seconds, double slack) {
   const Vec3 baseSpeed = (base(frame) - base(*before_)) / seconds;
   for (int axis = 0; axis < 3; ++axis) {
     const double rate = anchor_ == FootAnchor::kNone ? kLeaving : axis == 1 ? kSettling : kLanding;
-    const double fade = std::exp(-rate * seconds), pull = restSpeed_[axis] + rate * rest_[axis];
-    rest_[axis] = fade * (rest_[axis] + seconds * pull);
-    restSpeed_[axis] = fade * (restSpeed_[axis] - rate * seconds * pull);
+    springTo(0.0, rate, seconds, rest_[axis], restSpeed_[axis]);
   }
 
   const bool lost = anchor_ != FootAnchor::kNone && (base(frame) - frame.ankle).norm() > slack;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "limber/retarget/spring.h"
 #include "limber/skeleton/chain.h"
 
 namespace limber {
@@ -15,8 +16,10 @@ constexpr double kTouching = 0.12, kApart = 0.35;  // of two hands
 constexpr double kMostSinking = 0.12;
 constexpr double kFootSlack = 0.5;   // how far a planted foot may be from where the joint angles have it
 constexpr double kStretch = 0.9995;  // of a leg's length: fully stretched knees pop
-constexpr double kSinkRate = 12;     // 1/seconds, back up
-constexpr double kPlantRate = 25;    // 1/seconds, of the smooth flag
+constexpr double kTouchRate = 20;    // 1/seconds, of touches that come and go
+constexpr double kSoftReach = 0.96;  // of an arm's length: from there on stretching softens
+constexpr double kPlantRate = 12;    // 1/seconds, of the smooth flag
+constexpr double kSoftStretch = 0.015, kSoftChange = 0.01;  // of the pelvis sinking, by how far a foot is moved
 constexpr double kSoftGround = 0.004;
 // Speeds of the source's pelvis or feet, hip heights a second, that are no motion but a cut. Many recordings have a
 // T-pose as their first frame.
@@ -32,16 +35,10 @@ double softPositive(double x, double softness) {
   return 0.5 * (x + std::hypot(x, softness));
 }
 
-// A critically damped spring to `wanted`.
+// 0 or 1 without a jump.
 void followPlanting(double wanted, double seconds, double& value, double& speed) {
-  if (seconds <= 0) {
-    value = wanted;
-    speed = 0;
-    return;
-  }
-  const double off = value - wanted, fade = std::exp(-kPlantRate * seconds), pull = speed + kPlantRate * off;
-  value = std::clamp(wanted + fade * (off + seconds * pull), 0.0, 1.0);
-  speed = fade * (speed - kPlantRate * seconds * pull);
+  springTo(wanted, kPlantRate, seconds, value, speed);
+  value = std::clamp(value, 0.0, 1.0);
 }
 
 std::optional<Limb> findLimb(const RetargetSetup& setup, const RootPlacer& root, const std::string& upper,
@@ -148,7 +145,7 @@ void LimbGoals::forgetAcrossCuts(const BodyFrame& source, double seconds) {
   }
   std::swap(landmarks_[0], landmarks_[1]);
   if (!cut) return;
-  sinking_ = 0;
+  follows_.fill({});
   for (Feeler& feeler : feelers_) {
     feeler.ankle.reset();
     feeler.toes.reset();
@@ -190,65 +187,86 @@ double LimbGoals::bendKeepingShift(const BodyFrame& target) const {
   return std::clamp(sum / std::max(weights, 1.0), -most, most);
 }
 
-double LimbGoals::pelvisShift(const BodyFrame& target, double seconds) {
-  const double shift = bendKeepingShift(target);
-  double needed = 0;
+double LimbGoals::pelvisShift(const BodyFrame& target) const {
+  const double shift = bendKeepingShift(target), height = setup_.targetHipHeight;
+  double sum = 0;
   for (const Leg& leg : legs_) {
     const Vec3 way = leg.goal - target.positions[leg.upper] - Vec3(0, shift, 0);
+    if (way.y() >= 0) continue;
     const double length = kStretch * leg.length, across = std::hypot(way.x(), way.z());
-    if (way.norm() <= length || way.y() >= 0) continue;
     const double down = std::sqrt(std::max(length * length - across * across, 0.0));
-    needed = std::max(needed, -way.y() - down);
+    // The less the leg is changed, the straighter it may be.
+    const double change = (leg.goal - target.positions[leg.end]).norm();
+    const double needed =
+        softPositive(-way.y() - down, kSoftStretch * height * change / (change + kSoftChange * height));
+    sum += needed * needed * needed * needed;
   }
-  needed = std::min(needed, kMostSinking * setup_.targetHipHeight);
-  sinking_ = std::max(needed, sinking_ * std::exp(-kSinkRate * seconds));
-  return shift - sinking_;
+  // The most that a leg asks for, but without a kink where another takes over.
+  return shift - std::min(std::sqrt(std::sqrt(sum)), kMostSinking * height);
 }
 
 double LimbGoals::closeness(double distance, double touching, double apart) const {
   return smoothStep((apart - distance / setup_.targetHipHeight) / (apart - touching));
 }
 
-void LimbGoals::setHand(Limb& arm, const std::vector<Surface>& surfaces, const BodyFrame& source,
+// Where touches want the hand, against where it is.
+Vec3 LimbGoals::touchOf(const Limb& arm, const std::vector<Surface>& surfaces, const BodyFrame& source,
                         const BodyFrame& target) const {
   const Vec3 hand = source.positions[arm.sourceEnd];
-  arm.goal = target.positions[arm.end];
-  arm.wanted = setup_.options.reach != 0;
-  if (setup_.options.reach != 0) {
-    const Vec3 pelvis = pelvisOf(setup_.map, MapSide::kSource, source.positions);
-    const Vec3 there = setup_.placeOf(pelvis) + setup_.scale * (hand - pelvis);
-    arm.goal += setup_.options.reach * (there - arm.goal);
-  }
-  if (!setup_.options.contacts) return;
   Vec3 sum = Vec3::Zero();
-  double weights = 0, strongest = 0;
+  double weights = 0, missing = 1;
   for (const Surface& surface : surfaces) {
     const Vec3 begin = source.positions[surface.source[0]], bone = source.positions[surface.source[1]] - begin;
     const double along =
         bone.squaredNorm() > 0 ? std::clamp((hand - begin).dot(bone) / bone.squaredNorm(), 0.0, 1.0) : 0;
     const Vec3 away = setup_.scale * (hand - begin - along * bone);
-    const double weight = closeness(away.norm(), surface.touching, surface.apart);
-    if (weight <= 0) continue;
     const Vec3 from = target.positions[surface.target[0]], to = target.positions[surface.target[1]];
-    sum += weight * weight * (from + along * (to - from) + away - arm.goal);
-    weights += weight * weight;
-    strongest = std::max(strongest, weight);
+    const double weight = closeness(away.norm(), surface.touching, surface.apart);
+    sum += weight * (from + along * (to - from) + away - arm.goal);
+    weights += weight;
+    missing *= 1 - weight;
   }
-  if (!(weights > 0)) return;
-  arm.goal += strongest / weights * sum;
-  arm.wanted = true;
+  return weights > 0 ? Vec3((1 - missing) / weights * sum) : sum;
 }
 
-void LimbGoals::setHands(const BodyFrame& source, const BodyFrame& target) {
-  for (std::size_t a = 0; a < arms_.size(); ++a) setHand(arms_[a], surfaces_[a], source, target);
-  if (!setup_.options.contacts || arms_.size() != 2) return;
-  const Vec3 apart = setup_.scale * (source.positions[arms_[1].sourceEnd] - source.positions[arms_[0].sourceEnd]);
-  const double weight = closeness(apart.norm(), kTouching, kApart);
-  if (weight <= 0) return;
-  const Vec3 change = 0.5 * weight * (apart - (arms_[1].goal - arms_[0].goal));
-  arms_[0].goal -= change;
-  arms_[1].goal += change;
-  arms_[0].wanted = arms_[1].wanted = true;
+// A goal that stretches the arm more than it is comes nearer the closer it gets to what the arm can reach: the elbow
+// else snaps.
+void LimbGoals::softenReach(Limb& arm, const BodyFrame& target) const {
+  const Vec3 shoulder = target.positions[arm.upper], way = arm.goal - shoulder;
+  const double free = std::max((target.positions[arm.end] - shoulder).norm(), kSoftReach * arm.length);
+  const double room = kStretch * arm.length - free, over = way.norm() - free;
+  if (over <= 0) return;
+  const double length = room > 0 ? free + room * (1 - std::exp(-over / room)) : free;
+  arm.goal = shoulder + length / way.norm() * way;
+}
+
+void LimbGoals::setHands(const BodyFrame& source, const BodyFrame& target, double seconds) {
+  const double reach = setup_.options.reach;
+  const Vec3 pelvis = pelvisOf(setup_.map, MapSide::kSource, source.positions), place = setup_.placeOf(pelvis);
+  std::array<Vec3, 2> touches = {Vec3::Zero(), Vec3::Zero()};
+  for (std::size_t a = 0; a < arms_.size(); ++a) {
+    Limb& arm = arms_[a];
+    arm.goal = target.positions[arm.end];
+    arm.wanted = reach != 0;
+    if (arm.wanted) arm.goal += reach * (place + setup_.scale * (source.positions[arm.sourceEnd] - pelvis) - arm.goal);
+    if (setup_.options.contacts) touches[a] = touchOf(arm, surfaces_[a], source, target);
+  }
+  if (!setup_.options.contacts) return;
+  if (arms_.size() == 2) {
+    const Vec3 apart = setup_.scale * (source.positions[arms_[1].sourceEnd] - source.positions[arms_[0].sourceEnd]);
+    const Vec3 change = apart - (arms_[1].goal + touches[1] - arms_[0].goal - touches[0]);
+    const double weight = 0.5 * closeness(apart.norm(), kTouching, kApart);
+    touches[0] -= weight * change;
+    touches[1] += weight * change;
+  }
+  for (std::size_t a = 0; a < arms_.size(); ++a) {
+    Follow& follow = follows_[a];
+    springTo(touches[a], kTouchRate, seconds, follow.value, follow.speed);
+    if (follow.value.norm() < 1e-9 * setup_.targetHipHeight) continue;
+    arms_[a].goal += follow.value;
+    arms_[a].wanted = true;
+    softenReach(arms_[a], target);
+  }
 }
 
 }  // namespace limber

@@ -43,10 +43,10 @@ class LimbGoals {
   void setFeet(const BodyFrame& source, const BodyFrame& target, double seconds);
   // How far the pelvis goes up, metres: so that planted legs keep the bend that their joint angles give them, on
   // average, and down as far as the longest way asks.
-  double pelvisShift(const BodyFrame& target, double seconds);
+  double pelvisShift(const BodyFrame& target) const;
   // Hands that are close to the other hand, the head, the trunk, a thigh or the other forearm in the source are as
   // close in the result, scaled. `reach` as in RetargetOptions.
-  void setHands(const BodyFrame& source, const BodyFrame& target);
+  void setHands(const BodyFrame& source, const BodyFrame& target, double seconds);
 
   std::vector<Leg>& legs() { return legs_; }
   std::vector<Limb>& arms() { return arms_; }
@@ -69,7 +69,10 @@ class LimbGoals {
                   std::vector<Surface>& surfaces) const;
   FootAnchor anchorOf(const Leg& leg, Feeler& feeler, const BodyFrame& source, double seconds) const;
   void forgetAcrossCuts(const BodyFrame& source, double seconds);
-  void setHand(Limb& arm, const std::vector<Surface>& surfaces, const BodyFrame& source, const BodyFrame& target) const;
+  Vec3 touchOf(const Limb& arm, const std::vector<Surface>& surfaces, const BodyFrame& source,
+               const BodyFrame& target) const;
+  double within(double change) const;
+  void softenReach(Limb& arm, const BodyFrame& target) const;
   double bendKeepingShift(const BodyFrame& target) const;
   double closeness(double distance, double touching, double apart) const;
 
@@ -78,9 +81,12 @@ class LimbGoals {
   std::vector<Feeler> feelers_;  // of the legs
   std::vector<Limb> arms_;
   std::vector<std::vector<Surface>> surfaces_;  // for each arm
+  struct Follow {
+    Vec3 value = Vec3::Zero(), speed = Vec3::Zero();
+  };
+  std::array<Follow, 2> follows_;               // the touches of each arm as they come and go
   std::array<std::vector<Vec3>, 2> landmarks_;  // of the frame before, and room for this one's
   std::size_t frames_ = 0;
-  double sinking_ = 0;
   bool active_ = true;
 };
 

@@ -31,12 +31,12 @@ class LimbIkRetargeter : public FrameRetargeter {
     if (!goals_.active()) return;
     if (setup_.options.contacts) {
       goals_.setFeet(from(), to(), seconds);
-      const double up = goals_.pelvisShift(to(), seconds);
+      const double up = goals_.pelvisShift(to());
       if (std::abs(up) > 1e-9 * setup_.targetHipHeight) aligned_.root().movePelvis(Vec3(0, up, 0), target, to());
       std::vector<Leg>& legs = goals_.legs();
       for (std::size_t i = 0; i < legs.size(); ++i) reach(legs[i], solver(legSolvers_, i), true, target);
     }
-    goals_.setHands(from(), to());
+    goals_.setHands(from(), to(), seconds);
     std::vector<Limb>& arms = goals_.arms();
     for (std::size_t i = 0; i < arms.size(); ++i) {
       if (arms[i].wanted) reach(arms[i], solver(armSolvers_, i), false, target);

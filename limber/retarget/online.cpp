@@ -36,10 +36,10 @@ class OnlineRetargeter : public FrameRetargeter {
     BodyFrame& frame = aligned_.targetFrame();
     if (setup_.options.contacts) {
       goals_.setFeet(aligned_.sourceFrame(), frame, seconds);
-      const double up = goals_.pelvisShift(frame, seconds);
+      const double up = goals_.pelvisShift(frame);
       if (std::abs(up) > 1e-9 * setup_.targetHipHeight) aligned_.root().movePelvis(Vec3(0, up, 0), target, frame);
     }
-    goals_.setHands(aligned_.sourceFrame(), frame);
+    goals_.setHands(aligned_.sourceFrame(), frame, seconds);
     std::size_t task = 0;
     for (const Leg& leg : goals_.legs()) setTask(leg, frame, task);
     for (const Limb& arm : goals_.arms()) setTask(arm, frame, task);

@@ -1,7 +1,8 @@
 // When a point of a foot stands on the ground, told as the motion comes, without looking ahead.
 #pragma once
 
-#include <optional>
+#include <array>
+#include <cstddef>
 
 #include "limber/core/types.h"
 
@@ -26,8 +27,14 @@ class PlantDetector {
  private:
   double hipHeight_;
   PlantThresholds thresholds_;
-  std::optional<Vec3> before_;
-  Vec3 velocity_ = Vec3::Zero();  // of the last hundredths of a second
+  struct Seen {
+    Vec3 position = Vec3::Zero();
+    double seconds = 0;  // since the one before
+  };
+  Vec3 velocity() const;
+
+  std::array<Seen, 32> seen_;  // the last frames, in a ring
+  std::size_t count_ = 0;      // of all frames
   bool planted_ = false;
 };
 

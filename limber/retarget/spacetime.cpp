@@ -58,7 +58,7 @@ class Spacetime {
       setup_.targetKinematics.globals(target_.poses[f], to);
       FrameGoals& goals = wanted_.emplace_back();
       if (setup_.options.contacts) goals_.setFeet(from, to, f == 0 ? 0 : target_.frameSeconds);
-      goals_.setHands(from, to);
+      goals_.setHands(from, to, f == 0 ? 0 : target_.frameSeconds);
       for (std::size_t i = 0; i < legs; ++i) {
         const Leg& leg = goals_.legs()[i];
         const Vec3 ankle = to.positions[leg.end], toes = leg.toes ? to.positions[*leg.toes] : ankle;

@@ -1,0 +1,24 @@
+// Critically damped springs: what follows comes to rest where it is drawn to, without swinging over.
+#pragma once
+
+#include <cmath>
+
+namespace limber {
+
+// Draws `value`, which moves at `speed`, towards `wanted` for `seconds`; `rate` in 1/seconds. The exact motion while
+// `wanted` rests, whatever the step; its speed never jumps. No time puts it there, at rest. `Value`: double or a
+// vector.
+template <typename Value>
+void springTo(const Value& wanted, double rate, double seconds, Value& value, Value& speed) {
+  if (seconds <= 0) {
+    value = wanted;
+    speed *= 0;
+    return;
+  }
+  const double fade = std::exp(-rate * seconds);
+  const Value off = value - wanted, pull = speed + rate * off;
+  value = wanted + fade * (off + seconds * pull);
+  speed = fade * (speed - rate * seconds * pull);
+}
+
+}  // namespace limber
