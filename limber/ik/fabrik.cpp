@@ -14,23 +14,31 @@ namespace {
 constexpr Index kPatience = 10;      // iterations after which there must have been
 constexpr double kProgress = 0.999;  // this factor on the cost
 
-// 1 / sqrt(1 + x) for |x| < kNearly, to 1e-7, and the better the smaller x: in a chain that settles, bones have nearly
-// their length, and a root and a quotient would take most of the time.
+// Of the squared length that a bone should have: so near to it, three terms of a series stand in for a root and a
+// quotient, which would take most of the time. They are off by 4e-5 at most, and by the cube of what is left to go as
+// the chain settles.
 constexpr double kNearly = 0.05;
-double inverseRootNearOne(double x) {
-  const double x2 = x * x;
-  return (1 - 0.5 * x) + x2 * ((0.375 - 0.3125 * x) + 0.2734375 * x2);
-}
+constexpr double kFurthestAim = 3;  // times what is left to go
 
-// `joint` moved to the distance `length` from `fixed`, on the line between them.
+// `joint` moved to the distance `length` from `fixed`, on the line between them. Each joint waits for the one before,
+// so what counts is how few operations follow each other: the series is in the square itself.
 inline Vec3 pulled(const Vec3& joint, const Vec3& fixed, const FabrikBone& bone) {
   const Vec3 line = joint - fixed;
   const double squared = line.squaredNorm();
-  const double excess = squared * bone.perSquaredLength - 1;
-  if (std::abs(excess) < kNearly) return fixed + line * inverseRootNearOne(excess);
+  if (std::abs(squared * bone.perSquaredLength - 1) < kNearly) {
+    const double factor = (1.875 + bone.linear * squared) + bone.quadratic * (squared * squared);
+    return fixed + line * factor;
+  }
   // Joints that coincide have no line; any will do, as the next pass moves them again.
   if (!(squared > 1e-300)) return fixed + bone.length * Vec3::UnitX();
   return fixed + line * (bone.length / std::sqrt(squared));
+}
+
+// Each iteration leaves about the same share of what was left to go. So the tip is pulled beyond its target, as far as
+// the next iteration should leave: of 1 + aim times the way a share (1 + aim) * (1 - stays) is gone.
+double nextAim(double aim, const Vec3& before, const Vec3& left) {
+  const double gone = 1 - left.dot(before) / before.squaredNorm();
+  return gone > 0 ? std::clamp((1 + aim) / gone - 1, 0.0, kFurthestAim) : 0;
 }
 
 }  // namespace
@@ -47,14 +55,18 @@ Index fabrikChain(std::span<Vec3> positions, std::span<const FabrikBone> bones, 
     }
     return 1;
   }
-  double checked = (positions[last] - target).squaredNorm();
+  Vec3 left = target - positions[last];
+  double checked = left.squaredNorm(), aim = 0;
   for (Index iteration = 0; iteration < budget; ++iteration) {
-    Vec3 joint = positions[last] = target;
+    Vec3 joint = positions[last] = target + aim * left;
     for (std::size_t i = last; i-- > 1;) positions[i] = joint = pulled(positions[i], joint, bones[i]);
     joint = base;
     for (std::size_t i = 0; i < last; ++i) positions[i + 1] = joint = pulled(positions[i + 1], joint, bones[i]);
-    const double cost = (joint - target).squaredNorm();
+    const Vec3 before = left;
+    left = target - joint;
+    const double cost = left.squaredNorm();
     if (cost <= tolerance * tolerance) return iteration + 1;
+    aim = nextAim(aim, before, left);
     if (iteration % kPatience != kPatience - 1) continue;
     if (!(cost < kProgress * checked)) return iteration + 1;
     checked = cost;
@@ -67,7 +79,10 @@ namespace {
 // A free chain without branches, limits or anything else to mind.
 class FabrikChain : public IkIteration {
  public:
-  explicit FabrikChain(const IkSystem& system) : positions_(system.nodes.size()), bones_(system.nodes.size() - 1) {}
+  explicit FabrikChain(const IkSystem& system)
+      : positions_(system.nodes.size()),
+        offsets_(system.nodes.size(), Vec3::Zero()),
+        bones_(system.nodes.size() - 1, FabrikBone(0)) {}
 
   static bool fits(const IkSystem& system) {
     if (system.effectors.size() != 1 || system.limited() || system.nodes[0].slides) return false;
@@ -79,7 +94,11 @@ class FabrikChain : public IkIteration {
     const IkSystem::Effector& effector = system.effectors[0];
     for (std::size_t n = 0; n < positions_.size(); ++n) {
       positions_[n] = system.positions[n];
-      if (n > 0) bones_[n - 1] = FabrikBone(system.offsets[n].norm());
+      // Mostly the length is that of the last frame.
+      if (n > 0 && system.offsets[n] != offsets_[n]) {
+        offsets_[n] = system.offsets[n];
+        bones_[n - 1] = FabrikBone(offsets_[n].norm());
+      }
     }
     const double tolerance = std::max(0.99 * system.options().tolerance, 1e-9) * effector.reach;
     const Index iterations = fabrikChain(positions_, bones_, effector.target, tolerance, budget);
@@ -94,27 +113,25 @@ class FabrikChain : public IkIteration {
   }
 
  private:
-  // From the base on, the smallest turn of each bone to where the joints have gone.
+  // From the base on, the smallest turn of each bone, as its parent carries it, to where the joints have gone.
   void turnBones(IkSystem& system) const {
     Quat parent = system.parentRotation(0);
     Vec3 position = system.positions[0];
     const std::size_t last = positions_.size() - 1;
     for (std::size_t n = 0; n <= last; ++n) {
-      system.positions[n] = position;
-      Quat global = parent * system.locals[n];
+      Quat& local = system.locals[n];
       if (n < last && bones_[n].length > 0) {
-        const Vec3 bone = global * system.offsets[n + 1];
-        const Vec3 wanted = positions_[n + 1] - position;
-        global = (shortestRotation(bone, wanted) * global).normalized();
-        system.locals[n] = parent.conjugate() * global;
+        const Vec3 wanted = parent.conjugate() * Vec3(positions_[n + 1] - position);
+        local = shortestRotation(local * system.offsets[n + 1], wanted) * local;
+        local.coeffs() *= 1.5 - 0.5 * local.squaredNorm();  // a Newton step to unit length, enough against rounding
       }
-      system.globals[n] = global;
-      if (n < last) position += global * system.offsets[n + 1];
-      parent = global;
+      system.positions[n] = position;
+      parent = system.globals[n] = parent * local;
+      if (n < last) position += parent * system.offsets[n + 1];
     }
   }
 
-  std::vector<Vec3> positions_;
+  std::vector<Vec3> positions_, offsets_;  // offsets_: those of bones_
   std::vector<FabrikBone> bones_;
 };
 
