@@ -9,7 +9,9 @@ const DeformKernels& baselineDeformKernels() {
 }
 
 const DeformKernels& deformKernels() {
+  static const DeformKernels* const avx512 = avx512DeformKernels();
   static const DeformKernels* const avx2 = avx2DeformKernels();
+  if (avx512) return *avx512;
   return avx2 ? *avx2 : baselineDeformKernels();
 }
 

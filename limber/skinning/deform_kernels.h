@@ -1,5 +1,5 @@
-// The inner loops of the deformers, built once for every machine and once for those with AVX2; the same bits come out
-// of both. What is here is plain numbers on purpose: the second build must share no inline function with the first.
+// The inner loops of the deformers, built once for every machine and again for those with AVX2 and AVX-512; the same
+// bits come out of all. What is here is plain numbers on purpose: one build must share no inline function with another.
 #pragma once
 
 #include <cstddef>
@@ -42,5 +42,7 @@ const DeformKernels& deformKernels();
 const DeformKernels& baselineDeformKernels();
 // Null where the machine or the build has no AVX2.
 const DeformKernels* avx2DeformKernels();
+// As well for AVX-512 (F, BW, DQ, VL).
+const DeformKernels* avx512DeformKernels();
 
 }  // namespace limber

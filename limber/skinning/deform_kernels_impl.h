@@ -28,6 +28,26 @@ struct Columns {
   Float8 xy = {}, zOffset = {};
 };
 
+#ifdef __AVX512F__
+
+template <int kSlots>
+LIMBER_INLINE Float16 blendWhole(const float* palette, const Influences<kSlots>& influences) {
+  Float16 sum = {};
+  for (std::uint32_t i = 0; i < influences.count(); ++i) {
+    const Float16 map = influences.weights[i] * loadFloat16(palette + kFloatsPerColumns * influences.joints[i]);
+    sum = i == 0 ? map : sum + map;
+  }
+  return sum;
+}
+
+template <int kSlots>
+LIMBER_INLINE Columns blendColumns(const float* palette, const Influences<kSlots>& influences) {
+  const Float16 sum = blendWhole(palette, influences);
+  return {lowHalf(sum), highHalf(sum)};
+}
+
+#else
+
 template <int kSlots>
 LIMBER_INLINE Columns blendColumns(const float* palette, const Influences<kSlots>& influences) {
   Columns sum;
@@ -40,6 +60,8 @@ LIMBER_INLINE Columns blendColumns(const float* palette, const Influences<kSlots
   }
   return sum;
 }
+
+#endif
 
 // What the map adds to a point, given as {x, x, x, x, y, y, y, y} and {z, z, z, z, 1, 1, 1, 1}.
 LIMBER_INLINE Float4 displacementBy(const Columns& map, Float8 xy, Float8 zOne) {
@@ -143,9 +165,47 @@ LIMBER_INLINE Lanes3 turnedNormals(const AppliedMotions& motions, const Lanes3& 
   return displaced(n, motions.factor * turnOf(motions, n));
 }
 
+#ifdef __AVX512F__
+
+// Positions of four vertices from `v` on, a vertex' whole sum of matrices in one register; each sum in the order of
+// displacementBy.
+LIMBER_INLINE void movePositions(const DeformJob& job, std::size_t v) {
+  const float* from = job.positions + 3 * v;
+  float* to = job.outPositions + 3 * v;
+  const Float8 last = joinFloat4(loadFloat4(from + 8), broadcast(1));
+  // x y z of each, then ones
+  const Float16 points =
+      __builtin_shufflevector(loadFloat8(from), last, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+  const Float16 p0 = __builtin_shufflevector(points, points, 0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 12, 12, 12, 12);
+  const Float16 p1 = __builtin_shufflevector(points, points, 3, 3, 3, 3, 4, 4, 4, 4, 5, 5, 5, 5, 12, 12, 12, 12);
+  const Float16 p2 = __builtin_shufflevector(points, points, 6, 6, 6, 6, 7, 7, 7, 7, 8, 8, 8, 8, 12, 12, 12, 12);
+  const Float16 p3 =
+      __builtin_shufflevector(points, points, 9, 9, 9, 9, 10, 10, 10, 10, 11, 11, 11, 11, 12, 12, 12, 12);
+  const Float16 a = p0 * blendWhole(job.columns, influencesOf<4>(job, v));
+  const Float16 b = p1 * blendWhole(job.columns, influencesOf<4>(job, v + 1));
+  const Float16 c = p2 * blendWhole(job.columns, influencesOf<4>(job, v + 2));
+  const Float16 d = p3 * blendWhole(job.columns, influencesOf<4>(job, v + 3));
+  const Float16 ab = __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7, 16, 17, 18, 19, 20, 21, 22, 23) +
+                     __builtin_shufflevector(a, b, 8, 9, 10, 11, 12, 13, 14, 15, 24, 25, 26, 27, 28, 29, 30, 31);
+  const Float16 cd = __builtin_shufflevector(c, d, 0, 1, 2, 3, 4, 5, 6, 7, 16, 17, 18, 19, 20, 21, 22, 23) +
+                     __builtin_shufflevector(c, d, 8, 9, 10, 11, 12, 13, 14, 15, 24, 25, 26, 27, 28, 29, 30, 31);
+  const Float16 moves = __builtin_shufflevector(ab, cd, 0, 1, 2, 3, 8, 9, 10, 11, 16, 17, 18, 19, 24, 25, 26, 27) +
+                        __builtin_shufflevector(ab, cd, 4, 5, 6, 7, 12, 13, 14, 15, 20, 21, 22, 23, 28, 29, 30, 31);
+  const Float16 move = __builtin_shufflevector(moves, moves, 0, 1, 2, 4, 5, 6, 8, 9, 10, 12, 13, 14, 3, 7, 11, 15);
+  const Float16 moved = move == 0.0f ? points : points + move;
+  const Float8 first = lowHalf(moved);
+  __builtin_memcpy(to, &first, sizeof(first));
+  storeFloat4(lowHalf(highHalf(moved)), to + 8);
+}
+
+#endif
+
 // Four vertices from `v` on: their sums of matrices one by one, normals in lanes.
 template <int kSlots, bool kNormals>
 LIMBER_INLINE void linearBlock(const DeformJob& job, std::size_t v) {
+#ifdef __AVX512F__
+  if (kSlots == 4 && !kNormals) return movePositions(job, v);
+#endif
   const float* from = job.positions + 3 * v;
   Columns maps[4];
   Float4 moves[4];

@@ -49,6 +49,26 @@ LIMBER_INLINE Float4 highHalf(Float8 a) {
   return __builtin_shufflevector(a, a, 4, 5, 6, 7);
 }
 
+#ifdef __AVX512F__
+
+using Float16 = float __attribute__((vector_size(64)));
+
+LIMBER_INLINE Float16 loadFloat16(const float* from) {
+  Float16 result;
+  __builtin_memcpy(&result, from, sizeof(result));
+  return result;
+}
+
+LIMBER_INLINE Float8 lowHalf(Float16 a) {
+  return __builtin_shufflevector(a, a, 0, 1, 2, 3, 4, 5, 6, 7);
+}
+
+LIMBER_INLINE Float8 highHalf(Float16 a) {
+  return __builtin_shufflevector(a, a, 8, 9, 10, 11, 12, 13, 14, 15);
+}
+
+#endif
+
 #else
 
 struct Float8 {

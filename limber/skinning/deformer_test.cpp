@@ -199,9 +199,8 @@ TEST_P(DeformerTest, CentersOfRotationTurnAboutThem) {
   for (Index v = 0; v < s.positions.size(); ++v) expectNear(out.positions[v], centeredOracle(s, v), 5e-5, v);
 }
 
-TEST_P(DeformerTest, BothBuildsOfTheInnerLoopsGiveTheSameBits) {
-  const DeformKernels* avx2 = avx2DeformKernels();
-  if (!avx2) GTEST_SKIP() << "no AVX2 here";
+TEST_P(DeformerTest, EveryBuildOfTheInnerLoopsGivesTheSameBits) {
+  if (!avx2DeformKernels()) GTEST_SKIP() << "no AVX2 here";
   const Scene s = scene();
   const std::size_t count = s.positions.size();
   std::vector<float> columns(kFloatsPerColumns * 9), stretches(columns.size()), motions(kFloatsPerMotion * 9);
@@ -209,12 +208,12 @@ TEST_P(DeformerTest, BothBuildsOfTheInnerLoopsGiveTheSameBits) {
   for (float& x : columns) x = static_cast<float>(random.in(-1, 1));
   for (float& x : stretches) x = static_cast<float>(random.in(-1, 1));
   for (float& x : motions) x = static_cast<float>(random.in(-1, 1));
-  const auto both = [&](DeformKernel kernel) {
+  const auto bits = [&](DeformKernel kernel, bool normals) {
     std::vector<float> out(6 * count);
     const DeformJob job = {s.positions[0].data(),
-                           s.normals[0].data(),
+                           normals ? s.normals[0].data() : nullptr,
                            out.data(),
-                           out.data() + 3 * count,
+                           normals ? out.data() + 3 * count : nullptr,
                            s.weights.joints.data(),
                            s.weights.weights.data(),
                            s.weights.slots,
@@ -226,9 +225,16 @@ TEST_P(DeformerTest, BothBuildsOfTheInnerLoopsGiveTheSameBits) {
     return out;
   };
   const bool four = s.weights.slots == 4;
-  EXPECT_EQ(both(avx2->linear[four][1]), both(baselineDeformKernels().linear[four][1]));
-  EXPECT_EQ(both(avx2->dual[four][1][1]), both(baselineDeformKernels().dual[four][1][1]));
-  EXPECT_EQ(both(avx2->centered[four][1][1]), both(baselineDeformKernels().centered[four][1][1]));
+  const DeformKernels& plain = baselineDeformKernels();
+  for (const DeformKernels* kernels : {avx2DeformKernels(), avx512DeformKernels()}) {
+    if (!kernels) continue;
+    for (const bool normals : {false, true}) {
+      EXPECT_EQ(bits(kernels->linear[four][normals], normals), bits(plain.linear[four][normals], normals)) << normals;
+      EXPECT_EQ(bits(kernels->dual[four][normals][1], normals), bits(plain.dual[four][normals][1], normals)) << normals;
+      EXPECT_EQ(bits(kernels->centered[four][normals][1], normals), bits(plain.centered[four][normals][1], normals))
+          << normals;
+    }
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, DeformerTest,
