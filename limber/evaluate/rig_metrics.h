@@ -21,7 +21,8 @@ struct RigDistances {
   double precision = 0, recall = 0, iou = 0;
 };
 
-// The distance of two joints that play the same bone of a person.
+// The distance of two joints that play the same bone of a person. Where the truth has no upper chest, its chest is
+// compared with that of the predicted rig's chest and upper chest that is nearer.
 struct NamedJointError {
   std::string bone;    // VRM 1.0
   double percent = 0;  // of the truth's height, the extent of its box along the way from feet to head
