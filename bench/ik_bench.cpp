@@ -67,7 +67,8 @@ BENCHMARK_CAPTURE(chain, pseudoInverse, "pseudo-inverse")->Arg(10);
 BENCHMARK_CAPTURE(chain, dls, "dls")->Arg(3)->Arg(10)->Arg(30)->Arg(100);
 BENCHMARK_CAPTURE(chain, sdls, "sdls")->Arg(10);
 
-// Hands, feet and head of 60 joints follow circles at walking pace, 60 frames a second.
+// Hands, feet and head of 60 joints follow circles at walking pace, 60 frames a second. With the root fixed, the head's
+// target is further than the spine is long in 10 of 60 frames: 0.83 is all that can be reached.
 void wholeBody(benchmark::State& state, RootMotion rootMotion) {
   const Skeleton humanoid = practiceHumanoid();
   const std::vector<IkTarget> rest = practiceHumanoidTargets(humanoid);
