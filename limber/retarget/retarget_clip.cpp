@@ -59,6 +59,7 @@ Clip clipOf(const Skeleton& skeleton, const PoseSequence& frames, std::string na
   for (std::size_t f = 0; f < frames.poses.size(); ++f) {
     times.push_back(static_cast<float>(static_cast<double>(f) * frames.frameSeconds));
   }
+  if (times.empty()) return clip;
   for (Index j = 0; j < skeleton.jointCount(); ++j) {
     const Transform& rest = skeleton.joints[j].rest;
     bool turns = false, moves = false;
@@ -80,6 +81,11 @@ Clip clipOf(const Skeleton& skeleton, const PoseSequence& frames, std::string na
       for (const Pose& pose : frames.poses) track.values.push_back(pose.locals[j].translation.cast<float>());
       clip.translations.push_back(std::move(track));
     }
+  }
+  // Someone who stands still stands as long.
+  if (clip.duration() < times.back() && skeleton.jointCount() > 0) {
+    const Eigen::Quaternionf still = frames.poses.front().locals[0].rotation.normalized().cast<float>();
+    clip.rotations.push_back({0, Interpolation::kLinear, times, std::vector(times.size(), still)});
   }
   return clip;
 }

@@ -14,7 +14,8 @@ PoseSequence sampleFrames(const Skeleton& skeleton, const Clip& clip, double fra
 double frameRateOf(const Clip& clip);
 
 // Poses as a clip with a key at each frame: rotations of joints that turn, translations of joints that move away from
-// where they rest. Rotations keep the short way from key to key.
+// where they rest. Rotations keep the short way from key to key. Where nothing moves, the first joint's rotation has
+// the keys, so that the clip lasts as long.
 Clip clipOf(const Skeleton& skeleton, const PoseSequence& frames, std::string name);
 
 // The method over all frames of a motion.
