@@ -57,6 +57,7 @@ Index fabrikChain(std::span<Vec3> positions, std::span<const FabrikBone> bones, 
   }
   Vec3 left = target - positions[last];
   double checked = left.squaredNorm(), aim = 0;
+  bool aims = true;
   for (Index iteration = 0; iteration < budget; ++iteration) {
     Vec3 joint = positions[last] = target + aim * left;
     for (std::size_t i = last; i-- > 1;) positions[i] = joint = pulled(positions[i], joint, bones[i]);
@@ -66,9 +67,14 @@ Index fabrikChain(std::span<Vec3> positions, std::span<const FabrikBone> bones, 
     left = target - joint;
     const double cost = left.squaredNorm();
     if (cost <= tolerance * tolerance) return iteration + 1;
-    aim = nextAim(aim, before, left);
+    aim = aims ? nextAim(aim, before, left) : 0;
+    // Nothing is gained by an aim out of reach: it would straighten the chain.
+    if ((target + aim * left - base).squaredNorm() >= reach * reach) aim = 0;
     if (iteration % kPatience != kPatience - 1) continue;
-    if (!(cost < kProgress * checked)) return iteration + 1;
+    if (!(cost < kProgress * checked)) {
+      if (!aims) return iteration + 1;
+      aims = false;
+    }
     checked = cost;
   }
   return budget;
