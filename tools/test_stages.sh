@@ -160,7 +160,8 @@ studio_in_browser() {
   fi
   local faulty
   faulty=$(shared_data)/broken || faulty=
-  counted node apps/studio/tests/studio_test.mjs dist build/release/limber "$output/studio" $faulty
+  counted node apps/studio/tests/studio_test.mjs dist build/release/limber "$output/studio" $faulty &&
+    counted node apps/studio/tests/beside_test.mjs dist "$output/studio"
 }
 
 studio_in_program() {

@@ -35,12 +35,21 @@ import createEngine from './limber_engine.mjs';
  *             clip: number | null, seconds: number,
  *             match: { part: string, source: string[], target: string[], confidence: number, by: string }[],
  *             limits: { [joint: string]: { type: string, [field: string]: unknown } },
- *             ik: boolean, limited: boolean, targets: { joint: number, position: Vector }[], dragged: number | null,
+ *             limit_outlines: { joint: number, length: number, closed: boolean, rim: Vector[] }[],
+ *             solver: string, ik: boolean, limited: boolean, targets: { joint: number, position: Vector }[], dragged: number | null,
  *             posed: boolean, undo: string | null, redo: string | null,
  *             warnings: { kind: string, message: string, where: string, count: number }[] }} SessionState
  *
+ * @typedef {'rigger' | 'skinning' | 'solver' | 'retargeting'} MethodKind
+ * @typedef {{ [kind in MethodKind]: { name: string, summary: string }[] }} Methods
+ * @typedef {{ joints: number, influences: number, smoothness: number, stretch: number, volume: number,
+ *             target_distance: number | null,
+ *             motion: { bone_direction_degrees: number, end_effector_share: number,
+ *                       sliding_centimetres_per_second: number, penetration_millimetres: number, jerk_ratio: number,
+ *                       contact_agreement: number, [figure: string]: number } | null }} Measures
+ *
  * skin: 16 numbers for each joint, a matrix column by column; state: null after a drag's update
- * and a moment of a clip.
+ * or turn and a moment of a clip.
  * @typedef {{ ok: true, state: SessionState | null, skin: Float32Array } | Failure} StepResult
  * @typedef {{ joint: number, on_handle: boolean, position: Vector, distance: number }} PickHit
  * @typedef {{ positions: Float32Array, normals: Float32Array, uvs: Float32Array, triangles: Uint32Array,
@@ -64,7 +73,15 @@ export async function loadLimber(wasmBinary, listeners = {}) {
       const result = call(engine, engine._limber_rig, [], file, name, JSON.stringify(options));
       return result.ok ? { ok: true, glb: result.bytes, report: result.account } : result;
     },
+    /** The methods there are, by what they do. @type {() => Methods} */
+    methods: () => call(engine, engine._limber_methods, []).account,
     createSession: () => createSession(engine),
+    /** Another session with the same document, to try something in; null during a drag.
+     *  @type {(session: Session) => Session | null} */
+    forkSession: (session) => {
+      const handle = engine._limber_session_fork(session.handle);
+      return handle === 0 ? null : createSession(engine, handle);
+    },
   };
 }
 
@@ -97,13 +114,14 @@ function call(engine, method, leading, ...inputs) {
   return answer;
 }
 
-function createSession(engine) {
-  const handle = engine._limber_session_new();
+function createSession(engine, handle = engine._limber_session_new()) {
   if (handle === 0) throw new RangeError('the engine is out of memory');
   const step = (result) => result.ok
     ? { ok: true, state: 'name' in result.account ? result.account : null, skin: new Float32Array(result.bytes.buffer) }
     : result;
   return {
+    /** The engine's own name for it. */
+    handle,
     /** @type {(file: Uint8Array, name: string) => StepResult} */
     open: (file, name) => step(call(engine, engine._limber_session_open, [handle], file, name)),
     /** Motions of a BVH file or of a model. @type {(file: Uint8Array, name: string) => StepResult} */
@@ -122,6 +140,11 @@ function createSession(engine) {
       const result = call(engine, engine._limber_session_pick, [handle, ...ray.origin, ...ray.direction, slope]);
       return result.ok ? { ok: true, hit: result.account } : result;
     },
+    /** The joints' matrices, as run() gives them. @type {() => { ok: true, skin: Float32Array } | Failure} */
+    skin: () => {
+      const result = call(engine, engine._limber_session_skin, [handle]);
+      return result.ok ? { ok: true, skin: new Float32Array(result.bytes.buffer) } : result;
+    },
     /** For each joint where it stands, and its radius: x, y, z, r.
      *  @type {() => { ok: true, handles: Float32Array } | Failure} */
     handles: () => {
@@ -138,6 +161,12 @@ function createSession(engine) {
     /** What was done since a model was opened, as a list that `limber session replay` runs.
      *  @type {() => { limber_commands: number, commands: Command[] }} */
     record: () => call(engine, engine._limber_session_record, [handle]).account,
+    /** Figures by which methods are compared: limber/session/measures.h.
+     *  @type {() => { ok: true, measures: Measures } | Failure} */
+    measures: () => {
+      const result = call(engine, engine._limber_session_measures, [handle]);
+      return result.ok ? { ok: true, measures: result.account } : result;
+    },
     free: () => engine._limber_session_free(handle),
   };
 }

@@ -9,8 +9,10 @@
 #include "call_result.h"
 #include "limber/asset/read.h"
 #include "limber/asset/write.h"
+#include "limber/ik/ik_solver.h"
 #include "limber/pipeline/auto_rig.h"
 #include "limber/pipeline/report_json.h"
+#include "limber/retarget/retarget_method.h"
 
 namespace {
 
@@ -69,6 +71,24 @@ LIMBER_EXPORT CallResult* limber_rig(const std::uint8_t* file, std::size_t fileS
     limber::Progress progress;
     const limber::AutoRigReport report = limber::autoRig(asset, optionsFrom({options, optionsSize}), progress);
     return {true, limber::writeGlb(asset), limber::dumpReport(limber::toJson(report), -1)};
+  });
+}
+
+// Every table of methods, by what they do.
+LIMBER_EXPORT CallResult* limber_methods() {
+  return guarded({}, []() -> CallResult {
+    const auto list = [](const auto& methods) {
+      Json names = Json::array();
+      for (const auto& method : methods) {
+        names.push_back({{"name", std::string(method.name)}, {"summary", std::string(method.summary)}});
+      }
+      return names;
+    };
+    const Json json = {{"rigger", list(limber::riggerMethods())},
+                       {"skinning", list(limber::weightMethods())},
+                       {"solver", list(limber::ikMethods())},
+                       {"retargeting", list(limber::retargetMethods())}};
+    return {true, {}, limber::dumpReport(json, -1)};
   });
 }
 

@@ -11,6 +11,7 @@
 #include "limber/asset/bvh_write.h"
 #include "limber/asset/json_text.h"
 #include "limber/asset/mesh_export.h"
+#include "limber/session/measures.h"
 #include "limber/session/session.h"
 #include "limber/session/session_state.h"
 #include "limber/skeleton/keyframes.h"
@@ -137,8 +138,9 @@ CallResult modelOf(const limber::SessionState& state) {
 
 // A drag's updates and a clip's moments come once a frame and change nothing but the pose.
 CallResult stateAfter(const limber::Session& session, const limber::Command& command) {
-  const bool frame =
-      std::holds_alternative<limber::UpdateDrag>(command) || std::holds_alternative<limber::SetTime>(command);
+  const bool frame = std::holds_alternative<limber::UpdateDrag>(command) ||
+                     std::holds_alternative<limber::TurnDrag>(command) ||
+                     std::holds_alternative<limber::SetTime>(command);
   return {true, bytesOf(skinArray(session)), frame ? "{}" : textOf(limber::sessionState(session))};
 }
 
@@ -180,6 +182,14 @@ Bytes exported(const limber::Session& session, std::string_view format) {
 
 LIMBER_EXPORT SessionHandle* limber_session_new() {
   return new (std::nothrow) SessionHandle;
+}
+// Null where a joint is being dragged, where nothing is open, and without memory.
+LIMBER_EXPORT SessionHandle* limber_session_fork(const SessionHandle* handle) {
+  try {
+    return new SessionHandle{handle->session.fork()};
+  } catch (const std::exception&) {
+    return nullptr;
+  }
 }
 LIMBER_EXPORT void limber_session_free(SessionHandle* handle) {
   delete handle;
@@ -229,6 +239,10 @@ LIMBER_EXPORT CallResult* limber_session_pick(const SessionHandle* handle, doubl
   });
 }
 
+LIMBER_EXPORT CallResult* limber_session_skin(const SessionHandle* handle) {
+  return guarded({}, [&]() -> CallResult { return {true, bytesOf(skinArray(handle->session)), "{}"}; });
+}
+
 LIMBER_EXPORT CallResult* limber_session_handles(const SessionHandle* handle) {
   return guarded({}, [&]() -> CallResult { return {true, bytesOf(handleArray(handle->session.state())), "{}"}; });
 }
@@ -239,6 +253,12 @@ LIMBER_EXPORT CallResult* limber_session_model(const SessionHandle* handle) {
 
 LIMBER_EXPORT CallResult* limber_session_export(const SessionHandle* handle, const char* format, std::size_t size) {
   return guarded({}, [&]() -> CallResult { return {true, exported(handle->session, {format, size}), "{}"}; });
+}
+
+LIMBER_EXPORT CallResult* limber_session_measures(const SessionHandle* handle) {
+  return guarded({}, [&]() -> CallResult {
+    return {true, {}, textOf(limber::measuresToJson(limber::measureSession(handle->session)))};
+  });
 }
 
 LIMBER_EXPORT CallResult* limber_session_record(const SessionHandle* handle) {

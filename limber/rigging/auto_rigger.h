@@ -1,6 +1,7 @@
 // What every automatic rigger is: a mesh goes in, a skeleton comes out. One table lists them by name.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -20,8 +21,18 @@ struct JointPin {
   Vec3 place = Vec3::Zero();  // in the space of the mesh
 };
 
+class SphereMesh;
+
+// What a rigger found out about a mesh and can use again for the same mesh: filled by one call, read by the next.
+struct RigMemory {
+  std::shared_ptr<const SphereMesh> spheres;
+};
+
 struct RigOptions {
   std::optional<Index> handles;  // joints wanted, 1 to #V; none: the best suggested count
+
+  // Shared by calls for one and the same mesh; null: everything is worked out anew. The answers are the same.
+  std::shared_ptr<RigMemory> memory = {};
 
   // For riggers that fit a named skeleton.
   std::string templateName = "auto";              // auto: the one that fits best

@@ -120,8 +120,12 @@ Skeleton handleSkeleton(const SphereMesh& spheres, Index count) {
 
 AutoRig rigWithSphereMesh(const TriMesh& mesh, const RigOptions& options, Progress& progress) {
   checkHandles(mesh, options);
-  progress.step("collapse");
-  const SphereMesh spheres = SphereMesh::build(mesh, progress);
+  const std::shared_ptr<RigMemory> memory = options.memory ? options.memory : std::make_shared<RigMemory>();
+  if (!memory->spheres || memory->spheres->vertexCount() != mesh.vertexCount()) {
+    progress.step("collapse");
+    memory->spheres = std::make_shared<const SphereMesh>(SphereMesh::build(mesh, progress));
+  }
+  const SphereMesh& spheres = *memory->spheres;
   AutoRig rig;
   progress.step("handles");
   rig.suggestions = suggestHandles(spheres);

@@ -36,6 +36,24 @@ TEST(SphereMeshRigger, MakesASoundSkeletonOfTheCountAskedFor) {
   }
 }
 
+TEST(SphereMeshRigger, WhatIsRememberedGivesTheSame) {
+  const TriMesh mesh = testing::blockBiped(1);
+  RigOptions options;
+  options.memory = std::make_shared<RigMemory>();
+  for (const Index count : {20u, 7u, 20u, 33u}) {
+    options.handles = count;
+    Progress progress;
+    const Skeleton known = rigWithSphereMesh(mesh, options, progress).skeleton, fresh = rigged(mesh, count).skeleton;
+    ASSERT_EQ(known.jointCount(), fresh.jointCount());
+    for (Index j = 0; j < known.jointCount(); ++j) {
+      EXPECT_EQ(known.joints[j].name, fresh.joints[j].name);
+      EXPECT_EQ(known.joints[j].rest.translation, fresh.joints[j].rest.translation);
+    }
+  }
+  ASSERT_TRUE(options.memory->spheres);
+  EXPECT_EQ(options.memory->spheres->vertexCount(), mesh.vertexCount());
+}
+
 TEST(SphereMeshRigger, JointsStandAtTheSpheres) {
   const TriMesh mesh = testing::blockBiped(1);
   Progress progress;

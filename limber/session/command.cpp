@@ -20,13 +20,13 @@ namespace {
 constexpr int kVersion = 1;
 
 // In the order of the variant.
-constexpr std::array<std::string_view, 32> kNames = {
-    "open_sample",  "open_file",   "set_handles", "choose_methods", "begin_drag",  "update_drag",
-    "end_drag",     "cancel_drag", "turn_joint",  "move_joint",     "set_ik",      "set_target",
-    "clear_target", "set_limits",  "reset_joint", "reset_pose",     "mirror_pose", "set_rest_pose",
-    "rename_joint", "add_motion",  "retarget",    "add_clip",       "remove_clip", "rename_clip",
-    "choose_clip",  "set_time",    "set_key",     "move_key",       "delete_key",  "set_interpolation",
-    "undo",         "redo"};
+constexpr std::array<std::string_view, 33> kNames = {
+    "open_sample",       "open_file",    "set_handles", "choose_methods", "begin_drag", "update_drag",
+    "turn_drag",         "end_drag",     "cancel_drag", "turn_joint",     "move_joint", "set_ik",
+    "set_target",        "clear_target", "set_limits",  "reset_joint",    "reset_pose", "mirror_pose",
+    "set_rest_pose",     "rename_joint", "add_motion",  "retarget",       "add_clip",   "remove_clip",
+    "rename_clip",       "choose_clip",  "set_time",    "set_key",        "move_key",   "delete_key",
+    "set_interpolation", "undo",         "redo"};
 static_assert(kNames.size() == std::variant_size_v<Command>);
 
 // The fields of each command, said once for reading and writing.
@@ -62,6 +62,11 @@ void visitFields(Visitor& field, UpdateDrag& c) {
   field("view", c.view);
 }
 template <class Visitor>
+void visitFields(Visitor& field, TurnDrag& c) {
+  field("axis", c.axis);
+  field("degrees", c.degrees);
+}
+template <class Visitor>
 void visitFields(Visitor& field, TurnJoint& c) {
   field("joint", c.joint);
   field("axis", c.axis);
@@ -75,6 +80,7 @@ void visitFields(Visitor& field, MoveJoint& c) {
 template <class Visitor>
 void visitFields(Visitor& field, SetIk& c) {
   field("on", c.on);
+  field("solver", c.solver);
 }
 template <class Visitor>
 void visitFields(Visitor& field, SetTarget& c) {

@@ -54,6 +54,11 @@ struct UpdateDrag {
   Ray ray;
   Vec3 view = -Vec3::UnitZ();
 };
+// The dragged joint turns about its own origin, by degrees about an axis; counts from where the drag began, too.
+struct TurnDrag {
+  Vec3 axis = Vec3::UnitY();
+  double degrees = 0;
+};
 struct EndDrag {};
 struct CancelDrag {};
 
@@ -71,6 +76,7 @@ struct MoveJoint {
 // With inverse kinematics on, a joint that is moved takes its limb along, and joints with a target hold on to it.
 struct SetIk {
   bool on = true;
+  std::string solver = "whole-body";  // of ikMethods()
 };
 struct SetTarget {
   std::string joint;
@@ -149,10 +155,10 @@ struct Undo {};
 struct Redo {};
 
 using Command =
-    std::variant<OpenSample, OpenFile, SetHandles, ChooseMethods, BeginDrag, UpdateDrag, EndDrag, CancelDrag, TurnJoint,
-                 MoveJoint, SetIk, SetTarget, ClearTarget, SetLimits, ResetJoint, ResetPose, MirrorPose, SetRestPose,
-                 RenameJoint, AddMotion, RetargetMotion, AddClip, RemoveClip, RenameClip, ChooseClip, SetTime, SetKey,
-                 MoveKey, DeleteKey, SetInterpolation, Undo, Redo>;
+    std::variant<OpenSample, OpenFile, SetHandles, ChooseMethods, BeginDrag, UpdateDrag, TurnDrag, EndDrag, CancelDrag,
+                 TurnJoint, MoveJoint, SetIk, SetTarget, ClearTarget, SetLimits, ResetJoint, ResetPose, MirrorPose,
+                 SetRestPose, RenameJoint, AddMotion, RetargetMotion, AddClip, RemoveClip, RenameClip, ChooseClip,
+                 SetTime, SetKey, MoveKey, DeleteKey, SetInterpolation, Undo, Redo>;
 
 // "set_handles", as in JSON.
 std::string_view commandName(const Command& command);

@@ -21,11 +21,12 @@ std::vector<Command> oneOfEach() {
           ChooseMethods{"other", "another"},
           BeginDrag{"hand.L", DragMode::kTurn, kRay, {0, 0.5, -1}},
           UpdateDrag{kRay, {1, 0, -1}},
+          TurnDrag{{0, 2, 1}, -35.5},
           EndDrag{},
           CancelDrag{},
           TurnJoint{"head", {0, 1.0 / 3, 1}, 12.5},
           MoveJoint{"hips", {0.1, -0.2, 0.3}},
-          SetIk{false},
+          SetIk{false, "fabrik"},
           SetTarget{"foot.R", {1e-17, 2, 3}},
           ClearTarget{"foot.R"},
           SetLimits{R"({"limber_limits": 1, "joints": {}})"},
@@ -60,16 +61,18 @@ TEST(Command, JsonKeepsEveryCommandAndEveryField) {
   // Against the values themselves, where reading and writing could agree on a mistake.
   EXPECT_EQ(std::get<BeginDrag>(back[4]).ray.direction, kRay.direction);
   EXPECT_EQ(std::get<BeginDrag>(back[4]).mode, DragMode::kTurn);
-  EXPECT_EQ(std::get<TurnJoint>(back[8]).axis.y(), 1.0 / 3);
-  EXPECT_EQ(std::get<SetTarget>(back[11]).position, Vec3(1e-17, 2, 3));
-  EXPECT_EQ(std::get<MirrorPose>(back[16]).from, MirrorFrom::kRight);
-  EXPECT_FALSE(std::get<SetIk>(back[10]).on);
-  EXPECT_EQ(std::get<RenameJoint>(back[18]).name, "skull");
-  EXPECT_EQ(std::get<RetargetMotion>(back[20]).clip, "fast");
-  EXPECT_EQ(std::get<RetargetMotion>(back[20]).reach, 0.25);
-  EXPECT_FALSE(std::get<RetargetMotion>(back[20]).contacts);
-  EXPECT_EQ(std::get<MoveKey>(back[27]).to, 0.75);
-  EXPECT_EQ(std::get<SetInterpolation>(back[29]).interpolation, Interpolation::kCubic);
+  EXPECT_EQ(std::get<TurnDrag>(back[6]).degrees, -35.5);
+  EXPECT_EQ(std::get<SetIk>(back[11]).solver, "fabrik");
+  EXPECT_EQ(std::get<TurnJoint>(back[9]).axis.y(), 1.0 / 3);
+  EXPECT_EQ(std::get<SetTarget>(back[12]).position, Vec3(1e-17, 2, 3));
+  EXPECT_EQ(std::get<MirrorPose>(back[17]).from, MirrorFrom::kRight);
+  EXPECT_FALSE(std::get<SetIk>(back[11]).on);
+  EXPECT_EQ(std::get<RenameJoint>(back[19]).name, "skull");
+  EXPECT_EQ(std::get<RetargetMotion>(back[21]).clip, "fast");
+  EXPECT_EQ(std::get<RetargetMotion>(back[21]).reach, 0.25);
+  EXPECT_FALSE(std::get<RetargetMotion>(back[21]).contacts);
+  EXPECT_EQ(std::get<MoveKey>(back[28]).to, 0.75);
+  EXPECT_EQ(std::get<SetInterpolation>(back[30]).interpolation, Interpolation::kCubic);
 }
 
 TEST(Command, FieldsThatAreAbsentKeepTheirDefault) {

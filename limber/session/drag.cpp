@@ -43,7 +43,7 @@ Drag::Drag(DragScene scene, Index joint, DragMode mode, const Ray& ray, const Ve
       depth_((globals_[joint].translation() - ray.origin).dot(unit(view, "the view"))),
       targets_(targetsOf(scene_, joint, mode == DragMode::kMove && limbBase(*scene_.skeleton, joint),
                          globals_[joint].translation())),
-      pull_(*scene_.skeleton, targets_, scene_.limits),
+      pull_(*scene_.skeleton, targets_, scene_.limits, scene_.solver),
       pullsJoint_(!targets_.empty() && targets_.front().joint == joint) {
   // A ray that misses the plane at first takes the joint by its middle.
   gripAtStart_ = grip(ray, view).value_or(globals_[joint].translation());
@@ -60,6 +60,14 @@ std::optional<Pose> Drag::at(const Ray& ray, const Vec3& view) {
   } else {
     slide(*now - gripAtStart_, pose);
   }
+  pull_.solve(pose, targets_);
+  return pose;
+}
+
+Pose Drag::turned(const Vec3& axis, double degrees) {
+  Pose pose = scene_.start;
+  const Quat rotation(Eigen::AngleAxisd(degrees * kPi / 180, unit(axis, "the axis")));
+  swing(joint_, globals_[joint_].translation(), rotation, pose);
   pull_.solve(pose, targets_);
   return pose;
 }

@@ -17,6 +17,7 @@ struct DragScene {
   bool ik = false;
   std::vector<HeldTarget> held;  // joints that hold on to a place, with inverse kinematics on
   double rollRadius = 1;         // metres: a root that the pointer moves this far rolls by one radian
+  std::string_view solver = kLimbSolver;
 };
 
 class Drag {
@@ -28,6 +29,10 @@ class Drag {
   // the plane in which the joint is dragged. Errors as of the constructor. Cost: that of a pose and, with inverse
   // kinematics, of a solve: well under a millisecond at 100 joints.
   std::optional<Pose> at(const Ray& ray, const Vec3& view);
+
+  // The pose with the joint turned about its own origin, from how it stood at the start. Throws Error kBadArgument for
+  // an axis without direction.
+  Pose turned(const Vec3& axis, double degrees);
 
   Index joint() const { return joint_; }
   const Pose& start() const { return scene_.start; }

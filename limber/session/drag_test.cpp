@@ -38,6 +38,20 @@ TEST(Drag, MoveSlidesInThePlaneThatFacesTheCamera) {
   EXPECT_LT((at(skeleton, pose, kElbow) - at(skeleton, restPose(skeleton), kElbow)).norm(), 1e-12);
 }
 
+TEST(Drag, ATurnAboutTheJointsOwnPlaceCountsFromTheStart) {
+  const Skeleton skeleton = twoArmedBody(BoneShape::kSegment);
+  const Pose rest = restPose(skeleton);
+  Drag drag(sceneOf(skeleton), kElbow, DragMode::kTurn, through(at(skeleton, rest, kElbow)), kView);
+  const Vec3 axis = Vec3(1, 2, -1);
+  drag.turned(Vec3::UnitX(), 70);
+  const Pose pose = drag.turned(axis, 40);
+  const Affine before = poseGlobals(skeleton, rest)[kElbow], after = poseGlobals(skeleton, pose)[kElbow];
+  EXPECT_LT((after.translation() - before.translation()).norm(), 1e-12);
+  const Quat turn(Mat3(after.linear() * before.linear().transpose()));
+  EXPECT_LT(angleBetween(turn, Quat(Eigen::AngleAxisd(40 * EIGEN_PI / 180, axis.normalized()))), 1e-9);
+  EXPECT_THROW(drag.turned(Vec3::Zero(), 10), Error);
+}
+
 TEST(Drag, ACameraThatWalksPullsTheJointAlong) {
   const Skeleton skeleton = twoArmedBody(BoneShape::kSphere);
   const Vec3 hand = at(skeleton, restPose(skeleton), kHand), step(0, 0, -0.5);

@@ -18,7 +18,8 @@ std::optional<Index> limbBase(const Skeleton& skeleton, Index joint) {
   return base;
 }
 
-LimbPull::LimbPull(const Skeleton& skeleton, std::span<const HeldTarget> targets, const JointLimits* limits) {
+LimbPull::LimbPull(const Skeleton& skeleton, std::span<const HeldTarget> targets, const JointLimits* limits,
+                   std::string_view solver) {
   for (std::size_t t = 0; t < targets.size(); ++t) {
     IkTarget wanted;
     wanted.joint = targets[t].joint;
@@ -32,7 +33,7 @@ LimbPull::LimbPull(const Skeleton& skeleton, std::span<const HeldTarget> targets
   IkOptions options;
   options.rootMotion = RootMotion::kFixed;
   options.restarts = 0;  // another attempt might find another pose than the frame before
-  solver_.emplace(findIkMethod("whole-body"), skeleton, wanted_, limits, options);
+  solver_.emplace(findIkMethod(solver), skeleton, wanted_, limits, options);
 }
 
 void LimbPull::solve(Pose& pose, std::span<const HeldTarget> targets) {

@@ -3,11 +3,14 @@
 
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "limber/ik/ik_solver.h"
 
 namespace limber {
+
+inline constexpr std::string_view kLimbSolver = "whole-body";
 
 struct HeldTarget {
   Index joint = 0;
@@ -21,8 +24,10 @@ std::optional<Index> limbBase(const Skeleton& skeleton, Index joint);
 // Several joints pulled at once, each by its limb. Set up once, then solved frame after frame.
 class LimbPull {
  public:
-  // Joints without a limb are passed over. `skeleton` and `limits` (none: null) must outlive it.
-  LimbPull(const Skeleton& skeleton, std::span<const HeldTarget> targets, const JointLimits* limits);
+  // Joints without a limb are passed over. `skeleton` and `limits` (none: null) must outlive it. Throws Error
+  // kBadArgument for a `solver` that is none of ikMethods(), or that refuses these limbs.
+  LimbPull(const Skeleton& skeleton, std::span<const HeldTarget> targets, const JointLimits* limits,
+           std::string_view solver = kLimbSolver);
 
   // Whether any joint has a limb to turn.
   bool any() const { return solver_.has_value(); }

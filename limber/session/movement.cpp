@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include <fmt/format.h>
 
 #include "limber/core/error.h"
 #include "limber/retarget/retarget_clip.h"
 #include "limber/retarget/retarget_method.h"
+#include "limber/session/pose_transfer.h"
 #include "limber/skeleton/keyframes.h"
 
 namespace limber {
@@ -56,6 +58,7 @@ void editChosen(Movement& movement, const Edit& edit) {
   auto clip = std::make_shared<Clip>(*chosen.clip);
   edit(*clip);
   chosen.clip = std::move(clip);
+  chosen.authored.reset();
 }
 
 std::shared_ptr<const Motion> requireMotion(const Movement& movement, const std::string& name) {
@@ -71,6 +74,39 @@ std::size_t clipOfMotion(const Motion& motion, const std::string& name) {
     if (name.empty() || motion.clips[c].name == name) return c;
   }
   refuse(fmt::format("the motion '{}' has no clip called '{}'", motion.name, name));
+}
+
+Clip retargeted(const ClipSource& source, const Skeleton& skeleton) {
+  const Motion& motion = *source.motion;
+  const Clip& clip = motion.clips[source.clip];
+  RetargetOptions options;
+  options.reach = source.command.reach;
+  options.contacts = source.command.contacts;
+  const double rate = motion.clips.size() == 1 ? motion.framesPerSecond : frameRateOf(clip);
+  return retargetClip(findRetargetMethod(source.command.method), motion.skeleton, clip, skeleton, source.map, options,
+                      rate);
+}
+
+// The same source for other joints. A map made by hand holds where all its joints are there still, else joints are
+// matched anew; none where they do not match.
+std::optional<ClipSource> sourceOn(const AuthoredClip& authored, const Skeleton& skeleton) {
+  if (!authored.source) return std::nullopt;
+  ClipSource source = *authored.source;
+  const Skeleton& moving = source.motion->skeleton;
+  try {
+    if (!source.command.map.empty()) {
+      source.map = skeletonMapFromJson(source.command.map, moving, skeleton);
+      return source;
+    }
+  } catch (const Error&) {
+    source.command.map.clear();
+  }
+  try {
+    source.map = matchSkeletons(moving, skeleton);
+    return source;
+  } catch (const Error&) {
+    return std::nullopt;
+  }
 }
 
 }  // namespace
@@ -106,15 +142,9 @@ void retargetMotion(Movement& movement, const Skeleton& skeleton, const Retarget
   const Motion& motion = *source.motion;
   source.clip = clipOfMotion(motion, command.clip);
   if (!(command.reach >= 0 && command.reach <= 1)) refuse("the reach is not between 0 and 1");
-  const RetargetMethod& method = findRetargetMethod(command.method);
   source.map = command.map.empty() ? matchSkeletons(motion.skeleton, skeleton)
                                    : skeletonMapFromJson(command.map, motion.skeleton, skeleton);
-  RetargetOptions options;
-  options.reach = command.reach;
-  options.contacts = command.contacts;
-  const Clip& clip = motion.clips[source.clip];
-  const double rate = motion.clips.size() == 1 ? motion.framesPerSecond : frameRateOf(clip);
-  Clip made = retargetClip(method, motion.skeleton, clip, skeleton, source.map, options, rate);
+  Clip made = retargeted(source, skeleton);
 
   for (std::size_t c = 0; c < movement.clips.size(); ++c) {
     const std::optional<ClipSource>& known = movement.clips[c].source;
@@ -125,11 +155,41 @@ void retargetMotion(Movement& movement, const Skeleton& skeleton, const Retarget
     movement.chosen = c;
     return;
   }
-  made.name = freeName(motion.clips.size() == 1 || clip.name.empty() ? motion.name : clip.name,
+  const std::string& ofClip = motion.clips[source.clip].name;
+  made.name = freeName(motion.clips.size() == 1 || ofClip.empty() ? motion.name : ofClip,
                        [&](const std::string& name) { return findClip(movement, name).has_value(); });
   movement.clips.push_back({std::make_shared<const Clip>(std::move(made)), std::move(source)});
   movement.chosen = movement.clips.size() - 1;
   movement.seconds = 0;
+}
+
+void moveToRig(Movement& movement, const std::shared_ptr<const RiggedModel>& from,
+               const std::shared_ptr<const RiggedModel>& to, Progress& progress) {
+  std::map<const RiggedModel*, PoseTransfer> transfers;
+  for (std::size_t c = 0; c < movement.clips.size(); ++c) {
+    progress.update(static_cast<double>(c) / static_cast<double>(movement.clips.size()));
+    SessionClip& entry = movement.clips[c];
+    if (!entry.authored) {
+      entry.authored = std::make_shared<const AuthoredClip>(AuthoredClip{entry.clip, entry.source, from});
+    }
+    const AuthoredClip& authored = *entry.authored;
+    const std::string name = entry.clip->name;
+    Clip made;
+    if (authored.rig == to) {
+      made = *authored.clip;
+      entry.source = authored.source;
+    } else if (std::optional<ClipSource> source = sourceOn(authored, to->skeleton())) {
+      made = retargeted(*source, to->skeleton());
+      entry.source = std::move(source);
+    } else {
+      const auto transfer = transfers.try_emplace(authored.rig.get(), *authored.rig, *to).first;
+      made = transferClip(transfer->second, *authored.rig, *authored.clip, *to);
+      entry.source.reset();
+    }
+    made.name = name;
+    entry.clip = std::make_shared<const Clip>(std::move(made));
+    if (authored.rig == to) entry.authored.reset();
+  }
 }
 
 void addClip(Movement& movement, const std::string& name) {

@@ -8,6 +8,7 @@
 
 #include "limber/retarget/skeleton_map.h"
 #include "limber/session/command.h"
+#include "limber/session/rigged_model.h"
 #include "limber/skeleton/motion.h"
 
 namespace limber {
@@ -20,10 +21,19 @@ struct ClipSource {
   SkeletonMap map;
 };
 
+// A clip as it was last edited, on the rig that it was edited on: other rigs start from it, so that going there and
+// back again loses nothing.
+struct AuthoredClip {
+  std::shared_ptr<const Clip> clip;
+  std::optional<ClipSource> source;
+  std::shared_ptr<const RiggedModel> rig;
+};
+
 // Copies share the clip, so that each undo step is one.
 struct SessionClip {
   std::shared_ptr<const Clip> clip;  // over the joints of the rig; its name is unique in the session
   std::optional<ClipSource> source;
+  std::shared_ptr<const AuthoredClip> authored = {};  // null: on the rig that there is
 };
 
 struct Movement {
@@ -48,6 +58,10 @@ Pose shownPose(const Movement& movement, const Skeleton& skeleton);
 // taken, a key where there is none, nothing chosen) and changes nothing.
 
 void addMotion(Movement& movement, Motion motion);
+// The clips for another rig of the same model: those of motions are retargeted anew where the motion fits the new
+// joints, the keys of all others are transferred (transferClip). The chosen clip and the moment stay.
+void moveToRig(Movement& movement, const std::shared_ptr<const RiggedModel>& from,
+               const std::shared_ptr<const RiggedModel>& to, Progress& progress);
 // Makes the clip, or makes it anew where that clip of that motion is on the model already, and chooses it. Throws as
 // matchSkeletons and skeletonMapFromJson do.
 void retargetMotion(Movement& movement, const Skeleton& skeleton, const RetargetMotion& command);

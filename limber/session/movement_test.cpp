@@ -227,6 +227,58 @@ TEST(Movement, ThePoseBecomesTheRestPose) {
   EXPECT_EQ(session.state().rig->skeleton().joints.back().name, name);
 }
 
+TEST(Movement, KeysGoOverToOtherHandlesAndBack) {
+  Session session(movingFiles);
+  Progress progress;
+  session.open(testing::bipedGlb(), "biped.glb", progress);
+  act(session, SetHandles{20});
+  const std::string last = session.state().rig->skeleton().joints.back().name;
+  act(session, AddClip{"wave"});
+  act(session, SetKey{});
+  act(session, SetTime{1});
+  act(session, TurnJoint{last, Vec3::UnitZ(), 50});
+  act(session, MoveJoint{session.state().rig->skeleton().joints[0].name, {0, 0.2, 0}});
+  act(session, SetKey{});
+  const std::vector<Vec3f> posed = posedPositions(*session.state().rig, session.state().pose);
+  const auto clip = session.state().movement.clips[0].clip;
+  const auto gap = [&] {
+    const std::vector<Vec3f> now = posedPositions(*session.state().rig, session.state().pose);
+    double sum = 0;
+    for (std::size_t v = 0; v < now.size(); ++v) sum += (now[v] - posed[v]).norm();
+    return sum / static_cast<double>(now.size());
+  };
+  act(session, SetHandles{30});
+  ASSERT_EQ(session.state().movement.clips.size(), 1u);
+  EXPECT_EQ(session.state().movement.clip()->name, "wave");
+  EXPECT_THAT(keyTimes(*session.state().movement.clip()), ElementsAre(0, 1));
+  act(session, SetTime{0});
+  EXPECT_GT(gap(), 0.15);
+  act(session, SetTime{1});
+  EXPECT_LT(gap(), 0.02);
+  act(session, SetHandles{20});
+  EXPECT_EQ(session.state().movement.clips[0].clip->rotations.size(), clip->rotations.size());
+  for (std::size_t t = 0; t < clip->rotations.size(); ++t) {
+    EXPECT_EQ(session.state().movement.clips[0].clip->rotations[t].values.back().coeffs(),
+              clip->rotations[t].values.back().coeffs());
+  }
+}
+
+TEST(Movement, AMotionIsRetargetedAnewForOtherJointsWhereItFits) {
+  Session session = walking();
+  act(session, SetTime{0.4});
+  const std::vector<Vec3f> posed = posedPositions(*session.state().rig, session.state().pose);
+  const std::shared_ptr<const Clip> before = session.state().movement.clips[0].clip;
+  act(session, SetHandles{40});
+  ASSERT_EQ(session.state().movement.clips.size(), 1u);
+  EXPECT_EQ(session.state().movement.seconds, 0.4);
+  EXPECT_NO_THROW(checkClip(*session.state().movement.clip(), session.state().rig->skeleton()));
+  EXPECT_EQ(session.state().movement.clip()->name, "walk");
+  EXPECT_NEAR(session.state().movement.clip()->duration(), before->duration(), 1e-3);
+  sessionState(session);  // the match, if there is one, names joints that there are
+  act(session, Undo{});
+  EXPECT_EQ(session.state().movement.clips[0].clip, before);
+}
+
 TEST(Movement, RenamedJointsKeepTheirLimits) {
   Session session = person();
   act(session, SetLimits{R"({"limber_limits": 1, "joints": {"leftLowerLeg": {"type": "hinge", "x": [0, 30]}}})"});

@@ -47,7 +47,7 @@ double longestSide(const RiggedModel& rig) {
 // Joints that hold on to a place go back there.
 void holdTargets(SessionState& state) {
   if (!state.ik || state.targets.empty()) return;
-  LimbPull pull(state.rig->skeleton(), state.targets, state.limits.get());
+  LimbPull pull(state.rig->skeleton(), state.targets, state.limits.get(), state.solver);
   pull.solve(state.pose, state.targets);
 }
 
@@ -57,22 +57,25 @@ void editPoseOf(SessionState& state, const PoseEdits& edits) {
   authored(state);
 }
 
-// Targets, limits and clips speak of joints, so they go with the rig that had those.
-void setRig(SessionState& state, std::shared_ptr<const RiggedModel> rig) {
+// Targets and limits speak of joints, so they go with the rig that had those; clips come along.
+void setRig(SessionState& state, std::shared_ptr<const RiggedModel> rig, Progress& progress) {
   if (sameRig(*rig, *state.authoredRig)) rig = state.authoredRig;
+  for (const SessionClip& clip : state.movement.clips) {
+    if (rig != state.authoredRig && clip.authored && rig != clip.authored->rig && sameRig(*rig, *clip.authored->rig))
+      rig = clip.authored->rig;
+  }
   state.pose =
       rig == state.authoredRig ? state.authoredPose : transferPose(*state.authoredRig, state.authoredPose, *rig);
+  moveToRig(state.movement, state.rig, rig, progress);
   state.rig = std::move(rig);
   state.targets.clear();
   setLimits(state, {});
-  const std::vector<std::shared_ptr<const Motion>> motions = std::move(state.movement.motions);
-  state.movement = movementOf(state.rig->clips);
-  state.movement.motions = motions;
 }
 
 // The model as it is becomes the one that was opened.
 void adopt(SessionState& state, Asset asset) {
   state.base = std::make_shared<const Asset>(std::move(asset));
+  state.memory = std::make_shared<RigMemory>();
   state.rig = openRiggedModel(*state.base);
   state.pose = state.rig->home;
 }
@@ -144,13 +147,15 @@ struct Session::Runner {
     options.skinning = next.skinning;
     options.rig.handles = handles;
     options.existingRig = hasRig(*next.base) ? ExistingRig::kReplace : ExistingRig::kRefuse;
-    setRig(next, makeRiggedModel(*next.base, options, progress));
+    options.rig.memory = next.memory;
+    setRig(next, makeRiggedModel(*next.base, options, progress), progress);
   }
 
   void operator()(const BeginDrag& c) const {
     const SessionState now = state();
     const Index joint = requireJoint(now, c.joint);
     DragScene scene{&now.rig->skeleton(), now.limits.get(), now.pose, now.ik, now.targets, 2 * now.rig->radii[joint]};
+    scene.solver = session.state_.solver;
     scene.rollRadius = std::max(scene.rollRadius, longestSide(*now.rig) / 8);
     session.drag_ = std::make_unique<Drag>(std::move(scene), joint, c.mode, c.ray, c.view);
     session.remember(command);
@@ -163,6 +168,10 @@ struct Session::Runner {
     std::optional<Pose> pose = drag().at(c.ray, c.view);
     if (!pose) return;
     session.state_.pose = *std::move(pose);
+    session.remember(command);
+  }
+  void operator()(const TurnDrag& c) const {
+    session.state_.pose = drag().turned(c.axis, c.degrees);
     session.remember(command);
   }
   // The undo step is the whole drag: it goes back to the pose at its beginning.
@@ -197,7 +206,9 @@ struct Session::Runner {
   }
   void operator()(const SetIk& c) const {
     SessionState next = state();
+    findIkMethod(c.solver);
     next.ik = c.on;
+    next.solver = c.solver;
     holdTargets(next);
     authored(next);
     session.commit(command, std::move(next));
@@ -382,7 +393,8 @@ void Session::start(Asset source, const Command& command, Progress& progress) {
 }
 
 void Session::commit(const Command& command, SessionState next) {
-  const bool again = std::holds_alternative<SetHandles>(command) && std::holds_alternative<SetHandles>(record_.back());
+  const bool again = !undo_.empty() && std::holds_alternative<SetHandles>(command) &&
+                     std::holds_alternative<SetHandles>(record_.back());
   if (!again) undo_.push_back({commandName(command), state_});
   state_ = std::move(next);
   redo_.clear();
@@ -399,8 +411,8 @@ void Session::commit(const Command& command, SessionState next) {
 }
 
 void Session::remember(const Command& command) {
-  const bool onlyLast = std::holds_alternative<UpdateDrag>(command) || std::holds_alternative<SetHandles>(command) ||
-                        std::holds_alternative<SetTime>(command);
+  const bool onlyLast = std::holds_alternative<UpdateDrag>(command) || std::holds_alternative<TurnDrag>(command) ||
+                        std::holds_alternative<SetHandles>(command) || std::holds_alternative<SetTime>(command);
   if (onlyLast && record_.back().index() == command.index()) record_.pop_back();
   record_.push_back(command);
 }
@@ -417,6 +429,15 @@ const SessionState& Session::state() const {
 const Asset& Session::source() const {
   requireOpen();
   return *state_.base;
+}
+
+Session Session::fork() const {
+  requireOpen();
+  if (drag_) refuse("a joint is being dragged", {}, "end_drag or cancel_drag comes first");
+  Session session(files_);
+  session.state_ = state_;
+  session.record_ = record_;
+  return session;
 }
 
 std::optional<Index> Session::draggedJoint() const {

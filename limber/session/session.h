@@ -21,6 +21,7 @@ namespace limber {
 // What the user works on, at one moment. Copies share everything large, so that each undo step is one.
 struct SessionState {
   std::shared_ptr<const Asset> base;  // what rigs are made from: as opened, or with another rest pose
+  std::shared_ptr<RigMemory> memory;  // of the base
   std::shared_ptr<const RiggedModel> rig;
   std::string rigger, skinning;  // how it was made; kept for a model with a rig of its own
   Pose pose;
@@ -29,6 +30,7 @@ struct SessionState {
   std::shared_ptr<const RiggedModel> authoredRig;
   Pose authoredPose;
   bool ik = false;
+  std::string solver{kLimbSolver};  // of ikMethods()
   std::vector<HeldTarget> targets;
   std::string limitsText;  // empty: none
   std::shared_ptr<const JointLimits> limits;
@@ -56,6 +58,10 @@ class Session {
   void open(ByteSpan bytes, std::string_view name, Progress& progress);
   // The same as AddMotion, for a file whose bytes are at hand. Throws as readMotion does.
   void addMotion(ByteSpan bytes, std::string_view name);
+
+  // Another session with the same document, and nothing to undo: to try something beside this one. Shares everything
+  // large. Throws Error kBadArgument during a drag.
+  Session fork() const;
 
   bool isOpen() const { return state_.rig != nullptr; }
   // These throw Error kBadArgument while nothing is open.

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "limber/asset/json_access.h"
+#include "limber/session/limb_pull.h"
 
 namespace limber {
 
@@ -52,6 +53,7 @@ SavedSession readSession(const JsonView& json) {
     session.handles = json.requireIndex("handles", kNoIndex);
   }
   session.ik = json.flag("ik", false);
+  session.solver = json.member("solver").exists() ? requireText(json, "solver") : std::string(kLimbSolver);
   session.limits = json.text("limits");
   session.clip = json.text("clip");
   session.seconds = json.number("seconds", 0);
@@ -68,7 +70,7 @@ SavedSession readSession(const JsonView& json) {
 }  // namespace
 
 void putSession(Asset& asset, const SavedSession& session) {
-  Json json = {{"version", kVersion}, {"own_rig", session.ownRig}, {"ik", session.ik}};
+  Json json = {{"version", kVersion}, {"own_rig", session.ownRig}, {"ik", session.ik}, {"solver", session.solver}};
   if (!session.ownRig) {
     json["rigger"] = session.rigger;
     json["skinning"] = session.skinning;

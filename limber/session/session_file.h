@@ -25,6 +25,7 @@ struct SavedSession {
   std::string rigger, skinning;
   Index handles = 0;
   bool ik = false;
+  std::string solver;  // of ikMethods()
   std::vector<SavedTarget> targets;
   std::string limits;            // text of a limits file; empty: none
   std::string clip;              // the chosen one; empty: none

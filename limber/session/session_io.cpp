@@ -6,6 +6,7 @@
 #include "limber/asset/pose_io.h"
 #include "limber/asset/write.h"
 #include "limber/core/error.h"
+#include "limber/ik/ik_solver.h"
 #include "limber/ik/limits_json.h"
 #include "limber/pipeline/pose_asset.h"
 
@@ -26,6 +27,7 @@ SavedSession savedOf(const SessionState& state) {
   saved.skinning = state.skinning;
   saved.handles = skeleton.jointCount();
   saved.ik = state.ik;
+  saved.solver = state.solver;
   saved.limits = state.limitsText;
   for (const HeldTarget& target : state.targets) {
     saved.targets.push_back({skeleton.joints[target.joint].name, target.position});
@@ -65,6 +67,7 @@ void restore(SessionState& state, const SavedSession& saved) {
   }
   saidOf("extras.limber_session.limits", [&] { setLimits(state, saved.limits); });
   state.ik = saved.ik;
+  state.solver = findIkMethod(saved.solver).name;
   if (!saved.clip.empty()) {
     chooseClip(state.movement, saved.clip);
     setTime(state.movement, saved.seconds);
@@ -103,6 +106,8 @@ SessionState startState(std::shared_ptr<const Asset> asset, const std::optional<
   }
   SessionState state;
   state.base = asset;
+  state.memory = std::make_shared<RigMemory>();
+  options.rig.memory = state.memory;
   state.rig = own ? openRiggedModel(source) : makeRiggedModel(source, options, progress);
   state.rigger = options.rigger;
   state.skinning = options.skinning;

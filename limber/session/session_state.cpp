@@ -2,12 +2,15 @@
 
 #include <nlohmann/json.hpp>
 
+#include "limber/ik/limit_outline.h"
 #include "limber/ik/limits_json.h"
 #include "limber/skeleton/keyframes.h"
 
 namespace limber {
 
 namespace {
+
+constexpr Index kRimSteps = 32;
 
 Json vectorJson(const Vec3& v) {
   return Json::array({v.x(), v.y(), v.z()});
@@ -78,6 +81,40 @@ Json clipsJson(const Movement& movement) {
   return clips;
 }
 
+// Where a joint's bone lies in the world: towards the middle of what hangs on it; a leaf goes on as its parent's does.
+Vec3 boneOf(const Skeleton& skeleton, const std::vector<Affine>& rest, Index joint) {
+  Vec3 sum = Vec3::Zero();
+  double count = 0;
+  for (Index j = 0; j < skeleton.jointCount(); ++j) {
+    if (skeleton.joints[j].parent != joint) continue;
+    sum += rest[j].translation();
+    ++count;
+  }
+  if (count > 0) return sum / count - rest[joint].translation();
+  const std::optional<Index> parent = skeleton.joints[joint].parent;
+  return parent ? Vec3(rest[joint].translation() - rest[*parent].translation()) : Vec3(Vec3::UnitY());
+}
+
+Json limitOutlinesJson(const SessionState& state) {
+  Json outlines = Json::array();
+  if (!state.limits) return outlines;
+  const Skeleton& skeleton = state.rig->skeleton();
+  const std::vector<Affine> rest = restGlobals(skeleton);
+  for (Index j = 0; j < skeleton.jointCount(); ++j) {
+    const Vec3 bone = boneOf(skeleton, rest, j);
+    if (!(bone.norm() > 0)) continue;
+    const std::optional<Index> parent = skeleton.joints[j].parent;
+    const Quat above = parent ? decompose(rest[*parent]).rotation : Quat::Identity();
+    const Vec3 own = decompose(rest[j]).rotation.conjugate() * bone;
+    const LimitOutline outline = limitOutline(state.limits->joints[j], own, kRimSteps);
+    if (outline.rim.empty()) continue;
+    Json rim = Json::array();
+    for (const Vec3& direction : outline.rim) rim.push_back(vectorJson(above * direction));
+    outlines.push_back({{"joint", j}, {"length", bone.norm()}, {"closed", outline.closed}, {"rim", std::move(rim)}});
+  }
+  return outlines;
+}
+
 // Of the chosen clip.
 Json matchJson(const SessionState& state) {
   if (!state.movement.chosen || !state.movement.clips[*state.movement.chosen].source) return Json::array();
@@ -104,8 +141,10 @@ Json sessionState(const Session& session) {
       {"suggestions", Json::array()},
       {"joints", jointsJson(rig)},
       {"ik", state.ik},
+      {"solver", state.solver},
       {"limited", state.limits != nullptr},
       {"limits", state.limits ? Json::parse(limitsToJson(*state.limits, rig.skeleton()))["joints"] : Json::object()},
+      {"limit_outlines", limitOutlinesJson(state)},
       {"motions", motionsJson(state.movement)},
       {"clips", clipsJson(state.movement)},
       {"clip", state.movement.chosen ? Json(*state.movement.chosen) : Json(nullptr)},

@@ -43,6 +43,30 @@ export async function settled(page) {
   await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
 }
 
+export async function download(page, click) {
+  const [file] = await Promise.all([page.waitForEvent('download'), click()]);
+  return readFileSync(await file.path());
+}
+
+/** Runs each of them; gives how many failed. LIMBER_TIMES=1 tells how long each took. */
+export async function runCases(cases, page, output) {
+  let passed = 0, failed = 0;
+  for (const [name, run] of Object.entries(cases)) {
+    const begun = performance.now();
+    try {
+      await run();
+      ++passed;
+      if (process.env.LIMBER_TIMES) console.log(`${((performance.now() - begun) / 1000).toFixed(1)} s  ${name}`);
+    } catch (error) {
+      ++failed;
+      console.log(`FAILED ${name}: ${error.stack ?? error}`);
+      await page.screenshot({ path: join(output, `failed_${failed}.png`) });
+    }
+  }
+  console.log(`${passed} passed, ${failed} failed`);
+  return failed;
+}
+
 /** Where a joint is drawn, in pixels of the page. */
 export const jointPlace = (page, name) => page.evaluate((joint) => globalThis.limberStudio.place(joint), name);
 /** Where a joint stands, in metres. */

@@ -59,6 +59,12 @@ await picture('studio_gizmo', { ...desk, search: '?sample=winged' }, async (page
   await page.locator('#joints li').nth(5).click();
   await settled(page);
 });
+await picture('studio_compare', { ...desk, search: '?sample=biped' }, async (page) => {
+  await page.locator('#methods summary').click();
+  await page.locator('#compare-rigger').click();
+  await page.waitForFunction(() => document.querySelectorAll('#comparison dl').length === 2);
+  await settled(page);
+});
 await picture('studio_phone', { width: 390, height: 844, touch: true, search: '?sample=quadruped' }, async () => {});
 await browser.close();
 server.close();

@@ -1,6 +1,7 @@
 // What a program that drives the page (a test, a script that makes pictures) can ask of it.
 import { Vector3 } from 'three';
 import type { SessionState, Vector } from '../engine/messages';
+import type { Gizmo } from '../scene/gizmo';
 import type { HandleView } from '../scene/handle_view';
 import type { Viewport } from '../scene/viewport';
 import type { PageStore } from './state';
@@ -15,6 +16,8 @@ export interface StudioProbe {
   selected(): number | null;
   /** Metres. */
   position(joint: string): Vector;
+  /** What of the gizmo is under the pointer. */
+  gizmoAxis(): string | null;
   /** Pixels of the page. */
   place(joint: string): { x: number; y: number };
 }
@@ -24,7 +27,7 @@ declare global {
 }
 
 export function exposeStage(
-  studio: Studio, page: PageStore, viewport: Viewport, handles: HandleView, kept: () => boolean,
+  studio: Studio, page: PageStore, viewport: Viewport, handles: HandleView, gizmo: Gizmo, kept: () => boolean,
 ) {
   const position = (name: string) => {
     const joint = page.now.session?.joints.findIndex((known) => known.name === name) ?? -1;
@@ -36,6 +39,7 @@ export function exposeStage(
     kept,
     state: () => page.now.session,
     selected: () => page.now.selected,
+    gizmoAxis: () => gizmo.axis,
     position: (name) => position(name).toArray(),
     place: (name) => {
       viewport.camera.updateMatrixWorld();

@@ -1,5 +1,7 @@
 // What the page shows, in one place.
-import type { LimberError, SessionState, SurfaceModel } from '../engine/messages';
+import type {
+  LimberError, Measures, MethodKind, Methods, SessionState, SurfaceModel, Variant,
+} from '../engine/messages';
 import { Store } from './store';
 
 export type DragMode = 'move' | 'turn';
@@ -9,6 +11,16 @@ export interface Notice {
   kind: 'error' | 'note';
   title: string;
   detail: string;
+}
+
+/** The document beside what other methods make of it. */
+export interface Comparison {
+  kind: MethodKind;
+  /** Of the others, in their order. */
+  names: string[];
+  /** What came of each; empty while they are being made. */
+  variants: (Variant | LimberError)[];
+  measures: Measures | null;
 }
 
 export interface PageState {
@@ -31,6 +43,13 @@ export interface PageState {
   loop: boolean;
   gizmo: boolean;
   limits: boolean;
+  methods: Methods | null;
+  comparison: Comparison | null;
+  /** Parts of the model that are not drawn, by their place in it. */
+  hiddenParts: ReadonlySet<number>;
+  /** The model that the chosen clip's motion came with. */
+  sourceModel: { motion: string; model: SurfaceModel; joints: number } | null;
+  sourceShown: boolean;
 }
 
 export type PageStore = Store<PageState>;
@@ -39,6 +58,7 @@ export const createPageStore = (): PageStore => new Store<PageState>({
   session: null, model: null, mode: 'move', display: 'handles', bones: true, wireframe: false,
   selected: null, hovered: null, work: null, notice: null, help: false,
   seconds: 0, playing: false, speed: 1, loop: true, gizmo: false, limits: false,
+  methods: null, comparison: null, hiddenParts: new Set(), sourceModel: null, sourceShown: true,
 });
 
 export function noticeOf(error: LimberError): Notice {

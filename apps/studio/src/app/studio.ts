@@ -1,6 +1,6 @@
 // Everything that a user can do, each a call on the engine's session; panels and the view call this and nothing else.
 import { EngineClient, EngineError } from '../engine/client';
-import type { Answer, Command, Ray, Stance, Vector } from '../engine/messages';
+import type { Answer, Command, MethodKind, Ray, Stance, Vector } from '../engine/messages';
 import { noticeOf, type PageStore } from './state';
 
 type Step = Answer<'run'>;
@@ -28,6 +28,9 @@ export class Studio {
   private dragUpdate: Command | null = null;
   private dragging: Promise<void> = Promise.resolve();
   private dragsLeft = 0;
+  private comparing = false;
+  private stance: Stance | null = null;
+  private shownSource = '';
   private waitingMoment: number | null = null;
   private momentUnderWay = false;
 
@@ -52,6 +55,7 @@ export class Studio {
       return;
     }
     if (/\.bvh$/i.test(file.name)) return this.openMotion(file);
+    if (/\.json$/i.test(file.name)) return this.openLimits(file);
     await this.guard(async () => {
       const bytes = new Uint8Array(await file.arrayBuffer());
       if (/\.gl(b|tf)$/i.test(file.name)) return this.openBytes(bytes, file.name);
@@ -79,6 +83,14 @@ export class Studio {
         await this.run1(retarget);
       }
       if ((this.page.now.session?.clips.length ?? 0) > clip.from) this.page.set({ playing: true, display: 'surface' });
+    });
+  }
+
+  /** How far joints may turn: a file of limits, for this model's joints. */
+  async openLimits(file: File) {
+    await this.guard(async () => {
+      await this.run1({ do: 'set_limits', limits: await file.text() });
+      this.page.set({ limits: true, display: 'handles' });
     });
   }
 
@@ -131,6 +143,66 @@ export class Studio {
     return joints === this.askedHandles + 1 ? this.askedHandles : joints;
   }
 
+  async loadMethods() {
+    await this.guard(async () => this.page.set({ methods: await this.engine.ask({ kind: 'methods' }) }));
+  }
+
+  async chooseMethods(change: { rigger?: string; skinning?: string }) {
+    const session = this.page.now.session;
+    if (!session) return;
+    const { rigger, skinning } = { ...session, ...change };
+    await this.guard(() => this.rigged({ do: 'choose_methods', rigger, skinning }));
+  }
+
+  async chooseSolver(solver: string) {
+    await this.run({ do: 'set_ik', on: this.page.now.session?.ik ?? false, solver });
+  }
+
+  /** The document beside what other methods of that kind make of it. */
+  async compare(kind: MethodKind, names: string[]) {
+    this.page.set({ comparison: { kind, names, variants: [], measures: null } });
+    await this.makeVariants();
+  }
+
+  async endComparison() {
+    this.page.set({ comparison: null });
+    await this.guard(async () => { await this.engine.ask({ kind: 'compare', commands: [] }); });
+  }
+
+  /** Anew after each change of the document; the newest wish counts. */
+  private async makeVariants() {
+    if (this.comparing) return;
+    this.comparing = true;
+    await this.guard(async () => {
+      for (let wanted = this.page.now.comparison; wanted; wanted = this.page.now.comparison) {
+        const { session } = this.page.now;
+        const { kind, names } = wanted;
+        const commands = names.map((name) => this.commandFor(kind, name)).filter((command) => command !== null);
+        const { measures, variants, stance } = await this.engine.ask({ kind: 'compare', commands });
+        if (this.page.now.session !== session || this.page.now.comparison !== wanted) continue;
+        this.page.set({ comparison: { kind, names, measures, variants } });
+        this.showStance(stance, false);
+        return;
+      }
+    });
+    this.comparing = false;
+  }
+
+  private commandFor(kind: MethodKind, name: string): Command | null {
+    const session = this.page.now.session;
+    if (!session) return null;
+    const { rigger, skinning } = session;
+    switch (kind) {
+      case 'rigger': return { do: 'choose_methods', rigger: name, skinning };
+      case 'skinning': return { do: 'choose_methods', rigger, skinning: name };
+      case 'solver': return { do: 'set_ik', on: true, solver: name };
+      case 'retargeting': {
+        const source = session.clips[session.clip ?? -1]?.source;
+        return source ? { do: 'retarget', ...source, method: name, map: JSON.stringify({ matches: session.match }) } : null;
+      }
+    }
+  }
+
   /** Commands that leave the rig as it is. */
   async run(command: Command) {
     await this.guard(async () => this.apply(await this.engine.run(command)));
@@ -156,7 +228,7 @@ export class Studio {
         const next: number = this.waitingMoment;
         this.waitingMoment = null;
         const { stance } = await this.engine.run({ do: 'set_time', seconds: next });
-        this.onStance(stance, true);
+        this.showStance(stance, true);
       }
     }).finally(() => { this.momentUnderWay = false; });
   }
@@ -175,11 +247,37 @@ export class Studio {
     await this.guard(() => this.rigged({ do: 'rename_joint', joint: this.jointName(joint), name }));
   }
 
+  /** Pictures of a clip at even moments, each once the scene stands there. */
+  async eachMoment(count: number, draw: (seconds: number) => void) {
+    const { session, seconds } = this.page.now;
+    const clip = session?.clips[session.clip ?? -1];
+    if (!clip) return;
+    this.page.set({ playing: false });
+    await this.guard(async () => {
+      const show = async (moment: number) => {
+        const { stance } = await this.engine.run({ do: 'set_time', seconds: moment });
+        this.onStance(stance, false);
+      };
+      for (let i = 0; i < count; ++i) {
+        const moment = (clip.duration * i) / Math.max(1, count - 1);
+        await show(moment);
+        draw(moment);
+      }
+      await show(seconds);
+    });
+  }
+
+  async renameClip(clip: string, name: string) { await this.run({ do: 'rename_clip', clip, name }); }
+  async clearTarget(joint: number) { await this.run({ do: 'clear_target', joint: this.jointName(joint) }); }
+
   async setRestPose() { await this.guard(() => this.rigged({ do: 'set_rest_pose' })); }
 
   async undo() { await this.guard(() => this.rigged({ do: 'undo' })); }
   async redo() { await this.guard(() => this.rigged({ do: 'redo' })); }
-  async toggleIk() { await this.run({ do: 'set_ik', on: !this.page.now.session?.ik }); }
+  async toggleIk() {
+    const { session } = this.page.now;
+    if (session) await this.run({ do: 'set_ik', on: !session.ik, solver: session.solver });
+  }
   async resetPose() { await this.run({ do: 'reset_pose' }); }
   async mirrorPose() { await this.run({ do: 'mirror_pose', from: 'both' }); }
 
@@ -209,9 +307,14 @@ export class Studio {
   }
 
   /** At most one update is on its way; the newest waits. */
-  updateDrag(ray: Ray, view: Vector) {
+  updateDrag(ray: Ray, view: Vector) { this.dragTo({ do: 'update_drag', ray, view }); }
+
+  /** About the dragged joint's own place, from how it stood when the drag began. */
+  turnDrag(axis: Vector, degrees: number) { this.dragTo({ do: 'turn_drag', axis, degrees }); }
+
+  private dragTo(command: Command) {
     const waiting = this.dragUpdate !== null;
-    this.dragUpdate = { do: 'update_drag', ray, view };
+    this.dragUpdate = command;
     if (waiting) return;
     this.then(async () => {
       const command = this.dragUpdate;
@@ -249,12 +352,15 @@ export class Studio {
     return this.guard(() => this.engine.ask({ kind: 'record' }));
   }
 
-  async stop() { await this.engine.cancel(); }
+  async stop() {
+    this.page.set({ comparison: null });
+    await this.engine.cancel();
+  }
 
   private jointName(joint: number) { return this.page.now.session?.joints[joint]?.name ?? ''; }
 
   private async opened(answer: Step) {
-    this.page.set({ selected: null, hovered: null, notice: null });
+    this.page.set({ selected: null, hovered: null, notice: null, comparison: null, hiddenParts: new Set() });
     await this.showRig(answer);
     this.onOpened();
   }
@@ -270,14 +376,34 @@ export class Studio {
     this.page.set({
       session: answer.state, model, seconds: answer.state?.seconds ?? 0, playing: false, hovered: null, selected: selected !== null && selected < count ? selected : null,
     });
-    this.onStance(answer.stance, false);
+    this.showStance(answer.stance, false);
+    this.followUp();
+  }
+
+  private showStance(stance: Stance, ofClip: boolean) {
+    this.stance = stance;
+    this.onStance(stance, ofClip);
+  }
+
+  /** What stands beside the document goes with it. */
+  private followUp() {
+    const { session, comparison } = this.page.now;
+    if (comparison && session?.dragged === null) void this.makeVariants();
+    void this.guard(async () => {
+      const motion = session?.clips[session.clip ?? -1]?.source?.motion ?? '';
+      if (motion === this.shownSource) return;
+      this.shownSource = motion;
+      this.page.set({ sourceModel: motion === '' ? null : await this.engine.ask({ kind: 'source-model' }) });
+      if (this.stance) this.onStance(this.stance, false);
+    });
   }
 
   private apply({ state, stance }: Step) {
     const before = this.page.now.session;
     const another = state !== null && (state.clip !== before?.clip || state.seconds !== before.seconds);
     if (state) this.page.set({ session: state, seconds: state.seconds });
-    this.onStance(stance, another);
+    this.showStance(stance, another);
+    if (state) this.followUp();
   }
 
   private showWork(busy: boolean) {

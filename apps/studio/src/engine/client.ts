@@ -16,7 +16,7 @@ interface Waiting {
   reject(error: EngineError): void;
 }
 
-const changesDocument = (request: Request) => request.kind !== 'pick' && request.kind !== 'model' && request.kind !== 'export' && request.kind !== 'record';
+const changesDocument = ({ kind }: Request) => kind === 'open' || kind === 'motion' || kind === 'run';
 const opens = (request: Request) =>
   request.kind === 'open' || (request.kind === 'run' && String(request.command.do).startsWith('open_'));
 
@@ -99,7 +99,7 @@ export class EngineClient {
     if (opens(request)) this.history = [];
     const last = this.history.at(-1);
     const frame = (r: Request | undefined) =>
-      (r?.kind === 'run' && (r.command.do === 'update_drag' || r.command.do === 'set_time') ? r.command.do : null);
+      (r?.kind === 'run' && ['update_drag', 'turn_drag', 'set_time'].includes(r.command.do) ? r.command.do : null);
     if (frame(request) !== null && frame(request) === frame(last)) this.history.pop();
     this.history.push(request);
   }

@@ -1,44 +1,23 @@
 // Holds the engine and one session, away from the page's own thread.
-import { loadLimber, type Failure, type Session } from '@engine/limber.mjs';
+import { loadLimber } from '@engine/limber.mjs';
 import wasmUrl from '@engine/limber_engine.wasm?url';
-import type { Answers, FromWorker, Kind, Request, Stance, ToWorker } from './messages';
+import { Documents, EngineFailure } from './documents';
+import type { Answers, FromWorker, Kind, Request, ToWorker } from './messages';
 
 const say = (message: FromWorker) => postMessage(message);
 
-/** An engine's error on its way to the page. */
-class EngineFailure extends Error {
-  constructor(readonly failure: Failure) {
-    super(failure.error.message);
-  }
-}
-
-function orThrow<T extends { ok: true }>(result: T | Failure): T {
-  if (!result.ok) throw new EngineFailure(result);
-  return result;
-}
-
-function stance(session: Session, skin: Float32Array): Stance {
-  return { skin, handles: orThrow(session.handles()).handles, source: orThrow(session.sourceJoints()).places };
-}
-
-function answer(session: Session, request: Request): Answers[Kind] {
+function answer(documents: Documents, request: Request): Answers[Kind] {
   switch (request.kind) {
-    case 'open': {
-      const { state, skin } = orThrow(session.open(request.bytes, request.name));
-      return { state, stance: stance(session, skin) };
-    }
-    case 'motion': {
-      const { state, skin } = orThrow(session.addMotion(request.bytes, request.name));
-      return { state, stance: stance(session, skin) };
-    }
-    case 'run': {
-      const { state, skin } = orThrow(session.run(request.command));
-      return { state, stance: stance(session, skin) };
-    }
-    case 'pick': return orThrow(session.pick(request.ray, request.slope)).hit;
-    case 'model': return orThrow(session.model()).model;
-    case 'export': return orThrow(session.export(request.format)).bytes;
-    case 'record': return JSON.stringify(session.record(), null, 1);
+    case 'open': return documents.open(request.bytes, request.name);
+    case 'motion': return documents.addMotion(request.bytes, request.name);
+    case 'run': return documents.run(request.command);
+    case 'pick': return documents.pick(request.ray, request.slope);
+    case 'model': return documents.model();
+    case 'source-model': return documents.sourceModel();
+    case 'methods': return documents.methods();
+    case 'compare': return documents.compare(request.commands);
+    case 'export': return documents.export(request.format);
+    case 'record': return documents.record();
   }
 }
 
@@ -48,10 +27,10 @@ async function start() {
   const limber = await loadLimber(await response.arrayBuffer(), {
     onProgress: (stage, fraction) => say({ kind: 'progress', stage, fraction }),
   });
-  const session = limber.createSession();
+  const documents = new Documents(limber);
   onmessage = ({ data: { id, request } }: MessageEvent<ToWorker>) => {
     try {
-      say({ kind: 'done', id, answer: answer(session, request) });
+      say({ kind: 'done', id, answer: answer(documents, request) });
     } catch (error) {
       const failure = error instanceof EngineFailure
         ? error.failure.error

@@ -1,9 +1,12 @@
-// The joints as a tree: what can be picked in the scene can be picked here.
+// What there is: meshes, clips, pinned joints, and the joints as a tree. What can be picked in the scene can be picked
+// here.
 import type { SessionState } from '../engine/messages';
 import type { PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
 import type { HandleView } from '../scene/handle_view';
 import { button, element } from '../ui/dom';
+import { renameIn } from '../ui/rename';
+import { clipList, meshList, targetList } from './outliner_lists';
 
 export function outliner(studio: Studio, page: PageStore, handles: HandleView): HTMLElement {
   const list = element('ul', { class: 'joints', role: 'listbox', 'aria-label': 'Joints', tabindex: 0, id: 'joints' });
@@ -24,24 +27,7 @@ export function outliner(studio: Studio, page: PageStore, handles: HandleView): 
     const joint = page.now.selected, row = joint === null ? null : list.querySelector<HTMLElement>(`#joint-${joint}`);
     if (joint === null || !row) return;
     const before = page.now.session?.joints[joint]?.name ?? '';
-    const field = element('input', { class: 'rename', id: 'rename', 'aria-label': 'Name of the joint', value: before });
-    let open = true;
-    const close = (take: boolean) => {
-      if (!open) return;
-      open = false;
-      const name = field.value.trim();
-      row.textContent = before;
-      list.focus();
-      if (take && name !== '' && name !== before) void studio.renameJoint(joint, name);
-    };
-    field.addEventListener('keydown', (event) => {
-      event.stopPropagation();
-      if (event.key === 'Enter' || event.key === 'Escape') close(event.key === 'Enter');
-    });
-    field.addEventListener('blur', () => close(true));
-    row.replaceChildren(field);
-    field.focus();
-    field.select();
+    renameIn(row, 'Name of the joint', before, (wanted) => void studio.renameJoint(joint, wanted));
   };
   list.addEventListener('dblclick', rename);
   list.addEventListener('keydown', (event) => {
@@ -80,7 +66,8 @@ export function outliner(studio: Studio, page: PageStore, handles: HandleView): 
     pin.disabled = reset.disabled = name.disabled = selected === null || !session;
     pin.setAttribute('aria-pressed', String(selected !== null && pinned.has(selected)));
   });
-  return element('section', { class: 'card outliner', 'aria-label': 'Outliner' }, title, list, actions);
+  return element('section', { class: 'card outliner', 'aria-label': 'Outliner' },
+    meshList(page), clipList(studio, page), targetList(studio, page), title, list, actions);
 }
 
 /** In the order of the tree, each indented below its parent. */

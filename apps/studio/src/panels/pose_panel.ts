@@ -39,7 +39,26 @@ export function posePanel(studio: Studio, page: PageStore): HTMLElement {
     element('div', { class: 'row' }, mirror, reset, rest),
     display.root,
     element('div', { class: 'row checks' }, toggle('Bones', 'bones'), toggle('Wireframe', 'wireframe'),
-      toggle('Gizmo', 'gizmo'), toggle('Limits', 'limits')));
+      toggle('Gizmo', 'gizmo'), toggle('Limits', 'limits')),
+    limits(studio, page));
+}
+
+/** How far joints may turn: a file of limits; what is shown where there are none. */
+function limits(studio: Studio, page: PageStore): HTMLElement {
+  const file = element('input', { type: 'file', accept: '.json', hidden: true, id: 'limits-file' });
+  file.addEventListener('change', () => {
+    const chosen = file.files?.[0];
+    if (chosen) void studio.openLimits(chosen);
+    file.value = '';
+  });
+  const open = button('Load limits', () => file.click(), { icon: 'open', label: 'How far joints may turn (JSON)', id: 'load-limits' });
+  const remove = button('Remove', () => void studio.run({ do: 'set_limits', limits: '' }), { id: 'remove-limits' });
+  const row = element('div', { class: 'row' }, file, open, remove);
+  page.watch(({ session, limits: shown }) => {
+    row.hidden = !shown || !session;
+    remove.disabled = !session?.limited;
+  });
+  return row;
 }
 
 /** The slider runs evenly over the logarithm of the count: few handles differ more than many. */

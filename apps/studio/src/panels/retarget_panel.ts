@@ -3,32 +3,38 @@ import { jointColor } from '../scene/palette';
 import type { PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
 import { element } from '../ui/dom';
+import { compareButton, methodName } from './methods_panel';
 import { chosenClip } from './timeline';
 
-const methods = [
-  ['limb-ik', 'Limbs by IK'], ['aligned', 'Aligned poses'], ['copy-rotations', 'Copied turns'],
-] as const;
 const doubtful = 0.75;
 
 export function retargetPanel(studio: Studio, page: PageStore): HTMLElement {
-  const method = element('select', { class: 'select', id: 'method' }, ...methods.map(([value, text]) => element('option', { value }, text)));
+  const method = element('select', { class: 'select', id: 'method' });
   method.addEventListener('change', () => void studio.retarget({ method: method.value }));
   const reach = element('input', { type: 'range', id: 'reach', min: 0, max: 1, step: 0.05 });
   reach.addEventListener('change', () => void studio.retarget({ reach: reach.valueAsNumber }));
   const contacts = element('input', { type: 'checkbox', id: 'contacts' });
   contacts.addEventListener('change', () => void studio.retarget({ contacts: contacts.checked }));
+  const shown = element('input', { type: 'checkbox', id: 'source-shown' });
+  shown.addEventListener('change', () => page.set({ sourceShown: shown.checked }));
   const rows = element('tbody');
   const summary = element('summary', {}, 'Matched joints');
   const from = element('p', { class: 'from' });
   let drawn = '';
   const card = element('section', { class: 'card retarget', 'aria-label': 'Motion', id: 'retarget', hidden: true },
     element('h2', {}, 'Motion'), from,
-    element('label', { class: 'field' }, 'Method', method),
+    element('div', { class: 'field' }, element('label', { for: 'method' }, 'Method'), method, compareButton(studio, page, 'retargeting')),
     element('label', { class: 'field' }, 'Hands reach', reach),
     element('label', { class: 'check' }, contacts, 'Feet stay planted'),
+    element('label', { class: 'check' }, shown, 'The other character beside it'),
     element('details', {}, summary,
       element('table', { id: 'match' }, element('thead', {}, element('tr', {}, ...['', 'Motion', 'Model'].map((text) => element('th', {}, text)))), rows)));
-  page.watch(({ session }) => {
+  page.watch(({ session, methods, sourceModel, sourceShown }) => {
+    if (methods && method.childElementCount === 0) {
+      method.append(...methods.retargeting.map(({ name, summary }) => element('option', { value: name, title: summary }, methodName(name))));
+    }
+    shown.checked = sourceShown;
+    shown.parentElement!.hidden = sourceModel === null;
     const clip = chosenClip(session), source = clip?.source ?? null;
     card.hidden = source === null;
     if (!session || !clip || !source) return;

@@ -12,7 +12,7 @@ const room = 2; // seconds that an empty clip shows
 type Clip = SessionState['clips'][number];
 export const chosenClip = (session: SessionState | null): Clip | null => session?.clips[session.clip ?? -1] ?? null;
 
-export function timeline(studio: Studio, page: PageStore): HTMLElement {
+export function timeline(studio: Studio, page: PageStore, openSheet: () => Promise<void>): HTMLElement {
   const file = element('input', { type: 'file', accept: '.bvh,.glb,.gltf', hidden: true, id: 'motion-file' });
   file.addEventListener('change', () => {
     const chosen = file.files?.[0];
@@ -38,13 +38,14 @@ export function timeline(studio: Studio, page: PageStore): HTMLElement {
   const between = element('select', { class: 'select', id: 'interpolation', 'aria-label': 'Between keys' },
     ...[['step', 'Steps'], ['linear', 'Straight'], ['cubic', 'Smooth']].map(([value = '', text = '']) => element('option', { value }, text)));
   between.addEventListener('change', () => void studio.run({ do: 'set_interpolation', interpolation: between.value }));
+  const sheet = button('', () => void openSheet(), { icon: 'sheet', label: 'Contact sheet: the clip at a glance', id: 'open-sheet' });
   const add = button('New clip', () => void studio.addClip(), { icon: 'add', label: 'A clip of your own poses', id: 'add-clip' });
-  const motion = button('Open motion', () => file.click(), { icon: 'open', label: 'Play a motion (BVH, GLB) on the model', id: 'open-motion' });
+  const motion = button('Motion', () => file.click(), { icon: 'open', label: 'Play a motion (BVH, GLB) on the model', id: 'open-motion' });
   const remove = button('', () => void studio.run({ do: 'remove_clip', clip: chosenClip(page.now.session)?.name ?? '' }), { icon: 'erase', label: 'Remove this clip', id: 'remove-clip' });
 
   const card = element('section', { class: 'card timeline', 'aria-label': 'Timeline', id: 'timeline' },
     element('div', { class: 'row tools' }, play, clips, add, motion, file,
-      element('div', { class: 'row clip-tools' }, speed, loop, key, erase, between, remove)),
+      element('div', { class: 'row clip-tools' }, speed, loop, sheet, key, erase, between, remove)),
     element('div', { class: 'row moment' }, element('div', { class: 'track' }, scrub, track), time));
   let listed = '';
   page.watch(({ session, seconds, playing, loop: again }) => {
@@ -58,7 +59,7 @@ export function timeline(studio: Studio, page: PageStore): HTMLElement {
     clips.value = clip?.name ?? '';
     clips.disabled = names.length === 0;
     const still = !clip || clip.duration <= 0;
-    play.disabled = loop.disabled = speed.disabled = still;
+    play.disabled = loop.disabled = speed.disabled = sheet.disabled = still;
     play.setAttribute('aria-pressed', String(playing));
     setIcon(play, playing ? 'pause' : 'play');
     play.setAttribute('aria-label', playing ? 'Pause' : 'Play');

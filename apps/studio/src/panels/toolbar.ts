@@ -12,7 +12,7 @@ export const samples = [
 const types = { glb: 'model/gltf-binary', obj: 'model/obj', stl: 'model/stl', bvh: 'text/plain', session: 'model/gltf-binary' };
 
 export function toolbar(studio: Studio, page: PageStore, viewport: Viewport, model: ModelView): HTMLElement {
-  const file = element('input', { type: 'file', accept: '.glb,.gltf,.vrm,.obj,.fbx,.stl,.ply,.bvh', hidden: true, id: 'file' });
+  const file = element('input', { type: 'file', accept: '.glb,.gltf,.vrm,.obj,.fbx,.stl,.ply,.bvh,.json', hidden: true, id: 'file' });
   file.addEventListener('change', () => {
     const chosen = file.files?.[0];
     if (chosen) void studio.openFile(chosen);

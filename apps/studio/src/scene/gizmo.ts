@@ -1,5 +1,5 @@
 // Arrows and rings on the selected joint, for exact work.
-import { Object3D, Vector3, type Quaternion } from 'three';
+import { Object3D, type Quaternion } from 'three';
 import { TransformControls } from 'three/examples/jsm/controls/TransformControls.js';
 import type { PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
@@ -11,7 +11,6 @@ const view: [number, number, number] = [0, 0, -1];
 export class Gizmo {
   readonly controls: TransformControls;
   private proxy = new Object3D();
-  private start = new Vector3();
   private turned: Quaternion = this.proxy.quaternion.clone();
   private held: number | null = null;
 
@@ -30,6 +29,7 @@ export class Gizmo {
   }
 
   /** Whether the pointer is on an arrow or a ring. */
+  get axis() { return this.controls.object === undefined ? null : this.controls.axis; }
   get meant() { return this.controls.object !== undefined && this.controls.axis !== null; }
 
   place(viewport: Viewport) {
@@ -51,14 +51,18 @@ export class Gizmo {
     const { selected, mode } = this.page.now;
     this.held = selected;
     if (selected === null) return;
-    this.start.copy(this.proxy.position);
     this.turned = this.proxy.quaternion.clone();
     // A camera that moves along takes the joint with it, wherever it goes: that is how the arrows' way is told.
-    if (mode === 'move') this.studio.beginDrag(selected, this.ray(), view, 'move');
+    this.studio.beginDrag(selected, this.ray(), view, mode);
   }
 
   private change() {
-    if (this.held !== null && this.page.now.mode === 'move') this.studio.updateDrag(this.ray(), view);
+    if (this.held === null) return;
+    if (this.page.now.mode === 'move') return this.studio.updateDrag(this.ray(), view);
+    const { x, y, z, w } = this.proxy.quaternion.clone().multiply(this.turned.clone().invert());
+    const sine = Math.hypot(x, y, z);
+    const degrees = (2 * Math.atan2(sine, w) * 180) / Math.PI;
+    this.studio.turnDrag(sine > 1e-6 ? [x / sine, y / sine, z / sine] : [0, 1, 0], sine > 1e-6 ? degrees : 0);
   }
 
   private ray() {
@@ -67,12 +71,8 @@ export class Gizmo {
   }
 
   private end() {
-    const joint = this.held;
+    if (this.held === null) return;
     this.held = null;
-    if (joint === null) return;
-    if (this.page.now.mode === 'move') return this.studio.endDrag();
-    const { x, y, z, w } = this.proxy.quaternion.clone().multiply(this.turned.invert());
-    const sine = Math.hypot(x, y, z);
-    if (sine > 1e-6) void this.studio.turn(joint, [x / sine, y / sine, z / sine], (2 * Math.atan2(sine, w) * 180) / Math.PI);
+    this.studio.endDrag();
   }
 }

@@ -1,6 +1,6 @@
 // The model's surface, moved by the engine's matrices on the graphics card.
 import {
-  Bone, BufferAttribute, BufferGeometry, Color, DoubleSide, Group, Material, Matrix4, Mesh, MeshStandardMaterial,
+  Bone, DetachedBindMode, BufferAttribute, BufferGeometry, Color, DoubleSide, Group, Material, Matrix4, Mesh, MeshStandardMaterial,
   RepeatWrapping, Skeleton, SkinnedMesh, SRGBColorSpace, Texture, Vector3,
 } from 'three';
 import type { Display } from '../app/state';
@@ -75,6 +75,11 @@ export class ModelView {
     }
   }
 
+  /** Parts by their place in the model. */
+  hide(parts: ReadonlySet<number>) {
+    this.meshes.forEach((mesh, part) => { mesh.visible = !parts.has(part); });
+  }
+
   /** The surface as it stands now, without a skeleton, for programs that know none. */
   posed(): Group {
     const group = new Group();
@@ -116,6 +121,7 @@ export class ModelView {
     const material = new MeshStandardMaterial({ color, roughness: 0.75, metalness: 0, side: DoubleSide });
     const mesh = new SkinnedMesh(geometry, material);
     mesh.bind(this.skeleton!, new Matrix4());
+    mesh.bindMode = DetachedBindMode; // the group that it is in moves it, too
     mesh.frustumCulled = false;
     mesh.castShadow = true;
     mesh.userData = { color, map: null };
@@ -155,7 +161,7 @@ export class ModelView {
     colors.needsUpdate = true;
   }
 
-  private clear() {
+  clear() {
     for (const mesh of this.meshes) {
       (mesh.userData['map'] as Texture | null)?.dispose();
       (mesh.material as Material).dispose();

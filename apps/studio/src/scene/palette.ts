@@ -6,6 +6,7 @@ export const rootColor = new Color('#e8a317');
 export const hoverColor = new Color('#ff6b76');
 export const selectedColor = new Color('#2563eb');
 export const pinColor = new Color('#0f9d6b');
+export const limitColor = new Color('#7c3aed');
 export const boneColor = new Color('#374151');
 
 /** Well apart for neighbours in number: steps of the golden angle round the hues. */

@@ -3,7 +3,9 @@ import { Vector3, type Color } from 'three';
 import { LineMaterial } from 'three/examples/jsm/lines/LineMaterial.js';
 import { LineSegments2 } from 'three/examples/jsm/lines/LineSegments2.js';
 import { LineSegmentsGeometry } from 'three/examples/jsm/lines/LineSegmentsGeometry.js';
+import type { PageState } from '../app/state';
 import type { SessionState } from '../engine/messages';
+import { ModelView } from './model_view';
 import { boneColor, jointColor } from './palette';
 
 /** A colour for each joint: that of its part in the match. */
@@ -21,12 +23,15 @@ export function matchColors(names: string[], match: SessionState['match'], side:
 
 export class SourceView {
   readonly root: LineSegments2;
+  /** The model that the motion came with, where it came with one. */
+  readonly model = new ModelView();
   private ends = new Float32Array();
   private parents: number[] = [];
   private clip = '';
   private fit: { scale: number; x: number; y: number; z: number } | null = null;
   private box: SessionState['box'] | null = null;
   private rest = new Vector3();
+  private shownModel: PageState['sourceModel'] = null;
 
   constructor() {
     this.root = new LineSegments2(new LineSegmentsGeometry(), new LineMaterial({ vertexColors: true, linewidth: 5 }));
@@ -57,12 +62,25 @@ export class SourceView {
     this.root.geometry.setColors(new Float32Array(values));
   }
 
+  showModel({ sourceModel, sourceShown, wireframe }: PageState) {
+    if (sourceModel !== this.shownModel) {
+      this.shownModel = sourceModel;
+      if (sourceModel) this.model.show(sourceModel.model, sourceModel.joints);
+      else this.model.clear();
+    }
+    this.model.root.visible = sourceModel !== null && sourceShown;
+    if (sourceModel) this.model.setDisplay('handles', null, wireframe);
+  }
+
   /** `root` is where the model's root stands now: the two set out side by side. */
-  take(places: Float32Array, root: Vector3) {
+  take(places: Float32Array, skin: Float32Array, root: Vector3) {
     this.root.visible = places.length > 0 && places.length === 3 * this.parents.length;
     if (!this.root.visible || !this.box) return;
     this.fit ??= this.beside(places, this.box, root.clone().sub(this.rest));
     const { scale, x, y, z } = this.fit;
+    if (this.shownModel && skin.length === 16 * this.shownModel.joints) this.model.take(skin);
+    this.model.root.position.set(x, y, z);
+    this.model.root.scale.setScalar(scale);
     this.parents.forEach((parent, joint) => {
       [joint, parent < 0 ? joint : parent].forEach((from, end) => this.ends.set([
         scale * places[3 * from]! + x, scale * places[3 * from + 1]! + y, scale * places[3 * from + 2]! + z,

@@ -2,6 +2,7 @@
 import { Vector3 } from 'three';
 import type { PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
+import { ComparisonView } from './comparison_view';
 import { Gizmo } from './gizmo';
 import { HandleView } from './handle_view';
 import { LimitView } from './limit_view';
@@ -14,12 +15,16 @@ export interface Stage {
   viewport: Viewport;
   handles: HandleView;
   model: ModelView;
+  comparison: ComparisonView;
+  gizmo: Gizmo;
 }
 
 export function createStage(studio: Studio, page: PageStore): Stage {
   const viewport = new Viewport(), model = new ModelView(), handles = new HandleView();
   const source = new SourceView(), limits = new LimitView();
-  viewport.scene.add(handles.root, model.root, source.root, limits.root);
+  const comparison = new ComparisonView(viewport.scene, () => viewport.draw());
+  viewport.scene.add(handles.root, model.root, source.root, source.model.root, limits.root);
+  source.model.onChange = () => viewport.draw();
   const gizmo = new Gizmo(viewport, handles, studio, page);
   new PointerInput(viewport, handles, gizmo, studio, page);
   const root = new Vector3();
@@ -28,14 +33,16 @@ export function createStage(studio: Studio, page: PageStore): Stage {
     const { display, bones } = page.now;
     const matched = (page.now.session?.match.length ?? 0) > 0;
     handles.fit(camera, viewport.size.height, display === 'handles', bones && (display === 'handles' || matched));
+    comparison.fit(camera, viewport.size.height, display === 'handles');
   };
   studio.onStance = (stance, ofClip) => {
     const before = root.clone();
     model.take(stance.skin);
     handles.take(stance.handles);
-    limits.take(handles);
+    limits.take(handles, stance.skin);
+    comparison.take(stance.variants);
     if (handles.count > 0) handles.position(0, root);
-    source.take(stance.source, root);
+    source.take(stance.source, stance.sourceSkin, root);
     // The camera walks along.
     if (ofClip) viewport.follow(root.x - before.x, root.z - before.z);
     gizmo.place(viewport);
@@ -53,12 +60,19 @@ export function createStage(studio: Studio, page: PageStore): Stage {
       limits.show(now.session);
       handles.colorBones(matchColors(now.session.joints.map(({ name }) => name), now.session.match, 'target'));
     }
-    limits.root.visible = now.limits;
+    limits.root.visible = now.limits && now.display === 'handles';
+    source.showModel(now);
+    model.hide(now.hiddenParts);
+    if (comparison.show(now) && now.session) {
+      const { min, max } = now.session.box;
+      // Once the measures have their room.
+      requestAnimationFrame(() => viewport.frame(min, [max[0] + comparison.reach, max[1], max[2]]));
+    }
     const repaint = now.model !== before.model || now.display !== before.display || now.wireframe !== before.wireframe
       || (now.display === 'joint-weights' && now.selected !== before.selected);
     if (repaint) model.setDisplay(now.display, now.selected, now.wireframe);
     handles.paint(now.selected, now.hovered, new Set(now.session?.targets.map((target) => target.joint)));
     viewport.draw();
   });
-  return { viewport, handles, model };
+  return { viewport, handles, model, comparison, gizmo };
 }

@@ -153,6 +153,15 @@ export class Viewport {
     return new Promise((resolve) => this.canvas.toBlob(resolve, 'image/png'));
   }
 
+  /** The picture as it is now, cut to the shape of the place that it goes to. */
+  drawInto(context: CanvasRenderingContext2D, x: number, y: number, width: number, height: number) {
+    this.drawNow();
+    const { width: w, height: h } = this.canvas;
+    const scale = Math.min(w / width, h / height);
+    const [cutW, cutH] = [width * scale, height * scale];
+    context.drawImage(this.canvas, (w - cutW) / 2, (h - cutH) / 2, cutW, cutH, x, y, width, height);
+  }
+
   private drawNow() {
     this.current.updateMatrixWorld();
     this.beforeFrame(this.current);

@@ -34,6 +34,9 @@ const icons = {
   erase: 'M5 6h10M8 6V4h4v2M6 6l1 11h6l1-11',
   add: 'M10 4v12M4 10h12',
   edit: 'M4 16l1-4 8-8 3 3-8 8z',
+  compare: 'M3 5h6v10H3zM11 5h6v10h-6z',
+  sheet: 'M3 4h14v12H3zM3 10h14M8 4v12M13 4v12',
+  eye: 'M2 10s3-5 8-5 8 5 8 5-3 5-8 5-8-5-8-5zM10 8a2 2 0 1 0 .01 0',
   frame: 'M3 7V3h4M13 3h4v4M17 13v4h-4M7 17H3v-4',
 };
 export type IconName = keyof typeof icons;

@@ -1,0 +1,96 @@
+// Below each figure of a comparison: its method, and what it measures.
+import type { LimberError, Measures, Variant } from '../engine/messages';
+import type { Comparison, PageStore } from '../app/state';
+import type { Studio } from '../app/studio';
+import type { ComparisonView } from '../scene/comparison_view';
+import { button, element } from '../ui/dom';
+import { currentMethod, methodName } from './methods_panel';
+
+const most = 4; // figures beside each other
+
+const percent = (value: number) => `${(100 * value).toFixed(1)} %`;
+
+/** What is worth comparing, in words, and better low or high left to the reader. */
+function figuresOf(measures: Measures): [string, string][] {
+  const { motion } = measures;
+  const rows: [string, string][] = [
+    ['Joints', String(measures.joints)],
+    ['Joints a vertex', measures.influences.toFixed(2)],
+    ['Weights change', measures.smoothness.toFixed(3)],
+    ['Stretched', percent(measures.stretch)],
+    ['Volume', `${measures.volume >= 0 ? '+' : '\u2212'}${percent(Math.abs(measures.volume))}`],
+  ];
+  if (measures.target_distance !== null) rows.push(['Pins missed by', `${(1000 * measures.target_distance).toFixed(1)} mm`]);
+  if (motion) {
+    rows.splice(1, 2);
+    rows.push(['Bones off', `${motion.bone_direction_degrees.toFixed(1)}\u00b0`],
+      ['Ends off', percent(motion.end_effector_share)],
+      ['Feet slide', `${motion.sliding_centimetres_per_second.toFixed(1)} cm/s`],
+      ['Feet sink', `${motion.penetration_millimetres.toFixed(0)} mm`], ['Jerk', `${motion.jerk_ratio.toFixed(2)}\u00d7`]);
+  }
+  return rows;
+}
+
+export function comparisonPanel(studio: Studio, page: PageStore, view: ComparisonView): HTMLElement {
+  const root = element('section', { class: 'comparison', 'aria-label': 'Comparison', id: 'comparison', hidden: true });
+  const close = button('End comparison', () => void studio.endComparison(), { id: 'end-comparison', kind: 'primary' });
+  let columns: HTMLElement[] = [];
+  view.onPlaced = (places) => {
+    const room = columns[0] ? (columns[0].offsetWidth + 8) / Math.max(1, root.offsetWidth) : 0;
+    apart(places, room).forEach((at, i) => columns[i]?.style.setProperty('--at', String(at)));
+  };
+
+  const column = (comparison: Comparison, index: number): HTMLElement => {
+    const card = element('div', { class: 'card column' });
+    if (index < 0) {
+      card.append(element('h3', {}, methodName(currentMethod(comparison.kind, page.now))));
+      if (comparison.measures) card.append(table(comparison.measures));
+      return card;
+    }
+    const methods = page.now.methods?.[comparison.kind] ?? [];
+    const select = element('select', { class: 'select', 'aria-label': 'The method beside it' },
+      ...methods.map(({ name, summary }) => element('option', { value: name, title: summary }, methodName(name))));
+    select.value = comparison.names[index] ?? '';
+    select.addEventListener('change', () => void studio.compare(comparison.kind, comparison.names.map((name, i) => (i === index ? select.value : name))));
+    const remove = button('', () => {
+      const names = comparison.names.filter((_, i) => i !== index);
+      void (names.length > 0 ? studio.compare(comparison.kind, names) : studio.endComparison());
+    }, { icon: 'erase', label: 'Take this one out' });
+    card.append(element('div', { class: 'row head' }, select, remove), result(comparison.variants[index]));
+    return card;
+  };
+
+  let drawn: Comparison | null = null;
+  page.watch(({ comparison }) => {
+    root.hidden = comparison === null;
+    if (comparison === drawn) return;
+    drawn = comparison;
+    if (!comparison) return;
+    columns = [column(comparison, -1), ...comparison.names.map((_, i) => column(comparison, i))];
+    columns.forEach((one, i) => one.style.setProperty('--at', String((i + 1) / (columns.length + 1))));
+    const unused = page.now.methods?.[comparison.kind].find(({ name }) =>
+      name !== currentMethod(comparison.kind, page.now) && !comparison.names.includes(name));
+    const add = button('Another', () => void studio.compare(comparison.kind, [...comparison.names, unused!.name]), { icon: 'add', id: 'compare-another' });
+    add.disabled = !unused || comparison.names.length + 1 >= most;
+    root.style.setProperty('--count', String(columns.length));
+    root.replaceChildren(element('div', { class: 'row tools' }, add, close), ...columns);
+  });
+  return root;
+}
+
+/** Places in a row, each at least `room` from the next, and all of them within 0 and 1. */
+function apart(places: number[], room: number): number[] {
+  const last = places.length - 1, first = places[0] ?? 0, end = places[last] ?? 0;
+  const step = Math.max(room, last > 0 ? (end - first) / last : 0);
+  const middle = Math.min(1 - (last * step + room) / 2, Math.max((last * step + room) / 2, (first + end) / 2));
+  return places.map((_, i) => middle + (i - last / 2) * step);
+}
+
+function result(variant: Variant | LimberError | undefined): HTMLElement {
+  if (!variant) return element('p', { class: 'note' }, 'Working \u2026');
+  return 'measures' in variant ? table(variant.measures) : element('p', { class: 'note' }, variant.message);
+}
+
+function table(measures: Measures): HTMLElement {
+  return element('dl', {}, ...figuresOf(measures).flatMap(([name, value]) => [element('dt', {}, name), element('dd', {}, value)]));
+}

@@ -1,0 +1,54 @@
+// By which methods the model is rigged, and how others do beside them.
+import type { MethodKind } from '../engine/messages';
+import type { PageState, PageStore } from '../app/state';
+import type { Studio } from '../app/studio';
+import { button, element } from '../ui/dom';
+
+export const methodNames: Record<string, string> = {
+  'sphere-mesh': 'Sphere handles', 'template': 'Named skeleton', 'bone-heat': 'Bone heat', 'limb-ik': 'Limbs by IK',
+  'aligned': 'Aligned poses', 'copy-rotations': 'Copied turns', 'online': 'Hands and feet first', 'spacetime': 'Whole motion',
+};
+export const methodName = (name: string) =>
+  methodNames[name] ?? (name.charAt(0).toUpperCase() + name.slice(1)).replaceAll('-', ' ');
+
+/** What the document has of that kind. */
+export function currentMethod(kind: MethodKind, { session }: PageState): string {
+  if (!session) return '';
+  return kind === 'retargeting' ? session.clips[session.clip ?? -1]?.source?.method ?? '' : session[kind];
+}
+
+/** Shows the document beside the method that comes first among the others. */
+export function compareButton(studio: Studio, page: PageStore, kind: MethodKind): HTMLButtonElement {
+  const made = button('', () => {
+    if (page.now.comparison?.kind === kind) return void studio.endComparison();
+    const other = page.now.methods?.[kind].find(({ name }) => name !== currentMethod(kind, page.now));
+    if (other) void studio.compare(kind, [other.name]);
+  }, { icon: 'compare', label: 'Compare with other methods, side by side', id: `compare-${kind}` });
+  page.watch((now) => {
+    made.disabled = !now.session || (now.methods?.[kind].length ?? 0) < 2;
+    made.setAttribute('aria-pressed', String(now.comparison?.kind === kind));
+  });
+  return made;
+}
+
+export function methodsPanel(studio: Studio, page: PageStore): HTMLElement {
+  const choose: Record<'rigger' | 'skinning' | 'solver', (name: string) => void> = {
+    rigger: (rigger) => void studio.chooseMethods({ rigger }),
+    skinning: (skinning) => void studio.chooseMethods({ skinning }),
+    solver: (solver) => void studio.chooseSolver(solver),
+  };
+  const row = (kind: 'rigger' | 'skinning' | 'solver', text: string) => {
+    const select = element('select', { class: 'select', id: kind });
+    select.addEventListener('change', () => choose[kind](select.value));
+    page.watch(({ methods, session }) => {
+      if (methods && select.childElementCount === 0) {
+        select.append(...methods[kind].map(({ name, summary }) => element('option', { value: name, title: summary }, methodName(name))));
+      }
+      select.disabled = !session;
+      if (session) select.value = session[kind];
+    });
+    return element('div', { class: 'field' }, element('label', { for: kind }, text), select, compareButton(studio, page, kind));
+  };
+  return element('details', { class: 'card methods', id: 'methods' }, element('summary', {}, 'Methods'),
+    row('rigger', 'Joints'), row('skinning', 'Skin'), row('solver', 'Limbs'));
+}
