@@ -66,7 +66,7 @@ const cases = {
     await columns(2);
     await page.locator('#joints li').last().click();
     await page.locator('#pin').click();
-    await page.locator('canvas').first().focus();
+    await page.locator('main canvas').focus();
     await page.keyboard.press('ArrowUp');
     await settled(page);
     await page.waitForFunction(() => document.querySelectorAll('#comparison dl').length === 2 && globalThis.limberStudio.idle());
@@ -133,7 +133,7 @@ const cases = {
     assert.equal((await sessionState(page)).clips[0].source.motion, 'walker');
     await page.locator('#source-shown').waitFor({ state: 'visible' });
     await page.screenshot({ path: `${output}/second_character.png` });
-    const canvas = page.locator('main canvas').first();
+    const canvas = page.locator('main canvas');
     const shown = await canvas.screenshot();
     await page.locator('#source-shown').uncheck();
     await settled(page);
@@ -141,7 +141,7 @@ const cases = {
   },
   async 'a mesh is hidden and shown'() {
     await page.locator('#meshes').evaluate((list) => { list.parentElement.open = true; });
-    const canvas = page.locator('main canvas').first();
+    const canvas = page.locator('main canvas');
     const shown = await canvas.screenshot();
     await page.locator('#meshes button').first().click();
     await settled(page);
@@ -160,7 +160,7 @@ const cases = {
     assert.equal(outlines.length, 1);
     assert.equal(joints[outlines[0].joint].name, joint);
     assert.ok(outlines[0].rim.every((at) => Math.abs(Math.hypot(...at) - 1) < 1e-6));
-    const canvas = page.locator('main canvas').first();
+    const canvas = page.locator('main canvas');
     const shown = await canvas.screenshot();
     await page.locator('#limits').uncheck();
     await settled(page);
@@ -178,7 +178,7 @@ const cases = {
     // One with something that hangs on it, to see it turn.
     const child = joints.findIndex(({ parent }) => parent > 0), name = joints[joints[child].parent].name;
     await page.locator(`#joint-${joints[child].parent}`).click();
-    await page.locator('canvas').first().focus();
+    await page.locator('main canvas').focus();
     await page.keyboard.press('1');
     await page.keyboard.press('r');
     await settled(page);

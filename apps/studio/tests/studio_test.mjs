@@ -90,7 +90,7 @@ const cases = {
     assert.ok(distance(await jointPosition(page, name), before) > 0.01);
   },
   async 'turn mode keeps the distance from the parent'() {
-    await page.locator('canvas').focus();
+    await page.locator('main canvas').focus();
     await page.keyboard.press('r');
     const name = await freeHandle(), { joints } = await sessionState(page);
     const parent = joints[joints.find((joint) => joint.name === name).parent].name;
@@ -137,7 +137,7 @@ const cases = {
     await page.keyboard.press('ArrowDown');
     const { name } = (await sessionState(page)).joints[await page.evaluate(() => globalThis.limberStudio.selected())];
     const before = await jointPosition(page, name);
-    await page.locator('canvas').focus();
+    await page.locator('main canvas').focus();
     await page.keyboard.press('ArrowRight');
     await settled(page);
     assert.ok(distance(await jointPosition(page, name), before) > 1e-4);
@@ -154,7 +154,7 @@ const cases = {
     const rest = await jointPosition(page, name);
     await dragByMouse(await jointPlace(page, name), { x: 40, y: -30 });
     const posed = await jointPosition(page, name);
-    await page.locator('canvas').focus();
+    await page.locator('main canvas').focus();
     await page.keyboard.press('k');
     await settled(page);
     assert.equal(await page.locator('#keys i').count(), 2);
@@ -199,7 +199,7 @@ const cases = {
     await page.locator('#gizmo').check();
     const name = await freeHandle();
     await page.locator('#joints li', { hasText: name }).first().click();
-    await page.locator('canvas').focus();
+    await page.locator('main canvas').focus();
     await page.keyboard.press('1');
     await page.keyboard.press('g');
     await settled(page);
