@@ -5,7 +5,7 @@
 
 #include "limber/asset/asset.h"
 #include "limber/core/types.h"
-#include "limber/skeleton/rig.h"
+#include "limber/skeleton/skin_weights.h"
 
 struct aiMesh;
 

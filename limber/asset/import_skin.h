@@ -8,7 +8,7 @@
 #include <assimp/matrix4x4.h>
 
 #include "limber/core/types.h"
-#include "limber/skeleton/rig.h"
+#include "limber/skeleton/skin_weights.h"
 
 struct aiMesh;
 struct aiNode;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "limber/asset/geometry.h"
-#include "limber/skeleton/rig.h"
+#include "limber/skeleton/skin_weights.h"
 
 namespace limber {
 

@@ -6,7 +6,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "limber/asset/geometry.h"
-#include "limber/skeleton/rig.h"
+#include "limber/skeleton/skin_weights.h"
 
 namespace limber {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "limber/mesh/tri_mesh.h"
-#include "limber/skeleton/rig.h"
+#include "limber/skeleton/skin_weights.h"
 
 namespace limber {
 

@@ -8,7 +8,7 @@
 
 #include "limber/core/error.h"
 #include "limber/preview/texture.h"
-#include "limber/skeleton/rig.h"
+#include "limber/skeleton/skin_weights.h"
 
 namespace limber {
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "limber/skeleton/rig.h"
+#include "limber/skeleton/skin_weights.h"
 
 namespace limber {
 

@@ -8,7 +8,7 @@
 
 #include "limber/core/error.h"
 #include "limber/mesh/tri_mesh.h"
-#include "limber/skeleton/rig.h"
+#include "limber/skeleton/skin_weights.h"
 #include "limber/skinning/influence_table.h"
 
 namespace limber {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "limber/core/types.h"
-#include "limber/skeleton/rig.h"
+#include "limber/skeleton/skin_weights.h"
 
 namespace limber {
 

@@ -1,4 +1,4 @@
-#include "limber/skeleton/rig.h"
+#include "limber/skeleton/skin_weights.h"
 
 #include <algorithm>
 
