@@ -11,6 +11,7 @@
 #include "limber/ik/ik_skeletons.h"
 #include "limber/ik/ik_solver.h"
 #include "limber/ik/rotation.h"
+#include "limber/ik/two_bone.h"
 
 namespace limber {
 
@@ -166,6 +167,12 @@ bool isSolved(const IkProblemSet& set, const IkResult& result) {
                      [](const IkTargetResult& target) { return target.outcome != IkOutcome::kStuck; });
 }
 
+void takeTimes(std::vector<double>& times, IkScore& score) {
+  std::sort(times.begin(), times.end());
+  score.medianMicros = times[times.size() / 2];
+  score.percentile99Micros = times[std::min(times.size() - 1, times.size() * 99 / 100)];
+}
+
 IkScore scoreMethod(const IkMethod& method, const IkProblemSet& set, IkOptions options) {
   if (set.tolerance > 0) options.tolerance = set.tolerance;
   if (set.follows) options.restarts = 0;
@@ -195,9 +202,35 @@ IkScore scoreMethod(const IkMethod& method, const IkProblemSet& set, IkOptions o
   }
   score.iterations /= score.problems;
   score.restarts /= score.problems;
-  std::sort(times.begin(), times.end());
-  score.medianMicros = times[times.size() / 2];
-  score.percentile99Micros = times[std::min(times.size() - 1, times.size() * 99 / 100)];
+  takeTimes(times, score);
+  return score;
+}
+
+// The analytic solution of one limb by itself, without a skeleton around it. Each problem is timed over many solves,
+// since the clock takes as long as one.
+IkScore scoreClosedForm(const IkEvaluationOptions& options) {
+  constexpr int kRepeats = 100;
+  Random random(options.seed);
+  IkScore score;
+  score.method = "two-bone";
+  score.set = kClosedFormSet;
+  score.iterations = 1;
+  TwoBone limb{Vec3::Zero(), Vec3(0.45, 0.02, 0), Vec3(kChainLength, 0, 0.03), Vec3::Zero(), {}};
+  std::vector<double> times;
+  for (Index i = 0; i < options.problems; ++i) {
+    limb.target = kChainLength * random.uniform(0.1, 0.99) * random.direction();
+    TwoBoneTurns turns;
+    const double begin = secondsNow();
+    for (int repeat = 0; repeat < kRepeats; ++repeat) {
+      turns = solveTwoBone(limb);
+      limb.target += 1e-12 * turns.start.vec();  // so that no solve can be left out
+    }
+    times.push_back(1e6 * (secondsNow() - begin) / kRepeats);
+    const Vec3 end = turns.start * (limb.middle - limb.start) + turns.middle * (limb.end - limb.middle);
+    ++score.problems;
+    score.solved += (end - limb.target).norm() <= options.ik.tolerance * kChainLength ? 1 : 0;
+  }
+  takeTimes(times, score);
   return score;
 }
 
@@ -256,6 +289,8 @@ std::vector<IkScore> evaluateIk(const IkEvaluationOptions& options, Progress& pr
       scores.push_back(scoreMethod(*method, sets[s], options.ik));
     }
   }
+  const auto isTwoBone = [](const IkMethod* method) { return method->name == "two-bone"; };
+  if (std::any_of(methods.begin(), methods.end(), isTwoBone)) scores.push_back(scoreClosedForm(options));
   progress.finish();
   return scores;
 }

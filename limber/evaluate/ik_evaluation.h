@@ -44,6 +44,9 @@ struct IkProblemSet {
 // circles, frame by frame. `count` problems each, the same for the same seed.
 std::vector<IkProblemSet> ikProblemSets(Index count, std::uint64_t seed);
 
+// Where the analytic two-bone solution is measured by itself, without a solver round it.
+inline constexpr std::string_view kClosedFormSet = "limb alone";
+
 // What one method did on one set.
 struct IkScore {
   std::string method, set;
@@ -67,8 +70,8 @@ struct IkEvaluationOptions {
   IkEvaluationOptions() { ik.tolerance = 1e-3; }
 };
 
-// Runs each method on each set that it can solve (two-bone: chains of 3). Throws Error kBadArgument for a method that
-// is not known.
+// Runs each method on each set that it can solve (two-bone: chains of 3, and kClosedFormSet). Throws Error kBadArgument
+// for a method that is not known.
 std::vector<IkScore> evaluateIk(const IkEvaluationOptions& options, Progress& progress);
 
 // The method that solves the most of what is reachable or borderline with limits; the faster one where they tie.

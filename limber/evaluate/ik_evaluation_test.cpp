@@ -34,7 +34,7 @@ TEST(IkEvaluation, ScoresWhatMethodsDo) {
   options.methods = {"two-bone", "dls"};
   Progress progress;
   const std::vector<IkScore> scores = evaluateIk(options, progress);
-  ASSERT_EQ(scores.size(), 31u + 6u) << "two-bone on chains of three joints only";
+  ASSERT_EQ(scores.size(), 31u + 6u + 1u) << "two-bone on chains of three joints and by itself";
   for (const IkScore& score : scores) {
     EXPECT_EQ(score.problems, 5u);
     EXPECT_LE(score.medianMicros, score.percentile99Micros);
@@ -42,6 +42,9 @@ TEST(IkEvaluation, ScoresWhatMethodsDo) {
     if (score.limited || score.method == "two-bone") continue;
     EXPECT_EQ(score.solved, 5u) << score.set;
   }
+  const IkScore* closedForm = findIkScore(scores, "two-bone", kClosedFormSet);
+  ASSERT_NE(closedForm, nullptr);
+  EXPECT_EQ(closedForm->solved, 5u);
   EXPECT_EQ(bestIkMethodWithLimits(scores), "dls");
   EXPECT_NE(ikScoreTable(scores).find("| chain-10 reachable | dls | 100.0 % |"), std::string::npos);
   EXPECT_NE(ikScoreJson(scores).find("\"best_with_limits\": \"dls\""), std::string::npos);

@@ -139,16 +139,19 @@ LIMBER_INLINE Lanes3 xyzOf(const Lanes4& a) {
 }
 
 LIMBER_INLINE Lanes3 loadLanes3(const float* from) {
-  return {Float4{from[0], from[3], from[6], from[9]}, Float4{from[1], from[4], from[7], from[10]},
-          Float4{from[2], from[5], from[8], from[11]}};
+  const Float4 a = loadFloat4(from), b = loadFloat4(from + 4), c = loadFloat4(from + 8);  // xyzx yzxy zxyz
+  const Float4 yz = __builtin_shufflevector(a, b, 1, 2, 4, 5), xy = __builtin_shufflevector(b, c, 2, 3, 5, 6);
+  return {__builtin_shufflevector(a, xy, 0, 3, 4, 6), __builtin_shufflevector(yz, xy, 0, 2, 5, 7),
+          __builtin_shufflevector(yz, c, 1, 3, 4, 7)};
 }
 
 LIMBER_INLINE void storeLanes3(const Lanes3& value, float* to) {
-  for (int i = 0; i < 4; ++i) {
-    to[3 * i] = value.x[i];
-    to[3 * i + 1] = value.y[i];
-    to[3 * i + 2] = value.z[i];
-  }
+  const Float4 xy = __builtin_shufflevector(value.x, value.y, 0, 2, 4, 6),
+               yz = __builtin_shufflevector(value.y, value.z, 1, 3, 5, 7),
+               zx = __builtin_shufflevector(value.z, value.x, 0, 2, 5, 7);
+  storeFloat4(__builtin_shufflevector(xy, zx, 0, 2, 4, 6), to);
+  storeFloat4(__builtin_shufflevector(yz, xy, 0, 2, 5, 7), to + 4);
+  storeFloat4(__builtin_shufflevector(zx, yz, 1, 3, 5, 7), to + 8);
 }
 
 LIMBER_INLINE Lanes3 operator+(const Lanes3& a, const Lanes3& b) {
