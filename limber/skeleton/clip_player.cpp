@@ -255,7 +255,9 @@ void ClipPlayer::Packed::write(std::size_t group, const Locals& locals, std::spa
                           {s[2] * (xz + yw), s[2] * (yz - xw), s[2] * (1.0f - xx - yy)},
                           {t[0], t[1], t[2]}};
   const std::size_t first = 4 * group, lanes = std::min<std::size_t>(4, parents.size() - first);
-  for (std::size_t lane = 0; lane < lanes; ++lane) {
+#pragma GCC unroll 4  // with lanes known by number nothing goes through memory
+  for (std::size_t lane = 0; lane < 4; ++lane) {
+    if (lane == lanes) break;
     Float4 parent[4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
     if (parents[first + lane] != kNoIndex) std::memcpy(parent, globals[parents[first + lane]].data(), sizeof(parent));
     Float4 columns[4];
