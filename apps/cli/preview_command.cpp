@@ -58,7 +58,7 @@ Bytes clipPicture(const Asset& asset, const Options& options, const PreviewOptio
   const std::vector<Image> images = renderClip(asset, clip, momentsOf(options, clip), preview, warnings);
   if (options.animate) return encodeApng(images, options.fps);
   const int columns = static_cast<int>(std::ceil(std::sqrt(2.0 * static_cast<double>(images.size()))));
-  return encodePng(contactSheet(images, columns));
+  return encodePng(contactSheet(images, columns, renderBackdrop(preview)));
 }
 
 Bytes stillPicture(const Asset& asset, const PreviewOptions& preview, Warnings& warnings) {

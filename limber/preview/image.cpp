@@ -37,26 +37,29 @@ Bytes encodePng(const Image& image) {
   return bytes;
 }
 
-Image contactSheet(std::span<const Image> frames, int columns) {
+Image contactSheet(std::span<const Image> frames, int columns, const Image& empty) {
   if (frames.empty() || columns < 1)
     throw Error(ErrorCode::kBadArgument, "a contact sheet needs a picture and a column");
-  for (const Image& frame : frames) {
+  const auto checkFits = [&](const Image& frame) {
     checkSize(frame);
     if (frame.width != frames[0].width || frame.height != frames[0].height) {
       throw Error(ErrorCode::kBadArgument, "the pictures of a contact sheet differ in size");
     }
-  }
+  };
+  std::for_each(frames.begin(), frames.end(), checkFits);
+  checkFits(empty);
   const int count = static_cast<int>(frames.size());
   columns = std::min(columns, count);
   const int rows = (count + columns - 1) / columns;
   Image sheet{columns * frames[0].width, rows * frames[0].height, {}};
   const std::size_t frameStride = kChannels * std::size_t(frames[0].width);
   const std::size_t sheetStride = frameStride * std::size_t(columns);
-  sheet.pixels.assign(sheetStride * std::size_t(sheet.height), 255);
-  for (int i = 0; i < count; ++i) {
-    for (int y = 0; y < frames[0].height; ++y) {
-      const std::size_t row = std::size_t(i / columns) * std::size_t(frames[0].height) + std::size_t(y);
-      std::copy_n(frames[i].pixels.begin() + static_cast<std::ptrdiff_t>(frameStride * std::size_t(y)), frameStride,
+  sheet.pixels.resize(sheetStride * std::size_t(sheet.height));
+  for (int i = 0; i < rows * columns; ++i) {
+    const Image& frame = i < count ? frames[std::size_t(i)] : empty;
+    for (int y = 0; y < frame.height; ++y) {
+      const std::size_t row = std::size_t(i / columns) * std::size_t(frame.height) + std::size_t(y);
+      std::copy_n(frame.pixels.begin() + static_cast<std::ptrdiff_t>(frameStride * std::size_t(y)), frameStride,
                   sheet.pixels.begin() +
                       static_cast<std::ptrdiff_t>(row * sheetStride + std::size_t(i % columns) * frameStride));
     }

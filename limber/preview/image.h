@@ -21,8 +21,8 @@ void checkSize(const Image& image);
 // The same image gives the same bytes. Throws Error kBadArgument where the sizes do not match.
 Bytes encodePng(const Image& image);
 
-// Images of equal size side by side, `columns` in a row, left to right and top to bottom; the last row is filled with
-// white. Throws Error kBadArgument where there is none or sizes differ.
-Image contactSheet(std::span<const Image> frames, int columns);
+// Images of equal size side by side, `columns` in a row, left to right and top to bottom; `empty` fills the last row.
+// Throws Error kBadArgument where there is none or sizes differ.
+Image contactSheet(std::span<const Image> frames, int columns, const Image& empty);
 
 }  // namespace limber

@@ -33,9 +33,9 @@ TEST(EncodePng, RefusesPixelsThatDoNotFillTheImage) {
   EXPECT_THROW(encodePng({0, 0, {}}), Error);
 }
 
-TEST(ContactSheet, PlacesFramesRowByRowAndFillsWithWhite) {
+TEST(ContactSheet, PlacesFramesRowByRowAndFillsTheLastRow) {
   const std::vector<Image> frames = {gradient(2, 2, 10), gradient(2, 2, 20), gradient(2, 2, 30)};
-  const Image sheet = contactSheet(frames, 2);
+  const Image empty = gradient(2, 2, 40), sheet = contactSheet(frames, 2, empty);
   EXPECT_EQ(sheet.width, 4);
   EXPECT_EQ(sheet.height, 4);
   const auto pixel = [&](int x, int y) { return sheet.pixels[std::size_t((y * 4 + x) * 3)]; };
@@ -43,12 +43,15 @@ TEST(ContactSheet, PlacesFramesRowByRowAndFillsWithWhite) {
   EXPECT_EQ(pixel(1, 1), frames[0].pixels[9]);
   EXPECT_EQ(pixel(2, 0), frames[1].pixels[0]);
   EXPECT_EQ(pixel(0, 2), frames[2].pixels[0]);
-  EXPECT_EQ(pixel(3, 3), 255);
+  EXPECT_EQ(pixel(2, 2), empty.pixels[0]);
+  EXPECT_EQ(pixel(3, 3), empty.pixels[9]);
 }
 
 TEST(ContactSheet, RefusesFramesOfDifferentSizeAndNone) {
-  EXPECT_THROW(contactSheet(std::vector<Image>{gradient(2, 2, 0), gradient(3, 2, 0)}, 2), Error);
-  EXPECT_THROW(contactSheet({}, 2), Error);
+  const Image one = gradient(2, 2, 0), other = gradient(3, 2, 0);
+  EXPECT_THROW(contactSheet(std::vector<Image>{one, other}, 2, one), Error);
+  EXPECT_THROW(contactSheet(std::vector<Image>{one, one}, 2, other), Error);
+  EXPECT_THROW(contactSheet({}, 2, one), Error);
 }
 
 }  // namespace

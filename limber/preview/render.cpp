@@ -271,12 +271,17 @@ void Painter::shadeOverlay(Fragment& fragment) const {
   fragment.shaded = fragment.color.cwiseProduct(shade.diffuse) + 0.25 * shade.specular;
 }
 
-// A bright backdrop, a little darker towards the corners, with the model's shadow on the ground.
-Vec3 Painter::background(double x, double y) const {
-  const double across = 2 * x / options_.width - 1, down = 2 * y / options_.height - 1;
+// A bright backdrop, a little darker towards the corners. Pixels, from the upper left corner.
+Vec3 backdropAt(double x, double y, const PreviewOptions& options) {
+  const double across = 2 * x / options.width - 1, down = 2 * y / options.height - 1;
   const double vignette = 1 - 0.012 * (across * across + down * down);
   const double level = (0.925 - 0.045 * (0.5 + 0.5 * down)) * vignette;
-  const Vec3 backdrop = level * Vec3(0.985, 0.995, 1.01);
+  return level * Vec3(0.985, 0.995, 1.01);
+}
+
+// The backdrop with the model's shadow on the ground.
+Vec3 Painter::background(double x, double y) const {
+  const Vec3 backdrop = backdropAt(x, y, options_);
   const Vec3 ray = camera_.ray(x, y);
   if (ray.y() >= -1e-6) return backdrop;
   const Vec3 ground = camera_.eye + ray * ((light_.groundHeight() - camera_.eye.y()) / ray.y());
@@ -319,12 +324,11 @@ void Painter::paintPixel(int x, int y, std::size_t base, const TileSamples& mode
   for (int c = 0; c < 3; ++c) rgb[c] = srgbByte(sum[c] / kSamplesPerPixel);
 }
 
-void checkOptions(const Scene& scene, const PreviewOptions& options) {
+void checkPictureSize(const PreviewOptions& options) {
   if (options.width < kSmallest || options.height < kSmallest || options.width > kLargest ||
       options.height > kLargest) {
     throw Error(ErrorCode::kBadArgument, "a picture is 16 to 8192 pixels wide and high");
   }
-  if (scene.positions.empty()) throw Error(ErrorCode::kBadArgument, "there is nothing to show");
 }
 
 }  // namespace
@@ -339,8 +343,20 @@ PreviewShow parsePreviewShow(std::string_view name) {
 }
 
 Image render(const Scene& scene, const PreviewOptions& options) {
-  checkOptions(scene, options);
+  checkPictureSize(options);
+  if (scene.positions.empty()) throw Error(ErrorCode::kBadArgument, "there is nothing to show");
   return Painter(scene, options).paint();
+}
+
+Image renderBackdrop(const PreviewOptions& options) {
+  checkPictureSize(options);
+  Image image{options.width, options.height, {}};
+  for (int y = 0; y < options.height; ++y) {
+    for (int x = 0; x < options.width; ++x) {
+      for (const double channel : backdropAt(x + 0.5, y + 0.5, options)) image.pixels.push_back(srgbByte(channel));
+    }
+  }
+  return image;
 }
 
 }  // namespace limber

@@ -35,4 +35,7 @@ struct PreviewOptions {
 // Cost: a fraction of a second for 1024 x 768 and 50k triangles; memory grows with the picture and the triangles.
 Image render(const Scene& scene, const PreviewOptions& options = {});
 
+// What such a picture shows where there is neither model nor shadow.
+Image renderBackdrop(const PreviewOptions& options);
+
 }  // namespace limber

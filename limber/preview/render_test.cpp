@@ -133,6 +133,15 @@ TEST(Render, AFixedFrameKeepsTheCameraStill) {
   EXPECT_GT(pixelAt(jump, 0.5, 0.73).level(), 3 * 210);
 }
 
+TEST(Render, TheBackdropIsWhatThePictureShowsBesideTheModel) {
+  const PreviewOptions options = smallPicture();
+  const Image image = render(ballScene(), options), backdrop = renderBackdrop(options);
+  ASSERT_EQ(backdrop.pixels.size(), image.pixels.size());
+  const std::ptrdiff_t rows = 3 * 96 * 5;  // above the ball and its shadow
+  EXPECT_TRUE(std::equal(image.pixels.begin(), image.pixels.begin() + rows, backdrop.pixels.begin()));
+  EXPECT_NE(image.pixels, backdrop.pixels);
+}
+
 TEST(Render, SaysWhatIsMissing) {
   Scene bare = ballScene();
   bare.joints.clear();
