@@ -208,9 +208,17 @@ TEST_F(Cli, RetargetPutsEachMotionIntoTheCharacter) {
   EXPECT_THAT(done.out, AllOf(HasSubstr("wave"), HasSubstr("6 frames at 10 a second"), HasSubstr("written: moving.glb")));
   EXPECT_THAT(run({"info", "moving.glb"}).out, AllOf(HasSubstr("wave: 0.500 s"), HasSubstr("bow: 0.500 s")));
   keep("moving.glb");
-  const Result measured = run({"evaluate", "motion", "moving.glb", "--source", "wave.bvh", "--json"});
+  const Result measured =
+      run({"evaluate", "motion", "moving.glb", "--source", "wave.bvh", "--truth", "moving.glb", "--json"});
   ASSERT_EQ(measured.code, 0) << measured.error;
-  EXPECT_LT(nlohmann::json::parse(measured.out).at("bone_direction_degrees").get<double>(), 0.5);
+  const nlohmann::json measures = nlohmann::json::parse(measured.out);
+  EXPECT_LT(measures.at("bone_direction_degrees").get<double>(), 0.5);
+  EXPECT_LT(measures.at("joint_error").get<double>(), 1e-12);
+  EXPECT_LT(measures.at("self_penetration_share").get<double>(), 0.1);
+  EXPECT_GE(measures.at("worst_self_penetration_share"), measures.at("self_penetration_share"));
+  const Result ofSkeletons = run({"evaluate", "motion", "wave.bvh", "--source", "wave.bvh"});
+  EXPECT_EQ(ofSkeletons.code, 0) << ofSkeletons.error;
+  EXPECT_THAT(ofSkeletons.out, AllOf(HasSubstr("contact agreement"), Not(HasSubstr("self-penetration"))));
   const Result again = run({"retarget", "hero.glb", "wave.bvh", "-o", "again.glb", "--map", "map.json", "-q"});
   EXPECT_EQ(again.code, 0) << again.error;
 }

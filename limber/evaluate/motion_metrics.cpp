@@ -250,24 +250,41 @@ std::string motionMetricsText(const MotionMetrics& m) {
                                          m.penetration, m.sourcePenetration));
   line("jerk", fmt::format("{:.3f} times the source's", m.jerk));
   line("contact agreement", fmt::format("{:.1f} %", 100 * m.contactAgreement));
+  if (const auto& inside = m.selfPenetration) {
+    line("self-penetration", fmt::format("{:.2f} % of the vertices, {:.2f} % in frame {}", 100 * inside->mean,
+                                         100 * inside->worst, inside->worstFrame));
+  }
+  if (m.jointError) {
+    line("joint error", fmt::format("{:.3g} of height squared, {:.3g} relative to the root", m.jointError->global,
+                                    m.jointError->rootRelative));
+  }
   return text;
 }
 
 std::string motionMetricsJson(const MotionMetrics& m) {
-  const nlohmann::ordered_json json = {{"frames", m.frames},
-                                       {"matched_parts", m.matched},
-                                       {"bone_direction_degrees", m.boneDirection},
-                                       {"end_effector_share", m.endEffector},
-                                       {"planted_share", m.planted},
-                                       {"sliding_heights_per_second", m.sliding},
-                                       {"sliding_centimetres_per_second", 100 * m.sliding * m.height},
-                                       {"source_sliding_heights_per_second", m.sourceSliding},
-                                       {"penetration_heights", m.penetration},
-                                       {"penetration_millimetres", 1000 * m.penetration * m.height},
-                                       {"source_penetration_heights", m.sourcePenetration},
-                                       {"jerk_ratio", m.jerk},
-                                       {"contact_agreement", m.contactAgreement},
-                                       {"height_metres", m.height}};
+  nlohmann::ordered_json json = {{"frames", m.frames},
+                                 {"matched_parts", m.matched},
+                                 {"bone_direction_degrees", m.boneDirection},
+                                 {"end_effector_share", m.endEffector},
+                                 {"planted_share", m.planted},
+                                 {"sliding_heights_per_second", m.sliding},
+                                 {"sliding_centimetres_per_second", 100 * m.sliding * m.height},
+                                 {"source_sliding_heights_per_second", m.sourceSliding},
+                                 {"penetration_heights", m.penetration},
+                                 {"penetration_millimetres", 1000 * m.penetration * m.height},
+                                 {"source_penetration_heights", m.sourcePenetration},
+                                 {"jerk_ratio", m.jerk},
+                                 {"contact_agreement", m.contactAgreement},
+                                 {"height_metres", m.height}};
+  if (const auto& inside = m.selfPenetration) {
+    json["self_penetration_share"] = inside->mean;
+    json["worst_self_penetration_share"] = inside->worst;
+    json["worst_self_penetration_frame"] = inside->worstFrame;
+  }
+  if (m.jointError) {
+    json["joint_error"] = m.jointError->global;
+    json["root_relative_joint_error"] = m.jointError->rootRelative;
+  }
   return json.dump(2) + "\n";
 }
 

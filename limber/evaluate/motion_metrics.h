@@ -4,9 +4,16 @@
 #include <optional>
 #include <string>
 
+#include "limber/evaluate/self_penetration.h"
 #include "limber/retarget/retarget_clip.h"
 
 namespace limber {
+
+// Against a known answer for the same skeleton: mean of the joints' squared distances, over height squared.
+struct JointError {
+  double global = 0;        // as the joints stand
+  double rootRelative = 0;  // with both pelvises in one place
+};
 
 // Lengths in heights of the skeleton they are measured on: from its lowest foot joint to its head's joint, standing.
 // Planted is what stands still in the source: a foot's or the toes' joint within 0.03 heights of where it is when
@@ -25,17 +32,17 @@ struct MotionMetrics {
   double jerk = 0;                      // root mean square jerk of limbs' joints against the source's (1: the same)
   double contactAgreement = 0;          // share of the source's planted frames that are planted in the result too
   double height = 1, sourceHeight = 1;  // metres
+
+  // Not by measureMotion: with a skin, and with a known answer.
+  std::optional<SelfPenetration> selfPenetration;
+  std::optional<JointError> jointError;
 };
 
 // `source` and `target` are the same moments of both. People only: throws Error kUnsupported for other skeletons, and
 // kBadArgument where the counts of frames differ or there are fewer than 5.
 MotionMetrics measureMotion(const RetargetSetup& setup, const PoseSequence& source, const PoseSequence& target);
 
-// Against a known answer for the same skeleton: mean of the joints' squared distances, over height squared.
-struct JointError {
-  double global = 0;        // as the joints stand
-  double rootRelative = 0;  // with both pelvises in one place
-};
+// `truth` and `target` are the same moments of the setup's target. Throws Error as measureMotion does.
 JointError jointErrorOf(const RetargetSetup& setup, const PoseSequence& truth, const PoseSequence& target);
 
 std::string motionMetricsText(const MotionMetrics& metrics);

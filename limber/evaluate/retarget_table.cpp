@@ -5,21 +5,28 @@
 #include <fmt/format.h>
 
 #include "limber/asset/motion_io.h"
+#include "limber/evaluate/skinned_model.h"
 
 namespace limber {
 
 namespace {
 
-struct Named {
+// Enough for means over many pairs.
+constexpr SelfPenetrationOptions kSparse = {.mostFrames = 10, .mostVertices = 1500};
+
+struct Character {
   std::string name;
   Skeleton skeleton;
+  std::optional<SkinnedModel> model;
 };
 
-std::vector<Named> readCharacters(std::span<const std::filesystem::path> files, Warnings& skipped) {
-  std::vector<Named> characters;
+std::vector<Character> readCharacters(std::span<const std::filesystem::path> files, Warnings& skipped) {
+  std::vector<Character> characters;
   for (const std::filesystem::path& file : files) {
     try {
-      characters.push_back({file.stem().string(), readMotion(file).skeleton});
+      const Asset asset = readAsset(file);
+      characters.push_back({file.stem().string(), animatedSkeleton(asset).skeleton, std::nullopt});
+      if (hasRig(asset)) characters.back().model = readSkinnedModel(asset);
     } catch (const Error& error) {
       skipped.add("unreadable", "characters that cannot be read left out", error.what());
     }
@@ -47,13 +54,13 @@ class Scorer {
         continue;
       }
       const std::string name = motion.clips.size() == 1 ? motion.name : motion.name + ":" + clip.name;
-      for (const Named& character : characters_) scoreOn(motion.skeleton, source, name, character, scores);
+      for (const Character& character : characters_) scoreOn(motion.skeleton, source, name, character, scores);
     }
   }
 
  private:
-  void scoreOn(const Skeleton& skeleton, const PoseSequence& source, const std::string& motion, const Named& character,
-               std::vector<RetargetScore>& scores) const {
+  void scoreOn(const Skeleton& skeleton, const PoseSequence& source, const std::string& motion,
+               const Character& character, std::vector<RetargetScore>& scores) const {
     try {
       const RetargetSetup setup(skeleton, character.skeleton, matchSkeletons(skeleton, character.skeleton), {},
                                 &source);
@@ -62,8 +69,9 @@ class Scorer {
         const PoseSequence result = retargetFrames(*method, setup, source);
         const double seconds = secondsNow() - start;
         const double rate = seconds > 0 ? static_cast<double>(source.poses.size()) / seconds : 0;
-        scores.push_back(
-            {motion, character.name, std::string(method->name), measureMotion(setup, source, result), rate});
+        MotionMetrics metrics = measureMotion(setup, source, result);
+        if (character.model) metrics.selfPenetration = measureSelfPenetration(*character.model, result.poses, kSparse);
+        scores.push_back({motion, character.name, std::string(method->name), metrics, rate});
       }
     } catch (const Error& error) {
       skipped_.add("unmatched", "pairs that cannot be compared left out",
@@ -74,7 +82,7 @@ class Scorer {
   const RetargetTrial& trial_;
   Warnings& skipped_;
   std::vector<const RetargetMethod*> methods_;
-  std::vector<Named> characters_;
+  std::vector<Character> characters_;
 };
 
 // Mean and worst of one measure.
@@ -114,10 +122,10 @@ std::string retargetMethodTable(std::span<const RetargetScore> scores) {
   }
   std::string table =
       "| method | bones, degrees | hands and feet, % of the limb | sliding, heights/s | of the source "
-      "| below ground, mm of 1.7 m | jerk, times the source's | contacts kept, % | frames/s |\n"
-      "|---|---|---|---|---|---|---|---|---|\n";
+      "| below ground, mm of 1.7 m | jerk, times the source's | contacts kept, % | inside itself, % | frames/s |\n"
+      "|---|---|---|---|---|---|---|---|---|---|\n";
   for (const std::string& method : methods) {
-    Summary bones, ends, sliding, source, depth, jerk, contacts, rate;
+    Summary bones, ends, sliding, source, depth, jerk, contacts, inside, rate;
     for (const RetargetScore& score : scores) {
       if (score.method != method) continue;
       const MotionMetrics& m = score.metrics;
@@ -128,11 +136,12 @@ std::string retargetMethodTable(std::span<const RetargetScore> scores) {
       depth.add(1700 * m.penetration);
       jerk.add(m.jerk);
       contacts.add(100 * m.contactAgreement);
+      if (m.selfPenetration) inside.add(100 * m.selfPenetration->mean);
       rate.add(score.framesPerSecond);
     }
-    table += fmt::format("| {} | {} | {} | {} | {} | {} | {} | {:.1f} | {:.0f} |\n", method, bones.text(1),
+    table += fmt::format("| {} | {} | {} | {} | {} | {} | {} | {:.1f} | {} | {:.0f} |\n", method, bones.text(1),
                          ends.text(1), sliding.text(3), source.text(3), depth.text(1), jerk.text(2),
-                         contacts.sum / contacts.count, rate.sum / rate.count);
+                         contacts.sum / contacts.count, inside.count > 0 ? inside.text(1) : "-", rate.sum / rate.count);
   }
   return table;
 }
@@ -140,13 +149,13 @@ std::string retargetMethodTable(std::span<const RetargetScore> scores) {
 std::string retargetScoresTsv(std::span<const RetargetScore> scores) {
   std::string text =
       "motion\tcharacter\tmethod\tbones\tends\tsliding\tsource_sliding\tpenetration\tsource_penetration\tjerk\t"
-      "contacts\tframes_per_second\n";
+      "contacts\tself_penetration\tframes_per_second\n";
   for (const RetargetScore& score : scores) {
     const MotionMetrics& m = score.metrics;
-    text += fmt::format("{}\t{}\t{}\t{:.3f}\t{:.4f}\t{:.4f}\t{:.4f}\t{:.5f}\t{:.5f}\t{:.3f}\t{:.3f}\t{:.0f}\n",
+    text += fmt::format("{}\t{}\t{}\t{:.3f}\t{:.4f}\t{:.4f}\t{:.4f}\t{:.5f}\t{:.5f}\t{:.3f}\t{:.3f}\t{}\t{:.0f}\n",
                         score.motion, score.character, score.method, m.boneDirection, m.endEffector, m.sliding,
                         m.sourceSliding, m.penetration, m.sourcePenetration, m.jerk, m.contactAgreement,
-                        score.framesPerSecond);
+                        m.selfPenetration ? fmt::format("{:.5f}", m.selfPenetration->mean) : "", score.framesPerSecond);
   }
   return text;
 }

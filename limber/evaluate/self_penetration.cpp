@@ -1,0 +1,104 @@
+#include "limber/evaluate/self_penetration.h"
+
+#include <algorithm>
+#include <span>
+
+#include "limber/core/error.h"
+#include "limber/core/parallel.h"
+#include "limber/mesh/normals.h"
+#include "limber/mesh/prepare.h"
+#include "limber/mesh/winding_number.h"
+#include "limber/skinning/deformer.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kOffSurface = 0.001;  // of the longest side in bind pose
+constexpr double kInside = 0.5;        // winding number
+constexpr std::size_t kGrain = 64;
+
+// At most `most` of the numbers below `count`, evenly, the first and the last among them.
+std::vector<std::size_t> evenly(std::size_t count, std::size_t most) {
+  std::vector<std::size_t> chosen;
+  const std::size_t number = std::min(count, std::max<std::size_t>(most, 1));
+  for (std::size_t i = 0; i < number; ++i) chosen.push_back(number > 1 ? i * (count - 1) / (number - 1) : 0);
+  return chosen;
+}
+
+// The model with one vertex for each place, so that normals are those of the whole surface.
+SkinnedModel weldedModel(const SkinnedModel& model, double& size) {
+  PreparedMesh prepared = prepareMesh(model.mesh.positions, model.mesh.triangles);
+  size = prepared.frame.scale;
+  SkinnedModel welded;
+  welded.skeleton = model.skeleton;
+  welded.mesh = std::move(prepared.mesh);
+  const Index count = welded.mesh.vertexCount(), slots = model.weights.slots;
+  welded.weights = {slots, std::vector<Index>(std::size_t{count} * slots),
+                    std::vector<float>(std::size_t{count} * slots)};
+  for (std::size_t v = 0; v < prepared.weldedVertex.size(); ++v) {
+    const Index to = prepared.weldedVertex[v];
+    welded.mesh.positions[to] = model.mesh.positions[v];
+    std::ranges::copy(model.weights.jointsOf(static_cast<Index>(v)), &welded.weights.joints[std::size_t{to} * slots]);
+    std::ranges::copy(model.weights.weightsOf(static_cast<Index>(v)), &welded.weights.weights[std::size_t{to} * slots]);
+  }
+  normalizeWeights(welded.weights);
+  return welded;
+}
+
+// How often the surface winds round the points just off those vertices; nothing is off a vertex without a triangle.
+std::vector<double> windingOff(const TriMesh& mesh, std::span<const Index> vertices, double offset) {
+  const WindingNumber winding(mesh);
+  const std::vector<Vec3> normals = areaNormals<Vec3f>(mesh.positions, mesh.triangles);
+  std::vector<double> numbers(vertices.size());
+  parallelFor(vertices.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Index v = vertices[i];
+      numbers[i] = winding.at(mesh.position(v) + offset * normals[v].normalized());
+    }
+  });
+  return numbers;
+}
+
+}  // namespace
+
+SelfPenetration measureSelfPenetration(const SkinnedModel& model, const std::vector<Pose>& poses,
+                                       const SelfPenetrationOptions& options) {
+  if (poses.empty()) throw Error(ErrorCode::kBadArgument, "there is no frame to look for self-penetration in");
+  double size = 1;
+  const SkinnedModel skin = weldedModel(model, size);
+  checkWeights(skin.weights, skin.skeleton.jointCount());
+
+  std::vector<Index> sampled, outside;
+  for (const std::size_t v : evenly(skin.mesh.positions.size(), options.mostVertices)) {
+    sampled.push_back(static_cast<Index>(v));
+  }
+  std::vector<double> bound;  // winding numbers in bind pose of those outside
+  const std::vector<double> rest = windingOff(skin.mesh, sampled, kOffSurface * size);
+  for (std::size_t i = 0; i < sampled.size(); ++i) {
+    if (rest[i] > kInside) continue;
+    outside.push_back(sampled[i]);
+    bound.push_back(rest[i]);
+  }
+
+  SelfPenetration result;
+  const Deformer& deformer = findDeformer("linear-blend");
+  std::vector<float> scratch(deformer.scratchSize(skin.skeleton.jointCount()));
+  TriMesh posed = skin.mesh;
+  const std::vector<std::size_t> frames = evenly(poses.size(), options.mostFrames);
+  for (const std::size_t f : frames) {
+    const std::vector<Affine> transforms = skinTransforms(skin.skeleton, poses[f]);
+    deformer.deform({skin.mesh.positions, {}, skin.weights, transforms, {}}, {posed.positions, {}}, scratch);
+    const std::vector<double> winding = windingOff(posed, outside, kOffSurface * size);
+    std::size_t inside = 0;
+    for (std::size_t i = 0; i < outside.size(); ++i) inside += winding[i] > kInside && winding[i] - bound[i] > kInside;
+    const double share = static_cast<double>(inside) / static_cast<double>(std::max<std::size_t>(outside.size(), 1));
+    result.mean += share / static_cast<double>(frames.size());
+    if (share <= result.worst) continue;
+    result.worst = share;
+    result.worstFrame = f;
+  }
+  return result;
+}
+
+}  // namespace limber
