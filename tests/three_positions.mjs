@@ -1,10 +1,10 @@
 // Does three.js show a motion that limber wrote as glTF where it shows the BVH that it was read from?
 //
-//   node tests/three_positions.mjs LIMBER OUTPUT_FOLDER MOTION.bvh...
+//   node tests/three_positions.mjs LIMBER OUTPUT_FOLDER FILE...
 //
 // Converts each BVH to GLB, loads the BVH with three.js' own BVHLoader and the GLB with its GLTFLoader, plays both, and
 // compares the world positions of all joints at several moments. Then the GLB is converted to BVH, and that is compared
-// with the GLB. Ends with "N passed, N failed".
+// with the GLB. Of characters (.glb) the last clip is converted to BVH and compared. Ends with "N passed, N failed".
 import { execFileSync } from 'node:child_process';
 import { mkdirSync, readFileSync } from 'node:fs';
 import { basename, join } from 'node:path';
@@ -21,22 +21,36 @@ const player = (root, clip) => {
   const action = mixer.clipAction(clip);
   action.setLoop(2200).clampWhenFinished = true; // LoopOnce
   action.play();
-  return { root, duration: clip.duration, show: (seconds) => { mixer.setTime(seconds); root.updateMatrixWorld(true); } };
+  return { root, clip: clip.name, duration: clip.duration, show: (seconds) => { mixer.setTime(seconds); root.updateMatrixWorld(true); } };
 };
 
+// Without the offsets of joints with positions: three.js adds the two, where other programs replace the one by the other.
 function loadBvh(path) {
-  const { skeleton, clip } = new BVHLoader().parse(readFileSync(path, 'latin1'));
+  const text = readFileSync(path, 'latin1').replace(/OFFSET[^\n]*(\s*CHANNELS 6)/g, 'OFFSET 0 0 0$1');
+  const { skeleton, clip } = new BVHLoader().parse(text);
   const root = new Group();
   for (const bone of skeleton.bones) {
+    bone.name = plain(bone.name);
     if (!bone.parent) root.add(bone);
   }
+  for (const track of clip.tracks) track.name = track.name.replace(/^(.*)(\.\w+)$/, (_, joint, what) => plain(joint) + what);
   return player(root, clip);
 }
 
+// A GLB without its materials, whose pictures only a browser can read.
+function withoutMaterials(bytes) {
+  const length = bytes.readUInt32LE(12);
+  const document = JSON.parse(bytes.subarray(20, 20 + length));
+  for (const part of ['images', 'textures', 'materials']) delete document[part];
+  for (const mesh of document.meshes ?? []) mesh.primitives.forEach((primitive) => delete primitive.material);
+  const text = Buffer.from(JSON.stringify(document).padEnd(length)); // no longer than it was
+  return Buffer.concat([bytes.subarray(0, 20), text, bytes.subarray(20 + length)]);
+}
+
 async function loadGlb(path) {
-  const bytes = readFileSync(path);
+  const bytes = withoutMaterials(readFileSync(path));
   const gltf = await new GLTFLoader().parseAsync(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.length), '');
-  return player(gltf.scene, gltf.animations[0]);
+  return player(gltf.scene, gltf.animations.at(-1));
 }
 
 // three.js takes characters with a meaning in its property paths out of the names of glTF nodes.
@@ -72,27 +86,41 @@ function largestDistance(a, b) {
   return largest / size;
 }
 
-const [limber, folder, ...motions] = process.argv.slice(2);
-if (motions.length === 0) {
-  console.error('usage: node tests/three_positions.mjs LIMBER OUTPUT_FOLDER MOTION.bvh...');
+const [limber, folder, ...files] = process.argv.slice(2);
+if (files.length === 0) {
+  console.error('usage: node tests/three_positions.mjs LIMBER OUTPUT_FOLDER FILE...');
   process.exit(2);
 }
 mkdirSync(folder, { recursive: true });
+
+function convert(from, to, ...options) {
+  execFileSync(limber, ['convert', from, to, ...options, '--up', 'y', '--quiet'], { stdio: ['ignore', 'ignore', 'pipe'] });
+  return to;
+}
+
+// What is to be the same: name, reference, other.
+async function pairsOf(file) {
+  const inFolder = (ending) => join(folder, basename(file).replace(/\.(bvh|glb)$/, ending));
+  if (file.endsWith('.glb')) {
+    const character = await loadGlb(file);
+    const motion = convert(file, inFolder('.bvh'), '--clip', character.clip);
+    return [['character against BVH', loadBvh(motion), character]];
+  }
+  const glb = convert(file, inFolder('.glb')), back = convert(glb, inFolder('.bvh'));
+  return [['BVH against glTF', loadBvh(file), await loadGlb(glb)], ['glTF against BVH', loadBvh(back), await loadGlb(glb)]];
+}
+
 let passed = 0, failed = 0;
-for (const motion of motions) {
-  const glb = join(folder, basename(motion).replace(/bvh$/, 'glb')), back = join(folder, basename(motion));
+for (const file of files) {
   try {
-    execFileSync(limber, ['convert', motion, glb, '--up', 'y', '--quiet'], { stdio: ['ignore', 'ignore', 'pipe'] });
-    execFileSync(limber, ['convert', glb, back, '--up', 'y', '--quiet'], { stdio: ['ignore', 'ignore', 'pipe'] });
-    for (const [what, reference, other] of
-        [['BVH against glTF', loadBvh(motion), await loadGlb(glb)], ['glTF against BVH', loadBvh(back), await loadGlb(glb)]]) {
+    for (const [what, reference, other] of await pairsOf(file)) {
       const distance = largestDistance(reference, other);
       distance < kTolerance ? ++passed : ++failed;
-      if (!(distance < kTolerance)) console.log(`${motion}: ${what}: joints are ${distance} apart`);
+      if (!(distance < kTolerance)) console.log(`${file}: ${what}: joints are ${distance} apart`);
     }
   } catch (error) {
     ++failed;
-    console.log(`${motion}: ${error.message}`);
+    console.log(`${file}: ${error.message}`);
   }
 }
 console.log(`${passed} passed, ${failed} failed`);

@@ -104,14 +104,29 @@ common_motions() {
   done
 }
 
+# Characters of several makers, with a motion that limber put on them: their paths, one a line.
+characters_in_motion() {
+  local folder name characters=()
+  folder=$(shared_data) || return 1
+  mkdir -p "$output/retargeted"
+  for name in cesium_man.glb makehuman_mixamo.glb m2m_human_male.glb quaternius_man_casual.glb robot_expressive.glb \
+    kaykit_mannequin/manny_med_mod.gltf; do
+    characters+=("$output/retargeted/$(basename "${name%.*}").glb")
+    build/release/limber retarget "$folder/rigged/$name" "$folder/motions/fair1_wave_hello.bvh" --quiet -o "${characters[-1]}" || return 1
+  done
+  printf '%s\n' "${characters[@]}"
+}
+
 motions_in_three() {
-  local motions
+  local motions characters
   motions=$(common_motions) || { echo "   skipped: the shared motions are not there"; add_counts 0 0 1; return 0; }
-  install_node_packages . && counted node tests/three_positions.mjs build/release/limber "$output/three" $motions
+  characters=$(characters_in_motion) || return 1
+  install_node_packages . &&
+    counted node tests/three_positions.mjs build/release/limber "$output/three" $motions $characters
 }
 
 motions_in_blender() {
-  local motions motion glbs=()
+  local motions motion characters glbs=()
   motions=$(common_motions) || { echo "   skipped: the shared motions are not there"; add_counts 0 0 1; return 0; }
   need blender python3-numpy || return 1
   mkdir -p "$output/blender"
@@ -119,12 +134,13 @@ motions_in_blender() {
     glbs+=("$output/blender/$(basename "$motion" .bvh).glb")
     build/release/limber convert "$motion" "${glbs[-1]}" --quiet || return 1
   done
-  counted blender_script "${glbs[@]}"
+  characters=$(characters_in_motion) || return 1
+  counted blender_script "${glbs[@]}" $characters
 }
 
 # Blender says goodbye after the script's last line.
 blender_script() {
-  blender --background --factory-startup --python tests/blender_positions.py -- "$@" </dev/null | grep -v '^\(Blender\|$\)'
+  blender --background --factory-startup --python tests/blender_positions.py -- "$@" </dev/null | grep -v '^\(Blender\|Data are loaded\|glTF import\|$\)'
   return "${PIPESTATUS[0]}"
 }
 

@@ -115,8 +115,9 @@ void edit(Motion& motion, const Options& options, const Account& account) {
 
 void describe(const std::string& file, const Motion& motion, const Account& account) {
   account.line(fmt::format("{}: {} joints, {} clips", file, motion.skeleton.jointCount(), motion.clips.size()));
-  for (const Clip& clip : motion.clips) {
-    const double rate = measuredFrameRate(clip).value_or(motion.framesPerSecond);
+  for (std::size_t c = 0; c < motion.clips.size(); ++c) {
+    const Clip& clip = motion.clips[c];
+    const double rate = frameRateOf(motion, c);
     account.line(fmt::format("  {:<30} {:8.3f} s, {} frames at {:.6g} a second", clip.name, clip.duration(),
                              frameCount(clip, rate), rate));
   }

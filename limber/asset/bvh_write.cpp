@@ -56,7 +56,7 @@ class BvhWriter {
  public:
   BvhWriter(const Motion& motion, const BvhWriteOptions& options)
       : skeleton_(motion.skeleton), clip_(motion.clips[options.clip]), unit_(options.metresPerUnit) {
-    const double rate = options.fps.value_or(motion.framesPerSecond);
+    const double rate = options.fps.value_or(frameRateOf(motion, options.clip));
     frames_ = frameCount(clip_, rate);
     secondsPerFrame_ = 1 / rate;
     children_ = childrenOf(skeleton_);

@@ -11,7 +11,7 @@ namespace limber {
 struct BvhWriteOptions {
   std::size_t clip = 0;       // which of the motion's
   double metresPerUnit = 1;   // lengths are divided by it; a BVH does not say its unit
-  std::optional<double> fps;  // frames a second; none: the motion's
+  std::optional<double> fps;  // frames a second; none: the clip's
 };
 
 // The text of a BVH file: one clip, sampled from its start to its end. Joint positions come out as they are whatever

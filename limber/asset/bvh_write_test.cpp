@@ -11,6 +11,7 @@
 
 #include "limber/asset/bvh_read.h"
 #include "limber/core/parse_number.h"
+#include "limber/skeleton/clip_edit.h"
 #include "random_values.h"
 #include "shared_data.h"
 
@@ -159,6 +160,13 @@ TEST(WriteBvh, KeepsEndSitesAndUnits) {
   EXPECT_EQ(std::count(written.begin(), written.end(), '{'), std::count(written.begin(), written.end(), '}'));
   const Motion back = readBvh(asBytes(written), "a.bvh", {0.01, UpAxis::kY});
   EXPECT_LT(largestDistance(motion, back, 25), 1e-6);
+}
+
+TEST(WriteBvh, ALaterClipKeepsItsRate) {
+  Motion motion = randomMotion(6, false);
+  motion.clips.push_back(resampleClip(motion.clips[0], 50));
+  const std::string written = text(motion, {1, 1, {}});
+  EXPECT_NE(written.find("Frame Time: 0.02\n"), std::string::npos) << written.substr(written.find("Frame"), 60);
 }
 
 TEST(WriteBvh, ResamplesOnRequest) {

@@ -36,9 +36,9 @@ std::vector<RetargetedClip> retargetOnto(Asset& asset, const Motion& motion, con
                                           : matchSkeletons(motion.skeleton, character.skeleton);
   std::vector<RetargetedClip> reports;
   std::vector<Clip> clips;
-  for (const Clip& clip : motion.clips) {
-    const double rate =
-        options.frameRate.value_or(motion.clips.size() == 1 ? motion.framesPerSecond : frameRateOf(clip));
+  for (std::size_t c = 0; c < motion.clips.size(); ++c) {
+    const Clip& clip = motion.clips[c];
+    const double rate = options.frameRate.value_or(frameRateOf(motion, c));
     clips.push_back(retargetClip(method, motion.skeleton, clip, character.skeleton, map, options.retarget, rate));
     clips.back().name = motion.clips.size() == 1 ? motion.name : clip.name;
     reports.push_back({clips.back().name, frameCount(clip, rate), rate, map,

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "limber/core/error.h"
+#include "limber/skeleton/motion.h"
 
 namespace limber {
 
@@ -12,31 +13,11 @@ namespace {
 constexpr double kMostFrames = 4e6;
 constexpr double kMoved = 1e-7;  // of a translation, metres; of a rotation's components
 
-template <typename Value>
-void longest(const std::vector<Track<Value>>& tracks, const std::vector<float>*& times) {
-  for (const Track<Value>& track : tracks) {
-    if (!times || track.times.size() > times->size()) times = &track.times;
-  }
-}
-
 Quat nearTo(const Quat& rotation, const Quat& before) {
   return rotation.dot(before) < 0 ? Quat(-rotation.coeffs()) : rotation;
 }
 
 }  // namespace
-
-double frameRateOf(const Clip& clip) {
-  const std::vector<float>* times = nullptr;
-  longest(clip.rotations, times);
-  longest(clip.translations, times);
-  longest(clip.scales, times);
-  if (!times || times->size() < 2) return 30;
-  std::vector<float> steps;
-  for (std::size_t i = 1; i < times->size(); ++i) steps.push_back((*times)[i] - (*times)[i - 1]);
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return std::clamp(1.0 / static_cast<double>(*middle), 1.0, 1000.0);
-}
 
 PoseSequence sampleFrames(const Skeleton& skeleton, const Clip& clip, double frameRate) {
   const double last = std::round(clip.duration() * frameRate);

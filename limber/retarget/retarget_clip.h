@@ -10,9 +10,6 @@ namespace limber {
 // for more than 4 million frames.
 PoseSequence sampleFrames(const Skeleton& skeleton, const Clip& clip, double frameRate);
 
-// The frame rate at which the clip's keys lie (the median step of its longest track), 30 where it has one key only.
-double frameRateOf(const Clip& clip);
-
 // Poses as a clip with a key at each frame: rotations of joints that turn, translations of joints that move away from
 // where they rest. Rotations keep the short way from key to key. Where nothing moves, the first joint's rotation has
 // the keys, so that the clip lasts as long.

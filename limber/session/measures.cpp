@@ -8,6 +8,7 @@
 
 #include "limber/core/error.h"
 #include "limber/retarget/retarget_clip.h"
+#include "limber/skeleton/motion.h"
 
 namespace limber {
 

@@ -82,9 +82,8 @@ Clip retargeted(const ClipSource& source, const Skeleton& skeleton) {
   RetargetOptions options;
   options.reach = source.command.reach;
   options.contacts = source.command.contacts;
-  const double rate = motion.clips.size() == 1 ? motion.framesPerSecond : frameRateOf(clip);
   return retargetClip(findRetargetMethod(source.command.method), motion.skeleton, clip, skeleton, source.map, options,
-                      rate);
+                      frameRateOf(motion, source.clip));
 }
 
 // The same source for other joints. A map made by hand holds where all its joints are there still, else joints are

@@ -45,9 +45,22 @@ std::optional<double> measuredFrameRate(const Clip& clip) {
   if (!(*median > 0)) return std::nullopt;
   // Times in single precision: late in a long clip the steps are coarse, and 30 frames a second come out as 29.9999.
   constexpr double kEven = 0.02, kRounding = 2e-5;
-  const double mean = (double{times->back()} - times->front()) / static_cast<double>(times->size() - 1);
+  std::size_t last = times->size() - 1;
+  const double lastStep = double{(*times)[last]} - (*times)[last - 1];
+  if (last > 1 && std::abs(lastStep - *median) > kEven * *median) --last;  // a clip may end between two frames
+  const double mean = (double{(*times)[last]} - times->front()) / static_cast<double>(last);
   const double rate = 1 / (std::abs(mean - *median) < kEven * *median ? mean : *median), whole = std::round(rate);
   return std::abs(rate - whole) < kRounding * whole ? whole : rate;
+}
+
+double frameRateOf(const Clip& clip) {
+  return std::clamp(measuredFrameRate(clip).value_or(30), 1.0, 1000.0);
+}
+
+double frameRateOf(const Motion& motion, std::size_t clip) {
+  constexpr double kSame = 1e-3;
+  const double measured = measuredFrameRate(motion.clips[clip]).value_or(motion.framesPerSecond);
+  return std::abs(measured - motion.framesPerSecond) < kSame * measured ? motion.framesPerSecond : measured;
 }
 
 Index frameCount(const Clip& clip, double framesPerSecond) {

@@ -23,6 +23,13 @@ void checkMotion(const Motion& motion);
 // where it is one to within rounding; nullopt where no track has two keys.
 std::optional<double> measuredFrameRate(const Clip& clip);
 
+// The same as a rate to sample the clip at: 1 to 1000, 30 where its keys do not tell.
+double frameRateOf(const Clip& clip);
+
+// Frames a second of one of the clips: the motion's own where they are about the clip's or its keys do not tell, else
+// measuredFrameRate.
+double frameRateOf(const Motion& motion, std::size_t clip);
+
 // How many frames a clip has at that rate: those at 0, 1/rate, 2/rate, ... up to its duration, which may lie up to half
 // a frame beyond the last or before it. At least 1. Throws Error kBadArgument for a rate that is not positive and
 // finite, kLimit beyond 2^30 frames.

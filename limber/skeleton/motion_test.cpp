@@ -27,6 +27,9 @@ TEST(Motion, FindsTheRateThatKeysWereWrittenAt) {
     EXPECT_EQ(frameCount(clip, rate), 3000u) << rate;
   }
   EXPECT_EQ(*measuredFrameRate(clipAtRate(30, 3000)), 30);
+  Clip cut = clipAtRate(30, 100);
+  cut.translations[0].times.back() -= 0.02f;
+  EXPECT_EQ(*measuredFrameRate(cut), 30) << "a clip may end between two frames";
 }
 
 TEST(Motion, MeasuresTheTrackWithTheMostKeys) {
@@ -51,6 +54,16 @@ TEST(Motion, CountsFramesUpToHalfAFrameBeyond) {
     clip.translations[0].times[1] = duration;
     EXPECT_EQ(frameCount(clip, 10), frames) << duration;
   }
+}
+
+TEST(Motion, EachClipHasItsOwnRate) {
+  Motion motion;
+  motion.clips = {clipAtRate(24, 48), clipAtRate(119.875, 300), clipAtRate(24, 1)};
+  motion.framesPerSecond = 24.0001;  // as the file writes it
+  EXPECT_EQ(frameRateOf(motion, 0), 24.0001);
+  EXPECT_NEAR(frameRateOf(motion, 1), 119.875, 0.01);
+  EXPECT_EQ(frameRateOf(motion, 2), 24.0001) << "one key does not tell";
+  EXPECT_EQ(frameRateOf(motion.clips[2]), 30);
 }
 
 TEST(Motion, RefusesRatesThatAreNone) {
