@@ -42,7 +42,7 @@ struct Taken {
 Taken motionFrom(const std::string& file, std::size_t most = kFrames) {
   const Motion motion = readMotion(*sharedDataFolder() / "motions" / file);
   const Clip& clip = motion.clips.front();
-  Taken taken{motion.skeleton, sampleFrames(motion.skeleton, clip, frameRateOf(clip))};
+  Taken taken{motion.skeleton, sampleFrames(motion.skeleton, clip, frameRateOf(motion, 0))};
   if (taken.frames.poses.size() > most) taken.frames.poses.resize(most);
   return taken;
 }
