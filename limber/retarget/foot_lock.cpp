@@ -1,61 +1,89 @@
 #include "limber/retarget/foot_lock.h"
 
+#include <cmath>
+
 #include "limber/retarget/spring.h"
 
 namespace limber {
 
 namespace {
-// 1/seconds: how fast what is left fades out; along the ground a foot has to stand at once, down to it there is time.
-constexpr double kLanding = 40, kSettling = 20, kLeaving = 16;
-}  // namespace
+// 1/seconds. Along the ground a foot has to stand at once, down to it there is time.
+constexpr double kHolding = 80, kReleasing = 40;  // of the share to which it is free
+constexpr double kSettling = 20, kLeaving = 16;   // of what fades out
+constexpr double kRolling = 40;                   // of the speed left where the point that is held changes
+constexpr double kCaughtUp = 0.25;                // of the slack
 
-Vec3 FootLock::base(const Frame& frame) const {
-  if (anchor_ == FootAnchor::kAnkle) return lock_;
-  if (anchor_ == FootAnchor::kToes) return lock_ - (frame.toes - frame.ankle);
-  return frame.ankle;
+Vec3 rollOf(const FootLock::Frame& frame, bool byToes) {
+  return byToes ? Vec3(frame.toes - frame.ankle) : Vec3(Vec3::Zero());
 }
+
+// Height of the ankle over which the foot settles.
+double baseHeight(const FootLock::Frame& frame, FootAnchor anchor) {
+  if (anchor == FootAnchor::kAnkle) return frame.ankleGround;
+  if (anchor == FootAnchor::kToes) return frame.toesGround - (frame.toes - frame.ankle).y();
+  return frame.ankle.y();
+}
+
+Vec3 level(const Vec3& v) {
+  return {v.x(), 0, v.z()};
+}
+
+}  // namespace
 
 // The first frame is where the foot is, but on the ground at once.
 void FootLock::begin(const Frame& frame) {
   anchor_ = frame.anchor;
-  lock_ = anchor_ == FootAnchor::kToes ? frame.toes : frame.ankle;
-  lock_.y() = anchor_ == FootAnchor::kToes ? frame.toesGround : frame.ankleGround;
-  rest_ = restSpeed_ = Vec3::Zero();
+  byToes_ = anchor_ == FootAnchor::kToes;
+  lost_ = false;
+  out_ = frame.ankle;
+  out_.y() = baseHeight(frame, anchor_);
+  freedom_ = anchor_ == FootAnchor::kNone ? 1 : 0;
+  freedomSpeed_ = lift_ = liftSpeed_ = 0;
+  catchUpSpeed_ = rollSpeed_ = Vec3::Zero();
   before_ = frame;
 }
 
 Vec3 FootLock::next(const Frame& frame, double seconds, double slack) {
   if (!before_ || seconds <= 0) {
     begin(frame);
-    return base(frame);
+    return out_;
   }
-  // As if the anchor stayed: the base moves, and what is left fades out.
-  const Vec3 baseSpeed = (base(frame) - base(*before_)) / seconds;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double rate = anchor_ == FootAnchor::kNone ? kLeaving : axis == 1 ? kSettling : kLanding;
-    springTo(0.0, rate, seconds, rest_[axis], restSpeed_[axis]);
-  }
-
-  const bool lost = anchor_ != FootAnchor::kNone && (base(frame) - frame.ankle).norm() > slack;
-  if (frame.anchor != anchor_ || lost) change(frame, base(frame) + rest_, baseSpeed + restSpeed_, seconds, lost);
+  moveAlong(frame, seconds, slack);
+  moveUpright(frame, seconds);
   before_ = frame;
-  return base(frame) + rest_;
+  return out_;
 }
 
-// The foot is at `out` and moves at `speed`; from there to where the new anchor has it.
-void FootLock::change(const Frame& frame, const Vec3& out, const Vec3& speed, double seconds, bool lost) {
+void FootLock::moveAlong(const Frame& frame, double seconds, double slack) {
+  const Vec3 behind = level(before_->ankle - out_);
+  lost_ = frame.anchor != FootAnchor::kNone && behind.norm() > (lost_ ? kCaughtUp : 1) * slack;
+  const bool held = frame.anchor != FootAnchor::kNone && !lost_;
+  springTo(held ? 0.0 : 1.0, held ? kHolding : kReleasing, seconds, freedom_, freedomSpeed_);
+
+  Vec3 left = -behind;
+  springTo(Vec3(Vec3::Zero()), kLeaving, seconds, left, catchUpSpeed_);
+  catchUpSpeed_ *= freedom_;
+  const Vec3 freeWay = level(frame.ankle - before_->ankle) + left + behind;
+  const auto rolled = [&](bool byToes) { return level(rollOf(frame, byToes) - rollOf(*before_, byToes)); };
+  const bool byToes = frame.anchor == FootAnchor::kNone ? byToes_ : frame.anchor == FootAnchor::kToes;
+  // Where another point is held from here on, the ankle's speed goes over to that which this point leaves it.
+  rollSpeed_ += (1 - freedom_) * (rolled(byToes) - rolled(byToes_)) / seconds;
+  byToes_ = byToes;
+  rollSpeed_ *= std::exp(-kRolling * seconds);
+  // The point moves by `freedom_` of its free way, and the ankle as the foot turns about it.
+  out_ += freedom_ * freeWay - (1 - freedom_) * rolled(byToes_) + seconds * rollSpeed_;
+}
+
+void FootLock::moveUpright(const Frame& frame, double seconds) {
+  const double base = baseHeight(frame, anchor_);
+  const double speed = (base - baseHeight(*before_, anchor_)) / seconds;
+  springTo(0.0, anchor_ == FootAnchor::kNone ? kLeaving : kSettling, seconds, lift_, liftSpeed_);
+  out_.y() = base + lift_;
+  if (frame.anchor == anchor_) return;
   anchor_ = frame.anchor;
-  const bool toes = anchor_ == FootAnchor::kToes;
-  const Vec3 roll = toes ? Vec3(frame.toes - frame.ankle) : Vec3(Vec3::Zero());
-  if (anchor_ != FootAnchor::kNone) {
-    const Vec3 rollBefore = toes ? Vec3(before_->toes - before_->ankle) : Vec3(Vec3::Zero());
-    const Vec3 pointSpeed = speed + (roll - rollBefore) / seconds;
-    // It comes to rest ahead, where its speed carries it while the spring takes that away.
-    lock_ = (lost ? frame.ankle : Vec3(out + pointSpeed / kLanding)) + roll;
-    lock_.y() = toes ? frame.toesGround : frame.ankleGround;
-  }
-  rest_ = out - base(frame);
-  restSpeed_ = speed - (base(frame) - base(*before_)) / seconds;
+  const double newBase = baseHeight(frame, anchor_);
+  lift_ = out_.y() - newBase;
+  liftSpeed_ += speed - (newBase - baseHeight(*before_, anchor_)) / seconds;
 }
 
 }  // namespace limber

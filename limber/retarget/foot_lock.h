@@ -19,21 +19,26 @@ class FootLock {
     double ankleGround = 0, toesGround = 0;
   };
 
-  // Where the ankle goes. A change of the anchor never jumps: what it would is faded out with the speed that the foot
-  // has, in about a tenth of a second (a critically damped spring). A lock that the free foot leaves behind by more
-  // than `slack` is given up and taken anew.
+  // Where the ankle goes. Along the ground the foot moves as it would be free to, times a share that goes to 0 while it
+  // is held and back to 1; the way that it was held back is made up for by a critically damped spring once it is free.
+  // Its height springs to the ground and back. So nothing jumps, and a foot never lands slower than it does unheld. One
+  // that is held back by more than `slack` goes free until it has caught up.
   Vec3 next(const Frame& frame, double seconds, double slack);
   // Forgets what was, as before the first frame: the motion jumped.
   void reset() { before_.reset(); }
 
  private:
   void begin(const Frame& frame);
-  void change(const Frame& frame, const Vec3& out, const Vec3& speed, double seconds, bool lost);
-  Vec3 base(const Frame& frame) const;
+  void moveAlong(const Frame& frame, double seconds, double slack);
+  void moveUpright(const Frame& frame, double seconds);
 
   FootAnchor anchor_ = FootAnchor::kNone;
-  Vec3 lock_ = Vec3::Zero();                             // of the anchor
-  Vec3 rest_ = Vec3::Zero(), restSpeed_ = Vec3::Zero();  // what fades out
+  bool byToes_ = false;  // the point that is held, or was at last
+  bool lost_ = false;
+  Vec3 out_ = Vec3::Zero();
+  double freedom_ = 1, freedomSpeed_ = 0;
+  Vec3 catchUpSpeed_ = Vec3::Zero(), rollSpeed_ = Vec3::Zero();
+  double lift_ = 0, liftSpeed_ = 0;  // over where the anchor has the ankle, fades out
   std::optional<Frame> before_;
 };
 

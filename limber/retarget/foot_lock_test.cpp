@@ -1,5 +1,6 @@
 #include "limber/retarget/foot_lock.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -51,6 +52,55 @@ TEST(FootLock, ALockLeftFarBehindIsGivenUp) {
     const Vec3 out = lock.next(frame, i == 0 ? 0 : kStep, 0.2);
     EXPECT_LT((out - frame.ankle).norm(), 0.25) << i;
   }
+}
+
+TEST(FootLock, AFootThatStopsAtOnceStopsAtOnceWhenHeld) {
+  FootLock lock;
+  Vec3 before = Vec3::Zero();
+  for (int i = 0; i < 40; ++i) {
+    FootLock::Frame frame;
+    frame.ankle = frame.toes = Vec3(0, 0, 0.03 * std::min(i, 20));
+    frame.anchor = i >= 20 ? FootAnchor::kAnkle : FootAnchor::kNone;
+    const Vec3 out = lock.next(frame, i == 0 ? 0 : kStep, 0.3);
+    if (i > 20) {
+      EXPECT_LT((out - before).norm(), 0.0002) << i;
+    }
+    before = out;
+  }
+}
+
+// Recordings tremble, so that a planted foot is taken for a free one now and then.
+TEST(FootLock, ATremblingFootStaysWhereItIsPlanted) {
+  FootLock lock;
+  double farthest = 0;
+  for (int i = 0; i < 200; ++i) {
+    FootLock::Frame frame;
+    frame.ankle = frame.toes = Vec3(0.01 * std::sin(2.1 * i), 0, 0.01 * std::cos(1.7 * i));
+    frame.anchor = i % 10 == 9 ? FootAnchor::kNone : FootAnchor::kAnkle;
+    farthest = std::max(farthest, (lock.next(frame, i == 0 ? 0 : 1.0 / 120, 0.3) - Vec3(0, 0, 0.01)).norm());
+  }
+  EXPECT_LT(farthest, 0.004);
+}
+
+TEST(PlantDetector, AFootThatSlowsDownIsPlantedWhenItStands) {
+  constexpr double kFrame = 1.0 / 120;
+  PlantDetector detector(0.9);
+  double x = 0;
+  for (int i = 0; i < 30; ++i) {
+    x += 2 * kFrame;
+    EXPECT_EQ(detector.next(Vec3(0, 0, x), 0, i == 0 ? 0 : kFrame), i == 0) << i;
+  }
+  bool planted = false;
+  for (int i = 1; i <= 6; ++i) {
+    x += (2 - i / 3.0) * kFrame;
+    planted = detector.next(Vec3(0, 0, x), 0, kFrame);
+  }
+  EXPECT_TRUE(planted) << "it stands now";
+
+  PlantDetector dragged(0.9);
+  for (int i = 0; i < 60; ++i)
+    planted = dragged.next(Vec3(0, 0, 0.4 * i * kFrame), i == 0 ? 0.1 : 0, i == 0 ? 0 : kFrame);
+  EXPECT_FALSE(planted) << "slow, but no slower than before";
 }
 
 TEST(PlantDetector, StandingIsSlowAndLow) {
