@@ -4,6 +4,8 @@
 #include <utility>
 
 #include "limber/core/disjoint_sets.h"
+#include "limber/mesh/components.h"
+#include "limber/rigging/piece_links.h"
 
 namespace limber {
 
@@ -82,6 +84,27 @@ std::vector<double> strayShares(std::span<const Vec3f> points, std::span<const d
   std::sort(byLength.begin(), byLength.end());
   for (const auto& [distanceSquared, link] : byLength) forest.join(link[0], link[1], distanceSquared);
   return forest.sharesOfPoints();
+}
+
+std::optional<TriMesh> withoutStrays(const TriMesh& mesh) {
+  constexpr double kStray = 0.5;  // share below which a triangle is left out
+  Index pieces = 0;
+  vertexComponents(mesh, &pieces);
+  if (pieces < 2) return std::nullopt;
+  std::vector<double> areas(mesh.vertexCount(), 0);
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const Vec3 first = mesh.position(b) - mesh.position(a), second = mesh.position(c) - mesh.position(a);
+    for (const Index corner : {a, b, c}) areas[corner] += first.cross(second).norm() / 6;
+  }
+  const SurfaceEdges surface = surfaceEdges(mesh);
+  const std::vector<double> shares =
+      strayShares(mesh.positions, areas, surface.edges, pieceLinks(mesh.positions, surface.edges));
+  TriMesh kept{mesh.positions, {}};
+  for (const Triangle& t : mesh.triangles) {
+    if (shares[t[0]] >= kStray) kept.triangles.push_back(t);
+  }
+  if (kept.triangleCount() == mesh.triangleCount()) return std::nullopt;
+  return kept;
 }
 
 }  // namespace limber

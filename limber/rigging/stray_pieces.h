@@ -1,6 +1,7 @@
-// Bits that float about a model, as scans leave them: they should not take handles from it.
+// Bits that float about a model, as scans leave them: they should not take handles from it, nor make it look larger.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -20,5 +21,9 @@ namespace limber {
 // Cost: O(#V + #edges + #links log #links).
 std::vector<double> strayShares(std::span<const Vec3f> points, std::span<const double> areas,
                                 std::span<const VertexPair> edges, std::span<const VertexPair> links);
+
+// The same points with only those triangles that count for at least a half; nothing where all do. Cost: O(#V + #F) for
+// a model of one piece, else that of surfaceEdges, pieceLinks and strayShares.
+std::optional<TriMesh> withoutStrays(const TriMesh& mesh);
 
 }  // namespace limber

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "limber/rigging/piece_links.h"
+#include "limber/rigging/testing/capsule_person.h"
 
 namespace limber {
 namespace {
@@ -55,6 +56,20 @@ TEST(StrayPieces, AmongEqualPiecesNoneIsStray) {
   Line line;
   for (int i = 0; i < 200; ++i) line.addPiece(static_cast<float>(i), i + 0.1f, 1e-3);
   EXPECT_EQ(line.shares(), std::vector<double>(400, 1));
+}
+
+TEST(StrayPieces, WhatFloatsAboutIsLeftOut) {
+  TriMesh mesh;
+  testing::addCapsule(mesh, {0, 0, 0}, {0, 1, 0}, 0.2);
+  EXPECT_FALSE(withoutStrays(mesh)) << "one piece";
+  testing::addCapsule(mesh, {0, 1.23, 0}, {0, 1.25, 0}, 0.02);
+  const Index button = mesh.triangleCount();
+  EXPECT_FALSE(withoutStrays(mesh)) << "a small piece that all but touches";
+  testing::addCapsule(mesh, {2, -3, 0}, {2, -2.99, 0}, 0.02);
+  const std::optional<TriMesh> cleared = withoutStrays(mesh);
+  ASSERT_TRUE(cleared);
+  EXPECT_EQ(cleared->positions, mesh.positions);
+  EXPECT_EQ(cleared->triangleCount(), button);
 }
 
 }  // namespace

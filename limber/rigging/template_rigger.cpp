@@ -11,6 +11,7 @@
 #include "limber/rigging/body_volume.h"
 #include "limber/rigging/humanoid_landmarks.h"
 #include "limber/rigging/quadruped_landmarks.h"
+#include "limber/rigging/stray_pieces.h"
 #include "limber/rigging/template_embedding.h"
 
 namespace limber {
@@ -203,9 +204,11 @@ AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress
     candidates = {&findTemplate(options.templateName)};
   }
   progress.step("measure body");
-  const BodyVolume body = measureBody(mesh);
+  const std::optional<TriMesh> cleared = withoutStrays(mesh);
+  const TriMesh& surface = cleared ? *cleared : mesh;
+  const BodyVolume body = measureBody(surface);
   progress.step("fit template");
-  const std::vector<BodyFrame> frames = possibleFrames(mesh, body, options.up, options.front);
+  const std::vector<BodyFrame> frames = possibleFrames(surface, body, options.up, options.front);
   std::vector<TemplateFit> fits;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     progress.update(static_cast<double>(i) / static_cast<double>(candidates.size()));
@@ -220,6 +223,10 @@ AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress
   refineQuadruped(best.skeleton, body, best.frame, best.pins, best.embedding.places);
   AutoRig rig;
   rig.skeleton = standingSkeleton(best.skeleton, best.embedding.places, best.frame);
+  if (cleared) {
+    rig.warnings.add("stray-pieces", "triangles that float about the model are left out of account", {},
+                     mesh.triangleCount() - cleared->triangleCount());
+  }
   for (const TemplateFit& fit : fits) rig.matches.push_back({fit.skeleton.name, confidenceOf(fit)});
   warn(best, rig);
   return rig;

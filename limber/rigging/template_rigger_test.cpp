@@ -47,6 +47,20 @@ TriMesh ball() {
 
 }  // namespace
 
+TEST(TemplateRigger, SpecksAboutAPersonDoNotCount) {
+  TriMesh mesh = testing::capsulePerson().mesh;
+  const Index bodyTriangles = mesh.triangleCount();
+  for (const Vec3& speck : {Vec3(1.2, -0.6, 0.3), Vec3(-0.9, 1.7, 0), Vec3(0, -0.8, -0.5)}) {
+    testing::addCapsule(mesh, speck, speck + Vec3(0, 0.01, 0), 0.01);
+  }
+  const AutoRig result = rig(mesh, person());
+  EXPECT_TRUE(warnsOf(result, "stray-pieces"));
+  EXPECT_EQ(result.warnings.items().front().count, mesh.triangleCount() - bodyTriangles);
+  for (const char* joint : {"head", "leftHand", "rightToes", "hips"}) {
+    EXPECT_LT((place(result.skeleton, joint) - place(riggedPerson().skeleton, joint)).norm(), 0.02) << joint;
+  }
+}
+
 TEST(TemplateRigger, NamesTheJointsOfAPerson) {
   const testing::CapsulePerson body = testing::capsulePerson();
   const AutoRig& result = riggedPerson();
