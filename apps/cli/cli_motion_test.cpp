@@ -223,6 +223,18 @@ TEST_F(Cli, RetargetPutsEachMotionIntoTheCharacter) {
   EXPECT_EQ(again.code, 0) << again.error;
 }
 
+TEST_F(Cli, RetargetMovesASkeletonAlone) {
+  put("wave.bvh", personBvh(""));
+  put("other.bvh", personBvh("Bip01 "));
+  const Result done = run({"retarget", "other.bvh", "wave.bvh", "-o", "moving.glb", "--method", "aligned"});
+  EXPECT_EQ(done.code, 0) << done.error;
+  EXPECT_THAT(run({"info", "moving.glb"}).out, AllOf(HasSubstr("other: 0.500 s"), HasSubstr("wave: 0.500 s")));
+  keep("moving.glb");
+  const Result measured = run({"evaluate", "motion", "moving.glb", "--source", "wave.bvh", "--json"});
+  ASSERT_EQ(measured.code, 0) << measured.error;
+  EXPECT_LT(nlohmann::json::parse(measured.out).at("bone_direction_degrees").get<double>(), 0.5);
+}
+
 TEST_F(Cli, AnimateRigsWhatHasNoRig) {
   put("wave.bvh", personBvh(""));
   EXPECT_EQ(run({"sample", "biped", "-o", "biped.glb", "-q"}).code, 0);

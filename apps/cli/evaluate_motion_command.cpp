@@ -7,6 +7,7 @@
 #include "limber/core/file.h"
 #include "limber/evaluate/retarget_table.h"
 #include "limber/evaluate/skinned_model.h"
+#include "limber/retarget/plain_skeleton.h"
 #include "progress_line.h"
 
 namespace limber::cli {
@@ -51,11 +52,13 @@ void run(const Options& options) {
                               result.skeleton);
   }
   const double rate = frameRateOf(original);
-  const PoseSequence from = sampleFrames(source.skeleton, original, rate);
+  const PlainSkeleton sourcePlain(source.skeleton), resultPlain(result.skeleton);
+  const PoseSequence from = sourcePlain.plain(sampleFrames(source.skeleton, original, rate));
   PoseSequence to = sampleFrames(result.skeleton, moved, rate);
   to.poses.resize(from.poses.size(), to.poses.back());
-  const RetargetSetup setup(source.skeleton, result.skeleton, map, {}, &from);
-  MotionMetrics metrics = measureMotion(setup, from, to);
+  const PoseSequence toPlain = resultPlain.plain(to);
+  const RetargetSetup setup(sourcePlain.skeleton(), resultPlain.skeleton(), map, {}, &from);
+  MotionMetrics metrics = measureMotion(setup, from, toPlain);
   if (hasRig(asset)) metrics.selfPenetration = measureSelfPenetration(readSkinnedModel(asset), to.poses);
   if (!options.truth.empty()) {
     const Motion truth = withClip(readMotion(options.truth), options.truth);
@@ -64,7 +67,7 @@ void run(const Options& options) {
       throw Error(ErrorCode::kBadArgument, "has another skeleton than the result", options.truth);
     }
     right.poses.resize(from.poses.size(), right.poses.back());
-    metrics.jointError = jointErrorOf(setup, right, to);
+    metrics.jointError = jointErrorOf(setup, resultPlain.plain(right), toPlain);
   }
   fmt::print("{}", options.json ? motionMetricsJson(metrics) : motionMetricsText(metrics));
 }

@@ -86,7 +86,7 @@ void runRetarget(Options options) {
   TerminalProgress progress(options.common.quiet);
   progress->stage("read");
   Asset asset = readAsset(options.model);
-  if (!hasRig(asset)) {
+  if (!canMove(asset)) {
     throw Error(ErrorCode::kBadArgument, "the model has no rig to move", asset.name, "limber animate rigs it first");
   }
   Warnings warnings = asset.warnings;
@@ -103,7 +103,7 @@ void runAnimate(Options options) {
   progress->stage("read");
   Asset asset = readAsset(options.model);
   Warnings warnings = asset.warnings;
-  const bool rigged = hasRig(asset);
+  const bool rigged = canMove(asset);
   if (!rigged) {
     AutoRigOptions rig;
     rig.rigger = options.rigger;
@@ -175,7 +175,7 @@ void addOptions(CLI::App& command, const std::shared_ptr<Options>& options) {
 void addRetargetCommand(CLI::App& program) {
   auto options = std::make_shared<Options>();
   CLI::App* command = program.add_subcommand("retarget", "Put motions onto a rigged character");
-  command->add_option("MODEL", options->model, "the rigged model")->required();
+  command->add_option("MODEL", options->model, "the rigged model, or a skeleton alone, such as a .bvh")->required();
   addOptions(*command, options);
   command->footer(
       help("  limber retarget hero.glb motions/*.bvh -o hero_all.glb\n"

@@ -1,5 +1,6 @@
 #include "limber/asset/motion_io.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <nlohmann/json.hpp>
@@ -34,17 +35,23 @@ std::vector<bool> animatedNodes(const Asset& asset) {
   return animated;
 }
 
-// Animated nodes, those between, and bare ones below: the ends of bones.
+// Shows nothing itself.
+bool isBare(const Json& node) {
+  return !node.contains("mesh") && !node.contains("camera") && !node.contains("extensions");
+}
+
+// Animated nodes, those between, and bare ones below: the ends of bones. Of a skeleton that nothing moves all bare
+// ones.
 std::vector<bool> movingTree(const Asset& asset, const SceneGraph& graph) {
   const std::vector<bool> animated = animatedNodes(asset);
+  const bool all = isSkeletonAlone(asset) && std::find(animated.begin(), animated.end(), true) == animated.end();
   std::vector<bool> below(animated), inside(animated), wanted(animated);
   for (auto n = graph.order.rbegin(); n != graph.order.rend(); ++n) {
     if (graph.parent[*n] && below[*n]) below[*graph.parent[*n]] = true;
   }
   for (const Index n : graph.order) {
-    const Json& node = elements(asset, "nodes")[n];
-    const bool bare = !node.contains("mesh") && !node.contains("camera") && !node.contains("extensions");
-    inside[n] = animated[n] || (graph.parent[n] && inside[*graph.parent[n]] && (bare || below[n]));
+    const bool bare = isBare(elements(asset, "nodes")[n]);
+    inside[n] = animated[n] || (all && bare) || (graph.parent[n] && inside[*graph.parent[n]] && (bare || below[n]));
     wanted[n] = inside[n] && graph.shown[n];
   }
   return wanted;
@@ -85,6 +92,11 @@ Index addJointNodes(Asset& asset, const Motion& motion) {
 }
 
 }  // namespace
+
+bool isSkeletonAlone(const Asset& asset) {
+  if (elementCount(asset, "meshes") > 0) return false;
+  return elementCount(asset, "skins") > 0 || elementCount(asset, "animations") > 0 || elementCount(asset, "nodes") > 1;
+}
 
 AssetSkeleton animatedSkeleton(const Asset& asset) {
   if (elementCount(asset, "skins") > 0) return readSkeleton(asset);

@@ -25,6 +25,9 @@ Motion motionOf(const Asset& asset);
 // stand. Throws Error kBadData where nothing is animated either.
 AssetSkeleton animatedSkeleton(const Asset& asset);
 
+// Is there no mesh, but a skeleton: a skin's, animated nodes, or several nodes?
+bool isSkeletonAlone(const Asset& asset);
+
 // A glTF document that holds the motion alone: a node for each joint, a skin that says that they are joints, and the
 // clips. Several roots get a node above them.
 Asset motionAsset(const Motion& motion);

@@ -104,6 +104,20 @@ TEST(MotionIo, NodesThatMoveAreJointsWhereThereIsNoSkin) {
   EXPECT_LT((globals[2].translation() - Vec3(0, 2, 0)).norm(), 1e-6);
 }
 
+TEST(MotionIo, BareNodesAreASkeletonWhereThereIsNothingElse) {
+  limber::testing::GltfBuilder model;
+  model.push("nodes", {{"name", "hips"}, {"children", {1, 2}}, {"translation", {0.0, 1.0, 0.0}}});
+  model.push("nodes", {{"name", "spine"}, {"translation", {0.0, 1.0, 0.0}}});
+  model.push("nodes", {{"name", "lamp"}, {"camera", 0}});
+  model.push("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 1.0}, {"znear", 0.1}}}});
+  model.push("scenes", {{"nodes", {0}}});
+  const Motion still = readMotion(model.glb(), "still.glb");
+  ASSERT_EQ(still.skeleton.joints.size(), 2u);
+  EXPECT_EQ(still.skeleton.joints[1].name, "spine");
+  EXPECT_EQ(still.skeleton.joints[1].parent, Index{0});
+  EXPECT_TRUE(still.clips.empty());
+}
+
 TEST(MotionIo, RefusesAFileWithNothingThatMoves) {
   limber::testing::GltfBuilder model;
   model.push("nodes", {{"name", "alone"}});

@@ -6,6 +6,7 @@
 
 #include "limber/asset/motion_io.h"
 #include "limber/evaluate/skinned_model.h"
+#include "limber/retarget/plain_skeleton.h"
 
 namespace limber {
 
@@ -47,14 +48,15 @@ class Scorer {
   void score(const std::filesystem::path& file, std::vector<RetargetScore>& scores) const {
     const Motion motion = readMotion(file);
     for (const Clip& clip : motion.clips) {
-      PoseSequence source = sampleFrames(motion.skeleton, clip, frameRateOf(clip));
+      const PlainSkeleton plain(motion.skeleton);
+      PoseSequence source = plain.plain(sampleFrames(motion.skeleton, clip, frameRateOf(clip)));
       if (source.poses.size() > trial_.mostFrames) source.poses.resize(trial_.mostFrames);
       if (source.poses.size() < 5) {
         skipped_.add("short", "clips of less than 5 frames left out", clip.name);
         continue;
       }
       const std::string name = motion.clips.size() == 1 ? motion.name : motion.name + ":" + clip.name;
-      for (const Character& character : characters_) scoreOn(motion.skeleton, source, name, character, scores);
+      for (const Character& character : characters_) scoreOn(plain.skeleton(), source, name, character, scores);
     }
   }
 
@@ -62,15 +64,17 @@ class Scorer {
   void scoreOn(const Skeleton& skeleton, const PoseSequence& source, const std::string& motion,
                const Character& character, std::vector<RetargetScore>& scores) const {
     try {
-      const RetargetSetup setup(skeleton, character.skeleton, matchSkeletons(skeleton, character.skeleton), {},
-                                &source);
+      const PlainSkeleton plain(character.skeleton);
+      const RetargetSetup setup(skeleton, plain.skeleton(), matchSkeletons(skeleton, plain.skeleton()), {}, &source);
       for (const RetargetMethod* method : methods_) {
         const double start = secondsNow();
         const PoseSequence result = retargetFrames(*method, setup, source);
         const double seconds = secondsNow() - start;
         const double rate = seconds > 0 ? static_cast<double>(source.poses.size()) / seconds : 0;
         MotionMetrics metrics = measureMotion(setup, source, result);
-        if (character.model) metrics.selfPenetration = measureSelfPenetration(*character.model, result.poses, kSparse);
+        if (character.model) {
+          metrics.selfPenetration = measureSelfPenetration(*character.model, plain.original(result).poses, kSparse);
+        }
         scores.push_back({motion, character.name, std::string(method->name), metrics, rate});
       }
     } catch (const Error& error) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "limber/asset/clip_io.h"
+#include "limber/asset/motion_io.h"
 #include "limber/core/error.h"
 
 namespace limber {
@@ -27,11 +28,15 @@ std::vector<std::string> doubtfulMatches(const SkeletonMap& map, const Skeleton&
 
 }  // namespace
 
+bool canMove(const Asset& asset) {
+  return hasRig(asset) || isSkeletonAlone(asset);
+}
+
 std::vector<RetargetedClip> retargetOnto(Asset& asset, const Motion& motion, const RetargetAssetOptions& options) {
   const RetargetMethod& method = findRetargetMethod(options.method);
-  if (!hasRig(asset)) throw Error(ErrorCode::kUnsupported, "the model has no rig to move", asset.name);
+  if (!canMove(asset)) throw Error(ErrorCode::kUnsupported, "the model has no rig to move", asset.name);
   if (motion.clips.empty()) throw Error(ErrorCode::kUnsupported, "holds no motion", motion.name);
-  const AssetSkeleton character = readSkeleton(asset);
+  const AssetSkeleton character = animatedSkeleton(asset);
   const SkeletonMap map = options.mapJson ? skeletonMapFromJson(*options.mapJson, motion.skeleton, character.skeleton)
                                           : matchSkeletons(motion.skeleton, character.skeleton);
   std::vector<RetargetedClip> reports;

@@ -28,8 +28,11 @@ struct RetargetedClip {
   std::string mapJson;                // the map as a file
 };
 
+// Has the document a rig, or is it a skeleton alone?
+bool canMove(const Asset& asset);
+
 // A clip for each clip of `motion`, added to the document: called as the motion, or, where it has several, as they are.
-// Throws Error kUnsupported where the document has no rig or the motion no clip, and as matchSkeletons does.
+// Throws Error kUnsupported where the document cannot move or the motion has no clip, and as matchSkeletons does.
 std::vector<RetargetedClip> retargetOnto(Asset& asset, const Motion& motion, const RetargetAssetOptions& options);
 
 }  // namespace limber

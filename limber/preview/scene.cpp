@@ -105,12 +105,6 @@ Scene boneScene(const Skeleton& skeleton, const Pose& pose) {
   return scene;
 }
 
-// Is there a skeleton, and no mesh that it could move?
-bool isSkeletonAlone(const Asset& asset) {
-  return elementCount(asset, "meshes") == 0 &&
-         (elementCount(asset, "skins") > 0 || elementCount(asset, "animations") > 0);
-}
-
 }  // namespace
 
 Scene makeScene(const Asset& asset) {

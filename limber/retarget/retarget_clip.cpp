@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "limber/core/error.h"
+#include "limber/retarget/plain_skeleton.h"
 #include "limber/skeleton/motion.h"
 
 namespace limber {
@@ -86,9 +87,10 @@ PoseSequence retargetFrames(const RetargetMethod& method, const RetargetSetup& s
 Clip retargetClip(const RetargetMethod& method, const Skeleton& source, const Clip& clip, const Skeleton& target,
                   const SkeletonMap& map, const RetargetOptions& options, double frameRate) {
   checkClip(clip, source);
-  const PoseSequence frames = sampleFrames(source, clip, frameRate > 0 ? frameRate : frameRateOf(clip));
-  const RetargetSetup setup(source, target, map, options, &frames);
-  return clipOf(target, retargetFrames(method, setup, frames), clip.name);
+  const PlainSkeleton from(source), to(target);
+  const PoseSequence frames = from.plain(sampleFrames(source, clip, frameRate > 0 ? frameRate : frameRateOf(clip)));
+  const RetargetSetup setup(from.skeleton(), to.skeleton(), map, options, &frames);
+  return clipOf(target, to.original(retargetFrames(method, setup, frames)), clip.name);
 }
 
 }  // namespace limber

@@ -35,8 +35,9 @@ struct RetargetOptions {
   std::optional<double> sourceGround;
 };
 
-// Immutable once made; the skeletons must outlive it. `motion`, if given, is what will be retargeted: it tells where
-// the ground is, and how the source stands where its rest pose does not.
+// Immutable once made; the skeletons must outlive it, and have no negative scales (plain_skeleton.h). `motion`, if
+// given, is what will be retargeted: it tells where the ground is, and how the source stands where its rest pose does
+// not.
 struct RetargetSetup {
   RetargetSetup(const Skeleton& source, const Skeleton& target, SkeletonMap map, const RetargetOptions& options,
                 const PoseSequence* motion = nullptr);

@@ -16,6 +16,8 @@ namespace limber {
 
 namespace {
 
+constexpr double kFacing = 0.5;  // cosine between where toes and a body point, at least, to tell left from right by it
+
 // A person as the matching sees it: parts with their joints.
 struct Body {
   struct Part {
@@ -39,6 +41,9 @@ class BodyReader {
 
   std::optional<Body> read() {
     if (!isPerson()) return std::nullopt;
+    if (isMirrored()) {
+      for (HumanoidJoint& label : labels_) label.bone = mirroredBone(label.bone);
+    }
     for (const HumanoidJoint& label : labels_) {
       const std::string bone(label.bone);
       if (bone == "spine") {
@@ -61,6 +66,26 @@ class BodyReader {
       limbs += jointOf(bone).has_value();
     }
     return jointOf("hips") && limbs >= 4;
+  }
+
+  // Do the feet point backwards for someone whose left is where the names say? Then left is where they say right: the
+  // skeleton is a mirror image, by a negative scale or out of a program with a left hand's axes.
+  bool isMirrored() const {
+    const std::optional<Index> left = jointOf("leftUpperLeg"), right = jointOf("rightUpperLeg"), head = jointOf("head");
+    if (!left || !right || !head || !jointOf("leftUpperArm") || !jointOf("rightUpperArm")) return false;
+    const std::vector<Affine> globals = restGlobals(skeleton_);
+    const auto at = [&](Index joint) -> Vec3 { return globals[joint].translation(); };
+    Vec3 forward = Vec3::Zero(), down = Vec3::Zero();
+    for (const auto& [footBone, toesBone] : {std::pair{"leftFoot", "leftToes"}, std::pair{"rightFoot", "rightToes"}}) {
+      const std::optional<Index> foot = jointOf(footBone), toes = jointOf(toesBone);
+      if (!foot || !toes) return false;
+      forward += at(*toes) - at(*foot);
+      down += at(*foot) - at(*jointOf("hips"));
+    }
+    const Vec3 up = at(*head) - at(*jointOf("hips"));
+    if (up.dot(-down) < kFacing * up.norm() * down.norm()) return false;  // stands or hangs in another way
+    const Vec3 facing = (at(*left) - at(*right)).cross(-down);
+    return facing.dot(forward) < -kFacing * facing.norm() * forward.norm();
   }
 
   std::optional<Index> jointOf(std::string_view bone) const {

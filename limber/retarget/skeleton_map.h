@@ -30,8 +30,9 @@ struct SkeletonMap {
 
 // People are matched bone by bone: by their joints' names, or, where names say nothing, by what hangs where in rest
 // pose; the joints of trunk and neck along their chains, whatever they are called; twist joints inside a limb go with
-// it. Others are matched by equal names (upper and lower case and prefixes aside), or joint by joint where the trees
-// are the same. Throws Error kUnsupported where too little matches to move anything.
+// it. In mirror images, whose toes point backwards for what is called left, left is what is called right. Others are
+// matched by equal names (upper and lower case and prefixes aside), or joint by joint where the trees are the same.
+// Throws Error kUnsupported where too little matches to move anything.
 SkeletonMap matchSkeletons(const Skeleton& source, const Skeleton& target);
 
 // Throws Error kBadData naming the part: no joint, one that is not there, or one target joint in two parts.

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "limber/core/error.h"
+#include "limber/retarget/plain_skeleton.h"
 #include "limber/retarget/retarget_clip.h"
 #include "limber/skeleton/motion.h"
 
@@ -93,10 +94,11 @@ std::optional<MotionMetrics> measureClip(const SessionState& state) {
   const Clip& original = source.motion->clips[source.clip];
   try {
     const double rate = frameRateOf(original);
-    const PoseSequence theirs = sampleFrames(from, original, rate);
-    PoseSequence ours = sampleFrames(to, *movement.clip(), rate);
+    const PlainSkeleton plainFrom(from), plainTo(to);
+    const PoseSequence theirs = plainFrom.plain(sampleFrames(from, original, rate));
+    PoseSequence ours = plainTo.plain(sampleFrames(to, *movement.clip(), rate));
     ours.poses.resize(theirs.poses.size(), ours.poses.back());
-    const RetargetSetup setup(from, to, source.map, {}, &theirs);
+    const RetargetSetup setup(plainFrom.skeleton(), plainTo.skeleton(), source.map, {}, &theirs);
     return measureMotion(setup, theirs, ours);
   } catch (const Error&) {
     return std::nullopt;  // no people, or a motion too short
