@@ -37,7 +37,7 @@ struct Parameter {
   double HumanoidProportions::*value;
   double step;
 };
-constexpr std::array<Parameter, 8> kParameters = {{
+constexpr std::array<Parameter, 11> kParameters = {{
     {"hipAboveParting", &HumanoidProportions::hipAboveParting, 0.2},
     {"hipsBelow", &HumanoidProportions::hipsBelow, 0.01},
     {"neckAboveShoulders", &HumanoidProportions::neckAboveShoulders, 0.01},
@@ -45,6 +45,9 @@ constexpr std::array<Parameter, 8> kParameters = {{
     {"ankle", &HumanoidProportions::ankle, 0.01},
     {"ankleShare", &HumanoidProportions::ankleShare, 0.02},
     {"knee", &HumanoidProportions::knee, 0.02},
+    {"elbow", &HumanoidProportions::elbow, 0.02},
+    {"kneeForward", &HumanoidProportions::kneeForward, 0.1},
+    {"chestBack", &HumanoidProportions::chestBack, 0.1},
     {"upperChest", &HumanoidProportions::upperChest, 0.03},
 }};
 

@@ -13,6 +13,13 @@ bool BodySection::contains(const Vec3& place) const {
   return std::binary_search(cells.begin(), cells.end(), at);
 }
 
+double BodySection::halfDepth() const {
+  if (cells.empty()) return 0;
+  const auto [nearest, farthest] =
+      std::minmax_element(cells.begin(), cells.end(), [](const auto& a, const auto& b) { return a[1] < b[1]; });
+  return 0.5 * cell * ((*farthest)[1] - (*nearest)[1]);
+}
+
 BodySection sectionAt(const BodyVolume& body, const BodyFrame& frame, const Vec3& seed, const Vec3& normal,
                       double reach) {
   using Cell = std::array<int, 2>;

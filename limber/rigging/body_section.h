@@ -20,6 +20,7 @@ struct BodySection {
 
   bool empty() const { return cells.empty(); }
   bool contains(const Vec3& place) const;
+  double halfDepth() const;  // half the extent of the part, along
 };
 
 // The connected part of the cut square to `normal` (a unit vector) at `seed` that holds the inside place nearest to it;

@@ -14,6 +14,7 @@ TEST(BodySection, IsCutOutOfOnePart) {
   ASSERT_FALSE(shin.empty());
   EXPECT_NEAR(shin.area, M_PI * 0.038 * 0.038, 0.25 * M_PI * 0.038 * 0.038);
   EXPECT_NEAR(shin.center.x(), 0.085, 0.01);
+  EXPECT_NEAR(shin.halfDepth(), 0.038, 0.008);
   EXPECT_TRUE(shin.contains(shin.center));
   EXPECT_FALSE(shin.contains(shin.center.cwiseProduct(Vec3(-1, 1, 1))));
   EXPECT_TRUE(sectionAt(person.body, person.frame, {0.4, 0.3, 0}, Vec3::UnitY(), 0.05).empty());

@@ -1,8 +1,10 @@
 #include "limber/rigging/humanoid_landmarks.h"
 
+#include <algorithm>
 #include <array>
 #include <string>
 
+#include "limber/rigging/arm_finder.h"
 #include "limber/rigging/body_section.h"
 #include "limber/rigging/leg_finder.h"
 
@@ -14,9 +16,13 @@ namespace {
 constexpr double kSeedReach = 0.04;
 constexpr double kWidestArm = 0.03;  // square heights of a cut
 constexpr double kMostMoved = 0.06;
+constexpr double kWristSearch = 0.2;   // of the arm's length, to both sides
+constexpr double kElbowSearch = 0.08;  // of the arm's length, to both sides
+constexpr double kStraight = 0.9;      // cosine between upper arm and forearm from which the bend shows no elbow
 
 struct Arm {
   Index shoulder = 0, elbow = 0, hand = 0;
+  std::optional<Index> tip;
 };
 
 struct HumanoidJoints {
@@ -42,6 +48,7 @@ std::optional<HumanoidJoints> humanoidJointsOf(const TemplateSkeleton& skeleton)
     set(joints.arms[side].shoulder, of + "UpperArm");
     set(joints.arms[side].elbow, of + "LowerArm");
     set(joints.arms[side].hand, of + "Hand");
+    joints.arms[side].tip = skeleton.find(of + "HandTip");
   }
   set(joints.hips, "hips");
   set(joints.upperChest, "upperChest");
@@ -70,27 +77,60 @@ class Mover {
       }
       const double ankleY = proportions_.ankle + proportions_.ankleShare * hipY;
       moveTo(leg.ankle, finder.middle(side, ankleY));
-      moveTo(leg.knee, finder.middle(side, hipY + proportions_.knee * (ankleY - hipY)));
+      Vec3 knee = finder.middle(side, hipY + proportions_.knee * (ankleY - hipY));
+      knee.z() += proportions_.kneeForward * finder.halfDepth(side, knee.y());
+      moveTo(leg.knee, knee);
     }
     const Vec3 between = 0.5 * (places_[joints.legs[0].hip] + places_[joints.legs[1].hip]);
     if (parted) moveTo(joints.hips, {places_[joints.hips].x(), between.y() - proportions_.hipsBelow, between.z()});
   }
 
-  // Elbow and hand to the middle of the arm; the shoulder on in the direction from the elbow to the middle of the upper
-  // arm, as far as it was.
+  // Both arms are as long as the longer: what a hand holds rather keeps an embedding from the hand than draws it
+  // beyond.
+  void evenOut(const std::array<Arm, 2>& arms) {
+    double lengths[2];
+    for (int side = 0; side < 2; ++side) {
+      const Arm& arm = arms[side];
+      if (pins_[arm.shoulder] || pins_[arm.elbow] || pins_[arm.hand]) return;
+      lengths[side] =
+          (places_[arm.elbow] - places_[arm.shoulder]).norm() + (places_[arm.hand] - places_[arm.elbow]).norm();
+    }
+    const int side = lengths[0] < lengths[1] ? 0 : 1;
+    if (!(lengths[side] > 1e-3)) return;
+    const double stretch = lengths[1 - side] / lengths[side];
+    const Vec3 shoulder = places_[arms[side].shoulder];
+    for (const Index joint : {arms[side].elbow, arms[side].hand}) {
+      places_[joint] = shoulder + stretch * (places_[joint] - shoulder);
+    }
+  }
+
+  // Elbow and hand go to the middle of the arm and along it to where it shows them; the shoulder goes on in the
+  // direction of the upper arm.
   void arm(const Arm& arm) {
-    const Vec3 shoulder = places_[arm.shoulder], elbow = places_[arm.elbow], hand = places_[arm.hand];
-    const double upper = (elbow - shoulder).norm();
-    if (upper < 1e-3 || (hand - elbow).norm() < 1e-3) return;
-    const Vec3 along = (elbow - shoulder).normalized(), below = (hand - elbow).normalized();
-    const std::optional<Vec3> middle = middleAt(0.45 * shoulder + 0.55 * elbow, along);
-    const std::optional<Vec3> atElbow = middleAt(elbow, (along + below).normalized());
-    const std::optional<Vec3> atHand = middleAt(hand, below);
-    if (atHand) moveTo(arm.hand, *atHand);
-    if (!atElbow) return;
-    moveTo(arm.elbow, *atElbow);
-    if (!middle || (*middle - *atElbow).norm() < 0.3 * upper) return;
-    moveTo(arm.shoulder, *atElbow + upper * (*middle - *atElbow).normalized());
+    const Vec3 shoulder = places_[arm.shoulder], below = (places_[arm.hand] - places_[arm.elbow]).normalized();
+    const Vec3 along = (places_[arm.elbow] - shoulder).normalized();
+    Vec3 elbow = places_[arm.elbow], hand = places_[arm.hand];
+    if (const auto middle = middleAt(hand, below)) hand = *middle;
+    if (const auto middle = middleAt(elbow, (along + below).normalized())) elbow = *middle;
+    const ArmFinder finder(body_, frame_, shoulder, elbow, hand);
+    const double length = finder.hand();
+    const double wrist =
+        finder.narrowest(length - kWristSearch * length, length + kWristSearch * length).value_or(length);
+    // Shapes and proportions are off to either side as often: the shoulder goes between what they say.
+    const double start = finder.armpit() ? 0.5 * (*finder.armpit() - 0.5 * finder.radius()) : 0;
+    double bend = finder.elbow();
+    if (along.dot(below) > kStraight) {
+      bend = 0.5 * (bend + start + proportions_.elbow * (wrist - start));
+      bend = finder.narrowest(bend - kElbowSearch * length, bend + kElbowSearch * length).value_or(bend);
+    }
+    const Vec3 bent = finder.middle(bend).value_or(elbow);
+    moveHand(arm, finder.middle(wrist).value_or(hand), below);
+    moveTo(arm.elbow, bent);
+    const double seen = finder.armpit().value_or(0) + finder.radius();
+    const std::optional<Vec3> upper = finder.middle(std::max(seen, 0.45 * finder.elbow()));
+    Vec3 inwards = (elbow - hand).normalized();
+    if (upper && (*upper - bent).norm() > 0.3 * finder.elbow()) inwards = (*upper - bent).normalized();
+    moveTo(arm.shoulder, bent + (bend - start) * inwards);
   }
 
   void trunk(const HumanoidJoints& joints) {
@@ -102,7 +142,9 @@ class Mover {
     chest.y() = hips + proportions_.upperChest * (neck.y() - hips);
     for (Vec3* place : {&chest, &neck}) {
       const BodySection section = sectionAt(body_, frame_, *place, Vec3::UnitY(), kSeedReach);
-      if (!section.empty()) place->z() = section.center.z();
+      if (section.empty()) continue;
+      place->z() = section.center.z();
+      if (place == &chest) chest.z() -= proportions_.chestBack * section.halfDepth();
     }
     head.z() = 0.5 * (head.z() + neck.z());
     moveTo(joints.upperChest, chest);
@@ -111,6 +153,16 @@ class Mover {
   }
 
  private:
+  // The tip goes along where it would no longer be well beyond the hand in the direction of the forearm.
+  void moveHand(const Arm& arm, const Vec3& place, const Vec3& forearm) {
+    const Vec3 before = embedded_[arm.hand];
+    moveTo(arm.hand, place);
+    if (!arm.tip) return;
+    const Vec3 moved = places_[arm.hand] - before;
+    const double was = (places_[*arm.tip] - before).dot(forearm);
+    if (moved.dot(forearm) > 0.5 * was) moveTo(*arm.tip, places_[*arm.tip] + moved);
+  }
+
   void moveTo(Index joint, const Vec3& place) {
     if (!pins_[joint]) places_[joint] = place;
   }
@@ -127,6 +179,7 @@ class Mover {
   const BodyFrame& frame_;
   const std::vector<std::optional<Vec3>>& pins_;
   std::vector<Vec3>& places_;
+  const std::vector<Vec3> embedded_ = places_;  // as it was before anything moved
   const HumanoidProportions& proportions_;
 };
 
@@ -139,6 +192,7 @@ void refineHumanoid(const TemplateSkeleton& skeleton, const BodyVolume& body, co
   if (!joints) return;
   Mover mover(body, frame, pins, places, proportions);
   mover.legs(*joints);
+  mover.evenOut(joints->arms);
   for (const Arm& arm : joints->arms) mover.arm(arm);
   mover.trunk(*joints);
 }

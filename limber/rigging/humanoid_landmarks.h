@@ -19,6 +19,9 @@ struct HumanoidProportions {
   double headAboveNeck = 0.055;
   double ankle = 0.02, ankleShare = 0.05;  // of the height of the legs' upper joints
   double knee = 0.49;                      // of the way from hip to ankle
+  double elbow = 0.475;                    // of the way from shoulder to hand, of straight arms
+  double kneeForward = 0.35;               // half depths of the leg before its middle
+  double chestBack = 0.25;                 // half depths of the chest behind its middle
   double upperChest = 0.73;                // of the way from hips to neck
 };
 

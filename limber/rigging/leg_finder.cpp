@@ -45,6 +45,14 @@ double LegFinder::halfWidth(int side) const {
   return sum;
 }
 
+double LegFinder::halfDepth(int side, double y) const {
+  const std::vector<BodySection>& cuts = sections_[side];
+  const auto nearest = std::min_element(cuts.begin(), cuts.end(), [&](const BodySection& a, const BodySection& b) {
+    return std::abs(a.center.y() - y) < std::abs(b.center.y() - y);
+  });
+  return nearest == cuts.end() ? 0 : nearest->halfDepth();
+}
+
 Vec3 LegFinder::middle(int side, double y) const {
   const std::vector<BodySection>& cuts = sections_[side];
   Vec3 sum = Vec3::Zero();

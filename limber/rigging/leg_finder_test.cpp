@@ -30,6 +30,7 @@ TEST(LegFinder, FollowsLegsUpToWhereTheyPart) {
   EXPECT_GT(finder.parting(), legPlaces()[1].y());
   EXPECT_LT(finder.parting(), legPlaces()[0].y() + 0.03);
   EXPECT_NEAR(finder.halfWidth(0), finder.halfWidth(1), 0.01);
+  EXPECT_NEAR(finder.halfDepth(0, 0.16), 0.038, 0.01);
   EXPECT_LT((finder.middle(0, legPlaces()[1].y()) - legPlaces()[1]).norm(), 0.02);
   // Above where they part a leg goes straight on.
   EXPECT_NEAR(finder.middle(1, 0.8).x(), finder.middle(1, finder.parting()).x(), 1e-6);
