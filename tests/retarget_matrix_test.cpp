@@ -71,14 +71,12 @@ const Pairs kSlideMore = {{"fair1_dab.bvh", "quaternius_platformer_character_hum
                           {"pybvh_example.bvh", "quaternius_platformer_character_humanoidrig"}};  // 0.059, source 0.023
 // Its feet are long: while their toes are held, the ankles tremble as the source's do (0.022, source 0.036).
 const Pairs kSlidingWalks = {{"cmu_mb_12_01_walk.bvh", "manny_med_mod"}};
-// Mean jerk against joint angles alone over 1.1: someone who stands still, so that any correction shows (1.14).
-const std::set<std::string> kRougherThanAngles = {"fair1_wave_hello.bvh"};
 // Mean jerk against the source over 1.1. Most of it is that of the joint angles on other proportions, in brackets.
 const std::set<std::string> kRougherThanSource = {"boxing_toes.bvh",                 // 1.17 (1.16)
                                                   "cmu1_jumping_jacks.bvh",          // 1.15 (1.01)
                                                   "cmu_mb_01_01_forward_jumps.bvh",  // 1.15 (1.17)
-                                                  "fair1_dab.bvh",                   // 1.37 (1.25)
-                                                  "fair1_wave_hello.bvh",            // 1.82 (1.61)
+                                                  "fair1_dab.bvh",                   // 1.36 (1.25)
+                                                  "fair1_wave_hello.bvh",            // 1.75 (1.61)
                                                   "m2m_human_sample_anim.glb",       // 1.17 (1.18)
                                                   "makehuman_walk.bvh",              // 1.14 (1.05)
                                                   "pybvh_example.bvh",               // 1.20 (1.15)
@@ -117,9 +115,7 @@ TEST_P(RetargetMatrix, EveryHumanoidKeepsFeetAndGround) {
   if (!kRougherThanSource.contains(motion)) {
     EXPECT_LT(jerk / count, 1.1);
   }
-  if (!kRougherThanAngles.contains(motion)) {
-    EXPECT_LT(overAngles / count, 1.1);
-  }
+  EXPECT_LT(overAngles / count, 1.1);
 }
 
 TEST_P(RetargetMatrix, SpacetimeIsAsSmoothAsTheSource) {

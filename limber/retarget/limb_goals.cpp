@@ -19,8 +19,9 @@ constexpr double kStretch = 0.9995;  // of a leg's length: fully stretched knees
 constexpr double kTouchRate = 20;    // 1/seconds, of touches that come and go
 constexpr double kSoftReach = 0.96;  // of an arm's length: from there on stretching softens
 constexpr double kPlantRate = 12;    // 1/seconds, of the smooth flag
-constexpr double kSoftStretch = 0.015, kSoftChange = 0.01;  // of the pelvis sinking, by how far a foot is moved
+constexpr double kSoftStretch = 0.015, kSoftChange = 0.004;  // of the pelvis sinking, by how far a foot is moved
 constexpr double kSoftGround = 0.004;
+constexpr double kFirmGround = 0.8;  // share of that softness that a planted foot loses
 // Speeds of the source's pelvis or feet, hip heights a second, that are no motion but a cut. Many recordings have a
 // T-pose as their first frame.
 constexpr double kJump = 15, kFirstJump = 4;
@@ -169,7 +170,7 @@ void LimbGoals::setFeet(const BodyFrame& source, const BodyFrame& target, double
     followPlanting(frame.anchor != FootAnchor::kNone ? 1 : 0, seconds, leg.planted, feelers_[i].plantedSpeed);
     double below = leg.ankleGround - leg.goal.y();
     if (leg.toes) below = std::max(below, leg.toesGround - (leg.goal + frame.toes - frame.ankle).y());
-    leg.goal.y() += softPositive(below, kSoftGround * setup_.targetHipHeight * (1 - leg.planted));
+    leg.goal.y() += softPositive(below, kSoftGround * setup_.targetHipHeight * (1 - kFirmGround * leg.planted));
   }
 }
 
