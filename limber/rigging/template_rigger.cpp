@@ -23,7 +23,6 @@ constexpr std::size_t kFramesRefined = 2;    // after it, with all spheres
 constexpr std::size_t kVariantsRefined = 4;  // of each of these
 constexpr double kLowConfidence = 0.4;
 constexpr double kCostOfDoubt = 1.8;  // cost at which confidence is a half
-constexpr double kNoPlace = 12;       // cost of a joint from which its limb has no place
 constexpr double kUnexplained = 2;    // cost of a body that no bone comes near
 constexpr double kNearBone = 0.08;    // heights beyond the surface of a medial sphere
 constexpr double kFarFromBone = 0.25;
@@ -92,7 +91,7 @@ void addFits(const std::vector<TemplateVariant>& variants, const BodyVolume& bod
   for (std::size_t v = 0; v < variants.size(); ++v) {
     const double left = unexplained(variants[v].skeleton, embeddings[v].places, body, frame);
     const double cost = embeddings[v].cost + unusual(frame) + kUnexplained * left;
-    fits.push_back({variants[v].skeleton, frame, places, std::move(embeddings[v]), cost});
+    fits.push_back({variants[v].skeleton, frame, places, std::move(embeddings[v]), cost, {}});
   }
 }
 
@@ -128,17 +127,26 @@ TemplateFit bestFit(const TemplateSkeleton& skeleton, const BodyVolume& body, co
   for (std::size_t i = 0; i < std::min(looks.size(), kFramesRefined); ++i) {
     addFits(looks[i].variants, body, looks[i].frame, pins, body.spheres.size(), fits);
   }
-  return *std::min_element(fits.begin(), fits.end(), cheaper);
+  TemplateFit& best = *std::min_element(fits.begin(), fits.end(), cheaper);
+  best.limbs = limbsIn(best.skeleton, best.embedding, body, best.frame);
+  return std::move(best);
 }
 
+std::size_t missingLimbs(const TemplateFit& fit) {
+  return static_cast<std::size_t>(
+      std::count_if(fit.limbs.begin(), fit.limbs.end(), [](const TemplateLimb& limb) { return !limb.hasPlace; }));
+}
+
+// By the cost, and by the share of limbs that have a place: half a body is soon no body.
 double confidenceOf(const TemplateFit& fit) {
-  return 1 / (1 + std::pow(fit.cost / kCostOfDoubt, 3.0));
+  const double placed = 1 - static_cast<double>(missingLimbs(fit)) / static_cast<double>(fit.limbs.size());
+  return placed * placed * placed / (1 + std::pow(fit.cost / kCostOfDoubt, 3.0));
 }
 
 void warn(const TemplateFit& fit, AutoRig& rig) {
-  for (Index j = 0; j < fit.skeleton.jointCount(); ++j) {
-    if (fit.embedding.costs[j] < kNoPlace) continue;
-    rig.warnings.add("no-place", "joints of the template find no place in the model", fit.skeleton.joints[j].name);
+  if (const std::size_t missing = missingLimbs(fit); missing > 0) {
+    rig.warnings.add("no-place", "limbs of the template have no place in the model",
+                     limbsWithoutPlace(fit.skeleton, fit.limbs), missing);
   }
   const double confidence = confidenceOf(fit);
   if (confidence < kLowConfidence) {
@@ -215,7 +223,7 @@ AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress
     fits.push_back(bestFit(*candidates[i], body, frames, options.pins));
   }
   std::stable_sort(fits.begin(), fits.end(),
-                   [](const TemplateFit& a, const TemplateFit& b) { return a.cost < b.cost; });
+                   [](const TemplateFit& a, const TemplateFit& b) { return confidenceOf(a) > confidenceOf(b); });
 
   TemplateFit& best = fits.front();
   refineHumanoid(best.skeleton, body, best.frame, best.pins, best.embedding.places);

@@ -4,6 +4,7 @@
 #include "limber/rigging/auto_rigger.h"
 #include "limber/rigging/body_frame.h"
 #include "limber/rigging/body_volume.h"
+#include "limber/rigging/limb_places.h"
 #include "limber/rigging/template_embedding.h"
 #include "limber/rigging/template_skeleton.h"
 
@@ -23,6 +24,7 @@ struct TemplateFit {
   TemplatePins pins;
   TemplateEmbedding embedding;
   double cost = 0;
+  std::vector<TemplateLimb> limbs;  // as embedded
 };
 
 // The way to stand and the variant of the template that fit best. Reads up, front and pins of the options.
@@ -31,7 +33,8 @@ TemplateFit fitTemplate(const TemplateSkeleton& skeleton, const TriMesh& mesh, c
                         const RigOptions& options);
 
 // Measures the body, finds the way it stands and the template that fits best (options.templateName, "auto" tries all),
-// embeds and refines it. Warnings: "no-place" for each limb that the model seems to lack, "low-confidence".
+// embeds and refines it. Warnings: "no-place" with the limbs that the model seems to lack, "low-confidence",
+// "stray-pieces" (withoutStrays), with their triangles.
 // Throws Error kBadArgument for an unknown template or pinned joint.
 AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress& progress);
 

@@ -1,5 +1,6 @@
 #include "limber/rigging/template_rigger.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -32,11 +33,17 @@ Vec3 place(const Skeleton& skeleton, const char* name) {
   return restGlobals(skeleton)[skeleton.find(name).value()].translation();
 }
 
-bool warnsOf(const AutoRig& result, std::string_view kind) {
+// Empty without such a warning.
+std::string whereOf(const AutoRig& result, std::string_view kind) {
   for (const Warning& warning : result.warnings.items()) {
-    if (warning.kind == kind) return true;
+    if (warning.kind == kind) return warning.where;
   }
-  return false;
+  return {};
+}
+
+bool warnsOf(const AutoRig& result, std::string_view kind) {
+  const std::vector<Warning>& all = result.warnings.items();
+  return std::any_of(all.begin(), all.end(), [&](const Warning& warning) { return warning.kind == kind; });
 }
 
 TriMesh ball() {
@@ -146,6 +153,24 @@ TEST(TemplateRigger, SaysWhereAPersonHasNoPlace) {
   EXPECT_LT(result.matches[0].confidence, 0.4);
   EXPECT_TRUE(warnsOf(result, "low-confidence"));
   checkSkeleton(result.skeleton);
+}
+
+// What is missing is cut off by a plane.
+AutoRig riggedPartOfAPerson(bool (*keep)(const Vec3f&)) {
+  TriMesh mesh = testing::capsulePerson().mesh;
+  std::erase_if(mesh.triangles, [&](const Triangle& t) {
+    return std::any_of(t.begin(), t.end(), [&](Index v) { return !keep(mesh.positions[v]); });
+  });
+  return rig(mesh, person());
+}
+
+TEST(TemplateRigger, SaysWhichLimbsHalfABodyLacks) {
+  const AutoRig upper = riggedPartOfAPerson([](const Vec3f& p) { return p.y() > 0.52f; });
+  EXPECT_LT(upper.matches[0].confidence, 0.4);
+  EXPECT_EQ(whereOf(upper, "no-place"), "leftUpperLeg to leftToes, rightUpperLeg to rightToes");
+  const AutoRig armless = riggedPartOfAPerson([](const Vec3f& p) { return std::abs(p.x()) < 0.15f; });
+  EXPECT_LT(armless.matches[0].confidence, 0.4);
+  EXPECT_EQ(whereOf(armless, "no-place"), "leftShoulder to leftHand, rightShoulder to rightHand");
 }
 
 // A person fits into its seat, and leaves all else as it is.
