@@ -10,7 +10,7 @@ packages_node=(nodejs npm)
 packages_studio=(libcpp-httplib-dev pkg-config) # for the page in the program
 packages_browser=(chromium fonts-dejavu-core)
 packages_format=(clang-format)
-packages_lint=("${packages_tests[@]}" clang clang-tidy)
+packages_lint=("${packages_release[@]}" clang clang-tidy)
 
 # The program that shows that a package's work is done even where dpkg has not heard of the package (a Node from
 # elsewhere, a system without dpkg). Libraries have none: CMake says which of them it does not find.

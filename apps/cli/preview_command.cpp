@@ -52,13 +52,18 @@ std::vector<double> momentsOf(const Options& options, const Clip& clip) {
   return {options.time.value_or(0)};
 }
 
+// About twice as many as rows, with as few places left empty as that allows.
+int sheetColumns(int count) {
+  const int widest = static_cast<int>(std::ceil(std::sqrt(2.0 * count))), rows = (count + widest - 1) / widest;
+  return (count + rows - 1) / rows;
+}
+
 // A picture of a moment, a sheet of several, or an animation.
 Bytes clipPicture(const Asset& asset, const Options& options, const PreviewOptions& preview, Warnings& warnings) {
   const Clip clip = findClip(asset, options.clip);
   const std::vector<Image> images = renderClip(asset, clip, momentsOf(options, clip), preview, warnings);
   if (options.animate) return encodeApng(images, options.fps);
-  const int columns = static_cast<int>(std::ceil(std::sqrt(2.0 * static_cast<double>(images.size()))));
-  return encodePng(contactSheet(images, columns, renderBackdrop(preview)));
+  return encodePng(contactSheet(images, sheetColumns(static_cast<int>(images.size())), renderBackdrop(preview)));
 }
 
 Bytes stillPicture(const Asset& asset, const PreviewOptions& preview, Warnings& warnings) {

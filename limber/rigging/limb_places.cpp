@@ -70,7 +70,9 @@ std::string limbsWithoutPlace(const TemplateSkeleton& skeleton, const std::vecto
     if (limb.hasPlace) continue;
     const std::string &first = skeleton.joints[limb.joints.front()].name,
                       &last = skeleton.joints[limb.joints.back()].name;
-    names += (names.empty() ? "" : ", ") + (first == last ? first : first + " to " + last);
+    names += names.empty() ? "" : ", ";
+    names += first;
+    if (first != last) names += " to " + last;
   }
   return names;
 }
