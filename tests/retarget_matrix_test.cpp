@@ -8,6 +8,7 @@
 
 #include "limber/asset/motion_io.h"
 #include "limber/evaluate/motion_metrics.h"
+#include "limber/retarget/humanoid_shape.h"
 #include "shared_data.h"
 
 namespace limber::testing {
@@ -145,6 +146,32 @@ INSTANTIATE_TEST_SUITE_P(
     [](const ::testing::TestParamInfo<const char*>& file) {
       return std::filesystem::path(file.param).stem().string();
     });
+
+// Names say which joint is which; what the form alone says of the same skeleton and is sure of has to be that.
+TEST(RetargetMatching, WhatIsSureByFormAloneIsRight) {
+  if (!sharedDataFolder()) GTEST_SKIP() << kNoSharedData;
+  const Skeleton source = motionFrom("cmu_daz_12_01_walk.bvh", 1).skeleton;
+  int people = 0, sure = 0;
+  for (const char* file : kPeople) {
+    SCOPED_TRACE(file);
+    const Skeleton person = readMotion(*sharedDataFolder() / "rigged" / file).skeleton;
+    Skeleton nameless = person;
+    for (Index j = 0; j < nameless.jointCount(); ++j)
+      nameless.joints[j].name = std::string("q").append(std::to_string(j));
+    if (humanoidJointsByShape(nameless).empty()) continue;  // legs on a root of their own, say
+    const SkeletonMap byName = matchSkeletons(source, person), byForm = matchSkeletons(source, nameless);
+    ++people;
+    for (const JointMatch& match : byForm.matches) {
+      if (match.confidence < kDoubtful) continue;
+      ++sure;
+      const JointMatch* right = byName.find(match.part);
+      ASSERT_TRUE(right) << match.part;
+      EXPECT_EQ(match.target.front(), right->target.front()) << match.part;
+    }
+  }
+  EXPECT_GE(people, 8);
+  EXPECT_GE(sure, 120);
+}
 
 // One recording on two skeletons: each is the known answer for the other.
 TEST(RetargetKnownAnswers, NoMethodIsWorseThanCopying) {

@@ -2,15 +2,24 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
+#include "limber/retarget/humanoid_fit.h"
 #include "limber/skeleton/chain.h"
 
 namespace limber {
 
 namespace {
 
-constexpr double kConfidence = 0.6;
+constexpr double kLeftOver = 0.3;        // weight of what two bones leave of a limb against their being alike
+constexpr double kHeadOverArms = 0.075;  // heights
+constexpr double kToesSlope = 0.45;      // along the ground for what they go down, at least: else it is the shin
+
+// Logarithm of one length over the other.
+double unlike(double a, double b) {
+  return a > 0 && b > 0 ? std::abs(std::log(a / b)) : std::numeric_limits<double>::infinity();
+}
 
 class ShapeReader {
  public:
@@ -38,7 +47,7 @@ class ShapeReader {
     if (!hands) return {};
     const std::optional<Index> chest = fork(hands->first, hands->second);
     if (!chest || !isAncestorOrSelf(skeleton_, *hips, *chest)) return {};
-    if (!leftIsFirst(*feet)) lateral_ = -lateral_;
+    if (!leftIsFirst(*hips, *feet)) lateral_ = -lateral_;
 
     give("hips", *hips);
     for (const Index foot : {feet->first, feet->second}) leg(*hips, foot);
@@ -50,7 +59,7 @@ class ShapeReader {
  private:
   using Pair = std::pair<Index, Index>;
 
-  void give(std::string_view bone, Index joint) { joints_.push_back({bone, joint, kConfidence}); }
+  void give(std::string_view bone, Index joint) { joints_.push_back({bone, joint}); }
   void give(bool left, std::string_view leftBone, Index joint) {
     give(left ? leftBone : mirroredBone(leftBone), joint);
   }
@@ -103,40 +112,78 @@ class ShapeReader {
     return Pair{*far[0], *far[1]};
   }
 
-  // Whether the first foot, on the side to which lateral_ points, is the left one.
-  bool leftIsFirst(const Pair& feet) const {
+  // Whether the first foot, on the side to which lateral_ points, is the left one: toes point forward, else knees.
+  bool leftIsFirst(Index hips, const Pair& feet) const {
     Vec3 forward = Vec3::Zero();
     for (const Index foot : {feet.first, feet.second}) {
-      if (const auto parent = skeleton_.joints[foot].parent) forward += positions_[foot] - positions_[*parent];
+      const Vec3 last = positions_[foot] - positions_[*skeleton_.joints[foot].parent];
+      if (std::hypot(last.x(), last.z()) > kToesSlope * std::abs(last.y())) forward += last;
     }
     forward.y() = 0;
-    if (forward.norm() < 0.02 * size_.y()) forward = Vec3::UnitZ();
+    if (forward.norm() < 0.02 * size_.y()) forward = kneesBend(hips, feet);
+    if (forward.norm() < 0.005 * size_.y()) forward = Vec3::UnitZ();
     return Vec3::UnitY().cross(forward).dot(lateral_) > 0;
   }
 
-  // The joint of `joints` from `first` on whose place is nearest to `share`; leaves `spare` joints behind it.
-  template <typename Share>
-  std::size_t nearest(const std::vector<Index>& joints, std::size_t first, std::size_t spare, double share,
-                      const Share& shareOf) const {
-    std::size_t best = first;
-    for (std::size_t i = first; i + spare < joints.size(); ++i) {
-      if (std::abs(shareOf(joints[i]) - share) < std::abs(shareOf(joints[best]) - share)) best = i;
+  // How far the joints in the middle of the legs are off the straight way, along the ground.
+  Vec3 kneesBend(Index hips, const Pair& feet) const {
+    Vec3 bend = Vec3::Zero();
+    for (const Index foot : {feet.first, feet.second}) {
+      const std::vector<Index> joints = way(hips, foot);
+      if (joints.size() < 3) continue;
+      const Vec3 &top = positions_[joints.front()], leg = positions_[foot] - top;
+      const auto offMiddle = [&](Index j) { return std::abs(positions_[j].y() - top.y() - 0.5 * leg.y()); };
+      const Index middle = *std::min_element(joints.begin(), joints.end(),
+                                             [&](Index a, Index b) { return offMiddle(a) < offMiddle(b); });
+      const Vec3 knee = positions_[middle] - top;
+      bend += knee - knee.y() / leg.y() * leg;
+    }
+    return bend - bend.dot(lateral_) * lateral_;
+  }
+
+  // Which two joints before `end` begin the two bones of a limb: such as are alike in length and together make up most
+  // of the way.
+  std::pair<std::size_t, std::size_t> bonesOfLimb(const std::vector<Index>& joints, std::size_t end) const {
+    const auto length = [&](std::size_t a, std::size_t b) {
+      return (positions_[joints[b]] - positions_[joints[a]]).norm();
+    };
+    double whole = 0;
+    for (std::size_t i = 0; i < end; ++i) whole += length(i, i + 1);
+    std::pair<std::size_t, std::size_t> best = {0, 1};
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t upper = 0; upper + 1 < end; ++upper) {
+      for (std::size_t lower = upper + 1; lower < end; ++lower) {
+        const double first = length(upper, lower), second = length(lower, end);
+        const double cost = unlike(first, second) + kLeftOver * (whole - first - second) / whole;
+        if (cost >= least) continue;
+        least = cost;
+        best = {upper, lower};
+      }
     }
     return best;
   }
 
   void leg(Index hips, Index foot) {
-    const std::vector<Index> joints = way(hips, foot);
+    std::vector<Index> joints = way(hips, foot);
+    // Where the leg leaves the hips' joint there may be one more in the same place.
+    const auto isAtHips = [&](Index joint) { return (positions_[joint] - positions_[hips]).norm() < 0.02 * size_.y(); };
+    if (joints.size() > 3 && isAtHips(joints[0])) joints.erase(joints.begin());
     if (joints.size() < 2) return;
-    const double top = positions_[joints.front()].y() - ground_;
-    const auto height = [&](Index joint) { return (positions_[joint].y() - ground_) / std::max(top, 1e-12); };
     const bool left = side(foot) > 0;
-    const std::size_t upper = nearest(joints, 0, 2, 1, height);
-    const std::size_t lower = nearest(joints, upper + 1, joints.size() > 2 ? 1 : 0, 0.52, height);
+    if (joints.size() == 2) {
+      give(left, "leftUpperLeg", joints[0]);
+      give(left, "leftLowerLeg", joints[1]);
+      return;
+    }
+    const double top = positions_[joints.front()].y() - ground_;
+    std::size_t ankle = 2;
+    for (std::size_t i = 3; i < joints.size(); ++i) {
+      const auto off = [&](std::size_t at) { return std::abs(positions_[joints[at]].y() - ground_ - 0.1 * top); };
+      if (off(i) < off(ankle)) ankle = i;
+    }
+    const auto [upper, lower] = bonesOfLimb(joints, ankle);
     give(left, "leftUpperLeg", joints[upper]);
     give(left, "leftLowerLeg", joints[lower]);
-    if (lower + 1 >= joints.size()) return;
-    const std::size_t ankle = nearest(joints, lower + 1, 0, 0.1, height);
     give(left, "leftFoot", joints[ankle]);
     if (ankle + 1 < joints.size()) give(left, "leftToes", joints[ankle + 1]);
   }
@@ -152,20 +199,16 @@ class ShapeReader {
       }
     }
     if (joints.size() < 2) return;
-    const double reach = std::max((positions_[joints.back()] - positions_[chest]).norm(), 1e-12);
-    const auto share = [&](Index joint) { return (positions_[joint] - positions_[chest]).norm() / reach; };
-    const std::size_t end = joints.size() - 1;
-    if (joints.size() < 3) {
+    if (joints.size() == 2) {
       give(left, "leftUpperArm", joints[0]);
       give(left, "leftLowerArm", joints[1]);
       return;
     }
-    const std::size_t upper = joints.size() == 3 ? 0 : nearest(joints, 0, 2, 0.25, share);
-    const std::size_t lower = nearest(joints, upper + 1, 1, 0.62, share);
+    const auto [upper, lower] = bonesOfLimb(joints, joints.size() - 1);
     if (upper > 0) give(left, "leftShoulder", joints[0]);
     give(left, "leftUpperArm", joints[upper]);
     give(left, "leftLowerArm", joints[lower]);
-    give(left, "leftHand", joints[end]);
+    give(left, "leftHand", joints.back());
   }
 
   void trunkAndHead(Index hips, Index chest) {
@@ -183,7 +226,27 @@ class ShapeReader {
     const std::vector<Index> joints = way(chest, *top);
     if (joints.size() == 1) return give("head", joints[0]);
     give("neck", joints[0]);
-    give("head", joints[joints.size() > 2 ? joints.size() - 2 : 1]);
+    give("head", joints[headOf(joints)]);
+  }
+
+  // Of the joints from the neck to the top: what carries eyes and jaw; else what is as high over the upper arms as a
+  // head's joint is.
+  std::size_t headOf(const std::vector<Index>& joints) const {
+    for (std::size_t i = 1; i + 1 < joints.size(); ++i) {
+      if (children_[joints[i]].size() > 1) return i;
+    }
+    double shoulders = 0, arms = 0;
+    for (const HumanoidJoint& joint : joints_) {
+      if (joint.bone != "leftUpperArm" && joint.bone != "rightUpperArm") continue;
+      shoulders += positions_[joint.joint].y();
+      ++arms;
+    }
+    const double wanted = shoulders / std::max(arms, 1.0) + kHeadOverArms * size_.y();
+    std::size_t best = 1;
+    for (std::size_t i = 2; i < joints.size(); ++i) {
+      if (std::abs(positions_[joints[i]].y() - wanted) < std::abs(positions_[joints[best]].y() - wanted)) best = i;
+    }
+    return best;
   }
 
   const Skeleton& skeleton_;
@@ -199,7 +262,9 @@ class ShapeReader {
 
 std::vector<HumanoidJoint> humanoidJointsByShape(const Skeleton& skeleton) {
   if (skeleton.jointCount() < 8) return {};
-  return ShapeReader(skeleton).read();
+  std::vector<HumanoidJoint> joints = ShapeReader(skeleton).read();
+  rateHumanoidFit(skeleton, joints);
+  return joints;
 }
 
 }  // namespace limber

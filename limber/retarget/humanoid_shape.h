@@ -9,8 +9,8 @@ namespace limber {
 
 // The main joints of a person that stands upright (+Y) with both arms away from the body: two limbs that end at the
 // lowest points on both sides of the middle are the legs, two that end furthest to the sides the arms, what ends
-// highest is the head. Left is told by the toes, which point forward; else the person faces +Z. Nothing where the
-// skeleton has no such form.
+// highest is the head. Left is told by the toes, which point forward, or by bent knees; else the person faces +Z. How
+// well the form fits tells the confidence (humanoid_fit.h). Nothing where the skeleton has no such form.
 std::vector<HumanoidJoint> humanoidJointsByShape(const Skeleton& skeleton);
 
 }  // namespace limber

@@ -43,7 +43,8 @@ TEST(SkeletonMap, NumberedPeopleByShape) {
                            "leftUpperLeg", "leftLowerLeg", "leftFoot", "rightFoot", "rightLowerLeg"}) {
     ASSERT_TRUE(map.find(bone)) << bone;
     EXPECT_EQ(map.find(bone)->target.front(), a.find(bone)) << bone;
-    EXPECT_LT(map.find(bone)->confidence, kDoubtful);
+    EXPECT_GE(map.find(bone)->confidence, kDoubtful) << bone;
+    EXPECT_EQ(map.find(bone)->by, MatchedBy::kShape);
   }
 }
 
