@@ -85,6 +85,7 @@ std::vector<Clip> chosenClips(std::vector<Clip> clips, const std::vector<std::st
       continue;
     }
     std::vector<std::string> all;
+    all.reserve(clips.size());
     for (const Clip& clip : clips) all.push_back(clip.name);
     throw Error(ErrorCode::kBadArgument, fmt::format("there is no clip called '{}'", name), "",
                 fmt::format("there are: {}", joinNames(all)));
@@ -168,6 +169,7 @@ std::vector<std::pair<fs::path, Bytes>> bvhFiles(const Motion& motion, const Opt
 void writeBvhFiles(const Motion& motion, const Options& options, const Account& account) {
   const std::vector<std::pair<fs::path, Bytes>> files = bvhFiles(motion, options);
   std::vector<OutputFile> outputs;
+  outputs.reserve(files.size());
   for (const auto& [path, bytes] : files) outputs.push_back({path, bytes});
   writeFiles(outputs);
   for (const auto& [path, bytes] : files) {

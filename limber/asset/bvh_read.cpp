@@ -185,7 +185,7 @@ class BvhReader {
   }
 
   void takeFrame(BvhLine& line) {
-    if (cutFrame_) throw *cutFrame_;  // it was not the last
+    if (cutFrame_) throw Error(*cutFrame_);  // it was not the last
     BvhLine number = line;
     if (static_cast<double>(frames_->count()) >= *announced_ && !startsWithNumber(number)) {
       warnings_.add("trailing-text", "text behind the last frame is left out", where(line.lineNumber()));
