@@ -5,13 +5,18 @@
 #include <string>
 
 #include "limber/rigging/leg_finder.h"
+#include "limber/rigging/medial_way.h"
 #include "limber/rigging/template_embedding.h"
 
 namespace limber {
 
 namespace {
 
-constexpr double kThinnestTrunk = 0.04;  // heights
+// Heights.
+constexpr double kThinnestTrunk = 0.04;
+constexpr double kTailAside = 0.08;  // of a tail's end from the middle
+constexpr double kLowestTail = 0.1;
+constexpr double kShortestTail = 0.1;
 
 struct LegJoints {
   Index upper = 0, lower = 0, foot = 0, toes = 0;
@@ -20,6 +25,7 @@ struct QuadrupedJoints {
   std::array<LegJoints, 2> front, hind;  // left and right
   Index hips = 0, chest = 0, neck = 0, tail = 0;
   std::array<Index, 2> spine = {};
+  std::array<Index, 3> onTail = {};  // below its root, with the tip
 };
 
 std::optional<QuadrupedJoints> quadrupedJointsOf(const TemplateSkeleton& skeleton) {
@@ -47,6 +53,9 @@ std::optional<QuadrupedJoints> quadrupedJointsOf(const TemplateSkeleton& skeleto
   set(joints.chest, "chest");
   set(joints.neck, "neck");
   set(joints.tail, "tail");
+  set(joints.onTail[0], "tail1");
+  set(joints.onTail[1], "tail2");
+  set(joints.onTail[2], "tailTip");
   return all ? std::optional(joints) : std::nullopt;
 }
 
@@ -98,6 +107,28 @@ class Mover {
     const double legs = 0.5 * (places_[joints.front[0].upper].z() + places_[joints.front[1].upper].z());
     moveInto(joints.chest, legs + proportions_.chestForward, proportions_.chestUp);
     moveInto(joints.neck, legs + proportions_.neckForward, proportions_.neckUp);
+  }
+
+  // Along the tail from its root to the end of the body that lies farthest behind it in the middle.
+  void tail(const QuadrupedJoints& joints) {
+    const Vec3 root = places_[joints.tail];
+    std::optional<Vec3> end;
+    for (const BodyTip& tip : body_.tips) {
+      const Vec3 place = frame_.toBody(tip.position);
+      if (std::abs(place.x()) > kTailAside || place.y() < kLowestTail || place.z() > root.z()) continue;
+      if (!end || (place - root).norm() > (*end - root).norm()) end = place;
+    }
+    if (!end || (*end - root).norm() < kShortestTail) return;
+    std::vector<Vec3> way = medialWay(body_, frame_.fromBody(root), frame_.fromBody(*end));
+    if (way.empty()) return;
+    way.front() = frame_.fromBody(root);
+    way.push_back(frame_.fromBody(*end));
+    for (std::size_t i = 0; i < joints.onTail.size(); ++i) {
+      const double share = static_cast<double>(i + 1) / static_cast<double>(joints.onTail.size());
+      Vec3 place = frame_.toBody(alongWay(way, share));
+      if (frame_.symmetric()) place.x() = 0;
+      moveTo(joints.onTail[i], place);
+    }
   }
 
   // What lies between placed joints, but is seen.
@@ -172,6 +203,7 @@ void refineQuadruped(const TemplateSkeleton& skeleton, const BodyVolume& body, c
   if (rear) mover.rear(*joints);
   placeBetween(skeleton, places);
   mover.between(*joints, fore, rear);
+  mover.tail(*joints);
 }
 
 }  // namespace limber

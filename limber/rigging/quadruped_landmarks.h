@@ -30,8 +30,8 @@ struct QuadrupedProportions {
 
 // Where a template has the joints of limber's quadruped: the legs are followed from the ground to where they part;
 // their upper joints go above that place, knees, hocks, elbows and feet to the middle of the leg; hips, chest, spine
-// and the roots of neck and tail go into the trunk, where the legs carry it. What a body does not show stays where it
-// was. Pinned joints stay. Body space.
+// and the roots of neck and tail go into the trunk, where the legs carry it; the tail runs from there to its end. What a
+// body does not show stays where it was. Pinned joints stay. Body space.
 void refineQuadruped(const TemplateSkeleton& skeleton, const BodyVolume& body, const BodyFrame& frame,
                      const std::vector<std::optional<Vec3>>& pins, std::vector<Vec3>& places,
                      const QuadrupedProportions& proportions = {});

@@ -16,11 +16,11 @@ struct MeasuredHorse {
   BodyFrame frame;
   std::vector<Vec3> places;  // of the template, not of this horse
 
-  MeasuredHorse() {
+  explicit MeasuredHorse(const Vec3& tailEnd = {0, 0.5, -0.7}) {
     testing::addCapsule(mesh, {0, 0.62, -0.4}, {0, 0.62, 0.4}, 0.16);
     testing::addCapsule(mesh, {0, 0.7, 0.42}, {0, 0.87, 0.52}, 0.07);
     testing::addCapsule(mesh, {0, 0.92, 0.52}, {0, 0.86, 0.72}, 0.07);
-    testing::addCapsule(mesh, {0, 0.66, -0.5}, {0, 0.5, -0.7}, 0.04);
+    testing::addCapsule(mesh, {0, 0.66, -0.5}, tailEnd, 0.04);
     for (const double x : {-0.11, 0.11}) {
       for (const double z : {-0.33, 0.34}) testing::addCapsule(mesh, {x, 0.045, z}, {x, 0.55, z}, 0.045);
     }
@@ -74,6 +74,23 @@ TEST(QuadrupedLandmarks, LegsStandUnderTheTrunkTheyCarry) {
     last = place(name).z();
   }
   for (const char* name : {"hips", "spine", "spine1", "chest"}) EXPECT_NEAR(place(name).y(), 0.62, 0.06) << name;
+}
+
+TEST(QuadrupedLandmarks, TheTailIsFollowedToItsEnd) {
+  for (const Vec3& end : {Vec3(0, 0.4, -0.75), Vec3(0, 1.1, -0.65)}) {
+    const MeasuredHorse horse(end);
+    const TemplateSkeleton& skeleton = findTemplate("quadruped");
+    std::vector<Vec3> places = horse.places;
+    refineQuadruped(skeleton, horse.body, horse.frame, std::vector<std::optional<Vec3>>(places.size()), places);
+    const auto place = [&](const char* name) { return horse.frame.fromBody(places[*skeleton.find(name)]); };
+    const Vec3 root = place("tail"), bone = (end - Vec3(0, 0.66, -0.5)).normalized();
+    EXPECT_LT((place("tailTip") - end - 0.04 * bone).norm(), 0.05);
+    for (const char* name : {"tail1", "tail2"}) {
+      const Vec3 off = place(name) - end;
+      EXPECT_LT((off - off.dot(bone) * bone).norm(), 0.05) << name << " is in the middle of the tail";
+    }
+    EXPECT_LT((place("tail1") - root).norm(), (place("tail2") - root).norm());
+  }
 }
 
 TEST(QuadrupedLandmarks, PinsStay) {
