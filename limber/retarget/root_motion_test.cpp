@@ -39,6 +39,34 @@ TEST(RootMotion, TheWayScalesWithTheHips) {
   }
 }
 
+// A body a metre long with a leg below each end; lying down, the legs go on along the body.
+Skeleton animal(double leg, bool lies) {
+  const Vec3 way = lies ? Vec3(0, 0, leg) : Vec3(0, -leg, 0);
+  Skeleton skeleton;
+  const auto add = [&](const char* name, std::optional<Index> parent, const Vec3& offset) {
+    Joint joint;
+    joint.name = name;
+    joint.parent = parent;
+    joint.rest.translation = offset;
+    skeleton.joints.push_back(joint);
+  };
+  add("body", std::nullopt, lies ? Vec3(Vec3::Zero()) : Vec3(0, leg, 0));
+  add("chest", Index{0}, Vec3(0, 0, 1));
+  add("hindPaw", Index{0}, lies ? Vec3(-way) : way);
+  add("forePaw", Index{1}, way);
+  return skeleton;
+}
+
+TEST(RootMotion, AnimalsGoAsFarAsTheyStandHigh) {
+  const auto scale = [](const Skeleton& from, const Skeleton& to) {
+    return RetargetSetup(from, to, matchSkeletons(from, to), {}).scale;
+  };
+  EXPECT_NEAR(scale(animal(0.5, false), animal(1, false)), 2, 1e-12);
+  EXPECT_NEAR(scale(animal(0.5, true), animal(1, true)), 3.0 / 2, 1e-12);
+  const double mixed = scale(animal(0.5, false), animal(1, true));  // by what both have: their size
+  EXPECT_NEAR(mixed, 3 / std::hypot(1, 0.5), 1e-12);
+}
+
 TEST(RootMotion, ThePelvisMovesByWhatIsAsked) {
   const Skeleton person = practiceHumanoid(), odd = limber::testing::withOtherAxes(oddlyBuilt());
   const RetargetSetup setup(person, odd, matchSkeletons(person, odd), {});
