@@ -256,7 +256,7 @@ class DracoReader {
     piece.bytes.resize(piece.count * piece.stride);
   }
 
-  void store(Index accessor, Piece piece, const JsonView& place) {
+  void store(Index accessor, Piece&& piece, const JsonView& place) {
     const auto [known, isNew] = pieces_.try_emplace(accessor, std::move(piece));
     if (!isNew && known->second.bytes != piece.bytes) place.fail("is used for two differing Draco attributes");
   }

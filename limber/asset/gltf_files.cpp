@@ -43,7 +43,7 @@ class Names {
     const std::string name = wanted.filename().string();
     for (int i = 0;; ++i) {
       const std::string start = i == 0 ? stem_ : fmt::format("{}_{}", stem_, i);
-      const fs::path path = wanted.parent_path() / (start + "_" + name);
+      const fs::path path = wanted.parent_path() / fmt::format("{}_{}", start, name);
       if (take(path, bytes)) return path;
     }
   }
