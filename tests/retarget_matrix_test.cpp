@@ -66,23 +66,20 @@ bool isWalkOrRun(const std::string& motion) {
 const std::set<std::string> kNeverStands = {"cmu_daz_02_03_run.bvh", "cmu_daz_09_01_run.bvh", "makehuman_walk.bvh",
                                             "makehuman_zombie_walk.bvh", "pab_run.fbx"};
 // What does not hold yet, with what was measured, heights a second.
-using Pairs = std::set<std::pair<std::string, std::string>>;
 // A toy whose legs stand nine times as far apart, for their length, as the source's: with each turn of the pelvis
 // they sweep further than they can reach back.
-const Pairs kSlideMore = {{"fair1_dab.bvh", "quaternius_platformer_character_humanoidrig"},       // 0.021, source 0.015
-                          {"pybvh_example.bvh", "quaternius_platformer_character_humanoidrig"}};  // 0.059, source 0.023
-// Its feet are long: while their toes are held, the ankles tremble as the source's do (0.022, source 0.036).
-const Pairs kSlidingWalks = {{"cmu_mb_12_01_walk.bvh", "manny_med_mod"}};
+const std::set<std::pair<std::string, std::string>> kSlideMore = {
+    {"fair1_dab.bvh", "quaternius_platformer_character_humanoidrig"},       // 0.023, source 0.015
+    {"pybvh_example.bvh", "quaternius_platformer_character_humanoidrig"}};  // 0.066, source 0.023
 // Mean jerk against the source over 1.1. Most of it is that of the joint angles on other proportions, in brackets.
 const std::set<std::string> kRougherThanSource = {"boxing_toes.bvh",                 // 1.17 (1.16)
                                                   "cmu1_jumping_jacks.bvh",          // 1.15 (1.01)
-                                                  "cmu_mb_01_01_forward_jumps.bvh",  // 1.15 (1.17)
-                                                  "fair1_dab.bvh",                   // 1.36 (1.25)
-                                                  "fair1_wave_hello.bvh",            // 1.75 (1.61)
-                                                  "m2m_human_sample_anim.glb",       // 1.17 (1.18)
-                                                  "makehuman_walk.bvh",              // 1.14 (1.05)
-                                                  "pybvh_example.bvh",               // 1.20 (1.15)
-                                                  "pybvh_test2.bvh"};                // 1.19 (1.12)
+                                                  "cmu_mb_01_01_forward_jumps.bvh",  // 1.14 (1.17)
+                                                  "fair1_dab.bvh",                   // 1.35 (1.25)
+                                                  "fair1_wave_hello.bvh",            // 1.74 (1.61)
+                                                  "m2m_human_sample_anim.glb",       // 1.16 (1.18)
+                                                  "makehuman_walk.bvh",              // 1.13 (1.05)
+                                                  "pybvh_example.bvh"};              // 1.20 (1.15)
 
 }  // namespace
 
@@ -107,7 +104,7 @@ TEST_P(RetargetMatrix, EveryHumanoidKeepsFeetAndGround) {
     if (!kSlideMore.contains({motion, person})) {
       EXPECT_LT(result.sliding, result.sourceSliding + 1e-4);
     }
-    if (isWalkOrRun(motion) && !kSlidingWalks.contains({motion, person})) {
+    if (isWalkOrRun(motion)) {
       EXPECT_LT(result.sliding, 0.02);
     }
     jerk += result.jerk;

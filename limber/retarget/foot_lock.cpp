@@ -7,15 +7,14 @@
 namespace limber {
 
 namespace {
-// 1/seconds. Along the ground a foot has to stand at once, down to it there is time.
-constexpr double kHolding = 80, kReleasing = 40;  // of the share to which it is free
-constexpr double kSettling = 20, kLeaving = 16;   // of what fades out
-constexpr double kRolling = 40;                   // of the speed left where the point that is held changes
-constexpr double kCaughtUp = 0.25;                // of the slack
 
-Vec3 rollOf(const FootLock::Frame& frame, bool byToes) {
-  return byToes ? Vec3(frame.toes - frame.ankle) : Vec3(Vec3::Zero());
-}
+// 1/seconds. Along the ground a foot has to stand at once, down to it and back to where it would be there is time.
+constexpr double kGrip = 80;         // of the shares to which it is free
+constexpr double kFading = 20;       // of the way that it was held back, and of its height over where it has to be
+constexpr double kUntwisting = 10;   // of the twist of a foot that is free to turn
+constexpr double kRolling = 40;      // of the speed left where the point that is held changes
+constexpr double kMostTwist = 0.35;  // radians: a foot that is turned by more is let go
+constexpr double kCaughtUp = 0.25;   // of the slack or the twist: held again from there
 
 // Height of the ankle over which the foot settles.
 double baseHeight(const FootLock::Frame& frame, FootAnchor anchor) {
@@ -30,6 +29,10 @@ Vec3 level(const Vec3& v) {
 
 }  // namespace
 
+void FootLock::Share::follow(bool held, double seconds) {
+  springTo(held ? 0.0 : 1.0, kGrip, seconds, value, speed);
+}
+
 // The first frame is where the foot is, but on the ground at once.
 void FootLock::begin(const Frame& frame) {
   anchor_ = frame.anchor;
@@ -37,9 +40,13 @@ void FootLock::begin(const Frame& frame) {
   lost_ = false;
   out_ = frame.ankle;
   out_.y() = baseHeight(frame, anchor_);
-  freedom_ = anchor_ == FootAnchor::kNone ? 1 : 0;
-  freedomSpeed_ = lift_ = liftSpeed_ = 0;
+  freedom_.follow(anchor_ != FootAnchor::kNone, 0);
+  lift_ = liftSpeed_ = 0;
   catchUpSpeed_ = rollSpeed_ = Vec3::Zero();
+  turning_.follow(frame.flat, 0);
+  twist_ = 0;
+  twisted_ = false;
+  roll_ = frame.toes - frame.ankle;
   before_ = frame;
 }
 
@@ -48,36 +55,48 @@ Vec3 FootLock::next(const Frame& frame, double seconds, double slack) {
     begin(frame);
     return out_;
   }
+  turn(frame, seconds);
   moveAlong(frame, seconds, slack);
   moveUpright(frame, seconds);
   before_ = frame;
   return out_;
 }
 
+void FootLock::turn(const Frame& frame, double seconds) {
+  twisted_ = frame.flat && std::abs(twist_) > (twisted_ ? kCaughtUp : 1) * kMostTwist;
+  turning_.follow(frame.flat && !twisted_, seconds);
+  const Vec3 from = level(before_->toes - before_->ankle), to = level(frame.toes - frame.ankle);
+  const double turned = std::atan2(from.cross(to).y(), from.dot(to));
+  twist_ = (twist_ - (1 - turning_.value) * turned) * std::exp(-kUntwisting * turning_.value * seconds);
+  const Vec3 roll = Eigen::AngleAxisd(twist_, Vec3::UnitY()) * (frame.toes - frame.ankle);
+  rolled_ = level(roll - roll_);
+  roll_ = roll;
+}
+
 void FootLock::moveAlong(const Frame& frame, double seconds, double slack) {
   const Vec3 behind = level(before_->ankle - out_);
   lost_ = frame.anchor != FootAnchor::kNone && behind.norm() > (lost_ ? kCaughtUp : 1) * slack;
-  const bool held = frame.anchor != FootAnchor::kNone && !lost_;
-  springTo(held ? 0.0 : 1.0, held ? kHolding : kReleasing, seconds, freedom_, freedomSpeed_);
+  freedom_.follow(frame.anchor != FootAnchor::kNone && !lost_, seconds);
+  const double freedom = freedom_.value;
 
   Vec3 left = -behind;
-  springTo(Vec3(Vec3::Zero()), kLeaving, seconds, left, catchUpSpeed_);
-  catchUpSpeed_ *= freedom_;
+  springTo(Vec3(Vec3::Zero()), kFading, seconds, left, catchUpSpeed_);
+  catchUpSpeed_ *= freedom;
   const Vec3 freeWay = level(frame.ankle - before_->ankle) + left + behind;
-  const auto rolled = [&](bool byToes) { return level(rollOf(frame, byToes) - rollOf(*before_, byToes)); };
   const bool byToes = frame.anchor == FootAnchor::kNone ? byToes_ : frame.anchor == FootAnchor::kToes;
   // Where another point is held from here on, the ankle's speed goes over to that which this point leaves it.
-  rollSpeed_ += (1 - freedom_) * (rolled(byToes) - rolled(byToes_)) / seconds;
+  if (byToes != byToes_) rollSpeed_ += (byToes ? 1 : -1) * (1 - freedom) / seconds * rolled_;
   byToes_ = byToes;
   rollSpeed_ *= std::exp(-kRolling * seconds);
-  // The point moves by `freedom_` of its free way, and the ankle as the foot turns about it.
-  out_ += freedom_ * freeWay - (1 - freedom_) * rolled(byToes_) + seconds * rollSpeed_;
+  // The point moves by its share of the free way, and the ankle as the foot turns about it.
+  out_ += freedom * freeWay + seconds * rollSpeed_;
+  if (byToes_) out_ -= (1 - freedom) * rolled_;
 }
 
 void FootLock::moveUpright(const Frame& frame, double seconds) {
   const double base = baseHeight(frame, anchor_);
   const double speed = (base - baseHeight(*before_, anchor_)) / seconds;
-  springTo(0.0, anchor_ == FootAnchor::kNone ? kLeaving : kSettling, seconds, lift_, liftSpeed_);
+  springTo(0.0, kFading, seconds, lift_, liftSpeed_);
   out_.y() = base + lift_;
   if (frame.anchor == anchor_) return;
   anchor_ = frame.anchor;

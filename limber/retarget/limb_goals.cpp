@@ -125,13 +125,18 @@ void LimbGoals::addSurface(const std::string& from, const std::string& to, doubl
       {{begin->source.front(), end->source.front()}, {begin->target.front(), end->target.front()}, touching, apart});
 }
 
-FootAnchor LimbGoals::anchorOf(const Leg& leg, Feeler& feeler, const BodyFrame& source, double seconds) const {
+// What of the foot stands in the source.
+void LimbGoals::feel(const Leg& leg, Feeler& feeler, const BodyFrame& source, double seconds,
+                     FootLock::Frame& frame) const {
   const Vec3& ankle = source.positions[leg.sourceEnd];
   const bool heel = feeler.ankle.next(ankle, ankle.y() - leg.sourceAnkleGround, seconds);
-  if (!leg.toes) return heel ? FootAnchor::kAnkle : FootAnchor::kNone;
-  const Vec3& toes = source.positions[*leg.sourceToes];
-  if (feeler.toes.next(toes, toes.y() - leg.sourceToesGround, seconds)) return FootAnchor::kToes;
-  return heel ? FootAnchor::kAnkle : FootAnchor::kNone;
+  bool toes = false;
+  if (leg.toes) {
+    const Vec3& place = source.positions[*leg.sourceToes];
+    toes = feeler.toes.next(place, place.y() - leg.sourceToesGround, seconds);
+  }
+  frame.anchor = toes ? FootAnchor::kToes : heel ? FootAnchor::kAnkle : FootAnchor::kNone;
+  frame.flat = heel && toes;
 }
 
 // Nobody moves that fast: what stood before the cut does not count behind it.
@@ -161,10 +166,11 @@ void LimbGoals::setFeet(const BodyFrame& source, const BodyFrame& target, double
     FootLock::Frame frame;
     frame.ankle = target.positions[leg.end];
     frame.toes = leg.toes ? target.positions[*leg.toes] : frame.ankle;
-    frame.anchor = anchorOf(leg, feelers_[i], source, seconds);
+    feel(leg, feelers_[i], source, seconds, frame);
     frame.ankleGround = leg.ankleGround;
     frame.toesGround = leg.toesGround;
     leg.goal = feelers_[i].lock.next(frame, seconds, kFootSlack * setup_.targetHipHeight);
+    leg.turn = Eigen::AngleAxisd(feelers_[i].lock.twist(), Vec3::UnitY());
     leg.wanted = true;
     leg.anchor = frame.anchor;
     followPlanting(frame.anchor != FootAnchor::kNone ? 1 : 0, seconds, leg.planted, feelers_[i].plantedSpeed);

@@ -16,9 +16,10 @@ namespace limber {
 struct Limb {
   Index upper = 0, lower = 0, end = 0;
   Index sourceUpper = 0, sourceEnd = 0;
-  double length = 0;         // of both bones
-  Vec3 goal = Vec3::Zero();  // where the end has to be, in the person's space
-  bool wanted = false;       // else it may be where it is
+  double length = 0;             // of both bones
+  Vec3 goal = Vec3::Zero();      // where the end has to be, in the person's space
+  bool wanted = false;           // else it may be where it is
+  Quat turn = Quat::Identity();  // of the end, against its joint angles
 };
 
 struct Leg : Limb {
@@ -67,7 +68,7 @@ class LimbGoals {
   void addLeg(const std::string& side, const Limb& limb);
   void addSurface(const std::string& from, const std::string& to, double touching, double apart,
                   std::vector<Surface>& surfaces) const;
-  FootAnchor anchorOf(const Leg& leg, Feeler& feeler, const BodyFrame& source, double seconds) const;
+  void feel(const Leg& leg, Feeler& feeler, const BodyFrame& source, double seconds, FootLock::Frame& frame) const;
   void forgetAcrossCuts(const BodyFrame& source, double seconds);
   Vec3 touchOf(const Limb& arm, const std::vector<Surface>& surfaces, const BodyFrame& source,
                const BodyFrame& target) const;

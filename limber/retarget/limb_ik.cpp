@@ -66,14 +66,15 @@ class LimbIkRetargeter : public FrameRetargeter {
 
   void reach(const Limb& limb, IkSolver* solver, bool isLeg, Pose& target) {
     BodyFrame& frame = to();
-    if ((limb.goal - frame.positions[limb.end]).norm() < 1e-9 * limb.length) return;
-    const Quat orientation = frame.rotations[limb.end];
+    const bool stays = (limb.goal - frame.positions[limb.end]).norm() < 1e-9 * limb.length;
+    if (stays && limb.turn.w() == 1) return;
+    const Quat orientation = limb.turn * frame.rotations[limb.end];
     if (solver) {
       reachBySolver(limb, *solver, target);
     } else {
       turnTwoBones(limb, isLeg, target);
     }
-    // The end keeps its orientation.
+    // The end stands as it did, turned where a planted foot asks for it.
     const BodyKinematics& kinematics = setup_.targetKinematics;
     kinematics.globals(target, frame);
     target.locals[limb.end].rotation =

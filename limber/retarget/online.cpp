@@ -66,7 +66,7 @@ class OnlineRetargeter : public FrameRetargeter {
     IkTarget& target = targets_[task++];
     const Quat back = setup_.targetNeutral.toBody.conjugate();
     target.position = back * (limb.wanted ? limb.goal : frame.positions[limb.end]);
-    target.orientation = (back * frame.rotations[limb.end]).normalized();
+    target.orientation = (back * limb.turn * frame.rotations[limb.end]).normalized();
   }
 
   const RetargetSetup& setup_;
