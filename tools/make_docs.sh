@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Makes the documentation's pictures (docs/images), the comparison of inverse kinematics (docs/ik.md) and, where the
-# shared characters are, its table of weights (docs/weights.md). Called by ./dev docs with the program built.
+# shared characters and motions are, the tables of weights, template rigs and retargeting, and sheets of a motion by each
+# retargeting method. Called by ./dev docs with the program built.
 set -euo pipefail
 
 limber=build/release/limber images=docs/images work=build/docs
@@ -48,6 +49,11 @@ if [ -d "$characters" ]; then
   table=$($limber evaluate retargeting --motion "$motions"/{boxing_toes,cmu_daz_12_01_walk,cmu_mb_12_01_walk,cmu_daz_09_01_run}.bvh \
     "$motions"/{fair1_dab,pybvh_example,rokoko_dance}.bvh --most-frames 400 --quiet \
     --character "$characters"/{cesium_man,m2m_human_male,makehuman_mixamo,quaternius_man_casual}.glb)
+  $limber convert "$motions/cmu1_jumping_jacks.bvh" $work/jumping_jack.bvh --trim 0.3:1.6 --quiet
+  for method in limb-ik online spacetime aligned copy; do
+    $limber retarget $work/biped_template.glb $work/jumping_jack.bvh --method $method -o $work/jumping_jack.glb --quiet
+    $limber preview $work/jumping_jack.glb --frames 8 --size 120x150 --view 25,10 -o $images/retarget_$method.png --quiet
+  done
   table="$table" perl -0pi -e 's/(<!-- made by [^\n]*: measures -->\n).*(<!-- end of measures -->)/$1\n$ENV{table}\n\n$2/s' docs/retargeting.md
   sed -i '/^\*\*People/,$d' docs/template-rigs.md
   {
