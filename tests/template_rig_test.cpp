@@ -136,8 +136,9 @@ TEST_P(TemplatePeople, HaveHandsAndFeetInTheRightLimbs) {
   };
   const double reach = 0.5 * box.size().x() / box.size().y();
   for (const auto& [side, sign] : {std::pair(std::string("left"), 1.0), std::pair(std::string("right"), -1.0)}) {
-    // In the limb, past the elbow: how near to the wrist is measured where artists' skeletons are known.
-    EXPECT_GT(sign * place(side + "Hand").x(), 0.6 * reach) << side;
+    // The wrist: a hand's length before the tips of the fingers.
+    EXPECT_GT(sign * place(side + "Hand").x(), 0.75 * reach) << side;
+    EXPECT_LT(sign * place(side + "Hand").x(), 0.9 * reach) << side;
     EXPECT_GT(sign * place(side + "Hand").x(), sign * place(side + "LowerArm").x()) << side;
     EXPECT_GT(sign * place(side + "Foot").x(), 0.02) << side;
     EXPECT_LT(place(side + "Foot").y(), -0.4) << side;

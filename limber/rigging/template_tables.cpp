@@ -29,7 +29,7 @@ constexpr Row kHumanoid[] = {
     {"neck", "upperChest", 0, 0.80, 0, kPlaced, 0.4, 0.3},
     {"head", "neck", 0, 0.86, 0, kPlaced, 0.4, 0.35},
     {"headTip", "head", 0, 0.98, 0, kTip, 0.6, 0.35},
-    {"leftShoulder", "upperChest", 0.035, 0.765, 0, kBetween, 0, 0},
+    {"leftShoulder", "upperChest", 0.035, 0.76, 0.015, kBetween, 0, 0},
     {"leftUpperArm", "leftShoulder", 0.09, 0.775, 0, kPlaced, 0.4, 0.4},
     {"leftLowerArm", "leftUpperArm", 0.21, 0.73, 0, kPlaced, 0.3, 0.65},
     {"leftHand", "leftLowerArm", 0.33, 0.68, 0.01, kPlaced, 0.3, 0.65},
