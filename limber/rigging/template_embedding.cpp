@@ -12,22 +12,24 @@ namespace limber {
 namespace {
 
 // Weights of the penalties, each of which is about 1 for what is unusual. Heights are body heights.
-constexpr double kOutside = 40;         // for each height of a bone that runs outside
-constexpr double kOutsideDepth = 0.02;  // heights outside that count in full
-constexpr double kSample = 0.03;        // heights between two looks along a bone
-constexpr double kLongestBone = 0.7;    // heights
-constexpr double kOffMiddle = 1.5;      // for a place beside the deepest of its part
-constexpr double kPlaceSpread = 0.22;   // heights, of joints about their place in the template
-constexpr double kTipSpread = 0.12;     // heights up, of tips on the ground and on top
-constexpr double kHandSpread = 0.3;     // of other tips
-constexpr double kNearEnd = 0.12;       // heights from the ground or the top
-constexpr double kMiddleSpread = 0.02;  // heights, of joints of the middle to the sides
-constexpr double kTipReach = 0.04;      // heights from an end of the model
-constexpr double kNoTip = 4;            // most that a tip away from every end costs
-constexpr double kNearPlane = 0.03;     // heights: such spheres count for the middle
-constexpr double kLineSpacing = 0.02;   // heights of places along the middle line
-constexpr double kWorstBone = 25;       // most that length and direction of a bone cost
-constexpr double kWorstTip = 5;         // of the way to a tip: stumps have no hands and feet
+constexpr double kOutside = 40;                    // for each height of a bone that runs outside
+constexpr double kOutsideDepth = 0.02;             // heights outside that count in full
+constexpr double kSample = 0.03;                   // heights between two looks along a bone
+constexpr double kLongestBone = 0.7;               // heights
+constexpr double kOffMiddle = 1.5;                 // for a place beside the deepest of its part
+constexpr double kPlaceSpread = 0.22;              // heights, of joints about their place in the template
+constexpr double kTipSpread = 0.12;                // heights up, of tips on the ground and on top
+constexpr double kHandSpread = 0.3;                // of other tips
+constexpr double kNearEnd = 0.12;                  // heights from the ground or the top
+constexpr double kMiddleSpread = 0.02;             // heights, of joints of the middle to the sides
+constexpr double kTipReach = 0.04;                 // heights from an end of the model
+constexpr double kNoTip = 4;                       // most that a tip away from every end costs
+constexpr double kNearPlane = 0.03;                // heights: such spheres count for the middle
+constexpr double kLineSpacing = 0.02;              // heights of places along the middle line
+constexpr double kWorstBone = 25;                  // most that length and direction of a bone cost
+constexpr double kWorstTip = 5;                    // of the way to a tip: stumps have no hands and feet
+constexpr double kDescentSteps[] = {0.01, 0.005};  // heights
+constexpr int kDescentRounds = 2;                  // with each
 
 struct Candidate {
   Vec3 place = Vec3::Zero();
@@ -40,13 +42,8 @@ class Embedder {
  public:
   // `skeleton` says which joints there are; their places do not matter yet.
   Embedder(const TemplateSkeleton& skeleton, const BodyVolume& body, const BodyFrame& frame, const TemplatePins& pins,
-           std::size_t mostSpheres)
-      : skeleton_(skeleton),
-        body_(body),
-        frame_(frame),
-        pins_(pins),
-        mostSpheres_(mostSpheres),
-        half_(frame.symmetric()) {
+           const EmbeddingOptions& options)
+      : skeleton_(skeleton), body_(body), frame_(frame), pins_(pins), options_(options), half_(frame.symmetric()) {
     for (const std::optional<Vec3>& pin : pins) half_ = half_ && !pin;
     chooseJoints();
     gatherCandidates();
@@ -76,7 +73,7 @@ class Embedder {
     }
   }
 
-  void add(const Vec3& point) {
+  Candidate candidateAt(const Vec3& point) const {
     Candidate candidate;
     candidate.place = frame_.toBody(point);
     candidate.radius = -body_.distance->at(point) / frame_.height;
@@ -86,13 +83,23 @@ class Embedder {
       if (half_)
         candidate.toTip = std::min(candidate.toTip, (frame_.mirrored(tip.position) - point).norm() / frame_.height);
     }
-    candidates_.push_back(candidate);
+    return candidate;
   }
+
+  double offMiddle(const Candidate& c) const {
+    double deepest = c.radius;
+    for (const Candidate& other : candidates_) {
+      if ((other.place - c.place).squaredNorm() < 2.25 * c.radius * c.radius) deepest = std::max(deepest, other.radius);
+    }
+    return deepest > 0 && c.radius > 0 ? 1 - c.radius / deepest : 1;
+  }
+
+  void add(const Vec3& point) { candidates_.push_back(candidateAt(point)); }
 
   void gatherCandidates() {
     std::vector<Vec3> points;
     // Of many spheres every second, third, ...: the deepest alone may all lie in a large head.
-    const std::size_t stride = (body_.spheres.size() + mostSpheres_ - 1) / mostSpheres_;
+    const std::size_t stride = (body_.spheres.size() + options_.mostSpheres - 1) / options_.mostSpheres;
     for (std::size_t s = 0; s < body_.spheres.size(); s += stride) points.push_back(body_.spheres[s].center);
     for (const BodyTip& tip : body_.tips) points.push_back(tip.position);
     const Vec3 left = frame_.axes.row(0).transpose();
@@ -110,14 +117,7 @@ class Embedder {
       }
     }
     if (half_) addMiddleLine();
-    for (Candidate& c : candidates_) {
-      double deepest = c.radius;
-      for (const Candidate& other : candidates_) {
-        if ((other.place - c.place).squaredNorm() < 2.25 * c.radius * c.radius)
-          deepest = std::max(deepest, other.radius);
-      }
-      c.offMiddle = deepest > 0 ? 1 - c.radius / deepest : 1;
-    }
+    for (Candidate& c : candidates_) c.offMiddle = offMiddle(c);
     pinned_.assign(skeleton_.jointCount(), kNoIndex);
     for (const Index j : chosen_) {
       if (!pins_[j]) continue;
@@ -263,24 +263,69 @@ class Embedder {
     }
   }
 
+  double boneCost(Index j, const Candidate& above, const Candidate& below) const {
+    const Vec3 bone = below.place - above.place;
+    const double length = std::max(bone.norm(), 1e-3);
+    return outsidePenalty(above.place, below.place) +
+           bonePenalty(shapeOf(j), static_cast<float>(std::log(length)), (bone / length).cast<float>());
+  }
+
+  // Of a joint at a place, and of the bones that meet there.
+  double costAround(Index j, const Candidate& place, const std::vector<Candidate>& found) const {
+    double cost = placePenalty(j, place);
+    if (above_[j] != kNoIndex) cost += boneCost(j, found[above_[j]], place);
+    for (const Index other : chosen_) {
+      if (above_[other] == j) cost += boneCost(other, place, found[other]);
+    }
+    return cost;
+  }
+
+  // Joints leave the candidates for places nearby that cost less, one after the other, by smaller and smaller steps.
+  void descend(std::vector<Candidate>& found) const {
+    for (const double step : kDescentSteps) {
+      for (int round = 0; round < kDescentRounds; ++round) {
+        for (const Index j : chosen_) {
+          if (skeleton_.joints[j].role != TemplateRole::kTip && pinned_[j] == kNoIndex) stepDown(j, step, found);
+        }
+      }
+    }
+  }
+
+  void stepDown(Index j, double step, std::vector<Candidate>& found) const {
+    const bool onPlane = half_ && !skeleton_.joints[j].mirror;
+    double least = costAround(j, found[j], found);
+    for (int axis = onPlane ? 1 : 0; axis < 3; ++axis) {
+      for (const double way : {step, -step}) {
+        Candidate other = candidateAt(frame_.fromBody(found[j].place + way * Vec3::Unit(axis)));
+        other.offMiddle = offMiddle(other);
+        const double cost = costAround(j, other, found);
+        if (cost >= least) continue;
+        least = cost;
+        found[j] = other;
+        break;
+      }
+    }
+  }
+
   TemplateEmbedding readOff() {
     TemplateEmbedding result;
     result.places.assign(skeleton_.jointCount(), Vec3::Zero());
     result.costs.assign(skeleton_.jointCount(), 0.0);
     std::vector<Index> at(skeleton_.jointCount(), 0);
-    const std::size_t count = candidates_.size();
+    std::vector<Candidate> found(skeleton_.jointCount());
     for (const Index j : chosen_) {
-      if (above_[j] == kNoIndex) {
-        at[j] = static_cast<Index>(std::min_element(below_[j].begin(), below_[j].end()) - below_[j].begin());
-      } else {
-        at[j] = choice_[j][at[above_[j]]];
-        const Pair& pair = pairs_[at[above_[j]] * count + at[j]];
-        result.costs[j] = pair.outside + bonePenalty(shapeOf(j), pair.logLength, pair.direction);
-      }
-      result.places[j] = candidates_[at[j]].place;
-      result.costs[j] += placePenalty(j, candidates_[at[j]]);
+      at[j] = above_[j] == kNoIndex
+                  ? static_cast<Index>(std::min_element(below_[j].begin(), below_[j].end()) - below_[j].begin())
+                  : choice_[j][at[above_[j]]];
+      found[j] = candidates_[at[j]];
+    }
+    for (const Index j : chosen_) {
+      if (above_[j] != kNoIndex) result.costs[j] = boneCost(j, found[above_[j]], found[j]);
+      result.costs[j] += placePenalty(j, found[j]);
       result.cost += result.costs[j] / static_cast<double>(chosen_.size());
     }
+    if (options_.refine) descend(found);
+    for (const Index j : chosen_) result.places[j] = found[j].place;
     if (half_) {
       for (const Index j : chosen_) {
         const std::optional<Index> mirror = skeleton_.joints[j].mirror;
@@ -302,7 +347,7 @@ class Embedder {
   const BodyVolume& body_;
   const BodyFrame& frame_;
   const TemplatePins& pins_;
-  std::size_t mostSpheres_;
+  EmbeddingOptions options_;
   bool half_;  // the right side mirrors the left one
   std::vector<Index> chosen_, above_, pinned_;
   std::vector<Candidate> candidates_;
@@ -315,7 +360,7 @@ class Embedder {
 
 std::vector<TemplateEmbedding> embedTemplate(std::span<const TemplateVariant> variants, const BodyVolume& body,
                                              const BodyFrame& frame, const TemplatePins& pins,
-                                             std::size_t mostSpheres) {
+                                             const EmbeddingOptions& options) {
   std::vector<TemplateEmbedding> embeddings;
   if (variants.empty()) return embeddings;
   for (const auto& [variant, cost] : variants) {
@@ -324,7 +369,7 @@ std::vector<TemplateEmbedding> embedTemplate(std::span<const TemplateVariant> va
                   variant.name);
     }
   }
-  Embedder embedder(variants.front().skeleton, body, frame, pins, mostSpheres);
+  Embedder embedder(variants.front().skeleton, body, frame, pins, options);
   for (const TemplateVariant& variant : variants) {
     embeddings.push_back(embedder.embed(variant.skeleton));
     embeddings.back().cost += variant.cost;

@@ -31,6 +31,29 @@ TEST(TemplateEmbedding, PutsJointsIntoTheirLimbs) {
   }
 }
 
+TEST(TemplateEmbedding, IsRefinedTowardsTheMiddleOfLimbs) {
+  const testing::MeasuredPerson& person = testing::measuredPerson();
+  const TemplateSkeleton& skeleton = findTemplate("humanoid");
+  const TemplatePins pins(skeleton.jointCount());
+  const auto embedded = [&](bool refine) {
+    return embedTemplate(asIs(skeleton), person.body, person.frame, pins, {1000, refine}).front();
+  };
+  const TemplateEmbedding rough = embedded(false), fine = embedded(true);
+  EXPECT_EQ(rough.cost, fine.cost);
+  EXPECT_NE(rough.places, fine.places);
+  // From the axes of the left leg's capsules.
+  const auto offAxis = [&](const TemplateEmbedding& embedding) {
+    double sum = 0;
+    const Vec3 axis = (person.shape.knee - person.shape.ankle).normalized();
+    for (const char* name : {"leftLowerLeg", "leftFoot"}) {
+      const Vec3 place = person.frame.fromBody(embedding.places[*skeleton.find(name)]) - person.shape.ankle;
+      sum += (place - place.dot(axis) * axis).norm();
+    }
+    return sum;
+  };
+  EXPECT_LT(offAxis(fine), offAxis(rough));
+}
+
 TEST(TemplateEmbedding, KeepsPins) {
   const testing::MeasuredPerson& person = testing::measuredPerson();
   const TemplateSkeleton& skeleton = findTemplate("humanoid");

@@ -85,9 +85,9 @@ double unexplained(const TemplateSkeleton& skeleton, const std::vector<Vec3>& pl
 
 // One fit for each variant.
 void addFits(const std::vector<TemplateVariant>& variants, const BodyVolume& body, const BodyFrame& frame,
-             const std::vector<JointPin>& pins, std::size_t mostSpheres, std::vector<TemplateFit>& fits) {
+             const std::vector<JointPin>& pins, const EmbeddingOptions& options, std::vector<TemplateFit>& fits) {
   const TemplatePins places = pinsIn(variants.front().skeleton, frame, pins);
-  std::vector<TemplateEmbedding> embeddings = embedTemplate(variants, body, frame, places, mostSpheres);
+  std::vector<TemplateEmbedding> embeddings = embedTemplate(variants, body, frame, places, options);
   for (std::size_t v = 0; v < variants.size(); ++v) {
     const double left = unexplained(variants[v].skeleton, embeddings[v].places, body, frame);
     const double cost = embeddings[v].cost + unusual(frame) + kUnexplained * left;
@@ -112,7 +112,7 @@ TemplateFit bestFit(const TemplateSkeleton& skeleton, const BodyVolume& body, co
   for (const BodyFrame& frame : frames) {
     if (frame.asymmetry > least + kMostAsymmetry) continue;
     std::vector<TemplateFit> fits;
-    addFits(variants, body, frame, pins, kCoarseSpheres, fits);
+    addFits(variants, body, frame, pins, {kCoarseSpheres, false}, fits);
     std::vector<std::size_t> order(fits.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_sort(order.begin(), order.end(),
@@ -125,7 +125,7 @@ TemplateFit bestFit(const TemplateSkeleton& skeleton, const BodyVolume& body, co
   std::stable_sort(looks.begin(), looks.end(), [](const Look& a, const Look& b) { return a.cost < b.cost; });
   std::vector<TemplateFit> fits;
   for (std::size_t i = 0; i < std::min(looks.size(), kFramesRefined); ++i) {
-    addFits(looks[i].variants, body, looks[i].frame, pins, body.spheres.size(), fits);
+    addFits(looks[i].variants, body, looks[i].frame, pins, {body.spheres.size(), true}, fits);
   }
   TemplateFit& best = *std::min_element(fits.begin(), fits.end(), cheaper);
   best.limbs = limbsIn(best.skeleton, best.embedding, body, best.frame);
