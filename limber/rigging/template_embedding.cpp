@@ -12,22 +12,23 @@ namespace limber {
 namespace {
 
 // Weights of the penalties, each of which is about 1 for what is unusual. Heights are body heights.
-constexpr double kOutside = 40;                    // for each height of a bone that runs outside
-constexpr double kOutsideDepth = 0.02;             // heights outside that count in full
-constexpr double kSample = 0.03;                   // heights between two looks along a bone
-constexpr double kLongestBone = 0.7;               // heights
-constexpr double kOffMiddle = 1.5;                 // for a place beside the deepest of its part
-constexpr double kPlaceSpread = 0.22;              // heights, of joints about their place in the template
-constexpr double kTipSpread = 0.12;                // heights up, of tips on the ground and on top
-constexpr double kHandSpread = 0.3;                // of other tips
-constexpr double kNearEnd = 0.12;                  // heights from the ground or the top
-constexpr double kMiddleSpread = 0.02;             // heights, of joints of the middle to the sides
-constexpr double kTipReach = 0.04;                 // heights from an end of the model
-constexpr double kNoTip = 4;                       // most that a tip away from every end costs
-constexpr double kNearPlane = 0.03;                // heights: such spheres count for the middle
-constexpr double kLineSpacing = 0.02;              // heights of places along the middle line
-constexpr double kWorstBone = 25;                  // most that length and direction of a bone cost
-constexpr double kWorstTip = 5;                    // of the way to a tip: stumps have no hands and feet
+constexpr double kOutside = 40;         // for each height of a bone that runs outside
+constexpr double kOutsideDepth = 0.02;  // heights outside that count in full
+constexpr double kSample = 0.03;        // heights between two looks along a bone
+constexpr double kLongestBone = 0.7;    // heights
+constexpr double kOffMiddle = 1.5;      // for a place beside the deepest of its part
+constexpr double kPlaceSpread = 0.22;   // heights, of joints about their place in the template
+constexpr double kTipSpread = 0.12;     // heights up, of tips on the ground and on top
+constexpr double kHandSpread = 0.3;     // of other tips
+constexpr double kNearEnd = 0.12;       // heights from the ground or the top
+constexpr double kMiddleSpread = 0.02;  // heights, of joints of the middle to the sides
+constexpr double kTipReach = 0.04;      // heights from an end of the model
+constexpr double kNoTip = 4;            // most that a tip away from every end costs
+constexpr double kNearPlane = 0.03;     // heights: such spheres count for the middle
+constexpr double kLineSpacing = 0.02;   // heights of places along the middle line
+constexpr double kWorstBone = 25;       // most that length and direction of a bone cost
+constexpr double kWorstTip = 5;         // of the way to a tip: stumps have no hands and feet
+
 constexpr double kDescentSteps[] = {0.01, 0.005};  // heights
 constexpr int kDescentRounds = 2;                  // with each
 
