@@ -1,5 +1,6 @@
 #include "limber/retarget/online.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <vector>
@@ -13,7 +14,9 @@ namespace limber {
 namespace {
 
 constexpr double kReferenceGain = 0.2;
-constexpr Index kIterations = 30;  // a frame's limbs need about 5
+constexpr double kLeastBend = 0.05;     // radians: of a reference's knee that is straight, about
+constexpr double kOverstretched = 0.5;  // likewise, of a knee that is meant to bend backward
+constexpr Index kIterations = 30;       // a frame's limbs need about 5
 
 class OnlineRetargeter : public FrameRetargeter {
  public:
@@ -41,7 +44,10 @@ class OnlineRetargeter : public FrameRetargeter {
     }
     goals_.setHands(aligned_.sourceFrame(), frame, seconds);
     std::size_t task = 0;
-    for (const Leg& leg : goals_.legs()) setTask(leg, frame, task);
+    for (const Leg& leg : goals_.legs()) {
+      setTask(leg, frame, task);
+      if (isChain(leg)) bendKnee(leg, frame, target);
+    }
     for (const Limb& arm : goals_.arms()) setTask(arm, frame, task);
     solver_->setReference(target);
     solver_->solve(target, targets_);
@@ -67,6 +73,21 @@ class OnlineRetargeter : public FrameRetargeter {
     const Quat back = setup_.targetNeutral.toBody.conjugate();
     target.position = back * (limb.wanted ? limb.goal : frame.positions[limb.end]);
     target.orientation = (back * limb.turn * frame.rotations[limb.end]).normalized();
+  }
+
+  // Knees of the reference that are straight or a little overstretched bend forward: else they would snap from one side
+  // to the other where the legs have to be bent.
+  void bendKnee(const Leg& leg, const BodyFrame& frame, Pose& reference) const {
+    const Vec3 upper = (frame.positions[leg.lower] - frame.positions[leg.upper]).normalized();
+    const Vec3 lower = (frame.positions[leg.end] - frame.positions[leg.lower]).normalized();
+    const Quat turn = frame.rotations[leg.upper] * setup_.targetNeutral.rotations[leg.upper].conjugate();
+    const Vec3 axis = (turn * Vec3::UnitZ()).cross(upper).normalized();
+    const double bend = std::atan2(axis.dot(upper.cross(lower)), upper.dot(lower));
+    const double little = std::clamp(2 * (1 + bend / kOverstretched), 0.0, 1.0);
+    const double more = little * (0.5 * (bend + std::hypot(bend, 2 * kLeastBend)) - bend);
+    const Quat above = setup_.targetKinematics.parentRotation(leg.lower, frame);
+    reference.locals[leg.lower].rotation =
+        (above.conjugate() * Eigen::AngleAxisd(more, axis) * frame.rotations[leg.lower]).normalized();
   }
 
   const RetargetSetup& setup_;

@@ -37,6 +37,28 @@ TEST_F(Online, FeetKeepHowTheyAreTurned) {
   }
 }
 
+TEST_F(Online, KneesThatOverstretchALittleDoNotSnap) {
+  PoseSequence squat{{}, 1.0 / 60};
+  for (int f = 0; f < 60; ++f) {
+    Pose& pose = squat.poses.emplace_back(restPose(person));
+    for (const std::string side : {"left", "right"}) {
+      const double bend = 4 - 0.15 * f;  // degrees: straight on the way, then backward
+      pose.locals[person.find(side + "UpperLeg").value()].rotation = limber::testing::turn(-Vec3::UnitX(), bend / 2);
+      pose.locals[person.find(side + "LowerLeg").value()].rotation = limber::testing::turn(Vec3::UnitX(), bend);
+      pose.locals[person.find(side + "Foot").value()].rotation = limber::testing::turn(-Vec3::UnitX(), bend / 2);
+    }
+    pose.locals[0].translation.y() -= 0.02;
+  }
+  const RetargetSetup setup(person, odd, matchSkeletons(person, odd), {}, &squat);
+  const PoseSequence result = retargetFrames(findRetargetMethod("online"), setup, squat);
+  const Index knee = odd.find("leftLowerLeg").value();
+  for (std::size_t f = 1; f < result.poses.size(); ++f) {
+    const Vec3 step = poseGlobals(odd, result.poses[f])[knee].translation() -
+                      poseGlobals(odd, result.poses[f - 1])[knee].translation();
+    EXPECT_LT(step.norm(), 0.01) << f;
+  }
+}
+
 // The null space is for the joint angles: what no end needs stays as in "aligned".
 TEST_F(Online, OtherJointsTurnAsTheSources) {
   const PoseSequence angles = by("aligned"), result = by("online");
