@@ -74,6 +74,8 @@ class Mover {
       if (parted) {
         hipY = finder.parting() + proportions_.hipAboveParting * finder.halfWidth(side);
         moveTo(leg.hip, finder.middle(side, hipY));
+      } else if (const Vec3 middle = finder.middle(side, hipY); (middle - places_[leg.hip]).norm() < kMostMoved) {
+        moveTo(leg.hip, middle);
       }
       const double ankleY = proportions_.ankle + proportions_.ankleShare * hipY;
       moveTo(leg.ankle, finder.middle(side, ankleY));

@@ -29,6 +29,22 @@ TEST(HumanoidLandmarks, HipsGoWhereLegsPart) {
   EXPECT_EQ(pinned[hip], *pins[hip]);
 }
 
+TEST(HumanoidLandmarks, LegsThatNeverMeetHaveTheirHipsInTheirMiddle) {
+  TriMesh robot;
+  testing::addCapsule(robot, {0, 0.65, 0}, {0, 0.93, 0}, 0.07);
+  for (const double x : {0.11, -0.11}) testing::addCapsule(robot, {x, 0.045, 0}, {x, 0.52, 0}, 0.045);
+  const BodyVolume body = measureBody(robot);
+  const BodyFrame frame = frameAlong(robot, body, Vec3::UnitY(), Vec3::UnitZ());
+  const TemplateSkeleton& skeleton = findTemplate("humanoid");
+  const Index hip = *skeleton.find("leftUpperLeg"), other = *skeleton.find("rightUpperLeg");
+  std::vector<Vec3> places;
+  for (const TemplateJoint& joint : skeleton.joints) places.push_back(joint.place);
+  const double height = places[hip].y();
+  refineHumanoid(skeleton, body, frame, std::vector<std::optional<Vec3>>(places.size()), places);
+  EXPECT_LT((places[hip] - Vec3(0.11, height, 0)).norm(), 0.01);
+  EXPECT_LT((places[other] - Vec3(-0.11, height, 0)).norm(), 0.01);
+}
+
 TEST(HumanoidLandmarks, ArmsGoWhereTheyLeaveTheTrunk) {
   const MeasuredPerson& person = measuredPerson();
   const TemplateSkeleton& skeleton = findTemplate("humanoid");
