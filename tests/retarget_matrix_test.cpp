@@ -10,6 +10,7 @@
 #include "limber/core/numbers.h"
 #include "limber/evaluate/motion_metrics.h"
 #include "limber/retarget/humanoid_shape.h"
+#include "limber/retarget/plain_skeleton.h"
 #include "shared_data.h"
 
 namespace limber::testing {
@@ -128,6 +129,20 @@ TEST_P(RetargetMatrix, SpacetimeIsAsSmoothAsTheSource) {
     const RetargetSetup setup(source.skeleton, target, matchSkeletons(source.skeleton, target), {}, &source.frames);
     const MotionMetrics aligned = measured(setup, "aligned", source.frames);
     EXPECT_LT(jerkAgainst(aligned, measured(setup, "spacetime", source.frames)), 1.1);
+  }
+}
+
+// Legs that are nearly straight bend to the same side from frame to frame.
+TEST_P(RetargetMatrix, OnlineIsAsSmoothAsLimbIk) {
+  if (!sharedDataFolder()) GTEST_SKIP() << kNoSharedData;
+  const Taken source = motionFrom(GetParam(), 200);
+  for (const char* file : {"m2m_human_male.glb", "makehuman_mixamo.glb"}) {
+    SCOPED_TRACE(file);
+    const PlainSkeleton plain(readMotion(*sharedDataFolder() / "rigged" / file).skeleton);
+    const Skeleton& target = plain.skeleton();
+    const RetargetSetup setup(source.skeleton, target, matchSkeletons(source.skeleton, target), {}, &source.frames);
+    const double limbIk = measured(setup, "limb-ik", source.frames).jerk;
+    EXPECT_LT(measured(setup, "online", source.frames).jerk, 1.1 * std::max(1.0, limbIk));
   }
 }
 
