@@ -279,6 +279,7 @@ void holdInClips(Asset& asset, const std::vector<ChangedPart>& parts) {
   const std::vector<float> start = {0};
   const Index input = addFloatAccessor(asset, start, 1, 0, true);
   std::vector<Index> outputs;
+  outputs.reserve(parts.size());
   for (const ChangedPart& part : parts) {
     outputs.push_back(addFloatAccessor(asset, part.before, static_cast<Index>(part.before.size())));
   }

@@ -24,6 +24,7 @@ Clip findClip(const Asset& asset, std::string_view name) {
 std::vector<double> clipMoments(const Clip& clip, int count, bool withEnd) {
   if (count < 1) throw Error(ErrorCode::kBadArgument, "a clip is shown in one picture at least");
   std::vector<double> moments;
+  moments.reserve(static_cast<std::size_t>(count));
   const int steps = std::max(1, withEnd ? count - 1 : count);
   for (int i = 0; i < count; ++i) moments.push_back(clip.duration() * i / steps);
   return moments;
@@ -40,6 +41,7 @@ std::vector<Image> renderClip(const Asset& asset, const Clip& clip, std::span<co
   if (!scenes.empty()) warnings = scenes.front().warnings;
   if (!options.frame) options.frame = frame;
   std::vector<Image> images;
+  images.reserve(scenes.size());
   for (const Scene& scene : scenes) images.push_back(render(scene, options));
   return images;
 }
