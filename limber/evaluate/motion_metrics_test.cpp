@@ -1,0 +1,97 @@
+// The measures on motions that are off by known amounts.
+#include "limber/evaluate/motion_metrics.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "limber/core/error.h"
+#include "limber/retarget/testing/test_motion.h"
+
+namespace limber {
+namespace {
+
+constexpr double kSeconds = 1.0 / 60;
+
+class MotionMetricsOf : public ::testing::Test {
+ protected:
+  // A person who stands still, moved by `way` in each frame.
+  PoseSequence standing(const Vec3& place, const Vec3& way = Vec3::Zero()) const {
+    PoseSequence frames{std::vector<Pose>(40, restPose(person_)), kSeconds};
+    for (std::size_t f = 0; f < frames.poses.size(); ++f) {
+      frames.poses[f].locals[hips_].translation += place + static_cast<double>(f) * way;
+    }
+    return frames;
+  }
+  RetargetSetup setup(const PoseSequence& motion) const {
+    return {person_, person_, matchSkeletons(person_, person_), {}, &motion};
+  }
+
+  const Skeleton person_ = practiceHumanoid();
+  const Index hips_ = person_.find("hips").value();
+};
+
+TEST_F(MotionMetricsOf, TheSameIsPerfect) {
+  const PoseSequence motion = limber::testing::walk(person_);
+  const MotionMetrics metrics = measureMotion(setup(motion), motion, motion);
+  EXPECT_EQ(metrics.frames, 120u);
+  EXPECT_LT(metrics.boneDirection, 1e-6);
+  EXPECT_LT(metrics.endEffector, 1e-9);
+  EXPECT_GT(metrics.planted, 0.2);
+  EXPECT_EQ(metrics.sliding, metrics.sourceSliding);
+  EXPECT_EQ(metrics.contactAgreement, 1);
+  EXPECT_NEAR(metrics.jerk, 1, 1e-12);
+}
+
+TEST_F(MotionMetricsOf, FeetThatSlideAndSinkDoSoByTheirWay) {
+  const PoseSequence still = standing(Vec3::Zero());
+  const Vec3 way(0.0005, 0, 0);  // a frame
+  const MotionMetrics metrics = measureMotion(setup(still), still, standing(Vec3(0, -0.02, 0), way));
+  EXPECT_EQ(metrics.planted, 1);
+  EXPECT_EQ(metrics.sourceSliding, 0);
+  EXPECT_NEAR(metrics.sliding * metrics.height, way.x() / kSeconds, 1e-9);
+  EXPECT_NEAR(metrics.penetration * metrics.height, 0.02, 1e-9);
+  EXPECT_EQ(metrics.sourcePenetration, 0);
+  EXPECT_EQ(metrics.contactAgreement, 1);
+  const MotionMetrics lifted = measureMotion(setup(still), still, standing(Vec3(0, 0.5, 0)));
+  EXPECT_EQ(lifted.contactAgreement, 0);
+}
+
+TEST_F(MotionMetricsOf, ATurnedForearmIsOneBoneOfEight) {
+  const PoseSequence still = standing(Vec3::Zero());
+  PoseSequence turned = still;
+  for (Pose& pose : turned.poses) {
+    pose.locals[person_.find("leftLowerArm").value()].rotation = limber::testing::turn(Vec3::UnitZ(), 40);
+  }
+  EXPECT_NEAR(measureMotion(setup(still), still, turned).boneDirection, 40.0 / 8, 1e-6);
+}
+
+TEST_F(MotionMetricsOf, JointErrorIsOverTheSquareOfTheHeight) {
+  const PoseSequence still = standing(Vec3::Zero()), aside = standing(Vec3(0.3, 0, 0));
+  const double height = measureMotion(setup(still), still, still).height;
+  const JointError error = jointErrorOf(setup(still), still, aside);
+  EXPECT_NEAR(error.global, 0.09 / (height * height), 1e-9);
+  EXPECT_LT(error.rootRelative, 1e-12);
+}
+
+TEST_F(MotionMetricsOf, RefusesFramesThatDiffer) {
+  const PoseSequence still = standing(Vec3::Zero());
+  PoseSequence shorter = still;
+  shorter.poses.resize(4);
+  EXPECT_THROW(measureMotion(setup(still), still, shorter), Error);
+  EXPECT_THROW(measureMotion(setup(still), shorter, shorter), Error);
+}
+
+TEST_F(MotionMetricsOf, WhatWasNotMeasuredIsNotWritten) {
+  MotionMetrics metrics;
+  EXPECT_FALSE(nlohmann::json::parse(motionMetricsJson(metrics)).contains("self_penetration_share"));
+  EXPECT_EQ(motionMetricsText(metrics).find("joint error"), std::string::npos);
+  metrics.selfPenetration = SelfPenetration{0.01, 0.02, 7};
+  metrics.jointError = JointError{0.5, 0.25};
+  const nlohmann::json json = nlohmann::json::parse(motionMetricsJson(metrics));
+  EXPECT_EQ(json.at("worst_self_penetration_frame"), 7);
+  EXPECT_EQ(json.at("root_relative_joint_error"), 0.25);
+  EXPECT_NE(motionMetricsText(metrics).find("1.00 % of the vertices, 2.00 % in frame 7"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace limber
