@@ -21,7 +21,8 @@ constexpr double kSoftReach = 0.96;  // of an arm's length: from there on stretc
 constexpr double kPlantRate = 12;    // 1/seconds, of the smooth flag
 constexpr double kSoftStretch = 0.015, kSoftChange = 0.004;  // of the pelvis sinking, by how far a foot is moved
 constexpr double kSoftGround = 0.004;
-constexpr double kFirmGround = 0.8;  // share of that softness that a planted foot loses
+constexpr double kFirmGround = 0.8;                               // share of that softness that a planted foot loses
+constexpr double kSteep = 1.7, kSoleUp = 2.4, kSoftLevel = 0.05;  // radians that toes point down
 // Speeds of the source's pelvis or feet, hip heights a second, that are no motion but a cut. Many recordings have a
 // T-pose as their first frame.
 constexpr double kJump = 15, kFirstJump = 4;
@@ -210,6 +211,19 @@ double LimbGoals::pelvisShift(const BodyFrame& target) const {
   }
   // The most that a leg asks for, but without a kink where another takes over.
   return shift - std::min(std::sqrt(std::sqrt(sum)), kMostSinking * height);
+}
+
+void LimbGoals::levelToes(const Leg& leg, BodyFrame& frame, Pose& target) const {
+  if (!leg.toes) return;
+  const Quat turn = frame.rotations[*leg.toes] * setup_.targetNeutral.rotations[*leg.toes].conjugate();
+  const double down = std::max(std::atan2(-(turn * Vec3::UnitZ()).y(), (turn * Vec3::UnitY()).y()), 0.0);
+  const double share = leg.planted * std::clamp((kSoleUp - down) / (kSoleUp - kSteep), 0.0, 1.0);
+  const double up = share * down * down / (down + kSoftLevel);
+  if (up < 1e-9) return;
+  const BodyKinematics& kinematics = setup_.targetKinematics;
+  const Quat level = Eigen::AngleAxisd(-up, turn * Vec3::UnitX()) * frame.rotations[*leg.toes];
+  target.locals[*leg.toes].rotation = (kinematics.parentRotation(*leg.toes, frame).conjugate() * level).normalized();
+  kinematics.globals(target, frame);
 }
 
 double LimbGoals::closeness(double distance, double touching, double apart) const {

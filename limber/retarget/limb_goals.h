@@ -49,6 +49,11 @@ class LimbGoals {
   // close in the result, scaled. `reach` as in RetargetOptions.
   void setHands(const BodyFrame& source, const BodyFrame& target, double seconds);
 
+  // Toes of a planted foot lie on the ground while the heel goes up, though recordings have them straight: else their
+  // tips would go below it. For a target that is posed but for that; soles that look up, as of someone who kneels,
+  // stay as they are.
+  void levelToes(const Leg& leg, BodyFrame& frame, Pose& target) const;
+
   std::vector<Leg>& legs() { return legs_; }
   std::vector<Limb>& arms() { return arms_; }
 

@@ -34,7 +34,10 @@ class LimbIkRetargeter : public FrameRetargeter {
       const double up = goals_.pelvisShift(to());
       if (std::abs(up) > 1e-9 * setup_.targetHipHeight) aligned_.root().movePelvis(Vec3(0, up, 0), target, to());
       std::vector<Leg>& legs = goals_.legs();
-      for (std::size_t i = 0; i < legs.size(); ++i) reach(legs[i], solver(legSolvers_, i), true, target);
+      for (std::size_t i = 0; i < legs.size(); ++i) {
+        reach(legs[i], solver(legSolvers_, i), true, target);
+        goals_.levelToes(legs[i], to(), target);
+      }
     }
     goals_.setHands(from(), to(), seconds);
     std::vector<Limb>& arms = goals_.arms();

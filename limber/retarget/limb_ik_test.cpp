@@ -39,6 +39,27 @@ TEST_F(LimbIk, FeetStayAboveTheGround) {
   }
 }
 
+TEST_F(LimbIk, ToesLieOnTheGroundWhileTheHeelGoesUp) {
+  PoseSequence raised{{}, 1.0 / 60};
+  const Index foot = person.find("leftFoot").value(), toes = person.find("leftToes").value();
+  const Vec3 standing = restGlobals(person)[toes].translation();
+  for (int f = 0; f < 60; ++f) {
+    Pose& pose = raised.poses.emplace_back(restPose(person));
+    pose.locals[foot].rotation = limber::testing::turn(Vec3::UnitX(), 0.5 * f);
+    pose.locals[0].translation += standing - poseGlobals(person, pose)[toes].translation();
+  }
+  const RetargetSetup setup(person, odd, matchSkeletons(person, odd), {}, &raised);
+  const auto tipsDown = [&](const char* method) {
+    const Pose last = retargetFrames(findRetargetMethod(method), setup, raised).poses.back();
+    const Index joint = odd.find("leftToes").value();
+    const Mat3 turned = poseGlobals(odd, last)[joint].linear() * restGlobals(odd)[joint].linear().transpose();
+    return std::asin(-turned.col(2).y()) * 180 / kPi;
+  };
+  EXPECT_NEAR(tipsDown("aligned"), 29.5, 0.1);
+  EXPECT_LT(tipsDown("limb-ik"), 5);
+  EXPECT_LT(tipsDown("online"), 5);
+}
+
 TEST_F(LimbIk, BonesKeepTheirLengths) {
   const PoseSequence result = by("limb-ik");
   for (const Pose& pose : result.poses) {

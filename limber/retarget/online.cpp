@@ -53,6 +53,7 @@ class OnlineRetargeter : public FrameRetargeter {
     solver_->solve(target, targets_);
     setup_.targetKinematics.globals(target, frame);
     aligned_.root().settle(target, frame);
+    for (const Leg& leg : goals_.legs()) goals_.levelToes(leg, frame, target);
   }
 
  private:
