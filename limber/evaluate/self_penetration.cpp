@@ -39,8 +39,10 @@ SkinnedModel weldedModel(const SkinnedModel& model, double& size) {
   for (std::size_t v = 0; v < prepared.weldedVertex.size(); ++v) {
     const Index to = prepared.weldedVertex[v];
     welded.mesh.positions[to] = model.mesh.positions[v];
-    std::ranges::copy(model.weights.jointsOf(static_cast<Index>(v)), &welded.weights.joints[std::size_t{to} * slots]);
-    std::ranges::copy(model.weights.weightsOf(static_cast<Index>(v)), &welded.weights.weights[std::size_t{to} * slots]);
+    const auto joints = model.weights.jointsOf(static_cast<Index>(v));
+    const auto weights = model.weights.weightsOf(static_cast<Index>(v));
+    std::copy(joints.begin(), joints.end(), &welded.weights.joints[std::size_t{to} * slots]);
+    std::copy(weights.begin(), weights.end(), &welded.weights.weights[std::size_t{to} * slots]);
   }
   normalizeWeights(welded.weights);
   return welded;
