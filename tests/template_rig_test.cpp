@@ -1,5 +1,6 @@
 // Template rigs of real characters, through the whole of limber, against the skeletons that artists made for them.
 #include <algorithm>
+#include <iterator>
 
 #include <gtest/gtest.h>
 
@@ -13,6 +14,7 @@
 #include "limber/samples/samples.h"
 #include "model_checks.h"
 #include "shared_data.h"
+#include "shared_people.h"
 
 namespace limber::testing {
 
@@ -85,16 +87,7 @@ Means meansOf(const std::vector<std::string>& files, const std::string& name) {
 // Every person and every animal that docs/template-rigs.md lists.
 TEST(TemplateMeans, OfPeople) {
   if (!sharedDataFolder()) GTEST_SKIP() << kNoSharedData;
-  std::vector<std::string> files = {"cesium_man.glb", "kaykit_mannequin/manny_med_mod.gltf", "kenney_human.glb",
-                                    "robot_expressive.glb"};
-  for (const char* name : {"female", "male", "zombie"}) files.push_back(std::string("m2m_human_") + name + ".glb");
-  for (const char* name : {"cmu_mb", "default", "game_engine", "mixamo"})
-    files.push_back(std::string("makehuman_") + name + ".glb");
-  for (const char* name :
-       {"cyberpunk_character", "knightcharacter", "man_casual", "man_king", "man_spacesuit", "mech_george",
-        "platformer_character", "platformer_character_humanoidrig", "woman_casual", "woman_scifi"})
-    files.push_back(std::string("quaternius_") + name + ".glb");
-  const Means means = meansOf(files, "humanoid");
+  const Means means = meansOf({std::begin(kSharedPeople), std::end(kSharedPeople)}, "humanoid");
   EXPECT_LT(means.jointToJoint, 2.5);
   EXPECT_LT(means.jointToBone, 1.8);
   EXPECT_LT(means.boneToBone, 1.5);
