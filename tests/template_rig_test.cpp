@@ -158,6 +158,34 @@ INSTANTIATE_TEST_SUITE_P(Meshes, TemplatePeople,
                            return std::filesystem::path(file.param).stem().string();
                          });
 
+// Furniture, a bust, animals; and people that no way leads through: statues that crouch, sit, or lean on what they are
+// cut from.
+class TemplateMisfits : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(TemplateMisfits, AreDoubtedAndToldWhatTheyLack) {
+  if (!sharedDataFolder()) GTEST_SKIP() << kNoSharedData;
+  const Asset asset = readAsset(*sharedDataFolder() / "meshes" / GetParam());
+  const Rigged result = rigged(asset, templateOptions("humanoid"));
+  EXPECT_LT(result.report.matches.front().confidence, 0.4);
+  const auto where = [&](std::string_view kind) -> std::string {
+    for (const Warning& warning : result.report.warnings.items()) {
+      if (warning.kind == kind) return warning.where;
+    }
+    return {};
+  };
+  EXPECT_EQ(where("low-confidence"), "humanoid");
+  EXPECT_NE(where("no-place"), "") << "limbs are named";
+}
+
+INSTANTIATE_TEST_SUITE_P(Meshes, TemplateMisfits,
+                         ::testing::Values("chair_1.glb", "chair_2.glb", "stool.glb", "demosthenes_low_res.obj",
+                                           "statue_hermes.obj", "rawscan_hermes.ply", "statue_marbleplayer.obj",
+                                           "statue_shepherdboy.obj", "spot_low_resolution.obj",
+                                           "koala_low_resolution.obj", "m2m_kaiju_static.glb"),
+                         [](const ::testing::TestParamInfo<const char*>& file) {
+                           return std::filesystem::path(file.param).stem().string();
+                         });
+
 TEST(TemplateSamples, ABipedIsAPerson) {
   const Asset asset = makeSample("biped");
   const Rigged result = rigged(asset, templateOptions("auto"));
