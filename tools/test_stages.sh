@@ -113,6 +113,7 @@ characters_in_motion() {
     kaykit_mannequin/manny_med_mod.gltf; do
     characters+=("$output/retargeted/$(basename "${name%.*}").glb")
     build/release/limber retarget "$folder/rigged/$name" "$folder/motions/fair1_wave_hello.bvh" --quiet -o "${characters[-1]}" || return 1
+    echo "$folder/rigged/$name" >"${characters[-1]}.source" # what the validator finds there already is not ours
   done
   printf '%s\n' "${characters[@]}"
 }
