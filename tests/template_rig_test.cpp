@@ -158,6 +158,41 @@ INSTANTIATE_TEST_SUITE_P(Meshes, TemplatePeople,
                            return std::filesystem::path(file.param).stem().string();
                          });
 
+// Birds that stand with their wings spread, +Y up and facing +Z.
+class TemplateBirds : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(TemplateBirds, HaveWingsHeadAndFeetInTheRightPlaces) {
+  if (!sharedDataFolder()) GTEST_SKIP() << kNoSharedData;
+  const Asset asset = readAsset(*sharedDataFolder() / GetParam());
+  Box box;
+  for (const Vec3f& p : collectGeometry(asset).positions) box.add(p.cast<double>());
+  const Skeleton skeleton = readSkeleton(readAsset(rigged(asset, templateOptions("bird")).glb, "result.glb")).skeleton;
+  const std::vector<Affine> globals = restGlobals(skeleton);
+  const auto place = [&](const std::string& name) {
+    return Vec3((globals[skeleton.find(name).value()].translation() - box.min).cwiseQuotient(box.size()));
+  };
+  EXPECT_GT(place("leftWingHand").x(), 0.65);
+  EXPECT_LT(place("rightWingHand").x(), 0.35);
+  for (const char* side : {"left", "right"}) {
+    EXPECT_LT(place(std::string(side) + "Foot").y(), 0.3) << side;
+    EXPECT_NEAR(place(std::string(side) + "Foot").x(), 0.5, 0.1) << side;
+  }
+  double last = 0;
+  for (const char* name : {"tail", "hips", "chest", "neck", "head"}) {
+    EXPECT_GT(place(name).z(), last) << name;
+    EXPECT_NEAR(place(name).x(), 0.5, 0.02) << name;
+    last = place(name).z();
+  }
+  EXPECT_GT(last, 0.65) << "the head is in front";
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, TemplateBirds,
+                         ::testing::Values("rigged/m2m_bird_base.glb", "rigged/m2m_bird_eagle.glb",
+                                           "meshes/m2m_bird_static.glb"),
+                         [](const ::testing::TestParamInfo<const char*>& file) {
+                           return std::filesystem::path(file.param).stem().string();
+                         });
+
 // Furniture, a bust, animals; and people that no way leads through: statues that crouch, sit, or lean on what they are
 // cut from.
 class TemplateMisfits : public ::testing::TestWithParam<const char*> {};

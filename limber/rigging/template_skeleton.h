@@ -48,7 +48,7 @@ struct TemplateVariant {
 };
 
 // The template itself; for a person also with shorter legs, a larger head and longer arms, as toys and cartoons have
-// them; for a four-legged animal also with a low head and a long body.
+// them; for a four-legged animal also with a low head and a long body; for a bird also as it flies.
 std::vector<TemplateVariant> templateVariants(const TemplateSkeleton& skeleton);
 
 // A user's skeleton as a template: places from its rest pose, as it stands (up is +Y, front +Z); joints that part the

@@ -98,7 +98,21 @@ TEST(TemplateSkeleton, VariantsHaveOtherProportions) {
   EXPECT_EQ(highestHips, person.joints[hips].place.y());
   EXPECT_LT(lowestHips, 0.25);
   EXPECT_GT(longestArm, 2 * armOf(person));
-  EXPECT_EQ(templateVariants(findTemplate("bird")).size(), 1u);
+}
+
+TEST(TemplateSkeleton, BirdsMayFly) {
+  const TemplateSkeleton& bird = findTemplate("bird");
+  const std::vector<TemplateVariant> variants = templateVariants(bird);
+  ASSERT_EQ(variants.size(), 2u);
+  const TemplateSkeleton& flying = variants[1].skeleton;
+  ASSERT_EQ(flying.jointCount(), bird.jointCount());
+  for (Index j = 0; j < bird.jointCount(); ++j) {
+    EXPECT_EQ(flying.joints[j].name, bird.joints[j].name);
+    EXPECT_EQ(flying.joints[j].parent, bird.joints[j].parent);
+    EXPECT_EQ(flying.joints[j].role, bird.joints[j].role);
+  }
+  const Index wing = bird.find("leftWingTip").value();
+  EXPECT_GT(flying.joints[wing].place.x(), 1.5 * bird.joints[wing].place.x());
 }
 
 TEST(TemplateSkeleton, AnimalsMayBeLongAndCarryTheirHeadsLow) {

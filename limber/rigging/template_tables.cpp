@@ -1,4 +1,5 @@
 // The templates that limber knows, as tables. Sides stand once, for the left; the right is mirrored.
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -103,6 +104,25 @@ constexpr Row kBird[] = {
     {"leftFootTip", "leftFoot", 0.1, 0.01, 0.06, kTip, 0.5, 0.6},
 };
 
+// The same in flight: a long body low over its legs, wings that span more than it is high.
+constexpr Row kFlyingBird[] = {
+    {"hips", "", 0, 0.66, -0.2, kPlaced, 0, 0},
+    {"chest", "hips", 0, 0.66, 0.2, kPlaced, 0.8, 0.7},
+    {"neck", "chest", 0, 0.7, 0.5, kPlaced, 0.8, 0.7},
+    {"head", "neck", 0, 0.78, 0.75, kPlaced, 1, 0.8},
+    {"headTip", "head", 0, 0.74, 1.1, kTip, 1, 1.1},
+    {"tail", "hips", 0, 0.72, -0.5, kPlaced, 0.8, 0.7},
+    {"tailTip", "tail", 0, 0.78, -1.1, kTip, 1, 0.8},
+    {"leftUpperWing", "chest", 0.14, 0.66, 0.28, kPlaced, 0.8, 0.8},
+    {"leftLowerWing", "leftUpperWing", 0.8, 0.9, 0.25, kPlaced, 0.8, 0.8},
+    {"leftWingHand", "leftLowerWing", 1.5, 0.9, 0, kPlaced, 0.8, 0.8},
+    {"leftWingTip", "leftWingHand", 2.3, 0.85, -0.4, kTip, 0.8, 0.8},
+    {"leftUpperLeg", "hips", 0.09, 0.58, -0.3, kPlaced, 0.8, 0.8},
+    {"leftLowerLeg", "leftUpperLeg", 0.14, 0.4, -0.28, kPlaced, 0.8, 0.7},
+    {"leftFoot", "leftLowerLeg", 0.12, 0.08, -0.28, kPlaced, 0.8, 0.7},
+    {"leftFootTip", "leftFoot", 0.12, 0.02, -0.05, kTip, 0.8, 0.8},
+};
+
 // How bodies differ from the humanoid as a whole: toys and cartoons have short legs, large heads, long arms. What is
 // rarer costs more.
 struct Build {
@@ -205,9 +225,17 @@ std::vector<TemplateVariant> animalVariants(const TemplateSkeleton& skeleton, In
   return variants;
 }
 
+bool isBird(const TemplateSkeleton& skeleton) {
+  const TemplateSkeleton& bird = findTemplate("bird");
+  return skeleton.jointCount() == bird.jointCount() &&
+         std::equal(skeleton.joints.begin(), skeleton.joints.end(), bird.joints.begin(),
+                    [](const TemplateJoint& a, const TemplateJoint& b) { return a.name == b.name; });
+}
+
 }  // namespace
 
 std::vector<TemplateVariant> templateVariants(const TemplateSkeleton& skeleton) {
+  if (isBird(skeleton)) return {{skeleton, 0}, {made(skeleton.name, skeleton.summary, kFlyingBird), 0}};
   const std::optional<Index> neck = skeleton.find("neck"), head = skeleton.find("head"), tip = skeleton.find("headTip");
   if (skeleton.find("leftFrontUpperLeg") && neck && head && tip) return animalVariants(skeleton, *neck, *head, *tip);
   const std::optional<Index> hips = skeleton.find("hips"),
