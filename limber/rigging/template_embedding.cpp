@@ -47,6 +47,10 @@ class Embedder {
       : skeleton_(skeleton), body_(body), frame_(frame), pins_(pins), options_(options), half_(frame.symmetric()) {
     for (const std::optional<Vec3>& pin : pins) half_ = half_ && !pin;
     chooseJoints();
+    if (half_ && !hangsTogether()) {
+      half_ = false;
+      chooseJoints();
+    }
     gatherCandidates();
     measurePairs();
   }
@@ -62,6 +66,7 @@ class Embedder {
 
   // Placed joints and tips that are searched for, each with the one above it.
   void chooseJoints() {
+    chosen_.clear();
     above_.assign(skeleton_.jointCount(), kNoIndex);
     for (Index j = 0; j < skeleton_.jointCount(); ++j) {
       const TemplateJoint& joint = skeleton_.joints[j];
@@ -72,6 +77,13 @@ class Embedder {
       if (parent) above_[j] = *parent;
       chosen_.push_back(j);
     }
+  }
+
+  // Not where a joint of the left or the middle hangs on one of the right.
+  bool hangsTogether() const {
+    return std::all_of(chosen_.begin(), chosen_.end(), [&](Index j) {
+      return above_[j] == kNoIndex || std::find(chosen_.begin(), chosen_.end(), above_[j]) != chosen_.end();
+    });
   }
 
   Candidate candidateAt(const Vec3& point) const {

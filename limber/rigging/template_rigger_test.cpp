@@ -148,6 +148,40 @@ TEST(TemplateRigger, KeepsPins) {
   EXPECT_THROW(rig(testing::capsulePerson().mesh, options), Error);
 }
 
+// A user's skeleton: trunk and arms; the left collar as well as the right one stands `collar` to the left.
+Skeleton ownSkeleton(double collar, bool crossed) {
+  Skeleton skeleton;
+  const auto add = [&](const std::string& name, std::optional<Index> parent, const Vec3& from) {
+    Joint joint;
+    joint.name = name;
+    joint.parent = parent;
+    joint.rest.translation = from;
+    skeleton.joints.push_back(joint);
+    return skeleton.jointCount() - 1;
+  };
+  const Index root = add("root", std::nullopt, {0, 1, 0}), neck = add("neck", root, {0, 0.45, 0});
+  add("top", neck, {0, 0.3, 0});
+  const Index left = add("LeftCollar", neck, {collar, 0.05, 0}), right = add("RightCollar", neck, {-collar, 0.05, 0});
+  add("LeftHand", crossed ? right : left, {0.7, -0.1, 0});
+  add("RightHand", crossed ? left : right, {-0.7, -0.1, 0});
+  return skeleton;
+}
+
+TEST(TemplateRigger, TakesSkeletonsWhoseSidesMeetOrCross) {
+  for (const double collar : {0.0, 0.1}) {
+    for (const bool crossed : {false, true}) {
+      RigOptions options = person();
+      options.templateName = "mine";
+      options.templateSkeleton = ownSkeleton(collar, crossed);
+      const Skeleton skeleton = rig(testing::capsulePerson().mesh, options).skeleton;
+      checkSkeleton(skeleton);
+      EXPECT_GT(place(skeleton, "LeftHand").x(), 0.1) << collar << crossed;
+      EXPECT_LT(place(skeleton, "RightHand").x(), -0.1) << collar << crossed;
+      EXPECT_LT(std::abs(place(skeleton, "neck").x()), 0.03) << collar << crossed;
+    }
+  }
+}
+
 TEST(TemplateRigger, SaysWhereAPersonHasNoPlace) {
   const AutoRig result = rig(ball(), person());
   EXPECT_LT(result.matches[0].confidence, 0.4);

@@ -42,8 +42,9 @@ void findMirrors(TemplateSkeleton& skeleton) {
     const std::optional<std::string> name = otherSide(skeleton.joints[j].name);
     const std::optional<Index> other = name ? skeleton.find(*name) : std::nullopt;
     if (!other) continue;
-    const Vec3 image = skeleton.joints[*other].place.cwiseProduct(Vec3(-1, 1, 1));
-    if ((image - skeleton.joints[j].place).norm() > kSamePlace) continue;
+    const Vec3 place = skeleton.joints[j].place, image = skeleton.joints[*other].place.cwiseProduct(Vec3(-1, 1, 1));
+    // Collars of motion files often stand in the middle both: those have no sides.
+    if ((image - place).norm() > kSamePlace || std::abs(place.x()) < 0.5 * kSamePlace) continue;
     skeleton.joints[j].mirror = other;
   }
   for (Index j = 0; j < skeleton.jointCount(); ++j) {

@@ -148,6 +148,20 @@ TEST(TemplateSkeleton, OfAUsersSkeleton) {
   EXPECT_NEAR(skeleton.joints[2].place.y(), 0.95, 1e-12);
 }
 
+TEST(TemplateSkeleton, PairsInTheMiddleHaveNoSides) {
+  Skeleton own = line({{"root", {0, 0, 0}}, {"neck", {0, 1, 0}}, {"top", {0, 2, 0}}});
+  for (const double side : {1.0, -1.0}) {
+    const std::string of = side > 0 ? "Left" : "Right";
+    own.joints.push_back({of + "Collar", Index{1}, {}, 0});
+    own.joints.back().rest.translation = Vec3(0, 0.5, 0);
+    own.joints.push_back({of + "Shoulder", own.jointCount() - 1, {}, 0});
+    own.joints.back().rest.translation = Vec3(side, 0, 0);
+  }
+  const TemplateSkeleton skeleton = templateFrom(own, "mine");
+  EXPECT_FALSE(skeleton.joints[*skeleton.find("LeftCollar")].mirror);
+  EXPECT_EQ(skeleton.joints[*skeleton.find("LeftShoulder")].mirror, skeleton.find("RightShoulder"));
+}
+
 TEST(TemplateSkeleton, RefusesWhatIsNone) {
   EXPECT_THROW(templateFrom(Skeleton(), "none"), Error);
   try {
