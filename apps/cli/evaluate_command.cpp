@@ -153,7 +153,8 @@ void addIk(CLI::App& evaluate) {
   command->footer(
       "Chains of 3, 10, 30 and 100 joints and a humanoid of 60 joints with five effectors; targets in reach, at its\n"
       "border and out of it; with and without joint limits. A problem counts as solved within a thousandth of the\n"
-      "chain's length; one that cannot be solved, when the method says that it is out of reach.\n"
+      "chain's length; one that cannot be solved, when the method says that it is out of reach. \"limb alone\" is the\n"
+      "closed form of two bones without a solver round it.\n"
       "\nExample:\n  limber evaluate ik --problems 100 --solver fabrik --solver dls\n"
       "  limber evaluate ik --plot docs/images -o docs/ik.md");
   command->callback([options] { runIk(*options); });

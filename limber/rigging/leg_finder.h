@@ -30,7 +30,7 @@ class LegFinder {
   // Of the leg just below where it parts from the other one.
   double halfWidth(int side) const;
 
-  // Of the leg from front to back, about a height below the parting.
+  // Of the leg from front to back, near a height below the parting.
   double halfDepth(int side, double y) const;
 
   // The middle of the leg at a height; above where it parts as just below.

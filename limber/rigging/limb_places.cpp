@@ -7,7 +7,7 @@ namespace limber {
 
 namespace {
 
-constexpr double kNoPlace = 2.1;  // mean cost of a limb's joints; up to 1.2 on people as they are, 1.6 on toys
+constexpr double kNoPlace = 2.1;  // mean cost of a limb's joints; up to 1.2 on people, 2 on toys
 constexpr double kAcross = 0.5;   // most cosine between a limb and what lies across from it
 
 std::vector<TemplateLimb> chainsOf(const TemplateSkeleton& skeleton) {
