@@ -50,7 +50,8 @@ void runRig(const RigFiles& options) {
 
 struct RiggersOptions {
   std::vector<std::string> files;
-  std::string output = "-", templateName = "auto";
+  std::string output = "-", templateName = "auto", clip;
+  std::optional<double> time;  // seconds
   Common common;
 };
 
@@ -70,7 +71,9 @@ void runRiggers(const RiggersOptions& options) {
   TerminalProgress progress(options.common.quiet);
   Warnings skipped;
   const std::vector<std::filesystem::path> files(options.files.begin(), options.files.end());
-  writeText(options.output, rigTable(compareRigsOf(files, rerig, *progress, skipped)));
+  std::optional<ClipMoment> moment;
+  if (!options.clip.empty() || options.time) moment = {options.clip, options.time.value_or(0)};
+  writeText(options.output, rigTable(compareRigsOf(files, rerig, *progress, skipped, moment)));
   printWarnings(skipped, options.common.quiet);
 }
 
@@ -185,11 +188,20 @@ void addRiggers(CLI::App& evaluate) {
   command->add_option("--template", options->templateName, "auto, or one by name; limber rig --help lists them")
       ->type_name("NAME")
       ->capture_default_str();
+  command->add_option("--clip", options->clip, "as they stand in this clip (default: in rest pose)")->type_name("NAME");
+  command->add_option("--time", options->time, "at this moment of the clip, or of the first, in seconds")
+      ->type_name("S");
   command->add_option("-o,--output", options->output, "the table to write, in Markdown; - is standard output")
       ->type_name("FILE")
       ->capture_default_str();
   options->common.addTo(*command);
-  command->footer("Example:\n  limber evaluate templates characters/*.glb --template humanoid");
+  command->footer(
+      "At a moment of a clip each character is what its own weights make of it, and its joints as they stand then are\n"
+      "what is compared with. The name of a clip need not hold what is before the last \"|\". Files without the clip\n"
+      "are left out.\n"
+      "\nExamples:\n"
+      "  limber evaluate templates characters/*.glb --template humanoid\n"
+      "  limber evaluate templates characters/*.glb --template humanoid --clip Walk --time 0.4");
   command->callback([options] { runRiggers(*options); });
 }
 

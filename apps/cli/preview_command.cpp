@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "command.h"
+#include "limber/asset/motion_io.h"
 #include "limber/asset/read.h"
 #include "limber/core/file.h"
 #include "limber/preview/animation.h"

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "limber/asset/accessor.h"
@@ -91,7 +92,27 @@ Index addJointNodes(Asset& asset, const Motion& motion) {
   return static_cast<Index>(nodes.size() - 1);
 }
 
+// "Walk" of the exporters' "Armature|Walk".
+std::string_view ownName(std::string_view clip) {
+  return clip.substr(clip.rfind('|') + 1);
+}
+
 }  // namespace
+
+Clip findClip(const Asset& asset, std::string_view name) {
+  Warnings ignored;  // those of the whole motion, which is not asked for
+  std::vector<Clip> clips = readClips(asset, animatedSkeleton(asset), ignored);
+  if (name.empty()) return clips.empty() ? Clip() : std::move(clips.front());
+  std::vector<std::string> names;
+  for (const Clip& clip : clips) names.push_back(clip.name);
+  auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) {
+    found = std::find_if(names.begin(), names.end(), [&](const std::string& own) { return ownName(own) == name; });
+  }
+  if (found != names.end()) return std::move(clips[found - names.begin()]);
+  throw Error(ErrorCode::kBadArgument, fmt::format("there is no clip called '{}'", name), asset.name,
+              names.empty() ? "the file has no clip" : fmt::format("there are: {}", fmt::join(names, ", ")));
+}
 
 bool isSkeletonAlone(const Asset& asset) {
   if (elementCount(asset, "meshes") > 0) return false;

@@ -25,6 +25,11 @@ Motion motionOf(const Asset& asset);
 // stand. Throws Error kBadData where nothing is animated either.
 AssetSkeleton animatedSkeleton(const Asset& asset);
 
+// The clip of that name, in full or behind the last '|' (Blender's exporters put the armature's name before); the first
+// where none is named, and where the document has none an empty one (the rest pose). Over the animatedSkeleton of the
+// asset. Throws Error kBadArgument that lists the names.
+Clip findClip(const Asset& asset, std::string_view name);
+
 // Is there no mesh, but a skeleton: a skin's, animated nodes, or several nodes?
 bool isSkeletonAlone(const Asset& asset);
 

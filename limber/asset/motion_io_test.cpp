@@ -49,6 +49,28 @@ TEST(MotionIo, BvhComesOutOfGltfAsItWentIn) {
   for (const double seconds : {0.0, 0.02, 0.07, 0.1}) EXPECT_LT(largestDistanceAt(motion, back, seconds), 1e-6);
 }
 
+TEST(MotionIo, FindsClipsByName) {
+  Motion motion = readMotion(asBytes(kBvh), "walk.bvh");
+  motion.clips.push_back(motion.clips[0]);
+  motion.clips[1].name = "Armature|run";
+  motion.clips.push_back(motion.clips[0]);
+  motion.clips[2].name = "run";
+  const Asset asset = motionAsset(motion);
+  EXPECT_EQ(findClip(asset, "").name, "walk");
+  EXPECT_EQ(findClip(asset, "Armature|run").name, "Armature|run");
+  EXPECT_EQ(findClip(asset, "run").name, "run") << "the full name comes first";
+  motion.clips.pop_back();
+  EXPECT_EQ(findClip(motionAsset(motion), "run").name, "Armature|run");
+  try {
+    findClip(asset, "fall");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("there are: walk, Armature|run, run"));
+  }
+  motion.clips.clear();
+  EXPECT_EQ(findClip(motionAsset(motion), "").duration(), 0);
+}
+
 TEST(MotionIo, ABvhIsAModelToo) {
   const Asset asset = readAsset(asBytes(kBvh), "walk.bvh");
   EXPECT_EQ(asset.format, "bvh");

@@ -66,7 +66,7 @@ std::string toText(const RigComparison& c) {
 }
 
 std::vector<RigTableRow> compareRigsOf(std::span<const std::filesystem::path> files, const Rerig& rerig,
-                                       Progress& progress, Warnings& skipped) {
+                                       Progress& progress, Warnings& skipped, const std::optional<ClipMoment>& moment) {
   std::vector<RigTableRow> rows;
   progress.stage("compare rigs");
   for (std::size_t i = 0; i < files.size(); ++i) {
@@ -77,9 +77,13 @@ std::vector<RigTableRow> compareRigsOf(std::span<const std::filesystem::path> fi
         skipped.add("without-rig", "files without a rig left out", files[i].filename().string());
         continue;
       }
-      const SkinnedModel truth = readSkinnedModel(asset);
       RigTableRow row;
       row.file = files[i].stem().string();
+      if (moment) {
+        standAt(asset, *moment);
+        row.file += fmt::format(" {} {:.2f}", moment->clip, moment->seconds);
+      }
+      const SkinnedModel truth = readSkinnedModel(asset);
       const double start = secondsNow();
       row.note = rerig(asset);
       row.seconds = secondsNow() - start;

@@ -3,12 +3,14 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "limber/asset/asset.h"
 #include "limber/core/progress.h"
+#include "limber/evaluate/clip_moment.h"
 #include "limber/evaluate/rig_metrics.h"
 
 namespace limber {
@@ -20,7 +22,7 @@ Json toJson(const RigComparison& comparison);
 std::string toText(const RigComparison& comparison);
 
 struct RigTableRow {
-  std::string file;  // without folder and extension
+  std::string file;  // without folder and extension; with the moment of a clip
   std::string note;  // what the rigger said of the fit
   RigComparison comparison;
   double seconds = 0;  // to make the rig, reading and writing files left out
@@ -30,9 +32,10 @@ struct RigTableRow {
 using Rerig = std::function<std::string(Asset&)>;
 
 // One row for each of the files that has a rig and triangles, in their order; what cannot be read or compared is
-// counted in `skipped`.
+// counted in `skipped`. Given a moment, each stands in that pose (standAt) before it is rigged and compared.
 std::vector<RigTableRow> compareRigsOf(std::span<const std::filesystem::path> files, const Rerig& rerig,
-                                       Progress& progress, Warnings& skipped);
+                                       Progress& progress, Warnings& skipped,
+                                       const std::optional<ClipMoment>& moment = std::nullopt);
 
 // A Markdown table with a line for each row and one of means.
 std::string rigTable(std::span<const RigTableRow> rows);

@@ -1,25 +1,8 @@
 #include "limber/preview/animation.h"
 
-#include <fmt/format.h>
-
-#include "limber/asset/clip_io.h"
-#include "limber/asset/motion_io.h"
+#include "limber/core/error.h"
 
 namespace limber {
-
-Clip findClip(const Asset& asset, std::string_view name) {
-  Warnings ignored;  // they are those of the file's motion, not of the picture
-  const AssetSkeleton skeleton = animatedSkeleton(asset);
-  std::vector<Clip> clips = readClips(asset, skeleton, ignored);
-  std::vector<std::string> names;
-  for (Clip& clip : clips) {
-    if (name.empty() || clip.name == name) return std::move(clip);
-    names.push_back(clip.name);
-  }
-  if (name.empty()) return {};
-  throw Error(ErrorCode::kBadArgument, fmt::format("there is no clip called '{}'", name), asset.name,
-              names.empty() ? "the file has no clip" : fmt::format("there are: {}", fmt::join(names, ", ")));
-}
 
 std::vector<double> clipMoments(const Clip& clip, int count, bool withEnd) {
   if (count < 1) throw Error(ErrorCode::kBadArgument, "a clip is shown in one picture at least");

@@ -12,10 +12,6 @@ namespace limber {
 
 class Asset;
 
-// The clip of that name; the first where none is named, and where the document has none an empty one (the rest pose).
-// Over the animatedSkeleton of the asset. Throws Error kBadArgument that lists the names.
-Clip findClip(const Asset& asset, std::string_view name);
-
 // `count` moments from the clip's start to its end, evenly: both ends for a sheet; for a loop without the end.
 std::vector<double> clipMoments(const Clip& clip, int count, bool withEnd);
 

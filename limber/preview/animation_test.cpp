@@ -1,6 +1,5 @@
 #include "limber/preview/animation.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "limber/asset/clip_io.h"
@@ -45,20 +44,6 @@ TEST(Animation, ShowsTheSceneAtAMomentOfAClip) {
     EXPECT_LT((later.positions[v] - still.positions[v] - Vec3f(0, 0.25f, 0)).norm(), 1e-5f);
   }
   EXPECT_LT((later.joints[0].position - still.joints[0].position - Vec3(0, 0.25, 0)).norm(), 1e-6);
-}
-
-TEST(Animation, FindsClipsByName) {
-  Asset asset = riggedStool();
-  EXPECT_EQ(findClip(asset, "").duration(), 0);
-  const Clip clip = rising();
-  addClips(asset, readSkeleton(asset), {&clip, 1});
-  EXPECT_EQ(findClip(asset, "").name, "rise");
-  try {
-    findClip(asset, "fall");
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_THAT(error.what(), ::testing::HasSubstr("there are: rise"));
-  }
 }
 
 TEST(Animation, ShowsASkeletonAloneAsItsBones) {
