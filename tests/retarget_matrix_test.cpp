@@ -54,11 +54,6 @@ MotionMetrics measured(const RetargetSetup& setup, const char* method, const Pos
   return measureMotion(setup, source, retargetFrames(findRetargetMethod(method), setup, source));
 }
 
-// Joints that turn alike on other proportions have another jerk for their heights: that much is the character's own.
-double jerkAgainst(const MotionMetrics& aligned, const MotionMetrics& result) {
-  return result.jerk / std::max(1.0, aligned.jerk);
-}
-
 bool isWalkOrRun(const std::string& motion) {
   return motion.find("walk") != std::string::npos || motion.find("run") != std::string::npos;
 }
@@ -66,21 +61,10 @@ bool isWalkOrRun(const std::string& motion) {
 // Runs, and walks on the spot, whose feet never stand still: nothing can be said of sliding there.
 const std::set<std::string> kNeverStands = {"cmu_daz_02_03_run.bvh", "cmu_daz_09_01_run.bvh", "makehuman_walk.bvh",
                                             "makehuman_zombie_walk.bvh", "pab_run.fbx"};
-// What does not hold yet, with what was measured, heights a second.
-// A toy whose legs stand nine times as far apart, for their length, as the source's: with each turn of the pelvis
-// they sweep further than they can reach back.
-const std::set<std::pair<std::string, std::string>> kSlideMore = {
-    {"fair1_dab.bvh", "quaternius_platformer_character_humanoidrig"},       // 0.023, source 0.015
-    {"pybvh_example.bvh", "quaternius_platformer_character_humanoidrig"}};  // 0.066, source 0.023
-// Mean jerk against the source over 1.1. Most of it is that of the joint angles on other proportions, in brackets.
-const std::set<std::string> kRougherThanSource = {"boxing_toes.bvh",                 // 1.17 (1.16)
-                                                  "cmu1_jumping_jacks.bvh",          // 1.15 (1.01)
-                                                  "cmu_mb_01_01_forward_jumps.bvh",  // 1.14 (1.17)
-                                                  "fair1_dab.bvh",                   // 1.35 (1.25)
-                                                  "fair1_wave_hello.bvh",            // 1.74 (1.61)
-                                                  "m2m_human_sample_anim.glb",       // 1.16 (1.18)
-                                                  "makehuman_walk.bvh",              // 1.13 (1.05)
-                                                  "pybvh_example.bvh"};              // 1.20 (1.15)
+// What does not hold yet: mean jerk over 1.1. The ground under this recording is not level: the feet stand at heights
+// that differ by a tenth of the hips' height, and go below it by as much before they are lifted to it.
+const std::set<std::string> kRougherThanSource = {"rokoko_dance_mixamorig_names.bvh"};  // 1.18
+constexpr double kRoughest = 1.65;  // of all pairs: a walk of the living dead on a toy with hips as wide as its legs
 
 }  // namespace
 
@@ -90,45 +74,36 @@ TEST_P(RetargetMatrix, EveryHumanoidKeepsFeetAndGround) {
   if (!sharedDataFolder()) GTEST_SKIP() << kNoSharedData;
   const std::string motion = GetParam();
   const Taken source = motionFrom(motion);
-  double jerk = 0, overAngles = 0, count = 0;
+  double jerk = 0, count = 0;
   for (const std::string& file : humanoids()) {
-    const std::filesystem::path path = *sharedDataFolder() / "rigged" / file;
-    const std::string person = path.stem().string();
-    SCOPED_TRACE(person);
-    const Skeleton target = readMotion(path).skeleton;
+    SCOPED_TRACE(file);
+    const Skeleton target = readMotion(*sharedDataFolder() / "rigged" / file).skeleton;
     const RetargetSetup setup(source.skeleton, target, matchSkeletons(source.skeleton, target), {}, &source.frames);
-    const MotionMetrics aligned = measured(setup, "aligned", source.frames);
     const MotionMetrics result = measured(setup, "limb-ik", source.frames);
     EXPECT_LT(1700 * result.penetration, 5) << "millimetres at human size";
     EXPECT_LT(result.boneDirection, 15);
     EXPECT_EQ(result.planted == 0, kNeverStands.contains(motion));
-    if (!kSlideMore.contains({motion, person})) {
-      EXPECT_LT(result.sliding, result.sourceSliding + 1e-4);
-    }
+    EXPECT_LT(result.sliding, result.sourceSliding + 1e-4);
     if (isWalkOrRun(motion)) {
       EXPECT_LT(result.sliding, 0.02);
     }
+    EXPECT_LT(result.jerk, kRoughest);
     jerk += result.jerk;
-    overAngles += jerkAgainst(aligned, result);
     ++count;
   }
   if (!kRougherThanSource.contains(motion)) {
     EXPECT_LT(jerk / count, 1.1);
   }
-  EXPECT_LT(overAngles / count, 1.1);
 }
 
 TEST_P(RetargetMatrix, SpacetimeIsAsSmoothAsTheSource) {
   if (!sharedDataFolder()) GTEST_SKIP() << kNoSharedData;
-  const std::string motion = GetParam();
-  if (motion == "fair1_wave_hello.bvh") GTEST_SKIP() << "1.101: standing still, so that any correction shows";
-  const Taken source = motionFrom(motion, 200);
+  const Taken source = motionFrom(GetParam(), 200);
   for (const char* file : {"m2m_human_male.glb", "makehuman_mixamo.glb"}) {
     SCOPED_TRACE(file);
     const Skeleton target = readMotion(*sharedDataFolder() / "rigged" / file).skeleton;
     const RetargetSetup setup(source.skeleton, target, matchSkeletons(source.skeleton, target), {}, &source.frames);
-    const MotionMetrics aligned = measured(setup, "aligned", source.frames);
-    EXPECT_LT(jerkAgainst(aligned, measured(setup, "spacetime", source.frames)), 1.1);
+    EXPECT_LT(measured(setup, "spacetime", source.frames).jerk, 1.1);
   }
 }
 

@@ -19,7 +19,7 @@ constexpr double kPlantedHeight = 0.03, kPlantedSpeed = 0.15;  // heights, heigh
 constexpr double kPlantedSeconds = 0.1;
 constexpr double kSeenSeconds = 1.0 / 30;  // to each side of a frame, when telling whether a joint stands still
 constexpr double kCut = 12;                // heights a second of any joint: no motion, but a cut
-constexpr double kLeastJerk = 2e-5;        // third differences of a joint's places, heights
+constexpr double kLeastJerk = 2e-5;        // third differences of a joint's places, heights or bone lengths
 
 struct LimbName {
   const char *upper, *lower, *end;
@@ -158,37 +158,79 @@ void measureLimbs(const RetargetSetup& setup, const Seen& source, const Seen& ta
   metrics.endEffector = limbs > 0 ? metrics.endEffector / limbs : 0;
 }
 
-double squaredJerk(const Seen& seen, Index joint, const std::vector<bool>& cut) {
-  double sum = 0;
-  for (std::size_t f = 3; f < seen.positions.size(); ++f) {
-    if (cut[f] || cut[f - 1] || cut[f - 2]) continue;
-    const auto at = [&](std::size_t back) -> const Vec3& { return seen.positions[f - back][joint]; };
-    sum += ((at(0) - at(3) - 3 * (at(1) - at(2))) / seen.height).squaredNorm();
-  }
-  return sum;
-}
-
-void measureJerk(const RetargetSetup& setup, const Seen& source, const Seen& target, double seconds,
-                 MotionMetrics& metrics) {
+// Frames at which the source jumps.
+std::vector<bool> cutsOf(const SkeletonMap& map, const Seen& source, double seconds) {
   std::vector<bool> cut(source.positions.size());
   for (std::size_t f = 1; f < cut.size(); ++f) {
-    for (const JointMatch& match : setup.map.matches) {
+    for (const JointMatch& match : map.matches) {
       const Vec3 way = source.positions[f][match.source.front()] - source.positions[f - 1][match.source.front()];
       cut[f] = cut[f] || way.norm() > kCut * source.height * seconds;
     }
   }
-  double from = 0, to = 0;
+  return cut;
+}
+
+// Sum over the frames of the squared third differences of `place(frame)`, but for those across a cut.
+template <typename Place>
+double squaredJerk(const std::vector<bool>& cut, const Place& place) {
+  double sum = 0;
+  for (std::size_t f = 3; f < cut.size(); ++f) {
+    if (cut[f] || cut[f - 1] || cut[f - 2]) continue;
+    const Vec3 step = place(f) - place(f - 3) - 3 * (place(f - 1) - place(f - 2));
+    sum += step.squaredNorm();
+  }
+  return sum;
+}
+
+struct JerkSums {
+  double source = 0, target = 0;
+
+  double ratio(std::size_t frames) const {
+    // What hardly moves has no jerk to compare with.
+    const double least = kLeastJerk * kLeastJerk * static_cast<double>(frames);
+    return target > least || source > least ? std::sqrt(target / std::max(source, least)) : 1;
+  }
+};
+
+void addBoneJerk(const Seen& seen, Index from, Index to, const std::vector<bool>& cut, double& sum) {
+  const double length = (seen.neutral.restPositions[to] - seen.neutral.restPositions[from]).norm();
+  sum += squaredJerk(cut,
+                     [&](std::size_t f) -> Vec3 { return (seen.positions[f][to] - seen.positions[f][from]) / length; });
+}
+
+void addJointJerk(const Seen& seen, Index joint, const std::vector<bool>& cut, double& sum) {
+  sum += squaredJerk(cut, [&](std::size_t f) -> Vec3 { return seen.positions[f][joint] / seen.height; });
+}
+
+void addPelvisJerk(const SkeletonMap& map, const Seen& seen, double hipHeight, const std::vector<bool>& cut,
+                   double& sum) {
+  sum +=
+      squaredJerk(cut, [&](std::size_t f) -> Vec3 { return pelvisOf(map, seen.side, seen.positions[f]) / hipHeight; });
+}
+
+void measureJerk(const RetargetSetup& setup, const Seen& source, const Seen& target, double seconds,
+                 MotionMetrics& metrics) {
+  const SkeletonMap& map = setup.map;
+  const std::vector<bool> cut = cutsOf(map, source, seconds);
+  JerkSums bones, joints;
+  addPelvisJerk(map, source, setup.sourceHipHeight, cut, bones.source);
+  addPelvisJerk(map, target, setup.targetHipHeight, cut, bones.target);
   for (const LimbName& limb : kLimbs) {
+    const JointMatch* above = nullptr;
     for (const char* part : {limb.upper, limb.lower, limb.end}) {
-      const JointMatch* match = setup.map.find(part);
+      const JointMatch* match = map.find(part);
       if (!match) continue;
-      from += squaredJerk(source, match->source.front(), cut);
-      to += squaredJerk(target, match->target.front(), cut);
+      addJointJerk(source, match->source.front(), cut, joints.source);
+      addJointJerk(target, match->target.front(), cut, joints.target);
+      if (above) {
+        addBoneJerk(source, above->source.front(), match->source.front(), cut, bones.source);
+        addBoneJerk(target, above->target.front(), match->target.front(), cut, bones.target);
+      }
+      above = match;
     }
   }
-  // What hardly moves has no jerk to compare with.
-  const double least = kLeastJerk * kLeastJerk * static_cast<double>(source.positions.size());
-  metrics.jerk = to > least || from > least ? std::sqrt(to / std::max(from, least)) : 1;
+  metrics.jerk = bones.ratio(cut.size());
+  metrics.jointJerk = joints.ratio(cut.size());
 }
 
 void checkFrames(const RetargetSetup& setup, const PoseSequence& one, const PoseSequence& other) {
@@ -248,7 +290,7 @@ std::string motionMetricsText(const MotionMetrics& m) {
                                    m.sliding, m.sourceSliding));
   line("ground penetration", fmt::format("{:.1f} mm ({:.4f} heights), source {:.4f}", 1000 * m.penetration * m.height,
                                          m.penetration, m.sourcePenetration));
-  line("jerk", fmt::format("{:.3f} times the source's", m.jerk));
+  line("jerk", fmt::format("{:.3f} times the source's, {:.3f} of the joints' places", m.jerk, m.jointJerk));
   line("contact agreement", fmt::format("{:.1f} %", 100 * m.contactAgreement));
   if (const auto& inside = m.selfPenetration) {
     line("self-penetration", fmt::format("{:.2f} % of the vertices, {:.2f} % in frame {}", 100 * inside->mean,
@@ -274,6 +316,7 @@ std::string motionMetricsJson(const MotionMetrics& m) {
                                  {"penetration_millimetres", 1000 * m.penetration * m.height},
                                  {"source_penetration_heights", m.sourcePenetration},
                                  {"jerk_ratio", m.jerk},
+                                 {"joint_jerk_ratio", m.jointJerk},
                                  {"contact_agreement", m.contactAgreement},
                                  {"height_metres", m.height}};
   if (const auto& inside = m.selfPenetration) {

@@ -19,6 +19,9 @@ struct JointError {
 // Planted is what stands still in the source: a foot's or the toes' joint within 0.03 heights of where it is when
 // standing and slower than 0.15 heights a second, as seen over a fifteenth of a second (recordings tremble from frame
 // to frame), for a tenth of a second at least.
+//
+// Jerk is taken of the limbs' bones, each as the way from its joint to the next over its length, and of the pelvis over
+// the hips' height: the same angles on other proportions have the same, and long arms are not rough for being long.
 struct MotionMetrics {
   Index frames = 0;
   Index matched = 0;         // parts of the body that were compared
@@ -29,7 +32,8 @@ struct MotionMetrics {
   double sourceSliding = 0;  // the same joints in the source
   double penetration = 0;    // how deep a foot's joint goes below where it is when standing, heights, worst
   double sourcePenetration = 0;
-  double jerk = 0;                      // root mean square jerk of limbs' joints against the source's (1: the same)
+  double jerk = 0;                      // root mean square jerk against the source's, see below (1: the same)
+  double jointJerk = 0;                 // likewise, of limbs' joints as they stand, in heights
   double contactAgreement = 0;          // share of the source's planted frames that are planted in the result too
   double height = 1, sourceHeight = 1;  // metres
 

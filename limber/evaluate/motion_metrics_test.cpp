@@ -65,6 +65,36 @@ TEST_F(MotionMetricsOf, ATurnedForearmIsOneBoneOfEight) {
   EXPECT_NEAR(measureMotion(setup(still), still, turned).boneDirection, 40.0 / 8, 1e-6);
 }
 
+// The same angles on other proportions are as smooth, whatever the joints' ways are.
+TEST_F(MotionMetricsOf, JerkIsThatOfTheBonesOnAnyProportions) {
+  Skeleton uneven = person_;
+  for (const char* joint : {"rightHand", "leftHand", "leftLowerLeg", "rightLowerLeg"}) {
+    uneven.joints[uneven.find(joint).value()].rest.translation *= 1.6;
+  }
+  const PoseSequence motion = limber::testing::walk(person_);
+  const RetargetSetup to(person_, uneven, matchSkeletons(person_, uneven), {}, &motion);
+  const MotionMetrics metrics = measureMotion(to, motion, retargetFrames(findRetargetMethod("aligned"), to, motion));
+  EXPECT_NEAR(metrics.jerk, 1, 1e-6);
+  EXPECT_GT(std::abs(metrics.jointJerk - 1), 0.05) << metrics.jointJerk;
+}
+
+TEST_F(MotionMetricsOf, JerkShowsWhatTrembles) {
+  const PoseSequence motion = limber::testing::walk(person_);
+  const auto jerkWith = [&](const char* joint, double degrees, double metres) {
+    PoseSequence noisy = motion;
+    for (std::size_t f = 0; f < noisy.poses.size(); ++f) {
+      Transform& local = noisy.poses[f].locals[person_.find(joint).value()];
+      const double wave = std::sin(2.1 * static_cast<double>(f));
+      local.rotation = limber::testing::turn(Vec3::UnitX(), degrees * wave) * local.rotation;
+      local.translation += Vec3(0, metres * wave, 0);
+    }
+    return measureMotion(setup(motion), motion, noisy).jerk;
+  };
+  EXPECT_GT(jerkWith("leftLowerLeg", 1, 0), 1.1);
+  EXPECT_GT(jerkWith("rightUpperArm", 1, 0), 1.1);
+  EXPECT_GT(jerkWith("hips", 0, 0.01), 1.1);
+}
+
 TEST_F(MotionMetricsOf, JointErrorIsOverTheSquareOfTheHeight) {
   const PoseSequence still = standing(Vec3::Zero()), aside = standing(Vec3(0.3, 0, 0));
   const double height = measureMotion(setup(still), still, still).height;

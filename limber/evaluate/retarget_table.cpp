@@ -153,13 +153,14 @@ std::string retargetMethodTable(std::span<const RetargetScore> scores) {
 std::string retargetScoresTsv(std::span<const RetargetScore> scores) {
   std::string text =
       "motion\tcharacter\tmethod\tbones\tends\tsliding\tsource_sliding\tpenetration\tsource_penetration\tjerk\t"
-      "contacts\tself_penetration\tframes_per_second\n";
+      "joint_jerk\tcontacts\tself_penetration\tframes_per_second\n";
   for (const RetargetScore& score : scores) {
     const MotionMetrics& m = score.metrics;
-    text += fmt::format("{}\t{}\t{}\t{:.3f}\t{:.4f}\t{:.4f}\t{:.4f}\t{:.5f}\t{:.5f}\t{:.3f}\t{:.3f}\t{}\t{:.0f}\n",
-                        score.motion, score.character, score.method, m.boneDirection, m.endEffector, m.sliding,
-                        m.sourceSliding, m.penetration, m.sourcePenetration, m.jerk, m.contactAgreement,
-                        m.selfPenetration ? fmt::format("{:.5f}", m.selfPenetration->mean) : "", score.framesPerSecond);
+    text +=
+        fmt::format("{}\t{}\t{}\t{:.3f}\t{:.4f}\t{:.4f}\t{:.4f}\t{:.5f}\t{:.5f}\t{:.3f}\t{:.3f}\t{:.3f}\t{}\t{:.0f}\n",
+                    score.motion, score.character, score.method, m.boneDirection, m.endEffector, m.sliding,
+                    m.sourceSliding, m.penetration, m.sourcePenetration, m.jerk, m.jointJerk, m.contactAgreement,
+                    m.selfPenetration ? fmt::format("{:.5f}", m.selfPenetration->mean) : "", score.framesPerSecond);
   }
   return text;
 }

@@ -125,6 +125,20 @@ TEST(PlantDetector, AFootThatSlowsDownIsPlantedWhenItStands) {
   EXPECT_FALSE(planted) << "slow, but no slower than before";
 }
 
+TEST(PlantDetector, AFootThatRisesIsFreeThoughOneThatCreepsAsFastIsNot) {
+  const auto plantedAfter = [](const Vec3& velocity) {
+    PlantDetector detector(1);
+    bool planted = detector.next(Vec3::Zero(), 0, 0);
+    for (int i = 1; i <= 6; ++i) {
+      const Vec3 way = i * kStep * velocity;
+      planted = detector.next(way, way.y(), kStep);
+    }
+    return planted;
+  };
+  EXPECT_FALSE(plantedAfter(Vec3(0, 0.5, 0)));
+  EXPECT_TRUE(plantedAfter(Vec3(0, 0, 0.5)));
+}
+
 TEST(PlantDetector, StandingIsSlowAndLow) {
   PlantDetector detector(0.9);
   EXPECT_TRUE(detector.next(Vec3(0, 0, 0), 0, 0));

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "limber/ik/rotation.h"
 #include "limber/retarget/spring.h"
 #include "limber/skeleton/chain.h"
 
@@ -14,14 +15,16 @@ namespace {
 // In hip heights of the target.
 constexpr double kTouching = 0.12, kApart = 0.35;  // of two hands
 constexpr double kMostSinking = 0.12;
-constexpr double kFootSlack = 0.5;   // how far a planted foot may be from where the joint angles have it
+constexpr double kFootSlack = 0.9;   // how far a planted foot may be from where the joint angles have it
 constexpr double kStretch = 0.9995;  // of a leg's length: fully stretched knees pop
-constexpr double kTouchRate = 20;    // 1/seconds, of touches that come and go
+constexpr double kTouchRate = 15;    // 1/seconds, of touches that come and go
 constexpr double kSoftReach = 0.96;  // of an arm's length: from there on stretching softens
 constexpr double kPlantRate = 12;    // 1/seconds, of the smooth flag
 constexpr double kSoftStretch = 0.015, kSoftChange = 0.004;  // of the pelvis sinking, by how far a foot is moved
 constexpr double kSoftGround = 0.004;
-constexpr double kFirmGround = 0.8;                               // share of that softness that a planted foot loses
+constexpr double kFirmGround = 0.8;  // share of that softness that a planted foot loses
+// Of the pelvis turning with planted legs: leg lengths, the more the less it does; and radians.
+constexpr double kStiffOnTwo = 0.15, kStiffOnOne = 0.3, kMostTurn = 0.8;
 constexpr double kSteep = 1.7, kSoleUp = 2.4, kSoftLevel = 0.05;  // radians that toes point down
 // Speeds of the source's pelvis or feet, hip heights a second, that are no motion but a cut. Many recordings have a
 // T-pose as their first frame.
@@ -141,7 +144,7 @@ void LimbGoals::feel(const Leg& leg, Feeler& feeler, const BodyFrame& source, do
 }
 
 // Nobody moves that fast: what stood before the cut does not count behind it.
-void LimbGoals::forgetAcrossCuts(const BodyFrame& source, double seconds) {
+bool LimbGoals::forgetAcrossCuts(const BodyFrame& source, double seconds) {
   std::vector<Vec3>& now = landmarks_[1];
   now.assign(1, pelvisOf(setup_.map, MapSide::kSource, source.positions));
   for (const Leg& leg : legs_) now.push_back(source.positions[leg.sourceEnd]);
@@ -151,17 +154,18 @@ void LimbGoals::forgetAcrossCuts(const BodyFrame& source, double seconds) {
     cut = cut || (now[i] - landmarks_[0][i]).norm() > jump;
   }
   std::swap(landmarks_[0], landmarks_[1]);
-  if (!cut) return;
+  if (!cut) return false;
   follows_.fill({});
   for (Feeler& feeler : feelers_) {
     feeler.ankle.reset();
     feeler.toes.reset();
     feeler.lock.reset();
   }
+  return true;
 }
 
 void LimbGoals::setFeet(const BodyFrame& source, const BodyFrame& target, double seconds) {
-  forgetAcrossCuts(source, seconds);
+  if (forgetAcrossCuts(source, seconds)) seconds = 0;
   for (std::size_t i = 0; i < legs_.size(); ++i) {
     Leg& leg = legs_[i];
     FootLock::Frame frame;
@@ -193,6 +197,21 @@ double LimbGoals::bendKeepingShift(const BodyFrame& target) const {
   }
   const double most = kMostSinking * setup_.targetHipHeight;
   return std::clamp(sum / std::max(weights, 1.0), -most, most);
+}
+
+// Least squares over what the planted legs lack, against the turn itself. On one leg only the turn about the vertical
+// helps: pelvisShift() brings that leg to the ground.
+Quat LimbGoals::pelvisTurn(const BodyFrame& target) const {
+  if (legs_.size() != 2) return Quat::Identity();
+  const Leg &left = legs_[0], &right = legs_[1];
+  const Vec3 toHip = 0.5 * (target.positions[left.upper] - target.positions[right.upper]);
+  const Vec3 lackLeft = left.goal - target.positions[left.end], lackRight = right.goal - target.positions[right.end];
+  const double both = left.planted * right.planted, length = 0.5 * (left.length + right.length);
+  const double onTwo = kStiffOnTwo * length, onOne = kStiffOnOne * length;
+  Vec3 turn = 0.5 * both / (toHip.squaredNorm() + onTwo * onTwo) * toHip.cross(lackLeft - lackRight);
+  const Vec3 alone = (left.planted - both) * lackLeft - (right.planted - both) * lackRight;
+  turn.y() += toHip.cross(alone).y() / (toHip.squaredNorm() + onOne * onOne);
+  return fromRotationVector(turn / std::sqrt(1 + turn.squaredNorm() / (kMostTurn * kMostTurn)));
 }
 
 double LimbGoals::pelvisShift(const BodyFrame& target) const {

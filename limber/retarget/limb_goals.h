@@ -42,6 +42,9 @@ class LimbGoals {
   // Feet that are planted in the source stay where they came down, by their toes while the heel is up; none goes below
   // the ground. From the globals of both, the target's by joint angles alone.
   void setFeet(const BodyFrame& source, const BodyFrame& target, double seconds);
+  // How the pelvis turns (RootPlacer::turnPelvis), so that planted legs stand more as their joint angles have them: by
+  // much where hips are wide for the legs, which its turns in the source would sweep further than they reach.
+  Quat pelvisTurn(const BodyFrame& target) const;
   // How far the pelvis goes up, metres: so that planted legs keep the bend that their joint angles give them, on
   // average, and down as far as the longest way asks.
   double pelvisShift(const BodyFrame& target) const;
@@ -74,7 +77,8 @@ class LimbGoals {
   void addSurface(const std::string& from, const std::string& to, double touching, double apart,
                   std::vector<Surface>& surfaces) const;
   void feel(const Leg& leg, Feeler& feeler, const BodyFrame& source, double seconds, FootLock::Frame& frame) const;
-  void forgetAcrossCuts(const BodyFrame& source, double seconds);
+  // True at a cut.
+  bool forgetAcrossCuts(const BodyFrame& source, double seconds);
   Vec3 touchOf(const Limb& arm, const std::vector<Surface>& surfaces, const BodyFrame& source,
                const BodyFrame& target) const;
   double within(double change) const;

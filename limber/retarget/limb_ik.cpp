@@ -31,6 +31,7 @@ class LimbIkRetargeter : public FrameRetargeter {
     if (!goals_.active()) return;
     if (setup_.options.contacts) {
       goals_.setFeet(from(), to(), seconds);
+      aligned_.root().turnPelvis(goals_.pelvisTurn(to()), target, to());
       const double up = goals_.pelvisShift(to());
       if (std::abs(up) > 1e-9 * setup_.targetHipHeight) aligned_.root().movePelvis(Vec3(0, up, 0), target, to());
       std::vector<Leg>& legs = goals_.legs();

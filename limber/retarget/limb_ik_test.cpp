@@ -39,6 +39,39 @@ TEST_F(LimbIk, FeetStayAboveTheGround) {
   }
 }
 
+// A toy whose hips are as wide as its legs are long: with the source's turns of the pelvis one leg would be straight
+// and the other deeply bent.
+TEST_F(LimbIk, WideHipsTurnLessThanTheSources) {
+  Skeleton toy = person;
+  for (const char* leg : {"leftUpperLeg", "rightUpperLeg"}) {
+    toy.joints[toy.find(leg).value()].rest.translation.x() *= 5;
+  }
+  const Index hips = person.find("hips").value();
+  PoseSequence swaying{{}, 1.0 / 60};
+  for (int f = 0; f < 120; ++f) {
+    Pose& pose = swaying.poses.emplace_back(restPose(person));
+    pose.locals[hips].translation.y() -= 0.02;
+    // Legs stay upright, so that the source's feet stand still but for half a centimetre.
+    const Quat sway = turn(Vec3::UnitZ(), 4 * std::sin(0.1 * f));
+    pose.locals[hips].rotation = sway;
+    for (const char* child : {"spine", "leftUpperLeg", "rightUpperLeg"}) {
+      pose.locals[person.find(child).value()].rotation = sway.conjugate();
+    }
+  }
+  const RetargetSetup setup(person, toy, matchSkeletons(person, toy), {}, &swaying);
+  const auto worstBend = [&](const char* method) {
+    double worst = 0;
+    for (const Pose& pose : retargetFrames(findRetargetMethod(method), setup, swaying).poses) {
+      for (const char* knee : {"leftLowerLeg", "rightLowerLeg"}) {
+        worst = std::max(worst, angleBetween(pose.locals[toy.find(knee).value()].rotation, Quat::Identity()));
+      }
+    }
+    return worst * 180 / kPi;
+  };
+  EXPECT_LT(worstBend("limb-ik"), 20);
+  EXPECT_LT(worstBend("online"), 20);
+}
+
 TEST_F(LimbIk, ToesLieOnTheGroundWhileTheHeelGoesUp) {
   PoseSequence raised{{}, 1.0 / 60};
   const Index foot = person.find("leftFoot").value(), toes = person.find("leftToes").value();

@@ -39,6 +39,7 @@ class OnlineRetargeter : public FrameRetargeter {
     BodyFrame& frame = aligned_.targetFrame();
     if (setup_.options.contacts) {
       goals_.setFeet(aligned_.sourceFrame(), frame, seconds);
+      aligned_.root().turnPelvis(goals_.pelvisTurn(frame), target, frame);
       const double up = goals_.pelvisShift(frame);
       if (std::abs(up) > 1e-9 * setup_.targetHipHeight) aligned_.root().movePelvis(Vec3(0, up, 0), target, frame);
     }

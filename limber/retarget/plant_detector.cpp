@@ -40,7 +40,8 @@ double PlantDetector::speedAhead() const {
 bool PlantDetector::next(const Vec3& position, double height, double seconds) {
   seen_[count_++ % seen_.size()] = {position, seconds};
   const double speed = speedAhead() / hipHeight_, high = height / hipHeight_;
-  planted_ = planted_ ? speed < thresholds_.leaveSpeed && high < thresholds_.leaveHeight
+  const bool rises = velocity(0).y() > thresholds_.leaveRise * hipHeight_;
+  planted_ = planted_ ? speed < thresholds_.leaveSpeed && high < thresholds_.leaveHeight && !rises
                       : speed < thresholds_.enterSpeed && high < thresholds_.enterHeight;
   return planted_;
 }

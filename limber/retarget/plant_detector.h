@@ -11,6 +11,7 @@ namespace limber {
 // All lengths in metres of the skeleton that is watched; hip heights make the thresholds independent of its size.
 struct PlantThresholds {
   double enterSpeed = 0.3, leaveSpeed = 0.7;      // hip heights a second
+  double leaveRise = 0.3;                         // likewise, upward
   double enterHeight = 0.05, leaveHeight = 0.09;  // hip heights over where the point is when standing
 };
 

@@ -13,6 +13,7 @@ RootPlacer::RootPlacer(const RetargetSetup& setup) : setup_(setup) {
   }
   hips_ = setup.map.find("hips")->target.front();
   moved_.push_back(*hips_);
+  findPelvis();
   for (const JointMatch& match : setup.map.matches) {
     const std::optional<std::string_view> above = humanoidParent(match.part);
     const JointMatch* parent = above ? setup.map.find(*above) : nullptr;
@@ -26,6 +27,19 @@ RootPlacer::RootPlacer(const RetargetSetup& setup) : setup_(setup) {
     loose_.push_back(
         {joint, end, restRotation.conjugate() * (neutral.restPositions[joint] - neutral.restPositions[end])});
     moved_.push_back(joint);
+  }
+}
+
+void RootPlacer::findPelvis() {
+  const Skeleton& target = *setup_.target;
+  const Index pelvis = setup_.map.find("hips")->target.back();
+  for (const char* part : {"leftUpperLeg", "rightUpperLeg"}) {
+    const Index leg = setup_.map.find(part)->target.front();
+    if (leg == pelvis || !isAncestorOrSelf(target, pelvis, leg)) return;
+  }
+  pelvis_ = pelvis;
+  for (Index j = 0; j < target.jointCount(); ++j) {
+    if (target.joints[j].parent == pelvis) pelvisChildren_.push_back(j);
   }
 }
 
@@ -50,6 +64,20 @@ void RootPlacer::movePelvis(const Vec3& shift, Pose& target, BodyFrame& frame) c
   const Quat above = kinematics.parentRotation(*hips_, frame);
   target.locals[*hips_].translation += (above.conjugate() * shift) / kinematics.unit(*hips_);
   settle(target, frame);
+}
+
+void RootPlacer::turnPelvis(const Quat& turn, Pose& target, BodyFrame& frame) const {
+  if (!pelvis_) return;
+  const BodyKinematics& kinematics = setup_.targetKinematics;
+  const Vec3 middle = pelvisOf(setup_.map, MapSide::kTarget, frame.positions);
+  const Quat turned = turn * frame.rotations[*pelvis_];
+  target.locals[*pelvis_].rotation = (kinematics.parentRotation(*pelvis_, frame).conjugate() * turned).normalized();
+  for (const Index child : pelvisChildren_) {
+    target.locals[child].rotation = (turned.conjugate() * frame.rotations[child]).normalized();
+  }
+  frame.rotations[*pelvis_] = turned;
+  kinematics.place(target, frame);
+  movePelvis(middle - pelvisOf(setup_.map, MapSide::kTarget, frame.positions), target, frame);
 }
 
 void RootPlacer::settle(Pose& target, BodyFrame& frame) const {

@@ -24,6 +24,9 @@ class RootPlacer {
   // Moves the pelvis by `shift`, in the person's space.
   void movePelvis(const Vec3& shift, Pose& target, BodyFrame& frame) const;
 
+  // Turns the pelvis about its middle, in the person's space; what hangs on it keeps how it is turned.
+  void turnPelvis(const Quat& turn, Pose& target, BodyFrame& frame) const;
+
   // The joint that a loose joint rides on; the joint itself where it hangs on the body.
   Index carrierOf(Index joint) const;
 
@@ -35,10 +38,13 @@ class RootPlacer {
     Index joint, end;  // `joint` rides on `end`
     Vec3 offset;       // in the frame of `end`, in the person's metres
   };
+  void findPelvis();
   void placeLoose(Pose& target, BodyFrame& frame) const;
 
   const RetargetSetup& setup_;
   std::optional<Index> hips_;
+  std::optional<Index> pelvis_;  // the joint that carries both legs and the trunk
+  std::vector<Index> pelvisChildren_;
   std::vector<Loose> loose_;
   std::vector<Index> moved_;
 };

@@ -39,6 +39,32 @@ TEST(RootMotion, TheWayScalesWithTheHips) {
   }
 }
 
+TEST(RootMotion, APelvisTurnsAloneAboutItsMiddle) {
+  const Skeleton person = practiceHumanoid(), odd = oddlyBuilt();
+  const RetargetSetup setup(person, odd, matchSkeletons(person, odd), {});
+  const RootPlacer placer(setup);
+  Pose pose = restPose(odd);
+  BodyFrame before, after, again;
+  setup.targetKinematics.globals(pose, before);
+  after = before;
+  const Quat turn = limber::testing::turn(Vec3(0.2, 1, 0.3), 30);
+  placer.turnPelvis(turn, pose, after);
+  setup.targetKinematics.globals(pose, again);
+  const Index hips = odd.find("hips").value(), left = odd.find("leftUpperLeg").value(),
+              right = odd.find("rightUpperLeg").value();
+  for (Index j = 0; j < odd.jointCount(); ++j) {
+    const Quat expected = j == hips ? turn * before.rotations[j] : before.rotations[j];
+    EXPECT_LT(again.rotations[j].angularDistance(expected), 1e-7) << odd.joints[j].name;
+    EXPECT_LT((again.positions[j] - after.positions[j]).norm(), 1e-12) << "the frame is up to date";
+  }
+  EXPECT_LT(
+      (pelvisOf(setup.map, MapSide::kTarget, again.positions) - pelvisOf(setup.map, MapSide::kTarget, before.positions))
+          .norm(),
+      1e-12);
+  const Vec3 across = turn * (before.positions[left] - before.positions[right]);
+  EXPECT_LT((again.positions[left] - again.positions[right] - across).norm(), 1e-12);
+}
+
 // A body a metre long with a leg below each end; lying down, the legs go on along the body.
 Skeleton animal(double leg, bool lies) {
   const Vec3 way = lies ? Vec3(0, 0, leg) : Vec3(0, -leg, 0);
