@@ -221,6 +221,81 @@ INSTANTIATE_TEST_SUITE_P(Meshes, TemplateMisfits,
                            return std::filesystem::path(file.param).stem().string();
                          });
 
+// Statues that crouch, sit, and lean on a trunk, and are one piece with their plinths; places are read off the marble.
+struct PinnedStatue {
+  const char* file;
+  Vec3 front;
+  std::vector<JointPin> pins, expected;
+};
+
+class TemplatePins : public ::testing::TestWithParam<PinnedStatue> {};
+
+TEST_P(TemplatePins, BendTheTemplateToAStatue) {
+  if (!sharedDataFolder()) GTEST_SKIP() << kNoSharedData;
+  AutoRigOptions options = templateOptions("humanoid");
+  options.rig.up = Vec3::UnitY();
+  options.rig.front = GetParam().front;
+  options.rig.pins = GetParam().pins;
+  const std::filesystem::path path = *sharedDataFolder() / "meshes" / GetParam().file;
+  const Rigged result = rigged(readAsset(path), options);
+  const std::filesystem::path written = testOutputFolder() / ("pinned_" + path.stem().string() + ".glb");
+  writeFile(written, result.glb);
+  const Skeleton skeleton = readSkeleton(readAsset(result.glb, "result.glb")).skeleton;
+  const std::vector<Affine> globals = restGlobals(skeleton);
+  const auto off = [&](const JointPin& pin) {
+    return (globals[skeleton.find(pin.joint).value()].translation() - pin.place).norm();
+  };
+  for (const JointPin& pin : GetParam().pins) EXPECT_LT(off(pin), 1e-5) << pin.joint;
+  for (const JointPin& pin : GetParam().expected) EXPECT_LT(off(pin), 0.1) << pin.joint;
+}
+
+INSTANTIATE_TEST_SUITE_P(Meshes, TemplatePins,
+                         ::testing::Values(PinnedStatue{"statue_marbleplayer.obj",
+                                                        Vec3::UnitZ(),
+                                                        {{"head", {-0.17, 0.5, 0.07}},
+                                                         {"hips", {0, 0.24, -0.16}},
+                                                         {"leftLowerArm", {0.13, 0.58, -0.12}},
+                                                         {"leftHand", {0.12, 0.46, 0}},
+                                                         {"rightHand", {0, 0.1, 0.19}},
+                                                         {"leftLowerLeg", {0.1, 0.42, 0.15}},
+                                                         {"leftFoot", {0.16, 0.12, 0.07}},
+                                                         {"rightLowerLeg", {-0.2, 0.13, 0.15}},
+                                                         {"rightFoot", {0.05, 0.1, -0.18}}},
+                                                        {{"leftUpperArm", {-0.05, 0.56, -0.05}},
+                                                         {"rightUpperArm", {-0.22, 0.42, 0.02}},
+                                                         {"leftUpperLeg", {0.06, 0.27, -0.13}},
+                                                         {"rightUpperLeg", {-0.07, 0.22, -0.14}}}},
+                                           PinnedStatue{"statue_shepherdboy.obj",
+                                                        Vec3::UnitZ(),
+                                                        {{"head", {0.07, 0.97, -0.23}},
+                                                         {"hips", {0, 0.56, -0.25}},
+                                                         {"leftLowerArm", {0.19, 0.72, -0.44}},
+                                                         {"leftHand", {0.2, 0.63, -0.24}},
+                                                         {"rightHand", {-0.1, 0.54, 0.02}},
+                                                         {"leftLowerLeg", {0.06, 0.44, 0.12}},
+                                                         {"leftFoot", {-0.14, 0.13, 0.36}},
+                                                         {"rightLowerLeg", {-0.21, 0.44, 0.1}},
+                                                         {"rightFoot", {-0.1, 0.14, 0.22}}},
+                                                        {{"leftUpperArm", {0.13, 0.88, -0.35}},
+                                                         {"rightUpperArm", {-0.13, 0.85, -0.25}},
+                                                         {"leftUpperLeg", {0.08, 0.54, -0.22}},
+                                                         {"rightUpperLeg", {-0.08, 0.56, -0.22}}}},
+                                           PinnedStatue{"statue_hermes.obj",
+                                                        -Vec3::UnitX(),
+                                                        {{"head", {-0.25, 1.46, 0.13}},
+                                                         {"leftHand", {-0.1, 1.02, 0.22}},
+                                                         {"leftFoot", {0.33, 0.17, 0.03}},
+                                                         {"rightLowerLeg", {-0.15, 0.9, 0}},
+                                                         {"rightFoot", {-0.22, 0.48, 0.05}}},
+                                                        {{"leftUpperArm", {-0.08, 1.36, 0.22}},
+                                                         {"leftLowerArm", {-0.1, 1.2, 0.24}},
+                                                         {"leftUpperLeg", {0.25, 0.98, 0.1}},
+                                                         {"leftLowerLeg", {0.26, 0.6, 0.1}},
+                                                         {"rightUpperLeg", {0.22, 1.0, -0.05}}}}),
+                         [](const ::testing::TestParamInfo<PinnedStatue>& statue) {
+                           return std::filesystem::path(statue.param.file).stem().string();
+                         });
+
 TEST(TemplateSamples, ABipedIsAPerson) {
   const Asset asset = makeSample("biped");
   const Rigged result = rigged(asset, templateOptions("auto"));

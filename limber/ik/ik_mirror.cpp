@@ -34,14 +34,17 @@ std::array<Quat, 12> probes() {
 
 IkMirror::IkMirror(const IkSystem& system) {
   for (const IkSystem::Effector& effector : system.effectors) size_ = std::max(size_, effector.reach);
-  const Vec3& first = system.positions[at(system.effectors[0].node)];
-  for (std::size_t e = 1; e < system.effectors.size() && partners_.empty(); ++e) {
-    const Vec3& other = system.positions[at(system.effectors[e].node)];
-    if (!((other - first).norm() > kSame * size_)) continue;
-    const Vec3 normal = (other - first).normalized();
-    const Quat plane(0, normal.x(), normal.y(), normal.z());
-    if (!pairNodes(system, plane, 0.5 * (first + other)) || !pairEffectors(system) || !limitsMatch(system)) {
-      partners_.clear();
+  // The first may lie on the plane.
+  for (std::size_t f = 0; f < system.effectors.size() && partners_.empty(); ++f) {
+    const Vec3& first = system.positions[at(system.effectors[f].node)];
+    for (std::size_t e = f + 1; e < system.effectors.size() && partners_.empty(); ++e) {
+      const Vec3& other = system.positions[at(system.effectors[e].node)];
+      if (!((other - first).norm() > kSame * size_)) continue;
+      const Vec3 normal = (other - first).normalized();
+      const Quat plane(0, normal.x(), normal.y(), normal.z());
+      if (!pairNodes(system, plane, 0.5 * (first + other)) || !pairEffectors(system) || !limitsMatch(system)) {
+        partners_.clear();
+      }
     }
   }
 }

@@ -1,6 +1,8 @@
 // Symmetric problems give symmetric answers: every method, with limits and restarts too.
 #include "limber/ik/ik_mirror.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "limber/ik/humanoid_limits.h"
@@ -49,6 +51,14 @@ class IkMirrorTest : public ::testing::Test {
   Skeleton humanoid = practiceHumanoid();
   JointLimits limits = humanoidLimits(humanoid, humanoidJointsByName(humanoid));
 };
+
+TEST_F(IkMirrorTest, TheFirstTargetMayLieInTheMiddle) {
+  std::vector<IkTarget> targets = practiceHumanoidTargets(humanoid);
+  std::rotate(targets.begin(), targets.begin() + 4, targets.end());
+  EXPECT_TRUE(isSymmetric(humanoid, restPose(humanoid), targets, &limits));
+  targets.back().position.x() += 0.1;
+  EXPECT_FALSE(isSymmetric(humanoid, restPose(humanoid), targets, &limits));
+}
 
 TEST_F(IkMirrorTest, EveryMethodKeepsBothSidesAlike) {
   for (const IkMethod& method : ikMethods()) {

@@ -29,6 +29,8 @@ constexpr double kLineSpacing = 0.02;   // heights of places along the middle li
 constexpr double kWorstBone = 25;       // most that length and direction of a bone cost
 constexpr double kWorstTip = 5;         // of the way to a tip: stumps have no hands and feet
 
+constexpr double kPinnedEvenly = 1e-3;  // heights between a pin and the mirror image of its like
+
 constexpr double kDescentSteps[] = {0.01, 0.005};  // heights
 constexpr int kDescentRounds = 2;                  // with each
 
@@ -45,7 +47,7 @@ class Embedder {
   Embedder(const TemplateSkeleton& skeleton, const BodyVolume& body, const BodyFrame& frame, const TemplatePins& pins,
            const EmbeddingOptions& options)
       : skeleton_(skeleton), body_(body), frame_(frame), pins_(pins), options_(options), half_(frame.symmetric()) {
-    for (const std::optional<Vec3>& pin : pins) half_ = half_ && !pin;
+    half_ = half_ && pinnedEvenly(skeleton, pins);
     chooseJoints();
     if (half_ && !hangsTogether()) {
       half_ = false;
@@ -208,7 +210,9 @@ class Embedder {
     const bool outermost = tip && (joint.place.y() < kNearEnd || joint.place.y() > 1 - kNearEnd);
     const double up = off.y() / (outermost ? kTipSpread : tip ? kHandSpread : kPlaceSpread);
     penalty += up * up + off.z() * off.z() / (4 * kPlaceSpread * kPlaceSpread);
-    if (!joint.mirror) {
+    if (skeleton_.bent) {
+      penalty += off.x() * off.x() / (4 * kPlaceSpread * kPlaceSpread);
+    } else if (!joint.mirror) {
       penalty += c.place.x() * c.place.x() / (kMiddleSpread * kMiddleSpread);
     } else {
       const double inside = joint.place.x() > 0 ? c.place.x() : -c.place.x();
@@ -370,6 +374,15 @@ class Embedder {
 };
 
 }  // namespace
+
+bool pinnedEvenly(const TemplateSkeleton& skeleton, const TemplatePins& pins) {
+  for (Index j = 0; j < skeleton.jointCount(); ++j) {
+    if (!pins[j]) continue;
+    const std::optional<Vec3>& other = pins[skeleton.joints[j].mirror.value_or(j)];
+    if (!other || (other->cwiseProduct(Vec3(-1, 1, 1)) - *pins[j]).norm() > kPinnedEvenly) return false;
+  }
+  return true;
+}
 
 std::vector<TemplateEmbedding> embedTemplate(std::span<const TemplateVariant> variants, const BodyVolume& body,
                                              const BodyFrame& frame, const TemplatePins& pins,

@@ -13,6 +13,9 @@ namespace limber {
 
 using TemplatePins = std::vector<std::optional<Vec3>>;  // places in body space that are given, one for each joint
 
+// Whether every pin has its mirror image: of the joint of the other side, of its own in the middle.
+bool pinnedEvenly(const TemplateSkeleton& skeleton, const TemplatePins& pins);
+
 struct TemplateEmbedding {
   std::vector<Vec3> places;   // body space, one for each joint of the template
   std::vector<double> costs;  // before refinement, of each joint and the bone that leads to it; 0 for joints between

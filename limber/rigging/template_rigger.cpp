@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "limber/core/numbers.h"
+#include "limber/rigging/bent_template.h"
 #include "limber/rigging/body_volume.h"
 #include "limber/rigging/humanoid_landmarks.h"
 #include "limber/rigging/quadruped_landmarks.h"
@@ -21,6 +22,7 @@ namespace {
 constexpr std::size_t kCoarseSpheres = 120;  // for a first look at every way to stand
 constexpr std::size_t kFramesRefined = 2;    // after it, with all spheres
 constexpr std::size_t kVariantsRefined = 4;  // of each of these
+constexpr int kMostBends = 6;
 constexpr double kLowConfidence = 0.4;
 constexpr double kCostOfDoubt = 1.8;  // cost at which confidence is a half
 constexpr double kUnexplained = 2;    // cost of a body that no bone comes near
@@ -95,13 +97,29 @@ void addFits(const std::vector<TemplateVariant>& variants, const BodyVolume& bod
   }
 }
 
+bool cheaper(const TemplateFit& a, const TemplateFit& b) {
+  return a.cost < b.cost;
+}
+
+// A bent template is bent further, to where its joints were found, and embedded anew, as long as that comes nearer.
+void bendNearer(const TemplateSkeleton& skeleton, const BodyVolume& body, const std::vector<JointPin>& pins,
+                TemplateFit& fit) {
+  for (int bend = 0; bend < kMostBends; ++bend) {
+    std::vector<TemplateFit> fits;
+    addFits(bentToPins(skeleton, fit.pins, fit.embedding.places), body, fit.frame, pins, {body.spheres.size(), true},
+            fits);
+    TemplateFit& nearest = *std::min_element(fits.begin(), fits.end(), cheaper);
+    if (!cheaper(nearest, fit)) return;
+    fit = std::move(nearest);
+  }
+}
+
 // Looks at every way to stand with some of the spheres, and at the best ones with all.
 TemplateFit bestFit(const TemplateSkeleton& skeleton, const BodyVolume& body, const std::vector<BodyFrame>& frames,
                     const std::vector<JointPin>& pins) {
   double least = 1;
   for (const BodyFrame& frame : frames) least = std::min(least, frame.asymmetry);
-  const std::vector<TemplateVariant> variants = templateVariants(skeleton);
-  const auto cheaper = [](const TemplateFit& a, const TemplateFit& b) { return a.cost < b.cost; };
+  const std::vector<TemplateVariant> standing = templateVariants(skeleton);
   // For each way to stand the variants, best first.
   struct Look {
     BodyFrame frame;
@@ -111,6 +129,9 @@ TemplateFit bestFit(const TemplateSkeleton& skeleton, const BodyVolume& body, co
   std::vector<Look> looks;
   for (const BodyFrame& frame : frames) {
     if (frame.asymmetry > least + kMostAsymmetry) continue;
+    std::vector<TemplateVariant> variants = standing;
+    const std::vector<TemplateVariant> bent = bentToPins(skeleton, pinsIn(skeleton, frame, pins));
+    variants.insert(variants.end(), bent.begin(), bent.end());
     std::vector<TemplateFit> fits;
     addFits(variants, body, frame, pins, {kCoarseSpheres, false}, fits);
     std::vector<std::size_t> order(fits.size());
@@ -127,9 +148,10 @@ TemplateFit bestFit(const TemplateSkeleton& skeleton, const BodyVolume& body, co
   for (std::size_t i = 0; i < std::min(looks.size(), kFramesRefined); ++i) {
     addFits(looks[i].variants, body, looks[i].frame, pins, {body.spheres.size(), true}, fits);
   }
-  TemplateFit& best = *std::min_element(fits.begin(), fits.end(), cheaper);
+  TemplateFit best = *std::min_element(fits.begin(), fits.end(), cheaper);
+  if (best.skeleton.bent) bendNearer(skeleton, body, pins, best);
   best.limbs = limbsIn(best.skeleton, best.embedding, body, best.frame);
-  return std::move(best);
+  return best;
 }
 
 std::size_t missingLimbs(const TemplateFit& fit) {
@@ -226,7 +248,7 @@ AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress
                    [](const TemplateFit& a, const TemplateFit& b) { return confidenceOf(a) > confidenceOf(b); });
 
   TemplateFit& best = fits.front();
-  refineHumanoid(best.skeleton, body, best.frame, best.pins, best.embedding.places);
+  if (!best.skeleton.bent) refineHumanoid(best.skeleton, body, best.frame, best.pins, best.embedding.places);
   placeBetween(best.skeleton, best.embedding.places);
   refineQuadruped(best.skeleton, body, best.frame, best.pins, best.embedding.places);
   AutoRig rig;

@@ -32,6 +32,7 @@ struct TemplateSkeleton {
   std::string name;
   std::string summary;  // one line for --help
   std::vector<TemplateJoint> joints;
+  bool bent = false;  // stands in a pose: every place holds for itself, neither side for the other
 
   Index jointCount() const { return static_cast<Index>(joints.size()); }
   std::optional<Index> find(std::string_view joint) const;
