@@ -247,6 +247,21 @@ TEST_F(Cli, AnimateRigsWhatHasNoRig) {
   keep("waving.glb");
 }
 
+TEST_F(Cli, PosesStartFromAMomentOfAClip) {
+  put("wave.bvh", personBvh(""));
+  EXPECT_EQ(run({"sample", "biped", "-o", "biped.glb", "-q"}).code, 0);
+  EXPECT_EQ(run({"animate", "biped.glb", "wave.bvh", "-o", "waving.glb", "-q"}).code, 0);
+  for (const char* moment : {"0", "0.5"}) {
+    const std::string out = std::string("still") + moment + ".obj";
+    const Result done = run({"pose", "waving.glb", "--clip", "wave", "--time", moment, "--bake", "-o", out, "-q"});
+    EXPECT_EQ(done.code, 0) << done.error;
+  }
+  EXPECT_NE(content("still0.obj"), content("still0.5.obj"));
+  const Result refused = run({"pose", "waving.glb", "--clip", "bow", "-o", "none.glb"});
+  expectOneLine(refused, 1);
+  EXPECT_THAT(refused.error, AllOf(HasSubstr("bow"), HasSubstr("wave")));
+}
+
 TEST_F(Cli, RetargetRefusesWithOneLineAndLeavesNoFile) {
   put("hero.bvh", personBvh(""));
   put("cut.bvh", personBvh("").substr(0, 400));

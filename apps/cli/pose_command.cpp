@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "command.h"
+#include "limber/asset/clip_moment.h"
 #include "limber/asset/mesh_export.h"
 #include "limber/asset/pose_io.h"
 #include "limber/asset/read.h"
@@ -20,6 +21,8 @@ namespace {
 
 struct Options {
   std::string input, output, posesFile, poseName, limitsFile, deformer = "linear-blend", rootMotion = "fixed";
+  std::optional<std::string> clip;
+  std::optional<double> seconds;
   std::vector<std::string> turns, moves, reaches, poles, bases;
   PoseOptions pose;
   bool bake = false, setRest = false;
@@ -72,6 +75,12 @@ std::optional<JointLimits> readLimits(const std::string& file, const Skeleton& s
   }
 }
 
+// As the file's nodes stand, or as at a moment of a clip.
+Pose startPose(const Asset& asset, const AssetSkeleton& skeleton, const Options& options) {
+  if (!options.clip && !options.seconds) return readNodePose(asset, skeleton);
+  return poseAt(asset, skeleton, {options.clip.value_or(""), options.seconds.value_or(0)});
+}
+
 std::string_view outcomeText(IkOutcome outcome) {
   switch (outcome) {
     case IkOutcome::kReached:
@@ -114,7 +123,7 @@ void run(Options options) {
     throw Error(ErrorCode::kBadArgument, "the model has no rig to pose", asset.name, "limber rig gives it one");
   }
   const AssetSkeleton skeleton = readSkeleton(asset);
-  Pose pose = readNodePose(asset, skeleton);
+  Pose pose = startPose(asset, skeleton, options);
   progress->stage("pose");
   const std::optional<JointLimits> limits = readLimits(options.limitsFile, skeleton.skeleton);
   const std::vector<ReachReport> reports =
@@ -144,6 +153,7 @@ std::string help() {
          "\nExamples:\n"
          "  limber pose rigged.glb --turn head=y:30 --move handle_07=0,0.1,0 --reach hand.L=0.4,1.2,0.3 -o posed.glb\n"
          "  limber pose rigged.glb --poses poses.json --bake -o posed.obj\n"
+         "  limber pose walking.glb --clip walk --time 0.4 --bake -o statue.stl\n"
          "  limber pose rigged.glb --turn upper_arm.L=z:45 --set-rest -o t_pose.glb";
 }
 
@@ -166,6 +176,9 @@ void addPoseCommand(CLI::App& program) {
   addMany("--pole", options->poles, "the point to which the middle of a reaching limb bends", "JOINT=x,y,z");
   addMany("--base", options->bases, "the highest joint that turns for a reaching one (default: the root's children)",
           "JOINT=JOINT");
+  command->add_option("--clip", options->clip, "start from this clip (default: as the file stands)")->type_name("NAME");
+  command->add_option("--time", options->seconds, "at this moment of the clip, or of the first, in seconds")
+      ->type_name("S");
   command->add_option("--poses", options->posesFile, "edits out of a JSON file, made before those of the options")
       ->type_name("FILE");
   command->add_option("--pose", options->poseName, "which pose of that file")->type_name("NAME")->needs("--poses");

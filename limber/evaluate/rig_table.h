@@ -10,7 +10,7 @@
 
 #include "limber/asset/asset.h"
 #include "limber/core/progress.h"
-#include "limber/evaluate/clip_moment.h"
+#include "limber/asset/clip_moment.h"
 #include "limber/evaluate/rig_metrics.h"
 
 namespace limber {

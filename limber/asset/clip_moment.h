@@ -4,6 +4,8 @@
 #include <string>
 
 #include "limber/asset/asset.h"
+#include "limber/asset/rig_io.h"
+#include "limber/skeleton/pose.h"
 
 namespace limber {
 
@@ -12,8 +14,12 @@ struct ClipMoment {
   double seconds = 0;  // before its start and after its end the clip stands still
 };
 
+// How the joints stand then, those that the clip does not move as the file's nodes do. Of `skeleton`,
+// readSkeleton(asset). Throws Error kBadArgument where the model has no such clip, or none at all.
+Pose poseAt(const Asset& asset, const AssetSkeleton& skeleton, const ClipMoment& moment);
+
 // Makes the pose of that moment the rest pose of the model (setRestPose): a still model whose true skeleton is known.
-// Throws Error kBadArgument where it has no such clip, or none at all, and as setRestPose does.
+// Throws as poseAt and setRestPose do.
 void standAt(Asset& asset, const ClipMoment& moment);
 
 }  // namespace limber
