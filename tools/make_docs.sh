@@ -1,7 +1,6 @@
 #!/usr/bin/env bash
 # Makes the documentation's pictures (docs/images), the comparison of inverse kinematics (docs/ik.md) and, where the
-# shared characters and motions are, the tables of weights, template rigs and retargeting, and sheets of a motion by each
-# retargeting method. Called by ./dev docs with the program built.
+# shared characters and motions are, the tables of weights, template rigs and retargeting. Called by ./dev docs with the program built.
 set -euo pipefail
 
 limber=build/release/limber images=docs/images work=build/docs
@@ -37,6 +36,20 @@ else
   echo "The pictures of the studio stay as they are: no dist/ (./dev studio makes it), or no chromium"
 fi
 
+# Sheets of one repetition of the sample motions.
+once() {
+  $limber sample $1 -o $work/$1.bvh --quiet
+  $limber convert $work/$1.bvh $work/$1_once.bvh --trim $2 --quiet
+}
+once jumping-jack 0:1.2
+for method in limb-ik online spacetime aligned copy; do
+  $limber retarget $work/biped_template.glb $work/jumping-jack_once.bvh --method $method -o $work/jumping_jack.glb --quiet
+  $limber preview $work/jumping_jack.glb --frames 8 --size 120x150 --view 25,10 -o $images/retarget_$method.png --quiet
+done
+once walk 0:1.1
+$limber retarget $work/biped_template.glb $work/walk_once.bvh -o $work/walk.glb --quiet
+$limber preview $work/walk.glb --frames 8 --size 160x200 --view 80,5 -o $images/retarget_walk.png --quiet
+
 characters=${LIMBER_SHARED_DATA:-../shared/data}/rigged
 if [ -d "$characters" ]; then
   $limber evaluate skinning "$characters" --references docs/data/blender_weights.tsv -o docs/weights.md --quiet
@@ -49,11 +62,6 @@ if [ -d "$characters" ]; then
   table=$($limber evaluate retargeting --motion "$motions"/{boxing_toes,cmu_daz_12_01_walk,cmu_mb_12_01_walk,cmu_daz_09_01_run}.bvh \
     "$motions"/{fair1_dab,pybvh_example,rokoko_dance}.bvh --most-frames 400 --quiet \
     --character "$characters"/{cesium_man,m2m_human_male,makehuman_mixamo,quaternius_man_casual}.glb)
-  $limber convert "$motions/cmu1_jumping_jacks.bvh" $work/jumping_jack.bvh --trim 0.3:1.6 --quiet
-  for method in limb-ik online spacetime aligned copy; do
-    $limber retarget $work/biped_template.glb $work/jumping_jack.bvh --method $method -o $work/jumping_jack.glb --quiet
-    $limber preview $work/jumping_jack.glb --frames 8 --size 120x150 --view 25,10 -o $images/retarget_$method.png --quiet
-  done
   table="$table" perl -0pi -e 's/(<!-- made by [^\n]*: measures -->\n).*(<!-- end of measures -->)/$1\n$ENV{table}\n\n$2/s' docs/retargeting.md
   sed -i '/^\*\*People/,$d' docs/template-rigs.md
   {

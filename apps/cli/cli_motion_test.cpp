@@ -262,6 +262,23 @@ TEST_F(Cli, PosesStartFromAMomentOfAClip) {
   EXPECT_THAT(refused.error, AllOf(HasSubstr("bow"), HasSubstr("wave")));
 }
 
+TEST_F(Cli, SampleMotionsMoveTheSamplePerson) {
+  EXPECT_EQ(run({"sample", "biped", "-o", "biped.glb", "-q"}).code, 0);
+  EXPECT_EQ(run({"rig", "biped.glb", "--template", "humanoid", "-o", "hero.glb", "-q"}).code, 0);
+  for (const std::string file : {"walk.bvh", "jumping-jack.glb"}) {
+    EXPECT_EQ(run({"sample", file.substr(0, file.find('.')), "-o", file, "-q"}).code, 0);
+    EXPECT_EQ(run({"retarget", "hero.glb", file, "-o", "moving.glb", "-q"}).code, 0);
+    const Result measured = run({"evaluate", "motion", "moving.glb", "--source", file, "--json"});
+    ASSERT_EQ(measured.code, 0) << measured.error;
+    const nlohmann::json measures = nlohmann::json::parse(measured.out);
+    EXPECT_LT(measures.at("sliding_heights_per_second").get<double>(), 0.02);
+    EXPECT_GT(measures.at("planted_share").get<double>(), 0.4);
+    EXPECT_LT(measures.at("penetration_millimetres").get<double>(), 5);
+    EXPECT_LT(measures.at("jerk_ratio").get<double>(), 1.1);
+  }
+  expectOneLine(run({"sample", "biped", "-o", "biped.bvh", "-q"}), 1);
+}
+
 TEST_F(Cli, RetargetRefusesWithOneLineAndLeavesNoFile) {
   put("hero.bvh", personBvh(""));
   put("cut.bvh", personBvh("").substr(0, 400));
