@@ -11,6 +11,7 @@
 #include "limber/core/file.h"
 #include "limber/evaluate/rig_metrics.h"
 #include "limber/pipeline/auto_rig.h"
+#include "limber/pipeline/template_file.h"
 #include "limber/samples/samples.h"
 #include "model_checks.h"
 #include "shared_data.h"
@@ -28,11 +29,13 @@ AutoRigOptions templateOptions(const std::string& name) {
   return options;
 }
 
-RigComparison compared(const std::string& file, const std::string& name) {
+RigComparison compared(const std::string& file, const AutoRigOptions& options) {
   const std::filesystem::path path = *sharedDataFolder() / "rigged" / file;
   const Asset asset = readAsset(path);
-  const Rigged result = rigged(asset, templateOptions(name));
-  const std::filesystem::path written = testOutputFolder() / ("template_" + path.stem().string() + ".glb");
+  const Rigged result = rigged(asset, options);
+  const std::filesystem::path written =
+      testOutputFolder() / ("template_" + std::filesystem::path(options.rig.templateName).stem().string() + "_" +
+                            path.stem().string() + ".glb");
   writeFile(written, result.glb);
   noteSource(written, path);
   return compareRigs(readAsset(result.glb, "result.glb"), asset);
@@ -44,7 +47,7 @@ class TemplateCharacters : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(TemplateCharacters, ComeNearTheArtistsSkeleton) {
   if (!sharedDataFolder()) GTEST_SKIP() << kNoSharedData;
-  const RigComparison comparison = compared(GetParam(), "humanoid");
+  const RigComparison comparison = compared(GetParam(), templateOptions("humanoid"));
   EXPECT_LT(comparison.namedMean, 4);
   EXPECT_LT(comparison.withoutFingers.jointToJoint, 3.5);
   for (const NamedJointError& error : comparison.named) {
@@ -73,7 +76,7 @@ struct Means {
 Means meansOf(const std::vector<std::string>& files, const std::string& name) {
   Means means;
   for (const std::string& file : files) {
-    const RigComparison comparison = compared(file, name);
+    const RigComparison comparison = compared(file, templateOptions(name));
     const double part = 1.0 / static_cast<double>(files.size());
     means.jointToJoint += part * comparison.withoutFingers.jointToJoint;
     means.jointToBone += part * comparison.withoutFingers.jointToBone;
@@ -105,6 +108,36 @@ TEST(TemplateMeans, OfAnimals) {
   EXPECT_LT(means.jointToBone, 2);
   EXPECT_LT(means.boneToBone, 2);
 }
+
+// Skeletons of characters and motions as a user's own templates: arms level, lowered and hanging, with fingers, twist
+// joints, roots on the ground and feet that hang on them, on bodies whose arms are held otherwise.
+class OwnTemplates : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(OwnTemplates, FindPeopleHoweverTheArmsAreHeld) {
+  if (!sharedDataFolder()) GTEST_SKIP() << kNoSharedData;
+  AutoRigOptions options = templateOptions(GetParam());
+  options.rig.templateSkeleton = readTemplateFile(*sharedDataFolder() / GetParam());
+  for (const char* body : {"m2m_human_male.glb", "makehuman_default.glb", "cesium_man.glb"}) {
+    SCOPED_TRACE(body);
+    const RigComparison comparison = compared(body, options);
+    EXPECT_GE(comparison.named.size(), 15u);
+    EXPECT_LT(comparison.namedMean, 4);
+    for (const NamedJointError& error : comparison.named) {
+      if (error.bone.find("Hand") == std::string::npos) continue;
+      EXPECT_LT(error.percent, 3) << error.bone;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Skeletons, OwnTemplates,
+                         ::testing::Values("rigged/cesium_man.glb", "rigged/makehuman_mixamo.glb",
+                                           "rigged/makehuman_default.glb", "rigged/quaternius_platformer_character.glb",
+                                           "rigged/robot_expressive.glb", "rigged/kaykit_mannequin/manny_med_mod.gltf",
+                                           "motions/cmu1_jumping_jacks.bvh", "motions/cmu_daz_02_01_walk.bvh",
+                                           "motions/rokoko_dance.bvh", "motions/pybvh_test2.bvh"),
+                         [](const ::testing::TestParamInfo<const char*>& file) {
+                           return std::filesystem::path(file.param).stem().string();
+                         });
 
 // The box of all but the hundredth part of the points at each end of an axis: specks that float about a scan are
 // outside.

@@ -420,8 +420,19 @@ void placeBetween(const TemplateSkeleton& skeleton, std::vector<Vec3>& places) {
     const std::optional<Index> own = between(j) ? below[j] : std::optional(j);
     if (parent && between(*parent) && own) below[*parent] = own;
   }
+  const auto highest = std::max_element(
+      skeleton.joints.begin(), skeleton.joints.end(), [](const TemplateJoint& a, const TemplateJoint& b) {
+        const bool known[] = {a.role != TemplateRole::kBetween, b.role != TemplateRole::kBetween};
+        return known[0] == known[1] ? a.place.y() < b.place.y() : known[1];
+      });
   for (Index j = 0; j < count; ++j) {
-    if (!between(j) || !above[j]) continue;
+    if (!between(j)) continue;
+    if (!above[j]) {
+      // Above all that are placed: what is on the ground stays there.
+      const Vec3& found = places[highest - skeleton.joints.begin()];
+      places[j] = found + found.y() / std::max(highest->place.y(), 1e-6) * (skeleton.joints[j].place - highest->place);
+      continue;
+    }
     const Vec3 &from = skeleton.joints[*above[j]].place, &start = places[*above[j]];
     const Vec3 offset = skeleton.joints[j].place - from;
     const std::optional<Index> end = below[j] ? below[j] : firstBelow[*above[j]];

@@ -11,6 +11,7 @@
 #include "limber/rigging/bent_template.h"
 #include "limber/rigging/body_volume.h"
 #include "limber/rigging/humanoid_landmarks.h"
+#include "limber/rigging/person_template.h"
 #include "limber/rigging/quadruped_landmarks.h"
 #include "limber/rigging/stray_pieces.h"
 #include "limber/rigging/template_embedding.h"
@@ -190,7 +191,7 @@ Skeleton standingSkeleton(const TemplateSkeleton& skeleton, const std::vector<Ve
   std::vector<std::optional<Index>> next(count);
   for (Index j = 0; j < count; ++j) {
     const std::optional<Index> parent = skeleton.joints[j].parent;
-    if (parent && !next[*parent]) next[*parent] = j;
+    if (parent && (!next[*parent] || skeleton.joints[j].role == TemplateRole::kTip)) next[*parent] = j;
   }
   const Vec3 front = frame.axes.row(2).transpose(), up = frame.axes.row(1).transpose();
   std::vector<Affine> globals(count);
@@ -225,14 +226,17 @@ Skeleton standingSkeleton(const TemplateSkeleton& skeleton, const std::vector<Ve
 AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress& progress) {
   std::vector<const TemplateSkeleton*> candidates;
   TemplateSkeleton own;
+  std::optional<PersonTemplate> person;
   if (options.templateSkeleton) {
     own = templateFrom(*options.templateSkeleton, options.templateName);
-    candidates = {&own};
+    person = personTemplate(*options.templateSkeleton, own);
+    candidates = {person ? &findTemplate("humanoid") : &own};
   } else if (options.templateName == "auto") {
     for (const TemplateSkeleton& skeleton : templateSkeletons()) candidates.push_back(&skeleton);
   } else {
     candidates = {&findTemplate(options.templateName)};
   }
+  const std::vector<JointPin> pins = person ? humanoidPins(*person, options.pins) : options.pins;
   progress.step("measure body");
   const std::optional<TriMesh> cleared = withoutStrays(mesh);
   const TriMesh& surface = cleared ? *cleared : mesh;
@@ -242,17 +246,32 @@ AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress
   std::vector<TemplateFit> fits;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     progress.update(static_cast<double>(i) / static_cast<double>(candidates.size()));
-    fits.push_back(bestFit(*candidates[i], body, frames, options.pins));
+    fits.push_back(bestFit(*candidates[i], body, frames, pins));
   }
   std::stable_sort(fits.begin(), fits.end(),
                    [](const TemplateFit& a, const TemplateFit& b) { return confidenceOf(a) > confidenceOf(b); });
-
   TemplateFit& best = fits.front();
+  if (person && confidenceOf(best) < kLowConfidence) {
+    // The model may stand as the user's skeleton does, and as no person of ours.
+    TemplateFit asItIs = bestFit(own, body, frames, options.pins);
+    if (confidenceOf(asItIs) > confidenceOf(best)) {
+      best = std::move(asItIs);
+      person.reset();
+    }
+  }
+
   if (!best.skeleton.bent) refineHumanoid(best.skeleton, body, best.frame, best.pins, best.embedding.places);
   placeBetween(best.skeleton, best.embedding.places);
   refineQuadruped(best.skeleton, body, best.frame, best.pins, best.embedding.places);
   AutoRig rig;
-  rig.skeleton = standingSkeleton(best.skeleton, best.embedding.places, best.frame);
+  if (person) {
+    const TemplatePins ownPins = pinsIn(person->skeleton, best.frame, options.pins);
+    const std::vector<Vec3> places = placePerson(*person, best.embedding.places, ownPins);
+    rig.skeleton = standingSkeleton(person->skeleton, places, best.frame);
+    best.skeleton = humanoidNamedAs(*person, std::move(best.skeleton));
+  } else {
+    rig.skeleton = standingSkeleton(best.skeleton, best.embedding.places, best.frame);
+  }
   if (cleared) {
     rig.warnings.add("stray-pieces", "triangles that float about the model are left out of account", {},
                      mesh.triangleCount() - cleared->triangleCount());

@@ -1,0 +1,204 @@
+#include "limber/rigging/person_template.h"
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <string_view>
+
+#include "limber/skeleton/humanoid_names.h"
+
+namespace limber {
+
+namespace {
+
+constexpr std::array<std::string_view, 9> kNeeded = {"hips",          "leftUpperArm",  "rightUpperArm",
+                                                     "leftLowerArm",  "rightLowerArm", "leftUpperLeg",
+                                                     "rightUpperLeg", "leftLowerLeg",  "rightLowerLeg"};
+
+constexpr double kTrunk = 0.28;                // of the humanoid, from its legs' upper joints to its arms'
+constexpr double kBeyondFingers = 1.15;        // ends of fingers, in ways from the hand to their last joint
+constexpr double kAlike = 0.7, kSquare = 0.5;  // cosines between arms and legs, trunk and legs
+
+const TemplateSkeleton& humanoid() {
+  return findTemplate("humanoid");
+}
+
+bool isFinger(std::string_view bone) {
+  constexpr std::array<std::string_view, 4> kFingers = {"Index", "Middle", "Ring", "Little"};
+  return std::any_of(kFingers.begin(), kFingers.end(),
+                     [&](std::string_view finger) { return bone.find(finger) != std::string_view::npos; });
+}
+
+std::optional<Index> playing(const PersonTemplate& person, std::string_view bone) {
+  const std::optional<Index> sought = humanoid().find(bone);
+  const auto found = std::find(person.standsFor.begin(), person.standsFor.end(), sought);
+  return found == person.standsFor.end() ? std::nullopt
+                                         : std::optional(static_cast<Index>(found - person.standsFor.begin()));
+}
+
+// Ends of limbs, and the tips of the humanoid there.
+struct LimbEnd {
+  std::string_view tip;
+  std::array<std::string_view, 2> ends;  // it hangs on the first that there is
+  bool isHand;
+};
+constexpr std::array<LimbEnd, 5> kEnds = {{{"headTip", {"head", "neck"}, false},
+                                           {"leftHandTip", {"leftHand", "leftLowerArm"}, true},
+                                           {"rightHandTip", {"rightHand", "rightLowerArm"}, true},
+                                           {"leftToesTip", {"leftToes", "leftFoot"}, false},
+                                           {"rightToesTip", {"rightToes", "rightFoot"}, false}}};
+
+// From the middle between the legs' upper joints to that between the arms'.
+Vec3 trunkOf(const PersonTemplate& person) {
+  Vec3 trunk = Vec3::Zero();
+  for (const std::string side : {"left", "right"}) {
+    trunk += 0.5 * (person.skeleton.joints[*playing(person, side + "UpperArm")].place -
+                    person.skeleton.joints[*playing(person, side + "UpperLeg")].place);
+  }
+  return trunk;
+}
+
+// Arms and legs run alike, square to the trunk: an animal's, whose front legs end in what is called a hand.
+bool onAllFours(const PersonTemplate& person) {
+  const auto place = [&](const std::string& bone) { return person.skeleton.joints[*playing(person, bone)].place; };
+  Vec3 arms = Vec3::Zero(), legs = Vec3::Zero();
+  for (const std::string side : {"left", "right"}) {
+    arms += place(side + "LowerArm") - place(side + "UpperArm");
+    legs += place(side + "LowerLeg") - place(side + "UpperLeg");
+  }
+  const Vec3 trunk = trunkOf(person).normalized();
+  arms.normalize();
+  legs.normalize();
+  return arms.dot(legs) > kAlike && std::abs(trunk.dot(legs)) < kSquare;
+}
+
+// Rows: left, up and front as the limbs tell them. None where they all lie in a line.
+std::optional<Mat3> standingAxes(const PersonTemplate& person) {
+  const auto place = [&](const std::string& bone) { return person.skeleton.joints[*playing(person, bone)].place; };
+  Vec3 left = Vec3::Zero();
+  for (const std::string limb : {"UpperArm", "UpperLeg"}) left += place("left" + limb) - place("right" + limb);
+  const Vec3 up = trunkOf(person).normalized();
+  left -= left.dot(up) * up;
+  if (!(up.norm() > 0.5 && left.norm() > 1e-6)) return std::nullopt;
+  left.normalize();
+  Mat3 axes;
+  axes << left.transpose(), up.transpose(), left.cross(up).transpose();
+  return axes;
+}
+
+// The joint that is farthest from the hand of those that play a finger's bone and hang on it.
+std::optional<Index> fingerEnd(const PersonTemplate& person, Index hand, const std::vector<Index>& fingers) {
+  std::optional<Index> end;
+  double farthest = 0;
+  for (const Index finger : fingers) {
+    std::optional<Index> above = finger;
+    while (above && *above != hand) above = person.skeleton.joints[*above].parent;
+    const double reach = (person.skeleton.joints[finger].place - person.skeleton.joints[hand].place).norm();
+    if (!above || reach <= farthest) continue;
+    farthest = reach;
+    end = finger;
+  }
+  return end;
+}
+
+// Tips as the humanoid has them, as large as the trunk; hands' in the direction of the fingers or of the forearm.
+void addTips(PersonTemplate& person, const std::vector<Index>& fingers) {
+  const std::vector<TemplateJoint>& known = humanoid().joints;
+  const double scale = trunkOf(person).norm() / kTrunk;
+  for (const LimbEnd& end : kEnds) {
+    const std::optional<Index> last = playing(person, end.ends[0]);
+    const std::optional<Index> joint = last ? last : playing(person, end.ends[1]);
+    if (!joint) continue;
+    const TemplateJoint& from = person.skeleton.joints[*joint];
+    const Index stands = *humanoid().find(end.tip);
+    TemplateJoint tip;
+    tip.name = from.name + " tip";
+    tip.parent = joint;
+    tip.role = TemplateRole::kTip;
+    Vec3 reach = scale * (known[stands].place - known[*person.standsFor[*joint]].place);
+    if (!end.isHand) {
+      // as it is
+    } else if (const std::optional<Index> finger = fingerEnd(person, *joint, fingers)) {
+      reach = kBeyondFingers * (person.skeleton.joints[*finger].place - from.place);
+    } else if (from.parent) {
+      reach = reach.norm() * (from.place - person.skeleton.joints[*from.parent].place).normalized();
+    }
+    tip.place = from.place + reach;
+    person.skeleton.joints.push_back(std::move(tip));
+    person.standsFor.push_back(stands);
+  }
+}
+
+}  // namespace
+
+std::optional<PersonTemplate> personTemplate(const Skeleton& skeleton, const TemplateSkeleton& own) {
+  std::vector<HumanoidJoint> bones = humanoidJointsByName(skeleton);
+  // Hips that stand on the ground are a root: the joint in the pelvis takes their place.
+  const std::optional<Index> pelvis = pelvisByName(skeleton);
+  if (pelvis && bones.front().bone == "hips") bones.front().joint = *pelvis;
+  PersonTemplate person;
+  person.skeleton = {own.name, own.summary, {}};
+  std::vector<std::optional<Index>> kept(own.jointCount());
+  std::vector<Index> fingers;
+  for (Index j = 0; j < own.jointCount(); ++j) {
+    TemplateJoint joint = own.joints[j];
+    if (joint.role == TemplateRole::kTip) continue;
+    const auto bone =
+        std::find_if(bones.begin(), bones.end(), [&](const HumanoidJoint& each) { return each.joint == j; });
+    const std::optional<Index> part = bone == bones.end() ? std::nullopt : humanoid().find(bone->bone);
+    kept[j] = person.skeleton.jointCount();
+    if (bone != bones.end() && isFinger(bone->bone)) fingers.push_back(*kept[j]);
+    if (joint.parent) joint.parent = kept[*joint.parent];
+    joint.role = part ? TemplateRole::kPlaced : TemplateRole::kBetween;
+    joint.mirror.reset();
+    person.skeleton.joints.push_back(std::move(joint));
+    person.standsFor.push_back(part);
+  }
+  for (const std::string_view bone : kNeeded) {
+    if (!playing(person, bone)) return std::nullopt;
+  }
+  const std::optional<Mat3> axes = standingAxes(person);
+  if (!axes || onAllFours(person)) return std::nullopt;
+  double ground = 0;
+  for (TemplateJoint& joint : person.skeleton.joints) {
+    joint.place = *axes * joint.place;
+    ground = std::min(ground, joint.place.y());
+  }
+  for (TemplateJoint& joint : person.skeleton.joints) joint.place.y() -= ground;
+  addTips(person, fingers);
+  return person;
+}
+
+std::vector<Vec3> placePerson(const PersonTemplate& person, const std::vector<Vec3>& fitted, const TemplatePins& pins) {
+  TemplateSkeleton skeleton = person.skeleton;
+  std::vector<Vec3> places(skeleton.jointCount(), Vec3::Zero());
+  for (Index j = 0; j < skeleton.jointCount(); ++j) {
+    if (person.standsFor[j]) places[j] = fitted[*person.standsFor[j]];
+    if (!pins[j]) continue;
+    places[j] = *pins[j];
+    skeleton.joints[j].role = TemplateRole::kPlaced;
+  }
+  placeBetween(skeleton, places);
+  return places;
+}
+
+std::vector<JointPin> humanoidPins(const PersonTemplate& person, const std::vector<JointPin>& pins) {
+  std::vector<JointPin> result;
+  for (const JointPin& pin : pins) {
+    const std::optional<Index> joint = person.skeleton.find(pin.joint);
+    if (joint && person.standsFor[*joint]) {
+      result.push_back({humanoid().joints[*person.standsFor[*joint]].name, pin.place});
+    }
+  }
+  return result;
+}
+
+TemplateSkeleton humanoidNamedAs(const PersonTemplate& person, TemplateSkeleton humanoid) {
+  for (Index j = 0; j < person.skeleton.jointCount(); ++j) {
+    if (person.standsFor[j]) humanoid.joints[*person.standsFor[j]].name = person.skeleton.joints[j].name;
+  }
+  humanoid.name = person.skeleton.name;
+  return humanoid;
+}
+
+}  // namespace limber
