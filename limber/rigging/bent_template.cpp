@@ -14,14 +14,14 @@ constexpr double kBentCost = 0.3;                             // bodies mostly s
 constexpr Index kRestarts = 2;
 constexpr double kNearRest = 0.05;  // gain towards the standing pose
 
-Skeleton skeletonOf(const TemplateSkeleton& from, double size) {
+Skeleton skeletonOf(const TemplateSkeleton& from, const std::vector<Vec3>& standing, double size) {
   Skeleton skeleton;
   for (const TemplateJoint& joint : from.joints) {
     Joint own;
     own.name = joint.name;
     own.parent = joint.parent;
-    own.rest.translation = size * joint.place;
-    if (joint.parent) own.rest.translation -= size * from.joints[*joint.parent].place;
+    own.rest.translation = size * standing[skeleton.joints.size()];
+    if (joint.parent) own.rest.translation -= size * standing[*joint.parent];
     skeleton.joints.push_back(std::move(own));
   }
   return skeleton;
@@ -59,10 +59,14 @@ std::vector<TemplateVariant> bentToPins(const TemplateSkeleton& skeleton, const 
     }
     targets.push_back(std::move(target));
   }
+  std::vector<Vec3> places = skeleton.standing;
+  if (!skeleton.bent()) {
+    for (const TemplateJoint& joint : skeleton.joints) places.push_back(joint.place);
+  }
   std::vector<TemplateVariant> variants;
   if (targets.empty()) return variants;
   for (const double size : kSizes) {
-    const Skeleton standing = skeletonOf(skeleton, size);
+    const Skeleton standing = skeletonOf(skeleton, places, size);
     const JointLimits limits = humanoidLimits(standing, humanoidJointsByName(standing));
     Pose pose = restPose(standing);
     startNear(targets, standing, pose);
@@ -72,7 +76,7 @@ std::vector<TemplateVariant> bentToPins(const TemplateSkeleton& skeleton, const 
     options.restarts = kRestarts;
     solveIk(findIkMethod("whole-body"), standing, pose, targets, &limits, options);
     TemplateVariant variant = {skeleton, kBentCost};
-    variant.skeleton.bent = true;
+    variant.skeleton.standing = places;
     const std::vector<Affine> globals = poseGlobals(standing, pose);
     for (Index j = 0; j < skeleton.jointCount(); ++j) variant.skeleton.joints[j].place = globals[j].translation();
     variants.push_back(std::move(variant));

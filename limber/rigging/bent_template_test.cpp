@@ -58,7 +58,7 @@ TEST(BentTemplate, BringsJointsToTheirPins) {
     pins[hips] = Vec3(0, 0.5, -0.1);
     double nearest = 1;
     for (const TemplateVariant& variant : bentToPins(skeleton, pins)) {
-      EXPECT_TRUE(variant.skeleton.bent);
+      EXPECT_TRUE(variant.skeleton.bent());
       const double off = (variant.skeleton.joints[head].place - *pins[head]).norm() +
                          (variant.skeleton.joints[hips].place - *pins[hips]).norm();
       nearest = std::min(nearest, off);

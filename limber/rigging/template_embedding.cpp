@@ -210,7 +210,7 @@ class Embedder {
     const bool outermost = tip && (joint.place.y() < kNearEnd || joint.place.y() > 1 - kNearEnd);
     const double up = off.y() / (outermost ? kTipSpread : tip ? kHandSpread : kPlaceSpread);
     penalty += up * up + off.z() * off.z() / (4 * kPlaceSpread * kPlaceSpread);
-    if (skeleton_.bent) {
+    if (skeleton_.bent()) {
       penalty += off.x() * off.x() / (4 * kPlaceSpread * kPlaceSpread);
     } else if (!joint.mirror) {
       penalty += c.place.x() * c.place.x() / (kMiddleSpread * kMiddleSpread);

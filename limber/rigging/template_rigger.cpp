@@ -10,6 +10,7 @@
 #include "limber/core/numbers.h"
 #include "limber/rigging/bent_template.h"
 #include "limber/rigging/body_volume.h"
+#include "limber/rigging/feet_direction.h"
 #include "limber/rigging/humanoid_landmarks.h"
 #include "limber/rigging/person_template.h"
 #include "limber/rigging/quadruped_landmarks.h"
@@ -23,9 +24,11 @@ namespace {
 constexpr std::size_t kCoarseSpheres = 120;  // for a first look at every way to stand
 constexpr std::size_t kFramesRefined = 2;    // after it, with all spheres
 constexpr std::size_t kVariantsRefined = 4;  // of each of these
+constexpr double kOnGround = 0.1;            // heights of the tips of feet
 constexpr int kMostBends = 6;
 constexpr double kLowConfidence = 0.4;
 constexpr double kCostOfDoubt = 1.8;  // cost at which confidence is a half
+constexpr double kFeetBackward = 2;   // cost of footprints that lie half their length behind the legs
 constexpr double kUnexplained = 2;    // cost of a body that no bone comes near
 constexpr double kNearBone = 0.08;    // heights beyond the surface of a medial sphere
 constexpr double kFarFromBone = 0.25;
@@ -86,6 +89,24 @@ double unexplained(const TemplateSkeleton& skeleton, const std::vector<Vec3>& pl
   return 0.5 * (spheres + tips / std::max(reach, 1e-12));
 }
 
+bool cheaper(const TemplateFit& a, const TemplateFit& b) {
+  return a.cost < b.cost;
+}
+
+// Of the placed joints that hold the tips on the ground.
+std::vector<Vec3> feetOf(const TemplateSkeleton& skeleton, const std::vector<Vec3>& places) {
+  std::vector<Vec3> feet;
+  for (const TemplateJoint& tip : skeleton.joints) {
+    if (tip.role != TemplateRole::kTip || tip.place.y() > kOnGround || !tip.parent) continue;
+    Index foot = *tip.parent;
+    while (skeleton.joints[foot].role == TemplateRole::kBetween && skeleton.joints[foot].parent) {
+      foot = *skeleton.joints[foot].parent;
+    }
+    feet.push_back(places[foot]);
+  }
+  return feet;
+}
+
 // One fit for each variant.
 void addFits(const std::vector<TemplateVariant>& variants, const BodyVolume& body, const BodyFrame& frame,
              const std::vector<JointPin>& pins, const EmbeddingOptions& options, std::vector<TemplateFit>& fits) {
@@ -96,19 +117,19 @@ void addFits(const std::vector<TemplateVariant>& variants, const BodyVolume& bod
     const double cost = embeddings[v].cost + unusual(frame) + kUnexplained * left;
     fits.push_back({variants[v].skeleton, frame, places, std::move(embeddings[v]), cost, {}});
   }
-}
-
-bool cheaper(const TemplateFit& a, const TemplateFit& b) {
-  return a.cost < b.cost;
+  // Feet point to the front, whichever way the rest of a body may be read; told once, by the best of them.
+  const auto first = fits.end() - static_cast<std::ptrdiff_t>(variants.size());
+  const TemplateFit& best = *std::min_element(first, fits.end(), cheaper);
+  const double forward = feetForward(body, frame, feetOf(best.skeleton, best.embedding.places));
+  for (auto fit = first; fit != fits.end(); ++fit) fit->cost += kFeetBackward * std::max(0.0, -forward);
 }
 
 // A bent template is bent further, to where its joints were found, and embedded anew, as long as that comes nearer.
-void bendNearer(const TemplateSkeleton& skeleton, const BodyVolume& body, const std::vector<JointPin>& pins,
-                TemplateFit& fit) {
+void bendNearer(const BodyVolume& body, const std::vector<JointPin>& pins, TemplateFit& fit) {
   for (int bend = 0; bend < kMostBends; ++bend) {
     std::vector<TemplateFit> fits;
-    addFits(bentToPins(skeleton, fit.pins, fit.embedding.places), body, fit.frame, pins, {body.spheres.size(), true},
-            fits);
+    addFits(bentToPins(fit.skeleton, fit.pins, fit.embedding.places), body, fit.frame, pins,
+            {body.spheres.size(), true}, fits);
     TemplateFit& nearest = *std::min_element(fits.begin(), fits.end(), cheaper);
     if (!cheaper(nearest, fit)) return;
     fit = std::move(nearest);
@@ -150,7 +171,7 @@ TemplateFit bestFit(const TemplateSkeleton& skeleton, const BodyVolume& body, co
     addFits(looks[i].variants, body, looks[i].frame, pins, {body.spheres.size(), true}, fits);
   }
   TemplateFit best = *std::min_element(fits.begin(), fits.end(), cheaper);
-  if (best.skeleton.bent) bendNearer(skeleton, body, pins, best);
+  if (best.skeleton.bent()) bendNearer(body, pins, best);
   best.limbs = limbsIn(best.skeleton, best.embedding, body, best.frame);
   return best;
 }
@@ -260,7 +281,7 @@ AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress
     }
   }
 
-  if (!best.skeleton.bent) refineHumanoid(best.skeleton, body, best.frame, best.pins, best.embedding.places);
+  if (!best.skeleton.bent()) refineHumanoid(best.skeleton, body, best.frame, best.pins, best.embedding.places);
   placeBetween(best.skeleton, best.embedding.places);
   refineQuadruped(best.skeleton, body, best.frame, best.pins, best.embedding.places);
   AutoRig rig;

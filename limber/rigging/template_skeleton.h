@@ -32,7 +32,11 @@ struct TemplateSkeleton {
   std::string name;
   std::string summary;  // one line for --help
   std::vector<TemplateJoint> joints;
-  bool bent = false;  // stands in a pose: every place holds for itself, neither side for the other
+  // #J, where the joints are as it stands, if their places are those of a pose; else empty. Places of a pose hold each
+  // for itself, neither side for the other.
+  std::vector<Vec3> standing = {};
+  bool bent() const { return !standing.empty(); }
+
 
   Index jointCount() const { return static_cast<Index>(joints.size()); }
   std::optional<Index> find(std::string_view joint) const;

@@ -1,0 +1,36 @@
+#include "limber/rigging/feet_direction.h"
+
+#include <algorithm>
+
+#include "limber/rigging/body_section.h"
+
+namespace limber {
+
+namespace {
+
+// Heights.
+constexpr double kSole = 0.02;
+constexpr double kAnkle = 0.09;
+constexpr double kSeedReach = 0.05;
+constexpr double kWidestLeg = 0.025;                      // square heights of a cut: not of both legs, nor of a skirt
+constexpr double kSmallestFoot = 0.3, kLargestFoot = 12;  // cuts of the leg
+
+}  // namespace
+
+double feetForward(const BodyVolume& body, const BodyFrame& frame, std::span<const Vec3> feet) {
+  double sum = 0;
+  int standing = 0;
+  for (const Vec3& foot : feet) {
+    const BodySection leg = sectionAt(body, frame, {foot.x(), kAnkle, foot.z()}, Vec3::UnitY(), kSeedReach);
+    if (leg.empty() || leg.area > kWidestLeg) continue;
+    const BodySection print =
+        sectionAt(body, frame, {leg.center.x(), kSole, leg.center.z()}, Vec3::UnitY(), kSeedReach);
+    const double size = print.area / leg.area;
+    if (size < kSmallestFoot || size > kLargestFoot || !(print.halfDepth() > 0)) continue;
+    sum += std::clamp((print.center.z() - leg.center.z()) / print.halfDepth(), -1.0, 1.0);
+    ++standing;
+  }
+  return standing > 0 ? sum / standing : 0;
+}
+
+}  // namespace limber
