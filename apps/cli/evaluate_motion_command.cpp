@@ -136,7 +136,7 @@ void addMotionEvaluation(CLI::App& evaluate) {
       "planted\n"
       "in the source is planted in the result, and, of a character with a skin, the share of its vertices that are\n"
       "inside the body and were outside in bind pose (5000 vertices in 24 frames at most, both taken evenly); with\n"
-      "--truth the joints' squared distances, too.\n"
+      "--truth the joints' squared distances, too. Animals are measured by their legs.\n"
       "\nExample:\n  limber retarget hero.glb walk.bvh -o walking.glb\n"
       "  limber evaluate motion walking.glb --source walk.bvh");
   command->callback([options] { run(*options); });

@@ -41,20 +41,52 @@ Positions positionsOf(const BodyKinematics& kinematics, const PoseSequence& fram
   return positions;
 }
 
-double lowestSole(const SkeletonMap& map, MapSide side, const std::vector<Vec3>& positions) {
-  double y = std::numeric_limits<double>::infinity();
-  for (const Index joint : soleJoints(map, side)) y = std::min(y, positions[joint].y());
-  return y;
+// From the lowest foot joint to the head's, of a person; of others to the highest joint that is matched.
+double heightOf(const RetargetSetup& setup, MapSide side) {
+  const bool source = side == MapSide::kSource;
+  const std::vector<Vec3>& positions = (source ? setup.sourceNeutral : setup.targetNeutral).positions;
+  double high = pelvisOf(setup.map, side, positions).y();
+  for (const JointMatch& match : setup.map.matches) {
+    if (setup.person && match.part != "trunk" && match.part != "neck" && match.part != "head") continue;
+    high = std::max(high, positions[(source ? match.source : match.target).back()].y());
+  }
+  return high - (source ? setup.sourceLowest : setup.targetLowest);
 }
 
-double heightOf(const SkeletonMap& map, MapSide side, const NeutralPose& neutral) {
-  const double low = lowestSole(map, side, neutral.positions);
-  double high = pelvisOf(map, side, neutral.positions).y();
-  for (const char* part : {"trunk", "neck", "head"}) {
-    const std::vector<Index>* joints = jointsOfPart(map, side, part);
-    if (joints) high = std::max(high, neutral.positions[joints->back()].y());
+// What stands on the ground, pairwise.
+std::vector<Index> standingJoints(const RetargetSetup& setup, MapSide side) {
+  if (setup.person) return soleJoints(setup.map, side);
+  std::vector<Index> joints;
+  for (const AnimalLeg& leg : setup.animalLegs) {
+    const LegJoints& own = side == MapSide::kSource ? leg.source : leg.target;
+    joints.push_back(own.end);
+    if (own.toes) joints.push_back(*own.toes);
   }
-  return high - low;
+  return joints;
+}
+
+// Upper joint, lower joint and end, as far as they are matched.
+struct LimbPair {
+  std::vector<Index> source, target;
+};
+
+std::vector<LimbPair> limbsOf(const RetargetSetup& setup) {
+  std::vector<LimbPair> limbs;
+  for (const LimbName& name : kLimbs) {
+    if (!setup.person) break;
+    LimbPair& limb = limbs.emplace_back();
+    for (const char* part : {name.upper, name.lower, name.end}) {
+      const JointMatch* match = setup.map.find(part);
+      if (!match) continue;
+      limb.source.push_back(match->source.front());
+      limb.target.push_back(match->target.front());
+    }
+  }
+  for (const AnimalLeg& leg : setup.animalLegs) {
+    limbs.push_back(
+        {{leg.source.upper, leg.source.lower, leg.source.end}, {leg.target.upper, leg.target.lower, leg.target.end}});
+  }
+  return limbs;
 }
 
 // One skeleton's motion as the measures see it.
@@ -64,9 +96,9 @@ struct Seen {
         kinematics(s == MapSide::kSource ? setup.sourceKinematics : setup.targetKinematics),
         neutral(s == MapSide::kSource ? setup.sourceNeutral : setup.targetNeutral),
         positions(positionsOf(kinematics, sequence)),
-        height(heightOf(setup.map, s, neutral)),
+        height(heightOf(setup, s)),
         ground(s == MapSide::kSource ? setup.sourceGround : setup.targetGround),
-        lowest(lowestSole(setup.map, s, neutral.positions)) {}
+        lowest(s == MapSide::kSource ? setup.sourceLowest : setup.targetLowest) {}
 
   // Of a joint over where it is when standing, in heights.
   double above(std::size_t frame, Index joint) const {
@@ -109,7 +141,7 @@ std::vector<bool> plantedFrames(const Seen& seen, Index joint, double seconds) {
 
 void measureFeet(const RetargetSetup& setup, const Seen& source, const Seen& target, double seconds,
                  MotionMetrics& metrics) {
-  const std::vector<Index> from = soleJoints(setup.map, MapSide::kSource), to = soleJoints(setup.map, MapSide::kTarget);
+  const std::vector<Index> from = standingJoints(setup, MapSide::kSource), to = standingJoints(setup, MapSide::kTarget);
   double count = 0, agreed = 0;
   for (std::size_t i = 0; i < from.size(); ++i) {
     const std::vector<bool> planted = plantedFrames(source, from[i], seconds);
@@ -132,13 +164,10 @@ void measureFeet(const RetargetSetup& setup, const Seen& source, const Seen& tar
 
 void measureLimbs(const RetargetSetup& setup, const Seen& source, const Seen& target, MotionMetrics& metrics) {
   double bones = 0, limbs = 0;
-  for (const LimbName& limb : kLimbs) {
-    const JointMatch *upper = setup.map.find(limb.upper), *lower = setup.map.find(limb.lower),
-                     *end = setup.map.find(limb.end);
-    if (!upper || !lower || !end) continue;
-    const std::array<Index, 3> s = {upper->source.front(), lower->source.front(), end->source.front()};
-    const std::array<Index, 3> t = {upper->target.front(), lower->target.front(), end->target.front()};
-    const auto length = [](const Seen& seen, const std::array<Index, 3>& j) {
+  for (const LimbPair& limb : limbsOf(setup)) {
+    const std::vector<Index>&s = limb.source, &t = limb.target;
+    if (s.size() < 3) continue;
+    const auto length = [](const Seen& seen, const std::vector<Index>& j) {
       const std::vector<Vec3>& rest = seen.neutral.restPositions;
       return (rest[j[1]] - rest[j[0]]).norm() + (rest[j[2]] - rest[j[1]]).norm();
     };
@@ -215,18 +244,13 @@ void measureJerk(const RetargetSetup& setup, const Seen& source, const Seen& tar
   JerkSums bones, joints;
   addPelvisJerk(map, source, setup.sourceHipHeight, cut, bones.source);
   addPelvisJerk(map, target, setup.targetHipHeight, cut, bones.target);
-  for (const LimbName& limb : kLimbs) {
-    const JointMatch* above = nullptr;
-    for (const char* part : {limb.upper, limb.lower, limb.end}) {
-      const JointMatch* match = map.find(part);
-      if (!match) continue;
-      addJointJerk(source, match->source.front(), cut, joints.source);
-      addJointJerk(target, match->target.front(), cut, joints.target);
-      if (above) {
-        addBoneJerk(source, above->source.front(), match->source.front(), cut, bones.source);
-        addBoneJerk(target, above->target.front(), match->target.front(), cut, bones.target);
-      }
-      above = match;
+  for (const LimbPair& limb : limbsOf(setup)) {
+    for (std::size_t i = 0; i < limb.source.size(); ++i) {
+      addJointJerk(source, limb.source[i], cut, joints.source);
+      addJointJerk(target, limb.target[i], cut, joints.target);
+      if (i == 0) continue;
+      addBoneJerk(source, limb.source[i - 1], limb.source[i], cut, bones.source);
+      addBoneJerk(target, limb.target[i - 1], limb.target[i], cut, bones.target);
     }
   }
   metrics.jerk = bones.ratio(cut.size());
@@ -234,8 +258,9 @@ void measureJerk(const RetargetSetup& setup, const Seen& source, const Seen& tar
 }
 
 void checkFrames(const RetargetSetup& setup, const PoseSequence& one, const PoseSequence& other) {
-  if (!setup.person) {
-    throw Error(ErrorCode::kUnsupported, "the motion's measures are those of people, and the skeletons are others'");
+  if (!setup.person && setup.animalLegs.empty()) {
+    throw Error(ErrorCode::kUnsupported,
+                "the motion's measures are those of legs, and the skeletons have none in common");
   }
   if (one.poses.size() != other.poses.size() || one.poses.size() < 5) {
     throw Error(ErrorCode::kBadArgument,

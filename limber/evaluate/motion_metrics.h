@@ -15,7 +15,8 @@ struct JointError {
   double rootRelative = 0;  // with both pelvises in one place
 };
 
-// Lengths in heights of the skeleton they are measured on: from its lowest foot joint to its head's joint, standing.
+// Lengths in heights of the skeleton they are measured on: from its lowest foot joint to its head's joint, standing (of
+// animals: to the highest matched joint).
 // Planted is what stands still in the source: a foot's or the toes' joint within 0.03 heights of where it is when
 // standing and slower than 0.15 heights a second, as seen over a fifteenth of a second (recordings tremble from frame
 // to frame), for a tenth of a second at least.
@@ -42,8 +43,8 @@ struct MotionMetrics {
   std::optional<JointError> jointError;
 };
 
-// `source` and `target` are the same moments of both. People only: throws Error kUnsupported for other skeletons, and
-// kBadArgument where the counts of frames differ or there are fewer than 5.
+// `source` and `target` are the same moments of both. People, and animals by their legs (RetargetSetup::animalLegs):
+// throws Error kUnsupported for others, and kBadArgument where the counts of frames differ or there are fewer than 5.
 MotionMetrics measureMotion(const RetargetSetup& setup, const PoseSequence& source, const PoseSequence& target);
 
 // `truth` and `target` are the same moments of the setup's target. Throws Error as measureMotion does.

@@ -103,6 +103,22 @@ TEST_F(MotionMetricsOf, JointErrorIsOverTheSquareOfTheHeight) {
   EXPECT_LT(error.rootRelative, 1e-12);
 }
 
+TEST(MotionMetricsOfAnimals, AreThoseOfTheirLegs) {
+  const Skeleton animal = limber::testing::quadruped(0.5), snake = straightChain(6, 2);
+  PoseSequence still{std::vector<Pose>(40, restPose(animal)), kSeconds}, sliding = still;
+  for (std::size_t f = 0; f < sliding.poses.size(); ++f) {
+    sliding.poses[f].locals[0].translation += Vec3(0.0005 * static_cast<double>(f), -0.01, 0);
+  }
+  const RetargetSetup setup(animal, animal, matchSkeletons(animal, animal), {}, &still);
+  const MotionMetrics metrics = measureMotion(setup, still, sliding);
+  EXPECT_EQ(metrics.planted, 1);
+  EXPECT_NEAR(metrics.sliding * metrics.height, 0.0005 / kSeconds, 1e-9);
+  EXPECT_NEAR(metrics.penetration * metrics.height, 0.01, 1e-9);
+  EXPECT_LT(metrics.boneDirection, 1e-6);
+  PoseSequence lying{std::vector<Pose>(40, restPose(snake)), kSeconds};
+  EXPECT_THROW(measureMotion({snake, snake, matchSkeletons(snake, snake), {}}, lying, lying), Error);
+}
+
 TEST_F(MotionMetricsOf, RefusesFramesThatDiffer) {
   const PoseSequence still = standing(Vec3::Zero());
   PoseSequence shorter = still;

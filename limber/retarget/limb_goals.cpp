@@ -22,7 +22,8 @@ constexpr double kSoftReach = 0.96;  // of an arm's length: from there on stretc
 constexpr double kPlantRate = 12;    // 1/seconds, of the smooth flag
 constexpr double kSoftStretch = 0.015, kSoftChange = 0.004;  // of the pelvis sinking, by how far a foot is moved
 constexpr double kSoftGround = 0.004;
-constexpr double kFirmGround = 0.8;  // share of that softness that a planted foot loses
+constexpr double kBentInRest = 0.01;  // of an animal's leg's length: a knee off its line by that tells where it bends
+constexpr double kFirmGround = 0.8;   // share of that softness that a planted foot loses
 // Of the pelvis turning with planted legs: leg lengths, the more the less it does; and radians.
 constexpr double kStiffOnTwo = 0.15, kStiffOnOne = 0.3, kMostTurn = 0.8;
 constexpr double kSteep = 1.7, kSoleUp = 2.4, kSoftLevel = 0.05;  // radians that toes point down
@@ -46,19 +47,17 @@ void followPlanting(double wanted, double seconds, double& value, double& speed)
   value = std::clamp(value, 0.0, 1.0);
 }
 
-std::optional<Limb> findLimb(const RetargetSetup& setup, const RootPlacer& root, const std::string& upper,
-                             const std::string& lower, const std::string& end) {
-  const JointMatch *u = setup.map.find(upper), *l = setup.map.find(lower), *e = setup.map.find(end);
-  if (!u || !l || !e) return std::nullopt;
+// None where its joints do not hang on each other, or a bone has no length.
+std::optional<Limb> makeLimb(const RetargetSetup& setup, const RootPlacer& root, const LegJoints& source,
+                             const LegJoints& target) {
   Limb limb;
-  limb.upper = u->target.front();
-  limb.lower = l->target.front();
-  limb.end = e->target.front();
-  limb.sourceUpper = u->source.front();
-  limb.sourceEnd = e->source.front();
-  const Skeleton& target = *setup.target;
-  if (!isAncestorOrSelf(target, limb.upper, limb.lower)) return std::nullopt;
-  if (!isAncestorOrSelf(target, limb.lower, root.carrierOf(limb.end))) return std::nullopt;
+  limb.upper = target.upper;
+  limb.lower = target.lower;
+  limb.end = target.end;
+  limb.sourceUpper = source.upper;
+  limb.sourceEnd = source.end;
+  if (!isAncestorOrSelf(*setup.target, limb.upper, limb.lower)) return std::nullopt;
+  if (!isAncestorOrSelf(*setup.target, limb.lower, root.carrierOf(limb.end))) return std::nullopt;
   const std::vector<Vec3>& rest = setup.targetNeutral.restPositions;
   const double upperLength = (rest[limb.lower] - rest[limb.upper]).norm();
   const double lowerLength = (rest[limb.end] - rest[limb.lower]).norm();
@@ -67,14 +66,59 @@ std::optional<Limb> findLimb(const RetargetSetup& setup, const RootPlacer& root,
   return limb;
 }
 
+std::optional<Limb> findLimb(const RetargetSetup& setup, const RootPlacer& root, const std::string& upper,
+                             const std::string& lower, const std::string& end) {
+  const JointMatch *u = setup.map.find(upper), *l = setup.map.find(lower), *e = setup.map.find(end);
+  if (!u || !l || !e) return std::nullopt;
+  return makeLimb(setup, root, {u->source.front(), l->source.front(), e->source.front(), std::nullopt},
+                  {u->target.front(), l->target.front(), e->target.front(), std::nullopt});
+}
+
 }  // namespace
 
 LimbGoals::LimbGoals(const RetargetSetup& setup, const RootPlacer& root) : setup_(setup) {
-  for (const std::string side : {"left", "right"}) {
-    if (auto leg = findLimb(setup, root, side + "UpperLeg", side + "LowerLeg", side + "Foot")) addLeg(side, *leg);
+  if (setup.person) {
+    addPersonsLegs(root);
+    addArms(root);
+  } else {
+    addAnimalsLegs(root);
   }
+  active_ = (setup.person || !legs_.empty()) && !isSame();
+}
+
+void LimbGoals::addPersonsLegs(const RootPlacer& root) {
   for (const std::string side : {"left", "right"}) {
-    const auto arm = findLimb(setup, root, side + "UpperArm", side + "LowerArm", side + "Hand");
+    const auto limb = findLimb(setup_, root, side + "UpperLeg", side + "LowerLeg", side + "Foot");
+    if (!limb) continue;
+    Leg leg;
+    static_cast<Limb&>(leg) = *limb;
+    if (const JointMatch* toes = setup_.map.find(side + "Toes")) {
+      leg.toes = toes->target.front();
+      leg.sourceToes = toes->source.front();
+    }
+    addLeg(leg);
+  }
+}
+
+void LimbGoals::addAnimalsLegs(const RootPlacer& root) {
+  for (const AnimalLeg& found : setup_.animalLegs) {
+    const auto limb = makeLimb(setup_, root, found.source, found.target);
+    if (!limb) continue;
+    Leg leg;
+    static_cast<Limb&>(leg) = *limb;
+    const std::vector<Vec3>& stands = setup_.targetNeutral.positions;
+    const Vec3 line = (stands[leg.end] - stands[leg.upper]).normalized(), knee = stands[leg.lower] - stands[leg.upper];
+    const Vec3 ahead = knee - knee.dot(line) * line;
+    if (ahead.norm() > kBentInRest * leg.length) leg.kneeAhead = ahead.normalized();
+    leg.toes = found.target.toes;
+    leg.sourceToes = found.source.toes;
+    addLeg(leg);
+  }
+}
+
+void LimbGoals::addArms(const RootPlacer& root) {
+  for (const std::string side : {"left", "right"}) {
+    const auto arm = findLimb(setup_, root, side + "UpperArm", side + "LowerArm", side + "Hand");
     if (!arm) continue;
     arms_.push_back(*arm);
     const std::string other = side == "left" ? "right" : "left";
@@ -85,7 +129,6 @@ LimbGoals::LimbGoals(const RetargetSetup& setup, const RootPlacer& root) : setup
     addSurface("rightUpperLeg", "rightLowerLeg", 0.09, 0.15, surfaces);
     addSurface(other + "LowerArm", other + "Hand", 0.06, 0.12, surfaces);
   }
-  active_ = setup.person && !isSame();
 }
 
 // Nothing to correct where both neutral poses are one.
@@ -98,23 +141,18 @@ bool LimbGoals::isSame() const {
   return true;
 }
 
-void LimbGoals::addLeg(const std::string& side, const Limb& limb) {
-  Leg leg;
-  static_cast<Limb&>(leg) = limb;
-  const std::vector<Vec3>&source = setup_.sourceNeutral.positions, &target = setup_.targetNeutral.positions;
-  const auto lowest = [&](MapSide where, const std::vector<Vec3>& positions) {
-    double y = std::numeric_limits<double>::infinity();
-    for (const Index joint : soleJoints(setup_.map, where)) y = std::min(y, positions[joint].y());
-    return y;
+void LimbGoals::addLeg(Leg leg) {
+  const auto sourceGround = [&](Index joint) {
+    return setup_.sourceGround + setup_.sourceNeutral.positions[joint].y() - setup_.sourceLowest;
   };
-  const double sourceLowest = lowest(MapSide::kSource, source), targetLowest = lowest(MapSide::kTarget, target);
-  leg.ankleGround = setup_.targetGround + target[leg.end].y() - targetLowest;
-  leg.sourceAnkleGround = setup_.sourceGround + source[leg.sourceEnd].y() - sourceLowest;
-  if (const JointMatch* toes = setup_.map.find(side + "Toes")) {
-    leg.toes = toes->target.front();
-    leg.sourceToes = toes->source.front();
-    leg.toesGround = setup_.targetGround + target[*leg.toes].y() - targetLowest;
-    leg.sourceToesGround = setup_.sourceGround + source[*leg.sourceToes].y() - sourceLowest;
+  const auto targetGround = [&](Index joint) {
+    return setup_.targetGround + setup_.targetNeutral.positions[joint].y() - setup_.targetLowest;
+  };
+  leg.ankleGround = targetGround(leg.end);
+  leg.sourceAnkleGround = sourceGround(leg.sourceEnd);
+  if (leg.toes) {
+    leg.toesGround = targetGround(*leg.toes);
+    leg.sourceToesGround = sourceGround(*leg.sourceToes);
   }
   legs_.push_back(leg);
   const PlantDetector detector(setup_.sourceHipHeight);
@@ -164,6 +202,12 @@ bool LimbGoals::forgetAcrossCuts(const BodyFrame& source, double seconds) {
   return true;
 }
 
+// Animals that sit lay the whole foot down: as far as a joint in the source is below where it is when standing, it may
+// be in the target.
+double LimbGoals::loweredBy(double sourceGround, const Vec3& sourcePlace) const {
+  return setup_.person ? 0 : setup_.scale * std::max(sourceGround - sourcePlace.y(), 0.0);
+}
+
 void LimbGoals::setFeet(const BodyFrame& source, const BodyFrame& target, double seconds) {
   if (forgetAcrossCuts(source, seconds)) seconds = 0;
   for (std::size_t i = 0; i < legs_.size(); ++i) {
@@ -172,15 +216,16 @@ void LimbGoals::setFeet(const BodyFrame& source, const BodyFrame& target, double
     frame.ankle = target.positions[leg.end];
     frame.toes = leg.toes ? target.positions[*leg.toes] : frame.ankle;
     feel(leg, feelers_[i], source, seconds, frame);
-    frame.ankleGround = leg.ankleGround;
-    frame.toesGround = leg.toesGround;
+    frame.ankleGround = leg.ankleGround - loweredBy(leg.sourceAnkleGround, source.positions[leg.sourceEnd]);
+    frame.toesGround =
+        leg.toes ? leg.toesGround - loweredBy(leg.sourceToesGround, source.positions[*leg.sourceToes]) : 0;
     leg.goal = feelers_[i].lock.next(frame, seconds, kFootSlack * setup_.targetHipHeight);
     leg.turn = Eigen::AngleAxisd(feelers_[i].lock.twist(), Vec3::UnitY());
     leg.wanted = true;
     leg.anchor = frame.anchor;
     followPlanting(frame.anchor != FootAnchor::kNone ? 1 : 0, seconds, leg.planted, feelers_[i].plantedSpeed);
-    double below = leg.ankleGround - leg.goal.y();
-    if (leg.toes) below = std::max(below, leg.toesGround - (leg.goal + frame.toes - frame.ankle).y());
+    double below = frame.ankleGround - leg.goal.y();
+    if (leg.toes) below = std::max(below, frame.toesGround - (leg.goal + frame.toes - frame.ankle).y());
     leg.goal.y() += softPositive(below, kSoftGround * setup_.targetHipHeight * (1 - kFirmGround * leg.planted));
   }
 }
@@ -233,7 +278,7 @@ double LimbGoals::pelvisShift(const BodyFrame& target) const {
 }
 
 void LimbGoals::levelToes(const Leg& leg, BodyFrame& frame, Pose& target) const {
-  if (!leg.toes) return;
+  if (!setup_.person || !leg.toes) return;
   const Quat turn = frame.rotations[*leg.toes] * setup_.targetNeutral.rotations[*leg.toes].conjugate();
   const double down = std::max(std::atan2(-(turn * Vec3::UnitZ()).y(), (turn * Vec3::UnitY()).y()), 0.0);
   const double share = leg.planted * std::clamp((kSoleUp - down) / (kSoleUp - kSteep), 0.0, 1.0);

@@ -24,6 +24,7 @@ struct Limb {
 
 struct Leg : Limb {
   std::optional<Index> toes, sourceToes;
+  Vec3 kneeAhead = Vec3::UnitZ();                      // to which side the lower joint bends, in the neutral pose
   double ankleGround = 0, toesGround = 0;              // heights when standing, target
   double sourceAnkleGround = 0, sourceToesGround = 0;  // likewise, source
   FootAnchor anchor = FootAnchor::kNone;               // what holds the foot in this frame
@@ -36,7 +37,7 @@ class LimbGoals {
   // Both must outlive this.
   LimbGoals(const RetargetSetup& setup, const RootPlacer& root);
 
-  // False where nothing needs correcting: no people, or both neutral poses are one.
+  // False where nothing needs correcting: nobody with legs, or both neutral poses are one.
   bool active() const { return active_; }
 
   // Feet that are planted in the source stay where they came down, by their toes while the heel is up; none goes below
@@ -73,12 +74,16 @@ class LimbGoals {
   };
 
   bool isSame() const;
-  void addLeg(const std::string& side, const Limb& limb);
+  void addPersonsLegs(const RootPlacer& root);
+  void addArms(const RootPlacer& root);
+  void addAnimalsLegs(const RootPlacer& root);
+  void addLeg(Leg leg);
   void addSurface(const std::string& from, const std::string& to, double touching, double apart,
                   std::vector<Surface>& surfaces) const;
   void feel(const Leg& leg, Feeler& feeler, const BodyFrame& source, double seconds, FootLock::Frame& frame) const;
   // True at a cut.
   bool forgetAcrossCuts(const BodyFrame& source, double seconds);
+  double loweredBy(double sourceGround, const Vec3& sourcePlace) const;
   Vec3 touchOf(const Limb& arm, const std::vector<Surface>& surfaces, const BodyFrame& source,
                const BodyFrame& target) const;
   double within(double change) const;

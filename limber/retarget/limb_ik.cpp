@@ -36,14 +36,14 @@ class LimbIkRetargeter : public FrameRetargeter {
       if (std::abs(up) > 1e-9 * setup_.targetHipHeight) aligned_.root().movePelvis(Vec3(0, up, 0), target, to());
       std::vector<Leg>& legs = goals_.legs();
       for (std::size_t i = 0; i < legs.size(); ++i) {
-        reach(legs[i], solver(legSolvers_, i), true, target);
+        reach(legs[i], solver(legSolvers_, i), &legs[i].kneeAhead, target);
         goals_.levelToes(legs[i], to(), target);
       }
     }
     goals_.setHands(from(), to(), seconds);
     std::vector<Limb>& arms = goals_.arms();
     for (std::size_t i = 0; i < arms.size(); ++i) {
-      if (arms[i].wanted) reach(arms[i], solver(armSolvers_, i), false, target);
+      if (arms[i].wanted) reach(arms[i], solver(armSolvers_, i), nullptr, target);
     }
   }
 
@@ -68,7 +68,7 @@ class LimbIkRetargeter : public FrameRetargeter {
     return solvers.empty() ? nullptr : solvers[i].get();
   }
 
-  void reach(const Limb& limb, IkSolver* solver, bool isLeg, Pose& target) {
+  void reach(const Limb& limb, IkSolver* solver, const Vec3* kneeAhead, Pose& target) {
     BodyFrame& frame = to();
     const bool stays = (limb.goal - frame.positions[limb.end]).norm() < 1e-9 * limb.length;
     if (stays && limb.turn.w() == 1) return;
@@ -76,7 +76,7 @@ class LimbIkRetargeter : public FrameRetargeter {
     if (solver) {
       reachBySolver(limb, *solver, target);
     } else {
-      turnTwoBones(limb, isLeg, target);
+      turnTwoBones(limb, kneeAhead, target);
     }
     // The end stands as it did, turned where a planted foot asks for it.
     const BodyKinematics& kinematics = setup_.targetKinematics;
@@ -87,11 +87,11 @@ class LimbIkRetargeter : public FrameRetargeter {
     aligned_.root().settle(target, frame);
   }
 
-  void turnTwoBones(const Limb& limb, bool isLeg, Pose& target) {
+  void turnTwoBones(const Limb& limb, const Vec3* kneeAhead, Pose& target) {
     const BodyFrame& frame = to();
     TwoBone bones{
         frame.positions[limb.upper], frame.positions[limb.lower], frame.positions[limb.end], limb.goal, {}, {}};
-    if (isLeg) bones.pole = kneePole(limb, bones);
+    if (kneeAhead) bones.pole = kneePole(limb, bones, *kneeAhead);
     const TwoBoneTurns turns = solveTwoBone(bones);
     const BodyKinematics& kinematics = setup_.targetKinematics;
     const Quat aboveUpper = kinematics.parentRotation(limb.upper, frame);
@@ -104,11 +104,11 @@ class LimbIkRetargeter : public FrameRetargeter {
 
   // Knees bend to where they bend now, and forward where they hardly do or are a little overstretched: else they would
   // snap from one side to the other.
-  Vec3 kneePole(const Limb& limb, const TwoBone& bones) const {
+  Vec3 kneePole(const Limb& limb, const TwoBone& bones, const Vec3& kneeAhead) const {
     const Vec3 way = (bones.end - bones.start).normalized(), knee = bones.middle - bones.start;
     const Quat turn =
         aligned_.targetFrame().rotations[limb.upper] * setup_.targetNeutral.rotations[limb.upper].conjugate();
-    const Vec3 ahead = turn * Vec3::UnitZ(), forward = (ahead - ahead.dot(way) * way).normalized();
+    const Vec3 ahead = turn * kneeAhead, forward = (ahead - ahead.dot(way) * way).normalized();
     Vec3 bend = knee - knee.dot(way) * way;
     const double backward = std::max(-bend.dot(forward), 0.0);
     const double little = std::max(1 - backward / (kOverstretched * limb.length), 0.0);

@@ -47,7 +47,7 @@ class OnlineRetargeter : public FrameRetargeter {
     std::size_t task = 0;
     for (const Leg& leg : goals_.legs()) {
       setTask(leg, frame, task);
-      if (isChain(leg)) bendKnee(leg, frame, target);
+      if (setup_.person && isChain(leg)) bendKnee(leg, frame, target);
     }
     for (const Limb& arm : goals_.arms()) setTask(arm, frame, task);
     solver_->setReference(target);

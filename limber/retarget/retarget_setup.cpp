@@ -145,6 +145,9 @@ RetargetSetup::RetargetSetup(const Skeleton& from, const Skeleton& to, SkeletonM
     const bool stand = one.stands() && other.stands();
     sourceHipHeight = stand ? one.height : one.across;
     targetHipHeight = stand ? other.height : other.across;
+    if (stand) {
+      animalLegs = limber::animalLegs(map, from, to, sourceNeutral, targetNeutral, one.height, other.height);
+    }
   }
   if (!(sourceHipHeight > 0) || !(targetHipHeight > 0)) {
     throw Error(ErrorCode::kBadData, "the rest pose has no height: its joints lie in one place");
@@ -156,6 +159,8 @@ RetargetSetup::RetargetSetup(const Skeleton& from, const Skeleton& to, SkeletonM
   if (options.rootScale == RootScale::kNone) scale = 1;
 
   const std::vector<Index> soles = groundJoints(map, MapSide::kSource);
+  sourceLowest = lowest(soles, sourceNeutral.positions);
+  targetLowest = lowest(groundJoints(map, MapSide::kTarget), targetNeutral.positions);
   const double restGround = lowest(soles, sourceNeutral.restPositions);
   sourceGround = options.sourceGround.value_or(restGround);
   if (!options.sourceGround && motion && !motion->poses.empty()) {

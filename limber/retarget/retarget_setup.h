@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "limber/retarget/animal_legs.h"
 #include "limber/retarget/body_frame.h"
 #include "limber/retarget/neutral_pose.h"
 #include "limber/retarget/skeleton_map.h"
@@ -57,6 +58,8 @@ struct RetargetSetup {
   double sourceHipHeight = 1,
          targetHipHeight = 1;                 // of no people: mean height of the joints, or size of what lies flat
   double sourceGround = 0, targetGround = 0;  // heights of the lowest foot joint of someone standing
+  double sourceLowest = 0, targetLowest = 0;  // likewise, in the neutral poses
+  std::vector<AnimalLeg> animalLegs;          // of no people that stand on their joints
 };
 
 }  // namespace limber

@@ -9,6 +9,11 @@ RootPlacer::RootPlacer(const RetargetSetup& setup) : setup_(setup) {
   const Skeleton& target = *setup.target;
   if (!setup.person) {
     for (const JointMatch& match : setup.map.matches) moved_.push_back(match.target.front());
+    for (const AnimalLeg& leg : setup.animalLegs) {
+      if (!hips_) hips_ = leg.target.upper;
+      while (hips_ && !isAncestorOrSelf(target, *hips_, leg.target.upper)) hips_ = target.joints[*hips_].parent;
+      if (!hips_) return;
+    }
     return;
   }
   hips_ = setup.map.find("hips")->target.front();

@@ -42,7 +42,7 @@ class RootPlacer {
   void placeLoose(Pose& target, BodyFrame& frame) const;
 
   const RetargetSetup& setup_;
-  std::optional<Index> hips_;
+  std::optional<Index> hips_;    // of others than people the joint that carries all legs
   std::optional<Index> pelvis_;  // the joint that carries both legs and the trunk
   std::vector<Index> pelvisChildren_;
   std::vector<Loose> loose_;

@@ -151,6 +151,35 @@ inline Skeleton oddlyBuilt() {
   return person;
 }
 
+// A body with a neck, a tail that hangs down, and four legs of two bones and a paw; the thigh's share of the leg's
+// metre.
+inline Skeleton quadruped(double thigh) {
+  Skeleton skeleton;
+  const auto add = [&](const std::string& name, const std::string& parent, const Vec3& offset) {
+    Joint& joint = skeleton.joints.emplace_back();
+    joint.name = name;
+    joint.parent = skeleton.find(parent);
+    joint.rest.translation = offset;
+  };
+  add("b0", "", Vec3(0, 1, 0));
+  add("b1", "b0", Vec3(0, 0, 0.8));
+  add("n0", "b1", Vec3(0, 0.3, 0.3));
+  add("n1", "n0", Vec3(0, 0.1, 0.3));
+  add("tail1", "b0", Vec3(0, 0, -0.1));
+  add("tail2", "tail1", Vec3(0, -0.1, -0.6));
+  add("tail3", "tail2", Vec3(0, -0.75, -0.2));
+  for (const std::string at : {"b0", "b1"}) {
+    for (const double side : {1.0, -1.0}) {
+      const std::string leg = at + (side > 0 ? "Left" : "Right");
+      add(leg + "One", at, Vec3(0.2 * side, -0.05, 0));
+      add(leg + "Two", leg + "One", Vec3(0, -0.9 * thigh, 0.02));
+      add(leg + "Three", leg + "Two", Vec3(0, -0.9 * (1 - thigh), -0.02));
+      add(leg + "Four", leg + "Three", Vec3(0, -0.04, 0.1));
+    }
+  }
+  return skeleton;
+}
+
 // Metres that the feet's joints move along the ground once the source's have stood still for a tenth of a second: these
 // feet stop all at once, and what is at speed when it is planted needs a moment.
 inline double slidWay(const Skeleton& person, const PoseSequence& motion, const Skeleton& other,

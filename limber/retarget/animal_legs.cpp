@@ -1,0 +1,129 @@
+#include "limber/retarget/animal_legs.h"
+
+#include <algorithm>
+
+namespace limber {
+
+namespace {
+
+// In mean heights of the joints.
+constexpr double kLow = 0.2;      // of a leg's end, at most
+constexpr double kBegins = 0.35;  // of its upper joint, at least
+constexpr double kSteep = 1;      // how far down it goes for each metre along, at least: tails and necks do not
+
+constexpr double kBlade = 0.7;  // of the height of a blade's upper end, at which its lower one is at least
+
+// A joint of the target and its partner in the source.
+struct Pair {
+  Index source = 0, target = 0;
+};
+
+class LegFinder {
+ public:
+  LegFinder(const SkeletonMap& map, const Skeleton& source, const Skeleton& target, const NeutralPose& sourceNeutral,
+            const NeutralPose& targetNeutral, double sourceHeight, double targetHeight)
+      : source_(source),
+        target_(target),
+        sourceNeutral_(sourceNeutral),
+        targetNeutral_(targetNeutral),
+        sourceHeight_(sourceHeight),
+        targetHeight_(targetHeight),
+        pairOf_(target.jointCount()),
+        matchedSource_(source.jointCount()) {
+    for (const JointMatch& match : map.matches) {
+      pairs_.push_back({match.source.front(), match.target.front()});
+      pairOf_[match.target.front()] = pairs_.size() - 1;
+      matchedSource_[match.source.front()] = true;
+    }
+    children_.resize(pairs_.size());
+    above_.resize(pairs_.size());
+    for (std::size_t p = 0; p < pairs_.size(); ++p) {
+      above_[p] = pairAbove(pairs_[p]);
+      if (above_[p]) children_[*above_[p]].push_back(p);
+      sourceLowest_ = std::min(sourceLowest_, sourceNeutral.positions[pairs_[p].source].y());
+      targetLowest_ = std::min(targetLowest_, targetNeutral.positions[pairs_[p].target].y());
+    }
+  }
+
+  std::vector<AnimalLeg> find() const {
+    std::vector<AnimalLeg> legs;
+    for (std::size_t p = 0; p < pairs_.size(); ++p) {
+      if (!children_[p].empty() || height(pairs_[p]) > kLow) continue;
+      std::vector<Pair> chain = {pairs_[p]};
+      for (auto above = above_[p]; above && children_[*above].size() == 1; above = above_[*above]) {
+        chain.push_back(pairs_[*above]);
+      }
+      std::reverse(chain.begin(), chain.end());
+      if (const std::optional<AnimalLeg> leg = legOf(chain)) legs.push_back(*leg);
+    }
+    return legs;
+  }
+
+ private:
+  static std::optional<Index> nearestAbove(const Skeleton& skeleton, Index joint, const auto& isMatched) {
+    std::optional<Index> at = skeleton.joints[joint].parent;
+    while (at && !isMatched(*at)) at = skeleton.joints[*at].parent;
+    return at;
+  }
+
+  // The nearest pair above in both.
+  std::optional<std::size_t> pairAbove(const Pair& pair) const {
+    const auto target = nearestAbove(target_, pair.target, [&](Index j) { return pairOf_[j].has_value(); });
+    const auto source = nearestAbove(source_, pair.source, [&](Index j) { return matchedSource_[j]; });
+    if (!target || !source || pairs_[*pairOf_[*target]].source != *source) return std::nullopt;
+    return pairOf_[*target];
+  }
+
+  // Over the lowest, in mean heights of the joints: the higher of both.
+  double height(const Pair& pair) const {
+    return std::max((sourceNeutral_.positions[pair.source].y() - sourceLowest_) / sourceHeight_,
+                    (targetNeutral_.positions[pair.target].y() - targetLowest_) / targetHeight_);
+  }
+
+  static bool isSteep(const Vec3& way) { return -way.y() > kSteep * std::hypot(way.x(), way.z()); }
+
+  std::optional<AnimalLeg> legOf(const std::vector<Pair>& chain) const {
+    const auto end = static_cast<std::size_t>(
+        std::find_if(chain.begin(), chain.end(), [&](const Pair& p) { return height(p) < kLow; }) - chain.begin());
+    if (end < 2 || end >= chain.size()) return std::nullopt;
+    // Shoulder blades and hip bones stay with the body.
+    const std::size_t upper = end > 2 && height(chain[1]) > kBlade * height(chain[0]) ? 1 : 0;
+    const std::vector<Vec3>&from = sourceNeutral_.positions, &to = targetNeutral_.positions;
+    if (!isSteep(from[chain[end].source] - from[chain[upper].source]) ||
+        !isSteep(to[chain[end].target] - to[chain[upper].target]) || height(chain[upper]) < kBegins) {
+      return std::nullopt;
+    }
+    const Vec3 start = to[chain[upper].target], line = (to[chain[end].target] - start).normalized();
+    const auto offLine = [&](const Pair& pair) { return (to[pair.target] - start).cross(line).norm(); };
+    const auto lower = std::max_element(chain.begin() + static_cast<std::ptrdiff_t>(upper) + 1,
+                                        chain.begin() + static_cast<std::ptrdiff_t>(end),
+                                        [&](const Pair& a, const Pair& b) { return offLine(a) < offLine(b); });
+    AnimalLeg leg{{chain[upper].source, lower->source, chain[end].source, std::nullopt},
+                  {chain[upper].target, lower->target, chain[end].target, std::nullopt}};
+    if (end + 1 < chain.size()) {
+      leg.source.toes = chain[end + 1].source;
+      leg.target.toes = chain[end + 1].target;
+    }
+    return leg;
+  }
+
+  const Skeleton &source_, &target_;
+  const NeutralPose &sourceNeutral_, &targetNeutral_;
+  double sourceHeight_, targetHeight_;
+  double sourceLowest_ = HUGE_VAL, targetLowest_ = HUGE_VAL;
+  std::vector<Pair> pairs_;
+  std::vector<std::optional<std::size_t>> pairOf_;  // #J of the target
+  std::vector<bool> matchedSource_;                 // #J of the source
+  std::vector<std::optional<std::size_t>> above_;   // #pairs
+  std::vector<std::vector<std::size_t>> children_;  // #pairs
+};
+
+}  // namespace
+
+std::vector<AnimalLeg> animalLegs(const SkeletonMap& map, const Skeleton& source, const Skeleton& target,
+                                  const NeutralPose& sourceNeutral, const NeutralPose& targetNeutral,
+                                  double sourceHeight, double targetHeight) {
+  return LegFinder(map, source, target, sourceNeutral, targetNeutral, sourceHeight, targetHeight).find();
+}
+
+}  // namespace limber

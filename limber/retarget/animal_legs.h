@@ -1,0 +1,28 @@
+// The legs of those that are no people, as far as both skeletons have them: told by their form.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "limber/retarget/neutral_pose.h"
+
+namespace limber {
+
+// Joints of one side of the map.
+struct LegJoints {
+  Index upper = 0, lower = 0, end = 0;  // `lower`: the joint between that bends the leg most
+  std::optional<Index> toes;            // the next joint after the end
+};
+
+struct AnimalLeg {
+  LegJoints source, target;
+};
+
+// Chains of matched joints, one on the other in both, that come down from the body to the ground in both neutral poses.
+// The end is the first joint of the chain that is low. `sourceHeight` and `targetHeight` are mean heights of the
+// matched joints over the lowest. Cost: linear in the joints but for their depth.
+std::vector<AnimalLeg> animalLegs(const SkeletonMap& map, const Skeleton& source, const Skeleton& target,
+                                  const NeutralPose& sourceNeutral, const NeutralPose& targetNeutral,
+                                  double sourceHeight, double targetHeight);
+
+}  // namespace limber

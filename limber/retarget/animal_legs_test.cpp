@@ -1,0 +1,79 @@
+#include "limber/retarget/animal_legs.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "limber/retarget/testing/test_motion.h"
+
+namespace limber {
+namespace {
+
+using limber::testing::quadruped;
+
+// It sways forward and back over its paws, which stand still.
+PoseSequence swaying(const Skeleton& animal) {
+  PoseSequence motion{{}, 1.0 / 60};
+  for (int f = 0; f < 120; ++f) {
+    Pose& pose = motion.poses.emplace_back(restPose(animal));
+    const double angle = 20 * std::sin(0.05 * f);
+    for (const Joint& joint : animal.joints) {
+      const Quat lean = limber::testing::turn(Vec3::UnitX(), angle);
+      const Index j = animal.find(joint.name).value();
+      if (joint.name.ends_with("One")) pose.locals[j].rotation = lean;
+      if (joint.name.ends_with("Three")) pose.locals[j].rotation = lean.conjugate();
+    }
+    const Index paw = animal.find("b0LeftThree").value();
+    pose.locals[0].translation += restGlobals(animal)[paw].translation() - poseGlobals(animal, pose)[paw].translation();
+  }
+  return motion;
+}
+
+TEST(AnimalLegs, AreThoseThatComeDownToTheGround) {
+  const Skeleton one = quadruped(0.5), other = quadruped(0.35);
+  const RetargetSetup setup(one, other, matchSkeletons(one, other), {});
+  ASSERT_EQ(setup.animalLegs.size(), 4u);
+  for (const AnimalLeg& leg : setup.animalLegs) {
+    const std::string upper = other.joints[leg.target.upper].name, stem = upper.substr(0, upper.find("One"));
+    EXPECT_EQ(upper, stem + "One");
+    EXPECT_EQ(leg.target.lower, other.find(stem + "Two"));
+    EXPECT_EQ(leg.target.end, other.find(stem + "Three"));
+    EXPECT_EQ(leg.target.toes, other.find(stem + "Four"));
+    EXPECT_EQ(one.joints[leg.source.lower].name, stem + "Two");
+  }
+}
+
+TEST(AnimalLegs, LyingAndLeglessOnesHaveNone) {
+  const Skeleton one = straightChain(8, 2);
+  Skeleton snake = one;
+  for (Joint& joint : snake.joints) joint.rest.translation = Vec3(0, 0, joint.rest.translation.y());
+  EXPECT_TRUE(RetargetSetup(snake, snake, matchSkeletons(snake, snake), {}).animalLegs.empty());
+}
+
+TEST(AnimalLegs, PlantedPawsStandStill) {
+  const Skeleton one = quadruped(0.5);
+  Skeleton other = quadruped(0.35);
+  for (Joint& joint : other.joints) {
+    if (joint.name.starts_with("b1") && joint.name.ends_with("Two")) joint.rest.translation.y() -= 0.2;
+    if (joint.name.starts_with("b1") && joint.name.ends_with("Three")) joint.rest.translation.y() += 0.2;
+  }
+  const PoseSequence motion = swaying(one);
+  const RetargetSetup setup(one, other, matchSkeletons(one, other), {}, &motion);
+  const auto way = [&](const char* method) {
+    const PoseSequence result = retargetFrames(findRetargetMethod(method), setup, motion);
+    double sum = 0;
+    for (std::size_t f = 11; f < result.poses.size(); ++f) {
+      const std::vector<Affine> before = poseGlobals(other, result.poses[f - 1]),
+                                now = poseGlobals(other, result.poses[f]);
+      for (const AnimalLeg& leg : setup.animalLegs) {
+        sum += (now[leg.target.end].translation() - before[leg.target.end].translation()).norm();
+      }
+    }
+    return sum;
+  };
+  EXPECT_GT(way("aligned"), 0.04);
+  for (const char* method : {"limb-ik", "online"}) EXPECT_LT(way(method), 0.02 * way("aligned")) << method;
+}
+
+}  // namespace
+}  // namespace limber
