@@ -283,6 +283,7 @@ AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress
 
   if (!best.skeleton.bent()) refineHumanoid(best.skeleton, body, best.frame, best.pins, best.embedding.places);
   placeBetween(best.skeleton, best.embedding.places);
+  if (!best.skeleton.bent()) refineHocks(best.skeleton, body, best.frame, best.pins, best.embedding.places);
   refineQuadruped(best.skeleton, body, best.frame, best.pins, best.embedding.places);
   AutoRig rig;
   if (person) {

@@ -81,6 +81,22 @@ TEST(TemplateRigger, NamesTheJointsOfAPerson) {
   EXPECT_GT(result.matches[0].confidence, 0.7);
 }
 
+// As animals on two legs have them: knees before, hocks behind, toes on the ground.
+TEST(TemplateRigger, FeetAreAtTheHocksOfLegsThatBendBack) {
+  const testing::CapsulePerson body = testing::capsulePerson(0.3, testing::CapsuleLegs::kHocked);
+  const AutoRig result = rig(body.mesh, person());
+  EXPECT_GT(result.matches[0].confidence, 0.5);
+  for (const double s : {1.0, -1.0}) {
+    const std::string side = s > 0 ? "left" : "right";
+    const auto off = [&](const char* joint, const Vec3& there) {
+      return (place(result.skeleton, (side + joint).c_str()) - there.cwiseProduct(Vec3(s, 1, 1))).norm();
+    };
+    EXPECT_LT(off("LowerLeg", body.knee), 0.06);
+    EXPECT_LT(off("Foot", body.ankle), 0.04);
+    EXPECT_LT(off("Toes", body.toes), 0.05);
+  }
+}
+
 // A toy: stumps for legs, and a head that is half of it.
 TEST(TemplateRigger, FindsTheLimbsOfAToy) {
   TriMesh toy;

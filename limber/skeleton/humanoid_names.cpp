@@ -197,6 +197,11 @@ class NameReader {
       sure = 0.6;
     }
     give(side, "UpperLeg", upper, sure);
+    const std::optional<Index> middle = firstOf(BodyWord::kMiddleLeg, side, upper);
+    if (upper && lower && middle && isAncestorOrSelf(skeleton_, *upper, *middle) &&
+        isAncestorOrSelf(skeleton_, *middle, *lower)) {
+      return hockedLeg(side, *middle, *lower);
+    }
     give(side, "LowerLeg", lower, sure);
     // A foot that hangs elsewhere is one that inverse kinematics drove.
     const std::optional<Index> foot = firstOf(BodyWord::kFoot, side, lower);
@@ -204,6 +209,15 @@ class NameReader {
     give(side, "Foot", foot, below ? sure : 0.6);
     const std::optional<Index> toes = firstOf(BodyWord::kToes, side, foot);
     give(side, "Toes", toes ? toes : firstOf(BodyWord::kFoot, side, foot), toes ? sure : 0.7);
+  }
+
+  // Of three bones the first joint below the thigh bends forward, as a knee does; the next bends back, as the heel of
+  // animals that walk on their toes: below it is the foot's bone, and what is called the foot are its toes.
+  void hockedLeg(BodySide side, Index knee, Index hock) {
+    give(side, "LowerLeg", knee, 0.85);
+    give(side, "Foot", hock, 0.85);
+    const std::optional<Index> toes = firstOf(BodyWord::kToes, side, hock), foot = firstOf(BodyWord::kFoot, side, hock);
+    give(side, "Toes", foot ? foot : toes, 0.7);
   }
 
   // Three joints of each, from the hand outwards.

@@ -32,8 +32,9 @@ struct HumanoidJoint {
 //
 // One name means different joints in different habits ("LeftShoulder" is a clavicle or an upper arm, "LeftLeg" a shin
 // or a thigh, "Spine1" the second or the third bone), so names are read together with the tree: the hips are where legs
-// and trunk part, and the trunk's bones are counted along it. Helpers (twist, IK, poles, ends) play nothing. Skeletons
-// that are no people get few bones or none.
+// and trunk part, the trunk's bones are counted along it, and of three bones in a leg ("UpperLeg", "MidLeg",
+// "LowerLeg") the last is the foot, as of animals that walk on their toes. Helpers (twist, IK, poles, ends) play
+// nothing. Skeletons that are no people get few bones or none.
 std::vector<HumanoidJoint> humanoidJointsByName(const Skeleton& skeleton);
 
 // The joint in the pelvis: the hips, unless these only carry legs and trunk ("Root", on the ground) and a joint on the

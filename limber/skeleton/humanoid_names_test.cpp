@@ -172,6 +172,21 @@ TEST(HumanoidNames, ThePelvisIsWhereItIsCalledSo) {
   EXPECT_EQ(bones.at("spine"), "Abdomen");
 }
 
+// The knee bends forward and the hock back.
+TEST(HumanoidNames, OfThreeBonesInALegTheLastIsTheFoot) {
+  const auto bones = bonesByName(
+      "Body(Torso(Neck(Head)),UpperLeg.L(MidLeg.L(LowerLeg.L(Foot.L))),UpperLeg.R(MidLeg.R(LowerLeg.R(Foot.R))))");
+  EXPECT_EQ(bones.at("leftUpperLeg"), "UpperLeg.L");
+  EXPECT_EQ(bones.at("leftLowerLeg"), "MidLeg.L");
+  EXPECT_EQ(bones.at("leftFoot"), "LowerLeg.L");
+  EXPECT_EQ(bones.at("leftToes"), "Foot.L");
+  EXPECT_EQ(bones.at("rightLowerLeg"), "MidLeg.R");
+  // Beside the others it is a helper.
+  const auto aside = bonesByName("Body(Torso(Neck(Head)),UpperLeg.L(LowerLeg.L(Foot.L),MidLeg.L),UpperLeg.R)");
+  EXPECT_EQ(aside.at("leftLowerLeg"), "LowerLeg.L");
+  EXPECT_EQ(aside.at("leftFoot"), "Foot.L");
+}
+
 TEST(HumanoidNames, AnimalsLegsAreNoPeoples) {
   const auto bones = bonesByName(
       "hips(spine_1(front_leg_upper_l(front_leg_lower_l(front_leg_foot_l)),head),"

@@ -76,6 +76,8 @@ constexpr std::array kWords = {
     Word{"uleg", BodyWord::kUpperLeg},
     Word{"thigh", BodyWord::kUpperLeg},
     Word{"femur", BodyWord::kUpperLeg},
+    Word{"midleg", BodyWord::kMiddleLeg},
+    Word{"middleleg", BodyWord::kMiddleLeg},
     Word{"lowerleg", BodyWord::kLowerLeg},
     Word{"lowleg", BodyWord::kLowerLeg},
     Word{"loleg", BodyWord::kLowerLeg},

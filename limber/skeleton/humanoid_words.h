@@ -26,6 +26,7 @@ enum class BodyWord {
   kHip,  // of a side: an upper leg, or a link between hips and upper leg
   kLeg,  // a lower leg, or any of the leg
   kUpperLeg,
+  kMiddleLeg,  // of three bones before the foot
   kLowerLeg,
   kFoot,
   kToes,
