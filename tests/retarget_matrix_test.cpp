@@ -23,16 +23,16 @@ namespace {
 
 constexpr std::size_t kFrames = 400;  // of each motion
 
-// Left out: those with the skeleton or the body of another, which would count twice; and the walking machine with a
-// bird's legs, which have a bone more and bend back, so that thighs and shins of a person say nothing of them.
-constexpr const char* kLeftOut[] = {"quaternius_man_king.glb", "quaternius_man_spacesuit.glb",
-                                    "quaternius_platformer_character.glb", "quaternius_woman_scifi.glb",
-                                    "quaternius_mech_george.glb"};
+// Those with the skeleton of another count once in means.
+const std::set<std::string> kTwins = {"quaternius_man_king.glb", "quaternius_man_spacesuit.glb",
+                                      "quaternius_platformer_character.glb", "quaternius_woman_scifi.glb"};
+// A walking machine with a bird's legs, which have a bone more and bend back: thighs and shins of a person say nothing
+// of their bones. Feet and ground count.
+constexpr const char* kBirdLegs = "quaternius_mech_george.glb";
 
 // Also one without a mesh.
 std::vector<std::string> humanoids() {
   std::vector<std::string> files(std::begin(kSharedPeople), std::end(kSharedPeople));
-  for (const char* file : kLeftOut) std::erase(files, file);
   files.push_back("pab_skeleton.fbx");
   return files;
 }
@@ -65,7 +65,7 @@ const std::set<std::string> kNeverStands = {"cmu_daz_02_03_run.bvh", "cmu_daz_09
 // What does not hold yet: mean jerk over 1.1. The ground under this recording is not level: the feet stand at heights
 // that differ by a tenth of the hips' height, and go below it by as much before they are lifted to it.
 const std::set<std::string> kRougherThanSource = {"rokoko_dance_mixamorig_names.bvh"};  // 1.18
-constexpr double kRoughest = 1.65;  // of all pairs: a walk of the living dead on a toy with hips as wide as its legs
+constexpr double kRoughest = 1.7;  // of all pairs: a walk of the living dead on a toy with hips as wide as its legs
 
 }  // namespace
 
@@ -82,13 +82,16 @@ TEST_P(RetargetMatrix, EveryHumanoidKeepsFeetAndGround) {
     const RetargetSetup setup(source.skeleton, target, matchSkeletons(source.skeleton, target), {}, &source.frames);
     const MotionMetrics result = measured(setup, "limb-ik", source.frames);
     EXPECT_LT(1700 * result.penetration, 5) << "millimetres at human size";
-    EXPECT_LT(result.boneDirection, 15);
+    if (file != kBirdLegs) {
+      EXPECT_LT(result.boneDirection, 15);
+    }
     EXPECT_EQ(result.planted == 0, kNeverStands.contains(motion));
     EXPECT_LT(result.sliding, result.sourceSliding + 1e-4);
     if (isWalkOrRun(motion)) {
       EXPECT_LT(result.sliding, 0.02);
     }
     EXPECT_LT(result.jerk, kRoughest);
+    if (kTwins.contains(file) || file == kBirdLegs) continue;
     jerk += result.jerk;
     ++count;
   }
