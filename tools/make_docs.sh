@@ -50,6 +50,10 @@ once walk 0:1.1
 $limber retarget $work/biped_template.glb $work/walk_once.bvh -o $work/walk.glb --quiet
 $limber preview $work/walk.glb --frames 8 --size 160x200 --view 80,5 -o $images/retarget_walk.png --quiet
 
+once quadruped-walk 0:0.9
+$limber retarget $work/quadruped_template.glb $work/quadruped-walk_once.bvh -o $work/fox_walk.glb --quiet
+$limber preview $work/fox_walk.glb --frames 8 --size 160x120 --view 80,5 -o $images/retarget_fox.png --quiet
+
 characters=${LIMBER_SHARED_DATA:-../shared/data}/rigged
 if [ -d "$characters" ]; then
   $limber evaluate skinning "$characters" --references docs/data/blender_weights.tsv -o docs/weights.md --quiet

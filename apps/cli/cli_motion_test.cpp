@@ -279,6 +279,20 @@ TEST_F(Cli, SampleMotionsMoveTheSamplePerson) {
   expectOneLine(run({"sample", "biped", "-o", "biped.bvh", "-q"}), 1);
 }
 
+TEST_F(Cli, TheSampleFoxWalks) {
+  EXPECT_EQ(run({"sample", "quadruped", "-o", "fox.glb", "-q"}).code, 0);
+  EXPECT_EQ(run({"rig", "fox.glb", "--template", "quadruped", "-o", "rigged.glb", "-q"}).code, 0);
+  EXPECT_EQ(run({"sample", "quadruped-walk", "-o", "walk.glb", "-q"}).code, 0);
+  EXPECT_EQ(run({"retarget", "rigged.glb", "walk.glb", "-o", "walking.glb", "-q"}).code, 0);
+  const Result measured = run({"evaluate", "motion", "walking.glb", "--source", "walk.glb", "--json"});
+  ASSERT_EQ(measured.code, 0) << measured.error;
+  const nlohmann::json measures = nlohmann::json::parse(measured.out);
+  EXPECT_GT(measures.at("planted_share").get<double>(), 0.5);
+  EXPECT_LT(measures.at("sliding_heights_per_second").get<double>(), 0.02);
+  EXPECT_LT(measures.at("penetration_millimetres").get<double>(), 5);
+  EXPECT_LT(measures.at("jerk_ratio").get<double>(), 1.1);
+}
+
 TEST_F(Cli, RetargetRefusesWithOneLineAndLeavesNoFile) {
   put("hero.bvh", personBvh(""));
   put("cut.bvh", personBvh("").substr(0, 400));

@@ -11,9 +11,15 @@ namespace limber {
 
 namespace {
 
-constexpr std::array<SampleMotion, 2> kMotions = {{
-    {"walk", "a person who walks", 1.1, &walkAt},
-    {"jumping-jack", "a person who does jumping jacks", 1.2, &jumpingJackAt},
+template <Stance (*at)(double seconds)>
+Pose figureAt(const Skeleton& figure, double seconds) {
+  return poseOf(figure, at(seconds));
+}
+
+constexpr std::array<SampleMotion, 3> kMotions = {{
+    {"walk", "a person who walks", 1.1, &figureSkeleton, &figureAt<walkAt>},
+    {"jumping-jack", "a person who does jumping jacks", 1.2, &figureSkeleton, &figureAt<jumpingJackAt>},
+    {"quadruped-walk", "an animal of --template quadruped that walks", 0.9, &quadrupedSkeleton, &quadrupedWalkAt},
 }};
 
 constexpr double kRate = 60;  // frames a second
@@ -34,7 +40,7 @@ Motion makeSampleMotion(std::string_view name) {
   Motion motion;
   motion.name = recipe.name;
   motion.framesPerSecond = kRate;
-  motion.skeleton = figureSkeleton();
+  motion.skeleton = recipe.skeleton();
   Clip& clip = motion.clips.emplace_back();
   clip.name = recipe.name;
   clip.translations.push_back({});  // of the hips, the first joint
@@ -44,7 +50,7 @@ Motion makeSampleMotion(std::string_view name) {
   const int frames = static_cast<int>(std::lround(recipe.seconds * kRate)) * kRepetitions;
   for (int f = 0; f <= frames; ++f) {
     const double seconds = f / kRate;
-    const Pose pose = poseOf(motion.skeleton, recipe.at(seconds));
+    const Pose pose = recipe.at(motion.skeleton, seconds);
     clip.translations[0].times.push_back(static_cast<float>(seconds));
     clip.translations[0].values.push_back(pose.locals[0].translation.cast<float>());
     for (auto& track : clip.rotations) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "limber/asset/bvh_read.h"
 #include "limber/asset/bvh_write.h"
@@ -14,54 +15,57 @@
 namespace limber {
 namespace {
 
-constexpr double kFrame = 1.0 / 60, kToesStand = 0.025 + 1e-9;
+constexpr double kFrame = 1.0 / 60;
 
 class SampleMotions : public ::testing::TestWithParam<SampleMotion> {
  protected:
   static int frames() { return static_cast<int>(std::lround(GetParam().seconds / kFrame)); }
-  std::vector<Affine> globalsAt(double seconds) const {
-    return poseGlobals(figure, poseOf(figure, GetParam().at(seconds)));
-  }
+  std::vector<Affine> globalsAt(double seconds) const { return poseGlobals(figure, GetParam().at(figure, seconds)); }
   Vec3 at(const std::vector<Affine>& globals, const std::string& joint) const {
     return globals[figure.find(joint).value()].translation();
   }
+  bool isPerson() const { return figure.find("leftHand").has_value(); }
+  std::vector<std::string> legs() const {
+    if (isPerson()) return {"left", "right"};
+    return {"leftFront", "rightFront", "leftHind", "rightHind"};
+  }
 
-  const Skeleton figure = figureSkeleton();
+  const Skeleton figure = GetParam().skeleton();
 };
 
-TEST_P(SampleMotions, LegsReachTheirFeetAndAreNeverStraight) {
+TEST_P(SampleMotions, LegsAreNeverStraight) {
   for (int f = 0; f < frames(); ++f) {
-    const Stance stance = GetParam().at(f * kFrame);
     const std::vector<Affine> globals = globalsAt(f * kFrame);
-    for (const std::string side : {"left", "right"}) {
+    for (const std::string& side : legs()) {
       const Vec3 hip = at(globals, side + "UpperLeg"), knee = at(globals, side + "LowerLeg"),
                  ankle = at(globals, side + "Foot");
-      Vec3 wanted = stance.feet[side == "left" ? 0 : 1].ankle;
-      if (side == "right") wanted.x() *= -1;
-      EXPECT_LT((ankle - wanted).norm(), 1e-9) << side << f;
       const double straight = ((knee - hip).norm() + (ankle - knee).norm()) - (ankle - hip).norm();
-      EXPECT_GT(straight, 1e-3) << side << f;
-      EXPECT_GT((knee - 0.5 * (hip + ankle)).z(), 0) << "forward";
+      EXPECT_GT(straight, 1e-3 * (knee - hip).norm()) << side << f;
+      const double bend = (knee - 0.5 * (hip + ankle)).z();
+      EXPECT_GT(side.ends_with("Front") ? -bend : bend, 0) << "knees forward, elbows back " << side << f;
     }
   }
 }
 
 TEST_P(SampleMotions, FeetStandStillAndStayAboveTheGround) {
+  const std::vector<Affine> rest = restGlobals(figure);
   int standing = 0, still = 0;
   for (int f = 0; f < frames(); ++f) {
     const std::vector<Affine> now = globalsAt(f * kFrame), then = globalsAt((f + 1) * kFrame);
-    for (const std::string side : {"left", "right"}) {
-      const Affine& foot = now[figure.find(side + "Foot").value()];
-      EXPECT_GT((foot * kToHeel).y(), -1e-9) << f;
-      EXPECT_GT(at(now, side + "Toes").y(), 0.025 - 1e-9) << f;
-      EXPECT_GT(at(now, side + "Toes_end").y(), 0.02 - 1e-3) << f;
-      const bool stands = at(now, side + "Toes").y() < kToesStand && at(then, side + "Toes").y() < kToesStand;
+    for (const std::string& side : legs()) {
+      const double ground = at(rest, side + "Toes").y();
+      EXPECT_GT(at(now, side + "Toes").y(), ground - 1e-9) << f;
+      if (isPerson()) {
+        EXPECT_GT((now[figure.find(side + "Foot").value()] * kToHeel).y(), -1e-9) << f;
+        EXPECT_GT(at(now, side + "Toes_end").y(), 0.02 - 1e-3) << f;
+      }
+      const bool stands = std::max(at(now, side + "Toes").y(), at(then, side + "Toes").y()) < ground + 1e-9;
       standing += stands;
       still += stands && (at(then, side + "Toes") - at(now, side + "Toes")).norm() < 1e-9;
     }
   }
   EXPECT_EQ(standing, still);
-  EXPECT_GT(standing, 2 * frames() * 0.4);
+  EXPECT_GT(standing, 0.4 * frames() * static_cast<double>(legs().size()));
 }
 
 TEST_P(SampleMotions, IsSmooth) {
@@ -86,7 +90,7 @@ TEST_P(SampleMotions, RepeatsAndSurvivesAFile) {
     EXPECT_LT(first.locals[j].rotation.angularDistance(last.locals[j].rotation), 1e-4);
   }
   const Motion read = readBvh(writeBvh(made), "sample");
-  EXPECT_EQ(read.skeleton.jointCount(), made.skeleton.jointCount());
+  EXPECT_GE(read.skeleton.jointCount(), made.skeleton.jointCount()) << "and ends of bones";
   Pose again = restPose(read.skeleton);
   sampleClip(read.clips[0], 0.5, again);
   sampleClip(made.clips[0], 0.5, first);
