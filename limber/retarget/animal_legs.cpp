@@ -1,6 +1,7 @@
 #include "limber/retarget/animal_legs.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace limber {
 
