@@ -61,7 +61,7 @@ void run(const Options& options) {
 std::string help() {
   std::string models = "Models:\n", motions = "\nMotions:\n";
   for (const Sample& sample : samples()) {
-    (sample.moves ? motions : models) += fmt::format("  {:<14}{}\n", sample.name, sample.summary);
+    (sample.moves ? motions : models) += fmt::format("  {:<16}{}\n", sample.name, sample.summary);
   }
   return models + motions +
          "\nExamples:\n"
