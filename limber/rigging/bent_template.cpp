@@ -9,25 +9,54 @@ namespace limber {
 
 namespace {
 
-constexpr double kSizes[] = {0.8, 1, 1.25, 1.55, 1.95, 2.4};  // of the whole template, against the body's height
-constexpr double kBentCost = 0.3;                             // bodies mostly stand
+constexpr double kSizes[] = {0.8, 1, 1.25, 1.55, 1.95, 2.4};
+constexpr double kBentCost = 0.3;  // bodies mostly stand
 constexpr Index kRestarts = 2;
 constexpr double kNearRest = 0.05;  // gain towards the standing pose
 
-Skeleton skeletonOf(const TemplateSkeleton& from, const std::vector<Vec3>& standing, double size) {
+std::vector<Vec3> standingPlaces(const TemplateSkeleton& skeleton) {
+  if (skeleton.bent()) return skeleton.standing;
+  std::vector<Vec3> places;
+  for (const TemplateJoint& joint : skeleton.joints) places.push_back(joint.place);
+  return places;
+}
+
+Skeleton skeletonOf(const TemplateSkeleton& from, const std::vector<Vec3>& places, double size) {
   Skeleton skeleton;
-  for (const TemplateJoint& joint : from.joints) {
-    Joint own;
-    own.name = joint.name;
-    own.parent = joint.parent;
-    own.rest.translation = size * standing[skeleton.joints.size()];
-    if (joint.parent) own.rest.translation -= size * standing[*joint.parent];
-    skeleton.joints.push_back(std::move(own));
+  for (Index j = 0; j < from.jointCount(); ++j) {
+    Joint joint;
+    joint.name = from.joints[j].name;
+    joint.parent = from.joints[j].parent;
+    joint.rest.translation = size * places[j];
+    if (joint.parent) joint.rest.translation -= size * places[*joint.parent];
+    skeleton.joints.push_back(std::move(joint));
   }
   return skeleton;
 }
 
-// The root where the pinned joints of the standing body are nearest to their pins.
+std::vector<IkTarget> ikTargets(const TemplateSkeleton& skeleton, std::span<const BendTarget> targets) {
+  TemplatePins firm(skeleton.jointCount());
+  for (const BendTarget& target : targets) {
+    if (target.firm) firm[target.joint] = target.place;
+  }
+  const bool even = pinnedEvenly(skeleton, firm);
+  std::vector<IkTarget> result;
+  for (const BendTarget& from : targets) {
+    IkTarget target;
+    target.joint = from.joint;
+    target.position = from.place;
+    target.priority = from.firm ? 0 : 1;
+    // To the last bit: even targets have even answers.
+    if (from.firm && even) {
+      const Vec3 other = firm[skeleton.joints[from.joint].mirror.value_or(from.joint)]->cwiseProduct(Vec3(-1, 1, 1));
+      target.position = 0.5 * (from.place + other);
+    }
+    result.push_back(std::move(target));
+  }
+  return result;
+}
+
+// The root where the joints of the standing body are nearest to their targets.
 void startNear(std::span<const IkTarget> targets, const Skeleton& skeleton, Pose& pose) {
   const std::vector<Affine> globals = restGlobals(skeleton);
   Vec3 off = Vec3::Zero();
@@ -37,50 +66,44 @@ void startNear(std::span<const IkTarget> targets, const Skeleton& skeleton, Pose
 
 }  // namespace
 
-std::vector<TemplateVariant> bentToPins(const TemplateSkeleton& skeleton, const TemplatePins& pins,
-                                        const std::vector<Vec3>& found) {
-  std::vector<IkTarget> targets;
-  const bool even = pinnedEvenly(skeleton, pins);
+TemplateVariant bentTemplate(const TemplateSkeleton& skeleton, std::span<const BendTarget> targets, double size) {
+  TemplateVariant variant = {skeleton, kBentCost};
+  variant.skeleton.standing = standingPlaces(skeleton);
+  const Skeleton standing = skeletonOf(skeleton, variant.skeleton.standing, size);
+  const JointLimits limits = humanoidLimits(standing, humanoidJointsByName(standing));
+  const std::vector<IkTarget> wanted = ikTargets(skeleton, targets);
+  Pose pose = restPose(standing);
+  startNear(wanted, standing, pose);
+  IkOptions options;
+  options.rootMotion = RootMotion::kTranslate;
+  options.referenceGain = kNearRest;
+  options.restarts = kRestarts;
+  solveIk(findIkMethod("whole-body"), standing, pose, wanted, &limits, options);
+  const std::vector<Affine> globals = poseGlobals(standing, pose);
+  for (Index j = 0; j < skeleton.jointCount(); ++j) variant.skeleton.joints[j].place = globals[j].translation();
+  return variant;
+}
+
+double sizeOf(const TemplateSkeleton& skeleton) {
+  if (!skeleton.bent()) return 1;
+  double bones = 0, standing = 0;
   for (Index j = 0; j < skeleton.jointCount(); ++j) {
-    IkTarget target;
-    target.joint = j;
-    if (pins[j]) {
-      target.position = *pins[j];
-      // To the last bit: even targets have even answers.
-      if (even) {
-        const Vec3 other = pins[skeleton.joints[j].mirror.value_or(j)]->cwiseProduct(Vec3(-1, 1, 1));
-        target.position = 0.5 * (target.position + other);
-      }
-    } else if (!found.empty() && skeleton.joints[j].role == TemplateRole::kPlaced) {
-      target.position = found[j];
-      target.priority = 1;
-    } else {
-      continue;
-    }
-    targets.push_back(std::move(target));
+    if (!skeleton.joints[j].parent) continue;
+    const Index parent = *skeleton.joints[j].parent;
+    bones += (skeleton.joints[j].place - skeleton.joints[parent].place).norm();
+    standing += (skeleton.standing[j] - skeleton.standing[parent]).norm();
   }
-  std::vector<Vec3> places = skeleton.standing;
-  if (!skeleton.bent()) {
-    for (const TemplateJoint& joint : skeleton.joints) places.push_back(joint.place);
+  return standing > 0 ? bones / standing : 1;
+}
+
+std::vector<TemplateVariant> bentToPins(const TemplateSkeleton& skeleton, const TemplatePins& pins) {
+  std::vector<BendTarget> targets;
+  for (Index j = 0; j < skeleton.jointCount(); ++j) {
+    if (pins[j]) targets.push_back({j, *pins[j], true});
   }
   std::vector<TemplateVariant> variants;
   if (targets.empty()) return variants;
-  for (const double size : kSizes) {
-    const Skeleton standing = skeletonOf(skeleton, places, size);
-    const JointLimits limits = humanoidLimits(standing, humanoidJointsByName(standing));
-    Pose pose = restPose(standing);
-    startNear(targets, standing, pose);
-    IkOptions options;
-    options.rootMotion = RootMotion::kTranslate;
-    options.referenceGain = kNearRest;
-    options.restarts = kRestarts;
-    solveIk(findIkMethod("whole-body"), standing, pose, targets, &limits, options);
-    TemplateVariant variant = {skeleton, kBentCost};
-    variant.skeleton.standing = places;
-    const std::vector<Affine> globals = poseGlobals(standing, pose);
-    for (Index j = 0; j < skeleton.jointCount(); ++j) variant.skeleton.joints[j].place = globals[j].translation();
-    variants.push_back(std::move(variant));
-  }
+  for (const double size : kSizes) variants.push_back(bentTemplate(skeleton, targets, size));
   return variants;
 }
 

@@ -16,6 +16,8 @@ namespace {
 constexpr double kSeedReach = 0.04;
 constexpr double kWidestArm = 0.03;  // square heights of a cut
 constexpr double kMostMoved = 0.06;
+constexpr double kUpright = 0.85;      // least cosine
+constexpr double kLifted = 0.12;       // of a foot that does not stand
 constexpr double kWristSearch = 0.2;   // of the arm's length, to both sides
 constexpr double kElbowSearch = 0.08;  // of the arm's length, to both sides
 constexpr double kStraight = 0.9;      // cosine between upper arm and forearm from which the bend shows no elbow
@@ -63,6 +65,15 @@ class Mover {
   Mover(const BodyVolume& body, const BodyFrame& frame, const std::vector<std::optional<Vec3>>& pins,
         std::vector<Vec3>& places, const HumanoidProportions& proportions)
       : body_(body), frame_(frame), pins_(pins), places_(places), proportions_(proportions) {}
+
+  bool isUpright(Index low, Index high) const { return (places_[high] - places_[low]).normalized().y() > kUpright; }
+
+  // Whether cuts at rising heights follow both legs from the ground.
+  bool standsOn(const std::array<Leg, 2>& legs) const {
+    return std::all_of(legs.begin(), legs.end(), [&](const Leg& leg) {
+      return isUpright(leg.ankle, leg.knee) && isUpright(leg.knee, leg.hip) && places_[leg.ankle].y() < kLifted;
+    });
+  }
 
   void legs(const HumanoidJoints& joints) {
     LegFinder finder(body_, frame_, places_, joints.legs[0], joints.legs[1]);
@@ -193,10 +204,16 @@ void refineHumanoid(const TemplateSkeleton& skeleton, const BodyVolume& body, co
   const std::optional<HumanoidJoints> joints = humanoidJointsOf(skeleton);
   if (!joints) return;
   Mover mover(body, frame, pins, places, proportions);
-  mover.legs(*joints);
-  mover.evenOut(joints->arms);
-  for (const Arm& arm : joints->arms) mover.arm(arm);
-  mover.trunk(*joints);
+  if (!skeleton.bent()) {
+    mover.legs(*joints);
+    mover.evenOut(joints->arms);
+    for (const Arm& arm : joints->arms) mover.arm(arm);
+    mover.trunk(*joints);
+    return;
+  }
+  // Bent arms are better where they were found.
+  if (mover.standsOn(joints->legs)) mover.legs(*joints);
+  if (mover.isUpright(joints->hips, joints->neck)) mover.trunk(*joints);
 }
 
 void refineHocks(const TemplateSkeleton& skeleton, const BodyVolume& body, const BodyFrame& frame,

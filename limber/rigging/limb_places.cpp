@@ -1,5 +1,6 @@
 #include "limber/rigging/limb_places.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -8,6 +9,7 @@ namespace limber {
 namespace {
 
 constexpr double kNoPlace = 2.1;  // mean cost of a limb's joints; up to 1.2 on people, 2 on toys
+constexpr double kWithin = 0.04;  // heights
 constexpr double kAcross = 0.5;   // most cosine between a limb and what lies across from it
 
 std::vector<TemplateLimb> chainsOf(const TemplateSkeleton& skeleton) {
@@ -32,6 +34,11 @@ std::vector<TemplateLimb> chainsOf(const TemplateSkeleton& skeleton) {
   return limbs;
 }
 
+double distanceToBone(const Vec3& place, const Vec3& a, const Vec3& b) {
+  const double along = std::clamp((place - a).dot(b - a) / std::max((b - a).squaredNorm(), 1e-12), 0.0, 1.0);
+  return (place - a - along * (b - a)).norm();
+}
+
 // Whether the way across from the limb's last joint but the tip straight to that of the other side stays inside the
 // body. Along the limbs it may: so it does from hand to hand of stretched arms.
 bool sharesItsEnd(const TemplateSkeleton& skeleton, const TemplateLimb& limb, const std::vector<Vec3>& places,
@@ -51,6 +58,26 @@ bool sharesItsEnd(const TemplateSkeleton& skeleton, const TemplateLimb& limb, co
   return true;
 }
 
+// Whether half of a limb's joints and more, but for the first, lie on bones of other limbs.
+bool liesInAnother(const TemplateSkeleton& skeleton, const TemplateLimb& limb, const std::vector<Vec3>& places) {
+  const auto isIn = [&](Index joint) {
+    return std::find(limb.joints.begin(), limb.joints.end(), joint) != limb.joints.end();
+  };
+  std::size_t within = 0;
+  for (std::size_t k = 1; k < limb.placed.size(); ++k) {
+    const Vec3& place = places[limb.placed[k]];
+    for (Index j = 0; j < skeleton.jointCount(); ++j) {
+      const std::optional<Index> parent = skeleton.joints[j].parent;
+      if (!parent || isIn(j) || isIn(*parent)) continue;
+      if (distanceToBone(place, places[*parent], places[j]) < kWithin) {
+        ++within;
+        break;
+      }
+    }
+  }
+  return limb.placed.size() > 1 && 2 * within >= limb.placed.size() - 1;
+}
+
 }  // namespace
 
 std::vector<TemplateLimb> limbsIn(const TemplateSkeleton& skeleton, const TemplateEmbedding& embedding,
@@ -59,7 +86,8 @@ std::vector<TemplateLimb> limbsIn(const TemplateSkeleton& skeleton, const Templa
   for (TemplateLimb& limb : limbs) {
     double cost = 0;
     for (const Index j : limb.placed) cost += embedding.costs[j] / static_cast<double>(limb.placed.size());
-    limb.hasPlace = cost < kNoPlace && !sharesItsEnd(skeleton, limb, embedding.places, body, frame);
+    limb.hasPlace = cost < kNoPlace && !sharesItsEnd(skeleton, limb, embedding.places, body, frame) &&
+                    !(skeleton.bent() && liesInAnother(skeleton, limb, embedding.places));
   }
   return limbs;
 }

@@ -53,5 +53,19 @@ TEST(LimbPlaces, FeetInOnePartOfTheBodyHaveNone) {
   EXPECT_EQ(embedded.missing(), "leftUpperLeg to leftToes, rightUpperLeg to rightToes");
 }
 
+TEST(LimbPlaces, OfABentTemplateLimbsThatLieInOthersHaveNone) {
+  Embedded embedded;
+  TemplateSkeleton bent = embedded.skeleton;
+  for (const TemplateJoint& joint : bent.joints) bent.standing.push_back(joint.place);
+  const auto missing = [&] {
+    return limbsWithoutPlace(bent, limbsIn(bent, embedded.embedding, embedded.person.body, embedded.person.frame));
+  };
+  EXPECT_EQ(missing(), "");
+  std::vector<Vec3>& places = embedded.embedding.places;
+  places[embedded.joint("leftLowerArm")] = places[embedded.joint("spine")];
+  places[embedded.joint("leftHand")] = places[embedded.joint("hips")];
+  EXPECT_EQ(missing(), "leftShoulder to leftHand");
+}
+
 }  // namespace
 }  // namespace limber

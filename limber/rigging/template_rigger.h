@@ -4,8 +4,7 @@
 #include "limber/rigging/auto_rigger.h"
 #include "limber/rigging/body_frame.h"
 #include "limber/rigging/body_volume.h"
-#include "limber/rigging/limb_places.h"
-#include "limber/rigging/template_embedding.h"
+#include "limber/rigging/template_fit.h"
 #include "limber/rigging/template_skeleton.h"
 
 namespace limber {
@@ -16,16 +15,6 @@ namespace limber {
 // for a bone that itself points within 30 degrees of front or back, to the body's up. So the two sides mirror each
 // other.
 Skeleton standingSkeleton(const TemplateSkeleton& skeleton, const std::vector<Vec3>& places, const BodyFrame& frame);
-
-// A template embedded in a body, before the shape of the body refines it.
-struct TemplateFit {
-  TemplateSkeleton skeleton;  // the variant
-  BodyFrame frame;
-  TemplatePins pins;
-  TemplateEmbedding embedding;
-  double cost = 0;
-  std::vector<TemplateLimb> limbs;  // as embedded
-};
 
 // The way to stand and the variant of the template that fit best. Reads up, front and pins of the options.
 // Throws Error kBadArgument for an unknown pinned joint.

@@ -37,7 +37,6 @@ struct TemplateSkeleton {
   std::vector<Vec3> standing = {};
   bool bent() const { return !standing.empty(); }
 
-
   Index jointCount() const { return static_cast<Index>(joints.size()); }
   std::optional<Index> find(std::string_view joint) const;
 };
