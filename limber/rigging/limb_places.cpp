@@ -60,15 +60,18 @@ bool sharesItsEnd(const TemplateSkeleton& skeleton, const TemplateLimb& limb, co
 
 // Whether half of a limb's joints and more, but for the first, lie on bones of other limbs.
 bool liesInAnother(const TemplateSkeleton& skeleton, const TemplateLimb& limb, const std::vector<Vec3>& places) {
-  const auto isIn = [&](Index joint) {
-    return std::find(limb.joints.begin(), limb.joints.end(), joint) != limb.joints.end();
-  };
+  // Bones of the limb and of all that hangs on it.
+  std::vector<bool> own(skeleton.jointCount(), false);
+  for (const Index j : limb.joints) own[j] = true;
+  for (Index j = 0; j < skeleton.jointCount(); ++j) {
+    if (skeleton.joints[j].parent && own[*skeleton.joints[j].parent]) own[j] = true;
+  }
   std::size_t within = 0;
   for (std::size_t k = 1; k < limb.placed.size(); ++k) {
     const Vec3& place = places[limb.placed[k]];
     for (Index j = 0; j < skeleton.jointCount(); ++j) {
       const std::optional<Index> parent = skeleton.joints[j].parent;
-      if (!parent || isIn(j) || isIn(*parent)) continue;
+      if (!parent || own[j]) continue;
       if (distanceToBone(place, places[*parent], places[j]) < kWithin) {
         ++within;
         break;

@@ -59,18 +59,30 @@ std::vector<Vec3> endsLeftOut(const BodyVolume& body, const TemplateFit& fit) {
   return ends;
 }
 
-// The template with the tip of one limb at `end`, the rest as it was found.
-TemplateVariant reaching(const TemplateFit& fit, const TemplateLimb& limb, const Vec3& end) {
-  const Index tip = limb.placed.back();
+// The joints that a tip hangs on, up to where the body parts. Fingers are no parts: nobody searches for them.
+std::vector<Index> limbAbove(const TemplateSkeleton& skeleton, Index tip) {
+  std::vector<Index> parts(skeleton.jointCount(), 0);
+  for (Index j = skeleton.jointCount(); j-- > 0;) {
+    const bool searched = skeleton.joints[j].role != TemplateRole::kBetween || parts[j] > 0;
+    if (searched && skeleton.joints[j].parent) ++parts[*skeleton.joints[j].parent];
+  }
+  std::vector<Index> limb;
+  for (std::optional<Index> j = skeleton.joints[tip].parent; j && parts[*j] == 1; j = skeleton.joints[*j].parent) {
+    limb.push_back(*j);
+  }
+  return limb;
+}
+
+// The template with a tip at `end`, its limb as it comes and the rest as it was found.
+TemplateVariant reaching(const TemplateFit& fit, Index tip, const Vec3& end) {
   std::vector<BendTarget> targets = foundTargets(fit);
+  const std::vector<Index> limb = limbAbove(fit.skeleton, tip);
+  const auto isIn = [&](Index joint) { return std::find(limb.begin(), limb.end(), joint) != limb.end(); };
   const std::optional<Index> mirror = fit.skeleton.joints[tip].mirror;
   const bool both = mirror && fit.frame.symmetric();
   std::erase_if(targets, [&](const BendTarget& target) {
-    const auto isIn = [&](Index joint) {
-      return std::find(limb.placed.begin(), limb.placed.end(), joint) != limb.placed.end();
-    };
-    return !target.firm &&
-           (isIn(target.joint) || (both && isIn(fit.skeleton.joints[target.joint].mirror.value_or(target.joint))));
+    const Index other = fit.skeleton.joints[target.joint].mirror.value_or(target.joint);
+    return !target.firm && (isIn(target.joint) || (both && isIn(other)));
   });
   targets.push_back({tip, end, true});
   if (both) targets.push_back({*mirror, end.cwiseProduct(Vec3(-1, 1, 1)), true});
@@ -81,11 +93,9 @@ TemplateVariant reaching(const TemplateFit& fit, const TemplateLimb& limb, const
 bool reachOut(const BodyVolume& body, TemplateFit& fit) {
   std::vector<TemplateVariant> variants;
   for (const Vec3& end : endsLeftOut(body, fit)) {
-    for (const TemplateLimb& limb : limbsIn(fit.skeleton, fit.embedding, body, fit.frame)) {
-      const Index tip = limb.placed.back();
-      if (fit.skeleton.joints[tip].role == TemplateRole::kTip && !fit.pins[tip]) {
-        variants.push_back(reaching(fit, limb, end));
-      }
+    for (Index j = 0; j < fit.skeleton.jointCount(); ++j) {
+      const bool isTip = fit.skeleton.joints[j].role == TemplateRole::kTip;
+      if (isTip && !fit.pins[j]) variants.push_back(reaching(fit, j, end));
     }
   }
   if (variants.empty()) return false;
