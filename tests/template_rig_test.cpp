@@ -219,6 +219,12 @@ TEST_P(TemplateBirds, HaveWingsHeadAndFeetInTheRightPlaces) {
   EXPECT_GT(last, 0.65) << "the head is in front";
 }
 
+TEST_P(TemplateBirds, AreTakenForBirds) {
+  if (!sharedDataFolder()) GTEST_SKIP() << kNoSharedData;
+  const Asset asset = readAsset(*sharedDataFolder() / GetParam());
+  EXPECT_EQ(rigged(asset, templateOptions("auto")).report.matches.front().name, "bird");
+}
+
 INSTANTIATE_TEST_SUITE_P(Models, TemplateBirds,
                          ::testing::Values("rigged/m2m_bird_base.glb", "rigged/m2m_bird_eagle.glb",
                                            "meshes/m2m_bird_static.glb"),

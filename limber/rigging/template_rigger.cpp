@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "limber/core/numbers.h"
+#include "limber/rigging/arm_flatness.h"
 #include "limber/rigging/bent_template.h"
 #include "limber/rigging/body_volume.h"
 #include "limber/rigging/humanoid_landmarks.h"
@@ -25,8 +26,10 @@ constexpr std::size_t kCoarseSpheres = 120;  // for a first look at every way to
 constexpr std::size_t kFramesRefined = 2;    // after it, with all spheres
 constexpr std::size_t kVariantsRefined = 4;  // of each of these
 constexpr double kLowConfidence = 0.4;
-constexpr double kCostOfDoubt = 1.8;     // cost at which confidence is a half
-constexpr double kMostAsymmetry = 0.15;  // more than the most symmetric way to stand, of those looked at
+constexpr double kCostOfDoubt = 1.8;               // cost at which confidence is a half
+constexpr double kWings = 2;                       // cost of arms as flat as wings
+constexpr double kRoundArm = 2.5, kFlatArm = 3.5;  // times as wide as thick
+constexpr double kMostAsymmetry = 0.15;            // more than the most symmetric way to stand, of those looked at
 
 TemplatePins pinsIn(const TemplateSkeleton& skeleton, const BodyFrame& frame, const std::vector<JointPin>& pins) {
   TemplatePins places(skeleton.jointCount());
@@ -83,6 +86,8 @@ TemplateFit bestFit(const TemplateSkeleton& skeleton, const BodyVolume& body, co
   }
   searchPose(body, *best);
   best->limbs = limbsIn(best->skeleton, best->embedding, body, best->frame);
+  const double flat = armFlatness(best->skeleton, best->embedding.places, body, best->frame);
+  best->cost += kWings * std::clamp((flat - kRoundArm) / (kFlatArm - kRoundArm), 0.0, 1.0);
   return std::move(*best);
 }
 
