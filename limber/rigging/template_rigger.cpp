@@ -31,6 +31,24 @@ constexpr double kWings = 2;                       // cost of arms as flat as wi
 constexpr double kRoundArm = 2.5, kFlatArm = 3.5;  // times as wide as thick
 constexpr double kMostAsymmetry = 0.15;            // more than the most symmetric way to stand, of those looked at
 
+// Each joint once, and where the model may be: the model's size beyond its box is another unit.
+void checkPins(const TriMesh& mesh, const std::vector<JointPin>& pins) {
+  Box box;
+  for (const Vec3f& position : mesh.positions) box.add(position.cast<double>());
+  const Vec3 margin = Vec3::Constant(box.longestSide());
+  for (auto pin = pins.begin(); pin != pins.end(); ++pin) {
+    const auto isSame = [&](const JointPin& other) { return other.joint == pin->joint; };
+    if (std::any_of(pins.begin(), pin, isSame)) {
+      throw Error(ErrorCode::kBadArgument, "is pinned twice", pin->joint, "give each joint one place");
+    }
+    const Vec3 low = box.min - margin, high = box.max + margin;
+    if ((pin->place.array() < low.array()).any() || (pin->place.array() > high.array()).any()) {
+      throw Error(ErrorCode::kBadArgument, "is pinned far outside the model", pin->joint,
+                  "places are in the file's space and unit; limber info tells its size");
+    }
+  }
+}
+
 TemplatePins pinsIn(const TemplateSkeleton& skeleton, const BodyFrame& frame, const std::vector<JointPin>& pins) {
   TemplatePins places(skeleton.jointCount());
   for (const JointPin& pin : pins) {
@@ -173,6 +191,7 @@ AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress
     candidates = {&findTemplate(options.templateName)};
   }
   const std::vector<JointPin> pins = person ? humanoidPins(*person, options.pins) : options.pins;
+  checkPins(mesh, options.pins);
   progress.step("measure body");
   const std::optional<TriMesh> cleared = withoutStrays(mesh);
   const TriMesh& surface = cleared ? *cleared : mesh;

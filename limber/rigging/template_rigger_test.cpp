@@ -160,8 +160,12 @@ TEST(TemplateRigger, KeepsPins) {
   options.pins = {{"leftHand", {0.4, 0.66, 0.03}}};
   const Skeleton skeleton = rig(testing::capsulePerson().mesh, options).skeleton;
   EXPECT_LT((place(skeleton, "leftHand") - Vec3(0.4, 0.66, 0.03)).norm(), 1e-6);
-  options.pins = {{"tail", Vec3::Zero()}};
-  EXPECT_THROW(rig(testing::capsulePerson().mesh, options), Error);
+  for (const std::vector<JointPin>& wrong : {std::vector<JointPin>{{"tail", Vec3::Zero()}},
+                                             {{"head", {0, 150, 0}}},
+                                             {{"head", {0, 0.9, 0}}, {"head", {0, 1, 0}}}}) {
+    options.pins = wrong;
+    EXPECT_THROW(rig(testing::capsulePerson().mesh, options), Error) << wrong.front().joint;
+  }
 }
 
 // A user's skeleton: trunk and arms; the left collar as well as the right one stands `collar` to the left.
