@@ -9,10 +9,10 @@
 namespace limber {
 
 // How far footprints lie before the legs above them, in the mean of the feet that stand: 1 half their own length, -1 as
-// much behind. 0 where no foot stands, or none can be told from what it stands on.
+// much behind. 0 where no foot stands below an upright shin, or none can be told from what it stands on.
 //
 // feet  body space, places near the ankles
-// Cost: two cuts for each foot.
+// Cost: three cuts for each foot.
 double feetForward(const BodyVolume& body, const BodyFrame& frame, std::span<const Vec3> feet);
 
 }  // namespace limber

@@ -23,6 +23,20 @@ TEST(FeetDirection, TellsFrontFromBack) {
   EXPECT_LT(forwardOf(person.shape.mesh, person.body, -Vec3::UnitZ()), -0.3);
 }
 
+// Both legs lean far: the soles are not below the shins.
+TEST(FeetDirection, IsUnknownOfASteppingPerson) {
+  TriMesh mesh;
+  testing::addCapsule(mesh, {0, 0.5, 0}, {0, 0.9, 0}, 0.1);
+  for (const double x : {0.09, -0.09}) {
+    testing::addCapsule(mesh, {x, 0.05, -0.2}, {x, 0.5, 0}, 0.04);
+    testing::addCapsule(mesh, {x, 0.03, -0.21}, {x, 0.03, -0.12}, 0.03);
+  }
+  const BodyVolume body = measureBody(mesh);
+  const BodyFrame frame = frameAlong(mesh, body, Vec3::UnitY(), Vec3::UnitZ());
+  const Vec3 feet[] = {frame.toBody({0.09, 0.045, -0.2}), frame.toBody({-0.09, 0.045, -0.2})};
+  EXPECT_EQ(feetForward(body, frame, feet), 0);
+}
+
 TEST(FeetDirection, IsUnknownOfPegsAndPlinths) {
   TriMesh pegs;
   testing::addCapsule(pegs, {0, 0.5, 0}, {0, 0.9, 0}, 0.1);
