@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kSizes[] = {0.8, 1, 1.25, 1.55, 1.95, 2.4};
 constexpr double kBentCost = 0.3;  // bodies mostly stand
+constexpr double kTurnedCost = 1;  // of bones at right angles to how they stand
 constexpr Index kRestarts = 2;
 constexpr double kNearRest = 0.05;  // gain towards the standing pose
 
@@ -64,6 +65,21 @@ void startNear(std::span<const IkTarget> targets, const Skeleton& skeleton, Pose
   pose.locals.front().translation += off / static_cast<double>(targets.size());
 }
 
+// 1 - cos of the angles that bones are turned by from how they stand, in the mean.
+double meanTurn(const TemplateSkeleton& skeleton) {
+  double turn = 0;
+  Index bones = 0;
+  for (Index j = 0; j < skeleton.jointCount(); ++j) {
+    if (!skeleton.joints[j].parent) continue;
+    const Index parent = *skeleton.joints[j].parent;
+    const Vec3 bone = skeleton.joints[j].place - skeleton.joints[parent].place,
+               standing = skeleton.standing[j] - skeleton.standing[parent];
+    turn += 1 - bone.normalized().dot(standing.normalized());
+    ++bones;
+  }
+  return bones > 0 ? turn / static_cast<double>(bones) : 0;
+}
+
 }  // namespace
 
 TemplateVariant bentTemplate(const TemplateSkeleton& skeleton, std::span<const BendTarget> targets, double size) {
@@ -81,6 +97,7 @@ TemplateVariant bentTemplate(const TemplateSkeleton& skeleton, std::span<const B
   solveIk(findIkMethod("whole-body"), standing, pose, wanted, &limits, options);
   const std::vector<Affine> globals = poseGlobals(standing, pose);
   for (Index j = 0; j < skeleton.jointCount(); ++j) variant.skeleton.joints[j].place = globals[j].translation();
+  variant.cost += kTurnedCost * meanTurn(variant.skeleton);
   return variant;
 }
 
