@@ -14,9 +14,9 @@ constexpr double kSole = 0.02;
 constexpr double kAnkle = 0.09;
 constexpr double kShin = 0.14;
 constexpr double kSeedReach = 0.05;
-constexpr double kWidestLeg = 0.025;                      // square heights of a cut: not of both legs, nor of a skirt
-constexpr double kMostLean = 0.25;                        // of the shin, to front or back for each height upwards
-constexpr double kSmallestFoot = 0.3, kLargestFoot = 12;  // cuts of the leg
+constexpr double kWidestLeg = 0.025;                       // square heights of a cut: not of both legs, nor of a skirt
+constexpr double kMostLean = 0.35;                         // of the shin, to front or back for each height upwards
+constexpr double kSmallestFoot = 0.45, kLargestFoot = 12;  // cuts of the leg: not a heel alone
 
 }  // namespace
 
