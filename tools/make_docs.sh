@@ -54,6 +54,29 @@ once quadruped-walk 0:0.9
 $limber retarget $work/quadruped_template.glb $work/quadruped-walk_once.bvh -o $work/fox_walk.glb --quiet
 $limber preview $work/fox_walk.glb --frames 8 --size 160x120 --view 80,5 -o $images/retarget_fox.png --quiet
 
+# Characters that a motion was put on, as they stand at two moments of it.
+table_of_poses() {
+  local motion character moment files
+  files=("${posed[@]/#/$work/posed_}")
+  files=("${files[@]/%/.glb}")
+  echo "| motion | at | named mean of ${#posed[@]} | best | worst | 0.4 sure and more |"
+  echo "|---|---|---|---|---|---|"
+  for motion in cmu_daz_12_01_walk cmu_daz_09_01_run cmu_daz_05_02_dance_pirouette rokoko_dance cmu1_jumping_jacks \
+    makehuman_zombie_walk cmu_daz_02_05_punch fair1_wave_hello; do
+    for character in "${posed[@]}"; do
+      $limber retarget "$characters/$character.glb" "$motions/$motion.bvh" -o "$work/posed_$character.glb" --quiet
+    done
+    for moment in 0.5 1.5; do
+      $limber evaluate templates "${files[@]}" --template humanoid --clip $motion --time $moment --quiet |
+        awk -F'|' -v row="| $motion | $moment s |" '
+          $3 ~ /humanoid/ { split($3, fit, " "); named = $(NF - 3) + 0; sum += named; sure += fit[2] >= 0.4
+            if (!count++ || named < best) best = named
+            if (named > worst) worst = named }
+          END { printf "%s %.1f | %.1f | %.1f | %d |\n", row, sum / count, best, worst, sure }'
+    done
+  done
+}
+
 characters=${LIMBER_SHARED_DATA:-../shared/data}/rigged
 if [ -d "$characters" ]; then
   $limber evaluate skinning "$characters" --references docs/data/blender_weights.tsv -o docs/weights.md --quiet
@@ -61,6 +84,7 @@ if [ -d "$characters" ]; then
     makehuman_{cmu_mb,default,game_engine,mixamo}.glb quaternius_cyberpunk_character.glb quaternius_knightcharacter.glb
     quaternius_{man_casual,man_king,man_spacesuit,platformer_character,platformer_character_humanoidrig,woman_casual,woman_scifi,mech_george}.glb
     robot_expressive.glb)
+  posed=(quaternius_{man_king,man_spacesuit,woman_casual} m2m_human_{female,zombie} makehuman_{game_engine,cmu_mb})
   animals=(fox_khronos.glb m2m_fox_{cat,dog,fox}.glb quaternius_{alpaca,cow,horse,wolf,triceratops}.glb)
   motions=$(dirname "$characters")/motions
   table=$($limber evaluate retargeting --motion "$motions"/{boxing_toes,cmu_daz_12_01_walk,cmu_mb_12_01_walk,cmu_daz_09_01_run}.bvh \
@@ -73,6 +97,8 @@ if [ -d "$characters" ]; then
     $limber evaluate templates "${people[@]/#/$characters/}" --template humanoid --quiet
     echo && echo "**Animals, --template quadruped**" && echo
     $limber evaluate templates "${animals[@]/#/$characters/}" --template quadruped --quiet
+    echo && echo "**People in poses, --template humanoid**" && echo
+    table_of_poses
   } >> docs/template-rigs.md
   echo "Made docs/images, docs/ik.md, docs/weights.md and the tables of docs/template-rigs.md, docs/retargeting.md"
 else
