@@ -36,6 +36,18 @@ for (const handles of [6, 20, 50]) {
     assert.deepEqual(Buffer.compare(result.glb, nativeRig(handles)), 0, 'the bytes differ');
   };
 }
+cases['a person in mid-stride, whose template is bent: the native program\'s bytes'] = () => {
+  const at = (name) => join(output, name);
+  const native = (...args) => execFileSync(program, [...args, '--quiet'], { stdio: ['ignore', 'ignore', 'ignore'] });
+  native('sample', 'biped', '-o', at('person.glb'));
+  native('sample', 'walk', '-o', at('walk.bvh'));
+  native('animate', at('person.glb'), at('walk.bvh'), '-o', at('walking.glb'));
+  native('pose', at('walking.glb'), '--time', '0.8', '--bake', '-o', at('stride.glb'));
+  native('rig', at('stride.glb'), '--rigger', 'template', '-o', at('stride_native.glb'));
+  const result = limber.rig(new Uint8Array(readFileSync(at('stride.glb'))), 'stride.glb', { rigger: 'template' });
+  assert.ok(result.ok, result.error?.message);
+  assert.equal(Buffer.compare(result.glb, readFileSync(at('stride_native.glb'))), 0, 'the bytes differ');
+};
 cases['a damaged file is an error value'] = () => {
   const { ok, error } = limber.rig(bytes.slice(0, bytes.length / 2), 'half.glb');
   assert.equal(ok, false);

@@ -124,8 +124,9 @@ void IkSolver::perturb(Index restart) {
     const auto i = static_cast<std::size_t>(n);
     const IkSystem::Node& node = system_.nodes[i];
     if (node.freedom == 0) continue;
-    const Vec3 uniform(random(), random(), random());
-    const Quat anywhere = allowedRotation(node.limit ? *node.limit : kFree, uniform);
+    // One after the other: in which order arguments are evaluated differs between compilers.
+    const double z = random(), y = random(), x = random();
+    const Quat anywhere = allowedRotation(node.limit ? *node.limit : kFree, Vec3(x, y, z));
     system_.locals[i] = system_.locals[i].slerp(jump, anywhere);
     system_.limitNode(n);
   }

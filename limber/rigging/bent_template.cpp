@@ -10,8 +10,9 @@ namespace limber {
 namespace {
 
 constexpr double kSizes[] = {0.8, 1, 1.25, 1.55, 1.95, 2.4};
-constexpr double kBentCost = 0.3;  // bodies mostly stand
-constexpr double kTurnedCost = 1;  // of bones at right angles to how they stand
+constexpr double kBentCost = 0.3;     // bodies mostly stand
+constexpr double kTurnedCost = 1;     // of bones at right angles to how they stand
+constexpr double kGrid = 1.0 / 8192;  // heights
 constexpr Index kRestarts = 2;
 constexpr double kNearRest = 0.05;  // gain towards the standing pose
 
@@ -96,7 +97,10 @@ TemplateVariant bentTemplate(const TemplateSkeleton& skeleton, std::span<const B
   options.restarts = kRestarts;
   solveIk(findIkMethod("whole-body"), standing, pose, wanted, &limits, options);
   const std::vector<Affine> globals = poseGlobals(standing, pose);
-  for (Index j = 0; j < skeleton.jointCount(); ++j) variant.skeleton.joints[j].place = globals[j].translation();
+  for (Index j = 0; j < skeleton.jointCount(); ++j) {
+    // On a grid: sines differ in their last bits between machines' libraries, rigs must not.
+    variant.skeleton.joints[j].place = (globals[j].translation() / kGrid).array().round().matrix() * kGrid;
+  }
   variant.cost += kTurnedCost * meanTurn(variant.skeleton);
   return variant;
 }
