@@ -1,6 +1,7 @@
 // Template rigs of real characters, through the whole of limber, against the skeletons that artists made for them.
 #include <algorithm>
 #include <iterator>
+#include <ostream>
 
 #include <gtest/gtest.h>
 
@@ -294,6 +295,8 @@ struct PinnedStatue {
   const char* file;
   Vec3 front;
   std::vector<JointPin> pins, expected;
+
+  friend void PrintTo(const PinnedStatue& statue, std::ostream* out) { *out << statue.file; }
 };
 
 class TemplatePins : public ::testing::TestWithParam<PinnedStatue> {};
