@@ -248,7 +248,8 @@ void addRigCommand(CLI::App& program) {
                    "fit this named skeleton: auto, a name below, or a file with a skeleton (.glb, .bvh, .json, ...)")
       ->type_name("NAME");
   command
-      ->add_option("--pin", options->pins, "where a joint of the template must be, as JOINT=x,y,z in the file's space")
+      ->add_option("--pin", options->pins,
+                   "where a joint of the template must be, as JOINT=x,y,z in the file's space; several tell a pose")
       ->type_name("PIN")
       ->allow_extra_args(false);
   command->add_option("--up", options->up, "the model's up, as +y (default: found)")->type_name("AXIS");

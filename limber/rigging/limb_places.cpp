@@ -34,11 +34,6 @@ std::vector<TemplateLimb> chainsOf(const TemplateSkeleton& skeleton) {
   return limbs;
 }
 
-double distanceToBone(const Vec3& place, const Vec3& a, const Vec3& b) {
-  const double along = std::clamp((place - a).dot(b - a) / std::max((b - a).squaredNorm(), 1e-12), 0.0, 1.0);
-  return (place - a - along * (b - a)).norm();
-}
-
 // Whether the way across from the limb's last joint but the tip straight to that of the other side stays inside the
 // body. Along the limbs it may: so it does from hand to hand of stretched arms.
 bool sharesItsEnd(const TemplateSkeleton& skeleton, const TemplateLimb& limb, const std::vector<Vec3>& places,
@@ -82,6 +77,11 @@ bool liesInAnother(const TemplateSkeleton& skeleton, const TemplateLimb& limb, c
 }
 
 }  // namespace
+
+double distanceToBone(const Vec3& place, const Vec3& a, const Vec3& b) {
+  const double along = std::clamp((place - a).dot(b - a) / std::max((b - a).squaredNorm(), 1e-12), 0.0, 1.0);
+  return (place - a - along * (b - a)).norm();
+}
 
 std::vector<TemplateLimb> limbsIn(const TemplateSkeleton& skeleton, const TemplateEmbedding& embedding,
                                   const BodyVolume& body, const BodyFrame& frame) {

@@ -23,6 +23,9 @@ struct TemplateLimb {
 std::vector<TemplateLimb> limbsIn(const TemplateSkeleton& skeleton, const TemplateEmbedding& embedding,
                                   const BodyVolume& body, const BodyFrame& frame);
 
+// Between a place and the straight bone from `a` to `b`.
+double distanceToBone(const Vec3& place, const Vec3& a, const Vec3& b);
+
 // Of those without a place: "leftUpperLeg to leftToes, ..."; empty where there are none.
 std::string limbsWithoutPlace(const TemplateSkeleton& skeleton, const std::vector<TemplateLimb>& limbs);
 

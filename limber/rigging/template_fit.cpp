@@ -1,7 +1,6 @@
 #include "limber/rigging/template_fit.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "limber/rigging/feet_direction.h"
@@ -63,11 +62,9 @@ double farFromBones(const TemplateSkeleton& skeleton, const std::vector<Vec3>& p
   double nearest = std::numeric_limits<double>::infinity();
   for (Index j = 0; j < skeleton.jointCount(); ++j) {
     if (!skeleton.joints[j].parent) continue;
-    const Vec3 &a = places[*skeleton.joints[j].parent], bone = places[j] - a;
-    const double along = std::clamp((place - a).dot(bone) / std::max(bone.squaredNorm(), 1e-12), 0.0, 1.0);
-    nearest = std::min(nearest, (place - a - along * bone).squaredNorm());
+    nearest = std::min(nearest, distanceToBone(place, places[*skeleton.joints[j].parent], places[j]));
   }
-  const double beyond = std::sqrt(nearest) - radius;
+  const double beyond = nearest - radius;
   return std::clamp((beyond - kNearBone) / (kFarFromBone - kNearBone), 0.0, 1.0);
 }
 
