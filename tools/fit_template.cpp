@@ -1,4 +1,4 @@
-// Fits the proportions of people (limber/rigging/humanoid_landmarks.h) to characters whose artists named their joints:
+// Fits the proportions of people (limber/templates/humanoid_landmarks.h) to characters whose joints have names:
 //   limber_fit_template FILE...
 // Coordinate descent on the mean distance of named joints, in percent of the height. Files of one maker often share a
 // skeleton, so each maker (a name's part before the first '_') is also left out once: what the others' fit does on its
@@ -20,9 +20,9 @@
 #include "limber/core/parallel.h"
 #include "limber/evaluate/skinned_model.h"
 #include "limber/mesh/prepare.h"
-#include "limber/rigging/humanoid_landmarks.h"
 #include "limber/rigging/template_rigger.h"
 #include "limber/skeleton/humanoid_names.h"
+#include "limber/templates/humanoid_landmarks.h"
 
 using namespace limber;
 

@@ -265,7 +265,7 @@ release_stages() {
 # Fitting a template takes half a minute under sanitizers. Of the tests that do it over and over one runs every time;
 # ./dev test --sanitize runs them all.
 minutes_under_sanitizers='TemplateRigger\.[^N]|TemplateEmbedding|BodyVolume|BodyFrame|HumanoidLandmarks|PersonTemplate\.[^N]'
-minutes_under_sanitizers+='|BentTemplate\.H|ArmFlatness|FeetDirection|TemplateFit|FarFromBones|LimbPlaces\.[^E]|SampleMotionsMove'
+minutes_under_sanitizers+='|PosedBodies\.H|ArmFlatness|FeetDirection|TemplateFit|FarFromBones|LimbPlaces\.[^E]|SampleMotionsMove'
 minutes_under_sanitizers+='|SampleFoxWalks|PosesStartFrom|AnyNumberOfThreadsAndReadsBack/winged'
 
 remaining_stages() {

@@ -13,7 +13,7 @@
 #include "limber/asset/write.h"
 #include "limber/pipeline/report_json.h"
 #include "limber/pipeline/template_file.h"
-#include "limber/rigging/template_skeleton.h"
+#include "limber/templates/template_skeleton.h"
 #include "progress_line.h"
 
 namespace limber::cli {

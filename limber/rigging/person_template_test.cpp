@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include "limber/body/testing/capsule_person.h"
 #include "limber/core/error.h"
 #include "limber/rigging/template_rigger.h"
-#include "limber/rigging/testing/capsule_person.h"
 
 namespace limber {
 

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "limber/rigging/handle_tree.h"
+#include "limber/sphere_mesh/handle_tree.h"
 
 namespace limber {
 

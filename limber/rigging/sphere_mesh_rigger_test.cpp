@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "limber/mesh/prepare.h"
-#include "limber/rigging/testing/shape_meshes.h"
+#include "limber/surface/testing/shape_meshes.h"
 #include "shared_data.h"
 
 namespace limber {

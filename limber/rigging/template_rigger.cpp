@@ -6,16 +6,16 @@
 
 #include <fmt/format.h>
 
+#include "limber/body/body_volume.h"
 #include "limber/core/numbers.h"
-#include "limber/rigging/arm_flatness.h"
-#include "limber/rigging/bent_template.h"
-#include "limber/rigging/body_volume.h"
-#include "limber/rigging/humanoid_landmarks.h"
 #include "limber/rigging/person_template.h"
-#include "limber/rigging/pose_search.h"
-#include "limber/rigging/quadruped_landmarks.h"
-#include "limber/rigging/stray_pieces.h"
-#include "limber/rigging/template_embedding.h"
+#include "limber/surface/stray_pieces.h"
+#include "limber/templates/arm_flatness.h"
+#include "limber/templates/bent_template.h"
+#include "limber/templates/humanoid_landmarks.h"
+#include "limber/templates/pose_search.h"
+#include "limber/templates/quadruped_landmarks.h"
+#include "limber/templates/template_embedding.h"
 
 namespace limber {
 

@@ -1,11 +1,11 @@
 // Template embedding as a rigger: a named skeleton is fitted into the model.
 #pragma once
 
+#include "limber/body/body_frame.h"
+#include "limber/body/body_volume.h"
 #include "limber/rigging/auto_rigger.h"
-#include "limber/rigging/body_frame.h"
-#include "limber/rigging/body_volume.h"
-#include "limber/rigging/template_fit.h"
-#include "limber/rigging/template_skeleton.h"
+#include "limber/templates/template_fit.h"
+#include "limber/templates/template_skeleton.h"
 
 namespace limber {
 

@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "limber/body/testing/capsule_person.h"
 #include "limber/core/parallel.h"
-#include "limber/rigging/testing/capsule_person.h"
 
 namespace limber {
 

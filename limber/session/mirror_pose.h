@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "limber/rigging/mirror_map.h"
 #include "limber/session/command.h"
 #include "limber/skeleton/pose.h"
+#include "limber/surface/mirror_map.h"
 
 namespace limber {
 

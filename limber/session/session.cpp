@@ -12,12 +12,12 @@
 #include "limber/asset/uri.h"
 #include "limber/ik/limits_json.h"
 #include "limber/pipeline/pose_asset.h"
-#include "limber/rigging/mirror_map.h"
 #include "limber/samples/samples.h"
 #include "limber/session/mirror_pose.h"
 #include "limber/session/pose_transfer.h"
 #include "limber/session/session_file.h"
 #include "limber/session/session_io.h"
+#include "limber/surface/mirror_map.h"
 
 namespace limber {
 

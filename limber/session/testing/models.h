@@ -8,8 +8,8 @@
 #include "limber/asset/write.h"
 #include "limber/core/error.h"
 #include "limber/retarget/testing/test_motion.h"
-#include "limber/rigging/testing/shape_meshes.h"
 #include "limber/session/rigged_model.h"
+#include "limber/surface/testing/shape_meshes.h"
 
 namespace limber::testing {
 

@@ -1,0 +1,235 @@
+#include "limber/body/body_volume.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <queue>
+#include <utility>
+
+#include "limber/core/error.h"
+#include "limber/core/parallel.h"
+#include "limber/mesh/bvh.h"
+#include "limber/mesh/components.h"
+#include "limber/mesh/winding_number.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kMostCells = 96;        // along the longest side
+constexpr double kMostNodes = 250000;    // of the grid: fewer cells for what fills its box
+constexpr double kMostSlope = 0.6;       // depth gained for each step: from there on a place is not in the middle
+constexpr double kSphereSpacing = 0.45;  // radii that the centres of two spheres are apart, at least
+constexpr std::size_t kMostSpheres = 700;
+constexpr std::size_t kMostTips = 16;
+constexpr double kLeastReach = 0.05;  // longest sides
+// Spacings outside the surface over which parts that nearly touch hang together: more where else too little does.
+constexpr double kGaps[] = {1.2, 3, 6, 12, 24};
+constexpr double kGapCost = 5;        // of a way there, times the spacings outside, against one inside
+constexpr double kTogether = 0.9995;  // part of the inside that must hang together
+
+Index resolutionFor(const TriMesh& mesh) {
+  Box box;
+  for (const Triangle& t : mesh.triangles) {
+    for (const Index v : t) box.add(mesh.position(v));
+  }
+  const Vec3 sides = box.size() / std::max(box.longestSide(), 1e-12);
+  const double cells = std::cbrt(kMostNodes / std::max(sides.prod(), 1e-3));
+  return static_cast<Index>(std::clamp(cells, 32.0, kMostCells));
+}
+
+std::vector<bool> turnedPieces(const TriMesh& mesh) {
+  Index count = 0;
+  const std::vector<Index> pieceOf = vertexComponents(mesh, &count);
+  std::vector<Vec3> middle(count, Vec3::Zero());
+  std::vector<double> area(count, 0.0), volume(count, 0.0);
+  const auto corners = [&](const Triangle& t) {
+    return std::array<Vec3, 3>{mesh.position(t[0]), mesh.position(t[1]), mesh.position(t[2])};
+  };
+  for (const Triangle& t : mesh.triangles) {
+    const auto [a, b, c] = corners(t);
+    const double part = (b - a).cross(c - a).norm();
+    middle[pieceOf[t[0]]] += part * (a + b + c) / 3;
+    area[pieceOf[t[0]]] += part;
+  }
+  for (const Triangle& t : mesh.triangles) {
+    const Index piece = pieceOf[t[0]];
+    if (!(area[piece] > 0)) continue;
+    const auto [a, b, c] = corners(t);
+    const Vec3 m = middle[piece] / area[piece];
+    volume[piece] += (a - m).dot((b - m).cross(c - m));
+  }
+  std::vector<bool> turned(mesh.triangles.size());
+  for (std::size_t t = 0; t < turned.size(); ++t) turned[t] = volume[pieceOf[mesh.triangles[t][0]]] < 0;
+  return turned;
+}
+
+// The 26 nodes round a node, as steps, with the way there in spacings.
+struct Neighbor {
+  std::array<int, 3> step;
+  double length;
+};
+std::vector<Neighbor> neighbors() {
+  std::vector<Neighbor> all;
+  for (int z = -1; z <= 1; ++z) {
+    for (int y = -1; y <= 1; ++y) {
+      for (int x = -1; x <= 1; ++x) {
+        if (x != 0 || y != 0 || z != 0)
+          all.push_back({{x, y, z}, std::sqrt(static_cast<double>(x * x + y * y + z * z))});
+      }
+    }
+  }
+  return all;
+}
+
+// The grid as a graph of the nodes that are inside, or all but inside.
+class InsideGraph {
+ public:
+  explicit InsideGraph(const SignedDistance& distance) : distance_(distance), neighbors_(neighbors()) {
+    const auto& size = distance.size();
+    for (const Neighbor& n : neighbors_) {
+      offsets_.push_back((static_cast<std::ptrdiff_t>(n.step[2]) * size[1] + n.step[1]) * size[0] + n.step[0]);
+    }
+  }
+
+  // No node inside lies on the grid's border: the model keeps a margin to it.
+  bool inside(std::size_t node) const { return distance_.value(node) < 0; }
+  double depth(std::size_t node) const { return -distance_.value(node); }
+
+  bool medial(std::size_t node) const {
+    for (std::size_t n = 0; n < offsets_.size(); ++n) {
+      const double gain = depth(node + offsets_[n]) - depth(node);
+      if (gain > kMostSlope * neighbors_[n].length * distance_.spacing()) return false;
+    }
+    return true;
+  }
+
+  void allowGaps(double spacings) { gap_ = spacings * distance_.spacing(); }
+
+  // Lowers `way` to the shortest way from `sources`, and remembers whence in `from`.
+  void spread(const std::vector<std::size_t>& sources, std::vector<float>& way, std::vector<std::size_t>& from) const {
+    using Item = std::pair<float, std::size_t>;
+    std::priority_queue<Item, std::vector<Item>, std::greater<>> queue;
+    for (const std::size_t node : sources) {
+      way[node] = 0;
+      from[node] = node;
+      queue.push({0.0f, node});
+    }
+    while (!queue.empty()) {
+      const auto [length, node] = queue.top();
+      queue.pop();
+      if (length > way[node]) continue;
+      for (std::size_t n = 0; n < offsets_.size(); ++n) {
+        const std::size_t next = node + offsets_[n];
+        const double value = distance_.value(next);
+        if (value > gap_ || onBorder(next)) continue;
+        const double cost = value < 0 ? 1 : kGapCost * std::max(1.0, value / distance_.spacing());
+        const double step = neighbors_[n].length * distance_.spacing() * cost;
+        const float reached = length + static_cast<float>(step);
+        if (reached >= way[next]) continue;
+        way[next] = reached;
+        from[next] = node;
+        queue.push({reached, next});
+      }
+    }
+  }
+
+ private:
+  bool onBorder(std::size_t node) const {
+    const auto& size = distance_.size();
+    const std::size_t place[3] = {node % size[0], node / size[0] % size[1], node / size[0] / size[1]};
+    for (int axis = 0; axis < 3; ++axis) {
+      if (place[axis] == 0 || place[axis] + 1 == size[axis]) return true;
+    }
+    return false;
+  }
+
+  const SignedDistance& distance_;
+  std::vector<Neighbor> neighbors_;
+  std::vector<std::ptrdiff_t> offsets_;
+  double gap_ = 0;
+};
+
+std::vector<MedialSphere> medialSpheres(const SignedDistance& distance, const InsideGraph& graph,
+                                        const std::vector<std::size_t>& inside) {
+  std::vector<std::size_t> middle;
+  for (const std::size_t node : inside) {
+    if (graph.medial(node)) middle.push_back(node);
+  }
+  std::stable_sort(middle.begin(), middle.end(),
+                   [&](std::size_t a, std::size_t b) { return graph.depth(a) > graph.depth(b); });
+  std::vector<MedialSphere> spheres;
+  for (const std::size_t node : middle) {
+    const Vec3 center = distance.position(node);
+    const bool covered = std::any_of(spheres.begin(), spheres.end(), [&](const MedialSphere& known) {
+      const double apart = std::max(kSphereSpacing * known.radius, 1.5 * distance.spacing());
+      return (known.center - center).squaredNorm() < apart * apart;
+    });
+    if (!covered) spheres.push_back({center, graph.depth(node)});
+    if (spheres.size() == kMostSpheres) break;
+  }
+  return spheres;
+}
+
+// One end after the other: the node farthest from the middle, then the one farthest from the ways to all ends so far.
+std::vector<BodyTip> findTips(const SignedDistance& distance, InsideGraph& graph,
+                              const std::vector<std::size_t>& inside) {
+  Vec3 middle = Vec3::Zero();
+  for (const std::size_t node : inside) middle += distance.position(node) / static_cast<double>(inside.size());
+  const std::size_t root = *std::min_element(inside.begin(), inside.end(), [&](std::size_t a, std::size_t b) {
+    return (distance.position(a) - middle).squaredNorm() < (distance.position(b) - middle).squaredNorm();
+  });
+  std::vector<float> way(distance.nodeCount(), std::numeric_limits<float>::infinity());
+  std::vector<std::size_t> from(distance.nodeCount());
+  std::vector<std::size_t> sources = {root};
+  for (const double gap : kGaps) {
+    graph.allowGaps(gap);
+    graph.spread(sources, way, from);
+    const auto reached =
+        std::count_if(inside.begin(), inside.end(), [&](std::size_t node) { return std::isfinite(way[node]); });
+    if (static_cast<double>(reached) >= kTogether * static_cast<double>(inside.size())) break;
+    std::fill(way.begin(), way.end(), std::numeric_limits<float>::infinity());
+  }
+  std::vector<BodyTip> tips;
+  while (tips.size() < kMostTips) {
+    graph.spread(sources, way, from);
+    std::size_t tip = root;
+    for (const std::size_t node : inside) {
+      if (std::isfinite(way[node]) && way[node] > way[tip]) tip = node;
+    }
+    if (way[tip] < kLeastReach) break;
+    tips.push_back({distance.position(tip), way[tip]});
+    sources.clear();
+    for (std::size_t node = tip; way[node] > 0; node = from[node]) sources.push_back(node);
+  }
+  return tips;
+}
+
+}  // namespace
+
+BodyVolume measureBody(const TriMesh& mesh) {
+  std::unique_ptr<Bvh> surface;
+  std::unique_ptr<WindingNumber> winding;
+  parallelInvoke([&] { surface = std::make_unique<Bvh>(mesh); },
+                 [&] { winding = std::make_unique<WindingNumber>(mesh, turnedPieces(mesh)); });
+  BodyVolume body;
+  body.distance = std::make_unique<const SignedDistance>(mesh, *surface, *winding, resolutionFor(mesh));
+  const SignedDistance& distance = *body.distance;
+  InsideGraph graph(distance);
+  std::vector<std::size_t> inside;
+  for (std::size_t node = 0; node < distance.nodeCount(); ++node) {
+    if (graph.inside(node)) inside.push_back(node);
+  }
+  if (inside.empty()) {
+    throw Error(ErrorCode::kUnsupported, "nothing lies inside the model, so that no skeleton fits into it", {},
+                "it is flat or too thin; use --rigger sphere-mesh");
+  }
+  body.insideShare = static_cast<double>(inside.size()) / static_cast<double>(distance.nodeCount());
+  body.spheres = medialSpheres(distance, graph, inside);
+  body.tips = findTips(distance, graph, inside);
+  return body;
+}
+
+}  // namespace limber

@@ -1,0 +1,101 @@
+#include "limber/surface/mirror_map.h"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "limber/surface/testing/shape_meshes.h"
+
+namespace limber {
+
+namespace {
+
+using testing::blockBiped;
+
+void expectMirrors(const TriMesh& mesh, const MirrorMap& map, double tolerance) {
+  ASSERT_EQ(map.image.size(), mesh.positions.size());
+  EXPECT_NEAR(map.plane.normal.norm(), 1, 1e-9);
+  for (Index v = 0; v < map.image.size(); ++v) {
+    if (map.image[v] == kNoIndex) continue;
+    ASSERT_EQ(map.image[map.image[v]], v);
+    const Vec3 p = mesh.position(v);
+    const Vec3 reflected = p - 2 * (map.plane.normal.dot(p) - map.plane.offset) * map.plane.normal;
+    EXPECT_LE((reflected - mesh.position(map.image[v])).norm(), tolerance) << v;
+  }
+}
+
+std::size_t unmatched(const MirrorMap& map) {
+  return static_cast<std::size_t>(std::count(map.image.begin(), map.image.end(), kNoIndex));
+}
+
+TEST(MirrorMap, FindsImagesInAnyOrderOfVertices) {
+  const TriMesh mesh = testing::shuffled(blockBiped(1));
+  const auto map = findMirror(mesh);
+  ASSERT_TRUE(map);
+  EXPECT_EQ(map->plane.normal, Vec3(1, 0, 0));
+  EXPECT_EQ(map->plane.offset, 0);
+  EXPECT_EQ(unmatched(*map), 0u);
+  expectMirrors(mesh, *map, 0);
+  for (Index v = 0; v < map->image.size(); ++v) EXPECT_EQ(map->image[v] == v, mesh.positions[v].x() == 0);
+}
+
+TEST(MirrorMap, FindsPlanesOffTheOriginAndAcrossOtherAxes) {
+  TriMesh moved = blockBiped(1);
+  for (Vec3f& p : moved.positions) p += Vec3f(7.25f, 1, 2);
+  const auto map = findMirror(moved);
+  ASSERT_TRUE(map);
+  EXPECT_NEAR(map->plane.offset, 7.25, 1e-6);
+
+  TriMesh turned = testing::jittered(blockBiped(1), 0);
+  for (Vec3f& p : turned.positions) p = Vec3f(p.z() + 0.2f * p.y(), p.y(), p.x());  // slanted: z alone is left
+  const auto turnedMap = findMirror(turned);
+  ASSERT_TRUE(turnedMap);
+  EXPECT_EQ(turnedMap->plane.normal, Vec3(0, 0, 1));
+  expectMirrors(turned, *turnedMap, 1e-6);
+}
+
+TEST(MirrorMap, FindsSlantingPlanes) {
+  TriMesh mesh = blockBiped(1);
+  const Eigen::AngleAxisf turn(0.6f, Vec3f(1, 2, 3).normalized());
+  for (Vec3f& p : mesh.positions)
+    p = turn * Vec3f(p.x(), p.y(), p.z() + 0.1f * p.y() * p.y());  // front and back differ
+  const auto map = findMirror(mesh);
+  ASSERT_TRUE(map);
+  EXPECT_NEAR(std::abs(map->plane.normal.dot((turn * Vec3f::UnitX()).cast<double>())), 1, 1e-4);
+  expectMirrors(mesh, *map, 0.02);
+}
+
+TEST(MirrorMap, AllowsForAFewVerticesAndALittleNoise) {
+  TriMesh mesh = testing::jittered(blockBiped(2), 0.002f);
+  const auto noisy = findMirror(mesh);
+  ASSERT_TRUE(noisy);
+  expectMirrors(mesh, *noisy, 0.02);
+  mesh = blockBiped(2);
+  mesh.positions[5] += Vec3f(0.1f, 0.2f, 0);
+  const auto map = findMirror(mesh);
+  ASSERT_TRUE(map);
+  EXPECT_EQ(unmatched(*map), 2u);
+}
+
+TEST(MirrorMap, SeesNoneWhereThereIsNone) {
+  EXPECT_FALSE(findMirror(testing::jittered(testing::ball(3), 0.05f)));
+  TriMesh lame = blockBiped(1);  // one arm shorter
+  for (Vec3f& p : lame.positions) {
+    if (p.x() > 2) p.x() = 2 + 0.7f * (p.x() - 2);
+  }
+  const auto map = findMirror(lame);
+  EXPECT_TRUE(!map || std::abs(map->plane.normal.x()) < 0.1);
+}
+
+TEST(MirrorMap, ASheetIsNotTheImageOfItself) {
+  const auto map = findMirror(testing::jittered(testing::flatGrid(12, 9), 0.2f));
+  EXPECT_FALSE(map);
+  TriMesh flat = testing::jittered(testing::flatGrid(12, 9), 0.2f);
+  for (Vec3f& p : flat.positions) p.z() = 0;
+  EXPECT_FALSE(findMirror(flat));
+  EXPECT_FALSE(findMirror({{{1, 1, 1}, {1, 1, 1}}, {}}));
+}
+
+}  // namespace
+
+}  // namespace limber

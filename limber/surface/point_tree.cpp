@@ -1,0 +1,100 @@
+#include "limber/surface/point_tree.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <numeric>
+
+namespace limber {
+
+namespace {
+
+constexpr int kBitsPerAxis = 10;
+
+std::uint32_t spread(std::uint32_t x) {
+  x = (x | x << 16) & 0x030000ff;
+  x = (x | x << 8) & 0x0300f00f;
+  x = (x | x << 4) & 0x030c30c3;
+  return (x | x << 2) & 0x09249249;
+}
+
+std::vector<std::uint32_t> mortonCodes(std::span<const Vec3f> points) {
+  Vec3f low = Vec3f::Constant(std::numeric_limits<float>::infinity()), high = -low;
+  for (const Vec3f& p : points) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  const float side = (high - low).maxCoeff();
+  const float cells = static_cast<float>(1 << kBitsPerAxis);
+  const float scale = side > 0 ? cells / side : 0;
+  const auto cell = [&](float x) { return static_cast<std::uint32_t>(std::clamp(x * scale, 0.0f, cells - 1)); };
+  std::vector<std::uint32_t> codes(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec3f p = points[i] - low;
+    codes[i] = spread(cell(p.x())) | spread(cell(p.y())) << 1 | spread(cell(p.z())) << 2;
+  }
+  return codes;
+}
+
+}  // namespace
+
+std::vector<Index> mortonOrder(std::span<const Vec3f> points) {
+  const std::vector<std::uint32_t> codes = mortonCodes(points);
+  std::vector<Index> order(points.size()), next(points.size());
+  std::iota(order.begin(), order.end(), Index{0});
+  constexpr int kDigit = 10;
+  for (int shift = 0; shift < 3 * kBitsPerAxis; shift += kDigit) {
+    std::array<Index, (1 << kDigit) + 1> begin{};
+    const auto digit = [&](Index i) { return codes[i] >> shift & ((1u << kDigit) - 1); };
+    for (const Index i : order) ++begin[digit(i) + 1];
+    std::partial_sum(begin.begin(), begin.end(), begin.begin());
+    for (const Index i : order) next[begin[digit(i)]++] = i;
+    order.swap(next);
+  }
+  return order;
+}
+
+PointTree::PointTree(std::span<const Vec3f> points) : points_(points), order_(mortonOrder(points)) {
+  leaves_ = std::bit_ceil((points.size() + kLeafSize - 1) / kLeafSize);
+  boxes_.resize(2 * leaves_);
+  for (std::size_t i = 0; i < order_.size(); ++i) {
+    Box3& box = boxes_[leaves_ + i / kLeafSize];
+    box.min = box.min.cwiseMin(points_[order_[i]]);
+    box.max = box.max.cwiseMax(points_[order_[i]]);
+  }
+  for (std::size_t node = leaves_ - 1; node > 0; --node) {
+    boxes_[node].min = boxes_[2 * node].min.cwiseMin(boxes_[2 * node + 1].min);
+    boxes_[node].max = boxes_[2 * node].max.cwiseMax(boxes_[2 * node + 1].max);
+  }
+}
+
+void PointTree::setPieces(std::span<const Index> pieces) {
+  pieces_ = pieces;
+  uniform_.assign(2 * leaves_, kNoIndex);
+  std::vector<std::uint8_t> empty(2 * leaves_, 1);
+  for (std::size_t i = 0; i < order_.size(); ++i) {
+    const std::size_t leaf = leaves_ + i / kLeafSize;
+    const Index piece = pieces[order_[i]];
+    uniform_[leaf] = empty[leaf] || uniform_[leaf] == piece ? piece : kNoIndex;
+    empty[leaf] = 0;
+  }
+  for (std::size_t node = leaves_ - 1; node > 0; --node) {
+    const std::size_t left = 2 * node, right = left + 1;
+    empty[node] = empty[left] && empty[right];
+    uniform_[node] = empty[right] || uniform_[left] == uniform_[right] ? uniform_[left] : kNoIndex;
+  }
+}
+
+std::vector<float> PointTree::largestOf(std::span<const float> values) const {
+  std::vector<float> largest(2 * leaves_, 0);
+  for (std::size_t i = 0; i < order_.size(); ++i) {
+    float& leaf = largest[leaves_ + i / kLeafSize];
+    leaf = std::max(leaf, values[order_[i]]);
+  }
+  for (std::size_t node = leaves_ - 1; node > 0; --node) {
+    largest[node] = std::max(largest[2 * node], largest[2 * node + 1]);
+  }
+  return largest;
+}
+
+}  // namespace limber

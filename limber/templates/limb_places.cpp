@@ -1,0 +1,111 @@
+#include "limber/templates/limb_places.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace limber {
+
+namespace {
+
+constexpr double kNoPlace = 2.1;  // mean cost of a limb's joints; up to 1.2 on people, 2 on toys
+constexpr double kWithin = 0.04;  // heights
+constexpr double kAcross = 0.5;   // most cosine between a limb and what lies across from it
+
+std::vector<TemplateLimb> chainsOf(const TemplateSkeleton& skeleton) {
+  std::vector<Index> children(skeleton.jointCount(), 0), limbOf(skeleton.jointCount(), 0);
+  for (const TemplateJoint& joint : skeleton.joints) {
+    if (joint.parent) ++children[*joint.parent];
+  }
+  std::vector<TemplateLimb> limbs;
+  for (Index j = 0; j < skeleton.jointCount(); ++j) {
+    const TemplateJoint& joint = skeleton.joints[j];
+    if (joint.parent && children[*joint.parent] == 1) {
+      limbOf[j] = limbOf[*joint.parent];
+    } else {
+      limbOf[j] = static_cast<Index>(limbs.size());
+      limbs.emplace_back();
+    }
+    TemplateLimb& limb = limbs[limbOf[j]];
+    if (joint.role != TemplateRole::kTip) limb.joints.push_back(j);
+    if (joint.role != TemplateRole::kBetween) limb.placed.push_back(j);
+  }
+  std::erase_if(limbs, [](const TemplateLimb& limb) { return limb.joints.empty() || limb.placed.empty(); });
+  return limbs;
+}
+
+// Whether the way across from the limb's last joint but the tip straight to that of the other side stays inside the
+// body. Along the limbs it may: so it does from hand to hand of stretched arms.
+bool sharesItsEnd(const TemplateSkeleton& skeleton, const TemplateLimb& limb, const std::vector<Vec3>& places,
+                  const BodyVolume& body, const BodyFrame& frame) {
+  constexpr int kSteps = 24;
+  const std::size_t count = limb.placed.size();
+  if (count < 3 || skeleton.joints[limb.placed.back()].role != TemplateRole::kTip) return false;
+  const Index end = limb.placed[count - 2];
+  const std::optional<Index> mirror = skeleton.joints[end].mirror;
+  if (!mirror || *mirror == end) return false;
+  const Vec3 way = places[*mirror] - places[end], bone = places[end] - places[limb.placed[count - 3]];
+  if (std::abs(way.dot(bone)) > kAcross * way.norm() * bone.norm()) return false;
+  for (int step = 0; step <= kSteps; ++step) {
+    const Vec3 place = places[end] + static_cast<double>(step) / kSteps * way;
+    if (body.distance->at(frame.fromBody(place)) > 0) return false;
+  }
+  return true;
+}
+
+// Whether half of a limb's joints and more, but for the first, lie on bones of other limbs.
+bool liesInAnother(const TemplateSkeleton& skeleton, const TemplateLimb& limb, const std::vector<Vec3>& places) {
+  // Bones of the limb and of all that hangs on it.
+  std::vector<bool> own(skeleton.jointCount(), false);
+  for (const Index j : limb.joints) own[j] = true;
+  for (Index j = 0; j < skeleton.jointCount(); ++j) {
+    if (skeleton.joints[j].parent && own[*skeleton.joints[j].parent]) own[j] = true;
+  }
+  std::size_t within = 0;
+  for (std::size_t k = 1; k < limb.placed.size(); ++k) {
+    const Vec3& place = places[limb.placed[k]];
+    for (Index j = 0; j < skeleton.jointCount(); ++j) {
+      const std::optional<Index> parent = skeleton.joints[j].parent;
+      if (!parent || own[j]) continue;
+      if (distanceToBone(place, places[*parent], places[j]) < kWithin) {
+        ++within;
+        break;
+      }
+    }
+  }
+  return limb.placed.size() > 1 && 2 * within >= limb.placed.size() - 1;
+}
+
+}  // namespace
+
+double distanceToBone(const Vec3& place, const Vec3& a, const Vec3& b) {
+  const double along = std::clamp((place - a).dot(b - a) / std::max((b - a).squaredNorm(), 1e-12), 0.0, 1.0);
+  return (place - a - along * (b - a)).norm();
+}
+
+std::vector<TemplateLimb> limbsIn(const TemplateSkeleton& skeleton, const TemplateEmbedding& embedding,
+                                  const BodyVolume& body, const BodyFrame& frame) {
+  std::vector<TemplateLimb> limbs = chainsOf(skeleton);
+  for (TemplateLimb& limb : limbs) {
+    double cost = 0;
+    for (const Index j : limb.placed) cost += embedding.costs[j] / static_cast<double>(limb.placed.size());
+    limb.hasPlace = cost < kNoPlace && !sharesItsEnd(skeleton, limb, embedding.places, body, frame) &&
+                    !(skeleton.bent() && liesInAnother(skeleton, limb, embedding.places));
+  }
+  return limbs;
+}
+
+std::string limbsWithoutPlace(const TemplateSkeleton& skeleton, const std::vector<TemplateLimb>& limbs) {
+  std::string names;
+  for (const TemplateLimb& limb : limbs) {
+    if (limb.hasPlace) continue;
+    const std::string &first = skeleton.joints[limb.joints.front()].name,
+                      &last = skeleton.joints[limb.joints.back()].name;
+    names += names.empty() ? "" : ", ";
+    names += first;
+    if (first != last) names += " to " + last;
+  }
+  return names;
+}
+
+}  // namespace limber

@@ -1,0 +1,32 @@
+// Which limbs of a template a body lacks.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "limber/templates/template_embedding.h"
+
+namespace limber {
+
+// A chain of a template's joints that does not branch, from where it leaves the joint above to where it parts or ends.
+struct TemplateLimb {
+  std::vector<Index> joints;  // downwards; without tips
+  std::vector<Index> placed;  // those that are searched for in the model, a tip at the end among them
+  bool hasPlace = true;
+};
+
+// All limbs. One has no place where its joints stand too ill in the body, in the mean of their costs; nor has either of
+// a mirrored pair that ends in one and the same part of the body, as feet do in the stump of a bust; nor, of a template
+// that was bent, one that lies in another limb.
+//
+// embedding  with the costs of `skeleton`'s joints
+std::vector<TemplateLimb> limbsIn(const TemplateSkeleton& skeleton, const TemplateEmbedding& embedding,
+                                  const BodyVolume& body, const BodyFrame& frame);
+
+// Between a place and the straight bone from `a` to `b`.
+double distanceToBone(const Vec3& place, const Vec3& a, const Vec3& b);
+
+// Of those without a place: "leftUpperLeg to leftToes, ..."; empty where there are none.
+std::string limbsWithoutPlace(const TemplateSkeleton& skeleton, const std::vector<TemplateLimb>& limbs);
+
+}  // namespace limber

@@ -1,0 +1,121 @@
+#include "limber/templates/pose_search.h"
+
+#include <algorithm>
+
+#include "limber/templates/bent_template.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kDoubtful = 1;         // cost of a fit from which it is bent
+constexpr double kWorthBending = 0.65;  // of the cost of the template that stands
+constexpr double kMostCost = 1.9;       // of a pose that nobody pinned
+constexpr int kMostBends = 6;
+constexpr int kMostReaches = 4;
+constexpr double kSizeSteps[] = {0.8, 1, 1.25};
+constexpr double kLeftOut = 0.5;  // of being far from all bones: such ends are reached for
+constexpr std::size_t kMostEnds = 3;
+
+TemplateFit nearestOf(const std::vector<TemplateVariant>& variants, const BodyVolume& body, const TemplateFit& fit) {
+  std::vector<TemplateFit> fits = fitVariants(variants, body, fit.frame, fit.pins, {body.spheres.size(), true});
+  return std::move(*std::min_element(fits.begin(), fits.end(), cheaper));
+}
+
+// Pinned joints to their pins, placed ones to where they were found.
+std::vector<BendTarget> foundTargets(const TemplateFit& fit) {
+  std::vector<BendTarget> targets;
+  for (Index j = 0; j < fit.skeleton.jointCount(); ++j) {
+    if (fit.pins[j]) {
+      targets.push_back({j, *fit.pins[j], true});
+    } else if (fit.skeleton.joints[j].role == TemplateRole::kPlaced) {
+      targets.push_back({j, fit.embedding.places[j], false});
+    }
+  }
+  return targets;
+}
+
+void bendNearer(const BodyVolume& body, TemplateFit& fit) {
+  for (int bend = 0; bend < kMostBends; ++bend) {
+    std::vector<TemplateVariant> variants;
+    for (const double step : kSizeSteps) {
+      variants.push_back(bentTemplate(fit.skeleton, foundTargets(fit), step * sizeOf(fit.skeleton)));
+    }
+    TemplateFit nearest = nearestOf(variants, body, fit);
+    if (!cheaper(nearest, fit)) return;
+    fit = std::move(nearest);
+  }
+}
+
+// Ends of the body, in body space, that no bone comes near; the longest first.
+std::vector<Vec3> endsLeftOut(const BodyVolume& body, const TemplateFit& fit) {
+  std::vector<Vec3> ends;
+  for (const BodyTip& tip : body.tips) {
+    const Vec3 place = fit.frame.toBody(tip.position);
+    if (ends.size() < kMostEnds && farFromBones(fit.skeleton, fit.embedding.places, place, 0) > kLeftOut) {
+      ends.push_back(place);
+    }
+  }
+  return ends;
+}
+
+// The joints that a tip hangs on, up to where the body parts. Fingers are no parts: nobody searches for them.
+std::vector<Index> limbAbove(const TemplateSkeleton& skeleton, Index tip) {
+  std::vector<Index> parts(skeleton.jointCount(), 0);
+  for (Index j = skeleton.jointCount(); j-- > 0;) {
+    const bool searched = skeleton.joints[j].role != TemplateRole::kBetween || parts[j] > 0;
+    if (searched && skeleton.joints[j].parent) ++parts[*skeleton.joints[j].parent];
+  }
+  std::vector<Index> limb;
+  for (std::optional<Index> j = skeleton.joints[tip].parent; j && parts[*j] == 1; j = skeleton.joints[*j].parent) {
+    limb.push_back(*j);
+  }
+  return limb;
+}
+
+// The template with a tip at `end`, its limb as it comes and the rest as it was found.
+TemplateVariant reaching(const TemplateFit& fit, Index tip, const Vec3& end) {
+  std::vector<BendTarget> targets = foundTargets(fit);
+  const std::vector<Index> limb = limbAbove(fit.skeleton, tip);
+  const auto isIn = [&](Index joint) { return std::find(limb.begin(), limb.end(), joint) != limb.end(); };
+  const std::optional<Index> mirror = fit.skeleton.joints[tip].mirror;
+  const bool both = mirror && fit.frame.symmetric();
+  std::erase_if(targets, [&](const BendTarget& target) {
+    const Index other = fit.skeleton.joints[target.joint].mirror.value_or(target.joint);
+    return !target.firm && (isIn(target.joint) || (both && isIn(other)));
+  });
+  targets.push_back({tip, end, true});
+  if (both) targets.push_back({*mirror, end.cwiseProduct(Vec3(-1, 1, 1)), true});
+  return bentTemplate(fit.skeleton, targets, sizeOf(fit.skeleton));
+}
+
+// Whether a limb that reached for an end left out made the fit cheaper.
+bool reachOut(const BodyVolume& body, TemplateFit& fit) {
+  std::vector<TemplateVariant> variants;
+  for (const Vec3& end : endsLeftOut(body, fit)) {
+    for (Index j = 0; j < fit.skeleton.jointCount(); ++j) {
+      const bool isTip = fit.skeleton.joints[j].role == TemplateRole::kTip;
+      if (isTip && !fit.pins[j]) variants.push_back(reaching(fit, j, end));
+    }
+  }
+  if (variants.empty()) return false;
+  TemplateFit nearest = nearestOf(variants, body, fit);
+  bendNearer(body, nearest);
+  if (!cheaper(nearest, fit)) return false;
+  fit = std::move(nearest);
+  return true;
+}
+
+}  // namespace
+
+void searchPose(const BodyVolume& body, TemplateFit& fit) {
+  const bool pinned = fit.skeleton.bent();
+  if (!pinned && (fit.cost < kDoubtful || fit.frame.symmetric())) return;
+  TemplateFit bent = fit;
+  bendNearer(body, bent);
+  for (int reach = 0; reach < kMostReaches && reachOut(body, bent); ++reach) {
+  }
+  if (pinned || bent.cost < std::min(kMostCost, kWorthBending * fit.cost)) fit = std::move(bent);
+}
+
+}  // namespace limber

@@ -1,0 +1,20 @@
+#include "limber/templates/pose_search.h"
+
+#include <gtest/gtest.h>
+
+#include "limber/body/testing/measured_person.h"
+
+namespace limber {
+
+TEST(PoseSearch, LeavesWhatStandsAlone) {
+  const testing::MeasuredPerson& person = testing::measuredPerson();
+  const TemplateSkeleton& skeleton = findTemplate("humanoid");
+  std::vector<TemplateFit> fits =
+      fitVariants({{skeleton, 0}}, person.body, person.frame, TemplatePins(skeleton.jointCount()), {});
+  const std::vector<Vec3> before = fits.front().embedding.places;
+  searchPose(person.body, fits.front());
+  EXPECT_FALSE(fits.front().skeleton.bent());
+  EXPECT_EQ(fits.front().embedding.places, before);
+}
+
+}  // namespace limber
