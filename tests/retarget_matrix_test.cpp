@@ -67,6 +67,10 @@ const std::set<std::string> kNeverStands = {"cmu_daz_02_03_run.bvh", "cmu_daz_09
 const std::set<std::string> kRougherThanSource = {"rokoko_dance_mixamorig_names.bvh"};  // 1.18
 constexpr double kRoughest = 1.7;  // of all pairs: a walk of the living dead on a toy with hips as wide as its legs
 
+// In this recording standing feet tremble by 7 mm with the whole body: held still they make legs tremble, on toys most.
+constexpr const char* kTremblingFeet = "cmu_mb_01_01_forward_jumps.bvh";
+constexpr double kRoughestInOnePiece = 2.3;  // of all pairs by spacetime: that motion on a toy
+
 }  // namespace
 
 class RetargetMatrix : public ::testing::TestWithParam<const char*> {};
@@ -99,15 +103,29 @@ TEST_P(RetargetMatrix, EveryHumanoidKeepsFeetAndGround) {
   }
 }
 
-TEST_P(RetargetMatrix, SpacetimeIsAsSmoothAsTheSource) {
+TEST_P(RetargetMatrix, SpacetimeKeepsFeetAndGround) {
   if (!sharedDataFolder()) GTEST_SKIP() << kNoSharedData;
-  const Taken source = motionFrom(GetParam(), 200);
-  for (const char* file : {"m2m_human_male.glb", "makehuman_mixamo.glb"}) {
+  const std::string motion = GetParam();
+  const Taken source = motionFrom(motion);
+  double jerk = 0, count = 0;
+  for (const std::string& file : humanoids()) {
     SCOPED_TRACE(file);
     const Skeleton target = readMotion(*sharedDataFolder() / "rigged" / file).skeleton;
     const RetargetSetup setup(source.skeleton, target, matchSkeletons(source.skeleton, target), {}, &source.frames);
-    EXPECT_LT(measured(setup, "spacetime", source.frames).jerk, 1.1);
+    const MotionMetrics result = measured(setup, "spacetime", source.frames);
+    EXPECT_LT(1700 * result.penetration, 5) << "millimetres at human size";
+    EXPECT_LT(result.sliding, result.sourceSliding + 1e-4);
+    if (file == kBirdLegs) continue;
+    if (isWalkOrRun(motion)) {
+      EXPECT_LT(result.sliding, 0.02);
+    }
+    EXPECT_LT(result.boneDirection, 15);
+    EXPECT_LT(result.jerk, kRoughestInOnePiece);
+    if (kTwins.contains(file)) continue;
+    jerk += result.jerk;
+    ++count;
   }
+  EXPECT_LT(jerk / count, motion == kTremblingFeet ? 1.12 : 1.1);
 }
 
 // Legs that are nearly straight bend to the same side from frame to frame.
@@ -314,7 +332,7 @@ TEST(RetargetAnimals, PawsStandWhereTheyStand) {
       if (walks) frames = walkingAhead(RetargetSetup(motion.skeleton, target, map, {}, &frames), frames);
       const RetargetSetup setup(motion.skeleton, target, map, {}, &frames);
       ASSERT_EQ(setup.animalLegs.size(), 4u);
-      for (const char* method : {"limb-ik", "online"}) {
+      for (const char* method : {"limb-ik", "online", "spacetime"}) {
         const MotionMetrics result = measured(setup, method, frames);
         if (walks) {
           EXPECT_GT(result.planted, 0.05);

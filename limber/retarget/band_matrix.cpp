@@ -5,6 +5,19 @@
 
 namespace limber {
 
+std::vector<double> BandMatrix::times(const std::vector<double>& column) const {
+  std::vector<double> result(n_, 0.0);
+  for (std::size_t i = 0; i < n_; ++i) {
+    const double* row = &entries_[i * (width_ + 1)];
+    result[i] += row[width_] * column[i];
+    for (std::size_t back = 1; back <= std::min(width_, i); ++back) {
+      result[i] += row[width_ - back] * column[i - back];
+      result[i - back] += row[width_ - back] * column[i];
+    }
+  }
+  return result;
+}
+
 void BandMatrix::solve(std::vector<double>& right) {
   const auto begin = [&](std::size_t row) { return row > width_ ? row - width_ : 0; };
   for (std::size_t i = 0; i < n_; ++i) {

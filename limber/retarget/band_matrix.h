@@ -14,6 +14,8 @@ class BandMatrix {
   // Of the lower triangle: column <= row, and row - column <= width.
   double& at(std::size_t row, std::size_t column) { return entries_[row * (width_ + 1) + width_ + column - row]; }
 
+  // The whole matrix times a column of n values.
+  std::vector<double> times(const std::vector<double>& column) const;
   // Overwrites the right-hand side (n values) with the solution, and the matrix with its Cholesky factor, n * width^2
   // operations. The matrix has to be positive definite.
   void solve(std::vector<double>& right);

@@ -9,7 +9,7 @@
 namespace limber {
 namespace {
 
-TEST(BandMatrix, SolvesAsADenseMatrixDoes) {
+TEST(BandMatrix, SolvesAndMultipliesAsADenseMatrixDoes) {
   constexpr int kSize = 40, kWidth = 6;
   // A product of a band with its transpose, hence positive definite.
   Eigen::MatrixXd band = Eigen::MatrixXd::Zero(kSize, kSize);
@@ -25,6 +25,8 @@ TEST(BandMatrix, SolvesAsADenseMatrixDoes) {
     for (int j = std::max(0, i - kWidth); j <= i; ++j)
       matrix.at(static_cast<std::size_t>(i), static_cast<std::size_t>(j)) = dense(i, j);
   }
+  const std::vector<double> product = matrix.times(solution);
+  for (int i = 0; i < kSize; ++i) EXPECT_NEAR(product[static_cast<std::size_t>(i)], dense.row(i) * right, 1e-10);
   matrix.solve(solution);
   const Eigen::VectorXd expected = dense.llt().solve(right);
   for (int i = 0; i < kSize; ++i)

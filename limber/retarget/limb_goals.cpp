@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "limber/ik/rotation.h"
@@ -209,7 +210,8 @@ double LimbGoals::loweredBy(double sourceGround, const Vec3& sourcePlace) const 
 }
 
 void LimbGoals::setFeet(const BodyFrame& source, const BodyFrame& target, double seconds) {
-  if (forgetAcrossCuts(source, seconds)) seconds = 0;
+  cut_ = forgetAcrossCuts(source, seconds);
+  if (cut_) seconds = 0;
   for (std::size_t i = 0; i < legs_.size(); ++i) {
     Leg& leg = legs_[i];
     FootLock::Frame frame;
@@ -223,6 +225,9 @@ void LimbGoals::setFeet(const BodyFrame& source, const BodyFrame& target, double
     leg.turn = Eigen::AngleAxisd(feelers_[i].lock.twist(), Vec3::UnitY());
     leg.wanted = true;
     leg.anchor = frame.anchor;
+    leg.flat = frame.flat;
+    leg.ankleFloor = frame.ankleGround;
+    leg.toesFloor = frame.toesGround;
     followPlanting(frame.anchor != FootAnchor::kNone ? 1 : 0, seconds, leg.planted, feelers_[i].plantedSpeed);
     double below = frame.ankleGround - leg.goal.y();
     if (leg.toes) below = std::max(below, frame.toesGround - (leg.goal + frame.toes - frame.ankle).y());
@@ -277,6 +282,16 @@ double LimbGoals::pelvisShift(const BodyFrame& target) const {
   return shift - std::min(std::sqrt(std::sqrt(sum)), kMostSinking * height);
 }
 
+double LimbGoals::mostPelvisShift(const BodyFrame& target) const {
+  double most = std::numeric_limits<double>::infinity();
+  for (const Leg& leg : legs_) {
+    const Vec3 way = leg.goal - target.positions[leg.upper];
+    const double length = kStretch * leg.length, across = std::hypot(way.x(), way.z());
+    if (way.y() < 0) most = std::min(most, way.y() + std::sqrt(std::max(length * length - across * across, 0.0)));
+  }
+  return std::max(most, -kMostSinking * setup_.targetHipHeight);
+}
+
 void LimbGoals::levelToes(const Leg& leg, BodyFrame& frame, Pose& target) const {
   if (!setup_.person || !leg.toes) return;
   const Quat turn = frame.rotations[*leg.toes] * setup_.targetNeutral.rotations[*leg.toes].conjugate();
@@ -314,8 +329,6 @@ Vec3 LimbGoals::touchOf(const Limb& arm, const std::vector<Surface>& surfaces, c
   return weights > 0 ? Vec3((1 - missing) / weights * sum) : sum;
 }
 
-// A goal that stretches the arm more than it is comes nearer the closer it gets to what the arm can reach: the elbow
-// else snaps.
 void LimbGoals::softenReach(Limb& arm, const BodyFrame& target) const {
   const Vec3 shoulder = target.positions[arm.upper], way = arm.goal - shoulder;
   const double free = std::max((target.positions[arm.end] - shoulder).norm(), kSoftReach * arm.length);

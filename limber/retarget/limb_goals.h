@@ -28,6 +28,8 @@ struct Leg : Limb {
   double ankleGround = 0, toesGround = 0;              // heights when standing, target
   double sourceAnkleGround = 0, sourceToesGround = 0;  // likewise, source
   FootAnchor anchor = FootAnchor::kNone;               // what holds the foot in this frame
+  bool flat = false;                                   // heel and toes stand both
+  double ankleFloor = 0, toesFloor = 0;                // below which neither goes in this frame
   double planted = 0;                                  // 0 to 1, comes and goes smoothly
 };
 
@@ -43,15 +45,23 @@ class LimbGoals {
   // Feet that are planted in the source stay where they came down, by their toes while the heel is up; none goes below
   // the ground. From the globals of both, the target's by joint angles alone.
   void setFeet(const BodyFrame& source, const BodyFrame& target, double seconds);
+  // Whether the source jumped to the last frame: what was before it does not count.
+  bool atCut() const { return cut_; }
   // How the pelvis turns (RootPlacer::turnPelvis), so that planted legs stand more as their joint angles have them: by
   // much where hips are wide for the legs, which its turns in the source would sweep further than they reach.
   Quat pelvisTurn(const BodyFrame& target) const;
   // How far the pelvis goes up, metres: so that planted legs keep the bend that their joint angles give them, on
   // average, and down as far as the longest way asks.
   double pelvisShift(const BodyFrame& target) const;
+  // The most that it may go up with every leg at its goal no longer than its bones, metres.
+  double mostPelvisShift(const BodyFrame& target) const;
   // Hands that are close to the other hand, the head, the trunk, a thigh or the other forearm in the source are as
   // close in the result, scaled. `reach` as in RetargetOptions.
   void setHands(const BodyFrame& source, const BodyFrame& target, double seconds);
+
+  // Brings a goal that stretches an arm more than it is the nearer the closer it gets to what the arm can reach: the
+  // elbow else snaps. setHands() does so.
+  void softenReach(Limb& arm, const BodyFrame& target) const;
 
   // Toes of a planted foot lie on the ground while the heel goes up, though recordings have them straight: else their
   // tips would go below it. For a target that is posed but for that; soles that look up, as of someone who kneels,
@@ -87,7 +97,6 @@ class LimbGoals {
   Vec3 touchOf(const Limb& arm, const std::vector<Surface>& surfaces, const BodyFrame& source,
                const BodyFrame& target) const;
   double within(double change) const;
-  void softenReach(Limb& arm, const BodyFrame& target) const;
   double bendKeepingShift(const BodyFrame& target) const;
   double closeness(double distance, double touching, double apart) const;
 
@@ -102,6 +111,7 @@ class LimbGoals {
   std::array<Follow, 2> follows_;               // the touches of each arm as they come and go
   std::array<std::vector<Vec3>, 2> landmarks_;  // of the frame before, and room for this one's
   std::size_t frames_ = 0;
+  bool cut_ = false;
   bool active_ = true;
 };
 

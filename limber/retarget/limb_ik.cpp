@@ -1,25 +1,19 @@
 #include "limber/retarget/limb_ik.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "limber/ik/ik_solver.h"
-#include "limber/ik/rotation.h"
-#include "limber/ik/two_bone.h"
 #include "limber/retarget/aligned.h"
-#include "limber/retarget/limb_goals.h"
+#include "limber/retarget/limb_reach.h"
 
 namespace limber {
 
 namespace {
 
-constexpr double kKneesForward = 0.02;   // of the leg's length, added to its bend
-constexpr double kOverstretched = 0.12;  // likewise, of a knee that is meant to bend backward
-
 class LimbIkRetargeter : public FrameRetargeter {
  public:
   explicit LimbIkRetargeter(const RetargetSetup& setup)
-      : setup_(setup), aligned_(setup), goals_(setup, aligned_.root()) {
+      : setup_(setup), aligned_(setup), goals_(setup, aligned_.root()), reach_(setup, aligned_.root()) {
     findIkMethod(setup.options.solver);
     if (setup.options.solver == "two-bone") return;
     for (const Leg& leg : goals_.legs()) legSolvers_.push_back(solverOf(leg));
@@ -69,53 +63,11 @@ class LimbIkRetargeter : public FrameRetargeter {
   }
 
   void reach(const Limb& limb, IkSolver* solver, const Vec3* kneeAhead, Pose& target) {
-    BodyFrame& frame = to();
-    const bool stays = (limb.goal - frame.positions[limb.end]).norm() < 1e-9 * limb.length;
-    if (stays && limb.turn.w() == 1) return;
-    const Quat orientation = limb.turn * frame.rotations[limb.end];
-    if (solver) {
-      reachBySolver(limb, *solver, target);
-    } else {
-      turnTwoBones(limb, kneeAhead, target);
-    }
-    // The end stands as it did, turned where a planted foot asks for it.
-    const BodyKinematics& kinematics = setup_.targetKinematics;
-    kinematics.globals(target, frame);
-    target.locals[limb.end].rotation =
-        (kinematics.parentRotation(limb.end, frame).conjugate() * orientation).normalized();
-    kinematics.globals(target, frame);
-    aligned_.root().settle(target, frame);
-  }
-
-  void turnTwoBones(const Limb& limb, const Vec3* kneeAhead, Pose& target) {
-    const BodyFrame& frame = to();
-    TwoBone bones{
-        frame.positions[limb.upper], frame.positions[limb.lower], frame.positions[limb.end], limb.goal, {}, {}};
-    if (kneeAhead) bones.pole = kneePole(limb, bones, *kneeAhead);
-    const TwoBoneTurns turns = solveTwoBone(bones);
-    const BodyKinematics& kinematics = setup_.targetKinematics;
-    const Quat aboveUpper = kinematics.parentRotation(limb.upper, frame);
-    const Quat aboveLower = turns.start * kinematics.parentRotation(limb.lower, frame);
-    target.locals[limb.upper].rotation =
-        (aboveUpper.conjugate() * turns.start * frame.rotations[limb.upper]).normalized();
-    target.locals[limb.lower].rotation =
-        (aboveLower.conjugate() * turns.middle * frame.rotations[limb.lower]).normalized();
-  }
-
-  // Knees bend to where they bend now, and forward where they hardly do or are a little overstretched: else they would
-  // snap from one side to the other.
-  Vec3 kneePole(const Limb& limb, const TwoBone& bones, const Vec3& kneeAhead) const {
-    const Vec3 way = (bones.end - bones.start).normalized(), knee = bones.middle - bones.start;
-    const Quat turn =
-        aligned_.targetFrame().rotations[limb.upper] * setup_.targetNeutral.rotations[limb.upper].conjugate();
-    const Vec3 ahead = turn * kneeAhead, forward = (ahead - ahead.dot(way) * way).normalized();
-    Vec3 bend = knee - knee.dot(way) * way;
-    const double backward = std::max(-bend.dot(forward), 0.0);
-    const double little = std::max(1 - backward / (kOverstretched * limb.length), 0.0);
-    bend += little * (backward + kKneesForward * limb.length) * forward;
-    // Seen from the way to the goal: of a leg that is nearly straight, the knee itself may lie on its other side.
-    const Vec3 there = bones.target - bones.start;
-    return bones.start + 0.5 * there + shortestRotation(way, there) * bend;
+    if (LimbReach::isThere(limb, to())) return;
+    if (!solver) return reach_.reach(limb, kneeAhead, to(), target);
+    const Quat orientation = limb.turn * to().rotations[limb.end];
+    reachBySolver(limb, *solver, target);
+    reach_.turnEnd(limb, orientation, to(), target);
   }
 
   void reachBySolver(const Limb& limb, IkSolver& solver, Pose& target) {
@@ -129,6 +81,7 @@ class LimbIkRetargeter : public FrameRetargeter {
   const RetargetSetup& setup_;
   AlignedRetargeter aligned_;
   LimbGoals goals_;
+  LimbReach reach_;
   Solvers legSolvers_, armSolvers_;  // empty: two-bone
 };
 
