@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <map>
 #include <set>
 #include <string>
 #include <utility>
@@ -62,10 +63,17 @@ bool isWalkOrRun(const std::string& motion) {
 // Runs, and walks on the spot, whose feet never stand still: nothing can be said of sliding there.
 const std::set<std::string> kNeverStands = {"cmu_daz_02_03_run.bvh", "cmu_daz_09_01_run.bvh", "makehuman_walk.bvh",
                                             "makehuman_zombie_walk.bvh", "pab_run.fbx"};
-// What does not hold yet: mean jerk over 1.1. The ground under this recording is not level: the feet stand at heights
-// that differ by a tenth of the hips' height, and go below it by as much before they are lifted to it.
-const std::set<std::string> kRougherThanSource = {"rokoko_dance_mixamorig_names.bvh"};  // 1.18
-constexpr double kRoughest = 1.7;  // of all pairs: a walk of the living dead on a toy with hips as wide as its legs
+// What does not hold yet: jerk over 1.1. The mannequin's feet are more than twice as long for its legs as the source's
+// are, and come down the sooner; the other's hips are twice as wide as its legs are long.
+const std::map<std::pair<std::string, std::string>, double> kRougherThanSource = {
+    {{"cmu1_jumping_jacks.bvh", "kaykit_mannequin/manny_med_mod.gltf"}, 1.28},
+    {{"rokoko_dance_mixamorig_names.bvh", "kaykit_mannequin/manny_med_mod.gltf"}, 1.19},
+    {{"cmu_mb_01_01_forward_jumps.bvh", "quaternius_platformer_character.glb"}, 1.12}};
+
+double roughest(const std::string& motion, const std::string& file) {
+  const auto known = kRougherThanSource.find({motion, file});
+  return known == kRougherThanSource.end() ? 1.1 : known->second;
+}
 
 // In this recording standing feet tremble by 7 mm with the whole body: held still they make legs tremble, on toys most.
 constexpr const char* kTremblingFeet = "cmu_mb_01_01_forward_jumps.bvh";
@@ -79,7 +87,6 @@ TEST_P(RetargetMatrix, EveryHumanoidKeepsFeetAndGround) {
   if (!sharedDataFolder()) GTEST_SKIP() << kNoSharedData;
   const std::string motion = GetParam();
   const Taken source = motionFrom(motion);
-  double jerk = 0, count = 0;
   for (const std::string& file : humanoids()) {
     SCOPED_TRACE(file);
     const Skeleton target = readMotion(*sharedDataFolder() / "rigged" / file).skeleton;
@@ -93,13 +100,8 @@ TEST_P(RetargetMatrix, EveryHumanoidKeepsFeetAndGround) {
       EXPECT_LT(result.sliding, 0.02);
     }
     EXPECT_LT(result.boneDirection, 15);
-    EXPECT_LT(result.jerk, kRoughest);
-    if (kTwins.contains(file)) continue;
-    jerk += result.jerk;
-    ++count;
-  }
-  if (!kRougherThanSource.contains(motion)) {
-    EXPECT_LT(jerk / count, 1.1);
+    EXPECT_LT(result.jerk, roughest(motion, file));
+    EXPECT_GT(result.contactAgreement, 0.99);
   }
 }
 
@@ -345,7 +347,7 @@ TEST(RetargetAnimals, PawsStandWhereTheyStand) {
         ++clips;
       }
     }
-    EXPECT_LT(jerk / clips, 1.25);
+    EXPECT_LT(jerk / clips, 1.1);
   }
 }
 

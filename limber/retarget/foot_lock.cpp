@@ -10,7 +10,8 @@ namespace {
 
 // 1/seconds. Along the ground a foot has to stand at once, down to it and back to where it would be there is time.
 constexpr double kGrip = 80;         // of the shares to which it is free
-constexpr double kFading = 20;       // of the way that it was held back, and of its height over where it has to be
+constexpr double kFading = 20;       // of the way that it was held back
+constexpr double kSettling = 18;     // of its height over where it has to be
 constexpr double kUntwisting = 10;   // of the twist of a foot that is free to turn
 constexpr double kRolling = 40;      // of the speed left where the point that is held changes
 constexpr double kMostTwist = 0.35;  // radians: a foot that is turned by more is let go
@@ -96,7 +97,7 @@ void FootLock::moveAlong(const Frame& frame, double seconds, double slack) {
 void FootLock::moveUpright(const Frame& frame, double seconds) {
   const double base = baseHeight(frame, anchor_);
   const double speed = (base - baseHeight(*before_, anchor_)) / seconds;
-  springTo(0.0, kFading, seconds, lift_, liftSpeed_);
+  springTo(0.0, kSettling, seconds, lift_, liftSpeed_);
   out_.y() = base + lift_;
   if (frame.anchor == anchor_) return;
   anchor_ = frame.anchor;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 
 #include "limber/ik/rotation.h"
@@ -15,18 +14,16 @@ namespace {
 
 // In hip heights of the target.
 constexpr double kTouching = 0.12, kApart = 0.35;  // of two hands
-constexpr double kMostSinking = 0.12;
-constexpr double kFootSlack = 0.9;   // how far a planted foot may be from where the joint angles have it
-constexpr double kStretch = 0.9995;  // of a leg's length: fully stretched knees pop
-constexpr double kTouchRate = 15;    // 1/seconds, of touches that come and go
-constexpr double kSoftReach = 0.96;  // of an arm's length: from there on stretching softens
-constexpr double kPlantRate = 12;    // 1/seconds, of the smooth flag
-constexpr double kSoftStretch = 0.015, kSoftChange = 0.004;  // of the pelvis sinking, by how far a foot is moved
-constexpr double kSoftGround = 0.004;
+constexpr double kFootSlack = 0.9;                 // how far a planted foot may be from where the joint angles have it
+constexpr double kStretch = 0.998;                 // of an arm's length: fully stretched elbows pop
+constexpr double kTouchRate = 10;                  // 1/seconds, of touches that come and go
+constexpr double kSoftReach = 0.96;                // of an arm's length: from there on stretching softens
+constexpr double kPlantRate = 9;                   // 1/seconds, of the smooth flag
+constexpr double kSoftGround = 0.006;
+// Shares of that softness that a planted foot loses: the point that holds it, and the other.
+constexpr double kFirmHeld = 0.9, kFirmBeside = 0.2;
+constexpr double kCarriedUp = 0.7;    // share of its hip's way up that a free foot takes part in
 constexpr double kBentInRest = 0.01;  // of an animal's leg's length: a knee off its line by that tells where it bends
-constexpr double kFirmGround = 0.8;   // share of that softness that a planted foot loses
-// Of the pelvis turning with planted legs: leg lengths, the more the less it does; and radians.
-constexpr double kStiffOnTwo = 0.15, kStiffOnOne = 0.3, kMostTurn = 0.8;
 constexpr double kSteep = 1.7, kSoleUp = 2.4, kSoftLevel = 0.05;  // radians that toes point down
 // Speeds of the source's pelvis or feet, hip heights a second, that are no motion but a cut. Many recordings have a
 // T-pose as their first frame.
@@ -35,11 +32,6 @@ constexpr double kJump = 15, kFirstJump = 4;
 double smoothStep(double x) {
   const double t = std::clamp(x, 0.0, 1.0);
   return t * t * (3 - 2 * t);
-}
-
-// x where it is above 0, else 0, but without a kink: at most softness / 2 more.
-double softPositive(double x, double softness) {
-  return 0.5 * (x + std::hypot(x, softness));
 }
 
 // 0 or 1 without a jump.
@@ -77,7 +69,7 @@ std::optional<Limb> findLimb(const RetargetSetup& setup, const RootPlacer& root,
 
 }  // namespace
 
-LimbGoals::LimbGoals(const RetargetSetup& setup, const RootPlacer& root) : setup_(setup) {
+LimbGoals::LimbGoals(const RetargetSetup& setup, const RootPlacer& root) : setup_(setup), pelvis_(setup, root) {
   if (setup.person) {
     addPersonsLegs(root);
     addArms(root);
@@ -157,7 +149,7 @@ void LimbGoals::addLeg(Leg leg) {
   }
   legs_.push_back(leg);
   const PlantDetector detector(setup_.sourceHipHeight);
-  feelers_.push_back({detector, detector, {}});
+  feelers_.push_back({detector, detector, {}, 0, {}, Vec3::Zero()});
 }
 
 void LimbGoals::addSurface(const std::string& from, const std::string& to, double touching, double apart,
@@ -168,18 +160,28 @@ void LimbGoals::addSurface(const std::string& from, const std::string& to, doubl
       {{begin->source.front(), end->source.front()}, {begin->target.front(), end->target.front()}, touching, apart});
 }
 
-// What of the foot stands in the source.
-void LimbGoals::feel(const Leg& leg, Feeler& feeler, const BodyFrame& source, double seconds,
-                     FootLock::Frame& frame) const {
+// What of the foot stands in the source, and where the target's is by its joint angles.
+void LimbGoals::feel(Leg& leg, Feeler& feeler, const BodyFrame& source, const BodyFrame& target, double seconds) const {
+  FootLock::Frame& foot = feeler.foot;
   const Vec3& ankle = source.positions[leg.sourceEnd];
   const bool heel = feeler.ankle.next(ankle, ankle.y() - leg.sourceAnkleGround, seconds);
+  foot.ankle = foot.toes = target.positions[leg.end];
+  foot.ankleGround = leg.ankleGround - loweredBy(leg.sourceAnkleGround, ankle);
   bool toes = false;
   if (leg.toes) {
     const Vec3& place = source.positions[*leg.sourceToes];
     toes = feeler.toes.next(place, place.y() - leg.sourceToesGround, seconds);
+    foot.toes = target.positions[*leg.toes];
+    foot.toesGround = leg.toesGround - loweredBy(leg.sourceToesGround, place);
   }
-  frame.anchor = toes ? FootAnchor::kToes : heel ? FootAnchor::kAnkle : FootAnchor::kNone;
-  frame.flat = heel && toes;
+  foot.anchor = toes ? FootAnchor::kToes : heel ? FootAnchor::kAnkle : FootAnchor::kNone;
+  foot.flat = heel && toes;
+  leg.anchor = foot.anchor;
+  leg.flat = foot.flat;
+  leg.ankleFloor = foot.ankleGround;
+  leg.toesFloor = foot.toesGround;
+  leg.wanted = true;
+  followPlanting(foot.anchor != FootAnchor::kNone ? 1 : 0, seconds, leg.planted, feeler.plantedSpeed);
 }
 
 // Nobody moves that fast: what stood before the cut does not count behind it.
@@ -199,6 +201,7 @@ bool LimbGoals::forgetAcrossCuts(const BodyFrame& source, double seconds) {
     feeler.ankle.reset();
     feeler.toes.reset();
     feeler.lock.reset();
+    feeler.carried = Vec3::Zero();
   }
   return true;
 }
@@ -212,84 +215,51 @@ double LimbGoals::loweredBy(double sourceGround, const Vec3& sourcePlace) const 
 void LimbGoals::setFeet(const BodyFrame& source, const BodyFrame& target, double seconds) {
   cut_ = forgetAcrossCuts(source, seconds);
   if (cut_) seconds = 0;
+  for (std::size_t i = 0; i < legs_.size(); ++i) feel(legs_[i], feelers_[i], source, target, seconds);
+  carryFeet(target, seconds);
+  for (std::size_t i = 0; i < legs_.size(); ++i) setFoot(legs_[i], feelers_[i], feelers_[i].lock, seconds);
+}
+
+// Where the pelvis follows planted feet, free ones go along with their hips: their legs would else have to make up for
+// every move of it. Goals by the frame before tell where it goes in this one.
+void LimbGoals::carryFeet(const BodyFrame& target, double seconds) {
   for (std::size_t i = 0; i < legs_.size(); ++i) {
-    Leg& leg = legs_[i];
-    FootLock::Frame frame;
-    frame.ankle = target.positions[leg.end];
-    frame.toes = leg.toes ? target.positions[*leg.toes] : frame.ankle;
-    feel(leg, feelers_[i], source, seconds, frame);
-    frame.ankleGround = leg.ankleGround - loweredBy(leg.sourceAnkleGround, source.positions[leg.sourceEnd]);
-    frame.toesGround =
-        leg.toes ? leg.toesGround - loweredBy(leg.sourceToesGround, source.positions[*leg.sourceToes]) : 0;
-    leg.goal = feelers_[i].lock.next(frame, seconds, kFootSlack * setup_.targetHipHeight);
-    leg.turn = Eigen::AngleAxisd(feelers_[i].lock.twist(), Vec3::UnitY());
-    leg.wanted = true;
-    leg.anchor = frame.anchor;
-    leg.flat = frame.flat;
-    leg.ankleFloor = frame.ankleGround;
-    leg.toesFloor = frame.toesGround;
-    followPlanting(frame.anchor != FootAnchor::kNone ? 1 : 0, seconds, leg.planted, feelers_[i].plantedSpeed);
-    double below = frame.ankleGround - leg.goal.y();
-    if (leg.toes) below = std::max(below, frame.toesGround - (leg.goal + frame.toes - frame.ankle).y());
-    leg.goal.y() += softPositive(below, kSoftGround * setup_.targetHipHeight * (1 - kFirmGround * leg.planted));
+    FootLock trial = feelers_[i].lock;
+    setFoot(legs_[i], feelers_[i], trial, seconds);
+  }
+  const Pelvis::Move move = pelvis_.moveFor(legs_, target);
+  for (std::size_t i = 0; i < legs_.size(); ++i) {
+    feelers_[i].carried = pelvis_.hipWay(move, legs_[i], target);
+    feelers_[i].carried.y() *= kCarriedUp;
   }
 }
 
-// By the pelvis rising, every leg that is planted would be as long as its joint angles make it: the mean of those ways.
-double LimbGoals::bendKeepingShift(const BodyFrame& target) const {
-  double sum = 0, weights = 0;
-  for (const Leg& leg : legs_) {
-    const Vec3 hip = target.positions[leg.upper], way = leg.goal - hip;
-    const double length = (target.positions[leg.end] - hip).norm(), across = std::hypot(way.x(), way.z());
-    if (way.y() >= 0 || across >= length) continue;
-    sum += leg.planted * (way.y() + std::sqrt(length * length - across * across));
-    weights += leg.planted;
-  }
-  const double most = kMostSinking * setup_.targetHipHeight;
-  return std::clamp(sum / std::max(weights, 1.0), -most, most);
+void LimbGoals::setFoot(Leg& leg, const Feeler& feeler, FootLock& lock, double seconds) const {
+  FootLock::Frame foot = feeler.foot;
+  foot.ankle += feeler.carried;
+  foot.toes += feeler.carried;
+  leg.goal = lock.next(foot, seconds, kFootSlack * setup_.targetHipHeight);
+  leg.turn = Eigen::AngleAxisd(lock.twist(), Vec3::UnitY());
+  keepAboveGround(leg, foot);
 }
 
-// Least squares over what the planted legs lack, against the turn itself. On one leg only the turn about the vertical
-// helps: pelvisShift() brings that leg to the ground.
-Quat LimbGoals::pelvisTurn(const BodyFrame& target) const {
-  if (legs_.size() != 2) return Quat::Identity();
-  const Leg &left = legs_[0], &right = legs_[1];
-  const Vec3 toHip = 0.5 * (target.positions[left.upper] - target.positions[right.upper]);
-  const Vec3 lackLeft = left.goal - target.positions[left.end], lackRight = right.goal - target.positions[right.end];
-  const double both = left.planted * right.planted, length = 0.5 * (left.length + right.length);
-  const double onTwo = kStiffOnTwo * length, onOne = kStiffOnOne * length;
-  Vec3 turn = 0.5 * both / (toHip.squaredNorm() + onTwo * onTwo) * toHip.cross(lackLeft - lackRight);
-  const Vec3 alone = (left.planted - both) * lackLeft - (right.planted - both) * lackRight;
-  turn.y() += toHip.cross(alone).y() / (toHip.squaredNorm() + onOne * onOne);
-  return fromRotationVector(turn / std::sqrt(1 + turn.squaredNorm() / (kMostTurn * kMostTurn)));
-}
-
-double LimbGoals::pelvisShift(const BodyFrame& target) const {
-  const double shift = bendKeepingShift(target), height = setup_.targetHipHeight;
-  double sum = 0;
-  for (const Leg& leg : legs_) {
-    const Vec3 way = leg.goal - target.positions[leg.upper] - Vec3(0, shift, 0);
-    if (way.y() >= 0) continue;
-    const double length = kStretch * leg.length, across = std::hypot(way.x(), way.z());
-    const double down = std::sqrt(std::max(length * length - across * across, 0.0));
-    // The less the leg is changed, the straighter it may be.
-    const double change = (leg.goal - target.positions[leg.end]).norm();
-    const double needed =
-        softPositive(-way.y() - down, kSoftStretch * height * change / (change + kSoftChange * height));
-    sum += needed * needed * needed * needed;
+// Both ends of the foot, without a kink; last the one that holds it.
+void LimbGoals::keepAboveGround(Leg& leg, const FootLock::Frame& foot) const {
+  const double toesOver = foot.toes.y() - foot.ankle.y();
+  const auto raise = [&](double under, double firm) {
+    leg.goal.y() += softPositive(under, kSoftGround * setup_.targetHipHeight * (1 - firm * leg.planted));
+  };
+  const auto raiseAnkle = [&](double firm) { raise(foot.ankleGround - leg.goal.y(), firm); };
+  const auto raiseToes = [&](double firm) {
+    if (leg.toes) raise(foot.toesGround - toesOver - leg.goal.y(), firm);
+  };
+  if (leg.anchor == FootAnchor::kToes) {
+    raiseAnkle(kFirmBeside);
+    raiseToes(kFirmHeld);
+  } else {
+    raiseToes(kFirmBeside);
+    raiseAnkle(kFirmHeld);
   }
-  // The most that a leg asks for, but without a kink where another takes over.
-  return shift - std::min(std::sqrt(std::sqrt(sum)), kMostSinking * height);
-}
-
-double LimbGoals::mostPelvisShift(const BodyFrame& target) const {
-  double most = std::numeric_limits<double>::infinity();
-  for (const Leg& leg : legs_) {
-    const Vec3 way = leg.goal - target.positions[leg.upper];
-    const double length = kStretch * leg.length, across = std::hypot(way.x(), way.z());
-    if (way.y() < 0) most = std::min(most, way.y() + std::sqrt(std::max(length * length - across * across, 0.0)));
-  }
-  return std::max(most, -kMostSinking * setup_.targetHipHeight);
 }
 
 void LimbGoals::levelToes(const Leg& leg, BodyFrame& frame, Pose& target) const {

@@ -6,32 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "limber/retarget/foot_lock.h"
+#include "limber/retarget/limb.h"
+#include "limber/retarget/pelvis.h"
 #include "limber/retarget/plant_detector.h"
-#include "limber/retarget/root_motion.h"
 
 namespace limber {
-
-// Two bones and what they carry, of the target. The end hangs on the lower joint, or rides on it (RootPlacer).
-struct Limb {
-  Index upper = 0, lower = 0, end = 0;
-  Index sourceUpper = 0, sourceEnd = 0;
-  double length = 0;             // of both bones
-  Vec3 goal = Vec3::Zero();      // where the end has to be, in the person's space
-  bool wanted = false;           // else it may be where it is
-  Quat turn = Quat::Identity();  // of the end, against its joint angles
-};
-
-struct Leg : Limb {
-  std::optional<Index> toes, sourceToes;
-  Vec3 kneeAhead = Vec3::UnitZ();                      // to which side the lower joint bends, in the neutral pose
-  double ankleGround = 0, toesGround = 0;              // heights when standing, target
-  double sourceAnkleGround = 0, sourceToesGround = 0;  // likewise, source
-  FootAnchor anchor = FootAnchor::kNone;               // what holds the foot in this frame
-  bool flat = false;                                   // heel and toes stand both
-  double ankleFloor = 0, toesFloor = 0;                // below which neither goes in this frame
-  double planted = 0;                                  // 0 to 1, comes and goes smoothly
-};
 
 // Goals frame after frame, without looking ahead. Nothing jumps when contacts come and go.
 class LimbGoals {
@@ -43,18 +22,11 @@ class LimbGoals {
   bool active() const { return active_; }
 
   // Feet that are planted in the source stay where they came down, by their toes while the heel is up; none goes below
-  // the ground. From the globals of both, the target's by joint angles alone.
+  // the ground. From the globals of both, the target's by joint angles alone. The goals are for legs whose hips go with
+  // the pelvis (Pelvis::moveFor).
   void setFeet(const BodyFrame& source, const BodyFrame& target, double seconds);
   // Whether the source jumped to the last frame: what was before it does not count.
   bool atCut() const { return cut_; }
-  // How the pelvis turns (RootPlacer::turnPelvis), so that planted legs stand more as their joint angles have them: by
-  // much where hips are wide for the legs, which its turns in the source would sweep further than they reach.
-  Quat pelvisTurn(const BodyFrame& target) const;
-  // How far the pelvis goes up, metres: so that planted legs keep the bend that their joint angles give them, on
-  // average, and down as far as the longest way asks.
-  double pelvisShift(const BodyFrame& target) const;
-  // The most that it may go up with every leg at its goal no longer than its bones, metres.
-  double mostPelvisShift(const BodyFrame& target) const;
   // Hands that are close to the other hand, the head, the trunk, a thigh or the other forearm in the source are as
   // close in the result, scaled. `reach` as in RetargetOptions.
   void setHands(const BodyFrame& source, const BodyFrame& target, double seconds);
@@ -68,6 +40,7 @@ class LimbGoals {
   // stay as they are.
   void levelToes(const Leg& leg, BodyFrame& frame, Pose& target) const;
 
+  const Pelvis& pelvis() const { return pelvis_; }
   std::vector<Leg>& legs() { return legs_; }
   std::vector<Limb>& arms() { return arms_; }
 
@@ -77,10 +50,13 @@ class LimbGoals {
     std::array<Index, 2> source, target;
     double touching, apart;
   };
+  // What is known of a leg's foot.
   struct Feeler {
     PlantDetector ankle, toes;
     FootLock lock;
     double plantedSpeed = 0;
+    FootLock::Frame foot;         // as its joint angles have it
+    Vec3 carried = Vec3::Zero();  // by its hip
   };
 
   bool isSame() const;
@@ -90,17 +66,20 @@ class LimbGoals {
   void addLeg(Leg leg);
   void addSurface(const std::string& from, const std::string& to, double touching, double apart,
                   std::vector<Surface>& surfaces) const;
-  void feel(const Leg& leg, Feeler& feeler, const BodyFrame& source, double seconds, FootLock::Frame& frame) const;
+  void feel(Leg& leg, Feeler& feeler, const BodyFrame& source, const BodyFrame& target, double seconds) const;
+  void carryFeet(const BodyFrame& target, double seconds);
+  void setFoot(Leg& leg, const Feeler& feeler, FootLock& lock, double seconds) const;
+  void keepAboveGround(Leg& leg, const FootLock::Frame& foot) const;
   // True at a cut.
   bool forgetAcrossCuts(const BodyFrame& source, double seconds);
   double loweredBy(double sourceGround, const Vec3& sourcePlace) const;
   Vec3 touchOf(const Limb& arm, const std::vector<Surface>& surfaces, const BodyFrame& source,
                const BodyFrame& target) const;
   double within(double change) const;
-  double bendKeepingShift(const BodyFrame& target) const;
   double closeness(double distance, double touching, double apart) const;
 
   const RetargetSetup& setup_;
+  Pelvis pelvis_;
   std::vector<Leg> legs_;
   std::vector<Feeler> feelers_;  // of the legs
   std::vector<Limb> arms_;

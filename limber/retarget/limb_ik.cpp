@@ -1,7 +1,5 @@
 #include "limber/retarget/limb_ik.h"
 
-#include <cmath>
-
 #include "limber/ik/ik_solver.h"
 #include "limber/retarget/aligned.h"
 #include "limber/retarget/limb_reach.h"
@@ -24,11 +22,11 @@ class LimbIkRetargeter : public FrameRetargeter {
     aligned_.next(source, seconds, target);
     if (!goals_.active()) return;
     if (setup_.options.contacts) {
-      goals_.setFeet(from(), to(), seconds);
-      aligned_.root().turnPelvis(goals_.pelvisTurn(to()), target, to());
-      const double up = goals_.pelvisShift(to());
-      if (std::abs(up) > 1e-9 * setup_.targetHipHeight) aligned_.root().movePelvis(Vec3(0, up, 0), target, to());
       std::vector<Leg>& legs = goals_.legs();
+      const Pelvis& pelvis = goals_.pelvis();
+      pelvis.levelHips(target, to());
+      goals_.setFeet(from(), to(), seconds);
+      pelvis.apply(pelvis.moveFor(legs, to()), target, to());
       for (std::size_t i = 0; i < legs.size(); ++i) {
         reach(legs[i], solver(legSolvers_, i), &legs[i].kneeAhead, target);
         goals_.levelToes(legs[i], to(), target);

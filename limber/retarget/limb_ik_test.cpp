@@ -72,6 +72,37 @@ TEST_F(LimbIk, WideHipsTurnLessThanTheSources) {
   EXPECT_LT(worstBend("online"), 20);
 }
 
+// On one leg, while the wide hips of a toy are turned to keep it standing: the other leg goes along with its hip.
+TEST_F(LimbIk, FreeLegsGoAlongWithThePelvis) {
+  Skeleton toy = person;
+  for (const char* leg : {"leftUpperLeg", "rightUpperLeg"}) {
+    toy.joints[toy.find(leg).value()].rest.translation.x() *= 2;
+  }
+  const Index hips = person.find("hips").value();
+  const auto joint = [&](const char* name) { return person.find(name).value(); };
+  PoseSequence swaying{{}, 1.0 / 60};
+  for (int f = 0; f < 120; ++f) {
+    Pose& pose = swaying.poses.emplace_back(restPose(person));
+    const Quat sway = turn(Vec3::UnitY(), 8 * std::sin(0.2 * f));
+    pose.locals[hips].rotation = sway;
+    pose.locals[joint("leftUpperLeg")].rotation = sway.conjugate();
+    pose.locals[joint("rightUpperLeg")].rotation = sway.conjugate() * turn(-Vec3::UnitX(), 50);
+    pose.locals[joint("rightLowerLeg")].rotation = turn(Vec3::UnitX(), 60);
+    const Vec3 moved = poseGlobals(person, pose)[joint("leftFoot")].translation() -
+                       restGlobals(person)[joint("leftFoot")].translation();
+    pose.locals[hips].translation -= moved;
+  }
+  const RetargetSetup setup(person, toy, matchSkeletons(person, toy), {}, &swaying);
+  double least = HUGE_VAL, most = 0;
+  for (const Pose& pose : retargetFrames(findRetargetMethod("limb-ik"), setup, swaying).poses) {
+    const double bend = angleBetween(pose.locals[toy.find("rightLowerLeg").value()].rotation, Quat::Identity());
+    least = std::min(least, bend * 180 / kPi);
+    most = std::max(most, bend * 180 / kPi);
+  }
+  EXPECT_LT(most - least, 0.3) << "it is always bent by 60 degrees in the source";
+  EXPECT_NEAR(least, 60, 1);
+}
+
 TEST_F(LimbIk, ToesLieOnTheGroundWhileTheHeelGoesUp) {
   PoseSequence raised{{}, 1.0 / 60};
   const Index foot = person.find("leftFoot").value(), toes = person.find("leftToes").value();

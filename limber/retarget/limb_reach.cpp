@@ -8,7 +8,7 @@ namespace limber {
 
 namespace {
 
-constexpr double kKneesForward = 0.02;   // of the leg's length, added to its bend
+constexpr double kKneesForward = 0.01;   // of the leg's length, added to its bend
 constexpr double kOverstretched = 0.12;  // likewise, of a knee that is meant to bend backward
 
 }  // namespace

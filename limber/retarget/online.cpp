@@ -38,10 +38,10 @@ class OnlineRetargeter : public FrameRetargeter {
     if (!goals_.active() || !solver_) return;
     BodyFrame& frame = aligned_.targetFrame();
     if (setup_.options.contacts) {
+      const Pelvis& pelvis = goals_.pelvis();
+      pelvis.levelHips(target, frame);
       goals_.setFeet(aligned_.sourceFrame(), frame, seconds);
-      aligned_.root().turnPelvis(goals_.pelvisTurn(frame), target, frame);
-      const double up = goals_.pelvisShift(frame);
-      if (std::abs(up) > 1e-9 * setup_.targetHipHeight) aligned_.root().movePelvis(Vec3(0, up, 0), target, frame);
+      pelvis.apply(pelvis.moveFor(goals_.legs(), frame), target, frame);
     }
     goals_.setHands(aligned_.sourceFrame(), frame, seconds);
     std::size_t task = 0;

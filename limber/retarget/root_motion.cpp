@@ -1,5 +1,7 @@
 #include "limber/retarget/root_motion.h"
 
+#include <algorithm>
+
 #include "limber/skeleton/chain.h"
 #include "limber/skeleton/humanoid_names.h"
 
@@ -38,13 +40,17 @@ RootPlacer::RootPlacer(const RetargetSetup& setup) : setup_(setup) {
 void RootPlacer::findPelvis() {
   const Skeleton& target = *setup_.target;
   const Index pelvis = setup_.map.find("hips")->target.back();
+  const auto turns = [&](Index j) {
+    return j == pelvis || std::find(toLegs_.begin(), toLegs_.end(), j) != toLegs_.end();
+  };
   for (const char* part : {"leftUpperLeg", "rightUpperLeg"}) {
     const Index leg = setup_.map.find(part)->target.front();
     if (leg == pelvis || !isAncestorOrSelf(target, pelvis, leg)) return;
+    for (Index j = *target.joints[leg].parent; !turns(j); j = *target.joints[j].parent) toLegs_.push_back(j);
   }
   pelvis_ = pelvis;
   for (Index j = 0; j < target.jointCount(); ++j) {
-    if (target.joints[j].parent == pelvis) pelvisChildren_.push_back(j);
+    if (target.joints[j].parent && turns(*target.joints[j].parent) && !turns(j)) pelvisChildren_.push_back(j);
   }
 }
 
@@ -77,10 +83,12 @@ void RootPlacer::turnPelvis(const Quat& turn, Pose& target, BodyFrame& frame) co
   const Vec3 middle = pelvisOf(setup_.map, MapSide::kTarget, frame.positions);
   const Quat turned = turn * frame.rotations[*pelvis_];
   target.locals[*pelvis_].rotation = (kinematics.parentRotation(*pelvis_, frame).conjugate() * turned).normalized();
-  for (const Index child : pelvisChildren_) {
-    target.locals[child].rotation = (turned.conjugate() * frame.rotations[child]).normalized();
-  }
   frame.rotations[*pelvis_] = turned;
+  for (const Index joint : toLegs_) frame.rotations[joint] = turn * frame.rotations[joint];
+  for (const Index child : pelvisChildren_) {
+    target.locals[child].rotation =
+        (kinematics.parentRotation(child, frame).conjugate() * frame.rotations[child]).normalized();
+  }
   kinematics.place(target, frame);
   movePelvis(middle - pelvisOf(setup_.map, MapSide::kTarget, frame.positions), target, frame);
 }

@@ -26,6 +26,8 @@ class RootPlacer {
 
   // Turns the pelvis about its middle, in the person's space; what hangs on it keeps how it is turned.
   void turnPelvis(const Quat& turn, Pose& target, BodyFrame& frame) const;
+  // False where no joint carries both legs: turning it does nothing.
+  bool turnsPelvis() const { return pelvis_.has_value(); }
 
   // The joint that a loose joint rides on; the joint itself where it hangs on the body.
   Index carrierOf(Index joint) const;
@@ -42,9 +44,10 @@ class RootPlacer {
   void placeLoose(Pose& target, BodyFrame& frame) const;
 
   const RetargetSetup& setup_;
-  std::optional<Index> hips_;    // of others than people the joint that carries all legs
-  std::optional<Index> pelvis_;  // the joint that carries both legs and the trunk
-  std::vector<Index> pelvisChildren_;
+  std::optional<Index> hips_;          // of others than people the joint that carries all legs
+  std::optional<Index> pelvis_;        // the joint that carries both legs and the trunk
+  std::vector<Index> toLegs_;          // joints between it and the legs, which turn with it
+  std::vector<Index> pelvisChildren_;  // what hangs on these and on the pelvis
   std::vector<Loose> loose_;
   std::vector<Index> moved_;
 };

@@ -201,7 +201,7 @@ class Spacetime {
     Goals3 turn = {noGoals(), noGoals(), noGoals()};
     for (std::size_t f = 0; f < frames(); ++f) {
       setLegs(f);
-      follow(toRotationVector(goals_.pelvisTurn(targetAt(f))), f, turn);
+      follow(toRotationVector(goals_.pelvis().turnFor(goals_.legs(), targetAt(f))), f, turn);
     }
     const Curve3 smooth(turn, target_.frameSeconds, following(kPelvisSeconds));
     for (std::size_t f = 0; f < frames(); ++f) {
@@ -215,9 +215,9 @@ class Spacetime {
     for (std::size_t f = 0; f < frames(); ++f) {
       setLegs(f);
       const BodyFrame& to = targetAt(f);
-      sinking[f].value = -goals_.pelvisShift(to);
+      sinking[f].value = -goals_.pelvis().shiftFor(goals_.legs(), to);
       sinking[f].valueWeight = 1;
-      sinking[f].least = -goals_.mostPelvisShift(to);
+      sinking[f].least = -goals_.pelvis().mostShift(goals_.legs(), to);
     }
     const std::vector<double> smooth = curve(sinking, following(kPelvisSeconds));
     for (std::size_t f = 0; f < frames(); ++f) {

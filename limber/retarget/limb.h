@@ -1,0 +1,38 @@
+// Arms and legs of the target as methods that solve for hands and feet see them.
+#pragma once
+
+#include <cmath>
+#include <optional>
+
+#include "limber/retarget/foot_lock.h"
+#include "limber/skeleton/skeleton.h"
+
+namespace limber {
+
+// Two bones and what they carry. The end hangs on the lower joint, or rides on it (RootPlacer).
+struct Limb {
+  Index upper = 0, lower = 0, end = 0;
+  Index sourceUpper = 0, sourceEnd = 0;
+  double length = 0;             // of both bones
+  Vec3 goal = Vec3::Zero();      // where the end has to be, in the person's space
+  bool wanted = false;           // else it may be where it is
+  Quat turn = Quat::Identity();  // of the end, against its joint angles
+};
+
+struct Leg : Limb {
+  std::optional<Index> toes, sourceToes;
+  Vec3 kneeAhead = Vec3::UnitZ();                      // to which side the lower joint bends, in the neutral pose
+  double ankleGround = 0, toesGround = 0;              // heights when standing, target
+  double sourceAnkleGround = 0, sourceToesGround = 0;  // likewise, source
+  FootAnchor anchor = FootAnchor::kNone;               // what holds the foot in this frame
+  bool flat = false;                                   // heel and toes stand both
+  double ankleFloor = 0, toesFloor = 0;                // below which neither goes in this frame
+  double planted = 0;                                  // 0 to 1, comes and goes smoothly
+};
+
+// x where it is above 0, else 0, but without a kink: at most softness / 2 more.
+inline double softPositive(double x, double softness) {
+  return 0.5 * (x + std::hypot(x, softness));
+}
+
+}  // namespace limber

@@ -1,0 +1,134 @@
+#include "limber/retarget/pelvis.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "limber/ik/rotation.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kCalmWide = 1.5;  // power of the hips' widths by which their turns are less
+// In hip heights of the target.
+constexpr double kMostShift = 0.3;
+constexpr double kSoftStretch = 0.015, kSoftChange = 0.004;  // of sinking, by how far a foot is moved
+constexpr double kStretch = 0.998;                           // of a leg's length: fully stretched knees pop
+// Of turning with planted legs: leg lengths, the more the less it does; and radians.
+constexpr double kStiffOnTwo = 0.15, kStiffOnOne = 0.3, kMostTurn = 0.8;
+
+Vec3 level(const Vec3& v) {
+  return {v.x(), 0, v.z()};
+}
+
+double hipWidth(const NeutralPose& neutral, Index left, Index right) {
+  return (neutral.restPositions[left] - neutral.restPositions[right]).norm();
+}
+
+}  // namespace
+
+Pelvis::Pelvis(const RetargetSetup& setup, const RootPlacer& root) : setup_(setup), root_(root) {
+  if (!setup.person) return;
+  const JointMatch &left = *setup.map.find("leftUpperLeg"), &right = *setup.map.find("rightUpperLeg");
+  leftHip_ = left.target.front();
+  rightHip_ = right.target.front();
+  const double wide = hipWidth(setup.targetNeutral, leftHip_, rightHip_) / setup.targetHipHeight;
+  const double source =
+      hipWidth(setup.sourceNeutral, left.source.front(), right.source.front()) / setup.sourceHipHeight;
+  if (source > 0 && wide > source) hipTurns_ = std::pow(source / wide, kCalmWide);
+  if (const JointMatch* trunk = setup.map.find("trunk")) trunk_ = trunk->target.back();
+}
+
+void Pelvis::levelHips(Pose& target, BodyFrame& frame) const {
+  if (hipTurns_ == 1) return;
+  const NeutralPose& neutral = setup_.targetNeutral;
+  const Vec3 line = (frame.positions[leftHip_] - frame.positions[rightHip_]).normalized();
+  Vec3 calm = level(line);
+  if (trunk_) {
+    const Vec3 stands = (neutral.positions[leftHip_] - neutral.positions[rightHip_]).normalized();
+    calm = 0.5 * (calm + level(frame.rotations[*trunk_] * neutral.rotations[*trunk_].conjugate() * stands));
+  }
+  calm += (1 - calm.norm()) * line;
+  const Vec3 wanted = (hipTurns_ * line + (1 - hipTurns_) * calm).normalized();
+  root_.turnPelvis(shortestRotation(line, wanted), target, frame);
+}
+
+Pelvis::Move Pelvis::moveFor(std::span<const Leg> legs, const BodyFrame& frame) const {
+  const Quat turn = turnFor(legs, frame);
+  return {turn, shiftFor(legs, frame, turn)};
+}
+
+Vec3 Pelvis::hipWay(const Move& move, const Leg& leg, const BodyFrame& frame) const {
+  const Vec3 way = Vec3(0, move.up, 0);
+  if (move.turn.w() == 1) return way;
+  const Vec3 fromMiddle = frame.positions[leg.upper] - pelvisOf(setup_.map, MapSide::kTarget, frame.positions);
+  return way + move.turn * fromMiddle - fromMiddle;
+}
+
+void Pelvis::apply(const Move& move, Pose& target, BodyFrame& frame) const {
+  root_.turnPelvis(move.turn, target, frame);
+  if (std::abs(move.up) > 1e-9 * setup_.targetHipHeight) root_.movePelvis(Vec3(0, move.up, 0), target, frame);
+}
+
+// Least squares over what the planted legs lack, against the turn itself. On one leg only the turn about the vertical
+// helps: the shift brings that leg to the ground.
+Quat Pelvis::turnFor(std::span<const Leg> legs, const BodyFrame& frame) const {
+  if (legs.size() != 2 || !root_.turnsPelvis()) return Quat::Identity();
+  const Leg &left = legs[0], &right = legs[1];
+  const Vec3 toHip = 0.5 * (frame.positions[left.upper] - frame.positions[right.upper]);
+  const Vec3 lackLeft = left.goal - frame.positions[left.end], lackRight = right.goal - frame.positions[right.end];
+  const double both = left.planted * right.planted, length = 0.5 * (left.length + right.length);
+  const double onTwo = kStiffOnTwo * length, onOne = kStiffOnOne * length;
+  Vec3 turn = 0.5 * both / (toHip.squaredNorm() + onTwo * onTwo) * toHip.cross(lackLeft - lackRight);
+  const Vec3 alone = (left.planted - both) * lackLeft - (right.planted - both) * lackRight;
+  turn.y() += toHip.cross(alone).y() / (toHip.squaredNorm() + onOne * onOne);
+  return fromRotationVector(turn / std::sqrt(1 + turn.squaredNorm() / (kMostTurn * kMostTurn)));
+}
+
+// By the pelvis rising, every leg that is planted would be as long as its joint angles make it: the mean of those ways.
+// The more level a leg is, the less rising does to its length, and the less it counts.
+double Pelvis::bendKeepingShift(std::span<const Leg> legs, const BodyFrame& frame, const Quat& turn) const {
+  double sum = 0, weights = 0;
+  for (const Leg& leg : legs) {
+    const Vec3 hip = frame.positions[leg.upper], way = leg.goal - hip - hipWay({turn, 0}, leg, frame);
+    const double length = (frame.positions[leg.end] - hip).norm(), across = std::hypot(way.x(), way.z());
+    if (way.y() >= 0 || across >= length) continue;
+    const double weight = leg.planted * (1 - across * across / (length * length));
+    sum += weight * (way.y() + std::sqrt(length * length - across * across));
+    weights += weight;
+  }
+  const double most = kMostShift * setup_.targetHipHeight;
+  return std::clamp(sum / std::max(weights, 1.0), -most, most);
+}
+
+double Pelvis::shiftFor(std::span<const Leg> legs, const BodyFrame& frame, const Quat& turn) const {
+  const double shift = bendKeepingShift(legs, frame, turn), height = setup_.targetHipHeight;
+  double sum = 0;
+  for (const Leg& leg : legs) {
+    const Vec3 hipGoes = hipWay({turn, 0}, leg, frame);
+    const Vec3 way = leg.goal - frame.positions[leg.upper] - hipGoes - Vec3(0, shift, 0);
+    if (way.y() >= 0) continue;
+    const double length = kStretch * leg.length, across = std::hypot(way.x(), way.z());
+    const double down = std::sqrt(std::max(length * length - across * across, 0.0));
+    // The less the leg is changed, the straighter it may be.
+    const double change = (leg.goal - frame.positions[leg.end] - hipGoes).norm();
+    const double needed =
+        softPositive(-way.y() - down, kSoftStretch * height * change / (change + kSoftChange * height));
+    sum += needed * needed * needed * needed;
+  }
+  // The most that a leg asks for, but without a kink where another takes over.
+  return shift - std::min(std::sqrt(std::sqrt(sum)), kMostShift * height);
+}
+
+double Pelvis::mostShift(std::span<const Leg> legs, const BodyFrame& frame) const {
+  double most = std::numeric_limits<double>::infinity();
+  for (const Leg& leg : legs) {
+    const Vec3 way = leg.goal - frame.positions[leg.upper];
+    const double length = kStretch * leg.length, across = std::hypot(way.x(), way.z());
+    if (way.y() < 0) most = std::min(most, way.y() + std::sqrt(std::max(length * length - across * across, 0.0)));
+  }
+  return std::max(most, -kMostShift * setup_.targetHipHeight);
+}
+
+}  // namespace limber
