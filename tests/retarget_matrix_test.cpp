@@ -75,9 +75,9 @@ double roughest(const std::string& motion, const std::string& file) {
   return known == kRougherThanSource.end() ? 1.1 : known->second;
 }
 
-// In this recording standing feet tremble by 7 mm with the whole body: held still they make legs tremble, on toys most.
-constexpr const char* kTremblingFeet = "cmu_mb_01_01_forward_jumps.bvh";
-constexpr double kRoughestInOnePiece = 2.3;  // of all pairs by spacetime: that motion on a toy
+// Of all pairs by spacetime: jumps whose standing feet tremble by 7 mm with the whole body; held still they make legs
+// tremble, on toys most.
+constexpr double kRoughestInOnePiece = 1.5;
 
 }  // namespace
 
@@ -127,7 +127,7 @@ TEST_P(RetargetMatrix, SpacetimeKeepsFeetAndGround) {
     jerk += result.jerk;
     ++count;
   }
-  EXPECT_LT(jerk / count, motion == kTremblingFeet ? 1.12 : 1.1);
+  EXPECT_LT(jerk / count, 1.1);
 }
 
 // Legs that are nearly straight bend to the same side from frame to frame.

@@ -108,7 +108,9 @@ class Spacetime {
   void gatherFeet() {
     feet_.resize(goals_.legs().size());
     for (std::size_t f = 0; f < frames(); ++f) {
-      const BodyFrame &from = sourceAt(f), &to = targetAt(f);
+      const BodyFrame& from = sourceAt(f);
+      BodyFrame& to = targetAt(f);
+      goals_.pelvis().levelHips(target_.poses[f], to);
       goals_.setFeet(from, to, f == 0 ? 0 : target_.frameSeconds);
       cuts_[f] = goals_.atCut();
       for (std::size_t i = 0; i < feet_.size(); ++i) {
