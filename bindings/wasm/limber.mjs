@@ -36,7 +36,8 @@ import createEngine from './limber_engine.mjs';
  *             match: { part: string, source: string[], target: string[], confidence: number, by: string }[],
  *             limits: { [joint: string]: { type: string, [field: string]: unknown } },
  *             limit_outlines: { joint: number, length: number, closed: boolean, rim: Vector[] }[],
- *             solver: string, ik: boolean, limited: boolean, targets: { joint: number, position: Vector }[], dragged: number | null,
+ *             solver: string, ik: boolean, limited: boolean, targets: { joint: number, position: Vector }[],
+ *             pins: { joint: string, position: Vector }[], dragged: number | null,
  *             posed: boolean, undo: string | null, redo: string | null,
  *             warnings: { kind: string, message: string, where: string, count: number }[] }} SessionState
  *
@@ -51,7 +52,8 @@ import createEngine from './limber_engine.mjs';
  * skin: 16 numbers for each joint, a matrix column by column; state: null after a drag's update
  * or turn and a moment of a clip.
  * @typedef {{ ok: true, state: SessionState | null, skin: Float32Array } | Failure} StepResult
- * @typedef {{ joint: number, on_handle: boolean, position: Vector, distance: number }} PickHit
+ * @typedef {{ joint: number, on_handle: boolean, position: Vector, distance: number,
+ *             inside: Vector }} PickHit
  * @typedef {{ positions: Float32Array, normals: Float32Array, uvs: Float32Array, triangles: Uint32Array,
  *             weights: Float32Array, joints: Uint16Array,
  *             parts: { name: string, first: number, count: number, material: number | null }[],

@@ -149,7 +149,8 @@ Json hitJson(const std::optional<limber::PickHit>& hit) {
   return {{"joint", hit->joint},
           {"on_handle", hit->onHandle},
           {"position", {hit->position.x(), hit->position.y(), hit->position.z()}},
-          {"distance", hit->distance}};
+          {"distance", hit->distance},
+          {"inside", {hit->inside.x(), hit->inside.y(), hit->inside.z()}}};
 }
 
 // The skeleton with the chosen clip; where none is, with the pose as its only frame.

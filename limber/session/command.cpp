@@ -20,13 +20,13 @@ namespace {
 constexpr int kVersion = 1;
 
 // In the order of the variant.
-constexpr std::array<std::string_view, 33> kNames = {
-    "open_sample",       "open_file",    "set_handles", "choose_methods", "begin_drag", "update_drag",
-    "turn_drag",         "end_drag",     "cancel_drag", "turn_joint",     "move_joint", "set_ik",
-    "set_target",        "clear_target", "set_limits",  "reset_joint",    "reset_pose", "mirror_pose",
-    "set_rest_pose",     "rename_joint", "add_motion",  "retarget",       "add_clip",   "remove_clip",
-    "rename_clip",       "choose_clip",  "set_time",    "set_key",        "move_key",   "delete_key",
-    "set_interpolation", "undo",         "redo"};
+constexpr std::array<std::string_view, 36> kNames = {
+    "open_sample", "open_file",   "set_handles",   "choose_methods",    "pin_joint",   "unpin_joint",
+    "begin_drag",  "update_drag", "turn_drag",     "end_drag",          "cancel_drag", "turn_joint",
+    "move_joint",  "set_ik",      "set_target",    "clear_target",      "set_limits",  "reset_joint",
+    "reset_pose",  "mirror_pose", "set_rest_pose", "rename_joint",      "add_motion",  "add_sample_motion",
+    "retarget",    "add_clip",    "remove_clip",   "rename_clip",       "choose_clip", "set_time",
+    "set_key",     "move_key",    "delete_key",    "set_interpolation", "undo",        "redo"};
 static_assert(kNames.size() == std::variant_size_v<Command>);
 
 // The fields of each command, said once for reading and writing.
@@ -48,6 +48,15 @@ template <class Visitor>
 void visitFields(Visitor& field, ChooseMethods& c) {
   field("rigger", c.rigger);
   field("skinning", c.skinning);
+}
+template <class Visitor>
+void visitFields(Visitor& field, PinJoint& c) {
+  field("joint", c.joint);
+  field("position", c.position);
+}
+template <class Visitor>
+void visitFields(Visitor& field, UnpinJoint& c) {
+  field("joint", c.joint);
 }
 template <class Visitor>
 void visitFields(Visitor& field, BeginDrag& c) {
@@ -112,6 +121,10 @@ void visitFields(Visitor& field, RenameJoint& c) {
 template <class Visitor>
 void visitFields(Visitor& field, AddMotion& c) {
   field("file", c.file);
+}
+template <class Visitor>
+void visitFields(Visitor& field, AddSampleMotion& c) {
+  field("name", c.name);
 }
 template <class Visitor>
 void visitFields(Visitor& field, RetargetMotion& c) {

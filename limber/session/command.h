@@ -40,6 +40,16 @@ struct ChooseMethods {
   std::string skinning = "bone-heat";
 };
 
+// A correction of a rig that a template gave: the model is rigged anew with that joint where it is told to be, as the
+// model is bound. Pins hold for every rig that a template gives this model, until its rest pose is another one.
+struct PinJoint {
+  std::string joint;
+  Vec3 position = Vec3::Zero();
+};
+struct UnpinJoint {
+  std::string joint;
+};
+
 // Move: the joint slides in the plane that faces the camera, and keeps its distance from the camera when that moves.
 // Turn: the joint swings about its parent, around the camera's axis; a root rolls under the pointer like a trackball.
 enum class DragMode { kMove, kTurn };
@@ -112,6 +122,10 @@ struct RenameJoint {
 struct AddMotion {
   std::string file;
 };
+// A motion that limber makes itself; called by its name.
+struct AddSampleMotion {
+  std::string name;  // of sampleMotions()
+};
 // Puts a clip of a motion onto the model. Again with other options, it takes the place of what it gave before.
 struct RetargetMotion {
   std::string motion;
@@ -155,10 +169,10 @@ struct Undo {};
 struct Redo {};
 
 using Command =
-    std::variant<OpenSample, OpenFile, SetHandles, ChooseMethods, BeginDrag, UpdateDrag, TurnDrag, EndDrag, CancelDrag,
-                 TurnJoint, MoveJoint, SetIk, SetTarget, ClearTarget, SetLimits, ResetJoint, ResetPose, MirrorPose,
-                 SetRestPose, RenameJoint, AddMotion, RetargetMotion, AddClip, RemoveClip, RenameClip, ChooseClip,
-                 SetTime, SetKey, MoveKey, DeleteKey, SetInterpolation, Undo, Redo>;
+    std::variant<OpenSample, OpenFile, SetHandles, ChooseMethods, PinJoint, UnpinJoint, BeginDrag, UpdateDrag, TurnDrag,
+                 EndDrag, CancelDrag, TurnJoint, MoveJoint, SetIk, SetTarget, ClearTarget, SetLimits, ResetJoint,
+                 ResetPose, MirrorPose, SetRestPose, RenameJoint, AddMotion, AddSampleMotion, RetargetMotion, AddClip,
+                 RemoveClip, RenameClip, ChooseClip, SetTime, SetKey, MoveKey, DeleteKey, SetInterpolation, Undo, Redo>;
 
 // "set_handles", as in JSON.
 std::string_view commandName(const Command& command);

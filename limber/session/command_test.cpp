@@ -19,6 +19,8 @@ std::vector<Command> oneOfEach() {
           OpenFile{"models/fox.glb"},
           SetHandles{37},
           ChooseMethods{"other", "another"},
+          PinJoint{"leftHand", {0.5, 1, -0.25}},
+          UnpinJoint{"leftHand"},
           BeginDrag{"hand.L", DragMode::kTurn, kRay, {0, 0.5, -1}},
           UpdateDrag{kRay, {1, 0, -1}},
           TurnDrag{{0, 2, 1}, -35.5},
@@ -36,6 +38,7 @@ std::vector<Command> oneOfEach() {
           SetRestPose{},
           RenameJoint{"head", "skull"},
           AddMotion{"motions/walk.bvh"},
+          AddSampleMotion{"walk"},
           RetargetMotion{"walk", "fast", "aligned", R"({"matches": []})", 0.25, false},
           AddClip{"wave"},
           RemoveClip{"wave"},
@@ -59,20 +62,21 @@ TEST(Command, JsonKeepsEveryCommandAndEveryField) {
   for (std::size_t i = 0; i < back.size(); ++i) EXPECT_EQ(back[i].index(), i);
   EXPECT_EQ(commandsToJson(back), text);
   // Against the values themselves, where reading and writing could agree on a mistake.
-  EXPECT_EQ(std::get<BeginDrag>(back[4]).ray.direction, kRay.direction);
-  EXPECT_EQ(std::get<BeginDrag>(back[4]).mode, DragMode::kTurn);
-  EXPECT_EQ(std::get<TurnDrag>(back[6]).degrees, -35.5);
-  EXPECT_EQ(std::get<SetIk>(back[11]).solver, "fabrik");
-  EXPECT_EQ(std::get<TurnJoint>(back[9]).axis.y(), 1.0 / 3);
-  EXPECT_EQ(std::get<SetTarget>(back[12]).position, Vec3(1e-17, 2, 3));
-  EXPECT_EQ(std::get<MirrorPose>(back[17]).from, MirrorFrom::kRight);
-  EXPECT_FALSE(std::get<SetIk>(back[11]).on);
-  EXPECT_EQ(std::get<RenameJoint>(back[19]).name, "skull");
-  EXPECT_EQ(std::get<RetargetMotion>(back[21]).clip, "fast");
-  EXPECT_EQ(std::get<RetargetMotion>(back[21]).reach, 0.25);
-  EXPECT_FALSE(std::get<RetargetMotion>(back[21]).contacts);
-  EXPECT_EQ(std::get<MoveKey>(back[28]).to, 0.75);
-  EXPECT_EQ(std::get<SetInterpolation>(back[30]).interpolation, Interpolation::kCubic);
+  EXPECT_EQ(std::get<PinJoint>(back[4]).position, Vec3(0.5, 1, -0.25));
+  EXPECT_EQ(std::get<BeginDrag>(back[6]).ray.direction, kRay.direction);
+  EXPECT_EQ(std::get<BeginDrag>(back[6]).mode, DragMode::kTurn);
+  EXPECT_EQ(std::get<TurnDrag>(back[8]).degrees, -35.5);
+  EXPECT_EQ(std::get<SetIk>(back[13]).solver, "fabrik");
+  EXPECT_EQ(std::get<TurnJoint>(back[11]).axis.y(), 1.0 / 3);
+  EXPECT_EQ(std::get<SetTarget>(back[14]).position, Vec3(1e-17, 2, 3));
+  EXPECT_EQ(std::get<MirrorPose>(back[19]).from, MirrorFrom::kRight);
+  EXPECT_FALSE(std::get<SetIk>(back[13]).on);
+  EXPECT_EQ(std::get<RenameJoint>(back[21]).name, "skull");
+  EXPECT_EQ(std::get<RetargetMotion>(back[24]).clip, "fast");
+  EXPECT_EQ(std::get<RetargetMotion>(back[24]).reach, 0.25);
+  EXPECT_FALSE(std::get<RetargetMotion>(back[24]).contacts);
+  EXPECT_EQ(std::get<MoveKey>(back[31]).to, 0.75);
+  EXPECT_EQ(std::get<SetInterpolation>(back[33]).interpolation, Interpolation::kCubic);
 }
 
 TEST(Command, FieldsThatAreAbsentKeepTheirDefault) {

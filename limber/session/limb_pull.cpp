@@ -1,5 +1,7 @@
 #include "limber/session/limb_pull.h"
 
+#include <algorithm>
+
 #include "limber/skeleton/chain.h"
 
 namespace limber {
@@ -40,6 +42,21 @@ void LimbPull::solve(Pose& pose, std::span<const HeldTarget> targets) {
   if (!solver_) return;
   for (std::size_t t = 0; t < used_.size(); ++t) wanted_[t].position = targets[used_[t]].position;
   solver_->solve(pose, wanted_);
+}
+
+void setTarget(std::vector<HeldTarget>& targets, const HeldTarget& target) {
+  for (HeldTarget& known : targets) {
+    if (known.joint == target.joint) {
+      known = target;
+      return;
+    }
+  }
+  targets.push_back(target);
+}
+
+void eraseTarget(std::vector<HeldTarget>& targets, Index joint) {
+  targets.erase(std::remove_if(targets.begin(), targets.end(), [&](const HeldTarget& t) { return t.joint == joint; }),
+                targets.end());
 }
 
 }  // namespace limber

@@ -17,6 +17,10 @@ struct HeldTarget {
   Vec3 position = Vec3::Zero();
 };
 
+// One for each joint: in place of that which the joint had.
+void setTarget(std::vector<HeldTarget>& targets, const HeldTarget& target);
+void eraseTarget(std::vector<HeldTarget>& targets, Index joint);
+
 // The highest joint that turns when `joint` is pulled: the limb goes up to the joint below the next branch, and at
 // least one joint up. None where there is nothing to turn: at a root, and right below one, which stays where it is.
 std::optional<Index> limbBase(const Skeleton& skeleton, Index joint);

@@ -73,6 +73,15 @@ TEST(Movement, AMotionOntoAModelIsAClipThatCanBeScrubbed) {
   EXPECT_TRUE(samePose(session.state().pose, before));
 }
 
+TEST(Movement, SampleMotionsNeedNoFile) {
+  Session session = person();
+  act(session, AddSampleMotion{"walk"});
+  act(session, RetargetMotion{.motion = "walk", .clip = {}, .map = {}});
+  EXPECT_EQ(session.state().movement.clip()->name, "walk");
+  EXPECT_GT(session.state().movement.clip()->duration(), 1);
+  EXPECT_THROW(act(session, AddSampleMotion{"flight"}), Error);
+}
+
 TEST(Movement, AnotherMethodTakesTheClipsPlaceAndAMapIsObeyed) {
   Session session = walking();
   act(session, SetTime{0.4});

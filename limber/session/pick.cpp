@@ -10,6 +10,8 @@ namespace limber {
 
 namespace {
 
+constexpr double kBehind = 1e-6;  // of the distance: what a ray that goes on leaves out
+
 // Where a ray is nearest to a point.
 struct Passing {
   double along = 0, beside = 0;
@@ -66,7 +68,7 @@ std::optional<PickHit> pickHandle(const Ray& ray, std::span<const Vec3> centers,
     if (met < bestMet || (met == bestMet && rank >= bestRank)) continue;
     bestRank = rank;
     bestMet = met;
-    best = PickHit{j, true, centers[j], std::max(entry, 0.0)};
+    best = PickHit{j, true, centers[j], std::max(entry, 0.0), centers[j]};
   }
   return best;
 }
@@ -74,10 +76,14 @@ std::optional<PickHit> pickHandle(const Ray& ray, std::span<const Vec3> centers,
 std::optional<PickHit> pickSurface(const Ray& ray, const RiggedModel& model, const Pose& pose) {
   const TriMesh posed{posedPositions(model, pose), model.geometry.triangles};
   const Vec3 direction = ray.direction.normalized();
-  const auto hit = Bvh(posed).firstHit(ray.origin, direction, std::numeric_limits<double>::infinity());
+  constexpr double kAnyFar = std::numeric_limits<double>::infinity();
+  const Bvh tree(posed);
+  const auto hit = tree.firstHit(ray.origin, direction, kAnyFar);
   if (!hit) return std::nullopt;
+  const auto exit = tree.firstHit(hit->position + kBehind * hit->distance * direction, direction, kAnyFar);
+  const Vec3 inside = exit ? Vec3(0.5 * (hit->position + exit->position)) : hit->position;
   const Index joint = strongestJoint(model.weights, posed.triangles[hit->triangle], hit->weights);
-  return PickHit{joint, false, hit->position, hit->distance};
+  return PickHit{joint, false, hit->position, hit->distance, inside};
 }
 
 }  // namespace limber

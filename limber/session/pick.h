@@ -13,7 +13,8 @@ struct PickHit {
   Index joint = 0;
   bool onHandle = false;  // else on the surface: the joint that holds it most
   Vec3 position = Vec3::Zero();
-  double distance = 0;  // along the ray, in metres
+  double distance = 0;         // along the ray, in metres
+  Vec3 inside = Vec3::Zero();  // of the surface: half way to where the ray leaves it again; of a handle its place
 };
 
 // The handle that the ray meets first; else, of those that it passes within `slope` times their distance, the one it

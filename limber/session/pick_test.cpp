@@ -61,6 +61,7 @@ TEST(PickSurface, FindsThePosedSurfaceAndTheJointThatHoldsIt) {
     const auto hit = pickSurface({point - way, way}, *model, pose);
     ASSERT_TRUE(hit);
     EXPECT_FALSE(hit->onHandle);
+    EXPECT_GE((hit->inside - hit->position).dot(way), 0);
     EXPECT_LE(hit->distance, way.norm() + 1e-4);  // that triangle, or one before it
     EXPECT_LT((hit->position - (point - way + hit->distance * way.normalized())).norm(), 1e-4);
     if ((hit->position - point).norm() > 1e-4) continue;
@@ -68,6 +69,11 @@ TEST(PickSurface, FindsThePosedSurfaceAndTheJointThatHoldsIt) {
     for (const double other : held) EXPECT_GE(held[hit->joint], other - 1e-4);
   }
   EXPECT_GT(met, 5);
+  // Through the middle of the trunk from the front.
+  const auto front = pickSurface({aside + Vec3(0, 1, 5), {0, 0, -1}}, *model, pose);
+  const auto back = pickSurface({aside + Vec3(0, 1, -5), {0, 0, 1}}, *model, pose);
+  ASSERT_TRUE(front && back);
+  EXPECT_LT((front->inside - 0.5 * (front->position + back->position)).norm(), 1e-4);
   EXPECT_FALSE(pickSurface({{0, 5, 0}, {0, -1, 0}}, *model, pose));
 }
 

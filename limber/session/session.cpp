@@ -12,6 +12,7 @@
 #include "limber/asset/uri.h"
 #include "limber/ik/limits_json.h"
 #include "limber/pipeline/pose_asset.h"
+#include "limber/samples/sample_motions.h"
 #include "limber/samples/samples.h"
 #include "limber/session/mirror_pose.h"
 #include "limber/session/pose_transfer.h"
@@ -85,6 +86,8 @@ void setRestPose(SessionState& state) {
   Asset asset = assetWithClips(*state.rig, state.rig->home, clipsOf(state.movement));
   limber::setRestPose(asset, state.rig->binding, state.pose);
   adopt(state, std::move(asset));
+  state.pins.clear();
+  state.templateName = RigOptions().templateName;
   Movement read = movementOf(state.rig->clips);
   for (SessionClip& clip : state.movement.clips) {
     const auto now = std::find_if(read.clips.begin(), read.clips.end(),
@@ -95,19 +98,9 @@ void setRestPose(SessionState& state) {
   authored(state);
 }
 
-void setTarget(std::vector<HeldTarget>& targets, const HeldTarget& target) {
-  for (HeldTarget& known : targets) {
-    if (known.joint == target.joint) {
-      known = target;
-      return;
-    }
-  }
-  targets.push_back(target);
-}
-
-void eraseTarget(std::vector<HeldTarget>& targets, Index joint) {
-  targets.erase(std::remove_if(targets.begin(), targets.end(), [&](const HeldTarget& t) { return t.joint == joint; }),
-                targets.end());
+// False where it has none.
+bool erasePin(std::vector<JointPin>& pins, const std::string& joint) {
+  return std::erase_if(pins, [&](const JointPin& pin) { return pin.joint == joint; }) > 0;
 }
 
 }  // namespace
@@ -148,7 +141,33 @@ struct Session::Runner {
     options.rig.handles = handles;
     options.existingRig = hasRig(*next.base) ? ExistingRig::kReplace : ExistingRig::kRefuse;
     options.rig.memory = next.memory;
+    options.rig.pins = next.pins;
+    options.rig.templateName = next.templateName;
     setRig(next, makeRiggedModel(*next.base, options, progress), progress);
+  }
+
+  void operator()(const PinJoint& c) const {
+    SessionState next = pinnable();
+    requireJoint(next, c.joint);
+    erasePin(next.pins, c.joint);
+    next.pins.push_back({c.joint, c.position});
+    next.templateName = next.rig->report->matches.front().name;
+    rig(next, std::nullopt);
+    session.commit(command, std::move(next));
+  }
+  void operator()(const UnpinJoint& c) const {
+    SessionState next = pinnable();
+    if (!erasePin(next.pins, c.joint)) refuse(fmt::format("no joint called '{}' is pinned", c.joint));
+    if (next.pins.empty()) next.templateName = RigOptions().templateName;
+    rig(next, std::nullopt);
+    session.commit(command, std::move(next));
+  }
+  SessionState pinnable() const {
+    SessionState next = state();
+    if (!next.rig->report || next.rig->report->matches.empty()) {
+      refuse("only joints of a template can be pinned", {}, "choose_methods with the rigger template comes first");
+    }
+    return next;
   }
 
   void operator()(const BeginDrag& c) const {
@@ -278,6 +297,11 @@ struct Session::Runner {
   }
 
   void operator()(const AddMotion& c) const { session.addMotion(session.fileOf(c.file), c.file); }
+  void operator()(const AddSampleMotion& c) const {
+    SessionState next = state();
+    limber::addMotion(next.movement, makeSampleMotion(c.name));
+    session.commit(command, std::move(next));
+  }
   // What changes clips, and then shows the moment anew.
   template <class Edit>
   void move(const Edit& edit) const {

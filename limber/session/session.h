@@ -23,7 +23,9 @@ struct SessionState {
   std::shared_ptr<const Asset> base;  // what rigs are made from: as opened, or with another rest pose
   std::shared_ptr<RigMemory> memory;  // of the base
   std::shared_ptr<const RiggedModel> rig;
-  std::string rigger, skinning;  // how it was made; kept for a model with a rig of its own
+  std::string rigger, skinning;                          // how it was made; kept for a model with a rig of its own
+  std::vector<JointPin> pins;                            // of rigs from a template, in world space
+  std::string templateName = RigOptions().templateName;  // with pins that whose joints they are
   Pose pose;
   // The pose as it was last set by hand, on the rig that it was set on: other numbers of handles start from it, so that
   // going there and back again loses nothing.

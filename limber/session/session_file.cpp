@@ -43,6 +43,24 @@ SavedJoint readJoint(const JsonView& entry) {
   return joint;
 }
 
+std::vector<SavedTarget> readTargets(const JsonView& list) {
+  std::vector<SavedTarget> targets;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    SavedTarget target{requireText(list[i], "joint"), {}};
+    readNumbers<3>(list[i], "position", target.position.data());
+    targets.push_back(std::move(target));
+  }
+  return targets;
+}
+
+Json targetsJson(const std::vector<SavedTarget>& targets) {
+  Json list = Json::array();
+  for (const SavedTarget& target : targets) {
+    list.push_back({{"joint", target.joint}, {"position", numbersJson<3>(target.position.data())}});
+  }
+  return list;
+}
+
 SavedSession readSession(const JsonView& json) {
   if (json.number("version", 0) != kVersion) json.fail("was written by another version of limber");
   SavedSession session;
@@ -51,18 +69,16 @@ SavedSession readSession(const JsonView& json) {
     session.rigger = requireText(json, "rigger");
     session.skinning = requireText(json, "skinning");
     session.handles = json.requireIndex("handles", kNoIndex);
+    session.pins = readTargets(json.array("pins"));
+    if (!session.pins.empty()) session.templateName = requireText(json, "template");
   }
   session.ik = json.flag("ik", false);
   session.solver = json.member("solver").exists() ? requireText(json, "solver") : std::string(kLimbSolver);
   session.limits = json.text("limits");
   session.clip = json.text("clip");
   session.seconds = json.number("seconds", 0);
-  const JsonView targets = json.array("targets"), pose = json.array("pose");
-  for (std::size_t i = 0; i < targets.size(); ++i) {
-    SavedTarget target{requireText(targets[i], "joint"), {}};
-    readNumbers<3>(targets[i], "position", target.position.data());
-    session.targets.push_back(std::move(target));
-  }
+  session.targets = readTargets(json.array("targets"));
+  const JsonView pose = json.array("pose");
   for (std::size_t i = 0; i < pose.size(); ++i) session.pose.push_back(readJoint(pose[i]));
   return session;
 }
@@ -75,16 +91,17 @@ void putSession(Asset& asset, const SavedSession& session) {
     json["rigger"] = session.rigger;
     json["skinning"] = session.skinning;
     json["handles"] = session.handles;
+    if (!session.pins.empty()) {
+      json["template"] = session.templateName;
+      json["pins"] = targetsJson(session.pins);
+    }
   }
   if (!session.limits.empty()) json["limits"] = session.limits;
   if (!session.clip.empty()) {
     json["clip"] = session.clip;
     json["seconds"] = session.seconds;
   }
-  json["targets"] = Json::array();
-  for (const SavedTarget& target : session.targets) {
-    json["targets"].push_back({{"joint", target.joint}, {"position", numbersJson<3>(target.position.data())}});
-  }
+  json["targets"] = targetsJson(session.targets);
   json["pose"] = Json::array();
   for (const SavedJoint& joint : session.pose) {
     json["pose"].push_back({{"joint", joint.joint},

@@ -24,6 +24,8 @@ struct SavedSession {
   bool ownRig = false;  // the model's own; else made by these methods
   std::string rigger, skinning;
   Index handles = 0;
+  std::string templateName;       // whose joints are pinned; empty: none are
+  std::vector<SavedTarget> pins;  // where these joints have to be
   bool ik = false;
   std::string solver;  // of ikMethods()
   std::vector<SavedTarget> targets;

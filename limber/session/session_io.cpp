@@ -26,6 +26,8 @@ SavedSession savedOf(const SessionState& state) {
   saved.rigger = state.rigger;
   saved.skinning = state.skinning;
   saved.handles = skeleton.jointCount();
+  if (!state.pins.empty()) saved.templateName = state.templateName;
+  for (const JointPin& pin : state.pins) saved.pins.push_back({pin.joint, pin.place});
   saved.ik = state.ik;
   saved.solver = state.solver;
   saved.limits = state.limitsText;
@@ -102,6 +104,8 @@ SessionState startState(std::shared_ptr<const Asset> asset, const std::optional<
     options.rigger = saved->rigger;
     options.skinning = saved->skinning;
     options.rig.handles = saved->handles;
+    if (!saved->pins.empty()) options.rig.templateName = saved->templateName;
+    for (const SavedTarget& pin : saved->pins) options.rig.pins.push_back({pin.joint, pin.position});
     options.existingRig = hasRig(source) ? ExistingRig::kReplace : ExistingRig::kRefuse;
   }
   SessionState state;
@@ -111,6 +115,8 @@ SessionState startState(std::shared_ptr<const Asset> asset, const std::optional<
   state.rig = own ? openRiggedModel(source) : makeRiggedModel(source, options, progress);
   state.rigger = options.rigger;
   state.skinning = options.skinning;
+  state.pins = options.rig.pins;
+  state.templateName = options.rig.templateName;
   state.pose = saved || !own ? state.rig->home : readNodePose(state.rig->asset, state.rig->binding);
   state.movement = movementOf(state.rig->clips);
   if (saved) restore(state, *saved);

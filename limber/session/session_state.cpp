@@ -151,6 +151,7 @@ Json sessionState(const Session& session) {
       {"seconds", state.movement.seconds},
       {"match", matchJson(state)},
       {"targets", Json::array()},
+      {"pins", Json::array()},
       {"dragged", nullptr},
       {"posed", !samePose(state.pose, rig.home)},
       {"undo", textOrNull(session.undoName())},
@@ -162,6 +163,9 @@ Json sessionState(const Session& session) {
   }
   for (const HeldTarget& target : state.targets) {
     json["targets"].push_back({{"joint", target.joint}, {"position", vectorJson(target.position)}});
+  }
+  for (const JointPin& pin : state.pins) {
+    json["pins"].push_back({{"joint", pin.joint}, {"position", vectorJson(pin.place)}});
   }
   if (const std::optional<Index> joint = session.draggedJoint()) json["dragged"] = *joint;
   return json;

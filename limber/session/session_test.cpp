@@ -289,6 +289,44 @@ TEST(Session, AModelWithARigKeepsItUntilOthersAreAskedFor) {
   EXPECT_EQ(sessionState(session)["own_rig"], true);
 }
 
+Vec3 boundAt(const Session& session, const char* joint) {
+  const Skeleton& skeleton = session.state().rig->skeleton();
+  return restGlobals(skeleton)[skeleton.find(joint).value()].translation();
+}
+
+TEST(Session, PinnedJointsOfATemplateStandWhereTheyArePinned) {
+  Session session;
+  run(session, OpenSample{"biped"});
+  EXPECT_THROW(run(session, PinJoint{"leftHand", Vec3::Zero()}), Error) << "handles have no names";
+  run(session, ChooseMethods{"template", "bone-heat"});
+  const Vec3 found = boundAt(session, "leftLowerArm"), wanted = found + Vec3(0, -0.01, 0.015);
+  EXPECT_THROW(run(session, PinJoint{"nobody", wanted}), Error);
+  EXPECT_THROW(run(session, PinJoint{"leftLowerArm", Vec3(9, 9, 9)}), Error);
+  EXPECT_TRUE(session.state().pins.empty());
+
+  run(session, PinJoint{"leftLowerArm", found + Vec3(0, 0, -0.01)});
+  run(session, PinJoint{"leftLowerArm", wanted});
+  EXPECT_LT((boundAt(session, "leftLowerArm") - wanted).norm(), 1e-5);
+  ASSERT_EQ(session.state().pins.size(), 1u) << "the second pin takes the place of the first";
+  EXPECT_EQ(sessionState(session)["pins"][0]["joint"], "leftLowerArm");
+
+  // Saved and opened, and done again from the record.
+  Session again;
+  Progress progress;
+  again.open(session.saveSession(), "again.glb", progress);
+  EXPECT_EQ(again.state().pins.size(), 1u);
+  EXPECT_LT((boundAt(again, "leftLowerArm") - wanted).norm(), 1e-5);
+  Session replayed;
+  for (const Command& command : commandsFromJson(commandsToJson(session.record()))) run(replayed, command);
+  EXPECT_EQ(replayed.exportModel(ExportFormat::kGlb), session.exportModel(ExportFormat::kGlb));
+
+  run(session, UnpinJoint{"leftLowerArm"});
+  EXPECT_LT((boundAt(session, "leftLowerArm") - found).norm(), 1e-5);
+  EXPECT_THROW(run(session, UnpinJoint{"leftLowerArm"}), Error);
+  run(session, Undo{});
+  EXPECT_LT((boundAt(session, "leftLowerArm") - wanted).norm(), 1e-5);
+}
+
 TEST(Session, LimitsBendWhatIsTurned) {
   Session session = opened();
   const std::string name = session.state().rig->skeleton().joints[5].name;

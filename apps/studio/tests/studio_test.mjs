@@ -195,6 +195,39 @@ const cases = {
     await settled(page);
     assert.ok((await jointNames()).includes(before) && !(await jointNames()).includes('knee'));
   },
+  async 'a sample motion plays, and a joint of the template is corrected by dragging and by touching'() {
+    const other = await openStudio(browser, server.address, { search: '?sample=biped' });
+    const at = other.page;
+    await at.locator('#sample-motions').selectOption('walk');
+    await at.waitForFunction(() => globalThis.limberStudio.state().clips.length > 0 && Number(document.querySelector('#scrub').value) > 0.1);
+    await at.locator('#methods summary').click();
+    await at.locator('#rigger').selectOption('template');
+    await at.locator('#correct').click();
+    await settled(at);
+    assert.deepEqual([(await sessionState(at)).clip, (await sessionState(at)).posed], [null, false]);
+    const elbow = 'leftLowerArm', from = await jointPlace(at, elbow), found = await jointPosition(at, elbow);
+    await at.mouse.move(from.x, from.y);
+    await at.mouse.down();
+    await at.mouse.move(from.x, from.y + 6, { steps: 2 });
+    await at.mouse.move(from.x, from.y + 8);
+    await at.mouse.up();
+    await at.waitForFunction(() => globalThis.limberStudio.state().pins.length === 1);
+    await settled(at);
+    const dragged = await jointPosition(at, elbow), [pin] = (await sessionState(at)).pins;
+    assert.ok(distance(dragged, found) > 1e-3 && distance(dragged, pin.position) < 1e-3, `${found} ${dragged} ${pin.position}`);
+    assert.equal((await sessionState(at)).posed, false);
+    // Touched beside the handles: half way through the trunk.
+    await at.locator('#joints li', { hasText: /^chest$/ }).click();
+    const chest = await jointPlace(at, 'chest'), spine = await jointPlace(at, 'spine');
+    await at.mouse.click((chest.x + spine.x) / 2 + 14, (chest.y + spine.y) / 2);
+    await at.waitForFunction(() => globalThis.limberStudio.state().pins.length === 2);
+    await settled(at);
+    assert.equal(await at.locator('#pins li').count(), 2);
+    await at.locator('#undo').click();
+    await at.waitForFunction(() => globalThis.limberStudio.state().pins.length === 1);
+    assert.deepEqual(other.errors, []);
+    await other.context.close();
+  },
   async 'an arrow of the gizmo moves the joint along its axis'() {
     await page.locator('#gizmo').check();
     const name = await freeHandle();

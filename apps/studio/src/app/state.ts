@@ -43,6 +43,8 @@ export interface PageState {
   loop: boolean;
   gizmo: boolean;
   limits: boolean;
+  /** Moving a joint of a template corrects the rig; so does touching the model for the selected one. */
+  correcting: boolean;
   methods: Methods | null;
   comparison: Comparison | null;
   /** Parts of the model that are not drawn, by their place in it. */
@@ -57,7 +59,7 @@ export type PageStore = Store<PageState>;
 export const createPageStore = (): PageStore => new Store<PageState>({
   session: null, model: null, mode: 'move', display: 'handles', bones: true, wireframe: false,
   selected: null, hovered: null, work: null, notice: null, help: false,
-  seconds: 0, playing: false, speed: 1, loop: true, gizmo: false, limits: false,
+  seconds: 0, playing: false, speed: 1, loop: true, gizmo: false, limits: false, correcting: false,
   methods: null, comparison: null, hiddenParts: new Set(), sourceModel: null, sourceShown: true,
 });
 

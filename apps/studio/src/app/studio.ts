@@ -1,6 +1,6 @@
 // Everything that a user can do, each a call on the engine's session; panels and the view call this and nothing else.
 import { EngineClient, EngineError } from '../engine/client';
-import type { Answer, Command, MethodKind, Ray, Stance, Vector } from '../engine/messages';
+import type { Answer, Command, MethodKind, Ray, SessionState, Stance, Vector } from '../engine/messages';
 import { noticeOf, type PageStore } from './state';
 
 type Step = Answer<'run'>;
@@ -12,6 +12,9 @@ const stageNames: Record<string, string> = {
   'read': 'Reading the model', 'read geometry': 'Reading the surface', 'weld': 'Joining the surface',
   'rig': 'Finding handles', 'skin': 'Binding the surface', 'write rig': 'Finishing',
 };
+
+/** Whether its rig is a named skeleton's, whose joints can be corrected. */
+export const hasTemplate = (session: SessionState) => !session.own_rig && session.rigger === 'template';
 
 export class Studio {
   /** The joints stand anew; called for every frame of a drag. */
@@ -68,22 +71,31 @@ export class Studio {
   async openMotion(file: File) {
     await this.guard(async () => {
       const bytes = new Uint8Array(await file.arrayBuffer());
-      const { state, stance } = await this.engine.ask({ kind: 'motion', bytes, name: file.name });
-      this.apply({ state, stance });
-      const motion = state.motions.at(-1);
-      if (!motion) return;
-      const retarget = { do: 'retarget', motion: motion.name };
-      const clip = { from: this.page.now.session?.clips.length ?? 0 };
-      try {
-        await this.run1(retarget);
-      } catch (error) {
-        const fits = error instanceof EngineError && error.error.code === 'unsupported' && !state.own_rig && state.rigger !== 'template';
-        if (!fits) throw error;
-        await this.rigged({ do: 'choose_methods', rigger: 'template', skinning: state.skinning });
-        await this.run1(retarget);
-      }
-      if ((this.page.now.session?.clips.length ?? 0) > clip.from) this.page.set({ playing: true, display: 'surface' });
+      await this.play(await this.engine.ask({ kind: 'motion', bytes, name: file.name }));
     });
+  }
+
+  /** One that the engine makes itself. */
+  async openSampleMotion(name: string) {
+    await this.guard(async () => this.play(await this.engine.run({ do: 'add_sample_motion', name })));
+  }
+
+  /** The motion that was opened last. */
+  private async play(opened: Step) {
+    this.apply(opened);
+    const state = this.page.now.session, motion = state?.motions.at(-1);
+    if (!state || !motion) return;
+    const retarget = { do: 'retarget', motion: motion.name };
+    const before = state.clips.length;
+    try {
+      await this.run1(retarget);
+    } catch (error) {
+      const fits = error instanceof EngineError && error.error.code === 'unsupported' && !state.own_rig && state.rigger !== 'template';
+      if (!fits) throw error;
+      await this.rigged({ do: 'choose_methods', rigger: 'template', skinning: state.skinning });
+      await this.run1(retarget);
+    }
+    if ((this.page.now.session?.clips.length ?? 0) > before) this.page.set({ playing: true, display: 'surface', correcting: false });
   }
 
   /** How far joints may turn: a file of limits, for this model's joints. */
@@ -153,6 +165,22 @@ export class Studio {
     const { rigger, skinning } = { ...session, ...change };
     await this.guard(() => this.rigged({ do: 'choose_methods', rigger, skinning }));
   }
+
+  /** Joints are corrected on the model as it is bound, so it stands at rest. */
+  async correct(on: boolean) {
+    if (!on) return this.page.set({ correcting: false });
+    await this.guard(async () => {
+      this.page.set({ playing: false });
+      if (this.page.now.session?.clip != null) await this.run1({ do: 'choose_clip', clip: '' });
+      if (this.page.now.session?.posed) await this.run1({ do: 'reset_pose' });
+      this.page.set({ correcting: true, mode: 'move', display: 'handles' });
+    });
+  }
+
+  async pinJoint(joint: number, position: Vector) {
+    await this.guard(() => this.rigged({ do: 'pin_joint', joint: this.jointName(joint), position }));
+  }
+  async unpinJoint(joint: string) { await this.guard(() => this.rigged({ do: 'unpin_joint', joint })); }
 
   async chooseSolver(solver: string) {
     await this.run({ do: 'set_ik', on: this.page.now.session?.ik ?? false, solver });
@@ -300,7 +328,7 @@ export class Studio {
   }
 
   beginDrag(joint: number, ray: Ray, view: Vector, mode = this.page.now.mode) {
-    const command = { do: 'begin_drag', joint: this.jointName(joint), mode, ray, view };
+    const command = { do: 'begin_drag', joint: this.jointName(joint), mode: this.page.now.correcting ? 'move' : mode, ray, view };
     if (this.page.now.playing) this.page.set({ playing: false });
     this.page.set({ selected: joint });
     this.then(() => this.run(command));
@@ -323,7 +351,15 @@ export class Studio {
     });
   }
 
-  endDrag() { this.then(() => this.run({ do: 'end_drag' })); }
+  endDrag() { this.then(() => (this.page.now.correcting ? this.pinDragged() : this.run({ do: 'end_drag' }))); }
+
+  /** Where the dragged joint is becomes where the rig has it. */
+  private async pinDragged() {
+    const joint = this.page.now.session?.dragged ?? null, handles = this.stance?.handles;
+    await this.run({ do: 'cancel_drag' });
+    if (joint === null || !handles) return;
+    await this.pinJoint(joint, [handles[4 * joint]!, handles[4 * joint + 1]!, handles[4 * joint + 2]!]);
+  }
 
   cancelDrag() {
     this.dragUpdate = null;
@@ -336,10 +372,12 @@ export class Studio {
     this.dragging = this.dragging.then(step).finally(() => { --this.dragsLeft; });
   }
 
-  /** The joint that holds the surface under the pointer. */
+  /** The joint that holds the surface under the pointer; while joints are corrected, the selected one goes in there. */
   async selectSurface(ray: Ray, slope: number) {
     await this.guard(async () => {
       const hit = await this.engine.ask({ kind: 'pick', ray, slope });
+      const { correcting, selected } = this.page.now;
+      if (correcting && selected !== null && hit && !hit.on_handle) return this.pinJoint(selected, hit.inside);
       this.page.set({ selected: hit?.joint ?? null });
     });
   }
@@ -360,7 +398,7 @@ export class Studio {
   private jointName(joint: number) { return this.page.now.session?.joints[joint]?.name ?? ''; }
 
   private async opened(answer: Step) {
-    this.page.set({ selected: null, hovered: null, notice: null, comparison: null, hiddenParts: new Set() });
+    this.page.set({ selected: null, hovered: null, notice: null, comparison: null, hiddenParts: new Set(), correcting: false });
     await this.showRig(answer);
     this.onOpened();
   }
@@ -373,8 +411,9 @@ export class Studio {
     const model = await this.engine.ask({ kind: 'model' });
     const count = answer.state?.joints.length ?? 0;
     const { selected } = this.page.now;
+    const correcting = this.page.now.correcting && (answer.state ? hasTemplate(answer.state) : false);
     this.page.set({
-      session: answer.state, model, seconds: answer.state?.seconds ?? 0, playing: false, hovered: null, selected: selected !== null && selected < count ? selected : null,
+      correcting, session: answer.state, model, seconds: answer.state?.seconds ?? 0, playing: false, hovered: null, selected: selected !== null && selected < count ? selected : null,
     });
     this.showStance(answer.stance, false);
     this.followUp();

@@ -1,7 +1,7 @@
 // By which methods the model is rigged, and how others do beside them.
 import type { MethodKind } from '../engine/messages';
 import type { PageState, PageStore } from '../app/state';
-import type { Studio } from '../app/studio';
+import { hasTemplate, type Studio } from '../app/studio';
 import { button, element } from '../ui/dom';
 
 export const methodNames: Record<string, string> = {
@@ -50,5 +50,20 @@ export function methodsPanel(studio: Studio, page: PageStore): HTMLElement {
     return element('div', { class: 'field' }, element('label', { for: kind }, text), select, compareButton(studio, page, kind));
   };
   return element('details', { class: 'card methods', id: 'methods' }, element('summary', {}, 'Methods'),
-    row('rigger', 'Joints'), row('skinning', 'Skin'), row('solver', 'Limbs'));
+    row('rigger', 'Joints'), correction(studio, page), row('skinning', 'Skin'), row('solver', 'Limbs'));
+}
+
+/** Joints of a named skeleton that are not where they should be. */
+function correction(studio: Studio, page: PageStore): HTMLElement {
+  const made = button('Correct joints', () => void studio.correct(!page.now.correcting), {
+    icon: 'pin', id: 'correct', label: 'Put joints where they should be; the model is rigged anew',
+  });
+  const hint = element('p', {}, 'Drag a joint to where it should be; or select one and touch the model there.');
+  const row = element('div', { class: 'correction' }, made, hint);
+  page.watch(({ session, correcting }) => {
+    row.hidden = !session || !hasTemplate(session);
+    made.setAttribute('aria-pressed', String(correcting));
+    hint.hidden = !correcting;
+  });
+  return row;
 }

@@ -1,4 +1,4 @@
-// What there is: meshes, clips, pinned joints, and the joints as a tree. What can be picked in the scene can be picked
+// What there is: meshes, clips, corrected and pinned joints, and the joints as a tree. What can be picked in the scene can be picked
 // here.
 import type { SessionState } from '../engine/messages';
 import type { PageStore } from '../app/state';
@@ -6,7 +6,7 @@ import type { Studio } from '../app/studio';
 import type { HandleView } from '../scene/handle_view';
 import { button, element } from '../ui/dom';
 import { renameIn } from '../ui/rename';
-import { clipList, meshList, targetList } from './outliner_lists';
+import { clipList, meshList, pinList, targetList } from './outliner_lists';
 
 export function outliner(studio: Studio, page: PageStore, handles: HandleView): HTMLElement {
   const list = element('ul', { class: 'joints', role: 'listbox', 'aria-label': 'Joints', tabindex: 0, id: 'joints' });
@@ -67,7 +67,7 @@ export function outliner(studio: Studio, page: PageStore, handles: HandleView): 
     pin.setAttribute('aria-pressed', String(selected !== null && pinned.has(selected)));
   });
   return element('section', { class: 'card outliner', 'aria-label': 'Outliner' },
-    meshList(page), clipList(studio, page), targetList(studio, page), title, list, actions);
+    meshList(page), clipList(studio, page), pinList(studio, page), targetList(studio, page), title, list, actions);
 }
 
 /** In the order of the tree, each indented below its parent. */

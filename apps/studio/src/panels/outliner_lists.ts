@@ -53,6 +53,19 @@ export function targetList(studio: Studio, page: PageStore): HTMLElement {
   return root;
 }
 
+/** Joints of a template that the user corrected. */
+export function pinList(studio: Studio, page: PageStore): HTMLElement {
+  const { root, show } = group('Corrected joints', 'pins', true);
+  page.watch(({ session }, before) => {
+    if (session?.pins === before.session?.pins && session !== null && session === before.session) return;
+    show((session?.pins ?? []).map(({ joint }) => {
+      const pick = button(joint, () => page.set({ selected: session!.joints.findIndex(({ name }) => name === joint) }), { label: `Select ${joint}` });
+      return element('li', {}, pick, button('', () => void studio.unpinJoint(joint), { icon: 'erase', label: `${joint} as it was found` }));
+    }));
+  });
+  return root;
+}
+
 export function clipList(studio: Studio, page: PageStore): HTMLElement {
   const { root, list, show } = group('Clips', 'clip-list', true);
   const rename = (row: HTMLElement) => {

@@ -12,6 +12,9 @@ const room = 2; // seconds that an empty clip shows
 type Clip = SessionState['clips'][number];
 export const chosenClip = (session: SessionState | null): Clip | null => session?.clips[session.clip ?? -1] ?? null;
 
+/** Of the engine: for models that have their kind of limbs. */
+const sampleMotions = [['walk', 'Walk'], ['jumping-jack', 'Jumping jack'], ['quadruped-walk', 'Walk on four legs']] as const;
+
 export function timeline(studio: Studio, page: PageStore, openSheet: () => Promise<void>): HTMLElement {
   const file = element('input', { type: 'file', accept: '.bvh,.glb,.gltf', hidden: true, id: 'motion-file' });
   file.addEventListener('change', () => {
@@ -41,10 +44,16 @@ export function timeline(studio: Studio, page: PageStore, openSheet: () => Promi
   const sheet = button('', () => void openSheet(), { icon: 'sheet', label: 'Contact sheet: the clip at a glance', id: 'open-sheet' });
   const add = button('New clip', () => void studio.addClip(), { icon: 'add', label: 'A clip of your own poses', id: 'add-clip' });
   const motion = button('Motion', () => file.click(), { icon: 'open', label: 'Play a motion (BVH, GLB) on the model', id: 'open-motion' });
+  const sample = element('select', { class: 'select', id: 'sample-motions', 'aria-label': 'Play a sample motion on the model' },
+    element('option', { value: '' }, 'Samples'), ...sampleMotions.map(([value, text]) => element('option', { value }, text)));
+  sample.addEventListener('change', () => {
+    if (sample.value !== '') void studio.openSampleMotion(sample.value);
+    sample.value = '';
+  });
   const remove = button('', () => void studio.run({ do: 'remove_clip', clip: chosenClip(page.now.session)?.name ?? '' }), { icon: 'erase', label: 'Remove this clip', id: 'remove-clip' });
 
   const card = element('section', { class: 'card timeline', 'aria-label': 'Timeline', id: 'timeline' },
-    element('div', { class: 'row tools' }, play, clips, add, motion, file,
+    element('div', { class: 'row tools' }, play, clips, add, motion, sample, file,
       element('div', { class: 'row clip-tools' }, speed, loop, sheet, key, erase, between, remove)),
     element('div', { class: 'row moment' }, element('div', { class: 'track' }, scrub, track), time));
   let listed = '';
@@ -68,7 +77,7 @@ export function timeline(studio: Studio, page: PageStore, openSheet: () => Promi
     erase.disabled = keyHere(page) === null;
     between.disabled = !clip || clip.keys.length === 0;
     if (clip) between.value = clip.interpolation;
-    add.disabled = motion.disabled = !session;
+    add.disabled = motion.disabled = sample.disabled = !session;
     time.textContent = clip ? `${seconds.toFixed(2)} / ${clip.duration.toFixed(2)} s` : '';
     show(clip, seconds);
     card.classList.toggle('empty', !clip);
