@@ -19,9 +19,11 @@ export async function serve(folder) {
   return { address: `http://127.0.0.1:${server.address().port}/`, close: () => server.close() };
 }
 
-export const launch = () => chromium.launch({
+/** Frames are drawn in software, so tests do without smooth edges: several samples for each pixel take half the time. */
+export const launch = ({ smooth = false } = {}) => chromium.launch({
   executablePath: browserProgram,
-  args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist'],
+  args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist',
+    ...(smooth ? [] : ['--webgl-antialiasing-mode=none'])],
 });
 
 /** The page once its model stands. What the page throws is collected in `errors`. */

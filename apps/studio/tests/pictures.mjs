@@ -8,7 +8,7 @@ import { jointPlace, launch, openStudio, serve, sessionState, settled } from './
 
 const [dist, output] = process.argv.slice(2).map((path) => resolve(path));
 mkdirSync(output, { recursive: true });
-const server = await serve(dist), browser = await launch();
+const server = await serve(dist), browser = await launch({ smooth: true });
 
 /** Drags the joint nearest to a place in the picture, given as shares of the canvas. */
 async function drag(page, from, way) {
