@@ -1,11 +1,13 @@
-# limber_module(<folder> [USES <module>...] [PUBLIC <target>...] [PRIVATE <target>...] [TEST_LIBRARIES <target>...])
+# limber_module(<folder> [USES <module>...] [PUBLIC <target>...] [PRIVATE <target>...] [TEST_LIBRARIES <target>...]
+#               [FUZZED])
 #
 # One folder below limber/ is one library target limber_<folder>, alias limber::<folder>. Every *.cpp beside the
 # CMakeLists.txt belongs to it, except *_test.cpp, which become the test program limber_<folder>_tests.
 # USES names the modules that this one may include from: a header of any other module is not found, so a wrong
-# dependency does not build (each module publishes its headers through its own include tree).
+# dependency does not build (each module publishes its headers through its own include tree). FUZZED modules read what
+# fuzz targets feed them, and let libFuzzer see which way each input takes; this makes code two to three times as slow.
 function(limber_module name)
-  cmake_parse_arguments(ARG "" "" "USES;PUBLIC;PRIVATE;TEST_LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ARG "FUZZED" "" "USES;PUBLIC;PRIVATE;TEST_LIBRARIES" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
   file(GLOB headers CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.h)
   set(tests ${sources})
@@ -31,6 +33,9 @@ function(limber_module name)
   list(TRANSFORM ARG_USES PREPEND limber_)
   target_link_libraries(${target} PUBLIC ${ARG_USES} ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
   limber_precompile(${target} LIBRARY)
+  if(LIMBER_FUZZ AND ARG_FUZZED)
+    target_compile_options(${target} PRIVATE -fsanitize-coverage=inline-8bit-counters,indirect-calls,trace-cmp,pc-table)
+  endif()
 
   install(TARGETS ${target} EXPORT limberTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
   install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/limber/${name})

@@ -262,7 +262,7 @@ release_stages() {
   if [ -n "$quick" ]; then stage "the project's own samples" run_ctest release -L models -R Samples; fi
 }
 
-# Fitting a template takes half a minute under sanitizers. Of the tests that do it over and over one runs every time;
+# Fitting a template takes some ten seconds under sanitizers. Of the tests that do it over and over one runs every time;
 # ./dev test --sanitize runs them all.
 minutes_under_sanitizers='TemplateRigger\.[^N]|TemplateEmbedding|BodyVolume|BodyFrame|HumanoidLandmarks|PersonTemplate\.[^N]'
 minutes_under_sanitizers+='|PosedBodies\.H|ArmFlatness|FeetDirection|TemplateFit|FarFromBones|LimbPlaces\.[^E]|SampleMotionsMove'
