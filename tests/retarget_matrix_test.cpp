@@ -27,8 +27,7 @@ constexpr std::size_t kFrames = 400;  // of each motion
 // Those with the skeleton of another count once in means.
 const std::set<std::string> kTwins = {"quaternius_man_king.glb", "quaternius_man_spacesuit.glb",
                                       "quaternius_platformer_character.glb", "quaternius_woman_scifi.glb"};
-// A walking machine with a bird's legs, which have a bone more and bend back: thighs and shins of a person say nothing
-// of their bones, jerk is up to 3.3, and on cmu_mb_12_01_walk it slides by 0.024 heights/s (source 0.036).
+// A walking machine with a bird's legs, which have a bone more: its hock, high over the ground, is its foot's joint.
 constexpr const char* kBirdLegs = "quaternius_mech_george.glb";
 
 // Also one without a mesh.
@@ -66,7 +65,10 @@ const std::set<std::string> kNeverStands = {"cmu_daz_02_03_run.bvh", "cmu_daz_09
 // What does not hold yet: jerk over 1.1. The mannequin's feet are more than twice as long for its legs as the source's
 // are, and come down the sooner; the other's hips are twice as wide as its legs are long.
 const std::map<std::pair<std::string, std::string>, double> kRougherThanSource = {
-    {{"cmu1_jumping_jacks.bvh", "kaykit_mannequin/manny_med_mod.gltf"}, 1.28},
+    {{"cmu1_jumping_jacks.bvh", "kaykit_mannequin/manny_med_mod.gltf"}, 1.17},
+    {{"cmu1_jumping_jacks.bvh", kBirdLegs}, 1.36},
+    {{"fair1_dab.bvh", kBirdLegs}, 1.24},
+    {{"makehuman_walk.bvh", kBirdLegs}, 1.18},
     {{"rokoko_dance_mixamorig_names.bvh", "kaykit_mannequin/manny_med_mod.gltf"}, 1.19},
     {{"cmu_mb_01_01_forward_jumps.bvh", "quaternius_platformer_character.glb"}, 1.12}};
 
@@ -95,13 +97,14 @@ TEST_P(RetargetMatrix, EveryHumanoidKeepsFeetAndGround) {
     EXPECT_LT(1700 * result.penetration, 5) << "millimetres at human size";
     EXPECT_EQ(result.planted == 0, kNeverStands.contains(motion));
     EXPECT_LT(result.sliding, result.sourceSliding + 1e-4);
-    if (file == kBirdLegs) continue;
     if (isWalkOrRun(motion)) {
       EXPECT_LT(result.sliding, 0.02);
     }
     EXPECT_LT(result.boneDirection, 15);
     EXPECT_LT(result.jerk, roughest(motion, file));
-    EXPECT_GT(result.contactAgreement, 0.99);
+    if (file != kBirdLegs) {
+      EXPECT_GT(result.contactAgreement, 0.99);
+    }
   }
 }
 

@@ -1,7 +1,6 @@
 // Arms and legs of the target as methods that solve for hands and feet see them.
 #pragma once
 
-#include <cmath>
 #include <optional>
 
 #include "limber/retarget/foot_lock.h"
@@ -24,15 +23,11 @@ struct Leg : Limb {
   Vec3 kneeAhead = Vec3::UnitZ();                      // to which side the lower joint bends, in the neutral pose
   double ankleGround = 0, toesGround = 0;              // heights when standing, target
   double sourceAnkleGround = 0, sourceToesGround = 0;  // likewise, source
+  double footPitch = 1;                                // share of the source's (calmLongFeet)
   FootAnchor anchor = FootAnchor::kNone;               // what holds the foot in this frame
   bool flat = false;                                   // heel and toes stand both
   double ankleFloor = 0, toesFloor = 0;                // below which neither goes in this frame
   double planted = 0;                                  // 0 to 1, comes and goes smoothly
 };
-
-// x where it is above 0, else 0, but without a kink: at most softness / 2 more.
-inline double softPositive(double x, double softness) {
-  return 0.5 * (x + std::hypot(x, softness));
-}
 
 }  // namespace limber

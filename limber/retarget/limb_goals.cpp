@@ -5,6 +5,8 @@
 #include <string>
 
 #include "limber/ik/rotation.h"
+#include "limber/retarget/long_feet.h"
+#include "limber/retarget/smooth.h"
 #include "limber/retarget/spring.h"
 #include "limber/skeleton/chain.h"
 
@@ -28,11 +30,6 @@ constexpr double kSteep = 1.7, kSoleUp = 2.4, kSoftLevel = 0.05;  // radians tha
 // Speeds of the source's pelvis or feet, hip heights a second, that are no motion but a cut. Many recordings have a
 // T-pose as their first frame.
 constexpr double kJump = 15, kFirstJump = 4;
-
-double smoothStep(double x) {
-  const double t = std::clamp(x, 0.0, 1.0);
-  return t * t * (3 - 2 * t);
-}
 
 // 0 or 1 without a jump.
 void followPlanting(double wanted, double seconds, double& value, double& speed) {
@@ -69,7 +66,8 @@ std::optional<Limb> findLimb(const RetargetSetup& setup, const RootPlacer& root,
 
 }  // namespace
 
-LimbGoals::LimbGoals(const RetargetSetup& setup, const RootPlacer& root) : setup_(setup), pelvis_(setup, root) {
+LimbGoals::LimbGoals(const RetargetSetup& setup, const RootPlacer& root)
+    : setup_(setup), root_(root), pelvis_(setup, root) {
   if (setup.person) {
     addPersonsLegs(root);
     addArms(root);
@@ -147,6 +145,7 @@ void LimbGoals::addLeg(Leg leg) {
     leg.toesGround = targetGround(*leg.toes);
     leg.sourceToesGround = sourceGround(*leg.sourceToes);
   }
+  leg.footPitch = footPitchShare(setup_, leg);
   legs_.push_back(leg);
   const PlantDetector detector(setup_.sourceHipHeight);
   feelers_.push_back({detector, detector, {}, 0, {}, Vec3::Zero()});
@@ -210,6 +209,11 @@ bool LimbGoals::forgetAcrossCuts(const BodyFrame& source, double seconds) {
 // be in the target.
 double LimbGoals::loweredBy(double sourceGround, const Vec3& sourcePlace) const {
   return setup_.person ? 0 : setup_.scale * std::max(sourceGround - sourcePlace.y(), 0.0);
+}
+
+void LimbGoals::calm(Pose& target, BodyFrame& frame) const {
+  pelvis_.levelHips(target, frame);
+  calmLongFeet(setup_, root_, legs_, target, frame);
 }
 
 void LimbGoals::setFeet(const BodyFrame& source, const BodyFrame& target, double seconds) {

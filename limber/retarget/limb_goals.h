@@ -21,8 +21,11 @@ class LimbGoals {
   // False where nothing needs correcting: nobody with legs, or both neutral poses are one.
   bool active() const { return active_; }
 
+  // Wide hips and long feet swing less than the source's (Pelvis::levelHips, calmLongFeet). Before setFeet(), of the
+  // target by joint angles alone.
+  void calm(Pose& target, BodyFrame& frame) const;
   // Feet that are planted in the source stay where they came down, by their toes while the heel is up; none goes below
-  // the ground. From the globals of both, the target's by joint angles alone. The goals are for legs whose hips go with
+  // the ground. From the globals of both. The goals are for legs whose hips go with
   // the pelvis (Pelvis::moveFor).
   void setFeet(const BodyFrame& source, const BodyFrame& target, double seconds);
   // Whether the source jumped to the last frame: what was before it does not count.
@@ -79,6 +82,7 @@ class LimbGoals {
   double closeness(double distance, double touching, double apart) const;
 
   const RetargetSetup& setup_;
+  const RootPlacer& root_;
   Pelvis pelvis_;
   std::vector<Leg> legs_;
   std::vector<Feeler> feelers_;  // of the legs

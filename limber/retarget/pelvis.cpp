@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "limber/ik/rotation.h"
+#include "limber/retarget/smooth.h"
 
 namespace limber {
 

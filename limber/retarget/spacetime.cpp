@@ -110,7 +110,7 @@ class Spacetime {
     for (std::size_t f = 0; f < frames(); ++f) {
       const BodyFrame& from = sourceAt(f);
       BodyFrame& to = targetAt(f);
-      goals_.pelvis().levelHips(target_.poses[f], to);
+      goals_.calm(target_.poses[f], to);
       goals_.setFeet(from, to, f == 0 ? 0 : target_.frameSeconds);
       cuts_[f] = goals_.atCut();
       for (std::size_t i = 0; i < feet_.size(); ++i) {

@@ -1,0 +1,68 @@
+#include "limber/retarget/long_feet.h"
+
+#include <gtest/gtest.h>
+
+#include "limber/retarget/limb_goals.h"
+#include "limber/retarget/testing/test_motion.h"
+
+namespace limber {
+namespace {
+
+using limber::testing::turn;
+
+// By how many degrees the left foot is turned by calmLongFeet, of someone with feet `times` as long who stands but for
+// `hips` and `foot`; `left` gets what is left of the turn of the foot against the ground.
+struct Calmed {
+  double changed = 0, left = 0, share = 0;
+};
+Calmed calmed(double times, const Quat& hips, const Quat& foot) {
+  const Skeleton person = practiceHumanoid();
+  Skeleton longFooted = person;
+  for (const char* toes : {"leftToes", "rightToes"}) {
+    longFooted.joints[longFooted.find(toes).value()].rest.translation *= times;
+  }
+  const RetargetSetup setup(person, longFooted, matchSkeletons(person, longFooted), {});
+  const RootPlacer root(setup);
+  LimbGoals goals(setup, root);
+  Pose pose = restPose(longFooted);
+  const Index joint = longFooted.find("leftFoot").value();
+  pose.locals[longFooted.find("hips").value()].rotation = hips;
+  pose.locals[joint].rotation = foot;
+  BodyFrame frame, after;
+  setup.targetKinematics.globals(pose, frame);
+  const Quat before = frame.rotations[joint];
+  calmLongFeet(setup, root, goals.legs(), pose, frame);
+  setup.targetKinematics.globals(pose, after);
+  for (std::size_t j = 0; j < after.positions.size(); ++j) {
+    EXPECT_LT((after.positions[j] - frame.positions[j]).norm(), 1e-12) << "the frame is up to date";
+  }
+  const double degrees = 180 / kPi;
+  return {degrees * angleBetween(before, after.rotations[joint]),
+          degrees * angleBetween(Quat::Identity(), after.rotations[joint]), goals.legs()[0].footPitch};
+}
+
+TEST(LongFeet, OrdinaryFeetPitchAsTheSources) {
+  for (const double times : {0.5, 1.0, 1.9}) {
+    const Calmed foot = calmed(times, Quat::Identity(), turn(Vec3::UnitX(), 40));
+    EXPECT_EQ(foot.share, 1);
+    EXPECT_EQ(foot.changed, 0);
+  }
+}
+
+TEST(LongFeet, LongOnesPitchLess) {
+  const Calmed foot = calmed(4, Quat::Identity(), turn(Vec3::UnitX(), 40));
+  EXPECT_LT(foot.share, 0.5);
+  EXPECT_NEAR(foot.left, 40 * foot.share, 2);
+}
+
+TEST(LongFeet, TheyFaceWhereTheyFace) {
+  EXPECT_LT(calmed(4, Quat::Identity(), turn(Vec3::UnitY(), 50)).changed, 1e-5);
+}
+
+TEST(LongFeet, SolesThatLookUpOrToTheSideStay) {
+  EXPECT_LT(calmed(4, Quat::Identity(), turn(Vec3::UnitX(), 130)).changed, 1e-5);
+  EXPECT_LT(calmed(4, turn(Vec3::UnitZ(), 90), turn(Vec3::UnitX(), 20)).changed, 1);
+}
+
+}  // namespace
+}  // namespace limber

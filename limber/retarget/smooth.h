@@ -1,0 +1,20 @@
+// Functions without a kink, where a clamp would have one.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+namespace limber {
+
+// 0 up to 0, 1 from 1 on.
+inline double smoothStep(double x) {
+  const double t = std::clamp(x, 0.0, 1.0);
+  return t * t * (3 - 2 * t);
+}
+
+// x where it is above 0, else 0: at most softness / 2 more.
+inline double softPositive(double x, double softness) {
+  return 0.5 * (x + std::hypot(x, softness));
+}
+
+}  // namespace limber
