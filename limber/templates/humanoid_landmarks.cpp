@@ -20,6 +20,7 @@ constexpr double kUpright = 0.85;      // least cosine
 constexpr double kLifted = 0.12;       // of a foot that does not stand
 constexpr double kWristSearch = 0.2;   // of the arm's length, to both sides
 constexpr double kElbowSearch = 0.08;  // of the arm's length, to both sides
+constexpr double kHanging = 0.755;     // cosine between upper arm and straight down
 constexpr double kStraight = 0.9;      // cosine between upper arm and forearm from which the bend shows no elbow
 
 struct Arm {
@@ -129,8 +130,10 @@ class Mover {
     const double length = finder.hand();
     const double wrist =
         finder.narrowest(length - kWristSearch * length, length + kWristSearch * length).value_or(length);
-    // Shapes and proportions are off to either side as often: the shoulder goes between what they say.
-    const double start = finder.armpit() ? 0.5 * (*finder.armpit() - 0.5 * finder.radius()) : 0;
+    // Shapes and proportions are off to either side as often: the shoulder goes between what they say. An arm that
+    // hangs touches the trunk below its shoulder.
+    const bool hangs = along.y() < -kHanging;
+    const double start = finder.armpit() && !hangs ? 0.5 * (*finder.armpit() - 0.5 * finder.radius()) : 0;
     double bend = finder.elbow();
     if (along.dot(below) > kStraight) {
       bend = 0.5 * (bend + start + proportions_.elbow * (wrist - start));

@@ -67,6 +67,24 @@ TEST(HumanoidLandmarks, ArmsGoWhereTheyLeaveTheTrunk) {
   EXPECT_LT((places[elbow] - person.frame.toBody(person.shape.elbow)).norm(), 0.015);
 }
 
+TEST(HumanoidLandmarks, ShouldersStayAboveArmsThatHang) {
+  const testing::CapsulePerson person = testing::capsulePerson(1.3);
+  const BodyVolume body = measureBody(person.mesh);
+  const BodyFrame frame = frameAlong(person.mesh, body, Vec3::UnitY(), Vec3::UnitZ());
+  const TemplateSkeleton& skeleton = findTemplate("humanoid");
+  const Index shoulder = *skeleton.find("leftUpperArm");
+  std::vector<Vec3> places;
+  for (const TemplateJoint& joint : skeleton.joints) places.push_back(joint.place);
+  for (const std::string side : {"left", "right"}) {
+    const Vec3 mirror(side == "left" ? 1 : -1, 1, 1);
+    places[*skeleton.find(side + "UpperArm")] = frame.toBody(person.shoulder.cwiseProduct(mirror));
+    places[*skeleton.find(side + "LowerArm")] = frame.toBody(person.elbow.cwiseProduct(mirror));
+    places[*skeleton.find(side + "Hand")] = frame.toBody(person.hand.cwiseProduct(mirror));
+  }
+  refineHumanoid(skeleton, body, frame, std::vector<std::optional<Vec3>>(places.size()), places);
+  EXPECT_LT((places[shoulder] - frame.toBody(person.shoulder)).norm(), 0.02);
+}
+
 TEST(HumanoidLandmarks, AShorterArmIsAsLongAsTheOther) {
   const MeasuredPerson& person = measuredPerson();
   const TemplateSkeleton& skeleton = findTemplate("humanoid");
