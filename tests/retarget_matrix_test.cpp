@@ -172,7 +172,7 @@ TEST(RetargetMatching, WhatIsSureByFormAloneIsRight) {
     Skeleton nameless = person;
     for (Index j = 0; j < nameless.jointCount(); ++j)
       nameless.joints[j].name = std::string("q").append(std::to_string(j));
-    if (humanoidJointsByShape(nameless).empty()) continue;  // legs on a root of their own, say
+    if (humanoidJointsByShape(nameless).empty()) continue;  // with ears as long as the body
     const SkeletonMap byName = matchSkeletons(source, person), byForm = matchSkeletons(source, nameless);
     ++people;
     for (const JointMatch& match : byForm.matches) {
@@ -183,8 +183,8 @@ TEST(RetargetMatching, WhatIsSureByFormAloneIsRight) {
       EXPECT_EQ(match.target.front(), right->target.front()) << match.part;
     }
   }
-  EXPECT_GE(people, 8);
-  EXPECT_GE(sure, 120);
+  EXPECT_GE(people, 20);
+  EXPECT_GE(sure, 150);
 }
 
 // One recording on two skeletons: each is the known answer for the other.

@@ -52,7 +52,7 @@ class Fit {
     ground_ = low;
     const std::optional<Vec3> head = at("head");
     height_ = std::max((head ? head->y() : high) - low, 1e-12);
-    whole_ = std::max({mirrorDoubt(), otherLimbsDoubt(), doubt((at("hips")->y() - ground_) / height_, kHips)});
+    whole_ = std::max({mirrorDoubt(), otherLimbsDoubt(), hipsDoubt()});
     front_ = at("leftToes") && at("rightToes") ? 0 : kOtherFront;
     head_ = headDoubt();
   }
@@ -84,6 +84,13 @@ class Fit {
     if (!(first > 0) || !(second > 0) || !(whole > 0)) return kMissing;
     return std::max({doubt(std::log(first / second), kRatio), doubt((first + second) / height_, length),
                      doubt(whole / (first + second), kStraight), doubt((end->y() - upper->y()) / whole, up)});
+  }
+
+  // Of where the legs begin: what carries them may be a root on the ground.
+  double hipsDoubt() const {
+    const std::optional<Vec3> left = at("leftUpperLeg"), right = at("rightUpperLeg");
+    if (!left || !right) return kMissing;
+    return doubt((0.5 * (left->y() + right->y()) - ground_) / height_, kHips);
   }
 
   double headDoubt() const {

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "limber/retarget/humanoid_fit.h"
+#include "limber/retarget/loose_feet.h"
 #include "limber/skeleton/chain.h"
 
 namespace limber {
@@ -23,8 +24,11 @@ double unlike(double a, double b) {
 
 class ShapeReader {
  public:
-  explicit ShapeReader(const Skeleton& skeleton) : skeleton_(skeleton), children_(childrenOf(skeleton)) {
+  explicit ShapeReader(const Skeleton& skeleton) : original_(skeleton), skeleton_(skeleton) {
     for (const Affine& global : restGlobals(skeleton)) positions_.push_back(global.translation());
+    const std::vector<std::optional<Index>> parents = parentsWithLegsJoined(skeleton, positions_);
+    for (Index j = 0; j < skeleton.jointCount(); ++j) skeleton_.joints[j].parent = parents[j];
+    children_ = childrenOf(skeleton_);
     Box box;
     for (const Vec3& position : positions_) box.add(position);
     center_ = box.center();
@@ -46,13 +50,14 @@ class ShapeReader {
     const auto hands = widestPair(*hips, *feet);
     if (!hands) return {};
     const std::optional<Index> chest = fork(hands->first, hands->second);
-    if (!chest || !isAncestorOrSelf(skeleton_, *hips, *chest)) return {};
+    if (!chest || !isAbove(*hips, *chest)) return {};
     if (!leftIsFirst(*hips, *feet)) lateral_ = -lateral_;
 
-    give("hips", *hips);
+    const Index carrier = carrierOf(*hips, *feet);
+    give("hips", carrier);
     for (const Index foot : {feet->first, feet->second}) leg(*hips, foot);
     for (const Index hand : {hands->first, hands->second}) arm(*chest, hand);
-    trunkAndHead(*hips, *chest);
+    trunkAndHead(carrier, *chest);
     return joints_;
   }
 
@@ -64,10 +69,25 @@ class ShapeReader {
     give(left ? leftBone : mirroredBone(leftBone), joint);
   }
   double side(Index joint) const { return lateral_.dot(positions_[joint] - center_); }
+  // Or itself. As isAncestorOrSelf, but of parents that may come behind their children.
+  bool isAbove(Index above, Index joint) const {
+    std::optional<Index> up = joint;
+    while (up && *up != above) up = skeleton_.joints[*up].parent;
+    return up.has_value();
+  }
   std::optional<Index> fork(Index a, Index b) const {
     std::optional<Index> up = a;
-    while (up && !isAncestorOrSelf(skeleton_, *up, b)) up = skeleton_.joints[*up].parent;
+    while (up && !isAbove(*up, b)) up = skeleton_.joints[*up].parent;
     return up;
+  }
+  // The joint that both legs hang on, where they do not hang on the hips.
+  Index carrierOf(Index hips, const Pair& feet) const {
+    std::optional<Index> up = hips;
+    for (const Index foot : {feet.first, feet.second}) {
+      const std::vector<Index> leg = way(hips, foot);
+      while (up && !leg.empty() && !isAncestorOrSelf(original_, *up, leg.front())) up = original_.joints[*up].parent;
+    }
+    return up.value_or(hips);
   }
   // The joints below `from` on the way to `to`.
   std::vector<Index> way(Index from, Index to) const {
@@ -102,7 +122,7 @@ class ShapeReader {
     std::optional<Index> far[2];
     for (const Index leaf : leaves_) {
       const bool isLeg = fork(leaf, feet.first) != hips || fork(leaf, feet.second) != hips;
-      if (isLeg || !isAncestorOrSelf(skeleton_, hips, leaf)) continue;
+      if (isLeg || !isAbove(hips, leaf)) continue;
       std::optional<Index>& widest = far[side(leaf) > 0 ? 0 : 1];
       if (!widest || std::abs(side(leaf)) > std::abs(side(*widest))) widest = leaf;
     }
@@ -219,7 +239,7 @@ class ShapeReader {
     std::optional<Index> top;
     for (const Index leaf : leaves_) {
       const bool inTheMiddle = std::abs(side(leaf)) < 0.1 * size_.y();
-      if (!inTheMiddle || !isAncestorOrSelf(skeleton_, chest, leaf) || leaf == chest) continue;
+      if (!inTheMiddle || !isAbove(chest, leaf) || leaf == chest) continue;
       if (!top || positions_[leaf].y() > positions_[*top].y()) top = leaf;
     }
     if (!top || positions_[*top].y() < positions_[chest].y()) return;
@@ -249,7 +269,8 @@ class ShapeReader {
     return best;
   }
 
-  const Skeleton& skeleton_;
+  const Skeleton& original_;
+  Skeleton skeleton_;  // each foot on its leg; of the rest transforms only positions_ hold
   std::vector<std::vector<Index>> children_;
   std::vector<Vec3> positions_;
   std::vector<Index> leaves_;

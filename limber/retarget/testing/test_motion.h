@@ -1,6 +1,7 @@
 // A person who walks, waves and bends, and the same person with another skeleton: made in code for tests.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <string>
@@ -107,6 +108,23 @@ inline Skeleton withJointBefore(const Skeleton& skeleton, const std::string& chi
       joint.rest.translation *= 0.6;
     } else if (joint.parent && *joint.parent >= at) {
       joint.parent = *joint.parent + 1;
+    }
+    longer.joints.push_back(joint);
+  }
+  return longer;
+}
+
+// The same on a root on the ground, on which these joints hang, too.
+inline Skeleton onTheGround(const Skeleton& skeleton, const std::vector<std::string>& loose) {
+  const std::vector<Affine> globals = restGlobals(skeleton);
+  Skeleton longer;
+  longer.joints.push_back({"ground", std::nullopt, {}});
+  for (Index j = 0; j < skeleton.jointCount(); ++j) {
+    Joint joint = skeleton.joints[j];
+    joint.parent = joint.parent ? *joint.parent + 1 : 0;
+    if (std::find(loose.begin(), loose.end(), joint.name) != loose.end()) {
+      joint.parent = 0;
+      joint.rest = decompose(globals[j]);
     }
     longer.joints.push_back(joint);
   }

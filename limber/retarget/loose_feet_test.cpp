@@ -1,0 +1,59 @@
+#include "limber/retarget/loose_feet.h"
+
+#include <gtest/gtest.h>
+
+#include "limber/retarget/humanoid_shape.h"
+#include "limber/retarget/testing/test_motion.h"
+
+namespace limber {
+namespace {
+
+using limber::testing::onTheGround;
+
+std::vector<std::optional<Index>> joined(const Skeleton& skeleton) {
+  std::vector<Vec3> positions;
+  for (const Affine& global : restGlobals(skeleton)) positions.push_back(global.translation());
+  return parentsWithLegsJoined(skeleton, positions);
+}
+
+TEST(LooseFeet, FeetAtTheRootHangOnTheShinsAboveThem) {
+  const Skeleton person = onTheGround(practiceHumanoid(), {"leftFoot", "rightFoot"});
+  const std::vector<std::optional<Index>> parents = joined(person);
+  for (Index j = 0; j < person.jointCount(); ++j) {
+    const std::string& name = person.joints[j].name;
+    const bool isFoot = name == "leftFoot" || name == "rightFoot";
+    EXPECT_EQ(parents[j], isFoot ? person.find(name.substr(0, name.size() - 4) + "LowerLeg") : person.joints[j].parent);
+  }
+}
+
+TEST(LooseFeet, LegsAtTheRootHangOnTheTrunkBesideThem) {
+  const Skeleton person = onTheGround(practiceHumanoid(), {"leftUpperLeg", "rightUpperLeg"});
+  const std::vector<std::optional<Index>> parents = joined(person);
+  EXPECT_EQ(parents[person.find("leftUpperLeg").value()], person.find("hips"));
+  EXPECT_EQ(parents[person.find("rightUpperLeg").value()], person.find("hips"));
+  EXPECT_EQ(parents[person.find("hips").value()], person.find("ground"));
+}
+
+TEST(LooseFeet, OthersStayAsTheyAre) {
+  for (const Skeleton& skeleton : {practiceHumanoid(), limber::testing::quadruped(0.5)}) {
+    const std::vector<std::optional<Index>> parents = joined(skeleton);
+    for (Index j = 0; j < skeleton.jointCount(); ++j) EXPECT_EQ(parents[j], skeleton.joints[j].parent);
+  }
+}
+
+// Names of joints are not looked at.
+TEST(LooseFeet, APersonOnThemIsToldByForm) {
+  for (const char* loose : {"Foot", "UpperLeg"}) {
+    const Skeleton person =
+        onTheGround(practiceHumanoid(), {std::string("left") + loose, std::string("right") + loose});
+    int right = 0;
+    for (const HumanoidJoint& joint : humanoidJointsByShape(person)) {
+      if (joint.bone.ends_with("Foot") || joint.bone.ends_with("Leg"))
+        right += person.joints[joint.joint].name == joint.bone;
+    }
+    EXPECT_EQ(right, 6) << loose;
+  }
+}
+
+}  // namespace
+}  // namespace limber
