@@ -11,7 +11,10 @@ namespace limber {
 
 namespace {
 
+// A foot goes along with a shin that is turned by more. One that is about as long as its shin does not where the leg
+// comes down from the hip as straight: it ends in a hock, and stands as birds' do.
 constexpr double kFootGoesAlong = 25 * kPi / 180;
+constexpr double kHock = 0.75;  // foot over shin
 constexpr double kNearAxis = 20 * kPi / 180;
 constexpr double kOpposite = 100 * kPi / 180;  // between the ways from the hips to the head and to the feet, at least
 
@@ -135,7 +138,7 @@ NeutralPose neutralPose(const Skeleton& skeleton, const Pose& resting, const Ske
   pose.toBody = bodyFrame(map, side, rest);
   std::vector<Quat> turns(skeleton.jointCount(), Quat::Identity());
   std::vector<std::optional<std::pair<Vec3, Vec3>>> aims(skeleton.jointCount());  // rest direction, neutral direction
-  std::vector<bool> isFoot(skeleton.jointCount());
+  std::vector<bool> isFoot(skeleton.jointCount()), stands(skeleton.jointCount());
   for (Vec3& position : rest) position = pose.toBody * position;
   for (const LimbBone& bone : limbBones()) {
     const std::optional<Index> joint = firstOf(map, side, bone.part), end = firstOf(map, side, bone.end);
@@ -143,8 +146,15 @@ NeutralPose neutralPose(const Skeleton& skeleton, const Pose& resting, const Ske
       aims[*joint] = std::pair{Vec3(rest[*end] - rest[*joint]), bone.direction};
     }
   }
-  for (const char* foot : {"leftFoot", "rightFoot"}) {
-    if (const std::optional<Index> joint = firstOf(map, side, foot)) isFoot[*joint] = true;
+  for (const std::string leg : {"left", "right"}) {
+    const std::optional<Index> foot = firstOf(map, side, leg + "Foot");
+    if (!foot) continue;
+    isFoot[*foot] = true;
+    const std::optional<Index> hip = firstOf(map, side, leg + "UpperLeg"), knee = firstOf(map, side, leg + "LowerLeg"),
+                               toes = firstOf(map, side, leg + "Toes");
+    if (!hip || !knee || !toes) continue;
+    const bool hock = (rest[*toes] - rest[*foot]).norm() > kHock * (rest[*foot] - rest[*knee]).norm();
+    stands[*foot] = hock && angleOf(rest[*toes] - rest[*hip], -Vec3::UnitY()) < kFootGoesAlong;
   }
 
   pose.positions.resize(skeleton.jointCount());
@@ -155,7 +165,8 @@ NeutralPose neutralPose(const Skeleton& skeleton, const Pose& resting, const Ske
     const Quat above = joint.parent ? turns[*joint.parent] : Quat::Identity();
     turns[j] = above;
     if (aims[j]) turns[j] = (shortestRotation(above * aims[j]->first, aims[j]->second) * above).normalized();
-    if (isFoot[j] && angleBetween(Quat::Identity(), above) < kFootGoesAlong) turns[j] = Quat::Identity();
+    const bool free = stands[j] || angleBetween(Quat::Identity(), above) < kFootGoesAlong;
+    if (isFoot[j] && free) turns[j] = Quat::Identity();
     pose.rotations.push_back((turns[j] * restRotations[j]).normalized());
     pose.positions[j] =
         joint.parent ? Vec3(pose.positions[*joint.parent] + above * (rest[j] - rest[*joint.parent])) : rest[j];

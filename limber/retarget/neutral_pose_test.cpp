@@ -32,6 +32,24 @@ TEST_F(NeutralPoses, ArmsToTheSidesLegsDownWhateverTheRestPoseIs) {
   EXPECT_LT((bone(bent, "leftLowerLeg", "leftFoot") + Vec3::UnitY()).norm(), 1e-9);
 }
 
+// As of a bird, the foot's joint is a hock, high over the ground.
+TEST_F(NeutralPoses, AFootAsLongAsTheShinStandsAsAtRest) {
+  for (const bool bird : {true, false}) {
+    Skeleton bent = person;
+    for (const char* side : {"left", "right"}) {
+      const auto joint = [&](const char* name) -> Joint& {
+        return bent.joints[bent.find(std::string(side).append(name)).value()];
+      };
+      const double shin = joint("Foot").rest.translation.norm();
+      joint("LowerLeg").rest.translation = Vec3(0, -0.8 * shin, 0.6 * shin);
+      joint("Foot").rest.translation = Vec3(0, -0.6 * shin, -0.8 * shin);
+      joint("Toes").rest.translation = (bird ? 1 : 0.4) * Vec3(0, -0.8 * shin, 0.6 * shin);
+    }
+    const Vec3 foot = bone(bent, "leftFoot", "leftToes"), atRest(0, -0.8, 0.6);
+    EXPECT_EQ((foot - atRest).norm() < 1e-6, bird);
+  }
+}
+
 // Motions of some programs have a rest pose in which every bone points the same way.
 TEST_F(NeutralPoses, AFoldedRestPoseGivesWayToAFrameThatStands) {
   Skeleton folded = person;
