@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "limber/core/random.h"
 #include "limber/ik/humanoid_limits.h"
 #include "limber/ik/ik_skeletons.h"
 #include "limber/ik/ik_solver.h"
@@ -19,18 +20,10 @@ namespace {
 
 constexpr double kChainLength = 0.9;  // metres
 
-// splitmix64 (Steele, Lea, Flood 2014): the same numbers on every system, which <random>'s distributions are not.
-class Random {
+class ProblemRandom : public Random {
  public:
-  explicit Random(std::uint64_t seed) : state_(seed) {}
+  using Random::Random;
 
-  double uniform(double low = 0, double high = 1) {
-    state_ += 0x9e3779b97f4a7c15ULL;
-    std::uint64_t z = state_;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
-    return low + (high - low) * static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-53;
-  }
   Vec3 unitCube() {
     const double x = uniform(), y = uniform(), z = uniform();
     return Vec3(x, y, z);
@@ -39,9 +32,6 @@ class Random {
     const double height = uniform(-1, 1), angle = uniform(0, 2 * kPi), ring = std::sqrt(1 - height * height);
     return Vec3(ring * std::cos(angle), height, ring * std::sin(angle));
   }
-
- private:
-  std::uint64_t state_;
 };
 
 AngleRange degrees(double least, double most) {
@@ -63,7 +53,7 @@ JointLimits chainLimits(const Skeleton& chain) {
 }
 
 // A pose that the limits allow; `edges`: with every joint at a bound of what its numbers say.
-Pose allowedPose(const Skeleton& skeleton, const JointLimits& limits, bool edges, Random& random) {
+Pose allowedPose(const Skeleton& skeleton, const JointLimits& limits, bool edges, ProblemRandom& random) {
   Pose pose = restPose(skeleton);
   for (Index j = 0; j < skeleton.jointCount(); ++j) {
     Vec3 uniform = random.unitCube();
@@ -88,7 +78,7 @@ void takeTargets(const Skeleton& skeleton, const Pose& pose, std::vector<IkTarge
   for (IkTarget& target : targets) target.position = globals[target.joint].translation();
 }
 
-IkProblem chainProblem(const IkProblemSet& set, Random& random) {
+IkProblem chainProblem(const IkProblemSet& set, ProblemRandom& random) {
   IkProblem problem;
   problem.start = startPose(set.skeleton, set.limits);
   problem.targets.resize(1);
@@ -105,7 +95,7 @@ IkProblem chainProblem(const IkProblemSet& set, Random& random) {
 }
 
 // Poses half way from rest to a random one: people do not tie themselves in knots.
-IkProblem humanoidProblem(const IkProblemSet& set, const JointLimits& anatomy, Random& random) {
+IkProblem humanoidProblem(const IkProblemSet& set, const JointLimits& anatomy, ProblemRandom& random) {
   IkProblem problem;
   problem.start = startPose(set.skeleton, set.limits);
   problem.targets = practiceHumanoidTargets(set.skeleton);
@@ -210,7 +200,7 @@ IkScore scoreMethod(const IkMethod& method, const IkProblemSet& set, IkOptions o
 // since the clock takes as long as one.
 IkScore scoreClosedForm(const IkEvaluationOptions& options) {
   constexpr int kRepeats = 100;
-  Random random(options.seed);
+  ProblemRandom random(options.seed);
   IkScore score;
   score.method = "two-bone";
   score.set = kClosedFormSet;
@@ -237,7 +227,7 @@ IkScore scoreClosedForm(const IkEvaluationOptions& options) {
 }  // namespace
 
 std::vector<IkProblemSet> ikProblemSets(Index count, std::uint64_t seed) {
-  Random random(seed);
+  ProblemRandom random(seed);
   std::vector<IkProblemSet> sets;
   constexpr IkReach kReaches[] = {IkReach::kReachable, IkReach::kBorderline, IkReach::kUnreachable};
   for (const Index joints : {3u, 10u, 30u, 100u}) {

@@ -67,7 +67,7 @@ const IkResult& IkSolver::solve(Pose& pose, std::span<const IkTarget> targets) {
   system_.load(pose, targets);
   result_.iterations = result_.restarts = 0;
   stillGaining_ = false;
-  randomState_ = system_.options().seed;
+  random_ = Random(system_.options().seed);
 
   system_.save(best_);
   double best = system_.cost();
@@ -106,15 +106,6 @@ bool IkSolver::worthAnotherTry() const {
 }
 
 // splitmix64 (Steele, Lea, Flood 2014), to [0, 1).
-double IkSolver::random() {
-  randomState_ += 0x9e3779b97f4a7c15ULL;
-  std::uint64_t z = randomState_;
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
-  z ^= z >> 31;
-  return static_cast<double>(z >> 11) * 0x1p-53;
-}
-
 void IkSolver::perturb(Index restart) {
   const Index count = system_.options().restarts;
   const double cooled = count > 2 ? (restart - 1.0) / (count - 2.0) : 0;
@@ -125,7 +116,7 @@ void IkSolver::perturb(Index restart) {
     const IkSystem::Node& node = system_.nodes[i];
     if (node.freedom == 0) continue;
     // One after the other: in which order arguments are evaluated differs between compilers.
-    const double z = random(), y = random(), x = random();
+    const double z = random_.uniform(), y = random_.uniform(), x = random_.uniform();
     const Quat anywhere = allowedRotation(node.limit ? *node.limit : kFree, Vec3(x, y, z));
     system_.locals[i] = system_.locals[i].slerp(jump, anywhere);
     system_.limitNode(n);

@@ -6,6 +6,7 @@
 #include <span>
 #include <string_view>
 
+#include "limber/core/random.h"
 #include "limber/ik/ik_problem.h"
 #include "limber/ik/ik_system.h"
 
@@ -55,13 +56,12 @@ class IkSolver {
   void perturb(Index restart);
   void report();
   bool worthAnotherTry() const;
-  double random();
 
   IkSystem system_;
   std::unique_ptr<IkIteration> iteration_;
   IkSystem::State best_;
   IkResult result_;
-  std::uint64_t randomState_ = 0;
+  Random random_;
   bool stillGaining_ = false;  // when the last attempt's iterations were used up
 };
 

@@ -125,13 +125,16 @@ double SignedDistance::at(const Vec3& point) const {
     low[axis] = std::min(static_cast<Index>(inside), size_[axis] - 2);
     part[axis] = inside - low[axis];
   }
+  const std::size_t above = std::size_t{size_[0]}, behind = above * size_[1];
+  const float* corner = &values_[nodeAt(low[0], low[1], low[2])];
   double sum = 0;
   for (int c = 0; c < 8; ++c) {
     const double weight =
         (c & 1 ? part[0] : 1 - part[0]) * (c & 2 ? part[1] : 1 - part[1]) * (c & 4 ? part[2] : 1 - part[2]);
-    sum += weight * values_[nodeAt(low[0] + (c & 1 ? 1 : 0), low[1] + (c & 2 ? 1 : 0), low[2] + (c & 4 ? 1 : 0))];
+    sum += weight * corner[(c & 1 ? 1 : 0) + (c & 2 ? above : 0) + (c & 4 ? behind : 0)];
   }
-  return sum + spacing_ * beyond.norm();
+  const bool isOutside = beyond.x() != 0 || beyond.y() != 0 || beyond.z() != 0;
+  return isOutside ? sum + spacing_ * beyond.norm() : sum;
 }
 
 Vec3 SignedDistance::gradientAt(const Vec3& point) const {

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "limber/figure/testing/figure_body.h"
 #include "limber/mesh/testing/capsule.h"
 #include "limber/rigging/template_rigger.h"
 
@@ -118,6 +119,24 @@ TEST(PosedBodies, LimbsMaySwing) {
   EXPECT_LT(off("leftFoot", body.leftAnkle), 0.07);
   EXPECT_LT(off("rightLowerLeg", body.rightKnee), 0.07);
   EXPECT_LT(off("rightFoot", body.rightAnkle), 0.07);
+}
+
+TEST(PosedBodies, OneWhoCrouchesOnABlockNeedsNoPins) {
+  const Figure figure = testing::crouchingFigure();
+  RigOptions options;
+  options.templateName = "humanoid";
+  Progress progress;
+  const AutoRig rig = rigWithTemplate(testing::statueOf(figure), options, progress);
+  EXPECT_GT(rig.matches.front().confidence, 0.6);
+  const std::vector<Affine> globals = restGlobals(rig.skeleton);
+  const auto off = [&](const char* joint, const Vec3& place) {
+    return (globals[rig.skeleton.find(joint).value()].translation() - place).norm();
+  };
+  EXPECT_LT(off("leftLowerArm", figure.places(0).middle), 0.07);
+  EXPECT_LT(off("rightHand", figure.places(1).ankle), 0.07);
+  EXPECT_LT(off("leftFoot", figure.places(2).ankle), 0.07);
+  EXPECT_LT(off("rightLowerLeg", figure.places(3).middle), 0.07);
+  EXPECT_LT(off("rightFoot", figure.places(3).ankle), 0.07);
 }
 
 }  // namespace limber

@@ -8,10 +8,12 @@
 
 #include "limber/body/body_volume.h"
 #include "limber/core/numbers.h"
+#include "limber/figure/figure_search.h"
 #include "limber/rigging/person_template.h"
 #include "limber/surface/stray_pieces.h"
 #include "limber/templates/arm_flatness.h"
 #include "limber/templates/bent_template.h"
+#include "limber/templates/figure_fit.h"
 #include "limber/templates/humanoid_landmarks.h"
 #include "limber/templates/pose_search.h"
 #include "limber/templates/quadruped_landmarks.h"
@@ -25,6 +27,7 @@ constexpr std::size_t kCoarseSpheres = 120;  // for a first look at every way to
 constexpr std::size_t kFramesRefined = 2;    // after it, with all spheres
 constexpr std::size_t kVariantsRefined = 4;  // of each of these
 constexpr double kLowConfidence = 0.4;
+constexpr double kSureEnough = 0.75;               // not to look for people in other poses
 constexpr double kCostOfDoubt = 1.8;               // cost at which confidence is a half
 constexpr double kWings = 2;                       // cost of arms as flat as wings
 constexpr double kRoundArm = 2.5, kFlatArm = 3.5;  // times as wide as thick
@@ -63,9 +66,17 @@ TemplatePins pinsIn(const TemplateSkeleton& skeleton, const BodyFrame& frame, co
   return places;
 }
 
+// A model as templates are tried on it.
+struct Model {
+  const BodyVolume& body;
+  const std::vector<BodyFrame>& frames;  // ways to stand, likeliest first
+  const std::optional<Vec3> front;       // if it is known
+};
+
 // Looks at every way to stand with some of the spheres, and at the best ones with all.
-TemplateFit bestFit(const TemplateSkeleton& skeleton, const BodyVolume& body, const std::vector<BodyFrame>& frames,
-                    const std::vector<JointPin>& pins) {
+TemplateFit bestEmbedding(const TemplateSkeleton& skeleton, const Model& model, const std::vector<JointPin>& pins) {
+  const BodyVolume& body = model.body;
+  const std::vector<BodyFrame>& frames = model.frames;
   double least = 1;
   for (const BodyFrame& frame : frames) least = std::min(least, frame.asymmetry);
   const std::vector<TemplateVariant> standing = templateVariants(skeleton);
@@ -119,6 +130,23 @@ double confidenceOf(const TemplateFit& fit) {
   return placed * placed * placed / (1 + std::pow(fit.cost / kCostOfDoubt, 3.0));
 }
 
+// Where the embedding is in doubt, a person may stand in a pose that no template has.
+//
+// figure  the person in the model, in whatever pose; looked for once
+TemplateFit bestFit(const TemplateSkeleton& skeleton, const Model& model, const std::vector<JointPin>& pins,
+                    std::optional<std::optional<MatchedFigure>>& figure) {
+  TemplateFit fit = bestEmbedding(skeleton, model, pins);
+  if (fit.frame.symmetric() || !isHumanoid(skeleton) || confidenceOf(fit) > kSureEnough) return fit;
+  const BodyFrame& frame = model.frames.front();
+  const TemplatePins places = pinsIn(skeleton, frame, pins);
+  if (!figure) {
+    figure = findFigure(model.body, {frame.axes.row(1).transpose(), model.front, figurePins(skeleton, places, frame)});
+  }
+  if (!*figure) return fit;
+  TemplateFit other = fitOfFigure(skeleton, **figure, places, frame);
+  return confidenceOf(other) > confidenceOf(fit) ? other : fit;
+}
+
 void warn(const TemplateFit& fit, AutoRig& rig) {
   if (const std::size_t missing = missingLimbs(fit); missing > 0) {
     rig.warnings.add("no-place", "limbs of the template have no place in the model",
@@ -136,7 +164,9 @@ void warn(const TemplateFit& fit, AutoRig& rig) {
 
 TemplateFit fitTemplate(const TemplateSkeleton& skeleton, const TriMesh& mesh, const BodyVolume& body,
                         const RigOptions& options) {
-  return bestFit(skeleton, body, possibleFrames(mesh, body, options.up, options.front), options.pins);
+  const std::vector<BodyFrame> frames = possibleFrames(mesh, body, options.up, options.front);
+  std::optional<std::optional<MatchedFigure>> figure;
+  return bestFit(skeleton, {body, frames, options.front}, options.pins, figure);
 }
 
 Skeleton standingSkeleton(const TemplateSkeleton& skeleton, const std::vector<Vec3>& places, const BodyFrame& frame) {
@@ -197,17 +227,19 @@ AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress
   const BodyVolume body = measureBody(surface);
   progress.step("fit template");
   const std::vector<BodyFrame> frames = possibleFrames(surface, body, options.up, options.front);
+  const Model model{body, frames, options.front};
+  std::optional<std::optional<MatchedFigure>> figure;
   std::vector<TemplateFit> fits;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     progress.update(static_cast<double>(i) / static_cast<double>(candidates.size()));
-    fits.push_back(bestFit(*candidates[i], body, frames, pins));
+    fits.push_back(bestFit(*candidates[i], model, pins, figure));
   }
   std::stable_sort(fits.begin(), fits.end(),
                    [](const TemplateFit& a, const TemplateFit& b) { return confidenceOf(a) > confidenceOf(b); });
   TemplateFit& best = fits.front();
   if (person && confidenceOf(best) < kLowConfidence) {
     // The model may stand as the user's skeleton does, and as no person of ours.
-    TemplateFit asItIs = bestFit(own, body, frames, options.pins);
+    TemplateFit asItIs = bestFit(own, model, options.pins, figure);
     if (confidenceOf(asItIs) > confidenceOf(best)) {
       best = std::move(asItIs);
       person.reset();

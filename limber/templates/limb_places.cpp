@@ -12,28 +12,6 @@ constexpr double kNoPlace = 2.1;  // mean cost of a limb's joints; up to 1.2 on 
 constexpr double kWithin = 0.04;  // heights
 constexpr double kAcross = 0.5;   // most cosine between a limb and what lies across from it
 
-std::vector<TemplateLimb> chainsOf(const TemplateSkeleton& skeleton) {
-  std::vector<Index> children(skeleton.jointCount(), 0), limbOf(skeleton.jointCount(), 0);
-  for (const TemplateJoint& joint : skeleton.joints) {
-    if (joint.parent) ++children[*joint.parent];
-  }
-  std::vector<TemplateLimb> limbs;
-  for (Index j = 0; j < skeleton.jointCount(); ++j) {
-    const TemplateJoint& joint = skeleton.joints[j];
-    if (joint.parent && children[*joint.parent] == 1) {
-      limbOf[j] = limbOf[*joint.parent];
-    } else {
-      limbOf[j] = static_cast<Index>(limbs.size());
-      limbs.emplace_back();
-    }
-    TemplateLimb& limb = limbs[limbOf[j]];
-    if (joint.role != TemplateRole::kTip) limb.joints.push_back(j);
-    if (joint.role != TemplateRole::kBetween) limb.placed.push_back(j);
-  }
-  std::erase_if(limbs, [](const TemplateLimb& limb) { return limb.joints.empty() || limb.placed.empty(); });
-  return limbs;
-}
-
 // Whether the way across from the limb's last joint but the tip straight to that of the other side stays inside the
 // body. Along the limbs it may: so it does from hand to hand of stretched arms.
 bool sharesItsEnd(const TemplateSkeleton& skeleton, const TemplateLimb& limb, const std::vector<Vec3>& places,
@@ -78,6 +56,28 @@ bool liesInAnother(const TemplateSkeleton& skeleton, const TemplateLimb& limb, c
 
 }  // namespace
 
+std::vector<TemplateLimb> limbChains(const TemplateSkeleton& skeleton) {
+  std::vector<Index> children(skeleton.jointCount(), 0), limbOf(skeleton.jointCount(), 0);
+  for (const TemplateJoint& joint : skeleton.joints) {
+    if (joint.parent) ++children[*joint.parent];
+  }
+  std::vector<TemplateLimb> limbs;
+  for (Index j = 0; j < skeleton.jointCount(); ++j) {
+    const TemplateJoint& joint = skeleton.joints[j];
+    if (joint.parent && children[*joint.parent] == 1) {
+      limbOf[j] = limbOf[*joint.parent];
+    } else {
+      limbOf[j] = static_cast<Index>(limbs.size());
+      limbs.emplace_back();
+    }
+    TemplateLimb& limb = limbs[limbOf[j]];
+    if (joint.role != TemplateRole::kTip) limb.joints.push_back(j);
+    if (joint.role != TemplateRole::kBetween) limb.placed.push_back(j);
+  }
+  std::erase_if(limbs, [](const TemplateLimb& limb) { return limb.joints.empty() || limb.placed.empty(); });
+  return limbs;
+}
+
 double distanceToBone(const Vec3& place, const Vec3& a, const Vec3& b) {
   const double along = std::clamp((place - a).dot(b - a) / std::max((b - a).squaredNorm(), 1e-12), 0.0, 1.0);
   return (place - a - along * (b - a)).norm();
@@ -85,7 +85,7 @@ double distanceToBone(const Vec3& place, const Vec3& a, const Vec3& b) {
 
 std::vector<TemplateLimb> limbsIn(const TemplateSkeleton& skeleton, const TemplateEmbedding& embedding,
                                   const BodyVolume& body, const BodyFrame& frame) {
-  std::vector<TemplateLimb> limbs = chainsOf(skeleton);
+  std::vector<TemplateLimb> limbs = limbChains(skeleton);
   for (TemplateLimb& limb : limbs) {
     double cost = 0;
     for (const Index j : limb.placed) cost += embedding.costs[j] / static_cast<double>(limb.placed.size());

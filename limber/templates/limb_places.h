@@ -15,7 +15,10 @@ struct TemplateLimb {
   bool hasPlace = true;
 };
 
-// All limbs. One has no place where its joints stand too ill in the body, in the mean of their costs; nor has either of
+// All limbs, each with a place.
+std::vector<TemplateLimb> limbChains(const TemplateSkeleton& skeleton);
+
+// The same. One has no place where its joints stand too ill in the body, in the mean of their costs; nor has either of
 // a mirrored pair that ends in one and the same part of the body, as feet do in the stump of a bust; nor, of a template
 // that was bent, one that lies in another limb.
 //

@@ -44,13 +44,10 @@ double unexplained(const TemplateSkeleton& skeleton, const std::vector<Vec3>& pl
 // Of the placed joints that hold the tips on the ground.
 std::vector<Vec3> feetOf(const TemplateSkeleton& skeleton, const std::vector<Vec3>& places) {
   std::vector<Vec3> feet;
-  for (const TemplateJoint& tip : skeleton.joints) {
-    if (tip.role != TemplateRole::kTip || tip.place.y() > kOnGround || !tip.parent) continue;
-    Index foot = *tip.parent;
-    while (skeleton.joints[foot].role == TemplateRole::kBetween && skeleton.joints[foot].parent) {
-      foot = *skeleton.joints[foot].parent;
-    }
-    feet.push_back(places[foot]);
+  for (Index tip = 0; tip < skeleton.jointCount(); ++tip) {
+    const TemplateJoint& joint = skeleton.joints[tip];
+    const bool onGround = joint.role == TemplateRole::kTip && joint.place.y() <= kOnGround && joint.parent;
+    if (onGround) feet.push_back(places[placedAbove(skeleton, tip)]);
   }
   return feet;
 }

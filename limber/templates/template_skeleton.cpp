@@ -107,6 +107,14 @@ std::optional<Index> TemplateSkeleton::find(std::string_view joint) const {
   return std::nullopt;
 }
 
+Index placedAbove(const TemplateSkeleton& skeleton, Index joint) {
+  Index above = skeleton.joints[joint].parent.value();
+  while (skeleton.joints[above].role == TemplateRole::kBetween && skeleton.joints[above].parent) {
+    above = *skeleton.joints[above].parent;
+  }
+  return above;
+}
+
 TemplateSkeleton templateFrom(const Skeleton& skeleton, std::string_view name) {
   if (skeleton.joints.empty()) {
     throw Error(ErrorCode::kBadData, "the template has no joint", std::string(name));

@@ -41,6 +41,10 @@ struct TemplateSkeleton {
   std::optional<Index> find(std::string_view joint) const;
 };
 
+// The nearest joint above that is not one between; the root, which may be one, where there is no other. Not of the
+// root.
+Index placedAbove(const TemplateSkeleton& skeleton, Index joint);
+
 // The templates that limber knows: humanoid, humanoid-fingers, quadruped, bird.
 std::span<const TemplateSkeleton> templateSkeletons();
 // Throws Error kBadArgument that lists the names there are.

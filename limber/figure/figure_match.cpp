@@ -1,0 +1,322 @@
+#include "limber/figure/figure_match.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "limber/core/numbers.h"
+
+namespace limber {
+
+namespace {
+
+// The surface is looked for between these parts of a radius, and taken for there as softly as this one.
+constexpr double kInner = 0.65, kOuter = 1.45, kSoft = 0.18;
+constexpr double kHiddenCost = 0.35;  // of limbs: they are in the open rather than in what is thicker than they are
+
+constexpr int kRing = 8, kOval = 12, kBall = 32;  // points
+constexpr double kHeadWeight = 1.2, kChestWeight = 1.2, kPelvisWeight = 1, kNeckWeight = 0.5;
+constexpr double kShoulderRadius = 0.038, kShoulderWeight = 0.12;
+constexpr double kHeadSpread = 0.12, kHeadCost = 0.15;      // of the head's size against the stature's, logarithmic
+constexpr double kNeckSpread = 0.02, kNeckCost = 0.1;       // of the neck's length, statures
+constexpr double kLengthSpread = 0.12, kLengthCost = 0.08;  // of bones' lengths, logarithmic
+constexpr double kShiftSpread = 0.025, kShiftCost = 0.12;   // of shoulders, statures
+constexpr double kNod = 0.25, kBow = 0.3, kTwist = 0.15;    // of a head, a trunk turned by a right angle
+constexpr double kInTrunk = 0.5;                            // for each place of a limb inside the trunk
+constexpr double kTurnedArm = 0.15;                         // of an elbow that bends square to how it does at ease
+constexpr double kPinCost = 4, kFarFromPin = 0.25;          // statures from a pin, where it costs most
+constexpr double kShared = 0.35;                            // for each place that limbs share
+
+struct LimbShape {
+  std::array<double, 2> upperRadii, lowerRadii;  // statures, at the beginning and the end of a bone
+  std::array<double, 2> upperPart, lowerPart;    // of the bones that is looked at: joints are hidden
+  int lowerRings;
+  LimbWeights weights;
+  double raised;  // cost of an upper bone that points up rather than down, halved
+};
+constexpr LimbShape kArm = {{0.03, 0.025}, {0.026, 0.018}, {0.35, 0.9}, {0.12, 0.95}, 4, {0.7, 0.8, 0.25}, 0.08};
+constexpr LimbShape kLeg = {{0.052, 0.036}, {0.036, 0.02}, {0.4, 0.9}, {0.12, 0.92}, 4, {0.6, 1.5, 0.5}, 0.02};
+constexpr int kUpperRings = 3;
+
+const LimbShape& shapeOf(int limb) {
+  return isLeg(limb) ? kLeg : kArm;
+}
+
+double squared(double x) {
+  return x * x;
+}
+
+// Cosine and sine of `count` even angles, the first `from` steps on.
+std::vector<std::array<double, 2>> circle(int count, double from) {
+  std::vector<std::array<double, 2>> points;
+  for (int i = 0; i < count; ++i) {
+    const double angle = 2 * kPi * (i + from) / count;
+    points.push_back({std::cos(angle), std::sin(angle)});
+  }
+  return points;
+}
+
+}  // namespace
+
+std::vector<Vec3> evenDirections(int count) {
+  constexpr double kGoldenAngle = 2.399963229728653;
+  std::vector<Vec3> directions;
+  for (int i = 0; i < count; ++i) {
+    const double y = 1 - 2 * (i + 0.5) / count, around = std::sqrt(1 - y * y), angle = i * kGoldenAngle;
+    directions.emplace_back(around * std::cos(angle), y, around * std::sin(angle));
+  }
+  return directions;
+}
+
+Vec3 placeOf(const Figure& figure, const FigurePin& pin) {
+  switch (pin.joint) {
+    case FigurePin::Joint::kHead:
+      return figure.skullBase();
+    case FigurePin::Joint::kNeck:
+      return figure.neckJoint();
+    case FigurePin::Joint::kHips:
+      return figure.pelvisJoint();
+    case FigurePin::Joint::kRoot:
+      return figure.places(pin.limb).root;
+    case FigurePin::Joint::kMiddle:
+      return figure.places(pin.limb).middle;
+    case FigurePin::Joint::kAnkle:
+      return figure.places(pin.limb).ankle;
+    case FigurePin::Joint::kTip:
+      break;
+  }
+  return figure.places(pin.limb).tip;
+}
+
+FigureMatch::FigureMatch(const SignedDistance& distance, std::vector<FigurePin> pins)
+    : distance_(distance),
+      pins_(std::move(pins)),
+      ball_(evenDirections(kBall)),
+      ring_(circle(kRing, 0)),
+      oval_(circle(kOval, 0.5)) {}
+
+double FigureMatch::costOf(const FigurePin& pin, const Figure& figure) const {
+  const double off = (placeOf(figure, pin) - pin.place).norm() / (kFarFromPin * figure.stature);
+  return kPinCost * std::min(1.0, off * off);
+}
+
+double FigureMatch::pinCost(const Figure& figure, int limb, bool upToMiddle) const {
+  double cost = 0;
+  for (const FigurePin& pin : pins_) {
+    const bool ofLimb = pin.joint >= FigurePin::Joint::kRoot && pin.limb == limb;
+    if (!ofLimb || (upToMiddle && pin.joint > FigurePin::Joint::kMiddle)) continue;
+    cost += costOf(pin, figure);
+  }
+  return cost;
+}
+
+double FigureMatch::trunkPinCost(const Figure& figure) const {
+  double cost = 0;
+  for (const FigurePin& pin : pins_) {
+    if (pin.joint >= FigurePin::Joint::kRoot) continue;
+    cost += costOf(pin, figure);
+  }
+  return cost;
+}
+
+double FigureMatch::answer(const Vec3& axis, const Vec3& direction, double radius, Hidden hidden) const {
+  const double soft = 2 * kSoft * radius;
+  const double inside = std::clamp(0.5 - distance_.at(axis + kInner * radius * direction) / soft, 0.0, 1.0);
+  if (inside <= 0) return -1;
+  const double outside = std::clamp(0.5 + distance_.at(axis + kOuter * radius * direction) / soft, 0.0, 1.0);
+  const double cost = hidden == Hidden::kCosts ? kHiddenCost * inside * (1 - outside) : 0;
+  return inside * outside - (1 - inside) - cost;
+}
+
+double FigureMatch::ring(const Vec3& middle, const Vec3& axis, double radius) const {
+  const Vec3 x = axis.unitOrthogonal(), z = axis.cross(x);
+  double sum = 0;
+  for (const auto& [along, across] : ring_) sum += answer(middle, along * x + across * z, radius, Hidden::kCosts);
+  return sum / kRing;
+}
+
+double FigureMatch::bone(const Vec3& from, const Vec3& direction, double length, const std::array<double, 2>& radii,
+                         const std::array<double, 2>& part, int rings) const {
+  double sum = 0;
+  for (int i = 0; i < rings; ++i) {
+    const double at = part[0] + (part[1] - part[0]) * i / (rings - 1);
+    sum += ring(from + at * length * direction, direction, radii[0] + (radii[1] - radii[0]) * at);
+  }
+  return sum / rings;
+}
+
+double FigureMatch::oval(const Vec3& middle, const Mat3& axes, double halfWidth, double halfDepth) const {
+  double sum = 0;
+  for (const auto& [along, across] : oval_) {
+    const Vec3 edge = halfWidth * along * axes.col(0) + halfDepth * across * axes.col(2);
+    sum += answer(middle, edge.normalized(), edge.norm(), Hidden::kFree);
+  }
+  return sum / kOval;
+}
+
+double FigureMatch::head(const Vec3& middle, double radius) const {
+  double sum = 0;
+  for (const Vec3& direction : ball_) sum += answer(middle, direction, radius, Hidden::kFree);
+  return sum / kBall;
+}
+
+double FigureMatch::neck(const Figure& figure) const {
+  const double down = 1.05 * figure.headRadius + 0.01 * figure.stature;
+  return ring(figure.head + down * figure.neck, figure.neck, proportions::kNeckRadius * figure.stature);
+}
+
+double FigureMatch::chest(const Figure& figure) const {
+  struct Section {
+    double down, halfWidth, halfDepth;  // parts of the thorax; statures
+  };
+  constexpr Section kSections[] = {{0.35, 0.085, 0.055}, {0.7, 0.082, 0.06}, {1, 0.075, 0.055}};
+  const double size = figure.stature;
+  const Vec3 up = figure.chest.col(1), front = figure.chest.col(2);
+  double sections = 0;
+  for (const Section& section : kSections) {
+    const Vec3 middle = figure.neckBase() - section.down * proportions::kThorax * size * up;
+    sections += oval(middle, figure.chest, section.halfWidth * size, section.halfDepth * size);
+  }
+  double shoulders = 0;
+  for (const int limb : {0, 1}) {
+    const Vec3 out = sideOf(limb) * figure.chest.col(0), place = figure.socket(limb);
+    const auto at = [&](const Vec3& way) { return answer(place, way, kShoulderRadius * size, Hidden::kFree); };
+    shoulders += at(out) + at((out + up).normalized()) + at(up) + 0.5 * (at(front) + at(-front));
+  }
+  return sections / 3 + kShoulderWeight * shoulders + kNeckWeight * neck(figure);
+}
+
+double FigureMatch::trunk(const Figure& figure) const {
+  const double size = figure.stature;
+  const Vec3 waist = figure.waist(), down = -proportions::kLoins * size * figure.pelvis.col(1);
+  const double pelvis = 0.5 * (oval(waist + 0.4 * down, figure.pelvis, 0.075 * size, 0.055 * size) +
+                               oval(waist + 0.85 * down, figure.pelvis, 0.09 * size, 0.062 * size));
+  const double headSize = std::log(figure.headRadius / (proportions::kHeadRadius * size)) / kHeadSpread;
+  const double neckLength = (figure.neckLength - proportions::kNeckLength) / kNeckSpread;
+  return kHeadWeight * head(figure.head, figure.headRadius) + kChestWeight * chest(figure) + kPelvisWeight * pelvis -
+         kHeadCost * squared(headSize) - kNeckCost * squared(neckLength) -
+         kNod * (1 + figure.neck.dot(figure.chest.col(1))) -
+         kBow * (1 - figure.chest.col(1).dot(figure.pelvis.col(1))) -
+         kTwist * (1 - figure.chest.col(0).dot(figure.pelvis.col(0))) - trunkPinCost(figure);
+}
+
+double FigureMatch::upper(const Figure& figure, int limb) const {
+  const LimbShape& shape = shapeOf(limb);
+  const FigureLimbPlaces places = figure.places(limb);
+  const double size = figure.stature;
+  return bone(places.root, figure.limbs[limb].upper, figure.limbs[limb].upperScale * upperLength(limb) * size,
+              {shape.upperRadii[0] * size, shape.upperRadii[1] * size}, shape.upperPart, kUpperRings);
+}
+
+double FigureMatch::lower(int limb, const Vec3& from, const Vec3& direction, double length, double stature) const {
+  const LimbShape& shape = shapeOf(limb);
+  return bone(from, direction, length, {shape.lowerRadii[0] * stature, shape.lowerRadii[1] * stature}, shape.lowerPart,
+              shape.lowerRings);
+}
+
+double FigureMatch::foot(const Figure& figure, const Vec3& ankle, const Vec3& direction) const {
+  const double size = figure.stature;
+  const double along = bone(ankle + 0.03 * size * direction, direction, 0.11 * size, {0.024 * size, 0.017 * size},
+                            {0.2, 0.9}, kUpperRings);
+  return 0.7 * along + 0.3 * answer(ankle + 0.12 * size * direction, direction, 0.02 * size, Hidden::kFree);
+}
+
+double FigureMatch::insideTrunk(const Figure& figure, const Vec3& place) const {
+  const double size = figure.stature;
+  const auto ellipsoid = [&](const Vec3& middle, const Mat3& axes) {
+    return (axes.transpose() * (place - middle)).cwiseQuotient(size * Vec3(0.085, 0.07, 0.058)).norm();
+  };
+  const Vec3 neck = figure.neckBase(), up = figure.chest.col(1);
+  double nearest = (place - figure.head).norm() / (0.98 * figure.headRadius);
+  nearest = std::min(nearest, ellipsoid(neck - 0.06 * size * up, figure.chest));
+  nearest = std::min(nearest, ellipsoid(neck - 0.14 * size * up, figure.chest));
+  nearest = std::min(nearest, ellipsoid(figure.waist() - 0.1 * size * figure.pelvis.col(1), figure.pelvis));
+  return std::clamp(1.15 - nearest, 0.0, 1.0);
+}
+
+double FigureMatch::limb(const Figure& figure, int limb) const {
+  const LimbShape& shape = shapeOf(limb);
+  const FigureLimb& bones = figure.limbs[limb];
+  const FigureLimbPlaces places = figure.places(limb);
+  const double size = figure.stature;
+  double end = 0;
+  if (isLeg(limb)) {
+    end = foot(figure, places.ankle, bones.end);
+  } else {
+    end = 0.7 * ring(places.ankle + 0.04 * size * bones.end, bones.end, 0.02 * size) +
+          0.3 * std::max(0.0, answer(places.ankle + 0.06 * size * bones.end, bones.end, 0.03 * size, Hidden::kFree));
+  }
+  const double lowerBone = bones.lowerScale * lowerLength(limb) * size;
+  double sum = shape.weights.upper * upper(figure, limb) +
+               shape.weights.lower * lower(limb, places.middle, bones.lower, lowerBone, size) + shape.weights.end * end;
+  double within = 0;
+  for (const double at : {0.6, 1.0}) within += insideTrunk(figure, places.root + at * (places.middle - places.root));
+  for (const double at : {0.25, 0.5, 0.75, 1.0}) {
+    within += insideTrunk(figure, places.middle + at * (places.ankle - places.middle));
+  }
+  within += insideTrunk(figure, places.tip);
+  sum -= kInTrunk * within + strain(figure, limb) + pinCost(figure, limb);
+  if (isLeg(limb)) return sum;
+  const Vec3 bend = bones.lower - bones.upper.dot(bones.lower) * bones.upper;
+  return sum - kTurnedArm * (bend.norm() - bend.dot(bendDirection(figure, limb, bones.upper)));
+}
+
+const LimbWeights& weightsOf(int limb) {
+  return shapeOf(limb).weights;
+}
+
+double strain(const Figure& figure, int limb) {
+  const FigureLimb& bones = figure.limbs[limb];
+  const double lengths =
+      squared(std::log(bones.upperScale) / kLengthSpread) + squared(std::log(bones.lowerScale) / kLengthSpread);
+  const double shift = bones.shift.squaredNorm() / squared(kShiftSpread);
+  const double raised = 1 + bones.upper.dot(figure.trunkOf(limb).col(1));
+  return kLengthCost * lengths + kShiftCost * shift + shapeOf(limb).raised * raised;
+}
+
+double sharedPlace(const Figure& figure, int a, int b) {
+  const auto radius = [](int limb, bool lower) {
+    return isLeg(limb) ? (lower ? 0.03 : 0.045) : (lower ? 0.022 : 0.028);
+  };
+  const FigureLimbPlaces of = figure.places(a), other = figure.places(b);
+  double shared = 0;
+  const auto ask = [&](const Vec3& place, double thick) {
+    double least = 1e9, width = 1;
+    const auto bone = [&](const Vec3& from, const Vec3& to, double otherThick) {
+      const Vec3 way = to - from;
+      const double along = std::clamp((place - from).dot(way) / way.squaredNorm(), 0.0, 1.0);
+      const double gap = (place - from - along * way).norm() - (thick + otherThick) * figure.stature;
+      if (gap >= least) return;
+      least = gap;
+      width = thick + otherThick;
+    };
+    bone(other.root + 0.4 * (other.middle - other.root), other.middle, radius(b, false));
+    bone(other.middle, other.ankle, radius(b, true));
+    bone(other.ankle, other.tip, radius(b, true));
+    shared += std::clamp(-least / (0.6 * width * figure.stature) - 0.25, 0.0, 1.0);
+  };
+  for (const double at : {0.55, 0.8, 1.0}) ask(of.root + at * (of.middle - of.root), radius(a, false));
+  for (const double at : {0.25, 0.5, 0.75, 1.0}) ask(of.middle + at * (of.ankle - of.middle), radius(a, true));
+  ask(of.tip, radius(a, true));
+  return shared;
+}
+
+void sumUp(MatchedFigure& matched) {
+  matched.total = matched.trunk;
+  for (const double limb : matched.limbs) matched.total += limb;
+  for (int a = 0; a < kFigureLimbs; ++a) {
+    for (int b = 0; b < kFigureLimbs; ++b) {
+      if (a != b) matched.total -= 0.5 * kShared * sharedPlace(matched.figure, a, b);
+    }
+  }
+}
+
+MatchedFigure matched(const FigureMatch& match, const Figure& figure) {
+  MatchedFigure result;
+  result.figure = figure;
+  result.trunk = match.trunk(figure);
+  for (int limb = 0; limb < kFigureLimbs; ++limb) result.limbs[limb] = match.limb(figure, limb);
+  sumUp(result);
+  return result;
+}
+
+}  // namespace limber

@@ -1,0 +1,92 @@
+// How well a figure matches a body.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "limber/figure/figure.h"
+#include "limber/mesh/signed_distance.h"
+
+namespace limber {
+
+// Joints of a figure whose places are known.
+struct FigurePin {
+  enum class Joint { kHead, kNeck, kHips, kRoot, kMiddle, kAnkle, kTip };
+  Joint joint = Joint::kHead;
+  int limb = 0;  // of the last four
+  Vec3 place = Vec3::Zero();
+};
+
+// Where a figure has the joint of a pin.
+Vec3 placeOf(const Figure& figure, const FigurePin& pin);
+
+// Asks of points round the bones of a figure whether the body's surface lies where theirs would: 1 where it does, 0
+// where the part is hidden in more of the body (a plinth, a garment, another limb), -1 where it would stick out. All
+// that follows are means of such answers over a part's surface, less what is unlikely; larger is better.
+//
+// Cost: about a hundred lookups of the distance for a limb.
+class FigureMatch {
+ public:
+  // Of this body, which must outlive it. Figures are the worse the farther they are from the pins.
+  explicit FigureMatch(const SignedDistance& distance, std::vector<FigurePin> pins = {});
+
+  double head(const Vec3& middle, double radius) const;  // at most 1
+  double neck(const Figure& figure) const;               // at most 1
+  double chest(const Figure& figure) const;              // with shoulders and neck; at most 2.2
+  double trunk(const Figure& figure) const;              // head, chest, pelvis, and how the trunk is bent
+  double upper(const Figure& figure, int limb) const;    // of the upper bone alone; at most 1
+  double lower(int limb, const Vec3& from, const Vec3& direction, double length, double stature) const;  // at most 1
+  double foot(const Figure& figure, const Vec3& ankle, const Vec3& direction) const;
+  double limb(const Figure& figure, int limb) const;  // both bones and its end; at most 2.4
+
+  // What pins of a limb cost where it is; up to its elbow or knee alone, where `upToMiddle`.
+  double pinCost(const Figure& figure, int limb, bool upToMiddle = false) const;
+
+  // How much of a place lies inside the trunk or head, 0 to 1.
+  double insideTrunk(const Figure& figure, const Vec3& place) const;
+
+ private:
+  enum class Hidden { kFree, kCosts };
+  double answer(const Vec3& axis, const Vec3& direction, double radius, Hidden hidden) const;
+  double ring(const Vec3& middle, const Vec3& axis, double radius) const;
+  double bone(const Vec3& from, const Vec3& direction, double length, const std::array<double, 2>& radii,
+              const std::array<double, 2>& part, int rings) const;
+  double oval(const Vec3& middle, const Mat3& axes, double halfWidth, double halfDepth) const;
+
+  double costOf(const FigurePin& pin, const Figure& figure) const;
+  double trunkPinCost(const Figure& figure) const;
+
+  const SignedDistance& distance_;
+  std::vector<FigurePin> pins_;
+  std::vector<Vec3> ball_;                          // directions, evenly
+  std::vector<std::array<double, 2>> ring_, oval_;  // of a circle
+};
+
+// `count` directions, evenly over the sphere.
+std::vector<Vec3> evenDirections(int count);
+
+// How much the parts of a limb count in FigureMatch::limb.
+struct LimbWeights {
+  double upper, lower, end;
+};
+const LimbWeights& weightsOf(int limb);
+
+// What is unlikely of how a limb is held: bones longer or shorter than a body's, a shoulder out of its place, an upper
+// bone that points up.
+double strain(const Figure& figure, int limb);
+
+// How much of limb `a` shares its place with limb `b`.
+double sharedPlace(const Figure& figure, int a, int b);
+
+// A figure and how well it matches: the trunk, each limb, and all in all, less what limbs share.
+struct MatchedFigure {
+  Figure figure;
+  double trunk = 0, total = 0;
+  std::array<double, kFigureLimbs> limbs = {};
+};
+
+MatchedFigure matched(const FigureMatch& match, const Figure& figure);
+// From the parts, as after limbs were exchanged.
+void sumUp(MatchedFigure& matched);
+
+}  // namespace limber

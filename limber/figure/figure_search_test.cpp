@@ -1,0 +1,76 @@
+#include "limber/figure/figure_search.h"
+
+#include <gtest/gtest.h>
+
+#include "limber/core/parallel.h"
+#include "limber/figure/testing/figure_body.h"
+
+namespace limber {
+
+namespace {
+
+void expectLike(const Figure& found, const Figure& truth) {
+  EXPECT_LT((found.head - truth.head).norm(), 0.03);
+  EXPECT_LT((found.hips() - truth.hips()).norm(), 0.06);
+  for (int limb = 0; limb < kFigureLimbs; ++limb) {
+    const FigureLimbPlaces a = found.places(limb), b = truth.places(limb);
+    EXPECT_LT((a.root - b.root).norm(), 0.07) << limb;
+    EXPECT_LT((a.middle - b.middle).norm(), 0.07) << limb;
+    EXPECT_LT((a.ankle - b.ankle).norm(), 0.07) << limb;
+  }
+}
+
+const BodyVolume& statue() {
+  static const BodyVolume body = measureBody(testing::statueOf(testing::crouchingFigure()));
+  return body;
+}
+
+}  // namespace
+
+TEST(FigureSearch, FindsOneWhoCrouchesOnABlock) {
+  const std::optional<MatchedFigure> found = findFigure(statue(), {});
+  ASSERT_TRUE(found);
+  EXPECT_GT(found->total, 5.5);
+  expectLike(found->figure, testing::crouchingFigure());
+}
+
+TEST(FigureSearch, GivesTheSameWithAnyNumberOfThreads) {
+  setThreadCount(1);
+  const std::optional<MatchedFigure> one = findFigure(statue(), {});
+  setThreadCount(3);
+  const std::optional<MatchedFigure> three = findFigure(statue(), {});
+  setThreadCount(0);
+  ASSERT_TRUE(one && three);
+  EXPECT_EQ(one->total, three->total);
+  EXPECT_EQ(one->figure.places(0).tip, three->figure.places(0).tip);
+}
+
+TEST(FigureSearch, KeepsToTheFrontThatIsGiven) {
+  FigureSearch search;
+  search.front = -Vec3::UnitZ();
+  const std::optional<MatchedFigure> found = findFigure(statue(), search);
+  ASSERT_TRUE(found);
+  EXPECT_LT((found->figure.chest.col(2) + found->figure.pelvis.col(2)).z(), 0);
+  EXPECT_LT(found->total, findFigure(statue(), {})->total) << "it faces the other way";
+}
+
+TEST(FigureSearch, ComesToItsPins) {
+  const Figure truth = testing::crouchingFigure();
+  // The left hand, which points forward, shall rest beside the knee.
+  const Vec3 place = truth.places(2).middle + Vec3(0.06, 0.03, 0);
+  FigureSearch search;
+  search.pins = {{FigurePin::Joint::kAnkle, 0, place}};
+  const std::optional<MatchedFigure> found = findFigure(statue(), search);
+  ASSERT_TRUE(found);
+  EXPECT_LT((found->figure.places(0).ankle - place).norm(), 0.1);
+}
+
+TEST(FigureSearch, ThereIsNobodyInABar) {
+  TriMesh bar;
+  testing::addCapsule(bar, {0, 0, 0}, {0, 1, 0}, 0.1);
+  const BodyVolume body = measureBody(bar);
+  const std::optional<MatchedFigure> found = findFigure(body, {});
+  EXPECT_TRUE(!found || found->total < 4);
+}
+
+}  // namespace limber
