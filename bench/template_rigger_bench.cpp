@@ -3,6 +3,8 @@
 
 #include "bench_meshes.h"
 #include "limber/core/progress.h"
+#include "limber/figure/figure_search.h"
+#include "limber/figure/testing/figure_body.h"
 #include "limber/rigging/template_rigger.h"
 
 namespace limber::bench {
@@ -26,12 +28,18 @@ void fit(benchmark::State& state, const char* name) {
   state.counters["vertices"] = mesh.vertexCount();
 }
 
+void figure(benchmark::State& state) {
+  const BodyVolume body = measureBody(testing::statueOf(testing::crouchingFigure()));
+  for (auto _ : state) benchmark::DoNotOptimize(findFigure(body, {}));
+}
+
 void growing(benchmark::internal::Benchmark* bench) {
   for (const std::int64_t vertices : {10000, 100000, 1000000}) bench->Arg(vertices);
   bench->Unit(benchmark::kMillisecond)->UseRealTime();
 }
 
 BENCHMARK(measure)->Name("templateMeasureBody")->Apply(growing);
+BENCHMARK(figure)->Name("templateFindFigure")->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK_CAPTURE(fit, humanoid, "humanoid")->Name("templateRigHumanoid")->Apply(growing);
 BENCHMARK_CAPTURE(fit, automatic, "auto")->Name("templateRigAuto")->Apply(growing);
 

@@ -296,7 +296,7 @@ struct Statue {
   friend void PrintTo(const Statue& statue, std::ostream* out) { *out << statue.file; }
 };
 
-// The left forearm lies in drapery, across the raised thigh: nothing tells where it ends.
+// The left forearm lies in drapery, across the raised thigh.
 const std::vector<JointPin> kLeaningStatue = {
     {"head", {-0.25, 1.46, 0.13}},          {"leftLowerArm", {-0.12, 1.13, 0.22}},
     {"rightLowerArm", {-0.17, 1.0, -0.07}}, {"rightHand", {-0.2, 0.77, -0.01}},

@@ -22,6 +22,7 @@ constexpr double kLengthSpread = 0.12, kLengthCost = 0.08;  // of bones' lengths
 constexpr double kShiftSpread = 0.025, kShiftCost = 0.12;   // of shoulders, statures
 constexpr double kNod = 0.25, kBow = 0.3, kTwist = 0.15;    // of a head, a trunk turned by a right angle
 constexpr double kInTrunk = 0.5;                            // for each place of a limb inside the trunk
+constexpr double kRootDepth = 0.025, kShallowRoot = 0.3;    // statures that shoulders and hips lie deep, at least
 constexpr double kTurnedArm = 0.15;                         // of an elbow that bends square to how it does at ease
 constexpr double kPinCost = 4, kFarFromPin = 0.25;          // statures from a pin, where it costs most
 constexpr double kShared = 0.35;                            // for each place that limbs share
@@ -254,7 +255,9 @@ double FigureMatch::limb(const Figure& figure, int limb) const {
     within += insideTrunk(figure, places.middle + at * (places.ankle - places.middle));
   }
   within += insideTrunk(figure, places.tip);
-  sum -= kInTrunk * within + strain(figure, limb) + pinCost(figure, limb);
+  const double shallow = 1 + distance_.at(places.root) / (kRootDepth * size);
+  sum -=
+      kInTrunk * within + kShallowRoot * std::clamp(shallow, 0.0, 2.0) + strain(figure, limb) + pinCost(figure, limb);
   if (isLeg(limb)) return sum;
   const Vec3 bend = bones.lower - bones.upper.dot(bones.lower) * bones.upper;
   return sum - kTurnedArm * (bend.norm() - bend.dot(bendDirection(figure, limb, bones.upper)));
