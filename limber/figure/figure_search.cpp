@@ -143,6 +143,22 @@ void stepTrunk(Figure& figure, double size, Random& random) {
   }
 }
 
+// Left for right and front for back, the limbs where they are.
+Figure turnedAround(Figure figure) {
+  for (Mat3* axes : {&figure.chest, &figure.pelvis}) {
+    axes->col(0) *= -1;
+    axes->col(2) *= -1;
+  }
+  std::swap(figure.limbs[0], figure.limbs[1]);
+  std::swap(figure.limbs[2], figure.limbs[3]);
+  for (int limb = 0; limb < kFigureLimbs; ++limb) {
+    FigureLimb& bones = figure.limbs[limb];
+    bones.shift = Vec3(-bones.shift.x(), bones.shift.y(), -bones.shift.z());
+    if (isLeg(limb)) bones.end = toesForward(figure, limb).normalized();
+  }
+  return figure;
+}
+
 class Search {
  public:
   Search(const BodyVolume& body, const FigureMatch& match, const FigureSearch& options)
@@ -178,8 +194,10 @@ class Search {
     });
     keepApart(figures, kReconsidered);
     improveAll([&](MatchedFigure& figure, Random& random) { reconsider(figure, random); });
-    // The best once more, each time by other steps.
+    // The best once more, each time by other steps; and as it would face the other way, which feet alone may tell.
     figures.assign(kPolished, figures.front());
+    const Figure around = turnedAround(figures.front().figure);
+    if (allowed(around)) std::fill_n(figures.begin(), kPolished / 2, matched(match_, around));
     improveAll([&](MatchedFigure& figure, Random& random) {
       improve(figure, kPolishSteps, random);
       reconsider(figure, random);
@@ -191,6 +209,12 @@ class Search {
  private:
   bool facesRight(const Figure& figure) const {
     return !options_.front || options_.front->dot(figure.chest.col(2) + figure.pelvis.col(2)) > 0;
+  }
+
+  bool allowed(const Figure& figure) const {
+    bool every = facesRight(figure);
+    for (int limb = 0; limb < kFigureLimbs; ++limb) every = every && limbAllowed(figure, limb);
+    return every;
   }
 
   std::vector<MatchedFigure> trunks(const std::vector<HeadBall>& heads) {
@@ -332,9 +356,7 @@ class Search {
       const int part = static_cast<int>(random.below(9)) - 5;
       if (part < 0) {
         stepTrunk(trial.figure, size.value(), random);
-        bool allowed = facesRight(trial.figure);
-        for (int limb = 0; limb < kFigureLimbs; ++limb) allowed = allowed && limbAllowed(trial.figure, limb);
-        if (!allowed) continue;
+        if (!allowed(trial.figure)) continue;
         trial = matched(match_, trial.figure);
       } else {
         stepLimb(trial.figure, part, size.value(), random);
