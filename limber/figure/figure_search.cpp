@@ -143,7 +143,7 @@ void stepTrunk(Figure& figure, double size, Random& random) {
   }
 }
 
-// Left for right and front for back, the limbs where they are.
+// Left for right and front for back, the limbs where they are; straight where they would bend the wrong way.
 Figure turnedAround(Figure figure) {
   for (Mat3* axes : {&figure.chest, &figure.pelvis}) {
     axes->col(0) *= -1;
@@ -155,6 +155,10 @@ Figure turnedAround(Figure figure) {
     FigureLimb& bones = figure.limbs[limb];
     bones.shift = Vec3(-bones.shift.x(), bones.shift.y(), -bones.shift.z());
     if (isLeg(limb)) bones.end = toesForward(figure, limb).normalized();
+    if (limbAllowed(figure, limb)) continue;
+    const FigureLimbPlaces places = figure.places(limb);
+    bones.upper = bones.lower = (places.ankle - places.root).normalized();
+    bones.end = isLeg(limb) ? toesForward(figure, limb).normalized() : bones.lower;
   }
   return figure;
 }

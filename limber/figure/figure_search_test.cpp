@@ -34,6 +34,14 @@ TEST(FigureSearch, FindsOneWhoCrouchesOnABlock) {
   expectLike(found->figure, testing::crouchingFigure());
 }
 
+TEST(FigureSearch, FeetTellTheFrontOfOneWhoStands) {
+  const BodyVolume body = measureBody(testing::figureBody(testing::standingFigure()));
+  const std::optional<MatchedFigure> found = findFigure(body, {});
+  ASSERT_TRUE(found);
+  EXPECT_GT(found->figure.pelvis.col(2).z(), 0.8);
+  EXPECT_GT(found->figure.places(0).ankle.x(), 0) << "its left is at the left";
+}
+
 TEST(FigureSearch, GivesTheSameWithAnyNumberOfThreads) {
   setThreadCount(1);
   const std::optional<MatchedFigure> one = findFigure(statue(), {});
