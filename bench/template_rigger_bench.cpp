@@ -30,7 +30,10 @@ void fit(benchmark::State& state, const char* name) {
 
 void figure(benchmark::State& state) {
   const BodyVolume body = measureBody(testing::statueOf(testing::crouchingFigure()));
-  for (auto _ : state) benchmark::DoNotOptimize(findFigure(body, {}));
+  for (auto _ : state) {
+    Progress progress;
+    benchmark::DoNotOptimize(findFigure(body, {}, progress));
+  }
 }
 
 void growing(benchmark::internal::Benchmark* bench) {

@@ -37,6 +37,11 @@ struct FigureLimbPlaces {
   Vec3 root, middle, ankle, tip;  // shoulder or hip, elbow or knee, wrist or ankle, the end of hand or foot
 };
 
+// Whether elbows or knees are nearer than `middle` to each other and wrists or ankles than `ankle`.
+inline bool alike(const FigureLimbPlaces& a, const FigureLimbPlaces& b, double middle, double ankle) {
+  return (a.middle - b.middle).norm() < middle && (a.ankle - b.ankle).norm() < ankle;
+}
+
 struct Figure {
   double stature = 1;                                        // as it would stand upright
   Vec3 head = Vec3::Zero();                                  // the middle of the ball

@@ -5,7 +5,8 @@
 #include <memory>
 
 #include "limber/core/parallel.h"
-#include "limber/core/random.h"
+#include "limber/figure/best_apart.h"
+#include "limber/figure/figure_steps.h"
 #include "limber/figure/limb_finder.h"
 #include "limber/figure/trunk_search.h"
 
@@ -26,8 +27,8 @@ constexpr std::size_t kFewMiddles = 24, kManyMiddles = 80;
 constexpr std::size_t kFewLimbs = 6, kManyLimbs = 24, kTriedLimbs = 10;
 constexpr double kAlike = 0.08;  // statures between elbows, knees, wrists and ankles
 constexpr double kAlikeMiddle = 0.04, kAlikeAnkle = 0.05;
-constexpr double kMostScale = 1.4, kLeastScale = 0.7, kMostShift = 0.05;
-constexpr double kMostNeck = 0.09, kLeastNeck = 0.01;
+
+constexpr double kNobody = -1e9;  // total of a trunk without limbs
 
 using Candidates = std::vector<LimbFinder::Candidate>;
 
@@ -35,160 +36,24 @@ bool better(const MatchedFigure& a, const MatchedFigure& b) {
   return a.total > b.total;
 }
 
-Mat3 randomTurn(Random& random, double angle) {
-  const double x = random.normal(), y = random.normal(), z = random.normal();
-  const Vec3 turn = angle * Vec3(x, y, z);
-  const double size = turn.norm();
-  return size > 0 ? Eigen::AngleAxisd(size, turn / size).toRotationMatrix() : Mat3(Mat3::Identity());
-}
-
-Vec3 randomStep(Random& random, double size) {
-  const double x = random.normal(), y = random.normal(), z = random.normal();
-  return size * Vec3(x, y, z);
-}
-
-// Steps get smaller where none has been for the better for a while.
-class StepSize {
- public:
-  explicit StepSize(int patience, double factor) : patience_(patience), factor_(factor) {}
-  double value() const { return value_; }
-  void succeeded() { failures_ = 0; }
-  // Whether it is worth to go on.
-  bool failed() {
-    if (++failures_ <= patience_) return true;
-    failures_ = 0;
-    value_ *= factor_;
-    return value_ >= 0.15;
-  }
-
- private:
-  int patience_, failures_ = 0;
-  double factor_, value_ = 1;
-};
-
-void turnLimb(FigureLimb& bones, const Mat3& turn) {
-  bones.upper = turn * bones.upper;
-  bones.lower = turn * bones.lower;
-  bones.end = turn * bones.end;
-}
-
-// One small change of one limb.
-void stepLimb(Figure& figure, int limb, double size, Random& random) {
-  FigureLimb& bones = figure.limbs[limb];
-  const double angle = 0.25 * size;
-  switch (random.below(6)) {
-    case 0:
-      bones.upper = randomTurn(random, angle) * bones.upper;
-      break;
-    case 1: {
-      const Mat3 turn = randomTurn(random, angle);
-      bones.lower = turn * bones.lower;
-      bones.end = turn * bones.end;
-      break;
-    }
-    case 2:
-      turnLimb(bones, randomTurn(random, angle));
-      break;
-    case 3: {  // elbow or knee moves, wrist or ankle stays about where it is
-      const FigureLimbPlaces places = figure.places(limb);
-      const Vec3 middle = places.middle + randomStep(random, 0.03 * size * figure.stature);
-      bones.upper = (middle - places.root).normalized();
-      bones.lower = (places.ankle - middle).normalized();
-      break;
-    }
-    case 4: {
-      double& scale = random.below(2) == 0 ? bones.upperScale : bones.lowerScale;
-      scale = std::clamp(scale * std::exp(0.06 * size * random.normal()), kLeastScale, kMostScale);
-      break;
-    }
-    default:
-      if (isLeg(limb)) {
-        bones.end = randomTurn(random, 1.5 * angle) * bones.end;
-      } else {
-        const Vec3 shift = bones.shift + randomStep(random, 0.012 * size);
-        if (shift.norm() < kMostShift) bones.shift = shift;
-      }
-  }
-  if (!isLeg(limb)) bones.end = bones.lower;
-}
-
-// One small change of the head or the trunk.
-void stepTrunk(Figure& figure, double size, Random& random) {
-  const double angle = 0.22 * size;
-  switch (random.below(7)) {
-    case 0:
-      figure.head += randomStep(random, 0.02 * size * figure.stature);
-      break;
-    case 1:
-      figure.headRadius *= std::exp(0.05 * size * random.normal());
-      break;
-    case 2:
-      figure.stature *= std::exp(0.05 * size * random.normal());
-      break;
-    case 3:
-      figure.neckLength = std::clamp(figure.neckLength + 0.01 * size * random.normal(), kLeastNeck, kMostNeck);
-      break;
-    case 4:
-      figure.neck = randomTurn(random, angle) * figure.neck;
-      break;
-    case 5: {
-      const Mat3 turn = randomTurn(random, angle);
-      figure.chest = turn * figure.chest;
-      if (random.below(2) == 0) break;
-      for (const int arm : {0, 1}) turnLimb(figure.limbs[arm], turn);
-      break;
-    }
-    default:
-      figure.pelvis = randomTurn(random, angle) * figure.pelvis;
-  }
-}
-
-// Left for right and front for back, the limbs where they are; straight where they would bend the wrong way.
-Figure turnedAround(Figure figure) {
-  for (Mat3* axes : {&figure.chest, &figure.pelvis}) {
-    axes->col(0) *= -1;
-    axes->col(2) *= -1;
-  }
-  std::swap(figure.limbs[0], figure.limbs[1]);
-  std::swap(figure.limbs[2], figure.limbs[3]);
-  for (int limb = 0; limb < kFigureLimbs; ++limb) {
-    FigureLimb& bones = figure.limbs[limb];
-    bones.shift = Vec3(-bones.shift.x(), bones.shift.y(), -bones.shift.z());
-    if (isLeg(limb)) bones.end = toesForward(figure, limb).normalized();
-    if (limbAllowed(figure, limb)) continue;
-    const FigureLimbPlaces places = figure.places(limb);
-    bones.upper = bones.lower = (places.ankle - places.root).normalized();
-    bones.end = isLeg(limb) ? toesForward(figure, limb).normalized() : bones.lower;
-  }
-  return figure;
-}
-
 class Search {
  public:
-  Search(const BodyVolume& body, const FigureMatch& match, const FigureSearch& options)
-      : body_(body), match_(match), options_(options) {}
+  Search(const BodyVolume& body, const FigureMatch& match, const FigureSearch& options, Progress& progress)
+      : body_(body), match_(match), options_(options), progress_(progress) {}
 
   std::optional<MatchedFigure> run() {
     std::vector<HeadBall> heads = findHeads(body_, match_, options_.up);
     std::erase_if(heads, [](const HeadBall& head) { return head.match < kLeastHead; });
-    std::vector<MatchedFigure> figures = trunks(heads);
-    if (figures.empty()) return {};
-    parallelFor(figures.size(), 4, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) holdLimbs(figures[i], kFewMiddles, kFewLimbs, nullptr);
+    figures_ = trunks(heads);
+    if (figures_.empty()) return {};
+    progress_.update(0.1);
+    parallelFor(figures_.size(), 4, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) holdLimbs(figures_[i], kFewMiddles, kFewLimbs, nullptr);
     });
-    keepApart(figures, kKept);
-    const auto improveAll = [&](auto&& improveOne) {
-      parallelFor(figures.size(), 1, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-          Random random(i);
-          improveOne(figures[i], random);
-        }
-      });
-      std::stable_sort(figures.begin(), figures.end(), better);
-    };
-    improveAll([&](MatchedFigure& figure, Random& random) { improve(figure, kFirstSteps, random); });
-    keepApart(figures, kImproved);
-    improveAll([&](MatchedFigure& figure, Random& random) {
+    keepApart(figures_, kKept);
+    forEach(0.3, [&](MatchedFigure& figure, Random& random) { improve(figure, kFirstSteps, random); });
+    keepApart(figures_, kImproved);
+    forEach(0.6, [&](MatchedFigure& figure, Random& random) {
       for (int round = 0; round < kRounds; ++round) {
         MatchedFigure other = figure;
         holdLimbs(other, kManyMiddles, kManyLimbs, &random);
@@ -196,21 +61,37 @@ class Search {
         if (better(other, figure)) figure = other;
       }
     });
-    keepApart(figures, kReconsidered);
-    improveAll([&](MatchedFigure& figure, Random& random) { reconsider(figure, random); });
+    keepApart(figures_, kReconsidered);
+    forEach(0.8, [&](MatchedFigure& figure, Random& random) { reconsider(figure, random); });
+    if (figures_.front().total <= kNobody) return {};
     // The best once more, each time by other steps; and as it would face the other way, which feet alone may tell.
-    figures.assign(kPolished, figures.front());
-    const Figure around = turnedAround(figures.front().figure);
-    if (allowed(around)) std::fill_n(figures.begin(), kPolished / 2, matched(match_, around));
-    improveAll([&](MatchedFigure& figure, Random& random) {
+    const MatchedFigure best = figures_.front();
+    figures_.assign(kPolished, best);
+    const Figure around = turnedAround(best.figure);
+    if (allowed(around)) std::fill_n(figures_.begin(), kPolished / 2, matched(match_, around));
+    forEach(1, [&](MatchedFigure& figure, Random& random) {
       improve(figure, kPolishSteps, random);
       reconsider(figure, random);
     });
-    if (figures.front().total < -1e8) return {};
-    return figures.front();
+    return figures_.front();
   }
 
  private:
+  // Changes every figure, the best come first after it.
+  //
+  // fraction  of the whole search that is done then
+  template <class Change>
+  void forEach(double fraction, const Change& change) {
+    parallelFor(figures_.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end && !progress_.cancelled(); ++i) {
+        Random random(i);
+        change(figures_[i], random);
+      }
+    });
+    std::stable_sort(figures_.begin(), figures_.end(), better);
+    progress_.update(fraction);
+  }
+
   bool facesRight(const Figure& figure) const {
     return !options_.front || options_.front->dot(figure.chest.col(2) + figure.pelvis.col(2)) > 0;
   }
@@ -260,7 +141,7 @@ class Search {
     for (int limb = 0; limb < kFigureLimbs; ++limb) {
       candidates[limb] = finder.find(figure.figure, limb, widely, most);
       if (candidates[limb].empty()) {
-        figure.total = -1e9;
+        figure.total = kNobody;
         return;
       }
       if (random) improveEach(figure.figure, limb, candidates[limb], *random);
@@ -310,22 +191,15 @@ class Search {
         }
       }
     }
-    std::stable_sort(candidates.begin(), candidates.end(),
-                     [](const auto& a, const auto& b) { return a.match > b.match; });
-    Candidates apart;
-    std::vector<FigureLimbPlaces> taken;
-    for (const LimbFinder::Candidate& candidate : candidates) {
+    const auto places = [&](const LimbFinder::Candidate& candidate) {
       trial.limbs[limb] = candidate.bones;
-      const FigureLimbPlaces places = trial.places(limb);
-      const auto isAlike = [&](const FigureLimbPlaces& other) {
-        return (other.middle - places.middle).norm() < kAlikeMiddle * figure.stature &&
-               (other.ankle - places.ankle).norm() < kAlikeAnkle * figure.stature;
-      };
-      if (apart.size() >= kTriedLimbs || std::any_of(taken.begin(), taken.end(), isAlike)) continue;
-      taken.push_back(places);
-      apart.push_back(candidate);
-    }
-    candidates = std::move(apart);
+      return trial.places(limb);
+    };
+    candidates = bestApart(
+        std::move(candidates), kTriedLimbs, [](const LimbFinder::Candidate& candidate) { return candidate.match; },
+        [&](const LimbFinder::Candidate& a, const LimbFinder::Candidate& b) {
+          return alike(places(a), places(b), kAlikeMiddle * figure.stature, kAlikeAnkle * figure.stature);
+        });
   }
 
   // Tries other ways to hold each limb, with the whole figure improved for each: a trunk fits the limbs it was found
@@ -353,7 +227,7 @@ class Search {
 
   // Small random steps of the whole figure, as long as they are for the better.
   void improve(MatchedFigure& figure, int steps, Random& random) const {
-    if (figure.total < -1e8) return;
+    if (figure.total <= kNobody) return;
     StepSize size(120, 0.7);
     for (int step = 0; step < steps; ++step) {
       MatchedFigure trial = figure;
@@ -378,34 +252,31 @@ class Search {
   }
 
   static void keepApart(std::vector<MatchedFigure>& figures, std::size_t most) {
-    std::stable_sort(figures.begin(), figures.end(), better);
-    std::vector<MatchedFigure> apart;
-    for (const MatchedFigure& figure : figures) {
-      if (apart.size() >= most) break;
-      const auto isAlike = [&](const MatchedFigure& other) {
-        double farthest = 0;
-        for (int limb = 0; limb < kFigureLimbs; ++limb) {
-          const FigureLimbPlaces a = figure.figure.places(limb), b = other.figure.places(limb);
-          farthest = std::max({farthest, (a.middle - b.middle).norm(), (a.ankle - b.ankle).norm()});
-        }
-        return farthest < kAlike * figure.figure.stature;
-      };
-      if (std::none_of(apart.begin(), apart.end(), isAlike)) apart.push_back(figure);
-    }
-    figures = std::move(apart);
+    figures = bestApart(
+        std::move(figures), most, [](const MatchedFigure& figure) { return figure.total; },
+        [](const MatchedFigure& a, const MatchedFigure& b) {
+          const double near = kAlike * b.figure.stature;
+          bool every = true;
+          for (int limb = 0; limb < kFigureLimbs; ++limb) {
+            every = every && alike(a.figure.places(limb), b.figure.places(limb), near, near);
+          }
+          return every;
+        });
   }
 
   const BodyVolume& body_;
   const FigureMatch& match_;
   const FigureSearch& options_;
+  Progress& progress_;
+  std::vector<MatchedFigure> figures_;
   std::vector<std::unique_ptr<const LimbFinder>> finders_;
 };
 
 }  // namespace
 
-std::optional<MatchedFigure> findFigure(const BodyVolume& body, const FigureSearch& search) {
+std::optional<MatchedFigure> findFigure(const BodyVolume& body, const FigureSearch& search, Progress& progress) {
   const FigureMatch match(*body.distance, search.pins);
-  return Search(body, match, search).run();
+  return Search(body, match, search, progress).run();
 }
 
 }  // namespace limber

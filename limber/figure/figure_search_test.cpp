@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "limber/core/error.h"
 #include "limber/core/parallel.h"
 #include "limber/figure/testing/figure_body.h"
 
@@ -20,6 +21,11 @@ void expectLike(const Figure& found, const Figure& truth) {
   }
 }
 
+std::optional<MatchedFigure> find(const BodyVolume& body, const FigureSearch& search = {}) {
+  Progress progress;
+  return findFigure(body, search, progress);
+}
+
 const BodyVolume& statue() {
   static const BodyVolume body = measureBody(testing::statueOf(testing::crouchingFigure()));
   return body;
@@ -28,7 +34,7 @@ const BodyVolume& statue() {
 }  // namespace
 
 TEST(FigureSearch, FindsOneWhoCrouchesOnABlock) {
-  const std::optional<MatchedFigure> found = findFigure(statue(), {});
+  const std::optional<MatchedFigure> found = find(statue());
   ASSERT_TRUE(found);
   EXPECT_GT(found->total, 5.5);
   expectLike(found->figure, testing::crouchingFigure());
@@ -36,7 +42,7 @@ TEST(FigureSearch, FindsOneWhoCrouchesOnABlock) {
 
 TEST(FigureSearch, FeetTellTheFrontOfOneWhoStands) {
   const BodyVolume body = measureBody(testing::figureBody(testing::standingFigure()));
-  const std::optional<MatchedFigure> found = findFigure(body, {});
+  const std::optional<MatchedFigure> found = find(body);
   ASSERT_TRUE(found);
   EXPECT_GT(found->figure.pelvis.col(2).z(), 0.8);
   EXPECT_GT(found->figure.places(0).ankle.x(), 0) << "its left is at the left";
@@ -44,9 +50,9 @@ TEST(FigureSearch, FeetTellTheFrontOfOneWhoStands) {
 
 TEST(FigureSearch, GivesTheSameWithAnyNumberOfThreads) {
   setThreadCount(1);
-  const std::optional<MatchedFigure> one = findFigure(statue(), {});
+  const std::optional<MatchedFigure> one = find(statue());
   setThreadCount(3);
-  const std::optional<MatchedFigure> three = findFigure(statue(), {});
+  const std::optional<MatchedFigure> three = find(statue());
   setThreadCount(0);
   ASSERT_TRUE(one && three);
   EXPECT_EQ(one->total, three->total);
@@ -56,10 +62,10 @@ TEST(FigureSearch, GivesTheSameWithAnyNumberOfThreads) {
 TEST(FigureSearch, KeepsToTheFrontThatIsGiven) {
   FigureSearch search;
   search.front = -Vec3::UnitZ();
-  const std::optional<MatchedFigure> found = findFigure(statue(), search);
+  const std::optional<MatchedFigure> found = find(statue(), search);
   ASSERT_TRUE(found);
   EXPECT_LT((found->figure.chest.col(2) + found->figure.pelvis.col(2)).z(), 0);
-  EXPECT_LT(found->total, findFigure(statue(), {})->total) << "it faces the other way";
+  EXPECT_LT(found->total, find(statue())->total) << "it faces the other way";
 }
 
 TEST(FigureSearch, ComesToItsPins) {
@@ -68,16 +74,22 @@ TEST(FigureSearch, ComesToItsPins) {
   const Vec3 place = truth.places(2).middle + Vec3(0.06, 0.03, 0);
   FigureSearch search;
   search.pins = {{FigurePin::Joint::kAnkle, 0, place}};
-  const std::optional<MatchedFigure> found = findFigure(statue(), search);
+  const std::optional<MatchedFigure> found = find(statue(), search);
   ASSERT_TRUE(found);
   EXPECT_LT((found->figure.places(0).ankle - place).norm(), 0.1);
+}
+
+TEST(FigureSearch, MayBeCancelled) {
+  Progress progress;
+  progress.cancel();
+  EXPECT_THROW(findFigure(statue(), {}, progress), Error);
 }
 
 TEST(FigureSearch, ThereIsNobodyInABar) {
   TriMesh bar;
   testing::addCapsule(bar, {0, 0, 0}, {0, 1, 0}, 0.1);
   const BodyVolume body = measureBody(bar);
-  const std::optional<MatchedFigure> found = findFigure(body, {});
+  const std::optional<MatchedFigure> found = find(body);
   EXPECT_TRUE(!found || found->total < 4);
 }
 

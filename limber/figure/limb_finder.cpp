@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "limber/core/parallel.h"
+#include "limber/figure/best_apart.h"
 
 namespace limber {
 
@@ -57,14 +58,9 @@ std::vector<LimbFinder::Lower> LimbFinder::lowersAt(const MedialSphere& sphere, 
   for (const Vec3& way : kWays) {
     if (body_.distance->at(sphere.center + 0.95 * length * way) < 0) add(way, 1);
   }
-  std::stable_sort(lowers.begin(), lowers.end(), [](const Lower& a, const Lower& b) { return a.match > b.match; });
-  std::vector<Lower> apart;
-  for (const Lower& lower : lowers) {
-    const auto isNear = [&](const Lower& other) { return other.direction.dot(lower.direction) > kAlikeWay; };
-    if (std::none_of(apart.begin(), apart.end(), isNear)) apart.push_back(lower);
-    if (apart.size() >= kMostLowers) break;
-  }
-  return apart;
+  return bestApart(
+      std::move(lowers), kMostLowers, [](const Lower& lower) { return lower.match; },
+      [](const Lower& a, const Lower& b) { return a.direction.dot(b.direction) > kAlikeWay; });
 }
 
 std::vector<LimbFinder::Upper> LimbFinder::uppersOf(const Figure& figure, int limb, std::size_t most) const {
@@ -90,17 +86,12 @@ std::vector<LimbFinder::Upper> LimbFinder::uppersOf(const Figure& figure, int li
     bones.upperScale = reach / length;
     uppers.push_back({s, bones, match_.upper(trial, limb) - strain(trial, limb) - match_.pinCost(trial, limb, true)});
   }
-  std::stable_sort(uppers.begin(), uppers.end(), [](const Upper& a, const Upper& b) { return a.match > b.match; });
-  std::vector<Upper> apart;
-  for (const Upper& upper : uppers) {
-    const auto isNear = [&](const Upper& other) {
-      const Vec3 &a = body_.spheres[other.sphere].center, &b = body_.spheres[upper.sphere].center;
-      return (a - b).norm() < kApartMiddles * size;
-    };
-    if (std::none_of(apart.begin(), apart.end(), isNear)) apart.push_back(upper);
-    if (apart.size() >= most) break;
-  }
-  return apart;
+  return bestApart(
+      std::move(uppers), most, [](const Upper& upper) { return upper.match; },
+      [&](const Upper& a, const Upper& b) {
+        const Vec3 &first = body_.spheres[a.sphere].center, &second = body_.spheres[b.sphere].center;
+        return (first - second).norm() < kApartMiddles * size;
+      });
 }
 
 Vec3 LimbFinder::bestFoot(const Figure& figure, int limb) const {
@@ -144,30 +135,21 @@ std::vector<LimbFinder::Candidate> LimbFinder::find(const Figure& figure, int li
                                 match_.pinCost(trial, limb)});
     }
   }
-  const auto better = [](const Candidate& a, const Candidate& b) { return a.match > b.match; };
-  std::stable_sort(all.begin(), all.end(), better);
-  std::vector<Candidate> apart;
-  std::vector<FigureLimbPlaces> taken;
-  for (const Candidate& candidate : all) {
+  const auto matchOf = [](const Candidate& candidate) { return candidate.match; };
+  const auto places = [&](const Candidate& candidate) {
     trial.limbs[limb] = candidate.bones;
-    const FigureLimbPlaces places = trial.places(limb);
-    const auto isAlike = [&](const FigureLimbPlaces& other) {
-      return (other.middle - places.middle).norm() < kAlikeMiddle * figure.stature &&
-             (other.ankle - places.ankle).norm() < kAlikeAnkle * figure.stature;
-    };
-    if (std::any_of(taken.begin(), taken.end(), isAlike)) continue;
-    taken.push_back(places);
-    apart.push_back(candidate);
-    if (apart.size() >= most + kMoreLooked) break;
-  }
+    return trial.places(limb);
+  };
+  const auto isAlike = [&](const Candidate& a, const Candidate& b) {
+    return alike(places(a), places(b), kAlikeMiddle * figure.stature, kAlikeAnkle * figure.stature);
+  };
+  std::vector<Candidate> apart = bestApart(std::move(all), most + kMoreLooked, matchOf, isAlike);
   for (Candidate& candidate : apart) {
     trial.limbs[limb] = candidate.bones;
     if (isLeg(limb)) candidate.bones.end = trial.limbs[limb].end = bestFoot(trial, limb);
     candidate.match = match_.limb(trial, limb);
   }
-  std::stable_sort(apart.begin(), apart.end(), better);
-  if (apart.size() > most) apart.resize(most);
-  return apart;
+  return bestApart(std::move(apart), most, matchOf, [](const Candidate&, const Candidate&) { return false; });
 }
 
 }  // namespace limber

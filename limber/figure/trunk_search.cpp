@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "limber/core/numbers.h"
+#include "limber/figure/best_apart.h"
 
 namespace limber {
 
@@ -36,21 +37,8 @@ struct Rated {
   double match;
 };
 
-void sortBest(std::vector<Rated>& rated) {
-  std::stable_sort(rated.begin(), rated.end(), [](const Rated& a, const Rated& b) { return a.match > b.match; });
-}
-
-// The best of them, no two alike.
-template <class Alike>
-std::vector<Rated> bestApart(std::vector<Rated> rated, std::size_t most, const Alike& alike) {
-  sortBest(rated);
-  std::vector<Rated> apart;
-  for (const Rated& one : rated) {
-    if (apart.size() >= most) break;
-    const auto isLikeIt = [&](const Rated& other) { return alike(other.figure, one.figure); };
-    if (std::none_of(apart.begin(), apart.end(), isLikeIt)) apart.push_back(one);
-  }
-  return apart;
+double matchOf(const Rated& rated) {
+  return rated.match;
 }
 
 // Axes with `up` as the second column, turned about it.
@@ -87,9 +75,9 @@ class TrunkSearch {
         }
       }
     }
-    return bestApart(std::move(chests), most, [&](const Figure& a, const Figure& b) {
-      return (a.waist() - b.waist()).norm() < kAlike * a.stature &&
-             std::abs(a.chest.col(0).dot(b.chest.col(0))) > kAlikeTurn;
+    return bestApart(std::move(chests), most, matchOf, [](const Rated& a, const Rated& b) {
+      return (a.figure.waist() - b.figure.waist()).norm() < kAlike * a.figure.stature &&
+             std::abs(a.figure.chest.col(0).dot(b.figure.chest.col(0))) > kAlikeTurn;
     });
   }
 
@@ -108,9 +96,9 @@ class TrunkSearch {
         pelvises.push_back({figure, match_.trunk(figure)});
       }
     }
-    return bestApart(std::move(pelvises), kMostPelvises, [](const Figure& a, const Figure& b) {
-      return (a.hips() - b.hips()).norm() < kAlikeHips * a.stature &&
-             a.pelvis.col(0).dot(b.pelvis.col(0)) > kAlikePelvis;
+    return bestApart(std::move(pelvises), kMostPelvises, matchOf, [](const Rated& a, const Rated& b) {
+      return (a.figure.hips() - b.figure.hips()).norm() < kAlikeHips * a.figure.stature &&
+             a.figure.pelvis.col(0).dot(b.figure.pelvis.col(0)) > kAlikePelvis;
     });
   }
 
@@ -130,9 +118,7 @@ class TrunkSearch {
       const double deep = -body_.distance->at(figure.neckBase()) / (kNeckDeep * figure.stature);
       if (deep > 0.3) necks.push_back({figure, match_.neck(figure) + 0.3 * std::min(deep, 1.2)});
     }
-    sortBest(necks);
-    if (necks.size() > kMostNecks) necks.resize(kMostNecks);
-    return necks;
+    return bestApart(std::move(necks), kMostNecks, matchOf, [](const Rated&, const Rated&) { return false; });
   }
 
   const BodyVolume& body_;
@@ -157,15 +143,14 @@ std::vector<HeadBall> findHeads(const BodyVolume& body, const FigureMatch& match
     const double radius = kBallOverSphere * sphere.radius;
     balls.push_back({sphere.center, radius, match.head(sphere.center, radius)});
   }
-  std::stable_sort(balls.begin(), balls.end(), [](const HeadBall& a, const HeadBall& b) { return a.match > b.match; });
-  std::vector<HeadBall> heads;
-  for (const HeadBall& ball : balls) {
-    if (heads.size() >= kMostHeads || ball.match < balls.front().match - kLessRound) break;
-    const auto isWithin = [&](const HeadBall& other) {
-      return (other.middle - ball.middle).norm() < 0.5 * other.radius;
-    };
-    if (std::none_of(heads.begin(), heads.end(), isWithin)) heads.push_back(ball);
-  }
+  std::vector<HeadBall> heads = bestApart(
+      std::move(balls), kMostHeads, [](const HeadBall& ball) { return ball.match; },
+      [](const HeadBall& kept, const HeadBall& ball) {
+        return (kept.middle - ball.middle).norm() < 0.5 * kept.radius;
+      });
+  std::erase_if(heads, [most = heads.empty() ? 0 : heads.front().match](const HeadBall& head) {
+    return head.match < most - kLessRound;
+  });
   return heads;
 }
 

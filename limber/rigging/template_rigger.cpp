@@ -130,20 +130,27 @@ double confidenceOf(const TemplateFit& fit) {
   return placed * placed * placed / (1 + std::pow(fit.cost / kCostOfDoubt, 3.0));
 }
 
+// The person in a model, in whatever pose, for all templates.
+struct FigureOnce {
+  bool wasSought = false;
+  std::optional<MatchedFigure> figure;
+};
+
 // Where the embedding is in doubt, a person may stand in a pose that no template has.
-//
-// figure  the person in the model, in whatever pose; looked for once
 TemplateFit bestFit(const TemplateSkeleton& skeleton, const Model& model, const std::vector<JointPin>& pins,
-                    std::optional<std::optional<MatchedFigure>>& figure) {
+                    FigureOnce& once, Progress& progress) {
+  progress.step("fit " + skeleton.name);
   TemplateFit fit = bestEmbedding(skeleton, model, pins);
   if (fit.frame.symmetric() || !isHumanoid(skeleton) || confidenceOf(fit) > kSureEnough) return fit;
   const BodyFrame& frame = model.frames.front();
   const TemplatePins places = pinsIn(skeleton, frame, pins);
-  if (!figure) {
-    figure = findFigure(model.body, {frame.axes.row(1).transpose(), model.front, figurePins(skeleton, places, frame)});
+  if (!once.wasSought) {
+    progress.step("find figure");
+    const Vec3 up = frame.axes.row(1).transpose();
+    once = {true, findFigure(model.body, {up, model.front, figurePins(skeleton, places, frame)}, progress)};
   }
-  if (!*figure) return fit;
-  TemplateFit other = fitOfFigure(skeleton, **figure, places, frame);
+  if (!once.figure) return fit;
+  TemplateFit other = fitOfFigure(skeleton, *once.figure, places, frame);
   return confidenceOf(other) > confidenceOf(fit) ? other : fit;
 }
 
@@ -165,8 +172,9 @@ void warn(const TemplateFit& fit, AutoRig& rig) {
 TemplateFit fitTemplate(const TemplateSkeleton& skeleton, const TriMesh& mesh, const BodyVolume& body,
                         const RigOptions& options) {
   const std::vector<BodyFrame> frames = possibleFrames(mesh, body, options.up, options.front);
-  std::optional<std::optional<MatchedFigure>> figure;
-  return bestFit(skeleton, {body, frames, options.front}, options.pins, figure);
+  FigureOnce figure;
+  Progress progress;
+  return bestFit(skeleton, {body, frames, options.front}, options.pins, figure, progress);
 }
 
 Skeleton standingSkeleton(const TemplateSkeleton& skeleton, const std::vector<Vec3>& places, const BodyFrame& frame) {
@@ -225,21 +233,19 @@ AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress
   const std::optional<TriMesh> cleared = withoutStrays(mesh);
   const TriMesh& surface = cleared ? *cleared : mesh;
   const BodyVolume body = measureBody(surface);
-  progress.step("fit template");
   const std::vector<BodyFrame> frames = possibleFrames(surface, body, options.up, options.front);
   const Model model{body, frames, options.front};
-  std::optional<std::optional<MatchedFigure>> figure;
+  FigureOnce figure;
   std::vector<TemplateFit> fits;
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    progress.update(static_cast<double>(i) / static_cast<double>(candidates.size()));
-    fits.push_back(bestFit(*candidates[i], model, pins, figure));
+  for (const TemplateSkeleton* candidate : candidates) {
+    fits.push_back(bestFit(*candidate, model, pins, figure, progress));
   }
   std::stable_sort(fits.begin(), fits.end(),
                    [](const TemplateFit& a, const TemplateFit& b) { return confidenceOf(a) > confidenceOf(b); });
   TemplateFit& best = fits.front();
   if (person && confidenceOf(best) < kLowConfidence) {
     // The model may stand as the user's skeleton does, and as no person of ours.
-    TemplateFit asItIs = bestFit(own, model, options.pins, figure);
+    TemplateFit asItIs = bestFit(own, model, options.pins, figure, progress);
     if (confidenceOf(asItIs) > confidenceOf(best)) {
       best = std::move(asItIs);
       person.reset();
