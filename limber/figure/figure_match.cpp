@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "limber/core/numbers.h"
+#include "limber/figure/steady.h"
 
 namespace limber {
 
@@ -50,8 +51,8 @@ double squared(double x) {
 std::vector<std::array<double, 2>> circle(int count, double from) {
   std::vector<std::array<double, 2>> points;
   for (int i = 0; i < count; ++i) {
-    const double angle = 2 * kPi * (i + from) / count;
-    points.push_back({std::cos(angle), std::sin(angle)});
+    const SteadyAngle angle(2 * kPi * (i + from) / count);
+    points.push_back({angle.cos, angle.sin});
   }
   return points;
 }
@@ -62,8 +63,9 @@ std::vector<Vec3> evenDirections(int count) {
   constexpr double kGoldenAngle = 2.399963229728653;
   std::vector<Vec3> directions;
   for (int i = 0; i < count; ++i) {
-    const double y = 1 - 2 * (i + 0.5) / count, around = std::sqrt(1 - y * y), angle = i * kGoldenAngle;
-    directions.emplace_back(around * std::cos(angle), y, around * std::sin(angle));
+    const double y = 1 - 2 * (i + 0.5) / count, around = std::sqrt(1 - y * y);
+    const SteadyAngle angle(i * kGoldenAngle);
+    directions.push_back(Vec3(around * angle.cos, y, around * angle.sin).normalized());
   }
   return directions;
 }
@@ -191,7 +193,7 @@ double FigureMatch::trunk(const Figure& figure) const {
   const Vec3 waist = figure.waist(), down = -proportions::kLoins * size * figure.pelvis.col(1);
   const double pelvis = 0.5 * (oval(waist + 0.4 * down, figure.pelvis, 0.075 * size, 0.055 * size) +
                                oval(waist + 0.85 * down, figure.pelvis, 0.09 * size, 0.062 * size));
-  const double headSize = std::log(figure.headRadius / (proportions::kHeadRadius * size)) / kHeadSpread;
+  const double headSize = ratioOff(figure.headRadius / (proportions::kHeadRadius * size)) / kHeadSpread;
   const double neckLength = (figure.neckLength - proportions::kNeckLength) / kNeckSpread;
   return kHeadWeight * head(figure.head, figure.headRadius) + kChestWeight * chest(figure) + kPelvisWeight * pelvis -
          kHeadCost * squared(headSize) - kNeckCost * squared(neckLength) -
@@ -270,7 +272,7 @@ const LimbWeights& weightsOf(int limb) {
 double strain(const Figure& figure, int limb) {
   const FigureLimb& bones = figure.limbs[limb];
   const double lengths =
-      squared(std::log(bones.upperScale) / kLengthSpread) + squared(std::log(bones.lowerScale) / kLengthSpread);
+      squared(ratioOff(bones.upperScale) / kLengthSpread) + squared(ratioOff(bones.lowerScale) / kLengthSpread);
   const double shift = bones.shift.squaredNorm() / squared(kShiftSpread);
   const double raised = 1 + bones.upper.dot(figure.trunkOf(limb).col(1));
   return kLengthCost * lengths + kShiftCost * shift + shapeOf(limb).raised * raised;

@@ -8,6 +8,7 @@
 #include "limber/figure/best_apart.h"
 #include "limber/figure/figure_steps.h"
 #include "limber/figure/limb_finder.h"
+#include "limber/figure/steady.h"
 #include "limber/figure/trunk_search.h"
 
 namespace limber {
@@ -17,14 +18,14 @@ namespace {
 constexpr double kLeastHead = 0.45;  // match of a head below which there is none
 constexpr std::size_t kChests = 80;  // that hang from a head of one stature
 constexpr std::size_t kTrunks = 800, kKept = 24, kImproved = 12;
-constexpr int kRounds = 3;  // of limbs found anew and improved
-constexpr int kFirstSteps = 1200, kSteps = 1500, kLimbSteps = 200;
-constexpr std::size_t kReconsidered = 6;
+constexpr int kRounds = 2;  // of limbs found anew and improved
+constexpr int kFirstSteps = 1200, kSteps = 1500, kLimbSteps = 120;
+constexpr std::size_t kReconsidered = 4;
 constexpr std::size_t kPolished = 4;
 constexpr int kPolishSteps = 3000;
 constexpr int kReconsiderRounds = 2, kReconsiderSteps = 400;
 constexpr std::size_t kFewMiddles = 24, kManyMiddles = 80;
-constexpr std::size_t kFewLimbs = 6, kManyLimbs = 24, kTriedLimbs = 10;
+constexpr std::size_t kFewLimbs = 6, kManyLimbs = 18, kTriedLimbs = 8;
 constexpr double kAlike = 0.08;  // statures between elbows, knees, wrists and ankles
 constexpr double kAlikeMiddle = 0.04, kAlikeAnkle = 0.05;
 
@@ -128,7 +129,7 @@ class Search {
   }
 
   const LimbFinder& finderFor(double stature) const {
-    const auto off = [&](const auto& finder) { return std::abs(std::log(finder->stature() / stature)); };
+    const auto off = [&](const auto& finder) { return std::abs(ratioOff(finder->stature() / stature)); };
     return **std::min_element(finders_.begin(), finders_.end(),
                               [&](const auto& a, const auto& b) { return off(a) < off(b); });
   }

@@ -1,7 +1,8 @@
 #include "limber/figure/figure_steps.h"
 
 #include <algorithm>
-#include <cmath>
+
+#include "limber/figure/steady.h"
 
 namespace limber {
 
@@ -11,16 +12,13 @@ constexpr double kMostScale = 1.4, kLeastScale = 0.7, kMostShift = 0.05;  // of 
 constexpr double kMostNeck = 0.09, kLeastNeck = 0.01;                     // statures
 constexpr double kSmallest = 0.15;                                        // step that is worth to be tried
 
-Mat3 randomTurn(Random& random, double angle) {
-  const double x = random.normal(), y = random.normal(), z = random.normal();
-  const Vec3 turn = angle * Vec3(x, y, z);
-  const double size = turn.norm();
-  return size > 0 ? Eigen::AngleAxisd(size, turn / size).toRotationMatrix() : Mat3(Mat3::Identity());
-}
-
 Vec3 randomStep(Random& random, double size) {
   const double x = random.normal(), y = random.normal(), z = random.normal();
   return size * Vec3(x, y, z);
+}
+
+Mat3 randomTurn(Random& random, double angle) {
+  return turnBy(randomStep(random, angle));
 }
 
 void turnLimb(FigureLimb& bones, const Mat3& turn) {
@@ -63,7 +61,7 @@ void stepLimb(Figure& figure, int limb, double size, Random& random) {
     }
     case 4: {
       double& scale = random.below(2) == 0 ? bones.upperScale : bones.lowerScale;
-      scale = std::clamp(scale * std::exp(0.06 * size * random.normal()), kLeastScale, kMostScale);
+      scale = std::clamp(scale * ratioFor(0.06 * size * random.normal()), kLeastScale, kMostScale);
       break;
     }
     default:
@@ -84,10 +82,10 @@ void stepTrunk(Figure& figure, double size, Random& random) {
       figure.head += randomStep(random, 0.02 * size * figure.stature);
       break;
     case 1:
-      figure.headRadius *= std::exp(0.05 * size * random.normal());
+      figure.headRadius *= ratioFor(0.05 * size * random.normal());
       break;
     case 2:
-      figure.stature *= std::exp(0.05 * size * random.normal());
+      figure.stature *= ratioFor(0.05 * size * random.normal());
       break;
     case 3:
       figure.neckLength = std::clamp(figure.neckLength + 0.01 * size * random.normal(), kLeastNeck, kMostNeck);

@@ -1,10 +1,10 @@
 #include "limber/figure/limb_finder.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "limber/core/parallel.h"
 #include "limber/figure/best_apart.h"
+#include "limber/figure/steady.h"
 
 namespace limber {
 
@@ -101,9 +101,11 @@ Vec3 LimbFinder::bestFoot(const Figure& figure, int limb) const {
   Vec3 best = forward;
   double most = -1e9;
   for (const double yaw : kFootYaws) {
-    const Vec3 level = std::cos(yaw) * forward + std::sin(yaw) * aside;
+    const SteadyAngle turn(yaw);
+    const Vec3 level = turn.cos * forward + turn.sin * aside;
     for (const double pitch : kFootPitches) {
-      const Vec3 foot = std::cos(pitch) * level + std::sin(pitch) * down;
+      const SteadyAngle tilt(pitch);
+      const Vec3 foot = tilt.cos * level + tilt.sin * down;
       const double match = match_.foot(figure, ankle, foot);
       if (match <= most) continue;
       most = match;

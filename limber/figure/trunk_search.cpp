@@ -7,6 +7,7 @@
 
 #include "limber/core/numbers.h"
 #include "limber/figure/best_apart.h"
+#include "limber/figure/steady.h"
 
 namespace limber {
 
@@ -42,10 +43,10 @@ double matchOf(const Rated& rated) {
 }
 
 // Axes with `up` as the second column, turned about it.
-Mat3 axesAbout(const Vec3& up, double angle) {
+Mat3 axesAbout(const Vec3& up, const SteadyAngle& angle) {
   const Vec3 x = up.unitOrthogonal(), z = x.cross(up);
   Mat3 axes;
-  axes.col(0) = std::cos(angle) * x + std::sin(angle) * z;
+  axes.col(0) = (angle.cos * x + angle.sin * z).normalized();
   axes.col(1) = up;
   axes.col(2) = axes.col(0).cross(up);
   return axes;
@@ -70,7 +71,7 @@ class TrunkSearch {
         figure.chest.col(1) = -down;
         if (!isInside(figure, figure.waist())) continue;
         for (int turn = 0; turn < kTurns; ++turn) {
-          figure.chest = axesAbout(-down, kPi * turn / kTurns);
+          figure.chest = axesAbout(-down, SteadyAngle(kPi * turn / kTurns));
           chests.push_back({figure, match_.chest(figure) - kNodCost * (1 - nod)});
         }
       }
@@ -92,7 +93,7 @@ class TrunkSearch {
       figure.pelvis = axes;
       if (!isInside(figure, figure.hips())) continue;
       for (const double twist : kTwists) {
-        figure.pelvis = Eigen::AngleAxisd(twist, -down) * axes;
+        figure.pelvis = axes * turnBy(twist * Vec3::UnitY());
         pelvises.push_back({figure, match_.trunk(figure)});
       }
     }

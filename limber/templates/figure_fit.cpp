@@ -12,7 +12,7 @@ namespace {
 // People and statues of people match by 5 to 8, anything else by less than 4.5.
 constexpr double kMatchOfDoubt = 5.2, kMatchSpread = 1.2, kCostOfDoubt = 1.8;
 constexpr double kGrid = 1.0 / 8192;  // heights
-constexpr double kLeastLimb = 0.15;   // match of a limb that has a place
+constexpr double kLeastLimb = 0.1;    // match of a limb that has a place
 
 constexpr std::array<std::array<const char*, 4>, kFigureLimbs> kLimbJoints = {
     {{"leftUpperArm", "leftLowerArm", "leftHand", "leftHandTip"},
