@@ -96,9 +96,12 @@ TemplateFit fitOfFigure(const TemplateSkeleton& skeleton, const MatchedFigure& f
     fit.pins[j] = fit.frame.toBody(frame.fromBody(*pins[j]));
     const Vec3 moved = *fit.pins[j] - places[j];
     places[j] = *fit.pins[j];
-    for (Index tip = 0; tip < count; ++tip) {  // ends go along
-      const bool isEnd = skeleton.joints[tip].role == TemplateRole::kTip && !pins[tip];
-      if (isEnd && placedAbove(skeleton, tip) == j) places[tip] += moved;
+    // Ends go along, and the legs with the hips.
+    for (Index other = 0; other < count; ++other) {
+      const bool isEnd = skeleton.joints[other].role == TemplateRole::kTip;
+      const bool isLegOfHips = !skeleton.joints[j].parent && skeleton.joints[other].mirror;
+      if (pins[other] || !(isEnd || isLegOfHips)) continue;
+      if (placedAbove(skeleton, other) == j) places[other] += moved;
     }
   }
   for (Index j = 0; j < count; ++j) fit.skeleton.joints[j].place = places[j];
