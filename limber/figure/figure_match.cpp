@@ -196,8 +196,7 @@ double FigureMatch::trunk(const Figure& figure) const {
   const double headSize = ratioOff(figure.headRadius / (proportions::kHeadRadius * size)) / kHeadSpread;
   const double neckLength = (figure.neckLength - proportions::kNeckLength) / kNeckSpread;
   return kHeadWeight * head(figure.head, figure.headRadius) + kChestWeight * chest(figure) + kPelvisWeight * pelvis -
-         kHeadCost * squared(headSize) - kNeckCost * squared(neckLength) -
-         kNod * (1 + figure.neck.dot(figure.chest.col(1))) -
+         kHeadCost * squared(headSize) - kNeckCost * squared(neckLength) - nodCost(figure) -
          kBow * (1 - figure.chest.col(1).dot(figure.pelvis.col(1))) -
          kTwist * (1 - figure.chest.col(0).dot(figure.pelvis.col(0))) - trunkPinCost(figure);
 }
@@ -267,6 +266,10 @@ double FigureMatch::limb(const Figure& figure, int limb) const {
 
 const LimbWeights& weightsOf(int limb) {
   return shapeOf(limb).weights;
+}
+
+double nodCost(const Figure& figure) {
+  return kNod * (1 + figure.neck.dot(figure.chest.col(1)));
 }
 
 double strain(const Figure& figure, int limb) {

@@ -37,7 +37,7 @@ class FigureMatch {
   double upper(const Figure& figure, int limb) const;    // of the upper bone alone; at most 1
   double lower(int limb, const Vec3& from, const Vec3& direction, double length, double stature) const;  // at most 1
   double foot(const Figure& figure, const Vec3& ankle, const Vec3& direction) const;
-  double limb(const Figure& figure, int limb) const;  // both bones and its end; at most 2.4
+  double limb(const Figure& figure, int limb) const;  // both bones and its end; at most 2.6
 
   // What pins of a limb cost where it is; up to its elbow or knee alone, where `upToMiddle`.
   double pinCost(const Figure& figure, int limb, bool upToMiddle = false) const;
@@ -70,6 +70,9 @@ struct LimbWeights {
   double upper, lower, end;
 };
 const LimbWeights& weightsOf(int limb);
+
+// What is unlikely of a head that is bent against the chest.
+double nodCost(const Figure& figure);
 
 // What is unlikely of how a limb is held: bones longer or shorter than a body's, a shoulder out of its place, an upper
 // bone that points up.

@@ -151,7 +151,7 @@ std::vector<LimbFinder::Candidate> LimbFinder::find(const Figure& figure, int li
     if (isLeg(limb)) candidate.bones.end = trial.limbs[limb].end = bestFoot(trial, limb);
     candidate.match = match_.limb(trial, limb);
   }
-  return bestApart(std::move(apart), most, matchOf, [](const Candidate&, const Candidate&) { return false; });
+  return bestOf(std::move(apart), most, matchOf);
 }
 
 }  // namespace limber

@@ -72,7 +72,7 @@ class TrunkSearch {
         if (!isInside(figure, figure.waist())) continue;
         for (int turn = 0; turn < kTurns; ++turn) {
           figure.chest = axesAbout(-down, SteadyAngle(kPi * turn / kTurns));
-          chests.push_back({figure, match_.chest(figure) - kNodCost * (1 - nod)});
+          chests.push_back({figure, match_.chest(figure) - nodCost(figure)});
         }
       }
     }
@@ -104,8 +104,6 @@ class TrunkSearch {
   }
 
  private:
-  static constexpr double kNodCost = 0.25;
-
   bool isInside(const Figure& figure, const Vec3& place) const {
     return body_.distance->at(place) < -kInside * figure.stature;
   }
@@ -119,7 +117,7 @@ class TrunkSearch {
       const double deep = -body_.distance->at(figure.neckBase()) / (kNeckDeep * figure.stature);
       if (deep > 0.3) necks.push_back({figure, match_.neck(figure) + 0.3 * std::min(deep, 1.2)});
     }
-    return bestApart(std::move(necks), kMostNecks, matchOf, [](const Rated&, const Rated&) { return false; });
+    return bestOf(std::move(necks), kMostNecks, matchOf);
   }
 
   const BodyVolume& body_;

@@ -9,7 +9,7 @@ namespace limber {
 
 namespace {
 
-// People and statues of people match by 5 to 8, anything else by less than 4.5.
+// People and statues of people match by 5.5 to 9, anything else by less than 5.
 constexpr double kMatchOfDoubt = 5.2, kMatchSpread = 1.2, kCostOfDoubt = 1.8;
 constexpr double kGrid = 1.0 / 8192;  // heights
 constexpr double kLeastLimb = 0.1;    // match of a limb that has a place
