@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "limber/core/numbers.h"
+#include "limber/figure/shared_place.h"
 #include "limber/figure/steady.h"
 
 namespace limber {
@@ -14,7 +15,6 @@ namespace {
 constexpr double kInner = 0.65, kOuter = 1.45, kSoft = 0.18;
 constexpr double kHiddenCost = 0.35;  // of limbs: they are in the open rather than in what is thicker than they are
 
-constexpr int kRing = 8, kOval = 12, kBall = 32;  // points
 constexpr double kHeadWeight = 1.2, kChestWeight = 1.2, kPelvisWeight = 1, kNeckWeight = 0.5;
 constexpr double kShoulderRadius = 0.038, kShoulderWeight = 0.12;
 constexpr double kHeadSpread = 0.12, kHeadCost = 0.15;      // of the head's size against the stature's, logarithmic
@@ -26,7 +26,7 @@ constexpr double kInTrunk = 0.5;                            // for each place of
 constexpr double kRootDepth = 0.025, kShallowRoot = 0.3;    // statures that shoulders and hips lie deep, at least
 constexpr double kTurnedArm = 0.15;                         // of an elbow that bends square to how it does at ease
 constexpr double kPinCost = 4, kFarFromPin = 0.25;          // statures from a pin, where it costs most
-constexpr double kShared = 0.35;                            // for each place that limbs share
+constexpr double kShared = 0.175;                           // for each place that limbs share
 
 struct LimbShape {
   std::array<double, 2> upperRadii, lowerRadii;  // statures, at the beginning and the end of a bone
@@ -91,11 +91,13 @@ Vec3 placeOf(const Figure& figure, const FigurePin& pin) {
 }
 
 FigureMatch::FigureMatch(const SignedDistance& distance, std::vector<FigurePin> pins)
-    : distance_(distance),
-      pins_(std::move(pins)),
-      ball_(evenDirections(kBall)),
-      ring_(circle(kRing, 0)),
-      oval_(circle(kOval, 0.5)) {}
+    : distance_(distance), pins_(std::move(pins)), ball_(evenDirections(kBall)), oval_(circle(kOval, 0.5)) {
+  const std::vector<std::array<double, 2>> ring = circle(kRing, 0);
+  for (std::size_t i = 0; i < kRing; ++i) {
+    ring_[0][i] = static_cast<float>(ring[i][0]);
+    ring_[1][i] = static_cast<float>(ring[i][1]);
+  }
+}
 
 double FigureMatch::costOf(const FigurePin& pin, const Figure& figure) const {
   const double off = (placeOf(figure, pin) - pin.place).norm() / (kFarFromPin * figure.stature);
@@ -121,50 +123,94 @@ double FigureMatch::trunkPinCost(const Figure& figure) const {
   return cost;
 }
 
-double FigureMatch::answer(const Vec3& axis, const Vec3& direction, double radius, Hidden hidden) const {
-  const double soft = 2 * kSoft * radius;
-  const double inside = std::clamp(0.5 - distance_.at(axis + kInner * radius * direction) / soft, 0.0, 1.0);
-  if (inside <= 0) return -1;
-  const double outside = std::clamp(0.5 + distance_.at(axis + kOuter * radius * direction) / soft, 0.0, 1.0);
-  const double cost = hidden == Hidden::kCosts ? kHiddenCost * inside * (1 - outside) : 0;
-  return inside * outside - (1 - inside) - cost;
+template <std::size_t N>
+std::array<float, N> FigureMatch::answers(const Vec3& middle, const Spokes<N>& spokes, Hidden hidden) const {
+  constexpr float kIn = static_cast<float>(kInner), kOut = static_cast<float>(kOuter);
+  std::array<std::array<float, 2 * N>, 3> places;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float from = static_cast<float>(middle[axis]);
+    for (std::size_t i = 0; i < N; ++i) {
+      places[axis][i] = from + kIn * spokes.ways[axis][i];
+      places[axis][N + i] = from + kOut * spokes.ways[axis][i];
+    }
+  }
+  const std::array<float, 2 * N> distances = distance_.atEach(places);
+  const auto share = [](float x) {
+    x = x > 0 ? x : 0;
+    return x < 1 ? x : 1;
+  };
+  const float cost = hidden == Hidden::kCosts ? static_cast<float>(kHiddenCost) : 0;
+  std::array<float, N> answers;
+  for (std::size_t i = 0; i < N; ++i) {
+    const float perSoft = 1 / (2 * static_cast<float>(kSoft) * spokes.radii[i]);
+    const float inside = share(0.5f - distances[i] * perSoft), outside = share(0.5f + distances[N + i] * perSoft);
+    answers[i] = inside * outside - (1 - inside) - cost * inside * (1 - outside);
+  }
+  return answers;
 }
 
-double FigureMatch::ring(const Vec3& middle, const Vec3& axis, double radius) const {
+template <std::size_t N>
+double FigureMatch::meanAnswer(const Vec3& middle, const Spokes<N>& spokes, Hidden hidden) const {
+  float sum = 0;
+  for (const float answer : answers(middle, spokes, hidden)) sum += answer;
+  return sum / N;
+}
+
+double FigureMatch::answer(const Vec3& middle, const Vec3& direction, double radius) const {
+  Spokes<1> spoke;
+  spoke.set(0, radius * direction, radius);
+  return answers(middle, spoke, Hidden::kFree)[0];
+}
+
+FigureMatch::Circle FigureMatch::circleRound(const Vec3& axis) const {
   const Vec3 x = axis.unitOrthogonal(), z = axis.cross(x);
-  double sum = 0;
-  for (const auto& [along, across] : ring_) sum += answer(middle, along * x + across * z, radius, Hidden::kCosts);
-  return sum / kRing;
+  Circle circle;
+  for (int i = 0; i < 3; ++i) {
+    const float along = static_cast<float>(x[i]), across = static_cast<float>(z[i]);
+    for (std::size_t p = 0; p < kRing; ++p) circle[i][p] = along * ring_[0][p] + across * ring_[1][p];
+  }
+  return circle;
+}
+
+double FigureMatch::ring(const Vec3& middle, const Circle& circle, double radius) const {
+  Spokes<kRing> spokes = {circle, {}};
+  const float size = static_cast<float>(radius);
+  for (std::array<float, kRing>& ways : spokes.ways) {
+    for (float& way : ways) way *= size;
+  }
+  spokes.radii.fill(size);
+  return meanAnswer(middle, spokes, Hidden::kCosts);
 }
 
 double FigureMatch::bone(const Vec3& from, const Vec3& direction, double length, const std::array<double, 2>& radii,
                          const std::array<double, 2>& part, int rings) const {
+  const Circle circle = circleRound(direction);
   double sum = 0;
   for (int i = 0; i < rings; ++i) {
     const double at = part[0] + (part[1] - part[0]) * i / (rings - 1);
-    sum += ring(from + at * length * direction, direction, radii[0] + (radii[1] - radii[0]) * at);
+    sum += ring(from + at * length * direction, circle, radii[0] + (radii[1] - radii[0]) * at);
   }
   return sum / rings;
 }
 
 double FigureMatch::oval(const Vec3& middle, const Mat3& axes, double halfWidth, double halfDepth) const {
-  double sum = 0;
-  for (const auto& [along, across] : oval_) {
-    const Vec3 edge = halfWidth * along * axes.col(0) + halfDepth * across * axes.col(2);
-    sum += answer(middle, edge.normalized(), edge.norm(), Hidden::kFree);
+  Spokes<kOval> spokes;
+  for (std::size_t i = 0; i < kOval; ++i) {
+    const Vec3 edge = halfWidth * oval_[i][0] * axes.col(0) + halfDepth * oval_[i][1] * axes.col(2);
+    spokes.set(i, edge, edge.norm());
   }
-  return sum / kOval;
+  return meanAnswer(middle, spokes, Hidden::kFree);
 }
 
 double FigureMatch::head(const Vec3& middle, double radius) const {
-  double sum = 0;
-  for (const Vec3& direction : ball_) sum += answer(middle, direction, radius, Hidden::kFree);
-  return sum / kBall;
+  Spokes<kBall> spokes;
+  for (std::size_t i = 0; i < kBall; ++i) spokes.set(i, radius * ball_[i], radius);
+  return meanAnswer(middle, spokes, Hidden::kFree);
 }
 
 double FigureMatch::neck(const Figure& figure) const {
   const double down = 1.05 * figure.headRadius + 0.01 * figure.stature;
-  return ring(figure.head + down * figure.neck, figure.neck, proportions::kNeckRadius * figure.stature);
+  return ring(figure.head + down * figure.neck, circleRound(figure.neck), proportions::kNeckRadius * figure.stature);
 }
 
 double FigureMatch::chest(const Figure& figure) const {
@@ -182,8 +228,12 @@ double FigureMatch::chest(const Figure& figure) const {
   double shoulders = 0;
   for (const int limb : {0, 1}) {
     const Vec3 out = sideOf(limb) * figure.chest.col(0), place = figure.socket(limb);
-    const auto at = [&](const Vec3& way) { return answer(place, way, kShoulderRadius * size, Hidden::kFree); };
-    shoulders += at(out) + at((out + up).normalized()) + at(up) + 0.5 * (at(front) + at(-front));
+    const double radius = kShoulderRadius * size;
+    const Vec3 ways[] = {out, (out + up).normalized(), up, front, -front};
+    Spokes<5> spokes;
+    for (std::size_t i = 0; i < 5; ++i) spokes.set(i, radius * ways[i], radius);
+    const std::array<float, 5> at = answers(place, spokes, Hidden::kFree);
+    shoulders += at[0] + at[1] + at[2] + 0.5 * (at[3] + at[4]);
   }
   return sections / 3 + kShoulderWeight * shoulders + kNeckWeight * neck(figure);
 }
@@ -219,7 +269,7 @@ double FigureMatch::foot(const Figure& figure, const Vec3& ankle, const Vec3& di
   const double size = figure.stature;
   const double along = bone(ankle + 0.03 * size * direction, direction, 0.11 * size, {0.024 * size, 0.017 * size},
                             {0.2, 0.9}, kUpperRings);
-  return 0.7 * along + 0.3 * answer(ankle + 0.12 * size * direction, direction, 0.02 * size, Hidden::kFree);
+  return 0.7 * along + 0.3 * answer(ankle + 0.12 * size * direction, direction, 0.02 * size);
 }
 
 double FigureMatch::insideTrunk(const Figure& figure, const Vec3& place) const {
@@ -244,8 +294,8 @@ double FigureMatch::limb(const Figure& figure, int limb) const {
   if (isLeg(limb)) {
     end = foot(figure, places.ankle, bones.end);
   } else {
-    end = 0.7 * ring(places.ankle + 0.04 * size * bones.end, bones.end, 0.02 * size) +
-          0.3 * std::max(0.0, answer(places.ankle + 0.06 * size * bones.end, bones.end, 0.03 * size, Hidden::kFree));
+    end = 0.7 * ring(places.ankle + 0.04 * size * bones.end, circleRound(bones.end), 0.02 * size) +
+          0.3 * std::max(0.0, answer(places.ankle + 0.06 * size * bones.end, bones.end, 0.03 * size));
   }
   const double lowerBone = bones.lowerScale * lowerLength(limb) * size;
   double sum = shape.weights.upper * upper(figure, limb) +
@@ -281,41 +331,18 @@ double strain(const Figure& figure, int limb) {
   return kLengthCost * lengths + kShiftCost * shift + shapeOf(limb).raised * raised;
 }
 
-double sharedPlace(const Figure& figure, int a, int b) {
-  const auto radius = [](int limb, bool lower) {
-    return isLeg(limb) ? (lower ? 0.03 : 0.045) : (lower ? 0.022 : 0.028);
-  };
-  const FigureLimbPlaces of = figure.places(a), other = figure.places(b);
-  double shared = 0;
-  const auto ask = [&](const Vec3& place, double thick) {
-    double least = 1e9, width = 1;
-    const auto bone = [&](const Vec3& from, const Vec3& to, double otherThick) {
-      const Vec3 way = to - from;
-      const double along = std::clamp((place - from).dot(way) / way.squaredNorm(), 0.0, 1.0);
-      const double gap = (place - from - along * way).norm() - (thick + otherThick) * figure.stature;
-      if (gap >= least) return;
-      least = gap;
-      width = thick + otherThick;
-    };
-    bone(other.root + 0.4 * (other.middle - other.root), other.middle, radius(b, false));
-    bone(other.middle, other.ankle, radius(b, true));
-    bone(other.ankle, other.tip, radius(b, true));
-    shared += std::clamp(-least / (0.6 * width * figure.stature) - 0.25, 0.0, 1.0);
-  };
-  for (const double at : {0.55, 0.8, 1.0}) ask(of.root + at * (of.middle - of.root), radius(a, false));
-  for (const double at : {0.25, 0.5, 0.75, 1.0}) ask(of.middle + at * (of.ankle - of.middle), radius(a, true));
-  ask(of.tip, radius(a, true));
-  return shared;
-}
-
 void sumUp(MatchedFigure& matched) {
+  std::array<LimbSpace, kFigureLimbs> spaces;
+  for (int limb = 0; limb < kFigureLimbs; ++limb) spaces[limb] = spaceOf(matched.figure, limb);
   matched.total = matched.trunk;
   for (const double limb : matched.limbs) matched.total += limb;
   for (int a = 0; a < kFigureLimbs; ++a) {
-    for (int b = 0; b < kFigureLimbs; ++b) {
-      if (a != b) matched.total -= 0.5 * kShared * sharedPlace(matched.figure, a, b);
-    }
+    for (int b = a + 1; b < kFigureLimbs; ++b) matched.total -= sharingCost(sharedPlace(spaces[a], spaces[b]));
   }
+}
+
+double sharingCost(double shared) {
+  return kShared * shared;
 }
 
 MatchedFigure matched(const FigureMatch& match, const Figure& figure) {

@@ -46,9 +46,27 @@ class FigureMatch {
   double insideTrunk(const Figure& figure, const Vec3& place) const;
 
  private:
+  static constexpr std::size_t kRing = 8, kOval = 12, kBall = 32;  // points
   enum class Hidden { kFree, kCosts };
-  double answer(const Vec3& axis, const Vec3& direction, double radius, Hidden hidden) const;
-  double ring(const Vec3& middle, const Vec3& axis, double radius) const;
+  // Ways from a place within a part to its surface, x, y and z apart, and how long they are.
+  template <std::size_t N>
+  struct Spokes {
+    std::array<std::array<float, N>, 3> ways;
+    std::array<float, N> radii;
+
+    void set(std::size_t i, const Vec3& way, double radius) {
+      for (int axis = 0; axis < 3; ++axis) ways[axis][i] = static_cast<float>(way[axis]);
+      radii[i] = static_cast<float>(radius);
+    }
+  };
+  template <std::size_t N>
+  std::array<float, N> answers(const Vec3& middle, const Spokes<N>& spokes, Hidden hidden) const;
+  template <std::size_t N>
+  double meanAnswer(const Vec3& middle, const Spokes<N>& spokes, Hidden hidden) const;
+  double answer(const Vec3& middle, const Vec3& direction, double radius) const;
+  using Circle = std::array<std::array<float, kRing>, 3>;  // directions, x, y and z apart
+  Circle circleRound(const Vec3& axis) const;
+  double ring(const Vec3& middle, const Circle& circle, double radius) const;
   double bone(const Vec3& from, const Vec3& direction, double length, const std::array<double, 2>& radii,
               const std::array<double, 2>& part, int rings) const;
   double oval(const Vec3& middle, const Mat3& axes, double halfWidth, double halfDepth) const;
@@ -58,8 +76,9 @@ class FigureMatch {
 
   const SignedDistance& distance_;
   std::vector<FigurePin> pins_;
-  std::vector<Vec3> ball_;                          // directions, evenly
-  std::vector<std::array<double, 2>> ring_, oval_;  // of a circle
+  std::vector<Vec3> ball_;                        // directions, evenly
+  std::array<std::array<float, kRing>, 2> ring_;  // cosines and sines
+  std::vector<std::array<double, 2>> oval_;       // of a circle
 };
 
 // `count` directions, evenly over the sphere.
@@ -78,8 +97,8 @@ double nodCost(const Figure& figure);
 // bone that points up.
 double strain(const Figure& figure, int limb);
 
-// How much of limb `a` shares its place with limb `b`.
-double sharedPlace(const Figure& figure, int a, int b);
+// What it costs that two limbs share so much of their place (sharedPlace).
+double sharingCost(double shared);
 
 // A figure and how well it matches: the trunk, each limb, and all in all, less what limbs share.
 struct MatchedFigure {

@@ -7,6 +7,7 @@
 #include "limber/core/parallel.h"
 #include "limber/figure/best_apart.h"
 #include "limber/figure/figure_steps.h"
+#include "limber/figure/limb_choice.h"
 #include "limber/figure/limb_finder.h"
 #include "limber/figure/steady.h"
 #include "limber/figure/trunk_search.h"
@@ -29,7 +30,8 @@ constexpr std::size_t kFewLimbs = 6, kManyLimbs = 18, kTriedLimbs = 8;
 constexpr double kAlike = 0.08;  // statures between elbows, knees, wrists and ankles
 constexpr double kAlikeMiddle = 0.04, kAlikeAnkle = 0.05;
 
-constexpr double kNobody = -1e9;  // total of a trunk without limbs
+constexpr double kMostGain = 0.15;  // of a limb by one step of the trunk
+constexpr double kNobody = -1e9;    // total of a trunk without limbs
 
 using Candidates = std::vector<LimbFinder::Candidate>;
 
@@ -134,10 +136,9 @@ class Search {
                               [&](const auto& a, const auto& b) { return off(a) < off(b); });
   }
 
-  // Finds limbs for a trunk: the best for each, then others where limbs share a place. With `random`, each is improved
-  // for itself first.
+  // Finds limbs for a trunk, those that go best together. With `random`, each is improved for itself first.
   void holdLimbs(MatchedFigure& figure, std::size_t widely, std::size_t most, Random* random) const {
-    std::array<Candidates, kFigureLimbs> candidates;
+    LimbCandidates candidates;
     const LimbFinder& finder = finderFor(figure.figure.stature);
     for (int limb = 0; limb < kFigureLimbs; ++limb) {
       candidates[limb] = finder.find(figure.figure, limb, widely, most);
@@ -146,34 +147,14 @@ class Search {
         return;
       }
       if (random) improveEach(figure.figure, limb, candidates[limb], *random);
-      figure.figure.limbs[limb] = candidates[limb].front().bones;
-      figure.limbs[limb] = candidates[limb].front().match;
     }
     figure.trunk = match_.trunk(figure.figure);
-    sumUp(figure);
-    exchange(figure, candidates);
-  }
-
-  // Pairs of limbs are exchanged together, as long as that is for the better.
-  static void exchange(MatchedFigure& figure, const std::array<Candidates, kFigureLimbs>& candidates) {
-    constexpr int kPairs[][2] = {{0, 1}, {2, 3}, {0, 2}, {0, 3}, {1, 2}, {1, 3}};
-    for (int round = 0; round < 3; ++round) {
-      const double before = figure.total;
-      for (const auto& [a, b] : kPairs) {
-        MatchedFigure trial = figure;
-        for (const LimbFinder::Candidate& first : candidates[a]) {
-          trial.figure.limbs[a] = first.bones;
-          trial.limbs[a] = first.match;
-          for (const LimbFinder::Candidate& second : candidates[b]) {
-            trial.figure.limbs[b] = second.bones;
-            trial.limbs[b] = second.match;
-            sumUp(trial);
-            if (better(trial, figure)) figure = trial;
-          }
-        }
-      }
-      if (figure.total <= before) return;
+    const std::array<std::size_t, kFigureLimbs> choice = chooseLimbs(figure.figure, candidates);
+    for (int limb = 0; limb < kFigureLimbs; ++limb) {
+      figure.figure.limbs[limb] = candidates[limb][choice[limb]].bones;
+      figure.limbs[limb] = candidates[limb][choice[limb]].match;
     }
+    sumUp(figure);
   }
 
   void improveEach(const Figure& figure, int limb, Candidates& candidates, Random& random) const {
@@ -233,23 +214,45 @@ class Search {
     for (int step = 0; step < steps; ++step) {
       MatchedFigure trial = figure;
       const int part = static_cast<int>(random.below(9)) - 5;
+      bool isBetter = false;
       if (part < 0) {
         stepTrunk(trial.figure, size.value(), random);
         if (!allowed(trial.figure)) continue;
-        trial = matched(match_, trial.figure);
+        isBetter = trunkImproves(trial, figure);
       } else {
         stepLimb(trial.figure, part, size.value(), random);
         if (!limbAllowed(trial.figure, part)) continue;
         trial.limbs[part] = match_.limb(trial.figure, part);
-        sumUp(trial);
+        isBetter = sumImproves(trial, figure);
       }
-      if (better(trial, figure)) {
+      if (isBetter) {
         figure = trial;
         size.succeeded();
       } else if (!size.failed()) {
         return;
       }
     }
+  }
+
+  // Matches the parts of `trial` until it is clear that it's no better.
+  bool trunkImproves(MatchedFigure& trial, const MatchedFigure& figure) const {
+    double most = match_.trunk(trial.figure);
+    trial.trunk = most;
+    for (const double limb : figure.limbs) most += limb + kMostGain;
+    for (int limb = 0; limb < kFigureLimbs && most > figure.total; ++limb) {
+      trial.limbs[limb] = match_.limb(trial.figure, limb);
+      most += trial.limbs[limb] - figure.limbs[limb] - kMostGain;
+    }
+    return most > figure.total && sumImproves(trial, figure);
+  }
+
+  // What limbs share is measured only where it matters.
+  static bool sumImproves(MatchedFigure& trial, const MatchedFigure& figure) {
+    double most = trial.trunk;
+    for (const double limb : trial.limbs) most += limb;
+    if (most <= figure.total) return false;
+    sumUp(trial);
+    return better(trial, figure);
   }
 
   static void keepApart(std::vector<MatchedFigure>& figures, std::size_t most) {

@@ -32,10 +32,12 @@ SignedDistance::SignedDistance(const TriMesh& mesh, const Bvh& surface, const Wi
   }
   if (box.empty()) throw Error(ErrorCode::kBadArgument, "a mesh without triangles has no distances");
   spacing_ = box.longestSide() > 0 ? box.longestSide() / resolution : 1;
+  perSpacing_ = 1 / spacing_;
   for (int axis = 0; axis < 3; ++axis) {
     const double cells = box.size()[axis] / spacing_ + 2 * kMargin;
     size_[axis] = static_cast<Index>(std::ceil(cells / kCoarsest)) * kCoarsest + 1;
-    origin_[axis] = box.center()[axis] - 0.5 * spacing_ * (size_[axis] - 1);
+    last_[axis] = size_[axis] - 1;
+    origin_[axis] = box.center()[axis] - 0.5 * spacing_ * last_[axis];
   }
   values_.assign(std::size_t{size_[0]} * size_[1] * size_[2], 0.0f);
   refine(surface, winding);
@@ -111,30 +113,6 @@ void SignedDistance::refine(const Bvh& surface, const WindingNumber& winding) {
     settle(step, known, wanted);
     measure(wanted, surface, winding);
   }
-}
-
-double SignedDistance::at(const Vec3& point) const {
-  const Vec3 scaled = (point - origin_) / spacing_;
-  Index low[3];
-  double part[3];
-  Vec3 beyond;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double last = size_[axis] - 1;
-    const double inside = std::clamp(scaled[axis], 0.0, last);
-    beyond[axis] = scaled[axis] - inside;
-    low[axis] = std::min(static_cast<Index>(inside), size_[axis] - 2);
-    part[axis] = inside - low[axis];
-  }
-  const std::size_t above = std::size_t{size_[0]}, behind = above * size_[1];
-  const float* corner = &values_[nodeAt(low[0], low[1], low[2])];
-  double sum = 0;
-  for (int c = 0; c < 8; ++c) {
-    const double weight =
-        (c & 1 ? part[0] : 1 - part[0]) * (c & 2 ? part[1] : 1 - part[1]) * (c & 4 ? part[2] : 1 - part[2]);
-    sum += weight * corner[(c & 1 ? 1 : 0) + (c & 2 ? above : 0) + (c & 4 ? behind : 0)];
-  }
-  const bool isOutside = beyond.x() != 0 || beyond.y() != 0 || beyond.z() != 0;
-  return isOutside ? sum + spacing_ * beyond.norm() : sum;
 }
 
 Vec3 SignedDistance::gradientAt(const Vec3& point) const {
