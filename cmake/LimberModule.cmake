@@ -54,7 +54,7 @@ endfunction()
 
 # limber_precompile(<target> LIBRARY|TESTS): where LIMBER_PRECOMPILE is on, the headers that take longest come precompiled,
 # once for all targets of that kind. They are a matter of time only: every source includes what it needs, as the dev and
-# wasm presets see. They belong to a target of their own that defines no more than all others do, as g++ asks for.
+# lint presets see. They belong to a target of their own that defines no more than all others do, as g++ asks for.
 set(limber_eigen_definitions EIGEN_DONT_VECTORIZE EIGEN_MPL2_ONLY)
 function(limber_precompile target kind)
   if(NOT LIMBER_PRECOMPILE)
@@ -67,6 +67,8 @@ function(limber_precompile target kind)
     target_compile_features(${owner} PRIVATE cxx_std_20)
     target_compile_definitions(${owner} PRIVATE ${limber_eigen_definitions})
     target_link_libraries(${owner} PRIVATE Eigen3::Eigen)
+    target_include_directories(${owner} SYSTEM PRIVATE
+      $<TARGET_PROPERTY:nlohmann_json::nlohmann_json,INTERFACE_INCLUDE_DIRECTORIES>)
     limber_compile_options(${owner})
     target_precompile_headers(${owner} PRIVATE <algorithm> <functional> <map> <memory> <optional> <span> <string>
       <vector> <Eigen/Core> <Eigen/Geometry> <nlohmann/json.hpp>)

@@ -11,8 +11,9 @@ function(limber_system_headers target folder)
   target_include_directories(${target} SYSTEM INTERFACE ${tree})
 endfunction()
 
-limber_system_headers(fmt::fmt-header-only fmt)
-target_compile_definitions(fmt::fmt-header-only INTERFACE FMT_HEADER_ONLY=1)
+# What fmt compiles once elsewhere, its headers hold as well.
+limber_system_headers(fmt::fmt fmt)
+target_compile_definitions(fmt::fmt INTERFACE FMT_HEADER_ONLY=1)
 limber_system_headers(nlohmann_json::nlohmann_json nlohmann)
 find_path(eigen_folder Eigen/Core PATHS /usr/include/eigen3 /usr/local/include/eigen3 NO_DEFAULT_PATH
   NO_CMAKE_FIND_ROOT_PATH REQUIRED)

@@ -47,9 +47,8 @@ ByteSpan checkHeader(ByteSpan file, Warnings& warnings) {
 }
 
 void append(Bytes& bytes, std::uint32_t value) {
-  std::uint8_t raw[sizeof(value)];
-  std::memcpy(raw, &value, sizeof(value));
-  bytes.insert(bytes.end(), raw, raw + sizeof(value));
+  bytes.resize(bytes.size() + sizeof(value));
+  std::memcpy(bytes.data() + bytes.size() - sizeof(value), &value, sizeof(value));
 }
 
 }  // namespace
