@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "limber/ik/rotation.h"
+#include "limber/retarget/loose_joints.h"
 #include "limber/skeleton/chain.h"
 
 namespace limber {
@@ -102,6 +103,28 @@ std::array<LimbBone, 8> limbBones() {
            {"rightLowerLeg", "rightFoot", down}}};
 }
 
+// Also toes that nothing matches, on a root of their own.
+std::optional<Index> toesOf(const Skeleton& skeleton, const SkeletonMap& map, MapSide side,
+                            std::span<const LooseJoint> loose, const std::string& leg) {
+  const std::optional<Index> toes = firstOf(map, side, leg + "Toes"), foot = firstOf(map, side, leg + "Foot");
+  if (toes || !foot) return toes;
+  const auto found = std::find_if(loose.begin(), loose.end(), [&](const LooseJoint& each) {
+    return !each.matched && isAncestorOrSelf(skeleton, *foot, each.carrier);
+  });
+  return found == loose.end() ? std::nullopt : std::optional(found->joint);
+}
+
+// Loose joints, with what hangs on them, are where their carriers have them.
+void carry(const Skeleton& skeleton, std::span<const LooseJoint> loose, const std::vector<Vec3>& rest,
+           const std::vector<Quat>& turns, std::vector<Vec3>& positions) {
+  for (const auto& [joint, carrier, matched] : loose) {
+    const Vec3 way = positions[carrier] + turns[carrier] * (rest[joint] - rest[carrier]) - positions[joint];
+    for (Index j = joint; j < skeleton.jointCount(); ++j) {
+      if (isAncestorOrSelf(skeleton, joint, j)) positions[j] += way;
+    }
+  }
+}
+
 }  // namespace
 
 const std::vector<Index>* jointsOfPart(const SkeletonMap& map, MapSide side, std::string_view part) {
@@ -146,12 +169,14 @@ NeutralPose neutralPose(const Skeleton& skeleton, const Pose& resting, const Ske
       aims[*joint] = std::pair{Vec3(rest[*end] - rest[*joint]), bone.direction};
     }
   }
+  const std::vector<LooseJoint> loose =
+      map.find("hips") ? looseJoints(skeleton, map, side, rest) : std::vector<LooseJoint>();
   for (const std::string leg : {"left", "right"}) {
     const std::optional<Index> foot = firstOf(map, side, leg + "Foot");
     if (!foot) continue;
     isFoot[*foot] = true;
     const std::optional<Index> hip = firstOf(map, side, leg + "UpperLeg"), knee = firstOf(map, side, leg + "LowerLeg"),
-                               toes = firstOf(map, side, leg + "Toes");
+                               toes = toesOf(skeleton, map, side, loose, leg);
     if (!hip || !knee || !toes) continue;
     const bool hock = (rest[*toes] - rest[*foot]).norm() > kHock * (rest[*foot] - rest[*knee]).norm();
     stands[*foot] = hock && angleOf(rest[*toes] - rest[*hip], -Vec3::UnitY()) < kFootGoesAlong;
@@ -171,6 +196,7 @@ NeutralPose neutralPose(const Skeleton& skeleton, const Pose& resting, const Ske
     pose.positions[j] =
         joint.parent ? Vec3(pose.positions[*joint.parent] + above * (rest[j] - rest[*joint.parent])) : rest[j];
   }
+  carry(skeleton, loose, rest, turns, pose.positions);
   pose.restPositions = std::move(rest);
   return pose;
 }

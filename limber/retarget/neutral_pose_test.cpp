@@ -50,6 +50,19 @@ TEST_F(NeutralPoses, AFootAsLongAsTheShinStandsAsAtRest) {
   }
 }
 
+// As rigs for inverse kinematics have them: such feet stay behind where the leg bends.
+TEST_F(NeutralPoses, FeetOnARootOfTheirOwnEndTheLegs) {
+  const Skeleton bent =
+      inRestPose(person, {{"leftUpperLeg", turn(-Vec3::UnitX(), 40)}, {"leftLowerLeg", turn(Vec3::UnitX(), 70)}});
+  const Skeleton loose = limber::testing::onTheGround(bent, {"leftFoot"});
+  const NeutralPose pose = neutralPose(loose, restPose(loose), matchSkeletons(person, loose), MapSide::kTarget);
+  const Vec3 shin = pose.positions[loose.find("leftFoot").value()] - pose.positions[loose.find("leftLowerLeg").value()];
+  const double length = person.joints[person.find("leftFoot").value()].rest.translation.norm();
+  EXPECT_LT((shin + length * Vec3::UnitY()).norm(), 1e-6);
+  const Vec3 foot = pose.positions[loose.find("leftToes").value()] - pose.positions[loose.find("leftFoot").value()];
+  EXPECT_NEAR(foot.norm(), person.joints[person.find("leftToes").value()].rest.translation.norm(), 1e-6);
+}
+
 // Motions of some programs have a rest pose in which every bone points the same way.
 TEST_F(NeutralPoses, AFoldedRestPoseGivesWayToAFrameThatStands) {
   Skeleton folded = person;

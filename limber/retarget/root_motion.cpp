@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "limber/retarget/loose_joints.h"
 #include "limber/skeleton/chain.h"
-#include "limber/skeleton/humanoid_names.h"
 
 namespace limber {
 
@@ -21,18 +21,17 @@ RootPlacer::RootPlacer(const RetargetSetup& setup) : setup_(setup) {
   hips_ = setup.map.find("hips")->target.front();
   moved_.push_back(*hips_);
   findPelvis();
-  for (const JointMatch& match : setup.map.matches) {
-    const std::optional<std::string_view> above = humanoidParent(match.part);
-    const JointMatch* parent = above ? setup.map.find(*above) : nullptr;
-    if (!parent || match.part == "hips") continue;
-    const Index joint = match.target.front(), end = parent->target.back();
-    if (isAncestorOrSelf(target, *hips_, joint)) continue;
-    const NeutralPose& neutral = setup.targetNeutral;
-    // The offset as it is in rest pose, in the frame of the joint it rides on.
-    const Affine global = restGlobals(target)[end];
-    const Quat restRotation = neutral.toBody * decompose(global).rotation;
-    loose_.push_back(
-        {joint, end, restRotation.conjugate() * (neutral.restPositions[joint] - neutral.restPositions[end])});
+  const NeutralPose& neutral = setup.targetNeutral;
+  const std::vector<Affine> rest = restGlobals(target);
+  for (const auto& [joint, carrier, matched] :
+       looseJoints(target, setup.map, MapSide::kTarget, neutral.restPositions)) {
+    const Quat from = (neutral.toBody * decompose(rest[carrier]).rotation).conjugate();
+    Loose& loose = loose_.emplace_back();
+    loose.joint = joint;
+    loose.carrier = carrier;
+    loose.offset = from * (neutral.restPositions[joint] - neutral.restPositions[carrier]);
+    if (!matched) loose.turn = from * neutral.toBody * decompose(rest[joint]).rotation;
+    turnsLoose_ = turnsLoose_ || !matched;
     moved_.push_back(joint);
   }
 }
@@ -100,7 +99,7 @@ void RootPlacer::settle(Pose& target, BodyFrame& frame) const {
 
 Index RootPlacer::carrierOf(Index joint) const {
   for (const Loose& loose : loose_) {
-    if (loose.joint == joint) return loose.end;
+    if (loose.joint == joint) return loose.carrier;
   }
   return joint;
 }
@@ -109,13 +108,19 @@ void RootPlacer::placeLoose(Pose& target, BodyFrame& frame) const {
   if (loose_.empty()) return;
   const BodyKinematics& kinematics = setup_.targetKinematics;
   for (const Loose& loose : loose_) {
-    const Vec3 there = frame.positions[loose.end] + frame.rotations[loose.end] * loose.offset;
-    const Vec3 way = kinematics.parentRotation(loose.joint, frame).conjugate() *
-                     Vec3(there - kinematics.parentPosition(loose.joint, frame));
+    const Quat& carrier = frame.rotations[loose.carrier];
+    const Quat toParent = kinematics.parentRotation(loose.joint, frame).conjugate();
+    const Vec3 there = frame.positions[loose.carrier] + carrier * loose.offset;
+    const Vec3 way = toParent * Vec3(there - kinematics.parentPosition(loose.joint, frame));
     target.locals[loose.joint].translation = way / kinematics.unit(loose.joint);
+    if (loose.turn) target.locals[loose.joint].rotation = (toParent * carrier * *loose.turn).normalized();
     frame.positions[loose.joint] = there;
   }
-  kinematics.place(target, frame);
+  if (turnsLoose_) {
+    kinematics.globals(target, frame);
+  } else {
+    kinematics.place(target, frame);
+  }
 }
 
 }  // namespace limber

@@ -10,8 +10,8 @@ namespace limber {
 
 // Moves a posed target to where the source's motion has it.
 //
-// People: the hips' translation brings the pelvis to its place. Joints that play a part of a limb without hanging on it
-// (feet that stand at the root, as rigs for inverse kinematics have them) are put where the limb ends. Others: every
+// People: the hips' translation brings the pelvis to its place. Loose joints (looseJoints) are put where their carriers
+// have them. Others: every
 // matched joint's way from rest, scaled.
 class RootPlacer {
  public:
@@ -37,8 +37,9 @@ class RootPlacer {
 
  private:
   struct Loose {
-    Index joint, end;  // `joint` rides on `end`
-    Vec3 offset;       // in the frame of `end`, in the person's metres
+    Index joint = 0, carrier = 0;
+    Vec3 offset = Vec3::Zero();  // in the carrier's frame, in the person's metres
+    std::optional<Quat> turn;    // likewise, of one that turns with its carrier
   };
   void findPelvis();
   void placeLoose(Pose& target, BodyFrame& frame) const;
@@ -49,6 +50,7 @@ class RootPlacer {
   std::vector<Index> toLegs_;          // joints between it and the legs, which turn with it
   std::vector<Index> pelvisChildren_;  // what hangs on these and on the pelvis
   std::vector<Loose> loose_;
+  bool turnsLoose_ = false;
   std::vector<Index> moved_;
 };
 

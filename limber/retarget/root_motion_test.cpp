@@ -65,6 +65,29 @@ TEST(RootMotion, APelvisTurnsAloneAboutItsMiddle) {
   EXPECT_LT((again.positions[left] - again.positions[right] - across).norm(), 1e-12);
 }
 
+// A claw on a root on the ground: nothing in the motion moves it.
+TEST(RootMotion, WhatNothingMatchesGoesAndTurnsWithTheFootThatItIsAt) {
+  const Skeleton person = practiceHumanoid();
+  Skeleton clawed = limber::testing::onTheGround(person, {});
+  const Index foot = clawed.find("leftFoot").value();
+  Joint claw;
+  claw.name = "claw";
+  claw.parent = 0;
+  claw.rest.translation = restGlobals(clawed)[foot].translation() + Vec3(0, 0, 0.03);
+  clawed.joints.push_back(claw);
+  const Index at = clawed.jointCount() - 1;
+  const PoseSequence motion = limber::testing::walk(person);
+  const RetargetSetup setup(person, clawed, matchSkeletons(person, clawed), {}, &motion);
+  for (const char* method : {"aligned", "limb-ik"}) {
+    const PoseSequence result = retargetFrames(findRetargetMethod(method), setup, motion);
+    const Affine rest = restGlobals(clawed)[foot].inverse() * restGlobals(clawed)[at];
+    for (const Pose& pose : result.poses) {
+      const std::vector<Affine> globals = poseGlobals(clawed, pose);
+      EXPECT_LT((globals[foot].inverse() * globals[at].matrix() - rest.matrix()).norm(), 1e-6);
+    }
+  }
+}
+
 // A body a metre long with a leg below each end; lying down, the legs go on along the body.
 Skeleton animal(double leg, bool lies) {
   const Vec3 way = lies ? Vec3(0, 0, leg) : Vec3(0, -leg, 0);
