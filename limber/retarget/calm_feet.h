@@ -1,4 +1,4 @@
-// Feet that are far longer for their legs than the source's swing less.
+// Feet that tip less than the source's: long ones, and those that stand flat.
 #pragma once
 
 #include <span>
@@ -8,13 +8,14 @@
 
 namespace limber {
 
-// Share of the source's pitch that the leg's foot takes over: 1 up to twice the source's length, less the longer.
+// Share of the source's pitch that the leg's foot takes over: 1 up to 1.3 times the source's length, less the longer.
 double footPitchShare(const RetargetSetup& setup, const Leg& leg);
 
-// The feet of those legs (Leg::footPitch) are as level as that: long toes else go through the ground, and the heels,
-// or the hocks of birds, swing further than a leg can follow. Soles that look up or to the side stay as they are.
-// `frame` are the globals of `target`; both are brought up to date.
-void calmLongFeet(const RetargetSetup& setup, const RootPlacer& root, std::span<const Leg> legs, Pose& target,
-                  BodyFrame& frame);
+// Long feet (Leg::footPitch) are as level as that: long toes else go through the ground, and the heels, or the hocks of
+// birds, swing further than a leg can follow. People's feet that stand flat (Leg::flat) lie as they do at rest, as far
+// as they are near it: what tips them is how the source was recorded, and would lift the ankle. Soles that look up or
+// to the side stay as they are. `frame` are the globals of `target`; both are brought up to date.
+void calmFeet(const RetargetSetup& setup, const RootPlacer& root, std::span<const Leg> legs, Pose& target,
+              BodyFrame& frame);
 
 }  // namespace limber

@@ -23,11 +23,12 @@ struct Leg : Limb {
   Vec3 kneeAhead = Vec3::UnitZ();                      // to which side the lower joint bends, in the neutral pose
   double ankleGround = 0, toesGround = 0;              // heights when standing, target
   double sourceAnkleGround = 0, sourceToesGround = 0;  // likewise, source
-  double footPitch = 1;                                // share of the source's (calmLongFeet)
+  double footPitch = 1;                                // share of the source's (calmFeet)
   FootAnchor anchor = FootAnchor::kNone;               // what holds the foot in this frame
   bool flat = false;                                   // heel and toes stand both
   double ankleFloor = 0, toesFloor = 0;                // below which neither goes in this frame
   double planted = 0;                                  // 0 to 1, comes and goes smoothly
+  double flatness = 0;                                 // likewise
 };
 
 }  // namespace limber

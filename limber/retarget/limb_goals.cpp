@@ -5,7 +5,7 @@
 #include <string>
 
 #include "limber/ik/rotation.h"
-#include "limber/retarget/long_feet.h"
+#include "limber/retarget/calm_feet.h"
 #include "limber/retarget/smooth.h"
 #include "limber/retarget/spring.h"
 #include "limber/skeleton/chain.h"
@@ -22,6 +22,9 @@ constexpr double kTouchRate = 10;                  // 1/seconds, of touches that
 constexpr double kSoftReach = 0.96;                // of an arm's length: from there on stretching softens
 constexpr double kPlantRate = 9;                   // 1/seconds, of the smooth flag
 constexpr double kSoftGround = 0.006;
+constexpr double kMostSoft = 0.04;     // more of it, the faster a point comes down
+constexpr double kFallSeconds = 0.03;  // of its way: so much the earlier a point slows down
+constexpr double kFallRate = 40;       // 1/seconds, of the speed that is taken for its own
 // Shares of that softness that a planted foot loses: the point that holds it, and the other.
 constexpr double kFirmHeld = 0.9, kFirmBeside = 0.2;
 constexpr double kCarriedUp = 0.7;    // share of its hip's way up that a free foot takes part in
@@ -147,8 +150,7 @@ void LimbGoals::addLeg(Leg leg) {
   }
   leg.footPitch = footPitchShare(setup_, leg);
   legs_.push_back(leg);
-  const PlantDetector detector(setup_.sourceHipHeight);
-  feelers_.push_back({detector, detector, {}, 0, {}, Vec3::Zero()});
+  feelers_.emplace_back(PlantDetector(setup_.sourceHipHeight));
 }
 
 void LimbGoals::addSurface(const std::string& from, const std::string& to, double touching, double apart,
@@ -159,28 +161,43 @@ void LimbGoals::addSurface(const std::string& from, const std::string& to, doubl
       {{begin->source.front(), end->source.front()}, {begin->target.front(), end->target.front()}, touching, apart});
 }
 
-// What of the foot stands in the source, and where the target's is by its joint angles.
-void LimbGoals::feel(Leg& leg, Feeler& feeler, const BodyFrame& source, const BodyFrame& target, double seconds) const {
-  FootLock::Frame& foot = feeler.foot;
+// What of the foot stands in the source.
+void LimbGoals::sense(Leg& leg, Feeler& feeler, const BodyFrame& source, double seconds) const {
   const Vec3& ankle = source.positions[leg.sourceEnd];
   const bool heel = feeler.ankle.next(ankle, ankle.y() - leg.sourceAnkleGround, seconds);
-  foot.ankle = foot.toes = target.positions[leg.end];
-  foot.ankleGround = leg.ankleGround - loweredBy(leg.sourceAnkleGround, ankle);
   bool toes = false;
   if (leg.toes) {
     const Vec3& place = source.positions[*leg.sourceToes];
     toes = feeler.toes.next(place, place.y() - leg.sourceToesGround, seconds);
-    foot.toes = target.positions[*leg.toes];
-    foot.toesGround = leg.toesGround - loweredBy(leg.sourceToesGround, place);
   }
-  foot.anchor = toes ? FootAnchor::kToes : heel ? FootAnchor::kAnkle : FootAnchor::kNone;
-  foot.flat = heel && toes;
-  leg.anchor = foot.anchor;
-  leg.flat = foot.flat;
+  leg.anchor = toes ? FootAnchor::kToes : heel ? FootAnchor::kAnkle : FootAnchor::kNone;
+  leg.flat = heel && toes;
+  followPlanting(leg.anchor != FootAnchor::kNone ? 1 : 0, seconds, leg.planted, feeler.plantedSpeed);
+  followPlanting(leg.flat ? 1 : 0, seconds, leg.flatness, feeler.flatSpeed);
+}
+
+// Where the target's foot is by its joint angles, and the ground under it.
+void LimbGoals::feel(Leg& leg, Feeler& feeler, const BodyFrame& source, const BodyFrame& target, double seconds) const {
+  FootLock::Frame& foot = feeler.foot;
+  const FootLock::Frame before = foot;
+  foot.anchor = leg.anchor;
+  foot.flat = leg.flat;
+  foot.ankle = foot.toes = target.positions[leg.end];
+  foot.ankleGround = leg.ankleGround - loweredBy(leg.sourceAnkleGround, source.positions[leg.sourceEnd]);
+  if (leg.toes) {
+    foot.toes = target.positions[*leg.toes];
+    foot.toesGround = leg.toesGround - loweredBy(leg.sourceToesGround, source.positions[*leg.sourceToes]);
+  }
+  followFall(before.ankle.y() - foot.ankle.y(), seconds, feeler.ankleFall);
+  followFall(before.toes.y() - foot.toes.y(), seconds, feeler.toesFall);
   leg.ankleFloor = foot.ankleGround;
   leg.toesFloor = foot.toesGround;
   leg.wanted = true;
-  followPlanting(foot.anchor != FootAnchor::kNone ? 1 : 0, seconds, leg.planted, feeler.plantedSpeed);
+}
+
+// `down` is the way in this frame.
+void LimbGoals::followFall(double down, double seconds, Fall& fall) {
+  springTo(seconds > 0 ? std::max(down / seconds, 0.0) : 0.0, kFallRate, seconds, fall.speed, fall.change);
 }
 
 // Nobody moves that fast: what stood before the cut does not count behind it.
@@ -211,13 +228,15 @@ double LimbGoals::loweredBy(double sourceGround, const Vec3& sourcePlace) const 
   return setup_.person ? 0 : setup_.scale * std::max(sourceGround - sourcePlace.y(), 0.0);
 }
 
-void LimbGoals::calm(Pose& target, BodyFrame& frame) const {
+void LimbGoals::calm(const BodyFrame& source, double seconds, Pose& target, BodyFrame& frame) {
+  cut_ = forgetAcrossCuts(source, seconds);
+  if (cut_) seconds = 0;
+  for (std::size_t i = 0; i < legs_.size(); ++i) sense(legs_[i], feelers_[i], source, seconds);
   pelvis_.levelHips(target, frame);
-  calmLongFeet(setup_, root_, legs_, target, frame);
+  calmFeet(setup_, root_, legs_, target, frame);
 }
 
 void LimbGoals::setFeet(const BodyFrame& source, const BodyFrame& target, double seconds) {
-  cut_ = forgetAcrossCuts(source, seconds);
   if (cut_) seconds = 0;
   for (std::size_t i = 0; i < legs_.size(); ++i) feel(legs_[i], feelers_[i], source, target, seconds);
   carryFeet(target, seconds);
@@ -244,18 +263,20 @@ void LimbGoals::setFoot(Leg& leg, const Feeler& feeler, FootLock& lock, double s
   foot.toes += feeler.carried;
   leg.goal = lock.next(foot, seconds, kFootSlack * setup_.targetHipHeight);
   leg.turn = Eigen::AngleAxisd(lock.twist(), Vec3::UnitY());
-  keepAboveGround(leg, foot);
+  keepAboveGround(leg, foot, feeler);
 }
 
-// Both ends of the foot, without a kink; last the one that holds it.
-void LimbGoals::keepAboveGround(Leg& leg, const FootLock::Frame& foot) const {
+// Both ends of the foot, without a kink, and the earlier the faster they come down; last the one that holds it.
+void LimbGoals::keepAboveGround(Leg& leg, const FootLock::Frame& foot, const Feeler& feeler) const {
   const double toesOver = foot.toes.y() - foot.ankle.y();
-  const auto raise = [&](double under, double firm) {
-    leg.goal.y() += softPositive(under, kSoftGround * setup_.targetHipHeight * (1 - firm * leg.planted));
+  const auto raise = [&](double under, const Fall& fall, double firm) {
+    const double height = setup_.targetHipHeight, ahead = kFallSeconds * std::max(fall.speed, 0.0) / height;
+    const double soft = kSoftGround + kMostSoft * ahead / (kMostSoft + ahead);
+    leg.goal.y() += softPositive(under, height * soft * (1 - firm * leg.planted));
   };
-  const auto raiseAnkle = [&](double firm) { raise(foot.ankleGround - leg.goal.y(), firm); };
+  const auto raiseAnkle = [&](double firm) { raise(foot.ankleGround - leg.goal.y(), feeler.ankleFall, firm); };
   const auto raiseToes = [&](double firm) {
-    if (leg.toes) raise(foot.toesGround - toesOver - leg.goal.y(), firm);
+    if (leg.toes) raise(foot.toesGround - toesOver - leg.goal.y(), feeler.toesFall, firm);
   };
   if (leg.anchor == FootAnchor::kToes) {
     raiseAnkle(kFirmBeside);

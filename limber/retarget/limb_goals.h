@@ -21,9 +21,9 @@ class LimbGoals {
   // False where nothing needs correcting: nobody with legs, or both neutral poses are one.
   bool active() const { return active_; }
 
-  // Wide hips and long feet swing less than the source's (Pelvis::levelHips, calmLongFeet). Before setFeet(), of the
-  // target by joint angles alone.
-  void calm(Pose& target, BodyFrame& frame) const;
+  // Senses what of the feet stands in the source; wide hips, long feet and such as stand flat swing less than the
+  // source's (Pelvis::levelHips, calmFeet). Before setFeet(), of the target by joint angles alone.
+  void calm(const BodyFrame& source, double seconds, Pose& target, BodyFrame& frame);
   // Feet that are planted in the source stay where they came down, by their toes while the heel is up; none goes below
   // the ground. From the globals of both. The goals are for legs whose hips go with
   // the pelvis (Pelvis::moveFor).
@@ -53,12 +53,18 @@ class LimbGoals {
     std::array<Index, 2> source, target;
     double touching, apart;
   };
+  // How fast a point of the free foot comes down, metres a second, without the recording's trembling.
+  struct Fall {
+    double speed = 0, change = 0;
+  };
   // What is known of a leg's foot.
   struct Feeler {
+    explicit Feeler(const PlantDetector& detector) : ankle(detector), toes(detector) {}
     PlantDetector ankle, toes;
     FootLock lock;
-    double plantedSpeed = 0;
-    FootLock::Frame foot;         // as its joint angles have it
+    double plantedSpeed = 0, flatSpeed = 0;
+    FootLock::Frame foot;  // as its joint angles have it
+    Fall ankleFall, toesFall;
     Vec3 carried = Vec3::Zero();  // by its hip
   };
 
@@ -69,10 +75,12 @@ class LimbGoals {
   void addLeg(Leg leg);
   void addSurface(const std::string& from, const std::string& to, double touching, double apart,
                   std::vector<Surface>& surfaces) const;
+  void sense(Leg& leg, Feeler& feeler, const BodyFrame& source, double seconds) const;
   void feel(Leg& leg, Feeler& feeler, const BodyFrame& source, const BodyFrame& target, double seconds) const;
+  static void followFall(double down, double seconds, Fall& fall);
   void carryFeet(const BodyFrame& target, double seconds);
   void setFoot(Leg& leg, const Feeler& feeler, FootLock& lock, double seconds) const;
-  void keepAboveGround(Leg& leg, const FootLock::Frame& foot) const;
+  void keepAboveGround(Leg& leg, const FootLock::Frame& foot, const Feeler& feeler) const;
   // True at a cut.
   bool forgetAcrossCuts(const BodyFrame& source, double seconds);
   double loweredBy(double sourceGround, const Vec3& sourcePlace) const;

@@ -24,7 +24,7 @@ class LimbIkRetargeter : public FrameRetargeter {
     if (setup_.options.contacts) {
       std::vector<Leg>& legs = goals_.legs();
       const Pelvis& pelvis = goals_.pelvis();
-      goals_.calm(target, to());
+      goals_.calm(from(), seconds, target, to());
       goals_.setFeet(from(), to(), seconds);
       pelvis.apply(pelvis.moveFor(legs, to()), target, to());
       for (std::size_t i = 0; i < legs.size(); ++i) {

@@ -39,7 +39,7 @@ class OnlineRetargeter : public FrameRetargeter {
     BodyFrame& frame = aligned_.targetFrame();
     if (setup_.options.contacts) {
       const Pelvis& pelvis = goals_.pelvis();
-      goals_.calm(target, frame);
+      goals_.calm(aligned_.sourceFrame(), seconds, target, frame);
       goals_.setFeet(aligned_.sourceFrame(), frame, seconds);
       pelvis.apply(pelvis.moveFor(goals_.legs(), frame), target, frame);
     }

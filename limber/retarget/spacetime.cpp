@@ -110,8 +110,9 @@ class Spacetime {
     for (std::size_t f = 0; f < frames(); ++f) {
       const BodyFrame& from = sourceAt(f);
       BodyFrame& to = targetAt(f);
-      goals_.calm(target_.poses[f], to);
-      goals_.setFeet(from, to, f == 0 ? 0 : target_.frameSeconds);
+      const double seconds = f == 0 ? 0 : target_.frameSeconds;
+      goals_.calm(from, seconds, target_.poses[f], to);
+      goals_.setFeet(from, to, seconds);
       cuts_[f] = goals_.atCut();
       for (std::size_t i = 0; i < feet_.size(); ++i) {
         const Leg& leg = goals_.legs()[i];
