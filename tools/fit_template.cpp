@@ -23,6 +23,7 @@
 #include "limber/rigging/template_rigger.h"
 #include "limber/skeleton/humanoid_names.h"
 #include "limber/templates/humanoid_landmarks.h"
+#include "limber/templates/joints_between.h"
 
 using namespace limber;
 

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "limber/skeleton/humanoid_names.h"
+#include "limber/templates/joints_between.h"
 
 namespace limber {
 

@@ -15,6 +15,7 @@
 #include "limber/templates/bent_template.h"
 #include "limber/templates/figure_fit.h"
 #include "limber/templates/humanoid_landmarks.h"
+#include "limber/templates/joints_between.h"
 #include "limber/templates/pose_search.h"
 #include "limber/templates/quadruped_landmarks.h"
 #include "limber/templates/template_embedding.h"
@@ -93,7 +94,8 @@ TemplateFit bestEmbedding(const TemplateSkeleton& skeleton, const Model& model, 
     std::vector<TemplateVariant> variants = standing;
     const std::vector<TemplateVariant> bent = bentToPins(skeleton, places);
     variants.insert(variants.end(), bent.begin(), bent.end());
-    const std::vector<TemplateFit> fits = fitVariants(variants, body, frame, places, {kCoarseSpheres, false});
+    TemplateEmbedder coarse(skeleton, body, frame, places, {kCoarseSpheres, false});
+    const std::vector<TemplateFit> fits = fitVariants(variants, coarse);
     std::vector<std::size_t> order(fits.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_sort(order.begin(), order.end(),
@@ -105,14 +107,17 @@ TemplateFit bestEmbedding(const TemplateSkeleton& skeleton, const Model& model, 
   }
   std::stable_sort(looks.begin(), looks.end(), [](const Look& a, const Look& b) { return a.cost < b.cost; });
   std::optional<TemplateFit> best;
+  std::optional<TemplateEmbedder> bestEmbedder;
   for (std::size_t i = 0; i < std::min(looks.size(), kFramesRefined); ++i) {
     const BodyFrame& frame = looks[i].frame;
-    std::vector<TemplateFit> fits =
-        fitVariants(looks[i].variants, body, frame, pinsIn(skeleton, frame, pins), {body.spheres.size(), true});
+    TemplateEmbedder embedder(skeleton, body, frame, pinsIn(skeleton, frame, pins), {body.spheres.size(), true});
+    std::vector<TemplateFit> fits = fitVariants(looks[i].variants, embedder);
     TemplateFit& fit = *std::min_element(fits.begin(), fits.end(), cheaper);
-    if (!best || cheaper(fit, *best)) best = std::move(fit);
+    if (best && !cheaper(fit, *best)) continue;
+    best = std::move(fit);
+    bestEmbedder = std::move(embedder);
   }
-  searchPose(body, *best);
+  searchPose(*bestEmbedder, *best);
   best->limbs = limbsIn(best->skeleton, best->embedding, body, best->frame);
   const double flat = armFlatness(best->skeleton, best->embedding.places, body, best->frame);
   best->cost += kWings * std::clamp((flat - kRoundArm) / (kFlatArm - kRoundArm), 0.0, 1.0);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <string>
 
+#include "limber/templates/joints_between.h"
+
 namespace limber {
 
 namespace {

@@ -14,7 +14,9 @@ struct Embedded {
 
   Embedded() {
     const std::vector<TemplateVariant> variant = {{skeleton, 0}};
-    embedding = embedTemplate(variant, person.body, person.frame, TemplatePins(skeleton.jointCount())).front();
+    embedding = TemplateEmbedder(skeleton, person.body, person.frame, TemplatePins(skeleton.jointCount()))
+                    .embed(variant)
+                    .front();
   }
   Index joint(const char* name) const { return skeleton.find(name).value(); }
   std::string missing() const {

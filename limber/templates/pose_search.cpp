@@ -17,8 +17,8 @@ constexpr double kSizeSteps[] = {0.8, 1, 1.25};
 constexpr double kLeftOut = 0.5;  // of being far from all bones: such ends are reached for
 constexpr std::size_t kMostEnds = 3;
 
-TemplateFit nearestOf(const std::vector<TemplateVariant>& variants, const BodyVolume& body, const TemplateFit& fit) {
-  std::vector<TemplateFit> fits = fitVariants(variants, body, fit.frame, fit.pins, {body.spheres.size(), true});
+TemplateFit nearestOf(const std::vector<TemplateVariant>& variants, TemplateEmbedder& embedder) {
+  std::vector<TemplateFit> fits = fitVariants(variants, embedder);
   return std::move(*std::min_element(fits.begin(), fits.end(), cheaper));
 }
 
@@ -35,13 +35,13 @@ std::vector<BendTarget> foundTargets(const TemplateFit& fit) {
   return targets;
 }
 
-void bendNearer(const BodyVolume& body, TemplateFit& fit) {
+void bendNearer(TemplateEmbedder& embedder, TemplateFit& fit) {
   for (int bend = 0; bend < kMostBends; ++bend) {
     std::vector<TemplateVariant> variants;
     for (const double step : kSizeSteps) {
       variants.push_back(bentTemplate(fit.skeleton, foundTargets(fit), step * sizeOf(fit.skeleton)));
     }
-    TemplateFit nearest = nearestOf(variants, body, fit);
+    TemplateFit nearest = nearestOf(variants, embedder);
     if (!cheaper(nearest, fit)) return;
     fit = std::move(nearest);
   }
@@ -90,17 +90,17 @@ TemplateVariant reaching(const TemplateFit& fit, Index tip, const Vec3& end) {
 }
 
 // Whether a limb that reached for an end left out made the fit cheaper.
-bool reachOut(const BodyVolume& body, TemplateFit& fit) {
+bool reachOut(TemplateEmbedder& embedder, TemplateFit& fit) {
   std::vector<TemplateVariant> variants;
-  for (const Vec3& end : endsLeftOut(body, fit)) {
+  for (const Vec3& end : endsLeftOut(embedder.body(), fit)) {
     for (Index j = 0; j < fit.skeleton.jointCount(); ++j) {
       const bool isTip = fit.skeleton.joints[j].role == TemplateRole::kTip;
       if (isTip && !fit.pins[j]) variants.push_back(reaching(fit, j, end));
     }
   }
   if (variants.empty()) return false;
-  TemplateFit nearest = nearestOf(variants, body, fit);
-  bendNearer(body, nearest);
+  TemplateFit nearest = nearestOf(variants, embedder);
+  bendNearer(embedder, nearest);
   if (!cheaper(nearest, fit)) return false;
   fit = std::move(nearest);
   return true;
@@ -108,12 +108,12 @@ bool reachOut(const BodyVolume& body, TemplateFit& fit) {
 
 }  // namespace
 
-void searchPose(const BodyVolume& body, TemplateFit& fit) {
+void searchPose(TemplateEmbedder& embedder, TemplateFit& fit) {
   const bool pinned = fit.skeleton.bent();
   if (!pinned && (fit.cost < kDoubtful || fit.frame.symmetric())) return;
   TemplateFit bent = fit;
-  bendNearer(body, bent);
-  for (int reach = 0; reach < kMostReaches && reachOut(body, bent); ++reach) {
+  bendNearer(embedder, bent);
+  for (int reach = 0; reach < kMostReaches && reachOut(embedder, bent); ++reach) {
   }
   if (pinned || bent.cost < std::min(kMostCost, kWorthBending * fit.cost)) fit = std::move(bent);
 }

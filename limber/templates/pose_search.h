@@ -10,7 +10,8 @@ namespace limber {
 // the other to ends of the body that no bone comes near. Fits that are good as they stand are left alone, and so are
 // even bodies; without pins a pose must be much cheaper, and cheap.
 //
+// embedder  that the fit was found with
 // Cost: some whole-body solves and embeddings for each bend.
-void searchPose(const BodyVolume& body, TemplateFit& fit);
+void searchPose(TemplateEmbedder& embedder, TemplateFit& fit);
 
 }  // namespace limber

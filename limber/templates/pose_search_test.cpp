@@ -9,10 +9,10 @@ namespace limber {
 TEST(PoseSearch, LeavesWhatStandsAlone) {
   const testing::MeasuredPerson& person = testing::measuredPerson();
   const TemplateSkeleton& skeleton = findTemplate("humanoid");
-  std::vector<TemplateFit> fits =
-      fitVariants({{skeleton, 0}}, person.body, person.frame, TemplatePins(skeleton.jointCount()), {});
+  TemplateEmbedder embedder(skeleton, person.body, person.frame, TemplatePins(skeleton.jointCount()));
+  std::vector<TemplateFit> fits = fitVariants({{skeleton, 0}}, embedder);
   const std::vector<Vec3> before = fits.front().embedding.places;
-  searchPose(person.body, fits.front());
+  searchPose(embedder, fits.front());
   EXPECT_FALSE(fits.front().skeleton.bent());
   EXPECT_EQ(fits.front().embedding.places, before);
 }

@@ -6,6 +6,7 @@
 
 #include "limber/body/leg_finder.h"
 #include "limber/body/medial_way.h"
+#include "limber/templates/joints_between.h"
 #include "limber/templates/template_embedding.h"
 
 namespace limber {

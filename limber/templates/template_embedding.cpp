@@ -1,11 +1,14 @@
 #include "limber/templates/template_embedding.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include "limber/core/error.h"
 #include "limber/core/parallel.h"
+#include "limber/templates/joints_between.h"
 
 namespace limber {
 
@@ -34,6 +37,9 @@ constexpr double kPinnedEvenly = 1e-3;  // heights between a pin and the mirror 
 constexpr double kDescentSteps[] = {0.01, 0.005};  // heights
 constexpr int kDescentRounds = 2;                  // with each
 
+constexpr std::size_t kLanes = 32;  // side by side: compilers make no vector instructions of 16 or less
+constexpr float kNever = 1e30f;     // cost
+
 struct Candidate {
   Vec3 place = Vec3::Zero();
   double radius = 0;
@@ -41,11 +47,18 @@ struct Candidate {
   double toTip = 0;      // heights to the nearest end of the model
 };
 
-class Embedder {
+void checkJoints(const TemplateSkeleton& variant, std::size_t joints) {
+  if (variant.jointCount() == joints) return;
+  throw Error(ErrorCode::kBadArgument, "variants of a template and its pins must have the same joints", variant.name);
+}
+
+}  // namespace
+
+class TemplateEmbedder::Search {
  public:
   // `skeleton` says which joints there are; their places do not matter yet.
-  Embedder(const TemplateSkeleton& skeleton, const BodyVolume& body, const BodyFrame& frame, const TemplatePins& pins,
-           const EmbeddingOptions& options)
+  Search(const TemplateSkeleton& skeleton, const BodyVolume& body, const BodyFrame& frame, const TemplatePins& pins,
+         const EmbeddingOptions& options)
       : skeleton_(skeleton), body_(body), frame_(frame), pins_(pins), options_(options), half_(frame.symmetric()) {
     half_ = half_ && pinnedEvenly(skeleton, pins);
     chooseJoints();
@@ -54,13 +67,23 @@ class Embedder {
       chooseJoints();
     }
     gatherCandidates();
-    measurePairs();
+    measureBones();
   }
 
-  TemplateEmbedding embed(const TemplateSkeleton& variant) {
-    skeleton_ = variant;
-    solve();
-    return readOff();
+  std::vector<TemplateEmbedding> embed(std::span<const TemplateVariant> variants) {
+    std::vector<Tree> trees;
+    for (const TemplateVariant& variant : variants) {
+      skeleton_ = variant.skeleton;
+      trees.push_back(treeOf());
+    }
+    solve(trees);
+    std::vector<TemplateEmbedding> embeddings;
+    for (std::size_t v = 0; v < variants.size(); ++v) {
+      skeleton_ = variants[v].skeleton;
+      embeddings.push_back(readOff(trees[v]));
+      embeddings.back().cost += variants[v].cost;
+    }
+    return embeddings;
   }
 
  private:
@@ -181,23 +204,24 @@ class Embedder {
     return kOutside * outside * length / steps;
   }
 
-  void measurePairs() {
+  void measureBones() {
     const std::size_t count = candidates_.size();
-    pairs_.resize(count * count);
+    bones_.assign(count, Bones(padded(count)));
     parallelFor(count, 8, [&](std::size_t begin, std::size_t end) {
       for (std::size_t a = begin; a < end; ++a) {
+        Bones& bones = bones_[a];
         for (std::size_t b = 0; b < count; ++b) {
-          Pair& pair = pairs_[a * count + b];
-          const Vec3 bone = candidates_[b].place - candidates_[a].place;
-          const double length = std::max(bone.norm(), 1e-3);
-          pair.direction = (bone / length).cast<float>();
-          pair.logLength = static_cast<float>(std::log(length));
-          if (b > a) pair.outside = static_cast<float>(outsidePenalty(candidates_[a].place, candidates_[b].place));
+          const Vec3 way = candidates_[b].place - candidates_[a].place;
+          const double length = std::max(way.norm(), 1e-3);
+          for (int axis = 0; axis < 3; ++axis) bones.direction[axis][b] = static_cast<float>(way[axis] / length);
+          bones.logLength[b] = static_cast<float>(std::log(length));
+          if (b > a) bones.outside[b] = static_cast<float>(outsidePenalty(candidates_[a].place, candidates_[b].place));
         }
       }
     });
     for (std::size_t a = 0; a < count; ++a) {
-      for (std::size_t b = 0; b < a; ++b) pairs_[a * count + b].outside = pairs_[b * count + a].outside;
+      bones_[a].outside[a] = 0;
+      for (std::size_t b = 0; b < a; ++b) bones_[a].outside[b] = bones_[b].outside[a];
     }
   }
 
@@ -244,40 +268,96 @@ class Embedder {
     return std::min(shape.worst, shapePenalty);
   }
 
-  // From the leaves up: what the tree below a joint costs at best, for each place of the joint.
-  void solve() {
+  // A variant while it is solved.
+  struct Tree {
+    std::vector<BoneShape> shapes;          // by joint
+    std::vector<std::vector<float>> below;  // [joint][candidate]: what the tree from there on costs at best
+  };
+
+  Tree treeOf() const {
     const std::size_t count = candidates_.size();
-    below_.assign(skeleton_.jointCount(), {});
-    choice_.assign(skeleton_.jointCount(), {});
+    Tree tree;
+    tree.shapes.resize(skeleton_.jointCount());
+    tree.below.resize(skeleton_.jointCount());
     for (const Index j : chosen_) {
-      below_[j].resize(count);
+      tree.below[j].resize(padded(count));
       for (std::size_t c = 0; c < count; ++c) {
         const bool allowed = pinned_[j] == kNoIndex || pinned_[j] == c;
-        below_[j][c] = allowed ? static_cast<float>(placePenalty(j, candidates_[c])) : 1e9f;
+        tree.below[j][c] = allowed ? static_cast<float>(placePenalty(j, candidates_[c])) : 1e9f;
       }
+      if (above_[j] != kNoIndex) tree.shapes[j] = shapeOf(j);
     }
+    return tree;
+  }
+
+  // Joints by how many others hang on them one below the other: ends first.
+  std::vector<std::vector<Index>> levels() const {
+    std::vector<std::size_t> level(skeleton_.jointCount(), 0);
+    std::vector<std::vector<Index>> levels;
     for (auto j = chosen_.rbegin(); j != chosen_.rend(); ++j) {
       if (above_[*j] == kNoIndex) continue;
-      const BoneShape shape = shapeOf(*j);
-      const std::vector<float>& own = below_[*j];
-      std::vector<float>& parent = below_[above_[*j]];
-      choice_[*j].resize(count);
-      parallelFor(count, 16, [&](std::size_t begin, std::size_t end) {
+      if (level[*j] >= levels.size()) levels.resize(level[*j] + 1);
+      levels[level[*j]].push_back(*j);
+      level[above_[*j]] = std::max(level[above_[*j]], level[*j] + 1);
+    }
+    return levels;
+  }
+
+  // From the leaves up, all trees together: the bones of a candidate are many, and better used often while they are at
+  // hand.
+  void solve(std::vector<Tree>& trees) const {
+    for (const std::vector<Index>& joints : levels()) {
+      parallelFor(candidates_.size(), 16, [&](std::size_t begin, std::size_t end) {
         for (std::size_t a = begin; a < end; ++a) {
-          float best = std::numeric_limits<float>::infinity();
-          for (std::size_t b = 0; b < count; ++b) {
-            const Pair& pair = pairs_[a * count + b];
-            const float least = own[b] + pair.outside;
-            if (least >= best) continue;
-            const float cost = least + bonePenalty(shape, pair.logLength, pair.direction);
-            if (cost >= best) continue;
-            best = cost;
-            choice_[*j][a] = static_cast<Index>(b);
+          for (Tree& tree : trees) {
+            for (const Index j : joints) tree.below[above_[j]][a] += leastFrom(tree, j, a);
           }
-          parent[a] += best;
         }
       });
     }
+  }
+
+  // What the bones from a candidate and the tree below them cost, for some candidates below in a row. Loops without
+  // branches, which compilers turn into vector instructions.
+  using Lanes = std::array<float, kLanes>;
+  Lanes costsFrom(const Tree& tree, Index j, std::size_t above, std::size_t first) const {
+    const BoneShape& shape = tree.shapes[j];
+    const Bones& bones = bones_[above];
+    Lanes costs;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const std::size_t b = first + lane;
+      const float stretch = bones.logLength[b] - shape.logLength;
+      const float along = shape.direction.x() * bones.direction[0][b] + shape.direction.y() * bones.direction[1][b] +
+                          shape.direction.z() * bones.direction[2][b];
+      costs[lane] = shape.lengthWeight * stretch * stretch + shape.turnWeight * (1 - along);
+    }
+    for (float& cost : costs) cost = cost < shape.worst ? cost : shape.worst;
+    const float* below = tree.below[j].data() + first;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) costs[lane] += below[lane] + bones.outside[first + lane];
+    return costs;
+  }
+
+  float leastFrom(const Tree& tree, Index j, std::size_t above) const {
+    Lanes least;
+    least.fill(kNever);
+    for (std::size_t first = 0; first < bones_[above].outside.size(); first += kLanes) {
+      const Lanes costs = costsFrom(tree, j, above, first);
+      for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        least[lane] = costs[lane] < least[lane] ? costs[lane] : least[lane];
+      }
+    }
+    return *std::min_element(least.begin(), least.end());
+  }
+
+  // The first candidate that has the least costs.
+  std::size_t choiceFrom(const Tree& tree, Index j, std::size_t above) const {
+    const float least = leastFrom(tree, j, above);
+    for (std::size_t first = 0; first < bones_[above].outside.size(); first += kLanes) {
+      const Lanes costs = costsFrom(tree, j, above, first);
+      const auto found = std::find(costs.begin(), costs.end(), least);
+      if (found != costs.end()) return first + static_cast<std::size_t>(found - costs.begin());
+    }
+    return 0;
   }
 
   double boneCost(Index j, const Candidate& above, const Candidate& below) const {
@@ -324,16 +404,16 @@ class Embedder {
     }
   }
 
-  TemplateEmbedding readOff() {
+  TemplateEmbedding readOff(const Tree& tree) const {
     TemplateEmbedding result;
     result.places.assign(skeleton_.jointCount(), Vec3::Zero());
     result.costs.assign(skeleton_.jointCount(), 0.0);
-    std::vector<Index> at(skeleton_.jointCount(), 0);
+    std::vector<std::size_t> at(skeleton_.jointCount(), 0);
     std::vector<Candidate> found(skeleton_.jointCount());
     for (const Index j : chosen_) {
-      at[j] = above_[j] == kNoIndex
-                  ? static_cast<Index>(std::min_element(below_[j].begin(), below_[j].end()) - below_[j].begin())
-                  : choice_[j][at[above_[j]]];
+      const auto first = tree.below[j].begin(), last = first + static_cast<std::ptrdiff_t>(candidates_.size());
+      at[j] = above_[j] == kNoIndex ? static_cast<std::size_t>(std::min_element(first, last) - first)
+                                    : choiceFrom(tree, j, at[above_[j]]);
       found[j] = candidates_[at[j]];
     }
     for (const Index j : chosen_) {
@@ -355,25 +435,28 @@ class Embedder {
     return result;
   }
 
-  struct Pair {
-    Vec3f direction = Vec3f::Zero();
-    float logLength = 0, outside = 0;
+  static std::size_t padded(std::size_t count) { return (count + kLanes - 1) / kLanes * kLanes; }
+
+  // From one candidate to each, and to some more that are never chosen.
+  struct Bones {
+    std::vector<float> outside, logLength;
+    std::array<std::vector<float>, 3> direction;  // x, y and z
+
+    explicit Bones(std::size_t count) : outside(count, kNever), logLength(count, 0.0f) {
+      direction.fill(std::vector<float>(count, 0.0f));
+    }
   };
 
   TemplateSkeleton skeleton_;
   const BodyVolume& body_;
-  const BodyFrame& frame_;
-  const TemplatePins& pins_;
+  BodyFrame frame_;
+  TemplatePins pins_;
   EmbeddingOptions options_;
   bool half_;  // the right side mirrors the left one
   std::vector<Index> chosen_, above_, pinned_;
   std::vector<Candidate> candidates_;
-  std::vector<Pair> pairs_;                // [above][below]
-  std::vector<std::vector<float>> below_;  // [joint][candidate]
-  std::vector<std::vector<Index>> choice_;
+  std::vector<Bones> bones_;  // by the candidate above
 };
-
-}  // namespace
 
 bool pinnedEvenly(const TemplateSkeleton& skeleton, const TemplatePins& pins) {
   for (Index j = 0; j < skeleton.jointCount(); ++j) {
@@ -384,68 +467,20 @@ bool pinnedEvenly(const TemplateSkeleton& skeleton, const TemplatePins& pins) {
   return true;
 }
 
-std::vector<TemplateEmbedding> embedTemplate(std::span<const TemplateVariant> variants, const BodyVolume& body,
-                                             const BodyFrame& frame, const TemplatePins& pins,
-                                             const EmbeddingOptions& options) {
-  std::vector<TemplateEmbedding> embeddings;
-  if (variants.empty()) return embeddings;
-  for (const auto& [variant, cost] : variants) {
-    if (variant.jointCount() != variants.front().skeleton.jointCount() || pins.size() != variant.jointCount()) {
-      throw Error(ErrorCode::kBadArgument, "variants of a template and its pins must have the same joints",
-                  variant.name);
-    }
-  }
-  Embedder embedder(variants.front().skeleton, body, frame, pins, options);
-  for (const TemplateVariant& variant : variants) {
-    embeddings.push_back(embedder.embed(variant.skeleton));
-    embeddings.back().cost += variant.cost;
-  }
-  return embeddings;
+TemplateEmbedder::TemplateEmbedder(const TemplateSkeleton& skeleton, const BodyVolume& body, const BodyFrame& frame,
+                                   const TemplatePins& pins, const EmbeddingOptions& options)
+    : body_(&body), frame_(frame), pins_(pins) {
+  checkJoints(skeleton, pins.size());
+  search_ = std::make_unique<Search>(skeleton, body, frame, pins, options);
 }
 
-void placeBetween(const TemplateSkeleton& skeleton, std::vector<Vec3>& places) {
-  const Index count = skeleton.jointCount();
-  const auto between = [&](Index j) { return skeleton.joints[j].role == TemplateRole::kBetween; };
-  // The placed joint above each joint, and below it: a joint between that leads to none goes along with the bone that
-  // the placed joint above it has.
-  std::vector<std::optional<Index>> above(count), below(count), firstBelow(count);
-  for (Index j = 0; j < count; ++j) {
-    if (!skeleton.joints[j].parent) continue;
-    const Index parent = *skeleton.joints[j].parent;
-    above[j] = between(parent) ? above[parent] : std::optional(parent);
-    if (!between(j) && above[j] && !firstBelow[*above[j]]) firstBelow[*above[j]] = j;
-  }
-  for (Index j = count; j-- > 0;) {
-    const std::optional<Index> parent = skeleton.joints[j].parent;
-    const std::optional<Index> own = between(j) ? below[j] : std::optional(j);
-    if (parent && between(*parent) && own) below[*parent] = own;
-  }
-  const auto highest = std::max_element(
-      skeleton.joints.begin(), skeleton.joints.end(), [](const TemplateJoint& a, const TemplateJoint& b) {
-        const bool known[] = {a.role != TemplateRole::kBetween, b.role != TemplateRole::kBetween};
-        return known[0] == known[1] ? a.place.y() < b.place.y() : known[1];
-      });
-  for (Index j = 0; j < count; ++j) {
-    if (!between(j)) continue;
-    if (!above[j]) {
-      // Above all that are placed: what is on the ground stays there.
-      const Vec3& found = places[highest - skeleton.joints.begin()];
-      places[j] = found + found.y() / std::max(highest->place.y(), 1e-6) * (skeleton.joints[j].place - highest->place);
-      continue;
-    }
-    const Vec3 &from = skeleton.joints[*above[j]].place, &start = places[*above[j]];
-    const Vec3 offset = skeleton.joints[j].place - from;
-    const std::optional<Index> end = below[j] ? below[j] : firstBelow[*above[j]];
-    if (!end) {
-      places[j] = start + offset;
-      continue;
-    }
-    const Vec3 bone = skeleton.joints[*end].place - from, found = places[*end] - start;
-    const double squared = std::max(bone.squaredNorm(), 1e-12);
-    const double part = offset.dot(bone) / squared;
-    const double scale = std::sqrt(found.squaredNorm() / squared);
-    places[j] = start + part * found + scale * (Quat::FromTwoVectors(bone, found) * (offset - part * bone));
-  }
+TemplateEmbedder::~TemplateEmbedder() = default;
+TemplateEmbedder::TemplateEmbedder(TemplateEmbedder&&) noexcept = default;
+TemplateEmbedder& TemplateEmbedder::operator=(TemplateEmbedder&&) noexcept = default;
+
+std::vector<TemplateEmbedding> TemplateEmbedder::embed(std::span<const TemplateVariant> variants) {
+  for (const TemplateVariant& variant : variants) checkJoints(variant.skeleton, pins_.size());
+  return search_->embed(variants);
 }
 
 }  // namespace limber

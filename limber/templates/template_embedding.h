@@ -1,6 +1,7 @@
 // The places of a template's joints inside a model.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -35,14 +36,35 @@ struct EmbeddingOptions {
 // then refined: the same penalties are lowered further by small steps of single joints. A symmetric body gets a
 // symmetric embedding: its middle and one side are embedded, the other side is their mirror image.
 //
-// variants  one template, or the same with joints in other places; one embedding for each
-// pins      #J
-// Throws Error kBadArgument where variants do not have the same joints. Cost: O(J S^2) for S spheres.
-std::vector<TemplateEmbedding> embedTemplate(std::span<const TemplateVariant> variants, const BodyVolume& body,
-                                             const BodyFrame& frame, const TemplatePins& pins,
-                                             const EmbeddingOptions& options = {});
+// A class, since bones between all pairs of places are measured once for all variants of a template.
+class TemplateEmbedder {
+ public:
+  // Of this body, which must outlive it.
+  //
+  // skeleton  says which joints there are
+  // pins      #J; Error kBadArgument where they are not
+  // Cost: O(S^2) ways through the body, for S spheres.
+  TemplateEmbedder(const TemplateSkeleton& skeleton, const BodyVolume& body, const BodyFrame& frame,
+                   const TemplatePins& pins, const EmbeddingOptions& options = {});
+  ~TemplateEmbedder();
+  TemplateEmbedder(TemplateEmbedder&&) noexcept;
+  TemplateEmbedder& operator=(TemplateEmbedder&&) noexcept;
 
-// Places the joints between anew, after others were moved: as the template has them between their placed neighbours.
-void placeBetween(const TemplateSkeleton& skeleton, std::vector<Vec3>& places);
+  const BodyVolume& body() const { return *body_; }
+  const BodyFrame& frame() const { return frame_; }
+  const TemplatePins& pins() const { return pins_; }
+
+  // variants  one template, or the same with joints in other places; one embedding for each
+  // Throws Error kBadArgument where variants do not have the same joints. Cost: O(J S^2) each.
+  std::vector<TemplateEmbedding> embed(std::span<const TemplateVariant> variants);
+
+ private:
+  class Search;
+
+  const BodyVolume* body_;
+  BodyFrame frame_;
+  TemplatePins pins_;
+  std::unique_ptr<Search> search_;
+};
 
 }  // namespace limber

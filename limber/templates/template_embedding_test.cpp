@@ -19,7 +19,8 @@ TEST(TemplateEmbedding, PutsJointsIntoTheirLimbs) {
   const testing::MeasuredPerson& person = testing::measuredPerson();
   const TemplateSkeleton& skeleton = findTemplate("humanoid");
   const TemplatePins pins(skeleton.jointCount());
-  const TemplateEmbedding embedding = embedTemplate(asIs(skeleton), person.body, person.frame, pins).front();
+  const TemplateEmbedding embedding =
+      TemplateEmbedder(skeleton, person.body, person.frame, pins).embed(asIs(skeleton)).front();
   const auto place = [&](const char* name) { return person.frame.fromBody(embedding.places[*skeleton.find(name)]); };
   EXPECT_LT((place("leftHand") - person.shape.hand).norm(), 0.08);
   EXPECT_LT((place("leftLowerArm") - person.shape.elbow).norm(), 0.06);
@@ -36,7 +37,7 @@ TEST(TemplateEmbedding, IsRefinedTowardsTheMiddleOfLimbs) {
   const TemplateSkeleton& skeleton = findTemplate("humanoid");
   const TemplatePins pins(skeleton.jointCount());
   const auto embedded = [&](bool refine) {
-    return embedTemplate(asIs(skeleton), person.body, person.frame, pins, {1000, refine}).front();
+    return TemplateEmbedder(skeleton, person.body, person.frame, pins, {1000, refine}).embed(asIs(skeleton)).front();
   };
   const TemplateEmbedding rough = embedded(false), fine = embedded(true);
   EXPECT_EQ(rough.cost, fine.cost);
@@ -60,7 +61,8 @@ TEST(TemplateEmbedding, KeepsPins) {
   TemplatePins pins(skeleton.jointCount());
   const Vec3 pin(0.2, 0.7, 0.05);
   pins[*skeleton.find("leftLowerArm")] = pin;
-  const TemplateEmbedding embedding = embedTemplate(asIs(skeleton), person.body, person.frame, pins).front();
+  const TemplateEmbedding embedding =
+      TemplateEmbedder(skeleton, person.body, person.frame, pins).embed(asIs(skeleton)).front();
   EXPECT_LT((embedding.places[*skeleton.find("leftLowerArm")] - pin).norm(), 1e-9);
 }
 
@@ -72,29 +74,33 @@ TEST(TemplateEmbedding, CostsMoreInWhatIsNoPerson) {
   testing::addCapsule(sausage, {0, 0.2, 0}, {0, 0.8, 0}, 0.2);
   const BodyVolume body = measureBody(sausage);
   const BodyFrame frame = frameAlong(sausage, body, Vec3::UnitY(), Vec3::UnitZ());
-  EXPECT_GT(embedTemplate(asIs(skeleton), body, frame, pins).front().cost,
-            2 * embedTemplate(asIs(skeleton), person.body, person.frame, pins).front().cost);
+  EXPECT_GT(TemplateEmbedder(skeleton, body, frame, pins).embed(asIs(skeleton)).front().cost,
+            2 * TemplateEmbedder(skeleton, person.body, person.frame, pins).embed(asIs(skeleton)).front().cost);
 }
 
 TEST(TemplateEmbedding, RefusesVariantsOfOtherJoints) {
   const testing::MeasuredPerson& person = testing::measuredPerson();
   const std::vector<TemplateVariant> variants = {{findTemplate("humanoid"), 0}, {findTemplate("bird"), 0}};
   const TemplatePins pins(variants[0].skeleton.jointCount());
-  EXPECT_THROW(embedTemplate(variants, person.body, person.frame, pins), Error);
+  TemplateEmbedder embedder(variants[0].skeleton, person.body, person.frame, pins);
+  EXPECT_THROW(embedder.embed(variants), Error);
+  EXPECT_THROW(TemplateEmbedder(variants[1].skeleton, person.body, person.frame, pins), Error);
 }
 
-// Joints between go along with their placed neighbours: turned and scaled as these are.
-TEST(TemplateEmbedding, PlacesJointsBetween) {
-  TemplateSkeleton skeleton;
-  skeleton.joints = {{"a", {}, {0, 0, 0}, TemplateRole::kPlaced, 1, 1, {}},
-                     {"b", 0, {0, 0.25, 0}, TemplateRole::kBetween, 1, 1, {}},
-                     {"c", 1, {0, 1, 0}, TemplateRole::kPlaced, 1, 1, {}},
-                     {"d", 2, {0, 2, 0}, TemplateRole::kTip, 1, 1, {}},
-                     {"e", 2, {0.5, 1.5, 0}, TemplateRole::kBetween, 1, 1, {}}};
-  std::vector<Vec3> places = {{0, 0, 0}, {9, 9, 9}, {2, 0, 0}, {4, 0, 0}, {9, 9, 9}};
-  placeBetween(skeleton, places);
-  EXPECT_LT((places[1] - Vec3(0.5, 0, 0)).norm(), 1e-9);
-  EXPECT_LT((places[4] - Vec3(3, -1, 0)).norm(), 1e-9);
+TEST(TemplateEmbedding, OfManyVariantsIsThatOfEach) {
+  const testing::MeasuredPerson& person = testing::measuredPerson();
+  const TemplateSkeleton& skeleton = findTemplate("humanoid");
+  const TemplatePins pins(skeleton.jointCount());
+  const std::vector<TemplateVariant> variants = templateVariants(skeleton);
+  ASSERT_GT(variants.size(), 2u);
+  TemplateEmbedder embedder(skeleton, person.body, person.frame, pins);
+  const std::vector<TemplateEmbedding> together = embedder.embed(variants);
+  for (std::size_t v = 0; v < variants.size(); ++v) {
+    const TemplateEmbedding alone =
+        TemplateEmbedder(skeleton, person.body, person.frame, pins).embed(std::span(&variants[v], 1)).front();
+    EXPECT_EQ(together[v].places, alone.places);
+    EXPECT_EQ(together[v].cost, alone.cost);
+  }
 }
 
 }  // namespace limber

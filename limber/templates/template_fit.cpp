@@ -65,15 +65,15 @@ double farFromBones(const TemplateSkeleton& skeleton, const std::vector<Vec3>& p
   return std::clamp((beyond - kNearBone) / (kFarFromBone - kNearBone), 0.0, 1.0);
 }
 
-std::vector<TemplateFit> fitVariants(const std::vector<TemplateVariant>& variants, const BodyVolume& body,
-                                     const BodyFrame& frame, const TemplatePins& pins,
-                                     const EmbeddingOptions& options) {
-  std::vector<TemplateEmbedding> embeddings = embedTemplate(variants, body, frame, pins, options);
+std::vector<TemplateFit> fitVariants(const std::vector<TemplateVariant>& variants, TemplateEmbedder& embedder) {
+  const BodyVolume& body = embedder.body();
+  const BodyFrame& frame = embedder.frame();
+  std::vector<TemplateEmbedding> embeddings = embedder.embed(variants);
   std::vector<TemplateFit> fits;
   for (std::size_t v = 0; v < variants.size(); ++v) {
     const double left = unexplained(variants[v].skeleton, embeddings[v].places, body, frame);
     const double cost = embeddings[v].cost + unusual(frame) + kUnexplained * left;
-    fits.push_back({variants[v].skeleton, frame, pins, std::move(embeddings[v]), cost, {}});
+    fits.push_back({variants[v].skeleton, frame, embedder.pins(), std::move(embeddings[v]), cost, {}});
   }
   // Feet point to the front, whichever way the rest of a body may be read; told once, by the best of them.
   const TemplateFit& best = *std::min_element(fits.begin(), fits.end(), cheaper);

@@ -26,10 +26,7 @@ inline bool cheaper(const TemplateFit& a, const TemplateFit& b) {
 }
 
 // One fit for each variant (one or more), all but their limbs.
-//
-// pins  #J, body space
-std::vector<TemplateFit> fitVariants(const std::vector<TemplateVariant>& variants, const BodyVolume& body,
-                                     const BodyFrame& frame, const TemplatePins& pins, const EmbeddingOptions& options);
+std::vector<TemplateFit> fitVariants(const std::vector<TemplateVariant>& variants, TemplateEmbedder& embedder);
 
 // How far a place (body space) is from all bones of a fit, beyond `radius` (heights): 0 near one, 1 where no bone comes
 // near.

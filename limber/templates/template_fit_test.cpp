@@ -12,7 +12,8 @@ TemplateFit personFacing(const Vec3& front) {
   const testing::MeasuredPerson& person = testing::measuredPerson();
   const TemplateSkeleton& skeleton = findTemplate("humanoid");
   const BodyFrame frame = frameAlong(person.shape.mesh, person.body, Vec3::UnitY(), front);
-  return fitVariants({{skeleton, 0}}, person.body, frame, TemplatePins(skeleton.jointCount()), {}).front();
+  TemplateEmbedder embedder(skeleton, person.body, frame, TemplatePins(skeleton.jointCount()));
+  return fitVariants({{skeleton, 0}}, embedder).front();
 }
 
 }  // namespace
@@ -27,8 +28,8 @@ TEST(TemplateFit, CostsMoreBackToFrontAndOnTheSide) {
 TEST(TemplateFit, CountsWhatTheVariantCosts) {
   const testing::MeasuredPerson& person = testing::measuredPerson();
   const TemplateSkeleton& skeleton = findTemplate("humanoid");
-  const std::vector<TemplateFit> fits = fitVariants({{skeleton, 0}, {skeleton, 0.25}}, person.body, person.frame,
-                                                    TemplatePins(skeleton.jointCount()), {});
+  TemplateEmbedder embedder(skeleton, person.body, person.frame, TemplatePins(skeleton.jointCount()));
+  const std::vector<TemplateFit> fits = fitVariants({{skeleton, 0}, {skeleton, 0.25}}, embedder);
   ASSERT_EQ(fits.size(), 2u);
   EXPECT_NEAR(fits[1].cost, fits[0].cost + 0.25, 1e-12);
   EXPECT_TRUE(cheaper(fits[0], fits[1]));
