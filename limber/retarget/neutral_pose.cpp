@@ -17,6 +17,15 @@ namespace {
 constexpr double kFootGoesAlong = 25 * kPi / 180;
 constexpr double kHock = 0.75;  // foot over shin
 constexpr double kNearAxis = 20 * kPi / 180;
+// A trunk, and a neck, that lean by more are bent: artists build upright ones with less.
+constexpr double kStoops = 25 * kPi / 180;
+constexpr double kBows = 45 * kPi / 180;
+// What arms and legs of people are long, over the way from the hips to the neck.
+struct Range {
+  double least, most;
+  bool has(double value) const { return value > least && value < most; }
+};
+constexpr Range kArms{0.6, 1.5}, kLegs{0.8, 2.1};
 constexpr double kOpposite = 100 * kPi / 180;  // between the ways from the hips to the head and to the feet, at least
 
 std::optional<Index> firstOf(const SkeletonMap& map, MapSide side, std::string_view part) {
@@ -125,6 +134,68 @@ void carry(const Skeleton& skeleton, std::span<const LooseJoint> loose, const st
   }
 }
 
+// A joint's bone in rest pose, and where it points in the neutral pose if it is off by more than the tolerance.
+struct Aim {
+  Vec3 rest, neutral;
+  double tolerance = 0;
+};
+using Aims = std::vector<std::optional<Aim>>;  // #J
+
+void aimLimbs(const SkeletonMap& map, MapSide side, const std::vector<Vec3>& rest, Aims& aims) {
+  for (const LimbBone& bone : limbBones()) {
+    const std::optional<Index> joint = firstOf(map, side, bone.part), end = firstOf(map, side, bone.end);
+    if (joint && end && (rest[*end] - rest[*joint]).norm() > 1e-9) {
+      aims[*joint] = Aim{rest[*end] - rest[*joint], bone.direction};
+    }
+  }
+}
+
+// The way through the first joints of parts; nothing where one is missing.
+double wayThrough(const SkeletonMap& map, MapSide side, const std::vector<Vec3>& rest,
+                  const std::array<std::string_view, 3>& parts) {
+  double length = 0;
+  for (std::size_t i = 1; i < parts.size(); ++i) {
+    const std::optional<Index> from = firstOf(map, side, parts[i - 1]), to = firstOf(map, side, parts[i]);
+    if (!from || !to) return 0;
+    length += (rest[*to] - rest[*from]).norm();
+  }
+  return length;
+}
+
+// The trunk's joints from the hips to the neck (or head); empty where it does not reach there.
+std::vector<Index> trunkOf(const SkeletonMap& map, MapSide side) {
+  const std::optional<Index> hips = firstOf(map, side, "hips"), neck = firstOf(map, side, "neck"),
+                             head = firstOf(map, side, "head");
+  if (!hips || (!neck && !head)) return {};
+  std::vector<Index> joints = {*hips};
+  if (const std::vector<Index>* trunk = jointsOfPart(map, side, "trunk")) {
+    joints.insert(joints.end(), trunk->begin(), trunk->end());
+  }
+  joints.push_back(neck ? *neck : *head);
+  return joints;
+}
+
+// One who stoops at rest (a statue, say) stands up: the hips turn the whole trunk, its middle what is still bent, the
+// neck a head that is bowed. Trunks and necks that lean less, and all of those whose limbs are no person's (a
+// dinosaur's), stand as they were built.
+void aimBentTrunk(const SkeletonMap& map, MapSide side, const std::vector<Vec3>& rest, Aims& aims) {
+  const std::vector<Index> trunk = trunkOf(map, side);
+  double length = 0;
+  for (std::size_t i = 1; i < trunk.size(); ++i) length += (rest[trunk[i]] - rest[trunk[i - 1]]).norm();
+  for (const std::string limb : {"left", "right"}) {
+    const double arm = wayThrough(map, side, rest, {limb + "UpperArm", limb + "LowerArm", limb + "Hand"}),
+                 leg = wayThrough(map, side, rest, {limb + "UpperLeg", limb + "LowerLeg", limb + "Foot"});
+    if (!(kArms.has(arm / length) && kLegs.has(leg / length))) return;
+  }
+  const Vec3 up = Vec3::UnitY();
+  const std::optional<Index> neck = firstOf(map, side, "neck"), head = firstOf(map, side, "head");
+  if (neck && head) aims[*neck] = Aim{rest[*head] - rest[*neck], up, kBows};
+  const Index hips = trunk.front(), middle = trunk[trunk.size() / 2], top = trunk.back();
+  if (angleOf(rest[top] - rest[hips], up) < kStoops) return;
+  aims[hips] = Aim{rest[top] - rest[hips], up};
+  if (middle != hips && middle != top) aims[middle] = Aim{rest[top] - rest[middle], up, kStoops};
+}
+
 }  // namespace
 
 const std::vector<Index>* jointsOfPart(const SkeletonMap& map, MapSide side, std::string_view part) {
@@ -160,15 +231,11 @@ NeutralPose neutralPose(const Skeleton& skeleton, const Pose& resting, const Ske
   for (const Affine& global : poseGlobals(skeleton, resting)) rest.push_back(global.translation());
   pose.toBody = bodyFrame(map, side, rest);
   std::vector<Quat> turns(skeleton.jointCount(), Quat::Identity());
-  std::vector<std::optional<std::pair<Vec3, Vec3>>> aims(skeleton.jointCount());  // rest direction, neutral direction
+  Aims aims(skeleton.jointCount());
   std::vector<bool> isFoot(skeleton.jointCount()), stands(skeleton.jointCount());
   for (Vec3& position : rest) position = pose.toBody * position;
-  for (const LimbBone& bone : limbBones()) {
-    const std::optional<Index> joint = firstOf(map, side, bone.part), end = firstOf(map, side, bone.end);
-    if (joint && end && (rest[*end] - rest[*joint]).norm() > 1e-9) {
-      aims[*joint] = std::pair{Vec3(rest[*end] - rest[*joint]), bone.direction};
-    }
-  }
+  aimLimbs(map, side, rest, aims);
+  aimBentTrunk(map, side, rest, aims);
   const std::vector<LooseJoint> loose =
       map.find("hips") ? looseJoints(skeleton, map, side, rest) : std::vector<LooseJoint>();
   for (const std::string leg : {"left", "right"}) {
@@ -189,7 +256,9 @@ NeutralPose neutralPose(const Skeleton& skeleton, const Pose& resting, const Ske
     restRotations.push_back((parentRest * resting.locals[j].rotation).normalized());
     const Quat above = joint.parent ? turns[*joint.parent] : Quat::Identity();
     turns[j] = above;
-    if (aims[j]) turns[j] = (shortestRotation(above * aims[j]->first, aims[j]->second) * above).normalized();
+    if (aims[j] && angleOf(above * aims[j]->rest, aims[j]->neutral) >= aims[j]->tolerance) {
+      turns[j] = (shortestRotation(above * aims[j]->rest, aims[j]->neutral) * above).normalized();
+    }
     const bool free = stands[j] || angleBetween(Quat::Identity(), above) < kFootGoesAlong;
     if (isFoot[j] && free) turns[j] = Quat::Identity();
     pose.rotations.push_back((turns[j] * restRotations[j]).normalized());

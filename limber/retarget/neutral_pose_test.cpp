@@ -1,5 +1,8 @@
 #include "limber/retarget/neutral_pose.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "limber/retarget/testing/test_motion.h"
@@ -19,6 +22,12 @@ class NeutralPoses : public ::testing::Test {
     return (pose.positions[skeleton.find(to).value()] - pose.positions[skeleton.find(from).value()]).normalized();
   }
 
+  Vec3 restBone(const Skeleton& skeleton, const char* from, const char* to) const {
+    const std::vector<Affine> globals = restGlobals(skeleton);
+    return (globals[skeleton.find(to).value()].translation() - globals[skeleton.find(from).value()].translation())
+        .normalized();
+  }
+
   const Skeleton person = practiceHumanoid();
 };
 
@@ -30,6 +39,37 @@ TEST_F(NeutralPoses, ArmsToTheSidesLegsDownWhateverTheRestPoseIs) {
   EXPECT_LT((bone(bent, "rightLowerArm", "rightHand") + Vec3::UnitX()).norm(), 1e-9);
   EXPECT_LT((bone(bent, "leftUpperLeg", "leftLowerLeg") + Vec3::UnitY()).norm(), 1e-9);
   EXPECT_LT((bone(bent, "leftLowerLeg", "leftFoot") + Vec3::UnitY()).norm(), 1e-9);
+}
+
+// A statue that stoops and bows its head; of its shoulders and hips the same bones are left.
+TEST_F(NeutralPoses, OneWhoStoopsStandsUp) {
+  const Skeleton stooping = withOtherAxes(inRestPose(
+      person,
+      {{"hips", turn(Vec3::UnitX(), 35)}, {"chest", turn(Vec3(1, 0, 0.3), 50)}, {"neck", turn(Vec3::UnitX(), 20)}}));
+  EXPECT_GT(std::acos(std::clamp(restBone(stooping, "hips", "neck").y(), -1.0, 1.0)), 0.8);
+  EXPECT_GT(bone(stooping, "hips", "neck").y(), std::cos(5 * kPi / 180));
+  EXPECT_GT(bone(stooping, "chest", "neck").y(), std::cos(26 * kPi / 180));
+  EXPECT_LT((bone(stooping, "leftUpperLeg", "leftLowerLeg") + Vec3::UnitY()).norm(), 1e-9);
+  EXPECT_LT((bone(stooping, "rightUpperArm", "rightLowerArm") + Vec3::UnitX()).norm(), 1e-9);
+}
+
+TEST_F(NeutralPoses, ABowedHeadIsRaised) {
+  const Skeleton bowed = inRestPose(person, {{"neck", turn(Vec3::UnitX(), 60)}});
+  EXPECT_GT(bone(bowed, "neck", "head").y(), std::cos(1e-6));
+  EXPECT_LT((bone(bowed, "hips", "neck") - restBone(bowed, "hips", "neck")).norm(), 1e-9);
+}
+
+// Artists build people who lean a little, and dinosaurs that lean much on short arms.
+TEST_F(NeutralPoses, ATrunkThatIsBuiltToLeanStaysSo) {
+  const Skeleton leaning = inRestPose(person, {{"hips", turn(Vec3::UnitX(), 15)}, {"neck", turn(Vec3::UnitX(), 15)}});
+  EXPECT_LT((bone(leaning, "hips", "neck") - restBone(leaning, "hips", "neck")).norm(), 1e-9);
+  EXPECT_LT((bone(leaning, "neck", "head") - restBone(leaning, "neck", "head")).norm(), 1e-9);
+
+  Skeleton dinosaur = inRestPose(person, {{"hips", turn(Vec3::UnitX(), 40)}});
+  for (const char* name : {"leftLowerArm", "leftHand", "rightLowerArm", "rightHand"}) {
+    dinosaur.joints[dinosaur.find(name).value()].rest.translation *= 0.3;
+  }
+  EXPECT_LT((bone(dinosaur, "hips", "neck") - restBone(dinosaur, "hips", "neck")).norm(), 1e-9);
 }
 
 // As of a bird, the foot's joint is a hock, high over the ground.
