@@ -156,6 +156,14 @@ void measureFeet(const RetargetSetup& setup, const Seen& source, const Seen& tar
       ++count;
     }
   }
+  // Toes that the target alone has.
+  for (const std::string_view side : {"left", "right"}) {
+    const std::optional<Index> toes =
+        toesOf(*setup.target, setup.map, MapSide::kTarget, side, target.neutral.restPositions);
+    if (!toes || std::find(to.begin(), to.end(), *toes) != to.end()) continue;
+    for (std::size_t f = 0; f < target.positions.size(); ++f)
+      metrics.penetration = std::max(metrics.penetration, -target.above(f, *toes));
+  }
   metrics.planted = count / static_cast<double>(std::max<std::size_t>(1, from.size() * source.positions.size()));
   metrics.contactAgreement = count > 0 ? agreed / count : 1;
   metrics.sliding = count > 0 ? metrics.sliding / count : 0;

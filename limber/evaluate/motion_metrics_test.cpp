@@ -56,6 +56,20 @@ TEST_F(MotionMetricsOf, FeetThatSlideAndSinkDoSoByTheirWay) {
   EXPECT_EQ(lifted.contactAgreement, 0);
 }
 
+TEST_F(MotionMetricsOf, ToesThatTheSourceLacksSinkAsWell) {
+  const Skeleton toeless = limber::testing::withoutToes(person_);
+  PoseSequence from{std::vector<Pose>(40, restPose(toeless)), kSeconds}, to = standing(Vec3::Zero());
+  const RetargetSetup setup(toeless, person_, matchSkeletons(toeless, person_), {}, &from);
+  EXPECT_LT(measureMotion(setup, from, to).penetration, 1e-9);
+  const Index foot = person_.find("leftFoot").value(), toes = person_.find("leftToes").value();
+  to.poses[20].locals[foot].rotation = limber::testing::turn(Vec3::UnitX(), 30);
+  const double deep =
+      restGlobals(person_)[toes].translation().y() - poseGlobals(person_, to.poses[20])[toes].translation().y();
+  const MotionMetrics metrics = measureMotion(setup, from, to);
+  EXPECT_GT(deep, 0.02);
+  EXPECT_NEAR(metrics.penetration * metrics.height, deep, 1e-9);
+}
+
 TEST_F(MotionMetricsOf, ATurnedForearmIsOneBoneOfEight) {
   const PoseSequence still = standing(Vec3::Zero());
   PoseSequence turned = still;

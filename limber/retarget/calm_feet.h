@@ -18,4 +18,8 @@ double footPitchShare(const RetargetSetup& setup, const Leg& leg);
 void calmFeet(const RetargetSetup& setup, const RootPlacer& root, std::span<const Leg> legs, Pose& target,
               BodyFrame& frame);
 
+// A foot whose tip (Leg::tip) would be below the ground tips less, however high its ankle is. Soles that look up stay
+// as they are. `frame` as above.
+void keepTipUp(const RetargetSetup& setup, const RootPlacer& root, const Leg& leg, Pose& target, BodyFrame& frame);
+
 }  // namespace limber

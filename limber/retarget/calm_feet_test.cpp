@@ -73,5 +73,42 @@ TEST(CalmFeet, SolesThatLookUpOrToTheSideStay) {
   EXPECT_LT(calmed(4, turn(Vec3::UnitZ(), 90), turn(Vec3::UnitX(), 20)).changed, 1);
 }
 
+// What keepTipUp does to the left foot of someone who is lifted and whose foot is turned like that.
+struct Tip {
+  double over = 0, turned = 0;  // metres over the ground, degrees
+};
+Tip keptUp(double lift, double degrees) {
+  const Skeleton toeless = limber::testing::withoutToes(practiceHumanoid()), person = practiceHumanoid();
+  const RetargetSetup setup(toeless, person, matchSkeletons(toeless, person), {});
+  const RootPlacer root(setup);
+  LimbGoals goals(setup, root);
+  const Leg& leg = goals.legs()[0];
+  Pose pose = restPose(person);
+  pose.locals[person.find("hips").value()].translation.y() += lift;
+  pose.locals[leg.end].rotation = turn(Vec3::UnitX(), degrees);
+  BodyFrame frame;
+  setup.targetKinematics.globals(pose, frame);
+  const Quat before = frame.rotations[leg.end];
+  keepTipUp(setup, root, leg, pose, frame);
+  const double turned = angleBetween(before, frame.rotations[leg.end]) * 180 / kPi;
+  return {frame.positions[leg.tip.value()].y() - leg.toesGround, turned};
+}
+
+TEST(CalmFeet, ATipThatTheSourceLacksStaysAboveTheGround) {
+  for (const double degrees : {10.0, 40.0, 80.0, 110.0}) {
+    EXPECT_GT(keptUp(0.03, degrees).over, -1e-9) << degrees;
+  }
+  EXPECT_LT(keptUp(0.03, 80).over, 0.01) << "no further up than that";
+  EXPECT_LT(keptUp(0.5, 40).turned, 0.1);
+  EXPECT_LT(keptUp(0.02, 180).turned, 0.1) << "soles that look up stay";
+  // It lets go of the ground without a snap.
+  double before = keptUp(0, 110).turned;
+  for (double lift = 0.002; lift < 0.5; lift += 0.002) {
+    const double now = keptUp(lift, 110).turned;
+    EXPECT_LT(std::abs(now - before), 4) << lift;
+    before = now;
+  }
+}
+
 }  // namespace
 }  // namespace limber

@@ -20,8 +20,9 @@ struct Limb {
 
 struct Leg : Limb {
   std::optional<Index> toes, sourceToes;
+  std::optional<Index> tip;                            // toes that the target alone has
   Vec3 kneeAhead = Vec3::UnitZ();                      // to which side the lower joint bends, in the neutral pose
-  double ankleGround = 0, toesGround = 0;              // heights when standing, target
+  double ankleGround = 0, toesGround = 0;              // heights when standing, target; of the tip, too
   double sourceAnkleGround = 0, sourceToesGround = 0;  // likewise, source
   double footPitch = 1;                                // share of the source's (calmFeet)
   FootAnchor anchor = FootAnchor::kNone;               // what holds the foot in this frame

@@ -27,6 +27,7 @@ constexpr double kFallSeconds = 0.03;  // of its way: so much the earlier a poin
 constexpr double kFallRate = 40;       // 1/seconds, of the speed that is taken for its own
 // Shares of that softness that a planted foot loses: the point that holds it, and the other.
 constexpr double kFirmHeld = 0.9, kFirmBeside = 0.2;
+constexpr double kTipLies = 0.05;     // over the ground: from there on toes that the target alone has lie down
 constexpr double kCarriedUp = 0.7;    // share of its hip's way up that a free foot takes part in
 constexpr double kBentInRest = 0.01;  // of an animal's leg's length: a knee off its line by that tells where it bends
 constexpr double kSteep = 1.7, kSoleUp = 2.4, kSoftLevel = 0.05;  // radians that toes point down
@@ -89,6 +90,8 @@ void LimbGoals::addPersonsLegs(const RootPlacer& root) {
     if (const JointMatch* toes = setup_.map.find(side + "Toes")) {
       leg.toes = toes->target.front();
       leg.sourceToes = toes->source.front();
+    } else {
+      leg.tip = toesOf(*setup_.target, setup_.map, MapSide::kTarget, side, setup_.targetNeutral.restPositions);
     }
     addLeg(leg);
   }
@@ -148,6 +151,7 @@ void LimbGoals::addLeg(Leg leg) {
     leg.toesGround = targetGround(*leg.toes);
     leg.sourceToesGround = sourceGround(*leg.sourceToes);
   }
+  if (leg.tip) leg.toesGround = targetGround(*leg.tip);
   leg.footPitch = footPitchShare(setup_, leg);
   legs_.push_back(leg);
   feelers_.emplace_back(PlantDetector(setup_.sourceHipHeight));
@@ -288,16 +292,21 @@ void LimbGoals::keepAboveGround(Leg& leg, const FootLock::Frame& foot, const Fee
 }
 
 void LimbGoals::levelToes(const Leg& leg, BodyFrame& frame, Pose& target) const {
-  if (!setup_.person || !leg.toes) return;
-  const Quat turn = frame.rotations[*leg.toes] * setup_.targetNeutral.rotations[*leg.toes].conjugate();
+  if (leg.tip) keepTipUp(setup_, root_, leg, target, frame);
+  const std::optional<Index> toes = leg.toes ? leg.toes : leg.tip;
+  if (!setup_.person || !toes) return;
+  const Quat turn = frame.rotations[*toes] * setup_.targetNeutral.rotations[*toes].conjugate();
   const double down = std::max(std::atan2(-(turn * Vec3::UnitZ()).y(), (turn * Vec3::UnitY()).y()), 0.0);
-  const double share = leg.planted * std::clamp((kSoleUp - down) / (kSoleUp - kSteep), 0.0, 1.0);
+  const double over = (frame.positions[*toes].y() - leg.toesGround) / setup_.targetHipHeight;
+  const double lies = leg.toes ? leg.planted : smoothStep(1 - over / kTipLies);
+  const double share = lies * std::clamp((kSoleUp - down) / (kSoleUp - kSteep), 0.0, 1.0);
   const double up = share * down * down / (down + kSoftLevel);
   if (up < 1e-9) return;
   const BodyKinematics& kinematics = setup_.targetKinematics;
-  const Quat level = Eigen::AngleAxisd(-up, turn * Vec3::UnitX()) * frame.rotations[*leg.toes];
-  target.locals[*leg.toes].rotation = (kinematics.parentRotation(*leg.toes, frame).conjugate() * level).normalized();
+  const Quat level = Eigen::AngleAxisd(-up, turn * Vec3::UnitX()) * frame.rotations[*toes];
+  target.locals[*toes].rotation = (kinematics.parentRotation(*toes, frame).conjugate() * level).normalized();
   kinematics.globals(target, frame);
+  root_.settle(target, frame);
 }
 
 double LimbGoals::closeness(double distance, double touching, double apart) const {

@@ -39,8 +39,9 @@ class LimbGoals {
   void softenReach(Limb& arm, const BodyFrame& target) const;
 
   // Toes of a planted foot lie on the ground while the heel goes up, though recordings have them straight: else their
-  // tips would go below it. For a target that is posed but for that; soles that look up, as of someone who kneels,
-  // stay as they are.
+  // tips would go below it. So do toes that the source lacks wherever they are near the ground, and their foot tips no
+  // further than lets them (keepTipUp). For a target that is posed but for that; soles that look up, as of someone who
+  // kneels, stay as they are.
   void levelToes(const Leg& leg, BodyFrame& frame, Pose& target) const;
 
   const Pelvis& pelvis() const { return pelvis_; }

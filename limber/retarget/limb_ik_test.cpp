@@ -124,6 +124,35 @@ TEST_F(LimbIk, ToesLieOnTheGroundWhileTheHeelGoesUp) {
   EXPECT_LT(tipsDown("online"), 5);
 }
 
+// Toes that only the target has: its feet are longer than the source's ankles tell.
+TEST_F(LimbIk, ToesStayAboveTheGroundWhereTheSourceHasNone) {
+  const Skeleton toeless = limber::testing::withoutToes(person);
+  Skeleton longFooted = odd;
+  for (const char* toes : {"leftToes", "rightToes"}) {
+    longFooted.joints[longFooted.find(toes).value()].rest.translation.z() *= 1.6;
+  }
+  PoseSequence rising{{}, 1.0 / 60};
+  for (int f = 0; f < 60; ++f) {
+    Pose& pose = rising.poses.emplace_back(restPose(toeless));
+    pose.locals[toeless.find("hips").value()].translation.y() += 0.001 * f;
+    pose.locals[toeless.find("leftFoot").value()].rotation = turn(Vec3::UnitX(), 1.2 * f);
+  }
+  const RetargetSetup setup(toeless, longFooted, matchSkeletons(toeless, longFooted), {}, &rising);
+  const Index toes = longFooted.find("leftToes").value();
+  const double standing = restGlobals(longFooted)[toes].translation().y();
+  const auto lowest = [&](const char* method) {
+    double low = HUGE_VAL;
+    for (const Pose& pose : retargetFrames(findRetargetMethod(method), setup, rising).poses) {
+      low = std::min(low, poseGlobals(longFooted, pose)[toes].translation().y());
+    }
+    return low - standing;
+  };
+  EXPECT_LT(lowest("aligned"), -0.03);
+  EXPECT_GT(lowest("limb-ik"), -1e-6);
+  EXPECT_GT(lowest("online"), -0.002);
+  EXPECT_GT(lowest("spacetime"), -1e-6);
+}
+
 TEST_F(LimbIk, BonesKeepTheirLengths) {
   const PoseSequence result = by("limb-ik");
   for (const Pose& pose : result.poses) {

@@ -112,17 +112,6 @@ std::array<LimbBone, 8> limbBones() {
            {"rightLowerLeg", "rightFoot", down}}};
 }
 
-// Also toes that nothing matches, on a root of their own.
-std::optional<Index> toesOf(const Skeleton& skeleton, const SkeletonMap& map, MapSide side,
-                            std::span<const LooseJoint> loose, const std::string& leg) {
-  const std::optional<Index> toes = firstOf(map, side, leg + "Toes"), foot = firstOf(map, side, leg + "Foot");
-  if (toes || !foot) return toes;
-  const auto found = std::find_if(loose.begin(), loose.end(), [&](const LooseJoint& each) {
-    return !each.matched && isAncestorOrSelf(skeleton, *foot, each.carrier);
-  });
-  return found == loose.end() ? std::nullopt : std::optional(found->joint);
-}
-
 // Loose joints, with what hangs on them, are where their carriers have them.
 void carry(const Skeleton& skeleton, std::span<const LooseJoint> loose, const std::vector<Vec3>& rest,
            const std::vector<Quat>& turns, std::vector<Vec3>& positions) {
@@ -243,7 +232,7 @@ NeutralPose neutralPose(const Skeleton& skeleton, const Pose& resting, const Ske
     if (!foot) continue;
     isFoot[*foot] = true;
     const std::optional<Index> hip = firstOf(map, side, leg + "UpperLeg"), knee = firstOf(map, side, leg + "LowerLeg"),
-                               toes = toesOf(skeleton, map, side, loose, leg);
+                               toes = toesOf(skeleton, map, side, leg, rest);
     if (!hip || !knee || !toes) continue;
     const bool hock = (rest[*toes] - rest[*foot]).norm() > kHock * (rest[*foot] - rest[*knee]).norm();
     stands[*foot] = hock && angleOf(rest[*toes] - rest[*hip], -Vec3::UnitY()) < kFootGoesAlong;
@@ -276,6 +265,20 @@ Vec3 pelvisOf(const SkeletonMap& map, MapSide side, const std::vector<Vec3>& pos
   if (const std::optional<Index> hips = firstOf(map, side, "hips")) return positions[*hips];
   const JointMatch& first = map.matches.front();
   return positions[side == MapSide::kSource ? first.source.front() : first.target.front()];
+}
+
+std::optional<Index> toesOf(const Skeleton& skeleton, const SkeletonMap& map, MapSide side, std::string_view leg,
+                            std::span<const Vec3> rest) {
+  const std::string name(leg);
+  const std::optional<Index> toes = firstOf(map, side, name + "Toes"), foot = firstOf(map, side, name + "Foot");
+  if (toes || !foot) return toes;
+  std::optional<Index> tip;
+  for (Index j = 0; j < skeleton.jointCount(); ++j) {
+    const Vec3 way = rest[j] - rest[*foot];
+    if (skeleton.joints[j].parent != foot || way.z() <= 0 || way.y() >= 0) continue;
+    if (!tip || rest[j].z() > rest[*tip].z()) tip = j;
+  }
+  return tip;
 }
 
 std::vector<Index> soleJoints(const SkeletonMap& map, MapSide side) {

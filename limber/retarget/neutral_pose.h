@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "limber/retarget/skeleton_map.h"
@@ -41,6 +42,11 @@ Pose uprightPose(const Skeleton& skeleton, std::span<const Pose> motion, const S
 
 // The middle between the upper legs' joints, else the hips' joint, else the first matched joint.
 Vec3 pelvisOf(const SkeletonMap& map, MapSide side, const std::vector<Vec3>& positions);
+
+// Where the foot of the "left" or "right" leg touches the ground in front: its toes, or what hangs on it furthest to
+// the front and below it where the other skeleton has no toes. `rest` are #J positions in the person's space.
+std::optional<Index> toesOf(const Skeleton& skeleton, const SkeletonMap& map, MapSide side, std::string_view leg,
+                            std::span<const Vec3> rest);
 
 // The first joints of feet and toes, as far as both skeletons have them.
 std::vector<Index> soleJoints(const SkeletonMap& map, MapSide side);

@@ -103,6 +103,25 @@ TEST_F(NeutralPoses, FeetOnARootOfTheirOwnEndTheLegs) {
   EXPECT_NEAR(foot.norm(), person.joints[person.find("leftToes").value()].rest.translation.norm(), 1e-6);
 }
 
+TEST_F(NeutralPoses, ToesAreFoundWhereTheOtherSkeletonHasNone) {
+  const auto toes = [&](const Skeleton& skeleton, const Skeleton& other) {
+    const SkeletonMap map = matchSkeletons(other, skeleton);
+    const NeutralPose pose = neutralPose(skeleton, restPose(skeleton), map, MapSide::kTarget);
+    return toesOf(skeleton, map, MapSide::kTarget, "left", pose.restPositions);
+  };
+  const Skeleton toeless = limber::testing::withoutToes(person);
+  EXPECT_EQ(toes(person, person), person.find("leftToes"));
+  EXPECT_EQ(toes(person, toeless), person.find("leftToes"));
+  EXPECT_EQ(toes(toeless, person), std::nullopt);
+  Skeleton heeled = toeless;
+  Joint heel;
+  heel.name = "heel";
+  heel.parent = heeled.find("leftFoot");
+  heel.rest.translation = Vec3(0, -0.05, -0.04);
+  heeled.joints.push_back(heel);
+  EXPECT_EQ(toes(heeled, person), std::nullopt) << "it lies behind the ankle";
+}
+
 // Motions of some programs have a rest pose in which every bone points the same way.
 TEST_F(NeutralPoses, AFoldedRestPoseGivesWayToAFrameThatStands) {
   Skeleton folded = person;

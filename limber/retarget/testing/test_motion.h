@@ -131,6 +131,20 @@ inline Skeleton onTheGround(const Skeleton& skeleton, const std::vector<std::str
   return longer;
 }
 
+// Ankles are the last joints of its legs.
+inline Skeleton withoutToes(const Skeleton& skeleton) {
+  Skeleton shorter;
+  std::vector<Index> kept(skeleton.jointCount());
+  for (Index j = 0; j < skeleton.jointCount(); ++j) {
+    Joint joint = skeleton.joints[j];
+    if (joint.name == "leftToes" || joint.name == "rightToes") continue;
+    kept[j] = shorter.jointCount();
+    if (joint.parent) joint.parent = kept[*joint.parent];
+    shorter.joints.push_back(joint);
+  }
+  return shorter;
+}
+
 // Unreal's names for VRM's.
 inline Skeleton renamed(Skeleton skeleton) {
   const std::map<std::string, std::string> names = {{"hips", "pelvis"},
