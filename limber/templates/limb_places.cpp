@@ -8,9 +8,11 @@ namespace limber {
 
 namespace {
 
-constexpr double kNoPlace = 2.1;  // mean cost of a limb's joints; up to 1.2 on people, 2 on toys
-constexpr double kWithin = 0.04;  // heights
-constexpr double kAcross = 0.5;   // most cosine between a limb and what lies across from it
+constexpr double kNoPlace = 2.1;                    // mean cost of a limb's joints; up to 1.2 on people, 2 on toys
+constexpr double kSunken = 2, kSunkenDepth = 0.01;  // of the other side's depth, and heights more
+constexpr double kThinnest = 0.005;                 // heights that limbs are deep, at least
+constexpr double kWithin = 0.04;                    // heights
+constexpr double kAcross = 0.5;                     // most cosine between a limb and what lies across from it
 
 // Whether the way across from the limb's last joint but the tip straight to that of the other side stays inside the
 // body. Along the limbs it may: so it does from hand to hand of stretched arms.
@@ -54,6 +56,33 @@ bool liesInAnother(const TemplateSkeleton& skeleton, const TemplateLimb& limb, c
   return limb.placed.size() > 1 && 2 * within >= limb.placed.size() - 1;
 }
 
+// Heights that the last bone before a tip lies deep in the body, in the mean.
+double depthOfEnd(const TemplateLimb& limb, const std::vector<Vec3>& places, const BodyVolume& body,
+                  const BodyFrame& frame) {
+  constexpr int kSteps = 4;
+  const Vec3 &from = places[limb.placed[limb.placed.size() - 3]], &to = places[limb.placed[limb.placed.size() - 2]];
+  double depth = 0;
+  for (int step = 1; step <= kSteps; ++step) {
+    const Vec3 place = from + static_cast<double>(step) / kSteps * (to - from);
+    depth -= body.distance->at(frame.fromBody(place)) / (kSteps * frame.height);
+  }
+  return depth;
+}
+
+// Whether a limb ends far deeper in the body than that of the other side: it lies in the trunk, where that has a place.
+bool isSunken(const TemplateSkeleton& skeleton, const TemplateLimb& limb, const std::vector<TemplateLimb>& limbs,
+              const std::vector<Vec3>& places, const BodyVolume& body, const BodyFrame& frame) {
+  if (limb.placed.size() < 3 || skeleton.joints[limb.placed.back()].role != TemplateRole::kTip) return false;
+  const std::optional<Index> mirror = skeleton.joints[limb.placed.back()].mirror;
+  if (!mirror) return false;
+  const auto other = std::find_if(limbs.begin(), limbs.end(), [&](const TemplateLimb& one) {
+    return one.placed.size() == limb.placed.size() && one.placed.back() == *mirror;
+  });
+  if (other == limbs.end()) return false;
+  const double thick = std::max(kThinnest, depthOfEnd(*other, places, body, frame));
+  return depthOfEnd(limb, places, body, frame) > kSunken * thick + kSunkenDepth;
+}
+
 }  // namespace
 
 std::vector<TemplateLimb> limbChains(const TemplateSkeleton& skeleton) {
@@ -90,6 +119,7 @@ std::vector<TemplateLimb> limbsIn(const TemplateSkeleton& skeleton, const Templa
     double cost = 0;
     for (const Index j : limb.placed) cost += embedding.costs[j] / static_cast<double>(limb.placed.size());
     limb.hasPlace = cost < kNoPlace && !sharesItsEnd(skeleton, limb, embedding.places, body, frame) &&
+                    !isSunken(skeleton, limb, limbs, embedding.places, body, frame) &&
                     !(skeleton.bent() && liesInAnother(skeleton, limb, embedding.places));
   }
   return limbs;

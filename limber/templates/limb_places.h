@@ -19,8 +19,9 @@ struct TemplateLimb {
 std::vector<TemplateLimb> limbChains(const TemplateSkeleton& skeleton);
 
 // The same. One has no place where its joints stand too ill in the body, in the mean of their costs; nor has either of
-// a mirrored pair that ends in one and the same part of the body, as feet do in the stump of a bust; nor, of a template
-// that was bent, one that lies in another limb.
+// a mirrored pair that ends in one and the same part of the body, as feet do in the stump of a bust; nor one that ends
+// far deeper in the body than that of the other side, as an arm in the trunk; nor, of a template that was bent, one
+// that lies in another limb.
 //
 // embedding  with the costs of `skeleton`'s joints
 std::vector<TemplateLimb> limbsIn(const TemplateSkeleton& skeleton, const TemplateEmbedding& embedding,

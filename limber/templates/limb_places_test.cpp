@@ -55,6 +55,14 @@ TEST(LimbPlaces, FeetInOnePartOfTheBodyHaveNone) {
   EXPECT_EQ(embedded.missing(), "leftUpperLeg to leftToes, rightUpperLeg to rightToes");
 }
 
+TEST(LimbPlaces, AnArmInTheTrunkHasNone) {
+  Embedded embedded;
+  std::vector<Vec3>& places = embedded.embedding.places;
+  places[embedded.joint("leftLowerArm")] = Vec3(0.03, 0.7, 0);
+  places[embedded.joint("leftHand")] = Vec3(0.03, 0.6, 0);
+  EXPECT_EQ(embedded.missing(), "leftShoulder to leftHand");
+}
+
 TEST(LimbPlaces, OfABentTemplateLimbsThatLieInOthersHaveNone) {
   Embedded embedded;
   TemplateSkeleton bent = embedded.skeleton;
