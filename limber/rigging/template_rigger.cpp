@@ -14,6 +14,7 @@
 #include "limber/templates/arm_flatness.h"
 #include "limber/templates/bent_template.h"
 #include "limber/templates/figure_fit.h"
+#include "limber/templates/finger_count.h"
 #include "limber/templates/humanoid_landmarks.h"
 #include "limber/templates/joints_between.h"
 #include "limber/templates/pose_search.h"
@@ -30,6 +31,7 @@ constexpr std::size_t kVariantsRefined = 4;  // of each of these
 constexpr double kLowConfidence = 0.4;
 constexpr double kSureEnough = 0.75;               // not to look for people in other poses
 constexpr double kCostOfDoubt = 1.8;               // cost at which confidence is a half
+constexpr double kOtherHands = 0.05;               // cost of fingers that hands lack, or that a template lacks
 constexpr double kWings = 2;                       // cost of arms as flat as wings
 constexpr double kRoundArm = 2.5, kFlatArm = 3.5;  // times as wide as thick
 constexpr double kMostAsymmetry = 0.15;            // more than the most symmetric way to stand, of those looked at
@@ -159,6 +161,22 @@ TemplateFit bestFit(const TemplateSkeleton& skeleton, const Model& model, const 
   return confidenceOf(other) > confidenceOf(fit) ? other : fit;
 }
 
+// Templates of people that differ in their fingers alone fit alike: hands tell.
+void tellByFingers(const TriMesh& mesh, std::vector<TemplateFit>& fits) {
+  for (TemplateFit& fit : fits) {
+    if (!isHumanoid(fit.skeleton)) continue;
+    const auto place = [&](const std::string& joint) {
+      return fit.frame.fromBody(fit.embedding.places[fit.skeleton.find(joint).value()]);
+    };
+    std::size_t fingers = kHandWithFingers;
+    for (const std::string side : {"left", "right"}) {
+      fingers = std::min(fingers, countFingers(mesh, place(side + "Hand"), place(side + "HandTip")));
+    }
+    const bool has = fit.skeleton.find("leftIndexProximal").has_value();
+    if (has != (fingers == kHandWithFingers)) fit.cost += kOtherHands;
+  }
+}
+
 void warn(const TemplateFit& fit, AutoRig& rig) {
   if (const std::size_t missing = missingLimbs(fit); missing > 0) {
     rig.warnings.add("no-place", "limbs of the template have no place in the model",
@@ -245,6 +263,7 @@ AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress
   for (const TemplateSkeleton* candidate : candidates) {
     fits.push_back(bestFit(*candidate, model, pins, figure, progress));
   }
+  if (fits.size() > 1) tellByFingers(surface, fits);
   std::stable_sort(fits.begin(), fits.end(),
                    [](const TemplateFit& a, const TemplateFit& b) { return confidenceOf(a) > confidenceOf(b); });
   TemplateFit& best = fits.front();

@@ -245,12 +245,29 @@ TEST(TemplateRigger, FindsTheTemplate) {
   RigOptions options;
   const AutoRig result = rig(testing::capsulePerson().mesh, options);
   EXPECT_EQ(result.matches.size(), templateSkeletons().size());
-  EXPECT_TRUE(result.matches[0].name == "humanoid" || result.matches[0].name == "humanoid-fingers");
+  EXPECT_EQ(result.matches[0].name, "humanoid");
   for (std::size_t i = 1; i < result.matches.size(); ++i) {
     EXPECT_LE(result.matches[i].confidence, result.matches[i - 1].confidence);
   }
   options.templateName = "centaur";
   EXPECT_THROW(rig(ball(), options), Error);
+}
+
+TEST(TemplateRigger, HandsTellWhetherThereAreFingers) {
+  testing::CapsulePerson shape = testing::capsulePerson();
+  EXPECT_EQ(rig(shape.mesh, {}).matches[0].name, "humanoid");
+  const Vec3 along = (shape.hand - shape.elbow).normalized();
+  for (const double side : {1.0, -1.0}) {
+    for (const double z : {-0.027, -0.009, 0.009, 0.027}) {
+      const Vec3 knuckle = shape.hand + 0.06 * along + Vec3(0, 0, z), tip = knuckle + 0.08 * along;
+      testing::addCapsule(shape.mesh, knuckle.cwiseProduct(Vec3(side, 1, 1)), tip.cwiseProduct(Vec3(side, 1, 1)),
+                          0.007);
+    }
+  }
+  const AutoRig fingered = rig(shape.mesh, {});
+  EXPECT_EQ(fingered.matches[0].name, "humanoid-fingers");
+  EXPECT_EQ(fingered.matches[1].name, "humanoid");
+  EXPECT_GT(fingered.matches[0].confidence, 0.9);
 }
 
 TEST(TemplateRigger, IsTheSameOnOneThread) {

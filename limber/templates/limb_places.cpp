@@ -86,14 +86,20 @@ bool isSunken(const TemplateSkeleton& skeleton, const TemplateLimb& limb, const 
 }  // namespace
 
 std::vector<TemplateLimb> limbChains(const TemplateSkeleton& skeleton) {
+  // Fingers, which nobody searches for, do not end an arm.
+  std::vector<bool> leadsOn(skeleton.jointCount(), false);
   std::vector<Index> children(skeleton.jointCount(), 0), limbOf(skeleton.jointCount(), 0);
-  for (const TemplateJoint& joint : skeleton.joints) {
-    if (joint.parent) ++children[*joint.parent];
+  for (Index j = skeleton.jointCount(); j-- > 0;) {
+    const TemplateJoint& joint = skeleton.joints[j];
+    leadsOn[j] = leadsOn[j] || joint.role != TemplateRole::kBetween;
+    if (!joint.parent || !leadsOn[j]) continue;
+    leadsOn[*joint.parent] = true;
+    ++children[*joint.parent];
   }
   std::vector<TemplateLimb> limbs;
   for (Index j = 0; j < skeleton.jointCount(); ++j) {
     const TemplateJoint& joint = skeleton.joints[j];
-    if (joint.parent && children[*joint.parent] == 1) {
+    if (joint.parent && leadsOn[j] && children[*joint.parent] == 1) {
       limbOf[j] = limbOf[*joint.parent];
     } else {
       limbOf[j] = static_cast<Index>(limbs.size());

@@ -38,6 +38,19 @@ TEST(LimbPlaces, EveryJointIsInOneLimbAndAWholeBodyHasAll) {
   EXPECT_EQ(embedded.missing(), "");
 }
 
+TEST(LimbPlaces, FingersAreNoneAndDoNotEndAnArm) {
+  const auto placed = [](const char* name) {
+    const TemplateSkeleton& skeleton = findTemplate(name);
+    std::vector<std::string> limbs;
+    for (const TemplateLimb& limb : limbChains(skeleton)) {
+      limbs.emplace_back();
+      for (const Index j : limb.placed) limbs.back() += skeleton.joints[j].name + " ";
+    }
+    return limbs;
+  };
+  EXPECT_EQ(placed("humanoid-fingers"), placed("humanoid"));
+}
+
 TEST(LimbPlaces, JointsThatStandIllHaveNone) {
   Embedded embedded;
   for (const char* name : {"neck", "head"}) embedded.embedding.costs[embedded.joint(name)] = 20;
