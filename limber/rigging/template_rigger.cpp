@@ -29,7 +29,7 @@ constexpr std::size_t kCoarseSpheres = 120;  // for a first look at every way to
 constexpr std::size_t kFramesRefined = 2;    // after it, with all spheres
 constexpr std::size_t kVariantsRefined = 4;  // of each of these
 constexpr double kLowConfidence = 0.4;
-constexpr double kSureEnough = 0.75;               // not to look for people in other poses
+constexpr double kSureEnough = 0.75;               // not to look for people, or for animals, in other poses
 constexpr double kCostOfDoubt = 1.8;               // cost at which confidence is a half
 constexpr double kOtherHands = 0.05;               // cost of fingers that hands lack, or that a template lacks
 constexpr double kWings = 2;                       // cost of arms as flat as wings
@@ -77,7 +77,8 @@ struct Model {
 };
 
 // Looks at every way to stand with some of the spheres, and at the best ones with all.
-TemplateFit bestEmbedding(const TemplateSkeleton& skeleton, const Model& model, const std::vector<JointPin>& pins) {
+TemplateFit bestEmbedding(const TemplateSkeleton& skeleton, const Model& model, const std::vector<JointPin>& pins,
+                          bool inPoses) {
   const BodyVolume& body = model.body;
   const std::vector<BodyFrame>& frames = model.frames;
   double least = 1;
@@ -119,7 +120,7 @@ TemplateFit bestEmbedding(const TemplateSkeleton& skeleton, const Model& model, 
     best = std::move(fit);
     bestEmbedder = std::move(embedder);
   }
-  searchPose(*bestEmbedder, *best);
+  if (inPoses) searchPose(*bestEmbedder, *best);
   best->limbs = limbsIn(best->skeleton, best->embedding, body, best->frame);
   const double flat = armFlatness(best->skeleton, best->embedding.places, body, best->frame);
   best->cost += kWings * std::clamp((flat - kRoundArm) / (kFlatArm - kRoundArm), 0.0, 1.0);
@@ -137,6 +138,10 @@ double confidenceOf(const TemplateFit& fit) {
   return placed * placed * placed / (1 + std::pow(fit.cost / kCostOfDoubt, 3.0));
 }
 
+bool isSure(const TemplateFit& fit) {
+  return confidenceOf(fit) > kSureEnough;
+}
+
 // The person in a model, in whatever pose, for all templates.
 struct FigureOnce {
   bool wasSought = false;
@@ -145,10 +150,10 @@ struct FigureOnce {
 
 // Where the embedding is in doubt, a person may stand in a pose that no template has.
 TemplateFit bestFit(const TemplateSkeleton& skeleton, const Model& model, const std::vector<JointPin>& pins,
-                    FigureOnce& once, Progress& progress) {
+                    FigureOnce& once, Progress& progress, bool inPoses = true) {
   progress.step("fit " + skeleton.name);
-  TemplateFit fit = bestEmbedding(skeleton, model, pins);
-  if (fit.frame.symmetric() || !isHumanoid(skeleton) || confidenceOf(fit) > kSureEnough) return fit;
+  TemplateFit fit = bestEmbedding(skeleton, model, pins, inPoses);
+  if (fit.frame.symmetric() || !isHumanoid(skeleton) || isSure(fit)) return fit;
   const BodyFrame& frame = model.frames.front();
   const TemplatePins places = pinsIn(skeleton, frame, pins);
   if (!once.wasSought) {
@@ -261,7 +266,9 @@ AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress
   FigureOnce figure;
   std::vector<TemplateFit> fits;
   for (const TemplateSkeleton* candidate : candidates) {
-    fits.push_back(bestFit(*candidate, model, pins, figure, progress));
+    // Where it is a person, no poses of animals are tried.
+    const bool inPoses = isHumanoid(*candidate) || std::none_of(fits.begin(), fits.end(), isSure);
+    fits.push_back(bestFit(*candidate, model, pins, figure, progress, inPoses));
   }
   if (fits.size() > 1) tellByFingers(surface, fits);
   std::stable_sort(fits.begin(), fits.end(),
