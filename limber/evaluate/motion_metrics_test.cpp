@@ -82,8 +82,15 @@ TEST_F(MotionMetricsOf, ATurnedForearmIsOneBoneOfEight) {
 // The same angles on other proportions are as smooth, whatever the joints' ways are.
 TEST_F(MotionMetricsOf, JerkIsThatOfTheBonesOnAnyProportions) {
   Skeleton uneven = person_;
-  for (const char* joint : {"rightHand", "leftHand", "leftLowerLeg", "rightLowerLeg"}) {
-    uneven.joints[uneven.find(joint).value()].rest.translation *= 1.6;
+  for (const std::string side : {"left", "right"}) {
+    const auto bone = [&](const char* end) -> Vec3& {
+      return uneven.joints[uneven.find(side + end).value()].rest.translation;
+    };
+    bone("Hand") *= 1.6;
+    // Legs stay as long, and the pelvis goes as it did.
+    const double longer = 0.3 * bone("LowerLeg").norm();
+    bone("LowerLeg") *= 1.3;
+    bone("Foot") *= 1 - longer / bone("Foot").norm();
   }
   const PoseSequence motion = limber::testing::walk(person_);
   const RetargetSetup to(person_, uneven, matchSkeletons(person_, uneven), {}, &motion);

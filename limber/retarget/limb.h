@@ -29,6 +29,7 @@ struct Leg : Limb {
   bool flat = false;                                   // heel and toes stand both
   double ankleFloor = 0, toesFloor = 0;                // below which neither goes in this frame
   double planted = 0;                                  // 0 to 1, comes and goes smoothly
+  double changed = 0;                                  // likewise, to what share its goal is one (Pelvis::changeOf)
   double flatness = 0;                                 // likewise
 };
 

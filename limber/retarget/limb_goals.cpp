@@ -21,6 +21,7 @@ constexpr double kStretch = 0.998;                 // of an arm's length: fully 
 constexpr double kTouchRate = 10;                  // 1/seconds, of touches that come and go
 constexpr double kSoftReach = 0.96;                // of an arm's length: from there on stretching softens
 constexpr double kPlantRate = 9;                   // 1/seconds, of the smooth flag
+constexpr double kChangeRate = 25;                 // likewise, of Leg::changed
 constexpr double kSoftGround = 0.006;
 constexpr double kMostSoft = 0.04;     // more of it, the faster a point comes down
 constexpr double kFallSeconds = 0.03;  // of its way: so much the earlier a point slows down
@@ -28,7 +29,7 @@ constexpr double kFallRate = 40;       // 1/seconds, of the speed that is taken 
 // Shares of that softness that a planted foot loses: the point that holds it, and the other.
 constexpr double kFirmHeld = 0.9, kFirmBeside = 0.2;
 constexpr double kTipLies = 0.05;     // over the ground: from there on toes that the target alone has lie down
-constexpr double kCarriedUp = 0.7;    // share of its hip's way up that a free foot takes part in
+constexpr double kCarriedUp = 0.5;    // share of its hip's way up that a free foot takes part in
 constexpr double kBentInRest = 0.01;  // of an animal's leg's length: a knee off its line by that tells where it bends
 constexpr double kSteep = 1.7, kSoleUp = 2.4, kSoftLevel = 0.05;  // radians that toes point down
 // Speeds of the source's pelvis or feet, hip heights a second, that are no motion but a cut. Many recordings have a
@@ -245,6 +246,11 @@ void LimbGoals::setFeet(const BodyFrame& source, const BodyFrame& target, double
   for (std::size_t i = 0; i < legs_.size(); ++i) feel(legs_[i], feelers_[i], source, target, seconds);
   carryFeet(target, seconds);
   for (std::size_t i = 0; i < legs_.size(); ++i) setFoot(legs_[i], feelers_[i], feelers_[i].lock, seconds);
+  const Quat turn = pelvis_.turnFor(legs_, target);
+  for (std::size_t i = 0; i < legs_.size(); ++i) {
+    const double change = pelvis_.changeOf(legs_[i], target, turn);
+    springTo(change, kChangeRate, seconds, legs_[i].changed, feelers_[i].changedSpeed);
+  }
 }
 
 // Where the pelvis follows planted feet, free ones go along with their hips: their legs would else have to make up for

@@ -63,7 +63,7 @@ class LimbGoals {
     explicit Feeler(const PlantDetector& detector) : ankle(detector), toes(detector) {}
     PlantDetector ankle, toes;
     FootLock lock;
-    double plantedSpeed = 0, flatSpeed = 0;
+    double plantedSpeed = 0, flatSpeed = 0, changedSpeed = 0;
     FootLock::Frame foot;  // as its joint angles have it
     Fall ankleFall, toesFall;
     Vec3 carried = Vec3::Zero();  // by its hip

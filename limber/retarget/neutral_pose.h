@@ -19,8 +19,8 @@ const std::vector<Index>* jointsOfPart(const SkeletonMap& map, MapSide side, std
 // For a person: upright, facing +Z, upper and lower arms straight out to the sides, upper and lower legs straight down.
 // Trunk, neck, head, collars and feet stand as in rest pose, hands and fingers go along with their arms: there the turn
 // from rest says more than the direction (a foot's joint may lie high or low above its toes). A foot that the leg's
-// way to the neutral pose would turn by more than 25 degrees goes along with it, too. One who stoops at rest by more than
-// 25 degrees stands up, a head bowed by more than 45 is raised, where the limbs are a person's. Loose joints
+// way to the neutral pose would turn by more than 25 degrees goes along with it, too. One who stoops at rest by more
+// than 25 degrees stands up, a head bowed by more than 45 is raised, where the limbs are a person's. Loose joints
 // (looseJoints) are where their carriers have them. For other skeletons: the rest pose.
 //
 // `resting` stands in for the skeleton's rest pose, here and below; uprightPose() tells why.

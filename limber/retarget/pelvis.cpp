@@ -103,6 +103,11 @@ double Pelvis::bendKeepingShift(std::span<const Leg> legs, const BodyFrame& fram
   return std::clamp(sum / std::max(weights, 1.0), -most, most);
 }
 
+double Pelvis::changeOf(const Leg& leg, const BodyFrame& frame, const Quat& turn) const {
+  const double change = (leg.goal - frame.positions[leg.end] - hipWay({turn, 0}, leg, frame)).norm();
+  return change / (change + kSoftChange * setup_.targetHipHeight);
+}
+
 double Pelvis::shiftFor(std::span<const Leg> legs, const BodyFrame& frame, const Quat& turn) const {
   const double shift = bendKeepingShift(legs, frame, turn), height = setup_.targetHipHeight;
   double sum = 0;
@@ -112,10 +117,7 @@ double Pelvis::shiftFor(std::span<const Leg> legs, const BodyFrame& frame, const
     if (way.y() >= 0) continue;
     const double length = kStretch * leg.length, across = std::hypot(way.x(), way.z());
     const double down = std::sqrt(std::max(length * length - across * across, 0.0));
-    // The less the leg is changed, the straighter it may be.
-    const double change = (leg.goal - frame.positions[leg.end] - hipGoes).norm();
-    const double needed =
-        softPositive(-way.y() - down, kSoftStretch * height * change / (change + kSoftChange * height));
+    const double needed = softPositive(-way.y() - down, kSoftStretch * height * leg.changed);
     sum += needed * needed * needed * needed;
   }
   // The most that a leg asks for, but without a kink where another takes over.

@@ -29,6 +29,9 @@ class Pelvis {
   Move moveFor(std::span<const Leg> legs, const BodyFrame& frame) const;
   // The turn of it, which brings planted legs nearer to their joint angles.
   Quat turnFor(std::span<const Leg> legs, const BodyFrame& frame) const;
+  // Whether the leg's goal is where the turned pelvis takes its end, 0, or elsewhere, towards 1: a leg that is left
+  // alone may be as straight as it is.
+  double changeOf(const Leg& leg, const BodyFrame& frame, const Quat& turn = Quat::Identity()) const;
   // How far it goes up, once it is turned: so that planted legs keep the bend that their joint angles give them, on
   // average, and down as far as the longest way asks.
   double shiftFor(std::span<const Leg> legs, const BodyFrame& frame, const Quat& turn = Quat::Identity()) const;

@@ -117,6 +117,7 @@ TEST(Pelvis, HipsGoWhereTheMoveSays) {
     for (Leg& leg : legs) {
       leg.planted = 1;
       leg.goal = wide.frame_.positions[leg.end] + Vec3(0, 0.03, leg.upper == legs[0].upper ? 0.1 : -0.05);
+      leg.changed = wide.pelvis_.changeOf(leg, wide.frame_);
     }
     const Pelvis::Move move = wide.pelvis_.moveFor(legs, wide.frame_);
     EXPECT_GT(toRotationVector(move.turn).norm(), 0.05);
@@ -129,6 +130,21 @@ TEST(Pelvis, HipsGoWhereTheMoveSays) {
       EXPECT_LT(wide.frame_.rotations[leg.upper].angularDistance(before.rotations[leg.upper]), 1e-6);
     }
   }
+}
+
+TEST(Pelvis, ALegIsChangedAsFarAsItsGoalIsElsewhere) {
+  PelvisOf person(practiceHumanoid());
+  person.level();
+  LimbGoals goals(person.setup_, person.root_);
+  Leg& leg = goals.legs()[0];
+  const auto changed = [&](const Vec3& way, const Quat& turned) {
+    leg.goal = person.frame_.positions[leg.end] + person.pelvis_.hipWay({turned, 0}, leg, person.frame_) + way;
+    return person.pelvis_.changeOf(leg, person.frame_, turned);
+  };
+  const Quat turned = turn(Vec3::UnitY(), 10);
+  EXPECT_LT(changed(Vec3::Zero(), turned), 1e-9) << "it goes along with its hip";
+  EXPECT_GT(changed(Vec3(0.01, 0, 0), turned), 0.5);
+  EXPECT_GT(changed(Vec3(0.1, 0, 0), turned), 0.9);
 }
 
 // The foot of a folded leg is led away to the side, as far as the leg is long and further.
@@ -146,6 +162,7 @@ TEST(Pelvis, NothingJumpsWhereALegBecomesTooShort) {
   double before = 0;
   for (int step = 0; step < 400; ++step) {
     leg.goal = hip + length * Vec3(0.003 * step, -0.5, 0);
+    leg.changed = person.pelvis_.changeOf(leg, person.frame_);
     const double up = person.pelvis_.moveFor(goals.legs(), person.frame_).up;
     if (step > 0) {
       EXPECT_LT(std::abs(up - before), 0.01 * length) << step;

@@ -155,7 +155,10 @@ RetargetSetup::RetargetSetup(const Skeleton& from, const Skeleton& to, SkeletonM
   scale = targetHipHeight / sourceHipHeight;
   const double sourceLegs = legLength(map, MapSide::kSource, sourceNeutral);
   const double targetLegs = legLength(map, MapSide::kTarget, targetNeutral);
-  if (options.rootScale == RootScale::kLegLength && sourceLegs > 0 && targetLegs > 0) scale = targetLegs / sourceLegs;
+  if (sourceLegs > 0 && targetLegs > 0) {
+    if (options.rootScale == RootScale::kHipHeight) legShare = targetLegs / sourceLegs / scale;
+    if (options.rootScale == RootScale::kLegLength) scale = targetLegs / sourceLegs;
+  }
   if (options.rootScale == RootScale::kNone) scale = 1;
 
   const std::vector<Index> soles = groundJoints(map, MapSide::kSource);
@@ -176,7 +179,10 @@ RetargetSetup::RetargetSetup(const Skeleton& from, const Skeleton& to, SkeletonM
 
 Vec3 RetargetSetup::placeOf(const Vec3& pelvis) const {
   Vec3 place = scale * pelvis;
-  place.y() = targetGround + scale * (pelvis.y() - sourceGround);
+  // By the legs about where they carry it; wholly down on the ground.
+  const double height = (pelvis.y() - sourceGround) / sourceHipHeight, below = std::clamp(height, 0.0, 1.0);
+  const double byLegs = (legShare - 1) * (height > 1 ? height - 1 : below * (below - 1));
+  place.y() = targetGround + scale * sourceHipHeight * (height + byLegs);
   return place;
 }
 

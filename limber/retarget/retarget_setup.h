@@ -55,6 +55,8 @@ struct RetargetSetup {
   NeutralPose sourceNeutral, targetNeutral;
   BodyKinematics sourceKinematics, targetKinematics;
   double scale = 1;  // target metres for a source metre of the root's way
+  // The legs' share of the hips' height, over the source's: where ankles are high, bent legs lower the hips less.
+  double legShare = 1;
   double sourceHipHeight = 1,
          targetHipHeight = 1;                 // of no people: mean height of the joints, or size of what lies flat
   double sourceGround = 0, targetGround = 0;  // heights of the lowest foot joint of someone standing

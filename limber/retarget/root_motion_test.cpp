@@ -35,8 +35,29 @@ TEST(RootMotion, TheWayScalesWithTheHips) {
     options.rootScale = scale;
     const RetargetSetup setup(person, odd, matchSkeletons(person, odd), options);
     const Vec3 moved = placedPelvis(person, odd, way, options) - placedPelvis(person, odd, Vec3::Zero(), options);
-    EXPECT_LT((moved - setup.scale * way).norm(), 1e-9);
+    EXPECT_LT((setup.scale * way - moved).cwiseProduct(Vec3(1, 0, 1)).norm(), 1e-9);
+    if (scale == RootScale::kHipHeight) continue;
+    EXPECT_NEAR(moved.y(), setup.scale * way.y(), 1e-9);
   }
+}
+
+// High ankles: the legs are a smaller share of the hips' height.
+TEST(RootMotion, HipsGoUpAndDownAsTheirLegsDo) {
+  const Skeleton person = practiceHumanoid();
+  Skeleton booted = person;
+  for (const char* toes : {"leftToes", "rightToes"}) {
+    booted.joints[booted.find(toes).value()].rest.translation.y() -= 0.3;
+  }
+  booted.joints[booted.find("hips").value()].rest.translation.y() += 0.3;
+  const RetargetSetup setup(person, booted, matchSkeletons(person, booted), {});
+  EXPECT_LT(setup.legShare, 0.8);
+  const Vec3 pelvis(0, setup.sourceGround + setup.sourceHipHeight, 0);
+  const auto height = [&](double way) { return setup.placeOf(pelvis + Vec3(0, way, 0)).y() - setup.targetGround; };
+  EXPECT_NEAR(height(0), setup.targetHipHeight, 1e-9);
+  EXPECT_NEAR(height(-setup.sourceHipHeight), 0, 1e-9) << "who lies on the ground lies on it";
+  // Its legs are as long as the source's: little and upward ways stay as long.
+  EXPECT_NEAR(height(0.1) - height(0), 0.1, 1e-9);
+  EXPECT_NEAR(height(0) - height(-0.001), 0.001, 1e-5);
 }
 
 TEST(RootMotion, APelvisTurnsAloneAboutItsMiddle) {

@@ -218,6 +218,7 @@ class Spacetime {
     for (std::size_t f = 0; f < frames(); ++f) {
       setLegs(f);
       const BodyFrame& to = targetAt(f);
+      for (Leg& leg : goals_.legs()) leg.changed = goals_.pelvis().changeOf(leg, to);
       sinking[f].value = -goals_.pelvis().shiftFor(goals_.legs(), to);
       sinking[f].valueWeight = 1;
       sinking[f].least = -goals_.pelvis().mostShift(goals_.legs(), to);
