@@ -18,13 +18,15 @@ namespace {
 
 constexpr double kLeastHead = 0.45;  // match of a head below which there is none
 constexpr std::size_t kChests = 80;  // that hang from a head of one stature
-constexpr std::size_t kTrunks = 800, kKept = 24, kImproved = 12;
+constexpr std::size_t kTrunks = 800, kKept = 24, kImproved = 8;
 constexpr int kRounds = 2;  // of limbs found anew and improved
 constexpr int kFirstSteps = 1200, kSteps = 1500, kLimbSteps = 120;
 constexpr std::size_t kReconsidered = 4;
 constexpr std::size_t kPolished = 4;
 constexpr int kPolishSteps = 3000;
-constexpr int kReconsiderRounds = 2, kReconsiderSteps = 400;
+constexpr int kReconsiderRounds = 2, kFirstReconsiderSteps = 100, kReconsiderSteps = 300;
+constexpr double kHopeless = 0.4;        // less than the best so far after the first of these steps
+constexpr double kWorthImproving = 0.7;  // less than the best candidate of a limb, at most
 constexpr std::size_t kFewMiddles = 24, kManyMiddles = 80;
 constexpr std::size_t kFewLimbs = 6, kManyLimbs = 18, kTriedLimbs = 8;
 constexpr double kAlike = 0.08;  // statures between elbows, knees, wrists and ankles
@@ -157,8 +159,14 @@ class Search {
     sumUp(figure);
   }
 
+  // Those far worse than the best are left out.
   void improveEach(const Figure& figure, int limb, Candidates& candidates, Random& random) const {
     Figure trial = figure;
+    const auto isTooBad =
+        [most = candidates.empty() ? 0 : candidates.front().match](const LimbFinder::Candidate& candidate) {
+          return candidate.match < most - kWorthImproving;
+        };
+    std::erase_if(candidates, isTooBad);
     for (LimbFinder::Candidate& candidate : candidates) {
       StepSize size(25, 0.6);
       for (int step = 0; step < kLimbSteps; ++step) {
@@ -198,7 +206,8 @@ class Search {
           trial.figure.limbs[limb] = candidate.bones;
           trial.limbs[limb] = candidate.match;
           sumUp(trial);
-          improve(trial, kReconsiderSteps, random);
+          improve(trial, kFirstReconsiderSteps, random);
+          if (trial.total > figure.total - kHopeless) improve(trial, kReconsiderSteps, random);
           if (better(trial, best)) best = trial;
         }
         figure = best;
