@@ -65,6 +65,7 @@ class LimbIkRetargeter : public FrameRetargeter {
     if (!solver) return reach_.reach(limb, kneeAhead, to(), target);
     const Quat orientation = limb.turn * to().rotations[limb.end];
     reachBySolver(limb, *solver, target);
+    setup_.targetKinematics.globals(target, to());
     reach_.turnEnd(limb, orientation, to(), target);
   }
 

@@ -29,12 +29,12 @@ void LimbReach::reach(const Limb& limb, const Vec3* kneeAhead, BodyFrame& frame,
       (aboveUpper.conjugate() * turns.start * frame.rotations[limb.upper]).normalized();
   target.locals[limb.lower].rotation =
       (aboveLower.conjugate() * turns.middle * frame.rotations[limb.lower]).normalized();
+  kinematics.globals(target, frame);
   turnEnd(limb, orientation, frame, target);
 }
 
 void LimbReach::turnEnd(const Limb& limb, const Quat& orientation, BodyFrame& frame, Pose& target) const {
   const BodyKinematics& kinematics = setup_.targetKinematics;
-  kinematics.globals(target, frame);
   target.locals[limb.end].rotation =
       (kinematics.parentRotation(limb.end, frame).conjugate() * orientation).normalized();
   kinematics.globals(target, frame);

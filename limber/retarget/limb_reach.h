@@ -17,7 +17,7 @@ class LimbReach {
   void reach(const Limb& limb, const Vec3* kneeAhead, BodyFrame& frame, Pose& target) const;
   // Whether the end is at its goal already, and turned as it has to be.
   static bool isThere(const Limb& limb, const BodyFrame& frame);
-  // Turns the end to `orientation` and brings `frame` up to date with a limb that was changed.
+  // Turns the end to `orientation`. `frame` as above.
   void turnEnd(const Limb& limb, const Quat& orientation, BodyFrame& frame, Pose& target) const;
 
  private:
