@@ -1,7 +1,10 @@
 #include "limber/templates/pose_search.h"
 
 #include <algorithm>
+#include <iterator>
+#include <utility>
 
+#include "limber/core/parallel.h"
 #include "limber/templates/bent_template.h"
 
 namespace limber {
@@ -35,12 +38,20 @@ std::vector<BendTarget> foundTargets(const TemplateFit& fit) {
   return targets;
 }
 
+template <class Make>
+std::vector<TemplateVariant> madeInParallel(std::size_t count, const Make& make) {
+  std::vector<TemplateVariant> variants(count);
+  parallelFor(count, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) variants[i] = make(i);
+  });
+  return variants;
+}
+
 void bendNearer(TemplateEmbedder& embedder, TemplateFit& fit) {
   for (int bend = 0; bend < kMostBends; ++bend) {
-    std::vector<TemplateVariant> variants;
-    for (const double step : kSizeSteps) {
-      variants.push_back(bentTemplate(fit.skeleton, foundTargets(fit), step * sizeOf(fit.skeleton)));
-    }
+    const std::vector<TemplateVariant> variants = madeInParallel(std::size(kSizeSteps), [&](std::size_t i) {
+      return bentTemplate(fit.skeleton, foundTargets(fit), kSizeSteps[i] * sizeOf(fit.skeleton));
+    });
     TemplateFit nearest = nearestOf(variants, embedder);
     if (!cheaper(nearest, fit)) return;
     fit = std::move(nearest);
@@ -91,14 +102,16 @@ TemplateVariant reaching(const TemplateFit& fit, Index tip, const Vec3& end) {
 
 // Whether a limb that reached for an end left out made the fit cheaper.
 bool reachOut(TemplateEmbedder& embedder, TemplateFit& fit) {
-  std::vector<TemplateVariant> variants;
+  std::vector<std::pair<Index, Vec3>> reaches;
   for (const Vec3& end : endsLeftOut(embedder.body(), fit)) {
     for (Index j = 0; j < fit.skeleton.jointCount(); ++j) {
       const bool isTip = fit.skeleton.joints[j].role == TemplateRole::kTip;
-      if (isTip && !fit.pins[j]) variants.push_back(reaching(fit, j, end));
+      if (isTip && !fit.pins[j]) reaches.emplace_back(j, end);
     }
   }
-  if (variants.empty()) return false;
+  if (reaches.empty()) return false;
+  const std::vector<TemplateVariant> variants =
+      madeInParallel(reaches.size(), [&](std::size_t i) { return reaching(fit, reaches[i].first, reaches[i].second); });
   TemplateFit nearest = nearestOf(variants, embedder);
   bendNearer(embedder, nearest);
   if (!cheaper(nearest, fit)) return false;
