@@ -23,7 +23,7 @@ struct FigureSearch {
 //
 // The total of a match is 5 and more where there is such a person, and less in animals, furniture and busts. None
 // where nothing is as round as a head.
-// Cost: 1 to 3 s on two cores, whatever the size of the mesh. Throws Error kCancelled.
+// Cost: about half a second on two cores, whatever the size of the mesh. Throws Error kCancelled.
 std::optional<MatchedFigure> findFigure(const BodyVolume& body, const FigureSearch& search, Progress& progress);
 
 }  // namespace limber
