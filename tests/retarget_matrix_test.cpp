@@ -23,9 +23,6 @@ namespace {
 
 constexpr std::size_t kFrames = 400;  // of each motion
 
-// Those with the skeleton of another count once in means.
-const std::set<std::string> kTwins = {"quaternius_man_king.glb", "quaternius_man_spacesuit.glb",
-                                      "quaternius_platformer_character.glb", "quaternius_woman_scifi.glb"};
 // Also one without a mesh.
 std::vector<std::string> humanoids() {
   std::vector<std::string> files(std::begin(kSharedPeople), std::end(kSharedPeople));
@@ -58,9 +55,23 @@ bool isWalkOrRun(const std::string& motion) {
 // Runs, and walks on the spot, whose feet never stand still: nothing can be said of sliding there.
 const std::set<std::string> kNeverStands = {"cmu_daz_02_03_run.bvh", "cmu_daz_09_01_run.bvh", "makehuman_walk.bvh",
                                             "makehuman_zombie_walk.bvh", "pab_run.fbx"};
-// Of all pairs by spacetime: jumps whose standing feet tremble by 7 mm with the whole body; held still they make legs
-// tremble, on toys most.
-constexpr double kRoughestInOnePiece = 1.5;
+// What does not hold yet, jerk over 1.1, by spacetime: toys whose legs are short for their hips.
+const std::map<std::pair<std::string, std::string>, double> kRougherInOnePiece = {
+    {{"cmu_mb_01_01_forward_jumps.bvh", "robot_expressive.glb"}, 1.12},
+    {{"pybvh_example.bvh", "quaternius_platformer_character.glb"}, 1.14},
+    {{"pybvh_example.bvh", "quaternius_platformer_character_humanoidrig.glb"}, 1.14}};
+
+// The cat's trunk is longer than the fox's: as it bows over paws that stand, its legs have to turn further.
+const std::map<std::pair<std::string, std::string>, double> kRougherCat = {{{"Fetch", "limb-ik"}, 1.16},
+                                                                           {{"Fetch", "online"}, 1.16},
+                                                                           {{"Fetch", "spacetime"}, 1.17},
+                                                                           {{"Walk", "online"}, 1.14}};
+
+double roughest(const std::map<std::pair<std::string, std::string>, double>& rougher, const std::string& one,
+                const std::string& other) {
+  const auto known = rougher.find({one, other});
+  return known == rougher.end() ? 1.1 : known->second;
+}
 
 }  // namespace
 
@@ -91,7 +102,6 @@ TEST_P(RetargetMatrix, SpacetimeKeepsFeetAndGround) {
   if (!sharedDataFolder()) GTEST_SKIP() << kNoSharedData;
   const std::string motion = GetParam();
   const Taken source = motionFrom(motion);
-  double jerk = 0, count = 0;
   for (const std::string& file : humanoids()) {
     SCOPED_TRACE(file);
     const Skeleton target = readMotion(*sharedDataFolder() / "rigged" / file).skeleton;
@@ -103,12 +113,8 @@ TEST_P(RetargetMatrix, SpacetimeKeepsFeetAndGround) {
       EXPECT_LT(result.sliding, 0.02);
     }
     EXPECT_LT(result.boneDirection, 15);
-    EXPECT_LT(result.jerk, kRoughestInOnePiece);
-    if (kTwins.contains(file)) continue;
-    jerk += result.jerk;
-    ++count;
+    EXPECT_LT(result.jerk, roughest(kRougherInOnePiece, motion, file));
   }
-  EXPECT_LT(jerk / count, 1.1);
 }
 
 // Legs that are nearly straight bend to the same side from frame to frame.
@@ -306,7 +312,7 @@ TEST(RetargetAnimals, PawsStandWhereTheyStand) {
     const PlainSkeleton plain(readMotion(*sharedDataFolder() / "rigged" / animal).skeleton);
     const Skeleton& target = plain.skeleton();
     const SkeletonMap map = matchSkeletons(motion.skeleton, target);
-    double jerk = 0, clips = 0;
+    const bool cat = std::string(animal) == "m2m_fox_cat.glb";
     for (const Clip& clip : motion.clips) {
       if (clip.name == "Death") continue;
       SCOPED_TRACE(clip.name + ' ' + animal);
@@ -324,11 +330,9 @@ TEST(RetargetAnimals, PawsStandWhereTheyStand) {
         EXPECT_LT(result.sliding, result.sourceSliding + 1e-4);
         EXPECT_LT(1700 * (result.penetration - result.sourcePenetration), 5) << "those who sit lay their feet down";
         EXPECT_GT(result.contactAgreement, 0.99);
-        jerk += result.jerk;
-        ++clips;
+        EXPECT_LT(result.jerk, cat ? roughest(kRougherCat, clip.name, method) : 1.1) << method;
       }
     }
-    EXPECT_LT(jerk / clips, 1.1);
   }
 }
 

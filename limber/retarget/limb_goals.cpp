@@ -29,7 +29,7 @@ constexpr double kFallRate = 40;       // 1/seconds, of the speed that is taken 
 // Shares of that softness that a planted foot loses: the point that holds it, and the other.
 constexpr double kFirmHeld = 0.9, kFirmBeside = 0.2;
 constexpr double kTipLies = 0.05;     // over the ground: from there on toes that the target alone has lie down
-constexpr double kCarriedUp = 0.5;    // share of its hip's way up that a free foot takes part in
+constexpr double kCarriedUp = 0.5;    // share of its hip's way up that a person's free foot takes part in
 constexpr double kBentInRest = 0.01;  // of an animal's leg's length: a knee off its line by that tells where it bends
 constexpr double kSteep = 1.7, kSoleUp = 2.4, kSoftLevel = 0.05;  // radians that toes point down
 // Speeds of the source's pelvis or feet, hip heights a second, that are no motion but a cut. Many recordings have a
@@ -263,7 +263,7 @@ void LimbGoals::carryFeet(const BodyFrame& target, double seconds) {
   const Pelvis::Move move = pelvis_.moveFor(legs_, target);
   for (std::size_t i = 0; i < legs_.size(); ++i) {
     feelers_[i].carried = pelvis_.hipWay(move, legs_[i], target);
-    feelers_[i].carried.y() *= kCarriedUp;
+    if (setup_.person) feelers_[i].carried.y() *= kCarriedUp;
   }
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "limber/ik/rotation.h"
 #include "limber/retarget/smooth.h"
@@ -15,7 +14,8 @@ constexpr double kCalmWide = 1.5;  // power of the hips' widths by which their t
 // In hip heights of the target.
 constexpr double kMostShift = 0.3;
 constexpr double kSoftStretch = 0.015, kSoftChange = 0.004;  // of sinking, by how far a foot is moved
-constexpr double kStretch = 0.998;                           // of a leg's length: fully stretched knees pop
+constexpr double kSoftOnFour = 0.03;  // likewise: with legs at both ends of the body, some are far off and stretch more
+constexpr double kStretch = 0.998;    // of a leg's length: fully stretched knees pop
 // Of turning with planted legs: leg lengths, the more the less it does; and radians.
 constexpr double kStiffOnTwo = 0.15, kStiffOnOne = 0.3, kMostTurn = 0.8;
 
@@ -110,6 +110,7 @@ double Pelvis::changeOf(const Leg& leg, const BodyFrame& frame, const Quat& turn
 
 double Pelvis::shiftFor(std::span<const Leg> legs, const BodyFrame& frame, const Quat& turn) const {
   const double shift = bendKeepingShift(legs, frame, turn), height = setup_.targetHipHeight;
+  const double soft = (setup_.person ? kSoftStretch : kSoftOnFour) * height;
   double sum = 0;
   for (const Leg& leg : legs) {
     const Vec3 hipGoes = hipWay({turn, 0}, leg, frame);
@@ -117,21 +118,11 @@ double Pelvis::shiftFor(std::span<const Leg> legs, const BodyFrame& frame, const
     if (way.y() >= 0) continue;
     const double length = kStretch * leg.length, across = std::hypot(way.x(), way.z());
     const double down = std::sqrt(std::max(length * length - across * across, 0.0));
-    const double needed = softPositive(-way.y() - down, kSoftStretch * height * leg.changed);
+    const double needed = softPositive(-way.y() - down, soft * leg.changed);
     sum += needed * needed * needed * needed;
   }
   // The most that a leg asks for, but without a kink where another takes over.
   return shift - std::min(std::sqrt(std::sqrt(sum)), kMostShift * height);
-}
-
-double Pelvis::mostShift(std::span<const Leg> legs, const BodyFrame& frame) const {
-  double most = std::numeric_limits<double>::infinity();
-  for (const Leg& leg : legs) {
-    const Vec3 way = leg.goal - frame.positions[leg.upper];
-    const double length = kStretch * leg.length, across = std::hypot(way.x(), way.z());
-    if (way.y() < 0) most = std::min(most, way.y() + std::sqrt(std::max(length * length - across * across, 0.0)));
-  }
-  return std::max(most, -kMostShift * setup_.targetHipHeight);
 }
 
 }  // namespace limber

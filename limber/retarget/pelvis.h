@@ -32,16 +32,14 @@ class Pelvis {
   // Whether the leg's goal is where the turned pelvis takes its end, 0, or elsewhere, towards 1: a leg that is left
   // alone may be as straight as it is.
   double changeOf(const Leg& leg, const BodyFrame& frame, const Quat& turn = Quat::Identity()) const;
-  // How far it goes up, once it is turned: so that planted legs keep the bend that their joint angles give them, on
-  // average, and down as far as the longest way asks.
-  double shiftFor(std::span<const Leg> legs, const BodyFrame& frame, const Quat& turn = Quat::Identity()) const;
-  // The most that it may go up with every leg at its goal no longer than its bones, metres.
-  double mostShift(std::span<const Leg> legs, const BodyFrame& frame) const;
   // Of a leg's hip by that move, in the person's space.
   Vec3 hipWay(const Move& move, const Leg& leg, const BodyFrame& frame) const;
   void apply(const Move& move, Pose& target, BodyFrame& frame) const;
 
  private:
+  // How far it goes up, once it is turned: so that planted legs keep the bend that their joint angles give them, on
+  // average, and down as far as the longest way asks.
+  double shiftFor(std::span<const Leg> legs, const BodyFrame& frame, const Quat& turn) const;
   double bendKeepingShift(std::span<const Leg> legs, const BodyFrame& frame, const Quat& turn) const;
 
   const RetargetSetup& setup_;

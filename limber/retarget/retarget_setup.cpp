@@ -123,6 +123,15 @@ Size sizeOf(const SkeletonMap& map, MapSide side, const NeutralPose& pose) {
   return size;
 }
 
+// Mean height, over the lowest matched joint, of the joints that legs begin at.
+double legHeight(const std::vector<AnimalLeg>& legs, const SkeletonMap& map, MapSide side, const NeutralPose& pose) {
+  double sum = 0;
+  for (const AnimalLeg& leg : legs) {
+    sum += pose.positions[(side == MapSide::kSource ? leg.source : leg.target).upper].y();
+  }
+  return sum / static_cast<double>(legs.size()) - lowest(matchedJoints(map, side), pose.positions);
+}
+
 }  // namespace
 
 RetargetSetup::RetargetSetup(const Skeleton& from, const Skeleton& to, SkeletonMap matches,
@@ -153,6 +162,10 @@ RetargetSetup::RetargetSetup(const Skeleton& from, const Skeleton& to, SkeletonM
     throw Error(ErrorCode::kBadData, "the rest pose has no height: its joints lie in one place");
   }
   scale = targetHipHeight / sourceHipHeight;
+  if (!animalLegs.empty()) {
+    scale = legHeight(animalLegs, map, MapSide::kTarget, targetNeutral) /
+            legHeight(animalLegs, map, MapSide::kSource, sourceNeutral);
+  }
   const double sourceLegs = legLength(map, MapSide::kSource, sourceNeutral);
   const double targetLegs = legLength(map, MapSide::kTarget, targetNeutral);
   if (sourceLegs > 0 && targetLegs > 0) {

@@ -54,7 +54,8 @@ struct RetargetSetup {
   Pose sourceRest;      // the rest pose, or what stands in for it (uprightPose)
   NeutralPose sourceNeutral, targetNeutral;
   BodyKinematics sourceKinematics, targetKinematics;
-  double scale = 1;  // target metres for a source metre of the root's way
+  // Target metres for a source metre of the root's way. Of others than people with legs: by where these begin.
+  double scale = 1;
   // The legs' share of the hips' height, over the source's: where ankles are high, bent legs lower the hips less.
   double legShare = 1;
   double sourceHipHeight = 1,
