@@ -53,12 +53,14 @@ void run(const Options& options) {
   }
   const double rate = frameRateOf(original);
   const PlainSkeleton sourcePlain(source.skeleton), resultPlain(result.skeleton);
-  const PoseSequence from = sourcePlain.plain(sampleFrames(source.skeleton, original, rate));
+  const PoseSequence sampled = sampleFrames(source.skeleton, original, rate), from = sourcePlain.plain(sampled);
   PoseSequence to = sampleFrames(result.skeleton, moved, rate);
   to.poses.resize(from.poses.size(), to.poses.back());
   const PoseSequence toPlain = resultPlain.plain(to);
   const RetargetSetup setup(sourcePlain.skeleton(), resultPlain.skeleton(), map, {}, &from);
-  MotionMetrics metrics = measureMotion(setup, from, toPlain);
+  const ShownJoints shownFrom = shownJoints(source.skeleton, sampled, setup.sourceKinematics.toBody()),
+                    shownTo = shownJoints(result.skeleton, to, setup.targetKinematics.toBody());
+  MotionMetrics metrics = measureMotion(setup, from, toPlain, &shownFrom, &shownTo);
   if (hasRig(asset)) metrics.selfPenetration = measureSelfPenetration(readSkinnedModel(asset), to.poses);
   if (!options.truth.empty()) {
     const Motion truth = withClip(readMotion(options.truth), options.truth);
@@ -67,7 +69,8 @@ void run(const Options& options) {
       throw Error(ErrorCode::kBadArgument, "has another skeleton than the result", options.truth);
     }
     right.poses.resize(from.poses.size(), right.poses.back());
-    metrics.jointError = jointErrorOf(setup, resultPlain.plain(right), toPlain);
+    const ShownJoints shownRight = shownJoints(truth.skeleton, right, setup.targetKinematics.toBody());
+    metrics.jointError = jointErrorOf(setup, resultPlain.plain(right), toPlain, &shownRight, &shownTo);
   }
   fmt::print("{}", options.json ? motionMetricsJson(metrics) : motionMetricsText(metrics));
 }

@@ -91,11 +91,13 @@ std::vector<LimbPair> limbsOf(const RetargetSetup& setup) {
 
 // One skeleton's motion as the measures see it.
 struct Seen {
-  Seen(const RetargetSetup& setup, MapSide s, const PoseSequence& sequence)
+  Seen(const RetargetSetup& setup, MapSide s, const PoseSequence& sequence, const ShownJoints* shown)
       : side(s),
-        kinematics(s == MapSide::kSource ? setup.sourceKinematics : setup.targetKinematics),
         neutral(s == MapSide::kSource ? setup.sourceNeutral : setup.targetNeutral),
-        positions(positionsOf(kinematics, sequence)),
+        rest(shown ? shown->rest : neutral.restPositions),
+        positions(shown
+                      ? shown->frames
+                      : positionsOf(s == MapSide::kSource ? setup.sourceKinematics : setup.targetKinematics, sequence)),
         height(heightOf(setup, s)),
         ground(s == MapSide::kSource ? setup.sourceGround : setup.targetGround),
         lowest(s == MapSide::kSource ? setup.sourceLowest : setup.targetLowest) {}
@@ -112,8 +114,8 @@ struct Seen {
   }
 
   MapSide side;
-  const BodyKinematics& kinematics;
   const NeutralPose& neutral;
+  std::vector<Vec3> rest;
   Positions positions;
   double height, ground, lowest;
 };
@@ -176,7 +178,7 @@ void measureLimbs(const RetargetSetup& setup, const Seen& source, const Seen& ta
     const std::vector<Index>&s = limb.source, &t = limb.target;
     if (s.size() < 3) continue;
     const auto length = [](const Seen& seen, const std::vector<Index>& j) {
-      const std::vector<Vec3>& rest = seen.neutral.restPositions;
+      const std::vector<Vec3>& rest = seen.rest;
       return (rest[j[1]] - rest[j[0]]).norm() + (rest[j[2]] - rest[j[1]]).norm();
     };
     const double sourceLength = length(source, s), targetLength = length(target, t);
@@ -230,7 +232,7 @@ struct JerkSums {
 };
 
 void addBoneJerk(const Seen& seen, Index from, Index to, const std::vector<bool>& cut, double& sum) {
-  const double length = (seen.neutral.restPositions[to] - seen.neutral.restPositions[from]).norm();
+  const double length = (seen.rest[to] - seen.rest[from]).norm();
   sum += squaredJerk(cut,
                      [&](std::size_t f) -> Vec3 { return (seen.positions[f][to] - seen.positions[f][from]) / length; });
 }
@@ -279,9 +281,21 @@ void checkFrames(const RetargetSetup& setup, const PoseSequence& one, const Pose
 
 }  // namespace
 
-MotionMetrics measureMotion(const RetargetSetup& setup, const PoseSequence& source, const PoseSequence& target) {
+ShownJoints shownJoints(const Skeleton& original, const PoseSequence& frames, const Quat& toBody) {
+  const auto places = [&](const std::vector<Affine>& globals) {
+    std::vector<Vec3> positions;
+    for (const Affine& global : globals) positions.push_back(toBody * Vec3(global.translation()));
+    return positions;
+  };
+  ShownJoints shown{places(restGlobals(original)), {}};
+  for (const Pose& pose : frames.poses) shown.frames.push_back(places(poseGlobals(original, pose)));
+  return shown;
+}
+
+MotionMetrics measureMotion(const RetargetSetup& setup, const PoseSequence& source, const PoseSequence& target,
+                            const ShownJoints* shownSource, const ShownJoints* shownTarget) {
   checkFrames(setup, source, target);
-  const Seen from(setup, MapSide::kSource, source), to(setup, MapSide::kTarget, target);
+  const Seen from(setup, MapSide::kSource, source, shownSource), to(setup, MapSide::kTarget, target, shownTarget);
   MotionMetrics metrics;
   metrics.frames = static_cast<Index>(source.poses.size());
   metrics.matched = static_cast<Index>(setup.map.matches.size());
@@ -293,9 +307,10 @@ MotionMetrics measureMotion(const RetargetSetup& setup, const PoseSequence& sour
   return metrics;
 }
 
-JointError jointErrorOf(const RetargetSetup& setup, const PoseSequence& truth, const PoseSequence& target) {
+JointError jointErrorOf(const RetargetSetup& setup, const PoseSequence& truth, const PoseSequence& target,
+                        const ShownJoints* shownTruth, const ShownJoints* shownTarget) {
   checkFrames(setup, truth, target);
-  const Seen right(setup, MapSide::kTarget, truth), given(setup, MapSide::kTarget, target);
+  const Seen right(setup, MapSide::kTarget, truth, shownTruth), given(setup, MapSide::kTarget, target, shownTarget);
   JointError error;
   double count = 0;
   for (std::size_t f = 0; f < truth.poses.size(); ++f) {

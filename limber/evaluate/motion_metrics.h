@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "limber/evaluate/self_penetration.h"
 #include "limber/retarget/retarget_clip.h"
@@ -43,12 +44,24 @@ struct MotionMetrics {
   std::optional<JointError> jointError;
 };
 
-// `source` and `target` are the same moments of both. People, and animals by their legs (RetargetSetup::animalLegs):
-// throws Error kUnsupported for others, and kBadArgument where the counts of frames differ or there are fewer than 5.
-MotionMetrics measureMotion(const RetargetSetup& setup, const PoseSequence& source, const PoseSequence& target);
+// Where joints stand as a file shows them, in the person's space: a setup's skeletons have even scales (PlainSkeleton),
+// the file's may differ between the axes.
+struct ShownJoints {
+  std::vector<Vec3> rest;                 // #J
+  std::vector<std::vector<Vec3>> frames;  // of each frame, #J
+};
+// `original` is the file's skeleton and `frames` are its own; `toBody` as the setup's (BodyKinematics).
+ShownJoints shownJoints(const Skeleton& original, const PoseSequence& frames, const Quat& toBody);
+
+// `source` and `target` are the same moments of both; the shown ones, if given, too, and count instead. People, and
+// animals by their legs (RetargetSetup::animalLegs): throws Error kUnsupported for others, and kBadArgument where the
+// counts of frames differ or there are fewer than 5.
+MotionMetrics measureMotion(const RetargetSetup& setup, const PoseSequence& source, const PoseSequence& target,
+                            const ShownJoints* shownSource = nullptr, const ShownJoints* shownTarget = nullptr);
 
 // `truth` and `target` are the same moments of the setup's target. Throws Error as measureMotion does.
-JointError jointErrorOf(const RetargetSetup& setup, const PoseSequence& truth, const PoseSequence& target);
+JointError jointErrorOf(const RetargetSetup& setup, const PoseSequence& truth, const PoseSequence& target,
+                        const ShownJoints* shownTruth = nullptr, const ShownJoints* shownTarget = nullptr);
 
 std::string motionMetricsText(const MotionMetrics& metrics);
 std::string motionMetricsJson(const MotionMetrics& metrics);

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "limber/core/error.h"
+#include "limber/retarget/plain_skeleton.h"
 #include "limber/retarget/testing/test_motion.h"
 
 namespace limber {
@@ -77,6 +78,26 @@ TEST_F(MotionMetricsOf, ATurnedForearmIsOneBoneOfEight) {
     pose.locals[person_.find("leftLowerArm").value()].rotation = limber::testing::turn(Vec3::UnitZ(), 40);
   }
   EXPECT_NEAR(measureMotion(setup(still), still, turned).boneDirection, 40.0 / 8, 1e-6);
+}
+
+// A thigh's scale that differs between the axes makes the shin longer where the file's is, and not by the mean.
+TEST_F(MotionMetricsOf, UnevenScalesCountAsTheFileShowsThem) {
+  Skeleton uneven = person_;
+  uneven.joints[uneven.find("leftUpperLeg").value()].rest.scale = Vec3(1, 1.1, 1);
+  const PlainSkeleton plain(uneven);
+  const PoseSequence still = standing(Vec3::Zero()), shown{std::vector<Pose>(40, restPose(uneven)), kSeconds};
+  const PoseSequence even = plain.plain(shown);
+  const RetargetSetup setup(person_, plain.skeleton(), matchSkeletons(person_, plain.skeleton()), {}, &still);
+  const ShownJoints joints = shownJoints(uneven, shown, setup.targetKinematics.toBody());
+  const Index toes = uneven.find("leftToes").value();
+  const auto heightIn = [&](const Skeleton& skeleton) { return restGlobals(skeleton)[toes].translation().y(); };
+  const double deep = heightIn(plain.skeleton()) - heightIn(uneven);
+  ASSERT_GT(deep, 0.01);
+  const MotionMetrics byMean = measureMotion(setup, still, even),
+                      asShown = measureMotion(setup, still, even, nullptr, &joints);
+  EXPECT_NEAR((asShown.penetration - byMean.penetration) * byMean.height, deep, 1e-6);
+  EXPECT_NEAR(jointErrorOf(setup, even, even, &joints, &joints).global, 0, 1e-12);
+  EXPECT_GT(jointErrorOf(setup, even, even, nullptr, &joints).global, 0);
 }
 
 // The same angles on other proportions are as smooth, whatever the joints' ways are.
