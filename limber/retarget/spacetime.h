@@ -13,7 +13,7 @@ namespace limber {
 // The curves are of feet and hands, not of joint angles as Gleicher's: so the constraints are linear, each curve is one
 // banded system (DisplacementCurve), and inverse kinematics makes angles of them frame by frame, as Lee and Shin do (A
 // hierarchical approach to interactive motion editing, 1999). The pelvis follows the feet (Pelvis::moveFor), free feet
-// go along with it, and both are found a second time. Linear in the number of frames, about 25 us each.
+// go along with it, and both are found a second time. Linear in the number of frames, about 20 us each.
 //
 // Given up: B-splines of the joint angles, a control point every 0.08 s, by Gauss-Newton steps. They cannot follow what
 // planted feet of recordings tremble: feet slid by 0.033 heights/s and sank by 22 mm. Ground as one-sided rows of these
