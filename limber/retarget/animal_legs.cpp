@@ -99,8 +99,15 @@ class LegFinder {
     const auto lower = std::max_element(chain.begin() + static_cast<std::ptrdiff_t>(upper) + 1,
                                         chain.begin() + static_cast<std::ptrdiff_t>(end),
                                         [&](const Pair& a, const Pair& b) { return offLine(a) < offLine(b); });
-    AnimalLeg leg{{chain[upper].source, lower->source, chain[end].source, std::nullopt},
-                  {chain[upper].target, lower->target, chain[end].target, std::nullopt}};
+    AnimalLeg leg{{chain[upper].source, lower->source, chain[end].source, std::nullopt, std::nullopt},
+                  {chain[upper].target, lower->target, chain[end].target, std::nullopt, std::nullopt}};
+    double most = 0;
+    for (std::size_t i = upper + 1; i < end; ++i) {
+      if (chain[i].target == lower->target || offLine(chain[i]) <= most) continue;
+      most = offLine(chain[i]);
+      leg.source.hock = chain[i].source;
+      leg.target.hock = chain[i].target;
+    }
     if (end + 1 < chain.size()) {
       leg.source.toes = chain[end + 1].source;
       leg.target.toes = chain[end + 1].target;

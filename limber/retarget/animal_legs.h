@@ -12,6 +12,7 @@ namespace limber {
 struct LegJoints {
   Index upper = 0, lower = 0, end = 0;  // `lower`: the joint between that bends the leg most
   std::optional<Index> toes;            // the next joint after the end
+  std::optional<Index> hock;            // of those between, the one that bends it most after `lower`
 };
 
 struct AnimalLeg {

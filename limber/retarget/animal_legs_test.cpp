@@ -39,6 +39,7 @@ TEST(AnimalLegs, AreThoseThatComeDownToTheGround) {
     EXPECT_EQ(leg.target.lower, other.find(stem + "Two"));
     EXPECT_EQ(leg.target.end, other.find(stem + "Three"));
     EXPECT_EQ(leg.target.toes, other.find(stem + "Four"));
+    EXPECT_FALSE(leg.target.hock);
     EXPECT_EQ(one.joints[leg.source.lower].name, stem + "Two");
   }
 }

@@ -13,6 +13,7 @@ struct Limb {
   Index upper = 0, lower = 0, end = 0;
   Index sourceUpper = 0, sourceEnd = 0;
   double length = 0;             // of both bones
+  std::optional<Index> hock;     // another joint that bends it (AnimalLeg)
   Vec3 goal = Vec3::Zero();      // where the end has to be, in the person's space
   bool wanted = false;           // else it may be where it is
   Quat turn = Quat::Identity();  // of the end, against its joint angles

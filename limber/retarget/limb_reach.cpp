@@ -1,7 +1,9 @@
 #include "limber/retarget/limb_reach.h"
 
 #include <algorithm>
+#include <cmath>
 
+#include "limber/core/numbers.h"
 #include "limber/ik/rotation.h"
 
 namespace limber {
@@ -10,6 +12,7 @@ namespace {
 
 constexpr double kKneesForward = 0.01;   // of the leg's length, added to its bend
 constexpr double kOverstretched = 0.12;  // likewise, of a knee that is meant to bend backward
+constexpr double kLeastLever = 0.02;     // likewise: joints that are hardly off the line to the end bend little
 
 }  // namespace
 
@@ -19,6 +22,7 @@ bool LimbReach::isThere(const Limb& limb, const BodyFrame& frame) {
 
 void LimbReach::reach(const Limb& limb, const Vec3* kneeAhead, BodyFrame& frame, Pose& target) const {
   const Quat orientation = limb.turn * frame.rotations[limb.end];
+  if (limb.hock) bendHock(limb, frame, target);
   TwoBone bones{frame.positions[limb.upper], frame.positions[limb.lower], frame.positions[limb.end], limb.goal, {}, {}};
   if (kneeAhead) bones.pole = kneePole(limb, bones, *kneeAhead, frame);
   const TwoBoneTurns turns = solveTwoBone(bones);
@@ -31,6 +35,24 @@ void LimbReach::reach(const Limb& limb, const Vec3* kneeAhead, BodyFrame& frame,
       (aboveLower.conjugate() * turns.middle * frame.rotations[limb.lower]).normalized();
   kinematics.globals(target, frame);
   turnEnd(limb, orientation, frame, target);
+}
+
+// The least sum of squared turns that makes the leg as long as its goal asks, to first order: each joint turns the more
+// the farther it is off the line to the end. Towards straight and folded it comes the nearer the slower.
+void LimbReach::bendHock(const Limb& limb, BodyFrame& frame, Pose& target) const {
+  const Vec3 start = frame.positions[limb.upper], leg = frame.positions[limb.end] - start, line = leg.normalized();
+  const Vec3 hock = frame.positions[*limb.hock], toStart = start - hock, toEnd = frame.positions[limb.end] - hock;
+  const double off = toStart.cross(line).norm(), kneeOff = (frame.positions[limb.lower] - start).cross(line).norm();
+  const Vec3 normal = toStart.cross(toEnd);
+  if (normal.norm() < 1e-9 * limb.length * limb.length) return;
+  const double longer = (limb.goal - start).norm() - leg.norm(), least = kLeastLever * limb.length;
+  const double opens = off * longer / (off * off + kneeOff * kneeOff + least * least);
+  const double angle = std::atan2(normal.norm(), toStart.dot(toEnd)), room = opens > 0 ? kPi - angle : angle;
+  const double opened = std::copysign(room * (1 - std::exp(-std::abs(opens) / room)), opens);
+  const BodyKinematics& kinematics = setup_.targetKinematics;
+  const Quat turned = Eigen::AngleAxisd(opened, normal.normalized()) * frame.rotations[*limb.hock];
+  target.locals[*limb.hock].rotation = (kinematics.parentRotation(*limb.hock, frame).conjugate() * turned).normalized();
+  kinematics.globals(target, frame);
 }
 
 void LimbReach::turnEnd(const Limb& limb, const Quat& orientation, BodyFrame& frame, Pose& target) const {

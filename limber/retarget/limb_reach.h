@@ -13,7 +13,8 @@ class LimbReach {
 
   // Two bones in closed form. `frame` are the globals of `target`; both are brought up to date. The end keeps how it is
   // turned, but for limb.turn. With `kneeAhead` (Leg) the middle joint bends to where it bends now, and to that side
-  // where it hardly bends or is a little overstretched: else it would snap from one side to the other.
+  // where it hardly bends or is a little overstretched: else it would snap from one side to the other. A hock (Limb)
+  // takes its share of the way first.
   void reach(const Limb& limb, const Vec3* kneeAhead, BodyFrame& frame, Pose& target) const;
   // Whether the end is at its goal already, and turned as it has to be.
   static bool isThere(const Limb& limb, const BodyFrame& frame);
@@ -21,6 +22,7 @@ class LimbReach {
   void turnEnd(const Limb& limb, const Quat& orientation, BodyFrame& frame, Pose& target) const;
 
  private:
+  void bendHock(const Limb& limb, BodyFrame& frame, Pose& target) const;
   Vec3 kneePole(const Limb& limb, const TwoBone& bones, const Vec3& kneeAhead, const BodyFrame& frame) const;
 
   const RetargetSetup& setup_;
