@@ -67,8 +67,8 @@ const std::map<std::pair<std::string, std::string>, double> kRougherCat = {{{"Fe
                                                                            {{"Fetch", "spacetime"}, 1.17},
                                                                            {{"Walk", "online"}, 1.14}};
 
-// The horse moves its hind legs by the hocks alone, foxes have to turn their thighs as well where paws stay or come down;
-// where it turns about, its bent trunk takes their forelegs below the ground.
+// The horse moves its hind legs by the hocks alone, foxes have to turn their thighs as well where paws stay or come
+// down; where it turns about, its bent trunk takes their forelegs below the ground.
 const std::map<std::string, double> kRougherHorse = {
     {"Death", 1.81}, {"Eating", 1.15}, {"Head_But", 1.84}, {"Kick", 1.56},      {"lay_to_idle", 1.47},
     {"Rear", 1.23},  {"Run", 1.11},    {"Walk", 1.27},     {"Turn_Left", 1.99}, {"Turn_Right", 2.46}};
