@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <iterator>
+#include <map>
+#include <numeric>
 #include <set>
 #include <string>
 #include <utility>
@@ -232,8 +234,10 @@ class AnimalSide {
 };
 
 bool isOfLeg(const RetargetSetup& setup, Index joint) {
-  return std::any_of(setup.animalLegs.begin(), setup.animalLegs.end(),
-                     [&](const AnimalLeg& leg) { return isAncestorOrSelf(*setup.target, leg.target.upper, joint); });
+  return std::any_of(setup.animalLegs.begin(), setup.animalLegs.end(), [&](const AnimalLeg& leg) {
+    return isAncestorOrSelf(*setup.target, leg.target.upper, joint) ||
+           isAncestorOrSelf(*setup.target, leg.target.end, joint);
+  });
 }
 
 AnimalMeasures measuredAnimal(const RetargetSetup& setup, const PoseSequence& source, const PoseSequence& result) {
@@ -255,6 +259,11 @@ AnimalMeasures measuredAnimal(const RetargetSetup& setup, const PoseSequence& so
   return measures;
 }
 
+bool leavesItsFeet(const std::string& clip) {
+  return clip.find("Death") != std::string::npos || clip.find("Sleep") != std::string::npos ||
+         clip.find("lay") != std::string::npos || clip.find("ump") != std::string::npos;
+}
+
 // Every clip of some quadrupeds on their families. Bodies that come down to the ground or leave it have no feet that
 // tell how deep they may be: longer or shorter legs then take other joints below it.
 TEST(RetargetAnimals, QuadrupedsMoveTheirFamilies) {
@@ -262,10 +271,6 @@ TEST(RetargetAnimals, QuadrupedsMoveTheirFamilies) {
   const std::vector<const char*> foxes = {"m2m_fox_fox.glb", "m2m_fox_cat.glb", "m2m_fox_dog.glb"};
   const std::vector<const char*> farm = {"quaternius_alpaca.glb", "quaternius_cow.glb", "quaternius_horse.glb",
                                          "quaternius_wolf.glb"};
-  const auto leavesItsFeet = [](const std::string& clip) {
-    return clip.find("Death") != std::string::npos || clip.find("Sleep") != std::string::npos ||
-           clip.find("lay") != std::string::npos || clip.find("ump") != std::string::npos;
-  };
   for (const char* file :
        {"motions/m2m_fox_animations.glb", "motions/m2m_horse_animations.glb", "rigged/quaternius_alpaca.glb",
         "rigged/quaternius_cow.glb", "rigged/quaternius_horse.glb", "rigged/quaternius_wolf.glb"}) {
@@ -306,7 +311,10 @@ PoseSequence walkingAhead(const RetargetSetup& setup, PoseSequence frames) {
   const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
   std::nth_element(steps.begin(), middle, steps.end());
   for (std::size_t f = 0; f < frames.poses.size(); ++f) {
-    frames.poses[f].locals[0].translation.z() -= static_cast<double>(f) * *middle;
+    for (Index j = 0; j < setup.source->jointCount(); ++j) {
+      if (setup.source->joints[j].parent) continue;
+      frames.poses[f].locals[j].translation.z() -= static_cast<double>(f) * *middle;
+    }
   }
   return frames;
 }
@@ -362,6 +370,67 @@ TEST(RetargetAnimals, FoxesMoveAsHorses) {
       const auto rougher = kRougherHorse.find(clip.name);
       EXPECT_LT(result.jerk, rougher == kRougherHorse.end() ? 1.1 : rougher->second);
     }
+  }
+}
+
+// How far a shin's end is from the foot on a root of its own that belongs there, leg lengths, at worst.
+double gapAtFeet(const RetargetSetup& setup, const PoseSequence& result) {
+  const std::vector<Vec3>& rest = setup.targetNeutral.restPositions;
+  double worst = 0;
+  BodyFrame frame;
+  for (const Pose& pose : result.poses) {
+    setup.targetKinematics.globals(pose, frame);
+    for (const AnimalLeg& leg : setup.animalLegs) {
+      const Index shin = leg.target.carrier.value(), foot = leg.target.end;
+      const double change = (frame.positions[foot] - frame.positions[shin]).norm() - (rest[foot] - rest[shin]).norm();
+      worst = std::max(worst, std::abs(change) / (rest[foot] - rest[leg.target.upper]).norm());
+    }
+  }
+  return worst;
+}
+
+// Rigs for inverse kinematics, with feet on roots of their own.
+TEST(RetargetAnimals, LegsReachFeetOnRootsOfTheirOwn) {
+  if (!sharedDataFolder()) GTEST_SKIP() << kNoSharedData;
+  const std::vector<std::string> farm = {"alpaca", "cow", "horse", "wolf"};
+  const auto fileOf = [](const std::string& animal) {
+    return *sharedDataFolder() / "rigged" / ("quaternius_" + animal + ".glb");
+  };
+  std::map<std::string, std::vector<double>> jerks;
+  for (const std::string& from : farm) {
+    const Motion motion = readMotion(fileOf(from));
+    for (const std::string& to : farm) {
+      if (from == to) continue;
+      const PlainSkeleton plain(readMotion(fileOf(to)).skeleton);
+      const Skeleton& target = plain.skeleton();
+      const SkeletonMap map = matchSkeletons(motion.skeleton, target);
+      for (const Clip& clip : motion.clips) {
+        if (leavesItsFeet(clip.name)) continue;
+        SCOPED_TRACE(std::string(from).append(" ").append(to).append(" ").append(clip.name));
+        PoseSequence frames = sampleFrames(motion.skeleton, clip, 30);
+        const bool walks = clip.name.ends_with("Walk");
+        if (walks) frames = walkingAhead(RetargetSetup(motion.skeleton, target, map, {}, &frames), frames);
+        const RetargetSetup setup(motion.skeleton, target, map, {}, &frames);
+        ASSERT_EQ(setup.animalLegs.size(), 4u);
+        for (const char* method : {"limb-ik", "online", "spacetime"}) {
+          SCOPED_TRACE(method);
+          const PoseSequence moved = retargetFrames(findRetargetMethod(method), setup, frames);
+          const MotionMetrics result = measureMotion(setup, frames, moved);
+          EXPECT_LT(gapAtFeet(setup, moved), 1e-6);
+          EXPECT_LT(result.sliding, 0.01);
+          const double sunk = setup.scale * result.sourcePenetration * result.sourceHeight / result.height;
+          EXPECT_LT(1700 * (result.penetration - sunk), 5);
+          EXPECT_GT(result.contactAgreement, 0.98);
+          jerks[method].push_back(result.jerk);
+        }
+      }
+    }
+  }
+  // The source's legs are stretched beyond their length where the target's have to bend.
+  for (const auto& [method, values] : jerks) {
+    SCOPED_TRACE(method);
+    EXPECT_LT(std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size()), 1.1);
+    EXPECT_LT(*std::max_element(values.begin(), values.end()), method == "spacetime" ? 2.4 : 2.1);
   }
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limber/retarget/loose_feet.h"
+
 namespace limber {
 
 namespace {
@@ -29,6 +31,8 @@ class LegFinder {
         targetNeutral_(targetNeutral),
         sourceHeight_(sourceHeight),
         targetHeight_(targetHeight),
+        sourceParents_(parentsWithLegsJoined(source, sourceNeutral.positions)),
+        targetParents_(parentsWithLegsJoined(target, targetNeutral.positions)),
         pairOf_(target.jointCount()),
         matchedSource_(source.jointCount()) {
     for (const JointMatch& match : map.matches) {
@@ -61,16 +65,18 @@ class LegFinder {
   }
 
  private:
-  static std::optional<Index> nearestAbove(const Skeleton& skeleton, Index joint, const auto& isMatched) {
-    std::optional<Index> at = skeleton.joints[joint].parent;
-    while (at && !isMatched(*at)) at = skeleton.joints[*at].parent;
+  using Parents = std::vector<std::optional<Index>>;
+
+  static std::optional<Index> nearestAbove(const Parents& parents, Index joint, const auto& isMatched) {
+    std::optional<Index> at = parents[joint];
+    while (at && !isMatched(*at)) at = parents[*at];
     return at;
   }
 
   // The nearest pair above in both.
   std::optional<std::size_t> pairAbove(const Pair& pair) const {
-    const auto target = nearestAbove(target_, pair.target, [&](Index j) { return pairOf_[j].has_value(); });
-    const auto source = nearestAbove(source_, pair.source, [&](Index j) { return matchedSource_[j]; });
+    const auto target = nearestAbove(targetParents_, pair.target, [&](Index j) { return pairOf_[j].has_value(); });
+    const auto source = nearestAbove(sourceParents_, pair.source, [&](Index j) { return matchedSource_[j]; });
     if (!target || !source || pairs_[*pairOf_[*target]].source != *source) return std::nullopt;
     return pairOf_[*target];
   }
@@ -79,6 +85,10 @@ class LegFinder {
   double height(const Pair& pair) const {
     return std::max((sourceNeutral_.positions[pair.source].y() - sourceLowest_) / sourceHeight_,
                     (targetNeutral_.positions[pair.target].y() - targetLowest_) / targetHeight_);
+  }
+
+  static std::optional<Index> carrierOf(Index end, const Skeleton& skeleton, const Parents& parents) {
+    return parents[end] == skeleton.joints[end].parent ? std::nullopt : parents[end];
   }
 
   static bool isSteep(const Vec3& way) { return -way.y() > kSteep * std::hypot(way.x(), way.z()); }
@@ -99,8 +109,15 @@ class LegFinder {
     const auto lower = std::max_element(chain.begin() + static_cast<std::ptrdiff_t>(upper) + 1,
                                         chain.begin() + static_cast<std::ptrdiff_t>(end),
                                         [&](const Pair& a, const Pair& b) { return offLine(a) < offLine(b); });
-    AnimalLeg leg{{chain[upper].source, lower->source, chain[end].source, std::nullopt, std::nullopt},
-                  {chain[upper].target, lower->target, chain[end].target, std::nullopt, std::nullopt}};
+    AnimalLeg leg;
+    leg.source.upper = chain[upper].source;
+    leg.source.lower = lower->source;
+    leg.source.end = chain[end].source;
+    leg.source.carrier = carrierOf(chain[end].source, source_, sourceParents_);
+    leg.target.upper = chain[upper].target;
+    leg.target.lower = lower->target;
+    leg.target.end = chain[end].target;
+    leg.target.carrier = carrierOf(chain[end].target, target_, targetParents_);
     double most = 0;
     for (std::size_t i = upper + 1; i < end; ++i) {
       if (chain[i].target == lower->target || offLine(chain[i]) <= most) continue;
@@ -118,6 +135,7 @@ class LegFinder {
   const Skeleton &source_, &target_;
   const NeutralPose &sourceNeutral_, &targetNeutral_;
   double sourceHeight_, targetHeight_;
+  Parents sourceParents_, targetParents_;  // #J
   double sourceLowest_ = HUGE_VAL, targetLowest_ = HUGE_VAL;
   std::vector<Pair> pairs_;
   std::vector<std::optional<std::size_t>> pairOf_;  // #J of the target

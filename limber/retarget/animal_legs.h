@@ -13,6 +13,7 @@ struct LegJoints {
   Index upper = 0, lower = 0, end = 0;  // `lower`: the joint between that bends the leg most
   std::optional<Index> toes;            // the next joint after the end
   std::optional<Index> hock;            // of those between, the one that bends it most after `lower`
+  std::optional<Index> carrier;         // of an end on a root of its own: the shin that it rides on
 };
 
 struct AnimalLeg {
@@ -20,6 +21,7 @@ struct AnimalLeg {
 };
 
 // Chains of matched joints, one on the other in both, that come down from the body to the ground in both neutral poses.
+// Feet on a root of their own count as on the shin above them (parentsWithLegsJoined).
 // The end is the first joint of the chain that is low. `sourceHeight` and `targetHeight` are mean heights of the
 // matched joints over the lowest. Cost: linear in the joints but for their depth.
 std::vector<AnimalLeg> animalLegs(const SkeletonMap& map, const Skeleton& source, const Skeleton& target,

@@ -44,6 +44,36 @@ TEST(AnimalLegs, AreThoseThatComeDownToTheGround) {
   }
 }
 
+// The body sways over paws that stand on a root of their own: they stand in the result, and the shins end at them.
+TEST(AnimalLegs, ReachPawsOnARootOfTheirOwn) {
+  const std::vector<std::string> paws = {"b0LeftThree", "b0RightThree", "b1LeftThree", "b1RightThree"};
+  const Skeleton one = limber::testing::onTheGround(quadruped(0.5), paws),
+                 other = limber::testing::onTheGround(quadruped(0.45), paws);
+  PoseSequence motion{{}, 1.0 / 60};
+  for (int f = 0; f < 120; ++f) {
+    Pose& pose = motion.poses.emplace_back(restPose(one));
+    pose.locals[one.find("b0").value()].translation += Vec3(0, -0.1, 0.1 * std::sin(0.1 * f));
+  }
+  const RetargetSetup setup(one, other, matchSkeletons(one, other), {}, &motion);
+  ASSERT_EQ(setup.animalLegs.size(), 4u);
+  const std::vector<Affine> rest = restGlobals(other);
+  for (const char* method : {"limb-ik", "online", "spacetime"}) {
+    SCOPED_TRACE(method);
+    const PoseSequence result = retargetFrames(findRetargetMethod(method), setup, motion);
+    const std::vector<Affine> first = poseGlobals(other, result.poses.front());
+    for (const Pose& pose : result.poses) {
+      const std::vector<Affine> globals = poseGlobals(other, pose);
+      for (const AnimalLeg& leg : setup.animalLegs) {
+        const auto shin = [&](const std::vector<Affine>& at) {
+          return (at[leg.target.end].translation() - at[leg.target.carrier.value()].translation()).norm();
+        };
+        EXPECT_NEAR(shin(globals), shin(rest), 1e-6);
+        EXPECT_LT((globals[leg.target.end].translation() - first[leg.target.end].translation()).norm(), 1e-3);
+      }
+    }
+  }
+}
+
 // A neck held higher makes nobody step further.
 TEST(AnimalLegs, TheRootsWayScalesWithThem) {
   const Skeleton one = quadruped(0.5);

@@ -65,8 +65,8 @@ std::optional<Limb> findLimb(const RetargetSetup& setup, const RootPlacer& root,
                              const std::string& lower, const std::string& end) {
   const JointMatch *u = setup.map.find(upper), *l = setup.map.find(lower), *e = setup.map.find(end);
   if (!u || !l || !e) return std::nullopt;
-  return makeLimb(setup, root, {u->source.front(), l->source.front(), e->source.front(), std::nullopt, std::nullopt},
-                  {u->target.front(), l->target.front(), e->target.front(), std::nullopt, std::nullopt});
+  return makeLimb(setup, root, {u->source.front(), l->source.front(), e->source.front(), {}, {}, {}},
+                  {u->target.front(), l->target.front(), e->target.front(), {}, {}, {}});
 }
 
 }  // namespace
@@ -109,6 +109,7 @@ void LimbGoals::addAnimalsLegs(const RootPlacer& root) {
     const Vec3 ahead = knee - knee.dot(line) * line;
     if (ahead.norm() > kBentInRest * leg.length) leg.kneeAhead = ahead.normalized();
     leg.hock = found.target.hock;
+    leg.ownRoot = found.target.carrier.has_value();
     leg.toes = found.target.toes;
     leg.sourceToes = found.source.toes;
     addLeg(leg);

@@ -53,6 +53,7 @@ void LimbReach::bendHock(const Limb& limb, BodyFrame& frame, Pose& target) const
   const Quat turned = Eigen::AngleAxisd(opened, normal.normalized()) * frame.rotations[*limb.hock];
   target.locals[*limb.hock].rotation = (kinematics.parentRotation(*limb.hock, frame).conjugate() * turned).normalized();
   kinematics.globals(target, frame);
+  if (limb.ownRoot) root_.settle(target, frame);
 }
 
 void LimbReach::turnEnd(const Limb& limb, const Quat& orientation, BodyFrame& frame, Pose& target) const {
@@ -67,7 +68,8 @@ Vec3 LimbReach::kneePole(const Limb& limb, const TwoBone& bones, const Vec3& kne
   const Vec3 way = (bones.end - bones.start).normalized(), knee = bones.middle - bones.start;
   const Quat turn = frame.rotations[limb.upper] * setup_.targetNeutral.rotations[limb.upper].conjugate();
   const Vec3 ahead = turn * kneeAhead, forward = (ahead - ahead.dot(way) * way).normalized();
-  Vec3 bend = knee - knee.dot(way) * way;
+  // The joint angles had their foot elsewhere, and may bend the knee to any side.
+  Vec3 bend = limb.ownRoot ? forward : Vec3(knee - knee.dot(way) * way);
   const double backward = std::max(-bend.dot(forward), 0.0);
   const double little = std::max(1 - backward / (kOverstretched * limb.length), 0.0);
   bend += little * (backward + kKneesForward * limb.length) * forward;

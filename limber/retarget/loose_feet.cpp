@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include "limber/skeleton/chain.h"
@@ -26,19 +27,27 @@ class LegJoiner {
   std::vector<std::optional<Index>> parents() const {
     std::vector<std::optional<Index>> parents;
     for (const Joint& joint : skeleton_.joints) parents.push_back(joint.parent);
-    std::vector<std::pair<Index, Index>> joints;  // foot, shin
-    for (Index j = 0; j < skeleton_.jointCount(); ++j) {
-      if (!isLooseFoot(j)) continue;
-      if (const std::optional<Index> shin = shinOver(j)) joints.emplace_back(j, *shin);
-    }
-    if (joints.size() == 2 && joints[0].second != joints[1].second) {
-      for (const auto& [foot, shin] : joints) parents[foot] = shin;
-    }
+    joinFeet(parents);
     joinHips(parents);
     return parents;
   }
 
  private:
+  // Of two legs or of four.
+  void joinFeet(std::vector<std::optional<Index>>& parents) const {
+    std::vector<std::pair<Index, Index>> joints;  // foot, shin
+    std::set<Index> shins;
+    for (Index j = 0; j < skeleton_.jointCount(); ++j) {
+      if (!isLooseFoot(j)) continue;
+      const std::optional<Index> shin = shinOver(j);
+      if (!shin) continue;
+      joints.emplace_back(j, *shin);
+      shins.insert(*shin);
+    }
+    if ((joints.size() != 2 && joints.size() != 4) || shins.size() != joints.size()) return;
+    for (const auto& [foot, shin] : joints) parents[foot] = shin;
+  }
+
   // Of two legs beside the trunk on a joint on the ground.
   void joinHips(std::vector<std::optional<Index>>& parents) const {
     std::vector<Index> legs;
@@ -72,7 +81,11 @@ class LegJoiner {
 
   double height(Index joint) const { return (positions_[joint].y() - box_.min.y()) / box_.size().y(); }
 
-  bool isLooseFoot(Index joint) const { return isBesideOthersOnTheGround(joint) && height(joint) < kFootHeight; }
+  // No shin hangs on one: joined feet never hang on each other.
+  bool isLooseFoot(Index joint) const {
+    const bool loose = !skeleton_.joints[joint].parent || isBesideOthersOnTheGround(joint);
+    return loose && heightsBelow(joint).second < kFootHeight;
+  }
 
   bool isBesideOthersOnTheGround(Index joint) const {
     const std::optional<Index> parent = skeleton_.joints[joint].parent;
@@ -85,7 +98,7 @@ class LegJoiner {
     double nearest = kBesideShin * box_.size().y();
     for (Index j = 0; j < skeleton_.jointCount(); ++j) {
       const std::optional<Index> parent = skeleton_.joints[j].parent;
-      if (!children_[j].empty() || !parent || isAncestorOrSelf(skeleton_, foot, j)) continue;
+      if (!children_[j].empty() || !parent) continue;
       if (height(j) < height(foot) + kShinOverFoot || height(j) > kMostShinHeight) continue;
       if (height(*parent) < height(j) + kShinOverFoot) continue;
       const Vec3 way = positions_[j] - positions_[foot];

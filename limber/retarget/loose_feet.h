@@ -9,9 +9,9 @@
 
 namespace limber {
 
-// The joints' parents, as if each foot that hangs on a root on the ground hung on the shin above it (rigs for inverse
-// kinematics have it so), and two legs that hang beside the trunk on such a root hung on the trunk. Others are as they
-// are. A parent may then come behind its child.
+// The joints' parents, as if each of two or four feet that hang on a root on the ground, or are roots, hung on the shin
+// above it (rigs for inverse kinematics have it so), and two legs that hang beside the trunk on such a root hung on the
+// trunk. Others are as they are. A parent may then come behind its child.
 //
 // positions  #J, world, standing upright along +Y
 std::vector<std::optional<Index>> parentsWithLegsJoined(const Skeleton& skeleton, std::span<const Vec3> positions);

@@ -26,6 +26,24 @@ TEST(LooseFeet, FeetAtTheRootHangOnTheShinsAboveThem) {
   }
 }
 
+TEST(LooseFeet, FourFeetOnRootsOfTheirOwnDoSo) {
+  const std::vector<std::string> legs = {"b0Left", "b0Right", "b1Left", "b1Right"};
+  std::vector<std::string> feet;
+  for (const std::string& leg : legs) feet.push_back(leg + "Three");
+  Skeleton animal = onTheGround(limber::testing::quadruped(0.5), feet);
+  for (const bool rootless : {false, true}) {
+    if (rootless) {
+      for (const std::string& foot : feet) animal.joints[animal.find(foot).value()].parent.reset();
+    }
+    const std::vector<std::optional<Index>> parents = joined(animal);
+    for (Index j = 0; j < animal.jointCount(); ++j) {
+      const std::string& name = animal.joints[j].name;
+      EXPECT_EQ(parents[j], name.ends_with("Three") ? animal.find(name.substr(0, name.size() - 5) + "Two")
+                                                    : animal.joints[j].parent);
+    }
+  }
+}
+
 TEST(LooseFeet, LegsAtTheRootHangOnTheTrunkBesideThem) {
   const Skeleton person = onTheGround(practiceHumanoid(), {"leftUpperLeg", "rightUpperLeg"});
   const std::vector<std::optional<Index>> parents = joined(person);

@@ -8,6 +8,7 @@
 #include "limber/ik/ik_solver.h"
 #include "limber/retarget/aligned.h"
 #include "limber/retarget/limb_goals.h"
+#include "limber/retarget/limb_reach.h"
 
 namespace limber {
 
@@ -21,7 +22,7 @@ constexpr Index kIterations = 30;       // a frame's limbs need about 5
 class OnlineRetargeter : public FrameRetargeter {
  public:
   explicit OnlineRetargeter(const RetargetSetup& setup)
-      : setup_(setup), aligned_(setup), goals_(setup, aligned_.root()) {
+      : setup_(setup), aligned_(setup), goals_(setup, aligned_.root()), reach_(setup, aligned_.root()) {
     for (const Leg& leg : goals_.legs()) addTask(leg);
     for (const Limb& arm : goals_.arms()) addTask(arm);
     if (targets_.empty()) return;
@@ -35,7 +36,7 @@ class OnlineRetargeter : public FrameRetargeter {
 
   void next(const Pose& source, double seconds, Pose& target) override {
     aligned_.next(source, seconds, target);
-    if (!goals_.active() || !solver_) return;
+    if (!goals_.active() || (!solver_ && setup_.person)) return;
     BodyFrame& frame = aligned_.targetFrame();
     if (setup_.options.contacts) {
       const Pelvis& pelvis = goals_.pelvis();
@@ -50,11 +51,18 @@ class OnlineRetargeter : public FrameRetargeter {
       if (setup_.person && isChain(leg)) bendKnee(leg, frame, target);
     }
     for (const Limb& arm : goals_.arms()) setTask(arm, frame, task);
-    solver_->setReference(target);
-    solver_->solve(target, targets_);
+    if (solver_) {
+      solver_->setReference(target);
+      solver_->solve(target, targets_);
+    }
     setup_.targetKinematics.globals(target, frame);
     aligned_.root().settle(target, frame);
-    for (const Leg& leg : goals_.legs()) goals_.levelToes(leg, frame, target);
+    for (const Leg& leg : goals_.legs()) {
+      if (leg.ownRoot && leg.wanted && !LimbReach::isThere(leg, frame)) {
+        reach_.reach(leg, &leg.kneeAhead, frame, target);
+      }
+      goals_.levelToes(leg, frame, target);
+    }
   }
 
  private:
@@ -95,6 +103,7 @@ class OnlineRetargeter : public FrameRetargeter {
   const RetargetSetup& setup_;
   AlignedRetargeter aligned_;
   LimbGoals goals_;
+  LimbReach reach_;                // of legs that end on a root of their own
   std::vector<IkTarget> targets_;  // legs first
   std::optional<IkSolver> solver_;
 };

@@ -69,7 +69,11 @@ Vec3 Pelvis::hipWay(const Move& move, const Leg& leg, const BodyFrame& frame) co
 
 void Pelvis::apply(const Move& move, Pose& target, BodyFrame& frame) const {
   root_.turnPelvis(move.turn, target, frame);
-  if (std::abs(move.up) > 1e-9 * setup_.targetHipHeight) root_.movePelvis(Vec3(0, move.up, 0), target, frame);
+  if (std::abs(move.up) > 1e-9 * setup_.targetHipHeight) {
+    root_.movePelvis(Vec3(0, move.up, 0), target, frame);
+  } else if (!setup_.person) {
+    root_.settle(target, frame);
+  }
 }
 
 // Least squares over what the planted legs lack, against the turn itself. On one leg only the turn about the vertical
@@ -92,6 +96,7 @@ Quat Pelvis::turnFor(std::span<const Leg> legs, const BodyFrame& frame) const {
 double Pelvis::bendKeepingShift(std::span<const Leg> legs, const BodyFrame& frame, const Quat& turn) const {
   double sum = 0, weights = 0;
   for (const Leg& leg : legs) {
+    if (leg.ownRoot) continue;  // its bend follows its foot
     const Vec3 hip = frame.positions[leg.upper], way = leg.goal - hip - hipWay({turn, 0}, leg, frame);
     const double length = (frame.positions[leg.end] - hip).norm(), across = std::hypot(way.x(), way.z());
     if (way.y() >= 0 || across >= length) continue;
@@ -104,6 +109,7 @@ double Pelvis::bendKeepingShift(std::span<const Leg> legs, const BodyFrame& fram
 }
 
 double Pelvis::changeOf(const Leg& leg, const BodyFrame& frame, const Quat& turn) const {
+  if (leg.ownRoot) return 1;
   const double change = (leg.goal - frame.positions[leg.end] - hipWay({turn, 0}, leg, frame)).norm();
   return change / (change + kSoftChange * setup_.targetHipHeight);
 }

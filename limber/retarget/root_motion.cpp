@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "limber/retarget/loose_joints.h"
 #include "limber/skeleton/chain.h"
 
 namespace limber {
@@ -11,28 +10,39 @@ RootPlacer::RootPlacer(const RetargetSetup& setup) : setup_(setup) {
   const Skeleton& target = *setup.target;
   if (!setup.person) {
     for (const JointMatch& match : setup.map.matches) moved_.push_back(match.target.front());
+    findCarrierOfLegs();
     for (const AnimalLeg& leg : setup.animalLegs) {
-      if (!hips_) hips_ = leg.target.upper;
-      while (hips_ && !isAncestorOrSelf(target, *hips_, leg.target.upper)) hips_ = target.joints[*hips_].parent;
-      if (!hips_) return;
+      if (leg.target.carrier) addLoose({leg.target.end, *leg.target.carrier, true});
     }
     return;
   }
   hips_ = setup.map.find("hips")->target.front();
   moved_.push_back(*hips_);
   findPelvis();
-  const NeutralPose& neutral = setup.targetNeutral;
-  const std::vector<Affine> rest = restGlobals(target);
-  for (const auto& [joint, carrier, matched] :
-       looseJoints(target, setup.map, MapSide::kTarget, neutral.restPositions)) {
-    const Quat from = (neutral.toBody * decompose(rest[carrier]).rotation).conjugate();
-    Loose& loose = loose_.emplace_back();
-    loose.joint = joint;
-    loose.carrier = carrier;
-    loose.offset = from * (neutral.restPositions[joint] - neutral.restPositions[carrier]);
-    if (!matched) loose.turn = from * neutral.toBody * decompose(rest[joint]).rotation;
-    turnsLoose_ = turnsLoose_ || !matched;
-    moved_.push_back(joint);
+  for (const LooseJoint& loose : looseJoints(target, setup.map, MapSide::kTarget, setup.targetNeutral.restPositions)) {
+    addLoose(loose);
+    moved_.push_back(loose.joint);
+  }
+}
+
+void RootPlacer::addLoose(const LooseJoint& joint) {
+  const NeutralPose& neutral = setup_.targetNeutral;
+  const std::vector<Affine> rest = restGlobals(*setup_.target);
+  const Quat from = (neutral.toBody * decompose(rest[joint.carrier]).rotation).conjugate();
+  Loose& loose = loose_.emplace_back();
+  loose.joint = joint.joint;
+  loose.carrier = joint.carrier;
+  loose.offset = from * (neutral.restPositions[joint.joint] - neutral.restPositions[joint.carrier]);
+  if (!joint.matched) loose.turn = from * neutral.toBody * decompose(rest[joint.joint]).rotation;
+  turnsLoose_ = turnsLoose_ || !joint.matched;
+}
+
+void RootPlacer::findCarrierOfLegs() {
+  const Skeleton& target = *setup_.target;
+  for (const AnimalLeg& leg : setup_.animalLegs) {
+    if (!hips_) hips_ = leg.target.upper;
+    while (hips_ && !isAncestorOrSelf(target, *hips_, leg.target.upper)) hips_ = target.joints[*hips_].parent;
+    if (!hips_) return;
   }
 }
 

@@ -4,15 +4,15 @@
 #include <optional>
 #include <vector>
 
+#include "limber/retarget/loose_joints.h"
 #include "limber/retarget/retarget_setup.h"
 
 namespace limber {
 
 // Moves a posed target to where the source's motion has it.
 //
-// People: the hips' translation brings the pelvis to its place. Loose joints (looseJoints) are put where their carriers
-// have them. Others: every
-// matched joint's way from rest, scaled.
+// People: the hips' translation brings the pelvis to its place. Others: every matched joint's way from rest, scaled.
+// Loose joints (looseJoints; of animals the feet that ride on their shins) are put where their carriers have them.
 class RootPlacer {
  public:
   explicit RootPlacer(const RetargetSetup& setup);
@@ -42,6 +42,8 @@ class RootPlacer {
     std::optional<Quat> turn;    // likewise, of one that turns with its carrier
   };
   void findPelvis();
+  void findCarrierOfLegs();
+  void addLoose(const LooseJoint& loose);
   void placeLoose(Pose& target, BodyFrame& frame) const;
 
   const RetargetSetup& setup_;

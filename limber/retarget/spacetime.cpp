@@ -227,7 +227,10 @@ class Spacetime {
   void moveFeetWithHips() {
     for (std::size_t f = 0; f < frames(); ++f) {
       const BodyFrame& to = targetAt(f);
-      for (std::size_t i = 0; i < feet_.size(); ++i) feet_[i][f].ankle = to.positions[goals_.legs()[i].end];
+      for (std::size_t i = 0; i < feet_.size(); ++i) {
+        const Leg& leg = goals_.legs()[i];
+        if (!leg.ownRoot) feet_[i][f].ankle = to.positions[leg.end];
+      }
     }
   }
 
