@@ -14,6 +14,20 @@ constexpr double kKneesForward = 0.01;   // of the leg's length, added to its be
 constexpr double kOverstretched = 0.12;  // likewise, of a knee that is meant to bend backward
 constexpr double kLeastLever = 0.02;     // likewise: joints that are hardly off the line to the end bend little
 
+// A person's knee goes where the joint angles have it, but forward where it hardly bends.
+Vec3 personsBend(const Limb& limb, const TwoBone& bones, const Vec3& way, const Vec3& forward) {
+  const Vec3 knee = bones.middle - bones.start, bend = knee - knee.dot(way) * way;
+  const double backward = std::max(-bend.dot(forward), 0.0);
+  const double little = std::max(1 - backward / (kOverstretched * limb.length), 0.0);
+  return bend + little * (backward + kKneesForward * limb.length) * forward;
+}
+
+// Of the sides of a triangle, opposite its third side.
+double hingeAngle(double one, double other, double opposite) {
+  const double cosine = (one * one + other * other - opposite * opposite) / (2 * one * other);
+  return std::acos(std::clamp(cosine, -1.0, 1.0));
+}
+
 }  // namespace
 
 bool LimbReach::isThere(const Limb& limb, const BodyFrame& frame) {
@@ -38,7 +52,8 @@ void LimbReach::reach(const Limb& limb, const Vec3* kneeAhead, BodyFrame& frame,
 }
 
 // The least sum of squared turns that makes the leg as long as its goal asks, to first order: each joint turns the more
-// the farther it is off the line to the end. Towards straight and folded it comes the nearer the slower.
+// the farther it is off the line to the end. It folds as far as its share of the way takes: at a hock that is nearly
+// straight, first order would be too far. Towards straight and folded it comes the nearer the slower.
 void LimbReach::bendHock(const Limb& limb, BodyFrame& frame, Pose& target) const {
   const Vec3 start = frame.positions[limb.upper], leg = frame.positions[limb.end] - start, line = leg.normalized();
   const Vec3 hock = frame.positions[*limb.hock], toStart = start - hock, toEnd = frame.positions[limb.end] - hock;
@@ -46,8 +61,11 @@ void LimbReach::bendHock(const Limb& limb, BodyFrame& frame, Pose& target) const
   const Vec3 normal = toStart.cross(toEnd);
   if (normal.norm() < 1e-9 * limb.length * limb.length) return;
   const double longer = (limb.goal - start).norm() - leg.norm(), least = kLeastLever * limb.length;
-  const double opens = off * longer / (off * off + kneeOff * kneeOff + least * least);
-  const double angle = std::atan2(normal.norm(), toStart.dot(toEnd)), room = opens > 0 ? kPi - angle : angle;
+  const double lever = off * off + kneeOff * kneeOff + least * least;
+  const double angle = std::atan2(normal.norm(), toStart.dot(toEnd));
+  double opens = off * longer / lever;
+  if (opens < 0) opens = hingeAngle(toStart.norm(), toEnd.norm(), leg.norm() + off * off / lever * longer) - angle;
+  const double room = opens > 0 ? kPi - angle : angle;
   const double opened = std::copysign(room * (1 - std::exp(-std::abs(opens) / room)), opens);
   const BodyKinematics& kinematics = setup_.targetKinematics;
   const Quat turned = Eigen::AngleAxisd(opened, normal.normalized()) * frame.rotations[*limb.hock];
@@ -65,14 +83,11 @@ void LimbReach::turnEnd(const Limb& limb, const Quat& orientation, BodyFrame& fr
 }
 
 Vec3 LimbReach::kneePole(const Limb& limb, const TwoBone& bones, const Vec3& kneeAhead, const BodyFrame& frame) const {
-  const Vec3 way = (bones.end - bones.start).normalized(), knee = bones.middle - bones.start;
+  const Vec3 way = (bones.end - bones.start).normalized();
   const Quat turn = frame.rotations[limb.upper] * setup_.targetNeutral.rotations[limb.upper].conjugate();
-  const Vec3 ahead = turn * kneeAhead, forward = (ahead - ahead.dot(way) * way).normalized();
-  // The joint angles had their foot elsewhere, and may bend the knee to any side.
-  Vec3 bend = limb.ownRoot ? forward : Vec3(knee - knee.dot(way) * way);
-  const double backward = std::max(-bend.dot(forward), 0.0);
-  const double little = std::max(1 - backward / (kOverstretched * limb.length), 0.0);
-  bend += little * (backward + kKneesForward * limb.length) * forward;
+  const Vec3 ahead = turn * kneeAhead;
+  Vec3 bend = (ahead - ahead.dot(way) * way).normalized();
+  if (setup_.person) bend = personsBend(limb, bones, way, bend);
   // Seen from the way to the goal: of a leg that is nearly straight, the knee itself may lie on its other side.
   const Vec3 there = bones.target - bones.start;
   return bones.start + 0.5 * there + shortestRotation(way, there) * bend;

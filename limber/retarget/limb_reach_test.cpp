@@ -113,6 +113,35 @@ TEST(LimbReachOfAnimals, HocksBendAsWell) {
   }
 }
 
+// A horse's carpus bends to where a dog's elbow does not.
+TEST(LimbReachOfAnimals, LegsBendAsAtRestWhereverJointAnglesBendThem) {
+  const Skeleton animal = withHocks();
+  Skeleton source = animal;
+  source.joints[0].rest.translation.y() = 1.2;
+  const RetargetSetup setup(source, animal, matchSkeletons(source, animal), {});
+  const RootPlacer root(setup);
+  LimbGoals goals(setup, root);
+  const LimbReach reach(setup, root);
+  for (const double overstretched : {0.3, 0.6, 1.2}) {
+    SCOPED_TRACE(overstretched);
+    Leg leg = goals.legs().front();
+    Pose pose = restPose(animal);
+    pose.locals[leg.lower].rotation = Eigen::AngleAxisd(-overstretched, Vec3::UnitX());
+    BodyFrame frame;
+    setup.targetKinematics.globals(pose, frame);
+    const auto kneeAhead = [&] {
+      const Vec3 line = (frame.positions[leg.end] - frame.positions[leg.upper]).normalized();
+      const Vec3 knee = frame.positions[leg.lower] - frame.positions[leg.upper];
+      return (knee - knee.dot(line) * line).z();
+    };
+    EXPECT_LT(kneeAhead(), 0);
+    leg.goal = frame.positions[leg.end] + Vec3(0, 0.1, 0);
+    reach.reach(leg, &leg.kneeAhead, frame, pose);
+    EXPECT_LT((frame.positions[leg.end] - leg.goal).norm(), 1e-9);
+    EXPECT_GT(kneeAhead(), 0.02);
+  }
+}
+
 TEST_F(LimbReachTest, StraightKneesBendForward) {
   reach(Vec3(0, 0.1, 0));
   EXPECT_GT(knee().z(), 0.02);
