@@ -16,6 +16,7 @@ struct Limb {
   std::optional<Index> hock;     // another joint that bends it (AnimalLeg)
   Vec3 goal = Vec3::Zero();      // where the end has to be, in the person's space
   bool ownRoot = false;          // an animal's foot that goes its own way, and the leg after it
+  bool ownBend = false;          // bends to its own side, wherever the joint angles bend it
   bool wanted = false;           // else it may be where it is
   Quat turn = Quat::Identity();  // of the end, against its joint angles
 };

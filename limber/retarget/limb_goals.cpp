@@ -31,6 +31,7 @@ constexpr double kFirmHeld = 0.9, kFirmBeside = 0.2;
 constexpr double kTipLies = 0.05;     // over the ground: from there on toes that the target alone has lie down
 constexpr double kCarriedUp = 0.5;    // share of its hip's way up that a person's free foot takes part in
 constexpr double kBentInRest = 0.01;  // of an animal's leg's length: a knee off its line by that tells where it bends
+constexpr double kBendsAlike = 0.05;  // likewise: the source's joint of that name bends to the same side
 constexpr double kSteep = 1.7, kSoleUp = 2.4, kSoftLevel = 0.05;  // radians that toes point down
 // Speeds of the source's pelvis or feet, hip heights a second, that are no motion but a cut. Many recordings have a
 // T-pose as their first frame.
@@ -59,6 +60,13 @@ std::optional<Limb> makeLimb(const RetargetSetup& setup, const RootPlacer& root,
   if (!(upperLength > 0) || !(lowerLength > 0)) return std::nullopt;
   limb.length = upperLength + lowerLength;
   return limb;
+}
+
+// How far the lower joint is off the line from the upper one to the end, in lengths of that line.
+Vec3 bendAtRest(const LegJoints& leg, const NeutralPose& neutral) {
+  const Vec3 upper = neutral.positions[leg.upper], line = neutral.positions[leg.end] - upper;
+  const Vec3 lower = neutral.positions[leg.lower] - upper;
+  return (lower - lower.dot(line) / line.squaredNorm() * line) / line.norm();
 }
 
 std::optional<Limb> findLimb(const RetargetSetup& setup, const RootPlacer& root, const std::string& upper,
@@ -104,12 +112,11 @@ void LimbGoals::addAnimalsLegs(const RootPlacer& root) {
     if (!limb) continue;
     Leg leg;
     static_cast<Limb&>(leg) = *limb;
-    const std::vector<Vec3>& stands = setup_.targetNeutral.positions;
-    const Vec3 line = (stands[leg.end] - stands[leg.upper]).normalized(), knee = stands[leg.lower] - stands[leg.upper];
-    const Vec3 ahead = knee - knee.dot(line) * line;
-    if (ahead.norm() > kBentInRest * leg.length) leg.kneeAhead = ahead.normalized();
+    const Vec3 ahead = bendAtRest(found.target, setup_.targetNeutral);
+    if (ahead.norm() > kBentInRest) leg.kneeAhead = ahead.normalized();
     leg.hock = found.target.hock;
     leg.ownRoot = found.target.carrier.has_value();
+    leg.ownBend = leg.ownRoot || bendAtRest(found.source, setup_.sourceNeutral).dot(leg.kneeAhead) < kBendsAlike;
     leg.toes = found.target.toes;
     leg.sourceToes = found.source.toes;
     addLeg(leg);

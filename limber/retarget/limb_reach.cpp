@@ -14,8 +14,8 @@ constexpr double kKneesForward = 0.01;   // of the leg's length, added to its be
 constexpr double kOverstretched = 0.12;  // likewise, of a knee that is meant to bend backward
 constexpr double kLeastLever = 0.02;     // likewise: joints that are hardly off the line to the end bend little
 
-// A person's knee goes where the joint angles have it, but forward where it hardly bends.
-Vec3 personsBend(const Limb& limb, const TwoBone& bones, const Vec3& way, const Vec3& forward) {
+// Where the joint angles have the middle joint, but forward where it hardly bends.
+Vec3 bendOf(const Limb& limb, const TwoBone& bones, const Vec3& way, const Vec3& forward) {
   const Vec3 knee = bones.middle - bones.start, bend = knee - knee.dot(way) * way;
   const double backward = std::max(-bend.dot(forward), 0.0);
   const double little = std::max(1 - backward / (kOverstretched * limb.length), 0.0);
@@ -87,7 +87,7 @@ Vec3 LimbReach::kneePole(const Limb& limb, const TwoBone& bones, const Vec3& kne
   const Quat turn = frame.rotations[limb.upper] * setup_.targetNeutral.rotations[limb.upper].conjugate();
   const Vec3 ahead = turn * kneeAhead;
   Vec3 bend = (ahead - ahead.dot(way) * way).normalized();
-  if (setup_.person) bend = personsBend(limb, bones, way, bend);
+  if (!limb.ownBend) bend = bendOf(limb, bones, way, bend);
   // Seen from the way to the goal: of a leg that is nearly straight, the knee itself may lie on its other side.
   const Vec3 there = bones.target - bones.start;
   return bones.start + 0.5 * there + shortestRotation(way, there) * bend;

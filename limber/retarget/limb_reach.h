@@ -13,9 +13,8 @@ class LimbReach {
 
   // Two bones in closed form. `frame` are the globals of `target`; both are brought up to date. The end keeps how it is
   // turned, but for limb.turn. With `kneeAhead` (Leg) the middle joint bends to where it bends now, and to that side
-  // where it hardly bends or is a little overstretched: else it would snap from one side to the other. An animal's
-  // always bends to that side: the source's joint of the same name may bend to the other (a horse's carpus is no
-  // dog's elbow). A hock (Limb) takes its share of the way first.
+  // where it hardly bends or is a little overstretched: else it would snap from one side to the other. One with
+  // Limb::ownBend always bends to that side. A hock (Limb) takes its share of the way first.
   void reach(const Limb& limb, const Vec3* kneeAhead, BodyFrame& frame, Pose& target) const;
   // Whether the end is at its goal already, and turned as it has to be.
   static bool isThere(const Limb& limb, const BodyFrame& frame);

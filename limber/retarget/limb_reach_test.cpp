@@ -113,11 +113,19 @@ TEST(LimbReachOfAnimals, HocksBendAsWell) {
   }
 }
 
-// A horse's carpus bends to where a dog's elbow does not.
-TEST(LimbReachOfAnimals, LegsBendAsAtRestWhereverJointAnglesBendThem) {
+// A horse's carpus has a dog's elbow's name and bends to the other side.
+TEST(LimbReachOfAnimals, LegsBendAsAtRestWhereTheSourcesBendElsewhere) {
   const Skeleton animal = withHocks();
   Skeleton source = animal;
   source.joints[0].rest.translation.y() = 1.2;
+  {
+    const RetargetSetup alike(source, animal, matchSkeletons(source, animal), {});
+    const RootPlacer root(alike);
+    EXPECT_FALSE(LimbGoals(alike, root).legs().front().ownBend);
+  }
+  for (Joint& joint : source.joints) {
+    if (joint.name.ends_with("Two") || joint.name.ends_with("Hock")) joint.rest.translation.z() *= -1;
+  }
   const RetargetSetup setup(source, animal, matchSkeletons(source, animal), {});
   const RootPlacer root(setup);
   LimbGoals goals(setup, root);
@@ -125,6 +133,7 @@ TEST(LimbReachOfAnimals, LegsBendAsAtRestWhereverJointAnglesBendThem) {
   for (const double overstretched : {0.3, 0.6, 1.2}) {
     SCOPED_TRACE(overstretched);
     Leg leg = goals.legs().front();
+    EXPECT_TRUE(leg.ownBend);
     Pose pose = restPose(animal);
     pose.locals[leg.lower].rotation = Eigen::AngleAxisd(-overstretched, Vec3::UnitX());
     BodyFrame frame;
