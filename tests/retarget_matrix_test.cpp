@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
-#include <numeric>
 #include <set>
 #include <string>
 #include <utility>
@@ -74,6 +73,36 @@ const std::map<std::pair<std::string, std::string>, double> kRougherCat = {{{"Fe
 const std::map<std::string, double> kRougherHorse = {
     {"Death", 1.81}, {"Eating", 1.15}, {"Head_But", 1.84}, {"Kick", 1.56},      {"lay_to_idle", 1.47},
     {"Rear", 1.23},  {"Run", 1.11},    {"Walk", 1.27},     {"Turn_Left", 1.99}, {"Turn_Right", 2.46}};
+
+// Of source, target and clip, by any method. The alpaca's and the horse's kicks stretch legs beyond their bones, and
+// the alpaca's slow steps in Idle_2 and Walk others further than its own. The wolf's forelegs bend back at the elbows,
+// where the others' bend ahead at the knees: as foot and hip come near each other, other bones turn. In idle clips it
+// hardly moves at all (Idle_2_HeadLow), its hind legs are folded where the others' are nearly straight.
+const std::map<std::string, double> kRougherFarm = {{"alpaca cow Attack_Kick", 1.26},
+                                                    {"alpaca cow Idle_2", 1.16},
+                                                    {"alpaca cow Walk", 1.13},
+                                                    {"alpaca horse Attack_Kick", 1.19},
+                                                    {"alpaca horse Idle_2", 1.18},
+                                                    {"alpaca wolf Gallop", 1.11},
+                                                    {"alpaca wolf Idle_2", 1.24},
+                                                    {"alpaca wolf Idle_Headlow", 1.32},
+                                                    {"cow wolf Attack_Headbutt", 1.18},
+                                                    {"cow wolf Idle_Headlow", 1.17},
+                                                    {"horse alpaca Attack_Kick", 1.13},
+                                                    {"horse cow Attack_Kick", 1.15},
+                                                    {"horse cow Idle_HitReact_Left", 1.11},
+                                                    {"horse wolf Idle_Headlow", 1.23},
+                                                    {"wolf alpaca Idle_2_HeadLow", 1.13},
+                                                    {"wolf alpaca Walk", 1.24},
+                                                    {"wolf cow Gallop", 1.24},
+                                                    {"wolf cow Idle_2", 1.22},
+                                                    {"wolf cow Idle_2_HeadLow", 1.42},
+                                                    {"wolf cow Idle_HitReact_Right", 1.22},
+                                                    {"wolf cow Walk", 1.34},
+                                                    {"wolf horse Gallop", 1.15},
+                                                    {"wolf horse Idle_2", 1.15},
+                                                    {"wolf horse Idle_2_HeadLow", 1.28},
+                                                    {"wolf horse Walk", 1.25}};
 
 double roughest(const std::map<std::pair<std::string, std::string>, double>& rougher, const std::string& one,
                 const std::string& other) {
@@ -396,7 +425,6 @@ TEST(RetargetAnimals, LegsReachFeetOnRootsOfTheirOwn) {
   const auto fileOf = [](const std::string& animal) {
     return *sharedDataFolder() / "rigged" / ("quaternius_" + animal + ".glb");
   };
-  std::map<std::string, std::vector<double>> jerks;
   for (const std::string& from : farm) {
     const Motion motion = readMotion(fileOf(from));
     for (const std::string& to : farm) {
@@ -406,7 +434,10 @@ TEST(RetargetAnimals, LegsReachFeetOnRootsOfTheirOwn) {
       const SkeletonMap map = matchSkeletons(motion.skeleton, target);
       for (const Clip& clip : motion.clips) {
         if (leavesItsFeet(clip.name)) continue;
-        SCOPED_TRACE(std::string(from).append(" ").append(to).append(" ").append(clip.name));
+        const std::string pair =
+            std::string(from).append(" ").append(to).append(" ").append(clip.name.substr(clip.name.find('|') + 1));
+        SCOPED_TRACE(pair);
+        const auto rougher = kRougherFarm.find(pair);
         PoseSequence frames = sampleFrames(motion.skeleton, clip, 30);
         const bool walks = clip.name.ends_with("Walk");
         if (walks) frames = walkingAhead(RetargetSetup(motion.skeleton, target, map, {}, &frames), frames);
@@ -421,16 +452,11 @@ TEST(RetargetAnimals, LegsReachFeetOnRootsOfTheirOwn) {
           const double sunk = setup.scale * result.sourcePenetration * result.sourceHeight / result.height;
           EXPECT_LT(1700 * (result.penetration - sunk), 5);
           EXPECT_GT(result.contactAgreement, 0.98);
-          jerks[method].push_back(result.jerk);
+          EXPECT_LT(result.jerk, rougher == kRougherFarm.end() ? 1.1 : rougher->second);
+          EXPECT_LT(result.boneDirection, from == "wolf" || to == "wolf" ? 39 : 10) << "knees as theirs, or opposite";
         }
       }
     }
-  }
-  // The source's legs are stretched beyond their length where the target's have to bend.
-  for (const auto& [method, values] : jerks) {
-    SCOPED_TRACE(method);
-    EXPECT_LT(std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size()), 1.1);
-    EXPECT_LT(*std::max_element(values.begin(), values.end()), method == "spacetime" ? 2.4 : 2.1);
   }
 }
 

@@ -74,6 +74,32 @@ TEST(AnimalLegs, ReachPawsOnARootOfTheirOwn) {
   }
 }
 
+// One paw on a root of its own is lifted at once: it rises in the result as it does, scaled, and the others stay.
+TEST(AnimalLegs, LiftedPawsOnRootsOfTheirOwnGoTheirOwnWay) {
+  const std::vector<std::string> paws = {"b0LeftThree", "b0RightThree", "b1LeftThree", "b1RightThree"};
+  const Skeleton one = limber::testing::onTheGround(quadruped(0.5), paws),
+                 other = limber::testing::onTheGround(quadruped(0.45), paws);
+  const Index lifted = one.find("b1LeftThree").value(), stays = one.find("b0LeftThree").value();
+  const auto lift = [](std::size_t f) { return 0.03 * static_cast<double>(f > 20 ? f - 20 : 0); };
+  PoseSequence motion{{}, 1.0 / 30};
+  for (std::size_t f = 0; f < 28; ++f) {
+    motion.poses.push_back(restPose(one));
+    motion.poses.back().locals[lifted].translation.y() += lift(f);
+  }
+  const RetargetSetup setup(one, other, matchSkeletons(one, other), {}, &motion);
+  for (const char* method : {"limb-ik", "online", "spacetime"}) {
+    SCOPED_TRACE(method);
+    const PoseSequence result = retargetFrames(findRetargetMethod(method), setup, motion);
+    const auto height = [&](std::size_t f, Index paw) {
+      return poseGlobals(other, result.poses[f])[paw].translation().y();
+    };
+    for (std::size_t f = 21; f < 28; ++f) {
+      EXPECT_NEAR(height(f, lifted) - height(15, lifted), setup.scale * lift(f), 0.015) << f;
+      EXPECT_NEAR(height(f, stays), height(15, stays), 0.005) << f;
+    }
+  }
+}
+
 // A neck held higher makes nobody step further.
 TEST(AnimalLegs, TheRootsWayScalesWithThem) {
   const Skeleton one = quadruped(0.5);

@@ -30,8 +30,8 @@ Vec3 level(const Vec3& v) {
 
 }  // namespace
 
-void FootLock::Share::follow(bool held, double seconds) {
-  springTo(held ? 0.0 : 1.0, kGrip, seconds, value, speed);
+void FootLock::Share::follow(double wanted, double seconds) {
+  springTo(wanted, kGrip, seconds, value, speed);
 }
 
 // The first frame is where the foot is, but on the ground at once.
@@ -41,10 +41,10 @@ void FootLock::begin(const Frame& frame) {
   lost_ = false;
   out_ = frame.ankle;
   out_.y() = baseHeight(frame, anchor_);
-  freedom_.follow(anchor_ != FootAnchor::kNone, 0);
+  freedom_.follow(anchor_ != FootAnchor::kNone ? frame.slip : 1, 0);
   lift_ = liftSpeed_ = 0;
   catchUpSpeed_ = rollSpeed_ = Vec3::Zero();
-  turning_.follow(frame.flat, 0);
+  turning_.follow(frame.flat ? 0 : 1, 0);
   twist_ = 0;
   twisted_ = false;
   roll_ = frame.toes - frame.ankle;
@@ -65,7 +65,7 @@ Vec3 FootLock::next(const Frame& frame, double seconds, double slack) {
 
 void FootLock::turn(const Frame& frame, double seconds) {
   twisted_ = frame.flat && std::abs(twist_) > (twisted_ ? kCaughtUp : 1) * kMostTwist;
-  turning_.follow(frame.flat && !twisted_, seconds);
+  turning_.follow(frame.flat && !twisted_ ? 0 : 1, seconds);
   const Vec3 from = level(before_->toes - before_->ankle), to = level(frame.toes - frame.ankle);
   const double turned = std::atan2(from.cross(to).y(), from.dot(to));
   twist_ = (twist_ - (1 - turning_.value) * turned) * std::exp(-kUntwisting * turning_.value * seconds);
@@ -77,7 +77,7 @@ void FootLock::turn(const Frame& frame, double seconds) {
 void FootLock::moveAlong(const Frame& frame, double seconds, double slack) {
   const Vec3 behind = level(before_->ankle - out_);
   lost_ = frame.anchor != FootAnchor::kNone && behind.norm() > (lost_ ? kCaughtUp : 1) * slack;
-  freedom_.follow(frame.anchor != FootAnchor::kNone && !lost_, seconds);
+  freedom_.follow(frame.anchor != FootAnchor::kNone && !lost_ ? frame.slip : 1, seconds);
   const double freedom = freedom_.value;
 
   Vec3 left = -behind;

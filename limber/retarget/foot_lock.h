@@ -18,13 +18,14 @@ class FootLock {
     FootAnchor anchor = FootAnchor::kNone;
     double ankleGround = 0, toesGround = 0;
     bool flat = false;  // heel and toes stand both
+    double slip = 0;    // share of its free way that it takes while it is held
   };
 
   // Where the ankle goes. Along the ground the foot moves as it would be free to, times a share that goes to 0 while it
-  // is held and back to 1; the way that it was held back is made up for by a critically damped spring once it is free.
-  // Its height springs to the ground and back. So nothing jumps, and a foot never lands slower than it does unheld. One
-  // that is held back by more than `slack` goes free until it has caught up. A foot that stands flat does not
-  // turn about the vertical either.
+  // is held, but for what it may slip, and back to 1; the way that it was held back is made up for by a critically
+  // damped spring once it is free. Its height springs to the ground and back. So nothing jumps, and a foot never lands
+  // slower than it does unheld. One that is held back by more than `slack` goes free until it has caught up. A foot
+  // that stands flat does not turn about the vertical either.
   Vec3 next(const Frame& frame, double seconds, double slack);
   // How far it is turned about +Y against the free foot, radians.
   double twist() const { return twist_; }
@@ -35,7 +36,7 @@ class FootLock {
   // To which the foot is free, 0 to 1.
   struct Share {
     double value = 1, speed = 0;
-    void follow(bool held, double seconds);
+    void follow(double wanted, double seconds);
   };
   void begin(const Frame& frame);
   void turn(const Frame& frame, double seconds);

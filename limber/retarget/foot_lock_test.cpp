@@ -69,6 +69,25 @@ TEST(FootLock, AFootThatStopsAtOnceStopsAtOnceWhenHeld) {
   }
 }
 
+TEST(FootLock, AHeldFootSlipsAsFarAsItMay) {
+  const auto wayOf = [](double slip) {
+    FootLock lock;
+    Vec3 out = Vec3::Zero();
+    for (int i = 0; i <= 10; ++i) {
+      FootLock::Frame frame;
+      frame.ankle = frame.toes = Vec3(0, 0, 0.005 * i);
+      frame.anchor = FootAnchor::kAnkle;
+      frame.slip = slip;
+      out = lock.next(frame, i == 0 ? 0 : kStep, 1);
+    }
+    return out.z();
+  };
+  EXPECT_NEAR(wayOf(0), 0, 1e-9);
+  EXPECT_GT(wayOf(0.3), 0.3 * 0.05);
+  EXPECT_GT(wayOf(0.6), wayOf(0.3) + 0.005);
+  EXPECT_NEAR(wayOf(1), 0.05, 1e-9) << "as if free";
+}
+
 // Recordings tremble, so that a planted foot is taken for a free one now and then.
 TEST(FootLock, ATremblingFootStaysWhereItIsPlanted) {
   FootLock lock;

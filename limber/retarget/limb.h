@@ -34,6 +34,8 @@ struct Leg : Limb {
   double planted = 0;                                  // 0 to 1, comes and goes smoothly
   double changed = 0;                                  // likewise, to what share its goal is one (Pelvis::changeOf)
   double flatness = 0;                                 // likewise
+  double bentReach = 0;                                // ownRoot: from hip to end if bent as the source's (LegBend)
+  double lift = 0;  // ownRoot: of the source's foot from where it stands, hip heights
 };
 
 }  // namespace limber

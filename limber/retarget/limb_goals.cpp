@@ -28,8 +28,12 @@ constexpr double kFallSeconds = 0.03;  // of its way: so much the earlier a poin
 constexpr double kFallRate = 40;       // 1/seconds, of the speed that is taken for its own
 // Shares of that softness that a planted foot loses: the point that holds it, and the other.
 constexpr double kFirmHeld = 0.9, kFirmBeside = 0.2;
-constexpr double kTipLies = 0.05;     // over the ground: from there on toes that the target alone has lie down
-constexpr double kCarriedUp = 0.5;    // share of its hip's way up that a person's free foot takes part in
+constexpr double kTipLies = 0.05;   // over the ground: from there on toes that the target alone has lie down
+constexpr double kCarriedUp = 0.5;  // share of its hip's way up that a person's free foot takes part in
+// Of legs whose feet hang on roots of their own.
+constexpr double kLifted = 0.6;                           // Leg::lift from which on the source's bend counts alone
+constexpr double kSoftLeg = 0.03, kSoftStanding = 0.003;  // of the most that a leg reaches, leg lengths
+constexpr double kSlipSpeed = 0.65, kSlipPower = 3;       // hip heights a second at which planted feet slip by half
 constexpr double kBentInRest = 0.01;  // of an animal's leg's length: a knee off its line by that tells where it bends
 constexpr double kBendsAlike = 0.05;  // likewise: the source's joint of that name bends to the same side
 constexpr double kSteep = 1.7, kSoleUp = 2.4, kSoftLevel = 0.05;  // radians that toes point down
@@ -120,6 +124,7 @@ void LimbGoals::addAnimalsLegs(const RootPlacer& root) {
     leg.toes = found.target.toes;
     leg.sourceToes = found.source.toes;
     addLeg(leg);
+    if (leg.ownRoot) feelers_.back().bend.emplace(setup_, found);
   }
 }
 
@@ -207,6 +212,18 @@ void LimbGoals::feel(Leg& leg, Feeler& feeler, const BodyFrame& source, const Bo
   leg.ankleFloor = foot.ankleGround;
   leg.toesFloor = foot.toesGround;
   leg.wanted = true;
+  if (leg.ownRoot) feelOwnWay(leg, feeler, before, source, seconds);
+}
+
+// It stands as still as the source's, which inverse kinematics held: what moves there is meant to.
+void LimbGoals::feelOwnWay(Leg& leg, Feeler& feeler, const FootLock::Frame& before, const BodyFrame& source,
+                           double seconds) const {
+  leg.lift = (source.positions[leg.sourceEnd].y() - leg.sourceAnkleGround) / setup_.sourceHipHeight;
+  leg.bentReach = feeler.bend->reach(source);
+  FootLock::Frame& foot = feeler.foot;
+  const Vec3 way = foot.ankle - before.ankle;
+  const double speed = seconds > 0 ? std::hypot(way.x(), way.z()) / (seconds * setup_.targetHipHeight) : 0;
+  foot.slip = 1 / (1 + std::pow(kSlipSpeed / speed, kSlipPower));
 }
 
 // `down` is the way in this frame.
@@ -271,7 +288,7 @@ void LimbGoals::carryFeet(const BodyFrame& target, double seconds) {
   }
   const Pelvis::Move move = pelvis_.moveFor(legs_, target);
   for (std::size_t i = 0; i < legs_.size(); ++i) {
-    feelers_[i].carried = pelvis_.hipWay(move, legs_[i], target);
+    feelers_[i].carried = legs_[i].ownRoot ? Vec3(Vec3::Zero()) : pelvis_.hipWay(move, legs_[i], target);
     if (setup_.person) feelers_[i].carried.y() *= kCarriedUp;
   }
 }
@@ -281,6 +298,7 @@ void LimbGoals::setFoot(Leg& leg, const Feeler& feeler, FootLock& lock, double s
   foot.ankle += feeler.carried;
   foot.toes += feeler.carried;
   leg.goal = lock.next(foot, seconds, kFootSlack * setup_.targetHipHeight);
+  if (leg.ownRoot) leg.goal.y() = foot.ankle.y();
   leg.turn = Eigen::AngleAxisd(lock.twist(), Vec3::UnitY());
   keepAboveGround(leg, foot, feeler);
 }
@@ -304,6 +322,28 @@ void LimbGoals::keepAboveGround(Leg& leg, const FootLock::Frame& foot, const Fee
     raiseToes(kFirmBeside);
     raiseAnkle(kFirmHeld);
   }
+}
+
+void LimbGoals::bendAsSource(Leg& leg, const BodyFrame& target) const {
+  const Vec3 hip = target.positions[leg.upper], way = leg.goal - hip;
+  const double own = way.norm(), most = kStretch * leg.length;
+  if (!leg.ownRoot || !(own > 0)) return;
+  const double free = smoothStep(leg.lift / kLifted), length = own + free * (leg.bentReach - own);
+  const double soft = kSoftStanding + free * (kSoftLeg - kSoftStanding);
+  const double reached = most - softPositive(most - length, soft * leg.length);
+  const Vec3 change = (reached / own - 1) * way;
+  const double down = -change.y(), room = heightOverGround(leg, target);
+  // The nearer to the ground the slower.
+  leg.goal += down > 0 ? Vec3(room / down * (1 - std::exp(-down / room)) * change) : change;
+}
+
+// Of a goal, both ends of the foot; more than nothing.
+double LimbGoals::heightOverGround(const Leg& leg, const BodyFrame& target) const {
+  double ground = leg.ankleFloor;
+  if (leg.toes) {
+    ground = std::max(ground, leg.toesFloor - (target.positions[*leg.toes] - target.positions[leg.end]).y());
+  }
+  return std::max(leg.goal.y() - ground, 1e-9 * setup_.targetHipHeight);
 }
 
 void LimbGoals::levelToes(const Leg& leg, BodyFrame& frame, Pose& target) const {

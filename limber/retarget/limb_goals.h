@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "limber/retarget/leg_bend.h"
 #include "limber/retarget/limb.h"
 #include "limber/retarget/pelvis.h"
 #include "limber/retarget/plant_detector.h"
@@ -28,6 +29,9 @@ class LimbGoals {
   // the ground. From the globals of both. The goals are for legs whose hips go with
   // the pelvis (Pelvis::moveFor).
   void setFeet(const BodyFrame& source, const BodyFrame& target, double seconds);
+  // A foot on a root of its own that is lifted comes as near to its hip as the source's does for its leg's length, and
+  // none stretches its leg wholly: knees else fold and snap. For hips that are where they stay.
+  void bendAsSource(Leg& leg, const BodyFrame& target) const;
   // Whether the source jumped to the last frame: what was before it does not count.
   bool atCut() const { return cut_; }
   // Hands that are close to the other hand, the head, the trunk, a thigh or the other forearm in the source are as
@@ -67,6 +71,7 @@ class LimbGoals {
     FootLock::Frame foot;  // as its joint angles have it
     Fall ankleFall, toesFall;
     Vec3 carried = Vec3::Zero();  // by its hip
+    std::optional<LegBend> bend;  // ownRoot
   };
 
   bool isSame() const;
@@ -78,10 +83,13 @@ class LimbGoals {
                   std::vector<Surface>& surfaces) const;
   void sense(Leg& leg, Feeler& feeler, const BodyFrame& source, double seconds) const;
   void feel(Leg& leg, Feeler& feeler, const BodyFrame& source, const BodyFrame& target, double seconds) const;
+  void feelOwnWay(Leg& leg, Feeler& feeler, const FootLock::Frame& before, const BodyFrame& source,
+                  double seconds) const;
   static void followFall(double down, double seconds, Fall& fall);
   void carryFeet(const BodyFrame& target, double seconds);
   void setFoot(Leg& leg, const Feeler& feeler, FootLock& lock, double seconds) const;
   void keepAboveGround(Leg& leg, const FootLock::Frame& foot, const Feeler& feeler) const;
+  double heightOverGround(const Leg& leg, const BodyFrame& target) const;
   // True at a cut.
   bool forgetAcrossCuts(const BodyFrame& source, double seconds);
   double loweredBy(double sourceGround, const Vec3& sourcePlace) const;

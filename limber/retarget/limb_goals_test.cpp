@@ -39,5 +39,35 @@ TEST(LimbGoals, AFootSlowsDownTheEarlierTheFasterItComes) {
   EXPECT_LT(heldUp(20), 0.05) << "however fast";
 }
 
+// Of a quadruped's paw on a root of its own, `lift` above where it stands in the source and at its place in the target:
+// how far its goal is from the hip, over the way by the paw's own way.
+double bentBy(double lift, double sunk) {
+  const Skeleton animal = limber::testing::onTheGround(limber::testing::quadruped(0.5),
+                                                       {"b0LeftThree", "b0RightThree", "b1LeftThree", "b1RightThree"}),
+                 bigger = limber::testing::scaled(animal, 2);
+  const RetargetSetup setup(animal, bigger, matchSkeletons(animal, bigger), {});
+  const RootPlacer root(setup);
+  LimbGoals goals(setup, root);
+  Leg& leg = goals.legs().front();
+  Pose from = restPose(animal);
+  from.locals[leg.sourceEnd].translation.y() += lift;
+  BodyFrame source, target;
+  Pose to = restPose(bigger);
+  setup.sourceKinematics.globals(from, source);
+  setup.targetKinematics.globals(to, target);
+  goals.calm(source, 0, to, target);
+  goals.setFeet(source, target, 0);
+  leg.goal = target.positions[leg.end] + Vec3(0, sunk, 0);
+  const double own = (leg.goal - target.positions[leg.upper]).norm();
+  goals.bendAsSource(leg, target);
+  return (leg.goal - target.positions[leg.upper]).norm() / own;
+}
+
+TEST(LimbGoals, LegsOfLiftedFeetOnRootsOfTheirOwnBendAsTheSources) {
+  EXPECT_NEAR(bentBy(0, 0.4), 1, 0.01) << "what stands goes its own way";
+  EXPECT_NEAR(bentBy(0.5, 0), 0.4 / 0.9, 0.02) << "all of the source's bend";
+  EXPECT_LT(bentBy(0, -1), 1.8 / 2.8) << "no further than a leg reaches";
+}
+
 }  // namespace
 }  // namespace limber

@@ -28,6 +28,7 @@ class LimbIkRetargeter : public FrameRetargeter {
       goals_.setFeet(from(), to(), seconds);
       pelvis.apply(pelvis.moveFor(legs, to()), target, to());
       for (std::size_t i = 0; i < legs.size(); ++i) {
+        goals_.bendAsSource(legs[i], to());
         reach(legs[i], solver(legSolvers_, i), &legs[i].kneeAhead, target);
         goals_.levelToes(legs[i], to(), target);
       }

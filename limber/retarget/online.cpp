@@ -57,7 +57,8 @@ class OnlineRetargeter : public FrameRetargeter {
     }
     setup_.targetKinematics.globals(target, frame);
     aligned_.root().settle(target, frame);
-    for (const Leg& leg : goals_.legs()) {
+    for (Leg& leg : goals_.legs()) {
+      goals_.bendAsSource(leg, frame);
       if (leg.ownRoot && leg.wanted && !LimbReach::isThere(leg, frame)) {
         reach_.reach(leg, &leg.kneeAhead, frame, target);
       }

@@ -15,6 +15,9 @@ constexpr double kCalmWide = 1.5;  // power of the hips' widths by which their t
 constexpr double kMostShift = 0.3;
 constexpr double kSoftStretch = 0.015, kSoftChange = 0.004;  // of sinking, by how far a foot is moved
 constexpr double kSoftOnFour = 0.03;  // likewise: with legs at both ends of the body, some are far off and stretch more
+constexpr double kSoftBend = 0.1;  // by which legs on roots of their own count the more, the lower they want the body
+constexpr double kStandsBelow = 0.3;  // Leg::lift from which on they no longer count
+constexpr double kStay = 0.5;         // legs that these go against, which want it to stay
 constexpr double kStretch = 0.998;    // of a leg's length: fully stretched knees pop
 // Of turning with planted legs: leg lengths, the more the less it does; and radians.
 constexpr double kStiffOnTwo = 0.15, kStiffOnOne = 0.3, kMostTurn = 0.8;
@@ -96,7 +99,7 @@ Quat Pelvis::turnFor(std::span<const Leg> legs, const BodyFrame& frame) const {
 double Pelvis::bendKeepingShift(std::span<const Leg> legs, const BodyFrame& frame, const Quat& turn) const {
   double sum = 0, weights = 0;
   for (const Leg& leg : legs) {
-    if (leg.ownRoot) continue;  // its bend follows its foot
+    if (leg.ownRoot) continue;
     const Vec3 hip = frame.positions[leg.upper], way = leg.goal - hip - hipWay({turn, 0}, leg, frame);
     const double length = (frame.positions[leg.end] - hip).norm(), across = std::hypot(way.x(), way.z());
     if (way.y() >= 0 || across >= length) continue;
@@ -105,7 +108,24 @@ double Pelvis::bendKeepingShift(std::span<const Leg> legs, const BodyFrame& fram
     weights += weight;
   }
   const double most = kMostShift * setup_.targetHipHeight;
-  return std::clamp(sum / std::max(weights, 1.0), -most, most);
+  return std::clamp(sum / std::max(weights, 1.0) + ownRootsShift(legs, frame), -most, most);
+}
+
+// Their joint angles had the foot elsewhere: legs that stand bend as the source's do. A mean of the ways, without a
+// kink where another leg takes over.
+double Pelvis::ownRootsShift(std::span<const Leg> legs, const BodyFrame& frame) const {
+  const double soft = kSoftBend * setup_.targetHipHeight;
+  double sum = kStay, weights = kStay;
+  for (const Leg& leg : legs) {
+    if (!leg.ownRoot) continue;
+    const Vec3 way = leg.goal - frame.positions[leg.upper];
+    const double reach = leg.bentReach, across = std::hypot(way.x(), way.z());
+    if (across >= reach) continue;
+    const double weight = smoothStep(1 - leg.lift / kStandsBelow) * (1 - across * across / (reach * reach));
+    sum += weight * std::exp(-(way.y() + std::sqrt(reach * reach - across * across)) / soft);
+    weights += weight;
+  }
+  return -soft * std::log(sum / weights);
 }
 
 double Pelvis::changeOf(const Leg& leg, const BodyFrame& frame, const Quat& turn) const {

@@ -41,6 +41,7 @@ class Pelvis {
   // average, and down as far as the longest way asks.
   double shiftFor(std::span<const Leg> legs, const BodyFrame& frame, const Quat& turn) const;
   double bendKeepingShift(std::span<const Leg> legs, const BodyFrame& frame, const Quat& turn) const;
+  double ownRootsShift(std::span<const Leg> legs, const BodyFrame& frame) const;
 
   const RetargetSetup& setup_;
   const RootPlacer& root_;

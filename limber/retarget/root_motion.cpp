@@ -69,7 +69,9 @@ void RootPlacer::place(const Pose& source, const BodyFrame& sourceFrame, Pose& t
       const Index s = match.source.front(), t = match.target.front();
       const Vec3 way = source.locals[s].translation - setup_.source->joints[s].rest.translation;
       const double unit = setup_.scale * setup_.sourceKinematics.unit(s) / setup_.targetKinematics.unit(t);
-      target.locals[t].translation = setup_.target->joints[t].rest.translation + unit * way;
+      const Quat above = setup_.sourceKinematics.parentRotation(s, sourceFrame);
+      const Quat toParent = setup_.targetKinematics.parentRotation(t, frame).conjugate();
+      target.locals[t].translation = setup_.target->joints[t].rest.translation + unit * (toParent * (above * way));
     }
     setup_.targetKinematics.place(target, frame);
     return;

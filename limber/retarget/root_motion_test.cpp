@@ -137,6 +137,21 @@ TEST(RootMotion, AnimalsGoAsFarAsTheyStandHigh) {
   EXPECT_NEAR(mixed, 3 / std::hypot(1, 0.5), 1e-12);
 }
 
+// Bodies of one form, whatever their joints' own axes: what moves on its parent goes the same way through space.
+TEST(RootMotion, WaysOfAnimalsJointsAreThoseThroughSpace) {
+  const Skeleton one = limber::testing::quadruped(0.5), other = limber::testing::withOtherAxes(one);
+  const RetargetSetup setup(one, other, matchSkeletons(one, other), {});
+  const Index chest = one.find("b1").value();
+  Pose pose = restPose(one);
+  pose.locals[0].rotation = limber::testing::turn(Vec3::UnitX(), 20);
+  pose.locals[chest].translation += Vec3(0.1, 0.2, 0.3);
+  const PoseSequence result = retargetFrames(findRetargetMethod("aligned"), setup, {{pose}, 1.0 / 60});
+  const std::vector<Affine> expected = poseGlobals(one, pose), globals = poseGlobals(other, result.poses.front());
+  for (Index j = 0; j < one.jointCount(); ++j) {
+    EXPECT_LT((globals[j].translation() - expected[j].translation()).norm(), 1e-6) << one.joints[j].name;
+  }
+}
+
 TEST(RootMotion, ThePelvisMovesByWhatIsAsked) {
   const Skeleton person = practiceHumanoid(), odd = limber::testing::withOtherAxes(oddlyBuilt());
   const RetargetSetup setup(person, odd, matchSkeletons(person, odd), {});

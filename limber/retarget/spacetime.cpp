@@ -62,6 +62,8 @@ struct FootFrame {
   FootAnchor anchor = FootAnchor::kNone;
   bool flat = false;
   double ankleFloor = 0, toesFloor = 0;
+  bool ownRoot = false;  // likewise in Leg, with what follows
+  double bentReach = 0, lift = 0;
 };
 
 class Spacetime {
@@ -128,6 +130,9 @@ class Spacetime {
         foot.anchor = leg.anchor;
         foot.flat = leg.flat;
         foot.ankleFloor = leg.ankleFloor;
+        foot.ownRoot = leg.ownRoot;
+        foot.bentReach = leg.bentReach;
+        foot.lift = leg.lift;
         foot.toesFloor = -std::numeric_limits<double>::infinity();
         if (!leg.toes) continue;
         foot.roll = to.positions[*leg.toes] - foot.ankle;
@@ -188,7 +193,7 @@ class Spacetime {
       CurveGoal& upright = way[1][f];
       upright.least = std::max(ankleUp, toesUp);
       upright.value = std::max(byToes ? toesUp : ankleUp, upright.least);
-      upright.valueWeight = kGroundWeight * still[f];
+      if (!now.ownRoot) upright.valueWeight = kGroundWeight * still[f];
       if (f > 0 && now.anchor != FootAnchor::kNone && foot[f - 1].anchor != FootAnchor::kNone) {
         Vec3 step = now.ankle - foot[f - 1].ankle;
         if (byToes) step += roll - rollBefore;
@@ -206,6 +211,8 @@ class Spacetime {
     for (std::size_t i = 0; i < feet_.size(); ++i) {
       Leg& leg = goals_.legs()[i];
       leg.goal = feet_[i][f].ankle + plans_[i].way.at(f);
+      leg.bentReach = feet_[i][f].bentReach;
+      leg.lift = feet_[i][f].lift;
       leg.turn = Eigen::AngleAxisd(plans_[i].twist[f], Vec3::UnitY());
       leg.planted = std::clamp(plans_[i].planted[f], 0.0, 1.0);
     }
@@ -238,7 +245,8 @@ class Spacetime {
     for (std::size_t f = 0; f < frames(); ++f) {
       BodyFrame& to = targetAt(f);
       setLegs(f);
-      for (const Leg& leg : goals_.legs()) {
+      for (Leg& leg : goals_.legs()) {
+        goals_.bendAsSource(leg, to);
         if (!LimbReach::isThere(leg, to)) reach_.reach(leg, &leg.kneeAhead, to, target_.poses[f]);
         goals_.levelToes(leg, to, target_.poses[f]);
       }

@@ -1,0 +1,41 @@
+#include "limber/retarget/leg_bend.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "limber/retarget/smooth.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kLeastBend = 0.05, kMostBend = 1.4;  // radians
+
+}  // namespace
+
+LegBend::Chain::Chain(const Skeleton& skeleton, const NeutralPose& neutral, const LegJoints& leg)
+    : upper(leg.upper), end(leg.end) {
+  const std::vector<Vec3>& rest = neutral.restPositions;
+  Index below = leg.end;
+  for (std::optional<Index> at = leg.carrier ? leg.carrier : skeleton.joints[leg.end].parent; at && below != leg.upper;
+       at = skeleton.joints[*at].parent) {
+    length += (rest[below] - rest[*at]).norm();
+    below = *at;
+  }
+  atRest = bend(neutral.positions);
+}
+
+double LegBend::Chain::bend(const std::vector<Vec3>& positions) const {
+  return std::acos(std::min(1.0, (positions[end] - positions[upper]).norm() / length));
+}
+
+LegBend::LegBend(const RetargetSetup& setup, const AnimalLeg& leg)
+    : source_(*setup.source, setup.sourceNeutral, leg.source),
+      target_(*setup.target, setup.targetNeutral, leg.target) {}
+
+double LegBend::reach(const BodyFrame& source) const {
+  const double bend = source_.bend(source.positions) + target_.atRest - source_.atRest;
+  return target_.length * std::cos(std::min(softPositive(bend, kLeastBend), kMostBend));
+}
+
+}  // namespace limber
