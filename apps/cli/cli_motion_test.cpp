@@ -162,6 +162,9 @@ TEST_F(Cli, PreviewShowsClips) {
   EXPECT_THAT(content("moving.png"), AllOf(StartsWith("\x89PNG"), HasSubstr("acTL"), HasSubstr("fdAT")));
   EXPECT_NE(content("one.png"), "");
   expectOneLine(run({"preview", "walk.bvh", "--clip", "swim", "-o", "none.png"}), 1);
+  const Result large = run({"preview", "walk.bvh", "--frames", "400", "--size", "4000x4000", "-o", "none.png"});
+  expectOneLine(large, 1);
+  EXPECT_THAT(large.error, HasSubstr("--size"));
   expectOneLine(run({"preview", "walk.bvh", "--time", "1", "--frames", "2", "-o", "none.png"}), 2);
 }
 
@@ -172,11 +175,12 @@ std::string personBvh(const std::string& prefix) {
     int closes;  // how many joints end after it
   };
   const std::vector<Part> parts = {
-      {"Hips", "0 0 0", 0},         {"Spine", "0 12 0", 0},       {"Chest", "0 18 0", 0},      {"Neck", "0 22 0", 0},
-      {"Head", "0 10 0", 2},        {"LeftArm", "16 18 0", 0},    {"LeftForeArm", "28 0 0", 0}, {"LeftHand", "26 0 0", 3},
-      {"RightArm", "-16 18 0", 0},  {"RightForeArm", "-28 0 0", 0}, {"RightHand", "-26 0 0", 5},
-      {"LeftUpLeg", "9 -4 0", 0},   {"LeftLeg", "0 -42 0", 0},    {"LeftFoot", "0 -42 0", 3},
-      {"RightUpLeg", "-9 -4 0", 0}, {"RightLeg", "0 -42 0", 0},   {"RightFoot", "0 -42 0", 4}};
+      {"Hips", "0 0 0", 0},           {"Spine", "0 12 0", 0},      {"Chest", "0 18 0", 0},
+      {"Neck", "0 22 0", 0},          {"Head", "0 10 0", 2},       {"LeftArm", "16 18 0", 0},
+      {"LeftForeArm", "28 0 0", 0},   {"LeftHand", "26 0 0", 3},   {"RightArm", "-16 18 0", 0},
+      {"RightForeArm", "-28 0 0", 0}, {"RightHand", "-26 0 0", 5}, {"LeftUpLeg", "9 -4 0", 0},
+      {"LeftLeg", "0 -42 0", 0},      {"LeftFoot", "0 -42 0", 3},  {"RightUpLeg", "-9 -4 0", 0},
+      {"RightLeg", "0 -42 0", 0},     {"RightFoot", "0 -42 0", 4}};
   std::string text = "HIERARCHY\n";
   for (const Part& part : parts) {
     const bool root = &part == parts.data();
@@ -205,7 +209,8 @@ TEST_F(Cli, RetargetPutsEachMotionIntoTheCharacter) {
   const Result done = run({"retarget", "hero.glb", "wave.bvh", "bow.bvh", "-o", "moving.glb", "--method", "aligned",
                            "--save-map", "map.json"});
   EXPECT_EQ(done.code, 0) << done.error;
-  EXPECT_THAT(done.out, AllOf(HasSubstr("wave"), HasSubstr("6 frames at 10 a second"), HasSubstr("written: moving.glb")));
+  EXPECT_THAT(done.out,
+              AllOf(HasSubstr("wave"), HasSubstr("6 frames at 10 a second"), HasSubstr("written: moving.glb")));
   EXPECT_THAT(run({"info", "moving.glb"}).out, AllOf(HasSubstr("wave: 0.500 s"), HasSubstr("bow: 0.500 s")));
   keep("moving.glb");
   const Result measured =
@@ -300,9 +305,12 @@ TEST_F(Cli, RetargetRefusesWithOneLineAndLeavesNoFile) {
   EXPECT_EQ(run({"rig", "biped.glb", "--template", "humanoid", "-o", "hero.glb", "-q"}).code, 0);
   put("map.json", "{\"matches\": 3}");
   const std::vector<std::string> before = files();
-  for (const std::vector<std::string>& call : std::vector<std::vector<std::string>>{
-           {"hero.glb", "cut.bvh"}, {"hero.glb", "no.bvh"}, {"hero.glb", "hero.bvh", "--method", "magic"},
-           {"hero.glb", "hero.bvh", "--map", "map.json"}, {"hero.glb", "hero.bvh", "--solver", "magic"}}) {
+  for (const std::vector<std::string>& call :
+       std::vector<std::vector<std::string>>{{"hero.glb", "cut.bvh"},
+                                             {"hero.glb", "no.bvh"},
+                                             {"hero.glb", "hero.bvh", "--method", "magic"},
+                                             {"hero.glb", "hero.bvh", "--map", "map.json"},
+                                             {"hero.glb", "hero.bvh", "--solver", "magic"}}) {
     std::vector<std::string> arguments = {"retarget"};
     arguments.insert(arguments.end(), call.begin(), call.end());
     arguments.insert(arguments.end(), {"-o", "out.glb", "-q"});

@@ -44,6 +44,18 @@ TEST_F(Cli, WrongUsageIsOneLineAndCodeTwo) {
                                              {"rig", "a.glb", "-o", "b.glb", "--keep-skeleton", "--handles", "3"},
                                              {"rig", "a.glb", "-o", "-", "--json", "-"},
                                              {"rig", "a.glb", "-o", "b.glb", "--json", "b.glb"},
+                                             {"rig", "a.glb", "-o", "b.glb", "--json", "./b.glb"},
+                                             {"rig", "a.glb", "-o", "b.glb", "--json", "a.glb"},
+                                             {"rig", "a.glb", "-o", "b.glb", "--pin", "head=0,1,0"},
+                                             {"rig", "a.glb", "-o", "b.glb", "--up", "+z"},
+                                             {"rig", "a.glb", "-o", "b.glb", "--keep-skeleton", "--front", "+z"},
+                                             {"rig", "a.glb", "-o", "b.glb", "--template", "auto", "--handles", "5"},
+                                             {"retarget", "a.glb", "b.bvh", "-o", "c.glb", "--save-map", "b.bvh"},
+                                             {"retarget", "a.glb", "b.bvh", "-o", "c.glb", "--save-map", "./a.glb"},
+                                             {"retarget", "a.glb", "b.bvh", "-o", "c.glb", "--reach", "nan"},
+                                             {"retarget", "a.glb", "b.bvh", "-o", "c.glb", "--ground", "nan"},
+                                             {"pose", "a.glb", "-o", "b.glb", "--time", "nan"},
+                                             {"preview", "a.glb", "-o", "b.png", "--time", "-1"},
                                              {"pose", "a.glb", "-o", "b.glb", "--deformer", "linear-blend"},
                                              {"info"},
                                              {"sample", "stool"}}) {
@@ -242,6 +254,18 @@ TEST_F(Cli, WeightsAreComparedWithThemselvesAndWithOthers) {
   EXPECT_EQ(table.code, 0) << table.error;
   EXPECT_THAT(table.out, HasSubstr("truth"));
   expectOneLine(run({"evaluate", "weights", "robot.glb", "truth.glb"}), 1);
+}
+
+TEST_F(Cli, ATableOfNothingIsAnError) {
+  makeRobot();
+  put("walk.bvh", "no motion");
+  const Result unread = run({"evaluate", "templates", "robot.glb", "missing.glb", "-o", "table.md"});
+  expectOneLine(unread, 1);
+  EXPECT_THAT(unread.error, HasSubstr("robot.glb"));
+  EXPECT_THAT(run({"evaluate", "templates", "robot.glb", "--template", "magic"}).error, HasSubstr("quadruped"));
+  expectOneLine(run({"evaluate", "skinning", ".", "-o", "table.md"}), 1);
+  expectOneLine(run({"evaluate", "retargeting", "--motion", "walk.bvh", "--character", "robot.glb"}), 1);
+  EXPECT_EQ(files(), (std::vector<std::string>{"robot.glb", "walk.bvh"}));
 }
 
 TEST_F(Cli, AReportThatCannotBeWrittenLeavesNoModel) {

@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 
 #include <fmt/format.h>
 
@@ -11,6 +12,21 @@
 #include "limber/core/parallel.h"
 
 namespace limber::cli {
+
+namespace {
+
+bool isSamePlace(const std::string& a, const std::string& b) {
+  if (a == b) return true;
+  if (a == "-" || b == "-") return false;
+  std::error_code unseen;  // of files that are not there
+  if (std::filesystem::equivalent(a, b, unseen)) return true;
+  const auto place = [&](const std::string& path) {
+    return std::filesystem::weakly_canonical(std::filesystem::absolute(path, unseen), unseen);
+  };
+  return place(a) == place(b);
+}
+
+}  // namespace
 
 void Common::addTo(CLI::App& command) {
   command.add_flag("--quiet,-q", quiet, "print nothing but errors");
@@ -45,6 +61,14 @@ void refuseWarnings(const Warnings& warnings) {
               first.where, "--strict takes warnings as errors");
 }
 
+void refuseNothing(bool isEmpty, const Warnings& skipped) {
+  if (!isEmpty) return;
+  if (skipped.empty()) throw Error(ErrorCode::kBadData, "there is nothing to compare");
+  const Warning& first = skipped.items().front();
+  throw Error(ErrorCode::kBadData, fmt::format("there is nothing to compare: {} {}", first.count, first.message),
+              first.where);
+}
+
 std::string joinNames(const std::vector<std::string>& names) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
@@ -55,6 +79,28 @@ void checkOutput(std::string_view path, std::initializer_list<std::string_view> 
   if (std::find(extensions.begin(), extensions.end(), extension) != extensions.end()) return;
   throw Error(ErrorCode::kBadArgument, "the name of the output does not say a format that this command writes",
               std::string(path), fmt::format("end it in {}", fmt::join(extensions, " or ")));
+}
+
+void checkBeside(const std::string& option, const std::string& path, const std::vector<std::string>& others) {
+  if (path.empty()) return;
+  for (const std::string& other : others) {
+    if (!isSamePlace(path, other)) continue;
+    throw CLI::ValidationError(option, fmt::format("{} would take the place of {}", path, other));
+  }
+}
+
+CLI::Validator numberIn(double low, double high) {
+  return CLI::Validator(
+      [low, high](std::string& text) {
+        double value = 0;
+        if (CLI::detail::lexical_cast(text, value) && value >= low && value <= high) return std::string();
+        return fmt::format("Value {} not in range {:g} to {:g}", text, low, high);
+      },
+      "");
+}
+
+CLI::Validator momentOfClip() {
+  return numberIn(0, 1e6);
 }
 
 void writeText(const std::string& path, const std::string& text) {

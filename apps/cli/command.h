@@ -1,6 +1,7 @@
 // What the subcommands share: how they are added, and where they print.
 #pragma once
 
+#include <initializer_list>
 #include <string>
 #include <string_view>
 
@@ -49,10 +50,21 @@ class Account {
 void printWarnings(const Warnings& warnings, bool quiet);
 // Throws an Error that names the first warning if there is one.
 void refuseWarnings(const Warnings& warnings);
+// Throws an Error that names the first that was skipped, where nothing else is left to compare.
+void refuseNothing(bool isEmpty, const Warnings& skipped);
 std::string joinNames(const std::vector<std::string>& names);
 
 // Throws Error kBadArgument unless the name ends in one of the extensions (".glb") or is "-".
 void checkOutput(std::string_view path, std::initializer_list<std::string_view> extensions);
+
+// A file written beside the result, named by `option`, must take the place of none of the others: throws
+// CLI::ValidationError where it does, by whatever path.
+void checkBeside(const std::string& option, const std::string& path, const std::vector<std::string>& others);
+
+// A number from `low` to `high`; CLI::Range lets NaN pass.
+CLI::Validator numberIn(double low, double high);
+// A moment of a clip in seconds; one after its end is the end.
+CLI::Validator momentOfClip();
 
 void writeText(const std::string& path, const std::string& text);
 // Throws Error kFile where standard output did not take all that was printed.

@@ -259,7 +259,7 @@ void addConvertCommand(CLI::App& program) {
   command->add_flag("--mirror", options->mirror, "left for right");
   command->add_flag("--loop", options->loop, "cut each clip to its best loop, where it has one");
   command->add_option("--fps", options->fps, "sample anew, so many frames a second")
-      ->check(CLI::Range(0.01, 10000.0))
+      ->check(numberIn(0.01, 10000))
       ->type_name("RATE");
   command
       ->add_option("--unit", options->unit,

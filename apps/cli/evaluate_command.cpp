@@ -14,6 +14,7 @@
 #include "limber/evaluate/weight_report.h"
 #include "limber/evaluate/weight_table.h"
 #include "limber/pipeline/auto_rig.h"
+#include "limber/templates/template_skeleton.h"
 #include "progress_line.h"
 
 namespace limber::cli {
@@ -42,7 +43,7 @@ struct RigFiles {
 void runRig(const RigFiles& options) {
   const RigComparison comparison = compareRigs(readAsset(options.predicted), readAsset(options.truth));
   if (options.json) {
-    fmt::print("{}\n", toJson(comparison).dump(2));
+    fmt::print("{}\n", dumpReport(toJson(comparison)));
   } else {
     fmt::print("{}", toText(comparison));
   }
@@ -61,6 +62,7 @@ void runRiggers(const RiggersOptions& options) {
   AutoRigOptions rig;
   rig.rigger = "template";
   rig.rig.templateName = options.templateName;
+  if (options.templateName != "auto") findTemplate(options.templateName);
   rig.existingRig = ExistingRig::kReplace;
   const auto rerig = [&](Asset& asset) {
     Progress unheard;
@@ -73,7 +75,9 @@ void runRiggers(const RiggersOptions& options) {
   const std::vector<std::filesystem::path> files(options.files.begin(), options.files.end());
   std::optional<ClipMoment> moment;
   if (!options.clip.empty() || options.time) moment = {options.clip, options.time.value_or(0)};
-  writeText(options.output, rigTable(compareRigsOf(files, rerig, *progress, skipped, moment)));
+  const std::vector<RigTableRow> rows = compareRigsOf(files, rerig, *progress, skipped, moment);
+  refuseNothing(rows.empty(), skipped);
+  writeText(options.output, rigTable(rows));
   printWarnings(skipped, options.common.quiet);
 }
 
@@ -101,6 +105,7 @@ void runSkinning(const SkinningOptions& options) {
     autoRig(asset, rig, unheard);
   };
   const auto rows = compareFolder(options.folder, reweight, *progress, skipped);
+  refuseNothing(rows.empty(), skipped);
   writeText(options.output, weightPage(rows, references));
   printWarnings(skipped, options.common.quiet);
 }
@@ -190,6 +195,7 @@ void addRiggers(CLI::App& evaluate) {
       ->capture_default_str();
   command->add_option("--clip", options->clip, "as they stand in this clip (default: in rest pose)")->type_name("NAME");
   command->add_option("--time", options->time, "at this moment of the clip, or of the first, in seconds")
+      ->check(momentOfClip())
       ->type_name("S");
   command->add_option("-o,--output", options->output, "the table to write, in Markdown; - is standard output")
       ->type_name("FILE")

@@ -85,6 +85,10 @@ struct MatrixOptions {
 void runMatrix(const MatrixOptions& options) {
   options.common.apply();
   checkOutput(options.output, {".md"});
+  std::vector<std::string> others = options.motions;
+  others.insert(others.end(), options.characters.begin(), options.characters.end());
+  others.push_back(options.output);
+  checkBeside("--each", options.each, others);
   RetargetTrial trial = options.trial;
   trial.motions.assign(options.motions.begin(), options.motions.end());
   trial.characters.assign(options.characters.begin(), options.characters.end());
@@ -92,6 +96,7 @@ void runMatrix(const MatrixOptions& options) {
   TerminalProgress progress(options.common.quiet);
   Warnings skipped;
   const std::vector<RetargetScore> scores = scoreRetargeting(trial, *progress, skipped);
+  refuseNothing(scores.empty(), skipped);
   if (!options.each.empty()) writeText(options.each, retargetScoresTsv(scores));
   writeText(options.output, retargetMethodTable(scores));
   printWarnings(skipped, options.common.quiet);

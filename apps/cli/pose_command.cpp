@@ -178,6 +178,7 @@ void addPoseCommand(CLI::App& program) {
           "JOINT=JOINT");
   command->add_option("--clip", options->clip, "start from this clip (default: as the file stands)")->type_name("NAME");
   command->add_option("--time", options->seconds, "at this moment of the clip, or of the first, in seconds")
+      ->check(momentOfClip())
       ->type_name("S");
   command->add_option("--poses", options->posesFile, "edits out of a JSON file, made before those of the options")
       ->type_name("FILE");

@@ -59,10 +59,23 @@ int sheetColumns(int count) {
   return (count + rows - 1) / rows;
 }
 
+// All pictures are in memory at once.
+void checkPixels(std::size_t pictures, const PreviewOptions& preview) {
+  constexpr double kMost = 134217728;  // 400 megabytes
+  const double pixels = static_cast<double>(preview.width) * preview.height * static_cast<double>(pictures);
+  if (pixels <= kMost) return;
+  throw Error(ErrorCode::kLimit,
+              fmt::format("{} pictures of {} x {} pixels are too many", pictures, preview.width, preview.height), "",
+              fmt::format("{:.0f} megapixels are the most: choose a smaller --size, or fewer pictures", kMost / 1e6));
+}
+
 // A picture of a moment, a sheet of several, or an animation.
-Bytes clipPicture(const Asset& asset, const Options& options, const PreviewOptions& preview, Warnings& warnings) {
+Bytes clipPicture(const Asset& asset, const Options& options, const PreviewOptions& preview, Progress& progress,
+                  Warnings& warnings) {
   const Clip clip = findClip(asset, options.clip);
-  const std::vector<Image> images = renderClip(asset, clip, momentsOf(options, clip), preview, warnings);
+  const std::vector<double> moments = momentsOf(options, clip);
+  checkPixels(moments.size(), preview);
+  const std::vector<Image> images = renderClip(asset, clip, moments, preview, progress, warnings);
   if (options.animate) return encodeApng(images, options.fps);
   return encodePng(contactSheet(images, sheetColumns(static_cast<int>(images.size())), renderBackdrop(preview)));
 }
@@ -89,8 +102,8 @@ void run(Options options) {
   const Asset asset = readAsset(options.input);
   progress->stage("draw");
   Warnings warnings;
-  const Bytes png =
-      showsClip(options) ? clipPicture(asset, options, preview, warnings) : stillPicture(asset, preview, warnings);
+  const Bytes png = showsClip(options) ? clipPicture(asset, options, preview, *progress, warnings)
+                                       : stillPicture(asset, preview, warnings);
   progress->stage("write");
   writeFile(options.output, png);
   progress.finish();
@@ -118,7 +131,9 @@ void addPreviewCommand(CLI::App& program) {
                    "width and height in pixels (default 1024x768; of each picture of a clip 320x320)")
       ->type_name("WxH");
   command->add_option("--clip", options->clip, "the clip to show (default: the first)")->type_name("NAME");
-  CLI::Option* time = command->add_option("--time", options->time, "a moment of the clip, in seconds")->type_name("S");
+  CLI::Option* time = command->add_option("--time", options->time, "a moment of the clip, in seconds")
+                          ->check(momentOfClip())
+                          ->type_name("S");
   CLI::Option* frames = command->add_option("--frames", options->frames, "a sheet of so many moments of the clip")
                             ->check(CLI::Range(1, 400))
                             ->type_name("N")
@@ -126,7 +141,7 @@ void addPreviewCommand(CLI::App& program) {
   CLI::Option* animate =
       command->add_flag("--animate", options->animate, "an animated PNG of the clip")->excludes(time)->excludes(frames);
   command->add_option("--fps", options->fps, "pictures a second of the animation")
-      ->check(CLI::Range(0.1, 100.0))
+      ->check(numberIn(0.1, 100))
       ->type_name("RATE")
       ->needs(animate)
       ->capture_default_str();

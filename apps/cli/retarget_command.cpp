@@ -32,6 +32,9 @@ RootScale rootScaleOf(const std::string& name) {
 void prepare(Options& options) {
   options.common.apply();
   checkOutput(options.output, {".glb", ".gltf"});
+  std::vector<std::string> others = options.motions;
+  others.insert(others.end(), {options.model, options.output});
+  checkBeside("--save-map", options.saveMapFile, others);
   findRetargetMethod(options.retarget.method);
   findIkMethod(options.retarget.retarget.solver);
   options.retarget.retarget.rootScale = rootScaleOf(options.rootScale);
@@ -144,14 +147,14 @@ void addOptions(CLI::App& command, const std::shared_ptr<Options>& options) {
       ->type_name("FILE");
   command.add_option("--save-map", options->saveMapFile, "write that map, to correct and use again")->type_name("FILE");
   command.add_option("--frame-rate", options->frameRate, "frames a second of the clips (default: each motion's own)")
-      ->check(CLI::Range(1.0, 1000.0).description(""))
+      ->check(numberIn(1, 1000))
       ->type_name("N");
   command.add_option("--root-scale", options->rootScale, "how far the character goes for a metre of the motion")
       ->check(CLI::IsMember({"hip-height", "leg-length", "none"}))
       ->type_name("WHAT")
       ->capture_default_str();
   command.add_option("--reach", retarget.reach, "hands: 0 where the turned arms bring them, 1 where the motion's are")
-      ->check(CLI::Range(0.0, 1.0).description(""))
+      ->check(numberIn(0, 1))
       ->type_name("D")
       ->capture_default_str();
   command.add_option("--solver", retarget.solver, "how limbs reach; limber pose --help lists the solvers")
@@ -166,6 +169,7 @@ void addOptions(CLI::App& command, const std::shared_ptr<Options>& options) {
             options->hasGround = true;
           },
           "height of the ground in the motion, in its unit (default: measured)")
+      ->check(numberIn(-1e9, 1e9))
       ->type_name("Y");
   options->common.addTo(command);
 }

@@ -155,12 +155,24 @@ void chooseTemplate(const std::string& name, AutoRigOptions& rig) {
   rig.rig.templateSkeleton = readTemplateFile(name);
 }
 
+// What only some riggers take is refused with others.
+void checkRigger(const Options& options) {
+  const bool isTemplate = !options.keepSkeleton && options.rig.rigger == "template";
+  if (isTemplate && options.rig.rig.handles) {
+    throw CLI::ValidationError("--handles", "a template has the joints that it has");
+  }
+  if (isTemplate) return;
+  for (const auto& [option, isGiven] : {std::pair{"--pin", !options.pins.empty()},
+                                        {"--up", !options.up.empty()},
+                                        {"--front", !options.front.empty()}}) {
+    if (isGiven) throw CLI::ValidationError(option, "takes a template to fit: --template NAME");
+  }
+}
+
 void run(Options options) {
   options.common.apply();
-  if (options.report == options.output) {
-    throw CLI::ValidationError("--json", "the report cannot go where the model goes");
-  }
   checkOutput(options.output, {".glb", ".gltf"});
+  checkBeside("--json", options.report, {options.input, options.output, options.templateName});
   if (options.replaceRig) options.rig.existingRig = ExistingRig::kReplace;
   if (options.keepSkeleton) options.rig.existingRig = ExistingRig::kKeepSkeleton;
   chooseTemplate(options.templateName, options.rig);
@@ -171,6 +183,7 @@ void run(Options options) {
   }
   for (const std::string& pin : options.pins) options.rig.rig.pins.push_back(parsePin(pin));
   findRigger(options.rig.rigger);
+  checkRigger(options);
   findWeightMethod(options.rig.skinning);
 
   TerminalProgress progress(options.common.quiet);

@@ -12,10 +12,10 @@ namespace {
 
 Json distancesJson(const RigDistances& d) {
   return {{"joints", d.joints},
-          {"truthJoints", d.truthJoints},
-          {"jointToJoint", d.jointToJoint},
-          {"jointToBone", d.jointToBone},
-          {"boneToBone", d.boneToBone},
+          {"truth_joints", d.truthJoints},
+          {"joint_to_joint", d.jointToJoint},
+          {"joint_to_bone", d.jointToBone},
+          {"bone_to_bone", d.boneToBone},
           {"precision", d.precision},
           {"recall", d.recall},
           {"iou", d.iou}};
@@ -49,10 +49,10 @@ Json toJson(const RigComparison& c) {
   Json named = Json::object();
   for (const NamedJointError& error : c.named) named[error.bone] = error.percent;
   return {{"all", distancesJson(c.all)},
-          {"withoutFingers", distancesJson(c.withoutFingers)},
+          {"without_fingers", distancesJson(c.withoutFingers)},
           {"named", std::move(named)},
-          {"namedMean", c.namedMean},
-          {"namedWorst", c.namedWorst}};
+          {"named_mean", c.namedMean},
+          {"named_worst", c.namedWorst}};
 }
 
 std::string toText(const RigComparison& c) {

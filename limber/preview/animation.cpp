@@ -14,18 +14,21 @@ std::vector<double> clipMoments(const Clip& clip, int count, bool withEnd) {
 }
 
 std::vector<Image> renderClip(const Asset& asset, const Clip& clip, std::span<const double> seconds,
-                              PreviewOptions options, Warnings& warnings) {
-  std::vector<Scene> scenes;
+                              PreviewOptions options, Progress& progress, Warnings& warnings) {
   Box frame;
-  for (const double moment : seconds) {
-    scenes.push_back(sceneAt(asset, clip, moment));
-    for (const Vec3f& position : scenes.back().positions) frame.add(position.cast<double>());
+  for (std::size_t i = 0; i < seconds.size(); ++i) {
+    progress.update(0.2 * static_cast<double>(i) / static_cast<double>(seconds.size()));
+    const Scene scene = sceneAt(asset, clip, seconds[i]);
+    for (const Vec3f& position : scene.positions) frame.add(position.cast<double>());
+    if (i == 0) warnings = scene.warnings;
   }
-  if (!scenes.empty()) warnings = scenes.front().warnings;
   if (!options.frame) options.frame = frame;
   std::vector<Image> images;
-  images.reserve(scenes.size());
-  for (const Scene& scene : scenes) images.push_back(render(scene, options));
+  images.reserve(seconds.size());
+  for (const double moment : seconds) {
+    progress.update(0.2 + 0.8 * static_cast<double>(images.size()) / static_cast<double>(seconds.size()));
+    images.push_back(render(sceneAt(asset, clip, moment), options));
+  }
   return images;
 }
 

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "limber/core/progress.h"
 #include "limber/preview/render.h"
 #include "limber/skeleton/clip.h"
 
@@ -15,8 +16,9 @@ class Asset;
 // `count` moments from the clip's start to its end, evenly: both ends for a sheet; for a loop without the end.
 std::vector<double> clipMoments(const Clip& clip, int count, bool withEnd);
 
-// One picture for each moment, all in one frame that holds the whole movement. Gets the first scene's warnings.
+// One picture for each moment, all in one frame that holds the whole movement. Gets the first scene's warnings. The
+// scene is made twice for each moment, so that one alone is in memory.
 std::vector<Image> renderClip(const Asset& asset, const Clip& clip, std::span<const double> seconds,
-                              PreviewOptions options, Warnings& warnings);
+                              PreviewOptions options, Progress& progress, Warnings& warnings);
 
 }  // namespace limber

@@ -63,12 +63,16 @@ TEST(Animation, ShowsASkeletonAloneAsItsBones) {
 
   PreviewOptions options;
   Warnings warnings;
+  Progress progress;
   options.width = options.height = 64;
   const std::vector<double> moments = clipMoments(motion.clips[0], 3, true);
-  const std::vector<Image> images = renderClip(asset, motion.clips[0], moments, options, warnings);
+  const std::vector<Image> images = renderClip(asset, motion.clips[0], moments, options, progress, warnings);
   ASSERT_EQ(images.size(), 3u);
   EXPECT_NE(images[0].pixels, images[2].pixels);
-  EXPECT_EQ(renderClip(asset, motion.clips[0], moments, options, warnings)[1].pixels, images[1].pixels);
+  EXPECT_EQ(renderClip(asset, motion.clips[0], moments, options, progress, warnings)[1].pixels, images[1].pixels);
+
+  progress.cancel();
+  EXPECT_THROW(renderClip(asset, motion.clips[0], moments, options, progress, warnings), Error);
 }
 
 TEST(Animation, MomentsCoverTheClip) {
