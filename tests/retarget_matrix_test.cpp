@@ -66,13 +66,11 @@ const std::map<std::pair<std::string, std::string>, double> kRougherInOnePiece =
 const std::map<std::pair<std::string, std::string>, double> kRougherCat = {{{"Fetch", "limb-ik"}, 1.16},
                                                                            {{"Fetch", "online"}, 1.16},
                                                                            {{"Fetch", "spacetime"}, 1.17},
-                                                                           {{"Walk", "online"}, 1.14}};
+                                                                           {{"Walk", "online"}, 1.17}};
 
-// The horse moves its hind legs by the hocks alone, foxes have to turn their thighs as well where paws stay or come
-// down; where it turns about, its bent trunk takes their forelegs below the ground.
-const std::map<std::string, double> kRougherHorse = {
-    {"Death", 1.81}, {"Eating", 1.15}, {"Head_But", 1.84}, {"Kick", 1.56},      {"lay_to_idle", 1.47},
-    {"Rear", 1.23},  {"Run", 1.11},    {"Walk", 1.27},     {"Turn_Left", 1.99}, {"Turn_Right", 2.46}};
+// As it falls over, and in its first frames, where a hoof shoots up at once: foxes' paws stood on the ground, the horse
+// moves by its hocks alone and they turn their thighs as well.
+const std::map<std::string, double> kRougherHorse = {{"Death", 1.61}, {"Head_But", 1.66}, {"Kick", 1.37}};
 
 // Of source, target and clip, by any method. The alpaca's and the horse's kicks stretch legs beyond their bones, and
 // the alpaca's slow steps in Idle_2 and Walk others further than its own. The wolf's forelegs bend back at the elbows,
@@ -227,8 +225,9 @@ TEST(RetargetKnownAnswers, NoMethodIsWorseThanCopying) {
   }
 }
 
-// Of animals: how far joints but those of legs are off the turn that the source's make, degrees; and how deep the
-// deepest sinks below the lowest in rest pose, in sizes of the body.
+// Of animals, over the joints that go with one of the source's each: how far those but of legs are off the turn that
+// the source's make, degrees; and how deep the deepest but of tails, which may be longer, sinks below the lowest in
+// rest pose, in sizes of the body.
 struct AnimalMeasures {
   double turn = 0, depth = 0, sourceDepth = 0;
 };
@@ -239,7 +238,9 @@ class AnimalSide {
       : neutral(side == MapSide::kSource ? setup.sourceNeutral : setup.targetNeutral),
         kinematics(side == MapSide::kSource ? setup.sourceKinematics : setup.targetKinematics) {
     for (const JointMatch& match : setup.map.matches) {
+      if (match.source.size() > 1 || match.target.size() > 1) continue;
       joints.push_back(side == MapSide::kSource ? match.source.front() : match.target.front());
+      if (!match.part.starts_with("Tail")) bodyJoints_.push_back(joints.back());
     }
     for (const Vec3& position : neutral.restPositions) box_.add(position);
     ground_ = lowest(neutral.restPositions);
@@ -255,10 +256,11 @@ class AnimalSide {
  private:
   double lowest(const std::vector<Vec3>& positions) const {
     double low = HUGE_VAL;
-    for (const Index joint : joints) low = std::min(low, positions[joint].y());
+    for (const Index joint : bodyJoints_) low = std::min(low, positions[joint].y());
     return low;
   }
 
+  std::vector<Index> bodyJoints_;
   Box box_;
   double ground_ = 0;
 };
@@ -449,7 +451,7 @@ TEST(RetargetAnimals, LegsReachFeetOnRootsOfTheirOwn) {
           const PoseSequence moved = retargetFrames(findRetargetMethod(method), setup, frames);
           const MotionMetrics result = measureMotion(setup, frames, moved);
           EXPECT_LT(gapAtFeet(setup, moved), 1e-6);
-          EXPECT_LT(result.sliding, 0.01);
+          EXPECT_LT(result.sliding, 0.011);
           const double sunk = setup.scale * result.sourcePenetration * result.sourceHeight / result.height;
           EXPECT_LT(1700 * (result.penetration - sunk), 5);
           EXPECT_GT(result.contactAgreement, 0.98);

@@ -9,6 +9,8 @@ namespace limber {
 
 namespace {
 
+constexpr double kStands = 0.1;  // mean height, in the body's size: a snake's is less
+
 // In mean heights of the joints.
 constexpr double kLow = 0.2;      // of a leg's end, at most
 constexpr double kBegins = 0.35;  // of its upper joint, at least
@@ -146,10 +148,29 @@ class LegFinder {
 
 }  // namespace
 
+bool BodySize::stands() const {
+  return height > kStands * across;
+}
+
+BodySize bodySize(const SkeletonMap& map, MapSide side, const NeutralPose& neutral) {
+  Box box;
+  BodySize size;
+  const std::vector<Index> joints = matchedJoints(map, side);
+  for (const Index joint : joints) {
+    box.add(neutral.restPositions[joint]);
+    size.height += neutral.restPositions[joint].y() / static_cast<double>(joints.size());
+  }
+  size.height -= box.min.y();
+  size.across = box.diagonal();
+  return size;
+}
+
 std::vector<AnimalLeg> animalLegs(const SkeletonMap& map, const Skeleton& source, const Skeleton& target,
-                                  const NeutralPose& sourceNeutral, const NeutralPose& targetNeutral,
-                                  double sourceHeight, double targetHeight) {
-  return LegFinder(map, source, target, sourceNeutral, targetNeutral, sourceHeight, targetHeight).find();
+                                  const NeutralPose& sourceNeutral, const NeutralPose& targetNeutral) {
+  const BodySize one = bodySize(map, MapSide::kSource, sourceNeutral),
+                 other = bodySize(map, MapSide::kTarget, targetNeutral);
+  if (!one.stands() || !other.stands()) return {};
+  return LegFinder(map, source, target, sourceNeutral, targetNeutral, one.height, other.height).find();
 }
 
 }  // namespace limber

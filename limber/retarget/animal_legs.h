@@ -20,12 +20,20 @@ struct AnimalLeg {
   LegJoints source, target;
 };
 
+// Of the matched joints of those that are no people, in rest pose.
+struct BodySize {
+  double height = 0;  // over the lowest, mean
+  double across = 0;
+  // Else it lies flat, as a snake does.
+  bool stands() const;
+};
+BodySize bodySize(const SkeletonMap& map, MapSide side, const NeutralPose& neutral);
+
 // Chains of matched joints, one on the other in both, that come down from the body to the ground in both neutral poses.
 // Feet on a root of their own count as on the shin above them (parentsWithLegsJoined).
-// The end is the first joint of the chain that is low. `sourceHeight` and `targetHeight` are mean heights of the
-// matched joints over the lowest. Cost: linear in the joints but for their depth.
+// The end is the first joint of the chain that is low. None where a body lies flat. Cost: linear in the joints but for
+// their depth.
 std::vector<AnimalLeg> animalLegs(const SkeletonMap& map, const Skeleton& source, const Skeleton& target,
-                                  const NeutralPose& sourceNeutral, const NeutralPose& targetNeutral,
-                                  double sourceHeight, double targetHeight);
+                                  const NeutralPose& sourceNeutral, const NeutralPose& targetNeutral);
 
 }  // namespace limber

@@ -22,6 +22,7 @@ constexpr double kTouchRate = 10;                  // 1/seconds, of touches that
 constexpr double kSoftReach = 0.96;                // of an arm's length: from there on stretching softens
 constexpr double kPlantRate = 9;                   // 1/seconds, of the smooth flag
 constexpr double kChangeRate = 25;                 // likewise, of Leg::changed
+constexpr double kRiseRate = 40;                   // likewise, of an animal's pelvis
 constexpr double kSoftGround = 0.006;
 constexpr double kMostSoft = 0.04;     // more of it, the faster a point comes down
 constexpr double kFallSeconds = 0.03;  // of its way: so much the earlier a point slows down
@@ -277,6 +278,18 @@ void LimbGoals::setFeet(const BodyFrame& source, const BodyFrame& target, double
     const double change = pelvis_.changeOf(legs_[i], target, turn);
     springTo(change, kChangeRate, seconds, legs_[i].changed, feelers_[i].changedSpeed);
   }
+  rise_ = nextRise(target, seconds);
+}
+
+LimbGoals::Rise LimbGoals::nextRise(const BodyFrame& target, double seconds) const {
+  Rise rise = rise_;
+  const double wanted = pelvis_.riseFor(legs_, target, pelvis_.turnFor(legs_, target));
+  springTo(wanted, kRiseRate, setup_.person ? 0 : seconds, rise.value, rise.speed);
+  return rise;
+}
+
+Pelvis::Move LimbGoals::pelvisMove(const BodyFrame& target) const {
+  return pelvis_.moveFor(legs_, target, rise_.value);
 }
 
 // Where the pelvis follows planted feet, free ones go along with their hips: their legs would else have to make up for
@@ -286,7 +299,7 @@ void LimbGoals::carryFeet(const BodyFrame& target, double seconds) {
     FootLock trial = feelers_[i].lock;
     setFoot(legs_[i], feelers_[i], trial, seconds);
   }
-  const Pelvis::Move move = pelvis_.moveFor(legs_, target);
+  const Pelvis::Move move = pelvis_.moveFor(legs_, target, nextRise(target, seconds).value);
   for (std::size_t i = 0; i < legs_.size(); ++i) {
     feelers_[i].carried = legs_[i].ownRoot ? Vec3(Vec3::Zero()) : pelvis_.hipWay(move, legs_[i], target);
     if (setup_.person) feelers_[i].carried.y() *= kCarriedUp;

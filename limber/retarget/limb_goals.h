@@ -48,6 +48,9 @@ class LimbGoals {
   // kneels, stay as they are.
   void levelToes(const Leg& leg, BodyFrame& frame, Pose& target) const;
 
+  // How the pelvis follows these goals; `target` as for setFeet(). An animal's rises and sinks smoothly: as one of four
+  // feet lets go, the others would have to bend at once.
+  Pelvis::Move pelvisMove(const BodyFrame& target) const;
   const Pelvis& pelvis() const { return pelvis_; }
   std::vector<Leg>& legs() { return legs_; }
   std::vector<Limb>& arms() { return arms_; }
@@ -74,7 +77,12 @@ class LimbGoals {
     std::optional<LegBend> bend;  // ownRoot
   };
 
+  struct Rise {
+    double value = 0, speed = 0;
+  };
+
   bool isSame() const;
+  Rise nextRise(const BodyFrame& target, double seconds) const;
   void addPersonsLegs(const RootPlacer& root);
   void addArms(const RootPlacer& root);
   void addAnimalsLegs(const RootPlacer& root);
@@ -103,6 +111,7 @@ class LimbGoals {
   Pelvis pelvis_;
   std::vector<Leg> legs_;
   std::vector<Feeler> feelers_;  // of the legs
+  Rise rise_;                    // of the pelvis
   std::vector<Limb> arms_;
   std::vector<std::vector<Surface>> surfaces_;  // for each arm
   struct Follow {

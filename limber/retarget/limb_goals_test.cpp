@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "limber/retarget/testing/test_motion.h"
 
 namespace limber {
@@ -67,6 +70,39 @@ TEST(LimbGoals, LegsOfLiftedFeetOnRootsOfTheirOwnBendAsTheSources) {
   EXPECT_NEAR(bentBy(0, 0.4), 1, 0.01) << "what stands goes its own way";
   EXPECT_NEAR(bentBy(0.5, 0), 0.4 / 0.9, 0.02) << "all of the source's bend";
   EXPECT_LT(bentBy(0, -1), 1.8 / 2.8) << "no further than a leg reaches";
+}
+
+// A paw that shoots up by half a leg is still held in the first frame after: the others' legs keep their bend.
+TEST(LimbGoals, AnAnimalsPelvisSinksSmoothly) {
+  const Skeleton source = limber::testing::quadruped(0.5), target = limber::testing::quadruped(0.35);
+  const RetargetSetup setup(source, target, matchSkeletons(source, target), {});
+  const RootPlacer root(setup);
+  LimbGoals goals(setup, root);
+  constexpr double kFrame = 1.0 / 30;
+  double before = 0, beforeAtOnce = 0, most = 0, mostAtOnce = 0;
+  for (int f = 0; f < 20; ++f) {
+    Pose from = restPose(source), to = restPose(target);
+    for (Pose* pose : {&from, &to}) {
+      const Skeleton& skeleton = pose == &from ? source : target;
+      const double folds = std::clamp(20.0 * (f - 10), 0.0, 60.0);
+      pose->locals[skeleton.find("b0LeftOne").value()].rotation = limber::testing::turn(Vec3::UnitX(), -folds);
+      pose->locals[skeleton.find("b0LeftTwo").value()].rotation = limber::testing::turn(Vec3::UnitX(), 2 * folds);
+    }
+    BodyFrame sourceFrame, frame;
+    setup.sourceKinematics.globals(from, sourceFrame);
+    setup.targetKinematics.globals(to, frame);
+    goals.calm(sourceFrame, f == 0 ? 0 : kFrame, to, frame);
+    goals.setFeet(sourceFrame, frame, f == 0 ? 0 : kFrame);
+    const double up = goals.pelvisMove(frame).up, atOnce = goals.pelvis().moveFor(goals.legs(), frame).up;
+    if (f > 0) {
+      most = std::max(most, std::abs(up - before));
+      mostAtOnce = std::max(mostAtOnce, std::abs(atOnce - beforeAtOnce));
+    }
+    before = up;
+    beforeAtOnce = atOnce;
+  }
+  EXPECT_GT(mostAtOnce, 0.003);
+  EXPECT_LT(most, 0.7 * mostAtOnce);
 }
 
 }  // namespace

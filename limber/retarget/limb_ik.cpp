@@ -23,10 +23,9 @@ class LimbIkRetargeter : public FrameRetargeter {
     if (!goals_.active()) return;
     if (setup_.options.contacts) {
       std::vector<Leg>& legs = goals_.legs();
-      const Pelvis& pelvis = goals_.pelvis();
       goals_.calm(from(), seconds, target, to());
       goals_.setFeet(from(), to(), seconds);
-      pelvis.apply(pelvis.moveFor(legs, to()), target, to());
+      goals_.pelvis().apply(goals_.pelvisMove(to()), target, to());
       for (std::size_t i = 0; i < legs.size(); ++i) {
         goals_.bendAsSource(legs[i], to());
         reach(legs[i], solver(legSolvers_, i), &legs[i].kneeAhead, target);

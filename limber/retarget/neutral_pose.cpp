@@ -193,6 +193,15 @@ const std::vector<Index>* jointsOfPart(const SkeletonMap& map, MapSide side, std
   return side == MapSide::kSource ? &match->source : &match->target;
 }
 
+std::vector<Index> matchedJoints(const SkeletonMap& map, MapSide side) {
+  std::vector<Index> joints;
+  for (const JointMatch& match : map.matches) {
+    const std::vector<Index>& part = side == MapSide::kSource ? match.source : match.target;
+    joints.insert(joints.end(), part.begin(), part.end());
+  }
+  return joints;
+}
+
 bool standsUpright(const Skeleton& skeleton, const Pose& pose, const SkeletonMap& map, MapSide side) {
   const Stance stance = stanceOf(skeleton, pose, map, side);
   return stance.head.isZero() || stance.feet.isZero() || angleOf(stance.head, stance.feet) > kOpposite;

@@ -15,6 +15,8 @@ enum class MapSide { kSource, kTarget };
 
 // The joints of a part on that side, none where it is not matched.
 const std::vector<Index>* jointsOfPart(const SkeletonMap& map, MapSide side, std::string_view part);
+// Of all parts.
+std::vector<Index> matchedJoints(const SkeletonMap& map, MapSide side);
 
 // For a person: upright, facing +Z, upper and lower arms straight out to the sides, upper and lower legs straight down.
 // Trunk, neck, head, collars and feet stand as in rest pose, hands and fingers go along with their arms: there the turn

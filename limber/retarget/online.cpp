@@ -39,10 +39,9 @@ class OnlineRetargeter : public FrameRetargeter {
     if (!goals_.active() || (!solver_ && setup_.person)) return;
     BodyFrame& frame = aligned_.targetFrame();
     if (setup_.options.contacts) {
-      const Pelvis& pelvis = goals_.pelvis();
       goals_.calm(aligned_.sourceFrame(), seconds, target, frame);
       goals_.setFeet(aligned_.sourceFrame(), frame, seconds);
-      pelvis.apply(pelvis.moveFor(goals_.legs(), frame), target, frame);
+      goals_.pelvis().apply(goals_.pelvisMove(frame), target, frame);
     }
     goals_.setHands(aligned_.sourceFrame(), frame, seconds);
     std::size_t task = 0;

@@ -14,7 +14,7 @@ constexpr double kCalmWide = 1.5;  // power of the hips' widths by which their t
 // In hip heights of the target.
 constexpr double kMostShift = 0.3;
 constexpr double kSoftStretch = 0.015, kSoftChange = 0.004;  // of sinking, by how far a foot is moved
-constexpr double kSoftOnFour = 0.03;  // likewise: with legs at both ends of the body, some are far off and stretch more
+constexpr double kSoftOnFour = 0.04;  // likewise: with legs at both ends of the body, some are far off and stretch more
 constexpr double kSoftBend = 0.1;  // by which legs on roots of their own count the more, the lower they want the body
 constexpr double kStandsBelow = 0.3;  // Leg::lift from which on they no longer count
 constexpr double kStay = 0.5;         // legs that these go against, which want it to stay
@@ -58,9 +58,9 @@ void Pelvis::levelHips(Pose& target, BodyFrame& frame) const {
   root_.turnPelvis(shortestRotation(line, wanted), target, frame);
 }
 
-Pelvis::Move Pelvis::moveFor(std::span<const Leg> legs, const BodyFrame& frame) const {
+Pelvis::Move Pelvis::moveFor(std::span<const Leg> legs, const BodyFrame& frame, std::optional<double> rise) const {
   const Quat turn = turnFor(legs, frame);
-  return {turn, shiftFor(legs, frame, turn)};
+  return {turn, shiftFor(legs, frame, turn, rise ? *rise : riseFor(legs, frame, turn))};
 }
 
 Vec3 Pelvis::hipWay(const Move& move, const Leg& leg, const BodyFrame& frame) const {
@@ -96,7 +96,7 @@ Quat Pelvis::turnFor(std::span<const Leg> legs, const BodyFrame& frame) const {
 
 // By the pelvis rising, every leg that is planted would be as long as its joint angles make it: the mean of those ways.
 // The more level a leg is, the less rising does to its length, and the less it counts.
-double Pelvis::bendKeepingShift(std::span<const Leg> legs, const BodyFrame& frame, const Quat& turn) const {
+double Pelvis::riseFor(std::span<const Leg> legs, const BodyFrame& frame, const Quat& turn) const {
   double sum = 0, weights = 0;
   for (const Leg& leg : legs) {
     if (leg.ownRoot) continue;
@@ -134,13 +134,13 @@ double Pelvis::changeOf(const Leg& leg, const BodyFrame& frame, const Quat& turn
   return change / (change + kSoftChange * setup_.targetHipHeight);
 }
 
-double Pelvis::shiftFor(std::span<const Leg> legs, const BodyFrame& frame, const Quat& turn) const {
-  const double shift = bendKeepingShift(legs, frame, turn), height = setup_.targetHipHeight;
+double Pelvis::shiftFor(std::span<const Leg> legs, const BodyFrame& frame, const Quat& turn, double rise) const {
+  const double height = setup_.targetHipHeight;
   const double soft = (setup_.person ? kSoftStretch : kSoftOnFour) * height;
   double sum = 0;
   for (const Leg& leg : legs) {
     const Vec3 hipGoes = hipWay({turn, 0}, leg, frame);
-    const Vec3 way = leg.goal - frame.positions[leg.upper] - hipGoes - Vec3(0, shift, 0);
+    const Vec3 way = leg.goal - frame.positions[leg.upper] - hipGoes - Vec3(0, rise, 0);
     if (way.y() >= 0) continue;
     const double length = kStretch * leg.length, across = std::hypot(way.x(), way.z());
     const double down = std::sqrt(std::max(length * length - across * across, 0.0));
@@ -148,7 +148,7 @@ double Pelvis::shiftFor(std::span<const Leg> legs, const BodyFrame& frame, const
     sum += needed * needed * needed * needed;
   }
   // The most that a leg asks for, but without a kink where another takes over.
-  return shift - std::min(std::sqrt(std::sqrt(sum)), kMostShift * height);
+  return rise - std::min(std::sqrt(std::sqrt(sum)), kMostShift * height);
 }
 
 }  // namespace limber

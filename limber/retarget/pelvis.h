@@ -25,10 +25,13 @@ class Pelvis {
     Quat turn = Quat::Identity();
     double up = 0;
   };
-  // By the legs' goals, for legs that are where `frame` has them.
-  Move moveFor(std::span<const Leg> legs, const BodyFrame& frame) const;
+  // By the legs' goals, for legs that are where `frame` has them. `rise`: where given, in place of riseFor().
+  Move moveFor(std::span<const Leg> legs, const BodyFrame& frame, std::optional<double> rise = std::nullopt) const;
   // The turn of it, which brings planted legs nearer to their joint angles.
   Quat turnFor(std::span<const Leg> legs, const BodyFrame& frame) const;
+  // How far it goes up, once it is turned, so that planted legs keep the bend that their joint angles give them, on
+  // average: metres.
+  double riseFor(std::span<const Leg> legs, const BodyFrame& frame, const Quat& turn) const;
   // Whether the leg's goal is where the turned pelvis takes its end, 0, or elsewhere, towards 1: a leg that is left
   // alone may be as straight as it is.
   double changeOf(const Leg& leg, const BodyFrame& frame, const Quat& turn = Quat::Identity()) const;
@@ -37,10 +40,8 @@ class Pelvis {
   void apply(const Move& move, Pose& target, BodyFrame& frame) const;
 
  private:
-  // How far it goes up, once it is turned: so that planted legs keep the bend that their joint angles give them, on
-  // average, and down as far as the longest way asks.
-  double shiftFor(std::span<const Leg> legs, const BodyFrame& frame, const Quat& turn) const;
-  double bendKeepingShift(std::span<const Leg> legs, const BodyFrame& frame, const Quat& turn) const;
+  // `rise`, and down as far as the longest way asks.
+  double shiftFor(std::span<const Leg> legs, const BodyFrame& frame, const Quat& turn, double rise) const;
   double ownRootsShift(std::span<const Leg> legs, const BodyFrame& frame) const;
 
   const RetargetSetup& setup_;

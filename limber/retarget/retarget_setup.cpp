@@ -12,24 +12,14 @@ namespace {
 
 // A motion whose feet come this near to where they are in rest pose (in hip heights) stands on the rest pose's ground.
 constexpr double kSameGround = 0.08;
-constexpr double kStill = 0.4;      // hip heights a second: a lowest foot joint slower than this stands
-constexpr double kFewStand = 0.05;  // share of frames; below it the motion never stands (a run)
-constexpr double kStands = 0.1;     // mean height of an animal's joints over the lowest, in its size: a snake's is less
+constexpr double kStill = 0.4;         // hip heights a second: a lowest foot joint slower than this stands
+constexpr double kFewStand = 0.05;     // share of frames; below it the motion never stands (a run)
 constexpr double kBelowGround = 0.05;  // share of frames that may lie lower than the ground, for noise
 
 double lowest(const std::vector<Index>& joints, const std::vector<Vec3>& positions) {
   double y = std::numeric_limits<double>::infinity();
   for (const Index joint : joints) y = std::min(y, positions[joint].y());
   return y;
-}
-
-std::vector<Index> matchedJoints(const SkeletonMap& map, MapSide side) {
-  std::vector<Index> joints;
-  for (const JointMatch& match : map.matches) {
-    const std::vector<Index>& part = side == MapSide::kSource ? match.source : match.target;
-    joints.insert(joints.end(), part.begin(), part.end());
-  }
-  return joints;
 }
 
 // Feet where both have them, else every joint.
@@ -104,25 +94,6 @@ bool sameBuild(const Skeleton& a, const Skeleton& b) {
   return true;
 }
 
-// Of a skeleton that is no person.
-struct Size {
-  double height = 0;  // of the matched joints over the lowest, mean
-  double across = 0;
-  bool stands() const { return height > kStands * across; }
-};
-Size sizeOf(const SkeletonMap& map, MapSide side, const NeutralPose& pose) {
-  Box box;
-  Size size;
-  const std::vector<Index> joints = matchedJoints(map, side);
-  for (const Index joint : joints) {
-    box.add(pose.restPositions[joint]);
-    size.height += pose.restPositions[joint].y() / static_cast<double>(joints.size());
-  }
-  size.height -= box.min.y();
-  size.across = box.diagonal();
-  return size;
-}
-
 // Mean height, over the lowest matched joint, of the joints that legs begin at.
 double legHeight(const std::vector<AnimalLeg>& legs, const SkeletonMap& map, MapSide side, const NeutralPose& pose) {
   double sum = 0;
@@ -150,13 +121,12 @@ RetargetSetup::RetargetSetup(const Skeleton& from, const Skeleton& to, SkeletonM
     sourceHipHeight = hipHeight(map, MapSide::kSource, sourceNeutral);
     targetHipHeight = hipHeight(map, MapSide::kTarget, targetNeutral);
   } else {
-    const Size one = sizeOf(map, MapSide::kSource, sourceNeutral), other = sizeOf(map, MapSide::kTarget, targetNeutral);
+    const BodySize one = bodySize(map, MapSide::kSource, sourceNeutral),
+                   other = bodySize(map, MapSide::kTarget, targetNeutral);
     const bool stand = one.stands() && other.stands();
     sourceHipHeight = stand ? one.height : one.across;
     targetHipHeight = stand ? other.height : other.across;
-    if (stand) {
-      animalLegs = limber::animalLegs(map, from, to, sourceNeutral, targetNeutral, one.height, other.height);
-    }
+    animalLegs = limber::animalLegs(map, from, to, sourceNeutral, targetNeutral);
   }
   if (!(sourceHipHeight > 0) || !(targetHipHeight > 0)) {
     throw Error(ErrorCode::kBadData, "the rest pose has no height: its joints lie in one place");

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "limber/core/error.h"
+#include "limber/retarget/animal_map.h"
 #include "limber/retarget/humanoid_shape.h"
 #include "limber/skeleton/chain.h"
 
@@ -222,7 +223,10 @@ SkeletonMap matchSkeletons(const Skeleton& source, const Skeleton& target) {
     SkeletonMap map = matchBodies(*from, *to);
     if (map.matches.size() >= 5) return map;
   }
-  if (isFamily) return names;
+  if (isFamily) {
+    matchChainsOfAnimals(source, target, names);
+    return names;
+  }
   if (sameTree(source, target)) return matchTrees(target);
   throw Error(ErrorCode::kUnsupported,
               fmt::format("the motion's skeleton of {} joints and the character's of {} have too little in common to "

@@ -14,7 +14,7 @@ enum class MatchedBy { kName, kShape, kFile };
 // A part of the body that both skeletons have, with its joints in both, root to tip. Counts may differ: a trunk of
 // three joints moves one of five.
 struct JointMatch {
-  std::string part;  // a humanoid bone ("leftUpperArm"), "trunk", "neck", or the joint's own name
+  std::string part;  // a humanoid bone ("leftUpperArm"), "trunk", "neck", "tail", or the joint's own name
   std::vector<Index> source, target;
   double confidence = 1;  // below kDoubtful: worth a look
   MatchedBy by = MatchedBy::kName;
@@ -31,7 +31,8 @@ struct SkeletonMap {
 // People are matched bone by bone: by their joints' names, or, where names say nothing, by what hangs where in rest
 // pose; the joints of trunk and neck along their chains, whatever they are called; twist joints inside a limb go with
 // it. In mirror images, whose toes point backwards for what is called left, left is what is called right. Others are
-// matched by equal names (upper and lower case and prefixes aside), or joint by joint where the trees are the same.
+// matched by equal names (upper and lower case and prefixes aside), animals' trunks, necks and tails along their chains
+// (animal_map.h), or joint by joint where the trees are the same.
 // Throws Error kUnsupported where too little matches to move anything.
 SkeletonMap matchSkeletons(const Skeleton& source, const Skeleton& target);
 
