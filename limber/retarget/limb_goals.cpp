@@ -284,7 +284,8 @@ void LimbGoals::setFeet(const BodyFrame& source, const BodyFrame& target, double
 LimbGoals::Rise LimbGoals::nextRise(const BodyFrame& target, double seconds) const {
   Rise rise = rise_;
   const double wanted = pelvis_.riseFor(legs_, target, pelvis_.turnFor(legs_, target));
-  springTo(wanted, kRiseRate, setup_.person ? 0 : seconds, rise.value, rise.speed);
+  const bool atOnce = setup_.person || legs_.front().ownRoot;
+  springTo(wanted, kRiseRate, atOnce ? 0 : seconds, rise.value, rise.speed);
   return rise;
 }
 

@@ -49,7 +49,7 @@ class LimbGoals {
   void levelToes(const Leg& leg, BodyFrame& frame, Pose& target) const;
 
   // How the pelvis follows these goals; `target` as for setFeet(). An animal's rises and sinks smoothly: as one of four
-  // feet lets go, the others would have to bend at once.
+  // feet lets go, the others would have to bend at once (feet on roots of their own let go slowly anyway).
   Pelvis::Move pelvisMove(const BodyFrame& target) const;
   const Pelvis& pelvis() const { return pelvis_; }
   std::vector<Leg>& legs() { return legs_; }
