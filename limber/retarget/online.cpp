@@ -47,7 +47,10 @@ class OnlineRetargeter : public FrameRetargeter {
     std::size_t task = 0;
     for (const Leg& leg : goals_.legs()) {
       setTask(leg, frame, task);
-      if (setup_.person && isChain(leg)) bendKnee(leg, frame, target);
+      if (!isChain(leg)) continue;
+      if (setup_.person) bendKnee(leg, frame, target);
+      // From a reference that bends to the other side the solver would have to snap.
+      if (leg.ownBend && leg.wanted) reach_.reach(leg, &leg.kneeAhead, frame, target);
     }
     for (const Limb& arm : goals_.arms()) setTask(arm, frame, task);
     if (solver_) {
@@ -103,7 +106,7 @@ class OnlineRetargeter : public FrameRetargeter {
   const RetargetSetup& setup_;
   AlignedRetargeter aligned_;
   LimbGoals goals_;
-  LimbReach reach_;                // of legs that end on a root of their own
+  LimbReach reach_;                // of legs that end on a root of their own, or bend to a side of their own
   std::vector<IkTarget> targets_;  // legs first
   std::optional<IkSolver> solver_;
 };
