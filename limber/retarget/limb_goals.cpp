@@ -85,7 +85,7 @@ std::optional<Limb> findLimb(const RetargetSetup& setup, const RootPlacer& root,
 }  // namespace
 
 LimbGoals::LimbGoals(const RetargetSetup& setup, const RootPlacer& root)
-    : setup_(setup), root_(root), pelvis_(setup, root) {
+    : setup_(setup), root_(root), pelvis_(setup, root), lift_(setup) {
   if (setup.person) {
     addPersonsLegs(root);
     addArms(root);
@@ -265,6 +265,8 @@ void LimbGoals::calm(const BodyFrame& source, double seconds, Pose& target, Body
   if (cut_) seconds = 0;
   for (std::size_t i = 0; i < legs_.size(); ++i) sense(legs_[i], feelers_[i], source, seconds);
   pelvis_.levelHips(target, frame);
+  // Feet on roots of their own would lose their way.
+  if (!setup_.person && !legs_.front().ownRoot) root_.movePelvis(Vec3(0, lift_(source, frame), 0), target, frame);
   calmFeet(setup_, root_, legs_, target, frame);
 }
 

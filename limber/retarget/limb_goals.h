@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "limber/retarget/body_lift.h"
 #include "limber/retarget/leg_bend.h"
 #include "limber/retarget/limb.h"
 #include "limber/retarget/pelvis.h"
@@ -23,7 +24,8 @@ class LimbGoals {
   bool active() const { return active_; }
 
   // Senses what of the feet stands in the source; wide hips, long feet and such as stand flat swing less than the
-  // source's (Pelvis::levelHips, calmFeet). Before setFeet(), of the target by joint angles alone.
+  // source's (Pelvis::levelHips, calmFeet), and bodies that lie do so on the ground (BodyLift). Before setFeet(), of
+  // the target by joint angles alone.
   void calm(const BodyFrame& source, double seconds, Pose& target, BodyFrame& frame);
   // Feet that are planted in the source stay where they came down, by their toes while the heel is up; none goes below
   // the ground. From the globals of both. The goals are for legs whose hips go with
@@ -109,6 +111,7 @@ class LimbGoals {
   const RetargetSetup& setup_;
   const RootPlacer& root_;
   Pelvis pelvis_;
+  BodyLift lift_;
   std::vector<Leg> legs_;
   std::vector<Feeler> feelers_;  // of the legs
   Rise rise_;                    // of the pelvis
