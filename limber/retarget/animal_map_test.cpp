@@ -17,10 +17,7 @@ Skeleton animal(int trunk, int neck, int tail) {
   const Skeleton simple = quadruped(0.5);
   Skeleton made;
   const auto add = [&](const std::string& name, const std::string& parent, const Vec3& offset) {
-    Joint& joint = made.joints.emplace_back();
-    joint.name = name;
-    joint.parent = made.find(parent);
-    joint.rest.translation = offset;
+    limber::testing::addJoint(made, name, parent, offset);
   };
   const auto chain = [&](const std::string& stem, int first, int count, std::string parent, const Vec3& way) {
     for (int i = first; i < first + count; ++i) {

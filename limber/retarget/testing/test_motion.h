@@ -183,15 +183,20 @@ inline Skeleton oddlyBuilt() {
   return person;
 }
 
+// At the end; the parent is one that is there, or "".
+inline void addJoint(Skeleton& skeleton, const std::string& name, const std::string& parent, const Vec3& offset) {
+  Joint& joint = skeleton.joints.emplace_back();
+  joint.name = name;
+  joint.parent = skeleton.find(parent);
+  joint.rest.translation = offset;
+}
+
 // A body with a neck, a tail that hangs down, and four legs of two bones and a paw; the thigh's share of the leg's
 // metre.
 inline Skeleton quadruped(double thigh) {
   Skeleton skeleton;
   const auto add = [&](const std::string& name, const std::string& parent, const Vec3& offset) {
-    Joint& joint = skeleton.joints.emplace_back();
-    joint.name = name;
-    joint.parent = skeleton.find(parent);
-    joint.rest.translation = offset;
+    addJoint(skeleton, name, parent, offset);
   };
   add("b0", "", Vec3(0, 1, 0));
   add("b1", "b0", Vec3(0, 0, 0.8));
