@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -98,6 +99,9 @@ class BvhWriter {
 
   // As many digits as single precision has.
   void outLength(double length) {
+    if (!(std::abs(length) <= std::numeric_limits<float>::max())) {
+      throw Error(ErrorCode::kLimit, "a joint is further away than a BVH can say", clip_.name);
+    }
     int decimals = kLengthDigits;
     for (double power = 1; decimals > 0 && std::abs(length) >= power; power *= 10) --decimals;
     outNumber(length, decimals);

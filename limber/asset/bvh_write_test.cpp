@@ -184,6 +184,11 @@ TEST(WriteBvh, RefusesWhatABvhCannotSay) {
   motion.skeleton.joints[0].name = "a\nb";
   EXPECT_THROW(writeBvh(motion), Error);
   EXPECT_THROW(writeBvh({}), Error);
+
+  Motion far = randomMotion(1, false);  // each joint's place is a float, but not how far two are apart
+  far.skeleton.joints[0].rest.translation = Vec3(3e38, 0, 0);
+  far.skeleton.joints[1].rest.translation = Vec3(3e38, 0, 0);
+  EXPECT_THROW(writeBvh(far, {0, 1e-3, {}}), Error);
 }
 
 TEST(WriteBvh, WritesADeepChain) {

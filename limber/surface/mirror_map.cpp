@@ -18,11 +18,12 @@ constexpr double kEnough = 0.98;      // of vertices and of area
 constexpr double kLeastWidth = 0.01;  // mean distance from the plane, of the longest side: less is a sheet in the plane
 constexpr std::size_t kSamples = 400;
 
-// Points hashed by cubic cells, to find the nearest one within a small radius.
+// Points hashed by cubic cells, to find the nearest one within a small radius. Those of a cell are sorted along one
+// axis, since the cells of long thin models, and of rows of many pieces, hold thousands.
 class CellHash {
  public:
-  CellHash(const std::vector<Vec3f>& points, float cellSize)
-      : points_(points), inverseCell_(1 / cellSize), mask_(std::bit_ceil(points.size() + 1) - 1) {
+  CellHash(const std::vector<Vec3f>& points, float cellSize, int axis)
+      : points_(points), inverseCell_(1 / cellSize), axis_(axis), mask_(std::bit_ceil(points.size() + 1) - 1) {
     begin_.assign(mask_ + 3, 0);
     std::vector<Index> bucket(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -32,6 +33,10 @@ class CellHash {
     for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
     items_.resize(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) items_[begin_[bucket[i] + 1]++] = static_cast<Index>(i);
+    for (std::size_t b = 0; b + 2 < begin_.size(); ++b) {
+      std::sort(items_.begin() + begin_[b], items_.begin() + begin_[b + 1],
+                [&](Index i, Index j) { return points_[i][axis_] < points_[j][axis_]; });
+    }
   }
 
   // The nearest accepted point within `radius` of p, ties by index; kNoIndex if there is none.
@@ -39,19 +44,25 @@ class CellHash {
   Index nearest(const Vec3f& p, float radius, const Accept& accept) const {
     Index best = kNoIndex;
     float bestDistance = radius * radius;
+    const auto take = [&](Index item) {
+      const float distance = (points_[item] - p).squaredNorm();
+      if (distance > bestDistance || (distance == bestDistance && item > best) || !accept(item)) return;
+      best = item;
+      bestDistance = distance;
+    };
+    const auto isBeyond = [&](Index i) {
+      const float along = points_[items_[i]][axis_] - p[axis_];
+      return along * along > bestDistance;
+    };
     const std::array<int, 6> range = {cellOf(p.x() - radius), cellOf(p.x() + radius), cellOf(p.y() - radius),
                                       cellOf(p.y() + radius), cellOf(p.z() - radius), cellOf(p.z() + radius)};
     for (int x = range[0]; x <= range[1]; ++x) {
       for (int y = range[2]; y <= range[3]; ++y) {
         for (int z = range[4]; z <= range[5]; ++z) {
-          const Index bucket = bucketOf(x, y, z);
-          for (Index i = begin_[bucket]; i < begin_[bucket + 1]; ++i) {
-            const Index item = items_[i];
-            const float distance = (points_[item] - p).squaredNorm();
-            if (distance > bestDistance || (distance == bestDistance && item > best) || !accept(item)) continue;
-            best = item;
-            bestDistance = distance;
-          }
+          const Index bucket = bucketOf(x, y, z), begin = begin_[bucket], end = begin_[bucket + 1];
+          const Index middle = firstFrom(begin, end, p[axis_]);
+          for (Index i = middle; i < end && !isBeyond(i); ++i) take(items_[i]);
+          for (Index i = middle; i > begin && !isBeyond(i - 1); --i) take(items_[i - 1]);
         }
       }
     }
@@ -59,6 +70,12 @@ class CellHash {
   }
 
  private:
+  // The first of a cell's items whose place along the axis is `least` or more.
+  Index firstFrom(Index begin, Index end, float least) const {
+    const auto found = std::lower_bound(items_.begin() + begin, items_.begin() + end, least,
+                                        [&](Index item, float value) { return points_[item][axis_] < value; });
+    return static_cast<Index>(found - items_.begin());
+  }
   int cellOf(float x) const { return static_cast<int>(std::floor(x * inverseCell_)); }
   Index bucketOf(int x, int y, int z) const {
     std::uint64_t h = static_cast<std::uint32_t>(x) * 0x9e3779b97f4a7c15u;
@@ -69,9 +86,16 @@ class CellHash {
 
   const std::vector<Vec3f>& points_;
   float inverseCell_;
+  int axis_;
   std::size_t mask_;
   std::vector<Index> begin_, items_;
 };
+
+int longestAxis(const Box& box) {
+  int axis = 0;
+  box.size().maxCoeff(&axis);
+  return axis;
+}
 
 class MirrorFinder {
  public:
@@ -81,7 +105,8 @@ class MirrorFinder {
         middle_(box.center()),
         reach_(static_cast<float>(kTolerance * side_)),
         cells_(mesh.positions,
-               static_cast<float>(side_ * std::max(4 * kTolerance, 1 / std::sqrt(mesh.positions.size() + 1.0)))) {
+               static_cast<float>(side_ * std::max(4 * kTolerance, 1 / std::sqrt(mesh.positions.size() + 1.0))),
+               longestAxis(box)) {
     const std::size_t step = std::max<std::size_t>(1, mesh.positions.size() / kSamples);
     for (std::size_t i = 0; i < mesh.positions.size(); i += step) samples_.push_back(static_cast<Index>(i));
   }

@@ -87,6 +87,28 @@ TEST(MirrorMap, SeesNoneWhereThereIsNone) {
   EXPECT_TRUE(!map || std::abs(map->plane.normal.x()) < 0.1);
 }
 
+// All of its vertices lie in one row of cells, each of which holds hundreds.
+TEST(MirrorMap, FindsImagesInALongRowOfPieces) {
+  TriMesh row;
+  constexpr int kPieces = 2500;
+  for (int k = 0; k < kPieces; ++k) {
+    const Vec3f at(static_cast<float>(k) - 0.5f * (kPieces - 1), 0, 0);
+    const Index first = row.vertexCount();
+    for (const Vec3f& corner : {Vec3f(-0.2f, 0, 0), Vec3f(0.2f, 0, 0), Vec3f(0, 0.3f, 0), Vec3f(0, 0, 0.5f)}) {
+      row.positions.push_back(at + corner);
+    }
+    for (const Triangle& t : {Triangle{0, 1, 2}, Triangle{0, 3, 1}, Triangle{1, 3, 2}, Triangle{2, 3, 0}}) {
+      row.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    }
+  }
+  const TriMesh mesh = testing::shuffled(row);
+  const auto map = findMirror(mesh);
+  ASSERT_TRUE(map);
+  EXPECT_EQ(map->plane.normal, Vec3(1, 0, 0));
+  EXPECT_EQ(unmatched(*map), 0u);
+  expectMirrors(mesh, *map, 1e-4);
+}
+
 TEST(MirrorMap, ASheetIsNotTheImageOfItself) {
   const auto map = findMirror(testing::jittered(testing::flatGrid(12, 9), 0.2f));
   EXPECT_FALSE(map);
