@@ -12,6 +12,7 @@
 #include "limber/asset/motion_io.h"
 #include "limber/core/numbers.h"
 #include "limber/evaluate/motion_metrics.h"
+#include "limber/retarget/animal_map.h"
 #include "limber/retarget/humanoid_shape.h"
 #include "limber/retarget/plain_skeleton.h"
 #include "limber/skeleton/chain.h"
@@ -225,9 +226,9 @@ TEST(RetargetKnownAnswers, NoMethodIsWorseThanCopying) {
   }
 }
 
-// Of animals, over the joints that go with one of the source's each: how far those but of legs are off the turn that
-// the source's make, degrees; and how deep the deepest but of tails, which may be longer, sinks below the lowest in
-// rest pose, in sizes of the body.
+// Of animals, over the joints that go with one of the source's each: how far those but of legs and tails are off the
+// turn that the source's make, degrees; and how deep the deepest but of tails, which may be longer, sinks below the
+// lowest in rest pose, in sizes of the body.
 struct AnimalMeasures {
   double turn = 0, depth = 0, sourceDepth = 0;
 };
@@ -240,7 +241,6 @@ class AnimalSide {
     for (const JointMatch& match : setup.map.matches) {
       if (match.source.size() > 1 || match.target.size() > 1) continue;
       joints.push_back(side == MapSide::kSource ? match.source.front() : match.target.front());
-      if (!match.part.starts_with("Tail")) bodyJoints_.push_back(joints.back());
     }
     for (const Vec3& position : neutral.restPositions) box_.add(position);
     ground_ = lowest(neutral.restPositions);
@@ -256,11 +256,10 @@ class AnimalSide {
  private:
   double lowest(const std::vector<Vec3>& positions) const {
     double low = HUGE_VAL;
-    for (const Index joint : bodyJoints_) low = std::min(low, positions[joint].y());
+    for (const Index joint : joints) low = std::min(low, positions[joint].y());
     return low;
   }
 
-  std::vector<Index> bodyJoints_;
   Box box_;
   double ground_ = 0;
 };
@@ -275,6 +274,7 @@ bool isOfLeg(const RetargetSetup& setup, Index joint) {
 AnimalMeasures measuredAnimal(const RetargetSetup& setup, const PoseSequence& source, const PoseSequence& result) {
   AnimalMeasures measures;
   AnimalSide from(setup, MapSide::kSource), to(setup, MapSide::kTarget);
+  const std::vector<Index> tail = tailOf(*setup.target);
   for (std::size_t f = 0; f < result.poses.size(); ++f) {
     from.kinematics.globals(source.poses[f], from.frame);
     to.kinematics.globals(result.poses[f], to.frame);
@@ -282,7 +282,7 @@ AnimalMeasures measuredAnimal(const RetargetSetup& setup, const PoseSequence& so
     measures.depth = std::max(measures.depth, to.depth());
     for (std::size_t i = 0; i < from.joints.size(); ++i) {
       const Index s = from.joints[i], t = to.joints[i];
-      if (isOfLeg(setup, t)) continue;
+      if (isOfLeg(setup, t) || std::find(tail.begin(), tail.end(), t) != tail.end()) continue;
       const Quat turned = from.frame.rotations[s] * from.neutral.rotations[s].conjugate();
       const Quat expected = turned * to.neutral.rotations[t];
       measures.turn = std::max(measures.turn, expected.angularDistance(to.frame.rotations[t]) * 180 / kPi);

@@ -27,6 +27,14 @@ std::string lower(std::string text) {
   return text;
 }
 
+// The first joint from there on with that word in its name.
+std::optional<Index> named(const Skeleton& skeleton, const char* word, Index from) {
+  for (Index j = from; j < skeleton.jointCount(); ++j) {
+    if (lower(skeleton.joints[j].name).find(word) != std::string::npos) return j;
+  }
+  return std::nullopt;
+}
+
 // The nearest joint above both, itself one of them where the other hangs on it.
 std::optional<Index> meeting(const Skeleton& skeleton, Index one, Index other) {
   std::optional<Index> at = one;
@@ -44,8 +52,7 @@ Chain pathTo(const Skeleton& skeleton, Index above, Index below) {
 
 class ChainFinder {
  public:
-  ChainFinder(const Skeleton& skeleton, const std::vector<Index>& legs)
-      : skeleton_(skeleton), legs_(legs), children_(childrenOf(skeleton)) {}
+  ChainFinder(const Skeleton& skeleton, const std::vector<Index>& legs) : skeleton_(skeleton), legs_(legs) {}
 
   Chains find() const {
     const std::optional<Index> hips = aboveAll();
@@ -53,10 +60,10 @@ class ChainFinder {
     if (!chest) return {};
     Chains chains;
     chains.trunk = pathTo(skeleton_, *hips, *chest);
-    if (const std::optional<Index> head = named("head", *chest)) {
+    if (const std::optional<Index> head = named(skeleton_, "head", *chest + 1)) {
       chains.neck = pathTo(skeleton_, *chest, *skeleton_.joints[*head].parent);
     }
-    if (const std::optional<Index> tail = named("tail", *hips)) chains.tail = unbranched(*tail);
+    chains.tail = tailOf(skeleton_);
     return chains;
   }
 
@@ -80,24 +87,8 @@ class ChainFinder {
     return std::nullopt;
   }
 
-  // The first joint below `above` with that word in its name.
-  std::optional<Index> named(const char* word, Index above) const {
-    for (Index j = above + 1; j < skeleton_.jointCount(); ++j) {
-      const bool has = lower(skeleton_.joints[j].name).find(word) != std::string::npos;
-      if (has && isAncestorOrSelf(skeleton_, above, j)) return j;
-    }
-    return std::nullopt;
-  }
-
-  Chain unbranched(Index from) const {
-    Chain chain = {from};
-    while (children_[chain.back()].size() == 1) chain.push_back(children_[chain.back()].front());
-    return chain;
-  }
-
   const Skeleton& skeleton_;
   const std::vector<Index>& legs_;  // their upper joints
-  std::vector<std::vector<Index>> children_;
 };
 
 // In place of what names say of these joints.
@@ -120,6 +111,15 @@ void matchChain(const std::string& part, const Chain& source, const Chain& targe
 }
 
 }  // namespace
+
+std::vector<Index> tailOf(const Skeleton& skeleton) {
+  const std::optional<Index> first = named(skeleton, "tail", 0);
+  if (!first) return {};
+  const std::vector<std::vector<Index>> children = childrenOf(skeleton);
+  Chain tail = {*first};
+  while (children[tail.back()].size() == 1) tail.push_back(children[tail.back()].front());
+  return tail;
+}
 
 void matchChainsOfAnimals(const Skeleton& source, const Skeleton& target, SkeletonMap& map) {
   const NeutralPose sourceNeutral = neutralPose(source, restPose(source), map, MapSide::kSource),

@@ -1,6 +1,8 @@
 // What names alone do not tell of two animals: which joints of trunks, necks and tails go together.
 #pragma once
 
+#include <vector>
+
 #include "limber/retarget/skeleton_map.h"
 
 namespace limber {
@@ -11,5 +13,8 @@ namespace limber {
 // forelegs do, the neck on to the joint called head, the tail is the chain whose first joint has that word in its name.
 // Legs are told by form (animalLegs). What has no four legs stays as it is. Cost: that of animalLegs.
 void matchChainsOfAnimals(const Skeleton& source, const Skeleton& target, SkeletonMap& map);
+
+// The chain whose first joint has "tail" in its name, root to tip; empty where there is none.
+std::vector<Index> tailOf(const Skeleton& skeleton);
 
 }  // namespace limber

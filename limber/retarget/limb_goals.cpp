@@ -85,7 +85,7 @@ std::optional<Limb> findLimb(const RetargetSetup& setup, const RootPlacer& root,
 }  // namespace
 
 LimbGoals::LimbGoals(const RetargetSetup& setup, const RootPlacer& root)
-    : setup_(setup), root_(root), pelvis_(setup, root), lift_(setup) {
+    : setup_(setup), root_(root), pelvis_(setup, root), lift_(setup), tail_(setup, root) {
   if (setup.person) {
     addPersonsLegs(root);
     addArms(root);

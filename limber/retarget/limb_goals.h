@@ -11,6 +11,7 @@
 #include "limber/retarget/limb.h"
 #include "limber/retarget/pelvis.h"
 #include "limber/retarget/plant_detector.h"
+#include "limber/retarget/tail_lift.h"
 
 namespace limber {
 
@@ -54,6 +55,8 @@ class LimbGoals {
   // feet lets go, the others would have to bend at once (feet on roots of their own let go slowly anyway).
   Pelvis::Move pelvisMove(const BodyFrame& target) const;
   const Pelvis& pelvis() const { return pelvis_; }
+  // For a target that is posed but for that.
+  const TailLift& tail() const { return tail_; }
   std::vector<Leg>& legs() { return legs_; }
   std::vector<Limb>& arms() { return arms_; }
 
@@ -112,6 +115,7 @@ class LimbGoals {
   const RootPlacer& root_;
   Pelvis pelvis_;
   BodyLift lift_;
+  TailLift tail_;
   std::vector<Leg> legs_;
   std::vector<Feeler> feelers_;  // of the legs
   Rise rise_;                    // of the pelvis

@@ -31,6 +31,7 @@ class LimbIkRetargeter : public FrameRetargeter {
         reach(legs[i], solver(legSolvers_, i), &legs[i].kneeAhead, target);
         goals_.levelToes(legs[i], to(), target);
       }
+      goals_.tail().apply(target, to());
     }
     goals_.setHands(from(), to(), seconds);
     std::vector<Limb>& arms = goals_.arms();

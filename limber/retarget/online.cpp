@@ -66,6 +66,7 @@ class OnlineRetargeter : public FrameRetargeter {
       }
       goals_.levelToes(leg, frame, target);
     }
+    if (setup_.options.contacts) goals_.tail().apply(target, frame);
   }
 
  private:

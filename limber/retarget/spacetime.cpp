@@ -250,6 +250,7 @@ class Spacetime {
         if (!LimbReach::isThere(leg, to)) reach_.reach(leg, &leg.kneeAhead, to, target_.poses[f]);
         goals_.levelToes(leg, to, target_.poses[f]);
       }
+      goals_.tail().apply(target_.poses[f], to);
     }
   }
 
