@@ -52,6 +52,12 @@ async function openMotion(of, buffer, name) {
   if (await of.locator('#notice').isVisible()) assert.fail(await of.locator('#notice').textContent());
 }
 
+/** Neighbours in the timeline of which one covers the other. */
+const timelineOverlaps = () => page.$$eval('.timeline .tools :is(button, select)', (all) => all
+  .map((one) => ({ id: one.id, box: one.getBoundingClientRect() })).filter(({ box }) => box.width > 0)
+  .sort((a, b) => a.box.left - b.box.left)
+  .flatMap(({ id, box }, i, sorted) => (i > 0 && sorted[i - 1].box.right > box.left ? [`${sorted[i - 1].id} ${id}`] : [])));
+
 const seconds = async (of = page) => Number((await of.locator('#time').textContent()).split('/')[0]);
 
 async function scrub(to) {
@@ -253,6 +259,10 @@ const cases = {
   },
   async 'a motion plays on a model whose handles have no names, and another method takes its place'() {
     await openMotion(page, Buffer.from(walkBvh()), 'walk.bvh');
+    for (const [width, height] of [[1024, 600], [844, 390], [1280, 800]]) {
+      await page.setViewportSize({ width, height });
+      assert.deepEqual(await timelineOverlaps(), [], `controls cover each other at ${width} x ${height}`);
+    }
     await page.waitForFunction(() => Number(document.querySelector('#scrub').value) > 0.05);
     await page.locator('#play').click();
     await settled(page);
@@ -321,6 +331,7 @@ const cases = {
   async 'the keys are listed under ?'() {
     await page.keyboard.press('?');
     assert.ok(await page.locator('#help').isVisible());
+    assert.ok(await page.locator('#help h2').evaluate((title) => title.getBoundingClientRect().top >= 0), 'it begins above the screen');
     await page.keyboard.press('Escape');
     assert.ok(!(await page.locator('#help').isVisible()));
   },

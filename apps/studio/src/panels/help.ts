@@ -18,7 +18,9 @@ export function help(page: PageStore): HTMLElement {
     button('Close', () => dialog.close(), { kind: 'primary' }));
   dialog.addEventListener('close', () => page.set({ help: false }));
   page.watch(({ help: open }) => {
-    if (open && !dialog.open) dialog.showModal();
+    if (!open || dialog.open) return;
+    dialog.showModal();
+    dialog.scrollTop = 0; // the button at its end has the focus
   });
   return dialog;
 }
