@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "limber/retarget/loose_feet.h"
+#include "limber/retarget/quadruped_shape.h"
 
 namespace limber {
 
@@ -21,6 +22,7 @@ constexpr double kBlade = 0.7;  // of the height of a blade's upper end, at whic
 // A joint of the target and its partner in the source.
 struct Pair {
   Index source = 0, target = 0;
+  bool upper = false;  // known to begin a leg (isUpperBone)
 };
 
 class LegFinder {
@@ -38,7 +40,7 @@ class LegFinder {
         pairOf_(target.jointCount()),
         matchedSource_(source.jointCount()) {
     for (const JointMatch& match : map.matches) {
-      pairs_.push_back({match.source.front(), match.target.front()});
+      pairs_.push_back({match.source.front(), match.target.front(), isUpperBone(match.part)});
       pairOf_[match.target.front()] = pairs_.size() - 1;
       matchedSource_[match.source.front()] = true;
     }
@@ -100,7 +102,8 @@ class LegFinder {
         std::find_if(chain.begin(), chain.end(), [&](const Pair& p) { return height(p) < kLow; }) - chain.begin());
     if (end < 2 || end >= chain.size()) return std::nullopt;
     // Shoulder blades and hip bones stay with the body.
-    const std::size_t upper = end > 2 && height(chain[1]) > kBlade * height(chain[0]) ? 1 : 0;
+    const bool blade = end > 2 && !chain[0].upper && height(chain[1]) > kBlade * height(chain[0]);
+    const std::size_t upper = blade ? 1 : 0;
     const std::vector<Vec3>&from = sourceNeutral_.positions, &to = targetNeutral_.positions;
     if (!isSteep(from[chain[end].source] - from[chain[upper].source]) ||
         !isSteep(to[chain[end].target] - to[chain[upper].target]) || height(chain[upper]) < kBegins) {

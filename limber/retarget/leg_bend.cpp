@@ -10,6 +10,7 @@ namespace limber {
 namespace {
 
 constexpr double kLeastBend = 0.05, kMostBend = 1.4;  // radians
+constexpr double kSoftFold = 0.1;                     // of the way from folded to straight
 
 }  // namespace
 
@@ -17,11 +18,15 @@ LegBend::Chain::Chain(const Skeleton& skeleton, const NeutralPose& neutral, cons
     : upper(leg.upper), end(leg.end) {
   const std::vector<Vec3>& rest = neutral.restPositions;
   Index below = leg.end;
+  double longest = 0;
   for (std::optional<Index> at = leg.carrier ? leg.carrier : skeleton.joints[leg.end].parent; at && below != leg.upper;
        at = skeleton.joints[*at].parent) {
-    length += (rest[below] - rest[*at]).norm();
+    const double bone = (rest[below] - rest[*at]).norm();
+    length += bone;
+    longest = std::max(longest, bone);
     below = *at;
   }
+  folded = std::max(2 * longest - length, 0.0);
   atRest = bend(neutral.positions);
 }
 
@@ -35,7 +40,9 @@ LegBend::LegBend(const RetargetSetup& setup, const AnimalLeg& leg)
 
 double LegBend::reach(const BodyFrame& source) const {
   const double bend = source_.bend(source.positions) + target_.atRest - source_.atRest;
-  return target_.length * std::cos(std::min(softPositive(bend, kLeastBend), kMostBend));
+  const double reach = target_.length * std::cos(std::min(softPositive(bend, kLeastBend), kMostBend));
+  const double room = target_.length - target_.folded, share = (reach - target_.folded) / room;
+  return target_.folded + room * softPositive(share, kSoftFold) / softPositive(1, kSoftFold);
 }
 
 }  // namespace limber

@@ -15,7 +15,7 @@ struct Limb {
   double length = 0;             // of both bones
   std::optional<Index> hock;     // another joint that bends it (AnimalLeg)
   Vec3 goal = Vec3::Zero();      // where the end has to be, in the person's space
-  bool ownRoot = false;          // an animal's foot that goes its own way, and the leg after it
+  bool ownWay = false;           // an animal's foot that goes as the source's, and the leg after it
   bool ownBend = false;          // bends to its own side, wherever the joint angles bend it
   bool wanted = false;           // else it may be where it is
   Quat turn = Quat::Identity();  // of the end, against its joint angles
@@ -34,8 +34,9 @@ struct Leg : Limb {
   double planted = 0;                                  // 0 to 1, comes and goes smoothly
   double changed = 0;                                  // likewise, to what share its goal is one (Pelvis::changeOf)
   double flatness = 0;                                 // likewise
-  double bentReach = 0;                                // ownRoot: from hip to end if bent as the source's (LegBend)
-  double lift = 0;  // ownRoot: of the source's foot from where it stands, hip heights
+  Vec3 place = Vec3::Zero();                           // of the end, by the joint angles or by its own way
+  double bentReach = 0;                                // ownWay: from hip to end if bent as the source's (LegBend)
+  double lift = 0;                                     // ownWay: of the source's foot from where it stands, hip heights
 };
 
 }  // namespace limber

@@ -31,7 +31,7 @@ constexpr double kFallRate = 40;       // 1/seconds, of the speed that is taken 
 constexpr double kFirmHeld = 0.9, kFirmBeside = 0.2;
 constexpr double kTipLies = 0.05;   // over the ground: from there on toes that the target alone has lie down
 constexpr double kCarriedUp = 0.5;  // share of its hip's way up that a person's free foot takes part in
-// Of legs whose feet hang on roots of their own.
+// Of legs whose feet go their own way.
 constexpr double kLifted = 0.6;                           // Leg::lift from which on the source's bend counts alone
 constexpr double kSoftLeg = 0.03, kSoftStanding = 0.003;  // of the most that a leg reaches, leg lengths
 constexpr double kSlipSpeed = 0.65, kSlipPower = 3;       // hip heights a second at which planted feet slip by half
@@ -120,12 +120,12 @@ void LimbGoals::addAnimalsLegs(const RootPlacer& root) {
     const Vec3 ahead = bendAtRest(found.target, setup_.targetNeutral);
     if (ahead.norm() > kBentInRest) leg.kneeAhead = ahead.normalized();
     leg.hock = found.target.hock;
-    leg.ownRoot = found.target.carrier.has_value();
-    leg.ownBend = leg.ownRoot || bendAtRest(found.source, setup_.sourceNeutral).dot(leg.kneeAhead) < kBendsAlike;
+    leg.ownWay = root.goesOwnWay(found);
+    leg.ownBend = leg.ownWay || bendAtRest(found.source, setup_.sourceNeutral).dot(leg.kneeAhead) < kBendsAlike;
     leg.toes = found.target.toes;
     leg.sourceToes = found.source.toes;
     addLeg(leg);
-    if (leg.ownRoot) feelers_.back().bend.emplace(setup_, found);
+    if (leg.ownWay) feelers_.back().bend.emplace(setup_, found);
   }
 }
 
@@ -202,10 +202,12 @@ void LimbGoals::feel(Leg& leg, Feeler& feeler, const BodyFrame& source, const Bo
   const FootLock::Frame before = foot;
   foot.anchor = leg.anchor;
   foot.flat = leg.flat;
-  foot.ankle = foot.toes = target.positions[leg.end];
+  leg.place = target.positions[leg.end];
+  if (leg.ownWay) leg.place = ownPlace(leg, source);
+  foot.ankle = foot.toes = leg.place;
   foot.ankleGround = leg.ankleGround - loweredBy(leg.sourceAnkleGround, source.positions[leg.sourceEnd]);
   if (leg.toes) {
-    foot.toes = target.positions[*leg.toes];
+    foot.toes += target.positions[*leg.toes] - target.positions[leg.end];
     foot.toesGround = leg.toesGround - loweredBy(leg.sourceToesGround, source.positions[*leg.sourceToes]);
   }
   followFall(before.ankle.y() - foot.ankle.y(), seconds, feeler.ankleFall);
@@ -213,10 +215,15 @@ void LimbGoals::feel(Leg& leg, Feeler& feeler, const BodyFrame& source, const Bo
   leg.ankleFloor = foot.ankleGround;
   leg.toesFloor = foot.toesGround;
   leg.wanted = true;
-  if (leg.ownRoot) feelOwnWay(leg, feeler, before, source, seconds);
+  if (leg.ownWay) feelOwnWay(leg, feeler, before, source, seconds);
 }
 
-// It stands as still as the source's, which inverse kinematics held: what moves there is meant to.
+Vec3 LimbGoals::ownPlace(const Leg& leg, const BodyFrame& source) const {
+  const Vec3 way = source.positions[leg.sourceEnd] - setup_.sourceNeutral.restPositions[leg.sourceEnd];
+  return setup_.targetNeutral.restPositions[leg.end] + setup_.scale * way;
+}
+
+// It stands about as still as the source's: what moves there is meant to.
 void LimbGoals::feelOwnWay(Leg& leg, Feeler& feeler, const FootLock::Frame& before, const BodyFrame& source,
                            double seconds) const {
   leg.lift = (source.positions[leg.sourceEnd].y() - leg.sourceAnkleGround) / setup_.sourceHipHeight;
@@ -266,7 +273,7 @@ void LimbGoals::calm(const BodyFrame& source, double seconds, Pose& target, Body
   for (std::size_t i = 0; i < legs_.size(); ++i) sense(legs_[i], feelers_[i], source, seconds);
   pelvis_.levelHips(target, frame);
   // Feet on roots of their own would lose their way.
-  if (!setup_.person && !legs_.front().ownRoot) root_.movePelvis(Vec3(0, lift_(source, frame), 0), target, frame);
+  if (!setup_.person && !legs_.front().ownWay) root_.movePelvis(Vec3(0, lift_(source, frame), 0), target, frame);
   calmFeet(setup_, root_, legs_, target, frame);
 }
 
@@ -286,7 +293,7 @@ void LimbGoals::setFeet(const BodyFrame& source, const BodyFrame& target, double
 LimbGoals::Rise LimbGoals::nextRise(const BodyFrame& target, double seconds) const {
   Rise rise = rise_;
   const double wanted = pelvis_.riseFor(legs_, target, pelvis_.turnFor(legs_, target));
-  const bool atOnce = setup_.person || legs_.front().ownRoot;
+  const bool atOnce = setup_.person || legs_.front().ownWay;
   springTo(wanted, kRiseRate, atOnce ? 0 : seconds, rise.value, rise.speed);
   return rise;
 }
@@ -304,7 +311,7 @@ void LimbGoals::carryFeet(const BodyFrame& target, double seconds) {
   }
   const Pelvis::Move move = pelvis_.moveFor(legs_, target, nextRise(target, seconds).value);
   for (std::size_t i = 0; i < legs_.size(); ++i) {
-    feelers_[i].carried = legs_[i].ownRoot ? Vec3(Vec3::Zero()) : pelvis_.hipWay(move, legs_[i], target);
+    feelers_[i].carried = legs_[i].ownWay ? Vec3(Vec3::Zero()) : pelvis_.hipWay(move, legs_[i], target);
     if (setup_.person) feelers_[i].carried.y() *= kCarriedUp;
   }
 }
@@ -314,7 +321,7 @@ void LimbGoals::setFoot(Leg& leg, const Feeler& feeler, FootLock& lock, double s
   foot.ankle += feeler.carried;
   foot.toes += feeler.carried;
   leg.goal = lock.next(foot, seconds, kFootSlack * setup_.targetHipHeight);
-  if (leg.ownRoot) leg.goal.y() = foot.ankle.y();
+  if (leg.ownWay) leg.goal.y() = foot.ankle.y();
   leg.turn = Eigen::AngleAxisd(lock.twist(), Vec3::UnitY());
   keepAboveGround(leg, foot, feeler);
 }
@@ -343,7 +350,7 @@ void LimbGoals::keepAboveGround(Leg& leg, const FootLock::Frame& foot, const Fee
 void LimbGoals::bendAsSource(Leg& leg, const BodyFrame& target) const {
   const Vec3 hip = target.positions[leg.upper], way = leg.goal - hip;
   const double own = way.norm(), most = kStretch * leg.length;
-  if (!leg.ownRoot || !(own > 0)) return;
+  if (!leg.ownWay || !(own > 0)) return;
   const double free = smoothStep(leg.lift / kLifted), length = own + free * (leg.bentReach - own);
   const double soft = kSoftStanding + free * (kSoftLeg - kSoftStanding);
   const double reached = most - softPositive(most - length, soft * leg.length);

@@ -32,7 +32,7 @@ class LimbGoals {
   // the ground. From the globals of both. The goals are for legs whose hips go with
   // the pelvis (Pelvis::moveFor).
   void setFeet(const BodyFrame& source, const BodyFrame& target, double seconds);
-  // A foot on a root of its own that is lifted comes as near to its hip as the source's does for its leg's length, and
+  // A foot that goes its own way and is lifted comes as near to its hip as the source's does for its leg's length, and
   // none stretches its leg wholly: knees else fold and snap. For hips that are where they stay.
   void bendAsSource(Leg& leg, const BodyFrame& target) const;
   // Whether the source jumped to the last frame: what was before it does not count.
@@ -79,7 +79,7 @@ class LimbGoals {
     FootLock::Frame foot;  // as its joint angles have it
     Fall ankleFall, toesFall;
     Vec3 carried = Vec3::Zero();  // by its hip
-    std::optional<LegBend> bend;  // ownRoot
+    std::optional<LegBend> bend;  // ownWay
   };
 
   struct Rise {
@@ -96,6 +96,7 @@ class LimbGoals {
                   std::vector<Surface>& surfaces) const;
   void sense(Leg& leg, Feeler& feeler, const BodyFrame& source, double seconds) const;
   void feel(Leg& leg, Feeler& feeler, const BodyFrame& source, const BodyFrame& target, double seconds) const;
+  Vec3 ownPlace(const Leg& leg, const BodyFrame& source) const;
   void feelOwnWay(Leg& leg, Feeler& feeler, const FootLock::Frame& before, const BodyFrame& source,
                   double seconds) const;
   static void followFall(double down, double seconds, Fall& fall);

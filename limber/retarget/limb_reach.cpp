@@ -71,7 +71,7 @@ void LimbReach::bendHock(const Limb& limb, BodyFrame& frame, Pose& target) const
   const Quat turned = Eigen::AngleAxisd(opened, normal.normalized()) * frame.rotations[*limb.hock];
   target.locals[*limb.hock].rotation = (kinematics.parentRotation(*limb.hock, frame).conjugate() * turned).normalized();
   kinematics.globals(target, frame);
-  if (limb.ownRoot) root_.settle(target, frame);
+  if (root_.carrierOf(limb.end) != limb.end) root_.settle(target, frame);
 }
 
 void LimbReach::turnEnd(const Limb& limb, const Quat& orientation, BodyFrame& frame, Pose& target) const {
@@ -84,13 +84,23 @@ void LimbReach::turnEnd(const Limb& limb, const Quat& orientation, BodyFrame& fr
 
 Vec3 LimbReach::kneePole(const Limb& limb, const TwoBone& bones, const Vec3& kneeAhead, const BodyFrame& frame) const {
   const Vec3 way = (bones.end - bones.start).normalized();
-  const Quat turn = frame.rotations[limb.upper] * setup_.targetNeutral.rotations[limb.upper].conjugate();
-  const Vec3 ahead = turn * kneeAhead;
-  Vec3 bend = (ahead - ahead.dot(way) * way).normalized();
-  if (!limb.ownBend) bend = bendOf(limb, bones, way, bend);
+  const Vec3 ahead = turnOf(limb.upper, frame) * kneeAhead, forward = (ahead - ahead.dot(way) * way).normalized();
+  const Vec3 bend = limb.ownBend ? ownBend(limb, way, kneeAhead, frame) : bendOf(limb, bones, way, forward);
   // Seen from the way to the goal: of a leg that is nearly straight, the knee itself may lie on its other side.
   const Vec3 there = bones.target - bones.start;
   return bones.start + 0.5 * there + shortestRotation(way, there) * bend;
+}
+
+// As at rest, seen from the body: the leg's own upper joint turns past the way where the source's bends far elsewhere.
+Vec3 LimbReach::ownBend(const Limb& limb, const Vec3& way, const Vec3& kneeAhead, const BodyFrame& frame) const {
+  const std::vector<Vec3>& neutral = setup_.targetNeutral.positions;
+  const std::optional<Index> body = setup_.target->joints[limb.upper].parent;
+  const Quat turn = body ? turnOf(*body, frame) : Quat::Identity();
+  return shortestRotation(turn * (neutral[limb.end] - neutral[limb.upper]), way) * (turn * kneeAhead);
+}
+
+Quat LimbReach::turnOf(Index joint, const BodyFrame& frame) const {
+  return frame.rotations[joint] * setup_.targetNeutral.rotations[joint].conjugate();
 }
 
 }  // namespace limber

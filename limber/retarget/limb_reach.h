@@ -23,6 +23,8 @@ class LimbReach {
 
  private:
   void bendHock(const Limb& limb, BodyFrame& frame, Pose& target) const;
+  Vec3 ownBend(const Limb& limb, const Vec3& way, const Vec3& kneeAhead, const BodyFrame& frame) const;
+  Quat turnOf(Index joint, const BodyFrame& frame) const;  // against the neutral pose
   Vec3 kneePole(const Limb& limb, const TwoBone& bones, const Vec3& kneeAhead, const BodyFrame& frame) const;
 
   const RetargetSetup& setup_;

@@ -42,12 +42,13 @@ class OnlineRetargeter : public FrameRetargeter {
       goals_.calm(aligned_.sourceFrame(), seconds, target, frame);
       goals_.setFeet(aligned_.sourceFrame(), frame, seconds);
       goals_.pelvis().apply(goals_.pelvisMove(frame), target, frame);
+      for (Leg& leg : goals_.legs()) goals_.bendAsSource(leg, frame);
     }
     goals_.setHands(aligned_.sourceFrame(), frame, seconds);
     std::size_t task = 0;
     for (const Leg& leg : goals_.legs()) {
       setTask(leg, frame, task);
-      if (!isChain(leg)) continue;
+      if (!isSolved(leg)) continue;
       if (setup_.person) bendKnee(leg, frame, target);
       // From a reference that bends to the other side the solver would have to snap.
       if (leg.ownBend && leg.wanted) reach_.reach(leg, &leg.kneeAhead, frame, target);
@@ -59,9 +60,8 @@ class OnlineRetargeter : public FrameRetargeter {
     }
     setup_.targetKinematics.globals(target, frame);
     aligned_.root().settle(target, frame);
-    for (Leg& leg : goals_.legs()) {
-      goals_.bendAsSource(leg, frame);
-      if (leg.ownRoot && leg.wanted && !LimbReach::isThere(leg, frame)) {
+    for (const Leg& leg : goals_.legs()) {
+      if (!setup_.person && !isSolved(leg) && leg.wanted && !LimbReach::isThere(leg, frame)) {
         reach_.reach(leg, &leg.kneeAhead, frame, target);
       }
       goals_.levelToes(leg, frame, target);
@@ -70,10 +70,12 @@ class OnlineRetargeter : public FrameRetargeter {
   }
 
  private:
+  // By the solver, from the joint angles; else in closed form.
+  bool isSolved(const Limb& limb) const { return isChain(limb) && !limb.ownWay; }
   bool isChain(const Limb& limb) const { return aligned_.root().carrierOf(limb.end) == limb.end; }
 
   void addTask(const Limb& limb) {
-    if (!isChain(limb)) return;
+    if (!isSolved(limb)) return;
     IkTarget& target = targets_.emplace_back();
     target.joint = limb.end;
     target.base = limb.upper;
@@ -82,7 +84,7 @@ class OnlineRetargeter : public FrameRetargeter {
 
   // In the space of the target skeleton's own globals.
   void setTask(const Limb& limb, const BodyFrame& frame, std::size_t& task) {
-    if (!isChain(limb)) return;
+    if (!isSolved(limb)) return;
     IkTarget& target = targets_[task++];
     const Quat back = setup_.targetNeutral.toBody.conjugate();
     target.position = back * (limb.wanted ? limb.goal : frame.positions[limb.end]);

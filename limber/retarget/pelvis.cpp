@@ -15,7 +15,7 @@ constexpr double kCalmWide = 1.5;  // power of the hips' widths by which their t
 constexpr double kMostShift = 0.3;
 constexpr double kSoftStretch = 0.015, kSoftChange = 0.004;  // of sinking, by how far a foot is moved
 constexpr double kSoftOnFour = 0.04;  // likewise: with legs at both ends of the body, some are far off and stretch more
-constexpr double kSoftBend = 0.1;  // by which legs on roots of their own count the more, the lower they want the body
+constexpr double kSoftBend = 0.1;     // by which feet on their own ways count the more, the lower they want the body
 constexpr double kStandsBelow = 0.3;  // Leg::lift from which on they no longer count
 constexpr double kStay = 0.5;         // legs that these go against, which want it to stay
 constexpr double kStretch = 0.998;    // of a leg's length: fully stretched knees pop
@@ -99,7 +99,7 @@ Quat Pelvis::turnFor(std::span<const Leg> legs, const BodyFrame& frame) const {
 double Pelvis::riseFor(std::span<const Leg> legs, const BodyFrame& frame, const Quat& turn) const {
   double sum = 0, weights = 0;
   for (const Leg& leg : legs) {
-    if (leg.ownRoot) continue;
+    if (leg.ownWay) continue;
     const Vec3 hip = frame.positions[leg.upper], way = leg.goal - hip - hipWay({turn, 0}, leg, frame);
     const double length = (frame.positions[leg.end] - hip).norm(), across = std::hypot(way.x(), way.z());
     if (way.y() >= 0 || across >= length) continue;
@@ -108,16 +108,16 @@ double Pelvis::riseFor(std::span<const Leg> legs, const BodyFrame& frame, const 
     weights += weight;
   }
   const double most = kMostShift * setup_.targetHipHeight;
-  return std::clamp(sum / std::max(weights, 1.0) + ownRootsShift(legs, frame), -most, most);
+  return std::clamp(sum / std::max(weights, 1.0) + ownWaysShift(legs, frame), -most, most);
 }
 
-// Their joint angles had the foot elsewhere: legs that stand bend as the source's do. A mean of the ways, without a
-// kink where another leg takes over.
-double Pelvis::ownRootsShift(std::span<const Leg> legs, const BodyFrame& frame) const {
+// Their joint angles have the foot elsewhere: legs that stand bend as the source's do. A mean of the ways, without a
+// kink where another leg takes over or the most is reached.
+double Pelvis::ownWaysShift(std::span<const Leg> legs, const BodyFrame& frame) const {
   const double soft = kSoftBend * setup_.targetHipHeight;
   double sum = kStay, weights = kStay;
   for (const Leg& leg : legs) {
-    if (!leg.ownRoot) continue;
+    if (!leg.ownWay) continue;
     const Vec3 way = leg.goal - frame.positions[leg.upper];
     const double reach = leg.bentReach, across = std::hypot(way.x(), way.z());
     if (across >= reach) continue;
@@ -125,11 +125,12 @@ double Pelvis::ownRootsShift(std::span<const Leg> legs, const BodyFrame& frame) 
     sum += weight * std::exp(-(way.y() + std::sqrt(reach * reach - across * across)) / soft);
     weights += weight;
   }
-  return -soft * std::log(sum / weights);
+  const double shift = -soft * std::log(sum / weights), share = shift / (kMostShift * setup_.targetHipHeight);
+  return shift / std::sqrt(std::sqrt(1 + share * share * share * share));
 }
 
 double Pelvis::changeOf(const Leg& leg, const BodyFrame& frame, const Quat& turn) const {
-  if (leg.ownRoot) return 1;
+  if (leg.ownWay) return 1;
   const double change = (leg.goal - frame.positions[leg.end] - hipWay({turn, 0}, leg, frame)).norm();
   return change / (change + kSoftChange * setup_.targetHipHeight);
 }

@@ -42,7 +42,7 @@ class Pelvis {
  private:
   // `rise`, and down as far as the longest way asks.
   double shiftFor(std::span<const Leg> legs, const BodyFrame& frame, const Quat& turn, double rise) const;
-  double ownRootsShift(std::span<const Leg> legs, const BodyFrame& frame) const;
+  double ownWaysShift(std::span<const Leg> legs, const BodyFrame& frame) const;
 
   const RetargetSetup& setup_;
   const RootPlacer& root_;

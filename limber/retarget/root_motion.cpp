@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "limber/retarget/quadruped_shape.h"
 #include "limber/skeleton/chain.h"
 
 namespace limber {
@@ -9,10 +10,17 @@ namespace limber {
 RootPlacer::RootPlacer(const RetargetSetup& setup) : setup_(setup) {
   const Skeleton& target = *setup.target;
   if (!setup.person) {
-    for (const JointMatch& match : setup.map.matches) moved_.push_back(match.target.front());
     findCarrierOfLegs();
+    if (const JointMatch* hindquarters = setup.map.find(kHindquarters)) {
+      if (!hips_) hips_ = hindquarters->target.front();
+      moved_.push_back(*hips_);
+    } else {
+      for (const JointMatch& match : setup.map.matches) moved_.push_back(match.target.front());
+    }
     for (const AnimalLeg& leg : setup.animalLegs) {
-      if (leg.target.carrier) addLoose({leg.target.end, *leg.target.carrier, true});
+      if (!leg.target.carrier) continue;
+      addLoose({leg.target.end, *leg.target.carrier, true});
+      if (std::find(moved_.begin(), moved_.end(), leg.target.end) == moved_.end()) moved_.push_back(leg.target.end);
     }
     return;
   }
@@ -65,19 +73,36 @@ void RootPlacer::findPelvis() {
 
 void RootPlacer::place(const Pose& source, const BodyFrame& sourceFrame, Pose& target, BodyFrame& frame) const {
   if (!setup_.person) {
-    for (const JointMatch& match : setup_.map.matches) {
-      const Index s = match.source.front(), t = match.target.front();
-      const Vec3 way = source.locals[s].translation - setup_.source->joints[s].rest.translation;
-      const double unit = setup_.scale * setup_.sourceKinematics.unit(s) / setup_.targetKinematics.unit(t);
-      const Quat above = setup_.sourceKinematics.parentRotation(s, sourceFrame);
-      const Quat toParent = setup_.targetKinematics.parentRotation(t, frame).conjugate();
-      target.locals[t].translation = setup_.target->joints[t].rest.translation + unit * (toParent * (above * way));
+    if (const JointMatch* hindquarters = setup_.map.find(kHindquarters)) {
+      placeHindquarters(*hindquarters, sourceFrame, target, frame);
+      return;
     }
+    placeEach(source, sourceFrame, target, frame);
     setup_.targetKinematics.place(target, frame);
     return;
   }
   const Vec3 there = setup_.placeOf(pelvisOf(setup_.map, MapSide::kSource, sourceFrame.positions));
   movePelvis(there - pelvisOf(setup_.map, MapSide::kTarget, frame.positions), target, frame);
+}
+
+void RootPlacer::placeHindquarters(const JointMatch& match, const BodyFrame& sourceFrame, Pose& target,
+                                   BodyFrame& frame) const {
+  const Index s = match.source.front(), t = match.target.front();
+  const Vec3 way = sourceFrame.positions[s] - setup_.sourceNeutral.restPositions[s];
+  const Vec3 there = setup_.targetNeutral.restPositions[t] + setup_.scale * way;
+  movePelvis(there - frame.positions[t], target, frame);
+}
+
+void RootPlacer::placeEach(const Pose& source, const BodyFrame& sourceFrame, Pose& target,
+                           const BodyFrame& frame) const {
+  for (const JointMatch& match : setup_.map.matches) {
+    const Index s = match.source.front(), t = match.target.front();
+    const Vec3 way = source.locals[s].translation - setup_.source->joints[s].rest.translation;
+    const double unit = setup_.scale * setup_.sourceKinematics.unit(s) / setup_.targetKinematics.unit(t);
+    const Quat above = setup_.sourceKinematics.parentRotation(s, sourceFrame);
+    const Quat toParent = setup_.targetKinematics.parentRotation(t, frame).conjugate();
+    target.locals[t].translation = setup_.target->joints[t].rest.translation + unit * (toParent * (above * way));
+  }
 }
 
 void RootPlacer::movePelvis(const Vec3& shift, Pose& target, BodyFrame& frame) const {
@@ -107,6 +132,10 @@ void RootPlacer::turnPelvis(const Quat& turn, Pose& target, BodyFrame& frame) co
 void RootPlacer::settle(Pose& target, BodyFrame& frame) const {
   setup_.targetKinematics.place(target, frame);
   placeLoose(target, frame);
+}
+
+bool RootPlacer::goesOwnWay(const AnimalLeg& leg) const {
+  return setup_.map.find(kHindquarters) || (leg.source.carrier && leg.target.carrier);
 }
 
 Index RootPlacer::carrierOf(Index joint) const {

@@ -11,7 +11,8 @@ namespace limber {
 
 // Moves a posed target to where the source's motion has it.
 //
-// People: the hips' translation brings the pelvis to its place. Others: every matched joint's way from rest, scaled.
+// People: the hips' translation brings the pelvis to its place. Others: every matched joint's way from rest, scaled; of
+// quadrupeds that were matched by form (kHindquarters) that of the hindquarters alone.
 // Loose joints (looseJoints; of animals the feet that ride on their shins) are put where their carriers have them.
 class RootPlacer {
  public:
@@ -29,6 +30,10 @@ class RootPlacer {
   // False where no joint carries both legs: turning it does nothing.
   bool turnsPelvis() const { return pelvis_.has_value(); }
 
+  // Whether the foot goes as the source's, whatever the joint angles: on roots of their own, or on legs whose joints
+  // are others.
+  bool goesOwnWay(const AnimalLeg& leg) const;
+
   // The joint that a loose joint rides on; the joint itself where it hangs on the body.
   Index carrierOf(Index joint) const;
 
@@ -43,6 +48,8 @@ class RootPlacer {
   };
   void findPelvis();
   void findCarrierOfLegs();
+  void placeHindquarters(const JointMatch& match, const BodyFrame& sourceFrame, Pose& target, BodyFrame& frame) const;
+  void placeEach(const Pose& source, const BodyFrame& sourceFrame, Pose& target, const BodyFrame& frame) const;
   void addLoose(const LooseJoint& loose);
   void placeLoose(Pose& target, BodyFrame& frame) const;
 

@@ -11,6 +11,7 @@
 #include "limber/core/error.h"
 #include "limber/retarget/animal_map.h"
 #include "limber/retarget/humanoid_shape.h"
+#include "limber/retarget/quadruped_shape.h"
 #include "limber/skeleton/chain.h"
 
 namespace limber {
@@ -219,6 +220,11 @@ SkeletonMap matchSkeletons(const Skeleton& source, const Skeleton& target) {
   const std::size_t fewer = std::min(source.jointCount(), target.jointCount());
   const bool isFamily = names.matches.size() >= 3 && names.matches.size() * 2 > fewer;
   const std::optional<Body> from = BodyReader(source).read(), to = BodyReader(target).read();
+  const bool named = from && to && from->by == MatchedBy::kName && to->by == MatchedBy::kName;
+  if (!named && !isFamily) {
+    const std::optional<SkeletonMap> quadrupeds = matchQuadrupeds(source, target);
+    if (quadrupeds) return sameTree(source, target) ? matchTrees(target) : *quadrupeds;
+  }
   if (from && to && (from->by == MatchedBy::kName || to->by == MatchedBy::kName || !isFamily)) {
     SkeletonMap map = matchBodies(*from, *to);
     if (map.matches.size() >= 5) return map;

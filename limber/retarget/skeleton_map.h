@@ -32,7 +32,8 @@ struct SkeletonMap {
 // pose; the joints of trunk and neck along their chains, whatever they are called; twist joints inside a limb go with
 // it. In mirror images, whose toes point backwards for what is called left, left is what is called right. Others are
 // matched by equal names (upper and lower case and prefixes aside), animals' trunks, necks and tails along their chains
-// (animal_map.h), or joint by joint where the trees are the same.
+// (animal_map.h), or joint by joint where the trees are the same; quadrupeds of other names and trees by their form
+// (quadruped_shape.h).
 // Throws Error kUnsupported where too little matches to move anything.
 SkeletonMap matchSkeletons(const Skeleton& source, const Skeleton& target);
 

@@ -62,7 +62,7 @@ struct FootFrame {
   FootAnchor anchor = FootAnchor::kNone;
   bool flat = false;
   double ankleFloor = 0, toesFloor = 0;
-  bool ownRoot = false;  // likewise in Leg, with what follows
+  bool ownWay = false;  // likewise in Leg, with what follows
   double bentReach = 0, lift = 0;
 };
 
@@ -125,17 +125,17 @@ class Spacetime {
       for (std::size_t i = 0; i < feet_.size(); ++i) {
         const Leg& leg = goals_.legs()[i];
         FootFrame& foot = feet_[i].emplace_back();
-        foot.ankle = to.positions[leg.end];
+        foot.ankle = leg.place;
         foot.sourceAnkle = from.positions[leg.sourceEnd];
         foot.anchor = leg.anchor;
         foot.flat = leg.flat;
         foot.ankleFloor = leg.ankleFloor;
-        foot.ownRoot = leg.ownRoot;
+        foot.ownWay = leg.ownWay;
         foot.bentReach = leg.bentReach;
         foot.lift = leg.lift;
         foot.toesFloor = -std::numeric_limits<double>::infinity();
         if (!leg.toes) continue;
-        foot.roll = to.positions[*leg.toes] - foot.ankle;
+        foot.roll = to.positions[*leg.toes] - to.positions[leg.end];
         foot.sourceToes = from.positions[*leg.sourceToes];
         foot.toesFloor = leg.toesFloor;
       }
@@ -193,7 +193,7 @@ class Spacetime {
       CurveGoal& upright = way[1][f];
       upright.least = std::max(ankleUp, toesUp);
       upright.value = std::max(byToes ? toesUp : ankleUp, upright.least);
-      if (!now.ownRoot) upright.valueWeight = kGroundWeight * still[f];
+      if (!now.ownWay) upright.valueWeight = kGroundWeight * still[f];
       if (f > 0 && now.anchor != FootAnchor::kNone && foot[f - 1].anchor != FootAnchor::kNone) {
         Vec3 step = now.ankle - foot[f - 1].ankle;
         if (byToes) step += roll - rollBefore;
@@ -236,7 +236,7 @@ class Spacetime {
       const BodyFrame& to = targetAt(f);
       for (std::size_t i = 0; i < feet_.size(); ++i) {
         const Leg& leg = goals_.legs()[i];
-        if (!leg.ownRoot) feet_[i][f].ankle = to.positions[leg.end];
+        if (!leg.ownWay) feet_[i][f].ankle = to.positions[leg.end];
       }
     }
   }
