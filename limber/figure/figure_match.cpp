@@ -25,7 +25,7 @@ constexpr double kNod = 0.25, kBow = 0.3, kTwist = 0.15;    // of a head, a trun
 constexpr double kInTrunk = 0.5;                            // for each place of a limb inside the trunk
 constexpr double kRootDepth = 0.025, kShallowRoot = 0.3;    // statures that shoulders and hips lie deep, at least
 constexpr double kTurnedArm = 0.15;                         // of an elbow that bends square to how it does at ease
-constexpr double kPinCost = 4, kFarFromPin = 0.25;          // statures from a pin, where it costs most
+constexpr double kPinCost = 8, kFarFromPin = 0.25;          // statures from a pin, where it costs most
 constexpr double kShared = 0.175;                           // for each place that limbs share
 
 struct LimbShape {

@@ -27,9 +27,10 @@ constexpr int kPolishSteps = 3000;
 constexpr int kReconsiderRounds = 2, kFirstReconsiderSteps = 100, kReconsiderSteps = 300;
 constexpr double kHopeless = 0.4;        // less than the best so far after the first of these steps
 constexpr double kWorthImproving = 0.7;  // less than the best candidate of a limb, at most
-constexpr std::size_t kFewMiddles = 24, kManyMiddles = 80;
-constexpr std::size_t kFewLimbs = 6, kManyLimbs = 18, kTriedLimbs = 8;
-constexpr double kAlike = 0.08;  // statures between elbows, knees, wrists and ankles
+constexpr LimbFinder::Effort kQuick = {24, 6, false}, kThorough = {80, 18, true};
+constexpr std::size_t kTriedLimbs = 8;
+constexpr double kLikeStature = 0.06;  // ratio of statures that one finder of limbs serves
+constexpr double kAlike = 0.08;        // statures between elbows, knees, wrists and ankles
 constexpr double kAlikeMiddle = 0.04, kAlikeAnkle = 0.05;
 
 constexpr double kMostGain = 0.15;  // of a limb by one step of the trunk
@@ -53,7 +54,7 @@ class Search {
     if (figures_.empty()) return {};
     progress_.update(0.1);
     parallelFor(figures_.size(), 4, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) holdLimbs(figures_[i], kFewMiddles, kFewLimbs, nullptr);
+      for (std::size_t i = begin; i < end; ++i) holdLimbs(figures_[i], kQuick, nullptr);
     });
     keepApart(figures_, kKept);
     forEach(0.3, [&](MatchedFigure& figure, Random& random) { improve(figure, kFirstSteps, random); });
@@ -61,7 +62,7 @@ class Search {
     forEach(0.6, [&](MatchedFigure& figure, Random& random) {
       for (int round = 0; round < kRounds; ++round) {
         MatchedFigure other = figure;
-        holdLimbs(other, kManyMiddles, kManyLimbs, &random);
+        holdLimbs(other, kThorough, &random);
         improve(other, kSteps, random);
         if (better(other, figure)) figure = other;
       }
@@ -124,8 +125,11 @@ class Search {
     std::stable_sort(trunks.begin(), trunks.end(), better);
     if (trunks.size() > kTrunks) trunks.resize(kTrunks);
     for (const auto& [head, stature] : starts) {
-      const auto has = [&, size = stature](const MatchedFigure& trunk) { return trunk.figure.stature == size; };
-      if (std::any_of(trunks.begin(), trunks.end(), has)) {
+      const auto has = [size = stature](const MatchedFigure& trunk) { return trunk.figure.stature == size; };
+      const auto serves = [size = stature](const auto& finder) {
+        return std::abs(ratioOff(finder->stature() / size)) < kLikeStature;
+      };
+      if (std::any_of(trunks.begin(), trunks.end(), has) && std::none_of(finders_.begin(), finders_.end(), serves)) {
         finders_.push_back(std::make_unique<LimbFinder>(body_, match_, stature));
       }
     }
@@ -139,11 +143,11 @@ class Search {
   }
 
   // Finds limbs for a trunk, those that go best together. With `random`, each is improved for itself first.
-  void holdLimbs(MatchedFigure& figure, std::size_t widely, std::size_t most, Random* random) const {
+  void holdLimbs(MatchedFigure& figure, const LimbFinder::Effort& effort, Random* random) const {
     LimbCandidates candidates;
     const LimbFinder& finder = finderFor(figure.figure.stature);
     for (int limb = 0; limb < kFigureLimbs; ++limb) {
-      candidates[limb] = finder.find(figure.figure, limb, widely, most);
+      candidates[limb] = finder.find(figure.figure, limb, effort);
       if (candidates[limb].empty()) {
         figure.total = kNobody;
         return;
@@ -198,7 +202,7 @@ class Search {
     for (int round = 0; round < kReconsiderRounds; ++round) {
       const double before = figure.total;
       for (int limb = 0; limb < kFigureLimbs; ++limb) {
-        Candidates candidates = finderFor(figure.figure.stature).find(figure.figure, limb, kManyMiddles, kManyLimbs);
+        Candidates candidates = finderFor(figure.figure.stature).find(figure.figure, limb, kThorough);
         improveEach(figure.figure, limb, candidates, random);
         MatchedFigure best = figure;
         for (const LimbFinder::Candidate& candidate : candidates) {

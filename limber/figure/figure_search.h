@@ -21,9 +21,9 @@ struct FigureSearch {
 // the best of these the limbs that match best and do not share a place; the best of all are improved by small random
 // steps and the search for limbs from there, several times.
 //
-// The total of a match is 5 and more where there is such a person, and less in animals, furniture and busts. None
+// The total of a match is 8 and more where there is such a person, and below 6 in animals, furniture and busts. None
 // where nothing is as round as a head.
-// Cost: about half a second on two cores, whatever the size of the mesh. Throws Error kCancelled.
+// Cost: about a third of a second on two cores, whatever the size of the mesh. Throws Error kCancelled.
 std::optional<MatchedFigure> findFigure(const BodyVolume& body, const FigureSearch& search, Progress& progress);
 
 }  // namespace limber

@@ -36,7 +36,7 @@ const BodyVolume& statue() {
 TEST(FigureSearch, FindsOneWhoCrouchesOnABlock) {
   const std::optional<MatchedFigure> found = find(statue());
   ASSERT_TRUE(found);
-  EXPECT_GT(found->total, 5.5);
+  EXPECT_GT(found->total, 8);
   expectLike(found->figure, testing::crouchingFigure());
 }
 

@@ -1,6 +1,7 @@
 #include "limber/figure/figure_steps.h"
 
 #include <algorithm>
+#include <array>
 
 #include "limber/figure/steady.h"
 
@@ -25,6 +26,51 @@ void turnLimb(FigureLimb& bones, const Mat3& turn) {
   bones.upper = turn * bones.upper;
   bones.lower = turn * bones.lower;
   bones.end = turn * bones.end;
+}
+
+// Brings elbow or knee to `middle` and wrist or ankle to `ankle`, as far as bones can be as long.
+void reach(Figure& figure, int limb, const Vec3& middle, const Vec3& ankle) {
+  FigureLimb& bones = figure.limbs[limb];
+  const auto scaleFor = [&](const Vec3& way, double length) {
+    return std::clamp(way.norm() / (length * figure.stature), kLeastScale, kMostScale);
+  };
+  const Vec3 upper = middle - figure.places(limb).root;
+  bones.upper = upper.normalized();
+  bones.upperScale = scaleFor(upper, upperLength(limb));
+  const Vec3 lower = ankle - figure.places(limb).middle;
+  bones.lower = lower.normalized();
+  bones.lowerScale = scaleFor(lower, lowerLength(limb));
+  if (!isLeg(limb)) bones.end = bones.lower;
+}
+
+void changeTrunk(Figure& figure, double size, Random& random) {
+  const double angle = 0.22 * size;
+  switch (random.below(7)) {
+    case 0:
+      figure.head += randomStep(random, 0.02 * size * figure.stature);
+      break;
+    case 1:
+      figure.headRadius *= ratioFor(0.05 * size * random.normal());
+      break;
+    case 2:
+      figure.stature *= ratioFor(0.05 * size * random.normal());
+      break;
+    case 3:
+      figure.neckLength = std::clamp(figure.neckLength + 0.01 * size * random.normal(), kLeastNeck, kMostNeck);
+      break;
+    case 4:
+      figure.neck = randomTurn(random, angle) * figure.neck;
+      break;
+    case 5: {
+      const Mat3 turn = randomTurn(random, angle);
+      figure.chest = turn * figure.chest;
+      if (random.below(2) == 0) break;
+      for (const int arm : {0, 1}) turnLimb(figure.limbs[arm], turn);
+      break;
+    }
+    default:
+      figure.pelvis = randomTurn(random, angle) * figure.pelvis;
+  }
 }
 
 }  // namespace
@@ -69,39 +115,22 @@ void stepLimb(Figure& figure, int limb, double size, Random& random) {
         bones.end = randomTurn(random, 1.5 * angle) * bones.end;
       } else {
         const Vec3 shift = bones.shift + randomStep(random, 0.012 * size);
-        if (shift.norm() < kMostShift) bones.shift = shift;
+        if (shift.norm() >= kMostShift) break;
+        const FigureLimbPlaces before = figure.places(limb);
+        bones.shift = shift;
+        if (random.below(2) == 0) reach(figure, limb, before.middle, before.ankle);
       }
   }
   if (!isLeg(limb)) bones.end = bones.lower;
 }
 
 void stepTrunk(Figure& figure, double size, Random& random) {
-  const double angle = 0.22 * size;
-  switch (random.below(7)) {
-    case 0:
-      figure.head += randomStep(random, 0.02 * size * figure.stature);
-      break;
-    case 1:
-      figure.headRadius *= ratioFor(0.05 * size * random.normal());
-      break;
-    case 2:
-      figure.stature *= ratioFor(0.05 * size * random.normal());
-      break;
-    case 3:
-      figure.neckLength = std::clamp(figure.neckLength + 0.01 * size * random.normal(), kLeastNeck, kMostNeck);
-      break;
-    case 4:
-      figure.neck = randomTurn(random, angle) * figure.neck;
-      break;
-    case 5: {
-      const Mat3 turn = randomTurn(random, angle);
-      figure.chest = turn * figure.chest;
-      if (random.below(2) == 0) break;
-      for (const int arm : {0, 1}) turnLimb(figure.limbs[arm], turn);
-      break;
-    }
-    default:
-      figure.pelvis = randomTurn(random, angle) * figure.pelvis;
+  const bool limbsStay = random.below(10) < 7;
+  std::array<FigureLimbPlaces, kFigureLimbs> before;
+  for (int limb = 0; limb < kFigureLimbs; ++limb) before[limb] = figure.places(limb);
+  changeTrunk(figure, size, random);
+  for (int limb = 0; limbsStay && limb < kFigureLimbs; ++limb) {
+    reach(figure, limb, before[limb].middle, before[limb].ankle);
   }
 }
 

@@ -22,11 +22,13 @@ class StepSize {
   double factor_, value_ = 1;
 };
 
-// One change of one limb: a bone or both turn, an elbow or a knee moves, a bone grows, a foot turns, a shoulder shifts.
+// One change of one limb: a bone or both turn, an elbow or a knee moves, a bone grows, a foot turns, a shoulder shifts,
+// with the elbow or without.
 void stepLimb(Figure& figure, int limb, double size, Random& random);
 
 // One change of the head or the trunk: its place or size, the stature, the neck, the chest (with the arms or without),
-// the pelvis.
+// the pelvis. Mostly elbows, knees, wrists and ankles stay where they are, as far as bones can be as long: a limb that
+// matches well would hold the trunk back otherwise.
 void stepTrunk(Figure& figure, double size, Random& random);
 
 // Left for right and front for back, the limbs where they are; straight where they would bend the wrong way.

@@ -1,5 +1,7 @@
 #include "limber/figure/figure_steps.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "limber/figure/testing/figure_body.h"
@@ -44,6 +46,23 @@ TEST(FigureSteps, OfALimbLeaveTheOthers) {
   for (int step = 0; step < 50; ++step) stepLimb(figure, 0, 1, random);
   EXPECT_GT((figure.places(0).ankle - before.places(0).ankle).norm(), 1e-3);
   for (int limb = 1; limb < kFigureLimbs; ++limb) EXPECT_EQ(figure.places(limb).tip, before.places(limb).tip);
+}
+
+TEST(FigureSteps, OfTheTrunkMostlyLeaveHandsAndFeetWhereTheyAre) {
+  const Figure before = testing::crouchingFigure();
+  Random random(3);
+  int stayed = 0;
+  for (int step = 0; step < 200; ++step) {
+    Figure figure = before;
+    stepTrunk(figure, 0.3, random);
+    double moved = 0;
+    for (int limb = 0; limb < kFigureLimbs; ++limb) {
+      moved = std::max(moved, (figure.places(limb).middle - before.places(limb).middle).norm());
+      moved = std::max(moved, (figure.places(limb).ankle - before.places(limb).ankle).norm());
+    }
+    stayed += moved < 1e-9;
+  }
+  EXPECT_GT(stayed, 100);
 }
 
 TEST(FigureSteps, GetSmallerWhereTheyFailAndEnd) {

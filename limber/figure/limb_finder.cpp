@@ -94,13 +94,14 @@ std::vector<LimbFinder::Upper> LimbFinder::uppersOf(const Figure& figure, int li
       });
 }
 
-Vec3 LimbFinder::bestFoot(const Figure& figure, int limb) const {
+Vec3 LimbFinder::bestFoot(const Figure& figure, int limb, bool turned) const {
   const Vec3 down = figure.limbs[limb].lower;
   const Vec3 forward = toesForward(figure, limb).normalized(), aside = down.cross(forward);
   const Vec3 ankle = figure.places(limb).ankle;
   Vec3 best = forward;
   double most = -1e9;
   for (const double yaw : kFootYaws) {
+    if (yaw != 0 && !turned) continue;
     const SteadyAngle turn(yaw);
     const Vec3 level = turn.cos * forward + turn.sin * aside;
     for (const double pitch : kFootPitches) {
@@ -115,12 +116,11 @@ Vec3 LimbFinder::bestFoot(const Figure& figure, int limb) const {
   return best;
 }
 
-std::vector<LimbFinder::Candidate> LimbFinder::find(const Figure& figure, int limb, std::size_t widely,
-                                                    std::size_t most) const {
+std::vector<LimbFinder::Candidate> LimbFinder::find(const Figure& figure, int limb, const Effort& effort) const {
   const LimbWeights& weights = weightsOf(limb);
   Figure trial = figure;
   std::vector<Candidate> all;
-  for (const Upper& upper : uppersOf(figure, limb, widely)) {
+  for (const Upper& upper : uppersOf(figure, limb, effort.middles)) {
     std::size_t ways = 0;
     for (const Lower& lower : lowers_[isLeg(limb)][upper.sphere]) {
       FigureLimb& bones = trial.limbs[limb];
@@ -145,13 +145,13 @@ std::vector<LimbFinder::Candidate> LimbFinder::find(const Figure& figure, int li
   const auto isAlike = [&](const Candidate& a, const Candidate& b) {
     return alike(places(a), places(b), kAlikeMiddle * figure.stature, kAlikeAnkle * figure.stature);
   };
-  std::vector<Candidate> apart = bestApart(std::move(all), most + kMoreLooked, matchOf, isAlike);
+  std::vector<Candidate> apart = bestApart(std::move(all), effort.most + kMoreLooked, matchOf, isAlike);
   for (Candidate& candidate : apart) {
     trial.limbs[limb] = candidate.bones;
-    if (isLeg(limb)) candidate.bones.end = trial.limbs[limb].end = bestFoot(trial, limb);
+    if (isLeg(limb)) candidate.bones.end = trial.limbs[limb].end = bestFoot(trial, limb, effort.turnFeet);
     candidate.match = match_.limb(trial, limb);
   }
-  return bestOf(std::move(apart), most, matchOf);
+  return bestOf(std::move(apart), effort.most, matchOf);
 }
 
 }  // namespace limber

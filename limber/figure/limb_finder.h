@@ -17,15 +17,17 @@ class LimbFinder {
 
   double stature() const { return stature_; }
 
-  // The best ways to hold a limb, best first, no two of them alike.
-  //
-  // most    of them
-  // widely  from this many elbows or knees
+  struct Effort {
+    std::size_t middles;  // elbows or knees to start from
+    std::size_t most;     // ways to hold the limb
+    bool turnFeet;        // in or out, too
+  };
   struct Candidate {
     FigureLimb bones;
     double match = 0;  // as FigureMatch::limb
   };
-  std::vector<Candidate> find(const Figure& figure, int limb, std::size_t widely, std::size_t most) const;
+  // The best ways to hold a limb, best first, no two of them alike.
+  std::vector<Candidate> find(const Figure& figure, int limb, const Effort& effort) const;
 
  private:
   struct Lower {
@@ -39,7 +41,7 @@ class LimbFinder {
   };
   std::vector<Lower> lowersAt(const MedialSphere& sphere, bool leg) const;
   std::vector<Upper> uppersOf(const Figure& figure, int limb, std::size_t most) const;
-  Vec3 bestFoot(const Figure& figure, int limb) const;
+  Vec3 bestFoot(const Figure& figure, int limb, bool turned) const;
 
   const BodyVolume& body_;
   const FigureMatch& match_;

@@ -12,7 +12,7 @@ TEST(LimbFinder, FindsTheLimbsOfATrunkInAnyPose) {
     const FigureMatch match(*body.distance);
     const LimbFinder finder(body, match, figure.stature);
     for (int limb = 0; limb < kFigureLimbs; ++limb) {
-      const std::vector<LimbFinder::Candidate> found = finder.find(figure, limb, 40, 6);
+      const std::vector<LimbFinder::Candidate> found = finder.find(figure, limb, {40, 6, true});
       ASSERT_FALSE(found.empty()) << limb;
       EXPECT_LE(found.size(), 6u);
       Figure best = figure;
@@ -28,7 +28,7 @@ TEST(LimbFinder, CandidatesAreAllowedSortedAndApart) {
   const BodyVolume body = measureBody(testing::figureBody(figure));
   const FigureMatch match(*body.distance);
   const LimbFinder finder(body, match, figure.stature);
-  const std::vector<LimbFinder::Candidate> found = finder.find(figure, 2, 40, 8);
+  const std::vector<LimbFinder::Candidate> found = finder.find(figure, 2, {40, 8, true});
   ASSERT_GT(found.size(), 1u);
   for (std::size_t i = 0; i < found.size(); ++i) {
     Figure trial = figure;
@@ -45,7 +45,7 @@ TEST(LimbFinder, OneWhoHasNoBodyAroundHasNoLimbs) {
   const BodyVolume body = measureBody(ball);
   const FigureMatch match(*body.distance);
   const LimbFinder finder(body, match, 1);
-  EXPECT_TRUE(finder.find(testing::standingFigure(), 2, 40, 8).empty());
+  EXPECT_TRUE(finder.find(testing::standingFigure(), 2, {40, 8, true}).empty());
 }
 
 }  // namespace limber

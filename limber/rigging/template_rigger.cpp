@@ -76,9 +76,13 @@ struct Model {
   const std::optional<Vec3> front;       // if it is known
 };
 
+struct Embedded {
+  TemplateFit fit;
+  TemplateEmbedder embedder;
+};
+
 // Looks at every way to stand with some of the spheres, and at the best ones with all.
-TemplateFit bestEmbedding(const TemplateSkeleton& skeleton, const Model& model, const std::vector<JointPin>& pins,
-                          bool inPoses) {
+Embedded bestEmbedding(const TemplateSkeleton& skeleton, const Model& model, const std::vector<JointPin>& pins) {
   const BodyVolume& body = model.body;
   const std::vector<BodyFrame>& frames = model.frames;
   double least = 1;
@@ -120,11 +124,15 @@ TemplateFit bestEmbedding(const TemplateSkeleton& skeleton, const Model& model, 
     best = std::move(fit);
     bestEmbedder = std::move(embedder);
   }
-  if (inPoses) searchPose(*bestEmbedder, *best);
-  best->limbs = limbsIn(best->skeleton, best->embedding, body, best->frame);
-  const double flat = armFlatness(best->skeleton, best->embedding.places, body, best->frame);
-  best->cost += kWings * std::clamp((flat - kRoundArm) / (kFlatArm - kRoundArm), 0.0, 1.0);
-  return std::move(*best);
+  return {std::move(*best), std::move(*bestEmbedder)};
+}
+
+// With what the body says of the limbs where they are now.
+TemplateFit judged(TemplateFit fit, const BodyVolume& body) {
+  fit.limbs = limbsIn(fit.skeleton, fit.embedding, body, fit.frame);
+  const double flat = armFlatness(fit.skeleton, fit.embedding.places, body, fit.frame);
+  fit.cost += kWings * std::clamp((flat - kRoundArm) / (kFlatArm - kRoundArm), 0.0, 1.0);
+  return fit;
 }
 
 std::size_t missingLimbs(const TemplateFit& fit) {
@@ -148,12 +156,8 @@ struct FigureOnce {
   std::optional<MatchedFigure> figure;
 };
 
-// Where the embedding is in doubt, a person may stand in a pose that no template has.
-TemplateFit bestFit(const TemplateSkeleton& skeleton, const Model& model, const std::vector<JointPin>& pins,
-                    FigureOnce& once, Progress& progress, bool inPoses = true) {
-  progress.step("fit " + skeleton.name);
-  TemplateFit fit = bestEmbedding(skeleton, model, pins, inPoses);
-  if (fit.frame.symmetric() || !isHumanoid(skeleton) || isSure(fit)) return fit;
+std::optional<TemplateFit> figureFit(const TemplateSkeleton& skeleton, const Model& model,
+                                     const std::vector<JointPin>& pins, FigureOnce& once, Progress& progress) {
   const BodyFrame& frame = model.frames.front();
   const TemplatePins places = pinsIn(skeleton, frame, pins);
   if (!once.wasSought) {
@@ -161,9 +165,27 @@ TemplateFit bestFit(const TemplateSkeleton& skeleton, const Model& model, const 
     const Vec3 up = frame.axes.row(1).transpose();
     once = {true, findFigure(model.body, {up, model.front, figurePins(skeleton, places, frame)}, progress)};
   }
-  if (!once.figure) return fit;
-  TemplateFit other = fitOfFigure(skeleton, *once.figure, places, frame);
-  return confidenceOf(other) > confidenceOf(fit) ? other : fit;
+  if (!once.figure) return {};
+  return fitOfFigure(skeleton, *once.figure, places, frame);
+}
+
+// The template as it stands; where that is in doubt, a person in whatever pose; where that is, too, the template bent.
+TemplateFit bestFit(const TemplateSkeleton& skeleton, const Model& model, const std::vector<JointPin>& pins,
+                    FigureOnce& once, Progress& progress, bool inPoses = true) {
+  progress.step("fit " + skeleton.name);
+  Embedded embedded = bestEmbedding(skeleton, model, pins);
+  TemplateFit fit = judged(embedded.fit, model.body);
+  std::optional<TemplateFit> figure;
+  if (isHumanoid(skeleton) && !fit.frame.symmetric() && !isSure(fit)) {
+    figure = figureFit(skeleton, model, pins, once, progress);
+    if (figure && isSure(*figure)) return *figure;
+  }
+  if (inPoses) {
+    progress.step("bend " + skeleton.name);
+    searchPose(embedded.embedder, embedded.fit);
+    fit = judged(std::move(embedded.fit), model.body);
+  }
+  return figure && confidenceOf(*figure) > confidenceOf(fit) ? *figure : fit;
 }
 
 // Templates of people that differ in their fingers alone fit alike: hands tell.

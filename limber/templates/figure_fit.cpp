@@ -11,8 +11,8 @@ namespace limber {
 
 namespace {
 
-// People and statues of people match by 5.5 to 9, anything else by less than 5.
-constexpr double kMatchOfDoubt = 5.2, kMatchSpread = 1.2, kCostOfDoubt = 1.8;
+// People and statues of people match by 8 to 10.5, anything else by less than 6.
+constexpr double kMatchOfDoubt = 6.6, kMatchSpread = 1.2, kCostOfDoubt = 1.8;
 constexpr double kGrid = 1.0 / 8192;  // heights
 constexpr double kLeastLimb = 0.1;    // match of a limb that has a place
 
