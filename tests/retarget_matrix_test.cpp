@@ -79,40 +79,34 @@ const std::map<std::string, double> kRougherHorse = {{"Death", 1.66}, {"Head_But
 // where the others' bend ahead at the knees: as foot and hip come near each other, other bones turn. In idle clips it
 // hardly moves at all (Idle_2_HeadLow), its hind legs are folded where the others' are nearly straight.
 const std::map<std::string, double> kRougherFarm = {{"alpaca cow Attack_Kick", 1.26},
-                                                    {"alpaca cow Idle_2", 1.16},
-                                                    {"alpaca cow Walk", 1.13},
+                                                    {"alpaca cow Idle_2", 1.14},
                                                     {"alpaca horse Attack_Kick", 1.19},
-                                                    {"alpaca horse Idle_2", 1.18},
-                                                    {"alpaca wolf Idle_2", 1.23},
+                                                    {"alpaca horse Idle_2", 1.22},
+                                                    {"alpaca wolf Idle_2", 1.21},
                                                     {"alpaca wolf Idle_Headlow", 1.32},
-                                                    {"cow wolf Attack_Headbutt", 1.16},
-                                                    {"cow wolf Idle_Headlow", 1.17},
+                                                    {"cow wolf Attack_Headbutt", 1.14},
+                                                    {"cow wolf Idle_Headlow", 1.14},
                                                     {"horse alpaca Attack_Kick", 1.14},
                                                     {"horse cow Attack_Kick", 1.17},
-                                                    {"horse cow Idle_HitReact_Left", 1.12},
-                                                    {"horse wolf Idle_Headlow", 1.24},
-                                                    {"wolf alpaca Idle_2_HeadLow", 1.15},
-                                                    {"wolf alpaca Walk", 1.25},
-                                                    {"wolf cow Gallop", 1.26},
-                                                    {"wolf cow Idle_2", 1.23},
-                                                    {"wolf cow Idle_2_HeadLow", 1.47},
-                                                    {"wolf cow Idle_HitReact_Left", 1.11},
-                                                    {"wolf cow Idle_HitReact_Right", 1.25},
-                                                    {"wolf cow Walk", 1.37},
-                                                    {"wolf horse Gallop", 1.16},
-                                                    {"wolf horse Idle_2", 1.15},
-                                                    {"wolf horse Idle_2_HeadLow", 1.31},
-                                                    {"wolf horse Walk", 1.25}};
+                                                    {"horse wolf Idle_Headlow", 1.21},
+                                                    {"wolf alpaca Idle_2_HeadLow", 1.13},
+                                                    {"wolf alpaca Walk", 1.21},
+                                                    {"wolf cow Gallop", 1.30},
+                                                    {"wolf cow Idle_2", 1.20},
+                                                    {"wolf cow Idle_2_HeadLow", 1.44},
+                                                    {"wolf cow Idle_HitReact_Right", 1.22},
+                                                    {"wolf cow Walk", 1.38},
+                                                    {"wolf horse Gallop", 1.18},
+                                                    {"wolf horse Idle_2", 1.13},
+                                                    {"wolf horse Idle_2_HeadLow", 1.30},
+                                                    {"wolf horse Walk", 1.22}};
 
 // Of clip and target, by any method, where names and legs differ; elsewhere 2. Foxes that sit, bow or creep fold their
 // forelegs at the elbow, further than legs fold that bend at the knee alone, and the wolf's, whose elbows are high; a
 // horse's hardly bend at the elbow, where the wolf's have to.
 const std::map<std::string, double> kRougherStrangers = {
-    {"Sneak alpaca", 2.8},   {"Howl cow", 9.7},       {"Idle Alert cow", 5.5}, {"Turn_Left cow", 4.8},
-    {"Turn_Right cow", 4.3}, {"Fetch wolf", 5.8},     {"Sneak wolf", 3.6},     {"Idle wolf", 4},
-    {"Rear wolf", 2.7},      {"Turn_Left wolf", 2.3}, {"Turn_Right wolf", 2.3}};
-// Likewise, whose feet do not stand where they should: the body is too low for the legs to fold so far.
-const std::set<std::string> kTooLowForLegs = {"Sneak wolf", "Turn_Left cow", "Turn_Right cow"};
+    {"Sneak alpaca", 2.6}, {"Fetch cow", 2.3}, {"Howl cow", 9},         {"Fetch wolf", 2.3},     {"Sneak wolf", 2.4},
+    {"Idle wolf", 3.8},    {"Rear wolf", 2.5}, {"Turn_Left wolf", 2.1}, {"Turn_Right wolf", 2.2}};
 
 double roughest(const std::map<std::pair<std::string, std::string>, double>& rougher, const std::string& one,
                 const std::string& other) {
@@ -481,7 +475,7 @@ TEST(RetargetAnimals, QuadrupedsAreMatchedByTheirForm) {
   if (!sharedDataFolder()) GTEST_SKIP() << kNoSharedData;
   const std::vector<std::string> farm = {"quaternius_alpaca", "quaternius_cow", "quaternius_horse", "quaternius_wolf"},
                                  foxes = {"m2m_fox_fox", "m2m_fox_cat", "m2m_fox_dog"};
-  std::map<std::string, double> most = {{"motions/m2m_fox_animations", 1.6}, {"motions/m2m_horse_animations", 1.15}};
+  std::map<std::string, double> most = {{"motions/m2m_fox_animations", 1.4}, {"motions/m2m_horse_animations", 1}};
   for (const std::string& animal : farm) most["rigged/" + animal] = animal == "quaternius_wolf" ? 1.25 : 1.1;
   for (const auto& [file, meanJerk] : most) {
     const Motion motion = readMotion(*sharedDataFolder() / (file + ".glb"));
@@ -506,10 +500,11 @@ TEST(RetargetAnimals, QuadrupedsAreMatchedByTheirForm) {
           const std::string pair = clip.name + ' ' + animal.substr(animal.rfind('_') + 1);
           const auto rougher = kRougherStrangers.find(pair);
           EXPECT_LT(result.jerk, rougher == kRougherStrangers.end() ? 2 : rougher->second);
-          if (kTooLowForLegs.contains(pair)) continue;
           EXPECT_LT(result.sliding, std::max(0.02, result.sourceSliding + 1e-4));
-          EXPECT_LT(result.penetration, result.sourcePenetration + 0.01);
-          EXPECT_GT(result.contactAgreement, 0.95);
+          // Too low for legs that do not fold as far; with a trunk that sways further than the source's.
+          const bool low = pair == "Sneak wolf", sways = pair == "Walk wolf";
+          EXPECT_LT(result.penetration, result.sourcePenetration + (low ? 0.04 : 0.01));
+          EXPECT_GT(result.contactAgreement, sways ? 0.85 : 0.95);
         }
       }
       EXPECT_LT(std::accumulate(jerks.begin(), jerks.end(), 0.0) / static_cast<double>(jerks.size()), meanJerk)

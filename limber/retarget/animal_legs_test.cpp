@@ -100,6 +100,26 @@ TEST(AnimalLegs, LiftedPawsOnRootsOfTheirOwnGoTheirOwnWay) {
   }
 }
 
+// A body that comes down further than its legs fold: it stays as high as they need, and paws where they stand.
+TEST(AnimalLegs, BodiesComeDownAsFarAsTheirLegsFold) {
+  const std::vector<std::string> paws = {"b0LeftThree", "b0RightThree", "b1LeftThree", "b1RightThree"};
+  const Skeleton one = limber::testing::onTheGround(quadruped(0.5), paws),
+                 other = limber::testing::onTheGround(quadruped(0.75), paws);
+  PoseSequence motion{{}, 1.0 / 60};
+  for (int f = 0; f < 60; ++f) {
+    motion.poses.push_back(restPose(one));
+    motion.poses.back().locals[one.find("b0").value()].translation.y() -= 0.01 * f;
+  }
+  const RetargetSetup setup(one, other, matchSkeletons(one, other), {}, &motion);
+  ASSERT_EQ(setup.animalLegs.size(), 4u);
+  const PoseSequence result = retargetFrames(findRetargetMethod("limb-ik"), setup, motion);
+  const std::vector<Affine> first = poseGlobals(other, result.poses.front()),
+                            last = poseGlobals(other, result.poses.back());
+  for (const AnimalLeg& leg : setup.animalLegs) {
+    EXPECT_LT((last[leg.target.end].translation() - first[leg.target.end].translation()).norm(), 0.02);
+  }
+}
+
 // A neck held higher makes nobody step further.
 TEST(AnimalLegs, TheRootsWayScalesWithThem) {
   const Skeleton one = quadruped(0.5);

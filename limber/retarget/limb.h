@@ -13,6 +13,7 @@ struct Limb {
   Index upper = 0, lower = 0, end = 0;
   Index sourceUpper = 0, sourceEnd = 0;
   double length = 0;             // of both bones
+  double folded = 0;             // how near to each other they bring the ends
   std::optional<Index> hock;     // another joint that bends it (AnimalLeg)
   Vec3 goal = Vec3::Zero();      // where the end has to be, in the person's space
   bool ownWay = false;           // an animal's foot that goes as the source's, and the leg after it

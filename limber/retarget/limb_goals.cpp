@@ -64,6 +64,7 @@ std::optional<Limb> makeLimb(const RetargetSetup& setup, const RootPlacer& root,
   const double lowerLength = (rest[limb.end] - rest[limb.lower]).norm();
   if (!(upperLength > 0) || !(lowerLength > 0)) return std::nullopt;
   limb.length = upperLength + lowerLength;
+  limb.folded = std::abs(upperLength - lowerLength);
   return limb;
 }
 
@@ -203,7 +204,7 @@ void LimbGoals::feel(Leg& leg, Feeler& feeler, const BodyFrame& source, const Bo
   foot.anchor = leg.anchor;
   foot.flat = leg.flat;
   leg.place = target.positions[leg.end];
-  if (leg.ownWay) leg.place = ownPlace(leg, source);
+  if (leg.ownWay) leg.place = ownPlace(leg, source, target);
   foot.ankle = foot.toes = leg.place;
   foot.ankleGround = leg.ankleGround - loweredBy(leg.sourceAnkleGround, source.positions[leg.sourceEnd]);
   if (leg.toes) {
@@ -215,23 +216,26 @@ void LimbGoals::feel(Leg& leg, Feeler& feeler, const BodyFrame& source, const Bo
   leg.ankleFloor = foot.ankleGround;
   leg.toesFloor = foot.toesGround;
   leg.wanted = true;
-  if (leg.ownWay) feelOwnWay(leg, feeler, before, source, seconds);
+  if (leg.ownWay) feelOwnWay(leg, feeler, source, seconds);
 }
 
-Vec3 LimbGoals::ownPlace(const Leg& leg, const BodyFrame& source) const {
-  const Vec3 way = source.positions[leg.sourceEnd] - setup_.sourceNeutral.restPositions[leg.sourceEnd];
-  return setup_.targetNeutral.restPositions[leg.end] + setup_.scale * way;
+// A longer or shorter trunk that turns takes the hips further or less far, and the feet with them.
+Vec3 LimbGoals::ownPlace(const Leg& leg, const BodyFrame& source, const BodyFrame& target) const {
+  const std::vector<Vec3>&from = setup_.sourceNeutral.restPositions, &to = setup_.targetNeutral.restPositions;
+  const Vec3 hipWay = source.positions[leg.sourceUpper] - from[leg.sourceUpper];
+  const Vec3 further = target.positions[leg.upper] - to[leg.upper] - setup_.scale * hipWay;
+  return to[leg.end] + setup_.scale * (source.positions[leg.sourceEnd] - from[leg.sourceEnd]) +
+         Vec3(further.x(), 0, further.z());
 }
 
 // It stands about as still as the source's: what moves there is meant to.
-void LimbGoals::feelOwnWay(Leg& leg, Feeler& feeler, const FootLock::Frame& before, const BodyFrame& source,
-                           double seconds) const {
+void LimbGoals::feelOwnWay(Leg& leg, Feeler& feeler, const BodyFrame& source, double seconds) const {
   leg.lift = (source.positions[leg.sourceEnd].y() - leg.sourceAnkleGround) / setup_.sourceHipHeight;
   leg.bentReach = feeler.bend->reach(source);
-  FootLock::Frame& foot = feeler.foot;
-  const Vec3 way = foot.ankle - before.ankle;
-  const double speed = seconds > 0 ? std::hypot(way.x(), way.z()) / (seconds * setup_.targetHipHeight) : 0;
-  foot.slip = 1 / (1 + std::pow(kSlipSpeed / speed, kSlipPower));
+  const Vec3 way = source.positions[leg.sourceEnd] - feeler.sourceEnd;
+  const double speed = seconds > 0 ? std::hypot(way.x(), way.z()) / (seconds * setup_.sourceHipHeight) : 0;
+  feeler.foot.slip = 1 / (1 + std::pow(kSlipSpeed / speed, kSlipPower));
+  feeler.sourceEnd = source.positions[leg.sourceEnd];
 }
 
 // `down` is the way in this frame.

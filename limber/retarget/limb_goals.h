@@ -78,8 +78,9 @@ class LimbGoals {
     double plantedSpeed = 0, flatSpeed = 0, changedSpeed = 0;
     FootLock::Frame foot;  // as its joint angles have it
     Fall ankleFall, toesFall;
-    Vec3 carried = Vec3::Zero();  // by its hip
-    std::optional<LegBend> bend;  // ownWay
+    Vec3 carried = Vec3::Zero();    // by its hip
+    std::optional<LegBend> bend;    // ownWay
+    Vec3 sourceEnd = Vec3::Zero();  // ownWay: in the frame before
   };
 
   struct Rise {
@@ -96,9 +97,8 @@ class LimbGoals {
                   std::vector<Surface>& surfaces) const;
   void sense(Leg& leg, Feeler& feeler, const BodyFrame& source, double seconds) const;
   void feel(Leg& leg, Feeler& feeler, const BodyFrame& source, const BodyFrame& target, double seconds) const;
-  Vec3 ownPlace(const Leg& leg, const BodyFrame& source) const;
-  void feelOwnWay(Leg& leg, Feeler& feeler, const FootLock::Frame& before, const BodyFrame& source,
-                  double seconds) const;
+  Vec3 ownPlace(const Leg& leg, const BodyFrame& source, const BodyFrame& target) const;
+  void feelOwnWay(Leg& leg, Feeler& feeler, const BodyFrame& source, double seconds) const;
   static void followFall(double down, double seconds, Fall& fall);
   void carryFeet(const BodyFrame& target, double seconds);
   void setFoot(Leg& leg, const Feeler& feeler, FootLock& lock, double seconds) const;

@@ -17,8 +17,9 @@ constexpr double kSoftStretch = 0.015, kSoftChange = 0.004;  // of sinking, by h
 constexpr double kSoftOnFour = 0.04;  // likewise: with legs at both ends of the body, some are far off and stretch more
 constexpr double kSoftBend = 0.1;     // by which feet on their own ways count the more, the lower they want the body
 constexpr double kStandsBelow = 0.3;  // Leg::lift from which on they no longer count
-constexpr double kStay = 0.5;         // legs that these go against, which want it to stay
-constexpr double kStretch = 0.998;    // of a leg's length: fully stretched knees pop
+constexpr double kFoldsTo = 1.1, kSoftFold = 0.02;  // of Limb::folded; and hip heights
+constexpr double kStay = 0.5;                       // legs that these go against, which want it to stay
+constexpr double kStretch = 0.998;                  // of a leg's length: fully stretched knees pop
 // Of turning with planted legs: leg lengths, the more the less it does; and radians.
 constexpr double kStiffOnTwo = 0.15, kStiffOnOne = 0.3, kMostTurn = 0.8;
 
@@ -149,7 +150,23 @@ double Pelvis::shiftFor(std::span<const Leg> legs, const BodyFrame& frame, const
     sum += needed * needed * needed * needed;
   }
   // The most that a leg asks for, but without a kink where another takes over.
-  return rise - std::min(std::sqrt(std::sqrt(sum)), kMostShift * height);
+  const double shift = rise - std::min(std::sqrt(std::sqrt(sum)), kMostShift * height);
+  return shift + raiseFor(legs, frame, shift);
+}
+
+// So that no foot that goes its own way and stands is nearer to its hip than the leg folds: it would go astray.
+double Pelvis::raiseFor(std::span<const Leg> legs, const BodyFrame& frame, double shift) const {
+  double sum = 0;
+  for (const Leg& leg : legs) {
+    const Vec3 way = leg.goal - frame.positions[leg.upper] - Vec3(0, shift, 0);
+    const double least = kFoldsTo * leg.folded, across = std::hypot(way.x(), way.z());
+    if (!leg.ownWay || leg.hock || across >= least) continue;  // hocks fold as well
+    const double lacks = std::sqrt(least * least - across * across) + way.y();
+    const double needed =
+        smoothStep(1 - leg.lift / kStandsBelow) * softPositive(lacks, kSoftFold * setup_.targetHipHeight);
+    sum += needed * needed * needed * needed;
+  }
+  return std::sqrt(std::sqrt(sum));
 }
 
 }  // namespace limber

@@ -124,5 +124,32 @@ TEST(QuadrupedShape, PawsGoTheSourcesWay) {
   }
 }
 
+// How far the forepaws are from below their hips, of a body whose trunk is so many times as long and that has turned
+// about its hind legs.
+double forepawsAside(double trunk) {
+  const Skeleton one = quadruped(0.5);
+  Skeleton other = withJointBefore(quadruped(0.5), "n1", "throat");
+  other.joints[other.find("b1").value()].rest.translation *= trunk;
+  other = nameless(other);
+  PoseSequence motion{{}, 1.0 / 30};
+  for (int f = 0; f < 40; ++f) {
+    Pose& pose = motion.poses.emplace_back(restPose(one));
+    pose.locals[0].rotation = limber::testing::turn(Vec3::UnitY(), 1.5 * f);
+    for (const char* paw : {"b1LeftOne", "b1RightOne"}) {  // steps all the while
+      pose.locals[one.find(paw).value()].rotation = limber::testing::turn(Vec3::UnitX(), 10 * std::sin(0.9 * f));
+    }
+  }
+  const RetargetSetup setup(one, other, matchSkeletons(one, other), {}, &motion);
+  const PoseSequence result = retargetFrames(findRetargetMethod("limb-ik"), setup, motion);
+  const std::vector<Affine> globals = poseGlobals(other, result.poses.back());
+  const AnimalLeg& fore = setup.animalLegs.back();
+  const Vec3 aside = globals[fore.target.end].translation() - globals[fore.target.upper].translation();
+  return std::hypot(aside.x(), aside.z());
+}
+
+TEST(QuadrupedShape, LongerTrunksTakeTheirForepawsAlong) {
+  EXPECT_LT(forepawsAside(2), forepawsAside(1) + 0.3);
+}
+
 }  // namespace
 }  // namespace limber
