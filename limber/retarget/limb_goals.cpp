@@ -276,8 +276,7 @@ void LimbGoals::calm(const BodyFrame& source, double seconds, Pose& target, Body
   if (cut_) seconds = 0;
   for (std::size_t i = 0; i < legs_.size(); ++i) sense(legs_[i], feelers_[i], source, seconds);
   pelvis_.levelHips(target, frame);
-  // Feet on roots of their own would lose their way.
-  if (!setup_.person && !legs_.front().ownWay) root_.movePelvis(Vec3(0, lift_(source, frame), 0), target, frame);
+  if (!setup_.person) root_.movePelvis(Vec3(0, lift_(source, frame), 0), target, frame);
   calmFeet(setup_, root_, legs_, target, frame);
 }
 

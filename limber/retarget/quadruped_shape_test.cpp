@@ -151,5 +151,30 @@ TEST(QuadrupedShape, LongerTrunksTakeTheirForepawsAlong) {
   EXPECT_LT(forepawsAside(2), forepawsAside(1) + 0.3);
 }
 
+// One whose legs begin far below its trunk lies on the ground as the source does, not in it.
+TEST(QuadrupedShape, BodiesLieOnTheGround) {
+  const Skeleton one = quadruped(0.5);
+  Skeleton deep = withJointBefore(one, "n1", "throat");
+  for (Joint& joint : deep.joints) {
+    if (joint.name.ends_with("One")) joint.rest.translation.y() = -0.35;
+    if (joint.name.ends_with("Two")) joint.rest.translation.y() += 0.3;
+  }
+  const Skeleton other = nameless(deep);
+  PoseSequence motion{{}, 1.0 / 30};
+  for (int f = 0; f < 30; ++f) {
+    motion.poses.push_back(restPose(one));
+    motion.poses.back().locals[0].translation.y() -= 0.03 * f;
+  }
+  const RetargetSetup setup(one, other, matchSkeletons(one, other), {});
+  ASSERT_TRUE(setup.map.find(kHindquarters));
+  for (const char* method : {"limb-ik", "online", "spacetime"}) {
+    const PoseSequence result = retargetFrames(findRetargetMethod(method), setup, motion);
+    const std::vector<Affine> lies = poseGlobals(other, result.poses.back());
+    for (const AnimalLeg& leg : setup.animalLegs) {
+      EXPECT_GT(lies[leg.target.upper].translation().y(), setup.targetGround - 0.03) << method;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace limber
