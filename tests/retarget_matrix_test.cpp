@@ -1,22 +1,19 @@
-// Every shared motion on every shared humanoid, and animals' motions on animals, by the measures of evaluate motion.
+// Every shared motion on every shared humanoid, by the measures of evaluate motion.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <iterator>
 #include <map>
-#include <numeric>
 #include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "limber/asset/motion_io.h"
-#include "limber/core/numbers.h"
 #include "limber/evaluate/motion_metrics.h"
-#include "limber/retarget/animal_map.h"
 #include "limber/retarget/humanoid_shape.h"
 #include "limber/retarget/plain_skeleton.h"
-#include "limber/skeleton/chain.h"
+#include "retarget_measured.h"
 #include "shared_data.h"
 #include "shared_people.h"
 
@@ -47,10 +44,6 @@ Taken motionFrom(const std::string& file, std::size_t most = kFrames) {
   return taken;
 }
 
-MotionMetrics measured(const RetargetSetup& setup, const char* method, const PoseSequence& source) {
-  return measureMotion(setup, source, retargetFrames(findRetargetMethod(method), setup, source));
-}
-
 bool isWalkOrRun(const std::string& motion) {
   return motion.find("walk") != std::string::npos || motion.find("run") != std::string::npos;
 }
@@ -63,50 +56,6 @@ const std::map<std::pair<std::string, std::string>, double> kRougherInOnePiece =
     {{"cmu_mb_01_01_forward_jumps.bvh", "robot_expressive.glb"}, 1.12},
     {{"pybvh_example.bvh", "quaternius_platformer_character.glb"}, 1.14},
     {{"pybvh_example.bvh", "quaternius_platformer_character_humanoidrig.glb"}, 1.14}};
-
-// The cat's trunk is longer than the fox's: as it bows over paws that stand, its legs have to turn further.
-const std::map<std::pair<std::string, std::string>, double> kRougherCat = {{{"Fetch", "limb-ik"}, 1.16},
-                                                                           {{"Fetch", "online"}, 1.16},
-                                                                           {{"Fetch", "spacetime"}, 1.17},
-                                                                           {{"Walk", "online"}, 1.17}};
-
-// As it falls over, and in its first frames, where a hoof shoots up at once: foxes' paws stood on the ground, the horse
-// moves by its hocks alone and they turn their thighs as well.
-const std::map<std::string, double> kRougherHorse = {{"Death", 1.66}, {"Head_But", 1.66}, {"Kick", 1.37}};
-
-// Of source, target and clip, by any method. The alpaca's and the horse's kicks stretch legs beyond their bones, and
-// the alpaca's slow steps in Idle_2 and Walk others further than its own. The wolf's forelegs bend back at the elbows,
-// where the others' bend ahead at the knees: as foot and hip come near each other, other bones turn. In idle clips it
-// hardly moves at all (Idle_2_HeadLow), its hind legs are folded where the others' are nearly straight.
-const std::map<std::string, double> kRougherFarm = {{"alpaca cow Attack_Kick", 1.26},
-                                                    {"alpaca cow Idle_2", 1.14},
-                                                    {"alpaca horse Attack_Kick", 1.19},
-                                                    {"alpaca horse Idle_2", 1.22},
-                                                    {"alpaca wolf Idle_2", 1.21},
-                                                    {"alpaca wolf Idle_Headlow", 1.32},
-                                                    {"cow wolf Attack_Headbutt", 1.14},
-                                                    {"cow wolf Idle_Headlow", 1.14},
-                                                    {"horse alpaca Attack_Kick", 1.14},
-                                                    {"horse cow Attack_Kick", 1.17},
-                                                    {"horse wolf Idle_Headlow", 1.21},
-                                                    {"wolf alpaca Idle_2_HeadLow", 1.13},
-                                                    {"wolf alpaca Walk", 1.21},
-                                                    {"wolf cow Gallop", 1.30},
-                                                    {"wolf cow Idle_2", 1.20},
-                                                    {"wolf cow Idle_2_HeadLow", 1.44},
-                                                    {"wolf cow Idle_HitReact_Right", 1.22},
-                                                    {"wolf cow Walk", 1.38},
-                                                    {"wolf horse Gallop", 1.18},
-                                                    {"wolf horse Idle_2", 1.13},
-                                                    {"wolf horse Idle_2_HeadLow", 1.30},
-                                                    {"wolf horse Walk", 1.22}};
-
-// Of clip and target, by any method, where names and legs differ; elsewhere 2. Foxes that sit, bow or creep fold their
-// forelegs at the elbow, further than legs fold that bend at the knee alone, and the wolf's, whose elbows are high; a
-// horse's hardly bend at the elbow, where the wolf's have to.
-const std::map<std::string, double> kRougherStrangers = {
-    {"Sneak alpaca", 2.6}, {"Fetch cow", 2.3}, {"Howl cow", 9},         {"Fetch wolf", 2.3},     {"Sneak wolf", 2.4},
-    {"Idle wolf", 3.8},    {"Rear wolf", 2.5}, {"Turn_Left wolf", 2.1}, {"Turn_Right wolf", 2.2}};
 
 double roughest(const std::map<std::pair<std::string, std::string>, double>& rougher, const std::string& one,
                 const std::string& other) {
@@ -226,289 +175,6 @@ TEST(RetargetKnownAnswers, NoMethodIsWorseThanCopying) {
     for (const RetargetMethod& method : retargetMethods()) {
       EXPECT_LE(error(method).global, copied.global) << method.name;
       EXPECT_LE(error(method).rootRelative, copied.rootRelative) << method.name;
-    }
-  }
-}
-
-// Of animals, over the joints that go with one of the source's each: how far those but of legs and tails are off the
-// turn that the source's make, degrees; and how deep the deepest but of tails, which may be longer, sinks below the
-// lowest in rest pose, in sizes of the body.
-struct AnimalMeasures {
-  double turn = 0, depth = 0, sourceDepth = 0;
-};
-
-class AnimalSide {
- public:
-  AnimalSide(const RetargetSetup& setup, MapSide side)
-      : neutral(side == MapSide::kSource ? setup.sourceNeutral : setup.targetNeutral),
-        kinematics(side == MapSide::kSource ? setup.sourceKinematics : setup.targetKinematics) {
-    for (const JointMatch& match : setup.map.matches) {
-      if (match.source.size() > 1 || match.target.size() > 1) continue;
-      joints.push_back(side == MapSide::kSource ? match.source.front() : match.target.front());
-    }
-    for (const Vec3& position : neutral.restPositions) box_.add(position);
-    ground_ = lowest(neutral.restPositions);
-  }
-
-  double depth() const { return (ground_ - lowest(frame.positions)) / box_.diagonal(); }
-
-  const NeutralPose& neutral;
-  const BodyKinematics& kinematics;
-  std::vector<Index> joints;  // of the matches
-  BodyFrame frame;
-
- private:
-  double lowest(const std::vector<Vec3>& positions) const {
-    double low = HUGE_VAL;
-    for (const Index joint : joints) low = std::min(low, positions[joint].y());
-    return low;
-  }
-
-  Box box_;
-  double ground_ = 0;
-};
-
-bool isOfLeg(const RetargetSetup& setup, Index joint) {
-  return std::any_of(setup.animalLegs.begin(), setup.animalLegs.end(), [&](const AnimalLeg& leg) {
-    return isAncestorOrSelf(*setup.target, leg.target.upper, joint) ||
-           isAncestorOrSelf(*setup.target, leg.target.end, joint);
-  });
-}
-
-AnimalMeasures measuredAnimal(const RetargetSetup& setup, const PoseSequence& source, const PoseSequence& result) {
-  AnimalMeasures measures;
-  AnimalSide from(setup, MapSide::kSource), to(setup, MapSide::kTarget);
-  const std::vector<Index> tail = tailOf(*setup.target);
-  for (std::size_t f = 0; f < result.poses.size(); ++f) {
-    from.kinematics.globals(source.poses[f], from.frame);
-    to.kinematics.globals(result.poses[f], to.frame);
-    measures.sourceDepth = std::max(measures.sourceDepth, from.depth());
-    measures.depth = std::max(measures.depth, to.depth());
-    for (std::size_t i = 0; i < from.joints.size(); ++i) {
-      const Index s = from.joints[i], t = to.joints[i];
-      if (isOfLeg(setup, t) || std::find(tail.begin(), tail.end(), t) != tail.end()) continue;
-      const Quat turned = from.frame.rotations[s] * from.neutral.rotations[s].conjugate();
-      const Quat expected = turned * to.neutral.rotations[t];
-      measures.turn = std::max(measures.turn, expected.angularDistance(to.frame.rotations[t]) * 180 / kPi);
-    }
-  }
-  return measures;
-}
-
-bool leavesItsFeet(const std::string& clip) {
-  return clip.find("Death") != std::string::npos || clip.find("Sleep") != std::string::npos ||
-         clip.find("lay") != std::string::npos || clip.find("ump") != std::string::npos;
-}
-
-// Every clip of some quadrupeds on their families. Bodies that come down to the ground or leave it have no feet that
-// tell how deep they may be: longer or shorter legs then take other joints below it.
-TEST(RetargetAnimals, QuadrupedsMoveTheirFamilies) {
-  if (!sharedDataFolder()) GTEST_SKIP() << kNoSharedData;
-  const std::vector<const char*> foxes = {"m2m_fox_fox.glb", "m2m_fox_cat.glb", "m2m_fox_dog.glb"};
-  const std::vector<const char*> farm = {"quaternius_alpaca.glb", "quaternius_cow.glb", "quaternius_horse.glb",
-                                         "quaternius_wolf.glb"};
-  for (const char* file :
-       {"motions/m2m_fox_animations.glb", "motions/m2m_horse_animations.glb", "rigged/quaternius_alpaca.glb",
-        "rigged/quaternius_cow.glb", "rigged/quaternius_horse.glb", "rigged/quaternius_wolf.glb"}) {
-    const Motion motion = readMotion(*sharedDataFolder() / file);
-    EXPECT_GE(motion.clips.size(), 12u);
-    for (const char* animal : std::string(file).starts_with("motions") ? foxes : farm) {
-      const Skeleton target = readMotion(*sharedDataFolder() / "rigged" / animal).skeleton;
-      const SkeletonMap map = matchSkeletons(motion.skeleton, target);
-      EXPECT_GE(map.matches.size(), 25u);
-      for (const Clip& clip : motion.clips) {
-        SCOPED_TRACE(std::string(file) + ' ' + clip.name + ' ' + animal);
-        const PoseSequence frames = sampleFrames(motion.skeleton, clip, 30);
-        const RetargetSetup setup(motion.skeleton, target, map, {}, &frames);
-        EXPECT_FALSE(setup.person);
-        const AnimalMeasures measures =
-            measuredAnimal(setup, frames, retargetFrames(findRetargetMethod("limb-ik"), setup, frames));
-        EXPECT_LT(measures.turn, 0.01);
-        if (!leavesItsFeet(clip.name)) {
-          EXPECT_LT(measures.depth, measures.sourceDepth + 0.05);
-        }
-      }
-    }
-  }
-}
-
-// The shared clips walk on the spot; so the body goes forward as fast as its standing feet go back.
-PoseSequence walkingAhead(const RetargetSetup& setup, PoseSequence frames) {
-  BodyFrame before, now;
-  std::vector<double> steps;  // of feet that are low
-  for (std::size_t f = 0; f < frames.poses.size(); ++f, std::swap(before, now)) {
-    setup.sourceKinematics.globals(frames.poses[f], now);
-    for (const AnimalLeg& leg : setup.animalLegs) {
-      const Index foot = leg.source.end;
-      if (f == 0 || now.positions[foot].y() > setup.sourceNeutral.positions[foot].y() + 0.01) continue;
-      steps.push_back(now.positions[foot].z() - before.positions[foot].z());
-    }
-  }
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  for (std::size_t f = 0; f < frames.poses.size(); ++f) {
-    for (Index j = 0; j < setup.source->jointCount(); ++j) {
-      if (setup.source->joints[j].parent) continue;
-      frames.poses[f].locals[j].translation.z() -= static_cast<double>(f) * *middle;
-    }
-  }
-  return frames;
-}
-
-TEST(RetargetAnimals, PawsStandWhereTheyStand) {
-  if (!sharedDataFolder()) GTEST_SKIP() << kNoSharedData;
-  const Motion motion = readMotion(*sharedDataFolder() / "motions/m2m_fox_animations.glb");
-  for (const char* animal : {"m2m_fox_cat.glb", "m2m_fox_dog.glb"}) {
-    const PlainSkeleton plain(readMotion(*sharedDataFolder() / "rigged" / animal).skeleton);
-    const Skeleton& target = plain.skeleton();
-    const SkeletonMap map = matchSkeletons(motion.skeleton, target);
-    const bool cat = std::string(animal) == "m2m_fox_cat.glb";
-    for (const Clip& clip : motion.clips) {
-      if (clip.name == "Death") continue;
-      SCOPED_TRACE(clip.name + ' ' + animal);
-      PoseSequence frames = sampleFrames(motion.skeleton, clip, 30);
-      const bool walks = clip.name == "Walk" || clip.name == "Sneak";
-      if (walks) frames = walkingAhead(RetargetSetup(motion.skeleton, target, map, {}, &frames), frames);
-      const RetargetSetup setup(motion.skeleton, target, map, {}, &frames);
-      ASSERT_EQ(setup.animalLegs.size(), 4u);
-      for (const char* method : {"limb-ik", "online", "spacetime"}) {
-        const MotionMetrics result = measured(setup, method, frames);
-        if (walks) {
-          EXPECT_GT(result.planted, 0.05);
-        }
-        EXPECT_LT(result.sliding, 0.02);
-        EXPECT_LT(result.sliding, result.sourceSliding + 1e-4);
-        EXPECT_LT(1700 * (result.penetration - result.sourcePenetration), 5) << "those who sit lay their feet down";
-        EXPECT_GT(result.contactAgreement, 0.99);
-        EXPECT_LT(result.jerk, cat ? roughest(kRougherCat, clip.name, method) : 1.1) << method;
-      }
-    }
-  }
-}
-
-TEST(RetargetAnimals, FoxesMoveAsHorses) {
-  if (!sharedDataFolder()) GTEST_SKIP() << kNoSharedData;
-  const Motion motion = readMotion(*sharedDataFolder() / "motions/m2m_horse_animations.glb");
-  for (const char* animal : {"m2m_fox_fox.glb", "m2m_fox_cat.glb", "m2m_fox_dog.glb"}) {
-    const PlainSkeleton plain(readMotion(*sharedDataFolder() / "rigged" / animal).skeleton);
-    const SkeletonMap map = matchSkeletons(motion.skeleton, plain.skeleton());
-    for (const Clip& clip : motion.clips) {
-      SCOPED_TRACE(clip.name + ' ' + animal);
-      const PoseSequence frames = sampleFrames(motion.skeleton, clip, 30);
-      const RetargetSetup setup(motion.skeleton, plain.skeleton(), map, {}, &frames);
-      ASSERT_EQ(setup.animalLegs.size(), 4u);
-      const auto rougher = kRougherHorse.find(clip.name);
-      for (const char* method : {"limb-ik", "online"}) {
-        SCOPED_TRACE(method);
-        const MotionMetrics result = measured(setup, method, frames);
-        EXPECT_LT(result.sliding, 0.02);
-        EXPECT_LT(result.sliding, result.sourceSliding + 1e-4);
-        if (clip.name != "Death") {
-          EXPECT_GT(result.contactAgreement, 0.95) << "one that falls over takes its feet along";
-        }
-        EXPECT_LT(result.jerk, rougher == kRougherHorse.end() ? 1.1 : rougher->second);
-      }
-    }
-  }
-}
-
-// How far a shin's end is from the foot on a root of its own that belongs there, leg lengths, at worst.
-double gapAtFeet(const RetargetSetup& setup, const PoseSequence& result) {
-  const std::vector<Vec3>& rest = setup.targetNeutral.restPositions;
-  double worst = 0;
-  BodyFrame frame;
-  for (const Pose& pose : result.poses) {
-    setup.targetKinematics.globals(pose, frame);
-    for (const AnimalLeg& leg : setup.animalLegs) {
-      const Index shin = leg.target.carrier.value(), foot = leg.target.end;
-      const double change = (frame.positions[foot] - frame.positions[shin]).norm() - (rest[foot] - rest[shin]).norm();
-      worst = std::max(worst, std::abs(change) / (rest[foot] - rest[leg.target.upper]).norm());
-    }
-  }
-  return worst;
-}
-
-// Rigs for inverse kinematics, with feet on roots of their own.
-TEST(RetargetAnimals, LegsReachFeetOnRootsOfTheirOwn) {
-  if (!sharedDataFolder()) GTEST_SKIP() << kNoSharedData;
-  const std::vector<std::string> farm = {"alpaca", "cow", "horse", "wolf"};
-  const auto fileOf = [](const std::string& animal) {
-    return *sharedDataFolder() / "rigged" / ("quaternius_" + animal + ".glb");
-  };
-  for (const std::string& from : farm) {
-    const Motion motion = readMotion(fileOf(from));
-    for (const std::string& to : farm) {
-      if (from == to) continue;
-      const PlainSkeleton plain(readMotion(fileOf(to)).skeleton);
-      const Skeleton& target = plain.skeleton();
-      const SkeletonMap map = matchSkeletons(motion.skeleton, target);
-      for (const Clip& clip : motion.clips) {
-        if (leavesItsFeet(clip.name)) continue;
-        const std::string pair =
-            std::string(from).append(" ").append(to).append(" ").append(clip.name.substr(clip.name.find('|') + 1));
-        SCOPED_TRACE(pair);
-        const auto rougher = kRougherFarm.find(pair);
-        PoseSequence frames = sampleFrames(motion.skeleton, clip, 30);
-        const bool walks = clip.name.ends_with("Walk");
-        if (walks) frames = walkingAhead(RetargetSetup(motion.skeleton, target, map, {}, &frames), frames);
-        const RetargetSetup setup(motion.skeleton, target, map, {}, &frames);
-        ASSERT_EQ(setup.animalLegs.size(), 4u);
-        for (const char* method : {"limb-ik", "online", "spacetime"}) {
-          SCOPED_TRACE(method);
-          const PoseSequence moved = retargetFrames(findRetargetMethod(method), setup, frames);
-          const MotionMetrics result = measureMotion(setup, frames, moved);
-          EXPECT_LT(gapAtFeet(setup, moved), 1e-6);
-          EXPECT_LT(result.sliding, 0.011);
-          const double sunk = setup.scale * result.sourcePenetration * result.sourceHeight / result.height;
-          EXPECT_LT(1700 * (result.penetration - sunk), 5);
-          EXPECT_GT(result.contactAgreement, 0.98);
-          EXPECT_LT(result.jerk, rougher == kRougherFarm.end() ? 1.1 : rougher->second);
-          EXPECT_LT(result.boneDirection, from == "wolf" || to == "wolf" ? 39 : 10) << "knees as theirs, or opposite";
-        }
-      }
-    }
-  }
-}
-
-// Skeletons of no names in common, and of other numbers of joints.
-TEST(RetargetAnimals, QuadrupedsAreMatchedByTheirForm) {
-  if (!sharedDataFolder()) GTEST_SKIP() << kNoSharedData;
-  const std::vector<std::string> farm = {"quaternius_alpaca", "quaternius_cow", "quaternius_horse", "quaternius_wolf"},
-                                 foxes = {"m2m_fox_fox", "m2m_fox_cat", "m2m_fox_dog"};
-  std::map<std::string, double> most = {{"motions/m2m_fox_animations", 1.4}, {"motions/m2m_horse_animations", 1}};
-  for (const std::string& animal : farm) most["rigged/" + animal] = animal == "quaternius_wolf" ? 1.25 : 1.1;
-  for (const auto& [file, meanJerk] : most) {
-    const Motion motion = readMotion(*sharedDataFolder() / (file + ".glb"));
-    for (const char* method : {"limb-ik", "online", "spacetime"}) {
-      std::vector<double> jerks;
-      for (const std::string& animal : file.starts_with("motions") ? farm : foxes) {
-        const PlainSkeleton plain(readMotion(*sharedDataFolder() / "rigged" / (animal + ".glb")).skeleton);
-        const SkeletonMap map = matchSkeletons(motion.skeleton, plain.skeleton());
-        EXPECT_GE(map.matches.size(), 20u);
-        for (const Clip& clip : motion.clips) {
-          if (leavesItsFeet(clip.name) || clip.name == "Fall") continue;
-          SCOPED_TRACE(std::string(file).append(" ").append(clip.name).append(" ").append(animal) + " " + method);
-          PoseSequence frames = sampleFrames(motion.skeleton, clip, 30);
-          if (frames.poses.size() < 5) continue;
-          if (clip.name.ends_with("Walk")) {
-            frames = walkingAhead(RetargetSetup(motion.skeleton, plain.skeleton(), map, {}, &frames), frames);
-          }
-          const RetargetSetup setup(motion.skeleton, plain.skeleton(), map, {}, &frames);
-          ASSERT_EQ(setup.animalLegs.size(), 4u);
-          const MotionMetrics result = measured(setup, method, frames);
-          jerks.push_back(result.jerk);
-          const std::string pair = clip.name + ' ' + animal.substr(animal.rfind('_') + 1);
-          const auto rougher = kRougherStrangers.find(pair);
-          EXPECT_LT(result.jerk, rougher == kRougherStrangers.end() ? 2 : rougher->second);
-          EXPECT_LT(result.sliding, std::max(0.02, result.sourceSliding + 1e-4));
-          // Too low for legs that do not fold as far; with a trunk that sways further than the source's.
-          const bool low = pair == "Sneak wolf", sways = pair == "Walk wolf";
-          EXPECT_LT(result.penetration, result.sourcePenetration + (low ? 0.04 : 0.01));
-          EXPECT_GT(result.contactAgreement, sways ? 0.85 : 0.95);
-        }
-      }
-      EXPECT_LT(std::accumulate(jerks.begin(), jerks.end(), 0.0) / static_cast<double>(jerks.size()), meanJerk)
-          << file << ' ' << method;
     }
   }
 }
