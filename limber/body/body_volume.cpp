@@ -224,7 +224,7 @@ BodyVolume measureBody(const TriMesh& mesh) {
   }
   if (inside.empty()) {
     throw Error(ErrorCode::kUnsupported, "nothing lies inside the model, so that no skeleton fits into it", {},
-                "it is flat or too thin; use --rigger sphere-mesh");
+                "it is flat or too thin; the rigger sphere-mesh takes such models");
   }
   body.insideShare = static_cast<double>(inside.size()) / static_cast<double>(distance.nodeCount());
   body.spheres = medialSpheres(distance, graph, inside);

@@ -75,6 +75,17 @@ TEST(Animation, ShowsASkeletonAloneAsItsBones) {
   EXPECT_THROW(renderClip(asset, motion.clips[0], moments, options, progress, warnings), Error);
 }
 
+// Each joint's sphere has hundreds of triangles.
+TEST(Animation, ManyJointsAreBonesAlone) {
+  Motion motion;
+  motion.skeleton.joints.push_back({"root", std::nullopt, {}, 0});
+  Transform along;
+  along.translation = Vec3(0, 0.1, 0.05);
+  for (Index j = 1; j < 5000; ++j) motion.skeleton.joints.push_back({std::string("j").append(std::to_string(j)), j - 1, along, 0});
+  motion.clips.push_back(rising());
+  EXPECT_LE(makeScene(motionAsset(motion)).triangles.size(), 8u * 5000);
+}
+
 TEST(Animation, MomentsCoverTheClip) {
   const Clip clip = rising();
   EXPECT_EQ(clipMoments(clip, 5, true), (std::vector<double>{0, 0.25, 0.5, 0.75, 1}));

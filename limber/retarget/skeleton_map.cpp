@@ -238,7 +238,7 @@ SkeletonMap matchSkeletons(const Skeleton& source, const Skeleton& target) {
               fmt::format("the motion's skeleton of {} joints and the character's of {} have too little in common to "
                           "be matched by names or by form",
                           source.jointCount(), target.jointCount()),
-              "", "write a map file and give it with --map (docs/retargeting.md)");
+              "", "say in a map which joint follows which (docs/retargeting.md)");
 }
 
 void checkSkeletonMap(const SkeletonMap& map, const Skeleton& source, const Skeleton& target) {
