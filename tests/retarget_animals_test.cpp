@@ -59,10 +59,12 @@ const std::map<std::string, double> kRougherFarm = {{"alpaca cow Attack_Kick", 1
 
 // Of clip and target, by any method, where names and legs differ; elsewhere 2. Foxes that sit, bow or creep fold their
 // forelegs at the elbow, further than legs fold that bend at the knee alone, and the wolf's, whose elbows are high; a
-// horse's hardly bend at the elbow, where the wolf's have to.
+// horse's hardly bend at the elbow, where the wolf's have to. A wolf's and an alpaca's steps are long for straighter
+// legs.
 const std::map<std::string, double> kRougherStrangers = {
-    {"Sneak alpaca", 2.6}, {"Fetch cow", 2.3}, {"Howl cow", 9},         {"Fetch wolf", 2.3},     {"Sneak wolf", 2.4},
-    {"Idle wolf", 3.8},    {"Rear wolf", 2.5}, {"Turn_Left wolf", 2.1}, {"Turn_Right wolf", 2.2}};
+    {"Sneak alpaca", 2.6},    {"Fetch cow", 2.3},      {"Howl cow", 9},      {"Fetch wolf", 2.3},
+    {"Sneak wolf", 2.4},      {"Idle wolf", 3.8},      {"Rear wolf", 2.5},   {"Turn_Left wolf", 2.1},
+    {"Turn_Right wolf", 2.2}, {"Gallop khronos", 2.2}, {"Walk khronos", 2.8}};
 
 double boundOf(const std::map<std::string, double>& rougher, const std::string& what, double usual = 1.1) {
   const auto known = rougher.find(what);
@@ -314,17 +316,18 @@ TEST(RetargetAnimals, LegsReachFeetOnRootsOfTheirOwn) {
 TEST(RetargetAnimals, QuadrupedsAreMatchedByTheirForm) {
   if (!sharedDataFolder()) GTEST_SKIP() << kNoSharedData;
   const std::vector<std::string> farm = {"quaternius_alpaca", "quaternius_cow", "quaternius_horse", "quaternius_wolf"},
-                                 foxes = {"m2m_fox_fox", "m2m_fox_cat", "m2m_fox_dog"};
-  std::map<std::string, double> most = {{"motions/m2m_fox_animations", 1.4}, {"motions/m2m_horse_animations", 1}};
-  for (const std::string& animal : farm) most["rigged/" + animal] = animal == "quaternius_wolf" ? 1.25 : 1.1;
+                                 foxes = {"m2m_fox_fox", "m2m_fox_cat", "m2m_fox_dog", "fox_khronos"};
+  std::map<std::string, double> most = {
+      {"motions/m2m_fox_animations", 1.4}, {"motions/m2m_horse_animations", 1}, {"rigged/fox_khronos", 1}};
+  for (const std::string& animal : farm) most["rigged/" + animal] = animal == "quaternius_wolf" ? 1.3 : 1.12;
   for (const auto& [file, meanJerk] : most) {
     const Motion motion = readMotion(*sharedDataFolder() / (file + ".glb"));
     for (const char* method : {"limb-ik", "online", "spacetime"}) {
       std::vector<double> jerks;
-      for (const std::string& animal : file.starts_with("motions") ? farm : foxes) {
+      for (const std::string& animal : file.find("quaternius") == std::string::npos ? farm : foxes) {
         const PlainSkeleton plain(readMotion(*sharedDataFolder() / "rigged" / (animal + ".glb")).skeleton);
         const SkeletonMap map = matchSkeletons(motion.skeleton, plain.skeleton());
-        EXPECT_GE(map.matches.size(), 20u);
+        EXPECT_GE(map.matches.size(), 19u);
         for (const Clip& clip : motion.clips) {
           if (leavesItsFeet(clip.name) || clip.name == "Fall") continue;
           SCOPED_TRACE(std::string(file).append(" ").append(clip.name).append(" ").append(animal) + " " + method);
@@ -337,7 +340,8 @@ TEST(RetargetAnimals, QuadrupedsAreMatchedByTheirForm) {
           ASSERT_EQ(setup.animalLegs.size(), 4u);
           const MotionMetrics result = measured(setup, method, frames);
           jerks.push_back(result.jerk);
-          const std::string pair = clip.name + ' ' + animal.substr(animal.rfind('_') + 1);
+          const std::string pair =
+              clip.name.substr(clip.name.find('|') + 1) + ' ' + animal.substr(animal.rfind('_') + 1);
           EXPECT_LT(result.jerk, boundOf(kRougherStrangers, pair, 2));
           EXPECT_LT(result.sliding, std::max(0.02, result.sourceSliding + 1e-4));
           // Too low for legs that do not fold as far; with a trunk that sways further than the source's.
