@@ -100,7 +100,9 @@ class BodyReader {
     return std::any_of(labels_.begin(), labels_.end(), [&](const HumanoidJoint& l) { return l.joint == joint; });
   }
 
+  // Without joints that another part has: where bodies are short, form gives some to an arm and to the neck.
   void add(const std::string& part, std::vector<Index> joints, double confidence) {
+    std::erase_if(joints, [&](Index joint) { return !taken_.insert(joint).second; });
     if (joints.empty()) return;
     body_.parts[part] = {std::move(joints), confidence};
     body_.order.push_back(part);
@@ -152,6 +154,7 @@ class BodyReader {
 
   const Skeleton& skeleton_;
   std::vector<HumanoidJoint> labels_;
+  std::set<Index> taken_;
   Body body_;
 };
 

@@ -92,6 +92,31 @@ TEST(SkeletonMap, BadFilesAreRefused) {
   }
 }
 
+// Handles of a penguin: by its form, one of them begins the right arm and the neck.
+TEST(SkeletonMap, EachJointHasOnePart) {
+  const struct {
+    int parent;
+    Vec3 offset;
+  } joints[] = {
+      {-1, {0.20, -0.25, 0}},     {0, {-0.12, 0.66, 0.18}},  {0, {-0.46, -0.69, 0.02}},   {0, {-0.43, 0.09, -0.02}},
+      {0, {0.26, -0.73, 0.10}},   {1, {-0.01, 0.23, -0.21}}, {1, {0.48, 0, -0.21}},       {2, {0.16, -0.38, -0.03}},
+      {2, {0.06, -0.11, -0.40}},  {3, {-0.32, 0.47, 0.02}},  {4, {-0.22, -0.33, -0.10}},  {5, {-0.01, 0.34, 0.02}},
+      {5, {-0.13, -0.27, -0.25}}, {6, {0.21, -0.41, 0.05}},  {7, {-0.14, -0.17, -0.07}},  {8, {0.43, -0.04, -0.06}},
+      {9, {-0.24, -0.85, -0.02}}, {10, {-0, -0.16, 0.28}},   {10, {0.17, -0.19, -0.09}},  {11, {-0.19, -0.10, 0.30}},
+      {13, {0.07, -0.61, -0.07}}, {14, {0.13, 0.02, 0.45}},  {15, {-0.19, -0.17, -0.30}}, {17, {0.23, 0.01, 0.25}},
+      {21, {-0.43, 0, -0.04}},    {23, {0.25, -0, -0.21}}};
+  Skeleton penguin;
+  for (const auto& [parent, offset] : joints) {
+    Transform rest;
+    rest.translation = offset;
+    const std::string name = std::string("handle_").append(std::to_string(penguin.jointCount()));
+    penguin.joints.push_back({name, parent < 0 ? std::nullopt : std::optional(static_cast<Index>(parent)), rest, 0});
+  }
+  const Skeleton person = practiceHumanoid();
+  checkSkeletonMap(matchSkeletons(person, penguin), person, penguin);
+  checkSkeletonMap(matchSkeletons(penguin, person), penguin, person);
+}
+
 TEST(SkeletonMap, AnimalsAreNoPeople) {
   Skeleton table;  // four legs, no arms, no head
   for (int i = 0; i < 9; ++i) {
