@@ -13,13 +13,12 @@ namespace {
 
 constexpr double kConfidence = 0.8;
 // In heights of the body, from its lowest joint to where the legs begin.
-constexpr double kLow = 0.2;        // of a foot, at most
-constexpr double kMirrored = 0.15;  // how far left and right may be off being mirror images
-constexpr double kAside = 0.02;     // of a leg from the body's middle, at least
-constexpr double kBlade = 0.7;      // of the height of a blade's upper end, at which its lower one is at least
-constexpr double kSteep = 1;        // how far down a leg goes for each metre along, at least
-constexpr double kSameWay = 0.9;    // cosine between where the two face, and between their blades, at least
-
+constexpr double kLow = 0.2;             // of a foot, at most
+constexpr double kMirrored = 0.15;       // how far left and right may be off being mirror images
+constexpr double kAside = 0.02;          // of a leg from the body's middle, at least
+constexpr double kBlade = 0.7;           // of the height of a blade's upper end, at which its lower one is at least
+constexpr double kSteep = 1;             // how far down a leg goes for each metre along, at least
+constexpr double kSameWay = 0.9;         // cosine between where the two face, and between their blades, at least
 constexpr std::size_t kMostChains = 64;  // that hang down: more are no legs
 
 using Joints = std::vector<Index>;  // root to tip
@@ -57,7 +56,8 @@ class QuadrupedReader {
     if (!isAbove(hind.on, fore.on)) return std::nullopt;
     Quadruped animal;
     animal.hindquarters = hind.on;
-    for (Index j = fore.on; j != hind.on; j = *parents_[j]) animal.trunk.insert(animal.trunk.begin(), j);
+    for (Index j = fore.on; j != hind.on; j = *parents_[j]) animal.trunk.push_back(j);
+    std::reverse(animal.trunk.begin(), animal.trunk.end());
     const Vec3 along = at(fore.on) - at(hind.on);
     if (levelled(along).norm() <= std::abs(along.y())) return std::nullopt;
     animal.forward = levelled(along).normalized();
@@ -89,9 +89,10 @@ class QuadrupedReader {
   // From where it leaves the body down to its last joint.
   Joints chainTo(Index leaf) const {
     Joints chain = {leaf};
-    while (parents_[chain.front()] && children_[*parents_[chain.front()]].size() == 1) {
-      chain.insert(chain.begin(), *parents_[chain.front()]);
+    while (parents_[chain.back()] && children_[*parents_[chain.back()]].size() == 1) {
+      chain.push_back(*parents_[chain.back()]);
     }
+    std::reverse(chain.begin(), chain.end());
     return chain;
   }
 
@@ -134,7 +135,8 @@ class QuadrupedReader {
       end = j;
     }
     Joints path;
-    for (; end && *end != pair.on; end = parents_[*end]) path.insert(path.begin(), *end);
+    for (; end && *end != pair.on; end = parents_[*end]) path.push_back(*end);
+    std::reverse(path.begin(), path.end());
     return path;
   }
 
