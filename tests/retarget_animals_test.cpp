@@ -62,8 +62,8 @@ const std::map<std::string, double> kRougherFarm = {{"alpaca cow Attack_Kick", 1
 // horse's hardly bend at the elbow, where the wolf's have to. A wolf's and an alpaca's steps are long for straighter
 // legs.
 const std::map<std::string, double> kRougherStrangers = {
-    {"Sneak alpaca", 2.6},    {"Fetch cow", 2.3},      {"Howl cow", 9},      {"Fetch wolf", 2.3},
-    {"Sneak wolf", 2.4},      {"Idle wolf", 3.8},      {"Rear wolf", 2.5},   {"Turn_Left wolf", 2.1},
+    {"Sneak alpaca", 2.6},    {"Fetch cow", 2.3},      {"Howl cow", 9.5},    {"Fetch wolf", 2.3},
+    {"Sneak wolf", 2.6},      {"Idle wolf", 3.8},      {"Rear wolf", 2.6},   {"Turn_Left wolf", 2.1},
     {"Turn_Right wolf", 2.2}, {"Gallop khronos", 2.2}, {"Walk khronos", 2.8}};
 
 double boundOf(const std::map<std::string, double>& rougher, const std::string& what, double usual = 1.1) {

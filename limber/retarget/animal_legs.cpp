@@ -22,7 +22,7 @@ constexpr double kBlade = 0.7;  // of the height of a blade's upper end, at whic
 // A joint of the target and its partner in the source.
 struct Pair {
   Index source = 0, target = 0;
-  bool upper = false;  // known to begin a leg (isUpperBone)
+  std::optional<LegEnd> known;  // of quadrupeds matched by form
 };
 
 class LegFinder {
@@ -40,7 +40,7 @@ class LegFinder {
         pairOf_(target.jointCount()),
         matchedSource_(source.jointCount()) {
     for (const JointMatch& match : map.matches) {
-      pairs_.push_back({match.source.front(), match.target.front(), isUpperBone(match.part)});
+      pairs_.push_back({match.source.front(), match.target.front(), legEndOf(match.part)});
       pairOf_[match.target.front()] = pairs_.size() - 1;
       matchedSource_[match.source.front()] = true;
     }
@@ -57,7 +57,7 @@ class LegFinder {
   std::vector<AnimalLeg> find() const {
     std::vector<AnimalLeg> legs;
     for (std::size_t p = 0; p < pairs_.size(); ++p) {
-      if (!children_[p].empty() || height(pairs_[p]) > kLow) continue;
+      if (!children_[p].empty()) continue;
       std::vector<Pair> chain = {pairs_[p]};
       for (auto above = above_[p]; above && children_[*above].size() == 1; above = above_[*above]) {
         chain.push_back(pairs_[*above]);
@@ -97,18 +97,33 @@ class LegFinder {
 
   static bool isSteep(const Vec3& way) { return -way.y() > kSteep * std::hypot(way.x(), way.z()); }
 
-  std::optional<AnimalLeg> legOf(const std::vector<Pair>& chain) const {
-    const auto end = static_cast<std::size_t>(
-        std::find_if(chain.begin(), chain.end(), [&](const Pair& p) { return height(p) < kLow; }) - chain.begin());
-    if (end < 2 || end >= chain.size()) return std::nullopt;
+  // Where in a chain the leg begins and ends.
+  struct Ends {
+    std::size_t upper = 0, end = 0;
+  };
+
+  std::optional<Ends> endsOf(const std::vector<Pair>& chain) const {
+    const auto where = [&](const auto& is) {
+      return static_cast<std::size_t>(std::find_if(chain.begin(), chain.end(), is) - chain.begin());
+    };
+    const Ends known{where([](const Pair& p) { return p.known == LegEnd::kUpper; }),
+                     where([](const Pair& p) { return p.known == LegEnd::kFoot; })};
+    if (known.end < chain.size()) return known.upper + 2 <= known.end ? std::optional(known) : std::nullopt;
+    Ends ends{0, where([&](const Pair& p) { return height(p) < kLow; })};
+    if (ends.end < 2 || ends.end >= chain.size() || height(chain.back()) > kLow) return std::nullopt;
     // Shoulder blades and hip bones stay with the body.
-    const bool blade = end > 2 && !chain[0].upper && height(chain[1]) > kBlade * height(chain[0]);
-    const std::size_t upper = blade ? 1 : 0;
-    const std::vector<Vec3>&from = sourceNeutral_.positions, &to = targetNeutral_.positions;
-    if (!isSteep(from[chain[end].source] - from[chain[upper].source]) ||
-        !isSteep(to[chain[end].target] - to[chain[upper].target]) || height(chain[upper]) < kBegins) {
-      return std::nullopt;
-    }
+    if (ends.end > 2 && height(chain[1]) > kBlade * height(chain[0])) ends.upper = 1;
+    const Pair &begin = chain[ends.upper], &end = chain[ends.end];
+    const bool steep = isSteep(sourceNeutral_.positions[end.source] - sourceNeutral_.positions[begin.source]) &&
+                       isSteep(targetNeutral_.positions[end.target] - targetNeutral_.positions[begin.target]);
+    return steep && height(begin) >= kBegins ? std::optional(ends) : std::nullopt;
+  }
+
+  std::optional<AnimalLeg> legOf(const std::vector<Pair>& chain) const {
+    const std::optional<Ends> ends = endsOf(chain);
+    if (!ends) return std::nullopt;
+    const auto [upper, end] = *ends;
+    const std::vector<Vec3>& to = targetNeutral_.positions;
     const Vec3 start = to[chain[upper].target], line = (to[chain[end].target] - start).normalized();
     const auto offLine = [&](const Pair& pair) { return (to[pair.target] - start).cross(line).norm(); };
     const auto lower = std::max_element(chain.begin() + static_cast<std::ptrdiff_t>(upper) + 1,
@@ -172,7 +187,7 @@ std::vector<AnimalLeg> animalLegs(const SkeletonMap& map, const Skeleton& source
                                   const NeutralPose& sourceNeutral, const NeutralPose& targetNeutral) {
   const BodySize one = bodySize(map, MapSide::kSource, sourceNeutral),
                  other = bodySize(map, MapSide::kTarget, targetNeutral);
-  if (!one.stands() || !other.stands()) return {};
+  if (!map.find(kHindquarters) && (!one.stands() || !other.stands())) return {};
   return LegFinder(map, source, target, sourceNeutral, targetNeutral, one.height, other.height).find();
 }
 

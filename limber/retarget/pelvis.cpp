@@ -27,6 +27,12 @@ Vec3 level(const Vec3& v) {
   return {v.x(), 0, v.z()};
 }
 
+// x where it is small, at most `most` either way.
+double saturated(double x, double most) {
+  const double share = x / most;
+  return x / std::sqrt(std::sqrt(1 + share * share * share * share));
+}
+
 double hipWidth(const NeutralPose& neutral, Index left, Index right) {
   return (neutral.restPositions[left] - neutral.restPositions[right]).norm();
 }
@@ -113,7 +119,7 @@ double Pelvis::riseFor(std::span<const Leg> legs, const BodyFrame& frame, const 
 }
 
 // Their joint angles have the foot elsewhere: legs that stand bend as the source's do. A mean of the ways, without a
-// kink where another leg takes over or the most is reached.
+// kink where another leg takes over.
 double Pelvis::ownWaysShift(std::span<const Leg> legs, const BodyFrame& frame) const {
   const double soft = kSoftBend * setup_.targetHipHeight;
   double sum = kStay, weights = kStay;
@@ -123,11 +129,11 @@ double Pelvis::ownWaysShift(std::span<const Leg> legs, const BodyFrame& frame) c
     const double reach = leg.bentReach, across = std::hypot(way.x(), way.z());
     if (across >= reach) continue;
     const double weight = smoothStep(1 - leg.lift / kStandsBelow) * (1 - across * across / (reach * reach));
-    sum += weight * std::exp(-(way.y() + std::sqrt(reach * reach - across * across)) / soft);
+    const double up = way.y() + std::sqrt(reach * reach - across * across);
+    sum += weight * std::exp(-saturated(up, kMostShift * setup_.targetHipHeight) / soft);
     weights += weight;
   }
-  const double shift = -soft * std::log(sum / weights), share = shift / (kMostShift * setup_.targetHipHeight);
-  return shift / std::sqrt(std::sqrt(1 + share * share * share * share));
+  return -soft * std::log(sum / weights);
 }
 
 double Pelvis::changeOf(const Leg& leg, const BodyFrame& frame, const Quat& turn) const {

@@ -176,7 +176,11 @@ class QuadrupedReader {
     const auto foot = std::find_if(chain.begin(), chain.end(), [&](Index j) { return over(j) < kLow; });
     const auto bones = foot - chain.begin();
     if (bones < 2 || foot == chain.end()) return std::nullopt;
-    const auto upper = chain.begin() + (bones > 2 && over(chain[1]) > kBlade * over(chain[0]) ? 1 : 0);
+    auto upper = chain.begin() + (bones > 2 && over(chain[1]) > kBlade * over(chain[0]) ? 1 : 0);
+    for (auto joint = upper + 1; joint + 1 < foot; ++joint) {
+      if (over(*joint) > over(*(joint - 1)))
+        upper = joint;  // a leg comes down; what goes up is a blade of several joints
+    }
     QuadrupedLeg leg{{chain.begin(), upper}, {upper, foot}, {*foot}, {foot + 1, chain.end()}, Vec3::Zero(), {}};
     if (upper != chain.begin()) leg.bladeWay = (at(*upper) - at(chain.front())).normalized();
     double length = 0;
@@ -247,8 +251,12 @@ class Matcher {
 
 }  // namespace
 
-bool isUpperBone(std::string_view part) {
-  return std::any_of(kLegs.begin(), kLegs.end(), [&](const char* leg) { return part == std::string(leg) + "Bone1"; });
+std::optional<LegEnd> legEndOf(std::string_view part) {
+  for (const std::string leg : kLegs) {
+    if (part == leg + "Bone1") return LegEnd::kUpper;
+    if (part == leg + "Foot") return LegEnd::kFoot;
+  }
+  return std::nullopt;
 }
 
 std::optional<SkeletonMap> matchQuadrupeds(const Skeleton& source, const Skeleton& target) {

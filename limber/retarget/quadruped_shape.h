@@ -11,8 +11,9 @@ namespace limber {
 // The part that carries the hind legs, and with them the whole body (RootPlacer).
 inline constexpr const char* kHindquarters = "hindquarters";
 
-// Whether the part is a leg's first bone below the blade or the hip bone.
-bool isUpperBone(std::string_view part);
+// Parts of its legs at which they begin, below the blade or the hip bone, and end.
+enum class LegEnd { kUpper, kFoot };
+std::optional<LegEnd> legEndOf(std::string_view part);
 
 // For two that stand on four legs (+Y up) and face the same way: two pairs of chains that come down to the ground, one
 // behind the other along the trunk; what goes on from the trunk is the neck, what hangs behind the tail. Feet on a root

@@ -49,8 +49,9 @@ TEST(QuadrupedShape, TellsBodyAndLegs) {
   EXPECT_EQ(sourceOf(*map, one, "leftHindFoot"), PartNames({"b0LeftThree"}));
   EXPECT_EQ(sourceOf(*map, one, "rightForeToes"), PartNames({"b1RightFour"}));
   for (const JointMatch& match : map->matches) EXPECT_EQ(match.source, match.target) << match.part;
-  EXPECT_TRUE(isUpperBone("leftForeBone1"));
-  EXPECT_FALSE(isUpperBone("leftForeBone2"));
+  EXPECT_EQ(legEndOf("leftForeBone1"), LegEnd::kUpper);
+  EXPECT_EQ(legEndOf("rightHindFoot"), LegEnd::kFoot);
+  EXPECT_FALSE(legEndOf("leftForeBone2"));
 }
 
 TEST(QuadrupedShape, AnimalsAreNotTakenForPeople) {
@@ -68,6 +69,21 @@ TEST(QuadrupedShape, FeetOnRootsOfTheirOwnAreFeet) {
   ASSERT_TRUE(foot);
   EXPECT_EQ(other.joints[foot->target.front()].parent, Index{0});
   EXPECT_EQ(foot->target.front(), foot->source.front() + 1);
+}
+
+// Legs that begin at a collar's tip, which hangs below the shoulder.
+TEST(QuadrupedShape, WhatGoesUpBeforeALegIsABlade) {
+  Skeleton collared = quadruped(0.5);
+  for (const std::string side : {"b1Left", "b1Right"}) collared = withJointBefore(collared, side + "One", side + "Tip");
+  for (const std::string side : {"b1Left", "b1Right"}) {
+    collared.joints[collared.find(side + "Tip").value()].rest.translation.y() -= 0.3;
+    collared.joints[collared.find(side + "One").value()].rest.translation.y() += 0.3;
+  }
+  const Skeleton other = nameless(quadruped(0.5));
+  const SkeletonMap map = matchQuadrupeds(collared, other).value();
+  EXPECT_EQ(sourceOf(map, collared, "leftForeBone1"), PartNames({"b1LeftOne"}));
+  EXPECT_EQ(sourceOf(map, collared, "rightForeFoot"), PartNames({"b1RightThree"}));
+  EXPECT_EQ(RetargetSetup(collared, other, map, {}).animalLegs.size(), 4u);
 }
 
 // A joint more between elbow and wrist goes with the lower bone.

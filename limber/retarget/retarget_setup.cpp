@@ -5,6 +5,7 @@
 #include <span>
 
 #include "limber/core/error.h"
+#include "limber/retarget/quadruped_shape.h"
 
 namespace limber {
 
@@ -123,7 +124,7 @@ RetargetSetup::RetargetSetup(const Skeleton& from, const Skeleton& to, SkeletonM
   } else {
     const BodySize one = bodySize(map, MapSide::kSource, sourceNeutral),
                    other = bodySize(map, MapSide::kTarget, targetNeutral);
-    const bool stand = one.stands() && other.stands();
+    const bool stand = map.find(kHindquarters) || (one.stands() && other.stands());
     sourceHipHeight = stand ? one.height : one.across;
     targetHipHeight = stand ? other.height : other.across;
     animalLegs = limber::animalLegs(map, from, to, sourceNeutral, targetNeutral);
