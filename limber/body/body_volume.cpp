@@ -94,8 +94,9 @@ class InsideGraph {
     }
   }
 
-  // No node inside lies on the grid's border: the model keeps a margin to it.
-  bool inside(std::size_t node) const { return distance_.value(node) < 0; }
+  // The model keeps a margin to the grid's border, but the winding number of faces that lie on each other many times is
+  // large out there, too.
+  bool inside(std::size_t node) const { return distance_.value(node) < 0 && !onBorder(node); }
   double depth(std::size_t node) const { return -distance_.value(node); }
 
   bool medial(std::size_t node) const {
@@ -228,6 +229,10 @@ BodyVolume measureBody(const TriMesh& mesh) {
   }
   body.insideShare = static_cast<double>(inside.size()) / static_cast<double>(distance.nodeCount());
   body.spheres = medialSpheres(distance, graph, inside);
+  if (body.spheres.empty()) {
+    throw Error(ErrorCode::kUnsupported, "the model's inside cannot be told from its outside", {},
+                "faces may lie on each other many times: merge them; the rigger sphere-mesh takes such models");
+  }
   body.tips = findTips(distance, graph, inside);
   return body;
 }

@@ -32,8 +32,8 @@ struct BodyVolume {
 // Whole pieces that are turned inside out are turned back first; what lies inside is told by the winding number.
 //
 // mesh  as prepareMesh makes it: longest side 1
-// Throws Error kUnsupported where nothing lies inside (a flat sheet). Cost: O(#F log #F), and a grid of 80 cells along
-// the longest side.
+// Throws Error kUnsupported where nothing lies inside (a flat sheet), or inside and outside cannot be told apart. Cost:
+// O(#F log #F), and a grid of 80 cells along the longest side.
 BodyVolume measureBody(const TriMesh& mesh);
 
 }  // namespace limber

@@ -1,6 +1,7 @@
 #include "limber/body/body_volume.h"
 
 #include <algorithm>
+#include <array>
 
 #include <gtest/gtest.h>
 
@@ -58,6 +59,18 @@ TEST(BodyVolume, RefusesWhatHasNoInside) {
   sheet.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   sheet.triangles = {{0, 1, 2}};
   EXPECT_THROW(measureBody(sheet), Error);
+}
+
+// A cube whose bottom faces in: its copies make all winding numbers within negative, and those far above it positive.
+TEST(BodyVolume, RefusesAFaceThatIsThereHundredsOfTimes) {
+  TriMesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+  for (const auto& [a, b, c, d] :
+       {std::array<Index, 4>{0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}, {4, 5, 6, 7}}) {
+    mesh.triangles.insert(mesh.triangles.end(), {{a, b, c}, {a, c, d}});
+  }
+  for (int copy = 0; copy < 200; ++copy) mesh.triangles.insert(mesh.triangles.end(), {{0, 1, 2}, {0, 2, 3}});
+  EXPECT_THROW(measureBody(mesh), Error);
 }
 
 }  // namespace limber
