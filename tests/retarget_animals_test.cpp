@@ -10,8 +10,8 @@
 
 #include "limber/asset/motion_io.h"
 #include "limber/core/numbers.h"
-#include "limber/retarget/animal_map.h"
-#include "limber/retarget/plain_skeleton.h"
+#include "limber/matching/animal_map.h"
+#include "limber/matching/plain_skeleton.h"
 #include "limber/skeleton/chain.h"
 #include "retarget_measured.h"
 #include "shared_data.h"

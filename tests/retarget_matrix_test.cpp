@@ -11,8 +11,8 @@
 
 #include "limber/asset/motion_io.h"
 #include "limber/evaluate/motion_metrics.h"
-#include "limber/retarget/humanoid_shape.h"
-#include "limber/retarget/plain_skeleton.h"
+#include "limber/matching/humanoid_shape.h"
+#include "limber/matching/plain_skeleton.h"
 #include "retarget_measured.h"
 #include "shared_data.h"
 #include "shared_people.h"

@@ -7,7 +7,7 @@
 #include "limber/core/file.h"
 #include "limber/evaluate/retarget_table.h"
 #include "limber/evaluate/skinned_model.h"
-#include "limber/retarget/plain_skeleton.h"
+#include "limber/matching/plain_skeleton.h"
 #include "progress_line.h"
 
 namespace limber::cli {

@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "limber/core/error.h"
-#include "limber/retarget/plain_skeleton.h"
-#include "limber/retarget/testing/test_motion.h"
+#include "limber/matching/plain_skeleton.h"
+#include "limber/matching/testing/test_motion.h"
 
 namespace limber {
 namespace {

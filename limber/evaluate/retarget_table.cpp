@@ -6,7 +6,7 @@
 
 #include "limber/asset/motion_io.h"
 #include "limber/evaluate/skinned_model.h"
-#include "limber/retarget/plain_skeleton.h"
+#include "limber/matching/plain_skeleton.h"
 
 namespace limber {
 

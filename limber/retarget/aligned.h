@@ -3,8 +3,8 @@
 
 #include <memory>
 
+#include "limber/limbs/root_motion.h"
 #include "limber/retarget/retarget_method.h"
-#include "limber/retarget/root_motion.h"
 
 namespace limber {
 

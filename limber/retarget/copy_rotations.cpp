@@ -1,6 +1,6 @@
 #include "limber/retarget/copy_rotations.h"
 
-#include "limber/retarget/root_motion.h"
+#include "limber/limbs/root_motion.h"
 
 namespace limber {
 

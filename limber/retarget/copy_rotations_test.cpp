@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "limber/matching/testing/test_motion.h"
 #include "limber/retarget/retarget_clip.h"
-#include "limber/retarget/testing/test_motion.h"
 
 namespace limber {
 namespace {

@@ -1,8 +1,8 @@
 #include "limber/retarget/limb_ik.h"
 
 #include "limber/ik/ik_solver.h"
+#include "limber/limbs/limb_reach.h"
 #include "limber/retarget/aligned.h"
-#include "limber/retarget/limb_reach.h"
 
 namespace limber {
 

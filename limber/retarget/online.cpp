@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "limber/ik/ik_solver.h"
+#include "limber/limbs/limb_goals.h"
+#include "limber/limbs/limb_reach.h"
 #include "limber/retarget/aligned.h"
-#include "limber/retarget/limb_goals.h"
-#include "limber/retarget/limb_reach.h"
 
 namespace limber {
 

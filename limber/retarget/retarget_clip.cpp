@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "limber/core/error.h"
-#include "limber/retarget/plain_skeleton.h"
+#include "limber/matching/plain_skeleton.h"
 #include "limber/skeleton/motion.h"
 
 namespace limber {

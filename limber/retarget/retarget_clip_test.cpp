@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "limber/retarget/testing/test_motion.h"
+#include "limber/matching/testing/test_motion.h"
 #include "limber/skeleton/motion.h"
 
 namespace limber {

@@ -5,7 +5,7 @@
 #include <span>
 #include <string_view>
 
-#include "limber/retarget/retarget_setup.h"
+#include "limber/matching/retarget_setup.h"
 
 namespace limber {
 

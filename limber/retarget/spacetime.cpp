@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "limber/ik/rotation.h"
+#include "limber/limbs/limb_reach.h"
 #include "limber/retarget/displacement_curve.h"
-#include "limber/retarget/limb_reach.h"
 
 namespace limber {
 

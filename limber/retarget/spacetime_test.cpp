@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "limber/retarget/testing/test_motion.h"
+#include "limber/matching/testing/test_motion.h"
 
 namespace limber {
 namespace {

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "limber/core/error.h"
-#include "limber/retarget/plain_skeleton.h"
+#include "limber/matching/plain_skeleton.h"
 #include "limber/retarget/retarget_clip.h"
 #include "limber/skeleton/motion.h"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "limber/retarget/skeleton_map.h"
+#include "limber/matching/skeleton_map.h"
 #include "limber/session/command.h"
 #include "limber/session/rigged_model.h"
 #include "limber/skeleton/motion.h"

@@ -7,7 +7,7 @@
 #include "limber/asset/testing/gltf_builder.h"
 #include "limber/asset/write.h"
 #include "limber/core/error.h"
-#include "limber/retarget/testing/test_motion.h"
+#include "limber/matching/testing/test_motion.h"
 #include "limber/session/rigged_model.h"
 #include "limber/surface/testing/shape_meshes.h"
 

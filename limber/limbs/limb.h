@@ -1,0 +1,43 @@
+// Arms and legs of the target as methods that solve for hands and feet see them.
+#pragma once
+
+#include <optional>
+
+#include "limber/limbs/foot_lock.h"
+#include "limber/skeleton/skeleton.h"
+
+namespace limber {
+
+// Two bones and what they carry. The end hangs on the lower joint, or rides on it (RootPlacer).
+struct Limb {
+  Index upper = 0, lower = 0, end = 0;
+  Index sourceUpper = 0, sourceEnd = 0;
+  double length = 0;             // of both bones
+  double folded = 0;             // how near to each other they bring the ends
+  std::optional<Index> hock;     // another joint that bends it (AnimalLeg)
+  Vec3 goal = Vec3::Zero();      // where the end has to be, in the person's space
+  bool ownWay = false;           // an animal's foot that goes as the source's, and the leg after it
+  bool ownBend = false;          // bends to its own side, wherever the joint angles bend it
+  bool wanted = false;           // else it may be where it is
+  Quat turn = Quat::Identity();  // of the end, against its joint angles
+};
+
+struct Leg : Limb {
+  std::optional<Index> toes, sourceToes;
+  std::optional<Index> tip;                            // toes that the target alone has
+  Vec3 kneeAhead = Vec3::UnitZ();                      // to which side the lower joint bends, in the neutral pose
+  double ankleGround = 0, toesGround = 0;              // heights when standing, target; of the tip, too
+  double sourceAnkleGround = 0, sourceToesGround = 0;  // likewise, source
+  double footPitch = 1;                                // share of the source's (calmFeet)
+  FootAnchor anchor = FootAnchor::kNone;               // what holds the foot in this frame
+  bool flat = false;                                   // heel and toes stand both
+  double ankleFloor = 0, toesFloor = 0;                // below which neither goes in this frame
+  double planted = 0;                                  // 0 to 1, comes and goes smoothly
+  double changed = 0;                                  // likewise, to what share its goal is one (Pelvis::changeOf)
+  double flatness = 0;                                 // likewise
+  Vec3 place = Vec3::Zero();                           // of the end, by the joint angles or by its own way
+  double bentReach = 0;                                // ownWay: from hip to end if bent as the source's (LegBend)
+  double lift = 0;                                     // ownWay: of the source's foot from where it stands, hip heights
+};
+
+}  // namespace limber

@@ -1,0 +1,455 @@
+#include "limber/limbs/limb_goals.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "limber/ik/rotation.h"
+#include "limber/limbs/calm_feet.h"
+#include "limber/limbs/smooth.h"
+#include "limber/limbs/spring.h"
+#include "limber/skeleton/chain.h"
+
+namespace limber {
+
+namespace {
+
+// In hip heights of the target.
+constexpr double kTouching = 0.12, kApart = 0.35;  // of two hands
+constexpr double kFootSlack = 0.9;                 // how far a planted foot may be from where the joint angles have it
+constexpr double kStretch = 0.998;                 // of an arm's length: fully stretched elbows pop
+constexpr double kTouchRate = 10;                  // 1/seconds, of touches that come and go
+constexpr double kSoftReach = 0.96;                // of an arm's length: from there on stretching softens
+constexpr double kPlantRate = 9;                   // 1/seconds, of the smooth flag
+constexpr double kChangeRate = 25;                 // likewise, of Leg::changed
+constexpr double kRiseRate = 40;                   // likewise, of an animal's pelvis
+constexpr double kSoftGround = 0.006;
+constexpr double kMostSoft = 0.04;     // more of it, the faster a point comes down
+constexpr double kFallSeconds = 0.03;  // of its way: so much the earlier a point slows down
+constexpr double kFallRate = 40;       // 1/seconds, of the speed that is taken for its own
+// Shares of that softness that a planted foot loses: the point that holds it, and the other.
+constexpr double kFirmHeld = 0.9, kFirmBeside = 0.2;
+constexpr double kTipLies = 0.05;   // over the ground: from there on toes that the target alone has lie down
+constexpr double kCarriedUp = 0.5;  // share of its hip's way up that a person's free foot takes part in
+// Of legs whose feet go their own way.
+constexpr double kLifted = 0.6;                           // Leg::lift from which on the source's bend counts alone
+constexpr double kSoftLeg = 0.03, kSoftStanding = 0.003;  // of the most that a leg reaches, leg lengths
+constexpr double kSlipSpeed = 0.65, kSlipPower = 3;       // hip heights a second at which planted feet slip by half
+constexpr double kBentInRest = 0.01;  // of an animal's leg's length: a knee off its line by that tells where it bends
+constexpr double kBendsAlike = 0.05;  // likewise: the source's joint of that name bends to the same side
+constexpr double kSteep = 1.7, kSoleUp = 2.4, kSoftLevel = 0.05;  // radians that toes point down
+// Speeds of the source's pelvis or feet, hip heights a second, that are no motion but a cut. Many recordings have a
+// T-pose as their first frame.
+constexpr double kJump = 15, kFirstJump = 4;
+
+// 0 or 1 without a jump.
+void followPlanting(double wanted, double seconds, double& value, double& speed) {
+  springTo(wanted, kPlantRate, seconds, value, speed);
+  value = std::clamp(value, 0.0, 1.0);
+}
+
+// None where its joints do not hang on each other, or a bone has no length.
+std::optional<Limb> makeLimb(const RetargetSetup& setup, const RootPlacer& root, const LegJoints& source,
+                             const LegJoints& target) {
+  Limb limb;
+  limb.upper = target.upper;
+  limb.lower = target.lower;
+  limb.end = target.end;
+  limb.sourceUpper = source.upper;
+  limb.sourceEnd = source.end;
+  if (!isAncestorOrSelf(*setup.target, limb.upper, limb.lower)) return std::nullopt;
+  if (!isAncestorOrSelf(*setup.target, limb.lower, root.carrierOf(limb.end))) return std::nullopt;
+  const std::vector<Vec3>& rest = setup.targetNeutral.restPositions;
+  const double upperLength = (rest[limb.lower] - rest[limb.upper]).norm();
+  const double lowerLength = (rest[limb.end] - rest[limb.lower]).norm();
+  if (!(upperLength > 0) || !(lowerLength > 0)) return std::nullopt;
+  limb.length = upperLength + lowerLength;
+  limb.folded = std::abs(upperLength - lowerLength);
+  return limb;
+}
+
+// How far the lower joint is off the line from the upper one to the end, in lengths of that line.
+Vec3 bendAtRest(const LegJoints& leg, const NeutralPose& neutral) {
+  const Vec3 upper = neutral.positions[leg.upper], line = neutral.positions[leg.end] - upper;
+  const Vec3 lower = neutral.positions[leg.lower] - upper;
+  return (lower - lower.dot(line) / line.squaredNorm() * line) / line.norm();
+}
+
+std::optional<Limb> findLimb(const RetargetSetup& setup, const RootPlacer& root, const std::string& upper,
+                             const std::string& lower, const std::string& end) {
+  const JointMatch *u = setup.map.find(upper), *l = setup.map.find(lower), *e = setup.map.find(end);
+  if (!u || !l || !e) return std::nullopt;
+  return makeLimb(setup, root, {u->source.front(), l->source.front(), e->source.front(), {}, {}, {}},
+                  {u->target.front(), l->target.front(), e->target.front(), {}, {}, {}});
+}
+
+}  // namespace
+
+LimbGoals::LimbGoals(const RetargetSetup& setup, const RootPlacer& root)
+    : setup_(setup), root_(root), pelvis_(setup, root), lift_(setup), tail_(setup, root) {
+  if (setup.person) {
+    addPersonsLegs(root);
+    addArms(root);
+  } else {
+    addAnimalsLegs(root);
+  }
+  active_ = (setup.person || !legs_.empty()) && !isSame();
+}
+
+void LimbGoals::addPersonsLegs(const RootPlacer& root) {
+  for (const std::string side : {"left", "right"}) {
+    const auto limb = findLimb(setup_, root, side + "UpperLeg", side + "LowerLeg", side + "Foot");
+    if (!limb) continue;
+    Leg leg;
+    static_cast<Limb&>(leg) = *limb;
+    if (const JointMatch* toes = setup_.map.find(side + "Toes")) {
+      leg.toes = toes->target.front();
+      leg.sourceToes = toes->source.front();
+    } else {
+      leg.tip = toesOf(*setup_.target, setup_.map, MapSide::kTarget, side, setup_.targetNeutral.restPositions);
+    }
+    addLeg(leg);
+  }
+}
+
+void LimbGoals::addAnimalsLegs(const RootPlacer& root) {
+  for (const AnimalLeg& found : setup_.animalLegs) {
+    const auto limb = makeLimb(setup_, root, found.source, found.target);
+    if (!limb) continue;
+    Leg leg;
+    static_cast<Limb&>(leg) = *limb;
+    const Vec3 ahead = bendAtRest(found.target, setup_.targetNeutral);
+    if (ahead.norm() > kBentInRest) leg.kneeAhead = ahead.normalized();
+    leg.hock = found.target.hock;
+    leg.ownWay = root.goesOwnWay(found);
+    leg.ownBend = leg.ownWay || bendAtRest(found.source, setup_.sourceNeutral).dot(leg.kneeAhead) < kBendsAlike;
+    leg.toes = found.target.toes;
+    leg.sourceToes = found.source.toes;
+    addLeg(leg);
+    if (leg.ownWay) feelers_.back().bend.emplace(setup_, found);
+  }
+}
+
+void LimbGoals::addArms(const RootPlacer& root) {
+  for (const std::string side : {"left", "right"}) {
+    const auto arm = findLimb(setup_, root, side + "UpperArm", side + "LowerArm", side + "Hand");
+    if (!arm) continue;
+    arms_.push_back(*arm);
+    const std::string other = side == "left" ? "right" : "left";
+    std::vector<Surface>& surfaces = surfaces_.emplace_back();
+    addSurface("head", "head", 0.12, 0.35, surfaces);
+    addSurface("hips", "neck", 0.13, 0.19, surfaces);
+    addSurface("leftUpperLeg", "leftLowerLeg", 0.09, 0.15, surfaces);
+    addSurface("rightUpperLeg", "rightLowerLeg", 0.09, 0.15, surfaces);
+    addSurface(other + "LowerArm", other + "Hand", 0.06, 0.12, surfaces);
+  }
+}
+
+// Nothing to correct where both neutral poses are one.
+bool LimbGoals::isSame() const {
+  const NeutralPose &a = setup_.sourceNeutral, &b = setup_.targetNeutral;
+  if (a.positions.size() != b.positions.size() || std::abs(setup_.scale - 1) > 1e-9) return false;
+  for (std::size_t j = 0; j < a.positions.size(); ++j) {
+    if ((a.positions[j] - b.positions[j]).norm() > 1e-6 * setup_.targetHipHeight) return false;
+  }
+  return true;
+}
+
+void LimbGoals::addLeg(Leg leg) {
+  const auto sourceGround = [&](Index joint) {
+    return setup_.sourceGround + setup_.sourceNeutral.positions[joint].y() - setup_.sourceLowest;
+  };
+  const auto targetGround = [&](Index joint) {
+    return setup_.targetGround + setup_.targetNeutral.positions[joint].y() - setup_.targetLowest;
+  };
+  leg.ankleGround = targetGround(leg.end);
+  leg.sourceAnkleGround = sourceGround(leg.sourceEnd);
+  if (leg.toes) {
+    leg.toesGround = targetGround(*leg.toes);
+    leg.sourceToesGround = sourceGround(*leg.sourceToes);
+  }
+  if (leg.tip) leg.toesGround = targetGround(*leg.tip);
+  leg.footPitch = footPitchShare(setup_, leg);
+  legs_.push_back(leg);
+  feelers_.emplace_back(PlantDetector(setup_.sourceHipHeight));
+}
+
+void LimbGoals::addSurface(const std::string& from, const std::string& to, double touching, double apart,
+                           std::vector<Surface>& surfaces) const {
+  const JointMatch *begin = setup_.map.find(from), *end = setup_.map.find(to);
+  if (!begin || !end) return;
+  surfaces.push_back(
+      {{begin->source.front(), end->source.front()}, {begin->target.front(), end->target.front()}, touching, apart});
+}
+
+// What of the foot stands in the source.
+void LimbGoals::sense(Leg& leg, Feeler& feeler, const BodyFrame& source, double seconds) const {
+  const Vec3& ankle = source.positions[leg.sourceEnd];
+  const bool heel = feeler.ankle.next(ankle, ankle.y() - leg.sourceAnkleGround, seconds);
+  bool toes = false;
+  if (leg.toes) {
+    const Vec3& place = source.positions[*leg.sourceToes];
+    toes = feeler.toes.next(place, place.y() - leg.sourceToesGround, seconds);
+  }
+  leg.anchor = toes ? FootAnchor::kToes : heel ? FootAnchor::kAnkle : FootAnchor::kNone;
+  leg.flat = heel && toes;
+  followPlanting(leg.anchor != FootAnchor::kNone ? 1 : 0, seconds, leg.planted, feeler.plantedSpeed);
+  followPlanting(leg.flat ? 1 : 0, seconds, leg.flatness, feeler.flatSpeed);
+}
+
+// Where the target's foot is by its joint angles, and the ground under it.
+void LimbGoals::feel(Leg& leg, Feeler& feeler, const BodyFrame& source, const BodyFrame& target, double seconds) const {
+  FootLock::Frame& foot = feeler.foot;
+  const FootLock::Frame before = foot;
+  foot.anchor = leg.anchor;
+  foot.flat = leg.flat;
+  leg.place = target.positions[leg.end];
+  if (leg.ownWay) leg.place = ownPlace(leg, source, target);
+  foot.ankle = foot.toes = leg.place;
+  foot.ankleGround = leg.ankleGround - loweredBy(leg.sourceAnkleGround, source.positions[leg.sourceEnd]);
+  if (leg.toes) {
+    foot.toes += target.positions[*leg.toes] - target.positions[leg.end];
+    foot.toesGround = leg.toesGround - loweredBy(leg.sourceToesGround, source.positions[*leg.sourceToes]);
+  }
+  followFall(before.ankle.y() - foot.ankle.y(), seconds, feeler.ankleFall);
+  followFall(before.toes.y() - foot.toes.y(), seconds, feeler.toesFall);
+  leg.ankleFloor = foot.ankleGround;
+  leg.toesFloor = foot.toesGround;
+  leg.wanted = true;
+  if (leg.ownWay) feelOwnWay(leg, feeler, source, seconds);
+}
+
+// A longer or shorter trunk that turns takes the hips further or less far, and the feet with them.
+Vec3 LimbGoals::ownPlace(const Leg& leg, const BodyFrame& source, const BodyFrame& target) const {
+  const std::vector<Vec3>&from = setup_.sourceNeutral.restPositions, &to = setup_.targetNeutral.restPositions;
+  const Vec3 hipWay = source.positions[leg.sourceUpper] - from[leg.sourceUpper];
+  const Vec3 further = target.positions[leg.upper] - to[leg.upper] - setup_.scale * hipWay;
+  return to[leg.end] + setup_.scale * (source.positions[leg.sourceEnd] - from[leg.sourceEnd]) +
+         Vec3(further.x(), 0, further.z());
+}
+
+// It stands about as still as the source's: what moves there is meant to.
+void LimbGoals::feelOwnWay(Leg& leg, Feeler& feeler, const BodyFrame& source, double seconds) const {
+  leg.lift = (source.positions[leg.sourceEnd].y() - leg.sourceAnkleGround) / setup_.sourceHipHeight;
+  leg.bentReach = feeler.bend->reach(source);
+  const Vec3 way = source.positions[leg.sourceEnd] - feeler.sourceEnd;
+  const double speed = seconds > 0 ? std::hypot(way.x(), way.z()) / (seconds * setup_.sourceHipHeight) : 0;
+  feeler.foot.slip = 1 / (1 + std::pow(kSlipSpeed / speed, kSlipPower));
+  feeler.sourceEnd = source.positions[leg.sourceEnd];
+}
+
+// `down` is the way in this frame.
+void LimbGoals::followFall(double down, double seconds, Fall& fall) {
+  springTo(seconds > 0 ? std::max(down / seconds, 0.0) : 0.0, kFallRate, seconds, fall.speed, fall.change);
+}
+
+// Nobody moves that fast: what stood before the cut does not count behind it.
+bool LimbGoals::forgetAcrossCuts(const BodyFrame& source, double seconds) {
+  std::vector<Vec3>& now = landmarks_[1];
+  now.assign(1, pelvisOf(setup_.map, MapSide::kSource, source.positions));
+  for (const Leg& leg : legs_) now.push_back(source.positions[leg.sourceEnd]);
+  const double jump = (frames_++ == 1 ? kFirstJump : kJump) * setup_.sourceHipHeight * seconds;
+  bool cut = false;
+  for (std::size_t i = 0; i < landmarks_[0].size(); ++i) {
+    cut = cut || (now[i] - landmarks_[0][i]).norm() > jump;
+  }
+  std::swap(landmarks_[0], landmarks_[1]);
+  if (!cut) return false;
+  follows_.fill({});
+  for (Feeler& feeler : feelers_) {
+    feeler.ankle.reset();
+    feeler.toes.reset();
+    feeler.lock.reset();
+    feeler.carried = Vec3::Zero();
+  }
+  return true;
+}
+
+// Animals that sit lay the whole foot down: as far as a joint in the source is below where it is when standing, it may
+// be in the target.
+double LimbGoals::loweredBy(double sourceGround, const Vec3& sourcePlace) const {
+  return setup_.person ? 0 : setup_.scale * std::max(sourceGround - sourcePlace.y(), 0.0);
+}
+
+void LimbGoals::calm(const BodyFrame& source, double seconds, Pose& target, BodyFrame& frame) {
+  cut_ = forgetAcrossCuts(source, seconds);
+  if (cut_) seconds = 0;
+  for (std::size_t i = 0; i < legs_.size(); ++i) sense(legs_[i], feelers_[i], source, seconds);
+  pelvis_.levelHips(target, frame);
+  if (!setup_.person) root_.movePelvis(Vec3(0, lift_(source, frame), 0), target, frame);
+  calmFeet(setup_, root_, legs_, target, frame);
+}
+
+void LimbGoals::setFeet(const BodyFrame& source, const BodyFrame& target, double seconds) {
+  if (cut_) seconds = 0;
+  for (std::size_t i = 0; i < legs_.size(); ++i) feel(legs_[i], feelers_[i], source, target, seconds);
+  carryFeet(target, seconds);
+  for (std::size_t i = 0; i < legs_.size(); ++i) setFoot(legs_[i], feelers_[i], feelers_[i].lock, seconds);
+  const Quat turn = pelvis_.turnFor(legs_, target);
+  for (std::size_t i = 0; i < legs_.size(); ++i) {
+    const double change = pelvis_.changeOf(legs_[i], target, turn);
+    springTo(change, kChangeRate, seconds, legs_[i].changed, feelers_[i].changedSpeed);
+  }
+  rise_ = nextRise(target, seconds);
+}
+
+LimbGoals::Rise LimbGoals::nextRise(const BodyFrame& target, double seconds) const {
+  Rise rise = rise_;
+  const double wanted = pelvis_.riseFor(legs_, target, pelvis_.turnFor(legs_, target));
+  const bool atOnce = setup_.person || legs_.front().ownWay;
+  springTo(wanted, kRiseRate, atOnce ? 0 : seconds, rise.value, rise.speed);
+  return rise;
+}
+
+Pelvis::Move LimbGoals::pelvisMove(const BodyFrame& target) const {
+  return pelvis_.moveFor(legs_, target, rise_.value);
+}
+
+// Where the pelvis follows planted feet, free ones go along with their hips: their legs would else have to make up for
+// every move of it. Goals by the frame before tell where it goes in this one.
+void LimbGoals::carryFeet(const BodyFrame& target, double seconds) {
+  for (std::size_t i = 0; i < legs_.size(); ++i) {
+    FootLock trial = feelers_[i].lock;
+    setFoot(legs_[i], feelers_[i], trial, seconds);
+  }
+  const Pelvis::Move move = pelvis_.moveFor(legs_, target, nextRise(target, seconds).value);
+  for (std::size_t i = 0; i < legs_.size(); ++i) {
+    feelers_[i].carried = legs_[i].ownWay ? Vec3(Vec3::Zero()) : pelvis_.hipWay(move, legs_[i], target);
+    if (setup_.person) feelers_[i].carried.y() *= kCarriedUp;
+  }
+}
+
+void LimbGoals::setFoot(Leg& leg, const Feeler& feeler, FootLock& lock, double seconds) const {
+  FootLock::Frame foot = feeler.foot;
+  foot.ankle += feeler.carried;
+  foot.toes += feeler.carried;
+  leg.goal = lock.next(foot, seconds, kFootSlack * setup_.targetHipHeight);
+  if (leg.ownWay) leg.goal.y() = foot.ankle.y();
+  leg.turn = Eigen::AngleAxisd(lock.twist(), Vec3::UnitY());
+  keepAboveGround(leg, foot, feeler);
+}
+
+// Both ends of the foot, without a kink, and the earlier the faster they come down; last the one that holds it.
+void LimbGoals::keepAboveGround(Leg& leg, const FootLock::Frame& foot, const Feeler& feeler) const {
+  const double toesOver = foot.toes.y() - foot.ankle.y();
+  const auto raise = [&](double under, const Fall& fall, double firm) {
+    const double height = setup_.targetHipHeight, ahead = kFallSeconds * std::max(fall.speed, 0.0) / height;
+    const double soft = kSoftGround + kMostSoft * ahead / (kMostSoft + ahead);
+    leg.goal.y() += softPositive(under, height * soft * (1 - firm * leg.planted));
+  };
+  const auto raiseAnkle = [&](double firm) { raise(foot.ankleGround - leg.goal.y(), feeler.ankleFall, firm); };
+  const auto raiseToes = [&](double firm) {
+    if (leg.toes) raise(foot.toesGround - toesOver - leg.goal.y(), feeler.toesFall, firm);
+  };
+  if (leg.anchor == FootAnchor::kToes) {
+    raiseAnkle(kFirmBeside);
+    raiseToes(kFirmHeld);
+  } else {
+    raiseToes(kFirmBeside);
+    raiseAnkle(kFirmHeld);
+  }
+}
+
+void LimbGoals::bendAsSource(Leg& leg, const BodyFrame& target) const {
+  const Vec3 hip = target.positions[leg.upper], way = leg.goal - hip;
+  const double own = way.norm(), most = kStretch * leg.length;
+  if (!leg.ownWay || !(own > 0)) return;
+  const double free = smoothStep(leg.lift / kLifted), length = own + free * (leg.bentReach - own);
+  const double soft = kSoftStanding + free * (kSoftLeg - kSoftStanding);
+  const double reached = most - softPositive(most - length, soft * leg.length);
+  const Vec3 change = (reached / own - 1) * way;
+  const double down = -change.y(), room = heightOverGround(leg, target);
+  // The nearer to the ground the slower.
+  leg.goal += down > 0 ? Vec3(room / down * (1 - std::exp(-down / room)) * change) : change;
+}
+
+// Of a goal, both ends of the foot; more than nothing.
+double LimbGoals::heightOverGround(const Leg& leg, const BodyFrame& target) const {
+  double ground = leg.ankleFloor;
+  if (leg.toes) {
+    ground = std::max(ground, leg.toesFloor - (target.positions[*leg.toes] - target.positions[leg.end]).y());
+  }
+  return std::max(leg.goal.y() - ground, 1e-9 * setup_.targetHipHeight);
+}
+
+void LimbGoals::levelToes(const Leg& leg, BodyFrame& frame, Pose& target) const {
+  if (leg.tip) keepTipUp(setup_, root_, leg, target, frame);
+  const std::optional<Index> toes = leg.toes ? leg.toes : leg.tip;
+  if (!setup_.person || !toes) return;
+  const Quat turn = frame.rotations[*toes] * setup_.targetNeutral.rotations[*toes].conjugate();
+  const double down = std::max(std::atan2(-(turn * Vec3::UnitZ()).y(), (turn * Vec3::UnitY()).y()), 0.0);
+  const double over = (frame.positions[*toes].y() - leg.toesGround) / setup_.targetHipHeight;
+  const double lies = leg.toes ? leg.planted : smoothStep(1 - over / kTipLies);
+  const double share = lies * std::clamp((kSoleUp - down) / (kSoleUp - kSteep), 0.0, 1.0);
+  const double up = share * down * down / (down + kSoftLevel);
+  if (up < 1e-9) return;
+  const BodyKinematics& kinematics = setup_.targetKinematics;
+  const Quat level = Eigen::AngleAxisd(-up, turn * Vec3::UnitX()) * frame.rotations[*toes];
+  target.locals[*toes].rotation = (kinematics.parentRotation(*toes, frame).conjugate() * level).normalized();
+  kinematics.globals(target, frame);
+  root_.settle(target, frame);
+}
+
+double LimbGoals::closeness(double distance, double touching, double apart) const {
+  return smoothStep((apart - distance / setup_.targetHipHeight) / (apart - touching));
+}
+
+// Where touches want the hand, against where it is.
+Vec3 LimbGoals::touchOf(const Limb& arm, const std::vector<Surface>& surfaces, const BodyFrame& source,
+                        const BodyFrame& target) const {
+  const Vec3 hand = source.positions[arm.sourceEnd];
+  Vec3 sum = Vec3::Zero();
+  double weights = 0, missing = 1;
+  for (const Surface& surface : surfaces) {
+    const Vec3 begin = source.positions[surface.source[0]], bone = source.positions[surface.source[1]] - begin;
+    const double along =
+        bone.squaredNorm() > 0 ? std::clamp((hand - begin).dot(bone) / bone.squaredNorm(), 0.0, 1.0) : 0;
+    const Vec3 away = setup_.scale * (hand - begin - along * bone);
+    const Vec3 from = target.positions[surface.target[0]], to = target.positions[surface.target[1]];
+    const double weight = closeness(away.norm(), surface.touching, surface.apart);
+    sum += weight * (from + along * (to - from) + away - arm.goal);
+    weights += weight;
+    missing *= 1 - weight;
+  }
+  return weights > 0 ? Vec3((1 - missing) / weights * sum) : sum;
+}
+
+void LimbGoals::softenReach(Limb& arm, const BodyFrame& target) const {
+  const Vec3 shoulder = target.positions[arm.upper], way = arm.goal - shoulder;
+  const double free = std::max((target.positions[arm.end] - shoulder).norm(), kSoftReach * arm.length);
+  const double room = kStretch * arm.length - free, over = way.norm() - free;
+  if (over <= 0) return;
+  const double length = room > 0 ? free + room * (1 - std::exp(-over / room)) : free;
+  arm.goal = shoulder + length / way.norm() * way;
+}
+
+void LimbGoals::setHands(const BodyFrame& source, const BodyFrame& target, double seconds) {
+  const double reach = setup_.options.reach;
+  const Vec3 pelvis = pelvisOf(setup_.map, MapSide::kSource, source.positions), place = setup_.placeOf(pelvis);
+  std::array<Vec3, 2> touches = {Vec3::Zero(), Vec3::Zero()};
+  for (std::size_t a = 0; a < arms_.size(); ++a) {
+    Limb& arm = arms_[a];
+    arm.goal = target.positions[arm.end];
+    arm.wanted = reach != 0;
+    if (arm.wanted) arm.goal += reach * (place + setup_.scale * (source.positions[arm.sourceEnd] - pelvis) - arm.goal);
+    if (setup_.options.contacts) touches[a] = touchOf(arm, surfaces_[a], source, target);
+  }
+  if (!setup_.options.contacts) return;
+  if (arms_.size() == 2) {
+    const Vec3 apart = setup_.scale * (source.positions[arms_[1].sourceEnd] - source.positions[arms_[0].sourceEnd]);
+    const Vec3 change = apart - (arms_[1].goal + touches[1] - arms_[0].goal - touches[0]);
+    const double weight = 0.5 * closeness(apart.norm(), kTouching, kApart);
+    touches[0] -= weight * change;
+    touches[1] += weight * change;
+  }
+  for (std::size_t a = 0; a < arms_.size(); ++a) {
+    Follow& follow = follows_[a];
+    springTo(touches[a], kTouchRate, seconds, follow.value, follow.speed);
+    if (follow.value.norm() < 1e-9 * setup_.targetHipHeight) continue;
+    arms_[a].goal += follow.value;
+    arms_[a].wanted = true;
+    softenReach(arms_[a], target);
+  }
+}
+
+}  // namespace limber

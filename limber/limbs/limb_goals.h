@@ -1,0 +1,135 @@
+// Where hands and feet have to be: planted feet, the ground, what hands touch. Shared by the methods that solve for it.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "limber/limbs/body_lift.h"
+#include "limber/limbs/leg_bend.h"
+#include "limber/limbs/limb.h"
+#include "limber/limbs/pelvis.h"
+#include "limber/limbs/plant_detector.h"
+#include "limber/limbs/tail_lift.h"
+
+namespace limber {
+
+// Goals frame after frame, without looking ahead. Nothing jumps when contacts come and go.
+class LimbGoals {
+ public:
+  // Both must outlive this.
+  LimbGoals(const RetargetSetup& setup, const RootPlacer& root);
+
+  // False where nothing needs correcting: nobody with legs, or both neutral poses are one.
+  bool active() const { return active_; }
+
+  // Senses what of the feet stands in the source; wide hips, long feet and such as stand flat swing less than the
+  // source's (Pelvis::levelHips, calmFeet), and bodies that lie do so on the ground (BodyLift). Before setFeet(), of
+  // the target by joint angles alone.
+  void calm(const BodyFrame& source, double seconds, Pose& target, BodyFrame& frame);
+  // Feet that are planted in the source stay where they came down, by their toes while the heel is up; none goes below
+  // the ground. From the globals of both. The goals are for legs whose hips go with
+  // the pelvis (Pelvis::moveFor).
+  void setFeet(const BodyFrame& source, const BodyFrame& target, double seconds);
+  // A foot that goes its own way and is lifted comes as near to its hip as the source's does for its leg's length, and
+  // none stretches its leg wholly: knees else fold and snap. For hips that are where they stay.
+  void bendAsSource(Leg& leg, const BodyFrame& target) const;
+  // Whether the source jumped to the last frame: what was before it does not count.
+  bool atCut() const { return cut_; }
+  // Hands that are close to the other hand, the head, the trunk, a thigh or the other forearm in the source are as
+  // close in the result, scaled. `reach` as in RetargetOptions.
+  void setHands(const BodyFrame& source, const BodyFrame& target, double seconds);
+
+  // Brings a goal that stretches an arm more than it is the nearer the closer it gets to what the arm can reach: the
+  // elbow else snaps. setHands() does so.
+  void softenReach(Limb& arm, const BodyFrame& target) const;
+
+  // Toes of a planted foot lie on the ground while the heel goes up, though recordings have them straight: else their
+  // tips would go below it. So do toes that the source lacks wherever they are near the ground, and their foot tips no
+  // further than lets them (keepTipUp). For a target that is posed but for that; soles that look up, as of someone who
+  // kneels, stay as they are.
+  void levelToes(const Leg& leg, BodyFrame& frame, Pose& target) const;
+
+  // How the pelvis follows these goals; `target` as for setFeet(). An animal's rises and sinks smoothly: as one of four
+  // feet lets go, the others would have to bend at once (feet on roots of their own let go slowly anyway).
+  Pelvis::Move pelvisMove(const BodyFrame& target) const;
+  const Pelvis& pelvis() const { return pelvis_; }
+  // For a target that is posed but for that.
+  const TailLift& tail() const { return tail_; }
+  std::vector<Leg>& legs() { return legs_; }
+  std::vector<Limb>& arms() { return arms_; }
+
+ private:
+  // A bone that hands can touch, with distances, in hip heights, at which a touch counts wholly and not at all.
+  struct Surface {
+    std::array<Index, 2> source, target;
+    double touching, apart;
+  };
+  // How fast a point of the free foot comes down, metres a second, without the recording's trembling.
+  struct Fall {
+    double speed = 0, change = 0;
+  };
+  // What is known of a leg's foot.
+  struct Feeler {
+    explicit Feeler(const PlantDetector& detector) : ankle(detector), toes(detector) {}
+    PlantDetector ankle, toes;
+    FootLock lock;
+    double plantedSpeed = 0, flatSpeed = 0, changedSpeed = 0;
+    FootLock::Frame foot;  // as its joint angles have it
+    Fall ankleFall, toesFall;
+    Vec3 carried = Vec3::Zero();    // by its hip
+    std::optional<LegBend> bend;    // ownWay
+    Vec3 sourceEnd = Vec3::Zero();  // ownWay: in the frame before
+  };
+
+  struct Rise {
+    double value = 0, speed = 0;
+  };
+
+  bool isSame() const;
+  Rise nextRise(const BodyFrame& target, double seconds) const;
+  void addPersonsLegs(const RootPlacer& root);
+  void addArms(const RootPlacer& root);
+  void addAnimalsLegs(const RootPlacer& root);
+  void addLeg(Leg leg);
+  void addSurface(const std::string& from, const std::string& to, double touching, double apart,
+                  std::vector<Surface>& surfaces) const;
+  void sense(Leg& leg, Feeler& feeler, const BodyFrame& source, double seconds) const;
+  void feel(Leg& leg, Feeler& feeler, const BodyFrame& source, const BodyFrame& target, double seconds) const;
+  Vec3 ownPlace(const Leg& leg, const BodyFrame& source, const BodyFrame& target) const;
+  void feelOwnWay(Leg& leg, Feeler& feeler, const BodyFrame& source, double seconds) const;
+  static void followFall(double down, double seconds, Fall& fall);
+  void carryFeet(const BodyFrame& target, double seconds);
+  void setFoot(Leg& leg, const Feeler& feeler, FootLock& lock, double seconds) const;
+  void keepAboveGround(Leg& leg, const FootLock::Frame& foot, const Feeler& feeler) const;
+  double heightOverGround(const Leg& leg, const BodyFrame& target) const;
+  // True at a cut.
+  bool forgetAcrossCuts(const BodyFrame& source, double seconds);
+  double loweredBy(double sourceGround, const Vec3& sourcePlace) const;
+  Vec3 touchOf(const Limb& arm, const std::vector<Surface>& surfaces, const BodyFrame& source,
+               const BodyFrame& target) const;
+  double within(double change) const;
+  double closeness(double distance, double touching, double apart) const;
+
+  const RetargetSetup& setup_;
+  const RootPlacer& root_;
+  Pelvis pelvis_;
+  BodyLift lift_;
+  TailLift tail_;
+  std::vector<Leg> legs_;
+  std::vector<Feeler> feelers_;  // of the legs
+  Rise rise_;                    // of the pelvis
+  std::vector<Limb> arms_;
+  std::vector<std::vector<Surface>> surfaces_;  // for each arm
+  struct Follow {
+    Vec3 value = Vec3::Zero(), speed = Vec3::Zero();
+  };
+  std::array<Follow, 2> follows_;               // the touches of each arm as they come and go
+  std::array<std::vector<Vec3>, 2> landmarks_;  // of the frame before, and room for this one's
+  std::size_t frames_ = 0;
+  bool cut_ = false;
+  bool active_ = true;
+};
+
+}  // namespace limber

@@ -1,0 +1,109 @@
+#include "limber/limbs/limb_goals.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "limber/matching/testing/test_motion.h"
+
+namespace limber {
+namespace {
+
+// How far above its place by the joint angles the left foot is held, of someone who comes down to the ground at
+// `speed`, metres a second, when it is there.
+double heldUp(double speed) {
+  const Skeleton person = practiceHumanoid(), odd = limber::testing::oddlyBuilt();
+  const RetargetSetup setup(person, odd, matchSkeletons(person, odd), {});
+  const RootPlacer root(setup);
+  LimbGoals goals(setup, root);
+  const Leg& leg = goals.legs().front();
+  constexpr double kFrame = 1.0 / 60;
+  double up = 0;
+  for (int left = 10; left >= 0; --left) {
+    const Vec3 height(0, left * kFrame * speed, 0);
+    Pose from = restPose(person), to = restPose(odd);
+    from.locals[0].translation += height;
+    to.locals[0].translation += height;
+    BodyFrame source, target;
+    setup.sourceKinematics.globals(from, source);
+    setup.targetKinematics.globals(to, target);
+    const double seconds = left == 10 ? 0 : kFrame;
+    goals.calm(source, seconds, to, target);
+    goals.setFeet(source, target, seconds);
+    up = leg.goal.y() - target.positions[leg.end].y();
+  }
+  return up;
+}
+
+TEST(LimbGoals, AFootSlowsDownTheEarlierTheFasterItComes) {
+  EXPECT_LT(heldUp(0.1), 0.01);
+  EXPECT_GT(heldUp(2), heldUp(0.1) + 0.01);
+  EXPECT_LT(heldUp(20), 0.05) << "however fast";
+}
+
+// Of a quadruped's paw on a root of its own, `lift` above where it stands in the source and at its place in the target:
+// how far its goal is from the hip, over the way by the paw's own way.
+double bentBy(double lift, double sunk) {
+  const Skeleton animal = limber::testing::onTheGround(limber::testing::quadruped(0.5),
+                                                       {"b0LeftThree", "b0RightThree", "b1LeftThree", "b1RightThree"}),
+                 bigger = limber::testing::scaled(animal, 2);
+  const RetargetSetup setup(animal, bigger, matchSkeletons(animal, bigger), {});
+  const RootPlacer root(setup);
+  LimbGoals goals(setup, root);
+  Leg& leg = goals.legs().front();
+  Pose from = restPose(animal);
+  from.locals[leg.sourceEnd].translation.y() += lift;
+  BodyFrame source, target;
+  Pose to = restPose(bigger);
+  setup.sourceKinematics.globals(from, source);
+  setup.targetKinematics.globals(to, target);
+  goals.calm(source, 0, to, target);
+  goals.setFeet(source, target, 0);
+  leg.goal = target.positions[leg.end] + Vec3(0, sunk, 0);
+  const double own = (leg.goal - target.positions[leg.upper]).norm();
+  goals.bendAsSource(leg, target);
+  return (leg.goal - target.positions[leg.upper]).norm() / own;
+}
+
+TEST(LimbGoals, LegsOfLiftedFeetOnRootsOfTheirOwnBendAsTheSources) {
+  EXPECT_NEAR(bentBy(0, 0.4), 1, 0.01) << "what stands goes its own way";
+  EXPECT_NEAR(bentBy(0.5, 0), 0.4 / 0.9, 0.02) << "all of the source's bend";
+  EXPECT_LT(bentBy(0, -1), 1.8 / 2.8) << "no further than a leg reaches";
+}
+
+// A paw that shoots up by half a leg is still held in the first frame after: the others' legs keep their bend.
+TEST(LimbGoals, AnAnimalsPelvisSinksSmoothly) {
+  const Skeleton source = limber::testing::quadruped(0.5), target = limber::testing::quadruped(0.35);
+  const RetargetSetup setup(source, target, matchSkeletons(source, target), {});
+  const RootPlacer root(setup);
+  LimbGoals goals(setup, root);
+  constexpr double kFrame = 1.0 / 30;
+  double before = 0, beforeAtOnce = 0, most = 0, mostAtOnce = 0;
+  for (int f = 0; f < 20; ++f) {
+    Pose from = restPose(source), to = restPose(target);
+    for (Pose* pose : {&from, &to}) {
+      const Skeleton& skeleton = pose == &from ? source : target;
+      const double folds = std::clamp(20.0 * (f - 10), 0.0, 60.0);
+      pose->locals[skeleton.find("b0LeftOne").value()].rotation = limber::testing::turn(Vec3::UnitX(), -folds);
+      pose->locals[skeleton.find("b0LeftTwo").value()].rotation = limber::testing::turn(Vec3::UnitX(), 2 * folds);
+    }
+    BodyFrame sourceFrame, frame;
+    setup.sourceKinematics.globals(from, sourceFrame);
+    setup.targetKinematics.globals(to, frame);
+    goals.calm(sourceFrame, f == 0 ? 0 : kFrame, to, frame);
+    goals.setFeet(sourceFrame, frame, f == 0 ? 0 : kFrame);
+    const double up = goals.pelvisMove(frame).up, atOnce = goals.pelvis().moveFor(goals.legs(), frame).up;
+    if (f > 0) {
+      most = std::max(most, std::abs(up - before));
+      mostAtOnce = std::max(mostAtOnce, std::abs(atOnce - beforeAtOnce));
+    }
+    before = up;
+    beforeAtOnce = atOnce;
+  }
+  EXPECT_GT(mostAtOnce, 0.003);
+  EXPECT_LT(most, 0.7 * mostAtOnce);
+}
+
+}  // namespace
+}  // namespace limber

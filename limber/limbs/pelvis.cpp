@@ -1,0 +1,178 @@
+#include "limber/limbs/pelvis.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "limber/ik/rotation.h"
+#include "limber/limbs/smooth.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kCalmWide = 1.5;  // power of the hips' widths by which their turns are less
+// In hip heights of the target.
+constexpr double kMostShift = 0.3;
+constexpr double kSoftStretch = 0.015, kSoftChange = 0.004;  // of sinking, by how far a foot is moved
+constexpr double kSoftOnFour = 0.04;  // likewise: with legs at both ends of the body, some are far off and stretch more
+constexpr double kSoftBend = 0.1;     // by which feet on their own ways count the more, the lower they want the body
+constexpr double kStandsBelow = 0.3;  // Leg::lift from which on they no longer count
+constexpr double kFoldsTo = 1.1, kSoftFold = 0.02;  // of Limb::folded; and hip heights
+constexpr double kStay = 0.5;                       // legs that these go against, which want it to stay
+constexpr double kStretch = 0.998;                  // of a leg's length: fully stretched knees pop
+// Of turning with planted legs: leg lengths, the more the less it does; and radians.
+constexpr double kStiffOnTwo = 0.15, kStiffOnOne = 0.3, kMostTurn = 0.8;
+
+Vec3 level(const Vec3& v) {
+  return {v.x(), 0, v.z()};
+}
+
+// x where it is small, at most `most` either way.
+double saturated(double x, double most) {
+  const double share = x / most;
+  return x / std::sqrt(std::sqrt(1 + share * share * share * share));
+}
+
+double hipWidth(const NeutralPose& neutral, Index left, Index right) {
+  return (neutral.restPositions[left] - neutral.restPositions[right]).norm();
+}
+
+}  // namespace
+
+Pelvis::Pelvis(const RetargetSetup& setup, const RootPlacer& root) : setup_(setup), root_(root) {
+  if (!setup.person) return;
+  const JointMatch &left = *setup.map.find("leftUpperLeg"), &right = *setup.map.find("rightUpperLeg");
+  leftHip_ = left.target.front();
+  rightHip_ = right.target.front();
+  const double wide = hipWidth(setup.targetNeutral, leftHip_, rightHip_) / setup.targetHipHeight;
+  const double source =
+      hipWidth(setup.sourceNeutral, left.source.front(), right.source.front()) / setup.sourceHipHeight;
+  if (source > 0 && wide > source) hipTurns_ = std::pow(source / wide, kCalmWide);
+  if (const JointMatch* trunk = setup.map.find("trunk")) trunk_ = trunk->target.back();
+}
+
+void Pelvis::levelHips(Pose& target, BodyFrame& frame) const {
+  if (hipTurns_ == 1) return;
+  const NeutralPose& neutral = setup_.targetNeutral;
+  const Vec3 line = (frame.positions[leftHip_] - frame.positions[rightHip_]).normalized();
+  Vec3 calm = level(line);
+  if (trunk_) {
+    const Vec3 stands = (neutral.positions[leftHip_] - neutral.positions[rightHip_]).normalized();
+    calm = 0.5 * (calm + level(frame.rotations[*trunk_] * neutral.rotations[*trunk_].conjugate() * stands));
+  }
+  calm += (1 - calm.norm()) * line;
+  const Vec3 wanted = (hipTurns_ * line + (1 - hipTurns_) * calm).normalized();
+  root_.turnPelvis(shortestRotation(line, wanted), target, frame);
+}
+
+Pelvis::Move Pelvis::moveFor(std::span<const Leg> legs, const BodyFrame& frame, std::optional<double> rise) const {
+  const Quat turn = turnFor(legs, frame);
+  return {turn, shiftFor(legs, frame, turn, rise ? *rise : riseFor(legs, frame, turn))};
+}
+
+Vec3 Pelvis::hipWay(const Move& move, const Leg& leg, const BodyFrame& frame) const {
+  const Vec3 way = Vec3(0, move.up, 0);
+  if (move.turn.w() == 1) return way;
+  const Vec3 fromMiddle = frame.positions[leg.upper] - pelvisOf(setup_.map, MapSide::kTarget, frame.positions);
+  return way + move.turn * fromMiddle - fromMiddle;
+}
+
+void Pelvis::apply(const Move& move, Pose& target, BodyFrame& frame) const {
+  root_.turnPelvis(move.turn, target, frame);
+  if (std::abs(move.up) > 1e-9 * setup_.targetHipHeight) {
+    root_.movePelvis(Vec3(0, move.up, 0), target, frame);
+  } else if (!setup_.person) {
+    root_.settle(target, frame);
+  }
+}
+
+// Least squares over what the planted legs lack, against the turn itself. On one leg only the turn about the vertical
+// helps: the shift brings that leg to the ground.
+Quat Pelvis::turnFor(std::span<const Leg> legs, const BodyFrame& frame) const {
+  if (legs.size() != 2 || !root_.turnsPelvis()) return Quat::Identity();
+  const Leg &left = legs[0], &right = legs[1];
+  const Vec3 toHip = 0.5 * (frame.positions[left.upper] - frame.positions[right.upper]);
+  const Vec3 lackLeft = left.goal - frame.positions[left.end], lackRight = right.goal - frame.positions[right.end];
+  const double both = left.planted * right.planted, length = 0.5 * (left.length + right.length);
+  const double onTwo = kStiffOnTwo * length, onOne = kStiffOnOne * length;
+  Vec3 turn = 0.5 * both / (toHip.squaredNorm() + onTwo * onTwo) * toHip.cross(lackLeft - lackRight);
+  const Vec3 alone = (left.planted - both) * lackLeft - (right.planted - both) * lackRight;
+  turn.y() += toHip.cross(alone).y() / (toHip.squaredNorm() + onOne * onOne);
+  return fromRotationVector(turn / std::sqrt(1 + turn.squaredNorm() / (kMostTurn * kMostTurn)));
+}
+
+// By the pelvis rising, every leg that is planted would be as long as its joint angles make it: the mean of those ways.
+// The more level a leg is, the less rising does to its length, and the less it counts.
+double Pelvis::riseFor(std::span<const Leg> legs, const BodyFrame& frame, const Quat& turn) const {
+  double sum = 0, weights = 0;
+  for (const Leg& leg : legs) {
+    if (leg.ownWay) continue;
+    const Vec3 hip = frame.positions[leg.upper], way = leg.goal - hip - hipWay({turn, 0}, leg, frame);
+    const double length = (frame.positions[leg.end] - hip).norm(), across = std::hypot(way.x(), way.z());
+    if (way.y() >= 0 || across >= length) continue;
+    const double weight = leg.planted * (1 - across * across / (length * length));
+    sum += weight * (way.y() + std::sqrt(length * length - across * across));
+    weights += weight;
+  }
+  const double most = kMostShift * setup_.targetHipHeight;
+  return std::clamp(sum / std::max(weights, 1.0) + ownWaysShift(legs, frame), -most, most);
+}
+
+// Their joint angles have the foot elsewhere: legs that stand bend as the source's do. A mean of the ways, without a
+// kink where another leg takes over.
+double Pelvis::ownWaysShift(std::span<const Leg> legs, const BodyFrame& frame) const {
+  const double soft = kSoftBend * setup_.targetHipHeight;
+  double sum = kStay, weights = kStay;
+  for (const Leg& leg : legs) {
+    if (!leg.ownWay) continue;
+    const Vec3 way = leg.goal - frame.positions[leg.upper];
+    const double reach = leg.bentReach, across = std::hypot(way.x(), way.z());
+    if (across >= reach) continue;
+    const double weight = smoothStep(1 - leg.lift / kStandsBelow) * (1 - across * across / (reach * reach));
+    const double up = way.y() + std::sqrt(reach * reach - across * across);
+    sum += weight * std::exp(-saturated(up, kMostShift * setup_.targetHipHeight) / soft);
+    weights += weight;
+  }
+  return -soft * std::log(sum / weights);
+}
+
+double Pelvis::changeOf(const Leg& leg, const BodyFrame& frame, const Quat& turn) const {
+  if (leg.ownWay) return 1;
+  const double change = (leg.goal - frame.positions[leg.end] - hipWay({turn, 0}, leg, frame)).norm();
+  return change / (change + kSoftChange * setup_.targetHipHeight);
+}
+
+double Pelvis::shiftFor(std::span<const Leg> legs, const BodyFrame& frame, const Quat& turn, double rise) const {
+  const double height = setup_.targetHipHeight;
+  const double soft = (setup_.person ? kSoftStretch : kSoftOnFour) * height;
+  double sum = 0;
+  for (const Leg& leg : legs) {
+    const Vec3 hipGoes = hipWay({turn, 0}, leg, frame);
+    const Vec3 way = leg.goal - frame.positions[leg.upper] - hipGoes - Vec3(0, rise, 0);
+    if (way.y() >= 0) continue;
+    const double length = kStretch * leg.length, across = std::hypot(way.x(), way.z());
+    const double down = std::sqrt(std::max(length * length - across * across, 0.0));
+    const double needed = softPositive(-way.y() - down, soft * leg.changed);
+    sum += needed * needed * needed * needed;
+  }
+  // The most that a leg asks for, but without a kink where another takes over.
+  const double shift = rise - std::min(std::sqrt(std::sqrt(sum)), kMostShift * height);
+  return shift + raiseFor(legs, frame, shift);
+}
+
+// So that no foot that goes its own way and stands is nearer to its hip than the leg folds: it would go astray.
+double Pelvis::raiseFor(std::span<const Leg> legs, const BodyFrame& frame, double shift) const {
+  double sum = 0;
+  for (const Leg& leg : legs) {
+    const Vec3 way = leg.goal - frame.positions[leg.upper] - Vec3(0, shift, 0);
+    const double least = kFoldsTo * leg.folded, across = std::hypot(way.x(), way.z());
+    if (!leg.ownWay || leg.hock || across >= least) continue;  // hocks fold as well
+    const double lacks = std::sqrt(least * least - across * across) + way.y();
+    const double needed =
+        smoothStep(1 - leg.lift / kStandsBelow) * softPositive(lacks, kSoftFold * setup_.targetHipHeight);
+    sum += needed * needed * needed * needed;
+  }
+  return std::sqrt(std::sqrt(sum));
+}
+
+}  // namespace limber

@@ -1,0 +1,175 @@
+#include "limber/limbs/pelvis.h"
+
+#include <gtest/gtest.h>
+
+#include "limber/limbs/limb_goals.h"
+#include "limber/matching/testing/test_motion.h"
+
+namespace limber {
+namespace {
+
+using limber::testing::turn;
+
+// The practice humanoid with hips that are so much wider.
+Skeleton wideHips(double times) {
+  Skeleton person = practiceHumanoid();
+  for (const char* leg : {"leftUpperLeg", "rightUpperLeg"}) {
+    person.joints[person.find(leg).value()].rest.translation.x() *= times;
+  }
+  return person;
+}
+
+// Each leg on a joint of its own, as CMU's skeletons have them.
+Skeleton withHipJoints(const Skeleton& person) {
+  Skeleton jointed;
+  std::vector<Index> places;
+  for (Joint joint : person.joints) {
+    if (joint.parent) joint.parent = places[*joint.parent];
+    if (joint.name == "leftUpperLeg" || joint.name == "rightUpperLeg") {
+      Joint& between = jointed.joints.emplace_back();
+      between.name = joint.name.substr(0, joint.name.find('U')) + "HipJoint";
+      between.parent = joint.parent;
+      joint.parent = jointed.jointCount() - 1;
+    }
+    places.push_back(jointed.jointCount());
+    jointed.joints.push_back(joint);
+  }
+  return jointed;
+}
+
+class PelvisOf {
+ public:
+  explicit PelvisOf(const Skeleton& target)
+      : target_(target),
+        setup_(person_, target_, matchSkeletons(person_, target_), {}),
+        root_(setup_),
+        pelvis_(setup_, root_),
+        pose_(restPose(target_)) {}
+
+  // Brings the target to it, hips leveled.
+  void level() {
+    setup_.targetKinematics.globals(pose_, frame_);
+    pelvis_.levelHips(pose_, frame_);
+  }
+  void turnJoint(const char* name, const Quat& rotation) {
+    pose_.locals[target_.find(name).value()].rotation = rotation;
+  }
+  Vec3 at(const char* name) const { return frame_.positions[target_.find(name).value()]; }
+  Vec3 line() const { return (at("leftUpperLeg") - at("rightUpperLeg")).normalized(); }
+  double leanDegrees() const { return std::asin(line().y()) * 180 / kPi; }
+
+  const Skeleton person_ = practiceHumanoid(), target_;
+  RetargetSetup setup_;
+  RootPlacer root_;
+  Pelvis pelvis_;
+  Pose pose_;
+  BodyFrame frame_;
+};
+
+TEST(Pelvis, HipsAsWideAsTheSourcesTurnAsTheyDo) {
+  PelvisOf same(practiceHumanoid());
+  same.turnJoint("hips", turn(Vec3(0.2, 0.5, 1), 20));
+  const Pose before = same.pose_;
+  same.level();
+  for (Index j = 0; j < same.target_.jointCount(); ++j) {
+    EXPECT_EQ(same.pose_.locals[j].rotation.coeffs(), before.locals[j].rotation.coeffs());
+  }
+}
+
+TEST(Pelvis, WideHipsLeanLess) {
+  PelvisOf wide(wideHips(4));
+  const Quat lean = turn(Vec3::UnitZ(), 16);
+  wide.turnJoint("hips", lean);
+  wide.turnJoint("spine", lean.conjugate());
+  wide.level();
+  EXPECT_NEAR(wide.leanDegrees(), 16 / std::pow(4, 1.5), 0.3);
+  const Index foot = wide.target_.find("leftFoot").value();
+  EXPECT_LT(wide.frame_.rotations[foot].angularDistance(lean), 1e-6) << "what hangs on it is turned as it was";
+}
+
+TEST(Pelvis, WideHipsTurnLessAgainstTheTrunkButWithIt) {
+  const Quat aside = turn(Vec3::UnitY(), 20);
+  PelvisOf against(wideHips(4)), with(wideHips(4));
+  against.turnJoint("hips", aside);
+  against.turnJoint("spine", aside.conjugate());
+  against.level();
+  EXPECT_NEAR(std::atan2(-against.line().z(), against.line().x()) * 180 / kPi, 10 + 10 / std::pow(4, 1.5), 0.2);
+  with.turnJoint("hips", aside);
+  with.level();
+  EXPECT_NEAR(std::atan2(-with.line().z(), with.line().x()) * 180 / kPi, 20, 1e-6);
+}
+
+TEST(Pelvis, WhoLiesOnOneSideGoesOnDoingSo) {
+  PelvisOf wide(wideHips(4));
+  wide.turnJoint("hips", turn(Vec3::UnitZ(), 90));
+  wide.level();
+  EXPECT_NEAR(wide.leanDegrees(), 90, 1e-3);
+}
+
+// Where the hips go is known before they do, also with joints between pelvis and legs.
+TEST(Pelvis, HipsGoWhereTheMoveSays) {
+  for (const Skeleton& target : {wideHips(2), withHipJoints(wideHips(2))}) {
+    PelvisOf wide(target);
+    wide.level();
+    LimbGoals goals(wide.setup_, wide.root_);
+    std::vector<Leg>& legs = goals.legs();
+    ASSERT_EQ(legs.size(), 2u);
+    for (Leg& leg : legs) {
+      leg.planted = 1;
+      leg.goal = wide.frame_.positions[leg.end] + Vec3(0, 0.03, leg.upper == legs[0].upper ? 0.1 : -0.05);
+      leg.changed = wide.pelvis_.changeOf(leg, wide.frame_);
+    }
+    const Pelvis::Move move = wide.pelvis_.moveFor(legs, wide.frame_);
+    EXPECT_GT(toRotationVector(move.turn).norm(), 0.05);
+    EXPECT_GT(std::abs(move.up), 0.01);
+    const BodyFrame before = wide.frame_;
+    wide.pelvis_.apply(move, wide.pose_, wide.frame_);
+    for (const Leg& leg : legs) {
+      const Vec3 way = wide.frame_.positions[leg.upper] - before.positions[leg.upper];
+      EXPECT_LT((way - wide.pelvis_.hipWay(move, leg, before)).norm(), 1e-9);
+      EXPECT_LT(wide.frame_.rotations[leg.upper].angularDistance(before.rotations[leg.upper]), 1e-6);
+    }
+  }
+}
+
+TEST(Pelvis, ALegIsChangedAsFarAsItsGoalIsElsewhere) {
+  PelvisOf person(practiceHumanoid());
+  person.level();
+  LimbGoals goals(person.setup_, person.root_);
+  Leg& leg = goals.legs()[0];
+  const auto changed = [&](const Vec3& way, const Quat& turned) {
+    leg.goal = person.frame_.positions[leg.end] + person.pelvis_.hipWay({turned, 0}, leg, person.frame_) + way;
+    return person.pelvis_.changeOf(leg, person.frame_, turned);
+  };
+  const Quat turned = turn(Vec3::UnitY(), 10);
+  EXPECT_LT(changed(Vec3::Zero(), turned), 1e-9) << "it goes along with its hip";
+  EXPECT_GT(changed(Vec3(0.01, 0, 0), turned), 0.5);
+  EXPECT_GT(changed(Vec3(0.1, 0, 0), turned), 0.9);
+}
+
+// The foot of a folded leg is led away to the side, as far as the leg is long and further.
+TEST(Pelvis, NothingJumpsWhereALegBecomesTooShort) {
+  PelvisOf person(practiceHumanoid());
+  person.turnJoint("leftUpperLeg", turn(-Vec3::UnitX(), 60));
+  person.turnJoint("leftLowerLeg", turn(Vec3::UnitX(), 120));
+  person.level();
+  LimbGoals goals(person.setup_, person.root_);
+  Leg &leg = goals.legs()[0], &other = goals.legs()[1];
+  other.goal = person.frame_.positions[other.end];
+  leg.planted = 1;
+  const Vec3 hip = person.frame_.positions[leg.upper];
+  const double length = (person.frame_.positions[leg.end] - hip).norm();
+  double before = 0;
+  for (int step = 0; step < 400; ++step) {
+    leg.goal = hip + length * Vec3(0.003 * step, -0.5, 0);
+    leg.changed = person.pelvis_.changeOf(leg, person.frame_);
+    const double up = person.pelvis_.moveFor(goals.legs(), person.frame_).up;
+    if (step > 0) {
+      EXPECT_LT(std::abs(up - before), 0.01 * length) << step;
+    }
+    before = up;
+  }
+}
+
+}  // namespace
+}  // namespace limber

@@ -1,0 +1,167 @@
+#include "limber/limbs/root_motion.h"
+
+#include <algorithm>
+
+#include "limber/matching/quadruped_shape.h"
+#include "limber/skeleton/chain.h"
+
+namespace limber {
+
+RootPlacer::RootPlacer(const RetargetSetup& setup) : setup_(setup) {
+  const Skeleton& target = *setup.target;
+  if (!setup.person) {
+    findCarrierOfLegs();
+    if (const JointMatch* hindquarters = setup.map.find(kHindquarters)) {
+      if (!hips_) hips_ = hindquarters->target.front();
+      moved_.push_back(*hips_);
+    } else {
+      for (const JointMatch& match : setup.map.matches) moved_.push_back(match.target.front());
+    }
+    for (const AnimalLeg& leg : setup.animalLegs) {
+      if (!leg.target.carrier) continue;
+      addLoose({leg.target.end, *leg.target.carrier, true});
+      if (std::find(moved_.begin(), moved_.end(), leg.target.end) == moved_.end()) moved_.push_back(leg.target.end);
+    }
+    return;
+  }
+  hips_ = setup.map.find("hips")->target.front();
+  moved_.push_back(*hips_);
+  findPelvis();
+  for (const LooseJoint& loose : looseJoints(target, setup.map, MapSide::kTarget, setup.targetNeutral.restPositions)) {
+    addLoose(loose);
+    moved_.push_back(loose.joint);
+  }
+}
+
+void RootPlacer::addLoose(const LooseJoint& joint) {
+  const NeutralPose& neutral = setup_.targetNeutral;
+  const std::vector<Affine> rest = restGlobals(*setup_.target);
+  const Quat from = (neutral.toBody * decompose(rest[joint.carrier]).rotation).conjugate();
+  Loose& loose = loose_.emplace_back();
+  loose.joint = joint.joint;
+  loose.carrier = joint.carrier;
+  loose.offset = from * (neutral.restPositions[joint.joint] - neutral.restPositions[joint.carrier]);
+  if (!joint.matched) loose.turn = from * neutral.toBody * decompose(rest[joint.joint]).rotation;
+  turnsLoose_ = turnsLoose_ || !joint.matched;
+}
+
+void RootPlacer::findCarrierOfLegs() {
+  const Skeleton& target = *setup_.target;
+  for (const AnimalLeg& leg : setup_.animalLegs) {
+    if (!hips_) hips_ = leg.target.upper;
+    while (hips_ && !isAncestorOrSelf(target, *hips_, leg.target.upper)) hips_ = target.joints[*hips_].parent;
+    if (!hips_) return;
+  }
+}
+
+void RootPlacer::findPelvis() {
+  const Skeleton& target = *setup_.target;
+  const Index pelvis = setup_.map.find("hips")->target.back();
+  const auto turns = [&](Index j) {
+    return j == pelvis || std::find(toLegs_.begin(), toLegs_.end(), j) != toLegs_.end();
+  };
+  for (const char* part : {"leftUpperLeg", "rightUpperLeg"}) {
+    const Index leg = setup_.map.find(part)->target.front();
+    if (leg == pelvis || !isAncestorOrSelf(target, pelvis, leg)) return;
+    for (Index j = *target.joints[leg].parent; !turns(j); j = *target.joints[j].parent) toLegs_.push_back(j);
+  }
+  pelvis_ = pelvis;
+  for (Index j = 0; j < target.jointCount(); ++j) {
+    if (target.joints[j].parent && turns(*target.joints[j].parent) && !turns(j)) pelvisChildren_.push_back(j);
+  }
+}
+
+void RootPlacer::place(const Pose& source, const BodyFrame& sourceFrame, Pose& target, BodyFrame& frame) const {
+  if (!setup_.person) {
+    if (const JointMatch* hindquarters = setup_.map.find(kHindquarters)) {
+      placeHindquarters(*hindquarters, sourceFrame, target, frame);
+      return;
+    }
+    placeEach(source, sourceFrame, target, frame);
+    setup_.targetKinematics.place(target, frame);
+    return;
+  }
+  const Vec3 there = setup_.placeOf(pelvisOf(setup_.map, MapSide::kSource, sourceFrame.positions));
+  movePelvis(there - pelvisOf(setup_.map, MapSide::kTarget, frame.positions), target, frame);
+}
+
+void RootPlacer::placeHindquarters(const JointMatch& match, const BodyFrame& sourceFrame, Pose& target,
+                                   BodyFrame& frame) const {
+  const Index s = match.source.front(), t = match.target.front();
+  const Vec3 way = sourceFrame.positions[s] - setup_.sourceNeutral.restPositions[s];
+  const Vec3 there = setup_.targetNeutral.restPositions[t] + setup_.scale * way;
+  movePelvis(there - frame.positions[t], target, frame);
+}
+
+void RootPlacer::placeEach(const Pose& source, const BodyFrame& sourceFrame, Pose& target,
+                           const BodyFrame& frame) const {
+  for (const JointMatch& match : setup_.map.matches) {
+    const Index s = match.source.front(), t = match.target.front();
+    const Vec3 way = source.locals[s].translation - setup_.source->joints[s].rest.translation;
+    const double unit = setup_.scale * setup_.sourceKinematics.unit(s) / setup_.targetKinematics.unit(t);
+    const Quat above = setup_.sourceKinematics.parentRotation(s, sourceFrame);
+    const Quat toParent = setup_.targetKinematics.parentRotation(t, frame).conjugate();
+    target.locals[t].translation = setup_.target->joints[t].rest.translation + unit * (toParent * (above * way));
+  }
+}
+
+void RootPlacer::movePelvis(const Vec3& shift, Pose& target, BodyFrame& frame) const {
+  if (!hips_) return;
+  const BodyKinematics& kinematics = setup_.targetKinematics;
+  const Quat above = kinematics.parentRotation(*hips_, frame);
+  target.locals[*hips_].translation += (above.conjugate() * shift) / kinematics.unit(*hips_);
+  settle(target, frame);
+}
+
+void RootPlacer::turnPelvis(const Quat& turn, Pose& target, BodyFrame& frame) const {
+  if (!pelvis_) return;
+  const BodyKinematics& kinematics = setup_.targetKinematics;
+  const Vec3 middle = pelvisOf(setup_.map, MapSide::kTarget, frame.positions);
+  const Quat turned = turn * frame.rotations[*pelvis_];
+  target.locals[*pelvis_].rotation = (kinematics.parentRotation(*pelvis_, frame).conjugate() * turned).normalized();
+  frame.rotations[*pelvis_] = turned;
+  for (const Index joint : toLegs_) frame.rotations[joint] = turn * frame.rotations[joint];
+  for (const Index child : pelvisChildren_) {
+    target.locals[child].rotation =
+        (kinematics.parentRotation(child, frame).conjugate() * frame.rotations[child]).normalized();
+  }
+  kinematics.place(target, frame);
+  movePelvis(middle - pelvisOf(setup_.map, MapSide::kTarget, frame.positions), target, frame);
+}
+
+void RootPlacer::settle(Pose& target, BodyFrame& frame) const {
+  setup_.targetKinematics.place(target, frame);
+  placeLoose(target, frame);
+}
+
+bool RootPlacer::goesOwnWay(const AnimalLeg& leg) const {
+  return setup_.map.find(kHindquarters) || (leg.source.carrier && leg.target.carrier);
+}
+
+Index RootPlacer::carrierOf(Index joint) const {
+  for (const Loose& loose : loose_) {
+    if (loose.joint == joint) return loose.carrier;
+  }
+  return joint;
+}
+
+void RootPlacer::placeLoose(Pose& target, BodyFrame& frame) const {
+  if (loose_.empty()) return;
+  const BodyKinematics& kinematics = setup_.targetKinematics;
+  for (const Loose& loose : loose_) {
+    const Quat& carrier = frame.rotations[loose.carrier];
+    const Quat toParent = kinematics.parentRotation(loose.joint, frame).conjugate();
+    const Vec3 there = frame.positions[loose.carrier] + carrier * loose.offset;
+    const Vec3 way = toParent * Vec3(there - kinematics.parentPosition(loose.joint, frame));
+    target.locals[loose.joint].translation = way / kinematics.unit(loose.joint);
+    if (loose.turn) target.locals[loose.joint].rotation = (toParent * carrier * *loose.turn).normalized();
+    frame.positions[loose.joint] = there;
+  }
+  if (turnsLoose_) {
+    kinematics.globals(target, frame);
+  } else {
+    kinematics.place(target, frame);
+  }
+}
+
+}  // namespace limber

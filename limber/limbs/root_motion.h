@@ -1,0 +1,66 @@
+// How the whole body moves, and what hangs loose on it: shared by the methods.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "limber/matching/loose_joints.h"
+#include "limber/matching/retarget_setup.h"
+
+namespace limber {
+
+// Moves a posed target to where the source's motion has it.
+//
+// People: the hips' translation brings the pelvis to its place. Others: every matched joint's way from rest, scaled; of
+// quadrupeds that were matched by form (kHindquarters) that of the hindquarters alone.
+// Loose joints (looseJoints; of animals the feet that ride on their shins) are put where their carriers have them.
+class RootPlacer {
+ public:
+  explicit RootPlacer(const RetargetSetup& setup);
+
+  // `frame` are the globals of `target`, whose rotations are final; both are brought up to date.
+  void place(const Pose& source, const BodyFrame& sourceFrame, Pose& target, BodyFrame& frame) const;
+  // Brings positions up to date with rotations that were changed, and loose joints to where their limbs end now.
+  void settle(Pose& target, BodyFrame& frame) const;
+  // Moves the pelvis by `shift`, in the person's space.
+  void movePelvis(const Vec3& shift, Pose& target, BodyFrame& frame) const;
+
+  // Turns the pelvis about its middle, in the person's space; what hangs on it keeps how it is turned.
+  void turnPelvis(const Quat& turn, Pose& target, BodyFrame& frame) const;
+  // False where no joint carries both legs: turning it does nothing.
+  bool turnsPelvis() const { return pelvis_.has_value(); }
+
+  // Whether the foot goes as the source's, whatever the joint angles: on roots of their own, or on legs whose joints
+  // are others.
+  bool goesOwnWay(const AnimalLeg& leg) const;
+
+  // The joint that a loose joint rides on; the joint itself where it hangs on the body.
+  Index carrierOf(Index joint) const;
+
+  // The joints whose translation the placing writes.
+  const std::vector<Index>& moved() const { return moved_; }
+
+ private:
+  struct Loose {
+    Index joint = 0, carrier = 0;
+    Vec3 offset = Vec3::Zero();  // in the carrier's frame, in the person's metres
+    std::optional<Quat> turn;    // likewise, of one that turns with its carrier
+  };
+  void findPelvis();
+  void findCarrierOfLegs();
+  void placeHindquarters(const JointMatch& match, const BodyFrame& sourceFrame, Pose& target, BodyFrame& frame) const;
+  void placeEach(const Pose& source, const BodyFrame& sourceFrame, Pose& target, const BodyFrame& frame) const;
+  void addLoose(const LooseJoint& loose);
+  void placeLoose(Pose& target, BodyFrame& frame) const;
+
+  const RetargetSetup& setup_;
+  std::optional<Index> hips_;          // of others than people the joint that carries all legs
+  std::optional<Index> pelvis_;        // the joint that carries both legs and the trunk
+  std::vector<Index> toLegs_;          // joints between it and the legs, which turn with it
+  std::vector<Index> pelvisChildren_;  // what hangs on these and on the pelvis
+  std::vector<Loose> loose_;
+  bool turnsLoose_ = false;
+  std::vector<Index> moved_;
+};
+
+}  // namespace limber

@@ -1,0 +1,56 @@
+// One pose that two skeletons share whatever their rest poses are: against it, turns mean the same in both.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "limber/matching/skeleton_map.h"
+#include "limber/skeleton/pose.h"
+
+namespace limber {
+
+enum class MapSide { kSource, kTarget };
+
+// The joints of a part on that side, none where it is not matched.
+const std::vector<Index>* jointsOfPart(const SkeletonMap& map, MapSide side, std::string_view part);
+// Of all parts.
+std::vector<Index> matchedJoints(const SkeletonMap& map, MapSide side);
+
+// For a person: upright, facing +Z, upper and lower arms straight out to the sides, upper and lower legs straight down.
+// Trunk, neck, head, collars and feet stand as in rest pose, hands and fingers go along with their arms: there the turn
+// from rest says more than the direction (a foot's joint may lie high or low above its toes). A foot that the leg's
+// way to the neutral pose would turn by more than 25 degrees goes along with it, too. One who stoops at rest by more
+// than 25 degrees stands up, a head bowed by more than 45 is raised, where the limbs are a person's. Loose joints
+// (looseJoints) are where their carriers have them. For other skeletons: the rest pose.
+//
+// `resting` stands in for the skeleton's rest pose, here and below; uprightPose() tells why.
+struct NeutralPose {
+  Quat toBody;                      // from the skeleton's space to that of the person: up +Y, left +X
+  std::vector<Quat> rotations;      // #J, in the person's space
+  std::vector<Vec3> positions;      // #J, likewise
+  std::vector<Vec3> restPositions;  // #J, in rest pose, in the person's space
+};
+NeutralPose neutralPose(const Skeleton& skeleton, const Pose& resting, const SkeletonMap& map, MapSide side);
+
+// Does the person stand in that pose: legs and head on opposite sides of the hips? Some programs write motions whose
+// rest pose has all bones along one axis; it tells nothing. True for skeletons without legs or head.
+bool standsUpright(const Skeleton& skeleton, const Pose& pose, const SkeletonMap& map, MapSide side);
+
+// The rest pose if the person stands in it, else the pose of the motion that is most like standing: legs down and trunk
+// up (+Y). The rest pose again where no pose stands.
+Pose uprightPose(const Skeleton& skeleton, std::span<const Pose> motion, const SkeletonMap& map, MapSide side);
+
+// The middle between the upper legs' joints, else the hips' joint, else the first matched joint.
+Vec3 pelvisOf(const SkeletonMap& map, MapSide side, const std::vector<Vec3>& positions);
+
+// Where the foot of the "left" or "right" leg touches the ground in front: its toes, or what hangs on it furthest to
+// the front and below it where the other skeleton has no toes. `rest` are #J positions in the person's space.
+std::optional<Index> toesOf(const Skeleton& skeleton, const SkeletonMap& map, MapSide side, std::string_view leg,
+                            std::span<const Vec3> rest);
+
+// The first joints of feet and toes, as far as both skeletons have them.
+std::vector<Index> soleJoints(const SkeletonMap& map, MapSide side);
+
+}  // namespace limber

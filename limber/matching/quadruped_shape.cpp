@@ -1,0 +1,268 @@
+#include "limber/matching/quadruped_shape.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "limber/matching/loose_feet.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kConfidence = 0.8;
+// In heights of the body, from its lowest joint to where the legs begin.
+constexpr double kLow = 0.2;             // of a foot, at most
+constexpr double kMirrored = 0.15;       // how far left and right may be off being mirror images
+constexpr double kAside = 0.02;          // of a leg from the body's middle, at least
+constexpr double kBlade = 0.7;           // of the height of a blade's upper end, at which its lower one is at least
+constexpr double kSteep = 1;             // how far down a leg goes for each metre along, at least
+constexpr double kSameWay = 0.9;         // cosine between where the two face, and between their blades, at least
+constexpr std::size_t kMostChains = 64;  // that hang down: more are no legs
+
+using Joints = std::vector<Index>;  // root to tip
+
+struct QuadrupedLeg {
+  Joints blade, bones, foot, toes;
+  Vec3 bladeWay = Vec3::Zero();  // of the blade, to where the bones begin
+  std::vector<double> along;     // where each of the bones begins, from 0 to 1 at the foot
+};
+
+struct Quadruped {
+  Index hindquarters = 0;
+  Joints trunk, neck, head, tail;
+  std::array<QuadrupedLeg, 4> legs;  // as kLegs
+  Vec3 forward = Vec3::Zero();
+};
+constexpr std::array<const char*, 4> kLegs = {"leftHind", "rightHind", "leftFore", "rightFore"};
+
+class QuadrupedReader {
+ public:
+  explicit QuadrupedReader(const Skeleton& skeleton) {
+    for (const Affine& global : restGlobals(skeleton)) positions_.push_back(global.translation());
+    parents_ = parentsWithLegsJoined(skeleton, positions_);
+    children_.resize(parents_.size());
+    for (Index j = 0; j < parents_.size(); ++j) {
+      if (parents_[j]) children_[*parents_[j]].push_back(j);
+    }
+  }
+
+  std::optional<Quadruped> read() {
+    findPairs();
+    if (pairs_.size() != 2) return std::nullopt;
+    if (isAbove(pairs_[1].on, pairs_[0].on)) std::swap(pairs_[0], pairs_[1]);
+    const Pair &hind = pairs_[0], &fore = pairs_[1];
+    if (!isAbove(hind.on, fore.on)) return std::nullopt;
+    Quadruped animal;
+    animal.hindquarters = hind.on;
+    for (Index j = fore.on; j != hind.on; j = *parents_[j]) animal.trunk.push_back(j);
+    std::reverse(animal.trunk.begin(), animal.trunk.end());
+    const Vec3 along = at(fore.on) - at(hind.on);
+    if (levelled(along).norm() <= std::abs(along.y())) return std::nullopt;
+    animal.forward = levelled(along).normalized();
+    addNeck(fore, animal);
+    animal.tail = longestFrom(hind, animal.trunk.front());
+    measure();
+    for (std::size_t i = 0; i < kLegs.size(); ++i) {
+      const Pair& pair = pairs_[i / 2];
+      const bool firstIsLeft = Vec3::UnitY().cross(animal.forward).dot(at(pair.one.back()) - at(pair.other.back())) > 0;
+      const bool left = i % 2 == 0;
+      const std::optional<QuadrupedLeg> leg = legOf(left == firstIsLeft ? pair.one : pair.other);
+      if (!leg) return std::nullopt;
+      animal.legs[i] = *leg;
+    }
+    return animal;
+  }
+
+ private:
+  // Two legs on one joint.
+  struct Pair {
+    Joints one, other;
+    Index on = 0;
+  };
+
+  const Vec3& at(Index joint) const { return positions_[joint]; }
+  static Vec3 levelled(const Vec3& way) { return {way.x(), 0, way.z()}; }
+  bool isAbove(Index above, Index joint) const { return firstBelow(above, joint).has_value(); }
+
+  // From where it leaves the body down to its last joint.
+  Joints chainTo(Index leaf) const {
+    Joints chain = {leaf};
+    while (parents_[chain.back()] && children_[*parents_[chain.back()]].size() == 1) {
+      chain.push_back(*parents_[chain.back()]);
+    }
+    std::reverse(chain.begin(), chain.end());
+    return chain;
+  }
+
+  void findPairs() {
+    std::vector<Joints> chains;
+    for (Index j = 0; j < children_.size(); ++j) {
+      if (!children_[j].empty()) continue;
+      Joints chain = chainTo(j);
+      const Vec3 way = at(chain.back()) - at(chain.front());
+      if (chain.size() > 2 && parents_[chain.front()] && -way.y() > kSteep * levelled(way).norm()) {
+        chains.push_back(std::move(chain));
+      }
+    }
+    if (chains.size() > kMostChains) return;
+    for (std::size_t a = 0; a < chains.size(); ++a) {
+      for (std::size_t b = a + 1; b < chains.size(); ++b) {
+        if (areMirrored(chains[a], chains[b])) pairs_.push_back({chains[a], chains[b], *parents_[chains[a].front()]});
+      }
+    }
+  }
+
+  bool areMirrored(const Joints& one, const Joints& other) const {
+    if (parents_[one.front()] != parents_[other.front()] || one.size() != other.size()) return false;
+    const double height = at(one.front()).y() - at(one.back()).y();
+    const Vec3 aside = at(one.back()) - at(other.back());
+    return std::abs(aside.y()) < kMirrored * height && levelled(aside).norm() > 2 * kAside * height &&
+           std::abs(at(one.front()).y() - at(other.front()).y()) < kMirrored * height;
+  }
+
+  // The farthest way down from the joint that carries two legs, but for these and for what begins at `but`.
+  Joints longestFrom(const Pair& pair, std::optional<Index> but) const {
+    std::optional<Index> end;
+    double farthest = 0;
+    for (Index j = 0; j < parents_.size(); ++j) {
+      const std::optional<Index> first = firstBelow(pair.on, j);
+      if (!first || first == pair.one.front() || first == pair.other.front() || first == but) continue;
+      const double away = (at(j) - at(pair.on)).norm();
+      if (away <= farthest) continue;
+      farthest = away;
+      end = j;
+    }
+    Joints path;
+    for (; end && *end != pair.on; end = parents_[*end]) path.push_back(*end);
+    std::reverse(path.begin(), path.end());
+    return path;
+  }
+
+  // On the way from a joint down to one below it.
+  std::optional<Index> firstBelow(Index above, Index joint) const {
+    for (Index at = joint; parents_[at]; at = *parents_[at]) {
+      if (*parents_[at] == above) return at;
+    }
+    return std::nullopt;
+  }
+
+  // Up to the first joint that several hang on, the head, or to the last.
+  void addNeck(const Pair& fore, Quadruped& animal) const {
+    animal.neck = longestFrom(fore, std::nullopt);
+    const auto head =
+        std::find_if(animal.neck.begin(), animal.neck.end(), [&](Index j) { return children_[j].size() != 1; });
+    if (head == animal.neck.end() || head == animal.neck.begin()) return;
+    animal.head = {*head};
+    animal.neck.erase(head, animal.neck.end());
+  }
+
+  void measure() {
+    lowest_ = HUGE_VAL;
+    double tops = 0;
+    for (const Pair& pair : pairs_) {
+      for (const Joints* leg : {&pair.one, &pair.other}) {
+        tops += at(leg->front()).y() / 4;
+        for (const Index joint : *leg) lowest_ = std::min(lowest_, at(joint).y());
+      }
+    }
+    height_ = tops - lowest_;
+  }
+
+  double over(Index joint) const { return (at(joint).y() - lowest_) / height_; }
+
+  std::optional<QuadrupedLeg> legOf(const Joints& chain) const {
+    const auto foot = std::find_if(chain.begin(), chain.end(), [&](Index j) { return over(j) < kLow; });
+    const auto bones = foot - chain.begin();
+    if (bones < 2 || foot == chain.end()) return std::nullopt;
+    auto upper = chain.begin() + (bones > 2 && over(chain[1]) > kBlade * over(chain[0]) ? 1 : 0);
+    for (auto joint = upper + 1; joint + 1 < foot; ++joint) {
+      if (over(*joint) > over(*(joint - 1)))
+        upper = joint;  // a leg comes down; what goes up is a blade of several joints
+    }
+    QuadrupedLeg leg{{chain.begin(), upper}, {upper, foot}, {*foot}, {foot + 1, chain.end()}, Vec3::Zero(), {}};
+    if (upper != chain.begin()) leg.bladeWay = (at(*upper) - at(chain.front())).normalized();
+    double length = 0;
+    for (auto joint = upper; joint != foot; ++joint) {
+      leg.along.push_back(length);
+      length += (at(*(joint + 1)) - at(*joint)).norm();
+    }
+    if (!(length > 0)) return std::nullopt;
+    for (double& along : leg.along) along /= length;
+    return leg;
+  }
+
+  std::vector<Vec3> positions_;
+  std::vector<std::optional<Index>> parents_;
+  std::vector<Joints> children_;
+  std::vector<Pair> pairs_;
+  double lowest_ = 0, height_ = 1;
+};
+
+class Matcher {
+ public:
+  SkeletonMap match(const Quadruped& source, const Quadruped& target) {
+    add(kHindquarters, {source.hindquarters}, {target.hindquarters});
+    add("trunk", source.trunk, target.trunk);
+    add("neck", source.neck, target.neck);
+    add("head", source.head, target.head);
+    add("tail", source.tail, target.tail);
+    for (std::size_t i = 0; i < kLegs.size(); ++i) addLeg(kLegs[i], source.legs[i], target.legs[i]);
+    return std::move(map_);
+  }
+
+ private:
+  void add(const std::string& part, const Joints& source, const Joints& target) {
+    if (source.empty() || target.empty()) return;
+    map_.matches.push_back({part, source, target, kConfidence, MatchedBy::kShape});
+  }
+
+  // The leg's bones in as many groups as the other has, if that has fewer: each begins with the joint that lies where
+  // one of the other's does along the leg.
+  static std::vector<Joints> grouped(const QuadrupedLeg& leg, const QuadrupedLeg& other) {
+    std::vector<Joints> groups;
+    std::size_t at = 0;
+    for (std::size_t i = 0; i < std::min(leg.bones.size(), other.bones.size()); ++i) {
+      const std::size_t left = std::min(leg.bones.size(), other.bones.size()) - i;
+      const auto away = [&](std::size_t j) { return std::abs(leg.along[j] - other.along[i]); };
+      std::size_t begin = at;
+      for (std::size_t j = at + 1; i > 0 && j + left <= leg.bones.size(); ++j) {
+        if (away(j) < away(begin)) begin = j;
+      }
+      for (; at < begin; ++at) groups.back().push_back(leg.bones[at]);
+      groups.push_back({leg.bones[at++]});
+    }
+    for (; at < leg.bones.size(); ++at) groups.back().push_back(leg.bones[at]);
+    return groups;
+  }
+
+  void addLeg(const std::string& name, const QuadrupedLeg& source, const QuadrupedLeg& target) {
+    // Blades that lie otherwise would take the legs elsewhere.
+    if (source.bladeWay.dot(target.bladeWay) > kSameWay) add(name + "Blade", source.blade, target.blade);
+    const std::vector<Joints> from = grouped(source, target), to = grouped(target, source);
+    for (std::size_t i = 0; i < to.size(); ++i) add(name + "Bone" + std::to_string(i + 1), from[i], to[i]);
+    add(name + "Foot", source.foot, target.foot);
+    add(name + "Toes", source.toes, target.toes);
+  }
+
+  SkeletonMap map_;
+};
+
+}  // namespace
+
+std::optional<LegEnd> legEndOf(std::string_view part) {
+  for (const std::string leg : kLegs) {
+    if (part == leg + "Bone1") return LegEnd::kUpper;
+    if (part == leg + "Foot") return LegEnd::kFoot;
+  }
+  return std::nullopt;
+}
+
+std::optional<SkeletonMap> matchQuadrupeds(const Skeleton& source, const Skeleton& target) {
+  const std::optional<Quadruped> from = QuadrupedReader(source).read(), to = QuadrupedReader(target).read();
+  if (!from || !to || from->forward.dot(to->forward) < kSameWay) return std::nullopt;
+  return Matcher().match(*from, *to);
+}
+
+}  // namespace limber

@@ -1,0 +1,196 @@
+#include "limber/matching/quadruped_shape.h"
+
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "limber/matching/testing/test_motion.h"
+
+namespace limber {
+namespace {
+
+using limber::testing::onTheGround;
+using limber::testing::quadruped;
+using limber::testing::withJointBefore;
+
+const std::vector<std::string> kPaws = {"b0LeftThree", "b0RightThree", "b1LeftThree", "b1RightThree"};
+
+// The same in a language that nobody knows.
+Skeleton nameless(Skeleton animal) {
+  for (Index j = 0; j < animal.jointCount(); ++j) animal.joints[j].name = "q" + std::to_string(j);
+  return animal;
+}
+
+std::vector<std::string> namesIn(const Skeleton& skeleton, const std::vector<Index>& joints) {
+  std::vector<std::string> names;
+  for (const Index joint : joints) names.push_back(skeleton.joints[joint].name);
+  return names;
+}
+
+std::vector<std::string> sourceOf(const SkeletonMap& map, const Skeleton& source, const char* part) {
+  const JointMatch* match = map.find(part);
+  return match ? namesIn(source, match->source) : std::vector<std::string>();
+}
+
+using PartNames = std::vector<std::string>;
+
+TEST(QuadrupedShape, TellsBodyAndLegs) {
+  const Skeleton one = quadruped(0.5), other = nameless(quadruped(0.35));
+  const std::optional<SkeletonMap> map = matchQuadrupeds(one, other);
+  ASSERT_TRUE(map);
+  EXPECT_EQ(sourceOf(*map, one, kHindquarters), PartNames({"b0"}));
+  EXPECT_EQ(sourceOf(*map, one, "trunk"), PartNames({"b1"}));
+  EXPECT_EQ(sourceOf(*map, one, "neck"), PartNames({"n0"}));
+  EXPECT_EQ(sourceOf(*map, one, "head"), PartNames({"n1"}));
+  EXPECT_EQ(sourceOf(*map, one, "tail"), PartNames({"tail1", "tail2", "tail3"}))
+      << "though it hangs down to the ground";
+  EXPECT_EQ(sourceOf(*map, one, "leftForeBone1"), PartNames({"b1LeftOne"}));
+  EXPECT_EQ(sourceOf(*map, one, "rightHindBone2"), PartNames({"b0RightTwo"}));
+  EXPECT_EQ(sourceOf(*map, one, "leftHindFoot"), PartNames({"b0LeftThree"}));
+  EXPECT_EQ(sourceOf(*map, one, "rightForeToes"), PartNames({"b1RightFour"}));
+  for (const JointMatch& match : map->matches) EXPECT_EQ(match.source, match.target) << match.part;
+  EXPECT_EQ(legEndOf("leftForeBone1"), LegEnd::kUpper);
+  EXPECT_EQ(legEndOf("rightHindFoot"), LegEnd::kFoot);
+  EXPECT_FALSE(legEndOf("leftForeBone2"));
+}
+
+TEST(QuadrupedShape, AnimalsAreNotTakenForPeople) {
+  const Skeleton one = quadruped(0.5), other = nameless(quadruped(0.45));
+  EXPECT_TRUE(matchSkeletons(one, nameless(onTheGround(other, {}))).find(kHindquarters));
+  EXPECT_EQ(matchSkeletons(one, other).matches.size(), one.jointCount())
+      << "joint by joint where the trees are the same";
+}
+
+TEST(QuadrupedShape, FeetOnRootsOfTheirOwnAreFeet) {
+  const Skeleton one = quadruped(0.5), other = nameless(onTheGround(quadruped(0.5), kPaws));
+  const std::optional<SkeletonMap> map = matchQuadrupeds(one, other);
+  ASSERT_TRUE(map);
+  const JointMatch* foot = map->find("leftForeFoot");
+  ASSERT_TRUE(foot);
+  EXPECT_EQ(other.joints[foot->target.front()].parent, Index{0});
+  EXPECT_EQ(foot->target.front(), foot->source.front() + 1);
+}
+
+// Legs that begin at a collar's tip, which hangs below the shoulder.
+TEST(QuadrupedShape, WhatGoesUpBeforeALegIsABlade) {
+  Skeleton collared = quadruped(0.5);
+  for (const std::string side : {"b1Left", "b1Right"}) collared = withJointBefore(collared, side + "One", side + "Tip");
+  for (const std::string side : {"b1Left", "b1Right"}) {
+    collared.joints[collared.find(side + "Tip").value()].rest.translation.y() -= 0.3;
+    collared.joints[collared.find(side + "One").value()].rest.translation.y() += 0.3;
+  }
+  const Skeleton other = nameless(quadruped(0.5));
+  const SkeletonMap map = matchQuadrupeds(collared, other).value();
+  EXPECT_EQ(sourceOf(map, collared, "leftForeBone1"), PartNames({"b1LeftOne"}));
+  EXPECT_EQ(sourceOf(map, collared, "rightForeFoot"), PartNames({"b1RightThree"}));
+  EXPECT_EQ(RetargetSetup(collared, other, map, {}).animalLegs.size(), 4u);
+}
+
+// A joint more between elbow and wrist goes with the lower bone.
+TEST(QuadrupedShape, OtherNumbersOfBonesAreMatchedByWhereTheyLie) {
+  const Skeleton one = quadruped(0.5), other = nameless(one);
+  const Skeleton longer = withJointBefore(withJointBefore(one, "b1LeftThree", "wrist"), "b1RightThree", "otherWrist");
+  const SkeletonMap fewer = matchQuadrupeds(longer, other).value(), more = matchQuadrupeds(other, longer).value();
+  EXPECT_EQ(sourceOf(fewer, longer, "leftForeBone1"), PartNames({"b1LeftOne"}));
+  EXPECT_EQ(sourceOf(fewer, longer, "leftForeBone2"), PartNames({"b1LeftTwo", "wrist"}));
+  EXPECT_EQ(more.find("rightForeBone2")->target, fewer.find("rightForeBone2")->source);
+}
+
+TEST(QuadrupedShape, PeopleTablesAndThoseThatFaceElsewhereAreNone) {
+  const Skeleton animal = quadruped(0.5);
+  EXPECT_FALSE(matchQuadrupeds(animal, practiceHumanoid()));
+  Skeleton turned = animal;
+  turned.joints[0].rest.rotation = limber::testing::turn(Vec3::UnitY(), 90);
+  EXPECT_FALSE(matchQuadrupeds(animal, turned));
+  Skeleton table = animal;  // all legs on one joint
+  for (Joint& joint : table.joints) {
+    if (joint.name.starts_with("b1") && joint.name.ends_with("One")) joint.parent = Index{0};
+  }
+  EXPECT_FALSE(matchQuadrupeds(animal, table));
+}
+
+// Bodies of differing names and legs: paws stand and rise as the source's, wherever the target's hang.
+TEST(QuadrupedShape, PawsGoTheSourcesWay) {
+  const Skeleton one = quadruped(0.5);
+  const Index lifted = one.find("b1LeftTwo").value(), upper = one.find("b1LeftOne").value();
+  PoseSequence motion{{}, 1.0 / 30};
+  for (int f = 0; f < 40; ++f) {
+    Pose& pose = motion.poses.emplace_back(restPose(one));
+    const double bend = f < 15 ? 0 : 50 * (1 - std::cos(0.25 * (f - 15)));
+    pose.locals[upper].rotation = limber::testing::turn(-Vec3::UnitX(), 0.5 * bend);
+    pose.locals[lifted].rotation = limber::testing::turn(Vec3::UnitX(), bend);
+  }
+  for (const Skeleton& other : {nameless(withJointBefore(limber::testing::scaled(quadruped(0.45), 2), "n1", "throat")),
+                                nameless(onTheGround(limber::testing::scaled(quadruped(0.45), 2), kPaws))}) {
+    const RetargetSetup setup(one, other, matchSkeletons(one, other), {}, &motion);
+    ASSERT_TRUE(setup.map.find(kHindquarters));
+    ASSERT_EQ(setup.animalLegs.size(), 4u);
+    for (const char* method : {"limb-ik", "online", "spacetime"}) {
+      SCOPED_TRACE(method);
+      const PoseSequence result = retargetFrames(findRetargetMethod(method), setup, motion);
+      for (std::size_t f = 5; f < 40; ++f) {
+        const std::vector<Affine> from = poseGlobals(one, motion.poses[f]), to = poseGlobals(other, result.poses[f]);
+        for (const AnimalLeg& leg : setup.animalLegs) {
+          const Vec3 way = from[leg.source.end].translation() - restGlobals(one)[leg.source.end].translation();
+          const Vec3 went = to[leg.target.end].translation() - restGlobals(other)[leg.target.end].translation();
+          EXPECT_LT((went - setup.scale * way).norm(), leg.source.lower == lifted ? 0.2 : 0.03) << f;
+        }
+      }
+    }
+  }
+}
+
+// How far the forepaws are from below their hips, of a body whose trunk is so many times as long and that has turned
+// about its hind legs.
+double forepawsAside(double trunk) {
+  const Skeleton one = quadruped(0.5);
+  Skeleton other = withJointBefore(quadruped(0.5), "n1", "throat");
+  other.joints[other.find("b1").value()].rest.translation *= trunk;
+  other = nameless(other);
+  PoseSequence motion{{}, 1.0 / 30};
+  for (int f = 0; f < 40; ++f) {
+    Pose& pose = motion.poses.emplace_back(restPose(one));
+    pose.locals[0].rotation = limber::testing::turn(Vec3::UnitY(), 1.5 * f);
+    for (const char* paw : {"b1LeftOne", "b1RightOne"}) {  // steps all the while
+      pose.locals[one.find(paw).value()].rotation = limber::testing::turn(Vec3::UnitX(), 10 * std::sin(0.9 * f));
+    }
+  }
+  const RetargetSetup setup(one, other, matchSkeletons(one, other), {}, &motion);
+  const PoseSequence result = retargetFrames(findRetargetMethod("limb-ik"), setup, motion);
+  const std::vector<Affine> globals = poseGlobals(other, result.poses.back());
+  const AnimalLeg& fore = setup.animalLegs.back();
+  const Vec3 aside = globals[fore.target.end].translation() - globals[fore.target.upper].translation();
+  return std::hypot(aside.x(), aside.z());
+}
+
+TEST(QuadrupedShape, LongerTrunksTakeTheirForepawsAlong) {
+  EXPECT_LT(forepawsAside(2), forepawsAside(1) + 0.3);
+}
+
+// One whose legs begin far below its trunk lies on the ground as the source does, not in it.
+TEST(QuadrupedShape, BodiesLieOnTheGround) {
+  const Skeleton one = quadruped(0.5);
+  Skeleton deep = withJointBefore(one, "n1", "throat");
+  for (Joint& joint : deep.joints) {
+    if (joint.name.ends_with("One")) joint.rest.translation.y() = -0.35;
+    if (joint.name.ends_with("Two")) joint.rest.translation.y() += 0.3;
+  }
+  const Skeleton other = nameless(deep);
+  PoseSequence motion{{}, 1.0 / 30};
+  for (int f = 0; f < 30; ++f) {
+    motion.poses.push_back(restPose(one));
+    motion.poses.back().locals[0].translation.y() -= 0.03 * f;
+  }
+  const RetargetSetup setup(one, other, matchSkeletons(one, other), {});
+  ASSERT_TRUE(setup.map.find(kHindquarters));
+  for (const char* method : {"limb-ik", "online", "spacetime"}) {
+    const PoseSequence result = retargetFrames(findRetargetMethod(method), setup, motion);
+    const std::vector<Affine> lies = poseGlobals(other, result.poses.back());
+    for (const AnimalLeg& leg : setup.animalLegs) {
+      EXPECT_GT(lies[leg.target.upper].translation().y(), setup.targetGround - 0.03) << method;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace limber

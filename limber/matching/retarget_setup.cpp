@@ -1,0 +1,173 @@
+#include "limber/matching/retarget_setup.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "limber/core/error.h"
+#include "limber/matching/quadruped_shape.h"
+
+namespace limber {
+
+namespace {
+
+// A motion whose feet come this near to where they are in rest pose (in hip heights) stands on the rest pose's ground.
+constexpr double kSameGround = 0.08;
+constexpr double kStill = 0.4;         // hip heights a second: a lowest foot joint slower than this stands
+constexpr double kFewStand = 0.05;     // share of frames; below it the motion never stands (a run)
+constexpr double kBelowGround = 0.05;  // share of frames that may lie lower than the ground, for noise
+
+double lowest(const std::vector<Index>& joints, const std::vector<Vec3>& positions) {
+  double y = std::numeric_limits<double>::infinity();
+  for (const Index joint : joints) y = std::min(y, positions[joint].y());
+  return y;
+}
+
+// Feet where both have them, else every joint.
+std::vector<Index> groundJoints(const SkeletonMap& map, MapSide side) {
+  std::vector<Index> joints = soleJoints(map, side);
+  return joints.empty() ? matchedJoints(map, side) : joints;
+}
+
+// Heights of the lowest foot joint over a motion, in all frames and while it is still.
+struct LowestHeights {
+  std::vector<double> all, standing;
+};
+LowestHeights lowestHeights(const BodyKinematics& kinematics, const std::vector<Index>& soles, double hipHeight,
+                            const PoseSequence& motion) {
+  LowestHeights heights;
+  BodyFrame frame, before;
+  for (const Pose& pose : motion.poses) {
+    kinematics.globals(pose, frame);
+    const auto low = std::min_element(
+        soles.begin(), soles.end(), [&](Index a, Index b) { return frame.positions[a].y() < frame.positions[b].y(); });
+    heights.all.push_back(frame.positions[*low].y());
+    const double stillWay = kStill * hipHeight * motion.frameSeconds;
+    const bool still = !before.positions.empty() && (frame.positions[*low] - before.positions[*low]).norm() < stillWay;
+    if (still) heights.standing.push_back(heights.all.back());
+    std::swap(frame, before);
+  }
+  return heights;
+}
+
+double quantile(std::vector<double>& values, double share) {
+  const auto rank = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size()));
+  std::nth_element(values.begin(), rank, values.end());
+  return *rank;
+}
+
+// The rest pose's ground where the motion comes down to it; else the middle height of what is lowest and still. People
+// who sit down, lie or jump about are still at many heights, so that middle alone says too little.
+double measuredGround(LowestHeights heights, double restGround, double hipHeight) {
+  if (std::abs(quantile(heights.all, kBelowGround) - restGround) < kSameGround * hipHeight) return restGround;
+  const bool stands =
+      static_cast<double>(heights.standing.size()) > kFewStand * static_cast<double>(heights.all.size());
+  return stands ? quantile(heights.standing, 0.25) : quantile(heights.all, kBelowGround);
+}
+
+double legLength(const SkeletonMap& map, MapSide side, const NeutralPose& pose) {
+  double length = 0;
+  for (const char* name : {"left", "right"}) {
+    const auto at = [&](const char* bone) -> std::optional<Vec3> {
+      const std::vector<Index>* joints = jointsOfPart(map, side, std::string(name) + bone);
+      return joints ? std::optional(pose.restPositions[joints->front()]) : std::nullopt;
+    };
+    const auto upper = at("UpperLeg"), lower = at("LowerLeg"), foot = at("Foot");
+    if (upper && lower && foot) length = std::max(length, (*lower - *upper).norm() + (*foot - *lower).norm());
+  }
+  return length;
+}
+
+double hipHeight(const SkeletonMap& map, MapSide side, const NeutralPose& pose) {
+  return pelvisOf(map, side, pose.positions).y() - lowest(groundJoints(map, side), pose.positions);
+}
+
+bool sameBuild(const Skeleton& a, const Skeleton& b) {
+  if (a.jointCount() != b.jointCount()) return false;
+  for (Index j = 0; j < a.jointCount(); ++j) {
+    const Transform &one = a.joints[j].rest, &other = b.joints[j].rest;
+    const double size = 1 + one.translation.norm();
+    if (a.joints[j].parent != b.joints[j].parent || (one.translation - other.translation).norm() > 1e-6 * size ||
+        std::abs(one.rotation.dot(other.rotation)) < 1 - 1e-9) {
+      return false;
+    }
+  }
+  return true;
+}
+
+// Mean height, over the lowest matched joint, of the joints that legs begin at.
+double legHeight(const std::vector<AnimalLeg>& legs, const SkeletonMap& map, MapSide side, const NeutralPose& pose) {
+  double sum = 0;
+  for (const AnimalLeg& leg : legs) {
+    sum += pose.positions[(side == MapSide::kSource ? leg.source : leg.target).upper].y();
+  }
+  return sum / static_cast<double>(legs.size()) - lowest(matchedJoints(map, side), pose.positions);
+}
+
+}  // namespace
+
+RetargetSetup::RetargetSetup(const Skeleton& from, const Skeleton& to, SkeletonMap matches,
+                             const RetargetOptions& asked, const PoseSequence* motion)
+    : source(&from),
+      target(&to),
+      map((checkSkeletonMap(matches, from, to), std::move(matches))),
+      options(asked),
+      person(map.find("hips") && map.find("leftUpperLeg") && map.find("rightUpperLeg")),
+      sourceRest(uprightPose(from, motion ? std::span(motion->poses) : std::span<const Pose>(), map, MapSide::kSource)),
+      sourceNeutral(neutralPose(from, sourceRest, map, MapSide::kSource)),
+      targetNeutral(neutralPose(to, sameBuild(from, to) ? sourceRest : restPose(to), map, MapSide::kTarget)),
+      sourceKinematics(from, sourceNeutral.toBody),
+      targetKinematics(to, targetNeutral.toBody) {
+  if (person) {
+    sourceHipHeight = hipHeight(map, MapSide::kSource, sourceNeutral);
+    targetHipHeight = hipHeight(map, MapSide::kTarget, targetNeutral);
+  } else {
+    const BodySize one = bodySize(map, MapSide::kSource, sourceNeutral),
+                   other = bodySize(map, MapSide::kTarget, targetNeutral);
+    const bool stand = map.find(kHindquarters) || (one.stands() && other.stands());
+    sourceHipHeight = stand ? one.height : one.across;
+    targetHipHeight = stand ? other.height : other.across;
+    animalLegs = limber::animalLegs(map, from, to, sourceNeutral, targetNeutral);
+  }
+  if (!(sourceHipHeight > 0) || !(targetHipHeight > 0)) {
+    throw Error(ErrorCode::kBadData, "the rest pose has no height: its joints lie in one place");
+  }
+  scale = targetHipHeight / sourceHipHeight;
+  if (!animalLegs.empty()) {
+    scale = legHeight(animalLegs, map, MapSide::kTarget, targetNeutral) /
+            legHeight(animalLegs, map, MapSide::kSource, sourceNeutral);
+  }
+  const double sourceLegs = legLength(map, MapSide::kSource, sourceNeutral);
+  const double targetLegs = legLength(map, MapSide::kTarget, targetNeutral);
+  if (sourceLegs > 0 && targetLegs > 0) {
+    if (options.rootScale == RootScale::kHipHeight) legShare = targetLegs / sourceLegs / scale;
+    if (options.rootScale == RootScale::kLegLength) scale = targetLegs / sourceLegs;
+  }
+  if (options.rootScale == RootScale::kNone) scale = 1;
+
+  const std::vector<Index> soles = groundJoints(map, MapSide::kSource);
+  sourceLowest = lowest(soles, sourceNeutral.positions);
+  targetLowest = lowest(groundJoints(map, MapSide::kTarget), targetNeutral.positions);
+  const double restGround = lowest(soles, sourceNeutral.restPositions);
+  sourceGround = options.sourceGround.value_or(restGround);
+  if (!options.sourceGround && motion && !motion->poses.empty()) {
+    const LowestHeights heights = lowestHeights(sourceKinematics, soles, sourceHipHeight, *motion);
+    sourceGround = measuredGround(heights, restGround, sourceHipHeight);
+  }
+  // A rest pose that hangs about the origin instead of standing on it tells nothing about the ground: the target then
+  // stands at the source's height.
+  targetGround = lowest(groundJoints(map, MapSide::kTarget), targetNeutral.restPositions);
+  const bool stands = targetGround > -0.25 * targetHipHeight && targetGround < 0.5 * targetHipHeight;
+  if (!stands) targetGround = sourceGround * scale;
+}
+
+Vec3 RetargetSetup::placeOf(const Vec3& pelvis) const {
+  Vec3 place = scale * pelvis;
+  // By the legs about where they carry it; wholly down on the ground.
+  const double height = (pelvis.y() - sourceGround) / sourceHipHeight, below = std::clamp(height, 0.0, 1.0);
+  const double byLegs = (legShare - 1) * (height > 1 ? height - 1 : below * (below - 1));
+  place.y() = targetGround + scale * sourceHipHeight * (height + byLegs);
+  return place;
+}
+
+}  // namespace limber

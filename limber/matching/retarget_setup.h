@@ -1,0 +1,68 @@
+// What every retargeting method starts from: two skeletons, which joint follows which, and how their spaces compare.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "limber/matching/animal_legs.h"
+#include "limber/matching/body_frame.h"
+#include "limber/matching/neutral_pose.h"
+#include "limber/matching/skeleton_map.h"
+
+namespace limber {
+
+// Frames of a whole motion, evenly spaced.
+struct PoseSequence {
+  std::vector<Pose> poses;
+  double frameSeconds = 1.0 / 30;
+};
+
+enum class RootScale {
+  kHipHeight,  // from the ground to the hips
+  kLegLength,  // of upper and lower leg
+  kNone,       // the way stays as long as it is
+};
+
+struct RetargetOptions {
+  RootScale rootScale = RootScale::kHipHeight;
+  // limb-ik: where a hand goes. 0: where its turned bones bring it; 1: where the source's hand is, scaled as the root's
+  // way is (Koerner's d).
+  double reach = 0;
+  bool contacts = true;             // limb-ik: keep planted feet and touching hands
+  std::string solver = "two-bone";  // limb-ik, online: of ikMethods()
+  // Height of the ground under the source, metres; none: measured from the motion where there is one, else from the
+  // rest pose.
+  std::optional<double> sourceGround;
+};
+
+// Immutable once made; the skeletons must outlive it, and have no negative scales (plain_skeleton.h). `motion`, if
+// given, is what will be retargeted: it tells where the ground is, and how the source stands where its rest pose does
+// not.
+struct RetargetSetup {
+  RetargetSetup(const Skeleton& source, const Skeleton& target, SkeletonMap map, const RetargetOptions& options,
+                const PoseSequence* motion = nullptr);
+
+  // Where the target's pelvis stands when the source's stands at `pelvis`, both in their person's space.
+  Vec3 placeOf(const Vec3& pelvis) const;
+
+  const Skeleton* source;
+  const Skeleton* target;
+  SkeletonMap map;
+  RetargetOptions options;
+  bool person = false;  // else joints are matched one by one, and all of them may move
+  Pose sourceRest;      // the rest pose, or what stands in for it (uprightPose)
+  NeutralPose sourceNeutral, targetNeutral;
+  BodyKinematics sourceKinematics, targetKinematics;
+  // Target metres for a source metre of the root's way. Of others than people with legs: by where these begin.
+  double scale = 1;
+  // The legs' share of the hips' height, over the source's: where ankles are high, bent legs lower the hips less.
+  double legShare = 1;
+  double sourceHipHeight = 1,
+         targetHipHeight = 1;                 // of no people: mean height of the joints, or size of what lies flat
+  double sourceGround = 0, targetGround = 0;  // heights of the lowest foot joint of someone standing
+  double sourceLowest = 0, targetLowest = 0;  // likewise, in the neutral poses
+  std::vector<AnimalLeg> animalLegs;          // of no people that stand on their joints
+};
+
+}  // namespace limber

@@ -1,0 +1,265 @@
+#include "limber/matching/skeleton_map.h"
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <optional>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "limber/core/error.h"
+#include "limber/matching/animal_map.h"
+#include "limber/matching/humanoid_shape.h"
+#include "limber/matching/quadruped_shape.h"
+#include "limber/skeleton/chain.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kFacing = 0.5;  // cosine between where toes and a body point, at least, to tell left from right by it
+
+// A person as the matching sees it: parts with their joints.
+struct Body {
+  struct Part {
+    std::vector<Index> joints;
+    double confidence = 1;
+  };
+  std::map<std::string, Part, std::less<>> parts;
+  std::vector<std::string> order;  // of the parts
+  MatchedBy by = MatchedBy::kName;
+};
+
+class BodyReader {
+ public:
+  explicit BodyReader(const Skeleton& skeleton) : skeleton_(skeleton) {
+    labels_ = humanoidJointsByName(skeleton);
+    if (!isPerson()) {
+      labels_ = humanoidJointsByShape(skeleton);
+      body_.by = MatchedBy::kShape;
+    }
+  }
+
+  std::optional<Body> read() {
+    if (!isPerson()) return std::nullopt;
+    if (isMirrored()) {
+      for (HumanoidJoint& label : labels_) label.bone = mirroredBone(label.bone);
+    }
+    for (const HumanoidJoint& label : labels_) {
+      const std::string bone(label.bone);
+      if (bone == "spine") {
+        add("trunk", trunk(), label.confidence);
+      } else if (bone == "neck") {
+        add("neck", neck(), label.confidence);
+      } else if (bone != "chest" && bone != "upperChest") {
+        add(bone, withLinks(label), label.confidence);
+      }
+    }
+    return std::move(body_);
+  }
+
+ private:
+  // Hips, and most of what arms and legs consist of.
+  bool isPerson() const {
+    int limbs = 0;
+    for (const char* bone : {"leftUpperArm", "rightUpperArm", "leftUpperLeg", "rightUpperLeg", "leftLowerArm",
+                             "rightLowerArm", "leftLowerLeg", "rightLowerLeg"}) {
+      limbs += jointOf(bone).has_value();
+    }
+    return jointOf("hips") && limbs >= 4;
+  }
+
+  // Do the feet point backwards for someone whose left is where the names say? Then left is where they say right: the
+  // skeleton is a mirror image, by a negative scale or out of a program with a left hand's axes.
+  bool isMirrored() const {
+    const std::optional<Index> left = jointOf("leftUpperLeg"), right = jointOf("rightUpperLeg"), head = jointOf("head");
+    if (!left || !right || !head || !jointOf("leftUpperArm") || !jointOf("rightUpperArm")) return false;
+    const std::vector<Affine> globals = restGlobals(skeleton_);
+    const auto at = [&](Index joint) -> Vec3 { return globals[joint].translation(); };
+    Vec3 forward = Vec3::Zero(), down = Vec3::Zero();
+    for (const auto& [footBone, toesBone] : {std::pair{"leftFoot", "leftToes"}, std::pair{"rightFoot", "rightToes"}}) {
+      const std::optional<Index> foot = jointOf(footBone), toes = jointOf(toesBone);
+      if (!foot || !toes) return false;
+      forward += at(*toes) - at(*foot);
+      down += at(*foot) - at(*jointOf("hips"));
+    }
+    const Vec3 up = at(*head) - at(*jointOf("hips"));
+    if (up.dot(-down) < kFacing * up.norm() * down.norm()) return false;  // stands or hangs in another way
+    const Vec3 facing = (at(*left) - at(*right)).cross(-down);
+    return facing.dot(forward) < -kFacing * facing.norm() * forward.norm();
+  }
+
+  std::optional<Index> jointOf(std::string_view bone) const {
+    for (const HumanoidJoint& label : labels_) {
+      if (label.bone == bone) return label.joint;
+    }
+    return std::nullopt;
+  }
+  bool isLabelled(Index joint) const {
+    return std::any_of(labels_.begin(), labels_.end(), [&](const HumanoidJoint& l) { return l.joint == joint; });
+  }
+
+  // Without joints that another part has: where bodies are short, form gives some to an arm and to the neck.
+  void add(const std::string& part, std::vector<Index> joints, double confidence) {
+    std::erase_if(joints, [&](Index joint) { return !taken_.insert(joint).second; });
+    if (joints.empty()) return;
+    body_.parts[part] = {std::move(joints), confidence};
+    body_.order.push_back(part);
+  }
+
+  // The joints strictly between two, root to tip; none where one does not hang on the other.
+  std::vector<Index> between(Index above, Index below) const {
+    std::vector<Index> joints;
+    for (std::optional<Index> up = skeleton_.joints[below].parent; up && *up != above;
+         up = skeleton_.joints[*up].parent)
+      joints.insert(joints.begin(), *up);
+    return isAncestorOrSelf(skeleton_, above, below) ? joints : std::vector<Index>{};
+  }
+
+  std::vector<Index> trunk() const {
+    const Index hips = *jointOf("hips");
+    const std::optional<Index> neck = jointOf("neck"), head = jointOf("head");
+    if (neck || head) {
+      std::vector<Index> joints = between(hips, neck ? *neck : *head);
+      if (!joints.empty()) return joints;
+    }
+    std::vector<Index> joints;
+    for (const char* bone : {"spine", "chest", "upperChest"}) {
+      if (const std::optional<Index> joint = jointOf(bone)) joints.push_back(*joint);
+    }
+    return joints;
+  }
+
+  std::vector<Index> neck() const {
+    std::vector<Index> joints = {*jointOf("neck")};
+    if (const std::optional<Index> head = jointOf("head")) {
+      for (const Index joint : between(joints[0], *head)) joints.push_back(joint);
+    }
+    return joints;
+  }
+
+  // A limb's joint, with the links (twist joints, doubled joints) before the limb's next one.
+  std::vector<Index> withLinks(const HumanoidJoint& label) const {
+    std::vector<Index> joints = {label.joint};
+    for (const HumanoidJoint& next : labels_) {
+      if (humanoidParent(next.bone) != label.bone || label.bone == "hips") continue;
+      const std::vector<Index> links = between(label.joint, next.joint);
+      const bool ofOthers = std::any_of(links.begin(), links.end(), [&](Index link) { return isLabelled(link); });
+      const bool isHand = label.bone == "leftHand" || label.bone == "rightHand" || label.bone == "head";
+      if (!ofOthers && !isHand) joints.insert(joints.end(), links.begin(), links.end());
+    }
+    return joints;
+  }
+
+  const Skeleton& skeleton_;
+  std::vector<HumanoidJoint> labels_;
+  std::set<Index> taken_;
+  Body body_;
+};
+
+SkeletonMap matchBodies(const Body& source, const Body& target) {
+  SkeletonMap map;
+  for (const std::string& part : target.order) {
+    const auto from = source.parts.find(part);
+    if (from == source.parts.end()) continue;
+    const Body::Part& to = target.parts.at(part);
+    const bool byShape = source.by == MatchedBy::kShape || target.by == MatchedBy::kShape;
+    map.matches.push_back({part, from->second.joints, to.joints, std::min(from->second.confidence, to.confidence),
+                           byShape ? MatchedBy::kShape : MatchedBy::kName});
+  }
+  return map;
+}
+
+std::string plainName(std::string_view name) {
+  if (const std::size_t space = name.find_last_of(":|"); space != std::string_view::npos) name.remove_prefix(space + 1);
+  std::string plain;
+  for (const char c : name) {
+    if (c != '_' && c != '.' && c != '-' && c != ' ')
+      plain.push_back(static_cast<char>(std::tolower(static_cast<unsigned char>(c))));
+  }
+  return plain;
+}
+
+SkeletonMap matchNames(const Skeleton& source, const Skeleton& target) {
+  std::map<std::string, Index> byName;
+  for (Index j = 0; j < source.jointCount(); ++j) byName.emplace(plainName(source.joints[j].name), j);
+  SkeletonMap map;
+  std::set<Index> used;
+  for (Index j = 0; j < target.jointCount(); ++j) {
+    const auto found = byName.find(plainName(target.joints[j].name));
+    if (found == byName.end() || !used.insert(found->second).second) continue;
+    const bool same = source.joints[found->second].name == target.joints[j].name;
+    map.matches.push_back({target.joints[j].name, {found->second}, {j}, same ? 1.0 : 0.9, MatchedBy::kName});
+  }
+  return map;
+}
+
+bool sameTree(const Skeleton& a, const Skeleton& b) {
+  return a.jointCount() == b.jointCount() &&
+         std::equal(a.joints.begin(), a.joints.end(), b.joints.begin(),
+                    [](const Joint& one, const Joint& other) { return one.parent == other.parent; });
+}
+
+SkeletonMap matchTrees(const Skeleton& target) {
+  SkeletonMap map;
+  for (Index j = 0; j < target.jointCount(); ++j) {
+    map.matches.push_back({target.joints[j].name, {j}, {j}, 0.6, MatchedBy::kShape});
+  }
+  return map;
+}
+
+}  // namespace
+
+const JointMatch* SkeletonMap::find(std::string_view part) const {
+  const auto found =
+      std::find_if(matches.begin(), matches.end(), [&](const JointMatch& match) { return match.part == part; });
+  return found == matches.end() ? nullptr : &*found;
+}
+
+SkeletonMap matchSkeletons(const Skeleton& source, const Skeleton& target) {
+  // Skeletons of one family, people or not, have most names in common.
+  SkeletonMap names = matchNames(source, target);
+  const std::size_t fewer = std::min(source.jointCount(), target.jointCount());
+  const bool isFamily = names.matches.size() >= 3 && names.matches.size() * 2 > fewer;
+  const std::optional<Body> from = BodyReader(source).read(), to = BodyReader(target).read();
+  const bool named = from && to && from->by == MatchedBy::kName && to->by == MatchedBy::kName;
+  if (!named && !isFamily) {
+    const std::optional<SkeletonMap> quadrupeds = matchQuadrupeds(source, target);
+    if (quadrupeds) return sameTree(source, target) ? matchTrees(target) : *quadrupeds;
+  }
+  if (from && to && (from->by == MatchedBy::kName || to->by == MatchedBy::kName || !isFamily)) {
+    SkeletonMap map = matchBodies(*from, *to);
+    if (map.matches.size() >= 5) return map;
+  }
+  if (isFamily) {
+    matchChainsOfAnimals(source, target, names);
+    return names;
+  }
+  if (sameTree(source, target)) return matchTrees(target);
+  throw Error(ErrorCode::kUnsupported,
+              fmt::format("the motion's skeleton of {} joints and the character's of {} have too little in common to "
+                          "be matched by names or by form",
+                          source.jointCount(), target.jointCount()),
+              "", "say in a map which joint follows which (docs/retargeting.md)");
+}
+
+void checkSkeletonMap(const SkeletonMap& map, const Skeleton& source, const Skeleton& target) {
+  std::set<Index> moved;
+  std::set<std::string> parts;
+  if (map.matches.empty()) throw Error(ErrorCode::kBadData, "the map matches nothing");
+  for (const JointMatch& match : map.matches) {
+    const auto refuse = [&](const std::string& what) { throw Error(ErrorCode::kBadData, what, match.part); };
+    if (match.source.empty() || match.target.empty()) refuse("has no joint on one side");
+    if (!parts.insert(match.part).second) refuse("is matched twice");
+    for (const Index joint : match.source) {
+      if (joint >= source.jointCount()) refuse("names a joint that the motion does not have");
+    }
+    for (const Index joint : match.target) {
+      if (joint >= target.jointCount()) refuse("names a joint that the character does not have");
+      if (!moved.insert(joint).second) refuse(fmt::format("moves '{}' a second time", target.joints[joint].name));
+    }
+  }
+}
+
+}  // namespace limber

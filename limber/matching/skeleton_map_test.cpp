@@ -1,0 +1,133 @@
+#include "limber/matching/skeleton_map.h"
+
+#include <gmock/gmock.h>
+
+#include "limber/core/error.h"
+#include "limber/matching/humanoid_shape.h"
+#include "limber/matching/testing/test_motion.h"
+
+namespace limber {
+namespace {
+
+using limber::testing::renamed;
+using limber::testing::withJointBefore;
+
+std::vector<std::string> namesOf(const Skeleton& skeleton, const std::vector<Index>& joints) {
+  std::vector<std::string> names;
+  for (const Index joint : joints) names.push_back(skeleton.joints[joint].name);
+  return names;
+}
+
+TEST(SkeletonMap, PeopleByName) {
+  const Skeleton a = practiceHumanoid(), b = renamed(a);
+  const SkeletonMap map = matchSkeletons(a, b);
+  EXPECT_EQ(namesOf(b, map.find("leftFoot")->target), std::vector<std::string>{"foot_l"});
+  EXPECT_EQ(namesOf(b, map.find("trunk")->target), (std::vector<std::string>{"spine_01", "spine_02", "spine_03"}));
+  EXPECT_EQ(map.find("leftThumbDistal")->source, map.find("leftThumbDistal")->target);
+  checkSkeletonMap(map, a, b);
+}
+
+TEST(SkeletonMap, LinksGoWithTheirLimb) {
+  const Skeleton a = practiceHumanoid(), b = withJointBefore(a, "leftLowerArm", "half");
+  const SkeletonMap map = matchSkeletons(a, b);
+  EXPECT_EQ(namesOf(b, map.find("leftUpperArm")->target), (std::vector<std::string>{"leftUpperArm", "half"}));
+  EXPECT_EQ(map.find("leftUpperArm")->source.size(), 1U);
+}
+
+TEST(SkeletonMap, NumberedPeopleByShape) {
+  const Skeleton a = practiceHumanoid();
+  Skeleton b = a;
+  for (Index j = 0; j < b.jointCount(); ++j) b.joints[j].name = "joint" + std::to_string(j);
+  const SkeletonMap map = matchSkeletons(a, b);
+  for (const char* bone : {"hips", "head", "leftUpperArm", "leftLowerArm", "leftHand", "rightUpperArm", "rightHand",
+                           "leftUpperLeg", "leftLowerLeg", "leftFoot", "rightFoot", "rightLowerLeg"}) {
+    ASSERT_TRUE(map.find(bone)) << bone;
+    EXPECT_EQ(map.find(bone)->target.front(), a.find(bone)) << bone;
+    EXPECT_GE(map.find(bone)->confidence, kDoubtful) << bone;
+    EXPECT_EQ(map.find(bone)->by, MatchedBy::kShape);
+  }
+}
+
+TEST(SkeletonMap, FamiliesByEqualNames) {
+  Skeleton snake;
+  for (int i = 0; i < 9; ++i) {
+    Joint joint;
+    joint.name = "Tail" + std::to_string(i);
+    if (i > 0) joint.parent = static_cast<Index>(i - 1);
+    joint.rest.translation = Vec3(0, 0, -0.2);
+    snake.joints.push_back(joint);
+  }
+  Skeleton other = snake;
+  for (Joint& joint : other.joints) joint.name = "rig:tail_" + joint.name.substr(4);
+  EXPECT_EQ(matchSkeletons(snake, other).matches.size(), 9U);
+  other.joints.resize(5);
+  for (Joint& joint : other.joints) joint.name.replace(0, 9, "x");
+  EXPECT_THROW(matchSkeletons(snake, other), Error);
+}
+
+TEST(SkeletonMap, AFileSaysItAll) {
+  const Skeleton a = practiceHumanoid(), b = renamed(a);
+  const SkeletonMap map = matchSkeletons(a, b);
+  const std::string text = skeletonMapToJson(map, a, b);
+  const SkeletonMap read = skeletonMapFromJson(text, a, b);
+  ASSERT_EQ(read.matches.size(), map.matches.size());
+  for (std::size_t i = 0; i < map.matches.size(); ++i) {
+    EXPECT_EQ(read.matches[i].part, map.matches[i].part);
+    EXPECT_EQ(read.matches[i].source, map.matches[i].source);
+    EXPECT_EQ(read.matches[i].target, map.matches[i].target);
+    EXPECT_EQ(read.matches[i].by, MatchedBy::kFile);
+  }
+}
+
+TEST(SkeletonMap, BadFilesAreRefused) {
+  const Skeleton a = practiceHumanoid();
+  for (const char* text : {"", "{}", "[]", "{\"matches\": 3}", "{\"matches\": []}", "{\"matches\": [4]}",
+                           R"({"matches": [{"part": "hips", "source": ["hips"]}]})",
+                           R"({"matches": [{"part": "hips", "source": ["hips"], "target": ["nobody"]}]})",
+                           R"({"matches": [{"part": "hips", "source": ["hips"], "target": []}]})",
+                           R"({"matches": [{"part": "hips", "source": ["hips"], "target": [7]}]})",
+                           R"({"matches": [{"part": "a", "source": ["hips"], "target": ["hips"]},
+                        {"part": "b", "source": ["hips"], "target": ["hips"]}]})"}) {
+    EXPECT_THROW(skeletonMapFromJson(text, a, a), Error) << text;
+  }
+}
+
+// Handles of a penguin: by its form, one of them begins the right arm and the neck.
+TEST(SkeletonMap, EachJointHasOnePart) {
+  const struct {
+    int parent;
+    Vec3 offset;
+  } joints[] = {
+      {-1, {0.20, -0.25, 0}},     {0, {-0.12, 0.66, 0.18}},  {0, {-0.46, -0.69, 0.02}},   {0, {-0.43, 0.09, -0.02}},
+      {0, {0.26, -0.73, 0.10}},   {1, {-0.01, 0.23, -0.21}}, {1, {0.48, 0, -0.21}},       {2, {0.16, -0.38, -0.03}},
+      {2, {0.06, -0.11, -0.40}},  {3, {-0.32, 0.47, 0.02}},  {4, {-0.22, -0.33, -0.10}},  {5, {-0.01, 0.34, 0.02}},
+      {5, {-0.13, -0.27, -0.25}}, {6, {0.21, -0.41, 0.05}},  {7, {-0.14, -0.17, -0.07}},  {8, {0.43, -0.04, -0.06}},
+      {9, {-0.24, -0.85, -0.02}}, {10, {-0, -0.16, 0.28}},   {10, {0.17, -0.19, -0.09}},  {11, {-0.19, -0.10, 0.30}},
+      {13, {0.07, -0.61, -0.07}}, {14, {0.13, 0.02, 0.45}},  {15, {-0.19, -0.17, -0.30}}, {17, {0.23, 0.01, 0.25}},
+      {21, {-0.43, 0, -0.04}},    {23, {0.25, -0, -0.21}}};
+  Skeleton penguin;
+  for (const auto& [parent, offset] : joints) {
+    Transform rest;
+    rest.translation = offset;
+    const std::string name = std::string("handle_").append(std::to_string(penguin.jointCount()));
+    penguin.joints.push_back({name, parent < 0 ? std::nullopt : std::optional(static_cast<Index>(parent)), rest, 0});
+  }
+  const Skeleton person = practiceHumanoid();
+  checkSkeletonMap(matchSkeletons(person, penguin), person, penguin);
+  checkSkeletonMap(matchSkeletons(penguin, person), penguin, person);
+}
+
+TEST(SkeletonMap, AnimalsAreNoPeople) {
+  Skeleton table;  // four legs, no arms, no head
+  for (int i = 0; i < 9; ++i) {
+    Joint joint;
+    joint.name = std::string("j").append(std::to_string(i));
+    if (i > 0) joint.parent = i % 2 == 1 ? 0 : static_cast<Index>(i - 1);
+    joint.rest.translation = i == 0 ? Vec3(0, 1, 0) : Vec3(i < 5 ? 0.3 : -0.3, -0.5, i % 4 < 2 ? 0.3 : -0.3);
+    table.joints.push_back(joint);
+  }
+  EXPECT_TRUE(humanoidJointsByShape(table).empty());
+}
+
+}  // namespace
+}  // namespace limber
