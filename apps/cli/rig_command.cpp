@@ -265,8 +265,9 @@ void addRigCommand(CLI::App& program) {
                    "where a joint of the template must be, as JOINT=x,y,z in the file's space; several tell a pose")
       ->type_name("PIN")
       ->allow_extra_args(false);
-  command->add_option("--up", options->up, "the model's up, as +y (default: found)")->type_name("AXIS");
-  command->add_option("--front", options->front, "where the model looks, as +z (default: found)")->type_name("AXIS");
+  command->add_option("--up", options->up, "the model's up, for a template, as +y (default: found)")->type_name("AXIS");
+  command->add_option("--front", options->front, "where the model looks, for a template, as +z (default: found)")
+      ->type_name("AXIS");
   command->add_option("--skinning", options->rig.skinning, "how weights are made, see below")
       ->type_name("NAME")
       ->capture_default_str();
