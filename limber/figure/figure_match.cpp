@@ -23,6 +23,7 @@ constexpr double kLengthSpread = 0.12, kLengthCost = 0.08;  // of bones' lengths
 constexpr double kShiftSpread = 0.025, kShiftCost = 0.12;   // of shoulders, statures
 constexpr double kNod = 0.25, kBow = 0.3, kTwist = 0.15;    // of a head, a trunk turned by a right angle
 constexpr double kInTrunk = 0.5;                            // for each place of a limb inside the trunk
+constexpr double kInGround = 0.2, kGroundDepth = 0.03;      // for each place of a limb; statures, fully in it
 constexpr double kRootDepth = 0.025, kShallowRoot = 0.3;    // statures that shoulders and hips lie deep, at least
 constexpr double kTurnedArm = 0.15;                         // of an elbow that bends square to how it does at ease
 constexpr double kPinCost = 8, kFarFromPin = 0.25;          // statures from a pin, where it costs most
@@ -90,8 +91,13 @@ Vec3 placeOf(const Figure& figure, const FigurePin& pin) {
   return figure.places(pin.limb).tip;
 }
 
-FigureMatch::FigureMatch(const SignedDistance& distance, std::vector<FigurePin> pins)
-    : distance_(distance), pins_(std::move(pins)), ball_(evenDirections(kBall)), oval_(circle(kOval, 0.5)) {
+FigureMatch::FigureMatch(const SignedDistance& distance, std::vector<FigurePin> pins,
+                         std::optional<FigureGround> ground)
+    : distance_(distance),
+      pins_(std::move(pins)),
+      ground_(ground),
+      ball_(evenDirections(kBall)),
+      oval_(circle(kOval, 0.5)) {
   const std::vector<std::array<double, 2>> ring = circle(kRing, 0);
   for (std::size_t i = 0; i < kRing; ++i) {
     ring_[0][i] = static_cast<float>(ring[i][0]);
@@ -285,6 +291,11 @@ double FigureMatch::insideTrunk(const Figure& figure, const Vec3& place) const {
   return std::clamp(1.15 - nearest, 0.0, 1.0);
 }
 
+double FigureMatch::inGround(const Figure& figure, const Vec3& place) const {
+  if (!ground_) return 0;
+  return std::clamp((ground_->height - place.dot(ground_->up)) / (kGroundDepth * figure.stature), 0.0, 1.0);
+}
+
 double FigureMatch::limb(const Figure& figure, int limb) const {
   const LimbShape& shape = shapeOf(limb);
   const FigureLimb& bones = figure.limbs[limb];
@@ -300,15 +311,20 @@ double FigureMatch::limb(const Figure& figure, int limb) const {
   const double lowerBone = bones.lowerScale * lowerLength(limb) * size;
   double sum = shape.weights.upper * upper(figure, limb) +
                shape.weights.lower * lower(limb, places.middle, bones.lower, lowerBone, size) + shape.weights.end * end;
-  double within = 0;
-  for (const double at : {0.6, 1.0}) within += insideTrunk(figure, places.root + at * (places.middle - places.root));
-  for (const double at : {0.25, 0.5, 0.75, 1.0}) {
-    within += insideTrunk(figure, places.middle + at * (places.ankle - places.middle));
+  double within = insideTrunk(figure, places.tip), sunk = inGround(figure, places.tip);
+  for (const double at : {0.6, 1.0}) {
+    const Vec3 place = places.root + at * (places.middle - places.root);
+    within += insideTrunk(figure, place);
+    sunk += inGround(figure, place);
   }
-  within += insideTrunk(figure, places.tip);
+  for (const double at : {0.25, 0.5, 0.75, 1.0}) {
+    const Vec3 place = places.middle + at * (places.ankle - places.middle);
+    within += insideTrunk(figure, place);
+    sunk += inGround(figure, place);
+  }
   const double shallow = 1 + distance_.at(places.root) / (kRootDepth * size);
-  sum -=
-      kInTrunk * within + kShallowRoot * std::clamp(shallow, 0.0, 2.0) + strain(figure, limb) + pinCost(figure, limb);
+  sum -= kInTrunk * within + kInGround * sunk + kShallowRoot * std::clamp(shallow, 0.0, 2.0) + strain(figure, limb) +
+         pinCost(figure, limb);
   if (isLeg(limb)) return sum;
   const Vec3 bend = bones.lower - bones.upper.dot(bones.lower) * bones.upper;
   return sum - kTurnedArm * (bend.norm() - bend.dot(bendDirection(figure, limb, bones.upper)));

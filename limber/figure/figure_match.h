@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "limber/figure/figure.h"
@@ -20,6 +21,12 @@ struct FigurePin {
 // Where a figure has the joint of a pin.
 Vec3 placeOf(const Figure& figure, const FigurePin& pin);
 
+// Nobody's limbs lie below it.
+struct FigureGround {
+  Vec3 up = Vec3::UnitY();
+  double height = 0;  // along `up`
+};
+
 // Asks of points round the bones of a figure whether the body's surface lies where theirs would: 1 where it does, 0
 // where the part is hidden in more of the body (a plinth, a garment, another limb), -1 where it would stick out. All
 // that follows are means of such answers over a part's surface, less what is unlikely; larger is better.
@@ -27,8 +34,10 @@ Vec3 placeOf(const Figure& figure, const FigurePin& pin);
 // Cost: about a hundred lookups of the distance for a limb.
 class FigureMatch {
  public:
-  // Of this body, which must outlive it. Figures are the worse the farther they are from the pins.
-  explicit FigureMatch(const SignedDistance& distance, std::vector<FigurePin> pins = {});
+  // Of this body, which must outlive it. Figures are the worse the farther they are from the pins, and the deeper they
+  // are in the ground.
+  explicit FigureMatch(const SignedDistance& distance, std::vector<FigurePin> pins = {},
+                       std::optional<FigureGround> ground = {});
 
   double head(const Vec3& middle, double radius) const;  // at most 1
   double neck(const Figure& figure) const;               // at most 1
@@ -44,6 +53,8 @@ class FigureMatch {
 
   // How much of a place lies inside the trunk or head, 0 to 1.
   double insideTrunk(const Figure& figure, const Vec3& place) const;
+  // How much of a place lies in the ground, 0 to 1.
+  double inGround(const Figure& figure, const Vec3& place) const;
 
  private:
   static constexpr std::size_t kRing = 8, kOval = 12, kBall = 32;  // points
@@ -76,6 +87,7 @@ class FigureMatch {
 
   const SignedDistance& distance_;
   std::vector<FigurePin> pins_;
+  std::optional<FigureGround> ground_;
   std::vector<Vec3> ball_;                        // directions, evenly
   std::array<std::array<float, kRing>, 2> ring_;  // cosines and sines
   std::vector<std::array<double, 2>> oval_;       // of a circle

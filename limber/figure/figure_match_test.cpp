@@ -88,6 +88,17 @@ TEST(FigureMatch, PlacesInTheTrunkAreInside) {
   EXPECT_EQ(measured().match.insideTrunk(figure, figure.places(0).ankle), 0);
 }
 
+TEST(FigureMatch, LimbsInTheGroundMatchWorse) {
+  const Figure& figure = measured().figure;
+  const FigureLimbPlaces places = figure.places(2);
+  const FigureMatch standing(*measured().body.distance);
+  EXPECT_EQ(standing.inGround(figure, places.tip), 0) << "there is none";
+  const FigureMatch sunk(*measured().body.distance, {}, FigureGround{Vec3::UnitY(), places.ankle.y() + 0.1});
+  EXPECT_EQ(sunk.inGround(figure, places.ankle), 1);
+  EXPECT_EQ(sunk.inGround(figure, figure.head), 0);
+  EXPECT_LT(sunk.limb(figure, 2), standing.limb(figure, 2) - 0.2);
+}
+
 TEST(FigureMatch, FiguresFarFromTheirPinsMatchWorse) {
   const Figure& figure = measured().figure;
   const FigureLimbPlaces places = figure.places(0);

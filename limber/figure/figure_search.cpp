@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 
+#include "limber/body/plinth.h"
 #include "limber/core/parallel.h"
 #include "limber/figure/best_apart.h"
 #include "limber/figure/figure_steps.h"
@@ -29,8 +30,8 @@ constexpr double kHopeless = 0.4;        // less than the best so far after the 
 constexpr double kWorthImproving = 0.7;  // less than the best candidate of a limb, at most
 constexpr LimbFinder::Effort kQuick = {24, 6, false}, kThorough = {80, 18, true};
 constexpr std::size_t kTriedLimbs = 8;
-constexpr double kLikeStature = 0.06;  // ratio of statures that one finder of limbs serves
-constexpr double kAlike = 0.08;        // statures between elbows, knees, wrists and ankles
+constexpr double kLikeStature = 0.125;  // ratio of statures that one finder of limbs serves
+constexpr double kAlike = 0.08;         // statures between elbows, knees, wrists and ankles
 constexpr double kAlikeMiddle = 0.04, kAlikeAnkle = 0.05;
 
 constexpr double kMostGain = 0.15;  // of a limb by one step of the trunk
@@ -292,7 +293,9 @@ class Search {
 }  // namespace
 
 std::optional<MatchedFigure> findFigure(const BodyVolume& body, const FigureSearch& search, Progress& progress) {
-  const FigureMatch match(*body.distance, search.pins);
+  std::optional<FigureGround> ground;
+  if (const std::optional<double> top = plinthTop(body, search.up)) ground = FigureGround{search.up, *top};
+  const FigureMatch match(*body.distance, search.pins, ground);
   return Search(body, match, search, progress).run();
 }
 
