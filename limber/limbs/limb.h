@@ -2,9 +2,10 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "limber/limbs/foot_lock.h"
-#include "limber/skeleton/skeleton.h"
+#include "limber/limbs/root_motion.h"
 
 namespace limber {
 
@@ -39,5 +40,12 @@ struct Leg : Limb {
   double bentReach = 0;                                // ownWay: from hip to end if bent as the source's (LegBend)
   double lift = 0;                                     // ownWay: of the source's foot from where it stands, hip heights
 };
+
+// None where its joints do not hang on each other, or a bone has no length.
+std::optional<Limb> makeLimb(const RetargetSetup& setup, const RootPlacer& root, const LegJoints& source,
+                             const LegJoints& target);
+// By the names of a person's parts; none as well where one is not matched.
+std::optional<Limb> findLimb(const RetargetSetup& setup, const RootPlacer& root, const std::string& upper,
+                             const std::string& lower, const std::string& end);
 
 }  // namespace limber

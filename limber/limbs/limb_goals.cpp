@@ -15,14 +15,11 @@ namespace limber {
 namespace {
 
 // In hip heights of the target.
-constexpr double kTouching = 0.12, kApart = 0.35;  // of two hands
-constexpr double kFootSlack = 0.9;                 // how far a planted foot may be from where the joint angles have it
-constexpr double kStretch = 0.998;                 // of an arm's length: fully stretched elbows pop
-constexpr double kTouchRate = 10;                  // 1/seconds, of touches that come and go
-constexpr double kSoftReach = 0.96;                // of an arm's length: from there on stretching softens
-constexpr double kPlantRate = 9;                   // 1/seconds, of the smooth flag
-constexpr double kChangeRate = 25;                 // likewise, of Leg::changed
-constexpr double kRiseRate = 40;                   // likewise, of an animal's pelvis
+constexpr double kFootSlack = 0.9;  // how far a planted foot may be from where the joint angles have it
+constexpr double kStretch = 0.998;  // of a leg's length: fully stretched knees pop
+constexpr double kPlantRate = 9;    // 1/seconds, of the smooth flag
+constexpr double kChangeRate = 25;  // likewise, of Leg::changed
+constexpr double kRiseRate = 40;    // likewise, of an animal's pelvis
 constexpr double kSoftGround = 0.006;
 constexpr double kMostSoft = 0.04;     // more of it, the faster a point comes down
 constexpr double kFallSeconds = 0.03;  // of its way: so much the earlier a point slows down
@@ -48,39 +45,11 @@ void followPlanting(double wanted, double seconds, double& value, double& speed)
   value = std::clamp(value, 0.0, 1.0);
 }
 
-// None where its joints do not hang on each other, or a bone has no length.
-std::optional<Limb> makeLimb(const RetargetSetup& setup, const RootPlacer& root, const LegJoints& source,
-                             const LegJoints& target) {
-  Limb limb;
-  limb.upper = target.upper;
-  limb.lower = target.lower;
-  limb.end = target.end;
-  limb.sourceUpper = source.upper;
-  limb.sourceEnd = source.end;
-  if (!isAncestorOrSelf(*setup.target, limb.upper, limb.lower)) return std::nullopt;
-  if (!isAncestorOrSelf(*setup.target, limb.lower, root.carrierOf(limb.end))) return std::nullopt;
-  const std::vector<Vec3>& rest = setup.targetNeutral.restPositions;
-  const double upperLength = (rest[limb.lower] - rest[limb.upper]).norm();
-  const double lowerLength = (rest[limb.end] - rest[limb.lower]).norm();
-  if (!(upperLength > 0) || !(lowerLength > 0)) return std::nullopt;
-  limb.length = upperLength + lowerLength;
-  limb.folded = std::abs(upperLength - lowerLength);
-  return limb;
-}
-
 // How far the lower joint is off the line from the upper one to the end, in lengths of that line.
 Vec3 bendAtRest(const LegJoints& leg, const NeutralPose& neutral) {
   const Vec3 upper = neutral.positions[leg.upper], line = neutral.positions[leg.end] - upper;
   const Vec3 lower = neutral.positions[leg.lower] - upper;
   return (lower - lower.dot(line) / line.squaredNorm() * line) / line.norm();
-}
-
-std::optional<Limb> findLimb(const RetargetSetup& setup, const RootPlacer& root, const std::string& upper,
-                             const std::string& lower, const std::string& end) {
-  const JointMatch *u = setup.map.find(upper), *l = setup.map.find(lower), *e = setup.map.find(end);
-  if (!u || !l || !e) return std::nullopt;
-  return makeLimb(setup, root, {u->source.front(), l->source.front(), e->source.front(), {}, {}, {}},
-                  {u->target.front(), l->target.front(), e->target.front(), {}, {}, {}});
 }
 
 }  // namespace
@@ -89,7 +58,6 @@ LimbGoals::LimbGoals(const RetargetSetup& setup, const RootPlacer& root)
     : setup_(setup), root_(root), pelvis_(setup, root), lift_(setup), tail_(setup, root) {
   if (setup.person) {
     addPersonsLegs(root);
-    addArms(root);
   } else {
     addAnimalsLegs(root);
   }
@@ -130,21 +98,6 @@ void LimbGoals::addAnimalsLegs(const RootPlacer& root) {
   }
 }
 
-void LimbGoals::addArms(const RootPlacer& root) {
-  for (const std::string side : {"left", "right"}) {
-    const auto arm = findLimb(setup_, root, side + "UpperArm", side + "LowerArm", side + "Hand");
-    if (!arm) continue;
-    arms_.push_back(*arm);
-    const std::string other = side == "left" ? "right" : "left";
-    std::vector<Surface>& surfaces = surfaces_.emplace_back();
-    addSurface("head", "head", 0.12, 0.35, surfaces);
-    addSurface("hips", "neck", 0.13, 0.19, surfaces);
-    addSurface("leftUpperLeg", "leftLowerLeg", 0.09, 0.15, surfaces);
-    addSurface("rightUpperLeg", "rightLowerLeg", 0.09, 0.15, surfaces);
-    addSurface(other + "LowerArm", other + "Hand", 0.06, 0.12, surfaces);
-  }
-}
-
 // Nothing to correct where both neutral poses are one.
 bool LimbGoals::isSame() const {
   const NeutralPose &a = setup_.sourceNeutral, &b = setup_.targetNeutral;
@@ -172,14 +125,6 @@ void LimbGoals::addLeg(Leg leg) {
   leg.footPitch = footPitchShare(setup_, leg);
   legs_.push_back(leg);
   feelers_.emplace_back(PlantDetector(setup_.sourceHipHeight));
-}
-
-void LimbGoals::addSurface(const std::string& from, const std::string& to, double touching, double apart,
-                           std::vector<Surface>& surfaces) const {
-  const JointMatch *begin = setup_.map.find(from), *end = setup_.map.find(to);
-  if (!begin || !end) return;
-  surfaces.push_back(
-      {{begin->source.front(), end->source.front()}, {begin->target.front(), end->target.front()}, touching, apart});
 }
 
 // What of the foot stands in the source.
@@ -255,7 +200,6 @@ bool LimbGoals::forgetAcrossCuts(const BodyFrame& source, double seconds) {
   }
   std::swap(landmarks_[0], landmarks_[1]);
   if (!cut) return false;
-  follows_.fill({});
   for (Feeler& feeler : feelers_) {
     feeler.ankle.reset();
     feeler.toes.reset();
@@ -388,68 +332,6 @@ void LimbGoals::levelToes(const Leg& leg, BodyFrame& frame, Pose& target) const 
   target.locals[*toes].rotation = (kinematics.parentRotation(*toes, frame).conjugate() * level).normalized();
   kinematics.globals(target, frame);
   root_.settle(target, frame);
-}
-
-double LimbGoals::closeness(double distance, double touching, double apart) const {
-  return smoothStep((apart - distance / setup_.targetHipHeight) / (apart - touching));
-}
-
-// Where touches want the hand, against where it is.
-Vec3 LimbGoals::touchOf(const Limb& arm, const std::vector<Surface>& surfaces, const BodyFrame& source,
-                        const BodyFrame& target) const {
-  const Vec3 hand = source.positions[arm.sourceEnd];
-  Vec3 sum = Vec3::Zero();
-  double weights = 0, missing = 1;
-  for (const Surface& surface : surfaces) {
-    const Vec3 begin = source.positions[surface.source[0]], bone = source.positions[surface.source[1]] - begin;
-    const double along =
-        bone.squaredNorm() > 0 ? std::clamp((hand - begin).dot(bone) / bone.squaredNorm(), 0.0, 1.0) : 0;
-    const Vec3 away = setup_.scale * (hand - begin - along * bone);
-    const Vec3 from = target.positions[surface.target[0]], to = target.positions[surface.target[1]];
-    const double weight = closeness(away.norm(), surface.touching, surface.apart);
-    sum += weight * (from + along * (to - from) + away - arm.goal);
-    weights += weight;
-    missing *= 1 - weight;
-  }
-  return weights > 0 ? Vec3((1 - missing) / weights * sum) : sum;
-}
-
-void LimbGoals::softenReach(Limb& arm, const BodyFrame& target) const {
-  const Vec3 shoulder = target.positions[arm.upper], way = arm.goal - shoulder;
-  const double free = std::max((target.positions[arm.end] - shoulder).norm(), kSoftReach * arm.length);
-  const double room = kStretch * arm.length - free, over = way.norm() - free;
-  if (over <= 0) return;
-  const double length = room > 0 ? free + room * (1 - std::exp(-over / room)) : free;
-  arm.goal = shoulder + length / way.norm() * way;
-}
-
-void LimbGoals::setHands(const BodyFrame& source, const BodyFrame& target, double seconds) {
-  const double reach = setup_.options.reach;
-  const Vec3 pelvis = pelvisOf(setup_.map, MapSide::kSource, source.positions), place = setup_.placeOf(pelvis);
-  std::array<Vec3, 2> touches = {Vec3::Zero(), Vec3::Zero()};
-  for (std::size_t a = 0; a < arms_.size(); ++a) {
-    Limb& arm = arms_[a];
-    arm.goal = target.positions[arm.end];
-    arm.wanted = reach != 0;
-    if (arm.wanted) arm.goal += reach * (place + setup_.scale * (source.positions[arm.sourceEnd] - pelvis) - arm.goal);
-    if (setup_.options.contacts) touches[a] = touchOf(arm, surfaces_[a], source, target);
-  }
-  if (!setup_.options.contacts) return;
-  if (arms_.size() == 2) {
-    const Vec3 apart = setup_.scale * (source.positions[arms_[1].sourceEnd] - source.positions[arms_[0].sourceEnd]);
-    const Vec3 change = apart - (arms_[1].goal + touches[1] - arms_[0].goal - touches[0]);
-    const double weight = 0.5 * closeness(apart.norm(), kTouching, kApart);
-    touches[0] -= weight * change;
-    touches[1] += weight * change;
-  }
-  for (std::size_t a = 0; a < arms_.size(); ++a) {
-    Follow& follow = follows_[a];
-    springTo(touches[a], kTouchRate, seconds, follow.value, follow.speed);
-    if (follow.value.norm() < 1e-9 * setup_.targetHipHeight) continue;
-    arms_[a].goal += follow.value;
-    arms_[a].wanted = true;
-    softenReach(arms_[a], target);
-  }
 }
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Where hands and feet have to be: planted feet, the ground, what hands touch. Shared by the methods that solve for it.
+// Where feet have to be: planted, on the ground, as the pelvis goes along. Shared by the methods that solve for it.
 #pragma once
 
 #include <array>
@@ -37,14 +37,6 @@ class LimbGoals {
   void bendAsSource(Leg& leg, const BodyFrame& target) const;
   // Whether the source jumped to the last frame: what was before it does not count.
   bool atCut() const { return cut_; }
-  // Hands that are close to the other hand, the head, the trunk, a thigh or the other forearm in the source are as
-  // close in the result, scaled. `reach` as in RetargetOptions.
-  void setHands(const BodyFrame& source, const BodyFrame& target, double seconds);
-
-  // Brings a goal that stretches an arm more than it is the nearer the closer it gets to what the arm can reach: the
-  // elbow else snaps. setHands() does so.
-  void softenReach(Limb& arm, const BodyFrame& target) const;
-
   // Toes of a planted foot lie on the ground while the heel goes up, though recordings have them straight: else their
   // tips would go below it. So do toes that the source lacks wherever they are near the ground, and their foot tips no
   // further than lets them (keepTipUp). For a target that is posed but for that; soles that look up, as of someone who
@@ -58,14 +50,8 @@ class LimbGoals {
   // For a target that is posed but for that.
   const TailLift& tail() const { return tail_; }
   std::vector<Leg>& legs() { return legs_; }
-  std::vector<Limb>& arms() { return arms_; }
 
  private:
-  // A bone that hands can touch, with distances, in hip heights, at which a touch counts wholly and not at all.
-  struct Surface {
-    std::array<Index, 2> source, target;
-    double touching, apart;
-  };
   // How fast a point of the free foot comes down, metres a second, without the recording's trembling.
   struct Fall {
     double speed = 0, change = 0;
@@ -90,11 +76,8 @@ class LimbGoals {
   bool isSame() const;
   Rise nextRise(const BodyFrame& target, double seconds) const;
   void addPersonsLegs(const RootPlacer& root);
-  void addArms(const RootPlacer& root);
   void addAnimalsLegs(const RootPlacer& root);
   void addLeg(Leg leg);
-  void addSurface(const std::string& from, const std::string& to, double touching, double apart,
-                  std::vector<Surface>& surfaces) const;
   void sense(Leg& leg, Feeler& feeler, const BodyFrame& source, double seconds) const;
   void feel(Leg& leg, Feeler& feeler, const BodyFrame& source, const BodyFrame& target, double seconds) const;
   Vec3 ownPlace(const Leg& leg, const BodyFrame& source, const BodyFrame& target) const;
@@ -107,10 +90,6 @@ class LimbGoals {
   // True at a cut.
   bool forgetAcrossCuts(const BodyFrame& source, double seconds);
   double loweredBy(double sourceGround, const Vec3& sourcePlace) const;
-  Vec3 touchOf(const Limb& arm, const std::vector<Surface>& surfaces, const BodyFrame& source,
-               const BodyFrame& target) const;
-  double within(double change) const;
-  double closeness(double distance, double touching, double apart) const;
 
   const RetargetSetup& setup_;
   const RootPlacer& root_;
@@ -118,14 +97,8 @@ class LimbGoals {
   BodyLift lift_;
   TailLift tail_;
   std::vector<Leg> legs_;
-  std::vector<Feeler> feelers_;  // of the legs
-  Rise rise_;                    // of the pelvis
-  std::vector<Limb> arms_;
-  std::vector<std::vector<Surface>> surfaces_;  // for each arm
-  struct Follow {
-    Vec3 value = Vec3::Zero(), speed = Vec3::Zero();
-  };
-  std::array<Follow, 2> follows_;               // the touches of each arm as they come and go
+  std::vector<Feeler> feelers_;                 // of the legs
+  Rise rise_;                                   // of the pelvis
   std::array<std::vector<Vec3>, 2> landmarks_;  // of the frame before, and room for this one's
   std::size_t frames_ = 0;
   bool cut_ = false;

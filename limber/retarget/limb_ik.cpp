@@ -1,6 +1,7 @@
 #include "limber/retarget/limb_ik.h"
 
 #include "limber/ik/ik_solver.h"
+#include "limber/limbs/hand_goals.h"
 #include "limber/limbs/limb_reach.h"
 #include "limber/retarget/aligned.h"
 
@@ -11,11 +12,15 @@ namespace {
 class LimbIkRetargeter : public FrameRetargeter {
  public:
   explicit LimbIkRetargeter(const RetargetSetup& setup)
-      : setup_(setup), aligned_(setup), goals_(setup, aligned_.root()), reach_(setup, aligned_.root()) {
+      : setup_(setup),
+        aligned_(setup),
+        goals_(setup, aligned_.root()),
+        hands_(setup, aligned_.root()),
+        reach_(setup, aligned_.root()) {
     findIkMethod(setup.options.solver);
     if (setup.options.solver == "two-bone") return;
     for (const Leg& leg : goals_.legs()) legSolvers_.push_back(solverOf(leg));
-    for (const Limb& arm : goals_.arms()) armSolvers_.push_back(solverOf(arm));
+    for (const Limb& arm : hands_.arms()) armSolvers_.push_back(solverOf(arm));
   }
 
   void next(const Pose& source, double seconds, Pose& target) override {
@@ -24,6 +29,7 @@ class LimbIkRetargeter : public FrameRetargeter {
     if (setup_.options.contacts) {
       std::vector<Leg>& legs = goals_.legs();
       goals_.calm(from(), seconds, target, to());
+      if (goals_.atCut()) hands_.reset();
       goals_.setFeet(from(), to(), seconds);
       goals_.pelvis().apply(goals_.pelvisMove(to()), target, to());
       for (std::size_t i = 0; i < legs.size(); ++i) {
@@ -33,8 +39,8 @@ class LimbIkRetargeter : public FrameRetargeter {
       }
       goals_.tail().apply(target, to());
     }
-    goals_.setHands(from(), to(), seconds);
-    std::vector<Limb>& arms = goals_.arms();
+    hands_.set(from(), to(), seconds);
+    std::vector<Limb>& arms = hands_.arms();
     for (std::size_t i = 0; i < arms.size(); ++i) {
       if (arms[i].wanted) reach(arms[i], solver(armSolvers_, i), nullptr, target);
     }
@@ -81,6 +87,7 @@ class LimbIkRetargeter : public FrameRetargeter {
   const RetargetSetup& setup_;
   AlignedRetargeter aligned_;
   LimbGoals goals_;
+  HandGoals hands_;
   LimbReach reach_;
   Solvers legSolvers_, armSolvers_;  // empty: two-bone
 };

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "limber/ik/ik_solver.h"
+#include "limber/limbs/hand_goals.h"
 #include "limber/limbs/limb_goals.h"
 #include "limber/limbs/limb_reach.h"
 #include "limber/retarget/aligned.h"
@@ -22,9 +23,13 @@ constexpr Index kIterations = 30;       // a frame's limbs need about 5
 class OnlineRetargeter : public FrameRetargeter {
  public:
   explicit OnlineRetargeter(const RetargetSetup& setup)
-      : setup_(setup), aligned_(setup), goals_(setup, aligned_.root()), reach_(setup, aligned_.root()) {
+      : setup_(setup),
+        aligned_(setup),
+        goals_(setup, aligned_.root()),
+        hands_(setup, aligned_.root()),
+        reach_(setup, aligned_.root()) {
     for (const Leg& leg : goals_.legs()) addTask(leg);
-    for (const Limb& arm : goals_.arms()) addTask(arm);
+    for (const Limb& arm : hands_.arms()) addTask(arm);
     if (targets_.empty()) return;
     IkOptions options;
     options.restarts = 0;  // another attempt might jump to another pose
@@ -40,11 +45,12 @@ class OnlineRetargeter : public FrameRetargeter {
     BodyFrame& frame = aligned_.targetFrame();
     if (setup_.options.contacts) {
       goals_.calm(aligned_.sourceFrame(), seconds, target, frame);
+      if (goals_.atCut()) hands_.reset();
       goals_.setFeet(aligned_.sourceFrame(), frame, seconds);
       goals_.pelvis().apply(goals_.pelvisMove(frame), target, frame);
       for (Leg& leg : goals_.legs()) goals_.bendAsSource(leg, frame);
     }
-    goals_.setHands(aligned_.sourceFrame(), frame, seconds);
+    hands_.set(aligned_.sourceFrame(), frame, seconds);
     std::size_t task = 0;
     for (const Leg& leg : goals_.legs()) {
       setTask(leg, frame, task);
@@ -53,7 +59,7 @@ class OnlineRetargeter : public FrameRetargeter {
       // From a reference that bends to the other side the solver would have to snap.
       if (leg.ownBend && leg.wanted) reach_.reach(leg, &leg.kneeAhead, frame, target);
     }
-    for (const Limb& arm : goals_.arms()) setTask(arm, frame, task);
+    for (const Limb& arm : hands_.arms()) setTask(arm, frame, task);
     if (solver_) {
       solver_->setReference(target);
       solver_->solve(target, targets_);
@@ -109,6 +115,7 @@ class OnlineRetargeter : public FrameRetargeter {
   const RetargetSetup& setup_;
   AlignedRetargeter aligned_;
   LimbGoals goals_;
+  HandGoals hands_;
   LimbReach reach_;                // of legs that end on a root of their own, or bend to a side of their own
   std::vector<IkTarget> targets_;  // legs first
   std::optional<IkSolver> solver_;

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "limber/ik/rotation.h"
+#include "limber/limbs/hand_goals.h"
 #include "limber/limbs/limb_reach.h"
 #include "limber/retarget/displacement_curve.h"
 
@@ -69,7 +70,13 @@ struct FootFrame {
 class Spacetime {
  public:
   Spacetime(const RetargetSetup& setup, const PoseSequence& source, PoseSequence& target)
-      : setup_(setup), root_(setup), goals_(setup, root_), reach_(setup, root_), source_(source), target_(target) {}
+      : setup_(setup),
+        root_(setup),
+        goals_(setup, root_),
+        hands_(setup, root_),
+        reach_(setup, root_),
+        source_(source),
+        target_(target) {}
 
   void run() {
     if (!goals_.active() || target_.poses.empty()) return;
@@ -255,11 +262,11 @@ class Spacetime {
   }
 
   void placeHands() {
-    std::vector<Limb>& arms = goals_.arms();
+    std::vector<Limb>& arms = hands_.arms();
     std::vector<Goals3> ways(arms.size(), {noGoals(), noGoals(), noGoals()});
     for (std::size_t f = 0; f < frames(); ++f) {
       const BodyFrame& to = targetAt(f);
-      goals_.setHands(sourceAt(f), to, 0);  // at once: the curve smooths
+      hands_.set(sourceAt(f), to, 0);  // at once: the curve smooths
       for (std::size_t a = 0; a < arms.size(); ++a) {
         follow(arms[a].wanted ? Vec3(arms[a].goal - to.positions[arms[a].end]) : Vec3(Vec3::Zero()), f, ways[a]);
       }
@@ -270,7 +277,7 @@ class Spacetime {
         BodyFrame& to = targetAt(f);
         arms[a].goal = to.positions[arms[a].end] + smooth.at(f);
         if (LimbReach::isThere(arms[a], to)) continue;
-        goals_.softenReach(arms[a], to);
+        hands_.softenReach(arms[a], to);
         reach_.reach(arms[a], nullptr, to, target_.poses[f]);
       }
     }
@@ -279,6 +286,7 @@ class Spacetime {
   const RetargetSetup& setup_;
   RootPlacer root_;
   LimbGoals goals_;
+  HandGoals hands_;
   LimbReach reach_;
   const PoseSequence& source_;
   PoseSequence& target_;

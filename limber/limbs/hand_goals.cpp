@@ -1,0 +1,106 @@
+#include "limber/limbs/hand_goals.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "limber/limbs/smooth.h"
+#include "limber/limbs/spring.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kTouching = 0.12, kApart = 0.35;  // of two hands, hip heights of the target
+constexpr double kStretch = 0.998;                 // of an arm's length: fully stretched elbows pop
+constexpr double kSoftReach = 0.96;                // likewise: from there on stretching softens
+constexpr double kTouchRate = 10;                  // 1/seconds, of touches that come and go
+
+}  // namespace
+
+HandGoals::HandGoals(const RetargetSetup& setup, const RootPlacer& root) : setup_(setup) {
+  if (!setup.person) return;
+  for (const std::string side : {"left", "right"}) {
+    const auto arm = findLimb(setup_, root, side + "UpperArm", side + "LowerArm", side + "Hand");
+    if (!arm) continue;
+    arms_.push_back(*arm);
+    const std::string other = side == "left" ? "right" : "left";
+    std::vector<Surface>& surfaces = surfaces_.emplace_back();
+    addSurface("head", "head", 0.12, 0.35, surfaces);
+    addSurface("hips", "neck", 0.13, 0.19, surfaces);
+    addSurface("leftUpperLeg", "leftLowerLeg", 0.09, 0.15, surfaces);
+    addSurface("rightUpperLeg", "rightLowerLeg", 0.09, 0.15, surfaces);
+    addSurface(other + "LowerArm", other + "Hand", 0.06, 0.12, surfaces);
+  }
+}
+
+void HandGoals::addSurface(const std::string& from, const std::string& to, double touching, double apart,
+                           std::vector<Surface>& surfaces) const {
+  const JointMatch *begin = setup_.map.find(from), *end = setup_.map.find(to);
+  if (!begin || !end) return;
+  surfaces.push_back(
+      {{begin->source.front(), end->source.front()}, {begin->target.front(), end->target.front()}, touching, apart});
+}
+
+double HandGoals::closeness(double distance, double touching, double apart) const {
+  return smoothStep((apart - distance / setup_.targetHipHeight) / (apart - touching));
+}
+
+// Where touches want the hand, against where it is.
+Vec3 HandGoals::touchOf(const Limb& arm, const std::vector<Surface>& surfaces, const BodyFrame& source,
+                        const BodyFrame& target) const {
+  const Vec3 hand = source.positions[arm.sourceEnd];
+  Vec3 sum = Vec3::Zero();
+  double weights = 0, missing = 1;
+  for (const Surface& surface : surfaces) {
+    const Vec3 begin = source.positions[surface.source[0]], bone = source.positions[surface.source[1]] - begin;
+    const double along =
+        bone.squaredNorm() > 0 ? std::clamp((hand - begin).dot(bone) / bone.squaredNorm(), 0.0, 1.0) : 0;
+    const Vec3 away = setup_.scale * (hand - begin - along * bone);
+    const Vec3 from = target.positions[surface.target[0]], to = target.positions[surface.target[1]];
+    const double weight = closeness(away.norm(), surface.touching, surface.apart);
+    sum += weight * (from + along * (to - from) + away - arm.goal);
+    weights += weight;
+    missing *= 1 - weight;
+  }
+  return weights > 0 ? Vec3((1 - missing) / weights * sum) : sum;
+}
+
+void HandGoals::softenReach(Limb& arm, const BodyFrame& target) const {
+  const Vec3 shoulder = target.positions[arm.upper], way = arm.goal - shoulder;
+  const double free = std::max((target.positions[arm.end] - shoulder).norm(), kSoftReach * arm.length);
+  const double room = kStretch * arm.length - free, over = way.norm() - free;
+  if (over <= 0) return;
+  const double length = room > 0 ? free + room * (1 - std::exp(-over / room)) : free;
+  arm.goal = shoulder + length / way.norm() * way;
+}
+
+void HandGoals::set(const BodyFrame& source, const BodyFrame& target, double seconds) {
+  const double reach = setup_.options.reach;
+  const Vec3 pelvis = pelvisOf(setup_.map, MapSide::kSource, source.positions), place = setup_.placeOf(pelvis);
+  std::array<Vec3, 2> touches = {Vec3::Zero(), Vec3::Zero()};
+  for (std::size_t a = 0; a < arms_.size(); ++a) {
+    Limb& arm = arms_[a];
+    arm.goal = target.positions[arm.end];
+    arm.wanted = reach != 0;
+    if (arm.wanted) arm.goal += reach * (place + setup_.scale * (source.positions[arm.sourceEnd] - pelvis) - arm.goal);
+    if (setup_.options.contacts) touches[a] = touchOf(arm, surfaces_[a], source, target);
+  }
+  if (!setup_.options.contacts) return;
+  if (arms_.size() == 2) {
+    const Vec3 apart = setup_.scale * (source.positions[arms_[1].sourceEnd] - source.positions[arms_[0].sourceEnd]);
+    const Vec3 change = apart - (arms_[1].goal + touches[1] - arms_[0].goal - touches[0]);
+    const double weight = 0.5 * closeness(apart.norm(), kTouching, kApart);
+    touches[0] -= weight * change;
+    touches[1] += weight * change;
+  }
+  for (std::size_t a = 0; a < arms_.size(); ++a) {
+    Follow& follow = follows_[a];
+    springTo(touches[a], kTouchRate, seconds, follow.value, follow.speed);
+    if (follow.value.norm() < 1e-9 * setup_.targetHipHeight) continue;
+    arms_[a].goal += follow.value;
+    arms_[a].wanted = true;
+    softenReach(arms_[a], target);
+  }
+}
+
+}  // namespace limber

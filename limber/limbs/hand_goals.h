@@ -1,0 +1,52 @@
+// Where hands have to be: what they touch. Shared by the methods that solve for it.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "limber/limbs/limb.h"
+
+namespace limber {
+
+// Goals frame after frame, without looking ahead. Nothing jumps when touches come and go.
+class HandGoals {
+ public:
+  // None for others than people. Both must outlive this.
+  HandGoals(const RetargetSetup& setup, const RootPlacer& root);
+
+  // Hands that are close to the other hand, the head, the trunk, a thigh or the other forearm in the source are as
+  // close in the result, scaled. `reach` as in RetargetOptions. From the globals of both.
+  void set(const BodyFrame& source, const BodyFrame& target, double seconds);
+  // Forgets what was touched: the motion jumped.
+  void reset() { follows_.fill({}); }
+
+  // Brings a goal that stretches an arm more than it is the nearer the closer it gets to what the arm can reach: the
+  // elbow else snaps. set() does so.
+  void softenReach(Limb& arm, const BodyFrame& target) const;
+
+  std::vector<Limb>& arms() { return arms_; }
+
+ private:
+  // A bone that hands can touch, with distances, in hip heights, at which a touch counts wholly and not at all.
+  struct Surface {
+    std::array<Index, 2> source, target;
+    double touching, apart;
+  };
+  struct Follow {
+    Vec3 value = Vec3::Zero(), speed = Vec3::Zero();
+  };
+
+  void addSurface(const std::string& from, const std::string& to, double touching, double apart,
+                  std::vector<Surface>& surfaces) const;
+  Vec3 touchOf(const Limb& arm, const std::vector<Surface>& surfaces, const BodyFrame& source,
+               const BodyFrame& target) const;
+  double closeness(double distance, double touching, double apart) const;
+
+  const RetargetSetup& setup_;
+  std::vector<Limb> arms_;
+  std::vector<std::vector<Surface>> surfaces_;  // for each arm
+  std::array<Follow, 2> follows_;               // the touches of each arm as they come and go
+};
+
+}  // namespace limber

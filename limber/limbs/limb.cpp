@@ -1,0 +1,36 @@
+#include "limber/limbs/limb.h"
+
+#include <cmath>
+
+#include "limber/skeleton/chain.h"
+
+namespace limber {
+
+std::optional<Limb> makeLimb(const RetargetSetup& setup, const RootPlacer& root, const LegJoints& source,
+                             const LegJoints& target) {
+  Limb limb;
+  limb.upper = target.upper;
+  limb.lower = target.lower;
+  limb.end = target.end;
+  limb.sourceUpper = source.upper;
+  limb.sourceEnd = source.end;
+  if (!isAncestorOrSelf(*setup.target, limb.upper, limb.lower)) return std::nullopt;
+  if (!isAncestorOrSelf(*setup.target, limb.lower, root.carrierOf(limb.end))) return std::nullopt;
+  const std::vector<Vec3>& rest = setup.targetNeutral.restPositions;
+  const double upperLength = (rest[limb.lower] - rest[limb.upper]).norm();
+  const double lowerLength = (rest[limb.end] - rest[limb.lower]).norm();
+  if (!(upperLength > 0) || !(lowerLength > 0)) return std::nullopt;
+  limb.length = upperLength + lowerLength;
+  limb.folded = std::abs(upperLength - lowerLength);
+  return limb;
+}
+
+std::optional<Limb> findLimb(const RetargetSetup& setup, const RootPlacer& root, const std::string& upper,
+                             const std::string& lower, const std::string& end) {
+  const JointMatch *u = setup.map.find(upper), *l = setup.map.find(lower), *e = setup.map.find(end);
+  if (!u || !l || !e) return std::nullopt;
+  return makeLimb(setup, root, {u->source.front(), l->source.front(), e->source.front(), {}, {}, {}},
+                  {u->target.front(), l->target.front(), e->target.front(), {}, {}, {}});
+}
+
+}  // namespace limber
