@@ -39,8 +39,11 @@ class LegFinder {
         targetParents_(parentsWithLegsJoined(target, targetNeutral.positions)),
         pairOf_(target.jointCount()),
         matchedSource_(source.jointCount()) {
+    // Joints may have the names of these parts.
+    const bool byForm = map.find(kHindquarters);
     for (const JointMatch& match : map.matches) {
-      pairs_.push_back({match.source.front(), match.target.front(), legEndOf(match.part)});
+      const std::optional<LegEnd> legEnd = byForm ? legEndOf(match.part) : std::nullopt;
+      pairs_.push_back({match.source.front(), match.target.front(), legEnd});
       pairOf_[match.target.front()] = pairs_.size() - 1;
       matchedSource_[match.source.front()] = true;
     }
