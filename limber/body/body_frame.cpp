@@ -8,9 +8,13 @@ namespace limber {
 
 namespace {
 
-constexpr double kSymmetric = 0.25;    // most asymmetry of a body that counts as symmetric
-constexpr double kPlaneSearch = 0.15;  // part of the width that the plane may lie off the middle of the box
-constexpr int kPlaneSteps = 30;        // to each side
+constexpr double kSymmetric = 0.25;         // most asymmetry of a body that counts as symmetric
+constexpr double kClearlySymmetric = 0.12;  // below: no other plane is looked for
+constexpr double kMoreSymmetric = 0.6;      // of the least asymmetry along the axes, that another plane's is at most
+constexpr double kPlaneSearch = 0.15;       // part of the width that the plane may lie off the middle of the box
+constexpr int kPlaneSteps = 30;             // to each side
+constexpr int kNormals = 5;                 // of planes that are tried all around, from a face to an edge of a cube
+constexpr double kCoarseTurn = 0.06, kFineTurn = 0.003;  // radians, about the best of these
 
 // How much deeper or less deep the mirror images of the medial spheres lie than they do themselves.
 double asymmetryOf(const BodyFrame& frame, const BodyVolume& body) {
@@ -21,6 +25,71 @@ double asymmetryOf(const BodyFrame& frame, const BodyVolume& body) {
     whole += sphere.radius;
   }
   return whole > 0 ? difference / whole : 1;
+}
+
+// Directions all around, but for their opposites: a grid on half the faces of a cube. No sines: every compiler's
+// differ.
+std::vector<Vec3> directions() {
+  std::vector<Vec3> all;
+  for (int i = -kNormals; i <= kNormals; ++i) {
+    for (int j = -kNormals; j <= kNormals; ++j) {
+      const double a = static_cast<double>(i) / kNormals, b = static_cast<double>(j) / kNormals;
+      for (const Vec3& way : {Vec3(1, a, b), Vec3(a, 1, b), Vec3(a, b, 1)}) all.push_back(way.normalized());
+    }
+  }
+  return all;
+}
+
+// Of the plane through the middle of the body's mass that the body is most symmetric to.
+Vec3 mostSymmetricNormal(const BodyVolume& body) {
+  BodyFrame frame;
+  double mass = 0;
+  for (const MedialSphere& sphere : body.spheres) {
+    const double weight = sphere.radius * sphere.radius * sphere.radius;
+    frame.origin += weight * sphere.center;
+    mass += weight;
+  }
+  if (mass > 0) frame.origin /= mass;
+  Vec3 best = Vec3::UnitX();
+  double least = std::numeric_limits<double>::infinity();
+  const auto look = [&](const Vec3& normal) {
+    frame.axes.row(0) = normal.transpose();
+    const double asymmetry = asymmetryOf(frame, body);
+    if (asymmetry < least) {
+      least = asymmetry;
+      best = normal;
+      return true;
+    }
+    return false;
+  };
+  for (const Vec3& normal : directions()) look(normal);
+  for (double turn = kCoarseTurn; turn > kFineTurn;) {
+    const Vec3 one = best.unitOrthogonal(), other = best.cross(one), from = best;
+    bool better = false;
+    for (const Vec3& way : {one, Vec3(-one), other, Vec3(-other)}) {
+      better = look((from + turn * way).normalized()) || better;
+    }
+    if (!better) turn /= 2;
+  }
+  return best;
+}
+
+// Of bodies that stand along no axis: those whose up is nearest to `ups`, with both fronts.
+std::vector<BodyFrame> slantingFrames(const TriMesh& mesh, const BodyVolume& body, const std::vector<Vec3>& ups) {
+  const Vec3 left = mostSymmetricNormal(body);
+  std::vector<BodyFrame> frames;
+  for (const Vec3& u : ups) {
+    if (std::abs(u.dot(left)) > 0.5) continue;
+    const Vec3 up = (u - u.dot(left) * left).normalized(), front = left.cross(up);
+    for (const Vec3& f : {front, Vec3(-front)}) frames.push_back(frameAlong(mesh, body, up, f));
+  }
+  return frames;
+}
+
+double leastAsymmetry(const std::vector<BodyFrame>& frames) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const BodyFrame& frame : frames) least = std::min(least, frame.asymmetry);
+  return least;
 }
 
 }  // namespace
@@ -77,7 +146,11 @@ std::vector<BodyFrame> possibleFrames(const TriMesh& mesh, const BodyVolume& bod
       if (std::abs(u.dot(f)) < 0.5) frames.push_back(frameAlong(mesh, body, u, f));
     }
   }
-  return frames;
+  const double along = leastAsymmetry(frames);
+  if (front || along < kClearlySymmetric) return frames;
+  const std::vector<BodyFrame> slanting = slantingFrames(mesh, body, ups);
+  const double least = leastAsymmetry(slanting);
+  return least < std::min(kSymmetric, kMoreSymmetric * along) ? slanting : frames;
 }
 
 }  // namespace limber

@@ -28,7 +28,9 @@ struct BodyFrame {
 BodyFrame frameAlong(const TriMesh& mesh, const BodyVolume& body, const Vec3& up, const Vec3& front);
 
 // Ways that the body may stand, likeliest first: all that agree with what is given (unit vectors along axes). Without
-// up: +Y, then +Z, then the others. Both fronts of each plane of symmetry are among them.
+// up: +Y, then +Z, then the others. Both fronts of each plane of symmetry are among them. A body
+// that is symmetric to no plane across the axes, but to another, is turned or leans: then the ways along that plane,
+// with ups nearest to these.
 std::vector<BodyFrame> possibleFrames(const TriMesh& mesh, const BodyVolume& body, const std::optional<Vec3>& up,
                                       const std::optional<Vec3>& front);
 

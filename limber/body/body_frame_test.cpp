@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "limber/body/testing/capsule_person.h"
 
 namespace limber {
@@ -31,6 +33,29 @@ TEST(BodyFrame, IsRightHanded) {
   EXPECT_GT(across, frameAlong(person.mesh, body, Vec3::UnitY(), Vec3::UnitZ()).asymmetry + 0.05);
   EXPECT_EQ(possibleFrames(person.mesh, body, Vec3::UnitY(), std::nullopt).size(), 4u);
   EXPECT_EQ(possibleFrames(person.mesh, body, Vec3::UnitY(), Vec3::UnitZ()).size(), 1u);
+}
+
+// A person, with something on the back, who looks along no axis or leans to one side.
+TEST(BodyFrame, FollowsBodiesThatAreTurned) {
+  for (const Vec3& axis : {Vec3(0, 1, 0), Vec3(0, 0, 1)}) {
+    SCOPED_TRACE(axis.transpose());
+    const Mat3 turn = Eigen::AngleAxisd(0.5, axis).toRotationMatrix();
+    testing::CapsulePerson person = testing::capsulePerson();
+    testing::addCapsule(person.mesh, {0, 0.55, -0.2}, {0, 0.75, -0.2}, 0.1);
+    for (Vec3f& p : person.mesh.positions) p = (turn * p.cast<double>()).cast<float>();
+    const BodyVolume body = measureBody(person.mesh);
+    const std::vector<BodyFrame> frames = possibleFrames(person.mesh, body, std::nullopt, std::nullopt);
+    ASSERT_TRUE(frames.front().symmetric());
+    double best = -1;
+    for (const BodyFrame& frame : frames) {
+      EXPECT_NEAR(frame.axes.determinant(), 1, 1e-12);
+      best = std::max(best, std::min((frame.axes * turn).diagonal().minCoeff(), 1.0));
+    }
+    EXPECT_GT(best, 0.999) << "left, up and front go along";
+    for (const BodyFrame& frame : possibleFrames(person.mesh, body, Vec3::UnitY(), Vec3::UnitZ())) {
+      EXPECT_TRUE(frame.axes.isIdentity()) << "as told";
+    }
+  }
 }
 
 }  // namespace limber
