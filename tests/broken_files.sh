@@ -25,10 +25,18 @@ limited() {
   )
 }
 
-# check FILE NAME: the name tells files of the same name in different folders apart.
+# check FILE NAME: the name tells files of the same name in different folders apart. What is read at all is rigged both
+# ways.
 check() {
+  check_rig "$1" "$2" --handles 6
+  [ ! -e "$output/$2.glb" ] || check_rig "$1" "$2.template" --template humanoid
+}
+
+# check_rig FILE NAME OPTIONS...
+check_rig() {
   local file=$1 result=$output/$2.glb code
-  limited rig "$file" --handles 6 --replace-rig --quiet -o "$result"
+  shift 2
+  limited rig "$file" "$@" --replace-rig --quiet -o "$result"
   code=$?
   if [ $code -ge 124 ]; then
     fail "$file" "the program was ended with code $code (time, memory or a crash): $(head -c 300 "$output/stderr")"
