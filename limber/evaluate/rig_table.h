@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "limber/asset/asset.h"
-#include "limber/core/progress.h"
 #include "limber/asset/clip_moment.h"
+#include "limber/core/progress.h"
 #include "limber/evaluate/rig_metrics.h"
 
 namespace limber {

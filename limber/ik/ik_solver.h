@@ -36,8 +36,8 @@ const IkMethod& findIkMethod(std::string_view name);
 // taking memory. The start pose is the warm start. Same calls, same answers, bit for bit.
 //
 // The answer keeps every bone's length, breaks no limit and is never worse than the start pose bent into its limits, by
-// IkSystem::cost(). Joints that lie on no way from a base to an effector stay as they are. Where skeleton, limits, start
-// pose and targets are the same left and right, so is the answer, even if a pose that differs would come nearer.
+// IkSystem::cost(). Joints that lie on no way from a base to an effector stay as they are. Where skeleton, limits,
+// start pose and targets are the same left and right, so is the answer, even if a pose that differs would come nearer.
 class IkSolver {
  public:
   // Skeleton and limits (none: null) must outlive the solver. Errors as of IkSystem; some methods refuse what they

@@ -9,8 +9,9 @@
 namespace limber {
 
 // The generalised winding number of triangles (Jacobson, Kavan, Sorkine-Hornung 2013): their signed solid angle over
-// 4 pi. It tells inside from outside on meshes that are open, in many pieces, or cross themselves. Far clusters count by
-// their expansion to the second order (Barill, Dickson, Schmidt, Levin, Jacobson 2018), near ones triangle by triangle.
+// 4 pi. It tells inside from outside on meshes that are open, in many pieces, or cross themselves. Far clusters count
+// by their expansion to the second order (Barill, Dickson, Schmidt, Levin, Jacobson 2018), near ones triangle by
+// triangle.
 //
 // The clusters are the cells of an octree, found by sorting along a space-filling curve; the same for any number of
 // threads. Cost: O(#F log #F) to build, about 45 bytes for each triangle; a query O(log #F) in practice.

@@ -40,8 +40,8 @@ struct AutoRigReport {
   Index removedJoints = 0, removedClips = 0;  // of the old rig, with ExistingRig::kReplace
   std::vector<HandleSuggestion> suggestions;
   std::vector<TemplateMatch> matches;  // of a template rig; the one that was fitted first
-  std::vector<BridgedNode> bridged;  // most vertices first
-  Warnings warnings;                 // of reading and of every stage
+  std::vector<BridgedNode> bridged;    // most vertices first
+  Warnings warnings;                   // of reading and of every stage
   std::vector<StageTime> stages;
 };
 

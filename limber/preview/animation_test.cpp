@@ -81,7 +81,8 @@ TEST(Animation, ManyJointsAreBonesAlone) {
   motion.skeleton.joints.push_back({"root", std::nullopt, {}, 0});
   Transform along;
   along.translation = Vec3(0, 0.1, 0.05);
-  for (Index j = 1; j < 5000; ++j) motion.skeleton.joints.push_back({std::string("j").append(std::to_string(j)), j - 1, along, 0});
+  for (Index j = 1; j < 5000; ++j)
+    motion.skeleton.joints.push_back({std::string("j").append(std::to_string(j)), j - 1, along, 0});
   motion.clips.push_back(rising());
   EXPECT_LE(makeScene(motionAsset(motion)).triangles.size(), 8u * 5000);
 }
