@@ -51,7 +51,18 @@ bool isWalkOrRun(const std::string& motion) {
 // Runs, and walks on the spot, whose feet never stand still: nothing can be said of sliding there.
 const std::set<std::string> kNeverStands = {"cmu_daz_02_03_run.bvh", "cmu_daz_09_01_run.bvh", "makehuman_walk.bvh",
                                             "makehuman_zombie_walk.bvh", "pab_run.fbx"};
-// What does not hold yet, jerk over 1.1, by spacetime: toys whose legs are short for their hips.
+// Clips of people whose hips stand still in the air while their feet come up to them: there is no ground to keep.
+const std::set<std::string> kNailed = {"Idle_B", "PickUp", "Jump_Idle"};
+// What does not hold yet, jerk over 1.1, by limb-ik.
+const std::map<std::pair<std::string, std::string>, double> kRougherPeople = {
+    {{"cmu_91_48.fbx", "robot_expressive.glb"}, 1.19},
+    {{"Hit_A", "quaternius_mech_george.glb"}, 1.16},
+    {{"Throw", "quaternius_mech_george.glb"}, 1.13},
+    {{"Walking_C", "kenney_human.glb"}, 1.11}};
+// Feet that land or are dragged within a few frames: some stand in the result later than in the source.
+const std::set<std::string> kStandLater = {"Death_B",   "Jump_Full_Long", "Jump_Full_Short",
+                                           "Jump_Land", "Throw",          "Walking_C"};
+// Likewise, by spacetime: toys whose legs are short for their hips.
 const std::map<std::pair<std::string, std::string>, double> kRougherInOnePiece = {
     {{"cmu_mb_01_01_forward_jumps.bvh", "robot_expressive.glb"}, 1.12},
     {{"pybvh_example.bvh", "quaternius_platformer_character.glb"}, 1.14},
@@ -82,7 +93,7 @@ TEST_P(RetargetMatrix, EveryHumanoidKeepsFeetAndGround) {
     if (isWalkOrRun(motion)) {
       EXPECT_LT(result.sliding, 0.02);
     }
-    EXPECT_LT(result.jerk, 1.1);
+    EXPECT_LT(result.jerk, roughest(kRougherPeople, motion, file));
     EXPECT_LT(result.boneDirection, 15);
     EXPECT_GT(result.contactAgreement, 0.99);
   }
@@ -121,19 +132,49 @@ TEST_P(RetargetMatrix, OnlineIsAsSmoothAsLimbIk) {
   }
 }
 
-// Not among them: the kaykit clips, whose hips stand still while the feet come up to them.
 INSTANTIATE_TEST_SUITE_P(
     Motions, RetargetMatrix,
     ::testing::Values("boxing_toes.bvh", "cmu1_jumping_jacks.bvh", "cmu_daz_02_01_walk.bvh", "cmu_daz_02_03_run.bvh",
                       "cmu_daz_02_04_jump_balance.bvh", "cmu_daz_02_05_punch.bvh", "cmu_daz_02_06_bend_scoop_up.bvh",
                       "cmu_daz_05_02_dance_pirouette.bvh", "cmu_daz_09_01_run.bvh", "cmu_daz_12_01_walk.bvh",
-                      "cmu_daz_13_11_forward_jump.bvh", "cmu_mb_01_01_forward_jumps.bvh", "cmu_mb_12_01_walk.bvh",
-                      "fair1_dab.bvh", "fair1_wave_hello.bvh", "m2m_human_sample_anim.glb", "makehuman_walk.bvh",
-                      "makehuman_zombie_walk.bvh", "pab_run.fbx", "pab_walk.fbx", "pybvh_example.bvh",
-                      "pybvh_test2.bvh", "rokoko_dance.bvh", "rokoko_dance_mixamorig_names.bvh"),
+                      "cmu_91_48.fbx", "cmu_daz_13_11_forward_jump.bvh", "cmu_mb_01_01_forward_jumps.bvh",
+                      "cmu_mb_12_01_walk.bvh", "fair1_dab.bvh", "fair1_wave_hello.bvh", "m2m_human_sample_anim.glb",
+                      "makehuman_walk.bvh", "makehuman_zombie_walk.bvh", "pab_run.fbx", "pab_walk.dae", "pab_walk.fbx",
+                      "pybvh_example.bvh", "pybvh_test2.bvh", "rokoko_dance.bvh", "rokoko_dance_mixamorig_names.bvh"),
     [](const ::testing::TestParamInfo<const char*>& file) {
-      return std::filesystem::path(file.param).stem().string();
+      std::string name = file.param;
+      std::replace(name.begin(), name.end(), '.', '_');
+      return name;
     });
+
+// Many short clips on the spot.
+TEST(RetargetClips, EveryHumanoidKeepsFeetAndGround) {
+  if (!sharedDataFolder()) GTEST_SKIP() << kNoSharedData;
+  for (const char* file : {"kaykit_general.glb", "kaykit_movementbasic.glb"}) {
+    const Motion motion = readMotion(*sharedDataFolder() / "motions" / file);
+    for (const std::string& person : humanoids()) {
+      const PlainSkeleton plain(readMotion(*sharedDataFolder() / "rigged" / person).skeleton);
+      const Skeleton& target = plain.skeleton();
+      const SkeletonMap map = matchSkeletons(motion.skeleton, target);
+      for (const Clip& clip : motion.clips) {
+        const std::string name = clip.name.substr(clip.name.find('|') + 1);
+        const PoseSequence frames = sampleFrames(motion.skeleton, clip, 30);
+        if (kNailed.contains(name) || frames.poses.size() < 5) continue;
+        SCOPED_TRACE(std::string(name).append(" ").append(person));
+        const RetargetSetup setup(motion.skeleton, target, map, {}, &frames);
+        const MotionMetrics result = measured(setup, "limb-ik", frames);
+        EXPECT_LT(1700 * result.penetration, name == "Death_B" ? 40 : 5)
+            << "millimetres at human size, of who falls over";
+        EXPECT_LT(result.sliding, result.sourceSliding + 1e-4);
+        EXPECT_LT(result.jerk, roughest(kRougherPeople, name, person));
+        EXPECT_LT(result.boneDirection, 15);
+        if (!kStandLater.contains(name)) {
+          EXPECT_GT(result.contactAgreement, 0.99);
+        }
+      }
+    }
+  }
+}
 
 // Names say which joint is which; what the form alone says of the same skeleton and is sure of has to be that.
 TEST(RetargetMatching, WhatIsSureByFormAloneIsRight) {
