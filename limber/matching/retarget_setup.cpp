@@ -4,6 +4,8 @@
 #include <cmath>
 #include <span>
 
+#include <fmt/format.h>
+
 #include "limber/core/error.h"
 #include "limber/matching/quadruped_shape.h"
 
@@ -104,6 +106,14 @@ double legHeight(const std::vector<AnimalLeg>& legs, const SkeletonMap& map, Map
   return sum / static_cast<double>(legs.size()) - lowest(matchedJoints(map, side), pose.positions);
 }
 
+// A map of the hips alone, or joints that all lie in one place, leave nothing to scale by.
+void checkSize(double size, const char* whose, const SkeletonMap& map) {
+  if (size > 0) return;
+  throw Error(ErrorCode::kBadData, fmt::format("the matched joints do not tell how large the {}'s body is", whose),
+              map.matches.size() == 1 ? map.matches.front().part : "",
+              "match parts that lie further apart, such as hips, head and feet");
+}
+
 }  // namespace
 
 RetargetSetup::RetargetSetup(const Skeleton& from, const Skeleton& to, SkeletonMap matches,
@@ -129,9 +139,8 @@ RetargetSetup::RetargetSetup(const Skeleton& from, const Skeleton& to, SkeletonM
     targetHipHeight = stand ? other.height : other.across;
     animalLegs = limber::animalLegs(map, from, to, sourceNeutral, targetNeutral);
   }
-  if (!(sourceHipHeight > 0) || !(targetHipHeight > 0)) {
-    throw Error(ErrorCode::kBadData, "the rest pose has no height: its joints lie in one place");
-  }
+  checkSize(sourceHipHeight, "motion", map);
+  checkSize(targetHipHeight, "character", map);
   scale = targetHipHeight / sourceHipHeight;
   if (!animalLegs.empty()) {
     scale = legHeight(animalLegs, map, MapSide::kTarget, targetNeutral) /
