@@ -96,8 +96,8 @@ TEST_F(Cli, ConvertGoesFromBvhToGltfAndBack) {
   put("walk.bvh", kWalk);
   const Result there = run({"convert", "walk.bvh", "walk.glb", "--unit", "cm"});
   EXPECT_EQ(there.code, 0) << there.error;
-  EXPECT_THAT(there.out, AllOf(HasSubstr("5 joints, 1 clips"), HasSubstr("5 frames at 10 a second"),
-                               HasSubstr("written: walk.glb, 1 clips")));
+  EXPECT_THAT(there.out, AllOf(HasSubstr("5 joints, 1 clip\n"), HasSubstr("5 frames at 10 a second"),
+                               HasSubstr("written: walk.glb, 1 clip\n")));
   keep("walk.glb");
   const Result info = run({"info", "walk.glb"});
   EXPECT_THAT(info.out, AllOf(HasSubstr("walk: 0.400 s"), HasSubstr("LeftLeg_end")));

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "limber/core/counted.h"
 #include "limber/core/names.h"
 #include "limber/core/parallel.h"
 
@@ -46,8 +47,9 @@ void Account::line(std::string_view text) const {
 void printWarnings(const Warnings& warnings, bool quiet) {
   if (quiet) return;
   for (const Warning& warning : warnings.items()) {
-    const std::string where = warning.where.empty() ? "" : fmt::format(", first at {}", warning.where);
-    fmt::print(stderr, "warning: {} {} [{}]{}\n", warning.count, warning.message, warning.kind, where);
+    const std::string_view at = warning.count == 1 ? "at" : "first at";
+    const std::string where = warning.where.empty() ? "" : fmt::format(", {} {}", at, warning.where);
+    fmt::print(stderr, "warning: {} [{}]{}\n", warningText(warning), warning.kind, where);
   }
 }
 
@@ -55,18 +57,17 @@ void refuseWarnings(const Warnings& warnings) {
   if (warnings.empty()) return;
   const Warning& first = warnings.items().front();
   const std::size_t others = warnings.items().size() - 1;
-  throw Error(ErrorCode::kBadData,
-              fmt::format("{} {}{}", first.count, first.message,
-                          others == 0 ? "" : fmt::format(", and {} other kinds of warning", others)),
-              first.where, "--strict takes warnings as errors");
+  throw Error(
+      ErrorCode::kBadData,
+      warningText(first) + (others == 0 ? "" : fmt::format(", and {} of warning", counted(others, "other kind"))),
+      first.where, "--strict takes warnings as errors");
 }
 
 void refuseNothing(bool isEmpty, const Warnings& skipped) {
   if (!isEmpty) return;
   if (skipped.empty()) throw Error(ErrorCode::kBadData, "there is nothing to compare");
   const Warning& first = skipped.items().front();
-  throw Error(ErrorCode::kBadData, fmt::format("there is nothing to compare: {} {}", first.count, first.message),
-              first.where);
+  throw Error(ErrorCode::kBadData, "there is nothing to compare: " + warningText(first), first.where);
 }
 
 std::string joinNames(const std::vector<std::string>& names) {

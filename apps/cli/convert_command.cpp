@@ -11,6 +11,7 @@
 #include "limber/asset/node_edit.h"
 #include "limber/asset/unique_names.h"
 #include "limber/asset/write.h"
+#include "limber/core/counted.h"
 #include "limber/core/names.h"
 #include "limber/skeleton/clip_edit.h"
 #include "limber/skeleton/mirror_clip.h"
@@ -115,12 +116,13 @@ void edit(Motion& motion, const Options& options, const Account& account) {
 }
 
 void describe(const std::string& file, const Motion& motion, const Account& account) {
-  account.line(fmt::format("{}: {} joints, {} clips", file, motion.skeleton.jointCount(), motion.clips.size()));
+  account.line(fmt::format("{}: {}, {}", file, counted(motion.skeleton.jointCount(), "joint"),
+                           counted(motion.clips.size(), "clip")));
   for (std::size_t c = 0; c < motion.clips.size(); ++c) {
     const Clip& clip = motion.clips[c];
     const double rate = frameRateOf(motion, c);
-    account.line(fmt::format("  {:<30} {:8.3f} s, {} frames at {:.6g} a second", clip.name, clip.duration(),
-                             frameCount(clip, rate), rate));
+    account.line(fmt::format("  {:<30} {:8.3f} s, {} at {:.6g} a second", clip.name, clip.duration(),
+                             counted(frameCount(clip, rate), "frame"), rate));
   }
 }
 
@@ -128,7 +130,7 @@ void describe(const std::string& file, const Motion& motion, const Account& acco
 void append(Motion& motion, Motion other, const std::string& file) {
   if (motion.skeleton.jointCount() != other.skeleton.jointCount()) {
     throw Error(ErrorCode::kBadArgument,
-                fmt::format("has {} joints where the first file has {}", other.skeleton.jointCount(),
+                fmt::format("has {} where the first file has {}", counted(other.skeleton.jointCount(), "joint"),
                             motion.skeleton.jointCount()),
                 file, "clips of different skeletons: limber retarget brings them to one");
   }
@@ -236,7 +238,8 @@ void run(Options options) {
   } else {
     writeModel(model, *motion, options);
     progress.finish();
-    if (options.output != "-") account.line(fmt::format("written: {}, {} clips", options.output, motion->clips.size()));
+    if (options.output != "-")
+      account.line(fmt::format("written: {}, {}", options.output, counted(motion->clips.size(), "clip")));
   }
   printWarnings(motion->warnings, options.common.quiet);
 }

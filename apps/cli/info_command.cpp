@@ -5,6 +5,7 @@
 #include "command.h"
 #include "limber/asset/json_text.h"
 #include "limber/asset/read.h"
+#include "limber/core/counted.h"
 #include "limber/evaluate/asset_info.h"
 
 namespace limber::cli {
@@ -76,11 +77,12 @@ void printSurface(const AssetInfo& info) {
   }
   const SurfaceInfo& surface = *info.surface;
   printField("triangles", fmt::to_string(surface.triangles));
-  printField("welded", fmt::format("{} vertices at different places", surface.weldedVertices));
+  printField("welded", counted(surface.weldedVertices, "vertex", "vertices") + " at different places");
   printField("pieces", fmt::to_string(surface.pieces));
-  printField("watertight", surface.watertight() ? "yes"
-                                                : fmt::format("no: {} edges with one triangle, {} with more than two",
-                                                              surface.openEdges, surface.crowdedEdges));
+  printField("watertight", surface.watertight()
+                               ? "yes"
+                               : fmt::format("no: {} with one triangle, {} with more than two",
+                                             counted(surface.openEdges, "edge"), surface.crowdedEdges));
   const Vec3 size = info.bounds.size();
   printField("size", fmt::format("{:.4g} x {:.4g} x {:.4g} m, from ({:.4g}, {:.4g}, {:.4g})", size.x(), size.y(),
                                  size.z(), info.bounds.min.x(), info.bounds.min.y(), info.bounds.min.z()));
@@ -92,9 +94,9 @@ void printRig(const AssetInfo& info) {
   if (!info.weights) return;
   const SkinWeightInfo& weights = *info.weights;
   printField("skin weights",
-             fmt::format("{:.3g} to {:.3g}, largest |sum - 1| {:.2g}, at most {} influences", weights.least,
-                         weights.greatest, weights.largestSumError, weights.mostInfluences));
-  printField("without weights", fmt::format("{} vertices", weights.withoutWeights));
+             fmt::format("{:.3g} to {:.3g}, largest |sum - 1| {:.2g}, at most {}", weights.least, weights.greatest,
+                         weights.largestSumError, counted(weights.mostInfluences, "influence")));
+  printField("without weights", counted(weights.withoutWeights, "vertex", "vertices"));
 }
 
 void print(const std::string& file, const AssetInfo& info) {
@@ -104,13 +106,15 @@ void print(const std::string& file, const AssetInfo& info) {
   if (info.sceneVertices != info.storedVertices) vertices += fmt::format(" stored, {} shown", info.sceneVertices);
   printField("vertices", vertices);
   printSurface(info);
-  printField("meshes", fmt::format("{} with {} primitives on {} nodes", info.meshes, info.primitives, info.nodes));
-  printField("materials", fmt::format("{}, {} textures, {} images", info.materials, info.textures, info.images));
+  printField("meshes", fmt::format("{} with {} on {}", info.meshes, counted(info.primitives, "primitive"),
+                                   counted(info.nodes, "node")));
+  printField("materials", fmt::format("{}, {}, {}", info.materials, counted(info.textures, "texture"),
+                                      counted(info.images, "image")));
   printRig(info);
   printField("clips", fmt::to_string(info.clips.size()));
   for (const ClipInfo& clip : info.clips) {
-    printField("", fmt::format("{}: {:.3f} s, {} channels", clip.name.empty() ? "(no name)" : clip.name, clip.seconds,
-                               clip.channels));
+    printField("", fmt::format("{}: {:.3f} s, {}", clip.name.empty() ? "(no name)" : clip.name, clip.seconds,
+                               counted(clip.channels, "channel")));
   }
   if (!info.extensions.empty()) printField("extensions", joinNames(info.extensions));
   printWarnings(info.warnings, false);

@@ -5,6 +5,7 @@
 #include "limber/asset/motion_io.h"
 #include "limber/asset/read.h"
 #include "limber/asset/write.h"
+#include "limber/core/counted.h"
 #include "limber/core/file.h"
 #include "limber/ik/ik_solver.h"
 #include "limber/pipeline/auto_rig.h"
@@ -67,8 +68,8 @@ std::vector<RetargetedClip> addMotions(Asset& asset, const Options& options, Pro
 void tell(const Options& options, const std::vector<RetargetedClip>& clips, const Warnings& warnings) {
   const Account account(options.common.quiet, options.output);
   for (const RetargetedClip& clip : clips) {
-    account.line(fmt::format("{:<24} {} frames at {:g} a second, {} parts matched", clip.name, clip.frames,
-                             clip.framesPerSecond, clip.map.matches.size()));
+    account.line(fmt::format("{:<24} {} at {:g} a second, {} matched", clip.name, counted(clip.frames, "frame"),
+                             clip.framesPerSecond, counted(clip.map.matches.size(), "part")));
   }
   if (!clips.empty() && !clips.front().doubtful.empty()) {
     account.line("matches to look at (--save-map writes them all, --map reads them again):");

@@ -11,6 +11,7 @@
 #include "limber/asset/json_text.h"
 #include "limber/asset/read.h"
 #include "limber/asset/write.h"
+#include "limber/core/counted.h"
 #include "limber/pipeline/report_json.h"
 #include "limber/pipeline/template_file.h"
 #include "limber/templates/template_skeleton.h"
@@ -42,24 +43,20 @@ Json reportJson(const Options& options, const std::string& format, const AutoRig
   return json;
 }
 
-std::string counted(std::size_t count, std::string_view one, std::string_view many) {
-  return fmt::format("{} {}", count, count == 1 ? one : many);
-}
-
 // What a stage did, beside its time.
 std::string outcome(const std::string& stage, const AutoRigReport& report) {
   if (stage == "read geometry") {
     std::string text = counted(report.sourceVertices, "vertex", "vertices");
     if (report.removedJoints == 0) return text;
-    return text + fmt::format("; taken out: {}, {}", counted(report.removedJoints, "joint", "joints"),
-                              counted(report.removedClips, "clip", "clips"));
+    return text + fmt::format("; taken out: {}, {}", counted(report.removedJoints, "joint"),
+                              counted(report.removedClips, "clip"));
   }
   if (stage == "weld") {
     return fmt::format("{}, {}, {}", counted(report.weldedVertices, "vertex", "vertices"),
-                       counted(report.triangles, "triangle", "triangles"), counted(report.pieces, "piece", "pieces"));
+                       counted(report.triangles, "triangle"), counted(report.pieces, "piece"));
   }
   if (stage == "rig") {
-    const std::string joints = counted(report.joints, "joint", "joints");
+    const std::string joints = counted(report.joints, "joint");
     return report.rigger.empty() ? joints + ", kept" : fmt::format("{} ({})", joints, report.rigger);
   }
   if (stage == "skin") return fmt::format("at most {} a vertex ({})", report.maxInfluences, report.skinning);
@@ -88,10 +85,11 @@ void printStages(const Account& account, const AutoRigReport& report) {
 void printBridged(const AutoRigReport& report) {
   for (std::size_t i = 0; i < std::min(report.bridged.size(), kNodesListed); ++i) {
     const BridgedNode& node = report.bridged[i];
-    fmt::print(stderr, "  bridged in {}: {} of {} vertices\n", node.name, node.bridged, node.vertices);
+    fmt::print(stderr, "  bridged in {}: {} of {}\n", node.name, node.bridged,
+               counted(node.vertices, "vertex", "vertices"));
   }
   if (report.bridged.size() > kNodesListed) {
-    fmt::print(stderr, "  and in {} more\n", counted(report.bridged.size() - kNodesListed, "node", "nodes"));
+    fmt::print(stderr, "  and in {} more\n", counted(report.bridged.size() - kNodesListed, "node"));
   }
 }
 

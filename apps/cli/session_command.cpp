@@ -6,6 +6,7 @@
 
 #include "command.h"
 #include "limber/asset/read.h"
+#include "limber/core/counted.h"
 #include "limber/core/file.h"
 #include "limber/session/session.h"
 #include "progress_line.h"
@@ -57,8 +58,8 @@ void run(const Options& options) {
   progress.finish();
 
   const Account account(options.common.quiet, options.output);
-  account.line(fmt::format("{} commands done: {} with {} joints", commands.size(), session.source().name,
-                           session.state().rig->skeleton().jointCount()));
+  account.line(fmt::format("{} done: {} with {}", counted(commands.size(), "command"), session.source().name,
+                           counted(session.state().rig->skeleton().jointCount(), "joint")));
   if (options.output != "-") account.line(fmt::format("written: {}", options.output));
 }
 

@@ -268,7 +268,7 @@ class BvhReader {
       }
     }
     if (options_.up == UpAxis::kY || (!options_.up && !standsAlongZ(hierarchy_.joints()))) return;
-    warnings_.add("converted-axes", "file has Z up and is turned to Y up");
+    warnings_.add("converted-axes", "files with Z up are turned to Y up");
     for (Joint& joint : motion.skeleton.joints) turnUpright(joint.rest.translation);
     for (Clip& clip : motion.clips) {
       for (auto& track : clip.translations) {

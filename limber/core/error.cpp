@@ -47,6 +47,10 @@ Error Error::within(std::string_view outer) const {
   return Error(code_, message_, where_.empty() ? place : place + ": " + where_, remedy_);
 }
 
+std::string warningText(const Warning& warning) {
+  return warning.count == 1 ? warning.message : warning.message + " (" + std::to_string(warning.count) + ")";
+}
+
 void Warnings::add(std::string_view kind, std::string_view message, std::string_view where, std::size_t count) {
   if (count == 0) return;
   const auto known = std::find_if(items_.begin(), items_.end(), [&](const Warning& w) { return w.kind == kind; });

@@ -52,6 +52,9 @@ struct Warning {
   std::size_t count = 0;
 };
 
+// The message, and how often where that was more than once: "degenerate triangles left out (12)".
+std::string warningText(const Warning& warning);
+
 class Warnings {
  public:
   // Adds `count` to the warning of that kind; message and place are those of the first call.

@@ -22,6 +22,11 @@ TEST(Error, WithinPutsTheOuterPlaceInFront) {
   EXPECT_EQ(outer.within("fox").where(), "fox: fox.glb: buffers[0]");
 }
 
+TEST(Warnings, SayHowOftenWhereThatWasMoreThanOnce) {
+  EXPECT_EQ(warningText({"lights", "lights are left out", "", 12}), "lights are left out (12)");
+  EXPECT_EQ(warningText({"lights", "lights are left out", "", 1}), "lights are left out");
+}
+
 TEST(Warnings, AreCountedByKindInTheOrderMet) {
   Warnings warnings;
   warnings.add("b", "second letter", "first place");

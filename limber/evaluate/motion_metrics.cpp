@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "limber/core/counted.h"
 #include "limber/core/error.h"
 #include "limber/ik/rotation.h"
 
@@ -330,7 +331,7 @@ JointError jointErrorOf(const RetargetSetup& setup, const PoseSequence& truth, c
 std::string motionMetricsText(const MotionMetrics& m) {
   std::string text;
   const auto line = [&](const char* name, const std::string& value) { text += fmt::format("{:<22}{}\n", name, value); };
-  line("frames", fmt::format("{}, {} parts of the body", m.frames, m.matched));
+  line("frames", fmt::format("{}, {} of the body", m.frames, counted(m.matched, "part")));
   line("bone direction", fmt::format("{:.2f} degrees", m.boneDirection));
   line("end effectors", fmt::format("{:.2f} % of the limb", 100 * m.endEffector));
   line("planted", fmt::format("{:.1f} % of the feet's frames", 100 * m.planted));

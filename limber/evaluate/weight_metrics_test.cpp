@@ -205,7 +205,7 @@ TEST(WeightReport, NamesEveryFigure) {
   EXPECT_EQ(json["unweighted"], 1);
   EXPECT_EQ(json["l1"], c.l1);
   EXPECT_EQ(json["deform_mean"], c.deformMean);
-  EXPECT_THAT(toText(c), HasSubstr("left out      1 vertices (truth 0)"));
+  EXPECT_THAT(toText(c), HasSubstr("left out      1 vertex (truth 0)"));
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "limber/core/counted.h"
+
 namespace limber {
 
 Json toJson(const WeightComparison& c) {
@@ -34,7 +36,8 @@ std::string toText(const WeightComparison& c) {
   text +=
       fmt::format("\ndeformation   mean {:.3f} %, 95th percentile {:.3f} % of the diagonal", c.deformMean, c.deformP95);
   text += fmt::format("\nsmoothness    {:.3f} (truth {:.3f})", c.smoothness, c.truthSmoothness);
-  text += fmt::format("\nleft out      {} vertices (truth {})\n", c.unweighted, c.truthUnweighted);
+  text +=
+      fmt::format("\nleft out      {} (truth {})\n", counted(c.unweighted, "vertex", "vertices"), c.truthUnweighted);
   return text;
 }
 

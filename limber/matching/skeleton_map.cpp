@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "limber/core/counted.h"
 #include "limber/core/error.h"
 #include "limber/matching/animal_map.h"
 #include "limber/matching/humanoid_shape.h"
@@ -238,9 +239,9 @@ SkeletonMap matchSkeletons(const Skeleton& source, const Skeleton& target) {
   }
   if (sameTree(source, target)) return matchTrees(target);
   throw Error(ErrorCode::kUnsupported,
-              fmt::format("the motion's skeleton of {} joints and the character's of {} have too little in common to "
+              fmt::format("the motion's skeleton of {} and the character's of {} have too little in common to "
                           "be matched by names or by form",
-                          source.jointCount(), target.jointCount()),
+                          counted(source.jointCount(), "joint"), target.jointCount()),
               "", "say in a map which joint follows which (docs/retargeting.md)");
 }
 

@@ -83,7 +83,7 @@ std::vector<Bone> keptBones(const Asset& asset, const Geometry& geometry, const 
       deformingJoints(readWeights(asset, geometry, skeleton), skeleton.skeleton.jointCount());
   const auto first = std::find(deforms.begin(), deforms.end(), true);
   if (deforms.size() > 1 && std::find(std::next(first), deforms.end(), true) == deforms.end()) {
-    warnings.add("single-joint", "joint alone moves the whole model, as in the file; the others move nothing",
+    warnings.add("single-joint", "one joint alone moves the whole model, as in the file; the others move nothing",
                  skeleton.skeleton.joints[static_cast<std::size_t>(first - deforms.begin())].name);
   }
   std::vector<Bone> bones = bonesOf(skeleton.skeleton);

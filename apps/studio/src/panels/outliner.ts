@@ -4,6 +4,7 @@ import type { SessionState } from '../engine/messages';
 import type { PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
 import type { HandleView } from '../scene/handle_view';
+import { counted } from '../ui/counted';
 import { button, element } from '../ui/dom';
 import { renameIn } from '../ui/rename';
 import { clipList, meshList, pinList, targetList } from './outliner_lists';
@@ -46,7 +47,7 @@ export function outliner(studio: Studio, page: PageStore, handles: HandleView): 
   const title = element('h2', {}, 'Joints');
   page.watch((now, before) => {
     const { session, selected } = now;
-    title.textContent = session ? `${session.joints.length} joints` : 'Joints';
+    title.textContent = session ? counted(session.joints.length, 'joint') : 'Joints';
     if (session && (session.joints !== before.session?.joints || list.childElementCount === 0)) {
       const known = before.session?.joints.map((joint) => joint.name).join('\n');
       if (list.childElementCount === 0 || known !== session.joints.map((joint) => joint.name).join('\n')) {

@@ -1,6 +1,7 @@
 // How handles are moved, how many there are, and how the model is shown.
 import type { Display, DragMode, PageState, PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
+import { counted } from '../ui/counted';
 import { button, choice, element } from '../ui/dom';
 
 const mostHandles = 200;
@@ -73,7 +74,7 @@ function handleCount(studio: Studio, page: PageStore): HTMLElement {
   slider.addEventListener('input', () => {
     const count = toCount(slider.valueAsNumber);
     number.textContent = String(count);
-    slider.setAttribute('aria-valuetext', `${count} handles`);
+    slider.setAttribute('aria-valuetext', counted(count, 'handle'));
     void studio.setHandles(count);
   });
   // A step of the keyboard is a handle more or less.
@@ -95,13 +96,13 @@ function handleCount(studio: Studio, page: PageStore): HTMLElement {
     if (!studio.settingHandles) {
       number.textContent = String(joints.length);
       slider.valueAsNumber = toPlace(studio.handleCount);
-      slider.setAttribute('aria-valuetext', `${joints.length} handles`);
+      slider.setAttribute('aria-valuetext', counted(joints.length, 'handle'));
     }
     if (`${suggestions} ${most(now)}` === marked) return;
     marked = `${suggestions} ${most(now)}`;
     marks.replaceChildren(...apart(suggestions.map((count) => ({ count, at: toPlace(count) / steps }))).map(({ count, at }) => {
       const mark = button(String(count), () => void studio.setHandles(count), {
-        label: `${count} handles${suggestions[0] === count ? ', the best suggestion' : ', suggested'}`,
+        label: `${counted(count, 'handle')}${suggestions[0] === count ? ', the best suggestion' : ', suggested'}`,
       });
       mark.classList.add('mark');
       mark.classList.toggle('best', suggestions[0] === count);

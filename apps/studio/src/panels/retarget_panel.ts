@@ -2,6 +2,7 @@
 import { jointColor } from '../scene/palette';
 import type { PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
+import { counted } from '../ui/counted';
 import { element } from '../ui/dom';
 import { compareButton, methodName } from './methods_panel';
 import { chosenClip } from './timeline';
@@ -44,7 +45,7 @@ export function retargetPanel(studio: Studio, page: PageStore): HTMLElement {
     reach.disabled = source.method !== 'limb-ik';
     contacts.checked = source.contacts;
     const unsure = session.match.filter((match) => match.by !== 'file' && match.confidence < doubtful).length;
-    summary.textContent = `${session.match.length} parts matched` + (unsure > 0 ? `, ${unsure} to look at` : '');
+    summary.textContent = counted(session.match.length, 'part') + ' matched' + (unsure > 0 ? `, ${unsure} to look at` : '');
     const now = JSON.stringify([session.match, source.motion, session.joints.length]);
     if (now === drawn) return;
     drawn = now;

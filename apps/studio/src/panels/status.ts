@@ -1,6 +1,7 @@
 // What takes long, what went wrong, what the engine had to repair.
 import type { PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
+import { counted } from '../ui/counted';
 import { button, element } from '../ui/dom';
 
 export function status(studio: Studio, page: PageStore): HTMLElement {
@@ -32,8 +33,8 @@ export function facts(page: PageStore): HTMLElement {
   const line = element('p', { class: 'facts', id: 'facts' });
   page.watch(({ session }) => {
     if (!session) return;
-    const repairs = session.warnings.map(({ count, message }) => `${count} ${message}`).join('; ');
-    line.textContent = `${session.vertices.toLocaleString('en')} vertices, ${session.triangles.toLocaleString('en')} triangles`
+    const repairs = session.warnings.map(({ count, message }) => (count === 1 ? message : `${message} (${count})`)).join('; ');
+    line.textContent = `${counted(session.vertices, 'vertex', 'vertices')}, ${counted(session.triangles, 'triangle')}`
       + (session.own_rig ? ', its own rig' : '') + (repairs === '' ? '' : `. Repaired: ${repairs}`);
     line.title = line.textContent;
   });
