@@ -77,6 +77,8 @@ export async function loadLimber(wasmBinary, listeners = {}) {
     },
     /** The methods there are, by what they do. @type {() => Methods} */
     methods: () => call(engine, engine._limber_methods, []).account,
+    /** Is a PLY file whole? For readers that would not notice. @type {(file: Uint8Array, name: string) => { ok: true } | Failure} */
+    checkPly: (file, name) => call(engine, engine._limber_check_ply, [], file, name),
     createSession: () => createSession(engine),
     /** Another session with the same document, to try something in; null during a drag.
      *  @type {(session: Session) => Session | null} */

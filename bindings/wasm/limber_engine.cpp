@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "call_result.h"
+#include "limber/asset/ply_check.h"
 #include "limber/asset/read.h"
 #include "limber/asset/write.h"
 #include "limber/ik/ik_solver.h"
@@ -71,6 +72,19 @@ LIMBER_EXPORT CallResult* limber_rig(const std::uint8_t* file, std::size_t fileS
     limber::Progress progress;
     const limber::AutoRigReport report = limber::autoRig(asset, optionsFrom({options, optionsSize}), progress);
     return {true, limber::writeGlb(asset), limber::dumpReport(limber::toJson(report), -1)};
+  });
+}
+
+// Fails where a PLY file is cut off. Pages read the format by other means, which would not notice.
+LIMBER_EXPORT CallResult* limber_check_ply(const std::uint8_t* file, std::size_t fileSize, const char* name,
+                                           std::size_t nameSize) {
+  return guarded({name, nameSize}, [&]() -> CallResult {
+    try {
+      limber::checkPly({file, fileSize});
+    } catch (const limber::Error& error) {
+      throw error.within({name, nameSize});
+    }
+    return {true, {}, "{}"};
   });
 }
 

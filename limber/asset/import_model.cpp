@@ -18,11 +18,11 @@
 #include "limber/asset/gltf_document.h"
 #include "limber/asset/import_io.h"
 #include "limber/asset/import_obj.h"
-#include "limber/asset/import_ply.h"
 #include "limber/asset/import_sandbox.h"
 #include "limber/asset/import_scene.h"
 #include "limber/asset/import_skin.h"
 #include "limber/asset/import_text.h"
+#include "limber/asset/ply_check.h"
 #include "limber/asset/write.h"
 #include "limber/core/names.h"
 
@@ -233,8 +233,8 @@ SandboxLimits limitsFor(std::size_t size) {
 
 Asset importModel(ByteSpan bytes, std::string_view name, const Resolver& resolver) {
   const Format& format = formatOf(bytes, name);
+  if (format.extension == std::string_view("ply")) checkPly(bytes);
   try {
-    if (format.extension == std::string_view("ply")) checkPly(bytes);
     const Bytes message =
         runIsolated([&] { return pack(readWithAssimp(bytes, format, resolver)); }, limitsFor(bytes.size()));
     Asset asset = unpack(message);

@@ -211,19 +211,10 @@ TEST(ImportPly, VerticesThatNoFaceUsesStay) {
   EXPECT_EQ(collectGeometry(asset).positions.size(), 4u);
 }
 
-TEST(ImportPly, AHeaderWithoutEndIsRefusedAtOnce) {
-  const std::string_view text = kTrianglePly;
-  for (const std::size_t length : {5u, 19u, 40u, 120u}) {
-    EXPECT_THAT(errorOf(text.substr(0, length), "t.ply").what(), HasSubstr("its header has no end"));
-  }
-  EXPECT_THAT(errorOf("ply\nformat ascii 1.0\nelement vertex 4000000000\nend_header\n0 0 0\n", "t.ply").what(),
-              HasSubstr("more elements than it can hold"));
-}
-
 TEST(ImportPly, ACutFileIsNotFilledUp) {
-  const std::string text = kTrianglePly;
-  EXPECT_THROW(import(text.substr(0, text.find("0 1 0 0 0 255")), "t.ply"), Error);  // a vertex and the face are gone
-  EXPECT_THROW(import(text.substr(0, text.find("3 0 1 2")), "t.ply"), Error);
+  const std::string_view text = kTrianglePly;
+  EXPECT_EQ(std::string(errorOf(text.substr(0, text.find("0 1 0 0 0 255")), "t.ply").what()),
+            "t.ply: cannot be read as PLY: it is cut off: it holds less than its header announces");
 }
 
 TEST(ImportPly, APointCloudIsReadAndHasNoTriangle) {

@@ -221,6 +221,15 @@ const cases = {
     await settled(page);
     assert.equal((await sessionState(page)).own_rig, true);
   },
+  async 'a PLY that is cut off is refused, as by the program'() {
+    const whole = asciiPly(), before = (await sessionState(page)).name;
+    const buffer = whole.subarray(0, whole.length / 2);
+    await page.locator('#file').setInputFiles({ name: 'cut.ply', mimeType: 'application/octet-stream', buffer });
+    await page.waitForFunction(() => !document.querySelector('#notice').hidden);
+    assert.match(await page.locator('#notice').textContent(), /annot be read as PLY: it is cut off: it holds less than its header announces/);
+    assert.equal((await sessionState(page)).name, before);
+    await page.locator('#close-notice').click();
+  },
   async 'nothing was thrown'() {
     assert.deepEqual(errors, []);
   },

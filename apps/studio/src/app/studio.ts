@@ -62,6 +62,7 @@ export class Studio {
     await this.guard(async () => {
       const bytes = new Uint8Array(await file.arrayBuffer());
       if (/\.gl(b|tf)$/i.test(file.name)) return this.openBytes(bytes, file.name);
+      if (/\.ply$/i.test(file.name)) await this.engine.ask({ kind: 'check-ply', bytes, name: file.name });
       const { toGlb } = await import('./import_model');
       await this.openBytes(await toGlb(bytes, file.name), file.name);
     });

@@ -59,6 +59,7 @@ export class Documents {
 
   pick(ray: Ray, slope: number) { return orThrow(this.session.pick(ray, slope)).hit; }
   model(): SurfaceModel { return orThrow(this.session.model()).model; }
+  checkPly(bytes: Uint8Array, name: string) { orThrow(this.limber.checkPly(bytes, name)); }
   methods() { return this.limber.methods(); }
   export(format: ExportFormat) { return orThrow(this.session.export(format)).bytes; }
   record() { return JSON.stringify(this.session.record(), null, 1); }

@@ -29,6 +29,8 @@ export interface Variant {
 
 export type Request =
   | { kind: 'open'; bytes: Uint8Array; name: string }
+  /** Fails where the file is cut off. */
+  | { kind: 'check-ply'; bytes: Uint8Array; name: string }
   | { kind: 'motion'; bytes: Uint8Array; name: string }
   | { kind: 'run'; command: Command }
   | { kind: 'pick'; ray: Ray; slope: number }
@@ -44,6 +46,7 @@ export type Request =
 /** The answer to each kind of request. */
 export interface Answers {
   open: { state: SessionState; stance: Stance };
+  'check-ply': void;
   motion: { state: SessionState; stance: Stance };
   /** state is null after a drag's update and a clip's moment, which change the stance alone. */
   run: { state: SessionState | null; stance: Stance };

@@ -9,6 +9,7 @@ const say = (message: FromWorker) => postMessage(message);
 function answer(documents: Documents, request: Request): Answers[Kind] {
   switch (request.kind) {
     case 'open': return documents.open(request.bytes, request.name);
+    case 'check-ply': return documents.checkPly(request.bytes, request.name);
     case 'motion': return documents.addMotion(request.bytes, request.name);
     case 'run': return documents.run(request.command);
     case 'pick': return documents.pick(request.ray, request.slope);

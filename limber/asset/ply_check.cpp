@@ -1,4 +1,4 @@
-#include "limber/asset/import_ply.h"
+#include "limber/asset/ply_check.h"
 
 #include <algorithm>
 #include <sstream>
@@ -26,13 +26,17 @@ std::uint64_t sizeOfType(const std::string& type) {
   return 4;
 }
 
+[[noreturn]] void refuse(const std::string& why) {
+  throw Error(ErrorCode::kBadData, "cannot be read as PLY: " + why);
+}
+
 Header parseHeader(std::string_view file) {
   constexpr std::string_view kEnd = "end_header";
   constexpr std::size_t kLongest = std::size_t{1} << 20;
   Header header;
   header.length = file.substr(0, kLongest).find(kEnd);
   if (header.length == std::string_view::npos || header.length + kEnd.size() >= file.size()) {
-    throw Error(ErrorCode::kBadData, "its header has no end");
+    refuse("its header has no end");
   }
   std::uint64_t count = 0;  // of the element that properties are read for
   std::istringstream lines{std::string(file.substr(0, header.length))};
@@ -45,7 +49,7 @@ Header parseHeader(std::string_view file) {
     if (word == "property") header.bytes += count * sizeOfType(name == "list" && words >> word ? word : name);
     if (word != "element") continue;
     if (!(words >> count) || count > file.size()) {  // an element takes a byte at least
-      throw Error(ErrorCode::kBadData, "it announces more elements than it can hold");
+      refuse("it announces more elements than it can hold");
     }
     header.elements += count;
     if (name == "vertex") header.counts.vertices = count;
@@ -76,7 +80,7 @@ PlyCounts checkPly(ByteSpan bytes) {
   const Header header = parseHeader(file);
   const std::string_view body = file.substr(header.length);
   if (header.text ? countLines(body) < header.elements : body.size() < header.bytes) {
-    throw Error(ErrorCode::kBadData, "it is cut off: it holds less than its header announces");
+    refuse("it is cut off: it holds less than its header announces");
   }
   return header.counts;
 }

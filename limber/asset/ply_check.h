@@ -1,4 +1,4 @@
-// What Assimp does not check of a PLY file.
+// What readers of PLY, Assimp and three.js, do not check.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ struct PlyCounts {
 };
 
 // The counts that the header announces. Throws Error kBadData where the header has no end (Assimp would look for it
-// forever), or where too little follows it for what it announces (Assimp would make the rest up): in a text fewer lines
+// forever), or where too little follows it for what it announces (they would make the rest up): in a text fewer lines
 // than elements, else fewer bytes than its scalars and the lengths of its lists take.
 PlyCounts checkPly(ByteSpan file);
 
