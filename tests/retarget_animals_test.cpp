@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <map>
-#include <numeric>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -20,56 +20,10 @@ namespace limber::testing {
 
 namespace {
 
-// What does not hold yet: jerk, by what was played.
-
-// The cat's trunk is longer than the fox's: as it bows over paws that stand, its legs have to turn further.
-const std::map<std::string, double> kRougherCat = {
-    {"Fetch limb-ik", 1.16}, {"Fetch online", 1.16}, {"Fetch spacetime", 1.17}, {"Walk online", 1.17}};
-
-// As it falls over, and in its first frames, where a hoof shoots up at once: foxes' paws stood on the ground, the horse
-// moves by its hocks alone and they turn their thighs as well.
-const std::map<std::string, double> kRougherHorse = {{"Death", 1.66}, {"Head_But", 1.66}, {"Kick", 1.37}};
-
-// Of source, target and clip, by any method. The alpaca's and the horse's kicks stretch legs beyond their bones, and
-// the alpaca's slow steps in Idle_2 and Walk others further than its own. The wolf's forelegs bend back at the elbows,
-// where the others' bend ahead at the knees: as foot and hip come near each other, other bones turn. In idle clips it
-// hardly moves at all (Idle_2_HeadLow), its hind legs are folded where the others' are nearly straight.
-const std::map<std::string, double> kRougherFarm = {{"alpaca cow Attack_Kick", 1.26},
-                                                    {"alpaca cow Idle_2", 1.14},
-                                                    {"alpaca horse Attack_Kick", 1.19},
-                                                    {"alpaca horse Idle_2", 1.22},
-                                                    {"alpaca wolf Idle_2", 1.21},
-                                                    {"alpaca wolf Idle_Headlow", 1.32},
-                                                    {"cow wolf Attack_Headbutt", 1.14},
-                                                    {"cow wolf Idle_Headlow", 1.14},
-                                                    {"horse alpaca Attack_Kick", 1.14},
-                                                    {"horse cow Attack_Kick", 1.17},
-                                                    {"horse wolf Idle_Headlow", 1.21},
-                                                    {"wolf alpaca Idle_2_HeadLow", 1.13},
-                                                    {"wolf alpaca Walk", 1.21},
-                                                    {"wolf cow Gallop", 1.30},
-                                                    {"wolf cow Idle_2", 1.20},
-                                                    {"wolf cow Idle_2_HeadLow", 1.44},
-                                                    {"wolf cow Idle_HitReact_Right", 1.22},
-                                                    {"wolf cow Walk", 1.38},
-                                                    {"wolf horse Gallop", 1.18},
-                                                    {"wolf horse Idle_2", 1.13},
-                                                    {"wolf horse Idle_2_HeadLow", 1.30},
-                                                    {"wolf horse Walk", 1.22}};
-
-// Of clip and target, by any method, where names and legs differ; elsewhere 2. Foxes that sit, bow or creep fold their
-// forelegs at the elbow, further than legs fold that bend at the knee alone, and the wolf's, whose elbows are high; a
-// horse's hardly bend at the elbow, where the wolf's have to. A wolf's and an alpaca's steps are long for straighter
-// legs.
+// What does not hold yet: jerk of clip and target by any method, where names and legs differ. A fox that bows or howls
+// folds its forelegs at the elbow, further than legs fold that bend at the knee alone; a horse that idles hardly moves.
 const std::map<std::string, double> kRougherStrangers = {
-    {"Sneak alpaca", 2.6},    {"Fetch cow", 2.3},      {"Howl cow", 9.5},    {"Fetch wolf", 2.3},
-    {"Sneak wolf", 2.6},      {"Idle wolf", 3.8},      {"Rear wolf", 2.6},   {"Turn_Left wolf", 2.1},
-    {"Turn_Right wolf", 2.2}, {"Gallop khronos", 2.2}, {"Walk khronos", 2.8}};
-
-double boundOf(const std::map<std::string, double>& rougher, const std::string& what, double usual = 1.1) {
-  const auto known = rougher.find(what);
-  return known == rougher.end() ? usual : known->second;
-}
+    {"Fetch cow", 1.26}, {"Fetch horse", 1.16}, {"Howl cow", 2.3}, {"Idle wolf", 1.45}};
 
 }  // namespace
 
@@ -205,7 +159,6 @@ TEST(RetargetAnimals, PawsStandWhereTheyStand) {
     const PlainSkeleton plain(readMotion(*sharedDataFolder() / "rigged" / animal).skeleton);
     const Skeleton& target = plain.skeleton();
     const SkeletonMap map = matchSkeletons(motion.skeleton, target);
-    const bool cat = std::string(animal) == "m2m_fox_cat.glb";
     for (const Clip& clip : motion.clips) {
       if (clip.name == "Death") continue;
       SCOPED_TRACE(clip.name + ' ' + animal);
@@ -223,7 +176,7 @@ TEST(RetargetAnimals, PawsStandWhereTheyStand) {
         EXPECT_LT(result.sliding, result.sourceSliding + 1e-4);
         EXPECT_LT(1700 * (result.penetration - result.sourcePenetration), 5) << "those who sit lay their feet down";
         EXPECT_GT(result.contactAgreement, 0.99);
-        EXPECT_LT(result.jerk, cat ? boundOf(kRougherCat, clip.name + ' ' + method) : 1.1) << method;
+        EXPECT_LT(result.jerk, 1.1) << method;
       }
     }
   }
@@ -240,16 +193,17 @@ TEST(RetargetAnimals, FoxesMoveAsHorses) {
       const PoseSequence frames = sampleFrames(motion.skeleton, clip, 30);
       const RetargetSetup setup(motion.skeleton, plain.skeleton(), map, {}, &frames);
       ASSERT_EQ(setup.animalLegs.size(), 4u);
-      const auto rougher = kRougherHorse.find(clip.name);
-      for (const char* method : {"limb-ik", "online"}) {
+      for (const char* method : {"limb-ik", "online", "spacetime"}) {
         SCOPED_TRACE(method);
         const MotionMetrics result = measured(setup, method, frames);
         EXPECT_LT(result.sliding, 0.02);
-        EXPECT_LT(result.sliding, result.sourceSliding + 1e-4);
+        if (std::string_view(method) != "spacetime") {
+          EXPECT_LT(result.sliding, result.sourceSliding + 1e-4);
+        }
         if (clip.name != "Death") {
           EXPECT_GT(result.contactAgreement, 0.95) << "one that falls over takes its feet along";
         }
-        EXPECT_LT(result.jerk, rougher == kRougherHorse.end() ? 1.1 : rougher->second);
+        EXPECT_LT(result.jerk, 1.1);
       }
     }
   }
@@ -304,7 +258,7 @@ TEST(RetargetAnimals, LegsReachFeetOnRootsOfTheirOwn) {
           const double sunk = setup.scale * result.sourcePenetration * result.sourceHeight / result.height;
           EXPECT_LT(1700 * (result.penetration - sunk), 5);
           EXPECT_GT(result.contactAgreement, 0.98);
-          EXPECT_LT(result.jerk, boundOf(kRougherFarm, pair));
+          EXPECT_LT(result.jerk, 1.1);
           EXPECT_LT(result.boneDirection, from == "wolf" || to == "wolf" ? 39 : 10) << "knees as theirs, or opposite";
         }
       }
@@ -317,13 +271,11 @@ TEST(RetargetAnimals, QuadrupedsAreMatchedByTheirForm) {
   if (!sharedDataFolder()) GTEST_SKIP() << kNoSharedData;
   const std::vector<std::string> farm = {"quaternius_alpaca", "quaternius_cow", "quaternius_horse", "quaternius_wolf"},
                                  foxes = {"m2m_fox_fox", "m2m_fox_cat", "m2m_fox_dog", "fox_khronos"};
-  std::map<std::string, double> most = {
-      {"motions/m2m_fox_animations", 1.4}, {"motions/m2m_horse_animations", 1}, {"rigged/fox_khronos", 1}};
-  for (const std::string& animal : farm) most["rigged/" + animal] = animal == "quaternius_wolf" ? 1.3 : 1.12;
-  for (const auto& [file, meanJerk] : most) {
+  std::vector<std::string> files = {"motions/m2m_fox_animations", "motions/m2m_horse_animations", "rigged/fox_khronos"};
+  for (const std::string& animal : farm) files.push_back("rigged/" + animal);
+  for (const std::string& file : files) {
     const Motion motion = readMotion(*sharedDataFolder() / (file + ".glb"));
     for (const char* method : {"limb-ik", "online", "spacetime"}) {
-      std::vector<double> jerks;
       for (const std::string& animal : file.find("quaternius") == std::string::npos ? farm : foxes) {
         const PlainSkeleton plain(readMotion(*sharedDataFolder() / "rigged" / (animal + ".glb")).skeleton);
         const SkeletonMap map = matchSkeletons(motion.skeleton, plain.skeleton());
@@ -339,10 +291,10 @@ TEST(RetargetAnimals, QuadrupedsAreMatchedByTheirForm) {
           const RetargetSetup setup(motion.skeleton, plain.skeleton(), map, {}, &frames);
           ASSERT_EQ(setup.animalLegs.size(), 4u);
           const MotionMetrics result = measured(setup, method, frames);
-          jerks.push_back(result.jerk);
           const std::string pair =
               clip.name.substr(clip.name.find('|') + 1) + ' ' + animal.substr(animal.rfind('_') + 1);
-          EXPECT_LT(result.jerk, boundOf(kRougherStrangers, pair, 2));
+          const auto rougher = kRougherStrangers.find(pair);
+          EXPECT_LT(result.jerk, rougher == kRougherStrangers.end() ? 1.1 : rougher->second);
           EXPECT_LT(result.sliding, std::max(0.02, result.sourceSliding + 1e-4));
           // Too low for legs that do not fold as far; with a trunk that sways further than the source's.
           const bool low = pair == "Sneak wolf", sways = pair == "Walk wolf";
@@ -350,8 +302,6 @@ TEST(RetargetAnimals, QuadrupedsAreMatchedByTheirForm) {
           EXPECT_GT(result.contactAgreement, sways ? 0.85 : 0.95);
         }
       }
-      EXPECT_LT(std::accumulate(jerks.begin(), jerks.end(), 0.0) / static_cast<double>(jerks.size()), meanJerk)
-          << file << ' ' << method;
     }
   }
 }

@@ -21,7 +21,7 @@ struct Options {
   std::vector<std::string> motions;
   RetargetAssetOptions retarget;
   double frameRate = 0, ground = 0;
-  bool noContacts = false, hasGround = false;
+  bool noContacts = false, noEvening = false, hasGround = false;
   Common common;
 };
 
@@ -40,6 +40,7 @@ void prepare(Options& options) {
   findIkMethod(options.retarget.retarget.solver);
   options.retarget.retarget.rootScale = rootScaleOf(options.rootScale);
   options.retarget.retarget.contacts = !options.noContacts;
+  options.retarget.retarget.evenOut = !options.noEvening;
   if (options.frameRate > 0) options.retarget.frameRate = options.frameRate;
   if (options.hasGround) options.retarget.retarget.sourceGround = options.ground;
   if (!options.mapFile.empty()) {
@@ -162,6 +163,7 @@ void addOptions(CLI::App& command, const std::shared_ptr<Options>& options) {
       ->type_name("NAME")
       ->capture_default_str();
   command.add_flag("--no-contacts", options->noContacts, "let feet slide and hands miss what they touched");
+  command.add_flag("--no-evening", options->noEvening, "leave rougher than the motion what came out so");
   command
       .add_option_function<double>(
           "--ground",

@@ -1,7 +1,6 @@
 #include "limber/evaluate/motion_metrics.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <vector>
 
@@ -11,6 +10,7 @@
 #include "limber/core/counted.h"
 #include "limber/core/error.h"
 #include "limber/ik/rotation.h"
+#include "limber/limbs/roughness.h"
 
 namespace limber {
 
@@ -19,16 +19,6 @@ namespace {
 constexpr double kPlantedHeight = 0.03, kPlantedSpeed = 0.15;  // heights, heights a second
 constexpr double kPlantedSeconds = 0.1;
 constexpr double kSeenSeconds = 1.0 / 30;  // to each side of a frame, when telling whether a joint stands still
-constexpr double kCut = 12;                // heights a second of any joint: no motion, but a cut
-constexpr double kLeastJerk = 2e-5;        // third differences of a joint's places, heights or bone lengths
-
-struct LimbName {
-  const char *upper, *lower, *end;
-};
-constexpr std::array<LimbName, 4> kLimbs = {{{"leftUpperArm", "leftLowerArm", "leftHand"},
-                                             {"rightUpperArm", "rightLowerArm", "rightHand"},
-                                             {"leftUpperLeg", "leftLowerLeg", "leftFoot"},
-                                             {"rightUpperLeg", "rightLowerLeg", "rightFoot"}}};
 
 using Positions = std::vector<std::vector<Vec3>>;  // of each frame, #J
 
@@ -40,18 +30,6 @@ Positions positionsOf(const BodyKinematics& kinematics, const PoseSequence& fram
     positions.push_back(frame.positions);
   }
   return positions;
-}
-
-// From the lowest foot joint to the head's, of a person; of others to the highest joint that is matched.
-double heightOf(const RetargetSetup& setup, MapSide side) {
-  const bool source = side == MapSide::kSource;
-  const std::vector<Vec3>& positions = (source ? setup.sourceNeutral : setup.targetNeutral).positions;
-  double high = pelvisOf(setup.map, side, positions).y();
-  for (const JointMatch& match : setup.map.matches) {
-    if (setup.person && match.part != "trunk" && match.part != "neck" && match.part != "head") continue;
-    high = std::max(high, positions[(source ? match.source : match.target).back()].y());
-  }
-  return high - (source ? setup.sourceLowest : setup.targetLowest);
 }
 
 // What stands on the ground, pairwise.
@@ -66,30 +44,6 @@ std::vector<Index> standingJoints(const RetargetSetup& setup, MapSide side) {
   return joints;
 }
 
-// Upper joint, lower joint and end, as far as they are matched.
-struct LimbPair {
-  std::vector<Index> source, target;
-};
-
-std::vector<LimbPair> limbsOf(const RetargetSetup& setup) {
-  std::vector<LimbPair> limbs;
-  for (const LimbName& name : kLimbs) {
-    if (!setup.person) break;
-    LimbPair& limb = limbs.emplace_back();
-    for (const char* part : {name.upper, name.lower, name.end}) {
-      const JointMatch* match = setup.map.find(part);
-      if (!match) continue;
-      limb.source.push_back(match->source.front());
-      limb.target.push_back(match->target.front());
-    }
-  }
-  for (const AnimalLeg& leg : setup.animalLegs) {
-    limbs.push_back(
-        {{leg.source.upper, leg.source.lower, leg.source.end}, {leg.target.upper, leg.target.lower, leg.target.end}});
-  }
-  return limbs;
-}
-
 // One skeleton's motion as the measures see it.
 struct Seen {
   Seen(const RetargetSetup& setup, MapSide s, const PoseSequence& sequence, const ShownJoints* shown)
@@ -99,7 +53,7 @@ struct Seen {
         positions(shown
                       ? shown->frames
                       : positionsOf(s == MapSide::kSource ? setup.sourceKinematics : setup.targetKinematics, sequence)),
-        height(heightOf(setup, s)),
+        height(standingHeight(setup, s)),
         ground(s == MapSide::kSource ? setup.sourceGround : setup.targetGround),
         lowest(s == MapSide::kSource ? setup.sourceLowest : setup.targetLowest) {}
 
@@ -175,7 +129,7 @@ void measureFeet(const RetargetSetup& setup, const Seen& source, const Seen& tar
 
 void measureLimbs(const RetargetSetup& setup, const Seen& source, const Seen& target, MotionMetrics& metrics) {
   double bones = 0, limbs = 0;
-  for (const LimbPair& limb : limbsOf(setup)) {
+  for (const LimbPair& limb : limbPairs(setup)) {
     const std::vector<Index>&s = limb.source, &t = limb.target;
     if (s.size() < 3) continue;
     const auto length = [](const Seen& seen, const std::vector<Index>& j) {
@@ -199,73 +153,39 @@ void measureLimbs(const RetargetSetup& setup, const Seen& source, const Seen& ta
 }
 
 // Frames at which the source jumps.
-std::vector<bool> cutsOf(const SkeletonMap& map, const Seen& source, double seconds) {
-  std::vector<bool> cut(source.positions.size());
-  for (std::size_t f = 1; f < cut.size(); ++f) {
-    for (const JointMatch& match : map.matches) {
-      const Vec3 way = source.positions[f][match.source.front()] - source.positions[f - 1][match.source.front()];
-      cut[f] = cut[f] || way.norm() > kCut * source.height * seconds;
-    }
-  }
-  return cut;
+std::vector<bool> cutsOf(const RetargetSetup& setup, const Positions& source, double seconds) {
+  std::vector<bool> cuts(source.size());
+  for (std::size_t f = 1; f < cuts.size(); ++f) cuts[f] = isCut(setup, source[f - 1], source[f], seconds);
+  return cuts;
 }
 
-// Sum over the frames of the squared third differences of `place(frame)`, but for those across a cut.
-template <typename Place>
-double squaredJerk(const std::vector<bool>& cut, const Place& place) {
+// Of the limbs' joints as they stand, in heights.
+double jointsJerk(const RetargetSetup& setup, const Seen& seen, const std::vector<bool>& cuts) {
   double sum = 0;
-  for (std::size_t f = 3; f < cut.size(); ++f) {
-    if (cut[f] || cut[f - 1] || cut[f - 2]) continue;
-    const Vec3 step = place(f) - place(f - 3) - 3 * (place(f - 1) - place(f - 2));
-    sum += step.squaredNorm();
+  for (const LimbPair& limb : limbPairs(setup)) {
+    for (const Index joint : limb.of(seen.side)) {
+      Path path;
+      for (const std::vector<Vec3>& positions : seen.positions) path.push_back(positions[joint] / seen.height);
+      sum += squaredJerk(path, cuts, 0, cuts.size());
+    }
   }
   return sum;
 }
 
-struct JerkSums {
-  double source = 0, target = 0;
-
-  double ratio(std::size_t frames) const {
-    // What hardly moves has no jerk to compare with.
-    const double least = kLeastJerk * kLeastJerk * static_cast<double>(frames);
-    return target > least || source > least ? std::sqrt(target / std::max(source, least)) : 1;
-  }
-};
-
-void addBoneJerk(const Seen& seen, Index from, Index to, const std::vector<bool>& cut, double& sum) {
-  const double length = (seen.rest[to] - seen.rest[from]).norm();
-  sum += squaredJerk(cut,
-                     [&](std::size_t f) -> Vec3 { return (seen.positions[f][to] - seen.positions[f][from]) / length; });
-}
-
-void addJointJerk(const Seen& seen, Index joint, const std::vector<bool>& cut, double& sum) {
-  sum += squaredJerk(cut, [&](std::size_t f) -> Vec3 { return seen.positions[f][joint] / seen.height; });
-}
-
-void addPelvisJerk(const SkeletonMap& map, const Seen& seen, double hipHeight, const std::vector<bool>& cut,
-                   double& sum) {
-  sum +=
-      squaredJerk(cut, [&](std::size_t f) -> Vec3 { return pelvisOf(map, seen.side, seen.positions[f]) / hipHeight; });
+double bonesJerk(const RetargetSetup& setup, const Seen& seen, const std::vector<bool>& cuts) {
+  BodyPaths body(setup, seen.side, seen.rest);
+  for (const std::vector<Vec3>& positions : seen.positions) body.add(positions);
+  return squaredJerk(body.paths(), cuts, 0, cuts.size());
 }
 
 void measureJerk(const RetargetSetup& setup, const Seen& source, const Seen& target, double seconds,
                  MotionMetrics& metrics) {
-  const SkeletonMap& map = setup.map;
-  const std::vector<bool> cut = cutsOf(map, source, seconds);
-  JerkSums bones, joints;
-  addPelvisJerk(map, source, setup.sourceHipHeight, cut, bones.source);
-  addPelvisJerk(map, target, setup.targetHipHeight, cut, bones.target);
-  for (const LimbPair& limb : limbsOf(setup)) {
-    for (std::size_t i = 0; i < limb.source.size(); ++i) {
-      addJointJerk(source, limb.source[i], cut, joints.source);
-      addJointJerk(target, limb.target[i], cut, joints.target);
-      if (i == 0) continue;
-      addBoneJerk(source, limb.source[i - 1], limb.source[i], cut, bones.source);
-      addBoneJerk(target, limb.target[i - 1], limb.target[i], cut, bones.target);
-    }
-  }
-  metrics.jerk = bones.ratio(cut.size());
-  metrics.jointJerk = joints.ratio(cut.size());
+  const std::vector<bool> cuts = cutsOf(setup, source.positions, seconds);
+  const auto ratio = [&](const auto& jerkOf) {
+    return jerkRatio(jerkOf(setup, source, cuts), jerkOf(setup, target, cuts), cuts.size());
+  };
+  metrics.jerk = ratio(bonesJerk);
+  metrics.jointJerk = ratio(jointsJerk);
 }
 
 void checkFrames(const RetargetSetup& setup, const PoseSequence& one, const PoseSequence& other) {

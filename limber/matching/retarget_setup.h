@@ -30,6 +30,7 @@ struct RetargetOptions {
   // way is (Koerner's d).
   double reach = 0;
   bool contacts = true;             // limb-ik: keep planted feet and touching hands
+  bool evenOut = true;              // whole motions, with contacts: no rougher than the source (even_out.h)
   std::string solver = "two-bone";  // limb-ik, online: of ikMethods()
   // Height of the ground under the source, metres; none: measured from the motion where there is one, else from the
   // rest pose.

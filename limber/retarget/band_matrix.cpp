@@ -38,4 +38,20 @@ void BandMatrix::solve(std::vector<double>& right) {
   }
 }
 
+void BandLeastSquares::add(std::span<const Term> terms, double value, double weight) {
+  for (const Term& one : terms) {
+    right_[one.unknown] += weight * one.factor * value;
+    for (const Term& other : terms) {
+      if (other.unknown <= one.unknown) matrix_.at(one.unknown, other.unknown) += weight * one.factor * other.factor;
+    }
+  }
+}
+
+std::vector<double> BandLeastSquares::solve() const {
+  BandMatrix matrix = matrix_;
+  std::vector<double> result = right_;
+  matrix.solve(result);
+  return result;
+}
+
 }  // namespace limber

@@ -1,7 +1,8 @@
-// A symmetric positive definite matrix whose entries lie near the diagonal.
+// A symmetric positive definite matrix whose entries lie near the diagonal, and least squares that make one.
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 namespace limber {
@@ -23,6 +24,25 @@ class BandMatrix {
  private:
   std::size_t n_, width_;
   std::vector<double> entries_;  // row by row, the diagonal last
+};
+
+// The n unknowns with the least sum of squares, each of some unknowns that are at most `width` apart.
+class BandLeastSquares {
+ public:
+  struct Term {
+    std::size_t unknown = 0;
+    double factor = 0;
+  };
+  BandLeastSquares(std::size_t n, std::size_t width) : matrix_(n, width), right_(n, 0.0) {}
+
+  // weight * (sum of the terms - value)^2
+  void add(std::span<const Term> terms, double value, double weight);
+  // Every unknown has to be in some sum.
+  std::vector<double> solve() const;
+
+ private:
+  BandMatrix matrix_;
+  std::vector<double> right_;
 };
 
 }  // namespace limber

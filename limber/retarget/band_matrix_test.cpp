@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include <Eigen/Dense>
@@ -31,6 +32,19 @@ TEST(BandMatrix, SolvesAndMultipliesAsADenseMatrixDoes) {
   const Eigen::VectorXd expected = dense.llt().solve(right);
   for (int i = 0; i < kSize; ++i)
     EXPECT_NEAR(solution[static_cast<std::size_t>(i)], expected[i], 1e-8 * (1 + expected.norm()));
+}
+
+// Through two points and as straight as can be in between: the line through them.
+TEST(BandLeastSquares, FindsTheLeastSum) {
+  using Term = BandLeastSquares::Term;
+  BandLeastSquares squares(9, 2);
+  squares.add(std::array{Term{1, 1}}, 3, 1);
+  squares.add(std::array{Term{7, 2}}, 30, 1);
+  for (std::size_t i = 2; i < 9; ++i) squares.add(std::array{Term{i, 1}, Term{i - 1, -2}, Term{i - 2, 1}}, 0, 5);
+  const std::vector<double> line = squares.solve();
+  for (std::size_t i = 0; i < 9; ++i) EXPECT_NEAR(line[i], 1 + 2 * static_cast<double>(i), 1e-9);
+  squares.add(std::array{Term{8, 1}}, 0, 1e12);
+  EXPECT_NEAR(squares.solve()[8], 0, 1e-9) << "weights count, and more can be added after a solution";
 }
 
 }  // namespace

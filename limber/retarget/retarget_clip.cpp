@@ -5,6 +5,7 @@
 
 #include "limber/core/error.h"
 #include "limber/matching/plain_skeleton.h"
+#include "limber/retarget/even_out.h"
 #include "limber/skeleton/motion.h"
 
 namespace limber {
@@ -81,6 +82,7 @@ PoseSequence retargetFrames(const RetargetMethod& method, const RetargetSetup& s
     retargeter->next(source.poses[f], f == 0 ? 0 : source.frameSeconds, target.poses[f]);
   }
   if (method.refine) method.refine(setup, source, target);
+  if (method.solvesLimbs && setup.options.contacts && setup.options.evenOut) evenOut(setup, source, target);
   return target;
 }
 

@@ -19,14 +19,14 @@ std::span<const RetargetMethod> retargetMethods() {
       {"limb-ik", "joints turn as the source's; feet stay planted, hands touch what they touched",
        "Koerner; Feng et al.: Automating the Transfer of a Generic Set "
        "of Behaviors onto a Virtual Character, 2012",
-       &makeLimbIk, nullptr},
+       &makeLimbIk, nullptr, true},
       {"online", "hands and feet first, joint angles in the freedom that they leave",
-       "Choi, Ko: Online motion retargetting, 1999", &makeOnline, nullptr},
+       "Choi, Ko: Online motion retargetting, 1999", &makeOnline, nullptr, true},
       {"spacetime", "the smallest smooth change over the whole motion that keeps feet planted and hands touching",
-       "Gleicher: Retargetting motion to new characters, 1998", &makeAligned, &refineSpacetime},
+       "Gleicher: Retargetting motion to new characters, 1998", &makeAligned, &refineSpacetime, true},
       {"aligned", "joints turn in the world as the source's, against a neutral pose that both share",
-       "Tang et al. 2012; Feng et al. 2012", &makeAligned, nullptr},
-      {"copy", "local rotations as they are; right for like skeletons only", "", &makeCopy, nullptr},
+       "Tang et al. 2012; Feng et al. 2012", &makeAligned, nullptr, false},
+      {"copy", "local rotations as they are; right for like skeletons only", "", &makeCopy, nullptr, false},
   }};
   return kMethods;
 }

@@ -1,0 +1,107 @@
+#include "limber/limbs/roughness.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace limber {
+
+namespace {
+
+constexpr double kCut = 12;          // heights a second of any joint: no motion, but a cut
+constexpr double kLeastJerk = 2e-5;  // third differences of paths
+
+struct LimbName {
+  const char *upper, *lower, *end;
+};
+constexpr std::array<LimbName, 4> kLimbs = {{{"leftUpperArm", "leftLowerArm", "leftHand"},
+                                             {"rightUpperArm", "rightLowerArm", "rightHand"},
+                                             {"leftUpperLeg", "leftLowerLeg", "leftFoot"},
+                                             {"rightUpperLeg", "rightLowerLeg", "rightFoot"}}};
+
+}  // namespace
+
+std::vector<LimbPair> limbPairs(const RetargetSetup& setup) {
+  std::vector<LimbPair> limbs;
+  for (const LimbName& name : kLimbs) {
+    if (!setup.person) break;
+    LimbPair& limb = limbs.emplace_back();
+    for (const char* part : {name.upper, name.lower, name.end}) {
+      const JointMatch* match = setup.map.find(part);
+      if (!match) continue;
+      limb.source.push_back(match->source.front());
+      limb.target.push_back(match->target.front());
+    }
+  }
+  for (const AnimalLeg& leg : setup.animalLegs) {
+    limbs.push_back(
+        {{leg.source.upper, leg.source.lower, leg.source.end}, {leg.target.upper, leg.target.lower, leg.target.end}});
+  }
+  return limbs;
+}
+
+double standingHeight(const RetargetSetup& setup, MapSide side) {
+  const bool source = side == MapSide::kSource;
+  const std::vector<Vec3>& positions = (source ? setup.sourceNeutral : setup.targetNeutral).positions;
+  double high = pelvisOf(setup.map, side, positions).y();
+  for (const JointMatch& match : setup.map.matches) {
+    if (setup.person && match.part != "trunk" && match.part != "neck" && match.part != "head") continue;
+    high = std::max(high, positions[(source ? match.source : match.target).back()].y());
+  }
+  return high - (source ? setup.sourceLowest : setup.targetLowest);
+}
+
+BodyPaths::BodyPaths(const RetargetSetup& setup, MapSide side, const std::vector<Vec3>& rest)
+    : setup_(&setup), side_(side) {
+  for (const LimbPair& limb : limbPairs(setup)) {
+    const std::vector<Index>& joints = limb.of(side);
+    for (std::size_t i = 1; i < joints.size(); ++i) {
+      bones_.push_back({joints[i - 1], joints[i], (rest[joints[i]] - rest[joints[i - 1]]).norm()});
+    }
+  }
+  paths_.resize(1 + bones_.size());
+}
+
+void BodyPaths::add(const std::vector<Vec3>& positions) {
+  const double hips = side_ == MapSide::kSource ? setup_->sourceHipHeight : setup_->targetHipHeight;
+  paths_[0].push_back(pelvisOf(setup_->map, side_, positions) / hips);
+  for (std::size_t b = 0; b < bones_.size(); ++b) {
+    paths_[b + 1].push_back((positions[bones_[b].to] - positions[bones_[b].from]) / bones_[b].length);
+  }
+}
+
+bool isCut(const RetargetSetup& setup, const std::vector<Vec3>& before, const std::vector<Vec3>& now, double seconds) {
+  const double most = kCut * standingHeight(setup, MapSide::kSource) * seconds;
+  return std::any_of(setup.map.matches.begin(), setup.map.matches.end(), [&](const JointMatch& match) {
+    return (now[match.source.front()] - before[match.source.front()]).norm() > most;
+  });
+}
+
+bool isWhole(const std::vector<bool>& cuts, std::size_t f) {
+  return f >= 3 && !cuts[f] && !cuts[f - 1] && !cuts[f - 2];
+}
+
+Vec3 thirdDifference(const Path& path, std::size_t f) {
+  return path[f] - path[f - 3] - 3 * (path[f - 1] - path[f - 2]);
+}
+
+double squaredJerk(const Path& path, const std::vector<bool>& cuts, std::size_t begin, std::size_t end) {
+  double sum = 0;
+  for (std::size_t f = begin; f < end; ++f) {
+    if (isWhole(cuts, f)) sum += thirdDifference(path, f).squaredNorm();
+  }
+  return sum;
+}
+
+double squaredJerk(const std::vector<Path>& paths, const std::vector<bool>& cuts, std::size_t begin, std::size_t end) {
+  double sum = 0;
+  for (const Path& path : paths) sum += squaredJerk(path, cuts, begin, end);
+  return sum;
+}
+
+double jerkRatio(double source, double target, std::size_t frames) {
+  const double least = kLeastJerk * kLeastJerk * static_cast<double>(frames);
+  return target > least || source > least ? std::sqrt(target / std::max(source, least)) : 1;
+}
+
+}  // namespace limber

@@ -1,0 +1,21 @@
+// Evens out what the methods that solve limb by limb made rougher than its source: over a whole motion.
+#pragma once
+
+#include "limber/matching/retarget_setup.h"
+
+namespace limber {
+
+// Limbs that are solved for where feet have to be turn faster than the source's where proportions differ: a leg that is
+// nearly straight folds at once, a hip swings over a foot that stands. Where a motion's jerk (roughness.h) is more than
+// 1.08 times the source's, the pelvis and the feet move by the least that takes it there, as far as that can be with
+// changes of 0.3 hip heights at most: least squares over all frames of changes and jerk, by Gauss-Newton, jerk
+// counting ever more. Feet that stand in the source take no other steps than they did, none goes deeper below the
+// ground than it was, knees keep their sides, and loops close as they did. Motions that are even are left as they are,
+// bit for bit.
+//
+// `target` has the frames of `source`. Nothing without legs, or for fewer than 5 frames. Cost: linear in the frames,
+// motions of more than a thousand in parts of about that many; a few hundred times a frame of "limb-ik" where it is
+// rough, else a forward pass over both.
+void evenOut(const RetargetSetup& setup, const PoseSequence& source, PoseSequence& target);
+
+}  // namespace limber
