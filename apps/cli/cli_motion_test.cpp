@@ -247,9 +247,34 @@ TEST_F(Cli, AnimateRigsWhatHasNoRig) {
   expectOneLine(refused, 1);
   EXPECT_THAT(refused.error, AllOf(HasSubstr("biped.glb"), HasSubstr("limber animate")));
   EXPECT_EQ(run({"animate", "biped.glb", "wave.bvh", "-o", "waving.glb", "-q"}).code, 0);
+  EXPECT_EQ(run({"pose", "waving.glb", "--bake", "-o", "still.obj", "-q"}).code, 0);
+  put("loose.obj", content("still.obj") + "v 0 0 0\n");
+  EXPECT_THAT(run({"animate", "loose.obj", "wave.bvh", "-o", "loose.glb"}).error,
+              HasSubstr("warning: vertices that no face uses are left out [loose-vertices]"))
+      << "counted once";
   const std::string info = run({"info", "waving.glb"}).out;
   EXPECT_THAT(info, AllOf(HasSubstr("wave: 0.500 s"), HasSubstr("leftUpperArm")));
   keep("waving.glb");
+}
+
+TEST_F(Cli, PeopleOfFilesWithZUpStandUp) {
+  put("wave.bvh", personBvh(""));
+  EXPECT_EQ(run({"sample", "biped", "-o", "biped.glb", "-q"}).code, 0);
+  EXPECT_EQ(run({"rig", "biped.glb", "--template", "humanoid", "-o", "rigged.glb", "-q"}).code, 0);
+  EXPECT_EQ(run({"pose", "rigged.glb", "--turn", "hips=x:90", "--bake", "-o", "lying.obj", "-q"}).code, 0);
+  const Result rigged = run({"rig", "lying.obj", "--template", "humanoid", "-o", "lying.glb"});
+  EXPECT_THAT(rigged.error, HasSubstr("warning: the model stands along +Z and lies where +Y is up [not-upright]"));
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"rig", "lying.obj", "--template", "humanoid", "--upright"},
+        {"animate", "lying.obj", "wave.bvh"},
+        {"retarget", "lying.glb", "wave.bvh"}}) {
+    const std::string out = "standing_by_" + command[0] + ".glb";
+    std::vector<std::string> arguments = command;
+    arguments.insert(arguments.end(), {"-o", out});
+    EXPECT_THAT(run(arguments).error, HasSubstr("is turned to stand along +Y [turned-upright]")) << command[0];
+    EXPECT_THAT(run({"retarget", out, "wave.bvh", "-o", "again.glb"}).error, Not(HasSubstr("upright")));
+    keep(out);
+  }
 }
 
 TEST_F(Cli, PosesStartFromAMomentOfAClip) {

@@ -10,6 +10,7 @@
 #include "limber/ik/ik_solver.h"
 #include "limber/pipeline/auto_rig.h"
 #include "limber/pipeline/retarget_asset.h"
+#include "limber/pipeline/stand_upright.h"
 #include "progress_line.h"
 
 namespace limber::cli {
@@ -95,6 +96,7 @@ void runRetarget(Options options) {
     throw Error(ErrorCode::kBadArgument, "the model has no rig to move", asset.name, "limber animate rigs it first");
   }
   Warnings warnings = asset.warnings;
+  options.retarget.turn = standUpright(asset, warnings);
   const std::vector<RetargetedClip> clips = addMotions(asset, options, *progress, warnings);
   progress->stage("write");
   write(asset, options, clips);
@@ -109,11 +111,13 @@ void runAnimate(Options options) {
   Asset asset = readAsset(options.model);
   Warnings warnings = asset.warnings;
   const bool rigged = canMove(asset);
-  if (!rigged) {
+  if (rigged) {
+    options.retarget.turn = standUpright(asset, warnings);
+  } else {
     AutoRigOptions rig;
     rig.rigger = options.rigger;
-    const AutoRigReport report = autoRig(asset, rig, *progress);
-    warnings.append(report.warnings);
+    rig.standUpright = true;
+    warnings = autoRig(asset, rig, *progress).warnings;
   }
   std::vector<RetargetedClip> clips;
   try {

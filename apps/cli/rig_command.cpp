@@ -162,7 +162,8 @@ void checkRigger(const Options& options) {
   if (isTemplate) return;
   for (const auto& [option, isGiven] : {std::pair{"--pin", !options.pins.empty()},
                                         {"--up", !options.up.empty()},
-                                        {"--front", !options.front.empty()}}) {
+                                        {"--front", !options.front.empty()},
+                                        {"--upright", options.rig.standUpright}}) {
     if (isGiven) throw CLI::ValidationError(option, "takes a template to fit: --template NAME");
   }
 }
@@ -266,6 +267,8 @@ void addRigCommand(CLI::App& program) {
   command->add_option("--up", options->up, "the model's up, for a template, as +y (default: found)")->type_name("AXIS");
   command->add_option("--front", options->front, "where the model looks, for a template, as +z (default: found)")
       ->type_name("AXIS");
+  command->add_flag("--upright", options->rig.standUpright,
+                    "turn a person who stands along another axis to stand along +Y");
   command->add_option("--skinning", options->rig.skinning, "how weights are made, see below")
       ->type_name("NAME")
       ->capture_default_str();

@@ -15,10 +15,13 @@
 #include "limber/asset/scene_graph.h"
 #include "limber/mesh/components.h"
 #include "limber/mesh/prepare.h"
+#include "limber/pipeline/stand_upright.h"
 
 namespace limber {
 
 namespace {
+
+constexpr double kSureEnough = 0.75;  // of a template, to believe how it says that the model stands
 
 // Puts an asset back as it was unless the work on it was completed. Stages change the JSON and append to buffers, and
 // never touch bytes that were there: so the JSON and the lengths are enough to keep.
@@ -210,6 +213,9 @@ AutoRigReport runStages(Asset& asset, const AutoRigOptions& options, Progress& p
   progress.stage("write rig");
   if (rig.made) {
     attachRig(asset, geometry, *rig.made, rig.weights);
+    const bool sure = options.rig.up || (!report.matches.empty() && report.matches.front().confidence > kSureEnough);
+    const std::optional<Vec3> up = sure ? standsAlong(*rig.made, restPose(*rig.made)) : std::nullopt;
+    if (up) standUpright(asset, *up, options.standUpright, report.warnings);
   } else {
     replaceWeights(asset, geometry, rig.kept, rig.weights);
   }

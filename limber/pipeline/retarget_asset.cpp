@@ -5,6 +5,7 @@
 #include "limber/asset/clip_io.h"
 #include "limber/asset/motion_io.h"
 #include "limber/core/error.h"
+#include "limber/skeleton/clip_edit.h"
 
 namespace limber {
 
@@ -45,6 +46,9 @@ std::vector<RetargetedClip> retargetOnto(Asset& asset, const Motion& motion, con
     const Clip& clip = motion.clips[c];
     const double rate = options.frameRate.value_or(frameRateOf(motion, c));
     clips.push_back(retargetClip(method, motion.skeleton, clip, character.skeleton, map, options.retarget, rate));
+    if (!options.turn.isApprox(Quat::Identity())) {
+      clips.back() = turnClip(std::move(clips.back()), character.skeleton, options.turn);
+    }
     clips.back().name = motion.clips.size() == 1 ? motion.name : clip.name;
     reports.push_back({clips.back().name, frameCount(clip, rate), rate, map,
                        doubtfulMatches(map, motion.skeleton, character.skeleton),

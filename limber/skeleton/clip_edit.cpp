@@ -212,6 +212,28 @@ Clip trimClip(const Clip& clip, double from, double to) {
   return changed(clip, [&](const auto& track) { return trimmed(track, begin, end); });
 }
 
+Clip turnClip(Clip clip, const Skeleton& skeleton, const Quat& turn) {
+  const auto ofJoint = [](auto& tracks, Index joint, const auto& rest) -> auto& {
+    const auto has = [&](const auto& track) { return track.joint == joint; };
+    const auto known = std::find_if(tracks.begin(), tracks.end(), has);
+    return known != tracks.end()
+               ? *known
+               : tracks.emplace_back(joint, Interpolation::kLinear, std::vector{0.0f}, std::vector{rest});
+  };
+  for (Index j = 0; j < skeleton.jointCount(); ++j) {
+    if (skeleton.joints[j].parent) continue;
+    const Transform& rest = skeleton.joints[j].rest;
+    for (Eigen::Quaternionf& value :
+         ofJoint(clip.rotations, j, Eigen::Quaternionf(rest.rotation.cast<float>())).values) {
+      value = (turn * value.cast<double>()).cast<float>();
+    }
+    for (Vec3f& value : ofJoint(clip.translations, j, Vec3f(rest.translation.cast<float>())).values) {
+      value = (turn * value.cast<double>()).cast<float>();
+    }
+  }
+  return clip;
+}
+
 Pose blendPoses(const Pose& a, const Pose& b, double weight) {
   Pose result = a;
   for (std::size_t j = 0; j < a.locals.size(); ++j) {

@@ -127,6 +127,23 @@ TEST(ClipEdit, TrimmingNothingIsAnError) {
   EXPECT_THROW(trimClip(clip, std::nan(""), 1), Error);
 }
 
+TEST(ClipEdit, TurningTakesAllJointsAlong) {
+  Skeleton skeleton = chain(3);
+  skeleton.joints[2].parent.reset();  // a root that the clip leaves alone
+  const Quat turn(0.5, 0.5, -0.5, 0.5);
+  for (const Interpolation kind : {Interpolation::kLinear, Interpolation::kCubic}) {
+    const Clip clip = randomClip(chain(2), 5, kind), turned = turnClip(clip, skeleton, turn);
+    checkClip(turned, skeleton);
+    for (const double seconds : {0.0, 0.13, 0.97}) {
+      Pose pose = restPose(skeleton), after = pose;
+      sampleClip(clip, seconds, pose);
+      sampleClip(turned, seconds, after);
+      const std::vector<Affine> was = poseGlobals(skeleton, pose), is = poseGlobals(skeleton, after);
+      for (Index j = 0; j < skeleton.jointCount(); ++j) EXPECT_TRUE(is[j].isApprox(turn * was[j], 1e-5)) << j;
+    }
+  }
+}
+
 TEST(ClipEdit, BlendingGoesFromOneToTheOther) {
   const Skeleton skeleton = chain(3);
   const Clip a = randomClip(skeleton, 6, Interpolation::kLinear);

@@ -1,0 +1,101 @@
+#include "limber/pipeline/stand_upright.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "limber/asset/motion_io.h"
+#include "limber/asset/turn_scene.h"
+#include "limber/ik/rotation.h"
+#include "limber/matching/neutral_pose.h"
+
+namespace limber {
+
+namespace {
+
+constexpr const char *kName = "upright", *kTurned = "turned-upright";
+constexpr double kUpright = 0.7;  // cosine between up and +Y
+
+bool isUpright(const Vec3& up) {
+  return up.y() > kUpright;
+}
+
+std::string nameOfAxis(const Vec3& direction) {
+  Eigen::Index axis = 0;
+  direction.cwiseAbs().maxCoeff(&axis);
+  return fmt::format("{}{}", direction[axis] < 0 ? '-' : '+', "XYZ"[axis]);
+}
+
+// Onto +Y; one who stands on the head goes on facing where it does.
+Quat turnOf(const Vec3& up) {
+  return up.y() < -kUpright ? Quat(0, 0, 0, 1) : shortestRotation(up, Vec3::UnitY());
+}
+
+SkeletonMap matchToItself(const Skeleton& skeleton) {
+  try {
+    return matchSkeletons(skeleton, skeleton);
+  } catch (const Error&) {
+    return {};  // too little of anything
+  }
+}
+
+// Do most of the document's clips begin with one who stands along +Y?
+bool clipsStand(const Asset& asset) {
+  const Motion motion = motionOf(asset);
+  std::size_t standing = 0;
+  for (const Clip& clip : motion.clips) {
+    Pose pose = restPose(motion.skeleton);
+    sampleClip(clip, 0, pose);
+    const std::optional<Vec3> up = standsAlong(motion.skeleton, pose);
+    if (up && isUpright(*up)) ++standing;
+  }
+  return 2 * standing > motion.clips.size();
+}
+
+std::optional<Vec3> restsAlong(const Asset& asset) {
+  const Skeleton skeleton = animatedSkeleton(asset).skeleton;
+  return standsAlong(skeleton, restPose(skeleton));
+}
+
+}  // namespace
+
+std::optional<Vec3> standsAlong(const Skeleton& skeleton, const Pose& pose) {
+  const SkeletonMap map = matchToItself(skeleton);
+  for (const char* part : {"hips", "head", "leftUpperLeg", "rightUpperLeg", "leftFoot", "rightFoot"}) {
+    const JointMatch* match = map.find(part);
+    if (!match || match->by != MatchedBy::kName || match->confidence < kDoubtful) return {};
+  }
+  if (!standsUpright(skeleton, pose, map, MapSide::kTarget)) return {};
+  return neutralPose(skeleton, pose, map, MapSide::kTarget).toBody.conjugate() * Vec3::UnitY();
+}
+
+void standUpright(Asset& asset, const Vec3& up, bool turn, Warnings& warnings) {
+  if (isUpright(up)) return;
+  if (turn) {
+    turnScene(asset, turnOf(up), kName);
+    warnings.add(kTurned, fmt::format("the model stands along {} and is turned to stand along +Y", nameOfAxis(up)));
+  } else {
+    warnings.add("not-upright", fmt::format("the model stands along {} and lies where +Y is up", nameOfAxis(up)));
+  }
+}
+
+Quat standUpright(Asset& asset, Warnings& warnings) {
+  const std::optional<Vec3> up = restsAlong(asset);
+  if (!up || isUpright(*up)) return Quat::Identity();
+  if (!clipsStand(asset)) {
+    Json before = asset.json();
+    Warnings turned;
+    standUpright(asset, *up, true, turned);
+    if (const std::optional<Vec3> now = restsAlong(asset); now && isUpright(*now)) {
+      warnings.append(turned);
+      return Quat::Identity();
+    }
+    asset.json() = std::move(before);  // skins may be bound to where their mesh lies
+  }
+  warnings.add(kTurned,
+               fmt::format("the model rests along {}; the new clips are turned to stand along +Y", nameOfAxis(*up)));
+  return turnOf(*up);
+}
+
+}  // namespace limber

@@ -1,0 +1,24 @@
+// People who stand along another axis than +Y, as programs with Z up write them without a turn.
+#pragma once
+
+#include <optional>
+
+#include "limber/asset/asset.h"
+#include "limber/core/error.h"
+#include "limber/skeleton/pose.h"
+
+namespace limber {
+
+// The axis that a person in that pose stands along; none where names of joints tell no person, or where head and
+// feet lie to the same side of the hips.
+std::optional<Vec3> standsAlong(const Skeleton& skeleton, const Pose& pose);
+
+// Turns a document whose person stands along `up` by a node above it (turnScene), with a warning "turned-upright";
+// where `turn` is false there is only the warning "not-upright". Nothing where up is about +Y.
+void standUpright(Asset& asset, const Vec3& up, bool turn, Warnings& warnings);
+
+// The same of a document's own skeleton, before clips are added. Where its clips stand and its rest pose lies, or where
+// no node above it helps, the document stays as it is: these clips then need the turn that is given back, else none.
+Quat standUpright(Asset& asset, Warnings& warnings);
+
+}  // namespace limber
