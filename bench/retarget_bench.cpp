@@ -2,11 +2,13 @@
 #include <benchmark/benchmark.h>
 
 #include <cmath>
+#include <cstdint>
 #include <string>
 
 #include "limber/ik/ik_skeletons.h"
 #include "limber/ik/rotation.h"
-#include "limber/retarget/retarget_method.h"
+#include "limber/retarget/even_out.h"
+#include "limber/retarget/retarget_clip.h"
 
 namespace {
 
@@ -26,12 +28,15 @@ PoseSequence swinging(const Skeleton& person) {
   return motion;
 }
 
-void retargetFrame(benchmark::State& state, const std::string& method) {
-  const Skeleton source = practiceHumanoid();
-  Skeleton target = source;
-  for (Joint& joint : target.joints) {
+Skeleton withShortShins(Skeleton person) {
+  for (Joint& joint : person.joints) {
     if (joint.name.find("LowerLeg") != std::string::npos) joint.rest.translation *= 0.8;
   }
+  return person;
+}
+
+void retargetFrame(benchmark::State& state, const std::string& method) {
+  const Skeleton source = practiceHumanoid(), target = withShortShins(source);
   const PoseSequence motion = swinging(source);
   const RetargetSetup setup(source, target, matchSkeletons(source, target), {}, &motion);
   const auto retargeter = findRetargetMethod(method).make(setup);
@@ -48,5 +53,29 @@ void retargetFrame(benchmark::State& state, const std::string& method) {
 BENCHMARK_CAPTURE(retargetFrame, aligned, "aligned");
 BENCHMARK_CAPTURE(retargetFrame, limb_ik, "limb-ik");
 BENCHMARK_CAPTURE(retargetFrame, online, "online");
+
+// A whole motion. The floor is a pass of forward kinematics over source and target, which is all that an even one
+// costs.
+void evenOutMotion(benchmark::State& state, double jolt) {
+  const Skeleton source = practiceHumanoid(), target = withShortShins(source);
+  const PoseSequence motion = swinging(source);
+  RetargetOptions options;
+  options.evenOut = false;
+  const RetargetSetup setup(source, target, matchSkeletons(source, target), options, &motion);
+  PoseSequence moved = retargetFrames(findRetargetMethod("limb-ik"), setup, motion);
+  const Index thigh = target.find("leftUpperLeg").value();
+  for (std::size_t f = 20; f < moved.poses.size(); f += 40) {
+    moved.poses[f].locals[thigh].rotation *= fromRotationVector(Vec3(jolt, 0, 0));
+  }
+  for (auto _ : state) {
+    PoseSequence evened = moved;
+    evenOut(setup, motion, evened);
+    benchmark::DoNotOptimize(evened.poses.data());
+  }
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(motion.poses.size()));
+}
+
+BENCHMARK_CAPTURE(evenOutMotion, even, 0);
+BENCHMARK_CAPTURE(evenOutMotion, rough, 0.2);
 
 }  // namespace
