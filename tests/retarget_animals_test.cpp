@@ -20,10 +20,10 @@ namespace limber::testing {
 
 namespace {
 
-// What does not hold yet: jerk of clip and target by any method, where names and legs differ. A fox that bows or howls
-// folds its forelegs at the elbow, further than legs fold that bend at the knee alone; a horse that idles hardly moves.
+// What does not hold yet: jerk of clip and target by any method, where names and legs differ. A fox that bows folds its
+// forelegs at the elbow, further than legs fold that bend at the knee alone; a horse that idles hardly moves.
 const std::map<std::string, double> kRougherStrangers = {
-    {"Fetch cow", 1.26}, {"Fetch horse", 1.16}, {"Howl cow", 2.3}, {"Idle wolf", 1.45}};
+    {"Fetch alpaca", 1.32}, {"Fetch cow", 1.3}, {"Fetch horse", 1.18}, {"Idle wolf", 1.4}};
 
 }  // namespace
 
@@ -296,9 +296,8 @@ TEST(RetargetAnimals, QuadrupedsAreMatchedByTheirForm) {
           const auto rougher = kRougherStrangers.find(pair);
           EXPECT_LT(result.jerk, rougher == kRougherStrangers.end() ? 1.1 : rougher->second);
           EXPECT_LT(result.sliding, std::max(0.02, result.sourceSliding + 1e-4));
-          // Too low for legs that do not fold as far; with a trunk that sways further than the source's.
-          const bool low = pair == "Sneak wolf", sways = pair == "Walk wolf";
-          EXPECT_LT(result.penetration, result.sourcePenetration + (low ? 0.04 : 0.01));
+          const bool sways = pair == "Walk wolf";  // its trunk further than the source's
+          EXPECT_LT(result.penetration, result.sourcePenetration + 0.01);
           EXPECT_GT(result.contactAgreement, sways ? 0.85 : 0.95);
         }
       }

@@ -32,8 +32,7 @@ double angleOf(const Vec3& a, const Vec3& b) {
 // Of a foot whose ankle is at that height, in lengths of the foot, and whose tip is on the ground. Past the vertical it
 // goes on, so that nothing snaps.
 double slopeToGround(double height) {
-  if (height < kNearlySteep) return std::asin(std::max(height, -1.0));
-  return std::asin(kNearlySteep) + (height - kNearlySteep) / std::sqrt(1 - kNearlySteep * kNearlySteep);
+  return straightenedAsin(height, kNearlySteep);
 }
 
 Vec3 level(const Vec3& v) {

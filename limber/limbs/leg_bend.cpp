@@ -9,29 +9,59 @@ namespace limber {
 
 namespace {
 
-constexpr double kLeastBend = 0.05, kMostBend = 1.4;  // radians
-constexpr double kSoftFold = 0.1;                     // of the way from folded to straight
+// Radians.
+constexpr double kStraight = 0.5;       // added to bends, squared: the knee of a leg that is nearly straight turns much
+constexpr double kSoftStraight = 0.04;  // likewise squared
+constexpr double kSoftFold = 0.1;
+constexpr double kMostWithHock = 2.8;
+
+struct Bones {
+  double all = 0, longest = 0;
+};
+
+Bones bonesOf(const Skeleton& skeleton, const std::vector<Vec3>& rest, const LegJoints& leg) {
+  Bones bones;
+  Index below = leg.end;
+  for (std::optional<Index> at = leg.carrier ? leg.carrier : skeleton.joints[leg.end].parent; at && below != leg.upper;
+       at = skeleton.joints[*at].parent) {
+    const double bone = (rest[below] - rest[*at]).norm();
+    bones.all += bone;
+    bones.longest = std::max(bones.longest, bone);
+    below = *at;
+  }
+  return bones;
+}
 
 }  // namespace
 
 LegBend::Chain::Chain(const Skeleton& skeleton, const NeutralPose& neutral, const LegJoints& leg)
     : upper(leg.upper), end(leg.end) {
   const std::vector<Vec3>& rest = neutral.restPositions;
-  Index below = leg.end;
-  double longest = 0;
-  for (std::optional<Index> at = leg.carrier ? leg.carrier : skeleton.joints[leg.end].parent; at && below != leg.upper;
-       at = skeleton.joints[*at].parent) {
-    const double bone = (rest[below] - rest[*at]).norm();
-    length += bone;
-    longest = std::max(longest, bone);
-    below = *at;
+  first = (rest[leg.lower] - rest[leg.upper]).norm();
+  second = (rest[leg.end] - rest[leg.lower]).norm();
+  if (leg.hock) {
+    const Bones bones = bonesOf(skeleton, rest, leg);
+    first = second = 0.5 * bones.all;
+    most = std::min(kMostWithHock, bendAt(std::max(2 * bones.longest - bones.all, 0.0)));
   }
-  folded = std::max(2 * longest - length, 0.0);
   atRest = bend(neutral.positions);
 }
 
+double LegBend::Chain::bendAt(double reach) const {
+  const double cosine = (reach * reach - first * first - second * second) / (2 * first * second);
+  const double angle = std::acos(std::clamp(cosine, -1.0, 1.0));
+  const double squared = cosine < 1 ? angle * angle : 2 * (1 - cosine);  // without a kink, also of overstretched legs
+  return std::sqrt(softPositive(squared + kStraight * kStraight, kSoftStraight));
+}
+
+double LegBend::Chain::reachAt(double bend) const {
+  const double least = std::max(bend, 0.0);
+  const double angle = std::sqrt(softPositive(least * least - kStraight * kStraight, kSoftStraight));
+  return std::sqrt(first * first + second * second + 2 * first * second * std::cos(angle));
+}
+
 double LegBend::Chain::bend(const std::vector<Vec3>& positions) const {
-  return std::acos(std::min(1.0, (positions[end] - positions[upper]).norm() / length));
+  return bendAt((positions[end] - positions[upper]).norm());
 }
 
 LegBend::LegBend(const RetargetSetup& setup, const AnimalLeg& leg)
@@ -40,9 +70,7 @@ LegBend::LegBend(const RetargetSetup& setup, const AnimalLeg& leg)
 
 double LegBend::reach(const BodyFrame& source) const {
   const double bend = source_.bend(source.positions) + target_.atRest - source_.atRest;
-  const double reach = target_.length * std::cos(std::min(softPositive(bend, kLeastBend), kMostBend));
-  const double room = target_.length - target_.folded, share = (reach - target_.folded) / room;
-  return target_.folded + room * softPositive(share, kSoftFold) / softPositive(1, kSoftFold);
+  return target_.reachAt(target_.most - softPositive(target_.most - bend, kSoftFold));
 }
 
 }  // namespace limber

@@ -43,9 +43,27 @@ TEST(LegBend, LegsOfAnySizeBendAsTheSources) {
 
 TEST(LegBend, WhatStandsStraighterBendsFromThere) {
   EXPECT_NEAR(reachOf(crouching(0.3), crouching(0.1), 0), 0.45 / std::hypot(0.45, 0.12), 1e-3) << "at rest";
+  const auto counted = [](double angle) { return std::hypot(2 * angle, 0.5); };  // of a knee between two equal bones
   const double one = std::atan2(0.32, 0.45), other = std::atan2(0.12, 0.45);
   const double bend = std::acos((0.9 - 0.2) / (2 * std::hypot(0.45, 0.32)));
-  EXPECT_NEAR(reachOf(crouching(0.3), crouching(0.1), 0.2), std::cos(other + bend - one), 1e-3);
+  const double bent = counted(other) + counted(bend) - counted(one);
+  EXPECT_NEAR(reachOf(crouching(0.3), crouching(0.1), 0.2), std::cos(0.5 * std::sqrt(bent * bent - 0.25)), 2e-3);
+}
+
+// Short and long bones: the knee bends as far, not the ends come as near to each other.
+TEST(LegBend, KneesBendAlikeWhateverTheirBones) {
+  const double knee = std::acos(0.7 / 0.9);  // each bone against the line, of two that are equal
+  const double first = 0.9 * 0.3, second = 0.9 * 0.7;
+  const double reach = std::sqrt(first * first + second * second + 2 * first * second * std::cos(2 * knee));
+  EXPECT_NEAR(reachOf(quadruped(0.5), quadruped(0.3), 0.2), reach / 0.9, 0.01);
+}
+
+TEST(LegBend, OverstretchedLegsGoOnWithoutAKink) {
+  const Skeleton animal = quadruped(0.5), other = quadruped(0.4);
+  const auto slope = [&](double raised) {
+    return (reachOf(animal, other, raised + 1e-4) - reachOf(animal, other, raised)) / 1e-4;
+  };
+  for (double raised = -0.05; raised < 0.05; raised += 1e-4) EXPECT_NEAR(slope(raised + 1e-4), slope(raised), 0.05);
 }
 
 TEST(LegBend, NoLegReachesFurtherThanItsBonesOrIsFolded) {

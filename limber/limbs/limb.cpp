@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "limber/limbs/leg_bend.h"
 #include "limber/skeleton/chain.h"
 
 namespace limber {
@@ -21,7 +22,8 @@ std::optional<Limb> makeLimb(const RetargetSetup& setup, const RootPlacer& root,
   const double lowerLength = (rest[limb.end] - rest[limb.lower]).norm();
   if (!(upperLength > 0) || !(lowerLength > 0)) return std::nullopt;
   limb.length = upperLength + lowerLength;
-  limb.folded = std::abs(upperLength - lowerLength);
+  limb.folded = std::sqrt(upperLength * upperLength + lowerLength * lowerLength +
+                          2 * upperLength * lowerLength * std::cos(kMostBend));
   return limb;
 }
 

@@ -14,7 +14,7 @@ struct Limb {
   Index upper = 0, lower = 0, end = 0;
   Index sourceUpper = 0, sourceEnd = 0;
   double length = 0;             // of both bones
-  double folded = 0;             // how near to each other they bring the ends
+  double folded = 0;             // how near to each other they bring the ends, at kMostBend
   std::optional<Index> hock;     // another joint that bends it (AnimalLeg)
   Vec3 goal = Vec3::Zero();      // where the end has to be, in the person's space
   bool ownWay = false;           // an animal's foot that goes as the source's, and the leg after it
@@ -24,6 +24,7 @@ struct Limb {
 };
 
 struct Leg : Limb {
+  bool fore = false;  // a quadruped's, at the shoulders (TrunkTilt)
   std::optional<Index> toes, sourceToes;
   std::optional<Index> tip;                            // toes that the target alone has
   Vec3 kneeAhead = Vec3::UnitZ();                      // to which side the lower joint bends, in the neutral pose
@@ -40,6 +41,10 @@ struct Leg : Limb {
   double bentReach = 0;                                // ownWay: from hip to end if bent as the source's (LegBend)
   double lift = 0;                                     // ownWay: of the source's foot from where it stands, hip heights
 };
+
+// Leg::lift from which on a foot that goes its own way may leave it for the source's bend alone: the body no longer
+// follows it.
+inline constexpr double kLifted = 0.6;
 
 // None where its joints do not hang on each other, or a bone has no length.
 std::optional<Limb> makeLimb(const RetargetSetup& setup, const RootPlacer& root, const LegJoints& source,

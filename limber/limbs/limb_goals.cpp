@@ -29,7 +29,6 @@ constexpr double kFirmHeld = 0.9, kFirmBeside = 0.2;
 constexpr double kTipLies = 0.05;   // over the ground: from there on toes that the target alone has lie down
 constexpr double kCarriedUp = 0.5;  // share of its hip's way up that a person's free foot takes part in
 // Of legs whose feet go their own way.
-constexpr double kLifted = 0.6;                           // Leg::lift from which on the source's bend counts alone
 constexpr double kSoftLeg = 0.03, kSoftStanding = 0.003;  // of the most that a leg reaches, leg lengths
 constexpr double kSlipSpeed = 0.65, kSlipPower = 3;       // hip heights a second at which planted feet slip by half
 constexpr double kBentInRest = 0.01;  // of an animal's leg's length: a knee off its line by that tells where it bends
@@ -81,7 +80,10 @@ void LimbGoals::addPersonsLegs(const RootPlacer& root) {
 }
 
 void LimbGoals::addAnimalsLegs(const RootPlacer& root) {
-  for (const AnimalLeg& found : setup_.animalLegs) {
+  std::vector<AnimalLeg> hindFirst = setup_.animalLegs;
+  std::stable_partition(hindFirst.begin(), hindFirst.end(),
+                        [&](const AnimalLeg& leg) { return !pelvis_.trunk().isFore(leg.target.upper); });
+  for (const AnimalLeg& found : hindFirst) {
     const auto limb = makeLimb(setup_, root, found.source, found.target);
     if (!limb) continue;
     Leg leg;
@@ -89,6 +91,7 @@ void LimbGoals::addAnimalsLegs(const RootPlacer& root) {
     const Vec3 ahead = bendAtRest(found.target, setup_.targetNeutral);
     if (ahead.norm() > kBentInRest) leg.kneeAhead = ahead.normalized();
     leg.hock = found.target.hock;
+    leg.fore = pelvis_.trunk().isFore(leg.upper);
     leg.ownWay = root.goesOwnWay(found);
     leg.ownBend = leg.ownWay || bendAtRest(found.source, setup_.sourceNeutral).dot(leg.kneeAhead) < kBendsAlike;
     leg.toes = found.target.toes;
@@ -220,6 +223,7 @@ void LimbGoals::calm(const BodyFrame& source, double seconds, Pose& target, Body
   if (cut_) seconds = 0;
   for (std::size_t i = 0; i < legs_.size(); ++i) sense(legs_[i], feelers_[i], source, seconds);
   pelvis_.levelHips(target, frame);
+  pelvis_.trunk().follow(source, target, frame);
   if (!setup_.person) root_.movePelvis(Vec3(0, lift_(source, frame), 0), target, frame);
   calmFeet(setup_, root_, legs_, target, frame);
 }

@@ -16,10 +16,10 @@ constexpr double kMostShift = 0.3;
 constexpr double kSoftStretch = 0.015, kSoftChange = 0.004;  // of sinking, by how far a foot is moved
 constexpr double kSoftOnFour = 0.04;  // likewise: with legs at both ends of the body, some are far off and stretch more
 constexpr double kSoftBend = 0.1;     // by which feet on their own ways count the more, the lower they want the body
-constexpr double kStandsBelow = 0.3;  // Leg::lift from which on they no longer count
-constexpr double kFoldsTo = 1.1, kSoftFold = 0.02;  // of Limb::folded; and hip heights
-constexpr double kStay = 0.5;                       // legs that these go against, which want it to stay
-constexpr double kStretch = 0.998;                  // of a leg's length: fully stretched knees pop
+constexpr double kStandsBelow = 0.45;  // Leg::lift from which on their bend no longer counts
+constexpr double kSoftFold = 0.02;
+constexpr double kStay = 0.5;       // legs that these go against, which want it to stay
+constexpr double kStretch = 0.998;  // of a leg's length: fully stretched knees pop
 // Of turning with planted legs: leg lengths, the more the less it does; and radians.
 constexpr double kStiffOnTwo = 0.15, kStiffOnOne = 0.3, kMostTurn = 0.8;
 
@@ -33,13 +33,18 @@ double saturated(double x, double most) {
   return x / std::sqrt(std::sqrt(1 + share * share * share * share));
 }
 
+// Share to which the body makes up for what the leg lacks to reach its goal.
+double followed(const Leg& leg) {
+  return leg.ownWay ? smoothStep(1 - leg.lift / kLifted) : 1;
+}
+
 double hipWidth(const NeutralPose& neutral, Index left, Index right) {
   return (neutral.restPositions[left] - neutral.restPositions[right]).norm();
 }
 
 }  // namespace
 
-Pelvis::Pelvis(const RetargetSetup& setup, const RootPlacer& root) : setup_(setup), root_(root) {
+Pelvis::Pelvis(const RetargetSetup& setup, const RootPlacer& root) : setup_(setup), root_(root), tilt_(setup, root) {
   if (!setup.person) return;
   const JointMatch &left = *setup.map.find("leftUpperLeg"), &right = *setup.map.find("rightUpperLeg");
   leftHip_ = left.target.front();
@@ -66,14 +71,27 @@ void Pelvis::levelHips(Pose& target, BodyFrame& frame) const {
 }
 
 Pelvis::Move Pelvis::moveFor(std::span<const Leg> legs, const BodyFrame& frame, std::optional<double> rise) const {
+  if (tilt_.tilts()) {
+    const auto fore = std::find_if(legs.begin(), legs.end(), [](const Leg& leg) { return leg.fore; });
+    const auto hind = static_cast<std::size_t>(fore - legs.begin());
+    return moveOfEnds(legs.first(hind), legs.subspan(hind), frame);
+  }
   const Quat turn = turnFor(legs, frame);
   return {turn, shiftFor(legs, frame, turn, rise ? *rise : riseFor(legs, frame, turn))};
+}
+
+Pelvis::Move Pelvis::moveOfEnds(std::span<const Leg> hind, std::span<const Leg> fore, const BodyFrame& frame) const {
+  const auto wayOf = [&](std::span<const Leg> legs) {
+    return shiftFor(legs, frame, Quat::Identity(), riseFor(legs, frame, Quat::Identity()));
+  };
+  const double up = wayOf(hind);
+  return {tilt_.turnFor(wayOf(fore) - up, frame), up};
 }
 
 Vec3 Pelvis::hipWay(const Move& move, const Leg& leg, const BodyFrame& frame) const {
   const Vec3 way = Vec3(0, move.up, 0);
   if (move.turn.w() == 1) return way;
-  const Vec3 fromMiddle = frame.positions[leg.upper] - pelvisOf(setup_.map, MapSide::kTarget, frame.positions);
+  const Vec3 fromMiddle = frame.positions[leg.upper] - root_.middleOfHips(frame);
   return way + move.turn * fromMiddle - fromMiddle;
 }
 
@@ -89,7 +107,7 @@ void Pelvis::apply(const Move& move, Pose& target, BodyFrame& frame) const {
 // Least squares over what the planted legs lack, against the turn itself. On one leg only the turn about the vertical
 // helps: the shift brings that leg to the ground.
 Quat Pelvis::turnFor(std::span<const Leg> legs, const BodyFrame& frame) const {
-  if (legs.size() != 2 || !root_.turnsPelvis()) return Quat::Identity();
+  if (!setup_.person || legs.size() != 2 || !root_.turnsPelvis()) return Quat::Identity();
   const Leg &left = legs[0], &right = legs[1];
   const Vec3 toHip = 0.5 * (frame.positions[left.upper] - frame.positions[right.upper]);
   const Vec3 lackLeft = left.goal - frame.positions[left.end], lackRight = right.goal - frame.positions[right.end];
@@ -152,7 +170,7 @@ double Pelvis::shiftFor(std::span<const Leg> legs, const BodyFrame& frame, const
     if (way.y() >= 0) continue;
     const double length = kStretch * leg.length, across = std::hypot(way.x(), way.z());
     const double down = std::sqrt(std::max(length * length - across * across, 0.0));
-    const double needed = softPositive(-way.y() - down, soft * leg.changed);
+    const double needed = followed(leg) * softPositive(-way.y() - down, soft * leg.changed);
     sum += needed * needed * needed * needed;
   }
   // The most that a leg asks for, but without a kink where another takes over.
@@ -165,11 +183,10 @@ double Pelvis::raiseFor(std::span<const Leg> legs, const BodyFrame& frame, doubl
   double sum = 0;
   for (const Leg& leg : legs) {
     const Vec3 way = leg.goal - frame.positions[leg.upper] - Vec3(0, shift, 0);
-    const double least = kFoldsTo * leg.folded, across = std::hypot(way.x(), way.z());
+    const double least = leg.folded, across = std::hypot(way.x(), way.z());
     if (!leg.ownWay || leg.hock || across >= least) continue;  // hocks fold as well
     const double lacks = std::sqrt(least * least - across * across) + way.y();
-    const double needed =
-        smoothStep(1 - leg.lift / kStandsBelow) * softPositive(lacks, kSoftFold * setup_.targetHipHeight);
+    const double needed = followed(leg) * softPositive(lacks, kSoftFold * setup_.targetHipHeight);
     sum += needed * needed * needed * needed;
   }
   return std::sqrt(std::sqrt(sum));

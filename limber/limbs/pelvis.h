@@ -6,6 +6,7 @@
 
 #include "limber/limbs/limb.h"
 #include "limber/limbs/root_motion.h"
+#include "limber/limbs/trunk_tilt.h"
 
 namespace limber {
 
@@ -20,12 +21,13 @@ class Pelvis {
   // so. `frame` are the globals of `target` by joint angles alone; both are brought up to date.
   void levelHips(Pose& target, BodyFrame& frame) const;
 
-  // A turn about its middle (RootPlacer::turnPelvis) and then a way up, metres.
+  // A turn about the hips (RootPlacer::turnPelvis) and then a way up, metres.
   struct Move {
     Quat turn = Quat::Identity();
     double up = 0;
   };
-  // By the legs' goals, for legs that are where `frame` has them. `rise`: where given, in place of riseFor().
+  // By the legs' goals, for legs that are where `frame` has them. `rise`: where given, in place of riseFor(). Where a
+  // trunk tilts, hips and shoulders each follow their own legs.
   Move moveFor(std::span<const Leg> legs, const BodyFrame& frame, std::optional<double> rise = std::nullopt) const;
   // The turn of it, which brings planted legs nearer to their joint angles.
   Quat turnFor(std::span<const Leg> legs, const BodyFrame& frame) const;
@@ -38,8 +40,10 @@ class Pelvis {
   // Of a leg's hip by that move, in the person's space.
   Vec3 hipWay(const Move& move, const Leg& leg, const BodyFrame& frame) const;
   void apply(const Move& move, Pose& target, BodyFrame& frame) const;
+  const TrunkTilt& trunk() const { return tilt_; }
 
  private:
+  Move moveOfEnds(std::span<const Leg> hind, std::span<const Leg> fore, const BodyFrame& frame) const;
   // `rise`, and down as far as the longest way asks.
   double shiftFor(std::span<const Leg> legs, const BodyFrame& frame, const Quat& turn, double rise) const;
   double raiseFor(std::span<const Leg> legs, const BodyFrame& frame, double shift) const;
@@ -47,6 +51,7 @@ class Pelvis {
 
   const RetargetSetup& setup_;
   const RootPlacer& root_;
+  TrunkTilt tilt_;
   double hipTurns_ = 1;  // share of the source's turns that wide hips take over
   Index leftHip_ = 0, rightHip_ = 0;
   std::optional<Index> trunk_;  // its last joint

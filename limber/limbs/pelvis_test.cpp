@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "limber/limbs/limb_goals.h"
+#include "limber/matching/quadruped_shape.h"
 #include "limber/matching/testing/test_motion.h"
 
 namespace limber {
@@ -168,6 +169,34 @@ TEST(Pelvis, NothingJumpsWhereALegBecomesTooShort) {
       EXPECT_LT(std::abs(up - before), 0.01 * length) << step;
     }
     before = up;
+  }
+}
+
+// Of a quadruped that was matched by its form, whose forelegs bend as the source's kneels.
+TEST(Pelvis, HipsAndShouldersFollowTheirOwnLegs) {
+  const Skeleton animal = limber::testing::quadruped(0.5), other = limber::testing::quadruped(0.4);
+  const RetargetSetup setup(animal, other, matchQuadrupeds(animal, other).value(), {});
+  const RootPlacer root(setup);
+  LimbGoals goals(setup, root);
+  BodyFrame source, target;
+  Pose pose = restPose(other);
+  setup.sourceKinematics.globals(restPose(animal), source);
+  setup.targetKinematics.globals(pose, target);
+  goals.calm(source, 0, pose, target);
+  goals.setFeet(source, target, 0);
+  for (Leg& leg : goals.legs()) {
+    EXPECT_EQ(leg.fore, other.joints[leg.upper].name.starts_with("b1"));
+    if (leg.fore) leg.bentReach *= 0.8;
+  }
+  const BodyFrame before = target;
+  goals.pelvis().apply(goals.pelvisMove(target), pose, target);
+  for (const Leg& leg : goals.legs()) {
+    const double up = (target.positions[leg.upper] - before.positions[leg.upper]).y();
+    if (leg.fore) {
+      EXPECT_LT(up, -0.1);
+    } else {
+      EXPECT_NEAR(up, 0, 0.02);
+    }
   }
 }
 

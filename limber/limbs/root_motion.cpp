@@ -7,6 +7,12 @@
 
 namespace limber {
 
+Vec3 middleOf(std::span<const Index> joints, const std::vector<Vec3>& positions) {
+  Vec3 sum = Vec3::Zero();
+  for (const Index joint : joints) sum += positions[joint];
+  return sum / static_cast<double>(joints.size());
+}
+
 RootPlacer::RootPlacer(const RetargetSetup& setup) : setup_(setup) {
   const Skeleton& target = *setup.target;
   if (!setup.person) {
@@ -14,6 +20,7 @@ RootPlacer::RootPlacer(const RetargetSetup& setup) : setup_(setup) {
     if (const JointMatch* hindquarters = setup.map.find(kHindquarters)) {
       if (!hips_) hips_ = hindquarters->target.front();
       moved_.push_back(*hips_);
+      findTrunk();
     } else {
       for (const JointMatch& match : setup.map.matches) moved_.push_back(match.target.front());
     }
@@ -58,16 +65,42 @@ void RootPlacer::findPelvis() {
   const Skeleton& target = *setup_.target;
   const Index pelvis = setup_.map.find("hips")->target.back();
   const auto turns = [&](Index j) {
-    return j == pelvis || std::find(toLegs_.begin(), toLegs_.end(), j) != toLegs_.end();
+    return j == pelvis || std::find(turnsAlong_.begin(), turnsAlong_.end(), j) != turnsAlong_.end();
   };
   for (const char* part : {"leftUpperLeg", "rightUpperLeg"}) {
     const Index leg = setup_.map.find(part)->target.front();
     if (leg == pelvis || !isAncestorOrSelf(target, pelvis, leg)) return;
-    for (Index j = *target.joints[leg].parent; !turns(j); j = *target.joints[j].parent) toLegs_.push_back(j);
+    for (Index j = *target.joints[leg].parent; !turns(j); j = *target.joints[j].parent) turnsAlong_.push_back(j);
+    hipJoints_.push_back(leg);
   }
   pelvis_ = pelvis;
   for (Index j = 0; j < target.jointCount(); ++j) {
     if (target.joints[j].parent && turns(*target.joints[j].parent) && !turns(j)) pelvisChildren_.push_back(j);
+  }
+}
+
+void RootPlacer::findTrunk() {
+  const Skeleton& target = *setup_.target;
+  const Index hindquarters = setup_.map.find(kHindquarters)->target.front();
+  const JointMatch* trunk = setup_.map.find("trunk");
+  std::vector<Index> kept;
+  for (const AnimalLeg& leg : setup_.animalLegs) {
+    const Index upper = leg.target.upper;
+    if (upper == hindquarters || !isAncestorOrSelf(target, hindquarters, upper)) return;
+    kept.push_back(upper);
+    if (!trunk || !isAncestorOrSelf(target, trunk->target.front(), upper)) hipJoints_.push_back(upper);
+  }
+  if (hipJoints_.empty()) return;
+  pelvis_ = hindquarters;
+  for (const char* part : {"neck", "head", "tail"}) {
+    if (const JointMatch* match = setup_.map.find(part)) kept.push_back(match->target.front());
+  }
+  std::vector<bool> turns(target.jointCount(), false);
+  turns[hindquarters] = true;
+  for (Index j = 0; j < target.jointCount(); ++j) {
+    if (!target.joints[j].parent || !turns[*target.joints[j].parent]) continue;
+    turns[j] = std::find(kept.begin(), kept.end(), j) == kept.end();
+    (turns[j] ? turnsAlong_ : pelvisChildren_).push_back(j);
   }
 }
 
@@ -116,17 +149,21 @@ void RootPlacer::movePelvis(const Vec3& shift, Pose& target, BodyFrame& frame) c
 void RootPlacer::turnPelvis(const Quat& turn, Pose& target, BodyFrame& frame) const {
   if (!pelvis_) return;
   const BodyKinematics& kinematics = setup_.targetKinematics;
-  const Vec3 middle = pelvisOf(setup_.map, MapSide::kTarget, frame.positions);
+  const Vec3 middle = middleOfHips(frame);
   const Quat turned = turn * frame.rotations[*pelvis_];
   target.locals[*pelvis_].rotation = (kinematics.parentRotation(*pelvis_, frame).conjugate() * turned).normalized();
   frame.rotations[*pelvis_] = turned;
-  for (const Index joint : toLegs_) frame.rotations[joint] = turn * frame.rotations[joint];
+  for (const Index joint : turnsAlong_) frame.rotations[joint] = turn * frame.rotations[joint];
   for (const Index child : pelvisChildren_) {
     target.locals[child].rotation =
         (kinematics.parentRotation(child, frame).conjugate() * frame.rotations[child]).normalized();
   }
   kinematics.place(target, frame);
-  movePelvis(middle - pelvisOf(setup_.map, MapSide::kTarget, frame.positions), target, frame);
+  movePelvis(middle - middleOfHips(frame), target, frame);
+}
+
+Vec3 RootPlacer::middleOfHips(const BodyFrame& frame) const {
+  return middleOf(hipJoints_, frame.positions);
 }
 
 void RootPlacer::settle(Pose& target, BodyFrame& frame) const {

@@ -2,12 +2,15 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "limber/matching/loose_joints.h"
 #include "limber/matching/retarget_setup.h"
 
 namespace limber {
+
+Vec3 middleOf(std::span<const Index> joints, const std::vector<Vec3>& positions);
 
 // Moves a posed target to where the source's motion has it.
 //
@@ -25,9 +28,11 @@ class RootPlacer {
   // Moves the pelvis by `shift`, in the person's space.
   void movePelvis(const Vec3& shift, Pose& target, BodyFrame& frame) const;
 
-  // Turns the pelvis about its middle, in the person's space; what hangs on it keeps how it is turned.
+  // Turns the pelvis about the middle of the hips, in the person's space; what hangs on it keeps how it is turned. Of
+  // quadrupeds that were matched by form the whole trunk turns, and legs, neck, head and tail keep their turns.
   void turnPelvis(const Quat& turn, Pose& target, BodyFrame& frame) const;
-  // False where no joint carries both legs: turning it does nothing.
+  Vec3 middleOfHips(const BodyFrame& frame) const;
+  // False where no joint carries the legs: turning it does nothing.
   bool turnsPelvis() const { return pelvis_.has_value(); }
 
   // Whether the foot goes as the source's, whatever the joint angles: on roots of their own, or on legs whose joints
@@ -47,6 +52,7 @@ class RootPlacer {
     std::optional<Quat> turn;    // likewise, of one that turns with its carrier
   };
   void findPelvis();
+  void findTrunk();
   void findCarrierOfLegs();
   void placeHindquarters(const JointMatch& match, const BodyFrame& sourceFrame, Pose& target, BodyFrame& frame) const;
   void placeEach(const Pose& source, const BodyFrame& sourceFrame, Pose& target, const BodyFrame& frame) const;
@@ -55,8 +61,9 @@ class RootPlacer {
 
   const RetargetSetup& setup_;
   std::optional<Index> hips_;          // of others than people the joint that carries all legs
-  std::optional<Index> pelvis_;        // the joint that carries both legs and the trunk
-  std::vector<Index> toLegs_;          // joints between it and the legs, which turn with it
+  std::optional<Index> pelvis_;        // the joint that carries the legs and the trunk
+  std::vector<Index> hipJoints_;       // of the legs, of four those behind
+  std::vector<Index> turnsAlong_;      // joints below it that turn with it
   std::vector<Index> pelvisChildren_;  // what hangs on these and on the pelvis
   std::vector<Loose> loose_;
   bool turnsLoose_ = false;

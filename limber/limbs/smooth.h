@@ -17,4 +17,10 @@ inline double softPositive(double x, double softness) {
   return 0.5 * (x + std::hypot(x, softness));
 }
 
+// asin(x), but straight on from `until` (below 1) and from its opposite: defined everywhere, without a kink or a pole.
+inline double straightenedAsin(double x, double until) {
+  const double inside = std::clamp(x, -until, until);
+  return std::asin(inside) + (x - inside) / std::sqrt(1 - until * until);
+}
+
 }  // namespace limber

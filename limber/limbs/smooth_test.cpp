@@ -21,5 +21,13 @@ TEST(Smooth, SoftPositiveIsAboveBothOfItsLines) {
   EXPECT_NEAR((softPositive(1e-6, 0.2) - softPositive(-1e-6, 0.2)) / 2e-6, 0.5, 1e-6);
 }
 
+TEST(Smooth, AsinGoesStraightOnWhereItWouldEnd) {
+  EXPECT_EQ(straightenedAsin(0.5, 0.9), std::asin(0.5));
+  for (const double end : {-0.9, 0.9}) {
+    const double inside = (straightenedAsin(end, 0.9) - straightenedAsin(0.99999 * end, 0.9)) / (0.00001 * end);
+    EXPECT_NEAR(inside, straightenedAsin(2 * end, 0.9) / end - straightenedAsin(end, 0.9) / end, 1e-3) << end;
+  }
+}
+
 }  // namespace
 }  // namespace limber

@@ -1,0 +1,58 @@
+#include "limber/limbs/trunk_tilt.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "limber/limbs/smooth.h"
+#include "limber/skeleton/chain.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kSteep = 0.9;  // sine of the slope from which on it goes evenly past the vertical
+
+Vec3 wayBetween(const std::vector<Index>& from, const std::vector<Index>& to, const std::vector<Vec3>& positions) {
+  return middleOf(to, positions) - middleOf(from, positions);
+}
+
+// Of a trunk as long as 1 that rises by that.
+double slopeOf(double rise) {
+  return straightenedAsin(rise, kSteep);
+}
+
+}  // namespace
+
+TrunkTilt::TrunkTilt(const RetargetSetup& setup, const RootPlacer& root) : setup_(setup), root_(root) {
+  const JointMatch* trunk = setup.map.find("trunk");
+  if (setup.person || !root.turnsPelvis() || !trunk) return;
+  for (const AnimalLeg& leg : setup.animalLegs) {
+    const bool fore = isAncestorOrSelf(*setup.target, trunk->target.front(), leg.target.upper);
+    (fore ? shoulders_ : hips_).push_back(leg.target.upper);
+    (fore ? sourceShoulders_ : sourceHips_).push_back(leg.source.upper);
+  }
+  if (hips_.empty()) shoulders_.clear();
+}
+
+bool TrunkTilt::isFore(Index upper) const {
+  return std::find(shoulders_.begin(), shoulders_.end(), upper) != shoulders_.end();
+}
+
+void TrunkTilt::follow(const BodyFrame& source, Pose& target, BodyFrame& frame) const {
+  if (!tilts()) return;
+  const Vec3 sourceWay = wayBetween(sourceHips_, sourceShoulders_, source.positions) -
+                         wayBetween(sourceHips_, sourceShoulders_, setup_.sourceNeutral.restPositions);
+  const Vec3 way = wayBetween(hips_, shoulders_, frame.positions) -
+                   wayBetween(hips_, shoulders_, setup_.targetNeutral.restPositions);
+  root_.turnPelvis(turnFor(setup_.scale * sourceWay.y() - way.y(), frame), target, frame);
+}
+
+Quat TrunkTilt::turnFor(double rise, const BodyFrame& frame) const {
+  const Vec3 trunk = wayBetween(hips_, shoulders_, frame.positions), aside = trunk.cross(Vec3::UnitY());
+  const double length = trunk.norm();
+  if (!(aside.norm() > 1e-6 * length)) return Quat::Identity();
+  const double up = slopeOf((trunk.y() + rise) / length) - slopeOf(trunk.y() / length);
+  return Quat(Eigen::AngleAxisd(up, aside.normalized()));
+}
+
+}  // namespace limber
