@@ -18,8 +18,7 @@ constexpr double kEven = 1.08;  // jerk, times the source's
 constexpr std::size_t kPartFrames = 1000;
 constexpr std::size_t kJoinedFrames = 3;  // at whose both ends nothing changes: third differences reach no further
 constexpr double kLoops = 0.02;           // of a limb's bones, between the directions in the first and the last frame
-// The changes' weights, in hip heights: steps of feet that stand, bounds, and frames that
-// do not change.
+// The changes' weights, in hip heights: steps of feet that stand, bounds, and frames that do not change.
 constexpr double kStandWeight = 1e8, kBoundWeight = 1e6, kPinWeight = 1e8;
 constexpr double kFirmUpTo = 1e6;  // the weight of jerk; the first two are more for more
 // Jerk counts as for changes that come and go in that time, seconds; ever longer until the motion is even.
@@ -28,7 +27,7 @@ constexpr double kShortest = 0.007, kLongest = 1, kLonger = 1.2;
 constexpr double kLow = 0.05, kSlow = 0.15;
 constexpr double kProbe = 1e-4;     // hip heights, to see how the bones follow a foot
 constexpr double kTooFar = 1e-5;    // likewise
-constexpr double kFurthest = 0.3;  // hip heights, of any change
+constexpr double kFurthest = 0.3;   // hip heights, of any change
 constexpr double kStretch = 0.998;  // of a leg's length
 constexpr int kBoundRounds = 4, kHalvings = 4;
 constexpr std::array<double, 4> kThird = {-1, 3, -3, 1};
