@@ -309,6 +309,7 @@ AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress
   placeBetween(best.skeleton, best.embedding.places);
   if (!best.skeleton.bent()) refineHocks(best.skeleton, body, best.frame, best.pins, best.embedding.places);
   refineQuadruped(best.skeleton, body, best.frame, best.pins, best.embedding.places);
+  findHeadless(best.skeleton, best.embedding.places, best.limbs);
   AutoRig rig;
   if (person) {
     const TemplatePins ownPins = pinsIn(person->skeleton, best.frame, options.pins);

@@ -227,6 +227,13 @@ TEST(TemplateRigger, SaysWhichLimbsHalfABodyLacks) {
   EXPECT_EQ(whereOf(armless, "no-place"), "leftShoulder to leftHand, rightShoulder to rightHand");
 }
 
+TEST(TemplateRigger, SaysWhereTheHeadIsCutOff) {
+  EXPECT_EQ(whereOf(riggedPartOfAPerson([](const Vec3f&) { return true; }), "no-place"), "");
+  const AutoRig headless = riggedPartOfAPerson([](const Vec3f& p) { return p.y() < 0.85f; });
+  EXPECT_LT(headless.matches[0].confidence, 0.75);
+  EXPECT_EQ(whereOf(headless, "no-place"), "neck to head");
+}
+
 // A person fits into its seat, and leaves all else as it is.
 TEST(TemplateRigger, AChairIsNoPerson) {
   TriMesh chair;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include "limber/templates/figure_fit.h"
+
 namespace limber {
 
 namespace {
@@ -11,8 +13,11 @@ namespace {
 constexpr double kNoPlace = 2.1;                    // mean cost of a limb's joints; up to 1.2 on people, 2 on toys
 constexpr double kSunken = 2, kSunkenDepth = 0.01;  // of the other side's depth, and heights more
 constexpr double kThinnest = 0.005;                 // heights that limbs are deep, at least
-constexpr double kWithin = 0.04;                    // heights
-constexpr double kAcross = 0.5;                     // most cosine between a limb and what lies across from it
+// Least way of a head's top above the shoulders, over that from the hips to these: 0.35 and more on people and robots,
+// up to 0.2 where the head is cut off.
+constexpr double kLeastHead = 0.28;
+constexpr double kWithin = 0.04;  // heights
+constexpr double kAcross = 0.5;   // most cosine between a limb and what lies across from it
 
 // Whether the way across from the limb's last joint but the tip straight to that of the other side stays inside the
 // body. Along the limbs it may: so it does from hand to hand of stretched arms.
@@ -129,6 +134,17 @@ std::vector<TemplateLimb> limbsIn(const TemplateSkeleton& skeleton, const Templa
                     !(skeleton.bent() && liesInAnother(skeleton, limb, embedding.places));
   }
   return limbs;
+}
+
+void findHeadless(const TemplateSkeleton& skeleton, const std::vector<Vec3>& places, std::vector<TemplateLimb>& limbs) {
+  if (!isHumanoid(skeleton) || skeleton.bent()) return;
+  const auto at = [&](const char* joint) -> const Vec3& { return places[skeleton.find(joint).value()]; };
+  const Vec3 shoulders = 0.5 * (at("leftUpperArm") + at("rightUpperArm")), trunk = shoulders - at("hips");
+  if ((at("headTip") - shoulders).dot(trunk) > kLeastHead * trunk.squaredNorm()) return;
+  const Index head = skeleton.find("head").value();
+  for (TemplateLimb& limb : limbs) {
+    if (std::find(limb.joints.begin(), limb.joints.end(), head) != limb.joints.end()) limb.hasPlace = false;
+  }
 }
 
 std::string limbsWithoutPlace(const TemplateSkeleton& skeleton, const std::vector<TemplateLimb>& limbs) {

@@ -27,6 +27,12 @@ std::vector<TemplateLimb> limbChains(const TemplateSkeleton& skeleton);
 std::vector<TemplateLimb> limbsIn(const TemplateSkeleton& skeleton, const TemplateEmbedding& embedding,
                                   const BodyVolume& body, const BodyFrame& frame);
 
+// Nor has a person's head a place in a model that hardly goes on above the shoulders. This tells where landmarks have
+// put the joints; before, an embedding makes the most of a stump.
+//
+// places  body space, of all joints
+void findHeadless(const TemplateSkeleton& skeleton, const std::vector<Vec3>& places, std::vector<TemplateLimb>& limbs);
+
 // Between a place and the straight bone from `a` to `b`.
 double distanceToBone(const Vec3& place, const Vec3& a, const Vec3& b);
 
