@@ -21,9 +21,9 @@ namespace limber::testing {
 namespace {
 
 // What does not hold yet: jerk of clip and target by any method, where names and legs differ. A fox that bows folds its
-// forelegs at the elbow, further than legs fold that bend at the knee alone; a horse that idles hardly moves.
+// forelegs at the elbow, further than legs fold that bend at the knee alone.
 const std::map<std::string, double> kRougherStrangers = {
-    {"Fetch alpaca", 1.32}, {"Fetch cow", 1.3}, {"Fetch horse", 1.18}, {"Idle wolf", 1.4}};
+    {"Fetch alpaca", 1.31}, {"Fetch cow", 1.29}, {"Fetch horse", 1.18}};
 
 }  // namespace
 
@@ -297,7 +297,8 @@ TEST(RetargetAnimals, QuadrupedsAreMatchedByTheirForm) {
           if (leavesItsFeet(clip.name) || clip.name == "Fall") continue;
           EXPECT_LT(result.sliding, std::max(0.02, result.sourceSliding + 1e-4));
           const bool sways = pair == "Walk wolf";  // its trunk further than the source's
-          EXPECT_LT(result.penetration, result.sourcePenetration + 0.01);
+          const double sunk = setup.scale * result.sourcePenetration * result.sourceHeight / result.height;
+          EXPECT_LT(1700 * (result.penetration - sunk), 5);
           EXPECT_GT(result.contactAgreement, sways ? 0.85 : 0.95);
         }
       }

@@ -21,9 +21,10 @@ constexpr double kPlantRate = 9;    // 1/seconds, of the smooth flag
 constexpr double kChangeRate = 25;  // likewise, of Leg::changed
 constexpr double kRiseRate = 40;    // likewise, of an animal's pelvis
 constexpr double kSoftGround = 0.006;
-constexpr double kMostSoft = 0.04;     // more of it, the faster a point comes down
-constexpr double kFallSeconds = 0.03;  // of its way: so much the earlier a point slows down
-constexpr double kFallRate = 40;       // 1/seconds, of the speed that is taken for its own
+constexpr double kSoftLowered = 0.003;  // of the source: where its foot goes below where it stands
+constexpr double kMostSoft = 0.04;      // more of it, the faster a point comes down
+constexpr double kFallSeconds = 0.03;   // of its way: so much the earlier a point slows down
+constexpr double kFallRate = 40;        // 1/seconds, of the speed that is taken for its own
 // Shares of that softness that a planted foot loses: the point that holds it, and the other.
 constexpr double kFirmHeld = 0.9, kFirmBeside = 0.2;
 constexpr double kTipLies = 0.05;   // over the ground: from there on toes that the target alone has lie down
@@ -215,7 +216,8 @@ bool LimbGoals::forgetAcrossCuts(const BodyFrame& source, double seconds) {
 // Animals that sit lay the whole foot down: as far as a joint in the source is below where it is when standing, it may
 // be in the target.
 double LimbGoals::loweredBy(double sourceGround, const Vec3& sourcePlace) const {
-  return setup_.person ? 0 : setup_.scale * std::max(sourceGround - sourcePlace.y(), 0.0);
+  const double soft = kSoftLowered * setup_.sourceHipHeight;
+  return setup_.person ? 0 : setup_.scale * softPositive(sourceGround - sourcePlace.y(), soft);
 }
 
 void LimbGoals::calm(const BodyFrame& source, double seconds, Pose& target, BodyFrame& frame) {
