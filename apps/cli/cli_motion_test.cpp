@@ -252,6 +252,10 @@ TEST_F(Cli, AnimateRigsWhatHasNoRig) {
   EXPECT_THAT(run({"animate", "loose.obj", "wave.bvh", "-o", "loose.glb"}).error,
               HasSubstr("warning: vertices that no face uses are left out [loose-vertices]"))
       << "counted once";
+  EXPECT_EQ(run({"sample", "quadruped", "-o", "fox.glb", "-q"}).code, 0);
+  const Result unlike = run({"animate", "fox.glb", "wave.bvh", "-o", "no.glb", "-q"});
+  expectOneLine(unlike, 1);
+  EXPECT_THAT(unlike.error, HasSubstr("the model was rigged as quadruped"));
   const std::string info = run({"info", "waving.glb"}).out;
   EXPECT_THAT(info, AllOf(HasSubstr("wave: 0.500 s"), HasSubstr("leftUpperArm")));
   keep("waving.glb");

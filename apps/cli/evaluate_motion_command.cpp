@@ -8,6 +8,7 @@
 #include "limber/evaluate/retarget_table.h"
 #include "limber/evaluate/skinned_model.h"
 #include "limber/matching/plain_skeleton.h"
+#include "limber/pipeline/stand_upright.h"
 #include "progress_line.h"
 
 namespace limber::cli {
@@ -39,8 +40,8 @@ Motion withClip(Motion motion, const std::string& file) {
 
 void run(const Options& options) {
   const Asset asset = readAsset(options.result);
-  const Motion result = withClip(motionOf(asset), options.result);
-  const Motion source = withClip(readMotion(options.source), options.source);
+  const Motion result = asItRests(withClip(motionOf(asset), options.result));
+  const Motion source = asItRests(withClip(readMotion(options.source), options.source));
   const Clip& moved = clipOfResult(result, source, options.clip);
   const Clip& original = source.clips.size() > 1 ? clipOfResult(source, result, moved.name) : source.clips.front();
   SkeletonMap map;
@@ -63,7 +64,7 @@ void run(const Options& options) {
   MotionMetrics metrics = measureMotion(setup, from, toPlain, &shownFrom, &shownTo);
   if (hasRig(asset)) metrics.selfPenetration = measureSelfPenetration(readSkinnedModel(asset), to.poses);
   if (!options.truth.empty()) {
-    const Motion truth = withClip(readMotion(options.truth), options.truth);
+    const Motion truth = asItRests(withClip(readMotion(options.truth), options.truth));
     PoseSequence right = sampleFrames(truth.skeleton, clipOfResult(truth, source, options.clip), rate);
     if (truth.skeleton.jointCount() != result.skeleton.jointCount()) {
       throw Error(ErrorCode::kBadArgument, "has another skeleton than the result", options.truth);

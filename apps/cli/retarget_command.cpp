@@ -104,12 +104,27 @@ void runRetarget(Options options) {
   tell(options, clips, warnings);
 }
 
+// What to do where a motion does not fit the rig that was made.
+std::string remedyFor(const std::vector<TemplateMatch>& matches) {
+  constexpr double kLooksLikeIt = 0.4;
+  if (matches.empty()) return "--rigger template gives joints names that motions know; or match by --map";
+  const TemplateMatch& best = matches.front();
+  if (best.confidence > kLooksLikeIt) {
+    return fmt::format("the model was rigged as {}, {:.0f} % sure: take a motion of such a body, or match by --map",
+                       best.name, 100 * best.confidence);
+  }
+  return "the model hardly looks like any template: turn it to stand upright with its arms away from the body, or "
+         "match "
+         "by --map";
+}
+
 void runAnimate(Options options) {
   prepare(options);
   TerminalProgress progress(options.common.quiet);
   progress->stage("read");
   Asset asset = readAsset(options.model);
   Warnings warnings = asset.warnings;
+  std::vector<TemplateMatch> matches;
   const bool rigged = canMove(asset);
   if (rigged) {
     options.retarget.turn = standUpright(asset, warnings);
@@ -117,16 +132,16 @@ void runAnimate(Options options) {
     AutoRigOptions rig;
     rig.rigger = options.rigger;
     rig.standUpright = true;
-    warnings = autoRig(asset, rig, *progress).warnings;
+    AutoRigReport report = autoRig(asset, rig, *progress);
+    warnings = std::move(report.warnings);
+    matches = std::move(report.matches);
   }
   std::vector<RetargetedClip> clips;
   try {
     clips = addMotions(asset, options, *progress, warnings);
   } catch (const Error& error) {
     if (rigged || error.code() != ErrorCode::kUnsupported) throw;
-    throw Error(error.code(), error.message(), error.where(),
-                "the joints of the automatic rig have no names that a motion knows: turn the model to stand upright "
-                "with its arms away from the body, or match by --map");
+    throw Error(error.code(), error.message(), error.where(), remedyFor(matches));
   }
   progress->stage("write");
   write(asset, options, clips);

@@ -242,7 +242,7 @@ SkeletonMap matchSkeletons(const Skeleton& source, const Skeleton& target) {
               fmt::format("the motion's skeleton of {} and the character's of {} have too little in common to "
                           "be matched by names or by form",
                           counted(source.jointCount(), "joint"), target.jointCount()),
-              "", "say in a map which joint follows which (docs/retargeting.md)");
+              "", "say in a map which joint follows which, as docs/retargeting.md tells");
 }
 
 void checkSkeletonMap(const SkeletonMap& map, const Skeleton& source, const Skeleton& target) {

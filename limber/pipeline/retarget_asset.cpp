@@ -5,6 +5,7 @@
 #include "limber/asset/clip_io.h"
 #include "limber/asset/motion_io.h"
 #include "limber/core/error.h"
+#include "limber/pipeline/stand_upright.h"
 #include "limber/skeleton/clip_edit.h"
 
 namespace limber {
@@ -33,10 +34,11 @@ bool canMove(const Asset& asset) {
   return hasRig(asset) || isSkeletonAlone(asset);
 }
 
-std::vector<RetargetedClip> retargetOnto(Asset& asset, const Motion& motion, const RetargetAssetOptions& options) {
+std::vector<RetargetedClip> retargetOnto(Asset& asset, const Motion& given, const RetargetAssetOptions& options) {
   const RetargetMethod& method = findRetargetMethod(options.method);
   if (!canMove(asset)) throw Error(ErrorCode::kUnsupported, "the model has no rig to move", asset.name);
-  if (motion.clips.empty()) throw Error(ErrorCode::kUnsupported, "holds no motion", motion.name);
+  if (given.clips.empty()) throw Error(ErrorCode::kUnsupported, "holds no motion", given.name);
+  const Motion motion = asItRests(given);
   const AssetSkeleton character = animatedSkeleton(asset);
   const SkeletonMap map = options.mapJson ? skeletonMapFromJson(*options.mapJson, motion.skeleton, character.skeleton)
                                           : matchSkeletons(motion.skeleton, character.skeleton);

@@ -9,6 +9,7 @@
 #include "limber/asset/turn_scene.h"
 #include "limber/ik/rotation.h"
 #include "limber/matching/neutral_pose.h"
+#include "limber/skeleton/clip_edit.h"
 
 namespace limber {
 
@@ -40,17 +41,18 @@ SkeletonMap matchToItself(const Skeleton& skeleton) {
   }
 }
 
-// Do most of the document's clips begin with one who stands along +Y?
-bool clipsStand(const Asset& asset) {
-  const Motion motion = motionOf(asset);
+// From a rest pose that lies to clips of which most begin with one who stands along +Y; else none.
+Quat turnOfClips(const Motion& motion) {
+  const std::optional<Vec3> up = standsAlong(motion.skeleton, restPose(motion.skeleton));
+  if (!up || isUpright(*up)) return Quat::Identity();
   std::size_t standing = 0;
   for (const Clip& clip : motion.clips) {
     Pose pose = restPose(motion.skeleton);
     sampleClip(clip, 0, pose);
-    const std::optional<Vec3> up = standsAlong(motion.skeleton, pose);
-    if (up && isUpright(*up)) ++standing;
+    const std::optional<Vec3> now = standsAlong(motion.skeleton, pose);
+    if (now && isUpright(*now)) ++standing;
   }
-  return 2 * standing > motion.clips.size();
+  return 2 * standing > motion.clips.size() ? turnOf(*up) : Quat::Identity();
 }
 
 std::optional<Vec3> restsAlong(const Asset& asset) {
@@ -83,7 +85,8 @@ void standUpright(Asset& asset, const Vec3& up, bool turn, Warnings& warnings) {
 Quat standUpright(Asset& asset, Warnings& warnings) {
   const std::optional<Vec3> up = restsAlong(asset);
   if (!up || isUpright(*up)) return Quat::Identity();
-  if (!clipsStand(asset)) {
+  const Quat turn = turnOfClips(motionOf(asset));
+  if (turn.isApprox(Quat::Identity())) {
     Json before = asset.json();
     Warnings turned;
     standUpright(asset, *up, true, turned);
@@ -96,6 +99,13 @@ Quat standUpright(Asset& asset, Warnings& warnings) {
   warnings.add(kTurned,
                fmt::format("the model rests along {}; the new clips are turned to stand along +Y", nameOfAxis(*up)));
   return turnOf(*up);
+}
+
+Motion asItRests(Motion motion) {
+  const Quat turn = turnOfClips(motion);
+  if (turn.isApprox(Quat::Identity())) return motion;
+  for (Clip& clip : motion.clips) clip = turnClip(std::move(clip), motion.skeleton, turn.conjugate());
+  return motion;
 }
 
 }  // namespace limber

@@ -5,6 +5,7 @@
 
 #include "limber/asset/asset.h"
 #include "limber/core/error.h"
+#include "limber/skeleton/motion.h"
 #include "limber/skeleton/pose.h"
 
 namespace limber {
@@ -20,5 +21,9 @@ void standUpright(Asset& asset, const Vec3& up, bool turn, Warnings& warnings);
 // The same of a document's own skeleton, before clips are added. Where its clips stand and its rest pose lies, or where
 // no node above it helps, the document stays as it is: these clips then need the turn that is given back, else none.
 Quat standUpright(Asset& asset, Warnings& warnings);
+
+// A motion whose clips stand along +Y while its rest pose lies: with its clips turned to lie as well, so that one is
+// measured against the other. Any other as it is.
+Motion asItRests(Motion motion);
 
 }  // namespace limber

@@ -106,6 +106,14 @@ TEST(StandUpright, NewClipsStandAsThoseThatAreThere) {
   }
 }
 
+TEST(StandUpright, SourcesThatLieAtRestMoveOthersUpright) {
+  for (const Vec3& up : kAxes) {
+    Asset asset = document(practiceHumanoid());
+    retargetOnto(asset, motionOf(document(personAlong(up), {standingStill()})), {});
+    EXPECT_TRUE(upOf(asset, 0.5)->isApprox(Vec3::UnitY(), 1e-6)) << up.transpose();
+  }
+}
+
 TEST(StandUpright, OnlyWarnsWhereItMayNotTurn) {
   Asset asset = document(personAlong(Vec3::UnitZ()));
   const Json before = asset.json();
