@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <map>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -17,15 +16,6 @@
 #include "shared_data.h"
 
 namespace limber::testing {
-
-namespace {
-
-// What does not hold yet: jerk of clip and target by any method, where names and legs differ. A fox that bows folds its
-// forelegs at the elbow, further than legs fold that bend at the knee alone.
-const std::map<std::string, double> kRougherStrangers = {
-    {"Fetch alpaca", 1.31}, {"Fetch cow", 1.29}, {"Fetch horse", 1.18}};
-
-}  // namespace
 
 // Of animals, over the joints that go with one of the source's each: how far those but of legs and tails are off the
 // turn that the source's make, degrees; and how deep the deepest but of tails, which may be longer, sinks below the
@@ -292,8 +282,7 @@ TEST(RetargetAnimals, QuadrupedsAreMatchedByTheirForm) {
           const MotionMetrics result = measured(setup, method, frames);
           const std::string pair =
               clip.name.substr(clip.name.find('|') + 1) + ' ' + animal.substr(animal.rfind('_') + 1);
-          const auto rougher = kRougherStrangers.find(pair);
-          EXPECT_LT(result.jerk, rougher == kRougherStrangers.end() ? 1.1 : rougher->second);
+          EXPECT_LT(result.jerk, 1.1);
           if (leavesItsFeet(clip.name) || clip.name == "Fall") continue;
           EXPECT_LT(result.sliding, std::max(0.02, result.sourceSliding + 1e-4));
           const bool sways = pair == "Walk wolf";  // its trunk further than the source's

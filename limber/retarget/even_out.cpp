@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "limber/limbs/limb_goals.h"
 #include "limber/limbs/limb_reach.h"
@@ -18,9 +19,9 @@ constexpr double kEven = 1.08;  // jerk, times the source's
 constexpr std::size_t kPartFrames = 1000;
 constexpr std::size_t kJoinedFrames = 3;  // at whose both ends nothing changes: third differences reach no further
 constexpr double kLoops = 0.02;           // of a limb's bones, between the directions in the first and the last frame
-// The changes' weights, in hip heights: steps of feet that stand, bounds, and frames that do not change.
-constexpr double kStandWeight = 1e8, kBoundWeight = 1e6, kPinWeight = 1e8;
-constexpr double kFirmUpTo = 1e6;  // the weight of jerk; the first two are more for more
+// Of what has to hold, against changes in hip heights: feet that stand, bounds, and frames that do not change.
+constexpr double kFirmWeight = 1e8;
+constexpr double kFirmUpTo = 1e6;  // the weight of jerk; it is more for more
 // Jerk counts as for changes that come and go in that time, seconds; ever longer until the motion is even.
 constexpr double kShortest = 0.007, kLongest = 1, kLonger = 1.2;
 // A foot of the source stands that is as low and as slow, hip heights (a second), seen over the step to a frame.
@@ -29,7 +30,7 @@ constexpr double kProbe = 1e-4;     // hip heights, to see how the bones follow 
 constexpr double kTooFar = 1e-5;    // likewise
 constexpr double kFurthest = 0.3;   // hip heights, of any change
 constexpr double kStretch = 0.998;  // of a leg's length
-constexpr int kBoundRounds = 4, kHalvings = 4;
+constexpr int kBoundRounds = 6, kHalvings = 4;
 constexpr std::array<double, 4> kThird = {-1, 3, -3, 1};
 
 // What has to hold for a foot in one frame.
@@ -38,6 +39,11 @@ struct FootFrame {
   double lowest = 0;        // change of its height, at most 0: hip heights
   Vec3 way = Vec3::Zero();  // from the hip, likewise
   double most = 0;          // that its leg reaches, likewise
+};
+
+// Which of its bounds keep it.
+struct Held {
+  bool up = false, near = false;
 };
 
 // The frames [begin, end) of a motion that are evened together.
@@ -66,8 +72,10 @@ class Evener {
     traceSource();
     const std::size_t frames = target_.poses.size(), count = (frames + kPartFrames - 1) / kPartFrames;
     for (std::size_t i = 0; i < count; ++i) {
-      part_ = {i * frames / count, (i + 1) * frames / count, i > 0, i + 1 < count};
+      const bool closes = loops_ && count > 1;
+      part_ = {i * frames / count, (i + 1) * frames / count, i > 0 || closes, i + 1 < count || closes};
       changes_.assign(part_.frames() * unknowns(), 0.0);
+      held_.assign(part_.frames() * legs_.size(), Held{});
       paths_ = pathsOf(changes_);
       if (ratio(paths_) <= kEven) continue;
       if (feet_.empty()) senseFeet();
@@ -76,15 +84,21 @@ class Evener {
   }
 
  private:
-  using Changes = std::vector<double>;  // of each frame: of the pelvis, of each foot; hip heights
+  // Of each frame: of the pelvis, of each foot, and how far the shoulders rise where the trunk tilts; hip heights.
+  using Changes = std::vector<double>;
+
+  using Slope = Eigen::Matrix<double, 3, 4>;  // by the foot's place and by the tilt
 
   // A leg's two bones among the paths.
   struct Bones {
     std::size_t leg = 0, first = 0;
   };
 
-  std::size_t unknowns() const { return 3 * (1 + legs_.size()); }
+  std::size_t unknowns() const { return tilt() + (trunk().tilts() ? 1 : 0); }
   std::size_t unknown(std::size_t frame, std::size_t what) const { return frame * unknowns() + 3 * what; }
+  std::size_t tilt() const { return 3 * (1 + legs_.size()); }
+  const TrunkTilt& trunk() const { return goals_.pelvis().trunk(); }
+  bool isTilted(std::size_t leg) const { return trunk().isFore(legs_[leg].upper); }
   Vec3 changeOf(const Changes& changes, std::size_t frame, std::size_t what) const {
     const std::size_t i = unknown(frame, what);
     return setup_.targetHipHeight * Vec3(changes[i], changes[i + 1], changes[i + 2]);
@@ -124,7 +138,6 @@ class Evener {
       const double seconds = f == 0 ? 0 : source_.frameSeconds;
       aligned.next(source_.poses[f], seconds, pose);
       goals_.calm(aligned.sourceFrame(), seconds, pose, aligned.targetFrame());
-      goals_.setFeet(aligned.sourceFrame(), aligned.targetFrame(), seconds);
       setup_.targetKinematics.globals(target_.poses[f], frame);
       for (std::size_t i = 0; i < legs_.size(); ++i) {
         const Leg& leg = legs_[i];
@@ -150,8 +163,8 @@ class Evener {
   // Height of the ankle at which one end of the foot is on the ground.
   static double lowestOf(const Leg& leg, const BodyFrame& frame) {
     const auto over = [&](Index toes) { return frame.positions[toes].y() - frame.positions[leg.end].y(); };
-    if (leg.toes) return std::max(leg.ankleFloor, leg.toesFloor - over(*leg.toes));
-    return leg.tip ? std::max(leg.ankleFloor, leg.toesGround - over(*leg.tip)) : leg.ankleFloor;
+    const std::optional<Index> toes = leg.toes ? leg.toes : leg.tip;
+    return toes ? std::max(leg.ankleGround, leg.toesGround - over(*toes)) : leg.ankleGround;
   }
   const FootFrame& foot(std::size_t frame, std::size_t leg) const {
     return feet_[(part_.begin + frame) * legs_.size() + leg];
@@ -165,6 +178,10 @@ class Evener {
       legs_[i].turn = Quat::Identity();
     }
     root_.movePelvis(changeOf(changes, frame, 0), pose, frame_);
+    if (trunk().tilts()) {
+      const double rise = setup_.targetHipHeight * changes[unknown(frame, 0) + tilt()];
+      root_.turnPelvis(trunk().turnFor(rise, frame_), pose, frame_);
+    }
     for (const Leg& leg : legs_) {
       if (!LimbReach::isThere(leg, frame_)) reach_.reach(leg, &leg.kneeAhead, frame_, pose);
     }
@@ -209,81 +226,115 @@ class Evener {
     for (std::size_t f = 0; f < part_.frames(); ++f) apply(changes_, f, target_.poses[part_.begin + f]);
   }
 
-  static double furthest(const Changes& changes) {
+  double furthest(const Changes& changes) const {
     double most = 0;
-    for (std::size_t i = 0; i < changes.size(); i += 3) {
-      most = std::max(most, std::hypot(changes[i], changes[i + 1], changes[i + 2]));
+    for (std::size_t f = 0; f < part_.frames(); ++f) {
+      for (std::size_t what = 0; what <= legs_.size(); ++what) {
+        most = std::max(most, changeOf(changes, f, what).norm() / setup_.targetHipHeight);
+      }
+      if (trunk().tilts()) most = std::max(most, std::abs(changes[unknown(f, 0) + tilt()]));
     }
     return most;
   }
 
   // The changes of the least sum, to first order about those that are.
   Changes smoothest(double jerkWeight) {
-    BandLeastSquares squares(changes_.size(), 4 * unknowns() - 1);
-    const double firm = std::max(1.0, jerkWeight / kFirmUpTo);
-    holdFeet(firm * kStandWeight, squares);
-    addJerk(jerkWeight, squares);
-    Changes changes = squares.solve();
-    std::vector<bool> held(2 * part_.frames() * legs_.size());
-    for (int round = 0; round < kBoundRounds && holdBounds(firm * kBoundWeight, changes, held, squares); ++round) {
+    const double firm = kFirmWeight * std::max(1.0, jerkWeight / kFirmUpTo);
+    BandLeastSquares free(changes_.size(), 4 * unknowns() - 1);
+    holdFeet(firm, free);
+    addJerk(jerkWeight, free);
+    Changes changes = changes_;
+    int round = 0;
+    do {
+      BandLeastSquares squares = free;
+      holdBounds(firm, changes, squares);
       changes = squares.solve();
-    }
+      if (loops_ && !part_.startsJoined) closeLoop(100 * firm, changes, squares);
+    } while (findBounds(changes) && ++round < kBoundRounds);
     return changes;
   }
 
-  void holdFeet(double standWeight, BandLeastSquares& squares) const {
+  void holdFeet(double firm, BandLeastSquares& squares) const {
     using Term = BandLeastSquares::Term;
     for (std::size_t f = 0; f < part_.frames(); ++f) {
-      const double weight = isPinned(f) ? kPinWeight : 1;
+      const double weight = isPinned(f) ? firm : 1;
       for (std::size_t i = unknown(f, 0); i < unknown(f + 1, 0); ++i) squares.add(std::array{Term{i, 1}}, 0, weight);
       if (f == 0 || cuts_[part_.begin + f]) continue;
       for (std::size_t leg = 0; leg < legs_.size(); ++leg) {
         if (!foot(f, leg).stands && !foot(f - 1, leg).stands) continue;
         for (std::size_t axis = 0; axis < 3; ++axis) {
           const std::array step = {Term{unknown(f, leg + 1) + axis, 1}, Term{unknown(f - 1, leg + 1) + axis, -1}};
-          squares.add(step, 0, standWeight);
+          squares.add(step, 0, firm);
         }
       }
     }
   }
 
   bool isPinned(std::size_t frame) const {
-    const std::size_t left = part_.frames() - 1 - frame;
-    const std::size_t before = part_.startsJoined ? kJoinedFrames : loops_ ? 1 : 0;
-    const std::size_t after = part_.endsJoined ? kJoinedFrames : loops_ ? 1 : 0;
-    return frame < before || left < after;
+    return (part_.startsJoined && frame < kJoinedFrames) ||
+           (part_.endsJoined && part_.frames() - 1 - frame < kJoinedFrames);
   }
 
-  // Adds what `changes` do not keep to: feet above their lowest, and within their legs' reach; false where there is
-  // nothing more.
-  bool holdBounds(double weight, const Changes& changes, std::vector<bool>& held, BandLeastSquares& squares) const {
+  // The first frame changes as the last one does: both halfway between what they would.
+  void closeLoop(double weight, Changes& changes, BandLeastSquares& squares) const {
+    const std::size_t last = unknown(part_.frames() - 1, 0);
+    for (std::size_t i = 0; i < unknowns(); ++i) {
+      const double middle = (changes[i] + changes[last + i]) / 2;
+      squares.add(std::array{BandLeastSquares::Term{i, 1}}, middle, weight);
+      squares.add(std::array{BandLeastSquares::Term{last + i, 1}}, middle, weight);
+    }
+    changes = squares.solve();
+  }
+
+  // Adds what `changes` do not keep to and what they did not keep to before: feet above their lowest, and within their
+  // legs' reach. False where there is nothing new.
+  bool findBounds(const Changes& changes) {
     bool more = false;
     for (std::size_t f = 0; f < part_.frames(); ++f) {
       for (std::size_t leg = 0; leg < legs_.size(); ++leg) {
         const FootFrame& bounds = foot(f, leg);
-        const std::size_t hip = unknown(f, 0), end = unknown(f, leg + 1), bound = 2 * (f * legs_.size() + leg);
-        if (!held[bound] && changes[end + 1] < bounds.lowest - kTooFar) {
-          held[bound] = more = true;
-          squares.add(std::array{BandLeastSquares::Term{end + 1, 1}}, bounds.lowest, weight);
-        }
-        Vec3 way = bounds.way;
-        for (std::size_t a = 0; a < 3; ++a) way[static_cast<Eigen::Index>(a)] += changes[end + a] - changes[hip + a];
-        if (held[bound + 1] || way.norm() < bounds.most + kTooFar) continue;
-        held[bound + 1] = more = true;
-        std::array<BandLeastSquares::Term, 6> along;
-        const Vec3 line = way.normalized();
-        for (std::size_t a = 0; a < 3; ++a) {
-          along[a] = {hip + a, -line[static_cast<Eigen::Index>(a)]};
-          along[a + 3] = {end + a, line[static_cast<Eigen::Index>(a)]};
-        }
-        squares.add(along, bounds.most - line.dot(bounds.way), weight);
+        Held& held = held_[f * legs_.size() + leg];
+        const bool under = changes[unknown(f, leg + 1) + 1] < bounds.lowest - kTooFar;
+        const bool beyond = wayOf(changes, f, leg).norm() > bounds.most + kTooFar;
+        more = more || (under && !held.up) || (beyond && !held.near);
+        held.up = held.up || under;
+        held.near = held.near || beyond;
       }
     }
     return more;
   }
 
+  void holdBounds(double weight, const Changes& about, BandLeastSquares& squares) const {
+    using Term = BandLeastSquares::Term;
+    for (std::size_t f = 0; f < part_.frames(); ++f) {
+      for (std::size_t leg = 0; leg < legs_.size(); ++leg) {
+        const FootFrame& bounds = foot(f, leg);
+        const Held& held = held_[f * legs_.size() + leg];
+        const std::size_t hip = unknown(f, 0), end = unknown(f, leg + 1);
+        if (held.up) squares.add(std::array{Term{end + 1, 1}}, bounds.lowest, weight);
+        if (!held.near) continue;
+        std::vector<Term> along;
+        const Vec3 line = wayOf(about, f, leg).normalized();
+        for (std::size_t a = 0; a < 3; ++a) {
+          along.push_back({hip + a, -line[static_cast<Eigen::Index>(a)]});
+          along.push_back({end + a, line[static_cast<Eigen::Index>(a)]});
+        }
+        if (isTilted(leg)) along.push_back({hip + tilt(), -line.y()});
+        squares.add(along, bounds.most - line.dot(bounds.way), weight);
+      }
+    }
+  }
+
+  // From the hip to the foot: hip heights.
+  Vec3 wayOf(const Changes& changes, std::size_t frame, std::size_t leg) const {
+    Vec3 way = foot(frame, leg).way +
+               (changeOf(changes, frame, leg + 1) - changeOf(changes, frame, 0)) / setup_.targetHipHeight;
+    if (isTilted(leg)) way.y() -= changes[unknown(frame, 0) + tilt()];
+    return way;
+  }
+
   void addJerk(double weight, BandLeastSquares& squares) {
-    const std::vector<std::array<Mat3, 2>> slopes = slopesOfBones();
+    const std::vector<std::array<Slope, 2>> slopes = slopesOfBones();
     std::vector<BandLeastSquares::Term> terms;
     for (std::size_t f = 3; f < part_.frames(); ++f) {
       if (!isWhole(cuts_, part_.begin + f)) continue;
@@ -299,7 +350,7 @@ class Evener {
           for (std::size_t axis = 0; axis < 3; ++axis) {
             terms.clear();
             for (std::size_t t = 0; t < 4; ++t) {
-              const Mat3& slope = slopes[(f - 3 + t) * bones_.size() + b][bone];
+              const Slope& slope = slopes[(f - 3 + t) * bones_.size() + b][bone];
               addBone(f - 3 + t, bones_[b].leg, kThird[t] * slope.row(static_cast<Eigen::Index>(axis)), terms);
             }
             addThird(rough, axis, terms, weight, squares);
@@ -310,13 +361,14 @@ class Evener {
   }
 
   // It turns by the foot's way against the hip.
-  void addBone(std::size_t frame, std::size_t leg, const Eigen::RowVector3d& slope,
+  void addBone(std::size_t frame, std::size_t leg, const Eigen::RowVector4d& slope,
                std::vector<BandLeastSquares::Term>& terms) const {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double value = slope[static_cast<Eigen::Index>(axis)];
       terms.push_back({unknown(frame, 0) + axis, -value});
       terms.push_back({unknown(frame, leg + 1) + axis, value});
     }
+    if (isTilted(leg)) terms.push_back({unknown(frame, 0) + tilt(), slope[3]});
   }
 
   // One axis of a third difference as the changes would have it; it is `now`.
@@ -327,13 +379,14 @@ class Evener {
     squares.add(terms, changed, weight);
   }
 
-  // Of every leg's bones by the place of its foot, frame by frame: hip heights.
-  std::vector<std::array<Mat3, 2>> slopesOfBones() {
-    std::vector<std::array<Mat3, 2>> slopes(part_.frames() * bones_.size());
-    for (std::size_t axis = 0; axis < 3; ++axis) {
+  // Of every leg's bones by the place of its foot and by the tilt, frame by frame: hip heights.
+  std::vector<std::array<Slope, 2>> slopesOfBones() {
+    std::vector<std::array<Slope, 2>> slopes(part_.frames() * bones_.size(), {Slope::Zero(), Slope::Zero()});
+    for (std::size_t axis = 0; axis < (trunk().tilts() ? 4 : 3); ++axis) {
       Changes probed = changes_;
       for (std::size_t f = 0; f < part_.frames(); ++f) {
-        for (std::size_t leg = 0; leg < legs_.size(); ++leg) probed[unknown(f, leg + 1) + axis] += kProbe;
+        for (std::size_t leg = 0; leg < legs_.size() && axis < 3; ++leg) probed[unknown(f, leg + 1) + axis] += kProbe;
+        if (axis == 3) probed[unknown(f, 0) + tilt()] += kProbe;
       }
       const std::vector<Path> there = pathsOf(probed);
       for (std::size_t i = 0; i < slopes.size(); ++i) {
@@ -361,6 +414,7 @@ class Evener {
   std::vector<FootFrame> feet_;  // of each frame, of each leg; empty until they are needed
   Part part_;
   Changes changes_;
+  std::vector<Held> held_;   // of each frame of the part, of each leg
   std::vector<Path> paths_;  // of the part with these changes
   Pose pose_;
   BodyFrame frame_;
