@@ -43,8 +43,8 @@ SkeletonMap matchToItself(const Skeleton& skeleton) {
 
 // From a rest pose that lies to clips of which most begin with one who stands along +Y; else none.
 Quat turnOfClips(const Motion& motion) {
-  const std::optional<Vec3> up = standsAlong(motion.skeleton, restPose(motion.skeleton));
-  if (!up || isUpright(*up)) return Quat::Identity();
+  const Quat turn = turnToStand(motion.skeleton);
+  if (turn.isApprox(Quat::Identity())) return turn;
   std::size_t standing = 0;
   for (const Clip& clip : motion.clips) {
     Pose pose = restPose(motion.skeleton);
@@ -52,7 +52,7 @@ Quat turnOfClips(const Motion& motion) {
     const std::optional<Vec3> now = standsAlong(motion.skeleton, pose);
     if (now && isUpright(*now)) ++standing;
   }
-  return 2 * standing > motion.clips.size() ? turnOf(*up) : Quat::Identity();
+  return 2 * standing > motion.clips.size() ? turn : Quat::Identity();
 }
 
 std::optional<Vec3> restsAlong(const Asset& asset) {
@@ -70,6 +70,11 @@ std::optional<Vec3> standsAlong(const Skeleton& skeleton, const Pose& pose) {
   }
   if (!standsUpright(skeleton, pose, map, MapSide::kTarget)) return {};
   return neutralPose(skeleton, pose, map, MapSide::kTarget).toBody.conjugate() * Vec3::UnitY();
+}
+
+Quat turnToStand(const Skeleton& skeleton) {
+  const std::optional<Vec3> up = standsAlong(skeleton, restPose(skeleton));
+  return up && !isUpright(*up) ? turnOf(*up) : Quat::Identity();
 }
 
 void standUpright(Asset& asset, const Vec3& up, bool turn, Warnings& warnings) {
@@ -102,9 +107,8 @@ Quat standUpright(Asset& asset, Warnings& warnings) {
 }
 
 Motion asItRests(Motion motion) {
-  const Quat turn = turnOfClips(motion);
-  if (turn.isApprox(Quat::Identity())) return motion;
-  for (Clip& clip : motion.clips) clip = turnClip(std::move(clip), motion.skeleton, turn.conjugate());
+  const Quat back = turnOfClips(motion).conjugate();
+  for (Clip& clip : motion.clips) clip = turnClip(std::move(clip), motion.skeleton, back);
   return motion;
 }
 

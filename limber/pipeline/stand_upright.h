@@ -14,6 +14,9 @@ namespace limber {
 // feet lie to the same side of the hips.
 std::optional<Vec3> standsAlong(const Skeleton& skeleton, const Pose& pose);
 
+// What turns one who stands along another axis in rest pose to stand along +Y; none for all others.
+Quat turnToStand(const Skeleton& skeleton);
+
 // Turns a document whose person stands along `up` by a node above it (turnScene), with a warning "turned-upright";
 // where `turn` is false there is only the warning "not-upright". Nothing where up is about +Y.
 void standUpright(Asset& asset, const Vec3& up, bool turn, Warnings& warnings);

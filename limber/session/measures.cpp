@@ -8,6 +8,7 @@
 
 #include "limber/core/error.h"
 #include "limber/matching/plain_skeleton.h"
+#include "limber/pipeline/stand_upright.h"
 #include "limber/retarget/retarget_clip.h"
 #include "limber/skeleton/motion.h"
 
@@ -91,12 +92,16 @@ std::optional<MotionMetrics> measureClip(const SessionState& state) {
   if (!movement.chosen || !movement.clips[*movement.chosen].source) return std::nullopt;
   const ClipSource& source = *movement.clips[*movement.chosen].source;
   const Skeleton &from = source.motion->skeleton, &to = state.rig->skeleton();
-  const Clip& original = source.motion->clips[source.clip];
+  const Clip original = asItRests(*source.motion).clips[source.clip];
+  Motion result;
+  result.skeleton = to;
+  result.clips.push_back(*movement.clip());
+  const Clip moved = asItRests(std::move(result)).clips.front();
   try {
     const double rate = frameRateOf(original);
     const PlainSkeleton plainFrom(from), plainTo(to);
     const PoseSequence theirs = plainFrom.plain(sampleFrames(from, original, rate));
-    PoseSequence ours = plainTo.plain(sampleFrames(to, *movement.clip(), rate));
+    PoseSequence ours = plainTo.plain(sampleFrames(to, moved, rate));
     ours.poses.resize(theirs.poses.size(), ours.poses.back());
     const RetargetSetup setup(plainFrom.skeleton(), plainTo.skeleton(), source.map, {}, &theirs);
     return measureMotion(setup, theirs, ours);

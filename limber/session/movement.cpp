@@ -7,9 +7,11 @@
 #include <fmt/format.h>
 
 #include "limber/core/error.h"
+#include "limber/pipeline/stand_upright.h"
 #include "limber/retarget/retarget_clip.h"
 #include "limber/retarget/retarget_method.h"
 #include "limber/session/pose_transfer.h"
+#include "limber/skeleton/clip_edit.h"
 #include "limber/skeleton/keyframes.h"
 
 namespace limber {
@@ -77,13 +79,13 @@ std::size_t clipOfMotion(const Motion& motion, const std::string& name) {
 }
 
 Clip retargeted(const ClipSource& source, const Skeleton& skeleton) {
-  const Motion& motion = *source.motion;
-  const Clip& clip = motion.clips[source.clip];
+  const Motion motion = asItRests(*source.motion);
   RetargetOptions options;
   options.reach = source.command.reach;
   options.contacts = source.command.contacts;
-  return retargetClip(findRetargetMethod(source.command.method), motion.skeleton, clip, skeleton, source.map, options,
-                      frameRateOf(motion, source.clip));
+  Clip clip = retargetClip(findRetargetMethod(source.command.method), motion.skeleton, motion.clips[source.clip],
+                           skeleton, source.map, options, frameRateOf(motion, source.clip));
+  return turnClip(std::move(clip), skeleton, turnToStand(skeleton));
 }
 
 // The same source for other joints. A map made by hand holds where all its joints are there still, else joints are

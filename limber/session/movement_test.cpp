@@ -6,8 +6,12 @@
 
 #include "limber/asset/clip_io.h"
 #include "limber/asset/json_text.h"
+#include "limber/asset/read.h"
+#include "limber/asset/turn_scene.h"
+#include "limber/asset/write.h"
 #include "limber/core/error.h"
 #include "limber/core/file.h"
+#include "limber/session/measures.h"
 #include "limber/session/session.h"
 #include "limber/session/session_state.h"
 #include "limber/session/testing/models.h"
@@ -19,8 +23,16 @@ namespace {
 
 using ::testing::ElementsAre;
 
+// The person lies on its face, as in a file with Z up.
+Bytes lyingGlb() {
+  Asset asset = readAsset(testing::namedPersonGlb(), "person.glb");
+  turnScene(asset, testing::turn(Vec3::UnitX(), 90), "z_up");
+  return writeGlb(asset);
+}
+
 std::optional<Bytes> movingFiles(std::string_view path) {
   if (path == "person.glb") return testing::namedPersonGlb();
+  if (path == "lying.glb") return lyingGlb();
   return path == "walk.bvh" ? std::optional<Bytes>(testing::walkBvh()) : std::nullopt;
 }
 
@@ -71,6 +83,25 @@ TEST(Movement, AMotionOntoAModelIsAClipThatCanBeScrubbed) {
   act(session, Undo{});
   EXPECT_TRUE(session.state().movement.clips.empty());
   EXPECT_TRUE(samePose(session.state().pose, before));
+}
+
+TEST(Movement, OneWhoLiesAtRestStandsInMotion) {
+  const auto headOverHips = [](const Session& session, const Pose& pose) -> Vec3 {
+    const Skeleton& skeleton = session.state().rig->skeleton();
+    const std::vector<Affine> globals = poseGlobals(skeleton, pose);
+    const auto at = [&](const char* joint) { return globals[skeleton.find(joint).value()].translation(); };
+    return (at("head") - at("hips")).normalized();
+  };
+  Session session(movingFiles);
+  act(session, OpenFile{"lying.glb"});
+  EXPECT_GT(headOverHips(session, restPose(session.state().rig->skeleton())).z(), 0.9);
+  act(session, AddMotion{"walk.bvh"});
+  act(session, RetargetMotion{.motion = "walk", .clip = {}, .map = {}});
+  act(session, SetTime{0.3});
+  EXPECT_GT(headOverHips(session, session.state().pose).y(), 0.9);
+  const SessionMeasures measures = measureSession(session), upright = measureSession(walking());
+  ASSERT_TRUE(measures.motion && upright.motion);
+  EXPECT_NEAR(measures.motion->boneDirection, upright.motion->boneDirection, 0.1);
 }
 
 TEST(Movement, SampleMotionsNeedNoFile) {

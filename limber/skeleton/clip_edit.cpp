@@ -213,6 +213,7 @@ Clip trimClip(const Clip& clip, double from, double to) {
 }
 
 Clip turnClip(Clip clip, const Skeleton& skeleton, const Quat& turn) {
+  if (turn.coeffs() == Quat::Identity().coeffs()) return clip;
   const auto ofJoint = [](auto& tracks, Index joint, const auto& rest) -> auto& {
     const auto has = [&](const auto& track) { return track.joint == joint; };
     const auto known = std::find_if(tracks.begin(), tracks.end(), has);

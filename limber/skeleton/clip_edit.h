@@ -15,7 +15,7 @@ Clip resampleClip(const Clip& clip, double framesPerSecond);
 // unless from < to and something of the clip lies between.
 Clip trimClip(const Clip& clip, double from, double to);
 
-// The whole movement turned about the origin: its roots, also those without a track.
+// The whole movement turned about the origin: its roots, also those without a track. No turn changes nothing.
 Clip turnClip(Clip clip, const Skeleton& skeleton, const Quat& turn);
 
 // A pose between two: translations and scales linearly, rotations the short way. weight 0 is a, 1 is b. Equal sizes.

@@ -33,9 +33,9 @@ export function facts(page: PageStore): HTMLElement {
   const line = element('p', { class: 'facts', id: 'facts' });
   page.watch(({ session }) => {
     if (!session) return;
-    const repairs = session.warnings.map(({ count, message }) => (count === 1 ? message : `${message} (${count})`)).join('; ');
+    const warnings = session.warnings.map(({ count, message }) => (count === 1 ? message : `${message} (${count})`)).join('; ');
     line.textContent = `${counted(session.vertices, 'vertex', 'vertices')}, ${counted(session.triangles, 'triangle')}`
-      + (session.own_rig ? ', its own rig' : '') + (repairs === '' ? '' : `. Repaired: ${repairs}`);
+      + (session.own_rig ? ', its own rig' : '') + (warnings === '' ? '' : `. Warnings: ${warnings}`);
     line.title = line.textContent;
   });
   return line;
