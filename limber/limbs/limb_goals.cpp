@@ -31,7 +31,8 @@ constexpr double kTipLies = 0.05;   // over the ground: from there on toes that 
 constexpr double kCarriedUp = 0.5;  // share of its hip's way up that a person's free foot takes part in
 // Of legs whose feet go their own way.
 constexpr double kSoftLeg = 0.03, kSoftStanding = 0.003;  // of the most that a leg reaches, leg lengths
-constexpr double kSlipSpeed = 0.65, kSlipPower = 3;       // hip heights a second at which planted feet slip by half
+constexpr double kFaces = 0.5;  // squared cosine of half the angle by which a body leans that still faces a way
+constexpr double kSlipSpeed = 0.65, kSlipPower = 3;  // hip heights a second at which planted feet slip by half
 constexpr double kBentInRest = 0.01;  // of an animal's leg's length: a knee off its line by that tells where it bends
 constexpr double kBendsAlike = 0.05;  // likewise: the source's joint of that name bends to the same side
 constexpr double kSteep = 1.7, kSoleUp = 2.4, kSoftLevel = 0.05;  // radians that toes point down
@@ -95,11 +96,24 @@ void LimbGoals::addAnimalsLegs(const RootPlacer& root) {
     leg.fore = pelvis_.trunk().isFore(leg.upper);
     leg.ownWay = root.goesOwnWay(found);
     leg.ownBend = leg.ownWay || bendAtRest(found.source, setup_.sourceNeutral).dot(leg.kneeAhead) < kBendsAlike;
+    if (leg.ownWay) leg.sourceBody = sourceBodyOf(found);
     leg.toes = found.target.toes;
     leg.sourceToes = found.source.toes;
     addLeg(leg);
     if (leg.ownWay) feelers_.back().bend.emplace(setup_, found);
   }
+}
+
+std::optional<Index> LimbGoals::sourceBodyOf(const AnimalLeg& leg) const {
+  const Skeleton& source = *setup_.source;
+  const auto carriesOther = [&](Index joint) {
+    return std::any_of(setup_.animalLegs.begin(), setup_.animalLegs.end(), [&](const AnimalLeg& other) {
+      return other.source.upper != leg.source.upper && isAncestorOrSelf(source, joint, other.source.upper);
+    });
+  };
+  std::optional<Index> body = source.joints[leg.source.upper].parent;
+  while (body && !carriesOther(*body)) body = source.joints[*body].parent;
+  return body;
 }
 
 // Nothing to correct where both neutral poses are one.
@@ -168,19 +182,36 @@ void LimbGoals::feel(Leg& leg, Feeler& feeler, const BodyFrame& source, const Bo
   if (leg.ownWay) feelOwnWay(leg, feeler, source, seconds);
 }
 
-// A longer or shorter trunk that turns takes the hips further or less far, and the feet with them.
+// Seen from its hip, which a longer or shorter trunk that turns takes further or less far; how it stands under it at
+// rest turns with the body. Up and down the source's way.
 Vec3 LimbGoals::ownPlace(const Leg& leg, const BodyFrame& source, const BodyFrame& target) const {
   const std::vector<Vec3>&from = setup_.sourceNeutral.restPositions, &to = setup_.targetNeutral.restPositions;
-  const Vec3 hipWay = source.positions[leg.sourceUpper] - from[leg.sourceUpper];
-  const Vec3 further = target.positions[leg.upper] - to[leg.upper] - setup_.scale * hipWay;
-  return to[leg.end] + setup_.scale * (source.positions[leg.sourceEnd] - from[leg.sourceEnd]) +
-         Vec3(further.x(), 0, further.z());
+  const Vec3 atRest = to[leg.end] - to[leg.upper] - setup_.scale * (from[leg.sourceEnd] - from[leg.sourceUpper]);
+  const Vec3 way = setup_.scale * (source.positions[leg.sourceEnd] - source.positions[leg.sourceUpper]);
+  Vec3 place = target.positions[leg.upper] + way + turnedAsBody(atRest, leg, source);
+  place.y() = to[leg.end].y() + setup_.scale * (source.positions[leg.sourceEnd] - from[leg.sourceEnd]).y();
+  return place;
+}
+
+// About the vertical, as the source's body is where the leg hangs on it. One that lies on its back faces nowhere.
+Vec3 LimbGoals::turnedAsBody(const Vec3& way, const Leg& leg, const BodyFrame& source) const {
+  const Quat turn = turnOfBody(leg, source);
+  const double size = turn.w() * turn.w() + turn.y() * turn.y();
+  if (!(size > 0)) return Vec3::Zero();
+  return smoothStep(size / kFaces) * (Quat(turn.w(), 0, turn.y(), 0).normalized() * way);
+}
+
+Quat LimbGoals::turnOfBody(const Leg& leg, const BodyFrame& source) const {
+  if (!leg.sourceBody) return Quat::Identity();
+  return source.rotations[*leg.sourceBody] * setup_.sourceNeutral.rotations[*leg.sourceBody].conjugate();
 }
 
 // It stands about as still as the source's: what moves there is meant to.
 void LimbGoals::feelOwnWay(Leg& leg, Feeler& feeler, const BodyFrame& source, double seconds) const {
   leg.lift = (source.positions[leg.sourceEnd].y() - leg.sourceAnkleGround) / setup_.sourceHipHeight;
   leg.bentReach = feeler.bend->reach(source);
+  const double leans = (turnOfBody(leg, source) * Vec3::UnitX()).y();
+  leg.upright = 1 - leans * leans;
   const Vec3 way = source.positions[leg.sourceEnd] - feeler.sourceEnd;
   const double speed = seconds > 0 ? std::hypot(way.x(), way.z()) / (seconds * setup_.sourceHipHeight) : 0;
   feeler.foot.slip = 1 / (1 + std::pow(kSlipSpeed / speed, kSlipPower));

@@ -80,6 +80,9 @@ class LimbGoals {
   void addLeg(Leg leg);
   void sense(Leg& leg, Feeler& feeler, const BodyFrame& source, double seconds) const;
   void feel(Leg& leg, Feeler& feeler, const BodyFrame& source, const BodyFrame& target, double seconds) const;
+  std::optional<Index> sourceBodyOf(const AnimalLeg& leg) const;
+  Quat turnOfBody(const Leg& leg, const BodyFrame& source) const;
+  Vec3 turnedAsBody(const Vec3& way, const Leg& leg, const BodyFrame& source) const;
   Vec3 ownPlace(const Leg& leg, const BodyFrame& source, const BodyFrame& target) const;
   void feelOwnWay(Leg& leg, Feeler& feeler, const BodyFrame& source, double seconds) const;
   static void followFall(double down, double seconds, Fall& fall);

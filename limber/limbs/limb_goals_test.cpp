@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limber/matching/quadruped_shape.h"
 #include "limber/matching/testing/test_motion.h"
 
 namespace limber {
@@ -70,6 +71,32 @@ TEST(LimbGoals, LegsOfLiftedFeetOnRootsOfTheirOwnBendAsTheSources) {
   EXPECT_NEAR(bentBy(0, 0.4), 1, 0.01) << "what stands goes its own way";
   EXPECT_NEAR(bentBy(0.5, 0), 0.4 / 0.9, 0.02) << "all of the source's bend";
   EXPECT_LT(bentBy(0, -1), 1.8 / 2.8) << "no further than a leg reaches";
+}
+
+// Of quadrupeds that were matched by their form; the other's paws stand further ahead at rest.
+TEST(LimbGoals, WhoTurnsRoundStandsThereAsBefore) {
+  const Skeleton animal = limber::testing::quadruped(0.5);
+  Skeleton other = animal;
+  for (Joint& joint : other.joints) {
+    if (joint.name.ends_with("Three")) joint.rest.translation.z() += 0.2;
+  }
+  const RetargetSetup setup(animal, other, matchQuadrupeds(animal, other).value(), {});
+  const RootPlacer root(setup);
+  LimbGoals goals(setup, root);
+  Pose from = restPose(animal), to = restPose(other);
+  const Quat round = limber::testing::turn(Vec3::UnitY(), 120);
+  from.locals[0].rotation = to.locals[0].rotation = round;
+  BodyFrame source, target;
+  setup.sourceKinematics.globals(from, source);
+  setup.targetKinematics.globals(to, target);
+  goals.calm(source, 0, to, target);
+  goals.setFeet(source, target, 0);
+  ASSERT_EQ(goals.legs().size(), 4u);
+  const std::vector<Vec3>& rest = setup.targetNeutral.restPositions;
+  for (const Leg& leg : goals.legs()) {
+    const Vec3 stands = round * (rest[leg.end] - rest[leg.upper]), goal = leg.goal - target.positions[leg.upper];
+    EXPECT_LT((goal - stands).norm(), 0.01);
+  }
 }
 
 // A paw that shoots up by half a leg is still held in the first frame after: the others' legs keep their bend.

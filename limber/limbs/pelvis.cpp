@@ -35,7 +35,7 @@ double saturated(double x, double most) {
 
 // Share to which the body makes up for what the leg lacks to reach its goal.
 double followed(const Leg& leg) {
-  return leg.ownWay ? smoothStep(1 - leg.lift / kLifted) : 1;
+  return leg.ownWay ? leg.upright * smoothStep(1 - leg.lift / kLifted) : 1;
 }
 
 double hipWidth(const NeutralPose& neutral, Index left, Index right) {
@@ -146,7 +146,8 @@ double Pelvis::ownWaysShift(std::span<const Leg> legs, const BodyFrame& frame) c
     const Vec3 way = leg.goal - frame.positions[leg.upper];
     const double reach = leg.bentReach, across = std::hypot(way.x(), way.z());
     if (across >= reach) continue;
-    const double weight = smoothStep(1 - leg.lift / kStandsBelow) * (1 - across * across / (reach * reach));
+    const double weight =
+        leg.upright * smoothStep(1 - leg.lift / kStandsBelow) * (1 - across * across / (reach * reach));
     const double up = way.y() + std::sqrt(reach * reach - across * across);
     sum += weight * std::exp(-saturated(up, kMostShift * setup_.targetHipHeight) / soft);
     weights += weight;

@@ -172,32 +172,55 @@ TEST(Pelvis, NothingJumpsWhereALegBecomesTooShort) {
   }
 }
 
-// Of a quadruped that was matched by its form, whose forelegs bend as the source's kneels.
-TEST(Pelvis, HipsAndShouldersFollowTheirOwnLegs) {
-  const Skeleton animal = limber::testing::quadruped(0.5), other = limber::testing::quadruped(0.4);
-  const RetargetSetup setup(animal, other, matchQuadrupeds(animal, other).value(), {});
-  const RootPlacer root(setup);
-  LimbGoals goals(setup, root);
-  BodyFrame source, target;
-  Pose pose = restPose(other);
-  setup.sourceKinematics.globals(restPose(animal), source);
-  setup.targetKinematics.globals(pose, target);
-  goals.calm(source, 0, pose, target);
-  goals.setFeet(source, target, 0);
-  for (Leg& leg : goals.legs()) {
-    EXPECT_EQ(leg.fore, other.joints[leg.upper].name.starts_with("b1"));
+// A quadruped that was matched by its form.
+class PelvisOfFour : public ::testing::Test {
+ protected:
+  // Both in rest pose but for that turn.
+  void pose(const Quat& turned) {
+    Pose from = restPose(animal_);
+    to_ = restPose(other_);
+    from.locals[0].rotation = to_.locals[0].rotation = turned;
+    setup_.sourceKinematics.globals(from, source_);
+    setup_.targetKinematics.globals(to_, frame_);
+    goals_.calm(source_, 0, to_, frame_);
+    goals_.setFeet(source_, frame_, 0);
+    before_ = frame_;
+  }
+  double upAt(const Leg& leg) const { return (frame_.positions[leg.upper] - before_.positions[leg.upper]).y(); }
+
+  const Skeleton animal_ = limber::testing::quadruped(0.5), other_ = limber::testing::quadruped(0.4);
+  const RetargetSetup setup_{animal_, other_, matchQuadrupeds(animal_, other_).value(), {}};
+  const RootPlacer root_{setup_};
+  LimbGoals goals_{setup_, root_};
+  Pose to_;
+  BodyFrame source_, frame_, before_;
+};
+
+TEST_F(PelvisOfFour, HipsAndShouldersFollowTheirOwnLegs) {
+  pose(Quat::Identity());
+  for (Leg& leg : goals_.legs()) {
+    EXPECT_EQ(leg.fore, other_.joints[leg.upper].name.starts_with("b1"));
     if (leg.fore) leg.bentReach *= 0.8;
   }
-  const BodyFrame before = target;
-  goals.pelvis().apply(goals.pelvisMove(target), pose, target);
-  for (const Leg& leg : goals.legs()) {
-    const double up = (target.positions[leg.upper] - before.positions[leg.upper]).y();
+  goals_.pelvis().apply(goals_.pelvisMove(frame_), to_, frame_);
+  for (const Leg& leg : goals_.legs()) {
     if (leg.fore) {
-      EXPECT_LT(up, -0.1);
+      EXPECT_LT(upAt(leg), -0.1);
     } else {
-      EXPECT_NEAR(up, 0, 0.02);
+      EXPECT_NEAR(upAt(leg), 0, 0.02);
     }
   }
+}
+
+TEST_F(PelvisOfFour, WhoLiesOnOneSideIsNotMovedByLegs) {
+  pose(turn(Vec3::UnitZ(), 90));
+  for (Leg& leg : goals_.legs()) {
+    EXPECT_NEAR(leg.upright, 0, 1e-6);
+    leg.bentReach *= 1.3;
+    leg.goal += Vec3(0, 0.4, 0);
+  }
+  goals_.pelvis().apply(goals_.pelvisMove(frame_), to_, frame_);
+  for (const Leg& leg : goals_.legs()) EXPECT_NEAR(upAt(leg), 0, 1e-6);
 }
 
 }  // namespace

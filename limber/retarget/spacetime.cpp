@@ -64,7 +64,7 @@ struct FootFrame {
   bool flat = false;
   double ankleFloor = 0, toesFloor = 0;
   bool ownWay = false;  // likewise in Leg, with what follows
-  double bentReach = 0, lift = 0;
+  double bentReach = 0, lift = 0, upright = 1;
 };
 
 class Spacetime {
@@ -140,6 +140,7 @@ class Spacetime {
         foot.ownWay = leg.ownWay;
         foot.bentReach = leg.bentReach;
         foot.lift = leg.lift;
+        foot.upright = leg.upright;
         foot.toesFloor = -std::numeric_limits<double>::infinity();
         if (!leg.toes) continue;
         foot.roll = to.positions[*leg.toes] - to.positions[leg.end];
@@ -220,6 +221,7 @@ class Spacetime {
       leg.goal = feet_[i][f].ankle + plans_[i].way.at(f);
       leg.bentReach = feet_[i][f].bentReach;
       leg.lift = feet_[i][f].lift;
+      leg.upright = feet_[i][f].upright;
       leg.turn = Eigen::AngleAxisd(plans_[i].twist[f], Vec3::UnitY());
       leg.planted = std::clamp(plans_[i].planted[f], 0.0, 1.0);
     }
