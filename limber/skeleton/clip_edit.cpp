@@ -212,23 +212,31 @@ Clip trimClip(const Clip& clip, double from, double to) {
   return changed(clip, [&](const auto& track) { return trimmed(track, begin, end); });
 }
 
+namespace {
+
+// The joint's track, where there is none one that keeps it in rest pose.
+template <typename Value>
+Track<Value>& trackOf(std::vector<Track<Value>>& tracks, Index joint, const Value& rest) {
+  const auto has = [&](const Track<Value>& track) { return track.joint == joint; };
+  const auto known = std::find_if(tracks.begin(), tracks.end(), has);
+  if (known != tracks.end()) return *known;
+  tracks.push_back({joint, Interpolation::kLinear, {0.0f}, {rest}});
+  return tracks.back();
+}
+
+}  // namespace
+
 Clip turnClip(Clip clip, const Skeleton& skeleton, const Quat& turn) {
   if (turn.coeffs() == Quat::Identity().coeffs()) return clip;
-  const auto ofJoint = [](auto& tracks, Index joint, const auto& rest) -> auto& {
-    const auto has = [&](const auto& track) { return track.joint == joint; };
-    const auto known = std::find_if(tracks.begin(), tracks.end(), has);
-    return known != tracks.end()
-               ? *known
-               : tracks.emplace_back(joint, Interpolation::kLinear, std::vector{0.0f}, std::vector{rest});
-  };
   for (Index j = 0; j < skeleton.jointCount(); ++j) {
     if (skeleton.joints[j].parent) continue;
     const Transform& rest = skeleton.joints[j].rest;
-    for (Eigen::Quaternionf& value :
-         ofJoint(clip.rotations, j, Eigen::Quaternionf(rest.rotation.cast<float>())).values) {
+    const Eigen::Quaternionf rotation = rest.rotation.cast<float>();
+    const Vec3f translation = rest.translation.cast<float>();
+    for (Eigen::Quaternionf& value : trackOf(clip.rotations, j, rotation).values) {
       value = (turn * value.cast<double>()).cast<float>();
     }
-    for (Vec3f& value : ofJoint(clip.translations, j, Vec3f(rest.translation.cast<float>())).values) {
+    for (Vec3f& value : trackOf(clip.translations, j, translation).values) {
       value = (turn * value.cast<double>()).cast<float>();
     }
   }
