@@ -24,9 +24,11 @@ constexpr double kFirmWeight = 1e8;
 constexpr double kFirmUpTo = 1e6;  // the weight of jerk; it is more for more
 // Jerk counts as for changes that come and go in that time, seconds; ever longer until the motion is even.
 constexpr double kShortest = 0.007, kLongest = 1, kLonger = 1.2;
+constexpr double kFramesApart = 30;  // likewise, frames: weights of any size cannot be told apart
 // A foot of the source stands that is as low and as slow, hip heights (a second), seen over the step to a frame.
 constexpr double kLow = 0.05, kSlow = 0.15;
 constexpr double kProbe = 1e-4;     // hip heights, to see how the bones follow a foot
+constexpr double kMissed = 1e-3;    // likewise, by a foot that stands and that its leg does not reach
 constexpr double kTooFar = 1e-5;    // likewise
 constexpr double kFurthest = 0.3;   // hip heights, of any change
 constexpr double kStretch = 0.998;  // of a leg's length
@@ -182,13 +184,17 @@ class Evener {
       const double rise = setup_.targetHipHeight * changes[unknown(frame, 0) + tilt()];
       root_.turnPelvis(trunk().turnFor(rise, frame_), pose, frame_);
     }
-    for (const Leg& leg : legs_) {
-      if (!LimbReach::isThere(leg, frame_)) reach_.reach(leg, &leg.kneeAhead, frame_, pose);
+    for (std::size_t i = 0; i < legs_.size(); ++i) {
+      if (LimbReach::isThere(legs_[i], frame_)) continue;
+      reach_.reach(legs_[i], &legs_[i].kneeAhead, frame_, pose);
+      const double missed = (legs_[i].goal - frame_.positions[legs_[i].end]).norm() / setup_.targetHipHeight;
+      if (foot(frame, i).stands) missed_ = std::max(missed_, missed);
     }
   }
 
   std::vector<Path> pathsOf(const Changes& changes) {
     BodyPaths body(setup_, MapSide::kTarget);
+    missed_ = 0;
     for (std::size_t f = 0; f < part_.frames(); ++f) {
       pose_ = target_.poses[part_.begin + f];
       apply(changes, f, pose_);
@@ -207,7 +213,8 @@ class Evener {
 
   void evenPart() {
     double rough = ratio(paths_);
-    for (double seconds = kShortest; seconds < kLongest && rough > kEven; seconds *= kLonger) {
+    const double longest = std::min(kLongest, kFramesApart * source_.frameSeconds);
+    for (double seconds = kShortest; seconds < longest && rough > kEven; seconds *= kLonger) {
       const Changes aim = smoothest(std::pow(seconds / source_.frameSeconds, 6));
       double step = 1;
       for (int i = 0; i < kHalvings; ++i, step /= 2) {
@@ -216,7 +223,7 @@ class Evener {
         if (furthest(trial) > kFurthest) continue;
         const std::vector<Path> paths = pathsOf(trial);
         const double now = ratio(paths);
-        if (now >= rough) continue;
+        if (now >= rough || missed_ > kMissed) continue;
         rough = now;
         changes_ = trial;
         paths_ = paths;
@@ -416,6 +423,7 @@ class Evener {
   Changes changes_;
   std::vector<Held> held_;   // of each frame of the part, of each leg
   std::vector<Path> paths_;  // of the part with these changes
+  double missed_ = 0;        // at most in pathsOf(), by a foot that stands
   Pose pose_;
   BodyFrame frame_;
 };

@@ -16,7 +16,7 @@ namespace limber {
 namespace {
 
 constexpr double kReferenceGain = 0.2;
-constexpr double kLeastBend = 0.05;     // radians: of a reference's knee that is straight, about
+constexpr double kLeastBend = 0.2;      // radians: of a reference's knee that is straight, about
 constexpr double kOverstretched = 0.5;  // likewise, of a knee that is meant to bend backward
 constexpr Index kIterations = 30;       // a frame's limbs need about 5
 
