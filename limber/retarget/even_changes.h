@@ -1,0 +1,92 @@
+// What evening out changes in a motion (evenOut), and the least change that makes it less rough, to first order.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "limber/core/types.h"
+#include "limber/limbs/roughness.h"
+#include "limber/retarget/band_matrix.h"
+
+namespace limber {
+
+// Of each frame: the way of the pelvis, that of each foot, and how far the shoulders rise where the trunk tilts, all in
+// hip heights. How they lie in one column.
+struct ChangeLayout {
+  std::size_t frames = 0;
+  std::vector<bool> tilted;  // of each leg: whether its hip is at shoulders that rise
+
+  std::size_t legs() const { return tilted.size(); }
+  bool tilts() const;
+  std::size_t perFrame() const { return 3 * (1 + legs()) + (tilts() ? 1 : 0); }
+  std::size_t pelvis(std::size_t frame) const { return frame * perFrame(); }
+  std::size_t foot(std::size_t frame, std::size_t leg) const { return pelvis(frame) + 3 * (1 + leg); }
+  std::size_t shoulders(std::size_t frame) const { return foot(frame, legs()); }
+};
+using Changes = std::vector<double>;  // by such a layout
+Vec3 wayAt(const Changes& changes, std::size_t first);
+
+// What has to hold for a foot in one frame.
+struct FootFrame {
+  bool stands = false;
+  double lowest = 0;        // change of its height, at most 0: hip heights
+  Vec3 way = Vec3::Zero();  // from the hip, likewise
+  double most = 0;          // that its leg reaches, likewise
+};
+
+// A leg's two bones among a body's paths (BodyPaths), and how their directions follow its foot's place (the first three
+// columns) and the shoulders' rise, frame by frame.
+struct BonePair {
+  using Slope = Eigen::Matrix<double, 3, 4>;
+  std::size_t leg = 0, firstPath = 0;
+  std::array<std::vector<Slope>, 2> slopes;
+};
+
+// The motion as it is with some changes.
+struct ChangedMotion {
+  Changes changes;
+  std::vector<Path> paths;
+  std::vector<BonePair> bones;
+};
+
+// Which frames keep still: the first and the last three where others follow that stay; where the motion loops the first
+// frame changes as the last one does.
+struct MotionEnds {
+  bool startsJoined = false, endsJoined = false, loops = false;
+};
+
+class LeastChanges {
+ public:
+  // Feet of each frame, of each leg; cuts by frame.
+  LeastChanges(const ChangeLayout& layout, std::vector<FootFrame> feet, std::vector<bool> cuts, MotionEnds ends);
+
+  // The least sum of squared changes and of `jerkWeight` times the squared jerk, about those that are: feet that stand
+  // take no steps, none goes below its lowest nor beyond its leg. Bounds once met stay. n (perFrame * 4)^2 operations
+  // a few times.
+  Changes find(const ChangedMotion& now, double jerkWeight);
+
+ private:
+  // Which of its bounds hold a foot in one frame.
+  struct Held {
+    bool up = false, near = false;
+  };
+  using Term = BandLeastSquares::Term;
+
+  const FootFrame& foot(std::size_t frame, std::size_t leg) const { return feet_[frame * layout_.legs() + leg]; }
+  bool isPinned(std::size_t frame) const;
+  void holdFeet(double weight, BandLeastSquares& squares) const;
+  void addJerk(const ChangedMotion& now, double weight, BandLeastSquares& squares) const;
+  void closeLoop(double weight, Changes& changes, BandLeastSquares& squares) const;
+  // False where no bound is met that was not before.
+  bool meetBounds(const Changes& changes);
+  void holdBounds(double weight, const Changes& about, BandLeastSquares& squares) const;
+  Vec3 legAt(const Changes& changes, std::size_t frame, std::size_t leg) const;
+
+  ChangeLayout layout_;
+  std::vector<FootFrame> feet_;
+  std::vector<bool> cuts_;
+  MotionEnds ends_;
+  std::vector<Held> held_;
+};
+
+}  // namespace limber
