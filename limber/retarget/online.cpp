@@ -41,7 +41,7 @@ class OnlineRetargeter : public FrameRetargeter {
 
   void next(const Pose& source, double seconds, Pose& target) override {
     aligned_.next(source, seconds, target);
-    if (!goals_.active() || (!solver_ && setup_.person)) return;
+    if (!goals_.active()) return;
     BodyFrame& frame = aligned_.targetFrame();
     if (setup_.options.contacts) {
       goals_.calm(aligned_.sourceFrame(), seconds, target, frame);
@@ -67,7 +67,7 @@ class OnlineRetargeter : public FrameRetargeter {
     setup_.targetKinematics.globals(target, frame);
     aligned_.root().settle(target, frame);
     for (const Leg& leg : goals_.legs()) {
-      if (!setup_.person && !isSolved(leg) && leg.wanted && !LimbReach::isThere(leg, frame)) {
+      if (!isSolved(leg) && leg.wanted && !LimbReach::isThere(leg, frame)) {
         reach_.reach(leg, &leg.kneeAhead, frame, target);
       }
       goals_.levelToes(leg, frame, target);
