@@ -62,6 +62,10 @@ class OnlineRetargeter : public FrameRetargeter {
     for (const Limb& arm : hands_.arms()) setTask(arm, frame, task);
     if (solver_) {
       solver_->setReference(target);
+      // From where they reach: from joint angles that are far off there is more than one way.
+      for (const Limb& arm : hands_.arms()) {
+        if (isSolved(arm) && arm.wanted && !LimbReach::isThere(arm, frame)) reach_.reach(arm, nullptr, frame, target);
+      }
       solver_->solve(target, targets_);
     }
     setup_.targetKinematics.globals(target, frame);
