@@ -59,6 +59,7 @@ class LegJoiner {
     const Index trunk = *std::max_element(beside.begin(), beside.end(), [&](Index a, Index b) {
       return heightsBelow(a).second < heightsBelow(b).second;
     });
+    if (std::find(legs.begin(), legs.end(), trunk) != legs.end()) return;  // nothing else stands on that joint
     for (const Index leg : legs) parents[leg] = trunk;
   }
 

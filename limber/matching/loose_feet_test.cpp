@@ -59,6 +59,20 @@ TEST(LooseFeet, OthersStayAsTheyAre) {
   }
 }
 
+// An animal that lies on its side has legs on a low joint with nothing else.
+TEST(LooseFeet, NoLegHangsOnItself) {
+  Skeleton skeleton;
+  limber::testing::addJoint(skeleton, "high", "", Vec3(0, 1, 0));
+  limber::testing::addJoint(skeleton, "low", "high", Vec3(0, -0.9, 0));
+  for (const double side : {1.0, -1.0}) {
+    const std::string leg = side > 0 ? "left" : "right";
+    limber::testing::addJoint(skeleton, leg, "low", Vec3(0.2 * side, 0.2, 0));
+    limber::testing::addJoint(skeleton, leg + "End", leg, Vec3(0, -0.3, 0));
+  }
+  const std::vector<std::optional<Index>> parents = joined(skeleton);
+  for (Index j = 0; j < skeleton.jointCount(); ++j) EXPECT_EQ(parents[j], skeleton.joints[j].parent);
+}
+
 // Names of joints are not looked at.
 TEST(LooseFeet, APersonOnThemIsToldByForm) {
   for (const char* loose : {"Foot", "UpperLeg"}) {
