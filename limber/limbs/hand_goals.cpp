@@ -13,7 +13,21 @@ namespace {
 constexpr double kTouching = 0.12, kApart = 0.35;  // of two hands, hip heights of the target
 constexpr double kStretch = 0.998;                 // of an arm's length: fully stretched elbows pop
 constexpr double kSoftReach = 0.96;                // likewise: from there on stretching softens
-constexpr double kTouchRate = 10;                  // 1/seconds, of touches that come and go
+constexpr double kSoftFold = 0.45;  // likewise: from there on folding softens, or from where the joint angles fold it
+constexpr double kFold = 0.6;       // of that, the nearest that a hand comes to its shoulder: folded elbows snap
+constexpr double kTouchRate = 10;   // 1/seconds, of touches that come and go
+constexpr double kMostTouch = 0.5;  // of an arm's length: how far from its joint angles one takes a hand
+
+// `wanted` beyond `edge`, but the slower the nearer it comes to `end`.
+double towards(double end, double edge, double wanted) {
+  const double room = end - edge, over = wanted - edge;
+  return room * over > 0 ? edge + room * (1 - std::exp(-over / room)) : edge;
+}
+
+// Short ways stay about as they are.
+Vec3 atMost(const Vec3& way, double most) {
+  return way / std::pow(1 + std::pow(way.norm() / most, 8), 1.0 / 8);
+}
 
 }  // namespace
 
@@ -66,12 +80,16 @@ Vec3 HandGoals::touchOf(const Limb& arm, const std::vector<Surface>& surfaces, c
 }
 
 void HandGoals::softenReach(Limb& arm, const BodyFrame& target) const {
-  const Vec3 shoulder = target.positions[arm.upper], way = arm.goal - shoulder;
-  const double free = std::max((target.positions[arm.end] - shoulder).norm(), kSoftReach * arm.length);
-  const double room = kStretch * arm.length - free, over = way.norm() - free;
-  if (over <= 0) return;
-  const double length = room > 0 ? free + room * (1 - std::exp(-over / room)) : free;
-  arm.goal = shoulder + length / way.norm() * way;
+  const Vec3 shoulder = target.positions[arm.upper], own = target.positions[arm.end] - shoulder;
+  const Vec3 way = arm.goal - shoulder;
+  const double far = std::max(own.norm(), kSoftReach * arm.length), near = std::min(own.norm(), kSoftFold * arm.length);
+  const double wanted = way.norm();
+  if (wanted > far) {
+    arm.goal = shoulder + towards(kStretch * arm.length, far, wanted) / wanted * way;
+  } else if (wanted < near) {
+    const Vec3 line = wanted > 0 ? way.normalized() : own.normalized();
+    arm.goal = shoulder + towards(kFold * near, near, wanted) * line;
+  }
 }
 
 void HandGoals::set(const BodyFrame& source, const BodyFrame& target, double seconds) {
@@ -95,7 +113,7 @@ void HandGoals::set(const BodyFrame& source, const BodyFrame& target, double sec
   }
   for (std::size_t a = 0; a < arms_.size(); ++a) {
     Follow& follow = follows_[a];
-    springTo(touches[a], kTouchRate, seconds, follow.value, follow.speed);
+    springTo(atMost(touches[a], kMostTouch * arms_[a].length), kTouchRate, seconds, follow.value, follow.speed);
     if (follow.value.norm() < 1e-9 * setup_.targetHipHeight) continue;
     arms_[a].goal += follow.value;
     arms_[a].wanted = true;

@@ -16,13 +16,14 @@ class HandGoals {
   HandGoals(const RetargetSetup& setup, const RootPlacer& root);
 
   // Hands that are close to the other hand, the head, the trunk, a thigh or the other forearm in the source are as
-  // close in the result, scaled. `reach` as in RetargetOptions. From the globals of both.
+  // close in the result, scaled, as far as that takes them half an arm's length from their joint angles at most.
+  // `reach` as in RetargetOptions. From the globals of both.
   void set(const BodyFrame& source, const BodyFrame& target, double seconds);
   // Forgets what was touched: the motion jumped.
   void reset() { follows_.fill({}); }
 
-  // Brings a goal that stretches an arm more than it is the nearer the closer it gets to what the arm can reach: the
-  // elbow else snaps. set() does so.
+  // Brings a goal that stretches or folds an arm more than it is the nearer the closer it gets to what the arm can
+  // reach: the elbow else snaps. set() does so.
   void softenReach(Limb& arm, const BodyFrame& target) const;
 
   std::vector<Limb>& arms() { return arms_; }

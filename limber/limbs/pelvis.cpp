@@ -18,9 +18,10 @@ constexpr double kSoftOnFour = 0.04;  // likewise: with legs at both ends of the
 constexpr double kSoftBend = 0.1;     // by which feet on their own ways count the more, the lower they want the body
 constexpr double kStandsBelow = 0.45;  // Leg::lift from which on their bend no longer counts
 constexpr double kSoftFold = 0.02;
-constexpr double kStay = 0.5;       // legs that these go against, which want it to stay
-constexpr double kApart = 0.75;     // share of what the bends of legs at both ends want these to move apart
-constexpr double kStretch = 0.998;  // of a leg's length: fully stretched knees pop
+constexpr double kStay = 0.5;        // legs that these go against, which want it to stay
+constexpr double kApart = 0.75;      // share of what the bends of legs at both ends want these to move apart
+constexpr double kStretch = 0.998;   // of a leg's length: fully stretched knees pop
+constexpr double kKneesFold = 0.75;  // of Limb::folded: about the nearest that people's feet come to their hips
 // Of turning with planted legs: leg lengths, the more the less it does; and radians.
 constexpr double kStiffOnTwo = 0.15, kStiffOnOne = 0.3, kMostTurn = 0.8;
 
@@ -180,13 +181,16 @@ double Pelvis::shiftFor(std::span<const Leg> legs, const BodyFrame& frame, const
   return shift + raiseFor(legs, frame, shift);
 }
 
-// So that no foot that goes its own way and stands is nearer to its hip than the leg folds: it would go astray.
+// So that no foot that goes its own way and stands is nearer to its hip than the leg folds, where it would go astray,
+// nor a person's further than knees do, which else turn round.
 double Pelvis::raiseFor(std::span<const Leg> legs, const BodyFrame& frame, double shift) const {
   double sum = 0;
   for (const Leg& leg : legs) {
     const Vec3 way = leg.goal - frame.positions[leg.upper] - Vec3(0, shift, 0);
-    const double least = leg.folded, across = std::hypot(way.x(), way.z());
-    if (!leg.ownWay || leg.hock || across >= least) continue;  // hocks fold as well
+    const double own = (frame.positions[leg.end] - frame.positions[leg.upper]).norm();
+    const double least = leg.ownWay ? leg.folded : std::min(kKneesFold * leg.folded, own);
+    const double across = std::hypot(way.x(), way.z());
+    if (leg.hock || across >= least || !(leg.ownWay || setup_.person)) continue;  // hocks fold as well
     const double lacks = std::sqrt(least * least - across * across) + way.y();
     const double needed = followed(leg) * softPositive(lacks, kSoftFold * setup_.targetHipHeight);
     sum += needed * needed * needed * needed;
