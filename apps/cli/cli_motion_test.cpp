@@ -268,6 +268,9 @@ TEST_F(Cli, PeopleOfFilesWithZUpStandUp) {
   EXPECT_EQ(run({"pose", "rigged.glb", "--turn", "hips=x:90", "--bake", "-o", "lying.obj", "-q"}).code, 0);
   const Result rigged = run({"rig", "lying.obj", "--template", "humanoid", "-o", "lying.glb"});
   EXPECT_THAT(rigged.error, HasSubstr("warning: the model stands along +Z and lies where +Y is up [not-upright]"));
+  EXPECT_THAT(run({"rig", "lying.obj", "--template", "quadruped", "--up", "+z", "-o", "told.glb"}).error,
+              HasSubstr("[not-upright]"))
+      << "of whatever is told to stand so";
   for (const std::vector<std::string>& command :
        {std::vector<std::string>{"rig", "lying.obj", "--template", "humanoid", "--upright"},
         {"animate", "lying.obj", "wave.bvh"},

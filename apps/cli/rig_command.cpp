@@ -268,7 +268,7 @@ void addRigCommand(CLI::App& program) {
   command->add_option("--front", options->front, "where the model looks, for a template, as +z (default: found)")
       ->type_name("AXIS");
   command->add_flag("--upright", options->rig.standUpright,
-                    "turn a person who stands along another axis to stand along +Y");
+                    "turn a model that surely stands along another axis to stand along +Y");
   command->add_option("--skinning", options->rig.skinning, "how weights are made, see below")
       ->type_name("NAME")
       ->capture_default_str();

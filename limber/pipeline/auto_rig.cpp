@@ -145,6 +145,7 @@ void reportBridged(const Asset& asset, const Geometry& geometry, const PreparedM
 struct Rigged {
   SkinWeights weights;           // for the source vertices
   std::optional<Skeleton> made;  // in world space; none where the asset's own was kept
+  std::optional<Vec3> up;        // of the model, where that is sure
   AssetSkeleton kept;
 };
 
@@ -167,6 +168,8 @@ Rigged makeRig(const Asset& asset, const Geometry& geometry, const PreparedMesh&
     report.suggestions = std::move(rig.suggestions);
     report.matches = std::move(rig.matches);
     report.warnings.append(rig.warnings);
+    const bool sure = options.rig.up || (!report.matches.empty() && report.matches.front().confidence > kSureEnough);
+    if (sure) result.up = rig.up;
     result.made = toWorld(std::move(rig.skeleton), prepared.frame);
   }
 
@@ -213,9 +216,7 @@ AutoRigReport runStages(Asset& asset, const AutoRigOptions& options, Progress& p
   progress.stage("write rig");
   if (rig.made) {
     attachRig(asset, geometry, *rig.made, rig.weights);
-    const bool sure = options.rig.up || (!report.matches.empty() && report.matches.front().confidence > kSureEnough);
-    const std::optional<Vec3> up = sure ? standsAlong(*rig.made, restPose(*rig.made)) : std::nullopt;
-    if (up) standUpright(asset, *up, options.standUpright, report.warnings);
+    if (rig.up) standUpright(asset, *rig.up, options.standUpright, report.warnings);
   } else {
     replaceWeights(asset, geometry, rig.kept, rig.weights);
   }

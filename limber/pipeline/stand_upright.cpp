@@ -16,21 +16,27 @@ namespace limber {
 namespace {
 
 constexpr const char *kName = "upright", *kTurned = "turned-upright";
-constexpr double kUpright = 0.7;  // cosine between up and +Y
+
+Eigen::Index nearestAxis(const Vec3& direction) {
+  Eigen::Index axis = 0;
+  direction.cwiseAbs().maxCoeff(&axis);
+  return axis;
+}
 
 bool isUpright(const Vec3& up) {
-  return up.y() > kUpright;
+  return nearestAxis(up) == 1 && up.y() > 0;
 }
 
 std::string nameOfAxis(const Vec3& direction) {
-  Eigen::Index axis = 0;
-  direction.cwiseAbs().maxCoeff(&axis);
+  const Eigen::Index axis = nearestAxis(direction);
   return fmt::format("{}{}", direction[axis] < 0 ? '-' : '+', "XYZ"[axis]);
 }
 
 // Onto +Y; one who stands on the head goes on facing where it does.
 Quat turnOf(const Vec3& up) {
-  return up.y() < -kUpright ? Quat(0, 0, 0, 1) : shortestRotation(up, Vec3::UnitY());
+  const Eigen::Index axis = nearestAxis(up);
+  const Vec3 along = std::copysign(1.0, up[axis]) * Vec3::Unit(axis);
+  return axis == 1 && up.y() < 0 ? Quat(0, 0, 0, 1) : shortestRotation(along, Vec3::UnitY());
 }
 
 SkeletonMap matchToItself(const Skeleton& skeleton) {

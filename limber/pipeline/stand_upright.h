@@ -1,4 +1,4 @@
-// People who stand along another axis than +Y, as programs with Z up write them without a turn.
+// Models that stand along another axis than +Y, as programs with Z up write them without a turn.
 #pragma once
 
 #include <optional>
@@ -17,12 +17,13 @@ std::optional<Vec3> standsAlong(const Skeleton& skeleton, const Pose& pose);
 // What turns one who stands along another axis in rest pose to stand along +Y; none for all others.
 Quat turnToStand(const Skeleton& skeleton);
 
-// Turns a document whose person stands along `up` by a node above it (turnScene), with a warning "turned-upright";
-// where `turn` is false there is only the warning "not-upright". Nothing where up is about +Y.
+// Turns a document that stands along the axis nearest to `up` by a node above it (turnScene), with a warning
+// "turned-upright"; where `turn` is false there is only the warning "not-upright". Nothing where up is about +Y.
 void standUpright(Asset& asset, const Vec3& up, bool turn, Warnings& warnings);
 
-// The same of a document's own skeleton, before clips are added. Where its clips stand and its rest pose lies, or where
-// no node above it helps, the document stays as it is: these clips then need the turn that is given back, else none.
+// The same of a person's skeleton in a document, before clips are added. Where its clips stand and its rest pose lies,
+// or where no node above it helps, the document stays as it is: these clips then need the turn that is given back, else
+// none.
 Quat standUpright(Asset& asset, Warnings& warnings);
 
 // A motion whose clips stand along +Y while its rest pose lies: with its clips turned to lie as well, so that one is

@@ -57,6 +57,7 @@ struct AutoRig {
   Skeleton skeleton;  // in the space of the mesh
   std::vector<HandleSuggestion> suggestions;
   std::vector<TemplateMatch> matches;  // the one that was fitted first
+  std::optional<Vec3> up;              // of the model as it was fitted
   Warnings warnings;
 };
 

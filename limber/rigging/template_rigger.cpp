@@ -323,6 +323,7 @@ AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress
     rig.warnings.add("stray-pieces", "triangles that float about the model are left out of account", {},
                      mesh.triangleCount() - cleared->triangleCount());
   }
+  rig.up = best.frame.axes.row(1).transpose();
   for (const TemplateFit& fit : fits) rig.matches.push_back({fit.skeleton.name, confidenceOf(fit)});
   warn(best, rig);
   return rig;
