@@ -13,6 +13,7 @@ namespace {
 constexpr double kCalmWide = 1.5;  // power of the hips' widths by which their turns are less
 // In hip heights of the target.
 constexpr double kMostShift = 0.3;
+constexpr double kMostAtEnd = 0.15;  // by which feet that cannot reach pull down hips or shoulders: then they lift
 constexpr double kSoftStretch = 0.015, kSoftChange = 0.004;  // of sinking, by how far a foot is moved
 constexpr double kSoftOnFour = 0.04;  // likewise: with legs at both ends of the body, some are far off and stretch more
 constexpr double kSoftBend = 0.1;     // by which feet on their own ways count the more, the lower they want the body
@@ -177,7 +178,9 @@ double Pelvis::shiftFor(std::span<const Leg> legs, const BodyFrame& frame, const
     sum += needed * needed * needed * needed;
   }
   // The most that a leg asks for, but without a kink where another takes over.
-  const double shift = rise - std::min(std::sqrt(std::sqrt(sum)), kMostShift * height);
+  const double most = std::sqrt(std::sqrt(sum));
+  const double shift =
+      rise - (tilt_.tilts() ? saturated(most, kMostAtEnd * height) : std::min(most, kMostShift * height));
   return shift + raiseFor(legs, frame, shift);
 }
 

@@ -208,6 +208,19 @@ TEST_F(PelvisOfFour, HipsAndShouldersFollowTheirOwnLegs) {
   EXPECT_LT(std::abs(hips), 0.25 * std::abs(shoulders)) << "the trunk tilts a little less than legs ask for";
 }
 
+TEST_F(PelvisOfFour, FeetThatCannotReachPullTheBodyDownALittle) {
+  pose(Quat::Identity());
+  for (Leg& leg : goals_.legs()) {
+    if (!leg.fore) continue;
+    leg.goal.y() -= 2;
+    leg.bentReach = (leg.goal - frame_.positions[leg.upper]).norm();  // its bend asks for nothing
+  }
+  goals_.pelvis().apply(goals_.pelvisMove(frame_), to_, frame_);
+  EXPECT_LT(upAt(goals_.legs().back()), -0.1 * setup_.targetHipHeight);
+  EXPECT_GT(upAt(goals_.legs().back()), -0.2 * setup_.targetHipHeight);
+  EXPECT_NEAR(upAt(goals_.legs().front()), 0, 0.02) << "at the other end not at all";
+}
+
 TEST_F(PelvisOfFour, WhoLiesOnOneSideIsNotMovedByLegs) {
   pose(turn(Vec3::UnitZ(), 90));
   for (Leg& leg : goals_.legs()) {
