@@ -12,7 +12,7 @@ enum class FootAnchor { kNone, kAnkle, kToes };
 
 class FootLock {
  public:
-  // Free positions of ankle and toes in this frame, what holds the foot, and the heights at which it holds either.
+  // Free positions of ankle and toes in this frame, what holds the foot, and the heights that both have when standing.
   struct Frame {
     Vec3 ankle = Vec3::Zero(), toes = Vec3::Zero();
     FootAnchor anchor = FootAnchor::kNone;

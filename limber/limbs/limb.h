@@ -35,18 +35,13 @@ struct Leg : Limb {
   FootAnchor anchor = FootAnchor::kNone;               // what holds the foot in this frame
   bool flat = false;                                   // heel and toes stand both
   double ankleFloor = 0, toesFloor = 0;                // below which neither goes in this frame
-  double sourceAnkleUp = 0, sourceToesUp = 0;          // over where they are when standing, source hip heights
   double planted = 0;                                  // 0 to 1, comes and goes smoothly
-  double near = 0;                                     // of a person's foot to the ground, 0 to 1 (nearGround)
   double changed = 0;                                  // likewise, to what share its goal is one (Pelvis::changeOf)
   double flatness = 0;                                 // likewise
   Vec3 place = Vec3::Zero();                           // of the end, by the joint angles or by its own way
   double bentReach = 0;                                // ownWay: from hip to end if bent as the source's (LegBend)
   double lift = 0;                                     // ownWay: of the source's foot from where it stands, hip heights
   double upright = 1;                                  // ownWay: of the source's body, 0 where it lies on its side
-
-  // How much the pelvis rises, sinks and leans with it: where it is planted or near the ground.
-  double carries() const { return 1 - (1 - planted) * (1 - near); }
 };
 
 // Leg::lift from which on a foot that goes its own way may leave it for the source's bend alone: the body no longer

@@ -6,7 +6,6 @@
 
 #include "limber/ik/rotation.h"
 #include "limber/limbs/calm_feet.h"
-#include "limber/limbs/near_ground.h"
 #include "limber/limbs/smooth.h"
 #include "limber/limbs/spring.h"
 #include "limber/skeleton/chain.h"
@@ -180,7 +179,6 @@ void LimbGoals::feel(Leg& leg, Feeler& feeler, const BodyFrame& source, const Bo
   leg.ankleFloor = foot.ankleGround;
   leg.toesFloor = foot.toesGround;
   leg.wanted = true;
-  if (setup_.person) feelHeights(leg, foot, source);
   if (leg.ownWay) feelOwnWay(leg, feeler, source, seconds);
 }
 
@@ -206,31 +204,6 @@ Vec3 LimbGoals::turnedAsBody(const Vec3& way, const Leg& leg, const BodyFrame& s
 Quat LimbGoals::turnOfBody(const Leg& leg, const BodyFrame& source) const {
   if (!leg.sourceBody) return Quat::Identity();
   return source.rotations[*leg.sourceBody] * setup_.sourceNeutral.rotations[*leg.sourceBody].conjugate();
-}
-
-// By how high the source's is; what is planted is held there.
-void LimbGoals::feelHeights(Leg& leg, FootLock::Frame& foot, const BodyFrame& source) const {
-  const auto up = [&](Index joint, double ground) {
-    return (source.positions[joint].y() - ground) / setup_.sourceHipHeight;
-  };
-  leg.sourceAnkleUp = up(leg.sourceEnd, leg.sourceAnkleGround);
-  foot.ankleGround += setup_.targetHipHeight * heldHeight(leg.sourceAnkleUp);
-  std::array<SolePoint, 2> points;
-  points[0].source = leg.sourceAnkleUp;
-  if (leg.toes) {
-    leg.sourceToesUp = up(*leg.sourceToes, leg.sourceToesGround);
-    foot.toesGround += setup_.targetHipHeight * heldHeight(leg.sourceToesUp);
-    points[1].source = leg.sourceToesUp;
-  }
-  leg.near = nearGround(std::span(points).first(leg.toes ? 2 : 1));
-}
-
-double LimbGoals::riseNearGround(const Leg& leg, const Vec3& ankle, const Vec3& toes) const {
-  if (!setup_.person) return 0;
-  const double height = setup_.targetHipHeight;
-  const std::array<SolePoint, 2> points = {{{leg.sourceAnkleUp, (ankle.y() - leg.ankleFloor) / height},
-                                            {leg.sourceToesUp, (toes.y() - leg.toesFloor) / height}}};
-  return height * limber::riseNearGround(std::span(points).first(leg.toes ? 2 : 1));
 }
 
 // It stands about as still as the source's: what moves there is meant to.
@@ -331,9 +304,6 @@ void LimbGoals::setFoot(Leg& leg, const Feeler& feeler, FootLock& lock, double s
   FootLock::Frame foot = feeler.foot;
   foot.ankle += feeler.carried;
   foot.toes += feeler.carried;
-  const double rise = riseNearGround(leg, foot.ankle, foot.toes);
-  foot.ankle.y() += rise;
-  foot.toes.y() += rise;
   leg.goal = lock.next(foot, seconds, kFootSlack * setup_.targetHipHeight);
   if (leg.ownWay) leg.goal.y() = foot.ankle.y();
   leg.turn = Eigen::AngleAxisd(lock.twist(), Vec3::UnitY());
@@ -348,9 +318,9 @@ void LimbGoals::keepAboveGround(Leg& leg, const FootLock::Frame& foot, const Fee
     const double soft = kSoftGround + kMostSoft * ahead / (kMostSoft + ahead);
     leg.goal.y() += softPositive(under, height * soft * (1 - firm * leg.planted));
   };
-  const auto raiseAnkle = [&](double firm) { raise(leg.ankleFloor - leg.goal.y(), feeler.ankleFall, firm); };
+  const auto raiseAnkle = [&](double firm) { raise(foot.ankleGround - leg.goal.y(), feeler.ankleFall, firm); };
   const auto raiseToes = [&](double firm) {
-    if (leg.toes) raise(leg.toesFloor - toesOver - leg.goal.y(), feeler.toesFall, firm);
+    if (leg.toes) raise(foot.toesGround - toesOver - leg.goal.y(), feeler.toesFall, firm);
   };
   if (leg.anchor == FootAnchor::kToes) {
     raiseAnkle(kFirmBeside);

@@ -43,9 +43,6 @@ class LimbGoals {
   // kneels, stay as they are.
   void levelToes(const Leg& leg, BodyFrame& frame, Pose& target) const;
 
-  // How far a person's foot with these ends has to rise to be as high over the ground as the source's, near it: metres.
-  double riseNearGround(const Leg& leg, const Vec3& ankle, const Vec3& toes) const;
-
   // How the pelvis follows these goals; `target` as for setFeet(). An animal's rises and sinks smoothly: as one of four
   // feet lets go, the others would have to bend at once (feet on roots of their own let go slowly anyway).
   Pelvis::Move pelvisMove(const BodyFrame& target) const;
@@ -87,7 +84,6 @@ class LimbGoals {
   Quat turnOfBody(const Leg& leg, const BodyFrame& source) const;
   Vec3 turnedAsBody(const Vec3& way, const Leg& leg, const BodyFrame& source) const;
   Vec3 ownPlace(const Leg& leg, const BodyFrame& source, const BodyFrame& target) const;
-  void feelHeights(Leg& leg, FootLock::Frame& foot, const BodyFrame& source) const;
   void feelOwnWay(Leg& leg, Feeler& feeler, const BodyFrame& source, double seconds) const;
   static void followFall(double down, double seconds, Fall& fall);
   void carryFeet(const BodyFrame& target, double seconds);

@@ -107,25 +107,23 @@ void Pelvis::apply(const Move& move, Pose& target, BodyFrame& frame) const {
   }
 }
 
-// Least squares over what the planted legs lack, against the turn itself; feet near the ground tell of heights alone.
-// On one leg only the turn about the vertical helps: the shift brings that leg to the ground.
+// Least squares over what the planted legs lack, against the turn itself. On one leg only the turn about the vertical
+// helps: the shift brings that leg to the ground.
 Quat Pelvis::turnFor(std::span<const Leg> legs, const BodyFrame& frame) const {
   if (!setup_.person || legs.size() != 2 || !root_.turnsPelvis()) return Quat::Identity();
   const Leg &left = legs[0], &right = legs[1];
   const Vec3 toHip = 0.5 * (frame.positions[left.upper] - frame.positions[right.upper]);
   const Vec3 lackLeft = left.goal - frame.positions[left.end], lackRight = right.goal - frame.positions[right.end];
-  const double both = left.planted * right.planted, lean = left.carries() * right.carries();
-  const double length = 0.5 * (left.length + right.length);
+  const double both = left.planted * right.planted, length = 0.5 * (left.length + right.length);
   const double onTwo = kStiffOnTwo * length, onOne = kStiffOnOne * length;
-  Vec3 turn = 0.5 / (toHip.squaredNorm() + onTwo * onTwo) * toHip.cross(lackLeft - lackRight);
-  turn = turn.cwiseProduct(Vec3(lean, both, lean));
+  Vec3 turn = 0.5 * both / (toHip.squaredNorm() + onTwo * onTwo) * toHip.cross(lackLeft - lackRight);
   const Vec3 alone = (left.planted - both) * lackLeft - (right.planted - both) * lackRight;
   turn.y() += toHip.cross(alone).y() / (toHip.squaredNorm() + onOne * onOne);
   return fromRotationVector(turn / std::sqrt(1 + turn.squaredNorm() / (kMostTurn * kMostTurn)));
 }
 
-// By the pelvis rising, every leg that is planted or near the ground would be as long as its joint angles make it: the
-// mean of those ways. The more level a leg is, the less rising does to its length, and the less it counts.
+// By the pelvis rising, every leg that is planted would be as long as its joint angles make it: the mean of those ways.
+// The more level a leg is, the less rising does to its length, and the less it counts.
 double Pelvis::riseFor(std::span<const Leg> legs, const BodyFrame& frame, const Quat& turn) const {
   double sum = 0, weights = 0;
   for (const Leg& leg : legs) {
@@ -133,7 +131,7 @@ double Pelvis::riseFor(std::span<const Leg> legs, const BodyFrame& frame, const 
     const Vec3 hip = frame.positions[leg.upper], way = leg.goal - hip - hipWay({turn, 0}, leg, frame);
     const double length = (frame.positions[leg.end] - hip).norm(), across = std::hypot(way.x(), way.z());
     if (way.y() >= 0 || across >= length) continue;
-    const double weight = leg.carries() * (1 - across * across / (length * length));
+    const double weight = leg.planted * (1 - across * across / (length * length));
     sum += weight * (way.y() + std::sqrt(length * length - across * across));
     weights += weight;
   }

@@ -65,7 +65,6 @@ struct FootFrame {
   double ankleFloor = 0, toesFloor = 0;
   bool ownWay = false;  // likewise in Leg, with what follows
   double bentReach = 0, lift = 0, upright = 1;
-  double near = 0, sourceAnkleUp = 0, sourceToesUp = 0;
 };
 
 class Spacetime {
@@ -142,27 +141,12 @@ class Spacetime {
         foot.bentReach = leg.bentReach;
         foot.lift = leg.lift;
         foot.upright = leg.upright;
-        foot.near = leg.near;
-        foot.sourceAnkleUp = leg.sourceAnkleUp;
-        foot.sourceToesUp = leg.sourceToesUp;
         foot.toesFloor = -std::numeric_limits<double>::infinity();
         if (!leg.toes) continue;
         foot.roll = to.positions[*leg.toes] - to.positions[leg.end];
         foot.sourceToes = from.positions[*leg.sourceToes];
         foot.toesFloor = leg.toesFloor;
       }
-      raiseFeet(f);
-    }
-  }
-
-  // Near the ground, to where the source's are.
-  void raiseFeet(std::size_t f) {
-    for (std::size_t i = 0; i < feet_.size(); ++i) {
-      FootFrame& foot = feet_[i][f];
-      Leg& leg = goals_.legs()[i];
-      leg.sourceAnkleUp = foot.sourceAnkleUp;
-      leg.sourceToesUp = foot.sourceToesUp;
-      foot.ankle.y() += goals_.riseNearGround(leg, foot.ankle, foot.ankle + foot.roll);
     }
   }
 
@@ -238,7 +222,6 @@ class Spacetime {
       leg.bentReach = feet_[i][f].bentReach;
       leg.lift = feet_[i][f].lift;
       leg.upright = feet_[i][f].upright;
-      leg.near = feet_[i][f].near;
       leg.turn = Eigen::AngleAxisd(plans_[i].twist[f], Vec3::UnitY());
       leg.planted = std::clamp(plans_[i].planted[f], 0.0, 1.0);
     }
@@ -264,7 +247,6 @@ class Spacetime {
         const Leg& leg = goals_.legs()[i];
         if (!leg.ownWay) feet_[i][f].ankle = to.positions[leg.end];
       }
-      raiseFeet(f);
     }
   }
 
