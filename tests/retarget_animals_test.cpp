@@ -261,7 +261,8 @@ TEST(RetargetAnimals, QuadrupedsAreMatchedByTheirForm) {
   if (!sharedDataFolder()) GTEST_SKIP() << kNoSharedData;
   const std::vector<std::string> farm = {"quaternius_alpaca", "quaternius_cow", "quaternius_horse", "quaternius_wolf"},
                                  foxes = {"m2m_fox_fox", "m2m_fox_cat", "m2m_fox_dog", "fox_khronos"};
-  std::vector<std::string> files = {"motions/m2m_fox_animations", "motions/m2m_horse_animations", "rigged/fox_khronos"};
+  std::vector<std::string> files = {"motions/m2m_fox_animations", "motions/m2m_horse_animations",
+                                    "motions/m2m_dragon_animations", "rigged/fox_khronos"};
   for (const std::string& animal : farm) files.push_back("rigged/" + animal);
   for (const std::string& file : files) {
     const Motion motion = readMotion(*sharedDataFolder() / (file + ".glb"));
@@ -273,7 +274,7 @@ TEST(RetargetAnimals, QuadrupedsAreMatchedByTheirForm) {
         for (const Clip& clip : motion.clips) {
           SCOPED_TRACE(std::string(file).append(" ").append(clip.name).append(" ").append(animal) + " " + method);
           PoseSequence frames = sampleFrames(motion.skeleton, clip, 30);
-          if (frames.poses.size() < 5) continue;
+          if (frames.poses.size() < 5 || clip.name.starts_with("Fly")) continue;
           if (clip.name.ends_with("Walk")) {
             frames = walkingAhead(RetargetSetup(motion.skeleton, plain.skeleton(), map, {}, &frames), frames);
           }
@@ -282,7 +283,9 @@ TEST(RetargetAnimals, QuadrupedsAreMatchedByTheirForm) {
           const MotionMetrics result = measured(setup, method, frames);
           const std::string pair =
               clip.name.substr(clip.name.find('|') + 1) + ' ' + animal.substr(animal.rfind('_') + 1);
-          EXPECT_LT(result.jerk, 1.1);
+          // A dragon's long strides stretch the legs of others.
+          const bool strides = file == "motions/m2m_dragon_animations" && std::string_view(method) == "spacetime";
+          EXPECT_LT(result.jerk, strides ? 1.7 : 1.1);
           if (leavesItsFeet(clip.name) || clip.name == "Fall") continue;
           EXPECT_LT(result.sliding, std::max(0.02, result.sourceSliding + 1e-4));
           const bool sways = pair == "Walk wolf";  // its trunk further than the source's

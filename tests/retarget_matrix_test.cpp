@@ -57,7 +57,8 @@ bool isWalkOrRun(const std::string& motion) {
 // Runs, and walks on the spot, whose feet never stand still: nothing can be said of sliding there.
 const std::set<std::string> kNeverStands = {"cmu_daz_02_03_run.bvh", "cmu_daz_09_01_run.bvh", "makehuman_walk.bvh",
                                             "makehuman_zombie_walk.bvh", "pab_run.fbx"};
-// Clips of people whose hips stand still in the air while their feet come up to them: there is no ground to keep.
+// Clips of people whose hips stand still in the air while their feet come up to them: feet do not stay
+// where the ground is, and those of other legs swing further.
 const std::set<std::string> kNailed = {"Idle_B", "PickUp", "Jump_Idle"};
 // Feet that land or are dragged within a few frames: some stand in the result later than in the source.
 const std::set<std::string> kStandLater = {"Death_B",   "Jump_Full_Long", "Jump_Full_Short",
@@ -162,16 +163,18 @@ TEST(RetargetClips, EveryHumanoidKeepsFeetAndGround) {
       for (const Clip& clip : motion.clips) {
         const std::string name = clip.name.substr(clip.name.find('|') + 1);
         const PoseSequence frames = sampleFrames(motion.skeleton, clip, 30);
-        if (kNailed.contains(name) || frames.poses.size() < 5) continue;
+        if (frames.poses.size() < 5) continue;
         SCOPED_TRACE(std::string(name).append(" ").append(person));
         const RetargetSetup setup(motion.skeleton, target, map, {}, &frames);
         const MotionMetrics result = measured(setup, "limb-ik", frames);
         EXPECT_LT(1700 * result.penetration, name == "Death_B" ? 40 : 5)
             << "millimetres at human size, of who falls over";
-        EXPECT_LT(result.sliding, result.sourceSliding + 1e-4);
+        if (!kNailed.contains(name)) {
+          EXPECT_LT(result.sliding, result.sourceSliding + 1e-4);
+        }
         EXPECT_LT(result.jerk, 1.1);
         EXPECT_LT(result.boneDirection, 15);
-        if (!kStandLater.contains(name)) {
+        if (!kNailed.contains(name) && !kStandLater.contains(name)) {
           EXPECT_GT(result.contactAgreement, 0.99);
         }
       }
