@@ -114,8 +114,7 @@ std::string remedyFor(const std::vector<TemplateMatch>& matches) {
                        best.name, 100 * best.confidence);
   }
   return "the model hardly looks like any template: turn it to stand upright with its arms away from the body, or "
-         "match "
-         "by --map";
+         "match by --map";
 }
 
 void runAnimate(Options options) {
