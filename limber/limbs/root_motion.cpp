@@ -20,6 +20,8 @@ RootPlacer::RootPlacer(const RetargetSetup& setup) : setup_(setup) {
     if (const JointMatch* hindquarters = setup.map.find(kHindquarters)) {
       if (!hips_) hips_ = hindquarters->target.front();
       moved_.push_back(*hips_);
+      hindquarters_ = hindquartersOf(MapSide::kTarget);
+      sourceHindquarters_ = hindquartersOf(MapSide::kSource);
       findTrunk();
     } else {
       for (const JointMatch& match : setup.map.matches) moved_.push_back(match.target.front());
@@ -61,6 +63,24 @@ void RootPlacer::findCarrierOfLegs() {
   }
 }
 
+std::vector<Index> RootPlacer::hindquartersOf(MapSide side) const {
+  const bool isSource = side == MapSide::kSource;
+  const Skeleton& skeleton = isSource ? *setup_.source : *setup_.target;
+  const std::vector<Index>* trunk = jointsOfPart(setup_.map, side, "trunk");
+  std::vector<Index> hips;
+  bool carriesForelegs = false;
+  for (const AnimalLeg& leg : setup_.animalLegs) {
+    const Index upper = (isSource ? leg.source : leg.target).upper;
+    if (!isForeleg(setup_.map, leg.target.upper)) {
+      hips.push_back(upper);
+    } else if (trunk) {
+      carriesForelegs = carriesForelegs || !isAncestorOrSelf(skeleton, trunk->front(), upper);
+    }
+  }
+  if (carriesForelegs && !hips.empty()) return hips;
+  return {jointsOfPart(setup_.map, side, kHindquarters)->front()};
+}
+
 void RootPlacer::findPelvis() {
   const Skeleton& target = *setup_.target;
   const Index pelvis = setup_.map.find("hips")->target.back();
@@ -82,13 +102,12 @@ void RootPlacer::findPelvis() {
 void RootPlacer::findTrunk() {
   const Skeleton& target = *setup_.target;
   const Index hindquarters = setup_.map.find(kHindquarters)->target.front();
-  const JointMatch* trunk = setup_.map.find("trunk");
   std::vector<Index> kept;
   for (const AnimalLeg& leg : setup_.animalLegs) {
     const Index upper = leg.target.upper;
     if (upper == hindquarters || !isAncestorOrSelf(target, hindquarters, upper)) return;
     kept.push_back(upper);
-    if (!trunk || !isAncestorOrSelf(target, trunk->target.front(), upper)) hipJoints_.push_back(upper);
+    if (!isForeleg(setup_.map, upper)) hipJoints_.push_back(upper);
   }
   if (hipJoints_.empty()) return;
   pelvis_ = hindquarters;
@@ -106,8 +125,8 @@ void RootPlacer::findTrunk() {
 
 void RootPlacer::place(const Pose& source, const BodyFrame& sourceFrame, Pose& target, BodyFrame& frame) const {
   if (!setup_.person) {
-    if (const JointMatch* hindquarters = setup_.map.find(kHindquarters)) {
-      placeHindquarters(*hindquarters, sourceFrame, target, frame);
+    if (!hindquarters_.empty()) {
+      placeHindquarters(sourceFrame, target, frame);
       return;
     }
     placeEach(source, sourceFrame, target, frame);
@@ -118,12 +137,11 @@ void RootPlacer::place(const Pose& source, const BodyFrame& sourceFrame, Pose& t
   movePelvis(there - pelvisOf(setup_.map, MapSide::kTarget, frame.positions), target, frame);
 }
 
-void RootPlacer::placeHindquarters(const JointMatch& match, const BodyFrame& sourceFrame, Pose& target,
-                                   BodyFrame& frame) const {
-  const Index s = match.source.front(), t = match.target.front();
-  const Vec3 way = sourceFrame.positions[s] - setup_.sourceNeutral.restPositions[s];
-  const Vec3 there = setup_.targetNeutral.restPositions[t] + setup_.scale * way;
-  movePelvis(there - frame.positions[t], target, frame);
+void RootPlacer::placeHindquarters(const BodyFrame& sourceFrame, Pose& target, BodyFrame& frame) const {
+  const std::vector<Vec3>& sourceRest = setup_.sourceNeutral.restPositions;
+  const Vec3 way = middleOf(sourceHindquarters_, sourceFrame.positions) - middleOf(sourceHindquarters_, sourceRest);
+  const Vec3 there = middleOf(hindquarters_, setup_.targetNeutral.restPositions) + setup_.scale * way;
+  movePelvis(there - middleOf(hindquarters_, frame.positions), target, frame);
 }
 
 void RootPlacer::placeEach(const Pose& source, const BodyFrame& sourceFrame, Pose& target,

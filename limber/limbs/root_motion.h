@@ -15,7 +15,7 @@ Vec3 middleOf(std::span<const Index> joints, const std::vector<Vec3>& positions)
 // Moves a posed target to where the source's motion has it.
 //
 // People: the hips' translation brings the pelvis to its place. Others: every matched joint's way from rest, scaled; of
-// quadrupeds that were matched by form (kHindquarters) that of the hindquarters alone.
+// quadrupeds that were matched by form that of the hindquarters alone.
 // Loose joints (looseJoints; of animals the feet that ride on their shins) are put where their carriers have them.
 class RootPlacer {
  public:
@@ -54,15 +54,19 @@ class RootPlacer {
   void findPelvis();
   void findTrunk();
   void findCarrierOfLegs();
-  void placeHindquarters(const JointMatch& match, const BodyFrame& sourceFrame, Pose& target, BodyFrame& frame) const;
+  std::vector<Index> hindquartersOf(MapSide side) const;
+  void placeHindquarters(const BodyFrame& sourceFrame, Pose& target, BodyFrame& frame) const;
   void placeEach(const Pose& source, const BodyFrame& sourceFrame, Pose& target, const BodyFrame& frame) const;
   void addLoose(const LooseJoint& loose);
   void placeLoose(Pose& target, BodyFrame& frame) const;
 
   const RetargetSetup& setup_;
-  std::optional<Index> hips_;          // of others than people the joint that carries all legs
-  std::optional<Index> pelvis_;        // the joint that carries the legs and the trunk
-  std::vector<Index> hipJoints_;       // of the legs, of four those behind
+  std::optional<Index> hips_;     // of others than people the joint that carries all legs
+  std::optional<Index> pelvis_;   // the joint that carries the legs and the trunk
+  std::vector<Index> hipJoints_;  // of the legs, of four those behind
+  // What goes the source's way of a quadruped that was matched by form: the joint that carries its hind legs; where
+  // that carries the forelegs too, and so lies elsewhere, the joints at which the hind legs begin.
+  std::vector<Index> hindquarters_, sourceHindquarters_;
   std::vector<Index> turnsAlong_;      // joints below it that turn with it
   std::vector<Index> pelvisChildren_;  // what hangs on these and on the pelvis
   std::vector<Loose> loose_;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "limber/matching/quadruped_shape.h"
 #include "limber/matching/testing/test_motion.h"
 
 namespace limber {
@@ -149,6 +150,25 @@ TEST(RootMotion, WaysOfAnimalsJointsAreThoseThroughSpace) {
   const std::vector<Affine> expected = poseGlobals(one, pose), globals = poseGlobals(other, result.poses.front());
   for (Index j = 0; j < one.jointCount(); ++j) {
     EXPECT_LT((globals[j].translation() - expected[j].translation()).norm(), 1e-6) << one.joints[j].name;
+  }
+}
+
+// Of bodies that turn about a joint that lies elsewhere.
+TEST(RootMotion, HipsOfAnimalsGoAsTheSources) {
+  const Skeleton one = limber::testing::quadruped(0.5), other = limber::testing::quadrupedOnOneJoint();
+  for (const auto& [source, target] : {std::pair(one, other), std::pair(other, one)}) {
+    const RetargetSetup setup(source, target, matchQuadrupeds(source, target).value(), {});
+    const RootPlacer placer(setup);
+    Pose from = restPose(source), to = restPose(target);
+    from.locals[0].rotation = to.locals[0].rotation = limber::testing::turn(-Vec3::UnitX(), 40);
+    BodyFrame fromFrame, toFrame;
+    setup.sourceKinematics.globals(from, fromFrame);
+    setup.targetKinematics.globals(to, toFrame);
+    placer.place(from, fromFrame, to, toFrame);
+    EXPECT_LT(
+        (toFrame.positions[target.find("b0LeftOne").value()] - fromFrame.positions[source.find("b0LeftOne").value()])
+            .norm(),
+        0.05);
   }
 }
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "limber/limbs/smooth.h"
-#include "limber/skeleton/chain.h"
+#include "limber/matching/quadruped_shape.h"
 
 namespace limber {
 
@@ -24,10 +24,9 @@ double slopeOf(double rise) {
 }  // namespace
 
 TrunkTilt::TrunkTilt(const RetargetSetup& setup, const RootPlacer& root) : setup_(setup), root_(root) {
-  const JointMatch* trunk = setup.map.find("trunk");
-  if (setup.person || !root.turnsPelvis() || !trunk) return;
+  if (setup.person || !root.turnsPelvis()) return;
   for (const AnimalLeg& leg : setup.animalLegs) {
-    const bool fore = isAncestorOrSelf(*setup.target, trunk->target.front(), leg.target.upper);
+    const bool fore = isForeleg(setup.map, leg.target.upper);
     (fore ? shoulders_ : hips_).push_back(leg.target.upper);
     (fore ? sourceShoulders_ : sourceHips_).push_back(leg.source.upper);
   }

@@ -15,7 +15,7 @@ namespace {
 constexpr double kRootHeight = 0.3, kFootHeight = 0.15;         // at most
 constexpr double kShinOverFoot = 0.08, kMostShinHeight = 0.45;  // of the shin's joint
 constexpr double kMostHipHeight = 0.7;
-constexpr double kBesideShin = 0.12;  // along the ground, at most
+constexpr double kBesideShin = 0.16;  // along the ground, at most
 
 class LegJoiner {
  public:

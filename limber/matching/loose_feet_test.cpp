@@ -44,6 +44,15 @@ TEST(LooseFeet, FourFeetOnRootsOfTheirOwnDoSo) {
   }
 }
 
+// Of a triceratops' proportions: shins that come down at a slant.
+TEST(LooseFeet, ShinsMayLean) {
+  Skeleton animal = onTheGround(limber::testing::quadruped(0.5), {"b0LeftThree", "b0RightThree"});
+  for (const char* foot : {"b0LeftThree", "b0RightThree"}) {
+    animal.joints[animal.find(foot).value()].rest.translation.z() -= 0.2;
+  }
+  EXPECT_EQ(joined(animal)[animal.find("b0LeftThree").value()], animal.find("b0LeftTwo"));
+}
+
 TEST(LooseFeet, LegsAtTheRootHangOnTheTrunkBesideThem) {
   const Skeleton person = onTheGround(practiceHumanoid(), {"leftUpperLeg", "rightUpperLeg"});
   const std::vector<std::optional<Index>> parents = joined(person);

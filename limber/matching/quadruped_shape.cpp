@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 #include <string>
+#include <utility>
 
 #include "limber/matching/loose_feet.h"
 
@@ -13,12 +15,13 @@ namespace {
 
 constexpr double kConfidence = 0.8;
 // In heights of the body, from its lowest joint to where the legs begin.
-constexpr double kLow = 0.2;             // of a foot, at most
-constexpr double kMirrored = 0.15;       // how far left and right may be off being mirror images
-constexpr double kAside = 0.02;          // of a leg from the body's middle, at least
-constexpr double kBlade = 0.7;           // of the height of a blade's upper end, at which its lower one is at least
-constexpr double kSteep = 1;             // how far down a leg goes for each metre along, at least
-constexpr double kSameWay = 0.9;         // cosine between where the two face, and between their blades, at least
+constexpr double kLow = 0.2;        // of a foot, at most
+constexpr double kMirrored = 0.15;  // how far left and right may be off being mirror images
+constexpr double kAside = 0.02;     // of a leg from the body's middle, at least
+constexpr double kBlade = 0.7;      // of the height of a blade's upper end, at which its lower one is at least
+constexpr double kSteep = 1;        // how far down a leg goes for each metre along, at least
+constexpr double kTrunk = 0.5;      // of the way from pair to pair, that the trunk beside them leads along at least
+constexpr double kSameWay = 0.9;    // cosine between where the two face, and between their blades, at least
 constexpr std::size_t kMostChains = 64;  // that hang down: more are no legs
 
 using Joints = std::vector<Index>;  // root to tip
@@ -51,18 +54,10 @@ class QuadrupedReader {
   std::optional<Quadruped> read() {
     findPairs();
     if (pairs_.size() != 2) return std::nullopt;
-    if (isAbove(pairs_[1].on, pairs_[0].on)) std::swap(pairs_[0], pairs_[1]);
-    const Pair &hind = pairs_[0], &fore = pairs_[1];
-    if (!isAbove(hind.on, fore.on)) return std::nullopt;
     Quadruped animal;
-    animal.hindquarters = hind.on;
-    for (Index j = fore.on; j != hind.on; j = *parents_[j]) animal.trunk.push_back(j);
-    std::reverse(animal.trunk.begin(), animal.trunk.end());
-    const Vec3 along = at(fore.on) - at(hind.on);
-    if (levelled(along).norm() <= std::abs(along.y())) return std::nullopt;
-    animal.forward = levelled(along).normalized();
-    addNeck(fore, animal);
-    animal.tail = longestFrom(hind, animal.trunk.front());
+    if (!(pairs_[0].on == pairs_[1].on ? readTrunkBeside(animal) : readTrunkBetween(animal))) return std::nullopt;
+    animal.hindquarters = pairs_[0].on;
+    animal.tail = longestFrom(animal.hindquarters, animal.trunk.front());
     measure();
     for (std::size_t i = 0; i < kLegs.size(); ++i) {
       const Pair& pair = pairs_[i / 2];
@@ -80,7 +75,56 @@ class QuadrupedReader {
   struct Pair {
     Joints one, other;
     Index on = 0;
+    Vec3 top = Vec3::Zero();  // between where they begin
+
+    bool has(const Joints& leg) const { return one == leg || other == leg; }
   };
+
+  // Trunk, neck and head, and which legs are behind: they come first. Of one whose forelegs hang on the trunk.
+  bool readTrunkBetween(Quadruped& animal) {
+    if (isAbove(pairs_[1].on, pairs_[0].on)) std::swap(pairs_[0], pairs_[1]);
+    const Index hind = pairs_[0].on, fore = pairs_[1].on;
+    if (!isAbove(hind, fore)) return false;
+    for (Index j = fore; j != hind; j = *parents_[j]) animal.trunk.push_back(j);
+    std::reverse(animal.trunk.begin(), animal.trunk.end());
+    const Vec3 along = at(fore) - at(hind);
+    if (levelled(along).norm() <= std::abs(along.y())) return false;
+    animal.forward = levelled(along).normalized();
+    setNeck(longestFrom(fore, std::nullopt), animal);
+    return true;
+  }
+
+  // Of one whose legs all hang on one joint, beside the trunk: that is what leads over most of the way from pair to
+  // pair, and where it has passed the forelegs the neck begins.
+  bool readTrunkBeside(Quadruped& animal) {
+    const Vec3 between = levelled(pairs_[1].top - pairs_[0].top);
+    const auto share = [&](Index joint) {
+      return std::clamp(between.dot(at(joint) - pairs_[0].top) / between.squaredNorm(), 0.0, 1.0);
+    };
+    const Index on = pairs_[0].on;
+    double most = kTrunk;
+    Joints path;
+    for (const Index child : children_[on]) {
+      if (isLeg(child)) continue;
+      const Joints branch = farthestPath(child);
+      double least = share(on), greatest = least;
+      for (const Index joint : branch) {
+        least = std::min(least, share(joint));
+        greatest = std::max(greatest, share(joint));
+      }
+      if (greatest - least <= most) continue;
+      most = greatest - least;
+      path = branch;
+      animal.forward = std::copysign(1, share(branch.back()) - share(on)) * between.normalized();
+    }
+    if (path.empty()) return false;
+    if (animal.forward.dot(between) < 0) std::swap(pairs_[0], pairs_[1]);
+    const auto neck = std::find_if(path.begin() + 1, path.end(),
+                                   [&](Index joint) { return animal.forward.dot(at(joint) - pairs_[1].top) > 0; });
+    animal.trunk.assign(path.begin(), neck);
+    setNeck({neck, path.end()}, animal);
+    return true;
+  }
 
   const Vec3& at(Index joint) const { return positions_[joint]; }
   static Vec3 levelled(const Vec3& way) { return {way.x(), 0, way.z()}; }
@@ -109,9 +153,48 @@ class QuadrupedReader {
     if (chains.size() > kMostChains) return;
     for (std::size_t a = 0; a < chains.size(); ++a) {
       for (std::size_t b = a + 1; b < chains.size(); ++b) {
-        if (areMirrored(chains[a], chains[b])) pairs_.push_back({chains[a], chains[b], *parents_[chains[a].front()]});
+        if (!areMirrored(chains[a], chains[b])) continue;
+        const Vec3 top = (at(chains[a].front()) + at(chains[b].front())) / 2;
+        pairs_.push_back({chains[a], chains[b], *parents_[chains[a].front()], top});
       }
     }
+    if (pairs_.size() > 2 && areFourLegs()) keepMirrorImages();
+  }
+
+  bool areFourLegs() const {
+    std::set<Index> legs;
+    for (const Pair& pair : pairs_) {
+      if (pair.on != pairs_.front().on) return false;
+      legs.insert({pair.one.front(), pair.other.front()});
+    }
+    return legs.size() == 4;
+  }
+
+  // Of four legs on one joint any two may look like a pair: left and right are those between which the body lies.
+  void keepMirrorImages() {
+    std::vector<Pair> best;
+    double least = HUGE_VAL;
+    for (std::size_t a = 0; a < pairs_.size(); ++a) {
+      for (std::size_t b = a + 1; b < pairs_.size(); ++b) {
+        if (pairs_[a].has(pairs_[b].one) || pairs_[a].has(pairs_[b].other)) continue;
+        const double off = std::max(bodyAside(pairs_[a]), bodyAside(pairs_[b]));
+        if (off >= least) continue;
+        least = off;
+        best = {pairs_[a], pairs_[b]};
+      }
+    }
+    pairs_ = best;
+  }
+
+  // How far what hangs on the legs' joint beside them lies off the plane between left and right, at most.
+  double bodyAside(const Pair& pair) const {
+    const Vec3 across = levelled(at(pair.one.front()) - at(pair.other.front())).normalized();
+    double off = 0;
+    for (const Index child : children_[pair.on]) {
+      if (isLeg(child)) continue;
+      for (const Index joint : farthestPath(child)) off = std::max(off, std::abs(across.dot(at(joint) - pair.top)));
+    }
+    return off;
   }
 
   bool areMirrored(const Joints& one, const Joints& other) const {
@@ -122,22 +205,41 @@ class QuadrupedReader {
            std::abs(at(one.front()).y() - at(other.front()).y()) < kMirrored * height;
   }
 
-  // The farthest way down from the joint that carries two legs, but for these and for what begins at `but`.
-  Joints longestFrom(const Pair& pair, std::optional<Index> but) const {
-    std::optional<Index> end;
-    double farthest = 0;
-    for (Index j = 0; j < parents_.size(); ++j) {
-      const std::optional<Index> first = firstBelow(pair.on, j);
-      if (!first || first == pair.one.front() || first == pair.other.front() || first == but) continue;
-      const double away = (at(j) - at(pair.on)).norm();
-      if (away <= farthest) continue;
-      farthest = away;
-      end = j;
+  bool isLeg(Index joint) const {
+    return std::any_of(pairs_.begin(), pairs_.end(),
+                       [&](const Pair& pair) { return joint == pair.one.front() || joint == pair.other.front(); });
+  }
+
+  // From a joint to the one below it that is farthest from where it hangs.
+  Joints farthestPath(Index first) const {
+    const Vec3& from = at(*parents_[first]);
+    Index end = first;
+    std::vector<Index> open = {first};
+    while (!open.empty()) {
+      const Index joint = open.back();
+      open.pop_back();
+      if ((at(joint) - from).norm() > (at(end) - from).norm()) end = joint;
+      open.insert(open.end(), children_[joint].begin(), children_[joint].end());
     }
-    Joints path;
-    for (; end && *end != pair.on; end = parents_[*end]) path.push_back(*end);
+    Joints path = {end};
+    while (path.back() != first) path.push_back(*parents_[path.back()]);
     std::reverse(path.begin(), path.end());
     return path;
+  }
+
+  // The path that leads farthest from a joint, but for legs and what begins at `but`.
+  Joints longestFrom(Index on, std::optional<Index> but) const {
+    Joints longest;
+    double farthest = 0;
+    for (const Index child : children_[on]) {
+      if (child == but || isLeg(child)) continue;
+      Joints path = farthestPath(child);
+      const double away = (at(path.back()) - at(on)).norm();
+      if (away <= farthest) continue;
+      farthest = away;
+      longest = std::move(path);
+    }
+    return longest;
   }
 
   // On the way from a joint down to one below it.
@@ -149,8 +251,8 @@ class QuadrupedReader {
   }
 
   // Up to the first joint that several hang on, the head, or to the last.
-  void addNeck(const Pair& fore, Quadruped& animal) const {
-    animal.neck = longestFrom(fore, std::nullopt);
+  void setNeck(Joints path, Quadruped& animal) const {
+    animal.neck = std::move(path);
     const auto head =
         std::find_if(animal.neck.begin(), animal.neck.end(), [&](Index j) { return children_[j].size() != 1; });
     if (head == animal.neck.end() || head == animal.neck.begin()) return;
@@ -257,6 +359,12 @@ std::optional<LegEnd> legEndOf(std::string_view part) {
     if (part == leg + "Foot") return LegEnd::kFoot;
   }
   return std::nullopt;
+}
+
+bool isForeleg(const SkeletonMap& map, Index upper) {
+  return std::any_of(map.matches.begin(), map.matches.end(), [&](const JointMatch& match) {
+    return match.target.front() == upper && (match.part == "leftForeBone1" || match.part == "rightForeBone1");
+  });
 }
 
 std::optional<SkeletonMap> matchQuadrupeds(const Skeleton& source, const Skeleton& target) {

@@ -9,8 +9,10 @@
 namespace limber {
 namespace {
 
+using limber::testing::addJoint;
 using limber::testing::onTheGround;
 using limber::testing::quadruped;
+using limber::testing::quadrupedOnOneJoint;
 using limber::testing::withJointBefore;
 
 const std::vector<std::string> kPaws = {"b0LeftThree", "b0RightThree", "b1LeftThree", "b1RightThree"};
@@ -102,11 +104,51 @@ TEST(QuadrupedShape, PeopleTablesAndThoseThatFaceElsewhereAreNone) {
   Skeleton turned = animal;
   turned.joints[0].rest.rotation = limber::testing::turn(Vec3::UnitY(), 90);
   EXPECT_FALSE(matchQuadrupeds(animal, turned));
-  Skeleton table = animal;  // all legs on one joint
-  for (Joint& joint : table.joints) {
-    if (joint.name.starts_with("b1") && joint.name.ends_with("One")) joint.parent = Index{0};
+  const Skeleton beside = quadrupedOnOneJoint();
+  Skeleton table, spider = beside;  // no trunk; six legs
+  for (const Joint& joint : beside.joints) {
+    const bool isOfLeg = joint.name.find("Left") != std::string::npos || joint.name.find("Right") != std::string::npos;
+    if (joint.parent && !isOfLeg) continue;
+    addJoint(table, joint.name, joint.parent ? beside.joints[*joint.parent].name : "", joint.rest.translation);
   }
+  EXPECT_EQ(table.jointCount(), 17u);
   EXPECT_FALSE(matchQuadrupeds(animal, table));
+  for (const std::string side : {"Left", "Right"}) {
+    addJoint(spider, side + "One", "body", Vec3(side == "Left" ? 0.2 : -0.2, -0.35, 0));
+    addJoint(spider, side + "Two", side + "One", Vec3(0, -0.45, 0.02));
+    addJoint(spider, side + "Three", side + "Two", Vec3(0, -0.45, -0.02));
+    addJoint(spider, side + "Four", side + "Three", Vec3(0, -0.04, 0.1));
+  }
+  EXPECT_TRUE(matchQuadrupeds(animal, beside));
+  EXPECT_FALSE(matchQuadrupeds(animal, spider));
+}
+
+TEST(QuadrupedShape, LegsMayAllHangOnOneJointBesideTheTrunk) {
+  const Skeleton one = quadrupedOnOneJoint(), other = nameless(quadruped(0.5));
+  const SkeletonMap map = matchQuadrupeds(one, other).value();
+  EXPECT_EQ(sourceOf(map, one, kHindquarters), PartNames({"body"}));
+  EXPECT_EQ(sourceOf(map, one, "trunk"), PartNames({"b0", "b1"}));
+  EXPECT_EQ(sourceOf(map, one, "neck"), PartNames({"n0"}));
+  EXPECT_EQ(sourceOf(map, one, "tail"), PartNames({"tail1", "tail2", "tail3"}));
+  EXPECT_EQ(sourceOf(map, one, "leftForeBone1"), PartNames({"b1LeftOne"}));
+  EXPECT_EQ(sourceOf(map, one, "rightHindFoot"), PartNames({"b0RightThree"}));
+  for (const JointMatch& match : map.matches) {
+    EXPECT_EQ(isForeleg(map, match.target.front()), match.part == "leftForeBone1" || match.part == "rightForeBone1");
+  }
+  EXPECT_EQ(RetargetSetup(one, other, map, {}).animalLegs.size(), 4u);
+}
+
+// Words that both have, of joints that hang elsewhere.
+TEST(QuadrupedShape, EqualNamesAreNoFamilyWhereJointsHangElsewhere) {
+  const Skeleton one = quadruped(0.5);
+  Skeleton other = quadrupedOnOneJoint();
+  for (Joint& joint : other.joints) {
+    if (joint.name.ends_with("Two") || joint.name.ends_with("Four") || joint.name == "b1" || joint.name == "n1" ||
+        joint.name == "tail3")
+      joint.name += "x";
+  }
+  EXPECT_TRUE(matchSkeletons(one, other).find(kHindquarters));
+  EXPECT_FALSE(matchSkeletons(one, quadruped(0.4)).find(kHindquarters));
 }
 
 // Bodies of differing names and legs: paws stand and rise as the source's, wherever the target's hang.

@@ -19,6 +19,7 @@ namespace limber {
 
 namespace {
 
+constexpr double kFamily = 0.6;  // of joints with a name in common, that hang on each other in both, at least
 constexpr double kFacing = 0.5;  // cosine between where toes and a body point, at least, to tell left from right by it
 
 // A person as the matching sees it: parts with their joints.
@@ -196,6 +197,24 @@ SkeletonMap matchNames(const Skeleton& source, const Skeleton& target) {
   return map;
 }
 
+// The share of the matched joints that hang on the same one, in both, of these.
+double hangAlike(const SkeletonMap& map, const Skeleton& source, const Skeleton& target) {
+  std::vector<std::optional<std::size_t>> inSource(source.jointCount()), inTarget(target.jointCount());
+  for (std::size_t m = 0; m < map.matches.size(); ++m) {
+    inSource[map.matches[m].source.front()] = m;
+    inTarget[map.matches[m].target.front()] = m;
+  }
+  const auto above = [](const Skeleton& skeleton, const auto& matches, Index joint) -> std::optional<std::size_t> {
+    std::optional<Index> at = skeleton.joints[joint].parent;
+    while (at && !matches[*at]) at = skeleton.joints[*at].parent;
+    return at ? matches[*at] : std::nullopt;
+  };
+  const auto alike = std::count_if(map.matches.begin(), map.matches.end(), [&](const JointMatch& match) {
+    return above(source, inSource, match.source.front()) == above(target, inTarget, match.target.front());
+  });
+  return static_cast<double>(alike) / static_cast<double>(map.matches.size());
+}
+
 bool sameTree(const Skeleton& a, const Skeleton& b) {
   return a.jointCount() == b.jointCount() &&
          std::equal(a.joints.begin(), a.joints.end(), b.joints.begin(),
@@ -225,7 +244,8 @@ SkeletonMap matchSkeletons(const Skeleton& source, const Skeleton& target) {
   const bool isFamily = names.matches.size() >= 3 && names.matches.size() * 2 > fewer;
   const std::optional<Body> from = BodyReader(source).read(), to = BodyReader(target).read();
   const bool named = from && to && from->by == MatchedBy::kName && to->by == MatchedBy::kName;
-  if (!named && !isFamily) {
+  // Animals that are built otherwise may well have most words in common.
+  if (!named && (!isFamily || hangAlike(names, source, target) < kFamily)) {
     const std::optional<SkeletonMap> quadrupeds = matchQuadrupeds(source, target);
     if (quadrupeds) return sameTree(source, target) ? matchTrees(target) : *quadrupeds;
   }

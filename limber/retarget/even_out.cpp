@@ -49,6 +49,7 @@ class Evener {
       const std::size_t end = (i + 1) * frames / parts;
       begin_ = i * frames / parts;
       layout_.frames = end - begin_;
+      solvesAll_ = false;
       now_.changes.assign(layout_.frames * layout_.perFrame(), 0.0);
       now_.paths = pathsOf(now_.changes);
       if (ratio(now_.paths) <= kEven) continue;
@@ -132,7 +133,7 @@ class Evener {
     }
     double missed = 0;
     for (std::size_t i = 0; i < legs_.size(); ++i) {
-      if (LimbReach::isThere(legs_[i], frame_)) continue;
+      if (!solvesAll_ && LimbReach::isThere(legs_[i], frame_)) continue;
       reach_.reach(legs_[i], &legs_[i].kneeAhead, frame_, pose);
       if (feet_.empty() || !feet_[(begin_ + frame) * legs_.size() + i].stands) continue;
       missed = std::max(missed, (legs_[i].goal - frame_.positions[legs_[i].end]).norm() / unit);
@@ -167,13 +168,25 @@ class Evener {
     const auto first = feet_.begin() + static_cast<std::ptrdiff_t>(begin_ * legs_.size());
     LeastChanges least(layout_, {first, first + static_cast<std::ptrdiff_t>(layout_.frames * legs_.size())},
                        partsCuts(), ends);
+    const double before = ratio(now_.paths);
+    if (!ends.startsJoined && !ends.endsJoined) solveAll();
     double rough = ratio(now_.paths);
     const double longest = std::min(kLongest, kMostFrames * source_.frameSeconds);
     for (double seconds = kShortest; seconds < longest && rough > kEven; seconds *= kLonger) {
       findSlopes();
       goTowards(least.find(now_, std::pow(seconds / source_.frameSeconds, 6)), rough);
     }
+    if (!(rough < before)) return;
     for (std::size_t f = 0; f < layout_.frames; ++f) apply(now_.changes, f, target_.poses[begin_ + f]);
+  }
+
+  // A leg that is solved once more may bend a little elsewhere, whatever its change: all are, so that changes alone
+  // make the difference. Not where other parts follow, which may stay as they are.
+  void solveAll() {
+    solvesAll_ = true;
+    std::vector<Path> paths = pathsOf(now_.changes);
+    solvesAll_ = !paths.empty();
+    if (solvesAll_) now_.paths = std::move(paths);
   }
 
   // As far as it gets less rough.
@@ -182,10 +195,10 @@ class Evener {
     for (int i = 0; i < kHalvings; ++i, step /= 2) {
       Changes trial = now_.changes;
       for (std::size_t k = 0; k < trial.size(); ++k) trial[k] += step * (aim[k] - trial[k]);
-      if (furthest(trial) > kFurthest) continue;
+      if (!(furthest(trial) <= kFurthest)) continue;
       std::vector<Path> paths = pathsOf(trial);
       const double now = paths.empty() ? rough : ratio(paths);
-      if (now >= rough) continue;
+      if (!(now < rough)) continue;
       rough = now;
       now_.changes = std::move(trial);
       now_.paths = std::move(paths);
@@ -194,6 +207,8 @@ class Evener {
   }
 
   double furthest(const Changes& changes) const {
+    if (!std::all_of(changes.begin(), changes.end(), [](double change) { return std::isfinite(change); }))
+      return HUGE_VAL;
     double most = 0;
     for (std::size_t f = 0; f < layout_.frames; ++f) {
       most = std::max(most, wayAt(changes, layout_.pelvis(f)).norm());
@@ -239,6 +254,7 @@ class Evener {
   std::vector<FootFrame> feet_;  // of each frame, of each leg; empty until they are needed
   // Of the part that is evened.
   std::size_t begin_ = 0;
+  bool solvesAll_ = false;
   ChangeLayout layout_;
   ChangedMotion now_;
   Pose pose_;

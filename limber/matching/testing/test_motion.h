@@ -217,6 +217,22 @@ inline Skeleton quadruped(double thigh) {
   return skeleton;
 }
 
+// The same with all four legs, the trunk and the tail on a joint over the middle of the body.
+inline Skeleton quadrupedOnOneJoint() {
+  const Skeleton animal = quadruped(0.5);
+  const Vec3 middle(0, 1.3, 0.4);
+  const std::vector<Affine> globals = restGlobals(animal);
+  Skeleton other;
+  addJoint(other, "body", "", middle);
+  for (Index j = 0; j < animal.jointCount(); ++j) {
+    const Joint& joint = animal.joints[j];
+    const bool moves = !joint.parent || joint.name.ends_with("One") || joint.name == "tail1";
+    addJoint(other, joint.name, moves ? "body" : animal.joints[*joint.parent].name,
+             moves ? Vec3(globals[j].translation() - middle) : joint.rest.translation);
+  }
+  return other;
+}
+
 // Metres that the feet's joints move along the ground once the source's have stood still for a tenth of a second: these
 // feet stop all at once, and what is at speed when it is planted needs a moment.
 inline double slidWay(const Skeleton& person, const PoseSequence& motion, const Skeleton& other,
