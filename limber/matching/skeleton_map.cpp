@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -31,6 +32,8 @@ struct Body {
   std::map<std::string, Part, std::less<>> parts;
   std::vector<std::string> order;  // of the parts
   MatchedBy by = MatchedBy::kName;
+
+  bool hasArms() const { return parts.contains("leftUpperArm") || parts.contains("rightUpperArm"); }
 };
 
 class BodyReader {
@@ -197,22 +200,46 @@ SkeletonMap matchNames(const Skeleton& source, const Skeleton& target) {
   return map;
 }
 
+// Of each joint the match that it is in.
+using MatchOf = std::vector<std::optional<std::size_t>>;
+
+std::optional<std::size_t> matchAbove(const Skeleton& skeleton, const MatchOf& matches, Index joint) {
+  std::optional<Index> at = skeleton.joints[joint].parent;
+  while (at && !matches[*at]) at = skeleton.joints[*at].parent;
+  return at ? matches[*at] : std::nullopt;
+}
+
 // The share of the matched joints that hang on the same one, in both, of these.
 double hangAlike(const SkeletonMap& map, const Skeleton& source, const Skeleton& target) {
-  std::vector<std::optional<std::size_t>> inSource(source.jointCount()), inTarget(target.jointCount());
+  MatchOf inSource(source.jointCount()), inTarget(target.jointCount());
   for (std::size_t m = 0; m < map.matches.size(); ++m) {
     inSource[map.matches[m].source.front()] = m;
     inTarget[map.matches[m].target.front()] = m;
   }
-  const auto above = [](const Skeleton& skeleton, const auto& matches, Index joint) -> std::optional<std::size_t> {
-    std::optional<Index> at = skeleton.joints[joint].parent;
-    while (at && !matches[*at]) at = skeleton.joints[*at].parent;
-    return at ? matches[*at] : std::nullopt;
-  };
   const auto alike = std::count_if(map.matches.begin(), map.matches.end(), [&](const JointMatch& match) {
-    return above(source, inSource, match.source.front()) == above(target, inTarget, match.target.front());
+    return matchAbove(source, inSource, match.source.front()) == matchAbove(target, inTarget, match.target.front());
   });
   return static_cast<double>(alike) / static_cast<double>(map.matches.size());
+}
+
+// What people of one family have besides: tails, wings, hair. By equal names, where they hang on the same part.
+void addNamesakes(const SkeletonMap& names, const Skeleton& source, const Skeleton& target, SkeletonMap& map) {
+  MatchOf inSource(source.jointCount()), inTarget(target.jointCount());
+  const auto note = [&](std::size_t m) {
+    for (const Index joint : map.matches[m].source) inSource[joint] = m;
+    for (const Index joint : map.matches[m].target) inTarget[joint] = m;
+  };
+  for (std::size_t m = 0; m < map.matches.size(); ++m) note(m);
+  const std::span<const std::string_view> bones = humanoidBones();
+  for (const JointMatch& name : names.matches) {
+    const Index s = name.source.front(), t = name.target.front();
+    const bool isPart = map.find(name.part) || std::find(bones.begin(), bones.end(), name.part) != bones.end();
+    if (inSource[s] || inTarget[t] || isPart) continue;
+    const std::optional<std::size_t> carrier = matchAbove(target, inTarget, t);
+    if (!carrier || carrier != matchAbove(source, inSource, s)) continue;
+    map.matches.push_back(name);
+    note(map.matches.size() - 1);
+  }
 }
 
 bool sameTree(const Skeleton& a, const Skeleton& b) {
@@ -249,8 +276,11 @@ SkeletonMap matchSkeletons(const Skeleton& source, const Skeleton& target) {
     const std::optional<SkeletonMap> quadrupeds = matchQuadrupeds(source, target);
     if (quadrupeds) return sameTree(source, target) ? matchTrees(target) : *quadrupeds;
   }
-  if (from && to && (from->by == MatchedBy::kName || to->by == MatchedBy::kName || !isFamily)) {
+  const bool people = from && to && (from->by == MatchedBy::kName || to->by == MatchedBy::kName || !isFamily);
+  // A family without arms, of birds or bats, moves more than legs and trunk.
+  if (people && !(isFamily && !from->hasArms() && !to->hasArms())) {
     SkeletonMap map = matchBodies(*from, *to);
+    if (isFamily) addNamesakes(names, source, target, map);
     if (map.matches.size() >= 5) return map;
   }
   if (isFamily) {

@@ -65,6 +65,44 @@ TEST(SkeletonMap, FamiliesByEqualNames) {
   EXPECT_THROW(matchSkeletons(snake, other), Error);
 }
 
+// Hips with legs, a tail and what is given besides.
+Skeleton person(const std::vector<std::pair<std::string, std::string>>& others) {
+  Skeleton made = practiceHumanoid();
+  for (const auto& [name, parent] : others) limber::testing::addJoint(made, name, parent, Vec3(0, 0, -0.2));
+  return made;
+}
+
+TEST(SkeletonMap, WhatPeopleHaveBesidesGoesByItsName) {
+  const Skeleton a = person({{"Tail1", "hips"}, {"Tail2", "Tail1"}, {"pocket", "hips"}, {"Wing", "chest"}});
+  const Skeleton b = person({{"pocket", "leftHand"}, {"Tail1", "hips"}, {"Tail2", "Tail1"}, {"Horn", "head"}});
+  const SkeletonMap map = matchSkeletons(a, b);
+  for (const char* joint : {"Tail1", "Tail2"}) {
+    ASSERT_TRUE(map.find(joint)) << joint;
+    EXPECT_EQ(namesOf(b, map.find(joint)->target), std::vector<std::string>{joint});
+  }
+  for (const char* joint : {"pocket", "Wing", "Horn"}) EXPECT_FALSE(map.find(joint)) << joint;
+  checkSkeletonMap(map, a, b);
+}
+
+// Legs alone make no person of a bird, whose wings would stay where they are.
+TEST(SkeletonMap, AFamilyWithoutArmsGoesByItsNames) {
+  Skeleton bird;
+  const auto add = [&](const char* name, const char* parent, const Vec3& offset) {
+    limber::testing::addJoint(bird, name, parent, offset);
+  };
+  bird.joints.push_back({"hips", std::nullopt, {}, 0});
+  add("spine", "hips", Vec3(0, 0.1, 0.3));
+  add("head", "spine", Vec3(0, 0.2, 0.1));
+  for (const std::string side : {"L", "R"}) {
+    const double x = side == "L" ? 1 : -1;
+    add(("UpperLeg_" + side).c_str(), "hips", Vec3(0.1 * x, 0, 0));
+    add(("LowerLeg_" + side).c_str(), ("UpperLeg_" + side).c_str(), Vec3(0, -0.2, 0.1));
+    add(("Foot_" + side).c_str(), ("LowerLeg_" + side).c_str(), Vec3(0, -0.2, -0.1));
+    add(("wing_" + side).c_str(), "spine", Vec3(0.2 * x, 0, 0));
+  }
+  EXPECT_EQ(matchSkeletons(bird, bird).matches.size(), bird.jointCount());
+}
+
 TEST(SkeletonMap, AFileSaysItAll) {
   const Skeleton a = practiceHumanoid(), b = renamed(a);
   const SkeletonMap map = matchSkeletons(a, b);
