@@ -145,7 +145,8 @@ void addMotionEvaluation(CLI::App& evaluate) {
       "planted\n"
       "in the source is planted in the result, and, of a character with a skin, the share of its vertices that are\n"
       "inside the body and were outside in bind pose (5000 vertices in 24 frames at most, both taken evenly); with\n"
-      "--truth the joints' squared distances, too. Animals are measured by their legs.\n"
+      "--truth the joints' squared distances, too. Animals are measured by their legs, what has none by how its\n"
+      "joints turn.\n"
       "\nExample:\n  limber retarget hero.glb walk.bvh -o walking.glb\n"
       "  limber evaluate motion walking.glb --source walk.bvh");
   command->callback([options] { run(*options); });

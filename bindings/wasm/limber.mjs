@@ -47,7 +47,7 @@ import createEngine from './limber_engine.mjs';
  *             target_distance: number | null,
  *             motion: { bone_direction_degrees: number, end_effector_share: number,
  *                       sliding_centimetres_per_second: number, penetration_millimetres: number, jerk_ratio: number,
- *                       contact_agreement: number, [figure: string]: number } | null }} Measures
+ *                       contact_agreement: number, [figure: string]: number | boolean } | null }} Measures
  *
  * skin: 16 numbers for each joint, a matrix column by column; state: null after a drag's update
  * or turn and a moment of a clip.

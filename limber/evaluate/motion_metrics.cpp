@@ -152,6 +152,24 @@ void measureLimbs(const RetargetSetup& setup, const Seen& source, const Seen& ta
   metrics.endEffector = limbs > 0 ? metrics.endEffector / limbs : 0;
 }
 
+// Mean angle between the turns from rest that both make, of joints that follow one each.
+double meanTurnError(const RetargetSetup& setup, const PoseSequence& source, const PoseSequence& target) {
+  double sum = 0, count = 0;
+  BodyFrame from, to;
+  for (std::size_t f = 0; f < source.poses.size(); ++f) {
+    setup.sourceKinematics.globals(source.poses[f], from);
+    setup.targetKinematics.globals(target.poses[f], to);
+    for (const JointMatch& match : setup.map.matches) {
+      if (match.source.size() > 1 || match.target.size() > 1) continue;
+      const Index s = match.source.front(), t = match.target.front();
+      const Quat turn = from.rotations[s] * setup.sourceNeutral.rotations[s].conjugate();
+      sum += angleBetween(turn * setup.targetNeutral.rotations[t], to.rotations[t]) * 180 / kPi;
+      ++count;
+    }
+  }
+  return count > 0 ? sum / count : 0;
+}
+
 // Frames at which the source jumps.
 std::vector<bool> cutsOf(const RetargetSetup& setup, const Positions& source, double seconds) {
   std::vector<bool> cuts(source.size());
@@ -188,11 +206,7 @@ void measureJerk(const RetargetSetup& setup, const Seen& source, const Seen& tar
   metrics.jointJerk = ratio(jointsJerk);
 }
 
-void checkFrames(const RetargetSetup& setup, const PoseSequence& one, const PoseSequence& other) {
-  if (!setup.person && setup.animalLegs.empty()) {
-    throw Error(ErrorCode::kUnsupported,
-                "the motion's measures are those of legs, and the skeletons have none in common");
-  }
+void checkFrames(const PoseSequence& one, const PoseSequence& other) {
   if (one.poses.size() != other.poses.size() || one.poses.size() < 5) {
     throw Error(ErrorCode::kBadArgument,
                 fmt::format("motions of {} and {} frames cannot be compared", one.poses.size(), other.poses.size()), "",
@@ -215,22 +229,27 @@ ShownJoints shownJoints(const Skeleton& original, const PoseSequence& frames, co
 
 MotionMetrics measureMotion(const RetargetSetup& setup, const PoseSequence& source, const PoseSequence& target,
                             const ShownJoints* shownSource, const ShownJoints* shownTarget) {
-  checkFrames(setup, source, target);
+  checkFrames(source, target);
   const Seen from(setup, MapSide::kSource, source, shownSource), to(setup, MapSide::kTarget, target, shownTarget);
   MotionMetrics metrics;
   metrics.frames = static_cast<Index>(source.poses.size());
   metrics.matched = static_cast<Index>(setup.map.matches.size());
   metrics.height = to.height;
   metrics.sourceHeight = from.height;
-  measureFeet(setup, from, to, source.frameSeconds, metrics);
-  measureLimbs(setup, from, to, metrics);
+  metrics.hasLegs = hasLegs(setup);
+  if (metrics.hasLegs) {
+    measureFeet(setup, from, to, source.frameSeconds, metrics);
+    measureLimbs(setup, from, to, metrics);
+  } else {
+    metrics.boneDirection = meanTurnError(setup, source, target);
+  }
   measureJerk(setup, from, to, source.frameSeconds, metrics);
   return metrics;
 }
 
 JointError jointErrorOf(const RetargetSetup& setup, const PoseSequence& truth, const PoseSequence& target,
                         const ShownJoints* shownTruth, const ShownJoints* shownTarget) {
-  checkFrames(setup, truth, target);
+  checkFrames(truth, target);
   const Seen right(setup, MapSide::kTarget, truth, shownTruth), given(setup, MapSide::kTarget, target, shownTarget);
   JointError error;
   double count = 0;
@@ -252,15 +271,17 @@ std::string motionMetricsText(const MotionMetrics& m) {
   std::string text;
   const auto line = [&](const char* name, const std::string& value) { text += fmt::format("{:<22}{}\n", name, value); };
   line("frames", fmt::format("{}, {} of the body", m.frames, counted(m.matched, "part")));
-  line("bone direction", fmt::format("{:.2f} degrees", m.boneDirection));
-  line("end effectors", fmt::format("{:.2f} % of the limb", 100 * m.endEffector));
-  line("planted", fmt::format("{:.1f} % of the feet's frames", 100 * m.planted));
-  line("foot sliding", fmt::format("{:.2f} cm/s ({:.4f} heights/s), source {:.4f}", 100 * m.sliding * m.height,
-                                   m.sliding, m.sourceSliding));
-  line("ground penetration", fmt::format("{:.1f} mm ({:.4f} heights), source {:.4f}", 1000 * m.penetration * m.height,
-                                         m.penetration, m.sourcePenetration));
+  line(m.hasLegs ? "bone direction" : "turns of joints", fmt::format("{:.2f} degrees", m.boneDirection));
+  if (m.hasLegs) {
+    line("end effectors", fmt::format("{:.2f} % of the limb", 100 * m.endEffector));
+    line("planted", fmt::format("{:.1f} % of the feet's frames", 100 * m.planted));
+    line("foot sliding", fmt::format("{:.2f} cm/s ({:.4f} heights/s), source {:.4f}", 100 * m.sliding * m.height,
+                                     m.sliding, m.sourceSliding));
+    line("ground penetration", fmt::format("{:.1f} mm ({:.4f} heights), source {:.4f}", 1000 * m.penetration * m.height,
+                                           m.penetration, m.sourcePenetration));
+  }
   line("jerk", fmt::format("{:.3f} times the source's, {:.3f} of the joints' places", m.jerk, m.jointJerk));
-  line("contact agreement", fmt::format("{:.1f} %", 100 * m.contactAgreement));
+  if (m.hasLegs) line("contact agreement", fmt::format("{:.1f} %", 100 * m.contactAgreement));
   if (const auto& inside = m.selfPenetration) {
     line("self-penetration", fmt::format("{:.2f} % of the vertices, {:.2f} % in frame {}", 100 * inside->mean,
                                          100 * inside->worst, inside->worstFrame));
@@ -275,6 +296,7 @@ std::string motionMetricsText(const MotionMetrics& m) {
 std::string motionMetricsJson(const MotionMetrics& m) {
   nlohmann::ordered_json json = {{"frames", m.frames},
                                  {"matched_parts", m.matched},
+                                 {"has_legs", m.hasLegs},
                                  {"bone_direction_degrees", m.boneDirection},
                                  {"end_effector_share", m.endEffector},
                                  {"planted_share", m.planted},

@@ -27,7 +27,9 @@ struct JointError {
 struct MotionMetrics {
   Index frames = 0;
   Index matched = 0;         // parts of the body that were compared
-  double boneDirection = 0;  // degrees between the directions of upper and lower limbs, mean
+  bool hasLegs = true;       // else nothing is said of limbs, feet and ground
+  double boneDirection = 0;  // degrees between the directions of upper and lower limbs, mean; without legs between the
+                             // turns of matched joints from rest
   double endEffector = 0;    // hands and feet seen from shoulder and hip: how far off, in limb lengths, mean
   double planted = 0;        // share of the source's frames in which such a joint is planted, mean over the joints
   double sliding = 0;        // of planted joints along the ground, heights a second, mean
@@ -54,8 +56,8 @@ struct ShownJoints {
 ShownJoints shownJoints(const Skeleton& original, const PoseSequence& frames, const Quat& toBody);
 
 // `source` and `target` are the same moments of both; the shown ones, if given, too, and count instead. People, and
-// animals by their legs (RetargetSetup::animalLegs): throws Error kUnsupported for others, and kBadArgument where the
-// counts of frames differ or there are fewer than 5.
+// animals by their legs (RetargetSetup::animalLegs); what has none, such as fish, by how its joints turn. Throws Error
+// kBadArgument where the counts of frames differ or there are fewer than 5.
 MotionMetrics measureMotion(const RetargetSetup& setup, const PoseSequence& source, const PoseSequence& target,
                             const ShownJoints* shownSource = nullptr, const ShownJoints* shownTarget = nullptr);
 

@@ -71,6 +71,34 @@ TEST_F(MotionMetricsOf, ToesThatTheSourceLacksSinkAsWell) {
   EXPECT_NEAR(metrics.penetration * metrics.height, deep, 1e-9);
 }
 
+// A snake has no legs: of its ten joints one is off.
+TEST(MotionMetrics, WithoutLegsTurnsOfJointsCount) {
+  Skeleton snake;
+  for (int i = 0; i < 10; ++i) {
+    limber::testing::addJoint(snake, std::string("part").append(std::to_string(i)),
+                              i > 0 ? std::string("part").append(std::to_string(i - 1)) : "", Vec3(0, 0, -0.2));
+  }
+  PoseSequence motion{std::vector<Pose>(40, restPose(snake)), kSeconds};
+  for (std::size_t f = 0; f < motion.poses.size(); ++f) {
+    motion.poses[f].locals[4].rotation =
+        limber::testing::turn(Vec3::UnitY(), 20 * std::sin(0.3 * static_cast<double>(f)));
+  }
+  const RetargetSetup setup(snake, snake, matchSkeletons(snake, snake), {}, &motion);
+  const MotionMetrics same = measureMotion(setup, motion, motion);
+  EXPECT_FALSE(same.hasLegs);
+  EXPECT_LT(same.boneDirection, 1e-6);
+  EXPECT_NEAR(same.jerk, 1, 1e-12);
+  PoseSequence off = motion;
+  for (Pose& pose : off.poses) pose.locals[9].rotation = limber::testing::turn(Vec3::UnitX(), 30);
+  EXPECT_NEAR(measureMotion(setup, motion, off).boneDirection, 30.0 / 10, 1e-6);
+  PoseSequence rough = motion;
+  for (std::size_t f = 0; f < rough.poses.size(); f += 7) {
+    rough.poses[f].locals[7].rotation = limber::testing::turn(Vec3::UnitX(), 15);
+  }
+  EXPECT_GT(measureMotion(setup, motion, rough).jerk, 2);
+  EXPECT_EQ(motionMetricsText(same).find("foot sliding"), std::string::npos);
+}
+
 TEST_F(MotionMetricsOf, ATurnedForearmIsOneBoneOfEight) {
   const PoseSequence still = standing(Vec3::Zero());
   PoseSequence turned = still;
@@ -146,7 +174,7 @@ TEST_F(MotionMetricsOf, JointErrorIsOverTheSquareOfTheHeight) {
 }
 
 TEST(MotionMetricsOfAnimals, AreThoseOfTheirLegs) {
-  const Skeleton animal = limber::testing::quadruped(0.5), snake = straightChain(6, 2);
+  const Skeleton animal = limber::testing::quadruped(0.5);
   PoseSequence still{std::vector<Pose>(40, restPose(animal)), kSeconds}, sliding = still;
   for (std::size_t f = 0; f < sliding.poses.size(); ++f) {
     sliding.poses[f].locals[0].translation += Vec3(0.0005 * static_cast<double>(f), -0.01, 0);
@@ -157,8 +185,6 @@ TEST(MotionMetricsOfAnimals, AreThoseOfTheirLegs) {
   EXPECT_NEAR(metrics.sliding * metrics.height, 0.0005 / kSeconds, 1e-9);
   EXPECT_NEAR(metrics.penetration * metrics.height, 0.01, 1e-9);
   EXPECT_LT(metrics.boneDirection, 1e-6);
-  PoseSequence lying{std::vector<Pose>(40, restPose(snake)), kSeconds};
-  EXPECT_THROW(measureMotion({snake, snake, matchSkeletons(snake, snake), {}}, lying, lying), Error);
 }
 
 TEST_F(MotionMetricsOf, RefusesFramesThatDiffer) {

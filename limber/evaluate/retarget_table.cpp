@@ -6,6 +6,7 @@
 
 #include "limber/asset/motion_io.h"
 #include "limber/evaluate/skinned_model.h"
+#include "limber/limbs/roughness.h"
 #include "limber/matching/plain_skeleton.h"
 
 namespace limber {
@@ -66,6 +67,10 @@ class Scorer {
     try {
       const PlainSkeleton plain(character.skeleton);
       const RetargetSetup setup(skeleton, plain.skeleton(), matchSkeletons(skeleton, plain.skeleton()), {}, &source);
+      if (!hasLegs(setup)) {
+        skipped_.add("legless", "pairs without legs left out", fmt::format("{} on {}", motion, character.name));
+        return;
+      }
       for (const RetargetMethod* method : methods_) {
         const double start = secondsNow();
         const PoseSequence result = retargetFrames(*method, setup, source);

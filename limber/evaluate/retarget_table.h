@@ -25,7 +25,7 @@ struct RetargetTrial {
 };
 
 // A score for each clip of each motion, on each character, by each method, in that order; clips of less than 5 frames
-// and pairs that are no people, or that cannot be matched, are counted in `skipped`.
+// and pairs without legs, or that cannot be matched, are counted in `skipped`.
 std::vector<RetargetScore> scoreRetargeting(const RetargetTrial& trial, Progress& progress, Warnings& skipped);
 
 // A Markdown table with a line for each method: means over the scores, worst values in brackets.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 namespace limber {
 
@@ -19,9 +20,41 @@ constexpr std::array<LimbName, 4> kLimbs = {{{"leftUpperArm", "leftLowerArm", "l
                                              {"leftUpperLeg", "leftLowerLeg", "leftFoot"},
                                              {"rightUpperLeg", "rightLowerLeg", "rightFoot"}}};
 
+// Each two matched joints of which one hangs on the other in both, as bones.
+std::vector<LimbPair> matchedBones(const RetargetSetup& setup) {
+  std::vector<const JointMatch*> from(setup.source->jointCount()), to(setup.target->jointCount());
+  for (const JointMatch& match : setup.map.matches) {
+    for (const Index joint : match.source) from[joint] = &match;
+    for (const Index joint : match.target) to[joint] = &match;
+  }
+  const auto above = [](const Skeleton& skeleton, const std::vector<const JointMatch*>& matches, Index joint) {
+    std::optional<Index> at = skeleton.joints[joint].parent;
+    while (at && !matches[*at]) at = skeleton.joints[*at].parent;
+    return at;
+  };
+  std::vector<LimbPair> bones;
+  for (const JointMatch& match : setup.map.matches) {
+    const Index s = match.source.front(), t = match.target.front();
+    const std::optional<Index> one = above(*setup.source, from, s), other = above(*setup.target, to, t);
+    if (!one || !other || from[*one] != to[*other]) continue;
+    const auto length = [](const NeutralPose& pose, Index a, Index b) {
+      return (pose.restPositions[b] - pose.restPositions[a]).norm();
+    };
+    if (length(setup.sourceNeutral, *one, s) > 0 && length(setup.targetNeutral, *other, t) > 0) {
+      bones.push_back({{*one, s}, {*other, t}});
+    }
+  }
+  return bones;
+}
+
 }  // namespace
 
+bool hasLegs(const RetargetSetup& setup) {
+  return setup.person || !setup.animalLegs.empty();
+}
+
 std::vector<LimbPair> limbPairs(const RetargetSetup& setup) {
+  if (!hasLegs(setup)) return matchedBones(setup);
   std::vector<LimbPair> limbs;
   for (const LimbName& name : kLimbs) {
     if (!setup.person) break;
@@ -42,6 +75,7 @@ std::vector<LimbPair> limbPairs(const RetargetSetup& setup) {
 
 double standingHeight(const RetargetSetup& setup, MapSide side) {
   const bool source = side == MapSide::kSource;
+  if (!hasLegs(setup)) return source ? setup.sourceHipHeight : setup.targetHipHeight;
   const std::vector<Vec3>& positions = (source ? setup.sourceNeutral : setup.targetNeutral).positions;
   double high = pelvisOf(setup.map, side, positions).y();
   for (const JointMatch& match : setup.map.matches) {

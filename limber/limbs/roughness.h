@@ -13,10 +13,15 @@ struct LimbPair {
 
   const std::vector<Index>& of(MapSide side) const { return side == MapSide::kSource ? source : target; }
 };
-// Of people arms and legs, of others RetargetSetup::animalLegs.
+// A person, or an animal that stands on legs which both have.
+bool hasLegs(const RetargetSetup& setup);
+
+// Of people arms and legs, of others RetargetSetup::animalLegs; without legs all bones from a matched joint to the
+// next.
 std::vector<LimbPair> limbPairs(const RetargetSetup& setup);
 
-// From the lowest foot joint to the head's, of a person; of others to the highest joint that is matched: metres.
+// From the lowest foot joint to the head's, of a person; of others to the highest joint that is matched; without legs
+// the size of the body (RetargetSetup::sourceHipHeight): metres.
 double standingHeight(const RetargetSetup& setup, MapSide side);
 
 using Path = std::vector<Vec3>;  // of a point, frame by frame

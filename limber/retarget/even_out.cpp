@@ -264,7 +264,7 @@ class Evener {
 }  // namespace
 
 void evenOut(const RetargetSetup& setup, const PoseSequence& source, PoseSequence& target) {
-  if (setup.person || !setup.animalLegs.empty()) Evener(setup, source, target).run();
+  if (hasLegs(setup)) Evener(setup, source, target).run();
 }
 
 }  // namespace limber

@@ -104,9 +104,10 @@ std::optional<MotionMetrics> measureClip(const SessionState& state) {
     PoseSequence ours = plainTo.plain(sampleFrames(to, moved, rate));
     ours.poses.resize(theirs.poses.size(), ours.poses.back());
     const RetargetSetup setup(plainFrom.skeleton(), plainTo.skeleton(), source.map, {}, &theirs);
-    return measureMotion(setup, theirs, ours);
+    const MotionMetrics metrics = measureMotion(setup, theirs, ours);
+    return metrics.hasLegs ? std::optional(metrics) : std::nullopt;
   } catch (const Error&) {
-    return std::nullopt;  // no people, or a motion too short
+    return std::nullopt;  // a motion too short
   }
 }
 
