@@ -12,7 +12,6 @@
 #include "limber/matching/animal_map.h"
 #include "limber/matching/plain_skeleton.h"
 #include "limber/matching/quadruped_shape.h"
-#include "limber/skeleton/chain.h"
 #include "retarget_measured.h"
 #include "shared_data.h"
 
@@ -55,13 +54,6 @@ class AnimalSide {
   Box box_;
   double ground_ = 0;
 };
-
-bool isOfLeg(const RetargetSetup& setup, Index joint) {
-  return std::any_of(setup.animalLegs.begin(), setup.animalLegs.end(), [&](const AnimalLeg& leg) {
-    return isAncestorOrSelf(*setup.target, leg.target.upper, joint) ||
-           isAncestorOrSelf(*setup.target, leg.target.end, joint);
-  });
-}
 
 AnimalMeasures measuredAnimal(const RetargetSetup& setup, const PoseSequence& source, const PoseSequence& result) {
   AnimalMeasures measures;

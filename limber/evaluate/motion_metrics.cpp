@@ -297,19 +297,21 @@ std::string motionMetricsJson(const MotionMetrics& m) {
   nlohmann::ordered_json json = {{"frames", m.frames},
                                  {"matched_parts", m.matched},
                                  {"has_legs", m.hasLegs},
-                                 {"bone_direction_degrees", m.boneDirection},
-                                 {"end_effector_share", m.endEffector},
-                                 {"planted_share", m.planted},
-                                 {"sliding_heights_per_second", m.sliding},
-                                 {"sliding_centimetres_per_second", 100 * m.sliding * m.height},
-                                 {"source_sliding_heights_per_second", m.sourceSliding},
-                                 {"penetration_heights", m.penetration},
-                                 {"penetration_millimetres", 1000 * m.penetration * m.height},
-                                 {"source_penetration_heights", m.sourcePenetration},
-                                 {"jerk_ratio", m.jerk},
-                                 {"joint_jerk_ratio", m.jointJerk},
-                                 {"contact_agreement", m.contactAgreement},
-                                 {"height_metres", m.height}};
+                                 {"bone_direction_degrees", m.boneDirection}};
+  if (m.hasLegs) {
+    json["end_effector_share"] = m.endEffector;
+    json["planted_share"] = m.planted;
+    json["sliding_heights_per_second"] = m.sliding;
+    json["sliding_centimetres_per_second"] = 100 * m.sliding * m.height;
+    json["source_sliding_heights_per_second"] = m.sourceSliding;
+    json["penetration_heights"] = m.penetration;
+    json["penetration_millimetres"] = 1000 * m.penetration * m.height;
+    json["source_penetration_heights"] = m.sourcePenetration;
+  }
+  json["jerk_ratio"] = m.jerk;
+  json["joint_jerk_ratio"] = m.jointJerk;
+  if (m.hasLegs) json["contact_agreement"] = m.contactAgreement;
+  json["height_metres"] = m.height;
   if (const auto& inside = m.selfPenetration) {
     json["self_penetration_share"] = inside->mean;
     json["worst_self_penetration_share"] = inside->worst;

@@ -118,12 +118,20 @@ std::optional<Index> LimbGoals::sourceBodyOf(const AnimalLeg& leg) const {
 
 // Nothing to correct where both neutral poses are one.
 bool LimbGoals::isSame() const {
-  const NeutralPose &a = setup_.sourceNeutral, &b = setup_.targetNeutral;
-  if (a.positions.size() != b.positions.size() || std::abs(setup_.scale - 1) > 1e-9) return false;
-  for (std::size_t j = 0; j < a.positions.size(); ++j) {
-    if ((a.positions[j] - b.positions[j]).norm() > 1e-6 * setup_.targetHipHeight) return false;
+  const std::vector<Vec3>&from = setup_.sourceNeutral.positions, &to = setup_.targetNeutral.positions;
+  if (std::abs(setup_.scale - 1) > 1e-9) return false;
+  const auto isAt = [&](Index s, Index t) { return (from[s] - to[t]).norm() <= 1e-6 * setup_.targetHipHeight; };
+  Index alike = 0;
+  while (alike < from.size() && from.size() == to.size() && isAt(alike, alike)) ++alike;
+  if (alike == to.size()) return true;
+  // Or the target lacks joints of the source, and all that it has follow one.
+  std::size_t followed = 0;
+  for (const JointMatch& match : setup_.map.matches) {
+    if (match.source.size() > 1 || match.target.size() > 1) return false;
+    if (!isAt(match.source.front(), match.target.front())) return false;
+    ++followed;
   }
-  return true;
+  return followed == to.size();
 }
 
 void LimbGoals::addLeg(Leg leg) {

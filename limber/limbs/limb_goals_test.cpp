@@ -43,6 +43,25 @@ TEST(LimbGoals, AFootSlowsDownTheEarlierTheFasterItComes) {
   EXPECT_LT(heldUp(20), 0.05) << "however fast";
 }
 
+// The same animal but for a joint that nothing follows: its paws go into the ground as the source's do.
+TEST(LimbGoals, LeaveWhatHasTheSameJoints) {
+  const Skeleton animal = limber::testing::quadruped(0.5);
+  Skeleton more = animal;
+  limber::testing::addJoint(more, "saddle", "b0", Vec3(0, 0.1, 0.3));
+  PoseSequence motion{{}, 1.0 / 30};
+  for (int f = 0; f < 20; ++f) {
+    motion.poses.push_back(restPose(more));
+    motion.poses.back().locals[0].translation.y() -= 0.3 - 0.01 * f;
+  }
+  const RetargetSetup setup(more, animal, matchSkeletons(more, animal), {}, &motion);
+  ASSERT_EQ(setup.animalLegs.size(), 4u);
+  const PoseSequence result = retargetFrames(findRetargetMethod("limb-ik"), setup, motion);
+  for (std::size_t f = 0; f < motion.poses.size(); ++f) {
+    const std::vector<Affine> from = poseGlobals(more, motion.poses[f]), to = poseGlobals(animal, result.poses[f]);
+    for (Index j = 0; j < animal.jointCount(); ++j) EXPECT_TRUE(from[j].isApprox(to[j], 1e-9));
+  }
+}
+
 // Of a quadruped's paw on a root of its own, `lift` above where it stands in the source and at its place in the target:
 // how far its goal is from the hip, over the way by the paw's own way.
 double bentBy(double lift, double sunk) {

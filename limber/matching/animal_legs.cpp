@@ -10,7 +10,7 @@ namespace limber {
 
 namespace {
 
-constexpr double kStands = 0.1;  // mean height, in the body's size: a snake's is less
+constexpr double kStands = 0.3;  // mean height, in mean distances along the ground: a snake's is less
 
 // In mean heights of the joints.
 constexpr double kLow = 0.2;      // of a leg's end, at most
@@ -170,18 +170,24 @@ class LegFinder {
 }  // namespace
 
 bool BodySize::stands() const {
-  return height > kStands * across;
+  return height > kStands * spread;
 }
 
 BodySize bodySize(const SkeletonMap& map, MapSide side, const NeutralPose& neutral) {
   Box box;
   BodySize size;
   const std::vector<Index> joints = matchedJoints(map, side);
+  const double share = 1 / static_cast<double>(joints.size());
+  Vec3 middle = Vec3::Zero();
   for (const Index joint : joints) {
     box.add(neutral.restPositions[joint]);
-    size.height += neutral.restPositions[joint].y() / static_cast<double>(joints.size());
+    middle += share * neutral.restPositions[joint];
   }
-  size.height -= box.min.y();
+  for (const Index joint : joints) {
+    const Vec3 way = neutral.restPositions[joint] - middle;
+    size.spread += share * std::hypot(way.x(), way.z());
+  }
+  size.height = middle.y() - box.min.y();
   size.across = box.diagonal();
   return size;
 }

@@ -24,6 +24,7 @@ struct AnimalLeg {
 struct BodySize {
   double height = 0;  // over the lowest, mean
   double across = 0;
+  double spread = 0;  // mean distance from their middle, along the ground: tips of wings count little
   // Else it lies flat, as a snake does.
   bool stands() const;
 };

@@ -44,6 +44,17 @@ TEST(AnimalLegs, AreThoseThatComeDownToTheGround) {
   }
 }
 
+// Wings ten times as long as the legs do not make it lie.
+TEST(AnimalLegs, StandUnderLongWings) {
+  Skeleton winged = quadruped(0.5);
+  for (const double side : {1.0, -1.0}) {
+    const std::string wing = side > 0 ? "leftWing" : "rightWing";
+    limber::testing::addJoint(winged, wing + "One", "b1", Vec3(0.2 * side, 0, 0));
+    limber::testing::addJoint(winged, wing + "Two", wing + "One", Vec3(10 * side, 0, 0));
+  }
+  EXPECT_EQ(RetargetSetup(winged, winged, matchSkeletons(winged, winged), {}).animalLegs.size(), 4u);
+}
+
 // The body sways over paws that stand on a root of their own: they stand in the result, and the shins end at them.
 TEST(AnimalLegs, ReachPawsOnARootOfTheirOwn) {
   const std::vector<std::string> paws = {"b0LeftThree", "b0RightThree", "b1LeftThree", "b1RightThree"};

@@ -33,7 +33,7 @@ struct Body {
   std::vector<std::string> order;  // of the parts
   MatchedBy by = MatchedBy::kName;
 
-  bool hasArms() const { return parts.contains("leftUpperArm") || parts.contains("rightUpperArm"); }
+  bool hasArms() const { return parts.contains("leftLowerArm") || parts.contains("rightLowerArm"); }
 };
 
 class BodyReader {

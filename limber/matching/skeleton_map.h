@@ -30,11 +30,12 @@ struct SkeletonMap {
 
 // People are matched bone by bone: by their joints' names, or, where names say nothing, by what hangs where in rest
 // pose; the joints of trunk and neck along their chains, whatever they are called; twist joints inside a limb go with
-// it. In mirror images, whose toes point backwards for what is called left, left is what is called right. Others are
-// matched by equal names (upper and lower case and prefixes aside), animals' trunks, necks and tails along their chains
-// (animal_map.h), or joint by joint where the trees are the same; quadrupeds of other names and trees by their form
-// (quadruped_shape.h).
-// Throws Error kUnsupported where too little matches to move anything.
+// it, and what else they have, tails and wings, by equal names where it hangs on the same part. In mirror images, whose
+// toes point backwards for what is called left, left is what is called right. Others, and birds and bats of one family,
+// whose legs alone are a person's, are matched by equal names (upper and lower case and prefixes aside), animals'
+// trunks, necks and tails along their chains (animal_map.h), or joint by joint where the trees are the same; quadrupeds
+// of other names and trees by their form (quadruped_shape.h). Throws Error kUnsupported where too little matches to
+// move anything.
 SkeletonMap matchSkeletons(const Skeleton& source, const Skeleton& target);
 
 // Throws Error kBadData naming the part: no joint, one that is not there, or one target joint in two parts.

@@ -1,0 +1,123 @@
+// Birds, fish, snakes, spiders and dinosaurs: shared motions on bodies of the same kind, whose joints have the same
+// names.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cctype>
+#include <ostream>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "limber/asset/motion_io.h"
+#include "limber/core/numbers.h"
+#include "limber/matching/animal_map.h"
+#include "limber/matching/plain_skeleton.h"
+#include "retarget_measured.h"
+#include "shared_data.h"
+
+namespace limber::testing {
+
+struct Kind {
+  const char* motion;
+  std::vector<const char*> bodies;
+  std::size_t legs;
+};
+
+void PrintTo(const Kind& kind, std::ostream* out) {
+  *out << kind.motion;
+}
+
+// Legs reach for the ground, and tails stay above it.
+bool goesOwnWay(const RetargetSetup& setup, const JointMatch& match) {
+  const Index joint = match.target.front();
+  const std::vector<Index> tail = tailOf(*setup.target);
+  const bool personsLeg = setup.person && (match.part.ends_with("Leg") || match.part.starts_with("Feet"));
+  return personsLeg || isOfLeg(setup, joint) || std::find(tail.begin(), tail.end(), joint) != tail.end();
+}
+
+std::size_t namesInCommon(const Skeleton& one, const Skeleton& other) {
+  std::set<std::string> names;
+  for (const Joint& joint : one.joints) names.insert(joint.name);
+  return static_cast<std::size_t>(std::count_if(other.joints.begin(), other.joints.end(),
+                                                [&](const Joint& joint) { return names.contains(joint.name); }));
+}
+
+// By how much joints but those of legs and tails are off the turn from rest that the source's make, degrees, at worst.
+double worstTurn(const RetargetSetup& setup, const PoseSequence& source, const PoseSequence& result) {
+  double worst = 0;
+  BodyFrame from, to;
+  for (std::size_t f = 0; f < result.poses.size(); ++f) {
+    setup.sourceKinematics.globals(source.poses[f], from);
+    setup.targetKinematics.globals(result.poses[f], to);
+    for (const JointMatch& match : setup.map.matches) {
+      const Index s = match.source.front(), t = match.target.front();
+      if (match.source.size() > 1 || match.target.size() > 1 || goesOwnWay(setup, match)) continue;
+      const Quat turn = from.rotations[s] * setup.sourceNeutral.rotations[s].conjugate();
+      const double off = (turn * setup.targetNeutral.rotations[t]).angularDistance(to.rotations[t]);
+      worst = std::max(worst, off * 180 / kPi);
+    }
+  }
+  return worst;
+}
+
+class RetargetKinds : public ::testing::TestWithParam<Kind> {};
+
+TEST_P(RetargetKinds, MoveTheirOwn) {
+  if (!sharedDataFolder()) GTEST_SKIP() << kNoSharedData;
+  const Kind& kind = GetParam();
+  const Motion motion = readMotion(*sharedDataFolder() / kind.motion);
+  const PlainSkeleton from(motion.skeleton);
+  for (const char* body : kind.bodies) {
+    const PlainSkeleton to(readMotion(*sharedDataFolder() / "rigged" / body).skeleton);
+    const SkeletonMap map = matchSkeletons(from.skeleton(), to.skeleton());
+    std::size_t moved = 0;
+    for (const JointMatch& match : map.matches) moved += match.target.size();
+    EXPECT_GE(moved + 2, namesInCommon(from.skeleton(), to.skeleton())) << body << ": wings, fins and all but roots";
+    for (const Clip& clip : motion.clips) {
+      const PoseSequence frames = from.plain(sampleFrames(motion.skeleton, clip, 30));
+      if (frames.poses.size() < 5) continue;
+      const RetargetSetup setup(from.skeleton(), to.skeleton(), map, {}, &frames);
+      EXPECT_EQ(setup.animalLegs.size(), kind.legs);
+      for (const char* method : {"limb-ik", "online", "spacetime"}) {
+        SCOPED_TRACE(std::string(clip.name).append(" ").append(body).append(" ").append(method));
+        const PoseSequence result = retargetFrames(findRetargetMethod(method), setup, frames);
+        EXPECT_LT(worstTurn(setup, frames, result), 0.5);
+        const MotionMetrics measures = measureMotion(setup, frames, result);
+        EXPECT_LT(measures.jerk, 1.1);
+        if (!measures.hasLegs) continue;
+        EXPECT_LT(measures.sliding, measures.sourceSliding + 0.01);
+        if (!clip.name.ends_with("Death")) {
+          EXPECT_GT(measures.contactAgreement, 0.95);
+        }
+      }
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Motions, RetargetKinds,
+                         ::testing::Values(Kind{"motions/m2m_bird_animations.glb",
+                                                {"m2m_bird_base.glb", "m2m_bird_eagle.glb", "m2m_rigonly/rig_bird.glb"},
+                                                2},
+                                           Kind{"motions/m2m_shark_animations.glb",
+                                                {"m2m_fish_shark.glb", "m2m_fish_whale.glb",
+                                                 "m2m_rigonly/rig_shark.glb"},
+                                                0},
+                                           Kind{"motions/m2m_snake_animations.glb", {"m2m_rigonly/rig_snake.glb"}, 0},
+                                           Kind{"motions/m2m_spider_animations.glb", {"m2m_rigonly/rig_spider.glb"}, 0},
+                                           Kind{"motions/m2m_dragon_animations.glb", {"m2m_rigonly/rig_dragon.glb"}, 4},
+                                           Kind{"rigged/quaternius_dolphin.glb", {"quaternius_manta_ray.glb"}, 0},
+                                           Kind{"rigged/quaternius_manta_ray.glb", {"quaternius_dolphin.glb"}, 0},
+                                           Kind{"rigged/quaternius_trex.glb", {"quaternius_velociraptor.glb"}, 2},
+                                           Kind{"rigged/quaternius_velociraptor.glb", {"quaternius_trex.glb"}, 2},
+                                           Kind{"rigged/quaternius_bat.fbx", {"quaternius_dragon.fbx"}, 0},
+                                           Kind{"rigged/quaternius_dragon.fbx", {"quaternius_bat.fbx"}, 0}),
+                         [](const ::testing::TestParamInfo<Kind>& kind) {
+                           std::string name = kind.param.motion;
+                           name = name.substr(name.find('_') + 1);
+                           std::replace_if(
+                               name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
+                           return name;
+                         });
+
+}  // namespace limber::testing
