@@ -226,6 +226,34 @@ TEST_F(Cli, RetargetPutsEachMotionIntoTheCharacter) {
   EXPECT_THAT(ofSkeletons.out, AllOf(HasSubstr("contact agreement"), Not(HasSubstr("self-penetration"))));
   const Result again = run({"retarget", "hero.glb", "wave.bvh", "-o", "again.glb", "--map", "map.json", "-q"});
   EXPECT_EQ(again.code, 0) << again.error;
+  const Result first =
+      run({"retarget", "hero.glb", "wave.bvh", "-o", "first.glb", "--map", "none.json", "--save-map", "none.json"});
+  expectOneLine(first, 1);
+  EXPECT_THAT(first.error, HasSubstr("leave --map out the first time"));
+}
+
+// The clip that was there before, by another method, has the source's name.
+TEST_F(Cli, TheClipThatWasAddedLastIsMeasured) {
+  put("wave.bvh", personBvh("mixamorig:"));
+  EXPECT_EQ(run({"sample", "biped", "-o", "biped.glb", "-q"}).code, 0);
+  EXPECT_EQ(run({"animate", "biped.glb", "wave.bvh", "-o", "wave.glb", "--method", "copy", "-q"}).code, 0);
+  const Result twice = run({"retarget", "wave.glb", "wave.bvh", "-o", "twice.glb", "--method", "aligned"});
+  EXPECT_THAT(twice.out, HasSubstr("wave"));
+  const auto degrees = [&](std::vector<std::string> more) {
+    std::vector<std::string> arguments = {"evaluate", "motion", "twice.glb", "--source", "wave.bvh", "--json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Result measured = run(arguments);
+    EXPECT_EQ(measured.code, 0) << measured.error;
+    return nlohmann::json::parse(measured.out).at("bone_direction_degrees").get<double>();
+  };
+  EXPECT_LT(degrees({}), 0.5);
+  EXPECT_EQ(degrees({}), degrees({"--clip", "wave_2"}));
+  EXPECT_GT(degrees({"--clip", "wave"}), 5);
+  // A source of several clips calls it by its name without the number.
+  put("bow.bvh", personBvh("Bip01 "));
+  EXPECT_EQ(run({"retarget", "wave.glb", "bow.bvh", "-o", "two.glb", "-q"}).code, 0);
+  EXPECT_EQ(run({"retarget", "two.glb", "two.glb", "-o", "four.glb", "-q"}).code, 0);
+  EXPECT_EQ(run({"evaluate", "motion", "four.glb", "--source", "two.glb", "--clip", "bow_2"}).code, 0);
 }
 
 TEST_F(Cli, RetargetMovesASkeletonAlone) {

@@ -1,4 +1,6 @@
 // limber evaluate motion: how well a character moves as the source of its motion did.
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "command.h"
@@ -20,17 +22,30 @@ struct Options {
   bool json = false;
 };
 
-// The clip of that name, else the one named after the source, else the only one.
+// A clip whose name is taken is added as name_2, name_3, and so on.
+std::string withoutNumber(const std::string& name) {
+  const std::size_t end = name.find_last_not_of("0123456789");
+  return end != std::string::npos && end + 1 < name.size() && end > 0 && name[end] == '_' ? name.substr(0, end) : name;
+}
+
+// The clip of that name, else the one that was last named after the source, else the only one.
 const Clip& clipOfResult(const Motion& result, const Motion& source, const std::string& name) {
   const std::string& wanted = name.empty() ? source.name : name;
-  for (const Clip& clip : result.clips) {
-    if (clip.name == wanted) return clip;
+  for (auto clip = result.clips.rbegin(); clip != result.clips.rend(); ++clip) {
+    if (clip->name == wanted || (name.empty() && withoutNumber(clip->name) == wanted)) return *clip;
   }
   if (name.empty() && result.clips.size() == 1) return result.clips.front();
   std::vector<std::string> names;
   for (const Clip& clip : result.clips) names.push_back(clip.name);
   throw Error(ErrorCode::kBadArgument, fmt::format("has no clip '{}'", wanted), result.name,
               fmt::format("choose by --clip NAME; there are: {}", joinNames(names)));
+}
+
+const Clip& clipOfSource(const Motion& source, const std::string& moved) {
+  if (source.clips.size() == 1) return source.clips.front();
+  const bool hasIt =
+      std::any_of(source.clips.begin(), source.clips.end(), [&](const Clip& clip) { return clip.name == moved; });
+  return clipOfResult(source, source, hasIt ? moved : withoutNumber(moved));
 }
 
 Motion withClip(Motion motion, const std::string& file) {
@@ -43,7 +58,7 @@ void run(const Options& options) {
   const Motion result = asItRests(withClip(motionOf(asset), options.result));
   const Motion source = asItRests(withClip(readMotion(options.source), options.source));
   const Clip& moved = clipOfResult(result, source, options.clip);
-  const Clip& original = source.clips.size() > 1 ? clipOfResult(source, result, moved.name) : source.clips.front();
+  const Clip& original = clipOfSource(source, moved.name);
   SkeletonMap map;
   if (options.mapFile.empty()) {
     map = matchSkeletons(source.skeleton, result.skeleton);
@@ -93,6 +108,7 @@ void runMatrix(const MatrixOptions& options) {
   RetargetTrial trial = options.trial;
   trial.motions.assign(options.motions.begin(), options.motions.end());
   trial.characters.assign(options.characters.begin(), options.characters.end());
+  trial.prepare = asItRests;
   for (const std::string& method : trial.methods) findRetargetMethod(method);
   TerminalProgress progress(options.common.quiet);
   Warnings skipped;
@@ -136,7 +152,8 @@ void addMotionEvaluation(CLI::App& evaluate) {
   command->add_option("RESULT", options->result, "the character with its clip")->required();
   command->add_option("--source", options->source, "the motion it came from")->required()->type_name("FILE");
   command->add_option("--truth", options->truth, "the same character with the clip as it should be")->type_name("FILE");
-  command->add_option("--clip", options->clip, "the clip (default: the one named after the source)")->type_name("NAME");
+  command->add_option("--clip", options->clip, "the clip (default: the last named after the source)")
+      ->type_name("NAME");
   command->add_option("--map", options->mapFile, "which joints follow which, in JSON")->type_name("FILE");
   command->add_flag("--json", options->json, "print JSON");
   command->footer(

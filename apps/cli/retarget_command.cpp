@@ -31,6 +31,15 @@ RootScale rootScaleOf(const std::string& name) {
   return name == "none" ? RootScale::kNone : RootScale::kHipHeight;
 }
 
+Bytes readMap(const Options& options) {
+  try {
+    return readFile(options.mapFile);
+  } catch (const Error& error) {
+    if (options.mapFile != options.saveMapFile) throw;
+    throw Error(error.code(), error.message(), error.where(), "leave --map out the first time: --save-map writes it");
+  }
+}
+
 void prepare(Options& options) {
   options.common.apply();
   checkOutput(options.output, {".glb", ".gltf"});
@@ -45,7 +54,7 @@ void prepare(Options& options) {
   if (options.frameRate > 0) options.retarget.frameRate = options.frameRate;
   if (options.hasGround) options.retarget.retarget.sourceGround = options.ground;
   if (!options.mapFile.empty()) {
-    const Bytes text = readFile(options.mapFile);
+    const Bytes text = readMap(options);
     options.retarget.mapJson.emplace(text.begin(), text.end());
   }
 }

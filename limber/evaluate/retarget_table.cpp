@@ -47,7 +47,7 @@ class Scorer {
   }
 
   void score(const std::filesystem::path& file, std::vector<RetargetScore>& scores) const {
-    const Motion motion = readMotion(file);
+    const Motion motion = trial_.prepare ? trial_.prepare(readMotion(file)) : readMotion(file);
     for (const Clip& clip : motion.clips) {
       const PlainSkeleton plain(motion.skeleton);
       PoseSequence source = plain.plain(sampleFrames(motion.skeleton, clip, frameRateOf(clip)));

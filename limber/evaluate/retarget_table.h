@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "limber/core/error.h"
 #include "limber/core/progress.h"
 #include "limber/evaluate/motion_metrics.h"
+#include "limber/skeleton/motion.h"
 
 namespace limber {
 
@@ -20,8 +22,9 @@ struct RetargetScore {
 
 struct RetargetTrial {
   std::vector<std::filesystem::path> motions, characters;
-  std::vector<std::string> methods;  // empty: all
-  Index mostFrames = 1000;           // of each clip; what comes later is left out
+  std::function<Motion(Motion)> prepare;  // what is done to a motion before it is used, if anything
+  std::vector<std::string> methods;       // empty: all
+  Index mostFrames = 1000;                // of each clip; what comes later is left out
 };
 
 // A score for each clip of each motion, on each character, by each method, in that order; clips of less than 5 frames

@@ -22,6 +22,7 @@ namespace limber {
 namespace {
 
 constexpr double kSureEnough = 0.75;  // of a template, to believe how it says that the model stands
+constexpr double kLikely = 0.4;       // to tell of it
 
 // Puts an asset back as it was unless the work on it was completed. Stages change the JSON and append to buffers, and
 // never touch bytes that were there: so the JSON and the lengths are enough to keep.
@@ -168,8 +169,10 @@ Rigged makeRig(const Asset& asset, const Geometry& geometry, const PreparedMesh&
     report.suggestions = std::move(rig.suggestions);
     report.matches = std::move(rig.matches);
     report.warnings.append(rig.warnings);
-    const bool sure = options.rig.up || (!report.matches.empty() && report.matches.front().confidence > kSureEnough);
+    const double confidence = report.matches.empty() ? 0 : report.matches.front().confidence;
+    const bool sure = options.rig.up || confidence > kSureEnough;
     if (sure) result.up = rig.up;
+    if (!sure && rig.up && confidence > kLikely) warnMaybeLies(*rig.up, confidence, report.warnings);
     result.made = toWorld(std::move(rig.skeleton), prepared.frame);
   }
 

@@ -48,8 +48,8 @@ struct AutoRigReport {
 
 // Rigs in place. Warnings of its own: bridged-pieces and bridged-vertices (the node that has most of them is where),
 // single-joint (the kept skeleton moves everything by one joint), turned-upright and not-upright (where a template is
-// sure, or `rig.up` tells, that the model stands along another axis than +Y). On an Error, whose where() begins with
-// the asset's name, the asset is as it was.
+// sure, or `rig.up` tells, that the model stands along another axis than +Y), maybe-not-upright (where it is not sure).
+// On an Error, whose where() begins with the asset's name, the asset is as it was.
 AutoRigReport autoRig(Asset& asset, const AutoRigOptions& options, Progress& progress);
 
 }  // namespace limber

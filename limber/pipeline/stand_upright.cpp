@@ -93,6 +93,12 @@ void standUpright(Asset& asset, const Vec3& up, bool turn, Warnings& warnings) {
   }
 }
 
+void warnMaybeLies(const Vec3& up, double confidence, Warnings& warnings) {
+  if (isUpright(up)) return;
+  warnings.add("maybe-not-upright", fmt::format("the model may stand along {} and lie where +Y is up ({:.0f} % sure)",
+                                                nameOfAxis(up), 100 * confidence));
+}
+
 Quat standUpright(Asset& asset, Warnings& warnings) {
   const std::optional<Vec3> up = restsAlong(asset);
   if (!up || isUpright(*up)) return Quat::Identity();

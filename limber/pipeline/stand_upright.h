@@ -21,9 +21,12 @@ Quat turnToStand(const Skeleton& skeleton);
 // "turned-upright"; where `turn` is false there is only the warning "not-upright". Nothing where up is about +Y.
 void standUpright(Asset& asset, const Vec3& up, bool turn, Warnings& warnings);
 
-// The same of a person's skeleton in a document, before clips are added. Where its clips stand and its rest pose lies,
-// or where no node above it helps, the document stays as it is: these clips then need the turn that is given back, else
-// none.
+// A warning "maybe-not-upright" where it is not sure that the model stands along another axis than +Y.
+void warnMaybeLies(const Vec3& up, double confidence, Warnings& warnings);
+
+// As standUpright, of a person's skeleton in a document, before clips are added. Where its clips stand and its rest
+// pose lies, or where no node above it helps, the document stays as it is: these clips then need the turn that is given
+// back, else none.
 Quat standUpright(Asset& asset, Warnings& warnings);
 
 // A motion whose clips stand along +Y while its rest pose lies: with its clips turned to lie as well, so that one is

@@ -114,6 +114,15 @@ TEST(StandUpright, SourcesThatLieAtRestMoveOthersUpright) {
   }
 }
 
+TEST(StandUpright, TellsWhatMayLie) {
+  Warnings warnings;
+  warnMaybeLies(Vec3(0.1, 0.99, 0), 0.6, warnings);
+  EXPECT_TRUE(warnings.items().empty());
+  warnMaybeLies(Vec3::UnitZ(), 0.6, warnings);
+  ASSERT_THAT(kindsOf(warnings), ElementsAre("maybe-not-upright"));
+  EXPECT_EQ(warnings.items()[0].message, "the model may stand along +Z and lie where +Y is up (60 % sure)");
+}
+
 TEST(StandUpright, OnlyWarnsWhereItMayNotTurn) {
   Asset asset = document(personAlong(Vec3::UnitZ()));
   const Json before = asset.json();
