@@ -87,9 +87,8 @@ TEST(RetargetAnimals, QuadrupedsMoveTheirFamilies) {
   const std::vector<const char*> foxes = {"m2m_fox_fox.glb", "m2m_fox_cat.glb", "m2m_fox_dog.glb"};
   const std::vector<const char*> farm = {"quaternius_alpaca.glb", "quaternius_cow.glb", "quaternius_horse.glb",
                                          "quaternius_wolf.glb"};
-  for (const char* file :
-       {"motions/m2m_fox_animations.glb", "motions/m2m_horse_animations.glb", "rigged/quaternius_alpaca.glb",
-        "rigged/quaternius_cow.glb", "rigged/quaternius_horse.glb", "rigged/quaternius_wolf.glb"}) {
+  for (const char* file : {"motions/m2m_fox_animations.glb", "rigged/quaternius_alpaca.glb",
+                           "rigged/quaternius_cow.glb", "rigged/quaternius_horse.glb", "rigged/quaternius_wolf.glb"}) {
     const Motion motion = readMotion(*sharedDataFolder() / file);
     EXPECT_GE(motion.clips.size(), 12u);
     for (const char* animal : std::string(file).starts_with("motions") ? foxes : farm) {
@@ -165,33 +164,6 @@ TEST(RetargetAnimals, PawsStandWhereTheyStand) {
   }
 }
 
-TEST(RetargetAnimals, FoxesMoveAsHorses) {
-  if (!sharedDataFolder()) GTEST_SKIP() << kNoSharedData;
-  const Motion motion = readMotion(*sharedDataFolder() / "motions/m2m_horse_animations.glb");
-  for (const char* animal : {"m2m_fox_fox.glb", "m2m_fox_cat.glb", "m2m_fox_dog.glb"}) {
-    const PlainSkeleton plain(readMotion(*sharedDataFolder() / "rigged" / animal).skeleton);
-    const SkeletonMap map = matchSkeletons(motion.skeleton, plain.skeleton());
-    for (const Clip& clip : motion.clips) {
-      SCOPED_TRACE(clip.name + ' ' + animal);
-      const PoseSequence frames = sampleFrames(motion.skeleton, clip, 30);
-      const RetargetSetup setup(motion.skeleton, plain.skeleton(), map, {}, &frames);
-      ASSERT_EQ(setup.animalLegs.size(), 4u);
-      for (const char* method : {"limb-ik", "online", "spacetime"}) {
-        SCOPED_TRACE(method);
-        const MotionMetrics result = measured(setup, method, frames);
-        EXPECT_LT(result.sliding, 0.02);
-        if (std::string_view(method) != "spacetime") {
-          EXPECT_LT(result.sliding, result.sourceSliding + 1e-4);
-        }
-        if (clip.name != "Death") {
-          EXPECT_GT(result.contactAgreement, 0.95) << "one that falls over takes its feet along";
-        }
-        EXPECT_LT(result.jerk, 1.1);
-      }
-    }
-  }
-}
-
 // How far a shin's end is from the foot on a root of its own that belongs there, leg lengths, at worst.
 double gapAtFeet(const RetargetSetup& setup, const PoseSequence& result) {
   const std::vector<Vec3>& rest = setup.targetNeutral.restPositions;
@@ -249,7 +221,7 @@ TEST(RetargetAnimals, LegsReachFeetOnRootsOfTheirOwn) {
   }
 }
 
-// Skeletons of no names in common, and of other numbers of joints.
+// Skeletons of no names in common or of few, and of other numbers of joints.
 TEST(RetargetAnimals, QuadrupedsAreMatchedByTheirForm) {
   if (!sharedDataFolder()) GTEST_SKIP() << kNoSharedData;
   const std::vector<const char*> sources = {
@@ -294,7 +266,7 @@ TEST(RetargetAnimals, QuadrupedsAreMatchedByTheirForm) {
       }
     }
   }
-  EXPECT_EQ(strangers, 64);
+  EXPECT_EQ(strangers, 68);
 }
 
 }  // namespace limber::testing

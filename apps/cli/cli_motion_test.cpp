@@ -256,6 +256,25 @@ TEST_F(Cli, TheClipThatWasAddedLastIsMeasured) {
   EXPECT_EQ(run({"evaluate", "motion", "four.glb", "--source", "two.glb", "--clip", "bow_2"}).code, 0);
 }
 
+// Clips of names that the character has already get a number behind them.
+TEST_F(Cli, RetargetTellsTheNamesOfClipsAndEvaluateFindsTheirSources) {
+  put("wave.bvh", personBvh(""));
+  put("bow.bvh", personBvh(""));
+  run({"sample", "biped", "-o", "biped.glb", "-q"});
+  run({"rig", "biped.glb", "--template", "humanoid", "-o", "hero.glb", "-q"});
+  ASSERT_EQ(run({"retarget", "hero.glb", "wave.bvh", "bow.bvh", "-o", "two.glb", "-q"}).code, 0);
+  const Result done = run({"retarget", "two.glb", "two.glb", "-o", "four.glb"});
+  EXPECT_THAT(done.out, AllOf(HasSubstr("wave_2 "), HasSubstr("bow_2 "))) << done.error;
+  EXPECT_EQ(run({"evaluate", "motion", "four.glb", "--source", "two.glb", "--clip", "bow_2"}).code, 0);
+  EXPECT_EQ(
+      run({"evaluate", "motion", "four.glb", "--source", "two.glb", "--clip", "bow_2", "--source-clip", "wave"}).code,
+      0);
+  const Result wrong =
+      run({"evaluate", "motion", "four.glb", "--source", "two.glb", "--clip", "bow_2", "--source-clip", "bow_2"});
+  expectOneLine(wrong, 1);
+  EXPECT_THAT(wrong.error, HasSubstr("choose by --source-clip NAME; there are: wave, bow"));
+}
+
 TEST_F(Cli, RetargetMovesASkeletonAlone) {
   put("wave.bvh", personBvh(""));
   put("other.bvh", personBvh("Bip01 "));

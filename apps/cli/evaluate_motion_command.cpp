@@ -1,5 +1,6 @@
 // limber evaluate motion: how well a character moves as the source of its motion did.
 #include <algorithm>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -18,7 +19,7 @@ namespace limber::cli {
 namespace {
 
 struct Options {
-  std::string result, source, truth, clip, mapFile;
+  std::string result, source, truth, clip, sourceClip, mapFile;
   bool json = false;
 };
 
@@ -28,6 +29,19 @@ std::string withoutNumber(const std::string& name) {
   return end != std::string::npos && end + 1 < name.size() && end > 0 && name[end] == '_' ? name.substr(0, end) : name;
 }
 
+const Clip* findClip(const Motion& motion, std::string_view name) {
+  const auto found =
+      std::find_if(motion.clips.begin(), motion.clips.end(), [&](const Clip& clip) { return clip.name == name; });
+  return found == motion.clips.end() ? nullptr : &*found;
+}
+
+[[noreturn]] void refuseClip(const Motion& motion, const std::string& wanted, const char* option) {
+  std::vector<std::string> names;
+  for (const Clip& clip : motion.clips) names.push_back(clip.name);
+  throw Error(ErrorCode::kBadArgument, fmt::format("has no clip '{}'", wanted), motion.name,
+              fmt::format("choose by {} NAME; there are: {}", option, joinNames(names)));
+}
+
 // The clip of that name, else the one that was last named after the source, else the only one.
 const Clip& clipOfResult(const Motion& result, const Motion& source, const std::string& name) {
   const std::string& wanted = name.empty() ? source.name : name;
@@ -35,17 +49,19 @@ const Clip& clipOfResult(const Motion& result, const Motion& source, const std::
     if (clip->name == wanted || (name.empty() && withoutNumber(clip->name) == wanted)) return *clip;
   }
   if (name.empty() && result.clips.size() == 1) return result.clips.front();
-  std::vector<std::string> names;
-  for (const Clip& clip : result.clips) names.push_back(clip.name);
-  throw Error(ErrorCode::kBadArgument, fmt::format("has no clip '{}'", wanted), result.name,
-              fmt::format("choose by --clip NAME; there are: {}", joinNames(names)));
+  refuseClip(result, wanted, "--clip");
 }
 
-const Clip& clipOfSource(const Motion& source, const std::string& moved) {
+// The clip of that name, else the only one, else the one named as the result's.
+const Clip& clipOfSource(const Motion& source, const std::string& name, const std::string& moved) {
+  if (!name.empty()) {
+    if (const Clip* clip = findClip(source, name)) return *clip;
+    refuseClip(source, name, "--source-clip");
+  }
   if (source.clips.size() == 1) return source.clips.front();
-  const bool hasIt =
-      std::any_of(source.clips.begin(), source.clips.end(), [&](const Clip& clip) { return clip.name == moved; });
-  return clipOfResult(source, source, hasIt ? moved : withoutNumber(moved));
+  if (const Clip* clip = findClip(source, moved)) return *clip;
+  if (const Clip* clip = findClip(source, withoutNumber(moved))) return *clip;
+  refuseClip(source, moved, "--source-clip");
 }
 
 Motion withClip(Motion motion, const std::string& file) {
@@ -58,7 +74,7 @@ void run(const Options& options) {
   const Motion result = asItRests(withClip(motionOf(asset), options.result));
   const Motion source = asItRests(withClip(readMotion(options.source), options.source));
   const Clip& moved = clipOfResult(result, source, options.clip);
-  const Clip& original = clipOfSource(source, moved.name);
+  const Clip& original = clipOfSource(source, options.sourceClip, moved.name);
   SkeletonMap map;
   if (options.mapFile.empty()) {
     map = matchSkeletons(source.skeleton, result.skeleton);
@@ -153,6 +169,8 @@ void addMotionEvaluation(CLI::App& evaluate) {
   command->add_option("--source", options->source, "the motion it came from")->required()->type_name("FILE");
   command->add_option("--truth", options->truth, "the same character with the clip as it should be")->type_name("FILE");
   command->add_option("--clip", options->clip, "the clip (default: the last named after the source)")
+      ->type_name("NAME");
+  command->add_option("--source-clip", options->sourceClip, "the source's (default: the one of that name)")
       ->type_name("NAME");
   command->add_option("--map", options->mapFile, "which joints follow which, in JSON")->type_name("FILE");
   command->add_flag("--json", options->json, "print JSON");

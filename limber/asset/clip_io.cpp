@@ -290,7 +290,7 @@ class ClipWriter {
     for (const Json& animation : elements(asset, "animations")) names_.add(nameOf(animation));
   }
 
-  void write(const Clip& clip) {
+  std::string write(const Clip& clip) {
     channels_ = Json::array();
     samplers_ = Json::array();
     inputs_.clear();
@@ -304,10 +304,12 @@ class ClipWriter {
       addSampler(0, kRotation, constantTrack(Eigen::Quaternionf(nodeLocal_[0].rotation.cast<float>())));
     }
     Json animation = Json::object();
-    animation["name"] = names_.add(clip.name.empty() ? "clip" : clip.name);
+    const std::string name = names_.add(clip.name.empty() ? "clip" : clip.name);
+    animation["name"] = name;
     animation["channels"] = std::move(channels_);
     animation["samplers"] = std::move(samplers_);
     asset_.json()["animations"].push_back(std::move(animation));
+    return name;
   }
 
  private:
@@ -456,21 +458,23 @@ std::vector<Clip> readClips(const Asset& asset, const AssetSkeleton& skeleton, W
   return clips;
 }
 
-void addClips(Asset& asset, const AssetSkeleton& skeleton, std::span<const Clip> clips) {
+std::vector<std::string> addClips(Asset& asset, const AssetSkeleton& skeleton, std::span<const Clip> clips) {
   const Index nodeCount = elementCount(asset, "nodes");
   const bool fits =
       !skeleton.jointNode.empty() && skeleton.jointNode.size() == skeleton.skeleton.joints.size() &&
       std::all_of(skeleton.jointNode.begin(), skeleton.jointNode.end(), [&](Index node) { return node < nodeCount; });
   if (!fits) throw Error(ErrorCode::kBadArgument, "the skeleton is not that of this asset");
   ClipWriter writer(asset, skeleton);
+  std::vector<std::string> names;
   for (const Clip& clip : clips) {
     try {
       checkClip(clip, skeleton.skeleton);
-      writer.write(clip);
+      names.push_back(writer.write(clip));
     } catch (const Error& error) {
       throw error.within(fmt::format("clip '{}'", clip.name));
     }
   }
+  return names;
 }
 
 }  // namespace limber

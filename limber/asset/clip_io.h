@@ -2,6 +2,8 @@
 #pragma once
 
 #include <span>
+#include <string>
+#include <vector>
 
 #include "limber/asset/rig_io.h"
 #include "limber/skeleton/clip.h"
@@ -19,12 +21,12 @@ std::vector<Clip> readClips(const Asset& asset, const AssetSkeleton& skeleton, W
 
 // Adds one animation for each clip; nothing else of the document changes, but that a joint that gets a channel has its
 // transform as translation, rotation and scale. Clips without a name become "clip"; names that are there already get a
-// number behind them. `skeleton` is readSkeleton(asset).
+// number behind them. `skeleton` is readSkeleton(asset). Returns the names as they are written.
 //
 // A joint without a track is kept in its rest pose, also where its node stands otherwise. Values are written as they
 // are, interpolation too; tracks of one value have one key, and none where the node has that value. Tracks of equal
 // times share one accessor. Throws Error kBadArgument where the skeleton is not of that asset, kBadData as checkClip
 // does, with the clip's name, and where a root stands below a node without an inverse (a scale of 0).
-void addClips(Asset& asset, const AssetSkeleton& skeleton, std::span<const Clip> clips);
+std::vector<std::string> addClips(Asset& asset, const AssetSkeleton& skeleton, std::span<const Clip> clips);
 
 }  // namespace limber

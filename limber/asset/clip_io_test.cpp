@@ -252,7 +252,7 @@ TEST(ClipIo, LeavesTheRestOfTheDocumentAlone) {
   clip.name = "turn";
   clip.rotations.push_back(
       {1, Interpolation::kLinear, {0, 1}, {Eigen::Quaternionf(1, 0, 0, 0), Eigen::Quaternionf(0, 1, 0, 0)}});
-  addClips(asset, skeleton, {{clip, clip}});
+  EXPECT_EQ(addClips(asset, skeleton, {{clip, clip}}), (std::vector<std::string>{"turn_2", "turn_3"}));
   checkAsset(asset);
   for (const auto& [key, value] : before.json().items()) {
     if (key == "accessors" || key == "bufferViews" || key == "buffers" || key == "animations") {

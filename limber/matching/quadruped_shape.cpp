@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "limber/matching/loose_feet.h"
+#include "limber/skeleton/humanoid_names.h"
 
 namespace limber {
 
@@ -48,6 +49,9 @@ class QuadrupedReader {
     children_.resize(parents_.size());
     for (Index j = 0; j < parents_.size(); ++j) {
       if (parents_[j]) children_[*parents_[j]].push_back(j);
+    }
+    for (const HumanoidJoint& joint : humanoidJointsByName(skeleton)) {
+      if (joint.bone == "head") head_ = joint.joint;
     }
   }
 
@@ -250,11 +254,13 @@ class QuadrupedReader {
     return std::nullopt;
   }
 
-  // Up to the first joint that several hang on, the head, or to the last.
+  // Up to the head: the joint that is called so, else the first that several hang on, or the last.
   void setNeck(Joints path, Quadruped& animal) const {
     animal.neck = std::move(path);
-    const auto head =
-        std::find_if(animal.neck.begin(), animal.neck.end(), [&](Index j) { return children_[j].size() != 1; });
+    auto head = std::find_if(animal.neck.begin(), animal.neck.end(), [&](Index j) { return j == head_; });
+    if (head == animal.neck.end()) {
+      head = std::find_if(animal.neck.begin(), animal.neck.end(), [&](Index j) { return children_[j].size() != 1; });
+    }
     if (head == animal.neck.end() || head == animal.neck.begin()) return;
     animal.head = {*head};
     animal.neck.erase(head, animal.neck.end());
@@ -298,6 +304,7 @@ class QuadrupedReader {
   std::vector<Vec3> positions_;
   std::vector<std::optional<Index>> parents_;
   std::vector<Joints> children_;
+  std::optional<Index> head_;  // by its name
   std::vector<Pair> pairs_;
   double lowest_ = 0, height_ = 1;
 };

@@ -20,7 +20,7 @@ namespace limber {
 
 namespace {
 
-constexpr double kFamily = 0.6;  // of joints with a name in common, that hang on each other in both, at least
+constexpr double kAlike = 0.6;   // of the smaller one's joints, in animals that are matched by names alone
 constexpr double kFacing = 0.5;  // cosine between where toes and a body point, at least, to tell left from right by it
 
 // A person as the matching sees it: parts with their joints.
@@ -200,45 +200,60 @@ SkeletonMap matchNames(const Skeleton& source, const Skeleton& target) {
   return map;
 }
 
-// Of each joint the match that it is in.
-using MatchOf = std::vector<std::optional<std::size_t>>;
-
-std::optional<std::size_t> matchAbove(const Skeleton& skeleton, const MatchOf& matches, Index joint) {
-  std::optional<Index> at = skeleton.joints[joint].parent;
-  while (at && !matches[*at]) at = skeleton.joints[*at].parent;
-  return at ? matches[*at] : std::nullopt;
-}
-
-// The share of the matched joints that hang on the same one, in both, of these.
-double hangAlike(const SkeletonMap& map, const Skeleton& source, const Skeleton& target) {
-  MatchOf inSource(source.jointCount()), inTarget(target.jointCount());
-  for (std::size_t m = 0; m < map.matches.size(); ++m) {
-    inSource[map.matches[m].source.front()] = m;
-    inTarget[map.matches[m].target.front()] = m;
+// Which joints of two skeletons hang on joints of one match.
+class Hanging {
+ public:
+  Hanging(const SkeletonMap& map, const Skeleton& source, const Skeleton& target)
+      : source_(source), target_(target), ofSource_(source.jointCount()), ofTarget_(target.jointCount()) {
+    for (const JointMatch& match : map.matches) add(match);
   }
-  const auto alike = std::count_if(map.matches.begin(), map.matches.end(), [&](const JointMatch& match) {
-    return matchAbove(source, inSource, match.source.front()) == matchAbove(target, inTarget, match.target.front());
-  });
-  return static_cast<double>(alike) / static_cast<double>(map.matches.size());
+
+  void add(const JointMatch& match) {
+    for (const Index joint : match.source) ofSource_[joint] = count_;
+    for (const Index joint : match.target) ofTarget_[joint] = count_;
+    ++count_;
+  }
+  // On joints of the same match both, or on none.
+  bool alike(const JointMatch& match) const {
+    return above(source_, ofSource_, match.source.front()) == above(target_, ofTarget_, match.target.front());
+  }
+  // Not part of any match, but on joints of one.
+  bool isFree(const JointMatch& match) const {
+    return !ofSource_[match.source.front()] && !ofTarget_[match.target.front()] &&
+           above(source_, ofSource_, match.source.front());
+  }
+
+ private:
+  using Matches = std::vector<std::optional<std::size_t>>;  // #J
+  static std::optional<std::size_t> above(const Skeleton& skeleton, const Matches& matchOf, Index joint) {
+    std::optional<Index> at = skeleton.joints[joint].parent;
+    while (at && !matchOf[*at]) at = skeleton.joints[*at].parent;
+    return at ? matchOf[*at] : std::nullopt;
+  }
+
+  const Skeleton &source_, &target_;
+  Matches ofSource_, ofTarget_;
+  std::size_t count_ = 0;
+};
+
+// Most names of the smaller one in common, on joints that hang alike.
+bool areAlike(const SkeletonMap& names, const Skeleton& source, const Skeleton& target) {
+  const Hanging hanging(names, source, target);
+  const auto alike = std::count_if(names.matches.begin(), names.matches.end(),
+                                   [&](const JointMatch& match) { return hanging.alike(match); });
+  const std::size_t fewer = std::min(source.jointCount(), target.jointCount());
+  return static_cast<double>(alike) > kAlike * static_cast<double>(fewer);
 }
 
-// What people of one family have besides: tails, wings, hair. By equal names, where they hang on the same part.
+// What one family has besides, by equal names, where they hang on the same part: ears, jaws, tails, wings, hair.
 void addNamesakes(const SkeletonMap& names, const Skeleton& source, const Skeleton& target, SkeletonMap& map) {
-  MatchOf inSource(source.jointCount()), inTarget(target.jointCount());
-  const auto note = [&](std::size_t m) {
-    for (const Index joint : map.matches[m].source) inSource[joint] = m;
-    for (const Index joint : map.matches[m].target) inTarget[joint] = m;
-  };
-  for (std::size_t m = 0; m < map.matches.size(); ++m) note(m);
+  Hanging hanging(map, source, target);
   const std::span<const std::string_view> bones = humanoidBones();
-  for (const JointMatch& name : names.matches) {
-    const Index s = name.source.front(), t = name.target.front();
-    const bool isPart = map.find(name.part) || std::find(bones.begin(), bones.end(), name.part) != bones.end();
-    if (inSource[s] || inTarget[t] || isPart) continue;
-    const std::optional<std::size_t> carrier = matchAbove(target, inTarget, t);
-    if (!carrier || carrier != matchAbove(source, inSource, s)) continue;
-    map.matches.push_back(name);
-    note(map.matches.size() - 1);
+  for (const JointMatch& match : names.matches) {
+    const bool isPart = map.find(match.part) || std::find(bones.begin(), bones.end(), match.part) != bones.end();
+    if (isPart || !hanging.isFree(match) || !hanging.alike(match)) continue;
+    map.matches.push_back(match);
+    hanging.add(match);
   }
 }
 
@@ -271,10 +286,14 @@ SkeletonMap matchSkeletons(const Skeleton& source, const Skeleton& target) {
   const bool isFamily = names.matches.size() >= 3 && names.matches.size() * 2 > fewer;
   const std::optional<Body> from = BodyReader(source).read(), to = BodyReader(target).read();
   const bool named = from && to && from->by == MatchedBy::kName && to->by == MatchedBy::kName;
-  // Animals that are built otherwise may well have most words in common.
-  if (!named && (!isFamily || hangAlike(names, source, target) < kFamily)) {
-    const std::optional<SkeletonMap> quadrupeds = matchQuadrupeds(source, target);
-    if (quadrupeds) return sameTree(source, target) ? matchTrees(target) : *quadrupeds;
+  // Animals that are built otherwise may well have many words in common.
+  if (!named && !(isFamily && areAlike(names, source, target))) {
+    std::optional<SkeletonMap> quadrupeds = matchQuadrupeds(source, target);
+    if (quadrupeds && sameTree(source, target)) return matchTrees(target);
+    if (quadrupeds) {
+      if (isFamily) addNamesakes(names, source, target, *quadrupeds);
+      return *quadrupeds;
+    }
   }
   const bool people = from && to && (from->by == MatchedBy::kName || to->by == MatchedBy::kName || !isFamily);
   // A family without arms, of birds or bats, moves more than legs and trunk.

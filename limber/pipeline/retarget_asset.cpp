@@ -55,7 +55,8 @@ std::vector<RetargetedClip> retargetOnto(Asset& asset, const Motion& given, cons
                        doubtfulMatches(map, motion.skeleton, character.skeleton),
                        skeletonMapToJson(map, motion.skeleton, character.skeleton)});
   }
-  addClips(asset, character, clips);
+  const std::vector<std::string> written = addClips(asset, character, clips);
+  for (std::size_t c = 0; c < reports.size(); ++c) reports[c].name = written[c];
   return reports;
 }
 

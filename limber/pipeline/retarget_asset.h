@@ -21,7 +21,7 @@ struct RetargetAssetOptions {
 };
 
 struct RetargetedClip {
-  std::string name;
+  std::string name;  // in the document, with a number behind it where another clip had that name
   Index frames = 0;
   double framesPerSecond = 0;
   SkeletonMap map;
