@@ -37,37 +37,60 @@ Vec3 bendNormal(const Vec3& upper, const Vec3& lower, const Vec3& fallback) {
   return upper.unitOrthogonal();
 }
 
-}  // namespace
+// Bones as they are and as they have to be.
+struct Bend {
+  double upperLength, lowerLength;
+  Vec3 upper, lower, normal;        // as they are; directions are unit vectors
+  Vec3 direction, side, newNormal;  // of the new bend: to the target, and to where the middle lies aside
+  double distance, along, out;      // of the end, and of the middle along the direction and to the side
+};
 
-TwoBoneTurns solveTwoBone(const TwoBone& bones) {
+Bend bendFor(const TwoBone& bones) {
+  Bend bend;
   const Vec3 upperBone = bones.middle - bones.start, lowerBone = bones.end - bones.middle;
-  const double upperLength = upperBone.norm(), lowerLength = lowerBone.norm();
-  const double perUpper = 1 / upperLength, perLower = 1 / lowerLength;
-  const Vec3 upper = perUpper * upperBone, lower = perLower * lowerBone;
-  const Vec3 normal = bendNormal(upper, lower, bones.straightNormal);
+  bend.upperLength = upperBone.norm();
+  bend.lowerLength = lowerBone.norm();
+  const double upperLength = bend.upperLength, lowerLength = bend.lowerLength;
+  bend.upper = 1 / upperLength * upperBone;
+  bend.lower = 1 / lowerLength * lowerBone;
+  bend.normal = bendNormal(bend.upper, bend.lower, bones.straightNormal);
 
   const Vec3 reach = bones.target - bones.start, now = bones.end - bones.start;
   const double distance = reach.norm(), nowLength = now.norm();
-  const Vec3 nowDirection = nowLength > kStraight * upperLength ? Vec3(now * (1 / nowLength)) : upper;
-  const Vec3 direction = distance > kStraight * upperLength ? Vec3(reach * (1 / distance)) : nowDirection;
+  const Vec3 nowDirection = nowLength > kStraight * upperLength ? Vec3(now * (1 / nowLength)) : bend.upper;
+  bend.direction = distance > kStraight * upperLength ? Vec3(reach * (1 / distance)) : nowDirection;
 
-  // Where the middle goes: `along` the way to the target and `out` to the side of the bend.
   const double d = std::clamp(distance, std::abs(upperLength - lowerLength), upperLength + lowerLength);
   const double squares = upperLength * upperLength - lowerLength * lowerLength;
-  const double along = d > 0 ? std::clamp((squares + d * d) / (2 * d), -upperLength, upperLength) : 0;
-  const double out = std::sqrt(std::max(0.0, upperLength * upperLength - along * along));
+  bend.distance = d;
+  bend.along = d > 0 ? std::clamp((squares + d * d) / (2 * d), -upperLength, upperLength) : 0;
+  bend.out = std::sqrt(std::max(0.0, upperLength * upperLength - bend.along * bend.along));
 
   // The normal of the new bend: carried along with the way to the target, or across to the pole.
-  Vec3 newNormal = carriedNormal(normal, nowDirection, direction);
+  bend.newNormal = carriedNormal(bend.normal, nowDirection, bend.direction);
   if (bones.pole) {
-    const Vec3 across = (*bones.pole - bones.start).cross(direction);
+    const Vec3 across = (*bones.pole - bones.start).cross(bend.direction);
     const double squared = across.squaredNorm();
-    if (squared > kStraight * upperLength * upperLength) newNormal = across * (1 / std::sqrt(squared));
+    if (squared > kStraight * upperLength * upperLength) bend.newNormal = across * (1 / std::sqrt(squared));
   }
-  const Vec3 side = direction.cross(newNormal);
-  const Vec3 newUpper = perUpper * (along * direction + out * side);
-  const Vec3 newLower = perLower * ((d - along) * direction - out * side);
-  return {turnFrame(upper, normal, newUpper, newNormal), turnFrame(lower, normal, newLower, newNormal)};
+  bend.side = bend.direction.cross(bend.newNormal);
+  return bend;
+}
+
+}  // namespace
+
+TwoBoneTurns solveTwoBone(const TwoBone& bones) {
+  const Bend bend = bendFor(bones);
+  const Vec3 newUpper = 1 / bend.upperLength * (bend.along * bend.direction + bend.out * bend.side);
+  const Vec3 newLower = 1 / bend.lowerLength * ((bend.distance - bend.along) * bend.direction - bend.out * bend.side);
+  return {turnFrame(bend.upper, bend.normal, newUpper, bend.newNormal),
+          turnFrame(bend.lower, bend.normal, newLower, bend.newNormal)};
+}
+
+TwoBonePlaces placeTwoBone(const TwoBone& bones) {
+  const Bend bend = bendFor(bones);
+  return {bones.start + bend.along * bend.direction + bend.out * bend.side,
+          bones.start + bend.distance * bend.direction};
 }
 
 namespace {

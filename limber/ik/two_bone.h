@@ -27,6 +27,12 @@ struct TwoBoneTurns {
 // Law of cosines; no trigonometry, no allocation, about 100 ns.
 TwoBoneTurns solveTwoBone(const TwoBone& bones);
 
+// Where these turns bring the middle and the end, in half the time.
+struct TwoBonePlaces {
+  Vec3 middle, end;
+};
+TwoBonePlaces placeTwoBone(const TwoBone& bones);
+
 // The method: each target moves its joint, its parent and its grandparent (the base; the default base is the
 // grandparent's root, so name it). Orientations turn the effector's own joint. Refuses effectors that share joints or
 // have not exactly two bones.

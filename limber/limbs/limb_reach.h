@@ -6,6 +6,15 @@
 
 namespace limber {
 
+// What a limb is bent by to reach its goal.
+struct LimbShape {
+  Vec3 middle, end, hock;          // the ways there from the upper joint
+  bool hockCarriesMiddle = false;  // else the middle carries the hock
+  Vec3 ahead;                      // Leg::kneeAhead as the upper joint is turned
+  // Limb::ownBend: the way to the end and kneeAhead, both of the neutral pose, as the body is turned.
+  Vec3 neutralEnd = Vec3::UnitY(), neutralAhead = Vec3::UnitZ();
+};
+
 class LimbReach {
  public:
   // Both must outlive this.
@@ -21,11 +30,12 @@ class LimbReach {
   // Turns the end to `orientation`. `frame` as above.
   void turnEnd(const Limb& limb, const Quat& orientation, BodyFrame& frame, Pose& target) const;
 
+  LimbShape shapeOf(const Limb& limb, const Vec3& kneeAhead, const BodyFrame& frame) const;
+  // The ways from the upper joint to where reach() brings the middle and the end, for a goal that is `there` from it.
+  static TwoBonePlaces placesFor(const Limb& limb, LimbShape shape, const Vec3& there);
+
  private:
-  void bendHock(const Limb& limb, BodyFrame& frame, Pose& target) const;
-  Vec3 ownBend(const Limb& limb, const Vec3& way, const Vec3& kneeAhead, const BodyFrame& frame) const;
   Quat turnOf(Index joint, const BodyFrame& frame) const;  // against the neutral pose
-  Vec3 kneePole(const Limb& limb, const TwoBone& bones, const Vec3& kneeAhead, const BodyFrame& frame) const;
 
   const RetargetSetup& setup_;
   const RootPlacer& root_;

@@ -88,7 +88,7 @@ Pelvis::Move Pelvis::moveOfEnds(std::span<const Leg> hind, std::span<const Leg> 
   const double hindRise = riseFor(hind, frame, none), foreRise = riseFor(fore, frame, none);
   const double apart = 0.5 * (1 - kApart) * (foreRise - hindRise);
   const double up = shiftFor(hind, frame, none, hindRise + apart);
-  return {tilt_.turnFor(shiftFor(fore, frame, none, foreRise - apart) - up, frame), up};
+  return {TrunkTilt::turnFor(shiftFor(fore, frame, none, foreRise - apart) - up, tilt_.trunkOf(frame)), up};
 }
 
 Vec3 Pelvis::hipWay(const Move& move, const Leg& leg, const BodyFrame& frame) const {

@@ -41,13 +41,17 @@ void TrunkTilt::follow(const BodyFrame& source, Pose& target, BodyFrame& frame) 
   if (!tilts()) return;
   const Vec3 sourceWay = wayBetween(sourceHips_, sourceShoulders_, source.positions) -
                          wayBetween(sourceHips_, sourceShoulders_, setup_.sourceNeutral.restPositions);
-  const Vec3 way = wayBetween(hips_, shoulders_, frame.positions) -
-                   wayBetween(hips_, shoulders_, setup_.targetNeutral.restPositions);
-  root_.turnPelvis(turnFor(setup_.scale * sourceWay.y() - way.y(), frame), target, frame);
+  const Vec3 trunk = trunkOf(frame);
+  const Vec3 way = trunk - wayBetween(hips_, shoulders_, setup_.targetNeutral.restPositions);
+  root_.turnPelvis(turnFor(setup_.scale * sourceWay.y() - way.y(), trunk), target, frame);
 }
 
-Quat TrunkTilt::turnFor(double rise, const BodyFrame& frame) const {
-  const Vec3 trunk = wayBetween(hips_, shoulders_, frame.positions), aside = trunk.cross(Vec3::UnitY());
+Vec3 TrunkTilt::trunkOf(const BodyFrame& frame) const {
+  return wayBetween(hips_, shoulders_, frame.positions);
+}
+
+Quat TrunkTilt::turnFor(double rise, const Vec3& trunk) {
+  const Vec3 aside = trunk.cross(Vec3::UnitY());
   const double length = trunk.norm();
   if (!(aside.norm() > 1e-6 * length)) return Quat::Identity();
   const double up = slopeOf((trunk.y() + rise) / length) - slopeOf(trunk.y() / length);

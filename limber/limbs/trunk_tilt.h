@@ -23,8 +23,10 @@ class TrunkTilt {
   // The shoulders rise over the hips by as much as the source's do, scaled. `frame` are the globals of `target` by
   // joint angles alone; both are brought up to date.
   void follow(const BodyFrame& source, Pose& target, BodyFrame& frame) const;
+  // From the hips to the shoulders.
+  Vec3 trunkOf(const BodyFrame& frame) const;
   // The turn by which they rise by that, metres, as far as the trunk is long.
-  Quat turnFor(double rise, const BodyFrame& frame) const;
+  static Quat turnFor(double rise, const Vec3& trunk);
 
  private:
   const RetargetSetup& setup_;
