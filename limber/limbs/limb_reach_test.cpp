@@ -10,25 +10,7 @@ namespace limber {
 namespace {
 
 using limber::testing::oddlyBuilt;
-using limber::testing::quadruped;
-
-// Legs of an animal that bend at the knee to the front and less at the hock to the back.
-Skeleton withHocks() {
-  Skeleton animal;
-  for (Joint joint : quadruped(0.5).joints) {
-    if (joint.parent) joint.parent = animal.find(quadruped(0.5).joints[*joint.parent].name);
-    if (joint.name.ends_with("Two")) joint.rest.translation.z() = 0.06;
-    if (joint.name.ends_with("Three")) {
-      Joint& hock = animal.joints.emplace_back(joint);
-      hock.name = joint.name.substr(0, joint.name.find("Three")) + "Hock";
-      hock.rest.translation = Vec3(0, -0.25, -0.11);
-      joint.parent = animal.find(hock.name);
-      joint.rest.translation = Vec3(0, -0.2, 0.05);
-    }
-    animal.joints.push_back(joint);
-  }
-  return animal;
-}
+using limber::testing::quadrupedWithHocks;
 
 // A left leg of someone who stands.
 class LimbReachTest : public ::testing::Test {
@@ -75,7 +57,7 @@ TEST_F(LimbReachTest, TurnsTheFootWhereAsked) {
 }
 
 TEST(LimbReachOfAnimals, HocksBendAsWell) {
-  const Skeleton animal = withHocks();
+  const Skeleton animal = quadrupedWithHocks();
   Skeleton source = animal;
   source.joints[0].rest.translation.y() = 1.2;
   for (Joint& joint : source.joints) {
@@ -115,7 +97,7 @@ TEST(LimbReachOfAnimals, HocksBendAsWell) {
 
 // A horse's carpus has a dog's elbow's name and bends to the other side.
 TEST(LimbReachOfAnimals, LegsBendAsAtRestWhereTheSourcesBendElsewhere) {
-  const Skeleton animal = withHocks();
+  const Skeleton animal = quadrupedWithHocks();
   Skeleton source = animal;
   source.joints[0].rest.translation.y() = 1.2;
   {

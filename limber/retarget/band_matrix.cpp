@@ -1,41 +1,110 @@
 #include "limber/retarget/band_matrix.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+
+#include <Eigen/Core>
 
 namespace limber {
 
+namespace {
+
+// Columns of a factor, `stride` apart.
+struct Columns {
+  const double* first;
+  std::size_t stride, count;
+};
+
+// Some rows of a column, less those of `columns` times `factors`, one for each (as far apart). In registers: a column
+// is read and written once.
+template <int kRows>
+void subtractRows(const Columns& columns, std::size_t row, const double* factors, double* column) {
+  using Rows = Eigen::Array<double, kRows, 1>;
+  Rows rows = Eigen::Map<const Rows>(column + row);
+  for (std::size_t i = 0; i < columns.count * columns.stride; i += columns.stride) {
+    rows -= factors[i] * Eigen::Map<const Rows>(columns.first + i + row);
+  }
+  Eigen::Map<Rows>(column + row) = rows;
+}
+
+// Column `j` of the matrix less what the columns before it in its factor have of it, in the rows from `j` up to `end`.
+void subtractColumns(const Columns& columns, std::size_t j, std::size_t end, double* column) {
+  const double* factors = columns.first + j;
+  std::size_t row = j;
+  for (; row + 8 <= end; row += 8) subtractRows<8>(columns, row, factors, column);
+  if (row + 4 <= end) {
+    subtractRows<4>(columns, row, factors, column);
+    row += 4;
+  }
+  if (row + 2 <= end) {
+    subtractRows<2>(columns, row, factors, column);
+    row += 2;
+  }
+  if (row < end) subtractRows<1>(columns, row, factors, column);
+}
+
+}  // namespace
+
 std::vector<double> BandMatrix::times(const std::vector<double>& column) const {
   std::vector<double> result(n_, 0.0);
-  for (std::size_t i = 0; i < n_; ++i) {
-    const double* row = &entries_[i * (width_ + 1)];
-    result[i] += row[width_] * column[i];
-    for (std::size_t back = 1; back <= std::min(width_, i); ++back) {
-      result[i] += row[width_ - back] * column[i - back];
-      result[i - back] += row[width_ - back] * column[i];
+  for (std::size_t j = 0; j < n_; ++j) {
+    const double* entries = &entries_[j * width_];
+    result[j] += entries[j] * column[j];
+    for (std::size_t i = j + 1; i < std::min(n_, j + width_ + 1); ++i) {
+      result[i] += entries[i] * column[j];
+      result[j] += entries[i] * column[i];
     }
   }
   return result;
 }
 
 void BandMatrix::solve(std::vector<double>& right) {
-  const auto begin = [&](std::size_t row) { return row > width_ ? row - width_ : 0; };
-  for (std::size_t i = 0; i < n_; ++i) {
-    for (std::size_t j = begin(i); j <= i; ++j) {
-      double sum = at(i, j);
-      const std::size_t from = std::max(begin(i), begin(j));
-      for (std::size_t k = from; k < j; ++k) sum -= at(i, k) * at(j, k);
-      at(i, j) = j < i ? sum / at(j, j) : std::sqrt(sum);
+  factor();
+  substitute(right);
+}
+
+// Panel by panel: what the panels above have of each column, then what the panel's own columns before it have. Entries
+// below the last row are there, and stay zero.
+void BandMatrix::factor() {
+  const std::size_t reach = width_ / panel_;  // panels
+  for (std::size_t begin = 0; begin < n_; begin += panel_) {
+    const std::size_t end = begin + width_ + 1;
+    for (std::size_t j = begin; j < std::min(n_, begin + panel_); ++j) {
+      double* column = &entries_[j * width_];
+      for (std::size_t above = begin - std::min(begin, reach * panel_); above < begin; above += panel_) {
+        subtractColumns({&entries_[above * width_], width_, panel_}, j, above + width_ + 1, column);
+      }
+      subtractColumns({&entries_[begin * width_], width_, j - begin}, j, end, column);
+      const double inverse = 1 / std::sqrt(column[j]);
+      for (std::size_t row = j; row < end; ++row) column[row] *= inverse;
     }
   }
-  for (std::size_t i = 0; i < n_; ++i) {
-    for (std::size_t k = begin(i); k < i; ++k) right[i] -= at(i, k) * right[k];
-    right[i] /= at(i, i);
+}
+
+void BandMatrix::substitute(std::vector<double>& right) const {
+  for (std::size_t j = 0; j < n_; ++j) {
+    const double* column = &entries_[j * width_];
+    right[j] /= column[j];
+    const double value = right[j];
+    for (std::size_t i = j + 1; i < std::min(n_, j + width_ + 1); ++i) right[i] -= column[i] * value;
   }
-  for (std::size_t i = n_; i-- > 0;) {
-    right[i] /= at(i, i);
-    for (std::size_t k = begin(i); k < i; ++k) right[k] -= at(i, k) * right[i];
+  for (std::size_t j = n_; j-- > 0;) {
+    const double* column = &entries_[j * width_];
+    std::array<double, 4> sums = {right[j], 0, 0, 0};
+    const std::size_t end = std::min(n_, j + width_ + 1);
+    std::size_t i = j + 1;
+    for (; i + 4 <= end; i += 4) {
+      for (std::size_t k = 0; k < 4; ++k) sums[k] -= column[i + k] * right[i + k];
+    }
+    for (; i < end; ++i) sums[0] -= column[i] * right[i];
+    right[j] = ((sums[0] + sums[1]) + (sums[2] + sums[3])) / column[j];
   }
+}
+
+void BandLeastSquares::clear() {
+  matrix_.clear();
+  std::fill(right_.begin(), right_.end(), 0.0);
 }
 
 void BandLeastSquares::add(std::span<const Term> terms, double value, double weight) {
@@ -47,11 +116,11 @@ void BandLeastSquares::add(std::span<const Term> terms, double value, double wei
   }
 }
 
-std::vector<double> BandLeastSquares::solve() const {
-  BandMatrix matrix = matrix_;
-  std::vector<double> result = right_;
-  matrix.solve(result);
-  return result;
+const std::vector<double>& BandLeastSquares::solve() {
+  factor_ = matrix_;
+  solution_ = right_;
+  factor_.solve(solution_);
+  return solution_;
 }
 
 }  // namespace limber

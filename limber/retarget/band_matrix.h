@@ -1,6 +1,7 @@
 // A symmetric positive definite matrix whose entries lie near the diagonal, and least squares that make one.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -9,11 +10,16 @@ namespace limber {
 
 class BandMatrix {
  public:
-  // n x n, entries at most `width` columns left of the diagonal. All zero at first.
-  BandMatrix(std::size_t n, std::size_t width) : n_(n), width_(width), entries_(n * (width + 1), 0.0) {}
+  // n x n, entries at most `width` columns left of the diagonal. All zero at first. A band of blocks has a panel for
+  // each column of blocks, `panel` columns of the matrix: none of them has entries more than `width` rows below the
+  // panel's first diagonal entry. That is faster to solve.
+  explicit BandMatrix(std::size_t n, std::size_t width, std::size_t panel = 1)
+      : n_(n), width_(width), panel_(panel), entries_(n * (width + 1), 0.0) {}
+
+  void clear() { std::fill(entries_.begin(), entries_.end(), 0.0); }
 
   // Of the lower triangle: column <= row, and row - column <= width.
-  double& at(std::size_t row, std::size_t column) { return entries_[row * (width_ + 1) + width_ + column - row]; }
+  double& at(std::size_t row, std::size_t column) { return entries_[column * width_ + row]; }
 
   // The whole matrix times a column of n values.
   std::vector<double> times(const std::vector<double>& column) const;
@@ -22,8 +28,11 @@ class BandMatrix {
   void solve(std::vector<double>& right);
 
  private:
-  std::size_t n_, width_;
-  std::vector<double> entries_;  // row by row, the diagonal last
+  void factor();
+  void substitute(std::vector<double>& right) const;
+
+  std::size_t n_, width_, panel_;
+  std::vector<double> entries_;  // column by column, each from the diagonal down
 };
 
 // The n unknowns with the least sum of squares, each of some unknowns that are at most `width` apart.
@@ -33,16 +42,22 @@ class BandLeastSquares {
     std::size_t unknown = 0;
     double factor = 0;
   };
-  BandLeastSquares(std::size_t n, std::size_t width) : matrix_(n, width), right_(n, 0.0) {}
+  // `panel` as for BandMatrix.
+  BandLeastSquares(std::size_t n, std::size_t width, std::size_t panel = 1)
+      : matrix_(n, width, panel), factor_(n, width, panel), right_(n, 0.0) {}
 
+  void clear();
   // weight * (sum of the terms - value)^2
   void add(std::span<const Term> terms, double value, double weight);
-  // Every unknown has to be in some sum.
-  std::vector<double> solve() const;
+  // The normal equations, for sums that come in blocks.
+  BandMatrix& matrix() { return matrix_; }
+  std::vector<double>& right() { return right_; }
+  // Every unknown has to be in some sum. More can be added afterwards. Valid until the next call.
+  const std::vector<double>& solve();
 
  private:
-  BandMatrix matrix_;
-  std::vector<double> right_;
+  BandMatrix matrix_, factor_;
+  std::vector<double> right_, solution_;
 };
 
 }  // namespace limber

@@ -10,20 +10,26 @@
 namespace limber {
 namespace {
 
-TEST(BandMatrix, SolvesAndMultipliesAsADenseMatrixDoes) {
-  constexpr int kSize = 40, kWidth = 6;
+class BandMatrixTest : public ::testing::TestWithParam<int> {};
+
+// Bands of blocks of that many rows, the first panel's last row being that of a block two further down. The last block
+// is cut short.
+TEST_P(BandMatrixTest, SolvesAndMultipliesAsADenseMatrixDoes) {
+  constexpr int kSize = 40, kReach = 2;
+  const int panel = GetParam(), width = (kReach + 1) * panel - 1;
+  const auto first = [&](int row) { return std::max(0, (row / panel - kReach) * panel); };
   // A product of a band with its transpose, hence positive definite.
   Eigen::MatrixXd band = Eigen::MatrixXd::Zero(kSize, kSize);
   for (int i = 0; i < kSize; ++i) {
-    for (int j = std::max(0, i - kWidth); j <= i; ++j) band(i, j) = i == j ? 2 + std::cos(i) : std::sin(3.0 * i + j);
+    for (int j = first(i); j <= i; ++j) band(i, j) = i == j ? 3 + std::cos(i) : std::sin(3.0 * i + j);
   }
   const Eigen::MatrixXd dense = band * band.transpose();
   Eigen::VectorXd right(kSize);
-  BandMatrix matrix(kSize, kWidth);
+  BandMatrix matrix(kSize, static_cast<std::size_t>(width), static_cast<std::size_t>(panel));
   std::vector<double> solution;
   for (int i = 0; i < kSize; ++i) {
     solution.push_back(right[i] = std::sin(1.0 + i));
-    for (int j = std::max(0, i - kWidth); j <= i; ++j)
+    for (int j = first(i); j <= i; ++j)
       matrix.at(static_cast<std::size_t>(i), static_cast<std::size_t>(j)) = dense(i, j);
   }
   const std::vector<double> product = matrix.times(solution);
@@ -33,6 +39,8 @@ TEST(BandMatrix, SolvesAndMultipliesAsADenseMatrixDoes) {
   for (int i = 0; i < kSize; ++i)
     EXPECT_NEAR(solution[static_cast<std::size_t>(i)], expected[i], 1e-8 * (1 + expected.norm()));
 }
+
+INSTANTIATE_TEST_SUITE_P(Panels, BandMatrixTest, ::testing::Values(1, 2, 9, 13));
 
 // Through two points and as straight as can be in between: the line through them.
 TEST(BandLeastSquares, FindsTheLeastSum) {

@@ -23,8 +23,11 @@ double axisOf(const Vec3& v, std::size_t axis) {
 
 }  // namespace
 
-bool ChangeLayout::tilts() const {
-  return std::find(tilted.begin(), tilted.end(), true) != tilted.end();
+ChangeLayout::ChangeLayout(std::size_t frames, std::vector<bool> tilted)
+    : frames_(frames),
+      tilted_(std::move(tilted)),
+      tilts_(std::find(tilted_.begin(), tilted_.end(), true) != tilted_.end()) {
+  perFrame_ = 3 * (1 + tilted_.size()) + (tilts_ ? 1 : 0);
 }
 
 Vec3 wayAt(const Changes& changes, std::size_t first) {
@@ -33,95 +36,160 @@ Vec3 wayAt(const Changes& changes, std::size_t first) {
 
 LeastChanges::LeastChanges(const ChangeLayout& layout, std::vector<FootFrame> feet, std::vector<bool> cuts,
                            MotionEnds ends)
-    : layout_(layout), feet_(std::move(feet)), cuts_(std::move(cuts)), ends_(ends), held_(feet_.size()) {}
+    : layout_(layout),
+      feet_(std::move(feet)),
+      cuts_(std::move(cuts)),
+      ends_(ends),
+      held_(feet_.size()),
+      unbound_(layout_.frames() * layout_.perFrame(), 4 * layout_.perFrame() - 1, layout_.perFrame()),
+      squares_(unbound_),
+      values_(layout_.frames()),
+      thirds_(layout_.frames() + 3, Vec3(Vec3::Zero())) {
+  countThirds();
+}
 
 Changes LeastChanges::find(const ChangedMotion& now, double jerkWeight) {
   const double firm = kFirmWeight * std::max(1.0, jerkWeight / kFirmUpTo);
-  BandLeastSquares unbound(layout_.frames * layout_.perFrame(), 4 * layout_.perFrame() - 1);
-  holdFeet(firm, unbound);
-  addJerk(now, jerkWeight, unbound);
+  unbound_.clear();
+  holdFeet(firm);
+  addJerk(now, jerkWeight);
   Changes changes = now.changes;
   int round = 0;
   do {
-    BandLeastSquares squares = unbound;
-    holdBounds(firm, changes, squares);
-    changes = squares.solve();
-    if (ends_.loops) closeLoop(kLoopWeight * firm, changes, squares);
+    squares_ = unbound_;
+    holdBounds(firm, changes);
+    changes = squares_.solve();
+    if (ends_.loops) closeLoop(kLoopWeight * firm, changes);
   } while (meetBounds(changes) && ++round < kRounds);
   return changes;
 }
 
-bool LeastChanges::isPinned(std::size_t frame) const {
-  return (ends_.startsJoined && frame < kJoinedFrames) ||
-         (ends_.endsJoined && layout_.frames - 1 - frame < kJoinedFrames);
+void LeastChanges::countThirds() {
+  meets_.assign(layout_.frames(), {});
+  for (std::size_t f = 3; f < layout_.frames(); ++f) {
+    if (!isWhole(cuts_, f)) continue;
+    for (std::size_t t = 0; t < 4; ++t) {
+      for (std::size_t back = 0; back <= t; ++back) meets_[f - 3 + t][back] += kThird[t] * kThird[t - back];
+    }
+  }
 }
 
-void LeastChanges::holdFeet(double weight, BandLeastSquares& squares) const {
-  for (std::size_t f = 0; f < layout_.frames; ++f) {
+bool LeastChanges::isPinned(std::size_t frame) const {
+  return (ends_.startsJoined && frame < kJoinedFrames) ||
+         (ends_.endsJoined && layout_.frames() - 1 - frame < kJoinedFrames);
+}
+
+void LeastChanges::holdFeet(double weight) {
+  for (std::size_t f = 0; f < layout_.frames(); ++f) {
     for (std::size_t i = layout_.pelvis(f); i < layout_.pelvis(f + 1); ++i) {
-      squares.add(std::array{Term{i, 1}}, 0, isPinned(f) ? weight : 1);
+      unbound_.add(std::array{Term{i, 1}}, 0, isPinned(f) ? weight : 1);
     }
     if (f == 0 || cuts_[f]) continue;
     for (std::size_t leg = 0; leg < layout_.legs(); ++leg) {
       if (!foot(f, leg).stands && !foot(f - 1, leg).stands) continue;
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        squares.add(std::array{Term{layout_.foot(f, leg) + axis, 1}, Term{layout_.foot(f - 1, leg) + axis, -1}}, 0,
-                    weight);
+        unbound_.add(std::array{Term{layout_.foot(f, leg) + axis, 1}, Term{layout_.foot(f - 1, leg) + axis, -1}}, 0,
+                     weight);
       }
     }
   }
 }
 
-// Third differences as the changes would have them.
-void LeastChanges::addJerk(const ChangedMotion& now, double weight, BandLeastSquares& squares) const {
-  std::vector<Term> terms;
-  const auto add = [&](const Vec3& is, std::size_t axis) {
-    double aim = -axisOf(is, axis);
-    for (const Term& term : terms) aim += term.factor * now.changes[term.unknown];
-    squares.add(terms, aim, weight);
-    terms.clear();
-  };
-  for (std::size_t f = 3; f < layout_.frames; ++f) {
-    if (!isWhole(cuts_, f)) continue;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      for (std::size_t t = 0; t < 4; ++t) terms.push_back({layout_.pelvis(f - 3 + t) + axis, kThird[t]});
-      add(thirdDifference(now.paths[0], f), axis);
+// Of the third differences of the paths as the changes would have them: frames meet in blocks.
+void LeastChanges::addJerk(const ChangedMotion& now, double weight) {
+  for (std::size_t f = 0; f < layout_.frames(); ++f) {
+    const std::size_t at = layout_.pelvis(f);
+    values_[f] = wayAt(now.changes, at) - now.paths[0][f];
+    for (std::size_t back = 0; back <= std::min<std::size_t>(f, 3); ++back) {
+      const double meets = weight * meets_[f][back];
+      for (std::size_t a = 0; a < 3; ++a) unbound_.matrix().at(at + a, layout_.pelvis(f - back) + a) += meets;
     }
-    for (const BonePair& pair : now.bones) {
-      for (std::size_t bone = 0; bone < 2; ++bone) {
-        const Vec3 third = thirdDifference(now.paths[pair.firstPath + bone], f);
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-          for (std::size_t t = 0; t < 4; ++t) {
-            const std::size_t at = f - 3 + t;
-            const Eigen::RowVector4d slope = kThird[t] * pair.slopes[bone][at].row(static_cast<Eigen::Index>(axis));
-            // By the foot's way against the hip.
-            for (std::size_t a = 0; a < 3; ++a) {
-              terms.push_back({layout_.pelvis(at) + a, -slope[static_cast<Eigen::Index>(a)]});
-              terms.push_back({layout_.foot(at, pair.leg) + a, slope[static_cast<Eigen::Index>(a)]});
-            }
-            if (layout_.tilted[pair.leg]) terms.push_back({layout_.shoulders(at), slope[3]});
-          }
-          add(third, axis);
-        }
+  }
+  pullThirds(weight);
+  for (std::size_t f = 0; f < layout_.frames(); ++f) {
+    for (std::size_t a = 0; a < 3; ++a) unbound_.right()[layout_.pelvis(f) + a] += axisOf(values_[f], a);
+  }
+  for (std::size_t leg = 0; leg < layout_.legs(); ++leg) addJerkOf(leg, now, weight);
+}
+
+// Bones follow the foot's way against the hip.
+void LeastChanges::addJerkOf(std::size_t leg, const ChangedMotion& now, double weight) {
+  const BoneSlopes& slopes = now.slopes[leg];
+  for (std::size_t f = 0; f < layout_.frames(); ++f) {
+    for (std::size_t back = 0; back <= std::min<std::size_t>(f, 3); ++back) {
+      if (meets_[f][back] == 0) continue;
+      Eigen::Matrix4d block = slopes[0][f].transpose() * slopes[0][f - back];
+      block += slopes[1][f].transpose() * slopes[1][f - back];
+      addBlock(leg, f, back, weight * meets_[f][back] * block);
+    }
+  }
+  std::vector<double>& right = unbound_.right();
+  for (std::size_t bone = 0; bone < 2; ++bone) {
+    for (std::size_t f = 0; f < layout_.frames(); ++f) {
+      Eigen::Vector4d way;
+      way << wayAt(now.changes, layout_.foot(f, leg)) - wayAt(now.changes, layout_.pelvis(f)),
+          layout_.isTilted(leg) ? now.changes[layout_.shoulders(f)] : 0;
+      values_[f] = slopes[bone][f] * way - now.bone(leg, bone)[f];
+    }
+    pullThirds(weight);
+    for (std::size_t f = 0; f < layout_.frames(); ++f) {
+      const Eigen::Vector4d pull = slopes[bone][f].transpose() * values_[f];
+      for (std::size_t a = 0; a < 3; ++a) {
+        right[layout_.pelvis(f) + a] -= pull[static_cast<Eigen::Index>(a)];
+        right[layout_.foot(f, leg) + a] += pull[static_cast<Eigen::Index>(a)];
       }
+      if (layout_.isTilted(leg)) right[layout_.shoulders(f)] += pull[3];
     }
+  }
+}
+
+// `block`: of the foot's way against the hip and of the shoulders' rise, in a frame and so many frames back.
+void LeastChanges::addBlock(std::size_t leg, std::size_t frame, std::size_t back, const Eigen::Matrix4d& block) {
+  struct Unknown {
+    std::size_t at;
+    Eigen::Index of;
+    double sign;
+  };
+  std::array<Unknown, 7> unknowns;
+  const std::size_t count = layout_.isTilted(leg) ? 7 : 6;
+  for (std::size_t a = 0; a < 3; ++a) {
+    unknowns[a] = {a, static_cast<Eigen::Index>(a), -1};
+    unknowns[3 + a] = {layout_.foot(0, leg) + a, static_cast<Eigen::Index>(a), 1};
+  }
+  unknowns[6] = {layout_.shoulders(0), 3, 1};
+  const std::size_t row = layout_.pelvis(frame), column = layout_.pelvis(frame - back);
+  for (std::size_t j = 0; j < count; ++j) {
+    for (std::size_t i = back == 0 ? j : 0; i < count; ++i) {
+      unbound_.matrix().at(row + unknowns[i].at, column + unknowns[j].at) +=
+          unknowns[i].sign * unknowns[j].sign * block(unknowns[i].of, unknowns[j].of);
+    }
+  }
+}
+
+// How the squared third differences of the values pull at each of them: in their place.
+void LeastChanges::pullThirds(double weight) {
+  for (std::size_t f = 3; f < layout_.frames(); ++f) {
+    if (isWhole(cuts_, f)) thirds_[f] = weight * thirdDifference(values_, f);
+  }
+  for (std::size_t f = 0; f < layout_.frames(); ++f) {
+    values_[f] = (thirds_[f] - thirds_[f + 3]) + 3 * (thirds_[f + 2] - thirds_[f + 1]);
   }
 }
 
 // Both ends halfway between what they would change.
-void LeastChanges::closeLoop(double weight, Changes& changes, BandLeastSquares& squares) const {
-  const std::size_t last = layout_.pelvis(layout_.frames - 1);
+void LeastChanges::closeLoop(double weight, Changes& changes) {
+  const std::size_t last = layout_.pelvis(layout_.frames() - 1);
   for (std::size_t i = 0; i < layout_.perFrame(); ++i) {
     const double middle = (changes[i] + changes[last + i]) / 2;
-    squares.add(std::array{Term{i, 1}}, middle, weight);
-    squares.add(std::array{Term{last + i, 1}}, middle, weight);
+    squares_.add(std::array{Term{i, 1}}, middle, weight);
+    squares_.add(std::array{Term{last + i, 1}}, middle, weight);
   }
-  changes = squares.solve();
+  changes = squares_.solve();
 }
 
 bool LeastChanges::meetBounds(const Changes& changes) {
   bool more = false;
-  for (std::size_t f = 0; f < layout_.frames; ++f) {
+  for (std::size_t f = 0; f < layout_.frames(); ++f) {
     for (std::size_t leg = 0; leg < layout_.legs(); ++leg) {
       const FootFrame& bounds = foot(f, leg);
       Held& held = held_[f * layout_.legs() + leg];
@@ -135,14 +203,14 @@ bool LeastChanges::meetBounds(const Changes& changes) {
   return more;
 }
 
-void LeastChanges::holdBounds(double weight, const Changes& about, BandLeastSquares& squares) const {
+void LeastChanges::holdBounds(double weight, const Changes& about) {
   std::vector<Term> along;
-  for (std::size_t f = 0; f < layout_.frames; ++f) {
+  for (std::size_t f = 0; f < layout_.frames(); ++f) {
     for (std::size_t leg = 0; leg < layout_.legs(); ++leg) {
       const FootFrame& bounds = foot(f, leg);
       const Held& held = held_[f * layout_.legs() + leg];
       const std::size_t hip = layout_.pelvis(f), end = layout_.foot(f, leg);
-      if (held.up) squares.add(std::array{Term{end + 1, 1}}, bounds.lowest, weight);
+      if (held.up) squares_.add(std::array{Term{end + 1, 1}}, bounds.lowest, weight);
       if (!held.near) continue;
       const Vec3 line = legAt(about, f, leg).normalized();
       along.clear();
@@ -150,8 +218,8 @@ void LeastChanges::holdBounds(double weight, const Changes& about, BandLeastSqua
         along.push_back({hip + a, -axisOf(line, a)});
         along.push_back({end + a, axisOf(line, a)});
       }
-      if (layout_.tilted[leg]) along.push_back({layout_.shoulders(f), -line.y()});
-      squares.add(along, bounds.most - line.dot(bounds.way), weight);
+      if (layout_.isTilted(leg)) along.push_back({layout_.shoulders(f), -line.y()});
+      squares_.add(along, bounds.most - line.dot(bounds.way), weight);
     }
   }
 }
@@ -159,7 +227,7 @@ void LeastChanges::holdBounds(double weight, const Changes& about, BandLeastSqua
 // From the hip to the foot.
 Vec3 LeastChanges::legAt(const Changes& changes, std::size_t frame, std::size_t leg) const {
   Vec3 way = foot(frame, leg).way + wayAt(changes, layout_.foot(frame, leg)) - wayAt(changes, layout_.pelvis(frame));
-  if (layout_.tilted[leg]) way.y() -= changes[layout_.shoulders(frame)];
+  if (layout_.isTilted(leg)) way.y() -= changes[layout_.shoulders(frame)];
   return way;
 }
 

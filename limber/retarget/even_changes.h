@@ -12,16 +12,25 @@ namespace limber {
 
 // Of each frame: the way of the pelvis, that of each foot, and how far the shoulders rise where the trunk tilts, all in
 // hip heights. How they lie in one column.
-struct ChangeLayout {
-  std::size_t frames = 0;
-  std::vector<bool> tilted;  // of each leg: whether its hip is at shoulders that rise
+class ChangeLayout {
+ public:
+  ChangeLayout() = default;
+  // `tilted`: of each leg whether its hip is at shoulders that rise.
+  ChangeLayout(std::size_t frames, std::vector<bool> tilted);
 
-  std::size_t legs() const { return tilted.size(); }
-  bool tilts() const;
-  std::size_t perFrame() const { return 3 * (1 + legs()) + (tilts() ? 1 : 0); }
-  std::size_t pelvis(std::size_t frame) const { return frame * perFrame(); }
+  std::size_t frames() const { return frames_; }
+  std::size_t legs() const { return tilted_.size(); }
+  bool isTilted(std::size_t leg) const { return tilted_[leg]; }
+  bool tilts() const { return tilts_; }
+  std::size_t perFrame() const { return perFrame_; }
+  std::size_t pelvis(std::size_t frame) const { return frame * perFrame_; }
   std::size_t foot(std::size_t frame, std::size_t leg) const { return pelvis(frame) + 3 * (1 + leg); }
   std::size_t shoulders(std::size_t frame) const { return foot(frame, legs()); }
+
+ private:
+  std::size_t frames_ = 0, perFrame_ = 0;
+  std::vector<bool> tilted_;
+  bool tilts_ = false;
 };
 using Changes = std::vector<double>;  // by such a layout
 Vec3 wayAt(const Changes& changes, std::size_t first);
@@ -34,19 +43,17 @@ struct FootFrame {
   double most = 0;          // that its leg reaches, likewise
 };
 
-// A leg's two bones among a body's paths (BodyPaths), and how their directions follow its foot's place (the first three
-// columns) and the shoulders' rise, frame by frame.
-struct BonePair {
-  using Slope = Eigen::Matrix<double, 3, 4>;
-  std::size_t leg = 0, firstPath = 0;
-  std::array<std::vector<Slope>, 2> slopes;
-};
+// How a bone's direction follows its foot's place (the first three columns) and the shoulders' rise.
+using Slope = Eigen::Matrix<double, 3, 4>;
+using BoneSlopes = std::array<std::vector<Slope>, 2>;  // of a leg's two bones, frame by frame
 
-// The motion as it is with some changes.
+// The motion as it is with some changes: the paths of what they move, as BodyPaths has them.
 struct ChangedMotion {
   Changes changes;
-  std::vector<Path> paths;
-  std::vector<BonePair> bones;
+  std::vector<Path> paths;         // of the pelvis, then of each leg's two bones
+  std::vector<BoneSlopes> slopes;  // of each leg
+
+  const Path& bone(std::size_t leg, std::size_t which) const { return paths[1 + 2 * leg + which]; }
 };
 
 // Which frames keep still: the first and the last three where others follow that stay; where the motion loops the first
@@ -74,12 +81,16 @@ class LeastChanges {
 
   const FootFrame& foot(std::size_t frame, std::size_t leg) const { return feet_[frame * layout_.legs() + leg]; }
   bool isPinned(std::size_t frame) const;
-  void holdFeet(double weight, BandLeastSquares& squares) const;
-  void addJerk(const ChangedMotion& now, double weight, BandLeastSquares& squares) const;
-  void closeLoop(double weight, Changes& changes, BandLeastSquares& squares) const;
+  void countThirds();
+  void holdFeet(double weight);
+  void addJerk(const ChangedMotion& now, double weight);
+  void addJerkOf(std::size_t leg, const ChangedMotion& now, double weight);
+  void addBlock(std::size_t leg, std::size_t frame, std::size_t back, const Eigen::Matrix4d& block);
+  void pullThirds(double weight);
+  void closeLoop(double weight, Changes& changes);
   // False where no bound is met that was not before.
   bool meetBounds(const Changes& changes);
-  void holdBounds(double weight, const Changes& about, BandLeastSquares& squares) const;
+  void holdBounds(double weight, const Changes& about);
   Vec3 legAt(const Changes& changes, std::size_t frame, std::size_t leg) const;
 
   ChangeLayout layout_;
@@ -87,6 +98,10 @@ class LeastChanges {
   std::vector<bool> cuts_;
   MotionEnds ends_;
   std::vector<Held> held_;
+  // How often each frame meets one so many frames back in the sum of the squared third differences.
+  std::vector<std::array<double, 4>> meets_;
+  BandLeastSquares unbound_, squares_;
+  std::vector<Vec3> values_, thirds_;  // of one path
 };
 
 }  // namespace limber

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace limber {
 namespace {
 
@@ -11,14 +13,12 @@ constexpr std::size_t kFrames = 12, kJolt = 6;
 // points wherever the foot is, the upper one stays.
 ChangedMotion jolted(const ChangeLayout& layout) {
   ChangedMotion motion;
-  motion.changes.assign(layout.frames * layout.perFrame(), 0.0);
-  motion.paths.assign(3, Path(layout.frames, Vec3::Zero()));
+  motion.changes.assign(layout.frames() * layout.perFrame(), 0.0);
+  motion.paths.assign(3, Path(layout.frames(), Vec3::Zero()));
   motion.paths[2][kJolt] = Vec3(0.2, 0, 0);
-  BonePair bones;
-  bones.firstPath = 1;
-  bones.slopes.fill(std::vector(layout.frames, BonePair::Slope(BonePair::Slope::Zero())));
-  for (BonePair::Slope& slope : bones.slopes[1]) slope.leftCols<3>().setIdentity();
-  motion.bones.push_back(bones);
+  BoneSlopes& slopes = motion.slopes.emplace_back();
+  slopes.fill(std::vector<Slope>(layout.frames(), Slope(Slope::Zero())));
+  for (Slope& slope : slopes[1]) slope.leftCols<3>().setIdentity();
   return motion;
 }
 
@@ -35,6 +35,57 @@ struct Leg {
   Vec3 footAt(std::size_t frame) const { return wayAt(changes(), layout.foot(frame, 0)); }
   Vec3 pelvisAt(std::size_t frame) const { return wayAt(changes(), layout.pelvis(frame)); }
 };
+
+// The sum that is least, of changes about those that are.
+double sumOf(const ChangeLayout& layout, const ChangedMotion& now, const Changes& changes,
+             const std::vector<bool>& cuts, double jerkWeight) {
+  std::vector<Path> paths = now.paths;
+  for (std::size_t f = 0; f < layout.frames(); ++f) {
+    const Vec3 pelvis = wayAt(changes, layout.pelvis(f)) - wayAt(now.changes, layout.pelvis(f));
+    paths[0][f] += pelvis;
+    for (std::size_t leg = 0; leg < layout.legs(); ++leg) {
+      const Vec3 foot = wayAt(changes, layout.foot(f, leg)) - wayAt(now.changes, layout.foot(f, leg));
+      Eigen::Vector4d way(foot.x() - pelvis.x(), foot.y() - pelvis.y(), foot.z() - pelvis.z(), 0);
+      if (layout.isTilted(leg)) way[3] = changes[layout.shoulders(f)] - now.changes[layout.shoulders(f)];
+      for (std::size_t bone = 0; bone < 2; ++bone) paths[1 + 2 * leg + bone][f] += now.slopes[leg][bone][f] * way;
+    }
+  }
+  double sum = jerkWeight * squaredJerk(paths, cuts, 3, layout.frames());
+  for (const double change : changes) sum += change * change;
+  return sum;
+}
+
+TEST(EvenChanges, AreTheLeast) {
+  const ChangeLayout layout(kFrames, {false, true});
+  std::vector<bool> cuts(kFrames);
+  cuts[5] = true;
+  double phase = 0;
+  const auto next = [&] { return std::sin(phase += 1.7); };
+  ChangedMotion now;
+  for (std::size_t i = 0; i < kFrames * layout.perFrame(); ++i) now.changes.push_back(0.1 * next());
+  now.paths.assign(5, Path(kFrames));
+  for (Path& path : now.paths) {
+    for (Vec3& place : path) place = Vec3(next(), next(), next());
+  }
+  now.slopes.assign(2, {std::vector<Slope>(kFrames), std::vector<Slope>(kFrames)});
+  for (BoneSlopes& bones : now.slopes) {
+    for (std::vector<Slope>& bone : bones) {
+      for (Slope& slope : bone) slope = Slope::NullaryExpr(next);
+    }
+  }
+  const std::vector<FootFrame> free(2 * kFrames, FootFrame{false, -100, Vec3(0, -1, 0), 100});
+  const Changes least = LeastChanges(layout, free, cuts, {}).find(now, 10);
+  const double sum = sumOf(layout, now, least, cuts, 10);
+  EXPECT_LT(sum, 0.5 * sumOf(layout, now, now.changes, cuts, 10));
+  for (std::size_t i = 0; i < least.size(); ++i) {
+    Changes more = least, less = least;
+    more[i] += 0.01;
+    less[i] -= 0.01;
+    const double rise = sumOf(layout, now, more, cuts, 10) - sum;
+    EXPECT_GT(rise, 0) << i;
+    EXPECT_NEAR(sumOf(layout, now, less, cuts, 10) - sum, rise, 1e-6 * rise + 1e-9) << i;
+  }
+}
 
 TEST(EvenChanges, TheJoltIsTakenBackAndTheRestFollowsTheLess) {
   const Leg leg;

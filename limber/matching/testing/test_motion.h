@@ -217,7 +217,25 @@ inline Skeleton quadruped(double thigh) {
   return skeleton;
 }
 
-// The same with all four legs, the trunk and the tail on a joint over the middle of the body.
+// Legs of an animal that bend at the knee to the front and less at the hock to the back.
+inline Skeleton quadrupedWithHocks() {
+  Skeleton animal;
+  for (Joint joint : quadruped(0.5).joints) {
+    if (joint.parent) joint.parent = animal.find(quadruped(0.5).joints[*joint.parent].name);
+    if (joint.name.ends_with("Two")) joint.rest.translation.z() = 0.06;
+    if (joint.name.ends_with("Three")) {
+      Joint& hock = animal.joints.emplace_back(joint);
+      hock.name = joint.name.substr(0, joint.name.find("Three")) + "Hock";
+      hock.rest.translation = Vec3(0, -0.25, -0.11);
+      joint.parent = animal.find(hock.name);
+      joint.rest.translation = Vec3(0, -0.2, 0.05);
+    }
+    animal.joints.push_back(joint);
+  }
+  return animal;
+}
+
+// One with all four legs, the trunk and the tail on a joint over the middle of the body.
 inline Skeleton quadrupedOnOneJoint() {
   const Skeleton animal = quadruped(0.5);
   const Vec3 middle(0, 1.3, 0.4);
