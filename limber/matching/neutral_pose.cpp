@@ -6,6 +6,7 @@
 
 #include "limber/ik/rotation.h"
 #include "limber/matching/loose_joints.h"
+#include "limber/matching/quadruped_shape.h"
 #include "limber/skeleton/chain.h"
 
 namespace limber {
@@ -66,8 +67,8 @@ double angleOf(const Vec3& a, const Vec3& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-// From left and right limbs, and from the hips to the head.
-Quat bodyFrame(const SkeletonMap& map, MapSide side, const std::vector<Vec3>& positions) {
+// Of people, from left and right limbs, and from the hips to the head.
+std::optional<Quat> bodyFrame(const SkeletonMap& map, MapSide side, const std::vector<Vec3>& positions) {
   const auto at = [&](std::string_view part) -> std::optional<Vec3> {
     const std::optional<Index> joint = firstOf(map, side, part);
     return joint ? std::optional(positions[*joint]) : std::nullopt;
@@ -85,13 +86,21 @@ Quat bodyFrame(const SkeletonMap& map, MapSide side, const std::vector<Vec3>& po
     if (hips && at(part)) up += *hips - *at(part);
   }
   if (left.norm() < 1e-9 || up.norm() < 1e-9 || left.cross(up).norm() < 1e-6 * left.norm() * up.norm()) {
-    return Quat::Identity();
+    return std::nullopt;
   }
   up = nearestAxis(up);  // gravity goes along an axis, whatever the back's bend
   left = snapped((left - left.dot(up) * up).normalized());
   left = (left - left.dot(up) * up).normalized();
   Mat3 axes;
   axes << left, up, left.cross(up);
+  return Quat(axes).conjugate();
+}
+
+// Of what stands upright on four legs; other animals face +Z.
+Quat quadrupedFrame(const Skeleton& skeleton, const std::vector<Vec3>& positions) {
+  const Vec3 forward = snapped(facingOfQuadruped(skeleton, positions).value_or(Vec3::UnitZ()));
+  Mat3 axes;
+  axes << Vec3::UnitY().cross(forward), Vec3::UnitY(), forward;
   return Quat(axes).conjugate();
 }
 
@@ -227,7 +236,8 @@ NeutralPose neutralPose(const Skeleton& skeleton, const Pose& resting, const Ske
   std::vector<Vec3> rest;
   std::vector<Quat> restRotations;
   for (const Affine& global : poseGlobals(skeleton, resting)) rest.push_back(global.translation());
-  pose.toBody = bodyFrame(map, side, rest);
+  const std::optional<Quat> person = bodyFrame(map, side, rest);
+  pose.toBody = person ? *person : quadrupedFrame(skeleton, rest);
   std::vector<Quat> turns(skeleton.jointCount(), Quat::Identity());
   Aims aims(skeleton.jointCount());
   std::vector<bool> isFoot(skeleton.jointCount()), stands(skeleton.jointCount());

@@ -22,14 +22,14 @@ constexpr double kAside = 0.02;     // of a leg from the body's middle, at least
 constexpr double kBlade = 0.7;      // of the height of a blade's upper end, at which its lower one is at least
 constexpr double kSteep = 1;        // how far down a leg goes for each metre along, at least
 constexpr double kTrunk = 0.5;      // of the way from pair to pair, that the trunk beside them leads along at least
-constexpr double kSameWay = 0.9;    // cosine between where the two face, and between their blades, at least
+constexpr double kSameWay = 0.9;    // cosine between two blades, seen from where each faces, at least
 constexpr std::size_t kMostChains = 64;  // that hang down: more are no legs
 
 using Joints = std::vector<Index>;  // root to tip
 
 struct QuadrupedLeg {
   Joints blade, bones, foot, toes;
-  Vec3 bladeWay = Vec3::Zero();  // of the blade, to where the bones begin
+  Vec3 bladeWay = Vec3::Zero();  // of the blade, to where the bones begin: left, up, forward
   std::vector<double> along;     // where each of the bones begins, from 0 to 1 at the foot
 };
 
@@ -43,8 +43,8 @@ constexpr std::array<const char*, 4> kLegs = {"leftHind", "rightHind", "leftFore
 
 class QuadrupedReader {
  public:
-  explicit QuadrupedReader(const Skeleton& skeleton) {
-    for (const Affine& global : restGlobals(skeleton)) positions_.push_back(global.translation());
+  QuadrupedReader(const Skeleton& skeleton, std::span<const Vec3> positions)
+      : positions_(positions.begin(), positions.end()) {
     parents_ = parentsWithLegsJoined(skeleton, positions_);
     children_.resize(parents_.size());
     for (Index j = 0; j < parents_.size(); ++j) {
@@ -70,8 +70,10 @@ class QuadrupedReader {
       const std::optional<QuadrupedLeg> leg = legOf(left == firstIsLeft ? pair.one : pair.other);
       if (!leg) return std::nullopt;
       animal.legs[i] = *leg;
+      const Vec3 aside = Vec3::UnitY().cross(animal.forward), way = leg->bladeWay;
+      animal.legs[i].bladeWay = {aside.dot(way), way.y(), animal.forward.dot(way)};
     }
-    return animal;
+    return toesPointBack(animal) ? std::nullopt : std::optional(animal);
   }
 
  private:
@@ -128,6 +130,15 @@ class QuadrupedReader {
     animal.trunk.assign(path.begin(), neck);
     setNeck({neck, path.end()}, animal);
     return true;
+  }
+
+  // One whose joints hang on the chest, not on the hips, would go back to front.
+  bool toesPointBack(const Quadruped& animal) const {
+    double ahead = 0;
+    for (const QuadrupedLeg& leg : animal.legs) {
+      if (!leg.toes.empty()) ahead += animal.forward.dot(at(leg.toes.back()) - at(leg.foot.front()));
+    }
+    return ahead < 0;
   }
 
   const Vec3& at(Index joint) const { return positions_[joint]; }
@@ -309,6 +320,12 @@ class QuadrupedReader {
   double lowest_ = 0, height_ = 1;
 };
 
+std::vector<Vec3> positionsOf(const Skeleton& skeleton) {
+  std::vector<Vec3> positions;
+  for (const Affine& global : restGlobals(skeleton)) positions.push_back(global.translation());
+  return positions;
+}
+
 class Matcher {
  public:
   SkeletonMap match(const Quadruped& source, const Quadruped& target) {
@@ -375,9 +392,15 @@ bool isForeleg(const SkeletonMap& map, Index upper) {
 }
 
 std::optional<SkeletonMap> matchQuadrupeds(const Skeleton& source, const Skeleton& target) {
-  const std::optional<Quadruped> from = QuadrupedReader(source).read(), to = QuadrupedReader(target).read();
-  if (!from || !to || from->forward.dot(to->forward) < kSameWay) return std::nullopt;
+  const std::optional<Quadruped> from = QuadrupedReader(source, positionsOf(source)).read(),
+                                 to = QuadrupedReader(target, positionsOf(target)).read();
+  if (!from || !to) return std::nullopt;
   return Matcher().match(*from, *to);
+}
+
+std::optional<Vec3> facingOfQuadruped(const Skeleton& skeleton, std::span<const Vec3> positions) {
+  const std::optional<Quadruped> animal = QuadrupedReader(skeleton, positions).read();
+  return animal ? std::optional(animal->forward) : std::nullopt;
 }
 
 }  // namespace limber

@@ -98,12 +98,9 @@ TEST(QuadrupedShape, OtherNumbersOfBonesAreMatchedByWhereTheyLie) {
   EXPECT_EQ(more.find("rightForeBone2")->target, fewer.find("rightForeBone2")->source);
 }
 
-TEST(QuadrupedShape, PeopleTablesAndThoseThatFaceElsewhereAreNone) {
+TEST(QuadrupedShape, PeopleTablesAndSpidersAreNone) {
   const Skeleton animal = quadruped(0.5);
   EXPECT_FALSE(matchQuadrupeds(animal, practiceHumanoid()));
-  Skeleton turned = animal;
-  turned.joints[0].rest.rotation = limber::testing::turn(Vec3::UnitY(), 90);
-  EXPECT_FALSE(matchQuadrupeds(animal, turned));
   const Skeleton beside = quadrupedOnOneJoint();
   Skeleton table, spider = beside;  // no trunk; six legs
   for (const Joint& joint : beside.joints) {
@@ -136,6 +133,43 @@ TEST(QuadrupedShape, LegsMayAllHangOnOneJointBesideTheTrunk) {
     EXPECT_EQ(isForeleg(map, match.target.front()), match.part == "leftForeBone1" || match.part == "rightForeBone1");
   }
   EXPECT_EQ(RetargetSetup(one, other, map, {}).animalLegs.size(), 4u);
+}
+
+TEST(QuadrupedShape, OneThatIsReadBackToFrontIsNone) {
+  Skeleton animal = quadruped(0.5);
+  for (Joint& joint : animal.joints) {
+    if (joint.name.ends_with("Four")) joint.rest.translation.z() *= -1;
+  }
+  EXPECT_FALSE(matchQuadrupeds(animal, quadruped(0.5)));
+}
+
+// A body that faces elsewhere moves as it would if it did not, matched by names or by form.
+TEST(QuadrupedShape, EachMovesForwardAsItSeesIt) {
+  const Skeleton one = quadruped(0.5), same = quadruped(0.45), other = nameless(withJointBefore(same, "n1", "throat"));
+  PoseSequence motion{{}, 1.0 / 30};
+  for (int f = 0; f < 20; ++f) {
+    Pose& pose = motion.poses.emplace_back(restPose(one));
+    pose.locals[0].translation += Vec3(0, 0.001 * f, 0.02 * f);
+    for (const char* leg : {"b0LeftOne", "b1RightOne", "n0"}) {
+      pose.locals[one.find(leg).value()].rotation = limber::testing::turn(-Vec3::UnitX(), 2 * f);
+    }
+  }
+  const auto moved = [&](const Skeleton& target) {
+    const RetargetSetup setup(one, target, matchSkeletons(one, target), {}, &motion);
+    return poseGlobals(target, retargetFrames(findRetargetMethod("limb-ik"), setup, motion).poses.back());
+  };
+  for (const Skeleton& target : {same, other}) {
+    for (const double degrees : {90.0, 180.0, 37.0}) {
+      const Quat turn = limber::testing::turn(Vec3::UnitY(), degrees);
+      Skeleton turned = target;
+      Transform& root = turned.joints[0].rest;
+      root = {turn * root.translation, turn * root.rotation, root.scale};
+      const std::vector<Affine> there = moved(turned), here = moved(target);
+      for (Index j = 0; j < target.jointCount(); ++j) {
+        EXPECT_LT((there[j].translation() - turn * here[j].translation()).norm(), 1e-6) << degrees << ' ' << j;
+      }
+    }
+  }
 }
 
 // Words that both have: not most of them, or of joints that hang elsewhere.
