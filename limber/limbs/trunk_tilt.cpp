@@ -58,4 +58,10 @@ Quat TrunkTilt::turnFor(double rise, const Vec3& trunk) {
   return Quat(Eigen::AngleAxisd(up, aside.normalized()));
 }
 
+Vec3 TrunkTilt::liftOf(const Vec3& trunk) {
+  const Vec3 level(trunk.x(), 0, trunk.z());
+  if (!(level.norm() > 0.1 * trunk.norm())) return Vec3::UnitY();
+  return Vec3::UnitY() - trunk.y() / level.squaredNorm() * level;
+}
+
 }  // namespace limber

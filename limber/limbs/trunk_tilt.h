@@ -27,6 +27,8 @@ class TrunkTilt {
   Vec3 trunkOf(const BodyFrame& frame) const;
   // The turn by which they rise by that, metres, as far as the trunk is long.
   static Quat turnFor(double rise, const Vec3& trunk);
+  // How they go for each metre that they rise so, to first order; straight up where the trunk stands upright.
+  static Vec3 liftOf(const Vec3& trunk);
 
  private:
   const RetargetSetup& setup_;

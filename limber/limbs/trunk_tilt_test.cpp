@@ -95,6 +95,15 @@ TEST_F(TrunkTiltTest, AtRestAndUprightNothingSnaps) {
   }
 }
 
+TEST(TrunkTilt, LiftsShouldersAsItsTurnDoes) {
+  for (const Vec3& trunk : {Vec3(0, 0, 1.3), Vec3(0.2, 0.7, 1), Vec3(-0.3, -0.6, 0.8)}) {
+    const double rise = 1e-5;
+    const Vec3 moved = TrunkTilt::turnFor(rise, trunk) * trunk - trunk;
+    EXPECT_LT((moved / rise - TrunkTilt::liftOf(trunk)).norm(), 1e-4);
+  }
+  EXPECT_EQ(TrunkTilt::liftOf(Vec3::UnitY()), Vec3::UnitY());
+}
+
 TEST(TrunkTilt, LeavesPeopleAndThoseMatchedByNamesAlone) {
   const Skeleton person = practiceHumanoid(), animal = quadruped(0.5), other = quadruped(0.4);
   const RetargetSetup people(person, person, matchSkeletons(person, person), {});

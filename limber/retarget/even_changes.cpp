@@ -53,6 +53,7 @@ Changes LeastChanges::find(const ChangedMotion& now, double jerkWeight) {
   unbound_.clear();
   holdFeet(firm);
   addJerk(now, jerkWeight);
+  std::fill(held_.begin(), held_.end(), Held{});
   Changes changes = now.changes;
   int round = 0;
   do {
@@ -218,7 +219,7 @@ void LeastChanges::holdBounds(double weight, const Changes& about) {
         along.push_back({hip + a, -axisOf(line, a)});
         along.push_back({end + a, axisOf(line, a)});
       }
-      if (layout_.isTilted(leg)) along.push_back({layout_.shoulders(f), -line.y()});
+      if (layout_.isTilted(leg)) along.push_back({layout_.shoulders(f), -line.dot(bounds.lift)});
       squares_.add(along, bounds.most - line.dot(bounds.way), weight);
     }
   }
@@ -227,7 +228,7 @@ void LeastChanges::holdBounds(double weight, const Changes& about) {
 // From the hip to the foot.
 Vec3 LeastChanges::legAt(const Changes& changes, std::size_t frame, std::size_t leg) const {
   Vec3 way = foot(frame, leg).way + wayAt(changes, layout_.foot(frame, leg)) - wayAt(changes, layout_.pelvis(frame));
-  if (layout_.isTilted(leg)) way.y() -= changes[layout_.shoulders(frame)];
+  if (layout_.isTilted(leg)) way -= changes[layout_.shoulders(frame)] * foot(frame, leg).lift;
   return way;
 }
 

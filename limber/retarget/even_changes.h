@@ -38,9 +38,10 @@ Vec3 wayAt(const Changes& changes, std::size_t first);
 // What has to hold for a foot in one frame.
 struct FootFrame {
   bool stands = false;
-  double lowest = 0;        // change of its height, at most 0: hip heights
-  Vec3 way = Vec3::Zero();  // from the hip, likewise
-  double most = 0;          // that its leg reaches, likewise
+  double lowest = 0;         // change of its height, at most 0: hip heights
+  Vec3 way = Vec3::Zero();   // from the hip, likewise
+  double most = 0;           // that its leg reaches, likewise
+  Vec3 lift = Vec3::Zero();  // of its hip, for each hip height that the shoulders rise
 };
 
 // How a bone's direction follows its foot's place (the first three columns) and the shoulders' rise.
@@ -68,12 +69,11 @@ class LeastChanges {
   LeastChanges(const ChangeLayout& layout, std::vector<FootFrame> feet, std::vector<bool> cuts, MotionEnds ends);
 
   // The least sum of squared changes and of `jerkWeight` times the squared jerk, about those that are: feet that stand
-  // take no steps, none goes below its lowest nor beyond its leg. Bounds once met stay. n (perFrame * 4)^2 operations
-  // a few times.
+  // take no steps, none goes below its lowest nor beyond its leg. n (perFrame * 4)^2 operations a few times.
   Changes find(const ChangedMotion& now, double jerkWeight);
 
  private:
-  // Which of its bounds hold a foot in one frame.
+  // Which of its bounds hold a foot in one frame: those that were met on the way to the changes.
   struct Held {
     bool up = false, near = false;
   };

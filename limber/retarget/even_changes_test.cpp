@@ -114,6 +114,29 @@ TEST(EvenChanges, FeetStayAboveTheirLowestAndWithinReach) {
   EXPECT_NEAR(reached.norm(), 1, 1e-4) << "by the foot and by the hip";
 }
 
+TEST(EvenChanges, BoundsHoldWhileTheyAreMet) {
+  Leg leg;
+  for (FootFrame& foot : leg.feet) foot.lowest = -0.02;
+  LeastChanges least(leg.layout, leg.feet, std::vector<bool>(kFrames), {});
+  ChangedMotion motion = jolted(leg.layout);
+  motion.paths[2][kJolt] = Vec3(0, 0.2, 0);
+  EXPECT_NEAR(least.find(motion, 1e4)[leg.layout.foot(kJolt, 0) + 1], -0.02, 1e-4);
+  motion.paths[2][kJolt] = Vec3::Zero();
+  EXPECT_NEAR(least.find(motion, 1e4)[leg.layout.foot(kJolt, 0) + 1], 0, 1e-6);
+}
+
+// Shoulders that rise go back where the trunk goes up: the leg below them reaches as far as it does there.
+TEST(EvenChanges, LegsReachFromShouldersThatRise) {
+  const ChangeLayout layout(kFrames, {true});
+  std::vector<FootFrame> feet(kFrames, FootFrame{false, -1, Vec3(0.6, -0.9, 0), 1, Vec3(-0.5, 1, 0)});
+  ChangedMotion motion = jolted(layout);
+  const Changes changes = LeastChanges(layout, feet, std::vector<bool>(kFrames), {}).find(motion, 1e-3);
+  const double rise = changes[layout.shoulders(kJolt)];
+  EXPECT_LT(rise, -0.01);
+  const Vec3 way = feet[kJolt].way + wayAt(changes, layout.foot(kJolt, 0)) - wayAt(changes, layout.pelvis(kJolt));
+  EXPECT_NEAR((way - rise * feet[kJolt].lift).norm(), 1, 1e-4);
+}
+
 TEST(EvenChanges, EndsStayOrCloseTheLoop) {
   Leg joined;
   joined.ends.startsJoined = joined.ends.endsJoined = true;

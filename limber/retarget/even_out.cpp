@@ -101,6 +101,7 @@ class Evener {
     foot.lowest = unit * std::min(ground - end.y(), 0.0);
     foot.way = unit * (end - frame_.positions[leg.upper]);
     foot.most = std::max(unit * kStretch * leg.length, foot.way.norm());
+    if (trunk_.isFore(leg.upper)) foot.lift = TrunkTilt::liftOf(trunk_.trunkOf(frame_));
     return foot;
   }
 
