@@ -6,7 +6,7 @@
 
 #include "limber/ik/rotation.h"
 #include "limber/matching/loose_joints.h"
-#include "limber/matching/quadruped_shape.h"
+#include "limber/matching/quadruped.h"
 #include "limber/skeleton/chain.h"
 
 namespace limber {
@@ -98,7 +98,8 @@ std::optional<Quat> bodyFrame(const SkeletonMap& map, MapSide side, const std::v
 
 // Of what stands upright on four legs; other animals face +Z.
 Quat quadrupedFrame(const Skeleton& skeleton, const std::vector<Vec3>& positions) {
-  const Vec3 forward = snapped(facingOfQuadruped(skeleton, positions).value_or(Vec3::UnitZ()));
+  const std::optional<Quadruped> animal = readQuadruped(skeleton, positions);
+  const Vec3 forward = animal ? snapped(animal->forward) : Vec3(Vec3::UnitZ());
   Mat3 axes;
   axes << Vec3::UnitY().cross(forward), Vec3::UnitY(), forward;
   return Quat(axes).conjugate();

@@ -24,7 +24,7 @@ std::vector<Index> matchedJoints(const SkeletonMap& map, MapSide side);
 // way to the neutral pose would turn by more than 25 degrees goes along with it, too. One who stoops at rest by more
 // than 25 degrees stands up, a head bowed by more than 45 is raised, where the limbs are a person's. Loose joints
 // (looseJoints) are where their carriers have them. For other skeletons: the rest pose, of what stands on four legs
-// (facingOfQuadruped) turned to face +Z.
+// (readQuadruped) turned to face +Z.
 //
 // `resting` stands in for the skeleton's rest pose, here and below; uprightPose() tells why.
 struct NeutralPose {

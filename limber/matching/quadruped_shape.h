@@ -2,7 +2,6 @@
 #pragma once
 
 #include <optional>
-#include <span>
 #include <string_view>
 
 #include "limber/matching/skeleton_map.h"
@@ -18,14 +17,9 @@ std::optional<LegEnd> legEndOf(std::string_view part);
 // Whether the target's foreleg begins at that joint.
 bool isForeleg(const SkeletonMap& map, Index upper);
 
-// For two that stand on four legs (+Y up), wherever each faces: two pairs of chains that come down to the ground, one
-// behind the other along the trunk, or all on one joint beside it; what goes on from the trunk is the neck, what hangs
-// behind the tail. Feet on a root of their own count as on the shin above them (parentsWithLegsJoined). A leg's joints
-// are matched from its top to its first low joint, the foot: one by one where there are as many, else by what bends the
-// leg most. Nothing where one is no such animal. Cost: linear in the joints but for their depth.
+// For two that stand on four legs (Quadruped), wherever each faces. A leg's joints are matched from its top to its
+// foot: one by one where there are as many, else by where they lie along it. Nothing where one is no such animal.
+// Cost: linear in the joints but for their depth.
 std::optional<SkeletonMap> matchQuadrupeds(const Skeleton& source, const Skeleton& target);
-
-// Where one of that form faces, level, of length 1; nothing for others. `positions` are #J, world, +Y up.
-std::optional<Vec3> facingOfQuadruped(const Skeleton& skeleton, std::span<const Vec3> positions);
 
 }  // namespace limber

@@ -135,14 +135,6 @@ TEST(QuadrupedShape, LegsMayAllHangOnOneJointBesideTheTrunk) {
   EXPECT_EQ(RetargetSetup(one, other, map, {}).animalLegs.size(), 4u);
 }
 
-TEST(QuadrupedShape, OneThatIsReadBackToFrontIsNone) {
-  Skeleton animal = quadruped(0.5);
-  for (Joint& joint : animal.joints) {
-    if (joint.name.ends_with("Four")) joint.rest.translation.z() *= -1;
-  }
-  EXPECT_FALSE(matchQuadrupeds(animal, quadruped(0.5)));
-}
-
 // A body that faces elsewhere moves as it would if it did not, matched by names or by form.
 TEST(QuadrupedShape, EachMovesForwardAsItSeesIt) {
   const Skeleton one = quadruped(0.5), same = quadruped(0.45), other = nameless(withJointBefore(same, "n1", "throat"));
