@@ -1,5 +1,4 @@
-// Birds, fish, snakes, spiders and dinosaurs: shared motions on bodies of the same kind, whose joints have the same
-// names.
+// Birds, fish, snakes, spiders and dinosaurs: shared motions on bodies of the same kind, by equal names or by form.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,9 +6,11 @@
 #include <ostream>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "limber/asset/motion_io.h"
+#include "limber/core/error.h"
 #include "limber/core/numbers.h"
 #include "limber/matching/animal_map.h"
 #include "limber/matching/plain_skeleton.h"
@@ -92,6 +93,56 @@ TEST_P(RetargetKinds, MoveTheirOwn) {
         }
       }
     }
+  }
+}
+
+// Of the same kind, but with other names and other counts of joints.
+TEST(RetargetStrangers, MoveByTheirForm) {
+  if (!sharedDataFolder()) GTEST_SKIP() << kNoSharedData;
+  const struct {
+    const char *motion, *body;
+    std::size_t parts;
+  } pairs[] = {{"motions/m2m_shark_animations.glb", "quaternius_dolphin.glb", 9},
+               {"motions/m2m_shark_animations.glb", "quaternius_manta_ray.glb", 9},
+               {"rigged/quaternius_dolphin.glb", "m2m_fish_whale.glb", 9},
+               {"motions/m2m_snake_animations.glb", "quaternius_snake.glb", 3},
+               {"rigged/quaternius_snake.glb", "m2m_rigonly/rig_snake.glb", 3},
+               {"motions/m2m_bird_animations.glb", "quaternius_bat.fbx", 18},
+               {"motions/m2m_bird_animations.glb", "quaternius_dragon.fbx", 19},
+               {"motions/m2m_dragon_animations.glb", "quaternius_dragon.fbx", 19},
+               {"motions/m2m_dragon_animations.glb", "m2m_bird_base.glb", 20},
+               {"rigged/quaternius_bat.fbx", "m2m_bird_eagle.glb", 18}};
+  for (const auto& [file, body, parts] : pairs) {
+    SCOPED_TRACE(std::string(file).append(" ").append(body));
+    const Motion motion = readMotion(*sharedDataFolder() / file);
+    const PlainSkeleton from(motion.skeleton);
+    const PlainSkeleton to(readMotion(*sharedDataFolder() / "rigged" / body).skeleton);
+    const SkeletonMap map = matchSkeletons(from.skeleton(), to.skeleton());
+    EXPECT_GE(map.matches.size(), parts);
+    EXPECT_TRUE(map.find("body") && map.find("trunk"));
+    for (const Clip& clip : motion.clips) {
+      const PoseSequence frames = from.plain(sampleFrames(motion.skeleton, clip, 30));
+      if (frames.poses.size() < 5) continue;
+      const RetargetSetup setup(from.skeleton(), to.skeleton(), map, {}, &frames);
+      const PoseSequence result = retargetFrames(findRetargetMethod("limb-ik"), setup, frames);
+      EXPECT_LT(worstTurn(setup, frames, result), 0.5) << clip.name;
+    }
+  }
+}
+
+// Rather than a wreck: a frog's feet hang on no leg, and spiders have more legs than wasps.
+TEST(RetargetStrangers, WhatIsTooUnlikeIsRefused) {
+  if (!sharedDataFolder()) GTEST_SKIP() << kNoSharedData;
+  const std::pair<const char*, const char*> pairs[] = {{"motions/m2m_fox_animations.glb", "quaternius_frog.fbx"},
+                                                       {"motions/m2m_spider_animations.glb", "quaternius_spider.glb"},
+                                                       {"motions/m2m_spider_animations.glb", "quaternius_wasp.glb"},
+                                                       {"motions/m2m_bird_animations.glb", "quaternius_wasp.glb"},
+                                                       {"motions/m2m_snake_animations.glb", "quaternius_spider.glb"},
+                                                       {"motions/m2m_snake_animations.glb", "m2m_bird_base.glb"}};
+  for (const auto& [file, body] : pairs) {
+    const Skeleton from = readMotion(*sharedDataFolder() / file).skeleton;
+    const Skeleton to = readMotion(*sharedDataFolder() / "rigged" / body).skeleton;
+    EXPECT_THROW(matchSkeletons(from, to), Error) << file << ' ' << body;
   }
 }
 

@@ -25,6 +25,7 @@ RootPlacer::RootPlacer(const RetargetSetup& setup) : setup_(setup) {
       findTrunk();
     } else {
       for (const JointMatch& match : setup.map.matches) moved_.push_back(match.target.front());
+      findCarried();
     }
     for (const AnimalLeg& leg : setup.animalLegs) {
       if (!leg.target.carrier) continue;
@@ -79,6 +80,20 @@ std::vector<Index> RootPlacer::hindquartersOf(MapSide side) const {
   }
   if (carriesForelegs && !hips.empty()) return hips;
   return {jointsOfPart(setup_.map, side, kHindquarters)->front()};
+}
+
+void RootPlacer::findCarried() {
+  const auto isUnder = [](const Skeleton& skeleton, const std::vector<Index>& matched, Index joint) {
+    return std::any_of(matched.begin(), matched.end(),
+                       [&](Index above) { return above != joint && isAncestorOrSelf(skeleton, above, joint); });
+  };
+  const std::vector<Index> from = matchedJoints(setup_.map, MapSide::kSource),
+                           to = matchedJoints(setup_.map, MapSide::kTarget);
+  for (const JointMatch& match : setup_.map.matches) {
+    const Index s = match.source.front();
+    const bool isTop = !isUnder(*setup_.source, from, s) && !isUnder(*setup_.target, to, match.target.front());
+    carried_.push_back(isTop && setup_.source->joints[s].parent);
+  }
 }
 
 void RootPlacer::findPelvis() {
@@ -146,13 +161,14 @@ void RootPlacer::placeHindquarters(const BodyFrame& sourceFrame, Pose& target, B
 
 void RootPlacer::placeEach(const Pose& source, const BodyFrame& sourceFrame, Pose& target,
                            const BodyFrame& frame) const {
-  for (const JointMatch& match : setup_.map.matches) {
-    const Index s = match.source.front(), t = match.target.front();
-    const Vec3 way = source.locals[s].translation - setup_.source->joints[s].rest.translation;
-    const double unit = setup_.scale * setup_.sourceKinematics.unit(s) / setup_.targetKinematics.unit(t);
-    const Quat above = setup_.sourceKinematics.parentRotation(s, sourceFrame);
+  for (std::size_t m = 0; m < setup_.map.matches.size(); ++m) {
+    const Index s = setup_.map.matches[m].source.front(), t = setup_.map.matches[m].target.front();
+    const Vec3 own = source.locals[s].translation - setup_.source->joints[s].rest.translation;
+    Vec3 way = setup_.sourceKinematics.parentRotation(s, sourceFrame) * (setup_.sourceKinematics.unit(s) * own);
+    if (carried_[m]) way = sourceFrame.positions[s] - setup_.sourceNeutral.restPositions[s];
+    const double unit = setup_.scale / setup_.targetKinematics.unit(t);
     const Quat toParent = setup_.targetKinematics.parentRotation(t, frame).conjugate();
-    target.locals[t].translation = setup_.target->joints[t].rest.translation + unit * (toParent * (above * way));
+    target.locals[t].translation = setup_.target->joints[t].rest.translation + unit * (toParent * way);
   }
 }
 

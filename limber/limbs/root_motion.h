@@ -56,6 +56,7 @@ class RootPlacer {
   void findCarrierOfLegs();
   std::vector<Index> hindquartersOf(MapSide side) const;
   void placeHindquarters(const BodyFrame& sourceFrame, Pose& target, BodyFrame& frame) const;
+  void findCarried();
   void placeEach(const Pose& source, const BodyFrame& sourceFrame, Pose& target, const BodyFrame& frame) const;
   void addLoose(const LooseJoint& loose);
   void placeLoose(Pose& target, BodyFrame& frame) const;
@@ -71,6 +72,7 @@ class RootPlacer {
   std::vector<Index> pelvisChildren_;  // what hangs on these and on the pelvis
   std::vector<Loose> loose_;
   bool turnsLoose_ = false;
+  std::vector<bool> carried_;  // #matches: whether nothing above it is matched, in the source either
   std::vector<Index> moved_;
 };
 

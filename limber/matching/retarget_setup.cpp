@@ -163,11 +163,13 @@ RetargetSetup::RetargetSetup(const Skeleton& from, const Skeleton& to, SkeletonM
     const LowestHeights heights = lowestHeights(sourceKinematics, soles, sourceHipHeight, *motion);
     sourceGround = measuredGround(heights, restGround, sourceHipHeight);
   }
-  // A rest pose that hangs about the origin instead of standing on it tells nothing about the ground: the target then
-  // stands at the source's height.
+  // A rest pose that hangs about the origin instead of standing on it tells nothing about the ground: people then stand
+  // at the source's height, others, who go their way from rest, as far from there as the source.
   targetGround = lowest(groundJoints(map, MapSide::kTarget), targetNeutral.restPositions);
   const bool stands = targetGround > -0.25 * targetHipHeight && targetGround < 0.5 * targetHipHeight;
-  if (!stands) targetGround = sourceGround * scale;
+  // What rests in the air flies: its feet have no ground to keep to.
+  if (targetGround >= 0.5 * targetHipHeight && !map.find(kHindquarters)) animalLegs.clear();
+  if (!stands) targetGround = person ? sourceGround * scale : targetGround + scale * (sourceGround - restGround);
 }
 
 Vec3 RetargetSetup::placeOf(const Vec3& pelvis) const {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <set>
@@ -12,7 +13,9 @@
 #include "limber/core/counted.h"
 #include "limber/core/error.h"
 #include "limber/matching/animal_map.h"
+#include "limber/matching/body_plan.h"
 #include "limber/matching/humanoid_shape.h"
+#include "limber/matching/neutral_pose.h"
 #include "limber/matching/quadruped_shape.h"
 #include "limber/skeleton/chain.h"
 
@@ -20,8 +23,10 @@ namespace limber {
 
 namespace {
 
-constexpr double kAlike = 0.6;   // of the smaller one's joints, in animals that are matched by names alone
-constexpr double kFacing = 0.5;  // cosine between where toes and a body point, at least, to tell left from right by it
+constexpr double kAlike = 0.6;    // of the smaller one's joints, in animals that are matched by names alone
+constexpr double kWhole = 0.75;   // of the smaller one's joints: more names in common tell most
+constexpr double kGuessed = 0.5;  // confidence of one who hardly looks like a person, at most
+constexpr double kFacing = 0.5;   // cosine between where toes and a body point, at least, to tell left from right by it
 
 // A person as the matching sees it: parts with their joints.
 struct Body {
@@ -72,7 +77,17 @@ class BodyReader {
                              "rightLowerArm", "leftLowerLeg", "rightLowerLeg"}) {
       limbs += jointOf(bone).has_value();
     }
-    return jointOf("hips") && limbs >= 4;
+    return jointOf("hips") && limbs >= 4 && shinsHangOnThighs();
+  }
+
+  // A spider's second leg is no shin, whatever it is called.
+  bool shinsHangOnThighs() const {
+    for (const auto& [thighBone, shinBone] :
+         {std::pair{"leftUpperLeg", "leftLowerLeg"}, std::pair{"rightUpperLeg", "rightLowerLeg"}}) {
+      const std::optional<Index> thigh = jointOf(thighBone), shin = jointOf(shinBone);
+      if (thigh && shin && !isAncestorOrSelf(skeleton_, *thigh, *shin)) return false;
+    }
+    return true;
   }
 
   // Do the feet point backwards for someone whose left is where the names say? Then left is where they say right: the
@@ -162,6 +177,32 @@ class BodyReader {
   std::set<Index> taken_;
   Body body_;
 };
+
+// By name with arms, or by a form that leaves little over, such as a tail, and whose trunk is upright.
+bool isSurelyAPerson(const std::optional<Body>& body, const Skeleton& skeleton) {
+  if (!body) return false;
+  if (body->by == MatchedBy::kName) return body->hasArms();
+  const Body::Part& hips = body->parts.at("hips");
+  const auto head = body->parts.find("head");
+  if (head == body->parts.end()) return hips.confidence > kGuessed;
+  const std::vector<Affine> globals = restGlobals(skeleton);
+  const Vec3 up = globals[head->second.joints.back()].translation() - globals[hips.joints.front()].translation();
+  return hips.confidence > kGuessed && up.y() > std::hypot(up.x(), up.z());
+}
+
+// By their form alone both hardly look like people, or one is a quadruped: a frog is no person for a fox to follow.
+bool areStrangers(const Body& from, const Skeleton& source, const Body& to, const Skeleton& target) {
+  if (from.by != MatchedBy::kShape || to.by != MatchedBy::kShape) return false;
+  const auto isQuadruped = [](const Skeleton& skeleton) { return matchQuadrupeds(skeleton, skeleton).has_value(); };
+  const auto isGuessed = [](const Body& body) { return body.parts.at("hips").confidence <= kGuessed; };
+  return (isGuessed(from) && isGuessed(to)) || isQuadruped(source) != isQuadruped(target);
+}
+
+// Arms or legs: hips and a head are no person.
+bool hasLimbs(const SkeletonMap& map) {
+  return (map.find("leftUpperLeg") && map.find("rightUpperLeg")) ||
+         (map.find("leftUpperArm") && map.find("rightUpperArm"));
+}
 
 SkeletonMap matchBodies(const Body& source, const Body& target) {
   SkeletonMap map;
@@ -287,7 +328,8 @@ SkeletonMap matchSkeletons(const Skeleton& source, const Skeleton& target) {
   const std::optional<Body> from = BodyReader(source).read(), to = BodyReader(target).read();
   const bool named = from && to && from->by == MatchedBy::kName && to->by == MatchedBy::kName;
   // Animals that are built otherwise may well have many words in common.
-  if (!named && !(isFamily && areAlike(names, source, target))) {
+  const bool alike = isFamily && areAlike(names, source, target);
+  if (!named && !alike) {
     std::optional<SkeletonMap> quadrupeds = matchQuadrupeds(source, target);
     if (quadrupeds && sameTree(source, target)) return matchTrees(target);
     if (quadrupeds) {
@@ -297,10 +339,17 @@ SkeletonMap matchSkeletons(const Skeleton& source, const Skeleton& target) {
   }
   const bool people = from && to && (from->by == MatchedBy::kName || to->by == MatchedBy::kName || !isFamily);
   // A family without arms, of birds or bats, moves more than legs and trunk.
-  if (people && !(isFamily && !from->hasArms() && !to->hasArms())) {
+  const bool armless = isFamily && from && to && !from->hasArms() && !to->hasArms();
+  const bool byNames = isFamily && (!people || armless);
+  const bool isWhole = isFamily && static_cast<double>(names.matches.size()) > kWhole * static_cast<double>(fewer);
+  if (!isWhole && !sameTree(source, target) && !isSurelyAPerson(from, source) && !isSurelyAPerson(to, target)) {
+    const std::optional<SkeletonMap> plan = matchBodyPlans(source, target);
+    if (plan && (!byNames || matchedJoints(*plan, MapSide::kTarget).size() > names.matches.size())) return *plan;
+  }
+  if (people && !armless && !areStrangers(*from, source, *to, target)) {
     SkeletonMap map = matchBodies(*from, *to);
     if (isFamily) addNamesakes(names, source, target, map);
-    if (map.matches.size() >= 5) return map;
+    if (map.matches.size() >= 5 && hasLimbs(map)) return map;
   }
   if (isFamily) {
     matchChainsOfAnimals(source, target, names);

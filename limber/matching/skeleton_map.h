@@ -34,8 +34,8 @@ struct SkeletonMap {
 // toes point backwards for what is called left, left is what is called right. Others, and birds and bats of one family,
 // whose legs alone are a person's, are matched by equal names (upper and lower case and prefixes aside), animals'
 // trunks, necks and tails along their chains (animal_map.h), or joint by joint where the trees are the same; quadrupeds
-// of other names and trees by their form (quadruped_shape.h). Throws Error kUnsupported where too little matches to
-// move anything.
+// of other names and trees by their form (quadruped_shape.h), all else by how the bodies are laid out (body_plan.h).
+// Throws Error kUnsupported where too little matches to move anything.
 SkeletonMap matchSkeletons(const Skeleton& source, const Skeleton& target);
 
 // Throws Error kBadData naming the part: no joint, one that is not there, or one target joint in two parts.
