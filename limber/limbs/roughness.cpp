@@ -20,7 +20,7 @@ constexpr std::array<LimbName, 4> kLimbs = {{{"leftUpperArm", "leftLowerArm", "l
                                              {"leftUpperLeg", "leftLowerLeg", "leftFoot"},
                                              {"rightUpperLeg", "rightLowerLeg", "rightFoot"}}};
 
-// Each two matched joints of which one hangs on the other in both, as bones.
+// Each two matched joints of which one hangs on the other in both, and chains from end to end, as bones.
 std::vector<LimbPair> matchedBones(const RetargetSetup& setup) {
   std::vector<const JointMatch*> from(setup.source->jointCount()), to(setup.target->jointCount());
   for (const JointMatch& match : setup.map.matches) {
@@ -33,16 +33,19 @@ std::vector<LimbPair> matchedBones(const RetargetSetup& setup) {
     return at;
   };
   std::vector<LimbPair> bones;
+  const auto add = [&](const LimbPair& bone) {
+    const auto hasLength = [](const NeutralPose& pose, const std::vector<Index>& joints) {
+      return (pose.restPositions[joints[1]] - pose.restPositions[joints[0]]).norm() > 0;
+    };
+    if (hasLength(setup.sourceNeutral, bone.source) && hasLength(setup.targetNeutral, bone.target)) {
+      bones.push_back(bone);
+    }
+  };
   for (const JointMatch& match : setup.map.matches) {
     const Index s = match.source.front(), t = match.target.front();
     const std::optional<Index> one = above(*setup.source, from, s), other = above(*setup.target, to, t);
-    if (!one || !other || from[*one] != to[*other]) continue;
-    const auto length = [](const NeutralPose& pose, Index a, Index b) {
-      return (pose.restPositions[b] - pose.restPositions[a]).norm();
-    };
-    if (length(setup.sourceNeutral, *one, s) > 0 && length(setup.targetNeutral, *other, t) > 0) {
-      bones.push_back({{*one, s}, {*other, t}});
-    }
+    if (one && other && from[*one] == to[*other]) add({{*one, s}, {*other, t}});
+    if (match.source.size() > 1 && match.target.size() > 1) add({{s, match.source.back()}, {t, match.target.back()}});
   }
   return bones;
 }

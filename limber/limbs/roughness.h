@@ -17,7 +17,7 @@ struct LimbPair {
 bool hasLegs(const RetargetSetup& setup);
 
 // Of people arms and legs, of others RetargetSetup::animalLegs; without legs all bones from a matched joint to the
-// next.
+// next, and chains of several from end to end.
 std::vector<LimbPair> limbPairs(const RetargetSetup& setup);
 
 // From the lowest foot joint to the head's, of a person; of others to the highest joint that is matched; without legs

@@ -64,6 +64,31 @@ TEST(Roughness, LimbsAreArmsAndLegsOrAnimalsLegs) {
   for (const LimbPair& limb : limbs(animal)) EXPECT_EQ(limb.source.size(), 3u);
 }
 
+// A snake's head on its neck, and its tail, which is matched as a whole, from end to end.
+TEST(Roughness, WithoutLegsBonesAndChainsCount) {
+  Skeleton snake;
+  for (const auto& [name, parent] : {std::pair{"body", ""},
+                                     {"neck", "body"},
+                                     {"head", "neck"},
+                                     {"tail1", "body"},
+                                     {"tail2", "tail1"},
+                                     {"tail3", "tail2"}}) {
+    limber::testing::addJoint(snake, name, parent, Vec3(0, 0, std::string(name).starts_with("tail") ? -0.3 : 0.2));
+  }
+  SkeletonMap map;
+  map.matches = {{"body", {0}, {0}, 1, MatchedBy::kFile},
+                 {"neck", {1}, {1}, 1, MatchedBy::kFile},
+                 {"head", {2}, {2}, 1, MatchedBy::kFile},
+                 {"tail", {3, 4, 5}, {3, 4, 5}, 1, MatchedBy::kFile}};
+  const RetargetSetup setup(snake, snake, map, {});
+  EXPECT_FALSE(hasLegs(setup));
+  const std::vector<LimbPair> bones = limbPairs(setup);
+  ASSERT_EQ(bones.size(), 4u);
+  EXPECT_EQ(bones[1].target, (std::vector<Index>{1, 2}));
+  EXPECT_EQ(bones[3].source, (std::vector<Index>{3, 5}));
+  EXPECT_NEAR(standingHeight(setup, MapSide::kSource), setup.sourceHipHeight, 1e-12);
+}
+
 TEST(Roughness, NobodyIsFasterThanACut) {
   const Skeleton person = practiceHumanoid();
   const RetargetSetup setup(person, person, matchSkeletons(person, person), {});

@@ -62,11 +62,14 @@ void AlignedRetargeter::follow(const JointMatch& match) {
 
 Quat AlignedRetargeter::rotationOf(const Follow& follow) const {
   if (follow.shares.empty()) return sourceFrame_.rotations[follow.source] * follow.after;
-  const Quat first = sourceFrame_.rotations[follow.source] * follow.shares.front().fromNeutral;
+  // Each on the side of the one before: along a snake that coils the last may be turned right round from the first.
+  Quat before = sourceFrame_.rotations[follow.source] * follow.shares.front().fromNeutral;
   Eigen::Vector4d sum = Eigen::Vector4d::Zero();
   for (const Share& share : follow.shares) {
-    const Quat turn = sourceFrame_.rotations[share.source] * share.fromNeutral;
-    sum += (turn.dot(first) < 0 ? -share.weight : share.weight) * turn.coeffs();
+    Quat turn = sourceFrame_.rotations[share.source] * share.fromNeutral;
+    if (turn.dot(before) < 0) turn.coeffs() = -turn.coeffs();
+    sum += share.weight * turn.coeffs();
+    before = turn;
   }
   return Quat(Eigen::Vector4d(sum.normalized())) * follow.after;
 }

@@ -94,6 +94,38 @@ TEST_F(Aligned, TheWayScalesWithTheHips) {
   EXPECT_EQ(RetargetSetup(person, giant, matchSkeletons(person, giant), unscaled, &motion).scale, 1);
 }
 
+// A tail of many joints coils up until its end has turned nearly twice; one of two joints turns as evenly.
+TEST(AlignedChains, CoilsDoNotFlip) {
+  const auto snake = [](int joints) {
+    Skeleton made;
+    limber::testing::addJoint(made, "body", "", Vec3::Zero());
+    for (int i = 1; i <= joints; ++i) {
+      limber::testing::addJoint(made, "tail" + std::to_string(i), i > 1 ? "tail" + std::to_string(i - 1) : "body",
+                                Vec3(0, 0, -2.0 / joints));
+    }
+    return made;
+  };
+  const Skeleton many = snake(20), few = snake(2);
+  SkeletonMap map;
+  map.matches = {{"body", {0}, {0}, 1, MatchedBy::kFile}, {"tail", {}, {1, 2}, 1, MatchedBy::kFile}};
+  for (Index j = 1; j < many.jointCount(); ++j) map.matches[1].source.push_back(j);
+  PoseSequence coiling{{}, 1.0 / 30};
+  for (int f = 0; f <= 170; ++f) {
+    coiling.poses.push_back(restPose(many));
+    for (Index j = 1; j < many.jointCount(); ++j) {
+      coiling.poses.back().locals[j].rotation = turn(Vec3::UnitY(), 0.2 * f);
+    }
+  }
+  const RetargetSetup setup(many, few, map, {}, &coiling);
+  const PoseSequence result = retargetFrames(findRetargetMethod("aligned"), setup, coiling);
+  for (std::size_t f = 1; f < result.poses.size(); ++f) {
+    for (const Index joint : {1u, 2u}) {
+      const Quat now = result.poses[f].locals[joint].rotation, before = result.poses[f - 1].locals[joint].rotation;
+      EXPECT_LT(now.angularDistance(before) * 180 / kPi, 3) << f;
+    }
+  }
+}
+
 TEST_F(Aligned, ThereAndBackAgain) {
   const Skeleton other = withOtherAxes(scaled(
       inRestPose(person, {{"leftUpperArm", turn(Vec3::UnitZ(), -45)}, {"rightUpperArm", turn(Vec3::UnitZ(), 45)}}),
