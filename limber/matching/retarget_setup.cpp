@@ -15,6 +15,7 @@ namespace {
 
 // A motion whose feet come this near to where they are in rest pose (in hip heights) stands on the rest pose's ground.
 constexpr double kSameGround = 0.08;
+constexpr double kFlies = 0.5;         // hip heights over the origin: from there on a rest pose does not stand on it
 constexpr double kStill = 0.4;         // hip heights a second: a lowest foot joint slower than this stands
 constexpr double kFewStand = 0.05;     // share of frames; below it the motion never stands (a run)
 constexpr double kBelowGround = 0.05;  // share of frames that may lie lower than the ground, for noise
@@ -34,9 +35,10 @@ std::vector<Index> groundJoints(const SkeletonMap& map, MapSide side) {
 // Heights of the lowest foot joint over a motion, in all frames and while it is still.
 struct LowestHeights {
   std::vector<double> all, standing;
+  std::size_t soleDown = 0;  // frames in which its sole does not look up
 };
-LowestHeights lowestHeights(const BodyKinematics& kinematics, const std::vector<Index>& soles, double hipHeight,
-                            const PoseSequence& motion) {
+LowestHeights lowestHeights(const BodyKinematics& kinematics, const NeutralPose& neutral,
+                            const std::vector<Index>& soles, double hipHeight, const PoseSequence& motion) {
   LowestHeights heights;
   BodyFrame frame, before;
   for (const Pose& pose : motion.poses) {
@@ -44,6 +46,8 @@ LowestHeights lowestHeights(const BodyKinematics& kinematics, const std::vector<
     const auto low = std::min_element(
         soles.begin(), soles.end(), [&](Index a, Index b) { return frame.positions[a].y() < frame.positions[b].y(); });
     heights.all.push_back(frame.positions[*low].y());
+    const Quat turn = frame.rotations[*low] * neutral.rotations[*low].conjugate();
+    if ((turn * Vec3::UnitY()).y() > 0) ++heights.soleDown;
     const double stillWay = kStill * hipHeight * motion.frameSeconds;
     const bool still = !before.positions.empty() && (frame.positions[*low] - before.positions[*low]).norm() < stillWay;
     if (still) heights.standing.push_back(heights.all.back());
@@ -58,10 +62,18 @@ double quantile(std::vector<double>& values, double share) {
   return *rank;
 }
 
-// The rest pose's ground where the motion comes down to it; else the middle height of what is lowest and still. People
-// who sit down, lie or jump about are still at many heights, so that middle alone says too little.
+// A rest pose that hangs about the origin instead of standing on it tells nothing about the ground.
+bool standsAt(double ground, double hipHeight) {
+  return ground > -0.25 * hipHeight && ground < kFlies * hipHeight;
+}
+
+// The rest pose's ground where the motion comes down to it, or where soles look up throughout, as a swimmer's; else the
+// middle height of what is lowest and still. People who sit down, lie or jump about are still at many heights, so that
+// middle alone says too little.
 double measuredGround(LowestHeights heights, double restGround, double hipHeight) {
   if (std::abs(quantile(heights.all, kBelowGround) - restGround) < kSameGround * hipHeight) return restGround;
+  const bool afloat = static_cast<double>(heights.soleDown) < kFewStand * static_cast<double>(heights.all.size());
+  if (afloat && standsAt(restGround, hipHeight)) return restGround;
   const bool stands =
       static_cast<double>(heights.standing.size()) > kFewStand * static_cast<double>(heights.all.size());
   return stands ? quantile(heights.standing, 0.25) : quantile(heights.all, kBelowGround);
@@ -160,16 +172,17 @@ RetargetSetup::RetargetSetup(const Skeleton& from, const Skeleton& to, SkeletonM
   const double restGround = lowest(soles, sourceNeutral.restPositions);
   sourceGround = options.sourceGround.value_or(restGround);
   if (!options.sourceGround && motion && !motion->poses.empty()) {
-    const LowestHeights heights = lowestHeights(sourceKinematics, soles, sourceHipHeight, *motion);
+    const LowestHeights heights = lowestHeights(sourceKinematics, sourceNeutral, soles, sourceHipHeight, *motion);
     sourceGround = measuredGround(heights, restGround, sourceHipHeight);
   }
-  // A rest pose that hangs about the origin instead of standing on it tells nothing about the ground: people then stand
-  // at the source's height, others, who go their way from rest, as far from there as the source.
+  // Of one that hangs about the origin, people stand at the source's height, others, who go their way from rest, as far
+  // from there as the source.
   targetGround = lowest(groundJoints(map, MapSide::kTarget), targetNeutral.restPositions);
-  const bool stands = targetGround > -0.25 * targetHipHeight && targetGround < 0.5 * targetHipHeight;
   // What rests in the air flies: its feet have no ground to keep to.
-  if (targetGround >= 0.5 * targetHipHeight && !map.find(kHindquarters)) animalLegs.clear();
-  if (!stands) targetGround = person ? sourceGround * scale : targetGround + scale * (sourceGround - restGround);
+  if (targetGround >= kFlies * targetHipHeight && !map.find(kHindquarters)) animalLegs.clear();
+  if (!standsAt(targetGround, targetHipHeight)) {
+    targetGround = person ? sourceGround * scale : targetGround + scale * (sourceGround - restGround);
+  }
 }
 
 Vec3 RetargetSetup::placeOf(const Vec3& pelvis) const {

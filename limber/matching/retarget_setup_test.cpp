@@ -35,5 +35,24 @@ TEST(RetargetSetup, AMapThatTellsNoSizeSaysWhatIsMissing) {
             "such as hips, head and feet)");
 }
 
+// Someone who drifts on the belly, half a metre up, moves the feet slowly; they do not stand there.
+TEST(RetargetSetup, ASwimmersFeetTellNoGround) {
+  using limber::testing::turn;
+  const Skeleton person = practiceHumanoid();
+  PoseSequence swimming{{}, 1.0 / 30}, standing{{}, 1.0 / 30};
+  for (int f = 0; f < 30; ++f) {
+    Pose& floats = swimming.poses.emplace_back(restPose(person));
+    floats.locals[0].translation.y() = 0.5 + 0.001 * f;
+    floats.locals[0].rotation = turn(Vec3::UnitX(), 90 + 0.1 * f);
+    floats.locals[person.find("leftFoot").value()].rotation = turn(Vec3::UnitX(), 30);
+    floats.locals[person.find("rightFoot").value()].rotation = turn(Vec3::UnitX(), 30);
+    standing.poses.emplace_back(restPose(person)).locals[0].translation.y() += 0.5;
+  }
+  const SkeletonMap map = matchSkeletons(person, person);
+  const double rest = RetargetSetup(person, person, map, {}).sourceGround;
+  EXPECT_DOUBLE_EQ(RetargetSetup(person, person, map, {}, &swimming).sourceGround, rest);
+  EXPECT_NEAR(RetargetSetup(person, person, map, {}, &standing).sourceGround, rest + 0.5, 1e-9) << "on a box";
+}
+
 }  // namespace
 }  // namespace limber
