@@ -17,7 +17,7 @@ struct Limb {
   double folded = 0;                // how near to each other they bring the ends, at kMostBend
   std::optional<Index> hock;        // another joint that bends it (AnimalLeg)
   Vec3 goal = Vec3::Zero();         // where the end has to be, in the person's space
-  bool ownWay = false;              // an animal's foot that goes as the source's, and the leg after it
+  bool ownWay = false;              // a foot that goes as the source's, and the leg after it
   std::optional<Index> sourceBody;  // ownWay: what the leg and another hang on
   bool ownBend = false;             // bends to its own side, wherever the joint angles bend it
   bool wanted = false;              // else it may be where it is
@@ -40,8 +40,9 @@ struct Leg : Limb {
   double flatness = 0;                                 // likewise
   Vec3 place = Vec3::Zero();                           // of the end, by the joint angles or by its own way
   double bentReach = 0;                                // ownWay: from hip to end if bent as the source's (LegBend)
-  double lift = 0;                                     // ownWay: of the source's foot from where it stands, hip heights
-  double upright = 1;                                  // ownWay: of the source's body, 0 where it lies on its side
+  double lift = 0;     // ownWay: of the source's foot from where it stands, hip heights;
+                       // more of people who lie down
+  double upright = 1;  // ownWay: of the source's body, 0 where it lies on its side
 };
 
 // Leg::lift from which on a foot that goes its own way may leave it for the source's bend alone: the body no longer

@@ -32,7 +32,8 @@ constexpr double kCarriedUp = 0.5;  // share of its hip's way up that a person's
 // Of legs whose feet go their own way.
 constexpr double kSoftLeg = 0.03, kSoftStanding = 0.003;  // of the most that a leg reaches, leg lengths
 constexpr double kFaces = 0.5;  // squared cosine of half the angle by which a body leans that still faces a way
-constexpr double kSlipSpeed = 0.65, kSlipPower = 3;  // hip heights a second at which planted feet slip by half
+// Hip heights a second at which planted feet slip by half.
+constexpr double kSlipSpeed = 0.65, kPersonSlipSpeed = 0.4, kSlipPower = 3;
 constexpr double kBentInRest = 0.01;  // of an animal's leg's length: a knee off its line by that tells where it bends
 constexpr double kBendsAlike = 0.05;  // likewise: the source's joint of that name bends to the same side
 constexpr double kSteep = 1.7, kSoleUp = 2.4, kSoftLevel = 0.05;  // radians that toes point down
@@ -77,7 +78,13 @@ void LimbGoals::addPersonsLegs(const RootPlacer& root) {
     } else {
       leg.tip = toesOf(*setup_.target, setup_.map, MapSide::kTarget, side, setup_.targetNeutral.restPositions);
     }
+    const JointMatch &shin = *setup_.map.find(side + "LowerLeg"), &hips = *setup_.map.find("hips");
+    leg.ownWay = isBent(shin.source, leg.sourceEnd, setup_.sourceNeutral.restPositions);
+    if (leg.ownWay) leg.sourceBody = hips.source.back();
     addLeg(leg);
+    const LegJoints from = {leg.sourceUpper, shin.source.front(), leg.sourceEnd, {}, {}, {}};
+    const LegJoints to = {leg.upper, leg.lower, leg.end, {}, {}, {}};
+    if (leg.ownWay) feelers_.back().bend.emplace(setup_, AnimalLeg{from, to});
   }
 }
 
@@ -197,7 +204,9 @@ Vec3 LimbGoals::ownPlace(const Leg& leg, const BodyFrame& source, const BodyFram
   const Vec3 atRest = to[leg.end] - to[leg.upper] - setup_.scale * (from[leg.sourceEnd] - from[leg.sourceUpper]);
   const Vec3 way = setup_.scale * (source.positions[leg.sourceEnd] - source.positions[leg.sourceUpper]);
   Vec3 place = target.positions[leg.upper] + way + turnedAsBody(atRest, leg, source);
-  place.y() = to[leg.end].y() + setup_.scale * (source.positions[leg.sourceEnd] - from[leg.sourceEnd]).y();
+  const double stands = setup_.person ? leg.ankleGround : to[leg.end].y();
+  const double sourceStands = setup_.person ? leg.sourceAnkleGround : from[leg.sourceEnd].y();
+  place.y() = stands + setup_.scale * (source.positions[leg.sourceEnd].y() - sourceStands);
   return place;
 }
 
@@ -214,15 +223,20 @@ Quat LimbGoals::turnOfBody(const Leg& leg, const BodyFrame& source) const {
   return source.rotations[*leg.sourceBody] * setup_.sourceNeutral.rotations[*leg.sourceBody].conjugate();
 }
 
-// It stands about as still as the source's: what moves there is meant to.
+// It stands about as still as the source's: what moves there is meant to. People who lie down lift their feet.
 void LimbGoals::feelOwnWay(Leg& leg, Feeler& feeler, const BodyFrame& source, double seconds) const {
   leg.lift = (source.positions[leg.sourceEnd].y() - leg.sourceAnkleGround) / setup_.sourceHipHeight;
   leg.bentReach = feeler.bend->reach(source);
-  const double leans = (turnOfBody(leg, source) * Vec3::UnitX()).y();
-  leg.upright = 1 - leans * leans;
+  const Quat body = turnOfBody(leg, source);
+  if (setup_.person) {
+    leg.lift += kLifted * smoothStep(1 - (body * Vec3::UnitY()).y());
+  } else {
+    const double leans = (body * Vec3::UnitX()).y();
+    leg.upright = 1 - leans * leans;
+  }
   const Vec3 way = source.positions[leg.sourceEnd] - feeler.sourceEnd;
   const double speed = seconds > 0 ? std::hypot(way.x(), way.z()) / (seconds * setup_.sourceHipHeight) : 0;
-  feeler.foot.slip = 1 / (1 + std::pow(kSlipSpeed / speed, kSlipPower));
+  feeler.foot.slip = 1 / (1 + std::pow((setup_.person ? kPersonSlipSpeed : kSlipSpeed) / speed, kSlipPower));
   feeler.sourceEnd = source.positions[leg.sourceEnd];
 }
 

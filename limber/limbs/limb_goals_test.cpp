@@ -92,6 +92,30 @@ TEST(LimbGoals, LegsOfLiftedFeetOnRootsOfTheirOwnBendAsTheSources) {
   EXPECT_LT(bentBy(0, -1), 1.8 / 2.8) << "no further than a leg reaches";
 }
 
+// Joint angles of a dinosaur's legs, whose shins have hocks, leave a person's feet at other heights.
+TEST(LimbGoals, FeetGoTheWayOfASourceWithHocks) {
+  const Skeleton hocked = limber::testing::withHocks(practiceHumanoid()), person = practiceHumanoid();
+  const RetargetSetup setup(hocked, person, matchSkeletons(hocked, person), {});
+  ASSERT_TRUE(setup.person);
+  const RootPlacer root(setup);
+  LimbGoals goals(setup, root);
+  const Leg& leg = goals.legs().front();
+  ASSERT_TRUE(leg.ownWay);
+  for (const double folds : {0.0, 40.0}) {
+    Pose from = restPose(hocked), to = restPose(person);
+    from.locals[hocked.find("leftLowerLeg").value()].rotation = limber::testing::turn(Vec3::UnitX(), folds);
+    from.locals[hocked.find("leftHock").value()].rotation = limber::testing::turn(-Vec3::UnitX(), 2 * folds);
+    BodyFrame source, target;
+    setup.sourceKinematics.globals(from, source);
+    setup.targetKinematics.globals(to, target);
+    goals.calm(source, 0, to, target);
+    goals.setFeet(source, target, 0);
+    const double lifted = setup.scale * (source.positions[leg.sourceEnd].y() - leg.sourceAnkleGround);
+    EXPECT_NEAR(leg.goal.y() - leg.ankleGround, lifted, 0.01);
+    EXPECT_EQ(lifted > 0.1, folds > 0);
+  }
+}
+
 // Of quadrupeds that were matched by their form; the other's paws stand further ahead at rest.
 TEST(LimbGoals, WhoTurnsRoundStandsThereAsBefore) {
   const Skeleton animal = limber::testing::quadruped(0.5);

@@ -15,8 +15,10 @@ constexpr double kCalmWide = 1.5;  // power of the hips' widths by which their t
 constexpr double kMostShift = 0.3;
 constexpr double kMostAtEnd = 0.15;  // by which feet that cannot reach pull down hips or shoulders: then they lift
 constexpr double kSoftStretch = 0.015, kSoftChange = 0.004;  // of sinking, by how far a foot is moved
-constexpr double kSoftOnFour = 0.04;  // likewise: with legs at both ends of the body, some are far off and stretch more
-constexpr double kSoftBend = 0.1;     // by which feet on their own ways count the more, the lower they want the body
+constexpr double kSoftFar = 0.04;   // likewise: of legs at both ends of a body, and such as go their own way, some are
+                                    // far off and stretch more
+constexpr double kNearLevel = 0.3;  // squared sine of the slope of a person's leg from which on sinking helps it less
+constexpr double kSoftBend = 0.1;   // by which feet on their own ways count the more, the lower they want the body
 constexpr double kStandsBelow = 0.45;  // Leg::lift from which on their bend no longer counts
 constexpr double kSoftFold = 0.02;
 constexpr double kStay = 0.5;        // legs that these go against, which want it to stay
@@ -39,6 +41,10 @@ double saturated(double x, double most) {
 // Share to which the body makes up for what the leg lacks to reach its goal.
 double followed(const Leg& leg) {
   return leg.ownWay ? leg.upright * smoothStep(1 - leg.lift / kLifted) : 1;
+}
+
+bool anyGoesOwnWay(std::span<const Leg> legs) {
+  return std::any_of(legs.begin(), legs.end(), [](const Leg& leg) { return leg.ownWay; });
 }
 
 double hipWidth(const NeutralPose& neutral, Index left, Index right) {
@@ -110,7 +116,7 @@ void Pelvis::apply(const Move& move, Pose& target, BodyFrame& frame) const {
 // Least squares over what the planted legs lack, against the turn itself. On one leg only the turn about the vertical
 // helps: the shift brings that leg to the ground.
 Quat Pelvis::turnFor(std::span<const Leg> legs, const BodyFrame& frame) const {
-  if (!setup_.person || legs.size() != 2 || !root_.turnsPelvis()) return Quat::Identity();
+  if (!setup_.person || legs.size() != 2 || !root_.turnsPelvis() || anyGoesOwnWay(legs)) return Quat::Identity();
   const Leg &left = legs[0], &right = legs[1];
   const Vec3 toHip = 0.5 * (frame.positions[left.upper] - frame.positions[right.upper]);
   const Vec3 lackLeft = left.goal - frame.positions[left.end], lackRight = right.goal - frame.positions[right.end];
@@ -149,13 +155,19 @@ double Pelvis::ownWaysShift(std::span<const Leg> legs, const BodyFrame& frame) c
     const Vec3 way = leg.goal - frame.positions[leg.upper];
     const double reach = leg.bentReach, across = std::hypot(way.x(), way.z());
     if (across >= reach) continue;
-    const double weight =
-        leg.upright * smoothStep(1 - leg.lift / kStandsBelow) * (1 - across * across / (reach * reach));
+    const double weight = leg.upright * smoothStep(1 - leg.lift / kStandsBelow) *
+                          (1 - across * across / (reach * reach)) * steepness(leg, across, reach);
     const double up = way.y() + std::sqrt(reach * reach - across * across);
     sum += weight * std::exp(-saturated(up, kMostShift * setup_.targetHipHeight) / soft);
     weights += weight;
   }
   return -soft * std::log(sum / weights);
+}
+
+// What goes its own way may be led so far ahead that a person's leg is nearly level: then the body lets go of it.
+double Pelvis::steepness(const Leg& leg, double across, double reach) const {
+  if (!setup_.person || !leg.ownWay) return 1;
+  return smoothStep((1 - across * across / (reach * reach)) / kNearLevel);
 }
 
 double Pelvis::changeOf(const Leg& leg, const BodyFrame& frame, const Quat& turn) const {
@@ -166,7 +178,8 @@ double Pelvis::changeOf(const Leg& leg, const BodyFrame& frame, const Quat& turn
 
 double Pelvis::shiftFor(std::span<const Leg> legs, const BodyFrame& frame, const Quat& turn, double rise) const {
   const double height = setup_.targetHipHeight;
-  const double soft = (setup_.person ? kSoftStretch : kSoftOnFour) * height;
+  const bool byAngles = setup_.person && !anyGoesOwnWay(legs);
+  const double soft = (byAngles ? kSoftStretch : kSoftFar) * height;
   double sum = 0;
   for (const Leg& leg : legs) {
     const Vec3 hipGoes = hipWay({turn, 0}, leg, frame);
@@ -174,13 +187,16 @@ double Pelvis::shiftFor(std::span<const Leg> legs, const BodyFrame& frame, const
     if (way.y() >= 0) continue;
     const double length = kStretch * leg.length, across = std::hypot(way.x(), way.z());
     const double down = std::sqrt(std::max(length * length - across * across, 0.0));
-    const double needed = followed(leg) * softPositive(-way.y() - down, soft * leg.changed);
+    const double needed =
+        followed(leg) * steepness(leg, across, length) * softPositive(-way.y() - down, soft * leg.changed);
     sum += needed * needed * needed * needed;
   }
   // The most that a leg asks for, but without a kink where another takes over.
   const double most = std::sqrt(std::sqrt(sum));
-  const double shift =
-      rise - (tilt_.tilts() ? saturated(most, kMostAtEnd * height) : std::min(most, kMostShift * height));
+  const double down = byAngles || (!setup_.person && !tilt_.tilts())
+                          ? std::min(most, kMostShift * height)
+                          : saturated(most, (tilt_.tilts() ? kMostAtEnd : kMostShift) * height);
+  const double shift = rise - down;
   return shift + raiseFor(legs, frame, shift);
 }
 

@@ -47,6 +47,7 @@ class Pelvis {
   // `rise`, and down as far as the longest way asks.
   double shiftFor(std::span<const Leg> legs, const BodyFrame& frame, const Quat& turn, double rise) const;
   double raiseFor(std::span<const Leg> legs, const BodyFrame& frame, double shift) const;
+  double steepness(const Leg& leg, double across, double reach) const;
   double ownWaysShift(std::span<const Leg> legs, const BodyFrame& frame) const;
 
   const RetargetSetup& setup_;

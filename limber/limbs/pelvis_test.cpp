@@ -172,6 +172,34 @@ TEST(Pelvis, NothingJumpsWhereALegBecomesTooShort) {
   }
 }
 
+// One that goes its own way is led away in front, on the ground, as of someone who falls: it pulls the body down, and
+// lets go of it once the leg is nearly level.
+TEST(Pelvis, AFootTooFarAheadLetsGoOfTheBody) {
+  PelvisOf person(practiceHumanoid());
+  person.level();
+  LimbGoals goals(person.setup_, person.root_);
+  Leg &leg = goals.legs()[0], &other = goals.legs()[1];
+  other.goal = person.frame_.positions[other.end];
+  for (Leg& each : goals.legs()) {
+    each.ownWay = true;
+    each.changed = 1;
+    each.bentReach = each.length;
+  }
+  const Vec3 hip = person.frame_.positions[leg.upper];
+  double before = 0, lowest = 0;
+  for (int step = 0; step < 400; ++step) {
+    leg.goal = hip + leg.length * Vec3(0, -0.7, 0.005 * step);
+    const double up = person.pelvis_.moveFor(goals.legs(), person.frame_).up;
+    if (step > 0) {
+      EXPECT_LT(std::abs(up - before), 0.03 * leg.length) << step;
+    }
+    lowest = std::min(lowest, up);
+    before = up;
+  }
+  EXPECT_LT(lowest, -0.1 * leg.length);
+  EXPECT_GT(before, -0.05 * leg.length);
+}
+
 // A quadruped that was matched by its form.
 class PelvisOfFour : public ::testing::Test {
  protected:

@@ -17,6 +17,7 @@ namespace {
 // comes down from the hip as straight: it ends in a hock, and stands as birds' do.
 constexpr double kFootGoesAlong = 25 * kPi / 180;
 constexpr double kHock = 0.75;  // foot over shin
+constexpr double kBent = 1.03;  // times the way from end to end
 constexpr double kNearAxis = 20 * kPi / 180;
 // A trunk, and a neck, that lean by more are bent: artists build upright ones with less.
 constexpr double kStoops = 25 * kPi / 180;
@@ -299,6 +300,12 @@ std::optional<Index> toesOf(const Skeleton& skeleton, const SkeletonMap& map, Ma
     if (!tip || rest[j].z() > rest[*tip].z()) tip = j;
   }
   return tip;
+}
+
+bool isBent(std::span<const Index> joints, Index end, std::span<const Vec3> positions) {
+  double way = (positions[end] - positions[joints.back()]).norm();
+  for (std::size_t i = 1; i < joints.size(); ++i) way += (positions[joints[i]] - positions[joints[i - 1]]).norm();
+  return way > kBent * (positions[end] - positions[joints.front()]).norm();
 }
 
 std::vector<Index> soleJoints(const SkeletonMap& map, MapSide side) {

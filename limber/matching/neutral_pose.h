@@ -51,6 +51,10 @@ Vec3 pelvisOf(const SkeletonMap& map, MapSide side, const std::vector<Vec3>& pos
 std::optional<Index> toesOf(const Skeleton& skeleton, const SkeletonMap& map, MapSide side, std::string_view leg,
                             std::span<const Vec3> rest);
 
+// Whether the way through a part's joints to the next part's, or to where it ends, bends, as that of a bird's shin with
+// its hock does: else they are a bone and its twist joints.
+bool isBent(std::span<const Index> joints, Index end, std::span<const Vec3> positions);
+
 // The first joints of feet and toes, as far as both skeletons have them.
 std::vector<Index> soleJoints(const SkeletonMap& map, MapSide side);
 

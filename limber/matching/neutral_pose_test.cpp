@@ -122,6 +122,17 @@ TEST_F(NeutralPoses, ToesAreFoundWhereTheOtherSkeletonHasNone) {
   EXPECT_EQ(toes(heeled, person), std::nullopt) << "it lies behind the ankle";
 }
 
+TEST_F(NeutralPoses, ShinsWithHocksBendAndThoseWithTwistJointsDoNot) {
+  const auto shinIsBent = [](const Skeleton& skeleton, const char* link) {
+    std::vector<Vec3> positions;
+    for (const Affine& global : restGlobals(skeleton)) positions.push_back(global.translation());
+    const std::vector<Index> shin = {skeleton.find("leftLowerLeg").value(), skeleton.find(link).value()};
+    return isBent(shin, skeleton.find("leftFoot").value(), positions);
+  };
+  EXPECT_TRUE(shinIsBent(limber::testing::withHocks(person), "leftHock"));
+  EXPECT_FALSE(shinIsBent(limber::testing::withJointBefore(person, "leftFoot", "twist"), "twist"));
+}
+
 // Motions of some programs have a rest pose in which every bone points the same way.
 TEST_F(NeutralPoses, AFoldedRestPoseGivesWayToAFrameThatStands) {
   Skeleton folded = person;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "limber/ik/rotation.h"
+
 namespace limber {
 
 namespace {
@@ -31,8 +33,26 @@ std::vector<double> placesAlong(const std::vector<Index>& joints, const std::vec
 AlignedRetargeter::AlignedRetargeter(const RetargetSetup& setup)
     : setup_(setup), root_(setup), follows_(setup.target->jointCount()) {
   for (const JointMatch& match : setup.map.matches) follow(match);
+  followLine("leftLowerLeg", "leftFoot");
+  followLine("rightLowerLeg", "rightFoot");
   targetFrame_.rotations.resize(setup.target->jointCount());
   targetFrame_.positions.resize(setup.target->jointCount());
+}
+
+// A shin that bends on its way is one bone for one that does not.
+void AlignedRetargeter::followLine(std::string_view part, std::string_view nextPart) {
+  const JointMatch *match = setup_.map.find(part), *next = setup_.map.find(nextPart);
+  if (!setup_.person || !match || !next) return;
+  const std::vector<Vec3>&from = setup_.sourceNeutral.positions, &to = setup_.targetNeutral.positions;
+  const Index begin = match->source.front(), end = next->source.front();
+  if (!isBent(match->source, end, from) || isBent(match->target, next->target.front(), to)) return;
+  for (const Index joint : match->target) {
+    Follow& each = follows_[joint];
+    each.line = Line{begin, end, (from[end] - from[begin]).normalized()};
+    if (!each.shares.empty()) continue;
+    each.shares = {{each.source, 1, setup_.sourceNeutral.rotations[each.source].conjugate()}};
+    each.after = setup_.targetNeutral.rotations[joint];
+  }
 }
 
 void AlignedRetargeter::follow(const JointMatch& match) {
@@ -71,7 +91,12 @@ Quat AlignedRetargeter::rotationOf(const Follow& follow) const {
     sum += share.weight * turn.coeffs();
     before = turn;
   }
-  return Quat(Eigen::Vector4d(sum.normalized())) * follow.after;
+  Quat turn(Eigen::Vector4d(sum.normalized()));
+  if (const std::optional<Line>& line = follow.line) {
+    const Vec3 way = sourceFrame_.positions[line->end] - sourceFrame_.positions[line->begin];
+    turn = shortestRotation(turn * line->neutral, way) * turn;
+  }
+  return turn * follow.after;
 }
 
 void AlignedRetargeter::next(const Pose& source, double, Pose& target) {

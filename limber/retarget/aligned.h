@@ -2,6 +2,9 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <string_view>
+#include <vector>
 
 #include "limber/limbs/root_motion.h"
 #include "limber/retarget/retarget_method.h"
@@ -10,8 +13,9 @@ namespace limber {
 
 // Joint angle imitation in world space (Feng et al. 2012, Tang et al. 2012): a target joint's global rotation is the
 // source joint's turn against the neutral pose that both skeletons share, applied to the target's. Where joint counts
-// differ along a part, each target joint takes the mean turn of the source joints beside it. Joints without a match
-// keep their rest rotation against their parent. No allocation; about 30 ns for each joint.
+// differ along a part, each target joint takes the mean turn of the source joints beside it; a shin without a hock
+// points from knee to foot as one with a hock does. Joints without a match keep their rest rotation against their
+// parent. No allocation; about 30 ns for each joint.
 class AlignedRetargeter : public FrameRetargeter {
  public:
   explicit AlignedRetargeter(const RetargetSetup& setup);
@@ -30,13 +34,20 @@ class AlignedRetargeter : public FrameRetargeter {
     double weight;
     Quat fromNeutral;  // inverse of the source joint's neutral rotation
   };
+  // From a part's first joint of the source to the next part's, and where it points in the neutral pose.
+  struct Line {
+    Index begin, end;
+    Vec3 neutral;
+  };
   struct Follow {
     bool moved = false;
     Index source = 0;
     Quat after = Quat::Identity();  // from the source joint's rotation to the target's
-    std::vector<Share> shares;      // where several; `after` is then the target's neutral rotation
+    std::vector<Share> shares;      // where several, or a line; `after` is then the target's neutral rotation
+    std::optional<Line> line;       // that it points along, as the source's does
   };
   void follow(const JointMatch& match);
+  void followLine(std::string_view part, std::string_view nextPart);
   Quat rotationOf(const Follow& follow) const;
 
   const RetargetSetup& setup_;

@@ -69,6 +69,21 @@ TEST_F(Aligned, FurtherTwistAndSpineJointsKeepDirections) {
   EXPECT_LT(directionsOn(withJointBefore(person, "neck", "spineTop")), 0.5);
 }
 
+// A shin of one joint, or of two in a line, points from knee to foot as one with a hock does, however that bends.
+TEST_F(Aligned, AShinWithAHockIsOneBoneForOthers) {
+  const Skeleton hocked = limber::testing::withHocks(person);
+  PoseSequence bending{{}, 1.0 / 30};
+  for (int f = 0; f < 20; ++f) {
+    Pose& pose = bending.poses.emplace_back(restPose(hocked));
+    pose.locals[hocked.find("leftLowerLeg").value()].rotation = turn(Vec3::UnitX(), 2 * f);
+    pose.locals[hocked.find("leftHock").value()].rotation = turn(-Vec3::UnitX(), 3 * f);
+  }
+  for (const Skeleton& target : {person, withJointBefore(person, "leftFoot", "leftShinHalf")}) {
+    const RetargetSetup setup(hocked, target, matchSkeletons(hocked, target), {}, &bending);
+    EXPECT_LT(worstDirection(setup, bending, retargetFrames(findRetargetMethod("aligned"), setup, bending)), 1e-5);
+  }
+}
+
 TEST_F(Aligned, WhichWayTheRestPoseFacesDoesNotMatter) {
   Skeleton turned = person;
   turned.joints[0].rest.rotation = turn(Vec3::UnitY(), 90);

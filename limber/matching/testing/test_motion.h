@@ -114,6 +114,17 @@ inline Skeleton withJointBefore(const Skeleton& skeleton, const std::string& chi
   return longer;
 }
 
+// A person with a hock in each shin, a hand's breadth behind the line from knee to foot, as an upright dinosaur's.
+inline Skeleton withHocks(Skeleton person) {
+  for (const std::string side : {"left", "right"}) {
+    person = withJointBefore(person, side + "Foot", side + "Hock");
+    const Vec3 back(0, 0, -0.1);
+    person.joints[person.find(side + "Hock").value()].rest.translation += back;
+    person.joints[person.find(side + "Foot").value()].rest.translation -= back;
+  }
+  return person;
+}
+
 // The same on a root on the ground, on which these joints hang, too.
 inline Skeleton onTheGround(const Skeleton& skeleton, const std::vector<std::string>& loose) {
   const std::vector<Affine> globals = restGlobals(skeleton);
