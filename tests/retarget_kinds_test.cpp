@@ -146,29 +146,32 @@ TEST(RetargetStrangers, WhatIsTooUnlikeIsRefused) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Motions, RetargetKinds,
-                         ::testing::Values(Kind{"motions/m2m_bird_animations.glb",
-                                                {"m2m_bird_base.glb", "m2m_bird_eagle.glb", "m2m_rigonly/rig_bird.glb"},
-                                                2},
-                                           Kind{"motions/m2m_shark_animations.glb",
-                                                {"m2m_fish_shark.glb", "m2m_fish_whale.glb",
-                                                 "m2m_rigonly/rig_shark.glb"},
-                                                0},
-                                           Kind{"motions/m2m_snake_animations.glb", {"m2m_rigonly/rig_snake.glb"}, 0},
-                                           Kind{"motions/m2m_spider_animations.glb", {"m2m_rigonly/rig_spider.glb"}, 0},
-                                           Kind{"motions/m2m_dragon_animations.glb", {"m2m_rigonly/rig_dragon.glb"}, 4},
-                                           Kind{"rigged/quaternius_dolphin.glb", {"quaternius_manta_ray.glb"}, 0},
-                                           Kind{"rigged/quaternius_manta_ray.glb", {"quaternius_dolphin.glb"}, 0},
-                                           Kind{"rigged/quaternius_trex.glb", {"quaternius_velociraptor.glb"}, 2},
-                                           Kind{"rigged/quaternius_velociraptor.glb", {"quaternius_trex.glb"}, 2},
-                                           Kind{"rigged/quaternius_bat.fbx", {"quaternius_dragon.fbx"}, 0},
-                                           Kind{"rigged/quaternius_dragon.fbx", {"quaternius_bat.fbx"}, 0}),
-                         [](const ::testing::TestParamInfo<Kind>& kind) {
-                           std::string name = kind.param.motion;
-                           name = name.substr(name.find('_') + 1);
-                           std::replace_if(
-                               name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
-                           return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    Motions, RetargetKinds,
+    ::testing::Values(Kind{"motions/m2m_bird_animations.glb",
+                           {"m2m_bird_base.glb", "m2m_bird_eagle.glb", "m2m_rigonly/rig_bird.glb"},
+                           2},
+                      Kind{"motions/m2m_shark_animations.glb",
+                           {"m2m_fish_shark.glb", "m2m_fish_whale.glb", "m2m_rigonly/rig_shark.glb"},
+                           0},
+                      Kind{"motions/m2m_snake_animations.glb", {"m2m_rigonly/rig_snake.glb"}, 0},
+                      Kind{"motions/m2m_spider_animations.glb", {"m2m_rigonly/rig_spider.glb"}, 0},
+                      Kind{"motions/m2m_dragon_animations.glb", {"m2m_rigonly/rig_dragon.glb"}, 4},
+                      Kind{"motions/m2m_kaiju_animations.glb",
+                           {"m2m_kaiju_base.glb", "m2m_kaiju_t_rex.glb", "m2m_rigonly/rig_kaiju.glb"},
+                           2},
+                      Kind{"rigged/quaternius_dolphin.glb", {"quaternius_manta_ray.glb"}, 0},
+                      Kind{"rigged/quaternius_manta_ray.glb", {"quaternius_dolphin.glb"}, 0},
+                      Kind{"rigged/quaternius_trex.glb", {"quaternius_velociraptor.glb"}, 2},
+                      Kind{"rigged/quaternius_velociraptor.glb", {"quaternius_trex.glb"}, 2},
+                      Kind{"rigged/quaternius_bat.fbx", {"quaternius_dragon.fbx"}, 0},
+                      Kind{"rigged/quaternius_dragon.fbx", {"quaternius_bat.fbx"}, 0}),
+    [](const ::testing::TestParamInfo<Kind>& kind) {
+      std::string name = kind.param.motion;
+      name = name.substr(name.find('_') + 1);
+      std::replace_if(
+          name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
+      return name;
+    });
 
 }  // namespace limber::testing

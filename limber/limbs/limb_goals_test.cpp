@@ -116,6 +116,20 @@ TEST(LimbGoals, FeetGoTheWayOfASourceWithHocks) {
   }
 }
 
+TEST(LimbGoals, FeetOfTwoLeggedAnimalsGoTheSourcesWay) {
+  for (const std::size_t legs : {4u, 2u}) {
+    Skeleton one = limber::testing::quadruped(0.5), other = limber::testing::quadruped(0.35);
+    for (Skeleton* skeleton : {&one, &other}) {
+      if (legs == 2) skeleton->joints.resize(skeleton->find("b1LeftOne").value());
+    }
+    const RetargetSetup setup(one, other, matchSkeletons(one, other), {});
+    const RootPlacer root(setup);
+    LimbGoals goals(setup, root);
+    ASSERT_EQ(goals.legs().size(), legs);
+    for (const Leg& leg : goals.legs()) EXPECT_EQ(leg.ownWay, legs == 2);
+  }
+}
+
 // Of quadrupeds that were matched by their form; the other's paws stand further ahead at rest.
 TEST(LimbGoals, WhoTurnsRoundStandsThereAsBefore) {
   const Skeleton animal = limber::testing::quadruped(0.5);

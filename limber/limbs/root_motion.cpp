@@ -206,7 +206,7 @@ void RootPlacer::settle(Pose& target, BodyFrame& frame) const {
 }
 
 bool RootPlacer::goesOwnWay(const AnimalLeg& leg) const {
-  return setup_.map.find(kHindquarters) || (leg.source.carrier && leg.target.carrier);
+  return setup_.animalLegs.size() == 2 || setup_.map.find(kHindquarters) || (leg.source.carrier && leg.target.carrier);
 }
 
 Index RootPlacer::carrierOf(Index joint) const {

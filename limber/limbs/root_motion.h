@@ -35,8 +35,8 @@ class RootPlacer {
   // False where no joint carries the legs: turning it does nothing.
   bool turnsPelvis() const { return pelvis_.has_value(); }
 
-  // Whether the foot goes as the source's, whatever the joint angles: on roots of their own, or on legs whose joints
-  // are others.
+  // Whether the foot goes as the source's, whatever the joint angles: on roots of their own, on legs whose joints are
+  // others, or where there are but two to stand on.
   bool goesOwnWay(const AnimalLeg& leg) const;
 
   // The joint that a loose joint rides on; the joint itself where it hangs on the body.

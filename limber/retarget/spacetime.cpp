@@ -16,7 +16,7 @@ namespace {
 
 // In which changes come and go, seconds. Feet: longer, and one that stops a foot would swing it far before and after.
 constexpr double kFootSeconds = 0.05, kHandSeconds = 0.1, kPlantSeconds = 0.12;
-constexpr double kOwnWaySeconds = 0.13;  // of people's feet that go the source's way: little is left to change
+constexpr double kOwnWaySeconds = 0.13;  // of two feet that go the source's way: little is left to change
 // Weights of a planted foot's steps and height, and of what a foot is below the ground.
 constexpr double kStandWeight = 1e8, kGroundWeight = 3e3, kFloorWeight = 1e8;
 // A planted foot at this speed (hip heights a second, seen over kSeenSeconds to each side) counts a billionth.
@@ -185,7 +185,7 @@ class Spacetime {
       twist[f].stepWeight = kStandWeight * still[f];
     }
     const std::vector<double> twists = curve(twist, {kFootSeconds});
-    const bool ownWay = setup_.person && foot.front().ownWay;
+    const bool ownWay = feet_.size() == 2 && foot.front().ownWay;
     const Goals3 way = wayGoals(foot, still, twists);
     plans_.push_back({twists,
                       Curve3(way, target_.frameSeconds, {ownWay ? kOwnWaySeconds : kFootSeconds, 1, kFloorWeight}),
