@@ -130,6 +130,31 @@ TEST(RetargetStrangers, MoveByTheirForm) {
   }
 }
 
+// Told as people by their form; hocks of two bend backward, and they have no toes.
+TEST(RetargetStrangers, DinosaursGoForwardByAnothersClips) {
+  if (!sharedDataFolder()) GTEST_SKIP() << kNoSharedData;
+  const Motion motion = readMotion(*sharedDataFolder() / "motions/m2m_kaiju_animations.glb");
+  for (const char* body : {"quaternius_trex.glb", "quaternius_velociraptor.glb"}) {
+    const PlainSkeleton to(readMotion(*sharedDataFolder() / "rigged" / body).skeleton);
+    const SkeletonMap map = matchSkeletons(motion.skeleton, to.skeleton());
+    ASSERT_TRUE(map.find("leftFoot"));
+    EXPECT_EQ(to.skeleton().joints[map.find("leftFoot")->target.front()].name, "BackFoot.L");
+    for (const Clip& clip : motion.clips) {
+      const PoseSequence frames = sampleFrames(motion.skeleton, clip, 30);
+      if (frames.poses.size() < 5) continue;
+      const RetargetSetup setup(motion.skeleton, to.skeleton(), map, {}, &frames);
+      for (const char* method : {"limb-ik", "online", "spacetime"}) {
+        SCOPED_TRACE(std::string(clip.name).append(" ").append(body).append(" ").append(method));
+        const MotionMetrics result = measured(setup, method, frames);
+        EXPECT_LT(result.jerk, 1.1);
+        EXPECT_LT(result.sliding, std::min(0.02, result.sourceSliding + 1e-4));
+        EXPECT_LT(1700 * result.penetration, 5);
+        EXPECT_GT(result.contactAgreement, clip.name == "Hit" ? 0.8 : 0.95);
+      }
+    }
+  }
+}
+
 // Rather than a wreck: a frog's feet hang on no leg, and spiders have more legs than wasps.
 TEST(RetargetStrangers, WhatIsTooUnlikeIsRefused) {
   if (!sharedDataFolder()) GTEST_SKIP() << kNoSharedData;

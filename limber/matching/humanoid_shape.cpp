@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kLeftOver = 0.3;        // weight of what two bones leave of a limb against their being alike
 constexpr double kHeadOverArms = 0.075;  // heights
+constexpr double kHeadAhead = 0.3;       // of the feet, heights: no person's
 constexpr double kToesSlope = 0.45;      // along the ground for what they go down, at least: else it is the shin
 
 // Logarithm of one length over the other.
@@ -132,7 +133,8 @@ class ShapeReader {
     return Pair{*far[0], *far[1]};
   }
 
-  // Whether the first foot, on the side to which lateral_ points, is the left one: toes point forward, else knees.
+  // Whether the first foot, on the side to which lateral_ points, is the left one: toes point forward, else a head that
+  // is held far ahead (a dinosaur's, whose shins' hocks bend backward), else knees.
   bool leftIsFirst(Index hips, const Pair& feet) const {
     Vec3 forward = Vec3::Zero();
     for (const Index foot : {feet.first, feet.second}) {
@@ -140,9 +142,32 @@ class ShapeReader {
       if (std::hypot(last.x(), last.z()) > kToesSlope * std::abs(last.y())) forward += last;
     }
     forward.y() = 0;
-    if (forward.norm() < 0.02 * size_.y()) forward = kneesBend(hips, feet);
+    if (forward.norm() < 0.02 * size_.y()) {
+      forward = wayToHead(hips, feet);
+      if (forward.norm() < kHeadAhead * size_.y()) forward = kneesBend(hips, feet);
+    }
     if (forward.norm() < 0.005 * size_.y()) forward = Vec3::UnitZ();
     return Vec3::UnitY().cross(forward).dot(lateral_) > 0;
+  }
+
+  // Of the ends in the middle that hang on that joint.
+  std::optional<Index> highestEnd(Index above) const {
+    std::optional<Index> top;
+    for (const Index leaf : leaves_) {
+      const bool inTheMiddle = std::abs(side(leaf)) < 0.1 * size_.y();
+      if (!inTheMiddle || !isAbove(above, leaf) || leaf == above) continue;
+      if (!top || positions_[leaf].y() > positions_[*top].y()) top = leaf;
+    }
+    return top;
+  }
+
+  // From between the feet, along the ground.
+  Vec3 wayToHead(Index hips, const Pair& feet) const {
+    const std::optional<Index> head = highestEnd(hips);
+    if (!head) return Vec3::Zero();
+    Vec3 way = positions_[*head] - 0.5 * (positions_[feet.first] + positions_[feet.second]);
+    way.y() = 0;
+    return way - way.dot(lateral_) * lateral_;
   }
 
   // How far the joints in the middle of the legs are off the straight way, along the ground.
@@ -236,12 +261,7 @@ class ShapeReader {
     if (!trunk.empty()) give("spine", trunk.front());
     if (trunk.size() > 1) give("chest", trunk[trunk.size() / 2]);
     if (trunk.size() > 2) give("upperChest", trunk.back());
-    std::optional<Index> top;
-    for (const Index leaf : leaves_) {
-      const bool inTheMiddle = std::abs(side(leaf)) < 0.1 * size_.y();
-      if (!inTheMiddle || !isAbove(chest, leaf) || leaf == chest) continue;
-      if (!top || positions_[leaf].y() > positions_[*top].y()) top = leaf;
-    }
+    const std::optional<Index> top = highestEnd(chest);
     if (!top || positions_[*top].y() < positions_[chest].y()) return;
     const std::vector<Index> joints = way(chest, *top);
     if (joints.size() == 1) return give("head", joints[0]);

@@ -65,5 +65,18 @@ TEST(HumanoidShape, BentKneesTellTheFront) {
   expectRight(person);
 }
 
+// As of a dinosaur without toes.
+TEST(HumanoidShape, AHeadFarAheadTellsTheFrontWhereHocksBendBackward) {
+  Skeleton leaning = inRestPose(withoutToes(practiceHumanoid()), {{"spine", turn(Vec3::UnitX(), 80)}});
+  for (const char* side : {"left", "right"}) {
+    const std::string name(side);
+    leaning = inRestPose(leaning,
+                         {{name + "UpperLeg", turn(Vec3::UnitX(), 20)}, {name + "LowerLeg", turn(-Vec3::UnitX(), 40)}});
+  }
+  const std::map<std::string, HumanoidJoint> joints = byBone(leaning);
+  ASSERT_TRUE(joints.contains("leftLowerLeg"));
+  EXPECT_EQ(leaning.joints[joints.at("leftLowerLeg").joint].name, "leftLowerLeg");
+}
+
 }  // namespace
 }  // namespace limber
