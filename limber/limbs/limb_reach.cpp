@@ -41,27 +41,31 @@ Quat hockTurn(const Limb& limb, const LimbShape& shape, const Vec3& there) {
 }
 
 // Where the joint angles have the middle joint, but forward where it hardly bends.
-Vec3 jointsBend(const Limb& limb, const LimbShape& shape, const Vec3& way) {
-  const Vec3 forward = (shape.ahead - shape.ahead.dot(way) * way).normalized();
-  const Vec3 bend = shape.middle - shape.middle.dot(way) * way;
+Vec3 jointsBend(const Limb& limb, const LimbShape& shape) {
+  const Vec3& line = shape.line;
+  const Vec3 forward = (shape.ahead - shape.ahead.dot(line) * line).normalized();
+  const Vec3 bend = shape.middle - shape.middle.dot(line) * line;
   const double backward = std::max(-bend.dot(forward), 0.0);
   const double little = std::max(1 - backward / (kOverstretched * limb.length), 0.0);
   return bend + little * (backward + kKneesForward * limb.length) * forward;
 }
 
 // As at rest, seen from the body: the leg's own upper joint turns past the way where the source's bends far elsewhere.
-Vec3 ownBend(const LimbShape& shape, const Vec3& way) {
-  return shortestRotation(shape.neutralEnd, way) * shape.neutralAhead;
+Vec3 ownBend(const LimbShape& shape) {
+  return shortestRotation(shape.neutralEnd, shape.line) * shape.neutralAhead;
 }
 
 // Seen from the way to the goal: of a leg that is nearly straight, the knee itself may lie on its other side.
-Vec3 kneePole(const Limb& limb, const LimbShape& shape, const Vec3& there) {
-  const Vec3 way = shape.end.normalized();
-  const Vec3 bend = limb.ownBend ? ownBend(shape, way) : jointsBend(limb, shape, way);
-  return 0.5 * there + shortestRotation(way, there) * bend;
+Vec3 kneePole(const LimbShape& shape, const Vec3& there) {
+  return 0.5 * there + shortestRotation(shape.line, there) * shape.bend;
 }
 
 }  // namespace
+
+void LimbShape::findBend(const Limb& limb) {
+  line = end.normalized();
+  bend = limb.ownBend ? ownBend(*this) : jointsBend(limb, *this);
+}
 
 bool LimbReach::isThere(const Limb& limb, const BodyFrame& frame) {
   return (limb.goal - frame.positions[limb.end]).norm() < 1e-9 * limb.length && limb.turn.w() == 1;
@@ -76,13 +80,14 @@ void LimbReach::reach(const Limb& limb, const Vec3* kneeAhead, BodyFrame& frame,
     const Quat turned = hockTurn(limb, shape, there) * frame.rotations[*limb.hock];
     target.locals[*limb.hock].rotation =
         (kinematics.parentRotation(*limb.hock, frame).conjugate() * turned).normalized();
-    kinematics.globals(target, frame);
-    if (root_.carrierOf(limb.end) != limb.end) root_.settle(target, frame);
+    kinematics.globalsBelow(*limb.hock, target, frame);
+    if (root_.carrierOf(limb.end) != limb.end) root_.settleLoose(target, frame);
     shape.middle = frame.positions[limb.lower] - frame.positions[limb.upper];
     shape.end = frame.positions[limb.end] - frame.positions[limb.upper];
+    shape.findBend(limb);
   }
   TwoBone bones{Vec3::Zero(), shape.middle, shape.end, there, {}, {}};
-  if (kneeAhead) bones.pole = kneePole(limb, shape, there);
+  if (kneeAhead) bones.pole = kneePole(shape, there);
   const TwoBoneTurns turns = solveTwoBone(bones);
   const Quat aboveUpper = kinematics.parentRotation(limb.upper, frame);
   const Quat aboveLower = turns.start * kinematics.parentRotation(limb.lower, frame);
@@ -90,7 +95,7 @@ void LimbReach::reach(const Limb& limb, const Vec3* kneeAhead, BodyFrame& frame,
       (aboveUpper.conjugate() * turns.start * frame.rotations[limb.upper]).normalized();
   target.locals[limb.lower].rotation =
       (aboveLower.conjugate() * turns.middle * frame.rotations[limb.lower]).normalized();
-  kinematics.globals(target, frame);
+  kinematics.globalsBelow(limb.upper, target, frame);
   turnEnd(limb, orientation, frame, target);
 }
 
@@ -102,12 +107,14 @@ LimbShape LimbReach::shapeOf(const Limb& limb, const Vec3& kneeAhead, const Body
   shape.hock = frame.positions[limb.hock.value_or(limb.lower)] - start;
   shape.hockCarriesMiddle = limb.hock && isAncestorOrSelf(*setup_.target, *limb.hock, limb.lower);
   shape.ahead = turnOf(limb.upper, frame) * kneeAhead;
-  if (!limb.ownBend) return shape;
-  const std::vector<Vec3>& neutral = setup_.targetNeutral.positions;
-  const std::optional<Index> body = setup_.target->joints[limb.upper].parent;
-  const Quat turn = body ? turnOf(*body, frame) : Quat::Identity();
-  shape.neutralEnd = turn * (neutral[limb.end] - neutral[limb.upper]);
-  shape.neutralAhead = turn * kneeAhead;
+  if (limb.ownBend) {
+    const std::vector<Vec3>& neutral = setup_.targetNeutral.positions;
+    const std::optional<Index> body = setup_.target->joints[limb.upper].parent;
+    const Quat turn = body ? turnOf(*body, frame) : Quat::Identity();
+    shape.neutralEnd = turn * (neutral[limb.end] - neutral[limb.upper]);
+    shape.neutralAhead = turn * kneeAhead;
+  }
+  shape.findBend(limb);
   return shape;
 }
 
@@ -116,9 +123,10 @@ TwoBonePlaces LimbReach::placesFor(const Limb& limb, LimbShape shape, const Vec3
     const Quat turn = hockTurn(limb, shape, there);
     shape.end = shape.hock + turn * (shape.end - shape.hock);
     if (shape.hockCarriesMiddle) shape.middle = shape.hock + turn * (shape.middle - shape.hock);
+    shape.findBend(limb);
   }
   TwoBone bones{Vec3::Zero(), shape.middle, shape.end, there, {}, {}};
-  bones.pole = kneePole(limb, shape, there);
+  bones.pole = kneePole(shape, there);
   return placeTwoBone(bones);
 }
 
@@ -126,8 +134,8 @@ void LimbReach::turnEnd(const Limb& limb, const Quat& orientation, BodyFrame& fr
   const BodyKinematics& kinematics = setup_.targetKinematics;
   target.locals[limb.end].rotation =
       (kinematics.parentRotation(limb.end, frame).conjugate() * orientation).normalized();
-  kinematics.globals(target, frame);
-  root_.settle(target, frame);
+  kinematics.globalsBelow(limb.end, target, frame);
+  root_.settleLoose(target, frame);
 }
 
 Quat LimbReach::turnOf(Index joint, const BodyFrame& frame) const {

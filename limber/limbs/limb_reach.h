@@ -13,6 +13,9 @@ struct LimbShape {
   Vec3 ahead;                      // Leg::kneeAhead as the upper joint is turned
   // Limb::ownBend: the way to the end and kneeAhead, both of the neutral pose, as the body is turned.
   Vec3 neutralEnd = Vec3::UnitY(), neutralAhead = Vec3::UnitZ();
+  Vec3 line, bend;  // of what is above: a unit vector to the end, and how the middle is to lie off that line
+
+  void findBend(const Limb& limb);
 };
 
 class LimbReach {

@@ -202,7 +202,7 @@ Vec3 RootPlacer::middleOfHips(const BodyFrame& frame) const {
 
 void RootPlacer::settle(Pose& target, BodyFrame& frame) const {
   setup_.targetKinematics.place(target, frame);
-  placeLoose(target, frame);
+  settleLoose(target, frame);
 }
 
 bool RootPlacer::goesOwnWay(const AnimalLeg& leg) const {
@@ -216,7 +216,7 @@ Index RootPlacer::carrierOf(Index joint) const {
   return joint;
 }
 
-void RootPlacer::placeLoose(Pose& target, BodyFrame& frame) const {
+void RootPlacer::settleLoose(Pose& target, BodyFrame& frame) const {
   if (loose_.empty()) return;
   const BodyKinematics& kinematics = setup_.targetKinematics;
   for (const Loose& loose : loose_) {

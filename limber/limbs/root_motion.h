@@ -25,6 +25,8 @@ class RootPlacer {
   void place(const Pose& source, const BodyFrame& sourceFrame, Pose& target, BodyFrame& frame) const;
   // Brings positions up to date with rotations that were changed, and loose joints to where their limbs end now.
   void settle(Pose& target, BodyFrame& frame) const;
+  // The loose joints alone, where all else is up to date.
+  void settleLoose(Pose& target, BodyFrame& frame) const;
   // Moves the pelvis by `shift`, in the person's space.
   void movePelvis(const Vec3& shift, Pose& target, BodyFrame& frame) const;
 
@@ -59,7 +61,6 @@ class RootPlacer {
   void findCarried();
   void placeEach(const Pose& source, const BodyFrame& sourceFrame, Pose& target, const BodyFrame& frame) const;
   void addLoose(const LooseJoint& loose);
-  void placeLoose(Pose& target, BodyFrame& frame) const;
 
   const RetargetSetup& setup_;
   std::optional<Index> hips_;     // of others than people the joint that carries all legs

@@ -9,13 +9,23 @@ BodyKinematics::BodyKinematics(const Skeleton& skeleton, const Quat& toBody) : s
   for (Index j = 0; j < skeleton.jointCount(); ++j) {
     const auto& parent = skeleton.joints[j].parent;
     if (parent) units_[j] = units_[*parent] * std::cbrt(std::abs(skeleton.joints[*parent].rest.scale.prod()));
+    ends_.push_back(j + 1);
+    for (std::optional<Index> above = parent; above; above = skeleton.joints[*above].parent) ends_[*above] = j + 1;
   }
 }
 
 void BodyKinematics::globals(const Pose& pose, BodyFrame& frame) const {
   frame.rotations.resize(pose.locals.size());
   frame.positions.resize(pose.locals.size());
-  for (Index j = 0; j < skeleton_->jointCount(); ++j) {
+  update(0, skeleton_->jointCount(), pose, frame);
+}
+
+void BodyKinematics::globalsBelow(Index joint, const Pose& pose, BodyFrame& frame) const {
+  update(joint, ends_[joint], pose, frame);
+}
+
+void BodyKinematics::update(Index begin, Index end, const Pose& pose, BodyFrame& frame) const {
+  for (Index j = begin; j < end; ++j) {
     const auto& parent = skeleton_->joints[j].parent;
     const Transform& local = pose.locals[j];
     if (parent) {

@@ -24,6 +24,8 @@ class BodyKinematics {
 
   // One pass, no allocation once `frame` has its size. About 20 ns for each joint.
   void globals(const Pose& pose, BodyFrame& frame) const;
+  // Of a joint and of what hangs on it, where nothing else has changed.
+  void globalsBelow(Index joint, const Pose& pose, BodyFrame& frame) const;
   // Positions from rotations that are there already, and from the locals' translations.
   void place(const Pose& pose, BodyFrame& frame) const;
 
@@ -39,9 +41,12 @@ class BodyKinematics {
   double unit(Index joint) const { return units_[joint]; }
 
  private:
+  void update(Index begin, Index end, const Pose& pose, BodyFrame& frame) const;
+
   const Skeleton* skeleton_;
   Quat toBody_;
   std::vector<double> units_;  // #J
+  std::vector<Index> ends_;    // #J, past the last joint below
 };
 
 }  // namespace limber

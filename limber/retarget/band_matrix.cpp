@@ -19,7 +19,7 @@ struct Columns {
 // Some rows of a column, less those of `columns` times `factors`, one for each (as far apart). In registers: a column
 // is read and written once.
 template <int kRows>
-void subtractRows(const Columns& columns, std::size_t row, const double* factors, double* column) {
+inline void subtractRows(const Columns& columns, std::size_t row, const double* factors, double* column) {
   using Rows = Eigen::Array<double, kRows, 1>;
   Rows rows = Eigen::Map<const Rows>(column + row);
   for (std::size_t i = 0; i < columns.count * columns.stride; i += columns.stride) {
@@ -32,7 +32,11 @@ void subtractRows(const Columns& columns, std::size_t row, const double* factors
 void subtractColumns(const Columns& columns, std::size_t j, std::size_t end, double* column) {
   const double* factors = columns.first + j;
   std::size_t row = j;
-  for (; row + 8 <= end; row += 8) subtractRows<8>(columns, row, factors, column);
+  for (; row + 16 <= end; row += 16) subtractRows<16>(columns, row, factors, column);
+  if (row + 8 <= end) {
+    subtractRows<8>(columns, row, factors, column);
+    row += 8;
+  }
   if (row + 4 <= end) {
     subtractRows<4>(columns, row, factors, column);
     row += 4;
@@ -45,6 +49,10 @@ void subtractColumns(const Columns& columns, std::size_t j, std::size_t end, dou
 }
 
 }  // namespace
+
+void BandMatrix::setScaled(const BandMatrix& other, double factor) {
+  std::transform(other.entries_.begin(), other.entries_.end(), entries_.begin(), [&](double e) { return factor * e; });
+}
 
 std::vector<double> BandMatrix::times(const std::vector<double>& column) const {
   std::vector<double> result(n_, 0.0);
@@ -65,7 +73,7 @@ void BandMatrix::solve(std::vector<double>& right) {
 }
 
 // Panel by panel: what the panels above have of each column, then what the panel's own columns before it have. Entries
-// below the last row are there, and stay zero.
+// below the last row are there, and stay zero. The factor's diagonal is kept as its inverse.
 void BandMatrix::factor() {
   const std::size_t reach = width_ / panel_;  // panels
   for (std::size_t begin = 0; begin < n_; begin += panel_) {
@@ -77,7 +85,8 @@ void BandMatrix::factor() {
       }
       subtractColumns({&entries_[begin * width_], width_, j - begin}, j, end, column);
       const double inverse = 1 / std::sqrt(column[j]);
-      for (std::size_t row = j; row < end; ++row) column[row] *= inverse;
+      column[j] = inverse;
+      for (std::size_t row = j + 1; row < end; ++row) column[row] *= inverse;
     }
   }
 }
@@ -85,26 +94,26 @@ void BandMatrix::factor() {
 void BandMatrix::substitute(std::vector<double>& right) const {
   for (std::size_t j = 0; j < n_; ++j) {
     const double* column = &entries_[j * width_];
-    right[j] /= column[j];
+    right[j] *= column[j];
     const double value = right[j];
     for (std::size_t i = j + 1; i < std::min(n_, j + width_ + 1); ++i) right[i] -= column[i] * value;
   }
+  // From the far end on: the last of these is the one that has just been found.
   for (std::size_t j = n_; j-- > 0;) {
     const double* column = &entries_[j * width_];
     std::array<double, 4> sums = {right[j], 0, 0, 0};
-    const std::size_t end = std::min(n_, j + width_ + 1);
-    std::size_t i = j + 1;
-    for (; i + 4 <= end; i += 4) {
-      for (std::size_t k = 0; k < 4; ++k) sums[k] -= column[i + k] * right[i + k];
+    std::size_t i = std::min(n_, j + width_ + 1);
+    for (; i >= j + 5; i -= 4) {
+      for (std::size_t k = 0; k < 4; ++k) sums[k] -= column[i - 4 + k] * right[i - 4 + k];
     }
-    for (; i < end; ++i) sums[0] -= column[i] * right[i];
-    right[j] = ((sums[0] + sums[1]) + (sums[2] + sums[3])) / column[j];
+    for (; i > j + 1; --i) sums[0] -= column[i - 1] * right[i - 1];
+    right[j] = ((sums[0] + sums[1]) + (sums[2] + sums[3])) * column[j];
   }
 }
 
-void BandLeastSquares::clear() {
-  matrix_.clear();
-  std::fill(right_.begin(), right_.end(), 0.0);
+void BandLeastSquares::setScaled(const BandLeastSquares& other, double factor) {
+  matrix_.setScaled(other.matrix_, factor);
+  std::transform(other.right_.begin(), other.right_.end(), right_.begin(), [&](double r) { return factor * r; });
 }
 
 void BandLeastSquares::add(std::span<const Term> terms, double value, double weight) {
@@ -116,11 +125,9 @@ void BandLeastSquares::add(std::span<const Term> terms, double value, double wei
   }
 }
 
-const std::vector<double>& BandLeastSquares::solve() {
-  factor_ = matrix_;
-  solution_ = right_;
-  factor_.solve(solution_);
-  return solution_;
+std::vector<double> BandLeastSquares::solve() {
+  matrix_.solve(right_);
+  return right_;
 }
 
 }  // namespace limber

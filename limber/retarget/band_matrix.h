@@ -1,7 +1,6 @@
 // A symmetric positive definite matrix whose entries lie near the diagonal, and least squares that make one.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -16,7 +15,8 @@ class BandMatrix {
   explicit BandMatrix(std::size_t n, std::size_t width, std::size_t panel = 1)
       : n_(n), width_(width), panel_(panel), entries_(n * (width + 1), 0.0) {}
 
-  void clear() { std::fill(entries_.begin(), entries_.end(), 0.0); }
+  // All entries times `factor`; of another of this size.
+  void setScaled(const BandMatrix& other, double factor);
 
   // Of the lower triangle: column <= row, and row - column <= width.
   double& at(std::size_t row, std::size_t column) { return entries_[column * width_ + row]; }
@@ -44,20 +44,21 @@ class BandLeastSquares {
   };
   // `panel` as for BandMatrix.
   BandLeastSquares(std::size_t n, std::size_t width, std::size_t panel = 1)
-      : matrix_(n, width, panel), factor_(n, width, panel), right_(n, 0.0) {}
+      : matrix_(n, width, panel), right_(n, 0.0) {}
 
-  void clear();
+  // The sums of another of this size, each so often.
+  void setScaled(const BandLeastSquares& other, double factor);
   // weight * (sum of the terms - value)^2
   void add(std::span<const Term> terms, double value, double weight);
   // The normal equations, for sums that come in blocks.
   BandMatrix& matrix() { return matrix_; }
   std::vector<double>& right() { return right_; }
-  // Every unknown has to be in some sum. More can be added afterwards. Valid until the next call.
-  const std::vector<double>& solve();
+  // Every unknown has to be in some sum. Overwrites the sums.
+  std::vector<double> solve();
 
  private:
-  BandMatrix matrix_, factor_;
-  std::vector<double> right_, solution_;
+  BandMatrix matrix_;
+  std::vector<double> right_;
 };
 
 }  // namespace limber

@@ -41,26 +41,39 @@ LeastChanges::LeastChanges(const ChangeLayout& layout, std::vector<FootFrame> fe
       cuts_(std::move(cuts)),
       ends_(ends),
       held_(feet_.size()),
-      unbound_(layout_.frames() * layout_.perFrame(), 4 * layout_.perFrame() - 1, layout_.perFrame()),
-      squares_(unbound_),
+      jerk_(layout_.frames() * layout_.perFrame(), 4 * layout_.perFrame() - 1, layout_.perFrame()),
+      unbound_(jerk_),
+      squares_(jerk_),
       values_(layout_.frames()),
       thirds_(layout_.frames() + 3, Vec3(Vec3::Zero())) {
   countThirds();
 }
 
-Changes LeastChanges::find(const ChangedMotion& now, double jerkWeight) {
+// Third differences of the paths as the changes would have them: frames meet in blocks.
+void LeastChanges::start(const ChangedMotion& now) {
+  start_ = now.changes;
+  jerk_.setScaled(jerk_, 0);
+  addPelvisJerk(now);
+  for (std::size_t leg = 0; leg < layout_.legs(); ++leg) addLegJerk(leg, now);
+}
+
+Changes LeastChanges::find(double jerkWeight) {
   const double firm = kFirmWeight * std::max(1.0, jerkWeight / kFirmUpTo);
-  unbound_.clear();
+  unbound_.setScaled(jerk_, jerkWeight);
   holdFeet(firm);
-  addJerk(now, jerkWeight);
   std::fill(held_.begin(), held_.end(), Held{});
-  Changes changes = now.changes;
+  Changes changes = start_;
   int round = 0;
   do {
+    const Changes about = changes;
     squares_ = unbound_;
-    holdBounds(firm, changes);
+    holdBounds(firm, about);
     changes = squares_.solve();
-    if (ends_.loops) closeLoop(kLoopWeight * firm, changes);
+    if (!ends_.loops) continue;
+    squares_ = unbound_;
+    holdBounds(firm, about);
+    closeLoop(kLoopWeight * firm, changes);
+    changes = squares_.solve();
   } while (meetBounds(changes) && ++round < kRounds);
   return changes;
 }
@@ -96,35 +109,32 @@ void LeastChanges::holdFeet(double weight) {
   }
 }
 
-// Of the third differences of the paths as the changes would have them: frames meet in blocks.
-void LeastChanges::addJerk(const ChangedMotion& now, double weight) {
+void LeastChanges::addPelvisJerk(const ChangedMotion& now) {
   for (std::size_t f = 0; f < layout_.frames(); ++f) {
     const std::size_t at = layout_.pelvis(f);
     values_[f] = wayAt(now.changes, at) - now.paths[0][f];
     for (std::size_t back = 0; back <= std::min<std::size_t>(f, 3); ++back) {
-      const double meets = weight * meets_[f][back];
-      for (std::size_t a = 0; a < 3; ++a) unbound_.matrix().at(at + a, layout_.pelvis(f - back) + a) += meets;
+      for (std::size_t a = 0; a < 3; ++a) jerk_.matrix().at(at + a, layout_.pelvis(f - back) + a) += meets_[f][back];
     }
   }
-  pullThirds(weight);
+  pullThirds();
   for (std::size_t f = 0; f < layout_.frames(); ++f) {
-    for (std::size_t a = 0; a < 3; ++a) unbound_.right()[layout_.pelvis(f) + a] += axisOf(values_[f], a);
+    for (std::size_t a = 0; a < 3; ++a) jerk_.right()[layout_.pelvis(f) + a] += axisOf(values_[f], a);
   }
-  for (std::size_t leg = 0; leg < layout_.legs(); ++leg) addJerkOf(leg, now, weight);
 }
 
 // Bones follow the foot's way against the hip.
-void LeastChanges::addJerkOf(std::size_t leg, const ChangedMotion& now, double weight) {
+void LeastChanges::addLegJerk(std::size_t leg, const ChangedMotion& now) {
   const BoneSlopes& slopes = now.slopes[leg];
   for (std::size_t f = 0; f < layout_.frames(); ++f) {
     for (std::size_t back = 0; back <= std::min<std::size_t>(f, 3); ++back) {
       if (meets_[f][back] == 0) continue;
       Eigen::Matrix4d block = slopes[0][f].transpose() * slopes[0][f - back];
       block += slopes[1][f].transpose() * slopes[1][f - back];
-      addBlock(leg, f, back, weight * meets_[f][back] * block);
+      addBlock(leg, f, back, meets_[f][back] * block);
     }
   }
-  std::vector<double>& right = unbound_.right();
+  std::vector<double>& right = jerk_.right();
   for (std::size_t bone = 0; bone < 2; ++bone) {
     for (std::size_t f = 0; f < layout_.frames(); ++f) {
       Eigen::Vector4d way;
@@ -132,7 +142,7 @@ void LeastChanges::addJerkOf(std::size_t leg, const ChangedMotion& now, double w
           layout_.isTilted(leg) ? now.changes[layout_.shoulders(f)] : 0;
       values_[f] = slopes[bone][f] * way - now.bone(leg, bone)[f];
     }
-    pullThirds(weight);
+    pullThirds();
     for (std::size_t f = 0; f < layout_.frames(); ++f) {
       const Eigen::Vector4d pull = slopes[bone][f].transpose() * values_[f];
       for (std::size_t a = 0; a < 3; ++a) {
@@ -161,16 +171,16 @@ void LeastChanges::addBlock(std::size_t leg, std::size_t frame, std::size_t back
   const std::size_t row = layout_.pelvis(frame), column = layout_.pelvis(frame - back);
   for (std::size_t j = 0; j < count; ++j) {
     for (std::size_t i = back == 0 ? j : 0; i < count; ++i) {
-      unbound_.matrix().at(row + unknowns[i].at, column + unknowns[j].at) +=
+      jerk_.matrix().at(row + unknowns[i].at, column + unknowns[j].at) +=
           unknowns[i].sign * unknowns[j].sign * block(unknowns[i].of, unknowns[j].of);
     }
   }
 }
 
 // How the squared third differences of the values pull at each of them: in their place.
-void LeastChanges::pullThirds(double weight) {
+void LeastChanges::pullThirds() {
   for (std::size_t f = 3; f < layout_.frames(); ++f) {
-    if (isWhole(cuts_, f)) thirds_[f] = weight * thirdDifference(values_, f);
+    if (isWhole(cuts_, f)) thirds_[f] = thirdDifference(values_, f);
   }
   for (std::size_t f = 0; f < layout_.frames(); ++f) {
     values_[f] = (thirds_[f] - thirds_[f + 3]) + 3 * (thirds_[f + 2] - thirds_[f + 1]);
@@ -178,14 +188,13 @@ void LeastChanges::pullThirds(double weight) {
 }
 
 // Both ends halfway between what they would change.
-void LeastChanges::closeLoop(double weight, Changes& changes) {
+void LeastChanges::closeLoop(double weight, const Changes& changes) {
   const std::size_t last = layout_.pelvis(layout_.frames() - 1);
   for (std::size_t i = 0; i < layout_.perFrame(); ++i) {
     const double middle = (changes[i] + changes[last + i]) / 2;
     squares_.add(std::array{Term{i, 1}}, middle, weight);
     squares_.add(std::array{Term{last + i, 1}}, middle, weight);
   }
-  changes = squares_.solve();
 }
 
 bool LeastChanges::meetBounds(const Changes& changes) {

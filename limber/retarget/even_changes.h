@@ -68,9 +68,11 @@ class LeastChanges {
   // Feet of each frame, of each leg; cuts by frame.
   LeastChanges(const ChangeLayout& layout, std::vector<FootFrame> feet, std::vector<bool> cuts, MotionEnds ends);
 
-  // The least sum of squared changes and of `jerkWeight` times the squared jerk, about those that are: feet that stand
-  // take no steps, none goes below its lowest nor beyond its leg. n (perFrame * 4)^2 operations a few times.
-  Changes find(const ChangedMotion& now, double jerkWeight);
+  // The motion with the changes that are, about which jerk is seen to first order.
+  void start(const ChangedMotion& now);
+  // The least sum of squared changes and of `jerkWeight` times the squared jerk: feet that stand take no steps, none
+  // goes below its lowest nor beyond its leg. n (perFrame * 4)^2 operations a few times.
+  Changes find(double jerkWeight);
 
  private:
   // Which of its bounds hold a foot in one frame: those that were met on the way to the changes.
@@ -83,11 +85,11 @@ class LeastChanges {
   bool isPinned(std::size_t frame) const;
   void countThirds();
   void holdFeet(double weight);
-  void addJerk(const ChangedMotion& now, double weight);
-  void addJerkOf(std::size_t leg, const ChangedMotion& now, double weight);
+  void addPelvisJerk(const ChangedMotion& now);
+  void addLegJerk(std::size_t leg, const ChangedMotion& now);
   void addBlock(std::size_t leg, std::size_t frame, std::size_t back, const Eigen::Matrix4d& block);
-  void pullThirds(double weight);
-  void closeLoop(double weight, Changes& changes);
+  void pullThirds();
+  void closeLoop(double weight, const Changes& changes);
   // False where no bound is met that was not before.
   bool meetBounds(const Changes& changes);
   void holdBounds(double weight, const Changes& about);
@@ -100,7 +102,9 @@ class LeastChanges {
   std::vector<Held> held_;
   // How often each frame meets one so many frames back in the sum of the squared third differences.
   std::vector<std::array<double, 4>> meets_;
-  BandLeastSquares unbound_, squares_;
+  Changes start_;
+  // The squared jerk alone, then all but bounds, then all.
+  BandLeastSquares jerk_, unbound_, squares_;
   std::vector<Vec3> values_, thirds_;  // of one path
 };
 

@@ -30,7 +30,8 @@ struct Leg {
 
   Changes changes() const {
     LeastChanges least(layout, feet, std::vector<bool>(kFrames), ends);
-    return least.find(jolted(layout), jerkWeight);
+    least.start(jolted(layout));
+    return least.find(jerkWeight);
   }
   Vec3 footAt(std::size_t frame) const { return wayAt(changes(), layout.foot(frame, 0)); }
   Vec3 pelvisAt(std::size_t frame) const { return wayAt(changes(), layout.pelvis(frame)); }
@@ -74,7 +75,9 @@ TEST(EvenChanges, AreTheLeast) {
     }
   }
   const std::vector<FootFrame> free(2 * kFrames, FootFrame{false, -100, Vec3(0, -1, 0), 100});
-  const Changes least = LeastChanges(layout, free, cuts, {}).find(now, 10);
+  LeastChanges squares(layout, free, cuts, {});
+  squares.start(now);
+  const Changes least = squares.find(10);
   const double sum = sumOf(layout, now, least, cuts, 10);
   EXPECT_LT(sum, 0.5 * sumOf(layout, now, now.changes, cuts, 10));
   for (std::size_t i = 0; i < least.size(); ++i) {
@@ -120,17 +123,20 @@ TEST(EvenChanges, BoundsHoldWhileTheyAreMet) {
   LeastChanges least(leg.layout, leg.feet, std::vector<bool>(kFrames), {});
   ChangedMotion motion = jolted(leg.layout);
   motion.paths[2][kJolt] = Vec3(0, 0.2, 0);
-  EXPECT_NEAR(least.find(motion, 1e4)[leg.layout.foot(kJolt, 0) + 1], -0.02, 1e-4);
+  least.start(motion);
+  EXPECT_NEAR(least.find(1e4)[leg.layout.foot(kJolt, 0) + 1], -0.02, 1e-4);
   motion.paths[2][kJolt] = Vec3::Zero();
-  EXPECT_NEAR(least.find(motion, 1e4)[leg.layout.foot(kJolt, 0) + 1], 0, 1e-6);
+  least.start(motion);
+  EXPECT_NEAR(least.find(1e4)[leg.layout.foot(kJolt, 0) + 1], 0, 1e-6);
 }
 
 // Shoulders that rise go back where the trunk goes up: the leg below them reaches as far as it does there.
 TEST(EvenChanges, LegsReachFromShouldersThatRise) {
   const ChangeLayout layout(kFrames, {true});
   std::vector<FootFrame> feet(kFrames, FootFrame{false, -1, Vec3(0.6, -0.9, 0), 1, Vec3(-0.5, 1, 0)});
-  ChangedMotion motion = jolted(layout);
-  const Changes changes = LeastChanges(layout, feet, std::vector<bool>(kFrames), {}).find(motion, 1e-3);
+  LeastChanges least(layout, feet, std::vector<bool>(kFrames), {});
+  least.start(jolted(layout));
+  const Changes changes = least.find(1e-3);
   const double rise = changes[layout.shoulders(kJolt)];
   EXPECT_LT(rise, -0.01);
   const Vec3 way = feet[kJolt].way + wayAt(changes, layout.foot(kJolt, 0)) - wayAt(changes, layout.pelvis(kJolt));

@@ -143,9 +143,13 @@ class Evener {
     if (!ends.startsJoined && !ends.endsJoined) solveAll();
     double rough = ratio(now_.paths);
     const double longest = std::min(kLongest, kMostFrames * source_.frameSeconds);
-    for (double seconds = kShortest; seconds < longest && rough > kEven; seconds *= kLonger) {
-      moved_.findSlopes(layout_, now_);
-      goTowards(least.find(now_, std::pow(seconds / source_.frameSeconds, 6)), rough);
+    Step step = Step::kTaken;
+    for (double seconds = kShortest; seconds < longest && rough > kEven && step != Step::kTooFar; seconds *= kLonger) {
+      if (step == Step::kTaken) {
+        moved_.findSlopes(layout_, now_);
+        least.start(now_);
+      }
+      step = goTowards(least.find(std::pow(seconds / source_.frameSeconds, 6)), rough);
     }
     if (!(rough < before)) return;
     for (std::size_t f = 0; f < layout_.frames(); ++f) moved_.pose(layout_, now_.changes, f, target_.poses[begin_ + f]);
@@ -171,21 +175,27 @@ class Evener {
     }
   }
 
+  // kTooFar: even a small part of the way. Where jerk counts more it is further.
+  enum class Step { kTaken, kRefused, kTooFar };
+
   // As far as it gets less rough.
-  void goTowards(const Changes& aim, double& rough) {
-    double step = 1;
-    for (int i = 0; i < kHalvings; ++i, step /= 2) {
+  Step goTowards(const Changes& aim, double& rough) {
+    double share = 1;
+    bool isNear = false;
+    for (int i = 0; i < kHalvings; ++i, share /= 2) {
       Changes trial = now_.changes;
-      for (std::size_t k = 0; k < trial.size(); ++k) trial[k] += step * (aim[k] - trial[k]);
-      if (!(furthest(trial) <= kFurthest)) continue;
+      for (std::size_t k = 0; k < trial.size(); ++k) trial[k] += share * (aim[k] - trial[k]);
+      isNear = furthest(trial) <= kFurthest;
+      if (!isNear) continue;
       if (!moved_.follow(layout_, trial, feetHere_, trialPaths_)) continue;
       const double now = ratio(trialPaths_);
       if (!(now < rough)) continue;
       rough = now;
       now_.changes = std::move(trial);
       now_.paths.swap(trialPaths_);
-      return;
+      return Step::kTaken;
     }
+    return isNear ? Step::kRefused : Step::kTooFar;
   }
 
   double furthest(const Changes& changes) const {

@@ -70,8 +70,11 @@ MovedLegs::Reached MovedLegs::reached(std::size_t frame, std::size_t leg, const 
   const Vec3 there = seen.shape.end + further;
   if (solvesAll_ || further.norm() > 1e-9 * legs_[leg].length) {
     LimbShape shape = seen.shape;
-    shape.neutralEnd = move.tilt * shape.neutralEnd;
-    shape.neutralAhead = move.tilt * shape.neutralAhead;
+    if (trunk_.tilts()) {
+      shape.neutralEnd = move.tilt * shape.neutralEnd;
+      shape.neutralAhead = move.tilt * shape.neutralAhead;
+      shape.findBend(legs_[leg]);
+    }
     places = LimbReach::placesFor(legs_[leg], shape, there);
   }
   return {{places.middle / lengths_[leg][0], (places.end - places.middle) / lengths_[leg][1]},
