@@ -7,6 +7,9 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
+
+#include "limber/core/counted.h"
 #include "limber/matching/loose_feet.h"
 
 namespace limber {
@@ -15,6 +18,7 @@ namespace {
 
 constexpr double kByForm = 0.6, kByFormAndWord = 0.8;  // confidence
 constexpr double kMiddle = 0.03;   // of the skeleton's size: joints this near to the plane of symmetry lie in it
+constexpr double kClearly = 1.2;   // times as many
 constexpr double kMirrored = 0.1;  // of the spine's length: how far left and right may be off being mirror images
 constexpr double kShort = 0.5;     // of the longest limb on the same joint: shorter ones are feathers, say
 constexpr double kTail = 0.15;     // of the skeleton's size: how far its end is from where the trunk begins, at least
@@ -27,7 +31,7 @@ using Joints = std::vector<Index>;  // root to tip
 enum class LimbKind { kUnknown, kWing, kFin, kLeg };
 
 // Two limbs that are mirror images.
-struct LimbPair {
+struct MirroredLimb {
   Joints left, right;
   LimbKind kind = LimbKind::kUnknown;
   // Of the left one, forward, up and to the left: where it begins, in lengths of the spine, and which way it points.
@@ -37,7 +41,7 @@ struct LimbPair {
 struct BodyPlan {
   Index middle = 0;
   Joints trunk, tail;
-  std::vector<LimbPair> limbs;
+  std::vector<MirroredLimb> limbs;
   Vec3 forward = Vec3::Zero();
   bool leavesFeetBehind = false;
 };
@@ -72,7 +76,7 @@ class BodyPlanReader {
     if (tail) plan.tail = pathBelow(plan.middle, *tail);
     if (plan.middle == *head) plan.middle = *parents_[*head];  // that the whole body hangs on
     plan.trunk = pathBelow(plan.middle, *head);
-    face(at(*head) - at(tail ? *tail : plan.middle), plan);
+    face(tail ? Vec3(at(*head) - at(*tail)) : wayOfHead(*head), plan);
     findLimbs(*head, plan);
     return plan;
   }
@@ -104,9 +108,9 @@ class BodyPlanReader {
     return path;
   }
 
-  // The plane of symmetry: across the axis along which most joints have a mirror image.
+  // The plane of symmetry: across X, or across Z where clearly more joints have a mirror image along that.
   void findPlane() {
-    std::size_t most = 0;
+    double most = 0;
     for (const Eigen::Index axis : {0, 2}) {
       double center = 0;
       for (const Vec3& position : positions_) center += position[axis] / static_cast<double>(positions_.size());
@@ -116,8 +120,8 @@ class BodyPlanReader {
         return std::any_of(positions_.begin(), positions_.end(),
                            [&](const Vec3& other) { return (other - image).norm() < kMiddle * box_.diagonal(); });
       });
-      if (static_cast<std::size_t>(mirrored) <= most) continue;
-      most = static_cast<std::size_t>(mirrored);
+      if (static_cast<double>(mirrored) <= most) continue;
+      most = kClearly * static_cast<double>(mirrored);
       lateral_ = axis;
       center_ = center;
     }
@@ -160,6 +164,16 @@ class BodyPlanReader {
       if (isOfLimb && isMiddle(parents_[j].value_or(j)) && !children_[j].empty()) carrier = meeting(carrier, j);
     }
     return carrier;
+  }
+
+  // From the joint that it hangs on to its farthest end.
+  Vec3 wayOfHead(Index head) const {
+    const Vec3& from = at(*parents_[head]);
+    Index end = head;
+    for (Index j = 0; j < parents_.size(); ++j) {
+      if (isMiddle(j) && isBelow(j, head) && (at(j) - from).norm() > (at(end) - from).norm()) end = j;
+    }
+    return at(end) - from;
   }
 
   void face(const Vec3& way, BodyPlan& plan) {
@@ -213,13 +227,13 @@ class BodyPlanReader {
   }
 
   // Feathers beside a wing; horns and ears, where others are limbs by their names.
-  void leaveOut(std::vector<LimbPair>& limbs) const {
-    const auto length = [&](const LimbPair& limb) { return (at(limb.left.back()) - at(limb.left.front())).norm(); };
-    const auto isKnown = [](const LimbPair& limb) { return limb.kind != LimbKind::kUnknown; };
+  void leaveOut(std::vector<MirroredLimb>& limbs) const {
+    const auto length = [&](const MirroredLimb& limb) { return (at(limb.left.back()) - at(limb.left.front())).norm(); };
+    const auto isKnown = [](const MirroredLimb& limb) { return limb.kind != LimbKind::kUnknown; };
     const bool named = std::any_of(limbs.begin(), limbs.end(), isKnown);
-    const std::vector<LimbPair> all = limbs;
-    std::erase_if(limbs, [&](const LimbPair& limb) {
-      const auto outdoes = [&](const LimbPair& other) {
+    const std::vector<MirroredLimb> all = limbs;
+    std::erase_if(limbs, [&](const MirroredLimb& limb) {
+      const auto outdoes = [&](const MirroredLimb& other) {
         return parents_[other.left.front()] == parents_[limb.left.front()] && length(limb) < kShort * length(other);
       };
       return (named && !isKnown(limb)) || std::any_of(all.begin(), all.end(), outdoes);
@@ -236,8 +250,8 @@ class BodyPlanReader {
     return isImage(one.front(), other.front()) && isImage(one.back(), other.back());
   }
 
-  LimbPair described(const Joints& left, const Joints& right, const BodyPlan& plan) const {
-    LimbPair limb{left, right, kindOf(left), Vec3::Zero(), Vec3::Zero()};
+  MirroredLimb described(const Joints& left, const Joints& right, const BodyPlan& plan) const {
+    MirroredLimb limb{left, right, kindOf(left), Vec3::Zero(), Vec3::Zero()};
     const auto inBody = [&](const Vec3& way) { return Vec3(way.dot(plan.forward), way.y(), way.dot(left_)); };
     limb.base = inBody(at(left.front()) - at(plan.middle)) / spine_;
     limb.way = inBody((at(left.back()) - at(left.front())).normalized());
@@ -278,6 +292,18 @@ bool isLegs(const BodyPlan& plan) {
   return plan.limbs.size() == 1 && plan.limbs[0].kind != LimbKind::kWing && plan.limbs[0].kind != LimbKind::kFin;
 }
 
+// Empty where they may be matched.
+std::string whyUnlike(const BodyPlan& from, const BodyPlan& to) {
+  const std::size_t one = from.limbs.size(), other = to.limbs.size();
+  if (from.forward.dot(to.forward) < kSameWay) return "they face different ways";
+  if (std::max(one, other) > std::min(one, other) + 1) {
+    return fmt::format("the motion's has {} of limbs, the character's {}", counted(one, "pair"), other);
+  }
+  if (to.leavesFeetBehind) return "the character's feet hang on a root of their own, and no leg reaches them";
+  const bool limbless = one == 0 || other == 0;
+  return limbless && (from.tail.empty() || to.tail.empty()) ? "they have neither limbs nor tails in common" : "";
+}
+
 // Where each joint lies along a limb, from 0 to 1.
 std::vector<double> placesAlong(const Joints& limb, const std::vector<Affine>& globals) {
   std::vector<double> places = {0};
@@ -308,21 +334,20 @@ class Matcher {
     map_.matches.push_back({part, source, target, confidence, MatchedBy::kShape});
   }
 
-  static bool bothKnown(const LimbPair& one, const LimbPair& other) {
+  static bool bothKnown(const MirroredLimb& one, const MirroredLimb& other) {
     return one.kind != LimbKind::kUnknown && other.kind != LimbKind::kUnknown;
   }
-  static bool mayFollow(const LimbPair& one, const LimbPair& other) {
+  static bool mayFollow(const MirroredLimb& one, const MirroredLimb& other) {
     return bothKnown(one, other) ? one.kind == other.kind : unlike(one, other) < kUnlike;
   }
-  static double unlike(const LimbPair& one, const LimbPair& other) {
+  static double unlike(const MirroredLimb& one, const MirroredLimb& other) {
     return (one.base - other.base).norm() + (one.way - other.way).norm();
   }
 
   // The most alike first. Whether each limb of the one that has fewer found its like.
-  bool addLimbs(const std::vector<LimbPair>& source, const std::vector<LimbPair>& target) {
+  bool addLimbs(const std::vector<MirroredLimb>& source, const std::vector<MirroredLimb>& target) {
     std::vector<bool> usedSource(source.size(), false), usedTarget(target.size(), false);
     const std::size_t fewer = std::min(source.size(), target.size());
-    if (std::max(source.size(), target.size()) > fewer + 1) return false;
     for (std::size_t n = 0; n < fewer; ++n) {
       std::optional<std::pair<std::size_t, std::size_t>> best;
       for (std::size_t s = 0; s < source.size(); ++s) {
@@ -332,7 +357,7 @@ class Matcher {
         }
       }
       if (!best) return false;
-      const LimbPair &from = source[best->first], &to = target[best->second];
+      const MirroredLimb &from = source[best->first], &to = target[best->second];
       usedSource[best->first] = usedTarget[best->second] = true;
       const double confidence = bothKnown(from, to) ? kByFormAndWord : kByForm;
       const std::string limb = "Limb" + std::to_string(n + 1) + "Bone";
@@ -376,11 +401,17 @@ class Matcher {
 
 std::optional<SkeletonMap> matchBodyPlans(const Skeleton& source, const Skeleton& target) {
   const std::optional<BodyPlan> from = BodyPlanReader(source).read(), to = BodyPlanReader(target).read();
-  if (!from || !to || to->leavesFeetBehind || from->forward.dot(to->forward) < kSameWay) return std::nullopt;
+  if (!from || !to || !whyUnlike(*from, *to).empty()) return std::nullopt;
   if (isLegs(*from) && isLegs(*to)) return std::nullopt;
-  const bool limbless = from->limbs.empty() || to->limbs.empty();
-  if (limbless && (from->tail.empty() || to->tail.empty())) return std::nullopt;
   return Matcher(source, target).match(*from, *to);
+}
+
+std::string whyBodyPlansDiffer(const Skeleton& source, const Skeleton& target) {
+  const std::optional<BodyPlan> from = BodyPlanReader(source).read(), to = BodyPlanReader(target).read();
+  if (!from) return "the motion's joints show no head on a trunk";
+  if (!to) return "the character's joints show no head on a trunk";
+  const std::string why = whyUnlike(*from, *to);
+  return why.empty() ? "their limbs are not alike" : why;
 }
 
 }  // namespace limber

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "limber/matching/skeleton_map.h"
 
@@ -16,5 +17,8 @@ namespace limber {
 // Nothing where the counts of their pairs of limbs differ by more than one, where no trunk or tail is in common, or
 // where feet of the target hang on a root of their own that no leg reaches: they would stay behind.
 std::optional<SkeletonMap> matchBodyPlans(const Skeleton& source, const Skeleton& target);
+
+// What keeps two from being matched so, for a message: "they face different ways".
+std::string whyBodyPlansDiffer(const Skeleton& source, const Skeleton& target);
 
 }  // namespace limber

@@ -108,7 +108,10 @@ TEST(BodyPlan, SnakesGoAlongTheirSpines) {
 TEST(BodyPlan, WhatIsNotAlikeIsNotMatched) {
   const Skeleton gull = flyer(kGull);
   EXPECT_TRUE(matchBodyPlans(gull, flyer(kBat)));
-  EXPECT_FALSE(matchBodyPlans(gull, flyer(kBat, 90))) << "faces another way";
+  const auto why = [&](const Skeleton& other) {
+    return matchBodyPlans(gull, other) ? "matched" : whyBodyPlansDiffer(gull, other);
+  };
+  EXPECT_EQ(why(flyer(kBat, 90)), "they face different ways");
   Skeleton insect = flyer(kBat);  // two more pairs of legs
   for (const char* leg : {"two", "three"}) {
     for (const double side : {1.0, -1.0}) {
@@ -117,12 +120,16 @@ TEST(BodyPlan, WhatIsNotAlikeIsNotMatched) {
       addJoint(insect, name + "2", name + "1", Vec3(0.3 * side, -0.4, 0));
     }
   }
-  EXPECT_FALSE(matchBodyPlans(gull, insect));
+  EXPECT_EQ(why(insect), "the motion's has 2 pairs of limbs, the character's 4");
   Skeleton footed = flyer(kBat);  // feet on the ground that no shin comes down to
   for (const double side : {1.0, -1.0}) {
     addJoint(footed, side > 0 ? "footL" : "footR", "origin", Vec3(0.5 * side, 0, 0.5));
   }
-  EXPECT_FALSE(matchBodyPlans(gull, footed));
+  EXPECT_EQ(why(footed), "the character's feet hang on a root of their own, and no leg reaches them");
+  Skeleton two;
+  addJoint(two, "one", "", Vec3::Zero());
+  addJoint(two, "two", "one", Vec3(0, 1, 0));
+  EXPECT_EQ(why(two), "the character's joints show no head on a trunk");
 }
 
 // The motion of what carries the body counts, though no joint is matched with it.

@@ -356,11 +356,12 @@ SkeletonMap matchSkeletons(const Skeleton& source, const Skeleton& target) {
     return names;
   }
   if (sameTree(source, target)) return matchTrees(target);
-  throw Error(ErrorCode::kUnsupported,
-              fmt::format("the motion's skeleton of {} and the character's of {} have too little in common to "
-                          "be matched by names or by form",
-                          counted(source.jointCount(), "joint"), target.jointCount()),
-              "", "say in a map which joint follows which, as docs/retargeting.md tells");
+  throw Error(
+      ErrorCode::kUnsupported,
+      fmt::format("the motion's skeleton of {} and the character's of {} have too little in common to "
+                  "be matched by names or by form: {}",
+                  counted(source.jointCount(), "joint"), target.jointCount(), whyBodyPlansDiffer(source, target)),
+      "", "say in a map which joint follows which, as docs/retargeting.md tells");
 }
 
 void checkSkeletonMap(const SkeletonMap& map, const Skeleton& source, const Skeleton& target) {
