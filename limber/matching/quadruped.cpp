@@ -309,4 +309,10 @@ std::optional<Quadruped> readQuadruped(const Skeleton& skeleton, std::span<const
   return QuadrupedReader(skeleton, positions).read();
 }
 
+std::optional<Quadruped> readQuadruped(const Skeleton& skeleton) {
+  std::vector<Vec3> positions;
+  for (const Affine& global : restGlobals(skeleton)) positions.push_back(global.translation());
+  return readQuadruped(skeleton, positions);
+}
+
 }  // namespace limber

@@ -31,5 +31,7 @@ struct Quadruped {
 // its first low joint, the foot. Nothing for others, or where toes point back: one whose joints hang on the chest would
 // be read back to front. `positions` are #J, world, +Y up. Cost: linear in the joints but for their depth.
 std::optional<Quadruped> readQuadruped(const Skeleton& skeleton, std::span<const Vec3> positions);
+// In rest pose.
+std::optional<Quadruped> readQuadruped(const Skeleton& skeleton);
 
 }  // namespace limber

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "limber/matching/quadruped.h"
-#include "limber/skeleton/pose.h"
 
 namespace limber {
 
@@ -18,12 +17,6 @@ constexpr double kSameWay = 0.9;  // cosine between two blades, seen from where 
 constexpr std::array<const char*, 4> kLegs = {"leftHind", "rightHind", "leftFore", "rightFore"};
 
 using Joints = Quadruped::Joints;
-
-std::optional<Quadruped> readAtRest(const Skeleton& skeleton) {
-  std::vector<Vec3> positions;
-  for (const Affine& global : restGlobals(skeleton)) positions.push_back(global.translation());
-  return readQuadruped(skeleton, positions);
-}
 
 class Matcher {
  public:
@@ -91,7 +84,7 @@ bool isForeleg(const SkeletonMap& map, Index upper) {
 }
 
 std::optional<SkeletonMap> matchQuadrupeds(const Skeleton& source, const Skeleton& target) {
-  const std::optional<Quadruped> from = readAtRest(source), to = readAtRest(target);
+  const std::optional<Quadruped> from = readQuadruped(source), to = readQuadruped(target);
   if (!from || !to) return std::nullopt;
   return Matcher().match(*from, *to);
 }

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "limber/core/error.h"
 #include "limber/matching/testing/test_motion.h"
 
 namespace limber {
@@ -61,6 +62,18 @@ TEST(QuadrupedShape, AnimalsAreNotTakenForPeople) {
   EXPECT_TRUE(matchSkeletons(one, nameless(onTheGround(other, {}))).find(kHindquarters));
   EXPECT_EQ(matchSkeletons(one, other).matches.size(), one.jointCount())
       << "joint by joint where the trees are the same";
+}
+
+TEST(QuadrupedShape, PeopleDoNotFollowThem) {
+  const Skeleton animal = nameless(quadruped(0.5)), person = practiceHumanoid();
+  for (const auto& [source, target] : {std::pair(animal, person), std::pair(person, animal)}) {
+    try {
+      matchSkeletons(source, target);
+      ADD_FAILURE() << "matched";
+    } catch (const Error& error) {
+      EXPECT_TRUE(error.message().ends_with("one is a person, the other stands on four legs")) << error.what();
+    }
+  }
 }
 
 TEST(QuadrupedShape, FeetOnRootsOfTheirOwnAreFeet) {

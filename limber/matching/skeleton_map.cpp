@@ -16,6 +16,7 @@
 #include "limber/matching/body_plan.h"
 #include "limber/matching/humanoid_shape.h"
 #include "limber/matching/neutral_pose.h"
+#include "limber/matching/quadruped.h"
 #include "limber/matching/quadruped_shape.h"
 #include "limber/skeleton/chain.h"
 
@@ -190,14 +191,6 @@ bool isSurelyAPerson(const std::optional<Body>& body, const Skeleton& skeleton) 
   return hips.confidence > kGuessed && up.y() > std::hypot(up.x(), up.z());
 }
 
-// By their form alone both hardly look like people, or one is a quadruped: a frog is no person for a fox to follow.
-bool areStrangers(const Body& from, const Skeleton& source, const Body& to, const Skeleton& target) {
-  if (from.by != MatchedBy::kShape || to.by != MatchedBy::kShape) return false;
-  const auto isQuadruped = [](const Skeleton& skeleton) { return matchQuadrupeds(skeleton, skeleton).has_value(); };
-  const auto isGuessed = [](const Body& body) { return body.parts.at("hips").confidence <= kGuessed; };
-  return (isGuessed(from) && isGuessed(to)) || isQuadruped(source) != isQuadruped(target);
-}
-
 // Arms or legs: hips and a head are no person.
 bool hasLimbs(const SkeletonMap& map) {
   return (map.find("leftUpperLeg") && map.find("rightUpperLeg")) ||
@@ -312,6 +305,93 @@ SkeletonMap matchTrees(const Skeleton& target) {
   return map;
 }
 
+// Tries one way of matching after the other.
+class Matchmaker {
+ public:
+  Matchmaker(const Skeleton& source, const Skeleton& target)
+      : source_(source),
+        target_(target),
+        names_(matchNames(source, target)),
+        from_(BodyReader(source).read()),
+        to_(BodyReader(target).read()) {
+    // Skeletons of one family, people or not, have most names in common.
+    const std::size_t fewer = std::min(source.jointCount(), target.jointCount());
+    isFamily_ = names_.matches.size() >= 3 && names_.matches.size() * 2 > fewer;
+    isWhole_ = isFamily_ && static_cast<double>(names_.matches.size()) > kWhole * static_cast<double>(fewer);
+    areArmless_ = isFamily_ && from_ && to_ && !from_->hasArms() && !to_->hasArms();
+  }
+
+  SkeletonMap match() {
+    for (const auto way : {&Matchmaker::quadrupeds, &Matchmaker::bodyPlans, &Matchmaker::people}) {
+      if (std::optional<SkeletonMap> map = (this->*way)()) return *std::move(map);
+    }
+    if (isFamily_) {
+      matchChainsOfAnimals(source_, target_, names_);
+      return names_;
+    }
+    if (sameTree(source_, target_)) return matchTrees(target_);
+    throw Error(ErrorCode::kUnsupported,
+                fmt::format("the motion's skeleton of {} and the character's of {} have too little in common to "
+                            "be matched by names or by form: {}",
+                            counted(source_.jointCount(), "joint"), target_.jointCount(), whatDiffers()),
+                "", "say in a map which joint follows which, as docs/retargeting.md tells");
+  }
+
+ private:
+  // Animals that are built otherwise may well have many words in common.
+  std::optional<SkeletonMap> quadrupeds() const {
+    if ((isNamed(from_) && isNamed(to_)) || (isFamily_ && areAlike(names_, source_, target_))) return std::nullopt;
+    std::optional<SkeletonMap> map = matchQuadrupeds(source_, target_);
+    if (map && sameTree(source_, target_)) return matchTrees(target_);
+    if (map && isFamily_) addNamesakes(names_, source_, target_, *map);
+    return map;
+  }
+
+  std::optional<SkeletonMap> bodyPlans() const {
+    if (isWhole_ || sameTree(source_, target_)) return std::nullopt;
+    if (isSurelyAPerson(from_, source_) || isSurelyAPerson(to_, target_)) return std::nullopt;
+    std::optional<SkeletonMap> plan = matchBodyPlans(source_, target_);
+    const bool namesTell = isFamily_ && (!mayBePeople() || areArmless_);
+    const bool less = plan && matchedJoints(*plan, MapSide::kTarget).size() <= names_.matches.size();
+    return namesTell && less ? std::nullopt : plan;
+  }
+
+  // A family without arms, of birds or bats, moves more than legs and trunk.
+  std::optional<SkeletonMap> people() const {
+    if (!mayBePeople() || areArmless_ || areStrangers()) return std::nullopt;
+    SkeletonMap map = matchBodies(*from_, *to_);
+    if (isFamily_) addNamesakes(names_, source_, target_, map);
+    return map.matches.size() >= 5 && hasLimbs(map) ? std::optional(std::move(map)) : std::nullopt;
+  }
+
+  bool mayBePeople() const { return from_ && to_ && (isNamed(from_) || isNamed(to_) || !isFamily_); }
+
+  std::string whatDiffers() const {
+    const bool areBoth = readQuadruped(source_).has_value() != readQuadruped(target_).has_value();
+    if (areBoth && (isNamed(from_) || isNamed(to_))) return "one is a person, the other stands on four legs";
+    return whyBodyPlansDiffer(source_, target_);
+  }
+
+  static bool isNamed(const std::optional<Body>& body) { return body && body->by == MatchedBy::kName; }
+
+  // By their form alone both hardly look like people, or one is a quadruped: a fox is no person, nor a frog one for a
+  // fox to follow.
+  bool areStrangers() const {
+    const auto isQuadruped = [](const Body& body, const Skeleton& skeleton) {
+      return body.by == MatchedBy::kShape && readQuadruped(skeleton);
+    };
+    const auto isGuessed = [](const Body& body) {
+      return body.by == MatchedBy::kShape && body.parts.at("hips").confidence <= kGuessed;
+    };
+    return (isGuessed(*from_) && isGuessed(*to_)) || isQuadruped(*from_, source_) || isQuadruped(*to_, target_);
+  }
+
+  const Skeleton &source_, &target_;
+  SkeletonMap names_;
+  std::optional<Body> from_, to_;
+  bool isFamily_ = false, isWhole_ = false, areArmless_ = false;
+};
+
 }  // namespace
 
 const JointMatch* SkeletonMap::find(std::string_view part) const {
@@ -321,47 +401,7 @@ const JointMatch* SkeletonMap::find(std::string_view part) const {
 }
 
 SkeletonMap matchSkeletons(const Skeleton& source, const Skeleton& target) {
-  // Skeletons of one family, people or not, have most names in common.
-  SkeletonMap names = matchNames(source, target);
-  const std::size_t fewer = std::min(source.jointCount(), target.jointCount());
-  const bool isFamily = names.matches.size() >= 3 && names.matches.size() * 2 > fewer;
-  const std::optional<Body> from = BodyReader(source).read(), to = BodyReader(target).read();
-  const bool named = from && to && from->by == MatchedBy::kName && to->by == MatchedBy::kName;
-  // Animals that are built otherwise may well have many words in common.
-  const bool alike = isFamily && areAlike(names, source, target);
-  if (!named && !alike) {
-    std::optional<SkeletonMap> quadrupeds = matchQuadrupeds(source, target);
-    if (quadrupeds && sameTree(source, target)) return matchTrees(target);
-    if (quadrupeds) {
-      if (isFamily) addNamesakes(names, source, target, *quadrupeds);
-      return *quadrupeds;
-    }
-  }
-  const bool people = from && to && (from->by == MatchedBy::kName || to->by == MatchedBy::kName || !isFamily);
-  // A family without arms, of birds or bats, moves more than legs and trunk.
-  const bool armless = isFamily && from && to && !from->hasArms() && !to->hasArms();
-  const bool byNames = isFamily && (!people || armless);
-  const bool isWhole = isFamily && static_cast<double>(names.matches.size()) > kWhole * static_cast<double>(fewer);
-  if (!isWhole && !sameTree(source, target) && !isSurelyAPerson(from, source) && !isSurelyAPerson(to, target)) {
-    const std::optional<SkeletonMap> plan = matchBodyPlans(source, target);
-    if (plan && (!byNames || matchedJoints(*plan, MapSide::kTarget).size() > names.matches.size())) return *plan;
-  }
-  if (people && !armless && !areStrangers(*from, source, *to, target)) {
-    SkeletonMap map = matchBodies(*from, *to);
-    if (isFamily) addNamesakes(names, source, target, map);
-    if (map.matches.size() >= 5 && hasLimbs(map)) return map;
-  }
-  if (isFamily) {
-    matchChainsOfAnimals(source, target, names);
-    return names;
-  }
-  if (sameTree(source, target)) return matchTrees(target);
-  throw Error(
-      ErrorCode::kUnsupported,
-      fmt::format("the motion's skeleton of {} and the character's of {} have too little in common to "
-                  "be matched by names or by form: {}",
-                  counted(source.jointCount(), "joint"), target.jointCount(), whyBodyPlansDiffer(source, target)),
-      "", "say in a map which joint follows which, as docs/retargeting.md tells");
+  return Matchmaker(source, target).match();
 }
 
 void checkSkeletonMap(const SkeletonMap& map, const Skeleton& source, const Skeleton& target) {
