@@ -54,6 +54,7 @@ class ShapeReader {
     if (!chest || !isAbove(*hips, *chest)) return {};
     if (!leftIsFirst(*hips, *feet)) lateral_ = -lateral_;
 
+    leans_ = wayToHead(*hips, *feet).norm() > kHeadAhead * size_.y();
     const Index carrier = carrierOf(*hips, *feet);
     give("hips", carrier);
     for (const Index foot : {feet->first, feet->second}) leg(*hips, foot);
@@ -257,24 +258,45 @@ class ShapeReader {
   }
 
   void trunkAndHead(Index hips, Index chest) {
-    const std::vector<Index> trunk = way(hips, chest);
+    std::vector<Index> trunk = way(hips, chest);
+    const std::optional<Index> top = highestEnd(chest);
+    std::vector<Index> joints = top ? way(chest, *top) : std::vector<Index>();
+    const std::size_t beside = trunk.empty() ? besideArms(joints) : 0;
+    if (beside > 0) {
+      trunk.assign(joints.begin(), joints.begin() + static_cast<std::ptrdiff_t>(beside));
+      joints.erase(joints.begin(), joints.begin() + static_cast<std::ptrdiff_t>(beside));
+    }
     if (!trunk.empty()) give("spine", trunk.front());
     if (trunk.size() > 1) give("chest", trunk[trunk.size() / 2]);
     if (trunk.size() > 2) give("upperChest", trunk.back());
-    const std::optional<Index> top = highestEnd(chest);
-    if (!top || positions_[*top].y() < positions_[chest].y()) return;
-    const std::vector<Index> joints = way(chest, *top);
+    if (!top || (beside == 0 && positions_[*top].y() < positions_[chest].y())) return;
     if (joints.size() == 1) return give("head", joints[0]);
     give("neck", joints[0]);
-    give("head", joints[headOf(joints)]);
+    give("head", joints[headOf(joints, beside > 0)]);
+  }
+
+  // Where arms and legs of who leans hang on one joint, with the trunk beside them: how many joints of the way to the
+  // top are the trunk's, those that do not lie ahead of the arms. 0 where none are left for the neck and the head.
+  std::size_t besideArms(const std::vector<Index>& joints) const {
+    if (!leans_ || joints.size() < 3) return 0;
+    Vec3 arms = Vec3::Zero();
+    for (const HumanoidJoint& joint : joints_) {
+      if (joint.bone == "leftUpperArm" || joint.bone == "rightUpperArm") arms += 0.5 * positions_[joint.joint];
+    }
+    const Vec3 way = positions_[joints.back()] - positions_[joints.front()];
+    const auto ahead =
+        std::find_if(joints.begin(), joints.end(), [&](Index joint) { return way.dot(positions_[joint] - arms) > 0; });
+    const auto own = static_cast<std::size_t>(ahead - joints.begin());
+    return own + 2 <= joints.size() ? own : 0;
   }
 
   // Of the joints from the neck to the top: what carries eyes and jaw; else what is as high over the upper arms as a
-  // head's joint is.
-  std::size_t headOf(const std::vector<Index>& joints) const {
+  // head's joint is, or the last where a trunk lies beside the arms.
+  std::size_t headOf(const std::vector<Index>& joints, bool isLast) const {
     for (std::size_t i = 1; i + 1 < joints.size(); ++i) {
       if (children_[joints[i]].size() > 1) return i;
     }
+    if (isLast) return joints.size() - 1;
     double shoulders = 0, arms = 0;
     for (const HumanoidJoint& joint : joints_) {
       if (joint.bone != "leftUpperArm" && joint.bone != "rightUpperArm") continue;
@@ -296,6 +318,7 @@ class ShapeReader {
   std::vector<Index> leaves_;
   Vec3 center_ = Vec3::Zero(), size_ = Vec3::Zero(), lateral_ = Vec3::UnitX();
   double ground_ = 0;
+  bool leans_ = false;  // the head is held far ahead
   std::vector<HumanoidJoint> joints_;
 };
 

@@ -78,5 +78,19 @@ TEST(HumanoidShape, AHeadFarAheadTellsTheFrontWhereHocksBendBackward) {
   EXPECT_EQ(leaning.joints[joints.at("leftLowerLeg").joint].name, "leftLowerLeg");
 }
 
+TEST(HumanoidShape, ATrunkThatLeansMayHangBesideArmsAndLegs) {
+  Skeleton person = inRestPose(practiceHumanoid(), {{"spine", turn(Vec3::UnitX(), 80)}});
+  const std::vector<Affine> globals = restGlobals(person);
+  const Index hips = person.find("hips").value();
+  for (const char* shoulder : {"leftShoulder", "rightShoulder"}) {
+    const Index joint = person.find(shoulder).value();
+    person.joints[joint].parent = hips;
+    person.joints[joint].rest.translation = globals[joint].translation() - globals[hips].translation();
+  }
+  expectRight(person);
+  const std::map<std::string, HumanoidJoint> joints = byBone(person);
+  for (const char* bone : {"spine", "chest", "neck", "head"}) EXPECT_TRUE(joints.contains(bone)) << bone;
+}
+
 }  // namespace
 }  // namespace limber
