@@ -367,8 +367,8 @@ class Matchmaker {
   bool mayBePeople() const { return from_ && to_ && (isNamed(from_) || isNamed(to_) || !isFamily_); }
 
   std::string whatDiffers() const {
-    const bool areBoth = readQuadruped(source_).has_value() != readQuadruped(target_).has_value();
-    if (areBoth && (isNamed(from_) || isNamed(to_))) return "one is a person, the other stands on four legs";
+    const bool oneIsQuadruped = readQuadruped(source_).has_value() != readQuadruped(target_).has_value();
+    if (oneIsQuadruped && (isNamed(from_) || isNamed(to_))) return "one is a person, the other stands on four legs";
     return whyBodyPlansDiffer(source_, target_);
   }
 
