@@ -14,8 +14,8 @@ namespace limber {
 // bit for bit.
 //
 // `target` has the frames of `source`. Nothing without legs, or for fewer than 5 frames. Cost: linear in the frames,
-// motions of more than a thousand in parts of about that many; about a hundred times a frame of "limb-ik" where it is
-// rough, else a forward pass over both.
+// motions of more than a thousand in parts of about that many; up to twenty times a frame of "limb-ik" where a person's
+// motion is rough, else a forward pass over both.
 void evenOut(const RetargetSetup& setup, const PoseSequence& source, PoseSequence& target);
 
 }  // namespace limber
