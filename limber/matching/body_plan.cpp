@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "limber/core/counted.h"
+#include "limber/matching/limb_groups.h"
 #include "limber/matching/loose_feet.h"
 
 namespace limber {
@@ -25,6 +26,7 @@ constexpr double kTail = 0.15;     // of the skeleton's size: how far its end is
 constexpr double kLow = 0.15;      // of the skeleton's height: over the lowest joint
 constexpr double kUnlike = 1;      // between two limbs of which no word tells the kind
 constexpr double kSameWay = 0.9;   // cosine between where the two face, at least
+constexpr std::size_t kMostJoints = 1000;  // of a body: finding mirror images takes each with each
 
 using Joints = std::vector<Index>;  // root to tip
 
@@ -66,7 +68,7 @@ class BodyPlanReader {
   }
 
   std::optional<BodyPlan> read() {
-    if (parents_.size() < 3 || !(box_.diagonal() > 0)) return std::nullopt;
+    if (parents_.size() < 3 || parents_.size() > kMostJoints || !(box_.diagonal() > 0)) return std::nullopt;
     findPlane();
     const std::optional<Index> head = headJoint();
     if (!head) return std::nullopt;
@@ -369,28 +371,8 @@ class Matcher {
 
   void addLimb(const std::string& part, const Joints& source, const Joints& target, double confidence) {
     const std::vector<double> from = placesAlong(source, sourceGlobals_), to = placesAlong(target, targetGlobals_);
-    const std::vector<Joints> one = grouped(source, from, to), other = grouped(target, to, from);
+    const std::vector<Joints> one = groupedAlong(source, from, to), other = groupedAlong(target, to, from);
     for (std::size_t i = 0; i < one.size(); ++i) add(part + std::to_string(i + 1), one[i], other[i], confidence);
-  }
-
-  // A limb's joints in as many groups as the other has, if that has fewer: each begins nearest to where the other's
-  // joint does.
-  static std::vector<Joints> grouped(const Joints& limb, const std::vector<double>& own,
-                                     const std::vector<double>& others) {
-    const std::size_t count = std::min(own.size(), others.size());
-    std::vector<Joints> groups;
-    std::size_t next = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-      std::size_t begin = next;
-      const auto off = [&](std::size_t j) { return std::abs(own[j] - others[i]); };
-      for (std::size_t j = next + 1; i > 0 && j + (count - i) <= limb.size(); ++j) {
-        if (off(j) < off(begin)) begin = j;
-      }
-      for (; next < begin; ++next) groups.back().push_back(limb[next]);
-      groups.push_back({limb[next++]});
-    }
-    for (; next < limb.size(); ++next) groups.back().push_back(limb[next]);
-    return groups;
   }
 
   std::vector<Affine> sourceGlobals_, targetGlobals_;

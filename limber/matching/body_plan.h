@@ -15,7 +15,8 @@ namespace limber {
 // towards +Z or +X, is the head.
 //
 // Nothing where the counts of their pairs of limbs differ by more than one, where no trunk or tail is in common, or
-// where feet of the target hang on a root of their own that no leg reaches: they would stay behind.
+// where feet of the target hang on a root of their own that no leg reaches: they would stay behind. Cost: joints times
+// joints times their depth; nothing for more than 1000 joints.
 std::optional<SkeletonMap> matchBodyPlans(const Skeleton& source, const Skeleton& target);
 
 // What keeps two from being matched so, for a message: "they face different ways".

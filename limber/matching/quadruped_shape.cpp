@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "limber/matching/limb_groups.h"
 #include "limber/matching/quadruped.h"
 
 namespace limber {
@@ -36,29 +37,11 @@ class Matcher {
     map_.matches.push_back({part, source, target, kConfidence, MatchedBy::kShape});
   }
 
-  // The leg's bones in as many groups as the other has, if that has fewer: each begins with the joint that lies where
-  // one of the other's does along the leg.
-  static std::vector<Joints> grouped(const Quadruped::Leg& leg, const Quadruped::Leg& other) {
-    std::vector<Joints> groups;
-    std::size_t at = 0;
-    for (std::size_t i = 0; i < std::min(leg.bones.size(), other.bones.size()); ++i) {
-      const std::size_t left = std::min(leg.bones.size(), other.bones.size()) - i;
-      const auto away = [&](std::size_t j) { return std::abs(leg.along[j] - other.along[i]); };
-      std::size_t begin = at;
-      for (std::size_t j = at + 1; i > 0 && j + left <= leg.bones.size(); ++j) {
-        if (away(j) < away(begin)) begin = j;
-      }
-      for (; at < begin; ++at) groups.back().push_back(leg.bones[at]);
-      groups.push_back({leg.bones[at++]});
-    }
-    for (; at < leg.bones.size(); ++at) groups.back().push_back(leg.bones[at]);
-    return groups;
-  }
-
   void addLeg(const std::string& name, const Quadruped::Leg& source, const Quadruped::Leg& target) {
     // Blades that lie otherwise would take the legs elsewhere.
     if (source.bladeWay.dot(target.bladeWay) > kSameWay) add(name + "Blade", source.blade, target.blade);
-    const std::vector<Joints> from = grouped(source, target), to = grouped(target, source);
+    const std::vector<Joints> from = groupedAlong(source.bones, source.along, target.along),
+                              to = groupedAlong(target.bones, target.along, source.along);
     for (std::size_t i = 0; i < to.size(); ++i) add(name + "Bone" + std::to_string(i + 1), from[i], to[i]);
     add(name + "Foot", source.foot, target.foot);
     add(name + "Toes", source.toes, target.toes);
