@@ -38,6 +38,7 @@ class ShapeReader {
     for (Index j = 0; j < skeleton.jointCount(); ++j) {
       if (children_[j].empty()) leaves_.push_back(j);
     }
+    measureDepths();
   }
 
   std::vector<HumanoidJoint> read() {
@@ -70,6 +71,20 @@ class ShapeReader {
   void give(bool left, std::string_view leftBone, Index joint) {
     give(left ? leftBone : mirroredBone(leftBone), joint);
   }
+  // Parents may come behind their children.
+  void measureDepths() {
+    std::vector<Index> open;
+    depths_.resize(children_.size());
+    for (Index j = 0; j < children_.size(); ++j) {
+      if (!skeleton_.joints[j].parent) open.push_back(j);
+    }
+    while (!open.empty()) {
+      const Index joint = open.back();
+      open.pop_back();
+      for (const Index child : children_[joint]) depths_[child] = depths_[joint] + 1;
+      open.insert(open.end(), children_[joint].begin(), children_[joint].end());
+    }
+  }
   double side(Index joint) const { return lateral_.dot(positions_[joint] - center_); }
   // Or itself. As isAncestorOrSelf, but of parents that may come behind their children.
   bool isAbove(Index above, Index joint) const {
@@ -78,9 +93,13 @@ class ShapeReader {
     return up.has_value();
   }
   std::optional<Index> fork(Index a, Index b) const {
-    std::optional<Index> up = a;
-    while (up && !isAbove(*up, b)) up = skeleton_.joints[*up].parent;
-    return up;
+    std::optional<Index> one = a, other = b;
+    while (one != other) {
+      std::optional<Index>& deeper = depths_[*one] > depths_[*other] ? one : other;
+      deeper = skeleton_.joints[*deeper].parent;
+      if (!deeper) return std::nullopt;
+    }
+    return one;
   }
   // The joint that both legs hang on, where they do not hang on the hips.
   Index carrierOf(Index hips, const Pair& feet) const {
@@ -105,9 +124,10 @@ class ShapeReader {
     for (std::size_t a = 0; a < leaves_.size(); ++a) {
       for (std::size_t b = a + 1; b < leaves_.size(); ++b) {
         const Vec3 &p = positions_[leaves_[a]], &q = positions_[leaves_[b]];
-        const std::optional<Index> meet = fork(leaves_[a], leaves_[b]);
         const double top = std::max(p.y(), q.y()) - ground_;
-        if (!meet || top > 0.2 * size_.y() || std::abs(p.y() - q.y()) > 0.05 * size_.y()) continue;
+        if (top > 0.2 * size_.y() || std::abs(p.y() - q.y()) > 0.05 * size_.y()) continue;
+        const std::optional<Index> meet = fork(leaves_[a], leaves_[b]);
+        if (!meet) continue;
         if (positions_[*meet].y() - ground_ < 0.3 * size_.y()) continue;
         const double cost = p.y() + q.y() - 2 * ground_ + std::abs(p.z() - q.z());
         if (!best || cost < bestCost) {
@@ -314,6 +334,7 @@ class ShapeReader {
   const Skeleton& original_;
   Skeleton skeleton_;  // each foot on its leg; of the rest transforms only positions_ hold
   std::vector<std::vector<Index>> children_;
+  std::vector<Index> depths_;  // #J, 0 of roots
   std::vector<Vec3> positions_;
   std::vector<Index> leaves_;
   Vec3 center_ = Vec3::Zero(), size_ = Vec3::Zero(), lateral_ = Vec3::UnitX();
