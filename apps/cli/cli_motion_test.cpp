@@ -249,11 +249,6 @@ TEST_F(Cli, TheClipThatWasAddedLastIsMeasured) {
   EXPECT_LT(degrees({}), 0.5);
   EXPECT_EQ(degrees({}), degrees({"--clip", "wave_2"}));
   EXPECT_GT(degrees({"--clip", "wave"}), 5);
-  // A source of several clips calls it by its name without the number.
-  put("bow.bvh", personBvh("Bip01 "));
-  EXPECT_EQ(run({"retarget", "wave.glb", "bow.bvh", "-o", "two.glb", "-q"}).code, 0);
-  EXPECT_EQ(run({"retarget", "two.glb", "two.glb", "-o", "four.glb", "-q"}).code, 0);
-  EXPECT_EQ(run({"evaluate", "motion", "four.glb", "--source", "two.glb", "--clip", "bow_2"}).code, 0);
 }
 
 // Clips of names that the character has already get a number behind them.

@@ -40,8 +40,8 @@ struct Leg : Limb {
   double flatness = 0;                                 // likewise
   Vec3 place = Vec3::Zero();                           // of the end, by the joint angles or by its own way
   double bentReach = 0;                                // ownWay: from hip to end if bent as the source's (LegBend)
-  double lift = 0;     // ownWay: of the source's foot from where it stands, hip heights;
-                       // more of people who lie down
+  // ownWay: of the source's foot from where it stands, hip heights; more of people who lie down.
+  double lift = 0;
   double upright = 1;  // ownWay: of the source's body, 0 where it lies on its side
 };
 

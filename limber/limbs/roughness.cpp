@@ -5,6 +5,8 @@
 #include <cmath>
 #include <optional>
 
+#include "limber/skeleton/chain.h"
+
 namespace limber {
 
 namespace {
@@ -27,11 +29,6 @@ std::vector<LimbPair> matchedBones(const RetargetSetup& setup) {
     for (const Index joint : match.source) from[joint] = &match;
     for (const Index joint : match.target) to[joint] = &match;
   }
-  const auto above = [](const Skeleton& skeleton, const std::vector<const JointMatch*>& matches, Index joint) {
-    std::optional<Index> at = skeleton.joints[joint].parent;
-    while (at && !matches[*at]) at = skeleton.joints[*at].parent;
-    return at;
-  };
   std::vector<LimbPair> bones;
   const auto add = [&](const LimbPair& bone) {
     const auto hasLength = [](const NeutralPose& pose, const std::vector<Index>& joints) {
@@ -43,7 +40,8 @@ std::vector<LimbPair> matchedBones(const RetargetSetup& setup) {
   };
   for (const JointMatch& match : setup.map.matches) {
     const Index s = match.source.front(), t = match.target.front();
-    const std::optional<Index> one = above(*setup.source, from, s), other = above(*setup.target, to, t);
+    const std::optional<Index> one = nearestAbove(*setup.source, s, [&](Index j) { return from[j]; });
+    const std::optional<Index> other = nearestAbove(*setup.target, t, [&](Index j) { return to[j]; });
     if (one && other && from[*one] == to[*other]) add({{*one, s}, {*other, t}});
     if (match.source.size() > 1 && match.target.size() > 1) add({{s, match.source.back()}, {t, match.target.back()}});
   }

@@ -260,8 +260,7 @@ class Hanging {
  private:
   using Matches = std::vector<std::optional<std::size_t>>;  // #J
   static std::optional<std::size_t> above(const Skeleton& skeleton, const Matches& matchOf, Index joint) {
-    std::optional<Index> at = skeleton.joints[joint].parent;
-    while (at && !matchOf[*at]) at = skeleton.joints[*at].parent;
+    const std::optional<Index> at = nearestAbove(skeleton, joint, [&](Index j) { return matchOf[j].has_value(); });
     return at ? matchOf[*at] : std::nullopt;
   }
 

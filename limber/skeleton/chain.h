@@ -31,4 +31,11 @@ bool isAncestorOrSelf(const Skeleton& skeleton, Index above, Index joint);
 // The last joint without a parent on the way up from `joint`.
 Index rootOf(const Skeleton& skeleton, Index joint);
 
+// The nearest joint above one of which that holds, if any.
+std::optional<Index> nearestAbove(const Skeleton& skeleton, Index joint, const auto& holds) {
+  std::optional<Index> at = skeleton.joints[joint].parent;
+  while (at && !holds(*at)) at = skeleton.joints[*at].parent;
+  return at;
+}
+
 }  // namespace limber
