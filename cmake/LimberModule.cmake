@@ -33,6 +33,7 @@ function(limber_module name)
   list(TRANSFORM ARG_USES PREPEND limber_)
   target_link_libraries(${target} PUBLIC ${ARG_USES} ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
   limber_precompile(${target} LIBRARY)
+  limber_unity(${target} 10)
   if(LIMBER_FUZZ AND ARG_FUZZED)
     target_compile_options(${target} PRIVATE -fsanitize-coverage=inline-8bit-counters,indirect-calls,trace-cmp,pc-table)
   endif()
@@ -46,7 +47,7 @@ function(limber_module name)
     limber_compile_options(${target}_tests)
     limber_test_helpers(${target}_tests)
     limber_precompile(${target}_tests TESTS)
-    limber_unity(${target}_tests)
+    limber_unity(${target}_tests 6)
     target_link_libraries(${target}_tests PRIVATE ${target} ${ARG_TEST_LIBRARIES} GTest::gmock GTest::gtest_main)
     gtest_discover_tests(${target}_tests TEST_PREFIX "${name}." DISCOVERY_TIMEOUT 120 PROPERTIES LABELS unit)
   endif()
@@ -81,11 +82,12 @@ function(limber_precompile target kind)
   target_precompile_headers(${target} REUSE_FROM ${owner})
 endfunction()
 
-# limber_unity(<test target>): where LIMBER_UNITY is on, its sources are compiled six at a time: what they include takes
-# most of their time. Names in their anonymous namespaces must differ.
-function(limber_unity target)
+# limber_unity(<target> <sources in a batch>): where LIMBER_UNITY is on, its sources are compiled several at a time, in
+# the order of their names: what they include takes most of their time. Names in the anonymous namespaces of a target
+# must differ. The dev and lint presets compile each source by itself.
+function(limber_unity target batch)
   if(LIMBER_UNITY)
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 6)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${batch})
   endif()
 endfunction()
 

@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct ConvertArguments {
   std::vector<std::string> files;
   std::string output, unit = "m", outputUnit, up = "auto", trim;
   std::vector<std::string> clips;
@@ -45,7 +45,7 @@ double metresOf(const std::string& unit) {
               "use m, dm, cm, mm, in, ft, cmu, or how many metres it has");
 }
 
-BvhOptions bvhOptions(const Options& options) {
+BvhOptions bvhOptions(const ConvertArguments& options) {
   BvhOptions bvh;
   bvh.metresPerUnit = metresOf(options.unit);
   if (options.up == "y") bvh.up = UpAxis::kY;
@@ -95,7 +95,7 @@ std::vector<Clip> chosenClips(std::vector<Clip> clips, const std::vector<std::st
 }
 
 // What the options do to each clip, in this order: loop, trim, mirror, fps.
-void edit(Motion& motion, const Options& options, const Account& account) {
+void edit(Motion& motion, const ConvertArguments& options, const Account& account) {
   const SkeletonMirror mirror = options.mirror ? findMirror(motion.skeleton) : SkeletonMirror{};
   for (Clip& clip : motion.clips) {
     if (options.loop) {
@@ -146,7 +146,7 @@ void append(Motion& motion, Motion other, const std::string& file) {
 }
 
 // One BVH for each clip: under the name given, or with the clip's behind it where there are several.
-std::vector<std::pair<fs::path, Bytes>> bvhFiles(const Motion& motion, const Options& options) {
+std::vector<std::pair<fs::path, Bytes>> bvhFiles(const Motion& motion, const ConvertArguments& options) {
   std::vector<std::pair<fs::path, Bytes>> files;
   const fs::path output = options.output;
   UniqueNames names;
@@ -168,7 +168,7 @@ std::vector<std::pair<fs::path, Bytes>> bvhFiles(const Motion& motion, const Opt
   return files;
 }
 
-void writeBvhFiles(const Motion& motion, const Options& options, const Account& account) {
+void writeBvhFiles(const Motion& motion, const ConvertArguments& options, const Account& account) {
   const std::vector<std::pair<fs::path, Bytes>> files = bvhFiles(motion, options);
   std::vector<OutputFile> outputs;
   outputs.reserve(files.size());
@@ -180,7 +180,7 @@ void writeBvhFiles(const Motion& motion, const Options& options, const Account& 
 }
 
 // A model keeps all but the animations of its joints, which make room for the clips; from a BVH comes a skeleton.
-void writeModel(std::optional<Asset>& model, const Motion& motion, const Options& options) {
+void writeModel(std::optional<Asset>& model, const Motion& motion, const ConvertArguments& options) {
   if (!model) return writeAsset(motionAsset(motion), options.output);
   const AssetSkeleton skeleton = animatedSkeleton(*model);
   removeChannels(*model, [&](Index node, std::string_view path) {
@@ -191,7 +191,7 @@ void writeModel(std::optional<Asset>& model, const Motion& motion, const Options
   writeAsset(*model, options.output);
 }
 
-void run(Options options) {
+void run(ConvertArguments options) {
   options.common.apply();
   if (options.output.empty()) {
     if (options.files.size() < 2) {
@@ -247,7 +247,7 @@ void run(Options options) {
 }  // namespace
 
 void addConvertCommand(CLI::App& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ConvertArguments>();
   CLI::App* command = program.add_subcommand("convert", "Convert motions between BVH and glTF; cut, mirror, resample");
   command
       ->add_option("FILES", options->files,

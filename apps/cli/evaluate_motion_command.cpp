@@ -18,7 +18,7 @@ namespace limber::cli {
 
 namespace {
 
-struct Options {
+struct MotionEvaluationArguments {
   std::string result, source, truth, clip, sourceClip, mapFile;
   bool json = false;
 };
@@ -69,7 +69,7 @@ Motion withClip(Motion motion, const std::string& file) {
   return motion;
 }
 
-void run(const Options& options) {
+void run(const MotionEvaluationArguments& options) {
   const Asset asset = readAsset(options.result);
   const Motion result = asItRests(withClip(motionOf(asset), options.result));
   const Motion source = asItRests(withClip(readMotion(options.source), options.source));
@@ -163,7 +163,7 @@ void addRetargetingEvaluation(CLI::App& evaluate) {
 }
 
 void addMotionEvaluation(CLI::App& evaluate) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<MotionEvaluationArguments>();
   CLI::App* command = evaluate.add_subcommand("motion", "Measure how well a character moves as its motion's source");
   command->add_option("RESULT", options->result, "the character with its clip")->required();
   command->add_option("--source", options->source, "the motion it came from")->required()->type_name("FILE");

@@ -12,7 +12,7 @@ namespace limber::cli {
 
 namespace {
 
-struct Options {
+struct InfoArguments {
   std::string input;
   bool json = false;
 };
@@ -120,7 +120,7 @@ void print(const std::string& file, const AssetInfo& info) {
   printWarnings(info.warnings, false);
 }
 
-void run(const Options& options) {
+void run(const InfoArguments& options) {
   const Asset asset = readAsset(options.input);
   const AssetInfo info = inspectAsset(asset);
   if (options.json) {
@@ -133,7 +133,7 @@ void run(const Options& options) {
 }  // namespace
 
 void addInfoCommand(CLI::App& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<InfoArguments>();
   CLI::App* command = program.add_subcommand("info", "Tell what is in a file");
   command->add_option("FILE", options->input, "the file; - is standard input")->required();
   command->add_flag("--json", options->json, "print JSON");

@@ -19,7 +19,7 @@ namespace limber::cli {
 
 namespace {
 
-struct Options {
+struct PoseArguments {
   std::string input, output, posesFile, poseName, limitsFile, deformer = "linear-blend", rootMotion = "fixed";
   std::optional<std::string> clip;
   std::optional<double> seconds;
@@ -45,7 +45,7 @@ PoseEdits editsOf(const std::string& file, const std::string& name) {
 }
 
 // What the file says first, then what the options say.
-PoseEdits collectEdits(const Options& options) {
+PoseEdits collectEdits(const PoseArguments& options) {
   PoseEdits edits;
   if (!options.posesFile.empty()) edits = editsOf(options.posesFile, options.poseName);
   for (const std::string& text : options.turns) {
@@ -76,7 +76,7 @@ std::optional<JointLimits> readLimits(const std::string& file, const Skeleton& s
 }
 
 // As the file's nodes stand, or as at a moment of a clip.
-Pose startPose(const Asset& asset, const AssetSkeleton& skeleton, const Options& options) {
+Pose startPose(const Asset& asset, const AssetSkeleton& skeleton, const PoseArguments& options) {
   if (!options.clip && !options.seconds) return readNodePose(asset, skeleton);
   return poseAt(asset, skeleton, {options.clip.value_or(""), options.seconds.value_or(0)});
 }
@@ -93,7 +93,7 @@ std::string_view outcomeText(IkOutcome outcome) {
   return "not reached, though it may be possible";
 }
 
-void writeResult(Asset& asset, const AssetSkeleton& skeleton, const Pose& pose, const Options& options) {
+void writeResult(Asset& asset, const AssetSkeleton& skeleton, const Pose& pose, const PoseArguments& options) {
   if (!options.bake) {
     options.setRest ? setRestPose(asset, skeleton, pose) : writeNodePose(asset, skeleton, pose);
     return writeAsset(asset, options.output);
@@ -104,7 +104,7 @@ void writeResult(Asset& asset, const AssetSkeleton& skeleton, const Pose& pose, 
   writeAsset(asset, options.output);
 }
 
-void run(Options options) {
+void run(PoseArguments options) {
   options.common.apply();
   if (options.bake) {
     checkOutput(options.output, {".glb", ".gltf", ".obj", ".stl", ".ply"});
@@ -140,7 +140,7 @@ void run(Options options) {
   if (options.output != "-") account.line(fmt::format("written: {}", options.output));
 }
 
-std::string help() {
+std::string poseHelp() {
   std::string text = "Solvers:\n";
   for (const IkMethod& method : ikMethods()) text += fmt::format("  {:<20}{}\n", method.name, method.summary);
   text += "Deformers:\n";
@@ -160,7 +160,7 @@ std::string help() {
 }  // namespace
 
 void addPoseCommand(CLI::App& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<PoseArguments>();
   CLI::App* command = program.add_subcommand("pose", "Turn, move and reach the joints of a rigged model");
   command->add_option("IN", options->input, "the rigged model; - is standard input")->required();
   command->add_option("-o,--output", options->output, "the .glb or .gltf to write; - is standard output (GLB)")
@@ -203,7 +203,7 @@ void addPoseCommand(CLI::App& program) {
                  "make the pose the rest pose: vertices and bind matrices are those of it, clips play as before")
       ->excludes("--bake");
   options->common.addTo(*command);
-  command->footer(help());
+  command->footer(poseHelp());
   command->callback([options] { run(*options); });
 }
 

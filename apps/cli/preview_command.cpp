@@ -17,7 +17,7 @@ namespace limber::cli {
 
 namespace {
 
-struct Options {
+struct PreviewArguments {
   std::string input, output, show = "model", size, view = "three-quarter", joint, clip;
   std::optional<double> time;  // seconds
   int frames = 0;              // of a contact sheet; 0: one picture
@@ -34,11 +34,11 @@ void parseSize(const std::string& text, PreviewOptions& options) {
   }
 }
 
-bool showsClip(const Options& options) {
+bool showsClip(const PreviewArguments& options) {
   return options.animate || options.frames > 0 || options.time || !options.clip.empty();
 }
 
-std::vector<double> momentsOf(const Options& options, const Clip& clip) {
+std::vector<double> momentsOf(const PreviewArguments& options, const Clip& clip) {
   if (options.animate) {
     constexpr double kMostFrames = 1000;
     const double count = std::round(clip.duration() * options.fps);
@@ -70,8 +70,8 @@ void checkPixels(std::size_t pictures, const PreviewOptions& preview) {
 }
 
 // A picture of a moment, a sheet of several, or an animation.
-Bytes clipPicture(const Asset& asset, const Options& options, const PreviewOptions& preview, Progress& progress,
-                  Warnings& warnings) {
+Bytes clipPicture(const Asset& asset, const PreviewArguments& options, const PreviewOptions& preview,
+                  Progress& progress, Warnings& warnings) {
   const Clip clip = findClip(asset, options.clip);
   const std::vector<double> moments = momentsOf(options, clip);
   checkPixels(moments.size(), preview);
@@ -86,7 +86,7 @@ Bytes stillPicture(const Asset& asset, const PreviewOptions& preview, Warnings& 
   return encodePng(render(scene, preview));
 }
 
-void run(Options options) {
+void run(PreviewArguments options) {
   options.common.apply();
   checkOutput(options.output, {".png"});
   PreviewOptions preview;
@@ -114,7 +114,7 @@ void run(Options options) {
 }  // namespace
 
 void addPreviewCommand(CLI::App& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<PreviewArguments>();
   CLI::App* command = program.add_subcommand("preview", "Draw a picture of a model, its handles, bones or weights");
   command->add_option("FILE", options->input, "the model; - is standard input")->required();
   command->add_option("-o,--output", options->output, "the .png to write; - is standard output")

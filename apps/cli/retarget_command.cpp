@@ -17,7 +17,7 @@ namespace limber::cli {
 
 namespace {
 
-struct Options {
+struct RetargetArguments {
   std::string model, output, mapFile, saveMapFile, rootScale = "hip-height", rigger = "template";
   std::vector<std::string> motions;
   RetargetAssetOptions retarget;
@@ -31,7 +31,7 @@ RootScale rootScaleOf(const std::string& name) {
   return name == "none" ? RootScale::kNone : RootScale::kHipHeight;
 }
 
-Bytes readMap(const Options& options) {
+Bytes readMap(const RetargetArguments& options) {
   try {
     return readFile(options.mapFile);
   } catch (const Error& error) {
@@ -40,7 +40,7 @@ Bytes readMap(const Options& options) {
   }
 }
 
-void prepare(Options& options) {
+void prepare(RetargetArguments& options) {
   options.common.apply();
   checkOutput(options.output, {".glb", ".gltf"});
   std::vector<std::string> others = options.motions;
@@ -60,7 +60,8 @@ void prepare(Options& options) {
 }
 
 // Adds all motions' clips; the map that is saved is that of the first motion.
-std::vector<RetargetedClip> addMotions(Asset& asset, const Options& options, Progress& progress, Warnings& warnings) {
+std::vector<RetargetedClip> addMotions(Asset& asset, const RetargetArguments& options, Progress& progress,
+                                       Warnings& warnings) {
   std::vector<RetargetedClip> clips;
   for (std::size_t i = 0; i < options.motions.size(); ++i) {
     progress.stage("retarget");
@@ -76,7 +77,7 @@ std::vector<RetargetedClip> addMotions(Asset& asset, const Options& options, Pro
   return clips;
 }
 
-void tell(const Options& options, const std::vector<RetargetedClip>& clips, const Warnings& warnings) {
+void tell(const RetargetArguments& options, const std::vector<RetargetedClip>& clips, const Warnings& warnings) {
   const Account account(options.common.quiet, options.output);
   for (const RetargetedClip& clip : clips) {
     account.line(fmt::format("{:<24} {} at {:g} a second, {} matched", clip.name, counted(clip.frames, "frame"),
@@ -90,13 +91,13 @@ void tell(const Options& options, const std::vector<RetargetedClip>& clips, cons
   if (options.output != "-") account.line(fmt::format("written: {}", options.output));
 }
 
-void write(const Asset& asset, const Options& options, const std::vector<RetargetedClip>& clips) {
+void write(const Asset& asset, const RetargetArguments& options, const std::vector<RetargetedClip>& clips) {
   std::vector<OutputFile> companions;
   if (!options.saveMapFile.empty()) companions.push_back({options.saveMapFile, asBytes(clips.front().mapJson)});
   writeAsset(asset, options.output, companions);
 }
 
-void runRetarget(Options options) {
+void runRetarget(RetargetArguments options) {
   prepare(options);
   TerminalProgress progress(options.common.quiet);
   progress->stage("read");
@@ -126,7 +127,7 @@ std::string remedyFor(const std::vector<TemplateMatch>& matches) {
          "match by --map";
 }
 
-void runAnimate(Options options) {
+void runAnimate(RetargetArguments options) {
   prepare(options);
   TerminalProgress progress(options.common.quiet);
   progress->stage("read");
@@ -157,7 +158,7 @@ void runAnimate(Options options) {
   tell(options, clips, warnings);
 }
 
-std::string help(const char* examples) {
+std::string retargetHelp(const char* examples) {
   std::string text = "Methods:\n";
   for (const RetargetMethod& method : retargetMethods())
     text += fmt::format("  {:<12}{}\n", method.name, method.summary);
@@ -165,7 +166,7 @@ std::string help(const char* examples) {
          "\nExamples:\n" + examples;
 }
 
-void addOptions(CLI::App& command, const std::shared_ptr<Options>& options) {
+void addOptions(CLI::App& command, const std::shared_ptr<RetargetArguments>& options) {
   RetargetOptions& retarget = options->retarget.retarget;
   command.add_option("MOTIONS", options->motions, "files with motions; each becomes a clip named after it")->required();
   command.add_option("-o,--output", options->output, "the .glb or .gltf to write; - is standard output (GLB)")
@@ -207,25 +208,25 @@ void addOptions(CLI::App& command, const std::shared_ptr<Options>& options) {
 }  // namespace
 
 void addRetargetCommand(CLI::App& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RetargetArguments>();
   CLI::App* command = program.add_subcommand("retarget", "Put motions onto a rigged character");
   command->add_option("MODEL", options->model, "the rigged model, or a skeleton alone, such as a .bvh")->required();
   addOptions(*command, options);
   command->footer(
-      help("  limber retarget hero.glb motions/*.bvh -o hero_all.glb\n"
-           "  limber retarget hero.glb dance.fbx -o dancing.glb --save-map map.json"));
+      retargetHelp("  limber retarget hero.glb motions/*.bvh -o hero_all.glb\n"
+                   "  limber retarget hero.glb dance.fbx -o dancing.glb --save-map map.json"));
   command->callback([options] { runRetarget(*options); });
 }
 
 void addAnimateCommand(CLI::App& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RetargetArguments>();
   CLI::App* command = program.add_subcommand("animate", "Let any model move: rig it if it has no rig, then retarget");
   command->add_option("MODEL", options->model, "the model, rigged or not")->required();
   addOptions(*command, options);
   command->add_option("--rigger", options->rigger, "how a model without a rig gets one; limber rig --help lists them")
       ->type_name("NAME")
       ->capture_default_str();
-  command->footer(help("  limber animate scan.obj walk.bvh -o walking.glb"));
+  command->footer(retargetHelp("  limber animate scan.obj walk.bvh -o walking.glb"));
   command->callback([options] { runAnimate(*options); });
 }
 

@@ -21,7 +21,7 @@ namespace limber::cli {
 
 namespace {
 
-struct Options {
+struct RigArguments {
   std::string input, output, report;
   AutoRigOptions rig;
   std::string templateName, up, front;
@@ -33,7 +33,7 @@ struct Options {
 constexpr double kWorthPrinting = 0.0005;  // seconds; shorter steps are left out of the account
 constexpr std::size_t kNodesListed = 8;
 
-Json reportJson(const Options& options, const std::string& format, const AutoRigReport& report) {
+Json reportJson(const RigArguments& options, const std::string& format, const AutoRigReport& report) {
   Json json;
   json["limber"] = LIMBER_VERSION;
   json["command"] = "rig";
@@ -93,7 +93,7 @@ void printBridged(const AutoRigReport& report) {
   }
 }
 
-void printAccount(const Account& account, const Options& options, const AutoRigReport& report) {
+void printAccount(const Account& account, const RigArguments& options, const AutoRigReport& report) {
   printStages(account, report);
   if (!report.suggestions.empty()) {
     std::vector<Index> counts;
@@ -154,7 +154,7 @@ void chooseTemplate(const std::string& name, AutoRigOptions& rig) {
 }
 
 // What only some riggers take is refused with others.
-void checkRigger(const Options& options) {
+void checkRigger(const RigArguments& options) {
   const bool isTemplate = !options.keepSkeleton && options.rig.rigger == "template";
   if (isTemplate && options.rig.rig.handles) {
     throw CLI::ValidationError("--handles", "a template has the joints that it has");
@@ -168,7 +168,7 @@ void checkRigger(const Options& options) {
   }
 }
 
-void run(Options options) {
+void run(RigArguments options) {
   options.common.apply();
   checkOutput(options.output, {".glb", ".gltf"});
   checkBeside("--json", options.report, {options.input, options.output, options.templateName});
@@ -225,7 +225,7 @@ std::string listTemplates() {
   return text;
 }
 
-std::string help() {
+std::string rigHelp() {
   return listMethods("Riggers", riggerMethods()) + listTemplates() + listMethods("Skinning methods", weightMethods()) +
          "\nReads GLB, glTF, OBJ, PLY, STL, OFF, FBX and DAE. The result appears under its name only when it is\n"
          "complete; a file of that name is replaced, also where it is the input.\n"
@@ -239,7 +239,7 @@ std::string help() {
 }  // namespace
 
 void addRigCommand(CLI::App& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RigArguments>();
   CLI::App* command = program.add_subcommand("rig", "Give a model handles and skin weights");
   command->add_option("IN", options->input, "the model; - is standard input")->required();
   command->add_option("-o,--output", options->output, "the .glb or .gltf to write; - is standard output (GLB)")
@@ -284,7 +284,7 @@ void addRigCommand(CLI::App& program) {
       ->type_name("FILE");
   command->add_flag("--strict", options->strict, "take warnings as errors");
   options->common.addTo(*command);
-  command->footer(help());
+  command->footer(rigHelp());
   command->callback([options] { run(*options); });
 }
 

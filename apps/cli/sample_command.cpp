@@ -14,7 +14,7 @@ namespace limber::cli {
 
 namespace {
 
-struct Options {
+struct SampleArguments {
   std::string name, output;
   Common common;
 };
@@ -36,7 +36,7 @@ void writeMotion(const Motion& motion, const std::string& output) {
   writeAsset(motionAsset(motion), output);
 }
 
-void run(const Options& options) {
+void run(const SampleArguments& options) {
   options.common.apply();
   const std::vector<Sample> all = samples();
   const bool moves = findByName(all, "sample", options.name).moves;
@@ -58,7 +58,7 @@ void run(const Options& options) {
   Account(options.common.quiet, options.output).line(fmt::format("{} -> {}", options.name, options.output));
 }
 
-std::string help() {
+std::string sampleHelp() {
   std::string models = "Models:\n", motions = "\nMotions:\n";
   for (const Sample& sample : samples()) {
     (sample.moves ? motions : models) += fmt::format("  {:<16}{}\n", sample.name, sample.summary);
@@ -74,7 +74,7 @@ std::string help() {
 }  // namespace
 
 void addSampleCommand(CLI::App& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<SampleArguments>();
   CLI::App* command = program.add_subcommand("sample", "Write a model or a motion that limber makes itself");
   command->add_option("NAME", options->name, "which one, see below")->required();
   command
@@ -83,7 +83,7 @@ void addSampleCommand(CLI::App& program) {
       ->required()
       ->type_name("FILE");
   options->common.addTo(*command);
-  command->footer(help());
+  command->footer(sampleHelp());
   command->callback([options] { run(*options); });
 }
 

@@ -15,7 +15,7 @@ namespace limber::cli {
 
 namespace {
 
-struct Options {
+struct SessionArguments {
   std::string commands, output;
   Common common;
 };
@@ -38,7 +38,7 @@ ExportFormat formatOf(const std::filesystem::path& path) {
   return extension == ".ply" ? ExportFormat::kPly : ExportFormat::kGlb;
 }
 
-void run(const Options& options) {
+void run(const SessionArguments& options) {
   options.common.apply();
   checkOutput(options.output, {".glb", ".obj", ".stl", ".ply"});
   const std::vector<Command> commands = readCommands(options.commands);
@@ -66,7 +66,7 @@ void run(const Options& options) {
 }  // namespace
 
 void addSessionCommand(CLI::App& program) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<SessionArguments>();
   CLI::App* command = program.add_subcommand("session", "Do again what was done in the studio");
   command->require_subcommand(1);
   command->footer("Example:\n  limber session replay commands.json -o posed.glb");

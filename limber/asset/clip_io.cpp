@@ -20,8 +20,8 @@ namespace limber {
 namespace {
 
 constexpr const char *kTranslation = "translation", *kRotation = "rotation", *kScale = "scale";
-constexpr double kSame = 1e-6;      // of a length or in radians: the same but for rounding
-constexpr float kStanding = 1e-6f;  // likewise, of a node's own value
+constexpr double kSameTransform = 1e-6;  // of a length or in radians: the same but for rounding
+constexpr float kStanding = 1e-6f;       // likewise, of a node's own value
 
 void sortUnique(std::vector<float>& times) {
   std::sort(times.begin(), times.end());
@@ -322,7 +322,7 @@ class ClipWriter {
     if (!tracks.translation && (framed || differs(joint.rest.translation, stands.translation))) {
       tracks.translation = constantTrack(Vec3f(joint.rest.translation.cast<float>()));
     }
-    if (!tracks.rotation && (framed || joint.rest.rotation.angularDistance(stands.rotation) > kSame)) {
+    if (!tracks.rotation && (framed || joint.rest.rotation.angularDistance(stands.rotation) > kSameTransform)) {
       tracks.rotation = constantTrack(Eigen::Quaternionf(joint.rest.rotation.cast<float>()));
     }
     if (!tracks.scale && (framed || differs(joint.rest.scale, stands.scale))) {
@@ -337,10 +337,12 @@ class ClipWriter {
     if (tracks.scale) writeTrack(j, kScale, *tracks.scale, Vec3f(local.scale.cast<float>()));
   }
 
-  static bool differs(const Vec3& a, const Vec3& b) { return (a - b).norm() > kSame * std::max(a.norm(), b.norm()); }
+  static bool differs(const Vec3& a, const Vec3& b) {
+    return (a - b).norm() > kSameTransform * std::max(a.norm(), b.norm());
+  }
 
   static bool same(const Transform& a, const Transform& b) {
-    return !differs(a.translation, b.translation) && a.rotation.angularDistance(b.rotation) <= kSame &&
+    return !differs(a.translation, b.translation) && a.rotation.angularDistance(b.rotation) <= kSameTransform &&
            !differs(a.scale, b.scale);
   }
 

@@ -16,7 +16,7 @@ namespace limber {
 namespace {
 
 // One compressed buffer view.
-struct Encoded {
+struct EncodedView {
   std::size_t view = 0;
   Index target = 0;  // buffer that the decoded bytes belong to
   Index source = 0;
@@ -25,8 +25,8 @@ struct Encoded {
   std::string_view mode, filter;
 };
 
-Encoded readEncoded(const Asset& asset, const JsonView& view, const JsonView& extension) {
-  Encoded encoded;
+EncodedView readEncoded(const Asset& asset, const JsonView& view, const JsonView& extension) {
+  EncodedView encoded;
   encoded.target = view.requireIndex("buffer", asset.buffers.size());
   if (!asset.buffers[encoded.target].bytes.empty()) view.fail("reaches beyond its buffer");
   encoded.source = extension.requireIndex("buffer", asset.buffers.size());
@@ -48,7 +48,7 @@ Encoded readEncoded(const Asset& asset, const JsonView& view, const JsonView& ex
 }
 
 // The decoder's own rules, which it only asserts.
-void checkShape(const Encoded& encoded, const JsonView& extension) {
+void checkShape(const EncodedView& encoded, const JsonView& extension) {
   const bool isIndex = encoded.mode == "TRIANGLES" || encoded.mode == "INDICES";
   bool fits =
       encoded.mode == "ATTRIBUTES" ? encoded.stride % 4 == 0 : isIndex && (encoded.stride == 2 || encoded.stride == 4);
@@ -66,7 +66,7 @@ void checkShape(const Encoded& encoded, const JsonView& extension) {
   if (!fits) extension.fail("its mode, filter, count and byteStride do not go together");
 }
 
-int decodeInto(const Encoded& encoded, std::uint8_t* out) {
+int decodeInto(const EncodedView& encoded, std::uint8_t* out) {
   const std::size_t size = encoded.bytes.size();
   if (encoded.mode == "TRIANGLES") {
     return meshopt_decodeIndexBuffer(out, encoded.count, encoded.stride, encoded.bytes.data(), size);
@@ -82,8 +82,8 @@ int decodeInto(const Encoded& encoded, std::uint8_t* out) {
   return 0;
 }
 
-std::vector<Encoded> findEncoded(const Asset& asset) {
-  std::vector<Encoded> found;
+std::vector<EncodedView> findEncoded(const Asset& asset) {
+  std::vector<EncodedView> found;
   const JsonView views = JsonView(asset).array("bufferViews");
   for (std::size_t i = 0; i < views.size(); ++i) {
     if (!hasMeshopt(views[i])) continue;
@@ -101,10 +101,10 @@ std::vector<Encoded> findEncoded(const Asset& asset) {
 // The decoded bytes fill the buffer that stands for them, one view behind the other, at offsets of our own: those in
 // the file are a claim about memory.
 void decodeMeshopt(Asset& asset, DecodeBudget& budget, Decoded& decoded) {
-  const std::vector<Encoded> views = findEncoded(asset);
+  const std::vector<EncodedView> views = findEncoded(asset);
   std::vector<Bytes> filled(asset.buffers.size());
   std::vector<std::size_t> offsets;
-  for (const Encoded& encoded : views) {
+  for (const EncodedView& encoded : views) {
     const std::string where = fmt::format("bufferViews[{}]", encoded.view);
     Bytes& out = filled[encoded.target];
     const std::size_t offset = (out.size() + 3) / 4 * 4, size = encoded.count * encoded.stride;

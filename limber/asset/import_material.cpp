@@ -37,7 +37,7 @@ double roughnessOf(double exponent) {
 }
 
 // Appends bytes to the document's buffer as a view without an accessor.
-Index addBufferView(Asset& asset, ByteSpan bytes) {
+Index addImageView(Asset& asset, ByteSpan bytes) {
   Json& json = asset.json();
   if (asset.buffers.empty()) {
     asset.buffers.emplace_back();
@@ -120,7 +120,7 @@ std::optional<Index> MaterialImporter::texture(const std::string& path) {
     asset_.warnings.add("unsupported-images", "textures that are neither PNG nor JPEG are left out", validUtf8(path));
     return std::nullopt;
   }
-  const Index view = addBufferView(asset_, *bytes);
+  const Index view = addImageView(asset_, *bytes);
   Json& json = asset_.json();
   json["images"].push_back({{"name", validUtf8(path)}, {"bufferView", view}, {"mimeType", mime}});
   json["textures"].push_back({{"source", json["images"].size() - 1}});

@@ -42,7 +42,7 @@ constexpr double kClockPerProcessorTime = 10;  // other programs run too
 
 enum class Kind : std::uint64_t { kResult, kError };
 
-struct Header {
+struct MessageHeader {
   Kind kind = Kind::kResult;
   std::uint64_t length = 0;
 };
@@ -57,7 +57,7 @@ std::size_t addressSpace() {
   return pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
 }
 
-void limit(int resource, rlim_t value) {
+void setLimit(int resource, rlim_t value) {
   rlimit now{};
   if (getrlimit(resource, &now) != 0) return;
   if (now.rlim_max != RLIM_INFINITY) value = std::min(value, now.rlim_max);
@@ -66,12 +66,12 @@ void limit(int resource, rlim_t value) {
 }
 
 void applyLimits(const SandboxLimits& limits, std::size_t inherited) {
-  limit(RLIMIT_CORE, 0);
-  limit(RLIMIT_CPU, static_cast<rlim_t>(std::ceil(limits.seconds)));
+  setLimit(RLIMIT_CORE, 0);
+  setLimit(RLIMIT_CPU, static_cast<rlim_t>(std::ceil(limits.seconds)));
 #ifdef RLIMIT_AS
-  if (!kAddressSanitizer && inherited > 0) limit(RLIMIT_AS, inherited + limits.memory);
+  if (!kAddressSanitizer && inherited > 0) setLimit(RLIMIT_AS, inherited + limits.memory);
 #endif
-  const int nowhere = open("/dev/null", O_WRONLY);  // what a dying importer prints is no message of ours
+  const int nowhere = ::open("/dev/null", O_WRONLY);  // what a dying importer prints is no message of ours
   if (nowhere >= 0) {
     dup2(nowhere, STDOUT_FILENO);
     dup2(nowhere, STDERR_FILENO);
@@ -91,7 +91,7 @@ bool sendAll(int pipe, const void* data, std::size_t size) {
 }
 
 void sendMessage(int pipe, Kind kind, ByteSpan bytes) {
-  const Header header{kind, bytes.size()};
+  const MessageHeader header{kind, bytes.size()};
   if (sendAll(pipe, &header, sizeof header)) sendAll(pipe, bytes.data(), bytes.size());
 }
 
@@ -202,7 +202,7 @@ class Child {
 };
 
 Bytes receiveMessage(Child& child, std::size_t memory) {
-  Header header;
+  MessageHeader header;
   child.receive(&header, sizeof header);
   if (header.length > memory && !kAddressSanitizer) {
     throw Error(ErrorCode::kLimit, "becomes larger than a file of its size may");

@@ -11,7 +11,7 @@ namespace limber {
 
 namespace {
 
-struct Header {
+struct PlyHeader {
   PlyCounts counts;
   bool text = false;
   std::uint64_t elements = 0;
@@ -30,10 +30,10 @@ std::uint64_t sizeOfType(const std::string& type) {
   throw Error(ErrorCode::kBadData, "cannot be read as PLY: " + why);
 }
 
-Header parseHeader(std::string_view file) {
+PlyHeader parseHeader(std::string_view file) {
   constexpr std::string_view kEnd = "end_header";
   constexpr std::size_t kLongest = std::size_t{1} << 20;
-  Header header;
+  PlyHeader header;
   header.length = file.substr(0, kLongest).find(kEnd);
   if (header.length == std::string_view::npos || header.length + kEnd.size() >= file.size()) {
     refuse("its header has no end");
@@ -77,7 +77,7 @@ std::uint64_t countLines(std::string_view text) {
 
 PlyCounts checkPly(ByteSpan bytes) {
   const std::string_view file(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  const Header header = parseHeader(file);
+  const PlyHeader header = parseHeader(file);
   const std::string_view body = file.substr(header.length);
   if (header.text ? countLines(body) < header.elements : body.size() < header.bytes) {
     refuse("it is cut off: it holds less than its header announces");

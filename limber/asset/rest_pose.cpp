@@ -19,7 +19,7 @@ namespace limber {
 namespace {
 
 constexpr int kVertexBuffer = 34962;
-constexpr double kSame = 1e-6;  // relative: transforms of single precision that differ less are one
+constexpr double kSameNumber = 1e-6;  // relative: transforms of single precision that differ less are one
 
 using Maps = std::vector<Affine>;  // of a mesh's space into itself
 
@@ -31,7 +31,7 @@ Affine inverseOrThrow(const Affine& map, const std::string& where) {
 
 bool sameMap(const Affine& a, const Affine& b) {
   const double size = 1 + a.matrix().cwiseAbs().maxCoeff();
-  return (a.matrix() - b.matrix()).cwiseAbs().maxCoeff() <= kSame * size;
+  return (a.matrix() - b.matrix()).cwiseAbs().maxCoeff() <= kSameNumber * size;
 }
 
 // Where each vertex of a primitive goes: the weighted sum of its joints' maps. Those without weights stay.
@@ -247,7 +247,7 @@ struct ChangedPart {
 
 template <typename Vector>
 bool sameNumbers(const Vector& a, const Vector& b) {
-  return (a - b).cwiseAbs().maxCoeff() <= kSame * (1e-1 + a.cwiseAbs().maxCoeff());
+  return (a - b).cwiseAbs().maxCoeff() <= kSameNumber * (1e-1 + a.cwiseAbs().maxCoeff());
 }
 
 template <typename Vector>

@@ -17,7 +17,6 @@ namespace limber {
 namespace {
 
 constexpr const char* kRigName = "limber_rig";
-constexpr Index kMaxJoints = 65536;  // of one skin: joint indices are unsigned shorts
 
 Json vectorJson(const double* values, int count) {
   Json result = Json::array();
@@ -47,9 +46,9 @@ Json jointJson(const Joint& joint, const Transform& rest, const std::string& nam
 void checkArguments(const Asset& asset, const Geometry& geometry, const Skeleton& skeleton,
                     const SkinWeights& weights) {
   checkSkeleton(skeleton);
-  if (skeleton.joints.empty() || skeleton.jointCount() > kMaxJoints) {
+  if (skeleton.joints.empty() || skeleton.jointCount() > kMaxSkinJoints) {
     throw Error(ErrorCode::kBadArgument,
-                fmt::format("a rig has 1 to {} joints, not {}", kMaxJoints, skeleton.joints.size()));
+                fmt::format("a rig has 1 to {} joints, not {}", kMaxSkinJoints, skeleton.joints.size()));
   }
   if (weights.vertexCount() != geometry.positions.size()) {
     throw Error(ErrorCode::kBadArgument, fmt::format("weights for {} vertices, but the geometry has {}",

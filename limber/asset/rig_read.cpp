@@ -90,15 +90,15 @@ AssetSkeleton readSkeleton(const Asset& asset) {
 
 namespace {
 
-struct Influence {
+struct JointInfluence {
   Index joint;
   float weight;
 };
 
 // Adds to the influence of the same joint, if there is one.
-void addInfluence(std::vector<Influence>& influences, Influence added) {
+void addInfluence(std::vector<JointInfluence>& influences, JointInfluence added) {
   const auto same = std::find_if(influences.begin(), influences.end(),
-                                 [&](const Influence& known) { return known.joint == added.joint; });
+                                 [&](const JointInfluence& known) { return known.joint == added.joint; });
   if (same != influences.end()) {
     same->weight += added.weight;
   } else {
@@ -142,7 +142,7 @@ class WeightReader {
   void readSkinned(const PrimitiveInstance& instance, Index skin) {
     const std::vector<InfluenceSet> sets = readInfluenceSets(asset_, primitiveOf(instance));
     const std::vector<Index> skinJoints = readSkinBinding(asset_, skin).joints;
-    std::vector<Influence> influences;
+    std::vector<JointInfluence> influences;
     for (std::size_t v = 0; v < instance.vertexCount; ++v) {
       influences.clear();
       for (const InfluenceSet& set : sets) {
@@ -154,7 +154,7 @@ class WeightReader {
         }
       }
       std::stable_sort(influences.begin(), influences.end(),
-                       [](const Influence& a, const Influence& b) { return a.weight > b.weight; });
+                       [](const JointInfluence& a, const JointInfluence& b) { return a.weight > b.weight; });
       store(instance.firstVertex + v, influences);
     }
   }
@@ -163,11 +163,11 @@ class WeightReader {
     std::optional<Index> node = instance.node;
     while (node && !jointOfNode_[*node]) node = graph_.parent[*node];
     if (!node) return;
-    const std::vector<Influence> whole = {{*jointOfNode_[*node], 1.0f}};
+    const std::vector<JointInfluence> whole = {{*jointOfNode_[*node], 1.0f}};
     for (std::size_t v = 0; v < instance.vertexCount; ++v) store(instance.firstVertex + v, whole);
   }
 
-  void store(std::size_t vertex, const std::vector<Influence>& influences) {
+  void store(std::size_t vertex, const std::vector<JointInfluence>& influences) {
     for (std::size_t i = 0; i < std::min<std::size_t>(result_.slots, influences.size()); ++i) {
       result_.joints[vertex * result_.slots + i] = influences[i].joint;
       result_.weights[vertex * result_.slots + i] = influences[i].weight;

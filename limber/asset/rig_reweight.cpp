@@ -16,8 +16,6 @@ namespace limber {
 
 namespace {
 
-constexpr Index kMaxJoints = 65536;  // of one skin: joint indices are unsigned shorts
-
 class Reweighter {
  public:
   Reweighter(Asset& asset, const Geometry& geometry, const AssetSkeleton& skeleton, const SkinWeights& weights)
@@ -84,7 +82,7 @@ class Reweighter {
       const Index node = skeleton_.jointNode[joint];
       if (skinJointOfNode[node] == kNoIndex) nodes.push_back(node);
     }
-    if (nodes.size() > kMaxJoints) {
+    if (nodes.size() > kMaxSkinJoints) {
       throw Error(ErrorCode::kLimit, fmt::format("needs {} joints", nodes.size()), fmt::format("skins[{}]", skin));
     }
     checkSkeletonRoot(skin, binding.joints.size(), nodes);

@@ -50,14 +50,14 @@ void normalize(std::span<const float> row, Index vertex, std::span<float> out) {
   out[0] = static_cast<float>(std::max(0.0, 1 - others));
 }
 
-struct Encoded {
+struct EncodedWeights {
   std::vector<std::vector<float>> weights;  // a set: #V * 4
   std::vector<std::vector<Index>> joints;
 };
 
-Encoded encode(const SkinWeights& weights, const PrimitiveInstance& range, std::span<const Index> skinJointOf) {
+EncodedWeights encode(const SkinWeights& weights, const PrimitiveInstance& range, std::span<const Index> skinJointOf) {
   const Index sets = setCount(weights, range);
-  Encoded result;
+  EncodedWeights result;
   result.weights.assign(sets, std::vector<float>(std::size_t{range.vertexCount} * kSetSize));
   result.joints.assign(sets, std::vector<Index>(std::size_t{range.vertexCount} * kSetSize));
   std::vector<float> row(weights.slots);
@@ -111,7 +111,7 @@ void eraseWeightAttributes(Json& primitive) {
 
 Json addWeightAccessors(Asset& asset, const PrimitiveInstance& source, const SkinWeights& weights,
                         std::span<const Index> skinJointOf, Index skinJointCount) {
-  const Encoded encoded = encode(weights, source, skinJointOf);
+  const EncodedWeights encoded = encode(weights, source, skinJointOf);
   Json attributes = Json::object();
   for (std::size_t set = 0; set < encoded.weights.size(); ++set) {
     attributes[fmt::format("JOINTS_{}", set)] =

@@ -10,6 +10,8 @@
 
 namespace limber {
 
+inline constexpr Index kMaxSkinJoints = 65536;  // of one skin: joint indices are unsigned shorts
+
 // New accessors for the weights of source's range of `weights`: an object {"JOINTS_0": accessor, "WEIGHTS_0":
 // accessor}, with JOINTS_1 and WEIGHTS_1 where a vertex has more than four influences.
 //

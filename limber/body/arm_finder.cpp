@@ -9,14 +9,14 @@ namespace limber {
 
 namespace {
 
-constexpr int kCuts = 30;             // along the arm from shoulder to hand
-constexpr double kInwards = 0.35;     // of the arm's length that is looked at beyond the shoulder
-constexpr double kOutwards = 0.45;    // and beyond the hand
-constexpr double kSeedReach = 0.03;   // heights
-constexpr double kWider = 3.5;        // the trunk's cut, against the upper arm's
-constexpr double kJump = 2.5;         // over two cuts: sleeves widen little by little
-constexpr double kNarrower = 1.2;     // the arm beside its narrowest place, against that
-constexpr double kThickerWithin = 8;  // cuts from the narrowest place
+constexpr int kCuts = 30;               // along the arm from shoulder to hand
+constexpr double kInwards = 0.35;       // of the arm's length that is looked at beyond the shoulder
+constexpr double kOutwards = 0.45;      // and beyond the hand
+constexpr double kArmSeedReach = 0.03;  // heights
+constexpr double kWider = 3.5;          // the trunk's cut, against the upper arm's
+constexpr double kJump = 2.5;           // over two cuts: sleeves widen little by little
+constexpr double kNarrower = 1.2;       // the arm beside its narrowest place, against that
+constexpr double kThickerWithin = 8;    // cuts from the narrowest place
 
 }  // namespace
 
@@ -28,7 +28,7 @@ ArmFinder::ArmFinder(const BodyVolume& body, const BodyFrame& frame, const Vec3&
   const double length = upper_ + lower_;
   for (double way = -kInwards * length; way < (1 + kOutwards) * length; way += step_) {
     const Vec3& along = way < upper_ ? upperArm : forearm;
-    const BodySection section = sectionAt(body, frame, elbow + (way - upper_) * along, along, kSeedReach);
+    const BodySection section = sectionAt(body, frame, elbow + (way - upper_) * along, along, kArmSeedReach);
     cuts_.push_back({way, section.area, section.center});
   }
   findArmpit();

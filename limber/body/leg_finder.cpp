@@ -7,7 +7,7 @@ namespace limber {
 
 namespace {
 
-constexpr double kSeedReach = 0.04;     // heights
+constexpr double kLegSeedReach = 0.04;  // heights
 constexpr double kLowestParting = 0.3;  // of the way from ankle to hip as embedded: legs that part lower are no legs
 constexpr double kHockBehind = 0.05;    // heights
 constexpr int kStaysTogether = 3;       // cuts
@@ -21,7 +21,8 @@ bool LegFinder::findParting() {
   int together = 0;
   for (double y = ankle; y < hip + 0.15; y += step) {
     std::array<BodySection, 2> cut;
-    for (int side = 0; side < 2; ++side) cut[side] = sectionAt(body_, frame_, seed(side, y), Vec3::UnitY(), kSeedReach);
+    for (int side = 0; side < 2; ++side)
+      cut[side] = sectionAt(body_, frame_, seed(side, y), Vec3::UnitY(), kLegSeedReach);
     if (cut[0].empty() || cut[1].empty()) continue;
     if (cut[0].contains(cut[1].center) || cut[0].center.x() <= cut[1].center.x()) {
       if (++together == kStaysTogether) {

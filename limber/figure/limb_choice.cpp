@@ -9,7 +9,7 @@ namespace {
 using Choice = std::array<std::size_t, kFigureLimbs>;
 
 constexpr int kPairs[][2] = {{0, 1}, {2, 3}, {0, 2}, {0, 3}, {1, 2}, {1, 3}};
-constexpr int kRounds = 3;
+constexpr int kChoiceRounds = 3;
 
 class Matches {
  public:
@@ -51,7 +51,7 @@ Choice chooseLimbs(const Figure& figure, const LimbCandidates& candidates) {
   const Matches matches(figure, candidates);
   Choice best = {};
   double most = matches.of(best);
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kChoiceRounds; ++round) {
     const double before = most;
     for (const auto& [a, b] : kPairs) {
       Choice trial = best;

@@ -10,7 +10,7 @@ namespace limber {
 
 namespace {
 
-constexpr int kDirections = 160;
+constexpr int kLimbDirections = 160;
 constexpr double kShortest = 0.85, kLongest = 1.15;  // lower bones against the proportions'
 constexpr double kAlikeWay = 0.985;
 constexpr std::size_t kMostLowers = 20;        // that begin at one place
@@ -18,10 +18,10 @@ constexpr std::size_t kMostWays = 4;           // of these that a limb is tried 
 constexpr double kLeastMatch = -0.1;           // of a lower bone
 constexpr double kThinnest[] = {0.012, 0.02};  // statures, of the body at elbows, at knees
 constexpr double kMostStretch = 1.35, kLeastStretch = 0.65;
-constexpr double kMostShift = 0.03;  // statures that a shoulder gives way
-constexpr double kInTrunk = 0.25;
+constexpr double kMostShoulderShift = 0.03;  // statures that a shoulder gives way
+constexpr double kLimbInTrunk = 0.25;
 constexpr double kApartMiddles = 0.035;  // statures between elbows or knees that are looked at
-constexpr double kAlikeMiddle = 0.04, kAlikeAnkle = 0.06;
+constexpr double kAlikeLimbMiddle = 0.04, kAlikeLimbAnkle = 0.06;
 constexpr std::size_t kMoreLooked = 6;  // candidates, before hands and feet are looked at
 constexpr double kFootYaws[] = {-0.6, -0.3, 0, 0.3, 0.6}, kFootPitches[] = {-0.3, 0.1, 0.5, 0.9};
 
@@ -54,7 +54,7 @@ std::vector<LimbFinder::Lower> LimbFinder::lowersAt(const MedialSphere& sphere, 
     if (scale > kShortest && scale < kLongest) add(way.normalized(), scale);
   }
   // Some end where no sphere is.
-  static const std::vector<Vec3> kWays = evenDirections(kDirections);
+  static const std::vector<Vec3> kWays = evenDirections(kLimbDirections);
   for (const Vec3& way : kWays) {
     if (body_.distance->at(sphere.center + 0.95 * length * way) < 0) add(way, 1);
   }
@@ -79,7 +79,7 @@ std::vector<LimbFinder::Upper> LimbFinder::uppersOf(const Figure& figure, int li
     bones.upper = way / reach;
     if (!upperAllowed(trunk, limb, bones.upper)) continue;
     if (!isLeg(limb)) {  // the shoulder gives way where the bone would be too long or too short
-      const double give = std::clamp(reach - length, -kMostShift * size, kMostShift * size);
+      const double give = std::clamp(reach - length, -kMostShoulderShift * size, kMostShoulderShift * size);
       bones.shift = give / size * (trunk.transpose() * bones.upper);
       reach -= give;
     }
@@ -133,7 +133,7 @@ std::vector<LimbFinder::Candidate> LimbFinder::find(const Figure& figure, int li
       const FigureLimbPlaces places = trial.places(limb);
       const double inside =
           match_.insideTrunk(figure, places.ankle) + match_.insideTrunk(figure, 0.5 * (places.middle + places.ankle));
-      all.push_back({bones, weights.upper * upper.match + weights.lower * lower.match - kInTrunk * inside -
+      all.push_back({bones, weights.upper * upper.match + weights.lower * lower.match - kLimbInTrunk * inside -
                                 match_.pinCost(trial, limb)});
     }
   }
@@ -143,7 +143,7 @@ std::vector<LimbFinder::Candidate> LimbFinder::find(const Figure& figure, int li
     return trial.places(limb);
   };
   const auto isAlike = [&](const Candidate& a, const Candidate& b) {
-    return alike(places(a), places(b), kAlikeMiddle * figure.stature, kAlikeAnkle * figure.stature);
+    return alike(places(a), places(b), kAlikeLimbMiddle * figure.stature, kAlikeLimbAnkle * figure.stature);
   };
   std::vector<Candidate> apart = bestApart(std::move(all), effort.most + kMoreLooked, matchOf, isAlike);
   for (Candidate& candidate : apart) {

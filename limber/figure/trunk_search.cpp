@@ -23,13 +23,13 @@ constexpr std::size_t kMostHeads = 6;
 constexpr std::array<double, 3> kHeadShares = {0.064, 0.057, 0.05};  // radius of the sphere by stature
 
 // Of trunks.
-constexpr int kDirections = 240, kTurns = 12;
+constexpr int kTrunkDirections = 240, kTurns = 12;
 constexpr std::size_t kMostNecks = 30, kMostPelvises = 4;
-constexpr double kNeckUp = 0.3;            // most that a neck's base lies above the head, as a sine
-constexpr double kNeckDeep = 0.04;         // statures, of a neck's base
-constexpr double kNod = 0.45, kBow = 0.5;  // least cosine between neck and chest, chest and pelvis
-constexpr double kInside = 0.02;           // statures, of waist and hips
-constexpr double kAlike = 0.04, kAlikeTurn = 0.94;
+constexpr double kNeckUp = 0.3;                      // most that a neck's base lies above the head, as a sine
+constexpr double kNeckDeep = 0.04;                   // statures, of a neck's base
+constexpr double kLeastNod = 0.45, kLeastBow = 0.5;  // least cosine between neck and chest, chest and pelvis
+constexpr double kInside = 0.02;                     // statures, of waist and hips
+constexpr double kAlikeWaist = 0.04, kAlikeWaistTurn = 0.94;
 constexpr double kAlikeHips = 0.05, kAlikePelvis = 0.9;
 constexpr std::array<double, 5> kTwists = {-0.7, -0.35, 0, 0.35, 0.7};
 
@@ -53,7 +53,7 @@ Mat3 axesAbout(const Vec3& up, const SteadyAngle& angle) {
 }
 
 const std::vector<Vec3>& allWays() {
-  static const std::vector<Vec3> kWays = evenDirections(kDirections);
+  static const std::vector<Vec3> kWays = evenDirections(kTrunkDirections);
   return kWays;
 }
 
@@ -67,7 +67,7 @@ class TrunkSearch {
       Figure figure = neck.figure;
       for (const Vec3& down : allWays()) {
         const double nod = down.dot(figure.neck);
-        if (nod < kNod) continue;
+        if (nod < kLeastNod) continue;
         figure.chest.col(1) = -down;
         if (!isInside(figure, figure.waist())) continue;
         for (int turn = 0; turn < kTurns; ++turn) {
@@ -77,8 +77,8 @@ class TrunkSearch {
       }
     }
     return bestApart(std::move(chests), most, matchOf, [](const Rated& a, const Rated& b) {
-      return (a.figure.waist() - b.figure.waist()).norm() < kAlike * a.figure.stature &&
-             std::abs(a.figure.chest.col(0).dot(b.figure.chest.col(0))) > kAlikeTurn;
+      return (a.figure.waist() - b.figure.waist()).norm() < kAlikeWaist * a.figure.stature &&
+             std::abs(a.figure.chest.col(0).dot(b.figure.chest.col(0))) > kAlikeWaistTurn;
     });
   }
 
@@ -86,7 +86,7 @@ class TrunkSearch {
     std::vector<Rated> pelvises;
     Figure figure = start;
     for (const Vec3& down : allWays()) {
-      if (-down.dot(start.chest.col(1)) < kBow) continue;
+      if (-down.dot(start.chest.col(1)) < kLeastBow) continue;
       const Vec3 left = (start.chest.col(0) + start.chest.col(0).dot(down) * -down).normalized();
       Mat3 axes;
       axes << left, -down, left.cross(-down);

@@ -10,9 +10,9 @@ namespace limber {
 
 namespace {
 
-constexpr Index kPatience = 10;      // sweeps after which there must have been
-constexpr double kProgress = 0.999;  // this factor on the cost
-constexpr Index kUnaided = 10;       // sweeps of a single effector before leaps
+constexpr Index kCcdPatience = 10;      // sweeps after which there must have been
+constexpr double kCcdProgress = 0.999;  // this factor on the cost
+constexpr Index kUnaided = 10;          // sweeps of a single effector before leaps
 
 // From the tip, the k-th free joint from the base turns by k^-kEvenness of its best angle. Whole turns curl the tip up
 // before the base has moved: 70 sweeps for a chain of 10 to a millionth of its length, against 27 (0: whole turns;
@@ -61,8 +61,8 @@ class CcdIteration : public IkIteration {
         system.save(best_);
         if (system.allReached()) return done;
       }
-      if (done % kPatience != 0) continue;
-      if (!(best < kProgress * checked)) {
+      if (done % kCcdPatience != 0) continue;
+      if (!(best < kCcdProgress * checked)) {
         budget = done;
       }
       checked = best;

@@ -7,8 +7,8 @@ namespace limber {
 
 namespace {
 
-constexpr double kShare = 0.1;    // damping, of the squared distance left to go
-constexpr double kLeast = 1e-12;  // of the Gram matrix's trace, against singular ones
+constexpr double kDampingShare = 0.1;  // damping, of the squared distance left to go
+constexpr double kLeast = 1e-12;       // of the Gram matrix's trace, against singular ones
 
 class DampedLeastSquares : public JacobianIteration {
  public:
@@ -29,7 +29,7 @@ class DampedLeastSquares : public JacobianIteration {
 }  // namespace
 
 std::unique_ptr<IkIteration> makeDampedLeastSquares(const IkSystem& system) {
-  return makeDampedIteration(system, freedomsOf(system), kShare);
+  return makeDampedIteration(system, freedomsOf(system), kDampingShare);
 }
 
 std::unique_ptr<IkIteration> makeDampedIteration(const IkSystem& system, std::vector<double> gains, double share) {

@@ -11,8 +11,8 @@ namespace limber {
 
 namespace {
 
-constexpr Index kPatience = 10;      // iterations after which there must have been
-constexpr double kProgress = 0.999;  // this factor on the cost
+constexpr Index kFabrikPatience = 10;      // iterations after which there must have been
+constexpr double kFabrikProgress = 0.999;  // this factor on the cost
 
 // Of the squared length that a bone should have: so near to it, three terms of a series stand in for a root and a
 // quotient, which would take most of the time. They are off by 4e-5 at most, and by the cube of what is left to go as
@@ -70,8 +70,8 @@ Index fabrikChain(std::span<Vec3> positions, std::span<const FabrikBone> bones, 
     aim = aims ? nextAim(aim, before, left) : 0;
     // Nothing is gained by an aim out of reach: it would straighten the chain.
     if ((target + aim * left - base).squaredNorm() >= reach * reach) aim = 0;
-    if (iteration % kPatience != kPatience - 1) continue;
-    if (!(cost < kProgress * checked)) {
+    if (iteration % kFabrikPatience != kFabrikPatience - 1) continue;
+    if (!(cost < kFabrikProgress * checked)) {
       if (!aims) return iteration + 1;
       aims = false;
     }
@@ -174,8 +174,8 @@ class FabrikTree : public IkIteration {
         system.save(best_);
         if (system.allReached()) return done;
       }
-      if (done % kPatience != 0) continue;
-      if (!(best < kProgress * checked)) break;
+      if (done % kFabrikPatience != 0) continue;
+      if (!(best < kFabrikProgress * checked)) break;
       checked = best;
     }
     system.restore(best_);
@@ -187,7 +187,7 @@ class FabrikTree : public IkIteration {
   // their limits, the goals mislead more than they help: with every other iteration by them 74 of 100 humanoids were
   // solved, with every eighth 97.
   bool isTurnOfEffectors(Index done) const {
-    return heed_.size() > 1 ? done % 8 != 0 : done >= kPatience && done % 2 == 1;
+    return heed_.size() > 1 ? done % 8 != 0 : done >= kFabrikPatience && done % 2 == 1;
   }
 
   // Where every joint should go: effectors to their targets, a joint above to the centroid, by weight, of where its

@@ -10,10 +10,10 @@ namespace limber {
 
 namespace {
 
-constexpr double kSame = 1e-9;  // of the size, and of a rotation's coefficients: what rounding leaves
+constexpr double kMirrorRounding = 1e-9;  // of the size, and of a rotation's coefficients: what rounding leaves
 
 bool same(const Quat& a, const Quat& b) {
-  return std::min((a.coeffs() - b.coeffs()).norm(), (a.coeffs() + b.coeffs()).norm()) <= kSame;
+  return std::min((a.coeffs() - b.coeffs()).norm(), (a.coeffs() + b.coeffs()).norm()) <= kMirrorRounding;
 }
 
 std::size_t at(int index) {
@@ -39,7 +39,7 @@ IkMirror::IkMirror(const IkSystem& system) {
     const Vec3& first = system.positions[at(system.effectors[f].node)];
     for (std::size_t e = f + 1; e < system.effectors.size() && partners_.empty(); ++e) {
       const Vec3& other = system.positions[at(system.effectors[e].node)];
-      if (!((other - first).norm() > kSame * size_)) continue;
+      if (!((other - first).norm() > kMirrorRounding * size_)) continue;
       const Vec3 normal = (other - first).normalized();
       const Quat plane(0, normal.x(), normal.y(), normal.z());
       if (!pairNodes(system, plane, 0.5 * (first + other)) || !pairEffectors(system) || !limitsMatch(system)) {
@@ -63,7 +63,7 @@ bool IkMirror::pairNodes(const IkSystem& system, const Quat& plane, const Vec3& 
       const IkSystem::Node& other = system.nodes[at(k)];
       const bool alike = other.parent == parent && other.freedom == node.freedom && other.slides == node.slides &&
                          other.childCount == node.childCount && (other.limit == nullptr) == (node.limit == nullptr);
-      if (alike && (system.positions[at(k)] - image).norm() <= kSame * size_) partners_[at(n)] = k;
+      if (alike && (system.positions[at(k)] - image).norm() <= kMirrorRounding * size_) partners_[at(n)] = k;
     }
     const int partner = partners_[at(n)];
     if (partner < 0) return false;
@@ -114,7 +114,7 @@ bool IkMirror::referencesMatch(const IkSystem& system) const {
     if (!same(system.references[k], imageOf(system, n, system.references[at(n)]))) return false;
     if (!system.nodes[k].slides) continue;
     const Vec3 image = -(above(system, n).conjugate() * system.referenceOffsets[at(n)]);
-    if ((system.referenceOffsets[k] - image).norm() > kSame * size_) return false;
+    if ((system.referenceOffsets[k] - image).norm() > kMirrorRounding * size_) return false;
   }
   return true;
 }
@@ -122,7 +122,7 @@ bool IkMirror::referencesMatch(const IkSystem& system) const {
 bool IkMirror::isImage(const IkSystem& system, int node) const {
   const auto n = at(node), k = at(partners_[n]);
   return same(system.globals[k], plane_ * system.globals[n] * turns_[n]) &&
-         (system.positions[k] - mirrored(system.positions[n])).norm() <= kSame * size_;
+         (system.positions[k] - mirrored(system.positions[n])).norm() <= kMirrorRounding * size_;
 }
 
 bool IkMirror::fits(const IkSystem& system) {
@@ -134,9 +134,9 @@ bool IkMirror::fits(const IkSystem& system) {
   const bool moved = !same(plane_, restPlane_);
   for (std::size_t e = 0; e < system.effectors.size(); ++e) {
     const IkSystem::Effector &a = system.effectors[e], &b = system.effectors[at(effectorPartners_[e])];
-    if (a.weight != b.weight || (b.target - mirrored(a.target)).norm() > kSame * size_) return false;
+    if (a.weight != b.weight || (b.target - mirrored(a.target)).norm() > kMirrorRounding * size_) return false;
     if (a.pole.has_value() != b.pole.has_value()) return false;
-    if (a.pole && (*b.pole - mirrored(*a.pole)).norm() > kSame * size_) return false;
+    if (a.pole && (*b.pole - mirrored(*a.pole)).norm() > kMirrorRounding * size_) return false;
     if (a.angleScale > 0 && !same(b.orientation, plane_ * a.orientation * turns_[at(a.node)])) return false;
   }
   for (int n = 0; n < system.nodeCount(); ++n) {
@@ -174,7 +174,7 @@ void IkMirror::impose(IkSystem& system) const {
     image.coeffs() += system.locals[i].coeffs();
     system.locals[i] = image.normalized();
     if (system.nodes[i].slides) system.offsets[i] = 0.5 * (system.offsets[i] + offset);
-    if (apart > kSame) system.limitNode(n);
+    if (apart > kMirrorRounding) system.limitNode(n);
   }
 }
 

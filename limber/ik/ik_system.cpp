@@ -14,7 +14,7 @@ namespace limber {
 namespace {
 
 constexpr double kLaterPriority = 1e-6;  // weight of a priority against the one before
-constexpr double kRounding = 1e-9;
+constexpr double kReachRounding = 1e-9;
 
 [[noreturn]] void bad(const std::string& what, const std::string& where, ErrorCode code = ErrorCode::kBadArgument) {
   throw Error(code, what, where);
@@ -296,7 +296,8 @@ double IkSystem::angle(std::size_t effector) const {
 bool IkSystem::reached(std::size_t effector) const {
   const Effector& e = effectors[effector];
   const double tolerance = options_.tolerance * e.reach;
-  return distance(effector) <= std::max(tolerance, kRounding * e.reach) && angle(effector) <= options_.angleTolerance;
+  return distance(effector) <= std::max(tolerance, kReachRounding * e.reach) &&
+         angle(effector) <= options_.angleTolerance;
 }
 
 bool IkSystem::allReached() const {

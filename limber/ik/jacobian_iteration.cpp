@@ -12,12 +12,12 @@ namespace {
 
 constexpr double kLongestTurn = kPi / 4;  // of a joint in one iteration
 constexpr int kLimitPasses = 4;
-constexpr int kTries = 10;            // shorter and shorter steps before giving up
-constexpr double kEnough = 0.1;       // of what a step promises to first order
-constexpr Index kPatience = 10;       // iterations after which there must have been
-constexpr double kProgress = 0.9995;  // this factor on the cost
-constexpr int kStepBits = 28;         // of a step that count, so that rounding does not tell left from right
-constexpr double kSettled = 1e-5;     // change of the distance to the reference pose, as a share
+constexpr int kTries = 10;                    // shorter and shorter steps before giving up
+constexpr double kEnough = 0.1;               // of what a step promises to first order
+constexpr Index kJacobianPatience = 10;       // iterations after which there must have been
+constexpr double kJacobianProgress = 0.9995;  // this factor on the cost
+constexpr int kStepBits = 28;                 // of a step that count, so that rounding does not tell left from right
+constexpr double kSettled = 1e-5;             // change of the distance to the reference pose, as a share
 
 }  // namespace
 
@@ -63,9 +63,9 @@ Index JacobianIteration::run(IkSystem& system, Index budget) {
     if (!improve(system)) return i + 1;
     if (reached) {
       if (!(referenceDistance(system) < distance * (1 - kSettled))) return i + 1;
-    } else if (i % kPatience == kPatience - 1) {
+    } else if (i % kJacobianPatience == kJacobianPatience - 1) {
       const double cost = system.cost();
-      if (!(cost < kProgress * checked)) return i + 1;
+      if (!(cost < kJacobianProgress * checked)) return i + 1;
       checked = cost;
     }
   }

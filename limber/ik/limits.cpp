@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kSame = 1e-12;
+constexpr double kSameAngle = 1e-12;
 
 Quat aboutX(double angle) {
   return Quat(std::cos(angle / 2), std::sin(angle / 2), 0, 0);
@@ -33,7 +33,7 @@ double clampAngle(double angle, const AngleRange& range) {
 }
 
 bool sameAngle(double a, double b) {
-  return std::abs(wrapAngle(a - b)) <= kSame;
+  return std::abs(wrapAngle(a - b)) <= kSameAngle;
 }
 
 // r = swing * twist: the twist about Y first, then the swing about an axis in the plane of X and Z.
@@ -251,7 +251,7 @@ Quat nearestAllowed(const JointLimit& limit, const Quat& local) {
   const Quat nearest = std::visit(Nearest{r}, limit.motion);
   const double gap =
       std::min((nearest.coeffs() - r.coeffs()).squaredNorm(), (nearest.coeffs() + r.coeffs()).squaredNorm());
-  return gap <= kSame * kSame ? local : fromLimitAxes(limit, nearest);
+  return gap <= kSameAngle * kSameAngle ? local : fromLimitAxes(limit, nearest);
 }
 
 Vec3 nearestAllowedTranslation(const JointLimit& limit, const Vec3& local) {

@@ -11,7 +11,7 @@ namespace limber {
 
 namespace {
 
-constexpr double kRounding = 1e-9;
+constexpr double kLimitRounding = 1e-9;
 
 class LimitChecker {
  public:
@@ -33,7 +33,7 @@ class LimitChecker {
     range("x", limit.x), range("z", limit.z), range("twist", limit.twist);
     const double x = std::max(std::abs(limit.x.min), std::abs(limit.x.max));
     const double z = std::max(std::abs(limit.z.min), std::abs(limit.z.max));
-    if (std::hypot(x, z) > kPi + kRounding) bad("swings further than half a turn at a corner of x and z");
+    if (std::hypot(x, z) > kPi + kLimitRounding) bad("swings further than half a turn at a corner of x and z");
   }
 
   void operator()(const ReachCone& cone) const {
@@ -45,11 +45,12 @@ class LimitChecker {
     for (std::size_t i = 0; i < count; ++i) {
       const Vec3& u = cone.polygon[i];
       const Vec3& v = cone.polygon[(i + 1) % count];
-      if (!u.allFinite() || u.norm() < kRounding) bad(fmt::format("has a reach cone point {} without direction", i));
-      if (u.dot(cone.center) <= kRounding * u.norm()) {
+      if (!u.allFinite() || u.norm() < kLimitRounding)
+        bad(fmt::format("has a reach cone point {} without direction", i));
+      if (u.dot(cone.center) <= kLimitRounding * u.norm()) {
         bad(fmt::format("has reach cone point {} 90 degrees or more from the center", i));
       }
-      if (cone.center.dot(u.cross(v)) <= kRounding * u.norm() * v.norm()) {
+      if (cone.center.dot(u.cross(v)) <= kLimitRounding * u.norm() * v.norm()) {
         bad(fmt::format("has a reach cone that is not star-shaped, counter-clockwise, at point {}", i));
       }
       const Vec3 a = u - u.dot(cone.center) * cone.center, b = v - v.dot(cone.center) * cone.center;
@@ -70,8 +71,8 @@ class LimitChecker {
 
   void range(const char* name, const AngleRange& range) const {
     ordered(name, range);
-    if (range.max - range.min > 2 * kPi + kRounding) bad(fmt::format("has a range {} wider than a turn", name));
-    if (std::max(std::abs(range.min), std::abs(range.max)) > 2 * kPi + kRounding) {
+    if (range.max - range.min > 2 * kPi + kLimitRounding) bad(fmt::format("has a range {} wider than a turn", name));
+    if (std::max(std::abs(range.min), std::abs(range.max)) > 2 * kPi + kLimitRounding) {
       bad(fmt::format("has a range {} beyond a turn", name));
     }
   }
@@ -79,7 +80,7 @@ class LimitChecker {
   void ellipse(const char* name, const AngleRange& range) const {
     ordered(name, range);
     if (range.min > 0 || range.max < 0) bad(fmt::format("has a cone range {} that leaves 0 out", name));
-    if (range.min < -kPi - kRounding || range.max > kPi + kRounding) {
+    if (range.min < -kPi - kLimitRounding || range.max > kPi + kLimitRounding) {
       bad(fmt::format("has a cone range {} beyond half a turn", name));
     }
   }

@@ -4,29 +4,27 @@
 
 namespace limber {
 
-using Eigen::Index;
-
 void solveCholesky(Eigen::Ref<Eigen::MatrixXd> a, double damping, Eigen::Ref<Eigen::VectorXd> x) {
-  const Index m = a.rows();
+  const Eigen::Index m = a.rows();
   const double floor = 1e-15 * a.diagonal().cwiseAbs().sum();
-  for (Index j = 0; j < m; ++j) {
+  for (Eigen::Index j = 0; j < m; ++j) {
     double pivot = a(j, j) + damping;
-    for (Index k = 0; k < j; ++k) pivot -= a(j, k) * a(j, k);
+    for (Eigen::Index k = 0; k < j; ++k) pivot -= a(j, k) * a(j, k);
     // An infinite pivot takes the row out: what it scales becomes 0.
     const double inverse = pivot > floor ? 1 / std::sqrt(pivot) : 0;
     a(j, j) = inverse;
-    for (Index i = j + 1; i < m; ++i) {
+    for (Eigen::Index i = j + 1; i < m; ++i) {
       double sum = a(i, j);
-      for (Index k = 0; k < j; ++k) sum -= a(i, k) * a(j, k);
+      for (Eigen::Index k = 0; k < j; ++k) sum -= a(i, k) * a(j, k);
       a(i, j) = sum * inverse;
     }
   }
-  for (Index i = 0; i < m; ++i) {
-    for (Index k = 0; k < i; ++k) x[i] -= a(i, k) * x[k];
+  for (Eigen::Index i = 0; i < m; ++i) {
+    for (Eigen::Index k = 0; k < i; ++k) x[i] -= a(i, k) * x[k];
     x[i] *= a(i, i);
   }
-  for (Index i = m; i-- > 0;) {
-    for (Index k = i + 1; k < m; ++k) x[i] -= a(k, i) * x[k];
+  for (Eigen::Index i = m; i-- > 0;) {
+    for (Eigen::Index k = i + 1; k < m; ++k) x[i] -= a(k, i) * x[k];
     x[i] *= a(i, i);
   }
 }
@@ -41,16 +39,16 @@ void roundTogether(int bits, Eigen::Ref<Eigen::VectorXd> x) {
 namespace {
 
 // The rotation of rows and columns p and q that makes a(p, q) zero.
-void rotate(Eigen::Ref<Eigen::MatrixXd> a, Eigen::Ref<Eigen::MatrixXd> vectors, Index p, Index q) {
+void rotate(Eigen::Ref<Eigen::MatrixXd> a, Eigen::Ref<Eigen::MatrixXd> vectors, Eigen::Index p, Eigen::Index q) {
   const double theta = (a(q, q) - a(p, p)) / (2 * a(p, q));
   const double t = std::copysign(1 / (std::abs(theta) + std::sqrt(theta * theta + 1)), theta);
   const double c = 1 / std::sqrt(t * t + 1), s = t * c;
-  for (Index k = 0; k < a.rows(); ++k) {
+  for (Eigen::Index k = 0; k < a.rows(); ++k) {
     const double kp = a(k, p), kq = a(k, q);
     a(k, p) = c * kp - s * kq;
     a(k, q) = s * kp + c * kq;
   }
-  for (Index k = 0; k < a.rows(); ++k) {
+  for (Eigen::Index k = 0; k < a.rows(); ++k) {
     const double pk = a(p, k), qk = a(q, k);
     a(p, k) = c * pk - s * qk;
     a(q, k) = s * pk + c * qk;
@@ -64,13 +62,13 @@ void rotate(Eigen::Ref<Eigen::MatrixXd> a, Eigen::Ref<Eigen::MatrixXd> vectors, 
 }  // namespace
 
 void symmetricEigen(Eigen::Ref<Eigen::MatrixXd> a, Eigen::Ref<Eigen::MatrixXd> vectors) {
-  const Index m = a.rows();
+  const Eigen::Index m = a.rows();
   vectors.setIdentity();
   const double negligible = 1e-15 * a.diagonal().cwiseAbs().sum() / static_cast<double>(m);
   for (int sweep = 0; sweep < 30; ++sweep) {
     bool rotated = false;
-    for (Index p = 0; p < m; ++p) {
-      for (Index q = p + 1; q < m; ++q) {
+    for (Eigen::Index p = 0; p < m; ++p) {
+      for (Eigen::Index q = p + 1; q < m; ++q) {
         if (std::abs(a(p, q)) <= negligible) continue;
         rotate(a, vectors, p, q);
         rotated = true;

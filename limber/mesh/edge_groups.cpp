@@ -10,16 +10,16 @@ namespace {
 // Few vertices have more sides than this; for those a sort by insertion is the quickest.
 constexpr std::size_t kFew = 24;
 
-struct Entry {
+struct SideEntry {
   Index high, side;
-  bool operator<(const Entry& other) const { return high != other.high ? high < other.high : side < other.side; }
+  bool operator<(const SideEntry& other) const { return high != other.high ? high < other.high : side < other.side; }
 };
 
-void sortFew(Entry* begin, Entry* end) {
+void sortFew(SideEntry* begin, SideEntry* end) {
   if (begin == end) return;
-  for (Entry* it = begin + 1; it < end; ++it) {
-    const Entry entry = *it;
-    Entry* at = it;
+  for (SideEntry* it = begin + 1; it < end; ++it) {
+    const SideEntry entry = *it;
+    SideEntry* at = it;
     for (; at > begin && entry < at[-1]; --at) *at = at[-1];
     *at = entry;
   }
@@ -33,11 +33,11 @@ EdgeGroups::EdgeGroups(std::span<const Triangle> triangles, Index vertexCount) :
   for (Index side = 0; side < sideCount; ++side) ++first[low(side) + 1];
   std::partial_sum(first.begin(), first.end(), first.begin());
   // One bucket for each lower vertex, its sides in order; then each bucket by the higher vertex.
-  std::vector<Entry> entries(sideCount);
+  std::vector<SideEntry> entries(sideCount);
   std::vector<std::size_t> end(first.begin(), first.end() - 1);
   for (Index side = 0; side < sideCount; ++side) entries[end[low(side)]++] = {high(side), side};
   for (Index v = 0; v < vertexCount; ++v) {
-    Entry *from = entries.data() + first[v], *to = entries.data() + first[v + 1];
+    SideEntry *from = entries.data() + first[v], *to = entries.data() + first[v + 1];
     if (first[v + 1] - first[v] > kFew) {
       std::sort(from, to);
     } else {
@@ -45,7 +45,7 @@ EdgeGroups::EdgeGroups(std::span<const Triangle> triangles, Index vertexCount) :
     }
   }
   sides_.reserve(sideCount);
-  for (const Entry& entry : entries) sides_.push_back(entry.side);
+  for (const SideEntry& entry : entries) sides_.push_back(entry.side);
 }
 
 }  // namespace limber

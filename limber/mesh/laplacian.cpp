@@ -9,7 +9,7 @@ namespace limber {
 
 namespace {
 
-struct Entry {
+struct ColumnEntry {
   int row;
   double weight;
 };
@@ -28,9 +28,10 @@ void forEachWeightedEdge(const IntrinsicTriangulation& t, const Visit& visit) {
 }
 
 // Sorts the entries of one column by row and adds up those of the same row. Returns how many are left.
-int mergeColumn(Entry* entries, int count) {
-  std::sort(entries, entries + count,
-            [](const Entry& a, const Entry& b) { return a.row != b.row ? a.row < b.row : a.weight < b.weight; });
+int mergeColumn(ColumnEntry* entries, int count) {
+  std::sort(entries, entries + count, [](const ColumnEntry& a, const ColumnEntry& b) {
+    return a.row != b.row ? a.row < b.row : a.weight < b.weight;
+  });
   int kept = 0;
   for (int i = 0; i < count; ++i) {
     if (kept > 0 && entries[kept - 1].row == entries[i].row) {
@@ -46,7 +47,7 @@ Eigen::SparseMatrix<double> assembleStiffness(const IntrinsicTriangulation& t, i
   std::vector<int> first(vertexCount + std::size_t{1}, 0);
   forEachWeightedEdge(t, [&](Index low, Index high, double, double) { first[low + 1] += low != high; });
   std::partial_sum(first.begin(), first.end(), first.begin());
-  std::vector<Entry> entries(first.back());
+  std::vector<ColumnEntry> entries(first.back());
   std::vector<int> end(first.begin(), first.end() - 1);
   std::vector<double> diagonal(vertexCount, 0);
   forEachWeightedEdge(t, [&](Index low, Index high, double weight, double) {
@@ -67,7 +68,7 @@ Eigen::SparseMatrix<double> assembleStiffness(const IntrinsicTriangulation& t, i
     int at = outer[v];
     stiffness.innerIndexPtr()[at] = v;
     stiffness.valuePtr()[at] = diagonal[v];
-    for (const Entry* e = entries.data() + first[v]; ++at < outer[v + 1]; ++e) {
+    for (const ColumnEntry* e = entries.data() + first[v]; ++at < outer[v + 1]; ++e) {
       stiffness.innerIndexPtr()[at] = e->row;
       stiffness.valuePtr()[at] = -e->weight;
     }

@@ -115,11 +115,11 @@ class CoverBuilder {
   }
 
   void mollify() {
-    constexpr double kMargin = 1e-5;  // of the mean edge length, as in the paper
+    constexpr double kEdgeMargin = 1e-5;  // of the mean edge length, as in the paper
     std::vector<double>& length = cover_.length;
     if (length.empty()) return;
     const double mean = std::accumulate(length.begin(), length.end(), 0.0) / static_cast<double>(length.size());
-    const double margin = mean > 0 ? kMargin * mean : 1;  // all corners at one place: any triangles will do
+    const double margin = mean > 0 ? kEdgeMargin * mean : 1;  // all corners at one place: any triangles will do
     double missing = 0;
     for (std::size_t h = 0; h < length.size(); h += 3) {
       const double a = length[h], b = length[h + 1], c = length[h + 2];

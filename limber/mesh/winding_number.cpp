@@ -12,8 +12,8 @@ namespace limber {
 
 namespace {
 
-constexpr int kLevels = 20;          // of the octree: bits for each axis of a code
-constexpr Index kLeafTriangles = 8;  // at most, but on the last level
+constexpr int kLevels = 20;             // of the octree: bits for each axis of a code
+constexpr Index kFarLeafTriangles = 8;  // at most, but on the last level
 
 // Every third bit of the result is a bit of `value`.
 std::uint64_t spread(std::uint64_t value) {
@@ -102,7 +102,7 @@ WindingNumber::WindingNumber(const TriMesh& mesh, const std::vector<bool>& flipp
 
 void WindingNumber::split(Index node, std::span<const std::uint64_t> codes, int level) {
   const Index begin = nodes_[node].begin, end = nodes_[node].end;
-  if (end - begin <= kLeafTriangles || level < 0) return;
+  if (end - begin <= kFarLeafTriangles || level < 0) return;
   const auto octant = [&](Index i) { return (codes[i] >> (3 * level)) & 7; };
   if (octant(begin) == octant(end - 1)) return split(node, codes, level - 1);  // one child would be the node itself
   const Index firstChild = static_cast<Index>(nodes_.size());

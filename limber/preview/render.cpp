@@ -202,11 +202,11 @@ Vec3 textureColor(const Surface& surface, Index number, const Vec3& weights) {
   const auto area = [](double x1, double y1, double x2, double y2) { return std::abs(x1 * y2 - x2 * y1); };
   const auto vertices = surface.mesh->vertices();
   const auto &pa = vertices[triangle[0]], &pb = vertices[triangle[1]], &pc = vertices[triangle[2]];
-  constexpr double kSubpixels = 256.0 * 256.0;
+  constexpr double kSubpixelArea = 256.0 * 256.0;
   const double seen = area(double(pb.x) - pa.x, double(pb.y) - pa.y, double(pc.x) - pa.x, double(pc.y) - pa.y);
   const double texels =
       area(b.x() - a.x(), b.y() - a.y(), c.x() - a.x(), c.y() - a.y()) * texture.width() * texture.height();
-  const double level = seen > 0 && texels > 0 ? 0.5 * std::log2(texels * kSubpixels / seen) - 1 : 0.0;
+  const double level = seen > 0 && texels > 0 ? 0.5 * std::log2(texels * kSubpixelArea / seen) - 1 : 0.0;
   return texture.sample(uvAt(scene, triangle, weights), level);
 }
 

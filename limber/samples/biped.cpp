@@ -5,7 +5,7 @@ namespace limber {
 
 namespace {
 
-void addTrunk(Sculpture& s) {
+void addBipedTrunk(Sculpture& s) {
   s.add(ellipsoid({0, 0.945, -0.008}, {0.150, 0.115, 0.108}), 0.02);
   s.add(ellipsoid({0, 1.080, 0.000}, {0.126, 0.160, 0.092}), 0.09);
   s.add(ellipsoid({0, 1.255, -0.008}, {0.158, 0.150, 0.108}), 0.07);
@@ -15,7 +15,7 @@ void addTrunk(Sculpture& s) {
   s.add(roundCone({0, 1.380, -0.022}, 0.056, {0, 1.500, 0.000}, 0.047), 0.06);          // neck
 }
 
-void addHead(Sculpture& s) {
+void addBipedHead(Sculpture& s) {
   s.add(ellipsoid({0, 1.614, 0.000}, {0.096, 0.108, 0.106}), 0.03);
   s.add(ellipsoid({0, 1.556, 0.036}, {0.066, 0.058, 0.066}), 0.06);             // jaw
   s.add(roundCone({0, 1.596, 0.102}, 0.008, {0, 1.576, 0.114}, 0.012), 0.025);  // nose
@@ -68,8 +68,8 @@ Character bipedCharacter() {
   c.edge = 0.0190;
   c.materials = {{"suit", {64, 132, 140}, 0.8}, {"skin", {226, 172, 138}, 0.6}, {"boots", {92, 62, 52}, 0.6},
                  {"hair", {74, 48, 38}, 0.85},  {"eyes", {34, 30, 34}, 0.2},    {"belt", {214, 166, 84}, 0.5}};
-  addTrunk(c.shape);
-  addHead(c.shape);
+  addBipedTrunk(c.shape);
+  addBipedHead(c.shape);
   addArm(c.shape);
   addLeg(c.shape);
   c.shape.cutBelow(0, 0.012);

@@ -16,14 +16,14 @@ struct BoneStart {
   Vec3 position;  // metres; of a side's bones the left one's
 };
 
-const BoneStart kTrunk[] = {{"hips", "", {0, 0.94, 0}},        {"spine", "hips", {0, 1.05, 0}},
-                            {"chest", "spine", {0, 1.22, 0}},  {"neck", "chest", {0, 1.45, 0}},
-                            {"head", "neck", {0, 1.54, 0.01}}, {"head_end", "head", {0, 1.72, 0.01}}};
-const BoneStart kSides[] = {{"UpperLeg", "hips", {0.09, 0.90, 0}},     {"LowerLeg", "UpperLeg", {0.09, 0.49, 0}},
-                            {"Foot", "LowerLeg", {0.09, 0.09, 0}},     {"Toes", "Foot", {0.09, 0.025, 0.12}},
-                            {"Toes_end", "Toes", {0.09, 0.02, 0.19}},  {"Shoulder", "chest", {0.03, 1.40, 0}},
-                            {"UpperArm", "Shoulder", {0.17, 1.41, 0}}, {"LowerArm", "UpperArm", {0.45, 1.41, 0}},
-                            {"Hand", "LowerArm", {0.70, 1.41, 0}},     {"Hand_end", "Hand", {0.86, 1.41, 0}}};
+const BoneStart kPersonTrunk[] = {{"hips", "", {0, 0.94, 0}},        {"spine", "hips", {0, 1.05, 0}},
+                                  {"chest", "spine", {0, 1.22, 0}},  {"neck", "chest", {0, 1.45, 0}},
+                                  {"head", "neck", {0, 1.54, 0.01}}, {"head_end", "head", {0, 1.72, 0.01}}};
+const BoneStart kPersonSides[] = {{"UpperLeg", "hips", {0.09, 0.90, 0}},     {"LowerLeg", "UpperLeg", {0.09, 0.49, 0}},
+                                  {"Foot", "LowerLeg", {0.09, 0.09, 0}},     {"Toes", "Foot", {0.09, 0.025, 0.12}},
+                                  {"Toes_end", "Toes", {0.09, 0.02, 0.19}},  {"Shoulder", "chest", {0.03, 1.40, 0}},
+                                  {"UpperArm", "Shoulder", {0.17, 1.41, 0}}, {"LowerArm", "UpperArm", {0.45, 1.41, 0}},
+                                  {"Hand", "LowerArm", {0.70, 1.41, 0}},     {"Hand_end", "Hand", {0.86, 1.41, 0}}};
 const Vec3 kHipsToPelvis(0, -0.04, 0);
 
 void addBone(const std::string& prefix, double side, const BoneStart& bone, Skeleton& skeleton,
@@ -41,7 +41,7 @@ Quat about(const Vec3& axis, double angle) {
   return Quat(Eigen::AngleAxisd(angle, axis));
 }
 
-Vec3 mirrored(const Vec3& v) {
+Vec3 mirroredOffset(const Vec3& v) {
   return {-v.x(), v.y(), v.z()};
 }
 
@@ -75,7 +75,7 @@ class Poser {
 void poseLeg(const Stance& stance, const std::string& side, Poser& poser) {
   const bool left = side == "left";
   const FootPlace& foot = stance.feet[left ? 0 : 1];
-  const auto toSide = [&](const Vec3& v) { return left ? v : mirrored(v); };
+  const auto toSide = [&](const Vec3& v) { return left ? v : mirroredOffset(v); };
   const auto turnToSide = [&](const Quat& q) { return left ? q : Quat(q.w(), q.x(), -q.y(), -q.z()); };
   TwoBone leg;
   leg.start = stance.pelvis + stance.hips * Vec3(poser.offset(side + "UpperLeg").x(), 0, 0);
@@ -109,9 +109,9 @@ void poseArm(const Stance& stance, const std::string& side, Poser& poser) {
 Skeleton figureSkeleton() {
   Skeleton skeleton;
   std::vector<Vec3> positions;
-  for (const BoneStart& bone : kTrunk) addBone("", 1, bone, skeleton, positions);
-  for (const BoneStart& bone : kSides) addBone("left", 1, bone, skeleton, positions);
-  for (const BoneStart& bone : kSides) addBone("right", -1, bone, skeleton, positions);
+  for (const BoneStart& bone : kPersonTrunk) addBone("", 1, bone, skeleton, positions);
+  for (const BoneStart& bone : kPersonSides) addBone("left", 1, bone, skeleton, positions);
+  for (const BoneStart& bone : kPersonSides) addBone("right", -1, bone, skeleton, positions);
   return skeleton;
 }
 

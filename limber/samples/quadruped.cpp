@@ -5,7 +5,7 @@ namespace limber {
 
 namespace {
 
-void addTrunk(Sculpture& s) {
+void addQuadrupedTrunk(Sculpture& s) {
   s.add(ellipsoid({0, 0.335, 0.130}, {0.092, 0.105, 0.125}), 0.02);             // chest
   s.add(roundCone({0, 0.335, 0.080}, 0.090, {0, 0.345, -0.150}, 0.080), 0.06);  // back and belly
   s.add(ellipsoid({0, 0.345, -0.170}, {0.086, 0.092, 0.105}), 0.05);            // rump
@@ -13,7 +13,7 @@ void addTrunk(Sculpture& s) {
   s.add(ellipsoid({0, 0.345, 0.225}, {0.062, 0.080, 0.050}), 0.05);             // ruff
 }
 
-void addHead(Sculpture& s) {
+void addQuadrupedHead(Sculpture& s) {
   s.add(ellipsoid({0, 0.535, 0.265}, {0.092, 0.080, 0.085}), 0.04);
   s.add(ellipsoid({0.052, 0.510, 0.280}, {0.050, 0.042, 0.050}), 0.04);                 // cheeks
   s.add(roundCone({0, 0.515, 0.320}, 0.047, {0, 0.502, 0.395}, 0.022), 0.04);           // muzzle
@@ -22,7 +22,7 @@ void addHead(Sculpture& s) {
   s.carve(roundCone({0.060, 0.600, 0.290}, 0.016, {0.088, 0.686, 0.254}, 0.006), 0.014);
 }
 
-void addTail(Sculpture& s) {
+void addQuadrupedTail(Sculpture& s) {
   const Vec3 root(0, 0.385, -0.245), low(0, 0.365, -0.365), middle(0, 0.425, -0.470), high(0, 0.535, -0.525),
       tip(0, 0.640, -0.520);
   s.add(roundCone(root, 0.034, low, 0.048), 0.04);
@@ -55,9 +55,9 @@ Character quadrupedCharacter() {
                  {"white fur", {244, 234, 220}, 0.8},
                  {"dark fur", {74, 50, 44}, 0.8},
                  {"nose and eyes", {28, 24, 26}, 0.25}};
-  addTrunk(c.shape);
-  addHead(c.shape);
-  addTail(c.shape);
+  addQuadrupedTrunk(c.shape);
+  addQuadrupedHead(c.shape);
+  addQuadrupedTail(c.shape);
   addForeleg(c.shape);
   addHindLeg(c.shape);
   c.shape.cutBelow(0, 0.008);

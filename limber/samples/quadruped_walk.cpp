@@ -12,34 +12,34 @@ namespace limber {
 
 namespace {
 
-constexpr double kStride = 0.20, kStrideSeconds = 0.9, kStands = 0.65;  // metres; share of the stride
-constexpr double kSinks = 0.016, kLift = 0.022;                         // metres
+constexpr double kQuadrupedStride = 0.20, kQuadrupedStrideSeconds = 0.9, kStands = 0.65;  // metres; share of the stride
+constexpr double kSinks = 0.016, kLift = 0.022;                                           // metres
 
-struct BoneStart {
+struct QuadrupedBone {
   const char *name, *parent;
   Vec3 position;  // metres; of a side's bones the left one's
 };
 
-const BoneStart kTrunk[] = {{"hips", "", {0, 0.367, -0.17}},       {"spine", "hips", {0, 0.352, -0.076}},
-                            {"spine1", "spine", {0, 0.35, 0.018}}, {"chest", "spine1", {0, 0.345, 0.112}},
-                            {"neck", "chest", {0, 0.42, 0.212}},   {"neck1", "neck", {0, 0.485, 0.24}},
-                            {"head", "neck1", {0, 0.551, 0.268}},  {"tail", "hips", {0, 0.379, -0.235}},
-                            {"tail1", "tail", {0, 0.389, -0.39}},  {"tail2", "tail1", {0, 0.45, -0.5}}};
-const BoneStart kSides[] = {{"FrontShoulder", "chest", {0.041, 0.327, 0.138}},
-                            {"FrontUpperLeg", "FrontShoulder", {0.072, 0.291, 0.155}},
-                            {"FrontLowerLeg", "FrontUpperLeg", {0.075, 0.157, 0.159}},
-                            {"FrontFoot", "FrontLowerLeg", {0.076, 0.044, 0.171}},
-                            {"FrontToes", "FrontFoot", {0.076, 0.015, 0.175}},
-                            {"HindUpperLeg", "hips", {0.07, 0.345, -0.156}},
-                            {"HindLowerLeg", "HindUpperLeg", {0.07, 0.245, -0.125}},
-                            {"HindFoot", "HindLowerLeg", {0.08, 0.135, -0.201}},
-                            {"HindToes", "HindFoot", {0.081, 0.035, -0.173}}};
+const QuadrupedBone kQuadrupedTrunk[] = {{"hips", "", {0, 0.367, -0.17}},       {"spine", "hips", {0, 0.352, -0.076}},
+                                         {"spine1", "spine", {0, 0.35, 0.018}}, {"chest", "spine1", {0, 0.345, 0.112}},
+                                         {"neck", "chest", {0, 0.42, 0.212}},   {"neck1", "neck", {0, 0.485, 0.24}},
+                                         {"head", "neck1", {0, 0.551, 0.268}},  {"tail", "hips", {0, 0.379, -0.235}},
+                                         {"tail1", "tail", {0, 0.389, -0.39}},  {"tail2", "tail1", {0, 0.45, -0.5}}};
+const QuadrupedBone kQuadrupedSides[] = {{"FrontShoulder", "chest", {0.041, 0.327, 0.138}},
+                                         {"FrontUpperLeg", "FrontShoulder", {0.072, 0.291, 0.155}},
+                                         {"FrontLowerLeg", "FrontUpperLeg", {0.075, 0.157, 0.159}},
+                                         {"FrontFoot", "FrontLowerLeg", {0.076, 0.044, 0.171}},
+                                         {"FrontToes", "FrontFoot", {0.076, 0.015, 0.175}},
+                                         {"HindUpperLeg", "hips", {0.07, 0.345, -0.156}},
+                                         {"HindLowerLeg", "HindUpperLeg", {0.07, 0.245, -0.125}},
+                                         {"HindFoot", "HindLowerLeg", {0.08, 0.135, -0.201}},
+                                         {"HindToes", "HindFoot", {0.081, 0.035, -0.173}}};
 
-double wave(double phase) {
+double sineWave(double phase) {
   return std::sin(2 * kPi * phase);
 }
 
-Quat about(const Vec3& axis, double angle) {
+Quat turnAbout(const Vec3& axis, double angle) {
   return Quat(Eigen::AngleAxisd(angle, axis));
 }
 
@@ -56,7 +56,7 @@ double leanAt(double phase, bool front) {
 Vec3 toesWay(double strides) {
   const double count = std::floor(strides), phase = strides - count;
   const double swing = (phase - kStands) / (1 - kStands);
-  return {0, kLift * smoothBump(swing), (count + 0.5 * kStands + smoothRise(swing)) * kStride};
+  return {0, kLift * smoothBump(swing), (count + 0.5 * kStands + smoothRise(swing)) * kQuadrupedStride};
 }
 
 class Walker {
@@ -65,7 +65,7 @@ class Walker {
       : skeleton_(skeleton),
         pose_(restPose(skeleton)),
         rest_(restGlobals(skeleton)),
-        strides_(seconds / kStrideSeconds) {}
+        strides_(seconds / kQuadrupedStrideSeconds) {}
 
   Pose walk() {
     moveTrunk();
@@ -81,22 +81,22 @@ class Walker {
   Index joint(const std::string& name) const { return skeleton_.find(name).value(); }
   void turn(const char* name, double pitch, double yaw, double roll) {
     pose_.locals[joint(name)].rotation =
-        about(Vec3::UnitY(), yaw) * about(Vec3::UnitX(), pitch) * about(Vec3::UnitZ(), roll);
+        turnAbout(Vec3::UnitY(), yaw) * turnAbout(Vec3::UnitX(), pitch) * turnAbout(Vec3::UnitZ(), roll);
   }
 
   // The hips swing with the hind legs, the chest against them; the head and the tail follow.
   void moveTrunk() {
-    const double swing = wave(strides_ + 0.1), bob = wave(2 * strides_ + 0.1);
-    pose_.locals[0].translation += Vec3(0.004 * swing, 0.003 * bob - kSinks, kStride * strides_);
+    const double swing = sineWave(strides_ + 0.1), bob = sineWave(2 * strides_ + 0.1);
+    pose_.locals[0].translation += Vec3(0.004 * swing, 0.003 * bob - kSinks, kQuadrupedStride * strides_);
     turn("hips", 0.01 * bob, -0.06 * swing, 0.04 * swing);
     turn("spine", 0, 0.04 * swing, -0.02 * swing);
     turn("spine1", 0, 0.04 * swing, -0.02 * swing);
     turn("chest", -0.01 * bob, 0.02 * swing, 0);
-    turn("neck", 0.03 * wave(2 * strides_ - 0.1), -0.02 * swing, 0);
-    turn("head", -0.03 * wave(2 * strides_ - 0.15), -0.02 * swing, 0);
-    turn("tail", 0, 0.12 * wave(strides_ - 0.05), 0);
-    turn("tail1", 0, 0.14 * wave(strides_ - 0.15), 0);
-    turn("tail2", 0, 0.16 * wave(strides_ - 0.25), 0);
+    turn("neck", 0.03 * sineWave(2 * strides_ - 0.1), -0.02 * swing, 0);
+    turn("head", -0.03 * sineWave(2 * strides_ - 0.15), -0.02 * swing, 0);
+    turn("tail", 0, 0.12 * sineWave(strides_ - 0.05), 0);
+    turn("tail1", 0, 0.14 * sineWave(strides_ - 0.15), 0);
+    turn("tail2", 0, 0.16 * sineWave(strides_ - 0.25), 0);
   }
 
   void moveLeg(const std::string& leg, double behind) {
@@ -106,8 +106,8 @@ class Walker {
     const Index upper = joint(leg + "UpperLeg"), lower = joint(leg + "LowerLeg"), foot = joint(leg + "Foot"),
                 toes = joint(leg + "Toes");
     const auto resting = [&](Index j) -> Vec3 { return rest_[j].translation(); };
-    const Vec3 stands = resting(toes) + toesWay(strides) + Vec3(0, 0, behind * kStride);
-    const Quat leaning = about(Vec3::UnitX(), lean);
+    const Vec3 stands = resting(toes) + toesWay(strides) + Vec3(0, 0, behind * kQuadrupedStride);
+    const Quat leaning = turnAbout(Vec3::UnitX(), lean);
     TwoBone bones;
     bones.start = globals_[upper].translation();
     bones.middle = globals_[lower].translation();
@@ -122,7 +122,7 @@ class Walker {
     pose_.locals[foot].rotation = lowerTurn.conjugate() * leaning;
     // Flat while they stand, hanging a little in the air.
     const double swing = (strides - std::floor(strides) - kStands) / (1 - kStands);
-    pose_.locals[toes].rotation = about(Vec3::UnitX(), -lean * (1 - 0.7 * smoothBump(swing)));
+    pose_.locals[toes].rotation = turnAbout(Vec3::UnitX(), -lean * (1 - 0.7 * smoothBump(swing)));
   }
 
   const Skeleton& skeleton_;
@@ -136,7 +136,7 @@ class Walker {
 Skeleton quadrupedSkeleton() {
   Skeleton skeleton;
   std::vector<Vec3> positions;
-  const auto add = [&](const std::string& prefix, double side, const BoneStart& bone) {
+  const auto add = [&](const std::string& prefix, double side, const QuadrupedBone& bone) {
     Joint& joint = skeleton.joints.emplace_back();
     joint.name = prefix + bone.name;
     joint.parent = skeleton.find(bone.parent);
@@ -144,9 +144,9 @@ Skeleton quadrupedSkeleton() {
     positions.emplace_back(side * bone.position.x(), bone.position.y(), bone.position.z());
     joint.rest.translation = joint.parent ? Vec3(positions.back() - positions[*joint.parent]) : positions.back();
   };
-  for (const BoneStart& bone : kTrunk) add("", 1, bone);
-  for (const BoneStart& bone : kSides) add("left", 1, bone);
-  for (const BoneStart& bone : kSides) add("right", -1, bone);
+  for (const QuadrupedBone& bone : kQuadrupedTrunk) add("", 1, bone);
+  for (const QuadrupedBone& bone : kQuadrupedSides) add("left", 1, bone);
+  for (const QuadrupedBone& bone : kQuadrupedSides) add("right", -1, bone);
   return skeleton;
 }
 

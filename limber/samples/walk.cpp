@@ -20,7 +20,7 @@ constexpr double kTouchPitch = 0.38, kOffPitch = -0.95, kOffSpeed = -4.5, kOutwa
 constexpr double kFootSide = 0.065, kLift = 0.045;  // metres
 constexpr double kHipHeight = 0.855;
 
-double wave(double phase) {
+double cosineWave(double phase) {
   return std::cos(2 * kPi * phase);
 }
 
@@ -71,7 +71,7 @@ Quat turned(double pitch, double yaw, double roll) {
 }
 
 ArmPlace armAt(double strides) {
-  const double forward = -wave(strides);  // against the leg of its side
+  const double forward = -cosineWave(strides);  // against the leg of its side
   return {0.14, -0.04 + 0.36 * forward, 0.30 + 0.16 * forward};
 }
 
@@ -85,11 +85,11 @@ Stance walkAt(double seconds) {
   stance.feet[1].ankle.z() -= 0.5 * kStride;
   stance.arms = {armAt(left), armAt(right)};
   // Highest over the standing foot and towards it, slowest there; the side that swings goes ahead and is lower.
-  stance.pelvis = Vec3(0.022 * wave(left - 0.3), kHipHeight - 0.018 * wave(2 * (left - 0.05)),
+  stance.pelvis = Vec3(0.022 * cosineWave(left - 0.3), kHipHeight - 0.018 * cosineWave(2 * (left - 0.05)),
                        kStride * left + 0.012 * std::sin(4 * kPi * (left - 0.05)));
-  stance.hips = turned(0.05, -0.10 * wave(left), 0.06 * wave(left - 0.22));
-  stance.chest = turned(0.04, 0.09 * wave(left), -0.02 * wave(left - 0.22));
-  stance.head = turned(0.02, 0.02 * wave(left), 0);
+  stance.hips = turned(0.05, -0.10 * cosineWave(left), 0.06 * cosineWave(left - 0.22));
+  stance.chest = turned(0.04, 0.09 * cosineWave(left), -0.02 * cosineWave(left - 0.22));
+  stance.head = turned(0.02, 0.02 * cosineWave(left), 0);
   return stance;
 }
 

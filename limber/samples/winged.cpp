@@ -5,7 +5,7 @@ namespace limber {
 
 namespace {
 
-void addTrunk(Sculpture& s) {
+void addWingedTrunk(Sculpture& s) {
   s.add(ellipsoid({0, 0.400, 0.100}, {0.120, 0.130, 0.150}), 0.02);             // chest
   s.add(roundCone({0, 0.395, 0.050}, 0.118, {0, 0.370, -0.180}, 0.100), 0.06);  // belly
   s.add(ellipsoid({0, 0.370, -0.200}, {0.108, 0.110, 0.120}), 0.05);            // rump
@@ -13,7 +13,7 @@ void addTrunk(Sculpture& s) {
   s.add(roundCone({0, 0.570, 0.270}, 0.070, {0, 0.690, 0.300}, 0.062), 0.04);
 }
 
-void addHead(Sculpture& s) {
+void addWingedHead(Sculpture& s) {
   s.add(ellipsoid({0, 0.745, 0.325}, {0.098, 0.088, 0.100}), 0.05);
   s.add(roundCone({0, 0.725, 0.390}, 0.062, {0, 0.705, 0.475}, 0.046), 0.05);           // snout
   s.add(ellipsoid({0.028, 0.735, 0.497}, {0.015, 0.012, 0.014}), 0.020);                // nostrils
@@ -23,7 +23,7 @@ void addHead(Sculpture& s) {
   s.add(roundCone({0.080, 0.745, 0.285}, 0.026, {0.150, 0.770, 0.225}, 0.010), 0.020);  // ears
 }
 
-void addTail(Sculpture& s) {
+void addWingedTail(Sculpture& s) {
   const Vec3 root(0, 0.365, -0.270), low(0, 0.260, -0.430), middle(0, 0.185, -0.600), high(0, 0.200, -0.775),
       tip(0, 0.290, -0.910);
   s.add(roundCone(root, 0.088, low, 0.064), 0.05);
@@ -89,9 +89,9 @@ Character wingedCharacter() {
   c.edge = 0.0230;
   c.materials = {{"scales", {72, 148, 96}, 0.55}, {"belly", {232, 214, 150}, 0.7}, {"wing skin", {226, 128, 72}, 0.7},
                  {"horn", {238, 226, 198}, 0.5},  {"crest", {40, 104, 84}, 0.6},   {"eyes", {26, 24, 28}, 0.2}};
-  addTrunk(c.shape);
-  addHead(c.shape);
-  addTail(c.shape);
+  addWingedTrunk(c.shape);
+  addWingedHead(c.shape);
+  addWingedTail(c.shape);
   addCrest(c.shape);
   addLegs(c.shape);
   addWing(c.shape);

@@ -17,7 +17,7 @@ namespace limber {
 
 namespace {
 
-constexpr int kVersion = 1;
+constexpr int kCommandsVersion = 1;
 
 // In the order of the variant.
 constexpr std::array<std::string_view, 36> kNames = {
@@ -188,7 +188,7 @@ const auto& wordsOf(Interpolation) {
   return kInterpolations;
 }
 
-Json vectorJson(const Vec3& v) {
+Json numbersJson(const Vec3& v) {
   return Json::array({v.x(), v.y(), v.z()});
 }
 
@@ -203,9 +203,9 @@ class Writer {
         if (known == value) json_[key] = std::string(word);
       }
     } else if constexpr (std::is_same_v<T, Vec3>) {
-      json_[key] = vectorJson(value);
+      json_[key] = numbersJson(value);
     } else if constexpr (std::is_same_v<T, Ray>) {
-      json_[key] = {{"origin", vectorJson(value.origin)}, {"direction", vectorJson(value.direction)}};
+      json_[key] = {{"origin", numbersJson(value.origin)}, {"direction", numbersJson(value.direction)}};
     } else {
       json_[key] = value;
     }
@@ -326,14 +326,14 @@ Command commandFromJson(const Json& json) {
 std::string commandsToJson(std::span<const Command> commands) {
   Json list = Json::array();
   for (const Command& command : commands) list.push_back(commandToJson(command));
-  return dumpJson({{"limber_commands", kVersion}, {"commands", std::move(list)}}, 1);
+  return dumpJson({{"limber_commands", kCommandsVersion}, {"commands", std::move(list)}}, 1);
 }
 
 std::vector<Command> commandsFromJson(std::string_view text) {
   Warnings warnings;
   const Json document = parseJson(text, warnings);
   const JsonView root(document);
-  if (root.number("limber_commands", 0) != kVersion) root.fail("is no list of commands that limber knows");
+  if (root.number("limber_commands", 0) != kCommandsVersion) root.fail("is no list of commands that limber knows");
   const JsonView list = root.array("commands");
   std::vector<Command> commands;
   for (std::size_t i = 0; i < list.size(); ++i) commands.push_back(readCommand(list[i]));

@@ -18,7 +18,7 @@ namespace limber {
 
 namespace {
 
-[[noreturn]] void refuse(std::string message) {
+[[noreturn]] void refuseEdit(std::string message) {
   throw Error(ErrorCode::kBadArgument, std::move(message));
 }
 
@@ -31,13 +31,13 @@ std::optional<std::size_t> findClip(const Movement& movement, const std::string&
 
 std::size_t requireClip(const Movement& movement, const std::string& name) {
   const std::optional<std::size_t> clip = findClip(movement, name);
-  if (!clip) refuse(fmt::format("no clip is called '{}'", name));
+  if (!clip) refuseEdit(fmt::format("no clip is called '{}'", name));
   return *clip;
 }
 
 void requireFreeName(const Movement& movement, const std::string& name) {
-  if (name.empty()) refuse("a clip needs a name");
-  if (findClip(movement, name)) refuse(fmt::format("there is a clip called '{}' already", name));
+  if (name.empty()) refuseEdit("a clip needs a name");
+  if (findClip(movement, name)) refuseEdit(fmt::format("there is a clip called '{}' already", name));
 }
 
 // `taken` says whether something has the name.
@@ -49,7 +49,7 @@ std::string freeName(const std::string& wanted, const Taken& taken) {
 }
 
 SessionClip& requireChosen(Movement& movement) {
-  if (!movement.chosen) refuse("no clip is chosen");
+  if (!movement.chosen) refuseEdit("no clip is chosen");
   return movement.clips[*movement.chosen];
 }
 
@@ -67,15 +67,15 @@ std::shared_ptr<const Motion> requireMotion(const Movement& movement, const std:
   for (const std::shared_ptr<const Motion>& motion : movement.motions) {
     if (motion->name == name) return motion;
   }
-  refuse(fmt::format("no motion is called '{}'", name));
+  refuseEdit(fmt::format("no motion is called '{}'", name));
 }
 
 std::size_t clipOfMotion(const Motion& motion, const std::string& name) {
-  if (motion.clips.empty()) refuse(fmt::format("the motion '{}' has no clip", motion.name));
+  if (motion.clips.empty()) refuseEdit(fmt::format("the motion '{}' has no clip", motion.name));
   for (std::size_t c = 0; c < motion.clips.size(); ++c) {
     if (name.empty() || motion.clips[c].name == name) return c;
   }
-  refuse(fmt::format("the motion '{}' has no clip called '{}'", motion.name, name));
+  refuseEdit(fmt::format("the motion '{}' has no clip called '{}'", motion.name, name));
 }
 
 Clip retargeted(const ClipSource& source, const Skeleton& skeleton) {
@@ -142,7 +142,7 @@ void retargetMotion(Movement& movement, const Skeleton& skeleton, const Retarget
   ClipSource source{requireMotion(movement, command.motion), 0, command, {}};
   const Motion& motion = *source.motion;
   source.clip = clipOfMotion(motion, command.clip);
-  if (!(command.reach >= 0 && command.reach <= 1)) refuse("the reach is not between 0 and 1");
+  if (!(command.reach >= 0 && command.reach <= 1)) refuseEdit("the reach is not between 0 and 1");
   source.map = command.map.empty() ? matchSkeletons(motion.skeleton, skeleton)
                                    : skeletonMapFromJson(command.map, motion.skeleton, skeleton);
   Clip made = retargeted(source, skeleton);
@@ -229,7 +229,7 @@ void chooseClip(Movement& movement, const std::string& name) {
 
 void setTime(Movement& movement, double seconds) {
   requireChosen(movement);
-  if (!std::isfinite(seconds) || seconds < 0) refuse("a moment is not a positive number of seconds");
+  if (!std::isfinite(seconds) || seconds < 0) refuseEdit("a moment is not a positive number of seconds");
   movement.seconds = seconds;
 }
 

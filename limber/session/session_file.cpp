@@ -12,7 +12,7 @@ namespace limber {
 namespace {
 
 constexpr const char* kKey = "limber_session";
-constexpr int kVersion = 1;
+constexpr int kSessionVersion = 1;
 
 template <int N>
 Json numbersJson(const double* values) {
@@ -62,7 +62,7 @@ Json targetsJson(const std::vector<SavedTarget>& targets) {
 }
 
 SavedSession readSession(const JsonView& json) {
-  if (json.number("version", 0) != kVersion) json.fail("was written by another version of limber");
+  if (json.number("version", 0) != kSessionVersion) json.fail("was written by another version of limber");
   SavedSession session;
   session.ownRig = json.flag("own_rig", false);
   if (!session.ownRig) {
@@ -86,7 +86,8 @@ SavedSession readSession(const JsonView& json) {
 }  // namespace
 
 void putSession(Asset& asset, const SavedSession& session) {
-  Json json = {{"version", kVersion}, {"own_rig", session.ownRig}, {"ik", session.ik}, {"solver", session.solver}};
+  Json json = {
+      {"version", kSessionVersion}, {"own_rig", session.ownRig}, {"ik", session.ik}, {"solver", session.solver}};
   if (!session.ownRig) {
     json["rigger"] = session.rigger;
     json["skinning"] = session.skinning;

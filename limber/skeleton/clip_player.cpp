@@ -20,14 +20,6 @@ constexpr double kLongestPackedTurn = 0.25;  // radians between two packed ones
 constexpr std::size_t kMostKeys = 2;         // packed keys of four joints, against those of the longest of their tracks
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
-// Four joints side by side: what they are at the beginning of a short interval, and how they change in it.
-struct Group {
-  Float4 translation[3] = {}, translationRate[3] = {};
-  Float4 rotation[4] = {}, rotationRate[4] = {};  // x, y, z, w
-  Float4 scale[3] = {}, scaleRate[3] = {};
-  double begin = 0, end = -kNever;  // seconds; valid from begin up to, not including, end
-};
-
 // The interval round `seconds` in which a track changes evenly; all before its first and after its last key.
 template <typename Value>
 void narrow(const Track<Value>& track, double seconds, double& begin, double& end) {
@@ -37,19 +29,6 @@ void narrow(const Track<Value>& track, double seconds, double& begin, double& en
   if (next != track.times.end()) end = std::min(end, double{*next});
 }
 
-// The transforms of four joints.
-struct Locals {
-  Float4 translation[3], rotation[4], scale[3];  // rotation: x, y, z, w; of about unit length
-};
-
-// Four joints at all of their keys together, ready to be read: nothing is left to do where a key is passed. Kept for
-// joints whose tracks are linear and share most of their times, as those of recorded motion do.
-struct Keys {
-  std::vector<float> times, perSpan;  // #K seconds; #K - 1 inverses of the spans
-  std::vector<Locals> values;         // #K; each rotation on the half sphere of the one before
-  std::size_t at = 0;                 // the interval met last
-};
-
 template <typename Value>
 bool isCurved(const Track<Value>& track) {
   return track.interpolation == Interpolation::kCubic;
@@ -58,13 +37,34 @@ bool isCurved(const Track<Value>& track) {
 }  // namespace
 
 struct ClipPlayer::Packed {
+  // Four joints side by side: what they are at the beginning of a short interval, and how they change in it.
+  struct Group {
+    Float4 translation[3] = {}, translationRate[3] = {};
+    Float4 rotation[4] = {}, rotationRate[4] = {};  // x, y, z, w
+    Float4 scale[3] = {}, scaleRate[3] = {};
+    double begin = 0, end = -kNever;  // seconds; valid from begin up to, not including, end
+  };
+
+  // The transforms of four joints.
+  struct Locals {
+    Float4 translation[3], rotation[4], scale[3];  // rotation: x, y, z, w; of about unit length
+  };
+
+  // Four joints at all of their keys together, ready to be read: nothing is left to do where a key is passed. Kept for
+  // joints whose tracks are linear and share most of their times, as those of recorded motion do.
+  struct GroupKeys {
+    std::vector<float> times, perSpan;  // #K seconds; #K - 1 inverses of the spans
+    std::vector<Locals> values;         // #K; each rotation on the half sphere of the one before
+    std::size_t at = 0;                 // the interval met last
+  };
+
   Clip clip;
   Pose from, to;                                          // at the ends of the interval that is being cached
   std::vector<Index> parents;                             // #J; kNoIndex for roots
   std::vector<const Track<Vec3f>*> translations, scales;  // #J, null without
   std::vector<const Track<Eigen::Quaternionf>*> rotations;
   std::vector<Group> groups;
-  std::vector<Keys> keys;  // #groups; without times where a group is cached instead
+  std::vector<GroupKeys> keys;  // #groups; without times where a group is cached instead
 
   void pack(std::size_t group);
   std::vector<float> packedTimes(std::size_t group) const;
@@ -140,7 +140,7 @@ void ClipPlayer::Packed::cache(std::size_t group, double seconds) {
   }
 }
 
-Locals ClipPlayer::Packed::cachedLocals(std::size_t group, double seconds) {
+ClipPlayer::Packed::Locals ClipPlayer::Packed::cachedLocals(std::size_t group, double seconds) {
   Group& g = groups[group];
   if (!(seconds >= g.begin && seconds < g.end)) cache(group, seconds);
   const auto elapsed = static_cast<float>(seconds - g.begin);
@@ -191,7 +191,7 @@ std::vector<float> ClipPlayer::Packed::packedTimes(std::size_t group) const {
 void ClipPlayer::Packed::pack(std::size_t group) {
   const std::vector<float> given = packedTimes(group);
   if (given.empty()) return;
-  Keys& k = keys[group];
+  GroupKeys& k = keys[group];
   for (std::size_t i = 0; i < given.size(); ++i) {
     sampleGroup(group, given[i], from);
     sampleGroup(group, given[std::min(i + 1, given.size() - 1)], to);
@@ -219,8 +219,8 @@ void ClipPlayer::Packed::pack(std::size_t group) {
   }
 }
 
-Locals ClipPlayer::Packed::packedLocals(std::size_t group, double seconds) {
-  Keys& k = keys[group];
+ClipPlayer::Packed::Locals ClipPlayer::Packed::packedLocals(std::size_t group, double seconds) {
+  GroupKeys& k = keys[group];
   const std::size_t intervals = k.perSpan.size();
   if (intervals == 0) return k.values[0];
   const auto inside = [&](std::size_t i) { return seconds >= k.times[i] && seconds < k.times[i + 1]; };

@@ -10,7 +10,7 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kGrain = 8192;  // vertices; 30 to 100 microseconds
+constexpr std::size_t kDeformGrain = 8192;  // vertices; 30 to 100 microseconds
 
 constexpr double kRigid = 1e-9;  // largest entry of S - I that is rounding
 
@@ -102,7 +102,8 @@ DeformJob deformJob(const DeformInput& input, const DeformOutput& output) {
 
 void runDeformJob(DeformKernel kernel, const DeformJob& job, std::size_t vertexCount) {
   // Two captured references, which std::function holds without allocating.
-  parallelFor(vertexCount, kGrain, [kernel, &job](std::size_t begin, std::size_t end) { kernel(job, begin, end); });
+  parallelFor(vertexCount, kDeformGrain,
+              [kernel, &job](std::size_t begin, std::size_t end) { kernel(job, begin, end); });
 }
 
 }  // namespace limber

@@ -12,8 +12,8 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kRange = 1024;  // vertices of one parallel piece of work
-constexpr std::size_t kGroup = 32;    // vertices, likely neighbours, that share an order of bones; divides kRange
+constexpr std::size_t kSourceRange = 1024;  // vertices of one parallel piece of work
+constexpr std::size_t kGroup = 32;  // vertices, likely neighbours, that share an order of bones; divides kSourceRange
 // Surfaces closer than this to either end of a line of sight do not block it: layers that touch, bones that end on the
 // surface. In longest sides.
 constexpr double kSightMargin = 1e-5;
@@ -142,11 +142,11 @@ HeatSources findHeatSources(const TriMesh& mesh, std::span<const Bone> bones, co
   HeatSources result;
   result.pull.resize(vertexCount);
   result.first.resize(vertexCount + 1, 0);
-  std::vector<std::vector<Index>> found((vertexCount + kRange - 1) / kRange);
+  std::vector<std::vector<Index>> found((vertexCount + kSourceRange - 1) / kSourceRange);
   parallelFor(found.size(), 1, [&](std::size_t begin, std::size_t end) {
     BoneFinder finder(bones, bvh, options);
     for (std::size_t range = begin; range < end; ++range) {
-      for (std::size_t v = range * kRange; v < std::min(vertexCount, (range + 1) * kRange); ++v) {
+      for (std::size_t v = range * kSourceRange; v < std::min(vertexCount, (range + 1) * kSourceRange); ++v) {
         if (v % kGroup == 0) finder.approach({mesh.positions.data() + v, std::min(kGroup, vertexCount - v)});
         const std::size_t before = found[range].size();
         result.pull[v] = finder.find(mesh.positions[v].cast<double>(), normals[v], found[range]);

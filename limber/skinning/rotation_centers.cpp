@@ -16,7 +16,7 @@ namespace {
 constexpr double kPerSquaredSigma = 1 / (0.1 * 0.1);  // sigma as in the paper
 constexpr double kNothing = 30;                       // exp(-30) of a weight is left out
 constexpr std::uint64_t kCells = 64;                  // along each of two joints' weights
-constexpr std::size_t kGrain = 64;                    // vertices
+constexpr std::size_t kCenterGrain = 64;              // vertices
 
 struct JointWeight {
   Index joint = 0;
@@ -165,7 +165,7 @@ std::vector<Vec3f> rotationCenters(std::span<const Vec3f> positions, std::span<c
   }
   const std::vector<Group> groups = groupTriangles(positions, triangles, weights);
   std::vector<Vec3f> centers(positions.size());
-  parallelFor(positions.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  parallelFor(positions.size(), kCenterGrain, [&](std::size_t begin, std::size_t end) {
     Binding binding;
     for (std::size_t v = begin; v < end; ++v) {
       binding.clear();

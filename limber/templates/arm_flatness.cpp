@@ -11,7 +11,7 @@ namespace limber {
 
 namespace {
 
-constexpr double kSeedReach = 0.04;  // heights
+constexpr double kArmSeedReach = 0.04;  // heights
 
 // The ratio of the spreads of a cut along its longest way and across that.
 double flatnessOf(const BodySection& section) {
@@ -40,7 +40,7 @@ double armFlatness(const TemplateSkeleton& skeleton, const std::vector<Vec3>& pl
       const Vec3 bone = places[*end] - places[*start];
       if (!(bone.norm() > 1e-6)) return 1;
       const BodySection cut =
-          sectionAt(body, frame, 0.5 * (places[*start] + places[*end]), bone.normalized(), kSeedReach);
+          sectionAt(body, frame, 0.5 * (places[*start] + places[*end]), bone.normalized(), kArmSeedReach);
       if (cut.empty()) return 1;
       least = std::min(least, flatnessOf(cut));
     }

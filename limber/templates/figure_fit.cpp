@@ -13,8 +13,8 @@ namespace {
 
 // People and statues of people match by 8 to 10.5, anything else by less than 6.
 constexpr double kMatchOfDoubt = 6.6, kMatchSpread = 1.2, kCostOfDoubt = 1.8;
-constexpr double kGrid = 1.0 / 8192;  // heights
-constexpr double kLeastLimb = 0.1;    // match of a limb that has a place
+constexpr double kFitGrid = 1.0 / 8192;  // heights
+constexpr double kLeastLimb = 0.1;       // match of a limb that has a place
 
 constexpr std::array<std::array<const char*, 4>, kFigureLimbs> kLimbJoints = {
     {{"leftUpperArm", "leftLowerArm", "leftHand", "leftHandTip"},
@@ -83,7 +83,7 @@ TemplateFit fitOfFigure(const TemplateSkeleton& skeleton, const MatchedFigure& f
   fit.embedding.costs.assign(count, 0.0);
   const auto put = [&](const char* joint, const Vec3& place) {
     // On a grid: sines differ in their last bits between machines' libraries, rigs must not.
-    places[skeleton.find(joint).value()] = (fit.frame.toBody(place) / kGrid).array().round().matrix() * kGrid;
+    places[skeleton.find(joint).value()] = (fit.frame.toBody(place) / kFitGrid).array().round().matrix() * kFitGrid;
   };
   const std::array<Vec3, 5> trunk = trunkPlaces(figure.figure);
   for (std::size_t j = 0; j < trunk.size(); ++j) put(kTrunkJoints[j], trunk[j]);

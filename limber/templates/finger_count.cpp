@@ -10,9 +10,9 @@ namespace limber {
 namespace {
 
 // In lengths of the hand.
-constexpr double kFirst = 0.3, kLast = 1.7, kStep = 0.07;  // planes, from the wrist
-constexpr double kAside = 0.9;                             // that parts of the hand lie beside its axis
-constexpr double kThinnest = 0.02, kThickest = 0.16;       // half widths of fingers
+constexpr double kFirst = 0.3, kLast = 1.7, kStep = 0.07;         // planes, from the wrist
+constexpr double kAside = 0.9;                                    // that parts of the hand lie beside its axis
+constexpr double kThinnestFinger = 0.02, kThickestFinger = 0.16;  // half widths of fingers
 
 using Edge = std::pair<Index, Index>;
 
@@ -97,7 +97,8 @@ std::size_t countFingers(const TriMesh& mesh, const Vec3& hand, const Vec3& tip)
     }
     const auto isFinger = [&](const Cut::Part& part) {
       const double aside = (part.middle - hand - at * length * axis).norm();
-      return aside < kAside * length && part.halfWidth > kThinnest * length && part.halfWidth < kThickest * length;
+      return aside < kAside * length && part.halfWidth > kThinnestFinger * length &&
+             part.halfWidth < kThickestFinger * length;
     };
     const std::vector<Cut::Part> parts = cut.parts();
     most = std::max(most, static_cast<std::size_t>(std::count_if(parts.begin(), parts.end(), isFinger)));

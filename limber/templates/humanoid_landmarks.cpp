@@ -21,7 +21,7 @@ constexpr double kLifted = 0.12;       // of a foot that does not stand
 constexpr double kWristSearch = 0.2;   // of the arm's length, to both sides
 constexpr double kElbowSearch = 0.08;  // of the arm's length, to both sides
 constexpr double kHanging = 0.755;     // cosine between upper arm and straight down
-constexpr double kStraight = 0.9;      // cosine between upper arm and forearm from which the bend shows no elbow
+constexpr double kStraightArm = 0.9;   // cosine between upper arm and forearm from which the bend shows no elbow
 
 struct Arm {
   Index shoulder = 0, elbow = 0, hand = 0;
@@ -61,10 +61,10 @@ std::optional<HumanoidJoints> humanoidJointsOf(const TemplateSkeleton& skeleton)
 }
 
 // Moves what may be moved.
-class Mover {
+class HumanoidMover {
  public:
-  Mover(const BodyVolume& body, const BodyFrame& frame, const std::vector<std::optional<Vec3>>& pins,
-        std::vector<Vec3>& places, const HumanoidProportions& proportions)
+  HumanoidMover(const BodyVolume& body, const BodyFrame& frame, const std::vector<std::optional<Vec3>>& pins,
+                std::vector<Vec3>& places, const HumanoidProportions& proportions)
       : body_(body), frame_(frame), pins_(pins), places_(places), proportions_(proportions) {}
 
   bool isUpright(Index low, Index high) const { return (places_[high] - places_[low]).normalized().y() > kUpright; }
@@ -135,7 +135,7 @@ class Mover {
     const bool hangs = along.y() < -kHanging;
     const double start = finder.armpit() && !hangs ? 0.5 * (*finder.armpit() - 0.5 * finder.radius()) : 0;
     double bend = finder.elbow();
-    if (along.dot(below) > kStraight) {
+    if (along.dot(below) > kStraightArm) {
       bend = 0.5 * (bend + start + proportions_.elbow * (wrist - start));
       bend = finder.narrowest(bend - kElbowSearch * length, bend + kElbowSearch * length).value_or(bend);
     }
@@ -206,7 +206,7 @@ void refineHumanoid(const TemplateSkeleton& skeleton, const BodyVolume& body, co
                     const HumanoidProportions& proportions) {
   const std::optional<HumanoidJoints> joints = humanoidJointsOf(skeleton);
   if (!joints) return;
-  Mover mover(body, frame, pins, places, proportions);
+  HumanoidMover mover(body, frame, pins, places, proportions);
   if (!skeleton.bent()) {
     mover.legs(*joints);
     mover.evenOut(joints->arms);

@@ -64,10 +64,10 @@ struct Column {
   double low = 0, high = 0;
 };
 
-class Mover {
+class QuadrupedMover {
  public:
-  Mover(const BodyVolume& body, const BodyFrame& frame, const std::vector<std::optional<Vec3>>& pins,
-        std::vector<Vec3>& places, const QuadrupedProportions& proportions)
+  QuadrupedMover(const BodyVolume& body, const BodyFrame& frame, const std::vector<std::optional<Vec3>>& pins,
+                 std::vector<Vec3>& places, const QuadrupedProportions& proportions)
       : body_(body), frame_(frame), pins_(pins), places_(places), proportions_(proportions) {}
 
   bool frontLegs(const std::array<LegJoints, 2>& legs) {
@@ -198,7 +198,7 @@ void refineQuadruped(const TemplateSkeleton& skeleton, const BodyVolume& body, c
                      const QuadrupedProportions& proportions) {
   const std::optional<QuadrupedJoints> joints = quadrupedJointsOf(skeleton);
   if (!joints) return;
-  Mover mover(body, frame, pins, places, proportions);
+  QuadrupedMover mover(body, frame, pins, places, proportions);
   const bool fore = mover.frontLegs(joints->front), rear = mover.hindLegs(joints->hind);
   if (fore) mover.fore(*joints);
   if (rear) mover.rear(*joints);

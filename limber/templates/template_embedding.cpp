@@ -40,13 +40,6 @@ constexpr int kDescentRounds = 2;                  // with each
 constexpr std::size_t kLanes = 32;  // side by side: compilers make no vector instructions of 16 or less
 constexpr float kNever = 1e30f;     // cost
 
-struct Candidate {
-  Vec3 place = Vec3::Zero();
-  double radius = 0;
-  double offMiddle = 0;  // 0 for the deepest of its part, up to 1
-  double toTip = 0;      // heights to the nearest end of the model
-};
-
 void checkJoints(const TemplateSkeleton& variant, std::size_t joints) {
   if (variant.jointCount() == joints) return;
   throw Error(ErrorCode::kBadArgument, "variants of a template and its pins must have the same joints", variant.name);
@@ -87,6 +80,13 @@ class TemplateEmbedder::Search {
   }
 
  private:
+  struct Candidate {
+    Vec3 place = Vec3::Zero();
+    double radius = 0;
+    double offMiddle = 0;  // 0 for the deepest of its part, up to 1
+    double toTip = 0;      // heights to the nearest end of the model
+  };
+
   bool isLeftOrMiddle(const TemplateJoint& joint) const { return !joint.mirror || joint.place.x() > 0; }
 
   // Placed joints and tips that are searched for, each with the one above it.
