@@ -17,7 +17,7 @@ namespace limber {
 
 namespace {
 
-constexpr std::string_view kEnd = "_end";
+constexpr std::string_view kEndSite = "_end";
 constexpr double kMoved = 1e-6;  // of the skeleton's size: a joint farther from its offset gets position channels
 
 // The angles of R = Z(a[0]) X(a[1]) Y(a[2]) in degrees; of the two solutions, and whole turns, the nearest to `before`.
@@ -114,8 +114,8 @@ class BvhWriter {
     for (const auto& track : clip_.scales) moved[track.joint] = true;
     for (Index j = 0; j < skeleton_.jointCount(); ++j) {
       const Joint& joint = skeleton_.joints[j];
-      const bool named = joint.name.size() > kEnd.size() &&
-                         std::string_view(joint.name).substr(joint.name.size() - kEnd.size()) == kEnd;
+      const bool named = joint.name.size() > kEndSite.size() &&
+                         std::string_view(joint.name).substr(joint.name.size() - kEndSite.size()) == kEndSite;
       isEnd_.push_back(joint.parent && children_[j].empty() && named && !moved[j]);
       if (joint.name.find_first_of("\r\n{}") != std::string::npos) {
         throw Error(ErrorCode::kBadArgument, "its name cannot stand in a BVH file",

@@ -25,7 +25,7 @@ constexpr std::uint64_t kMaxAddedVertices = 16'000'000;
 // The same for instances, which cost memory even where their mesh has no vertices.
 constexpr std::uint64_t kMaxAddedInstances = 1'000'000;
 
-constexpr int kTriangles = 4, kTriangleStrip = 5, kTriangleFan = 6;  // glTF's primitive modes
+constexpr int kTriangleList = 4, kTriangleStrip = 5, kTriangleFan = 6;  // glTF's primitive modes
 
 // One showing of a mesh.
 struct MeshInstance {
@@ -121,8 +121,8 @@ std::vector<MeshInstance> meshInstances(const Asset& asset) {
 // The corners of one primitive's triangles, as indices into its own vertices.
 std::vector<Triangle> primitiveTriangles(const Asset& asset, const Json& primitive, Index vertexCount) {
   const Json* modeMember = member(primitive, "mode");
-  const int mode = modeMember ? modeMember->get<int>() : kTriangles;
-  if (mode != kTriangles && mode != kTriangleStrip && mode != kTriangleFan) return {};
+  const int mode = modeMember ? modeMember->get<int>() : kTriangleList;
+  if (mode != kTriangleList && mode != kTriangleStrip && mode != kTriangleFan) return {};
 
   const std::optional<Index> accessor = indexMember(primitive, "indices");
   const std::vector<Index> indices = accessor ? readIndices(asset, *accessor) : std::vector<Index>();
@@ -130,7 +130,7 @@ std::vector<Triangle> primitiveTriangles(const Asset& asset, const Json& primiti
   const auto corner = [&](std::size_t i) { return accessor ? indices[i] : static_cast<Index>(i); };
 
   std::vector<Triangle> triangles;
-  if (mode == kTriangles) {
+  if (mode == kTriangleList) {
     triangles.reserve(corners / 3);
     for (std::size_t i = 0; i + 2 < corners; i += 3) triangles.push_back({corner(i), corner(i + 1), corner(i + 2)});
   } else if (mode == kTriangleStrip) {

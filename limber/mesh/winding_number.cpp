@@ -35,8 +35,8 @@ struct Coded {
 };
 
 void sortInParallel(std::span<Coded> items) {
-  constexpr std::size_t kParallelAbove = 1 << 15;
-  if (items.size() <= kParallelAbove) {
+  constexpr std::size_t kSortParallelAbove = 1 << 15;
+  if (items.size() <= kSortParallelAbove) {
     std::sort(items.begin(), items.end());
     return;
   }

@@ -11,10 +11,10 @@ namespace {
 constexpr std::int32_t kSubpixels = 256;
 constexpr std::int32_t kTileSpan = kTileSize * kSubpixels;
 constexpr std::int32_t kOffsetScale = kSubpixels / 16;
-constexpr double kFarthest = 1 << 29;  // positions beyond are clamped, so that 32 bits hold them
+constexpr double kFarthestPixel = 1 << 29;  // positions beyond are clamped, so that 32 bits hold them
 
 std::int32_t snap(double pixel) {
-  return static_cast<std::int32_t>(std::lround(std::clamp(pixel * kSubpixels, -kFarthest, kFarthest)));
+  return static_cast<std::int32_t>(std::lround(std::clamp(pixel * kSubpixels, -kFarthestPixel, kFarthestPixel)));
 }
 
 // Twice the signed area of a, b, (x, y). Exact, and equal but for its sign when a and b are swapped, so that

@@ -9,10 +9,10 @@ namespace limber {
 
 namespace {
 
-constexpr double kSeconds = 1.2;                    // there and back
-constexpr double kOff = 0.14, kLand = 0.36;         // shares of that, of the jump apart; half later together
-constexpr double kTogether = 0.09, kApart = 0.32;   // metres, of a foot from the middle
-constexpr double kPointed = -0.5, kOutward = 0.12;  // radians
+constexpr double kSeconds = 1.2;                        // there and back
+constexpr double kOff = 0.14, kLand = 0.36;             // shares of that, of the jump apart; half later together
+constexpr double kTogether = 0.09, kApart = 0.32;       // metres, of a foot from the middle
+constexpr double kPointed = -0.5, kFeetOutward = 0.12;  // radians
 
 // 0 together, 1 apart.
 double apartAt(double phase) {
@@ -31,7 +31,7 @@ double jumpBump(double phase, double before, double after) {
 Stance jumpingJackAt(double seconds) {
   const double strokes = seconds / kSeconds, phase = strokes - std::floor(strokes), apart = apartAt(phase);
   FootPlace foot;
-  foot.outward = kOutward;
+  foot.outward = kFeetOutward;
   const Vec3 toes = turnedFoot(foot, kToToes);
   foot.pitch = kPointed * jumpBump(phase, 0.08, 0.08);
   foot.ankle = Vec3(kTogether + (kApart - kTogether) * apart, kAnkleHeight + 0.05 * jumpBump(phase, 0, 0), 0) + toes -

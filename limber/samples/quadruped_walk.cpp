@@ -13,7 +13,7 @@ namespace limber {
 namespace {
 
 constexpr double kQuadrupedStride = 0.20, kQuadrupedStrideSeconds = 0.9, kStands = 0.65;  // metres; share of the stride
-constexpr double kSinks = 0.016, kLift = 0.022;                                           // metres
+constexpr double kSinks = 0.016, kPawLift = 0.022;                                        // metres
 
 struct QuadrupedBone {
   const char *name, *parent;
@@ -56,7 +56,7 @@ double leanAt(double phase, bool front) {
 Vec3 toesWay(double strides) {
   const double count = std::floor(strides), phase = strides - count;
   const double swing = (phase - kStands) / (1 - kStands);
-  return {0, kLift * smoothBump(swing), (count + 0.5 * kStands + smoothRise(swing)) * kQuadrupedStride};
+  return {0, kPawLift * smoothBump(swing), (count + 0.5 * kStands + smoothRise(swing)) * kQuadrupedStride};
 }
 
 class Walker {

@@ -10,7 +10,7 @@ namespace limber {
 
 namespace {
 
-constexpr double kMostFrames = 1500;
+constexpr double kMostLoopFrames = 1500;
 constexpr double kStill = 1e-4;  // of the skeleton's size: less movement than this is none
 
 // Joint positions with the root's place on the ground and its heading (turn about +Y) taken out.
@@ -41,7 +41,7 @@ double meanSquare(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
 std::optional<ClipLoop> findLoop(const Skeleton& skeleton, const Clip& clip, const LoopOptions& options) {
   const double duration = clip.duration();
   if (skeleton.joints.empty() || duration < options.shortest) return std::nullopt;
-  const double rate = std::min(options.framesPerSecond, kMostFrames / duration);
+  const double rate = std::min(options.framesPerSecond, kMostLoopFrames / duration);
   const Index frames = frameCount(clip, rate);
   std::vector<std::vector<Vec3>> poses;
   for (Index k = 0; k < frames; ++k) poses.push_back(standingPoints(skeleton, clip, std::min(k / rate, duration)));

@@ -32,13 +32,13 @@ bool standsAlone(const std::string& name, std::size_t at) {
 
 // The joint whose name says the other side.
 std::optional<Index> otherSide(const std::map<std::string, Index>& byName, const std::string& name) {
-  constexpr std::array<std::array<const char*, 2>, 3> kWords = {
+  constexpr std::array<std::array<const char*, 2>, 3> kSideWords = {
       {{"left", "right"}, {"Left", "Right"}, {"LEFT", "RIGHT"}}};
   const auto lookUp = [&](std::string other) -> std::optional<Index> {
     const auto found = byName.find(other);
     return found == byName.end() ? std::nullopt : std::optional(found->second);
   };
-  for (const auto& pair : kWords) {
+  for (const auto& pair : kSideWords) {
     for (int side = 0; side < 2; ++side) {
       const std::string from = pair[static_cast<std::size_t>(side)], to = pair[static_cast<std::size_t>(1 - side)];
       const std::size_t at = name.find(from);

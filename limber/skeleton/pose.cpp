@@ -11,11 +11,11 @@ namespace limber {
 namespace {
 
 // Rounding in a product of double transforms; far below what a float vertex can show.
-constexpr double kRounding = 1e-12;
+constexpr double kPoseRounding = 1e-12;
 
 bool isIdentityButForRounding(const Affine& map, double reach) {
-  return (map.linear() - Mat3::Identity()).cwiseAbs().maxCoeff() <= kRounding &&
-         map.translation().cwiseAbs().maxCoeff() <= kRounding * reach;
+  return (map.linear() - Mat3::Identity()).cwiseAbs().maxCoeff() <= kPoseRounding &&
+         map.translation().cwiseAbs().maxCoeff() <= kPoseRounding * reach;
 }
 
 }  // namespace
