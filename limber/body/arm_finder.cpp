@@ -20,7 +20,7 @@ constexpr double kThickerWithin = 8;    // cuts from the narrowest place
 
 }  // namespace
 
-ArmFinder::ArmFinder(const BodyVolume& body, const BodyFrame& frame, const Vec3& shoulder, const Vec3& elbow,
+ArmFinder::ArmFinder(const BodyVolume& body, const AnatomicalFrame& frame, const Vec3& shoulder, const Vec3& elbow,
                      const Vec3& hand)
     : upper_((elbow - shoulder).norm()), lower_((hand - elbow).norm()), step_((upper_ + lower_) / kCuts) {
   if (!(upper_ > 1e-3) || !(lower_ > 1e-3)) return;

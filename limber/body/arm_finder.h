@@ -12,7 +12,8 @@ namespace limber {
 class ArmFinder {
  public:
   // Joints in body space; elbow and hand in the middle of the arm. `body` and `frame` must outlive the finder.
-  ArmFinder(const BodyVolume& body, const BodyFrame& frame, const Vec3& shoulder, const Vec3& elbow, const Vec3& hand);
+  ArmFinder(const BodyVolume& body, const AnatomicalFrame& frame, const Vec3& shoulder, const Vec3& elbow,
+            const Vec3& hand);
 
   double elbow() const { return upper_; }
   double hand() const { return upper_ + lower_; }

@@ -51,7 +51,7 @@ TEST(ArmFinder, FindsTheWrist) {
   testing::addCapsule(mesh, {0.34, 0.7, 0}, {0.42, 0.7, 0}, 0.02);
   testing::addCapsule(mesh, {0.44, 0.7, 0}, {0.5, 0.7, 0}, 0.045);
   const BodyVolume body = measureBody(mesh);
-  const BodyFrame frame = frameAlong(mesh, body, Vec3::UnitY(), Vec3::UnitZ());
+  const AnatomicalFrame frame = frameAlong(mesh, body, Vec3::UnitY(), Vec3::UnitZ());
   const Vec3 shoulder = frame.toBody({0.1, 0.7, 0});
   const ArmFinder finder(body, frame, shoulder, frame.toBody({0.24, 0.7, 0}), frame.toBody({0.35, 0.7, 0}));
   const std::optional<double> wrist = finder.narrowest(0.7 * finder.hand(), 1.3 * finder.hand());

@@ -20,7 +20,7 @@ double BodySection::halfDepth() const {
   return 0.5 * cell * ((*farthest)[1] - (*nearest)[1]);
 }
 
-BodySection sectionAt(const BodyVolume& body, const BodyFrame& frame, const Vec3& seed, const Vec3& normal,
+BodySection sectionAt(const BodyVolume& body, const AnatomicalFrame& frame, const Vec3& seed, const Vec3& normal,
                       double reach) {
   using Cell = std::array<int, 2>;
   BodySection section;

@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "limber/body/body_frame.h"
+#include "limber/body/anatomical_frame.h"
 #include "limber/body/body_volume.h"
 
 namespace limber {
@@ -25,7 +25,7 @@ struct BodySection {
 
 // The connected part of the cut square to `normal` (a unit vector) at `seed` that holds the inside place nearest to it;
 // empty where none lies within `reach` (heights). For a level cut `across` is x.
-BodySection sectionAt(const BodyVolume& body, const BodyFrame& frame, const Vec3& seed, const Vec3& normal,
+BodySection sectionAt(const BodyVolume& body, const AnatomicalFrame& frame, const Vec3& seed, const Vec3& normal,
                       double reach);
 
 }  // namespace limber

@@ -20,7 +20,7 @@ constexpr double kSmallestFoot = 0.45, kLargestFoot = 12;  // cuts of the leg: n
 
 }  // namespace
 
-double feetForward(const BodyVolume& body, const BodyFrame& frame, std::span<const Vec3> feet) {
+double feetForward(const BodyVolume& body, const AnatomicalFrame& frame, std::span<const Vec3> feet) {
   double sum = 0;
   int standing = 0;
   for (const Vec3& foot : feet) {

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "limber/body/body_frame.h"
+#include "limber/body/anatomical_frame.h"
 #include "limber/body/body_volume.h"
 
 namespace limber {
@@ -13,6 +13,6 @@ namespace limber {
 //
 // feet  body space, places near the ankles
 // Cost: three cuts for each foot.
-double feetForward(const BodyVolume& body, const BodyFrame& frame, std::span<const Vec3> feet);
+double feetForward(const BodyVolume& body, const AnatomicalFrame& frame, std::span<const Vec3> feet);
 
 }  // namespace limber

@@ -9,7 +9,7 @@ namespace limber {
 namespace {
 
 double forwardOf(const TriMesh& mesh, const BodyVolume& body, const Vec3& front) {
-  const BodyFrame frame = frameAlong(mesh, body, Vec3::UnitY(), front);
+  const AnatomicalFrame frame = frameAlong(mesh, body, Vec3::UnitY(), front);
   const Vec3 feet[] = {frame.toBody({0.09, 0.045, 0}), frame.toBody({-0.09, 0.045, 0})};
   return feetForward(body, frame, feet);
 }
@@ -31,7 +31,7 @@ TEST(FeetDirection, IsUnknownOfASteppingPerson) {
     testing::addCapsule(mesh, {x, 0.03, -0.21}, {x, 0.03, -0.12}, 0.03);
   }
   const BodyVolume body = measureBody(mesh);
-  const BodyFrame frame = frameAlong(mesh, body, Vec3::UnitY(), Vec3::UnitZ());
+  const AnatomicalFrame frame = frameAlong(mesh, body, Vec3::UnitY(), Vec3::UnitZ());
   const Vec3 feet[] = {frame.toBody({0.09, 0.045, -0.2}), frame.toBody({-0.09, 0.045, -0.2})};
   EXPECT_EQ(feetForward(body, frame, feet), 0);
 }

@@ -10,15 +10,15 @@
 namespace limber {
 
 // Joints of a template: where a leg begins, bends, and from where on it is looked at.
-struct Leg {
+struct LegChain {
   Index hip = 0, knee = 0, ankle = 0;
 };
 
 class LegFinder {
  public:
   // places  of the template's joints, body space; all arguments must outlive the finder
-  LegFinder(const BodyVolume& body, const BodyFrame& frame, const std::vector<Vec3>& places, const Leg& left,
-            const Leg& right)
+  LegFinder(const BodyVolume& body, const AnatomicalFrame& frame, const std::vector<Vec3>& places, const LegChain& left,
+            const LegChain& right)
       : body_(body), frame_(frame), places_(places), legs_{left, right} {}
 
   // Cuts both legs at rising heights until they have grown together. False where they do not, or so low that they are
@@ -45,9 +45,9 @@ class LegFinder {
   Vec3 seed(int side, double y) const;
 
   const BodyVolume& body_;
-  const BodyFrame& frame_;
+  const AnatomicalFrame& frame_;
   const std::vector<Vec3>& places_;
-  std::array<Leg, 2> legs_;
+  std::array<LegChain, 2> legs_;
   std::array<std::vector<BodySection>, 2> sections_;  // upwards
   double parting_ = 0;
 };

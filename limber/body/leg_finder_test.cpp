@@ -40,7 +40,7 @@ TEST(LegFinder, SeesNoLegsInOneColumn) {
   TriMesh column;
   testing::addCapsule(column, {0, 0.1, 0}, {0, 0.9, 0}, 0.1);
   const BodyVolume body = measureBody(column);
-  const BodyFrame frame = frameAlong(column, body, Vec3::UnitY(), Vec3::UnitZ());
+  const AnatomicalFrame frame = frameAlong(column, body, Vec3::UnitY(), Vec3::UnitZ());
   const std::vector<Vec3> places = {{0.05, 0.5, 0},  {0.05, 0.3, 0},  {0.05, 0.1, 0},
                                     {-0.05, 0.5, 0}, {-0.05, 0.3, 0}, {-0.05, 0.1, 0}};
   LegFinder finder(body, frame, places, {0, 1, 2}, {3, 4, 5});

@@ -54,7 +54,7 @@ void checkPins(const TriMesh& mesh, const std::vector<JointPin>& pins) {
   }
 }
 
-TemplatePins pinsIn(const TemplateSkeleton& skeleton, const BodyFrame& frame, const std::vector<JointPin>& pins) {
+TemplatePins pinsIn(const TemplateSkeleton& skeleton, const AnatomicalFrame& frame, const std::vector<JointPin>& pins) {
   TemplatePins places(skeleton.jointCount());
   for (const JointPin& pin : pins) {
     const std::optional<Index> joint = skeleton.find(pin.joint);
@@ -72,8 +72,8 @@ TemplatePins pinsIn(const TemplateSkeleton& skeleton, const BodyFrame& frame, co
 // A model as templates are tried on it.
 struct Model {
   const BodyVolume& body;
-  const std::vector<BodyFrame>& frames;  // ways to stand, likeliest first
-  const std::optional<Vec3> front;       // if it is known
+  const std::vector<AnatomicalFrame>& frames;  // ways to stand, likeliest first
+  const std::optional<Vec3> front;             // if it is known
 };
 
 struct Embedded {
@@ -84,18 +84,18 @@ struct Embedded {
 // Looks at every way to stand with some of the spheres, and at the best ones with all.
 Embedded bestEmbedding(const TemplateSkeleton& skeleton, const Model& model, const std::vector<JointPin>& pins) {
   const BodyVolume& body = model.body;
-  const std::vector<BodyFrame>& frames = model.frames;
+  const std::vector<AnatomicalFrame>& frames = model.frames;
   double least = 1;
-  for (const BodyFrame& frame : frames) least = std::min(least, frame.asymmetry);
+  for (const AnatomicalFrame& frame : frames) least = std::min(least, frame.asymmetry);
   const std::vector<TemplateVariant> standing = templateVariants(skeleton);
   // For each way to stand the variants, best first.
   struct Look {
-    BodyFrame frame;
+    AnatomicalFrame frame;
     double cost;
     std::vector<TemplateVariant> variants;
   };
   std::vector<Look> looks;
-  for (const BodyFrame& frame : frames) {
+  for (const AnatomicalFrame& frame : frames) {
     if (frame.asymmetry > least + kMostAsymmetry) continue;
     const TemplatePins places = pinsIn(skeleton, frame, pins);
     std::vector<TemplateVariant> variants = standing;
@@ -116,7 +116,7 @@ Embedded bestEmbedding(const TemplateSkeleton& skeleton, const Model& model, con
   std::optional<TemplateFit> best;
   std::optional<TemplateEmbedder> bestEmbedder;
   for (std::size_t i = 0; i < std::min(looks.size(), kFramesRefined); ++i) {
-    const BodyFrame& frame = looks[i].frame;
+    const AnatomicalFrame& frame = looks[i].frame;
     TemplateEmbedder embedder(skeleton, body, frame, pinsIn(skeleton, frame, pins), {body.spheres.size(), true});
     std::vector<TemplateFit> fits = fitVariants(looks[i].variants, embedder);
     TemplateFit& fit = *std::min_element(fits.begin(), fits.end(), cheaper);
@@ -158,7 +158,7 @@ struct FigureOnce {
 
 std::optional<TemplateFit> figureFit(const TemplateSkeleton& skeleton, const Model& model,
                                      const std::vector<JointPin>& pins, FigureOnce& once, Progress& progress) {
-  const BodyFrame& frame = model.frames.front();
+  const AnatomicalFrame& frame = model.frames.front();
   const TemplatePins places = pinsIn(skeleton, frame, pins);
   if (!once.wasSought) {
     progress.step("find figure");
@@ -221,13 +221,14 @@ void warn(const TemplateFit& fit, AutoRig& rig) {
 
 TemplateFit fitTemplate(const TemplateSkeleton& skeleton, const TriMesh& mesh, const BodyVolume& body,
                         const RigOptions& options) {
-  const std::vector<BodyFrame> frames = possibleFrames(mesh, body, options.up, options.front);
+  const std::vector<AnatomicalFrame> frames = possibleFrames(mesh, body, options.up, options.front);
   FigureOnce figure;
   Progress progress;
   return bestFit(skeleton, {body, frames, options.front}, options.pins, figure, progress);
 }
 
-Skeleton standingSkeleton(const TemplateSkeleton& skeleton, const std::vector<Vec3>& places, const BodyFrame& frame) {
+Skeleton standingSkeleton(const TemplateSkeleton& skeleton, const std::vector<Vec3>& places,
+                          const AnatomicalFrame& frame) {
   const Index count = skeleton.jointCount();
   std::vector<std::optional<Index>> next(count);
   for (Index j = 0; j < count; ++j) {
@@ -283,7 +284,7 @@ AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress
   const std::optional<TriMesh> cleared = withoutStrays(mesh);
   const TriMesh& surface = cleared ? *cleared : mesh;
   const BodyVolume body = measureBody(surface);
-  const std::vector<BodyFrame> frames = possibleFrames(surface, body, options.up, options.front);
+  const std::vector<AnatomicalFrame> frames = possibleFrames(surface, body, options.up, options.front);
   const Model model{body, frames, options.front};
   FigureOnce figure;
   std::vector<TemplateFit> fits;

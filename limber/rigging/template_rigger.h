@@ -1,7 +1,7 @@
 // Template embedding as a rigger: a named skeleton is fitted into the model.
 #pragma once
 
-#include "limber/body/body_frame.h"
+#include "limber/body/anatomical_frame.h"
 #include "limber/body/body_volume.h"
 #include "limber/rigging/auto_rigger.h"
 #include "limber/templates/template_fit.h"
@@ -14,7 +14,8 @@ namespace limber {
 // the end of a chain on in the direction of the bone above. Its local +Z is as near to the body's front as it can be;
 // for a bone that itself points within 30 degrees of front or back, to the body's up. So the two sides mirror each
 // other.
-Skeleton standingSkeleton(const TemplateSkeleton& skeleton, const std::vector<Vec3>& places, const BodyFrame& frame);
+Skeleton standingSkeleton(const TemplateSkeleton& skeleton, const std::vector<Vec3>& places,
+                          const AnatomicalFrame& frame);
 
 // The way to stand and the variant of the template that fit best. Reads up, front and pins of the options.
 // Throws Error kBadArgument for an unknown pinned joint.

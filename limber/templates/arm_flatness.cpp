@@ -31,7 +31,7 @@ double flatnessOf(const BodySection& section) {
 }  // namespace
 
 double armFlatness(const TemplateSkeleton& skeleton, const std::vector<Vec3>& places, const BodyVolume& body,
-                   const BodyFrame& frame) {
+                   const AnatomicalFrame& frame) {
   double least = std::numeric_limits<double>::infinity();
   for (const std::string side : {"left", "right"}) {
     for (const auto& [from, to] : {std::pair("UpperArm", "LowerArm"), std::pair("LowerArm", "Hand")}) {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "limber/body/body_frame.h"
+#include "limber/body/anatomical_frame.h"
 #include "limber/body/body_volume.h"
 #include "limber/templates/template_skeleton.h"
 
@@ -12,6 +12,6 @@ namespace limber {
 // How many times as wide as thick the arms are: the least over cuts square to the middles of upper arms and forearms.
 // 1 where the template has no arms of a person, or the body none where these stand. Body space.
 double armFlatness(const TemplateSkeleton& skeleton, const std::vector<Vec3>& places, const BodyVolume& body,
-                   const BodyFrame& frame);
+                   const AnatomicalFrame& frame);
 
 }  // namespace limber

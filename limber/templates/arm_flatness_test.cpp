@@ -9,7 +9,7 @@ namespace limber {
 namespace {
 
 // The humanoid with the arms of the capsule person.
-std::vector<Vec3> placesIn(const testing::CapsulePerson& shape, const BodyFrame& frame) {
+std::vector<Vec3> placesIn(const testing::CapsulePerson& shape, const AnatomicalFrame& frame) {
   const TemplateSkeleton& skeleton = findTemplate("humanoid");
   std::vector<Vec3> places;
   for (const TemplateJoint& joint : skeleton.joints) places.push_back(joint.place);
@@ -38,7 +38,7 @@ TEST(ArmFlatness, WingsAreNot) {
     }
   }
   const BodyVolume body = measureBody(winged.mesh);
-  const BodyFrame frame = frameAlong(winged.mesh, body, Vec3::UnitY(), Vec3::UnitZ());
+  const AnatomicalFrame frame = frameAlong(winged.mesh, body, Vec3::UnitY(), Vec3::UnitZ());
   EXPECT_GT(armFlatness(findTemplate("humanoid"), placesIn(winged, frame), body, frame), 4);
 }
 

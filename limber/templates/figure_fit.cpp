@@ -29,13 +29,13 @@ std::array<Vec3, 5> trunkPlaces(const Figure& figure) {
           figure.skullBase(), figure.head - 1.1 * figure.headRadius * figure.neck};
 }
 
-BodyFrame frameOf(const Figure& figure, const BodyFrame& body) {
+AnatomicalFrame frameOf(const Figure& figure, const AnatomicalFrame& body) {
   const Vec3 up = body.axes.row(1).transpose();
   Vec3 front = figure.chest.col(2) + figure.pelvis.col(2);
   front -= front.dot(up) * up;
   if (front.norm() < 0.2) front = -up.cross(figure.pelvis.col(0));  // it lies on its back or belly
   front.normalize();
-  BodyFrame frame = body;
+  AnatomicalFrame frame = body;
   frame.axes.row(0) = up.cross(front).transpose();
   frame.axes.row(2) = front.transpose();
   const Vec3 hips = figure.hips();
@@ -53,7 +53,8 @@ bool isHumanoid(const TemplateSkeleton& skeleton) {
                      [&](const auto& limb) { return std::all_of(limb.begin(), limb.end(), has); });
 }
 
-std::vector<FigurePin> figurePins(const TemplateSkeleton& skeleton, const TemplatePins& pins, const BodyFrame& frame) {
+std::vector<FigurePin> figurePins(const TemplateSkeleton& skeleton, const TemplatePins& pins,
+                                  const AnatomicalFrame& frame) {
   using Part = FigurePin::Joint;
   std::vector<FigurePin> told;
   const auto tell = [&](const char* name, Part joint, int limb) {
@@ -71,7 +72,7 @@ std::vector<FigurePin> figurePins(const TemplateSkeleton& skeleton, const Templa
 }
 
 TemplateFit fitOfFigure(const TemplateSkeleton& skeleton, const MatchedFigure& figure, const TemplatePins& pins,
-                        const BodyFrame& frame) {
+                        const AnatomicalFrame& frame) {
   const Index count = skeleton.jointCount();
   TemplateFit fit;
   fit.skeleton = skeleton;

@@ -12,7 +12,7 @@ namespace {
 
 struct Crouching {
   MatchedFigure figure;
-  BodyFrame frame;  // as the mesh stands: its middle is not the figure's
+  AnatomicalFrame frame;  // as the mesh stands: its middle is not the figure's
 
   Crouching() {
     figure.figure = testing::crouchingFigure();

@@ -29,7 +29,7 @@ struct Arm {
 };
 
 struct HumanoidJoints {
-  std::array<Leg, 2> legs;
+  std::array<LegChain, 2> legs;
   std::array<Arm, 2> arms;
   Index hips = 0, upperChest = 0, neck = 0, head = 0;
 };
@@ -63,15 +63,15 @@ std::optional<HumanoidJoints> humanoidJointsOf(const TemplateSkeleton& skeleton)
 // Moves what may be moved.
 class HumanoidMover {
  public:
-  HumanoidMover(const BodyVolume& body, const BodyFrame& frame, const std::vector<std::optional<Vec3>>& pins,
+  HumanoidMover(const BodyVolume& body, const AnatomicalFrame& frame, const std::vector<std::optional<Vec3>>& pins,
                 std::vector<Vec3>& places, const HumanoidProportions& proportions)
       : body_(body), frame_(frame), pins_(pins), places_(places), proportions_(proportions) {}
 
   bool isUpright(Index low, Index high) const { return (places_[high] - places_[low]).normalized().y() > kUpright; }
 
   // Whether cuts at rising heights follow both legs from the ground.
-  bool standsOn(const std::array<Leg, 2>& legs) const {
-    return std::all_of(legs.begin(), legs.end(), [&](const Leg& leg) {
+  bool standsOn(const std::array<LegChain, 2>& legs) const {
+    return std::all_of(legs.begin(), legs.end(), [&](const LegChain& leg) {
       return isUpright(leg.ankle, leg.knee) && isUpright(leg.knee, leg.hip) && places_[leg.ankle].y() < kLifted;
     });
   }
@@ -81,7 +81,7 @@ class HumanoidMover {
     const bool parted = finder.findParting();
     if (!finder.known()) return;
     for (int side = 0; side < 2; ++side) {
-      const Leg& leg = joints.legs[side];
+      const LegChain& leg = joints.legs[side];
       double hipY = places_[leg.hip].y();
       if (parted) {
         hipY = finder.parting() + proportions_.hipAboveParting * finder.halfWidth(side);
@@ -192,7 +192,7 @@ class HumanoidMover {
   }
 
   const BodyVolume& body_;
-  const BodyFrame& frame_;
+  const AnatomicalFrame& frame_;
   const std::vector<std::optional<Vec3>>& pins_;
   std::vector<Vec3>& places_;
   const std::vector<Vec3> embedded_ = places_;  // as it was before anything moved
@@ -201,7 +201,7 @@ class HumanoidMover {
 
 }  // namespace
 
-void refineHumanoid(const TemplateSkeleton& skeleton, const BodyVolume& body, const BodyFrame& frame,
+void refineHumanoid(const TemplateSkeleton& skeleton, const BodyVolume& body, const AnatomicalFrame& frame,
                     const std::vector<std::optional<Vec3>>& pins, std::vector<Vec3>& places,
                     const HumanoidProportions& proportions) {
   const std::optional<HumanoidJoints> joints = humanoidJointsOf(skeleton);
@@ -219,7 +219,7 @@ void refineHumanoid(const TemplateSkeleton& skeleton, const BodyVolume& body, co
   if (mover.isUpright(joints->hips, joints->neck)) mover.trunk(*joints);
 }
 
-void refineHocks(const TemplateSkeleton& skeleton, const BodyVolume& body, const BodyFrame& frame,
+void refineHocks(const TemplateSkeleton& skeleton, const BodyVolume& body, const AnatomicalFrame& frame,
                  const std::vector<std::optional<Vec3>>& pins, std::vector<Vec3>& places) {
   const std::optional<HumanoidJoints> joints = humanoidJointsOf(skeleton);
   if (!joints) return;

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "limber/body/body_frame.h"
+#include "limber/body/anatomical_frame.h"
 #include "limber/body/body_volume.h"
 #include "limber/templates/template_skeleton.h"
 
@@ -30,13 +30,13 @@ struct HumanoidProportions {
 // the legs, the neck and the head above the shoulders, all in the middle between front and back. What a body does not
 // show (a robe hides where legs part) stays where it was. Of a template that was bent, legs and trunk move only where
 // they are upright, arms not at all. Pinned joints stay. Body space.
-void refineHumanoid(const TemplateSkeleton& skeleton, const BodyVolume& body, const BodyFrame& frame,
+void refineHumanoid(const TemplateSkeleton& skeleton, const BodyVolume& body, const AnatomicalFrame& frame,
                     const std::vector<std::optional<Vec3>>& pins, std::vector<Vec3>& places,
                     const HumanoidProportions& proportions = {});
 
 // After refineHumanoid and placeBetween. Legs that bend back below the knee, as animals' on two legs do: feet go from
 // the ground up to the hocks, and toes to where the bone from there comes to the ground. Only where both legs show one.
-void refineHocks(const TemplateSkeleton& skeleton, const BodyVolume& body, const BodyFrame& frame,
+void refineHocks(const TemplateSkeleton& skeleton, const BodyVolume& body, const AnatomicalFrame& frame,
                  const std::vector<std::optional<Vec3>>& pins, std::vector<Vec3>& places);
 
 }  // namespace limber

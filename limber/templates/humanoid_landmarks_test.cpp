@@ -34,7 +34,7 @@ TEST(HumanoidLandmarks, LegsThatNeverMeetHaveTheirHipsInTheirMiddle) {
   testing::addCapsule(robot, {0, 0.65, 0}, {0, 0.93, 0}, 0.07);
   for (const double x : {0.11, -0.11}) testing::addCapsule(robot, {x, 0.045, 0}, {x, 0.52, 0}, 0.045);
   const BodyVolume body = measureBody(robot);
-  const BodyFrame frame = frameAlong(robot, body, Vec3::UnitY(), Vec3::UnitZ());
+  const AnatomicalFrame frame = frameAlong(robot, body, Vec3::UnitY(), Vec3::UnitZ());
   const TemplateSkeleton& skeleton = findTemplate("humanoid");
   const Index hip = *skeleton.find("leftUpperLeg"), other = *skeleton.find("rightUpperLeg");
   std::vector<Vec3> places;
@@ -70,7 +70,7 @@ TEST(HumanoidLandmarks, ArmsGoWhereTheyLeaveTheTrunk) {
 TEST(HumanoidLandmarks, ShouldersStayAboveArmsThatHang) {
   const testing::CapsulePerson person = testing::capsulePerson(1.3);
   const BodyVolume body = measureBody(person.mesh);
-  const BodyFrame frame = frameAlong(person.mesh, body, Vec3::UnitY(), Vec3::UnitZ());
+  const AnatomicalFrame frame = frameAlong(person.mesh, body, Vec3::UnitY(), Vec3::UnitZ());
   const TemplateSkeleton& skeleton = findTemplate("humanoid");
   const Index shoulder = *skeleton.find("leftUpperArm");
   std::vector<Vec3> places;

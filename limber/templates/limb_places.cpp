@@ -22,7 +22,7 @@ constexpr double kAcross = 0.5;   // most cosine between a limb and what lies ac
 // Whether the way across from the limb's last joint but the tip straight to that of the other side stays inside the
 // body. Along the limbs it may: so it does from hand to hand of stretched arms.
 bool sharesItsEnd(const TemplateSkeleton& skeleton, const TemplateLimb& limb, const std::vector<Vec3>& places,
-                  const BodyVolume& body, const BodyFrame& frame) {
+                  const BodyVolume& body, const AnatomicalFrame& frame) {
   constexpr int kSteps = 24;
   const std::size_t count = limb.placed.size();
   if (count < 3 || skeleton.joints[limb.placed.back()].role != TemplateRole::kTip) return false;
@@ -63,7 +63,7 @@ bool liesInAnother(const TemplateSkeleton& skeleton, const TemplateLimb& limb, c
 
 // Heights that the last bone before a tip lies deep in the body, in the mean.
 double depthOfEnd(const TemplateLimb& limb, const std::vector<Vec3>& places, const BodyVolume& body,
-                  const BodyFrame& frame) {
+                  const AnatomicalFrame& frame) {
   constexpr int kSteps = 4;
   const Vec3 &from = places[limb.placed[limb.placed.size() - 3]], &to = places[limb.placed[limb.placed.size() - 2]];
   double depth = 0;
@@ -76,7 +76,7 @@ double depthOfEnd(const TemplateLimb& limb, const std::vector<Vec3>& places, con
 
 // Whether a limb ends far deeper in the body than that of the other side: it lies in the trunk, where that has a place.
 bool isSunken(const TemplateSkeleton& skeleton, const TemplateLimb& limb, const std::vector<TemplateLimb>& limbs,
-              const std::vector<Vec3>& places, const BodyVolume& body, const BodyFrame& frame) {
+              const std::vector<Vec3>& places, const BodyVolume& body, const AnatomicalFrame& frame) {
   if (limb.placed.size() < 3 || skeleton.joints[limb.placed.back()].role != TemplateRole::kTip) return false;
   const std::optional<Index> mirror = skeleton.joints[limb.placed.back()].mirror;
   if (!mirror) return false;
@@ -124,7 +124,7 @@ double distanceToBone(const Vec3& place, const Vec3& a, const Vec3& b) {
 }
 
 std::vector<TemplateLimb> limbsIn(const TemplateSkeleton& skeleton, const TemplateEmbedding& embedding,
-                                  const BodyVolume& body, const BodyFrame& frame) {
+                                  const BodyVolume& body, const AnatomicalFrame& frame) {
   std::vector<TemplateLimb> limbs = limbChains(skeleton);
   for (TemplateLimb& limb : limbs) {
     double cost = 0;

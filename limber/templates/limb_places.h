@@ -25,7 +25,7 @@ std::vector<TemplateLimb> limbChains(const TemplateSkeleton& skeleton);
 //
 // embedding  with the costs of `skeleton`'s joints
 std::vector<TemplateLimb> limbsIn(const TemplateSkeleton& skeleton, const TemplateEmbedding& embedding,
-                                  const BodyVolume& body, const BodyFrame& frame);
+                                  const BodyVolume& body, const AnatomicalFrame& frame);
 
 // Nor has a person's head a place in a model that hardly goes on above the shoulders. This tells where landmarks have
 // put the joints; before, an embedding makes the most of a stump.

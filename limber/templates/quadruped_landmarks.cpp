@@ -66,7 +66,7 @@ struct Column {
 
 class QuadrupedMover {
  public:
-  QuadrupedMover(const BodyVolume& body, const BodyFrame& frame, const std::vector<std::optional<Vec3>>& pins,
+  QuadrupedMover(const BodyVolume& body, const AnatomicalFrame& frame, const std::vector<std::optional<Vec3>>& pins,
                  std::vector<Vec3>& places, const QuadrupedProportions& proportions)
       : body_(body), frame_(frame), pins_(pins), places_(places), proportions_(proportions) {}
 
@@ -146,7 +146,7 @@ class QuadrupedMover {
 
  private:
   LegFinder follow(const std::array<LegJoints, 2>& legs) const {
-    const auto leg = [](const LegJoints& of) { return Leg{of.upper, of.lower, of.toes}; };
+    const auto leg = [](const LegJoints& of) { return LegChain{of.upper, of.lower, of.toes}; };
     return LegFinder(body_, frame_, places_, leg(legs[0]), leg(legs[1]));
   }
 
@@ -184,7 +184,7 @@ class QuadrupedMover {
   }
 
   const BodyVolume& body_;
-  const BodyFrame& frame_;
+  const AnatomicalFrame& frame_;
   const std::vector<std::optional<Vec3>>& pins_;
   std::vector<Vec3>& places_;
   const QuadrupedProportions& proportions_;
@@ -193,7 +193,7 @@ class QuadrupedMover {
 
 }  // namespace
 
-void refineQuadruped(const TemplateSkeleton& skeleton, const BodyVolume& body, const BodyFrame& frame,
+void refineQuadruped(const TemplateSkeleton& skeleton, const BodyVolume& body, const AnatomicalFrame& frame,
                      const std::vector<std::optional<Vec3>>& pins, std::vector<Vec3>& places,
                      const QuadrupedProportions& proportions) {
   const std::optional<QuadrupedJoints> joints = quadrupedJointsOf(skeleton);

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "limber/body/body_frame.h"
+#include "limber/body/anatomical_frame.h"
 #include "limber/body/body_volume.h"
 #include "limber/templates/template_skeleton.h"
 
@@ -32,7 +32,7 @@ struct QuadrupedProportions {
 // their upper joints go above that place, knees, hocks, elbows and feet to the middle of the leg; hips, chest, spine
 // and the roots of neck and tail go into the trunk, where the legs carry it; the tail runs from there to its end. What
 // a body does not show stays where it was. Pinned joints stay. Body space.
-void refineQuadruped(const TemplateSkeleton& skeleton, const BodyVolume& body, const BodyFrame& frame,
+void refineQuadruped(const TemplateSkeleton& skeleton, const BodyVolume& body, const AnatomicalFrame& frame,
                      const std::vector<std::optional<Vec3>>& pins, std::vector<Vec3>& places,
                      const QuadrupedProportions& proportions = {});
 

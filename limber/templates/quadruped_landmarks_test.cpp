@@ -13,7 +13,7 @@ constexpr double kBack = 0.78, kUnderside = 0.46;  // of the trunk
 struct MeasuredHorse {
   TriMesh mesh;
   BodyVolume body;
-  BodyFrame frame;
+  AnatomicalFrame frame;
   std::vector<Vec3> places;  // of the template, not of this horse
 
   explicit MeasuredHorse(const Vec3& tailEnd = {0, 0.5, -0.7}) {

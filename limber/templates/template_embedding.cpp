@@ -50,8 +50,8 @@ void checkJoints(const TemplateSkeleton& variant, std::size_t joints) {
 class TemplateEmbedder::Search {
  public:
   // `skeleton` says which joints there are; their places do not matter yet.
-  Search(const TemplateSkeleton& skeleton, const BodyVolume& body, const BodyFrame& frame, const TemplatePins& pins,
-         const EmbeddingOptions& options)
+  Search(const TemplateSkeleton& skeleton, const BodyVolume& body, const AnatomicalFrame& frame,
+         const TemplatePins& pins, const EmbeddingOptions& options)
       : skeleton_(skeleton), body_(body), frame_(frame), pins_(pins), options_(options), half_(frame.symmetric()) {
     half_ = half_ && pinnedEvenly(skeleton, pins);
     chooseJoints();
@@ -449,7 +449,7 @@ class TemplateEmbedder::Search {
 
   TemplateSkeleton skeleton_;
   const BodyVolume& body_;
-  BodyFrame frame_;
+  AnatomicalFrame frame_;
   TemplatePins pins_;
   EmbeddingOptions options_;
   bool half_;  // the right side mirrors the left one
@@ -467,8 +467,9 @@ bool pinnedEvenly(const TemplateSkeleton& skeleton, const TemplatePins& pins) {
   return true;
 }
 
-TemplateEmbedder::TemplateEmbedder(const TemplateSkeleton& skeleton, const BodyVolume& body, const BodyFrame& frame,
-                                   const TemplatePins& pins, const EmbeddingOptions& options)
+TemplateEmbedder::TemplateEmbedder(const TemplateSkeleton& skeleton, const BodyVolume& body,
+                                   const AnatomicalFrame& frame, const TemplatePins& pins,
+                                   const EmbeddingOptions& options)
     : body_(&body), frame_(frame), pins_(pins) {
   checkJoints(skeleton, pins.size());
   search_ = std::make_unique<Search>(skeleton, body, frame, pins, options);

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "limber/body/body_frame.h"
+#include "limber/body/anatomical_frame.h"
 #include "limber/body/body_volume.h"
 #include "limber/templates/template_skeleton.h"
 
@@ -44,14 +44,14 @@ class TemplateEmbedder {
   // skeleton  says which joints there are
   // pins      #J; Error kBadArgument where they are not
   // Cost: O(S^2) ways through the body, for S spheres.
-  TemplateEmbedder(const TemplateSkeleton& skeleton, const BodyVolume& body, const BodyFrame& frame,
+  TemplateEmbedder(const TemplateSkeleton& skeleton, const BodyVolume& body, const AnatomicalFrame& frame,
                    const TemplatePins& pins, const EmbeddingOptions& options = {});
   ~TemplateEmbedder();
   TemplateEmbedder(TemplateEmbedder&&) noexcept;
   TemplateEmbedder& operator=(TemplateEmbedder&&) noexcept;
 
   const BodyVolume& body() const { return *body_; }
-  const BodyFrame& frame() const { return frame_; }
+  const AnatomicalFrame& frame() const { return frame_; }
   const TemplatePins& pins() const { return pins_; }
 
   // variants  one template, or the same with joints in other places; one embedding for each
@@ -62,7 +62,7 @@ class TemplateEmbedder {
   class Search;
 
   const BodyVolume* body_;
-  BodyFrame frame_;
+  AnatomicalFrame frame_;
   TemplatePins pins_;
   std::unique_ptr<Search> search_;
 };

@@ -73,7 +73,7 @@ TEST(TemplateEmbedding, CostsMoreInWhatIsNoPerson) {
   TriMesh sausage;
   testing::addCapsule(sausage, {0, 0.2, 0}, {0, 0.8, 0}, 0.2);
   const BodyVolume body = measureBody(sausage);
-  const BodyFrame frame = frameAlong(sausage, body, Vec3::UnitY(), Vec3::UnitZ());
+  const AnatomicalFrame frame = frameAlong(sausage, body, Vec3::UnitY(), Vec3::UnitZ());
   EXPECT_GT(TemplateEmbedder(skeleton, body, frame, pins).embed(asIs(skeleton)).front().cost,
             2 * TemplateEmbedder(skeleton, person.body, person.frame, pins).embed(asIs(skeleton)).front().cost);
 }

@@ -17,7 +17,7 @@ constexpr double kFarFromBone = 0.25;
 
 // What speaks against a way to stand before the model is looked at: files mostly have +Y or +Z up, and the front
 // towards the viewer.
-double unusual(const BodyFrame& frame) {
+double unusual(const AnatomicalFrame& frame) {
   const Vec3 up = frame.axes.row(1).transpose(), front = frame.axes.row(2).transpose();
   const bool yUp = up.y() > 0.9, zUp = up.z() > 0.9;
   const double upCost = yUp ? 0 : zUp ? 0.2 : 0.8;
@@ -28,7 +28,7 @@ double unusual(const BodyFrame& frame) {
 // How much of the body no bone comes near, 0 to 1: in equal parts of its medial spheres, and of the ends of its limbs
 // by how far these reach.
 double unexplained(const TemplateSkeleton& skeleton, const std::vector<Vec3>& places, const BodyVolume& body,
-                   const BodyFrame& frame) {
+                   const AnatomicalFrame& frame) {
   double spheres = 0, tips = 0, reach = 0;
   for (const MedialSphere& sphere : body.spheres) {
     const double far = farFromBones(skeleton, places, frame.toBody(sphere.center), sphere.radius / frame.height);
@@ -67,7 +67,7 @@ double farFromBones(const TemplateSkeleton& skeleton, const std::vector<Vec3>& p
 
 std::vector<TemplateFit> fitVariants(const std::vector<TemplateVariant>& variants, TemplateEmbedder& embedder) {
   const BodyVolume& body = embedder.body();
-  const BodyFrame& frame = embedder.frame();
+  const AnatomicalFrame& frame = embedder.frame();
   std::vector<TemplateEmbedding> embeddings = embedder.embed(variants);
   std::vector<TemplateFit> fits;
   for (std::size_t v = 0; v < variants.size(); ++v) {

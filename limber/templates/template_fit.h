@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "limber/body/body_frame.h"
+#include "limber/body/anatomical_frame.h"
 #include "limber/body/body_volume.h"
 #include "limber/templates/limb_places.h"
 #include "limber/templates/template_embedding.h"
@@ -14,7 +14,7 @@ namespace limber {
 // A template embedded in a body, before the shape of the body refines it.
 struct TemplateFit {
   TemplateSkeleton skeleton;  // the variant
-  BodyFrame frame;
+  AnatomicalFrame frame;
   TemplatePins pins;
   TemplateEmbedding embedding;
   double cost = 0;                  // of the embedding, the way to stand and what of the body is left over

@@ -11,7 +11,7 @@ namespace {
 TemplateFit personFacing(const Vec3& front) {
   const testing::MeasuredPerson& person = testing::measuredPerson();
   const TemplateSkeleton& skeleton = findTemplate("humanoid");
-  const BodyFrame frame = frameAlong(person.shape.mesh, person.body, Vec3::UnitY(), front);
+  const AnatomicalFrame frame = frameAlong(person.shape.mesh, person.body, Vec3::UnitY(), front);
   TemplateEmbedder embedder(skeleton, person.body, frame, TemplatePins(skeleton.jointCount()));
   return fitVariants({{skeleton, 0}}, embedder).front();
 }

@@ -1,7 +1,7 @@
 // The capsule person with what fitting a template measures of it first. Not installed.
 #pragma once
 
-#include "limber/body/body_frame.h"
+#include "limber/body/anatomical_frame.h"
 #include "limber/body/body_volume.h"
 #include "limber/body/testing/capsule_person.h"
 
@@ -10,7 +10,7 @@ namespace limber::testing {
 struct MeasuredPerson {
   CapsulePerson shape = capsulePerson();
   BodyVolume body = measureBody(shape.mesh);
-  BodyFrame frame = frameAlong(shape.mesh, body, Vec3::UnitY(), Vec3::UnitZ());
+  AnatomicalFrame frame = frameAlong(shape.mesh, body, Vec3::UnitY(), Vec3::UnitZ());
 };
 
 // Measured once for all tests of a program.

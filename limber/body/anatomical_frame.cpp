@@ -1,4 +1,4 @@
-#include "limber/body/body_frame.h"
+#include "limber/body/anatomical_frame.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +17,7 @@ constexpr int kNormals = 5;                 // of planes that are tried all arou
 constexpr double kCoarseTurn = 0.06, kFineTurn = 0.003;  // radians, about the best of these
 
 // How much deeper or less deep the mirror images of the medial spheres lie than they do themselves.
-double asymmetryOf(const BodyFrame& frame, const BodyVolume& body) {
+double asymmetryOf(const AnatomicalFrame& frame, const BodyVolume& body) {
   double difference = 0, whole = 0;
   for (const MedialSphere& sphere : body.spheres) {
     const double depth = -body.distance->at(frame.mirrored(sphere.center));
@@ -42,7 +42,7 @@ std::vector<Vec3> directions() {
 
 // Of the plane through the middle of the body's mass that the body is most symmetric to.
 Vec3 mostSymmetricNormal(const BodyVolume& body) {
-  BodyFrame frame;
+  AnatomicalFrame frame;
   double mass = 0;
   for (const MedialSphere& sphere : body.spheres) {
     const double weight = sphere.radius * sphere.radius * sphere.radius;
@@ -75,9 +75,9 @@ Vec3 mostSymmetricNormal(const BodyVolume& body) {
 }
 
 // Of bodies that stand along no axis: those whose up is nearest to `ups`, with both fronts.
-std::vector<BodyFrame> slantingFrames(const TriMesh& mesh, const BodyVolume& body, const std::vector<Vec3>& ups) {
+std::vector<AnatomicalFrame> slantingFrames(const TriMesh& mesh, const BodyVolume& body, const std::vector<Vec3>& ups) {
   const Vec3 left = mostSymmetricNormal(body);
-  std::vector<BodyFrame> frames;
+  std::vector<AnatomicalFrame> frames;
   for (const Vec3& u : ups) {
     if (std::abs(u.dot(left)) > 0.5) continue;
     const Vec3 up = (u - u.dot(left) * left).normalized(), front = left.cross(up);
@@ -86,25 +86,25 @@ std::vector<BodyFrame> slantingFrames(const TriMesh& mesh, const BodyVolume& bod
   return frames;
 }
 
-double leastAsymmetry(const std::vector<BodyFrame>& frames) {
+double leastAsymmetry(const std::vector<AnatomicalFrame>& frames) {
   double least = std::numeric_limits<double>::infinity();
-  for (const BodyFrame& frame : frames) least = std::min(least, frame.asymmetry);
+  for (const AnatomicalFrame& frame : frames) least = std::min(least, frame.asymmetry);
   return least;
 }
 
 }  // namespace
 
-bool BodyFrame::symmetric() const {
+bool AnatomicalFrame::symmetric() const {
   return asymmetry < kSymmetric;
 }
 
-Vec3 BodyFrame::mirrored(const Vec3& point) const {
+Vec3 AnatomicalFrame::mirrored(const Vec3& point) const {
   const Vec3 left = axes.row(0).transpose();
   return point - 2 * left.dot(point - origin) * left;
 }
 
-BodyFrame frameAlong(const TriMesh& mesh, const BodyVolume& body, const Vec3& up, const Vec3& front) {
-  BodyFrame frame;
+AnatomicalFrame frameAlong(const TriMesh& mesh, const BodyVolume& body, const Vec3& up, const Vec3& front) {
+  AnatomicalFrame frame;
   frame.axes.row(0) = up.cross(front).transpose();
   frame.axes.row(1) = up.transpose();
   frame.axes.row(2) = front.transpose();
@@ -114,7 +114,7 @@ BodyFrame frameAlong(const TriMesh& mesh, const BodyVolume& body, const Vec3& up
   }
   frame.height = std::max(box.size().y(), 1e-6);
   const Vec3 bottom(box.center().x(), box.min.y(), box.center().z());
-  BodyFrame best = frame;
+  AnatomicalFrame best = frame;
   best.asymmetry = std::numeric_limits<double>::infinity();
   for (int step = 0; step <= 2 * kPlaneSteps; ++step) {
     // From the middle outwards, so that of equals the one nearest to the middle stays.
@@ -127,8 +127,8 @@ BodyFrame frameAlong(const TriMesh& mesh, const BodyVolume& body, const Vec3& up
   return best;
 }
 
-std::vector<BodyFrame> possibleFrames(const TriMesh& mesh, const BodyVolume& body, const std::optional<Vec3>& up,
-                                      const std::optional<Vec3>& front) {
+std::vector<AnatomicalFrame> possibleFrames(const TriMesh& mesh, const BodyVolume& body, const std::optional<Vec3>& up,
+                                            const std::optional<Vec3>& front) {
   std::vector<Vec3> ups, fronts;
   if (up) {
     ups = {*up};
@@ -140,7 +140,7 @@ std::vector<BodyFrame> possibleFrames(const TriMesh& mesh, const BodyVolume& bod
   } else {
     fronts = {Vec3::UnitZ(), -Vec3::UnitZ(), -Vec3::UnitY(), Vec3::UnitY(), Vec3::UnitX(), -Vec3::UnitX()};
   }
-  std::vector<BodyFrame> frames;
+  std::vector<AnatomicalFrame> frames;
   for (const Vec3& u : ups) {
     for (const Vec3& f : fronts) {
       if (std::abs(u.dot(f)) < 0.5) frames.push_back(frameAlong(mesh, body, u, f));
@@ -148,7 +148,7 @@ std::vector<BodyFrame> possibleFrames(const TriMesh& mesh, const BodyVolume& bod
   }
   const double along = leastAsymmetry(frames);
   if (front || along < kClearlySymmetric) return frames;
-  const std::vector<BodyFrame> slanting = slantingFrames(mesh, body, ups);
+  const std::vector<AnatomicalFrame> slanting = slantingFrames(mesh, body, ups);
   const double least = leastAsymmetry(slanting);
   return least < std::min(kSymmetric, kMoreSymmetric * along) ? slanting : frames;
 }
