@@ -97,7 +97,7 @@ void thesisCounts(benchmark::internal::Benchmark* bench, std::int64_t vertices) 
   bench->ArgNames({"", "bones"})->Unit(benchmark::kMillisecond)->UseRealTime();
 }
 
-void growingSizes(benchmark::internal::Benchmark* bench) {
+void growingModels(benchmark::internal::Benchmark* bench) {
   for (const std::int64_t vertices : {5000, 10000, 20000, 50000, 150000, 500000, 1000000})
     bench->Args({vertices, vertices < 500000 ? 20 : 50});
   bench->ArgNames({"", "handles"})->Unit(benchmark::kMillisecond)->UseRealTime();
@@ -111,7 +111,7 @@ BENCHMARK_CAPTURE(weldToWeights, robot, robot)->Name("thesis_robot")->Apply([](a
 BENCHMARK_CAPTURE(weldToWeights, creature, kCreature)->Name("thesis_creature")->Apply([](auto* b) {
   thesisCounts(b, 10000);
 });
-BENCHMARK_CAPTURE(weldToWeights, growing, kCreature)->Name("weld_to_weights")->Apply(growingSizes);
-BENCHMARK(wholeProcess)->Name("process_limber_rig")->Apply(growingSizes);
+BENCHMARK_CAPTURE(weldToWeights, growing, kCreature)->Name("weld_to_weights")->Apply(growingModels);
+BENCHMARK(wholeProcess)->Name("process_limber_rig")->Apply(growingModels);
 
 }  // namespace limber::bench
