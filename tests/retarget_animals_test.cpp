@@ -9,9 +9,7 @@
 
 #include "limber/asset/motion_io.h"
 #include "limber/core/numbers.h"
-#include "limber/matching/animal_map.h"
 #include "limber/matching/plain_skeleton.h"
-#include "limber/matching/quadruped_shape.h"
 #include "retarget_measured.h"
 #include "shared_data.h"
 
@@ -58,7 +56,7 @@ class AnimalSide {
 AnimalMeasures measuredAnimal(const RetargetSetup& setup, const PoseSequence& source, const PoseSequence& result) {
   AnimalMeasures measures;
   AnimalSide from(setup, MapSide::kSource), to(setup, MapSide::kTarget);
-  const std::vector<Index> tail = tailOf(*setup.target);
+  const std::vector<Index>& tail = setup.targetTail;
   for (std::size_t f = 0; f < result.poses.size(); ++f) {
     from.kinematics.globals(source.poses[f], from.frame);
     to.kinematics.globals(result.poses[f], to.frame);
@@ -237,7 +235,7 @@ TEST(RetargetAnimals, QuadrupedsAreMatchedByTheirForm) {
     for (const std::string animal : animals) {
       const PlainSkeleton plain(readMotion(*sharedDataFolder() / "rigged" / (animal + ".glb")).skeleton);
       const SkeletonMap map = matchSkeletons(motion.skeleton, plain.skeleton());
-      if (!map.find(kHindquarters)) continue;  // of one family
+      if (!map.isQuadruped()) continue;  // of one family
       ++strangers;
       for (const char* method : {"limb-ik", "online", "spacetime"}) {
         EXPECT_GE(map.matches.size(), 17u);

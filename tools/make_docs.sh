@@ -29,6 +29,7 @@ for body in biped:humanoid quadruped:quadruped; do
   $limber rig $work/$sample.glb --template ${body#*:} -o $work/${sample}_template.glb --quiet
   picture ${sample}_template.glb bones ${sample}_template.png
 done
+$limber preview $work/quadruped_template.glb --show anatomy --size 480x400 -o $images/anatomy_fox.png --quiet
 # The page, where its parts are built (./dev studio) and there is a browser to draw it.
 if [ -f dist/index.html ] && command -v chromium >/dev/null; then
   node apps/studio/tests/pictures.mjs dist $images
@@ -76,6 +77,12 @@ table_of_poses() {
     done
   done
 }
+
+# Between the marks of that page the tables of how well bodies are read.
+if [ -d "${LIMBER_SHARED_DATA:-../shared/data}" ]; then
+  $limber evaluate anatomy docs/data/body_labels.json "${LIMBER_SHARED_DATA:-../shared/data}" -o $work/anatomy.md --quiet
+  sed -i -e '/^<!-- table: made by/,/^<!-- end of table/{/^<!--/!d}' -e "/^<!-- table: made by/r $work/anatomy.md" docs/anatomy.md
+fi
 
 characters=${LIMBER_SHARED_DATA:-../shared/data}/rigged
 if [ -d "$characters" ]; then

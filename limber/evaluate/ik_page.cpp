@@ -42,7 +42,7 @@ std::string colorOf(double share) {
 }
 
 // A panel with both axes logarithmic.
-struct Axes {
+struct PlotAxes {
   double left, top, width, height;
   double leastX = 2.5, mostX = 120, leastY = 0.1, mostY = 1000;
 
@@ -52,7 +52,7 @@ struct Axes {
   }
 };
 
-std::string grid(const Axes& axes, std::string_view title) {
+std::string grid(const PlotAxes& axes, std::string_view title) {
   std::string svg = text(axes.left, axes.top - 10, title, "font-weight=\"bold\"");
   for (const int joints : {3, 10, 30, 100}) {
     const double x = axes.x(joints);
@@ -69,7 +69,7 @@ std::string grid(const Axes& axes, std::string_view title) {
   return svg + text(axes.left + axes.width / 2, axes.top + axes.height + 34, "joints", "text-anchor=\"middle\"");
 }
 
-std::string timeLine(const Axes& axes, std::span<const IkScore> scores, const std::string& method,
+std::string timeLine(const PlotAxes& axes, std::span<const IkScore> scores, const std::string& method,
                      std::string_view ending, std::string_view color) {
   std::string points, dots;
   for (const int joints : {3, 10, 30, 100}) {
@@ -144,7 +144,7 @@ std::string ikSolvedPlot(std::span<const IkScore> scores) {
 
 std::string ikTimePlot(std::span<const IkScore> scores) {
   const std::vector<std::string> methods = namesIn(scores, &IkScore::method);
-  const Axes free{60, 40, 320, 300}, limited{450, 40, 320, 300};
+  const PlotAxes free{60, 40, 320, 300}, limited{450, 40, 320, 300};
   std::string svg = svgStart(930, 390);
   svg += grid(free, "Reachable targets, no limits: median µs") + grid(limited, "Reachable targets, limits: median µs");
   for (std::size_t m = 0; m < methods.size(); ++m) {

@@ -114,7 +114,7 @@ void measureFeet(const RetargetSetup& setup, const Seen& source, const Seen& tar
     }
   }
   // Toes that the target alone has.
-  for (const std::string_view side : {"left", "right"}) {
+  for (const Side side : kSides) {
     const std::optional<Index> toes =
         toesOf(*setup.target, setup.map, MapSide::kTarget, side, target.neutral.restPositions);
     if (!toes || std::find(to.begin(), to.end(), *toes) != to.end()) continue;

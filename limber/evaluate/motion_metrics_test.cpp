@@ -7,6 +7,7 @@
 #include "limber/core/error.h"
 #include "limber/matching/plain_skeleton.h"
 #include "limber/matching/testing/test_motion.h"
+#include "limber/retarget/retarget_clip.h"
 
 namespace limber {
 namespace {

@@ -33,21 +33,24 @@ Vec3 atMost(const Vec3& way, double most) {
 
 HandGoals::HandGoals(const RetargetSetup& setup, const RootPlacer& root) : setup_(setup) {
   if (!setup.person) return;
-  for (const std::string side : {"left", "right"}) {
-    const auto arm = findLimb(setup_, root, side + "UpperArm", side + "LowerArm", side + "Hand");
-    if (!arm) continue;
-    arms_.push_back(*arm);
-    const std::string other = side == "left" ? "right" : "left";
+  using body_part::arm;
+  using body_part::leg;
+  for (const Side side : kSides) {
+    const auto limb = findLimb(setup_, root, PartKind::kArm, side);
+    if (!limb) continue;
+    arms_.push_back(*limb);
+    const Side other = opposite(side);
     std::vector<Surface>& surfaces = surfaces_.emplace_back();
-    addSurface("head", "head", 0.12, 0.35, surfaces);
-    addSurface("hips", "neck", 0.13, 0.19, surfaces);
-    addSurface("leftUpperLeg", "leftLowerLeg", 0.09, 0.15, surfaces);
-    addSurface("rightUpperLeg", "rightLowerLeg", 0.09, 0.15, surfaces);
-    addSurface(other + "LowerArm", other + "Hand", 0.06, 0.12, surfaces);
+    addSurface(body_part::kHead, body_part::kHead, 0.12, 0.35, surfaces);
+    addSurface(body_part::kPelvis, body_part::kNeck, 0.13, 0.19, surfaces);
+    for (const Side thigh : kSides) {
+      addSurface(leg(thigh, Segment::kUpper), leg(thigh, Segment::kMiddle), 0.09, 0.15, surfaces);
+    }
+    addSurface(arm(other, Segment::kMiddle), arm(other, Segment::kEnd), 0.06, 0.12, surfaces);
   }
 }
 
-void HandGoals::addSurface(const std::string& from, const std::string& to, double touching, double apart,
+void HandGoals::addSurface(const BodyPart& from, const BodyPart& to, double touching, double apart,
                            std::vector<Surface>& surfaces) const {
   const JointMatch *begin = setup_.map.find(from), *end = setup_.map.find(to);
   if (!begin || !end) return;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <string>
 #include <vector>
 
 #include "limber/limbs/limb.h"
@@ -38,7 +37,7 @@ class HandGoals {
     Vec3 value = Vec3::Zero(), speed = Vec3::Zero();
   };
 
-  void addSurface(const std::string& from, const std::string& to, double touching, double apart,
+  void addSurface(const BodyPart& from, const BodyPart& to, double touching, double apart,
                   std::vector<Surface>& surfaces) const;
   Vec3 touchOf(const Limb& arm, const std::vector<Surface>& surfaces, const BodyFrame& source,
                const BodyFrame& target) const;

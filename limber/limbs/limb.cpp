@@ -27,9 +27,9 @@ std::optional<Limb> makeLimb(const RetargetSetup& setup, const RootPlacer& root,
   return limb;
 }
 
-std::optional<Limb> findLimb(const RetargetSetup& setup, const RootPlacer& root, const std::string& upper,
-                             const std::string& lower, const std::string& end) {
-  const JointMatch *u = setup.map.find(upper), *l = setup.map.find(lower), *e = setup.map.find(end);
+std::optional<Limb> findLimb(const RetargetSetup& setup, const RootPlacer& root, PartKind kind, Side side) {
+  const auto find = [&](Segment segment) { return setup.map.find({kind, side, 0, segment, 0}); };
+  const JointMatch *u = find(Segment::kUpper), *l = find(Segment::kMiddle), *e = find(Segment::kEnd);
   if (!u || !l || !e) return std::nullopt;
   return makeLimb(setup, root, {u->source.front(), l->source.front(), e->source.front(), {}, {}, {}},
                   {u->target.front(), l->target.front(), e->target.front(), {}, {}, {}});

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <optional>
-#include <string>
 
 #include "limber/limbs/foot_lock.h"
 #include "limber/limbs/root_motion.h"
@@ -52,8 +51,8 @@ inline constexpr double kLifted = 0.6;
 // None where its joints do not hang on each other, or a bone has no length.
 std::optional<Limb> makeLimb(const RetargetSetup& setup, const RootPlacer& root, const LegJoints& source,
                              const LegJoints& target);
-// By the names of a person's parts; none as well where one is not matched.
-std::optional<Limb> findLimb(const RetargetSetup& setup, const RootPlacer& root, const std::string& upper,
-                             const std::string& lower, const std::string& end);
+// Of a person's matched leg or arm, from hip to foot or shoulder to hand; none as well where one of them is not
+// matched.
+std::optional<Limb> findLimb(const RetargetSetup& setup, const RootPlacer& root, PartKind kind, Side side);
 
 }  // namespace limber

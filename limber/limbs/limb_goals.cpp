@@ -67,18 +67,19 @@ LimbGoals::LimbGoals(const RetargetSetup& setup, const RootPlacer& root)
 }
 
 void LimbGoals::addPersonsLegs(const RootPlacer& root) {
-  for (const std::string side : {"left", "right"}) {
-    const auto limb = findLimb(setup_, root, side + "UpperLeg", side + "LowerLeg", side + "Foot");
+  for (const Side side : kSides) {
+    const auto limb = findLimb(setup_, root, PartKind::kLeg, side);
     if (!limb) continue;
     Leg leg;
     static_cast<Limb&>(leg) = *limb;
-    if (const JointMatch* toes = setup_.map.find(side + "Toes")) {
+    if (const JointMatch* toes = setup_.map.find(body_part::leg(side, Segment::kToes))) {
       leg.toes = toes->target.front();
       leg.sourceToes = toes->source.front();
     } else {
       leg.tip = toesOf(*setup_.target, setup_.map, MapSide::kTarget, side, setup_.targetNeutral.restPositions);
     }
-    const JointMatch &shin = *setup_.map.find(side + "LowerLeg"), &hips = *setup_.map.find("hips");
+    const JointMatch &shin = *setup_.map.find(body_part::leg(side, Segment::kMiddle)),
+                     &hips = *setup_.map.find(body_part::kPelvis);
     leg.ownWay = isBent(shin.source, leg.sourceEnd, setup_.sourceNeutral.restPositions);
     if (leg.ownWay) leg.sourceBody = hips.source.back();
     addLeg(leg);
@@ -126,6 +127,14 @@ std::optional<Index> LimbGoals::sourceBodyOf(const AnimalLeg& leg) const {
 // Nothing to correct where both neutral poses are one.
 bool LimbGoals::isSame() const {
   const std::vector<Vec3>&from = setup_.sourceNeutral.positions, &to = setup_.targetNeutral.positions;
+  if (const std::optional<Twins>& twins = setup_.map.twins) {
+    // Of whatever size; the rounding of scales that are not even is no difference.
+    const double off = 1e-4 * setup_.targetHipHeight;
+    bool same = true;
+    for (Index t = 0; t < to.size() && same; ++t)
+      same = (setup_.scale * from[twins->sourceOf[t]] - to[t]).norm() <= off;
+    return same;
+  }
   if (std::abs(setup_.scale - 1) > 1e-9) return false;
   const auto isAt = [&](Index s, Index t) { return (from[s] - to[t]).norm() <= 1e-6 * setup_.targetHipHeight; };
   Index alike = 0;

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "limber/matching/quadruped_shape.h"
 #include "limber/matching/testing/test_motion.h"
+#include "limber/retarget/retarget_clip.h"
 
 namespace limber {
 namespace {
@@ -137,7 +137,7 @@ TEST(LimbGoals, WhoTurnsRoundStandsThereAsBefore) {
   for (Joint& joint : other.joints) {
     if (joint.name.ends_with("Three")) joint.rest.translation.z() += 0.2;
   }
-  const RetargetSetup setup(animal, other, matchQuadrupeds(animal, other).value(), {});
+  const RetargetSetup setup(animal, other, limber::testing::matchByForm(animal, other), {});
   const RootPlacer root(setup);
   LimbGoals goals(setup, root);
   Pose from = restPose(animal), to = restPose(other);

@@ -55,14 +55,15 @@ double hipWidth(const NeutralPose& neutral, Index left, Index right) {
 
 Pelvis::Pelvis(const RetargetSetup& setup, const RootPlacer& root) : setup_(setup), root_(root), tilt_(setup, root) {
   if (!setup.person) return;
-  const JointMatch &left = *setup.map.find("leftUpperLeg"), &right = *setup.map.find("rightUpperLeg");
+  const JointMatch &left = *setup.map.find(body_part::leg(Side::kLeft, Segment::kUpper)),
+                   &right = *setup.map.find(body_part::leg(Side::kRight, Segment::kUpper));
   leftHip_ = left.target.front();
   rightHip_ = right.target.front();
   const double wide = hipWidth(setup.targetNeutral, leftHip_, rightHip_) / setup.targetHipHeight;
   const double source =
       hipWidth(setup.sourceNeutral, left.source.front(), right.source.front()) / setup.sourceHipHeight;
   if (source > 0 && wide > source) hipTurns_ = std::pow(source / wide, kCalmWide);
-  if (const JointMatch* trunk = setup.map.find("trunk")) trunk_ = trunk->target.back();
+  if (const JointMatch* trunk = setup.map.find(body_part::kTrunk)) trunk_ = trunk->target.back();
 }
 
 void Pelvis::levelHips(Pose& target, BodyFrame& frame) const {

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "limber/limbs/limb_goals.h"
-#include "limber/matching/quadruped_shape.h"
 #include "limber/matching/testing/test_motion.h"
 
 namespace limber {
@@ -217,7 +216,7 @@ class PelvisOfFour : public ::testing::Test {
   double upAt(const Leg& leg) const { return (frame_.positions[leg.upper] - before_.positions[leg.upper]).y(); }
 
   const Skeleton animal_ = limber::testing::quadruped(0.5), other_ = limber::testing::quadruped(0.4);
-  const RetargetSetup setup_{animal_, other_, matchQuadrupeds(animal_, other_).value(), {}};
+  const RetargetSetup setup_{animal_, other_, limber::testing::matchByForm(animal_, other_), {}};
   const RootPlacer root_{setup_};
   LimbGoals goals_{setup_, root_};
   Pose to_;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "limber/matching/quadruped_shape.h"
 #include "limber/skeleton/chain.h"
 
 namespace limber {
@@ -17,8 +16,8 @@ RootPlacer::RootPlacer(const RetargetSetup& setup) : setup_(setup) {
   const Skeleton& target = *setup.target;
   if (!setup.person) {
     findCarrierOfLegs();
-    if (const JointMatch* hindquarters = setup.map.find(kHindquarters)) {
-      if (!hips_) hips_ = hindquarters->target.front();
+    if (setup.quadruped) {
+      if (!hips_) hips_ = setup.map.find(body_part::kPelvis)->target.front();
       moved_.push_back(*hips_);
       hindquarters_ = hindquartersOf(MapSide::kTarget);
       sourceHindquarters_ = hindquartersOf(MapSide::kSource);
@@ -34,7 +33,7 @@ RootPlacer::RootPlacer(const RetargetSetup& setup) : setup_(setup) {
     }
     return;
   }
-  hips_ = setup.map.find("hips")->target.front();
+  hips_ = setup.map.find(body_part::kPelvis)->target.front();
   moved_.push_back(*hips_);
   findPelvis();
   for (const LooseJoint& loose : looseJoints(target, setup.map, MapSide::kTarget, setup.targetNeutral.restPositions)) {
@@ -45,7 +44,7 @@ RootPlacer::RootPlacer(const RetargetSetup& setup) : setup_(setup) {
 
 void RootPlacer::addLoose(const LooseJoint& joint) {
   const NeutralPose& neutral = setup_.targetNeutral;
-  const std::vector<Affine> rest = restGlobals(*setup_.target);
+  const std::vector<Affine> rest = poseGlobals(*setup_.target, setup_.targetRest);
   const Quat from = (neutral.toBody * decompose(rest[joint.carrier]).rotation).conjugate();
   Loose& loose = loose_.emplace_back();
   loose.joint = joint.joint;
@@ -67,19 +66,19 @@ void RootPlacer::findCarrierOfLegs() {
 std::vector<Index> RootPlacer::hindquartersOf(MapSide side) const {
   const bool isSource = side == MapSide::kSource;
   const Skeleton& skeleton = isSource ? *setup_.source : *setup_.target;
-  const std::vector<Index>* trunk = jointsOfPart(setup_.map, side, "trunk");
+  const std::vector<Index>* trunk = jointsOfPart(setup_.map, side, body_part::kTrunk);
   std::vector<Index> hips;
   bool carriesForelegs = false;
   for (const AnimalLeg& leg : setup_.animalLegs) {
     const Index upper = (isSource ? leg.source : leg.target).upper;
-    if (!isForeleg(setup_.map, leg.target.upper)) {
+    if (!leg.fore) {
       hips.push_back(upper);
     } else if (trunk) {
       carriesForelegs = carriesForelegs || !isAncestorOrSelf(skeleton, trunk->front(), upper);
     }
   }
   if (carriesForelegs && !hips.empty()) return hips;
-  return {jointsOfPart(setup_.map, side, kHindquarters)->front()};
+  return {jointsOfPart(setup_.map, side, body_part::kPelvis)->front()};
 }
 
 void RootPlacer::findCarried() {
@@ -98,12 +97,12 @@ void RootPlacer::findCarried() {
 
 void RootPlacer::findPelvis() {
   const Skeleton& target = *setup_.target;
-  const Index pelvis = setup_.map.find("hips")->target.back();
+  const Index pelvis = setup_.map.find(body_part::kPelvis)->target.back();
   const auto turns = [&](Index j) {
     return j == pelvis || std::find(turnsAlong_.begin(), turnsAlong_.end(), j) != turnsAlong_.end();
   };
-  for (const char* part : {"leftUpperLeg", "rightUpperLeg"}) {
-    const Index leg = setup_.map.find(part)->target.front();
+  for (const Side side : kSides) {
+    const Index leg = setup_.map.find(body_part::leg(side, Segment::kUpper))->target.front();
     if (leg == pelvis || !isAncestorOrSelf(target, pelvis, leg)) return;
     for (Index j = *target.joints[leg].parent; !turns(j); j = *target.joints[j].parent) turnsAlong_.push_back(j);
     hipJoints_.push_back(leg);
@@ -116,17 +115,17 @@ void RootPlacer::findPelvis() {
 
 void RootPlacer::findTrunk() {
   const Skeleton& target = *setup_.target;
-  const Index hindquarters = setup_.map.find(kHindquarters)->target.front();
+  const Index hindquarters = setup_.map.find(body_part::kPelvis)->target.front();
   std::vector<Index> kept;
   for (const AnimalLeg& leg : setup_.animalLegs) {
     const Index upper = leg.target.upper;
     if (upper == hindquarters || !isAncestorOrSelf(target, hindquarters, upper)) return;
     kept.push_back(upper);
-    if (!isForeleg(setup_.map, upper)) hipJoints_.push_back(upper);
+    if (!leg.fore) hipJoints_.push_back(upper);
   }
   if (hipJoints_.empty()) return;
   pelvis_ = hindquarters;
-  for (const char* part : {"neck", "head", "tail"}) {
+  for (const BodyPart& part : {body_part::kNeck, body_part::kHead, body_part::kTail}) {
     if (const JointMatch* match = setup_.map.find(part)) kept.push_back(match->target.front());
   }
   std::vector<bool> turns(target.jointCount(), false);
@@ -206,7 +205,7 @@ void RootPlacer::settle(Pose& target, BodyFrame& frame) const {
 }
 
 bool RootPlacer::goesOwnWay(const AnimalLeg& leg) const {
-  return setup_.animalLegs.size() == 2 || setup_.map.find(kHindquarters) || (leg.source.carrier && leg.target.carrier);
+  return setup_.animalLegs.size() == 2 || setup_.quadruped || (leg.source.carrier && leg.target.carrier);
 }
 
 Index RootPlacer::carrierOf(Index joint) const {

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "limber/matching/quadruped_shape.h"
 #include "limber/matching/testing/test_motion.h"
+#include "limber/retarget/retarget_clip.h"
 
 namespace limber {
 namespace {
@@ -129,9 +129,10 @@ Skeleton animal(double leg, bool lies) {
 }
 
 TEST(RootMotion, AnimalsGoAsFarAsTheyStandHigh) {
-  const auto scale = [](const Skeleton& from, const Skeleton& to) {
-    return RetargetSetup(from, to, matchSkeletons(from, to), {}).scale;
-  };
+  SkeletonMap map;
+  for (Index j = 0; j < 4; ++j)
+    map.matches.push_back({{PartKind::kOther, Side::kCenter, 0, Segment::kWhole, j}, {j}, {j}});
+  const auto scale = [&](const Skeleton& from, const Skeleton& to) { return RetargetSetup(from, to, map, {}).scale; };
   EXPECT_NEAR(scale(animal(0.5, false), animal(1, false)), 2, 1e-12);
   EXPECT_NEAR(scale(animal(0.5, true), animal(1, true)), 3.0 / 2, 1e-12);
   const double mixed = scale(animal(0.5, false), animal(1, true));  // by what both have: their size
@@ -157,7 +158,7 @@ TEST(RootMotion, WaysOfAnimalsJointsAreThoseThroughSpace) {
 TEST(RootMotion, HipsOfAnimalsGoAsTheSources) {
   const Skeleton one = limber::testing::quadruped(0.5), other = limber::testing::quadrupedOnOneJoint();
   for (const auto& [source, target] : {std::pair(one, other), std::pair(other, one)}) {
-    const RetargetSetup setup(source, target, matchQuadrupeds(source, target).value(), {});
+    const RetargetSetup setup(source, target, limber::testing::matchByForm(source, target), {});
     const RootPlacer placer(setup);
     Pose from = restPose(source), to = restPose(target);
     from.locals[0].rotation = to.locals[0].rotation = limber::testing::turn(-Vec3::UnitX(), 40);
@@ -182,7 +183,8 @@ TEST(RootMotion, ThePelvisMovesByWhatIsAsked) {
   const BodyFrame before = frame;
   const Vec3 shift(0.1, -0.2, 0.3);
   placer.movePelvis(shift, pose, frame);
-  const Index hips = setup.map.find("hips")->target.front(), hand = setup.map.find("leftHand")->target.front();
+  const Index hips = setup.map.find(body_part::kPelvis)->target.front(),
+              hand = setup.map.find(body_part::arm(Side::kLeft, Segment::kEnd))->target.front();
   EXPECT_LT((frame.positions[hips] - before.positions[hips] - shift).norm(), 1e-12);
   EXPECT_LT((frame.positions[hand] - before.positions[hand] - shift).norm(), 1e-12);
 }

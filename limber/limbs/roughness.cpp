@@ -14,14 +14,6 @@ namespace {
 constexpr double kCut = 12;          // heights a second of any joint: no motion, but a cut
 constexpr double kLeastJerk = 2e-5;  // third differences of paths
 
-struct LimbName {
-  const char *upper, *lower, *end;
-};
-constexpr std::array<LimbName, 4> kLimbs = {{{"leftUpperArm", "leftLowerArm", "leftHand"},
-                                             {"rightUpperArm", "rightLowerArm", "rightHand"},
-                                             {"leftUpperLeg", "leftLowerLeg", "leftFoot"},
-                                             {"rightUpperLeg", "rightLowerLeg", "rightFoot"}}};
-
 // Each two matched joints of which one hangs on the other in both, and chains from end to end, as bones.
 std::vector<LimbPair> matchedBones(const RetargetSetup& setup) {
   std::vector<const JointMatch*> from(setup.source->jointCount()), to(setup.target->jointCount());
@@ -57,14 +49,16 @@ bool hasLegs(const RetargetSetup& setup) {
 std::vector<LimbPair> limbPairs(const RetargetSetup& setup) {
   if (!hasLegs(setup)) return matchedBones(setup);
   std::vector<LimbPair> limbs;
-  for (const LimbName& name : kLimbs) {
-    if (!setup.person) break;
-    LimbPair& limb = limbs.emplace_back();
-    for (const char* part : {name.upper, name.lower, name.end}) {
-      const JointMatch* match = setup.map.find(part);
-      if (!match) continue;
-      limb.source.push_back(match->source.front());
-      limb.target.push_back(match->target.front());
+  for (const PartKind kind : {PartKind::kArm, PartKind::kLeg}) {
+    for (const Side side : kSides) {
+      if (!setup.person) break;
+      LimbPair& limb = limbs.emplace_back();
+      for (const Segment segment : {Segment::kUpper, Segment::kMiddle, Segment::kEnd}) {
+        const JointMatch* match = setup.map.find({kind, side, 0, segment, 0});
+        if (!match) continue;
+        limb.source.push_back(match->source.front());
+        limb.target.push_back(match->target.front());
+      }
     }
   }
   for (const AnimalLeg& leg : setup.animalLegs) {
@@ -80,7 +74,9 @@ double standingHeight(const RetargetSetup& setup, MapSide side) {
   const std::vector<Vec3>& positions = (source ? setup.sourceNeutral : setup.targetNeutral).positions;
   double high = pelvisOf(setup.map, side, positions).y();
   for (const JointMatch& match : setup.map.matches) {
-    if (setup.person && match.part != "trunk" && match.part != "neck" && match.part != "head") continue;
+    const bool isUpright =
+        match.part == body_part::kTrunk || match.part == body_part::kNeck || match.part == body_part::kHead;
+    if (setup.person && !isUpright) continue;
     high = std::max(high, positions[(source ? match.source : match.target).back()].y());
   }
   return high - (source ? setup.sourceLowest : setup.targetLowest);

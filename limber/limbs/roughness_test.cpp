@@ -76,10 +76,10 @@ TEST(Roughness, WithoutLegsBonesAndChainsCount) {
     limber::testing::addJoint(snake, name, parent, Vec3(0, 0, std::string(name).starts_with("tail") ? -0.3 : 0.2));
   }
   SkeletonMap map;
-  map.matches = {{"body", {0}, {0}, 1, MatchedBy::kFile},
-                 {"neck", {1}, {1}, 1, MatchedBy::kFile},
-                 {"head", {2}, {2}, 1, MatchedBy::kFile},
-                 {"tail", {3, 4, 5}, {3, 4, 5}, 1, MatchedBy::kFile}};
+  map.matches = {{body_part::kTrunk, {0}, {0}, 1, MatchedBy::kFile},
+                 {body_part::kNeck, {1}, {1}, 1, MatchedBy::kFile},
+                 {body_part::kHead, {2}, {2}, 1, MatchedBy::kFile},
+                 {body_part::kTail, {3, 4, 5}, {3, 4, 5}, 1, MatchedBy::kFile}};
   const RetargetSetup setup(snake, snake, map, {});
   EXPECT_FALSE(hasLegs(setup));
   const std::vector<LimbPair> bones = limbPairs(setup);

@@ -5,7 +5,6 @@
 
 #include "limber/limbs/limb_reach.h"
 #include "limber/limbs/smooth.h"
-#include "limber/matching/animal_map.h"
 
 namespace limber {
 
@@ -24,7 +23,7 @@ Vec3 level(const Vec3& v) {
 }  // namespace
 
 TailLift::TailLift(const RetargetSetup& setup, const RootPlacer& root) : setup_(setup), root_(root) {
-  if (!setup.person && !setup.animalLegs.empty()) tail_ = tailOf(*setup.target);
+  if (!setup.person) tail_ = setup.targetTail;
   if (tail_.size() < 2 || !setup.target->joints[tail_.front()].parent) tail_.clear();
 }
 

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "limber/limbs/smooth.h"
-#include "limber/matching/quadruped_shape.h"
 
 namespace limber {
 
@@ -24,11 +23,10 @@ double slopeOf(double rise) {
 }  // namespace
 
 TrunkTilt::TrunkTilt(const RetargetSetup& setup, const RootPlacer& root) : setup_(setup), root_(root) {
-  if (setup.person || !root.turnsPelvis()) return;
+  if (!setup.quadruped || !root.turnsPelvis()) return;
   for (const AnimalLeg& leg : setup.animalLegs) {
-    const bool fore = isForeleg(setup.map, leg.target.upper);
-    (fore ? shoulders_ : hips_).push_back(leg.target.upper);
-    (fore ? sourceShoulders_ : sourceHips_).push_back(leg.source.upper);
+    (leg.fore ? shoulders_ : hips_).push_back(leg.target.upper);
+    (leg.fore ? sourceShoulders_ : sourceHips_).push_back(leg.source.upper);
   }
   if (hips_.empty()) shoulders_.clear();
 }

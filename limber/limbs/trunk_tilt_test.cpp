@@ -5,7 +5,6 @@
 
 #include <gtest/gtest.h>
 
-#include "limber/matching/quadruped_shape.h"
 #include "limber/matching/testing/test_motion.h"
 
 namespace limber {
@@ -46,7 +45,7 @@ class TrunkTiltTest : public ::testing::Test {
   double rise() const { return (at("qb1LeftOne") - at("qb0LeftOne")).y(); }
 
   const Skeleton source_ = quadruped(0.5), target_ = longTrunked(1.5);
-  const RetargetSetup setup_{source_, target_, matchQuadrupeds(source_, target_).value(), {}};
+  const RetargetSetup setup_{source_, target_, limber::testing::matchByForm(source_, target_), {}};
   const RootPlacer root_{setup_};
   const TrunkTilt tilt_{setup_, root_};
   Pose to_;

@@ -1,4 +1,4 @@
-// The legs of those that are no people, as far as both skeletons have them: told by their form.
+// The legs of those that do not move as people do, as far as both skeletons have them.
 #pragma once
 
 #include <optional>
@@ -10,14 +10,15 @@ namespace limber {
 
 // Joints of one side of the map.
 struct LegJoints {
-  Index upper = 0, lower = 0, end = 0;  // `lower`: the joint between that bends the leg most
+  Index upper = 0, lower = 0, end = 0;  // hip or shoulder; the joint that bends the leg most; where it stands
   std::optional<Index> toes;            // the next joint after the end
   std::optional<Index> hock;            // of those between, the one that bends it most after `lower`
-  std::optional<Index> carrier;         // of an end on a root of its own: the shin that it rides on
+  std::optional<Index> carrier;         // of an end on a root of its own: the joint of the leg that it rides on
 };
 
 struct AnimalLeg {
   LegJoints source, target;
+  bool fore = false;  // of two pairs the foremost
 };
 
 // Of the matched joints of those that are no people, in rest pose.
@@ -30,10 +31,8 @@ struct BodySize {
 };
 BodySize bodySize(const SkeletonMap& map, MapSide side, const NeutralPose& neutral);
 
-// Chains of matched joints, one on the other in both, that come down from the body to the ground in both neutral poses.
-// Feet on a root of their own count as on the shin above them (parentsWithLegsJoined).
-// The end is the first joint of the chain that is low. None where a body lies flat. Cost: linear in the joints but for
-// their depth.
+// Matched legs with hip, knee and foot, left before right, the foremost first. None where a body lies flat, or has more
+// than two pairs of them.
 std::vector<AnimalLeg> animalLegs(const SkeletonMap& map, const Skeleton& source, const Skeleton& target,
                                   const NeutralPose& sourceNeutral, const NeutralPose& targetNeutral);
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "limber/skeleton/chain.h"
-#include "limber/skeleton/humanoid_names.h"
 
 namespace limber {
 
@@ -14,7 +13,11 @@ constexpr double kNear = 0.1;  // of the extent of all joints
 class LooseFinder {
  public:
   LooseFinder(const Skeleton& skeleton, const SkeletonMap& map, MapSide side, std::span<const Vec3> rest)
-      : skeleton_(skeleton), map_(map), side_(side), rest_(rest), hips_(jointsOf(*map.find("hips")).front()) {}
+      : skeleton_(skeleton),
+        map_(map),
+        side_(side),
+        rest_(rest),
+        hips_(jointsOf(*map.find(body_part::kPelvis)).front()) {}
 
   std::vector<LooseJoint> find() {
     addMatched();
@@ -29,12 +32,35 @@ class LooseFinder {
 
   void addMatched() {
     for (const JointMatch& match : map_.matches) {
-      const std::optional<std::string_view> above = humanoidParent(match.part);
-      const JointMatch* parent = above ? map_.find(*above) : nullptr;
+      const JointMatch* parent = carrierOf(match.part);
       const Index joint = jointsOf(match).front();
-      if (!parent || match.part == "hips" || isAncestorOrSelf(skeleton_, hips_, joint)) continue;
+      if (!parent || isAncestorOrSelf(skeleton_, hips_, joint)) continue;
       loose_.push_back({joint, jointsOf(*parent).back(), true});
     }
+  }
+
+  // What a person's part hangs on: of limbs the segment before, else the nearest part of the trunk that is matched.
+  const JointMatch* carrierOf(const BodyPart& part) const {
+    const auto first = [&](std::initializer_list<BodyPart> parts) -> const JointMatch* {
+      for (const BodyPart& each : parts) {
+        if (const JointMatch* match = map_.find(each)) return match;
+      }
+      return nullptr;
+    };
+    if (part.kind == PartKind::kLeg || part.kind == PartKind::kArm) {
+      for (int segment = static_cast<int>(part.segment) - 1; segment > 0; --segment) {
+        BodyPart before = part;
+        before.segment = static_cast<Segment>(segment);
+        if (const JointMatch* match = map_.find(before)) return match;
+      }
+      return part.kind == PartKind::kLeg ? first({body_part::kPelvis}) : first({body_part::kTrunk, body_part::kPelvis});
+    }
+    if (part.kind == PartKind::kFinger)
+      return first({body_part::arm(part.side, Segment::kEnd), body_part::arm(part.side, Segment::kMiddle)});
+    if (part == body_part::kHead) return first({body_part::kNeck, body_part::kTrunk, body_part::kPelvis});
+    if (part == body_part::kNeck) return first({body_part::kTrunk, body_part::kPelvis});
+    if (part == body_part::kTrunk) return first({body_part::kPelvis});
+    return nullptr;
   }
 
   void addOthers() {

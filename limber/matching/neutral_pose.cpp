@@ -6,7 +6,6 @@
 
 #include "limber/ik/rotation.h"
 #include "limber/matching/loose_joints.h"
-#include "limber/matching/quadruped.h"
 #include "limber/skeleton/chain.h"
 
 namespace limber {
@@ -30,10 +29,10 @@ struct Range {
 constexpr Range kArms{0.6, 1.5}, kLegs{0.8, 2.1};
 constexpr double kOpposite = 100 * kPi / 180;  // between the ways from the hips to the head and to the feet, at least
 
-std::optional<Index> firstOf(const SkeletonMap& map, MapSide side, std::string_view part) {
-  const std::vector<Index>* joints = jointsOfPart(map, side, part);
-  return joints ? std::optional(joints->front()) : std::nullopt;
-}
+using body_part::arm;
+using body_part::leg;
+constexpr BodyPart kHips = body_part::kPelvis, kTrunk = body_part::kTrunk, kNeck = body_part::kNeck,
+                   kHead = body_part::kHead;
 
 // The axis of space that the direction is nearest to.
 Vec3 nearestAxis(const Vec3& direction) {
@@ -53,13 +52,15 @@ struct Stance {
 };
 Stance stanceOf(const Skeleton& skeleton, const Pose& pose, const SkeletonMap& map, MapSide side) {
   const std::vector<Affine> globals = poseGlobals(skeleton, pose);
-  const std::optional<Index> hips = firstOf(map, side, "hips"), head = firstOf(map, side, "head");
+  const std::optional<Index> hips = firstOfPart(map, side, kHips), head = firstOfPart(map, side, kHead);
   Stance stance;
-  if (!hips || !head) return stance;
+  const std::vector<Index>* trunk = jointsOfPart(map, side, kTrunk);
+  if (!map.isBiped() || !hips || !(head || trunk)) return stance;
   const Vec3 from = globals[*hips].translation();
-  stance.head = globals[*head].translation() - from;
-  for (const char* part : {"leftFoot", "rightFoot"}) {
-    if (const std::optional<Index> foot = firstOf(map, side, part)) stance.feet += globals[*foot].translation() - from;
+  stance.head = globals[head ? *head : trunk->back()].translation() - from;
+  for (const Side each : kSides) {
+    if (const std::optional<Index> foot = firstOfPart(map, side, leg(each, Segment::kEnd)))
+      stance.feet += globals[*foot].translation() - from;
   }
   return stance;
 }
@@ -70,21 +71,22 @@ double angleOf(const Vec3& a, const Vec3& b) {
 
 // Of people, from left and right limbs, and from the hips to the head.
 std::optional<Quat> bodyFrame(const SkeletonMap& map, MapSide side, const std::vector<Vec3>& positions) {
-  const auto at = [&](std::string_view part) -> std::optional<Vec3> {
-    const std::optional<Index> joint = firstOf(map, side, part);
+  const auto at = [&](const BodyPart& part) -> std::optional<Vec3> {
+    const std::optional<Index> joint = firstOfPart(map, side, part);
     return joint ? std::optional(positions[*joint]) : std::nullopt;
   };
   Vec3 left = Vec3::Zero(), up = Vec3::Zero();
-  for (const auto& [one, other] :
-       {std::pair{"leftUpperLeg", "rightUpperLeg"}, std::pair{"leftUpperArm", "rightUpperArm"}}) {
-    if (at(one) && at(other)) left += *at(one) - *at(other);
+  for (const auto limb : {leg, arm}) {
+    const auto one = at(limb(Side::kLeft, Segment::kUpper, 0)), other = at(limb(Side::kRight, Segment::kUpper, 0));
+    if (one && other) left += *one - *other;
   }
-  const std::optional<Vec3> hips = at("hips");
-  for (const char* part : {"trunk", "neck", "head"}) {
+  const std::optional<Vec3> hips = at(kHips);
+  for (const BodyPart& part : {kTrunk, kNeck, kHead}) {
     if (hips && at(part)) up += *at(part) - *hips;
   }
-  for (const char* part : {"leftFoot", "rightFoot"}) {
-    if (hips && at(part)) up += *hips - *at(part);
+  for (const Side each : kSides) {
+    const std::optional<Vec3> foot = at(leg(each, Segment::kEnd));
+    if (hips && foot) up += *hips - *foot;
   }
   if (left.norm() < 1e-9 || up.norm() < 1e-9 || left.cross(up).norm() < 1e-6 * left.norm() * up.norm()) {
     return std::nullopt;
@@ -97,30 +99,29 @@ std::optional<Quat> bodyFrame(const SkeletonMap& map, MapSide side, const std::v
   return Quat(axes).conjugate();
 }
 
-// Of what stands upright on four legs; other animals face +Z.
-Quat quadrupedFrame(const Skeleton& skeleton, const std::vector<Vec3>& positions) {
-  const std::optional<Quadruped> animal = readQuadruped(skeleton, positions);
-  const Vec3 forward = animal ? snapped(animal->forward) : Vec3(Vec3::UnitZ());
-  Mat3 axes;
-  axes << Vec3::UnitY().cross(forward), Vec3::UnitY(), forward;
-  return Quat(axes).conjugate();
+// Of others: level, and along an axis of space where they nearly are.
+Quat frameAlong(const Axes& axes) {
+  const Vec3 up = snapped(axes.up), ahead = snapped(axes.front), forward = (ahead - ahead.dot(up) * up).normalized();
+  Mat3 rows;
+  rows << up.cross(forward), up, forward;
+  return Quat(rows).conjugate();
 }
 
 // Limb bones, where they point in the neutral pose, and where they end.
 struct LimbBone {
-  std::string_view part, end;
+  BodyPart part, end;
   Vec3 direction;
 };
-std::array<LimbBone, 8> limbBones() {
-  const Vec3 left = Vec3::UnitX(), right = -Vec3::UnitX(), down = -Vec3::UnitY();
-  return {{{"leftUpperArm", "leftLowerArm", left},
-           {"leftLowerArm", "leftHand", left},
-           {"rightUpperArm", "rightLowerArm", right},
-           {"rightLowerArm", "rightHand", right},
-           {"leftUpperLeg", "leftLowerLeg", down},
-           {"leftLowerLeg", "leftFoot", down},
-           {"rightUpperLeg", "rightLowerLeg", down},
-           {"rightLowerLeg", "rightFoot", down}}};
+std::vector<LimbBone> limbBones() {
+  std::vector<LimbBone> bones;
+  for (const Side side : kSides) {
+    const Vec3 outward((side == Side::kLeft ? 1.0 : -1.0) * Vec3::UnitX()), down(-Vec3::UnitY());
+    bones.push_back({arm(side, Segment::kUpper), arm(side, Segment::kMiddle), outward});
+    bones.push_back({arm(side, Segment::kMiddle), arm(side, Segment::kEnd), outward});
+    bones.push_back({leg(side, Segment::kUpper), leg(side, Segment::kMiddle), down});
+    bones.push_back({leg(side, Segment::kMiddle), leg(side, Segment::kEnd), down});
+  }
+  return bones;
 }
 
 // Loose joints, with what hangs on them, are where their carriers have them.
@@ -143,7 +144,7 @@ using Aims = std::vector<std::optional<Aim>>;  // #J
 
 void aimLimbs(const SkeletonMap& map, MapSide side, const std::vector<Vec3>& rest, Aims& aims) {
   for (const LimbBone& bone : limbBones()) {
-    const std::optional<Index> joint = firstOf(map, side, bone.part), end = firstOf(map, side, bone.end);
+    const std::optional<Index> joint = firstOfPart(map, side, bone.part), end = firstOfPart(map, side, bone.end);
     if (joint && end && (rest[*end] - rest[*joint]).norm() > 1e-9) {
       aims[*joint] = Aim{rest[*end] - rest[*joint], bone.direction};
     }
@@ -152,10 +153,10 @@ void aimLimbs(const SkeletonMap& map, MapSide side, const std::vector<Vec3>& res
 
 // The way through the first joints of parts; nothing where one is missing.
 double wayThrough(const SkeletonMap& map, MapSide side, const std::vector<Vec3>& rest,
-                  const std::array<std::string_view, 3>& parts) {
+                  const std::array<BodyPart, 3>& parts) {
   double length = 0;
   for (std::size_t i = 1; i < parts.size(); ++i) {
-    const std::optional<Index> from = firstOf(map, side, parts[i - 1]), to = firstOf(map, side, parts[i]);
+    const std::optional<Index> from = firstOfPart(map, side, parts[i - 1]), to = firstOfPart(map, side, parts[i]);
     if (!from || !to) return 0;
     length += (rest[*to] - rest[*from]).norm();
   }
@@ -164,11 +165,11 @@ double wayThrough(const SkeletonMap& map, MapSide side, const std::vector<Vec3>&
 
 // The trunk's joints from the hips to the neck (or head); empty where it does not reach there.
 std::vector<Index> trunkOf(const SkeletonMap& map, MapSide side) {
-  const std::optional<Index> hips = firstOf(map, side, "hips"), neck = firstOf(map, side, "neck"),
-                             head = firstOf(map, side, "head");
+  const std::optional<Index> hips = firstOfPart(map, side, kHips), neck = firstOfPart(map, side, kNeck),
+                             head = firstOfPart(map, side, kHead);
   if (!hips || (!neck && !head)) return {};
   std::vector<Index> joints = {*hips};
-  if (const std::vector<Index>* trunk = jointsOfPart(map, side, "trunk")) {
+  if (const std::vector<Index>* trunk = jointsOfPart(map, side, kTrunk)) {
     joints.insert(joints.end(), trunk->begin(), trunk->end());
   }
   joints.push_back(neck ? *neck : *head);
@@ -182,13 +183,16 @@ void aimBentTrunk(const SkeletonMap& map, MapSide side, const std::vector<Vec3>&
   const std::vector<Index> trunk = trunkOf(map, side);
   double length = 0;
   for (std::size_t i = 1; i < trunk.size(); ++i) length += (rest[trunk[i]] - rest[trunk[i - 1]]).norm();
-  for (const std::string limb : {"left", "right"}) {
-    const double arm = wayThrough(map, side, rest, {limb + "UpperArm", limb + "LowerArm", limb + "Hand"}),
-                 leg = wayThrough(map, side, rest, {limb + "UpperLeg", limb + "LowerLeg", limb + "Foot"});
-    if (!(kArms.has(arm / length) && kLegs.has(leg / length))) return;
+  for (const Side each : kSides) {
+    const auto lengthOf = [&](const auto& limb) {
+      return wayThrough(
+          map, side, rest,
+          {limb(each, Segment::kUpper, 0), limb(each, Segment::kMiddle, 0), limb(each, Segment::kEnd, 0)});
+    };
+    if (!(kArms.has(lengthOf(arm) / length) && kLegs.has(lengthOf(leg) / length))) return;
   }
   const Vec3 up = Vec3::UnitY();
-  const std::optional<Index> neck = firstOf(map, side, "neck"), head = firstOf(map, side, "head");
+  const std::optional<Index> neck = firstOfPart(map, side, kNeck), head = firstOfPart(map, side, kHead);
   if (neck && head) aims[*neck] = Aim{rest[*head] - rest[*neck], up, kBows};
   const Index hips = trunk.front(), middle = trunk[trunk.size() / 2], top = trunk.back();
   if (angleOf(rest[top] - rest[hips], up) < kStoops) return;
@@ -198,10 +202,15 @@ void aimBentTrunk(const SkeletonMap& map, MapSide side, const std::vector<Vec3>&
 
 }  // namespace
 
-const std::vector<Index>* jointsOfPart(const SkeletonMap& map, MapSide side, std::string_view part) {
+const std::vector<Index>* jointsOfPart(const SkeletonMap& map, MapSide side, const BodyPart& part) {
   const JointMatch* match = map.find(part);
   if (!match) return nullptr;
   return side == MapSide::kSource ? &match->source : &match->target;
+}
+
+std::optional<Index> firstOfPart(const SkeletonMap& map, MapSide side, const BodyPart& part) {
+  const std::vector<Index>* joints = jointsOfPart(map, side, part);
+  return joints ? std::optional(joints->front()) : std::nullopt;
 }
 
 std::vector<Index> matchedJoints(const SkeletonMap& map, MapSide side) {
@@ -233,27 +242,38 @@ Pose uprightPose(const Skeleton& skeleton, std::span<const Pose> motion, const S
   return *best;
 }
 
-NeutralPose neutralPose(const Skeleton& skeleton, const Pose& resting, const SkeletonMap& map, MapSide side) {
+NeutralPose neutralPose(const Skeleton& skeleton, const Pose& resting, const SkeletonMap& map, MapSide side,
+                        const Axes& axes) {
+  std::vector<Vec3> rest;
+  for (const Affine& global : poseGlobals(skeleton, resting)) rest.push_back(global.translation());
+  const std::optional<Quat> person = map.isBiped() ? bodyFrame(map, side, rest) : std::nullopt;
+  return neutralPoseIn(person ? *person : frameAlong(axes), skeleton, resting, map, side);
+}
+
+NeutralPose neutralPoseIn(const Quat& toBody, const Skeleton& skeleton, const Pose& resting, const SkeletonMap& map,
+                          MapSide side) {
   NeutralPose pose;
+  pose.toBody = toBody;
   std::vector<Vec3> rest;
   std::vector<Quat> restRotations;
   for (const Affine& global : poseGlobals(skeleton, resting)) rest.push_back(global.translation());
-  const std::optional<Quat> person = bodyFrame(map, side, rest);
-  pose.toBody = person ? *person : quadrupedFrame(skeleton, rest);
   std::vector<Quat> turns(skeleton.jointCount(), Quat::Identity());
   Aims aims(skeleton.jointCount());
   std::vector<bool> isFoot(skeleton.jointCount()), stands(skeleton.jointCount());
   for (Vec3& position : rest) position = pose.toBody * position;
-  aimLimbs(map, side, rest, aims);
-  aimBentTrunk(map, side, rest, aims);
+  if (map.isBiped()) {
+    aimLimbs(map, side, rest, aims);
+    aimBentTrunk(map, side, rest, aims);
+  }
   const std::vector<LooseJoint> loose =
-      map.find("hips") ? looseJoints(skeleton, map, side, rest) : std::vector<LooseJoint>();
-  for (const std::string leg : {"left", "right"}) {
-    const std::optional<Index> foot = firstOf(map, side, leg + "Foot");
-    if (!foot) continue;
+      map.isBiped() ? looseJoints(skeleton, map, side, rest) : std::vector<LooseJoint>();
+  for (const Side each : kSides) {
+    const std::optional<Index> foot = firstOfPart(map, side, leg(each, Segment::kEnd));
+    if (!foot || !map.isBiped()) continue;
     isFoot[*foot] = true;
-    const std::optional<Index> hip = firstOf(map, side, leg + "UpperLeg"), knee = firstOf(map, side, leg + "LowerLeg"),
-                               toes = toesOf(skeleton, map, side, leg, rest);
+    const std::optional<Index> hip = firstOfPart(map, side, leg(each, Segment::kUpper)),
+                               knee = firstOfPart(map, side, leg(each, Segment::kMiddle)),
+                               toes = toesOf(skeleton, map, side, each, rest);
     if (!hip || !knee || !toes) continue;
     const bool hock = (rest[*toes] - rest[*foot]).norm() > kHock * (rest[*foot] - rest[*knee]).norm();
     stands[*foot] = hock && angleOf(rest[*toes] - rest[*hip], -Vec3::UnitY()) < kFootGoesAlong;
@@ -281,17 +301,20 @@ NeutralPose neutralPose(const Skeleton& skeleton, const Pose& resting, const Ske
 }
 
 Vec3 pelvisOf(const SkeletonMap& map, MapSide side, const std::vector<Vec3>& positions) {
-  const std::optional<Index> left = firstOf(map, side, "leftUpperLeg"), right = firstOf(map, side, "rightUpperLeg");
-  if (left && right) return 0.5 * (positions[*left] + positions[*right]);
-  if (const std::optional<Index> hips = firstOf(map, side, "hips")) return positions[*hips];
+  const std::optional<Index> left = firstOfPart(map, side, leg(Side::kLeft, Segment::kUpper)),
+                             right = firstOfPart(map, side, leg(Side::kRight, Segment::kUpper));
+  if (map.isBiped() && left && right) return 0.5 * (positions[*left] + positions[*right]);
+  const std::optional<Index> hips = firstOfPart(map, side, kHips);
+  if (hips && !map.jointByJoint) return positions[*hips];
   const JointMatch& first = map.matches.front();
   return positions[side == MapSide::kSource ? first.source.front() : first.target.front()];
 }
 
-std::optional<Index> toesOf(const Skeleton& skeleton, const SkeletonMap& map, MapSide side, std::string_view leg,
+std::optional<Index> toesOf(const Skeleton& skeleton, const SkeletonMap& map, MapSide side, Side each,
                             std::span<const Vec3> rest) {
-  const std::string name(leg);
-  const std::optional<Index> toes = firstOf(map, side, name + "Toes"), foot = firstOf(map, side, name + "Foot");
+  const std::optional<Index> toes = firstOfPart(map, side, leg(each, Segment::kToes)),
+                             foot = firstOfPart(map, side, leg(each, Segment::kEnd));
+  if (!map.isBiped()) return std::nullopt;
   if (toes || !foot) return toes;
   std::optional<Index> tip;
   for (Index j = 0; j < skeleton.jointCount(); ++j) {
@@ -310,8 +333,11 @@ bool isBent(std::span<const Index> joints, Index end, std::span<const Vec3> posi
 
 std::vector<Index> soleJoints(const SkeletonMap& map, MapSide side) {
   std::vector<Index> joints;
-  for (const char* part : {"leftFoot", "rightFoot", "leftToes", "rightToes"}) {
-    if (const std::optional<Index> foot = firstOf(map, side, part)) joints.push_back(*foot);
+  if (!map.isBiped()) return joints;
+  for (const Segment segment : {Segment::kEnd, Segment::kToes}) {
+    for (const Side each : kSides) {
+      if (const std::optional<Index> foot = firstOfPart(map, side, leg(each, segment))) joints.push_back(*foot);
+    }
   }
   return joints;
 }

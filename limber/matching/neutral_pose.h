@@ -3,7 +3,6 @@
 
 #include <optional>
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include "limber/matching/skeleton_map.h"
@@ -14,7 +13,9 @@ namespace limber {
 enum class MapSide { kSource, kTarget };
 
 // The joints of a part on that side, none where it is not matched.
-const std::vector<Index>* jointsOfPart(const SkeletonMap& map, MapSide side, std::string_view part);
+const std::vector<Index>* jointsOfPart(const SkeletonMap& map, MapSide side, const BodyPart& part);
+// The first of them.
+std::optional<Index> firstOfPart(const SkeletonMap& map, MapSide side, const BodyPart& part);
 // Of all parts.
 std::vector<Index> matchedJoints(const SkeletonMap& map, MapSide side);
 
@@ -23,8 +24,8 @@ std::vector<Index> matchedJoints(const SkeletonMap& map, MapSide side);
 // from rest says more than the direction (a foot's joint may lie high or low above its toes). A foot that the leg's
 // way to the neutral pose would turn by more than 25 degrees goes along with it, too. One who stoops at rest by more
 // than 25 degrees stands up, a head bowed by more than 45 is raised, where the limbs are a person's. Loose joints
-// (looseJoints) are where their carriers have them. For other skeletons: the rest pose, of what stands on four legs
-// (readQuadruped) turned to face +Z.
+// (looseJoints) are where their carriers have them. For other skeletons: the rest pose, turned to stand along +Y and to
+// face +Z as `axes` say.
 //
 // `resting` stands in for the skeleton's rest pose, here and below; uprightPose() tells why.
 struct NeutralPose {
@@ -33,7 +34,11 @@ struct NeutralPose {
   std::vector<Vec3> positions;      // #J, likewise
   std::vector<Vec3> restPositions;  // #J, in rest pose, in the person's space
 };
-NeutralPose neutralPose(const Skeleton& skeleton, const Pose& resting, const SkeletonMap& map, MapSide side);
+NeutralPose neutralPose(const Skeleton& skeleton, const Pose& resting, const SkeletonMap& map, MapSide side,
+                        const Axes& axes);
+// The same, where the way to the person's space is known.
+NeutralPose neutralPoseIn(const Quat& toBody, const Skeleton& skeleton, const Pose& resting, const SkeletonMap& map,
+                          MapSide side);
 
 // Does the person stand in that pose: legs and head on opposite sides of the hips? Some programs write motions whose
 // rest pose has all bones along one axis; it tells nothing. True for skeletons without legs or head.
@@ -43,19 +48,19 @@ bool standsUpright(const Skeleton& skeleton, const Pose& pose, const SkeletonMap
 // up (+Y). The rest pose again where no pose stands.
 Pose uprightPose(const Skeleton& skeleton, std::span<const Pose> motion, const SkeletonMap& map, MapSide side);
 
-// The middle between the upper legs' joints, else the hips' joint, else the first matched joint.
+// Of people the middle between the upper legs' joints; else the hips' joint, or the first one that is matched.
 Vec3 pelvisOf(const SkeletonMap& map, MapSide side, const std::vector<Vec3>& positions);
 
-// Where the foot of the "left" or "right" leg touches the ground in front: its toes, or what hangs on it furthest to
+// Where the foot of the left or right leg touches the ground in front: its toes, or what hangs on it furthest to
 // the front and below it where the other skeleton has no toes. `rest` are #J positions in the person's space.
-std::optional<Index> toesOf(const Skeleton& skeleton, const SkeletonMap& map, MapSide side, std::string_view leg,
+std::optional<Index> toesOf(const Skeleton& skeleton, const SkeletonMap& map, MapSide side, Side leg,
                             std::span<const Vec3> rest);
 
 // Whether the way through a part's joints to the next part's, or to where it ends, bends, as that of a bird's shin with
 // its hock does: else they are a bone and its twist joints.
 bool isBent(std::span<const Index> joints, Index end, std::span<const Vec3> positions);
 
-// The first joints of feet and toes, as far as both skeletons have them.
+// The first joints of feet and toes of people, as far as both skeletons have them.
 std::vector<Index> soleJoints(const SkeletonMap& map, MapSide side);
 
 }  // namespace limber

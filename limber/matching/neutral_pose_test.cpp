@@ -18,7 +18,7 @@ class NeutralPoses : public ::testing::Test {
  protected:
   Vec3 bone(const Skeleton& skeleton, const char* from, const char* to) const {
     const NeutralPose pose =
-        neutralPose(skeleton, restPose(skeleton), matchSkeletons(person, skeleton), MapSide::kTarget);
+        neutralPose(skeleton, restPose(skeleton), matchSkeletons(person, skeleton), MapSide::kTarget, Axes{});
     return (pose.positions[skeleton.find(to).value()] - pose.positions[skeleton.find(from).value()]).normalized();
   }
 
@@ -95,7 +95,7 @@ TEST_F(NeutralPoses, FeetOnARootOfTheirOwnEndTheLegs) {
   const Skeleton bent =
       inRestPose(person, {{"leftUpperLeg", turn(-Vec3::UnitX(), 40)}, {"leftLowerLeg", turn(Vec3::UnitX(), 70)}});
   const Skeleton loose = limber::testing::onTheGround(bent, {"leftFoot"});
-  const NeutralPose pose = neutralPose(loose, restPose(loose), matchSkeletons(person, loose), MapSide::kTarget);
+  const NeutralPose pose = neutralPose(loose, restPose(loose), matchSkeletons(person, loose), MapSide::kTarget, Axes{});
   const Vec3 shin = pose.positions[loose.find("leftFoot").value()] - pose.positions[loose.find("leftLowerLeg").value()];
   const double length = person.joints[person.find("leftFoot").value()].rest.translation.norm();
   EXPECT_LT((shin + length * Vec3::UnitY()).norm(), 1e-6);
@@ -106,8 +106,8 @@ TEST_F(NeutralPoses, FeetOnARootOfTheirOwnEndTheLegs) {
 TEST_F(NeutralPoses, ToesAreFoundWhereTheOtherSkeletonHasNone) {
   const auto toes = [&](const Skeleton& skeleton, const Skeleton& other) {
     const SkeletonMap map = matchSkeletons(other, skeleton);
-    const NeutralPose pose = neutralPose(skeleton, restPose(skeleton), map, MapSide::kTarget);
-    return toesOf(skeleton, map, MapSide::kTarget, "left", pose.restPositions);
+    const NeutralPose pose = neutralPose(skeleton, restPose(skeleton), map, MapSide::kTarget, Axes{});
+    return toesOf(skeleton, map, MapSide::kTarget, Side::kLeft, pose.restPositions);
   };
   const Skeleton toeless = limber::testing::withoutToes(person);
   EXPECT_EQ(toes(person, person), person.find("leftToes"));

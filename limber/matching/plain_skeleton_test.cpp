@@ -63,56 +63,5 @@ TEST(PlainSkeleton, WithoutScalesNothingChanges) {
   }
 }
 
-// The practice humanoid below a node that scales.
-Skeleton belowArmature(const Vec3& scale) {
-  Skeleton person = withOtherAxes(practiceHumanoid());
-  Joint armature;
-  armature.name = "armature";
-  armature.rest.scale = scale;
-  for (Joint& joint : person.joints) joint.parent = joint.parent ? *joint.parent + 1 : 0;
-  person.joints.insert(person.joints.begin(), armature);
-  return person;
-}
-
-// A whole person mirrored: what is named right is now on the left. It walks forward all the same.
-TEST(PlainSkeleton, AMirroredPersonMovesAsTheOtherDoes) {
-  const Skeleton person = practiceHumanoid(), other = belowArmature(Vec3::Ones());
-  const Skeleton mirrored = belowArmature(Vec3(-1, 1, 1));
-  const Clip clip = clipOf(person, walk(person), "walk");
-  const SkeletonMap map = matchSkeletons(person, other), mirroredMap = matchSkeletons(person, mirrored);
-  EXPECT_EQ(mirrored.joints[mirroredMap.find("leftFoot")->target.front()].name, "rightFoot");
-  for (const RetargetMethod& method : retargetMethods()) {
-    if (method.name == "copy") continue;
-    SCOPED_TRACE(method.name);
-    const PoseSequence moved = sampleFrames(other, retargetClip(method, person, clip, other, map, {}, 60), 60);
-    const PoseSequence result =
-        sampleFrames(mirrored, retargetClip(method, person, clip, mirrored, mirroredMap, {}, 60), 60);
-    ASSERT_EQ(moved.poses.size(), result.poses.size());
-    double largest = 0;
-    for (std::size_t f = 0; f < moved.poses.size(); ++f) {
-      const std::vector<Affine> a = poseGlobals(other, moved.poses[f]), b = poseGlobals(mirrored, result.poses[f]);
-      for (const JointMatch& match : map.matches) {
-        if (match.part.ends_with("End")) continue;  // matched by its name alone, which changed sides
-        const Index joint = mirroredMap.find(match.part)->target.front();
-        largest = std::max(largest, (a[match.target.front()].translation() - b[joint].translation()).norm());
-      }
-    }
-    EXPECT_LT(largest, 1e-4);
-  }
-}
-
-TEST(PlainSkeleton, EveryMethodTakesUnevenScales) {
-  const Skeleton person = practiceHumanoid();
-  Skeleton uneven = person;
-  uneven.joints[uneven.find("spine").value()].rest.scale = Vec3(1.00002, 1, 0.99999);
-  const Clip clip = clipOf(person, walk(person, 30), "walk");
-  const SkeletonMap map = matchSkeletons(person, uneven);
-  for (const RetargetMethod& method : retargetMethods()) {
-    SCOPED_TRACE(method.name);
-    const PoseSequence moved = sampleFrames(uneven, retargetClip(method, person, clip, uneven, map, {}, 60), 60);
-    EXPECT_LT(largestDistance(person, sampleFrames(person, clip, 60), uneven, moved), 1e-3);
-  }
-}
-
 }  // namespace
 }  // namespace limber

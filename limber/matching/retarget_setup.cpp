@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "limber/anatomy/anatomy.h"
 #include "limber/core/error.h"
-#include "limber/matching/quadruped_shape.h"
 
 namespace limber {
 
@@ -81,12 +81,13 @@ double measuredGround(LowestHeights heights, double restGround, double hipHeight
 
 double legLength(const SkeletonMap& map, MapSide side, const NeutralPose& pose) {
   double length = 0;
-  for (const char* name : {"left", "right"}) {
-    const auto at = [&](const char* bone) -> std::optional<Vec3> {
-      const std::vector<Index>* joints = jointsOfPart(map, side, std::string(name) + bone);
-      return joints ? std::optional(pose.restPositions[joints->front()]) : std::nullopt;
+  if (!map.isBiped()) return length;
+  for (const Side each : kSides) {
+    const auto at = [&](Segment segment) -> std::optional<Vec3> {
+      const std::optional<Index> joint = firstOfPart(map, side, body_part::leg(each, segment));
+      return joint ? std::optional(pose.restPositions[*joint]) : std::nullopt;
     };
-    const auto upper = at("UpperLeg"), lower = at("LowerLeg"), foot = at("Foot");
+    const auto upper = at(Segment::kUpper), lower = at(Segment::kMiddle), foot = at(Segment::kEnd);
     if (upper && lower && foot) length = std::max(length, (*lower - *upper).norm() + (*foot - *lower).norm());
   }
   return length;
@@ -94,19 +95,6 @@ double legLength(const SkeletonMap& map, MapSide side, const NeutralPose& pose) 
 
 double hipHeight(const SkeletonMap& map, MapSide side, const NeutralPose& pose) {
   return pelvisOf(map, side, pose.positions).y() - lowest(groundJoints(map, side), pose.positions);
-}
-
-bool sameBuild(const Skeleton& a, const Skeleton& b) {
-  if (a.jointCount() != b.jointCount()) return false;
-  for (Index j = 0; j < a.jointCount(); ++j) {
-    const Transform &one = a.joints[j].rest, &other = b.joints[j].rest;
-    const double size = 1 + one.translation.norm();
-    if (a.joints[j].parent != b.joints[j].parent || (one.translation - other.translation).norm() > 1e-6 * size ||
-        std::abs(one.rotation.dot(other.rotation)) < 1 - 1e-9) {
-      return false;
-    }
-  }
-  return true;
 }
 
 // Mean height, over the lowest matched joint, of the joints that legs begin at.
@@ -118,11 +106,22 @@ double legHeight(const std::vector<AnimalLeg>& legs, const SkeletonMap& map, Map
   return sum / static_cast<double>(legs.size()) - lowest(matchedJoints(map, side), pose.positions);
 }
 
+// Which way others than people face; these tell it by their limbs.
+Axes axesOf(const Skeleton& skeleton, bool person) {
+  return person ? Axes{} : readAnatomy(skeleton).axes;
+}
+
+std::vector<Index> tailOf(const Skeleton& skeleton) {
+  const Anatomy anatomy = readAnatomy(skeleton);
+  const Part* tail = anatomy.find(PartKind::kTail);
+  return tail ? tail->joints : std::vector<Index>();
+}
+
 // A map of the hips alone, or joints that all lie in one place, leave nothing to scale by.
 void checkSize(double size, const char* whose, const SkeletonMap& map) {
   if (size > 0) return;
   throw Error(ErrorCode::kBadData, fmt::format("the matched joints do not tell how large the {}'s body is", whose),
-              map.matches.size() == 1 ? map.matches.front().part : "",
+              map.matches.size() == 1 ? nameOf(map.matches.front().part) : "",
               "match parts that lie further apart, such as hips, head and feet");
 }
 
@@ -134,10 +133,14 @@ RetargetSetup::RetargetSetup(const Skeleton& from, const Skeleton& to, SkeletonM
       target(&to),
       map((checkSkeletonMap(matches, from, to), std::move(matches))),
       options(asked),
-      person(map.find("hips") && map.find("leftUpperLeg") && map.find("rightUpperLeg")),
+      person(map.isBiped()),
+      quadruped(map.isQuadruped()),
       sourceRest(uprightPose(from, motion ? std::span(motion->poses) : std::span<const Pose>(), map, MapSide::kSource)),
-      sourceNeutral(neutralPose(from, sourceRest, map, MapSide::kSource)),
-      targetNeutral(neutralPose(to, sameBuild(from, to) ? sourceRest : restPose(to), map, MapSide::kTarget)),
+      targetRest(map.twins ? poseAsTwin(from, sourceRest, to, *map.twins) : restPose(to)),
+      sourceNeutral(neutralPose(from, sourceRest, map, MapSide::kSource, axesOf(from, person))),
+      targetNeutral(map.twins ? neutralPoseIn((sourceNeutral.toBody * map.twins->turn.conjugate()).normalized(), to,
+                                              targetRest, map, MapSide::kTarget)
+                              : neutralPose(to, targetRest, map, MapSide::kTarget, axesOf(to, person))),
       sourceKinematics(from, sourceNeutral.toBody),
       targetKinematics(to, targetNeutral.toBody) {
   if (person) {
@@ -146,7 +149,7 @@ RetargetSetup::RetargetSetup(const Skeleton& from, const Skeleton& to, SkeletonM
   } else {
     const BodySize one = bodySize(map, MapSide::kSource, sourceNeutral),
                    other = bodySize(map, MapSide::kTarget, targetNeutral);
-    const bool stand = map.find(kHindquarters) || (one.stands() && other.stands());
+    const bool stand = quadruped || (one.stands() && other.stands());
     sourceHipHeight = stand ? one.height : one.across;
     targetHipHeight = stand ? other.height : other.across;
     animalLegs = limber::animalLegs(map, from, to, sourceNeutral, targetNeutral);
@@ -179,7 +182,8 @@ RetargetSetup::RetargetSetup(const Skeleton& from, const Skeleton& to, SkeletonM
   // from there as the source.
   targetGround = lowest(groundJoints(map, MapSide::kTarget), targetNeutral.restPositions);
   // What rests in the air flies: its feet have no ground to keep to.
-  if (targetGround >= kFlies * targetHipHeight && !map.find(kHindquarters)) animalLegs.clear();
+  if (targetGround >= kFlies * targetHipHeight && !quadruped) animalLegs.clear();
+  if (!animalLegs.empty()) targetTail = tailOf(to);
   if (!standsAt(targetGround, targetHipHeight)) {
     targetGround = person ? sourceGround * scale : targetGround + scale * (sourceGround - restGround);
   }

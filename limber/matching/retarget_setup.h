@@ -51,8 +51,11 @@ struct RetargetSetup {
   const Skeleton* target;
   SkeletonMap map;
   RetargetOptions options;
-  bool person = false;  // else joints are matched one by one, and all of them may move
-  Pose sourceRest;      // the rest pose, or what stands in for it (uprightPose)
+  bool person = false;  // SkeletonMap::isBiped
+  bool quadruped =
+      false;        // SkeletonMap::isQuadruped, of no twins; else joints are matched one by one, and all may move
+  Pose sourceRest;  // the rest pose, or what stands in for it (uprightPose)
+  Pose targetRest;  // the rest pose; of twins the pose in which it rests as the source does (poseAsTwin)
   NeutralPose sourceNeutral, targetNeutral;
   BodyKinematics sourceKinematics, targetKinematics;
   // Target metres for a source metre of the root's way. Of others than people with legs: by where these begin.
@@ -64,6 +67,7 @@ struct RetargetSetup {
   double sourceGround = 0, targetGround = 0;  // heights of the lowest foot joint of someone standing
   double sourceLowest = 0, targetLowest = 0;  // likewise, in the neutral poses
   std::vector<AnimalLeg> animalLegs;          // of no people that stand on their joints
+  std::vector<Index> targetTail;              // of no people with legs: it is kept off the ground
 };
 
 }  // namespace limber

@@ -12,7 +12,7 @@ namespace {
 std::string refusal(const Skeleton& source, const Skeleton& target, const std::vector<std::string>& parts) {
   SkeletonMap map;
   for (const std::string& part : parts) {
-    map.matches.push_back({part, {source.find(part).value()}, {target.find(part).value()}});
+    map.matches.push_back({bodyPartNamed(part).value(), {source.find(part).value()}, {target.find(part).value()}});
   }
   try {
     const RetargetSetup setup(source, target, map, {});

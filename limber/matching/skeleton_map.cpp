@@ -1,8 +1,9 @@
 #include "limber/matching/skeleton_map.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
-#include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 #include <set>
@@ -10,205 +11,23 @@
 
 #include <fmt/format.h>
 
+#include "limber/anatomy/joint_words.h"
 #include "limber/core/counted.h"
 #include "limber/core/error.h"
-#include "limber/matching/animal_map.h"
-#include "limber/matching/body_plan.h"
-#include "limber/matching/humanoid_shape.h"
-#include "limber/matching/neutral_pose.h"
-#include "limber/matching/quadruped.h"
-#include "limber/matching/quadruped_shape.h"
-#include "limber/skeleton/chain.h"
+#include "limber/matching/body_pieces.h"
+#include "limber/matching/limb_groups.h"
 
 namespace limber {
 
 namespace {
 
-constexpr double kAlike = 0.6;    // of the smaller one's joints, in animals that are matched by names alone
-constexpr double kWhole = 0.75;   // of the smaller one's joints: more names in common tell most
-constexpr double kGuessed = 0.5;  // confidence of one who hardly looks like a person, at most
-constexpr double kFacing = 0.5;   // cosine between where toes and a body point, at least, to tell left from right by it
-
-// A person as the matching sees it: parts with their joints.
-struct Body {
-  struct Part {
-    std::vector<Index> joints;
-    double confidence = 1;
-  };
-  std::map<std::string, Part, std::less<>> parts;
-  std::vector<std::string> order;  // of the parts
-  MatchedBy by = MatchedBy::kName;
-
-  bool hasArms() const { return parts.contains("leftLowerArm") || parts.contains("rightLowerArm"); }
-};
-
-class BodyReader {
- public:
-  explicit BodyReader(const Skeleton& skeleton) : skeleton_(skeleton) {
-    labels_ = humanoidJointsByName(skeleton);
-    if (!isPerson()) {
-      labels_ = humanoidJointsByShape(skeleton);
-      body_.by = MatchedBy::kShape;
-    }
-  }
-
-  std::optional<Body> read() {
-    if (!isPerson()) return std::nullopt;
-    if (isMirrored()) {
-      for (HumanoidJoint& label : labels_) label.bone = mirroredBone(label.bone);
-    }
-    for (const HumanoidJoint& label : labels_) {
-      const std::string bone(label.bone);
-      if (bone == "spine") {
-        add("trunk", trunk(), label.confidence);
-      } else if (bone == "neck") {
-        add("neck", neck(), label.confidence);
-      } else if (bone != "chest" && bone != "upperChest") {
-        add(bone, withLinks(label), label.confidence);
-      }
-    }
-    return std::move(body_);
-  }
-
- private:
-  // Hips, and most of what arms and legs consist of.
-  bool isPerson() const {
-    int limbs = 0;
-    for (const char* bone : {"leftUpperArm", "rightUpperArm", "leftUpperLeg", "rightUpperLeg", "leftLowerArm",
-                             "rightLowerArm", "leftLowerLeg", "rightLowerLeg"}) {
-      limbs += jointOf(bone).has_value();
-    }
-    return jointOf("hips") && limbs >= 4 && shinsHangOnThighs();
-  }
-
-  // A spider's second leg is no shin, whatever it is called.
-  bool shinsHangOnThighs() const {
-    for (const auto& [thighBone, shinBone] :
-         {std::pair{"leftUpperLeg", "leftLowerLeg"}, std::pair{"rightUpperLeg", "rightLowerLeg"}}) {
-      const std::optional<Index> thigh = jointOf(thighBone), shin = jointOf(shinBone);
-      if (thigh && shin && !isAncestorOrSelf(skeleton_, *thigh, *shin)) return false;
-    }
-    return true;
-  }
-
-  // Do the feet point backwards for someone whose left is where the names say? Then left is where they say right: the
-  // skeleton is a mirror image, by a negative scale or out of a program with a left hand's axes.
-  bool isMirrored() const {
-    const std::optional<Index> left = jointOf("leftUpperLeg"), right = jointOf("rightUpperLeg"), head = jointOf("head");
-    if (!left || !right || !head || !jointOf("leftUpperArm") || !jointOf("rightUpperArm")) return false;
-    const std::vector<Affine> globals = restGlobals(skeleton_);
-    const auto at = [&](Index joint) -> Vec3 { return globals[joint].translation(); };
-    Vec3 forward = Vec3::Zero(), down = Vec3::Zero();
-    for (const auto& [footBone, toesBone] : {std::pair{"leftFoot", "leftToes"}, std::pair{"rightFoot", "rightToes"}}) {
-      const std::optional<Index> foot = jointOf(footBone), toes = jointOf(toesBone);
-      if (!foot || !toes) return false;
-      forward += at(*toes) - at(*foot);
-      down += at(*foot) - at(*jointOf("hips"));
-    }
-    const Vec3 up = at(*head) - at(*jointOf("hips"));
-    if (up.dot(-down) < kFacing * up.norm() * down.norm()) return false;  // stands or hangs in another way
-    const Vec3 facing = (at(*left) - at(*right)).cross(-down);
-    return facing.dot(forward) < -kFacing * facing.norm() * forward.norm();
-  }
-
-  std::optional<Index> jointOf(std::string_view bone) const {
-    for (const HumanoidJoint& label : labels_) {
-      if (label.bone == bone) return label.joint;
-    }
-    return std::nullopt;
-  }
-  bool isLabelled(Index joint) const {
-    return std::any_of(labels_.begin(), labels_.end(), [&](const HumanoidJoint& l) { return l.joint == joint; });
-  }
-
-  // Without joints that another part has: where bodies are short, form gives some to an arm and to the neck.
-  void add(const std::string& part, std::vector<Index> joints, double confidence) {
-    std::erase_if(joints, [&](Index joint) { return !taken_.insert(joint).second; });
-    if (joints.empty()) return;
-    body_.parts[part] = {std::move(joints), confidence};
-    body_.order.push_back(part);
-  }
-
-  // The joints strictly between two, root to tip; none where one does not hang on the other.
-  std::vector<Index> between(Index above, Index below) const {
-    std::vector<Index> joints;
-    for (std::optional<Index> up = skeleton_.joints[below].parent; up && *up != above;
-         up = skeleton_.joints[*up].parent)
-      joints.insert(joints.begin(), *up);
-    return isAncestorOrSelf(skeleton_, above, below) ? joints : std::vector<Index>{};
-  }
-
-  std::vector<Index> trunk() const {
-    const Index hips = *jointOf("hips");
-    const std::optional<Index> neck = jointOf("neck"), head = jointOf("head");
-    if (neck || head) {
-      std::vector<Index> joints = between(hips, neck ? *neck : *head);
-      if (!joints.empty()) return joints;
-    }
-    std::vector<Index> joints;
-    for (const char* bone : {"spine", "chest", "upperChest"}) {
-      if (const std::optional<Index> joint = jointOf(bone)) joints.push_back(*joint);
-    }
-    return joints;
-  }
-
-  std::vector<Index> neck() const {
-    std::vector<Index> joints = {*jointOf("neck")};
-    if (const std::optional<Index> head = jointOf("head")) {
-      for (const Index joint : between(joints[0], *head)) joints.push_back(joint);
-    }
-    return joints;
-  }
-
-  // A limb's joint, with the links (twist joints, doubled joints) before the limb's next one.
-  std::vector<Index> withLinks(const HumanoidJoint& label) const {
-    std::vector<Index> joints = {label.joint};
-    for (const HumanoidJoint& next : labels_) {
-      if (humanoidParent(next.bone) != label.bone || label.bone == "hips") continue;
-      const std::vector<Index> links = between(label.joint, next.joint);
-      const bool ofOthers = std::any_of(links.begin(), links.end(), [&](Index link) { return isLabelled(link); });
-      const bool isHand = label.bone == "leftHand" || label.bone == "rightHand" || label.bone == "head";
-      if (!ofOthers && !isHand) joints.insert(joints.end(), links.begin(), links.end());
-    }
-    return joints;
-  }
-
-  const Skeleton& skeleton_;
-  std::vector<HumanoidJoint> labels_;
-  std::set<Index> taken_;
-  Body body_;
-};
-
-// By name with arms, or by a form that leaves little over, such as a tail, and whose trunk is upright.
-bool isSurelyAPerson(const std::optional<Body>& body, const Skeleton& skeleton) {
-  if (!body) return false;
-  if (body->by == MatchedBy::kName) return body->hasArms();
-  const Body::Part& hips = body->parts.at("hips");
-  const auto head = body->parts.find("head");
-  if (head == body->parts.end()) return hips.confidence > kGuessed;
-  const std::vector<Affine> globals = restGlobals(skeleton);
-  const Vec3 up = globals[head->second.joints.back()].translation() - globals[hips.joints.front()].translation();
-  return hips.confidence > kGuessed && up.y() > std::hypot(up.x(), up.z());
-}
-
-// Arms or legs: hips and a head are no person.
-bool hasLimbs(const SkeletonMap& map) {
-  return (map.find("leftUpperLeg") && map.find("rightUpperLeg")) ||
-         (map.find("leftUpperArm") && map.find("rightUpperArm"));
-}
-
-SkeletonMap matchBodies(const Body& source, const Body& target) {
-  SkeletonMap map;
-  for (const std::string& part : target.order) {
-    const auto from = source.parts.find(part);
-    if (from == source.parts.end()) continue;
-    const Body::Part& to = target.parts.at(part);
-    const bool byShape = source.by == MatchedBy::kShape || target.by == MatchedBy::kShape;
-    map.matches.push_back({part, from->second.joints, to.joints, std::min(from->second.confidence, to.confidence),
-                           byShape ? MatchedBy::kShape : MatchedBy::kName});
-  }
-  return map;
-}
+// Matches that are needed at least, with names for some of them and by form alone.
+constexpr std::size_t kFewNamed = 3, kFewByForm = 7;
+constexpr double kEqualTrees = 0.5;    // confidence of joints that are matched by their number in equal trees alone
+constexpr double kEqualNames = 0.9;    // of names that are equal but for their case, separators and prefixes
+constexpr double kOneOfSeveral = 0.5;  // confidence at most of one palm joint, or pelvis, of several
+constexpr double kFingerByForm = 0.7;  // confidence at most: form does not tell a finger's tip from its last bone
+constexpr Index kFingerJoints = 3;     // that a hand's finger has, its metacarpal apart
 
 std::string plainName(std::string_view name) {
   if (const std::size_t space = name.find_last_of(":|"); space != std::string_view::npos) name.remove_prefix(space + 1);
@@ -220,195 +39,451 @@ std::string plainName(std::string_view name) {
   return plain;
 }
 
-SkeletonMap matchNames(const Skeleton& source, const Skeleton& target) {
-  std::map<std::string, Index> byName;
-  for (Index j = 0; j < source.jointCount(); ++j) byName.emplace(plainName(source.joints[j].name), j);
-  SkeletonMap map;
-  std::set<Index> used;
-  for (Index j = 0; j < target.jointCount(); ++j) {
-    const auto found = byName.find(plainName(target.joints[j].name));
-    if (found == byName.end() || !used.insert(found->second).second) continue;
-    const bool same = source.joints[found->second].name == target.joints[j].name;
-    map.matches.push_back({target.joints[j].name, {found->second}, {j}, same ? 1.0 : 0.9, MatchedBy::kName});
-  }
-  return map;
-}
-
-// Which joints of two skeletons hang on joints of one match.
-class Hanging {
- public:
-  Hanging(const SkeletonMap& map, const Skeleton& source, const Skeleton& target)
-      : source_(source), target_(target), ofSource_(source.jointCount()), ofTarget_(target.jointCount()) {
-    for (const JointMatch& match : map.matches) add(match);
-  }
-
-  void add(const JointMatch& match) {
-    for (const Index joint : match.source) ofSource_[joint] = count_;
-    for (const Index joint : match.target) ofTarget_[joint] = count_;
-    ++count_;
-  }
-  // On joints of the same match both, or on none.
-  bool alike(const JointMatch& match) const {
-    return above(source_, ofSource_, match.source.front()) == above(target_, ofTarget_, match.target.front());
-  }
-  // Not part of any match, but on joints of one.
-  bool isFree(const JointMatch& match) const {
-    return !ofSource_[match.source.front()] && !ofTarget_[match.target.front()] &&
-           above(source_, ofSource_, match.source.front());
-  }
-
- private:
-  using Matches = std::vector<std::optional<std::size_t>>;  // #J
-  static std::optional<std::size_t> above(const Skeleton& skeleton, const Matches& matchOf, Index joint) {
-    const std::optional<Index> at = nearestAbove(skeleton, joint, [&](Index j) { return matchOf[j].has_value(); });
-    return at ? matchOf[*at] : std::nullopt;
-  }
-
-  const Skeleton &source_, &target_;
-  Matches ofSource_, ofTarget_;
-  std::size_t count_ = 0;
-};
-
-// Most names of the smaller one in common, on joints that hang alike.
-bool areAlike(const SkeletonMap& names, const Skeleton& source, const Skeleton& target) {
-  const Hanging hanging(names, source, target);
-  const auto alike = std::count_if(names.matches.begin(), names.matches.end(),
-                                   [&](const JointMatch& match) { return hanging.alike(match); });
-  const std::size_t fewer = std::min(source.jointCount(), target.jointCount());
-  return static_cast<double>(alike) > kAlike * static_cast<double>(fewer);
-}
-
-// What one family has besides, by equal names, where they hang on the same part: ears, jaws, tails, wings, hair.
-void addNamesakes(const SkeletonMap& names, const Skeleton& source, const Skeleton& target, SkeletonMap& map) {
-  Hanging hanging(map, source, target);
-  const std::span<const std::string_view> bones = humanoidBones();
-  for (const JointMatch& match : names.matches) {
-    const bool isPart = map.find(match.part) || std::find(bones.begin(), bones.end(), match.part) != bones.end();
-    if (isPart || !hanging.isFree(match) || !hanging.alike(match)) continue;
-    map.matches.push_back(match);
-    hanging.add(match);
-  }
-}
-
 bool sameTree(const Skeleton& a, const Skeleton& b) {
   return a.jointCount() == b.jointCount() &&
          std::equal(a.joints.begin(), a.joints.end(), b.joints.begin(),
                     [](const Joint& one, const Joint& other) { return one.parent == other.parent; });
 }
 
-SkeletonMap matchTrees(const Skeleton& target) {
-  SkeletonMap map;
-  for (Index j = 0; j < target.jointCount(); ++j) {
-    map.matches.push_back({target.joints[j].name, {j}, {j}, 0.6, MatchedBy::kShape});
-  }
-  return map;
+MatchedBy evidenceOf(const Part& one, const Part& other) {
+  return one.evidence == Evidence::kForm || other.evidence == Evidence::kForm ? MatchedBy::kShape : MatchedBy::kName;
 }
 
-// Tries one way of matching after the other.
-class Matchmaker {
+class Matcher {
  public:
-  Matchmaker(const Skeleton& source, const Skeleton& target)
-      : source_(source),
-        target_(target),
-        names_(matchNames(source, target)),
-        from_(BodyReader(source).read()),
-        to_(BodyReader(target).read()) {
-    // Skeletons of one family, people or not, have most names in common.
-    const std::size_t fewer = std::min(source.jointCount(), target.jointCount());
-    isFamily_ = names_.matches.size() >= 3 && names_.matches.size() * 2 > fewer;
-    isWhole_ = isFamily_ && static_cast<double>(names_.matches.size()) > kWhole * static_cast<double>(fewer);
-    areArmless_ = isFamily_ && from_ && to_ && !from_->hasArms() && !to_->hasArms();
+  Matcher(const Skeleton& source, const Skeleton& target)
+      : source_(source), target_(target), from_(source), to_(target), sourceTree_(source), targetTree_(target) {
+    if (!standOnMany()) return;
+    from_.cutLegsWhereTheyStand(source);
+    to_.cutLegsWhereTheyStand(target);
   }
 
   SkeletonMap match() {
-    for (const auto way : {&Matchmaker::quadrupeds, &Matchmaker::bodyPlans, &Matchmaker::people}) {
-      if (std::optional<SkeletonMap> map = (this->*way)()) return *std::move(map);
+    matchParts();
+    if (std::optional<Twins> twins = matchTwins(source_, target_)) {
+      matchTwinJoints(*twins);
+      map_.jointByJoint = !map_.isBiped() || areAnimals();
+      if (map_.jointByJoint) splitChains();
+      map_.twins = std::move(twins);
+      return std::move(map_);
     }
-    if (isFamily_) {
-      matchChainsOfAnimals(source_, target_, names_);
-      return names_;
+    map_.jointByJoint = standOtherwise() || (areAnimals() && areFamily());
+    if (!moves() && sameTree(source_, target_)) {
+      map_ = {};
+      for (Index j = 0; j < target_.jointCount(); ++j) addOther(j, j, kEqualTrees, MatchedBy::kShape);
+      return std::move(map_);
     }
-    if (sameTree(source_, target_)) return matchTrees(target_);
+    matchNamesakes();
+    if (!moves()) refuse();
+    if (map_.jointByJoint) splitChains();
+    listUnmatched();
+    return std::move(map_);
+  }
+
+ private:
+  void add(const BodyPart& part, std::vector<Index> source, std::vector<Index> target, double confidence,
+           MatchedBy by) {
+    std::erase_if(target, [&](Index joint) { return matchedTarget_.count(joint) > 0; });
+    if (source.empty() || target.empty()) return;
+    for (const Index joint : target) matchedTarget_.emplace(joint, map_.matches.size());
+    for (const Index joint : source) matchedSource_.emplace(joint, map_.matches.size());
+    map_.matches.push_back({part, std::move(source), std::move(target), confidence, by});
+  }
+
+  void addOther(Index source, Index target, double confidence, MatchedBy by) {
+    add({PartKind::kOther, Side::kCenter, 0, Segment::kWhole, target}, {source}, {target}, confidence, by);
+  }
+
+  void matchParts() {
+    const double confidence = std::min(from_.centerConfidence, to_.centerConfidence);
+    const Part *one = from_.anatomy.find(PartKind::kTrunk), *other = to_.anatomy.find(PartKind::kTrunk);
+    const MatchedBy by = one && other ? evidenceOf(*one, *other) : MatchedBy::kShape;
+    const bool guess = from_.pelvisIsGuess || to_.pelvisIsGuess;
+    const double trunkConfidence = guess ? std::min(confidence, kOneOfSeveral) : confidence;
+    if (from_.pelvis && to_.pelvis) add(body_part::kPelvis, {*from_.pelvis}, {*to_.pelvis}, trunkConfidence, by);
+    add(body_part::kTrunk, from_.trunk, to_.trunk, trunkConfidence, by);
+    add(body_part::kNeck, from_.neck, to_.neck, confidence, by);
+    if (from_.head && to_.head) add(body_part::kHead, {*from_.head}, {*to_.head}, confidence, by);
+    for (const LimbPieces& limb : to_.limbs) {
+      const Part& part = *limb.part;
+      if (part.kind == PartKind::kProp || part.kind == PartKind::kHair) continue;  // no two of them are the same thing
+      // Legs are counted from behind where one body has more: those at the pelvis are alike.
+      const Index more = part.kind == PartKind::kLeg ? from_.anatomy.pairsOf(PartKind::kLeg) : 0,
+                  own = part.kind == PartKind::kLeg ? to_.anatomy.pairsOf(PartKind::kLeg) : 0;
+      const LimbPieces* like =
+          part.pair + more < own ? nullptr : from_.find(part.kind, part.side, part.pair + more - own);
+      if (like && alikeCarried(*like, limb)) matchLimb(*like, limb);
+    }
+  }
+
+  // Fingers of a hand and toes of a foot have one kind.
+  bool alikeCarried(const LimbPieces& one, const LimbPieces& other) const {
+    if (one.part->kind != PartKind::kFinger) return true;
+    const auto carrier = [](const Anatomy& anatomy, const Part& part) {
+      return part.carrier ? anatomy.parts[*part.carrier].kind : PartKind::kOther;
+    };
+    return carrier(from_.anatomy, *one.part) == carrier(to_.anatomy, *other.part);
+  }
+
+  void matchLimb(const LimbPieces& source, const LimbPieces& target) {
+    const Part& part = *target.part;
+    const double confidence = std::min(source.part->confidence, part.confidence);
+    const MatchedBy by = evidenceOf(*source.part, part);
+    BodyPart piece{part.kind, part.side, part.pair, Segment::kWhole, 0};
+    if (part.kind == PartKind::kFinger) {
+      const std::vector<Index> from = fingerJoints(source_, *source.part), to = fingerJoints(target_, part);
+      // A thumb of two joints lacks the one in the palm.
+      const std::size_t ownFirst = part.pair == 0 && to.size() == 2 ? 1 : 0,
+                        first = part.pair == 0 && from.size() == 2 ? 1 : 0;
+      for (std::size_t i = std::max(ownFirst, first); i < std::min(from.size() + first, to.size() + ownFirst); ++i) {
+        piece.piece = static_cast<Index>(i);
+        add(piece, {from[i - first]}, {to[i - ownFirst]},
+            by == MatchedBy::kShape ? std::min(confidence, kFingerByForm) : confidence, by);
+      }
+      return;
+    }
+    if (part.kind == PartKind::kTail || part.kind == PartKind::kJaw)
+      return add(piece, source.joints, target.joints, confidence, by);
+    const std::vector<std::pair<Segment, std::pair<std::size_t, std::size_t>>> common = commonMarks(source, target);
+    if (common.empty()) return matchAlong(piece, source, target, confidence, by);
+    for (std::size_t m = 0; m < common.size(); ++m) {
+      const auto [segment, begins] = common[m];
+      const bool last = m + 1 == common.size();
+      std::vector<Index> from(source.joints.begin() + static_cast<std::ptrdiff_t>(begins.first), source.joints.end()),
+          to(target.joints.begin() + static_cast<std::ptrdiff_t>(begins.second), target.joints.end());
+      // What goes on after the last landmark of both are tips, or what one of them has no word for.
+      const bool stands = standOnMany() && part.kind == PartKind::kLeg;
+      if (!last || !stands || segment != Segment::kToes) {
+        from.resize(last ? 1 : common[m + 1].second.first - begins.first);
+        to.resize(last ? 1 : common[m + 1].second.second - begins.second);
+      }
+      if (!last) {
+        keepAbove(sourceTree_, source.joints[common[m + 1].second.first], from);
+        keepAbove(targetTree_, target.joints[common[m + 1].second.second], to);
+      }
+      if (stands && segment == Segment::kUpper && !last) {
+        const std::size_t sourceEnd = common[m + 1].second.first, targetEnd = common[m + 1].second.second;
+        matchBones(piece, {source, begins.first, sourceEnd}, {target, begins.second, targetEnd}, confidence, by);
+        continue;
+      }
+      if (segment == Segment::kToes &&
+          !(toesTell(source_, from_, source, begins.first) && toesTell(target_, to_, target, begins.second)))
+        continue;
+      if (segment == Segment::kBase && part.kind == PartKind::kLeg && !alikeBases(from, to, common, source, target))
+        continue;
+      piece.segment = segment;
+      const bool guess =
+          segment == Segment::kEnd && (isOneOfSeveral(sourceTree_, *source.part) || isOneOfSeveral(targetTree_, part));
+      add(piece, std::move(from), std::move(to), guess ? std::min(confidence, kOneOfSeveral) : confidence, by);
+    }
+  }
+
+  // Not the end of a foot's bone, that never turns; nor where one foot is raised at rest, as in a file that begins in
+  // the middle of a step: how it stands is not known then.
+  bool toesTell(const Skeleton& skeleton, const BodyPieces& body, const LimbPieces& leg, std::size_t toes) const {
+    constexpr double kRaised =
+        0.006;  // of the body's size; feet of shared bodies that stand differ by 0.002 at most, others by 0.02
+    const bool isEnd =
+        toes + 1 == leg.joints.size() && readJointWords(skeleton.joints[leg.joints[toes]].name).has(NameMark::kEnd);
+    if (isEnd || standOnMany()) return !isEnd;
+    const std::vector<Affine> rest = restGlobals(skeleton);
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const Side side : kSides) {
+      const Part* each = body.anatomy.find(PartKind::kLeg, side, leg.part->pair);
+      if (!each || !each->toes) continue;
+      const double height = body.anatomy.axes.up.dot(rest[*each->toes].translation());
+      low = std::min(low, height);
+      high = std::max(high, height);
+    }
+    return high - low < kRaised * body.anatomy.size;
+  }
+
+  // Of a hand whose palm has several joints beside each other one has to stand for all.
+  static bool isOneOfSeveral(const JointTree& tree, const Part& part) {
+    return part.end && std::any_of(part.branches.begin(), part.branches.end(),
+                                   [&](Index joint) { return tree.parent(joint) == tree.parent(*part.end); });
+  }
+
+  bool standOnMany() const {
+    return from_.anatomy.pairsOf(PartKind::kLeg) > 1 && to_.anatomy.pairsOf(PartKind::kLeg) > 1;
+  }
+  bool areAnimals() const { return from_.isAnimal() && to_.isAnimal(); }
+
+  // Of what lies between two landmarks the joints on which the next one hangs; all where it is on a root of its own.
+  static void keepAbove(const JointTree& tree, Index next, std::vector<Index>& joints) {
+    if (!tree.isAboveOrSelf(joints.front(), next)) return joints.resize(1);
+    std::erase_if(joints, [&](Index joint) { return !tree.isAboveOrSelf(joint, next); });
+  }
+
+  // The bones of legs between hip and foot, by where they lie along them.
+  struct Bones {
+    const LimbPieces& limb;
+    std::size_t begin, end;
+    std::span<const Index> joints() const { return std::span(limb.joints).subspan(begin, end - begin); }
+    std::vector<double> along() const {
+      std::vector<double> places;
+      const double length = limb.along[end] - limb.along[begin];
+      for (std::size_t i = begin; i < end; ++i)
+        places.push_back(length > 0 ? (limb.along[i] - limb.along[begin]) / length : 0);
+      return places;
+    }
+  };
+  void matchBones(BodyPart piece, const Bones& source, const Bones& target, double confidence, MatchedBy by) {
+    const std::vector<double> own = target.along(), others = source.along();
+    const std::vector<std::vector<Index>> from = groupedAlong(source.joints(), others, own),
+                                          to = groupedAlong(target.joints(), own, others);
+    constexpr std::array kSegments = {Segment::kUpper, Segment::kMiddle, Segment::kHock};
+    for (std::size_t i = 0; i < to.size(); ++i) {
+      piece.segment = kSegments[std::min<std::size_t>(i, 2)];
+      piece.piece = i > 2 ? static_cast<Index>(i - 2) : 0;
+      add(piece, from[i], to[i], confidence, by);
+    }
+  }
+
+  // Hip bones of people carry nothing of their own; blades that lie otherwise would take the legs elsewhere.
+  bool alikeBases(const std::vector<Index>& from, const std::vector<Index>& to, const auto& common,
+                  const LimbPieces& source, const LimbPieces& target) const {
+    constexpr double kAlikeBases = 0.9;  // cosine between where they point, seen from where each faces: 26 degrees
+    if (from_.anatomy.pairsOf(PartKind::kLeg) < 2 || to_.anatomy.pairsOf(PartKind::kLeg) < 2 || common.size() < 2)
+      return false;
+    const auto wayOf = [](const Skeleton& skeleton, const Anatomy& anatomy, Index begin, Index end) {
+      const std::vector<Affine> rest = restGlobals(skeleton);
+      const Vec3 way = (rest[end].translation() - rest[begin].translation()).normalized();
+      return Vec3(anatomy.axes.left().dot(way), anatomy.axes.up.dot(way), anatomy.axes.front.dot(way));
+    };
+    const auto& next = common[1].second;
+    return wayOf(source_, from_.anatomy, from.front(), source.joints[next.first])
+               .dot(wayOf(target_, to_.anatomy, to.front(), target.joints[next.second])) > kAlikeBases;
+  }
+
+  static std::vector<std::pair<Segment, std::pair<std::size_t, std::size_t>>> commonMarks(const LimbPieces& source,
+                                                                                          const LimbPieces& target) {
+    std::vector<std::pair<Segment, std::pair<std::size_t, std::size_t>>> common;
+    for (const auto& [segment, begin] : target.marks) {
+      for (const auto& [other, otherBegin] : source.marks) {
+        if (segment == other &&
+            (common.empty() || (begin > common.back().second.second && otherBegin > common.back().second.first))) {
+          common.push_back({segment, {otherBegin, begin}});
+        }
+      }
+    }
+    return common;
+  }
+
+  void matchAlong(BodyPart piece, const LimbPieces& source, const LimbPieces& target, double confidence, MatchedBy by) {
+    const std::vector<std::vector<Index>> from = groupedAlong(source.joints, source.along, target.along),
+                                          to = groupedAlong(target.joints, target.along, source.along);
+    for (std::size_t i = 0; i < to.size(); ++i) {
+      piece.piece = static_cast<Index>(i);
+      add(piece, from[i], to[i], confidence, by);
+    }
+  }
+
+  // Without a metacarpal in the palm, which names alone tell, and without tips.
+  static std::vector<Index> fingerJoints(const Skeleton& skeleton, const Part& finger) {
+    std::vector<Index> joints = finger.joints;
+    const std::string first = plainName(skeleton.joints[joints.front()].name);
+    const bool inPalm = first.find("metacarpal") != std::string::npos && finger.pair > 0;
+    if (inPalm && joints.size() > 1) joints.erase(joints.begin());
+    while (joints.size() > 1 && readJointWords(skeleton.joints[joints.back()].name).has(NameMark::kEnd))
+      joints.pop_back();
+    if (joints.size() > kFingerJoints) joints.resize(kFingerJoints);
+    return joints;
+  }
+
+  void matchTwinJoints(const Twins& twins) {
+    // Each joint by itself, under the part's name where it begins one.
+    std::vector<JointMatch> parts = std::move(map_.matches);
+    map_.matches.clear();
+    matchedTarget_.clear();
+    matchedSource_.clear();
+    for (const Index joint : targetTree_.order()) {
+      const auto begins = std::find_if(parts.begin(), parts.end(),
+                                       [&](const JointMatch& match) { return match.target.front() == joint; });
+      const Index own = twins.sourceOf[joint];
+      if (begins != parts.end()) {
+        std::vector<Index> sources;
+        for (const Index each : begins->target) sources.push_back(twins.sourceOf[each]);
+        add(begins->part, std::move(sources), begins->target, 1, MatchedBy::kShape);
+      } else if (matchedTarget_.count(joint) == 0) {
+        addOther(own, joint, 1, MatchedBy::kShape);
+      }
+    }
+  }
+
+  // What one family has besides, where it hangs on the same part: hair, props, skirts, face bones.
+  void matchNamesakes() {
+    std::map<std::string, Index> byName;
+    for (Index j = 0; j < source_.jointCount(); ++j) byName.emplace(plainName(source_.joints[j].name), j);
+    for (const Index joint : targetTree_.order()) {
+      if (matchedTarget_.count(joint) > 0) continue;
+      const auto found = byName.find(plainName(target_.joints[joint].name));
+      if (found == byName.end() || matchedSource_.count(found->second) > 0) continue;
+      const std::optional<std::size_t> above = matchAbove(targetTree_, matchedTarget_, joint);
+      if ((!above && !map_.jointByJoint) || above != matchAbove(sourceTree_, matchedSource_, found->second)) continue;
+      const bool same = source_.joints[found->second].name == target_.joints[joint].name;
+      addOther(found->second, joint, same ? 1 : kEqualNames, MatchedBy::kName);
+    }
+  }
+
+  static std::optional<std::size_t> matchAbove(const JointTree& tree, const std::map<Index, std::size_t>& matched,
+                                               Index joint) {
+    for (std::optional<Index> up = tree.parent(joint); up; up = tree.parent(*up)) {
+      if (const auto found = matched.find(*up); found != matched.end()) return found->second;
+    }
+    return std::nullopt;
+  }
+
+  // The body itself, and something that hangs on it: hips and a head move nothing.
+  bool moves() const {
+    const auto both = [&](PartKind kind) {
+      return std::any_of(map_.matches.begin(), map_.matches.end(),
+                         [&](const JointMatch& match) { return match.part.kind == kind; });
+    };
+    const bool limbs = both(PartKind::kLeg) || both(PartKind::kArm) || both(PartKind::kWing) || both(PartKind::kFin);
+    const Index one = from_.anatomy.pairsOf(PartKind::kLeg), other = to_.anatomy.pairsOf(PartKind::kLeg);
+    const bool standAlike = one == other || (one > 0 && other > 0 && std::max(one, other) == std::min(one, other) + 1 &&
+                                             both(PartKind::kWing));
+    // Names are believed of a few joints, where these are most of the skeleton; form needs more to be seen as a body.
+    const auto named =
+        static_cast<std::size_t>(std::count_if(map_.matches.begin(), map_.matches.end(),
+                                               [](const JointMatch& match) { return match.by == MatchedBy::kName; }));
+    const bool mostlyNamed = named >= 3 && 2 * named >= std::min(source_.jointCount(), target_.jointCount());
+    const bool hasForm = map_.matches.size() >= (named > 0 ? kFewNamed : kFewByForm);
+    return map_.find(body_part::kPelvis) && (mostlyNamed || ((limbs || both(PartKind::kTail)) && hasForm)) &&
+           standAlike;
+  }
+
+  bool standOtherwise() const { return from_.anatomy.pairsOf(PartKind::kLeg) != to_.anatomy.pairsOf(PartKind::kLeg); }
+
+  // Most joints of the smaller one have the same name, and hang on joints of the same name.
+  bool areFamily() const {
+    constexpr double kMostNames = 0.6;  // of the smaller one's joints
+    const auto keyOf = [](const Skeleton& skeleton, Index joint) {
+      const std::optional<Index>& parent = skeleton.joints[joint].parent;
+      return plainName(skeleton.joints[joint].name) + '/' + (parent ? plainName(skeleton.joints[*parent].name) : "");
+    };
+    std::set<std::string> names;
+    for (Index j = 0; j < source_.jointCount(); ++j) names.insert(keyOf(source_, j));
+    std::size_t common = 0;
+    for (Index j = 0; j < target_.jointCount(); ++j) common += names.count(keyOf(target_, j));
+    return static_cast<double>(common) >
+           kMostNames * static_cast<double>(std::min(source_.jointCount(), target_.jointCount()));
+  }
+
+  // Chains of as many joints in both, joint by joint: each may move by itself.
+  void splitChains() {
+    std::vector<JointMatch> split;
+    for (JointMatch& match : map_.matches) {
+      if (match.source.size() != match.target.size() || match.source.size() < 2) {
+        split.push_back(std::move(match));
+        continue;
+      }
+      for (std::size_t i = 0; i < match.source.size(); ++i) {
+        BodyPart part = match.part;
+        part.piece += static_cast<Index>(i);
+        const bool taken = i > 0 && (map_.find(part) || part.kind == PartKind::kOther);
+        if (taken) part = {PartKind::kOther, Side::kCenter, 0, Segment::kWhole, match.target[i]};
+        split.push_back({part, {match.source[i]}, {match.target[i]}, match.confidence, match.by});
+      }
+    }
+    const std::span<const Index> order = targetTree_.order();
+    std::vector<std::size_t> place(order.size());
+    for (std::size_t i = 0; i < order.size(); ++i) place[order[i]] = i;
+    std::stable_sort(split.begin(), split.end(), [&](const JointMatch& a, const JointMatch& b) {
+      return place[a.target.front()] < place[b.target.front()];
+    });
+    map_.matches = std::move(split);
+  }
+
+  void listUnmatched() {
+    for (const bool ofTarget : {false, true}) {
+      const BodyPieces& body = ofTarget ? to_ : from_;
+      const JointTree& tree = ofTarget ? targetTree_ : sourceTree_;
+      const auto& matched = ofTarget ? matchedTarget_ : matchedSource_;
+      for (const Part& part : body.anatomy.parts) {
+        std::vector<Index> joints;
+        for (const Index joint : part.joints) {
+          if (matched.count(joint) == 0) joints.push_back(joint);
+        }
+        if (joints.size() < part.joints.size() || joints.empty()) continue;
+        UnmatchedPart unmatched{{part.kind, part.side, part.pair, Segment::kWhole, 0}, ofTarget, joints, {}};
+        const std::optional<std::size_t> above = matchAbove(tree, matched, joints.front());
+        if (ofTarget && above) unmatched.carrier = map_.matches[*above].part;
+        map_.left.push_back(std::move(unmatched));
+      }
+    }
+  }
+
+  [[noreturn]] void refuse() const {
     throw Error(ErrorCode::kUnsupported,
-                fmt::format("the motion's skeleton of {} and the character's of {} have too little in common to "
-                            "be matched by names or by form: {}",
+                fmt::format("the motion's skeleton of {} and the character's of {} have too little in common to be "
+                            "matched: {}",
                             counted(source_.jointCount(), "joint"), target_.jointCount(), whatDiffers()),
                 "", "say in a map which joint follows which, as docs/retargeting.md tells");
   }
 
- private:
-  // Animals that are built otherwise may well have many words in common.
-  std::optional<SkeletonMap> quadrupeds() const {
-    if ((isNamed(from_) && isNamed(to_)) || (isFamily_ && areAlike(names_, source_, target_))) return std::nullopt;
-    std::optional<SkeletonMap> map = matchQuadrupeds(source_, target_);
-    if (map && sameTree(source_, target_)) return matchTrees(target_);
-    if (map && isFamily_) addNamesakes(names_, source_, target_, *map);
-    return map;
-  }
-
-  std::optional<SkeletonMap> bodyPlans() const {
-    if (isWhole_ || sameTree(source_, target_)) return std::nullopt;
-    if (isSurelyAPerson(from_, source_) || isSurelyAPerson(to_, target_)) return std::nullopt;
-    std::optional<SkeletonMap> plan = matchBodyPlans(source_, target_);
-    const bool namesTell = isFamily_ && (!mayBePeople() || areArmless_);
-    const bool less = plan && matchedJoints(*plan, MapSide::kTarget).size() <= names_.matches.size();
-    return namesTell && less ? std::nullopt : plan;
-  }
-
-  // A family without arms, of birds or bats, moves more than legs and trunk.
-  std::optional<SkeletonMap> people() const {
-    if (!mayBePeople() || areArmless_ || areStrangers()) return std::nullopt;
-    SkeletonMap map = matchBodies(*from_, *to_);
-    if (isFamily_) addNamesakes(names_, source_, target_, map);
-    return map.matches.size() >= 5 && hasLimbs(map) ? std::optional(std::move(map)) : std::nullopt;
-  }
-
-  bool mayBePeople() const { return from_ && to_ && (isNamed(from_) || isNamed(to_) || !isFamily_); }
-
   std::string whatDiffers() const {
-    const bool oneIsQuadruped = readQuadruped(source_).has_value() != readQuadruped(target_).has_value();
-    if (oneIsQuadruped && (isNamed(from_) || isNamed(to_))) return "one is a person, the other stands on four legs";
-    return whyBodyPlansDiffer(source_, target_);
-  }
-
-  static bool isNamed(const std::optional<Body>& body) { return body && body->by == MatchedBy::kName; }
-
-  // By their form alone both hardly look like people, or one is a quadruped: a fox is no person, nor a frog one for a
-  // fox to follow.
-  bool areStrangers() const {
-    const auto isQuadruped = [](const Body& body, const Skeleton& skeleton) {
-      return body.by == MatchedBy::kShape && readQuadruped(skeleton);
+    const auto seen = [](const Anatomy& anatomy) {
+      std::string text;
+      for (const PartKind kind : {PartKind::kLeg, PartKind::kArm, PartKind::kWing, PartKind::kFin}) {
+        const Index pairs = anatomy.pairsOf(kind);
+        if (pairs > 0)
+          text += (text.empty() ? "" : ", ") +
+                  counted(pairs, fmt::format("pair of {}s", nameOf(kind)), fmt::format("pairs of {}s", nameOf(kind)));
+      }
+      if (anatomy.find(PartKind::kTail)) text += std::string(text.empty() ? "" : ", ") + "a tail";
+      if (text.empty()) text = anatomy.find(PartKind::kTrunk) ? "a trunk without limbs" : "no body";
+      return text;
     };
-    const auto isGuessed = [](const Body& body) {
-      return body.by == MatchedBy::kShape && body.parts.at("hips").confidence <= kGuessed;
-    };
-    return (isGuessed(*from_) && isGuessed(*to_)) || isQuadruped(*from_, source_) || isQuadruped(*to_, target_);
+    return fmt::format("the motion's joints show {}, the character's {}", seen(from_.anatomy), seen(to_.anatomy));
   }
 
   const Skeleton &source_, &target_;
-  SkeletonMap names_;
-  std::optional<Body> from_, to_;
-  bool isFamily_ = false, isWhole_ = false, areArmless_ = false;
+  BodyPieces from_, to_;
+  JointTree sourceTree_, targetTree_;
+  SkeletonMap map_;
+  std::map<Index, std::size_t> matchedTarget_, matchedSource_;  // joint, its match
 };
 
 }  // namespace
 
-const JointMatch* SkeletonMap::find(std::string_view part) const {
+const JointMatch* SkeletonMap::find(const BodyPart& part) const {
   const auto found =
       std::find_if(matches.begin(), matches.end(), [&](const JointMatch& match) { return match.part == part; });
   return found == matches.end() ? nullptr : &*found;
 }
 
+bool SkeletonMap::isBiped() const {
+  const bool hasOthers = std::any_of(matches.begin(), matches.end(), [](const JointMatch& match) {
+    return (match.part.kind == PartKind::kLeg && match.part.pair > 0) || match.part.kind == PartKind::kWing;
+  });
+  return !jointByJoint && !hasOthers && find(body_part::kPelvis) &&
+         find(body_part::leg(Side::kLeft, Segment::kUpper)) && find(body_part::leg(Side::kRight, Segment::kUpper));
+}
+
+bool SkeletonMap::isQuadruped() const {
+  return !jointByJoint && find(body_part::kPelvis) && find(body_part::leg(Side::kLeft, Segment::kUpper, 1)) &&
+         find(body_part::leg(Side::kLeft, Segment::kUpper, 0)) &&
+         !find(body_part::leg(Side::kLeft, Segment::kUpper, 2));
+}
+
+std::string nameOf(const JointMatch& match, const Skeleton& target) {
+  if (match.part.kind != PartKind::kOther) return nameOf(match.part);
+  const std::string& name = target.joints[match.target.front()].name;
+  return bodyPartNamed(name) ? "joint " + name : name;  // "jaw" would be read as that part of the body
+}
+
 SkeletonMap matchSkeletons(const Skeleton& source, const Skeleton& target) {
-  return Matchmaker(source, target).match();
+  return Matcher(source, target).match();
 }
 
 void checkSkeletonMap(const SkeletonMap& map, const Skeleton& source, const Skeleton& target) {
   std::set<Index> moved;
-  std::set<std::string> parts;
+  std::set<BodyPart> parts;
   if (map.matches.empty()) throw Error(ErrorCode::kBadData, "the map matches nothing");
   for (const JointMatch& match : map.matches) {
-    const auto refuse = [&](const std::string& what) { throw Error(ErrorCode::kBadData, what, match.part); };
+    const auto refuse = [&](const std::string& what) { throw Error(ErrorCode::kBadData, what, nameOf(match.part)); };
     if (match.source.empty() || match.target.empty()) refuse("has no joint on one side");
     if (!parts.insert(match.part).second) refuse("is matched twice");
     for (const Index joint : match.source) {

@@ -5,16 +5,17 @@
 #include <string_view>
 #include <vector>
 
-#include "limber/skeleton/skeleton.h"
+#include "limber/anatomy/body_part.h"
+#include "limber/matching/twin_match.h"
 
 namespace limber {
 
 enum class MatchedBy { kName, kShape, kFile };
 
-// A part of the body that both skeletons have, with its joints in both, root to tip. Counts may differ: a trunk of
+// A piece of the body that both skeletons have, with its joints in both, root to tip. Counts may differ: a trunk of
 // three joints moves one of five.
 struct JointMatch {
-  std::string part;  // a humanoid bone ("leftUpperArm"), "trunk", "neck", "tail", or the joint's own name
+  BodyPart part;  // of kind kOther: joints of one name, or of one place in equal trees; `piece` tells them apart
   std::vector<Index> source, target;
   double confidence = 1;  // below kDoubtful: worth a look
   MatchedBy by = MatchedBy::kName;
@@ -22,20 +23,36 @@ struct JointMatch {
 
 inline constexpr double kDoubtful = 0.75;
 
-struct SkeletonMap {
-  std::vector<JointMatch> matches;  // parents before children
-
-  const JointMatch* find(std::string_view part) const;
+// A part of one of them that has no partner in the other.
+struct UnmatchedPart {
+  BodyPart part;
+  bool ofTarget = false;
+  std::vector<Index> joints;
+  std::optional<BodyPart> carrier;  // of the target: what it goes along with meanwhile, as it rests; none: it stays
 };
 
-// People are matched bone by bone: by their joints' names, or, where names say nothing, by what hangs where in rest
-// pose; the joints of trunk and neck along their chains, whatever they are called; twist joints inside a limb go with
-// it, and what else they have, tails and wings, by equal names where it hangs on the same part. In mirror images, whose
-// toes point backwards for what is called left, left is what is called right. Others, and birds and bats of one family,
-// whose legs alone are a person's, are matched by equal names (upper and lower case and prefixes aside), animals'
-// trunks, necks and tails along their chains (animal_map.h), or joint by joint where the trees are the same; quadrupeds
-// of other names and trees by their form (quadruped_shape.h), all else by how the bodies are laid out (body_plan.h).
-// Throws Error kUnsupported where too little matches to move anything.
+struct SkeletonMap {
+  std::vector<JointMatch> matches;  // parents before children
+  std::vector<UnmatchedPart> left;  // of the labelled parts
+  std::optional<Twins> twins;       // one skeleton under other names, turned or scaled: then each joint is matched
+  bool jointByJoint = false;        // each joint moves as its partner does, and no limb is solved for: of one family of
+                                    // animals, whose joints have the same names, and of bodies that stand otherwise
+
+  const JointMatch* find(const BodyPart& part) const;
+  // Two legs on one pelvis, no more and no wings: what moves as people do.
+  bool isBiped() const;
+  // Two pairs of legs or more on one pelvis.
+  bool isQuadruped() const;
+};
+
+// "leftUpperArm"; of other joints the target joint's own name, behind "joint " where it is that of a part.
+std::string nameOf(const JointMatch& match, const Skeleton& target);
+
+// Twins (twin_match.h) joint by joint. Others by their anatomy: parts of the same kind, side and pair; limbs from
+// landmark to landmark, between them by where joints lie along the limb; the pelvis where legs and spine part, trunk
+// and neck as chains between it and the head, whatever their joints are called. What else hangs on the same matched
+// parts goes by equal names (upper and lower case, separators and prefixes aside). Equal trees of no body go joint by
+// joint. Throws Error kUnsupported where too little matches to move anything.
 SkeletonMap matchSkeletons(const Skeleton& source, const Skeleton& target);
 
 // Throws Error kBadData naming the part: no joint, one that is not there, or one target joint in two parts.

@@ -46,13 +46,25 @@ std::vector<Index> jointsOf(const Json& match, const char* key, const Skeleton& 
 std::string skeletonMapToJson(const SkeletonMap& map, const Skeleton& source, const Skeleton& target) {
   Json matches = Json::array();
   for (const JointMatch& match : map.matches) {
-    matches.push_back({{"part", match.part},
+    matches.push_back({{"part", nameOf(match, target)},
                        {"source", namesOf(match.source, source)},
                        {"target", namesOf(match.target, target)},
                        {"confidence", match.confidence},
                        {"by", byName(match.by)}});
   }
-  return Json{{"matches", std::move(matches)}}.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  Json left = Json::array();
+  for (const UnmatchedPart& part : map.left) {
+    left.push_back({{"part", nameOf(part.part)},
+                    {"of", part.ofTarget ? "target" : "source"},
+                    {"joints", namesOf(part.joints, part.ofTarget ? target : source)},
+                    {"meanwhile", !part.ofTarget ? "moves nothing"
+                                  : part.carrier ? "follows " + nameOf(*part.carrier)
+                                                 : "rests"}});
+  }
+  Json json = {{"matches", std::move(matches)}};
+  if (map.jointByJoint) json["joint_by_joint"] = true;
+  if (!left.empty()) json["unmatched"] = std::move(left);
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 SkeletonMap skeletonMapFromJson(std::string_view text, const Skeleton& source, const Skeleton& target) {
@@ -70,12 +82,15 @@ SkeletonMap skeletonMapFromJson(std::string_view text, const Skeleton& source, c
     const auto part = entry.find("part");
     if (part == entry.end() || !part->is_string()) throw Error(ErrorCode::kBadData, "'part' is no text", where);
     JointMatch match;
-    match.part = part->get<std::string>();
     match.source = jointsOf(entry, "source", source, where);
     match.target = jointsOf(entry, "target", target, where);
+    const std::optional<BodyPart> known = bodyPartNamed(part->get_ref<const std::string&>());
+    const Index own = match.target.empty() ? 0 : match.target.front();
+    match.part = known ? *known : BodyPart{PartKind::kOther, Side::kCenter, 0, Segment::kWhole, own};
     match.by = MatchedBy::kFile;
     map.matches.push_back(std::move(match));
   }
+  map.jointByJoint = json.value("joint_by_joint", false);
   checkSkeletonMap(map, source, target);
   return map;
 }

@@ -22,8 +22,8 @@ std::vector<std::string> doubtfulMatches(const SkeletonMap& map, const Skeleton&
   std::vector<std::string> lines;
   for (const JointMatch& match : map.matches) {
     if (match.confidence >= kDoubtful || match.by == MatchedBy::kFile) continue;
-    lines.push_back(
-        fmt::format("{}: {} -> {}", match.part, namesOf(match.source, source), namesOf(match.target, target)));
+    lines.push_back(fmt::format("{}: {} -> {}", nameOf(match, target), namesOf(match.source, source),
+                                namesOf(match.target, target)));
   }
   return lines;
 }

@@ -39,12 +39,15 @@ Quat turnOf(const Vec3& up) {
   return axis == 1 && up.y() < 0 ? Quat(0, 0, 0, 1) : shortestRotation(along, Vec3::UnitY());
 }
 
-SkeletonMap matchToItself(const Skeleton& skeleton) {
-  try {
-    return matchSkeletons(skeleton, skeleton);
-  } catch (const Error&) {
-    return {};  // too little of anything
-  }
+// A body with a head and two legs, each named, so that no form in another pose misleads.
+bool isNamedBiped(const Anatomy& anatomy) {
+  const auto isSure = [&](PartKind kind, Side side) {
+    const Part* part = anatomy.find(kind, side);
+    return part && part->evidence != Evidence::kForm && part->confidence >= kDoubtful;
+  };
+  return anatomy.pairsOf(PartKind::kLeg) == 1 && isSure(PartKind::kTrunk, Side::kCenter) &&
+         isSure(PartKind::kHead, Side::kCenter) && isSure(PartKind::kLeg, Side::kLeft) &&
+         isSure(PartKind::kLeg, Side::kRight);
 }
 
 // From a rest pose that lies to clips of which most begin with one who stands along +Y; else none.
@@ -69,13 +72,10 @@ std::optional<Vec3> restsAlong(const Asset& asset) {
 }  // namespace
 
 std::optional<Vec3> standsAlong(const Skeleton& skeleton, const Pose& pose) {
-  const SkeletonMap map = matchToItself(skeleton);
-  for (const char* part : {"hips", "head", "leftUpperLeg", "rightUpperLeg", "leftFoot", "rightFoot"}) {
-    const JointMatch* match = map.find(part);
-    if (!match || match->by != MatchedBy::kName || match->confidence < kDoubtful) return {};
-  }
-  if (!standsUpright(skeleton, pose, map, MapSide::kTarget)) return {};
-  return neutralPose(skeleton, pose, map, MapSide::kTarget).toBody.conjugate() * Vec3::UnitY();
+  if (!isNamedBiped(readAnatomy(skeleton))) return {};
+  const SkeletonMap map = matchSkeletons(skeleton, skeleton);
+  if (!map.isBiped() || !standsUpright(skeleton, pose, map, MapSide::kTarget)) return {};
+  return neutralPose(skeleton, pose, map, MapSide::kTarget, {}).toBody.conjugate() * Vec3::UnitY();
 }
 
 Quat turnToStand(const Skeleton& skeleton) {

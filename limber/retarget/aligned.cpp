@@ -33,14 +33,14 @@ std::vector<double> placesAlong(const std::vector<Index>& joints, const std::vec
 AlignedRetargeter::AlignedRetargeter(const RetargetSetup& setup)
     : setup_(setup), root_(setup), follows_(setup.target->jointCount()) {
   for (const JointMatch& match : setup.map.matches) follow(match);
-  followLine("leftLowerLeg", "leftFoot");
-  followLine("rightLowerLeg", "rightFoot");
+  for (const Side side : kSides)
+    followLine(body_part::leg(side, Segment::kMiddle), body_part::leg(side, Segment::kEnd));
   targetFrame_.rotations.resize(setup.target->jointCount());
   targetFrame_.positions.resize(setup.target->jointCount());
 }
 
 // A shin that bends on its way is one bone for one that does not.
-void AlignedRetargeter::followLine(std::string_view part, std::string_view nextPart) {
+void AlignedRetargeter::followLine(const BodyPart& part, const BodyPart& nextPart) {
   const JointMatch *match = setup_.map.find(part), *next = setup_.map.find(nextPart);
   if (!setup_.person || !match || !next) return;
   const std::vector<Vec3>&from = setup_.sourceNeutral.positions, &to = setup_.targetNeutral.positions;
@@ -69,6 +69,12 @@ void AlignedRetargeter::follow(const JointMatch& match) {
       const double overlap = std::min(fromPlaces[s + 1], toPlaces[t + 1]) - std::max(fromPlaces[s], toPlaces[t]);
       const double weight = inPairs ? (s == t ? 1 : 0) : overlap / (toPlaces[t + 1] - toPlaces[t]);
       if (weight > 1e-6) shares.push_back({match.source[s], weight, from[match.source[s]].conjugate()});
+    }
+    if (shares.empty()) {
+      // A bone without length: what is above it.
+      std::size_t s = 0;
+      while (s + 1 < match.source.size() && fromPlaces[s + 1] <= toPlaces[t]) ++s;
+      shares.push_back({match.source[s], 1, from[match.source[s]].conjugate()});
     }
     each.source = shares.front().source;
     if (shares.size() == 1) {

@@ -47,7 +47,7 @@ class AlignedRetargeter : public FrameRetargeter {
     std::optional<Line> line;       // that it points along, as the source's does
   };
   void follow(const JointMatch& match);
-  void followLine(std::string_view part, std::string_view nextPart);
+  void followLine(const BodyPart& part, const BodyPart& nextPart);
   Quat rotationOf(const Follow& follow) const;
 
   const RetargetSetup& setup_;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "limber/matching/testing/test_motion.h"
+#include "limber/retarget/retarget_clip.h"
 
 namespace limber {
 namespace {
@@ -122,7 +123,8 @@ TEST(AlignedChains, CoilsDoNotFlip) {
   };
   const Skeleton many = snake(20), few = snake(2);
   SkeletonMap map;
-  map.matches = {{"body", {0}, {0}, 1, MatchedBy::kFile}, {"tail", {}, {1, 2}, 1, MatchedBy::kFile}};
+  map.matches = {{body_part::kTrunk, {0}, {0}, 1, MatchedBy::kFile},
+                 {body_part::kTail, {}, {1, 2}, 1, MatchedBy::kFile}};
   for (Index j = 1; j < many.jointCount(); ++j) map.matches[1].source.push_back(j);
   PoseSequence coiling{{}, 1.0 / 30};
   for (int f = 0; f <= 170; ++f) {

@@ -4,6 +4,7 @@
 
 #include "limber/limbs/roughness.h"
 #include "limber/matching/testing/test_motion.h"
+#include "limber/retarget/retarget_clip.h"
 
 namespace limber {
 namespace {

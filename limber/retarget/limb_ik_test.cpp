@@ -4,6 +4,7 @@
 
 #include "limber/core/error.h"
 #include "limber/matching/testing/test_motion.h"
+#include "limber/retarget/retarget_clip.h"
 
 namespace limber {
 namespace {

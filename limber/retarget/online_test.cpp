@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "limber/matching/testing/test_motion.h"
+#include "limber/retarget/retarget_clip.h"
 
 namespace limber {
 namespace {

@@ -4,13 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "limber/anatomy/testing/bodies.h"
 #include "limber/ik/ik_skeletons.h"
 #include "limber/ik/rotation.h"
-#include "limber/retarget/retarget_clip.h"
-#include "limber/skeleton/humanoid_names.h"
+#include "limber/matching/retarget_setup.h"
 
 namespace limber::testing {
 
@@ -125,23 +126,6 @@ inline Skeleton withHocks(Skeleton person) {
   return person;
 }
 
-// The same on a root on the ground, on which these joints hang, too.
-inline Skeleton onTheGround(const Skeleton& skeleton, const std::vector<std::string>& loose) {
-  const std::vector<Affine> globals = restGlobals(skeleton);
-  Skeleton longer;
-  longer.joints.push_back({"ground", std::nullopt, {}});
-  for (Index j = 0; j < skeleton.jointCount(); ++j) {
-    Joint joint = skeleton.joints[j];
-    joint.parent = joint.parent ? *joint.parent + 1 : 0;
-    if (std::find(loose.begin(), loose.end(), joint.name) != loose.end()) {
-      joint.parent = 0;
-      joint.rest = decompose(globals[j]);
-    }
-    longer.joints.push_back(joint);
-  }
-  return longer;
-}
-
 // Ankles are the last joints of its legs.
 inline Skeleton withoutToes(const Skeleton& skeleton) {
   Skeleton shorter;
@@ -154,6 +138,11 @@ inline Skeleton withoutToes(const Skeleton& skeleton) {
     shorter.joints.push_back(joint);
   }
   return shorter;
+}
+
+// As if the joints' names said nothing.
+inline SkeletonMap matchByForm(const Skeleton& source, const Skeleton& target) {
+  return matchSkeletons(nameless(source, "p"), nameless(target));
 }
 
 // Unreal's names for VRM's.
@@ -194,40 +183,6 @@ inline Skeleton oddlyBuilt() {
   return person;
 }
 
-// At the end; the parent is one that is there, or "".
-inline void addJoint(Skeleton& skeleton, const std::string& name, const std::string& parent, const Vec3& offset) {
-  Joint& joint = skeleton.joints.emplace_back();
-  joint.name = name;
-  joint.parent = skeleton.find(parent);
-  joint.rest.translation = offset;
-}
-
-// A body with a neck, a tail that hangs down, and four legs of two bones and a paw; the thigh's share of the leg's
-// metre.
-inline Skeleton quadruped(double thigh) {
-  Skeleton skeleton;
-  const auto add = [&](const std::string& name, const std::string& parent, const Vec3& offset) {
-    addJoint(skeleton, name, parent, offset);
-  };
-  add("b0", "", Vec3(0, 1, 0));
-  add("b1", "b0", Vec3(0, 0, 0.8));
-  add("n0", "b1", Vec3(0, 0.3, 0.3));
-  add("n1", "n0", Vec3(0, 0.1, 0.3));
-  add("tail1", "b0", Vec3(0, 0, -0.1));
-  add("tail2", "tail1", Vec3(0, -0.1, -0.6));
-  add("tail3", "tail2", Vec3(0, -0.75, -0.2));
-  for (const std::string at : {"b0", "b1"}) {
-    for (const double side : {1.0, -1.0}) {
-      const std::string leg = at + (side > 0 ? "Left" : "Right");
-      add(leg + "One", at, Vec3(0.2 * side, -0.05, 0));
-      add(leg + "Two", leg + "One", Vec3(0, -0.9 * thigh, 0.02));
-      add(leg + "Three", leg + "Two", Vec3(0, -0.9 * (1 - thigh), -0.02));
-      add(leg + "Four", leg + "Three", Vec3(0, -0.04, 0.1));
-    }
-  }
-  return skeleton;
-}
-
 // Legs of an animal that bend at the knee to the front and less at the hock to the back.
 inline Skeleton quadrupedWithHocks() {
   Skeleton animal;
@@ -246,20 +201,78 @@ inline Skeleton quadrupedWithHocks() {
   return animal;
 }
 
-// One with all four legs, the trunk and the tail on a joint over the middle of the body.
-inline Skeleton quadrupedOnOneJoint() {
-  const Skeleton animal = quadruped(0.5);
-  const Vec3 middle(0, 1.3, 0.4);
-  const std::vector<Affine> globals = restGlobals(animal);
-  Skeleton other;
-  addJoint(other, "body", "", middle);
-  for (Index j = 0; j < animal.jointCount(); ++j) {
-    const Joint& joint = animal.joints[j];
-    const bool moves = !joint.parent || joint.name.ends_with("One") || joint.name == "tail1";
-    addJoint(other, joint.name, moves ? "body" : animal.joints[*joint.parent].name,
-             moves ? Vec3(globals[j].translation() - middle) : joint.rest.translation);
+// A quadruped with hips at b0, and a trunk, a neck and a tail of so many joints, called spine1 to spineN along both
+// trunk and neck.
+inline Skeleton chainedAnimal(int trunk, int neck, int tail) {
+  const Skeleton simple = quadruped(0.5);
+  Skeleton made;
+  const auto chain = [&](const std::string& stem, int first, int count, std::string parent, const Vec3& way) {
+    for (int i = first; i < first + count; ++i) {
+      addJoint(made, stem + std::to_string(i), parent, way / count);
+      parent = stem + std::to_string(i);
+    }
+    return parent;
+  };
+  made.joints.push_back(simple.joints[0]);
+  const std::string chest = chain("spine", 1, trunk, "b0", Vec3(0, 0, 0.8));
+  const std::string throat = chain("spine", trunk + 1, neck, chest, Vec3(0, 0.3, 0.3));
+  addJoint(made, "Head", throat, Vec3(0, 0.1, 0.1));
+  chain("tail", 1, tail, "b0", Vec3(0, -0.2, -0.7));
+  for (const Joint& joint : simple.joints) {
+    if (!joint.name.ends_with("One") && !joint.name.ends_with("Two") && !joint.name.ends_with("Three")) continue;
+    const std::string parent = simple.joints[joint.parent.value()].name;
+    addJoint(made, joint.name, parent == "b1" ? chest : parent, joint.rest.translation);
   }
-  return other;
+  return made;
+}
+
+// What a flying animal's joints are called, and how many make up its parts.
+struct FlyerBuild {
+  const char *wing, *leg, *spine, *head, *tail;
+  int spineJoints, wingJoints, tailJoints;
+};
+inline constexpr FlyerBuild kGull = {"wing", "leg", "spine", "head", "tail", 4, 5, 3},
+                            kBat = {"Fluegel_Wing", "Hind_leg", "Rumpf", "The Head", "Schwanz", 2, 3, 4},
+                            kNamelessBird = {"a", "b", "c", "d", "e", 4, 4, 3};
+
+// Hips on a root, a trunk forward, wings to the sides at its end, legs down, a tail behind.
+inline Skeleton flyer(const FlyerBuild& build, double degrees = 0) {
+  Skeleton made;
+  addJoint(made, "origin", "", Vec3::Zero());
+  made.joints[0].rest.rotation = turn(Vec3::UnitY(), degrees);
+  addJoint(made, "carrier", "origin", Vec3(0, 0.5, 0));
+  const auto chain = [&](const std::string& stem, int count, std::string parent, const Vec3& first, const Vec3& way) {
+    for (int i = 1; i <= count; ++i) {
+      addJoint(made, stem + std::to_string(i), parent, i == 1 ? first : Vec3(way / (count - 1)));
+      parent = stem + std::to_string(i);
+    }
+    return parent;
+  };
+  const std::string chest = chain(build.spine, build.spineJoints, "carrier", Vec3(0, 0, 0.1), Vec3(0, 0.1, 0.5));
+  addJoint(made, build.head, chest, Vec3(0, 0.1, 0.2));
+  for (const double side : {1.0, -1.0}) {
+    const std::string name = side > 0 ? "L" : "R";
+    chain(build.wing + name, build.wingJoints, chest, Vec3(0.1 * side, 0, 0), Vec3(1.5 * side, 0, -0.2));
+    chain(build.leg + name, 3, "carrier", Vec3(0.1 * side, 0, 0), Vec3(0, -0.45, 0.05));
+  }
+  chain(build.tail, build.tailJoints, "carrier", Vec3(0, 0, -0.1), Vec3(0, 0, -0.5));
+  return made;
+}
+
+// Names of the source's joints in the match that moves that joint of the target.
+inline std::vector<std::string> followedBy(const SkeletonMap& map, const Skeleton& source, const Skeleton& target,
+                                           const std::string& joint) {
+  std::vector<std::string> names;
+  for (const JointMatch& match : map.matches) {
+    if (std::find(match.target.begin(), match.target.end(), target.find(joint)) == match.target.end()) continue;
+    for (const Index each : match.source) names.push_back(source.joints[each].name);
+  }
+  return names;
+}
+
+// The match of a part of that name, none where it is not matched.
+inline const JointMatch* matchOf(const SkeletonMap& map, const std::string& part) {
+  return map.find(bodyPartNamed(part).value());
 }
 
 // Metres that the feet's joints move along the ground once the source's have stood still for a tenth of a second: these
@@ -284,6 +297,24 @@ inline double slidWay(const Skeleton& person, const PoseSequence& motion, const 
   return way;
 }
 
+// The bone that a person's head, eye, limb or finger goes on from.
+inline std::optional<BodyPart> partAbove(const BodyPart& part) {
+  if (part.kind == PartKind::kHead) return body_part::kNeck;
+  if (part.kind == PartKind::kEye || part.kind == PartKind::kJaw) return body_part::kHead;
+  if (part.kind == PartKind::kFinger && part.piece == 0) return body_part::arm(part.side, Segment::kEnd);
+  BodyPart above = part;
+  if (part.kind == PartKind::kFinger) {
+    --above.piece;
+    return above;
+  }
+  const bool begins = part.segment == Segment::kWhole || part.segment == Segment::kBase;
+  if ((part.kind != PartKind::kArm && part.kind != PartKind::kLeg) || begins) return std::nullopt;
+  if (part.kind == PartKind::kLeg && part.segment == Segment::kUpper) return body_part::kPelvis;
+  const int before = static_cast<int>(part.segment) - (part.segment == Segment::kEnd ? 2 : 1);  // people have no hocks
+  above.segment = static_cast<Segment>(before);
+  return above;
+}
+
 // The largest angle, in degrees, between the directions in which the parts of both point, over all frames.
 inline double worstDirection(const RetargetSetup& setup, const PoseSequence& source, const PoseSequence& target) {
   double worst = 0;
@@ -292,7 +323,7 @@ inline double worstDirection(const RetargetSetup& setup, const PoseSequence& sou
     setup.sourceKinematics.globals(source.poses[f], a);
     setup.targetKinematics.globals(target.poses[f], b);
     for (const JointMatch& match : setup.map.matches) {
-      const auto above = humanoidParent(match.part);
+      const auto above = partAbove(match.part);
       const JointMatch* parent = above ? setup.map.find(*above) : nullptr;
       if (!parent) continue;
       const Vec3 from = a.positions[match.source.front()] - a.positions[parent->source.front()];

@@ -8,6 +8,7 @@
 #include "limber/asset/write.h"
 #include "limber/core/error.h"
 #include "limber/matching/testing/test_motion.h"
+#include "limber/retarget/retarget_clip.h"
 #include "limber/session/rigged_model.h"
 #include "limber/surface/testing/shape_meshes.h"
 

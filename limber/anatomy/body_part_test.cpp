@@ -1,0 +1,82 @@
+#include "limber/anatomy/body_part.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "limber/skeleton/humanoid_names.h"
+
+namespace limber {
+namespace {
+
+std::vector<BodyPart> everyPart() {
+  std::vector<BodyPart> parts;
+  for (std::size_t k = 0; k < kPartKinds; ++k) {
+    const auto kind = static_cast<PartKind>(k);
+    if (kind == PartKind::kOther) continue;
+    const bool limb = kind == PartKind::kLeg || kind == PartKind::kArm;
+    for (const Side side : {Side::kCenter, Side::kLeft, Side::kRight}) {
+      for (int segment = 0; segment < 7; ++segment) {
+        if (segment > 0 && !limb && !(kind == PartKind::kTrunk && segment == 1)) continue;
+        for (Index pair = 0; pair < 8; ++pair) {
+          for (Index piece = 0; piece < 12; ++piece)
+            parts.push_back({kind, side, pair, static_cast<Segment>(segment), piece});
+        }
+      }
+    }
+  }
+  return parts;
+}
+
+TEST(BodyPart, EveryNameIsOfOnePart) {
+  std::set<std::string> names;
+  for (const BodyPart& part : everyPart()) EXPECT_TRUE(names.insert(nameOf(part)).second) << nameOf(part);
+}
+
+TEST(BodyPart, NamesRoundTrip) {
+  for (const BodyPart& part : everyPart()) {
+    const std::optional<BodyPart> read = bodyPartNamed(nameOf(part));
+    EXPECT_TRUE(read && *read == part) << nameOf(part);
+  }
+}
+
+TEST(BodyPart, PeoplesAreThoseOfVrm) {
+  EXPECT_EQ(nameOf(body_part::kPelvis), "hips");
+  EXPECT_EQ(nameOf(body_part::kTrunk), "trunk");
+  EXPECT_EQ(nameOf(body_part::arm(Side::kLeft, Segment::kBase)), "leftShoulder");
+  EXPECT_EQ(nameOf(body_part::leg(Side::kRight, Segment::kToes)), "rightToes");
+  EXPECT_EQ(nameOf(body_part::leg(Side::kLeft, Segment::kUpper, 1)), "leftUpperLeg2");
+  EXPECT_EQ(nameOf({PartKind::kWing, Side::kRight, 0, Segment::kWhole, 2}), "rightWingPiece3");
+  for (const std::string_view bone : humanoidBones()) {
+    if (bone == "spine" || bone == "chest" || bone == "upperChest") continue;  // joints of the trunk
+    const std::optional<BodyPart> part = bodyPartNamed(bone);
+    ASSERT_TRUE(part) << bone;
+    EXPECT_EQ(nameOf(*part), bone);
+  }
+}
+
+TEST(BodyPart, OtherNamesAreNone) {
+  for (const char* name : {"", "left", "Hips", "LeftFoot", "leftUpperLeg1", "leftUpperLeg02", "leftUpperLegPiece1",
+                           "leftUpperLegPiece", "tailPiece0", "spine", "other", "leftOther", "upper", "Piece2", "2",
+                           "leftUpperLeg99999999999999999999", "leftUpperLegPiece99999999999999999999", "tail 2"}) {
+    EXPECT_FALSE(bodyPartNamed(name)) << name;
+  }
+}
+
+TEST(BodyPart, KindsAndSidesHaveNames) {
+  for (std::size_t k = 0; k < kPartKinds; ++k) {
+    const auto kind = static_cast<PartKind>(k);
+    EXPECT_EQ(partKindNamed(nameOf(kind)), kind);
+  }
+  for (const Side side : {Side::kCenter, Side::kLeft, Side::kRight}) {
+    EXPECT_EQ(sideNamed(nameOf(side)), side);
+    EXPECT_EQ(opposite(opposite(side)), side);
+  }
+  EXPECT_FALSE(partKindNamed("legs"));
+  EXPECT_FALSE(sideNamed(""));
+}
+
+}  // namespace
+}  // namespace limber

@@ -1,0 +1,60 @@
+#include "limber/anatomy/body_reading.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "limber/core/error.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kMostOutOfPlane = 0.5;  // cosine between up and the lateral axis: 60 degrees off
+
+std::vector<Vec3> placesOf(const Skeleton& skeleton, const Pose& pose) {
+  std::vector<Vec3> positions;
+  for (const Affine& global : poseGlobals(skeleton, pose)) positions.push_back(global.translation());
+  for (Index j = 0; j < positions.size(); ++j) {
+    if (positions[j].allFinite() && positions[j].cwiseAbs().maxCoeff() < 1e100) continue;
+    throw Error(ErrorCode::kBadData, "lies nowhere: its place is not a finite number", skeleton.joints[j].name);
+  }
+  return positions;
+}
+
+std::vector<Axes> guessesFor(const Vec3& lateral) {
+  std::vector<Axes> guesses;
+  for (const double sign : {1.0, -1.0}) {
+    for (const Eigen::Index axis : {1, 2, 0}) {
+      Vec3 up = sign * Vec3::Unit(axis);
+      if (std::abs(up.dot(lateral)) > kMostOutOfPlane) continue;
+      up = (up - up.dot(lateral) * lateral).normalized();
+      for (const double left : {1.0, -1.0}) guesses.push_back({up, (left * lateral).cross(up)});
+    }
+  }
+  return guesses;
+}
+
+}  // namespace
+
+BodyReading::BodyReading(const Skeleton& skeleton, const Pose& pose, bool names)
+    : positions(placesOf(skeleton, pose)),
+      tree(withLooseFeetJoined(skeleton, positions, Vec3::UnitY())),
+      body(foldBody(tree, positions, names ? partnersByName(skeleton) : std::vector<std::optional<NamedPartner>>())),
+      measures(skeleton, body, names),
+      guesses(guessesFor(body.lateral)) {
+  if (body.sidesByName) std::erase_if(guesses, [&](const Axes& guess) { return guess.left().dot(body.lateral) < 0; });
+  if (body.hasPairs) return;
+  const std::vector<Axes> across = guessesFor(Vec3::UnitZ());
+  guesses.insert(guesses.end(), across.begin(), across.end());
+}
+
+double axesScore(const BodyMeasures& measures, const Axes& guess, const PartField& field, const PartWeights& weights) {
+  double score = kAxesByLabels * field.logSum();
+  for (const ActiveFeature& feature : measures.axesFeatures(guess)) {
+    score += static_cast<double>(feature.value * weights.axes[feature.number]);
+  }
+  return score;
+}
+
+}  // namespace limber

@@ -1,0 +1,31 @@
+// What is made of a skeleton before its parts are told: the fold, its measures and the guesses of its axes. Internal to
+// the module; the tool that fits the weights uses it, too.
+#pragma once
+
+#include <vector>
+
+#include "limber/anatomy/part_field.h"
+
+namespace limber {
+
+// The skeleton and what it is made of must outlive this; it stays where it was made.
+struct BodyReading {
+  BodyReading(const Skeleton& skeleton, const Pose& pose, bool names);
+  BodyReading(const BodyReading&) = delete;
+  BodyReading& operator=(const BodyReading&) = delete;
+
+  std::vector<Vec3> positions;  // #J
+  JointTree tree;
+  HalfBody body;
+  BodyMeasures measures;
+  std::vector<Axes> guesses;  // left or right along the fold's lateral, up along any axis that lies in its plane
+};
+
+// How much all labellings under a guess say for it: their scores count each joint as if it were independent of the
+// others, which makes them too sure of the axes. Fitted by leaving skeletons out (tools/fit_anatomy.cpp --folds).
+inline constexpr double kAxesByLabels = 0.3;
+
+// Logarithm of a guess's probability, but for a constant: by its labellings, names for sides and the habits of files.
+double axesScore(const BodyMeasures& measures, const Axes& guess, const PartField& field, const PartWeights& weights);
+
+}  // namespace limber

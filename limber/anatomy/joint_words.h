@@ -1,0 +1,40 @@
+// What the words in a joint's name say of the body, by themselves. Internal to the module.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "limber/anatomy/anatomy.h"
+#include "limber/anatomy/half_body.h"
+
+namespace limber {
+
+// Words with one meaning share a number; 0 is no word that is known. kJointWords numbers in all.
+inline constexpr std::size_t kJointWords = 45;
+
+enum class NameMark { kFront, kHind, kEnd, kHelper, kTwist, kNumbered };
+inline constexpr std::size_t kNameMarks = 6;
+
+struct JointWords {
+  std::size_t word = 0;
+  Side side = Side::kCenter;
+  std::array<bool, kNameMarks> marks{};
+
+  bool has(NameMark mark) const { return marks[static_cast<std::size_t>(mark)]; }
+};
+
+JointWords readJointWords(std::string_view name);
+
+// Whether the name is one of the pelvis.
+bool saysHips(std::string_view name);
+
+// #J partners by names that differ in the side alone ("arm.L", "arm.R"), each of one joint at most.
+std::vector<std::optional<NamedPartner>> partnersByName(const Skeleton& skeleton);
+
+// 0 thumb to 4 little finger; none for other words.
+std::optional<Index> fingerOfWord(std::size_t word);
+
+}  // namespace limber
