@@ -8,6 +8,7 @@
 #include "limber/asset/json_text.h"
 #include "limber/asset/read.h"
 #include "limber/core/file.h"
+#include "limber/evaluate/anatomy_table.h"
 #include "limber/evaluate/ik_evaluation.h"
 #include "limber/evaluate/ik_page.h"
 #include "limber/evaluate/rig_table.h"
@@ -244,6 +245,39 @@ void addSkinning(CLI::App& evaluate) {
   command->callback([options] { runSkinning(*options); });
 }
 
+struct AnatomyFiles {
+  std::string labels, data, output = "-";
+  Common common;
+};
+
+void runAnatomy(const AnatomyFiles& options) {
+  options.common.apply();
+  const Bytes labels = readFile(options.labels);
+  TerminalProgress progress(options.common.quiet);
+  progress->stage("read");
+  Warnings skipped;
+  const std::vector<LabelledSkeleton> bodies =
+      labelledSkeletons({reinterpret_cast<const char*>(labels.data()), labels.size()}, options.data, skipped);
+  const std::string page = anatomyPage(bodies, *progress);
+  progress.finish();
+  printWarnings(skipped, options.common.quiet);
+  writeText(options.output, page);
+}
+
+void addAnatomy(CLI::App& evaluate) {
+  auto options = std::make_shared<AnatomyFiles>();
+  CLI::App* command =
+      evaluate.add_subcommand("anatomy", "Read the bodies of labelled skeletons and compare with the labels");
+  command->add_option("LABELS", options->labels, "labels made by hand, such as docs/data/body_labels.json")->required();
+  command->add_option("FOLDER", options->data, "where the labelled files are")->required();
+  command->add_option("-o,--output", options->output, "the tables to write, in Markdown; - is standard output")
+      ->type_name("FILE")
+      ->capture_default_str();
+  options->common.addTo(*command);
+  command->footer("Example:\n  limber evaluate anatomy docs/data/body_labels.json ../shared/data -o anatomy.md");
+  command->callback([options] { runAnatomy(*options); });
+}
+
 }  // namespace
 
 void addEvaluateCommand(CLI::App& program) {
@@ -253,6 +287,7 @@ void addEvaluateCommand(CLI::App& program) {
   evaluate->footer("Example:\n  limber evaluate weights result.glb truth.glb");
   addWeights(*evaluate);
   addRig(*evaluate);
+  addAnatomy(*evaluate);
   addRiggers(*evaluate);
   addSkinning(*evaluate);
   addIk(*evaluate);

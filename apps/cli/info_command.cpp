@@ -30,6 +30,33 @@ Json weightsJson(const SkinWeightInfo& weights) {
           {"most_influences", weights.mostInfluences}};
 }
 
+Json anatomyJson(const Anatomy& anatomy, const std::vector<std::string>& names) {
+  Json parts = Json::array();
+  for (const Part& part : anatomy.parts) {
+    Json entry = {{"kind", nameOf(part.kind)}, {"side", nameOf(part.side)}, {"pair", part.pair}};
+    Json joints = Json::array(), branches = Json::array();
+    for (const Index joint : part.joints) joints.push_back(names[joint]);
+    for (const Index joint : part.branches) branches.push_back(names[joint]);
+    entry["joints"] = std::move(joints);
+    if (!branches.empty()) entry["branches"] = std::move(branches);
+    const auto landmark = [&](const char* name, const std::optional<Index>& joint) {
+      if (joint) entry[name] = names[*joint];
+    };
+    landmark("upper", part.upper);
+    landmark("middle", part.middle);
+    landmark("hock", part.hock);
+    landmark("end", part.end);
+    landmark("toes", part.toes);
+    if (part.carrier) entry["carrier"] = *part.carrier;
+    entry["confidence"] = part.confidence;
+    entry["evidence"] = nameOf(part.evidence);
+    parts.push_back(std::move(entry));
+  }
+  return {{"up", vectorJson(anatomy.axes.up)}, {"front", vectorJson(anatomy.axes.front)},
+          {"ground", anatomy.ground},          {"size", anatomy.size},
+          {"confidence", anatomy.confidence},  {"parts", std::move(parts)}};
+}
+
 Json infoJson(const std::string& file, const AssetInfo& info) {
   Json json = {{"file", file},
                {"format", info.format},
@@ -56,6 +83,7 @@ Json infoJson(const std::string& file, const AssetInfo& info) {
   json["skins"] = info.skins;
   json["joints"] = info.joints.size();
   json["joint_names"] = info.joints;
+  json["anatomy"] = info.anatomy ? anatomyJson(*info.anatomy, info.joints) : Json();
   json["weights"] = info.weights ? weightsJson(*info.weights) : Json();
   json["clips"] = Json::array();
   for (const ClipInfo& clip : info.clips) {
@@ -88,9 +116,32 @@ void printSurface(const AssetInfo& info) {
                                  size.z(), info.bounds.min.x(), info.bounds.min.y(), info.bounds.min.z()));
 }
 
+std::string axisName(const Vec3& direction) {
+  Eigen::Index axis = 0;
+  direction.cwiseAbs().maxCoeff(&axis);
+  return fmt::format("{}{}", direction[axis] < 0 ? '-' : '+', "XYZ"[axis]);
+}
+
+// One line a part: what it is, how sure that is, and its joints.
+void printAnatomy(const Anatomy& anatomy, const std::vector<std::string>& names) {
+  if (anatomy.parts.empty()) return printField("body", "none is seen in the joints");
+  printField("body", fmt::format("up {}, front {}, {:.0f} % sure", axisName(anatomy.axes.up),
+                                 axisName(anatomy.axes.front), 100 * anatomy.confidence));
+  for (const Part& part : anatomy.parts) {
+    std::vector<std::string> joints;
+    for (const Index joint : part.joints) joints.push_back(names[joint]);
+    const std::string side = part.side == Side::kCenter ? "" : fmt::format("{} ", nameOf(part.side));
+    const std::string number = part.pair > 0 ? fmt::format(" {}", part.pair + 1) : "";
+    const std::string more = part.branches.empty() ? "" : fmt::format(", and {} beside", part.branches.size());
+    printField("", fmt::format("{}{}{} ({:.0f} %): {}{}", side, nameOf(part.kind), number, 100 * part.confidence,
+                               joinNames(joints), more));
+  }
+}
+
 void printRig(const AssetInfo& info) {
   printField("joints", fmt::to_string(info.joints.size()));
   if (!info.joints.empty()) printField("", joinNames(info.joints));
+  if (info.anatomy) printAnatomy(*info.anatomy, info.joints);
   if (!info.weights) return;
   const SkinWeightInfo& weights = *info.weights;
   printField("skin weights",

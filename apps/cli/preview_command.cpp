@@ -115,12 +115,13 @@ void run(PreviewArguments options) {
 
 void addPreviewCommand(CLI::App& program) {
   auto options = std::make_shared<PreviewArguments>();
-  CLI::App* command = program.add_subcommand("preview", "Draw a picture of a model, its handles, bones or weights");
+  CLI::App* command =
+      program.add_subcommand("preview", "Draw a picture of a model, its handles, bones, weights or anatomy");
   command->add_option("FILE", options->input, "the model; - is standard input")->required();
   command->add_option("-o,--output", options->output, "the .png to write; - is standard output")
       ->required()
       ->type_name("FILE");
-  command->add_option("--show", options->show, "model, handles, weights or bones")
+  command->add_option("--show", options->show, "model, handles, weights, bones or anatomy")
       ->type_name("WHAT")
       ->capture_default_str();
   command->add_option("--view", options->view, "front, side, back, top, three-quarter, or azimuth,elevation in degrees")

@@ -151,6 +151,7 @@ AssetInfo inspectAsset(const Asset& asset) {
   if (elementCount(asset, "skins") > 0) {  // a motion has a skin that no mesh wears
     const AssetSkeleton skeleton = readSkeleton(asset);
     for (const Joint& joint : skeleton.skeleton.joints) info.joints.push_back(joint.name);
+    info.anatomy = readAnatomy(skeleton.skeleton);
     if (hasRig(asset)) info.weights = inspectWeights(readWeights(asset, geometry, skeleton));
   }
   return info;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "limber/anatomy/anatomy.h"
 #include "limber/asset/asset.h"
 #include "limber/core/types.h"
 
@@ -41,6 +42,7 @@ struct AssetInfo {
   Box bounds;                          // of the scene, metres
   Index nodes = 0, meshes = 0, primitives = 0, materials = 0, textures = 0, images = 0, skins = 0;
   std::vector<std::string> joints;
+  std::optional<Anatomy> anatomy;         // of its skeleton, in rest pose; none without one
   std::optional<SkinWeightInfo> weights;  // none without a skin
   std::vector<ClipInfo> clips;
   std::vector<std::string> extensions;  // used ones

@@ -83,6 +83,15 @@ void addBones(ShapeMesh& shapes, const Scene& scene, double size) {
   for (const SceneJoint& joint : scene.joints) addSphere(shapes, joint.position, kDotRadius * size, dot);
 }
 
+void addAnatomy(ShapeMesh& shapes, const Scene& scene, double size) {
+  for (const Bone& segment : scene.bones) {
+    const SceneJoint& joint = scene.joints[segment.joint];
+    addOctahedralBone(shapes, segment.a, segment.b, partColor(joint.kind, joint.side));
+  }
+  for (const SceneJoint& joint : scene.joints)
+    addSphere(shapes, joint.position, kDotRadius * size, partColor(joint.kind, joint.side));
+}
+
 }  // namespace
 
 std::vector<Vec3f> surfaceColors(const Scene& scene, const PreviewOptions& options) {
@@ -113,6 +122,9 @@ ShapeMesh overlayShapes(const Scene& scene, const PreviewOptions& options) {
   } else if (options.show == PreviewShow::kBones) {
     requireJoints(scene);
     addBones(shapes, scene, size);
+  } else if (options.show == PreviewShow::kAnatomy) {
+    requireJoints(scene);
+    addAnatomy(shapes, scene, size);
   }
   return shapes;
 }

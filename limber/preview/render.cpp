@@ -121,7 +121,8 @@ Painter::Painter(const Scene& scene, const PreviewOptions& options)
     seeThrough_ = std::any_of(scene.materials.begin(), scene.materials.end(),
                               [](const SceneMaterial& material) { return !material.isOpaque; });
   }
-  translucent_ = options.show == PreviewShow::kHandles || options.show == PreviewShow::kBones;
+  translucent_ = options.show == PreviewShow::kHandles || options.show == PreviewShow::kBones ||
+                 options.show == PreviewShow::kAnatomy;
   Box box;
   for (const Vec3f& p : scene.positions) box.add(p.cast<double>());
   groundMiddle_ = box.center();
@@ -338,8 +339,9 @@ PreviewShow parsePreviewShow(std::string_view name) {
   if (name == "handles") return PreviewShow::kHandles;
   if (name == "weights") return PreviewShow::kWeights;
   if (name == "bones") return PreviewShow::kBones;
+  if (name == "anatomy") return PreviewShow::kAnatomy;
   throw Error(ErrorCode::kBadArgument, "there is no picture of \"" + std::string(name) + "\"", "",
-              "use model, handles, weights or bones");
+              "use model, handles, weights, bones or anatomy");
 }
 
 Image render(const Scene& scene, const PreviewOptions& options) {

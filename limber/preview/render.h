@@ -17,9 +17,10 @@ enum class PreviewShow {
   kHandles,  // the model translucent, a sphere at each joint
   kWeights,  // each vertex in the colours of its joints
   kBones,    // the model translucent, its bones inside
+  kAnatomy,  // likewise, in the colours of the parts of the body
 };
 
-// "model", "handles", "weights", "bones". Throws Error kBadArgument that lists them.
+// "model", "handles", "weights", "bones", "anatomy". Throws Error kBadArgument that lists them.
 PreviewShow parsePreviewShow(std::string_view name);
 
 struct PreviewOptions {

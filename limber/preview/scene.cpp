@@ -61,9 +61,14 @@ void addSkeleton(const Skeleton& skeleton, const Pose& pose, Scene& scene) {
   for (Index j = 0; j < posed.jointCount(); ++j) posed.joints[j].rest = pose.locals[j];
   posed.boneShape = BoneShape::kSegment;
   const std::vector<Affine> globals = restGlobals(posed);
+  const Anatomy anatomy = readAnatomy(skeleton);
   for (Index j = 0; j < posed.jointCount(); ++j) {
     const Joint& joint = posed.joints[j];
-    scene.joints.push_back({joint.name, globals[j].translation(), joint.parent, joint.radius});
+    SceneJoint& shown =
+        scene.joints.emplace_back(SceneJoint{joint.name, globals[j].translation(), joint.parent, joint.radius});
+    if (!anatomy.partOf[j]) continue;
+    shown.kind = anatomy.parts[*anatomy.partOf[j]].kind;
+    shown.side = anatomy.parts[*anatomy.partOf[j]].side;
   }
   scene.bones = bonesOf(posed);
 }

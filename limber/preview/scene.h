@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "limber/anatomy/anatomy.h"
 #include "limber/core/error.h"
 #include "limber/preview/texture.h"
 #include "limber/skeleton/skin_weights.h"
@@ -19,7 +20,9 @@ struct SceneJoint {
   std::string name;
   Vec3 position = Vec3::Zero();
   std::optional<Index> parent;
-  double radius = 0;  // of the handle; 0 where the skeleton has none
+  double radius = 0;                 // of the handle; 0 where the skeleton has none
+  PartKind kind = PartKind::kOther;  // of the body, as the skeleton is read at rest (readAnatomy)
+  Side side = Side::kCenter;
 };
 
 // What a colour at each vertex cannot say of a surface.
