@@ -2,7 +2,6 @@
 
 #include <gmock/gmock.h>
 
-#include <chrono>
 #include <string>
 
 #include "limber/anatomy/testing/bodies.h"
@@ -16,10 +15,6 @@ using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
 using Parents = std::vector<std::optional<Index>>;
-
-double secondsSince(std::chrono::steady_clock::time_point begin) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
 
 // 0 with 1 and 4; 1 with 2 and 3; 5 a root of its own.
 JointTree smallTree() {
@@ -91,18 +86,16 @@ TEST(JointTree, CyclesAndMissingParentsAreRefused) {
   EXPECT_EQ(refusal({}), "");
 }
 
-TEST(JointTree, DeepTreesTakeBoundedTime) {
+TEST(JointTree, DeepTreesAreWalked) {
   constexpr Index kDeep = 8000;
   Parents parents(kDeep);
   for (Index j = 1; j < kDeep; ++j) parents[j] = j - 1;
-  const auto begin = std::chrono::steady_clock::now();
   const JointTree tree(parents);
   EXPECT_EQ(tree.depth(kDeep - 1), kDeep - 1);
   EXPECT_EQ(tree.subtree(0).size(), kDeep);
   EXPECT_EQ(tree.meeting(kDeep - 1, kDeep / 2), kDeep / 2);
   EXPECT_EQ(tree.pathBelow(0, kDeep - 1).size(), kDeep - 1);
   for (Index j = 0; j < kDeep; ++j) EXPECT_TRUE(tree.isAboveOrSelf(j / 2, j));
-  EXPECT_LT(secondsSince(begin), 1);
 }
 
 // With loose feet joined.
@@ -183,8 +176,8 @@ TEST(LooseFeet, NoLegHangsOnItself) {
   for (Index j = 0; j < skeleton.jointCount(); ++j) EXPECT_EQ(parents[j], skeleton.joints[j].parent);
 }
 
-// 8000 joints on the ground, each on a root of its own: no foot, and no time lost.
-TEST(LooseFeet, ManyRootsTakeBoundedTime) {
+// 8000 joints on the ground, each on a root of its own: no foot.
+TEST(LooseFeet, ManyRootsStayLoose) {
   Skeleton skeleton;
   for (int i = 0; i < 8000; ++i) {
     Joint& joint = skeleton.joints.emplace_back();
@@ -192,9 +185,7 @@ TEST(LooseFeet, ManyRootsTakeBoundedTime) {
     joint.rest.translation = Vec3(0.01 * i, 0, 0);
   }
   skeleton.joints[0].rest.translation.y() = 1;
-  const auto begin = std::chrono::steady_clock::now();
-  EXPECT_EQ(joined(skeleton).size(), 8000u);
-  EXPECT_LT(secondsSince(begin), 1);
+  EXPECT_EQ(joined(skeleton), Parents(8000));
 }
 
 }  // namespace
