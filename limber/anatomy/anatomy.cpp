@@ -21,10 +21,9 @@ constexpr std::array<std::string_view, kPartKinds> kKindNames = {"trunk", "neck"
 // fewer.
 constexpr double kAllFingers = 0.95, kSomeFingers = 0.7;
 
-// One guess of the axes, read.
+// The best guess of the axes, read.
 struct Guess {
   Axes axes;
-  double logSum = 0;  // of all labellings under it
   std::vector<PartState> states;
   std::vector<PartField::Scores> marginals;
 };
@@ -557,7 +556,7 @@ Anatomy readAnatomy(const Skeleton& skeleton, const Pose& pose, const AnatomyOpt
   }
   const BodyMeasures::Table table = reading.measures.features(axes);
   const PartField field(reading.body, table, weights, allowed);
-  const Guess guess{axes, scores[best], field.best(), field.marginals()};
+  const Guess guess{axes, field.best(), field.marginals()};
 
   anatomy.axes = axes;
   anatomy.confidence = 1 / all;

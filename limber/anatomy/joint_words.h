@@ -1,4 +1,4 @@
-// What the words in a joint's name say of the body, by themselves. Internal to the module.
+// What the words in a joint's name say of the body, by themselves.
 #pragma once
 
 #include <array>

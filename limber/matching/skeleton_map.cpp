@@ -348,7 +348,7 @@ class Matcher {
     const auto named =
         static_cast<std::size_t>(std::count_if(map_.matches.begin(), map_.matches.end(),
                                                [](const JointMatch& match) { return match.by == MatchedBy::kName; }));
-    const bool mostlyNamed = named >= 3 && 2 * named >= std::min(source_.jointCount(), target_.jointCount());
+    const bool mostlyNamed = named >= kFewNamed && 2 * named >= std::min(source_.jointCount(), target_.jointCount());
     const bool hasForm = map_.matches.size() >= (named > 0 ? kFewNamed : kFewByForm);
     return map_.find(body_part::kPelvis) && (mostlyNamed || ((limbs || both(PartKind::kTail)) && hasForm)) &&
            standAlike;
