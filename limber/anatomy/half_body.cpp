@@ -155,16 +155,14 @@ class Folder {
     Index a = 0, b = 0;
   };
 
-  // The best first, each joint once. `between` is true where a is of one list and b of the other.
-  std::vector<Pair> pairsOf(std::span<const Index> some, std::span<const Index> others, const Vec3& from,
-                            double plane) const {
+  // The best first, each joint once. `costOf` two joints: none where they cannot be partners.
+  std::vector<Pair> pairsOf(std::span<const Index> some, std::span<const Index> others, const auto& costOf) const {
     std::vector<Pair> all, chosen;
     if (!pairs_) return chosen;
-    const bool between = some.data() != others.data();
     for (const Index a : compared(some)) {
       for (const Index b : compared(others)) {
         if (a == b) continue;
-        const std::optional<double> cost = between ? limbCost(a, b, from, plane) : pairCost(a, b, from, plane);
+        const std::optional<double> cost = costOf(a, b);
         if (cost) all.push_back({*cost, a, b});
       }
     }
@@ -180,7 +178,7 @@ class Folder {
   }
 
   // Of what hangs on two partners: which side is which is known, and poses may turn it anywhere.
-  std::optional<double> limbCost(Index a, Index b, const Vec3&, double plane) const {
+  std::optional<double> limbCost(Index a, Index b, double plane) const {
     const double unlike = areNamed(a, b) ? kNamedCost * unlikeness(a, b) : unlikeness(a, b);
     if (unlike > 2 * kMostUnlike) return std::nullopt;
     const double reach = length_[a] + length_[b] + 0.05 * size_;
@@ -231,7 +229,8 @@ class Folder {
                      std::vector<Open>& open) {
     std::vector<bool> used(tree_.size(), false);
     const Vec3 from = parent ? body_.joints[*parent].at : Vec3(plane * body_.lateral);
-    for (const Pair& pair : pairsOf(children, children, from, plane)) {
+    const auto costOf = [&](Index a, Index b) { return pairCost(a, b, from, plane); };
+    for (const Pair& pair : pairsOf(children, children, costOf)) {
       used[pair.a] = used[pair.b] = true;
       open.push_back({add(pair.a, pair.b, HalfKind::kPair, parent, plane), plane});
       count(pair, parent ? std::optional(body_.joints[*parent].joint) : std::nullopt);
@@ -250,7 +249,8 @@ class Folder {
     std::vector<bool> used(tree_.size(), false);
     const std::vector<Index> left = withoutExtra(half.joint, *half.partner, at, open),
                              right = withoutExtra(*half.partner, half.joint, at, open);
-    for (const Pair& pair : pairsOf(left, right, half.at, at.plane)) {
+    const auto costOf = [&](Index a, Index b) { return limbCost(a, b, at.plane); };
+    for (const Pair& pair : pairsOf(left, right, costOf)) {
       used[pair.a] = used[pair.b] = true;
       open.push_back({add(pair.a, pair.b, HalfKind::kPair, at.half, at.plane), at.plane});
       count(pair, half.joint);
