@@ -14,6 +14,7 @@
 
 #include <fmt/format.h>
 
+#include "limber/anatomy/humanoid_joints.h"
 #include "limber/asset/geometry.h"
 #include "limber/asset/read.h"
 #include "limber/asset/rig_io.h"
@@ -21,7 +22,6 @@
 #include "limber/evaluate/skinned_model.h"
 #include "limber/mesh/prepare.h"
 #include "limber/rigging/template_rigger.h"
-#include "limber/skeleton/humanoid_names.h"
 #include "limber/templates/humanoid_landmarks.h"
 #include "limber/templates/joints_between.h"
 
@@ -71,11 +71,10 @@ Character readCharacter(const std::filesystem::path& file) {
   character.body = measureBody(prepared.mesh);
   character.fit = fitTemplate(findTemplate("humanoid"), prepared.mesh, character.body, {});
   const std::vector<Affine> globals = restGlobals(skeleton);
-  for (const HumanoidJoint& named : humanoidJointsByName(skeleton)) {
+  for (const HumanoidJoint& named : humanoidJoints(skeleton)) {
     const std::optional<Index> joint = character.fit.skeleton.find(named.bone);
     if (!joint || named.bone == "upperChest" || named.bone.find("Shoulder") != std::string_view::npos) continue;
-    const Index source = named.bone == "hips" ? pelvisByName(skeleton).value_or(named.joint) : named.joint;
-    const Vec3 place = prepared.frame.toWorking(globals[source].translation());
+    const Vec3 place = prepared.frame.toWorking(globals[named.joint].translation());
     character.truth.emplace_back(*joint, character.fit.frame.toBody(place));
   }
   return character;

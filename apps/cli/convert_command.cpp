@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "command.h"
+#include "limber/anatomy/skeleton_mirror.h"
 #include "limber/asset/bvh_write.h"
 #include "limber/asset/clip_io.h"
 #include "limber/asset/motion_io.h"
@@ -14,7 +15,6 @@
 #include "limber/core/counted.h"
 #include "limber/core/names.h"
 #include "limber/skeleton/clip_edit.h"
-#include "limber/skeleton/mirror_clip.h"
 #include "progress_line.h"
 
 namespace limber::cli {
@@ -96,7 +96,7 @@ std::vector<Clip> chosenClips(std::vector<Clip> clips, const std::vector<std::st
 
 // What the options do to each clip, in this order: loop, trim, mirror, fps.
 void edit(Motion& motion, const ConvertArguments& options, const Account& account) {
-  const SkeletonMirror mirror = options.mirror ? findMirror(motion.skeleton) : SkeletonMirror{};
+  const SkeletonMirror mirror = options.mirror ? mirrorOf(motion.skeleton) : SkeletonMirror{};
   for (Clip& clip : motion.clips) {
     if (options.loop) {
       const std::optional<ClipLoop> loop = findLoop(motion.skeleton, clip);

@@ -176,6 +176,8 @@ void addOptions(CLI::App& command, const std::shared_ptr<RetargetArguments>& opt
   command.add_option("--map", options->mapFile, "which joints follow which, in JSON (docs/skeleton_map.schema.json)")
       ->type_name("FILE");
   command.add_option("--save-map", options->saveMapFile, "write that map, to correct and use again")->type_name("FILE");
+  command.add_flag("--unlike-bodies", options->retarget.unlikeBodies,
+                   "let limbs without a partner follow others from front to back: forelegs or wings follow arms");
   command.add_option("--frame-rate", options->frameRate, "frames a second of the clips (default: each motion's own)")
       ->check(numberIn(1, 1000))
       ->type_name("N");

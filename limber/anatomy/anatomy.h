@@ -32,7 +32,7 @@ enum class PartKind {
 };
 enum class Side { kCenter, kLeft, kRight };  // the body's own
 
-inline constexpr std::size_t kPartKinds = 15;
+inline constexpr std::size_t kPartKinds = 15;  // of PartKind
 
 std::string_view nameOf(PartKind kind);  // "leg"
 std::string_view nameOf(Side side);      // "left"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "limber/skeleton/humanoid_names.h"
+#include "limber/skeleton/humanoid_bones.h"
 
 namespace limber {
 namespace {

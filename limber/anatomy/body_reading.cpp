@@ -12,9 +12,8 @@ namespace {
 
 constexpr double kMostOutOfPlane = 0.5;  // cosine between up and the lateral axis: 60 degrees off
 
-std::vector<Vec3> placesOf(const Skeleton& skeleton, const Pose& pose) {
-  std::vector<Vec3> positions;
-  for (const Affine& global : poseGlobals(skeleton, pose)) positions.push_back(global.translation());
+std::vector<Vec3> finitePositions(const Skeleton& skeleton, const Pose& pose) {
+  std::vector<Vec3> positions = posePositions(skeleton, pose);
   for (Index j = 0; j < positions.size(); ++j) {
     if (positions[j].allFinite() && positions[j].cwiseAbs().maxCoeff() < 1e100) continue;
     throw Error(ErrorCode::kBadData, "lies nowhere: its place is not a finite number", skeleton.joints[j].name);
@@ -37,8 +36,10 @@ std::vector<Axes> guessesFor(const Vec3& lateral) {
 
 }  // namespace
 
-BodyReading::BodyReading(const Skeleton& skeleton, const Pose& pose, bool names)
-    : positions(placesOf(skeleton, pose)),
+BodyReading::BodyReading(const Skeleton& read, const Pose& pose, bool names)
+    : skeleton(read),
+      named(names),
+      positions(finitePositions(skeleton, pose)),
       tree(withLooseFeetJoined(skeleton, positions, Vec3::UnitY())),
       body(foldBody(tree, positions, names ? partnersByName(skeleton) : std::vector<std::optional<NamedPartner>>())),
       measures(skeleton, body, names),

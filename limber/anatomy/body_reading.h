@@ -10,10 +10,12 @@ namespace limber {
 
 // The skeleton and what it is made of must outlive this; it stays where it was made.
 struct BodyReading {
-  BodyReading(const Skeleton& skeleton, const Pose& pose, bool names);
+  BodyReading(const Skeleton& read, const Pose& pose, bool names);
   BodyReading(const BodyReading&) = delete;
   BodyReading& operator=(const BodyReading&) = delete;
 
+  const Skeleton& skeleton;
+  bool named = true;            // names have a say
   std::vector<Vec3> positions;  // #J
   JointTree tree;
   HalfBody body;

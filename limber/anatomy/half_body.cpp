@@ -16,8 +16,8 @@ constexpr double kLeastAcross = 1e-3;      // of the body's size: joints nearer 
 // Costs of a pair, each 0 for mirror images: lengths and counts as shares of the greater, places in lengths of what
 // hangs there. A limb turned by 90 degrees about where it begins costs about 0.7.
 constexpr double kMostUnlike = 0.35;  // share of length, and of joints
-constexpr double kMostCost = 1.2;
-constexpr double kNamedCost = 0.1;  // of partners by name that are not alike at all
+constexpr double kMostCost = 1.2;     // of the sum: a limb may be turned by 90 degrees and be as unlike besides
+constexpr double kNamedCost = 0.1;    // of partners by name that are not alike at all
 // Of the labelled skeletons those without left and right have at most 0.04 by chance, all others at least 0.11.
 constexpr double kLeastPaired = 0.07;
 constexpr double kContradict = 0.2;  // share of named limbs that lie the other way round than the rest

@@ -15,11 +15,10 @@ namespace {
 
 using limber::testing::MadeBody;
 using limber::testing::NameHabit;
-using limber::testing::restPlaces;
 
 HalfBody folded(const Skeleton& skeleton) {
   const JointTree tree(skeleton);
-  return foldBody(tree, restPlaces(skeleton));
+  return foldBody(tree, restPositions(skeleton));
 }
 
 // Each joint stands in one half joint, and parents come first.
@@ -70,7 +69,7 @@ TEST(HalfBody, PeopleAndAnimalsFoldAlongTheirMiddle) {
     const HalfBody half = folded(body.skeleton);
     expectSidesPaired(half, body);
     for (const HalfJoint& joint : half.joints) {
-      EXPECT_LT((joint.at - restPlaces(body.skeleton)[joint.joint]).norm(), 1e-9) << "mirror images";
+      EXPECT_LT((joint.at - restPositions(body.skeleton)[joint.joint]).norm(), 1e-9) << "mirror images";
     }
   }
 }
@@ -128,7 +127,7 @@ TEST(HalfBody, ATwistJointOnOneSideShiftsNoPairs) {
     longer.joints.push_back(joint);
   }
   const JointTree tree(longer);
-  const HalfBody body = foldBody(tree, restPlaces(longer), partnersByName(longer));
+  const HalfBody body = foldBody(tree, restPositions(longer), partnersByName(longer));
   for (const char* part : {"UpperArm", "LowerArm", "Hand"}) {
     const Index left = longer.find(std::string("left") + part).value();
     EXPECT_EQ(halfOf(body, left).partner, longer.find(std::string("right") + part)) << part;
@@ -141,7 +140,7 @@ TEST(HalfBody, NamesPairJointsThatLieInOnePlace) {
   for (Joint& joint : person.joints) joint.rest.translation = Vec3::Zero();
   const std::vector<std::optional<NamedPartner>> named = partnersByName(person);
   const JointTree tree(person);
-  const HalfBody body = foldBody(tree, restPlaces(person), named);
+  const HalfBody body = foldBody(tree, restPositions(person), named);
   expectWhole(body, person);
   std::size_t pairs = 0;
   for (const HalfJoint& half : body.joints) {
@@ -161,7 +160,7 @@ TEST(HalfBody, NamesPairFeetInOnePlace) {
     if (joint.name.ends_with("ToeBase")) joint.rest.translation.x() = 0;
   }
   const JointTree tree(person);
-  const HalfBody body = foldBody(tree, restPlaces(person), partnersByName(person));
+  const HalfBody body = foldBody(tree, restPositions(person), partnersByName(person));
   expectWhole(body, person);
   for (const char* part : {"UpLeg", "Leg", "Foot", "ToeBase", "Arm", "Hand"}) {
     const HalfJoint& half = halfOf(body, person.find(std::string("mixamorig:Left") + part).value());

@@ -100,18 +100,14 @@ TEST(JointTree, DeepTreesAreWalked) {
 
 // With loose feet joined.
 Parents joined(const Skeleton& skeleton) {
-  const JointTree tree = withLooseFeetJoined(skeleton, limber::testing::restPlaces(skeleton), Vec3::UnitY());
+  const JointTree tree = withLooseFeetJoined(skeleton, restPositions(skeleton), Vec3::UnitY());
   Parents parents;
   for (Index j = 0; j < tree.size(); ++j) parents.push_back(tree.parent(j));
   return parents;
 }
 
-Skeleton vrmPerson() {
-  return limber::testing::personWith(limber::testing::NameHabit::kVrm).skeleton;
-}
-
 TEST(LooseFeet, FeetAtTheRootHangOnTheShinsAboveThem) {
-  const Skeleton person = onTheGround(vrmPerson(), {"leftFoot", "rightFoot"});
+  const Skeleton person = onTheGround(limber::testing::vrmPerson(), {"leftFoot", "rightFoot"});
   const Parents parents = joined(person);
   for (Index j = 0; j < person.jointCount(); ++j) {
     const std::string& name = person.joints[j].name;
@@ -148,7 +144,7 @@ TEST(LooseFeet, ShinsMayLean) {
 }
 
 TEST(LooseFeet, LegsAtTheRootHangOnTheTrunkBesideThem) {
-  const Skeleton person = onTheGround(vrmPerson(), {"leftUpperLeg", "rightUpperLeg"});
+  const Skeleton person = onTheGround(limber::testing::vrmPerson(), {"leftUpperLeg", "rightUpperLeg"});
   const Parents parents = joined(person);
   EXPECT_EQ(parents[person.find("leftUpperLeg").value()], person.find("hips"));
   EXPECT_EQ(parents[person.find("rightUpperLeg").value()], person.find("hips"));
@@ -156,7 +152,7 @@ TEST(LooseFeet, LegsAtTheRootHangOnTheTrunkBesideThem) {
 }
 
 TEST(LooseFeet, OthersStayAsTheyAre) {
-  for (const Skeleton& skeleton : {vrmPerson(), limber::testing::quadruped(0.5)}) {
+  for (const Skeleton& skeleton : {limber::testing::vrmPerson(), limber::testing::quadruped(0.5)}) {
     const Parents parents = joined(skeleton);
     for (Index j = 0; j < skeleton.jointCount(); ++j) EXPECT_EQ(parents[j], skeleton.joints[j].parent);
   }

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "limber/skeleton/humanoid_words.h"
+#include "limber/anatomy/humanoid_words.h"
 
 namespace limber {
 
@@ -16,7 +16,7 @@ namespace {
 
 using detail::BodyWord;
 
-constexpr std::size_t kBodyWords = static_cast<std::size_t>(BodyWord::kLittle) + 1;
+constexpr std::size_t kBodyWords = static_cast<std::size_t>(BodyWord::kLittle) + 1;  // of BodyWord
 
 // Beyond the words of people. Words in one row mean the same.
 enum ExtraWord {
@@ -155,6 +155,12 @@ Side sideOf(detail::BodySide side) {
 
 bool saysHips(std::string_view name) {
   return readJointWords(name).word == static_cast<std::size_t>(BodyWord::kHips);
+}
+
+bool saysMetapodial(std::string_view name) {
+  const std::vector<std::string> tokens = detail::wordsOfName(name);
+  return std::any_of(tokens.begin(), tokens.end(),
+                     [](const std::string& token) { return lookUp(kExtraWords, token) == kMetapodial; });
 }
 
 std::vector<std::optional<NamedPartner>> partnersByName(const Skeleton& skeleton) {

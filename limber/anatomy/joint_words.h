@@ -16,7 +16,7 @@ namespace limber {
 inline constexpr std::size_t kJointWords = 45;
 
 enum class NameMark { kFront, kHind, kEnd, kHelper, kTwist, kNumbered };
-inline constexpr std::size_t kNameMarks = 6;
+inline constexpr std::size_t kNameMarks = 6;  // of NameMark
 
 struct JointWords {
   std::size_t word = 0;
@@ -30,6 +30,8 @@ JointWords readJointWords(std::string_view name);
 
 // Whether the name is one of the pelvis.
 bool saysHips(std::string_view name);
+// Whether one of its words is that of a bone in the palm or the middle of the foot, such as "IndexMetacarpal".
+bool saysMetapodial(std::string_view name);
 
 // #J partners by names that differ in the side alone ("arm.L", "arm.R"), each of one joint at most.
 std::vector<std::optional<NamedPartner>> partnersByName(const Skeleton& skeleton);

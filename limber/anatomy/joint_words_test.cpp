@@ -4,8 +4,8 @@
 
 #include <string>
 
+#include "limber/anatomy/humanoid_words.h"
 #include "limber/anatomy/testing/bodies.h"
-#include "limber/skeleton/humanoid_words.h"
 
 namespace limber {
 namespace {

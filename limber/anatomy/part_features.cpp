@@ -178,7 +178,7 @@ enum AxesFeature : std::size_t {
   kAxesFeatures
 };
 
-constexpr double kTiny = 1e-9;
+constexpr double kTiny = 1e-9;          // of the body's size: shorter is rounding
 constexpr std::size_t kMostLimbs = 64;  // a millipede's would say no more
 
 }  // namespace

@@ -7,7 +7,7 @@ namespace limber {
 
 namespace {
 
-constexpr double kImpossible = -1e9;
+constexpr double kImpossible = -1e9;  // log-likelihood, far below any sum of weights
 
 double logSumExp(const PartField::Scores& scores) {
   const double most = *std::max_element(scores.begin(), scores.end());

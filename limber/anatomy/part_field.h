@@ -23,7 +23,7 @@ struct PartWeights {
   std::array<double, kPartStates * kPartStates> followFactor{};
   void prepare();  // after each change
 };
-inline constexpr float kNever = -1e9f;
+inline constexpr float kNever = -1e9f;  // log-likelihood, far below any sum of weights
 
 // The fitted weights (part_weights.cpp), unpacked once.
 const PartWeights& fittedPartWeights();

@@ -33,7 +33,7 @@ enum class PartState : unsigned char {
   kHair,
   kProp,
 };
-inline constexpr std::size_t kPartStates = 23;
+inline constexpr std::size_t kPartStates = 23;  // of PartState
 
 constexpr PartKind kindOf(PartState state) {
   constexpr std::array<PartKind, kPartStates> kKinds = {

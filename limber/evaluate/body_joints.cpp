@@ -6,8 +6,8 @@
 #include <optional>
 #include <string_view>
 
-#include "limber/skeleton/humanoid_names.h"
-#include "limber/skeleton/humanoid_words.h"
+#include "limber/anatomy/humanoid_joints.h"
+#include "limber/anatomy/humanoid_words.h"
 
 namespace limber {
 
@@ -63,7 +63,7 @@ std::vector<bool> countedJoints(const SkinnedModel& model) {
       if (weight > 0 && weight >= kMoves * whole) counts[model.weights.joints[v * slots + s]] = true;
     }
   }
-  for (const HumanoidJoint& named : humanoidJointsByName(model.skeleton)) {
+  for (const HumanoidJoint& named : humanoidJoints(model.skeleton)) {
     if (named.bone != "hips") counts[named.joint] = true;  // the hips are called so on the ground as well
   }
   return withBetween(model.skeleton, counts);
@@ -72,7 +72,7 @@ std::vector<bool> countedJoints(const SkinnedModel& model) {
 std::vector<bool> bodyJoints(const Skeleton& skeleton, std::vector<bool> counted) {
   const Index count = skeleton.jointCount();
   std::vector<std::string_view> plays(count);
-  for (const HumanoidJoint& named : humanoidJointsByName(skeleton)) plays[named.joint] = named.bone;
+  for (const HumanoidJoint& named : humanoidJoints(skeleton)) plays[named.joint] = named.bone;
   std::vector<bool> out(count, false), ends(count, false);  // ends: what hangs on it is out
   std::vector<detail::BodyWord> words;
   for (Index j = 0; j < count; ++j) {

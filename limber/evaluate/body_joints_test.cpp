@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "limber/anatomy/testing/bodies.h"
+
 namespace limber {
 
 namespace {
@@ -77,8 +79,13 @@ TEST(BodyJoints, CountWhatMovesVertices) {
   model.weights.joints = {0, 1, 0, 2};
   model.weights.weights = {0.5f, 0.5f, 0.97f, 0.03f};  // the last moves its vertex hardly
   EXPECT_EQ(countedJoints(model), (std::vector<bool>{true, true, false}));
-  model.skeleton.joints[2].name = "LeftFoot";  // but what plays a bone counts
-  EXPECT_EQ(countedJoints(model), (std::vector<bool>{true, true, true}));
+  // What plays a bone counts, though it holds nothing.
+  model = {};
+  model.skeleton = testing::vrmPerson();
+  testing::addJoint(model.skeleton, "control", "hips", Vec3(0, 0.1, 0.9));
+  const std::vector<bool> counted = countedJoints(model);
+  EXPECT_TRUE(counted[*model.skeleton.find("leftFoot")]);
+  EXPECT_FALSE(counted[*model.skeleton.find("control")]);
 }
 
 }  // namespace limber

@@ -241,7 +241,7 @@ std::vector<IkProblemSet> ikProblemSets(Index count, std::uint64_t seed) {
     }
   }
   const Skeleton humanoid = practiceHumanoid();
-  const JointLimits anatomy = humanoidLimits(humanoid, humanoidJointsByName(humanoid));
+  const JointLimits anatomy = humanoidLimits(humanoid, jointsCalledAsBones(humanoid));
   for (const bool limited : {false, true}) {
     for (const IkReach reach : kReaches) {
       if (reach == IkReach::kBorderline && !limited) continue;

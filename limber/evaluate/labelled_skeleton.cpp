@@ -229,8 +229,7 @@ void turn(LabelledSkeleton& body, Random& random) {
 // Bones of both sides alike.
 void stretch(LabelledSkeleton& body, Random& random) {
   const JointTree tree(body.skeleton);
-  std::vector<Vec3> positions;
-  for (const Affine& global : restGlobals(body.skeleton)) positions.push_back(global.translation());
+  const std::vector<Vec3> positions = restPositions(body.skeleton);
   for (const HalfJoint& half : foldBody(tree, positions).joints) {
     const double factor = std::exp(0.15 * random.normal());
     if (!body.skeleton.joints[half.joint].parent) continue;

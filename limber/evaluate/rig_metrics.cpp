@@ -5,10 +5,10 @@
 #include <limits>
 #include <optional>
 
+#include "limber/anatomy/humanoid_joints.h"
 #include "limber/asset/asset.h"
 #include "limber/evaluate/assignment.h"
 #include "limber/evaluate/body_joints.h"
-#include "limber/skeleton/humanoid_names.h"
 
 namespace limber {
 
@@ -96,17 +96,11 @@ double heightOf(const Box& box, const std::vector<HumanoidJoint>& named, const s
 }
 
 void compareNamed(const SkinnedModel& predicted, const SkinnedModel& truth, const Box& box, RigComparison& result) {
-  const std::vector<HumanoidJoint> own = humanoidJointsByName(predicted.skeleton),
-                                   given = humanoidJointsByName(truth.skeleton);
+  const std::vector<HumanoidJoint> own = humanoidJoints(predicted.skeleton), given = humanoidJoints(truth.skeleton);
   const std::vector<Affine> ownGlobals = restGlobals(predicted.skeleton), givenGlobals = restGlobals(truth.skeleton);
   const double height = heightOf(box, given, givenGlobals);
-  const std::optional<Index> ownPelvis = pelvisByName(predicted.skeleton), pelvis = pelvisByName(truth.skeleton);
   for (const std::string_view bone : kCompared) {
     std::optional<Vec3> a = placeOf(bone, own, ownGlobals), b = placeOf(bone, given, givenGlobals);
-    if (bone == "hips" && ownPelvis && pelvis) {
-      a = ownGlobals[*ownPelvis].translation();
-      b = givenGlobals[*pelvis].translation();
-    }
     if (!a || !b) continue;
     // A trunk of two bones has the second at the chest or at its upper end: artists call either the chest.
     if (bone == "chest" && !placeOf("upperChest", given, givenGlobals)) {

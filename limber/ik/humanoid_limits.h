@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "limber/ik/limits.h"
-#include "limber/skeleton/humanoid_names.h"
+#include "limber/skeleton/humanoid_bones.h"
 #include "limber/skeleton/skeleton.h"
 
 namespace limber {

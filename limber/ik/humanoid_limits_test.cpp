@@ -11,7 +11,7 @@ namespace {
 
 class HumanoidLimits : public ::testing::Test {
  protected:
-  HumanoidLimits() : limits(humanoidLimits(skeleton, humanoidJointsByName(skeleton))) {}
+  HumanoidLimits() : limits(humanoidLimits(skeleton, jointsCalledAsBones(skeleton))) {}
 
   Index joint(const char* name) const { return skeleton.find(name).value(); }
 
@@ -81,7 +81,7 @@ TEST_F(HumanoidLimits, OtherRestPosesAreBentToATPoseFirst) {
   Skeleton hanging = skeleton;
   const Index arm = joint("leftUpperArm"), elbow = joint("leftLowerArm");
   hanging.joints[arm].rest.rotation = Quat(Eigen::AngleAxisd(-kPi / 3, Vec3::UnitZ()));
-  const JointLimits same = humanoidLimits(hanging, humanoidJointsByName(hanging));
+  const JointLimits same = humanoidLimits(hanging, jointsCalledAsBones(hanging));
   for (const Index j : {arm, elbow}) {
     for (int i = 0; i < 50; ++i) {
       const Quat local = fromRotationVector(1.5 * Vec3(std::sin(i), std::sin(2.3 * i), std::sin(4.1 * i)));
@@ -93,7 +93,7 @@ TEST_F(HumanoidLimits, OtherRestPosesAreBentToATPoseFirst) {
 TEST_F(HumanoidLimits, TheSpineSharesItsRange) {
   const double three = violation("spine", Vec3::UnitX(), 40);
   EXPECT_NEAR(three, 40 - 80 / 3.0, 1e-6);
-  std::vector<HumanoidJoint> two = humanoidJointsByName(skeleton);
+  std::vector<HumanoidJoint> two = jointsCalledAsBones(skeleton);
   two.erase(std::remove_if(two.begin(), two.end(), [](const HumanoidJoint& j) { return j.bone == "upperChest"; }),
             two.end());
   limits = humanoidLimits(skeleton, two);

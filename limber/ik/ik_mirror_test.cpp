@@ -49,7 +49,7 @@ class IkMirrorTest : public ::testing::Test {
   }
 
   Skeleton humanoid = practiceHumanoid();
-  JointLimits limits = humanoidLimits(humanoid, humanoidJointsByName(humanoid));
+  JointLimits limits = humanoidLimits(humanoid, jointsCalledAsBones(humanoid));
 };
 
 TEST_F(IkMirrorTest, TheFirstTargetMayLieInTheMiddle) {

@@ -103,14 +103,8 @@ Problem randomProblem(RandomValues& random, Index joints, bool tree, bool limite
 }
 
 // Global positions by matrices: an oracle apart from the solver's own forward kinematics.
-std::vector<Vec3> positionsOf(const Skeleton& skeleton, const Pose& pose) {
-  std::vector<Vec3> positions;
-  for (const Affine& global : poseGlobals(skeleton, pose)) positions.push_back(global.translation());
-  return positions;
-}
-
 double weightedCost(const Problem& problem, const Pose& pose) {
-  const std::vector<Vec3> positions = positionsOf(problem.skeleton, pose);
+  const std::vector<Vec3> positions = posePositions(problem.skeleton, pose);
   double sum = 0;
   for (const IkTarget& t : problem.targets) sum += t.weight * (positions[t.joint] - t.position).squaredNorm();
   return sum;
@@ -124,8 +118,8 @@ class EveryMethod : public ::testing::TestWithParam<std::string> {
 };
 
 void expectBonesKept(const Problem& problem, const Pose& pose) {
-  const std::vector<Vec3> before = positionsOf(problem.skeleton, problem.start);
-  const std::vector<Vec3> after = positionsOf(problem.skeleton, pose);
+  const std::vector<Vec3> before = posePositions(problem.skeleton, problem.start);
+  const std::vector<Vec3> after = posePositions(problem.skeleton, pose);
   for (Index j = 1; j < problem.skeleton.jointCount(); ++j) {
     const Index p = *problem.skeleton.joints[j].parent;
     EXPECT_NEAR((after[j] - after[p]).norm(), (before[j] - before[p]).norm(), 1e-12);
@@ -147,7 +141,7 @@ TEST_P(EveryMethod, BonesKeepTheirLengthAndNothingGetsWorse) {
     const IkResult result = solveIk(method(), problem.skeleton, pose, problem.targets, nullptr, options);
     expectBonesKept(problem, pose);
     EXPECT_LE(weightedCost(problem, pose), weightedCost(problem, problem.start) * (1 + 1e-9) + 1e-12);
-    const std::vector<Vec3> positions = positionsOf(problem.skeleton, pose);
+    const std::vector<Vec3> positions = posePositions(problem.skeleton, pose);
     for (std::size_t t = 0; t < problem.targets.size(); ++t) {
       const IkTarget& target = problem.targets[t];
       EXPECT_NEAR(result.targets[t].distance, (positions[target.joint] - target.position).norm(), 1e-9);

@@ -56,7 +56,7 @@ void poseAtRandom(IkSystem& system, std::mt19937_64& generator) {
 TEST(Jacobian, ColumnsAreDerivatives) {
   std::mt19937_64 generator(5);
   const Skeleton humanoid = practiceHumanoid();
-  const JointLimits limits = humanoidLimits(humanoid, humanoidJointsByName(humanoid));
+  const JointLimits limits = humanoidLimits(humanoid, jointsCalledAsBones(humanoid));
   std::vector<IkTarget> targets = practiceHumanoidTargets(humanoid);
   targets[2].weight = 3;
   targets[4].priority = 1;

@@ -64,7 +64,7 @@ TEST(LimitsJson, EveryTypeComesBack) {
 
 TEST(LimitsJson, HumanoidLimitsComeBack) {
   const Skeleton humanoid = practiceHumanoid();
-  const JointLimits limits = humanoidLimits(humanoid, humanoidJointsByName(humanoid));
+  const JointLimits limits = humanoidLimits(humanoid, jointsCalledAsBones(humanoid));
   const JointLimits back = limitsFromJson(limitsToJson(limits, humanoid), humanoid);
   for (Index j = 0; j < humanoid.jointCount(); ++j) {
     const Quat local = fromRotationVector(Vec3(std::sin(j), std::sin(2.3 * j), std::sin(4.1 * j)));

@@ -137,7 +137,7 @@ TEST_F(WholeBodyTest, TheNullSpaceComesNearerToTheReference) {
 }
 
 TEST_F(WholeBodyTest, SolvingTakesNoMemory) {
-  const JointLimits limits = humanoidLimits(humanoid, humanoidJointsByName(humanoid));
+  const JointLimits limits = humanoidLimits(humanoid, jointsCalledAsBones(humanoid));
   targets[0].orientation = Quat::Identity();
   targets[4].priority = 1;
   for (const IkMethod& method : ikMethods()) {
@@ -164,7 +164,7 @@ TEST_F(WholeBodyTest, SolvingTakesNoMemory) {
 
 // Joints at their limits too: a hand on a slow circle, with the arm's limits, no restarts.
 TEST_F(WholeBodyTest, DraggingWithLimitsDoesNotFlip) {
-  const JointLimits limits = humanoidLimits(humanoid, humanoidJointsByName(humanoid));
+  const JointLimits limits = humanoidLimits(humanoid, jointsCalledAsBones(humanoid));
   for (const IkMethod& method : ikMethods()) {
     std::vector<IkTarget> hand = {targets[0]};
     hand[0].base = humanoid.find("leftUpperArm").value();

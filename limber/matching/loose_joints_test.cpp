@@ -10,9 +10,7 @@ namespace {
 using limber::testing::onTheGround;
 
 std::vector<LooseJoint> looseOf(const Skeleton& skeleton) {
-  std::vector<Vec3> rest;
-  for (const Affine& global : restGlobals(skeleton)) rest.push_back(global.translation());
-  return looseJoints(skeleton, matchSkeletons(practiceHumanoid(), skeleton), MapSide::kTarget, rest);
+  return looseJoints(skeleton, matchSkeletons(practiceHumanoid(), skeleton), MapSide::kTarget, restPositions(skeleton));
 }
 
 // A joint on the ground's root, beside another joint.

@@ -15,12 +15,12 @@ namespace {
 // A foot goes along with a shin that is turned by more. One that is about as long as its shin does not where the leg
 // comes down from the hip as straight: it ends in a hock, and stands as birds' do.
 constexpr double kFootGoesAlong = 25 * kPi / 180;
-constexpr double kHock = 0.75;  // foot over shin
-constexpr double kBent = 1.03;  // times the way from end to end
-constexpr double kNearAxis = 20 * kPi / 180;
+constexpr double kHock = 0.75;                // foot over shin
+constexpr double kBent = 1.03;                // times the way from end to end
+constexpr double kNearAxis = 20 * kPi / 180;  // from an axis of space: makers mean it
 // A trunk, and a neck, that lean by more are bent: artists build upright ones with less.
 constexpr double kStoops = 25 * kPi / 180;
-constexpr double kBows = 45 * kPi / 180;
+constexpr double kBows = 45 * kPi / 180;  // of the neck, from upright
 // What arms and legs of people are long, over the way from the hips to the neck.
 struct Range {
   double least, most;
@@ -244,8 +244,7 @@ Pose uprightPose(const Skeleton& skeleton, std::span<const Pose> motion, const S
 
 NeutralPose neutralPose(const Skeleton& skeleton, const Pose& resting, const SkeletonMap& map, MapSide side,
                         const Axes& axes) {
-  std::vector<Vec3> rest;
-  for (const Affine& global : poseGlobals(skeleton, resting)) rest.push_back(global.translation());
+  const std::vector<Vec3> rest = posePositions(skeleton, resting);
   const std::optional<Quat> person = map.isBiped() ? bodyFrame(map, side, rest) : std::nullopt;
   return neutralPoseIn(person ? *person : frameAlong(axes), skeleton, resting, map, side);
 }
@@ -254,9 +253,8 @@ NeutralPose neutralPoseIn(const Quat& toBody, const Skeleton& skeleton, const Po
                           MapSide side) {
   NeutralPose pose;
   pose.toBody = toBody;
-  std::vector<Vec3> rest;
+  std::vector<Vec3> rest = posePositions(skeleton, resting);
   std::vector<Quat> restRotations;
-  for (const Affine& global : poseGlobals(skeleton, resting)) rest.push_back(global.translation());
   std::vector<Quat> turns(skeleton.jointCount(), Quat::Identity());
   Aims aims(skeleton.jointCount());
   std::vector<bool> isFoot(skeleton.jointCount()), stands(skeleton.jointCount());

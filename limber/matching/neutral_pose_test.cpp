@@ -124,8 +124,7 @@ TEST_F(NeutralPoses, ToesAreFoundWhereTheOtherSkeletonHasNone) {
 
 TEST_F(NeutralPoses, ShinsWithHocksBendAndThoseWithTwistJointsDoNot) {
   const auto shinIsBent = [](const Skeleton& skeleton, const char* link) {
-    std::vector<Vec3> positions;
-    for (const Affine& global : restGlobals(skeleton)) positions.push_back(global.translation());
+    const std::vector<Vec3> positions = restPositions(skeleton);
     const std::vector<Index> shin = {skeleton.find("leftLowerLeg").value(), skeleton.find(link).value()};
     return isBent(shin, skeleton.find("leftFoot").value(), positions);
   };

@@ -117,6 +117,26 @@ std::vector<Index> tailOf(const Skeleton& skeleton) {
   return tail ? tail->joints : std::vector<Index>();
 }
 
+// With the matched limbs of bodies of another kind as the motion has them in the mean: a person's arms hang, whatever
+// the rest pose, and a foreleg that follows one stands.
+Pose restOf(const Skeleton& source, std::span<const Pose> motion, const SkeletonMap& map) {
+  Pose rest = uprightPose(source, motion, map, MapSide::kSource);
+  if (!map.unlikeBodies) return rest;
+  for (const JointMatch& match : map.matches) {
+    const PartKind kind = match.part.kind;
+    if (kind != PartKind::kLeg && kind != PartKind::kArm && kind != PartKind::kWing && kind != PartKind::kFin) continue;
+    for (const Index joint : match.source) {
+      Eigen::Vector4d sum = Eigen::Vector4d::Zero();
+      for (const Pose& pose : motion) {
+        const Eigen::Vector4d turn = pose.locals[joint].rotation.coeffs();
+        sum += sum.dot(turn) < 0 ? Eigen::Vector4d(-turn) : turn;
+      }
+      if (sum.norm() > 0) rest.locals[joint].rotation = Quat(Eigen::Vector4d(sum.normalized()));
+    }
+  }
+  return rest;
+}
+
 // A map of the hips alone, or joints that all lie in one place, leave nothing to scale by.
 void checkSize(double size, const char* whose, const SkeletonMap& map) {
   if (size > 0) return;
@@ -135,7 +155,7 @@ RetargetSetup::RetargetSetup(const Skeleton& from, const Skeleton& to, SkeletonM
       options(asked),
       person(map.isBiped()),
       quadruped(map.isQuadruped()),
-      sourceRest(uprightPose(from, motion ? std::span(motion->poses) : std::span<const Pose>(), map, MapSide::kSource)),
+      sourceRest(restOf(from, motion ? std::span(motion->poses) : std::span<const Pose>(), map)),
       targetRest(map.twins ? poseAsTwin(from, sourceRest, to, *map.twins) : restPose(to)),
       sourceNeutral(neutralPose(from, sourceRest, map, MapSide::kSource, axesOf(from, person))),
       targetNeutral(map.twins ? neutralPoseIn((sourceNeutral.toBody * map.twins->turn.conjugate()).normalized(), to,
@@ -182,7 +202,7 @@ RetargetSetup::RetargetSetup(const Skeleton& from, const Skeleton& to, SkeletonM
   // from there as the source.
   targetGround = lowest(groundJoints(map, MapSide::kTarget), targetNeutral.restPositions);
   // What rests in the air flies: its feet have no ground to keep to.
-  if (targetGround >= kFlies * targetHipHeight && !quadruped) animalLegs.clear();
+  if ((targetGround >= kFlies * targetHipHeight && !quadruped) || map.unlikeBodies) animalLegs.clear();
   if (!animalLegs.empty()) targetTail = tailOf(to);
   if (!standsAt(targetGround, targetHipHeight)) {
     targetGround = person ? sourceGround * scale : targetGround + scale * (sourceGround - restGround);

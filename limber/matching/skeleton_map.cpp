@@ -11,10 +11,10 @@
 
 #include <fmt/format.h>
 
+#include "limber/anatomy/body_pieces.h"
 #include "limber/anatomy/joint_words.h"
 #include "limber/core/counted.h"
 #include "limber/core/error.h"
-#include "limber/matching/body_pieces.h"
 #include "limber/matching/limb_groups.h"
 
 namespace limber {
@@ -27,7 +27,6 @@ constexpr double kEqualTrees = 0.5;    // confidence of joints that are matched 
 constexpr double kEqualNames = 0.9;    // of names that are equal but for their case, separators and prefixes
 constexpr double kOneOfSeveral = 0.5;  // confidence at most of one palm joint, or pelvis, of several
 constexpr double kFingerByForm = 0.7;  // confidence at most: form does not tell a finger's tip from its last bone
-constexpr Index kFingerJoints = 3;     // that a hand's finger has, its metacarpal apart
 
 std::string plainName(std::string_view name) {
   if (const std::size_t space = name.find_last_of(":|"); space != std::string_view::npos) name.remove_prefix(space + 1);
@@ -51,8 +50,14 @@ MatchedBy evidenceOf(const Part& one, const Part& other) {
 
 class Matcher {
  public:
-  Matcher(const Skeleton& source, const Skeleton& target)
-      : source_(source), target_(target), from_(source), to_(target), sourceTree_(source), targetTree_(target) {
+  Matcher(const Skeleton& source, const Skeleton& target, bool unlikeBodies)
+      : source_(source),
+        target_(target),
+        unlikeBodies_(unlikeBodies),
+        from_(source),
+        to_(target),
+        sourceTree_(source),
+        targetTree_(target) {
     if (!standOnMany()) return;
     from_.cutLegsWhereTheyStand(source);
     to_.cutLegsWhereTheyStand(target);
@@ -67,7 +72,8 @@ class Matcher {
       map_.twins = std::move(twins);
       return std::move(map_);
     }
-    map_.jointByJoint = standOtherwise() || (areAnimals() && areFamily());
+    if (unlikeBodies_) matchOtherKinds();
+    map_.jointByJoint = standOtherwise() || map_.unlikeBodies || (areAnimals() && areFamily());
     if (!moves() && sameTree(source_, target_)) {
       map_ = {};
       for (Index j = 0; j < target_.jointCount(); ++j) addOther(j, j, kEqualTrees, MatchedBy::kShape);
@@ -116,6 +122,73 @@ class Matcher {
     }
   }
 
+  // Two limbs of one kind that lie opposite each other, or one alone.
+  struct LimbPair {
+    PartKind kind;
+    Index pair;
+    double along;  // from the pelvis towards the head
+    bool taken = false;
+  };
+
+  // From front to back.
+  static std::vector<LimbPair> limbPairs(const BodyPieces& body, const Skeleton& skeleton) {
+    const std::vector<Vec3> rest = restPositions(skeleton);
+    const Index front = body.head ? *body.head : body.trunk.empty() ? *body.pelvis : body.trunk.back();
+    Vec3 axis = rest[front] - rest[*body.pelvis];
+    if (axis.isZero()) axis = body.anatomy.axes.front;
+    std::vector<LimbPair> pairs;
+    for (const LimbPieces& limb : body.limbs) {
+      const PartKind kind = limb.part->kind;
+      const bool isLimb =
+          kind == PartKind::kLeg || kind == PartKind::kArm || kind == PartKind::kWing || kind == PartKind::kFin;
+      const bool known = std::any_of(pairs.begin(), pairs.end(), [&](const LimbPair& other) {
+        return other.kind == kind && other.pair == limb.part->pair;
+      });
+      if (!isLimb || known || limb.part->side == Side::kCenter) continue;
+      pairs.push_back({kind, limb.part->pair, axis.dot(rest[limb.joints.front()])});
+    }
+    std::stable_sort(pairs.begin(), pairs.end(),
+                     [](const LimbPair& a, const LimbPair& b) { return a.along > b.along; });
+    return pairs;
+  }
+
+  // Each pair of limbs that has no partner yet follows the one that is nearest along the body, of those that nothing
+  // follows yet, if there is one.
+  void matchOtherKinds() {
+    if (!from_.pelvis || !to_.pelvis) return;
+    std::vector<LimbPair> sources = limbPairs(from_, source_);
+    const std::vector<LimbPair> targets = limbPairs(to_, target_);
+    const auto isMatched = [](const BodyPieces& body, const LimbPair& pair, const auto& matched) {
+      return std::any_of(body.limbs.begin(), body.limbs.end(), [&](const LimbPieces& limb) {
+        return limb.part->kind == pair.kind && limb.part->pair == pair.pair &&
+               std::any_of(limb.joints.begin(), limb.joints.end(),
+                           [&](Index joint) { return matched.count(joint) > 0; });
+      });
+    };
+    for (LimbPair& pair : sources) pair.taken = isMatched(from_, pair, matchedSource_);
+    const auto share = [](std::size_t place, std::size_t count) {
+      return count > 1 ? static_cast<double>(place) / static_cast<double>(count - 1) : 0.5;
+    };
+    for (std::size_t t = 0; t < targets.size(); ++t) {
+      if (isMatched(to_, targets[t], matchedTarget_)) continue;
+      const auto cost = [&](const LimbPair& pair) {
+        const auto s = static_cast<std::size_t>(&pair - sources.data());
+        return std::abs(share(s, sources.size()) - share(t, targets.size())) + (pair.taken ? 1 : 0);
+      };
+      const auto best = std::min_element(sources.begin(), sources.end(),
+                                         [&](const LimbPair& a, const LimbPair& b) { return cost(a) < cost(b); });
+      if (best == sources.end()) return;
+      best->taken = true;
+      for (const LimbPieces& limb : to_.limbs) {
+        if (limb.part->kind != targets[t].kind || limb.part->pair != targets[t].pair) continue;
+        const LimbPieces* like = from_.find(best->kind, limb.part->side, best->pair);
+        if (!like) continue;
+        map_.unlikeBodies = true;
+        matchLimb(*like, limb);
+      }
+    }
+  }
+
   // Fingers of a hand and toes of a foot have one kind.
   bool alikeCarried(const LimbPieces& one, const LimbPieces& other) const {
     if (one.part->kind != PartKind::kFinger) return true;
@@ -131,13 +204,12 @@ class Matcher {
     const MatchedBy by = evidenceOf(*source.part, part);
     BodyPart piece{part.kind, part.side, part.pair, Segment::kWhole, 0};
     if (part.kind == PartKind::kFinger) {
-      const std::vector<Index> from = fingerJoints(source_, *source.part), to = fingerJoints(target_, part);
-      // A thumb of two joints lacks the one in the palm.
-      const std::size_t ownFirst = part.pair == 0 && to.size() == 2 ? 1 : 0,
-                        first = part.pair == 0 && from.size() == 2 ? 1 : 0;
-      for (std::size_t i = std::max(ownFirst, first); i < std::min(from.size() + first, to.size() + ownFirst); ++i) {
+      const std::size_t begin = std::max(source.firstPiece, target.firstPiece),
+                        end = std::min(source.firstPiece + source.joints.size(),
+                                       target.firstPiece + target.joints.size());
+      for (std::size_t i = begin; i < end; ++i) {
         piece.piece = static_cast<Index>(i);
-        add(piece, {from[i - first]}, {to[i - ownFirst]},
+        add(piece, {source.joints[i - source.firstPiece]}, {target.joints[i - target.firstPiece]},
             by == MatchedBy::kShape ? std::min(confidence, kFingerByForm) : confidence, by);
       }
       return;
@@ -181,17 +253,17 @@ class Matcher {
   // Not the end of a foot's bone, that never turns; nor where one foot is raised at rest, as in a file that begins in
   // the middle of a step: how it stands is not known then.
   bool toesTell(const Skeleton& skeleton, const BodyPieces& body, const LimbPieces& leg, std::size_t toes) const {
-    constexpr double kRaised =
-        0.006;  // of the body's size; feet of shared bodies that stand differ by 0.002 at most, others by 0.02
+    // Of the body's size: feet of shared bodies that stand differ by 0.002 at most, others by 0.02.
+    constexpr double kRaised = 0.006;
     const bool isEnd =
         toes + 1 == leg.joints.size() && readJointWords(skeleton.joints[leg.joints[toes]].name).has(NameMark::kEnd);
     if (isEnd || standOnMany()) return !isEnd;
-    const std::vector<Affine> rest = restGlobals(skeleton);
+    const std::vector<Vec3> rest = restPositions(skeleton);
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const Side side : kSides) {
       const Part* each = body.anatomy.find(PartKind::kLeg, side, leg.part->pair);
       if (!each || !each->toes) continue;
-      const double height = body.anatomy.axes.up.dot(rest[*each->toes].translation());
+      const double height = body.anatomy.axes.up.dot(rest[*each->toes]);
       low = std::min(low, height);
       high = std::max(high, height);
     }
@@ -247,8 +319,8 @@ class Matcher {
     if (from_.anatomy.pairsOf(PartKind::kLeg) < 2 || to_.anatomy.pairsOf(PartKind::kLeg) < 2 || common.size() < 2)
       return false;
     const auto wayOf = [](const Skeleton& skeleton, const Anatomy& anatomy, Index begin, Index end) {
-      const std::vector<Affine> rest = restGlobals(skeleton);
-      const Vec3 way = (rest[end].translation() - rest[begin].translation()).normalized();
+      const std::vector<Vec3> rest = restPositions(skeleton);
+      const Vec3 way = (rest[end] - rest[begin]).normalized();
       return Vec3(anatomy.axes.left().dot(way), anatomy.axes.up.dot(way), anatomy.axes.front.dot(way));
     };
     const auto& next = common[1].second;
@@ -277,18 +349,6 @@ class Matcher {
       piece.piece = static_cast<Index>(i);
       add(piece, from[i], to[i], confidence, by);
     }
-  }
-
-  // Without a metacarpal in the palm, which names alone tell, and without tips.
-  static std::vector<Index> fingerJoints(const Skeleton& skeleton, const Part& finger) {
-    std::vector<Index> joints = finger.joints;
-    const std::string first = plainName(skeleton.joints[joints.front()].name);
-    const bool inPalm = first.find("metacarpal") != std::string::npos && finger.pair > 0;
-    if (inPalm && joints.size() > 1) joints.erase(joints.begin());
-    while (joints.size() > 1 && readJointWords(skeleton.joints[joints.back()].name).has(NameMark::kEnd))
-      joints.pop_back();
-    if (joints.size() > kFingerJoints) joints.resize(kFingerJoints);
-    return joints;
   }
 
   void matchTwinJoints(const Twins& twins) {
@@ -342,8 +402,9 @@ class Matcher {
     };
     const bool limbs = both(PartKind::kLeg) || both(PartKind::kArm) || both(PartKind::kWing) || both(PartKind::kFin);
     const Index one = from_.anatomy.pairsOf(PartKind::kLeg), other = to_.anatomy.pairsOf(PartKind::kLeg);
-    const bool standAlike = one == other || (one > 0 && other > 0 && std::max(one, other) == std::min(one, other) + 1 &&
-                                             both(PartKind::kWing));
+    const bool standAlike =
+        map_.unlikeBodies || one == other ||
+        (one > 0 && other > 0 && std::max(one, other) == std::min(one, other) + 1 && both(PartKind::kWing));
     // Names are believed of a few joints, where these are most of the skeleton; form needs more to be seen as a body.
     const auto named =
         static_cast<std::size_t>(std::count_if(map_.matches.begin(), map_.matches.end(),
@@ -420,7 +481,11 @@ class Matcher {
                 fmt::format("the motion's skeleton of {} and the character's of {} have too little in common to be "
                             "matched: {}",
                             counted(source_.jointCount(), "joint"), target_.jointCount(), whatDiffers()),
-                "", "say in a map which joint follows which, as docs/retargeting.md tells");
+                "",
+                unlikeBodies_
+                    ? "say in a map which joint follows which, as docs/retargeting.md tells"
+                    : "--unlike-bodies lets limbs follow others, and a map says which joint follows which, as "
+                      "docs/retargeting.md tells");
   }
 
   std::string whatDiffers() const {
@@ -440,6 +505,7 @@ class Matcher {
   }
 
   const Skeleton &source_, &target_;
+  bool unlikeBodies_;
   BodyPieces from_, to_;
   JointTree sourceTree_, targetTree_;
   SkeletonMap map_;
@@ -474,8 +540,8 @@ std::string nameOf(const JointMatch& match, const Skeleton& target) {
   return bodyPartNamed(name) ? "joint " + name : name;  // "jaw" would be read as that part of the body
 }
 
-SkeletonMap matchSkeletons(const Skeleton& source, const Skeleton& target) {
-  return Matcher(source, target).match();
+SkeletonMap matchSkeletons(const Skeleton& source, const Skeleton& target, bool unlikeBodies) {
+  return Matcher(source, target, unlikeBodies).match();
 }
 
 void checkSkeletonMap(const SkeletonMap& map, const Skeleton& source, const Skeleton& target) {

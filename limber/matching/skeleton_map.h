@@ -21,7 +21,7 @@ struct JointMatch {
   MatchedBy by = MatchedBy::kName;
 };
 
-inline constexpr double kDoubtful = 0.75;
+inline constexpr double kDoubtful = 0.75;  // probability: one in four such matches may be wrong
 
 // A part of one of them that has no partner in the other.
 struct UnmatchedPart {
@@ -35,6 +35,7 @@ struct SkeletonMap {
   std::vector<JointMatch> matches;  // parents before children
   std::vector<UnmatchedPart> left;  // of the labelled parts
   std::optional<Twins> twins;       // one skeleton under other names, turned or scaled: then each joint is matched
+  bool unlikeBodies = false;        // limbs follow those of other kinds, from how these stand in the motion's mean
   bool jointByJoint = false;        // each joint moves as its partner does, and no limb is solved for: of one family of
                                     // animals, whose joints have the same names, and of bodies that stand otherwise
 
@@ -53,7 +54,11 @@ std::string nameOf(const JointMatch& match, const Skeleton& target);
 // and neck as chains between it and the head, whatever their joints are called. What else hangs on the same matched
 // parts goes by equal names (upper and lower case, separators and prefixes aside). Equal trees of no body go joint by
 // joint. Throws Error kUnsupported where too little matches to move anything.
-SkeletonMap matchSkeletons(const Skeleton& source, const Skeleton& target);
+//
+// unlikeBodies: limbs without a partner follow one of another kind as well, pair by pair along the body from front to
+// back: forelegs and wings follow arms, a spider's eight legs a person's four limbs. After Hecker, Raabe, Enslow,
+// DeWeese, Maynard, van Prooijen 2008, Real-time motion retargeting to highly varied user-created morphologies.
+SkeletonMap matchSkeletons(const Skeleton& source, const Skeleton& target, bool unlikeBodies = false);
 
 // Throws Error kBadData naming the part: no joint, one that is not there, or one target joint in two parts.
 void checkSkeletonMap(const SkeletonMap& map, const Skeleton& source, const Skeleton& target);

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -50,6 +51,82 @@ std::string refusalOf(const Skeleton& source, const Skeleton& target) {
     return error.message();
   }
   return "";
+}
+
+// Its matches by part: the names of what the part follows.
+std::map<std::string, Names> followed(const SkeletonMap& map, const Skeleton& source, const Skeleton& target) {
+  std::map<std::string, Names> parts;
+  for (const JointMatch& match : map.matches) parts[nameOf(match, target)] = namesAt(source, match.source);
+  return parts;
+}
+
+// The joints of one snake hang on its head, those of the other on its middle.
+TEST(AnimalMaps, SnakesGoAlongTheirSpines) {
+  Skeleton one, other;
+  addJoint(one, "root", "", Vec3::Zero());
+  addJoint(one, "head", "root", Vec3(0, 0.1, 0.2));
+  for (int i = 1; i <= 6; ++i) {
+    addJoint(one, "tail" + std::to_string(i), i > 1 ? "tail" + std::to_string(i - 1) : "head", Vec3(0, 0, -0.3));
+  }
+  addJoint(other, "middle", "", Vec3(0, 0.1, 0));
+  addJoint(other, "neck", "middle", Vec3(0, 0.3, 0.4));
+  addJoint(other, "Head", "neck", Vec3(0, 0.3, 0.1));
+  for (int i = 1; i <= 3; ++i) {
+    addJoint(other, "Tail" + std::to_string(i), i > 1 ? "Tail" + std::to_string(i - 1) : "middle", Vec3(0, 0, -0.4));
+  }
+  const SkeletonMap map = matchSkeletons(one, other);
+  auto parts = followed(map, one, other);
+  EXPECT_EQ(parts["hips"], Names({"root"}));
+  EXPECT_EQ(parts["head"], Names({"head"}));
+  ASSERT_TRUE(matchOf(map, "tail"));
+  EXPECT_EQ(matchOf(map, "tail")->source.size(), 6u);
+  EXPECT_EQ(matchOf(map, "tail")->target.size(), 3u);
+}
+
+TEST(UnlikeBodies, ForelegsFollowArms) {
+  const Skeleton person = limber::testing::vrmPerson(), animal = quadruped(0.5);
+  EXPECT_NE(refusalOf(person, animal), "");
+  const SkeletonMap map = matchSkeletons(person, animal, true);
+  EXPECT_TRUE(map.unlikeBodies);
+  EXPECT_TRUE(map.jointByJoint);
+  auto parts = followed(map, person, animal);
+  EXPECT_EQ(parts["leftUpperLeg"], Names({"leftUpperArm"}));
+  EXPECT_EQ(parts["rightLowerLeg"], Names({"rightLowerArm"}));
+  EXPECT_EQ(parts["leftUpperLeg2"], Names({"leftUpperLeg"}));
+  EXPECT_EQ(parts["rightFoot2"], Names({"rightFoot"}));
+  EXPECT_EQ(parts["head"], Names({"head"}));
+  parts = followed(matchSkeletons(animal, person, true), animal, person);
+  EXPECT_EQ(parts["leftUpperArm"], Names({"b1LeftOne"}));
+  EXPECT_EQ(parts["leftUpperLeg"], Names({"b0LeftOne"}));
+}
+
+TEST(UnlikeBodies, ASpidersFrontLegsFollowArms) {
+  const Skeleton person = limber::testing::vrmPerson(), spider = limber::testing::spider().skeleton;
+  auto parts = followed(matchSkeletons(person, spider, true), person, spider);
+  EXPECT_EQ(parts["leftUpperLeg"], Names({"leftUpperArm"}));
+  EXPECT_EQ(parts["leftUpperLeg4"], Names({"leftUpperLeg"}));
+  for (const char* part : {"leftUpperLeg2", "leftUpperLeg3", "rightUpperLeg2", "rightUpperLeg3"})
+    EXPECT_EQ(parts[part].size(), 1u) << "limbs may move several";
+}
+
+TEST(UnlikeBodies, WingsFollowArms) {
+  const Skeleton person = limber::testing::vrmPerson(), bird = limber::testing::crow().skeleton;
+  auto parts = followed(matchSkeletons(person, bird, true), person, bird);
+  EXPECT_EQ(parts["leftWing"].front(), "leftShoulder");
+  EXPECT_EQ(parts["leftUpperLeg"], Names({"leftUpperLeg"}));
+}
+
+TEST(UnlikeBodies, ChangesNothingBetweenAlikeOnes) {
+  const Skeleton one = quadruped(0.5), other = nameless(quadruped(0.35));
+  const SkeletonMap map = matchSkeletons(one, other), asked = matchSkeletons(one, other, true);
+  EXPECT_FALSE(asked.unlikeBodies);
+  EXPECT_EQ(skeletonMapToJson(asked, one, other), skeletonMapToJson(map, one, other));
+}
+
+TEST(UnlikeBodies, StayKnownInAFile) {
+  const Skeleton person = limber::testing::vrmPerson(), animal = quadruped(0.5);
+  const std::string json = skeletonMapToJson(matchSkeletons(person, animal, true), person, animal);
+  EXPECT_TRUE(skeletonMapFromJson(json, person, animal).unlikeBodies);
 }
 
 TEST(AnimalMaps, BodyAndLegsOfQuadrupeds) {

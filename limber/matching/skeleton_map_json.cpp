@@ -41,6 +41,13 @@ std::vector<Index> jointsOf(const Json& match, const char* key, const Skeleton& 
   return joints;
 }
 
+bool flagOf(const Json& json, const char* key) {
+  const auto flag = json.find(key);
+  if (flag == json.end()) return false;
+  if (!flag->is_boolean()) throw Error(ErrorCode::kBadData, "is neither true nor false", key);
+  return flag->get<bool>();
+}
+
 }  // namespace
 
 std::string skeletonMapToJson(const SkeletonMap& map, const Skeleton& source, const Skeleton& target) {
@@ -63,6 +70,7 @@ std::string skeletonMapToJson(const SkeletonMap& map, const Skeleton& source, co
   }
   Json json = {{"matches", std::move(matches)}};
   if (map.jointByJoint) json["joint_by_joint"] = true;
+  if (map.unlikeBodies) json["unlike_bodies"] = true;
   if (!left.empty()) json["unmatched"] = std::move(left);
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
@@ -90,7 +98,8 @@ SkeletonMap skeletonMapFromJson(std::string_view text, const Skeleton& source, c
     match.by = MatchedBy::kFile;
     map.matches.push_back(std::move(match));
   }
-  map.jointByJoint = json.value("joint_by_joint", false);
+  map.jointByJoint = flagOf(json, "joint_by_joint");
+  map.unlikeBodies = flagOf(json, "unlike_bodies");
   checkSkeletonMap(map, source, target);
   return map;
 }

@@ -18,12 +18,6 @@ constexpr double kMostOff = 0.35;     // mean distance of joints laid on each ot
 constexpr double kAlike = 1e-3;       // likewise: ways that differ by less are told apart by names
 constexpr double kRigid = 1e-3;       // of a limb's reach: how far its joints may be off to have been turned as a whole
 
-std::vector<Vec3> placesOf(const Skeleton& skeleton, const Pose& pose) {
-  std::vector<Vec3> places;
-  for (const Affine& global : poseGlobals(skeleton, pose)) places.push_back(global.translation());
-  return places;
-}
-
 // The rotation that brings `from` nearest to `to`, both about their origin (Kabsch 1976).
 Quat rotationBetween(const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
   Mat3 sum = Mat3::Zero();
@@ -41,8 +35,8 @@ class TwinMatcher {
         target_(target),
         sourceTree_(source),
         targetTree_(target),
-        from_(placesOf(source, restPose(source))),
-        to_(placesOf(target, restPose(target))) {}
+        from_(restPositions(source)),
+        to_(restPositions(target)) {}
 
   std::optional<Twins> match() {
     if (source_.jointCount() != target_.jointCount() || source_.jointCount() < 2) return std::nullopt;
@@ -262,7 +256,7 @@ std::optional<Twins> matchTwins(const Skeleton& source, const Skeleton& target) 
 
 Pose poseAsTwin(const Skeleton& source, const Pose& sourcePose, const Skeleton& target, const Twins& twins) {
   const JointTree tree(target);
-  const std::vector<Vec3> from = placesOf(source, sourcePose), to = placesOf(target, restPose(target));
+  const std::vector<Vec3> from = posePositions(source, sourcePose), to = restPositions(target);
   std::vector<Quat> turns(target.jointCount());        // of each joint with what hangs on it, in the target's space
   std::vector<bool> lies(target.jointCount(), false);  // all below is where it has to be
   std::vector<Vec3> wanted, is;

@@ -15,7 +15,6 @@ using limber::testing::inRestPose;
 using limber::testing::NameHabit;
 using limber::testing::nameless;
 using limber::testing::personWith;
-using limber::testing::restPlaces;
 using limber::testing::scaled;
 using limber::testing::turn;
 using limber::testing::turnedAsAWhole;
@@ -129,7 +128,7 @@ TEST(TwinMatch, NothingAndJointsInOnePlaceAreNone) {
 void expectParallel(const Skeleton& source, const Pose& sourcePose, const Skeleton& target, const Twins& twins,
                     const Pose& pose) {
   const std::vector<Affine> from = poseGlobals(source, sourcePose), to = poseGlobals(target, pose);
-  const double size = twins.scale * (restPlaces(source)[0]).norm();
+  const double size = twins.scale * (restPositions(source)[0]).norm();
   for (Index j = 0; j < target.jointCount(); ++j) {
     const Vec3 wanted =
         twins.scale * (twins.turn * (from[twins.sourceOf[j]].translation() - from[twins.sourceOf[0]].translation()));

@@ -106,8 +106,7 @@ PosedGeometry posedGeometry(const Asset& asset, const AssetSkeleton& skeleton, c
   normalizeWeights(weights);
 
   const std::vector<Affine> transforms = skinTransforms(skeleton.skeleton, pose);
-  std::vector<Vec3> centers;
-  for (const Affine& global : restGlobals(skeleton.skeleton)) centers.push_back(global.translation());
+  const std::vector<Vec3> centers = restPositions(skeleton.skeleton);
   const Deformer& method = findDeformer(deformer);
   std::vector<float> scratch(method.scratchSize(skeleton.skeleton.jointCount()));
   std::vector<Vec3f>& positions = result.geometry.positions;

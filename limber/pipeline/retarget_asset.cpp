@@ -41,7 +41,7 @@ std::vector<RetargetedClip> retargetOnto(Asset& asset, const Motion& given, cons
   const Motion motion = asItRests(given);
   const AssetSkeleton character = animatedSkeleton(asset);
   const SkeletonMap map = options.mapJson ? skeletonMapFromJson(*options.mapJson, motion.skeleton, character.skeleton)
-                                          : matchSkeletons(motion.skeleton, character.skeleton);
+                                          : matchSkeletons(motion.skeleton, character.skeleton, options.unlikeBodies);
   std::vector<RetargetedClip> reports;
   std::vector<Clip> clips;
   for (std::size_t c = 0; c < motion.clips.size(); ++c) {

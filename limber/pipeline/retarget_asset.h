@@ -17,6 +17,7 @@ struct RetargetAssetOptions {
   RetargetOptions retarget;
   std::optional<double> frameRate;     // of the clips; none: each motion's own
   std::optional<std::string> mapJson;  // joints matched as this map says (skeleton_map.h)
+  bool unlikeBodies = false;           // as matchSkeletons; with a map that map says
   Quat turn = Quat::Identity();        // of the clips, about the origin (standUpright)
 };
 

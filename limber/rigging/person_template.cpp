@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "limber/skeleton/humanoid_names.h"
+#include "limber/anatomy/humanoid_joints.h"
 #include "limber/templates/joints_between.h"
 
 namespace limber {
@@ -133,10 +133,7 @@ void addTips(PersonTemplate& person, const std::vector<Index>& fingers) {
 }  // namespace
 
 std::optional<PersonTemplate> personTemplate(const Skeleton& skeleton, const TemplateSkeleton& own) {
-  std::vector<HumanoidJoint> bones = humanoidJointsByName(skeleton);
-  // Hips that stand on the ground are a root: the joint in the pelvis takes their place.
-  const std::optional<Index> pelvis = pelvisByName(skeleton);
-  if (pelvis && bones.front().bone == "hips") bones.front().joint = *pelvis;
+  const std::vector<HumanoidJoint> bones = humanoidJoints(skeleton);
   PersonTemplate person;
   person.skeleton = {own.name, own.summary, {}};
   std::vector<std::optional<Index>> kept(own.jointCount());

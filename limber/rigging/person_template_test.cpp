@@ -138,7 +138,9 @@ TEST(PersonTemplate, IsNoneForAnimalsAndForParts) {
   Skeleton own = hangingArms();
   EXPECT_TRUE(personTemplate(own, templateFrom(own, "mine")));
   own.joints[*own.find("LowerLeg.R")].name = "Stick";
-  EXPECT_FALSE(personTemplate(own, templateFrom(own, "mine")));
+  EXPECT_TRUE(personTemplate(own, templateFrom(own, "mine"))) << "it lies where a shin does";
+  own.joints.resize(*own.find("UpperLeg.R"));
+  EXPECT_FALSE(personTemplate(own, templateFrom(own, "mine"))) << "on one leg";
   // On its hands and feet: the trunk level.
   own = hangingArms();
   const Index chest = *own.find("Chest");

@@ -250,13 +250,11 @@ void setInterpolationOf(Movement& movement, Interpolation interpolation) {
 }
 
 std::vector<Vec3> sourceJoints(const Movement& movement) {
-  std::vector<Vec3> places;
-  if (!movement.chosen || !movement.clips[*movement.chosen].source) return places;
+  if (!movement.chosen || !movement.clips[*movement.chosen].source) return {};
   const ClipSource& source = *movement.clips[*movement.chosen].source;
   Pose pose = restPose(source.motion->skeleton);
   sampleClip(source.motion->clips[source.clip], movement.seconds, pose);
-  for (const Affine& global : poseGlobals(source.motion->skeleton, pose)) places.push_back(global.translation());
-  return places;
+  return posePositions(source.motion->skeleton, pose);
 }
 
 }  // namespace limber

@@ -473,8 +473,7 @@ std::optional<PickHit> Session::pick(const Ray& ray, double slope) const {
   if (!ray.origin.allFinite() || !ray.direction.allFinite() || !(ray.direction.norm() > 0)) {
     refuse("the ray has no direction");
   }
-  std::vector<Vec3> centers;
-  for (const Affine& global : poseGlobals(state_.rig->skeleton(), state_.pose)) centers.push_back(global.translation());
+  const std::vector<Vec3> centers = posePositions(state_.rig->skeleton(), state_.pose);
   if (const std::optional<PickHit> handle = pickHandle(ray, centers, state_.rig->radii, slope)) return handle;
   return pickSurface(ray, *state_.rig, state_.pose);
 }

@@ -5,17 +5,11 @@
 
 namespace limber {
 
-// How a skeleton's two sides lie.
+// How a skeleton's two sides lie. A joint's partner hangs on its parent's partner.
 struct SkeletonMirror {
   std::vector<Index> partner;   // #J: the joint of the other side; a joint of the middle is its own
   Vec3 normal = Vec3::UnitX();  // of the plane between the sides, in the skeleton's space
 };
-
-// Partners by names first ("LeftArm", "arm.L", "lArm", and those of humanoidJointsByName), then by where joints lie in
-// rest pose (within 3 % of the skeleton's size of each other's mirror image, below partners). A joint's partner hangs
-// on its parent's partner. The plane is at right angles to the lines between partners, along an axis where it is nearly
-// so; at right angles to X where there are none.
-SkeletonMirror findMirror(const Skeleton& skeleton);
 
 // The clip as it looks in a mirror in that plane through the roots' rest places: what the left hand did the right one
 // does. Keys and interpolation stay. Exact where the rest pose is symmetric; else each joint turns from its own rest

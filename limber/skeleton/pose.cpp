@@ -30,6 +30,17 @@ std::vector<Affine> poseGlobals(const Skeleton& skeleton, const Pose& pose) {
   return globals;
 }
 
+std::vector<Vec3> posePositions(const Skeleton& skeleton, const Pose& pose) {
+  std::vector<Vec3> positions;
+  positions.reserve(skeleton.joints.size());
+  for (const Affine& global : poseGlobals(skeleton, pose)) positions.push_back(global.translation());
+  return positions;
+}
+
+std::vector<Vec3> restPositions(const Skeleton& skeleton) {
+  return posePositions(skeleton, restPose(skeleton));
+}
+
 std::vector<Affine> inverseBindOf(const Skeleton& skeleton) {
   std::vector<Affine> inverses = restGlobals(skeleton);
   for (Index j = 0; j < skeleton.jointCount(); ++j) {

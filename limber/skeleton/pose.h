@@ -15,6 +15,9 @@ struct Pose {
 
 Pose restPose(const Skeleton& skeleton);
 std::vector<Affine> poseGlobals(const Skeleton& skeleton, const Pose& pose);
+// #J, where the joints are, in the skeleton's space.
+std::vector<Vec3> posePositions(const Skeleton& skeleton, const Pose& pose);
+std::vector<Vec3> restPositions(const Skeleton& skeleton);
 
 // #J inverses of the rest globals: mesh space to joint space. Throws Error kBadData naming a joint whose rest transform
 // has no inverse (a scale of 0).

@@ -87,7 +87,7 @@ TemplateVariant bentTemplate(const TemplateSkeleton& skeleton, std::span<const B
   TemplateVariant variant = {skeleton, kBentCost};
   variant.skeleton.standing = standingPlaces(skeleton);
   const Skeleton standing = skeletonOf(skeleton, variant.skeleton.standing, size);
-  const JointLimits limits = humanoidLimits(standing, humanoidJointsByName(standing));
+  const JointLimits limits = humanoidLimits(standing, jointsCalledAsBones(standing));
   const std::vector<IkTarget> wanted = ikTargets(skeleton, targets);
   Pose pose = restPose(standing);
   startNear(wanted, standing, pose);

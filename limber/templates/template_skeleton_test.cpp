@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "limber/core/error.h"
-#include "limber/skeleton/humanoid_names.h"
+#include "limber/skeleton/humanoid_bones.h"
 
 namespace limber {
 

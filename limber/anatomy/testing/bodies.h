@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "limber/anatomy/body_part.h"
+#include "limber/core/numbers.h"
 
 namespace limber::testing {
 
@@ -25,6 +27,40 @@ inline Skeleton nameless(Skeleton skeleton, const std::string& stem = "q") {
   return skeleton;
 }
 
+inline Quat turn(const Vec3& axis, double degrees) {
+  return Quat(Eigen::AngleAxisd(degrees * kPi / 180, axis.normalized()));
+}
+
+inline Skeleton inRestPose(Skeleton skeleton, const std::map<std::string, Quat>& turns) {
+  for (const auto& [name, rotation] : turns) {
+    Quat& rest = skeleton.joints[skeleton.find(name).value()].rest.rotation;
+    rest = rotation * rest;
+  }
+  return skeleton;
+}
+
+// A joint more on the way from the parent of `child` to it.
+inline Skeleton withJointBefore(const Skeleton& skeleton, const std::string& child, const std::string& name) {
+  Skeleton longer;
+  const Index at = skeleton.find(child).value();
+  for (Index j = 0; j < skeleton.jointCount(); ++j) {
+    Joint joint = skeleton.joints[j];
+    if (j == at) {
+      Joint link = joint;
+      link.name = name;
+      link.rest.translation *= 0.4;
+      link.rest.rotation = Quat::Identity();
+      longer.joints.push_back(link);
+      joint.parent = at;
+      joint.rest.translation *= 0.6;
+    } else if (joint.parent && *joint.parent >= at) {
+      joint.parent = *joint.parent + 1;
+    }
+    longer.joints.push_back(joint);
+  }
+  return longer;
+}
+
 // The whole of it, about the origin.
 inline Skeleton turnedAsAWhole(Skeleton skeleton, const Quat& turn) {
   for (Joint& joint : skeleton.joints) {
@@ -33,12 +69,6 @@ inline Skeleton turnedAsAWhole(Skeleton skeleton, const Quat& turn) {
     joint.rest.rotation = turn * joint.rest.rotation;
   }
   return skeleton;
-}
-
-inline std::vector<Vec3> restPlaces(const Skeleton& skeleton) {
-  std::vector<Vec3> places;
-  for (const Affine& global : restGlobals(skeleton)) places.push_back(global.translation());
-  return places;
 }
 
 // The same on a root on the ground, on which these joints hang, too.
@@ -179,6 +209,10 @@ inline MadeBody personWith(NameHabit habit) {
     }
   }
   return body;
+}
+
+inline Skeleton vrmPerson() {
+  return personWith(NameHabit::kVrm).skeleton;
 }
 
 // Of joints that go on from each other, each at `step` from the one before.

@@ -15,10 +15,6 @@
 
 namespace limber::testing {
 
-inline Quat turn(const Vec3& axis, double degrees) {
-  return Quat(Eigen::AngleAxisd(degrees * kPi / 180, axis.normalized()));
-}
-
 // The practice humanoid (T-pose, all rotations identities) walks forward, its standing foot exactly still on the
 // ground, while every joint of trunk, arms and hands turns.
 inline PoseSequence walk(const Skeleton& person, std::size_t frames = 120, double framesPerSecond = 60) {
@@ -80,39 +76,9 @@ inline Skeleton withOtherAxes(Skeleton skeleton) {
   return skeleton;
 }
 
-inline Skeleton inRestPose(Skeleton skeleton, const std::map<std::string, Quat>& turns) {
-  for (const auto& [name, rotation] : turns) {
-    Quat& rest = skeleton.joints[skeleton.find(name).value()].rest.rotation;
-    rest = rotation * rest;
-  }
-  return skeleton;
-}
-
 inline Skeleton scaled(Skeleton skeleton, double factor) {
   for (Joint& joint : skeleton.joints) joint.rest.translation *= factor;
   return skeleton;
-}
-
-// A joint more on the way from the parent of `child` to it.
-inline Skeleton withJointBefore(const Skeleton& skeleton, const std::string& child, const std::string& name) {
-  Skeleton longer;
-  const Index at = skeleton.find(child).value();
-  for (Index j = 0; j < skeleton.jointCount(); ++j) {
-    Joint joint = skeleton.joints[j];
-    if (j == at) {
-      Joint link = joint;
-      link.name = name;
-      link.rest.translation *= 0.4;
-      link.rest.rotation = Quat::Identity();
-      longer.joints.push_back(link);
-      joint.parent = at;
-      joint.rest.translation *= 0.6;
-    } else if (joint.parent && *joint.parent >= at) {
-      joint.parent = *joint.parent + 1;
-    }
-    longer.joints.push_back(joint);
-  }
-  return longer;
 }
 
 // A person with a hock in each shin, a hand's breadth behind the line from knee to foot, as an upright dinosaur's.

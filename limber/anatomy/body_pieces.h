@@ -1,4 +1,4 @@
-// The pieces of one body that matching compares: the labelled parts, cut at the landmarks of limbs.
+// The pieces of one body: the labelled parts, cut at the landmarks of limbs.
 #pragma once
 
 #include <optional>
@@ -12,8 +12,9 @@ namespace limber {
 // Limbs with the same marks correspond: `marks` are those of Segment that begin at a joint, in order.
 struct LimbPieces {
   const Part* part = nullptr;
-  std::vector<Index> joints;                           // from where it hangs
-  std::vector<double> along;                           // #joints, 0 to 1 along the limb
+  std::vector<Index> joints;   // from where it hangs; of fingers without a metacarpal in the palm, and without tips
+  std::size_t firstPiece = 0;  // 1 of a thumb of two joints: it lacks the one in the palm
+  std::vector<double> along;   // #joints, 0 to 1 along the limb
   std::vector<std::pair<Segment, std::size_t>> marks;  // and the joint at which they begin
 };
 

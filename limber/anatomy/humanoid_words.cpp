@@ -1,4 +1,4 @@
-#include "limber/skeleton/humanoid_words.h"
+#include "limber/anatomy/humanoid_words.h"
 
 #include <algorithm>
 #include <array>

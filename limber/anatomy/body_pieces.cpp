@@ -1,4 +1,4 @@
-#include "limber/matching/body_pieces.h"
+#include "limber/anatomy/body_pieces.h"
 
 #include <algorithm>
 #include <limits>
@@ -9,15 +9,29 @@ namespace limber {
 
 namespace {
 
-LimbPieces piecesOf(const Part& part, const std::vector<Affine>& rest, const JointTree& tree) {
+constexpr std::size_t kFingerJoints = 3;  // that a hand's finger has, its metacarpal apart (a thumb with it)
+
+// A metacarpal in the palm is told by its name alone.
+void trimFinger(LimbPieces& limb, const Skeleton& skeleton) {
+  const auto nameAt = [&](Index joint) { return std::string_view(skeleton.joints[joint].name); };
+  std::vector<Index>& joints = limb.joints;
+  const bool isThumb = limb.part->pair == 0;
+  if (!isThumb && joints.size() > 1 && saysMetapodial(nameAt(joints.front()))) joints.erase(joints.begin());
+  while (joints.size() > 1 && readJointWords(nameAt(joints.back())).has(NameMark::kEnd)) joints.pop_back();
+  if (joints.size() > kFingerJoints) joints.resize(kFingerJoints);
+  if (isThumb && joints.size() == 2) limb.firstPiece = 1;
+}
+
+LimbPieces piecesOf(const Part& part, const Skeleton& skeleton, const std::vector<Vec3>& rest, const JointTree& tree) {
   LimbPieces limb;
   limb.part = &part;
   limb.joints = part.joints;
+  if (part.kind == PartKind::kFinger) trimFinger(limb, skeleton);
   double length = 0;
-  for (std::size_t i = 0; i < part.joints.size(); ++i) {
-    if (i > 0) length += (rest[part.joints[i]].translation() - rest[part.joints[i - 1]].translation()).norm();
+  for (std::size_t i = 0; i < limb.joints.size(); ++i) {
+    const Index joint = limb.joints[i];
+    if (i > 0) length += (rest[joint] - rest[limb.joints[i - 1]]).norm();
     limb.along.push_back(length);
-    const Index joint = part.joints[i];
     const auto mark = [&](const std::optional<Index>& landmark, Segment segment) {
       if (landmark == joint) limb.marks.emplace_back(segment, i);
     };
@@ -40,10 +54,10 @@ BodyPieces::BodyPieces(const Skeleton& skeleton, const AnatomyOptions& options)
     : anatomy(readAnatomy(skeleton, options)) {
   const JointTree tree(skeleton);
   findCenter(skeleton, tree);
-  const std::vector<Affine> rest = restGlobals(skeleton);
+  const std::vector<Vec3> rest = restPositions(skeleton);
   for (const Part& part : anatomy.parts) {
     const bool isCenter = part.kind == PartKind::kTrunk || part.kind == PartKind::kNeck || part.kind == PartKind::kHead;
-    if (!isCenter) limbs.push_back(piecesOf(part, rest, tree));
+    if (!isCenter) limbs.push_back(piecesOf(part, skeleton, rest, tree));
   }
 }
 
@@ -56,7 +70,8 @@ void BodyPieces::findCenter(const Skeleton& skeleton, const JointTree& tree) {
   if (headPart) head = headPart->joints.front();
   const std::optional<Index> above = neckPart ? std::optional(neckPart->joints.front()) : head;
   // Up the spine, or to where it ends.
-  const std::optional<Index> spine = above ? above : trunkPart ? std::optional(trunkPart->joints.back()) : std::nullopt;
+  std::optional<Index> spine = above;
+  if (!spine && trunkPart) spine = trunkPart->joints.back();
   const Index hindmost = anatomy.pairsOf(PartKind::kLeg);
   if (spine && hindmost > 0) {
     std::optional<Index> fork;
@@ -108,10 +123,10 @@ void BodyPieces::findCenter(const Skeleton& skeleton, const JointTree& tree) {
 }
 
 void BodyPieces::cutLegsWhereTheyStand(const Skeleton& skeleton) {
-  const std::vector<Affine> rest = restGlobals(skeleton);
-  constexpr double kFootHeight =
-      0.2;  // of the legs' height: a foot's joint is lower (a shin's of the shared animals 0.3 and more)
-  const auto height = [&](Index joint) { return anatomy.axes.up.dot(rest[joint].translation()); };
+  const std::vector<Vec3> rest = restPositions(skeleton);
+  // Of the legs' height: a foot's joint is lower (a shin's of the shared animals 0.3 and more).
+  constexpr double kFootHeight = 0.2;
+  const auto height = [&](Index joint) { return anatomy.axes.up.dot(rest[joint]); };
   double lowest = std::numeric_limits<double>::infinity(), tops = 0, legs = 0;
   for (const LimbPieces& limb : limbs) {
     if (limb.part->kind != PartKind::kLeg) continue;

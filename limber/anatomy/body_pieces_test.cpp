@@ -1,22 +1,24 @@
-#include "limber/matching/body_pieces.h"
+#include "limber/anatomy/body_pieces.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <string>
 
-#include "limber/matching/testing/test_motion.h"
+#include "limber/anatomy/testing/bodies.h"
 
 namespace limber {
 namespace {
 
 using limber::testing::inRestPose;
 using limber::testing::turn;
+using limber::testing::vrmPerson;
 using limber::testing::withJointBefore;
 
 constexpr AnatomyOptions kByForm{false, {}};
+constexpr double kDoubtful = 0.75;
 
-// Names of joints are not looked at: those of the practice humanoid say what is right. Returns how many of its main
+// Names of joints are not looked at: those of VRM say what is right. Returns how many of its main
 // bones were found.
 std::size_t expectRight(const Skeleton& skeleton) {
   const BodyPieces body(skeleton, kByForm);
@@ -49,11 +51,16 @@ Skeleton onAnkles(const Skeleton& skeleton) {
 }
 
 TEST(BodyPieces, APersonByForm) {
-  EXPECT_GE(expectRight(practiceHumanoid()), 17u);
+  EXPECT_GE(expectRight(vrmPerson()), 17u);
 }
 
 TEST(BodyPieces, HalfWayJointsDoNotMislead) {
-  Skeleton person = practiceHumanoid();
+  Skeleton person = vrmPerson();
+  for (const std::string side : {"left", "right"}) {  // a hand that ends an arm might be its fingers
+    const double x = side == "left" ? 1 : -1;
+    limber::testing::addJoint(person, side + "Finger", side + "Hand", Vec3(0.09 * x, 0, 0));
+    limber::testing::addJoint(person, side + "Tip", side + "Finger", Vec3(0.05 * x, 0, 0));
+  }
   for (const char* end : {"leftLowerArm", "rightLowerArm", "leftLowerLeg", "rightLowerLeg", "leftHand", "rightHand"}) {
     person = withJointBefore(person, end, std::string("twist_") + end);
   }
@@ -61,7 +68,7 @@ TEST(BodyPieces, HalfWayJointsDoNotMislead) {
 }
 
 TEST(BodyPieces, BentKneesTellTheFront) {
-  Skeleton person = onAnkles(practiceHumanoid());
+  Skeleton person = onAnkles(vrmPerson());
   for (const char* side : {"left", "right"}) {
     const std::string name(side);
     person = inRestPose(person,
@@ -76,7 +83,7 @@ TEST(BodyPieces, BentKneesTellTheFront) {
 
 // As of a dinosaur without toes.
 TEST(BodyPieces, AHeadFarAheadTellsTheFrontWhereHocksBendBackward) {
-  Skeleton leaning = inRestPose(onAnkles(practiceHumanoid()), {{"spine", turn(Vec3::UnitX(), 80)}});
+  Skeleton leaning = inRestPose(onAnkles(vrmPerson()), {{"spine", turn(Vec3::UnitX(), 80)}});
   for (const char* side : {"left", "right"}) {
     const std::string name(side);
     leaning = inRestPose(leaning,
@@ -89,7 +96,7 @@ TEST(BodyPieces, AHeadFarAheadTellsTheFrontWhereHocksBendBackward) {
 }
 
 TEST(BodyPieces, ATrunkThatLeansMayHangBesideArmsAndLegs) {
-  Skeleton person = inRestPose(practiceHumanoid(), {{"spine", turn(Vec3::UnitX(), 80)}});
+  Skeleton person = inRestPose(vrmPerson(), {{"spine", turn(Vec3::UnitX(), 80)}});
   const std::vector<Affine> globals = restGlobals(person);
   const Index hips = person.find("hips").value();
   for (const char* shoulder : {"leftShoulder", "rightShoulder"}) {
@@ -106,7 +113,7 @@ TEST(BodyPieces, ATrunkThatLeansMayHangBesideArmsAndLegs) {
 
 // A joint called hips that carries them all is the pelvis, though legs and spine part below it.
 TEST(BodyPieces, HipsByNameMayCarryAPelvis) {
-  Skeleton person = practiceHumanoid();
+  Skeleton person = vrmPerson();
   for (Joint& joint : person.joints) joint.parent = joint.parent ? *joint.parent + 1 : 0;
   person.joints[0].name = "body";
   person.joints.insert(person.joints.begin(), Joint{"Hips", std::nullopt, {}, 0});
@@ -129,16 +136,15 @@ constexpr PartKind kMainParts[] = {PartKind::kTrunk, PartKind::kArm, PartKind::k
 
 TEST(BodyPieces, ACleanPersonIsSure) {
   for (const PartKind kind : kMainParts) {
-    EXPECT_GE(leastConfidence(practiceHumanoid(), kind), kDoubtful) << nameOf(kind);
-    EXPECT_GE(leastConfidence(practiceHumanoid(), kind, true), kDoubtful) << nameOf(kind);
+    EXPECT_GE(leastConfidence(vrmPerson(), kind), kDoubtful) << nameOf(kind);
+    EXPECT_GE(leastConfidence(vrmPerson(), kind, true), kDoubtful) << nameOf(kind);
   }
-  EXPECT_LT(leastConfidence(practiceHumanoid(), PartKind::kArm),
-            leastConfidence(practiceHumanoid(), PartKind::kArm, true))
+  EXPECT_LT(leastConfidence(vrmPerson(), PartKind::kArm), leastConfidence(vrmPerson(), PartKind::kArm, true))
       << "a name says more";
 }
 
 TEST(BodyPieces, ATailIsOne) {
-  Skeleton tailed = practiceHumanoid();
+  Skeleton tailed = vrmPerson();
   limber::testing::addJoint(tailed, "b1", "hips", Vec3(0, 0.1, -0.45));
   limber::testing::addJoint(tailed, "b2", "b1", Vec3(0, 0, -0.45));
   const BodyPieces body(tailed, kByForm);
@@ -150,26 +156,22 @@ TEST(BodyPieces, ATailIsOne) {
 
 // A person's form is then the same from the front and the back.
 TEST(BodyPieces, WithoutToesLeftIsAGuess) {
-  Skeleton person = onAnkles(practiceHumanoid());
-  std::erase_if(person.joints, [](const Joint& joint) { return joint.name == "jaw" || joint.name.ends_with("Eye"); });
-  for (Joint& joint : person.joints) {
-    if (joint.parent) joint.parent = person.find(onAnkles(practiceHumanoid()).joints[*joint.parent].name);
-  }
-  EXPECT_LT(leastConfidence(person, PartKind::kLeg), leastConfidence(practiceHumanoid(), PartKind::kLeg));
+  const Skeleton person = onAnkles(vrmPerson());
+  EXPECT_LT(leastConfidence(person, PartKind::kLeg), leastConfidence(vrmPerson(), PartKind::kLeg));
   EXPECT_GE(leastConfidence(person, PartKind::kTrunk), kDoubtful);
 }
 
 TEST(BodyPieces, OddArmsAreLessSure) {
-  Skeleton person = practiceHumanoid();
+  Skeleton person = vrmPerson();
   for (Joint& joint : person.joints) {
     if (joint.name == "leftHand" || joint.name == "rightHand") joint.rest.translation *= 0.3;
   }
-  EXPECT_LT(leastConfidence(person, PartKind::kArm), leastConfidence(practiceHumanoid(), PartKind::kArm));
+  EXPECT_LT(leastConfidence(person, PartKind::kArm), leastConfidence(vrmPerson(), PartKind::kArm));
   EXPECT_GE(leastConfidence(person, PartKind::kLeg), kDoubtful);
 }
 
 TEST(BodyPieces, LimbsAreMeasuredFromWhereTheyHang) {
-  const Skeleton person = practiceHumanoid();
+  const Skeleton person = vrmPerson();
   const BodyPieces body(person);
   const LimbPieces* leg = body.find(PartKind::kLeg, Side::kLeft, 0);
   ASSERT_TRUE(leg);

@@ -1,4 +1,4 @@
-// The words in joints' names, as humanoid_names.cpp reads them. Internal to the module.
+// The words in joints' names, without their neighbours. Internal to the module.
 #pragma once
 
 #include <string>
