@@ -178,4 +178,42 @@ const LimbPieces* BodyPieces::find(PartKind kind, Side side, Index pair) const {
   return found == limbs.end() ? nullptr : &*found;
 }
 
+std::vector<Index> BodyPieces::lineOfLimbless(const Skeleton& skeleton) const {
+  const JointTree tree(skeleton);
+  std::vector<Index> body, fronts;
+  for (const Part& part : anatomy.parts) {
+    switch (part.kind) {
+      case PartKind::kLeg:
+      case PartKind::kArm:
+      case PartKind::kWing:
+      case PartKind::kFin:
+        return {};
+      case PartKind::kTrunk:
+      case PartKind::kTail:
+        body.insert(body.end(), part.joints.begin(), part.joints.end());
+        break;
+      case PartKind::kHead:
+        fronts.push_back(part.joints.front());
+        break;
+      default:
+        break;
+    }
+  }
+  if (body.empty()) return {};
+  if (fronts.empty()) fronts.push_back(body.front());
+  std::vector<Index> longest;
+  for (const Index front : fronts) {
+    for (const Index end : body) {
+      const std::optional<Index> meeting = tree.meeting(front, end);
+      if (!meeting) continue;
+      std::vector<Index> line = tree.pathBelow(*meeting, front);
+      std::reverse(line.begin(), line.end());
+      line.push_back(*meeting);
+      for (const Index joint : tree.pathBelow(*meeting, end)) line.push_back(joint);
+      if (line.size() > longest.size()) longest = std::move(line);
+    }
+  }
+  return longest;
+}
+
 }  // namespace limber

@@ -37,6 +37,10 @@ struct BodyPieces {
 
   const LimbPieces* find(PartKind kind, Side side, Index pair) const;
 
+  // Of a body without limbs, as a snake's, whatever its root: from the head, or where the trunk begins, to where it
+  // ends farthest away. Empty of others.
+  std::vector<Index> lineOfLimbless(const Skeleton& skeleton) const;
+
  private:
   void findCenter(const Skeleton& skeleton, const JointTree& tree);
   bool splitAtForelegs(const JointTree& tree);

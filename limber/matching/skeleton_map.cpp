@@ -64,7 +64,12 @@ class Matcher {
   }
 
   SkeletonMap match() {
-    matchParts();
+    const std::vector<Index> sourceLine = from_.lineOfLimbless(source_), targetLine = to_.lineOfLimbless(target_);
+    areLines_ = sourceLine.size() > 1 && targetLine.size() > 1;
+    if (areLines_)
+      matchLines(sourceLine, targetLine);
+    else
+      matchParts();
     if (std::optional<Twins> twins = matchTwins(source_, target_)) {
       matchTwinJoints(*twins);
       map_.jointByJoint = !map_.isBiped() || areAnimals();
@@ -119,6 +124,42 @@ class Matcher {
       const LimbPieces* like =
           part.pair + more < own ? nullptr : from_.find(part.kind, part.side, part.pair + more - own);
       if (like && alikeCarried(*like, limb)) matchLimb(*like, limb);
+    }
+  }
+
+  // Joints of snakes go by where they lie along the body: what is trunk or tail of it nobody can tell, and some hang on
+  // the head, some on the tail.
+  void matchLines(const std::vector<Index>& sourceLine, const std::vector<Index>& targetLine) {
+    const auto alongOf = [](const Skeleton& skeleton, const std::vector<Index>& line) {
+      const std::vector<Vec3> rest = restPositions(skeleton);
+      std::vector<double> along = {0};
+      for (std::size_t i = 1; i < line.size(); ++i)
+        along.push_back(along.back() + (rest[line[i]] - rest[line[i - 1]]).norm());
+      if (along.back() > 0) {
+        for (double& each : along) each /= along.back();
+      }
+      return along;
+    };
+    const std::vector<double> others = alongOf(source_, sourceLine), own = alongOf(target_, targetLine);
+    const auto carrier = std::min_element(targetLine.begin(), targetLine.end(), [&](Index a, Index b) {
+      return targetTree_.depth(a) < targetTree_.depth(b);
+    });
+    const std::vector<std::vector<Index>> from = groupedAlong(sourceLine, others, own),
+                                          to = groupedAlong(targetLine, own, others);
+    const double confidence = std::min(from_.centerConfidence, to_.centerConfidence);
+    BodyPart piece = body_part::kTrunk;
+    for (std::size_t i = 0; i < to.size(); ++i) {
+      const bool carries = std::find(to[i].begin(), to[i].end(), *carrier) != to[i].end();
+      const bool isHead = i == 0 && from_.head && to_.head;
+      add(carries  ? body_part::kPelvis
+          : isHead ? body_part::kHead
+                   : piece,
+          from[i], to[i], confidence, MatchedBy::kShape);
+      if (!carries && !isHead) ++piece.piece;
+    }
+    for (const LimbPieces& part : to_.limbs) {
+      const LimbPieces* like = from_.find(part.part->kind, part.part->side, part.part->pair);
+      if (like && part.part->kind == PartKind::kJaw) matchLimb(*like, part);
     }
   }
 
@@ -396,6 +437,7 @@ class Matcher {
 
   // The body itself, and something that hangs on it: hips and a head move nothing.
   bool moves() const {
+    if (areLines_) return map_.matches.size() >= kFewNamed;
     const auto both = [&](PartKind kind) {
       return std::any_of(map_.matches.begin(), map_.matches.end(),
                          [&](const JointMatch& match) { return match.part.kind == kind; });
@@ -505,7 +547,7 @@ class Matcher {
   }
 
   const Skeleton &source_, &target_;
-  bool unlikeBodies_;
+  bool unlikeBodies_, areLines_ = false;
   BodyPieces from_, to_;
   JointTree sourceTree_, targetTree_;
   SkeletonMap map_;
