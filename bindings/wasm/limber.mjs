@@ -24,7 +24,7 @@ import createEngine from './limber_engine.mjs';
  * @typedef {{ do: string, [field: string]: unknown }} Command as limber/session/command.h has them
  *
  * As limber/session/session_state.h describes it.
- * @typedef {{ name: string, parent: number, radius: number, rest: Vector }} SessionJoint
+ * @typedef {{ name: string, parent: number, part: string | null, radius: number, rest: Vector }} SessionJoint
  * @typedef {{ name: string, vertices: number, triangles: number, box: { min: Vector, max: Vector }, own_rig: boolean,
  *             rigger: string, skinning: string, most_handles: number, suggestions: number[], joints: SessionJoint[],
  *             motions: { name: string, joints: { name: string, parent: number }[],

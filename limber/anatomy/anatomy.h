@@ -33,6 +33,7 @@ enum class PartKind {
 enum class Side { kCenter, kLeft, kRight };  // the body's own
 
 inline constexpr std::size_t kPartKinds = 15;  // of PartKind
+inline constexpr double kDoubtful = 0.75;      // probability: of what is less sure one in four may be wrong
 
 std::string_view nameOf(PartKind kind);  // "leg"
 std::string_view nameOf(Side side);      // "left"

@@ -126,4 +126,45 @@ std::optional<BodyPart> bodyPartNamed(std::string_view name) {
   return nameOf(part) == name ? std::optional(part) : std::nullopt;
 }
 
+std::optional<BodyPart> bodyPartAt(const Anatomy& anatomy, Index joint) {
+  if (!anatomy.partOf[joint]) return std::nullopt;
+  const Part& part = anatomy.parts[*anatomy.partOf[joint]];
+  BodyPart piece{part.kind, part.side, part.pair, Segment::kWhole, 0};
+  const std::array<std::pair<std::optional<Index>, Segment>, 5> landmarks = {{{part.upper, Segment::kUpper},
+                                                                              {part.middle, Segment::kMiddle},
+                                                                              {part.hock, Segment::kHock},
+                                                                              {part.end, Segment::kEnd},
+                                                                              {part.toes, Segment::kToes}}};
+  if (part.upper && part.upper != part.joints.front()) piece.segment = Segment::kBase;
+  for (const Index along : part.joints) {
+    for (const auto& [landmark, segment] : landmarks) {
+      if (landmark == along) piece.segment = segment;
+    }
+    if (along == joint) return piece;
+  }
+  piece.segment = Segment::kWhole;  // it branches off
+  return piece;
+}
+
+std::string labelOf(const Anatomy& anatomy, Index joint) {
+  const std::optional<BodyPart> part = bodyPartAt(anatomy, joint);
+  if (!part) return "";
+  const Index pairs = anatomy.pairsOf(part->kind);
+  const bool isLimb = part->kind == PartKind::kLeg || part->kind == PartKind::kArm;
+  std::string label;
+  const auto say = [&](std::string_view word) {
+    if (!label.empty()) label.push_back(' ');
+    label.append(word);
+  };
+  if (part->side != Side::kCenter) say(nameOf(part->side));
+  if (isLimb && pairs == 2) say(part->pair == 0 ? "front" : "hind");
+  for (const char c : stem(*part)) {
+    const auto letter = static_cast<unsigned char>(c);
+    if (std::isupper(letter)) say("");
+    label.push_back(static_cast<char>(std::tolower(letter)));
+  }
+  if (part->pair > 0 && !(isLimb && pairs == 2)) say(std::to_string(part->pair + 1));
+  return label;
+}
+
 }  // namespace limber

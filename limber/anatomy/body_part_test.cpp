@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "limber/anatomy/testing/bodies.h"
 #include "limber/skeleton/humanoid_bones.h"
 
 namespace limber {
@@ -63,6 +64,27 @@ TEST(BodyPart, OtherNamesAreNone) {
                            "leftUpperLeg99999999999999999999", "leftUpperLegPiece99999999999999999999", "tail 2"}) {
     EXPECT_FALSE(bodyPartNamed(name)) << name;
   }
+}
+
+TEST(BodyPart, LabelsAreAsOneSaysThem) {
+  const auto labelIn = [](const Skeleton& skeleton, const char* joint) {
+    return labelOf(readAnatomy(skeleton), skeleton.find(joint).value());
+  };
+  const Skeleton person = testing::vrmPerson();
+  EXPECT_EQ(labelIn(person, "leftUpperArm"), "left upper arm");
+  EXPECT_EQ(labelIn(person, "rightToes"), "right toes");
+  EXPECT_EQ(labelIn(person, "leftShoulder"), "left shoulder");
+  EXPECT_EQ(labelIn(person, "head"), "head");
+  const Skeleton animal = testing::quadruped(0.5);
+  EXPECT_EQ(labelIn(animal, "b1LeftOne"), "left front upper leg");
+  EXPECT_EQ(labelIn(animal, "b0RightTwo"), "right hind lower leg");
+  EXPECT_EQ(labelIn(animal, "tail2"), "tail");
+  const Skeleton spider = testing::spider().skeleton;
+  const Anatomy anatomy = readAnatomy(spider);
+  std::set<std::string> labels;
+  for (Index j = 0; j < spider.jointCount(); ++j) labels.insert(labelOf(anatomy, j));
+  EXPECT_TRUE(labels.count("left foot"));
+  EXPECT_TRUE(labels.count("right foot 4"));
 }
 
 TEST(BodyPart, KindsAndSidesHaveNames) {

@@ -16,7 +16,6 @@ using limber::testing::vrmPerson;
 using limber::testing::withJointBefore;
 
 constexpr AnatomyOptions kByForm{false, {}};
-constexpr double kDoubtful = 0.75;
 
 // Names of joints are not looked at: those of VRM say what is right. Returns how many of its main
 // bones were found.

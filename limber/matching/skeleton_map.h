@@ -21,8 +21,6 @@ struct JointMatch {
   MatchedBy by = MatchedBy::kName;
 };
 
-inline constexpr double kDoubtful = 0.75;  // probability: one in four such matches may be wrong
-
 // A part of one of them that has no partner in the other.
 struct UnmatchedPart {
   BodyPart part;

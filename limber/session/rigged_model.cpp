@@ -23,6 +23,7 @@ std::shared_ptr<RiggedModel> readModel(Asset asset) {
   model->geometry = collectGeometry(model->asset);
   model->normals = readNormals(model->asset, model->geometry);
   model->binding = readSkeleton(model->asset);
+  model->anatomy = readAnatomy(model->skeleton());
   model->inverseBind = inverseBindOf(model->skeleton());
   model->weights = readWeights(model->asset, model->geometry, model->binding);
   normalizeWeights(model->weights);
@@ -70,6 +71,7 @@ std::shared_ptr<const RiggedModel> renameJoint(const RiggedModel& model, Index j
   renamed->asset.json()["nodes"][model.binding.jointNode[joint]]["name"] = name;
   renamed->binding = model.binding;
   renamed->binding.skeleton.joints[joint].name = name;
+  renamed->anatomy = readAnatomy(renamed->skeleton());
   renamed->inverseBind = model.inverseBind;
   renamed->radii = model.radii;
   renamed->geometry = model.geometry;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "limber/anatomy/anatomy.h"
 #include "limber/asset/rig_io.h"
 #include "limber/mesh/tri_mesh.h"
 #include "limber/pipeline/auto_rig.h"
@@ -19,6 +20,7 @@ namespace limber {
 struct RiggedModel {
   Asset asset;  // with the rig, its joints' nodes as in the file
   AssetSkeleton binding;
+  Anatomy anatomy;                  // of the skeleton at rest
   std::vector<Affine> inverseBind;  // #J
   std::vector<double> radii;        // #J metres, of the handles to take hold of; above 0
   Geometry geometry;                // #S vertices in world space, bound

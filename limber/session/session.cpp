@@ -270,9 +270,12 @@ struct Session::Runner {
   void operator()(const MirrorPose& c) const {
     SessionState next = state();
     const Geometry& geometry = next.rig->geometry;
-    const std::optional<MirrorMap> mirror = findMirror({geometry.positions, geometry.triangles});
+    std::optional<MirrorMap> mirror = findMirror({geometry.positions, geometry.triangles});
     if (!mirror)
       throw Error(ErrorCode::kUnsupported, "the model is not its own mirror image", session.state_.base->name);
+    if (next.rig->anatomy.axes.left().dot(mirror->plane.normal) < 0) {
+      mirror->plane = {-mirror->plane.normal, -mirror->plane.offset};
+    }
     const Skeleton& skeleton = next.rig->skeleton();
     const double tolerance = kMirrorTolerance * longestSide(*next.rig);
     next.pose =

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "limber/anatomy/body_part.h"
 #include "limber/ik/limit_outline.h"
 #include "limber/ik/limits_json.h"
 #include "limber/skeleton/keyframes.h"
@@ -20,6 +21,12 @@ Json textOrNull(std::string_view text) {
   return text.empty() ? Json(nullptr) : Json(std::string(text));
 }
 
+// What a joint is of the body, where that is sure enough to be said.
+Json partJson(const Anatomy& anatomy, Index joint) {
+  const std::optional<std::size_t> part = anatomy.partOf[joint];
+  return part && anatomy.parts[*part].confidence >= kDoubtful ? textOrNull(labelOf(anatomy, joint)) : Json(nullptr);
+}
+
 Json jointsJson(const RiggedModel& rig) {
   const std::vector<Affine> rest = restGlobals(rig.skeleton());
   Json joints = Json::array();
@@ -27,6 +34,7 @@ Json jointsJson(const RiggedModel& rig) {
     const Joint& joint = rig.skeleton().joints[j];
     joints.push_back({{"name", joint.name},
                       {"parent", joint.parent ? static_cast<int>(*joint.parent) : -1},
+                      {"part", partJson(rig.anatomy, j)},
                       {"radius", rig.radii[j]},
                       {"rest", vectorJson(rest[j].translation())}});
   }

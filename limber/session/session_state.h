@@ -7,7 +7,8 @@
 namespace limber {
 
 // {"name", "vertices", "triangles", "box": {"min", "max"}, "own_rig", "rigger", "skinning", "most_handles",
-//  "suggestions": [counts, best first], "joints": [{"name", "parent" (-1: none), "radius", "rest": position}],
+//  "suggestions": [counts, best first], "joints": [{"name", "parent" (-1: none), "part" ("left foot",
+//  null where doubtful), "radius", "rest": position}],
 //  "motions": [{"name", "joints": [{"name", "parent"}], "clips": [{"name", "duration"}]}],
 //  "clips": [{"name", "duration", "keys": [seconds], "interpolation", "source": null or {"motion", "clip", "method",
 //  "reach", "contacts"}}], "clip": the chosen one's index or null, "seconds",

@@ -215,6 +215,23 @@ TEST(Session, MirrorSwapsTheSidesOfASymmetricModel) {
   EXPECT_LT((jointAt(session, *left) - restGlobals(skeleton)[*left].translation()).norm(), 1e-6);
 }
 
+TEST(Session, LeftIsTheBodysOwn) {
+  for (const bool facesBack : {false, true}) {
+    Session session([&](std::string_view) { return testing::personGlb(facesBack); });
+    run(session, OpenFile{"person.glb"});
+    const Skeleton& skeleton = session.state().rig->skeleton();
+    const Json joints = sessionState(session)["joints"];
+    const Index hand = skeleton.find("leftHand").value(), otherHand = skeleton.find("rightHand").value();
+    EXPECT_EQ(joints[hand]["part"], "left hand");
+    EXPECT_EQ(joints[otherHand]["part"], "right hand");
+    run(session, TurnJoint{"leftUpperArm", Vec3(0, 0, 1), 40});
+    const Vec3 raised = jointAt(session, hand);
+    run(session, MirrorPose{MirrorFrom::kLeft});
+    EXPECT_LT((jointAt(session, hand) - raised).norm(), 1e-6) << "it stays";
+    EXPECT_LT((jointAt(session, otherHand) - Vec3(-raised.x(), raised.y(), raised.z())).norm(), 1e-6);
+  }
+}
+
 // Something of everything. Returns how many commands it took.
 std::size_t tellStory(Session& session) {
   std::size_t told = 0;

@@ -47,24 +47,26 @@ inline const Bytes& bipedGlb() {
 }
 
 // The same with a rig whose joints have a person's names, each vertex on the nearest.
+inline Bytes personGlb(bool facesBack) {
+  Asset asset = readAsset(bipedGlb(), "person.glb");
+  const Geometry geometry = collectGeometry(asset);
+  Skeleton skeleton = practiceHumanoid();
+  if (facesBack) skeleton.joints[0].rest.rotation = Quat(0, 0, 1, 0);
+  const std::vector<Affine> joints = restGlobals(skeleton);
+  SkinWeights weights;
+  weights.slots = 1;
+  for (const Vec3f& position : geometry.positions) {
+    Index nearest = 0;
+    const auto distance = [&](Index j) { return (joints[j].translation() - position.cast<double>()).norm(); };
+    for (Index j = 1; j < skeleton.jointCount(); ++j) nearest = distance(j) < distance(nearest) ? j : nearest;
+    weights.joints.push_back(nearest);
+    weights.weights.push_back(1.0f);
+  }
+  attachRig(asset, geometry, skeleton, weights);
+  return writeGlb(asset);
+}
 inline const Bytes& namedPersonGlb() {
-  static const Bytes bytes = [] {
-    Asset asset = readAsset(bipedGlb(), "person.glb");
-    const Geometry geometry = collectGeometry(asset);
-    const Skeleton skeleton = practiceHumanoid();
-    const std::vector<Affine> joints = restGlobals(skeleton);
-    SkinWeights weights;
-    weights.slots = 1;
-    for (const Vec3f& position : geometry.positions) {
-      Index nearest = 0;
-      const auto distance = [&](Index j) { return (joints[j].translation() - position.cast<double>()).norm(); };
-      for (Index j = 1; j < skeleton.jointCount(); ++j) nearest = distance(j) < distance(nearest) ? j : nearest;
-      weights.joints.push_back(nearest);
-      weights.weights.push_back(1.0f);
-    }
-    attachRig(asset, geometry, skeleton, weights);
-    return writeGlb(asset);
-  }();
+  static const Bytes bytes = personGlb(false);
   return bytes;
 }
 

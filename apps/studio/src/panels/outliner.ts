@@ -71,6 +71,8 @@ export function outliner(studio: Studio, page: PageStore, handles: HandleView): 
     meshList(page), clipList(studio, page), pinList(studio, page), targetList(studio, page), title, list, actions);
 }
 
+const plain = (name: string) => name.toLowerCase().replace(/[^a-z0-9]/g, '');
+
 /** In the order of the tree, each indented below its parent. */
 function rows({ joints }: SessionState): HTMLElement[] {
   const children = new Map<number, number[]>();
@@ -79,7 +81,9 @@ function rows({ joints }: SessionState): HTMLElement[] {
   const stack = [...(children.get(-1) ?? [])].reverse().map((joint) => ({ joint, depth: 0 }));
   for (let next = stack.pop(); next; next = stack.pop()) {
     const { joint, depth } = next;
-    const row = element('li', { role: 'option', id: `joint-${joint}`, 'data-joint': joint }, joints[joint]?.name ?? '');
+    const { name = '', part = null } = joints[joint] ?? {};
+    const row = element('li', { role: 'option', id: `joint-${joint}`, 'data-joint': joint }, name);
+    if (part !== null && plain(part) !== plain(name)) row.dataset['part'] = part;
     row.style.setProperty('--depth', String(Math.min(depth, 12)));
     made.push(row);
     for (const child of [...(children.get(joint) ?? [])].reverse()) stack.push({ joint: child, depth: depth + 1 });
