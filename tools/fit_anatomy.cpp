@@ -47,6 +47,28 @@ struct Example {
   double weight = 1;
 };
 
+// All features of each half joint.
+BodyMeasures::Table joined(const BodyMeasures::Table& one, const BodyMeasures::Table& other) {
+  BodyMeasures::Table both;
+  both.rows.push_back(0);
+  for (std::size_t i = 0; i + 1 < one.rows.size(); ++i) {
+    for (const BodyMeasures::Table* table : {&one, &other}) {
+      const auto begin = table->list.begin();
+      both.list.insert(both.list.end(), begin + static_cast<std::ptrdiff_t>(table->rows[i]),
+                       begin + static_cast<std::ptrdiff_t>(table->rows[i + 1]));
+    }
+    both.rows.push_back(both.list.size());
+  }
+  return both;
+}
+
+PartField fieldOf(const HalfBody& body, const BodyMeasures::Table& table, const PartWeights& weights,
+                  std::span<const std::uint32_t> allowed) {
+  StateScores own(body.joints.size());
+  addScores(table, weights, own);
+  return {body, own, weights, allowed};
+}
+
 Example exampleOf(const LabelledSkeleton& body, bool names, bool withTables) {
   Example example;
   example.skeleton = std::make_unique<Skeleton>(body.skeleton);
@@ -64,7 +86,8 @@ Example exampleOf(const LabelledSkeleton& body, bool names, bool withTables) {
   for (const HalfJoint& half : reading.body.joints) example.truth.push_back(body.labels[half.joint].state);
   example.allowed.assign(reading.body.joints.size(), (1u << kPartStates) - 1);
   if (withTables) {
-    for (const Axes& guess : reading.guesses) example.tables.push_back(reading.measures.features(guess));
+    for (const Axes& guess : reading.guesses)
+      example.tables.push_back(joined(reading.measures.steadyFeatures(), reading.measures.features(guess)));
   }
   return example;
 }
@@ -80,7 +103,7 @@ void addGradient(const Example& example, const PartWeights& weights, Gradient& g
   std::vector<std::unique_ptr<PartField>> fields;
   std::vector<double> scores;
   for (std::size_t g = 0; g < reading.guesses.size(); ++g) {
-    fields.push_back(std::make_unique<PartField>(reading.body, example.tables[g], weights, example.allowed));
+    fields.push_back(std::make_unique<PartField>(fieldOf(reading.body, example.tables[g], weights, example.allowed)));
     scores.push_back(axesScore(reading.measures, reading.guesses[g], *fields[g], weights));
   }
   const double most = *std::max_element(scores.begin(), scores.end());
@@ -289,7 +312,7 @@ void judge(const LabelledSkeleton& body, bool names, const PartWeights& weights,
   double most = -HUGE_VAL;
   std::vector<PartState> states;
   for (std::size_t g = 0; g < example.tables.size(); ++g) {
-    const PartField field(example.reading->body, example.tables[g], weights, example.allowed);
+    const PartField field = fieldOf(example.reading->body, example.tables[g], weights, example.allowed);
     const double s = axesScore(example.reading->measures, example.reading->guesses[g], field, weights);
     if (s <= most) continue;
     most = s;

@@ -98,12 +98,16 @@ Anatomy readAnatomy(const Skeleton& skeleton, const Pose& pose, const AnatomyOpt
   const BodyReading reading(skeleton, pose, options.names);
   const std::vector<std::uint32_t> allowed = allowedStates(reading, options.fixed);
   const PartWeights& weights = fittedPartWeights();
+  StateScores steady(reading.measures.size());
+  addScores(reading.measures.steadyFeatures(), weights, steady);
 
   std::vector<double> scores;
   std::optional<PartField> field;  // of the best guess so far
   std::size_t best = 0;
   for (const Axes& axes : reading.guesses) {
-    PartField other(reading.body, reading.measures.features(axes), weights, allowed);
+    StateScores own = steady;
+    addScores(reading.measures.features(axes), weights, own);
+    PartField other(reading.body, own, weights, allowed);
     scores.push_back(axesScore(reading.measures, axes, other, weights));
     if (field && scores.back() <= scores[best]) continue;
     best = scores.size() - 1;
@@ -133,9 +137,8 @@ Anatomy readAnatomy(const Skeleton& skeleton, const Pose& pose, const AnatomyOpt
     const bool byUser = std::any_of(options.fixed.begin(), options.fixed.end(), [&](const FixedLabel& label) {
       return part.has(label.joint) && part.kind == label.kind;
     });
-    const bool named = options.names && std::any_of(part.joints.begin(), part.joints.end(), [&](Index joint) {
-                         return readJointWords(skeleton.joints[joint].name).word != 0;
-                       });
+    const bool named = options.names && std::any_of(part.joints.begin(), part.joints.end(),
+                                                    [&](Index joint) { return reading.words[joint].word != 0; });
     part.evidence = byUser ? Evidence::kUser : named ? Evidence::kBoth : Evidence::kForm;
   }
   if (box.empty()) anatomy.ground = 0;

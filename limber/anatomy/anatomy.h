@@ -99,7 +99,7 @@ struct AnatomyOptions {
 // Confidences are the field's own marginals. Lafferty, McCallum, Pereira 2001; exact inference on trees.
 //
 // Any finite skeleton gets an answer; a body without any form (all joints in one place) has all joints in one trunk or
-// in none. Throws Error kBadData where a position is not finite. Cost: about linear in the joints; 0.8 ms for 100.
+// in none. Throws Error kBadData where a position is not finite. Cost: about linear in the joints; 0.6 ms for 100.
 Anatomy readAnatomy(const Skeleton& skeleton, const Pose& pose, const AnatomyOptions& options = {});
 Anatomy readAnatomy(const Skeleton& skeleton, const AnatomyOptions& options = {});
 

@@ -47,8 +47,8 @@ std::optional<BodyPart> bodyPartNamed(std::string_view name);
 
 // Of which part a joint is, limbs from landmark to landmark; nothing for joints of no part.
 std::optional<BodyPart> bodyPartAt(const Anatomy& anatomy, Index joint);
-// As one says it to a person: "left upper leg", "right hind foot" where there are two pairs of legs, "left foot 3" where
-// there are more. Empty for joints of no part.
+// As one says it to a person: "left upper leg", "right hind foot" where there are two pairs of legs, "left foot 3"
+// where there are more. Empty for joints of no part.
 std::string labelOf(const Anatomy& anatomy, Index joint);
 
 }  // namespace limber

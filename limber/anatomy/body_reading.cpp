@@ -38,11 +38,12 @@ std::vector<Axes> guessesFor(const Vec3& lateral) {
 
 BodyReading::BodyReading(const Skeleton& read, const Pose& pose, bool names)
     : skeleton(read),
-      named(names),
+      words(names ? wordsOfJoints(skeleton) : std::vector<JointWords>()),
       positions(finitePositions(skeleton, pose)),
       tree(withLooseFeetJoined(skeleton, positions, Vec3::UnitY())),
-      body(foldBody(tree, positions, names ? partnersByName(skeleton) : std::vector<std::optional<NamedPartner>>())),
-      measures(skeleton, body, names),
+      body(foldBody(tree, positions,
+                    names ? partnersByName(skeleton, words) : std::vector<std::optional<NamedPartner>>())),
+      measures(body, words),
       guesses(guessesFor(body.lateral)) {
   if (body.sidesByName) std::erase_if(guesses, [&](const Axes& guess) { return guess.left().dot(body.lateral) < 0; });
   if (body.hasPairs) return;

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "limber/anatomy/joint_words.h"
 #include "limber/anatomy/part_field.h"
 
 namespace limber {
@@ -15,8 +16,8 @@ struct BodyReading {
   BodyReading& operator=(const BodyReading&) = delete;
 
   const Skeleton& skeleton;
-  bool named = true;            // names have a say
-  std::vector<Vec3> positions;  // #J
+  std::vector<JointWords> words;  // #J, empty where names have no say
+  std::vector<Vec3> positions;    // #J
   JointTree tree;
   HalfBody body;
   BodyMeasures measures;

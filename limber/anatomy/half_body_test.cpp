@@ -127,7 +127,7 @@ TEST(HalfBody, ATwistJointOnOneSideShiftsNoPairs) {
     longer.joints.push_back(joint);
   }
   const JointTree tree(longer);
-  const HalfBody body = foldBody(tree, restPositions(longer), partnersByName(longer));
+  const HalfBody body = foldBody(tree, restPositions(longer), partnersByName(longer, wordsOfJoints(longer)));
   for (const char* part : {"UpperArm", "LowerArm", "Hand"}) {
     const Index left = longer.find(std::string("left") + part).value();
     EXPECT_EQ(halfOf(body, left).partner, longer.find(std::string("right") + part)) << part;
@@ -138,7 +138,7 @@ TEST(HalfBody, ATwistJointOnOneSideShiftsNoPairs) {
 TEST(HalfBody, NamesPairJointsThatLieInOnePlace) {
   Skeleton person = limber::testing::personWith(NameHabit::kMixamo).skeleton;
   for (Joint& joint : person.joints) joint.rest.translation = Vec3::Zero();
-  const std::vector<std::optional<NamedPartner>> named = partnersByName(person);
+  const std::vector<std::optional<NamedPartner>> named = partnersByName(person, wordsOfJoints(person));
   const JointTree tree(person);
   const HalfBody body = foldBody(tree, restPositions(person), named);
   expectWhole(body, person);
@@ -160,7 +160,7 @@ TEST(HalfBody, NamesPairFeetInOnePlace) {
     if (joint.name.ends_with("ToeBase")) joint.rest.translation.x() = 0;
   }
   const JointTree tree(person);
-  const HalfBody body = foldBody(tree, restPositions(person), partnersByName(person));
+  const HalfBody body = foldBody(tree, restPositions(person), partnersByName(person, wordsOfJoints(person)));
   expectWhole(body, person);
   for (const char* part : {"UpLeg", "Leg", "Foot", "ToeBase", "Arm", "Hand"}) {
     const HalfJoint& half = halfOf(body, person.find(std::string("mixamorig:Left") + part).value());

@@ -163,15 +163,21 @@ bool saysMetapodial(std::string_view name) {
                      [](const std::string& token) { return lookUp(kExtraWords, token) == kMetapodial; });
 }
 
-std::vector<std::optional<NamedPartner>> partnersByName(const Skeleton& skeleton) {
+std::vector<JointWords> wordsOfJoints(const Skeleton& skeleton) {
+  std::vector<JointWords> words;
+  for (const Joint& joint : skeleton.joints) words.push_back(readJointWords(joint.name));
+  return words;
+}
+
+std::vector<std::optional<NamedPartner>> partnersByName(const Skeleton& skeleton, std::span<const JointWords> words) {
   struct Sides {
     std::vector<Index> left, right;
   };
   std::map<std::string, Sides> bare;  // by the name without its side
   for (Index j = 0; j < skeleton.jointCount(); ++j) {
-    const std::vector<std::string> tokens = detail::wordsOfName(skeleton.joints[j].name);
-    const Side side = readJointWords(skeleton.joints[j].name).side;
+    const Side side = words[j].side;
     if (side == Side::kCenter) continue;
+    const std::vector<std::string> tokens = detail::wordsOfName(skeleton.joints[j].name);
     const bool hasWord =
         std::any_of(tokens.begin(), tokens.end(), [](const std::string& token) { return sideOf(token).has_value(); });
     std::string rest;

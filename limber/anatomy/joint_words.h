@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -33,8 +34,12 @@ bool saysHips(std::string_view name);
 // Whether one of its words is that of a bone in the palm or the middle of the foot, such as "IndexMetacarpal".
 bool saysMetapodial(std::string_view name);
 
-// #J partners by names that differ in the side alone ("arm.L", "arm.R"), each of one joint at most.
-std::vector<std::optional<NamedPartner>> partnersByName(const Skeleton& skeleton);
+// #J
+std::vector<JointWords> wordsOfJoints(const Skeleton& skeleton);
+
+// #J partners by names that differ in the side alone ("arm.L", "arm.R"), each of one joint at most; `words` from
+// wordsOfJoints.
+std::vector<std::optional<NamedPartner>> partnersByName(const Skeleton& skeleton, std::span<const JointWords> words);
 
 // 0 thumb to 4 little finger; none for other words.
 std::optional<Index> fingerOfWord(std::size_t word);

@@ -116,7 +116,8 @@ TEST(JointWords, FingersAreCountedFromTheThumb) {
 TEST(JointWords, PartnersDifferInTheirSideAlone) {
   for (const limber::testing::NameHabit habit : limber::testing::kNameHabits) {
     const limber::testing::MadeBody person = limber::testing::personWith(habit);
-    const std::vector<std::optional<NamedPartner>> partners = partnersByName(person.skeleton);
+    const std::vector<std::optional<NamedPartner>> partners =
+        partnersByName(person.skeleton, wordsOfJoints(person.skeleton));
     ASSERT_EQ(partners.size(), person.skeleton.joints.size());
     for (Index j = 0; j < partners.size(); ++j) {
       const std::string& name = person.skeleton.joints[j].name;
@@ -134,7 +135,7 @@ TEST(JointWords, NamesThatTwoJointsShareButForCasePairNothing) {
   for (const char* name : {"arm.L", "Arm_L", "arm.R", "leg.L", "leg.R", "tail"}) {
     addJoint(skeleton, name, skeleton.joints.empty() ? "" : "arm.L", Vec3::UnitX());
   }
-  const std::vector<std::optional<NamedPartner>> partners = partnersByName(skeleton);
+  const std::vector<std::optional<NamedPartner>> partners = partnersByName(skeleton, wordsOfJoints(skeleton));
   for (const Index joint : {0u, 1u, 2u, 5u}) EXPECT_FALSE(partners[joint]) << skeleton.joints[joint].name;
   ASSERT_TRUE(partners[3]);
   EXPECT_EQ(partners[3]->partner, 4u);

@@ -181,6 +181,45 @@ enum AxesFeature : std::size_t {
 constexpr double kTiny = 1e-9;          // of the body's size: shorter is rounding
 constexpr std::size_t kMostLimbs = 64;  // a millipede's would say no more
 
+// Fills a table row by row: room for a row's every feature is made before, so that nothing is checked on the way.
+class RowWriter {
+ public:
+  RowWriter(BodyMeasures::Table& table, std::size_t rows) : table_(table) {
+    table.list.resize(rows * kMostActive);
+    table.rows.reserve(rows + 1);
+    table.rows.push_back(0);
+    at_ = table.list.data();
+  }
+  ~RowWriter() { table_.list.resize(table_.rows.back()); }
+  RowWriter(const RowWriter&) = delete;
+  RowWriter& operator=(const RowWriter&) = delete;
+
+  void begin(HalfKind kind) { kind_ = static_cast<std::size_t>(kind); }
+  void end() { table_.rows.push_back(static_cast<std::size_t>(at_ - table_.list.data())); }
+  void mark(std::size_t feature, float value = 1) { *at_++ = {static_cast<std::uint16_t>(feature), value}; }
+  // Between two knots both, by how near they are.
+  void tell(FigureName name, double value) {
+    const Figure& told = kFigureTable[name];
+    const std::size_t base = kLayout.begin[name] + kind_ * told.count;
+    const auto v = static_cast<float>(value);
+    if (!(v > told.knots[0])) return mark(base);
+    for (std::size_t k = 1; k < told.count; ++k) {
+      if (v >= told.knots[k]) continue;
+      const float share = (v - told.knots[k - 1]) / (told.knots[k] - told.knots[k - 1]);
+      if (share < 1) mark(base + k - 1, 1 - share);
+      if (share > 0) mark(base + k, share);
+      return;
+    }
+    mark(base + told.count - 1);
+  }
+
+ private:
+  static constexpr std::size_t kMostActive = 2 * kFigures + kNameMarks + 6;  // of one half joint
+  BodyMeasures::Table& table_;
+  ActiveFeature* at_;
+  std::size_t kind_ = 0;
+};
+
 }  // namespace
 
 std::size_t partFeatureCount() {
@@ -202,7 +241,7 @@ std::string_view partFeatureName(std::size_t number) {
   return number < kLayout.unnamed ? "mark in the name" : "all";
 }
 
-BodyMeasures::BodyMeasures(const Skeleton& skeleton, const HalfBody& body, bool names) : body_(&body) {
+BodyMeasures::BodyMeasures(const HalfBody& body, std::span<const JointWords> words) : body_(&body) {
   const std::size_t n = body.joints.size();
   children_.resize(n);
   bone_.assign(n, 0);
@@ -219,9 +258,9 @@ BodyMeasures::BodyMeasures(const Skeleton& skeleton, const HalfBody& body, bool 
   for (Index i = 0; i < n; ++i) {
     const HalfJoint& half = body.joints[i];
     rootOf_[i] = i;
-    if (names) words_[i] = readJointWords(skeleton.joints[half.joint].name);
-    if (half.partner && names) {
-      const Side one = words_[i].side, other = readJointWords(skeleton.joints[*half.partner].name).side;
+    if (!words.empty()) words_[i] = words[half.joint];
+    if (half.partner && !words.empty()) {
+      const Side one = words_[i].side, other = words[*half.partner].side;
       if (one != Side::kCenter && other == opposite(one)) {
         sideVotes_ += one == Side::kLeft ? 1 : -1;
         ++sideVoters_;
@@ -272,6 +311,134 @@ BodyMeasures::BodyMeasures(const Skeleton& skeleton, const HalfBody& body, bool 
     if (rootOf_[i] == rootOf_[largest] || whole_[largest] <= kTiny) main_.push_back(i);
   }
   total_ = n > 0 ? std::max(whole_[largest], kTiny) : 1;
+  for (Index i = 0; i < n; ++i) {
+    if (body.joints[i].kind == HalfKind::kPair && limbOf_[i] == i) limbs_.push_back(i);
+  }
+  counted_ = limbs_;
+  const auto lengthOf = [&](Index limb) { return reach_[limb] + bone_[limb]; };
+  if (counted_.size() > kMostLimbs) {
+    std::stable_sort(counted_.begin(), counted_.end(), [&](Index a, Index b) { return lengthOf(a) > lengthOf(b); });
+    counted_.resize(kMostLimbs);
+  }
+  measureSize();
+  tellSteady();
+}
+
+void BodyMeasures::measureSize() {
+  const Vec3& lateral = body_->lateral;
+  for (const Index i : main_) {
+    if (body_->joints[i].kind == HalfKind::kMiddle) {
+      plane_ = lateral.dot(body_->joints[i].at);
+      break;
+    }
+  }
+  for (const HalfJoint& half : body_->joints) aside_.push_back(std::abs(lateral.dot(half.at) - plane_));
+  Eigen::Index across = 0;
+  lateral.cwiseAbs().minCoeff(&across);
+  const Vec3 one = lateral.cross(Vec3::Unit(across)).normalized(), other = lateral.cross(one);
+  Box box;
+  double side = 0;
+  for (const Index i : main_) {
+    const Vec3& at = body_->joints[i].at;
+    box.add(Vec3(one.dot(at), other.dot(at), 0));
+    side = std::max(side, aside_[i]);
+  }
+  size_ = std::max({box.empty() ? 0 : box.diagonal(), side, kTiny});
+}
+
+double BodyMeasures::isLong(Index limb) const {
+  return std::clamp(((reach_[limb] + bone_[limb]) / size_ - 0.06) / 0.1, 0.0, 1.0);
+}
+
+Vec3 BodyMeasures::directionOf(Index from, Index to) const {
+  const Vec3 way = body_->joints[to].at - body_->joints[from].at;
+  const double length = way.norm();
+  return length > kTiny * size_ ? Vec3(way / length) : Vec3(Vec3::Zero());
+}
+
+// Where the joint's own bone goes: to what goes on from it, of a tip from its parent.
+Vec3 BodyMeasures::boneAt(Index i) const {
+  if (next_[i]) return directionOf(i, *next_[i]);
+  const std::optional<Index>& parent = body_->joints[i].parent;
+  return parent ? directionOf(*parent, i) : Vec3(Vec3::Zero());
+}
+
+void BodyMeasures::tellSteady() {
+  const std::size_t n = size();
+  std::vector<double> middleBelow(n, 0), trunkRun(n, 0);
+  for (Index i = static_cast<Index>(n); i-- > 0;) {
+    const std::optional<Index>& parent = body_->joints[i].parent;
+    if (parent && body_->joints[i].kind == HalfKind::kMiddle)
+      middleBelow[*parent] = std::max(middleBelow[*parent], middleBelow[i] + 1);
+  }
+  std::vector<bool> hasLimb(n, false);
+  for (const Index limb : limbs_) {
+    if (const std::optional<Index>& parent = body_->joints[limb].parent; parent && isLong(limb) > 0.5)
+      hasLimb[*parent] = true;
+  }
+  for (Index i = 0; i < n; ++i) {
+    if (const std::optional<Index>& parent = body_->joints[i].parent)
+      trunkRun[i] = hasLimb[*parent] ? 0 : trunkRun[*parent] + 1;
+  }
+
+  RowWriter row(steady_, n);
+  for (Index i = 0; i < n; ++i) {
+    const HalfJoint& half = body_->joints[i];
+    const auto kind = static_cast<std::size_t>(half.kind);
+    row.begin(half.kind);
+    row.tell(kAside, aside_[i] / size_);
+    const double outward = body_->lateral.dot(boneAt(i));
+    const bool isFolded = half.kind != HalfKind::kMiddle;
+    row.tell(kOutward, isFolded ? (body_->lateral.dot(half.at) > plane_ ? 1 : -1) * outward : std::abs(outward));
+    const double own = next_[i] ? bone_[*next_[i]] : 0;
+    row.tell(kBoneLength, own / size_);
+    row.tell(kBoneRatio, own > kTiny * size_ && bone_[i] > kTiny * size_ ? std::log(own / bone_[i]) : 0);
+    row.tell(kBelowLength, whole_[i] / total_);
+    row.tell(kReach, reach_[i] / size_);
+    row.tell(kJointsBelow, count_[i]);
+    row.tell(kJointsOnPath, path_[i]);
+    double pairs = 0, singles = 0;
+    for (const Index child : children_[i]) {
+      pairs += body_->joints[child].kind == HalfKind::kPair;
+      singles += body_->joints[child].kind != HalfKind::kPair;
+    }
+    row.tell(kChildren, pairs + singles);
+    row.tell(kPairChildren, pairs);
+    row.tell(kSinglesHere, singles);
+    if (limbOf_[i]) {
+      const Index first = *limbOf_[i];
+      const double length = reach_[first];
+      row.tell(kAlongLimb, length > kTiny * size_ ? along_[i] / length : 0);
+      row.tell(kRankInLimb, rank_[i]);
+      row.tell(kLeftInLimb, path_[i]);
+      row.tell(kLimbLength, (length + bone_[first]) / size_);
+      Index same = 0, longer = 0;
+      for (const Index limb : counted_) {
+        if (limb == first || body_->joints[limb].parent != body_->joints[first].parent) continue;
+        ++same;
+        longer += reach_[limb] + bone_[limb] > length + bone_[first];
+      }
+      row.tell(kSameBase, same);
+      row.tell(kSameBaseLonger, longer);
+    } else {
+      row.tell(kMiddleBelow, middleBelow[i]);
+      row.tell(kTrunkRun, trunkRun[i]);
+    }
+    row.tell(kDepth, depth_[i]);
+    row.tell(kTreeShare, static_cast<double>(count_[rootOf_[i]]) / static_cast<double>(n));
+    row.tell(kSiblingReach,
+             half.parent ? (reach_[i] + bone_[i]) / std::max(longestChild_[*half.parent][kind], kTiny) : 1);
+    row.mark(kLayout.kind + kind);
+    if (!half.parent) row.mark(kLayout.root);
+    if (words_[i].word != 0) row.mark(kLayout.word + words_[i].word);
+    if (wordAbove_[i] != 0) row.mark(kLayout.wordAbove + wordAbove_[i]);
+    for (std::size_t m = 0; m < kNameMarks; ++m) {
+      if (words_[i].marks[m]) row.mark(kLayout.marks + m);
+    }
+    if (!named_) row.mark(kLayout.unnamed);
+    row.mark(kLayout.bias);
+    row.end();
+  }
 }
 
 std::vector<ActiveFeature> BodyMeasures::axesFeatures(const Axes& axes) const {
@@ -302,30 +469,19 @@ std::vector<ActiveFeature> BodyMeasures::axesFeatures(const Axes& axes) const {
 BodyMeasures::Table BodyMeasures::features(const Axes& axes) const {
   const std::size_t n = size();
   std::vector<double> up(n), ahead(n), lowest(n), highest(n);
-  double low = std::numeric_limits<double>::infinity(), high = -low, back = low, front = -low, side = 0;
-  double plane = 0;
-  for (const Index i : main_) {
-    if (body_->joints[i].kind == HalfKind::kMiddle) {
-      plane = body_->lateral.dot(body_->joints[i].at);
-      break;
-    }
-  }
-  std::vector<double> aside(n);
+  double low = std::numeric_limits<double>::infinity(), high = -low, back = low, front = -low;
   for (Index i = 0; i < n; ++i) {
     const Vec3& at = body_->joints[i].at;
     up[i] = axes.up.dot(at);
     ahead[i] = axes.front.dot(at);
-    aside[i] = std::abs(body_->lateral.dot(at) - plane);
   }
   for (const Index i : main_) {
     low = std::min(low, up[i]);
     high = std::max(high, up[i]);
     back = std::min(back, ahead[i]);
     front = std::max(front, ahead[i]);
-    side = std::max(side, aside[i]);
   }
   const double height = std::max(high - low, kTiny), depth = std::max(front - back, kTiny);
-  const double size = std::max({height, depth, std::hypot(height, depth), side, kTiny});
   const auto relative = [&](double y) { return std::clamp((y - low) / height, -0.2, 1.2); };
   const auto alongBody = [&](double z) { return std::clamp((z - back) / depth, -0.2, 1.2); };
   for (Index i = static_cast<Index>(n); i-- > 0;) {
@@ -338,29 +494,21 @@ BodyMeasures::Table BodyMeasures::features(const Axes& axes) const {
 
   // Limbs: how much each is one that stands, or one that is free.
   struct Standing {
-    double grounded = 0, free = 0, ahead = 0, up = 0;
+    double grounded = 0, free = 0;
   };
-  std::vector<Index> limbs;
   std::vector<Standing> standing(n);
-  std::vector<double> groundedBelow(n, 0), freeBelow(n, 0), middleBelow(n, 0), trunkRun(n, 0);
+  std::vector<double> groundedBelow(n, 0), freeBelow(n, 0);
   double grounded = 0, free = 0, groundedAhead = 0, freeAhead = 0, groundedUp = 0, freeUp = 0;
-  for (Index i = 0; i < n; ++i) {
-    const HalfJoint& half = body_->joints[i];
-    if (half.kind != HalfKind::kPair || limbOf_[i] != i) continue;
-    limbs.push_back(i);
-    const double length = (reach_[i] + bone_[i]) / size;
-    const double isLong = std::clamp((length - 0.06) / 0.1, 0.0, 1.0);
+  for (const Index i : limbs_) {
     Standing& limb = standing[i];
-    limb.grounded = isLong * std::clamp((0.3 - relative(lowest[i])) / 0.2, 0.0, 1.0);
-    limb.free = isLong - limb.grounded;
-    limb.ahead = ahead[i];
-    limb.up = up[i];
+    limb.grounded = isLong(i) * std::clamp((0.3 - relative(lowest[i])) / 0.2, 0.0, 1.0);
+    limb.free = isLong(i) - limb.grounded;
     grounded += limb.grounded;
     free += limb.free;
-    groundedAhead += limb.grounded * limb.ahead;
-    freeAhead += limb.free * limb.ahead;
-    groundedUp += limb.grounded * limb.up;
-    freeUp += limb.free * limb.up;
+    groundedAhead += limb.grounded * ahead[i];
+    freeAhead += limb.free * ahead[i];
+    groundedUp += limb.grounded * up[i];
+    freeUp += limb.free * up[i];
   }
   if (grounded > kTiny) groundedAhead /= grounded, groundedUp /= grounded;
   if (free > kTiny) freeAhead /= free, freeUp /= free;
@@ -371,170 +519,84 @@ BodyMeasures::Table BodyMeasures::features(const Axes& axes) const {
     const Index parent = *body_->joints[i].parent;
     groundedBelow[parent] += groundedBelow[i];
     freeBelow[parent] += freeBelow[i];
-    if (body_->joints[i].kind == HalfKind::kMiddle)
-      middleBelow[parent] = std::max(middleBelow[parent], middleBelow[i] + 1);
-  }
-  const auto hasLimb = [&](Index i) {
-    return std::any_of(children_[i].begin(), children_[i].end(),
-                       [&](Index c) { return standing[c].grounded + standing[c].free > 0.5; });
-  };
-  for (Index i = 0; i < n; ++i) {
-    if (!body_->joints[i].parent) continue;
-    const Index parent = *body_->joints[i].parent;
-    trunkRun[i] = hasLimb(parent) ? 0 : trunkRun[parent] + 1;
   }
 
-  // What stands beside each limb. Of more limbs than bodies have the longest count.
+  // What stands beside each limb.
   struct Others {
-    double grounded = 0, free = 0, groundedAhead = 0, freeAhead = 0, same = 0, longer = 0;
+    double grounded = 0, free = 0, groundedAhead = 0, freeAhead = 0;
   };
   std::vector<Others> othersOf(n);
-  std::vector<Index> counted = limbs;
-  const auto lengthOf = [&](Index limb) { return reach_[limb] + bone_[limb]; };
-  if (counted.size() > kMostLimbs) {
-    std::stable_sort(counted.begin(), counted.end(), [&](Index a, Index b) { return lengthOf(a) > lengthOf(b); });
-    counted.resize(kMostLimbs);
-  }
   for (Index i = 0; i < n; ++i) {
     if (limbOf_[i] != i) continue;
-    for (const Index limb : counted) {
+    for (const Index limb : counted_) {
       if (limb == i) continue;
       const Standing& other = standing[limb];
       Others& others = othersOf[i];
       others.grounded += other.grounded;
       others.free += other.free;
-      if (other.ahead > ahead[i]) {
-        others.groundedAhead += other.grounded;
-        others.freeAhead += other.free;
-      }
-      if (body_->joints[limb].parent != body_->joints[i].parent) continue;
-      ++others.same;
-      others.longer += lengthOf(limb) > lengthOf(i);
+      if (!(ahead[limb] > ahead[i])) continue;
+      others.groundedAhead += other.grounded;
+      others.freeAhead += other.free;
     }
   }
 
   Table table;
-  table.rows.push_back(0);
-  table.list.reserve(n * 64);
+  RowWriter row(table, n);
   for (Index i = 0; i < n; ++i) {
     const HalfJoint& half = body_->joints[i];
-    const auto kind = static_cast<std::size_t>(half.kind);
-    const auto tell = [&](FigureName name, double value) {
-      const Figure& told = kFigureTable[name];
-      const std::size_t base = kLayout.begin[name] + kind * told.count;
-      const auto v = static_cast<float>(value);
-      if (!(v > told.knots[0])) return table.list.push_back({static_cast<std::uint16_t>(base), 1});
-      for (std::size_t k = 1; k < told.count; ++k) {
-        if (v >= told.knots[k]) continue;
-        const float share = (v - told.knots[k - 1]) / (told.knots[k] - told.knots[k - 1]);
-        if (share < 1) table.list.push_back({static_cast<std::uint16_t>(base + k - 1), 1 - share});
-        if (share > 0) table.list.push_back({static_cast<std::uint16_t>(base + k), share});
-        return;
-      }
-      table.list.push_back({static_cast<std::uint16_t>(base + told.count - 1), 1});
-    };
-    const auto mark = [&](std::size_t feature) { table.list.push_back({static_cast<std::uint16_t>(feature), 1}); };
-
-    tell(kHeight, relative(up[i]));
-    tell(kLowestBelow, relative(lowest[i]));
-    tell(kHighestBelow, relative(highest[i]));
-    tell(kAside, aside[i] / size);
-    tell(kAhead, alongBody(ahead[i]));
-    const auto directionOf = [&](Index from, Index to) {
-      const Vec3 way = body_->joints[to].at - body_->joints[from].at;
-      const double length = way.norm();
-      return length > kTiny * size ? Vec3(way / length) : Vec3(Vec3::Zero());
-    };
-    // Where the joint's own bone goes: to what goes on from it, of a tip from its parent.
-    Vec3 bone = next_[i] ? directionOf(i, *next_[i]) : half.parent ? directionOf(*half.parent, i) : Vec3(Vec3::Zero());
-    const double outward = half.kind == HalfKind::kMiddle
-                               ? std::abs(body_->lateral.dot(bone))
-                               : (body_->lateral.dot(half.at) > plane ? 1 : -1) * body_->lateral.dot(bone);
-    tell(kUpward, axes.up.dot(bone));
-    tell(kForward, axes.front.dot(bone));
-    tell(kOutward, outward);
-    const double own = next_[i] ? bone_[*next_[i]] : 0;
-    tell(kBoneLength, own / size);
-    tell(kBoneRatio, own > kTiny * size && bone_[i] > kTiny * size ? std::log(own / bone_[i]) : 0);
-    tell(kBelowLength, whole_[i] / total_);
-    tell(kReach, reach_[i] / size);
-    tell(kJointsBelow, count_[i]);
-    const Index path = path_[i];
-    tell(kJointsOnPath, path);
-    double pairs = 0, singles = 0;
-    for (const Index child : children_[i]) {
-      pairs += body_->joints[child].kind == HalfKind::kPair;
-      singles += body_->joints[child].kind != HalfKind::kPair;
-    }
-    tell(kChildren, pairs + singles);
-    tell(kPairChildren, pairs);
-    tell(kSinglesHere, singles);
+    row.begin(half.kind);
+    row.tell(kHeight, relative(up[i]));
+    row.tell(kLowestBelow, relative(lowest[i]));
+    row.tell(kHighestBelow, relative(highest[i]));
+    row.tell(kAhead, alongBody(ahead[i]));
+    const Vec3 bone = boneAt(i);
+    row.tell(kUpward, axes.up.dot(bone));
+    row.tell(kForward, axes.front.dot(bone));
     if (limbOf_[i]) {
       const Index first = *limbOf_[i];
-      const double length = reach_[first];
-      tell(kAlongLimb, length > kTiny * size ? along_[i] / length : 0);
-      tell(kRankInLimb, rank_[i]);
-      tell(kLeftInLimb, path);
-      tell(kLimbLength, (length + bone_[first]) / size);
-      tell(kLimbLow, relative(lowest[first]));
-      tell(kLimbHigh, relative(highest[first]));
-      tell(kLimbBase, relative(up[first]));
-      tell(kLimbAhead, alongBody(ahead[first]));
+      row.tell(kLimbLow, relative(lowest[first]));
+      row.tell(kLimbHigh, relative(highest[first]));
+      row.tell(kLimbBase, relative(up[first]));
+      row.tell(kLimbAhead, alongBody(ahead[first]));
       const Index tip = tip_[first];
       const Vec3 line = tip == first && half.parent && body_->joints[first].parent
                             ? directionOf(*body_->joints[first].parent, first)
                             : directionOf(first, tip);
-      tell(kLimbUpward, axes.up.dot(line));
-      tell(kLimbForward, axes.front.dot(line));
+      row.tell(kLimbUpward, axes.up.dot(line));
+      row.tell(kLimbForward, axes.front.dot(line));
       const Others& others = othersOf[first];
-      tell(kGroundedElsewhere, others.grounded);
-      tell(kFreeElsewhere, others.free);
-      tell(kGroundedAhead, others.groundedAhead);
-      tell(kGroundedBehind, others.grounded - others.groundedAhead);
-      tell(kFreeAhead, others.freeAhead);
-      tell(kFreeBehind, others.free - others.freeAhead);
-      tell(kSameBase, others.same);
-      tell(kSameBaseLonger, others.longer);
+      row.tell(kGroundedElsewhere, others.grounded);
+      row.tell(kFreeElsewhere, others.free);
+      row.tell(kGroundedAhead, others.groundedAhead);
+      row.tell(kGroundedBehind, others.grounded - others.groundedAhead);
+      row.tell(kFreeAhead, others.freeAhead);
+      row.tell(kFreeBehind, others.free - others.freeAhead);
     } else {
-      tell(kGroundedBelow, groundedBelow[i]);
-      tell(kGroundedAbove, grounded - groundedBelow[i]);
-      tell(kFreeBelow, freeBelow[i]);
-      tell(kFreeAbove, free - freeBelow[i]);
-      tell(kMiddleBelow, middleBelow[i]);
-      tell(kTrunkRun, trunkRun[i]);
+      row.tell(kGroundedBelow, groundedBelow[i]);
+      row.tell(kGroundedAbove, grounded - groundedBelow[i]);
+      row.tell(kFreeBelow, freeBelow[i]);
+      row.tell(kFreeAbove, free - freeBelow[i]);
     }
     Vec3 bend = Vec3::Zero();
-    if (half.parent && next_[i]) bend = directionOf(*half.parent, i) - directionOf(i, *next_[i]);
-    tell(kBendForward, axes.front.dot(bend));
-    tell(kBendUp, axes.up.dot(bend));
+    if (half.parent && next_[i]) bend = directionOf(*half.parent, i) - bone;
+    row.tell(kBendForward, axes.front.dot(bend));
+    row.tell(kBendUp, axes.up.dot(bend));
     if (grounded > 0.3) {
-      tell(kAheadOfGrounded, (ahead[i] - groundedAhead) / size);
-      tell(kOverGrounded, (up[i] - groundedUp) / size);
+      row.tell(kAheadOfGrounded, (ahead[i] - groundedAhead) / size_);
+      row.tell(kOverGrounded, (up[i] - groundedUp) / size_);
     }
     if (free > 0.3) {
-      tell(kAheadOfFree, (ahead[i] - freeAhead) / size);
-      tell(kOverFree, (up[i] - freeUp) / size);
+      row.tell(kAheadOfFree, (ahead[i] - freeAhead) / size_);
+      row.tell(kOverFree, (up[i] - freeUp) / size_);
     }
-    tell(kDepth, depth_[i]);
-    tell(kShape, height / size);
-    tell(kTreeShare, static_cast<double>(count_[rootOf_[i]]) / static_cast<double>(n));
+    row.tell(kShape, height / size_);
     const Index tip = tip_[i];
     const Vec3 toTip = directionOf(i, tip);
-    tell(kPathUp, axes.up.dot(toTip));
-    tell(kPathForward, axes.front.dot(toTip));
-    tell(kTipAhead, alongBody(ahead[tip]));
-    tell(kTipUp, relative(up[tip]));
-    tell(kSiblingReach, half.parent ? (reach_[i] + bone_[i]) / std::max(longestChild_[*half.parent][kind], kTiny) : 1);
-    mark(kLayout.kind + kind);
-    if (!half.parent) mark(kLayout.root);
-    if (words_[i].word != 0) mark(kLayout.word + words_[i].word);
-    if (wordAbove_[i] != 0) mark(kLayout.wordAbove + wordAbove_[i]);
-    for (std::size_t m = 0; m < kNameMarks; ++m) {
-      if (words_[i].marks[m]) mark(kLayout.marks + m);
-    }
-    if (!named_) mark(kLayout.unnamed);
-    mark(kLayout.bias);
-    table.rows.push_back(table.list.size());
+    row.tell(kPathUp, axes.up.dot(toTip));
+    row.tell(kPathForward, axes.front.dot(toTip));
+    row.tell(kTipAhead, alongBody(ahead[tip]));
+    row.tell(kTipUp, relative(up[tip]));
+    row.end();
   }
   return table;
 }

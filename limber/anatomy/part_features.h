@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -22,8 +23,8 @@ struct ActiveFeature {
 // What does not depend on the guess of axes; made once for a skeleton.
 class BodyMeasures {
  public:
-  // `names` false: as if no joint had one. All must outlive this.
-  BodyMeasures(const Skeleton& skeleton, const HalfBody& body, bool names);
+  // `words`: of each joint's name (wordsOfJoints); empty: as if no joint had one. The body must outlive this.
+  BodyMeasures(const HalfBody& body, std::span<const JointWords> words);
 
   const HalfBody& body() const { return *body_; }
   std::size_t size() const { return body_->joints.size(); }
@@ -33,7 +34,9 @@ class BodyMeasures {
     std::vector<ActiveFeature> list;
     std::vector<std::size_t> rows;
   };
+  // Those that tell where up and front are, and all others.
   Table features(const Axes& axes) const;
+  const Table& steadyFeatures() const { return steady_; }
   // Of the guess as a whole: how well it agrees with names for sides, and with the axes that most files have.
   std::vector<ActiveFeature> axesFeatures(const Axes& axes) const;
 
@@ -53,10 +56,21 @@ class BodyMeasures {
   std::vector<std::array<double, 3>> longestChild_;  // by HalfKind, with the bone to it
   std::vector<Index> main_;                          // half joints of the largest tree: the body
   std::vector<Index> rootOf_;
-  double total_ = 1;      // length of all bones
+  std::vector<Index> limbs_, counted_;  // pairs' first half joints; of more than bodies have the longest
+  std::vector<double> aside_;           // from the plane that all lies across
+  double plane_ = 0;                    // along the fold's lateral axis
+  double size_ = 1;                     // of the box around the body, along the lateral axis and across
+  double total_ = 1;                    // length of all bones
+  Table steady_;
   double sideVotes_ = 0;  // by names: positive where `lateral` points to the left
   double sideVoters_ = 0;
   bool named_ = false;  // whether names tell anything
+
+  double isLong(Index limb) const;
+  Vec3 directionOf(Index from, Index to) const;
+  Vec3 boneAt(Index i) const;
+  void measureSize();
+  void tellSteady();
 };
 
 std::size_t partFeatureCount();

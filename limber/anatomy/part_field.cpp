@@ -21,6 +21,9 @@ double logSumExp(const PartField::Scores& scores) {
 }  // namespace
 
 void PartWeights::prepare() {
+  padded.assign(feature.size() / kPartStates * kPaddedStates, 0);
+  for (std::size_t i = 0; i < feature.size(); ++i)
+    padded[i / kPartStates * kPaddedStates + i % kPartStates] = feature[i];
   for (std::size_t p = 0; p < kPartStates; ++p) {
     followers[p].clear();
     for (std::size_t c = 0; c < kPartStates; ++c) {
@@ -32,18 +35,25 @@ void PartWeights::prepare() {
   }
 }
 
-PartField::PartField(const HalfBody& body, const BodyMeasures::Table& table, const PartWeights& weights,
+void addScores(const BodyMeasures::Table& table, const PartWeights& weights, StateScores& scores) {
+  for (std::size_t i = 0; i < scores.size(); ++i) {
+    float sum[kPaddedStates] = {};
+    for (std::size_t f = table.rows[i]; f < table.rows[i + 1]; ++f) {
+      const float* row = weights.padded.data() + table.list[f].number * kPaddedStates;
+      const float value = table.list[f].value;
+#pragma GCC unroll 24
+      for (std::size_t s = 0; s < kPaddedStates; ++s) sum[s] += value * row[s];
+    }
+    for (std::size_t s = 0; s < kPaddedStates; ++s) scores[i][s] += sum[s];
+  }
+}
+
+PartField::PartField(const HalfBody& body, const StateScores& own, const PartWeights& weights,
                      std::span<const std::uint32_t> allowed)
     : body_(body), weights_(weights), own_(body.joints.size()) {
   for (std::size_t i = 0; i < own_.size(); ++i) {
-    std::array<float, kPartStates> sum{};
-    for (std::size_t f = table.rows[i]; f < table.rows[i + 1]; ++f) {
-      const float* row = weights.feature.data() + table.list[f].number * kPartStates;
-      const float value = table.list[f].value;
-      for (std::size_t s = 0; s < kPartStates; ++s) sum[s] += value * row[s];
-    }
     for (std::size_t s = 0; s < kPartStates; ++s) {
-      own_[i][s] = allowed[i] >> s & 1 ? static_cast<double>(sum[s]) : kImpossible;
+      own_[i][s] = allowed[i] >> s & 1 ? static_cast<double>(own[i][s]) : kImpossible;
     }
   }
   sumUp();

@@ -12,13 +12,17 @@
 
 namespace limber {
 
+inline constexpr std::size_t kPaddedStates = 24;  // kPartStates and what fills up vectors of four
+
 // Log-likelihoods: natural logarithms, learned.
 struct PartWeights {
   std::vector<float> feature;  // partFeatureCount() x kPartStates
   std::vector<float> follow;  // kPartStates x kPartStates: of a parent's state and a child's; kNever where none follows
   std::vector<float> axes;    // axesFeatureCount()
 
-  // What is read off `follow`: which states may follow each, and the weights' exponentials.
+  // What is read off `feature`, each row filled up with zeros to a whole number of vectors, and off `follow`: which
+  // states may follow each, and the weights' exponentials.
+  std::vector<float> padded;  // partFeatureCount() x kPaddedStates
   std::array<std::vector<std::uint8_t>, kPartStates> followers;
   std::array<double, kPartStates * kPartStates> followFactor{};
   void prepare();  // after each change
@@ -28,13 +32,18 @@ inline constexpr float kNever = -1e9f;  // log-likelihood, far below any sum of 
 // The fitted weights (part_weights.cpp), unpacked once.
 const PartWeights& fittedPartWeights();
 
+// What features say of each half joint's states: log-likelihoods.
+using StateScores = std::vector<std::array<float, kPaddedStates>>;
+void addScores(const BodyMeasures::Table& table, const PartWeights& weights, StateScores& scores);
+
 // One reading of a skeleton: under one guess of the axes.
 class PartField {
  public:
   using Scores = std::array<double, kPartStates>;
 
-  // `allowed`: #half joints bit masks of states that each may have. All must outlive this.
-  PartField(const HalfBody& body, const BodyMeasures::Table& table, const PartWeights& weights,
+  // `own`: #half joints, of all features; `allowed`: likewise bit masks of states that each may have. Body and weights
+  // must outlive this.
+  PartField(const HalfBody& body, const StateScores& own, const PartWeights& weights,
             std::span<const std::uint32_t> allowed);
 
   // The state of each half joint in the likeliest labelling.

@@ -336,7 +336,7 @@ class PartMaker {
       // One finger alone is all but the thumb.
       const Index first = isMitten(key, group) ? 1 : 0;
       for (std::size_t i = 0; i < group.size(); ++i) parts_[group[i]].pair = static_cast<Index>(i) + first;
-      if (std::get<0>(key) != PartKind::kFinger || (reading_.named && numberFingersByName(group))) continue;
+      if (std::get<0>(key) != PartKind::kFinger || (!reading_.words.empty() && numberFingersByName(group))) continue;
       const double sure = group.size() == 5 ? kAllFingers : kSomeFingers;
       for (const std::size_t p : group) parts_[p].confidence = std::min(parts_[p].confidence, sure);
     }
@@ -390,7 +390,7 @@ class PartMaker {
     for (const std::size_t p : group) {
       std::optional<Index> finger;
       for (const Index joint : parts_[p].joints) {
-        if (!finger) finger = fingerOfWord(readJointWords(reading_.skeleton.joints[joint].name).word);
+        if (!finger) finger = fingerOfWord(reading_.words[joint].word);
       }
       if (!finger || std::find(named.begin(), named.end(), *finger) != named.end()) return false;
       named.push_back(*finger);

@@ -11,7 +11,8 @@ SkeletonMirror mirrorOf(const Skeleton& skeleton) {
   mirror.partner.resize(skeleton.jointCount());
   for (Index j = 0; j < mirror.partner.size(); ++j) mirror.partner[j] = j;
   if (skeleton.joints.empty()) return mirror;
-  const HalfBody body = foldBody(JointTree(skeleton), restPositions(skeleton), partnersByName(skeleton));
+  const HalfBody body =
+      foldBody(JointTree(skeleton), restPositions(skeleton), partnersByName(skeleton, wordsOfJoints(skeleton)));
   mirror.normal = body.lateral;
   for (const HalfJoint& half : body.joints) {
     if (!half.partner) continue;
