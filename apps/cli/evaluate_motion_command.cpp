@@ -89,7 +89,9 @@ void run(const MotionEvaluationArguments& options) {
   PoseSequence to = sampleFrames(result.skeleton, moved, rate);
   to.poses.resize(from.poses.size(), to.poses.back());
   const PoseSequence toPlain = resultPlain.plain(to);
-  const RetargetSetup setup(sourcePlain.skeleton(), resultPlain.skeleton(), map, {}, &from);
+  RetargetOptions standing;
+  standing.characterStands = !isSkeletonAlone(asset);
+  const RetargetSetup setup(sourcePlain.skeleton(), resultPlain.skeleton(), map, standing, &from);
   const ShownJoints shownFrom = shownJoints(source.skeleton, sampled, setup.sourceKinematics.toBody()),
                     shownTo = shownJoints(result.skeleton, to, setup.targetKinematics.toBody());
   MotionMetrics metrics = measureMotion(setup, from, toPlain, &shownFrom, &shownTo);

@@ -198,14 +198,17 @@ RetargetSetup::RetargetSetup(const Skeleton& from, const Skeleton& to, SkeletonM
     const LowestHeights heights = lowestHeights(sourceKinematics, sourceNeutral, soles, sourceHipHeight, *motion);
     sourceGround = measuredGround(heights, restGround, sourceHipHeight);
   }
-  // Of one that hangs about the origin, people stand at the source's height, others, who go their way from rest, as far
-  // from there as the source.
+  // Of skeletons that hang about the origin, people stand at the source's height, others, who go their way from rest,
+  // as far from there as the source.
   targetGround = lowest(groundJoints(map, MapSide::kTarget), targetNeutral.restPositions);
   // What rests in the air flies: its feet have no ground to keep to.
   if ((targetGround >= kFlies * targetHipHeight && !quadruped) || map.unlikeBodies) animalLegs.clear();
   if (!animalLegs.empty()) targetTail = tailOf(to);
   if (!standsAt(targetGround, targetHipHeight)) {
-    targetGround = person ? sourceGround * scale : targetGround + scale * (sourceGround - restGround);
+    if (!person)
+      targetGround += scale * (sourceGround - restGround);
+    else if (!options.characterStands)
+      targetGround = sourceGround * scale;
   }
 }
 

@@ -35,6 +35,9 @@ struct RetargetOptions {
   // Height of the ground under the source, metres; none: measured from the motion where there is one, else from the
   // rest pose.
   std::optional<double> sourceGround;
+  // The character's rest pose stands on its ground, wherever that is, as models with a surface do. Else a person who
+  // hangs about the origin, as bare skeletons may, is put where the motion's ground is.
+  bool characterStands = false;
 };
 
 // Immutable once made; the skeletons must outlive it, and have no negative scales (plain_skeleton.h). `motion`, if

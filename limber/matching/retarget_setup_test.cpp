@@ -35,6 +35,22 @@ TEST(RetargetSetup, AMapThatTellsNoSizeSaysWhatIsMissing) {
             "such as hips, head and feet)");
 }
 
+// The origin is at the middle of the body.
+TEST(RetargetSetup, ACharacterWithASurfaceStandsOnItsOwnGround) {
+  const Skeleton person = practiceHumanoid();
+  Skeleton low = person;
+  low.joints[0].rest.translation.y() = 0;
+  const SkeletonMap map = matchSkeletons(person, low);
+  RetargetOptions standing;
+  standing.characterStands = true;
+  const double down = person.joints[0].rest.translation.y();
+  const RetargetSetup bare(person, low, map, {}), surfaced(person, low, map, standing);
+  EXPECT_NEAR(bare.targetGround, bare.sourceGround, 1e-9);
+  EXPECT_NEAR(surfaced.targetGround, surfaced.sourceGround - down, 1e-9);
+  const Vec3 hips(0, down, 0);
+  EXPECT_NEAR(surfaced.placeOf(hips).y(), 0, 1e-9) << "one who stands is where it rests";
+}
+
 // Someone who drifts on the belly, half a metre up, moves the feet slowly; they do not stand there.
 TEST(RetargetSetup, ASwimmersFeetTellNoGround) {
   using limber::testing::turn;

@@ -42,14 +42,15 @@ std::vector<RetargetedClip> retargetOnto(Asset& asset, const Motion& given, cons
   const AssetSkeleton character = animatedSkeleton(asset);
   const SkeletonMap map = options.mapJson ? skeletonMapFromJson(*options.mapJson, motion.skeleton, character.skeleton)
                                           : matchSkeletons(motion.skeleton, character.skeleton, options.unlikeBodies);
+  RetargetOptions retarget = options.retarget;
+  retarget.characterStands = !isSkeletonAlone(asset);
   std::vector<RetargetedClip> reports;
   std::vector<Clip> clips;
   for (std::size_t c = 0; c < motion.clips.size(); ++c) {
     const Clip& clip = motion.clips[c];
     const double rate = options.frameRate.value_or(frameRateOf(motion, c));
-    clips.push_back(
-        turnClip(retargetClip(method, motion.skeleton, clip, character.skeleton, map, options.retarget, rate),
-                 character.skeleton, options.turn));
+    clips.push_back(turnClip(retargetClip(method, motion.skeleton, clip, character.skeleton, map, retarget, rate),
+                             character.skeleton, options.turn));
     clips.back().name = motion.clips.size() == 1 ? motion.name : clip.name;
     reports.push_back({clips.back().name, frameCount(clip, rate), rate, map,
                        doubtfulMatches(map, motion.skeleton, character.skeleton),

@@ -103,7 +103,9 @@ std::optional<MotionMetrics> measureClip(const SessionState& state) {
     const PoseSequence theirs = plainFrom.plain(sampleFrames(from, original, rate));
     PoseSequence ours = plainTo.plain(sampleFrames(to, moved, rate));
     ours.poses.resize(theirs.poses.size(), ours.poses.back());
-    const RetargetSetup setup(plainFrom.skeleton(), plainTo.skeleton(), source.map, {}, &theirs);
+    RetargetOptions standing;
+    standing.characterStands = true;
+    const RetargetSetup setup(plainFrom.skeleton(), plainTo.skeleton(), source.map, standing, &theirs);
     const MotionMetrics metrics = measureMotion(setup, theirs, ours);
     return metrics.hasLegs ? std::optional(metrics) : std::nullopt;
   } catch (const Error&) {

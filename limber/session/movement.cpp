@@ -83,6 +83,7 @@ Clip retargeted(const ClipSource& source, const Skeleton& skeleton) {
   RetargetOptions options;
   options.reach = source.command.reach;
   options.contacts = source.command.contacts;
+  options.characterStands = true;
   Clip clip = retargetClip(findRetargetMethod(source.command.method), motion.skeleton, motion.clips[source.clip],
                            skeleton, source.map, options, frameRateOf(motion, source.clip));
   return turnClip(std::move(clip), skeleton, turnToStand(skeleton));
