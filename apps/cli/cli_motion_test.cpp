@@ -84,6 +84,61 @@ TEST_F(Cli, SessionReplayNamesTheCommandThatFails) {
   EXPECT_EQ(files(), std::vector<std::string>{"commands.json"});
 }
 
+// A ZIP archive of files that are stored, not packed.
+std::string archiveOf(const std::vector<std::pair<std::string, std::string>>& files) {
+  const auto number = [](std::size_t value, int bytes) {
+    std::string text;
+    for (int i = 0; i < bytes; ++i) text.push_back(static_cast<char>(value >> (8 * i) & 255));
+    return text;
+  };
+  const auto crc = [](const std::string& text) {
+    std::uint32_t sum = ~0u;
+    for (const char c : text) {
+      sum ^= static_cast<unsigned char>(c);
+      for (int bit = 0; bit < 8; ++bit) sum = sum & 1 ? 0xedb88320u ^ (sum >> 1) : sum >> 1;
+    }
+    return ~sum;
+  };
+  std::string body, directory;
+  for (const auto& [path, content] : files) {
+    const std::string fields = number(20, 2) + std::string(8, '\0') + number(crc(content), 4) +
+                               number(content.size(), 4) + number(content.size(), 4) + number(path.size(), 2) +
+                               std::string(2, '\0');
+    directory += "PK\1\2" + number(20, 2) + fields + std::string(10, '\0') + number(body.size(), 4) + path;
+    body += "PK\3\4" + fields + path + content;
+  }
+  return body + directory + "PK\5\6" + std::string(4, '\0') + number(files.size(), 2) + number(files.size(), 2) +
+         number(directory.size(), 4) + number(body.size(), 4) + std::string(2, '\0');
+}
+
+TEST_F(Cli, SessionReplayTakesALimberFile) {
+  run({"sample", "stool", "-o", "stool.glb", "-q"});
+  const std::string list = R"({"limber_commands": 1, "commands": [{"do": "open_file", "file": "files/0/stool.glb"},
+    {"do": "set_handles", "count": 8}]})";
+  const std::string whole = archiveOf({{"commands.json", list}, {"files/0/stool.glb", content("stool.glb")}});
+  put("work.limber", whole);
+  const Result done = run({"session", "replay", "work.limber", "-o", "posed.glb"});
+  EXPECT_EQ(done.code, 0) << done.error;
+  EXPECT_THAT(done.out, HasSubstr("2 commands done: "));
+
+  const auto refusal = [&](const std::string& bytes) {
+    put("bad.limber", bytes);
+    const Result refused = run({"session", "replay", "bad.limber", "-o", "out.glb"});
+    expectOneLine(refused, 1);
+    EXPECT_THAT(refused.error, HasSubstr("bad.limber"));
+    EXPECT_FALSE(fs::exists(folder_ / "out.glb"));
+    return refused.error;
+  };
+  EXPECT_THAT(refusal(archiveOf({{"notes.txt", "nothing"}})), HasSubstr("commands.json"));
+  EXPECT_THAT(refusal(archiveOf({{"commands.json", list}, {"../out", "x"}})), HasSubstr("leads out"));
+  EXPECT_THAT(refusal(archiveOf({{"commands.json", list}, {"commands.json", list}})), HasSubstr("ZIP"));
+  EXPECT_THAT(refusal(archiveOf({{"commands.json", list}})), HasSubstr("stool.glb"));
+  EXPECT_THAT(refusal(whole.substr(0, whole.size() / 2)), HasSubstr("ZIP"));
+  std::string damaged = whole;
+  damaged[whole.size() / 2] ^= 1;
+  EXPECT_THAT(refusal(damaged), HasSubstr("damaged"));
+}
+
 const std::string kWalk =
     "HIERARCHY\nROOT Hips\n{\nOFFSET 0 0 0\nCHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation "
     "Yrotation\nJOINT LeftLeg\n{\nOFFSET 20 -50 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nEnd "

@@ -1,9 +1,12 @@
 // limber session: what was done in the studio, done again.
 #include <algorithm>
 #include <cctype>
+#include <map>
+#include <memory>
 
 #include <fmt/format.h>
 
+#include "archive.h"
 #include "command.h"
 #include "limber/asset/read.h"
 #include "limber/core/counted.h"
@@ -20,11 +23,33 @@ struct SessionArguments {
   Common common;
 };
 
-std::vector<Command> readCommands(const std::string& path) {
+// What was done, and where its files are.
+struct Work {
+  std::vector<Command> commands;
+  Resolver files;
+};
+
+constexpr const char* kCommandsInArchive = "commands.json";
+
+Work readWork(const std::string& path) {
   const Bytes bytes = readFile(path);
+  const auto parsed = [](ByteSpan text) {
+    return commandsFromJson({reinterpret_cast<const char*>(text.data()), text.size()});
+  };
   try {
-    return commandsFromJson({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    if (!isArchive(bytes)) return {parsed(bytes), folderResolver(std::filesystem::path(path).parent_path())};
+    auto files = std::make_shared<const std::map<std::string, Bytes>>(readArchive(bytes, path));
+    const auto list = files->find(kCommandsInArchive);
+    if (list == files->end()) {
+      throw Error(ErrorCode::kBadData, fmt::format("holds no {}", kCommandsInArchive), path,
+                  "is it a .limber file, as the studio saves it?");
+    }
+    return {parsed(list->second), [files](std::string_view name) -> std::optional<Bytes> {
+              const auto found = files->find(std::string(name));
+              return found == files->end() ? std::nullopt : std::optional(found->second);
+            }};
   } catch (const Error& error) {
+    if (error.where().starts_with(path)) throw;
     throw error.within(path);
   }
 }
@@ -41,9 +66,9 @@ ExportFormat formatOf(const std::filesystem::path& path) {
 void run(const SessionArguments& options) {
   options.common.apply();
   checkOutput(options.output, {".glb", ".obj", ".stl", ".ply"});
-  const std::vector<Command> commands = readCommands(options.commands);
+  const auto [commands, files] = readWork(options.commands);
   TerminalProgress progress(options.common.quiet);
-  Session session(folderResolver(std::filesystem::path(options.commands).parent_path()));
+  Session session(files);
   for (std::size_t i = 0; i < commands.size(); ++i) {
     try {
       session.run(commands[i], *progress);
@@ -71,7 +96,9 @@ void addSessionCommand(CLI::App& program) {
   command->require_subcommand(1);
   command->footer("Example:\n  limber session replay commands.json -o posed.glb");
   CLI::App* replay = command->add_subcommand("replay", "Run a recorded list of commands and write the result");
-  replay->add_option("COMMANDS", options->commands, "the list in JSON, as the studio saves it; - is standard input")
+  replay
+      ->add_option("COMMANDS", options->commands,
+                   "the list in JSON, or a .limber file, as the studio saves them; - is standard input")
       ->required();
   replay
       ->add_option(
@@ -82,13 +109,14 @@ void addSessionCommand(CLI::App& program) {
       ->type_name("FILE");
   options->common.addTo(*replay);
   replay->footer(
-      "Models are opened beside the list. Commands are those of limber/session/command.h:\n"
+      "Models are opened beside the list, or in the .limber file. Commands are those of limber/session/command.h:\n"
       "  {\"limber_commands\": 1, \"commands\": [{\"do\": \"open_file\", \"file\": \"fox.glb\"},\n"
       "   {\"do\": \"set_handles\", \"count\": 20}, {\"do\": \"turn_joint\", \"joint\": \"handle_03\", \"axis\": [0, "
       "1, 0],\n"
       "   \"degrees\": 30}]}\n"
       "\nExample:\n"
-      "  limber session replay commands.json -o posed.glb");
+      "  limber session replay commands.json -o posed.glb\n"
+      "  limber session replay fox.limber -o posed.glb");
   replay->callback([options] { run(*options); });
 }
 

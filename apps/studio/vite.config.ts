@@ -1,13 +1,22 @@
 import { fileURLToPath } from 'node:url';
-import { defineConfig } from 'vite';
+import { defineConfig, type Plugin } from 'vite';
 
 const at = (path: string) => fileURLToPath(new URL(path, import.meta.url));
+
+// The page loads the packed engine alone.
+const onlyPacked = (): Plugin => ({
+  name: 'only-packed',
+  generateBundle(_, bundle) {
+    for (const name of Object.keys(bundle)) if (name.endsWith('.wasm')) delete bundle[name];
+  },
+});
 
 // A folder of static files that any web host can serve, also below a path of its own.
 export default defineConfig({
   base: './',
   resolve: { alias: { '@engine': at('../../build/wasm') } },
   build: { outDir: at('../../dist'), emptyOutDir: true, target: 'es2022', chunkSizeWarningLimit: 1000 },
-  worker: { format: 'es' },
+  plugins: [onlyPacked()],
+  worker: { format: 'es', plugins: () => [onlyPacked()] },
   preview: { host: '127.0.0.1', port: 8080, strictPort: true },
 });

@@ -3,7 +3,9 @@ import './style.css';
 import { bindShortcuts } from './app/shortcuts';
 import { createPageStore } from './app/state';
 import { Studio } from './app/studio';
-import { keepSession, keptSession } from './app/keep';
+import { droppedFiles } from './app/files';
+import { Journal } from './app/journal';
+import { bindJournal } from './app/keep';
 import { bindPlayer } from './app/player';
 import { exposeStage } from './app/probe';
 import { comparisonPanel } from './panels/comparison_panel';
@@ -15,25 +17,42 @@ import { posePanel } from './panels/pose_panel';
 import { retargetPanel } from './panels/retarget_panel';
 import { facts, status } from './panels/status';
 import { timeline } from './panels/timeline';
-import { samples, toolbar } from './panels/toolbar';
+import { samples } from './app/samples';
+import { toolbar } from './panels/toolbar';
+import { hint, views } from './panels/views';
 import { createStage } from './scene/stage';
+import { ask } from './ui/ask';
 import { element } from './ui/dom';
 
+/** Without WebGL there is nothing to show the model with. */
+function stageOrApology() {
+  try {
+    return createStage(studio, page);
+  } catch (error) {
+    document.getElementById('app')!.append(element('div', { class: 'apology', role: 'alert', id: 'apology' },
+      element('h1', {}, 'This browser cannot draw in 3D'),
+      element('p', {}, 'WebGL is missing or switched off. Switch it on (often called hardware acceleration), or use another browser.')));
+    throw error;
+  }
+}
+
 const page = createPageStore();
-const studio = new Studio(page);
-const { viewport, handles, model, comparison, gizmo } = createStage(studio, page);
+const journal = new Journal();
+const studio = new Studio(page, journal);
+studio.ask = ask;
+const { viewport, handles, model, comparison, gizmo } = stageOrApology();
 const sheet = contactSheet(studio, page, viewport);
 
 const app = document.getElementById('app')!;
 app.append(
-  toolbar(studio, page, viewport, model),
-  element('main', { class: 'stage' }, viewport.canvas, facts(page), comparisonPanel(studio, page, comparison)),
+  toolbar(studio, page, journal, viewport, model),
+  element('main', { class: 'stage' }, viewport.canvas, facts(page), hint(page), views(viewport), comparisonPanel(studio, page, comparison)),
   element('aside', { class: 'side' }, posePanel(studio, page), retargetPanel(studio, page), methodsPanel(studio, page), outliner(studio, page, handles)),
   timeline(studio, page, sheet.open),
   status(studio, page), help(page), sheet.dialog);
 bindShortcuts(studio, page, viewport, handles);
 bindPlayer(studio, page);
-const kept = keepSession(studio, page);
+bindJournal(journal, studio, page, viewport);
 
 // A model can be dropped anywhere.
 addEventListener('dragover', (event) => {
@@ -46,11 +65,10 @@ addEventListener('dragleave', (event) => {
 addEventListener('drop', (event) => {
   event.preventDefault();
   document.body.classList.remove('dropping');
-  const file = event.dataTransfer?.files[0];
-  if (file) void studio.openFile(file);
+  if (event.dataTransfer) void droppedFiles(event.dataTransfer).then((files) => studio.openFiles(files));
 });
 
-exposeStage(studio, page, viewport, handles, gizmo, kept);
+exposeStage(studio, page, viewport, handles, gizmo, () => journal.settled);
 
 // ?model=address or ?sample=name; else what was worked on last, or the first sample, so that there is something to take
 // hold of.
@@ -60,8 +78,8 @@ const sample = parameters.get('sample');
 async function begin() {
   void studio.loadMethods();
   if (address) return studio.openAddress(address);
-  const kept = sample === null ? await keptSession() : null;
-  if (kept) await studio.openKept(kept.bytes, kept.name);
+  const [last] = sample === null ? await journal.list() : [];
+  if (last) await studio.openKept(last);
   if (!page.now.session) await studio.openSample(sample ?? samples[0][0]);
 }
 void begin();

@@ -9,7 +9,7 @@ import { mkdirSync } from 'node:fs';
 import { resolve } from 'node:path';
 import { asciiFbx, asciiPly, binaryStl, triangleCount, vertexCount, vrmOf } from './small_files.mjs';
 import { walkBvh } from './walk_bvh.mjs';
-import { download, jointPlace, jointPosition, launch, openStudio, runCases, serve, sessionState, settled } from './page.mjs';
+import { download, jointPlace, jointPosition, launch, motionPlayed, openStudio, runCases, serve, sessionState, settled } from './page.mjs';
 
 const [dist, output] = process.argv.slice(2).map((path) => resolve(path));
 mkdirSync(output, { recursive: true });
@@ -20,7 +20,7 @@ const distance = (a, b) => Math.hypot(...a.map((value, i) => value - b[i]));
 const columns = (count) => page.waitForFunction((n) => document.querySelectorAll('#comparison dl').length === n, count);
 
 async function openMotion(name, buffer) {
-  await page.locator('#motion-file').setInputFiles({ name, mimeType: 'application/octet-stream', buffer });
+  await motionPlayed(page, () => page.locator('#motion-file').setInputFiles({ name, mimeType: 'application/octet-stream', buffer }));
   await settled(page);
   assert.equal(await page.locator('#notice').isVisible(), false, await page.locator('#notice').textContent());
 }
@@ -211,7 +211,7 @@ const cases = {
       const { name: opened, triangles, vertices, box } = await sessionState(page);
       assert.equal(opened, name, await page.locator('#notice').textContent());
       assert.equal(triangles, triangleCount, name);
-      assert.ok(vertices === vertexCount || vertices === 3 * triangleCount, `${name}: ${vertices} vertices`);
+      assert.ok(vertices <= vertexCount, `${name}: ${vertices} vertices`);
       const tall = box.max[1] - box.min[1];
       assert.ok(Math.abs(tall / (box.max[0] - box.min[0]) - 1.6 / 0.5) < 1e-3, `${name}: ${JSON.stringify(box)}`);
     }

@@ -45,12 +45,29 @@ export async function settled(page) {
   await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
 }
 
+/** The answer to a question that the page asks, once it does. */
+export async function answer(page, yes) {
+  await page.locator(yes ? '#ask-yes' : '#ask-no').click();
+  await settled(page);
+}
+
+/** Until the motion that was chosen is on the model, which may be given a skeleton first. */
+export async function motionPlayed(page, choose) {
+  const before = (await sessionState(page)).clips.length;
+  const came = ([selector, count]) => globalThis.limberStudio.state().clips.length > count || document.querySelector(selector)?.checkVisibility();
+  await choose();
+  await page.waitForFunction(came, ['#ask, #notice:not([hidden])', before]);
+  if (await page.locator('#ask').isVisible()) await answer(page, true);
+  await page.waitForFunction(came, ['#notice:not([hidden])', before]);
+  if (await page.locator('#notice').isVisible()) throw new Error(await page.locator('#notice').textContent());
+}
+
 export async function download(page, click) {
   const [file] = await Promise.all([page.waitForEvent('download'), click()]);
   return readFileSync(await file.path());
 }
 
-/** Runs each of them; gives how many failed. LIMBER_TIMES=1 tells how long each took. */
+/** Runs each of them; gives how many failed. `page` gives the page that is shown then, for a picture of it. LIMBER_TIMES=1 tells how long each took. */
 export async function runCases(cases, page, output) {
   let passed = 0, failed = 0;
   for (const [name, run] of Object.entries(cases)) {
@@ -62,7 +79,7 @@ export async function runCases(cases, page, output) {
     } catch (error) {
       ++failed;
       console.log(`FAILED ${name}: ${error.stack ?? error}`);
-      await page.screenshot({ path: join(output, `failed_${failed}.png`) });
+      await (typeof page === 'function' ? page() : page).screenshot({ path: join(output, `failed_${failed}.png`) }).catch(() => {});
     }
   }
   console.log(`${passed} passed, ${failed} failed`);

@@ -4,7 +4,7 @@
 import { mkdirSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 import { walkBvh } from './walk_bvh.mjs';
-import { jointPlace, launch, openStudio, serve, sessionState, settled } from './page.mjs';
+import { answer, jointPlace, launch, openStudio, serve, sessionState, settled } from './page.mjs';
 
 const [dist, output] = process.argv.slice(2).map((path) => resolve(path));
 mkdirSync(output, { recursive: true });
@@ -46,7 +46,8 @@ await picture('studio_weights', { ...desk, search: '?sample=quadruped' }, async 
 });
 await picture('studio_motion', { ...desk, search: '?sample=biped' }, async (page) => {
   await page.locator('#motion-file').setInputFiles({ name: 'walk.bvh', mimeType: 'text/plain', buffer: Buffer.from(walkBvh()) });
-  await page.waitForFunction(() => globalThis.limberStudio.state().clips.length > 0);
+  await page.waitForFunction(() => globalThis.limberStudio.state().clips.length > 0 || document.querySelector('#ask'));
+  if (await page.locator('#ask').isVisible()) await answer(page, true);
   await page.locator('#play').click();
   await settled(page);
   await page.locator('#scrub').fill('0.2');

@@ -1,7 +1,10 @@
 // Models in formats that the engine does not read in a browser, brought into GLB. Loaded when the first one is opened.
-import { DirectionalLight, Mesh, MeshStandardMaterial, Object3D, Scene, type BufferGeometry } from 'three';
+import {
+  BufferAttribute, BufferGeometry, DirectionalLight, LoadingManager, Mesh, MeshStandardMaterial, Object3D, Scene, type TypedArray,
+} from 'three';
 import { GLTFExporter } from 'three/examples/jsm/exporters/GLTFExporter.js';
 import { FBXLoader } from 'three/examples/jsm/loaders/FBXLoader.js';
+import { MTLLoader } from 'three/examples/jsm/loaders/MTLLoader.js';
 import { OBJLoader } from 'three/examples/jsm/loaders/OBJLoader.js';
 import { PLYLoader } from 'three/examples/jsm/loaders/PLYLoader.js';
 import { STLLoader } from 'three/examples/jsm/loaders/STLLoader.js';
@@ -11,26 +14,99 @@ const fail = (name: string, message: string, remedy: string) =>
   new EngineError({ code: 'bad-data', message, where: name, remedy });
 
 function meshOf(geometry: BufferGeometry): Object3D {
-  if (!geometry.hasAttribute('normal')) geometry.computeVertexNormals();
   return new Mesh(geometry, new MeshStandardMaterial({ vertexColors: geometry.hasAttribute('color') }));
 }
 
-function parse(bytes: Uint8Array, name: string): Object3D {
+/** Readers that take what a model refers to from the files beside it. */
+class Beside {
+  readonly manager = new LoadingManager();
+  private addresses: string[] = [];
+  private pictures: Promise<void> | null = null;
+
+  constructor(private files: Map<string, File>) {
+    this.manager.setURLModifier((url) => {
+      const file = files.get(url.split(/[\\/]/).pop() ?? url);
+      if (!file) return url;
+      const address = URL.createObjectURL(file);
+      this.addresses.push(address);
+      return address;
+    });
+    this.manager.onStart = () => {
+      this.pictures ??= new Promise((resolve) => { this.manager.onLoad = resolve; });
+    };
+  }
+
+  text(name: string): Promise<string> | null { return this.files.get(name)?.text() ?? null; }
+
+  /** Once all pictures are there. */
+  async loaded() {
+    await this.pictures;
+    this.addresses.forEach((address) => URL.revokeObjectURL(address));
+  }
+}
+
+async function parseObj(text: string, beside: Beside): Promise<Object3D> {
+  const reader = new OBJLoader(beside.manager);
+  const library = /^mtllib\s+(.+?)\s*$/m.exec(text)?.[1]?.split(/[\\/]/).pop();
+  const materials = library === undefined ? null : await beside.text(library);
+  if (materials !== null) reader.setMaterials(new MTLLoader(beside.manager).parse(materials, ''));
+  const model = reader.parse(text);
+  // The reader makes normals up, one for each triangle, which would tear the surface at every edge.
+  if (!/^vn\s/m.test(text)) model.traverse((part) => { if (part instanceof Mesh) part.geometry.deleteAttribute('normal'); });
+  return model;
+}
+
+/** Readers that know no shared vertices give three for each triangle: those that are equal in all become one. */
+function weld(geometry: BufferGeometry): BufferGeometry {
+  const attributes = Object.entries(geometry.attributes) as [string, BufferAttribute][];
+  if (geometry.index || Object.keys(geometry.morphAttributes).length > 0) return geometry;
+  if (attributes.some(([, attribute]) => !(attribute instanceof BufferAttribute))) return geometry;
+  const count = attributes[0]?.[1].count ?? 0, index = new Uint32Array(count), firsts: number[] = [];
+  const known = new Map<string, number>();
+  for (let vertex = 0; vertex < count; ++vertex) {
+    let key = '';
+    for (const [, { array, itemSize }] of attributes) {
+      for (let i = vertex * itemSize; i < (vertex + 1) * itemSize; ++i) key += `${array[i]} `;
+    }
+    const first = known.get(key) ?? firsts.push(vertex) - 1;
+    known.set(key, first);
+    index[vertex] = first;
+  }
+  const welded = new BufferGeometry();
+  for (const [name, { array, itemSize, normalized }] of attributes) {
+    const Type = array.constructor as new (length: number) => TypedArray;
+    const values = new Type(firsts.length * itemSize);
+    firsts.forEach((vertex, place) => values.set(array.subarray(vertex * itemSize, (vertex + 1) * itemSize), place * itemSize));
+    welded.setAttribute(name, new BufferAttribute(values, itemSize, normalized));
+  }
+  welded.setIndex(new BufferAttribute(index, 1));
+  for (const { start, count: some, materialIndex } of geometry.groups) welded.addGroup(start, some, materialIndex);
+  return welded;
+}
+
+async function parse(bytes: Uint8Array, name: string, beside: Beside): Promise<Object3D> {
   const buffer = bytes.slice().buffer;
   switch (name.split('.').pop()?.toLowerCase()) {
-    case 'obj': return new OBJLoader().parse(new TextDecoder().decode(bytes));
-    case 'fbx': return new FBXLoader().parse(buffer, '');
-    case 'stl': return meshOf(new STLLoader().parse(buffer));
+    case 'obj': return parseObj(new TextDecoder().decode(bytes), beside);
+    case 'fbx': return new FBXLoader(beside.manager).parse(buffer, '');
+    case 'stl': {
+      const geometry = new STLLoader().parse(buffer);
+      geometry.deleteAttribute('normal'); // of each triangle: what it is shaded by without any
+      return meshOf(geometry);
+    }
     case 'ply': return meshOf(new PLYLoader().parse(buffer));
     default: throw fail(name, 'a file of this kind cannot be opened', 'open GLB, glTF, VRM, OBJ, FBX, STL, PLY or BVH');
   }
 }
 
-export async function toGlb(bytes: Uint8Array, name: string): Promise<Uint8Array> {
+/** `beside`: files that it may refer to, by name. */
+export async function toGlb(bytes: Uint8Array, name: string, beside = new Map<string, File>()): Promise<Uint8Array> {
   if (/\.vrm$/i.test(name)) return bytes; // a GLB with extensions
   let model: Object3D;
   try {
-    model = parse(bytes, name);
+    const readers = new Beside(beside);
+    model = await parse(bytes, name, readers);
+    await readers.loaded();
   } catch (error) {
     if (error instanceof EngineError) throw error;
     throw fail(name, 'the file cannot be read', String(error instanceof Error ? error.message : error));
@@ -38,8 +114,10 @@ export async function toGlb(bytes: Uint8Array, name: string): Promise<Uint8Array
   const others: Object3D[] = [];
   let meshes = 0;
   model.traverse((part) => {
-    if (part instanceof Mesh) ++meshes;
-    else if (part instanceof DirectionalLight || 'isLight' in part || 'isCamera' in part) others.push(part);
+    if (part instanceof Mesh) {
+      ++meshes;
+      part.geometry = weld(part.geometry as BufferGeometry);
+    } else if (part instanceof DirectionalLight || 'isLight' in part || 'isCamera' in part) others.push(part);
   });
   others.forEach((part) => part.removeFromParent());
   if (meshes === 0) throw fail(name, 'there is no surface in the file', 'is it the right file?');

@@ -1,51 +1,39 @@
-// The session kept in the browser, so that a reload, or a closed page, loses nothing. It never leaves the machine.
+// What the list of kept documents shows, and what is said where the browser keeps nothing.
+import type { Viewport } from '../scene/viewport';
+import type { Journal } from './journal';
 import type { PageStore } from './state';
 import type { Studio } from './studio';
 
-const quiet = 1500; // milliseconds without a change before it is kept
+const quiet = 1000; // milliseconds without a change before a picture is taken
+const width = 192, height = 128; // pixels of the picture
 
-function database(): Promise<IDBDatabase> {
-  return new Promise((resolve, reject) => {
-    const request = indexedDB.open('limber-studio', 1);
-    request.onupgradeneeded = () => request.result.createObjectStore('session');
-    request.onsuccess = () => resolve(request.result);
-    request.onerror = () => reject(new Error('no store'));
-  });
-}
-
-async function withStore<T>(mode: IDBTransactionMode, act: (store: IDBObjectStore) => IDBRequest<T>): Promise<T> {
-  const open = await database();
-  return new Promise((resolve, reject) => {
-    const request = act(open.transaction('session', mode).objectStore('session'));
-    request.onsuccess = () => resolve(request.result);
-    request.onerror = () => reject(new Error('the store failed'));
-  });
-}
-
-interface Kept { name: string; bytes: Uint8Array }
-
-/** What was kept last; null where nothing was, or where the browser keeps nothing. */
-export async function keptSession(): Promise<Kept | null> {
-  return withStore<Kept | undefined>('readonly', (store) => store.get('last')).then((kept) => kept ?? null, () => null);
-}
-
-/** After each change that a user made. What it gives says whether all of them are kept. */
-export function keepSession(studio: Studio, page: PageStore): () => boolean {
-  let timer = 0, waiting = false;
-  const keep = async () => {
-    const name = page.now.session?.name;
-    if (!name || page.now.playing || !studio.idle) return later();
-    const bytes = await studio.exportFile('session');
-    if (bytes) await withStore('readwrite', (store) => store.put({ name, bytes } satisfies Kept, 'last')).catch(() => {});
-    waiting = false;
-  };
+export function bindJournal(journal: Journal, studio: Studio, page: PageStore, viewport: Viewport) {
+  const canvas = document.createElement('canvas');
+  canvas.width = width;
+  canvas.height = height;
+  let timer = 0;
   const later = () => {
-    waiting = true;
     clearTimeout(timer);
-    timer = window.setTimeout(() => void keep(), quiet);
+    timer = window.setTimeout(describe, quiet);
+  };
+  const describe = () => {
+    const context = canvas.getContext('2d'), { session, playing } = page.now;
+    if (!session || !context) return;
+    if (playing || !studio.idle) return later();
+    context.fillStyle = '#eef0f3';
+    context.fillRect(0, 0, width, height);
+    viewport.drawInto(context, 0, 0, width, height);
+    journal.describe(session.name, canvas.toDataURL('image/jpeg', 0.8));
   };
   page.watch((now, before) => {
-    if (now.session !== before.session && now.session?.undo) later();
+    if (now.session !== before.session && now.session) later();
   });
-  return () => !waiting;
+
+  journal.onTrouble = (why) => page.set({
+    notice: { kind: 'error', title: 'This browser cannot keep your work', detail: `Save it as a file before you leave (${why})` },
+  });
+  addEventListener('pagehide', () => journal.flush());
+  addEventListener('beforeunload', (event) => {
+    if (journal.atRisk && page.now.session?.undo) event.preventDefault();
+  });
 }

@@ -1,9 +1,13 @@
 // Everything that a user can do, each a call on the engine's session; panels and the view call this and nothing else.
 import { EngineClient, EngineError } from '../engine/client';
-import type { Answer, Command, MethodKind, Ray, SessionState, Stance, Vector } from '../engine/messages';
-import { noticeOf, type PageStore } from './state';
-
-type Step = Answer<'run'>;
+import type {
+  Command, LimberError, MethodKind, MotionRequest, Ray, Request, SessionState, Stance, Step, Vector,
+} from '../engine/messages';
+import { counted } from '../ui/counted';
+import { sorted, withBuffers } from './files';
+import type { Journal, KeptDocument } from './journal';
+import { fromLimberFile, toLimberFile } from './limber_file';
+import { noticeOf, type Notice, type PageStore } from './state';
 
 const mostFileSize = 500e6;
 const progressDelay = 250; // milliseconds before a wait is shown
@@ -13,6 +17,13 @@ const stageNames: Record<string, string> = {
   'rig': 'Finding handles', 'skin': 'Binding the surface', 'write rig': 'Finishing',
 };
 
+const lostSteps = (failed: number, all: number, error: LimberError | null): Notice => ({
+  kind: 'error', title: `${counted(failed, 'step')} of ${all} could not be brought back`, detail: error?.message ?? '',
+});
+const openTwice = (name: string): Notice => ({
+  kind: 'note', title: 'This model is open in another tab as well', detail: `What you do here is kept as a copy of ${name}`,
+});
+
 /** Whether its rig is a named skeleton's, whose joints can be corrected. */
 export const hasTemplate = (session: SessionState) => !session.own_rig && session.rigger === 'template';
 
@@ -21,6 +32,8 @@ export class Studio {
   onStance: (stance: Stance, ofClip: boolean) => void = () => {};
   /** A new model was opened: the camera goes to it. */
   onOpened: () => void = () => {};
+  /** Something is to be replaced: whether the user agrees. */
+  ask: (title: string, detail: string, yes: string) => Promise<boolean> = async () => true;
 
   private underWay = 0;
   private engine = new EngineClient();
@@ -34,10 +47,14 @@ export class Studio {
   private comparing = false;
   private stance: Stance | null = null;
   private shownSource = '';
+  private openings = 0;
+  private afterOpening: Notice | null = null;
+  private opening: Promise<unknown> = Promise.resolve();
   private waitingMoment: number | null = null;
   private momentUnderWay = false;
 
-  constructor(readonly page: PageStore) {
+  constructor(readonly page: PageStore, private journal: Journal) {
+    this.engine.onChange = (request, place) => journal.add(request, place);
     this.engine.onBusy = (busy) => this.showWork(busy);
     this.engine.onProgress = (stage, fraction) => {
       this.stage = { stage: stageNames[stage.split(':')[0] ?? ''] ?? stage, fraction };
@@ -48,69 +65,96 @@ export class Studio {
   /** Nothing that was begun is still under way. */
   get idle() { return this.underWay === 0 && this.dragsLeft === 0 && !this.momentUnderWay; }
 
-  async openSample(name: string) {
-    await this.guard(async () => this.opened(await this.engine.run({ do: 'open_sample', name })));
+  async openSample(name: string) { await this.open(() => this.engine.run({ do: 'open_sample', name })); }
+
+  /** Of models that are asked for while another one is being opened the last is opened, the others never. */
+  private async open(make: () => Promise<Step | null>) {
+    const mine = ++this.openings, before = this.opening;
+    this.page.set({ playing: false });
+    this.waitingMoment = null;
+    this.opening = this.guard(async () => {
+      await before;
+      if (mine !== this.openings) return;
+      const step = await make();
+      if (step) this.opened(step);
+    });
+    await this.opening;
   }
 
-  async openFile(file: File) {
-    if (file.size > mostFileSize) {
-      this.page.set({ notice: { kind: 'error', title: 'This file is too large for a browser', detail: file.name } });
+  /** A model with what belongs to it, motions for it, or limits. */
+  async openFiles(files: File[]) {
+    const large = files.find(({ size }) => size > mostFileSize);
+    if (large) {
+      this.page.set({ notice: { kind: 'error', title: 'This file is too large for a browser', detail: large.name } });
       return;
     }
-    if (/\.bvh$/i.test(file.name)) return this.openMotion(file);
-    if (/\.json$/i.test(file.name)) return this.openLimits(file);
-    await this.guard(async () => {
+    const brought = await this.guard(() => sorted(files));
+    if (!brought) return;
+    const { model, motions, limits, beside } = brought;
+    if (model) await this.openModel(model, beside);
+    for (const motion of motions) await this.openMotion(motion);
+    if (limits) await this.openLimits(limits);
+    if (files.length > 0 && !model && motions.length === 0 && !limits) {
+      this.page.set({ notice: { kind: 'error', title: 'There is no model in it', detail: 'Open GLB, glTF, VRM, OBJ, FBX, STL, PLY or BVH' } });
+    }
+  }
+
+  private async openModel(file: File, beside: Map<string, File>) {
+    await this.open(async () => {
       const bytes = new Uint8Array(await file.arrayBuffer());
-      if (/\.gl(b|tf)$/i.test(file.name)) return this.openBytes(bytes, file.name);
+      if (/\.limber$/i.test(file.name)) return this.restore(fromLimberFile(bytes, file.name), file.name);
+      if (/\.glb$/i.test(file.name)) return this.openBytes(bytes, file.name);
+      if (/\.gltf$/i.test(file.name)) return this.openBytes(await withBuffers(bytes, beside), file.name);
       if (/\.ply$/i.test(file.name)) await this.engine.ask({ kind: 'check-ply', bytes, name: file.name });
       const { toGlb } = await import('./import_model');
-      await this.openBytes(await toGlb(bytes, file.name), file.name);
+      return this.openBytes(await toGlb(bytes, file.name, beside), file.name);
     });
   }
 
-  /** Plays what moves in the file on the model; a model whose handles have no names is rigged by a template first. */
+  /** Plays what moves in the file on the model. */
   async openMotion(file: File) {
-    await this.guard(async () => {
-      const bytes = new Uint8Array(await file.arrayBuffer());
-      await this.play(await this.engine.ask({ kind: 'motion', bytes, name: file.name }));
-    });
+    await this.guard(async () => this.play({ kind: 'motion', bytes: new Uint8Array(await file.arrayBuffer()), name: file.name }));
   }
 
   /** One that the engine makes itself. */
   async openSampleMotion(name: string) {
-    await this.guard(async () => this.play(await this.engine.run({ do: 'add_sample_motion', name })));
+    await this.guard(() => this.play({ kind: 'run', command: { do: 'add_sample_motion', name } }));
   }
 
-  /** The motion that was opened last. */
-  private async play(opened: Step) {
-    this.apply(opened);
-    const state = this.page.now.session, motion = state?.motions.at(-1);
-    if (!state || !motion) return;
-    const retarget = { do: 'retarget', motion: motion.name };
-    const before = state.clips.length;
-    try {
-      await this.run1(retarget);
-    } catch (error) {
-      const fits = error instanceof EngineError && error.error.code === 'unsupported' && !state.own_rig && state.rigger !== 'template';
-      if (!fits) throw error;
-      await this.rigged({ do: 'choose_methods', rigger: 'template', skinning: state.skinning });
-      await this.run1(retarget);
+  /** A model whose handles have no names gets a skeleton first, where the user agrees; else all stays as it was. */
+  private async play(motion: MotionRequest) {
+    const state = this.page.now.session;
+    if (!state) return;
+    let trial = await this.engine.ask({ kind: 'try-motion', motion, named: false });
+    const canBeNamed = trial.error?.code === 'unsupported' && !state.own_rig && state.rigger !== 'template';
+    if (canBeNamed) {
+      const refused = trial.error;
+      trial = await this.engine.ask({ kind: 'try-motion', motion, named: true });
+      if (trial.error) throw new EngineError(refused ?? trial.error);
+      const agreed = await this.ask('The model needs a skeleton for this motion',
+        `Its ${counted(state.joints.length, 'handle')} will be replaced by a skeleton of ${counted(trial.joints, 'joint')} with names. `
+        + `${trial.warnings.map((warning) => `Please look at the result: ${warning}. `).join('')}Undo takes it back.`,
+        'Give it a skeleton');
+      if (!agreed) return;
+      this.take(await this.engine.run({ do: 'choose_methods', rigger: 'template', skinning: state.skinning }));
     }
+    if (trial.error) throw new EngineError(trial.error);
+    const before = this.page.now.session?.clips.length ?? 0;
+    this.take(await this.engine.ask(motion));
+    this.take(await this.engine.run({ do: 'retarget', motion: trial.motion }));
     if ((this.page.now.session?.clips.length ?? 0) > before) this.page.set({ playing: true, display: 'surface', correcting: false });
   }
 
   /** How far joints may turn: a file of limits, for this model's joints. */
   async openLimits(file: File) {
     await this.guard(async () => {
-      await this.run1({ do: 'set_limits', limits: await file.text() });
+      this.take(await this.engine.run({ do: 'set_limits', limits: await file.text() }));
       this.page.set({ limits: true, display: 'handles' });
     });
   }
 
-  private async run1(command: Command) { this.apply(await this.engine.run(command)); }
-
   async openAddress(address: string) {
-    await this.guard(async () => {
+    await this.open(async () => {
       const response = await fetch(address).catch(() => null);
       if (!response?.ok) {
         throw new EngineError({
@@ -119,15 +163,36 @@ export class Studio {
         });
       }
       const name = decodeURIComponent(new URL(address, location.href).pathname.split('/').pop() ?? 'model.glb');
-      await this.openBytes(new Uint8Array(await response.arrayBuffer()), name);
+      return this.openBytes(new Uint8Array(await response.arrayBuffer()), name);
     });
   }
 
-  /** A session that this browser kept. */
-  async openKept(bytes: Uint8Array, name: string) { await this.guard(() => this.openBytes(bytes, name)); }
+  /** A document that this browser kept, as it was left. */
+  async openKept(document: KeptDocument) {
+    await this.open(async () => this.restore(await this.journal.requestsOf(document.id), document.name, document));
+  }
 
-  private async openBytes(bytes: Uint8Array, name: string) {
-    await this.opened(await this.engine.ask({ kind: 'open', bytes, name }));
+  /** A document by all that was done; one that was kept goes on where it is. */
+  private async restore(requests: Request[], name: string, kept: KeptDocument | null = null): Promise<Step> {
+    const { step, failed, error } = await this.engine.restore(requests);
+    if (!step) throw new EngineError(error ?? { code: 'page', message: 'there is no model in it', where: name, remedy: '' });
+    const own = kept ? await this.journal.resume(kept, requests) : this.journal.begin(name, requests);
+    this.afterOpening = failed > 0 ? lostSteps(failed, requests.length, error) : own ? null : openTwice(name);
+    return step;
+  }
+
+  /** Everything, to go on with here or elsewhere. */
+  limberFile(): Uint8Array { return toLimberFile(this.engine.requests); }
+
+  private openBytes(bytes: Uint8Array, name: string) { return this.engine.ask({ kind: 'open', bytes, name }); }
+
+  /** Whether what is asked for may replace the rig that the model came with. */
+  private async mayReplaceRig(): Promise<boolean> {
+    const { session } = this.page.now;
+    if (!session?.own_rig) return true;
+    return this.ask('Replace the rig of this model?',
+      `It came with ${counted(session.joints.length, 'joint')} that have names; they and its clips go. Undo brings them back.`,
+      'Replace it');
   }
 
   /** The last count asked for counts; those that a slider passes on its way are left out. */
@@ -136,8 +201,9 @@ export class Studio {
     this.wantedHandles = count;
     if (underWay) return;
     await this.guard(async () => {
+      if (!await this.mayReplaceRig()) return;
       for (let next = count; ; next = this.wantedHandles ?? next) {
-        await this.rigged({ do: 'set_handles', count: next });
+        this.take(await this.engine.run({ do: 'set_handles', count: next }));
         this.askedHandles = next;
         if (this.wantedHandles === next) return;
       }
@@ -164,7 +230,10 @@ export class Studio {
     const session = this.page.now.session;
     if (!session) return;
     const { rigger, skinning } = { ...session, ...change };
-    await this.guard(() => this.rigged({ do: 'choose_methods', rigger, skinning }));
+    await this.guard(async () => {
+      if (await this.mayReplaceRig()) this.take(await this.engine.run({ do: 'choose_methods', rigger, skinning }));
+    });
+    this.page.set({}); // lists show again what is chosen
   }
 
   /** Joints are corrected on the model as it is bound, so it stands at rest. */
@@ -172,16 +241,16 @@ export class Studio {
     if (!on) return this.page.set({ correcting: false });
     await this.guard(async () => {
       this.page.set({ playing: false });
-      if (this.page.now.session?.clip != null) await this.run1({ do: 'choose_clip', clip: '' });
-      if (this.page.now.session?.posed) await this.run1({ do: 'reset_pose' });
+      if (this.page.now.session?.clip != null) this.take(await this.engine.run({ do: 'choose_clip', clip: '' }));
+      if (this.page.now.session?.posed) this.take(await this.engine.run({ do: 'reset_pose' }));
       this.page.set({ correcting: true, mode: 'move', display: 'handles' });
     });
   }
 
   async pinJoint(joint: number, position: Vector) {
-    await this.guard(() => this.rigged({ do: 'pin_joint', joint: this.jointName(joint), position }));
+    await this.run({ do: 'pin_joint', joint: this.jointName(joint), position });
   }
-  async unpinJoint(joint: string) { await this.guard(() => this.rigged({ do: 'unpin_joint', joint })); }
+  async unpinJoint(joint: string) { await this.run({ do: 'unpin_joint', joint }); }
 
   async chooseSolver(solver: string) {
     await this.run({ do: 'set_ik', on: this.page.now.session?.ik ?? false, solver });
@@ -232,9 +301,8 @@ export class Studio {
     }
   }
 
-  /** Commands that leave the rig as it is. */
   async run(command: Command) {
-    await this.guard(async () => this.apply(await this.engine.run(command)));
+    await this.guard(async () => this.take(await this.engine.run(command)));
   }
 
   /** With another method, map, or how far hands reach; the clip stays in its place. */
@@ -244,6 +312,7 @@ export class Studio {
     if (!session || !source) return;
     const map = change.map ?? JSON.stringify({ matches: session.match });
     await this.run({ do: 'retarget', ...source, ...change, map });
+    this.page.set({}); // what was refused is not shown any more
   }
 
   /** At most one moment is on its way; the newest waits. */
@@ -273,7 +342,7 @@ export class Studio {
   }
 
   async renameJoint(joint: number, name: string) {
-    await this.guard(() => this.rigged({ do: 'rename_joint', joint: this.jointName(joint), name }));
+    await this.run({ do: 'rename_joint', joint: this.jointName(joint), name });
   }
 
   /** Pictures of a clip at even moments, each once the scene stands there. */
@@ -299,10 +368,10 @@ export class Studio {
   async renameClip(clip: string, name: string) { await this.run({ do: 'rename_clip', clip, name }); }
   async clearTarget(joint: number) { await this.run({ do: 'clear_target', joint: this.jointName(joint) }); }
 
-  async setRestPose() { await this.guard(() => this.rigged({ do: 'set_rest_pose' })); }
+  async setRestPose() { await this.run({ do: 'set_rest_pose' }); }
 
-  async undo() { await this.guard(() => this.rigged({ do: 'undo' })); }
-  async redo() { await this.guard(() => this.rigged({ do: 'redo' })); }
+  async undo() { await this.run({ do: 'undo' }); }
+  async redo() { await this.run({ do: 'redo' }); }
   async toggleIk() {
     const { session } = this.page.now;
     if (session) await this.run({ do: 'set_ik', on: !session.ik, solver: session.solver });
@@ -398,26 +467,31 @@ export class Studio {
 
   private jointName(joint: number) { return this.page.now.session?.joints[joint]?.name ?? ''; }
 
-  private async opened(answer: Step) {
-    this.page.set({ selected: null, hovered: null, notice: null, comparison: null, hiddenParts: new Set(), correcting: false });
-    await this.showRig(answer);
+  private opened(step: Step) {
+    this.page.set({
+      selected: null, hovered: null, notice: this.afterOpening, comparison: null, hiddenParts: new Set(), correcting: false, display: 'handles',
+    });
+    this.afterOpening = null;
+    this.take(step);
     this.onOpened();
   }
 
-  private async rigged(command: Command) {
-    await this.showRig(await this.engine.run(command));
-  }
-
-  private async showRig(answer: Step) {
-    const model = await this.engine.ask({ kind: 'model' });
-    const count = answer.state?.joints.length ?? 0;
-    const { selected } = this.page.now;
-    const correcting = this.page.now.correcting && (answer.state ? hasTemplate(answer.state) : false);
-    this.page.set({
-      correcting, session: answer.state, model, seconds: answer.state?.seconds ?? 0, playing: false, hovered: null, selected: selected !== null && selected < count ? selected : null,
-    });
-    this.showStance(answer.stance, false);
-    this.followUp();
+  /** The document as it stands after a step. */
+  private take({ state, stance, model }: Step) {
+    const before = this.page.now;
+    if (state && model) {
+      const { selected } = before;
+      this.page.set({
+        session: state, model, seconds: state.seconds, playing: false, hovered: null,
+        correcting: before.correcting && hasTemplate(state),
+        selected: selected !== null && selected < state.joints.length ? selected : null,
+      });
+    } else if (state) {
+      this.page.set({ session: state, seconds: state.seconds });
+    }
+    const another = !model && state !== null && (state.clip !== before.session?.clip || state.seconds !== before.session?.seconds);
+    this.showStance(stance, another);
+    if (state) this.followUp();
   }
 
   private showStance(stance: Stance, ofClip: boolean) {
@@ -433,17 +507,11 @@ export class Studio {
       const motion = session?.clips[session.clip ?? -1]?.source?.motion ?? '';
       if (motion === this.shownSource) return;
       this.shownSource = motion;
-      this.page.set({ sourceModel: motion === '' ? null : await this.engine.ask({ kind: 'source-model' }) });
+      const sourceModel = motion === '' ? null : await this.engine.ask({ kind: 'source-model' });
+      if (this.shownSource !== motion) return;
+      this.page.set({ sourceModel });
       if (this.stance) this.onStance(this.stance, false);
     });
-  }
-
-  private apply({ state, stance }: Step) {
-    const before = this.page.now.session;
-    const another = state !== null && (state.clip !== before?.clip || state.seconds !== before.seconds);
-    if (state) this.page.set({ session: state, seconds: state.seconds });
-    this.showStance(stance, another);
-    if (state) this.followUp();
   }
 
   private showWork(busy: boolean) {

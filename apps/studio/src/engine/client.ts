@@ -1,5 +1,5 @@
 // The page's side of the worker: promises, progress, and a way to stop what takes too long.
-import type { Answer, Command, FromWorker, Kind, LimberError, Request, ToWorker } from './messages';
+import { opensModel, type Answer, type Command, type FromWorker, type Kind, type LimberError, type Place, type Request, type ToWorker } from './messages';
 
 export class EngineError extends Error {
   constructor(readonly error: LimberError) {
@@ -10,6 +10,10 @@ export class EngineError extends Error {
 
 const cancelled: LimberError = { code: 'cancelled', message: 'stopped', where: '', remedy: '' };
 
+const unreachable = (why: string) => new EngineError({
+  code: 'engine', message: 'the engine cannot be loaded', where: why, remedy: 'look at the connection, and load the page again',
+});
+
 interface Waiting {
   request: Request;
   resolve(answer: unknown): void;
@@ -17,12 +21,13 @@ interface Waiting {
 }
 
 const changesDocument = ({ kind }: Request) => kind === 'open' || kind === 'motion' || kind === 'run';
-const opens = (request: Request) =>
-  request.kind === 'open' || (request.kind === 'run' && String(request.command.do).startsWith('open_'));
+const opens = (request: Request) => request.kind === 'open' || (request.kind === 'run' && opensModel(request.command));
 
 export class EngineClient {
   onProgress: (stage: string, fraction: number) => void = () => {};
   onBusy: (busy: boolean) => void = () => {};
+  /** The document has changed. */
+  onChange: (request: Request, place: Place) => void = () => {};
 
   private worker: Worker;
   private ready: Promise<void>;
@@ -42,20 +47,28 @@ export class EngineClient {
 
   run(command: Command) { return this.ask({ kind: 'run', command }); }
 
+  /** All that made the document. */
+  get requests(): Request[] { return [...this.history]; }
+
+  /** A document that was made by these requests; what comes next follows them. */
+  async restore(requests: Request[]): Promise<Answer<'restore'>> {
+    const answer = await this.ask({ kind: 'restore', requests });
+    if (answer.step) this.history = [...requests];
+    return answer;
+  }
+
   /** Ends everything under way, and goes back to how the document was before it. */
   async cancel() {
     this.worker.terminate();
     const stopped = [...this.waiting.values()];
     this.waiting.clear();
-    const history = this.history;
-    this.history = [];
     let brought: () => void = () => {};
     [this.worker, this.ready] = this.startWorker();
     const fresh = this.ready;
     // Whoever asks meanwhile waits until the document is back.
     this.ready = new Promise((resolve) => { brought = resolve; });
     await fresh;
-    for (const request of history) await this.send(request).catch(() => {});
+    await this.send<'restore'>({ kind: 'restore', requests: this.history }).catch(() => {});
     brought();
     stopped.forEach(({ reject }) => reject(new EngineError(cancelled)));
     this.onBusy(false);
@@ -75,10 +88,10 @@ export class EngineClient {
     const ready = new Promise<void>((resolve, reject) => {
       worker.onmessage = ({ data }: MessageEvent<FromWorker>) => {
         if (data.kind === 'ready') resolve();
-        else if (data.kind === 'broken') reject(new EngineError({ ...cancelled, code: 'engine', message: data.message }));
+        else if (data.kind === 'broken') reject(unreachable(data.message));
         else this.receive(data);
       };
-      worker.onerror = (event) => reject(new EngineError({ ...cancelled, code: 'engine', message: event.message }));
+      worker.onerror = (event) => reject(unreachable(event.message));
     });
     return [worker, ready];
   }
@@ -97,10 +110,11 @@ export class EngineClient {
   private remember(request: Request) {
     if (!changesDocument(request)) return;
     if (opens(request)) this.history = [];
-    const last = this.history.at(-1);
     const frame = (r: Request | undefined) =>
       (r?.kind === 'run' && ['update_drag', 'turn_drag', 'set_time'].includes(r.command.do) ? r.command.do : null);
-    if (frame(request) !== null && frame(request) === frame(last)) this.history.pop();
+    const replaces = frame(request) !== null && frame(request) === frame(this.history.at(-1));
+    if (replaces) this.history.pop();
     this.history.push(request);
+    this.onChange(request, opens(request) ? 'begins' : replaces ? 'replaces' : 'follows');
   }
 }

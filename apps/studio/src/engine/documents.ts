@@ -1,12 +1,13 @@
 // The session that is worked on, and those that stand beside it: models that motions came with, and what other methods
 // make of the document. All show the same moment.
 import type { Failure, loadLimber, Session } from '@engine/limber.mjs';
-import type {
-  Answers, Command, ExportFormat, LimberError, Ray, SessionState, Stance, SurfaceModel, Variant,
+import {
+  opensModel, type Answers, type Command, type ExportFormat, type LimberError, type MotionRequest, type Ray, type Request,
+  type SessionState, type Stance, type Step, type Trial, type Variant,
 } from './messages';
 
 type Limber = Awaited<ReturnType<typeof loadLimber>>;
-type Step = { state: SessionState | null; skin: Float32Array };
+type Taken = { state: SessionState | null; skin: Float32Array };
 
 /** An engine's error on its way to the page. */
 export class EngineFailure extends Error {
@@ -20,6 +21,11 @@ function orThrow<T extends { ok: true }>(result: T | Failure): T {
   return result;
 }
 
+/** What may make another rig, and with it another surface. */
+const changesRig = new Set([
+  'open_sample', 'open_file', 'set_handles', 'choose_methods', 'pin_joint', 'unpin_joint', 'set_rest_pose', 'rename_joint',
+  'undo', 'redo',
+]);
 const withModel = /\.(glb|gltf|vrm)$/i;
 const none = new Float32Array();
 
@@ -37,28 +43,58 @@ export class Documents {
   }
 
   open(bytes: Uint8Array, name: string): Answers['open'] {
-    const step = orThrow(this.session.open(bytes, name));
-    this.forgetOthers();
-    return this.after(step);
+    return this.shown(this.take({ kind: 'open', bytes, name }), true);
   }
 
   addMotion(bytes: Uint8Array, name: string): Answers['motion'] {
-    const answer = this.after(orThrow(this.session.addMotion(bytes, name)));
-    const motion = answer.state.motions.at(-1);
-    if (motion && withModel.test(name)) this.addSource(motion.name, bytes, name);
-    return answer;
+    return this.shown(this.take({ kind: 'motion', bytes, name }), false);
   }
 
   run(command: Command): Answers['run'] {
-    const step = orThrow(this.session.run(command));
-    if (String(command.do).startsWith('open_')) this.forgetOthers();
-    if (command.do === 'set_time') this.seconds = Number(command.seconds);
-    if (step.state) return this.after(step);
-    return { state: null, stance: this.stance(step.skin) };
+    return this.shown(this.take({ kind: 'run', command }), changesRig.has(command.do));
+  }
+
+  restore(requests: Request[]): Answers['restore'] {
+    this.session.free();
+    this.session = this.limber.createSession();
+    this.state = null;
+    this.forgetOthers();
+    let failed = 0, error: LimberError | null = null;
+    for (const request of requests) {
+      try {
+        this.take(request);
+      } catch (thrown) {
+        if (!(thrown instanceof EngineFailure)) throw thrown;
+        ++failed;
+        error ??= thrown.failure.error;
+      }
+    }
+    if (!this.state) return { step: null, failed, error };
+    // It may have been left in the middle of a drag.
+    if ((this.state as SessionState).dragged !== null) this.take({ kind: 'run', command: { do: 'end_drag' } });
+    const { skin } = orThrow(this.session.skin());
+    return { step: this.shown({ state: this.state, skin }, true), failed, error };
+  }
+
+  tryMotion(request: MotionRequest, named: boolean): Trial {
+    const fork = this.limber.forkSession(this.session);
+    if (!fork) throw new EngineFailure({ ok: false, error: { code: 'bad-argument', message: 'a joint is being dragged', where: '', remedy: '' } });
+    try {
+      const rig: Command = { do: 'choose_methods', rigger: 'template', skinning: this.state?.skinning };
+      const rigged = named ? orThrow(fork.run(rig)).state : this.state;
+      const added = orThrow(request.kind === 'motion' ? fork.addMotion(request.bytes, request.name) : fork.run(request.command));
+      const motion = added.state?.motions.at(-1)?.name ?? '';
+      const put = fork.run({ do: 'retarget', motion });
+      return {
+        motion, error: put.ok ? null : put.error, joints: rigged?.joints.length ?? 0,
+        warnings: rigged?.warnings.map(({ message }) => message) ?? [],
+      };
+    } finally {
+      fork.free();
+    }
   }
 
   pick(ray: Ray, slope: number) { return orThrow(this.session.pick(ray, slope)).hit; }
-  model(): SurfaceModel { return orThrow(this.session.model()).model; }
   checkPly(bytes: Uint8Array, name: string) { orThrow(this.limber.checkPly(bytes, name)); }
   methods() { return this.limber.methods(); }
   export(format: ExportFormat) { return orThrow(this.session.export(format)).bytes; }
@@ -88,12 +124,40 @@ export class Documents {
     return { measures: orThrow(this.session.measures()).measures, variants, stance: this.stance(skin) };
   }
 
-  private after(step: Step): { state: SessionState; stance: Stance } {
-    if (step.state) {
-      this.state = step.state;
-      this.seconds = step.state.seconds;
+  /** One request, carried out on the document. */
+  private take(request: Request): Taken {
+    const taken = this.carryOut(request);
+    if (taken.state) {
+      this.state = taken.state;
+      this.seconds = taken.state.seconds;
     }
-    return { state: this.state!, stance: this.stance(step.skin) };
+    return taken;
+  }
+
+  private carryOut(request: Request): Taken {
+    switch (request.kind) {
+      case 'open': {
+        const opened = orThrow(this.session.open(request.bytes, request.name));
+        this.forgetOthers();
+        return opened;
+      }
+      case 'motion': {
+        const added = orThrow(this.session.addMotion(request.bytes, request.name)), motion = added.state?.motions.at(-1);
+        if (motion && withModel.test(request.name)) this.addSource(motion.name, request.bytes, request.name);
+        return added;
+      }
+      case 'run': {
+        const { command } = request, run = orThrow(this.session.run(command));
+        if (opensModel(command)) this.forgetOthers();
+        if (command.do === 'set_time') this.seconds = Number(command.seconds);
+        return run;
+      }
+      default: throw new Error(`${request.kind} changes no document`);
+    }
+  }
+
+  private shown({ state, skin }: Taken, rig: boolean): Step {
+    return { state, stance: this.stance(skin), model: rig ? orThrow(this.session.model()).model : null };
   }
 
   private addSource(motion: string, bytes: Uint8Array, name: string) {
@@ -106,6 +170,7 @@ export class Documents {
   private forgetOthers() {
     this.sources.forEach(({ session }) => session.free());
     this.sources.clear();
+    this.shownSource = '';
     this.endComparison();
   }
 

@@ -27,14 +27,41 @@ export interface Variant {
   measures: Measures;
 }
 
+/** How the document stands after a step; with the surface where the rig is another. */
+export interface Step {
+  /** null after a drag's update and a clip's moment, which change the stance alone. */
+  state: SessionState | null;
+  stance: Stance;
+  model: SurfaceModel | null;
+}
+
+/** A motion on its way to the model: from a file, or one that the engine makes. */
+export type MotionRequest =
+  | { kind: 'motion'; bytes: Uint8Array; name: string }
+  | { kind: 'run'; command: { do: 'add_sample_motion'; name: string } };
+
+/** Whether a motion can be put on the model, tried beside the document. */
+export interface Trial {
+  /** What it is called in the document then. */
+  motion: string;
+  /** Why it cannot. */
+  error: LimberError | null;
+  /** Of the rig that it would be put on. */
+  joints: number;
+  warnings: string[];
+}
+
 export type Request =
   | { kind: 'open'; bytes: Uint8Array; name: string }
   /** Fails where the file is cut off. */
   | { kind: 'check-ply'; bytes: Uint8Array; name: string }
   | { kind: 'motion'; bytes: Uint8Array; name: string }
   | { kind: 'run'; command: Command }
+  /** Before, the model gets a rig whose joints have names, where `named` says so. */
+  | { kind: 'try-motion'; motion: MotionRequest; named: boolean }
+  /** A new document, by all that was asked for to make it. */
+  | { kind: 'restore'; requests: Request[] }
   | { kind: 'pick'; ray: Ray; slope: number }
-  | { kind: 'model' }
   /** The model that the chosen clip's motion came with. */
   | { kind: 'source-model' }
   | { kind: 'methods' }
@@ -45,13 +72,14 @@ export type Request =
 
 /** The answer to each kind of request. */
 export interface Answers {
-  open: { state: SessionState; stance: Stance };
+  open: Step;
   'check-ply': void;
-  motion: { state: SessionState; stance: Stance };
-  /** state is null after a drag's update and a clip's moment, which change the stance alone. */
-  run: { state: SessionState | null; stance: Stance };
+  motion: Step;
+  run: Step;
+  'try-motion': Trial;
+  /** null where nothing could be opened; how many of the requests failed, and the first error. */
+  restore: { step: Step | null; failed: number; error: LimberError | null };
   pick: PickHit | null;
-  model: SurfaceModel;
   'source-model': { motion: string; model: SurfaceModel; joints: number } | null;
   methods: Methods;
   /** What the document itself measures, each variant or why there is none, and how all stand. */
@@ -59,6 +87,12 @@ export interface Answers {
   export: Uint8Array;
   record: string;
 }
+
+/** How a request goes with those before it: a document begins, one more, or a newer frame in place of the last. */
+export type Place = 'begins' | 'follows' | 'replaces';
+
+/** Whether a command begins another document. */
+export const opensModel = (command: Command) => command.do.startsWith('open_');
 
 export type Kind = Request['kind'];
 export type Answer<K extends Kind> = Answers[K];

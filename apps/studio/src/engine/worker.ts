@@ -1,6 +1,6 @@
 // Holds the engine and one session, away from the page's own thread.
 import { loadLimber } from '@engine/limber.mjs';
-import wasmUrl from '@engine/limber_engine.wasm?url';
+import engineUrl from '@engine/limber_engine.wasm.gz?url';
 import { Documents, EngineFailure } from './documents';
 import type { Answers, FromWorker, Kind, Request, ToWorker } from './messages';
 
@@ -13,7 +13,8 @@ function answer(documents: Documents, request: Request): Answers[Kind] {
     case 'motion': return documents.addMotion(request.bytes, request.name);
     case 'run': return documents.run(request.command);
     case 'pick': return documents.pick(request.ray, request.slope);
-    case 'model': return documents.model();
+    case 'try-motion': return documents.tryMotion(request.motion, request.named);
+    case 'restore': return documents.restore(request.requests);
     case 'source-model': return documents.sourceModel();
     case 'methods': return documents.methods();
     case 'compare': return documents.compare(request.commands);
@@ -22,10 +23,17 @@ function answer(documents: Documents, request: Request): Answers[Kind] {
   }
 }
 
+/** Packed, whatever the host serves; one that says how it is packed has it unpacked by the browser already. */
+async function engine(): Promise<ArrayBuffer> {
+  const response = await fetch(engineUrl);
+  if (!response.ok) throw new Error(`answer ${response.status}`);
+  const bytes = await response.arrayBuffer(), [first, second] = new Uint8Array(bytes, 0, 2);
+  if (first !== 0x1f || second !== 0x8b) return bytes;
+  return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream('gzip'))).arrayBuffer();
+}
+
 async function start() {
-  const response = await fetch(wasmUrl);
-  if (!response.ok) throw new Error(`the engine cannot be loaded (${response.status})`);
-  const limber = await loadLimber(await response.arrayBuffer(), {
+  const limber = await loadLimber(await engine(), {
     onProgress: (stage, fraction) => say({ kind: 'progress', stage, fraction }),
   });
   const documents = new Documents(limber);

@@ -60,7 +60,9 @@ export function outliner(studio: Studio, page: PageStore, handles: HandleView): 
       row.setAttribute('aria-selected', String(joint === selected));
       row.classList.toggle('pinned', pinned.has(joint));
       if (joint === selected && selected !== before.selected) {
-        row.scrollIntoView({ block: 'nearest' });
+        // The list alone scrolls: on a narrow screen the whole panel would jump.
+        const above = row.offsetTop - list.offsetTop, below = above + row.offsetHeight - list.clientHeight;
+        list.scrollTop = Math.min(above, Math.max(below, list.scrollTop));
         list.setAttribute('aria-activedescendant', row.id);
       }
     }

@@ -11,15 +11,15 @@ export function posePanel(studio: Studio, page: PageStore): HTMLElement {
     { value: 'move', text: 'Move', icon: 'move', keys: 'G' },
     { value: 'turn', text: 'Turn', icon: 'turn', keys: 'R' },
   ], (value) => page.set({ mode: value }));
-  const ik = button('IK', () => void studio.toggleIk(), {
-    icon: 'limb', keys: 'I', label: 'Limbs follow: inverse kinematics, a handle takes its limb along', id: 'ik',
+  const ik = button('Limbs follow', () => void studio.toggleIk(), {
+    keys: 'I', label: 'Limbs follow: inverse kinematics, a handle takes its limb along', id: 'ik',
   });
   const mirror = button('Mirror', () => void studio.mirrorPose(), { keys: 'M', label: 'Swap the pose of left and right', id: 'mirror' });
   const reset = button('Reset', () => void studio.resetPose(), { keys: 'Alt+R', label: 'Put all joints back', id: 'reset' });
-  const rest = button('Set rest', () => void studio.setRestPose(), { label: 'The pose becomes the one that the model rests in', id: 'rest-pose' });
+  const rest = button('Make it the rest', () => void studio.setRestPose(), { label: 'The pose becomes the one that the model rests in', id: 'rest-pose' });
   const display = choice<Display>('What is shown', [
     { value: 'handles', text: 'Handles' }, { value: 'surface', text: 'Surface' },
-    { value: 'weights', text: 'Weights' }, { value: 'joint-weights', text: 'One joint' },
+    { value: 'weights', text: 'Weights' }, { value: 'joint-weights', text: 'By joint' },
   ], (value) => page.set({ display: value }));
   const toggle = (text: string, key: 'bones' | 'wireframe' | 'gizmo' | 'limits') => {
     const box = element('input', { type: 'checkbox', id: key });
@@ -40,7 +40,7 @@ export function posePanel(studio: Studio, page: PageStore): HTMLElement {
     element('div', { class: 'row' }, mirror, reset, rest),
     display.root,
     element('div', { class: 'row checks' }, toggle('Bones', 'bones'), toggle('Wireframe', 'wireframe'),
-      toggle('Gizmo', 'gizmo'), toggle('Limits', 'limits')),
+      toggle('Arrows', 'gizmo'), toggle('Limits', 'limits')),
     limits(studio, page));
 }
 

@@ -1,5 +1,6 @@
 // How the chosen clip was brought onto the model, where it comes from a motion: method, reach, which joint follows which.
 import { jointColor } from '../scene/palette';
+import type { SessionState } from '../engine/messages';
 import type { PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
 import { counted } from '../ui/counted';
@@ -21,7 +22,9 @@ export function retargetPanel(studio: Studio, page: PageStore): HTMLElement {
   const rows = element('tbody');
   const summary = element('summary', {}, 'Matched joints');
   const from = element('p', { class: 'from' });
-  let drawn = '';
+  let drawn = '', choices = '';
+  // Parts of this clip that were taken out of the match, to be put in again.
+  let half: SessionState['match'] = [], halfOf = '';
   const card = element('section', { class: 'card retarget', 'aria-label': 'Motion', id: 'retarget', hidden: true },
     element('h2', {}, 'Motion'), from,
     element('div', { class: 'field' }, element('label', { for: 'method' }, 'Method'), method, compareButton(studio, page, 'retargeting')),
@@ -29,7 +32,7 @@ export function retargetPanel(studio: Studio, page: PageStore): HTMLElement {
     element('label', { class: 'check' }, contacts, 'Feet stay planted'),
     element('label', { class: 'check' }, shown, 'The other character beside it'),
     element('details', {}, summary,
-      element('table', { id: 'match' }, element('thead', {}, element('tr', {}, ...['', 'Motion', 'Model'].map((text) => element('th', {}, text)))), rows)));
+      element('table', { id: 'match' }, element('thead', {}, element('tr', {}, element('td'), element('th', {}, 'Motion'), element('th', {}, 'Model'))), rows)));
   page.watch(({ session, methods, sourceModel, sourceShown }) => {
     if (methods && method.childElementCount === 0) {
       method.append(...methods.retargeting.map(({ name, summary }) => element('option', { value: name, title: summary }, methodName(name))));
@@ -46,14 +49,23 @@ export function retargetPanel(studio: Studio, page: PageStore): HTMLElement {
     contacts.checked = source.contacts;
     const unsure = session.match.filter((match) => match.by !== 'file' && match.confidence < doubtful).length;
     summary.textContent = counted(session.match.length, 'part') + ' matched' + (unsure > 0 ? `, ${unsure} to look at` : '');
-    const now = JSON.stringify([session.match, source.motion, session.joints.length]);
-    if (now === drawn) return;
+    const taken = new Set(session.match.map(({ part }) => part));
+    if (halfOf !== clip.name) half = [];
+    halfOf = clip.name;
+    half = half.filter(({ part }) => !taken.has(part));
+    const now = JSON.stringify([session.match, half, source.motion, session.joints.length]);
+    const chosen = () => [...rows.querySelectorAll('select')].map(({ value }) => value).join('\n');
+    if (now === drawn && chosen() === choices) return;
     drawn = now;
     const motion = session.motions.find(({ name }) => name === source.motion);
     const sources = motion?.joints.map(({ name }) => name) ?? [], targets = session.joints.map(({ name }) => name);
-    rows.replaceChildren(...session.match.map((match, index) => {
+    const listed = [...session.match, ...half];
+    rows.replaceChildren(...listed.map((match, index) => {
       const change = (side: 'source' | 'target') => (joints: string[]) => {
-        const matches = session.match.map((other, i) => (i === index ? { ...other, [side]: joints } : other))
+        const changed = { ...match, [side]: joints }, whole = changed.source.length > 0 && changed.target.length > 0;
+        half = half.filter(({ part }) => part !== match.part);
+        if (!whole) half.push(changed);
+        const matches = listed.map((other, i) => (i === index ? changed : other))
           .filter((other) => other.source.length > 0 && other.target.length > 0);
         void studio.retarget({ map: JSON.stringify({ matches }) });
       };
@@ -65,6 +77,7 @@ export function retargetPanel(studio: Studio, page: PageStore): HTMLElement {
       row.classList.toggle('unsure', match.by !== 'file' && match.confidence < doubtful);
       return row;
     }));
+    choices = chosen();
   });
   return card;
 }

@@ -1,21 +1,23 @@
 // The bar on top: open, undo, what leaves the page.
+import type { Journal } from '../app/journal';
+import { samples } from '../app/samples';
 import type { PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
 import type { ModelView } from '../scene/model_view';
 import type { Viewport } from '../scene/viewport';
 import { button, element, offer } from '../ui/dom';
-
-export const samples = [
-  ['winged', 'Dragon'], ['quadruped', 'Fox'], ['biped', 'Person'], ['robot', 'Robot'], ['stool', 'Stool'],
-] as const;
+import { recent } from './recent';
 
 const types = { glb: 'model/gltf-binary', obj: 'model/obj', stl: 'model/stl', bvh: 'text/plain', session: 'model/gltf-binary' };
 
-export function toolbar(studio: Studio, page: PageStore, viewport: Viewport, model: ModelView): HTMLElement {
-  const file = element('input', { type: 'file', accept: '.glb,.gltf,.vrm,.obj,.fbx,.stl,.ply,.bvh,.json', hidden: true, id: 'file' });
+export function toolbar(studio: Studio, page: PageStore, journal: Journal, viewport: Viewport, model: ModelView): HTMLElement {
+  const kept = recent(studio, journal);
+  const file = element('input', {
+    type: 'file', accept: '.glb,.gltf,.vrm,.obj,.fbx,.stl,.ply,.bvh,.json,.zip,.limber,.bin,.mtl,.png,.jpg,.jpeg', multiple: true, hidden: true, id: 'file',
+  });
   file.addEventListener('change', () => {
-    const chosen = file.files?.[0];
-    if (chosen) void studio.openFile(chosen);
+    const chosen = [...file.files ?? []];
+    if (chosen.length > 0) void studio.openFiles(chosen);
     file.value = '';
   });
   const sample = element('select', { 'aria-label': 'Open a sample', class: 'select', id: 'samples' },
@@ -44,13 +46,14 @@ export function toolbar(studio: Studio, page: PageStore, viewport: Viewport, mod
     if (record) offer(record, 'application/json', `${stem()}_commands.json`);
   };
   const exporter = element('select', { 'aria-label': 'Save as another format', class: 'select', id: 'export-as' },
-    ...[['', 'More'], ['obj', 'OBJ, posed surface'], ['stl', 'STL, posed surface'], ['bvh', 'BVH, the clip'], ['usdz', 'USDZ, for AR Quick Look'], ['session', 'Session, to go on later'],
+    ...[['', 'More'], ['obj', 'OBJ, posed surface'], ['stl', 'STL, posed surface'], ['bvh', 'BVH, the clip'], ['usdz', 'USDZ, for AR Quick Look'], ['limber', 'Limber file, everything to go on with'], ['session', 'Session in a GLB'],
       ['record', 'Commands, for limber session replay'], ['png', 'Picture (PNG)']].map(([value = '', text = '']) => element('option', { value }, text)));
   exporter.addEventListener('change', () => {
     const { value } = exporter;
     exporter.value = '';
     if (value === 'png') void savePicture();
     else if (value === 'usdz') void saveUsdz();
+    else if (value === 'limber') offer(studio.limberFile() as BlobPart, 'application/zip', `${stem()}.limber`);
     else if (value === 'record') void saveRecord();
     else if (value === 'obj' || value === 'stl' || value === 'bvh' || value === 'session') void save(value);
   });
@@ -67,7 +70,7 @@ export function toolbar(studio: Studio, page: PageStore, viewport: Viewport, mod
     document.title = session ? `${session.name} \u2013 limber studio` : 'limber studio';
   });
   return element('header', { class: 'bar' },
-    button('Open', () => file.click(), { icon: 'open', id: 'open' }), sample, file, name,
+    button('Open', () => file.click(), { icon: 'open', id: 'open' }), sample, kept.button, kept.dialog, file, name,
     element('div', { class: 'group' }, undo, redo), element('div', { class: 'group' }, glb, exporter),
     button('', () => page.set({ help: true }), { icon: 'help', label: 'Keyboard and mouse', keys: '?', id: 'help-button' }));
 }

@@ -20,7 +20,6 @@ const icons = {
   redo: 'm12 4 4 4-4 4m4-4H8a4 4 0 0 0 0 8h3',
   move: 'M10 2v16M2 10h16M10 2 8 4m2-2 2 2M10 18l-2-2m2 2 2-2M2 10l2-2m-2 2 2 2m14-2-2-2m2 2-2 2',
   turn: 'M16 10a6 6 0 1 1-2-4.5M14 2v4h-4',
-  limb: 'M4 16 9 10 7 4M9 10l7 2',
   mirror: 'M10 2v16M7 5 2 15h5zM13 5l5 10h-5z',
   reset: 'M4 10a6 6 0 1 0 2-4.5M6 2v4h4',
   save: 'M10 3v9m-4-4 4 4 4-4M4 16h12',
@@ -37,6 +36,7 @@ const icons = {
   compare: 'M3 5h6v10H3zM11 5h6v10h-6z',
   sheet: 'M3 4h14v12H3zM3 10h14M8 4v12M13 4v12',
   eye: 'M2 10s3-5 8-5 8 5 8 5-3 5-8 5-8-5-8-5zM10 8a2 2 0 1 0 .01 0',
+  recent: 'M10 3a7 7 0 1 0 .01 0M10 6v4l3 2',
   frame: 'M3 7V3h4M13 3h4v4M17 13v4h-4M7 17H3v-4',
 };
 export type IconName = keyof typeof icons;

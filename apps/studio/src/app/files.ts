@@ -1,0 +1,116 @@
+// Files as a user brings them: one, several that belong together, a folder, a ZIP archive.
+import { unzipSync } from 'three/examples/jsm/libs/fflate.module.js';
+import { EngineError } from '../engine/client';
+
+const mostUnpacked = 500e6, mostFiles = 1000; // bytes and files that an archive holds
+const model = /\.(glb|gltf|vrm|obj|fbx|stl|ply|limber)$/i;
+
+/** All that was dropped, whole folders too; each file's path stands in webkitRelativePath or its name. */
+export async function droppedFiles(transfer: DataTransfer): Promise<File[]> {
+  const entries = [...transfer.items].map((item) => item.webkitGetAsEntry()).filter((entry) => entry !== null);
+  if (!entries.some((entry) => entry.isDirectory)) return [...transfer.files];
+  const files: File[] = [];
+  const read = async (entry: FileSystemEntry): Promise<void> => {
+    if (entry.isFile) {
+      files.push(await new Promise<File>((resolve, reject) => { (entry as FileSystemFileEntry).file(resolve, reject); }));
+      return;
+    }
+    const reader = (entry as FileSystemDirectoryEntry).createReader();
+    for (;;) {
+      const some = await new Promise<FileSystemEntry[]>((resolve, reject) => { reader.readEntries(resolve, reject); });
+      if (some.length === 0) return;
+      for (const one of some) await read(one);
+    }
+  };
+  for (const entry of entries) await read(entry);
+  return files;
+}
+
+/** The files of a ZIP archive by their paths in it, which are names and nothing is written to. */
+export function unpack(archive: Uint8Array, name: string): Map<string, Uint8Array> {
+  let size = 0, count = 0;
+  const refuse = (message: string, remedy: string) => new EngineError({ code: 'bad-data', message, where: name, remedy });
+  try {
+    const entries = unzipSync(archive, {
+      filter: ({ name: path, originalSize }) => {
+        if (path.endsWith('/')) return false;
+        size += originalSize;
+        if (size > mostUnpacked || ++count > mostFiles) throw refuse('the archive holds too much', 'unpack it, and drop what you need');
+        return true;
+      },
+    });
+    return new Map(Object.entries(entries));
+  } catch (error) {
+    if (error instanceof EngineError) throw error;
+    throw refuse('the archive cannot be read', String(error instanceof Error ? error.message : error));
+  }
+}
+
+const fileName = (path: string) => path.split(/[\\/]/).pop() ?? path;
+
+export interface Brought {
+  /** What is opened: the first that the page reads. */
+  model: File | null;
+  motions: File[];
+  limits: File | null;
+  /** By name: what the model may refer to. */
+  beside: Map<string, File>;
+}
+
+export async function sorted(files: File[]): Promise<Brought> {
+  const all: File[] = [];
+  for (const file of files) {
+    if (!/\.zip$/i.test(file.name)) all.push(file);
+    else {
+      const inside = unpack(new Uint8Array(await file.arrayBuffer()), file.name);
+      inside.forEach((bytes, path) => all.push(new File([bytes as BlobPart], fileName(path))));
+    }
+  }
+  const motions = all.filter(({ name }) => /\.bvh$/i.test(name));
+  const found = all.find(({ name }) => model.test(name)) ?? null;
+  const limits = found === null && motions.length === 0 ? all.find(({ name }) => /\.json$/i.test(name)) ?? null : null;
+  // What no reader knows is opened all the same: its reader says so.
+  const only = all.length === 1 && motions.length === 0 && limits === null ? all[0]! : null;
+  return { model: found ?? only, motions, limits, beside: new Map(all.map((file) => [file.name, file])) };
+}
+
+const typeOf = (name: string) => ({ png: 'image/png', jpg: 'image/jpeg', jpeg: 'image/jpeg', webp: 'image/webp' }[name.split('.').pop()?.toLowerCase() ?? '']
+  ?? 'application/octet-stream');
+
+async function dataAddress(file: File): Promise<string> {
+  const blob = new Blob([await file.arrayBuffer()], { type: typeOf(file.name) });
+  return new Promise((resolve, reject) => {
+    const reader = new FileReader();
+    reader.onload = () => resolve(String(reader.result));
+    reader.onerror = () => reject(new Error(`${file.name} cannot be read`));
+    reader.readAsDataURL(blob);
+  });
+}
+
+/** A glTF with the buffers and images that lie beside it put in; what is not there stays a reference. */
+export async function withBuffers(bytes: Uint8Array, beside: Map<string, File>): Promise<Uint8Array> {
+  let document: { buffers?: { uri?: unknown }[]; images?: { uri?: unknown }[] };
+  try {
+    document = JSON.parse(new TextDecoder().decode(bytes));
+  } catch {
+    return bytes; // the engine says what is wrong
+  }
+  let changed = false;
+  for (const part of [document.buffers, document.images].flatMap((list) => (Array.isArray(list) ? list : []))) {
+    const uri = part?.uri;
+    if (typeof uri !== 'string' || uri.startsWith('data:')) continue;
+    const file = beside.get(fileName(decoded(uri)));
+    if (!file) continue;
+    part.uri = await dataAddress(file);
+    changed = true;
+  }
+  return changed ? new TextEncoder().encode(JSON.stringify(document)) : bytes;
+}
+
+function decoded(uri: string): string {
+  try {
+    return decodeURIComponent(uri);
+  } catch {
+    return uri;
+  }
+}

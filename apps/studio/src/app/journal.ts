@@ -1,0 +1,209 @@
+// What is done, written into the browser behind each step, so that a reload, a crash or a closed page loses nothing.
+// A document is the requests that made it, in their order: carried out again they give the same document, with its
+// motions and all that can be undone. Nothing ever leaves the machine.
+import type { Place, Request } from '../engine/messages';
+
+const frameDelay = 200; // milliseconds that frames of a drag or of a clip wait for the next one
+const mostDocuments = 12;
+
+export interface KeptDocument {
+  id: string;
+  name: string;
+  /** Milliseconds since 1970. */
+  changed: number;
+  /** A data address of a small picture; empty while there is none. */
+  picture: string;
+  /** Of its requests. */
+  count: number;
+}
+
+function done<T>(request: IDBRequest<T>): Promise<T> {
+  return new Promise((resolve, reject) => {
+    request.onsuccess = () => resolve(request.result);
+    request.onerror = () => reject(request.error ?? new Error('the store failed'));
+  });
+}
+
+function finished(transaction: IDBTransaction): Promise<void> {
+  return new Promise((resolve, reject) => {
+    transaction.oncomplete = () => resolve();
+    transaction.onerror = transaction.onabort = () => reject(transaction.error ?? new Error('the store failed'));
+  });
+}
+
+async function openDatabase(): Promise<IDBDatabase> {
+  const request = indexedDB.open('limber-studio', 2);
+  request.onupgradeneeded = ({ oldVersion }) => {
+    const documents = request.result.createObjectStore('documents', { keyPath: 'id' });
+    const requests = request.result.createObjectStore('requests');
+    if (oldVersion !== 1) return;
+    // The first version kept one session, as a model.
+    const old = request.transaction!.objectStore('session').get('last') as IDBRequest<{ name: string; bytes: Uint8Array } | undefined>;
+    old.onsuccess = () => {
+      const { name, bytes } = old.result ?? {};
+      if (name !== undefined && bytes) {
+        documents.put({ id: 'kept', name, changed: Date.now(), picture: '', count: 1 } satisfies KeptDocument);
+        requests.put({ kind: 'open', bytes, name } satisfies Request, ['kept', 0]);
+      }
+      request.result.deleteObjectStore('session');
+    };
+  };
+  return done(request);
+}
+
+const newId = () => `${Date.now().toString(36)}-${Math.random().toString(36).slice(2, 8)}`;
+const allOf = (id: string) => IDBKeyRange.bound([id], [id, []]);
+
+export class Journal {
+  /** The browser keeps nothing, or nothing any more: said once. */
+  onTrouble: (why: string) => void = () => {};
+
+  private database = openDatabase();
+  private document: KeptDocument | null = null;
+  private writing: Promise<void> = Promise.resolve();
+  private waiting = 0;
+  private frame: { request: Request; timer: number } | null = null;
+  private free: () => void = () => {};
+  private broken = false;
+
+  constructor() {
+    this.database.catch(() => {}); // told with the first write
+  }
+
+  /** Everything is kept. */
+  get settled() { return this.waiting === 0 && this.frame === null; }
+  /** Whether what is done now would be lost with the page. */
+  get atRisk() { return this.broken || !this.settled; }
+  get current() { return this.document?.id ?? null; }
+
+  /** Those kept, the newest first. */
+  async list(): Promise<KeptDocument[]> {
+    try {
+      const all = (await this.database).transaction('documents').objectStore('documents').getAll() as IDBRequest<KeptDocument[]>;
+      return (await done(all)).sort((a, b) => b.changed - a.changed);
+    } catch {
+      return [];
+    }
+  }
+
+  async requestsOf(id: string): Promise<Request[]> {
+    const store = (await this.database).transaction('requests').objectStore('requests');
+    return done(store.getAll(allOf(id)) as IDBRequest<Request[]>);
+  }
+
+  /** Goes on with a document that was kept. One that is open elsewhere goes on as a copy: false. */
+  async resume(document: KeptDocument, requests: Request[]): Promise<boolean> {
+    const own = await this.take(document.id);
+    this.document = { ...document, id: own ? document.id : newId(), count: requests.length };
+    if (own) return true;
+    await this.take(this.document.id);
+    requests.forEach((request, number) => this.put(request, number));
+    return false;
+  }
+
+  /** A document that was made elsewhere. */
+  begin(name: string, requests: Request[]): boolean {
+    this.flush();
+    this.document = { id: newId(), name, changed: 0, picture: '', count: requests.length };
+    void this.take(this.document.id);
+    requests.forEach((request, number) => this.put(request, number));
+    return true;
+  }
+
+  /** Behind each request that changed a document. */
+  add(request: Request, place: Place) {
+    if (place === 'begins') {
+      const name = request.kind === 'open' ? request.name : request.kind === 'run' ? String(request.command.name) : '';
+      this.flush();
+      this.document = { id: newId(), name, changed: 0, picture: '', count: 0 };
+      void this.take(this.document.id);
+    }
+    if (!this.document) return;
+    if (place === 'replaces') return this.delay(request);
+    this.flush();
+    this.put(request, this.document.count++);
+  }
+
+  /** What the list of documents shows. */
+  describe(name: string, picture: string) {
+    if (!this.document) return;
+    const { document } = this;
+    document.name = name;
+    document.picture = picture;
+    void this.queue(() => this.write(document, () => {}));
+  }
+
+  async forget(id: string) {
+    await this.queue(async () => {
+      const transaction = (await this.database).transaction(['documents', 'requests'], 'readwrite');
+      transaction.objectStore('documents').delete(id);
+      transaction.objectStore('requests').delete(allOf(id));
+      await finished(transaction);
+    });
+  }
+
+  /** Writes a frame that waits. */
+  flush() {
+    if (!this.frame || !this.document) return;
+    clearTimeout(this.frame.timer);
+    const { request } = this.frame;
+    this.frame = null;
+    this.put(request, this.document.count - 1);
+  }
+
+  private delay(request: Request) {
+    if (this.frame) {
+      this.frame.request = request;
+      return;
+    }
+    this.frame = { request, timer: window.setTimeout(() => this.flush(), frameDelay) };
+  }
+
+  private put(request: Request, number: number) {
+    const document = this.document!;
+    void this.queue(async () => {
+      await this.write(document, (requests) => requests.put(request, [document.id, number]));
+      if (number === 0) await this.forgetOldest();
+    });
+  }
+
+  private async write(document: KeptDocument, also: (requests: IDBObjectStore) => void) {
+    const transaction = (await this.database).transaction(['documents', 'requests'], 'readwrite');
+    document.changed = Date.now();
+    transaction.objectStore('documents').put({ ...document });
+    also(transaction.objectStore('requests'));
+    await finished(transaction);
+  }
+
+  private async forgetOldest() {
+    const documents = await this.list();
+    for (const { id } of documents.slice(mostDocuments)) void this.forget(id);
+  }
+
+  /** One after the other. The first failure is told, and ends the keeping. */
+  private queue(act: () => Promise<void>): Promise<void> {
+    ++this.waiting;
+    this.writing = this.writing.then(async () => {
+      if (this.broken) return;
+      await act();
+    }).catch((error: unknown) => {
+      this.broken = true;
+      this.onTrouble(String(error instanceof Error ? error.message : error));
+    }).finally(() => { --this.waiting; });
+    return this.writing;
+  }
+
+  /** A document is open in one tab alone. Browsers without locks have to trust. */
+  private take(id: string): Promise<boolean> {
+    this.free();
+    this.free = () => {};
+    if (!('locks' in navigator)) return Promise.resolve(true);
+    return new Promise((resolve) => {
+      void navigator.locks.request(`limber-document-${id}`, { ifAvailable: true }, (lock) => {
+        if (!lock) return resolve(false);
+        resolve(true);
+        return new Promise<void>((release) => { this.free = release; });
+      });
+    });
+  }
+}

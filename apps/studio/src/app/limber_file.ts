@@ -1,0 +1,44 @@
+// A document as one file: a ZIP archive of the files that were opened, and of what was done with them as the list of
+// commands that `limber session replay` runs.
+import { strFromU8, strToU8, zipSync, type Zippable } from 'three/examples/jsm/libs/fflate.module.js';
+import { EngineError } from '../engine/client';
+import type { Command, Request } from '../engine/messages';
+import { unpack } from './files';
+
+const version = 1; // of the list of commands
+const list = 'commands.json';
+
+/** `requests`: all that made the document. */
+export function toLimberFile(requests: Request[]): Uint8Array {
+  const files: Zippable = {};
+  const commands = requests.map((request, number): Command => {
+    if (request.kind === 'run') return request.command;
+    if (request.kind !== 'open' && request.kind !== 'motion') throw new Error(`${request.kind} changes no document`);
+    const file = `files/${number}/${request.name.replace(/[\\/]/g, '_')}`;
+    files[file] = [request.bytes, { level: 6 }];
+    return { do: request.kind === 'open' ? 'open_file' : 'add_motion', file };
+  });
+  files[list] = strToU8(JSON.stringify({ limber_commands: version, commands }, null, 1));
+  return zipSync(files);
+}
+
+export function fromLimberFile(archive: Uint8Array, name: string): Request[] {
+  const refuse = (message: string) => new EngineError({ code: 'bad-data', message, where: name, remedy: 'is it a file that this page saved?' });
+  const files = unpack(archive, name), text = files.get(list);
+  if (!text) throw refuse(`it holds no ${list}`);
+  let read: { limber_commands?: unknown; commands?: unknown } | null;
+  try {
+    read = JSON.parse(strFromU8(text));
+  } catch {
+    throw refuse(`its ${list} is no JSON`);
+  }
+  if (read?.limber_commands !== version) throw refuse('it was made by a newer version of this page');
+  const commands = read.commands;
+  if (!Array.isArray(commands)) throw refuse(`its ${list} holds no commands`);
+  return commands.map((command: Command): Request => {
+    if (command?.do !== 'open_file' && command?.do !== 'add_motion') return { kind: 'run', command };
+    const path = String(command.file), bytes = files.get(path);
+    if (!bytes) throw refuse(`it does not hold ${path}`);
+    return { kind: command.do === 'open_file' ? 'open' : 'motion', bytes, name: path.split('/').pop() ?? path };
+  });
+}

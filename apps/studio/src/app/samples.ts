@@ -1,0 +1,4 @@
+// Models that the engine makes itself: its name for each, and what a person calls it.
+export const samples = [
+  ['winged', 'Dragon'], ['quadruped', 'Fox'], ['biped', 'Person'], ['robot', 'Robot'], ['stool', 'Stool'],
+] as const;

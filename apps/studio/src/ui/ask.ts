@@ -1,0 +1,18 @@
+// A question that has to be answered before something is replaced.
+import { button, element } from './dom';
+
+/** Whether the user agrees. Escape is a no. */
+export function ask(title: string, detail: string, yes: string): Promise<boolean> {
+  return new Promise((resolve) => {
+    const dialog = element('dialog', { class: 'ask', id: 'ask', 'aria-label': title }, element('h2', {}, title), element('p', {}, detail));
+    const close = (agreed: boolean) => {
+      dialog.remove();
+      resolve(agreed);
+    };
+    dialog.append(element('div', { class: 'row' },
+      button('Leave it as it is', () => close(false), { id: 'ask-no' }), button(yes, () => close(true), { id: 'ask-yes', kind: 'primary' })));
+    dialog.addEventListener('cancel', () => close(false));
+    document.body.append(dialog);
+    dialog.showModal();
+  });
+}

@@ -1,0 +1,341 @@
+// Nothing is lost, nothing surprises: what is kept over reloads and crashes, what is asked before it is replaced, quick
+// changes of mind, files that belong together.
+//
+//   node apps/studio/tests/keep_test.mjs DIST NATIVE_PROGRAM OUTPUT_FOLDER
+//
+// LIMBER_ROUNDS: how often the page is killed (default 6). Ends with "N passed, N failed".
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { createRequire } from 'node:module';
+import { join, resolve } from 'node:path';
+import { walkBvh } from './walk_bvh.mjs';
+import { answer, download, jointPosition, launch, motionPlayed, openStudio, runCases, serve, sessionState, settled } from './page.mjs';
+
+const [dist, program, output] = process.argv.slice(2).map((path) => resolve(path));
+const rounds = Number(process.env.LIMBER_ROUNDS ?? 6);
+mkdirSync(output, { recursive: true });
+const server = await serve(dist), browser = await launch();
+const size = { width: 900, height: 600 };
+const desk = await openStudio(browser, server.address, { ...size, search: '?sample=biped' });
+let { page } = desk;
+const errors = [...desk.errors];
+
+/** Another page of the same browser profile, as after a crash: what it had is what is kept. */
+async function reopened() {
+  await page.close({ runBeforeUnload: false });
+  page = await desk.context.newPage();
+  page.setDefaultTimeout(120_000);
+  page.on('pageerror', (error) => errors.push(String(error)));
+  page.on('console', (message) => { if (message.type() === 'error') errors.push(message.text()); });
+  await page.goto(server.address);
+  await settled(page);
+}
+
+const wanted = ['name', 'joints', 'clips', 'motions', 'match', 'clip', 'targets', 'pins', 'undo', 'redo', 'ik', 'limited', 'posed'];
+async function standing() {
+  const state = await sessionState(page), places = [];
+  for (const { name } of state.joints) places.push(await jointPosition(page, name));
+  return { ...Object.fromEntries(wanted.map((part) => [part, state[part]])), places };
+}
+function expectSame(now, before) {
+  for (const part of wanted) assert.deepEqual(now[part], before[part], part);
+  now.places.forEach((place, joint) => place.forEach((value, i) => assert.ok(Math.abs(value - before.places[joint][i]) < 1e-5, `joint ${joint}`)));
+}
+
+// The same each time: a generator of its own.
+let seed = 7;
+const random = (below) => {
+  seed = (seed * 48271) % 2147483647;
+  return seed % below;
+};
+const keys = async (key) => {
+  await page.locator('main canvas').focus();
+  await page.keyboard.press(key);
+};
+const deeds = [
+  async () => { await page.locator('#joints li').nth(random(8)).click(); await keys('ArrowRight'); },
+  async () => { await page.locator('#joints li').nth(random(8)).click(); await keys('r'); await keys('ArrowUp'); },
+  () => keys('Control+z'),
+  () => keys('Control+Shift+Z'),
+  () => keys('m'),
+  () => keys('i'),
+  () => page.locator('#add-clip').click(),
+  () => keys('k'),
+  async () => { if (await page.locator('#scrub').isEnabled()) await page.locator('#scrub').fill(String(random(20) / 10)); },
+  async () => { await page.locator('#joints li').nth(random(8)).click(); await page.locator('#pin').click(); },
+];
+
+const open = (files) => page.locator('#file').setInputFiles(files.map(([name, buffer]) => ({ name, mimeType: 'application/octet-stream', buffer })));
+const opened = async (name) => {
+  await page.waitForFunction((wantedName) => globalThis.limberStudio.state()?.name === wantedName, name);
+  await settled(page);
+};
+
+/** A square of two triangles as glTF with its buffer beside it. */
+function squareFiles() {
+  const positions = new Float32Array([0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0]), triangles = new Uint16Array([0, 1, 2, 0, 2, 3]);
+  const bytes = Buffer.concat([Buffer.from(positions.buffer), Buffer.from(triangles.buffer)]);
+  const gltf = {
+    asset: { version: '2.0' }, buffers: [{ uri: 'square%20data.bin', byteLength: bytes.length }],
+    bufferViews: [{ buffer: 0, byteLength: 48 }, { buffer: 0, byteOffset: 48, byteLength: 12 }],
+    accessors: [{ bufferView: 0, componentType: 5126, count: 4, type: 'VEC3', min: [0, 0, 0], max: [1, 1, 0] },
+      { bufferView: 1, componentType: 5123, count: 6, type: 'SCALAR' }],
+    meshes: [{ primitives: [{ attributes: { POSITION: 0 }, indices: 1 }] }], nodes: [{ mesh: 0 }], scenes: [{ nodes: [0] }], scene: 0,
+  };
+  return [['square.gltf', Buffer.from(JSON.stringify(gltf))], ['square data.bin', bytes]];
+}
+
+/** Stored, not packed. */
+function zipOf(files) {
+  const crcTable = Uint32Array.from({ length: 256 }, (_, n) => {
+    for (let k = 0; k < 8; ++k) n = n & 1 ? 0xedb88320 ^ (n >>> 1) : n >>> 1;
+    return n;
+  });
+  const crcOf = (bytes) => ~bytes.reduce((crc, byte) => crcTable[(crc ^ byte) & 255] ^ (crc >>> 8), ~0) >>> 0;
+  const parts = [], directory = [];
+  let at = 0;
+  for (const [name, bytes] of files) {
+    const path = Buffer.from(`folder/${name}`), fields = Buffer.alloc(26);
+    fields.writeUInt16LE(20, 0);
+    fields.writeUInt32LE(crcOf(bytes), 10);
+    fields.writeUInt32LE(bytes.length, 14);
+    fields.writeUInt32LE(bytes.length, 18);
+    fields.writeUInt16LE(path.length, 22);
+    parts.push(Buffer.from('PK\x03\x04', 'latin1'), fields, path, bytes);
+    const tail = Buffer.alloc(14);
+    tail.writeUInt32LE(at, 10);
+    directory.push(Buffer.concat([Buffer.from('PK\x01\x02\x14\x00', 'latin1'), fields, tail, path]));
+    at += 30 + path.length + bytes.length;
+  }
+  const listed = Buffer.concat(directory), end = Buffer.alloc(18);
+  end.writeUInt16LE(files.length, 4);
+  end.writeUInt16LE(files.length, 6);
+  end.writeUInt32LE(listed.length, 8);
+  end.writeUInt32LE(at, 12);
+  return Buffer.concat([...parts, listed, Buffer.from('PK\x05\x06', 'latin1'), end]);
+}
+
+const walk = () => page.locator('#sample-motions').selectOption('walk');
+
+const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
+/** What keeps people out who read with ears or press keys, and text that cannot be made out; each with where. */
+async function barriers(of) {
+  await of.evaluate(axe);
+  const { violations } = await of.evaluate(() => globalThis.axe.run(document, { resultTypes: ['violations'] }));
+  return violations.flatMap(({ id, nodes }) => nodes.map(({ target, failureSummary }) => `${id}: ${target} ${failureSummary}`));
+}
+
+const cases = {
+  async 'killed at any moment, the page comes back as it stood'() {
+    for (let round = 0; round < rounds; ++round) {
+      for (let deed = 3 + random(4); deed > 0; --deed) {
+        await deeds[random(deeds.length)]();
+        await page.waitForFunction(() => globalThis.limberStudio.idle());
+      }
+      await page.waitForTimeout(300);
+      const before = await standing();
+      await reopened();
+      expectSame(await standing(), before);
+    }
+  },
+  async 'a drag that was never ended stays as far as it went'() {
+    await page.goto(`${server.address}?sample=biped`);
+    await settled(page);
+    const place = await page.evaluate(() => globalThis.limberStudio.place(globalThis.limberStudio.state().joints.at(-1).name));
+    const { name } = (await sessionState(page)).joints.at(-1);
+    await page.mouse.move(place.x, place.y);
+    await page.mouse.down();
+    await page.mouse.move(place.x + 40, place.y - 20, { steps: 4 });
+    await page.waitForTimeout(350);
+    const dragged = await sessionState(page);
+    assert.notEqual(dragged.dragged, null, 'nothing is dragged');
+    const moved = dragged.joints[dragged.dragged].name, before = await jointPosition(page, moved);
+    await reopened();
+    const after = await jointPosition(page, moved);
+    after.forEach((value, i) => assert.ok(Math.abs(value - before[i]) < 1e-5, `${moved} ${name}`));
+    assert.equal((await sessionState(page)).undo, 'end_drag');
+  },
+  async 'a motion, its match and what undo takes back are there after a reload'() {
+    await page.goto(`${server.address}?sample=biped`);
+    await settled(page);
+    await motionPlayed(page, () => page.locator('#motion-file').setInputFiles({ name: 'walk.bvh', mimeType: 'text/plain', buffer: Buffer.from(walkBvh()) }));
+    await page.locator('#play').click();
+    await settled(page);
+    await page.locator('#method').selectOption('aligned');
+    await settled(page);
+    const before = await standing();
+    assert.ok(before.match.length > 10);
+    await reopened();
+    expectSame(await standing(), before);
+    assert.ok(await page.locator('#retarget').isVisible());
+    await page.locator('#undo').click();
+    await settled(page);
+    assert.equal((await sessionState(page)).clips[0].source.method, 'limb-ik');
+  },
+  async 'a part that was taken out of the match can be put in again'() {
+    await page.locator('#retarget summary').click();
+    const has = async () => (await sessionState(page)).match.some(({ part }) => part === 'leftHand');
+    const select = page.getByLabel('leftHand in the model');
+    const joint = await select.inputValue();
+    await select.selectOption('');
+    await settled(page);
+    assert.equal(await has(), false);
+    await page.getByLabel('leftHand in the model').selectOption(joint);
+    await settled(page);
+    assert.equal(await has(), true);
+  },
+  async 'what was open before is under Recent'() {
+    await page.goto(`${server.address}?sample=stool`);
+    await settled(page);
+    await page.waitForFunction(() => globalThis.limberStudio.kept());
+    await page.locator('#open-recent').click();
+    const entries = page.locator('#recent li');
+    await entries.first().waitFor();
+    const before = await entries.count();
+    await page.locator('#recent li', { hasText: 'biped' }).first().locator('.pick').click();
+    await opened('biped');
+    await page.locator('#open-recent').click();
+    await entries.first().waitFor();
+    await entries.first().getByRole('button', { name: /Forget/ }).click();
+    await page.waitForFunction((count) => document.querySelectorAll('#recent li').length < count, before);
+    await page.keyboard.press('Escape');
+  },
+  async 'of forty quick choices the last one counts, with a clip playing'() {
+    await motionPlayed(page, walk);
+    const names = ['quadruped', 'stool', 'biped', 'robot', 'winged'];
+    for (let i = 0; i < 40; ++i) await page.locator('#samples').selectOption(i === 39 ? 'stool' : names[i % names.length]);
+    await opened('stool');
+    assert.equal((await sessionState(page)).name, 'stool');
+    assert.equal(await page.locator('#notice').isVisible(), false);
+    assert.equal(await page.locator('[data-value=handles]').getAttribute('aria-pressed'), 'true');
+  },
+  async 'a skeleton takes the place of handles only where the user agrees'() {
+    await page.locator('#samples').selectOption('biped');
+    await opened('biped');
+    await page.locator('#handles').evaluate((slider) => { slider.value = '250'; slider.dispatchEvent(new Event('input')); });
+    await settled(page);
+    const before = await standing();
+    assert.ok(before.joints.length < 6);
+    await walk();
+    await answer(page, false);
+    expectSame(await standing(), before);
+    await walk();
+    await answer(page, true);
+    assert.equal((await sessionState(page)).clips.length, 1);
+  },
+  async 'handles take the place of named joints only where the user agrees'() {
+    await page.locator('#samples').selectOption('biped');
+    await opened('biped');
+    await motionPlayed(page, walk);
+    const glb = await download(page, () => page.locator('#save-glb').click());
+    await open([['person.glb', glb]]);
+    await opened('person.glb');
+    const before = await standing();
+    assert.equal((await sessionState(page)).own_rig, true);
+    await page.locator('#sample-motions').selectOption('quadruped-walk');
+    await page.locator('#notice').waitFor();
+    assert.match(await page.locator('#notice').textContent(), /too little in common/);
+    await page.locator('#close-notice').click();
+    expectSame(await standing(), before);
+    await page.locator('#handles').focus();
+    await page.keyboard.press('ArrowLeft');
+    await answer(page, false);
+    expectSame(await standing(), before);
+    assert.equal(Number(await page.locator('.count').textContent()), before.joints.length);
+    await page.locator('#handles').focus();
+    await page.keyboard.press('ArrowLeft');
+    await answer(page, true);
+    assert.equal((await sessionState(page)).own_rig, false);
+    await page.locator('#undo').click();
+    await settled(page);
+    expectSame({ ...await standing(), redo: null }, before);
+  },
+  async 'a glTF opens with the buffer beside it, also from a ZIP archive'() {
+    await open(squareFiles());
+    await opened('square.gltf');
+    assert.equal((await sessionState(page)).vertices, 4);
+    await page.locator('#samples').selectOption('stool');
+    await opened('stool');
+    await open([['square.zip', zipOf(squareFiles())]]);
+    await opened('square.gltf');
+    await open([['broken.zip', Buffer.from('PK\x03\x04 nothing', 'latin1')]]);
+    await page.locator('#notice').waitFor();
+    await page.locator('#close-notice').click();
+  },
+  async 'a .limber file brings everything back, here and in the program'() {
+    await page.locator('#samples').selectOption('biped');
+    await opened('biped');
+    await motionPlayed(page, () => page.locator('#motion-file').setInputFiles({ name: 'walk.bvh', mimeType: 'text/plain', buffer: Buffer.from(walkBvh()) }));
+    await page.locator('#play').click();
+    await settled(page);
+    await page.locator('#method').selectOption('aligned');
+    await settled(page);
+    const before = await standing(), file = await download(page, () => page.locator('#export-as').selectOption('limber'));
+    writeFileSync(join(output, 'walking.limber'), file);
+    execFileSync(program, ['session', 'replay', join(output, 'walking.limber'), '-o', join(output, 'from_limber.glb'), '--quiet']);
+    await page.locator('#samples').selectOption('stool');
+    await opened('stool');
+    await open([['walking.limber', file]]);
+    await opened('biped');
+    expectSame(await standing(), before);
+    await open([['cut.limber', file.subarray(0, file.length / 2)]]);
+    await page.locator('#notice').waitFor();
+    await page.locator('#close-notice').click();
+    await reopened();
+    expectSame(await standing(), before);
+  },
+  async 'an OBJ has as many vertices as its file'() {
+    const obj = 'v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 3 4\nf 1 5 2\nf 2 5 3\n';
+    await open([['shape.obj', Buffer.from(obj)]]);
+    await opened('shape.obj');
+    assert.equal((await sessionState(page)).vertices, 5);
+  },
+  async 'without WebGL the page says so'() {
+    const context = await browser.newContext({ viewport: size }), other = await context.newPage();
+    await other.addInitScript(() => { HTMLCanvasElement.prototype.getContext = () => null; });
+    await other.goto(server.address);
+    await other.locator('#apology').waitFor();
+    await context.close();
+  },
+  async 'where the browser keeps nothing, the page says so'() {
+    const context = await browser.newContext({ viewport: size }), other = await context.newPage();
+    await other.addInitScript(() => { Object.defineProperty(globalThis, 'indexedDB', { value: { open: () => { throw new Error('no storage'); } } }); });
+    await other.goto(`${server.address}?sample=stool`);
+    await other.waitForFunction(() => /cannot keep/.test(document.querySelector('#notice')?.textContent ?? ''));
+    await context.close();
+  },
+  async 'everybody can use every state of the page'() {
+    for (const [colorScheme, width, height] of [['light', 1280, 800], ['dark', 1280, 800], ['light', 390, 844]]) {
+      const { page: at, context } = await openStudio(browser, server.address, { width, height, touch: width < 500, search: '?sample=biped' });
+      await at.emulateMedia({ colorScheme, reducedMotion: 'reduce' });
+      const expectNone = async (state) => assert.deepEqual(await barriers(at), [], `${state}, ${colorScheme}, ${width} wide`);
+      await expectNone('a model');
+      await motionPlayed(at, () => at.locator('#sample-motions').selectOption('walk'));
+      await at.locator('#play').click();
+      await settled(at);
+      await at.locator('#retarget summary').click();
+      await at.locator('#methods summary').click();
+      await expectNone('a motion');
+      await at.locator('#open-recent').click();
+      await at.locator('#recent').waitFor();
+      await expectNone('recent');
+      await at.keyboard.press('Escape');
+      await at.keyboard.press('?');
+      await expectNone('help');
+      await at.keyboard.press('Escape');
+      await at.locator('#file').setInputFiles({ name: 'none.glb', mimeType: 'model/gltf-binary', buffer: Buffer.from('glTF nothing') });
+      await at.locator('#notice').waitFor();
+      await expectNone('an error');
+      await context.close();
+    }
+  },
+  async 'nothing was thrown'() {
+    assert.deepEqual(errors, []);
+  },
+};
+
+const failed = await runCases(cases, () => page, output);
+await browser.close();
+server.close();
+process.exit(failed > 0 ? 1 : 0);
