@@ -24,14 +24,14 @@ import createEngine from './limber_engine.mjs';
  * @typedef {{ do: string, [field: string]: unknown }} Command as limber/session/command.h has them
  *
  * As limber/session/session_state.h describes it.
- * @typedef {{ name: string, parent: number, part: string | null, radius: number, rest: Vector }} SessionJoint
+ * @typedef {{ name: string, parent: number, part: string | null, color: Vector, radius: number, rest: Vector }} SessionJoint
  * @typedef {{ name: string, vertices: number, triangles: number, box: { min: Vector, max: Vector }, own_rig: boolean,
  *             rigger: string, skinning: string, most_handles: number, suggestions: number[], joints: SessionJoint[],
  *             motions: { name: string, joints: { name: string, parent: number }[],
  *                        clips: { name: string, duration: number }[] }[],
  *             clips: { name: string, duration: number, keys: number[], interpolation: 'step' | 'linear' | 'cubic',
  *                      source: { motion: string, clip: string, method: string, reach: number,
- *                                contacts: boolean } | null }[],
+ *                                contacts: boolean } | null, edited: boolean }[],
  *             clip: number | null, seconds: number,
  *             match: { part: string, source: string[], target: string[], confidence: number, by: string }[],
  *             limits: { [joint: string]: { type: string, [field: string]: unknown } },

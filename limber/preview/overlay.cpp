@@ -86,10 +86,10 @@ void addBones(ShapeMesh& shapes, const Scene& scene, double size) {
 void addAnatomy(ShapeMesh& shapes, const Scene& scene, double size) {
   for (const Bone& segment : scene.bones) {
     const SceneJoint& joint = scene.joints[segment.joint];
-    addOctahedralBone(shapes, segment.a, segment.b, partColor(joint.kind, joint.side));
+    addOctahedralBone(shapes, segment.a, segment.b, linearFromHsv(partColor(joint.kind, joint.side)));
   }
   for (const SceneJoint& joint : scene.joints)
-    addSphere(shapes, joint.position, kDotRadius * size, partColor(joint.kind, joint.side));
+    addSphere(shapes, joint.position, kDotRadius * size, linearFromHsv(partColor(joint.kind, joint.side)));
 }
 
 }  // namespace

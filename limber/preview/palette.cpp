@@ -41,14 +41,8 @@ Vec3f jointColor(Index number) {
   return fromHsv(hue, tone[0], tone[1]);
 }
 
-Vec3f partColor(PartKind kind, Side side) {
-  if (kind == PartKind::kOther) return linearFromSrgb(110, 112, 118);
-  // Neighbours on a body far apart on the circle: trunk, neck, head, tail, leg, arm, wing, fin, finger, ear, jaw, eye,
-  // hair, prop.
-  constexpr std::array<double, kPartKinds> kHues = {0.58, 0.50, 0.14, 0.78, 0.34, 0.03, 0.88, 0.88,
-                                                    0.10, 0.70, 0.96, 0.62, 0.20, 0.42, 0};
-  const double value = side == Side::kRight ? 0.55 : 0.95;
-  return fromHsv(kHues[static_cast<std::size_t>(kind)], side == Side::kLeft ? 0.55 : 0.75, value);
+Vec3f linearFromHsv(const Hsv& color) {
+  return fromHsv(color.hue, color.saturation, color.value);
 }
 
 Vec3f heatColor(double value) {

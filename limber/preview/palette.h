@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "limber/anatomy/anatomy.h"
+#include "limber/anatomy/part_color.h"
 
 namespace limber {
 
@@ -14,8 +14,7 @@ std::uint8_t srgbByte(double linear);
 // A colour of joint `number`, well apart from those of the numbers near it.
 Vec3f jointColor(Index number);
 
-// A colour for each kind of part, lighter on the body's left; grey for joints of no part.
-Vec3f partColor(PartKind kind, Side side);
+Vec3f linearFromHsv(const Hsv& color);
 
 // value 0 to 1: dark blue, through green and yellow, to red.
 Vec3f heatColor(double value);

@@ -157,6 +157,10 @@ void visitFields(Visitor& field, SetTime& c) {
   field("seconds", c.seconds);
 }
 template <class Visitor>
+void visitFields(Visitor& field, SetKey& c) {
+  field("span", c.span);
+}
+template <class Visitor>
 void visitFields(Visitor& field, MoveKey& c) {
   field("from", c.from);
   field("to", c.to);

@@ -154,7 +154,9 @@ struct SetTime {
   double seconds = 0;
 };
 // Keys of the chosen clip: the pose becomes one at the moment that is shown.
-struct SetKey {};
+struct SetKey {
+  double span = 0;  // seconds before and after it that go along, ever less (blendKey)
+};
 struct MoveKey {
   double from = 0, to = 0;  // seconds
 };

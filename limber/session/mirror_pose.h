@@ -14,8 +14,8 @@ namespace limber {
 std::vector<Index> mirrorJoints(const Skeleton& skeleton, const MirrorPlane& plane, double tolerance);
 
 // Each joint moves from its rest as its image moved, mirrored; those of the side that is taken from stay, and so do
-// joints without an image; left is where the plane's normal points. Joints on the plane take the mean of their motion and its mirror image where one side's pose
-// is taken, so that the whole becomes symmetric. `images` from mirrorJoints.
+// joints without an image; left is where the plane's normal points. Joints on the plane take the mean of their motion
+// and its mirror image where one side's pose is taken, so that the whole becomes symmetric. `images` from mirrorJoints.
 Pose mirrorPose(const Skeleton& skeleton, const Pose& pose, const MirrorPlane& plane, const std::vector<Index>& images,
                 MirrorFrom from);
 

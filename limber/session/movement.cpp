@@ -61,6 +61,7 @@ void editChosen(Movement& movement, const Edit& edit) {
   edit(*clip);
   chosen.clip = std::move(clip);
   chosen.authored.reset();
+  chosen.edited = chosen.source.has_value();
 }
 
 std::shared_ptr<const Motion> requireMotion(const Movement& movement, const std::string& name) {
@@ -234,8 +235,8 @@ void setTime(Movement& movement, double seconds) {
   movement.seconds = seconds;
 }
 
-void setKeyOf(Movement& movement, const Skeleton& skeleton, const Pose& pose) {
-  editChosen(movement, [&](Clip& clip) { setKey(clip, skeleton, pose, movement.seconds); });
+void setKeyOf(Movement& movement, const Skeleton& skeleton, const Pose& pose, double span) {
+  editChosen(movement, [&](Clip& clip) { blendKey(clip, skeleton, pose, movement.seconds, span); });
 }
 
 void moveKeyOf(Movement& movement, double from, double to) {

@@ -34,6 +34,7 @@ struct SessionClip {
   std::shared_ptr<const Clip> clip;  // over the joints of the rig; its name is unique in the session
   std::optional<ClipSource> source;
   std::shared_ptr<const AuthoredClip> authored = {};  // null: on the rig that there is
+  bool edited = false;                                // by hand, since it was made from the source
 };
 
 struct Movement {
@@ -73,7 +74,7 @@ void chooseClip(Movement& movement, const std::string& name);
 void setTime(Movement& movement, double seconds);
 
 // Of the chosen clip.
-void setKeyOf(Movement& movement, const Skeleton& skeleton, const Pose& pose);
+void setKeyOf(Movement& movement, const Skeleton& skeleton, const Pose& pose, double span);
 void moveKeyOf(Movement& movement, double from, double to);
 void deleteKeyOf(Movement& movement, double seconds);
 void setInterpolationOf(Movement& movement, Interpolation interpolation);

@@ -158,6 +158,29 @@ TEST(Movement, PosesBecomeKeys) {
   EXPECT_THAT(keyTimes(*session.state().movement.clip()), ElementsAre(0, 0.2f, 1));
 }
 
+TEST(Movement, ACorrectedFrameTakesItsNeighboursAlong) {
+  Session session = walking();
+  act(session, SetTime{0.5});
+  const auto clipJson = [&] { return sessionState(session)["clips"][0]; };
+  EXPECT_EQ(clipJson()["edited"], false);
+  const Quat before = turnOf(session, "leftLowerArm");
+  act(session, TurnJoint{"leftLowerArm", Vec3(0, 1, 0), 40});
+  act(session, SetKey{.span = 0.3});
+  EXPECT_EQ(clipJson()["edited"], true);
+  EXPECT_NEAR(turnOf(session, "leftLowerArm").angularDistance(before), 40 * EIGEN_PI / 180, 1e-3);
+  Quat last = Quat::Identity();
+  for (int f = 0; f <= 20; ++f) {
+    act(session, SetTime{0.2 + 0.03 * f});
+    const Quat now = turnOf(session, "leftLowerArm");
+    if (f > 0) {
+      EXPECT_LT(now.angularDistance(last), 15 * EIGEN_PI / 180) << f;
+    }
+    last = now;
+  }
+  act(session, RetargetMotion{.motion = "walk", .clip = {}, .method = "aligned", .map = {}});
+  EXPECT_EQ(clipJson()["edited"], false);
+}
+
 TEST(Movement, ClipsAreChosenRenamedAndRemoved) {
   Session session = walking();
   act(session, AddClip{"wave"});

@@ -347,9 +347,9 @@ struct Session::Runner {
     show(session.state_);
     session.remember(command);
   }
-  void operator()(const SetKey&) const {
+  void operator()(const SetKey& c) const {
     SessionState next = state();
-    setKeyOf(next.movement, next.rig->skeleton(), next.pose);
+    setKeyOf(next.movement, next.rig->skeleton(), next.pose, c.span);
     session.commit(command, std::move(next));
   }
   void operator()(const MoveKey& c) const {

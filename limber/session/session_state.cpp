@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "limber/anatomy/body_part.h"
+#include "limber/anatomy/part_color.h"
 #include "limber/ik/limit_outline.h"
 #include "limber/ik/limits_json.h"
 #include "limber/skeleton/keyframes.h"
@@ -22,9 +23,14 @@ Json textOrNull(std::string_view text) {
 }
 
 // What a joint is of the body, where that is sure enough to be said.
-Json partJson(const Anatomy& anatomy, Index joint) {
+const Part* surePart(const Anatomy& anatomy, Index joint) {
   const std::optional<std::size_t> part = anatomy.partOf[joint];
-  return part && anatomy.parts[*part].confidence >= kDoubtful ? textOrNull(labelOf(anatomy, joint)) : Json(nullptr);
+  return part && anatomy.parts[*part].confidence >= kDoubtful ? &anatomy.parts[*part] : nullptr;
+}
+
+Json colorJson(const Part* part) {
+  const Hsv color = part ? partColor(part->kind, part->side) : partColor(PartKind::kOther, Side::kCenter);
+  return Json::array({color.hue, color.saturation, color.value});
 }
 
 Json jointsJson(const RiggedModel& rig) {
@@ -32,9 +38,11 @@ Json jointsJson(const RiggedModel& rig) {
   Json joints = Json::array();
   for (Index j = 0; j < rest.size(); ++j) {
     const Joint& joint = rig.skeleton().joints[j];
+    const Part* part = surePart(rig.anatomy, j);
     joints.push_back({{"name", joint.name},
                       {"parent", joint.parent ? static_cast<int>(*joint.parent) : -1},
-                      {"part", partJson(rig.anatomy, j)},
+                      {"part", part ? textOrNull(labelOf(rig.anatomy, j)) : Json(nullptr)},
+                      {"color", colorJson(part)},
                       {"radius", rig.radii[j]},
                       {"rest", vectorJson(rest[j].translation())}});
   }
@@ -84,7 +92,8 @@ Json clipsJson(const Movement& movement) {
                      {"duration", clip.duration()},
                      {"keys", keyTimes(clip)},
                      {"interpolation", interpolationName(interpolationOf(clip))},
-                     {"source", std::move(source)}});
+                     {"source", std::move(source)},
+                     {"edited", entry.edited}});
   }
   return clips;
 }

@@ -8,10 +8,10 @@ namespace limber {
 
 // {"name", "vertices", "triangles", "box": {"min", "max"}, "own_rig", "rigger", "skinning", "most_handles",
 //  "suggestions": [counts, best first], "joints": [{"name", "parent" (-1: none), "part" ("left foot",
-//  null where doubtful), "radius", "rest": position}],
+//  null where doubtful), "color" (of that part: hue, saturation, value, 0 to 1), "radius", "rest": position}],
 //  "motions": [{"name", "joints": [{"name", "parent"}], "clips": [{"name", "duration"}]}],
 //  "clips": [{"name", "duration", "keys": [seconds], "interpolation", "source": null or {"motion", "clip", "method",
-//  "reach", "contacts"}}], "clip": the chosen one's index or null, "seconds",
+//  "reach", "contacts"}, "edited" (by hand, since it was made)}], "clip": the chosen one's index or null, "seconds",
 //  "match": of the chosen clip, where it is from a motion: [{"part", "source": [joints], "target": [joints],
 //  "confidence", "by"}],
 //  "limits": {joint's name: limit} as in a limits file,

@@ -195,6 +195,35 @@ void setKey(Clip& clip, const Skeleton& skeleton, const Pose& pose, double secon
   }
 }
 
+void blendKey(Clip& clip, const Skeleton& skeleton, const Pose& pose, double seconds, double span) {
+  if (!(span >= 0) || !std::isfinite(span))
+    throw Error(ErrorCode::kBadArgument, "a span is 0 seconds or more", clip.name);
+  const auto poseAt = [&](double time) {
+    Pose at = restPose(skeleton);
+    sampleClip(clip, time, at);
+    return at;
+  };
+  std::vector<std::pair<double, Pose>> blended;
+  if (pose.locals.size() == skeleton.joints.size() && span > 0) {
+    const Pose before = poseAt(seconds);
+    for (const double time : keyTimes(clip)) {
+      const double away = std::abs(time - seconds) / span;
+      if (away >= 1 || std::abs(time - seconds) < kKeySnap) continue;
+      const double share = 1 - away * away * (3 - 2 * away);
+      Pose& at = blended.emplace_back(time, poseAt(time)).second;
+      for (std::size_t j = 0; j < at.locals.size(); ++j) {
+        const Transform &from = before.locals[j], &to = pose.locals[j];
+        const Quat turn = from.rotation.conjugate() * to.rotation;
+        at.locals[j].translation += share * (to.translation - from.translation);
+        at.locals[j].rotation = (at.locals[j].rotation * Quat::Identity().slerp(share, turn)).normalized();
+        at.locals[j].scale += share * (to.scale - from.scale);
+      }
+    }
+  }
+  setKey(clip, skeleton, pose, seconds);
+  for (const auto& [time, at] : blended) setKey(clip, skeleton, at, time);
+}
+
 void moveKey(Clip& clip, double from, double to) {
   const float start = requireTime(from), end = requireTime(to);
   editKeys(clip, from, [&](auto& keys) {

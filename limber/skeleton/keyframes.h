@@ -23,6 +23,11 @@ Interpolation interpolationOf(const Clip& clip);
 // the clip has already.
 void setKey(Clip& clip, const Skeleton& skeleton, const Pose& pose, double seconds);
 
+// Likewise in a clip that has keys for every frame, such as a recorded motion: what `pose` changes at that moment goes
+// into the keys up to `span` seconds before and after it, too, ever less the further away they are (smoothstep), so that
+// nothing jumps. Cost: setKey for each of these keys. Throws Error kBadArgument where the span is negative or no number.
+void blendKey(Clip& clip, const Skeleton& skeleton, const Pose& pose, double seconds, double span);
+
 // Takes the place of a key that is at `to` already.
 void moveKey(Clip& clip, double from, double to);
 void deleteKey(Clip& clip, double seconds);

@@ -77,6 +77,34 @@ TEST(Keyframes, AKeyAtTheSameMomentReplaces) {
   EXPECT_NEAR(elbowAt(clip, 1 + kKeySnap / 2), -10, 1e-3);
 }
 
+// A second at 30 frames, the elbow opening evenly; corrected by 30 degrees in the middle.
+TEST(Keyframes, ACorrectionComesAndGoes) {
+  Clip clip;
+  clip.name = "recorded";
+  for (int f = 0; f <= 30; ++f) setKey(clip, keyedArm(), elbowBent(f), f / 30.0);
+  const Clip before = clip;
+  blendKey(clip, keyedArm(), elbowBent(15 + 30), 0.5, 0.3);
+  checkClip(clip, keyedArm());
+  EXPECT_THAT(keyTimes(clip), ::testing::SizeIs(31));
+  EXPECT_NEAR(elbowAt(clip, 0.5), 45, 1e-3);
+  double steepest = 0;
+  for (int f = 0; f <= 30; ++f) {
+    const double time = f / 30.0, change = elbowAt(clip, time) - elbowAt(before, time);
+    if (std::abs(time - 0.5) >= 0.3) {
+      EXPECT_NEAR(change, 0, 1e-3) << time;
+    }
+    if (f > 0) steepest = std::max(steepest, std::abs(change - (elbowAt(clip, (f - 1) / 30.0) - (f - 1))));
+  }
+  EXPECT_LT(steepest, 30 * 1.5 / 9 * 1.1) << "no step is steeper than a smooth one over nine frames";
+  EXPECT_NEAR(elbowAt(clip, 0.5 - 0.15), elbowAt(before, 0.5 - 0.15) + 15, 1) << "half way half of it";
+
+  Clip plain = before, none = before;
+  setKey(plain, keyedArm(), elbowBent(45), 0.5);
+  blendKey(none, keyedArm(), elbowBent(45), 0.5, 0);
+  for (const double time : {0.4, 0.45, 0.5, 0.55}) EXPECT_EQ(elbowAt(none, time), elbowAt(plain, time));
+  EXPECT_THROW(blendKey(clip, keyedArm(), elbowBent(0), 0.5, -1), Error);
+}
+
 TEST(Keyframes, MovedAndDeleted) {
   Clip clip = waving();
   moveKey(clip, 1, 4);

@@ -185,6 +185,41 @@ const cases = {
     await settled(page);
     assert.equal(await has(), true);
   },
+  async 'a corrected frame takes its neighbours along, and is not made anew unasked'() {
+    await page.locator('#method').selectOption('limb-ik');
+    await settled(page);
+    const hand = 'leftHand', scrub = async (seconds) => {
+      await page.locator('#scrub').fill(String(seconds));
+      await settled(page);
+    };
+    const { joints, match } = await sessionState(page), [joint] = match.find(({ part }) => part === hand).target;
+    await scrub(0.5);
+    const before = await jointPosition(page, joint);
+    await page.locator('#joints li').nth(joints.findIndex(({ name }) => name === joint)).click();
+    await page.locator('main canvas').focus();
+    for (let i = 0; i < 12; ++i) await page.keyboard.press('ArrowUp');
+    await settled(page);
+    await page.keyboard.press('k');
+    await settled(page);
+    const distances = [];
+    let last = null;
+    for (let frame = 5; frame <= 25; ++frame) {
+      await scrub((frame / 30).toFixed(4));
+      const now = await jointPosition(page, joint);
+      if (last) distances.push(Math.hypot(...now.map((value, i) => value - last[i])));
+      last = now;
+    }
+    await scrub(0.5);
+    const moved = Math.hypot(...(await jointPosition(page, joint)).map((value, i) => value - before[i]));
+    assert.ok(moved > 0.03, `${joint} moved by ${moved}`);
+    assert.ok(Math.max(...distances) < 0.5 * moved + 0.05, `a jump of ${Math.max(...distances)} m`);
+    await page.locator('#method').selectOption('online');
+    await answer(page, false);
+    assert.equal(await page.locator('#method').inputValue(), 'limb-ik');
+    await page.locator('#method').selectOption('online');
+    await answer(page, true);
+    assert.equal((await sessionState(page)).clips[0].edited, false);
+  },
   async 'what was open before is under Recent'() {
     await page.goto(`${server.address}?sample=stool`);
     await settled(page);
@@ -290,6 +325,33 @@ const cases = {
     await open([['shape.obj', Buffer.from(obj)]]);
     await opened('shape.obj');
     assert.equal((await sessionState(page)).vertices, 5);
+  },
+  async 'pictures and films show the model and no tools'() {
+    await page.locator('#samples').selectOption('biped'); // nothing of it is as red as a handle
+    await opened('biped');
+    const png = await download(page, () => page.locator('#export-as').selectOption('png'));
+    const red = await page.evaluate(async (bytes) => {
+      const image = await createImageBitmap(new Blob([new Uint8Array(bytes)])), canvas = document.createElement('canvas');
+      [canvas.width, canvas.height] = [image.width, image.height];
+      const context = canvas.getContext('2d');
+      context.drawImage(image, 0, 0);
+      const { data } = context.getImageData(0, 0, image.width, image.height);
+      let handles = 0, opaque = 0;
+      for (let i = 0; i < data.length; i += 4) {
+        opaque += data[i + 3] > 250;
+        handles += data[i + 3] > 250 && data[i] > 180 && data[i + 1] < 80 && data[i + 2] < 90;
+      }
+      return { handles, opaque, corner: data[3], all: data.length / 4 };
+    }, [...png]);
+    assert.equal(red.handles, 0);
+    assert.equal(red.corner, 0, 'the corner is not transparent');
+    assert.ok(red.opaque > red.all / 100, `${red.opaque} of ${red.all} pixels are opaque`);
+    await motionPlayed(page, () => page.locator('#motion-file').setInputFiles({ name: 'walk.bvh', mimeType: 'text/plain', buffer: Buffer.from(walkBvh()) }));
+    const film = await download(page, () => page.locator('#export-as').selectOption('webm'));
+    writeFileSync(join(output, 'walk.webm'), film);
+    assert.equal(film.readUInt32BE(0), 0x1a45dfa3); // EBML
+    assert.ok(film.length > 10_000, `${film.length} bytes`);
+    await settled(page);
   },
   async 'without WebGL the page says so'() {
     const context = await browser.newContext({ viewport: size }), other = await context.newPage();

@@ -10,6 +10,7 @@ import { fromLimberFile, toLimberFile } from './limber_file';
 import { noticeOf, type Notice, type PageStore } from './state';
 
 const mostFileSize = 500e6;
+const blendSpan = 0.3; // seconds before and after a corrected moment that go along
 const progressDelay = 250; // milliseconds before a wait is shown
 
 const stageNames: Record<string, string> = {
@@ -308,8 +309,11 @@ export class Studio {
   /** With another method, map, or how far hands reach; the clip stays in its place. */
   async retarget(change: { method?: string; reach?: number; contacts?: boolean; map?: string }) {
     const session = this.page.now.session;
-    const source = session?.clips[session.clip ?? -1]?.source;
+    const clip = session?.clips[session.clip ?? -1], source = clip?.source;
     if (!session || !source) return;
+    if (clip.edited && !await this.ask('Make this clip anew?', 'What was changed in it by hand goes. Undo brings it back.', 'Make it anew')) {
+      return this.page.set({}); // lists show again what is chosen
+    }
     const map = change.map ?? JSON.stringify({ matches: session.match });
     await this.run({ do: 'retarget', ...source, ...change, map });
     this.page.set({}); // what was refused is not shown any more
@@ -331,7 +335,11 @@ export class Studio {
     }).finally(() => { this.momentUnderWay = false; });
   }
 
-  async setKey() { await this.run({ do: 'set_key' }); }
+  /** In a clip with a key for every frame the correction comes and goes, instead of a jump of one frame. */
+  async setKey() {
+    const { session } = this.page.now;
+    await this.run({ do: 'set_key', span: session?.clips[session.clip ?? -1]?.source ? blendSpan : 0 });
+  }
   async chooseClip(clip: string) { await this.run({ do: 'choose_clip', clip }); }
 
   async addClip() {
@@ -346,7 +354,7 @@ export class Studio {
   }
 
   /** Pictures of a clip at even moments, each once the scene stands there. */
-  async eachMoment(count: number, draw: (seconds: number) => void) {
+  async eachMoment(count: number, draw: (seconds: number) => void | Promise<void>) {
     const { session, seconds } = this.page.now;
     const clip = session?.clips[session.clip ?? -1];
     if (!clip) return;
@@ -359,7 +367,7 @@ export class Studio {
       for (let i = 0; i < count; ++i) {
         const moment = (clip.duration * i) / Math.max(1, count - 1);
         await show(moment);
-        draw(moment);
+        await draw(moment);
       }
       await show(seconds);
     });

@@ -7,7 +7,9 @@ import type { ModelView } from '../scene/model_view';
 import type { Viewport } from '../scene/viewport';
 import { button, element, offer } from '../ui/dom';
 import { recent } from './recent';
+import { chosenClip } from './timeline';
 
+const filmRate = 30; // pictures a second
 const types = { glb: 'model/gltf-binary', obj: 'model/obj', stl: 'model/stl', bvh: 'text/plain', session: 'model/gltf-binary' };
 
 export function toolbar(studio: Studio, page: PageStore, journal: Journal, viewport: Viewport, model: ModelView): HTMLElement {
@@ -33,10 +35,23 @@ export function toolbar(studio: Studio, page: PageStore, journal: Journal, viewp
     const ending = format === 'session' ? '_session.glb' : format === 'bvh' ? '.bvh' : `_posed.${format}`;
     if (bytes) offer(bytes as BlobPart, types[format], stem() + ending);
   };
-  const savePicture = async () => {
+  /** The surface as a picture should have it, whatever is shown now. */
+  const onSurface = async (act: () => Promise<void>) => {
+    const { display } = page.now;
+    if (display === 'handles') page.set({ display: 'surface' });
+    await act();
+    page.set({ display });
+  };
+  const savePicture = () => onSurface(async () => {
     const picture = await viewport.picture();
     if (picture) offer(picture, 'image/png', `${stem()}.png`);
-  };
+  });
+  const saveFilm = () => onSurface(async () => {
+    const clip = chosenClip(page.now.session);
+    if (!clip) return;
+    const film = await viewport.film(filmRate, (draw) => studio.eachMoment(Math.max(2, Math.ceil(clip.duration * filmRate)), draw));
+    offer(film, 'video/webm', `${clip.name}.webm`);
+  });
   const saveUsdz = async () => {
     const { toUsdz } = await import('../app/export_usdz');
     offer(await toUsdz(model.posed()) as BlobPart, 'model/vnd.usdz+zip', `${stem()}_posed.usdz`);
@@ -47,17 +62,19 @@ export function toolbar(studio: Studio, page: PageStore, journal: Journal, viewp
   };
   const exporter = element('select', { 'aria-label': 'Save as another format', class: 'select', id: 'export-as' },
     ...[['', 'More'], ['obj', 'OBJ, posed surface'], ['stl', 'STL, posed surface'], ['bvh', 'BVH, the clip'], ['usdz', 'USDZ, for AR Quick Look'], ['limber', 'Limber file, everything to go on with'], ['session', 'Session in a GLB'],
-      ['record', 'Commands, for limber session replay'], ['png', 'Picture (PNG)']].map(([value = '', text = '']) => element('option', { value }, text)));
+      ['record', 'Commands, for limber session replay'], ['png', 'Picture (PNG)'], ['webm', 'Film of the clip (WebM)']].map(([value = '', text = '']) => element('option', { value }, text)));
   exporter.addEventListener('change', () => {
     const { value } = exporter;
     exporter.value = '';
     if (value === 'png') void savePicture();
+    else if (value === 'webm') void saveFilm();
     else if (value === 'usdz') void saveUsdz();
     else if (value === 'limber') offer(studio.limberFile() as BlobPart, 'application/zip', `${stem()}.limber`);
     else if (value === 'record') void saveRecord();
     else if (value === 'obj' || value === 'stl' || value === 'bvh' || value === 'session') void save(value);
   });
 
+  const ofClip = [...exporter.options].filter(({ value }) => value === 'bvh' || value === 'webm');
   const undo = button('', () => void studio.undo(), { icon: 'undo', label: 'Undo', keys: 'Ctrl+Z', id: 'undo' });
   const redo = button('', () => void studio.redo(), { icon: 'redo', label: 'Redo', keys: 'Ctrl+Shift+Z', id: 'redo' });
   const glb = button('Save GLB', () => void save('glb'), { icon: 'save', kind: 'primary', id: 'save-glb' });
@@ -66,6 +83,7 @@ export function toolbar(studio: Studio, page: PageStore, journal: Journal, viewp
     undo.disabled = !session?.undo;
     redo.disabled = !session?.redo;
     glb.disabled = exporter.disabled = !session;
+    ofClip.forEach((option) => { option.disabled = chosenClip(session) === null; });
     name.textContent = session?.name ?? 'limber';
     document.title = session ? `${session.name} \u2013 limber studio` : 'limber studio';
   });

@@ -1,5 +1,5 @@
 // Colours of the scene.
-import { Color } from 'three';
+import { Color, SRGBColorSpace } from 'three';
 
 export const handleColor = new Color('#dc2f3c');
 export const rootColor = new Color('#e8a317');
@@ -13,6 +13,12 @@ export const boneColor = new Color('#374151');
 export function jointColor(joint: number): Color {
   const hue = (joint * 0.61803398875) % 1;
   return new Color().setHSL(hue, 0.62, joint % 2 === 0 ? 0.55 : 0.66);
+}
+
+/** From hue, saturation and value as the engine has them. */
+export function partColor([hue, saturation, value]: [number, number, number]): Color {
+  const light = value * (1 - saturation / 2), room = Math.min(light, 1 - light);
+  return new Color().setHSL(hue, room > 0 ? (value - light) / room : 0, light, SRGBColorSpace);
 }
 
 /** From cold, 0, to hot, 1. */

@@ -9,8 +9,10 @@ import { ModelView } from './model_view';
 import { boneColor, jointColor } from './palette';
 
 /** A colour for each joint: that of its part in the match. */
-export function matchColors(names: string[], match: SessionState['match'], side: 'source' | 'target'): Color[] {
-  const colors = names.map(() => boneColor);
+export function matchColors(
+  names: string[], match: SessionState['match'], side: 'source' | 'target', others = names.map(() => boneColor),
+): Color[] {
+  const colors = [...others];
   const places = new Map(names.map((name, joint) => [name, joint]));
   match.forEach((part, index) => {
     for (const name of part[side]) {

@@ -7,6 +7,7 @@ import { Gizmo } from './gizmo';
 import { HandleView } from './handle_view';
 import { LimitView } from './limit_view';
 import { ModelView } from './model_view';
+import { boneColor, partColor } from './palette';
 import { PointerInput } from './pointer';
 import { matchColors, SourceView } from './source_view';
 import { Viewport } from './viewport';
@@ -23,6 +24,7 @@ export function createStage(studio: Studio, page: PageStore): Stage {
   const viewport = new Viewport(), model = new ModelView(), handles = new HandleView();
   const source = new SourceView(), limits = new LimitView();
   const comparison = new ComparisonView(viewport.scene, () => viewport.draw());
+  viewport.tools.push(handles.root, source.root, limits.root);
   viewport.scene.add(handles.root, model.root, source.root, source.model.root, limits.root);
   source.model.onChange = () => viewport.draw();
   const gizmo = new Gizmo(viewport, handles, studio, page);
@@ -58,7 +60,10 @@ export function createStage(studio: Studio, page: PageStore): Stage {
       handles.show(now.session.joints);
       source.show(now.session);
       limits.show(now.session);
-      handles.colorBones(matchColors(now.session.joints.map(({ name }) => name), now.session.match, 'target'));
+      const { joints, match } = now.session;
+      // What follows the motion in the motion's colours, else each part of the body in its own.
+      const others = joints.map(({ color }) => (match.length > 0 ? boneColor : partColor(color)));
+      handles.colorBones(matchColors(joints.map(({ name }) => name), match, 'target', others));
     }
     limits.root.visible = now.limits && now.display === 'handles';
     source.showModel(now);

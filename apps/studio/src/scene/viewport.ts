@@ -1,11 +1,12 @@
 // The canvas: camera, light, ground, and frames drawn only when something has changed.
 import {
   AmbientLight, Box3, CanvasTexture, Color, DirectionalLight, Group, HemisphereLight, LineSegments, BufferGeometry, Float32BufferAttribute,
-  LineBasicMaterial, Mesh, MeshBasicMaterial, OrthographicCamera, PerspectiveCamera, PlaneGeometry, Raycaster, Scene,
+  LineBasicMaterial, Mesh, MeshBasicMaterial, type Object3D, OrthographicCamera, PerspectiveCamera, PlaneGeometry, Raycaster, Scene,
   Vector2, Vector3, WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import type { Ray, Vector } from '../engine/messages';
+import { element } from '../ui/dom';
 
 export type ViewName = 'front' | 'right' | 'top' | 'start';
 
@@ -148,9 +149,50 @@ export class Viewport {
     this.draw();
   }
 
+  /** Handles, bones and arrows: on the page, but not in pictures that leave it. */
+  readonly tools: Object3D[] = [];
+
+  /** The model and its shadow on nothing: without tools, without the ground's lines. */
   async picture(): Promise<Blob | null> {
-    this.drawNow();
-    return new Promise((resolve) => this.canvas.toBlob(resolve, 'image/png'));
+    return this.withoutTools(() => {
+      this.drawNow();
+      return new Promise((resolve) => this.canvas.toBlob(resolve, 'image/png'));
+    });
+  }
+
+  async withoutTools<T>(act: () => Promise<T>): Promise<T> {
+    const hidden = [...this.tools, ...this.ground.children.filter((part) => part instanceof LineSegments)].filter(({ visible }) => visible);
+    const seen = (visible: boolean) => hidden.forEach((part) => { part.visible = visible; });
+    seen(false);
+    try {
+      return await act();
+    } finally {
+      seen(true);
+      this.draw();
+    }
+  }
+
+  /** A film of pictures, each drawn when its turn comes: WebM, as many a second as `rate`. */
+  async film(rate: number, each: (draw: () => Promise<void>) => Promise<void>): Promise<Blob> {
+    const screen = element('canvas', { width: this.canvas.width & ~1, height: this.canvas.height & ~1 }), context = screen.getContext('2d')!;
+    const stream = screen.captureStream(0), [track] = stream.getVideoTracks() as CanvasCaptureMediaStreamTrack[];
+    const recorder = new MediaRecorder(stream, { mimeType: 'video/webm', videoBitsPerSecond: 8e6 }), parts: Blob[] = [];
+    recorder.ondataavailable = ({ data }) => parts.push(data);
+    const stopped = new Promise((resolve) => { recorder.onstop = resolve; });
+    recorder.start();
+    let next = performance.now();
+    await this.withoutTools(() => each(async () => {
+      context.fillStyle = '#f4f5f7';
+      context.fillRect(0, 0, screen.width, screen.height);
+      this.drawNow();
+      context.drawImage(this.canvas, 0, 0);
+      track?.requestFrame();
+      next += 1000 / rate;
+      await new Promise((resolve) => setTimeout(resolve, Math.max(0, next - performance.now())));
+    }));
+    recorder.stop();
+    await stopped;
+    return new Blob(parts, { type: 'video/webm' });
   }
 
   /** The picture as it is now, cut to the shape of the place that it goes to. */
