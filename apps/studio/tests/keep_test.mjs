@@ -199,8 +199,7 @@ const cases = {
     await page.locator('main canvas').focus();
     for (let i = 0; i < 12; ++i) await page.keyboard.press('ArrowUp');
     await settled(page);
-    await page.keyboard.press('k');
-    await settled(page);
+    assert.equal((await sessionState(page)).clips[0].edited, true, 'what is posed becomes a key');
     const distances = [];
     let last = null;
     for (let frame = 5; frame <= 25; ++frame) {
@@ -219,6 +218,31 @@ const cases = {
     await page.locator('#method').selectOption('online');
     await answer(page, true);
     assert.equal((await sessionState(page)).clips[0].edited, false);
+  },
+  async 'the view turns by keys, and a pose on a new clip stays'() {
+    await page.goto(`${server.address}?sample=biped`);
+    await settled(page);
+    const places = () => page.evaluate(() => globalThis.limberStudio.state().joints.map(({ name }) => globalThis.limberStudio.place(name).x));
+    await page.locator('main canvas').focus();
+    const before = await places();
+    await page.keyboard.press('ArrowRight');
+    await settled(page);
+    const after = await places();
+    assert.ok(after.some((x, joint) => Math.abs(x - before[joint]) > 3));
+    await page.locator('#add-clip').click();
+    await settled(page);
+    const joint = (await sessionState(page)).joints.at(-1).name;
+    await page.locator('#joints li').last().click();
+    await page.locator('main canvas').focus();
+    await page.keyboard.press('ArrowUp');
+    await settled(page);
+    const posed = await jointPosition(page, joint);
+    await page.locator('#scrub').fill('1');
+    await settled(page);
+    await page.locator('#scrub').fill('0');
+    await settled(page);
+    (await jointPosition(page, joint)).forEach((value, i) => assert.ok(Math.abs(value - posed[i]) < 1e-5));
+    assert.equal((await sessionState(page)).clips[0].keys.length, 1);
   },
   async 'what was open before is under Recent'() {
     await page.goto(`${server.address}?sample=stool`);

@@ -22,6 +22,8 @@ export function bindShortcuts(studio: Studio, page: PageStore, viewport: Viewpor
     '1': () => viewport.look('front'),
     '3': () => viewport.look('right'),
     '7': () => viewport.look('top'),
+    '+': () => viewport.zoom(1.2),
+    '-': () => viewport.zoom(1 / 1.2),
     '5': () => viewport.toggleOrthographic(),
     ' ': () => togglePlaying(studio, page),
     'k': () => { if (page.now.session?.clip != null) void studio.setKey(); },

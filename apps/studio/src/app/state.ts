@@ -41,6 +41,8 @@ export interface PageState {
   playing: boolean;
   speed: number;
   loop: boolean;
+  /** What is posed while a clip is shown becomes a key of it at once. */
+  autoKey: boolean;
   gizmo: boolean;
   limits: boolean;
   /** Moving a joint of a template corrects the rig; so does touching the model for the selected one. */
@@ -59,7 +61,7 @@ export type PageStore = Store<PageState>;
 export const createPageStore = (): PageStore => new Store<PageState>({
   session: null, model: null, mode: 'move', display: 'handles', bones: true, wireframe: false,
   selected: null, hovered: null, work: null, notice: null, help: false,
-  seconds: 0, playing: false, speed: 1, loop: true, gizmo: false, limits: false, correcting: false,
+  seconds: 0, playing: false, speed: 1, loop: true, autoKey: true, gizmo: false, limits: false, correcting: false,
   methods: null, comparison: null, hiddenParts: new Set(), sourceModel: null, sourceShown: true,
 });
 

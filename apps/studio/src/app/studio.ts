@@ -10,6 +10,8 @@ import { fromLimberFile, toLimberFile } from './limber_file';
 import { noticeOf, type Notice, type PageStore } from './state';
 
 const mostFileSize = 500e6;
+/** Commands that leave the model in another pose, set by hand. */
+const poses = new Set(['end_drag', 'turn_joint', 'move_joint', 'reset_joint', 'reset_pose', 'mirror_pose']);
 const blendSpan = 0.3; // seconds before and after a corrected moment that go along
 const progressDelay = 250; // milliseconds before a wait is shown
 
@@ -303,7 +305,11 @@ export class Studio {
   }
 
   async run(command: Command) {
-    await this.guard(async () => this.take(await this.engine.run(command)));
+    await this.guard(async () => {
+      this.take(await this.engine.run(command));
+      const { autoKey, session } = this.page.now;
+      if (autoKey && session?.clip != null && poses.has(command.do)) await this.setKey();
+    });
   }
 
   /** With another method, map, or how far hands reach; the clip stays in its place. */

@@ -37,6 +37,7 @@ export function timeline(studio: Studio, page: PageStore, openSheet: () => Promi
   speed.addEventListener('change', () => page.set({ speed: Number(speed.value) }));
   const loop = button('', () => page.set({ loop: !page.now.loop }), { icon: 'loop', label: 'Again and again', id: 'loop' });
   const key = button('Key', () => void studio.setKey(), { icon: 'key', keys: 'K', label: 'The pose becomes a key at this moment', id: 'add-key' });
+  const auto = button('Auto', () => page.set({ autoKey: !page.now.autoKey }), { label: 'What is posed becomes a key at once', id: 'auto-key' });
   const erase = button('', () => void studio.run({ do: 'delete_key', seconds: keyHere(page) ?? 0 }), { icon: 'erase', label: 'Take the key at this moment out', id: 'delete-key' });
   const between = element('select', { class: 'select', id: 'interpolation', 'aria-label': 'Between keys' },
     ...[['step', 'Steps'], ['linear', 'Straight'], ['cubic', 'Smooth']].map(([value = '', text = '']) => element('option', { value }, text)));
@@ -54,10 +55,10 @@ export function timeline(studio: Studio, page: PageStore, openSheet: () => Promi
 
   const card = element('section', { class: 'card timeline', 'aria-label': 'Timeline', id: 'timeline' },
     element('div', { class: 'row tools' }, play, clips, add, motion, sample, file,
-      element('div', { class: 'row clip-tools' }, speed, loop, sheet, key, erase, between, remove)),
+      element('div', { class: 'row clip-tools' }, speed, loop, sheet, key, auto, erase, between, remove)),
     element('div', { class: 'row moment' }, element('div', { class: 'track' }, scrub, track), time));
   let listed = '';
-  page.watch(({ session, seconds, playing, loop: again }) => {
+  page.watch(({ session, seconds, playing, autoKey, loop: again }) => {
     const clip = chosenClip(session);
     const names = session?.clips.map(({ name }) => name) ?? [];
     if (names.join('\n') !== listed || clips.childElementCount === 0) {
@@ -73,7 +74,8 @@ export function timeline(studio: Studio, page: PageStore, openSheet: () => Promi
     setIcon(play, playing ? 'pause' : 'play');
     play.setAttribute('aria-label', playing ? 'Pause' : 'Play');
     loop.setAttribute('aria-pressed', String(again));
-    key.disabled = remove.disabled = !clip;
+    key.disabled = auto.disabled = remove.disabled = !clip;
+    auto.setAttribute('aria-pressed', String(autoKey));
     erase.disabled = keyHere(page) === null;
     between.disabled = !clip || clip.keys.length === 0;
     if (clip) between.value = clip.interpolation;

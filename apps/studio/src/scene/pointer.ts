@@ -9,6 +9,8 @@ import type { Viewport } from './viewport';
 const slop = { mouse: 12, pen: 16, touch: 24 }; // pixels round a handle's middle that count as it
 const tapDistance = 6;
 
+const orbitStep = 10; // degrees of the view for a press of an arrow
+
 export class PointerInput {
   private held: number | null = null;
   private heldPointer = -1;
@@ -84,14 +86,15 @@ export class PointerInput {
     this.studio.cancelDrag();
   }
 
-  /** Arrows move or turn the selected joint as the camera sees it. */
+  /** Arrows move or turn the selected joint as the camera sees it; where none is selected, the view. */
   private key(event: KeyboardEvent) {
     if (event.key === 'Escape') return this.cancel();
     const { selected, session, mode } = this.page.now;
     const step = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
-    if (!step || selected === null || !session || event.ctrlKey || event.metaKey) return;
+    if (!step || !session || event.ctrlKey || event.metaKey) return;
     event.preventDefault();
     const [x = 0, y = 0] = step;
+    if (selected === null) return this.viewport.orbit(orbitStep * x, orbitStep * y);
     const { right, up } = this.viewport.axes();
     if (mode === 'turn') {
       const axis = x === 0 ? right : up;

@@ -1,7 +1,7 @@
 // The canvas: camera, light, ground, and frames drawn only when something has changed.
 import {
   AmbientLight, Box3, CanvasTexture, Color, DirectionalLight, Group, HemisphereLight, LineSegments, BufferGeometry, Float32BufferAttribute,
-  LineBasicMaterial, Mesh, MeshBasicMaterial, type Object3D, OrthographicCamera, PerspectiveCamera, PlaneGeometry, Raycaster, Scene,
+  LineBasicMaterial, Mesh, MeshBasicMaterial, type Object3D, OrthographicCamera, PerspectiveCamera, PlaneGeometry, Raycaster, Scene, Spherical,
   Vector2, Vector3, WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
@@ -105,6 +105,25 @@ export class Viewport {
     const offset = this.current.position.clone().sub(this.controls.target).normalize();
     this.current.position.copy(center).addScaledVector(offset, this.fittingDistance(offset));
     this.controls.target.copy(center);
+    this.controls.update();
+    this.draw();
+  }
+
+  /** Round the point that is looked at, in degrees: to the right and up. */
+  orbit(right: number, up: number) {
+    const offset = new Spherical().setFromVector3(this.current.position.clone().sub(this.controls.target));
+    offset.theta += (right * Math.PI) / 180;
+    offset.phi = Math.min(Math.PI - 0.01, Math.max(0.01, offset.phi - (up * Math.PI) / 180));
+    this.current.position.setFromSpherical(offset).add(this.controls.target);
+    this.controls.update();
+    this.draw();
+  }
+
+  /** Nearer, above 1, or further away. */
+  zoom(times: number) {
+    const { target } = this.controls;
+    this.current.position.sub(target).divideScalar(times).add(target);
+    this.resize();
     this.controls.update();
     this.draw();
   }
