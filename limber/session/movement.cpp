@@ -90,6 +90,12 @@ Clip retargeted(const ClipSource& source, const Skeleton& skeleton) {
   return turnClip(std::move(clip), skeleton, turnToStand(skeleton));
 }
 
+bool onlyNamesDiffer(const Skeleton& one, const Skeleton& other) {
+  return std::equal(
+      one.joints.begin(), one.joints.end(), other.joints.begin(), other.joints.end(),
+      [](const Joint& a, const Joint& b) { return a.parent == b.parent && sameTransform(a.rest, b.rest); });
+}
+
 // The same source for other joints. A map made by hand holds where all its joints are there still, else joints are
 // matched anew; none where they do not match.
 std::optional<ClipSource> sourceOn(const AuthoredClip& authored, const Skeleton& skeleton) {
@@ -181,7 +187,10 @@ void moveToRig(Movement& movement, const std::shared_ptr<const RiggedModel>& fro
     if (authored.rig == to) {
       made = *authored.clip;
       entry.source = authored.source;
-    } else if (std::optional<ClipSource> source = sourceOn(authored, to->skeleton())) {
+    } else if (onlyNamesDiffer(authored.rig->skeleton(), to->skeleton())) {
+      made = *authored.clip;
+      entry.source = sourceOn(authored, to->skeleton());
+    } else if (std::optional<ClipSource> source = entry.edited ? std::nullopt : sourceOn(authored, to->skeleton())) {
       made = retargeted(*source, to->skeleton());
       entry.source = std::move(source);
     } else {

@@ -342,6 +342,31 @@ TEST(Movement, AMotionIsRetargetedAnewForOtherJointsWhereItFits) {
   EXPECT_EQ(session.state().movement.clips[0].clip, before);
 }
 
+TEST(Movement, EditsStayOnOtherRigs) {
+  Session session = walking();
+  const auto handAt = [&](const char* name) {
+    const Skeleton& skeleton = session.state().rig->skeleton();
+    return Vec3(poseGlobals(skeleton, session.state().pose)[skeleton.find(name).value()].translation());
+  };
+  act(session, SetTime{0.5});
+  act(session, TurnJoint{"leftUpperArm", Vec3(0, 0, 1), 60});
+  act(session, SetKey{.span = 0.3});
+  const Vec3 edited = handAt("leftHand");
+  act(session, RenameJoint{"leftHand", "paw"});
+  EXPECT_TRUE(session.state().movement.clips[0].source) << "it still comes from the motion";
+  EXPECT_LT((handAt("paw") - edited).norm(), 1e-6);
+  const std::vector<Vec3f> raised = posedPositions(*session.state().rig, session.state().pose);
+  act(session, SetHandles{40});
+  const std::vector<Vec3f> now = posedPositions(*session.state().rig, session.state().pose);
+  double furthest = 0;
+  for (std::size_t v = 0; v < now.size(); ++v) {
+    furthest = std::max(furthest, static_cast<double>((now[v] - raised[v]).norm()));
+  }
+  EXPECT_LT(furthest, 0.3) << "metres: the arm is still up";
+  act(session, Undo{});
+  EXPECT_LT((handAt("paw") - edited).norm(), 1e-6);
+}
+
 TEST(Movement, RenamedJointsKeepTheirLimits) {
   Session session = person();
   act(session, SetLimits{R"({"limber_limits": 1, "joints": {"leftLowerLeg": {"type": "hinge", "x": [0, 30]}}})"});
