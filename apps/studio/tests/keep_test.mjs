@@ -155,6 +155,11 @@ const cases = {
     const after = await jointPosition(page, moved);
     after.forEach((value, i) => assert.ok(Math.abs(value - before[i]) < 1e-5, `${moved} ${name}`));
     assert.equal((await sessionState(page)).undo, 'end_drag');
+    // What follows is kept behind the drag's end.
+    await keys('m');
+    await page.waitForFunction(() => globalThis.limberStudio.idle() && globalThis.limberStudio.kept());
+    await reopened();
+    assert.equal((await sessionState(page)).undo, 'mirror_pose');
   },
   async 'a motion, its match and what undo takes back are there after a reload'() {
     await page.goto(`${server.address}?sample=biped`);

@@ -4,6 +4,7 @@
 import type { Place, Request } from '../engine/messages';
 
 const frameDelay = 200; // milliseconds that frames of a drag or of a clip wait for the next one
+const patience = 700; // milliseconds that a document may still be open elsewhere
 const mostDocuments = 12;
 
 export interface KeptDocument {
@@ -73,7 +74,7 @@ export class Journal {
   /** Everything is kept. */
   get settled() { return this.waiting === 0 && this.frame === null; }
   /** Whether what is done now would be lost with the page. */
-  get atRisk() { return this.broken || !this.settled; }
+  get atRisk() { return this.broken; }
   get current() { return this.document?.id ?? null; }
 
   /** Those kept, the newest first. */
@@ -91,14 +92,16 @@ export class Journal {
     return done(store.getAll(allOf(id)) as IDBRequest<Request[]>);
   }
 
-  /** Goes on with a document that was kept. One that is open elsewhere goes on as a copy: false. */
-  async resume(document: KeptDocument, requests: Request[]): Promise<boolean> {
+  /** Goes on with a document of which `kept` requests are kept. One that is open elsewhere goes on as a copy: false. */
+  async resume(document: KeptDocument, requests: Request[], kept: number): Promise<boolean> {
+    this.flush();
     const own = await this.take(document.id);
     this.document = { ...document, id: own ? document.id : newId(), count: requests.length };
-    if (own) return true;
-    await this.take(this.document.id);
-    requests.forEach((request, number) => this.put(request, number));
-    return false;
+    if (!own) await this.take(this.document.id);
+    requests.forEach((request, number) => {
+      if (!own || number >= kept) this.put(request, number);
+    });
+    return own;
   }
 
   /** A document that was made elsewhere. */
@@ -199,11 +202,11 @@ export class Journal {
     this.free = () => {};
     if (!('locks' in navigator)) return Promise.resolve(true);
     return new Promise((resolve) => {
-      void navigator.locks.request(`limber-document-${id}`, { ifAvailable: true }, (lock) => {
-        if (!lock) return resolve(false);
+      // A page that is being reloaded may hold it a moment longer.
+      navigator.locks.request(`limber-document-${id}`, { signal: AbortSignal.timeout(patience) }, () => {
         resolve(true);
         return new Promise<void>((release) => { this.free = release; });
-      });
+      }).catch(() => resolve(false));
     });
   }
 }

@@ -179,7 +179,8 @@ export class Studio {
   private async restore(requests: Request[], name: string, kept: KeptDocument | null = null): Promise<Step> {
     const { step, failed, error } = await this.engine.restore(requests);
     if (!step) throw new EngineError(error ?? { code: 'page', message: 'there is no model in it', where: name, remedy: '' });
-    const own = kept ? await this.journal.resume(kept, requests) : this.journal.begin(name, requests);
+    const all = this.engine.requests;
+    const own = kept ? await this.journal.resume(kept, all, requests.length) : this.journal.begin(name, all);
     this.afterOpening = failed > 0 ? lostSteps(failed, requests.length, error) : own ? null : openTwice(name);
     return step;
   }

@@ -10,6 +10,13 @@ export class EngineError extends Error {
 
 const cancelled: LimberError = { code: 'cancelled', message: 'stopped', where: '', remedy: '' };
 
+/** What was left in the middle of a drag stays as far as it went. */
+function withDragEnded(requests: Request[]): Request[] {
+  const ends = requests.findLastIndex((r) => r.kind === 'run' && (r.command.do === 'end_drag' || r.command.do === 'cancel_drag'));
+  const begins = requests.findLastIndex((r) => r.kind === 'run' && r.command.do === 'begin_drag');
+  return begins > ends ? [...requests, { kind: 'run', command: { do: 'end_drag' } }] : [...requests];
+}
+
 const unreachable = (why: string) => new EngineError({
   code: 'engine', message: 'the engine cannot be loaded', where: why, remedy: 'look at the connection, and load the page again',
 });
@@ -52,8 +59,9 @@ export class EngineClient {
 
   /** A document that was made by these requests; what comes next follows them. */
   async restore(requests: Request[]): Promise<Answer<'restore'>> {
-    const answer = await this.ask({ kind: 'restore', requests });
-    if (answer.step) this.history = [...requests];
+    const whole = withDragEnded(requests);
+    const answer = await this.ask({ kind: 'restore', requests: whole });
+    if (answer.step) this.history = whole;
     return answer;
   }
 
@@ -68,7 +76,10 @@ export class EngineClient {
     // Whoever asks meanwhile waits until the document is back.
     this.ready = new Promise((resolve) => { brought = resolve; });
     await fresh;
-    await this.send<'restore'>({ kind: 'restore', requests: this.history }).catch(() => {});
+    const whole = withDragEnded(this.history);
+    await this.send<'restore'>({ kind: 'restore', requests: whole }).catch(() => {});
+    whole.slice(this.history.length).forEach((request) => this.onChange(request, 'follows'));
+    this.history = whole;
     brought();
     stopped.forEach(({ reject }) => reject(new EngineError(cancelled)));
     this.onBusy(false);

@@ -70,8 +70,6 @@ export class Documents {
       }
     }
     if (!this.state) return { step: null, failed, error };
-    // It may have been left in the middle of a drag.
-    if ((this.state as SessionState).dragged !== null) this.take({ kind: 'run', command: { do: 'end_drag' } });
     const { skin } = orThrow(this.session.skin());
     return { step: this.shown({ state: this.state, skin }, true), failed, error };
   }
