@@ -126,8 +126,9 @@ function createSession(engine, handle = engine._limber_session_new()) {
   return {
     /** The engine's own name for it. */
     handle,
-    /** @type {(file: Uint8Array, name: string) => StepResult} */
-    open: (file, name) => step(call(engine, engine._limber_session_open, [handle], file, name)),
+    /** `limbsFollow`: as in the command open_file. @type {(file: Uint8Array, name: string, limbsFollow?: boolean) => StepResult} */
+    open: (file, name, limbsFollow = false) =>
+      step(call(engine, engine._limber_session_open, [handle, Number(limbsFollow)], file, name)),
     /** Motions of a BVH file or of a model. @type {(file: Uint8Array, name: string) => StepResult} */
     addMotion: (file, name) => step(call(engine, engine._limber_session_add_motion, [handle], file, name)),
     /** Where the joints stand that the chosen clip's motion was made for: x, y, z each; empty where there are none.

@@ -197,11 +197,11 @@ LIMBER_EXPORT void limber_session_free(SessionHandle* handle) {
 }
 
 // Bytes of all but limber_session_export and _model: the skin matrices. The strings need no final zero.
-LIMBER_EXPORT CallResult* limber_session_open(SessionHandle* handle, const std::uint8_t* file, std::size_t fileSize,
-                                              const char* name, std::size_t nameSize) {
+LIMBER_EXPORT CallResult* limber_session_open(SessionHandle* handle, int limbsFollow, const std::uint8_t* file,
+                                              std::size_t fileSize, const char* name, std::size_t nameSize) {
   return guarded({name, nameSize}, [&] {
     limber::Progress progress(reportProgress);
-    handle->session.open({file, fileSize}, {name, nameSize}, progress);
+    handle->session.open({file, fileSize}, {name, nameSize}, progress, limbsFollow != 0);
     return stateAfter(handle->session, limber::OpenFile{});
   });
 }

@@ -35,10 +35,12 @@ void visitFields(Visitor&, C&) {}  // those that have none
 template <class Visitor>
 void visitFields(Visitor& field, OpenSample& c) {
   field("name", c.name);
+  field("limbs_follow", c.limbsFollow);
 }
 template <class Visitor>
 void visitFields(Visitor& field, OpenFile& c) {
   field("file", c.file);
+  field("limbs_follow", c.limbsFollow);
 }
 template <class Visitor>
 void visitFields(Visitor& field, SetHandles& c) {
@@ -64,6 +66,8 @@ void visitFields(Visitor& field, BeginDrag& c) {
   field("mode", c.mode);
   field("ray", c.ray);
   field("view", c.view);
+  field("with", c.with);
+  field("mirrored", c.mirrored);
 }
 template <class Visitor>
 void visitFields(Visitor& field, UpdateDrag& c) {
@@ -251,6 +255,14 @@ class Reader {
   void operator()(const char* key, bool& value) {
     known_.push_back(key);
     value = object_.flag(key, value);
+  }
+  void operator()(const char* key, std::vector<std::string>& value) {
+    known_.push_back(key);
+    const JsonView list = object_.array(key);
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      if (!list[i].json().is_string()) list[i].fail("is not a text");
+      value.push_back(list[i].json().get<std::string>());
+    }
   }
   void operator()(const char* key, Vec3& value) {
     known_.push_back(key);

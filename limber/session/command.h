@@ -22,12 +22,15 @@ struct Ray {
 
 // Joints are named. Positions, axes and rays are in world space.
 
+// Limbs follow: inverse kinematics begins on for a body that has limbs, and holds its feet where they stand.
 struct OpenSample {
   std::string name;  // of sampleModels()
+  bool limbsFollow = false;
 };
 // The file is asked of the session's resolver; where a model came as bytes this is its name.
 struct OpenFile {
   std::string file;
+  bool limbsFollow = false;
 };
 
 // Makes the rig anew and keeps the pose: what the new handles hold goes where the old ones had taken it. A model that
@@ -56,8 +59,10 @@ enum class DragMode { kMove, kTurn };
 struct BeginDrag {
   std::string joint;
   DragMode mode = DragMode::kMove;
-  Ray ray;                     // through the pointer
-  Vec3 view = -Vec3::UnitZ();  // where the camera looks
+  Ray ray;                             // through the pointer
+  Vec3 view = -Vec3::UnitZ();          // where the camera looks
+  std::vector<std::string> with = {};  // joints that do the same
+  bool mirrored = false;               // their mirror images do it as well, reflected
 };
 // Counts from where the drag began: of several updates only the last one matters.
 struct UpdateDrag {

@@ -60,7 +60,8 @@ Pose shownPose(const Movement& movement, const Skeleton& skeleton);
 
 void addMotion(Movement& movement, Motion motion);
 // The clips for another rig of the same model: those of motions are retargeted anew where the motion fits the new
-// joints and nobody has edited them since, the keys of all others are transferred (transferClip). The chosen clip and the moment stay.
+// joints and nobody has edited them since, the keys of all others are transferred (transferClip). The chosen clip and
+// the moment stay.
 void moveToRig(Movement& movement, const std::shared_ptr<const RiggedModel>& from,
                const std::shared_ptr<const RiggedModel>& to, Progress& progress);
 // Makes the clip, or makes it anew where that clip of that motion is on the model already, and chooses it. Throws as

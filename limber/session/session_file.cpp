@@ -34,12 +34,18 @@ std::string requireText(const JsonView& object, std::string_view key) {
   return text;
 }
 
+Quat readRotation(const JsonView& entry) {
+  Quat rotation;
+  readNumbers<4>(entry, "rotation", rotation.coeffs().data());
+  if (!(std::abs(rotation.norm() - 1) < 1e-3)) entry.member("rotation").fail("is not of unit length");
+  return rotation;
+}
+
 SavedJoint readJoint(const JsonView& entry) {
   SavedJoint joint{requireText(entry, "joint"), {}};
   readNumbers<3>(entry, "translation", joint.local.translation.data());
-  readNumbers<4>(entry, "rotation", joint.local.rotation.coeffs().data());
+  joint.local.rotation = readRotation(entry);
   readNumbers<3>(entry, "scale", joint.local.scale.data());
-  if (!(std::abs(joint.local.rotation.norm() - 1) < 1e-3)) entry.member("rotation").fail("is not of unit length");
   return joint;
 }
 
@@ -48,6 +54,7 @@ std::vector<SavedTarget> readTargets(const JsonView& list) {
   for (std::size_t i = 0; i < list.size(); ++i) {
     SavedTarget target{requireText(list[i], "joint"), {}};
     readNumbers<3>(list[i], "position", target.position.data());
+    if (list[i].member("rotation").exists()) target.rotation = readRotation(list[i]);
     targets.push_back(std::move(target));
   }
   return targets;
@@ -57,6 +64,7 @@ Json targetsJson(const std::vector<SavedTarget>& targets) {
   Json list = Json::array();
   for (const SavedTarget& target : targets) {
     list.push_back({{"joint", target.joint}, {"position", numbersJson<3>(target.position.data())}});
+    if (target.rotation) list.back()["rotation"] = numbersJson<4>(target.rotation->coeffs().data());
   }
   return list;
 }
@@ -73,6 +81,7 @@ SavedSession readSession(const JsonView& json) {
     if (!session.pins.empty()) session.templateName = requireText(json, "template");
   }
   session.ik = json.flag("ik", false);
+  session.limbsFollow = json.flag("limbs_follow", false);
   session.solver = json.member("solver").exists() ? requireText(json, "solver") : std::string(kLimbSolver);
   session.limits = json.text("limits");
   session.clip = json.text("clip");
@@ -97,6 +106,7 @@ void putSession(Asset& asset, const SavedSession& session) {
       json["pins"] = targetsJson(session.pins);
     }
   }
+  if (session.limbsFollow) json["limbs_follow"] = true;
   if (!session.limits.empty()) json["limits"] = session.limits;
   if (!session.clip.empty()) {
     json["clip"] = session.clip;

@@ -18,6 +18,7 @@ struct SavedJoint {
 struct SavedTarget {
   std::string joint;
   Vec3 position = Vec3::Zero();
+  std::optional<Quat> rotation = std::nullopt;
 };
 
 struct SavedSession {
@@ -26,7 +27,7 @@ struct SavedSession {
   Index handles = 0;
   std::string templateName;       // whose joints are pinned; empty: none are
   std::vector<SavedTarget> pins;  // where these joints have to be
-  bool ik = false;
+  bool ik = false, limbsFollow = false;
   std::string solver;  // of ikMethods()
   std::vector<SavedTarget> targets;
   std::string limits;            // text of a limits file; empty: none

@@ -29,10 +29,11 @@ SavedSession savedOf(const SessionState& state) {
   if (!state.pins.empty()) saved.templateName = state.templateName;
   for (const JointPin& pin : state.pins) saved.pins.push_back({pin.joint, pin.place});
   saved.ik = state.ik;
+  saved.limbsFollow = state.limbsFollow;
   saved.solver = state.solver;
   saved.limits = state.limitsText;
   for (const HeldTarget& target : state.targets) {
-    saved.targets.push_back({skeleton.joints[target.joint].name, target.position});
+    saved.targets.push_back({skeleton.joints[target.joint].name, target.position, target.rotation});
   }
   if (const Clip* clip = state.movement.clip()) {
     saved.clip = clip->name;
@@ -65,10 +66,12 @@ void restore(SessionState& state, const SavedSession& saved) {
     state.pose.locals[jointOf(saved.pose[i].joint, "pose", i)] = saved.pose[i].local;
   }
   for (std::size_t i = 0; i < saved.targets.size(); ++i) {
-    state.targets.push_back({jointOf(saved.targets[i].joint, "targets", i), saved.targets[i].position});
+    state.targets.push_back(
+        {jointOf(saved.targets[i].joint, "targets", i), saved.targets[i].position, saved.targets[i].rotation});
   }
   saidOf("extras.limber_session.limits", [&] { setLimits(state, saved.limits); });
   state.ik = saved.ik;
+  state.limbsFollow = saved.limbsFollow;
   state.solver = findIkMethod(saved.solver).name;
   if (!saved.clip.empty()) {
     chooseClip(state.movement, saved.clip);
