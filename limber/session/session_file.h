@@ -8,6 +8,7 @@
 
 #include "limber/asset/asset.h"
 #include "limber/core/transform.h"
+#include "limber/skeleton/clip_layer.h"
 
 namespace limber {
 
@@ -18,6 +19,15 @@ struct SavedJoint {
 struct SavedTarget {
   std::string joint;
   Vec3 position = Vec3::Zero();
+};
+
+struct SavedLayerTrack {
+  std::string joint;
+  std::vector<LayerKey> keys;  // in time
+};
+struct SavedLayer {
+  std::string clip;  // which the document has without it
+  std::vector<SavedLayerTrack> tracks;  // each of another joint
 };
 
 struct SavedSession {
@@ -32,6 +42,7 @@ struct SavedSession {
   std::string limits;            // text of a limits file; empty: none
   std::string clip;              // the chosen one; empty: none
   double seconds = 0;            // the moment of it
+  std::vector<SavedLayer> layers;
   std::vector<SavedJoint> pose;  // joints that do not stand as in RiggedModel::home
 };
 
