@@ -143,7 +143,7 @@ function createSession(engine, handle = engine._limber_session_new()) {
       const result = call(engine, engine._limber_session_paths, [handle, framesPerSecond, most]);
       return result.ok ? { ok: true, moments: result.account.moments, places: new Float32Array(result.bytes.buffer) } : result;
     },
-    /** One joint of the chosen clip at even moments, from its rest pose: a turn about x, y and z in degrees, and an
+    /** One joint of the chosen clip at even moments and at its keys, from its rest pose: a turn about x, y and z in degrees, and an
      *  offset in metres.
      *  @type {(joint: number, framesPerSecond: number, most: number) => { ok: true, moments: number[], values: Float32Array } | Failure} */
     curve: (joint, framesPerSecond, most) => {

@@ -247,12 +247,12 @@ LIMBER_EXPORT CallResult* limber_session_paths(const SessionHandle* handle, doub
   });
 }
 
-// Likewise one joint's turn and offset: six numbers for each moment.
+// Likewise one joint's turn and offset, at its keys too: six numbers for each moment.
 LIMBER_EXPORT CallResult* limber_session_curve(const SessionHandle* handle, Index joint, double framesPerSecond,
                                                std::size_t most) {
   return guarded({}, [&]() -> CallResult {
     const limber::SessionState& state = handle->session.state();
-    const std::vector<double> moments = limber::evenMoments(state.movement, framesPerSecond, most);
+    const std::vector<double> moments = limber::curveMoments(state.movement, joint, framesPerSecond, most);
     std::vector<float> values;
     for (const limber::CurvePoint& point :
          limber::jointCurve(state.movement, state.rig->skeleton(), joint, moments)) {

@@ -54,6 +54,17 @@ std::vector<double> evenMoments(const Movement& movement, double framesPerSecond
   return moments;
 }
 
+std::vector<double> curveMoments(const Movement& movement, Index joint, double framesPerSecond, std::size_t most) {
+  std::vector<double> moments = evenMoments(movement, framesPerSecond, most);
+  if (!movement.chosen) return moments;
+  for (const JointKeyTimes& of : editableKeys(movement.clips[*movement.chosen])) {
+    if (of.joint == joint) moments.insert(moments.end(), of.seconds.begin(), of.seconds.end());
+  }
+  std::sort(moments.begin(), moments.end());
+  moments.erase(std::unique(moments.begin(), moments.end()), moments.end());
+  return moments;
+}
+
 std::vector<Vec3> jointPaths(const Movement& movement, const Skeleton& skeleton, std::span<const double> moments) {
   std::vector<Vec3> paths;
   eachPose(movement, skeleton, moments, [&](const Pose& pose) {

@@ -12,6 +12,9 @@ namespace limber {
 // is chosen, or it has no length. Throws Error kBadArgument for a rate that is not above 0.
 std::vector<double> evenMoments(const Movement& movement, double framesPerSecond, std::size_t most);
 
+// The same with the moments at which that joint has keys to edit (editableKeys), ascending: a front end draws these.
+std::vector<double> curveMoments(const Movement& movement, Index joint, double framesPerSecond, std::size_t most);
+
 // #moments * #J, where the joints are, moment after moment. These throw Error kBadArgument where no clip is chosen and
 // there are moments.
 std::vector<Vec3> jointPaths(const Movement& movement, const Skeleton& skeleton, std::span<const double> moments);

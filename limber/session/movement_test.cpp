@@ -352,6 +352,7 @@ TEST(Movement, CurvesAndPathsRunThroughTheClip) {
   for (std::size_t k = 0; k < curve.size(); ++k) {
     EXPECT_NEAR(curve[k].turn.y(), 150 * moments[k], 0.1) << moments[k];
   }
+  EXPECT_EQ(curveMoments(movement, skeleton.find("hips").value(), 30, 2), (std::vector<double>{0, 0.5, 1, 1.5, 2}));
   const std::vector<Vec3> paths = jointPaths(movement, skeleton, moments);
   ASSERT_EQ(paths.size(), moments.size() * skeleton.joints.size());
   const std::vector<Vec3> first = posePositions(skeleton, restPose(skeleton));
