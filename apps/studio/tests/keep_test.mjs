@@ -190,7 +190,7 @@ const cases = {
     await settled(page);
     assert.equal(await has(), true);
   },
-  async 'a corrected frame takes its neighbours along, and is not made anew unasked'() {
+  async 'a corrected frame takes its neighbours along, and stays when the motion is made anew'() {
     await page.locator('#method').selectOption('limb-ik');
     await settled(page);
     const hand = 'leftHand', scrub = async (seconds) => {
