@@ -254,8 +254,7 @@ LIMBER_EXPORT CallResult* limber_session_curve(const SessionHandle* handle, Inde
     const limber::SessionState& state = handle->session.state();
     const std::vector<double> moments = limber::curveMoments(state.movement, joint, framesPerSecond, most);
     std::vector<float> values;
-    for (const limber::CurvePoint& point :
-         limber::jointCurve(state.movement, state.rig->skeleton(), joint, moments)) {
+    for (const limber::CurvePoint& point : limber::jointCurve(state.movement, state.rig->skeleton(), joint, moments)) {
       append(values, point.turn);
       append(values, point.offset);
     }

@@ -8,8 +8,8 @@
 
 namespace limber {
 
-// From 0 to the clip's end, so many a second, or fewer so that there are at most `most` (2 or more). Empty where no clip
-// is chosen, or it has no length. Throws Error kBadArgument for a rate that is not above 0.
+// From 0 to the clip's end, so many a second, or fewer so that there are at most `most` (2 or more). Empty where no
+// clip is chosen, or it has no length. Throws Error kBadArgument for a rate that is not above 0.
 std::vector<double> evenMoments(const Movement& movement, double framesPerSecond, std::size_t most);
 
 // The same with the moments at which that joint has keys to edit (editableKeys), ascending: a front end draws these.

@@ -171,9 +171,9 @@ struct KeyOfJoint {
 // Keys go to pivot + scale * (seconds - pivot) + shift, and take the place of those that are there.
 struct EditKeys {
   std::vector<KeyOfJoint> keys;
-  double shift = 0;  // seconds
-  double scale = 1;  // above 0
-  double pivot = 0;  // seconds
+  double shift = 0;   // seconds
+  double scale = 1;   // above 0
+  double pivot = 0;   // seconds
   bool copy = false;  // they stay where they were, too
 };
 struct DeleteKeys {

@@ -130,7 +130,8 @@ TEST(Command, WhatIsWrongIsNamed) {
   expectRefused(list(R"({"do": "retarget"})"), "commands[1]", "\"motion\"");
   expectRefused(list(R"({"do": "delete_keys"})"), "commands[1]", "\"keys\"");
   expectRefused(list(R"({"do": "edit_keys", "keys": [{"seconds": 1}]})"), "commands[1].keys[0]", "\"joint\"");
-  expectRefused(list(R"({"do": "edit_keys", "keys": [{"joint": "a", "at": 1}]})"), "commands[1].keys[0].at", "not part");
+  expectRefused(list(R"({"do": "edit_keys", "keys": [{"joint": "a", "at": 1}]})"), "commands[1].keys[0].at",
+                "not part");
   expectRefused(list(R"({"do": "set_interpolation", "interpolation": "wavy"})"), "commands[1].interpolation", "'wavy'");
 }
 

@@ -312,8 +312,7 @@ void moveToRig(Movement& movement, const std::shared_ptr<const RiggedModel>& fro
     if (!entry.authored) entry.authored = std::make_shared<const AuthoredClip>(AuthoredClip{entry, from});
     const AuthoredClip& authored = *entry.authored;
     const std::string name = entry.clip->name;
-    static_cast<ClipContent&>(entry) =
-        authored.rig == to ? authored.content : contentOn(authored, transfers, to);
+    static_cast<ClipContent&>(entry) = authored.rig == to ? authored.content : contentOn(authored, transfers, to);
     rename(entry, name);
     if (authored.rig == to) entry.authored.reset();
   }

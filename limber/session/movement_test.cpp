@@ -14,6 +14,7 @@
 #include "limber/session/clip_curves.h"
 #include "limber/session/measures.h"
 #include "limber/session/session.h"
+#include "limber/session/session_file.h"
 #include "limber/session/session_state.h"
 #include "limber/session/testing/models.h"
 #include "limber/skeleton/keyframes.h"
@@ -376,6 +377,35 @@ TEST(Movement, ASavedSessionKeepsTheLayerOnItsMotion) {
   EXPECT_LT(turnOf(saved, "leftLowerArm").angularDistance(turnOf(session, "leftLowerArm")), 1e-5);
 }
 
+TEST(Movement, ASavedLayerThatBreaksTheFormatIsNamed) {
+  const auto saved = [](const LayerKey& first, const LayerKey& second, const char* joint, const char* clip) {
+    Asset asset = readAsset(correctedWalk().saveSession(), "saved.glb");
+    SavedSession session = takeSession(asset).value();
+    session.layers = {{clip, {{joint, {first, second}}}}};
+    putSession(asset, session);
+    return writeGlb(asset);
+  };
+  const auto expectRefused = [](const Bytes& bytes, const char* where) {
+    Session session;
+    Progress progress;
+    try {
+      session.open(bytes, "saved.glb", progress);
+      ADD_FAILURE() << where << " is taken";
+    } catch (const Error& error) {
+      EXPECT_THAT(error.where(), ::testing::HasSubstr(where));
+    }
+  };
+  const LayerKey early{0.2, 0.1, Vec3::Zero(), Quat::Identity()}, late{0.4, 0.1, Vec3::Zero(), Quat::Identity()};
+  LayerKey bent = late, before = early;
+  bent.rotation.coeffs() *= 2;
+  before.seconds = -1;
+  expectRefused(saved(late, early, "head", "walk"), "layers[0].tracks[0].keys[1]");
+  expectRefused(saved(early, bent, "head", "walk"), "layers[0].tracks[0].keys[1].rotation");
+  expectRefused(saved(before, late, "head", "walk"), "layers[0].tracks[0].keys[0]");
+  expectRefused(saved(early, late, "wing", "walk"), "layers[0]");
+  expectRefused(saved(early, late, "head", "run"), "layers[0]");
+}
+
 TEST(Movement, ClipsAreChosenRenamedAndRemoved) {
   Session session = walking();
   act(session, AddClip{"wave"});
@@ -553,6 +583,7 @@ TEST(Movement, EditsStayOnOtherRigs) {
   const std::vector<Vec3f> raised = posedPositions(*session.state().rig, session.state().pose);
   act(session, SetHandles{40});
   const std::vector<Vec3f> now = posedPositions(*session.state().rig, session.state().pose);
+  EXPECT_THAT(chosenJson(session)["keys"], ElementsAre(0.5)) << "the layer came along";
   double furthest = 0;
   for (std::size_t v = 0; v < now.size(); ++v) {
     furthest = std::max(furthest, static_cast<double>((now[v] - raised[v]).norm()));

@@ -26,7 +26,7 @@ struct SavedLayerTrack {
   std::vector<LayerKey> keys;  // in time
 };
 struct SavedLayer {
-  std::string clip;  // which the document has without it
+  std::string clip;                     // which the document has without it
   std::vector<SavedLayerTrack> tracks;  // each of another joint
 };
 
@@ -39,9 +39,9 @@ struct SavedSession {
   bool ik = false;
   std::string solver;  // of ikMethods()
   std::vector<SavedTarget> targets;
-  std::string limits;            // text of a limits file; empty: none
-  std::string clip;              // the chosen one; empty: none
-  double seconds = 0;            // the moment of it
+  std::string limits;  // text of a limits file; empty: none
+  std::string clip;    // the chosen one; empty: none
+  double seconds = 0;  // the moment of it
   std::vector<SavedLayer> layers;
   std::vector<SavedJoint> pose;  // joints that do not stand as in RiggedModel::home
 };

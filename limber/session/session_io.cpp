@@ -90,9 +90,8 @@ void restore(SessionState& state, const SavedSession& saved) {
     }
     std::sort(layer.tracks.begin(), layer.tracks.end(),
               [](const LayerTrack& a, const LayerTrack& b) { return a.joint < b.joint; });
-    saidOf(fmt::format("extras.limber_session.layers[{}]", i), [&] {
-      putLayer(state.movement, state.rig->skeleton(), saved.layers[i].clip, std::move(layer));
-    });
+    saidOf(fmt::format("extras.limber_session.layers[{}]", i),
+           [&] { putLayer(state.movement, state.rig->skeleton(), saved.layers[i].clip, std::move(layer)); });
   }
   if (!saved.clip.empty()) {
     chooseClip(state.movement, saved.clip);

@@ -120,8 +120,9 @@ Track<Value> changedTrack(const Track<Value>* track, const LayerTrack& layer, co
   std::sort(samples.begin(), samples.end());
   const auto reach = reachOf(layer.keys);
   const auto reached = [&](double seconds) {
-    return std::any_of(reach.begin(), reach.end(),
-                       [&](const auto& part) { return seconds > part.first - kKeySnap && seconds < part.second + kKeySnap; });
+    return std::any_of(reach.begin(), reach.end(), [&](const auto& part) {
+      return seconds > part.first - kKeySnap && seconds < part.second + kKeySnap;
+    });
   };
   Track<Value> result;
   result.joint = layer.joint;
@@ -144,8 +145,8 @@ Track<Value> changedTrack(const Track<Value>* track, const LayerTrack& layer, co
 
 template <class Value>
 void putTrack(std::vector<Track<Value>>& tracks, Track<Value> track) {
-  const auto at = std::find_if(tracks.begin(), tracks.end(),
-                               [&](const Track<Value>& known) { return known.joint == track.joint; });
+  const auto at =
+      std::find_if(tracks.begin(), tracks.end(), [&](const Track<Value>& known) { return known.joint == track.joint; });
   if (at == tracks.end()) {
     tracks.push_back(std::move(track));
   } else {
@@ -154,9 +155,8 @@ void putTrack(std::vector<Track<Value>>& tracks, Track<Value> track) {
 }
 
 bool layerTurns(const LayerTrack& track) {
-  return std::any_of(track.keys.begin(), track.keys.end(), [](const LayerKey& key) {
-    return key.rotation.angularDistance(Quat::Identity()) > kNoOffset;
-  });
+  return std::any_of(track.keys.begin(), track.keys.end(),
+                     [](const LayerKey& key) { return key.rotation.angularDistance(Quat::Identity()) > kNoOffset; });
 }
 
 bool layerShifts(const LayerTrack& track) {
@@ -196,19 +196,19 @@ Clip applyLayer(const Clip& clip, const ClipLayer& layer, const Skeleton& skelet
     const Transform& rest = skeleton.joints[track.joint].rest;
     const std::vector<double> times = bakedTimes(track.keys, frames, duration);
     if (layerTurns(track)) {
-      putTrack(result.rotations, changedTrack<Eigen::Quaternionf>(
-                                     findTrack(clip.rotations, track.joint), track, rest.rotation, times,
-                                     [&](const Quat& value, double seconds) -> Quat {
-                                       const LayerOffset offset = offsetAt(track.keys, seconds);
-                                       return value * offset.rotation;
-                                     }));
+      putTrack(result.rotations,
+               changedTrack<Eigen::Quaternionf>(findTrack(clip.rotations, track.joint), track, rest.rotation, times,
+                                                [&](const Quat& value, double seconds) -> Quat {
+                                                  const LayerOffset offset = offsetAt(track.keys, seconds);
+                                                  return value * offset.rotation;
+                                                }));
     }
     if (layerShifts(track)) {
-      putTrack(result.translations, changedTrack<Vec3f>(findTrack(clip.translations, track.joint), track,
-                                                        rest.translation, times,
-                                                        [&](const Vec3& value, double seconds) -> Vec3 {
-                                                          return value + offsetAt(track.keys, seconds).translation;
-                                                        }));
+      putTrack(result.translations,
+               changedTrack<Vec3f>(findTrack(clip.translations, track.joint), track, rest.translation, times,
+                                   [&](const Vec3& value, double seconds) -> Vec3 {
+                                     return value + offsetAt(track.keys, seconds).translation;
+                                   }));
     }
   }
   const Interpolation between = interpolationOf(clip);

@@ -197,8 +197,7 @@ void setLocal(Clip& clip, const Skeleton& skeleton, Index joint, const Transform
                   others, interpolation);
   setValue<Rotation>(clip.rotations, joint, rest.rotation.cast<float>(), local.rotation.cast<float>().normalized(),
                      time, others, interpolation, !skeleton.joints[joint].parent);
-  setValue<Vec3f>(clip.scales, joint, rest.scale.cast<float>(), local.scale.cast<float>(), time, others,
-                  interpolation);
+  setValue<Vec3f>(clip.scales, joint, rest.scale.cast<float>(), local.scale.cast<float>(), time, others, interpolation);
 }
 
 }  // namespace

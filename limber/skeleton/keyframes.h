@@ -53,9 +53,9 @@ std::vector<JointKeyTimes> keyTimesOfJoints(const Clip& clip);
 
 // To pivot + scale * (seconds - pivot) + shift.
 struct KeyRetiming {
-  double shift = 0;  // seconds
-  double scale = 1;  // above 0
-  double pivot = 0;  // seconds
+  double shift = 0;   // seconds
+  double scale = 1;   // above 0
+  double pivot = 0;   // seconds
   bool copy = false;  // the keys stay where they were, too
 
   double at(double seconds) const { return pivot + scale * (seconds - pivot) + shift; }

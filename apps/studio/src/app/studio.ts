@@ -537,7 +537,8 @@ export class Studio {
         selected: selected !== null && selected < state.joints.length ? selected : null,
       });
     } else if (state) {
-      this.page.set({ session: state, seconds: state.seconds, chosenKeys: keysThere(before.chosenKeys, state) });
+      const sameClip = state.clip === before.session?.clip;
+      this.page.set({ session: state, seconds: state.seconds, chosenKeys: sameClip ? keysThere(before.chosenKeys, state) : [] });
     }
     const another = !model && state !== null && (state.clip !== before.session?.clip || state.seconds !== before.session?.seconds);
     this.showStance(stance, another);
