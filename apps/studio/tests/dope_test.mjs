@@ -155,7 +155,7 @@ const cases = {
   },
   async 'a key of a curve is dragged up and along'() {
     await page.locator(`#joint-${arm}`).click();
-    await page.getByRole('button', { name: 'Curves' }).click();
+    await page.getByRole('button', { name: 'Curves', exact: true }).click();
     await page.locator('#curves circle').first().waitFor();
     await settled(page);
     assert.equal(await page.locator('#curves circle').count(), 9, 'three keys, three axes');

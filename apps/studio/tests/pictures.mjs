@@ -92,7 +92,7 @@ await picture('walk_cycle_ghosts', { ...desk, search: '?sample=biped' }, async (
   await press('#scale-up');
   await shoot('walk_cycle_keys');
   await page.locator('.lane .label').nth(1).click();
-  await page.getByRole('button', { name: 'Curves' }).click();
+  await page.getByRole('button', { name: 'Curves', exact: true }).click();
   await page.locator('#curves circle').first().waitFor();
   await settled(page);
   await shoot('walk_cycle_curves');
