@@ -99,7 +99,7 @@ void adopt(SessionState& state, Asset asset) {
 
 // The clips are read anew with the model; where they came from is still known.
 void setRestPose(SessionState& state) {
-  Asset asset = assetWithClips(*state.rig, state.rig->home, clipsOf(state.movement));
+  Asset asset = assetWithClips(*state.rig, state.rig->home, basesOf(state.movement));
   limber::setRestPose(asset, state.rig->binding, state.pose);
   adopt(state, std::move(asset));
   state.pins.clear();
@@ -108,7 +108,12 @@ void setRestPose(SessionState& state) {
   for (SessionClip& clip : state.movement.clips) {
     const auto now = std::find_if(read.clips.begin(), read.clips.end(),
                                   [&](const SessionClip& known) { return known.clip->name == clip.clip->name; });
-    if (now != read.clips.end()) clip.clip = now->clip;
+    if (now == read.clips.end()) continue;
+    if (clip.base) {
+      setBase(clip, state.rig->skeleton(), now->clip);
+    } else {
+      clip.clip = now->clip;
+    }
   }
   state.targets.clear();
   holdStandingFeet(state);
@@ -395,13 +400,22 @@ struct Session::Runner {
     session.commit(command, std::move(next));
   }
   void operator()(const MoveKey& c) const {
-    move([&](SessionState& next) { moveKeyOf(next.movement, c.from, c.to); });
+    move([&](SessionState& next) { moveKeyOf(next.movement, next.rig->skeleton(), c.from, c.to); });
   }
   void operator()(const DeleteKey& c) const {
-    move([&](SessionState& next) { deleteKeyOf(next.movement, c.seconds); });
+    move([&](SessionState& next) { deleteKeyOf(next.movement, next.rig->skeleton(), c.seconds); });
+  }
+  void operator()(const EditKeys& c) const {
+    move([&](SessionState& next) { retimeKeysOf(next.movement, next.rig->skeleton(), c); });
+  }
+  void operator()(const DeleteKeys& c) const {
+    move([&](SessionState& next) { deleteKeysOf(next.movement, next.rig->skeleton(), c.keys); });
+  }
+  void operator()(const SetJointKey& c) const {
+    move([&](SessionState& next) { setJointKeyOf(next.movement, next.rig->skeleton(), c); });
   }
   void operator()(const SetInterpolation& c) const {
-    move([&](SessionState& next) { setInterpolationOf(next.movement, c.interpolation); });
+    move([&](SessionState& next) { setInterpolationOf(next.movement, next.rig->skeleton(), c.interpolation); });
   }
 
   void operator()(const Undo&) const {

@@ -69,6 +69,63 @@ Json targetsJson(const std::vector<SavedTarget>& targets) {
   return list;
 }
 
+LayerKey readLayerKey(const JsonView& entry) {
+  LayerKey key;
+  key.seconds = entry.number("seconds", 0);
+  key.span = entry.number("span", 0);
+  if (!(key.seconds >= 0) || !(key.span >= 0)) entry.fail("lies before the clip begins");
+  readNumbers<3>(entry, "translation", key.translation.data());
+  readNumbers<4>(entry, "rotation", key.rotation.coeffs().data());
+  if (!(std::abs(key.rotation.norm() - 1) < 1e-3)) entry.member("rotation").fail("is not of unit length");
+  return key;
+}
+
+SavedLayerTrack readLayerTrack(const JsonView& entry) {
+  SavedLayerTrack track{requireText(entry, "joint"), {}};
+  const JsonView keys = entry.array("keys");
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    track.keys.push_back(readLayerKey(keys[i]));
+    if (i > 0 && !(track.keys[i].seconds > track.keys[i - 1].seconds)) keys[i].fail("does not come after the last");
+  }
+  if (track.keys.empty()) entry.fail("has no keys");
+  return track;
+}
+
+std::vector<SavedLayer> readLayers(const JsonView& list) {
+  std::vector<SavedLayer> layers;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    SavedLayer layer{requireText(list[i], "clip"), {}};
+    const JsonView tracks = list[i].array("tracks");
+    for (std::size_t t = 0; t < tracks.size(); ++t) {
+      layer.tracks.push_back(readLayerTrack(tracks[t]));
+      for (std::size_t other = 0; other < t; ++other) {
+        if (layer.tracks[other].joint == layer.tracks[t].joint) tracks[t].fail("is of the same joint as another");
+      }
+    }
+    layers.push_back(std::move(layer));
+  }
+  return layers;
+}
+
+Json layersJson(const std::vector<SavedLayer>& layers) {
+  Json list = Json::array();
+  for (const SavedLayer& layer : layers) {
+    Json tracks = Json::array();
+    for (const SavedLayerTrack& track : layer.tracks) {
+      Json keys = Json::array();
+      for (const LayerKey& key : track.keys) {
+        keys.push_back({{"seconds", key.seconds},
+                        {"span", key.span},
+                        {"translation", numbersJson<3>(key.translation.data())},
+                        {"rotation", numbersJson<4>(key.rotation.coeffs().data())}});
+      }
+      tracks.push_back({{"joint", track.joint}, {"keys", std::move(keys)}});
+    }
+    list.push_back({{"clip", layer.clip}, {"tracks", std::move(tracks)}});
+  }
+  return list;
+}
+
 SavedSession readSession(const JsonView& json) {
   if (json.number("version", 0) != kSessionVersion) json.fail("was written by another version of limber");
   SavedSession session;
@@ -86,6 +143,7 @@ SavedSession readSession(const JsonView& json) {
   session.limits = json.text("limits");
   session.clip = json.text("clip");
   session.seconds = json.number("seconds", 0);
+  session.layers = readLayers(json.array("layers"));
   session.targets = readTargets(json.array("targets"));
   const JsonView pose = json.array("pose");
   for (std::size_t i = 0; i < pose.size(); ++i) session.pose.push_back(readJoint(pose[i]));
@@ -112,6 +170,7 @@ void putSession(Asset& asset, const SavedSession& session) {
     json["clip"] = session.clip;
     json["seconds"] = session.seconds;
   }
+  if (!session.layers.empty()) json["layers"] = layersJson(session.layers);
   json["targets"] = targetsJson(session.targets);
   json["pose"] = Json::array();
   for (const SavedJoint& joint : session.pose) {

@@ -8,6 +8,7 @@
 
 #include "limber/asset/asset.h"
 #include "limber/core/transform.h"
+#include "limber/skeleton/clip_layer.h"
 
 namespace limber {
 
@@ -21,6 +22,15 @@ struct SavedTarget {
   std::optional<Quat> rotation = std::nullopt;
 };
 
+struct SavedLayerTrack {
+  std::string joint;
+  std::vector<LayerKey> keys;  // in time
+};
+struct SavedLayer {
+  std::string clip;                     // which the document has without it
+  std::vector<SavedLayerTrack> tracks;  // each of another joint
+};
+
 struct SavedSession {
   bool ownRig = false;  // the model's own; else made by these methods
   std::string rigger, skinning;
@@ -30,9 +40,10 @@ struct SavedSession {
   bool ik = false, limbsFollow = false;
   std::string solver;  // of ikMethods()
   std::vector<SavedTarget> targets;
-  std::string limits;            // text of a limits file; empty: none
-  std::string clip;              // the chosen one; empty: none
-  double seconds = 0;            // the moment of it
+  std::string limits;  // text of a limits file; empty: none
+  std::string clip;    // the chosen one; empty: none
+  double seconds = 0;  // the moment of it
+  std::vector<SavedLayer> layers;
   std::vector<SavedJoint> pose;  // joints that do not stand as in RiggedModel::home
 };
 

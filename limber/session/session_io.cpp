@@ -1,5 +1,7 @@
 #include "limber/session/session_io.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "limber/asset/mesh_export.h"
@@ -17,6 +19,14 @@ namespace {
 // Methods would make the rig again, but not what was done to it since.
 bool keepsRig(const SessionState& state) {
   return !state.rig->report || state.rig->renamed || !state.movement.clips.empty();
+}
+
+SavedLayer savedLayer(const SessionClip& clip, const Skeleton& skeleton) {
+  SavedLayer saved{clip.clip->name, {}};
+  for (const LayerTrack& track : clip.layer.tracks) {
+    saved.tracks.push_back({skeleton.joints[track.joint].name, track.keys});
+  }
+  return saved;
 }
 
 SavedSession savedOf(const SessionState& state) {
@@ -38,6 +48,9 @@ SavedSession savedOf(const SessionState& state) {
   if (const Clip* clip = state.movement.clip()) {
     saved.clip = clip->name;
     saved.seconds = state.movement.seconds;
+  }
+  for (const SessionClip& clip : state.movement.clips) {
+    if (!clip.layer.empty()) saved.layers.push_back(savedLayer(clip, skeleton));
   }
   // Where it will stand when it is opened without this.
   const Pose home = saved.ownRig ? restPose(skeleton) : state.rig->home;
@@ -73,6 +86,16 @@ void restore(SessionState& state, const SavedSession& saved) {
   state.ik = saved.ik;
   state.limbsFollow = saved.limbsFollow;
   state.solver = findIkMethod(saved.solver).name;
+  for (std::size_t i = 0; i < saved.layers.size(); ++i) {
+    ClipLayer layer;
+    for (const SavedLayerTrack& track : saved.layers[i].tracks) {
+      layer.tracks.push_back({jointOf(track.joint, "layers", i), track.keys});
+    }
+    std::sort(layer.tracks.begin(), layer.tracks.end(),
+              [](const LayerTrack& a, const LayerTrack& b) { return a.joint < b.joint; });
+    saidOf(fmt::format("extras.limber_session.layers[{}]", i),
+           [&] { putLayer(state.movement, state.rig->skeleton(), saved.layers[i].clip, std::move(layer)); });
+  }
   if (!saved.clip.empty()) {
     chooseClip(state.movement, saved.clip);
     setTime(state.movement, saved.seconds);
@@ -137,7 +160,7 @@ Bytes exportState(const SessionState& state, ExportFormat format) {
 
 Bytes savedState(const SessionState& state) {
   const RiggedModel& rig = *state.rig;
-  Asset asset = keepsRig(state) ? assetWithClips(rig, readNodePose(rig.asset, rig.binding), clipsOf(state.movement))
+  Asset asset = keepsRig(state) ? assetWithClips(rig, readNodePose(rig.asset, rig.binding), basesOf(state.movement))
                                 : state.base->clone();
   putSession(asset, savedOf(state));
   return writeGlb(asset);
