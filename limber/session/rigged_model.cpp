@@ -28,9 +28,7 @@ std::shared_ptr<RiggedModel> readModel(Asset asset) {
   model->weights = readWeights(model->asset, model->geometry, model->binding);
   normalizeWeights(model->weights);
   model->home = restPose(model->skeleton());
-  Box box;
-  for (const Vec3f& position : model->geometry.positions) box.add(position.cast<double>());
-  model->radii = handleRadii(model->skeleton(), box.longestSide());
+  model->radii = handleRadii(model->skeleton(), longestSide(*model));
   return model;
 }
 
@@ -52,6 +50,12 @@ bool holds(std::span<const std::shared_ptr<const Clip>> clips, const std::shared
 }
 
 }  // namespace
+
+double longestSide(const RiggedModel& rig) {
+  Box box;
+  for (const Vec3f& position : rig.geometry.positions) box.add(position.cast<double>());
+  return box.longestSide();
+}
 
 std::shared_ptr<const RiggedModel> openRiggedModel(const Asset& source) {
   if (!hasRig(source)) throw Error(ErrorCode::kBadArgument, "the model has no rig", source.name);

@@ -34,6 +34,8 @@ struct RiggedModel {
   const Skeleton& skeleton() const { return binding.skeleton; }
 };
 
+double longestSide(const RiggedModel& rig);  // of the box around the surface as bound, metres
+
 // `source` with the rig that it has. Throws Error kBadArgument where it has none.
 std::shared_ptr<const RiggedModel> openRiggedModel(const Asset& source);
 

@@ -26,6 +26,7 @@ const changesRig = new Set([
   'open_sample', 'open_file', 'set_handles', 'choose_methods', 'pin_joint', 'unpin_joint', 'set_rest_pose', 'rename_joint',
   'undo', 'redo',
 ]);
+const drawnRate = 30, mostDrawn = 600; // moments a second of paths and curves, and of a whole clip
 const withModel = /\.(glb|gltf|vrm)$/i;
 const none = new Float32Array();
 
@@ -93,6 +94,14 @@ export class Documents {
   }
 
   pick(ray: Ray, slope: number) { return orThrow(this.session.pick(ray, slope)).hit; }
+  paths(): Answers['paths'] {
+    const { moments, places } = orThrow(this.session.paths(drawnRate, mostDrawn));
+    return { moments, places };
+  }
+  curve(joint: number): Answers['curve'] {
+    const { moments, values } = orThrow(this.session.curve(joint, drawnRate, mostDrawn));
+    return { joint, moments, values };
+  }
   checkPly(bytes: Uint8Array, name: string) { orThrow(this.limber.checkPly(bytes, name)); }
   methods() { return this.limber.methods(); }
   export(format: ExportFormat) { return orThrow(this.session.export(format)).bytes; }
