@@ -1,6 +1,6 @@
 // What the page shows, in one place.
 import type {
-  Curve, LimberError, Measures, MethodKind, Methods, Paths, SessionState, SurfaceModel, Variant,
+  Curve, LimberError, Measures, MethodKind, Methods, Paths, SampleMotion, SessionState, SurfaceModel, Variant,
 } from '../engine/messages';
 import { Store } from './store';
 
@@ -66,6 +66,11 @@ export interface PageState {
   /** Moving a joint of a template corrects the rig; so does touching the model for the selected one. */
   correcting: boolean;
   methods: Methods | null;
+  sampleMotions: readonly SampleMotion[];
+  /** Motions that the user brought several of at once. */
+  ownMotions: readonly File[];
+  /** Whether the shelf of motions is open. */
+  shelf: boolean;
   comparison: Comparison | null;
   /** Parts of the model that are not drawn, by their place in it. */
   hiddenParts: ReadonlySet<number>;
@@ -81,7 +86,7 @@ export const createPageStore = (): PageStore => new Store<PageState>({
   selected: null, hovered: null, work: null, notice: null, help: false,
   seconds: 0, playing: false, speed: 1, loop: true, autoKey: true,
   span: 0.3, keyEditor: null, chosenKeys: [], ghosts: false, paths: null, curve: null, gizmo: false, limits: false, correcting: false,
-  methods: null, comparison: null, hiddenParts: new Set(), sourceModel: null, sourceShown: true,
+  methods: null, sampleMotions: [], ownMotions: [], shelf: false, comparison: null, hiddenParts: new Set(), sourceModel: null, sourceShown: true,
 });
 
 export function noticeOf(error: LimberError): Notice {
