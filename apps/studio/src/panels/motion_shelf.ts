@@ -9,7 +9,7 @@ import { button, element, fileInput } from '../ui/dom';
 export const motionFiles = '.bvh,.glb,.gltf';
 const width = 264, height = 198; // pixels of a picture
 const mostUnsearched = 12; // cards that are found without searching
-const stillMoment = 0.3; // seconds into the motion, of the picture of a card that does not play
+const stillShare = 0.45; // of the motion, which the picture of a card that does not play shows: about its middle
 
 type Motion = SampleMotion | File;
 
@@ -17,7 +17,7 @@ type Motion = SampleMotion | File;
 function titleOf(motion: Motion): string {
   if (motion instanceof File) return motion.name.replace(/\.[^.]*$/, '');
   const text = motion.name.replaceAll('-', ' ');
-  return text.charAt(0).toUpperCase() + text.slice(1);
+  return capital(text);
 }
 
 interface Card {
@@ -27,6 +27,14 @@ interface Card {
   canvas: HTMLCanvasElement;
   reason: HTMLElement;
   preview: MotionPreview | null;
+}
+
+const capital = (text: string) => text.charAt(0).toUpperCase() + text.slice(1);
+
+/** What a card is about: the motion, or all of why it cannot be put on the model. */
+function explained({ motion, preview }: Card): string {
+  if (preview?.error) return `${titleOf(motion)}: ${preview.error.message}`;
+  return motion instanceof File ? motion.name : capital(motion.summary);
 }
 
 export function motionShelf(studio: Studio, page: PageStore): HTMLElement {
@@ -42,13 +50,14 @@ export function motionShelf(studio: Studio, page: PageStore): HTMLElement {
   const samples = element('ul', { class: 'cards', id: 'shelf-samples' }), own = element('ul', { class: 'cards', id: 'shelf-own' });
   const search = element('input', { type: 'search', class: 'select search', id: 'shelf-search', 'aria-label': 'Search your motions', placeholder: 'Search' });
   const none = element('p', { class: 'hint-line' }, 'Drop a folder of BVH or GLB motions on the page, or choose it here: it becomes a shelf of your own.');
+  const about = element('p', { class: 'hint-line', role: 'status', id: 'shelf-about' });
   const files = fileInput('shelf-files', { accept: motionFiles }, (chosen) => void studio.openFiles(chosen));
   const folder = fileInput('shelf-folder', { folder: true }, (chosen) => void studio.openFiles(chosen));
   const dialog = element('dialog', { class: 'shelf', id: 'shelf', 'aria-labelledby': 'shelf-title' },
     element('div', { class: 'row head' }, element('h2', { id: 'shelf-title', tabindex: -1, autofocus: true }, 'Motions'),
       button('Close', () => dialog.close(), { id: 'close-shelf' })),
     samples, element('h3', {}, 'Your motions'), none, search, own,
-    element('div', { class: 'row foot' }, files, folder,
+    element('div', { class: 'row foot' }, files, folder, about,
       button('Add files', () => files.click(), { icon: 'add', label: 'Add motions (BVH, GLB)', id: 'shelf-add-files' }),
       button('Add a folder', () => folder.click(), { icon: 'open', label: 'Add a folder of motions', id: 'shelf-add-folder' })));
 
@@ -80,38 +89,53 @@ export function motionShelf(studio: Studio, page: PageStore): HTMLElement {
       showResult(card, preview);
     }
     trying = false;
+    if (dialog.open && !playing) suitedFirst();
+  }
+
+  /** Not while one is pointed at: nothing moves away from under the pointer. */
+  function suitedFirst() {
+    for (const [list, of] of [[samples, cards.sample], [own, cards.own]] as const) {
+      const suited = (card: Card) => Number(card.preview?.error == null);
+      const before = of.slice(), motions: readonly Motion[] = list === samples ? page.now.sampleMotions : page.now.ownMotions;
+      of.sort((a, b) => suited(b) - suited(a) || motions.indexOf(a.motion) - motions.indexOf(b.motion));
+      if (of.some((card, i) => card !== before[i])) list.replaceChildren(...of.map(({ root }) => root));
+    }
   }
 
   function showResult(card: Card, { error }: MotionPreview) {
     card.press.setAttribute('aria-disabled', String(error !== null));
-    card.reason.textContent = error ? error.message.charAt(0).toUpperCase() + error.message.slice(1) : '';
+    card.reason.textContent = !error ? '' : error.code === 'unsupported' ? 'Made for another kind of body' : capital(error.message);
+    card.press.title = explained(card);
+    if (card === playing) about.textContent = explained(card);
     card.press.removeAttribute('aria-busy');
     if (card === playing) begun = performance.now();
-    draw(card, stillMoment);
+    draw(card, 0);
   }
 
+  /** `seconds` after its still picture. */
   function draw(card: Card, seconds: number) {
     const { session, model, hiddenParts } = page.now;
     if (!pictures || !card.preview || card.preview.error || !session || !model) return;
     const rig = card.preview.named ? named : { model, joints: session.joints.length };
     if (!rig) return;
     pictures.show(rig.model, rig.joints, session.box, hiddenParts);
-    pictures.draw(card.canvas, card.preview, seconds);
+    pictures.draw(card.canvas, card.preview, stillShare * card.preview.seconds + seconds);
   }
 
   function step(now: number) {
     if (!playing || !dialog.open) return;
-    draw(playing, stillMoment + Math.max(0, now - begun) / 1000);
+    draw(playing, Math.max(0, now - begun) / 1000);
     requestAnimationFrame(step);
   }
 
   function play(card: Card | null) {
     if (card === playing) return;
     playing?.root.firstElementChild?.classList.remove('playing');
-    if (playing) draw(playing, stillMoment);
+    if (playing) draw(playing, 0);
     const idle = playing === null;
     playing = card;
     begun = performance.now();
+    about.textContent = card ? explained(card) : '';
     if (!card) return;
     card.press.classList.add('playing');
     if (!card.preview) waiting.add(card);
@@ -128,9 +152,10 @@ export function motionShelf(studio: Studio, page: PageStore): HTMLElement {
   function makeCard(motion: Motion): Card {
     const canvas = element('canvas', { width, height, 'aria-hidden': true }), reason = element('span', { class: 'reason' });
     const press = element('button', {
-      type: 'button', class: 'motion-card', 'data-motion': motion.name, 'aria-busy': 'true', title: motion instanceof File ? motion.name : motion.summary,
+      type: 'button', class: 'motion-card', 'data-motion': motion.name, 'aria-busy': 'true',
     }, canvas, element('span', { class: 'text' }, titleOf(motion)), reason);
     const card: Card = { motion, root: element('li', {}, press), press, canvas, reason, preview: null };
+    press.title = explained(card);
     press.addEventListener('pointerenter', ({ pointerType }) => { if (pointerType !== 'touch') play(card); });
     press.addEventListener('pointerleave', ({ pointerType }) => { if (pointerType !== 'touch' && document.activeElement !== press) play(null); });
     press.addEventListener('pointerdown', ({ pointerType }) => { tapped = pointerType === 'touch' && playing !== card ? card : null; });
@@ -182,6 +207,7 @@ export function motionShelf(studio: Studio, page: PageStore): HTMLElement {
       card.press.setAttribute('aria-busy', 'true');
       card.press.removeAttribute('aria-disabled');
       card.reason.textContent = '';
+      card.press.title = explained(card);
       card.canvas.getContext('2d')?.clearRect(0, 0, width, height);
       // Observed anew, it tells again whether it is seen.
       seen.unobserve(card.root);
@@ -192,7 +218,7 @@ export function motionShelf(studio: Studio, page: PageStore): HTMLElement {
   function open() {
     if (!pictures) {
       pictures = new MotionPictures();
-      pictures.onChange = () => all().forEach((card) => { if (card !== playing) draw(card, stillMoment); });
+      pictures.onChange = () => all().forEach((card) => { if (card !== playing) draw(card, 0); });
     }
     dialog.showModal();
     if (previewed !== page.now.model) forgetPreviews();

@@ -5,7 +5,8 @@ import { studioLights } from './lights';
 import { ModelView } from './model_view';
 
 const direction = new Vector3(0.75, 0.28, 1).normalize(); // from where the model is seen
-const room = 1.45; // of the picture to the model's box: arms are raised, bodies jump
+const room = 1.12; // of the picture to the sphere about the model's box: arms are raised
+const above = 0.07; // of the box's height by which the camera looks higher: bodies jump
 
 export class MotionPictures {
   /** A texture came: what was drawn is drawn anew. */
@@ -30,6 +31,7 @@ export class MotionPictures {
   show(model: SurfaceModel, joints: number, { min, max }: SessionState['box'], hidden: ReadonlySet<number>) {
     const low = new Vector3(...min), high = new Vector3(...max);
     this.center.addVectors(low, high).multiplyScalar(0.5);
+    this.center.y += above * (high.y - low.y);
     this.reach = Math.max(0.5 * low.distanceTo(high), 1e-6);
     if (model !== this.shown) {
       this.model.show(model, joints);
@@ -54,7 +56,7 @@ export class MotionPictures {
     if (this.renderer.domElement.width !== width || this.renderer.domElement.height !== height) this.renderer.setSize(width, height, false);
     const target = this.center.clone().add(new Vector3(root[0] - start[0], 0, root[2] - start[2]));
     this.camera.aspect = width / height;
-    const distance = (room * this.reach) / Math.tan((this.camera.fov * Math.PI) / 360) / Math.min(1, this.camera.aspect) * 0.8;
+    const distance = (room * this.reach) / Math.tan((this.camera.fov * Math.PI) / 360) / Math.min(1, this.camera.aspect);
     this.camera.near = distance / 50;
     this.camera.far = distance * 10;
     this.camera.position.copy(target).addScaledVector(direction, distance);
