@@ -96,7 +96,7 @@ void strongest(const limber::SkinWeights& weights, std::vector<std::uint16_t>& j
 // elements first, then joints, then the textures' files.
 CallResult modelOf(const limber::SessionState& state) {
   const limber::RiggedModel& rig = *state.rig;
-  const limber::ExportMesh mesh = limber::exportMesh(rig.asset, rig.geometry);
+  const limber::ExportMesh mesh = limber::exportMesh(*rig.asset, *rig.geometry);
   CallResult result{true, {}, {}};
   Json arrays = Json::object();
   const auto add = [&](const char* name, const Bytes& bytes) {

@@ -49,6 +49,9 @@ std::vector<Command> oneOfEach() {
           MoveKey{0.5, 0.75},
           DeleteKey{0.75},
           SetInterpolation{Interpolation::kCubic},
+          PaintWeights{"head", PaintMode::kReplace, 0.75, 0.2, true, {{7, 0.25, 0.5}, {8, 0, 1}}},
+          LockWeights{"head", false},
+          MirrorWeights{MirrorFrom::kRight},
           Undo{},
           Redo{}};
 }
@@ -75,6 +78,8 @@ TEST(Command, JsonKeepsEveryCommandAndEveryField) {
   EXPECT_EQ(std::get<RetargetMotion>(back[24]).clip, "fast");
   EXPECT_EQ(std::get<RetargetMotion>(back[24]).reach, 0.25);
   EXPECT_FALSE(std::get<RetargetMotion>(back[24]).contacts);
+  EXPECT_EQ(std::get<PaintWeights>(back[34]).dabs, std::get<PaintWeights>(commands[34]).dabs);
+  EXPECT_EQ(std::get<PaintWeights>(back[34]).mode, PaintMode::kReplace);
   EXPECT_EQ(std::get<MoveKey>(back[31]).to, 0.75);
   EXPECT_EQ(std::get<SetInterpolation>(back[33]).interpolation, Interpolation::kCubic);
 }

@@ -4,6 +4,8 @@ namespace limber {
 
 namespace {
 
+constexpr double kMirrorTolerance = 0.01;  // of the longest side, for joints that are images
+
 Affine reflection(const MirrorPlane& plane) {
   Affine result = Affine::Identity();
   result.linear() -= 2 * plane.normal * plane.normal.transpose();
@@ -43,6 +45,11 @@ std::vector<Index> mirrorJoints(const Skeleton& skeleton, const MirrorPlane& pla
     if (nearest[j] != kNoIndex && nearest[nearest[j]] != j) images[j] = kNoIndex;
   }
   return images;
+}
+
+RigMirror mirrorOfRig(const RiggedModel& rig, MirrorPlane plane) {
+  if (rig.anatomy.axes.left().dot(plane.normal) < 0) plane = {-plane.normal, -plane.offset};
+  return {plane, mirrorJoints(rig.skeleton(), plane, kMirrorTolerance * longestSide(rig))};
 }
 
 Pose mirrorPose(const Skeleton& skeleton, const Pose& pose, const MirrorPlane& plane, const std::vector<Index>& images,

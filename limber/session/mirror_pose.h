@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "limber/session/command.h"
+#include "limber/session/rigged_model.h"
 #include "limber/skeleton/pose.h"
 #include "limber/surface/mirror_map.h"
 
@@ -12,6 +13,14 @@ namespace limber {
 // #J: the joint that stands, in rest pose, at the mirror image of each joint, to within `tolerance` metres; itself on
 // the plane, kNoIndex where there is none. Images are mutual.
 std::vector<Index> mirrorJoints(const Skeleton& skeleton, const MirrorPlane& plane, double tolerance);
+
+// The mirror plane of a model's surface with its normal to the left as the rig's anatomy has it, and the joints' images
+// as above, to within a hundredth of the model's longest side.
+struct RigMirror {
+  MirrorPlane plane;
+  std::vector<Index> joints;
+};
+RigMirror mirrorOfRig(const RiggedModel& rig, MirrorPlane plane);
 
 // Each joint moves from its rest as its image moved, mirrored; those of the side that is taken from stay, and so do
 // joints without an image; left is where the plane's normal points. Joints on the plane take the mean of their motion

@@ -73,8 +73,24 @@ std::optional<PickHit> pickHandle(const Ray& ray, std::span<const Vec3> centers,
   return best;
 }
 
+SurfacePicker::SurfacePicker(const RiggedModel& model, const Pose& pose)
+    : model_(model), posed_{posedPositions(model, pose), model.geometry->triangles}, tree_(posed_) {}
+
+std::optional<SurfaceHit> SurfacePicker::hit(const Ray& ray) const {
+  const auto met = tree_.firstHit(ray.origin, ray.direction.normalized(), std::numeric_limits<double>::infinity());
+  if (!met) return std::nullopt;
+  const Triangle& corners = posed_.triangles[met->triangle];
+  const Vec3 a = posed_.position(corners[0]), b = posed_.position(corners[1]), c = posed_.position(corners[2]);
+  Vec3 normal = (b - a).cross(c - a).normalized();
+  if (normal.dot(ray.direction) > 0) normal = -normal;
+  return SurfaceHit{{met->triangle, met->weights[1], met->weights[2]},
+                    met->position,
+                    normal,
+                    strongestJoint(model_.weights, corners, met->weights)};
+}
+
 std::optional<PickHit> pickSurface(const Ray& ray, const RiggedModel& model, const Pose& pose) {
-  const TriMesh posed{posedPositions(model, pose), model.geometry.triangles};
+  const TriMesh posed{posedPositions(model, pose), model.geometry->triangles};
   const Vec3 direction = ray.direction.normalized();
   constexpr double kAnyFar = std::numeric_limits<double>::infinity();
   const Bvh tree(posed);
