@@ -32,6 +32,7 @@ struct SurfaceHit {
   Vec3 position = Vec3::Zero();
   Vec3 normal = Vec3::UnitY();  // of the triangle, towards where the ray came from
   Index joint = 0;              // that holds it most
+  Vec3 inside = Vec3::Zero();   // as of PickHit
 };
 
 // A tree of the surface as it stands, for many rays.

@@ -7,6 +7,17 @@ import { Store } from './store';
 export type DragMode = 'move' | 'turn';
 export type Display = 'handles' | 'surface' | 'weights' | 'joint-weights';
 
+export type PaintMode = 'add' | 'subtract' | 'smooth';
+
+export interface BrushSettings {
+  mode: PaintMode;
+  /** Its radius, of the model's longest side. */
+  size: number;
+  /** 0 to 1. */
+  strength: number;
+  bothSides: boolean;
+}
+
 export interface Notice {
   kind: 'error' | 'note';
   title: string;
@@ -47,6 +58,11 @@ export interface PageState {
   limits: boolean;
   /** Moving a joint of a template corrects the rig; so does touching the model for the selected one. */
   correcting: boolean;
+  /** The pointer paints weights of the selected joint. */
+  painting: boolean;
+  brush: BrushSettings;
+  /** The next click on the model puts a new joint there, below the selected one. */
+  placing: boolean;
   methods: Methods | null;
   comparison: Comparison | null;
   /** Parts of the model that are not drawn, by their place in it. */
@@ -62,6 +78,7 @@ export const createPageStore = (): PageStore => new Store<PageState>({
   session: null, model: null, mode: 'move', display: 'handles', bones: true, wireframe: false,
   selected: null, hovered: null, work: null, notice: null, help: false,
   seconds: 0, playing: false, speed: 1, loop: true, autoKey: true, gizmo: false, limits: false, correcting: false,
+  painting: false, brush: { mode: 'add', size: 0.05, strength: 0.5, bothSides: false }, placing: false,
   methods: null, comparison: null, hiddenParts: new Set(), sourceModel: null, sourceShown: true,
 });
 

@@ -24,8 +24,10 @@ function orThrow<T extends { ok: true }>(result: T | Failure): T {
 /** What may make another rig, and with it another surface. */
 const changesRig = new Set([
   'open_sample', 'open_file', 'set_handles', 'choose_methods', 'pin_joint', 'unpin_joint', 'set_rest_pose', 'rename_joint',
+  'add_joint', 'delete_joint', 'reparent_joint',
   'undo', 'redo',
 ]);
+const changesWeights = new Set(['paint_weights', 'mirror_weights']);
 const withModel = /\.(glb|gltf|vrm)$/i;
 const none = new Float32Array();
 
@@ -51,7 +53,8 @@ export class Documents {
   }
 
   run(command: Command): Answers['run'] {
-    return this.shown(this.take({ kind: 'run', command }), changesRig.has(command.do));
+    const step = this.shown(this.take({ kind: 'run', command }), changesRig.has(command.do));
+    return changesWeights.has(command.do) ? { ...step, weights: orThrow(this.session.weights()).weights } : step;
   }
 
   restore(requests: Request[]): Answers['restore'] {
@@ -93,6 +96,8 @@ export class Documents {
   }
 
   pick(ray: Ray, slope: number) { return orThrow(this.session.pick(ray, slope)).hit; }
+  surface(rays: Ray[]) { return rays.map((ray) => orThrow(this.session.surface(ray)).hit); }
+  preview(stroke: Command | null) { return orThrow(stroke ? this.session.preview(stroke) : this.session.weights()).weights; }
   checkPly(bytes: Uint8Array, name: string) { orThrow(this.limber.checkPly(bytes, name)); }
   methods() { return this.limber.methods(); }
   export(format: ExportFormat) { return orThrow(this.session.export(format)).bytes; }
@@ -155,7 +160,7 @@ export class Documents {
   }
 
   private shown({ state, skin }: Taken, rig: boolean): Step {
-    return { state, stance: this.stance(skin), model: rig ? orThrow(this.session.model()).model : null };
+    return { state, stance: this.stance(skin), model: rig ? orThrow(this.session.model()).model : null, weights: null };
   }
 
   private addSource(motion: string, bytes: Uint8Array, name: string) {
