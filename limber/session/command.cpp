@@ -20,14 +20,14 @@ namespace {
 constexpr int kCommandsVersion = 1;
 
 // In the order of the variant.
-constexpr std::array<std::string_view, 39> kNames = {
+constexpr std::array<std::string_view, 42> kNames = {
     "open_sample",    "open_file",   "set_handles",   "choose_methods",    "pin_joint",     "unpin_joint",
     "begin_drag",     "update_drag", "turn_drag",     "end_drag",          "cancel_drag",   "turn_joint",
     "move_joint",     "set_ik",      "set_target",    "clear_target",      "set_limits",    "reset_joint",
     "reset_pose",     "mirror_pose", "set_rest_pose", "rename_joint",      "add_motion",    "add_sample_motion",
     "retarget",       "add_clip",    "remove_clip",   "rename_clip",       "choose_clip",   "set_time",
     "set_key",        "move_key",    "delete_key",    "set_interpolation", "paint_weights", "lock_weights",
-    "mirror_weights", "undo",        "redo"};
+    "mirror_weights", "add_joint",   "delete_joint",  "reparent_joint",    "undo",          "redo"};
 static_assert(kNames.size() == std::variant_size_v<Command>);
 
 // The fields of each command, said once for reading and writing.
@@ -136,6 +136,21 @@ void visitFields(Visitor& field, LockWeights& c) {
 template <class Visitor>
 void visitFields(Visitor& field, MirrorWeights& c) {
   field("from", c.from);
+}
+template <class Visitor>
+void visitFields(Visitor& field, AddJoint& c) {
+  field("parent", c.parent);
+  field("position", c.position);
+  field.optional("name", c.name);
+}
+template <class Visitor>
+void visitFields(Visitor& field, DeleteJoint& c) {
+  field("joint", c.joint);
+}
+template <class Visitor>
+void visitFields(Visitor& field, ReparentJoint& c) {
+  field("joint", c.joint);
+  field("parent", c.parent);
 }
 template <class Visitor>
 void visitFields(Visitor& field, AddMotion& c) {

@@ -148,6 +148,21 @@ struct MirrorWeights {
   MirrorFrom from = MirrorFrom::kLeft;
 };
 
+// Corrections of the rig that there is; another rig of the model does not have them. The new joint is where `position`
+// is as the model stands, moves nothing until weights are painted for it, and gets a name where it is given none. What
+// a deleted joint moved the joint above moves. A joint that hangs on another one stays where it is.
+struct AddJoint {
+  std::string parent;
+  Vec3 position = Vec3::Zero();
+  std::string name;
+};
+struct DeleteJoint {
+  std::string joint;
+};
+struct ReparentJoint {
+  std::string joint, parent;
+};
+
 // A file with motions (BVH, or a model with animations), asked of the session's resolver; it is called as the file is,
 // without folder and extension, with a number behind it where that is taken.
 struct AddMotion {
@@ -206,7 +221,7 @@ using Command =
                  EndDrag, CancelDrag, TurnJoint, MoveJoint, SetIk, SetTarget, ClearTarget, SetLimits, ResetJoint,
                  ResetPose, MirrorPose, SetRestPose, RenameJoint, AddMotion, AddSampleMotion, RetargetMotion, AddClip,
                  RemoveClip, RenameClip, ChooseClip, SetTime, SetKey, MoveKey, DeleteKey, SetInterpolation,
-                 PaintWeights, LockWeights, MirrorWeights, Undo, Redo>;
+                 PaintWeights, LockWeights, MirrorWeights, AddJoint, DeleteJoint, ReparentJoint, Undo, Redo>;
 
 // "set_handles", as in JSON.
 std::string_view commandName(const Command& command);

@@ -52,6 +52,9 @@ std::vector<Command> oneOfEach() {
           PaintWeights{"head", PaintMode::kReplace, 0.75, 0.2, true, {{7, 0.25, 0.5}, {8, 0, 1}}},
           LockWeights{"head", false},
           MirrorWeights{MirrorFrom::kRight},
+          AddJoint{"head", {0, 2, 0}, "hat"},
+          DeleteJoint{"hat"},
+          ReparentJoint{"head", "hips"},
           Undo{},
           Redo{}};
 }
@@ -79,6 +82,8 @@ TEST(Command, JsonKeepsEveryCommandAndEveryField) {
   EXPECT_EQ(std::get<RetargetMotion>(back[24]).reach, 0.25);
   EXPECT_FALSE(std::get<RetargetMotion>(back[24]).contacts);
   EXPECT_EQ(std::get<PaintWeights>(back[34]).dabs, std::get<PaintWeights>(commands[34]).dabs);
+  EXPECT_EQ(std::get<AddJoint>(back[37]).name, "hat");
+  EXPECT_EQ(std::get<ReparentJoint>(back[39]).parent, "hips");
   EXPECT_EQ(std::get<PaintWeights>(back[34]).mode, PaintMode::kReplace);
   EXPECT_EQ(std::get<MoveKey>(back[31]).to, 0.75);
   EXPECT_EQ(std::get<SetInterpolation>(back[33]).interpolation, Interpolation::kCubic);

@@ -18,23 +18,6 @@ namespace {
 
 constexpr double kShareOfBone = 1.0 / 6, kLeastShare = 1e-3;
 
-std::shared_ptr<RiggedModel> readModel(Asset asset) {
-  auto model = std::make_shared<RiggedModel>();
-  model->geometry = std::make_shared<const Geometry>(collectGeometry(asset));
-  model->normals = std::make_shared<const std::vector<Vec3f>>(readNormals(asset, *model->geometry));
-  model->binding = readSkeleton(asset);
-  model->anatomy = readAnatomy(model->skeleton());
-  model->inverseBind = inverseBindOf(model->skeleton());
-  model->weights = readWeights(asset, *model->geometry, model->binding);
-  normalizeWeights(model->weights);
-  model->home = restPose(model->skeleton());
-  Box box;
-  for (const Vec3f& position : model->geometry->positions) box.add(position.cast<double>());
-  model->radii = handleRadii(model->skeleton(), box.longestSide());
-  model->asset = std::make_shared<const Asset>(std::move(asset));
-  return model;
-}
-
 // Warnings are the document's.
 void readOwnClips(RiggedModel& model, Warnings& warnings) {
   for (Clip& clip : readClips(*model.asset, model.binding, warnings)) {
@@ -71,9 +54,26 @@ bool holds(std::span<const std::shared_ptr<const Clip>> clips, const std::shared
 
 }  // namespace
 
+std::shared_ptr<RiggedModel> readRiggedModel(Asset asset) {
+  auto model = std::make_shared<RiggedModel>();
+  model->geometry = std::make_shared<const Geometry>(collectGeometry(asset));
+  model->normals = std::make_shared<const std::vector<Vec3f>>(readNormals(asset, *model->geometry));
+  model->binding = readSkeleton(asset);
+  model->anatomy = readAnatomy(model->skeleton());
+  model->inverseBind = inverseBindOf(model->skeleton());
+  model->weights = readWeights(asset, *model->geometry, model->binding);
+  normalizeWeights(model->weights);
+  model->home = restPose(model->skeleton());
+  Box box;
+  for (const Vec3f& position : model->geometry->positions) box.add(position.cast<double>());
+  model->radii = handleRadii(model->skeleton(), box.longestSide());
+  model->asset = std::make_shared<const Asset>(std::move(asset));
+  return model;
+}
+
 std::shared_ptr<const RiggedModel> openRiggedModel(const Asset& source) {
   if (!hasRig(source)) throw Error(ErrorCode::kBadArgument, "the model has no rig", source.name);
-  std::shared_ptr<RiggedModel> model = readModel(source.clone());
+  std::shared_ptr<RiggedModel> model = readRiggedModel(source.clone());
   Asset document = model->asset->clone();
   readOwnClips(*model, document.warnings);
   model->asset = std::make_shared<const Asset>(std::move(document));
@@ -134,7 +134,7 @@ std::shared_ptr<const RiggedModel> makeRiggedModel(const Asset& source, const Au
                                                    Progress& progress) {
   Asset asset = source.clone();
   AutoRigReport report = autoRig(asset, options, progress);
-  std::shared_ptr<RiggedModel> model = readModel(std::move(asset));
+  std::shared_ptr<RiggedModel> model = readRiggedModel(std::move(asset));
   model->report = std::move(report);
   model->home = readNodePose(*model->asset, model->binding);  // the bind pose but for rounding, and no node changes
   return model;

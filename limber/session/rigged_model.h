@@ -40,6 +40,9 @@ struct RiggedModel {
 // `source` with the rig that it has. Throws Error kBadArgument where it has none.
 std::shared_ptr<const RiggedModel> openRiggedModel(const Asset& source);
 
+// A document with a rig, without its clips. Throws as readSkeleton and collectGeometry do.
+std::shared_ptr<RiggedModel> readRiggedModel(Asset document);
+
 // A copy of `source`, rigged as autoRig does. Errors and cost as there.
 std::shared_ptr<const RiggedModel> makeRiggedModel(const Asset& source, const AutoRigOptions& options,
                                                    Progress& progress);

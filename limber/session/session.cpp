@@ -14,6 +14,7 @@
 #include "limber/pipeline/pose_asset.h"
 #include "limber/samples/sample_motions.h"
 #include "limber/samples/samples.h"
+#include "limber/session/edit_joints.h"
 #include "limber/session/mirror_pose.h"
 #include "limber/session/pose_transfer.h"
 #include "limber/session/session_file.h"
@@ -312,6 +313,26 @@ struct Session::Runner {
     if (weights.joints == next.rig->weights.joints && weights.weights == next.rig->weights.weights) return;
     next.rig = withWeights(*next.rig, std::move(weights));
     authored(next);
+    session.commit(command, std::move(next));
+  }
+  void operator()(const AddJoint& c) const {
+    SessionState next = state();
+    const Skeleton& skeleton = next.rig->skeleton();
+    std::string name = c.name;
+    for (int number = 1; name.empty() || (c.name.empty() && skeleton.find(name)); ++number) {
+      name = fmt::format("joint_{}", number);
+    }
+    takeJointEdit(next, withJoint(*next.rig, next.pose, requireJoint(next, c.parent), c.position, name));
+    session.commit(command, std::move(next));
+  }
+  void operator()(const DeleteJoint& c) const {
+    SessionState next = state();
+    takeJointEdit(next, withoutJoint(*next.rig, requireJoint(next, c.joint)));
+    session.commit(command, std::move(next));
+  }
+  void operator()(const ReparentJoint& c) const {
+    SessionState next = state();
+    takeJointEdit(next, withJointOn(*next.rig, requireJoint(next, c.joint), requireJoint(next, c.parent)));
     session.commit(command, std::move(next));
   }
   void operator()(const LockWeights& c) const {
