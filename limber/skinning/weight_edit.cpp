@@ -1,7 +1,7 @@
 #include "limber/skinning/weight_edit.h"
 
 #include <algorithm>
-#include <map>
+#include <unordered_map>
 
 namespace limber {
 
@@ -24,6 +24,73 @@ bool stronger(const Influence& a, const Influence& b) {
 bool names(std::span<const Influence> influences, Index joint) {
   return std::any_of(influences.begin(), influences.end(), [&](const Influence& i) { return i.joint == joint; });
 }
+
+// The weights of the vertices that are moved or looked at, over the joints that any of them has: a brush holds a small
+// part of the rig.
+class DenseRows {
+ public:
+  DenseRows(const SkinWeights& weights, std::span<const SmoothAmount> amounts) : amounts_(amounts) {
+    // Those that move come first, in their order.
+    std::vector<Index> vertices;
+    std::unordered_map<Index, Index> rowOf;  // looked up alone, never walked
+    const auto row = [&](Index vertex) {
+      const auto [known, isNew] = rowOf.try_emplace(vertex, static_cast<Index>(vertices.size()));
+      if (isNew) vertices.push_back(vertex);
+      return known->second;
+    };
+    for (const SmoothAmount& at : amounts) row(at.vertex);
+    for (const SmoothAmount& at : amounts) {
+      for (const Index next : at.neighbours) neighbours_.push_back(row(next));
+    }
+    for (const Index v : vertices) {
+      for (Index k = 0; k < weights.slots; ++k) {
+        if (weights.weightsOf(v)[k] > 0) joints_.push_back(weights.jointsOf(v)[k]);
+      }
+    }
+    std::sort(joints_.begin(), joints_.end());
+    joints_.erase(std::unique(joints_.begin(), joints_.end()), joints_.end());
+    values_.assign(vertices.size() * joints_.size(), 0);
+    for (std::size_t r = 0; r < vertices.size(); ++r) {
+      for (Index k = 0; k < weights.slots; ++k) {
+        const float weight = weights.weightsOf(vertices[r])[k];
+        if (weight > 0) values_[r * joints_.size() + columnOf(weights.jointsOf(vertices[r])[k])] += weight;
+      }
+    }
+    next_.resize(amounts.size() * joints_.size());
+  }
+
+  void smooth() {
+    const std::size_t columns = joints_.size();
+    const Index* neighbour = neighbours_.data();
+    for (std::size_t i = 0; i < amounts_.size(); ++i) {
+      const std::size_t count = amounts_[i].neighbours.size();
+      const double step = count > 0 ? kSmoothStep * amounts_[i].amount : 0;
+      double* out = next_.data() + i * columns;
+      for (std::size_t c = 0; c < columns; ++c) out[c] = (1 - step) * values_[i * columns + c];
+      for (std::size_t n = 0; n < count; ++n, ++neighbour) {
+        const double* other = values_.data() + *neighbour * columns;
+        for (std::size_t c = 0; c < columns; ++c) out[c] += step / static_cast<double>(count) * other[c];
+      }
+    }
+    std::copy(next_.begin(), next_.end(), values_.begin());
+  }
+
+  std::vector<Influence> sharesOf(std::size_t row) const {
+    std::vector<Influence> shares;
+    for (std::size_t c = 0; c < joints_.size(); ++c) shares.push_back({joints_[c], values_[row * joints_.size() + c]});
+    return shares;
+  }
+
+ private:
+  std::size_t columnOf(Index joint) const {
+    return static_cast<std::size_t>(std::lower_bound(joints_.begin(), joints_.end(), joint) - joints_.begin());
+  }
+
+  std::span<const SmoothAmount> amounts_;
+  std::vector<Index> neighbours_;      // rows, one vertex's behind the other's
+  std::vector<Index> joints_;          // ascending
+  std::vector<double> values_, next_;  // rows * joints; of those that move alone
+};
 
 }  // namespace
 
@@ -98,37 +165,10 @@ void WeightRow::replace(std::vector<Influence> shares) {
 }
 
 void smoothWeights(SkinWeights& weights, std::span<const SmoothAmount> amounts, const std::vector<bool>& locked) {
-  using Row = std::map<Index, double>;
-  std::map<Index, Row> rows;  // of all that is moved or looked at
-  const auto read = [&](Index v) {
-    const auto [row, isNew] = rows.try_emplace(v);
-    for (Index k = 0; isNew && k < weights.slots; ++k) {
-      if (weights.weightsOf(v)[k] > 0) row->second[weights.jointsOf(v)[k]] += weights.weightsOf(v)[k];
-    }
-  };
-  for (const SmoothAmount& at : amounts) {
-    read(at.vertex);
-    for (const Index v : at.neighbours) read(v);
-  }
-  std::vector<Row> next(amounts.size());
-  for (int pass = 0; pass < kSmoothPasses; ++pass) {
-    for (std::size_t i = 0; i < amounts.size(); ++i) {
-      const SmoothAmount& at = amounts[i];
-      next[i] = rows[at.vertex];
-      if (at.neighbours.empty()) continue;
-      const double step = kSmoothStep * at.amount;
-      for (auto& [joint, weight] : next[i]) weight *= 1 - step;
-      const double each = step / static_cast<double>(at.neighbours.size());
-      for (const Index v : at.neighbours) {
-        for (const auto& [joint, weight] : rows[v]) next[i][joint] += each * weight;
-      }
-    }
-    for (std::size_t i = 0; i < amounts.size(); ++i) rows[amounts[i].vertex] = next[i];
-  }
-  for (const SmoothAmount& at : amounts) {
-    std::vector<Influence> shares;
-    for (const auto& [joint, weight] : rows[at.vertex]) shares.push_back({joint, weight});
-    WeightRow(weights, at.vertex, locked).replace(std::move(shares));
+  DenseRows rows(weights, amounts);
+  for (int pass = 0; pass < kSmoothPasses; ++pass) rows.smooth();
+  for (std::size_t i = 0; i < amounts.size(); ++i) {
+    WeightRow(weights, amounts[i].vertex, locked).replace(rows.sharesOf(i));
   }
 }
 

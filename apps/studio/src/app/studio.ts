@@ -260,7 +260,10 @@ export class Studio {
     if (this.page.now.session?.edited_rig && !await this.mayReplaceRig()) return;
     await this.run({ do: 'pin_joint', joint: this.jointName(joint), position });
   }
-  async unpinJoint(joint: string) { await this.run({ do: 'unpin_joint', joint }); }
+  async unpinJoint(joint: string) {
+    if (this.page.now.session?.edited_rig && !await this.mayReplaceRig()) return;
+    await this.run({ do: 'unpin_joint', joint });
+  }
 
   async chooseSolver(solver: string) {
     await this.run({ do: 'set_ik', on: this.page.now.session?.ik ?? false, solver });
