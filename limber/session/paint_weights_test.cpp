@@ -1,5 +1,6 @@
 #include "limber/session/paint_weights.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -224,6 +225,35 @@ TEST(PaintWeights, ManyStrokesCanBeUndone) {
   for (; session.undoName() == "paint_weights"; ++steps) carryOut(session, Undo{});
   EXPECT_GE(steps, 9) << "until the joint has all of it";
   EXPECT_EQ(weightsOf(session).weights, before.weights);
+}
+
+// Two copies of the person, one a millimetre before the other, as one model.
+TEST(PaintWeights, TheBrushDoesNotReachASheetBehind) {
+  const Session session = personToPaint();
+  auto rig = std::make_shared<RiggedModel>(*session.state().rig);
+  Geometry both = *rig->geometry;
+  const auto count = static_cast<Index>(both.positions.size());
+  const std::size_t triangles = both.triangles.size();
+  for (Index v = 0; v < count; ++v) both.positions.push_back(both.positions[v] + Vec3f(0, 0, 0.001f));
+  for (std::size_t t = 0; t < triangles; ++t) {
+    const Triangle corners = both.triangles[t];
+    both.triangles.push_back({corners[0] + count, corners[1] + count, corners[2] + count});
+  }
+  rig->geometry = std::make_shared<const Geometry>(std::move(both));
+  SkinWeights& weights = rig->weights;
+  const SkinWeights& own = session.state().rig->weights;
+  weights.joints.insert(weights.joints.end(), own.joints.begin(), own.joints.end());
+  weights.weights.insert(weights.weights.end(), own.weights.begin(), own.weights.end());
+  const PaintSurface surface(rig->geometry);
+  WeightStroke brush(*rig, surface, std::vector<bool>(rig->skeleton().jointCount(), false),
+                     stroke(session, "head", "leftUpperArm"));
+  brush.add(stroke(session, "head", "leftUpperArm").dabs);
+  const SkinWeights painted = brush.weights();
+  const std::size_t half = weights.weights.size() / 2;
+  EXPECT_FALSE(std::equal(painted.weights.begin(), painted.weights.begin() + static_cast<std::ptrdiff_t>(half),
+                          weights.weights.begin()));
+  EXPECT_TRUE(std::equal(painted.weights.begin() + static_cast<std::ptrdiff_t>(half), painted.weights.end(),
+                         weights.weights.begin() + static_cast<std::ptrdiff_t>(half)));
 }
 
 TEST(PaintWeights, WhatMakesNoSenseChangesNothing) {

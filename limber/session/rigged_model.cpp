@@ -18,9 +18,8 @@ namespace {
 
 constexpr double kShareOfBone = 1.0 / 6, kLeastShare = 1e-3;
 
-// Warnings are the document's.
-void readOwnClips(RiggedModel& model, Warnings& warnings) {
-  for (Clip& clip : readClips(*model.asset, model.binding, warnings)) {
+void readOwnClips(RiggedModel& model, Asset& document) {
+  for (Clip& clip : readClips(document, model.binding, document.warnings)) {
     if (clip.translations.empty() && clip.rotations.empty() && clip.scales.empty()) continue;
     const std::string wanted = clip.name.empty() ? "clip" : clip.name;
     const auto taken = [&](const std::shared_ptr<const Clip>& known) { return known->name == clip.name; };
@@ -30,6 +29,21 @@ void readOwnClips(RiggedModel& model, Warnings& warnings) {
     }
     model.clips.push_back(std::make_shared<const Clip>(std::move(clip)));
   }
+}
+
+// All of the document but its clips; the document itself is yet to be given.
+std::shared_ptr<RiggedModel> readRig(const Asset& document) {
+  auto model = std::make_shared<RiggedModel>();
+  model->geometry = std::make_shared<const Geometry>(collectGeometry(document));
+  model->normals = std::make_shared<const std::vector<Vec3f>>(readNormals(document, *model->geometry));
+  model->binding = readSkeleton(document);
+  model->anatomy = readAnatomy(model->skeleton());
+  model->inverseBind = inverseBindOf(model->skeleton());
+  model->weights = readWeights(document, *model->geometry, model->binding);
+  normalizeWeights(model->weights);
+  model->home = restPose(model->skeleton());
+  model->radii = handleRadii(model->skeleton(), longestSide(*model));
+  return model;
 }
 
 // A document has weights for all vertices that a node shows, or for none.
@@ -54,28 +68,17 @@ bool holds(std::span<const std::shared_ptr<const Clip>> clips, const std::shared
 
 }  // namespace
 
-std::shared_ptr<RiggedModel> readRiggedModel(Asset asset) {
-  auto model = std::make_shared<RiggedModel>();
-  model->geometry = std::make_shared<const Geometry>(collectGeometry(asset));
-  model->normals = std::make_shared<const std::vector<Vec3f>>(readNormals(asset, *model->geometry));
-  model->binding = readSkeleton(asset);
-  model->anatomy = readAnatomy(model->skeleton());
-  model->inverseBind = inverseBindOf(model->skeleton());
-  model->weights = readWeights(asset, *model->geometry, model->binding);
-  normalizeWeights(model->weights);
-  model->home = restPose(model->skeleton());
-  Box box;
-  for (const Vec3f& position : model->geometry->positions) box.add(position.cast<double>());
-  model->radii = handleRadii(model->skeleton(), box.longestSide());
-  model->asset = std::make_shared<const Asset>(std::move(asset));
+std::shared_ptr<RiggedModel> readRiggedModel(Asset document) {
+  std::shared_ptr<RiggedModel> model = readRig(document);
+  model->asset = std::make_shared<const Asset>(std::move(document));
   return model;
 }
 
 std::shared_ptr<const RiggedModel> openRiggedModel(const Asset& source) {
   if (!hasRig(source)) throw Error(ErrorCode::kBadArgument, "the model has no rig", source.name);
-  std::shared_ptr<RiggedModel> model = readRiggedModel(source.clone());
-  Asset document = model->asset->clone();
-  readOwnClips(*model, document.warnings);
+  Asset document = source.clone();
+  std::shared_ptr<RiggedModel> model = readRig(document);
+  readOwnClips(*model, document);
   model->asset = std::make_shared<const Asset>(std::move(document));
   return model;
 }

@@ -178,8 +178,18 @@ const cases = {
     assert.equal((await sessionState(page)).undo, undo, 'nothing was painted');
     await page.keyboard.press(']');
     assert.ok(Number(await page.locator('#brush-size').inputValue()) > size);
-    await page.locator('#paint').click();
+    const { name, rest } = (await sessionState(page)).joints.at(-2);
+    await page.locator('#view-front').click();
+    await page.keyboard.down('Alt');
+    const clicked = await jointPlace(page, name);
+    await page.mouse.click(clicked.x, clicked.y);
+    await page.keyboard.up('Alt');
     await settled(page);
+    const picked = (await sessionState(page)).joints[await page.evaluate(() => globalThis.limberStudio.selected())];
+    assert.ok(Math.hypot(picked.rest[0] - rest[0], picked.rest[1] - rest[1]) < 0.1, `${picked.name} for ${name}`);
+    await page.getByRole('button', { name: 'Handles', exact: true }).click();
+    await settled(page);
+    assert.equal(await page.locator('#brush-size').isVisible(), false, 'with handles shown nobody paints');
   },
   async 'a rig that was painted is not replaced unasked'() {
     await page.locator('.mark').first().click();

@@ -12,6 +12,7 @@ export function jointActions(studio: Studio, page: PageStore): HTMLElement {
   const add = button('Add', () => page.set({ placing: !page.now.placing, painting: false, correcting: false }), {
     id: 'add-joint', label: 'Add a joint below this one: then click on the model where it should be. It moves nothing until you paint weights for it',
   });
+  addEventListener('keydown', (event) => { if (event.key === 'Escape' && page.now.placing) page.set({ placing: false }); });
   const remove = button('Delete', () => void studio.deleteJoint(selected()), {
     id: 'delete-joint', label: 'Delete this joint: what it moves goes to the joint above, and so do the joints below it',
   });

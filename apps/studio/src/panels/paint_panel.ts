@@ -49,7 +49,9 @@ export function paintPanel(studio: Studio, page: PageStore): HTMLElement {
       mirror('Left to right', 'left', 'The right side takes the weights of the left side'),
       mirror('Right to left', 'right', 'The left side takes the weights of the right side')),
     element('p', { class: 'hint-text' }, 'Red moves with the joint, blue does not. Pick joints in the list, or with Alt and a click. Drag beside the model, with Alt or with two fingers to turn it.'));
-  page.watch(({ session, painting, brush, selected }) => {
+  page.watch(({ session, painting, brush, selected, display }) => {
+    // Who looks at something else paints no longer.
+    if (painting && (display === 'handles' || display === 'surface')) return page.set({ painting: false });
     toggle.disabled = !session;
     toggle.setAttribute('aria-pressed', String(painting));
     body.hidden = !painting;

@@ -48,7 +48,7 @@ export class PaintInput {
         this.drop();
         this.hide();
         viewport.controls.mouseButtons.RIGHT = now.painting ? MOUSE.ROTATE : MOUSE.PAN;
-        canvas.style.cursor = now.painting ? 'crosshair' : '';
+        canvas.classList.toggle('painting', now.painting);
       } else if (now.brush !== before.brush) this.showRing();
     });
   }
