@@ -1,6 +1,7 @@
 // Keys that work wherever the focus is, but in a field of text.
 import type { HandleView } from '../scene/handle_view';
 import type { Viewport } from '../scene/viewport';
+import { resizeBrush, togglePainting } from '../panels/paint_panel';
 import { togglePlaying } from './player';
 import type { PageStore } from './state';
 import type { Studio } from './studio';
@@ -27,6 +28,10 @@ export function bindShortcuts(studio: Studio, page: PageStore, viewport: Viewpor
     '5': () => viewport.toggleOrthographic(),
     ' ': () => togglePlaying(studio, page),
     'k': () => { if (page.now.session?.clip != null) void studio.setKey(); },
+    'b': () => togglePainting(page),
+    '[': () => resizeBrush(page, 1 / 1.15),
+    ']': () => resizeBrush(page, 1.15),
+    'l': selected((joint) => void studio.toggleLock(joint)),
     'x': () => page.set({ gizmo: !page.now.gizmo }),
     '?': () => page.set({ help: true }),
   };

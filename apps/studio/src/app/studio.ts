@@ -1,7 +1,7 @@
 // Everything that a user can do, each a call on the engine's session; panels and the view call this and nothing else.
 import { EngineClient, EngineError } from '../engine/client';
 import type {
-  Command, LimberError, MethodKind, MotionRequest, Ray, Request, SessionState, Stance, Step, Vector,
+  Command, LimberError, MethodKind, MotionRequest, Ray, Request, SessionState, Stance, Step, SurfaceHit, Vector, WeightArrays,
 } from '../engine/messages';
 import { counted } from '../ui/counted';
 import { sorted, withBuffers } from './files';
@@ -33,6 +33,8 @@ export const hasTemplate = (session: SessionState) => !session.own_rig && sessio
 export class Studio {
   /** The joints stand anew; called for every frame of a drag. */
   onStance: (stance: Stance, ofClip: boolean) => void = () => {};
+  /** The weights alone are others. */
+  onWeights: (weights: WeightArrays) => void = () => {};
   /** A new model was opened: the camera goes to it. */
   onOpened: () => void = () => {};
   /** Something is to be replaced: whether the user agrees. */
@@ -196,6 +198,9 @@ export class Studio {
   /** Whether what is asked for may replace the rig that the model came with. */
   private async mayReplaceRig(): Promise<boolean> {
     const { session } = this.page.now;
+    if (session && !session.own_rig && session.edited_rig) {
+      return this.ask('Replace the rig that you changed?', 'Painted weights and joints changed by hand go. Undo brings them back.', 'Replace it');
+    }
     if (!session?.own_rig) return true;
     return this.ask('Replace the rig of this model?',
       `It came with ${counted(session.joints.length, 'joint')} that have names; they and its clips go. Undo brings them back.`,
@@ -255,9 +260,13 @@ export class Studio {
   }
 
   async pinJoint(joint: number, position: Vector) {
+    if (this.page.now.session?.edited_rig && !await this.mayReplaceRig()) return;
     await this.run({ do: 'pin_joint', joint: this.jointName(joint), position });
   }
-  async unpinJoint(joint: string) { await this.run({ do: 'unpin_joint', joint }); }
+  async unpinJoint(joint: string) {
+    if (this.page.now.session?.edited_rig && !await this.mayReplaceRig()) return;
+    await this.run({ do: 'unpin_joint', joint });
+  }
 
   async chooseSolver(solver: string) {
     await this.run({ do: 'set_ik', on: this.page.now.session?.ik ?? false, solver });
@@ -492,8 +501,52 @@ export class Studio {
     this.dragging = this.dragging.then(step).finally(() => { --this.dragsLeft; });
   }
 
+  /** Where rays meet the surface. */
+  async surface(rays: Ray[]): Promise<(SurfaceHit | null)[]> {
+    return await this.guard(() => this.engine.ask({ kind: 'surface', rays })) ?? rays.map(() => null);
+  }
+
+  /** Shows what a stroke would leave; null: what there is. */
+  async previewStroke(stroke: Command | null) {
+    await this.guard(async () => this.onWeights(await this.engine.ask({ kind: 'preview', stroke })));
+  }
+
+  /** A new joint inside the surface there, below the selected one. */
+  private async placeJoint(ray: Ray) {
+    const [hit] = await this.surface([ray]), { selected, session } = this.page.now;
+    if (!hit || selected === null || !session) return;
+    this.page.set({ placing: false });
+    const names = session.joints.map(({ name }) => name);
+    await this.run({ do: 'add_joint', parent: this.jointName(selected), position: hit.inside });
+    const added = this.page.now.session?.joints.findIndex(({ name }) => !names.includes(name)) ?? -1;
+    if (added >= 0) this.page.set({ selected: added });
+  }
+
+  async toggleLock(joint: number) {
+    await this.run({ do: 'lock_weights', joint: this.jointName(joint), on: !this.page.now.session?.locked.includes(joint) });
+  }
+
+  async deleteJoint(joint: number) {
+    const parent = this.page.now.session?.joints[joint]?.parent ?? -1, name = parent < 0 ? '' : this.jointName(parent);
+    await this.run({ do: 'delete_joint', joint: this.jointName(joint) });
+    this.selectNamed(name);
+  }
+
+  async hangJoint(joint: number, parent: string) {
+    const name = this.jointName(joint);
+    await this.run({ do: 'reparent_joint', joint: name, parent });
+    this.selectNamed(name);
+  }
+
+  /** Joints of another rig have other numbers. */
+  private selectNamed(name: string) {
+    const joint = this.page.now.session?.joints.findIndex((known) => known.name === name) ?? -1;
+    this.page.set({ selected: joint < 0 ? null : joint });
+  }
+
   /** The joint that holds the surface under the pointer; while joints are corrected, the selected one goes in there. */
   async selectSurface(ray: Ray, slope: number) {
+    if (this.page.now.placing) return this.placeJoint(ray);
     await this.guard(async () => {
       const hit = await this.engine.ask({ kind: 'pick', ray, slope });
       const { correcting, selected } = this.page.now;
@@ -519,7 +572,7 @@ export class Studio {
 
   private opened(step: Step) {
     this.page.set({
-      selected: null, hovered: null, notice: this.afterOpening, comparison: null, hiddenParts: new Set(), correcting: false, display: 'handles',
+      selected: null, hovered: null, notice: this.afterOpening, comparison: null, hiddenParts: new Set(), correcting: false, painting: false, placing: false, display: 'handles',
     });
     this.afterOpening = null;
     this.take(step);
@@ -527,7 +580,7 @@ export class Studio {
   }
 
   /** The document as it stands after a step. */
-  private take({ state, stance, model }: Step) {
+  private take({ state, stance, model, weights }: Step) {
     const before = this.page.now;
     if (state && model) {
       const { selected } = before;
@@ -540,6 +593,7 @@ export class Studio {
       const sameClip = state.clip === before.session?.clip;
       this.page.set({ session: state, seconds: state.seconds, chosenKeys: sameClip ? keysThere(before.chosenKeys, state) : [] });
     }
+    if (weights) this.onWeights(weights);
     const another = !model && state !== null && (state.clip !== before.session?.clip || state.seconds !== before.session?.seconds);
     this.showStance(stance, another);
     if (state) this.followUp();

@@ -13,6 +13,8 @@ function answer(documents: Documents, request: Request): Answers[Kind] {
     case 'motion': return documents.addMotion(request.bytes, request.name);
     case 'run': return documents.run(request.command);
     case 'pick': return documents.pick(request.ray, request.slope);
+    case 'surface': return documents.surface(request.rays);
+    case 'preview': return documents.preview(request.stroke);
     case 'try-motion': return documents.tryMotion(request.motion, request.named);
     case 'restore': return documents.restore(request.requests);
     case 'source-model': return documents.sourceModel();

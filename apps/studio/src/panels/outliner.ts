@@ -7,6 +7,7 @@ import type { HandleView } from '../scene/handle_view';
 import { counted } from '../ui/counted';
 import { button, element } from '../ui/dom';
 import { renameIn } from '../ui/rename';
+import { jointActions } from './joint_actions';
 import { clipList, meshList, pinList, targetList } from './outliner_lists';
 
 export function outliner(studio: Studio, page: PageStore, handles: HandleView): HTMLElement {
@@ -59,6 +60,7 @@ export function outliner(studio: Studio, page: PageStore, handles: HandleView): 
       const joint = Number(row.dataset['joint']);
       row.setAttribute('aria-selected', String(joint === selected));
       row.classList.toggle('pinned', pinned.has(joint));
+      row.classList.toggle('locked', session?.locked.includes(joint) ?? false);
       if (joint === selected && selected !== before.selected) {
         // The list alone scrolls: on a narrow screen the whole panel would jump.
         const above = row.offsetTop - list.offsetTop, below = above + row.offsetHeight - list.clientHeight;
@@ -70,7 +72,7 @@ export function outliner(studio: Studio, page: PageStore, handles: HandleView): 
     pin.setAttribute('aria-pressed', String(selected !== null && pinned.has(selected)));
   });
   return element('section', { class: 'card outliner', 'aria-label': 'Outliner' },
-    meshList(page), clipList(studio, page), pinList(studio, page), targetList(studio, page), title, list, actions);
+    meshList(page), clipList(studio, page), pinList(studio, page), targetList(studio, page), title, list, actions, jointActions(studio, page));
 }
 
 const plain = (name: string) => name.toLowerCase().replace(/[^a-z0-9]/g, '');

@@ -31,7 +31,7 @@ export class PointerInput {
   }
 
   private under(event: PointerEvent): number | null {
-    if (this.page.now.display !== 'handles') return null;
+    if (this.page.now.display !== 'handles' || this.page.now.placing) return null;
     const { width, height } = this.viewport.size;
     const near = slop[event.pointerType as keyof typeof slop] ?? slop.mouse;
     return this.handles.pick(event.offsetX, event.offsetY, this.viewport.camera, width, height, near);
