@@ -153,13 +153,13 @@ const cases = {
     const other = joints.filter(({ name }) => name !== joint)
       .sort((a, b) => Math.hypot(a.rest[0] + rest[0], a.rest[1] - rest[1], a.rest[2] - rest[2]) - Math.hypot(b.rest[0] + rest[0], b.rest[1] - rest[1], b.rest[2] - rest[2]))[0].name;
     await select(joint);
-    await page.locator('#both-sides').check();
+    await page.locator('#paint-both-sides').check();
     const { x, y } = await jointPlace(page, joints[joints.find(({ name }) => name === joint).parent].name);
     await drag([{ x: (x + place.x) / 2 - 5, y: (y + place.y) / 2 }, { x: (x + place.x) / 2, y: (y + place.y) / 2 }]);
     const both = await exported();
     const gained = both[joint] - before[joint], there = both[other] - before[other];
     assert.ok(gained > 0.5 && Math.abs(gained - there) < 0.1 * gained + 0.05, `${gained} and ${there}`);
-    await page.locator('#both-sides').uncheck();
+    await page.locator('#paint-both-sides').uncheck();
     await select(far);
     await drag([{ x: place.x - 10, y: place.y }, place]);
     await page.locator(rest[0] > 0 ? '#mirror-weights-left' : '#mirror-weights-right').click();

@@ -14,6 +14,7 @@ export function bindShortcuts(studio: Studio, page: PageStore, viewport: Viewpor
     'g': () => page.set({ mode: 'move' }),
     'r': () => page.set({ mode: 'turn' }),
     'i': () => void studio.toggleIk(),
+    's': () => page.set({ bothSides: !page.now.bothSides }),
     'm': () => void studio.mirrorPose(),
     'p': selected((joint) => void studio.togglePin(joint, handles.position(joint).toArray())),
     'h': () => page.set({ display: page.now.display === 'handles' ? 'surface' : 'handles' }),

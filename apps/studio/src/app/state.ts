@@ -15,7 +15,6 @@ export interface BrushSettings {
   size: number;
   /** 0 to 1. */
   strength: number;
-  bothSides: boolean;
 }
 
 export interface Notice {
@@ -53,7 +52,7 @@ export interface PageState {
   selected: number | null;
   /** Joints that are selected besides, and dragged along. */
   also: ReadonlySet<number>;
-  /** What is dragged on one side is done on the other as well. */
+  /** What is dragged or painted on one side is done on the other as well. */
   bothSides: boolean;
   hovered: number | null;
   /** A stage with how far it is; null when nothing takes long. */
@@ -101,7 +100,7 @@ export const createPageStore = (): PageStore => new Store<PageState>({
   selected: null, also: new Set(), bothSides: false, hovered: null, work: null, notice: null, help: false,
   seconds: 0, playing: false, speed: 1, loop: true, autoKey: true, gizmo: false, limits: false, correcting: false,
   span: 0.3, keyEditor: null, chosenKeys: [], ghosts: false, paths: null, curve: null,
-  painting: false, brush: { mode: 'add', size: 0.05, strength: 0.5, bothSides: false }, placing: false,
+  painting: false, brush: { mode: 'add', size: 0.05, strength: 0.5 }, placing: false,
   methods: null, comparison: null, hiddenParts: new Set(), sourceModel: null, sourceShown: true,
 });
 

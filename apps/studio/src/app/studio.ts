@@ -60,6 +60,7 @@ export class Studio {
 
   constructor(readonly page: PageStore, private journal: Journal) {
     page.watch((now, before) => {
+      if (now.selected !== before.selected && now.also === before.also && now.also.size > 0) page.set({ also: new Set() });
       if (now.keyEditor === 'curves' && (now.selected !== before.selected || now.keyEditor !== before.keyEditor)) void this.guard(() => this.drawClip());
     });
     this.engine.onChange = (request, place) => journal.add(request, place);
@@ -73,7 +74,7 @@ export class Studio {
   /** Nothing that was begun is still under way. */
   get idle() { return this.underWay === 0 && this.dragsLeft === 0 && !this.momentUnderWay; }
 
-  async openSample(name: string) { await this.open(() => this.engine.run({ do: 'open_sample', name })); }
+  async openSample(name: string) { await this.open(() => this.engine.run({ do: 'open_sample', name, limbs_follow: true })); }
 
   /** Of models that are asked for while another one is being opened the last is opened, the others never. */
   private async open(make: () => Promise<Step | null>) {
@@ -193,7 +194,7 @@ export class Studio {
   /** Everything, to go on with here or elsewhere. */
   limberFile(): Uint8Array { return toLimberFile(this.engine.requests); }
 
-  private openBytes(bytes: Uint8Array, name: string) { return this.engine.ask({ kind: 'open', bytes, name }); }
+  private openBytes(bytes: Uint8Array, name: string) { return this.engine.ask({ kind: 'open', bytes, name, limbsFollow: true }); }
 
   /** Whether what is asked for may replace the rig that the model came with. */
   private async mayReplaceRig(): Promise<boolean> {
@@ -457,10 +458,30 @@ export class Studio {
   }
 
   beginDrag(joint: number, ray: Ray, view: Vector, mode = this.page.now.mode) {
-    const command = { do: 'begin_drag', joint: this.jointName(joint), mode: this.page.now.correcting ? 'move' : mode, ray, view };
-    if (this.page.now.playing) this.page.set({ playing: false });
-    this.page.set({ selected: joint });
-    this.then(() => this.run(command));
+    const { also, bothSides, correcting, playing } = this.page.now;
+    const together = also.has(joint) || joint === this.page.now.selected ? [...also, this.page.now.selected ?? joint].filter((other) => other !== joint) : [];
+    const command = {
+      do: 'begin_drag', joint: this.jointName(joint), mode: correcting ? 'move' : mode, ray, view,
+      with: correcting ? [] : together.map((other) => this.jointName(other)), mirrored: bothSides && !correcting,
+    };
+    if (playing) this.page.set({ playing: false });
+    this.page.set({ selected: joint, also: new Set(together) });
+    this.then(async () => {
+      await this.run(command);
+      // A model without two sides has been told so.
+      if (!this.isDragging && bothSides) this.page.set({ bothSides: false });
+    });
+  }
+
+  private get isDragging() { return this.page.now.session?.dragged != null; }
+
+  /** Another joint that goes along with those that are selected, or no longer does. */
+  selectAlso(joint: number) {
+    const { selected, also } = this.page.now;
+    if (selected === null || selected === joint) return this.page.set({ selected: joint, also: new Set() });
+    const others = new Set(also);
+    if (!others.delete(joint)) others.add(joint);
+    this.page.set({ also: others });
   }
 
   /** At most one update is on its way; the newest waits. */
@@ -476,11 +497,15 @@ export class Studio {
     this.then(async () => {
       const command = this.dragUpdate;
       this.dragUpdate = null;
-      if (command) await this.run(command);
+      if (command && this.isDragging) await this.run(command);
     });
   }
 
-  endDrag() { this.then(() => (this.page.now.correcting ? this.pinDragged() : this.run({ do: 'end_drag' }))); }
+  endDrag() {
+    this.then(async () => {
+      if (this.isDragging) await (this.page.now.correcting ? this.pinDragged() : this.run({ do: 'end_drag' }));
+    });
+  }
 
   /** Where the dragged joint is becomes where the rig has it. */
   private async pinDragged() {
@@ -492,7 +517,9 @@ export class Studio {
 
   cancelDrag() {
     this.dragUpdate = null;
-    this.then(() => this.run({ do: 'cancel_drag' }));
+    this.then(async () => {
+      if (this.isDragging) await this.run({ do: 'cancel_drag' });
+    });
   }
 
   /** The steps of a drag go one after the other. */

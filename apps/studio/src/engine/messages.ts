@@ -68,7 +68,7 @@ export interface Trial {
 }
 
 export type Request =
-  | { kind: 'open'; bytes: Uint8Array; name: string }
+  | { kind: 'open'; bytes: Uint8Array; name: string; limbsFollow?: boolean }
   /** Fails where the file is cut off. */
   | { kind: 'check-ply'; bytes: Uint8Array; name: string }
   | { kind: 'motion'; bytes: Uint8Array; name: string }

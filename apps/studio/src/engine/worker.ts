@@ -8,7 +8,7 @@ const say = (message: FromWorker) => postMessage(message);
 
 function answer(documents: Documents, request: Request): Answers[Kind] {
   switch (request.kind) {
-    case 'open': return documents.open(request.bytes, request.name);
+    case 'open': return documents.open(request.bytes, request.name, request.limbsFollow);
     case 'check-ply': return documents.checkPly(request.bytes, request.name);
     case 'motion': return documents.addMotion(request.bytes, request.name);
     case 'run': return documents.run(request.command);

@@ -38,8 +38,8 @@ export function paintPanel(studio: Studio, page: PageStore): HTMLElement {
   };
   const size = slider('Size', 'brush-size', 'Width of the brush ([ and ])', (place) => setBrush(page, { size: toSize(place) }));
   const strength = slider('Strength', 'brush-strength', 'How much one stroke changes', (place) => setBrush(page, { strength: place / steps }));
-  const both = element('input', { type: 'checkbox', id: 'both-sides' });
-  both.addEventListener('change', () => setBrush(page, { bothSides: both.checked }));
+  const both = element('input', { type: 'checkbox', id: 'paint-both-sides' });
+  both.addEventListener('change', () => page.set({ bothSides: both.checked }));
   const mirror = (text: string, from: 'left' | 'right', label: string) => button(text,
     () => void studio.run({ do: 'mirror_weights', from }), { id: `mirror-weights-${from}`, label });
   const joint = element('p', { class: 'from' });
@@ -49,7 +49,7 @@ export function paintPanel(studio: Studio, page: PageStore): HTMLElement {
       mirror('Left to right', 'left', 'The right side takes the weights of the left side'),
       mirror('Right to left', 'right', 'The left side takes the weights of the right side')),
     element('p', { class: 'hint-text' }, 'Red moves with the joint, blue does not. Pick joints in the list, or with Alt and a click. Drag beside the model, with Alt or with two fingers to turn it.'));
-  page.watch(({ session, painting, brush, selected, display }) => {
+  page.watch(({ session, painting, brush, bothSides, selected, display }) => {
     // Who looks at something else paints no longer.
     if (painting && (display === 'handles' || display === 'surface')) return page.set({ painting: false });
     toggle.disabled = !session;
@@ -58,7 +58,7 @@ export function paintPanel(studio: Studio, page: PageStore): HTMLElement {
     mode.show(brush.mode);
     size.made.valueAsNumber = toPlace(brush.size);
     strength.made.valueAsNumber = Math.round(steps * brush.strength);
-    both.checked = brush.bothSides;
+    both.checked = bothSides;
     const name = session?.joints[selected ?? 0]?.name ?? '', locked = session?.locked.includes(selected ?? 0);
     joint.textContent = locked ? `${name} is locked` : name;
   });

@@ -120,7 +120,7 @@ export class PaintInput {
     const { session, selected, brush } = this.page.now;
     return {
       do: 'paint_weights', joint: session?.joints[selected ?? 0]?.name ?? '', mode, strength: brush.strength, radius: this.radius,
-      mirrored: brush.bothSides,
+      mirrored: this.page.now.bothSides,
     };
   }
 

@@ -88,7 +88,8 @@ export function createStage(studio: Studio, page: PageStore): Stage {
     const repaint = now.model !== before.model || now.display !== before.display || now.wireframe !== before.wireframe
       || (now.display === 'joint-weights' && now.selected !== before.selected);
     if (repaint) model.setDisplay(now.display, now.selected, now.wireframe);
-    handles.paint(now.selected, now.hovered, new Set(now.session?.targets.map((target) => target.joint)));
+    const selected = now.selected === null ? [] : [now.selected, ...now.also];
+    handles.paint(new Set(selected), now.hovered, new Set(now.session?.targets.map((target) => target.joint)));
     viewport.draw();
   });
   return { viewport, handles, model, comparison, gizmo };
