@@ -29,9 +29,10 @@ import createEngine from './limber_engine.mjs';
  *             rigger: string, skinning: string, most_handles: number, suggestions: number[], joints: SessionJoint[],
  *             motions: { name: string, joints: { name: string, parent: number }[],
  *                        clips: { name: string, duration: number }[] }[],
- *             clips: { name: string, duration: number, keys: number[], interpolation: 'step' | 'linear' | 'cubic',
+ *             clips: { name: string, duration: number, recorded: boolean, keys: number[],
+ *                      joint_keys: { joint: number, seconds: number[] }[], interpolation: 'step' | 'linear' | 'cubic',
  *                      source: { motion: string, clip: string, method: string, reach: number,
- *                                contacts: boolean } | null, edited: boolean }[],
+ *                                contacts: boolean } | null }[],
  *             clip: number | null, seconds: number,
  *             match: { part: string, source: string[], target: string[], confidence: number, by: string }[],
  *             limits: { [joint: string]: { type: string, [field: string]: unknown } },
@@ -131,8 +132,9 @@ function createSession(engine, handle = engine._limber_session_new()) {
   return {
     /** The engine's own name for it. */
     handle,
-    /** @type {(file: Uint8Array, name: string) => StepResult} */
-    open: (file, name) => step(call(engine, engine._limber_session_open, [handle], file, name)),
+    /** `limbsFollow`: as in the command open_file. @type {(file: Uint8Array, name: string, limbsFollow?: boolean) => StepResult} */
+    open: (file, name, limbsFollow = false) =>
+      step(call(engine, engine._limber_session_open, [handle, Number(limbsFollow)], file, name)),
     /** Motions of a BVH file or of a model. @type {(file: Uint8Array, name: string) => StepResult} */
     addMotion: (file, name) => step(call(engine, engine._limber_session_add_motion, [handle], file, name)),
     /** Where the joints stand that the chosen clip's motion was made for: x, y, z each; empty where there are none.
@@ -140,6 +142,19 @@ function createSession(engine, handle = engine._limber_session_new()) {
     sourceJoints: () => {
       const result = call(engine, engine._limber_session_source_joints, [handle]);
       return result.ok ? { ok: true, places: new Float32Array(result.bytes.buffer) } : result;
+    },
+    /** The joints of the chosen clip at even moments: x, y, z each, moment after moment.
+     *  @type {(framesPerSecond: number, most: number) => { ok: true, moments: number[], places: Float32Array } | Failure} */
+    paths: (framesPerSecond, most) => {
+      const result = call(engine, engine._limber_session_paths, [handle, framesPerSecond, most]);
+      return result.ok ? { ok: true, moments: result.account.moments, places: new Float32Array(result.bytes.buffer) } : result;
+    },
+    /** One joint of the chosen clip at even moments and at its keys, from its rest pose: a turn about x, y and z in degrees, and an
+     *  offset in metres.
+     *  @type {(joint: number, framesPerSecond: number, most: number) => { ok: true, moments: number[], values: Float32Array } | Failure} */
+    curve: (joint, framesPerSecond, most) => {
+      const result = call(engine, engine._limber_session_curve, [handle, joint, framesPerSecond, most]);
+      return result.ok ? { ok: true, moments: result.account.moments, values: new Float32Array(result.bytes.buffer) } : result;
     },
     /** @type {(command: Command) => StepResult} */
     run: (command) => step(call(engine, engine._limber_session_run, [handle], JSON.stringify(command))),

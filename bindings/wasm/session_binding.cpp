@@ -11,6 +11,7 @@
 #include "limber/asset/bvh_write.h"
 #include "limber/asset/json_text.h"
 #include "limber/asset/mesh_export.h"
+#include "limber/session/clip_curves.h"
 #include "limber/session/measures.h"
 #include "limber/session/session.h"
 #include "limber/session/session_state.h"
@@ -222,11 +223,11 @@ LIMBER_EXPORT void limber_session_free(SessionHandle* handle) {
 }
 
 // Bytes of all but limber_session_export and _model: the skin matrices. The strings need no final zero.
-LIMBER_EXPORT CallResult* limber_session_open(SessionHandle* handle, const std::uint8_t* file, std::size_t fileSize,
-                                              const char* name, std::size_t nameSize) {
+LIMBER_EXPORT CallResult* limber_session_open(SessionHandle* handle, int limbsFollow, const std::uint8_t* file,
+                                              std::size_t fileSize, const char* name, std::size_t nameSize) {
   return guarded({name, nameSize}, [&] {
     limber::Progress progress(reportProgress);
-    handle->session.open({file, fileSize}, {name, nameSize}, progress);
+    handle->session.open({file, fileSize}, {name, nameSize}, progress, limbsFollow != 0);
     return stateAfter(handle->session, limber::OpenFile{});
   });
 }
@@ -254,6 +255,34 @@ LIMBER_EXPORT CallResult* limber_session_source_joints(const SessionHandle* hand
     std::vector<float> values;
     for (const limber::Vec3& place : limber::sourceJoints(handle->session.state().movement)) append(values, place);
     return {true, bytesOf(values), "{}"};
+  });
+}
+
+// The chosen clip at even moments, at most `most` of them: three numbers for each joint, moment after moment.
+LIMBER_EXPORT CallResult* limber_session_paths(const SessionHandle* handle, double framesPerSecond, std::size_t most) {
+  return guarded({}, [&]() -> CallResult {
+    const limber::SessionState& state = handle->session.state();
+    const std::vector<double> moments = limber::evenMoments(state.movement, framesPerSecond, most);
+    std::vector<float> values;
+    for (const limber::Vec3& at : limber::jointPaths(state.movement, state.rig->skeleton(), moments)) {
+      append(values, at);
+    }
+    return {true, bytesOf(values), textOf({{"moments", moments}})};
+  });
+}
+
+// Likewise one joint's turn and offset, at its keys too: six numbers for each moment.
+LIMBER_EXPORT CallResult* limber_session_curve(const SessionHandle* handle, Index joint, double framesPerSecond,
+                                               std::size_t most) {
+  return guarded({}, [&]() -> CallResult {
+    const limber::SessionState& state = handle->session.state();
+    const std::vector<double> moments = limber::curveMoments(state.movement, joint, framesPerSecond, most);
+    std::vector<float> values;
+    for (const limber::CurvePoint& point : limber::jointCurve(state.movement, state.rig->skeleton(), joint, moments)) {
+      append(values, point.turn);
+      append(values, point.offset);
+    }
+    return {true, bytesOf(values), textOf({{"moments", moments}})};
   });
 }
 

@@ -20,14 +20,15 @@ namespace {
 constexpr int kCommandsVersion = 1;
 
 // In the order of the variant.
-constexpr std::array<std::string_view, 42> kNames = {
-    "open_sample",    "open_file",   "set_handles",   "choose_methods",    "pin_joint",     "unpin_joint",
-    "begin_drag",     "update_drag", "turn_drag",     "end_drag",          "cancel_drag",   "turn_joint",
-    "move_joint",     "set_ik",      "set_target",    "clear_target",      "set_limits",    "reset_joint",
-    "reset_pose",     "mirror_pose", "set_rest_pose", "rename_joint",      "add_motion",    "add_sample_motion",
-    "retarget",       "add_clip",    "remove_clip",   "rename_clip",       "choose_clip",   "set_time",
-    "set_key",        "move_key",    "delete_key",    "set_interpolation", "paint_weights", "lock_weights",
-    "mirror_weights", "add_joint",   "delete_joint",  "reparent_joint",    "undo",          "redo"};
+constexpr std::array<std::string_view, 45> kNames = {
+    "open_sample",       "open_file",     "set_handles",   "choose_methods", "pin_joint",   "unpin_joint",
+    "begin_drag",        "update_drag",   "turn_drag",     "end_drag",       "cancel_drag", "turn_joint",
+    "move_joint",        "set_ik",        "set_target",    "clear_target",   "set_limits",  "reset_joint",
+    "reset_pose",        "mirror_pose",   "set_rest_pose", "rename_joint",   "add_motion",  "add_sample_motion",
+    "retarget",          "add_clip",      "remove_clip",   "rename_clip",    "choose_clip", "set_time",
+    "set_key",           "move_key",      "delete_key",    "edit_keys",      "delete_keys", "set_joint_key",
+    "set_interpolation", "paint_weights", "lock_weights",  "mirror_weights", "add_joint",   "delete_joint",
+    "reparent_joint",    "undo",          "redo"};
 static_assert(kNames.size() == std::variant_size_v<Command>);
 
 // The fields of each command, said once for reading and writing.
@@ -36,10 +37,12 @@ void visitFields(Visitor&, C&) {}  // those that have none
 template <class Visitor>
 void visitFields(Visitor& field, OpenSample& c) {
   field("name", c.name);
+  field("limbs_follow", c.limbsFollow);
 }
 template <class Visitor>
 void visitFields(Visitor& field, OpenFile& c) {
   field("file", c.file);
+  field("limbs_follow", c.limbsFollow);
 }
 template <class Visitor>
 void visitFields(Visitor& field, SetHandles& c) {
@@ -65,6 +68,8 @@ void visitFields(Visitor& field, BeginDrag& c) {
   field("mode", c.mode);
   field("ray", c.ray);
   field("view", c.view);
+  field("with", c.with);
+  field("mirrored", c.mirrored);
 }
 template <class Visitor>
 void visitFields(Visitor& field, UpdateDrag& c) {
@@ -204,6 +209,25 @@ void visitFields(Visitor& field, DeleteKey& c) {
   field("seconds", c.seconds);
 }
 template <class Visitor>
+void visitFields(Visitor& field, EditKeys& c) {
+  field("keys", c.keys);
+  field("shift", c.shift);
+  field("scale", c.scale);
+  field("pivot", c.pivot);
+  field("copy", c.copy);
+}
+template <class Visitor>
+void visitFields(Visitor& field, DeleteKeys& c) {
+  field("keys", c.keys);
+}
+template <class Visitor>
+void visitFields(Visitor& field, SetJointKey& c) {
+  field("joint", c.joint);
+  field("seconds", c.seconds);
+  field("turn", c.turn);
+  field("offset", c.offset);
+}
+template <class Visitor>
 void visitFields(Visitor& field, SetInterpolation& c) {
   field("interpolation", c.interpolation);
 }
@@ -255,6 +279,9 @@ class Writer {
     } else if constexpr (std::is_same_v<T, std::vector<SurfaceDab>>) {
       Json& list = json_[key] = Json::array();
       for (const SurfaceDab& dab : value) list.push_back(Json::array({dab.triangle, dab.u, dab.v}));
+    } else if constexpr (std::is_same_v<T, std::vector<KeyOfJoint>>) {
+      json_[key] = Json::array();
+      for (const KeyOfJoint& one : value) json_[key].push_back({{"joint", one.joint}, {"seconds", one.seconds}});
     } else {
       json_[key] = value;
     }
@@ -297,6 +324,14 @@ class Reader {
     known_.push_back(key);
     value = object_.flag(key, value);
   }
+  void operator()(const char* key, std::vector<std::string>& value) {
+    known_.push_back(key);
+    const JsonView list = object_.array(key);
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      if (!list[i].json().is_string()) list[i].fail("is not a text");
+      value.push_back(list[i].json().get<std::string>());
+    }
+  }
   void operator()(const char* key, Vec3& value) {
     known_.push_back(key);
     value = readVector(object_, key, value);
@@ -313,6 +348,20 @@ class Reader {
     for (std::size_t i = 0; i < list.size(); ++i) {
       if (!list[i].json().is_array() || list[i].size() != 3) list[i].fail("is not a triangle with two numbers");
       value.push_back({list[i][0].asIndex(kNoIndex), list[i][1].asNumber(), list[i][2].asNumber()});
+    }
+  }
+  void operator()(const char* key, std::vector<KeyOfJoint>& value) {
+    known_.push_back(key);
+    const JsonView list = object_.array(key);
+    if (!list.exists()) object_.fail(fmt::format("has no \"{}\"", key));
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      const JsonView item = list[i];
+      Reader entry(item);
+      KeyOfJoint one;
+      entry("joint", one.joint);
+      entry("seconds", one.seconds);
+      entry.refuseOthers();
+      value.push_back(std::move(one));
     }
   }
   template <class E>

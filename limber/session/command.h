@@ -22,12 +22,15 @@ struct Ray {
 
 // Joints are named. Positions, axes and rays are in world space.
 
+// Limbs follow: inverse kinematics begins on for a body that has limbs, and holds its feet where they stand.
 struct OpenSample {
   std::string name;  // of sampleModels()
+  bool limbsFollow = false;
 };
 // The file is asked of the session's resolver; where a model came as bytes this is its name.
 struct OpenFile {
   std::string file;
+  bool limbsFollow = false;
 };
 
 // Makes the rig anew and keeps the pose: what the new handles hold goes where the old ones had taken it. A model that
@@ -56,8 +59,10 @@ enum class DragMode { kMove, kTurn };
 struct BeginDrag {
   std::string joint;
   DragMode mode = DragMode::kMove;
-  Ray ray;                     // through the pointer
-  Vec3 view = -Vec3::UnitZ();  // where the camera looks
+  Ray ray;                             // through the pointer
+  Vec3 view = -Vec3::UnitZ();          // where the camera looks
+  std::vector<std::string> with = {};  // joints that do the same
+  bool mirrored = false;               // their mirror images do it as well, reflected
 };
 // Counts from where the drag began: of several updates only the last one matters.
 struct UpdateDrag {
@@ -201,13 +206,38 @@ struct SetTime {
 };
 // Keys of the chosen clip: the pose becomes one at the moment that is shown.
 struct SetKey {
-  double span = 0;  // seconds before and after it that go along, ever less (blendKey)
+  double span = 0;  // seconds over which a correction of recorded motion comes and goes (clip_layer.h)
 };
 struct MoveKey {
   double from = 0, to = 0;  // seconds
 };
 struct DeleteKey {
   double seconds = 0;
+};
+// One key of one joint of the chosen clip.
+struct KeyOfJoint {
+  std::string joint;
+  double seconds = 0;
+};
+// Keys go to pivot + scale * (seconds - pivot) + shift, and take the place of those that are there.
+struct EditKeys {
+  std::vector<KeyOfJoint> keys;
+  double shift = 0;   // seconds
+  double scale = 1;   // above 0
+  double pivot = 0;   // seconds
+  bool copy = false;  // they stay where they were, too
+};
+struct DeleteKeys {
+  std::vector<KeyOfJoint> keys;
+};
+// The joint's key at that moment, which is made where there is none.
+struct SetJointKey {
+  std::string joint;
+  double seconds = 0;
+  // How it stands there, from its rest pose: degrees about the axes of its own frame (a rotation vector), metres along
+  // those of its parent's.
+  Vec3 turn = Vec3::Zero();
+  Vec3 offset = Vec3::Zero();
 };
 struct SetInterpolation {
   Interpolation interpolation = Interpolation::kLinear;
@@ -220,8 +250,9 @@ using Command =
     std::variant<OpenSample, OpenFile, SetHandles, ChooseMethods, PinJoint, UnpinJoint, BeginDrag, UpdateDrag, TurnDrag,
                  EndDrag, CancelDrag, TurnJoint, MoveJoint, SetIk, SetTarget, ClearTarget, SetLimits, ResetJoint,
                  ResetPose, MirrorPose, SetRestPose, RenameJoint, AddMotion, AddSampleMotion, RetargetMotion, AddClip,
-                 RemoveClip, RenameClip, ChooseClip, SetTime, SetKey, MoveKey, DeleteKey, SetInterpolation,
-                 PaintWeights, LockWeights, MirrorWeights, AddJoint, DeleteJoint, ReparentJoint, Undo, Redo>;
+                 RemoveClip, RenameClip, ChooseClip, SetTime, SetKey, MoveKey, DeleteKey, EditKeys, DeleteKeys,
+                 SetJointKey, SetInterpolation, PaintWeights, LockWeights, MirrorWeights, AddJoint, DeleteJoint,
+                 ReparentJoint, Undo, Redo>;
 
 // "set_handles", as in JSON.
 std::string_view commandName(const Command& command);

@@ -48,6 +48,9 @@ std::vector<Command> oneOfEach() {
           SetKey{},
           MoveKey{0.5, 0.75},
           DeleteKey{0.75},
+          EditKeys{{{"Knee", 0.5}, {"Elbow", 0.25}}, 0.5, 2, 0.25, true},
+          DeleteKeys{{{"Knee", 0.5}}},
+          SetJointKey{"Knee", 0.5, {0, 30, 0}, {0, 0.1, 0}},
           SetInterpolation{Interpolation::kCubic},
           PaintWeights{"head", PaintMode::kReplace, 0.75, 0.2, true, {{7, 0.25, 0.5}, {8, 0, 1}}},
           LockWeights{"head", false},
@@ -81,12 +84,18 @@ TEST(Command, JsonKeepsEveryCommandAndEveryField) {
   EXPECT_EQ(std::get<RetargetMotion>(back[24]).clip, "fast");
   EXPECT_EQ(std::get<RetargetMotion>(back[24]).reach, 0.25);
   EXPECT_FALSE(std::get<RetargetMotion>(back[24]).contacts);
-  EXPECT_EQ(std::get<PaintWeights>(back[34]).dabs, std::get<PaintWeights>(commands[34]).dabs);
-  EXPECT_EQ(std::get<AddJoint>(back[37]).name, "hat");
-  EXPECT_EQ(std::get<ReparentJoint>(back[39]).parent, "hips");
-  EXPECT_EQ(std::get<PaintWeights>(back[34]).mode, PaintMode::kReplace);
+  EXPECT_EQ(std::get<PaintWeights>(back[37]).dabs, std::get<PaintWeights>(commands[37]).dabs);
+  EXPECT_EQ(std::get<AddJoint>(back[40]).name, "hat");
+  EXPECT_EQ(std::get<ReparentJoint>(back[42]).parent, "hips");
+  EXPECT_EQ(std::get<PaintWeights>(back[37]).mode, PaintMode::kReplace);
   EXPECT_EQ(std::get<MoveKey>(back[31]).to, 0.75);
-  EXPECT_EQ(std::get<SetInterpolation>(back[33]).interpolation, Interpolation::kCubic);
+  ASSERT_EQ(std::get<EditKeys>(back[33]).keys.size(), 2u);
+  EXPECT_EQ(std::get<EditKeys>(back[33]).keys[1].joint, "Elbow");
+  EXPECT_EQ(std::get<EditKeys>(back[33]).keys[1].seconds, 0.25);
+  EXPECT_EQ(std::get<EditKeys>(back[33]).scale, 2);
+  EXPECT_EQ(std::get<DeleteKeys>(back[34]).keys.size(), 1u);
+  EXPECT_EQ(std::get<SetJointKey>(back[35]).turn, Vec3(0, 30, 0));
+  EXPECT_EQ(std::get<SetInterpolation>(back[36]).interpolation, Interpolation::kCubic);
 }
 
 TEST(Command, FieldsThatAreAbsentKeepTheirDefault) {
@@ -129,6 +138,10 @@ TEST(Command, WhatIsWrongIsNamed) {
   expectRefused(list(R"({"do": "mirror_pose", "from": "above"})"), "commands[1].from", "'above'");
   expectRefused(list(R"({"do": "update_drag", "ray": 1})"), "commands[1].ray", "object");
   expectRefused(list(R"({"do": "retarget"})"), "commands[1]", "\"motion\"");
+  expectRefused(list(R"({"do": "delete_keys"})"), "commands[1]", "\"keys\"");
+  expectRefused(list(R"({"do": "edit_keys", "keys": [{"seconds": 1}]})"), "commands[1].keys[0]", "\"joint\"");
+  expectRefused(list(R"({"do": "edit_keys", "keys": [{"joint": "a", "at": 1}]})"), "commands[1].keys[0].at",
+                "not part");
   expectRefused(list(R"({"do": "set_interpolation", "interpolation": "wavy"})"), "commands[1].interpolation", "'wavy'");
 }
 

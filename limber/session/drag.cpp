@@ -22,29 +22,54 @@ Vec3 unit(const Vec3& v, const char* what) {
   return v / length;
 }
 
-// With inverse kinematics, moving a joint pulls it by its limb; else the held ones alone are pulled.
-std::vector<HeldTarget> targetsOf(const DragScene& scene, Index joint, bool pullsJoint, const Vec3& position) {
-  std::vector<HeldTarget> targets;
-  if (!scene.ik) return targets;
-  if (pullsJoint) targets.push_back({joint, position});
-  for (const HeldTarget& target : scene.held) {
-    if (target.joint != joint) targets.push_back(target);
+bool isBelow(const Skeleton& skeleton, Index joint, Index above) {
+  for (std::optional<Index> j = skeleton.joints[joint].parent; j; j = skeleton.joints[*j].parent) {
+    if (*j == above) return true;
   }
-  return targets;
+  return false;
+}
+
+Quat reflected(const Quat& rotation, const Mat3& reflection) {
+  if (reflection.isIdentity(0)) return rotation;
+  return Quat(Mat3(reflection * rotation.toRotationMatrix() * reflection));
 }
 
 }  // namespace
 
 Drag::Drag(DragScene scene, Index joint, DragMode mode, const Ray& ray, const Vec3& view)
     : scene_(std::move(scene)),
-      joint_(joint),
       mode_(mode),
+      moved_(scene_.followers),
       globals_(poseGlobals(*scene_.skeleton, scene_.start)),
-      depth_((globals_[joint].translation() - ray.origin).dot(unit(view, "the view"))),
-      targets_(targetsOf(scene_, joint, mode == DragMode::kMove && limbBase(*scene_.skeleton, joint),
-                         globals_[joint].translation())),
-      pull_(*scene_.skeleton, targets_, scene_.limits, scene_.solver),
-      pullsJoint_(!targets_.empty() && targets_.front().joint == joint) {
+      depth_((globals_[joint].translation() - ray.origin).dot(unit(view, "the view"))) {
+  const Skeleton& skeleton = *scene_.skeleton;
+  moved_.insert(moved_.begin(), {joint, Mat3::Identity()});
+  // With inverse kinematics, moving a joint pulls it by its limb.
+  for (std::size_t m = 0; m < moved_.size(); ++m) {
+    const bool pulled = scene_.ik && mode == DragMode::kMove && limbBase(skeleton, moved_[m].joint);
+    (pulled ? pulled_ : slid_).push_back(m);
+  }
+  // What hangs on a joint that slides goes along with it.
+  std::erase_if(slid_, [&, all = slid_](std::size_t m) {
+    return std::any_of(all.begin(), all.end(),
+                       [&](std::size_t other) { return isBelow(skeleton, moved_[m].joint, moved_[other].joint); });
+  });
+  if (scene_.ik) {
+    const auto heldOf = [&](Index j) {
+      return std::find_if(scene_.held.begin(), scene_.held.end(), [&](const HeldTarget& t) { return t.joint == j; });
+    };
+    for (const std::size_t m : pulled_) {
+      HeldTarget target{moved_[m].joint, globals_[moved_[m].joint].translation()};
+      if (const auto held = heldOf(target.joint); held != scene_.held.end()) target.rotation = held->rotation;
+      targets_.push_back(target);
+    }
+    for (const HeldTarget& held : scene_.held) {
+      const bool moves = std::any_of(moved_.begin(), moved_.end(),
+                                     [&](const DragFollower& follower) { return follower.joint == held.joint; });
+      if (!moves) targets_.push_back(held);
+    }
+  }
+  pull_.emplace(skeleton, targets_, scene_.limits, scene_.solver);
   // A ray that misses the plane at first takes the joint by its middle.
   gripAtStart_ = grip(ray, view).value_or(globals_[joint].translation());
 }
@@ -54,21 +79,22 @@ std::optional<Pose> Drag::at(const Ray& ray, const Vec3& view) {
   if (!now) return std::nullopt;
   Pose pose = scene_.start;
   if (mode_ == DragMode::kTurn) {
-    turn(*now, unit(view, "the view"), pose);
-  } else if (pullsJoint_) {
-    targets_.front().position = globals_[joint_].translation() + (*now - gripAtStart_);
+    const Quat rotation = turnUnderPointer(*now, unit(view, "the view"));
+    for (const auto& [joint, reflection] : moved_) turnAboutParent(joint, reflected(rotation, reflection), pose);
   } else {
-    slide(*now - gripAtStart_, pose);
+    move(*now - gripAtStart_, pose);
   }
-  pull_.solve(pose, targets_);
+  pull_->solve(pose, targets_);
   return pose;
 }
 
 Pose Drag::turned(const Vec3& axis, double degrees) {
   Pose pose = scene_.start;
   const Quat rotation(Eigen::AngleAxisd(degrees * kPi / 180, unit(axis, "the axis")));
-  swing(joint_, globals_[joint_].translation(), rotation, pose);
-  pull_.solve(pose, targets_);
+  for (const auto& [joint, reflection] : moved_) {
+    swing(joint, globals_[joint].translation(), reflected(rotation, reflection), pose);
+  }
+  pull_->solve(pose, targets_);
   return pose;
 }
 
@@ -80,30 +106,41 @@ std::optional<Vec3> Drag::grip(const Ray& ray, const Vec3& view) const {
   return ray.origin + depth_ / cosine * direction;
 }
 
-void Drag::slide(const Vec3& offset, Pose& pose) const {
-  const std::optional<Index> parent = scene_.skeleton->joints[joint_].parent;
-  const Mat3 above = parent ? Mat3(globals_[*parent].linear()) : Mat3(Mat3::Identity());
-  const Vec3 local = above.inverse() * offset;
-  if (local.allFinite()) pose.locals[joint_].translation += local;
+void Drag::move(const Vec3& offset, Pose& pose) {
+  for (std::size_t p = 0; p < pulled_.size(); ++p) {
+    const auto& [joint, reflection] = moved_[pulled_[p]];
+    targets_[p].position = globals_[joint].translation() + reflection * offset;
+  }
+  for (const std::size_t m : slid_) slide(moved_[m].joint, moved_[m].reflection * offset, pose);
 }
 
-void Drag::turn(const Vec3& grip, const Vec3& view, Pose& pose) const {
-  const Skeleton& skeleton = *scene_.skeleton;
-  const std::optional<Index> parent = skeleton.joints[joint_].parent;
-  const Vec3 own = globals_[joint_].translation();
-  if (!parent) {
-    return swing(joint_, own, fromRotationVector(view.cross(gripAtStart_ - grip) / scene_.rollRadius), pose);
-  }
+void Drag::slide(Index joint, const Vec3& offset, Pose& pose) const {
+  const std::optional<Index> parent = scene_.skeleton->joints[joint].parent;
+  const Mat3 above = parent ? Mat3(globals_[*parent].linear()) : Mat3(Mat3::Identity());
+  const Vec3 local = above.inverse() * offset;
+  if (local.allFinite()) pose.locals[joint].translation += local;
+}
+
+// How far the dragged joint turns about its parent as the camera sees it; a root rolls.
+Quat Drag::turnUnderPointer(const Vec3& grip, const Vec3& view) const {
+  const std::optional<Index> parent = scene_.skeleton->joints[joint()].parent;
+  if (!parent) return fromRotationVector(view.cross(gripAtStart_ - grip) / scene_.rollRadius);
   const Vec3 pivot = globals_[*parent].translation();
   const auto lever = [&](const Vec3& point) { return Vec3(point - pivot - view.dot(point - pivot) * view); };
   const Vec3 before = lever(gripAtStart_), after = lever(grip);
   const double angle = std::atan2(view.dot(before.cross(after)), before.dot(after));
-  const Quat rotation(Eigen::AngleAxisd(angle, view));
+  return Quat(Eigen::AngleAxisd(angle, view));
+}
+
+void Drag::turnAboutParent(Index joint, const Quat& rotation, Pose& pose) const {
+  const Skeleton& skeleton = *scene_.skeleton;
+  const std::optional<Index> parent = skeleton.joints[joint].parent;
+  if (!parent) return swing(joint, globals_[joint].translation(), rotation, pose);
   // Where bones are segments, the one that ends here belongs to the joint above; it turns where nothing else hangs on
   // it. A sphere's joint swings itself.
   const std::vector<Index> siblings = childrenOf(skeleton)[*parent];
   const bool turnsParent = skeleton.boneShape == BoneShape::kSegment && siblings.size() == 1;
-  swing(turnsParent ? *parent : joint_, pivot, rotation, pose);
+  swing(turnsParent ? *parent : joint, globals_[*parent].translation(), rotation, pose);
 }
 
 // Turns a joint, with what hangs on it, about a point in the world.

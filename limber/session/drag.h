@@ -1,4 +1,4 @@
-// A joint under the pointer, from taking hold of it to letting go.
+// Joints under the pointer, from taking hold of them to letting go.
 #pragma once
 
 #include <optional>
@@ -9,6 +9,12 @@
 
 namespace limber {
 
+// A joint that does what the dragged one does: the same way or, as its mirror image, reflected.
+struct DragFollower {
+  Index joint = 0;
+  Mat3 reflection = Mat3::Identity();  // of directions in world space
+};
+
 // What a drag works on. The skeleton and the limits must outlive it.
 struct DragScene {
   const Skeleton* skeleton = nullptr;
@@ -18,6 +24,7 @@ struct DragScene {
   std::vector<HeldTarget> held;  // joints that hold on to a place, with inverse kinematics on
   double rollRadius = 1;         // metres: a root that the pointer moves this far rolls by one radian
   std::string_view solver = kLimbSolver;
+  std::vector<DragFollower> followers = {};
 };
 
 class Drag {
@@ -34,24 +41,28 @@ class Drag {
   // an axis without direction.
   Pose turned(const Vec3& axis, double degrees);
 
-  Index joint() const { return joint_; }
+  Index joint() const { return moved_.front().joint; }
+  // The joint and its followers.
+  const std::vector<DragFollower>& moved() const { return moved_; }
   const Pose& start() const { return scene_.start; }
 
  private:
   std::optional<Vec3> grip(const Ray& ray, const Vec3& view) const;
-  void slide(const Vec3& offset, Pose& pose) const;
-  void turn(const Vec3& grip, const Vec3& view, Pose& pose) const;
+  void move(const Vec3& offset, Pose& pose);
+  void slide(Index joint, const Vec3& offset, Pose& pose) const;
+  Quat turnUnderPointer(const Vec3& grip, const Vec3& view) const;
+  void turnAboutParent(Index joint, const Quat& rotation, Pose& pose) const;
   void swing(Index joint, const Vec3& pivot, const Quat& rotation, Pose& pose) const;
 
   DragScene scene_;
-  Index joint_ = 0;
   DragMode mode_;
-  std::vector<Affine> globals_;  // at the start
-  double depth_ = 0;             // of the joint before the camera, metres
+  std::vector<DragFollower> moved_;  // the dragged joint first
+  std::vector<Affine> globals_;      // at the start
+  double depth_ = 0;                 // of the joint before the camera, metres
   Vec3 gripAtStart_ = Vec3::Zero();
+  std::vector<std::size_t> pulled_, slid_;  // of moved_: by their limbs, which come first among the targets; the others
   std::vector<HeldTarget> targets_;
-  LimbPull pull_;
-  bool pullsJoint_ = false;  // the first target is the dragged joint's
+  std::optional<LimbPull> pull_;
 };
 
 }  // namespace limber

@@ -21,7 +21,8 @@ std::optional<Index> limbBase(const Skeleton& skeleton, Index joint) {
 }
 
 LimbPull::LimbPull(const Skeleton& skeleton, std::span<const HeldTarget> targets, const JointLimits* limits,
-                   std::string_view solver) {
+                   std::string_view solver)
+    : skeleton_(skeleton), limits_(limits) {
   for (std::size_t t = 0; t < targets.size(); ++t) {
     IkTarget wanted;
     wanted.joint = targets[t].joint;
@@ -42,6 +43,16 @@ void LimbPull::solve(Pose& pose, std::span<const HeldTarget> targets) {
   if (!solver_) return;
   for (std::size_t t = 0; t < used_.size(); ++t) wanted_[t].position = targets[used_[t]].position;
   solver_->solve(pose, wanted_);
+  for (const std::size_t t : used_) {
+    if (targets[t].rotation) turnTo(pose, targets[t].joint, *targets[t].rotation);
+  }
+}
+
+void LimbPull::turnTo(Pose& pose, Index joint, const Quat& rotation) const {
+  const Index parent = *skeleton_.joints[joint].parent;  // a joint with a limb has one
+  Quat& local = pose.locals[joint].rotation;
+  local = (decompose(poseGlobals(skeleton_, pose)[parent]).rotation.conjugate() * rotation).normalized();
+  if (limits_) local = nearestAllowed(limits_->joints[joint], local);
 }
 
 void setTarget(std::vector<HeldTarget>& targets, const HeldTarget& target) {

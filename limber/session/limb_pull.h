@@ -15,6 +15,7 @@ inline constexpr std::string_view kLimbSolver = "whole-body";
 struct HeldTarget {
   Index joint = 0;
   Vec3 position = Vec3::Zero();
+  std::optional<Quat> rotation = std::nullopt;  // global, of a joint that must not tilt either: a foot on the ground
 };
 
 // One for each joint: in place of that which the joint had.
@@ -36,10 +37,15 @@ class LimbPull {
   // Whether any joint has a limb to turn.
   bool any() const { return solver_.has_value(); }
   // `targets` are those of the constructor, at other places. `pose` is the start and becomes the answer; the same start
-  // and targets give the same answer. Throws Error as IkSystem::load does.
+  // and targets give the same answer. A joint with a rotation turns there once its limb has reached. Throws Error as
+  // IkSystem::load does.
   void solve(Pose& pose, std::span<const HeldTarget> targets);
 
  private:
+  void turnTo(Pose& pose, Index joint, const Quat& rotation) const;
+
+  const Skeleton& skeleton_;
+  const JointLimits* limits_;
   std::vector<std::size_t> used_;  // of the targets given, those with a limb
   std::vector<IkTarget> wanted_;
   std::optional<IkSolver> solver_;

@@ -1,10 +1,28 @@
 #include "limber/session/mirror_pose.h"
 
+#include <algorithm>
+
+#include "limber/core/error.h"
+
 namespace limber {
 
 namespace {
 
-constexpr double kMirrorTolerance = 0.01;  // of the longest side, for joints that are images
+constexpr double kTolerance = 0.01;       // of the longest side, for joints that are images
+constexpr double kLeastWithImages = 0.8;  // of the joints, for a skeleton that is its own mirror image
+
+MirrorPlane planeOfSkeleton(const RiggedModel& rig) {
+  const std::vector<Affine> rest = restGlobals(rig.skeleton());
+  const Vec3 left = rig.anatomy.axes.left();
+  double offset = 0;
+  int roots = 0;
+  for (Index j = 0; j < rest.size(); ++j) {
+    if (rig.skeleton().joints[j].parent) continue;
+    offset += left.dot(rest[j].translation());
+    ++roots;
+  }
+  return {left, roots > 0 ? offset / roots : 0};
+}
 
 Affine reflection(const MirrorPlane& plane) {
   Affine result = Affine::Identity();
@@ -25,6 +43,22 @@ Affine halfWay(const Affine& a, const Affine& b, const Vec3& pivot) {
 }
 
 }  // namespace
+
+BodyMirror bodyMirror(const RiggedModel& rig) {
+  const double tolerance = kTolerance * longestSide(rig);
+  if (const std::optional<MirrorMap> map = findMirror({rig.geometry->positions, rig.geometry->triangles})) {
+    MirrorPlane plane = map->plane;
+    if (rig.anatomy.axes.left().dot(plane.normal) < 0) plane = {-plane.normal, -plane.offset};
+    return {plane, mirrorJoints(rig.skeleton(), plane, tolerance)};
+  }
+  const MirrorPlane plane = planeOfSkeleton(rig);
+  std::vector<Index> images = mirrorJoints(rig.skeleton(), plane, tolerance);
+  const auto without = std::count(images.begin(), images.end(), kNoIndex);
+  if (static_cast<double>(without) > (1 - kLeastWithImages) * static_cast<double>(images.size())) {
+    throw Error(ErrorCode::kUnsupported, "neither the model nor its skeleton is its own mirror image", rig.asset->name);
+  }
+  return {plane, std::move(images)};
+}
 
 std::vector<Index> mirrorJoints(const Skeleton& skeleton, const MirrorPlane& plane, double tolerance) {
   const std::vector<Affine> globals = restGlobals(skeleton);
@@ -49,7 +83,7 @@ std::vector<Index> mirrorJoints(const Skeleton& skeleton, const MirrorPlane& pla
 
 RigMirror mirrorOfRig(const RiggedModel& rig, MirrorPlane plane) {
   if (rig.anatomy.axes.left().dot(plane.normal) < 0) plane = {-plane.normal, -plane.offset};
-  return {plane, mirrorJoints(rig.skeleton(), plane, kMirrorTolerance * longestSide(rig))};
+  return {plane, mirrorJoints(rig.skeleton(), plane, kTolerance * longestSide(rig))};
 }
 
 Pose mirrorPose(const Skeleton& skeleton, const Pose& pose, const MirrorPlane& plane, const std::vector<Index>& images,

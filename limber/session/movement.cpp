@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include <fmt/format.h>
@@ -10,6 +11,7 @@
 #include "limber/pipeline/stand_upright.h"
 #include "limber/retarget/retarget_clip.h"
 #include "limber/retarget/retarget_method.h"
+#include "limber/session/clip_curves.h"
 #include "limber/session/pose_transfer.h"
 #include "limber/skeleton/clip_edit.h"
 #include "limber/skeleton/keyframes.h"
@@ -53,15 +55,80 @@ SessionClip& requireChosen(Movement& movement) {
   return movement.clips[*movement.chosen];
 }
 
-// Changes a copy of the chosen clip.
+// The clip from what it is made of. Without a layer it is the motion itself.
+void applyLayerOf(ClipContent& content, const Skeleton& skeleton) {
+  content.clip = content.layer.empty()
+                     ? content.base
+                     : std::make_shared<const Clip>(applyLayer(*content.base, content.layer, skeleton));
+}
+
+// Changes a copy of the chosen clip's own keys: those that were set by hand, or recorded.
 template <class Edit>
-void editChosen(Movement& movement, const Edit& edit) {
-  SessionClip& chosen = requireChosen(movement);
-  auto clip = std::make_shared<Clip>(*chosen.clip);
+void editOwnKeys(SessionClip& chosen, const Skeleton& skeleton, const Edit& edit) {
+  auto clip = std::make_shared<Clip>(chosen.base ? *chosen.base : *chosen.clip);
   edit(*clip);
-  chosen.clip = std::move(clip);
   chosen.authored.reset();
-  chosen.edited = chosen.source.has_value();
+  if (chosen.base) {
+    setBase(chosen, skeleton, std::move(clip));
+  } else {
+    chosen.clip = std::move(clip);
+  }
+}
+
+template <class Edit>
+void editLayer(SessionClip& chosen, const Skeleton& skeleton, const Edit& edit) {
+  ClipLayer layer = chosen.layer;
+  edit(layer);
+  chosen.layer = std::move(layer);
+  chosen.authored.reset();
+  applyLayerOf(chosen, skeleton);
+}
+
+// What a layer's keys at a moment are, whatever their joints; empty where there is none.
+std::vector<JointKey> layerKeysAt(const ClipLayer& layer, double seconds) {
+  std::vector<JointKey> keys;
+  for (const LayerTrack& track : layer.tracks) {
+    for (const LayerKey& key : track.keys) {
+      if (std::abs(key.seconds - seconds) < kKeySnap) keys.push_back({track.joint, key.seconds});
+    }
+  }
+  return keys;
+}
+
+std::vector<JointKey> keysNamed(const Skeleton& skeleton, const std::vector<KeyOfJoint>& named) {
+  if (named.empty()) refuseEdit("no keys are given");
+  std::vector<JointKey> keys;
+  for (const KeyOfJoint& key : named) {
+    const std::optional<Index> joint = skeleton.find(key.joint);
+    if (!joint) refuseEdit(fmt::format("no joint is called '{}'", key.joint));
+    keys.push_back({*joint, key.seconds});
+  }
+  return keys;
+}
+
+double spanNear(const ClipLayer& layer, const JointKey& place) {
+  double span = 0, nearest = std::numeric_limits<double>::infinity();
+  for (const LayerTrack& track : layer.tracks) {
+    for (const LayerKey& key : track.keys) {
+      const double away = std::abs(key.seconds - place.seconds);
+      if (track.joint != place.joint || away >= nearest) continue;
+      nearest = away;
+      span = key.span;
+    }
+  }
+  return span;
+}
+
+Pose clipPose(const Clip& clip, const Skeleton& skeleton, double seconds) {
+  Pose pose = restPose(skeleton);
+  sampleClip(clip, seconds, pose);
+  return pose;
+}
+
+bool isRecorded(const Clip& clip) {
+  constexpr std::size_t kFewKeys = 3;  // of a clip so short that they say nothing of a rate
+  const std::size_t keys = keyTimes(clip).size();
+  return keys > kFewKeys && static_cast<double>(keys) > kRecordedRate * clip.duration();
 }
 
 std::shared_ptr<const Motion> requireMotion(const Movement& movement, const std::string& name) {
@@ -98,7 +165,7 @@ bool onlyNamesDiffer(const Skeleton& one, const Skeleton& other) {
 
 // The same source for other joints. A map made by hand holds where all its joints are there still, else joints are
 // matched anew; none where they do not match.
-std::optional<ClipSource> sourceOn(const AuthoredClip& authored, const Skeleton& skeleton) {
+std::optional<ClipSource> sourceOn(const ClipContent& authored, const Skeleton& skeleton) {
   if (!authored.source) return std::nullopt;
   ClipSource source = *authored.source;
   const Skeleton& moving = source.motion->skeleton;
@@ -122,7 +189,9 @@ std::optional<ClipSource> sourceOn(const AuthoredClip& authored, const Skeleton&
 
 Movement movementOf(const std::vector<std::shared_ptr<const Clip>>& own) {
   Movement movement;
-  for (const std::shared_ptr<const Clip>& clip : own) movement.clips.push_back({clip, {}});
+  for (const std::shared_ptr<const Clip>& clip : own) {
+    movement.clips.push_back({{clip, {}, isRecorded(*clip) ? clip : nullptr}});
+  }
   return movement;
 }
 
@@ -132,10 +201,26 @@ std::vector<std::shared_ptr<const Clip>> clipsOf(const Movement& movement) {
   return clips;
 }
 
+std::vector<std::shared_ptr<const Clip>> basesOf(const Movement& movement) {
+  std::vector<std::shared_ptr<const Clip>> clips;
+  for (const SessionClip& clip : movement.clips) clips.push_back(clip.base ? clip.base : clip.clip);
+  return clips;
+}
+
+void putLayer(Movement& movement, const Skeleton& skeleton, const std::string& clip, ClipLayer layer) {
+  SessionClip& entry = movement.clips[requireClip(movement, clip)];
+  entry.layer = std::move(layer);
+  setBase(entry, skeleton, entry.base ? entry.base : entry.clip);
+}
+
+void setBase(SessionClip& entry, const Skeleton& skeleton, std::shared_ptr<const Clip> base) {
+  entry.base = std::move(base);
+  applyLayerOf(entry, skeleton);
+}
+
 Pose shownPose(const Movement& movement, const Skeleton& skeleton) {
-  Pose pose = restPose(skeleton);
-  if (const Clip* clip = movement.clip()) sampleClip(*clip, movement.seconds, pose);
-  return pose;
+  const Clip* clip = movement.clip();
+  return clip ? clipPose(*clip, skeleton, movement.seconds) : restPose(skeleton);
 }
 
 void addMotion(Movement& movement, Motion motion) {
@@ -158,8 +243,12 @@ void retargetMotion(Movement& movement, const Skeleton& skeleton, const Retarget
   for (std::size_t c = 0; c < movement.clips.size(); ++c) {
     const std::optional<ClipSource>& known = movement.clips[c].source;
     if (!known || known->motion != source.motion || known->clip != source.clip) continue;
-    made.name = movement.clips[c].clip->name;
-    movement.clips[c] = {std::make_shared<const Clip>(std::move(made)), std::move(source)};
+    SessionClip& entry = movement.clips[c];
+    made.name = entry.clip->name;
+    setInterpolation(made, interpolationOf(*entry.base));
+    entry.source = std::move(source);
+    entry.authored.reset();
+    setBase(entry, skeleton, std::make_shared<const Clip>(std::move(made)));
     if (movement.chosen != c) movement.seconds = 0;
     movement.chosen = c;
     return;
@@ -167,39 +256,64 @@ void retargetMotion(Movement& movement, const Skeleton& skeleton, const Retarget
   const std::string& ofClip = motion.clips[source.clip].name;
   made.name = freeName(motion.clips.size() == 1 || ofClip.empty() ? motion.name : ofClip,
                        [&](const std::string& name) { return findClip(movement, name).has_value(); });
-  movement.clips.push_back({std::make_shared<const Clip>(std::move(made)), std::move(source)});
+  auto clip = std::make_shared<const Clip>(std::move(made));
+  movement.clips.push_back({{clip, std::move(source), clip}});
   movement.chosen = movement.clips.size() - 1;
   movement.seconds = 0;
 }
 
+namespace {
+
+using Transfers = std::map<const RiggedModel*, PoseTransfer>;
+
+void rename(ClipContent& content, const std::string& name) {
+  const auto renamed = [&](const std::shared_ptr<const Clip>& clip) {
+    if (clip->name == name) return clip;
+    auto copy = std::make_shared<Clip>(*clip);
+    copy->name = name;
+    return std::shared_ptr<const Clip>(std::move(copy));
+  };
+  const bool same = content.clip == content.base;
+  content.clip = renamed(content.clip);
+  if (content.base) content.base = same ? content.clip : renamed(content.base);
+}
+
+// What a clip is on another rig than that which it was made on.
+ClipContent contentOn(const AuthoredClip& authored, Transfers& transfers,
+                      const std::shared_ptr<const RiggedModel>& to) {
+  const Skeleton& skeleton = to->skeleton();
+  ClipContent made = authored.content;
+  made.source = sourceOn(authored.content, skeleton);
+  if (onlyNamesDiffer(authored.rig->skeleton(), skeleton)) return made;
+  const PoseTransfer& transfer = transfers.try_emplace(authored.rig.get(), *authored.rig, *to).first->second;
+  const auto transferred = [&](const Clip& clip) {
+    return std::make_shared<const Clip>(transferClip(transfer, *authored.rig, clip, *to));
+  };
+  if (!made.base) {
+    made.clip = transferred(*authored.content.clip);
+    made.source.reset();
+    return made;
+  }
+  made.base = made.source ? std::make_shared<const Clip>(retargeted(*made.source, skeleton))
+                          : transferred(*authored.content.base);
+  made.layer = transferLayer(transfer, *authored.rig, *authored.content.base, authored.content.layer);
+  applyLayerOf(made, skeleton);
+  return made;
+}
+
+}  // namespace
+
 void moveToRig(Movement& movement, const std::shared_ptr<const RiggedModel>& from,
                const std::shared_ptr<const RiggedModel>& to, Progress& progress) {
-  std::map<const RiggedModel*, PoseTransfer> transfers;
+  Transfers transfers;
   for (std::size_t c = 0; c < movement.clips.size(); ++c) {
     progress.update(static_cast<double>(c) / static_cast<double>(movement.clips.size()));
     SessionClip& entry = movement.clips[c];
-    if (!entry.authored) {
-      entry.authored = std::make_shared<const AuthoredClip>(AuthoredClip{entry.clip, entry.source, from});
-    }
+    if (!entry.authored) entry.authored = std::make_shared<const AuthoredClip>(AuthoredClip{entry, from});
     const AuthoredClip& authored = *entry.authored;
     const std::string name = entry.clip->name;
-    Clip made;
-    if (authored.rig == to) {
-      made = *authored.clip;
-      entry.source = authored.source;
-    } else if (onlyNamesDiffer(authored.rig->skeleton(), to->skeleton())) {
-      made = *authored.clip;
-      entry.source = sourceOn(authored, to->skeleton());
-    } else if (std::optional<ClipSource> source = entry.edited ? std::nullopt : sourceOn(authored, to->skeleton())) {
-      made = retargeted(*source, to->skeleton());
-      entry.source = std::move(source);
-    } else {
-      const auto transfer = transfers.try_emplace(authored.rig.get(), *authored.rig, *to).first;
-      made = transferClip(transfer->second, *authored.rig, *authored.clip, *to);
-      entry.source.reset();
-    }
-    made.name = name;
-    entry.clip = std::make_shared<const Clip>(std::move(made));
+    static_cast<ClipContent&>(entry) = authored.rig == to ? authored.content : contentOn(authored, transfers, to);
+    rename(entry, name);
     if (authored.rig == to) entry.authored.reset();
   }
 }
@@ -208,7 +322,7 @@ void addClip(Movement& movement, const std::string& name) {
   requireFreeName(movement, name);
   auto clip = std::make_shared<Clip>();
   clip->name = name;
-  movement.clips.push_back({std::move(clip), {}});
+  movement.clips.push_back({{std::move(clip), {}}});
   movement.chosen = movement.clips.size() - 1;
   movement.seconds = 0;
 }
@@ -228,9 +342,7 @@ void renameClip(Movement& movement, const std::string& from, const std::string& 
   const std::size_t at = requireClip(movement, from);
   if (from == to) return;
   requireFreeName(movement, to);
-  auto clip = std::make_shared<Clip>(*movement.clips[at].clip);
-  clip->name = to;
-  movement.clips[at].clip = std::move(clip);
+  rename(movement.clips[at], to);
 }
 
 void chooseClip(Movement& movement, const std::string& name) {
@@ -245,19 +357,74 @@ void setTime(Movement& movement, double seconds) {
 }
 
 void setKeyOf(Movement& movement, const Skeleton& skeleton, const Pose& pose, double span) {
-  editChosen(movement, [&](Clip& clip) { blendKey(clip, skeleton, pose, movement.seconds, span); });
+  SessionClip& chosen = requireChosen(movement);
+  const double seconds = movement.seconds;
+  if (!chosen.base) return editOwnKeys(chosen, skeleton, [&](Clip& clip) { setKey(clip, skeleton, pose, seconds); });
+  const Pose base = clipPose(*chosen.base, skeleton, seconds), shown = clipPose(*chosen.clip, skeleton, seconds);
+  editLayer(chosen, skeleton, [&](ClipLayer& layer) { setKey(layer, base, shown, pose, seconds, span); });
 }
 
-void moveKeyOf(Movement& movement, double from, double to) {
-  editChosen(movement, [&](Clip& clip) { moveKey(clip, from, to); });
+void moveKeyOf(Movement& movement, const Skeleton& skeleton, double from, double to) {
+  SessionClip& chosen = requireChosen(movement);
+  const std::vector<JointKey> keys = layerKeysAt(chosen.layer, from);
+  if (keys.empty()) return editOwnKeys(chosen, skeleton, [&](Clip& clip) { moveKey(clip, from, to); });
+  editLayer(chosen, skeleton, [&](ClipLayer& layer) { retimeKeys(layer, keys, {.shift = to - from}); });
 }
 
-void deleteKeyOf(Movement& movement, double seconds) {
-  editChosen(movement, [&](Clip& clip) { deleteKey(clip, seconds); });
+void deleteKeyOf(Movement& movement, const Skeleton& skeleton, double seconds) {
+  SessionClip& chosen = requireChosen(movement);
+  const std::vector<JointKey> keys = layerKeysAt(chosen.layer, seconds);
+  if (keys.empty()) return editOwnKeys(chosen, skeleton, [&](Clip& clip) { deleteKey(clip, seconds); });
+  editLayer(chosen, skeleton, [&](ClipLayer& layer) { deleteKeys(layer, keys); });
 }
 
-void setInterpolationOf(Movement& movement, Interpolation interpolation) {
-  editChosen(movement, [&](Clip& clip) { setInterpolation(clip, interpolation); });
+void retimeKeysOf(Movement& movement, const Skeleton& skeleton, const EditKeys& command) {
+  SessionClip& chosen = requireChosen(movement);
+  const std::vector<JointKey> keys = keysNamed(skeleton, command.keys);
+  const KeyRetiming retiming{command.shift, command.scale, command.pivot, command.copy};
+  const auto edit = [&](auto& keyed) { retimeKeys(keyed, keys, retiming); };
+  if (chosen.base) {
+    editLayer(chosen, skeleton, edit);
+  } else {
+    editOwnKeys(chosen, skeleton, edit);
+  }
+}
+
+void deleteKeysOf(Movement& movement, const Skeleton& skeleton, const std::vector<KeyOfJoint>& named) {
+  SessionClip& chosen = requireChosen(movement);
+  const std::vector<JointKey> keys = keysNamed(skeleton, named);
+  const auto edit = [&](auto& keyed) { deleteKeys(keyed, keys); };
+  if (chosen.base) {
+    editLayer(chosen, skeleton, edit);
+  } else {
+    editOwnKeys(chosen, skeleton, edit);
+  }
+}
+
+// Where the layer has no key at that moment, the new one comes and goes as the joint's nearest does.
+void setJointKeyOf(Movement& movement, const Skeleton& skeleton, const SetJointKey& command) {
+  SessionClip& chosen = requireChosen(movement);
+  const JointKey key = keysNamed(skeleton, {{command.joint, command.seconds}}).front();
+  if (!command.turn.allFinite() || !command.offset.allFinite()) refuseEdit("a key's value is no number");
+  const Pose shown = clipPose(*chosen.clip, skeleton, key.seconds);
+  Pose pose = shown;
+  placeFromRest(pose.locals[key.joint], skeleton.joints[key.joint].rest, {command.turn, command.offset});
+  if (!chosen.base) {
+    return editOwnKeys(chosen, skeleton, [&](Clip& clip) {
+      setJointKey(clip, skeleton, key.joint, pose.locals[key.joint], key.seconds);
+    });
+  }
+  const Pose base = clipPose(*chosen.base, skeleton, key.seconds);
+  const double span = spanNear(chosen.layer, key);
+  editLayer(chosen, skeleton, [&](ClipLayer& layer) { setKey(layer, base, shown, pose, key.seconds, span); });
+}
+
+void setInterpolationOf(Movement& movement, const Skeleton& skeleton, Interpolation interpolation) {
+  editOwnKeys(requireChosen(movement), skeleton, [&](Clip& clip) { setInterpolation(clip, interpolation); });
+}
+
+std::vector<JointKeyTimes> editableKeys(const ClipContent& clip) {
+  return clip.base ? keyTimesOfJoints(clip.layer) : keyTimesOfJoints(*clip.clip);
 }
 
 std::vector<Vec3> sourceJoints(const Movement& movement) {

@@ -9,6 +9,7 @@
 #include "limber/matching/skeleton_map.h"
 #include "limber/session/command.h"
 #include "limber/session/rigged_model.h"
+#include "limber/skeleton/clip_layer.h"
 #include "limber/skeleton/motion.h"
 
 namespace limber {
@@ -21,20 +22,25 @@ struct ClipSource {
   SkeletonMap map;
 };
 
+// What a clip is made of. A clip that was made by hand is its keys; recorded motion is left as it is, and what is
+// corrected in it is a layer on top, which stays when the motion below is retargeted anew.
+struct ClipContent {
+  std::shared_ptr<const Clip> clip;  // over the joints of the rig, as it is shown; its name is unique in the session
+  std::optional<ClipSource> source;
+  std::shared_ptr<const Clip> base = {};  // recorded, without the layer; null: made by hand
+  ClipLayer layer = {};
+};
+
 // A clip as it was last edited, on the rig that it was edited on: other rigs start from it, so that going there and
 // back again loses nothing.
 struct AuthoredClip {
-  std::shared_ptr<const Clip> clip;
-  std::optional<ClipSource> source;
+  ClipContent content;
   std::shared_ptr<const RiggedModel> rig;
 };
 
 // Copies share the clip, so that each undo step is one.
-struct SessionClip {
-  std::shared_ptr<const Clip> clip;  // over the joints of the rig; its name is unique in the session
-  std::optional<ClipSource> source;
+struct SessionClip : ClipContent {
   std::shared_ptr<const AuthoredClip> authored = {};  // null: on the rig that there is
-  bool edited = false;                                // by hand, since it was made from the source
 };
 
 struct Movement {
@@ -47,10 +53,18 @@ struct Movement {
   const Clip* clip() const { return chosen ? clips[*chosen].clip.get() : nullptr; }
 };
 
-// A clip for each clip of the model's own.
+// A clip for each clip of the model's own. Those with more than kRecordedRate keys a second are recorded motion.
+inline constexpr double kRecordedRate = 10;
 Movement movementOf(const std::vector<std::shared_ptr<const Clip>>& own);
 
 std::vector<std::shared_ptr<const Clip>> clipsOf(const Movement& movement);
+// Without their layers.
+std::vector<std::shared_ptr<const Clip>> basesOf(const Movement& movement);
+// Puts a layer on the clip of that name, whose motion counts as recorded from then on. Throws Error kBadArgument where
+// no clip has that name.
+void putLayer(Movement& movement, const Skeleton& skeleton, const std::string& clip, ClipLayer layer);
+// The clip below the layer becomes another one.
+void setBase(SessionClip& entry, const Skeleton& skeleton, std::shared_ptr<const Clip> base);
 
 // The pose of the chosen clip at its moment; joints and parts without a track are at rest.
 Pose shownPose(const Movement& movement, const Skeleton& skeleton);
@@ -60,10 +74,11 @@ Pose shownPose(const Movement& movement, const Skeleton& skeleton);
 
 void addMotion(Movement& movement, Motion motion);
 // The clips for another rig of the same model: those of motions are retargeted anew where the motion fits the new
-// joints and nobody has edited them since, the keys of all others are transferred (transferClip). The chosen clip and the moment stay.
+// joints, the keys of all others are transferred (transferClip), layers too. The chosen clip and the moment stay.
 void moveToRig(Movement& movement, const std::shared_ptr<const RiggedModel>& from,
                const std::shared_ptr<const RiggedModel>& to, Progress& progress);
-// Makes the clip, or makes it anew where that clip of that motion is on the model already, and chooses it. Throws as
+// Makes the clip, or makes it anew below its layer where that clip of that motion is on the model already, and chooses
+// it. Throws as
 // matchSkeletons and skeletonMapFromJson do.
 void retargetMotion(Movement& movement, const Skeleton& skeleton, const RetargetMotion& command);
 void addClip(Movement& movement, const std::string& name);
@@ -73,11 +88,18 @@ void renameClip(Movement& movement, const std::string& from, const std::string& 
 void chooseClip(Movement& movement, const std::string& name);
 void setTime(Movement& movement, double seconds);
 
-// Of the chosen clip.
+// Of the chosen clip. Keys of recorded motion are those of its layer; only where that has none at a moment are those of
+// the motion itself moved or taken out.
 void setKeyOf(Movement& movement, const Skeleton& skeleton, const Pose& pose, double span);
-void moveKeyOf(Movement& movement, double from, double to);
-void deleteKeyOf(Movement& movement, double seconds);
-void setInterpolationOf(Movement& movement, Interpolation interpolation);
+void moveKeyOf(Movement& movement, const Skeleton& skeleton, double from, double to);
+void deleteKeyOf(Movement& movement, const Skeleton& skeleton, double seconds);
+void retimeKeysOf(Movement& movement, const Skeleton& skeleton, const EditKeys& command);
+void deleteKeysOf(Movement& movement, const Skeleton& skeleton, const std::vector<KeyOfJoint>& keys);
+void setJointKeyOf(Movement& movement, const Skeleton& skeleton, const SetJointKey& command);
+void setInterpolationOf(Movement& movement, const Skeleton& skeleton, Interpolation interpolation);
+
+// What can be edited: all keys of a clip made by hand, those of the layer of recorded motion.
+std::vector<JointKeyTimes> editableKeys(const ClipContent& clip);
 
 // Where the joints of the skeleton that the chosen clip comes from stand at that moment; empty where the clip comes
 // from none.

@@ -11,8 +11,10 @@
 #include "limber/asset/write.h"
 #include "limber/core/error.h"
 #include "limber/core/file.h"
+#include "limber/session/clip_curves.h"
 #include "limber/session/measures.h"
 #include "limber/session/session.h"
+#include "limber/session/session_file.h"
 #include "limber/session/session_state.h"
 #include "limber/session/testing/models.h"
 #include "limber/skeleton/keyframes.h"
@@ -158,27 +160,250 @@ TEST(Movement, PosesBecomeKeys) {
   EXPECT_THAT(keyTimes(*session.state().movement.clip()), ElementsAre(0, 0.2f, 1));
 }
 
-TEST(Movement, ACorrectedFrameTakesItsNeighboursAlong) {
-  Session session = walking();
-  act(session, SetTime{0.5});
-  const auto clipJson = [&] { return sessionState(session)["clips"][0]; };
-  EXPECT_EQ(clipJson()["edited"], false);
-  const Quat before = turnOf(session, "leftLowerArm");
-  act(session, TurnJoint{"leftLowerArm", Vec3(0, 1, 0), 40});
-  act(session, SetKey{.span = 0.3});
-  EXPECT_EQ(clipJson()["edited"], true);
-  EXPECT_NEAR(turnOf(session, "leftLowerArm").angularDistance(before), 40 * EIGEN_PI / 180, 1e-3);
-  Quat last = Quat::Identity();
-  for (int f = 0; f <= 20; ++f) {
-    act(session, SetTime{0.2 + 0.03 * f});
-    const Quat now = turnOf(session, "leftLowerArm");
-    if (f > 0) {
-      EXPECT_LT(now.angularDistance(last), 15 * EIGEN_PI / 180) << f;
+// The fastest that any joint turns from one frame to the next, degrees per second, between two moments.
+double fastestTurn(const Session& session, const Clip& clip, double from, double to) {
+  const Skeleton& skeleton = session.state().rig->skeleton();
+  Pose last = restPose(skeleton), now = last;
+  double fastest = 0;
+  for (int frame = 0; from + frame / 30.0 <= to; ++frame) {
+    sampleClip(clip, from + frame / 30.0, now);
+    for (std::size_t j = 0; frame > 0 && j < now.locals.size(); ++j) {
+      const double angle = now.locals[j].rotation.angularDistance(last.locals[j].rotation);
+      fastest = std::max(fastest, angle * 30 * 180 / static_cast<double>(EIGEN_PI));
     }
     last = now;
   }
+  return fastest;
+}
+
+Json chosenJson(const Session& session) {
+  const Json state = sessionState(session);
+  return state["clips"][state["clip"].get<std::size_t>()];
+}
+
+void expectSameKeys(const Clip& a, const Clip& b) {
+  const auto same = [](const auto& x, const auto& y) {
+    ASSERT_EQ(x.size(), y.size());
+    for (std::size_t t = 0; t < x.size(); ++t) {
+      EXPECT_EQ(x[t].joint, y[t].joint);
+      EXPECT_EQ(x[t].times, y[t].times);
+      ASSERT_EQ(x[t].values.size(), y[t].values.size());
+      for (std::size_t k = 0; k < x[t].values.size(); ++k) {
+        if constexpr (std::is_same_v<std::decay_t<decltype(x[t].values[k])>, Vec3f>) {
+          EXPECT_EQ(x[t].values[k], y[t].values[k]);
+        } else {
+          EXPECT_EQ(x[t].values[k].coeffs(), y[t].values[k].coeffs());
+        }
+      }
+    }
+  };
+  same(a.rotations, b.rotations);
+  same(a.translations, b.translations);
+  same(a.scales, b.scales);
+}
+
+Session correctedWalk() {
+  Session session = walking();
+  act(session, SetTime{0.5});
+  act(session, TurnJoint{"leftLowerArm", Vec3(0, 1, 0), 40});
+  act(session, SetKey{.span = 0.3});
+  return session;
+}
+
+TEST(Movement, ACorrectionOfRecordedMotionComesAndGoesWithoutASpike) {
+  Session session = walking();
+  const std::shared_ptr<const Clip> base = session.state().movement.clips[0].clip;
+  EXPECT_TRUE(chosenJson(session)["recorded"].get<bool>());
+  EXPECT_TRUE(chosenJson(session)["keys"].empty()) << "it has one for every frame";
+  act(session, SetTime{0.5});
+  const Quat before = turnOf(session, "leftLowerArm");
+  act(session, TurnJoint{"leftLowerArm", Vec3(0, 1, 0), 40});
+  act(session, SetKey{.span = 0.3});
+  EXPECT_EQ(chosenJson(session)["joint_keys"].size(), 1u) << "one joint was corrected";
+  EXPECT_THAT(chosenJson(session)["keys"], ElementsAre(0.5));
+  act(session, SetTime{0.5});
+  EXPECT_NEAR(turnOf(session, "leftLowerArm").angularDistance(before), 40 * EIGEN_PI / 180, 1e-3);
+
+  const Clip& corrected = *session.state().movement.clip();
+  EXPECT_NO_THROW(checkClip(corrected, session.state().rig->skeleton()));
+  const double was = fastestTurn(session, *base, 0.1, 0.9), is = fastestTurn(session, corrected, 0.1, 0.9);
+  EXPECT_LT(is, 3 * was);
+  RecordProperty("base_degrees_per_second", std::to_string(was));
+  RecordProperty("corrected_degrees_per_second", std::to_string(is));
+  // The arm itself: a key of one frame, as without a layer, would turn it by 1200 degrees a second.
+  const auto armAt = [&](double seconds) {
+    Pose pose = restPose(session.state().rig->skeleton());
+    sampleClip(corrected, seconds, pose);
+    return pose.locals[session.state().rig->skeleton().find("leftLowerArm").value()].rotation;
+  };
+  for (int frame = 1; frame < 30; ++frame) {
+    EXPECT_LT(armAt(frame / 30.0).angularDistance(armAt((frame - 1) / 30.0)) * 30 * 180 / EIGEN_PI, 300) << frame;
+  }
+
+  act(session, DeleteKey{0.5});
+  EXPECT_EQ(session.state().movement.clips[0].clip, base) << "without keys the layer is gone";
+}
+
+TEST(Movement, ACorrectionStaysWhenTheMotionBelowIsMadeAnew) {
+  Session session = correctedWalk();
+  const Clip corrected = *session.state().movement.clip();
   act(session, RetargetMotion{.motion = "walk", .clip = {}, .method = "aligned", .map = {}});
-  EXPECT_EQ(clipJson()["edited"], false);
+  const Clip other = *session.state().movement.clip();
+  EXPECT_EQ(chosenJson(session)["source"]["method"], "aligned");
+  EXPECT_THAT(chosenJson(session)["keys"], ElementsAre(0.5));
+  act(session, SetTime{0.5});
+  const Pose below = [&] {
+    Pose pose = restPose(session.state().rig->skeleton());
+    sampleClip(*session.state().movement.clips[0].base, 0.5, pose);
+    return pose;
+  }();
+  const Index arm = session.state().rig->skeleton().find("leftLowerArm").value();
+  EXPECT_NEAR(turnOf(session, "leftLowerArm").angularDistance(below.locals[arm].rotation), 40 * EIGEN_PI / 180, 1e-3);
+  act(session, RetargetMotion{.motion = "walk", .clip = {}, .map = {}});
+  expectSameKeys(*session.state().movement.clip(), corrected);
+  act(session, Undo{});
+  expectSameKeys(*session.state().movement.clip(), other);
+}
+
+TEST(Movement, KeysOfALayerAreMovedScaledCopiedAndDeleted) {
+  Session session = correctedWalk();
+  const auto times = [&](const char* joint) {
+    const Json clip = chosenJson(session);
+    for (const Json& of : clip["joint_keys"]) {
+      const Skeleton& skeleton = session.state().rig->skeleton();
+      if (skeleton.joints[of["joint"].get<Index>()].name == joint) return of["seconds"].get<std::vector<double>>();
+    }
+    return std::vector<double>();
+  };
+  act(session, EditKeys{.keys = {{"leftLowerArm", 0.5}}, .shift = 0.2, .copy = true});
+  EXPECT_THAT(times("leftLowerArm"), ElementsAre(0.5, 0.7));
+  act(session, EditKeys{.keys = {{"leftLowerArm", 0.5}, {"leftLowerArm", 0.7}}, .scale = 1.5, .pivot = 0.5});
+  EXPECT_THAT(times("leftLowerArm"), ElementsAre(0.5, ::testing::DoubleNear(0.8, 1e-9)));
+  // Between keys whose spans meet, the correction stays.
+  act(session, SetTime{0.65});
+  Pose below = restPose(session.state().rig->skeleton());
+  sampleClip(*session.state().movement.clips[0].base, 0.65, below);
+  const Index arm = session.state().rig->skeleton().find("leftLowerArm").value();
+  EXPECT_NEAR(turnOf(session, "leftLowerArm").angularDistance(below.locals[arm].rotation), 40 * EIGEN_PI / 180, 1e-3);
+
+  EXPECT_THROW(act(session, EditKeys{.keys = {{"leftLowerArm", 0.1}}, .shift = 0.2}), Error);
+  EXPECT_THROW(act(session, EditKeys{.keys = {{"leftLowerArm", 0.5}}, .shift = -0.6}), Error);
+  EXPECT_THROW(act(session, EditKeys{.keys = {}}), Error);
+  EXPECT_THROW(act(session, DeleteKeys{{{"wing", 0.5}}}), Error);
+  act(session, DeleteKeys{{{"leftLowerArm", 0.5}, {"leftLowerArm", times("leftLowerArm")[1]}}});
+  EXPECT_EQ(session.state().movement.clips[0].clip, session.state().movement.clips[0].base);
+  act(session, Undo{});
+  EXPECT_EQ(times("leftLowerArm").size(), 2u);
+}
+
+TEST(Movement, KeysOfOneJointOfAClipMadeByHand) {
+  Session session = person();
+  act(session, AddClip{"nod"});
+  act(session, TurnJoint{"head", Vec3::UnitX(), 10});
+  act(session, SetKey{});
+  act(session, SetTime{0.5});
+  act(session, TurnJoint{"head", Vec3::UnitX(), 30});
+  act(session, SetKey{});
+  EXPECT_FALSE(chosenJson(session)["recorded"].get<bool>());
+  act(session, EditKeys{.keys = {{"head", 0.5}}, .shift = 0.5});
+  EXPECT_THAT(keyTimes(*session.state().movement.clip()), ElementsAre(0, 0.5, 1)) << "the root has a key there still";
+  act(session, SetTime{1});
+  EXPECT_NEAR(turnOf(session, "head").angularDistance(Quat::Identity()), 40 * EIGEN_PI / 180, 1e-4);
+  act(session, DeleteKeys{{{"hips", 0.5}}});
+  EXPECT_THAT(keyTimes(*session.state().movement.clip()), ElementsAre(0, 1));
+}
+
+TEST(Movement, AJointsKeyIsGivenAValue) {
+  Session session = correctedWalk();
+  const auto jointAt = [&](double seconds) {
+    const Index arm = session.state().rig->skeleton().find("leftLowerArm").value();
+    return jointCurve(session.state().movement, session.state().rig->skeleton(), arm, std::vector<double>{seconds})[0];
+  };
+  act(session, SetJointKey{"leftLowerArm", 0.5, {5, 25, -10}, {0, 0.02, 0}});
+  EXPECT_THAT(chosenJson(session)["keys"], ElementsAre(0.5));
+  EXPECT_LT((jointAt(0.5).turn - Vec3(5, 25, -10)).norm(), 1e-3);
+  EXPECT_LT((jointAt(0.5).offset - Vec3(0, 0.02, 0)).norm(), 1e-5);
+  EXPECT_THROW(act(session, SetJointKey{"wing", 0.5}), Error);
+
+  act(session, AddClip{"bow"});
+  act(session, ResetPose{});
+  act(session, SetKey{});
+  act(session, SetJointKey{"leftLowerArm", 1, {0, 90, 0}, Vec3::Zero()});
+  EXPECT_LT((jointAt(1).turn - Vec3(0, 90, 0)).norm(), 1e-3);
+  EXPECT_LT((jointAt(0.5).turn - Vec3(0, 45, 0)).norm(), 1e-3);
+}
+
+// A turn of more than half a circle does not come back from the other side.
+TEST(Movement, CurvesAndPathsRunThroughTheClip) {
+  Session session = person();
+  act(session, AddClip{"spin"});
+  act(session, SetKey{});
+  for (int k = 1; k <= 4; ++k) {
+    act(session, SetTime{0.5 * k});
+    act(session, TurnJoint{"hips", Vec3::UnitY(), 75});
+    act(session, SetKey{});
+  }
+  const Movement& movement = session.state().movement;
+  const Skeleton& skeleton = session.state().rig->skeleton();
+  const std::vector<double> moments = evenMoments(movement, 30, 1000);
+  ASSERT_EQ(moments.size(), 61u);
+  EXPECT_EQ(moments.back(), 2);
+  EXPECT_EQ(evenMoments(movement, 30, 11).size(), 11u);
+  const std::vector<CurvePoint> curve = jointCurve(movement, skeleton, skeleton.find("hips").value(), moments);
+  for (std::size_t k = 0; k < curve.size(); ++k) {
+    EXPECT_NEAR(curve[k].turn.y(), 150 * moments[k], 0.1) << moments[k];
+  }
+  EXPECT_EQ(curveMoments(movement, skeleton.find("hips").value(), 30, 2), (std::vector<double>{0, 0.5, 1, 1.5, 2}));
+  const std::vector<Vec3> paths = jointPaths(movement, skeleton, moments);
+  ASSERT_EQ(paths.size(), moments.size() * skeleton.joints.size());
+  const std::vector<Vec3> first = posePositions(skeleton, restPose(skeleton));
+  EXPECT_LT((paths[3] - first[3]).norm(), 1e-6);
+  act(session, ChooseClip{});
+  EXPECT_TRUE(evenMoments(session.state().movement, 30, 100).empty());
+}
+
+TEST(Movement, ASavedSessionKeepsTheLayerOnItsMotion) {
+  Session session = correctedWalk();
+  Session saved;
+  Progress progress;
+  saved.open(session.saveSession(), "saved.glb", progress);
+  EXPECT_THAT(chosenJson(saved)["keys"], ElementsAre(0.5));
+  EXPECT_LT(turnOf(saved, "leftLowerArm").angularDistance(turnOf(session, "leftLowerArm")), 1e-5);
+  act(saved, SetTime{0.4});
+  act(session, SetTime{0.4});
+  EXPECT_LT(turnOf(saved, "leftLowerArm").angularDistance(turnOf(session, "leftLowerArm")), 1e-5);
+  act(saved, DeleteKey{0.5});
+  act(session, DeleteKey{0.5});
+  EXPECT_LT(turnOf(saved, "leftLowerArm").angularDistance(turnOf(session, "leftLowerArm")), 1e-5);
+}
+
+TEST(Movement, ASavedLayerThatBreaksTheFormatIsNamed) {
+  const auto saved = [](const LayerKey& first, const LayerKey& second, const char* joint, const char* clip) {
+    Asset asset = readAsset(correctedWalk().saveSession(), "saved.glb");
+    SavedSession session = takeSession(asset).value();
+    session.layers = {{clip, {{joint, {first, second}}}}};
+    putSession(asset, session);
+    return writeGlb(asset);
+  };
+  const auto expectRefused = [](const Bytes& bytes, const char* where) {
+    Session session;
+    Progress progress;
+    try {
+      session.open(bytes, "saved.glb", progress);
+      ADD_FAILURE() << where << " is taken";
+    } catch (const Error& error) {
+      EXPECT_THAT(error.where(), ::testing::HasSubstr(where));
+    }
+  };
+  const LayerKey early{0.2, 0.1, Vec3::Zero(), Quat::Identity()}, late{0.4, 0.1, Vec3::Zero(), Quat::Identity()};
+  LayerKey bent = late, before = early;
+  bent.rotation.coeffs() *= 2;
+  before.seconds = -1;
+  expectRefused(saved(late, early, "head", "walk"), "layers[0].tracks[0].keys[1]");
+  expectRefused(saved(early, bent, "head", "walk"), "layers[0].tracks[0].keys[1].rotation");
+  expectRefused(saved(before, late, "head", "walk"), "layers[0].tracks[0].keys[0]");
+  expectRefused(saved(early, late, "wing", "walk"), "layers[0]");
+  expectRefused(saved(early, late, "head", "run"), "layers[0]");
 }
 
 TEST(Movement, ClipsAreChosenRenamedAndRemoved) {
@@ -358,6 +583,7 @@ TEST(Movement, EditsStayOnOtherRigs) {
   const std::vector<Vec3f> raised = posedPositions(*session.state().rig, session.state().pose);
   act(session, SetHandles{40});
   const std::vector<Vec3f> now = posedPositions(*session.state().rig, session.state().pose);
+  EXPECT_THAT(chosenJson(session)["keys"], ElementsAre(0.5)) << "the layer came along";
   double furthest = 0;
   for (std::size_t v = 0; v < now.size(); ++v) {
     furthest = std::max(furthest, static_cast<double>((now[v] - raised[v]).norm()));

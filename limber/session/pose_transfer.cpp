@@ -1,6 +1,7 @@
 #include "limber/session/pose_transfer.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "limber/ik/rotation_fit.h"
 #include "limber/skeleton/keyframes.h"
@@ -153,6 +154,27 @@ Clip transferClip(const PoseTransfer& transfer, const RiggedModel& from, const C
     if (rotates) result.rotations.push_back(std::move(turns));
   }
   if (!poses.empty()) setInterpolation(result, interpolationOf(clip));
+  return result;
+}
+
+ClipLayer transferLayer(const PoseTransfer& transfer, const RiggedModel& from, const Clip& clip,
+                        const ClipLayer& layer) {
+  ClipLayer result;
+  if (layer.empty()) return result;
+  const Clip corrected = applyLayer(clip, layer, from.skeleton());
+  for (const double seconds : keyTimes(layer)) {
+    double span = 0;
+    for (const LayerTrack& track : layer.tracks) {
+      for (const LayerKey& key : track.keys) {
+        if (std::abs(key.seconds - seconds) < kKeySnap) span = std::max(span, key.span);
+      }
+    }
+    Pose below = restPose(from.skeleton()), above = below;
+    sampleClip(clip, seconds, below);
+    sampleClip(corrected, seconds, above);
+    const Pose base = transfer.apply(below);
+    setKey(result, base, base, transfer.apply(above), seconds, span);
+  }
   return result;
 }
 

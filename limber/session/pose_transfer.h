@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "limber/session/rigged_model.h"
+#include "limber/skeleton/clip_layer.h"
 
 namespace limber {
 
@@ -50,5 +51,10 @@ Pose transferPose(const RiggedModel& from, const Pose& pose, const RiggedModel& 
 // A clip of `from` as one of `to`: a key for each moment that has one, each pose transferred. Between keys it runs as
 // before; cubic tangents are made anew.
 Clip transferClip(const PoseTransfer& transfer, const RiggedModel& from, const Clip& clip, const RiggedModel& to);
+
+// A layer of `clip`, both of `from`: at each of its keys' moments, what the corrected pose transferred differs by from
+// the clip's own pose transferred.
+ClipLayer transferLayer(const PoseTransfer& transfer, const RiggedModel& from, const Clip& clip,
+                        const ClipLayer& layer);
 
 }  // namespace limber

@@ -37,6 +37,8 @@ struct RiggedModel {
   const Skeleton& skeleton() const { return binding.skeleton; }
 };
 
+double longestSide(const RiggedModel& rig);  // of the box around the surface as bound, metres
+
 // `source` with the rig that it has. Throws Error kBadArgument where it has none.
 std::shared_ptr<const RiggedModel> openRiggedModel(const Asset& source);
 
@@ -65,9 +67,6 @@ Asset assetWithClips(const RiggedModel& model, const Pose& pose, std::span<const
 // How thick handles are: the radius of a joint's sphere or, where the skeleton has none, a sixth of its shortest bone;
 // at least a thousandth of `size`.
 std::vector<double> handleRadii(const Skeleton& skeleton, double size);
-
-// Of the box round the bound surface, metres.
-double longestSide(const RiggedModel& model);
 
 // Bit for bit.
 bool sameTransform(const Transform& a, const Transform& b);

@@ -19,7 +19,7 @@
 #include "limber/session/pose_transfer.h"
 #include "limber/session/session_file.h"
 #include "limber/session/session_io.h"
-#include "limber/surface/mirror_map.h"
+#include "limber/session/standing_feet.h"
 
 namespace limber {
 
@@ -54,10 +54,32 @@ void holdTargets(SessionState& state) {
   pull.solve(state.pose, state.targets);
 }
 
+// Those of the targets for which `which` says so go where their joints are now.
+template <class Which>
+void followPose(SessionState& state, const Which& which) {
+  const std::vector<Affine> globals = poseGlobals(state.rig->skeleton(), state.pose);
+  for (HeldTarget& target : state.targets) {
+    if (!which(target)) continue;
+    target.position = globals[target.joint].translation();
+    if (target.rotation) target.rotation = decompose(globals[target.joint]).rotation;
+  }
+}
+
 void editPoseOf(SessionState& state, const PoseEdits& edits) {
   editPose(state.rig->skeleton(), state.pose, edits, state.limits.get());
   holdTargets(state);
   authored(state);
+}
+
+// Where limbs follow by themselves, feet that stand in this pose are held.
+void holdStandingFeet(SessionState& state) {
+  if (state.limbsFollow && state.ik) state.targets = standingFeet(*state.rig, state.pose);
+}
+
+void letLimbsFollow(SessionState& state) {
+  state.limbsFollow = true;
+  state.ik = hasLimbs(state.rig->anatomy);
+  holdStandingFeet(state);
 }
 
 // Targets and limits speak of joints, so they go with the rig that had those; clips come along.
@@ -74,6 +96,7 @@ void setRig(SessionState& state, std::shared_ptr<const RiggedModel> rig, Progres
   state.targets.clear();
   state.locked.clear();
   setLimits(state, {});
+  holdStandingFeet(state);
 }
 
 // The model as it is becomes the one that was opened.
@@ -86,7 +109,7 @@ void adopt(SessionState& state, Asset asset) {
 
 // The clips are read anew with the model; where they came from is still known.
 void setRestPose(SessionState& state) {
-  Asset asset = assetWithClips(*state.rig, state.rig->home, clipsOf(state.movement));
+  Asset asset = assetWithClips(*state.rig, state.rig->home, basesOf(state.movement));
   limber::setRestPose(asset, state.rig->binding, state.pose);
   adopt(state, std::move(asset));
   state.pins.clear();
@@ -95,9 +118,15 @@ void setRestPose(SessionState& state) {
   for (SessionClip& clip : state.movement.clips) {
     const auto now = std::find_if(read.clips.begin(), read.clips.end(),
                                   [&](const SessionClip& known) { return known.clip->name == clip.clip->name; });
-    if (now != read.clips.end()) clip.clip = now->clip;
+    if (now == read.clips.end()) continue;
+    if (clip.base) {
+      setBase(clip, state.rig->skeleton(), now->clip);
+    } else {
+      clip.clip = now->clip;
+    }
   }
   state.targets.clear();
+  holdStandingFeet(state);
   authored(state);
 }
 
@@ -120,8 +149,8 @@ struct Session::Runner {
     return session.state_;
   }
 
-  void operator()(const OpenSample& c) const { session.start(makeSample(c.name), command, progress); }
-  void operator()(const OpenFile& c) const { session.open(session.fileOf(c.file), c.file, progress); }
+  void operator()(const OpenSample& c) const { session.start(makeSample(c.name), command, c.limbsFollow, progress); }
+  void operator()(const OpenFile& c) const { session.open(session.fileOf(c.file), c.file, progress, c.limbsFollow); }
   void operator()(const SetHandles& c) const {
     SessionState next = state();
     // A rigger that fits a named skeleton has no use for a number.
@@ -176,11 +205,35 @@ struct Session::Runner {
   void operator()(const BeginDrag& c) const {
     const SessionState now = state();
     const Index joint = requireJoint(now, c.joint);
-    DragScene scene{&now.rig->skeleton(), now.limits.get(), now.pose, now.ik, now.targets, 2 * now.rig->radii[joint]};
+    DragScene scene;
+    scene.skeleton = &now.rig->skeleton();
+    scene.limits = now.limits.get();
+    scene.start = now.pose;
+    scene.ik = now.ik;
+    scene.held = heldDuringDrag(*now.rig, now.pose, now.targets, joint);
+    scene.rollRadius = std::max(2 * now.rig->radii[joint], longestSide(*now.rig) / 8);
     scene.solver = session.state_.solver;
-    scene.rollRadius = std::max(scene.rollRadius, longestSide(*now.rig) / 8);
+    scene.followers = followersOf(now, joint, c);
     session.drag_ = std::make_unique<Drag>(std::move(scene), joint, c.mode, c.ray, c.view);
     session.remember(command);
+  }
+  static std::vector<DragFollower> followersOf(const SessionState& now, Index joint, const BeginDrag& c) {
+    std::vector<DragFollower> followers;
+    const auto add = [&](Index follower, const Mat3& reflection) {
+      const bool known = follower == joint || std::any_of(followers.begin(), followers.end(),
+                                                          [&](const DragFollower& f) { return f.joint == follower; });
+      if (!known) followers.push_back({follower, reflection});
+    };
+    for (const std::string& name : c.with) add(requireJoint(now, name), Mat3::Identity());
+    if (!c.mirrored) return followers;
+    const auto [plane, images] = bodyMirror(*now.rig);
+    const Mat3 reflection = Mat3::Identity() - 2 * plane.normal * plane.normal.transpose();
+    const std::size_t onThisSide = followers.size();
+    if (images[joint] != kNoIndex) add(images[joint], reflection);
+    for (std::size_t f = 0; f < onThisSide; ++f) {
+      if (const Index image = images[followers[f].joint]; image != kNoIndex) add(image, reflection);
+    }
+    return followers;
   }
   Drag& drag() const {
     if (!session.drag_) refuse("no joint is being dragged", {}, "begin_drag comes first");
@@ -200,11 +253,13 @@ struct Session::Runner {
   void operator()(const EndDrag&) const {
     SessionState next = session.state_;
     session.state_.pose = drag().start();
-    const Index joint = drag().joint();
+    followPose(next, [&](const HeldTarget& target) {
+      const std::vector<DragFollower>& moved = drag().moved();
+      return std::any_of(moved.begin(), moved.end(), [&](const DragFollower& f) {
+        return f.joint == target.joint || isInLimbAbove(next.rig->skeleton(), f.joint, target.joint);
+      });
+    });
     session.drag_.reset();
-    for (HeldTarget& target : next.targets) {
-      if (target.joint == joint) target.position = poseGlobals(next.rig->skeleton(), next.pose)[joint].translation();
-    }
     authored(next);
     session.commit(command, std::move(next));
   }
@@ -259,6 +314,11 @@ struct Session::Runner {
     const Index joint = requireJoint(next, c.joint);
     next.pose.locals[joint] = next.rig->home.locals[joint];
     eraseTarget(next.targets, joint);
+    if (next.limbsFollow) {
+      for (const HeldTarget& foot : standingFeet(*next.rig, next.rig->home)) {
+        if (foot.joint == joint) next.targets.push_back(foot);
+      }
+    }
     holdTargets(next);
     authored(next);
     session.commit(command, std::move(next));
@@ -267,18 +327,15 @@ struct Session::Runner {
     SessionState next = state();
     next.pose = next.rig->home;
     next.targets.clear();
+    holdStandingFeet(next);
     authored(next);
     session.commit(command, std::move(next));
   }
   void operator()(const MirrorPose& c) const {
     SessionState next = state();
-    const Geometry& geometry = *next.rig->geometry;
-    const std::optional<MirrorMap> mirror = findMirror({geometry.positions, geometry.triangles});
-    if (!mirror)
-      throw Error(ErrorCode::kUnsupported, "the model is not its own mirror image", session.state_.base->name);
-    const RigMirror images = mirrorOfRig(*next.rig, mirror->plane);
-    next.pose = mirrorPose(next.rig->skeleton(), next.pose, images.plane, images.joints, c.from);
-    holdTargets(next);
+    const auto [plane, images] = bodyMirror(*next.rig);
+    next.pose = mirrorPose(next.rig->skeleton(), next.pose, plane, images, c.from);
+    followPose(next, [](const HeldTarget&) { return true; });
     authored(next);
     session.commit(command, std::move(next));
   }
@@ -362,6 +419,7 @@ struct Session::Runner {
   }
   static void show(SessionState& next) {
     next.pose = shownPose(next.movement, next.rig->skeleton());
+    holdStandingFeet(next);
     authored(next);
   }
   void operator()(const RetargetMotion& c) const {
@@ -385,6 +443,7 @@ struct Session::Runner {
     move([&](SessionState& next) {
       chooseClip(next.movement, c.clip);
       next.pose = next.rig->home;
+      holdStandingFeet(next);
       authored(next);
     });
   }
@@ -400,13 +459,22 @@ struct Session::Runner {
     session.commit(command, std::move(next));
   }
   void operator()(const MoveKey& c) const {
-    move([&](SessionState& next) { moveKeyOf(next.movement, c.from, c.to); });
+    move([&](SessionState& next) { moveKeyOf(next.movement, next.rig->skeleton(), c.from, c.to); });
   }
   void operator()(const DeleteKey& c) const {
-    move([&](SessionState& next) { deleteKeyOf(next.movement, c.seconds); });
+    move([&](SessionState& next) { deleteKeyOf(next.movement, next.rig->skeleton(), c.seconds); });
+  }
+  void operator()(const EditKeys& c) const {
+    move([&](SessionState& next) { retimeKeysOf(next.movement, next.rig->skeleton(), c); });
+  }
+  void operator()(const DeleteKeys& c) const {
+    move([&](SessionState& next) { deleteKeysOf(next.movement, next.rig->skeleton(), c.keys); });
+  }
+  void operator()(const SetJointKey& c) const {
+    move([&](SessionState& next) { setJointKeyOf(next.movement, next.rig->skeleton(), c); });
   }
   void operator()(const SetInterpolation& c) const {
-    move([&](SessionState& next) { setInterpolationOf(next.movement, c.interpolation); });
+    move([&](SessionState& next) { setInterpolationOf(next.movement, next.rig->skeleton(), c.interpolation); });
   }
 
   void operator()(const Undo&) const {
@@ -437,9 +505,9 @@ void Session::run(const Command& command, Progress& progress) {
   std::visit(Runner{*this, command, progress}, command);
 }
 
-void Session::open(ByteSpan bytes, std::string_view name, Progress& progress) {
+void Session::open(ByteSpan bytes, std::string_view name, Progress& progress, bool limbsFollow) {
   progress.stage("read");
-  start(readAsset(bytes, name, files_), OpenFile{std::string(name)}, progress);
+  start(readAsset(bytes, name, files_), OpenFile{std::string(name), limbsFollow}, limbsFollow, progress);
 }
 
 // Percent signs and the like belong to the name; what leads out of the folder is refused.
@@ -457,9 +525,10 @@ void Session::addMotion(ByteSpan bytes, std::string_view name) {
   commit(AddMotion{std::string(name)}, std::move(next));
 }
 
-void Session::start(Asset source, const Command& command, Progress& progress) {
+void Session::start(Asset source, const Command& command, bool limbsFollow, Progress& progress) {
   const std::optional<SavedSession> saved = takeSession(source);
   state_ = startState(std::make_shared<const Asset>(std::move(source)), saved, progress);
+  if (!saved && limbsFollow) letLimbsFollow(state_);
   undo_.clear();
   redo_.clear();
   drag_.reset();

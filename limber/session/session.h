@@ -34,6 +34,7 @@ struct SessionState {
   std::shared_ptr<const RiggedModel> authoredRig;
   Pose authoredPose;
   bool ik = false;
+  bool limbsFollow = false;  // feet that stand are held while inverse kinematics is on, on each rig of the model anew
   std::string solver{kLimbSolver};  // of ikMethods()
   std::vector<HeldTarget> targets;
   std::string limitsText;  // empty: none
@@ -60,7 +61,7 @@ class Session {
   void run(const Command& command, Progress& progress);
   // The same as OpenFile, for a file whose bytes are at hand. A model without a rig gets one with the best suggested
   // number of handles; one that saveSession() wrote comes back as it was.
-  void open(ByteSpan bytes, std::string_view name, Progress& progress);
+  void open(ByteSpan bytes, std::string_view name, Progress& progress, bool limbsFollow = false);
   // The same as AddMotion, for a file whose bytes are at hand. Throws as readMotion does.
   void addMotion(ByteSpan bytes, std::string_view name);
 
@@ -105,7 +106,7 @@ class Session {
 
   void commit(const Command& command, SessionState next);
   void remember(const Command& command);
-  void start(Asset source, const Command& command, Progress& progress);
+  void start(Asset source, const Command& command, bool limbsFollow, Progress& progress);
   void requireOpen() const;
   Bytes fileOf(const std::string& name) const;
 

@@ -34,12 +34,18 @@ std::string requireText(const JsonView& object, std::string_view key) {
   return text;
 }
 
+Quat readRotation(const JsonView& entry) {
+  Quat rotation;
+  readNumbers<4>(entry, "rotation", rotation.coeffs().data());
+  if (!(std::abs(rotation.norm() - 1) < 1e-3)) entry.member("rotation").fail("is not of unit length");
+  return rotation;
+}
+
 SavedJoint readJoint(const JsonView& entry) {
   SavedJoint joint{requireText(entry, "joint"), {}};
   readNumbers<3>(entry, "translation", joint.local.translation.data());
-  readNumbers<4>(entry, "rotation", joint.local.rotation.coeffs().data());
+  joint.local.rotation = readRotation(entry);
   readNumbers<3>(entry, "scale", joint.local.scale.data());
-  if (!(std::abs(joint.local.rotation.norm() - 1) < 1e-3)) entry.member("rotation").fail("is not of unit length");
   return joint;
 }
 
@@ -48,6 +54,7 @@ std::vector<SavedTarget> readTargets(const JsonView& list) {
   for (std::size_t i = 0; i < list.size(); ++i) {
     SavedTarget target{requireText(list[i], "joint"), {}};
     readNumbers<3>(list[i], "position", target.position.data());
+    if (list[i].member("rotation").exists()) target.rotation = readRotation(list[i]);
     targets.push_back(std::move(target));
   }
   return targets;
@@ -57,6 +64,64 @@ Json targetsJson(const std::vector<SavedTarget>& targets) {
   Json list = Json::array();
   for (const SavedTarget& target : targets) {
     list.push_back({{"joint", target.joint}, {"position", numbersJson<3>(target.position.data())}});
+    if (target.rotation) list.back()["rotation"] = numbersJson<4>(target.rotation->coeffs().data());
+  }
+  return list;
+}
+
+LayerKey readLayerKey(const JsonView& entry) {
+  LayerKey key;
+  key.seconds = entry.number("seconds", 0);
+  key.span = entry.number("span", 0);
+  if (!(key.seconds >= 0) || !(key.span >= 0)) entry.fail("lies before the clip begins");
+  readNumbers<3>(entry, "translation", key.translation.data());
+  readNumbers<4>(entry, "rotation", key.rotation.coeffs().data());
+  if (!(std::abs(key.rotation.norm() - 1) < 1e-3)) entry.member("rotation").fail("is not of unit length");
+  return key;
+}
+
+SavedLayerTrack readLayerTrack(const JsonView& entry) {
+  SavedLayerTrack track{requireText(entry, "joint"), {}};
+  const JsonView keys = entry.array("keys");
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    track.keys.push_back(readLayerKey(keys[i]));
+    if (i > 0 && !(track.keys[i].seconds > track.keys[i - 1].seconds)) keys[i].fail("does not come after the last");
+  }
+  if (track.keys.empty()) entry.fail("has no keys");
+  return track;
+}
+
+std::vector<SavedLayer> readLayers(const JsonView& list) {
+  std::vector<SavedLayer> layers;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    SavedLayer layer{requireText(list[i], "clip"), {}};
+    const JsonView tracks = list[i].array("tracks");
+    for (std::size_t t = 0; t < tracks.size(); ++t) {
+      layer.tracks.push_back(readLayerTrack(tracks[t]));
+      for (std::size_t other = 0; other < t; ++other) {
+        if (layer.tracks[other].joint == layer.tracks[t].joint) tracks[t].fail("is of the same joint as another");
+      }
+    }
+    layers.push_back(std::move(layer));
+  }
+  return layers;
+}
+
+Json layersJson(const std::vector<SavedLayer>& layers) {
+  Json list = Json::array();
+  for (const SavedLayer& layer : layers) {
+    Json tracks = Json::array();
+    for (const SavedLayerTrack& track : layer.tracks) {
+      Json keys = Json::array();
+      for (const LayerKey& key : track.keys) {
+        keys.push_back({{"seconds", key.seconds},
+                        {"span", key.span},
+                        {"translation", numbersJson<3>(key.translation.data())},
+                        {"rotation", numbersJson<4>(key.rotation.coeffs().data())}});
+      }
+      tracks.push_back({{"joint", track.joint}, {"keys", std::move(keys)}});
+    }
+    list.push_back({{"clip", layer.clip}, {"tracks", std::move(tracks)}});
   }
   return list;
 }
@@ -73,6 +138,7 @@ SavedSession readSession(const JsonView& json) {
     if (!session.pins.empty()) session.templateName = requireText(json, "template");
   }
   session.ik = json.flag("ik", false);
+  session.limbsFollow = json.flag("limbs_follow", false);
   session.solver = json.member("solver").exists() ? requireText(json, "solver") : std::string(kLimbSolver);
   session.limits = json.text("limits");
   const JsonView locked = json.array("locked");
@@ -82,6 +148,7 @@ SavedSession readSession(const JsonView& json) {
   }
   session.clip = json.text("clip");
   session.seconds = json.number("seconds", 0);
+  session.layers = readLayers(json.array("layers"));
   session.targets = readTargets(json.array("targets"));
   const JsonView pose = json.array("pose");
   for (std::size_t i = 0; i < pose.size(); ++i) session.pose.push_back(readJoint(pose[i]));
@@ -102,12 +169,14 @@ void putSession(Asset& asset, const SavedSession& session) {
       json["pins"] = targetsJson(session.pins);
     }
   }
+  if (session.limbsFollow) json["limbs_follow"] = true;
   if (!session.limits.empty()) json["limits"] = session.limits;
   if (!session.locked.empty()) json["locked"] = session.locked;
   if (!session.clip.empty()) {
     json["clip"] = session.clip;
     json["seconds"] = session.seconds;
   }
+  if (!session.layers.empty()) json["layers"] = layersJson(session.layers);
   json["targets"] = targetsJson(session.targets);
   json["pose"] = Json::array();
   for (const SavedJoint& joint : session.pose) {

@@ -8,6 +8,7 @@
 
 #include "limber/asset/asset.h"
 #include "limber/core/transform.h"
+#include "limber/skeleton/clip_layer.h"
 
 namespace limber {
 
@@ -18,6 +19,16 @@ struct SavedJoint {
 struct SavedTarget {
   std::string joint;
   Vec3 position = Vec3::Zero();
+  std::optional<Quat> rotation = std::nullopt;
+};
+
+struct SavedLayerTrack {
+  std::string joint;
+  std::vector<LayerKey> keys;  // in time
+};
+struct SavedLayer {
+  std::string clip;                     // which the document has without it
+  std::vector<SavedLayerTrack> tracks;  // each of another joint
 };
 
 struct SavedSession {
@@ -26,14 +37,15 @@ struct SavedSession {
   Index handles = 0;
   std::string templateName;       // whose joints are pinned; empty: none are
   std::vector<SavedTarget> pins;  // where these joints have to be
-  bool ik = false;
+  bool ik = false, limbsFollow = false;
   std::string solver;  // of ikMethods()
   std::vector<SavedTarget> targets;
   std::string limits;               // text of a limits file; empty: none
   std::vector<std::string> locked;  // joints whose weights are
   std::string clip;                 // the chosen one; empty: none
   double seconds = 0;               // the moment of it
-  std::vector<SavedJoint> pose;     // joints that do not stand as in RiggedModel::home
+  std::vector<SavedLayer> layers;
+  std::vector<SavedJoint> pose;  // joints that do not stand as in RiggedModel::home
 };
 
 // Puts it into the document's extras. Throws Error kUnsupported where those are no object.

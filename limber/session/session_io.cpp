@@ -1,5 +1,7 @@
 #include "limber/session/session_io.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "limber/asset/mesh_export.h"
@@ -19,6 +21,14 @@ bool keepsRig(const SessionState& state) {
   return !state.rig->report || state.rig->renamed || state.rig->edited || !state.movement.clips.empty();
 }
 
+SavedLayer savedLayer(const SessionClip& clip, const Skeleton& skeleton) {
+  SavedLayer saved{clip.clip->name, {}};
+  for (const LayerTrack& track : clip.layer.tracks) {
+    saved.tracks.push_back({skeleton.joints[track.joint].name, track.keys});
+  }
+  return saved;
+}
+
 SavedSession savedOf(const SessionState& state) {
   const Skeleton& skeleton = state.rig->skeleton();
   SavedSession saved;
@@ -29,15 +39,19 @@ SavedSession savedOf(const SessionState& state) {
   if (!state.pins.empty()) saved.templateName = state.templateName;
   for (const JointPin& pin : state.pins) saved.pins.push_back({pin.joint, pin.place});
   saved.ik = state.ik;
+  saved.limbsFollow = state.limbsFollow;
   saved.solver = state.solver;
   saved.limits = state.limitsText;
   saved.locked.assign(state.locked.begin(), state.locked.end());
   for (const HeldTarget& target : state.targets) {
-    saved.targets.push_back({skeleton.joints[target.joint].name, target.position});
+    saved.targets.push_back({skeleton.joints[target.joint].name, target.position, target.rotation});
   }
   if (const Clip* clip = state.movement.clip()) {
     saved.clip = clip->name;
     saved.seconds = state.movement.seconds;
+  }
+  for (const SessionClip& clip : state.movement.clips) {
+    if (!clip.layer.empty()) saved.layers.push_back(savedLayer(clip, skeleton));
   }
   // Where it will stand when it is opened without this.
   const Pose home = saved.ownRig ? restPose(skeleton) : state.rig->home;
@@ -66,7 +80,8 @@ void restore(SessionState& state, const SavedSession& saved) {
     state.pose.locals[jointOf(saved.pose[i].joint, "pose", i)] = saved.pose[i].local;
   }
   for (std::size_t i = 0; i < saved.targets.size(); ++i) {
-    state.targets.push_back({jointOf(saved.targets[i].joint, "targets", i), saved.targets[i].position});
+    state.targets.push_back(
+        {jointOf(saved.targets[i].joint, "targets", i), saved.targets[i].position, saved.targets[i].rotation});
   }
   saidOf("extras.limber_session.limits", [&] { setLimits(state, saved.limits); });
   for (std::size_t i = 0; i < saved.locked.size(); ++i) {
@@ -74,7 +89,18 @@ void restore(SessionState& state, const SavedSession& saved) {
     state.locked.insert(saved.locked[i]);
   }
   state.ik = saved.ik;
+  state.limbsFollow = saved.limbsFollow;
   state.solver = findIkMethod(saved.solver).name;
+  for (std::size_t i = 0; i < saved.layers.size(); ++i) {
+    ClipLayer layer;
+    for (const SavedLayerTrack& track : saved.layers[i].tracks) {
+      layer.tracks.push_back({jointOf(track.joint, "layers", i), track.keys});
+    }
+    std::sort(layer.tracks.begin(), layer.tracks.end(),
+              [](const LayerTrack& a, const LayerTrack& b) { return a.joint < b.joint; });
+    saidOf(fmt::format("extras.limber_session.layers[{}]", i),
+           [&] { putLayer(state.movement, state.rig->skeleton(), saved.layers[i].clip, std::move(layer)); });
+  }
   if (!saved.clip.empty()) {
     chooseClip(state.movement, saved.clip);
     setTime(state.movement, saved.seconds);
@@ -140,7 +166,7 @@ Bytes exportState(const SessionState& state, ExportFormat format) {
 
 Bytes savedState(const SessionState& state) {
   const RiggedModel& rig = *state.rig;
-  Asset asset = keepsRig(state) ? assetWithClips(rig, readNodePose(*rig.asset, rig.binding), clipsOf(state.movement))
+  Asset asset = keepsRig(state) ? assetWithClips(rig, readNodePose(*rig.asset, rig.binding), basesOf(state.movement))
                                 : state.base->clone();
   putSession(asset, savedOf(state));
   return writeGlb(asset);

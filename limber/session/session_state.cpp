@@ -75,6 +75,12 @@ const char* interpolationName(Interpolation interpolation) {
   return interpolation == Interpolation::kStep ? "step" : "linear";
 }
 
+Json jointKeysJson(const ClipContent& clip) {
+  Json list = Json::array();
+  for (const JointKeyTimes& of : editableKeys(clip)) list.push_back({{"joint", of.joint}, {"seconds", of.seconds}});
+  return list;
+}
+
 Json clipsJson(const Movement& movement) {
   Json clips = Json::array();
   for (const SessionClip& entry : movement.clips) {
@@ -90,10 +96,11 @@ Json clipsJson(const Movement& movement) {
     }
     clips.push_back({{"name", clip.name},
                      {"duration", clip.duration()},
-                     {"keys", keyTimes(clip)},
+                     {"recorded", entry.base != nullptr},
+                     {"keys", entry.base ? keyTimes(entry.layer) : keyTimes(clip)},
+                     {"joint_keys", jointKeysJson(entry)},
                      {"interpolation", interpolationName(interpolationOf(clip))},
-                     {"source", std::move(source)},
-                     {"edited", entry.edited}});
+                     {"source", std::move(source)}});
   }
   return clips;
 }

@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 
+#include <fmt/format.h>
+
 #include "limber/core/error.h"
+#include "limber/skeleton/retime_keys.h"
 
 namespace limber {
 
@@ -160,16 +164,21 @@ void editKeys(Clip& clip, double seconds, const Edit& edit) {
 
 }  // namespace
 
-std::vector<double> keyTimes(const Clip& clip) {
-  std::vector<double> times, kept;
-  collectTimes(clip.translations, times);
-  collectTimes(clip.rotations, times);
-  collectTimes(clip.scales, times);
+std::vector<double> eachOnce(std::vector<double> times) {
   std::sort(times.begin(), times.end());
+  std::vector<double> kept;
   for (const double time : times) {
     if (kept.empty() || time - kept.back() >= kKeySnap) kept.push_back(time);
   }
   return kept;
+}
+
+std::vector<double> keyTimes(const Clip& clip) {
+  std::vector<double> times;
+  collectTimes(clip.translations, times);
+  collectTimes(clip.rotations, times);
+  collectTimes(clip.scales, times);
+  return eachOnce(std::move(times));
 }
 
 Interpolation interpolationOf(const Clip& clip) {
@@ -177,6 +186,21 @@ Interpolation interpolationOf(const Clip& clip) {
   if (!clip.translations.empty()) return clip.translations.front().interpolation;
   return clip.scales.empty() ? Interpolation::kLinear : clip.scales.front().interpolation;
 }
+
+namespace {
+
+// `others` and `interpolation` are for parts that have no track yet.
+void setLocal(Clip& clip, const Skeleton& skeleton, Index joint, const Transform& local, float time,
+              const std::vector<double>& others, Interpolation interpolation) {
+  const Transform& rest = skeleton.joints[joint].rest;
+  setValue<Vec3f>(clip.translations, joint, rest.translation.cast<float>(), local.translation.cast<float>(), time,
+                  others, interpolation);
+  setValue<Rotation>(clip.rotations, joint, rest.rotation.cast<float>(), local.rotation.cast<float>().normalized(),
+                     time, others, interpolation, !skeleton.joints[joint].parent);
+  setValue<Vec3f>(clip.scales, joint, rest.scale.cast<float>(), local.scale.cast<float>(), time, others, interpolation);
+}
+
+}  // namespace
 
 void setKey(Clip& clip, const Skeleton& skeleton, const Pose& pose, double seconds) {
   const float time = requireTime(seconds);
@@ -186,42 +210,12 @@ void setKey(Clip& clip, const Skeleton& skeleton, const Pose& pose, double secon
   const std::vector<double> others = keyTimes(clip);
   const Interpolation interpolation = interpolationOf(clip);
   for (Index j = 0; j < skeleton.jointCount(); ++j) {
-    const Transform &rest = skeleton.joints[j].rest, &now = pose.locals[j];
-    setValue<Vec3f>(clip.translations, j, rest.translation.cast<float>(), now.translation.cast<float>(), time, others,
-                    interpolation);
-    setValue<Rotation>(clip.rotations, j, rest.rotation.cast<float>(), now.rotation.cast<float>().normalized(), time,
-                       others, interpolation, !skeleton.joints[j].parent);
-    setValue<Vec3f>(clip.scales, j, rest.scale.cast<float>(), now.scale.cast<float>(), time, others, interpolation);
+    setLocal(clip, skeleton, j, pose.locals[j], time, others, interpolation);
   }
 }
 
-void blendKey(Clip& clip, const Skeleton& skeleton, const Pose& pose, double seconds, double span) {
-  if (!(span >= 0) || !std::isfinite(span))
-    throw Error(ErrorCode::kBadArgument, "a span is 0 seconds or more", clip.name);
-  const auto poseAt = [&](double time) {
-    Pose at = restPose(skeleton);
-    sampleClip(clip, time, at);
-    return at;
-  };
-  std::vector<std::pair<double, Pose>> blended;
-  if (pose.locals.size() == skeleton.joints.size() && span > 0) {
-    const Pose before = poseAt(seconds);
-    for (const double time : keyTimes(clip)) {
-      const double away = std::abs(time - seconds) / span;
-      if (away >= 1 || std::abs(time - seconds) < kKeySnap) continue;
-      const double share = 1 - away * away * (3 - 2 * away);
-      Pose& at = blended.emplace_back(time, poseAt(time)).second;
-      for (std::size_t j = 0; j < at.locals.size(); ++j) {
-        const Transform &from = before.locals[j], &to = pose.locals[j];
-        const Quat turn = from.rotation.conjugate() * to.rotation;
-        at.locals[j].translation += share * (to.translation - from.translation);
-        at.locals[j].rotation = (at.locals[j].rotation * Quat::Identity().slerp(share, turn)).normalized();
-        at.locals[j].scale += share * (to.scale - from.scale);
-      }
-    }
-  }
-  setKey(clip, skeleton, pose, seconds);
-  for (const auto& [time, at] : blended) setKey(clip, skeleton, at, time);
+void setJointKey(Clip& clip, const Skeleton& skeleton, Index joint, const Transform& local, double seconds) {
+  setLocal(clip, skeleton, joint, local, requireTime(seconds), keyTimes(clip), interpolationOf(clip));
 }
 
 void moveKey(Clip& clip, double from, double to) {
@@ -250,6 +244,93 @@ void setInterpolation(Clip& clip, Interpolation interpolation) {
     for (auto& track : tracks) {
       if (track.interpolation != interpolation) putKeys(track, keysOf(track), interpolation);
     }
+  });
+}
+
+std::vector<JointKeyTimes> keyTimesOfJoints(const Clip& clip) {
+  std::map<Index, std::vector<double>> ofJoint;
+  const auto collect = [&](const auto& tracks) {
+    for (const auto& track : tracks) {
+      std::vector<double>& times = ofJoint[track.joint];
+      times.insert(times.end(), track.times.begin(), track.times.end());
+    }
+  };
+  collect(clip.translations);
+  collect(clip.rotations);
+  collect(clip.scales);
+  std::vector<JointKeyTimes> list;
+  for (auto& [joint, times] : ofJoint) list.push_back({joint, eachOnce(std::move(times))});
+  return list;
+}
+
+bool isChosen(std::span<const JointKey> keys, Index joint, double seconds) {
+  return std::any_of(keys.begin(), keys.end(), [&](const JointKey& key) {
+    return key.joint == joint && std::abs(key.seconds - seconds) < kKeySnap;
+  });
+}
+
+void requireKeys(const std::vector<JointKeyTimes>& there, std::span<const JointKey> keys) {
+  for (const JointKey& key : keys) {
+    const bool known = std::any_of(there.begin(), there.end(), [&](const JointKeyTimes& of) {
+      return of.joint == key.joint && std::any_of(of.seconds.begin(), of.seconds.end(), [&](double seconds) {
+               return std::abs(seconds - key.seconds) < kKeySnap;
+             });
+    });
+    if (!known) {
+      throw Error(ErrorCode::kBadArgument, fmt::format("joint {} has no key at {} s", key.joint, key.seconds));
+    }
+  }
+}
+
+void checkRetiming(std::span<const JointKey> keys, const KeyRetiming& retiming) {
+  if (!(retiming.scale > 0) || !std::isfinite(retiming.scale) || !std::isfinite(retiming.pivot) ||
+      !std::isfinite(retiming.shift)) {
+    throw Error(ErrorCode::kBadArgument, "keys cannot be scaled in time by that");
+  }
+  for (const JointKey& key : keys) {
+    if (!(retiming.at(key.seconds) > -kKeySnap)) {
+      throw Error(ErrorCode::kBadArgument,
+                  fmt::format("the key at {} s would come before the clip begins", key.seconds));
+    }
+  }
+}
+
+void retimeKeys(Clip& clip, std::span<const JointKey> keys, const KeyRetiming& retiming) {
+  requireKeys(keyTimesOfJoints(clip), keys);
+  checkRetiming(keys, retiming);
+  eachKind(clip, [&](auto& tracks) {
+    for (auto& track : tracks) {
+      auto [times, values] = keysOf(track);
+      using Value = typename decltype(values)::value_type;
+      struct Key {
+        double seconds;
+        Value value;
+      };
+      std::vector<Key> timed;
+      for (std::size_t k = 0; k < times.size(); ++k) timed.push_back({times[k], values[k]});
+      const auto chosen = [&](double seconds) { return isChosen(keys, track.joint, seconds); };
+      if (!retime(timed, chosen, retiming)) continue;
+      Keys<Value> moved;
+      for (const Key& key : timed) {
+        moved.times.push_back(static_cast<float>(std::max(0.0, key.seconds)));
+        moved.values.push_back(key.value);
+      }
+      putKeys(track, std::move(moved), track.interpolation);
+    }
+  });
+}
+
+void deleteKeys(Clip& clip, std::span<const JointKey> keys) {
+  requireKeys(keyTimesOfJoints(clip), keys);
+  eachKind(clip, [&](auto& tracks) {
+    for (auto& track : tracks) {
+      auto kept = keysOf(track);
+      for (std::size_t k = kept.times.size(); k-- > 0;) {
+        if (isChosen(keys, track.joint, kept.times[k])) eraseKey(kept, k);
+      }
+      if (kept.times.size() != track.times.size()) putKeys(track, std::move(kept), track.interpolation);
+    }
+    std::erase_if(tracks, [](const auto& track) { return track.times.empty(); });
   });
 }
 

@@ -1,12 +1,17 @@
 // Poses as keys of a clip: set, moved, taken out, and what lies between them.
 #pragma once
 
+#include <span>
+
 #include "limber/skeleton/clip.h"
 
 namespace limber {
 
 // Keys closer together than this many seconds are one.
 inline constexpr double kKeySnap = 5e-4;
+
+// Ascending, those that are one only once.
+std::vector<double> eachOnce(std::vector<double> times);
 
 // When the clip has keys, over all its tracks: ascending, each once.
 std::vector<double> keyTimes(const Clip& clip);
@@ -23,15 +28,47 @@ Interpolation interpolationOf(const Clip& clip);
 // the clip has already.
 void setKey(Clip& clip, const Skeleton& skeleton, const Pose& pose, double seconds);
 
-// Likewise in a clip that has keys for every frame, such as a recorded motion: what `pose` changes at that moment goes
-// into the keys up to `span` seconds before and after it, too, ever less the further away they are (smoothstep), so that
-// nothing jumps. Cost: setKey for each of these keys. Throws Error kBadArgument where the span is negative or no number.
-void blendKey(Clip& clip, const Skeleton& skeleton, const Pose& pose, double seconds, double span);
+// The same for one joint alone.
+void setJointKey(Clip& clip, const Skeleton& skeleton, Index joint, const Transform& local, double seconds);
 
 // Takes the place of a key that is at `to` already.
 void moveKey(Clip& clip, double from, double to);
 void deleteKey(Clip& clip, double seconds);
 
 void setInterpolation(Clip& clip, Interpolation interpolation);
+
+// A key of one joint: of its translation, rotation and scale alike, as far as it has them at that moment.
+struct JointKey {
+  Index joint = 0;
+  double seconds = 0;
+};
+
+struct JointKeyTimes {
+  Index joint = 0;
+  std::vector<double> seconds;  // ascending, each once
+};
+
+// Of the joints that have tracks, by joint.
+std::vector<JointKeyTimes> keyTimesOfJoints(const Clip& clip);
+
+// To pivot + scale * (seconds - pivot) + shift.
+struct KeyRetiming {
+  double shift = 0;   // seconds
+  double scale = 1;   // above 0
+  double pivot = 0;   // seconds
+  bool copy = false;  // the keys stay where they were, too
+
+  double at(double seconds) const { return pivot + scale * (seconds - pivot) + shift; }
+};
+
+// Keys that arrive take the place of those that are there. Both throw Error kBadArgument, and change nothing, where one
+// of `keys` is not there; retimeKeys also where the scale is not above 0 or a key would come before 0.
+void retimeKeys(Clip& clip, std::span<const JointKey> keys, const KeyRetiming& retiming);
+void deleteKeys(Clip& clip, std::span<const JointKey> keys);
+
+// What these checks are made of, for other things that have keys.
+bool isChosen(std::span<const JointKey> keys, Index joint, double seconds);
+void requireKeys(const std::vector<JointKeyTimes>& there, std::span<const JointKey> keys);
+void checkRetiming(std::span<const JointKey> keys, const KeyRetiming& retiming);
 
 }  // namespace limber

@@ -77,32 +77,42 @@ TEST(Keyframes, AKeyAtTheSameMomentReplaces) {
   EXPECT_NEAR(elbowAt(clip, 1 + kKeySnap / 2), -10, 1e-3);
 }
 
-// A second at 30 frames, the elbow opening evenly; corrected by 30 degrees in the middle.
-TEST(Keyframes, ACorrectionComesAndGoes) {
-  Clip clip;
-  clip.name = "recorded";
-  for (int f = 0; f <= 30; ++f) setKey(clip, keyedArm(), elbowBent(f), f / 30.0);
-  const Clip before = clip;
-  blendKey(clip, keyedArm(), elbowBent(15 + 30), 0.5, 0.3);
+// Of the elbow alone: the root keeps its keys.
+TEST(Keyframes, KeysOfOneJointAreScaledCopiedAndDeleted) {
+  Clip clip = waving();
+  const auto elbowTimes = [&] { return keyTimesOfJoints(clip)[1].seconds; };
+  const std::vector<JointKey> later = {{1, 1}, {1, 2}};
+  retimeKeys(clip, later, {.shift = 0.5, .scale = 2, .pivot = 1});
   checkClip(clip, keyedArm());
-  EXPECT_THAT(keyTimes(clip), ::testing::SizeIs(31));
-  EXPECT_NEAR(elbowAt(clip, 0.5), 45, 1e-3);
-  double steepest = 0;
-  for (int f = 0; f <= 30; ++f) {
-    const double time = f / 30.0, change = elbowAt(clip, time) - elbowAt(before, time);
-    if (std::abs(time - 0.5) >= 0.3) {
-      EXPECT_NEAR(change, 0, 1e-3) << time;
-    }
-    if (f > 0) steepest = std::max(steepest, std::abs(change - (elbowAt(clip, (f - 1) / 30.0) - (f - 1))));
-  }
-  EXPECT_LT(steepest, 30 * 1.5 / 9 * 1.1) << "no step is steeper than a smooth one over nine frames";
-  EXPECT_NEAR(elbowAt(clip, 0.5 - 0.15), elbowAt(before, 0.5 - 0.15) + 15, 1) << "half way half of it";
+  EXPECT_THAT(elbowTimes(), ElementsAre(0, 1.5, 3.5));
+  EXPECT_THAT(keyTimesOfJoints(clip)[0].seconds, ElementsAre(0, 1, 2));
+  EXPECT_NEAR(elbowAt(clip, 1.5), 60, 1e-3);
+  EXPECT_NEAR(elbowAt(clip, 3.5), 20, 1e-3);
 
-  Clip plain = before, none = before;
-  setKey(plain, keyedArm(), elbowBent(45), 0.5);
-  blendKey(none, keyedArm(), elbowBent(45), 0.5, 0);
-  for (const double time : {0.4, 0.45, 0.5, 0.55}) EXPECT_EQ(elbowAt(none, time), elbowAt(plain, time));
-  EXPECT_THROW(blendKey(clip, keyedArm(), elbowBent(0), 0.5, -1), Error);
+  retimeKeys(clip, std::vector<JointKey>{{1, 0}, {1, 1.5}}, {.shift = 2, .copy = true});
+  EXPECT_THAT(elbowTimes(), ElementsAre(0, 1.5, 2, 3.5)) << "the copy at 3.5 took the place of the key there";
+  EXPECT_NEAR(elbowAt(clip, 3.5), 60, 1e-3);
+
+  const Clip before = clip;
+  EXPECT_THROW(retimeKeys(clip, std::vector<JointKey>{{1, 1}}, {.shift = 1}), Error) << "no key is there";
+  EXPECT_THROW(retimeKeys(clip, std::vector<JointKey>{{2, 0}}, {.shift = 1}), Error) << "that joint has none";
+  EXPECT_THROW(retimeKeys(clip, std::vector<JointKey>{{1, 1.5}}, {.shift = -2}), Error);
+  EXPECT_THROW(retimeKeys(clip, std::vector<JointKey>{{1, 1.5}}, {.scale = 0}), Error);
+  EXPECT_THROW(deleteKeys(clip, std::vector<JointKey>{{1, 0}, {1, 1}}), Error);
+  EXPECT_THAT(keyTimesOfJoints(clip)[1].seconds, ::testing::ContainerEq(keyTimesOfJoints(before)[1].seconds));
+  deleteKeys(clip, std::vector<JointKey>{{1, 0}, {1, 1.5}, {1, 2}, {1, 3.5}});
+  EXPECT_EQ(clip.rotations.size(), 1u) << "a joint without keys has no track";
+}
+
+TEST(Keyframes, CurvesStayCurvesWhenKeysMove) {
+  Clip clip = waving();
+  setInterpolation(clip, Interpolation::kCubic);
+  retimeKeys(clip, std::vector<JointKey>{{1, 1}}, {.shift = 0.5});
+  checkClip(clip, keyedArm());
+  EXPECT_EQ(interpolationOf(clip), Interpolation::kCubic);
+  EXPECT_NEAR(elbowAt(clip, 1.5), 60, 1e-3);
+  deleteKeys(clip, std::vector<JointKey>{{1, 1.5}});
+  checkClip(clip, keyedArm());
 }
 
 TEST(Keyframes, MovedAndDeleted) {

@@ -1,12 +1,14 @@
 // Draws the page's states for the documentation.
 //
-//   node apps/studio/tests/pictures.mjs DIST OUTPUT_FOLDER
+//   node apps/studio/tests/pictures.mjs DIST OUTPUT_FOLDER [NAME]
+//
+// With a name only the pictures whose names begin so.
 import { mkdirSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 import { walkBvh } from './walk_bvh.mjs';
-import { answer, jointPlace, launch, openStudio, serve, sessionState, settled } from './page.mjs';
+import { answer, jointPlace, launch, motionPlayed, openStudio, serve, sessionState, settled } from './page.mjs';
 
-const [dist, output] = process.argv.slice(2).map((path) => resolve(path));
+const [dist, output] = process.argv.slice(2, 4).map((path) => resolve(path)), only = process.argv[4] ?? '';
 mkdirSync(output, { recursive: true });
 const server = await serve(dist), browser = await launch({ smooth: true });
 
@@ -24,9 +26,14 @@ async function drag(page, from, way) {
   await settled(page);
 }
 
+/** Steps can take pictures on their way, by names of their own; the last is that of the picture. */
 async function picture(name, options, steps) {
+  if (!name.startsWith(only)) return;
   const { page, context, errors } = await openStudio(browser, server.address, options);
-  await steps(page);
+  await steps(page, async (step) => {
+    await page.waitForTimeout(300); // what was pressed has its colour again
+    await page.screenshot({ path: join(output, `${step}.png`) });
+  });
   await page.screenshot({ path: join(output, `${name}.png`) });
   if (errors.length > 0) throw new Error(`${name}: ${errors.join('; ')}`);
   await context.close();
@@ -54,6 +61,48 @@ await picture('studio_motion', { ...desk, search: '?sample=biped' }, async (page
   await page.locator('#retarget summary').click();
   await settled(page);
   await page.waitForTimeout(300); // what was pressed has its colour again
+});
+await picture('walk_cycle_ghosts', { ...desk, search: '?sample=biped' }, async (page, shoot) => {
+  const press = async (selector) => {
+    await page.locator(selector).click();
+    await settled(page);
+  };
+  const at = async (seconds) => {
+    await page.locator('#scrub').fill(String(seconds));
+    await settled(page);
+  };
+  await motionPlayed(page, () => page.locator('#motion-file').setInputFiles({ name: 'walk.bvh', mimeType: 'text/plain', buffer: Buffer.from(walkBvh()) }));
+  await at(0.4); // it played
+  await press('#ik');
+  await press('#open-keys');
+  const { match } = await sessionState(page), [hand] = match.find(({ part }) => part === 'leftHand').target;
+  await page.getByRole('button', { name: 'Handles', exact: true }).click();
+  await settled(page);
+  const place = await jointPlace(page, hand);
+  await page.mouse.move(place.x, place.y);
+  await page.mouse.down();
+  for (let i = 1; i <= 4; ++i) await page.mouse.move(place.x + 12 * i, place.y - 22 * i);
+  await page.mouse.up();
+  await settled(page);
+  await page.mouse.move(600, 700);
+  await shoot('walk_cycle_layer');
+  await at(0.6);
+  await press('#add-key');
+  await press('#choose-keys');
+  await press('#scale-up');
+  await shoot('walk_cycle_keys');
+  await page.locator('.lane .label').nth(1).click();
+  await page.getByRole('button', { name: 'Curves', exact: true }).click();
+  await page.locator('#curves circle').first().waitFor();
+  await settled(page);
+  await shoot('walk_cycle_curves');
+  await page.getByRole('button', { name: 'Sheet', exact: true }).click();
+  await page.getByRole('button', { name: 'Surface', exact: true }).click();
+  const { joints } = await sessionState(page);
+  await press(`#joint-${joints.findIndex(({ name }) => name === hand)}`);
+  await at(0.6);
+  await press('#ghosts');
+  await page.waitForTimeout(300);
 });
 await picture('studio_gizmo', { ...desk, search: '?sample=winged' }, async (page) => {
   await page.locator('#gizmo').check();

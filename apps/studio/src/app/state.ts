@@ -1,6 +1,6 @@
 // What the page shows, in one place.
 import type {
-  LimberError, Measures, MethodKind, Methods, SessionState, SurfaceModel, Variant,
+  Curve, LimberError, Measures, MethodKind, Methods, Paths, SessionState, SurfaceModel, Variant,
 } from '../engine/messages';
 import { Store } from './store';
 
@@ -34,6 +34,15 @@ export interface Comparison {
   measures: Measures | null;
 }
 
+/** A key of a joint of the chosen clip. */
+export interface KeyPlace {
+  joint: number;
+  seconds: number;
+}
+
+/** What opens below the timeline. */
+export type KeyEditor = 'sheet' | 'curves';
+
 export interface PageState {
   session: SessionState | null;
   model: SurfaceModel | null;
@@ -54,6 +63,15 @@ export interface PageState {
   loop: boolean;
   /** What is posed while a clip is shown becomes a key of it at once. */
   autoKey: boolean;
+  /** Seconds over which a correction of recorded motion comes and goes. */
+  span: number;
+  keyEditor: KeyEditor | null;
+  chosenKeys: readonly KeyPlace[];
+  /** The character before and after the moment that is shown, and the selected joint's path. */
+  ghosts: boolean;
+  /** Of the chosen clip, for the ghosts; of the selected joint, for the curves. */
+  paths: Paths | null;
+  curve: Curve | null;
   gizmo: boolean;
   limits: boolean;
   /** Moving a joint of a template corrects the rig; so does touching the model for the selected one. */
@@ -77,7 +95,8 @@ export type PageStore = Store<PageState>;
 export const createPageStore = (): PageStore => new Store<PageState>({
   session: null, model: null, mode: 'move', display: 'handles', bones: true, wireframe: false,
   selected: null, hovered: null, work: null, notice: null, help: false,
-  seconds: 0, playing: false, speed: 1, loop: true, autoKey: true, gizmo: false, limits: false, correcting: false,
+  seconds: 0, playing: false, speed: 1, loop: true, autoKey: true,
+  span: 0.3, keyEditor: null, chosenKeys: [], ghosts: false, paths: null, curve: null, gizmo: false, limits: false, correcting: false,
   painting: false, brush: { mode: 'add', size: 0.05, strength: 0.5, bothSides: false }, placing: false,
   methods: null, comparison: null, hiddenParts: new Set(), sourceModel: null, sourceShown: true,
 });

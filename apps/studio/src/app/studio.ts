@@ -7,12 +7,12 @@ import { counted } from '../ui/counted';
 import { sorted, withBuffers } from './files';
 import type { Journal, KeptDocument } from './journal';
 import { fromLimberFile, toLimberFile } from './limber_file';
-import { noticeOf, type Notice, type PageStore } from './state';
+import { changedTime, keysThere, type KeyChange } from './keys';
+import { noticeOf, type KeyPlace, type Notice, type PageStore } from './state';
 
 const mostFileSize = 500e6;
 /** Commands that leave the model in another pose, set by hand. */
 const poses = new Set(['end_drag', 'turn_joint', 'move_joint', 'reset_joint', 'reset_pose', 'mirror_pose']);
-const blendSpan = 0.3; // seconds before and after a corrected moment that go along
 const progressDelay = 250; // milliseconds before a wait is shown
 
 const stageNames: Record<string, string> = {
@@ -59,6 +59,9 @@ export class Studio {
   private momentUnderWay = false;
 
   constructor(readonly page: PageStore, private journal: Journal) {
+    page.watch((now, before) => {
+      if (now.keyEditor === 'curves' && (now.selected !== before.selected || now.keyEditor !== before.keyEditor)) void this.guard(() => this.drawClip());
+    });
     this.engine.onChange = (request, place) => journal.add(request, place);
     this.engine.onBusy = (busy) => this.showWork(busy);
     this.engine.onProgress = (stage, fraction) => {
@@ -325,11 +328,8 @@ export class Studio {
   /** With another method, map, or how far hands reach; the clip stays in its place. */
   async retarget(change: { method?: string; reach?: number; contacts?: boolean; map?: string }) {
     const session = this.page.now.session;
-    const clip = session?.clips[session.clip ?? -1], source = clip?.source;
+    const source = session?.clips[session.clip ?? -1]?.source;
     if (!session || !source) return;
-    if (clip.edited && !await this.ask('Make this clip anew?', 'What was changed in it by hand goes. Undo brings it back.', 'Make it anew')) {
-      return this.page.set({}); // lists show again what is chosen
-    }
     const map = change.map ?? JSON.stringify({ matches: session.match });
     await this.run({ do: 'retarget', ...source, ...change, map });
     this.page.set({}); // what was refused is not shown any more
@@ -351,10 +351,45 @@ export class Studio {
     }).finally(() => { this.momentUnderWay = false; });
   }
 
-  /** In a clip with a key for every frame the correction comes and goes, instead of a jump of one frame. */
+  /** On recorded motion the correction comes and goes, instead of a jump of one frame. */
   async setKey() {
-    const { session } = this.page.now;
-    await this.run({ do: 'set_key', span: session?.clips[session.clip ?? -1]?.source ? blendSpan : 0 });
+    const { session, span } = this.page.now;
+    await this.run({ do: 'set_key', span: session?.clips[session.clip ?? -1]?.recorded ? span : 0 });
+  }
+
+  /** They are the chosen ones afterwards. */
+  async editKeys(keys: readonly KeyPlace[], change: KeyChange) {
+    await this.run({ do: 'edit_keys', keys: this.named(keys), ...change });
+    this.page.set({ chosenKeys: keysThere(keys.map(({ joint, seconds }) => ({ joint, seconds: changedTime(seconds, change) })), this.page.now.session) });
+  }
+  async deleteKeys(keys: readonly KeyPlace[]) { await this.run({ do: 'delete_keys', keys: this.named(keys) }); }
+
+  /** From its rest pose: degrees about x, y and z, and metres. */
+  async setJointKey({ joint, seconds }: KeyPlace, turn: Vector, offset: Vector) {
+    await this.run({ do: 'set_joint_key', joint: this.jointName(joint), seconds, turn, offset });
+  }
+
+  private named(keys: readonly KeyPlace[]) {
+    return keys.map(({ joint, seconds }) => ({ joint: this.jointName(joint), seconds }));
+  }
+
+  showGhosts(on: boolean) {
+    this.page.set({ ghosts: on });
+    this.followUp();
+  }
+
+  /** What is drawn of the whole clip goes with it. */
+  private async drawClip() {
+    const { session, ghosts, keyEditor, selected } = this.page.now;
+    const clip = session?.clips[session.clip ?? -1], still = session?.dragged === null;
+    if (!clip || clip.duration <= 0) return this.page.set({ paths: null, curve: null });
+    if (!still) return;
+    const [paths, curve] = await Promise.all([
+      ghosts ? this.engine.ask({ kind: 'paths' }) : null,
+      keyEditor === 'curves' && selected !== null ? this.engine.ask({ kind: 'curve', joint: selected }) : null,
+    ]);
+    const now = this.page.now;
+    if (now.session === session && now.selected === selected && now.ghosts === ghosts && now.keyEditor === keyEditor) this.page.set({ paths, curve });
   }
   async chooseClip(clip: string) { await this.run({ do: 'choose_clip', clip }); }
 
@@ -551,11 +586,12 @@ export class Studio {
       const { selected } = before;
       this.page.set({
         session: state, model, seconds: state.seconds, playing: false, hovered: null,
-        correcting: before.correcting && hasTemplate(state),
+        correcting: before.correcting && hasTemplate(state), chosenKeys: [],
         selected: selected !== null && selected < state.joints.length ? selected : null,
       });
     } else if (state) {
-      this.page.set({ session: state, seconds: state.seconds });
+      const sameClip = state.clip === before.session?.clip;
+      this.page.set({ session: state, seconds: state.seconds, chosenKeys: sameClip ? keysThere(before.chosenKeys, state) : [] });
     }
     if (weights) this.onWeights(weights);
     const another = !model && state !== null && (state.clip !== before.session?.clip || state.seconds !== before.session?.seconds);
@@ -572,6 +608,7 @@ export class Studio {
   private followUp() {
     const { session, comparison } = this.page.now;
     if (comparison && session?.dragged === null) void this.makeVariants();
+    void this.guard(() => this.drawClip());
     void this.guard(async () => {
       const motion = session?.clips[session.clip ?? -1]?.source?.motion ?? '';
       if (motion === this.shownSource) return;

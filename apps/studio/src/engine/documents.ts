@@ -28,6 +28,7 @@ const changesRig = new Set([
   'undo', 'redo',
 ]);
 const changesWeights = new Set(['paint_weights', 'mirror_weights']);
+const drawnRate = 30, mostDrawn = 600; // moments a second of paths and curves, and of a whole clip
 const withModel = /\.(glb|gltf|vrm)$/i;
 const none = new Float32Array();
 
@@ -98,6 +99,14 @@ export class Documents {
   pick(ray: Ray, slope: number) { return orThrow(this.session.pick(ray, slope)).hit; }
   surface(rays: Ray[]) { return rays.map((ray) => orThrow(this.session.surface(ray)).hit); }
   preview(stroke: Command | null) { return orThrow(stroke ? this.session.preview(stroke) : this.session.weights()).weights; }
+  paths(): Answers['paths'] {
+    const { moments, places } = orThrow(this.session.paths(drawnRate, mostDrawn));
+    return { moments, places };
+  }
+  curve(joint: number): Answers['curve'] {
+    const { moments, values } = orThrow(this.session.curve(joint, drawnRate, mostDrawn));
+    return { joint, moments, values };
+  }
   checkPly(bytes: Uint8Array, name: string) { orThrow(this.limber.checkPly(bytes, name)); }
   methods() { return this.limber.methods(); }
   export(format: ExportFormat) { return orThrow(this.session.export(format)).bytes; }

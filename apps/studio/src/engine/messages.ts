@@ -37,6 +37,20 @@ export interface Step {
   weights: WeightArrays | null;
 }
 
+/** The joints of the chosen clip at even moments: x, y, z of each, moment after moment. */
+export interface Paths {
+  moments: number[];
+  places: Float32Array;
+}
+
+/** One joint of the chosen clip at even moments and at its keys, from its rest pose: a turn about x, y and z in degrees,
+ *  an offset in metres. */
+export interface Curve {
+  joint: number;
+  moments: number[];
+  values: Float32Array;
+}
+
 /** A motion on its way to the model: from a file, or one that the engine makes. */
 export type MotionRequest =
   | { kind: 'motion'; bytes: Uint8Array; name: string }
@@ -70,6 +84,8 @@ export type Request =
   | { kind: 'preview'; stroke: Command | null }
   /** The model that the chosen clip's motion came with. */
   | { kind: 'source-model' }
+  | { kind: 'paths' }
+  | { kind: 'curve'; joint: number }
   | { kind: 'methods' }
   /** Beside the document one more for each command, carried out on it; none: the document alone. */
   | { kind: 'compare'; commands: Command[] }
@@ -89,6 +105,8 @@ export interface Answers {
   surface: (SurfaceHit | null)[];
   preview: WeightArrays;
   'source-model': { motion: string; model: SurfaceModel; joints: number } | null;
+  paths: Paths;
+  curve: Curve;
   methods: Methods;
   /** What the document itself measures, each variant or why there is none, and how all stand. */
   compare: { measures: Measures; variants: (Variant | LimberError)[]; stance: Stance };

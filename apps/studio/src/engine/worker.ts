@@ -18,6 +18,8 @@ function answer(documents: Documents, request: Request): Answers[Kind] {
     case 'try-motion': return documents.tryMotion(request.motion, request.named);
     case 'restore': return documents.restore(request.requests);
     case 'source-model': return documents.sourceModel();
+    case 'paths': return documents.paths();
+    case 'curve': return documents.curve(request.joint);
     case 'methods': return documents.methods();
     case 'compare': return documents.compare(request.commands);
     case 'export': return documents.export(request.format);

@@ -3,7 +3,7 @@ import type { PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
 import type { Viewport } from '../scene/viewport';
 import { button, element, offer } from '../ui/dom';
-import { chosenClip } from './timeline';
+import { chosenClip } from './moments';
 
 const across = 4, down = 3;
 const width = 320, height = 240, margin = 8; // pixels

@@ -3,7 +3,7 @@ import type { PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
 import { button, element } from '../ui/dom';
 import { renameIn } from '../ui/rename';
-import { chosenClip } from './timeline';
+import { chosenClip } from './moments';
 
 /** A list that folds; it goes away while it is empty. */
 function group(title: string, id: string, open: boolean) {

@@ -6,7 +6,7 @@ import type { Studio } from '../app/studio';
 import { counted } from '../ui/counted';
 import { element } from '../ui/dom';
 import { compareButton, methodName } from './methods_panel';
-import { chosenClip } from './timeline';
+import { chosenClip } from './moments';
 
 const doubtful = 0.75;
 

@@ -1,16 +1,14 @@
 // The clips of the model: choose, play, scrub, set keys.
 import { togglePlaying } from '../app/player';
-import type { SessionState } from '../engine/messages';
+import { frame } from '../app/keys';
 import type { PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
 import { button, element, setIcon } from '../ui/dom';
+import { keyEditor } from './key_editor';
+import { chosenClip, shownSeconds, type Clip } from './moments';
 
 const mostMarks = 400; // keys that are drawn; recorded motion has one for every frame
-const frame = 1 / 30;
-const room = 2; // seconds that an empty clip shows
-
-type Clip = SessionState['clips'][number];
-export const chosenClip = (session: SessionState | null): Clip | null => session?.clips[session.clip ?? -1] ?? null;
+const spans = [0.1, 0.3, 0.6, 1]; // seconds
 
 /** Of the engine: for models that have their kind of limbs. */
 const sampleMotions = [['walk', 'Walk'], ['jumping-jack', 'Jumping jack'], ['quadruped-walk', 'Walk on four legs']] as const;
@@ -42,6 +40,11 @@ export function timeline(studio: Studio, page: PageStore, openSheet: () => Promi
   const between = element('select', { class: 'select', id: 'interpolation', 'aria-label': 'Between keys' },
     ...[['step', 'Steps'], ['linear', 'Straight'], ['cubic', 'Smooth']].map(([value = '', text = '']) => element('option', { value }, text)));
   between.addEventListener('change', () => void studio.run({ do: 'set_interpolation', interpolation: between.value }));
+  const blend = element('select', { class: 'select', id: 'blend', 'aria-label': 'Seconds over which a correction comes and goes' },
+    ...spans.map((value) => element('option', { value }, `Blend ${value} s`)));
+  blend.addEventListener('change', () => page.set({ span: Number(blend.value) }));
+  const ghosts = button('', () => studio.showGhosts(!page.now.ghosts), { icon: 'ghosts', label: 'Ghosts: before and after, and the selected joint\u2019s path', id: 'ghosts' });
+  const editor = keyEditor(studio, page);
   const sheet = button('', () => void openSheet(), { icon: 'sheet', label: 'Contact sheet: the clip at a glance', id: 'open-sheet' });
   const add = button('New clip', () => void studio.addClip(), { icon: 'add', label: 'A clip of your own poses', id: 'add-clip' });
   const motion = button('Motion', () => file.click(), { icon: 'open', label: 'Play a motion (BVH, GLB) on the model', id: 'open-motion' });
@@ -55,10 +58,10 @@ export function timeline(studio: Studio, page: PageStore, openSheet: () => Promi
 
   const card = element('section', { class: 'card timeline', 'aria-label': 'Timeline', id: 'timeline' },
     element('div', { class: 'row tools' }, play, clips, add, motion, sample, file,
-      element('div', { class: 'row clip-tools' }, speed, loop, sheet, key, auto, erase, between, remove)),
-    element('div', { class: 'row moment' }, element('div', { class: 'track' }, scrub, track), time));
+      element('div', { class: 'row clip-tools' }, speed, loop, sheet, key, auto, blend, erase, between, remove)),
+    element('div', { class: 'row moment' }, editor.toggle, ghosts, element('div', { class: 'track' }, scrub, track), time), editor.root);
   let listed = '';
-  page.watch(({ session, seconds, playing, autoKey, loop: again }) => {
+  page.watch(({ session, seconds, playing, autoKey, span, ghosts: seen, loop: again }) => {
     const clip = chosenClip(session);
     const names = session?.clips.map(({ name }) => name) ?? [];
     if (names.join('\n') !== listed || clips.childElementCount === 0) {
@@ -69,7 +72,12 @@ export function timeline(studio: Studio, page: PageStore, openSheet: () => Promi
     clips.value = clip?.name ?? '';
     clips.disabled = names.length === 0;
     const still = !clip || clip.duration <= 0;
-    play.disabled = loop.disabled = speed.disabled = sheet.disabled = still;
+    play.disabled = loop.disabled = speed.disabled = sheet.disabled = ghosts.disabled = still;
+    ghosts.setAttribute('aria-pressed', String(seen));
+    // Recorded motion has no curves of its own to choose; its corrections have a span.
+    blend.hidden = !clip?.recorded;
+    between.hidden = clip?.recorded ?? false;
+    blend.value = String(span);
     play.setAttribute('aria-pressed', String(playing));
     setIcon(play, playing ? 'pause' : 'play');
     play.setAttribute('aria-label', playing ? 'Pause' : 'Play');
@@ -97,7 +105,6 @@ function keyHere(page: PageStore): number | null {
 function scrubber(studio: Studio, page: PageStore) {
   const scrub = element('input', { type: 'range', id: 'scrub', min: 0, max: 1, step: 0.001, 'aria-label': 'Moment of the clip' });
   const track = element('div', { class: 'keys', id: 'keys' });
-  const span = (clip: Clip) => Math.max(clip.duration, clip.source || clip.keys.length > mostMarks ? 0 : room);
   scrub.addEventListener('input', () => {
     const to = scrub.valueAsNumber; // before the page draws the slider where it was
     page.set({ playing: false });
@@ -110,8 +117,8 @@ function scrubber(studio: Studio, page: PageStore) {
       drawn = '';
       return track.replaceChildren();
     }
-    scrub.max = String(Math.max(span(clip), seconds));
-    scrub.step = clip.source ? '0.001' : String(frame);
+    scrub.max = String(shownSeconds(clip, seconds));
+    scrub.step = clip.recorded ? '0.001' : String(frame);
     scrub.value = String(seconds);
     scrub.setAttribute('aria-valuetext', `${seconds.toFixed(2)} seconds`);
     const now = `${clip.name} ${scrub.max} ${clip.keys}`;

@@ -7,7 +7,7 @@ import type { ModelView } from '../scene/model_view';
 import type { Viewport } from '../scene/viewport';
 import { button, element, offer } from '../ui/dom';
 import { recent } from './recent';
-import { chosenClip } from './timeline';
+import { chosenClip } from './moments';
 
 const filmRate = 30; // pictures a second
 const types = { glb: 'model/gltf-binary', obj: 'model/obj', stl: 'model/stl', bvh: 'text/plain', session: 'model/gltf-binary' };

@@ -7,6 +7,8 @@ export const hoverColor = new Color('#ff6b76');
 export const selectedColor = new Color('#2563eb');
 export const pinColor = new Color('#0f9d6b');
 export const limitColor = new Color('#7c3aed');
+export const beforeColor = new Color('#2b7de0');
+export const afterColor = new Color('#e07b1a');
 export const boneColor = new Color('#374151');
 
 /** Well apart for neighbours in number: steps of the golden angle round the hues. */

@@ -7,6 +7,7 @@ import { Gizmo } from './gizmo';
 import { HandleView } from './handle_view';
 import { LimitView } from './limit_view';
 import { ModelView } from './model_view';
+import { OnionView } from './onion_view';
 import { boneColor, partColor } from './palette';
 import { BrushView } from './brush_view';
 import { PaintInput } from './paint_input';
@@ -24,10 +25,10 @@ export interface Stage {
 
 export function createStage(studio: Studio, page: PageStore): Stage {
   const viewport = new Viewport(), model = new ModelView(), handles = new HandleView();
-  const source = new SourceView(), limits = new LimitView();
+  const source = new SourceView(), limits = new LimitView(), onion = new OnionView();
   const comparison = new ComparisonView(viewport.scene, () => viewport.draw());
-  viewport.tools.push(handles.root, source.root, limits.root);
-  viewport.scene.add(handles.root, model.root, source.root, source.model.root, limits.root);
+  viewport.tools.push(handles.root, source.root, limits.root, onion.root);
+  viewport.scene.add(handles.root, model.root, source.root, source.model.root, limits.root, onion.root);
   source.model.onChange = () => viewport.draw();
   const gizmo = new Gizmo(viewport, handles, studio, page);
   const brush = new BrushView();
@@ -77,6 +78,7 @@ export function createStage(studio: Studio, page: PageStore): Stage {
     }
     limits.root.visible = now.limits && now.display === 'handles';
     source.showModel(now);
+    onion.show(now);
     model.hide(now.hiddenParts);
     if (comparison.show(now) && now.session) {
       const { min, max } = now.session.box;

@@ -38,6 +38,10 @@ const icons = {
   sheet: 'M3 4h14v12H3zM3 10h14M8 4v12M13 4v12',
   eye: 'M2 10s3-5 8-5 8 5 8 5-3 5-8 5-8-5-8-5zM10 8a2 2 0 1 0 .01 0',
   recent: 'M10 3a7 7 0 1 0 .01 0M10 6v4l3 2',
+  rows: 'M3 5h5M3 10h5M3 15h5m5-12 2 2-2 2-2-2zm-1 5 2 2-2 2-2-2zm3 5 2 2-2 2-2-2z',
+  copy: 'M7 7h10v10H7zM13 7V3H3v10h4',
+  paste: 'M5 4h10v13H5zM8 2h4v4H8z',
+  ghosts: 'M4 17V8a4 4 0 0 1 8 0v9l-2-2-2 2-2-2zm10 0V8a4 4 0 0 0-3-3.9',
   frame: 'M3 7V3h4M13 3h4v4M17 13v4h-4M7 17H3v-4',
 };
 export type IconName = keyof typeof icons;

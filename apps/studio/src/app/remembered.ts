@@ -1,0 +1,20 @@
+// What of the page's look this browser keeps from visit to visit.
+const prefix = 'limber.';
+
+/** A browser that keeps nothing, or text that is not what was put there, gives `otherwise`. */
+export function remembered<T extends string>(name: string, known: readonly T[], otherwise: T): T {
+  try {
+    const kept = localStorage.getItem(prefix + name);
+    return known.find((value) => value === kept) ?? otherwise;
+  } catch {
+    return otherwise;
+  }
+}
+
+export function remember(name: string, value: string) {
+  try {
+    localStorage.setItem(prefix + name, value);
+  } catch {
+    // it is as on a first visit then
+  }
+}

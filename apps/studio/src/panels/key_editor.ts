@@ -1,0 +1,116 @@
+// What opens below the timeline: keys as a sheet or as curves, with the buttons that both share.
+import { extentOf, frame, keysOf, sameKey } from '../app/keys';
+import { remember, remembered } from '../app/remembered';
+import type { KeyEditor, KeyPlace, PageStore } from '../app/state';
+import type { Studio } from '../app/studio';
+import type { SessionState } from '../engine/messages';
+import { counted } from '../ui/counted';
+import { button, choice, element } from '../ui/dom';
+import { curveEditor } from './curve_editor';
+import { dopeSheet } from './dope_sheet';
+
+const narrow = '(width <= 760px)';
+const kept = ['sheet', 'curves', 'closed'] as const;
+
+/** Keys that were copied, and the clip that has them. */
+interface Copied {
+  clip: string;
+  keys: readonly KeyPlace[];
+}
+
+/** Copy, paste, move and delete of what is chosen; the sheet's keyboard does the same as the buttons. */
+export class KeyActions {
+  private copied: Copied | null = null;
+
+  constructor(private studio: Studio, private page: PageStore) {}
+
+  get canPaste() { return this.pasted().length > 0; }
+
+  copy() {
+    const { session, chosenKeys } = this.page.now;
+    const clip = session?.clips[session.clip ?? -1]?.name;
+    if (clip === undefined || chosenKeys.length === 0) return;
+    this.copied = { clip, keys: chosenKeys };
+    this.page.set({});
+  }
+
+  /** The first of them comes to the moment that is shown. */
+  paste() {
+    const keys = this.pasted();
+    if (keys.length > 0) void this.studio.editKeys(keys, { shift: this.page.now.seconds - extentOf(keys)[0], copy: true });
+  }
+
+  remove() {
+    const { chosenKeys } = this.page.now;
+    if (chosenKeys.length > 0) void this.studio.deleteKeys(chosenKeys);
+  }
+
+  move(frames: number) {
+    const { chosenKeys } = this.page.now;
+    if (chosenKeys.length === 0) return;
+    const shift = Math.max(frames * frame, -extentOf(chosenKeys)[0]);
+    if (shift !== 0) void this.studio.editKeys(chosenKeys, { shift });
+  }
+
+  scale(times: number) {
+    const { chosenKeys } = this.page.now;
+    if (chosenKeys.length < 2) return;
+    const pivot = extentOf(chosenKeys)[0];
+    void this.studio.editKeys(chosenKeys, { scale: times, pivot });
+  }
+
+  chooseAll() { this.page.set({ chosenKeys: keysOf(this.page.now.session) }); }
+
+  /** Of the clip that is shown, as far as they are still there. */
+  private pasted(): KeyPlace[] {
+    const { session } = this.page.now;
+    if (!session || this.copied?.clip !== session.clips[session.clip ?? -1]?.name) return [];
+    return keysOf(session).filter((key) => this.copied?.keys.some((known) => sameKey(key, known)));
+  }
+}
+
+export function keyEditor(studio: Studio, page: PageStore): { toggle: HTMLButtonElement; root: HTMLElement } {
+  const actions = new KeyActions(studio, page);
+  const stored = matchMedia(narrow).matches ? 'closed' : remembered('keys', kept, 'closed');
+  if (stored !== 'closed') page.set({ keyEditor: stored });
+  let last: KeyEditor = stored === 'curves' ? 'curves' : 'sheet';
+  const open = (editor: KeyEditor | null) => {
+    last = editor ?? last;
+    remember('keys', editor ?? 'closed');
+    page.set({ keyEditor: editor, chosenKeys: editor === null ? [] : page.now.chosenKeys });
+  };
+  const toggle = button('Keys', () => open(page.now.keyEditor === null ? last : null), { icon: 'rows', label: 'Keys of each joint, and their curves', id: 'open-keys' });
+  toggle.setAttribute('aria-controls', 'key-editor');
+  const shown = choice<KeyEditor>('Show keys as', [{ value: 'sheet', text: 'Sheet' }, { value: 'curves', text: 'Curves' }], open);
+  const told = element('output', { class: 'told', id: 'keys-told' });
+  const copy = button('Copy', () => actions.copy(), { icon: 'copy', keys: 'Ctrl+C', id: 'copy-keys' });
+  const paste = button('Paste', () => actions.paste(), { icon: 'paste', label: 'Paste at this moment', keys: 'Ctrl+V', id: 'paste-keys' });
+  const remove = button('Delete', () => actions.remove(), { icon: 'erase', keys: 'Delete', id: 'delete-keys' });
+  const slower = button('2\u00d7', () => actions.scale(2), { label: 'Twice as slow: the chosen keys move apart', id: 'scale-up' });
+  const faster = button('\u00bd\u00d7', () => actions.scale(0.5), { label: 'Twice as fast: the chosen keys move together', id: 'scale-down' });
+  const all = button('All', () => actions.chooseAll(), { label: 'Choose all keys', keys: 'Ctrl+A', id: 'choose-keys' });
+  const sheet = dopeSheet(studio, page, actions), curves = curveEditor(studio, page);
+  const root = element('div', { class: 'key-editor', id: 'key-editor', hidden: true },
+    element('div', { class: 'row tools' }, shown.root, all, copy, paste, remove, slower, faster, told), sheet, curves);
+  page.watch(({ session, keyEditor: editor, chosenKeys }) => {
+    const clip = session?.clips[session.clip ?? -1] ?? null;
+    root.hidden = editor === null || !clip;
+    toggle.disabled = !clip;
+    toggle.setAttribute('aria-expanded', String(!root.hidden));
+    if (root.hidden) return;
+    shown.show(editor ?? 'sheet');
+    sheet.hidden = editor !== 'sheet';
+    curves.hidden = editor !== 'curves';
+    copy.disabled = remove.disabled = chosenKeys.length === 0;
+    slower.disabled = faster.disabled = chosenKeys.length < 2 || extentOf(chosenKeys)[1] - extentOf(chosenKeys)[0] < frame / 2;
+    paste.disabled = !actions.canPaste;
+    all.disabled = keysOf(session).length === 0;
+    told.textContent = tell(session, chosenKeys);
+  });
+  return { toggle, root };
+}
+
+function tell(session: SessionState | null, chosen: readonly KeyPlace[]): string {
+  if (chosen.length > 0) return `${counted(chosen.length, 'key')} chosen`;
+  return counted(keysOf(session).length, 'key');
+}

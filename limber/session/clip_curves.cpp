@@ -1,0 +1,99 @@
+#include "limber/session/clip_curves.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "limber/core/error.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kDegrees = 180 / EIGEN_PI;
+
+template <class Visit>
+void eachPose(const Movement& movement, const Skeleton& skeleton, std::span<const double> moments, const Visit& visit) {
+  if (moments.empty()) return;
+  const Clip* clip = movement.clip();
+  if (!clip) throw Error(ErrorCode::kBadArgument, "no clip is chosen");
+  Pose pose = restPose(skeleton);
+  for (const double seconds : moments) {
+    sampleClip(*clip, seconds, pose);
+    visit(pose);
+  }
+}
+
+// Of up to a whole turn, as the quaternion's sign says.
+Vec3 rotationVector(const Quat& rotation) {
+  const double sine = rotation.vec().norm();
+  if (sine < 1e-12) return Vec3::Zero();
+  return rotation.vec() / sine * (2 * std::atan2(sine, rotation.w()) * kDegrees);
+}
+
+// Whole turns are added until it is nearest to where it was.
+Vec3 unwound(const Vec3& turn, const Vec3& last) {
+  const double angle = turn.norm();
+  if (angle < 1e-9) return turn;
+  const Vec3 axis = turn / angle;
+  return turn + axis * 360 * std::round((axis.dot(last) - angle) / 360);
+}
+
+}  // namespace
+
+std::vector<double> evenMoments(const Movement& movement, double framesPerSecond, std::size_t most) {
+  if (!(framesPerSecond > 0) || !std::isfinite(framesPerSecond)) {
+    throw Error(ErrorCode::kBadArgument, "a rate is above 0 frames a second");
+  }
+  const Clip* clip = movement.clip();
+  const double duration = clip ? clip->duration() : 0;
+  if (!(duration > 0)) return {};
+  const double wanted = std::ceil(duration * framesPerSecond - 1e-6), least = 1;
+  const double steps = std::clamp(wanted, least, std::max(least, static_cast<double>(most) - 1));
+  std::vector<double> moments;
+  for (double k = 0; k <= steps; ++k) moments.push_back(k == steps ? duration : duration * k / steps);
+  return moments;
+}
+
+std::vector<double> curveMoments(const Movement& movement, Index joint, double framesPerSecond, std::size_t most) {
+  std::vector<double> moments = evenMoments(movement, framesPerSecond, most);
+  if (!movement.chosen) return moments;
+  for (const JointKeyTimes& of : editableKeys(movement.clips[*movement.chosen])) {
+    if (of.joint == joint) moments.insert(moments.end(), of.seconds.begin(), of.seconds.end());
+  }
+  std::sort(moments.begin(), moments.end());
+  moments.erase(std::unique(moments.begin(), moments.end()), moments.end());
+  return moments;
+}
+
+std::vector<Vec3> jointPaths(const Movement& movement, const Skeleton& skeleton, std::span<const double> moments) {
+  std::vector<Vec3> paths;
+  eachPose(movement, skeleton, moments, [&](const Pose& pose) {
+    const std::vector<Vec3> places = posePositions(skeleton, pose);
+    paths.insert(paths.end(), places.begin(), places.end());
+  });
+  return paths;
+}
+
+std::vector<CurvePoint> jointCurve(const Movement& movement, const Skeleton& skeleton, Index joint,
+                                   std::span<const double> moments) {
+  if (joint >= skeleton.jointCount()) throw Error(ErrorCode::kBadArgument, "there is no such joint");
+  const Transform& rest = skeleton.joints[joint].rest;
+  std::vector<CurvePoint> curve;
+  eachPose(movement, skeleton, moments, [&](const Pose& pose) {
+    Quat turn = rest.rotation.conjugate() * pose.locals[joint].rotation;
+    if (curve.empty() && turn.w() < 0) turn.coeffs() *= -1;
+    const Vec3 vector = rotationVector(turn);
+    curve.push_back({curve.empty() ? vector : unwound(vector, curve.back().turn),
+                     pose.locals[joint].translation - rest.translation});
+  });
+  return curve;
+}
+
+void placeFromRest(Transform& local, const Transform& rest, const CurvePoint& point) {
+  const double degrees = point.turn.norm();
+  const Vec3 axis = degrees > 0 ? Vec3(point.turn / degrees) : Vec3(Vec3::UnitX());
+  local.rotation = (rest.rotation * Quat(Eigen::AngleAxisd(degrees / kDegrees, axis))).normalized();
+  local.translation = rest.translation + point.offset;
+}
+
+}  // namespace limber
