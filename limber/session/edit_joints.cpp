@@ -125,13 +125,25 @@ class ClipCarrier {
     }
   }
 
-  Clip carry(const Clip& clip) const {
+  // Tracks are those of `clip`; joints that hang elsewhere move as in `shown`.
+  Clip carry(const Clip& clip, const Clip& shown) const {
     Clip result;
     result.name = clip.name;
     result.translations = keptTracks(clip.translations, kept_);
     result.rotations = keptTracks(clip.rotations, kept_);
     result.scales = keptTracks(clip.scales, kept_);
-    if (!moved_.empty()) bake(clip, result);
+    if (!moved_.empty()) bake(shown, result);
+    return result;
+  }
+
+  // What it says of joints that hang elsewhere is part of the clip below it from now on.
+  ClipLayer carry(const ClipLayer& layer) const {
+    ClipLayer result;
+    for (const LayerTrack& track : layer.tracks) {
+      if (kept_[track.joint]) result.tracks.push_back({*kept_[track.joint], track.keys});
+    }
+    std::sort(result.tracks.begin(), result.tracks.end(),
+              [](const LayerTrack& a, const LayerTrack& b) { return a.joint < b.joint; });
     return result;
   }
 
@@ -252,7 +264,10 @@ void takeJointEdit(SessionState& state, const JointEdit& edit) {
   state.pose = carriedPose(from, state.pose, to, edit.before);
   const ClipCarrier carrier(from, to, edit.before);
   for (SessionClip& entry : state.movement.clips) {
-    entry.clip = std::make_shared<const Clip>(carrier.carry(*entry.clip));
+    const std::shared_ptr<const Clip> shown = entry.clip;
+    entry.clip = std::make_shared<const Clip>(carrier.carry(*shown, *shown));
+    if (entry.base) entry.base = std::make_shared<const Clip>(carrier.carry(*entry.base, *shown));
+    entry.layer = carrier.carry(entry.layer);
     if (entry.source) entry.source = carriedSource(*std::move(entry.source), from, to);
   }
   std::vector<std::optional<Index>> after(from.jointCount());
