@@ -83,6 +83,9 @@ export async function loadLimber(wasmBinary, listeners = {}) {
     },
     /** The methods there are, by what they do. @type {() => Methods} */
     methods: () => call(engine, engine._limber_methods, []).account,
+    /** The motions that the engine makes itself; the seconds are those of one repetition.
+     *  @type {() => { name: string, summary: string, seconds: number }[]} */
+    sampleMotions: () => call(engine, engine._limber_sample_motions, []).account,
     /** Is a PLY file whole? For readers that would not notice. @type {(file: Uint8Array, name: string) => { ok: true } | Failure} */
     checkPly: (file, name) => call(engine, engine._limber_check_ply, [], file, name),
     createSession: () => createSession(engine),

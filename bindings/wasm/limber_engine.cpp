@@ -14,6 +14,7 @@
 #include "limber/pipeline/auto_rig.h"
 #include "limber/pipeline/report_json.h"
 #include "limber/retarget/retarget_method.h"
+#include "limber/samples/sample_motions.h"
 
 namespace {
 
@@ -103,6 +104,19 @@ LIMBER_EXPORT CallResult* limber_methods() {
                        {"solver", list(limber::ikMethods())},
                        {"retargeting", list(limber::retargetMethods())}};
     return {true, {}, limber::dumpReport(json, -1)};
+  });
+}
+
+// The motions that the engine makes itself; the seconds are those of one repetition.
+LIMBER_EXPORT CallResult* limber_sample_motions() {
+  return guarded({}, []() -> CallResult {
+    Json motions = Json::array();
+    for (const limber::SampleMotion& motion : limber::sampleMotions()) {
+      motions.push_back({{"name", std::string(motion.name)},
+                         {"summary", std::string(motion.summary)},
+                         {"seconds", motion.seconds}});
+    }
+    return {true, {}, limber::dumpReport(motions, -1)};
   });
 }
 

@@ -78,14 +78,15 @@ void poseLeg(const Stance& stance, const std::string& side, Poser& poser) {
   const auto toSide = [&](const Vec3& v) { return left ? v : mirroredOffset(v); };
   const auto turnToSide = [&](const Quat& q) { return left ? q : Quat(q.w(), q.x(), -q.y(), -q.z()); };
   TwoBone leg;
-  leg.start = stance.pelvis + stance.hips * Vec3(poser.offset(side + "UpperLeg").x(), 0, 0);
-  leg.middle = leg.start + stance.hips * poser.offset(side + "LowerLeg");
-  leg.end = leg.middle + stance.hips * poser.offset(side + "Foot");
+  const Quat hips = rotationOf(stance.hips);
+  leg.start = stance.pelvis + hips * Vec3(poser.offset(side + "UpperLeg").x(), 0, 0);
+  leg.middle = leg.start + hips * poser.offset(side + "LowerLeg");
+  leg.end = leg.middle + hips * poser.offset(side + "Foot");
   leg.target = toSide(foot.ankle);
   leg.pole = leg.start + turnToSide(about(Vec3::UnitY(), foot.outward)) * Vec3::UnitZ();
   const TwoBoneTurns turns = solveTwoBone(leg);
-  poser.turn(side + "UpperLeg", turns.start * stance.hips);
-  poser.turn(side + "LowerLeg", turns.middle * stance.hips);
+  poser.turn(side + "UpperLeg", turns.start * hips);
+  poser.turn(side + "LowerLeg", turns.middle * hips);
   poser.turn(side + "Foot", turnToSide(footTurn(foot)));
   poser.turn(side + "Toes", turnToSide(footTurn(foot) * about(Vec3::UnitX(), -foot.toes)));
 }
@@ -94,14 +95,15 @@ void poseArm(const Stance& stance, const std::string& side, Poser& poser) {
   const bool left = side == "left";
   const ArmPlace& arm = stance.arms[left ? 0 : 1];
   const auto turnToSide = [&](const Quat& q) { return left ? q : Quat(q.w(), q.x(), -q.y(), -q.z()); };
+  const Quat chest = rotationOf(stance.chest);
   // The collar takes a part of what lifts the arm.
-  poser.turn(side + "Shoulder",
-             stance.chest * turnToSide(about(Vec3::UnitZ(), 0.15 * std::max(arm.raise - kPi / 4, 0.0))));
-  const Quat upper = about(Vec3::UnitX(), -arm.swing) * about(Vec3::UnitZ(), arm.raise - kPi / 2);
-  poser.turn(side + "UpperArm", stance.chest * turnToSide(upper));
+  poser.turn(side + "Shoulder", chest * turnToSide(about(Vec3::UnitZ(), 0.15 * std::max(arm.raise - kPi / 4, 0.0))));
+  const Quat upper =
+      about(Vec3::UnitX(), -arm.swing) * about(Vec3::UnitZ(), arm.raise - kPi / 2) * about(Vec3::UnitX(), -arm.twist);
+  poser.turn(side + "UpperArm", chest * turnToSide(upper));
   const Quat lower = upper * about(Vec3::UnitY(), -arm.elbow);
-  poser.turn(side + "LowerArm", stance.chest * turnToSide(lower));
-  poser.turn(side + "Hand", stance.chest * turnToSide(lower));
+  poser.turn(side + "LowerArm", chest * turnToSide(lower));
+  poser.turn(side + "Hand", chest * turnToSide(lower));
 }
 
 }  // namespace
@@ -115,18 +117,23 @@ Skeleton figureSkeleton() {
   return skeleton;
 }
 
+Quat rotationOf(const BodyTurn& turn) {
+  return about(Vec3::UnitY(), turn.yaw) * about(Vec3::UnitX(), turn.pitch) * about(Vec3::UnitZ(), turn.roll);
+}
+
 Vec3 turnedFoot(const FootPlace& foot, const Vec3& toPoint) {
   return footTurn(foot) * toPoint;
 }
 
 Pose poseOf(const Skeleton& figure, const Stance& stance) {
   Poser poser(figure);
-  poser.pose().locals[figure.find("hips").value()].translation = stance.pelvis - stance.hips * kHipsToPelvis;
-  poser.turn("hips", stance.hips);
-  poser.turn("spine", stance.hips.slerp(0.5, stance.chest));
-  poser.turn("chest", stance.chest);
-  poser.turn("neck", stance.chest.slerp(0.5, stance.head));
-  poser.turn("head", stance.head);
+  const Quat hips = rotationOf(stance.hips), chest = rotationOf(stance.chest), head = rotationOf(stance.head);
+  poser.pose().locals[figure.find("hips").value()].translation = stance.pelvis - hips * kHipsToPelvis;
+  poser.turn("hips", hips);
+  poser.turn("spine", hips.slerp(0.5, chest));
+  poser.turn("chest", chest);
+  poser.turn("neck", chest.slerp(0.5, head));
+  poser.turn("head", head);
   for (const char* side : {"left", "right"}) {
     poseLeg(stance, side, poser);
     poseArm(stance, side, poser);

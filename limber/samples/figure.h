@@ -7,6 +7,13 @@
 
 namespace limber {
 
+// Radians: forward about +X, to the figure's left about +Y, about +Z; of a part of a body, in the order yaw, pitch,
+// roll.
+struct BodyTurn {
+  double pitch = 0, yaw = 0, roll = 0;
+};
+Quat rotationOf(const BodyTurn& turn);
+
 // Where a foot is: its sole turned about +Y (toes outwards) and its pitch (toes up), radians, and how far the toes are
 // bent up against that.
 struct FootPlace {
@@ -14,16 +21,17 @@ struct FootPlace {
   double outward = 0, pitch = 0, toes = 0;
 };
 
-// Radians: from hanging outwards (a quarter turn is a T-pose), then forward; the elbow's bend.
+// Radians: from hanging outwards (a quarter turn is a T-pose), then forward; the elbow's bend, and how far the bent
+// forearm is turned from forwards to upwards about an upper arm that is held out.
 struct ArmPlace {
-  double raise = 0, swing = 0, elbow = 0;
+  double raise = 0, swing = 0, elbow = 0, twist = 0;
 };
 
 // Both sides as on the left: x outwards.
 struct Stance {
-  Vec3 pelvis = Vec3::Zero();  // the middle between the upper legs' joints
-  Quat hips = Quat::Identity(), chest = Quat::Identity(), head = Quat::Identity();  // in the world
-  std::array<FootPlace, 2> feet;                                                    // left, right
+  Vec3 pelvis = Vec3::Zero();     // the middle between the upper legs' joints
+  BodyTurn hips, chest, head;     // in the world
+  std::array<FootPlace, 2> feet;  // left, right
   std::array<ArmPlace, 2> arms;
 };
 

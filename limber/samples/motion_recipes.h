@@ -1,16 +1,75 @@
-// Sample motions as recipes: how the figure stands at each moment.
+// Sample motions as recipes: how the figure stands at each moment. What walks is a gait, a table of where and when feet
+// are planted; what else there is passes through key poses.
 #pragma once
+
+#include <span>
 
 #include "limber/samples/figure.h"
 
 namespace limber {
 
-// All go on forever, and repeat (sample_motions.cpp says when), but for the way of the walks.
-Stance walkAt(double seconds);
-Stance jumpingJackAt(double seconds);
+// A way to go on two legs. Shares are of a stride (two steps), from a foot's touch; the right foot is half a stride
+// behind the left.
+struct BipedGait {
+  double seconds;   // of a stride
+  double stride;    // metres forward a stride
+  double turn = 0;  // radians about +Y a stride
+
+  // Each foot. The duty factor is the share that it is on the ground: above 0.5 both feet are at times, below it none
+  // is, and the body flies. `flat` and `heelUp` are when the sole is flat down and when the heel leaves the ground;
+  // `ahead` is how far before the body a foot comes down.
+  double dutyFactor, flat, heelUp, ahead;
+  double side, outward;                   // from the middle, metres; toes outwards, radians
+  double touchPitch, offPitch, offSpeed;  // radians (toes up) at touch and at toe-off, and radians a stride then
+  double lift, liftAt, swingPitch = 0;    // in the air: metres, when as a share of the swing, radians more
+
+  double hipHeight, bob = 0;   // metres; the bob is of gaits that never fly
+  double sway = 0, surge = 0;  // metres to the standing foot, and forward and back
+  // As they are held, and how far they swing to and fro with the legs.
+  BodyTurn hips = {}, hipsSwing = {}, chest = {}, chestSwing = {}, head = {}, headSwing = {};
+  ArmPlace arm = {}, armSwing = {};
+};
+
+extern const BipedGait kWalk, kRun, kSneak, kTurn;
+
+Stance gaitAt(const BipedGait& gait, double seconds);
+
+// The stance at a moment. From the first key that is `airborne` to the next that is not the body is in free fall, so
+// the height of its pelvis between these is not used.
+struct KeyPose {
+  double seconds;
+  Stance stance;
+  bool airborne = false;
+};
+
+// Of a cycle of `period` seconds, keys in order from 0. What two keys after each other have in common does not move
+// between them: toes that are planted stand still.
+Stance keyedStance(std::span<const KeyPose> keys, double period, double seconds);
+
+struct KeyedMotion {
+  double period;  // seconds
+  std::span<const KeyPose> (*keys)();
+};
+
+extern const KeyedMotion kJumpingJack, kJump, kIdle, kWave, kSitDown;
 
 // With the names and about the proportions of the template quadruped, standing, facing +Z.
 Skeleton quadrupedSkeleton();
-Pose quadrupedWalkAt(const Skeleton& quadruped, double seconds);
+
+// A way to go on four legs; shares are of a stride.
+struct QuadrupedGait {
+  double seconds, stride;                             // of a stride; metres
+  double dutyFactor;                                  // the share that each leg is on the ground
+  double leftHind, leftFront, rightHind, rightFront;  // when each leg touches
+  double onGround;          // the share of each bounce in which any leg is on the ground; 1 for a gait that never flies
+  int bounces;              // of the body a stride
+  double lift, sinks;       // metres: of a paw in the air; of the body below its rest pose where it leaves the ground
+  double bob, sway, swing;  // metres, metres, radians to the side with the hind legs
+  double rock, flex;        // radians: the trunk's pitch, and how far the back bends and stretches, once a stride
+};
+
+extern const QuadrupedGait kQuadrupedWalk, kTrot, kGallop;
+
+Pose quadrupedGaitAt(const QuadrupedGait& gait, const Skeleton& quadruped, double seconds);
 
 }  // namespace limber

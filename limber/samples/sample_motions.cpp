@@ -1,26 +1,65 @@
 #include "limber/samples/sample_motions.h"
 
-#include <array>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "limber/core/names.h"
+#include "limber/core/numbers.h"
 #include "limber/samples/motion_recipes.h"
 
 namespace limber {
 
 namespace {
 
-template <Stance (*at)(double seconds)>
-Pose figureAt(const Skeleton& figure, double seconds) {
-  return poseOf(figure, at(seconds));
+template <const BipedGait& gait>
+Pose gaitPose(const Skeleton& figure, double seconds) {
+  return poseOf(figure, gaitAt(gait, seconds));
 }
 
-constexpr std::array<SampleMotion, 3> kMotions = {{
-    {"walk", "a person who walks", 1.1, &figureSkeleton, &figureAt<walkAt>},
-    {"jumping-jack", "a person who does jumping jacks", 1.2, &figureSkeleton, &figureAt<jumpingJackAt>},
-    {"quadruped-walk", "an animal of --template quadruped that walks", 0.9, &quadrupedSkeleton, &quadrupedWalkAt},
-}};
+template <const KeyedMotion& motion>
+Pose keyedPose(const Skeleton& figure, double seconds) {
+  return poseOf(figure, keyedStance(motion.keys(), motion.period, seconds));
+}
+
+template <const QuadrupedGait& gait>
+Pose quadrupedPose(const Skeleton& quadruped, double seconds) {
+  return quadrupedGaitAt(gait, quadruped, seconds);
+}
+
+template <const BipedGait& gait>
+SampleMotion onTwoLegs(std::string_view name, std::string_view summary) {
+  const double wholeTurn = gait.turn == 0 ? 1 : 2 * kPi / gait.turn;  // strides until it faces the same way again
+  return {name, summary, wholeTurn * gait.seconds, &figureSkeleton, &gaitPose<gait>};
+}
+
+template <const KeyedMotion& motion>
+SampleMotion keyed(std::string_view name, std::string_view summary) {
+  return {name, summary, motion.period, &figureSkeleton, &keyedPose<motion>};
+}
+
+template <const QuadrupedGait& gait>
+SampleMotion onFourLegs(std::string_view name, std::string_view summary) {
+  return {name, summary, gait.seconds, &quadrupedSkeleton, &quadrupedPose<gait>};
+}
+
+const std::vector<SampleMotion>& allMotions() {
+  static const std::vector<SampleMotion> motions = {
+      onTwoLegs<kWalk>("walk", "a person who walks"),
+      onTwoLegs<kRun>("run", "a person who runs"),
+      onTwoLegs<kSneak>("sneak", "a person who sneaks, low and slow"),
+      keyed<kJump>("jump", "a person who jumps up"),
+      keyed<kIdle>("idle", "a person who stands, breathes and looks round"),
+      keyed<kWave>("wave", "a person who waves a hand"),
+      keyed<kSitDown>("sit-down", "a person who sits down and gets up again"),
+      onTwoLegs<kTurn>("turn", "a person who turns round on the spot"),
+      keyed<kJumpingJack>("jumping-jack", "a person who does jumping jacks"),
+      onFourLegs<kQuadrupedWalk>("quadruped-walk", "an animal of --template quadruped that walks"),
+      onFourLegs<kTrot>("trot", "an animal that trots"),
+      onFourLegs<kGallop>("gallop", "an animal that gallops"),
+  };
+  return motions;
+}
 
 constexpr double kRate = 60;  // frames a second
 constexpr int kRepetitions = 3;
@@ -32,11 +71,11 @@ bool isEnd(const Joint& joint) {
 }  // namespace
 
 std::span<const SampleMotion> sampleMotions() {
-  return kMotions;
+  return allMotions();
 }
 
 Motion makeSampleMotion(std::string_view name) {
-  const SampleMotion& recipe = findByName(kMotions, "sample", name);
+  const SampleMotion& recipe = findByName(allMotions(), "sample", name);
   Motion motion;
   motion.name = recipe.name;
   motion.framesPerSecond = kRate;

@@ -1,16 +1,42 @@
-// Ways between two states that start and end smoothly.
+// Curves between two states that start and end smoothly.
 #pragma once
 
 namespace limber {
 
-// The polynomial of degree 5 from `from`, where it has that speed and acceleration, to `to`, where it rests; `share`
-// 0 to 1. Speed and acceleration per whole way.
+// A value with its speed and its acceleration, per second.
+template <typename Value>
+struct Knot {
+  Value at, speed, acceleration;
+};
+
+// The polynomial of degree 5 (quintic Hermite) between two knots that are `seconds` apart. Between two knots of one
+// parabola it is that parabola.
+template <typename Value>
+Value between(const Knot<Value>& from, const Knot<Value>& to, double seconds, double time) {
+  const double s = time / seconds, s2 = s * s, s3 = s2 * s;
+  const Value way = to.at - from.at, v0 = seconds * from.speed, v1 = seconds * to.speed;
+  const Value a0 = seconds * seconds * from.acceleration, a1 = seconds * seconds * to.acceleration;
+  return from.at + s * v0 + 0.5 * s2 * a0 + s3 * (10 * way - 6 * v0 - 4 * v1 - 1.5 * a0 + 0.5 * a1) +
+         s3 * s * (-15 * way + 8 * v0 + 7 * v1 + 1.5 * a0 - a1) +
+         s3 * s2 * (6 * way - 3 * v0 - 3 * v1 - 0.5 * a0 + 0.5 * a1);
+}
+
+// From `from`, where it has that speed and acceleration, to `to`, where it rests; `share` 0 to 1. Speed and
+// acceleration per whole way.
 template <typename Value>
 Value smoothWay(const Value& from, const Value& speed, const Value& acceleration, const Value& to, double share) {
-  const double s = share, s2 = s * s, s3 = s2 * s;
-  const Value way = to - from;
-  return from + s * speed + 0.5 * s2 * acceleration + s3 * (10 * way - 6 * speed - 1.5 * acceleration) +
-         s3 * s * (-15 * way + 8 * speed + 1.5 * acceleration) + s3 * s2 * (6 * way - 3 * speed - 0.5 * acceleration);
+  const Value none = 0 * from;
+  return between<Value>({from, speed, acceleration}, {to, none, none}, 1, share);
+}
+
+inline constexpr double kGravity = 9.81;  // metres a second squared
+
+// How high a body is above where it leaves the ground, metres, that is on the ground for the share `onGround` of each
+// `period` (seconds), pressed down as by a spring, and in free fall for the rest; `phase` 0 to 1 from its landing.
+inline double bounceHeight(double phase, double onGround, double period) {
+  const double ground = onGround * period, air = period - ground, time = phase * period;
+  const Knot<double> landing{0, -0.5 * kGravity * air, -kGravity}, leaving{0, 0.5 * kGravity * air, -kGravity};
+  return time < ground ? between(landing, leaving, ground, time) : between(leaving, landing, air, time - ground);
 }
 
 // 0 to 1 for x from 0 to 1, and resting there.
