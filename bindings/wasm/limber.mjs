@@ -38,7 +38,8 @@ import createEngine from './limber_engine.mjs';
  *             limits: { [joint: string]: { type: string, [field: string]: unknown } },
  *             limit_outlines: { joint: number, length: number, closed: boolean, rim: Vector[] }[],
  *             solver: string, ik: boolean, limited: boolean, targets: { joint: number, position: Vector }[],
- *             pins: { joint: string, position: Vector }[], dragged: number | null,
+ *             pins: { joint: string, position: Vector }[], locked: number[], edited_rig: boolean,
+ *             dragged: number | null,
  *             posed: boolean, undo: string | null, redo: string | null,
  *             warnings: { kind: string, message: string, where: string, count: number }[] }} SessionState
  *
@@ -55,6 +56,10 @@ import createEngine from './limber_engine.mjs';
  * @typedef {{ ok: true, state: SessionState | null, skin: Float32Array } | Failure} StepResult
  * @typedef {{ joint: number, on_handle: boolean, position: Vector, distance: number,
  *             inside: Vector }} PickHit
+ * @typedef {{ dab: [number, number, number], position: Vector, normal: Vector, joint: number,
+ *             inside: Vector }} SurfaceHit dab: the same
+ *   point as PaintWeights names it
+ * @typedef {{ weights: Float32Array, joints: Uint16Array }} WeightArrays four influences for each vertex
  * @typedef {{ positions: Float32Array, normals: Float32Array, uvs: Float32Array, triangles: Uint32Array,
  *             weights: Float32Array, joints: Uint16Array,
  *             parts: { name: string, first: number, count: number, material: number | null }[],
@@ -162,6 +167,16 @@ function createSession(engine, handle = engine._limber_session_new()) {
       const result = call(engine, engine._limber_session_pick, [handle, ...ray.origin, ...ray.direction, slope]);
       return result.ok ? { ok: true, hit: result.account } : result;
     },
+    /** Where a brush meets the surface. @type {(ray: Ray) => { ok: true, hit: SurfaceHit | null } | Failure} */
+    surface: (ray) => {
+      const result = call(engine, engine._limber_session_surface, [handle, ...ray.origin, ...ray.direction]);
+      return result.ok ? { ok: true, hit: result.account } : result;
+    },
+    /** @type {() => { ok: true, weights: WeightArrays } | Failure} */
+    weights: () => weightArrays(call(engine, engine._limber_session_weights, [handle])),
+    /** The weights that a stroke would leave; nothing changes.
+     *  @type {(stroke: Command) => { ok: true, weights: WeightArrays } | Failure} */
+    preview: (stroke) => weightArrays(call(engine, engine._limber_session_preview, [handle], JSON.stringify(stroke))),
     /** The joints' matrices, as run() gives them. @type {() => { ok: true, skin: Float32Array } | Failure} */
     skin: () => {
       const result = call(engine, engine._limber_session_skin, [handle]);
@@ -191,6 +206,12 @@ function createSession(engine, handle = engine._limber_session_new()) {
     },
     free: () => engine._limber_session_free(handle),
   };
+}
+
+function weightArrays(result) {
+  if (!result.ok) return result;
+  const { buffer, byteLength } = result.bytes, floats = (byteLength * 2) / 3;
+  return { ok: true, weights: { weights: new Float32Array(buffer, 0, floats / 4), joints: new Uint16Array(buffer, floats) } };
 }
 
 function surfaceModel(bytes, { arrays, textures, ...rest }) {

@@ -93,11 +93,36 @@ void strongest(const limber::SkinWeights& weights, std::vector<std::uint16_t>& j
   }
 }
 
+// What a page draws the weights with: #S * 4 floats, then as many joints in 16 bits.
+Bytes weightsArray(const limber::SkinWeights& weights) {
+  std::vector<std::uint16_t> joints;
+  std::vector<float> values;
+  strongest(weights, joints, values);
+  Bytes bytes = bytesOf(values);
+  const Bytes behind = bytesOf(joints);
+  bytes.insert(bytes.end(), behind.begin(), behind.end());
+  return bytes;
+}
+
+limber::Command commandOf(const char* json, std::size_t size) {
+  limber::Warnings warnings;
+  return limber::commandFromJson(limber::parseJson({json, size}, warnings));
+}
+
+Json hitJson(const std::optional<limber::SurfaceHit>& hit) {
+  if (!hit) return nullptr;
+  return {{"dab", {hit->dab.triangle, hit->dab.u, hit->dab.v}},
+          {"position", {hit->position.x(), hit->position.y(), hit->position.z()}},
+          {"normal", {hit->normal.x(), hit->normal.y(), hit->normal.z()}},
+          {"joint", hit->joint},
+          {"inside", {hit->inside.x(), hit->inside.y(), hit->inside.z()}}};
+}
+
 // The surface as bound, and what it looks like. The account says where in the bytes each array is: all of 4 byte
 // elements first, then joints, then the textures' files.
 CallResult modelOf(const limber::SessionState& state) {
   const limber::RiggedModel& rig = *state.rig;
-  const limber::ExportMesh mesh = limber::exportMesh(rig.asset, rig.geometry);
+  const limber::ExportMesh mesh = limber::exportMesh(*rig.asset, *rig.geometry);
   CallResult result{true, {}, {}};
   Json arrays = Json::object();
   const auto add = [&](const char* name, const Bytes& bytes) {
@@ -209,8 +234,7 @@ LIMBER_EXPORT CallResult* limber_session_open(SessionHandle* handle, int limbsFo
 
 LIMBER_EXPORT CallResult* limber_session_run(SessionHandle* handle, const char* json, std::size_t size) {
   return guarded({}, [&] {
-    limber::Warnings warnings;
-    const limber::Command command = limber::commandFromJson(limber::parseJson({json, size}, warnings));
+    const limber::Command command = commandOf(json, size);
     limber::Progress progress(reportProgress);
     handle->session.run(command, progress);
     return stateAfter(handle->session, command);
@@ -266,6 +290,27 @@ LIMBER_EXPORT CallResult* limber_session_pick(const SessionHandle* handle, doubl
                                               double dy, double dz, double slope) {
   return guarded({}, [&]() -> CallResult {
     return {true, {}, textOf(hitJson(handle->session.pick({{ox, oy, oz}, {dx, dy, dz}}, slope)))};
+  });
+}
+
+// Where a brush meets the surface.
+LIMBER_EXPORT CallResult* limber_session_surface(const SessionHandle* handle, double ox, double oy, double oz,
+                                                 double dx, double dy, double dz) {
+  return guarded({}, [&]() -> CallResult {
+    return {true, {}, textOf(hitJson(handle->session.pickSurface({{ox, oy, oz}, {dx, dy, dz}})))};
+  });
+}
+
+// The weights that there are, and those that a stroke would leave.
+LIMBER_EXPORT CallResult* limber_session_weights(const SessionHandle* handle) {
+  return guarded({}, [&]() -> CallResult { return {true, weightsArray(handle->session.state().rig->weights), "{}"}; });
+}
+LIMBER_EXPORT CallResult* limber_session_preview(const SessionHandle* handle, const char* json, std::size_t size) {
+  return guarded({}, [&]() -> CallResult {
+    const limber::Command command = commandOf(json, size);
+    const auto* stroke = std::get_if<limber::PaintWeights>(&command);
+    if (!stroke) throw limber::Error(limber::ErrorCode::kBadArgument, "only painting has a preview");
+    return {true, weightsArray(handle->session.previewPaint(*stroke)), "{}"};
   });
 }
 

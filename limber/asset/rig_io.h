@@ -44,7 +44,7 @@ void attachRig(Asset& asset, const Geometry& geometry, const Skeleton& skeleton,
 
 // New weights for the skeleton that the asset has (skeleton = readSkeleton(asset)): joints, skins, clips stay as they
 // are, but that a skin is given the joints that its meshes now use and it lacks. Meshes that hung on a joint without a
-// skin get one.
+// skin get one; those of a node without any weights stay as they are.
 void replaceWeights(Asset& asset, const Geometry& geometry, const AssetSkeleton& skeleton, const SkinWeights& weights);
 
 }  // namespace limber

@@ -1,6 +1,7 @@
 // New weights for the skeleton that a document has.
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -206,6 +207,26 @@ class Reweighter {
   std::vector<Index> touched_;   // skins made or extended here
 };
 
+bool isHeld(const PrimitiveInstance& part, const SkinWeights& weights) {
+  const std::span<const float> all = weights.weights;
+  const std::span<const float> own =
+      all.subspan(std::size_t{part.firstVertex} * weights.slots, std::size_t{part.vertexCount} * weights.slots);
+  return std::any_of(own.begin(), own.end(), [](float weight) { return weight > 0; });
+}
+
+// The parts of the nodes that show anything that a joint holds; the vertices themselves are not needed.
+Geometry heldParts(const Geometry& geometry, const SkinWeights& weights) {
+  std::set<std::pair<Index, Index>> held;
+  for (const PrimitiveInstance& part : geometry.instances) {
+    if (isHeld(part, weights)) held.insert({part.node, part.copy});
+  }
+  Geometry result;
+  for (const PrimitiveInstance& part : geometry.instances) {
+    if (held.count({part.node, part.copy}) > 0) result.instances.push_back(part);
+  }
+  return result;
+}
+
 }  // namespace
 
 void replaceWeights(Asset& asset, const Geometry& geometry, const AssetSkeleton& skeleton, const SkinWeights& weights) {
@@ -221,7 +242,8 @@ void replaceWeights(Asset& asset, const Geometry& geometry, const AssetSkeleton&
     }
   }
   const AccessorSweep unused(asset);
-  Reweighter(asset, geometry, skeleton, weights).run();
+  const Geometry held = heldParts(geometry, weights);
+  Reweighter(asset, held, skeleton, weights).run();
   unused.sweep(asset);
 }
 

@@ -30,7 +30,7 @@ struct BipedGait {
   ArmPlace arm = {}, armSwing = {};
 };
 
-extern const BipedGait kWalk, kRun, kSneak, kTurn;
+extern const BipedGait kWalkGait, kRunGait, kSneakGait, kTurnGait;
 
 Stance gaitAt(const BipedGait& gait, double seconds);
 

@@ -45,14 +45,14 @@ SampleMotion onFourLegs(std::string_view name, std::string_view summary) {
 
 const std::vector<SampleMotion>& allMotions() {
   static const std::vector<SampleMotion> motions = {
-      onTwoLegs<kWalk>("walk", "a person who walks"),
-      onTwoLegs<kRun>("run", "a person who runs"),
-      onTwoLegs<kSneak>("sneak", "a person who sneaks, low and slow"),
+      onTwoLegs<kWalkGait>("walk", "a person who walks"),
+      onTwoLegs<kRunGait>("run", "a person who runs"),
+      onTwoLegs<kSneakGait>("sneak", "a person who sneaks, low and slow"),
       keyed<kJump>("jump", "a person who jumps up"),
       keyed<kIdle>("idle", "a person who stands, breathes and looks round"),
       keyed<kWave>("wave", "a person who waves a hand"),
       keyed<kSitDown>("sit-down", "a person who sits down and gets up again"),
-      onTwoLegs<kTurn>("turn", "a person who turns round on the spot"),
+      onTwoLegs<kTurnGait>("turn", "a person who turns round on the spot"),
       keyed<kJumpingJack>("jumping-jack", "a person who does jumping jacks"),
       onFourLegs<kQuadrupedWalk>("quadruped-walk", "an animal of --template quadruped that walks"),
       onFourLegs<kTrot>("trot", "an animal that trots"),

@@ -163,8 +163,8 @@ INSTANTIATE_TEST_SUITE_P(All, SampleMotions, ::testing::ValuesIn(sampleMotions()
 TEST(Walk, IsSymmetric) {
   const Skeleton figure = figureSkeleton();
   for (double seconds = 0; seconds < 1.1; seconds += 0.07) {
-    const std::vector<Affine> now = poseGlobals(figure, poseOf(figure, gaitAt(kWalk, seconds))),
-                              later = poseGlobals(figure, poseOf(figure, gaitAt(kWalk, seconds + 0.55)));
+    const std::vector<Affine> now = poseGlobals(figure, poseOf(figure, gaitAt(kWalkGait, seconds))),
+                              later = poseGlobals(figure, poseOf(figure, gaitAt(kWalkGait, seconds + 0.55)));
     for (const char* joint : {"UpperArm", "Hand", "LowerLeg", "Foot", "Toes"}) {
       const Vec3 left = now[figure.find(std::string("left") + joint).value()].translation(),
                  right = later[figure.find(std::string("right") + joint).value()].translation();

@@ -20,14 +20,15 @@ namespace {
 constexpr int kCommandsVersion = 1;
 
 // In the order of the variant.
-constexpr std::array<std::string_view, 39> kNames = {
-    "open_sample",       "open_file",   "set_handles",   "choose_methods", "pin_joint",   "unpin_joint",
-    "begin_drag",        "update_drag", "turn_drag",     "end_drag",       "cancel_drag", "turn_joint",
-    "move_joint",        "set_ik",      "set_target",    "clear_target",   "set_limits",  "reset_joint",
-    "reset_pose",        "mirror_pose", "set_rest_pose", "rename_joint",   "add_motion",  "add_sample_motion",
-    "retarget",          "add_clip",    "remove_clip",   "rename_clip",    "choose_clip", "set_time",
-    "set_key",           "move_key",    "delete_key",    "edit_keys",      "delete_keys", "set_joint_key",
-    "set_interpolation", "undo",        "redo"};
+constexpr std::array<std::string_view, 45> kNames = {
+    "open_sample",       "open_file",     "set_handles",   "choose_methods", "pin_joint",   "unpin_joint",
+    "begin_drag",        "update_drag",   "turn_drag",     "end_drag",       "cancel_drag", "turn_joint",
+    "move_joint",        "set_ik",        "set_target",    "clear_target",   "set_limits",  "reset_joint",
+    "reset_pose",        "mirror_pose",   "set_rest_pose", "rename_joint",   "add_motion",  "add_sample_motion",
+    "retarget",          "add_clip",      "remove_clip",   "rename_clip",    "choose_clip", "set_time",
+    "set_key",           "move_key",      "delete_key",    "edit_keys",      "delete_keys", "set_joint_key",
+    "set_interpolation", "paint_weights", "lock_weights",  "mirror_weights", "add_joint",   "delete_joint",
+    "reparent_joint",    "undo",          "redo"};
 static_assert(kNames.size() == std::variant_size_v<Command>);
 
 // The fields of each command, said once for reading and writing.
@@ -124,6 +125,39 @@ void visitFields(Visitor& field, RenameJoint& c) {
   field("name", c.name);
 }
 template <class Visitor>
+void visitFields(Visitor& field, PaintWeights& c) {
+  field.optional("joint", c.joint);
+  field("mode", c.mode);
+  field("strength", c.strength);
+  field("radius", c.radius);
+  field("mirrored", c.mirrored);
+  field("dabs", c.dabs);
+}
+template <class Visitor>
+void visitFields(Visitor& field, LockWeights& c) {
+  field("joint", c.joint);
+  field("on", c.on);
+}
+template <class Visitor>
+void visitFields(Visitor& field, MirrorWeights& c) {
+  field("from", c.from);
+}
+template <class Visitor>
+void visitFields(Visitor& field, AddJoint& c) {
+  field("parent", c.parent);
+  field("position", c.position);
+  field.optional("name", c.name);
+}
+template <class Visitor>
+void visitFields(Visitor& field, DeleteJoint& c) {
+  field("joint", c.joint);
+}
+template <class Visitor>
+void visitFields(Visitor& field, ReparentJoint& c) {
+  field("joint", c.joint);
+  field("parent", c.parent);
+}
+template <class Visitor>
 void visitFields(Visitor& field, AddMotion& c) {
   field("file", c.file);
 }
@@ -203,6 +237,11 @@ constexpr std::array<std::pair<DragMode, std::string_view>, 2> kDragModes = {
 constexpr std::array<std::pair<MirrorFrom, std::string_view>, 3> kMirrorSides = {
     {{MirrorFrom::kBoth, "both"}, {MirrorFrom::kLeft, "left"}, {MirrorFrom::kRight, "right"}}};
 
+constexpr std::array<std::pair<PaintMode, std::string_view>, 4> kPaintModes = {{{PaintMode::kAdd, "add"},
+                                                                                {PaintMode::kSubtract, "subtract"},
+                                                                                {PaintMode::kSmooth, "smooth"},
+                                                                                {PaintMode::kReplace, "replace"}}};
+
 constexpr std::array<std::pair<Interpolation, std::string_view>, 3> kInterpolations = {
     {{Interpolation::kStep, "step"}, {Interpolation::kLinear, "linear"}, {Interpolation::kCubic, "cubic"}}};
 
@@ -211,6 +250,9 @@ const auto& wordsOf(DragMode) {
 }
 const auto& wordsOf(MirrorFrom) {
   return kMirrorSides;
+}
+const auto& wordsOf(PaintMode) {
+  return kPaintModes;
 }
 const auto& wordsOf(Interpolation) {
   return kInterpolations;
@@ -237,6 +279,9 @@ class Writer {
     } else if constexpr (std::is_same_v<T, std::vector<KeyOfJoint>>) {
       json_[key] = Json::array();
       for (const KeyOfJoint& one : value) json_[key].push_back({{"joint", one.joint}, {"seconds", one.seconds}});
+    } else if constexpr (std::is_same_v<T, std::vector<SurfaceDab>>) {
+      Json& list = json_[key] = Json::array();
+      for (const SurfaceDab& dab : value) list.push_back(Json::array({dab.triangle, dab.u, dab.v}));
     } else {
       json_[key] = value;
     }
@@ -308,6 +353,15 @@ class Reader {
       entry("seconds", one.seconds);
       entry.refuseOthers();
       value.push_back(std::move(one));
+    }
+  }
+  // [[triangle, u, v], ...]
+  void operator()(const char* key, std::vector<SurfaceDab>& value) {
+    known_.push_back(key);
+    const JsonView list = object_.array(key);
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      if (!list[i].json().is_array() || list[i].size() != 3) list[i].fail("is not a triangle with two numbers");
+      value.push_back({list[i][0].asIndex(kNoIndex), list[i][1].asNumber(), list[i][2].asNumber()});
     }
   }
   template <class E>

@@ -122,6 +122,52 @@ struct RenameJoint {
   std::string joint, name;
 };
 
+// Paints weights of a joint with a round brush: add and subtract by `strength` at its middle, replace towards it,
+// smooth evens out those of all joints. What the joint gets the others give in proportion, and take what it loses;
+// where it is alone, the joint above takes it. Locked joints keep theirs. The brush is as wide on the surface as bound,
+// and as far along it: it does not reach what is only near through the air. All dabs are one stroke, in which each
+// place is painted once.
+enum class PaintMode { kAdd, kSubtract, kSmooth, kReplace };
+// A point of the bound surface, on a triangle of the rig's Geometry: (1 - u - v, u, v) of its corners.
+struct SurfaceDab {
+  Index triangle = 0;
+  double u = 0, v = 0;
+
+  bool operator==(const SurfaceDab&) const = default;
+};
+struct PaintWeights {
+  std::string joint;  // may be empty where the brush smooths
+  PaintMode mode = PaintMode::kAdd;
+  double strength = 0.5;  // 0 to 1
+  double radius = 0.1;    // metres
+  bool mirrored = false;  // on the model's other side, too, for the joint's mirror image
+  std::vector<SurfaceDab> dabs;
+};
+// A locked joint's weights stay when others are painted.
+struct LockWeights {
+  std::string joint;
+  bool on = true;
+};
+// One side's weights for the other side; left is the mirror plane's positive side.
+struct MirrorWeights {
+  MirrorFrom from = MirrorFrom::kLeft;
+};
+
+// Corrections of the rig that there is; another rig of the model does not have them. The new joint is where `position`
+// is as the model stands, moves nothing until weights are painted for it, and gets a name where it is given none. What
+// a deleted joint moved the joint above moves. A joint that hangs on another one stays where it is.
+struct AddJoint {
+  std::string parent;
+  Vec3 position = Vec3::Zero();
+  std::string name;
+};
+struct DeleteJoint {
+  std::string joint;
+};
+struct ReparentJoint {
+  std::string joint, parent;
+};
+
 // A file with motions (BVH, or a model with animations), asked of the session's resolver; it is called as the file is,
 // without folder and extension, with a number behind it where that is taken.
 struct AddMotion {
@@ -205,7 +251,8 @@ using Command =
                  EndDrag, CancelDrag, TurnJoint, MoveJoint, SetIk, SetTarget, ClearTarget, SetLimits, ResetJoint,
                  ResetPose, MirrorPose, SetRestPose, RenameJoint, AddMotion, AddSampleMotion, RetargetMotion, AddClip,
                  RemoveClip, RenameClip, ChooseClip, SetTime, SetKey, MoveKey, DeleteKey, EditKeys, DeleteKeys,
-                 SetJointKey, SetInterpolation, Undo, Redo>;
+                 SetJointKey, SetInterpolation, PaintWeights, LockWeights, MirrorWeights, AddJoint, DeleteJoint,
+                 ReparentJoint, Undo, Redo>;
 
 // "set_handles", as in JSON.
 std::string_view commandName(const Command& command);

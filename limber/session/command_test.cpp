@@ -15,13 +15,13 @@ const Ray kRay{{0.1, 0.2, 3}, {0.25, -0.125, -1}};
 
 // One of each kind, no field at its default.
 std::vector<Command> oneOfEach() {
-  return {OpenSample{"biped"},
-          OpenFile{"models/fox.glb"},
+  return {OpenSample{"biped", true},
+          OpenFile{"models/fox.glb", true},
           SetHandles{37},
           ChooseMethods{"other", "another"},
           PinJoint{"leftHand", {0.5, 1, -0.25}},
           UnpinJoint{"leftHand"},
-          BeginDrag{"hand.L", DragMode::kTurn, kRay, {0, 0.5, -1}},
+          BeginDrag{"hand.L", DragMode::kTurn, kRay, {0, 0.5, -1}, {"head", "foot.R"}, true},
           UpdateDrag{kRay, {1, 0, -1}},
           TurnDrag{{0, 2, 1}, -35.5},
           EndDrag{},
@@ -52,6 +52,12 @@ std::vector<Command> oneOfEach() {
           DeleteKeys{{{"Knee", 0.5}}},
           SetJointKey{"Knee", 0.5, {0, 30, 0}, {0, 0.1, 0}},
           SetInterpolation{Interpolation::kCubic},
+          PaintWeights{"head", PaintMode::kReplace, 0.75, 0.2, true, {{7, 0.25, 0.5}, {8, 0, 1}}},
+          LockWeights{"head", false},
+          MirrorWeights{MirrorFrom::kRight},
+          AddJoint{"head", {0, 2, 0}, "hat"},
+          DeleteJoint{"hat"},
+          ReparentJoint{"head", "hips"},
           Undo{},
           Redo{}};
 }
@@ -68,6 +74,10 @@ TEST(Command, JsonKeepsEveryCommandAndEveryField) {
   EXPECT_EQ(std::get<PinJoint>(back[4]).position, Vec3(0.5, 1, -0.25));
   EXPECT_EQ(std::get<BeginDrag>(back[6]).ray.direction, kRay.direction);
   EXPECT_EQ(std::get<BeginDrag>(back[6]).mode, DragMode::kTurn);
+  EXPECT_EQ(std::get<BeginDrag>(back[6]).with, std::get<BeginDrag>(commands[6]).with);
+  EXPECT_TRUE(std::get<BeginDrag>(back[6]).mirrored);
+  EXPECT_TRUE(std::get<OpenSample>(back[0]).limbsFollow);
+  EXPECT_TRUE(std::get<OpenFile>(back[1]).limbsFollow);
   EXPECT_EQ(std::get<TurnDrag>(back[8]).degrees, -35.5);
   EXPECT_EQ(std::get<SetIk>(back[13]).solver, "fabrik");
   EXPECT_EQ(std::get<TurnJoint>(back[11]).axis.y(), 1.0 / 3);
@@ -78,6 +88,10 @@ TEST(Command, JsonKeepsEveryCommandAndEveryField) {
   EXPECT_EQ(std::get<RetargetMotion>(back[24]).clip, "fast");
   EXPECT_EQ(std::get<RetargetMotion>(back[24]).reach, 0.25);
   EXPECT_FALSE(std::get<RetargetMotion>(back[24]).contacts);
+  EXPECT_EQ(std::get<PaintWeights>(back[37]).dabs, std::get<PaintWeights>(commands[37]).dabs);
+  EXPECT_EQ(std::get<AddJoint>(back[40]).name, "hat");
+  EXPECT_EQ(std::get<ReparentJoint>(back[42]).parent, "hips");
+  EXPECT_EQ(std::get<PaintWeights>(back[37]).mode, PaintMode::kReplace);
   EXPECT_EQ(std::get<MoveKey>(back[31]).to, 0.75);
   ASSERT_EQ(std::get<EditKeys>(back[33]).keys.size(), 2u);
   EXPECT_EQ(std::get<EditKeys>(back[33]).keys[1].joint, "Elbow");

@@ -8,8 +8,8 @@ namespace limber {
 
 namespace {
 
-constexpr double kTolerance = 0.01;       // of the longest side, for joints that are images
-constexpr double kLeastWithImages = 0.8;  // of the joints, for a skeleton that is its own mirror image
+constexpr double kMirrorTolerance = 0.01;  // of the longest side, for joints that are images
+constexpr double kLeastWithImages = 0.8;   // of the joints, for a skeleton that is its own mirror image
 
 MirrorPlane planeOfSkeleton(const RiggedModel& rig) {
   const std::vector<Affine> rest = restGlobals(rig.skeleton());
@@ -44,22 +44,6 @@ Affine halfWay(const Affine& a, const Affine& b, const Vec3& pivot) {
 
 }  // namespace
 
-BodyMirror bodyMirror(const RiggedModel& rig) {
-  const double tolerance = kTolerance * longestSide(rig);
-  if (const std::optional<MirrorMap> map = findMirror({rig.geometry.positions, rig.geometry.triangles})) {
-    MirrorPlane plane = map->plane;
-    if (rig.anatomy.axes.left().dot(plane.normal) < 0) plane = {-plane.normal, -plane.offset};
-    return {plane, mirrorJoints(rig.skeleton(), plane, tolerance)};
-  }
-  const MirrorPlane plane = planeOfSkeleton(rig);
-  std::vector<Index> images = mirrorJoints(rig.skeleton(), plane, tolerance);
-  const auto without = std::count(images.begin(), images.end(), kNoIndex);
-  if (static_cast<double>(without) > (1 - kLeastWithImages) * static_cast<double>(images.size())) {
-    throw Error(ErrorCode::kUnsupported, "neither the model nor its skeleton is its own mirror image", rig.asset.name);
-  }
-  return {plane, std::move(images)};
-}
-
 std::vector<Index> mirrorJoints(const Skeleton& skeleton, const MirrorPlane& plane, double tolerance) {
   const std::vector<Affine> globals = restGlobals(skeleton);
   const Affine mirror = reflection(plane);
@@ -79,6 +63,23 @@ std::vector<Index> mirrorJoints(const Skeleton& skeleton, const MirrorPlane& pla
     if (nearest[j] != kNoIndex && nearest[nearest[j]] != j) images[j] = kNoIndex;
   }
   return images;
+}
+
+RigMirror mirrorOfRig(const RiggedModel& rig, MirrorPlane plane) {
+  if (rig.anatomy.axes.left().dot(plane.normal) < 0) plane = {-plane.normal, -plane.offset};
+  return {plane, mirrorJoints(rig.skeleton(), plane, kMirrorTolerance * longestSide(rig))};
+}
+
+RigMirror mirrorOfRig(const RiggedModel& rig) {
+  if (const std::optional<MirrorMap> map = findMirror({rig.geometry->positions, rig.geometry->triangles})) {
+    return mirrorOfRig(rig, map->plane);
+  }
+  RigMirror mirror = mirrorOfRig(rig, planeOfSkeleton(rig));
+  const auto without = std::count(mirror.joints.begin(), mirror.joints.end(), kNoIndex);
+  if (static_cast<double>(without) > (1 - kLeastWithImages) * static_cast<double>(mirror.joints.size())) {
+    throw Error(ErrorCode::kUnsupported, "neither the model nor its skeleton is its own mirror image", rig.asset->name);
+  }
+  return mirror;
 }
 
 Pose mirrorPose(const Skeleton& skeleton, const Pose& pose, const MirrorPlane& plane, const std::vector<Index>& images,

@@ -10,19 +10,20 @@
 
 namespace limber {
 
-// The two sides of a body.
-struct BodyMirror {
-  MirrorPlane plane;          // its normal points to the body's own left
-  std::vector<Index> images;  // #J, as mirrorJoints gives them
-};
-
-// By the surface where that is its own mirror image, else by the skeleton alone: across the body, through its roots.
-// Throws Error kUnsupported where neither is. Cost: O(#S).
-BodyMirror bodyMirror(const RiggedModel& rig);
-
 // #J: the joint that stands, in rest pose, at the mirror image of each joint, to within `tolerance` metres; itself on
 // the plane, kNoIndex where there is none. Images are mutual.
 std::vector<Index> mirrorJoints(const Skeleton& skeleton, const MirrorPlane& plane, double tolerance);
+
+// The two sides of a body.
+struct RigMirror {
+  MirrorPlane plane;          // its normal points to the body's own left
+  std::vector<Index> joints;  // #J, the images as above, to within a hundredth of the model's longest side
+};
+RigMirror mirrorOfRig(const RiggedModel& rig, MirrorPlane plane);
+
+// By the surface where that is its own mirror image, else by the skeleton alone: across the body, through its roots.
+// Throws Error kUnsupported where neither is. Cost: O(#S).
+RigMirror mirrorOfRig(const RiggedModel& rig);
 
 // Each joint moves from its rest as its image moved, mirrored; those of the side that is taken from stay, and so do
 // joints without an image; left is where the plane's normal points. Joints on the plane take the mean of their motion

@@ -73,17 +73,28 @@ std::optional<PickHit> pickHandle(const Ray& ray, std::span<const Vec3> centers,
   return best;
 }
 
-std::optional<PickHit> pickSurface(const Ray& ray, const RiggedModel& model, const Pose& pose) {
-  const TriMesh posed{posedPositions(model, pose), model.geometry.triangles};
+SurfacePicker::SurfacePicker(const RiggedModel& model, const Pose& pose)
+    : model_(model), posed_{posedPositions(model, pose), model.geometry->triangles}, tree_(posed_) {}
+
+std::optional<SurfaceHit> SurfacePicker::hit(const Ray& ray) const {
   const Vec3 direction = ray.direction.normalized();
   constexpr double kAnyFar = std::numeric_limits<double>::infinity();
-  const Bvh tree(posed);
-  const auto hit = tree.firstHit(ray.origin, direction, kAnyFar);
+  const auto met = tree_.firstHit(ray.origin, direction, kAnyFar);
+  if (!met) return std::nullopt;
+  const auto exit = tree_.firstHit(met->position + kBehind * met->distance * direction, direction, kAnyFar);
+  const Triangle& corners = posed_.triangles[met->triangle];
+  const Vec3 a = posed_.position(corners[0]), b = posed_.position(corners[1]), c = posed_.position(corners[2]);
+  SurfaceHit hit{{met->triangle, met->weights[1], met->weights[2]}, met->position, (b - a).cross(c - a).normalized()};
+  if (hit.normal.dot(direction) > 0) hit.normal = -hit.normal;
+  hit.joint = strongestJoint(model_.weights, corners, met->weights);
+  hit.inside = exit ? Vec3(0.5 * (met->position + exit->position)) : met->position;
+  return hit;
+}
+
+std::optional<PickHit> pickSurface(const Ray& ray, const RiggedModel& model, const Pose& pose) {
+  const std::optional<SurfaceHit> hit = SurfacePicker(model, pose).hit(ray);
   if (!hit) return std::nullopt;
-  const auto exit = tree.firstHit(hit->position + kBehind * hit->distance * direction, direction, kAnyFar);
-  const Vec3 inside = exit ? Vec3(0.5 * (hit->position + exit->position)) : hit->position;
-  const Index joint = strongestJoint(model.weights, posed.triangles[hit->triangle], hit->weights);
-  return PickHit{joint, false, hit->position, hit->distance, inside};
+  return PickHit{hit->joint, false, hit->position, (hit->position - ray.origin).norm(), hit->inside};
 }
 
 }  // namespace limber

@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 
+#include "limber/mesh/bvh.h"
 #include "limber/session/command.h"
 #include "limber/session/rigged_model.h"
 
@@ -24,6 +25,28 @@ struct PickHit {
 // centers, radii  #J spheres
 std::optional<PickHit> pickHandle(const Ray& ray, std::span<const Vec3> centers, std::span<const double> radii,
                                   double slope);
+
+// A point of the posed surface, for a brush.
+struct SurfaceHit {
+  SurfaceDab dab;  // the same point on the surface as bound
+  Vec3 position = Vec3::Zero();
+  Vec3 normal = Vec3::UnitY();  // of the triangle, towards where the ray came from
+  Index joint = 0;              // that holds it most
+  Vec3 inside = Vec3::Zero();   // as of PickHit
+};
+
+// A tree of the surface as it stands, for many rays.
+class SurfacePicker {
+ public:
+  // `model` must outlive it. Cost: O(#F log #F).
+  SurfacePicker(const RiggedModel& model, const Pose& pose);
+  std::optional<SurfaceHit> hit(const Ray& ray) const;
+
+ private:
+  const RiggedModel& model_;
+  TriMesh posed_;
+  Bvh tree_;
+};
 
 // The point of the posed surface that the ray meets first. Cost: O(#F log #F), a tree of the surface as it stands.
 std::optional<PickHit> pickSurface(const Ray& ray, const RiggedModel& model, const Pose& pose);

@@ -1,6 +1,7 @@
 #include "limber/session/rigged_model.h"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include <fmt/format.h>
@@ -17,23 +18,8 @@ namespace {
 
 constexpr double kShareOfBone = 1.0 / 6, kLeastShare = 1e-3;
 
-std::shared_ptr<RiggedModel> readModel(Asset asset) {
-  auto model = std::make_shared<RiggedModel>();
-  model->asset = std::move(asset);
-  model->geometry = collectGeometry(model->asset);
-  model->normals = readNormals(model->asset, model->geometry);
-  model->binding = readSkeleton(model->asset);
-  model->anatomy = readAnatomy(model->skeleton());
-  model->inverseBind = inverseBindOf(model->skeleton());
-  model->weights = readWeights(model->asset, model->geometry, model->binding);
-  normalizeWeights(model->weights);
-  model->home = restPose(model->skeleton());
-  model->radii = handleRadii(model->skeleton(), longestSide(*model));
-  return model;
-}
-
-void readOwnClips(RiggedModel& model) {
-  for (Clip& clip : readClips(model.asset, model.binding, model.asset.warnings)) {
+void readOwnClips(RiggedModel& model, Asset& document) {
+  for (Clip& clip : readClips(document, model.binding, document.warnings)) {
     if (clip.translations.empty() && clip.rotations.empty() && clip.scales.empty()) continue;
     const std::string wanted = clip.name.empty() ? "clip" : clip.name;
     const auto taken = [&](const std::shared_ptr<const Clip>& known) { return known->name == clip.name; };
@@ -45,6 +31,37 @@ void readOwnClips(RiggedModel& model) {
   }
 }
 
+// All of the document but its clips; the document itself is yet to be given.
+std::shared_ptr<RiggedModel> readRig(const Asset& document) {
+  auto model = std::make_shared<RiggedModel>();
+  model->geometry = std::make_shared<const Geometry>(collectGeometry(document));
+  model->normals = std::make_shared<const std::vector<Vec3f>>(readNormals(document, *model->geometry));
+  model->binding = readSkeleton(document);
+  model->anatomy = readAnatomy(model->skeleton());
+  model->inverseBind = inverseBindOf(model->skeleton());
+  model->weights = readWeights(document, *model->geometry, model->binding);
+  normalizeWeights(model->weights);
+  model->home = restPose(model->skeleton());
+  model->radii = handleRadii(model->skeleton(), longestSide(*model));
+  return model;
+}
+
+// A document has weights for all vertices that a node shows, or for none.
+void completeWeights(SkinWeights& weights, const Geometry& geometry) {
+  const auto used = [&](std::size_t v) { return weights.weights[v * weights.slots] > 0; };
+  std::map<std::pair<Index, Index>, bool> held;
+  for (const PrimitiveInstance& part : geometry.instances) {
+    bool& any = held[{part.node, part.copy}];
+    for (std::size_t i = 0; i < part.vertexCount && !any; ++i) any = used(part.firstVertex + i);
+  }
+  for (const PrimitiveInstance& part : geometry.instances) {
+    if (!held[{part.node, part.copy}]) continue;
+    for (std::size_t v = part.firstVertex; v < std::size_t{part.firstVertex} + part.vertexCount; ++v) {
+      if (!used(v)) weights.weights[v * weights.slots] = 1;
+    }
+  }
+}
+
 bool holds(std::span<const std::shared_ptr<const Clip>> clips, const std::shared_ptr<const Clip>& clip) {
   return std::find(clips.begin(), clips.end(), clip) != clips.end();
 }
@@ -53,14 +70,22 @@ bool holds(std::span<const std::shared_ptr<const Clip>> clips, const std::shared
 
 double longestSide(const RiggedModel& rig) {
   Box box;
-  for (const Vec3f& position : rig.geometry.positions) box.add(position.cast<double>());
+  for (const Vec3f& position : rig.geometry->positions) box.add(position.cast<double>());
   return box.longestSide();
+}
+
+std::shared_ptr<RiggedModel> readRiggedModel(Asset document) {
+  std::shared_ptr<RiggedModel> model = readRig(document);
+  model->asset = std::make_shared<const Asset>(std::move(document));
+  return model;
 }
 
 std::shared_ptr<const RiggedModel> openRiggedModel(const Asset& source) {
   if (!hasRig(source)) throw Error(ErrorCode::kBadArgument, "the model has no rig", source.name);
-  std::shared_ptr<RiggedModel> model = readModel(source.clone());
-  readOwnClips(*model);
+  Asset document = source.clone();
+  std::shared_ptr<RiggedModel> model = readRig(document);
+  readOwnClips(*model, document);
+  model->asset = std::make_shared<const Asset>(std::move(document));
   return model;
 }
 
@@ -70,26 +95,34 @@ std::shared_ptr<const RiggedModel> renameJoint(const RiggedModel& model, Index j
   if (known && *known != joint) {
     throw Error(ErrorCode::kBadArgument, fmt::format("there is a joint called '{}' already", name));
   }
-  auto renamed = std::make_shared<RiggedModel>();
-  renamed->asset = model.asset.clone();
-  renamed->asset.json()["nodes"][model.binding.jointNode[joint]]["name"] = name;
-  renamed->binding = model.binding;
+  auto renamed = std::make_shared<RiggedModel>(model);
+  Asset document = model.asset->clone();
+  document.json()["nodes"][model.binding.jointNode[joint]]["name"] = name;
+  renamed->asset = std::make_shared<const Asset>(std::move(document));
   renamed->binding.skeleton.joints[joint].name = name;
   renamed->anatomy = readAnatomy(renamed->skeleton());
-  renamed->inverseBind = model.inverseBind;
-  renamed->radii = model.radii;
-  renamed->geometry = model.geometry;
-  renamed->normals = model.normals;
-  renamed->weights = model.weights;
-  renamed->home = model.home;
-  renamed->report = model.report;
-  renamed->clips = model.clips;
   renamed->renamed = true;
   return renamed;
 }
 
+std::shared_ptr<const RiggedModel> withWeights(const RiggedModel& model, SkinWeights weights) {
+  auto painted = std::make_shared<RiggedModel>(model);
+  painted->weights = std::move(weights);
+  painted->edited = painted->painted = true;
+  return painted;
+}
+
+Asset documentOf(const RiggedModel& model) {
+  Asset document = model.asset->clone();
+  if (!model.painted) return document;
+  SkinWeights weights = model.weights;
+  completeWeights(weights, *model.geometry);
+  replaceWeights(document, *model.geometry, model.binding, weights);
+  return document;
+}
+
 Asset assetWithClips(const RiggedModel& model, const Pose& pose, std::span<const std::shared_ptr<const Clip>> clips) {
-  Asset asset = model.asset.clone();
+  Asset asset = documentOf(model);
   writeNodePose(asset, model.binding, pose);
   const bool untouched = std::all_of(model.clips.begin(), model.clips.end(),
                                      [&](const std::shared_ptr<const Clip>& own) { return holds(clips, own); });
@@ -110,9 +143,9 @@ std::shared_ptr<const RiggedModel> makeRiggedModel(const Asset& source, const Au
                                                    Progress& progress) {
   Asset asset = source.clone();
   AutoRigReport report = autoRig(asset, options, progress);
-  std::shared_ptr<RiggedModel> model = readModel(std::move(asset));
+  std::shared_ptr<RiggedModel> model = readRiggedModel(std::move(asset));
   model->report = std::move(report);
-  model->home = readNodePose(model->asset, model->binding);  // the bind pose but for rounding, and no node changes
+  model->home = readNodePose(*model->asset, model->binding);  // the bind pose but for rounding, and no node changes
   return model;
 }
 
@@ -145,7 +178,7 @@ bool samePose(const Pose& a, const Pose& b) {
 std::vector<Vec3f> posedPositions(const RiggedModel& model, const Pose& pose) {
   std::vector<Affine> transforms(model.inverseBind.size());
   skinTransforms(poseGlobals(model.skeleton(), pose), model.inverseBind, transforms);
-  std::vector<Vec3f> positions = model.geometry.positions;
+  std::vector<Vec3f> positions = model.geometry->positions;
   const Deformer& deformer = findDeformer("linear-blend");
   std::vector<float> scratch(deformer.scratchSize(model.skeleton().jointCount()));
   deformer.deform({positions, {}, model.weights, transforms, {}}, {positions, {}}, scratch);

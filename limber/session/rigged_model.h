@@ -16,28 +16,32 @@
 
 namespace limber {
 
-// Never changed once made, so that a session's undo steps share it.
+// Never changed once made, so that a session's undo steps share it. Copies share the document and the surface: a rig
+// whose weights alone are others costs no more than those.
 struct RiggedModel {
-  Asset asset;  // with the rig, its joints' nodes as in the file
+  std::shared_ptr<const Asset> asset;  // with the rig, its joints' nodes as in the file; see documentOf for its weights
   AssetSkeleton binding;
-  Anatomy anatomy;                  // of the skeleton at rest
-  std::vector<Affine> inverseBind;  // #J
-  std::vector<double> radii;        // #J metres, of the handles to take hold of; above 0
-  Geometry geometry;                // #S vertices in world space, bound
-  std::vector<Vec3f> normals;       // #S, zero where the file has none
-  SkinWeights weights;              // #S, each used vertex sums to 1
-  Pose home;                        // as the joints stand in a fresh rig's file; the bind pose of a rig that was there
+  Anatomy anatomy;                                    // of the skeleton at rest
+  std::vector<Affine> inverseBind;                    // #J
+  std::vector<double> radii;                          // #J metres, of the handles to take hold of; above 0
+  std::shared_ptr<const Geometry> geometry;           // #S vertices in world space, bound
+  std::shared_ptr<const std::vector<Vec3f>> normals;  // #S, zero where the file has none
+  SkinWeights weights;                                // #S, each used vertex sums to 1
+  Pose home;  // as the joints stand in a fresh rig's file; the bind pose of a rig that was there
   std::optional<AutoRigReport> report;             // none for a rig that the file came with
   std::vector<std::shared_ptr<const Clip>> clips;  // the file's own that move joints; names unique
   bool renamed = false;                            // joints are not called as they were
+  bool edited = false;                             // by hand: weights painted; joints added, deleted, hung elsewhere
+  bool painted = false;                            // `weights` are not those of `asset`
 
   const Skeleton& skeleton() const { return binding.skeleton; }
 };
 
-double longestSide(const RiggedModel& rig);  // of the box around the surface as bound, metres
-
 // `source` with the rig that it has. Throws Error kBadArgument where it has none.
 std::shared_ptr<const RiggedModel> openRiggedModel(const Asset& source);
+
+// A document with a rig, without its clips. Throws as readSkeleton and collectGeometry do.
+std::shared_ptr<RiggedModel> readRiggedModel(Asset document);
 
 // A copy of `source`, rigged as autoRig does. Errors and cost as there.
 std::shared_ptr<const RiggedModel> makeRiggedModel(const Asset& source, const AutoRigOptions& options,
@@ -47,6 +51,13 @@ std::shared_ptr<const RiggedModel> makeRiggedModel(const Asset& source, const Au
 // another joint's.
 std::shared_ptr<const RiggedModel> renameJoint(const RiggedModel& model, Index joint, const std::string& name);
 
+// The same with other weights for all vertices.
+std::shared_ptr<const RiggedModel> withWeights(const RiggedModel& model, SkinWeights weights);
+
+// A copy of its document that has its weights. What a node shows and no joint holds stays without a skin; a vertex
+// without weights beside some that have them follows joint 0.
+Asset documentOf(const RiggedModel& model);
+
 // The document with its joints standing in `pose` and with these clips in it; clips of the file's own that are not
 // among them go.
 Asset assetWithClips(const RiggedModel& model, const Pose& pose, std::span<const std::shared_ptr<const Clip>> clips);
@@ -54,6 +65,9 @@ Asset assetWithClips(const RiggedModel& model, const Pose& pose, std::span<const
 // How thick handles are: the radius of a joint's sphere or, where the skeleton has none, a sixth of its shortest bone;
 // at least a thousandth of `size`.
 std::vector<double> handleRadii(const Skeleton& skeleton, double size);
+
+// Of the box round the bound surface, metres.
+double longestSide(const RiggedModel& model);
 
 // Bit for bit.
 bool sameTransform(const Transform& a, const Transform& b);

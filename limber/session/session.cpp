@@ -14,6 +14,7 @@
 #include "limber/pipeline/pose_asset.h"
 #include "limber/samples/sample_motions.h"
 #include "limber/samples/samples.h"
+#include "limber/session/edit_joints.h"
 #include "limber/session/mirror_pose.h"
 #include "limber/session/pose_transfer.h"
 #include "limber/session/session_file.h"
@@ -25,6 +26,7 @@ namespace limber {
 namespace {
 
 constexpr std::size_t kMostSteps = 200, kMostRigs = 12;  // that an undo history keeps
+constexpr std::size_t kMostWeights = 32'000'000;         // influences that the rigs of an undo history hold
 
 [[noreturn]] void refuse(std::string message, std::string where = {}, std::string remedy = {}) {
   throw Error(ErrorCode::kBadArgument, std::move(message), std::move(where), std::move(remedy));
@@ -36,6 +38,13 @@ bool sameRig(const RiggedModel& a, const RiggedModel& b) {
          std::equal(x.begin(), x.end(), y.begin(), y.end(), [](const Joint& p, const Joint& q) {
            return p.name == q.name && p.parent == q.parent && sameTransform(p.rest, q.rest);
          });
+}
+
+// #J
+std::vector<bool> locksOf(const SessionState& state) {
+  std::vector<bool> locked;
+  for (const Joint& joint : state.rig->skeleton().joints) locked.push_back(state.locked.count(joint.name) > 0);
+  return locked;
 }
 
 // Joints that hold on to a place go back there.
@@ -85,6 +94,7 @@ void setRig(SessionState& state, std::shared_ptr<const RiggedModel> rig, Progres
   moveToRig(state.movement, state.rig, rig, progress);
   state.rig = std::move(rig);
   state.targets.clear();
+  state.locked.clear();
   setLimits(state, {});
   holdStandingFeet(state);
 }
@@ -216,7 +226,7 @@ struct Session::Runner {
     };
     for (const std::string& name : c.with) add(requireJoint(now, name), Mat3::Identity());
     if (!c.mirrored) return followers;
-    const auto [plane, images] = bodyMirror(*now.rig);
+    const auto [plane, images] = mirrorOfRig(*now.rig);
     const Mat3 reflection = Mat3::Identity() - 2 * plane.normal * plane.normal.transpose();
     const std::size_t onThisSide = followers.size();
     if (images[joint] != kNoIndex) add(images[joint], reflection);
@@ -323,7 +333,7 @@ struct Session::Runner {
   }
   void operator()(const MirrorPose& c) const {
     SessionState next = state();
-    const auto [plane, images] = bodyMirror(*next.rig);
+    const auto [plane, images] = mirrorOfRig(*next.rig);
     next.pose = mirrorPose(next.rig->skeleton(), next.pose, plane, images, c.from);
     followPose(next, [](const HeldTarget&) { return true; });
     authored(next);
@@ -340,7 +350,56 @@ struct Session::Runner {
     SessionState next = state();
     next.rig = renameJoint(*next.rig, requireJoint(next, c.joint), c.name);
     if (next.limits) next.limitsText = limitsToJson(*next.limits, next.rig->skeleton());
+    if (next.locked.erase(c.joint) > 0) next.locked.insert(c.name);
     authored(next);
+    session.commit(command, std::move(next));
+  }
+
+  // A stroke that changes no weight is no step.
+  void operator()(const PaintWeights& c) const {
+    const SessionState now = state();
+    WeightStroke stroke(*now.rig, session.brush_->surface(*now.rig), locksOf(now), c);
+    stroke.add(c.dabs);
+    reweigh(now, stroke.weights());
+  }
+  void operator()(const MirrorWeights& c) const {
+    const SessionState now = state();
+    reweigh(now, mirroredWeights(*now.rig, session.brush_->surface(*now.rig), locksOf(now), c.from));
+  }
+  void reweigh(SessionState next, SkinWeights weights) const {
+    if (weights.joints == next.rig->weights.joints && weights.weights == next.rig->weights.weights) return;
+    next.rig = withWeights(*next.rig, std::move(weights));
+    authored(next);
+    session.commit(command, std::move(next));
+  }
+  void operator()(const AddJoint& c) const {
+    SessionState next = state();
+    const Skeleton& skeleton = next.rig->skeleton();
+    std::string name = c.name;
+    for (int number = 1; name.empty() || (c.name.empty() && skeleton.find(name)); ++number) {
+      name = fmt::format("joint_{}", number);
+    }
+    takeJointEdit(next, withJoint(*next.rig, next.pose, requireJoint(next, c.parent), c.position, name));
+    session.commit(command, std::move(next));
+  }
+  void operator()(const DeleteJoint& c) const {
+    SessionState next = state();
+    takeJointEdit(next, withoutJoint(*next.rig, requireJoint(next, c.joint)));
+    session.commit(command, std::move(next));
+  }
+  void operator()(const ReparentJoint& c) const {
+    SessionState next = state();
+    takeJointEdit(next, withJointOn(*next.rig, requireJoint(next, c.joint), requireJoint(next, c.parent)));
+    session.commit(command, std::move(next));
+  }
+  void operator()(const LockWeights& c) const {
+    SessionState next = state();
+    const std::string& name = next.rig->skeleton().joints[requireJoint(next, c.joint)].name;
+    if (c.on) {
+      next.locked.insert(name);
+    } else {
+      next.locked.erase(name);
+    }
     session.commit(command, std::move(next));
   }
 
@@ -437,7 +496,7 @@ struct Session::Runner {
   }
 };
 
-Session::Session(Resolver files) : files_(std::move(files)) {}
+Session::Session(Resolver files) : files_(std::move(files)), brush_(std::make_unique<Brush>()) {}
 Session::~Session() = default;
 Session::Session(Session&&) noexcept = default;
 Session& Session::operator=(Session&&) noexcept = default;
@@ -484,13 +543,19 @@ void Session::commit(const Command& command, SessionState next) {
   redo_.clear();
   remember(command);
 
-  std::set<const RiggedModel*> rigs = {state_.rig.get(), state_.authoredRig.get()};
-  std::size_t kept = 0;
-  for (; kept < std::min(undo_.size(), kMostSteps); ++kept) {
-    rigs.insert(undo_[undo_.size() - 1 - kept].before.rig.get());
-    rigs.insert(undo_[undo_.size() - 1 - kept].before.authoredRig.get());
-    if (rigs.size() > kMostRigs) break;
-  }
+  // What paints a rig shares its document.
+  std::set<const RiggedModel*> rigs;
+  std::set<const Asset*> documents;
+  std::size_t weights = 0, kept = 0;
+  const auto count = [&](const SessionState& of) {
+    for (const std::shared_ptr<const RiggedModel>& rig : {of.rig, of.authoredRig}) {
+      documents.insert(rig->asset.get());
+      if (rigs.insert(rig.get()).second) weights += rig->weights.weights.size();
+    }
+    return documents.size() <= kMostRigs && weights <= kMostWeights;
+  };
+  count(state_);
+  while (kept < std::min(undo_.size(), kMostSteps) && count(undo_[undo_.size() - 1 - kept].before)) ++kept;
   undo_.erase(undo_.begin(), undo_.end() - static_cast<std::ptrdiff_t>(kept));
 }
 
@@ -535,7 +600,20 @@ std::optional<PickHit> Session::pick(const Ray& ray, double slope) const {
   }
   const std::vector<Vec3> centers = posePositions(state_.rig->skeleton(), state_.pose);
   if (const std::optional<PickHit> handle = pickHandle(ray, centers, state_.rig->radii, slope)) return handle;
-  return pickSurface(ray, *state_.rig, state_.pose);
+  return limber::pickSurface(ray, *state_.rig, state_.pose);
+}
+
+std::optional<SurfaceHit> Session::pickSurface(const Ray& ray) const {
+  requireOpen();
+  if (!ray.origin.allFinite() || !ray.direction.allFinite() || !(ray.direction.norm() > 0)) {
+    refuse("the ray has no direction");
+  }
+  return brush_->hit(ray, state_.rig, state_.pose);
+}
+
+SkinWeights Session::previewPaint(const PaintWeights& stroke) const {
+  requireOpen();
+  return brush_->preview(state_.rig, locksOf(state_), stroke);
 }
 
 std::vector<Affine> Session::skinMatrices() const {

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -13,6 +14,7 @@
 #include "limber/session/command.h"
 #include "limber/session/drag.h"
 #include "limber/session/movement.h"
+#include "limber/session/paint_weights.h"
 #include "limber/session/pick.h"
 #include "limber/session/rigged_model.h"
 
@@ -37,6 +39,7 @@ struct SessionState {
   std::vector<HeldTarget> targets;
   std::string limitsText;  // empty: none
   std::shared_ptr<const JointLimits> limits;
+  std::set<std::string> locked;  // joints whose weights painting leaves as they are
   Movement movement;
 };
 
@@ -78,6 +81,11 @@ class Session {
 
   // What the ray meets: a handle (see pickHandle) or else the surface.
   std::optional<PickHit> pick(const Ray& ray, double slope) const;
+  // The surface alone, for a brush. Quick while rig and pose stay: the tree of the surface is kept.
+  std::optional<SurfaceHit> pickSurface(const Ray& ray) const;
+  // The weights that this stroke would leave; nothing changes. Quick while it is the last one asked about with further
+  // dabs. Throws as running it does.
+  SkinWeights previewPaint(const PaintWeights& stroke) const;
   // #J, from where a point is bound to where its joint takes it.
   std::vector<Affine> skinMatrices() const;
 
@@ -106,6 +114,7 @@ class Session {
   SessionState state_;
   std::vector<Step> undo_, redo_;
   std::unique_ptr<Drag> drag_;
+  std::unique_ptr<Brush> brush_;  // what it keeps is only for speed
   std::vector<Command> record_;
 };
 

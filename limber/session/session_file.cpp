@@ -141,6 +141,11 @@ SavedSession readSession(const JsonView& json) {
   session.limbsFollow = json.flag("limbs_follow", false);
   session.solver = json.member("solver").exists() ? requireText(json, "solver") : std::string(kLimbSolver);
   session.limits = json.text("limits");
+  const JsonView locked = json.array("locked");
+  for (std::size_t i = 0; i < locked.size(); ++i) {
+    if (!locked[i].json().is_string()) locked[i].fail("is not a joint's name");
+    session.locked.push_back(locked[i].json().get<std::string>());
+  }
   session.clip = json.text("clip");
   session.seconds = json.number("seconds", 0);
   session.layers = readLayers(json.array("layers"));
@@ -166,6 +171,7 @@ void putSession(Asset& asset, const SavedSession& session) {
   }
   if (session.limbsFollow) json["limbs_follow"] = true;
   if (!session.limits.empty()) json["limits"] = session.limits;
+  if (!session.locked.empty()) json["locked"] = session.locked;
   if (!session.clip.empty()) {
     json["clip"] = session.clip;
     json["seconds"] = session.seconds;

@@ -40,9 +40,10 @@ struct SavedSession {
   bool ik = false, limbsFollow = false;
   std::string solver;  // of ikMethods()
   std::vector<SavedTarget> targets;
-  std::string limits;  // text of a limits file; empty: none
-  std::string clip;    // the chosen one; empty: none
-  double seconds = 0;  // the moment of it
+  std::string limits;               // text of a limits file; empty: none
+  std::vector<std::string> locked;  // joints whose weights are
+  std::string clip;                 // the chosen one; empty: none
+  double seconds = 0;               // the moment of it
   std::vector<SavedLayer> layers;
   std::vector<SavedJoint> pose;  // joints that do not stand as in RiggedModel::home
 };

@@ -18,7 +18,7 @@ namespace {
 
 // Methods would make the rig again, but not what was done to it since.
 bool keepsRig(const SessionState& state) {
-  return !state.rig->report || state.rig->renamed || !state.movement.clips.empty();
+  return !state.rig->report || state.rig->renamed || state.rig->edited || !state.movement.clips.empty();
 }
 
 SavedLayer savedLayer(const SessionClip& clip, const Skeleton& skeleton) {
@@ -42,6 +42,7 @@ SavedSession savedOf(const SessionState& state) {
   saved.limbsFollow = state.limbsFollow;
   saved.solver = state.solver;
   saved.limits = state.limitsText;
+  saved.locked.assign(state.locked.begin(), state.locked.end());
   for (const HeldTarget& target : state.targets) {
     saved.targets.push_back({skeleton.joints[target.joint].name, target.position, target.rotation});
   }
@@ -83,6 +84,10 @@ void restore(SessionState& state, const SavedSession& saved) {
         {jointOf(saved.targets[i].joint, "targets", i), saved.targets[i].position, saved.targets[i].rotation});
   }
   saidOf("extras.limber_session.limits", [&] { setLimits(state, saved.limits); });
+  for (std::size_t i = 0; i < saved.locked.size(); ++i) {
+    jointOf(saved.locked[i], "locked", i);
+    state.locked.insert(saved.locked[i]);
+  }
   state.ik = saved.ik;
   state.limbsFollow = saved.limbsFollow;
   state.solver = findIkMethod(saved.solver).name;
@@ -143,7 +148,7 @@ SessionState startState(std::shared_ptr<const Asset> asset, const std::optional<
   state.skinning = options.skinning;
   state.pins = options.rig.pins;
   state.templateName = options.rig.templateName;
-  state.pose = saved || !own ? state.rig->home : readNodePose(state.rig->asset, state.rig->binding);
+  state.pose = saved || !own ? state.rig->home : readNodePose(*state.rig->asset, state.rig->binding);
   state.movement = movementOf(state.rig->clips);
   if (saved) restore(state, *saved);
   authored(state);
@@ -153,14 +158,15 @@ SessionState startState(std::shared_ptr<const Asset> asset, const std::optional<
 Bytes exportState(const SessionState& state, ExportFormat format) {
   const RiggedModel& rig = *state.rig;
   if (format == ExportFormat::kGlb) return writeGlb(assetWithClips(rig, state.pose, clipsOf(state.movement)));
-  const ExportMesh mesh = exportMesh(rig.asset, posedGeometry(rig.asset, rig.binding, state.pose).geometry);
+  const Asset document = documentOf(rig);
+  const ExportMesh mesh = exportMesh(document, posedGeometry(document, rig.binding, state.pose).geometry);
   if (format == ExportFormat::kObj) return encodeObj(mesh, {});
   return format == ExportFormat::kStl ? encodeStl(mesh) : encodePly(mesh);
 }
 
 Bytes savedState(const SessionState& state) {
   const RiggedModel& rig = *state.rig;
-  Asset asset = keepsRig(state) ? assetWithClips(rig, readNodePose(rig.asset, rig.binding), basesOf(state.movement))
+  Asset asset = keepsRig(state) ? assetWithClips(rig, readNodePose(*rig.asset, rig.binding), basesOf(state.movement))
                                 : state.base->clone();
   putSession(asset, savedOf(state));
   return writeGlb(asset);

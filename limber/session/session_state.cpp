@@ -152,16 +152,16 @@ Json sessionState(const Session& session) {
   const SessionState& state = session.state();
   const RiggedModel& rig = *state.rig;
   Box box;
-  for (const Vec3f& position : rig.geometry.positions) box.add(position.cast<double>());
+  for (const Vec3f& position : rig.geometry->positions) box.add(position.cast<double>());
   Json json = {
       {"name", session.source().name},
-      {"vertices", rig.geometry.positions.size()},
-      {"triangles", rig.geometry.triangles.size()},
+      {"vertices", rig.geometry->positions.size()},
+      {"triangles", rig.geometry->triangles.size()},
       {"box", {{"min", vectorJson(box.min)}, {"max", vectorJson(box.max)}}},
       {"own_rig", !rig.report},
       {"rigger", state.rigger},
       {"skinning", state.skinning},
-      {"most_handles", rig.report ? rig.report->weldedVertices : static_cast<Index>(rig.geometry.positions.size())},
+      {"most_handles", rig.report ? rig.report->weldedVertices : static_cast<Index>(rig.geometry->positions.size())},
       {"suggestions", Json::array()},
       {"joints", jointsJson(rig)},
       {"ik", state.ik},
@@ -176,11 +176,13 @@ Json sessionState(const Session& session) {
       {"match", matchJson(state)},
       {"targets", Json::array()},
       {"pins", Json::array()},
+      {"locked", Json::array()},
+      {"edited_rig", rig.edited},
       {"dragged", nullptr},
       {"posed", !samePose(state.pose, rig.home)},
       {"undo", textOrNull(session.undoName())},
       {"redo", textOrNull(session.redoName())},
-      {"warnings", warningsJson(rig.report ? rig.report->warnings : rig.asset.warnings)}};
+      {"warnings", warningsJson(rig.report ? rig.report->warnings : rig.asset->warnings)}};
   if (rig.report) {
     for (const HandleSuggestion& suggestion : rig.report->suggestions)
       json["suggestions"].push_back(suggestion.handles);
@@ -190,6 +192,9 @@ Json sessionState(const Session& session) {
   }
   for (const JointPin& pin : state.pins) {
     json["pins"].push_back({{"joint", pin.joint}, {"position", vectorJson(pin.place)}});
+  }
+  for (Index j = 0; j < rig.skeleton().jointCount(); ++j) {
+    if (state.locked.count(rig.skeleton().joints[j].name) > 0) json["locked"].push_back(j);
   }
   if (const std::optional<Index> joint = session.draggedJoint()) json["dragged"] = *joint;
   return json;

@@ -14,6 +14,7 @@ import { help } from './panels/help';
 import { motionShelf } from './panels/motion_shelf';
 import { methodsPanel } from './panels/methods_panel';
 import { outliner } from './panels/outliner';
+import { paintPanel } from './panels/paint_panel';
 import { posePanel } from './panels/pose_panel';
 import { retargetPanel } from './panels/retarget_panel';
 import { facts, status } from './panels/status';
@@ -48,7 +49,7 @@ const app = document.getElementById('app')!;
 app.append(
   toolbar(studio, page, journal, viewport, model),
   element('main', { class: 'stage' }, viewport.canvas, facts(page), hint(page), views(viewport), comparisonPanel(studio, page, comparison)),
-  element('aside', { class: 'side' }, posePanel(studio, page), retargetPanel(studio, page), methodsPanel(studio, page), outliner(studio, page, handles)),
+  element('aside', { class: 'side' }, posePanel(studio, page), paintPanel(studio, page), retargetPanel(studio, page), methodsPanel(studio, page), outliner(studio, page, handles)),
   timeline(studio, page, sheet.open),
   status(studio, page), help(page), sheet.dialog, motionShelf(studio, page));
 bindShortcuts(studio, page, viewport, handles);

@@ -64,6 +64,7 @@ const cases = {
     await page.locator('#compare-solver').click();
     await page.getByLabel('The method beside it').selectOption('fabrik');
     await columns(2);
+    const { targets } = await sessionState(page);
     await page.locator('#joints li').last().click();
     await page.locator('#pin').click();
     await page.locator('main canvas').focus();
@@ -74,7 +75,7 @@ const cases = {
     await page.locator('#end-comparison').click();
     await page.locator('#targets li button').last().click();
     await settled(page);
-    assert.deepEqual((await sessionState(page)).targets, []);
+    assert.equal((await sessionState(page)).targets.length, targets.length);
     await page.locator('#reset').click();
     await settled(page);
   },

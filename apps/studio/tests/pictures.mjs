@@ -42,8 +42,6 @@ async function picture(name, options, steps) {
 const desk = { width: 1200, height: 760 };
 await picture('studio_handles', { ...desk, search: '?sample=winged' }, async () => {});
 await picture('studio_posed', { ...desk, search: '?sample=biped' }, async (page) => {
-  await page.locator('#ik').click();
-  await settled(page);
   await drag(page, [0.6, 0.5], [30, -230]);
   await drag(page, [0.25, 0.5], [-20, -120]);
 });
@@ -73,7 +71,6 @@ await picture('walk_cycle_ghosts', { ...desk, search: '?sample=biped' }, async (
   };
   await motionPlayed(page, () => page.locator('#motion-file').setInputFiles({ name: 'walk.bvh', mimeType: 'text/plain', buffer: Buffer.from(walkBvh()) }));
   await at(0.4); // it played
-  await press('#ik');
   await press('#open-keys');
   const { match } = await sessionState(page), [hand] = match.find(({ part }) => part === 'leftHand').target;
   await page.getByRole('button', { name: 'Handles', exact: true }).click();

@@ -16,7 +16,7 @@ export function toLimberFile(requests: Request[]): Uint8Array {
     if (request.kind !== 'open' && request.kind !== 'motion') throw new Error(`${request.kind} changes no document`);
     const file = `files/${number}/${request.name.replace(/[\\/]/g, '_')}`;
     files[file] = [request.bytes, { level: 6 }];
-    return { do: request.kind === 'open' ? 'open_file' : 'add_motion', file };
+    return request.kind === 'open' ? { do: 'open_file', file, limbs_follow: request.limbsFollow ?? false } : { do: 'add_motion', file };
   });
   files[list] = strToU8(JSON.stringify({ limber_commands: version, commands }, null, 1));
   return zipSync(files);
@@ -39,6 +39,7 @@ export function fromLimberFile(archive: Uint8Array, name: string): Request[] {
     if (command?.do !== 'open_file' && command?.do !== 'add_motion') return { kind: 'run', command };
     const path = String(command.file), bytes = files.get(path);
     if (!bytes) throw refuse(`it does not hold ${path}`);
-    return { kind: command.do === 'open_file' ? 'open' : 'motion', bytes, name: path.split('/').pop() ?? path };
+    const name = path.split('/').pop() ?? path;
+    return command.do === 'open_file' ? { kind: 'open', bytes, name, limbsFollow: command.limbs_follow === true } : { kind: 'motion', bytes, name };
   });
 }

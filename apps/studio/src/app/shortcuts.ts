@@ -1,6 +1,7 @@
 // Keys that work wherever the focus is, but in a field of text.
 import type { HandleView } from '../scene/handle_view';
 import type { Viewport } from '../scene/viewport';
+import { resizeBrush, togglePainting } from '../panels/paint_panel';
 import { togglePlaying } from './player';
 import type { PageStore } from './state';
 import type { Studio } from './studio';
@@ -13,6 +14,7 @@ export function bindShortcuts(studio: Studio, page: PageStore, viewport: Viewpor
     'g': () => page.set({ mode: 'move' }),
     'r': () => page.set({ mode: 'turn' }),
     'i': () => void studio.toggleIk(),
+    's': () => page.set({ bothSides: !page.now.bothSides }),
     'm': () => void studio.mirrorPose(),
     'p': selected((joint) => void studio.togglePin(joint, handles.position(joint).toArray())),
     'h': () => page.set({ display: page.now.display === 'handles' ? 'surface' : 'handles' }),
@@ -27,6 +29,10 @@ export function bindShortcuts(studio: Studio, page: PageStore, viewport: Viewpor
     '5': () => viewport.toggleOrthographic(),
     ' ': () => togglePlaying(studio, page),
     'k': () => { if (page.now.session?.clip != null) void studio.setKey(); },
+    'b': () => togglePainting(page),
+    '[': () => resizeBrush(page, 1 / 1.15),
+    ']': () => resizeBrush(page, 1.15),
+    'l': selected((joint) => void studio.toggleLock(joint)),
     'x': () => page.set({ gizmo: !page.now.gizmo }),
     '?': () => page.set({ help: true }),
   };

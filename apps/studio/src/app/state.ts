@@ -7,6 +7,16 @@ import { Store } from './store';
 export type DragMode = 'move' | 'turn';
 export type Display = 'handles' | 'surface' | 'weights' | 'joint-weights';
 
+export type PaintMode = 'add' | 'subtract' | 'smooth';
+
+export interface BrushSettings {
+  mode: PaintMode;
+  /** Its radius, of the model's longest side. */
+  size: number;
+  /** 0 to 1. */
+  strength: number;
+}
+
 export interface Notice {
   kind: 'error' | 'note';
   title: string;
@@ -40,6 +50,10 @@ export interface PageState {
   bones: boolean;
   wireframe: boolean;
   selected: number | null;
+  /** Joints that are selected besides, and dragged along. */
+  also: ReadonlySet<number>;
+  /** What is dragged or painted on one side is done on the other as well. */
+  bothSides: boolean;
   hovered: number | null;
   /** A stage with how far it is; null when nothing takes long. */
   work: { stage: string; fraction: number } | null;
@@ -65,6 +79,11 @@ export interface PageState {
   limits: boolean;
   /** Moving a joint of a template corrects the rig; so does touching the model for the selected one. */
   correcting: boolean;
+  /** The pointer paints weights of the selected joint. */
+  painting: boolean;
+  brush: BrushSettings;
+  /** The next click on the model puts a new joint there, below the selected one. */
+  placing: boolean;
   methods: Methods | null;
   sampleMotions: readonly SampleMotion[];
   /** Motions that the user brought several of at once. */
@@ -83,9 +102,10 @@ export type PageStore = Store<PageState>;
 
 export const createPageStore = (): PageStore => new Store<PageState>({
   session: null, model: null, mode: 'move', display: 'handles', bones: true, wireframe: false,
-  selected: null, hovered: null, work: null, notice: null, help: false,
-  seconds: 0, playing: false, speed: 1, loop: true, autoKey: true,
-  span: 0.3, keyEditor: null, chosenKeys: [], ghosts: false, paths: null, curve: null, gizmo: false, limits: false, correcting: false,
+  selected: null, also: new Set(), bothSides: false, hovered: null, work: null, notice: null, help: false,
+  seconds: 0, playing: false, speed: 1, loop: true, autoKey: true, gizmo: false, limits: false, correcting: false,
+  span: 0.3, keyEditor: null, chosenKeys: [], ghosts: false, paths: null, curve: null,
+  painting: false, brush: { mode: 'add', size: 0.05, strength: 0.5 }, placing: false,
   methods: null, sampleMotions: [], ownMotions: [], shelf: false, comparison: null, hiddenParts: new Set(), sourceModel: null, sourceShown: true,
 });
 

@@ -2,7 +2,8 @@
 import { EngineClient, EngineError } from '../engine/client';
 import { canBeNamed } from '../engine/messages';
 import type {
-  Command, LimberError, MethodKind, MotionPreview, MotionRequest, PreviewRig, SampleMotion, Ray, Request, SessionState, Stance, Step, Vector,
+  Command, LimberError, MethodKind, MotionPreview, MotionRequest, PreviewRig, Ray, Request, SampleMotion, SessionState, Stance, Step, SurfaceHit,
+  Vector, WeightArrays,
 } from '../engine/messages';
 import { counted } from '../ui/counted';
 import { sorted, withBuffers } from './files';
@@ -40,6 +41,8 @@ export const hasTemplate = (session: SessionState) => !session.own_rig && sessio
 export class Studio {
   /** The joints stand anew; called for every frame of a drag. */
   onStance: (stance: Stance, ofClip: boolean) => void = () => {};
+  /** The weights alone are others. */
+  onWeights: (weights: WeightArrays) => void = () => {};
   /** A new model was opened: the camera goes to it. */
   onOpened: () => void = () => {};
   /** Something is to be replaced: whether the user agrees. */
@@ -65,6 +68,7 @@ export class Studio {
 
   constructor(readonly page: PageStore, private journal: Journal) {
     page.watch((now, before) => {
+      if (now.selected !== before.selected && now.also === before.also && now.also.size > 0) page.set({ also: new Set() });
       if (now.keyEditor === 'curves' && (now.selected !== before.selected || now.keyEditor !== before.keyEditor)) void this.guard(() => this.drawClip());
     });
     this.engine.onChange = (request, place) => journal.add(request, place);
@@ -78,7 +82,7 @@ export class Studio {
   /** Nothing that was begun is still under way. */
   get idle() { return this.underWay === 0 && this.dragsLeft === 0 && !this.momentUnderWay; }
 
-  async openSample(name: string) { await this.open(() => this.engine.run({ do: 'open_sample', name })); }
+  async openSample(name: string) { await this.open(() => this.engine.run({ do: 'open_sample', name, limbs_follow: true })); }
 
   /** Of models that are asked for while another one is being opened the last is opened, the others never. */
   private async open(make: () => Promise<Step | null>) {
@@ -225,11 +229,14 @@ export class Studio {
   /** Everything, to go on with here or elsewhere. */
   limberFile(): Uint8Array { return toLimberFile(this.engine.requests); }
 
-  private openBytes(bytes: Uint8Array, name: string) { return this.engine.ask({ kind: 'open', bytes, name }); }
+  private openBytes(bytes: Uint8Array, name: string) { return this.engine.ask({ kind: 'open', bytes, name, limbsFollow: true }); }
 
   /** Whether what is asked for may replace the rig that the model came with. */
   private async mayReplaceRig(): Promise<boolean> {
     const { session } = this.page.now;
+    if (session && !session.own_rig && session.edited_rig) {
+      return this.ask('Replace the rig that you changed?', 'Painted weights and joints changed by hand go. Undo brings them back.', 'Replace it');
+    }
     if (!session?.own_rig) return true;
     return this.ask('Replace the rig of this model?',
       `It came with ${counted(session.joints.length, 'joint')} that have names; they and its clips go. Undo brings them back.`,
@@ -291,9 +298,13 @@ export class Studio {
   }
 
   async pinJoint(joint: number, position: Vector) {
+    if (this.page.now.session?.edited_rig && !await this.mayReplaceRig()) return;
     await this.run({ do: 'pin_joint', joint: this.jointName(joint), position });
   }
-  async unpinJoint(joint: string) { await this.run({ do: 'unpin_joint', joint }); }
+  async unpinJoint(joint: string) {
+    if (this.page.now.session?.edited_rig && !await this.mayReplaceRig()) return;
+    await this.run({ do: 'unpin_joint', joint });
+  }
 
   async chooseSolver(solver: string) {
     await this.run({ do: 'set_ik', on: this.page.now.session?.ik ?? false, solver });
@@ -484,10 +495,30 @@ export class Studio {
   }
 
   beginDrag(joint: number, ray: Ray, view: Vector, mode = this.page.now.mode) {
-    const command = { do: 'begin_drag', joint: this.jointName(joint), mode: this.page.now.correcting ? 'move' : mode, ray, view };
-    if (this.page.now.playing) this.page.set({ playing: false });
-    this.page.set({ selected: joint });
-    this.then(() => this.run(command));
+    const { also, bothSides, correcting, playing } = this.page.now;
+    const together = also.has(joint) || joint === this.page.now.selected ? [...also, this.page.now.selected ?? joint].filter((other) => other !== joint) : [];
+    const command = {
+      do: 'begin_drag', joint: this.jointName(joint), mode: correcting ? 'move' : mode, ray, view,
+      with: correcting ? [] : together.map((other) => this.jointName(other)), mirrored: bothSides && !correcting,
+    };
+    if (playing) this.page.set({ playing: false });
+    this.page.set({ selected: joint, also: new Set(together) });
+    this.then(async () => {
+      await this.run(command);
+      // A model without two sides has been told so.
+      if (!this.isDragging && bothSides) this.page.set({ bothSides: false });
+    });
+  }
+
+  private get isDragging() { return this.page.now.session?.dragged != null; }
+
+  /** Another joint that goes along with those that are selected, or no longer does. */
+  selectAlso(joint: number) {
+    const { selected, also } = this.page.now;
+    if (selected === null || selected === joint) return this.page.set({ selected: joint, also: new Set() });
+    const others = new Set(also);
+    if (!others.delete(joint)) others.add(joint);
+    this.page.set({ also: others });
   }
 
   /** At most one update is on its way; the newest waits. */
@@ -503,11 +534,15 @@ export class Studio {
     this.then(async () => {
       const command = this.dragUpdate;
       this.dragUpdate = null;
-      if (command) await this.run(command);
+      if (command && this.isDragging) await this.run(command);
     });
   }
 
-  endDrag() { this.then(() => (this.page.now.correcting ? this.pinDragged() : this.run({ do: 'end_drag' }))); }
+  endDrag() {
+    this.then(async () => {
+      if (this.isDragging) await (this.page.now.correcting ? this.pinDragged() : this.run({ do: 'end_drag' }));
+    });
+  }
 
   /** Where the dragged joint is becomes where the rig has it. */
   private async pinDragged() {
@@ -519,7 +554,9 @@ export class Studio {
 
   cancelDrag() {
     this.dragUpdate = null;
-    this.then(() => this.run({ do: 'cancel_drag' }));
+    this.then(async () => {
+      if (this.isDragging) await this.run({ do: 'cancel_drag' });
+    });
   }
 
   /** The steps of a drag go one after the other. */
@@ -528,8 +565,52 @@ export class Studio {
     this.dragging = this.dragging.then(step).finally(() => { --this.dragsLeft; });
   }
 
+  /** Where rays meet the surface. */
+  async surface(rays: Ray[]): Promise<(SurfaceHit | null)[]> {
+    return await this.guard(() => this.engine.ask({ kind: 'surface', rays })) ?? rays.map(() => null);
+  }
+
+  /** Shows what a stroke would leave; null: what there is. */
+  async previewStroke(stroke: Command | null) {
+    await this.guard(async () => this.onWeights(await this.engine.ask({ kind: 'preview', stroke })));
+  }
+
+  /** A new joint inside the surface there, below the selected one. */
+  private async placeJoint(ray: Ray) {
+    const [hit] = await this.surface([ray]), { selected, session } = this.page.now;
+    if (!hit || selected === null || !session) return;
+    this.page.set({ placing: false });
+    const names = session.joints.map(({ name }) => name);
+    await this.run({ do: 'add_joint', parent: this.jointName(selected), position: hit.inside });
+    const added = this.page.now.session?.joints.findIndex(({ name }) => !names.includes(name)) ?? -1;
+    if (added >= 0) this.page.set({ selected: added });
+  }
+
+  async toggleLock(joint: number) {
+    await this.run({ do: 'lock_weights', joint: this.jointName(joint), on: !this.page.now.session?.locked.includes(joint) });
+  }
+
+  async deleteJoint(joint: number) {
+    const parent = this.page.now.session?.joints[joint]?.parent ?? -1, name = parent < 0 ? '' : this.jointName(parent);
+    await this.run({ do: 'delete_joint', joint: this.jointName(joint) });
+    this.selectNamed(name);
+  }
+
+  async hangJoint(joint: number, parent: string) {
+    const name = this.jointName(joint);
+    await this.run({ do: 'reparent_joint', joint: name, parent });
+    this.selectNamed(name);
+  }
+
+  /** Joints of another rig have other numbers. */
+  private selectNamed(name: string) {
+    const joint = this.page.now.session?.joints.findIndex((known) => known.name === name) ?? -1;
+    this.page.set({ selected: joint < 0 ? null : joint });
+  }
+
   /** The joint that holds the surface under the pointer; while joints are corrected, the selected one goes in there. */
   async selectSurface(ray: Ray, slope: number) {
+    if (this.page.now.placing) return this.placeJoint(ray);
     await this.guard(async () => {
       const hit = await this.engine.ask({ kind: 'pick', ray, slope });
       const { correcting, selected } = this.page.now;
@@ -555,7 +636,7 @@ export class Studio {
 
   private opened(step: Step) {
     this.page.set({
-      selected: null, hovered: null, notice: this.afterOpening, comparison: null, hiddenParts: new Set(), correcting: false, display: 'handles',
+      selected: null, hovered: null, notice: this.afterOpening, comparison: null, hiddenParts: new Set(), correcting: false, painting: false, placing: false, display: 'handles',
     });
     this.afterOpening = null;
     this.take(step);
@@ -563,7 +644,7 @@ export class Studio {
   }
 
   /** The document as it stands after a step. */
-  private take({ state, stance, model }: Step) {
+  private take({ state, stance, model, weights }: Step) {
     const before = this.page.now;
     if (state && model) {
       const { selected } = before;
@@ -576,6 +657,7 @@ export class Studio {
       const sameClip = state.clip === before.session?.clip;
       this.page.set({ session: state, seconds: state.seconds, chosenKeys: sameClip ? keysThere(before.chosenKeys, state) : [] });
     }
+    if (weights) this.onWeights(weights);
     const another = !model && state !== null && (state.clip !== before.session?.clip || state.seconds !== before.session?.seconds);
     this.showStance(stance, another);
     if (state) this.followUp();

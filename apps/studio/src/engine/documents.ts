@@ -47,9 +47,11 @@ function framesOf(session: Session, request: MotionRequest, most: number, rate: 
 /** What may make another rig, and with it another surface. */
 const changesRig = new Set([
   'open_sample', 'open_file', 'set_handles', 'choose_methods', 'pin_joint', 'unpin_joint', 'set_rest_pose', 'rename_joint',
+  'add_joint', 'delete_joint', 'reparent_joint',
   'undo', 'redo',
 ]);
 const drawnRate = 30, mostDrawn = 600; // moments a second of paths and curves, and of a whole clip
+const changesWeights = new Set(['paint_weights', 'mirror_weights']);
 const withModel = /\.(glb|gltf|vrm)$/i;
 const none = new Float32Array();
 
@@ -68,8 +70,8 @@ export class Documents {
     this.session = limber.createSession();
   }
 
-  open(bytes: Uint8Array, name: string): Answers['open'] {
-    return this.shown(this.take({ kind: 'open', bytes, name }), true);
+  open(bytes: Uint8Array, name: string, limbsFollow = false): Answers['open'] {
+    return this.shown(this.take({ kind: 'open', bytes, name, limbsFollow }), true);
   }
 
   addMotion(bytes: Uint8Array, name: string): Answers['motion'] {
@@ -77,7 +79,8 @@ export class Documents {
   }
 
   run(command: Command): Answers['run'] {
-    return this.shown(this.take({ kind: 'run', command }), changesRig.has(command.do));
+    const step = this.shown(this.take({ kind: 'run', command }), changesRig.has(command.do));
+    return changesWeights.has(command.do) ? { ...step, weights: orThrow(this.session.weights()).weights } : step;
   }
 
   restore(requests: Request[]): Answers['restore'] {
@@ -173,6 +176,8 @@ export class Documents {
     const { moments, values } = orThrow(this.session.curve(joint, drawnRate, mostDrawn));
     return { joint, moments, values };
   }
+  surface(rays: Ray[]) { return rays.map((ray) => orThrow(this.session.surface(ray)).hit); }
+  preview(stroke: Command | null) { return orThrow(stroke ? this.session.preview(stroke) : this.session.weights()).weights; }
   checkPly(bytes: Uint8Array, name: string) { orThrow(this.limber.checkPly(bytes, name)); }
   methods() { return this.limber.methods(); }
   export(format: ExportFormat) { return orThrow(this.session.export(format)).bytes; }
@@ -216,7 +221,7 @@ export class Documents {
   private carryOut(request: Request): Taken {
     switch (request.kind) {
       case 'open': {
-        const opened = orThrow(this.session.open(request.bytes, request.name));
+        const opened = orThrow(this.session.open(request.bytes, request.name, request.limbsFollow));
         this.forgetOthers();
         return opened;
       }
@@ -236,7 +241,7 @@ export class Documents {
   }
 
   private shown({ state, skin }: Taken, rig: boolean): Step {
-    return { state, stance: this.stance(skin), model: rig ? orThrow(this.session.model()).model : null };
+    return { state, stance: this.stance(skin), model: rig ? orThrow(this.session.model()).model : null, weights: null };
   }
 
   private addSource(motion: string, bytes: Uint8Array, name: string) {

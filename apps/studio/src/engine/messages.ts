@@ -1,10 +1,10 @@
 // What the page and the worker that holds the engine say to each other.
 import type {
-  Command, ExportFormat, LimberError, Measures, MethodKind, Methods, PickHit, Ray, SessionState, SurfaceModel,
+  Command, ExportFormat, LimberError, Measures, MethodKind, Methods, PickHit, Ray, SessionState, SurfaceHit, SurfaceModel, WeightArrays,
 } from '@engine/limber.mjs';
 
 export type {
-  Command, ExportFormat, LimberError, Measures, MethodKind, Methods, PickHit, Ray, SessionState, SurfaceModel,
+  Command, ExportFormat, LimberError, Measures, MethodKind, Methods, PickHit, Ray, SessionState, SurfaceHit, SurfaceModel, WeightArrays,
 };
 export type Vector = [number, number, number];
 
@@ -33,6 +33,8 @@ export interface Step {
   state: SessionState | null;
   stance: Stance;
   model: SurfaceModel | null;
+  /** Where they alone have changed. */
+  weights: WeightArrays | null;
 }
 
 /** The joints of the chosen clip at even moments: x, y, z of each, moment after moment. */
@@ -91,7 +93,7 @@ export interface PreviewRig {
 }
 
 export type Request =
-  | { kind: 'open'; bytes: Uint8Array; name: string }
+  | { kind: 'open'; bytes: Uint8Array; name: string; limbsFollow?: boolean }
   /** Fails where the file is cut off. */
   | { kind: 'check-ply'; bytes: Uint8Array; name: string }
   | { kind: 'motion'; bytes: Uint8Array; name: string }
@@ -105,6 +107,10 @@ export type Request =
   /** A new document, by all that was asked for to make it. */
   | { kind: 'restore'; requests: Request[] }
   | { kind: 'pick'; ray: Ray; slope: number }
+  /** Where each of them meets the surface. */
+  | { kind: 'surface'; rays: Ray[] }
+  /** What the weights would be after a stroke of the brush; null: what they are. */
+  | { kind: 'preview'; stroke: Command | null }
   /** The model that the chosen clip's motion came with. */
   | { kind: 'source-model' }
   | { kind: 'paths' }
@@ -128,6 +134,8 @@ export interface Answers {
   /** null where nothing could be opened; how many of the requests failed, and the first error. */
   restore: { step: Step | null; failed: number; error: LimberError | null };
   pick: PickHit | null;
+  surface: (SurfaceHit | null)[];
+  preview: WeightArrays;
   'source-model': { motion: string; model: SurfaceModel; joints: number } | null;
   paths: Paths;
   curve: Curve;

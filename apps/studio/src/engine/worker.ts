@@ -8,11 +8,13 @@ const say = (message: FromWorker) => postMessage(message);
 
 function answer(documents: Documents, request: Request): Answers[Kind] {
   switch (request.kind) {
-    case 'open': return documents.open(request.bytes, request.name);
+    case 'open': return documents.open(request.bytes, request.name, request.limbsFollow);
     case 'check-ply': return documents.checkPly(request.bytes, request.name);
     case 'motion': return documents.addMotion(request.bytes, request.name);
     case 'run': return documents.run(request.command);
     case 'pick': return documents.pick(request.ray, request.slope);
+    case 'surface': return documents.surface(request.rays);
+    case 'preview': return documents.preview(request.stroke);
     case 'try-motion': return documents.tryMotion(request.motion, request.named);
     case 'sample-motions': return documents.sampleMotions();
     case 'preview-motion': return documents.previewMotion(request.motion, request.most, request.rate);

@@ -5,10 +5,10 @@ import { button, element } from '../ui/dom';
 const keys: [string, string][] = [
   ['Drag a handle', 'move or turn it'], ['Drag beside', 'turn the view'], ['Wheel, pinch', 'zoom'],
   ['Right button, two fingers', 'shift the view'], ['Click the surface', 'select its joint'], ['G / R', 'move / turn'],
-  ['I', 'limbs follow'], ['P', 'pin the joint'], ['M', 'mirror the pose'], ['Arrows', 'move or turn the selected joint; with Shift, finely'],
+  ['I', 'limbs follow'], ['S', 'both sides at once'], ['Shift+click', 'select another joint besides'], ['P', 'pin the joint'], ['M', 'mirror the pose'], ['Arrows', 'move or turn the selected joint; with Shift, finely'],
   ['Delete', 'put the selected joint back'], ['Alt+R', 'put all joints back'], ['Ctrl+Z', 'undo'], ['Ctrl+Shift+Z, Ctrl+Y', 'redo'],
   ['Escape', 'let go without a change'], ['1, 3, 7', 'from the front, the right, above'], ['5', 'perspective on or off'], ['Arrows, + and -', 'the view, while no joint is selected'],
-  ['Space', 'play or pause'], ['K', 'the pose becomes a key'], ['Keys: drag, Shift, Alt', 'choose and move, add, scale in time'], ['Keys: Ctrl+C, Ctrl+V, Delete', 'copy, paste at this moment, take out'], ['X', 'arrows and rings on the selected joint'], ['F2', 'rename the selected joint'], ['F, Home', 'the whole model'], ['H', 'handles or surface'], ['Ctrl+O', 'open a file'], ['?', 'this list'],
+  ['Space', 'play or pause'], ['K', 'the pose becomes a key'], ['Keys: drag, Shift, Alt', 'choose and move, add, scale in time'], ['Keys: Ctrl+C, Ctrl+V, Delete', 'copy, paste at this moment, take out'], ['B', 'paint weights'], ['[ and ]', 'a smaller or larger brush'], ['L', 'lock the weights of the selected joint'], ['X', 'arrows and rings on the selected joint'], ['F2', 'rename the selected joint'], ['F, Home', 'the whole model'], ['H', 'handles or surface'], ['Ctrl+O', 'open a file'], ['?', 'this list'],
 ];
 
 export function help(page: PageStore): HTMLElement {

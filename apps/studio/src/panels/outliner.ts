@@ -7,10 +7,11 @@ import type { HandleView } from '../scene/handle_view';
 import { counted } from '../ui/counted';
 import { button, element } from '../ui/dom';
 import { renameIn } from '../ui/rename';
+import { jointActions } from './joint_actions';
 import { clipList, meshList, pinList, targetList } from './outliner_lists';
 
 export function outliner(studio: Studio, page: PageStore, handles: HandleView): HTMLElement {
-  const list = element('ul', { class: 'joints', role: 'listbox', 'aria-label': 'Joints', tabindex: 0, id: 'joints' });
+  const list = element('ul', { class: 'joints', role: 'listbox', 'aria-label': 'Joints', 'aria-multiselectable': 'true', tabindex: 0, id: 'joints' });
   const actions = element('div', { class: 'row actions' });
   const selectedJoint = () => page.now.selected ?? 0;
   const pin = button('Pin', () => void studio.togglePin(selectedJoint(), handles.position(selectedJoint()).toArray()), {
@@ -22,7 +23,10 @@ export function outliner(studio: Studio, page: PageStore, handles: HandleView): 
 
   list.addEventListener('click', (event) => {
     const row = (event.target as Element).closest<HTMLElement>('[data-joint]');
-    if (row) page.set({ selected: Number(row.dataset['joint']) });
+    if (!row) return;
+    const joint = Number(row.dataset['joint']);
+    if (event.shiftKey || event.ctrlKey || event.metaKey) studio.selectAlso(joint);
+    else page.set({ selected: joint, also: new Set() });
   });
   const rename = () => {
     const joint = page.now.selected, row = joint === null ? null : list.querySelector<HTMLElement>(`#joint-${joint}`);
@@ -46,7 +50,7 @@ export function outliner(studio: Studio, page: PageStore, handles: HandleView): 
 
   const title = element('h2', {}, 'Joints');
   page.watch((now, before) => {
-    const { session, selected } = now;
+    const { session, selected, also } = now;
     title.textContent = session ? counted(session.joints.length, 'joint') : 'Joints';
     if (session && (session.joints !== before.session?.joints || list.childElementCount === 0)) {
       const known = before.session?.joints.map((joint) => joint.name).join('\n');
@@ -57,8 +61,9 @@ export function outliner(studio: Studio, page: PageStore, handles: HandleView): 
     const pinned = new Set(session?.targets.map((target) => target.joint));
     for (const row of list.children as HTMLCollectionOf<HTMLElement>) {
       const joint = Number(row.dataset['joint']);
-      row.setAttribute('aria-selected', String(joint === selected));
+      row.setAttribute('aria-selected', String(joint === selected || also.has(joint)));
       row.classList.toggle('pinned', pinned.has(joint));
+      row.classList.toggle('locked', session?.locked.includes(joint) ?? false);
       if (joint === selected && selected !== before.selected) {
         // The list alone scrolls: on a narrow screen the whole panel would jump.
         const above = row.offsetTop - list.offsetTop, below = above + row.offsetHeight - list.clientHeight;
@@ -70,7 +75,7 @@ export function outliner(studio: Studio, page: PageStore, handles: HandleView): 
     pin.setAttribute('aria-pressed', String(selected !== null && pinned.has(selected)));
   });
   return element('section', { class: 'card outliner', 'aria-label': 'Outliner' },
-    meshList(page), clipList(studio, page), pinList(studio, page), targetList(studio, page), title, list, actions);
+    meshList(page), clipList(studio, page), pinList(studio, page), targetList(studio, page), title, list, actions, jointActions(studio, page));
 }
 
 const plain = (name: string) => name.toLowerCase().replace(/[^a-z0-9]/g, '');

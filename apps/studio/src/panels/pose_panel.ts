@@ -14,6 +14,9 @@ export function posePanel(studio: Studio, page: PageStore): HTMLElement {
   const ik = button('Limbs follow', () => void studio.toggleIk(), {
     keys: 'I', label: 'Limbs follow: inverse kinematics, a handle takes its limb along', id: 'ik',
   });
+  const both = button('Both sides', () => page.set({ bothSides: !page.now.bothSides }), {
+    keys: 'S', label: 'What is dragged on one side is done on the other as well', id: 'both-sides',
+  });
   const mirror = button('Mirror', () => void studio.mirrorPose(), { keys: 'M', label: 'Swap the pose of left and right', id: 'mirror' });
   const reset = button('Reset', () => void studio.resetPose(), { keys: 'Alt+R', label: 'Put all joints back', id: 'reset' });
   const rest = button('Make it the rest', () => void studio.setRestPose(), { label: 'The pose becomes the one that the model rests in', id: 'rest-pose' });
@@ -27,17 +30,19 @@ export function posePanel(studio: Studio, page: PageStore): HTMLElement {
     page.watch((now) => { box.checked = now[key]; });
     return element('label', { class: 'check' }, box, text);
   };
-  page.watch(({ session, mode: nowMode, display: nowDisplay }) => {
+  page.watch(({ session, mode: nowMode, display: nowDisplay, bothSides }) => {
     mode.show(nowMode);
     display.show(nowDisplay);
     ik.setAttribute('aria-pressed', String(session?.ik ?? false));
-    ik.disabled = mirror.disabled = !session;
+    both.setAttribute('aria-pressed', String(bothSides));
+    ik.disabled = both.disabled = mirror.disabled = !session;
     reset.disabled = rest.disabled = !session?.posed;
   });
   return element('section', { class: 'card pose', 'aria-label': 'Posing' },
     handleCount(studio, page),
     element('div', { class: 'row' }, mode.root, ik),
-    element('div', { class: 'row' }, mirror, reset, rest),
+    element('div', { class: 'row' }, both, mirror),
+    element('div', { class: 'row' }, reset, rest),
     display.root,
     element('div', { class: 'row checks' }, toggle('Bones', 'bones'), toggle('Wireframe', 'wireframe'),
       toggle('Arrows', 'gizmo'), toggle('Limits', 'limits')),

@@ -16,7 +16,7 @@ export class Figure {
   show(surface: SurfaceModel, joints: SessionState['joints']) {
     this.model.show(surface, joints.length);
     this.handles.show(joints);
-    this.handles.paint(null, null, new Set());
+    this.handles.paint(new Set(), null, new Set());
   }
 
   fit(camera: Camera, height: number, shown: boolean) {

@@ -84,9 +84,9 @@ export class HandleView {
     return Math.max(1e-6, -this.position(joint).applyMatrix4(camera.matrixWorldInverse).z);
   }
 
-  paint(selected: number | null, hovered: number | null, pinned: ReadonlySet<number>) {
+  paint(selected: ReadonlySet<number>, hovered: number | null, pinned: ReadonlySet<number>) {
     for (let joint = 0; this.spheres && joint < this.joints.length; ++joint) {
-      const color = joint === selected ? selectedColor : joint === hovered ? hoverColor
+      const color = selected.has(joint) ? selectedColor : joint === hovered ? hoverColor
         : pinned.has(joint) ? pinColor : this.joints[joint]?.parent === -1 ? rootColor : handleColor;
       this.spheres.setColorAt(joint, color);
     }

@@ -4,7 +4,7 @@ import {
   RepeatWrapping, Skeleton, SkinnedMesh, SRGBColorSpace, Texture, Vector3,
 } from 'three';
 import type { Display } from '../app/state';
-import type { SurfaceModel } from '../engine/messages';
+import type { SurfaceModel, WeightArrays } from '../engine/messages';
 import { heatColor, jointColor } from './palette';
 
 /** Takes its matrices as they come from the engine instead of making them from bones. */
@@ -19,6 +19,8 @@ class EngineSkeleton extends Skeleton {
     if (this.boneTexture) this.boneTexture.needsUpdate = true;
   }
 }
+
+const heatSteps = 255; // from cold to hot
 
 async function loadTexture(bytes: Uint8Array): Promise<Texture> {
   const bitmap = await createImageBitmap(new Blob([bytes as BlobPart]), { imageOrientation: 'flipY' });
@@ -57,6 +59,16 @@ export class ModelView {
 
   take(matrices: Float32Array) {
     if (this.skeleton && matrices.length === 16 * this.skeleton.bones.length) this.skeleton.take(matrices);
+  }
+
+  /** Other weights for the surface that is shown. */
+  takeWeights({ weights, joints }: WeightArrays, display: Display, selected: number | null) {
+    if (!this.model || !this.geometry || weights.length !== this.model.weights.length) return;
+    this.model.weights.set(weights);
+    this.model.joints.set(joints);
+    for (const name of ['skinIndex', 'skinWeight']) this.geometry.getAttribute(name).needsUpdate = true;
+    if (display === 'weights') this.paint(null);
+    if (display === 'joint-weights') this.paint(selected ?? 0);
   }
 
   setDisplay(display: Display, selected: number | null, wireframe: boolean) {
@@ -145,6 +157,7 @@ export class ModelView {
     const model = this.model!;
     const colors = this.geometry!.getAttribute('color') as BufferAttribute;
     const palette = Array.from({ length: this.skeleton!.bones.length }, (_, j) => jointColor(j));
+    const heat = Array.from({ length: heatSteps + 1 }, (_, step) => heatColor(step / heatSteps));
     const color = new Color();
     for (let v = 0; v < colors.count; ++v) {
       let own = 0;
@@ -155,7 +168,7 @@ export class ModelView {
         const of = palette[model.joints[i] ?? 0];
         if (of && joint === null) color.r += weight * of.r, color.g += weight * of.g, color.b += weight * of.b;
       }
-      if (joint !== null) color.copy(heatColor(Math.min(1, own)));
+      if (joint !== null) color.copy(heat[Math.round(heatSteps * Math.min(1, own))]!);
       colors.setXYZ(v, color.r, color.g, color.b);
     }
     colors.needsUpdate = true;

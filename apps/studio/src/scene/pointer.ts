@@ -1,6 +1,6 @@
 // Mouse, pen and fingers on the canvas: a handle under one is dragged, anything else moves the camera.
 import { Vector3 } from 'three';
-import type { PageStore } from '../app/state';
+import type { PageState, PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
 import type { Gizmo } from './gizmo';
 import type { HandleView } from './handle_view';
@@ -14,6 +14,7 @@ const orbitStep = 10; // degrees of the view for a press of an arrow
 export class PointerInput {
   private held: number | null = null;
   private heldPointer = -1;
+  private before: Pick<PageState, 'selected' | 'also'> = { selected: null, also: new Set() };
   private down: { x: number; y: number; moved: boolean } | null = null;
 
   constructor(
@@ -31,7 +32,7 @@ export class PointerInput {
   }
 
   private under(event: PointerEvent): number | null {
-    if (this.page.now.display !== 'handles') return null;
+    if (this.page.now.display !== 'handles' || this.page.now.placing) return null;
     const { width, height } = this.viewport.size;
     const near = slop[event.pointerType as keyof typeof slop] ?? slop.mouse;
     return this.handles.pick(event.offsetX, event.offsetY, this.viewport.camera, width, height, near);
@@ -48,8 +49,18 @@ export class PointerInput {
     this.viewport.canvas.setPointerCapture(event.pointerId);
     this.held = joint;
     this.heldPointer = event.pointerId;
+    this.before = { selected: this.page.now.selected, also: this.page.now.also };
     const { ray, view } = this.viewport.ray(event.offsetX, event.offsetY);
     this.studio.beginDrag(joint, ray, view);
+  }
+
+  /** Selects alone or, with Shift, besides what was selected. */
+  private tap(besides: boolean) {
+    this.studio.cancelDrag();
+    const { selected } = this.page.now;
+    if (!besides || selected === null) return this.page.set({ also: new Set() });
+    this.page.set(this.before);
+    this.studio.selectAlso(selected);
   }
 
   private move(event: PointerEvent) {
@@ -71,7 +82,7 @@ export class PointerInput {
     if (this.held !== null) {
       this.held = null;
       // A tap selects, and is no step to undo.
-      if (tapped) this.studio.cancelDrag();
+      if (tapped) this.tap(event.shiftKey);
       else this.studio.endDrag();
     } else if (tapped && event.isPrimary && !this.gizmo.meant) {
       void this.studio.selectSurface(this.viewport.ray(event.offsetX, event.offsetY).ray, 0);

@@ -9,6 +9,8 @@ import { LimitView } from './limit_view';
 import { ModelView } from './model_view';
 import { OnionView } from './onion_view';
 import { boneColor, partColor } from './palette';
+import { BrushView } from './brush_view';
+import { PaintInput } from './paint_input';
 import { PointerInput } from './pointer';
 import { matchColors, SourceView } from './source_view';
 import { Viewport } from './viewport';
@@ -29,13 +31,17 @@ export function createStage(studio: Studio, page: PageStore): Stage {
   viewport.scene.add(handles.root, model.root, source.root, source.model.root, limits.root, onion.root);
   source.model.onChange = () => viewport.draw();
   const gizmo = new Gizmo(viewport, handles, studio, page);
+  const brush = new BrushView();
+  viewport.scene.add(brush.root);
+  viewport.tools.push(brush.root);
+  new PaintInput(viewport, brush, studio, page); // before the other, which then sees that it is not meant
   new PointerInput(viewport, handles, gizmo, studio, page);
   const root = new Vector3();
   model.onChange = () => viewport.draw();
   viewport.beforeFrame = (camera) => {
     const { display, bones } = page.now;
     const matched = (page.now.session?.match.length ?? 0) > 0;
-    handles.fit(camera, viewport.size.height, display === 'handles', bones && (display === 'handles' || matched));
+    handles.fit(camera, viewport.size.height, display === 'handles', bones && (display === 'handles' || matched || page.now.painting));
     comparison.fit(camera, viewport.size.height, display === 'handles');
   };
   studio.onStance = (stance, ofClip) => {
@@ -49,6 +55,10 @@ export function createStage(studio: Studio, page: PageStore): Stage {
     // The camera walks along.
     if (ofClip) viewport.follow(root.x - before.x, root.z - before.z);
     gizmo.place(viewport);
+    viewport.draw();
+  };
+  studio.onWeights = (weights) => {
+    model.takeWeights(weights, page.now.display, page.now.selected);
     viewport.draw();
   };
   studio.onOpened = () => {
@@ -78,7 +88,8 @@ export function createStage(studio: Studio, page: PageStore): Stage {
     const repaint = now.model !== before.model || now.display !== before.display || now.wireframe !== before.wireframe
       || (now.display === 'joint-weights' && now.selected !== before.selected);
     if (repaint) model.setDisplay(now.display, now.selected, now.wireframe);
-    handles.paint(now.selected, now.hovered, new Set(now.session?.targets.map((target) => target.joint)));
+    const selected = now.selected === null ? [] : [now.selected, ...now.also];
+    handles.paint(new Set(selected), now.hovered, new Set(now.session?.targets.map((target) => target.joint)));
     viewport.draw();
   });
   return { viewport, handles, model, comparison, gizmo };
