@@ -11,6 +11,7 @@ import { exposeStage } from './app/probe';
 import { comparisonPanel } from './panels/comparison_panel';
 import { contactSheet } from './panels/contact_sheet';
 import { help } from './panels/help';
+import { motionShelf } from './panels/motion_shelf';
 import { methodsPanel } from './panels/methods_panel';
 import { outliner } from './panels/outliner';
 import { paintPanel } from './panels/paint_panel';
@@ -50,7 +51,7 @@ app.append(
   element('main', { class: 'stage' }, viewport.canvas, facts(page), hint(page), views(viewport), comparisonPanel(studio, page, comparison)),
   element('aside', { class: 'side' }, posePanel(studio, page), paintPanel(studio, page), retargetPanel(studio, page), methodsPanel(studio, page), outliner(studio, page, handles)),
   timeline(studio, page, sheet.open),
-  status(studio, page), help(page), sheet.dialog);
+  status(studio, page), help(page), sheet.dialog, motionShelf(studio, page));
 bindShortcuts(studio, page, viewport, handles);
 bindPlayer(studio, page);
 bindJournal(journal, studio, page, viewport);

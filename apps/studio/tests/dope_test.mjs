@@ -7,7 +7,7 @@ import assert from 'node:assert/strict';
 import { mkdirSync, readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { join, resolve } from 'node:path';
-import { jointPosition, launch, motionPlayed, openStudio, runCases, serve, sessionState, settled } from './page.mjs';
+import { chooseMotion, jointPosition, launch, motionPlayed, openStudio, runCases, serve, sessionState, settled } from './page.mjs';
 
 const [dist, output] = process.argv.slice(2).map((path) => resolve(path));
 mkdirSync(output, { recursive: true });
@@ -184,7 +184,7 @@ const cases = {
   async 'a correction of recorded motion stays when the motion is made anew'() {
     await page.goto(`${server.address}?sample=biped`);
     await settled(page);
-    await motionPlayed(page, () => page.locator('#sample-motions').selectOption('walk'));
+    await motionPlayed(page, () => chooseMotion(page, 'walk'));
     await scrub(0); // it played
     const { match, joints } = await sessionState(page), [name] = match.find(({ part }) => part === 'leftHand').target;
     const hand = joints.findIndex((joint) => joint.name === name);

@@ -10,7 +10,7 @@ import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { join, resolve } from 'node:path';
 import { walkBvh } from './walk_bvh.mjs';
-import { answer, download, jointPosition, launch, motionPlayed, openStudio, runCases, serve, sessionState, settled } from './page.mjs';
+import { answer, chooseMotion, download, jointPosition, launch, motionPlayed, openStudio, runCases, serve, sessionState, settled } from './page.mjs';
 
 const [dist, program, output] = process.argv.slice(2).map((path) => resolve(path));
 const rounds = Number(process.env.LIMBER_ROUNDS ?? 6);
@@ -116,7 +116,7 @@ function zipOf(files) {
   return Buffer.concat([...parts, listed, Buffer.from('PK\x05\x06', 'latin1'), end]);
 }
 
-const walk = () => page.locator('#sample-motions').selectOption('walk');
+const walk = () => chooseMotion(page, 'walk');
 
 const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 /** What keeps people out who read with ears or press keys, and text that cannot be made out; each with where. */
@@ -295,10 +295,11 @@ const cases = {
     await opened('person.glb');
     const before = await standing();
     assert.equal((await sessionState(page)).own_rig, true);
-    await page.locator('#sample-motions').selectOption('quadruped-walk');
-    await page.locator('#notice').waitFor();
-    assert.match(await page.locator('#notice').textContent(), /too little in common/);
-    await page.locator('#close-notice').click();
+    await page.locator('#open-shelf').click();
+    const animal = page.locator('#shelf [data-motion=quadruped-walk][aria-disabled=true]');
+    await animal.waitFor();
+    assert.match(await animal.getAttribute('title'), /too little in common/);
+    await page.keyboard.press('Escape');
     expectSame(await standing(), before);
     await page.locator('#handles').focus();
     await page.keyboard.press('ArrowLeft');
@@ -400,7 +401,7 @@ const cases = {
       await at.emulateMedia({ colorScheme, reducedMotion: 'reduce' });
       const expectNone = async (state) => assert.deepEqual(await barriers(at), [], `${state}, ${colorScheme}, ${width} wide`);
       await expectNone('a model');
-      await motionPlayed(at, () => at.locator('#sample-motions').selectOption('walk'));
+      await motionPlayed(at, () => chooseMotion(at, 'walk'));
       await at.locator('#play').click();
       await settled(at);
       await at.locator('#retarget summary').click();

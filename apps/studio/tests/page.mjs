@@ -62,6 +62,12 @@ export async function motionPlayed(page, choose) {
   if (await page.locator('#notice').isVisible()) throw new Error(await page.locator('#notice').textContent());
 }
 
+/** Puts a motion of the shelf on the model. */
+export async function chooseMotion(page, name) {
+  await page.locator('#open-shelf').click();
+  await page.locator(`#shelf [data-motion="${name}"]`).click();
+}
+
 export async function download(page, click) {
   const [file] = await Promise.all([page.waitForEvent('download'), click()]);
   return readFileSync(await file.path());

@@ -8,7 +8,7 @@ import { execFileSync } from 'node:child_process';
 import { mkdirSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 import { walkBvh } from './walk_bvh.mjs';
-import { download as downloadFrom, jointPlace, jointPosition, launch, motionPlayed, openStudio, runCases, serve, sessionState, settled } from './page.mjs';
+import { chooseMotion, download as downloadFrom, jointPlace, jointPosition, launch, motionPlayed, openStudio, runCases, serve, sessionState, settled } from './page.mjs';
 
 const [dist, program, output, faulty] = process.argv.slice(2).map((path) => resolve(path));
 mkdirSync(output, { recursive: true });
@@ -203,7 +203,7 @@ const cases = {
   async 'a sample motion plays, and a joint of the template is corrected by dragging and by touching'() {
     const other = await openStudio(browser, server.address, { search: '?sample=biped' });
     const at = other.page;
-    await motionPlayed(at, () => at.locator('#sample-motions').selectOption('walk'));
+    await motionPlayed(at, () => chooseMotion(at, 'walk'));
     await at.waitForFunction(() => Number(document.querySelector('#scrub').value) > 0.1);
     await at.locator('#methods summary').click();
     await at.locator('#rigger').selectOption('template');

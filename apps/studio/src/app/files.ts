@@ -57,6 +57,27 @@ export interface Brought {
   beside: Map<string, File>;
 }
 
+/** Of several glTF models those that move: they are motions for the model, not models to open. */
+async function movingModels(files: File[]): Promise<Set<File>> {
+  const models = files.filter(({ name }) => /\.(glb|gltf)$/i.test(name));
+  if (models.length < 2) return new Set();
+  const moves = await Promise.all(models.map(hasAnimation));
+  return new Set(models.filter((_, i) => moves[i]));
+}
+
+const glbJson = 20, glbJsonLength = 12; // bytes: where a GLB's JSON begins, and where its length is told
+
+/** Whether a glTF's JSON has animations; one that cannot be read has none. */
+async function hasAnimation(file: File): Promise<boolean> {
+  let text: Blob = file;
+  if (/\.glb$/i.test(file.name)) {
+    if (file.size < glbJson) return false;
+    const length = new DataView(await file.slice(glbJsonLength, glbJson).arrayBuffer()).getUint32(0, true);
+    text = file.slice(glbJson, glbJson + length);
+  }
+  return /"animations"\s*:\s*\[\s*\{/.test(await text.text());
+}
+
 export async function sorted(files: File[]): Promise<Brought> {
   const all: File[] = [];
   for (const file of files) {
@@ -66,8 +87,9 @@ export async function sorted(files: File[]): Promise<Brought> {
       inside.forEach((bytes, path) => all.push(new File([bytes as BlobPart], fileName(path))));
     }
   }
-  const motions = all.filter(({ name }) => /\.bvh$/i.test(name));
-  const found = all.find(({ name }) => model.test(name)) ?? null;
+  const moving = await movingModels(all);
+  const motions = all.filter((file) => /\.bvh$/i.test(file.name) || moving.has(file));
+  const found = all.find((file) => model.test(file.name) && !moving.has(file)) ?? null;
   const limits = found === null && motions.length === 0 ? all.find(({ name }) => /\.json$/i.test(name)) ?? null : null;
   // What no reader knows is opened all the same: its reader says so.
   const only = all.length === 1 && motions.length === 0 && limits === null ? all[0]! : null;

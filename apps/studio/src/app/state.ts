@@ -1,6 +1,6 @@
 // What the page shows, in one place.
 import type {
-  Curve, LimberError, Measures, MethodKind, Methods, Paths, SessionState, SurfaceModel, Variant,
+  Curve, LimberError, Measures, MethodKind, Methods, Paths, SampleMotion, SessionState, SurfaceModel, Variant,
 } from '../engine/messages';
 import { Store } from './store';
 
@@ -85,6 +85,11 @@ export interface PageState {
   /** The next click on the model puts a new joint there, below the selected one. */
   placing: boolean;
   methods: Methods | null;
+  sampleMotions: readonly SampleMotion[];
+  /** Motions that the user brought several of at once. */
+  ownMotions: readonly File[];
+  /** Whether the shelf of motions is open. */
+  shelf: boolean;
   comparison: Comparison | null;
   /** Parts of the model that are not drawn, by their place in it. */
   hiddenParts: ReadonlySet<number>;
@@ -101,7 +106,7 @@ export const createPageStore = (): PageStore => new Store<PageState>({
   seconds: 0, playing: false, speed: 1, loop: true, autoKey: true, gizmo: false, limits: false, correcting: false,
   span: 0.3, keyEditor: null, chosenKeys: [], ghosts: false, paths: null, curve: null,
   painting: false, brush: { mode: 'add', size: 0.05, strength: 0.5 }, placing: false,
-  methods: null, comparison: null, hiddenParts: new Set(), sourceModel: null, sourceShown: true,
+  methods: null, sampleMotions: [], ownMotions: [], shelf: false, comparison: null, hiddenParts: new Set(), sourceModel: null, sourceShown: true,
 });
 
 export function noticeOf(error: LimberError): Notice {

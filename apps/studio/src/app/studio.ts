@@ -1,7 +1,8 @@
 // Everything that a user can do, each a call on the engine's session; panels and the view call this and nothing else.
 import { EngineClient, EngineError } from '../engine/client';
+import { canBeNamed } from '../engine/messages';
 import type {
-  Command, LimberError, MethodKind, MotionRequest, Ray, Request, SessionState, Stance, Step, SurfaceHit, Vector, WeightArrays,
+  Command, LimberError, MethodKind, MotionPreview, MotionRequest, PreviewRig, Ray, Request, SampleMotion, SessionState, Stance, Step, SurfaceHit, Vector, WeightArrays,
 } from '../engine/messages';
 import { counted } from '../ui/counted';
 import { sorted, withBuffers } from './files';
@@ -13,6 +14,8 @@ import { noticeOf, type KeyPlace, type Notice, type PageStore } from './state';
 const mostFileSize = 500e6;
 /** Commands that leave the model in another pose, set by hand. */
 const poses = new Set(['end_drag', 'turn_joint', 'move_joint', 'reset_joint', 'reset_pose', 'mirror_pose']);
+const previewRate = 12; // frames a second of a motion on the shelf; between them it is blended
+const previewSeconds = 5; // of a user's motion
 const progressDelay = 250; // milliseconds before a wait is shown
 
 const stageNames: Record<string, string> = {
@@ -26,6 +29,10 @@ const lostSteps = (failed: number, all: number, error: LimberError | null): Noti
 const openTwice = (name: string): Notice => ({
   kind: 'note', title: 'This model is open in another tab as well', detail: `What you do here is kept as a copy of ${name}`,
 });
+
+const sampleMotion = (name: string): MotionRequest => ({ kind: 'run', command: { do: 'add_sample_motion', name } });
+const motionOf = async (file: File): Promise<MotionRequest> =>
+  ({ kind: 'motion', bytes: new Uint8Array(await file.arrayBuffer()), name: file.name });
 
 /** Whether its rig is a named skeleton's, whose joints can be corrected. */
 export const hasTemplate = (session: SessionState) => !session.own_rig && session.rigger === 'template';
@@ -101,7 +108,7 @@ export class Studio {
     if (!brought) return;
     const { model, motions, limits, beside } = brought;
     if (model) await this.openModel(model, beside);
-    for (const motion of motions) await this.openMotion(motion);
+    await this.openMotions(motions);
     if (limits) await this.openLimits(limits);
     if (files.length > 0 && !model && motions.length === 0 && !limits) {
       this.page.set({ notice: { kind: 'error', title: 'There is no model in it', detail: 'Open GLB, glTF, VRM, OBJ, FBX, STL, PLY or BVH' } });
@@ -120,14 +127,42 @@ export class Studio {
     });
   }
 
+  /** One is put on the model at once; of several the user chooses on the shelf, where they stay while the page lives. */
+  async openMotions(files: File[]) {
+    if (files.length === 0) return;
+    if (files.length === 1) {
+      this.page.set({ shelf: false });
+      return this.openMotion(files[0]!);
+    }
+    const before = this.page.now.ownMotions.filter(({ name }) => !files.some((file) => file.name === name));
+    this.page.set({ ownMotions: [...before, ...files], shelf: true });
+  }
+
   /** Plays what moves in the file on the model. */
   async openMotion(file: File) {
-    await this.guard(async () => this.play({ kind: 'motion', bytes: new Uint8Array(await file.arrayBuffer()), name: file.name }));
+    await this.guard(async () => this.play(await motionOf(file)));
   }
 
   /** One that the engine makes itself. */
   async openSampleMotion(name: string) {
-    await this.guard(() => this.play({ kind: 'run', command: { do: 'add_sample_motion', name } }));
+    await this.guard(() => this.play(sampleMotion(name)));
+  }
+
+  /** How a motion would look on the model as it is; null where the page is told to stop. */
+  async previewMotion(of: File | SampleMotion): Promise<MotionPreview | null> {
+    const motion = of instanceof File ? await motionOf(of) : sampleMotion(of.name);
+    const most = of instanceof File ? previewSeconds : of.seconds;
+    try {
+      return await this.engine.ask({ kind: 'preview-motion', motion, most, rate: previewRate });
+    } catch (error) {
+      if (!(error instanceof EngineError)) throw error;
+      return error.cancelled ? null : { error: error.error, named: false, seconds: 0, frames: [] };
+    }
+  }
+
+  /** What previews with a named skeleton move. */
+  async previewRig(): Promise<PreviewRig | null> {
+    return this.engine.ask({ kind: 'preview-rig' }).catch(() => null);
   }
 
   /** A model whose handles have no names gets a skeleton first, where the user agrees; else all stays as it was. */
@@ -135,8 +170,7 @@ export class Studio {
     const state = this.page.now.session;
     if (!state) return;
     let trial = await this.engine.ask({ kind: 'try-motion', motion, named: false });
-    const canBeNamed = trial.error?.code === 'unsupported' && !state.own_rig && state.rigger !== 'template';
-    if (canBeNamed) {
+    if (canBeNamed(trial.error, state)) {
       const refused = trial.error;
       trial = await this.engine.ask({ kind: 'try-motion', motion, named: true });
       if (trial.error) throw new EngineError(refused ?? trial.error);
@@ -236,7 +270,9 @@ export class Studio {
   }
 
   async loadMethods() {
-    await this.guard(async () => this.page.set({ methods: await this.engine.ask({ kind: 'methods' }) }));
+    await this.guard(async () => this.page.set({
+      methods: await this.engine.ask({ kind: 'methods' }), sampleMotions: await this.engine.ask({ kind: 'sample-motions' }),
+    }));
   }
 
   async chooseMethods(change: { rigger?: string; skinning?: string }) {

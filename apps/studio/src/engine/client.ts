@@ -28,6 +28,8 @@ interface Waiting {
 }
 
 const changesDocument = ({ kind }: Request) => kind === 'open' || kind === 'motion' || kind === 'run';
+/** What is tried for a picture holds nobody up. */
+const quiet = ({ kind }: Request) => kind.startsWith('preview');
 const opens = (request: Request) => request.kind === 'open' || (request.kind === 'run' && opensModel(request.command));
 
 export class EngineClient {
@@ -89,7 +91,7 @@ export class EngineClient {
     return new Promise((resolve, reject) => {
       const id = this.nextId++;
       this.waiting.set(id, { request, resolve: resolve as (answer: unknown) => void, reject });
-      this.onBusy(true);
+      if (!quiet(request)) this.onBusy(true);
       this.worker.postMessage({ id, request } satisfies ToWorker);
     });
   }
@@ -112,7 +114,7 @@ export class EngineClient {
     const waiting = this.waiting.get(data.id);
     if (!waiting) return;
     this.waiting.delete(data.id);
-    if (this.waiting.size === 0) this.onBusy(false);
+    if (![...this.waiting.values()].some(({ request }) => !quiet(request))) this.onBusy(false);
     if (data.kind === 'failed') return waiting.reject(new EngineError(data.error));
     this.remember(waiting.request);
     waiting.resolve(data.answer);

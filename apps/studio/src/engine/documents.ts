@@ -2,8 +2,8 @@
 // make of the document. All show the same moment.
 import type { Failure, loadLimber, Session } from '@engine/limber.mjs';
 import {
-  opensModel, type Answers, type Command, type ExportFormat, type LimberError, type MotionRequest, type Ray, type Request,
-  type SessionState, type Stance, type Step, type Trial, type Variant,
+  canBeNamed, opensModel, type Answers, type Command, type ExportFormat, type LimberError, type MotionPreview, type MotionRequest,
+  type Ray, type Request, type SessionState, type Stance, type Step, type Trial, type Variant, type Vector,
 } from './messages';
 
 type Limber = Awaited<ReturnType<typeof loadLimber>>;
@@ -19,6 +19,29 @@ export class EngineFailure extends Error {
 function orThrow<T extends { ok: true }>(result: T | Failure): T {
   if (!result.ok) throw new EngineFailure(result);
   return result;
+}
+
+/** The motion in a document, as its newest clip, or why not. */
+function putOn(session: Session, request: MotionRequest): { motion: string; error: LimberError | null; state: SessionState | null } {
+  const added = orThrow(request.kind === 'motion' ? session.addMotion(request.bytes, request.name) : session.run(request.command));
+  const motion = added.state?.motions.at(-1)?.name ?? '';
+  const put = session.run({ do: 'retarget', motion });
+  return put.ok ? { motion, error: null, state: put.state } : { motion, error: put.error, state: null };
+}
+
+/** The motion's first `most` seconds on a document. */
+function framesOf(session: Session, request: MotionRequest, most: number, rate: number): Omit<MotionPreview, 'named'> {
+  const { error, state } = putOn(session, request);
+  if (error) return { error, seconds: 0, frames: [] };
+  const seconds = Math.min(most, state?.clips[state.clip ?? -1]?.duration ?? 0);
+  const count = Math.max(1, Math.round(seconds * rate));
+  const frames = Array.from({ length: count }, (_, frame) => {
+    const { skin } = orThrow(session.run({ do: 'set_time', seconds: (seconds * frame) / count }));
+    const [x = 0, y = 0, z = 0] = orThrow(session.handles()).handles;
+    const root: Vector = [x, y, z];
+    return { skin, root };
+  });
+  return { error: null, seconds, frames };
 }
 
 /** What may make another rig, and with it another surface. */
@@ -40,6 +63,8 @@ export class Documents {
   private sources = new Map<string, { session: Session; state: SessionState }>();
   private shownSource = '';
   private variants: { session: Session; clip: boolean }[] = [];
+  /** The document with the rig of a named skeleton, or why there is none; made when a motion asks for it. */
+  private named: { session: Session; state: SessionState } | EngineFailure | null = null;
 
   constructor(private limber: Limber) {
     this.session = limber.createSession();
@@ -61,6 +86,7 @@ export class Documents {
   restore(requests: Request[]): Answers['restore'] {
     this.session.free();
     this.session = this.limber.createSession();
+    this.forgetNamed();
     this.state = null;
     this.forgetOthers();
     let failed = 0, error: LimberError | null = null;
@@ -79,18 +105,63 @@ export class Documents {
   }
 
   tryMotion(request: MotionRequest, named: boolean): Trial {
-    const fork = this.limber.forkSession(this.session);
-    if (!fork) throw new EngineFailure({ ok: false, error: { code: 'bad-argument', message: 'a joint is being dragged', where: '', remedy: '' } });
-    try {
-      const rig: Command = { do: 'choose_methods', rigger: 'template', skinning: this.state?.skinning };
-      const rigged = named ? orThrow(fork.run(rig)).state : this.state;
-      const added = orThrow(request.kind === 'motion' ? fork.addMotion(request.bytes, request.name) : fork.run(request.command));
-      const motion = added.state?.motions.at(-1)?.name ?? '';
-      const put = fork.run({ do: 'retarget', motion });
+    const rigged = named ? this.withNames() : { session: this.session, state: this.state };
+    return this.onFork(rigged.session, (fork) => {
+      const { motion, error } = putOn(fork, request);
       return {
-        motion, error: put.ok ? null : put.error, joints: rigged?.joints.length ?? 0,
-        warnings: rigged?.warnings.map(({ message }) => message) ?? [],
+        motion, error, joints: rigged.state?.joints.length ?? 0, warnings: rigged.state?.warnings.map(({ message }) => message) ?? [],
       };
+    });
+  }
+
+  previewMotion(request: MotionRequest, most: number, rate: number): MotionPreview {
+    const own = this.onFork(this.session, (fork) => framesOf(fork, request, most, rate));
+    if (!canBeNamed(own.error, this.state)) return { ...own, named: false };
+    try {
+      const named = this.onFork(this.withNames().session, (fork) => framesOf(fork, request, most, rate));
+      return named.error ? { ...own, named: false } : { ...named, named: true };
+    } catch (error) {
+      if (error instanceof EngineFailure) return { ...own, named: false };
+      throw error;
+    }
+  }
+
+  previewRig(): Answers['preview-rig'] {
+    if (!this.named || this.named instanceof EngineFailure) return null;
+    return { model: orThrow(this.named.session.model()).model, joints: this.named.state.joints.length };
+  }
+
+  sampleMotions() { return this.limber.sampleMotions(); }
+
+  private withNames(): { session: Session; state: SessionState } {
+    this.named ??= this.rigWithNames();
+    if (this.named instanceof EngineFailure) throw this.named;
+    return this.named;
+  }
+
+  private rigWithNames(): { session: Session; state: SessionState } | EngineFailure {
+    const session = this.fork(this.session);
+    const rigged = session.run({ do: 'choose_methods', rigger: 'template', skinning: this.state?.skinning });
+    if (rigged.ok && rigged.state) return { session, state: rigged.state };
+    session.free();
+    return new EngineFailure(rigged.ok ? { ok: false, error: { code: 'engine', message: 'nothing came of it', where: '', remedy: '' } } : rigged);
+  }
+
+  private forgetNamed() {
+    if (this.named && !(this.named instanceof EngineFailure)) this.named.session.free();
+    this.named = null;
+  }
+
+  private fork(session: Session): Session {
+    const fork = this.limber.forkSession(session);
+    if (!fork) throw new EngineFailure({ ok: false, error: { code: 'bad-argument', message: 'a joint is being dragged', where: '', remedy: '' } });
+    return fork;
+  }
+
+  private onFork<T>(session: Session, act: (fork: Session) => T): T {
+    const fork = this.fork(session);
+    try {
+      return act(fork);
     } finally {
       fork.free();
     }
@@ -139,6 +210,7 @@ export class Documents {
   /** One request, carried out on the document. */
   private take(request: Request): Taken {
     const taken = this.carryOut(request);
+    if (request.kind !== 'run' || request.command.do !== 'set_time') this.forgetNamed();
     if (taken.state) {
       this.state = taken.state;
       this.seconds = taken.state.seconds;

@@ -67,6 +67,31 @@ export interface Trial {
   warnings: string[];
 }
 
+/** A motion that the engine makes itself; the seconds are those of one repetition. */
+export interface SampleMotion {
+  name: string;
+  summary: string;
+  seconds: number;
+}
+
+/** How a motion would look on the model, tried beside the document. */
+export interface MotionPreview {
+  /** Why it cannot be put on the model; there are no frames then. */
+  error: LimberError | null;
+  /** Whether it is shown with a named skeleton's rig (PreviewRig), as the document's own joints have no names. */
+  named: boolean;
+  /** Of all frames. */
+  seconds: number;
+  /** At even moments, from the first on: what moves the surface, 16 numbers for each joint, and where the root is. */
+  frames: { skin: Float32Array; root: Vector }[];
+}
+
+/** The model with the named skeleton that previews were made with. */
+export interface PreviewRig {
+  model: SurfaceModel;
+  joints: number;
+}
+
 export type Request =
   | { kind: 'open'; bytes: Uint8Array; name: string; limbsFollow?: boolean }
   /** Fails where the file is cut off. */
@@ -75,6 +100,10 @@ export type Request =
   | { kind: 'run'; command: Command }
   /** Before, the model gets a rig whose joints have names, where `named` says so. */
   | { kind: 'try-motion'; motion: MotionRequest; named: boolean }
+  | { kind: 'sample-motions' }
+  /** As much of the motion as that, in as many frames a second; changes nothing. */
+  | { kind: 'preview-motion'; motion: MotionRequest; most: number; rate: number }
+  | { kind: 'preview-rig' }
   /** A new document, by all that was asked for to make it. */
   | { kind: 'restore'; requests: Request[] }
   | { kind: 'pick'; ray: Ray; slope: number }
@@ -99,6 +128,9 @@ export interface Answers {
   motion: Step;
   run: Step;
   'try-motion': Trial;
+  'sample-motions': SampleMotion[];
+  'preview-motion': MotionPreview;
+  'preview-rig': PreviewRig | null;
   /** null where nothing could be opened; how many of the requests failed, and the first error. */
   restore: { step: Step | null; failed: number; error: LimberError | null };
   pick: PickHit | null;
@@ -119,6 +151,10 @@ export type Place = 'begins' | 'follows' | 'replaces';
 
 /** Whether a command begins another document. */
 export const opensModel = (command: Command) => command.do.startsWith('open_');
+
+/** Whether a motion was refused for want of names, which a skeleton would bring. */
+export const canBeNamed = (error: LimberError | null, state: SessionState | null) =>
+  error?.code === 'unsupported' && state !== null && !state.own_rig && state.rigger !== 'template';
 
 export type Kind = Request['kind'];
 export type Answer<K extends Kind> = Answers[K];

@@ -16,6 +16,9 @@ function answer(documents: Documents, request: Request): Answers[Kind] {
     case 'surface': return documents.surface(request.rays);
     case 'preview': return documents.preview(request.stroke);
     case 'try-motion': return documents.tryMotion(request.motion, request.named);
+    case 'sample-motions': return documents.sampleMotions();
+    case 'preview-motion': return documents.previewMotion(request.motion, request.most, request.rate);
+    case 'preview-rig': return documents.previewRig();
     case 'restore': return documents.restore(request.requests);
     case 'source-model': return documents.sourceModel();
     case 'paths': return documents.paths();

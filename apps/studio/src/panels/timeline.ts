@@ -3,23 +3,16 @@ import { togglePlaying } from '../app/player';
 import { frame } from '../app/keys';
 import type { PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
-import { button, element, setIcon } from '../ui/dom';
+import { button, element, fileInput, setIcon } from '../ui/dom';
 import { keyEditor } from './key_editor';
+import { motionFiles } from './motion_shelf';
 import { chosenClip, shownSeconds, type Clip } from './moments';
 
 const mostMarks = 400; // keys that are drawn; recorded motion has one for every frame
 const spans = [0.1, 0.3, 0.6, 1]; // seconds
 
-/** Of the engine: for models that have their kind of limbs. */
-const sampleMotions = [['walk', 'Walk'], ['jumping-jack', 'Jumping jack'], ['quadruped-walk', 'Walk on four legs']] as const;
-
 export function timeline(studio: Studio, page: PageStore, openSheet: () => Promise<void>): HTMLElement {
-  const file = element('input', { type: 'file', accept: '.bvh,.glb,.gltf', hidden: true, id: 'motion-file' });
-  file.addEventListener('change', () => {
-    const chosen = file.files?.[0];
-    if (chosen) void studio.openMotion(chosen);
-    file.value = '';
-  });
+  const file = fileInput('motion-file', { accept: motionFiles }, (files) => void studio.openMotions(files));
   const clips = element('select', { class: 'select', id: 'clips', 'aria-label': 'The clip that is shown' });
   clips.addEventListener('change', () => {
     const name = clips.value;
@@ -47,17 +40,12 @@ export function timeline(studio: Studio, page: PageStore, openSheet: () => Promi
   const editor = keyEditor(studio, page);
   const sheet = button('', () => void openSheet(), { icon: 'sheet', label: 'Contact sheet: the clip at a glance', id: 'open-sheet' });
   const add = button('New clip', () => void studio.addClip(), { icon: 'add', label: 'A clip of your own poses', id: 'add-clip' });
-  const motion = button('Motion', () => file.click(), { icon: 'open', label: 'Play a motion (BVH, GLB) on the model', id: 'open-motion' });
-  const sample = element('select', { class: 'select', id: 'sample-motions', 'aria-label': 'Play a sample motion on the model' },
-    element('option', { value: '' }, 'Samples'), ...sampleMotions.map(([value, text]) => element('option', { value }, text)));
-  sample.addEventListener('change', () => {
-    if (sample.value !== '') void studio.openSampleMotion(sample.value);
-    sample.value = '';
-  });
+  const motion = button('Motion file', () => file.click(), { icon: 'open', label: 'Play a motion (BVH, GLB) on the model; several come to the shelf', id: 'open-motion' });
+  const shelf = button('Motions', () => page.set({ shelf: true }), { icon: 'motions', label: 'Motions to try on the model', id: 'open-shelf' });
   const remove = button('', () => void studio.run({ do: 'remove_clip', clip: chosenClip(page.now.session)?.name ?? '' }), { icon: 'erase', label: 'Remove this clip', id: 'remove-clip' });
 
   const card = element('section', { class: 'card timeline', 'aria-label': 'Timeline', id: 'timeline' },
-    element('div', { class: 'row tools' }, play, clips, add, motion, sample, file,
+    element('div', { class: 'row tools' }, play, clips, add, shelf, motion, file,
       element('div', { class: 'row clip-tools' }, speed, loop, sheet, key, auto, blend, erase, between, remove)),
     element('div', { class: 'row moment' }, editor.toggle, ghosts, element('div', { class: 'track' }, scrub, track), time), editor.root);
   let listed = '';
@@ -87,7 +75,7 @@ export function timeline(studio: Studio, page: PageStore, openSheet: () => Promi
     erase.disabled = keyHere(page) === null;
     between.disabled = !clip || clip.keys.length === 0;
     if (clip) between.value = clip.interpolation;
-    add.disabled = motion.disabled = sample.disabled = !session;
+    add.disabled = motion.disabled = shelf.disabled = !session;
     time.textContent = clip ? `${seconds.toFixed(2)} / ${clip.duration.toFixed(2)} s` : '';
     show(clip, seconds);
     card.classList.toggle('empty', !clip);

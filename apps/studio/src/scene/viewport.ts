@@ -1,12 +1,13 @@
 // The canvas: camera, light, ground, and frames drawn only when something has changed.
 import {
-  AmbientLight, Box3, CanvasTexture, Color, DirectionalLight, Group, HemisphereLight, LineSegments, BufferGeometry, Float32BufferAttribute,
+  Box3, CanvasTexture, Color, Group, LineSegments, BufferGeometry, Float32BufferAttribute,
   LineBasicMaterial, Mesh, MeshBasicMaterial, type Object3D, OrthographicCamera, PerspectiveCamera, PlaneGeometry, Raycaster, Scene, Spherical,
   Vector2, Vector3, WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import type { Ray, Vector } from '../engine/messages';
 import { element } from '../ui/dom';
+import { studioLights } from './lights';
 
 export type ViewName = 'front' | 'right' | 'top' | 'start';
 
@@ -25,7 +26,6 @@ export class Viewport {
   private orthographic = new OrthographicCamera(-1, 1, 1, -1, 0.01, 1000);
   private current: PerspectiveCamera | OrthographicCamera = this.perspective;
   private ground = new Group();
-  private keyLight = new DirectionalLight(0xffffff, 2.0);
   private box = new Box3(new Vector3(-1, 0, -1), new Vector3(1, 2, 1));
   private asked = false;
   private step = 1; // metres between the ground's lines
@@ -37,10 +37,7 @@ export class Viewport {
     this.canvas.tabIndex = 0;
     this.canvas.setAttribute('role', 'application');
     this.canvas.setAttribute('aria-label', 'The model. The list of joints does everything that is done here by pointer.');
-    this.keyLight.position.set(0.6, 1, 0.9);
-    const rim = new DirectionalLight(0xe8efff, 0.7);
-    rim.position.set(-0.8, 0.5, -1);
-    this.scene.add(new HemisphereLight(0xffffff, 0xb8b2aa, 1.25), new AmbientLight(0xffffff, 0.25), this.keyLight, rim, this.ground);
+    this.scene.add(...studioLights(), this.ground);
     this.controls = new OrbitControls(this.perspective, this.canvas);
     this.controls.enableDamping = false;
     this.controls.addEventListener('change', () => this.draw());

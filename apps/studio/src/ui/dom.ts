@@ -27,6 +27,7 @@ const icons = {
   help: 'M7.5 7.5a2.5 2.5 0 1 1 3.5 2.3c-.7.3-1 .8-1 1.7M10 14.5v.5',
   brush: 'M17 3 9 11M9 11c-3 0-3 3-3 4s-1 2-3 2c4 1 8-1 8-4 0-1-1-2-2-2z',
   pin: 'M10 18v-6M6 12h8l-2-4V3H8v5z',
+  motions: 'M11.5 2.5a1.5 1.5 0 1 0 .01 0M5 9l3-2 3 1 2 3h3M11 8l-2 4 3 2v4M9 12l-2 3H3',
   play: 'm6 4 10 6-10 6z',
   pause: 'M7 4v12M13 4v12',
   loop: 'M4 10a5 5 0 0 1 5-5h6m-3-3 3 3-3 3M16 10a5 5 0 0 1-5 5H5m3 3-3-3 3-3',
@@ -77,6 +78,17 @@ export function button(text: string, act: () => void, options: ButtonOptions = {
   }, options.icon ? icon(options.icon) : null, text === '' ? null : element('span', {}, text));
   made.addEventListener('click', act);
   return made;
+}
+
+/** Where files are chosen, several at once; asked for by its click(). `folder`: all files of one. */
+export function fileInput(id: string, { accept, folder = false }: { accept?: string; folder?: boolean }, take: (files: File[]) => void): HTMLInputElement {
+  const input = element('input', { type: 'file', accept: accept ?? null, multiple: true, webkitdirectory: folder, hidden: true, id });
+  input.addEventListener('change', () => {
+    const files = [...input.files ?? []];
+    if (files.length > 0) take(files);
+    input.value = '';
+  });
+  return input;
 }
 
 /** Buttons of which one is pressed. */

@@ -1,0 +1,249 @@
+// Motions to try on: each plays on the user's own character in a small picture, and is put on it by a click.
+import type { PageStore } from '../app/state';
+import type { Studio } from '../app/studio';
+import type { MotionPreview, PreviewRig, SampleMotion, SurfaceModel } from '../engine/messages';
+import { MotionPictures } from '../scene/motion_picture';
+import { counted } from '../ui/counted';
+import { button, element, fileInput } from '../ui/dom';
+
+export const motionFiles = '.bvh,.glb,.gltf';
+const width = 264, height = 198; // pixels of a picture
+const mostUnsearched = 12; // cards that are found without searching
+const stillShare = 0.45; // of the motion, which the picture of a card that does not play shows: about its middle
+
+type Motion = SampleMotion | File;
+
+/** "jumping-jack" as a title: Jumping jack. */
+function titleOf(motion: Motion): string {
+  if (motion instanceof File) return motion.name.replace(/\.[^.]*$/, '');
+  const text = motion.name.replaceAll('-', ' ');
+  return capital(text);
+}
+
+interface Card {
+  motion: Motion;
+  root: HTMLElement;
+  press: HTMLButtonElement;
+  canvas: HTMLCanvasElement;
+  reason: HTMLElement;
+  preview: MotionPreview | null;
+}
+
+const capital = (text: string) => text.charAt(0).toUpperCase() + text.slice(1);
+
+/** What a card is about: the motion, or all of why it cannot be put on the model. */
+function explained({ motion, preview }: Card): string {
+  if (preview?.error) return `${titleOf(motion)}: ${preview.error.message}`;
+  return motion instanceof File ? motion.name : capital(motion.summary);
+}
+
+export function motionShelf(studio: Studio, page: PageStore): HTMLElement {
+  let pictures: MotionPictures | null = null; // made when the shelf is first opened
+  let previewed: SurfaceModel | null = null; // what the previews are of
+  let named: PreviewRig | null = null;
+  let playing: Card | null = null, begun = 0;
+  let tapped: Card | null = null; // touched for the first time: it plays, and is not chosen yet
+  const waiting = new Set<Card>();
+  let trying = false;
+  const cards = { sample: [] as Card[], own: [] as Card[] };
+
+  const samples = element('ul', { class: 'cards', id: 'shelf-samples' }), own = element('ul', { class: 'cards', id: 'shelf-own' });
+  const search = element('input', { type: 'search', class: 'select search', id: 'shelf-search', 'aria-label': 'Search your motions', placeholder: 'Search' });
+  const none = element('p', { class: 'hint-line' }, 'Drop a folder of BVH or GLB motions on the page, or choose it here: it becomes a shelf of your own.');
+  const about = element('p', { class: 'hint-line', role: 'status', id: 'shelf-about' });
+  const files = fileInput('shelf-files', { accept: motionFiles }, (chosen) => void studio.openFiles(chosen));
+  const folder = fileInput('shelf-folder', { folder: true }, (chosen) => void studio.openFiles(chosen));
+  const dialog = element('dialog', { class: 'shelf', id: 'shelf', 'aria-labelledby': 'shelf-title' },
+    element('div', { class: 'row head' }, element('h2', { id: 'shelf-title', tabindex: -1, autofocus: true }, 'Motions'),
+      button('Close', () => dialog.close(), { id: 'close-shelf' })),
+    samples, element('h3', {}, 'Your motions'), none, search, own,
+    element('div', { class: 'row foot' }, files, folder, about,
+      button('Add files', () => files.click(), { icon: 'add', label: 'Add motions (BVH, GLB)', id: 'shelf-add-files' }),
+      button('Add a folder', () => folder.click(), { icon: 'open', label: 'Add a folder of motions', id: 'shelf-add-folder' })));
+
+  const seen = new IntersectionObserver((entries) => {
+    for (const { target, isIntersecting } of entries) {
+      const card = all().find(({ root }) => root === target);
+      if (!card) continue;
+      // Of a long shelf only what is seen is kept in motion.
+      if (!isIntersecting && card.motion instanceof File && !card.preview?.error) card.preview = null;
+      if (isIntersecting && !card.preview) waiting.add(card);
+      else waiting.delete(card);
+    }
+    void tryNext();
+  }, { root: dialog });
+  const all = () => [...cards.sample, ...cards.own];
+
+  /** One after the other, what is played first; the engine does what the user asks for in between. */
+  async function tryNext() {
+    if (trying || !dialog.open) return;
+    trying = true;
+    for (;;) {
+      const card = playing && waiting.has(playing) ? playing : waiting.values().next().value;
+      if (!card || !dialog.open) break;
+      waiting.delete(card);
+      const of = previewed, preview = await studio.previewMotion(card.motion);
+      if (preview?.named && !named) named = await studio.previewRig();
+      if (!preview || of !== previewed) continue;
+      card.preview = preview;
+      showResult(card, preview);
+    }
+    trying = false;
+    if (dialog.open && !playing) suitedFirst();
+  }
+
+  /** Not while one is pointed at: nothing moves away from under the pointer. */
+  function suitedFirst() {
+    for (const [list, of] of [[samples, cards.sample], [own, cards.own]] as const) {
+      const suited = (card: Card) => Number(card.preview?.error == null);
+      const before = of.slice(), motions: readonly Motion[] = list === samples ? page.now.sampleMotions : page.now.ownMotions;
+      of.sort((a, b) => suited(b) - suited(a) || motions.indexOf(a.motion) - motions.indexOf(b.motion));
+      if (of.some((card, i) => card !== before[i])) list.replaceChildren(...of.map(({ root }) => root));
+    }
+  }
+
+  function showResult(card: Card, { error }: MotionPreview) {
+    card.press.setAttribute('aria-disabled', String(error !== null));
+    card.reason.textContent = !error ? '' : error.code === 'unsupported' ? 'Made for another kind of body' : capital(error.message);
+    card.press.title = explained(card);
+    if (card === playing) about.textContent = explained(card);
+    card.press.removeAttribute('aria-busy');
+    if (card === playing) begun = performance.now();
+    draw(card, 0);
+  }
+
+  /** `seconds` after its still picture. */
+  function draw(card: Card, seconds: number) {
+    const { session, model, hiddenParts } = page.now;
+    if (!pictures || !card.preview || card.preview.error || !session || !model) return;
+    const rig = card.preview.named ? named : { model, joints: session.joints.length };
+    if (!rig) return;
+    pictures.show(rig.model, rig.joints, session.box, hiddenParts);
+    pictures.draw(card.canvas, card.preview, stillShare * card.preview.seconds + seconds);
+  }
+
+  function step(now: number) {
+    if (!playing || !dialog.open) return;
+    draw(playing, Math.max(0, now - begun) / 1000);
+    requestAnimationFrame(step);
+  }
+
+  function play(card: Card | null) {
+    if (card === playing) return;
+    playing?.root.firstElementChild?.classList.remove('playing');
+    if (playing) draw(playing, 0);
+    const idle = playing === null;
+    playing = card;
+    begun = performance.now();
+    about.textContent = card ? explained(card) : '';
+    if (!card) return;
+    card.press.classList.add('playing');
+    if (!card.preview) waiting.add(card);
+    void tryNext();
+    if (idle) requestAnimationFrame(step);
+  }
+
+  function choose({ motion, preview }: Card) {
+    if (preview?.error) return;
+    dialog.close();
+    void (motion instanceof File ? studio.openMotion(motion) : studio.openSampleMotion(motion.name));
+  }
+
+  function makeCard(motion: Motion): Card {
+    const canvas = element('canvas', { width, height, 'aria-hidden': true }), reason = element('span', { class: 'reason' });
+    const press = element('button', {
+      type: 'button', class: 'motion-card', 'data-motion': motion.name, 'aria-busy': 'true',
+    }, canvas, element('span', { class: 'text' }, titleOf(motion)), reason);
+    const card: Card = { motion, root: element('li', {}, press), press, canvas, reason, preview: null };
+    press.title = explained(card);
+    press.addEventListener('pointerenter', ({ pointerType }) => { if (pointerType !== 'touch') play(card); });
+    press.addEventListener('pointerleave', ({ pointerType }) => { if (pointerType !== 'touch' && document.activeElement !== press) play(null); });
+    press.addEventListener('pointerdown', ({ pointerType }) => { tapped = pointerType === 'touch' && playing !== card ? card : null; });
+    press.addEventListener('focus', () => play(card));
+    press.addEventListener('blur', () => { if (playing === card) play(null); });
+    press.addEventListener('click', () => {
+      const first = tapped === card;
+      tapped = null;
+      if (first) play(card);
+      else choose(card);
+    });
+    press.addEventListener('keydown', (event) => moveFocus(event, card));
+    seen.observe(card.root);
+    return card;
+  }
+
+  /** Arrows go from card to card. */
+  function moveFocus(event: KeyboardEvent, card: Card) {
+    const shown = all().filter(({ root }) => !root.hidden), at = shown.indexOf(card);
+    const inRow = shown.filter(({ root }) => root.offsetTop === card.root.offsetTop && root.parentElement === card.root.parentElement).length;
+    const way = { ArrowLeft: -1, ArrowRight: 1, ArrowUp: -inRow, ArrowDown: inRow }[event.key];
+    event.stopPropagation(); // what is behind the shelf has keys, too
+    if (way === undefined) return;
+    event.preventDefault();
+    shown[at + way]?.press.focus();
+  }
+
+  /** Those that are on it already stay, with their pictures. */
+  function fill(list: HTMLElement, before: Card[], motions: readonly Motion[]): Card[] {
+    const after = motions.map((motion) => before.find((card) => card.motion === motion) ?? makeCard(motion));
+    before.filter((card) => !after.includes(card)).forEach(({ root }) => seen.unobserve(root));
+    list.replaceChildren(...after.map(({ root }) => root));
+    return after;
+  }
+
+  function filter() {
+    const wanted = search.value.trim().toLowerCase();
+    for (const { motion, root } of cards.own) root.hidden = !titleOf(motion).toLowerCase().includes(wanted);
+  }
+  search.addEventListener('input', filter);
+  search.addEventListener('keydown', (event) => event.stopPropagation());
+
+  /** Another rig: all is tried anew. */
+  function forgetPreviews() {
+    previewed = page.now.model;
+    named = null;
+    for (const card of all()) {
+      card.preview = null;
+      card.press.setAttribute('aria-busy', 'true');
+      card.press.removeAttribute('aria-disabled');
+      card.reason.textContent = '';
+      card.press.title = explained(card);
+      card.canvas.getContext('2d')?.clearRect(0, 0, width, height);
+      // Observed anew, it tells again whether it is seen.
+      seen.unobserve(card.root);
+      seen.observe(card.root);
+    }
+  }
+
+  function open() {
+    if (!pictures) {
+      pictures = new MotionPictures();
+      pictures.onChange = () => all().forEach((card) => { if (card !== playing) draw(card, 0); });
+    }
+    dialog.showModal();
+    if (previewed !== page.now.model) forgetPreviews();
+    void tryNext();
+  }
+
+  dialog.addEventListener('close', () => {
+    play(null);
+    waiting.clear();
+    pictures?.clear();
+    page.set({ shelf: false });
+  });
+  const fillOwn = (motions: readonly File[]) => {
+    cards.own = fill(own, cards.own, motions);
+    none.hidden = motions.length > 0;
+    search.hidden = motions.length <= mostUnsearched;
+    search.placeholder = `Search ${counted(motions.length, 'motion')}`;
+    filter();
+  };
+  fillOwn([]);
+  page.watch((now, before) => {
+    if (now.sampleMotions !== before.sampleMotions) cards.sample = fill(samples, cards.sample, now.sampleMotions);
+    if (now.ownMotions !== before.ownMotions) fillOwn(now.ownMotions);
+    if (now.shelf && !dialog.open && now.session) open();
+    if (!now.shelf && dialog.open) dialog.close();
+  });
+  return dialog;
+}
