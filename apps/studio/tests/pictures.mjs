@@ -101,6 +101,12 @@ await picture('walk_cycle_ghosts', { ...desk, search: '?sample=biped' }, async (
   await press('#ghosts');
   await page.waitForTimeout(300);
 });
+await picture('studio_shelf', { ...desk, search: '?sample=biped' }, async (page) => {
+  await page.locator('#open-shelf').click();
+  await page.waitForFunction(() => document.querySelectorAll('#shelf [aria-busy]').length === 0);
+  await page.locator('#shelf [data-motion=sneak]').hover();
+  await page.waitForTimeout(600);
+});
 await picture('studio_gizmo', { ...desk, search: '?sample=winged' }, async (page) => {
   await page.locator('#gizmo').check();
   await page.locator('#joints li').nth(5).click();
