@@ -54,7 +54,7 @@ const std::vector<SampleMotion>& allMotions() {
       keyed<kSitDown>("sit-down", "a person who sits down and gets up again"),
       onTwoLegs<kTurnGait>("turn", "a person who turns round on the spot"),
       keyed<kJumpingJack>("jumping-jack", "a person who does jumping jacks"),
-      onFourLegs<kQuadrupedWalk>("quadruped-walk", "an animal of --template quadruped that walks"),
+      onFourLegs<kQuadrupedWalk>("quadruped-walk", "an animal that walks on four legs"),
       onFourLegs<kTrot>("trot", "an animal that trots"),
       onFourLegs<kGallop>("gallop", "an animal that gallops"),
   };

@@ -7,7 +7,7 @@ import assert from 'node:assert/strict';
 import { mkdirSync, readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { join, resolve } from 'node:path';
-import { answer, chooseMotion, launch, motionPlayed, openStudio, runCases, serve, sessionState, settled } from './page.mjs';
+import { answer, chooseMotion, download, launch, motionPlayed, openStudio, runCases, serve, sessionState, settled } from './page.mjs';
 import { walkBvh } from './walk_bvh.mjs';
 
 const [dist, output] = process.argv.slice(2).map((path) => resolve(path));
@@ -191,6 +191,16 @@ const cases = {
     await changes('gallop');
     await page.screenshot({ path: join(output, 'shelf_animal.png') });
     await page.keyboard.press('Escape');
+  },
+  async 'of several glTF files those that move are motions'() {
+    const buffer = await download(page, () => page.locator('#save-glb').click());
+    await page.locator('#file').setInputFiles(['one.glb', 'two.glb'].map((name) => ({ name, mimeType: 'model/gltf-binary', buffer })));
+    await tried('two.glb');
+    assert.equal((await sessionState(page)).name, 'quadruped');
+    assert.equal(await card('two.glb').getAttribute('aria-disabled'), 'false');
+    await card('two.glb').hover();
+    await changes('two.glb');
+    await page.locator('#close-shelf').click();
   },
   async 'where handles are too few, the picture has the skeleton that the page then asks for'() {
     await page.locator('#samples').selectOption('biped');

@@ -37,11 +37,16 @@ function framesOf(session: Session, request: MotionRequest, most: number, rate: 
   const count = Math.max(1, Math.round(seconds * rate));
   const frames = Array.from({ length: count }, (_, frame) => {
     const { skin } = orThrow(session.run({ do: 'set_time', seconds: (seconds * frame) / count }));
-    const [x = 0, y = 0, z = 0] = orThrow(session.handles()).handles;
-    const root: Vector = [x, y, z];
-    return { skin, root };
+    return { skin, middle: middleOf(orThrow(session.handles()).handles) };
   });
   return { error: null, seconds, frames };
+}
+
+/** Of x, y, z and radius of each joint: roots that stay behind while the hips walk away count little. */
+function middleOf(handles: Float32Array): Vector {
+  const sum: Vector = [0, 0, 0];
+  handles.forEach((value, i) => { if (i % 4 < 3) sum[i % 4]! += value; });
+  return sum.map((value) => (4 * value) / handles.length) as Vector;
 }
 
 /** What may make another rig, and with it another surface. */

@@ -82,8 +82,8 @@ export interface MotionPreview {
   named: boolean;
   /** Of all frames. */
   seconds: number;
-  /** At even moments, from the first on: what moves the surface, 16 numbers for each joint, and where the root is. */
-  frames: { skin: Float32Array; root: Vector }[];
+  /** At even moments, from the first on: what moves the surface, 16 numbers for each joint, and the joints' middle. */
+  frames: { skin: Float32Array; middle: Vector }[];
 }
 
 /** The model with the named skeleton that previews were made with. */

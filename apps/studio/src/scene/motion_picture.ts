@@ -18,7 +18,7 @@ export class MotionPictures {
   private model = new ModelView();
   private joints = 0;
   private blended = new Float32Array();
-  private center = new Vector3();
+  private height = 0; // that the camera looks at, metres
   private reach = 1; // metres from the box's middle to its corner
   private shown: SurfaceModel | null = null;
 
@@ -30,8 +30,7 @@ export class MotionPictures {
 
   show(model: SurfaceModel, joints: number, { min, max }: SessionState['box'], hidden: ReadonlySet<number>) {
     const low = new Vector3(...min), high = new Vector3(...max);
-    this.center.addVectors(low, high).multiplyScalar(0.5);
-    this.center.y += above * (high.y - low.y);
+    this.height = (low.y + high.y) / 2 + above * (high.y - low.y);
     this.reach = Math.max(0.5 * low.distanceTo(high), 1e-6);
     if (model !== this.shown) {
       this.model.show(model, joints);
@@ -50,11 +49,11 @@ export class MotionPictures {
 
   /** The model `seconds` after the motion's begin, again and again; the camera goes along. */
   draw(canvas: HTMLCanvasElement, preview: MotionPreview, seconds: number) {
-    const context = canvas.getContext('2d'), root = this.pose(preview, seconds), start = preview.frames[0]?.root;
-    if (!context || !root || !start) return;
+    const context = canvas.getContext('2d'), middle = this.pose(preview, seconds);
+    if (!context || !middle) return;
     const { width, height } = canvas;
     if (this.renderer.domElement.width !== width || this.renderer.domElement.height !== height) this.renderer.setSize(width, height, false);
-    const target = this.center.clone().add(new Vector3(root[0] - start[0], 0, root[2] - start[2]));
+    const target = new Vector3(middle[0], this.height, middle[2]);
     this.camera.aspect = width / height;
     const distance = (room * this.reach) / Math.tan((this.camera.fov * Math.PI) / 360) / Math.min(1, this.camera.aspect);
     this.camera.near = distance / 50;
@@ -67,7 +66,7 @@ export class MotionPictures {
     context.drawImage(this.renderer.domElement, 0, 0);
   }
 
-  /** Between two frames their blend: they are too near each other for it to show. Gives where the root is. */
+  /** Between two frames their blend: they are too near each other for it to show. Gives the joints' middle. */
   private pose({ frames, seconds: all }: MotionPreview, seconds: number): Vector | null {
     const at = all > 0 ? ((seconds % all) / all) * frames.length : 0, first = Math.floor(at) % frames.length;
     const from = frames[first], next = first + 1 < frames.length ? frames[first + 1] : null;
@@ -76,6 +75,6 @@ export class MotionPictures {
     const to = next ?? from, share = at - Math.floor(at);
     for (let i = 0; i < this.blended.length; ++i) this.blended[i] = from.skin[i]! + share * (to.skin[i]! - from.skin[i]!);
     this.model.take(this.blended);
-    return [0, 1, 2].map((axis) => from.root[axis]! + share * (to.root[axis]! - from.root[axis]!)) as Vector;
+    return [0, 1, 2].map((axis) => from.middle[axis]! + share * (to.middle[axis]! - from.middle[axis]!)) as Vector;
   }
 }
