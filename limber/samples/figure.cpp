@@ -83,6 +83,7 @@ void poseLeg(const Stance& stance, const std::string& side, Poser& poser) {
   leg.middle = leg.start + hips * poser.offset(side + "LowerLeg");
   leg.end = leg.middle + hips * poser.offset(side + "Foot");
   leg.target = toSide(foot.ankle);
+  leg.straightNormal = hips * Vec3::UnitX();  // a leg at rest is straight
   leg.pole = leg.start + turnToSide(about(Vec3::UnitY(), foot.outward)) * Vec3::UnitZ();
   const TwoBoneTurns turns = solveTwoBone(leg);
   poser.turn(side + "UpperLeg", turns.start * hips);

@@ -139,6 +139,19 @@ TEST_P(SampleMotions, ElbowsOnlyBendForwardsAndNothingIsBelowTheFloor) {
   }
 }
 
+// A thigh turns about its own length a little further than the hips do, whichever way the body faces.
+TEST_P(SampleMotions, ThighsAreNotWrung) {
+  if (!isPerson()) GTEST_SKIP() << "legs of animals are moved as they are";
+  for (int f = 0; f < frames(); ++f) {
+    const std::vector<Affine> globals = globalsAt(f * kFrame);
+    const Vec3 across = globals[figure.find("hips").value()].linear().col(0);
+    for (const char* side : {"left", "right"}) {
+      const Vec3 thigh = globals[figure.find(std::string(side) + "UpperLeg").value()].linear().col(0);
+      EXPECT_GT(thigh.dot(across), std::cos(0.9)) << side << f;
+    }
+  }
+}
+
 // Whoever has left the ground falls as everything does.
 TEST_P(SampleMotions, FliesAsAThrownBodyDoes) {
   if (!isPerson()) GTEST_SKIP() << "the hips go up and down about the middle of the trunk";

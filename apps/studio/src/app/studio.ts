@@ -2,12 +2,14 @@
 import { EngineClient, EngineError } from '../engine/client';
 import { canBeNamed } from '../engine/messages';
 import type {
-  Command, LimberError, MethodKind, MotionPreview, MotionRequest, PreviewRig, Ray, Request, SampleMotion, SessionState, Stance, Step, SurfaceHit, Vector, WeightArrays,
+  Command, LimberError, MethodKind, MotionPreview, MotionRequest, PreviewRig, Ray, Request, SessionState, Stance, Step, SurfaceHit,
+  Vector, WeightArrays,
 } from '../engine/messages';
 import { counted } from '../ui/counted';
 import { sorted, withBuffers } from './files';
 import type { Journal, KeptDocument } from './journal';
 import { fromLimberFile, toLimberFile } from './limber_file';
+import type { Motion } from './motion_trials';
 import { changedTime, keysThere, type KeyChange } from './keys';
 import { noticeOf, type KeyPlace, type Notice, type PageStore } from './state';
 
@@ -149,14 +151,13 @@ export class Studio {
   }
 
   /** How a motion would look on the model as it is; null where the page is told to stop. */
-  async previewMotion(of: File | SampleMotion): Promise<MotionPreview | null> {
-    const motion = of instanceof File ? await motionOf(of) : sampleMotion(of.name);
-    const most = of instanceof File ? previewSeconds : of.seconds;
+  async previewMotion(of: Motion): Promise<MotionPreview | null> {
     try {
-      return await this.engine.ask({ kind: 'preview-motion', motion, most, rate: previewRate });
+      const motion = of instanceof File ? await motionOf(of) : sampleMotion(of.name);
+      return await this.engine.ask({ kind: 'preview-motion', motion, most: of instanceof File ? previewSeconds : of.seconds, rate: previewRate });
     } catch (error) {
-      if (!(error instanceof EngineError)) throw error;
-      return error.cancelled ? null : { error: error.error, named: false, seconds: 0, frames: [] };
+      const known = error instanceof EngineError ? error : new EngineError({ code: 'file', message: 'the file cannot be read', where: '', remedy: '' });
+      return known.cancelled ? null : { error: known.error, named: false, seconds: 0, frames: [] };
     }
   }
 

@@ -1,7 +1,8 @@
 // Motions to try on: each plays on the user's own character in a small picture, and is put on it by a click.
+import { MotionTrials, type Motion } from '../app/motion_trials';
 import type { PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
-import type { MotionPreview, PreviewRig, SampleMotion, SurfaceModel } from '../engine/messages';
+import type { MotionPreview } from '../engine/messages';
 import { MotionPictures } from '../scene/motion_picture';
 import { counted } from '../ui/counted';
 import { button, element, fileInput } from '../ui/dom';
@@ -11,13 +12,12 @@ const width = 264, height = 198; // pixels of a picture
 const mostUnsearched = 12; // cards that are found without searching
 const stillShare = 0.45; // of the motion, which the picture of a card that does not play shows: about its middle
 
-type Motion = SampleMotion | File;
+const capital = (text: string) => text.charAt(0).toUpperCase() + text.slice(1);
 
 /** "jumping-jack" as a title: Jumping jack. */
 function titleOf(motion: Motion): string {
   if (motion instanceof File) return motion.name.replace(/\.[^.]*$/, '');
-  const text = motion.name.replaceAll('-', ' ');
-  return capital(text);
+  return capital(motion.name.replaceAll('-', ' '));
 }
 
 interface Card {
@@ -29,8 +29,6 @@ interface Card {
   preview: MotionPreview | null;
 }
 
-const capital = (text: string) => text.charAt(0).toUpperCase() + text.slice(1);
-
 /** What a card is about: the motion, or all of why it cannot be put on the model. */
 function explained({ motion, preview }: Card): string {
   if (preview?.error) return `${titleOf(motion)}: ${preview.error.message}`;
@@ -39,12 +37,9 @@ function explained({ motion, preview }: Card): string {
 
 export function motionShelf(studio: Studio, page: PageStore): HTMLElement {
   let pictures: MotionPictures | null = null; // made when the shelf is first opened
-  let previewed: SurfaceModel | null = null; // what the previews are of
-  let named: PreviewRig | null = null;
   let playing: Card | null = null, begun = 0;
   let tapped: Card | null = null; // touched for the first time: it plays, and is not chosen yet
-  const waiting = new Set<Card>();
-  let trying = false;
+  const trials = new MotionTrials(studio, page);
   const cards = { sample: [] as Card[], own: [] as Card[] };
 
   const samples = element('ul', { class: 'cards', id: 'shelf-samples' }), own = element('ul', { class: 'cards', id: 'shelf-own' });
@@ -67,30 +62,11 @@ export function motionShelf(studio: Studio, page: PageStore): HTMLElement {
       if (!card) continue;
       // Of a long shelf only what is seen is kept in motion.
       if (!isIntersecting && card.motion instanceof File && !card.preview?.error) card.preview = null;
-      if (isIntersecting && !card.preview) waiting.add(card);
-      else waiting.delete(card);
+      if (isIntersecting && !card.preview) trials.want(card.motion);
+      else trials.leave(card.motion);
     }
-    void tryNext();
   }, { root: dialog });
   const all = () => [...cards.sample, ...cards.own];
-
-  /** One after the other, what is played first; the engine does what the user asks for in between. */
-  async function tryNext() {
-    if (trying || !dialog.open) return;
-    trying = true;
-    for (;;) {
-      const card = playing && waiting.has(playing) ? playing : waiting.values().next().value;
-      if (!card || !dialog.open) break;
-      waiting.delete(card);
-      const of = previewed, preview = await studio.previewMotion(card.motion);
-      if (preview?.named && !named) named = await studio.previewRig();
-      if (!preview || of !== previewed) continue;
-      card.preview = preview;
-      showResult(card, preview);
-    }
-    trying = false;
-    if (dialog.open && !playing) suitedFirst();
-  }
 
   /** Not while one is pointed at: nothing moves away from under the pointer. */
   function suitedFirst() {
@@ -102,7 +78,15 @@ export function motionShelf(studio: Studio, page: PageStore): HTMLElement {
     }
   }
 
-  function showResult(card: Card, { error }: MotionPreview) {
+  trials.onRest = () => { if (dialog.open && !playing) suitedFirst(); };
+  trials.onResult = (motion, preview) => {
+    const card = all().find((one) => one.motion === motion);
+    if (card) showResult(card, preview);
+  };
+
+  function showResult(card: Card, preview: MotionPreview) {
+    const { error } = preview;
+    card.preview = preview;
     card.press.setAttribute('aria-disabled', String(error !== null));
     card.reason.textContent = !error ? '' : error.code === 'unsupported' ? 'Made for another kind of body' : capital(error.message);
     card.press.title = explained(card);
@@ -114,10 +98,8 @@ export function motionShelf(studio: Studio, page: PageStore): HTMLElement {
 
   /** `seconds` after its still picture. */
   function draw(card: Card, seconds: number) {
-    const { session, model, hiddenParts } = page.now;
-    if (!pictures || !card.preview || card.preview.error || !session || !model) return;
-    const rig = card.preview.named ? named : { model, joints: session.joints.length };
-    if (!rig) return;
+    const { session, hiddenParts } = page.now, rig = card.preview && trials.rigOf(card.preview);
+    if (!pictures || !card.preview || card.preview.error || !session || !rig) return;
     pictures.show(rig.model, rig.joints, session.box, hiddenParts);
     pictures.draw(card.canvas, card.preview, stillShare * card.preview.seconds + seconds);
   }
@@ -138,8 +120,7 @@ export function motionShelf(studio: Studio, page: PageStore): HTMLElement {
     about.textContent = card ? explained(card) : '';
     if (!card) return;
     card.press.classList.add('playing');
-    if (!card.preview) waiting.add(card);
-    void tryNext();
+    if (!card.preview) trials.wantFirst(card.motion);
     if (idle) requestAnimationFrame(step);
   }
 
@@ -177,7 +158,6 @@ export function motionShelf(studio: Studio, page: PageStore): HTMLElement {
     const shown = all().filter(({ root }) => !root.hidden), at = shown.indexOf(card);
     const inRow = shown.filter(({ root }) => root.offsetTop === card.root.offsetTop && root.parentElement === card.root.parentElement).length;
     const way = { ArrowLeft: -1, ArrowRight: 1, ArrowUp: -inRow, ArrowDown: inRow }[event.key];
-    event.stopPropagation(); // what is behind the shelf has keys, too
     if (way === undefined) return;
     event.preventDefault();
     shown[at + way]?.press.focus();
@@ -196,18 +176,16 @@ export function motionShelf(studio: Studio, page: PageStore): HTMLElement {
     for (const { motion, root } of cards.own) root.hidden = !titleOf(motion).toLowerCase().includes(wanted);
   }
   search.addEventListener('input', filter);
-  search.addEventListener('keydown', (event) => event.stopPropagation());
 
-  /** Another rig: all is tried anew. */
-  function forgetPreviews() {
-    previewed = page.now.model;
-    named = null;
+  /** With another rig all is tried anew. */
+  function renew() {
+    if (!trials.renew()) return;
     for (const card of all()) {
       card.preview = null;
       card.press.setAttribute('aria-busy', 'true');
       card.press.removeAttribute('aria-disabled');
-      card.reason.textContent = '';
       card.press.title = explained(card);
+      card.reason.textContent = '';
       card.canvas.getContext('2d')?.clearRect(0, 0, width, height);
       // Observed anew, it tells again whether it is seen.
       seen.unobserve(card.root);
@@ -221,13 +199,13 @@ export function motionShelf(studio: Studio, page: PageStore): HTMLElement {
       pictures.onChange = () => all().forEach((card) => { if (card !== playing) draw(card, 0); });
     }
     dialog.showModal();
-    if (previewed !== page.now.model) forgetPreviews();
-    void tryNext();
+    renew();
   }
 
+  dialog.addEventListener('keydown', (event) => event.stopPropagation()); // what is behind the shelf has keys, too
   dialog.addEventListener('close', () => {
     play(null);
-    waiting.clear();
+    trials.leaveAll();
     pictures?.clear();
     page.set({ shelf: false });
   });
@@ -243,6 +221,7 @@ export function motionShelf(studio: Studio, page: PageStore): HTMLElement {
     if (now.sampleMotions !== before.sampleMotions) cards.sample = fill(samples, cards.sample, now.sampleMotions);
     if (now.ownMotions !== before.ownMotions) fillOwn(now.ownMotions);
     if (now.shelf && !dialog.open && now.session) open();
+    if (dialog.open && now.model !== before.model) renew();
     if (!now.shelf && dialog.open) dialog.close();
   });
   return dialog;
