@@ -45,7 +45,7 @@ Stance leaning(Stance stance, double hips, double chest, double head) {
   return stance;
 }
 
-// Two jumps of about a quarter of a second: apart with the arms up, and together.
+// Two jumps of a fifth of a second: apart with the arms up, and together.
 std::span<const KeyPose> jumpingJackKeys() {
   constexpr double kTogether = 0.09, kBetween = 0.2, kApart = 0.32;
   const auto at = [](double height, const FootPlace& foot, double raise, double bend) {
@@ -53,13 +53,17 @@ std::span<const KeyPose> jumpingJackKeys() {
   };
   static const std::vector<KeyPose> keys = {
       {0, at(0.815, planted(kTogether), 0.15, 0.06)},
-      {0.168, at(0.855, planted(kTogether, -0.7), 0.75, 0), true},
-      {0.30, at(0, lifted(kBetween, 0.06, -0.6), 1.4, 0), true},
-      {0.432, at(0.83, planted(kApart, -0.55), 2.1, 0)},
+      {0.1, at(0.825, planted(kTogether), 0.36, 0.05)},
+      {0.2, at(0.855, planted(kTogether, -0.7), 0.78, 0), true},
+      {0.3, at(0, lifted(kBetween, 0.045, -0.6), 1.4, 0), true},
+      {0.4, at(0.83, planted(kApart, -0.55), 2.05, 0)},
+      {0.5, at(0.80, planted(kApart), 2.52, 0.05)},
       {0.6, at(0.79, planted(kApart), 2.75, 0.06)},
-      {0.768, at(0.83, planted(kApart, -0.7), 2.15, 0), true},
-      {0.90, at(0, lifted(kBetween, 0.06, -0.6), 1.5, 0), true},
-      {1.032, at(0.855, planted(kTogether, -0.55), 0.8, 0)},
+      {0.7, at(0.80, planted(kApart), 2.52, 0.05)},
+      {0.8, at(0.83, planted(kApart, -0.7), 2.1, 0), true},
+      {0.9, at(0, lifted(kBetween, 0.045, -0.6), 1.5, 0), true},
+      {1.0, at(0.855, planted(kTogether, -0.55), 0.85, 0)},
+      {1.1, at(0.825, planted(kTogether), 0.38, 0.05)},
   };
   return keys;
 }
