@@ -112,9 +112,8 @@ LIMBER_EXPORT CallResult* limber_sample_motions() {
   return guarded({}, []() -> CallResult {
     Json motions = Json::array();
     for (const limber::SampleMotion& motion : limber::sampleMotions()) {
-      motions.push_back({{"name", std::string(motion.name)},
-                         {"summary", std::string(motion.summary)},
-                         {"seconds", motion.seconds}});
+      motions.push_back(
+          {{"name", std::string(motion.name)}, {"summary", std::string(motion.summary)}, {"seconds", motion.seconds}});
     }
     return {true, {}, limber::dumpReport(motions, -1)};
   });
