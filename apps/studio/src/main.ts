@@ -25,6 +25,7 @@ import { hint, views } from './panels/views';
 import { createStage } from './scene/stage';
 import { ask } from './ui/ask';
 import { element } from './ui/dom';
+import { language } from './words/say';
 
 /** Without WebGL there is nothing to show the model with. */
 function stageOrApology() {
@@ -38,6 +39,7 @@ function stageOrApology() {
   }
 }
 
+document.documentElement.lang = language;
 const page = createPageStore();
 const journal = new Journal();
 const studio = new Studio(page, journal);

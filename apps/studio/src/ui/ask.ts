@@ -1,4 +1,5 @@
 // A question that has to be answered before something is replaced.
+import { say } from '../words/say';
 import { button, element } from './dom';
 
 /** Whether the user agrees. Escape is a no. */
@@ -10,7 +11,7 @@ export function ask(title: string, detail: string, yes: string): Promise<boolean
       resolve(agreed);
     };
     dialog.append(element('div', { class: 'row' },
-      button('Leave it as it is', () => close(false), { id: 'ask-no' }), button(yes, () => close(true), { id: 'ask-yes', kind: 'primary' })));
+      button(say('Leave it as it is'), () => close(false), { id: 'ask-no' }), button(yes, () => close(true), { id: 'ask-yes', kind: 'primary' })));
     dialog.addEventListener('cancel', () => close(false));
     document.body.append(dialog);
     dialog.showModal();
