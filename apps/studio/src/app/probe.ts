@@ -3,6 +3,7 @@ import { Vector3 } from 'three';
 import type { SessionState, Vector } from '../engine/messages';
 import type { Gizmo } from '../scene/gizmo';
 import type { HandleView } from '../scene/handle_view';
+import type { Places } from '../scene/places';
 import type { Viewport } from '../scene/viewport';
 import type { PageStore } from './state';
 import type { Studio } from './studio';
@@ -18,6 +19,9 @@ export interface StudioProbe {
   position(joint: string): Vector;
   /** What of the gizmo is under the pointer. */
   gizmoAxis(): string | null;
+  /** Where a member of the scene has its origin, in metres; where the middle of its box is drawn, in pixels of the page. */
+  memberAt(member: number): Vector;
+  memberPlace(member: number): { x: number; y: number };
   /** Pixels of the page. */
   place(joint: string): { x: number; y: number };
 }
@@ -27,12 +31,18 @@ declare global {
 }
 
 export function exposeStage(
-  studio: Studio, page: PageStore, viewport: Viewport, handles: HandleView, gizmo: Gizmo, kept: () => boolean,
+  studio: Studio, page: PageStore, viewport: Viewport, handles: HandleView, gizmo: Gizmo, places: Places, kept: () => boolean,
 ) {
   const position = (name: string) => {
     const joint = page.now.session?.joints.findIndex((known) => known.name === name) ?? -1;
     if (joint < 0) throw new Error(`no joint is called ${name}`);
     return handles.position(joint, new Vector3());
+  };
+  const onPage = (at: Vector3) => {
+    viewport.camera.updateMatrixWorld();
+    const { x, y } = at.project(viewport.camera);
+    const box = viewport.canvas.getBoundingClientRect();
+    return { x: box.left + ((x + 1) / 2) * box.width, y: box.top + ((1 - y) / 2) * box.height };
   };
   globalThis.limberStudio = {
     idle: () => studio.idle,
@@ -41,11 +51,11 @@ export function exposeStage(
     selected: () => page.now.selected,
     gizmoAxis: () => gizmo.axis,
     position: (name) => position(name).toArray(),
-    place: (name) => {
-      viewport.camera.updateMatrixWorld();
-      const { x, y } = position(name).project(viewport.camera);
-      const box = viewport.canvas.getBoundingClientRect();
-      return { x: box.left + ((x + 1) / 2) * box.width, y: box.top + ((1 - y) / 2) * box.height };
+    memberPlace: (member) => {
+      const { session } = page.now;
+      return onPage(places.box(member, session!.members).getCenter(new Vector3()).applyMatrix4(viewport.world.matrix));
     },
+    memberAt: (member) => new Vector3().setFromMatrixPosition(places.of(member)).toArray(),
+    place: (name) => onPage(position(name)),
   };
 }
