@@ -19,9 +19,9 @@ export interface StudioProbe {
   position(joint: string): Vector;
   /** What of the gizmo is under the pointer. */
   gizmoAxis(): string | null;
-  /** Where a member of the scene has its origin, in metres; where the middle of its box is drawn, in pixels of the page. */
+  /** Where a member of the scene has its origin, in metres; where the middle of its box is drawn, that far up in it, in pixels. */
   memberAt(member: number): Vector;
-  memberPlace(member: number): { x: number; y: number };
+  memberPlace(member: number, up?: number): { x: number; y: number };
   /** Pixels of the page. */
   place(joint: string): { x: number; y: number };
 }
@@ -51,9 +51,10 @@ export function exposeStage(
     selected: () => page.now.selected,
     gizmoAxis: () => gizmo.axis,
     position: (name) => position(name).toArray(),
-    memberPlace: (member) => {
-      const { session } = page.now;
-      return onPage(places.box(member, session!.members).getCenter(new Vector3()).applyMatrix4(viewport.world.matrix));
+    memberPlace: (member, up = 0.5) => {
+      const box = places.box(member, page.now.session!.members), at = box.getCenter(new Vector3());
+      at.y = box.min.y + up * (box.max.y - box.min.y);
+      return onPage(at.applyMatrix4(viewport.world.matrix));
     },
     memberAt: (member) => new Vector3().setFromMatrixPosition(places.of(member)).toArray(),
     place: (name) => onPage(position(name)),
