@@ -33,6 +33,11 @@ function aboutFeet({ box, placement }: SceneMember, change: Pick<Placement, 'tur
   return new Vector3(...placement.position).add(from(placement)).sub(from(change)).toArray();
 }
 
+function heldBy({ name, attached }: SceneMember, members: SceneMember[]): string {
+  const holder = members[attached!.to], joint = holder?.joints.find((known) => known.name === attached!.joint);
+  return say('{holder} holds {name}: {joint}', { name, holder: holder?.name ?? '', joint: joint?.part ?? attached!.joint });
+}
+
 export function scenePanel(studio: Studio, page: PageStore): HTMLElement {
   const chosen = () => page.now.session?.member ?? 0;
   const member = () => page.now.session?.members[chosen()] ?? null;
@@ -113,7 +118,7 @@ export function scenePanel(studio: Studio, page: PageStore): HTMLElement {
     place.setAttribute('aria-pressed', String(arranging));
     letGo.hidden = of.attached === null;
     about.textContent = of.attached
-      ? say('{name} is held by {holder} at {joint}', { name: of.name, holder: members[of.attached.to]?.name ?? '', joint: of.attached.joint })
+      ? heldBy(of, members)
       : arranging ? say('Drag a model over the floor; beside them you turn the view') : '';
     about.hidden = about.textContent === '';
     if (session !== before.session || list.childElementCount > 0) fields.forEach(({ show }) => show(of));

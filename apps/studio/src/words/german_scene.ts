@@ -16,7 +16,7 @@ export const germanScene = {
   'Rename {name}': '{name} umbenennen',
   'Scene': 'Szene',
   'Place and size': 'Ort und Gr\u00f6\u00dfe',
-  '{name} is held by {holder} at {joint}': '{holder} h\u00e4lt {name} an {joint}',
+  '{holder} holds {name}: {joint}': '{holder} h\u00e4lt {name}: {joint}',
   'Drag a model over the floor; beside them you turn the view': 'Zieh ein Modell \u00fcber den Boden; daneben drehst du die Ansicht',
   'Let another model hold {name}': 'Ein anderes Modell soll {name} halten',
   'By': 'Mit',
