@@ -1,6 +1,5 @@
-// A scene across the C boundary, whose chosen member is "the session": commands in JSON in, the state in JSON and arrays
-// out. limber.mjs is the
-// typed face of these functions; nobody else calls them.
+// A scene across the C boundary, whose chosen member is "the session": commands in JSON in, the state in JSON and
+// arrays out. limber.mjs is the typed face of these functions; nobody else calls them.
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
@@ -170,10 +169,9 @@ CallResult modelOf(const limber::SessionState& state) {
 
 // A drag's updates and a clip's moments come once a frame and change nothing but the pose.
 CallResult stateAfter(const limber::SessionScene& scene, const limber::Command& command) {
-  const bool frame = std::holds_alternative<limber::UpdateDrag>(command) ||
-                     std::holds_alternative<limber::TurnDrag>(command) ||
-                     std::holds_alternative<limber::SetTime>(command) ||
-                     std::holds_alternative<limber::SetClock>(command);
+  const bool frame =
+      std::holds_alternative<limber::UpdateDrag>(command) || std::holds_alternative<limber::TurnDrag>(command) ||
+      std::holds_alternative<limber::SetTime>(command) || std::holds_alternative<limber::SetClock>(command);
   return {true, bytesOf(skinArray(scene.session())), frame ? "{}" : textOf(limber::sceneState(scene))};
 }
 
@@ -350,7 +348,9 @@ LIMBER_EXPORT CallResult* limber_session_surface(const SessionHandle* handle, do
 
 // The weights that there are, and those that a stroke would leave.
 LIMBER_EXPORT CallResult* limber_session_weights(const SessionHandle* handle) {
-  return guarded({}, [&]() -> CallResult { return {true, weightsArray(handle->session().state().rig->weights), "{}"}; });
+  return guarded({}, [&]() -> CallResult {
+    return {true, weightsArray(handle->session().state().rig->weights), "{}"};
+  });
 }
 LIMBER_EXPORT CallResult* limber_session_preview(const SessionHandle* handle, const char* json, std::size_t size) {
   return guarded({}, [&]() -> CallResult {

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "limber/asset/extensions.h"
 #include "limber/asset/node_edit.h"
 #include "limber/asset/scene_graph.h"
 #include "limber/asset/unique_names.h"
@@ -18,8 +19,8 @@ namespace limber {
 
 namespace {
 
-constexpr std::array<const char*, 13> kLists = {"buffers",   "bufferViews", "accessors", "images", "samplers",
-                                                "textures",  "materials",   "meshes",    "skins",  "cameras",
+constexpr std::array<const char*, 13> kLists = {"buffers",    "bufferViews", "accessors", "images", "samplers",
+                                                "textures",   "materials",   "meshes",    "skins",  "cameras",
                                                 "animations", "nodes",       "scenes"};
 
 // Lists that an extension keeps for the whole document, and that others refer to by number.
@@ -174,6 +175,9 @@ class Offsets {
     many(node, "children", "nodes");
     if (Json* light = extension(node, kLights.extension)) one(*light, "light", "lights");
     if (Json* lod = extension(node, "MSFT_lod")) many(*lod, "ids", "nodes");
+    if (Json* constraint = extension(node, "VRMC_node_constraint")) {
+      each(*constraint, "constraint", [&](Json& kind) { one(kind, "source", "nodes"); });
+    }
     if (Json* copies = extension(node, "EXT_mesh_gpu_instancing")) {
       each(*copies, "attributes", [&](Json& accessor) { shift(accessor, "accessors"); });
     }
@@ -182,7 +186,14 @@ class Offsets {
   std::map<std::string, std::size_t, std::less<>> start_;
 };
 
-// What no other part must be mixed up with, and cannot be taken over.
+// Wherever it stands in there.
+void eraseExtensionWithin(Json& value, const char* name) {
+  if (!value.is_structured()) return;
+  if (value.is_object()) eraseExtension(value, name);
+  for (Json& inner : value) eraseExtensionWithin(inner, name);
+}
+
+// What no other part must be mixed up with, and cannot be taken over; and what refers to it.
 void dropDocumentExtensions(Json& json, Warnings& warnings) {
   Json* all = find(json, "extensions");
   if (!all) return;
@@ -190,23 +201,22 @@ void dropDocumentExtensions(Json& json, Warnings& warnings) {
     return std::any_of(kExtensionLists.begin(), kExtensionLists.end(),
                        [&](const ExtensionList& of) { return name == of.extension; });
   };
-  Json kept = Json::object();
+  std::vector<std::string> dropped;
   for (const auto& [name, content] : all->items()) {
-    if (isList(name)) {
-      kept[name] = content;
-    } else {
-      warnings.add("scene-extensions", "what an extension says of a whole model is left out of a scene", name);
-    }
+    if (!isList(name)) dropped.push_back(name);
   }
-  json.erase("extensions");
-  if (!kept.empty()) json["extensions"] = std::move(kept);
+  for (const std::string& name : dropped) {
+    warnings.add("scene-extensions", "what an extension says of a whole model is left out of a scene", name);
+    eraseExtensionWithin(json, name.c_str());
+    undeclareExtension(json, name.c_str());
+  }
 }
 
 // Images of two parts may have one name.
 void renameSideFiles(Asset& asset, const std::vector<Asset::SideFile>& taken, std::size_t part) {
   for (Asset::SideFile& file : asset.sideFiles) {
-    const bool clashes = std::any_of(taken.begin(), taken.end(),
-                                     [&](const Asset::SideFile& other) { return other.uri == file.uri; });
+    const bool clashes =
+        std::any_of(taken.begin(), taken.end(), [&](const Asset::SideFile& other) { return other.uri == file.uri; });
     if (!clashes) continue;
     const std::string renamed = fmt::format("{}/{}", part, file.uri);
     if (Json* images = find(asset.json(), "images")) {

@@ -26,8 +26,8 @@ struct AssetPart {
 // A document with one scene that shows the default scene of each part below a node of its own; other scenes go. Skinned
 // meshes without children stay at the scene's root, where glTF wants them: their joints place them. Names of nodes and
 // of animations are made unique (walk, walk_2). Lists and buffers are one behind the other, so that all numbers of the
-// first part stay as they are. What an extension says of a whole document, and lights and variants are not that, is left
-// out with warning "scene-extensions": there is no telling how two of them go together.
+// first part stay as they are. What an extension says of a whole document, and lights and variants are not that, is
+// left out with warning "scene-extensions": there is no telling how two of them go together.
 //
 // Carriers must not go in a circle. Cost: linear in the documents' size.
 Asset mergeAssets(std::vector<AssetPart> parts);

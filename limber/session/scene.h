@@ -80,8 +80,8 @@ class SessionScene {
   // The nearest surface that a ray in the chosen member's own space meets.
   std::optional<SceneHit> pick(const Ray& ray) const;
 
-  // As Session::exportModel for one member. For several a GLB holds all of them, below a node for each; what is attached
-  // is a child of its joint's node. The other formats hold the surfaces of all.
+  // As Session::exportModel for one member. For several a GLB holds all of them, below a node for each; what is
+  // attached is a child of its joint's node. The other formats hold the surfaces of all.
   Bytes exportModel(ExportFormat format) const;
   std::span<const Command> record() const { return record_->commands(); }
 

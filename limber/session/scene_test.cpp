@@ -68,8 +68,8 @@ double distanceOf(const Affine& a, const Affine& b) {
 }
 
 TEST(SessionScene, OfOneModelIsAsASession) {
-  const std::vector<Command> commands = {OpenFile{"biped.glb"}, SetHandles{5}, SetHandles{8}, TurnJoint{"handle_02", {0, 0, 1}, 20},
-                                         Undo{}, Redo{}};
+  const std::vector<Command> commands = {
+      OpenFile{"biped.glb"}, SetHandles{5}, SetHandles{8}, TurnJoint{"handle_02", {0, 0, 1}, 20}, Undo{}, Redo{}};
   SessionScene scene(sceneFiles);
   Session session(sceneFiles);
   Progress progress;

@@ -27,8 +27,8 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kMostRigs = 12;                    // that an undo history keeps
-constexpr std::size_t kMostWeights = 32'000'000;         // influences that the rigs of an undo history hold
+constexpr std::size_t kMostRigs = 12;             // that an undo history keeps
+constexpr std::size_t kMostWeights = 32'000'000;  // influences that the rigs of an undo history hold
 
 [[noreturn]] void refuseSecond() {
   refuse("a session holds one model", {}, "a scene holds several");

@@ -52,7 +52,7 @@ const app = document.getElementById('app')!;
 app.append(
   toolbar(studio, page, journal, viewport, model, others),
   element('main', { class: 'stage' }, viewport.canvas, facts(page), hint(page), views(viewport), comparisonPanel(studio, page, comparison)),
-  element('aside', { class: 'side' }, scenePanel(studio, page), posePanel(studio, page), paintPanel(studio, page), retargetPanel(studio, page), methodsPanel(studio, page), outliner(studio, page, handles)),
+  element('aside', { class: 'side' }, scenePanel(studio, page, places), posePanel(studio, page), paintPanel(studio, page), retargetPanel(studio, page), methodsPanel(studio, page), outliner(studio, page, handles)),
   timeline(studio, page, sheet.open),
   status(studio, page), help(page), sheet.dialog, motionShelf(studio, page));
 bindShortcuts(studio, page, viewport, handles);

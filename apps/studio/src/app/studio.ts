@@ -131,9 +131,8 @@ export class Studio {
     const { session } = this.page.now;
     if (session && member !== session.member) await this.run({ do: 'choose_member', member: this.memberName(member) });
   }
-  async placeMember(member: number, position: Vector, change: Partial<Placement> = {}) {
-    const placement = this.page.now.session?.members[member]?.placement;
-    if (placement) await this.run({ do: 'place_member', member: this.memberName(member), ...placement, ...change, position });
+  async placeMember(member: number, placement: Placement) {
+    await this.run({ do: 'place_member', member: this.memberName(member), ...placement });
   }
   async attachMember(member: number, to: number, joint: string, snap: boolean) {
     await this.run({ do: 'attach_member', member: this.memberName(member), to: this.memberName(to), joint, snap });

@@ -45,7 +45,7 @@ async function engine(): Promise<ArrayBuffer> {
 /** The files that a request brings. */
 function filesIn(request: Request): Uint8Array[] {
   switch (request.kind) {
-    case 'open': case 'motion': return [request.bytes];
+    case 'open': case 'add': case 'motion': return [request.bytes];
     case 'try-motion': case 'preview-motion': return request.motion.kind === 'motion' ? [request.motion.bytes] : [];
     case 'restore': return request.requests.flatMap(filesIn);
     default: return [];

@@ -1,10 +1,11 @@
 // Every key, under ?.
 import type { PageStore } from '../app/state';
 import { button, element } from '../ui/dom';
+import { say } from '../words/say';
 
 const keys: [string, string][] = [
   ['Drag a handle', 'move or turn it'], ['Drag beside', 'turn the view'], ['Wheel, pinch', 'zoom'],
-  ['Right button, two fingers', 'shift the view'], ['Click the surface', 'select its joint'], ['G / R', 'move / turn'],
+  ['Right button, two fingers', 'shift the view'], ['Click the surface', 'select its joint'], [say('Click another model'), say('choose it')], [say('Drop a file with Shift'), say('add it to the scene')], ['G / R', 'move / turn'],
   ['I', 'limbs follow'], ['S', 'both sides at once'], ['Shift+click', 'select another joint besides'], ['P', 'pin the joint'], ['M', 'mirror the pose'], ['Arrows', 'move or turn the selected joint; with Shift, finely'],
   ['Delete', 'put the selected joint back'], ['Alt+R', 'put all joints back'], ['Ctrl+Z', 'undo'], ['Ctrl+Shift+Z, Ctrl+Y', 'redo'],
   ['Escape', 'let go without a change'], ['1, 3, 7', 'from the front, the right, above'], ['5', 'perspective on or off'], ['Arrows, + and -', 'the view, while no joint is selected'],

@@ -3,34 +3,28 @@ import { Euler, MathUtils, Quaternion, Vector3 } from 'three';
 import type { Placement, SceneMember, Vector } from '../engine/messages';
 import type { PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
+import { quaternionOf, turnVector, type Places } from '../scene/places';
 import { button, element } from '../ui/dom';
 import { renameIn } from '../ui/rename';
 import { say } from '../words/say';
 import { askHolder } from './hold_dialog';
 
-const finest = 1e-4; // of what a field shows
+const decimals = 4; // that a field shows
 
-/** Turn, tilt and roll in degrees, in the order in which people think of them: first where it faces. */
+/** Tilt, turn and roll in degrees, as people think of them: where it faces comes first. */
 function anglesOf({ turn }: Placement): Vector {
-  const vector = new Vector3(...turn), degrees = vector.length();
-  const { x, y, z } = new Euler().setFromQuaternion(new Quaternion().setFromAxisAngle(vector.normalize(), MathUtils.degToRad(degrees)), 'YXZ');
+  const { x, y, z } = new Euler().setFromQuaternion(quaternionOf(turn), 'YXZ');
   return [x, y, z].map(MathUtils.radToDeg) as Vector;
 }
 
-function turnOf([x, y, z]: Vector): Vector {
-  const { x: qx, y: qy, z: qz, w } = new Quaternion().setFromEuler(new Euler(...[x, y, z].map(MathUtils.degToRad) as Vector, 'YXZ'));
-  const sine = Math.hypot(qx, qy, qz), degrees = MathUtils.radToDeg(2 * Math.atan2(sine, w));
-  return sine < 1e-12 ? [0, 0, 0] : [qx, qy, qz].map((part) => (degrees * part) / sine) as Vector;
-}
+const turnOf = (angles: Vector) => turnVector(new Quaternion().setFromEuler(new Euler(...angles.map(MathUtils.degToRad) as Vector, 'YXZ')));
 
 /** The middle of the model's floor stays where it is while it is turned or scaled. */
-function aboutFeet({ box, placement }: SceneMember, change: Pick<Placement, 'turn' | 'scale'>): Vector {
-  const feet = new Vector3((box.min[0] + box.max[0]) / 2, box.min[1], (box.min[2] + box.max[2]) / 2);
-  const from = ({ turn, scale }: Pick<Placement, 'turn' | 'scale'>) => {
-    const axis = new Vector3(...turn), degrees = axis.length();
-    return feet.clone().multiplyScalar(scale).applyAxisAngle(axis.normalize(), MathUtils.degToRad(degrees));
-  };
-  return new Vector3(...placement.position).add(from(placement)).sub(from(change)).toArray();
+function aboutFeet({ min, max }: SceneMember['box'], before: Placement, change: Partial<Placement>): Placement {
+  const after = { ...before, ...change };
+  const feet = ({ turn, scale }: Placement) =>
+    new Vector3((min[0] + max[0]) / 2, min[1], (min[2] + max[2]) / 2).multiplyScalar(scale).applyQuaternion(quaternionOf(turn));
+  return { ...after, position: new Vector3(...before.position).add(feet(before)).sub(feet(after)).toArray() };
 }
 
 function heldBy({ name, attached }: SceneMember, members: SceneMember[]): string {
@@ -38,7 +32,7 @@ function heldBy({ name, attached }: SceneMember, members: SceneMember[]): string
   return say('{holder} holds {name}: {joint}', { name, holder: holder?.name ?? '', joint: joint?.part ?? attached!.joint });
 }
 
-export function scenePanel(studio: Studio, page: PageStore): HTMLElement {
+export function scenePanel(studio: Studio, page: PageStore, places: Places): HTMLElement {
   const chosen = () => page.now.session?.member ?? 0;
   const member = () => page.now.session?.members[chosen()] ?? null;
   const list = element('ul', { class: 'members', 'aria-label': say('Models in the scene'), id: 'members' });
@@ -54,40 +48,34 @@ export function scenePanel(studio: Studio, page: PageStore): HTMLElement {
     if (wanted) await studio.attachMember(chosen(), wanted.to, wanted.joint, wanted.snap);
   };
 
-  const field = (id: string, text: string, step: number, shown: (of: SceneMember) => number, take: (value: number, of: SceneMember) => void) => {
+  /** Takes what is entered into the place where the model is now: one that is held may have moved since the page was told. */
+  const field = (id: string, text: string, step: number, shown: (of: Placement) => number, take: (value: number, of: Placement) => Placement | null) => {
     const input = element('input', { type: 'number', id, step, class: 'number' });
     input.addEventListener('change', () => {
-      const of = member(), value = input.valueAsNumber;
-      if (of && Number.isFinite(value)) take(value, of);
+      const { session } = page.now, value = input.valueAsNumber;
+      const wanted = session && Number.isFinite(value) ? take(value, places.placement(chosen(), session.members)) : null;
+      if (wanted) void studio.placeMember(chosen(), wanted);
     });
-    const show = (of: SceneMember) => {
-      const value = Math.round(shown(of) / finest) * finest;
-      if (document.activeElement !== input) input.value = String(Number(value.toFixed(4)));
+    const show = ({ placement }: SceneMember) => {
+      if (document.activeElement !== input) input.value = String(Number(shown(placement).toFixed(decimals)));
     };
     return { show, row: element('label', { class: 'number-field', for: id }, text, input) };
   };
-  const move = (axis: number) => (value: number, of: SceneMember) => {
-    const position = [...of.placement.position] as Vector;
-    position[axis] = value;
-    void studio.placeMember(chosen(), position);
+  const along = (axis: number) => (value: number, of: Placement) => ({ ...of, position: of.position.map((was, i) => (i === axis ? value : was)) as Vector });
+  const reshape = (of: Placement, change: Partial<Placement>) => {
+    const box = member()?.box;
+    return box ? aboutFeet(box, of, change) : null;
   };
-  const reshape = (of: SceneMember, change: Partial<Placement>) => {
-    const whole = { ...of.placement, ...change };
-    void studio.placeMember(chosen(), aboutFeet(of, whole), whole);
-  };
-  const angle = (axis: number) => (value: number, of: SceneMember) => {
-    const angles = anglesOf(of.placement);
-    angles[axis] = value;
-    reshape(of, { turn: turnOf(angles) });
-  };
+  const angle = (axis: number) => (value: number, of: Placement) =>
+    reshape(of, { turn: turnOf(anglesOf(of).map((was, i) => (i === axis ? value : was)) as Vector) });
   const fields = [
-    field('member-x', 'X', 0.1, ({ placement }) => placement.position[0], move(0)),
-    field('member-y', 'Y', 0.1, ({ placement }) => placement.position[1], move(1)),
-    field('member-z', 'Z', 0.1, ({ placement }) => placement.position[2], move(2)),
-    field('member-turn', say('Turn \u00b0'), 15, ({ placement }) => anglesOf(placement)[1], angle(1)),
-    field('member-tilt', say('Tilt \u00b0'), 15, ({ placement }) => anglesOf(placement)[0], angle(0)),
-    field('member-roll', say('Roll \u00b0'), 15, ({ placement }) => anglesOf(placement)[2], angle(2)),
-    field('member-size', say('Size %'), 5, ({ placement }) => 100 * placement.scale, (value, of) => { if (value > 0) reshape(of, { scale: value / 100 }); }),
+    field('member-x', 'X', 0.1, ({ position }) => position[0], along(0)),
+    field('member-y', 'Y', 0.1, ({ position }) => position[1], along(1)),
+    field('member-z', 'Z', 0.1, ({ position }) => position[2], along(2)),
+    field('member-turn', say('Turn \u00b0'), 15, (of) => anglesOf(of)[1], angle(1)),
+    field('member-tilt', say('Tilt \u00b0'), 15, (of) => anglesOf(of)[0], angle(0)),
+    field('member-roll', say('Roll \u00b0'), 15, (of) => anglesOf(of)[2], angle(2)),
+    field('member-size', say('Size %'), 5, ({ scale }) => 100 * scale, (value, of) => (value > 0 ? reshape(of, { scale: value / 100 }) : null)),
   ];
   const about = element('p', { class: 'hint-text', id: 'member-about' });
 
@@ -104,7 +92,7 @@ export function scenePanel(studio: Studio, page: PageStore): HTMLElement {
     list, element('div', { class: 'row' }, place, hold, letGo, remove), about,
     element('details', { id: 'member-place' }, element('summary', {}, say('Place and size')), element('div', { class: 'number-fields' }, ...fields.map((one) => one.row))));
   let listed = '';
-  page.watch(({ session, arranging }, before) => {
+  page.watch(({ session, arranging }) => {
     const members = session?.members ?? [], of = member();
     root.hidden = members.length < 2;
     if (root.hidden || !of) {
@@ -121,7 +109,7 @@ export function scenePanel(studio: Studio, page: PageStore): HTMLElement {
       ? heldBy(of, members)
       : arranging ? say('Drag a model over the floor; beside them you turn the view') : '';
     about.hidden = about.textContent === '';
-    if (session !== before.session || list.childElementCount > 0) fields.forEach(({ show }) => show(of));
+    fields.forEach(({ show }) => show(of));
     // Who looks at handles again poses.
     if (arranging && page.now.display === 'handles') page.set({ arranging: false });
   });

@@ -58,10 +58,11 @@ export class PlaceInput {
   }
 
   private release(event: PointerEvent) {
-    const { held } = this;
-    if (!held || event.pointerId !== held.pointer) return;
+    const { held } = this, { session } = this.page.now;
+    if (!held || !session || event.pointerId !== held.pointer) return;
     this.held = null;
-    if (this.moved) void this.studio.placeMember(held.member, new Vector3().setFromMatrixPosition(this.places.of(held.member)).toArray());
+    const position = new Vector3().setFromMatrixPosition(this.places.of(held.member)).toArray();
+    if (this.moved) void this.studio.placeMember(held.member, { ...this.places.placement(held.member, session.members), position });
     else void this.studio.chooseMember(held.member);
   }
 

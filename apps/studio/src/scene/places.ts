@@ -1,6 +1,6 @@
 // Where the members of a scene stand: as the engine has them, or as one is being moved.
-import { Box3, Matrix4, Vector3 } from 'three';
-import type { SessionState } from '../engine/messages';
+import { Box3, MathUtils, Matrix4, Quaternion, Vector3 } from 'three';
+import type { Placement, SessionState } from '../engine/messages';
 
 type Members = SessionState['members'];
 
@@ -8,6 +8,15 @@ export class Places {
   private matrices: Matrix4[] = [new Matrix4()];
 
   of(member: number): Matrix4 { return this.matrices[member] ?? new Matrix4(); }
+
+  /** As the page was told, unless what carries the member may have moved since. */
+  placement(member: number, members: Members): Placement {
+    const known = members[member]!;
+    if (!known.attached) return known.placement;
+    const position = new Vector3(), turn = new Quaternion(), scale = new Vector3();
+    this.of(member).decompose(position, turn, scale);
+    return { position: position.toArray(), turn: turnVector(turn), scale: Math.cbrt(Math.abs(scale.x * scale.y * scale.z)) };
+  }
 
   /** 16 numbers for each; none where a single model stands in its own space. */
   take(values: Float32Array) {
@@ -29,6 +38,17 @@ export class Places {
   boxOfAll(members: Members): Box3 {
     return members.reduce((all, _, member) => all.union(this.box(member, members)), new Box3());
   }
+}
+
+/** Degrees about an axis, as one vector. */
+export function turnVector({ x, y, z, w }: Quaternion): Placement['turn'] {
+  const sine = Math.hypot(x, y, z), degrees = MathUtils.radToDeg(2 * Math.atan2(sine, w));
+  return sine < 1e-12 ? [0, 0, 0] : [x, y, z].map((part) => (degrees * part) / sine) as Placement['turn'];
+}
+
+export function quaternionOf(turn: Placement['turn']): Quaternion {
+  const vector = new Vector3(...turn), degrees = vector.length();
+  return new Quaternion().setFromAxisAngle(vector.normalize(), MathUtils.degToRad(degrees));
 }
 
 function isCarriedBy(member: number, carrier: number, members: Members): boolean {

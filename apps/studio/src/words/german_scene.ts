@@ -30,4 +30,8 @@ export const germanScene = {
   'From a file\u2026': 'Aus einer Datei\u2026',
   'Add': 'Dazu',
   'Another model or a prop beside this one; or drop a file with Shift held': 'Noch ein Modell oder ein Gegenstand neben diesem; oder zieh eine Datei mit Umschalt herein',
+  'Click another model': 'Klick auf ein anderes Modell',
+  'choose it': 'es ausw\u00e4hlen',
+  'Drop a file with Shift': 'Datei mit Umschalt hereinziehen',
+  'add it to the scene': 'zur Szene hinzuf\u00fcgen',
 } as const;
