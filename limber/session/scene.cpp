@@ -64,7 +64,7 @@ struct SessionScene::Runner {
   void operator()(const AddSample&) const { added(); }
   void operator()(const AddFile&) const { added(); }
   void added() const {
-    scene.requireStill();
+    scene.requireReady();
     scene.join(command, opened());
   }
 
@@ -92,7 +92,7 @@ struct SessionScene::Runner {
     }
   }
   void operator()(const ChooseMember& c) const {
-    scene.requireStill();
+    scene.requireReady();
     scene.now_.chosen = scene.memberOf(c.member);
     scene.record_->add(command);
   }
@@ -142,8 +142,7 @@ struct SessionScene::Runner {
   }
   template <class Change>
   void rearrange(const Change& change) const {
-    scene.requireStill();
-    if (!scene.isOpen()) refuse("no model is open");
+    scene.requireReady();
     Arrangement next = scene.now_;
     change(next);
     Arrangement before = std::exchange(scene.now_, std::move(next));
@@ -152,10 +151,9 @@ struct SessionScene::Runner {
   }
 
   void operator()(const SetClock& c) const {
-    scene.requireStill();
+    scene.requireReady();
     if (!std::isfinite(c.seconds) || c.seconds < 0) refuse("the clock cannot show that");
     for (const SceneMember& member : scene.now_.members) {
-      if (!member.session->isOpen()) continue;
       if (const Clip* clip = member.session->state().movement.clip()) {
         member.session->showMoment(momentOf(*clip, c.seconds));
       }
@@ -164,12 +162,12 @@ struct SessionScene::Runner {
   }
 
   void operator()(const Undo&) const {
-    scene.requireStill();
+    scene.requireReady();
     if (scene.undo_.empty()) refuse("there is nothing to undo");
     go(scene.undo_, scene.redo_);
   }
   void operator()(const Redo&) const {
-    scene.requireStill();
+    scene.requireReady();
     if (scene.redo_.empty()) refuse("there is nothing to do again");
     go(scene.redo_, scene.undo_);
   }
@@ -217,7 +215,7 @@ void SessionScene::open(ByteSpan bytes, std::string_view name, Progress& progres
 }
 
 void SessionScene::add(ByteSpan bytes, const AddFile& command, Progress& progress) {
-  requireStill();
+  requireReady();
   auto session = std::make_shared<Session>(files_, record_);
   session->add(bytes, command, progress);
   join(command, std::move(session));
@@ -308,7 +306,8 @@ void SessionScene::trim() {
   undo_.erase(undo_.begin(), undo_.end() - static_cast<std::ptrdiff_t>(kept));
 }
 
-void SessionScene::requireStill() const {
+void SessionScene::requireReady() const {
+  if (!isOpen()) refuse("no model is open", {}, "open_sample or open_file comes first");
   if (session().draggedJoint()) refuse("a joint is being dragged", {}, "end_drag or cancel_drag comes first");
 }
 

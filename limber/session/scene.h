@@ -104,7 +104,7 @@ class SessionScene {
   void onChosen(const Command& command, const Act& act);
   void commit(const Command& command, std::shared_ptr<Session> session, Arrangement before);
   void trim();
-  void requireStill() const;
+  void requireReady() const;
   std::size_t memberOf(const std::string& name) const;
   std::string freeName(const std::string& wanted) const;
 

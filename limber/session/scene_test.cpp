@@ -286,6 +286,7 @@ TEST(SessionScene, WhatCannotBeDoneChangesNothing) {
   SessionScene empty(sceneFiles);
   EXPECT_THROW(run(empty, AddFile{"biped.glb"}), Error);
   EXPECT_THROW(run(empty, RemoveMember{"person"}), Error);
+  EXPECT_TRUE(empty.record().empty());
   SessionScene scene = twoAndAProp();
   const std::string leaf = leafOf(scene, 0);
   run(scene, AttachMember{"biped", "person", leaf});
