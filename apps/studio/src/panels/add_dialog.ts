@@ -16,7 +16,7 @@ export function addDialog(studio: Studio): { button: HTMLButtonElement; dialog: 
     element('h2', {}, say('Add to the scene')),
     element('label', { class: 'check', title: say('One piece with a single handle: a sword, a chair, a ball') }, prop, say('As a prop that does not bend')),
     element('div', { class: 'row samples' }, ...samples.map(([name, text]) => {
-      const made = button(text, () => {
+      const made = button(say(text), () => {
         dialog.close();
         void studio.addSample(name, prop.checked);
       });

@@ -1,6 +1,7 @@
 // By which joint of which other model one is to be held.
 import type { SessionState } from '../engine/messages';
 import { button, element } from '../ui/dom';
+import { partName } from '../words/parts';
 import { say } from '../words/say';
 
 export interface Holder {
@@ -19,7 +20,7 @@ function jointsOf({ joints }: SessionState['members'][number]) {
 export function askHolder(session: SessionState, member: number): Promise<Holder | null> {
   const held = session.members[member]!;
   const groups = session.members.flatMap((of, to) => (to === member ? [] : [element('optgroup', { label: of.name },
-    ...jointsOf(of).map(({ name, part }) => element('option', { value: JSON.stringify([to, name]) }, part ? `${part} (${name})` : name)))]));
+    ...jointsOf(of).map(({ name, part }) => element('option', { value: JSON.stringify([to, name]) }, part ? `${partName(part)} (${name})` : name)))]));
   return new Promise((resolve) => {
     const select = element('select', { class: 'select', id: 'holder' }, ...groups);
     const snap = element('input', { type: 'checkbox', id: 'holder-snap', checked: true });

@@ -6,6 +6,7 @@ import type { Studio } from '../app/studio';
 import { quaternionOf, turnVector, type Places } from '../scene/places';
 import { button, element } from '../ui/dom';
 import { renameIn } from '../ui/rename';
+import { partName } from '../words/parts';
 import { say } from '../words/say';
 import { askHolder } from './hold_dialog';
 
@@ -29,7 +30,7 @@ function aboutFeet({ min, max }: SceneMember['box'], before: Placement, change: 
 
 function heldBy({ name, attached }: SceneMember, members: SceneMember[]): string {
   const holder = members[attached!.to], joint = holder?.joints.find((known) => known.name === attached!.joint);
-  return say('{holder} holds {name}: {joint}', { name, holder: holder?.name ?? '', joint: joint?.part ?? attached!.joint });
+  return say('{holder} holds {name}: {joint}', { name, holder: holder?.name ?? '', joint: joint?.part ? partName(joint.part) : attached!.joint });
 }
 
 export function scenePanel(studio: Studio, page: PageStore, places: Places): HTMLElement {
@@ -72,9 +73,9 @@ export function scenePanel(studio: Studio, page: PageStore, places: Places): HTM
     field('member-x', 'X', 0.1, ({ position }) => position[0], along(0)),
     field('member-y', 'Y', 0.1, ({ position }) => position[1], along(1)),
     field('member-z', 'Z', 0.1, ({ position }) => position[2], along(2)),
-    field('member-turn', say('Turn \u00b0'), 15, (of) => anglesOf(of)[1], angle(1)),
-    field('member-tilt', say('Tilt \u00b0'), 15, (of) => anglesOf(of)[0], angle(0)),
-    field('member-roll', say('Roll \u00b0'), 15, (of) => anglesOf(of)[2], angle(2)),
+    field('member-turn', say('Turn °'), 15, (of) => anglesOf(of)[1], angle(1)),
+    field('member-tilt', say('Tilt °'), 15, (of) => anglesOf(of)[0], angle(0)),
+    field('member-roll', say('Roll °'), 15, (of) => anglesOf(of)[2], angle(2)),
     field('member-size', say('Size %'), 5, ({ scale }) => 100 * scale, (value, of) => (value > 0 ? reshape(of, { scale: value / 100 }) : null)),
   ];
   const about = element('p', { class: 'hint-text', id: 'member-about' });
