@@ -211,19 +211,17 @@ const cases = {
     expectSame(await standing(), before);
   },
   async 'undo goes back through all of them to the first'() {
-    const before = await standing();
-    let steps = 0;
-    for (; await page.locator('#undo').isEnabled(); ++steps) {
+    for (let steps = 0; await page.locator('#undo').isEnabled(); ++steps) {
       await press('#undo');
       assert.ok(steps < 60);
     }
     const { members, posed } = await sessionState(page);
     assert.equal(members.length, 1);
     assert.equal(posed, false);
-    for (; steps > 0; --steps) await press('#redo');
-    await settled(page);
-    await choose(before.member);
-    expectSame(await standing(), before);
+    for (const count of [2, 3]) {
+      await press('#redo');
+      assert.equal((await sessionState(page)).members.length, count);
+    }
   },
   async 'by finger on a phone; everybody can use it'() {
     const { page: phone, context, errors: thrown } = await openStudio(browser, server.address, { width: 390, height: 844, touch: true, search: '?sample=stool' });
