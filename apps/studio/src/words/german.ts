@@ -366,7 +366,6 @@ export const german = {
   'is it the right file?': 'ist es die richtige Datei?',
   'the archive holds too much': 'das Archiv enthält zu viel',
   'unpack it, and drop what you need': 'entpacke es, und zieh herein, was du brauchst',
-  'the archive cannot be read': 'das Archiv kann nicht gelesen werden',
   'is it a file that this page saved?': 'ist es eine Datei, die diese Seite gespeichert hat?',
   'it holds no {file}': 'sie enthält {file} nicht',
   'its {file} is no JSON': '{file} darin ist kein JSON',
