@@ -3,6 +3,7 @@ import type { Display, DragMode, PageState, PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
 import { counted } from '../ui/counted';
 import { button, choice, element } from '../ui/dom';
+import { exactFields } from './exact_fields';
 
 const mostHandles = 200;
 
@@ -46,7 +47,7 @@ export function posePanel(studio: Studio, page: PageStore): HTMLElement {
     display.root,
     element('div', { class: 'row checks' }, toggle('Bones', 'bones'), toggle('Wireframe', 'wireframe'),
       toggle('Arrows', 'gizmo'), toggle('Limits', 'limits')),
-    limits(studio, page));
+    limits(studio, page), exactFields(studio, page));
 }
 
 /** How far joints may turn: a file of limits; what is shown where there are none. */
