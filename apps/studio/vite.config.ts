@@ -7,7 +7,7 @@ const at = (path: string) => fileURLToPath(new URL(path, import.meta.url));
 const onlyPacked = (): Plugin => ({
   name: 'only-packed',
   generateBundle(_, bundle) {
-    for (const name of Object.keys(bundle)) if (name.endsWith('.wasm')) delete bundle[name];
+    for (const name of Object.keys(bundle)) if (/limber_engine.*\.wasm$/.test(name)) delete bundle[name];
   },
 });
 

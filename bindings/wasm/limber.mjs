@@ -67,14 +67,23 @@ import createEngine from './limber_engine.mjs';
  *             textures: Uint8Array[] }} SurfaceModel four influences for each vertex; the files of the textures
  * @typedef {'glb' | 'obj' | 'stl' | 'ply' | 'bvh' | 'session'} ExportFormat
  * @typedef {ReturnType<typeof createSession>} Session
+ *
+ * Decoders of compressed glTF, which the engine asks while it opens a file; they answer at once. A file that needs one that
+ * is not there is refused. Both give null for broken data.
+ * @typedef {{ faces: number, points: number, indices: () => Uint32Array, components: (attribute: number) => number,
+ *             values: (attribute: number, componentType: number) => Uint8Array | null, free: () => void }} DracoMesh
+ *   by Draco's unique ids of attributes; components: 0 where there is none; values: of all points, as the type that glTF
+ *   numbers so, one behind the other
+ * @typedef {{ draco?: (data: Uint8Array) => DracoMesh | null,
+ *             meshopt?: (data: Uint8Array, count: number, stride: number, mode: string, filter: string) => Uint8Array | null }} Codecs
  */
 
 /**
  * @param {BufferSource} wasmBinary the content of limber_engine.wasm
- * @param {{ onProgress?: (stage: string, fraction: number) => void }} [listeners]
+ * @param {{ onProgress?: (stage: string, fraction: number) => void, codecs?: Codecs }} [given] codecs may be put in later
  */
-export async function loadLimber(wasmBinary, listeners = {}) {
-  const engine = await createEngine({ wasmBinary, ...listeners });
+export async function loadLimber(wasmBinary, given = {}) {
+  const engine = await createEngine({ wasmBinary, ...given });
   return {
     /** @type {(file: Uint8Array, name: string, options?: RigOptions) => RigResult} */
     rig: (file, name, options = {}) => {

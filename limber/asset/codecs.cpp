@@ -74,7 +74,6 @@ void takePlainData(Asset& asset, Decoded& decoded) {
   }
 }
 
-#ifdef LIMBER_CODECS
 void decode(Asset& asset, const Found& found, Decoded& decoded) {
   DecodeBudget budget(asset);
   if (found.views > 0) decodeMeshopt(asset, budget, decoded);
@@ -87,15 +86,6 @@ void decode(Asset& asset, const Found& found, Decoded& decoded) {
     }
   }
 }
-#else
-void decode(Asset&, const Found& found, Decoded&) {
-  if (found.total() == 0) return;
-  const char* codec = found.primitives > 0 ? "Draco" : "meshopt";
-  throw Error(ErrorCode::kUnsupported,
-              fmt::format("has geometry compressed with {}, which this program does not decompress", codec), {},
-              "export the model without compression");
-}
-#endif
 
 // What says of the whole document that it is compressed.
 void dropDeclarations(Asset& asset) {
@@ -112,7 +102,7 @@ DecodeBudget::DecodeBudget(const Asset& asset) : left_(kFreeMemory) {
 }
 
 void DecodeBudget::take(std::size_t bytes, const std::string& where) {
-  if (!allows(bytes)) {
+  if (bytes > left_) {
     throw Error(ErrorCode::kLimit, "decompresses to more than a file of this size may hold", where);
   }
   left_ -= bytes;

@@ -10,8 +10,9 @@ namespace limber {
 // names go from extensionsUsed and extensionsRequired, compressed bytes that nothing else refers to go, and a warning
 // "decompressed" says so. Data that the file also holds uncompressed are taken as they are.
 //
-// Throws Error kUnsupported where limber is built without the codecs, kBadData where data do not decode to what the
-// accessors promise. Memory is bounded by the size of the compressed data.
+// Throws Error kUnsupported where there is no decoder (a build without LIMBER_CODECS, a page that brings none),
+// kBadData where data do not decode to what the accessors promise. Memory is bounded by the size of the compressed
+// data.
 void decompress(Asset& asset);
 
 }  // namespace limber

@@ -17,7 +17,7 @@ inline constexpr const char* kMeshopt[] = {"EXT_meshopt_compression", "KHR_mesho
 class DecodeBudget {
  public:
   explicit DecodeBudget(const Asset& asset);
-  bool allows(std::size_t bytes) const { return bytes <= left_; }
+  std::size_t left() const { return left_; }
   void take(std::size_t bytes, const std::string& where);  // throws Error kLimit
 
  private:
@@ -32,7 +32,7 @@ struct Decoded {
 
 bool hasMeshopt(const JsonView& view);
 
-// Decode all buffer views, all primitives. In the builds without codecs they are not there.
+// Decode all buffer views, all primitives.
 void decodeMeshopt(Asset& asset, DecodeBudget& budget, Decoded& decoded);
 void decodeDraco(Asset& asset, DecodeBudget& budget, Decoded& decoded);
 

@@ -1,21 +1,18 @@
-#ifdef LIMBER_CODECS
-
-#include <array>
 #include <cmath>
-#include <exception>
+#include <cstring>
 #include <limits>
 #include <map>
+#include <memory>
 #include <optional>
+#include <string_view>
 #include <vector>
 
-#include <draco/compression/mesh/mesh_edgebreaker_decoder.h>
-#include <draco/compression/mesh/mesh_sequential_decoder.h>
-#include <draco/core/varint_decoding.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "limber/asset/accessor.h"
 #include "limber/asset/accessor_layout.h"
+#include "limber/asset/codec_library.h"
 #include "limber/asset/codecs_detail.h"
 #include "limber/asset/extensions.h"
 
@@ -23,82 +20,29 @@ namespace limber {
 
 namespace {
 
-constexpr std::uint16_t kBitstream = 0x0202;  // the one that glTF allows
-constexpr int kMaxDecodes = 8;                // of one buffer view
-constexpr double kWeightRounding = 0.05;      // of a sum of weights, at Draco's coarsest usual setting
-constexpr std::size_t kBytesPerFace = 48;     // of tables that the decoder makes meanwhile
+constexpr int kMaxDecodes = 8;            // of one buffer view
+constexpr double kWeightRounding = 0.05;  // of a sum of weights, at Draco's coarsest usual setting
 
-// What the accessors say that a mesh decodes to.
-struct Promise {
-  std::optional<std::size_t> faces;  // unknown for a strip
-  std::size_t points = 0;
-};
-
-// A decoder of Draco's that looks at the counts in the data before memory is asked for.
-template <typename Base, bool kFacesFirst>
-class BoundedDecoder : public Base {
- public:
-  BoundedDecoder(const Promise& promise, const DecodeBudget& budget) : promise_(promise), budget_(budget) {}
-
- protected:
-  bool DecodeConnectivity() override {
-    draco::DecoderBuffer ahead = *this->buffer();
-    std::uint32_t first = 0, second = 0;
-    if (!draco::DecodeVarint(&first, &ahead) || !draco::DecodeVarint(&second, &ahead)) return false;
-    const std::size_t faces = kFacesFirst ? first : second, vertices = kFacesFirst ? second : first;
-    if (promise_.faces && faces != *promise_.faces) return false;
-    if (vertices > promise_.points || !budget_.allows(faces * kBytesPerFace)) return false;
-    return Base::DecodeConnectivity();
-  }
-
-  bool DecodeAllAttributes() override {
-    const draco::PointCloud& cloud = *this->point_cloud();
-    if (cloud.num_points() != promise_.points) return false;
-    std::size_t bytes = 0;
-    for (int i = 0; i < cloud.num_attributes(); ++i) {
-      bytes += promise_.points * static_cast<std::size_t>(cloud.attribute(i)->byte_stride());
-    }
-    return budget_.allows(bytes) && Base::DecodeAllAttributes();
-  }
-
- private:
-  const Promise& promise_;
-  const DecodeBudget& budget_;
-};
-
-using EdgebreakerDecoder = BoundedDecoder<draco::MeshEdgebreakerDecoder, false>;
-using SequentialDecoder = BoundedDecoder<draco::MeshSequentialDecoder, true>;
+// The fixed start of Draco data: magic, version, kind of geometry.
+constexpr std::string_view kDracoMagic = "DRACO";
+constexpr std::size_t kDracoMajor = 5, kDracoMinor = 6, kDracoGeometry = 7, kDracoHeaderSize = 11;  // bytes
+constexpr std::uint8_t kTriangularMesh = 1;
 
 [[noreturn]] void failBroken(const JsonView& place) {
   place.fail("its Draco data are broken or do not hold what the accessors say");
 }
 
-void decodeMesh(ByteSpan bytes, const Promise& promise, const DecodeBudget& budget, const JsonView& place,
-                draco::Mesh& mesh) {
-  draco::DecoderBuffer buffer;
-  buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  draco::DecoderBuffer ahead = buffer;
-  draco::DracoHeader header;
-  if (!draco::PointCloudDecoder::DecodeHeader(&ahead, &header).ok()) failBroken(place);
-  if (header.encoder_type != draco::TRIANGULAR_MESH) place.fail("its Draco data are not a mesh");
-  if (header.version_major * 256 + header.version_minor != kBitstream) {
+// glTF allows triangle meshes of one version of the bitstream.
+void checkHeader(ByteSpan bytes, const JsonView& place) {
+  if (bytes.size() < kDracoHeaderSize || std::memcmp(bytes.data(), kDracoMagic.data(), kDracoMagic.size()) != 0)
+    failBroken(place);
+  if (bytes[kDracoGeometry] != kTriangularMesh) place.fail("its Draco data are not a mesh");
+  if (bytes[kDracoMajor] != 2 || bytes[kDracoMinor] != 2) {
     throw Error(
         ErrorCode::kUnsupported,
-        fmt::format("is Draco of version {}.{}, glTF holds version 2.2", header.version_major, header.version_minor),
+        fmt::format("is Draco of version {}.{}, glTF holds version 2.2", bytes[kDracoMajor], bytes[kDracoMinor]),
         place.path(), "export the model again");
   }
-  const draco::DecoderOptions options;
-  bool decoded = false;
-  try {
-    if (header.encoder_method == draco::MESH_EDGEBREAKER_ENCODING) {
-      decoded = EdgebreakerDecoder(promise, budget).Decode(options, &buffer, &mesh).ok();
-    } else if (header.encoder_method == draco::MESH_SEQUENTIAL_ENCODING) {
-      decoded = SequentialDecoder(promise, budget).Decode(options, &buffer, &mesh).ok();
-    }
-  } catch (const std::exception&) {
-    decoded = false;  // out of memory, or a length that no container takes
-  }
-  if (!decoded) failBroken(place);
 }
 
 // The decoded data of one accessor.
@@ -110,25 +54,18 @@ struct Piece {
 };
 
 template <typename T>
-void copyAttribute(const draco::PointAttribute& attribute, const JsonView& place, Index components, Piece& piece) {
-  std::array<T, 4> value;
-  for (std::size_t i = 0; i < piece.count; ++i) {
-    const auto index = attribute.mapped_index(draco::PointIndex(static_cast<std::uint32_t>(i)));
-    if (!attribute.ConvertValue(index, static_cast<std::int8_t>(components), value.data())) failBroken(place);
-    std::memcpy(piece.bytes.data() + i * piece.stride, value.data(), components * sizeof(T));
+void copyIndices(const DracoMesh& mesh, const JsonView& place, Piece& piece) {
+  if (mesh.points() > 0 && mesh.points() - 1 > std::numeric_limits<T>::max()) {
+    place.fail("has more vertices than its indices can count");
   }
-}
-
-template <typename T>
-void copyIndices(const draco::Mesh& mesh, const JsonView& place, Piece& piece) {
-  if (mesh.num_points() > std::size_t{1} << (8 * sizeof(T))) place.fail("has more vertices than its indices can count");
+  std::vector<std::uint32_t> points(3 * mesh.faces());
+  mesh.copyFaces(points.data());
   std::uint8_t* out = piece.bytes.data();
-  for (draco::FaceIndex face(0); face < mesh.num_faces(); ++face) {
-    for (const draco::PointIndex& point : mesh.face(face)) {
-      const T value = static_cast<T>(point.value());
-      std::memcpy(out, &value, sizeof(T));
-      out += sizeof(T);
-    }
+  for (const std::uint32_t point : points) {
+    if (point >= mesh.points()) failBroken(place);
+    const T value = static_cast<T>(point);
+    std::memcpy(out, &value, sizeof(T));
+    out += sizeof(T);
   }
 }
 
@@ -157,13 +94,16 @@ class DracoReader {
                   extension.path());
     }
 
-    Promise promise;
-    promise.points = accessors[attributes.begin()->first].member("count").asCount();
-    if (!isStrip) promise.faces = accessors[indices].member("count").asCount() / 3;
-    draco::Mesh mesh;
-    decodeMesh(viewLayout(asset_, views[view]).bytes, promise, budget_, extension, mesh);
-    for (const auto& [accessor, id] : attributes) addAttribute(mesh, view, accessor, id, accessors[accessor]);
-    addIndices(mesh, view, indices, accessors[indices]);
+    DracoBounds bounds;
+    bounds.points = accessors[attributes.begin()->first].member("count").asCount();
+    if (!isStrip) bounds.faces = accessors[indices].member("count").asCount() / 3;
+    bounds.memory = budget_.left();
+    const ByteSpan bytes = viewLayout(asset_, views[view]).bytes;
+    checkHeader(bytes, extension);
+    const std::unique_ptr<DracoMesh> mesh = decodeDracoData(bytes, bounds);
+    if (!mesh) failBroken(extension);
+    for (const auto& [accessor, id] : attributes) addAttribute(*mesh, view, accessor, id, accessors[accessor]);
+    addIndices(*mesh, view, indices, accessors[indices]);
     if (!weights.empty()) weightSets_.insert(weights);
   }
 
@@ -186,26 +126,25 @@ class DracoReader {
     return true;
   }
 
-  void addAttribute(const draco::Mesh& mesh, Index view, Index accessor, int id, const JsonView& place) {
-    const draco::PointAttribute* attribute = mesh.GetAttributeByUniqueId(static_cast<std::uint32_t>(id));
+  void addAttribute(const DracoMesh& mesh, Index view, Index accessor, int id, const JsonView& place) {
     const AccessorLayout layout = shapeOf(accessor);
-    if (attribute == nullptr || attribute->num_components() != static_cast<int>(layout.info.components) ||
-        layout.info.components > 4 || layout.info.count != mesh.num_points()) {
-      failBroken(place);
-    }
+    const std::optional<Index> components = mesh.components(id);
+    if (components != layout.info.components || layout.info.count != mesh.points()) failBroken(place);
     // Vertex attributes stand at multiples of four bytes.
     Piece piece{view, id, layout.info.count, (layout.elementSize + 3) / 4 * 4, {}};
     allocate(piece, place);
-    withComponentType(layout.info.type, [&](auto component) {
-      copyAttribute<decltype(component)>(*attribute, place, layout.info.components, piece);
-    });
+    Bytes packed(piece.count * layout.elementSize);
+    if (!mesh.copyValues(id, layout.info.type, packed.data())) failBroken(place);
+    for (std::size_t i = 0; i < piece.count; ++i) {
+      std::memcpy(&piece.bytes[i * piece.stride], &packed[i * layout.elementSize], layout.elementSize);
+    }
     store(accessor, std::move(piece), place);
   }
 
-  void addIndices(const draco::Mesh& mesh, Index view, Index accessor, const JsonView& place) {
+  void addIndices(const DracoMesh& mesh, Index view, Index accessor, const JsonView& place) {
     const AccessorLayout layout = shapeOf(accessor);
     if (layout.info.components != 1) failBroken(place);
-    Piece piece{view, std::nullopt, std::size_t{mesh.num_faces()} * 3, layout.componentBytes, {}};
+    Piece piece{view, std::nullopt, 3 * mesh.faces(), layout.componentBytes, {}};
     allocate(piece, place);
     if (layout.info.type == ComponentType::kU8) {
       copyIndices<std::uint8_t>(mesh, place, piece);
@@ -330,5 +269,3 @@ void decodeDraco(Asset& asset, DecodeBudget& budget, Decoded& decoded) {
 }
 
 }  // namespace limber
-
-#endif

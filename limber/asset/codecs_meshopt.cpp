@@ -1,13 +1,11 @@
-#ifdef LIMBER_CODECS
-
 #include <limits>
 #include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
-#include <meshoptimizer.h>
 #include <nlohmann/json.hpp>
 
+#include "limber/asset/codec_library.h"
 #include "limber/asset/codecs_detail.h"
 #include "limber/asset/extensions.h"
 
@@ -20,9 +18,7 @@ struct EncodedView {
   std::size_t view = 0;
   Index target = 0;  // buffer that the decoded bytes belong to
   Index source = 0;
-  ByteSpan bytes;
-  std::size_t count = 0, stride = 0;
-  std::string_view mode, filter;
+  MeshoptData data;
 };
 
 EncodedView readEncoded(const Asset& asset, const JsonView& view, const JsonView& extension) {
@@ -34,52 +30,36 @@ EncodedView readEncoded(const Asset& asset, const JsonView& view, const JsonView
   const std::size_t offset = extension.count("byteOffset").value_or(0);
   const std::size_t length = extension.member("byteLength").asCount();
   if (offset > source.size() || length > source.size() - offset) extension.fail("reaches beyond its buffer");
-  encoded.bytes = ByteSpan(source).subspan(offset, length);
-  encoded.count = extension.member("count").asCount();
-  encoded.stride = extension.member("byteStride").asCount();
-  encoded.mode = extension.text("mode");
-  encoded.filter = extension.text("filter", "NONE");
+  MeshoptData& data = encoded.data;
+  data.bytes = ByteSpan(source).subspan(offset, length);
+  data.count = extension.member("count").asCount();
+  data.stride = extension.member("byteStride").asCount();
+  data.mode = extension.text("mode");
+  data.filter = extension.text("filter", "NONE");
   const std::size_t decodedSize = view.member("byteLength").asCount();
-  if (encoded.stride == 0 || encoded.stride > 256 || encoded.count != decodedSize / encoded.stride ||
-      decodedSize % encoded.stride != 0) {
+  if (data.stride == 0 || data.stride > 256 || data.count != decodedSize / data.stride ||
+      decodedSize % data.stride != 0) {
     extension.fail("its count and byteStride do not make up the byteLength of its buffer view");
   }
   return encoded;
 }
 
-// The decoder's own rules, which it only asserts.
-void checkShape(const EncodedView& encoded, const JsonView& extension) {
-  const bool isIndex = encoded.mode == "TRIANGLES" || encoded.mode == "INDICES";
-  bool fits =
-      encoded.mode == "ATTRIBUTES" ? encoded.stride % 4 == 0 : isIndex && (encoded.stride == 2 || encoded.stride == 4);
-  if (encoded.mode == "TRIANGLES") fits = fits && encoded.count % 3 == 0;
-  if (encoded.filter == "OCTAHEDRAL") {
-    fits = fits && !isIndex && (encoded.stride == 4 || encoded.stride == 8);
-  } else if (encoded.filter == "QUATERNION") {
-    fits = fits && !isIndex && encoded.stride == 8;
-  } else if (encoded.filter == "EXPONENTIAL") {
+// The decoders' own rules, which they only assert.
+void checkShape(const MeshoptData& data, const JsonView& extension) {
+  const bool isIndex = data.mode == "TRIANGLES" || data.mode == "INDICES";
+  bool fits = data.mode == "ATTRIBUTES" ? data.stride % 4 == 0 : isIndex && (data.stride == 2 || data.stride == 4);
+  if (data.mode == "TRIANGLES") fits = fits && data.count % 3 == 0;
+  if (data.filter == "OCTAHEDRAL") {
+    fits = fits && !isIndex && (data.stride == 4 || data.stride == 8);
+  } else if (data.filter == "QUATERNION") {
+    fits = fits && !isIndex && data.stride == 8;
+  } else if (data.filter == "EXPONENTIAL") {
     fits = fits && !isIndex;
-  } else if (encoded.filter != "NONE") {
-    throw Error(ErrorCode::kUnsupported, fmt::format("is compressed with the filter {}", encoded.filter),
-                extension.path(), "export the model without compression");
+  } else if (data.filter != "NONE") {
+    throw Error(ErrorCode::kUnsupported, fmt::format("is compressed with the filter {}", data.filter), extension.path(),
+                "export the model without compression");
   }
   if (!fits) extension.fail("its mode, filter, count and byteStride do not go together");
-}
-
-int decodeInto(const EncodedView& encoded, std::uint8_t* out) {
-  const std::size_t size = encoded.bytes.size();
-  if (encoded.mode == "TRIANGLES") {
-    return meshopt_decodeIndexBuffer(out, encoded.count, encoded.stride, encoded.bytes.data(), size);
-  }
-  if (encoded.mode == "INDICES") {
-    return meshopt_decodeIndexSequence(out, encoded.count, encoded.stride, encoded.bytes.data(), size);
-  }
-  const int result = meshopt_decodeVertexBuffer(out, encoded.count, encoded.stride, encoded.bytes.data(), size);
-  if (result != 0) return result;
-  if (encoded.filter == "OCTAHEDRAL") meshopt_decodeFilterOct(out, encoded.count, encoded.stride);
-  if (encoded.filter == "QUATERNION") meshopt_decodeFilterQuat(out, encoded.count, encoded.stride);
-  if (encoded.filter == "EXPONENTIAL") meshopt_decodeFilterExp(out, encoded.count, encoded.stride);
-  return 0;
 }
 
 std::vector<EncodedView> findEncoded(const Asset& asset) {
@@ -91,7 +71,7 @@ std::vector<EncodedView> findEncoded(const Asset& asset) {
     const JsonView extension = first.exists() ? first : extensionOf(views[i], kMeshopt[1]);
     found.push_back(readEncoded(asset, views[i], extension));
     found.back().view = i;
-    checkShape(found.back(), extension);
+    checkShape(found.back().data, extension);
   }
   return found;
 }
@@ -107,10 +87,10 @@ void decodeMeshopt(Asset& asset, DecodeBudget& budget, Decoded& decoded) {
   for (const EncodedView& encoded : views) {
     const std::string where = fmt::format("bufferViews[{}]", encoded.view);
     Bytes& out = filled[encoded.target];
-    const std::size_t offset = (out.size() + 3) / 4 * 4, size = encoded.count * encoded.stride;
+    const std::size_t offset = (out.size() + 3) / 4 * 4, size = encoded.data.count * encoded.data.stride;
     budget.take(size, where);
     out.resize(offset + size);
-    if (size > 0 && decodeInto(encoded, out.data() + offset) != 0) {
+    if (size > 0 && !decodeMeshoptData(encoded.data, out.data() + offset)) {
       throw Error(ErrorCode::kBadData, "its meshopt compressed data are broken", where);
     }
     offsets.push_back(offset);
@@ -138,5 +118,3 @@ void decodeMeshopt(Asset& asset, DecodeBudget& budget, Decoded& decoded) {
 }
 
 }  // namespace limber
-
-#endif

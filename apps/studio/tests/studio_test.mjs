@@ -395,7 +395,33 @@ const cases = {
   },
 };
 
-const failed = await runCases(cases, page, output);
+/** Compressed files are among the faulty ones, whole and in good order. */
+const compressed = {
+  async 'glTF compressed by Draco or meshopt opens as the program reads it'() {
+    const files = readdirSync(faulty, { recursive: true, withFileTypes: true }).filter(({ name }) => /(draco|meshopt)\.glb$/i.test(name));
+    for (const codec of [/draco/i, /meshopt/i]) assert.ok(files.some(({ name }) => codec.test(name)));
+    const { page: small, context, errors } = await openStudio(browser, server.address, { width: 480, height: 360, search: '?sample=stool' });
+    for (const { parentPath, name } of files) {
+      const path = join(parentPath, name);
+      const { vertices, triangles, bounds } = JSON.parse(execFileSync(program, ['info', '--json', path], { stdio: ['ignore', 'pipe', 'ignore'] }));
+      await small.locator('#file').setInputFiles(path);
+      await small.waitForFunction((wanted) => globalThis.limberStudio.idle() && globalThis.limberStudio.state().name === wanted, name);
+      const state = await sessionState(small);
+      assert.deepEqual([state.vertices, state.triangles], [vertices, triangles], name);
+      assert.ok(distance(state.box.min, bounds.min) < 1e-5 && distance(state.box.max, bounds.max) < 1e-5, name);
+    }
+    const whole = files.filter(({ name }) => /draco/i.test(name)).map(({ parentPath, name }) => readFileSync(join(parentPath, name)));
+    const largest = whole.reduce((a, b) => (a.length > b.length ? a : b));
+    const cut = Buffer.from(largest).fill(0, Math.round(0.7 * largest.length));
+    await small.locator('#file').setInputFiles({ name: 'cut.glb', mimeType: 'model/gltf-binary', buffer: cut });
+    await small.locator('#notice').waitFor();
+    assert.match(await small.locator('#notice').textContent(), /Draco data are broken/);
+    assert.deepEqual(errors, []);
+    await context.close();
+  },
+};
+
+const failed = await runCases({ ...cases, ...faulty ? compressed : {} }, page, output);
 await browser.close();
 server.close();
 process.exit(failed > 0 ? 1 : 0);

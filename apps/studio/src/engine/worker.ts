@@ -1,7 +1,8 @@
 // Holds the engine and one session, away from the page's own thread.
-import { loadLimber } from '@engine/limber.mjs';
+import { loadLimber, type Codecs } from '@engine/limber.mjs';
 import engineUrl from '@engine/limber_engine.wasm.gz?url';
 import { Documents, EngineFailure } from './documents';
+import { bringCodecs } from './codecs';
 import type { Answers, FromWorker, Kind, Request, ToWorker } from './messages';
 
 const say = (message: FromWorker) => postMessage(message);
@@ -39,13 +40,25 @@ async function engine(): Promise<ArrayBuffer> {
   return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream('gzip'))).arrayBuffer();
 }
 
+/** The files that a request brings. */
+function filesIn(request: Request): Uint8Array[] {
+  switch (request.kind) {
+    case 'open': case 'motion': return [request.bytes];
+    case 'try-motion': case 'preview-motion': return request.motion.kind === 'motion' ? [request.motion.bytes] : [];
+    case 'restore': return request.requests.flatMap(filesIn);
+    default: return [];
+  }
+}
+
 async function start() {
+  const codecs: Codecs = {};
   const limber = await loadLimber(await engine(), {
-    onProgress: (stage, fraction) => say({ kind: 'progress', stage, fraction }),
+    codecs, onProgress: (stage, fraction) => say({ kind: 'progress', stage, fraction }),
   });
   const documents = new Documents(limber);
-  onmessage = ({ data: { id, request } }: MessageEvent<ToWorker>) => {
+  const carryOut = async ({ id, request }: ToWorker) => {
     try {
+      for (const file of filesIn(request)) await bringCodecs(codecs, file);
       say({ kind: 'done', id, answer: answer(documents, request) });
     } catch (error) {
       const failure = error instanceof EngineFailure
@@ -54,6 +67,9 @@ async function start() {
       say({ kind: 'failed', id, error: failure });
     }
   };
+  // One after the other, also where a decoder is on its way.
+  let before = Promise.resolve();
+  onmessage = ({ data }: MessageEvent<ToWorker>) => { before = before.then(() => carryOut(data)); };
   say({ kind: 'ready' });
 }
 
