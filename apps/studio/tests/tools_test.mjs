@@ -75,8 +75,8 @@ async function barriers(of) {
 /** Where the pointer meets that part of the gizmo, near the joint. */
 async function gizmoPart(name, wanted) {
   const middle = await jointPlace(page, name);
-  for (let radius = 24; radius <= 110; radius += 6) {
-    for (let angle = 0; angle < 360; angle += 15) {
+  for (const radius of [60, 54, 68, 44, 76, 36, 30]) { // rings are 62 wide, arrows longer
+    for (let angle = 0; angle < 360; angle += 12) {
       const at = { x: middle.x + radius * Math.cos((angle * Math.PI) / 180), y: middle.y + radius * Math.sin((angle * Math.PI) / 180) };
       await page.mouse.move(at.x, at.y);
       if (await page.evaluate(() => globalThis.limberStudio.gizmoAxis()) === wanted) return { at, out: [at.x - middle.x, at.y - middle.y] };
@@ -256,11 +256,16 @@ const cases = {
     const along = new Vector3(...await jointPosition(page, elbow)).dot(axis.clone().applyQuaternion(await spaces.local()));
     assert.ok(Math.abs(along / step - Math.round(along / step)) < 0.02, `${along} along its own axis is no step`);
     await page.locator('#magnet').click();
+    await press('Control+z');
+    await page.locator('#gizmo-space').selectOption('view');
+    await press('3');
+    const across = await gizmoPart(elbow, 'X'), from = await jointPosition(page, elbow);
+    await dragMouse(across.at, across.out.map((value) => value * 0.5));
+    const [x, y, z] = (await jointPosition(page, elbow)).map((value, i) => value - from[i]);
+    assert.ok(Math.abs(z) > 0.01 && Math.hypot(x, y) < 1e-4, `across the view from the side: ${[x, y, z]}`);
     await page.reload();
     await settled(page);
-    assert.equal(await page.locator('#gizmo-space').inputValue(), 'local', 'the space was not remembered');
-    await page.locator('#ik').click();
-    await reset();
+    assert.equal(await page.locator('#gizmo-space').inputValue(), 'view', 'the space was not remembered');
   },
   async 'arrow keys take the limb along, and a run of presses is one step'() {
     await press('1');

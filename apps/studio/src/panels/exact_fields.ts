@@ -27,7 +27,7 @@ function triple({ text, unit, id, step, send }: TripleOptions): Triple {
   let shown: Vector | null = null, digits = 0;
   const typed = new Set<HTMLInputElement>(); // not sent yet
   const inputs = axes.map((axis) => element('input', {
-    type: 'number', step: 'any', id: `${id}-${axis}`, 'aria-label': `${say(text)} ${axis}, ${unit}`, autocomplete: 'off',
+    type: 'number', step: 'any', id: `${id}-${axis}`, 'aria-label': `${say(text)} ${axis}, ${unit}`, autocomplete: 'off', disabled: true,
   }));
   const textOf = (value: number) => String(Number(value.toFixed(digits)) + 0); // no -0
   const fill = () => inputs.forEach((input, i) => {

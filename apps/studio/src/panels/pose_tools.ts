@@ -5,10 +5,10 @@ import { button, element } from '../ui/dom';
 import { say, type Words } from '../words/say';
 
 const spaces: { value: GizmoSpace; text: Words; label: Words }[] = [
-  { value: 'world', text: 'World', label: 'Axes of the world' },
-  { value: 'parent', text: 'Above', label: 'Axes of the joint above, which this one hangs on' },
-  { value: 'local', text: 'Own', label: 'Axes of the joint itself' },
-  { value: 'view', text: 'View', label: 'Axes of the view: across, up and towards you' },
+  { value: 'world', text: 'World axes', label: 'As the ground lies' },
+  { value: 'parent', text: 'Axes of the joint above', label: 'Those of the joint that this one hangs on' },
+  { value: 'local', text: 'Own axes', label: 'Those of the joint itself' },
+  { value: 'view', text: 'View axes', label: 'Across, up and towards you' },
 ];
 
 export function toggleSelecting(page: PageStore) {
@@ -24,7 +24,7 @@ export function poseTools(page: PageStore): HTMLElement {
     icon: 'magnet', id: 'magnet', keys: 'N', label: say('Magnet: move in round steps and turn in steps of 15 degrees; feet find the floor'),
   });
   const told = element('output', { class: 'told', id: 'selected-told' });
-  const space = element('select', { class: 'select', id: 'gizmo-space', 'aria-label': say('Axes of the arrows and rings') },
+  const space = element('select', { class: 'select', id: 'gizmo-space', 'aria-label': say('Axes of the arrows and rings'), title: say('Axes of the arrows and rings') },
     ...spaces.map(({ value, text, label }) => element('option', { value, title: say(label) }, say(text))));
   page.set({ gizmoSpace: remembered('gizmo-space', spaces.map(({ value }) => value), 'world') });
   space.addEventListener('change', () => {
