@@ -221,6 +221,14 @@ TEST_F(Cli, PreviewShowsClips) {
   expectOneLine(large, 1);
   EXPECT_THAT(large.error, HasSubstr("--size"));
   expectOneLine(run({"preview", "walk.bvh", "--time", "1", "--frames", "2", "-o", "none.png"}), 2);
+  EXPECT_EQ(run({"preview", "walk.bvh", "--turntable", "--fps", "2", "--size", "40x30", "--background", "transparent",
+                 "-o", "turn.png"})
+                .code,
+            0);
+  EXPECT_THAT(content("turn.png"), AllOf(StartsWith("\x89PNG"), HasSubstr("acTL")));
+  expectOneLine(run({"preview", "walk.bvh", "--turntable", "--animate", "-o", "none.png"}), 2);
+  expectOneLine(run({"preview", "walk.bvh", "--fps", "10", "-o", "none.png"}), 1);
+  expectOneLine(run({"preview", "walk.bvh", "--background", "pink", "-o", "none.png"}), 1);
 }
 
 // A person out of the practice skeleton's proportions, as a BVH: arms to the sides, walking on the spot.

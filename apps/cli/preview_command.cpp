@@ -21,8 +21,9 @@ struct PreviewArguments {
   std::string input, output, show = "model", size, view = "three-quarter", joint, clip;
   std::optional<double> time;  // seconds
   int frames = 0;              // of a contact sheet; 0: one picture
-  bool animate = false;
-  double fps = 20;  // of an animation
+  bool animate = false, turntable = false;
+  std::optional<double> fps;  // of an animation or a turntable
+  std::string background = "studio";
   Common common;
 };
 
@@ -34,6 +35,9 @@ void parseSize(const std::string& text, PreviewOptions& options) {
   }
 }
 
+constexpr double kTurnSeconds = 4;  // of a turntable, all the way round
+constexpr double kUsualFps = 20;
+
 bool showsClip(const PreviewArguments& options) {
   return options.animate || options.frames > 0 || options.time || !options.clip.empty();
 }
@@ -41,7 +45,7 @@ bool showsClip(const PreviewArguments& options) {
 std::vector<double> momentsOf(const PreviewArguments& options, const Clip& clip) {
   if (options.animate) {
     constexpr double kMostFrames = 1000;
-    const double count = std::round(clip.duration() * options.fps);
+    const double count = std::round(clip.duration() * options.fps.value_or(kUsualFps));
     if (count > kMostFrames) {
       throw Error(ErrorCode::kLimit, fmt::format("the animation would have {:.0f} pictures", count), "",
                   fmt::format("{:.0f} are the most: choose a smaller --fps, or cut the clip by limber convert --trim",
@@ -76,8 +80,19 @@ Bytes clipPicture(const Asset& asset, const PreviewArguments& options, const Pre
   const std::vector<double> moments = momentsOf(options, clip);
   checkPixels(moments.size(), preview);
   const std::vector<Image> images = renderClip(asset, clip, moments, preview, progress, warnings);
-  if (options.animate) return encodeApng(images, options.fps);
+  if (options.animate) return encodeApng(images, options.fps.value_or(kUsualFps));
   return encodePng(contactSheet(images, sheetColumns(static_cast<int>(images.size())), renderBackdrop(preview)));
+}
+
+Bytes turntable(const Asset& asset, const PreviewArguments& options, const PreviewOptions& preview, Progress& progress,
+                Warnings& warnings) {
+  const Scene scene =
+      showsClip(options) ? sceneAt(asset, findClip(asset, options.clip), options.time.value_or(0)) : makeScene(asset);
+  warnings = scene.warnings;
+  const double fps = options.fps.value_or(kUsualFps);
+  const int count = std::max(1, static_cast<int>(std::lround(kTurnSeconds * fps)));
+  checkPixels(static_cast<std::size_t>(count), preview);
+  return encodeApng(renderTurn(scene, preview, count, progress), fps);
 }
 
 Bytes stillPicture(const Asset& asset, const PreviewOptions& preview, Warnings& warnings) {
@@ -89,11 +104,16 @@ Bytes stillPicture(const Asset& asset, const PreviewOptions& preview, Warnings& 
 void run(PreviewArguments options) {
   options.common.apply();
   checkOutput(options.output, {".png"});
+  if (options.fps && !options.animate && !options.turntable) {
+    throw Error(ErrorCode::kBadArgument, "--fps is for moving pictures", "", "add --animate or --turntable");
+  }
   PreviewOptions preview;
   preview.show = parsePreviewShow(options.show);
   preview.view = parseView(options.view);
   preview.joint = options.joint;
-  if (options.size.empty()) options.size = options.animate || options.frames > 0 ? "320x320" : "1024x768";
+  preview.backdrop = parseBackdrop(options.background);
+  const bool several = options.animate || options.turntable || options.frames > 0;
+  if (options.size.empty()) options.size = several ? "320x320" : "1024x768";
   parseSize(options.size, preview);
   if (!options.joint.empty()) preview.show = PreviewShow::kWeights;
 
@@ -102,8 +122,12 @@ void run(PreviewArguments options) {
   const Asset asset = readAsset(options.input);
   progress->stage("draw");
   Warnings warnings;
-  const Bytes png = showsClip(options) ? clipPicture(asset, options, preview, *progress, warnings)
-                                       : stillPicture(asset, preview, warnings);
+  const auto draw = [&] {
+    if (options.turntable) return turntable(asset, options, preview, *progress, warnings);
+    if (showsClip(options)) return clipPicture(asset, options, preview, *progress, warnings);
+    return stillPicture(asset, preview, warnings);
+  };
+  const Bytes png = draw();
   progress->stage("write");
   writeFile(options.output, png);
   progress.finish();
@@ -129,7 +153,7 @@ void addPreviewCommand(CLI::App& program) {
       ->capture_default_str();
   command
       ->add_option("--size", options->size,
-                   "width and height in pixels (default 1024x768; of each picture of a clip 320x320)")
+                   "width and height in pixels (default 1024x768; of each picture of several 320x320)")
       ->type_name("WxH");
   command->add_option("--clip", options->clip, "the clip to show (default: the first)")->type_name("NAME");
   CLI::Option* time = command->add_option("--time", options->time, "a moment of the clip, in seconds")
@@ -141,10 +165,14 @@ void addPreviewCommand(CLI::App& program) {
                             ->excludes(time);
   CLI::Option* animate =
       command->add_flag("--animate", options->animate, "an animated PNG of the clip")->excludes(time)->excludes(frames);
-  command->add_option("--fps", options->fps, "pictures a second of the animation")
+  command->add_flag("--turntable", options->turntable, "an animated PNG of the model from all around, in 4 seconds")
+      ->excludes(animate)
+      ->excludes(frames);
+  command->add_option("--fps", options->fps, "pictures a second of an animation or a turntable (default 20)")
       ->check(numberIn(0.1, 100))
-      ->type_name("RATE")
-      ->needs(animate)
+      ->type_name("RATE");
+  command->add_option("--background", options->background, "studio, transparent, or a colour such as #ffffff")
+      ->type_name("COLOUR")
       ->capture_default_str();
   command->add_option("--joint", options->joint, "the weight of this joint alone, from blue (none) to red (all)")
       ->type_name("NAME");
@@ -154,7 +182,8 @@ void addPreviewCommand(CLI::App& program) {
       "\nExamples:\n"
       "  limber preview rigged.glb --show handles --view 30,15 -o handles.png\n"
       "  limber preview walking.glb --frames 8 -o sheet.png\n"
-      "  limber preview walk.bvh --animate -o walk.png");
+      "  limber preview walk.bvh --animate -o walk.png\n"
+      "  limber preview dragon.glb --turntable --background transparent -o dragon.png");
   command->callback([options] { run(*options); });
 }
 

@@ -1,5 +1,8 @@
 #include "limber/preview/animation.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "limber/core/error.h"
 
 namespace limber {
@@ -28,6 +31,30 @@ std::vector<Image> renderClip(const Asset& asset, const Clip& clip, std::span<co
   for (const double moment : seconds) {
     progress.update(0.2 + 0.8 * static_cast<double>(images.size()) / static_cast<double>(seconds.size()));
     images.push_back(render(sceneAt(asset, clip, moment), options));
+  }
+  return images;
+}
+
+std::vector<Image> renderTurn(const Scene& scene, PreviewOptions options, int count, Progress& progress) {
+  if (count < 1) throw Error(ErrorCode::kBadArgument, "a turn is shown in one picture at least");
+  // The same seen from all around.
+  Box frame;
+  for (const Vec3f& position : scene.positions) frame.add(position.cast<double>());
+  const Vec3 middle = frame.center();
+  double reach = 0;
+  for (const Vec3f& position : scene.positions) {
+    reach = std::max(reach, std::hypot(position.x() - middle.x(), position.z() - middle.z()));
+  }
+  frame.add(Vec3(middle.x() - reach, middle.y(), middle.z() - reach));
+  frame.add(Vec3(middle.x() + reach, middle.y(), middle.z() + reach));
+  options.frame = frame;
+
+  std::vector<Image> images;
+  images.reserve(static_cast<std::size_t>(count));
+  for (int i = 0; i < count; ++i) {
+    progress.update(static_cast<double>(i) / count);
+    options.turn = 360.0 * i / count;
+    images.push_back(render(scene, options));
   }
   return images;
 }

@@ -21,4 +21,8 @@ std::vector<double> clipMoments(const Clip& clip, int count, bool withEnd);
 std::vector<Image> renderClip(const Asset& asset, const Clip& clip, std::span<const double> seconds,
                               PreviewOptions options, Progress& progress, Warnings& warnings);
 
+// So many pictures from all around, the first as the options have it, all in one frame; the last is followed by the
+// first.
+std::vector<Image> renderTurn(const Scene& scene, PreviewOptions options, int count, Progress& progress);
+
 }  // namespace limber

@@ -87,6 +87,38 @@ TEST(Animation, ManyJointsAreBonesAlone) {
   EXPECT_LE(makeScene(motionAsset(motion)).triangles.size(), 8u * 5000);
 }
 
+// A long thing off the origin: as wide as it is seen from its side, the picture holds it from everywhere.
+TEST(Animation, ATurnHoldsTheModelFromAllAround) {
+  Scene scene;
+  scene.positions = {{10, 0, 0}, {14, 0, 0}, {14, 1, 0}, {10, 1, 0}};
+  scene.triangles = {{0, 1, 2}, {0, 2, 3}};
+  PreviewOptions options;
+  options.width = options.height = 64;
+  options.view = {0, 0};
+  options.backdrop.kind = Backdrop::Kind::kTransparent;
+  Progress progress;
+  const std::vector<Image> images = renderTurn(scene, options, 8, progress);
+  ASSERT_EQ(images.size(), 8u);
+  std::vector<int> widths;
+  for (const Image& image : images) {
+    int first = 64, last = -1;
+    for (int x = 0; x < 64; ++x) {
+      if (image.pixels[(std::size_t{30} * 64 + std::size_t(x)) * 4 + 3] == 0) continue;
+      first = std::min(first, x);
+      last = std::max(last, x);
+    }
+    if (last >= 0) {
+      EXPECT_GT(first, 0);
+      EXPECT_LT(last, 63);
+    }
+    widths.push_back(last - first);
+  }
+  EXPECT_GT(widths[0], 40);
+  EXPECT_LT(widths[2], 10);  // from its narrow end
+  EXPECT_NEAR(widths[4], widths[0], 1);
+  EXPECT_THROW(renderTurn(scene, options, 0, progress), Error);
+}
+
 TEST(Animation, MomentsCoverTheClip) {
   const Clip clip = rising();
   EXPECT_EQ(clipMoments(clip, 5, true), (std::vector<double>{0, 0.25, 0.5, 0.75, 1}));

@@ -92,7 +92,8 @@ Bytes encodeApng(std::span<const Image> frames, double framesPerSecond) {
   Bytes file;
   std::uint32_t sequence = 0;
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    if (frames[i].width != frames[0].width || frames[i].height != frames[0].height) {
+    if (frames[i].width != frames[0].width || frames[i].height != frames[0].height ||
+        frames[i].channels != frames[0].channels) {
       throw Error(ErrorCode::kBadArgument, "the pictures of an animation differ in size");
     }
     const Bytes png = encodePng(frames[i]);

@@ -9,15 +9,9 @@
 
 namespace limber {
 
-namespace {
-
-constexpr std::size_t kChannels = 3;
-
-}  // namespace
-
 void checkSize(const Image& image) {
-  const bool sized = image.width > 0 && image.height > 0 &&
-                     image.pixels.size() == kChannels * std::size_t(image.width) * std::size_t(image.height);
+  const bool sized = image.width > 0 && image.height > 0 && (image.channels == 3 || image.channels == 4) &&
+                     image.pixels.size() == image.channels * std::size_t(image.width) * std::size_t(image.height);
   if (!sized) throw Error(ErrorCode::kBadArgument, "an image's pixels do not match its width and height");
 }
 
@@ -27,7 +21,7 @@ Bytes encodePng(const Image& image) {
   header.version = PNG_IMAGE_VERSION;
   header.width = static_cast<png_uint_32>(image.width);
   header.height = static_cast<png_uint_32>(image.height);
-  header.format = PNG_FORMAT_RGB;
+  header.format = image.channels == 4 ? PNG_FORMAT_RGBA : PNG_FORMAT_RGB;
   png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(header);
   Bytes bytes(size);
   if (!png_image_write_to_memory(&header, bytes.data(), &size, 0, image.pixels.data(), 0, nullptr)) {
@@ -42,7 +36,7 @@ Image contactSheet(std::span<const Image> frames, int columns, const Image& empt
     throw Error(ErrorCode::kBadArgument, "a contact sheet needs a picture and a column");
   const auto checkFits = [&](const Image& frame) {
     checkSize(frame);
-    if (frame.width != frames[0].width || frame.height != frames[0].height) {
+    if (frame.width != frames[0].width || frame.height != frames[0].height || frame.channels != frames[0].channels) {
       throw Error(ErrorCode::kBadArgument, "the pictures of a contact sheet differ in size");
     }
   };
@@ -51,8 +45,8 @@ Image contactSheet(std::span<const Image> frames, int columns, const Image& empt
   const int count = static_cast<int>(frames.size());
   columns = std::min(columns, count);
   const int rows = (count + columns - 1) / columns;
-  Image sheet{columns * frames[0].width, rows * frames[0].height, {}};
-  const std::size_t frameStride = kChannels * std::size_t(frames[0].width);
+  Image sheet{columns * frames[0].width, rows * frames[0].height, {}, frames[0].channels};
+  const std::size_t frameStride = sheet.channels * std::size_t(frames[0].width);
   const std::size_t sheetStride = frameStride * std::size_t(columns);
   sheet.pixels.resize(sheetStride * std::size_t(sheet.height));
   for (int i = 0; i < rows * columns; ++i) {

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 
 #include "limber/core/error.h"
+#include "limber/core/numbers.h"
 #include "limber/core/parallel.h"
 #include "limber/preview/corner_normals.h"
 #include "limber/preview/overlay.h"
@@ -58,6 +60,17 @@ struct PixelFragments {
   std::array<std::int8_t, kSamplesPerPixel> ofSample;  // -1: nothing there
 };
 
+// A colour that covers part of what is behind it, which is multiplied in already.
+struct Cover {
+  Vec3 color = Vec3::Zero();
+  double opacity = 0;
+
+  void putOver(const Vec3& front, double frontOpacity) {
+    color += frontOpacity * (front - color);
+    opacity += frontOpacity * (1 - opacity);
+  }
+};
+
 class Painter {
  public:
   Painter(const Scene& scene, const PreviewOptions& options);
@@ -66,12 +79,13 @@ class Painter {
  private:
   void paintTile(int column, int row, TileSamples& model, TileSamples& overlay, Image& image) const;
   void paintPixel(int x, int y, std::size_t sampleBase, const TileSamples& model, const TileSamples& overlay,
-                  std::uint8_t* rgb) const;
+                  std::uint8_t* pixel) const;
   PixelFragments gather(const Surface& surface, const TileSamples& samples, std::size_t base, int x, int y) const;
   Fragment attributesAt(const Surface& surface, Index triangle, std::int32_t x, std::int32_t y) const;
   void shadeModel(Fragment& fragment) const;
   void shadeOverlay(Fragment& fragment) const;
-  Vec3 background(double x, double y) const;
+  Cover background(double x, double y) const;
+  double groundShadow(double x, double y) const;
 
   const PreviewOptions& options_;
   std::vector<Vec3f> normals_, colors_;
@@ -87,14 +101,29 @@ class Painter {
 };
 
 Camera cameraFor(const Scene& scene, const PreviewOptions& options) {
-  if (!options.frame) return frameCamera(scene.positions, options.view, options.width, options.height);
-  std::array<Vec3f, 8> corners;
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    for (int axis = 0; axis < 3; ++axis) {
-      corners[i][axis] = static_cast<float>((i >> axis & 1) ? options.frame->max[axis] : options.frame->min[axis]);
+  Box frame;
+  Camera camera;
+  if (options.frame) {
+    frame = *options.frame;
+    std::array<Vec3f, 8> corners;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      for (int axis = 0; axis < 3; ++axis) {
+        corners[i][axis] = static_cast<float>((i >> axis & 1) ? frame.max[axis] : frame.min[axis]);
+      }
     }
+    camera = frameCamera(corners, options.view, options.width, options.height);
+  } else {
+    for (const Vec3f& position : scene.positions) frame.add(position.cast<double>());
+    camera = frameCamera(scene.positions, options.view, options.width, options.height);
   }
-  return frameCamera(corners, options.view, options.width, options.height);
+  const Mat3 turn = Eigen::AngleAxisd(options.turn * kDegree, Vec3::UnitY()).toRotationMatrix();
+  camera.eye = frame.center() + turn * (camera.eye - frame.center());
+  camera.axes = camera.axes * turn.transpose();
+  return camera;
+}
+
+std::size_t channelsOf(const PreviewOptions& options) {
+  return options.backdrop.kind == Backdrop::Kind::kTransparent ? 4 : 3;
 }
 
 // A fixed frame has a floor of its own: who jumps leaves it.
@@ -111,7 +140,7 @@ Painter::Painter(const Scene& scene, const PreviewOptions& options)
       colors_(surfaceColors(scene, options)),
       shapes_(overlayShapes(scene, options)),
       camera_(cameraFor(scene, options)),
-      light_(scene.positions, scene.triangles, options.view.azimuth, groundOf(scene, options)),
+      light_(scene.positions, scene.triangles, options.view.azimuth + options.turn, groundOf(scene, options)),
       model_(scene.positions, scene.triangles, camera_),
       overlay_(shapes_.positions, shapes_.triangles, camera_) {
   const bool hasMaterials = options.show == PreviewShow::kModel && !scene.materials.empty();
@@ -158,8 +187,8 @@ bool coversSample(const Scene& scene, const ProjectedMesh& mesh, Index number, s
 }
 
 Image Painter::paint() const {
-  Image image{options_.width, options_.height, {}};
-  image.pixels.resize(std::size_t(image.width) * std::size_t(image.height) * 3);
+  Image image{options_.width, options_.height, {}, channelsOf(options_)};
+  image.pixels.resize(std::size_t(image.width) * std::size_t(image.height) * image.channels);
   const int columns = (image.width + kTileSize - 1) / kTileSize, rows = (image.height + kTileSize - 1) / kTileSize;
   parallelFor(std::size_t(columns) * std::size_t(rows), 4, [&](std::size_t begin, std::size_t end) {
     TileSamples model, overlay;
@@ -185,8 +214,8 @@ void Painter::paintTile(int column, int row, TileSamples& model, TileSamples& ov
     for (int x = 0; x < kTileSize && column * kTileSize + x < image.width; ++x) {
       const int px = column * kTileSize + x, py = row * kTileSize + y;
       const std::size_t base = (std::size_t(y) * kTileSize + std::size_t(x)) * kSamplesPerPixel;
-      std::uint8_t* rgb = image.pixels.data() + (std::size_t(py) * std::size_t(image.width) + std::size_t(px)) * 3;
-      paintPixel(px, py, base, model, overlay, rgb);
+      const std::size_t place = std::size_t(py) * std::size_t(image.width) + std::size_t(px);
+      paintPixel(px, py, base, model, overlay, image.pixels.data() + place * image.channels);
     }
   }
 }
@@ -272,24 +301,34 @@ void Painter::shadeOverlay(Fragment& fragment) const {
   fragment.shaded = fragment.color.cwiseProduct(shade.diffuse) + 0.25 * shade.specular;
 }
 
-// A bright backdrop, a little darker towards the corners. Pixels, from the upper left corner.
-Vec3 backdropAt(double x, double y, const PreviewOptions& options) {
+// The studio is bright, and a little darker towards the corners. Pixels, from the upper left corner.
+Cover backdropAt(double x, double y, const PreviewOptions& options) {
+  if (options.backdrop.kind == Backdrop::Kind::kTransparent) return {};
+  if (options.backdrop.kind == Backdrop::Kind::kColor) return {options.backdrop.color, 1};
   const double across = 2 * x / options.width - 1, down = 2 * y / options.height - 1;
   const double vignette = 1 - 0.012 * (across * across + down * down);
   const double level = (0.925 - 0.045 * (0.5 + 0.5 * down)) * vignette;
-  return level * Vec3(0.985, 0.995, 1.01);
+  return {level * Vec3(0.985, 0.995, 1.01), 1};
 }
 
-// The backdrop with the model's shadow on the ground.
-Vec3 Painter::background(double x, double y) const {
-  const Vec3 backdrop = backdropAt(x, y, options_);
+// How dark the model's shadow makes the ground there, 0 to 1.
+double Painter::groundShadow(double x, double y) const {
   const Vec3 ray = camera_.ray(x, y);
-  if (ray.y() >= -1e-6) return backdrop;
+  if (ray.y() >= -1e-6) return 0;
   const Vec3 ground = camera_.eye + ray * ((light_.groundHeight() - camera_.eye.y()) / ray.y());
   const double away = (ground - groundMiddle_).norm() / groundReach_;
-  if (away >= 1 || ray.dot(ground - camera_.eye) < 0) return backdrop;
+  if (away >= 1 || ray.dot(ground - camera_.eye) < 0) return 0;
   const double fade = 1 - away * away;
-  return backdrop * (1 - kShadowStrength * fade * fade * (1 - light_.groundLight(ground)));
+  return kShadowStrength * fade * fade * (1 - light_.groundLight(ground));
+}
+
+Cover Painter::background(double x, double y) const {
+  Cover cover = backdropAt(x, y, options_);
+  double shadow = groundShadow(x, y);
+  // What is transparent is laid over other pictures in sRGB, where the same darkness is another share.
+  if (cover.opacity == 0) shadow = 1 - srgbByte(1 - shadow) / 255.0;
+  cover.putOver(Vec3::Zero(), shadow);
+  return cover;
 }
 
 // Keeps colours up to 0.6 as they are and rolls what is brighter off towards 1.
@@ -297,8 +336,18 @@ double rollOff(double value) {
   return value < 0.6 ? value : 1 - 0.16 / (value - 0.2);
 }
 
+// `color` has the opacity multiplied in.
+void writePixel(const Vec3& color, double opacity, std::size_t channels, std::uint8_t* pixel) {
+  if (channels == 3) {
+    for (int c = 0; c < 3; ++c) pixel[c] = srgbByte(color[c]);
+    return;
+  }
+  for (int c = 0; c < 3; ++c) pixel[c] = opacity > 0 ? srgbByte(color[c] / opacity) : std::uint8_t{0};
+  pixel[3] = static_cast<std::uint8_t>(std::lround(255 * std::clamp(opacity, 0.0, 1.0)));
+}
+
 void Painter::paintPixel(int x, int y, std::size_t base, const TileSamples& modelSamples,
-                         const TileSamples& overlaySamples, std::uint8_t* rgb) const {
+                         const TileSamples& overlaySamples, std::uint8_t* pixel) const {
   PixelFragments model = gather(modelSurface_, modelSamples, base, x, y);
   PixelFragments overlay = gather(overlaySurface_, overlaySamples, base, x, y);
   for (std::size_t g = 0; g < model.count; ++g) shadeModel(model.fragments[g]);
@@ -307,22 +356,22 @@ void Painter::paintPixel(int x, int y, std::size_t base, const TileSamples& mode
   for (std::size_t s = 0; s < kSamplesPerPixel; ++s) {
     open = open || (overlay.ofSample[s] < 0 && (translucent_ || model.ofSample[s] < 0));
   }
-  const Vec3 behind = open ? background(x + 0.5, y + 0.5) : Vec3(Vec3::Zero());
+  const Cover behind = open ? background(x + 0.5, y + 0.5) : Cover{};
 
   // Whatever is inside is seen through the whole model, even where it sticks out: one look for all handles.
-  Vec3 sum = Vec3::Zero();
+  Cover sum;
   for (std::size_t s = 0; s < kSamplesPerPixel; ++s) {
-    Vec3 color = behind;
+    Cover cover = behind;
     const bool inside = overlay.ofSample[s] >= 0;
-    if (inside) color = overlay.fragments[std::size_t(overlay.ofSample[s])].shaded.unaryExpr(&rollOff);
+    if (inside) cover.putOver(overlay.fragments[std::size_t(overlay.ofSample[s])].shaded.unaryExpr(&rollOff), 1);
     if (model.ofSample[s] >= 0) {
       const Fragment& front = model.fragments[std::size_t(model.ofSample[s])];
-      const double opacity = inside && !translucent_ ? kDotsBehind : front.opacity;
-      color += opacity * (front.shaded.unaryExpr(&rollOff) - color);
+      cover.putOver(front.shaded.unaryExpr(&rollOff), inside && !translucent_ ? kDotsBehind : front.opacity);
     }
-    sum += color;
+    sum.color += cover.color;
+    sum.opacity += cover.opacity;
   }
-  for (int c = 0; c < 3; ++c) rgb[c] = srgbByte(sum[c] / kSamplesPerPixel);
+  writePixel(sum.color / kSamplesPerPixel, sum.opacity / kSamplesPerPixel, channelsOf(options_), pixel);
 }
 
 void checkPictureSize(const PreviewOptions& options) {
@@ -344,6 +393,21 @@ PreviewShow parsePreviewShow(std::string_view name) {
               "use model, handles, weights, bones or anatomy");
 }
 
+Backdrop parseBackdrop(std::string_view text) {
+  if (text == "studio") return {};
+  if (text == "transparent") return {Backdrop::Kind::kTransparent, Vec3::Zero()};
+  std::array<unsigned, 3> bytes;
+  char rest = 0;
+  const bool isColor = text.size() == 7 && std::sscanf(std::string(text).c_str(), "#%2x%2x%2x%c", &bytes[0], &bytes[1],
+                                                       &bytes[2], &rest) == 3;
+  if (!isColor) {
+    throw Error(ErrorCode::kBadArgument, "there is no background \"" + std::string(text) + "\"", "",
+                "use studio, transparent, or a colour such as #ffffff");
+  }
+  const Vec3f color = linearFromSrgb(int(bytes[0]), int(bytes[1]), int(bytes[2]));
+  return {Backdrop::Kind::kColor, color.cast<double>()};
+}
+
 Image render(const Scene& scene, const PreviewOptions& options) {
   checkPictureSize(options);
   if (scene.positions.empty()) throw Error(ErrorCode::kBadArgument, "there is nothing to show");
@@ -352,10 +416,13 @@ Image render(const Scene& scene, const PreviewOptions& options) {
 
 Image renderBackdrop(const PreviewOptions& options) {
   checkPictureSize(options);
-  Image image{options.width, options.height, {}};
+  Image image{options.width, options.height, {}, channelsOf(options)};
+  image.pixels.resize(std::size_t(image.width) * std::size_t(image.height) * image.channels);
+  std::uint8_t* pixel = image.pixels.data();
   for (int y = 0; y < options.height; ++y) {
-    for (int x = 0; x < options.width; ++x) {
-      for (const double channel : backdropAt(x + 0.5, y + 0.5, options)) image.pixels.push_back(srgbByte(channel));
+    for (int x = 0; x < options.width; ++x, pixel += image.channels) {
+      const Cover cover = backdropAt(x + 0.5, y + 0.5, options);
+      writePixel(cover.color, cover.opacity, image.channels, pixel);
     }
   }
   return image;

@@ -23,10 +23,26 @@ enum class PreviewShow {
 // "model", "handles", "weights", "bones", "anatomy". Throws Error kBadArgument that lists them.
 PreviewShow parsePreviewShow(std::string_view name);
 
+// What is seen behind the model; its shadow on the ground falls on that.
+struct Backdrop {
+  enum class Kind {
+    kStudio,       // a bright wall
+    kColor,        // one colour
+    kTransparent,  // nothing: the picture has four channels, and the shadow is half transparent black
+  };
+  Kind kind = Kind::kStudio;
+  Vec3 color = Vec3::Zero();  // linear RGB
+};
+
+// "studio", "transparent", or a colour in sRGB such as "#ffffff". Throws Error kBadArgument that says so.
+Backdrop parseBackdrop(std::string_view text);
+
 struct PreviewOptions {
   PreviewShow show = PreviewShow::kModel;
   int width = 1024, height = 768;  // pixels, 16 to 8192
   ViewDirection view;
+  double turn = 0;  // degrees that the camera, and with it the light, goes on round the middle of the frame
+  Backdrop backdrop;
   std::string joint;         // kWeights: the weight of this joint alone, as heat; empty: all
   std::optional<Box> frame;  // what has to be in the picture; none: the scene. For the frames of a clip.
 };

@@ -142,6 +142,58 @@ TEST(Render, TheBackdropIsWhatThePictureShowsBesideTheModel) {
   EXPECT_NE(image.pixels, backdrop.pixels);
 }
 
+TEST(Render, ATransparentPictureLaidOnAColourIsThePictureOnThatColour) {
+  PreviewOptions options = smallPicture();
+  options.backdrop = parseBackdrop("transparent");
+  const Image clear = render(ballScene(), options);
+  options.backdrop = parseBackdrop("#3366cc");
+  const Image blue = render(ballScene(), options);
+  ASSERT_EQ(clear.channels, 4u);
+  ASSERT_EQ(clear.pixels.size(), std::size_t(96 * 72 * 4));
+  ASSERT_EQ(blue.pixels.size(), std::size_t(96 * 72 * 3));
+  const std::array<int, 3> backdrop = {0x33, 0x66, 0xcc};
+  std::size_t empty = 0, covered = 0, shadow = 0;
+  for (std::size_t i = 0; i < std::size_t(96 * 72); ++i) {
+    const std::uint8_t alpha = clear.pixels[4 * i + 3];
+    const bool isBlack = clear.pixels[4 * i] + clear.pixels[4 * i + 1] + clear.pixels[4 * i + 2] == 0;
+    empty += alpha == 0;
+    covered += alpha == 255;
+    shadow += alpha > 0 && alpha < 255 && isBlack;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const int expected = alpha == 0 ? backdrop[c] : clear.pixels[4 * i + c];
+      if (alpha == 0 || alpha == 255) {
+        EXPECT_EQ(blue.pixels[3 * i + c], expected);
+      }
+      // A shadow is as dark on white whoever mixes; on other colours nearly.
+      if (alpha > 0 && alpha < 255 && isBlack) {
+        EXPECT_NEAR(blue.pixels[3 * i + c], backdrop[c] * (255 - alpha) / 255.0, 12);
+      }
+    }
+  }
+  EXPECT_GT(empty, 1000u);
+  EXPECT_GT(covered, 500u);
+  EXPECT_GT(shadow, 50u);
+  EXPECT_THROW(parseBackdrop("blue"), Error);
+  EXPECT_THROW(parseBackdrop("#33"), Error);
+  EXPECT_THROW(parseBackdrop("#33gg66"), Error);
+}
+
+TEST(Render, TheCameraGoesRoundTheMiddleWithItsLight) {
+  PreviewOptions options = smallPicture(PreviewShow::kHandles);
+  options.frame = Box();
+  options.frame->add({-2, 0, -2});
+  options.frame->add({2, 2, 2});
+  options.view.azimuth = 70;
+  const Image there = render(ballScene(), options);
+  options.view.azimuth = -20;
+  EXPECT_NE(render(ballScene(), options).pixels, there.pixels);
+  options.turn = 90;
+  const Image turned = render(ballScene(), options);
+  std::size_t other = 0;  // pixels at edges, by rounding
+  for (std::size_t i = 0; i < there.pixels.size(); ++i) other += std::abs(there.pixels[i] - turned.pixels[i]) > 2;
+  EXPECT_LT(other, there.pixels.size() / 200);
+}
+
 TEST(Render, SaysWhatIsMissing) {
   Scene bare = ballScene();
   bare.joints.clear();
