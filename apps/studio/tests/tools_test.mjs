@@ -103,7 +103,7 @@ const cases = {
     assert.ok((await chosen()).length > both.length);
     assert.equal((await sessionState(page)).undo, null);
     assert.equal(await page.locator('.select-box').count(), 0);
-    await page.locator('#selected-told', { hasText: `${(await chosen()).length} joints selected` }).waitFor();
+    await page.locator('#selected-told', { hasText: `${(await chosen()).length} selected` }).waitFor();
     await dragMouse({ x: 30, y: 700 }, [60, -40]);
     assert.ok(distance(Object.values(await jointPlace(page, left)), Object.values(a)) > 1, 'a drag beside no longer turns the view');
     await press('1');

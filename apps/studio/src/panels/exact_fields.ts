@@ -56,7 +56,7 @@ function triple({ text, unit, id, step, send }: TripleOptions): Triple {
   });
   const fields = inputs.map((input, i) => element('label', { class: `number-field ${axes[i]!}` }, element('span', {}, axes[i]!), input));
   return {
-    root: element('div', { class: 'triple', role: 'group', 'aria-label': say(text) }, element('span', { class: 'name' }, `${say(text)} (${unit})`), ...fields),
+    root: element('div', { class: 'triple', role: 'group', 'aria-label': say(text) }, element('span', { class: 'name' }, `${say(text)} ${unit}`), ...fields),
     show(vector, wanted) {
       shown = vector;
       digits = wanted;

@@ -5,10 +5,10 @@ import { button, element } from '../ui/dom';
 import { say, type Words } from '../words/say';
 
 const spaces: { value: GizmoSpace; text: Words; label: Words }[] = [
-  { value: 'world', text: 'World axes', label: 'As the ground lies' },
-  { value: 'parent', text: 'Axes of the joint above', label: 'Those of the joint that this one hangs on' },
-  { value: 'local', text: 'Own axes', label: 'Those of the joint itself' },
-  { value: 'view', text: 'View axes', label: 'Across, up and towards you' },
+  { value: 'world', text: 'Axes: world', label: 'As the ground lies' },
+  { value: 'parent', text: 'Axes: joint above', label: 'Those of the joint that this one hangs on' },
+  { value: 'local', text: 'Axes: its own', label: 'Those of the joint itself' },
+  { value: 'view', text: 'Axes: view', label: 'Across, up and towards you' },
 ];
 
 export function toggleSelecting(page: PageStore) {
@@ -42,7 +42,7 @@ export function poseTools(page: PageStore): HTMLElement {
     space.value = gizmoSpace;
     const count = selected === null ? 0 : 1 + also.size;
     told.hidden = !selecting && count < 2;
-    told.textContent = count === 0 ? say('Tap joints or draw a box') : say(count === 1 ? '{count} joint selected' : '{count} joints selected', { count });
+    told.textContent = count === 0 ? say('Tap joints or draw a box') : say('{count} selected', { count });
   });
   return root;
 }
