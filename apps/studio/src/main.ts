@@ -26,7 +26,7 @@ import { hint, views } from './panels/views';
 import { createStage } from './scene/stage';
 import { ask } from './ui/ask';
 import { element } from './ui/dom';
-import { language } from './words/say';
+import { language, say } from './words/say';
 
 /** Without WebGL there is nothing to show the model with. */
 function stageOrApology() {
@@ -34,13 +34,14 @@ function stageOrApology() {
     return createStage(studio, page);
   } catch (error) {
     document.getElementById('app')!.append(element('div', { class: 'apology', role: 'alert', id: 'apology' },
-      element('h1', {}, 'This browser cannot draw in 3D'),
-      element('p', {}, 'WebGL is missing or switched off. Switch it on (often called hardware acceleration), or use another browser.')));
+      element('h1', {}, say('This browser cannot draw in 3D')),
+      element('p', {}, say('WebGL is missing or switched off. Switch it on (often called hardware acceleration), or use another browser.'))));
     throw error;
   }
 }
 
 document.documentElement.lang = language;
+document.querySelector('meta[name=description]')!.setAttribute('content', say('Rig and pose any 3D model, in the browser. Nothing is uploaded.'));
 const page = createPageStore();
 const journal = new Journal();
 const studio = new Studio(page, journal);

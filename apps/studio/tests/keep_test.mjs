@@ -181,12 +181,12 @@ const cases = {
   async 'a part that was taken out of the match can be put in again'() {
     await page.locator('#retarget summary').click();
     const has = async () => (await sessionState(page)).match.some(({ part }) => part === 'leftHand');
-    const select = page.getByLabel('leftHand in the model');
+    const select = page.getByLabel('left hand in the model');
     const joint = await select.inputValue();
     await select.selectOption('');
     await settled(page);
     assert.equal(await has(), false);
-    await page.getByLabel('leftHand in the model').selectOption(joint);
+    await page.getByLabel('left hand in the model').selectOption(joint);
     await settled(page);
     assert.equal(await has(), true);
   },

@@ -46,7 +46,7 @@ await picture('studio_posed', { ...desk, search: '?sample=biped' }, async (page)
   await drag(page, [0.25, 0.5], [-20, -120]);
 });
 await picture('studio_weights', { ...desk, search: '?sample=quadruped' }, async (page) => {
-  await page.getByRole('button', { name: 'Weights', exact: true }).click();
+  await page.getByRole('button', { name: 'Areas', exact: true }).click();
   await settled(page);
 });
 await picture('studio_motion', { ...desk, search: '?sample=biped' }, async (page) => {

@@ -280,7 +280,7 @@ const cases = {
     const after = await sessionState(page);
     assert.deepEqual([after.clips.length, after.clips[0].source.method], [1, 'aligned']);
     await page.locator('#retarget summary').click();
-    await page.getByLabel('leftHand in the model').selectOption('');
+    await page.getByLabel('left hand in the model').selectOption('');
     await settled(page);
     assert.ok(!(await sessionState(page)).match.some(({ part }) => part === 'leftHand'));
     assert.ok((await seconds()) > 0.7);

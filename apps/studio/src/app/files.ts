@@ -1,6 +1,7 @@
 // Files as a user brings them: one, several that belong together, a folder, a ZIP archive.
 import { unzipSync } from 'three/examples/jsm/libs/fflate.module.js';
-import { EngineError } from '../engine/client';
+import { EngineError, refusal } from '../engine/client';
+import { say } from '../words/say';
 
 const mostUnpacked = 500e6, mostFiles = 1000; // bytes and files that an archive holds
 const model = /\.(glb|gltf|vrm|obj|fbx|stl|ply|limber)$/i;
@@ -29,20 +30,19 @@ export async function droppedFiles(transfer: DataTransfer): Promise<File[]> {
 /** The files of a ZIP archive by their paths in it, which are names and nothing is written to. */
 export function unpack(archive: Uint8Array, name: string): Map<string, Uint8Array> {
   let size = 0, count = 0;
-  const refuse = (message: string, remedy: string) => new EngineError({ code: 'bad-data', message, where: name, remedy });
   try {
     const entries = unzipSync(archive, {
       filter: ({ name: path, originalSize }) => {
         if (path.endsWith('/')) return false;
         size += originalSize;
-        if (size > mostUnpacked || ++count > mostFiles) throw refuse('the archive holds too much', 'unpack it, and drop what you need');
+        if (size > mostUnpacked || ++count > mostFiles) throw refusal(say('the archive holds too much'), name, say('unpack it, and drop what you need'));
         return true;
       },
     });
     return new Map(Object.entries(entries));
   } catch (error) {
     if (error instanceof EngineError) throw error;
-    throw refuse('the archive cannot be read', String(error instanceof Error ? error.message : error));
+    throw refusal(say('the archive cannot be read'), name, String(error instanceof Error ? error.message : error));
   }
 }
 
@@ -104,7 +104,7 @@ async function dataAddress(file: File): Promise<string> {
   return new Promise((resolve, reject) => {
     const reader = new FileReader();
     reader.onload = () => resolve(String(reader.result));
-    reader.onerror = () => reject(new Error(`${file.name} cannot be read`));
+    reader.onerror = () => reject(new Error(say('{file} cannot be read', { file: file.name })));
     reader.readAsDataURL(blob);
   });
 }

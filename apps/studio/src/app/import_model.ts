@@ -8,10 +8,8 @@ import { MTLLoader } from 'three/examples/jsm/loaders/MTLLoader.js';
 import { OBJLoader } from 'three/examples/jsm/loaders/OBJLoader.js';
 import { PLYLoader } from 'three/examples/jsm/loaders/PLYLoader.js';
 import { STLLoader } from 'three/examples/jsm/loaders/STLLoader.js';
-import { EngineError } from '../engine/client';
-
-const fail = (name: string, message: string, remedy: string) =>
-  new EngineError({ code: 'bad-data', message, where: name, remedy });
+import { EngineError, refusal } from '../engine/client';
+import { say } from '../words/say';
 
 function meshOf(geometry: BufferGeometry): Object3D {
   return new Mesh(geometry, new MeshStandardMaterial({ vertexColors: geometry.hasAttribute('color') }));
@@ -95,7 +93,7 @@ async function parse(bytes: Uint8Array, name: string, beside: Beside): Promise<O
       return meshOf(geometry);
     }
     case 'ply': return meshOf(new PLYLoader().parse(buffer));
-    default: throw fail(name, 'a file of this kind cannot be opened', 'open GLB, glTF, VRM, OBJ, FBX, STL, PLY or BVH');
+    default: throw refusal(say('a file of this kind cannot be opened'), name, say('open GLB, glTF, VRM, OBJ, FBX, STL, PLY or BVH'));
   }
 }
 
@@ -109,7 +107,7 @@ export async function toGlb(bytes: Uint8Array, name: string, beside = new Map<st
     await readers.loaded();
   } catch (error) {
     if (error instanceof EngineError) throw error;
-    throw fail(name, 'the file cannot be read', String(error instanceof Error ? error.message : error));
+    throw refusal(say('the file cannot be read'), name, String(error instanceof Error ? error.message : error));
   }
   const others: Object3D[] = [];
   let meshes = 0;
@@ -120,7 +118,7 @@ export async function toGlb(bytes: Uint8Array, name: string, beside = new Map<st
     } else if (part instanceof DirectionalLight || 'isLight' in part || 'isCamera' in part) others.push(part);
   });
   others.forEach((part) => part.removeFromParent());
-  if (meshes === 0) throw fail(name, 'there is no surface in the file', 'is it the right file?');
+  if (meshes === 0) throw refusal(say('there is no surface in the file'), name, say('is it the right file?'));
   const scene = new Scene();
   scene.add(model);
   const glb = await new GLTFExporter().parseAsync(scene, { binary: true, animations: model.animations });

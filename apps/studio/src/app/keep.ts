@@ -3,6 +3,7 @@ import type { Viewport } from '../scene/viewport';
 import type { Journal } from './journal';
 import type { PageStore } from './state';
 import type { Studio } from './studio';
+import { say } from '../words/say';
 
 const quiet = 1000; // milliseconds without a change before a picture is taken
 const width = 192, height = 128; // pixels of the picture
@@ -30,7 +31,7 @@ export function bindJournal(journal: Journal, studio: Studio, page: PageStore, v
   });
 
   journal.onTrouble = (why) => page.set({
-    notice: { kind: 'error', title: 'This browser cannot keep your work', detail: `Save it as a file before you leave (${why})` },
+    notice: { kind: 'error', title: say('This browser cannot keep your work'), detail: say('Save it as a file before you leave ({why})', { why }) },
   });
   addEventListener('pagehide', () => journal.flush());
   addEventListener('beforeunload', (event) => {

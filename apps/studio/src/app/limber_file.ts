@@ -1,9 +1,10 @@
 // A document as one file: a ZIP archive of the files that were opened, and of what was done with them as the list of
 // commands that `limber session replay` runs.
 import { strFromU8, strToU8, zipSync, type Zippable } from 'three/examples/jsm/libs/fflate.module.js';
-import { EngineError } from '../engine/client';
+import { refusal } from '../engine/client';
 import type { Command, Request } from '../engine/messages';
 import { unpack } from './files';
+import { say } from '../words/say';
 
 const version = 1; // of the list of commands
 const list = 'commands.json';
@@ -23,22 +24,22 @@ export function toLimberFile(requests: Request[]): Uint8Array {
 }
 
 export function fromLimberFile(archive: Uint8Array, name: string): Request[] {
-  const refuse = (message: string) => new EngineError({ code: 'bad-data', message, where: name, remedy: 'is it a file that this page saved?' });
+  const refuse = (message: string) => refusal(message, name, say('is it a file that this page saved?'));
   const files = unpack(archive, name), text = files.get(list);
-  if (!text) throw refuse(`it holds no ${list}`);
+  if (!text) throw refuse(say('it holds no {file}', { file: list }));
   let read: { limber_commands?: unknown; commands?: unknown } | null;
   try {
     read = JSON.parse(strFromU8(text));
   } catch {
-    throw refuse(`its ${list} is no JSON`);
+    throw refuse(say('its {file} is no JSON', { file: list }));
   }
-  if (read?.limber_commands !== version) throw refuse('it was made by a newer version of this page');
+  if (read?.limber_commands !== version) throw refuse(say('it was made by a newer version of this page'));
   const commands = read.commands;
-  if (!Array.isArray(commands)) throw refuse(`its ${list} holds no commands`);
+  if (!Array.isArray(commands)) throw refuse(say('its {file} holds no commands', { file: list }));
   return commands.map((command: Command): Request => {
     if (command?.do !== 'open_file' && command?.do !== 'add_motion') return { kind: 'run', command };
     const path = String(command.file), bytes = files.get(path);
-    if (!bytes) throw refuse(`it does not hold ${path}`);
+    if (!bytes) throw refuse(say('it holds no {file}', { file: path }));
     const name = path.split('/').pop() ?? path;
     return command.do === 'open_file' ? { kind: 'open', bytes, name, limbsFollow: command.limbs_follow === true } : { kind: 'motion', bytes, name };
   });

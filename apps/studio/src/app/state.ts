@@ -2,6 +2,7 @@
 import type {
   Curve, LimberError, Measures, MethodKind, Methods, Paths, SampleMotion, SessionState, SurfaceModel, Variant,
 } from '../engine/messages';
+import { told } from '../words/engine';
 import { Store } from './store';
 
 export type DragMode = 'move' | 'turn';
@@ -23,6 +24,8 @@ export interface Notice {
   kind: 'error' | 'note';
   title: string;
   detail: string;
+  /** The detail is the engine's own, whatever the page's language is. */
+  inEnglish?: boolean;
 }
 
 /** The document beside what other methods make of it. */
@@ -116,7 +119,4 @@ export const createPageStore = (): PageStore => new Store<PageState>({
   methods: null, sampleMotions: [], ownMotions: [], shelf: false, comparison: null, hiddenParts: new Set(), sourceModel: null, sourceShown: true,
 });
 
-export function noticeOf(error: LimberError): Notice {
-  const title = error.message.charAt(0).toUpperCase() + error.message.slice(1);
-  return { kind: 'error', title, detail: [error.where, error.remedy].filter((text) => text !== '').join(' \u2014 ') };
-}
+export const noticeOf = (error: LimberError): Notice => ({ kind: 'error', ...told(error) });

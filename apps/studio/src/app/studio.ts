@@ -1,5 +1,5 @@
 // Everything that a user can do, each a call on the engine's session; panels and the view call this and nothing else.
-import { EngineClient, EngineError } from '../engine/client';
+import { EngineClient, EngineError, refusal } from '../engine/client';
 import { canBeNamed } from '../engine/messages';
 import type {
   Command, LimberError, MethodKind, MotionPreview, MotionRequest, PreviewRig, Ray, Request, SessionState, Stance, Step, SurfaceHit,
@@ -12,6 +12,8 @@ import { fromLimberFile, toLimberFile } from './limber_file';
 import type { Motion } from './motion_trials';
 import { changedTime, keysThere, type KeyChange } from './keys';
 import { noticeOf, type DragMode, type KeyPlace, type Notice, type PageStore } from './state';
+import { stageName, told, warningText } from '../words/engine';
+import { say } from '../words/say';
 
 const mostFileSize = 500e6;
 /** Commands that leave the model in another pose, set by hand. */
@@ -22,16 +24,11 @@ const previewRate = 12; // frames a second of a motion on the shelf; between the
 const previewSeconds = 5; // of a user's motion
 const progressDelay = 250; // milliseconds before a wait is shown
 
-const stageNames: Record<string, string> = {
-  'read': 'Reading the model', 'read geometry': 'Reading the surface', 'weld': 'Joining the surface',
-  'rig': 'Finding handles', 'skin': 'Binding the surface', 'write rig': 'Finishing',
-};
-
 const lostSteps = (failed: number, all: number, error: LimberError | null): Notice => ({
-  kind: 'error', title: `${counted(failed, 'step')} of ${all} could not be brought back`, detail: error?.message ?? '',
+  kind: 'error', title: say('{steps} of {all} could not be brought back', { steps: counted(failed, 'step'), all }), detail: error ? told(error).title : '',
 });
 const openTwice = (name: string): Notice => ({
-  kind: 'note', title: 'This model is open in another tab as well', detail: `What you do here is kept as a copy of ${name}`,
+  kind: 'note', title: say('This model is open in another tab as well'), detail: say('What you do here is kept as a copy of {name}', { name }),
 });
 
 const sampleMotion = (name: string): MotionRequest => ({ kind: 'run', command: { do: 'add_sample_motion', name } });
@@ -56,7 +53,7 @@ export class Studio {
   private underWay = 0;
   private engine = new EngineClient();
   private showTimer = 0;
-  private stage = { stage: 'Starting', fraction: 0 };
+  private stage = { stage: say('Starting'), fraction: 0 };
   private wantedHandles: number | null = null;
   private askedHandles = 0;
   private dragUpdate: Command | null = null;
@@ -80,7 +77,7 @@ export class Studio {
     this.engine.onChange = (request, place) => journal.add(request, place);
     this.engine.onBusy = (busy) => this.showWork(busy);
     this.engine.onProgress = (stage, fraction) => {
-      this.stage = { stage: stageNames[stage.split(':')[0] ?? ''] ?? stage, fraction };
+      this.stage = { stage: stageName(stage), fraction };
       if (page.now.work) page.set({ work: this.stage });
     };
   }
@@ -108,7 +105,7 @@ export class Studio {
   async openFiles(files: File[]) {
     const large = files.find(({ size }) => size > mostFileSize);
     if (large) {
-      this.page.set({ notice: { kind: 'error', title: 'This file is too large for a browser', detail: large.name } });
+      this.page.set({ notice: { kind: 'error', title: say('This file is too large for a browser'), detail: large.name } });
       return;
     }
     const brought = await this.guard(() => sorted(files));
@@ -118,7 +115,7 @@ export class Studio {
     await this.openMotions(motions);
     if (limits) await this.openLimits(limits);
     if (files.length > 0 && !model && motions.length === 0 && !limits) {
-      this.page.set({ notice: { kind: 'error', title: 'There is no model in it', detail: 'Open GLB, glTF, VRM, OBJ, FBX, STL, PLY or BVH' } });
+      this.page.set({ notice: { kind: 'error', title: say('There is no model in it'), detail: say('Open GLB, glTF, VRM, OBJ, FBX, STL, PLY or BVH') } });
     }
   }
 
@@ -161,7 +158,7 @@ export class Studio {
       const motion = of instanceof File ? await motionOf(of) : sampleMotion(of.name);
       return await this.engine.ask({ kind: 'preview-motion', motion, most: of instanceof File ? previewSeconds : of.seconds, rate: previewRate });
     } catch (error) {
-      const known = error instanceof EngineError ? error : new EngineError({ code: 'file', message: 'the file cannot be read', where: '', remedy: '' });
+      const known = error instanceof EngineError ? error : refusal(say('the file cannot be read'));
       return known.cancelled ? null : { error: known.error, named: false, seconds: 0, frames: [] };
     }
   }
@@ -180,10 +177,13 @@ export class Studio {
       const refused = trial.error;
       trial = await this.engine.ask({ kind: 'try-motion', motion, named: true });
       if (trial.error) throw new EngineError(refused ?? trial.error);
-      const agreed = await this.ask('The model needs a skeleton for this motion',
-        `Its ${counted(state.joints.length, 'handle')} will be replaced by a skeleton of ${counted(trial.joints, 'joint')} with names. `
-        + `${trial.warnings.map((warning) => `Please look at the result: ${warning}. `).join('')}Undo takes it back.`,
-        'Give it a skeleton');
+      const agreed = await this.ask(say('The model needs a skeleton for this motion'),
+        [
+          say('Its {handles} will be replaced by a skeleton of {joints} with names.', { handles: counted(state.joints.length, 'handle'), joints: counted(trial.joints, 'joint') }),
+          ...trial.warnings.map((warning) => say('Please look at the result: {warning}.', { warning: warningText(warning) })),
+          say('Undo takes it back.'),
+        ].join(' '),
+        say('Give it a skeleton'));
       if (!agreed) return;
       this.take(await this.engine.run({ do: 'choose_methods', rigger: 'template', skinning: state.skinning }));
     }
@@ -206,10 +206,7 @@ export class Studio {
     await this.open(async () => {
       const response = await fetch(address).catch(() => null);
       if (!response?.ok) {
-        throw new EngineError({
-          code: 'file', message: 'the model cannot be fetched', where: address,
-          remedy: 'the other site must allow it (CORS); or save the file and drop it here',
-        });
+        throw refusal(say('the model cannot be fetched'), address, say('the other site must allow it (CORS); or save the file and drop it here'));
       }
       const name = decodeURIComponent(new URL(address, location.href).pathname.split('/').pop() ?? 'model.glb');
       return this.openBytes(new Uint8Array(await response.arrayBuffer()), name);
@@ -224,7 +221,7 @@ export class Studio {
   /** A document by all that was done; one that was kept goes on where it is. */
   private async restore(requests: Request[], name: string, kept: KeptDocument | null = null): Promise<Step> {
     const { step, failed, error } = await this.engine.restore(requests);
-    if (!step) throw new EngineError(error ?? { code: 'page', message: 'there is no model in it', where: name, remedy: '' });
+    if (!step) throw error ? new EngineError(error) : refusal(say('There is no model in it'), name);
     const all = this.engine.requests;
     const own = kept ? await this.journal.resume(kept, all, requests.length) : this.journal.begin(name, all);
     this.afterOpening = failed > 0 ? lostSteps(failed, requests.length, error) : own ? null : openTwice(name);
@@ -240,12 +237,12 @@ export class Studio {
   private async mayReplaceRig(): Promise<boolean> {
     const { session } = this.page.now;
     if (session && !session.own_rig && session.edited_rig) {
-      return this.ask('Replace the rig that you changed?', 'Painted weights and joints changed by hand go. Undo brings them back.', 'Replace it');
+      return this.ask(say('Replace the rig that you changed?'), say('Painted weights and joints changed by hand go. Undo brings them back.'), say('Replace it'));
     }
     if (!session?.own_rig) return true;
-    return this.ask('Replace the rig of this model?',
-      `It came with ${counted(session.joints.length, 'joint')} that have names; they and its clips go. Undo brings them back.`,
-      'Replace it');
+    return this.ask(say('Replace the rig of this model?'),
+      say('It came with {joints} that have names; they and its clips go. Undo brings them back.', { joints: counted(session.joints.length, 'joint') }),
+      say('Replace it'));
   }
 
   /** The last count asked for counts; those that a slider passes on its way are left out. */
@@ -439,8 +436,8 @@ export class Studio {
   async addClip() {
     const names = new Set(this.page.now.session?.clips.map((clip) => clip.name));
     let number = 1;
-    while (names.has(`clip ${number}`)) ++number;
-    await this.run({ do: 'add_clip', clip: `clip ${number}` });
+    while (names.has(say('clip {number}', { number }))) ++number;
+    await this.run({ do: 'add_clip', clip: say('clip {number}', { number }) });
   }
 
   async renameJoint(joint: number, name: string) {
@@ -732,7 +729,7 @@ export class Studio {
 
   private showWork(busy: boolean) {
     clearTimeout(this.showTimer);
-    this.stage = { stage: 'Working', fraction: 0 };
+    this.stage = { stage: say('Working'), fraction: 0 };
     if (busy) this.showTimer = window.setTimeout(() => this.page.set({ work: this.stage }), progressDelay);
     else if (this.page.now.work) this.page.set({ work: null });
   }

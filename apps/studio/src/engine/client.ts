@@ -1,5 +1,6 @@
 // The page's side of the worker: promises, progress, and a way to stop what takes too long.
 import { opensModel, type Answer, type Command, type FromWorker, type Kind, type LimberError, type Place, type Request, type ToWorker } from './messages';
+import { say } from '../words/say';
 
 export class EngineError extends Error {
   constructor(readonly error: LimberError) {
@@ -7,6 +8,9 @@ export class EngineError extends Error {
   }
   get cancelled() { return this.error.code === 'cancelled'; }
 }
+
+/** What the page itself refuses, in its own language. */
+export const refusal = (message: string, where = '', remedy = '') => new EngineError({ code: 'page', message, where, remedy });
 
 const cancelled: LimberError = { code: 'cancelled', message: 'stopped', where: '', remedy: '' };
 
@@ -17,9 +21,8 @@ function withDragEnded(requests: Request[]): Request[] {
   return begins > ends ? [...requests, { kind: 'run', command: { do: 'end_drag' } }] : [...requests];
 }
 
-const unreachable = (why: string) => new EngineError({
-  code: 'engine', message: 'the engine cannot be loaded', where: why, remedy: 'look at the connection, and load the page again',
-});
+const unreachable = (why: string) =>
+  refusal(say('the engine cannot be loaded'), why, say('look at the connection, and load the page again'));
 
 interface Waiting {
   request: Request;

@@ -114,7 +114,7 @@ export class Documents {
     return this.onFork(rigged.session, (fork) => {
       const { motion, error } = putOn(fork, request);
       return {
-        motion, error, joints: rigged.state?.joints.length ?? 0, warnings: rigged.state?.warnings.map(({ message }) => message) ?? [],
+        motion, error, joints: rigged.state?.joints.length ?? 0, warnings: rigged.state?.warnings ?? [],
       };
     });
   }

@@ -67,7 +67,7 @@ export interface Trial {
   error: LimberError | null;
   /** Of the rig that it would be put on. */
   joints: number;
-  warnings: string[];
+  warnings: SessionState['warnings'];
 }
 
 /** A motion that the engine makes itself; the seconds are those of one repetition. */

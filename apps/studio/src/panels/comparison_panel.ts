@@ -4,36 +4,36 @@ import type { Comparison, PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
 import type { ComparisonView } from '../scene/comparison_view';
 import { button, element } from '../ui/dom';
-import { currentMethod, methodName } from './methods_panel';
+import { methodName, methodSummary, told } from '../words/engine';
+import { number, percent, say } from '../words/say';
+import { currentMethod } from './methods_panel';
 
 const most = 4; // figures beside each other
-
-const percent = (value: number) => `${(100 * value).toFixed(1)} %`;
 
 /** What is worth comparing, in words, and better low or high left to the reader. */
 function figuresOf(measures: Measures): [string, string][] {
   const { motion } = measures;
   const rows: [string, string][] = [
-    ['Joints', String(measures.joints)],
-    ['Joints a vertex', measures.influences.toFixed(2)],
-    ['Weights change', measures.smoothness.toFixed(3)],
-    ['Stretched', percent(measures.stretch)],
-    ['Volume', `${measures.volume >= 0 ? '+' : '\u2212'}${percent(Math.abs(measures.volume))}`],
+    [say('Joints'), number(measures.joints)],
+    [say('Joints a vertex'), number(measures.influences, 2)],
+    [say('Weights change'), number(measures.smoothness, 3)],
+    [say('Stretched'), percent(measures.stretch)],
+    [say('Volume'), `${measures.volume >= 0 ? '+' : '\u2212'}${percent(Math.abs(measures.volume))}`],
   ];
-  if (measures.target_distance !== null) rows.push(['Pins missed by', `${(1000 * measures.target_distance).toFixed(1)} mm`]);
+  if (measures.target_distance !== null) rows.push([say('Pins missed by'), `${number(1000 * measures.target_distance, 1)} mm`]);
   if (motion) {
     rows.splice(1, 2);
-    rows.push(['Bones off', `${motion.bone_direction_degrees.toFixed(1)}\u00b0`],
-      ['Ends off', percent(motion.end_effector_share)],
-      ['Feet slide', `${motion.sliding_centimetres_per_second.toFixed(1)} cm/s`],
-      ['Feet sink', `${motion.penetration_millimetres.toFixed(0)} mm`], ['Jerk', `${motion.jerk_ratio.toFixed(2)}\u00d7`]);
+    rows.push([say('Bones off'), `${number(motion.bone_direction_degrees, 1)}\u00b0`],
+      [say('Ends off'), percent(motion.end_effector_share)],
+      [say('Feet slide'), `${number(motion.sliding_centimetres_per_second, 1)} cm/s`],
+      [say('Feet sink'), `${number(motion.penetration_millimetres)} mm`], [say('Jerk'), `${number(motion.jerk_ratio, 2)}\u00d7`]);
   }
   return rows;
 }
 
 export function comparisonPanel(studio: Studio, page: PageStore, view: ComparisonView): HTMLElement {
-  const root = element('section', { class: 'comparison', 'aria-label': 'Comparison', id: 'comparison', hidden: true });
-  const close = button('End comparison', () => void studio.endComparison(), { id: 'end-comparison', kind: 'primary' });
+  const root = element('section', { class: 'comparison', 'aria-label': say('Comparison'), id: 'comparison', hidden: true });
+  const close = button(say('End comparison'), () => void studio.endComparison(), { id: 'end-comparison', kind: 'primary' });
   let columns: HTMLElement[] = [];
   view.onPlaced = (places) => {
     const room = columns[0] ? (columns[0].offsetWidth + 8) / Math.max(1, root.offsetWidth) : 0;
@@ -48,14 +48,14 @@ export function comparisonPanel(studio: Studio, page: PageStore, view: Compariso
       return card;
     }
     const methods = page.now.methods?.[comparison.kind] ?? [];
-    const select = element('select', { class: 'select', 'aria-label': 'The method beside it' },
-      ...methods.map(({ name, summary }) => element('option', { value: name, title: summary }, methodName(name))));
+    const select = element('select', { class: 'select', 'aria-label': say('The method beside it') },
+      ...methods.map((method) => element('option', { value: method.name, title: methodSummary(method) }, methodName(method.name))));
     select.value = comparison.names[index] ?? '';
     select.addEventListener('change', () => void studio.compare(comparison.kind, comparison.names.map((name, i) => (i === index ? select.value : name))));
     const remove = button('', () => {
       const names = comparison.names.filter((_, i) => i !== index);
       void (names.length > 0 ? studio.compare(comparison.kind, names) : studio.endComparison());
-    }, { icon: 'erase', label: 'Take this one out' });
+    }, { icon: 'erase', label: say('Take this one out') });
     card.append(element('div', { class: 'row head' }, select, remove), result(comparison.variants[index]));
     return card;
   };
@@ -70,7 +70,7 @@ export function comparisonPanel(studio: Studio, page: PageStore, view: Compariso
     columns.forEach((one, i) => one.style.setProperty('--at', String((i + 1) / (columns.length + 1))));
     const unused = page.now.methods?.[comparison.kind].find(({ name }) =>
       name !== currentMethod(comparison.kind, page.now) && !comparison.names.includes(name));
-    const add = button('Another', () => void studio.compare(comparison.kind, [...comparison.names, unused!.name]), { icon: 'add', id: 'compare-another' });
+    const add = button(say('Another'), () => void studio.compare(comparison.kind, [...comparison.names, unused!.name]), { icon: 'add', id: 'compare-another' });
     add.disabled = !unused || comparison.names.length + 1 >= most;
     root.style.setProperty('--count', String(columns.length));
     root.replaceChildren(element('div', { class: 'row tools' }, add, close), ...columns);
@@ -87,8 +87,8 @@ function apart(places: number[], room: number): number[] {
 }
 
 function result(variant: Variant | LimberError | undefined): HTMLElement {
-  if (!variant) return element('p', { class: 'note' }, 'Working \u2026');
-  return 'measures' in variant ? table(variant.measures) : element('p', { class: 'note' }, variant.message);
+  if (!variant) return element('p', { class: 'note' }, say('Working \u2026'));
+  return 'measures' in variant ? table(variant.measures) : element('p', { class: 'note' }, told(variant).title);
 }
 
 function table(measures: Measures): HTMLElement {

@@ -4,6 +4,8 @@ import type { KeyPlace, PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
 import type { Curve, Vector } from '../engine/messages';
 import { choice, element } from '../ui/dom';
+import { jointTitle } from '../words/parts';
+import { number, say } from '../words/say';
 import { chosenClip, shownSeconds } from './moments';
 
 const axes = ['x', 'y', 'z'] as const;
@@ -31,7 +33,7 @@ interface Grabbed {
 
 export function curveEditor(studio: Studio, page: PageStore): HTMLElement {
   let part: Part = 'turn', grabbed: Grabbed | null = null, end = 1, low = 0, high = 1, drawn: unknown = null;
-  const parts = choice<Part>('Curves of', [{ value: 'turn', text: 'Turn' }, { value: 'offset', text: 'Move' }], (value) => {
+  const parts = choice<Part>(say('Curves of'), [{ value: 'turn', text: say('Turn') }, { value: 'offset', text: say('Move') }], (value) => {
     part = value;
     draw();
   });
@@ -51,17 +53,17 @@ export function curveEditor(studio: Studio, page: PageStore): HTMLElement {
     const { session, curve, selected, seconds } = page.now;
     const clip = chosenClip(session), ready = clip !== null && curve !== null && curve.joint === selected && curve.moments.length > 1;
     parts.show(part);
-    const joint = selected === null ? null : session?.joints[selected] ?? null;
-    title.textContent = joint ? joint.part ?? joint.name : '';
+    const joint = session?.joints[selected ?? -1];
+    title.textContent = jointTitle(joint);
     plot.style.display = ready ? '' : 'none';
     hint.hidden = ready;
-    hint.textContent = joint ? 'No curve yet: it takes keys at two moments.' : 'Select a joint to see its curves.';
+    hint.textContent = joint ? say('No curve yet: it takes keys at two moments.') : say('Select a joint to see its curves.');
     if (!ready || !clip || !curve) return;
     end = shownSeconds(clip, seconds);
     const values = curve.moments.flatMap((_, i) => axes.map((_axis, axis) => valueOf(curve, i, axis)));
     const middle = (Math.min(...values) + Math.max(...values)) / 2, half = Math.max(leastRange[part], Math.max(...values) - Math.min(...values)) / 2;
     [low, high] = [middle - 1.08 * half, middle + 1.08 * half];
-    plot.setAttribute('aria-label', `${part === 'turn' ? 'Turn' : 'Movement'} of ${title.textContent} over the clip`);
+    plot.setAttribute('aria-label', say(part === 'turn' ? 'Turn of {joint} over the clip' : 'Movement of {joint} over the clip', { joint: title.textContent }));
     plot.replaceChildren(...scale(), ...axes.map((axis, a) => svg('polyline', {
       class: axis, points: curve.moments.map((at, i) => `${xOf(at).toFixed(1)},${yOf(valueOf(curve, i, a)).toFixed(1)}`).join(' '),
     })), ...keysOf(session).filter((key) => key.joint === selected).flatMap((key) => axes.map((axis, a) => {
@@ -73,7 +75,7 @@ export function curveEditor(studio: Studio, page: PageStore): HTMLElement {
   /** The least, the middle and the most, each with its line. */
   const scale = () => [high - (high - low) * 0.04, (low + high) / 2, low + (high - low) * 0.04].flatMap((value) => {
     const text = svg('text', { x: inset, y: yOf(value) - 3 });
-    text.textContent = `${part === 'turn' ? value.toFixed(0) : value.toFixed(2)}${unit[part]}`;
+    text.textContent = `${number(value, part === 'turn' ? 0 : 2)}${unit[part]}`;
     return [svg('line', { class: 'grid', x1: 0, x2: width(), y1: yOf(value), y2: yOf(value) }), text];
   });
 

@@ -5,6 +5,8 @@ import type { Studio } from '../app/studio';
 import type { SessionState } from '../engine/messages';
 import { element } from '../ui/dom';
 import type { KeyActions } from './key_editor';
+import { jointTitle } from '../words/parts';
+import { say } from '../words/say';
 import { shownSeconds } from './moments';
 
 const inset = 8; // pixels left and right of the first and last moment, as the slider above has them
@@ -19,11 +21,11 @@ type Gesture =
 export function dopeSheet(studio: Studio, page: PageStore, actions: KeyActions): HTMLElement {
   const lanes = element('div', {
     class: 'lanes', id: 'dope-sheet', role: 'application', tabindex: 0,
-    'aria-label': 'Keys of each joint. Up and down choose a joint, Enter its key next to the playhead, left and right move the chosen keys by a frame.',
+    'aria-label': say('Keys of each joint. Up and down choose a joint, Enter its key next to the playhead, left and right move the chosen keys by a frame.'),
   });
   const box = element('div', { class: 'box', hidden: true }), now = element('div', { class: 'now' });
-  const grips = (['first', 'last'] as const).map((end) => element('i', { class: `grip ${end}`, 'data-end': end, title: 'Drag to scale the chosen keys in time' }));
-  const empty = element('p', { class: 'empty-keys' }, 'No keys yet. Pose the model: what is posed becomes a key here.');
+  const grips = (['first', 'last'] as const).map((end) => element('i', { class: `grip ${end}`, 'data-end': end, title: say('Drag to scale the chosen keys in time') }));
+  const empty = element('p', { class: 'empty-keys' }, say('No keys yet. Pose the model: what is posed becomes a key here.'));
   let rows: HTMLElement[] = [], marks: { mark: HTMLElement; keys: KeyPlace[] }[] = [];
   let drawn: unknown = null, end = 1, gesture: Gesture | null = null, dragged = false;
 
@@ -51,8 +53,8 @@ export function dopeSheet(studio: Studio, page: PageStore, actions: KeyActions):
         element('span', { class: 'beat' }, ...keys.map(markOf)));
     const all = keysOf(session);
     rows = [
-      row('All joints', null, (clip?.keys ?? []).map((seconds) => all.filter((key) => Math.abs(key.seconds - seconds) < 1e-3)).filter((keys) => keys.length > 0)),
-      ...listed.map(({ joint, seconds }) => row(of(joint)?.part ?? of(joint)?.name ?? '', joint, seconds.map((moment) => [{ joint, seconds: moment }]))),
+      row(say('All joints'), null, (clip?.keys ?? []).map((seconds) => all.filter((key) => Math.abs(key.seconds - seconds) < 1e-3)).filter((keys) => keys.length > 0)),
+      ...listed.map(({ joint, seconds }) => row(jointTitle(of(joint)), joint, seconds.map((moment) => [{ joint, seconds: moment }]))),
     ];
     lanes.replaceChildren(...(listed.length > 0 ? rows : [empty]), now, box, ...grips);
   };

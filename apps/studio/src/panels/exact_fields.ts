@@ -74,7 +74,7 @@ export function exactFields(studio: Studio, page: PageStore): HTMLElement {
     if (page.now.selected !== null) void does(page.now.selected, vector);
   };
   const turn = triple({
-    text: 'Turn', unit: '\u00b0', id: 'turn', step: () => (page.now.snapping ? page.now.session?.snap.degrees ?? 1 : 1),
+    text: 'Turned', unit: '\u00b0', id: 'turn', step: () => (page.now.snapping ? page.now.session?.snap.degrees ?? 1 : 1),
     send: act((joint, vector) => studio.setTurn(joint, vector)),
   });
   const place = triple({ text: 'Place', unit: 'm', id: 'place', step, send: act((joint, vector) => studio.moveJointTo(joint, vector)) });
@@ -91,7 +91,7 @@ export function exactFields(studio: Studio, page: PageStore): HTMLElement {
     // A tenth of the step that the magnet makes.
     turn.show(none ? null : three(stance!.turns, 7 * selected), degreeDigits);
     place.show(none ? null : three(stance!.handles, 4 * selected), Math.max(0, Math.ceil(1 - Math.log10(step()))));
-    hint.textContent = say(none ? 'Select a joint first' : 'Turn counts from the rest pose, about the axes of the joint');
+    hint.textContent = say(none ? 'Select a joint first' : 'Turns count from the rest pose, about the axes of the joint');
   };
   root.addEventListener('toggle', show);
   page.watch(show);

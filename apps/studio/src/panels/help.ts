@@ -1,22 +1,70 @@
-// Every key, under ?.
+// What every key does, under ?; on a device that is touched, what fingers do.
 import type { PageStore } from '../app/state';
 import { button, element } from '../ui/dom';
-import { say } from '../words/say';
+import { keyNames } from '../words/key_names';
+import { say, type Words } from '../words/say';
 
-const keys: [string, string][] = [
-  ['Drag a handle', 'move or turn it'], ['Drag beside', 'turn the view'], ['Wheel, pinch', 'zoom'],
-  ['Right button, two fingers', 'shift the view'], ['Click the surface', 'select its joint'], ['G / R', 'move / turn'],
-  ['I', 'limbs follow'], ['S', 'both sides at once'], ['Shift+click', 'select another joint besides'], [say('Shift+drag beside'), say('draw a box round joints to select')], ['V', say('select several: taps add a joint, drags draw a box')], ['N', say('magnet: round steps')], [say('Ctrl while dragging'), say('the magnet the other way round')], ['P', 'pin the joint'], ['M', 'mirror the pose'], ['Arrows', 'move or turn the selected joints; with Shift, finely'],
-  ['Delete', 'put the selected joint back'], ['Alt+R', 'put all joints back'], ['Ctrl+Z', 'undo'], ['Ctrl+Shift+Z, Ctrl+Y', 'redo'],
-  ['Escape', 'let go without a change'], ['1, 3, 7', 'from the front, the right, above'], ['5', 'perspective on or off'], ['Arrows, + and -', 'the view, while no joint is selected'],
-  ['Space', 'play or pause'], ['K', 'the pose becomes a key'], ['Keys: drag, Shift, Alt', 'choose and move, add, scale in time'], ['Keys: Ctrl+C, Ctrl+V, Delete', 'copy, paste at this moment, take out'], ['B', 'paint weights'], ['[ and ]', 'a smaller or larger brush'], ['L', 'lock the weights of the selected joint'], ['X', 'arrows and rings on the selected joint'], ['F2', 'rename the selected joint'], ['F, Home', 'the whole model'], ['H', 'handles or surface'], ['Ctrl+O', 'open a file'], ['?', 'this list'],
+interface Line {
+  does: Words;
+  /** With mouse and keyboard: keys as they are written on them, or a gesture. */
+  keys?: string;
+  mouse?: Words;
+  /** With fingers; a button by its text. */
+  touch?: Words;
+}
+
+const lines: Line[] = [
+  { does: 'move or turn it', mouse: 'Drag a red ball', touch: 'Drag a red ball' },
+  { does: 'turn the view', mouse: 'Drag beside', touch: 'Drag beside' },
+  { does: 'zoom', mouse: 'Wheel', touch: 'Pinch' },
+  { does: 'shift the view', mouse: 'Right button', touch: 'Drag with two fingers' },
+  { does: 'select its joint', mouse: 'Click the surface', touch: 'Touch the surface' },
+  { does: 'let go without a change', keys: 'Escape', touch: 'Undo, afterwards' },
+  { does: 'move / turn', keys: 'G / R', touch: 'Move, Turn' },
+  { does: 'limbs follow', keys: 'I', touch: 'Limbs follow' },
+  { does: 'both sides at once', keys: 'S', touch: 'Both sides' },
+  { does: 'select another joint besides', mouse: 'Shift and click' },
+  { does: 'draw a box round joints to select', mouse: 'Shift and drag beside' },
+  { does: 'select several: tap them, or draw a box', keys: 'V', touch: 'The dashed box at the top left' },
+  { does: 'magnet: round places and turns', keys: 'N', touch: 'The magnet at the top left' },
+  { does: 'the magnet the other way round', mouse: 'Ctrl while dragging' },
+  { does: 'pin the joint', keys: 'P', touch: 'Pin' },
+  { does: 'give the joint another name', keys: 'F2', touch: 'Rename' },
+  { does: 'lock the joint against painting', keys: 'L', touch: 'Lock' },
+  { does: 'mirror the pose', keys: 'M', touch: 'Mirror' },
+  { does: 'move or turn the selected joints; with Shift, finely', mouse: 'Arrow keys' },
+  { does: 'put the selected joints back', keys: 'Del', touch: 'Reset, below the joints' },
+  { does: 'put all joints back', keys: 'Alt+R', touch: 'Reset' },
+  { does: 'undo', keys: 'Ctrl+Z', touch: 'Undo' },
+  { does: 'redo', keys: 'Ctrl+Shift+Z, Ctrl+Y', touch: 'Redo' },
+  { does: 'from the front, the right, above', keys: '1, 3, 7', touch: 'Front, Side, Top' },
+  { does: 'without or with perspective', keys: '5', touch: 'Flat' },
+  { does: 'the whole model', keys: 'Home, F', touch: 'Whole model' },
+  { does: 'the view, while no joint is selected', mouse: 'Arrow keys, + and -' },
+  { does: 'hide or show the handles', keys: 'H', touch: 'Surface, Handles' },
+  { does: 'arrows for exact work', keys: 'X', touch: 'Arrows' },
+  { does: 'play or pause', keys: 'Space', touch: 'Play' },
+  { does: 'the pose becomes a key', keys: 'K', touch: 'Key' },
+  { does: 'choose and move keys; add to them; scale in time', mouse: 'Keys: drag, with Shift, with Alt', touch: 'Keys: drag them, beside them, the orange grips' },
+  { does: 'copy keys, paste them at this moment, take them out', keys: 'Ctrl+C, Ctrl+V, Del', touch: 'Copy, Paste, Delete' },
+  { does: 'paint what a joint moves', keys: 'B', touch: 'Paint areas' },
+  { does: 'a smaller or larger brush', mouse: '[ and ]', touch: 'Size' },
+  { does: 'take away, smooth, while painting', keys: 'Ctrl, Shift', touch: 'Take away, Smooth' },
+  { does: 'open a file', keys: 'Ctrl+O', touch: 'Open' },
+  { does: 'this list', keys: '?' },
 ];
 
 export function help(page: PageStore): HTMLElement {
+  const touched = matchMedia('(pointer: coarse)').matches;
+  const how = ({ keys, mouse, touch }: Line) => (touched ? touch && say(touch) : keys === undefined ? mouse && say(mouse) : keyNames(keys));
+  const title = touched ? say('What fingers do') : say('Keyboard and mouse');
   const dialog = element('dialog', { 'aria-labelledby': 'help-title', id: 'help' },
-    element('h2', { id: 'help-title' }, 'Keyboard and mouse'),
-    element('dl', {}, ...keys.flatMap(([key, does]) => [element('dt', {}, key), element('dd', {}, does)])),
-    button('Close', () => dialog.close(), { kind: 'primary' }));
+    element('h2', { id: 'help-title' }, title),
+    element('dl', {}, ...lines.flatMap((line) => {
+      const by = how(line);
+      return by ? [element('dt', {}, by), element('dd', {}, say(line.does))] : [];
+    })),
+    button(say('Close'), () => dialog.close(), { kind: 'primary' }));
   dialog.addEventListener('close', () => page.set({ help: false }));
   page.watch(({ help: open }) => {
     if (!open || dialog.open) return;

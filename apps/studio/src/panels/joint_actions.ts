@@ -4,26 +4,28 @@ import type { PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
 import { choose } from '../ui/choose';
 import { button, element } from '../ui/dom';
+import { jointTitle } from '../words/parts';
+import { say } from '../words/say';
 
 export function jointActions(studio: Studio, page: PageStore): HTMLElement {
   const selected = () => page.now.selected ?? 0;
   const nameOf = (joint: number) => page.now.session?.joints[joint]?.name ?? '';
-  const lock = button('Lock', () => void studio.toggleLock(selected()), { id: 'lock-joint', keys: 'L', label: 'Keep the weights of this joint as they are while others are painted' });
-  const add = button('Add', () => page.set({ placing: !page.now.placing, painting: false, correcting: false }), {
-    id: 'add-joint', label: 'Add a joint below this one: then click on the model where it should be. It moves nothing until you paint weights for it',
+  const lock = button(say('Lock'), () => void studio.toggleLock(selected()), { id: 'lock-joint', keys: 'L', label: say('Keep the weights of this joint as they are while others are painted') });
+  const add = button(say('New'), () => page.set({ placing: !page.now.placing, painting: false, correcting: false }), {
+    id: 'add-joint', label: say('Add a joint below this one: then click on the model where it should be. It moves nothing until you paint weights for it'),
   });
   addEventListener('keydown', (event) => { if (event.key === 'Escape' && page.now.placing) page.set({ placing: false }); });
-  const remove = button('Delete', () => void studio.deleteJoint(selected()), {
-    id: 'delete-joint', label: 'Delete this joint: what it moves goes to the joint above, and so do the joints below it',
+  const remove = button(say('Delete'), () => void studio.deleteJoint(selected()), {
+    id: 'delete-joint', label: say('Delete this joint: what it moves goes to the joint above, and so do the joints below it'),
   });
-  const hang = button('Hang on\u2026', () => void hangElsewhere(), {
-    id: 'hang-joint', label: 'Hang this joint, with all below it, on another joint; it stays where it is',
+  const hang = button(say('Hang on \u2026'), () => void hangElsewhere(), {
+    id: 'hang-joint', label: say('Hang this joint, with all below it, on another joint; it stays where it is'),
   });
   const hangElsewhere = async () => {
     const { session } = page.now, joint = selected();
     if (!session) return;
     const parents = possibleParents(session.joints, joint).map(nameOf);
-    const parent = await choose(`Hang ${nameOf(joint)} elsewhere`, 'On', parents, 'Hang it there');
+    const parent = await choose(say('Hang {joint} elsewhere', { joint: nameOf(joint) }), say('On'), parents, say('Hang it there'));
     if (parent !== null) await studio.hangJoint(joint, parent);
   };
   const hint = element('p', { class: 'hint-text', role: 'status', id: 'place-hint' });
@@ -34,7 +36,7 @@ export function jointActions(studio: Studio, page: PageStore): HTMLElement {
     add.setAttribute('aria-pressed', String(placing));
     remove.disabled = none || session.joints.length < 2;
     hang.disabled = none || possibleParents(session.joints, joint).length === 0;
-    hint.textContent = placing && joint !== null ? `Click on the model where the joint below ${nameOf(joint)} should be` : '';
+    hint.textContent = placing && joint !== null ? say('Click on the model where the joint below {joint} should be', { joint: jointTitle(session?.joints[joint]) }) : '';
     hint.hidden = !placing;
   });
   return element('div', { class: 'joint-actions' }, element('div', { class: 'row actions' }, lock, add, remove, hang), hint);

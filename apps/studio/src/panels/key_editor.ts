@@ -6,6 +6,7 @@ import type { Studio } from '../app/studio';
 import type { SessionState } from '../engine/messages';
 import { counted } from '../ui/counted';
 import { button, choice, element } from '../ui/dom';
+import { say } from '../words/say';
 import { curveEditor } from './curve_editor';
 import { dopeSheet } from './dope_sheet';
 
@@ -79,16 +80,16 @@ export function keyEditor(studio: Studio, page: PageStore): { toggle: HTMLButton
     remember('keys', editor ?? 'closed');
     page.set({ keyEditor: editor, chosenKeys: editor === null ? [] : page.now.chosenKeys });
   };
-  const toggle = button('Keys', () => open(page.now.keyEditor === null ? last : null), { icon: 'rows', label: 'Keys of each joint, and their curves', id: 'open-keys' });
+  const toggle = button(say('Keys'), () => open(page.now.keyEditor === null ? last : null), { icon: 'rows', label: say('Keys of each joint, and their curves'), id: 'open-keys' });
   toggle.setAttribute('aria-controls', 'key-editor');
-  const shown = choice<KeyEditor>('Show keys as', [{ value: 'sheet', text: 'Sheet' }, { value: 'curves', text: 'Curves' }], open);
+  const shown = choice<KeyEditor>(say('Show keys as'), [{ value: 'sheet', text: say('Sheet') }, { value: 'curves', text: say('Curves') }], open);
   const told = element('output', { class: 'told', id: 'keys-told' });
-  const copy = button('Copy', () => actions.copy(), { icon: 'copy', keys: 'Ctrl+C', id: 'copy-keys' });
-  const paste = button('Paste', () => actions.paste(), { icon: 'paste', label: 'Paste at this moment', keys: 'Ctrl+V', id: 'paste-keys' });
-  const remove = button('Delete', () => actions.remove(), { icon: 'erase', keys: 'Delete', id: 'delete-keys' });
-  const slower = button('2\u00d7', () => actions.scale(2), { label: 'Twice as slow: the chosen keys move apart', id: 'scale-up' });
-  const faster = button('\u00bd\u00d7', () => actions.scale(0.5), { label: 'Twice as fast: the chosen keys move together', id: 'scale-down' });
-  const all = button('All', () => actions.chooseAll(), { label: 'Choose all keys', keys: 'Ctrl+A', id: 'choose-keys' });
+  const copy = button(say('Copy'), () => actions.copy(), { icon: 'copy', keys: 'Ctrl+C', id: 'copy-keys' });
+  const paste = button(say('Paste'), () => actions.paste(), { icon: 'paste', label: say('Paste at this moment'), keys: 'Ctrl+V', id: 'paste-keys' });
+  const remove = button(say('Delete'), () => actions.remove(), { icon: 'erase', keys: 'Del', id: 'delete-keys' });
+  const slower = button('2\u00d7', () => actions.scale(2), { label: say('Twice as slow: the chosen keys move apart'), id: 'scale-up' });
+  const faster = button('\u00bd\u00d7', () => actions.scale(0.5), { label: say('Twice as fast: the chosen keys move together'), id: 'scale-down' });
+  const all = button(say('All'), () => actions.chooseAll(), { label: say('Choose all keys'), keys: 'Ctrl+A', id: 'choose-keys' });
   const sheet = dopeSheet(studio, page, actions), curves = curveEditor(studio, page);
   const root = element('div', { class: 'key-editor', id: 'key-editor', hidden: true },
     element('div', { class: 'row tools' }, shown.root, all, copy, paste, remove, slower, faster, told), sheet, curves);
@@ -111,6 +112,6 @@ export function keyEditor(studio: Studio, page: PageStore): { toggle: HTMLButton
 }
 
 function tell(session: SessionState | null, chosen: readonly KeyPlace[]): string {
-  if (chosen.length > 0) return `${counted(chosen.length, 'key')} chosen`;
+  if (chosen.length > 0) return say('{count} keys chosen', { count: chosen.length });
   return counted(keysOf(session).length, 'key');
 }

@@ -3,13 +3,8 @@ import type { MethodKind } from '../engine/messages';
 import type { PageState, PageStore } from '../app/state';
 import { hasTemplate, type Studio } from '../app/studio';
 import { button, element } from '../ui/dom';
-
-export const methodNames: Record<string, string> = {
-  'sphere-mesh': 'Sphere handles', 'template': 'Named skeleton', 'bone-heat': 'Bone heat', 'limb-ik': 'Limbs by IK',
-  'aligned': 'Aligned poses', 'copy-rotations': 'Copied turns', 'online': 'Hands and feet first', 'spacetime': 'Whole motion',
-};
-export const methodName = (name: string) =>
-  methodNames[name] ?? (name.charAt(0).toUpperCase() + name.slice(1)).replaceAll('-', ' ');
+import { methodName, methodSummary } from '../words/engine';
+import { say } from '../words/say';
 
 /** What the document has of that kind. */
 export function currentMethod(kind: MethodKind, { session }: PageState): string {
@@ -23,7 +18,7 @@ export function compareButton(studio: Studio, page: PageStore, kind: MethodKind)
     if (page.now.comparison?.kind === kind) return void studio.endComparison();
     const other = page.now.methods?.[kind].find(({ name }) => name !== currentMethod(kind, page.now));
     if (other) void studio.compare(kind, [other.name]);
-  }, { icon: 'compare', label: 'Compare with other methods, side by side', id: `compare-${kind}` });
+  }, { icon: 'compare', label: say('Compare with other methods, side by side'), id: `compare-${kind}` });
   page.watch((now) => {
     made.disabled = !now.session || (now.methods?.[kind].length ?? 0) < 2;
     made.setAttribute('aria-pressed', String(now.comparison?.kind === kind));
@@ -42,23 +37,23 @@ export function methodsPanel(studio: Studio, page: PageStore): HTMLElement {
     select.addEventListener('change', () => choose[kind](select.value));
     page.watch(({ methods, session }) => {
       if (methods && select.childElementCount === 0) {
-        select.append(...methods[kind].map(({ name, summary }) => element('option', { value: name, title: summary }, methodName(name))));
+        select.append(...methods[kind].map((method) => element('option', { value: method.name, title: methodSummary(method) }, methodName(method.name))));
       }
       select.disabled = !session;
       if (session) select.value = session[kind];
     });
     return element('div', { class: 'field' }, element('label', { for: kind }, text), select, compareButton(studio, page, kind));
   };
-  return element('details', { class: 'card methods', id: 'methods' }, element('summary', {}, 'Methods'),
-    row('rigger', 'Joints'), correction(studio, page), row('skinning', 'Skin'), row('solver', 'Limbs'));
+  return element('details', { class: 'card methods', id: 'methods' }, element('summary', {}, say('How it is done')),
+    row('rigger', say('Joints')), correction(studio, page), row('skinning', say('Skin')), row('solver', say('Limbs')));
 }
 
 /** Joints of a named skeleton that are not where they should be. */
 function correction(studio: Studio, page: PageStore): HTMLElement {
-  const made = button('Correct joints', () => void studio.correct(!page.now.correcting), {
-    icon: 'pin', id: 'correct', label: 'Put joints where they should be; the model is rigged anew',
+  const made = button(say('Correct joints'), () => void studio.correct(!page.now.correcting), {
+    icon: 'pin', id: 'correct', label: say('Put joints where they should be; the model is rigged anew'),
   });
-  const hint = element('p', {}, 'Drag a joint to where it should be; or select one and touch the model there.');
+  const hint = element('p', {}, say('Drag a joint to where it should be; or select one and touch the model there.'));
   const row = element('div', { class: 'correction' }, made, hint);
   page.watch(({ session, correcting }) => {
     row.hidden = !session || !hasTemplate(session);

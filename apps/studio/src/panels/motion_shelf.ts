@@ -4,20 +4,18 @@ import type { PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
 import type { MotionPreview } from '../engine/messages';
 import { MotionPictures } from '../scene/motion_picture';
-import { counted } from '../ui/counted';
 import { button, element, fileInput } from '../ui/dom';
+import { motionName, motionSummary, told } from '../words/engine';
+import { say } from '../words/say';
 
 export const motionFiles = '.bvh,.glb,.gltf';
 const width = 264, height = 198; // pixels of a picture
 const mostUnsearched = 12; // cards that are found without searching
 const stillShare = 0.45; // of the motion, which the picture of a card that does not play shows: about its middle
 
-const capital = (text: string) => text.charAt(0).toUpperCase() + text.slice(1);
-
-/** "jumping-jack" as a title: Jumping jack. */
 function titleOf(motion: Motion): string {
   if (motion instanceof File) return motion.name.replace(/\.[^.]*$/, '');
-  return capital(motion.name.replaceAll('-', ' '));
+  return motionName(motion.name);
 }
 
 interface Card {
@@ -31,8 +29,8 @@ interface Card {
 
 /** What a card is about: the motion, or all of why it cannot be put on the model. */
 function explained({ motion, preview }: Card): string {
-  if (preview?.error) return `${titleOf(motion)}: ${preview.error.message}`;
-  return motion instanceof File ? motion.name : capital(motion.summary);
+  if (preview?.error) return `${titleOf(motion)}: ${told(preview.error).title}`;
+  return motion instanceof File ? motion.name : motionSummary(motion);
 }
 
 export function motionShelf(studio: Studio, page: PageStore): HTMLElement {
@@ -43,18 +41,18 @@ export function motionShelf(studio: Studio, page: PageStore): HTMLElement {
   const cards = { sample: [] as Card[], own: [] as Card[] };
 
   const samples = element('ul', { class: 'cards', id: 'shelf-samples' }), own = element('ul', { class: 'cards', id: 'shelf-own' });
-  const search = element('input', { type: 'search', class: 'select search', id: 'shelf-search', 'aria-label': 'Search your motions', placeholder: 'Search' });
-  const none = element('p', { class: 'hint-line' }, 'Drop a folder of BVH or GLB motions on the page, or choose it here: it becomes a shelf of your own.');
+  const search = element('input', { type: 'search', class: 'select search', id: 'shelf-search', 'aria-label': say('Search your motions'), placeholder: say('Search') });
+  const none = element('p', { class: 'hint-line' }, say('Drop a folder of BVH or GLB motions on the page, or choose it here: it becomes a shelf of your own.'));
   const about = element('p', { class: 'hint-line', role: 'status', id: 'shelf-about' });
   const files = fileInput('shelf-files', { accept: motionFiles }, (chosen) => void studio.openFiles(chosen));
   const folder = fileInput('shelf-folder', { folder: true }, (chosen) => void studio.openFiles(chosen));
   const dialog = element('dialog', { class: 'shelf', id: 'shelf', 'aria-labelledby': 'shelf-title' },
-    element('div', { class: 'row head' }, element('h2', { id: 'shelf-title', tabindex: -1, autofocus: true }, 'Motions'),
-      button('Close', () => dialog.close(), { id: 'close-shelf' })),
-    samples, element('h3', {}, 'Your motions'), none, search, own,
+    element('div', { class: 'row head' }, element('h2', { id: 'shelf-title', tabindex: -1, autofocus: true }, say('Motions')),
+      button(say('Close'), () => dialog.close(), { id: 'close-shelf' })),
+    samples, element('h3', {}, say('Your motions')), none, search, own,
     element('div', { class: 'row foot' }, files, folder, about,
-      button('Add files', () => files.click(), { icon: 'add', label: 'Add motions (BVH, GLB)', id: 'shelf-add-files' }),
-      button('Add a folder', () => folder.click(), { icon: 'open', label: 'Add a folder of motions', id: 'shelf-add-folder' })));
+      button(say('Add files'), () => files.click(), { icon: 'add', label: say('Add motions (BVH, GLB)'), id: 'shelf-add-files' }),
+      button(say('Add a folder'), () => folder.click(), { icon: 'open', label: say('Add a folder of motions'), id: 'shelf-add-folder' })));
 
   const seen = new IntersectionObserver((entries) => {
     for (const { target, isIntersecting } of entries) {
@@ -88,7 +86,7 @@ export function motionShelf(studio: Studio, page: PageStore): HTMLElement {
     const { error } = preview;
     card.preview = preview;
     card.press.setAttribute('aria-disabled', String(error !== null));
-    card.reason.textContent = !error ? '' : error.code === 'unsupported' ? 'Made for another kind of body' : capital(error.message);
+    card.reason.textContent = !error ? '' : error.code === 'unsupported' ? say('Made for another kind of body') : told(error).title;
     card.press.title = explained(card);
     if (card === playing) about.textContent = explained(card);
     card.press.removeAttribute('aria-busy');
@@ -213,7 +211,7 @@ export function motionShelf(studio: Studio, page: PageStore): HTMLElement {
     cards.own = fill(own, cards.own, motions);
     none.hidden = motions.length > 0;
     search.hidden = motions.length <= mostUnsearched;
-    search.placeholder = `Search ${counted(motions.length, 'motion')}`;
+    search.placeholder = say('Search {count} motions', { count: motions.length });
     filter();
   };
   fillOwn([]);

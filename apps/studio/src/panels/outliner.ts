@@ -9,16 +9,18 @@ import { button, element } from '../ui/dom';
 import { renameIn } from '../ui/rename';
 import { jointActions } from './joint_actions';
 import { clipList, meshList, pinList, targetList } from './outliner_lists';
+import { partName } from '../words/parts';
+import { say } from '../words/say';
 
 export function outliner(studio: Studio, page: PageStore, handles: HandleView): HTMLElement {
-  const list = element('ul', { class: 'joints', role: 'listbox', 'aria-label': 'Joints', 'aria-multiselectable': 'true', tabindex: 0, id: 'joints' });
+  const list = element('ul', { class: 'joints', role: 'listbox', 'aria-label': say('Joints'), 'aria-multiselectable': 'true', tabindex: 0, id: 'joints' });
   const actions = element('div', { class: 'row actions' });
   const selectedJoint = () => page.now.selected ?? 0;
-  const pin = button('Pin', () => void studio.togglePin(selectedJoint(), handles.position(selectedJoint()).toArray()), {
-    label: 'Hold this joint where it is, with limbs following', keys: 'P', id: 'pin',
+  const pin = button(say('Pin'), () => void studio.togglePin(selectedJoint(), handles.position(selectedJoint()).toArray()), {
+    label: say('Hold this joint where it is, with limbs following'), keys: 'P', id: 'pin',
   });
-  const reset = button('Reset', () => void studio.resetJoint(selectedJoint()), { label: 'Put this joint back', keys: 'Delete', id: 'reset-joint' });
-  const name = button('Rename', () => rename(), { keys: 'F2', id: 'rename-joint' });
+  const reset = button(say('Reset'), () => void studio.resetJoint(selectedJoint()), { label: say('Put this joint back'), keys: 'Del', id: 'reset-joint' });
+  const name = button(say('Rename'), () => rename(), { keys: 'F2', id: 'rename-joint' });
   actions.append(pin, reset, name);
 
   list.addEventListener('click', (event) => {
@@ -32,7 +34,7 @@ export function outliner(studio: Studio, page: PageStore, handles: HandleView): 
     const joint = page.now.selected, row = joint === null ? null : list.querySelector<HTMLElement>(`#joint-${joint}`);
     if (joint === null || !row) return;
     const before = page.now.session?.joints[joint]?.name ?? '';
-    renameIn(row, 'Name of the joint', before, (wanted) => void studio.renameJoint(joint, wanted));
+    renameIn(row, say('Name of the joint'), before, (wanted) => void studio.renameJoint(joint, wanted));
   };
   list.addEventListener('dblclick', rename);
   list.addEventListener('keydown', (event) => {
@@ -48,10 +50,10 @@ export function outliner(studio: Studio, page: PageStore, handles: HandleView): 
     page.set({ selected: Math.max(0, Math.min(count - 1, from + by)) });
   });
 
-  const title = element('h2', {}, 'Joints');
+  const title = element('h2', {}, say('Joints'));
   page.watch((now, before) => {
     const { session, selected, also } = now;
-    title.textContent = session ? counted(session.joints.length, 'joint') : 'Joints';
+    title.textContent = session ? counted(session.joints.length, 'joint') : say('Joints');
     if (session && (session.joints !== before.session?.joints || list.childElementCount === 0)) {
       const known = before.session?.joints.map((joint) => joint.name).join('\n');
       if (list.childElementCount === 0 || known !== session.joints.map((joint) => joint.name).join('\n')) {
@@ -62,8 +64,10 @@ export function outliner(studio: Studio, page: PageStore, handles: HandleView): 
     for (const row of list.children as HTMLCollectionOf<HTMLElement>) {
       const joint = Number(row.dataset['joint']);
       row.setAttribute('aria-selected', String(joint === selected || also.has(joint)));
+      const notes = [pinned.has(joint) ? say('pinned') : '', session?.locked.includes(joint) ? say('locked') : ''].filter((note) => note !== '');
+      if (notes.length > 0) row.dataset['note'] = notes.join(', ');
+      else delete row.dataset['note'];
       row.classList.toggle('pinned', pinned.has(joint));
-      row.classList.toggle('locked', session?.locked.includes(joint) ?? false);
       if (joint === selected && selected !== before.selected) {
         // The list alone scrolls: on a narrow screen the whole panel would jump.
         const above = row.offsetTop - list.offsetTop, below = above + row.offsetHeight - list.clientHeight;
@@ -74,7 +78,7 @@ export function outliner(studio: Studio, page: PageStore, handles: HandleView): 
     pin.disabled = reset.disabled = name.disabled = selected === null || !session;
     pin.setAttribute('aria-pressed', String(selected !== null && pinned.has(selected)));
   });
-  return element('section', { class: 'card outliner', 'aria-label': 'Outliner' },
+  return element('section', { class: 'card outliner', 'aria-label': say('Contents') },
     meshList(page), clipList(studio, page), pinList(studio, page), targetList(studio, page), title, list, actions, jointActions(studio, page));
 }
 
@@ -90,7 +94,7 @@ function rows({ joints }: SessionState): HTMLElement[] {
     const { joint, depth } = next;
     const { name = '', part = null } = joints[joint] ?? {};
     const row = element('li', { role: 'option', id: `joint-${joint}`, 'data-joint': joint }, name);
-    if (part !== null && plain(part) !== plain(name)) row.dataset['part'] = part;
+    if (part !== null && plain(part) !== plain(name)) row.dataset['part'] = partName(part);
     row.style.setProperty('--depth', String(Math.min(depth, 12)));
     made.push(row);
     for (const child of [...(children.get(joint) ?? [])].reverse()) stack.push({ joint: child, depth: depth + 1 });

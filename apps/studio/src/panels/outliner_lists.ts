@@ -3,6 +3,8 @@ import type { PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
 import { button, element } from '../ui/dom';
 import { renameIn } from '../ui/rename';
+import { jointTitle } from '../words/parts';
+import { inSeconds, say } from '../words/say';
 import { chosenClip } from './moments';
 
 /** A list that folds; it goes away while it is empty. */
@@ -21,16 +23,16 @@ function group(title: string, id: string, open: boolean) {
 }
 
 export function meshList(page: PageStore): HTMLElement {
-  const { root, show } = group('Meshes', 'meshes', false);
+  const { root, show } = group(say('Parts of the model'), 'meshes', false);
   page.watch((now, before) => {
     if (now.model === before.model && now.hiddenParts === before.hiddenParts && now !== before) return;
     show((now.model?.parts ?? []).map(({ name }, part) => {
-      const hidden = now.hiddenParts.has(part), text = name === '' ? `mesh ${part + 1}` : name;
+      const hidden = now.hiddenParts.has(part), text = name === '' ? say('mesh {number}', { number: part + 1 }) : name;
       const eye = button('', () => {
         const parts = new Set(page.now.hiddenParts);
         if (!parts.delete(part)) parts.add(part);
         page.set({ hiddenParts: parts });
-      }, { icon: 'eye', label: `Show ${text}` });
+      }, { icon: 'eye', label: say('Show {name}', { name: text }) });
       eye.setAttribute('aria-pressed', String(!hidden));
       const row = element('li', {}, element('span', { class: 'text' }, text), eye);
       row.classList.toggle('off', hidden);
@@ -40,14 +42,22 @@ export function meshList(page: PageStore): HTMLElement {
   return root;
 }
 
+/** What a person calls it, with its name in the file beside. */
+function jointPick(page: PageStore, known: { name: string; part: string | null } | undefined, joint: number): HTMLElement {
+  const title = jointTitle(known), name = known?.name ?? '';
+  const pick = button(title, () => page.set({ selected: joint }), { label: say('Select {joint}', { joint: title === name ? name : `${title}, ${name}` }) });
+  pick.classList.add('joint-pick');
+  if (title !== name) pick.append(element('span', { class: 'number' }, name));
+  return pick;
+}
+
 export function targetList(studio: Studio, page: PageStore): HTMLElement {
-  const { root, show } = group('Pinned joints', 'targets', true);
+  const { root, show } = group(say('Pinned joints'), 'targets', true);
   page.watch(({ session }, before) => {
     if (session?.targets === before.session?.targets && session !== null && session === before.session) return;
     show((session?.targets ?? []).map(({ joint }) => {
-      const name = session?.joints[joint]?.name ?? '';
-      const pick = button(name, () => page.set({ selected: joint }), { label: `Select ${name}` });
-      return element('li', {}, pick, button('', () => void studio.clearTarget(joint), { icon: 'erase', label: `Let go of ${name}` }));
+      const known = session?.joints[joint], title = jointTitle(known);
+      return element('li', {}, jointPick(page, known, joint), button('', () => void studio.clearTarget(joint), { icon: 'erase', label: say('Let go of {joint}', { joint: title }) }));
     }));
   });
   return root;
@@ -55,22 +65,22 @@ export function targetList(studio: Studio, page: PageStore): HTMLElement {
 
 /** Joints of a template that the user corrected. */
 export function pinList(studio: Studio, page: PageStore): HTMLElement {
-  const { root, show } = group('Corrected joints', 'pins', true);
+  const { root, show } = group(say('Corrected joints'), 'pins', true);
   page.watch(({ session }, before) => {
     if (session?.pins === before.session?.pins && session !== null && session === before.session) return;
     show((session?.pins ?? []).map(({ joint }) => {
-      const pick = button(joint, () => page.set({ selected: session!.joints.findIndex(({ name }) => name === joint) }), { label: `Select ${joint}` });
-      return element('li', {}, pick, button('', () => void studio.unpinJoint(joint), { icon: 'erase', label: `${joint} as it was found` }));
+      const place = session!.joints.findIndex(({ name }) => name === joint), known = session!.joints[place] ?? { name: joint, part: null };
+      return element('li', {}, jointPick(page, known, place), button('', () => void studio.unpinJoint(joint), { icon: 'erase', label: say('{joint} as it was found', { joint: jointTitle(known) }) }));
     }));
   });
   return root;
 }
 
 export function clipList(studio: Studio, page: PageStore): HTMLElement {
-  const { root, list, show } = group('Clips', 'clip-list', true);
+  const { root, list, show } = group(say('Clips'), 'clip-list', true);
   const rename = (row: HTMLElement) => {
     const name = row.dataset['clip'] ?? '';
-    renameIn(row, 'Name of the clip', name, (wanted) => void studio.renameClip(name, wanted));
+    renameIn(row, say('Name of the clip'), name, (wanted) => void studio.renameClip(name, wanted));
   };
   list.addEventListener('dblclick', (event) => {
     const row = (event.target as Element).closest<HTMLElement>('[data-clip]');
@@ -84,12 +94,12 @@ export function clipList(studio: Studio, page: PageStore): HTMLElement {
     drawn = now;
     show((session?.clips ?? []).map(({ name, duration }) => {
       const pick = element('button', { type: 'button', class: 'button pick', 'aria-pressed': String(name === chosen?.name) },
-        element('span', { class: 'text' }, name), element('span', { class: 'number' }, `${duration.toFixed(1)} s`));
+        element('span', { class: 'text' }, name), element('span', { class: 'number' }, inSeconds(duration, 1)));
       pick.addEventListener('click', () => {
         if (chosenClip(page.now.session)?.name !== name) void studio.chooseClip(name);
       });
       const row = element('li', { 'data-clip': name }, pick,
-        button('', () => rename(row), { icon: 'edit', label: `Rename ${name}` }));
+        button('', () => rename(row), { icon: 'edit', label: say('Rename {name}', { name }) }));
       return row;
     }));
   });

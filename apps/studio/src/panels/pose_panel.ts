@@ -3,33 +3,35 @@ import type { Display, DragMode, PageState, PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
 import { counted } from '../ui/counted';
 import { button, choice, element } from '../ui/dom';
+import { say } from '../words/say';
 import { exactFields } from './exact_fields';
 
 const mostHandles = 200;
 
 export function posePanel(studio: Studio, page: PageStore): HTMLElement {
-  const mode = choice<DragMode>('What dragging a handle does', [
-    { value: 'move', text: 'Move', icon: 'move', keys: 'G' },
-    { value: 'turn', text: 'Turn', icon: 'turn', keys: 'R' },
+  const mode = choice<DragMode>(say('What dragging a handle does'), [
+    { value: 'move', text: say('Move'), icon: 'move', keys: 'G' },
+    { value: 'turn', text: say('Turn'), icon: 'turn', keys: 'R' },
   ], (value) => page.set({ mode: value }));
-  const ik = button('Limbs follow', () => void studio.toggleIk(), {
-    keys: 'I', label: 'Limbs follow: inverse kinematics, a handle takes its limb along', id: 'ik',
+  const ik = button(say('Limbs follow'), () => void studio.toggleIk(), {
+    keys: 'I', label: say('Limbs follow: inverse kinematics, a handle takes its limb along'), id: 'ik',
   });
-  const both = button('Both sides', () => page.set({ bothSides: !page.now.bothSides }), {
-    keys: 'S', label: 'What is dragged on one side is done on the other as well', id: 'both-sides',
+  const both = button(say('Both sides'), () => page.set({ bothSides: !page.now.bothSides }), {
+    keys: 'S', label: say('What is dragged on one side is done on the other as well'), id: 'both-sides',
   });
-  const mirror = button('Mirror', () => void studio.mirrorPose(), { keys: 'M', label: 'Swap the pose of left and right', id: 'mirror' });
-  const reset = button('Reset', () => void studio.resetPose(), { keys: 'Alt+R', label: 'Put all joints back', id: 'reset' });
-  const rest = button('Make it the rest', () => void studio.setRestPose(), { label: 'The pose becomes the one that the model rests in', id: 'rest-pose' });
-  const display = choice<Display>('What is shown', [
-    { value: 'handles', text: 'Handles' }, { value: 'surface', text: 'Surface' },
-    { value: 'weights', text: 'Weights' }, { value: 'joint-weights', text: 'By joint' },
+  const mirror = button(say('Mirror'), () => void studio.mirrorPose(), { keys: 'M', label: say('Swap the pose of left and right'), id: 'mirror' });
+  const reset = button(say('Reset'), () => void studio.resetPose(), { keys: 'Alt+R', label: say('Put all joints back'), id: 'reset' });
+  const rest = button(say('New rest pose'), () => void studio.setRestPose(), { label: say('The pose becomes the one that the model rests in'), id: 'rest-pose' });
+  const display = choice<Display>(say('What is shown'), [
+    { value: 'handles', text: say('Handles') }, { value: 'surface', text: say('Surface'), label: say('The model alone') },
+    { value: 'weights', text: say('Areas'), label: say('Which area each joint moves (weights), each in its colour') },
+    { value: 'joint-weights', text: say('By joint'), label: say('What the selected joint moves (weights): red much, blue nothing') },
   ], (value) => page.set({ display: value }));
-  const toggle = (text: string, key: 'bones' | 'wireframe' | 'gizmo' | 'limits') => {
+  const toggle = (text: string, key: 'bones' | 'wireframe' | 'gizmo' | 'limits', title = text) => {
     const box = element('input', { type: 'checkbox', id: key });
     box.addEventListener('change', () => page.set({ [key]: box.checked }));
     page.watch((now) => { box.checked = now[key]; });
-    return element('label', { class: 'check' }, box, text);
+    return element('label', { class: 'check', title }, box, text);
   };
   page.watch(({ session, mode: nowMode, display: nowDisplay, bothSides }) => {
     mode.show(nowMode);
@@ -39,14 +41,15 @@ export function posePanel(studio: Studio, page: PageStore): HTMLElement {
     ik.disabled = both.disabled = mirror.disabled = !session;
     reset.disabled = rest.disabled = !session?.posed;
   });
-  return element('section', { class: 'card pose', 'aria-label': 'Posing' },
+  return element('section', { class: 'card pose', 'aria-label': say('Posing') },
     handleCount(studio, page),
     element('div', { class: 'row' }, mode.root, ik),
     element('div', { class: 'row' }, both, mirror),
     element('div', { class: 'row' }, reset, rest),
     display.root,
-    element('div', { class: 'row checks' }, toggle('Bones', 'bones'), toggle('Wireframe', 'wireframe'),
-      toggle('Arrows', 'gizmo'), toggle('Limits', 'limits')),
+    element('div', { class: 'row checks' }, toggle(say('Bones'), 'bones'), toggle(say('Mesh lines'), 'wireframe'),
+      toggle(say('Arrows'), 'gizmo', say('Arrows and rings on the selected joint, for exact work (gizmo)')),
+      toggle(say('Limits'), 'limits', say('How far joints may turn'))),
     limits(studio, page), exactFields(studio, page));
 }
 
@@ -58,8 +61,8 @@ function limits(studio: Studio, page: PageStore): HTMLElement {
     if (chosen) void studio.openLimits(chosen);
     file.value = '';
   });
-  const open = button('Load limits', () => file.click(), { icon: 'open', label: 'How far joints may turn (JSON)', id: 'load-limits' });
-  const remove = button('Remove', () => void studio.run({ do: 'set_limits', limits: '' }), { id: 'remove-limits' });
+  const open = button(say('Load limits'), () => file.click(), { icon: 'open', label: say('How far joints may turn (JSON)'), id: 'load-limits' });
+  const remove = button(say('Remove'), () => void studio.run({ do: 'set_limits', limits: '' }), { id: 'remove-limits' });
   const row = element('div', { class: 'row' }, file, open, remove);
   page.watch(({ session, limits: shown }) => {
     row.hidden = !shown || !session;
@@ -93,7 +96,7 @@ function handleCount(studio: Studio, page: PageStore): HTMLElement {
     number.textContent = String(count);
     void studio.setHandles(count);
   });
-  const marks = element('div', { class: 'marks', role: 'group', 'aria-label': 'Suggested numbers of handles' });
+  const marks = element('div', { class: 'marks', role: 'group', 'aria-label': say('Suggested numbers of handles') });
   let marked = '';
   page.watch((now) => {
     slider.disabled = !now.session;
@@ -108,7 +111,7 @@ function handleCount(studio: Studio, page: PageStore): HTMLElement {
     marked = `${suggestions} ${most(now)}`;
     marks.replaceChildren(...apart(suggestions.map((count) => ({ count, at: toPlace(count) / steps }))).map(({ count, at }) => {
       const mark = button(String(count), () => void studio.setHandles(count), {
-        label: `${counted(count, 'handle')}${suggestions[0] === count ? ', the best suggestion' : ', suggested'}`,
+        label: say(suggestions[0] === count ? '{handles}, the best suggestion' : '{handles}, suggested', { handles: counted(count, 'handle') }),
       });
       mark.classList.add('mark');
       mark.classList.toggle('best', suggestions[0] === count);
@@ -117,7 +120,7 @@ function handleCount(studio: Studio, page: PageStore): HTMLElement {
     }));
   });
   return element('div', { class: 'handle-count' },
-    element('div', { class: 'row spread' }, element('label', { for: 'handles' }, 'Handles'), number), slider, marks);
+    element('div', { class: 'row spread' }, element('label', { for: 'handles' }, say('Handles')), number), slider, marks);
 }
 
 /** The best of them that have room beside each other on the scale, in their order on it. */

@@ -3,19 +3,20 @@ import { samples } from '../app/samples';
 import type { Journal, KeptDocument } from '../app/journal';
 import type { Studio } from '../app/studio';
 import { button, element } from '../ui/dom';
+import { language, say } from '../words/say';
 
-const when = new Intl.DateTimeFormat(undefined, { dateStyle: 'medium', timeStyle: 'short' });
+const when = new Intl.DateTimeFormat(language, { dateStyle: 'medium', timeStyle: 'short' });
 
 export function recent(studio: Studio, journal: Journal): { button: HTMLElement; dialog: HTMLDialogElement } {
   const list = element('ul', { class: 'recent-list' });
-  const none = element('p', { class: 'detail' }, 'What you open is kept here, in this browser alone.');
-  const dialog = element('dialog', { id: 'recent', class: 'recent', 'aria-label': 'Recent' },
-    element('h2', {}, 'Samples'),
-    element('div', { class: 'row' }, ...samples.map(([name, text]) => button(text, () => {
+  const none = element('p', { class: 'detail' }, say('What you open is kept here, in this browser alone.'));
+  const dialog = element('dialog', { id: 'recent', class: 'recent', 'aria-label': say('Recent') },
+    element('h2', {}, say('Samples')),
+    element('div', { class: 'row' }, ...samples.map(([name, text]) => button(say(text), () => {
       dialog.close();
       void studio.openSample(name);
     }))),
-    element('h2', {}, 'Recent'), none, list, button('Close', () => dialog.close(), { id: 'close-recent' }));
+    element('h2', {}, say('Recent')), none, list, button(say('Close'), () => dialog.close(), { id: 'close-recent' }));
 
   const row = (kept: KeptDocument) => {
     const pick = element('button', { type: 'button', class: 'button pick' },
@@ -25,7 +26,7 @@ export function recent(studio: Studio, journal: Journal): { button: HTMLElement;
       dialog.close();
       void studio.openKept(kept);
     });
-    const away = button('', () => void journal.forget(kept.id).then(show), { icon: 'erase', label: `Forget ${kept.name}` });
+    const away = button('', () => void journal.forget(kept.id).then(show), { icon: 'erase', label: say('Forget {name}', { name: kept.name }) });
     return element('li', {}, pick, away);
   };
   const show = async () => {
@@ -33,6 +34,6 @@ export function recent(studio: Studio, journal: Journal): { button: HTMLElement;
     none.hidden = others.length > 0;
     list.replaceChildren(...others.map(row));
   };
-  const opener = button('Recent', () => void show().then(() => dialog.showModal()), { icon: 'recent', id: 'open-recent', label: 'What was worked on before' });
+  const opener = button(say('Recent'), () => void show().then(() => dialog.showModal()), { icon: 'recent', id: 'open-recent', label: say('What was worked on before') });
   return { button: opener, dialog };
 }

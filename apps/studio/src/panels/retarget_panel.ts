@@ -5,7 +5,10 @@ import type { PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
 import { counted } from '../ui/counted';
 import { element } from '../ui/dom';
-import { compareButton, methodName } from './methods_panel';
+import { methodName, methodSummary } from '../words/engine';
+import { partName } from '../words/parts';
+import { say } from '../words/say';
+import { compareButton } from './methods_panel';
 import { chosenClip } from './moments';
 
 const doubtful = 0.75;
@@ -20,22 +23,22 @@ export function retargetPanel(studio: Studio, page: PageStore): HTMLElement {
   const shown = element('input', { type: 'checkbox', id: 'source-shown' });
   shown.addEventListener('change', () => page.set({ sourceShown: shown.checked }));
   const rows = element('tbody');
-  const summary = element('summary', {}, 'Matched joints');
+  const summary = element('summary', {}, say('Matched joints'));
   const from = element('p', { class: 'from' });
   let drawn = '', choices = '';
   // Parts of this clip that were taken out of the match, to be put in again.
   let half: SessionState['match'] = [], halfOf = '';
-  const card = element('section', { class: 'card retarget', 'aria-label': 'Motion', id: 'retarget', hidden: true },
-    element('h2', {}, 'Motion'), from,
-    element('div', { class: 'field' }, element('label', { for: 'method' }, 'Method'), method, compareButton(studio, page, 'retargeting')),
-    element('label', { class: 'field' }, 'Hands reach', reach),
-    element('label', { class: 'check' }, contacts, 'Feet stay planted'),
-    element('label', { class: 'check' }, shown, 'The other character beside it'),
+  const card = element('section', { class: 'card retarget', 'aria-label': say('Motion'), id: 'retarget', hidden: true },
+    element('h2', {}, say('Motion')), from,
+    element('div', { class: 'field' }, element('label', { for: 'method' }, say('Method')), method, compareButton(studio, page, 'retargeting')),
+    element('label', { class: 'field' }, say('Hands reach'), reach),
+    element('label', { class: 'check' }, contacts, say('Feet stay planted')),
+    element('label', { class: 'check' }, shown, say('The other character beside it')),
     element('details', {}, summary,
-      element('table', { id: 'match' }, element('thead', {}, element('tr', {}, element('td'), element('th', {}, 'Motion'), element('th', {}, 'Model'))), rows)));
+      element('table', { id: 'match' }, element('thead', {}, element('tr', {}, element('td'), element('th', {}, say('Motion')), element('th', {}, say('Model')))), rows)));
   page.watch(({ session, methods, sourceModel, sourceShown }) => {
     if (methods && method.childElementCount === 0) {
-      method.append(...methods.retargeting.map(({ name, summary }) => element('option', { value: name, title: summary }, methodName(name))));
+      method.append(...methods.retargeting.map((each) => element('option', { value: each.name, title: methodSummary(each) }, methodName(each.name))));
     }
     shown.checked = sourceShown;
     shown.parentElement!.hidden = sourceModel === null;
@@ -48,7 +51,7 @@ export function retargetPanel(studio: Studio, page: PageStore): HTMLElement {
     reach.disabled = source.method !== 'limb-ik';
     contacts.checked = source.contacts;
     const unsure = session.match.filter((match) => match.by !== 'file' && match.confidence < doubtful).length;
-    summary.textContent = counted(session.match.length, 'part') + ' matched' + (unsure > 0 ? `, ${unsure} to look at` : '');
+    summary.textContent = say(unsure > 0 ? '{parts} matched, {unsure} to look at' : '{parts} matched', { parts: counted(session.match.length, 'part'), unsure });
     const taken = new Set(session.match.map(({ part }) => part));
     if (halfOf !== clip.name) half = [];
     halfOf = clip.name;
@@ -71,9 +74,9 @@ export function retargetPanel(studio: Studio, page: PageStore): HTMLElement {
       };
       const color = element('i', { class: 'swatch' });
       color.style.background = `#${jointColor(index).getHexString()}`;
-      const row = element('tr', { title: match.part }, element('td', {}, color),
-        element('td', {}, jointsSelect(`${match.part} in the motion`, sources, match.source, change('source'))),
-        element('td', {}, jointsSelect(`${match.part} in the model`, targets, match.target, change('target'))));
+      const row = element('tr', { title: partName(match.part) }, element('td', {}, color),
+        element('td', {}, jointsSelect(say('{part} in the motion', { part: partName(match.part) }), sources, match.source, change('source'))),
+        element('td', {}, jointsSelect(say('{part} in the model', { part: partName(match.part) }), targets, match.target, change('target'))));
       row.classList.toggle('unsure', match.by !== 'file' && match.confidence < doubtful);
       return row;
     }));

@@ -8,8 +8,15 @@ import type { Viewport } from '../scene/viewport';
 import { button, element, offer } from '../ui/dom';
 import { recent } from './recent';
 import { chosenClip } from './moments';
+import { say, type Words } from '../words/say';
 
 const filmRate = 30; // pictures a second
+/** What leaves the page besides GLB. */
+const outlets: [string, Words][] = [
+  ['obj', 'OBJ, posed surface'], ['stl', 'STL, posed surface'], ['bvh', 'BVH, the clip'], ['usdz', 'USDZ, for AR Quick Look'],
+  ['limber', 'Limber file, everything to go on with'], ['session', 'Session in a GLB'], ['record', 'Commands, for limber session replay'],
+  ['png', 'Picture (PNG)'], ['webm', 'Film of the clip (WebM)'],
+];
 const types = { glb: 'model/gltf-binary', obj: 'model/obj', stl: 'model/stl', bvh: 'text/plain', session: 'model/gltf-binary' };
 
 export function toolbar(studio: Studio, page: PageStore, journal: Journal, viewport: Viewport, model: ModelView): HTMLElement {
@@ -22,8 +29,8 @@ export function toolbar(studio: Studio, page: PageStore, journal: Journal, viewp
     if (chosen.length > 0) void studio.openFiles(chosen);
     file.value = '';
   });
-  const sample = element('select', { 'aria-label': 'Open a sample', class: 'select', id: 'samples' },
-    element('option', { value: '' }, 'Samples'), ...samples.map(([value, text]) => element('option', { value }, text)));
+  const sample = element('select', { 'aria-label': say('Open a sample'), class: 'select', id: 'samples' },
+    element('option', { value: '' }, say('Samples')), ...samples.map(([value, text]) => element('option', { value }, say(text))));
   sample.addEventListener('change', () => {
     if (sample.value !== '') void studio.openSample(sample.value);
     sample.value = '';
@@ -60,9 +67,10 @@ export function toolbar(studio: Studio, page: PageStore, journal: Journal, viewp
     const record = await studio.record();
     if (record) offer(record, 'application/json', `${stem()}_commands.json`);
   };
-  const exporter = element('select', { 'aria-label': 'Save as another format', class: 'select', id: 'export-as' },
-    ...[['', 'More'], ['obj', 'OBJ, posed surface'], ['stl', 'STL, posed surface'], ['bvh', 'BVH, the clip'], ['usdz', 'USDZ, for AR Quick Look'], ['limber', 'Limber file, everything to go on with'], ['session', 'Session in a GLB'],
-      ['record', 'Commands, for limber session replay'], ['png', 'Picture (PNG)'], ['webm', 'Film of the clip (WebM)']].map(([value = '', text = '']) => element('option', { value }, text)));
+  const option = ([value, text]: readonly [string, Words]) => element('option', { value }, say(text));
+  const formats = outlets.map(option);
+  const exporter = element('select', { 'aria-label': say('Save as another format'), class: 'select', id: 'export-as' },
+    option(['', 'More']), ...formats);
   exporter.addEventListener('change', () => {
     const { value } = exporter;
     exporter.value = '';
@@ -75,9 +83,9 @@ export function toolbar(studio: Studio, page: PageStore, journal: Journal, viewp
   });
 
   const ofClip = [...exporter.options].filter(({ value }) => value === 'bvh' || value === 'webm');
-  const undo = button('', () => void studio.undo(), { icon: 'undo', label: 'Undo', keys: 'Ctrl+Z', id: 'undo' });
-  const redo = button('', () => void studio.redo(), { icon: 'redo', label: 'Redo', keys: 'Ctrl+Shift+Z', id: 'redo' });
-  const glb = button('Save GLB', () => void save('glb'), { icon: 'save', kind: 'primary', id: 'save-glb' });
+  const undo = button('', () => void studio.undo(), { icon: 'undo', label: say('Undo'), keys: 'Ctrl+Z', id: 'undo' });
+  const redo = button('', () => void studio.redo(), { icon: 'redo', label: say('Redo'), keys: 'Ctrl+Shift+Z', id: 'redo' });
+  const glb = button(say('Save GLB'), () => void save('glb'), { icon: 'save', kind: 'primary', id: 'save-glb' });
   const name = element('h1', { class: 'name' }, 'limber');
   page.watch(({ session }) => {
     undo.disabled = !session?.undo;
@@ -88,7 +96,7 @@ export function toolbar(studio: Studio, page: PageStore, journal: Journal, viewp
     document.title = session ? `${session.name} \u2013 limber studio` : 'limber studio';
   });
   return element('header', { class: 'bar' },
-    button('Open', () => file.click(), { icon: 'open', id: 'open' }), sample, kept.button, kept.dialog, file, name,
+    button(say('Open'), () => file.click(), { icon: 'open', id: 'open' }), sample, kept.button, kept.dialog, file, name,
     element('div', { class: 'group' }, undo, redo), element('div', { class: 'group' }, glb, exporter),
-    button('', () => page.set({ help: true }), { icon: 'help', label: 'Keyboard and mouse', keys: '?', id: 'help-button' }));
+    button('', () => page.set({ help: true }), { icon: 'help', label: say('Keyboard and mouse'), keys: '?', id: 'help-button' }));
 }

@@ -7,6 +7,7 @@ import {
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import type { Ray, Vector } from '../engine/messages';
 import { element } from '../ui/dom';
+import { say } from '../words/say';
 import { studioLights } from './lights';
 
 export type ViewName = 'front' | 'right' | 'top' | 'start';
@@ -36,7 +37,7 @@ export class Viewport {
     this.canvas = this.renderer.domElement;
     this.canvas.tabIndex = 0;
     this.canvas.setAttribute('role', 'application');
-    this.canvas.setAttribute('aria-label', 'The model. The list of joints does everything that is done here by pointer.');
+    this.canvas.setAttribute('aria-label', say('The model. The list of joints does everything that is done here by pointer.'));
     this.scene.add(...studioLights(), this.ground);
     this.controls = new OrbitControls(this.perspective, this.canvas);
     this.controls.enableDamping = false;

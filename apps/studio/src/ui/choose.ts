@@ -1,5 +1,6 @@
 // A question that is answered by one of a list.
 import { button, element } from './dom';
+import { say } from '../words/say';
 
 /** What was chosen; null where the user thought better of it. */
 export function choose(title: string, label: string, options: string[], yes: string): Promise<string | null> {
@@ -12,7 +13,7 @@ export function choose(title: string, label: string, options: string[], yes: str
     };
     dialog.append(
       element('div', { class: 'field' }, element('label', { for: 'choose-from' }, label), select),
-      element('div', { class: 'row' }, button('Cancel', () => close(null), { id: 'choose-no' }),
+      element('div', { class: 'row' }, button(say('Cancel'), () => close(null), { id: 'choose-no' }),
         button(yes, () => close(select.value), { id: 'choose-yes', kind: 'primary' })));
     dialog.addEventListener('cancel', () => close(null));
     document.body.append(dialog);

@@ -1,4 +1,6 @@
-/** "1 joint", "3 joints"; `many` where an s behind `one` does not make it. */
-export function counted(count: number, one: string, many = `${one}s`): string {
-  return `${count.toLocaleString('en')} ${count === 1 ? one : many}`;
-}
+import { say, type Words } from '../words/say';
+
+type Noun<W> = W extends `{count} ${infer N}s` ? N : never;
+
+/** "1 joint", "3 joints". */
+export const counted = (count: number, noun: Noun<Words>) => say(`{count} ${noun}s`, { count });

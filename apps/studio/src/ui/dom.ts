@@ -1,4 +1,6 @@
 // Small pieces of page. Whatever text goes in becomes a text node, never markup.
+import { keyNames } from '../words/key_names';
+
 type Child = Node | string | null;
 type Attributes = Record<string, string | number | boolean | null>;
 
@@ -76,7 +78,7 @@ export function button(text: string, act: () => void, options: ButtonOptions = {
   const label = options.label ?? text;
   const made = element('button', {
     type: 'button', class: `button ${options.kind ?? 'plain'}`, id: options.id ?? null,
-    'aria-label': text === '' ? label : null, title: options.keys ? `${label} (${options.keys})` : label,
+    'aria-label': text === '' ? label : null, title: options.keys ? `${label} (${keyNames(options.keys)})` : label,
   }, options.icon ? icon(options.icon) : null, text === '' ? null : element('span', {}, text));
   made.addEventListener('click', act);
   return made;
@@ -95,7 +97,7 @@ export function fileInput(id: string, { accept, folder = false }: { accept?: str
 
 /** Buttons of which one is pressed. */
 export function choice<T extends string>(
-  label: string, options: { value: T; text: string; icon?: IconName; keys?: string }[], choose: (value: T) => void,
+  label: string, options: { value: T; text: string; icon?: IconName; keys?: string; label?: string }[], choose: (value: T) => void,
 ): { root: HTMLElement; show(value: T): void } {
   const buttons = options.map(({ value, text, ...rest }) => {
     const made = button(text, () => choose(value), rest);

@@ -1,26 +1,54 @@
-// What the page says, in the language of the browser. English is written where it is said; every other language is one
-// table from the English words to its own, and a text that a table lacks does not compile.
+// What the page says, in the language that is chosen in "More", else in that of the browser. English is written where it
+// is said; every other language is one table from the English words to its own, and a text that a table lacks does not
+// compile. Texts that the engine makes are in engine.ts, parts of bodies in parts.ts.
+import { remembered } from '../app/remembered';
+import { english } from './english';
+import type { Forms } from './forms';
 import { german } from './german';
 
 export type Words = keyof typeof german;
+/** Those that have a singular and plurals, by {count}. */
+export type Counted = { [W in Words]: (typeof german)[W] extends string ? never : W }[Words];
 
-const tables: Record<string, Record<Words, string>> = { de: german };
-export const languages = ['en', ...Object.keys(tables)];
+/** By their tags, as they call themselves. */
+export const languages = { en: 'English', de: 'Deutsch' };
+export type Language = keyof typeof languages;
+const tags = Object.keys(languages) as Language[];
+const tables: Record<Language, Partial<Record<Words, string | Forms>>> = { en: english, de: german satisfies Record<Words, string | Forms> };
 
-/** ?language=de in the address, else the first language of the browser that is known, else English. */
-function chosenLanguage(): string {
+/** What was chosen on this machine; "system" is the browser's own. */
+export const languageChoices = ['system', ...tags] as const;
+export const keptLanguage = () => remembered('language', languageChoices, 'system');
+
+/** ?language=de in the address, else what was chosen, else the first language of the browser that is known, else English. */
+function chosenLanguage(): Language {
   const asked = new URLSearchParams(location.search).get('language');
-  const wanted = [asked, ...navigator.languages].flatMap((tag) => tag?.split('-')[0]?.toLowerCase() ?? []);
-  return wanted.find((tag) => languages.includes(tag)) ?? 'en';
+  const wanted = [asked, keptLanguage(), ...navigator.languages].flatMap((tag) => tag?.split('-')[0]?.toLowerCase() ?? []);
+  for (const tag of wanted) {
+    const known = tags.find((one) => one === tag);
+    if (known) return known;
+  }
+  return 'en';
 }
 
 export const language = chosenLanguage();
-const table = tables[language];
+const table = tables[language], plurals = new Intl.PluralRules(language);
+
+export type Values = Record<string, string | number>;
 
 /** The words, with each {name} in them replaced by its value. */
-export function say(words: Words, values: Record<string, string | number> = {}): string {
-  return (table?.[words] ?? words).replace(/\{(\w+)\}/g, (whole, name: string) => {
+export function say(words: Words, values: Values = {}): string {
+  const entry = table[words] ?? words;
+  const text = typeof entry === 'string' ? entry : entry[plurals.select(Number(values['count']))] ?? entry.other;
+  return text.replace(/\{(\w+)\}/g, (whole, name: string) => {
     const value = values[name];
     return typeof value === 'number' ? value.toLocaleString(language) : value ?? whole;
   });
 }
+
+/** With so many digits behind the point, or the comma. */
+export const number = (value: number, digits = 0) =>
+  value.toLocaleString(language, { minimumFractionDigits: digits, maximumFractionDigits: digits });
+export const percent = (value: number) =>
+  value.toLocaleString(language, { style: 'percent', minimumFractionDigits: 1, maximumFractionDigits: 1 });
+export const inSeconds = (value: number, digits: number) => `${number(value, digits)} s`;
