@@ -72,18 +72,23 @@ async function barriers(of) {
   return violations.flatMap(({ id, nodes }) => nodes.map(({ target, failureSummary }) => `${id}: ${target} ${failureSummary}`));
 }
 
-/** Where the pointer meets that part of the gizmo, near the joint. */
-async function gizmoPart(name, wanted) {
-  const middle = await jointPlace(page, name);
-  for (const radius of [60, 54, 68, 44, 76, 36, 30]) { // rings are 62 wide, arrows longer
-    for (let angle = 0; angle < 360; angle += 12) {
-      const at = { x: middle.x + radius * Math.cos((angle * Math.PI) / 180), y: middle.y + radius * Math.sin((angle * Math.PI) / 180) };
-      await page.mouse.move(at.x, at.y);
-      if (await page.evaluate(() => globalThis.limberStudio.gizmoAxis()) === wanted) return { at, out: [at.x - middle.x, at.y - middle.y] };
-    }
+const ringRadius = 62; // pixels; arrows are a little longer
+/** Where the pointer meets the X of the gizmo, looked for first where it should be from there, in pixels. */
+async function gizmoX(name, [x, y]) {
+  const middle = await jointPlace(page, name), places = [0.95, 1, 0.9, 1.05, 0.8].map((times) => [times * x, times * y]);
+  for (const radius of [60, 54, 68, 44, 36]) {
+    for (let angle = 0; angle < 2 * Math.PI; angle += 0.2) places.push([radius * Math.cos(angle), radius * Math.sin(angle)]);
   }
-  throw new Error(`no ${wanted} at the gizmo`);
+  for (const out of places) {
+    const at = { x: middle.x + out[0], y: middle.y + out[1] };
+    await page.mouse.move(at.x, at.y);
+    if (await page.evaluate(() => globalThis.limberStudio.gizmoAxis()) === 'X') return { at, out };
+  }
+  throw new Error('the gizmo has no X');
 }
+/** Seen from the front: the arrow along that way, and the ring about it where it is at its widest. */
+const arrowAlong = ({ x, y }) => [ringRadius * x, -ringRadius * y];
+const ringAbout = ({ x, y }) => [ringRadius * (y / Math.hypot(x, y)), ringRadius * (x / Math.hypot(x, y))];
 
 let left, right, elbow;
 const cases = {
@@ -234,15 +239,15 @@ const cases = {
       await page.locator('#gizmo-space').selectOption(space);
       const way = axis.clone().applyQuaternion(await frame());
       await press('g');
-      const arrow = await gizmoPart(elbow, 'X'), from = new Vector3(...await jointPosition(page, elbow));
+      const arrow = await gizmoX(elbow, arrowAlong(way)), from = new Vector3(...await jointPosition(page, elbow));
       await dragMouse(arrow.at, arrow.out.map((value) => value * 0.6));
       const moved = new Vector3(...await jointPosition(page, elbow)).sub(from);
       assert.ok(moved.length() > 0.01, `${space}: nothing moved`);
       assert.ok(Math.abs(moved.normalize().dot(way)) > 1 - 1e-5, `${space}: moved along ${moved.toArray()}, not ${way.toArray()}`);
       await press('Control+z');
       await press('r');
-      const ring = await gizmoPart(elbow, 'X'), before = new Quaternion(...(await turned(elbow)).rotation);
-      await dragMouse(ring.at, [-ring.out[1] * 0.5, ring.out[0] * 0.5]);
+      const ring = await gizmoX(elbow, ringAbout(way)), before = new Quaternion(...(await turned(elbow)).rotation);
+      await dragMouse(ring.at, ring.out.map((value) => value * 0.5)); // across the axis, as seen
       const turn = new Quaternion(...(await turned(elbow)).rotation).multiply(before.invert()), about = new Vector3(turn.x, turn.y, turn.z);
       assert.ok(about.length() > 0.02, `${space}: nothing turned`);
       assert.ok(Math.abs(about.normalize().dot(way)) > 1 - 1e-4, `${space}: turned about ${about.toArray()}, not ${way.toArray()}`);
@@ -251,15 +256,16 @@ const cases = {
     }
     await press('g');
     await page.locator('#magnet').click();
-    const { snap: { step } } = await sessionState(page), arrow = await gizmoPart(elbow, 'X');
+    const { snap: { step } } = await sessionState(page), own = axis.clone().applyQuaternion(await spaces.local());
+    const arrow = await gizmoX(elbow, arrowAlong(own));
     await dragMouse(arrow.at, arrow.out.map((value) => value * 0.5));
-    const along = new Vector3(...await jointPosition(page, elbow)).dot(axis.clone().applyQuaternion(await spaces.local()));
+    const along = new Vector3(...await jointPosition(page, elbow)).dot(own);
     assert.ok(Math.abs(along / step - Math.round(along / step)) < 0.02, `${along} along its own axis is no step`);
     await page.locator('#magnet').click();
     await press('Control+z');
     await page.locator('#gizmo-space').selectOption('view');
     await press('3');
-    const across = await gizmoPart(elbow, 'X'), from = await jointPosition(page, elbow);
+    const across = await gizmoX(elbow, [ringRadius, 0]), from = await jointPosition(page, elbow);
     await dragMouse(across.at, across.out.map((value) => value * 0.5));
     const [x, y, z] = (await jointPosition(page, elbow)).map((value, i) => value - from[i]);
     assert.ok(Math.abs(z) > 0.01 && Math.hypot(x, y) < 1e-4, `across the view from the side: ${[x, y, z]}`);
