@@ -123,6 +123,7 @@ class Session {
   struct Runner;
 
   void commit(const Command& command, SessionState next);
+  bool goesOnWithLast(const Command& command) const;
   void start(Asset source, const Command& command, Opening how, Progress& progress);
   void requireOpen() const;
   Bytes fileOf(const std::string& name) const;

@@ -137,6 +137,12 @@ Json matchJson(const SessionState& state) {
   return Json::parse(skeletonMapToJson(source.map, source.motion->skeleton, state.rig->skeleton()))["matches"];
 }
 
+// The same for all joints.
+Json snapJson(const RiggedModel& rig) {
+  const DragSnap snap = snapOf(rig, 0);
+  return {{"degrees", snap.degrees}, {"step", snap.step}};
+}
+
 }  // namespace
 
 std::string sureLabel(const RiggedModel& rig, Index joint) {
@@ -168,6 +174,7 @@ Json sessionState(const Session& session) {
       {"clips", clipsJson(state.movement)},
       {"clip", state.movement.chosen ? Json(*state.movement.chosen) : Json(nullptr)},
       {"seconds", state.movement.seconds},
+      {"snap", snapJson(rig)},
       {"match", matchJson(state)},
       {"targets", Json::array()},
       {"pins", Json::array()},

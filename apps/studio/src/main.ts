@@ -16,11 +16,13 @@ import { methodsPanel } from './panels/methods_panel';
 import { outliner } from './panels/outliner';
 import { paintPanel } from './panels/paint_panel';
 import { posePanel } from './panels/pose_panel';
+import { poseTools } from './panels/pose_tools';
 import { scenePanel } from './panels/scene_panel';
 import { retargetPanel } from './panels/retarget_panel';
 import { facts, status } from './panels/status';
 import { timeline } from './panels/timeline';
 import { samples } from './app/samples';
+import { setTextSize, textSize } from './app/text_size';
 import { toolbar } from './panels/toolbar';
 import { hint, views } from './panels/views';
 import { createStage } from './scene/stage';
@@ -41,6 +43,7 @@ function stageOrApology() {
 }
 
 document.documentElement.lang = language;
+setTextSize(textSize());
 document.querySelector('meta[name=description]')!.setAttribute('content', say('Rig and pose any 3D model, in the browser. Nothing is uploaded.'));
 const page = createPageStore();
 const journal = new Journal();
@@ -52,7 +55,7 @@ const sheet = contactSheet(studio, page, viewport);
 const app = document.getElementById('app')!;
 app.append(
   toolbar(studio, page, journal, viewport, model, others),
-  element('main', { class: 'stage' }, viewport.canvas, facts(page), hint(page), views(viewport), comparisonPanel(studio, page, comparison)),
+  element('main', { class: 'stage' }, viewport.canvas, facts(page), hint(page), poseTools(page), views(viewport), comparisonPanel(studio, page, comparison)),
   element('aside', { class: 'side' }, scenePanel(studio, page, places), posePanel(studio, page), paintPanel(studio, page), retargetPanel(studio, page), methodsPanel(studio, page), outliner(studio, page, handles)),
   timeline(studio, page, sheet.open),
   status(studio, page), help(page), sheet.dialog, motionShelf(studio, page));

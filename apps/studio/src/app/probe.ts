@@ -17,6 +17,8 @@ export interface StudioProbe {
   selected(): number | null;
   /** Metres. */
   position(joint: string): Vector;
+  /** Degrees about x, y and z from the rest pose, and the rotation in the world as x, y, z, w. */
+  turned(joint: string): { turn: Vector; rotation: number[] };
   /** What of the gizmo is under the pointer. */
   gizmoAxis(): string | null;
   /** Where a member of the scene has its origin, in metres; where the middle of its box is drawn, that far up in it, in pixels. */
@@ -33,10 +35,10 @@ declare global {
 export function exposeStage(
   studio: Studio, page: PageStore, viewport: Viewport, handles: HandleView, gizmo: Gizmo, places: Places, kept: () => boolean,
 ) {
-  const position = (name: string) => {
+  const jointOf = (name: string) => {
     const joint = page.now.session?.joints.findIndex((known) => known.name === name) ?? -1;
     if (joint < 0) throw new Error(`no joint is called ${name}`);
-    return handles.position(joint, new Vector3());
+    return joint;
   };
   const onPage = (at: Vector3) => {
     viewport.camera.updateMatrixWorld();
@@ -44,6 +46,9 @@ export function exposeStage(
     const box = viewport.canvas.getBoundingClientRect();
     return { x: box.left + ((x + 1) / 2) * box.width, y: box.top + ((1 - y) / 2) * box.height };
   };
+  const position = (name: string) => handles.position(jointOf(name), new Vector3());
+  let turns: Float32Array = new Float32Array();
+  studio.readStance((stance) => { turns = stance.turns; });
   globalThis.limberStudio = {
     idle: () => studio.idle,
     kept,
@@ -55,6 +60,10 @@ export function exposeStage(
       const box = places.box(member, page.now.session!.members), at = box.getCenter(new Vector3());
       at.y = box.min.y + up * (box.max.y - box.min.y);
       return onPage(at.applyMatrix4(viewport.world.matrix));
+    },
+    turned: (name) => {
+      const [x = 0, y = 0, z = 0, ...rotation] = turns.slice(7 * jointOf(name), 7 * jointOf(name) + 7);
+      return { turn: [x, y, z], rotation };
     },
     memberAt: (member) => new Vector3().setFromMatrixPosition(places.of(member)).toArray(),
     place: (name) => onPage(position(name)),

@@ -27,7 +27,7 @@ export function outliner(studio: Studio, page: PageStore, handles: HandleView): 
     const row = (event.target as Element).closest<HTMLElement>('[data-joint]');
     if (!row) return;
     const joint = Number(row.dataset['joint']);
-    if (event.shiftKey || event.ctrlKey || event.metaKey) studio.selectAlso(joint);
+    if (event.shiftKey || event.ctrlKey || event.metaKey || page.now.selecting) studio.selectAlso(joint);
     else page.set({ selected: joint, also: new Set() });
   });
   const rename = () => {
@@ -93,7 +93,7 @@ function rows({ joints }: SessionState): HTMLElement[] {
   for (let next = stack.pop(); next; next = stack.pop()) {
     const { joint, depth } = next;
     const { name = '', part = null } = joints[joint] ?? {};
-    const row = element('li', { role: 'option', id: `joint-${joint}`, 'data-joint': joint }, name);
+    const row = element('li', { role: 'option', id: `joint-${joint}`, 'data-joint': joint, title: name }, name);
     if (part !== null && plain(part) !== plain(name)) row.dataset['part'] = partName(part);
     row.style.setProperty('--depth', String(Math.min(depth, 12)));
     made.push(row);

@@ -10,6 +10,7 @@ import { ModelView } from './model_view';
 import { OnionView } from './onion_view';
 import { OthersView } from './others_view';
 import { boneColor, partColor } from './palette';
+import { BoxSelect } from './box_select';
 import { BrushView } from './brush_view';
 import { PaintInput } from './paint_input';
 import { PlaceInput } from './place_input';
@@ -56,6 +57,7 @@ export function createStage(studio: Studio, page: PageStore): Stage {
   viewport.tools.push(brush.root);
   new PlaceInput(viewport, places, () => { stand(); shade(); }, studio, page); // before the others, which then see that they are not meant
   new PaintInput(viewport, brush, studio, page);
+  new BoxSelect(viewport, handles, gizmo, studio, page);
   new PointerInput(viewport, handles, gizmo, studio, page);
   const root = new Vector3();
   model.onChange = () => viewport.draw();
@@ -73,6 +75,7 @@ export function createStage(studio: Studio, page: PageStore): Stage {
     others.take(stance.others);
     model.take(stance.skin);
     handles.take(stance.handles);
+    gizmo.take(stance.turns);
     limits.take(handles, stance.skin);
     comparison.take(stance.variants);
     if (handles.count > 0) handles.position(0, root);
@@ -80,7 +83,7 @@ export function createStage(studio: Studio, page: PageStore): Stage {
     root.applyMatrix4(places.of(member));
     // The camera walks along.
     if (ofClip) viewport.follow(root.x - before.x, root.z - before.z, member);
-    gizmo.place(viewport);
+    gizmo.place();
     viewport.draw();
   };
   studio.onWeights = (weights) => {
