@@ -71,11 +71,15 @@ async function reopened() {
 /** The JSON of a GLB. */
 const jsonOf = (glb) => JSON.parse(glb.subarray(20, 20 + glb.readUInt32LE(12)).toString());
 
+/** What a node leaves out where it is as a rule. */
+const withRests = (gltf) => ({
+  ...gltf, nodes: gltf.nodes.map((node) => ({ ...node, translation: node.translation ?? [0, 0, 0], rotation: node.rotation ?? [0, 0, 0, 1], scale: node.scale ?? [1, 1, 1] })),
+});
 /** The sines of two machines may differ in the last bit. */
 function expectAlike(now, before, path) {
   if (typeof before === 'number') return assert.ok(Math.abs(now - before) < 1e-6, path);
   if (before === null || typeof before !== 'object') return assert.equal(now, before, path);
-  assert.deepEqual(Object.keys(now), Object.keys(before), path);
+  assert.deepEqual(Object.keys(now).sort(), Object.keys(before).sort(), path);
   for (const key of Object.keys(before)) expectAlike(now[key], before[key], `${path}/${key}`);
 }
 /** Without waiting for the picture. */
@@ -197,7 +201,7 @@ const cases = {
     const limber = await download(page, () => page.locator('#export-as').selectOption('limber'));
     writeFileSync(join(output, 'scene.limber'), limber);
     execFileSync(program, ['session', 'replay', join(output, 'scene.limber'), '-o', join(output, 'scene_native.glb'), '--quiet']);
-    expectAlike(jsonOf(readFileSync(join(output, 'scene_native.glb'))), jsonOf(glb), '');
+    expectAlike(withRests(jsonOf(readFileSync(join(output, 'scene_native.glb')))), withRests(jsonOf(glb)), '');
   },
   async 'a .limber file brings the scene back'() {
     const before = await standing();

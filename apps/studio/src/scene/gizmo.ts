@@ -66,12 +66,12 @@ export class Gizmo {
     if (this.controls.object !== this.proxy) this.controls.attach(this.proxy);
   }
 
-  /** As the chosen space stands in the world. */
+  /** As the chosen space stands in the model's own. */
   private axes(joint: number, target: Quaternion): Quaternion {
     const { gizmoSpace, session } = this.page.now;
-    if (gizmoSpace === 'view') return target.copy(this.viewport.camera.quaternion);
+    if (gizmoSpace === 'view') return this.viewport.camera.getWorldQuaternion(target);
     const of = gizmoSpace === 'local' ? joint : gizmoSpace === 'parent' ? session?.joints[joint]?.parent ?? -1 : -1;
-    return of < 0 || this.turns.length < 7 * (of + 1) ? target.identity() : target.fromArray(this.turns, 7 * of + 3);
+    return of < 0 || this.turns.length < 7 * (of + 1) ? this.viewport.world.getWorldQuaternion(target) : target.fromArray(this.turns, 7 * of + 3);
   }
 
   private snap() {
