@@ -92,6 +92,10 @@ async function walk(locale) {
   await note('renaming');
   await at.locator('#rename').press('Escape');
   await click('#gizmo');
+  await click('#exact summary');
+  await click('#select-several');
+  await note('exact values');
+  await click('#select-several');
   await click('#limits');
   await click('#paint');
   await note('painting');
