@@ -21,6 +21,7 @@ import { retargetPanel } from './panels/retarget_panel';
 import { facts, status } from './panels/status';
 import { timeline } from './panels/timeline';
 import { samples } from './app/samples';
+import { setTextSize, textSize } from './app/text_size';
 import { toolbar } from './panels/toolbar';
 import { hint, views } from './panels/views';
 import { createStage } from './scene/stage';
@@ -41,6 +42,7 @@ function stageOrApology() {
 }
 
 document.documentElement.lang = language;
+setTextSize(textSize());
 document.querySelector('meta[name=description]')!.setAttribute('content', say('Rig and pose any 3D model, in the browser. Nothing is uploaded.'));
 const page = createPageStore();
 const journal = new Journal();

@@ -7,10 +7,9 @@
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
-import { createRequire } from 'node:module';
 import { join, resolve } from 'node:path';
 import { walkBvh } from './walk_bvh.mjs';
-import { answer, chooseMotion, download, jointPosition, launch, motionPlayed, openStudio, runCases, serve, sessionState, settled } from './page.mjs';
+import { answer, barriers, chooseMotion, download, jointPosition, launch, motionPlayed, openStudio, runCases, serve, sessionState, settled } from './page.mjs';
 
 const [dist, program, output] = process.argv.slice(2).map((path) => resolve(path));
 const rounds = Number(process.env.LIMBER_ROUNDS ?? 6);
@@ -117,14 +116,6 @@ function zipOf(files) {
 }
 
 const walk = () => chooseMotion(page, 'walk');
-
-const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
-/** What keeps people out who read with ears or press keys, and text that cannot be made out; each with where. */
-async function barriers(of) {
-  await of.evaluate(axe);
-  const { violations } = await of.evaluate(() => globalThis.axe.run(document, { resultTypes: ['violations'] }));
-  return violations.flatMap(({ id, nodes }) => nodes.map(({ target, failureSummary }) => `${id}: ${target} ${failureSummary}`));
-}
 
 const cases = {
   async 'killed at any moment, the page comes back as it stood'() {

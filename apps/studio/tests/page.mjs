@@ -2,6 +2,7 @@
 import { createServer } from 'node:http';
 import { existsSync, readFileSync } from 'node:fs';
 import { extname, join, normalize } from 'node:path';
+import { createRequire } from 'node:module';
 import { chromium } from 'playwright-core';
 
 const types = { '.html': 'text/html', '.js': 'text/javascript', '.css': 'text/css', '.wasm': 'application/wasm', '.glb': 'model/gltf-binary' };
@@ -90,6 +91,14 @@ export async function runCases(cases, page, output) {
   }
   console.log(`${passed} passed, ${failed} failed`);
   return failed;
+}
+
+const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
+/** What keeps people out who read with ears or press keys, and text that cannot be made out; each with where. */
+export async function barriers(of) {
+  await of.evaluate(axe);
+  const { violations } = await of.evaluate(() => globalThis.axe.run(document, { resultTypes: ['violations'] }));
+  return violations.flatMap(({ id, nodes }) => nodes.map(({ target, failureSummary }) => `${id}: ${target} ${failureSummary}`));
 }
 
 /** Where a joint is drawn, in pixels of the page. */

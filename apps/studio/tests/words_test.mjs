@@ -5,11 +5,10 @@
 // Ends with "N passed, N failed".
 import assert from 'node:assert/strict';
 import { mkdirSync, readFileSync, readdirSync, statSync } from 'node:fs';
-import { createRequire } from 'node:module';
 import { dirname, join, resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import ts from 'typescript';
-import { jointPlace, launch, openStudio, runCases, serve, sessionState, settled } from './page.mjs';
+import { barriers, launch, openStudio, runCases, serve, sessionState, settled } from './page.mjs';
 
 const [dist, output] = process.argv.slice(2).map((path) => resolve(path));
 const sources = join(dirname(fileURLToPath(import.meta.url)), '../src'), repository = join(sources, '../../..');
@@ -20,6 +19,7 @@ let page;
 
 const filesIn = (folder, ending) => readdirSync(folder, { recursive: true }).map((name) => join(folder, name))
   .filter((path) => path.endsWith(ending) && statSync(path).isFile());
+const escaped = (text) => text.replace(/[\\^$.*+?()[\]{}|/]/g, '\\$&');
 const { outputText } = ts.transpileModule(readFileSync(join(sources, 'words/german.ts'), 'utf8'), { compilerOptions: { module: ts.ModuleKind.ESNext } });
 const { german } = await import(`data:text/javascript,${encodeURIComponent(outputText)}`);
 
@@ -38,7 +38,7 @@ const texts = (of) => of.evaluate(() => {
   const walker = document.createTreeWalker(document.documentElement, NodeFilter.SHOW_ELEMENT | NodeFilter.SHOW_TEXT);
   for (let node = walker.nextNode(); node; node = walker.nextNode()) {
     if (node.nodeType === Node.TEXT_NODE) {
-      if (!node.parentElement.closest('script, style, [lang=en] :not(html), .detail[lang=en]')) add(node.data);
+      if (!node.parentElement.closest('script, style, .detail[lang=en]')) add(node.data);
       continue;
     }
     for (const name of ['title', 'aria-label', 'placeholder', 'alt', 'aria-valuetext', 'content']) if (!node.matches('meta:not([name=description])')) add(node.getAttribute(name));
@@ -53,6 +53,7 @@ const texts = (of) => of.evaluate(() => {
 /** Goes everywhere, and gives each text with where it was met first. */
 async function walk(locale) {
   const { page: at, context } = await open({ locale });
+  at.setDefaultTimeout(60_000);
   const met = new Map(), names = new Set();
   const note = async (where, asked = false) => {
     if (!asked) await settled(at);
@@ -120,23 +121,18 @@ async function walk(locale) {
   await click('#open-sheet');
   await note('contact sheet');
   await close('contact-sheet');
+  await at.locator('#handles').evaluate((slider) => { slider.value = '250'; slider.dispatchEvent(new Event('input')); });
+  await note('few handles');
   await click('#open-shelf');
   await at.locator('#shelf-samples [data-motion=gallop]:not([aria-busy])').waitFor();
   await at.locator('[data-motion=gallop]').hover();
   await note('shelf');
-  await click('#shelf-samples [data-motion=walk]');
-  await click('#play[aria-pressed=true]');
-  await note('motion');
-  await at.locator('#samples').selectOption('robot');
-  await at.waitForFunction(() => globalThis.limberStudio.state().name === 'robot');
-  await at.locator('#handles').evaluate((slider) => { slider.value = '250'; slider.dispatchEvent(new Event('input')); });
-  await note('few handles');
-  await click('#open-shelf');
   await at.locator('#shelf-samples [data-motion=walk]').click();
   await at.locator('#ask').waitFor();
   await note('question for a skeleton', true);
-  await at.locator('#ask-no').click();
-  await at.locator('#rigger').selectOption('template');
+  await at.locator('#ask-yes').click();
+  await click('#play[aria-pressed=true]');
+  await note('motion');
   await click('#correct');
   await note('correcting');
   await click('#correct');
@@ -151,15 +147,29 @@ async function walk(locale) {
   return { met, names, language };
 }
 
+/** Texts wider than what they stand in, panels that lie on each other or stick out of the page. */
+const cutOff = (of) => of.evaluate(() => {
+  const shown = [...document.querySelectorAll('button, label, summary, h2, h3, dt, th')].filter((one) => one.checkVisibility() && one.clientWidth > 0);
+  const cut = shown.filter((one) => one.scrollWidth > one.clientWidth + 1).map(({ id, textContent, scrollWidth, clientWidth }) => `${id} ${textContent}: ${scrollWidth} > ${clientWidth}`);
+  const panels = ['.bar', '.stage', '.side', '.timeline'].flatMap((selector) => {
+    const one = document.querySelector(selector);
+    return one.checkVisibility() ? [{ selector, box: one.getBoundingClientRect() }] : [];
+  });
+  const out = panels.filter(({ box }) => box.left < -1 || box.top < -1 || box.right > innerWidth + 1 || box.bottom > innerHeight + 1).map(({ selector }) => `${selector} is off the page`);
+  const over = panels.flatMap((a, i) => panels.slice(i + 1).filter(({ box }) => a.box.left < box.right - 1 && box.left < a.box.right - 1 && a.box.top < box.bottom - 1 && box.top < a.box.bottom - 1)
+    .map((b) => `${a.selector} lies on ${b.selector}`));
+  return [...cut, ...out, ...over];
+});
+
 const cases = {
   async 'every text is in German, and nothing is left in English'() {
-    const [english, other] = [await walk('en-US'), await walk('de-DE')];
+    const [english, other] = await Promise.all([walk('en-US'), walk('de-DE')]);
     assert.deepEqual([english.language, other.language], ['en', 'de']);
     const same = Object.entries(german).filter(([key, value]) => value === key).map(([key]) => key);
     // Names of files, joints and methods, addresses; units; the program's own name.
     const plain = (text) => [...other.names, ...english.names, ...same, 'limber', 'limber studio', 'Deutsch', 'English']
-      .sort((a, b) => b.length - a.length).reduce((left, name) => left.replaceAll(name, ''), text);
-    const left = [...other.met].filter(([text]) => english.met.has(text) && /\p{L}{2}/u.test(plain(text).replace(/\b(mm|cm\/s|s|BVH|GLB|PNG|WebM|OBJ|STL|JSON)\b|\S+\.\w+/g, '')));
+      .filter((name) => name !== '').sort((a, b) => b.length - a.length).reduce((left, name) => left.replaceAll(new RegExp(`(?<![\\p{L}\\d])${escaped(name)}(?![\\p{L}\\d])`, 'gu'), ''), text);
+    const left = [...other.met].filter(([text]) => english.met.has(text) && /\p{L}{2}/u.test(plain(text).replace(/\b(mm|cm\/s|s|BVH|GLB|PNG|WebM|OBJ|STL|JSON|Alt)\b|\S+\.\w+/g, '')));
     assert.deepEqual(left, [], 'the same in both languages');
   },
   'every entry of the table is used'() {
@@ -169,6 +179,95 @@ const cases = {
       return written.includes(`'${key.replaceAll('\u2026', '\\u2026').replaceAll('\u2019', '\\u2019')}'`) || (noun && new RegExp(`counted\\([^;]*'${noun}'\\)`).test(written));
     };
     assert.deepEqual(Object.keys(german).filter((key) => !used(key)), []);
+  },
+  'sentences and kinds of the engine that have words are still the engine\u2019s'() {
+    const engine = filesIn(join(repository, 'limber'), '.cpp').map((path) => readFileSync(path, 'utf8')).join('\n');
+    const table = readFileSync(join(sources, 'words/engine.ts'), 'utf8'), part = (from, to) => table.slice(table.indexOf(from), table.indexOf(to));
+    const sentences = [...part('const sentences', 'const errors').matchAll(/'((?:the|no|neither|is|a) [^']*)'/g)].map(([, text]) => text.replaceAll('"', '\\"'));
+    const kinds = [...part('const warnings', 'type Warning').matchAll(/'([a-z-]+)':/g)].map(([, kind]) => kind);
+    const methods = [...part('const methods', 'export const methodName').matchAll(/'([a-z-]+)': \{/g)].map(([, name]) => name);
+    assert.ok(sentences.length > 4 && kinds.length > 10 && methods.length > 10);
+    assert.deepEqual([...sentences, ...kinds, ...methods].filter((text) => !engine.includes(`"${text}"`)), []);
+  },
+  async 'a language and a size of the text that are chosen are kept'() {
+    const { page: at, context } = await open();
+    const said = () => at.evaluate(() => [document.documentElement.lang, document.querySelector('#open').textContent, getComputedStyle(document.documentElement).fontSize]);
+    const choose = async (value, reloaded) => {
+      await Promise.all([reloaded ? at.waitForEvent('load') : null, at.locator('#export-as').selectOption(value)]);
+      await settled(at);
+    };
+    await choose('largest', false);
+    await choose('de', true);
+    assert.deepEqual(await said(), ['de', '\u00d6ffnen', '24px']);
+    assert.equal((await sessionState(at)).name, 'biped');
+    await choose('normal', false);
+    await choose('system', true);
+    assert.deepEqual(await said(), ['en', 'Open', '16px']);
+    await context.close();
+  },
+  async 'text of twice the size is nowhere cut off, and no panel lies on another'() {
+    for (const [width, height, large] of [[1280, 800, 32], [390, 844, 24]]) {
+      const { page: at, context } = await open({ locale: 'de-DE', width, height, touch: width < 500 });
+      const inBothSizes = async (where) => {
+        for (const size of [16, large]) {
+          await at.evaluate((pixels) => { document.documentElement.style.fontSize = `${pixels}px`; }, size);
+          await settled(at);
+          assert.deepEqual(await cutOff(at), [], `${width} x ${height}, ${size} px, ${where}`);
+          await at.screenshot({ path: join(output, `words_${width}_${size}_${where}.png`) });
+        }
+      };
+      for (const selector of ['#joints li:nth-child(9)', '#pin', '#limits', '#paint', '#methods summary']) await at.locator(selector).click();
+      await inBothSizes('panels');
+      await at.locator('#paint').click();
+      await at.locator('#add-clip').click();
+      await settled(at);
+      await at.locator('#open-keys').click();
+      await inBothSizes('keys');
+      await context.close();
+    }
+  },
+  async 'what keys do, fingers can do'() {
+    const { page: at, context } = await open({ locale: 'de-DE', width: 390, height: 844, touch: true, isMobile: true });
+    const written = readFileSync(join(sources, 'app/shortcuts.ts'), 'utf8');
+    const keys = [...written.slice(written.indexOf('const plain'), written.indexOf('addEventListener')).matchAll(/^ {4}'(.+?)':|^ {4}.*, '(.)': /gm)].map(([, key, other]) => key ?? other);
+    assert.ok(keys.length > 20);
+    // Two fingers zoom.
+    const fingers = { '+': 'main canvas', '-': 'main canvas', '[': '#brush-size', ']': '#brush-size' };
+    const buttons = {
+      g: '.pose [data-value=move]', r: '.pose [data-value=turn]', i: '#ik', s: '#both-sides', m: '#mirror', p: '#pin', h: '[data-value=surface]', f: '#whole-model', Home: '#whole-model',
+      Delete: '#reset-joint', 1: '#view-front', 3: '#view-right', 7: '#view-top', 5: '#view-flat', ' ': '#play', k: '#add-key', b: '#paint', l: '#lock-joint', x: '#gizmo', '?': '#help-button',
+      z: '#undo', Z: '#redo', y: '#redo', o: '#open',
+    };
+    await at.locator('#joints li:nth-child(9)').tap();
+    await at.locator('#paint').tap();
+    await at.locator('#add-clip').tap();
+    await settled(at);
+    for (const key of keys) {
+      const control = at.locator(fingers[key] ?? buttons[key] ?? `#no-equivalent-of-${key}`).first();
+      assert.ok(await control.isVisible(), `nothing does what ${key} does`);
+      const box = await (await control.evaluate((one) => one.matches('[type=checkbox]')) ? control.locator('..') : control).boundingBox();
+      assert.ok(box.height >= 43.5, `${key}: ${box.height} pixels high`);
+    }
+    const before = (await sessionState(at)).joints.length;
+    await at.locator('#fewer-handles').tap();
+    await settled(at);
+    assert.ok((await sessionState(at)).joints.length < before);
+    await at.locator('#help-button').tap();
+    const help = await at.locator('#help').textContent();
+    assert.match(help, /Was Finger tun/);
+    assert.doesNotMatch(help, /Strg|Umschalt\+|Entf/);
+    assert.deepEqual(await barriers(at), []);
+    await context.close();
+  },
+  async 'nothing keeps people out in German, and nothing moves where that is not wanted'() {
+    const { page: at, context } = await open({ locale: 'de-DE', reducedMotion: 'reduce', colorScheme: 'dark' });
+    await at.locator('#joints li:nth-child(9)').click();
+    await at.locator('#methods summary').click();
+    await at.locator('#add-clip').click();
+    await settled(at);
+    assert.deepEqual(await barriers(at), []);
+    assert.deepEqual(await at.evaluate(() => [...document.querySelectorAll('*')].filter((one) => parseFloat(getComputedStyle(one).transitionDuration) > 0).map(({ id }) => id)), []);
+    await context.close();
   },
 };
 

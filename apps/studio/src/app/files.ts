@@ -1,6 +1,6 @@
 // Files as a user brings them: one, several that belong together, a folder, a ZIP archive.
 import { unzipSync } from 'three/examples/jsm/libs/fflate.module.js';
-import { EngineError, refusal } from '../engine/client';
+import { EngineError, refusal, unreadable } from '../engine/client';
 import { say } from '../words/say';
 
 const mostUnpacked = 500e6, mostFiles = 1000; // bytes and files that an archive holds
@@ -42,7 +42,7 @@ export function unpack(archive: Uint8Array, name: string): Map<string, Uint8Arra
     return new Map(Object.entries(entries));
   } catch (error) {
     if (error instanceof EngineError) throw error;
-    throw refusal(say('the archive cannot be read'), name, String(error instanceof Error ? error.message : error));
+    throw unreadable(name, error);
   }
 }
 

@@ -8,7 +8,7 @@ import { MTLLoader } from 'three/examples/jsm/loaders/MTLLoader.js';
 import { OBJLoader } from 'three/examples/jsm/loaders/OBJLoader.js';
 import { PLYLoader } from 'three/examples/jsm/loaders/PLYLoader.js';
 import { STLLoader } from 'three/examples/jsm/loaders/STLLoader.js';
-import { EngineError, refusal } from '../engine/client';
+import { EngineError, refusal, unreadable } from '../engine/client';
 import { say } from '../words/say';
 
 function meshOf(geometry: BufferGeometry): Object3D {
@@ -107,7 +107,7 @@ export async function toGlb(bytes: Uint8Array, name: string, beside = new Map<st
     await readers.loaded();
   } catch (error) {
     if (error instanceof EngineError) throw error;
-    throw refusal(say('the file cannot be read'), name, String(error instanceof Error ? error.message : error));
+    throw unreadable(name, error);
   }
   const others: Object3D[] = [];
   let meshes = 0;

@@ -12,6 +12,11 @@ export class EngineError extends Error {
 /** What the page itself refuses, in its own language. */
 export const refusal = (message: string, where = '', remedy = '') => new EngineError({ code: 'page', message, where, remedy });
 
+/** What a reader of other formats says, which speaks English. */
+export const unreadable = (name: string, why: unknown) => new EngineError({
+  code: 'file', message: 'the file cannot be read', where: name, remedy: why instanceof Error ? why.message : String(why),
+});
+
 const cancelled: LimberError = { code: 'cancelled', message: 'stopped', where: '', remedy: '' };
 
 /** What was left in the middle of a drag stays as far as it went. */

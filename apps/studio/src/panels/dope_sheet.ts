@@ -30,7 +30,7 @@ export function dopeSheet(studio: Studio, page: PageStore, actions: KeyActions):
   let drawn: unknown = null, end = 1, gesture: Gesture | null = null, dragged = false;
 
   const laneWidth = () => {
-    const label = parseFloat(getComputedStyle(lanes).getPropertyValue('--label'));
+    const label = lanes.querySelector<HTMLElement>('.label')?.offsetWidth ?? 0;
     return Math.max(1, lanes.clientWidth - label - 2 * inset);
   };
   const secondsPerPixel = () => end / laneWidth();

@@ -93,7 +93,7 @@ function rows({ joints }: SessionState): HTMLElement[] {
   for (let next = stack.pop(); next; next = stack.pop()) {
     const { joint, depth } = next;
     const { name = '', part = null } = joints[joint] ?? {};
-    const row = element('li', { role: 'option', id: `joint-${joint}`, 'data-joint': joint }, name);
+    const row = element('li', { role: 'option', id: `joint-${joint}`, 'data-joint': joint, title: name }, name);
     if (part !== null && plain(part) !== plain(name)) row.dataset['part'] = partName(part);
     row.style.setProperty('--depth', String(Math.min(depth, 12)));
     made.push(row);

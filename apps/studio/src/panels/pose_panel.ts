@@ -86,20 +86,26 @@ function handleCount(studio: Studio, page: PageStore): HTMLElement {
     slider.setAttribute('aria-valuetext', counted(count, 'handle'));
     void studio.setHandles(count);
   });
+  const step = (by: number) => {
+    const count = Math.max(1, Math.min(most(page.now), studio.handleCount + by));
+    slider.valueAsNumber = toPlace(count);
+    number.textContent = String(count);
+    void studio.setHandles(count);
+  };
   // A step of the keyboard is a handle more or less.
   slider.addEventListener('keydown', (event) => {
     const by = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, PageUp: 10, PageDown: -10 }[event.key];
     if (by === undefined) return;
     event.preventDefault();
-    const count = Math.max(1, Math.min(most(page.now), studio.handleCount + by));
-    slider.valueAsNumber = toPlace(count);
-    number.textContent = String(count);
-    void studio.setHandles(count);
+    step(by);
   });
+  const fewer = button('\u2212', () => step(-1), { label: say('One handle fewer'), id: 'fewer-handles' });
+  const more = button('+', () => step(1), { label: say('One handle more'), id: 'more-handles' });
+  for (const each of [fewer, more]) each.classList.add('step');
   const marks = element('div', { class: 'marks', role: 'group', 'aria-label': say('Suggested numbers of handles') });
   let marked = '';
   page.watch((now) => {
-    slider.disabled = !now.session;
+    slider.disabled = fewer.disabled = more.disabled = !now.session;
     if (!now.session) return;
     const { joints, suggestions } = now.session;
     if (!studio.settingHandles) {
@@ -120,14 +126,14 @@ function handleCount(studio: Studio, page: PageStore): HTMLElement {
     }));
   });
   return element('div', { class: 'handle-count' },
-    element('div', { class: 'row spread' }, element('label', { for: 'handles' }, say('Handles')), number), slider, marks);
+    element('div', { class: 'row spread' }, element('label', { for: 'handles' }, say('Handles')), element('span', { class: 'number' }, fewer, number, more)), slider, marks);
 }
 
 /** The best of them that have room beside each other on the scale, in their order on it. */
 function apart<T extends { at: number }>(marks: T[]): T[] {
-  const kept: T[] = [];
+  const kept: T[] = [], room = 0.07 * parseFloat(getComputedStyle(document.documentElement).fontSize) / 16;
   for (const mark of marks) {
-    if (kept.every(({ at }) => Math.abs(at - mark.at) > 0.07)) kept.push(mark);
+    if (kept.every(({ at }) => Math.abs(at - mark.at) > room)) kept.push(mark);
   }
   return kept.sort((a, b) => a.at - b.at);
 }

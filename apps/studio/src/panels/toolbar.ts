@@ -6,17 +6,13 @@ import type { Studio } from '../app/studio';
 import type { ModelView } from '../scene/model_view';
 import type { Viewport } from '../scene/viewport';
 import { button, element, offer } from '../ui/dom';
+import { moreMenu } from './more_menu';
 import { recent } from './recent';
 import { chosenClip } from './moments';
-import { say, type Words } from '../words/say';
+import { say } from '../words/say';
 
 const filmRate = 30; // pictures a second
-/** What leaves the page besides GLB. */
-const outlets: [string, Words][] = [
-  ['obj', 'OBJ, posed surface'], ['stl', 'STL, posed surface'], ['bvh', 'BVH, the clip'], ['usdz', 'USDZ, for AR Quick Look'],
-  ['limber', 'Limber file, everything to go on with'], ['session', 'Session in a GLB'], ['record', 'Commands, for limber session replay'],
-  ['png', 'Picture (PNG)'], ['webm', 'Film of the clip (WebM)'],
-];
+const ofClip = new Set(['bvh', 'webm']);
 const types = { glb: 'model/gltf-binary', obj: 'model/obj', stl: 'model/stl', bvh: 'text/plain', session: 'model/gltf-binary' };
 
 export function toolbar(studio: Studio, page: PageStore, journal: Journal, viewport: Viewport, model: ModelView): HTMLElement {
@@ -67,22 +63,14 @@ export function toolbar(studio: Studio, page: PageStore, journal: Journal, viewp
     const record = await studio.record();
     if (record) offer(record, 'application/json', `${stem()}_commands.json`);
   };
-  const option = ([value, text]: readonly [string, Words]) => element('option', { value }, say(text));
-  const formats = outlets.map(option);
-  const exporter = element('select', { 'aria-label': say('Save as another format'), class: 'select', id: 'export-as' },
-    option(['', 'More']), ...formats);
-  exporter.addEventListener('change', () => {
-    const { value } = exporter;
-    exporter.value = '';
-    if (value === 'png') void savePicture();
-    else if (value === 'webm') void saveFilm();
-    else if (value === 'usdz') void saveUsdz();
-    else if (value === 'limber') offer(studio.limberFile() as BlobPart, 'application/zip', `${stem()}.limber`);
-    else if (value === 'record') void saveRecord();
-    else if (value === 'obj' || value === 'stl' || value === 'bvh' || value === 'session') void save(value);
+  const more = moreMenu((outlet) => {
+    if (outlet === 'png') void savePicture();
+    else if (outlet === 'webm') void saveFilm();
+    else if (outlet === 'usdz') void saveUsdz();
+    else if (outlet === 'limber') offer(studio.limberFile() as BlobPart, 'application/zip', `${stem()}.limber`);
+    else if (outlet === 'record') void saveRecord();
+    else void save(outlet);
   });
-
-  const ofClip = [...exporter.options].filter(({ value }) => value === 'bvh' || value === 'webm');
   const undo = button('', () => void studio.undo(), { icon: 'undo', label: say('Undo'), keys: 'Ctrl+Z', id: 'undo' });
   const redo = button('', () => void studio.redo(), { icon: 'redo', label: say('Redo'), keys: 'Ctrl+Shift+Z', id: 'redo' });
   const glb = button(say('Save GLB'), () => void save('glb'), { icon: 'save', kind: 'primary', id: 'save-glb' });
@@ -90,13 +78,13 @@ export function toolbar(studio: Studio, page: PageStore, journal: Journal, viewp
   page.watch(({ session }) => {
     undo.disabled = !session?.undo;
     redo.disabled = !session?.redo;
-    glb.disabled = exporter.disabled = !session;
-    ofClip.forEach((option) => { option.disabled = chosenClip(session) === null; });
+    glb.disabled = !session;
+    for (const option of more.outlets) option.disabled = !session || (ofClip.has(option.value) && chosenClip(session) === null);
     name.textContent = session?.name ?? 'limber';
     document.title = session ? `${session.name} \u2013 limber studio` : 'limber studio';
   });
   return element('header', { class: 'bar' },
     button(say('Open'), () => file.click(), { icon: 'open', id: 'open' }), sample, kept.button, kept.dialog, file, name,
-    element('div', { class: 'group' }, undo, redo), element('div', { class: 'group' }, glb, exporter),
+    element('div', { class: 'group' }, undo, redo), element('div', { class: 'group' }, glb, more.root),
     button('', () => page.set({ help: true }), { icon: 'help', label: say('Keyboard and mouse'), keys: '?', id: 'help-button' }));
 }
