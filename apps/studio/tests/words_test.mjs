@@ -265,6 +265,9 @@ const cases = {
     assert.deepEqual(await at.evaluate(() => [...document.querySelectorAll('*')].filter((one) => parseFloat(getComputedStyle(one).transitionDuration) > 0).map(({ id }) => id)), []);
     await context.close();
   },
+  'the console stayed without errors'() {
+    assert.deepEqual(errors, []);
+  },
 };
 
 const failed = await runCases(cases, () => page, output);
