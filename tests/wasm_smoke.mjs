@@ -101,6 +101,9 @@ cases['a session: the pose that the native program makes of its record'] = () =>
   console.log(`a drag's update: ${((performance.now() - started) / updates).toFixed(3)} ms at ${joints.length} joints`);
   run({ do: 'end_drag' });
   run({ do: 'turn_joint', joint: joints[1].name, axis: [0, 1, 0.5], degrees: 25 });
+  run({ do: 'set_turn', joint: joints[1].name, turn: [10, -20, 30], with: [joints[2].name] });
+  session.turns().turns.slice(7, 10).forEach((value, i) => assert.ok(Math.abs(value - [10, -20, 30][i]) < 1e-4));
+  run({ do: 'place_joint', joint: tip.name, position: [x + 0.1, y + 0.1, 0] });
   run({ do: 'set_handles', count: 30 });
   run({ do: 'mirror_pose', from: 'left' });
   const glb = session.export('glb').bytes;

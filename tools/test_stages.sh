@@ -214,6 +214,7 @@ studio_in_browser() {
     counted node apps/studio/tests/keep_test.mjs dist build/release/limber "$output/studio" &&
     counted node apps/studio/tests/dope_test.mjs dist "$output/studio" &&
     counted node apps/studio/tests/pose_test.mjs dist "$output/studio" &&
+    counted node apps/studio/tests/tools_test.mjs dist "$output/studio" &&
     counted node apps/studio/tests/paint_test.mjs dist "$output/studio" &&
     counted node apps/studio/tests/shelf_test.mjs dist "$output/studio" &&
     counted node apps/studio/tests/words_test.mjs dist "$output/studio"

@@ -33,7 +33,7 @@ import createEngine from './limber_engine.mjs';
  *                      joint_keys: { joint: number, seconds: number[] }[], interpolation: 'step' | 'linear' | 'cubic',
  *                      source: { motion: string, clip: string, method: string, reach: number,
  *                                contacts: boolean } | null }[],
- *             clip: number | null, seconds: number,
+ *             clip: number | null, seconds: number, snap: { degrees: number, step: number },
  *             match: { part: string, source: string[], target: string[], confidence: number, by: string }[],
  *             limits: { [joint: string]: { type: string, [field: string]: unknown } },
  *             limit_outlines: { joint: number, length: number, closed: boolean, rim: Vector[] }[],
@@ -196,6 +196,13 @@ function createSession(engine, handle = engine._limber_session_new()) {
     handles: () => {
       const result = call(engine, engine._limber_session_handles, [handle]);
       return result.ok ? { ok: true, handles: new Float32Array(result.bytes.buffer) } : result;
+    },
+    /** For each joint how it is turned: from its rest pose, in degrees about x, y and z as set_turn takes them, and in the
+     *  world, as a quaternion x, y, z, w.
+     *  @type {() => { ok: true, turns: Float32Array } | Failure} */
+    turns: () => {
+      const result = call(engine, engine._limber_session_turns, [handle]);
+      return result.ok ? { ok: true, turns: new Float32Array(result.bytes.buffer) } : result;
     },
     /** The surface as bound. @type {() => { ok: true, model: SurfaceModel } | Failure} */
     model: () => {

@@ -74,6 +74,18 @@ std::vector<float> handleArray(const limber::SessionState& state) {
   return values;
 }
 
+// #J times its turn from the rest pose, degrees about x, y and z, and its rotation in the world: x, y, z, w.
+std::vector<float> turnArray(const limber::SessionState& state) {
+  std::vector<float> values;
+  const std::vector<limber::Affine> globals = limber::poseGlobals(state.rig->skeleton(), state.pose);
+  for (Index j = 0; j < globals.size(); ++j) {
+    const limber::Transform& rest = state.rig->skeleton().joints[j].rest;
+    append(values, limber::pointFromRest(state.pose.locals[j], rest).turn);
+    append(values, limber::decompose(globals[j]).rotation.coeffs());
+  }
+  return values;
+}
+
 constexpr Index kSlots = 4;  // influences that a page draws with
 
 // The strongest of each vertex, scaled to a sum of 1; a vertex without any follows joint 0.
@@ -320,6 +332,10 @@ LIMBER_EXPORT CallResult* limber_session_skin(const SessionHandle* handle) {
 
 LIMBER_EXPORT CallResult* limber_session_handles(const SessionHandle* handle) {
   return guarded({}, [&]() -> CallResult { return {true, bytesOf(handleArray(handle->session.state())), "{}"}; });
+}
+
+LIMBER_EXPORT CallResult* limber_session_turns(const SessionHandle* handle) {
+  return guarded({}, [&]() -> CallResult { return {true, bytesOf(turnArray(handle->session.state())), "{}"}; });
 }
 
 LIMBER_EXPORT CallResult* limber_session_model(const SessionHandle* handle) {

@@ -23,7 +23,7 @@ void eachPose(const Movement& movement, const Skeleton& skeleton, std::span<cons
   }
 }
 
-// Of up to a whole turn, as the quaternion's sign says.
+// Degrees.
 Vec3 rotationVector(const Quat& rotation) {
   const double sine = rotation.vec().norm();
   if (sine < 1e-12) return Vec3::Zero();
@@ -80,13 +80,17 @@ std::vector<CurvePoint> jointCurve(const Movement& movement, const Skeleton& ske
   const Transform& rest = skeleton.joints[joint].rest;
   std::vector<CurvePoint> curve;
   eachPose(movement, skeleton, moments, [&](const Pose& pose) {
-    Quat turn = rest.rotation.conjugate() * pose.locals[joint].rotation;
-    if (curve.empty() && turn.w() < 0) turn.coeffs() *= -1;
-    const Vec3 vector = rotationVector(turn);
-    curve.push_back({curve.empty() ? vector : unwound(vector, curve.back().turn),
-                     pose.locals[joint].translation - rest.translation});
+    CurvePoint point = pointFromRest(pose.locals[joint], rest);
+    if (!curve.empty()) point.turn = unwound(point.turn, curve.back().turn);
+    curve.push_back(point);
   });
   return curve;
+}
+
+CurvePoint pointFromRest(const Transform& local, const Transform& rest) {
+  Quat turn = rest.rotation.conjugate() * local.rotation;
+  if (turn.w() < 0) turn.coeffs() *= -1;
+  return {rotationVector(turn), local.translation - rest.translation};
 }
 
 void placeFromRest(Transform& local, const Transform& rest, const CurvePoint& point) {

@@ -29,6 +29,8 @@ struct CurvePoint {
 std::vector<CurvePoint> jointCurve(const Movement& movement, const Skeleton& skeleton, Index joint,
                                    std::span<const double> moments);
 
+// By the short way, at most half a turn.
+CurvePoint pointFromRest(const Transform& local, const Transform& rest);
 // The inverse: the joint stands so. Its scale stays.
 void placeFromRest(Transform& local, const Transform& rest, const CurvePoint& point);
 

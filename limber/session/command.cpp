@@ -20,7 +20,7 @@ namespace {
 constexpr int kCommandsVersion = 1;
 
 // In the order of the variant.
-constexpr std::array<std::string_view, 45> kNames = {
+constexpr std::array<std::string_view, 47> kNames = {
     "open_sample",       "open_file",     "set_handles",   "choose_methods", "pin_joint",   "unpin_joint",
     "begin_drag",        "update_drag",   "turn_drag",     "end_drag",       "cancel_drag", "turn_joint",
     "move_joint",        "set_ik",        "set_target",    "clear_target",   "set_limits",  "reset_joint",
@@ -28,7 +28,7 @@ constexpr std::array<std::string_view, 45> kNames = {
     "retarget",          "add_clip",      "remove_clip",   "rename_clip",    "choose_clip", "set_time",
     "set_key",           "move_key",      "delete_key",    "edit_keys",      "delete_keys", "set_joint_key",
     "set_interpolation", "paint_weights", "lock_weights",  "mirror_weights", "add_joint",   "delete_joint",
-    "reparent_joint",    "undo",          "redo"};
+    "reparent_joint",    "place_joint",   "set_turn",      "undo",           "redo"};
 static_assert(kNames.size() == std::variant_size_v<Command>);
 
 // The fields of each command, said once for reading and writing.
@@ -75,11 +75,30 @@ template <class Visitor>
 void visitFields(Visitor& field, UpdateDrag& c) {
   field("ray", c.ray);
   field("view", c.view);
+  field("snap", c.snap);
 }
 template <class Visitor>
 void visitFields(Visitor& field, TurnDrag& c) {
   field("axis", c.axis);
   field("degrees", c.degrees);
+}
+template <class Visitor>
+void visitFields(Visitor& field, EndDrag& c) {
+  field("goes_on", c.goesOn);
+}
+template <class Visitor>
+void visitFields(Visitor& field, PlaceJoint& c) {
+  field("joint", c.joint);
+  field("position", c.position);
+  field("with", c.with);
+  field("mirrored", c.mirrored);
+}
+template <class Visitor>
+void visitFields(Visitor& field, SetTurn& c) {
+  field("joint", c.joint);
+  field("turn", c.turn);
+  field("with", c.with);
+  field("mirrored", c.mirrored);
 }
 template <class Visitor>
 void visitFields(Visitor& field, TurnJoint& c) {
@@ -101,10 +120,12 @@ template <class Visitor>
 void visitFields(Visitor& field, SetTarget& c) {
   field("joint", c.joint);
   field("position", c.position);
+  field("with", c.with);
 }
 template <class Visitor>
 void visitFields(Visitor& field, ClearTarget& c) {
   field("joint", c.joint);
+  field("with", c.with);
 }
 template <class Visitor>
 void visitFields(Visitor& field, SetLimits& c) {
@@ -113,6 +134,7 @@ void visitFields(Visitor& field, SetLimits& c) {
 template <class Visitor>
 void visitFields(Visitor& field, ResetJoint& c) {
   field("joint", c.joint);
+  field("with", c.with);
 }
 template <class Visitor>
 void visitFields(Visitor& field, MirrorPose& c) {
@@ -137,6 +159,7 @@ template <class Visitor>
 void visitFields(Visitor& field, LockWeights& c) {
   field("joint", c.joint);
   field("on", c.on);
+  field("with", c.with);
 }
 template <class Visitor>
 void visitFields(Visitor& field, MirrorWeights& c) {

@@ -68,14 +68,32 @@ struct BeginDrag {
 struct UpdateDrag {
   Ray ray;
   Vec3 view = -Vec3::UnitZ();
+  bool snap = false;  // to round places and angles (snap.h)
 };
 // The dragged joint turns about its own origin, by degrees about an axis; counts from where the drag began, too.
 struct TurnDrag {
   Vec3 axis = Vec3::UnitY();
   double degrees = 0;
 };
-struct EndDrag {};
+struct EndDrag {
+  bool goesOn = false;  // one undo step with the drag that was ended before, where nothing was done between them
+};
 struct CancelDrag {};
+
+// For exact work, what a drag to there does: with inverse kinematics on, the joint takes its limb along.
+struct PlaceJoint {
+  std::string joint;
+  Vec3 position = Vec3::Zero();
+  std::vector<std::string> with = {};  // joints that go as far, the same way
+  bool mirrored = false;               // as of BeginDrag
+};
+// The joint turned so from its rest pose: degrees about the axes of its own frame (a rotation vector).
+struct SetTurn {
+  std::string joint;
+  Vec3 turn = Vec3::Zero();
+  std::vector<std::string> with = {};  // joints that are turned so from theirs
+  bool mirrored = false;               // mirror images turn as far as their originals do
+};
 
 // For exact work: about the joint's own origin, an angle in degrees; and by an offset in metres.
 struct TurnJoint {
@@ -96,9 +114,11 @@ struct SetIk {
 struct SetTarget {
   std::string joint;
   Vec3 position = Vec3::Zero();
+  std::vector<std::string> with = {};  // joints that are held where they are
 };
 struct ClearTarget {
   std::string joint;
+  std::vector<std::string> with = {};  // others that let go
 };
 // The text of a limits file (limits_json.h); empty: no limits.
 struct SetLimits {
@@ -107,6 +127,7 @@ struct SetLimits {
 
 struct ResetJoint {
   std::string joint;
+  std::vector<std::string> with = {};  // others that go back
 };
 struct ResetPose {};
 // Of a model that is its own mirror image: both sides swap their poses, or one side takes the other's. Left is the
@@ -147,6 +168,7 @@ struct PaintWeights {
 struct LockWeights {
   std::string joint;
   bool on = true;
+  std::vector<std::string> with = {};  // others likewise
 };
 // One side's weights for the other side; left is the mirror plane's positive side.
 struct MirrorWeights {
@@ -252,7 +274,7 @@ using Command =
                  ResetPose, MirrorPose, SetRestPose, RenameJoint, AddMotion, AddSampleMotion, RetargetMotion, AddClip,
                  RemoveClip, RenameClip, ChooseClip, SetTime, SetKey, MoveKey, DeleteKey, EditKeys, DeleteKeys,
                  SetJointKey, SetInterpolation, PaintWeights, LockWeights, MirrorWeights, AddJoint, DeleteJoint,
-                 ReparentJoint, Undo, Redo>;
+                 ReparentJoint, PlaceJoint, SetTurn, Undo, Redo>;
 
 // "set_handles", as in JSON.
 std::string_view commandName(const Command& command);

@@ -22,17 +22,17 @@ std::vector<Command> oneOfEach() {
           PinJoint{"leftHand", {0.5, 1, -0.25}},
           UnpinJoint{"leftHand"},
           BeginDrag{"hand.L", DragMode::kTurn, kRay, {0, 0.5, -1}, {"head", "foot.R"}, true},
-          UpdateDrag{kRay, {1, 0, -1}},
+          UpdateDrag{kRay, {1, 0, -1}, true},
           TurnDrag{{0, 2, 1}, -35.5},
-          EndDrag{},
+          EndDrag{true},
           CancelDrag{},
           TurnJoint{"head", {0, 1.0 / 3, 1}, 12.5},
           MoveJoint{"hips", {0.1, -0.2, 0.3}},
           SetIk{false, "fabrik"},
-          SetTarget{"foot.R", {1e-17, 2, 3}},
-          ClearTarget{"foot.R"},
+          SetTarget{"foot.R", {1e-17, 2, 3}, {"foot.L"}},
+          ClearTarget{"foot.R", {"foot.L"}},
           SetLimits{R"({"limber_limits": 1, "joints": {}})"},
-          ResetJoint{"head"},
+          ResetJoint{"head", {"hips"}},
           ResetPose{},
           MirrorPose{MirrorFrom::kRight},
           SetRestPose{},
@@ -53,11 +53,13 @@ std::vector<Command> oneOfEach() {
           SetJointKey{"Knee", 0.5, {0, 30, 0}, {0, 0.1, 0}},
           SetInterpolation{Interpolation::kCubic},
           PaintWeights{"head", PaintMode::kReplace, 0.75, 0.2, true, {{7, 0.25, 0.5}, {8, 0, 1}}},
-          LockWeights{"head", false},
+          LockWeights{"head", false, {"hips"}},
           MirrorWeights{MirrorFrom::kRight},
           AddJoint{"head", {0, 2, 0}, "hat"},
           DeleteJoint{"hat"},
           ReparentJoint{"head", "hips"},
+          PlaceJoint{"hand.L", {0.5, 1, -0.25}, {"head"}, true},
+          SetTurn{"hand.L", {30, -20, 0.125}, {"head"}, true},
           Undo{},
           Redo{}};
 }
@@ -91,6 +93,12 @@ TEST(Command, JsonKeepsEveryCommandAndEveryField) {
   EXPECT_EQ(std::get<PaintWeights>(back[37]).dabs, std::get<PaintWeights>(commands[37]).dabs);
   EXPECT_EQ(std::get<AddJoint>(back[40]).name, "hat");
   EXPECT_EQ(std::get<ReparentJoint>(back[42]).parent, "hips");
+  EXPECT_EQ(std::get<PlaceJoint>(back[43]).position, Vec3(0.5, 1, -0.25));
+  EXPECT_EQ(std::get<SetTurn>(back[44]).turn, Vec3(30, -20, 0.125));
+  EXPECT_EQ(std::get<SetTurn>(back[44]).with, std::vector<std::string>{"head"});
+  EXPECT_TRUE(std::get<UpdateDrag>(back[7]).snap);
+  EXPECT_TRUE(std::get<EndDrag>(back[9]).goesOn);
+  EXPECT_EQ(std::get<ResetJoint>(back[17]).with, std::vector<std::string>{"hips"});
   EXPECT_EQ(std::get<PaintWeights>(back[37]).mode, PaintMode::kReplace);
   EXPECT_EQ(std::get<MoveKey>(back[31]).to, 0.75);
   ASSERT_EQ(std::get<EditKeys>(back[33]).keys.size(), 2u);
@@ -106,6 +114,8 @@ TEST(Command, FieldsThatAreAbsentKeepTheirDefault) {
   const Command command = commandFromJson(Json{{"do", "begin_drag"}, {"joint", "a"}});
   EXPECT_EQ(std::get<BeginDrag>(command).mode, DragMode::kMove);
   EXPECT_EQ(std::get<BeginDrag>(command).view, Vec3(0, 0, -1));
+  EXPECT_FALSE(std::get<UpdateDrag>(commandFromJson(Json{{"do", "update_drag"}})).snap);
+  EXPECT_FALSE(std::get<EndDrag>(commandFromJson(Json{{"do", "end_drag"}})).goesOn);
   const Command retarget = commandFromJson(Json{{"do", "retarget"}, {"motion", "walk"}});
   EXPECT_EQ(std::get<RetargetMotion>(retarget).method, "limb-ik");
   EXPECT_TRUE(std::get<RetargetMotion>(retarget).map.empty());

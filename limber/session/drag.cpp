@@ -6,6 +6,7 @@
 
 #include "limber/core/error.h"
 #include "limber/ik/rotation.h"
+#include "limber/session/clip_curves.h"
 #include "limber/skeleton/chain.h"
 
 namespace limber {
@@ -74,16 +75,28 @@ Drag::Drag(DragScene scene, Index joint, DragMode mode, const Ray& ray, const Ve
   gripAtStart_ = grip(ray, view).value_or(globals_[joint].translation());
 }
 
-std::optional<Pose> Drag::at(const Ray& ray, const Vec3& view) {
+std::optional<Pose> Drag::at(const Ray& ray, const Vec3& view, bool snapping) {
   const std::optional<Vec3> now = grip(ray, view);
   if (!now) return std::nullopt;
-  Pose pose = scene_.start;
-  if (mode_ == DragMode::kTurn) {
-    const Quat rotation = turnUnderPointer(*now, unit(view, "the view"));
-    for (const auto& [joint, reflection] : moved_) turnAboutParent(joint, reflected(rotation, reflection), pose);
-  } else {
-    move(*now - gripAtStart_, pose);
+  if (mode_ == DragMode::kMove) {
+    const Vec3 offset = *now - gripAtStart_;
+    return moved(snapping ? snappedOffset(offset) : offset);
   }
+  const Quat turn = turnUnderPointer(*now, unit(view, "the view"));
+  const Quat rotation = snapping ? snapTurn(scene_.snap, turn) : turn;
+  Pose pose = scene_.start;
+  for (const DragFollower& m : moved_) turnAboutParent(m.joint, reflected(rotation, m.reflection), pose);
+  pull_->solve(pose, targets_);
+  return pose;
+}
+
+Pose Drag::moved(const Vec3& offset) {
+  Pose pose = scene_.start;
+  for (std::size_t p = 0; p < pulled_.size(); ++p) {
+    const DragFollower& m = moved_[pulled_[p]];
+    targets_[p].position = globals_[m.joint].translation() + m.reflection * offset;
+  }
+  for (const std::size_t m : slid_) slide(moved_[m].joint, moved_[m].reflection * offset, pose);
   pull_->solve(pose, targets_);
   return pose;
 }
@@ -91,8 +104,18 @@ std::optional<Pose> Drag::at(const Ray& ray, const Vec3& view) {
 Pose Drag::turned(const Vec3& axis, double degrees) {
   Pose pose = scene_.start;
   const Quat rotation(Eigen::AngleAxisd(degrees * kPi / 180, unit(axis, "the axis")));
-  for (const auto& [joint, reflection] : moved_) {
-    swing(joint, globals_[joint].translation(), reflected(rotation, reflection), pose);
+  for (const DragFollower& m : moved_) {
+    swing(m.joint, globals_[m.joint].translation(), reflected(rotation, m.reflection), pose);
+  }
+  pull_->solve(pose, targets_);
+  return pose;
+}
+
+Pose Drag::turnedTo(const Vec3& turn) {
+  Pose pose = scene_.start;
+  for (const DragFollower& m : moved_) {
+    const Quat rotation = turnTo(m.imageOf.value_or(m.joint), turn);
+    swing(m.joint, globals_[m.joint].translation(), reflected(rotation, m.reflection), pose);
   }
   pull_->solve(pose, targets_);
   return pose;
@@ -106,12 +129,9 @@ std::optional<Vec3> Drag::grip(const Ray& ray, const Vec3& view) const {
   return ray.origin + depth_ / cosine * direction;
 }
 
-void Drag::move(const Vec3& offset, Pose& pose) {
-  for (std::size_t p = 0; p < pulled_.size(); ++p) {
-    const auto& [joint, reflection] = moved_[pulled_[p]];
-    targets_[p].position = globals_[joint].translation() + reflection * offset;
-  }
-  for (const std::size_t m : slid_) slide(moved_[m].joint, moved_[m].reflection * offset, pose);
+Vec3 Drag::snappedOffset(const Vec3& offset) const {
+  const Vec3 place = globals_[joint()].translation();
+  return snapPlace(scene_.snap, place + offset) - place;
 }
 
 void Drag::slide(Index joint, const Vec3& offset, Pose& pose) const {
@@ -130,6 +150,15 @@ Quat Drag::turnUnderPointer(const Vec3& grip, const Vec3& view) const {
   const Vec3 before = lever(gripAtStart_), after = lever(grip);
   const double angle = std::atan2(view.dot(before.cross(after)), before.dot(after));
   return Quat(Eigen::AngleAxisd(angle, view));
+}
+
+// In the world, from how the joint stood at the start to how it is to stand.
+Quat Drag::turnTo(Index joint, const Vec3& turn) const {
+  const std::optional<Index> parent = scene_.skeleton->joints[joint].parent;
+  const Quat above = parent ? decompose(globals_[*parent]).rotation : Quat::Identity();
+  Transform wanted = scene_.start.locals[joint];
+  placeFromRest(wanted, scene_.skeleton->joints[joint].rest, {turn, Vec3::Zero()});
+  return above * wanted.rotation * scene_.start.locals[joint].rotation.conjugate() * above.conjugate();
 }
 
 void Drag::turnAboutParent(Index joint, const Quat& rotation, Pose& pose) const {

@@ -6,13 +6,15 @@
 
 #include "limber/session/command.h"
 #include "limber/session/limb_pull.h"
+#include "limber/session/snap.h"
 
 namespace limber {
 
 // A joint that does what the dragged one does: the same way or, as its mirror image, reflected.
 struct DragFollower {
   Index joint = 0;
-  Mat3 reflection = Mat3::Identity();  // of directions in world space
+  Mat3 reflection = Mat3::Identity();           // of directions in world space
+  std::optional<Index> imageOf = std::nullopt;  // the joint whose mirror image it is
 };
 
 // What a drag works on. The skeleton and the limits must outlive it.
@@ -25,6 +27,7 @@ struct DragScene {
   double rollRadius = 1;         // metres: a root that the pointer moves this far rolls by one radian
   std::string_view solver = kLimbSolver;
   std::vector<DragFollower> followers = {};
+  DragSnap snap = {};  // of the dragged joint
 };
 
 class Drag {
@@ -34,23 +37,33 @@ class Drag {
 
   // The pose when the pointer is there; it depends on nothing that happened between. None where the ray does not meet
   // the plane in which the joint is dragged. Errors as of the constructor. Cost: that of a pose and, with inverse
-  // kinematics, of a solve: well under a millisecond at 100 joints.
-  std::optional<Pose> at(const Ray& ray, const Vec3& view);
+  // kinematics, of a solve: well under a millisecond at 100 joints. `snapping`: the joint's place, or its turn, is the
+  // nearest round one.
+  std::optional<Pose> at(const Ray& ray, const Vec3& view, bool snapping = false);
+
+  // The pose with the joint moved by that offset in the world, from where it stood at the start: pulled by its limb in
+  // a drag that moves, with inverse kinematics.
+  Pose moved(const Vec3& offset);
 
   // The pose with the joint turned about its own origin, from how it stood at the start. Throws Error kBadArgument for
   // an axis without direction.
   Pose turned(const Vec3& axis, double degrees);
 
+  // The pose with the joint, and those that do as it does, turned so from their rest poses (CurvePoint::turn); mirror
+  // images turn as far as their originals do.
+  Pose turnedTo(const Vec3& turn);
+
   Index joint() const { return moved_.front().joint; }
   // The joint and its followers.
-  const std::vector<DragFollower>& moved() const { return moved_; }
+  const std::vector<DragFollower>& dragged() const { return moved_; }
   const Pose& start() const { return scene_.start; }
 
  private:
   std::optional<Vec3> grip(const Ray& ray, const Vec3& view) const;
-  void move(const Vec3& offset, Pose& pose);
   void slide(Index joint, const Vec3& offset, Pose& pose) const;
+  Vec3 snappedOffset(const Vec3& offset) const;
   Quat turnUnderPointer(const Vec3& grip, const Vec3& view) const;
+  Quat turnTo(Index joint, const Vec3& turn) const;
   void turnAboutParent(Index joint, const Quat& rotation, Pose& pose) const;
   void swing(Index joint, const Vec3& pivot, const Quat& rotation, Pose& pose) const;
 

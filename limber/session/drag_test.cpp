@@ -143,5 +143,46 @@ TEST(Drag, RaysThatMissThePlaneChangeNothing) {
   EXPECT_THROW(drag.at({kEye, kView}, Vec3::Constant(NAN)), Error);
 }
 
+TEST(Drag, SnappedTheJointIsOnTheGrid) {
+  const Skeleton skeleton = twoArmedBody(BoneShape::kSphere);
+  const Vec3 hand = at(skeleton, restPose(skeleton), kHand);
+  DragScene scene = sceneOf(skeleton);
+  scene.snap.step = 0.25;
+  Drag drag(scene, kHand, DragMode::kMove, through(hand), kView);
+  const Vec3 place = at(skeleton, drag.at(through(hand + Vec3(0.3, -0.4, 0)), kView, true).value(), kHand);
+  EXPECT_LT((place - Vec3(2.75, 1.5, 0)).norm(), 1e-12);
+}
+
+TEST(Drag, SnappedTurnsGoInSteps) {
+  const Skeleton skeleton = twoArmedBody(BoneShape::kSphere);
+  const Vec3 elbow = at(skeleton, restPose(skeleton), kElbow), hand = at(skeleton, restPose(skeleton), kHand);
+  Drag drag(sceneOf(skeleton), kHand, DragMode::kTurn, through(hand), kView);
+  const Vec3 pointer = elbow + Vec3(std::cos(0.7), std::sin(0.7), 0);  // 40 degrees
+  const Pose pose = drag.at(through(pointer), kView, true).value();
+  const Quat rotation(poseGlobals(skeleton, pose)[kHand].linear());
+  EXPECT_LT(angleBetween(rotation, Quat(Eigen::AngleAxisd(kPi / 4, Vec3::UnitZ()))), 1e-9);
+}
+
+TEST(Drag, ATurnFromRestIsTheSameHoweverTheJointStood) {
+  const Skeleton skeleton = twoArmedBody(BoneShape::kSegment);
+  DragScene scene = sceneOf(skeleton);
+  scene.start.locals[kShoulder].rotation = Quat(Eigen::AngleAxisd(0.8, Vec3(1, 2, 3).normalized()));
+  scene.start.locals[kElbow].rotation = Quat(Eigen::AngleAxisd(-1.1, Vec3(3, 0, 1).normalized()));
+  Mat3 flip = Mat3::Identity();
+  flip(0, 0) = -1;
+  scene.followers = {{kShoulder}, {kOtherHand, flip, kElbow}};
+  Drag drag(scene, kElbow, DragMode::kTurn, through({0, 2, 0}), kView);
+  const Vec3 turn(30, -20, 10);
+  const Pose pose = drag.turnedTo(turn);
+  const Quat wanted(Eigen::AngleAxisd(turn.norm() * kDegree, turn.normalized()));
+  EXPECT_LT(angleBetween(pose.locals[kElbow].rotation, wanted), 1e-9);
+  EXPECT_LT(angleBetween(pose.locals[kShoulder].rotation, wanted), 1e-9);
+  EXPECT_LT((pose.locals[kElbow].translation - skeleton.joints[kElbow].rest.translation).norm(), 1e-12);
+  // The image turns as far in the world as the elbow would alone.
+  const Quat above(poseGlobals(skeleton, scene.start)[kShoulder].linear());
+  const Quat change = above * wanted * scene.start.locals[kElbow].rotation.conjugate() * above.conjugate();
+  EXPECT_LT(angleBetween(pose.locals[kOtherHand].rotation, Quat(Mat3(flip * change.toRotationMatrix() * flip))), 1e-9);
+}
+
 }  // namespace
 }  // namespace limber

@@ -47,6 +47,14 @@ std::vector<bool> locksOf(const SessionState& state) {
   return locked;
 }
 
+// Those that a command names in `joint` and `with`.
+template <class C>
+std::vector<Index> jointsOf(const SessionState& state, const C& c) {
+  std::vector<Index> joints = {requireJoint(state, c.joint)};
+  for (const std::string& name : c.with) joints.push_back(requireJoint(state, name));
+  return joints;
+}
+
 // Joints that hold on to a place go back there.
 void holdTargets(SessionState& state) {
   if (!state.ik || state.targets.empty()) return;
@@ -205,6 +213,13 @@ struct Session::Runner {
   void operator()(const BeginDrag& c) const {
     const SessionState now = state();
     const Index joint = requireJoint(now, c.joint);
+    DragScene scene = sceneOf(now, joint, c);
+    session.drag_ = std::make_unique<Drag>(std::move(scene), joint, c.mode, c.ray, c.view);
+    session.remember(command);
+  }
+  // `c` names joints in `with`, and may be `mirrored`.
+  template <class Gesture>
+  static DragScene sceneOf(const SessionState& now, Index joint, const Gesture& c) {
     DragScene scene;
     scene.skeleton = &now.rig->skeleton();
     scene.limits = now.limits.get();
@@ -212,26 +227,28 @@ struct Session::Runner {
     scene.ik = now.ik;
     scene.held = heldDuringDrag(*now.rig, now.pose, now.targets, joint);
     scene.rollRadius = std::max(2 * now.rig->radii[joint], longestSide(*now.rig) / 8);
-    scene.solver = session.state_.solver;
-    scene.followers = followersOf(now, joint, c);
-    session.drag_ = std::make_unique<Drag>(std::move(scene), joint, c.mode, c.ray, c.view);
-    session.remember(command);
+    scene.solver = now.solver;
+    scene.followers = followersOf(now, joint, c.with, c.mirrored);
+    scene.snap = snapOf(*now.rig, joint);
+    return scene;
   }
-  static std::vector<DragFollower> followersOf(const SessionState& now, Index joint, const BeginDrag& c) {
+  static std::vector<DragFollower> followersOf(const SessionState& now, Index joint,
+                                               const std::vector<std::string>& with, bool mirrored) {
     std::vector<DragFollower> followers;
-    const auto add = [&](Index follower, const Mat3& reflection) {
+    const auto add = [&](Index follower, const Mat3& reflection, std::optional<Index> imageOf = std::nullopt) {
       const bool known = follower == joint || std::any_of(followers.begin(), followers.end(),
                                                           [&](const DragFollower& f) { return f.joint == follower; });
-      if (!known) followers.push_back({follower, reflection});
+      if (!known) followers.push_back({follower, reflection, imageOf});
     };
-    for (const std::string& name : c.with) add(requireJoint(now, name), Mat3::Identity());
-    if (!c.mirrored) return followers;
+    for (const std::string& name : with) add(requireJoint(now, name), Mat3::Identity());
+    if (!mirrored) return followers;
     const auto [plane, images] = mirrorOfRig(*now.rig);
     const Mat3 reflection = Mat3::Identity() - 2 * plane.normal * plane.normal.transpose();
     const std::size_t onThisSide = followers.size();
-    if (images[joint] != kNoIndex) add(images[joint], reflection);
+    if (images[joint] != kNoIndex) add(images[joint], reflection, joint);
     for (std::size_t f = 0; f < onThisSide; ++f) {
-      if (const Index image = images[followers[f].joint]; image != kNoIndex) add(image, reflection);
+      const Index original = followers[f].joint;
+      if (images[original] != kNoIndex) add(images[original], reflection, original);
     }
     return followers;
   }
@@ -240,7 +257,7 @@ struct Session::Runner {
     return *session.drag_;
   }
   void operator()(const UpdateDrag& c) const {
-    std::optional<Pose> pose = drag().at(c.ray, c.view);
+    std::optional<Pose> pose = drag().at(c.ray, c.view, c.snap);
     if (!pose) return;
     session.state_.pose = *std::move(pose);
     session.remember(command);
@@ -253,21 +270,45 @@ struct Session::Runner {
   void operator()(const EndDrag&) const {
     SessionState next = session.state_;
     session.state_.pose = drag().start();
+    letGo(next, drag());
+    session.drag_.reset();
+    session.commit(command, std::move(next));
+  }
+  // What held joints hold on to goes along where the drag moved them.
+  static void letGo(SessionState& next, const Drag& drag) {
+    const Skeleton& skeleton = next.rig->skeleton();
     followPose(next, [&](const HeldTarget& target) {
-      const std::vector<DragFollower>& moved = drag().moved();
-      return std::any_of(moved.begin(), moved.end(), [&](const DragFollower& f) {
-        return f.joint == target.joint || isInLimbAbove(next.rig->skeleton(), f.joint, target.joint);
+      return std::any_of(drag.dragged().begin(), drag.dragged().end(), [&](const DragFollower& f) {
+        return f.joint == target.joint || isInLimbAbove(skeleton, f.joint, target.joint);
       });
     });
-    session.drag_.reset();
     authored(next);
-    session.commit(command, std::move(next));
   }
   void operator()(const CancelDrag&) const {
     session.state_.pose = drag().start();
     session.drag_.reset();
     while (!std::holds_alternative<BeginDrag>(session.record_.back())) session.record_.pop_back();
     session.record_.pop_back();
+  }
+
+  void operator()(const PlaceJoint& c) const {
+    if (!c.position.allFinite()) refuse("the position is no number");
+    dragOnce(c, DragMode::kMove, [&](Drag& drag, const Vec3& place) { return drag.moved(c.position - place); });
+  }
+  void operator()(const SetTurn& c) const {
+    if (!c.turn.allFinite()) refuse("the turn is no number");
+    dragOnce(c, DragMode::kTurn, [&](Drag& drag, const Vec3&) { return drag.turnedTo(c.turn); });
+  }
+  // A drag without a pointer, from taking hold to letting go.
+  template <class Gesture, class Move>
+  void dragOnce(const Gesture& c, DragMode mode, const Move& move) const {
+    SessionState next = state();
+    const Index joint = requireJoint(next, c.joint);
+    const Vec3 place = poseGlobals(next.rig->skeleton(), next.pose)[joint].translation();
+    Drag drag(sceneOf(next, joint, c), joint, mode, {place + Vec3::UnitZ(), -Vec3::UnitZ()}, -Vec3::UnitZ());
+    next.pose = move(drag, place);
+    letGo(next, drag);
+    session.commit(command, std::move(next));
   }
 
   void operator()(const TurnJoint& c) const {
@@ -293,13 +334,18 @@ struct Session::Runner {
   void operator()(const SetTarget& c) const {
     SessionState next = state();
     setTarget(next.targets, {requireJoint(next, c.joint), c.position});
+    const std::vector<Affine> globals = poseGlobals(next.rig->skeleton(), next.pose);
+    for (const std::string& name : c.with) {
+      const Index joint = requireJoint(next, name);
+      setTarget(next.targets, {joint, globals[joint].translation()});
+    }
     holdTargets(next);
     authored(next);
     session.commit(command, std::move(next));
   }
   void operator()(const ClearTarget& c) const {
     SessionState next = state();
-    eraseTarget(next.targets, requireJoint(next, c.joint));
+    for (const Index joint : jointsOf(next, c)) eraseTarget(next.targets, joint);
     session.commit(command, std::move(next));
   }
   void operator()(const SetLimits& c) const {
@@ -311,11 +357,12 @@ struct Session::Runner {
   }
   void operator()(const ResetJoint& c) const {
     SessionState next = state();
-    const Index joint = requireJoint(next, c.joint);
-    next.pose.locals[joint] = next.rig->home.locals[joint];
-    eraseTarget(next.targets, joint);
-    if (next.limbsFollow) {
-      for (const HeldTarget& foot : standingFeet(*next.rig, next.rig->home)) {
+    const std::vector<HeldTarget> feet =
+        next.limbsFollow ? standingFeet(*next.rig, next.rig->home) : std::vector<HeldTarget>();
+    for (const Index joint : jointsOf(next, c)) {
+      next.pose.locals[joint] = next.rig->home.locals[joint];
+      eraseTarget(next.targets, joint);
+      for (const HeldTarget& foot : feet) {
         if (foot.joint == joint) next.targets.push_back(foot);
       }
     }
@@ -394,11 +441,13 @@ struct Session::Runner {
   }
   void operator()(const LockWeights& c) const {
     SessionState next = state();
-    const std::string& name = next.rig->skeleton().joints[requireJoint(next, c.joint)].name;
-    if (c.on) {
-      next.locked.insert(name);
-    } else {
-      next.locked.erase(name);
+    for (const Index joint : jointsOf(next, c)) {
+      const std::string& name = next.rig->skeleton().joints[joint].name;
+      if (c.on) {
+        next.locked.insert(name);
+      } else {
+        next.locked.erase(name);
+      }
     }
     session.commit(command, std::move(next));
   }
@@ -535,9 +584,19 @@ void Session::start(Asset source, const Command& command, bool limbsFollow, Prog
   record_ = {command};
 }
 
+// Whether it is one undo step with the one before it.
+bool Session::goesOnWithLast(const Command& command) const {
+  if (std::holds_alternative<SetHandles>(command)) return std::holds_alternative<SetHandles>(record_.back());
+  const auto* ended = std::get_if<EndDrag>(&command);
+  if (!ended || !ended->goesOn) return false;
+  const auto begin = std::find_if(record_.rbegin(), record_.rend(),
+                                  [](const Command& c) { return std::holds_alternative<BeginDrag>(c); });
+  const auto before = std::next(begin);  // the record begins with a model's opening
+  return std::holds_alternative<EndDrag>(*before);
+}
+
 void Session::commit(const Command& command, SessionState next) {
-  const bool again = !undo_.empty() && std::holds_alternative<SetHandles>(command) &&
-                     std::holds_alternative<SetHandles>(record_.back());
+  const bool again = !undo_.empty() && goesOnWithLast(command);
   if (!again) undo_.push_back({commandName(command), state_});
   state_ = std::move(next);
   redo_.clear();

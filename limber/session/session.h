@@ -105,6 +105,7 @@ class Session {
   struct Runner;
 
   void commit(const Command& command, SessionState next);
+  bool goesOnWithLast(const Command& command) const;
   void remember(const Command& command);
   void start(Asset source, const Command& command, bool limbsFollow, Progress& progress);
   void requireOpen() const;

@@ -146,6 +146,12 @@ Json matchJson(const SessionState& state) {
   return Json::parse(skeletonMapToJson(source.map, source.motion->skeleton, state.rig->skeleton()))["matches"];
 }
 
+// The same for all joints.
+Json snapJson(const RiggedModel& rig) {
+  const DragSnap snap = snapOf(rig, 0);
+  return {{"degrees", snap.degrees}, {"step", snap.step}};
+}
+
 }  // namespace
 
 Json sessionState(const Session& session) {
@@ -173,6 +179,7 @@ Json sessionState(const Session& session) {
       {"clips", clipsJson(state.movement)},
       {"clip", state.movement.chosen ? Json(*state.movement.chosen) : Json(nullptr)},
       {"seconds", state.movement.seconds},
+      {"snap", snapJson(rig)},
       {"match", matchJson(state)},
       {"targets", Json::array()},
       {"pins", Json::array()},

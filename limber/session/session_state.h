@@ -14,6 +14,7 @@ namespace limber {
 //  "joint_keys": [{"joint": index, "seconds": [...]}] (the same for each joint that has any), "interpolation",
 //  "source": null or {"motion", "clip", "method", "reach", "contacts"}}], "clip": the chosen one's index or null,
 //  "seconds",
+//  "snap": {"degrees", "step" (metres)} (snap.h),
 //  "match": of the chosen clip, where it is from a motion: [{"part", "source": [joints], "target": [joints],
 //  "confidence", "by"}],
 //  "limits": {joint's name: limit} as in a limits file,

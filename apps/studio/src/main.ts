@@ -16,6 +16,7 @@ import { methodsPanel } from './panels/methods_panel';
 import { outliner } from './panels/outliner';
 import { paintPanel } from './panels/paint_panel';
 import { posePanel } from './panels/pose_panel';
+import { poseTools } from './panels/pose_tools';
 import { retargetPanel } from './panels/retarget_panel';
 import { facts, status } from './panels/status';
 import { timeline } from './panels/timeline';
@@ -53,7 +54,7 @@ const sheet = contactSheet(studio, page, viewport);
 const app = document.getElementById('app')!;
 app.append(
   toolbar(studio, page, journal, viewport, model),
-  element('main', { class: 'stage' }, viewport.canvas, facts(page), hint(page), views(viewport), comparisonPanel(studio, page, comparison)),
+  element('main', { class: 'stage' }, viewport.canvas, facts(page), hint(page), poseTools(page), views(viewport), comparisonPanel(studio, page, comparison)),
   element('aside', { class: 'side' }, posePanel(studio, page), paintPanel(studio, page), retargetPanel(studio, page), methodsPanel(studio, page), outliner(studio, page, handles)),
   timeline(studio, page, sheet.open),
   status(studio, page), help(page), sheet.dialog, motionShelf(studio, page));

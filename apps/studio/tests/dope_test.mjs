@@ -76,6 +76,7 @@ const cases = {
     assert.ok(await page.locator('#key-editor').isHidden(), 'it is closed at first');
     await page.locator('#open-keys').click();
     assert.match(await page.locator('#dope-sheet').textContent(), /No keys yet/);
+    await press('i'); // each joint moves alone, and has keys of its own
     const count = (await sessionState(page)).joints.length;
     [arm, leg] = [count - 1, count - 2];
     for (const [seconds, times] of [[0, 1], [0.5, 6], [1, 6]]) {

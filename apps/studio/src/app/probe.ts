@@ -16,6 +16,8 @@ export interface StudioProbe {
   selected(): number | null;
   /** Metres. */
   position(joint: string): Vector;
+  /** Degrees about x, y and z from the rest pose, and the rotation in the world as x, y, z, w. */
+  turned(joint: string): { turn: Vector; rotation: number[] };
   /** What of the gizmo is under the pointer. */
   gizmoAxis(): string | null;
   /** Pixels of the page. */
@@ -29,11 +31,14 @@ declare global {
 export function exposeStage(
   studio: Studio, page: PageStore, viewport: Viewport, handles: HandleView, gizmo: Gizmo, kept: () => boolean,
 ) {
-  const position = (name: string) => {
+  const jointOf = (name: string) => {
     const joint = page.now.session?.joints.findIndex((known) => known.name === name) ?? -1;
     if (joint < 0) throw new Error(`no joint is called ${name}`);
-    return handles.position(joint, new Vector3());
+    return joint;
   };
+  const position = (name: string) => handles.position(jointOf(name), new Vector3());
+  let turns: Float32Array = new Float32Array();
+  studio.readStance((stance) => { turns = stance.turns; });
   globalThis.limberStudio = {
     idle: () => studio.idle,
     kept,
@@ -41,6 +46,10 @@ export function exposeStage(
     selected: () => page.now.selected,
     gizmoAxis: () => gizmo.axis,
     position: (name) => position(name).toArray(),
+    turned: (name) => {
+      const [x = 0, y = 0, z = 0, ...rotation] = turns.slice(7 * jointOf(name), 7 * jointOf(name) + 7);
+      return { turn: [x, y, z], rotation };
+    },
     place: (name) => {
       viewport.camera.updateMatrixWorld();
       const { x, y } = position(name).project(viewport.camera);

@@ -2,6 +2,7 @@
 import type { HandleView } from '../scene/handle_view';
 import type { Viewport } from '../scene/viewport';
 import { resizeBrush, togglePainting } from '../panels/paint_panel';
+import { toggleSelecting } from '../panels/pose_tools';
 import { togglePlaying } from './player';
 import type { PageStore } from './state';
 import type { Studio } from './studio';
@@ -34,6 +35,8 @@ export function bindShortcuts(studio: Studio, page: PageStore, viewport: Viewpor
     ']': () => resizeBrush(page, 1.15),
     'l': selected((joint) => void studio.toggleLock(joint)),
     'x': () => page.set({ gizmo: !page.now.gizmo }),
+    'n': () => page.set({ snapping: !page.now.snapping }),
+    'v': () => toggleSelecting(page),
     '?': () => page.set({ help: true }),
   };
   const withControl: Record<string, () => void> = {

@@ -6,6 +6,8 @@ import { told } from '../words/engine';
 import { Store } from './store';
 
 export type DragMode = 'move' | 'turn';
+/** Whose axes arrows and rings have. */
+export type GizmoSpace = 'world' | 'parent' | 'local' | 'view';
 export type Display = 'handles' | 'surface' | 'weights' | 'joint-weights';
 
 export type PaintMode = 'add' | 'subtract' | 'smooth';
@@ -79,6 +81,11 @@ export interface PageState {
   paths: Paths | null;
   curve: Curve | null;
   gizmo: boolean;
+  gizmoSpace: GizmoSpace;
+  /** Places and turns go to round values, without Ctrl; with it, the other way round. */
+  snapping: boolean;
+  /** Taps add joints to those selected, drags draw a box round more. */
+  selecting: boolean;
   limits: boolean;
   /** Moving a joint of a template corrects the rig; so does touching the model for the selected one. */
   correcting: boolean;
@@ -106,7 +113,7 @@ export type PageStore = Store<PageState>;
 export const createPageStore = (): PageStore => new Store<PageState>({
   session: null, model: null, mode: 'move', display: 'handles', bones: true, wireframe: false,
   selected: null, also: new Set(), bothSides: false, hovered: null, work: null, notice: null, help: false,
-  seconds: 0, playing: false, speed: 1, loop: true, autoKey: true, gizmo: false, limits: false, correcting: false,
+  seconds: 0, playing: false, speed: 1, loop: true, autoKey: true, gizmo: false, gizmoSpace: 'world', snapping: false, selecting: false, limits: false, correcting: false,
   span: 0.3, keyEditor: null, chosenKeys: [], ghosts: false, paths: null, curve: null,
   painting: false, brush: { mode: 'add', size: 0.05, strength: 0.5 }, placing: false,
   methods: null, sampleMotions: [], ownMotions: [], shelf: false, comparison: null, hiddenParts: new Set(), sourceModel: null, sourceShown: true,

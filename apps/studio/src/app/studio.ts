@@ -11,13 +11,15 @@ import type { Journal, KeptDocument } from './journal';
 import { fromLimberFile, toLimberFile } from './limber_file';
 import type { Motion } from './motion_trials';
 import { changedTime, keysThere, type KeyChange } from './keys';
-import { noticeOf, type KeyPlace, type Notice, type PageStore } from './state';
+import { noticeOf, type DragMode, type KeyPlace, type Notice, type PageStore } from './state';
 import { stageName, told, warningText } from '../words/engine';
 import { say } from '../words/say';
 
 const mostFileSize = 500e6;
 /** Commands that leave the model in another pose, set by hand. */
-const poses = new Set(['end_drag', 'turn_joint', 'move_joint', 'reset_joint', 'reset_pose', 'mirror_pose']);
+const poses = new Set(['end_drag', 'place_joint', 'set_turn', 'turn_joint', 'move_joint', 'reset_joint', 'reset_pose', 'mirror_pose']);
+const nudgePause = 1000; // milliseconds: presses of keys that follow each other sooner are one step to undo
+const ahead: Vector = [0, 0, -1];
 const previewRate = 12; // frames a second of a motion on the shelf; between them it is blended
 const previewSeconds = 5; // of a user's motion
 const progressDelay = 250; // milliseconds before a wait is shown
@@ -39,6 +41,8 @@ export const hasTemplate = (session: SessionState) => !session.own_rig && sessio
 export class Studio {
   /** The joints stand anew; called for every frame of a drag. */
   onStance: (stance: Stance, ofClip: boolean) => void = () => {};
+  /** Panels that show how joints stand, told as often. */
+  private readers: ((stance: Stance) => void)[] = [];
   /** The weights alone are others. */
   onWeights: (weights: WeightArrays) => void = () => {};
   /** A new model was opened: the camera goes to it. */
@@ -55,6 +59,7 @@ export class Studio {
   private dragUpdate: Command | null = null;
   private dragging: Promise<void> = Promise.resolve();
   private dragsLeft = 0;
+  private lastNudge = { of: '', at: -Infinity };
   private comparing = false;
   private stance: Stance | null = null;
   private shownSource = '';
@@ -473,27 +478,62 @@ export class Studio {
   async resetPose() { await this.run({ do: 'reset_pose' }); }
   async mirrorPose() { await this.run({ do: 'mirror_pose', from: 'both' }); }
 
-  async resetJoint(joint: number) {
-    await this.run({ do: 'reset_joint', joint: this.jointName(joint) });
+  readStance(reader: (stance: Stance) => void) { this.readers.push(reader); }
+
+  /** The others that are selected, where the joint is. */
+  private besides(joint: number): number[] {
+    const { selected, also } = this.page.now;
+    return joint === selected || also.has(joint) ? [...also, selected ?? joint].filter((other) => other !== joint) : [];
   }
 
-  async nudge(joint: number, offset: Vector) {
-    await this.run({ do: 'move_joint', joint: this.jointName(joint), offset });
+  /** With all that are selected, as the ones below. */
+  async resetJoint(joint: number) { await this.run({ do: 'reset_joint', ...this.namedWith(joint) }); }
+
+  /** Degrees about x, y and z, from the rest pose. */
+  async setTurn(joint: number, turn: Vector) { await this.poseExactly({ do: 'set_turn', ...this.namedWith(joint), turn }); }
+
+  /** In the world, in metres: the limb comes along where limbs follow. */
+  async moveJointTo(joint: number, position: Vector) {
+    await this.poseExactly({ do: 'place_joint', ...this.namedWith(joint), position });
   }
 
-  async turn(joint: number, axis: Vector, degrees: number) {
-    await this.run({ do: 'turn_joint', joint: this.jointName(joint), axis, degrees });
+  private namedWith(joint: number) {
+    return { joint: this.jointName(joint), with: this.besides(joint).map((other) => this.jointName(other)) };
+  }
+
+  private async poseExactly(command: Command) {
+    const { bothSides, session } = this.page.now;
+    await this.run({ ...command, mirrored: bothSides });
+    // A model without two sides has been told so.
+    if (bothSides && this.page.now.session === session) this.page.set({ bothSides: false });
+  }
+
+  /** What a drag that far does. */
+  nudge(joint: number, offset: Vector) {
+    this.dragByKey(joint, 'move', { do: 'update_drag', ray: { origin: offset, direction: ahead }, view: ahead });
+  }
+
+  turn(joint: number, axis: Vector, degrees: number) { this.dragByKey(joint, 'turn', { do: 'turn_drag', axis, degrees }); }
+
+  private dragByKey(joint: number, mode: DragMode, update: Command) {
+    const of = [mode, joint, ...this.besides(joint)].join(), at = performance.now();
+    const goesOn = this.lastNudge.of === of && at - this.lastNudge.at < nudgePause;
+    this.lastNudge = { of, at };
+    this.beginDrag(joint, { origin: [0, 0, 0], direction: ahead }, ahead, mode);
+    this.then(async () => {
+      if (this.isDragging) await this.run(update);
+    });
+    this.endDrag(goesOn);
   }
 
   async togglePin(joint: number, position: Vector) {
-    const pinned = this.page.now.session?.targets.some((target) => target.joint === joint);
-    const name = this.jointName(joint);
-    await this.run(pinned ? { do: 'clear_target', joint: name } : { do: 'set_target', joint: name, position });
+    const pinned = this.page.now.session?.targets.some((target) => target.joint === joint), names = this.namedWith(joint);
+    await this.run(pinned ? { do: 'clear_target', ...names } : { do: 'set_target', ...names, position });
   }
 
   beginDrag(joint: number, ray: Ray, view: Vector, mode = this.page.now.mode) {
-    const { also, bothSides, correcting, playing } = this.page.now;
-    const together = also.has(joint) || joint === this.page.now.selected ? [...also, this.page.now.selected ?? joint].filter((other) => other !== joint) : [];
+    const { bothSides, correcting, playing } = this.page.now;
+    const together = this.besides(joint);
     const command = {
       do: 'begin_drag', joint: this.jointName(joint), mode: correcting ? 'move' : mode, ray, view,
       with: correcting ? [] : together.map((other) => this.jointName(other)), mirrored: bothSides && !correcting,
@@ -512,14 +552,18 @@ export class Studio {
   /** Another joint that goes along with those that are selected, or no longer does. */
   selectAlso(joint: number) {
     const { selected, also } = this.page.now;
-    if (selected === null || selected === joint) return this.page.set({ selected: joint, also: new Set() });
+    if (selected === null) return this.page.set({ selected: joint, also: new Set() });
+    if (selected === joint) {
+      const [next = null, ...rest] = also;
+      return this.page.set({ selected: next, also: new Set(rest) });
+    }
     const others = new Set(also);
     if (!others.delete(joint)) others.add(joint);
     this.page.set({ also: others });
   }
 
   /** At most one update is on its way; the newest waits. */
-  updateDrag(ray: Ray, view: Vector) { this.dragTo({ do: 'update_drag', ray, view }); }
+  updateDrag(ray: Ray, view: Vector, snap = false) { this.dragTo({ do: 'update_drag', ray, view, snap }); }
 
   /** About the dragged joint's own place, from how it stood when the drag began. */
   turnDrag(axis: Vector, degrees: number) { this.dragTo({ do: 'turn_drag', axis, degrees }); }
@@ -535,9 +579,9 @@ export class Studio {
     });
   }
 
-  endDrag() {
+  endDrag(goesOn = false) {
     this.then(async () => {
-      if (this.isDragging) await (this.page.now.correcting ? this.pinDragged() : this.run({ do: 'end_drag' }));
+      if (this.isDragging) await (this.page.now.correcting ? this.pinDragged() : this.run({ do: 'end_drag', goes_on: goesOn }));
     });
   }
 
@@ -584,7 +628,7 @@ export class Studio {
   }
 
   async toggleLock(joint: number) {
-    await this.run({ do: 'lock_weights', joint: this.jointName(joint), on: !this.page.now.session?.locked.includes(joint) });
+    await this.run({ do: 'lock_weights', ...this.namedWith(joint), on: !this.page.now.session?.locked.includes(joint) });
   }
 
   async deleteJoint(joint: number) {
@@ -606,13 +650,14 @@ export class Studio {
   }
 
   /** The joint that holds the surface under the pointer; while joints are corrected, the selected one goes in there. */
-  async selectSurface(ray: Ray, slope: number) {
+  async selectSurface(ray: Ray, slope: number, besides = false) {
     if (this.page.now.placing) return this.placeJoint(ray);
     await this.guard(async () => {
       const hit = await this.engine.ask({ kind: 'pick', ray, slope });
       const { correcting, selected } = this.page.now;
       if (correcting && selected !== null && hit && !hit.on_handle) return this.pinJoint(selected, hit.inside);
-      this.page.set({ selected: hit?.joint ?? null });
+      if (!besides) return this.page.set({ selected: hit?.joint ?? null });
+      if (hit) this.selectAlso(hit.joint);
     });
   }
 
@@ -633,7 +678,7 @@ export class Studio {
 
   private opened(step: Step) {
     this.page.set({
-      selected: null, hovered: null, notice: this.afterOpening, comparison: null, hiddenParts: new Set(), correcting: false, painting: false, placing: false, display: 'handles',
+      selected: null, hovered: null, notice: this.afterOpening, comparison: null, hiddenParts: new Set(), correcting: false, painting: false, placing: false, selecting: false, display: 'handles',
     });
     this.afterOpening = null;
     this.take(step);
@@ -663,6 +708,7 @@ export class Studio {
   private showStance(stance: Stance, ofClip: boolean) {
     this.stance = stance;
     this.onStance(stance, ofClip);
+    this.readers.forEach((read) => read(stance));
   }
 
   /** What stands beside the document goes with it. */

@@ -274,7 +274,7 @@ export class Documents {
       return { skin: moved, handles: orThrow(session.handles()).handles };
     });
     return {
-      skin, handles: orThrow(this.session.handles()).handles, source: orThrow(this.session.sourceJoints()).places,
+      skin, handles: orThrow(this.session.handles()).handles, turns: orThrow(this.session.turns()).turns, source: orThrow(this.session.sourceJoints()).places,
       sourceSkin: this.sourceSkin(), variants,
     };
   }

@@ -27,7 +27,7 @@ export function outliner(studio: Studio, page: PageStore, handles: HandleView): 
     const row = (event.target as Element).closest<HTMLElement>('[data-joint]');
     if (!row) return;
     const joint = Number(row.dataset['joint']);
-    if (event.shiftKey || event.ctrlKey || event.metaKey) studio.selectAlso(joint);
+    if (event.shiftKey || event.ctrlKey || event.metaKey || page.now.selecting) studio.selectAlso(joint);
     else page.set({ selected: joint, also: new Set() });
   });
   const rename = () => {

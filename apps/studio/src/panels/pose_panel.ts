@@ -4,6 +4,7 @@ import type { Studio } from '../app/studio';
 import { counted } from '../ui/counted';
 import { button, choice, element } from '../ui/dom';
 import { say } from '../words/say';
+import { exactFields } from './exact_fields';
 
 const mostHandles = 200;
 
@@ -49,7 +50,7 @@ export function posePanel(studio: Studio, page: PageStore): HTMLElement {
     element('div', { class: 'row checks' }, toggle(say('Bones'), 'bones'), toggle(say('Mesh lines'), 'wireframe'),
       toggle(say('Arrows'), 'gizmo', say('Arrows and rings on the selected joint, for exact work (gizmo)')),
       toggle(say('Limits'), 'limits', say('How far joints may turn'))),
-    limits(studio, page));
+    limits(studio, page), exactFields(studio, page));
 }
 
 /** How far joints may turn: a file of limits; what is shown where there are none. */

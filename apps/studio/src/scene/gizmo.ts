@@ -1,5 +1,5 @@
 // Arrows and rings on the selected joint, for exact work.
-import { Object3D, type Quaternion } from 'three';
+import { Object3D, Quaternion } from 'three';
 import { TransformControls } from 'three/examples/jsm/controls/TransformControls.js';
 import type { PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
@@ -13,10 +13,13 @@ export class Gizmo {
   private proxy = new Object3D();
   private turned: Quaternion = this.proxy.quaternion.clone();
   private held: number | null = null;
+  private turns: Float32Array = new Float32Array();
+  private control = false; // its key is down
 
-  constructor(viewport: Viewport, private handles: HandleView, private studio: Studio, private page: PageStore) {
+  constructor(private viewport: Viewport, private handles: HandleView, private studio: Studio, private page: PageStore) {
     this.controls = new TransformControls(viewport.camera, viewport.canvas);
     this.controls.size = 0.8;
+    this.controls.setSpace('local'); // of the proxy, which stands as the chosen space does
     viewport.scene.add(this.proxy, this.controls.getHelper());
     this.controls.addEventListener('change', () => viewport.draw());
     this.controls.addEventListener('dragging-changed', ({ value }) => {
@@ -25,26 +28,56 @@ export class Gizmo {
       else this.end();
     });
     this.controls.addEventListener('objectChange', () => this.change());
-    page.watch(() => this.place(viewport));
+    viewport.controls.addEventListener('change', () => {
+      if (page.now.gizmo && page.now.gizmoSpace === 'view') this.place();
+    });
+    const controlKey = (event: KeyboardEvent) => {
+      this.control = event.ctrlKey || event.metaKey;
+      this.snap();
+    };
+    addEventListener('keydown', controlKey);
+    addEventListener('keyup', controlKey);
+    page.watch(() => {
+      this.place();
+      this.snap();
+    });
   }
 
   /** Whether the pointer is on an arrow or a ring. */
   get axis() { return this.controls.object === undefined ? null : this.controls.axis; }
   get meant() { return this.controls.object !== undefined && this.controls.axis !== null; }
 
-  place(viewport: Viewport) {
-    const { gizmo, selected, mode, display } = this.page.now;
-    this.controls.camera = viewport.camera;
+  /** How the joints are turned (Stance). */
+  take(turns: Float32Array) { this.turns = turns; }
+
+  place() {
+    const { gizmo, gizmoSpace, selected, mode, display } = this.page.now;
+    this.controls.camera = this.viewport.camera;
     if (!gizmo || selected === null || selected >= this.handles.count || display !== 'handles') {
       this.controls.detach();
       return;
     }
     this.controls.setMode(mode === 'move' ? 'translate' : 'rotate');
+    this.controls.showZ = mode === 'move' || gizmoSpace !== 'view'; // the outer ring does the same
     if (this.held === null) {
       this.proxy.position.copy(this.handles.position(selected));
-      this.proxy.quaternion.identity();
+      this.axes(selected, this.proxy.quaternion);
     }
     if (this.controls.object !== this.proxy) this.controls.attach(this.proxy);
+  }
+
+  /** As the chosen space stands in the world. */
+  private axes(joint: number, target: Quaternion): Quaternion {
+    const { gizmoSpace, session } = this.page.now;
+    if (gizmoSpace === 'view') return target.copy(this.viewport.camera.quaternion);
+    const of = gizmoSpace === 'local' ? joint : gizmoSpace === 'parent' ? session?.joints[joint]?.parent ?? -1 : -1;
+    return of < 0 || this.turns.length < 7 * (of + 1) ? target.identity() : target.fromArray(this.turns, 7 * of + 3);
+  }
+
+  private snap() {
+    const { snapping, session } = this.page.now, on = session !== null && snapping !== this.control;
+    this.controls.setTranslationSnap(on ? session.snap.step : null);
+    this.controls.setRotationSnap(on ? (session.snap.degrees * Math.PI) / 180 : null);
   }
 
   private begin() {

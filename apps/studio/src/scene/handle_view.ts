@@ -107,6 +107,14 @@ export class HandleView {
     this.spheres.instanceMatrix.needsUpdate = true;
   }
 
+  /** Those whose middle is in a box of the view, in pixels. */
+  within(box: { left: number; top: number; right: number; bottom: number }, camera: Camera, width: number, height: number): number[] {
+    return Array.from({ length: this.count }, (_, joint) => joint).filter((joint) => {
+      const place = this.position(joint).project(camera), x = (place.x + 1) / 2 * width, y = (1 - place.y) / 2 * height;
+      return place.z <= 1 && x >= box.left && x <= box.right && y >= box.top && y <= box.bottom;
+    });
+  }
+
   /** The handle under a pointer, at least `slop` pixels wide; the one in front of those that are drawn there. */
   pick(x: number, y: number, camera: Camera, width: number, height: number, slop: number): number | null {
     let best: number | null = null, bestRank = Infinity, bestMet = false;

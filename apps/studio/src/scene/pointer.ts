@@ -6,8 +6,9 @@ import type { Gizmo } from './gizmo';
 import type { HandleView } from './handle_view';
 import type { Viewport } from './viewport';
 
-const slop = { mouse: 12, pen: 16, touch: 24 }; // pixels round a handle's middle that count as it
-const tapDistance = 6;
+/** Pixels round a handle's middle that count as it. */
+export const slop = { mouse: 12, pen: 16, touch: 24 };
+export const tapDistance = 6; // pixels that a tap may slide
 
 const orbitStep = 10; // degrees of the view for a press of an arrow
 
@@ -31,6 +32,9 @@ export class PointerInput {
     canvas.addEventListener('keydown', (event) => this.key(event));
   }
 
+  /** Ctrl turns the magnet round. */
+  private snaps(event: PointerEvent) { return this.page.now.snapping !== (event.ctrlKey || event.metaKey); }
+
   private under(event: PointerEvent): number | null {
     if (this.page.now.display !== 'handles' || this.page.now.placing) return null;
     const { width, height } = this.viewport.size;
@@ -41,7 +45,7 @@ export class PointerInput {
   private press(event: PointerEvent) {
     if (this.held !== null) return event.stopImmediatePropagation(); // a second finger during a drag
     this.down = { x: event.offsetX, y: event.offsetY, moved: false };
-    if (this.gizmo.meant) return;
+    if (this.gizmo.meant || this.page.now.selecting) return;
     const joint = event.button === 0 && event.isPrimary ? this.under(event) : null;
     if (joint === null) return;
     event.stopImmediatePropagation();
@@ -68,7 +72,7 @@ export class PointerInput {
     if (this.down && Math.hypot(event.offsetX - this.down.x, event.offsetY - this.down.y) > tapDistance) this.down.moved = true;
     if (this.held !== null) {
       const { ray, view } = this.viewport.ray(event.offsetX, event.offsetY);
-      if (this.down?.moved) this.studio.updateDrag(ray, view);
+      if (this.down?.moved) this.studio.updateDrag(ray, view, this.snaps(event));
     } else if (event.buttons === 0 && event.pointerType !== 'touch') {
       const hovered = this.under(event);
       if (hovered !== this.page.now.hovered) this.page.set({ hovered });
@@ -84,7 +88,7 @@ export class PointerInput {
       // A tap selects, and is no step to undo.
       if (tapped) this.tap(event.shiftKey);
       else this.studio.endDrag();
-    } else if (tapped && event.isPrimary && !this.gizmo.meant) {
+    } else if (tapped && event.isPrimary && !this.gizmo.meant && !this.page.now.selecting) {
       void this.studio.selectSurface(this.viewport.ray(event.offsetX, event.offsetY).ray, 0);
     }
     this.down = null;
@@ -100,7 +104,7 @@ export class PointerInput {
   /** Arrows move or turn the selected joint as the camera sees it; where none is selected, the view. */
   private key(event: KeyboardEvent) {
     if (event.key === 'Escape') return this.cancel();
-    const { selected, session, mode } = this.page.now;
+    const { selected, session, mode, snapping } = this.page.now;
     const step = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
     if (!step || !session || event.ctrlKey || event.metaKey) return;
     event.preventDefault();
@@ -109,12 +113,12 @@ export class PointerInput {
     const { right, up } = this.viewport.axes();
     if (mode === 'turn') {
       const axis = x === 0 ? right : up;
-      void this.studio.turn(selected, axis.toArray(), (x - y) * (event.shiftKey ? 1 : 5));
+      this.studio.turn(selected, axis.toArray(), (x - y) * (snapping ? session.snap.degrees : event.shiftKey ? 1 : 5));
       return;
     }
     const size = new Vector3(...session.box.max).distanceTo(new Vector3(...session.box.min));
-    const length = size * (event.shiftKey ? 0.002 : 0.01);
+    const length = snapping ? session.snap.step : size * (event.shiftKey ? 0.002 : 0.01);
     const offset = right.multiplyScalar(x).addScaledVector(up, y).multiplyScalar(length);
-    void this.studio.nudge(selected, offset.toArray());
+    this.studio.nudge(selected, offset.toArray());
   }
 }

@@ -9,6 +9,7 @@ import { LimitView } from './limit_view';
 import { ModelView } from './model_view';
 import { OnionView } from './onion_view';
 import { boneColor, partColor } from './palette';
+import { BoxSelect } from './box_select';
 import { BrushView } from './brush_view';
 import { PaintInput } from './paint_input';
 import { PointerInput } from './pointer';
@@ -35,6 +36,7 @@ export function createStage(studio: Studio, page: PageStore): Stage {
   viewport.scene.add(brush.root);
   viewport.tools.push(brush.root);
   new PaintInput(viewport, brush, studio, page); // before the other, which then sees that it is not meant
+  new BoxSelect(viewport, handles, gizmo, studio, page);
   new PointerInput(viewport, handles, gizmo, studio, page);
   const root = new Vector3();
   model.onChange = () => viewport.draw();
@@ -48,13 +50,14 @@ export function createStage(studio: Studio, page: PageStore): Stage {
     const before = root.clone();
     model.take(stance.skin);
     handles.take(stance.handles);
+    gizmo.take(stance.turns);
     limits.take(handles, stance.skin);
     comparison.take(stance.variants);
     if (handles.count > 0) handles.position(0, root);
     source.take(stance.source, stance.sourceSkin, root);
     // The camera walks along.
     if (ofClip) viewport.follow(root.x - before.x, root.z - before.z);
-    gizmo.place(viewport);
+    gizmo.place();
     viewport.draw();
   };
   studio.onWeights = (weights) => {

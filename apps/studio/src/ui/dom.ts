@@ -45,6 +45,8 @@ const icons = {
   copy: 'M7 7h10v10H7zM13 7V3H3v10h4',
   paste: 'M5 4h10v13H5zM8 2h4v4H8z',
   ghosts: 'M4 17V8a4 4 0 0 1 8 0v9l-2-2-2 2-2-2zm10 0V8a4 4 0 0 0-3-3.9',
+  select: 'M3 6V3h3m3 0h2m3 0h3v3m0 3v1M3 9v2m0 3v3h3m3 0h1M11 11l6.5 2.4-2.9 1.2-1.2 2.9z',
+  magnet: 'M4 3v7a6 6 0 0 0 12 0V3h-4v7a2 2 0 0 1-4 0V3zM4 7h4m4 0h4',
   frame: 'M3 7V3h4M13 3h4v4M17 13v4h-4M7 17H3v-4',
 };
 export type IconName = keyof typeof icons;

@@ -1,0 +1,32 @@
+// Round numbers for a hand that is not exact: steps that turns and places snap to.
+#pragma once
+
+#include <optional>
+
+#include "limber/core/transform.h"
+
+namespace limber {
+
+struct RiggedModel;
+
+// What a drag of one joint snaps to.
+struct DragSnap {
+  double degrees = 15;           // turns go in steps of this, from how the joint stood
+  double step = 0.01;            // metres between the places of a grid through the world's origin
+  Vec3 up = Vec3::UnitY();       // of the world
+  std::optional<double> ground;  // metres along `up`: a foot there stands on the floor
+};
+
+// The nearest of 1, 2 and 5 times a power of ten, as the logarithm measures; 1 where `length` is not above 0.
+double roundStep(double length);
+
+// For that joint of the model: the grid has about a hundred steps along the model, and a foot stands as high as it does
+// in the rest pose.
+DragSnap snapOf(const RiggedModel& rig, Index joint);
+
+// The nearest place of the grid; within a step of standing on the floor, the place stands there. World space.
+Vec3 snapPlace(const DragSnap& snap, const Vec3& place);
+// The same axis, by the nearest number of steps.
+Quat snapTurn(const DragSnap& snap, const Quat& turn);
+
+}  // namespace limber
