@@ -142,6 +142,37 @@ cases['a session: surface, picking and a saved session'] = () => {
   assert.equal(Buffer.compare(again.export('glb').bytes, session.export('glb').bytes), 0);
   again.free();
 };
+cases['a scene: several models in one file, as the native program writes it'] = () => {
+  const scene = limber.createSession();
+  const act = (command) => {
+    const result = scene.run(command);
+    assert.ok(result.ok, `${command.do}: ${result.error?.message}`);
+    return result.state;
+  };
+  act({ do: 'open_sample', name: 'robot' });
+  assert.ok(scene.add(bytes, 'model.glb').ok);
+  const { members } = act({ do: 'add_sample', name: 'stool', as_prop: true });
+  assert.deepEqual(members.map(({ name }) => name), ['robot', 'model', 'stool']);
+  assert.equal(members[2].joints.length, 1);
+  const hand = members[0].joints.find(({ part }) => part === 'left hand') ?? members[0].joints.at(-1);
+  act({ do: 'attach_member', member: 'stool', to: 'robot', joint: hand.name, snap: true });
+  act({ do: 'choose_member', member: 'robot' });
+  act({ do: 'turn_joint', joint: hand.name, axis: [0, 0, 1], degrees: 40 });
+  act({ do: 'place_member', member: 'model', position: [-2, 0, 1], turn: [0, 45, 0], scale: 0.5 });
+  assert.equal(scene.places().places.length, 48);
+  assert.equal(scene.memberSkin(2).skin.length, 16);
+  assert.equal(scene.pickMember({ origin: [99, 99, 9], direction: [0, 0, -1] }).hit, null);
+  const glb = scene.export('glb').bytes;
+  writeFileSync(join(output, 'scene.glb'), glb);
+  writeFileSync(join(output, 'scene.json'), JSON.stringify(scene.record()));
+  const path = join(output, 'scene_native.glb');
+  execFileSync(program, ['session', 'replay', join(output, 'scene.json'), '-o', path, '--quiet'], { stdio: ['ignore', 'ignore', 'inherit'] });
+  const here = nodesOf(glb), there = nodesOf(readFileSync(path));
+  assert.deepEqual(here.map(({ name }) => name), there.map(({ name }) => name));
+  here.forEach(({ name, numbers }, n) =>
+    numbers.forEach((value, i) => assert.ok(Math.abs(value - there[n].numbers[i]) < 1e-5, `${name}: ${value}, ${there[n].numbers[i]}`)));
+  scene.free();
+};
 
 let passed = 0, failed = 0;
 for (const [name, run] of Object.entries(cases)) {

@@ -212,7 +212,8 @@ template <class Method>
 std::string listMethods(std::string_view title, std::span<const Method> methods) {
   std::string text = fmt::format("{}:\n", title);
   for (const Method& method : methods) {
-    text += fmt::format("  {:<14}{} ({})\n", method.name, method.summary, method.paper);
+    text += fmt::format("  {:<14}{}", method.name, method.summary);
+    text += method.paper.empty() ? "\n" : fmt::format(" ({})\n", method.paper);
   }
   return text;
 }

@@ -11,7 +11,7 @@
 #include "limber/asset/read.h"
 #include "limber/core/counted.h"
 #include "limber/core/file.h"
-#include "limber/session/session.h"
+#include "limber/session/scene.h"
 #include "progress_line.h"
 
 namespace limber::cli {
@@ -63,28 +63,36 @@ ExportFormat formatOf(const std::filesystem::path& path) {
   return extension == ".ply" ? ExportFormat::kPly : ExportFormat::kGlb;
 }
 
+std::string contentOf(const SessionScene& scene) {
+  std::string text;
+  for (const SceneMember& member : scene.members()) {
+    text += fmt::format("{}{} with {}", text.empty() ? "" : ", ", member.session->source().name,
+                        counted(member.session->state().rig->skeleton().jointCount(), "joint"));
+  }
+  return text;
+}
+
 void run(const SessionArguments& options) {
   options.common.apply();
   checkOutput(options.output, {".glb", ".obj", ".stl", ".ply"});
   const auto [commands, files] = readWork(options.commands);
   TerminalProgress progress(options.common.quiet);
-  Session session(files);
+  SessionScene scene(files);
   for (std::size_t i = 0; i < commands.size(); ++i) {
     try {
-      session.run(commands[i], *progress);
+      scene.run(commands[i], *progress);
     } catch (const Error& error) {
       throw error.within(fmt::format("{}: commands[{}]", options.commands, i));
     }
   }
   progress->stage("write");
-  const Bytes bytes = session.exportModel(formatOf(options.output));
+  const Bytes bytes = scene.exportModel(formatOf(options.output));
   const OutputFile file{options.output, bytes};
   writeFiles({&file, 1});
   progress.finish();
 
   const Account account(options.common.quiet, options.output);
-  account.line(fmt::format("{} done: {} with {}", counted(commands.size(), "command"), session.source().name,
-                           counted(session.state().rig->skeleton().jointCount(), "joint")));
+  account.line(fmt::format("{} done: {}", counted(commands.size(), "command"), contentOf(scene)));
   if (options.output != "-") account.line(fmt::format("written: {}", options.output));
 }
 
@@ -103,8 +111,8 @@ void addSessionCommand(CLI::App& program) {
   replay
       ->add_option(
           "-o,--output", options->output,
-          "the .glb (rigged, standing in the pose), .obj, .stl or .ply (the posed surface); - is standard output "
-          "(GLB)")
+          "the .glb (rigged, standing in the pose; all models of a scene), .obj, .stl or .ply (the posed surfaces); - "
+          "is standard output (GLB)")
       ->required()
       ->type_name("FILE");
   options->common.addTo(*replay);
@@ -114,6 +122,8 @@ void addSessionCommand(CLI::App& program) {
       "   {\"do\": \"set_handles\", \"count\": 20}, {\"do\": \"turn_joint\", \"joint\": \"handle_03\", \"axis\": [0, "
       "1, 0],\n"
       "   \"degrees\": 30}]}\n"
+      "Further models come into the scene by add_sample and add_file; choose_member says which one the commands behind "
+      "it are for.\n"
       "\nExample:\n"
       "  limber session replay commands.json -o posed.glb\n"
       "  limber session replay fox.limber -o posed.glb");

@@ -8,6 +8,9 @@
 //   session.run({ do: 'open_sample', name: 'biped' });
 //   session.run({ do: 'turn_joint', joint: 'handle_03.L', axis: [0, 0, 1], degrees: 30 });
 //   save(session.export('glb').bytes);
+//
+// A session is a scene: further models come beside the first by add() and the command add_sample, and what is done is done
+// to the member that is chosen.
 import createEngine from './limber_engine.mjs';
 
 /**
@@ -41,7 +44,12 @@ import createEngine from './limber_engine.mjs';
  *             pins: { joint: string, position: Vector }[], locked: number[], edited_rig: boolean,
  *             dragged: number | null,
  *             posed: boolean, undo: string | null, redo: string | null,
- *             warnings: { kind: string, message: string, where: string, count: number }[] }} SessionState
+ *             warnings: { kind: string, message: string, where: string, count: number }[],
+ *             member: number, members: SceneMember[] }} SessionState of the chosen member, as scene_state.h has it
+ * @typedef {{ position: Vector, turn: Vector, scale: number }} Placement metres, a rotation vector in degrees
+ * @typedef {{ name: string, source: string, joints: { name: string, part: string | null }[], placement: Placement,
+ *             attached: { to: number, joint: string } | null, clip: string | null, duration: number,
+ *             box: { min: Vector, max: Vector } }} SceneMember
  *
  * @typedef {'rigger' | 'skinning' | 'solver' | 'retargeting'} MethodKind
  * @typedef {{ [kind in MethodKind]: { name: string, summary: string }[] }} Methods
@@ -147,6 +155,32 @@ function createSession(engine, handle = engine._limber_session_new()) {
     /** `limbsFollow`: as in the command open_file. @type {(file: Uint8Array, name: string, limbsFollow?: boolean) => StepResult} */
     open: (file, name, limbsFollow = false) =>
       step(call(engine, engine._limber_session_open, [handle, Number(limbsFollow)], file, name)),
+    /** Another model beside those that are there, as the command add_file.
+     *  @type {(file: Uint8Array, name: string, limbsFollow?: boolean, asProp?: boolean) => StepResult} */
+    add: (file, name, limbsFollow = false, asProp = false) =>
+      step(call(engine, engine._limber_session_add, [handle, Number(limbsFollow), Number(asProp)], file, name)),
+    /** For each member the matrix that brings its own space to that of the scene, 16 numbers.
+     *  @type {() => { ok: true, places: Float32Array } | Failure} */
+    places: () => {
+      const result = call(engine, engine._limber_session_places, [handle]);
+      return result.ok ? { ok: true, places: new Float32Array(result.bytes.buffer) } : result;
+    },
+    /** As model() and skin(), of any member. @type {(member: number) => { ok: true, model: SurfaceModel } | Failure} */
+    memberModel: (member) => {
+      const result = call(engine, engine._limber_session_member_model, [handle, member]);
+      return result.ok ? { ok: true, model: surfaceModel(result.bytes, result.account) } : result;
+    },
+    /** @type {(member: number) => { ok: true, skin: Float32Array } | Failure} */
+    memberSkin: (member) => {
+      const result = call(engine, engine._limber_session_member_skin, [handle, member]);
+      return result.ok ? { ok: true, skin: new Float32Array(result.bytes.buffer) } : result;
+    },
+    /** The member whose surface a ray in the chosen one's space meets first.
+     *  @type {(ray: Ray) => { ok: true, hit: { member: number, joint: number } | null } | Failure} */
+    pickMember: (ray) => {
+      const result = call(engine, engine._limber_session_pick_member, [handle, ...ray.origin, ...ray.direction]);
+      return result.ok ? { ok: true, hit: result.account } : result;
+    },
     /** Motions of a BVH file or of a model. @type {(file: Uint8Array, name: string) => StepResult} */
     addMotion: (file, name) => step(call(engine, engine._limber_session_add_motion, [handle], file, name)),
     /** Where the joints stand that the chosen clip's motion was made for: x, y, z each; empty where there are none.

@@ -1,5 +1,5 @@
-// A session across the C boundary: commands in JSON in, the state in JSON and arrays out. limber.mjs is the typed face
-// of these functions; nobody else calls them.
+// A scene across the C boundary, whose chosen member is "the session": commands in JSON in, the state in JSON and
+// arrays out. limber.mjs is the typed face of these functions; nobody else calls them.
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
@@ -13,8 +13,8 @@
 #include "limber/asset/mesh_export.h"
 #include "limber/session/clip_curves.h"
 #include "limber/session/measures.h"
-#include "limber/session/session.h"
-#include "limber/session/session_state.h"
+#include "limber/session/scene.h"
+#include "limber/session/scene_state.h"
 #include "limber/skeleton/keyframes.h"
 
 namespace {
@@ -26,7 +26,9 @@ using limber::wasm::CallResult;
 using limber::wasm::guarded;
 
 struct SessionHandle {
-  limber::Session session;
+  limber::SessionScene scene;
+
+  const limber::Session& session() const { return scene.session(); }
 };
 
 std::string textOf(const Json& json) {
@@ -54,12 +56,15 @@ void append(std::vector<float>& values, const Vector& vector) {
   for (Eigen::Index i = 0; i < vector.size(); ++i) values.push_back(static_cast<float>(vector[i]));
 }
 
-// #J matrices, column by column.
+// Column by column.
+void append(std::vector<float>& values, const limber::Affine& affine) {
+  for (int column = 0; column < 4; ++column) append(values, affine.matrix().col(column));
+}
+
+// #J matrices.
 std::vector<float> skinArray(const limber::Session& session) {
   std::vector<float> values;
-  for (const limber::Affine& skin : session.skinMatrices()) {
-    for (int column = 0; column < 4; ++column) append(values, skin.matrix().col(column));
-  }
+  for (const limber::Affine& skin : session.skinMatrices()) append(values, skin);
   return values;
 }
 
@@ -175,11 +180,11 @@ CallResult modelOf(const limber::SessionState& state) {
 }
 
 // A drag's updates and a clip's moments come once a frame and change nothing but the pose.
-CallResult stateAfter(const limber::Session& session, const limber::Command& command) {
-  const bool frame = std::holds_alternative<limber::UpdateDrag>(command) ||
-                     std::holds_alternative<limber::TurnDrag>(command) ||
-                     std::holds_alternative<limber::SetTime>(command);
-  return {true, bytesOf(skinArray(session)), frame ? "{}" : textOf(limber::sessionState(session))};
+CallResult stateAfter(const limber::SessionScene& scene, const limber::Command& command) {
+  const bool frame =
+      std::holds_alternative<limber::UpdateDrag>(command) || std::holds_alternative<limber::TurnDrag>(command) ||
+      std::holds_alternative<limber::SetTime>(command) || std::holds_alternative<limber::SetClock>(command);
+  return {true, bytesOf(skinArray(scene.session())), frame ? "{}" : textOf(limber::sceneState(scene))};
 }
 
 Json hitJson(const std::optional<limber::PickHit>& hit) {
@@ -206,13 +211,13 @@ Bytes motionOf(const limber::SessionState& state) {
   return limber::writeBvh(motion);
 }
 
-Bytes exported(const limber::Session& session, std::string_view format) {
-  if (format == "glb") return session.exportModel(limber::ExportFormat::kGlb);
-  if (format == "obj") return session.exportModel(limber::ExportFormat::kObj);
-  if (format == "stl") return session.exportModel(limber::ExportFormat::kStl);
-  if (format == "ply") return session.exportModel(limber::ExportFormat::kPly);
-  if (format == "bvh") return motionOf(session.state());
-  if (format == "session") return session.saveSession();
+Bytes exported(const limber::SessionScene& scene, std::string_view format) {
+  if (format == "glb") return scene.exportModel(limber::ExportFormat::kGlb);
+  if (format == "obj") return scene.exportModel(limber::ExportFormat::kObj);
+  if (format == "stl") return scene.exportModel(limber::ExportFormat::kStl);
+  if (format == "ply") return scene.exportModel(limber::ExportFormat::kPly);
+  if (format == "bvh") return motionOf(scene.session().state());
+  if (format == "session") return scene.session().saveSession();
   throw limber::Error(limber::ErrorCode::kBadArgument, "no format is called '" + std::string(format) + "'", {},
                       "there are: glb, obj, stl, ply, bvh, session");
 }
@@ -225,7 +230,7 @@ LIMBER_EXPORT SessionHandle* limber_session_new() {
 // Null where a joint is being dragged, where nothing is open, and without memory.
 LIMBER_EXPORT SessionHandle* limber_session_fork(const SessionHandle* handle) {
   try {
-    return new SessionHandle{handle->session.fork()};
+    return new SessionHandle{limber::SessionScene(handle->session().fork())};
   } catch (const std::exception&) {
     return nullptr;
   }
@@ -239,8 +244,8 @@ LIMBER_EXPORT CallResult* limber_session_open(SessionHandle* handle, int limbsFo
                                               std::size_t fileSize, const char* name, std::size_t nameSize) {
   return guarded({name, nameSize}, [&] {
     limber::Progress progress(reportProgress);
-    handle->session.open({file, fileSize}, {name, nameSize}, progress, limbsFollow != 0);
-    return stateAfter(handle->session, limber::OpenFile{});
+    handle->scene.open({file, fileSize}, {name, nameSize}, progress, limbsFollow != 0);
+    return stateAfter(handle->scene, limber::OpenFile{});
   });
 }
 
@@ -248,16 +253,56 @@ LIMBER_EXPORT CallResult* limber_session_run(SessionHandle* handle, const char* 
   return guarded({}, [&] {
     const limber::Command command = commandOf(json, size);
     limber::Progress progress(reportProgress);
-    handle->session.run(command, progress);
-    return stateAfter(handle->session, command);
+    handle->scene.run(command, progress);
+    return stateAfter(handle->scene, command);
+  });
+}
+
+// The same as the command add_file.
+LIMBER_EXPORT CallResult* limber_session_add(SessionHandle* handle, int limbsFollow, int asProp,
+                                             const std::uint8_t* file, std::size_t fileSize, const char* name,
+                                             std::size_t nameSize) {
+  return guarded({name, nameSize}, [&] {
+    limber::Progress progress(reportProgress);
+    const limber::AddFile command{{name, nameSize}, limbsFollow != 0, asProp != 0};
+    handle->scene.add({file, fileSize}, command, progress);
+    return stateAfter(handle->scene, command);
+  });
+}
+
+// 16 numbers for each member: its own space in that of the scene.
+LIMBER_EXPORT CallResult* limber_session_places(const SessionHandle* handle) {
+  return guarded({}, [&]() -> CallResult {
+    std::vector<float> values;
+    for (std::size_t m = 0; m < handle->scene.members().size(); ++m) append(values, handle->scene.toScene(m));
+    return {true, bytesOf(values), "{}"};
+  });
+}
+
+// As limber_session_model and _skin, of any member.
+LIMBER_EXPORT CallResult* limber_session_member_model(const SessionHandle* handle, Index member) {
+  return guarded({}, [&] { return modelOf(handle->scene.members()[member].session->state()); });
+}
+LIMBER_EXPORT CallResult* limber_session_member_skin(const SessionHandle* handle, Index member) {
+  return guarded({}, [&]() -> CallResult {
+    return {true, bytesOf(skinArray(*handle->scene.members()[member].session)), "{}"};
+  });
+}
+
+// The member whose surface the ray meets first, or null.
+LIMBER_EXPORT CallResult* limber_session_pick_member(const SessionHandle* handle, double ox, double oy, double oz,
+                                                     double dx, double dy, double dz) {
+  return guarded({}, [&]() -> CallResult {
+    const std::optional<limber::SceneHit> hit = handle->scene.pick({{ox, oy, oz}, {dx, dy, dz}});
+    return {true, {}, hit ? textOf({{"member", hit->member}, {"joint", hit->hit.joint}}) : "null"};
   });
 }
 
 LIMBER_EXPORT CallResult* limber_session_add_motion(SessionHandle* handle, const std::uint8_t* file,
                                                     std::size_t fileSize, const char* name, std::size_t nameSize) {
   return guarded({name, nameSize}, [&] {
-    handle->session.addMotion({file, fileSize}, {name, nameSize});
-    return stateAfter(handle->session, limber::AddMotion{});
+    handle->scene.addMotion({file, fileSize}, {name, nameSize});
+    return stateAfter(handle->scene, limber::AddMotion{});
   });
 }
 
@@ -265,7 +310,7 @@ LIMBER_EXPORT CallResult* limber_session_add_motion(SessionHandle* handle, const
 LIMBER_EXPORT CallResult* limber_session_source_joints(const SessionHandle* handle) {
   return guarded({}, [&]() -> CallResult {
     std::vector<float> values;
-    for (const limber::Vec3& place : limber::sourceJoints(handle->session.state().movement)) append(values, place);
+    for (const limber::Vec3& place : limber::sourceJoints(handle->session().state().movement)) append(values, place);
     return {true, bytesOf(values), "{}"};
   });
 }
@@ -273,7 +318,7 @@ LIMBER_EXPORT CallResult* limber_session_source_joints(const SessionHandle* hand
 // The chosen clip at even moments, at most `most` of them: three numbers for each joint, moment after moment.
 LIMBER_EXPORT CallResult* limber_session_paths(const SessionHandle* handle, double framesPerSecond, std::size_t most) {
   return guarded({}, [&]() -> CallResult {
-    const limber::SessionState& state = handle->session.state();
+    const limber::SessionState& state = handle->session().state();
     const std::vector<double> moments = limber::evenMoments(state.movement, framesPerSecond, most);
     std::vector<float> values;
     for (const limber::Vec3& at : limber::jointPaths(state.movement, state.rig->skeleton(), moments)) {
@@ -287,7 +332,7 @@ LIMBER_EXPORT CallResult* limber_session_paths(const SessionHandle* handle, doub
 LIMBER_EXPORT CallResult* limber_session_curve(const SessionHandle* handle, Index joint, double framesPerSecond,
                                                std::size_t most) {
   return guarded({}, [&]() -> CallResult {
-    const limber::SessionState& state = handle->session.state();
+    const limber::SessionState& state = handle->session().state();
     const std::vector<double> moments = limber::curveMoments(state.movement, joint, framesPerSecond, most);
     std::vector<float> values;
     for (const limber::CurvePoint& point : limber::jointCurve(state.movement, state.rig->skeleton(), joint, moments)) {
@@ -301,7 +346,7 @@ LIMBER_EXPORT CallResult* limber_session_curve(const SessionHandle* handle, Inde
 LIMBER_EXPORT CallResult* limber_session_pick(const SessionHandle* handle, double ox, double oy, double oz, double dx,
                                               double dy, double dz, double slope) {
   return guarded({}, [&]() -> CallResult {
-    return {true, {}, textOf(hitJson(handle->session.pick({{ox, oy, oz}, {dx, dy, dz}}, slope)))};
+    return {true, {}, textOf(hitJson(handle->session().pick({{ox, oy, oz}, {dx, dy, dz}}, slope)))};
   });
 }
 
@@ -309,49 +354,51 @@ LIMBER_EXPORT CallResult* limber_session_pick(const SessionHandle* handle, doubl
 LIMBER_EXPORT CallResult* limber_session_surface(const SessionHandle* handle, double ox, double oy, double oz,
                                                  double dx, double dy, double dz) {
   return guarded({}, [&]() -> CallResult {
-    return {true, {}, textOf(hitJson(handle->session.pickSurface({{ox, oy, oz}, {dx, dy, dz}})))};
+    return {true, {}, textOf(hitJson(handle->session().pickSurface({{ox, oy, oz}, {dx, dy, dz}})))};
   });
 }
 
 // The weights that there are, and those that a stroke would leave.
 LIMBER_EXPORT CallResult* limber_session_weights(const SessionHandle* handle) {
-  return guarded({}, [&]() -> CallResult { return {true, weightsArray(handle->session.state().rig->weights), "{}"}; });
+  return guarded({}, [&]() -> CallResult {
+    return {true, weightsArray(handle->session().state().rig->weights), "{}"};
+  });
 }
 LIMBER_EXPORT CallResult* limber_session_preview(const SessionHandle* handle, const char* json, std::size_t size) {
   return guarded({}, [&]() -> CallResult {
     const limber::Command command = commandOf(json, size);
     const auto* stroke = std::get_if<limber::PaintWeights>(&command);
     if (!stroke) throw limber::Error(limber::ErrorCode::kBadArgument, "only painting has a preview");
-    return {true, weightsArray(handle->session.previewPaint(*stroke)), "{}"};
+    return {true, weightsArray(handle->session().previewPaint(*stroke)), "{}"};
   });
 }
 
 LIMBER_EXPORT CallResult* limber_session_skin(const SessionHandle* handle) {
-  return guarded({}, [&]() -> CallResult { return {true, bytesOf(skinArray(handle->session)), "{}"}; });
+  return guarded({}, [&]() -> CallResult { return {true, bytesOf(skinArray(handle->session())), "{}"}; });
 }
 
 LIMBER_EXPORT CallResult* limber_session_handles(const SessionHandle* handle) {
-  return guarded({}, [&]() -> CallResult { return {true, bytesOf(handleArray(handle->session.state())), "{}"}; });
+  return guarded({}, [&]() -> CallResult { return {true, bytesOf(handleArray(handle->session().state())), "{}"}; });
 }
 
 LIMBER_EXPORT CallResult* limber_session_turns(const SessionHandle* handle) {
-  return guarded({}, [&]() -> CallResult { return {true, bytesOf(turnArray(handle->session.state())), "{}"}; });
+  return guarded({}, [&]() -> CallResult { return {true, bytesOf(turnArray(handle->session().state())), "{}"}; });
 }
 
 LIMBER_EXPORT CallResult* limber_session_model(const SessionHandle* handle) {
-  return guarded({}, [&] { return modelOf(handle->session.state()); });
+  return guarded({}, [&] { return modelOf(handle->session().state()); });
 }
 
 LIMBER_EXPORT CallResult* limber_session_export(const SessionHandle* handle, const char* format, std::size_t size) {
-  return guarded({}, [&]() -> CallResult { return {true, exported(handle->session, {format, size}), "{}"}; });
+  return guarded({}, [&]() -> CallResult { return {true, exported(handle->scene, {format, size}), "{}"}; });
 }
 
 LIMBER_EXPORT CallResult* limber_session_measures(const SessionHandle* handle) {
   return guarded({}, [&]() -> CallResult {
-    return {true, {}, textOf(limber::measuresToJson(limber::measureSession(handle->session)))};
+    return {true, {}, textOf(limber::measuresToJson(limber::measureSession(handle->session())))};
   });
 }
 
 LIMBER_EXPORT CallResult* limber_session_record(const SessionHandle* handle) {
-  return guarded({}, [&]() -> CallResult { return {true, {}, limber::commandsToJson(handle->session.record())}; });
+  return guarded({}, [&]() -> CallResult { return {true, {}, limber::commandsToJson(handle->scene.record())}; });
 }

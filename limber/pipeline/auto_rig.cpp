@@ -143,6 +143,15 @@ void reportBridged(const Asset& asset, const Geometry& geometry, const PreparedM
   report.warnings.add("bridged-vertices", "vertices of such pieces", where, bridged.size());
 }
 
+// Methods would come to the same, after much work.
+WeightResult heldByOneJoint(const TriMesh& mesh) {
+  WeightResult result;
+  result.weights.slots = 1;
+  result.weights.joints.assign(mesh.vertexCount(), 0);
+  result.weights.weights.assign(mesh.vertexCount(), 1.0f);
+  return result;
+}
+
 struct Rigged {
   SkinWeights weights;           // for the source vertices
   std::optional<Skeleton> made;  // in world space; none where the asset's own was kept
@@ -177,7 +186,9 @@ Rigged makeRig(const Asset& asset, const Geometry& geometry, const PreparedMesh&
   }
 
   progress.stage("skin");
-  WeightResult skin = findWeightMethod(options.skinning).compute(prepared.mesh, bones, options.weights, progress);
+  WeightResult skin = result.made && result.made->jointCount() == 1
+                          ? heldByOneJoint(prepared.mesh)
+                          : findWeightMethod(options.skinning).compute(prepared.mesh, bones, options.weights, progress);
   report.warnings.append(skin.warnings);
   reportBridged(asset, geometry, prepared, pieces, skin.bridged, report);
   result.weights = expandWeights(skin.weights, prepared.weldedVertex);

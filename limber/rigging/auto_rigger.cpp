@@ -1,6 +1,7 @@
 #include "limber/rigging/auto_rigger.h"
 
 #include "limber/core/names.h"
+#include "limber/rigging/prop_rigger.h"
 #include "limber/rigging/sphere_mesh_rigger.h"
 #include "limber/rigging/template_rigger.h"
 
@@ -13,6 +14,7 @@ constexpr RiggerMethod kMethods[] = {
      "Thiery, Guy, Boubekeur: Sphere-Meshes, 2013", &rigWithSphereMesh},
     {"template", "a named skeleton fitted into the model; --template names it", "after Baran, Popović: Pinocchio, 2007",
      &rigWithTemplate},
+    {kPropRigger, "one joint for all of it: a thing that does not bend", "", &rigAsProp},
 };
 
 }  // namespace

@@ -66,7 +66,7 @@ using AutoRigger = AutoRig (*)(const TriMesh& mesh, const RigOptions& options, P
 struct RiggerMethod {
   std::string_view name;     // "sphere-mesh"
   std::string_view summary;  // one line for --help
-  std::string_view paper;
+  std::string_view paper;    // empty: none
   AutoRigger rig;
 };
 

@@ -20,15 +20,17 @@ namespace {
 constexpr int kCommandsVersion = 1;
 
 // In the order of the variant.
-constexpr std::array<std::string_view, 47> kNames = {
-    "open_sample",       "open_file",     "set_handles",   "choose_methods", "pin_joint",   "unpin_joint",
-    "begin_drag",        "update_drag",   "turn_drag",     "end_drag",       "cancel_drag", "turn_joint",
-    "move_joint",        "set_ik",        "set_target",    "clear_target",   "set_limits",  "reset_joint",
-    "reset_pose",        "mirror_pose",   "set_rest_pose", "rename_joint",   "add_motion",  "add_sample_motion",
-    "retarget",          "add_clip",      "remove_clip",   "rename_clip",    "choose_clip", "set_time",
-    "set_key",           "move_key",      "delete_key",    "edit_keys",      "delete_keys", "set_joint_key",
-    "set_interpolation", "paint_weights", "lock_weights",  "mirror_weights", "add_joint",   "delete_joint",
-    "reparent_joint",    "place_joint",   "set_turn",      "undo",           "redo"};
+constexpr std::array<std::string_view, 56> kNames = {
+    "open_sample",       "open_file",     "set_handles",   "choose_methods", "pin_joint",    "unpin_joint",
+    "begin_drag",        "update_drag",   "turn_drag",     "end_drag",       "cancel_drag",  "turn_joint",
+    "move_joint",        "set_ik",        "set_target",    "clear_target",   "set_limits",   "reset_joint",
+    "reset_pose",        "mirror_pose",   "set_rest_pose", "rename_joint",   "add_motion",   "add_sample_motion",
+    "retarget",          "add_clip",      "remove_clip",   "rename_clip",    "choose_clip",  "set_time",
+    "set_key",           "move_key",      "delete_key",    "edit_keys",      "delete_keys",  "set_joint_key",
+    "set_interpolation", "paint_weights", "lock_weights",  "mirror_weights", "add_joint",    "delete_joint",
+    "reparent_joint",    "place_joint",   "set_turn",      "undo",           "redo",         "add_sample",
+    "add_file",          "remove_member", "choose_member", "rename_member",  "place_member", "attach_member",
+    "detach_member",     "set_clock"};
 static_assert(kNames.size() == std::variant_size_v<Command>);
 
 // The fields of each command, said once for reading and writing.
@@ -253,6 +255,54 @@ void visitFields(Visitor& field, SetJointKey& c) {
 template <class Visitor>
 void visitFields(Visitor& field, SetInterpolation& c) {
   field("interpolation", c.interpolation);
+}
+
+template <class Visitor>
+void visitFields(Visitor& field, AddSample& c) {
+  field("name", c.name);
+  field("limbs_follow", c.limbsFollow);
+  field("as_prop", c.asProp);
+}
+template <class Visitor>
+void visitFields(Visitor& field, AddFile& c) {
+  field("file", c.file);
+  field("limbs_follow", c.limbsFollow);
+  field("as_prop", c.asProp);
+}
+template <class Visitor>
+void visitFields(Visitor& field, RemoveMember& c) {
+  field("member", c.member);
+}
+template <class Visitor>
+void visitFields(Visitor& field, ChooseMember& c) {
+  field("member", c.member);
+}
+template <class Visitor>
+void visitFields(Visitor& field, RenameMember& c) {
+  field("member", c.member);
+  field("name", c.name);
+}
+template <class Visitor>
+void visitFields(Visitor& field, PlaceMember& c) {
+  field("member", c.member);
+  field("position", c.position);
+  field("turn", c.turn);
+  field("scale", c.scale);
+}
+template <class Visitor>
+void visitFields(Visitor& field, AttachMember& c) {
+  field("member", c.member);
+  field("to", c.to);
+  field("joint", c.joint);
+  field("snap", c.snap);
+}
+template <class Visitor>
+void visitFields(Visitor& field, DetachMember& c) {
+  field("member", c.member);
+}
+template <class Visitor>
+void visitFields(Visitor& field, SetClock& c) {
+  field("seconds", c.seconds);
 }
 
 constexpr std::array<std::pair<DragMode, std::string_view>, 2> kDragModes = {

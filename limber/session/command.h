@@ -268,13 +268,57 @@ struct SetInterpolation {
 struct Undo {};
 struct Redo {};
 
+// Of a scene (scene.h): its members are named. Another model, beside those that are there, on the same ground; it is
+// the chosen one then. As a prop it gets a single joint where the file brings no rig.
+struct AddSample {
+  std::string name;  // of sampleModels()
+  bool limbsFollow = false;
+  bool asProp = false;
+};
+struct AddFile {
+  std::string file;
+  bool limbsFollow = false;
+  bool asProp = false;
+};
+struct RemoveMember {
+  std::string member;
+};
+// All commands that are not of a scene go to the chosen member. Nothing to undo; of several in a row the last counts.
+struct ChooseMember {
+  std::string member;
+};
+struct RenameMember {
+  std::string member, name;
+};
+// Where a model stands in the scene. What is attached stays attached, and keeps its new place at its joint.
+struct PlaceMember {
+  std::string member;
+  Vec3 position = Vec3::Zero();  // of the model's origin, metres
+  Vec3 turn = Vec3::Zero();      // a rotation vector, degrees
+  double scale = 1;              // above 0
+};
+// From then on the member follows that joint, from where it is now or, snapped, with its middle at the joint.
+struct AttachMember {
+  std::string member, to, joint;
+  bool snap = false;
+};
+// It stays where it is.
+struct DetachMember {
+  std::string member;
+};
+// One clock for all members: each shows that moment of its chosen clip, again and again. Like SetTime otherwise.
+struct SetClock {
+  double seconds = 0;
+};
+
 using Command =
     std::variant<OpenSample, OpenFile, SetHandles, ChooseMethods, PinJoint, UnpinJoint, BeginDrag, UpdateDrag, TurnDrag,
                  EndDrag, CancelDrag, TurnJoint, MoveJoint, SetIk, SetTarget, ClearTarget, SetLimits, ResetJoint,
                  ResetPose, MirrorPose, SetRestPose, RenameJoint, AddMotion, AddSampleMotion, RetargetMotion, AddClip,
                  RemoveClip, RenameClip, ChooseClip, SetTime, SetKey, MoveKey, DeleteKey, EditKeys, DeleteKeys,
                  SetJointKey, SetInterpolation, PaintWeights, LockWeights, MirrorWeights, AddJoint, DeleteJoint,
-                 ReparentJoint, PlaceJoint, SetTurn, Undo, Redo>;
+                 ReparentJoint, PlaceJoint, SetTurn, Undo, Redo, AddSample, AddFile, RemoveMember, ChooseMember,
+                 RenameMember, PlaceMember, AttachMember, DetachMember, SetClock>;
 
 // "set_handles", as in JSON.
 std::string_view commandName(const Command& command);

@@ -61,7 +61,16 @@ std::vector<Command> oneOfEach() {
           PlaceJoint{"hand.L", {0.5, 1, -0.25}, {"head"}, true},
           SetTurn{"hand.L", {30, -20, 0.125}, {"head"}, true},
           Undo{},
-          Redo{}};
+          Redo{},
+          AddSample{"stool", true, true},
+          AddFile{"props/sword.glb", true, true},
+          RemoveMember{"sword"},
+          ChooseMember{"fox"},
+          RenameMember{"fox", "vixen"},
+          PlaceMember{"fox", {1, 0, -2}, {0, 90, 0}, 0.5},
+          AttachMember{"sword", "fox", "paw.L", true},
+          DetachMember{"sword"},
+          SetClock{2.0 / 3}};
 }
 
 TEST(Command, JsonKeepsEveryCommandAndEveryField) {
@@ -107,6 +116,12 @@ TEST(Command, JsonKeepsEveryCommandAndEveryField) {
   EXPECT_EQ(std::get<EditKeys>(back[33]).scale, 2);
   EXPECT_EQ(std::get<DeleteKeys>(back[34]).keys.size(), 1u);
   EXPECT_EQ(std::get<SetJointKey>(back[35]).turn, Vec3(0, 30, 0));
+  EXPECT_TRUE(std::get<AddFile>(back[48]).asProp);
+  EXPECT_EQ(std::get<RenameMember>(back[51]).name, "vixen");
+  EXPECT_EQ(std::get<PlaceMember>(back[52]).turn, Vec3(0, 90, 0));
+  EXPECT_EQ(std::get<PlaceMember>(back[52]).scale, 0.5);
+  EXPECT_EQ(std::get<AttachMember>(back[53]).to, "fox");
+  EXPECT_TRUE(std::get<AttachMember>(back[53]).snap);
   EXPECT_EQ(std::get<SetInterpolation>(back[36]).interpolation, Interpolation::kCubic);
 }
 

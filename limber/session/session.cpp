@@ -12,11 +12,13 @@
 #include "limber/asset/uri.h"
 #include "limber/ik/limits_json.h"
 #include "limber/pipeline/pose_asset.h"
+#include "limber/rigging/prop_rigger.h"
 #include "limber/samples/sample_motions.h"
 #include "limber/samples/samples.h"
 #include "limber/session/edit_joints.h"
 #include "limber/session/mirror_pose.h"
 #include "limber/session/pose_transfer.h"
+#include "limber/session/refuse.h"
 #include "limber/session/session_file.h"
 #include "limber/session/session_io.h"
 #include "limber/session/standing_feet.h"
@@ -25,11 +27,11 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kMostSteps = 200, kMostRigs = 12;  // that an undo history keeps
-constexpr std::size_t kMostWeights = 32'000'000;         // influences that the rigs of an undo history hold
+constexpr std::size_t kMostRigs = 12;             // that an undo history keeps
+constexpr std::size_t kMostWeights = 32'000'000;  // influences that the rigs of an undo history hold
 
-[[noreturn]] void refuse(std::string message, std::string where = {}, std::string remedy = {}) {
-  throw Error(ErrorCode::kBadArgument, std::move(message), std::move(where), std::move(remedy));
+[[noreturn]] void refuseSecond() {
+  refuse("a session holds one model", {}, "a scene holds several");
 }
 
 bool sameRig(const RiggedModel& a, const RiggedModel& b) {
@@ -138,9 +140,20 @@ void setRestPose(SessionState& state) {
   authored(state);
 }
 
+// Whether the rig is one of as many handles as were asked for.
+bool countsHandles(const SessionState& state) {
+  return !state.rig->report || (state.rig->report->matches.empty() && state.rigger != kPropRigger);
+}
+
 // False where it has none.
 bool erasePin(std::vector<JointPin>& pins, const std::string& joint) {
   return std::erase_if(pins, [&](const JointPin& pin) { return pin.joint == joint; }) > 0;
+}
+
+void show(SessionState& next) {
+  next.pose = shownPose(next.movement, next.rig->skeleton());
+  holdStandingFeet(next);
+  authored(next);
 }
 
 }  // namespace
@@ -157,21 +170,34 @@ struct Session::Runner {
     return session.state_;
   }
 
-  void operator()(const OpenSample& c) const { session.start(makeSample(c.name), command, c.limbsFollow, progress); }
+  void operator()(const OpenSample& c) const { session.start(makeSample(c.name), command, {c.limbsFollow}, progress); }
   void operator()(const OpenFile& c) const { session.open(session.fileOf(c.file), c.file, progress, c.limbsFollow); }
+  void operator()(const AddSample& c) const {
+    if (session.isOpen()) refuseSecond();
+    session.start(makeSample(c.name), command, {c.limbsFollow, c.asProp}, progress);
+  }
+  void operator()(const AddFile& c) const { session.add(session.fileOf(c.file), c, progress); }
+  void operator()(const RemoveMember&) const { refuseOfScene(); }
+  void operator()(const ChooseMember&) const { refuseOfScene(); }
+  void operator()(const RenameMember&) const { refuseOfScene(); }
+  void operator()(const PlaceMember&) const { refuseOfScene(); }
+  void operator()(const AttachMember&) const { refuseOfScene(); }
+  void operator()(const DetachMember&) const { refuseOfScene(); }
+  void operator()(const SetClock&) const { refuseOfScene(); }
+  [[noreturn]] static void refuseOfScene() { refuse("only a scene has members", {}, "run the command on a scene"); }
   void operator()(const SetHandles& c) const {
     SessionState next = state();
-    // A rigger that fits a named skeleton has no use for a number.
-    if (next.rig->report && !next.rig->report->matches.empty()) next.rigger = AutoRigOptions().rigger;
+    // A rigger that fits a named skeleton has no use for a number, nor has one that gives a prop its joint.
+    if (!countsHandles(next)) next.rigger = AutoRigOptions().rigger;
     rig(next, c.count);
     session.commit(command, std::move(next));
   }
   void operator()(const ChooseMethods& c) const {
     SessionState next = state();
-    const bool named = next.rig->report && !next.rig->report->matches.empty() && next.rigger != c.rigger;
+    const bool uncounted = !countsHandles(next) && next.rigger != c.rigger;
     next.rigger = c.rigger;
     next.skinning = c.skinning;
-    rig(next, named ? std::nullopt : std::optional(next.rig->skeleton().jointCount()));
+    rig(next, uncounted ? std::nullopt : std::optional(next.rig->skeleton().jointCount()));
     session.commit(command, std::move(next));
   }
   void rig(SessionState& next, std::optional<Index> handles) const {
@@ -215,7 +241,7 @@ struct Session::Runner {
     const Index joint = requireJoint(now, c.joint);
     DragScene scene = sceneOf(now, joint, c);
     session.drag_ = std::make_unique<Drag>(std::move(scene), joint, c.mode, c.ray, c.view);
-    session.remember(command);
+    session.record_->add(command);
   }
   // `c` names joints in `with`, and may be `mirrored`.
   template <class Gesture>
@@ -260,11 +286,11 @@ struct Session::Runner {
     std::optional<Pose> pose = drag().at(c.ray, c.view, c.snap);
     if (!pose) return;
     session.state_.pose = *std::move(pose);
-    session.remember(command);
+    session.record_->add(command);
   }
   void operator()(const TurnDrag& c) const {
     session.state_.pose = drag().turned(c.axis, c.degrees);
-    session.remember(command);
+    session.record_->add(command);
   }
   // The undo step is the whole drag: it goes back to the pose at its beginning.
   void operator()(const EndDrag&) const {
@@ -287,8 +313,7 @@ struct Session::Runner {
   void operator()(const CancelDrag&) const {
     session.state_.pose = drag().start();
     session.drag_.reset();
-    while (!std::holds_alternative<BeginDrag>(session.record_.back())) session.record_.pop_back();
-    session.record_.pop_back();
+    session.record_->cancelDrag();
   }
 
   void operator()(const PlaceJoint& c) const {
@@ -466,11 +491,6 @@ struct Session::Runner {
     if (next.movement.chosen) show(next);
     session.commit(command, std::move(next));
   }
-  static void show(SessionState& next) {
-    next.pose = shownPose(next.movement, next.rig->skeleton());
-    holdStandingFeet(next);
-    authored(next);
-  }
   void operator()(const RetargetMotion& c) const {
     move([&](SessionState& next) { retargetMotion(next.movement, next.rig->skeleton(), c); });
   }
@@ -497,10 +517,8 @@ struct Session::Runner {
     });
   }
   void operator()(const SetTime& c) const {
-    state();
-    setTime(session.state_.movement, c.seconds);
-    show(session.state_);
-    session.remember(command);
+    session.showMoment(c.seconds);
+    session.record_->add(command);
   }
   void operator()(const SetKey& c) const {
     SessionState next = state();
@@ -541,11 +559,12 @@ struct Session::Runner {
     from.pop_back();
     std::swap(step.before, session.state_);
     to.push_back(std::move(step));
-    session.remember(command);
+    session.record_->add(command);
   }
 };
 
-Session::Session(Resolver files) : files_(std::move(files)), brush_(std::make_unique<Brush>()) {}
+Session::Session(Resolver files, std::shared_ptr<CommandRecord> record)
+    : files_(std::move(files)), brush_(std::make_unique<Brush>()), record_(std::move(record)) {}
 Session::~Session() = default;
 Session::Session(Session&&) noexcept = default;
 Session& Session::operator=(Session&&) noexcept = default;
@@ -556,7 +575,13 @@ void Session::run(const Command& command, Progress& progress) {
 
 void Session::open(ByteSpan bytes, std::string_view name, Progress& progress, bool limbsFollow) {
   progress.stage("read");
-  start(readAsset(bytes, name, files_), OpenFile{std::string(name), limbsFollow}, limbsFollow, progress);
+  start(readAsset(bytes, name, files_), OpenFile{std::string(name), limbsFollow}, {limbsFollow}, progress);
+}
+
+void Session::add(ByteSpan bytes, const AddFile& command, Progress& progress) {
+  if (isOpen()) refuseSecond();
+  progress.stage("read");
+  start(readAsset(bytes, command.file, files_), command, {command.limbsFollow, command.asProp}, progress);
 }
 
 // Percent signs and the like belong to the name; what leads out of the folder is refused.
@@ -574,33 +599,37 @@ void Session::addMotion(ByteSpan bytes, std::string_view name) {
   commit(AddMotion{std::string(name)}, std::move(next));
 }
 
-void Session::start(Asset source, const Command& command, bool limbsFollow, Progress& progress) {
+void Session::start(Asset source, const Command& command, Opening how, Progress& progress) {
   const std::optional<SavedSession> saved = takeSession(source);
-  state_ = startState(std::make_shared<const Asset>(std::move(source)), saved, progress);
-  if (!saved && limbsFollow) letLimbsFollow(state_);
+  state_ = startState(std::make_shared<const Asset>(std::move(source)), saved, how.asProp, progress);
+  if (!saved && how.limbsFollow) letLimbsFollow(state_);
   undo_.clear();
   redo_.clear();
   drag_.reset();
-  record_ = {command};
+  record_->add(command);
 }
 
 // Whether it is one undo step with the one before it.
 bool Session::goesOnWithLast(const Command& command) const {
-  if (std::holds_alternative<SetHandles>(command)) return std::holds_alternative<SetHandles>(record_.back());
+  const std::span<const Command> done = record_->commands();
+  if (std::holds_alternative<SetHandles>(command)) return std::holds_alternative<SetHandles>(done.back());
   const auto* ended = std::get_if<EndDrag>(&command);
   if (!ended || !ended->goesOn) return false;
-  const auto begin = std::find_if(record_.rbegin(), record_.rend(),
-                                  [](const Command& c) { return std::holds_alternative<BeginDrag>(c); });
+  const auto begin =
+      std::find_if(done.rbegin(), done.rend(), [](const Command& c) { return std::holds_alternative<BeginDrag>(c); });
   const auto before = std::next(begin);  // the record begins with a model's opening
   return std::holds_alternative<EndDrag>(*before);
 }
 
 void Session::commit(const Command& command, SessionState next) {
   const bool again = !undo_.empty() && goesOnWithLast(command);
-  if (!again) undo_.push_back({commandName(command), state_});
+  if (!again) {
+    undo_.push_back({commandName(command), state_});
+    ++stepsMade_;
+  }
   state_ = std::move(next);
   redo_.clear();
-  remember(command);
+  record_->add(command);
 
   // What paints a rig shares its document.
   std::set<const RiggedModel*> rigs;
@@ -618,11 +647,11 @@ void Session::commit(const Command& command, SessionState next) {
   undo_.erase(undo_.begin(), undo_.end() - static_cast<std::ptrdiff_t>(kept));
 }
 
-void Session::remember(const Command& command) {
-  const bool onlyLast = std::holds_alternative<UpdateDrag>(command) || std::holds_alternative<TurnDrag>(command) ||
-                        std::holds_alternative<SetHandles>(command) || std::holds_alternative<SetTime>(command);
-  if (onlyLast && record_.back().index() == command.index()) record_.pop_back();
-  record_.push_back(command);
+void Session::showMoment(double seconds) {
+  requireOpen();
+  if (drag_) refuse("a joint is being dragged", {}, "end_drag or cancel_drag comes first");
+  setTime(state_.movement, seconds);
+  show(state_);
 }
 
 void Session::requireOpen() const {
@@ -642,9 +671,8 @@ const Asset& Session::source() const {
 Session Session::fork() const {
   requireOpen();
   if (drag_) refuse("a joint is being dragged", {}, "end_drag or cancel_drag comes first");
-  Session session(files_);
+  Session session(files_, std::make_shared<CommandRecord>(*record_));
   session.state_ = state_;
-  session.record_ = record_;
   return session;
 }
 

@@ -12,6 +12,7 @@
 #include "limber/asset/read.h"
 #include "limber/ik/limits.h"
 #include "limber/session/command.h"
+#include "limber/session/command_record.h"
 #include "limber/session/drag.h"
 #include "limber/session/movement.h"
 #include "limber/session/paint_weights.h"
@@ -43,6 +44,14 @@ struct SessionState {
   Movement movement;
 };
 
+// How a model is opened that no session was saved with.
+struct Opening {
+  bool limbsFollow = false;
+  bool asProp = false;  // a single joint where the file has no rig
+};
+
+inline constexpr std::size_t kMostSteps = 200;  // that an undo history keeps
+
 enum class ExportFormat { kGlb, kObj, kStl, kPly };
 
 // Only the last of several updates of a drag, counts of handles or moments of a clip in a row is recorded; such counts
@@ -50,18 +59,21 @@ enum class ExportFormat { kGlb, kObj, kStl, kPly };
 // it was.
 class Session {
  public:
-  // `files` opens what OpenFile names, and what it refers to.
-  explicit Session(Resolver files = {});
+  // `files` opens what OpenFile names, and what it refers to. Sessions of one scene share their record.
+  explicit Session(Resolver files = {}, std::shared_ptr<CommandRecord> record = std::make_shared<CommandRecord>());
   ~Session();
   Session(Session&&) noexcept;
   Session& operator=(Session&&) noexcept;
 
   // Throws Error kBadArgument for what makes no sense now: a joint that is not there, a drag that has not begun,
-  // nothing to undo, no model opened. Opening starts a new history.
+  // nothing to undo, no model opened, a command of a scene; but AddSample and AddFile open what a session without a
+  // model is to hold. Opening starts a new history.
   void run(const Command& command, Progress& progress);
   // The same as OpenFile, for a file whose bytes are at hand. A model without a rig gets one with the best suggested
   // number of handles; one that saveSession() wrote comes back as it was.
   void open(ByteSpan bytes, std::string_view name, Progress& progress, bool limbsFollow = false);
+  // Likewise the same as AddFile.
+  void add(ByteSpan bytes, const AddFile& command, Progress& progress);
   // The same as AddMotion, for a file whose bytes are at hand. Throws as readMotion does.
   void addMotion(ByteSpan bytes, std::string_view name);
 
@@ -78,6 +90,12 @@ class Session {
   std::string_view undoName() const { return undo_.empty() ? std::string_view() : undo_.back().command; }
   std::string_view redoName() const { return redo_.empty() ? std::string_view() : redo_.back().command; }
   std::optional<Index> draggedJoint() const;
+  // How many steps there are to undo, and how many there ever were: that tells whether a command was one.
+  std::size_t undoCount() const { return undo_.size(); }
+  std::size_t stepsMade() const { return stepsMade_; }
+
+  // SetTime, without a place in the record.
+  void showMoment(double seconds);
 
   // What the ray meets: a handle (see pickHandle) or else the surface.
   std::optional<PickHit> pick(const Ray& ray, double slope) const;
@@ -95,7 +113,7 @@ class Session {
   // See session_file.h. Motions are not part of it, the clips made of them are.
   Bytes saveSession() const;
   // What was done since a model was opened; run on a new session with the same files it gives the same bytes.
-  std::span<const Command> record() const { return record_; }
+  std::span<const Command> record() const { return record_->commands(); }
 
  private:
   struct Step {
@@ -106,8 +124,7 @@ class Session {
 
   void commit(const Command& command, SessionState next);
   bool goesOnWithLast(const Command& command) const;
-  void remember(const Command& command);
-  void start(Asset source, const Command& command, bool limbsFollow, Progress& progress);
+  void start(Asset source, const Command& command, Opening how, Progress& progress);
   void requireOpen() const;
   Bytes fileOf(const std::string& name) const;
 
@@ -116,7 +133,8 @@ class Session {
   std::vector<Step> undo_, redo_;
   std::unique_ptr<Drag> drag_;
   std::unique_ptr<Brush> brush_;  // what it keeps is only for speed
-  std::vector<Command> record_;
+  std::shared_ptr<CommandRecord> record_;
+  std::size_t stepsMade_ = 0;
 };
 
 }  // namespace limber

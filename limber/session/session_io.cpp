@@ -4,13 +4,13 @@
 
 #include <fmt/format.h>
 
-#include "limber/asset/mesh_export.h"
 #include "limber/asset/pose_io.h"
 #include "limber/asset/write.h"
 #include "limber/core/error.h"
 #include "limber/ik/ik_solver.h"
 #include "limber/ik/limits_json.h"
 #include "limber/pipeline/pose_asset.h"
+#include "limber/rigging/prop_rigger.h"
 
 namespace limber {
 
@@ -126,10 +126,11 @@ void authored(SessionState& state) {
   state.authoredPose = state.pose;
 }
 
-SessionState startState(std::shared_ptr<const Asset> asset, const std::optional<SavedSession>& saved,
+SessionState startState(std::shared_ptr<const Asset> asset, const std::optional<SavedSession>& saved, bool asProp,
                         Progress& progress) {
   const Asset& source = *asset;
   AutoRigOptions options;
+  if (asProp) options.rigger = kPropRigger;
   const bool own = saved ? saved->ownRig : hasRig(source);
   if (saved && !own) {
     options.rigger = saved->rigger;
@@ -155,13 +156,23 @@ SessionState startState(std::shared_ptr<const Asset> asset, const std::optional<
   return state;
 }
 
-Bytes exportState(const SessionState& state, ExportFormat format) {
-  const RiggedModel& rig = *state.rig;
-  if (format == ExportFormat::kGlb) return writeGlb(assetWithClips(rig, state.pose, clipsOf(state.movement)));
-  const Asset document = documentOf(rig);
-  const ExportMesh mesh = exportMesh(document, posedGeometry(document, rig.binding, state.pose).geometry);
+Asset posedDocument(const SessionState& state) {
+  return assetWithClips(*state.rig, state.pose, clipsOf(state.movement));
+}
+
+ExportMesh posedMesh(const SessionState& state) {
+  const Asset document = documentOf(*state.rig);
+  return exportMesh(document, posedGeometry(document, state.rig->binding, state.pose).geometry);
+}
+
+Bytes encodeMesh(const ExportMesh& mesh, ExportFormat format) {
   if (format == ExportFormat::kObj) return encodeObj(mesh, {});
   return format == ExportFormat::kStl ? encodeStl(mesh) : encodePly(mesh);
+}
+
+Bytes exportState(const SessionState& state, ExportFormat format) {
+  if (format == ExportFormat::kGlb) return writeGlb(posedDocument(state));
+  return encodeMesh(posedMesh(state), format);
 }
 
 Bytes savedState(const SessionState& state) {

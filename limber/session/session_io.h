@@ -5,14 +5,22 @@
 #include <optional>
 #include <string>
 
+#include "limber/asset/mesh_export.h"
 #include "limber/session/session.h"
 #include "limber/session/session_file.h"
 
 namespace limber {
 
-// The state right after opening: as it was saved, else with the model's own rig, else with a new one.
-SessionState startState(std::shared_ptr<const Asset> source, const std::optional<SavedSession>& saved,
+// The state right after opening: as it was saved, else with the model's own rig, else with a new one; a prop's has one
+// joint.
+SessionState startState(std::shared_ptr<const Asset> source, const std::optional<SavedSession>& saved, bool asProp,
                         Progress& progress);
+
+// The rigged model with its clips, its joints standing in the pose.
+Asset posedDocument(const SessionState& state);
+// The posed surface alone.
+ExportMesh posedMesh(const SessionState& state);
+Bytes encodeMesh(const ExportMesh& mesh, ExportFormat format);
 
 // Session::exportModel and saveSession.
 Bytes exportState(const SessionState& state, ExportFormat format);

@@ -1,11 +1,10 @@
 #include "limber/session/session_state.h"
 
-#include <nlohmann/json.hpp>
-
 #include "limber/anatomy/body_part.h"
 #include "limber/anatomy/part_color.h"
 #include "limber/ik/limit_outline.h"
 #include "limber/ik/limits_json.h"
+#include "limber/session/state_json.h"
 #include "limber/skeleton/keyframes.h"
 
 namespace limber {
@@ -13,14 +12,6 @@ namespace limber {
 namespace {
 
 constexpr Index kRimSteps = 32;
-
-Json vectorJson(const Vec3& v) {
-  return Json::array({v.x(), v.y(), v.z()});
-}
-
-Json textOrNull(std::string_view text) {
-  return text.empty() ? Json(nullptr) : Json(std::string(text));
-}
 
 // What a joint is of the body, where that is sure enough to be said.
 const Part* surePart(const Anatomy& anatomy, Index joint) {
@@ -41,7 +32,7 @@ Json jointsJson(const RiggedModel& rig) {
     const Part* part = surePart(rig.anatomy, j);
     joints.push_back({{"name", joint.name},
                       {"parent", joint.parent ? static_cast<int>(*joint.parent) : -1},
-                      {"part", part ? textOrNull(labelOf(rig.anatomy, j)) : Json(nullptr)},
+                      {"part", textOrNull(sureLabel(rig, j))},
                       {"color", colorJson(part)},
                       {"radius", rig.radii[j]},
                       {"rest", vectorJson(rest[j].translation())}});
@@ -153,6 +144,10 @@ Json snapJson(const RiggedModel& rig) {
 }
 
 }  // namespace
+
+std::string sureLabel(const RiggedModel& rig, Index joint) {
+  return surePart(rig.anatomy, joint) ? std::string(labelOf(rig.anatomy, joint)) : std::string();
+}
 
 Json sessionState(const Session& session) {
   const SessionState& state = session.state();

@@ -27,4 +27,7 @@ namespace limber {
 // Throws Error kBadArgument while nothing is open.
 Json sessionState(const Session& session);
 
+// What a joint is of the body ("left foot"), where that is sure enough to be said; else empty.
+std::string sureLabel(const RiggedModel& rig, Index joint);
+
 }  // namespace limber

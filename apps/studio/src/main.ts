@@ -17,6 +17,7 @@ import { outliner } from './panels/outliner';
 import { paintPanel } from './panels/paint_panel';
 import { posePanel } from './panels/pose_panel';
 import { poseTools } from './panels/pose_tools';
+import { scenePanel } from './panels/scene_panel';
 import { retargetPanel } from './panels/retarget_panel';
 import { facts, status } from './panels/status';
 import { timeline } from './panels/timeline';
@@ -48,21 +49,21 @@ const page = createPageStore();
 const journal = new Journal();
 const studio = new Studio(page, journal);
 studio.ask = ask;
-const { viewport, handles, model, comparison, gizmo } = stageOrApology();
+const { viewport, handles, model, comparison, gizmo, others, places } = stageOrApology();
 const sheet = contactSheet(studio, page, viewport);
 
 const app = document.getElementById('app')!;
 app.append(
-  toolbar(studio, page, journal, viewport, model),
+  toolbar(studio, page, journal, viewport, model, others),
   element('main', { class: 'stage' }, viewport.canvas, facts(page), hint(page), poseTools(page), views(viewport), comparisonPanel(studio, page, comparison)),
-  element('aside', { class: 'side' }, posePanel(studio, page), paintPanel(studio, page), retargetPanel(studio, page), methodsPanel(studio, page), outliner(studio, page, handles)),
+  element('aside', { class: 'side' }, scenePanel(studio, page, places), posePanel(studio, page), paintPanel(studio, page), retargetPanel(studio, page), methodsPanel(studio, page), outliner(studio, page, handles)),
   timeline(studio, page, sheet.open),
   status(studio, page), help(page), sheet.dialog, motionShelf(studio, page));
 bindShortcuts(studio, page, viewport, handles);
 bindPlayer(studio, page);
 bindJournal(journal, studio, page, viewport);
 
-// A model can be dropped anywhere.
+// A model can be dropped anywhere; with Shift it comes beside those that are there.
 addEventListener('dragover', (event) => {
   event.preventDefault();
   document.body.classList.add('dropping');
@@ -73,10 +74,10 @@ addEventListener('dragleave', (event) => {
 addEventListener('drop', (event) => {
   event.preventDefault();
   document.body.classList.remove('dropping');
-  if (event.dataTransfer) void droppedFiles(event.dataTransfer).then((files) => studio.openFiles(files));
+  if (event.dataTransfer) void droppedFiles(event.dataTransfer).then((files) => (event.shiftKey ? studio.addFiles(files, false) : studio.openFiles(files)));
 });
 
-exposeStage(studio, page, viewport, handles, gizmo, () => journal.settled);
+exposeStage(studio, page, viewport, handles, gizmo, places, () => journal.settled);
 
 // ?model=address or ?sample=name; else what was worked on last, or the first sample, so that there is something to take
 // hold of.

@@ -118,6 +118,35 @@ await picture('studio_compare', { ...desk, search: '?sample=biped' }, async (pag
   await page.waitForFunction(() => document.querySelectorAll('#comparison dl').length === 2);
   await settled(page);
 });
+await picture('studio_scene', { ...desk, search: '?sample=biped' }, async (page) => {
+  const state = () => sessionState(page);
+  const add = async (sample, prop) => {
+    const count = (await state()).members.length + 1;
+    await page.locator('#open-add').click();
+    await page.locator('#as-prop').setChecked(prop);
+    await page.locator(`#add-member [data-sample=${sample}]`).click();
+    await page.waitForFunction((wanted) => globalThis.limberStudio.state().members.length === wanted, count);
+    await settled(page);
+  };
+  const choose = async (member) => {
+    await page.locator(`#members [data-member="${member}"] button`).first().click();
+    await settled(page);
+  };
+  await add('stool', true);
+  await add('biped', false);
+  const pull = async (member, part, way) => {
+    await choose(member);
+    const { x, y } = await jointPlace(page, (await state()).joints.find((joint) => joint.part === part).name);
+    await drag(page, [x / desk.width, y / desk.height], way);
+  };
+  await choose(1);
+  await page.locator('#attach-member').click();
+  await page.locator('#holder').selectOption({ index: 0 });
+  await page.locator('#hold-yes').click();
+  await settled(page);
+  await pull(0, 'left hand', [20, -60]);
+  await pull(2, 'right hand', [-20, -120]);
+});
 await picture('studio_phone', { width: 390, height: 844, touch: true, search: '?sample=quadruped' }, async () => {});
 await browser.close();
 server.close();

@@ -24,7 +24,7 @@ export function bindJournal(journal: Journal, studio: Studio, page: PageStore, v
     context.fillStyle = '#eef0f3';
     context.fillRect(0, 0, width, height);
     viewport.drawInto(context, 0, 0, width, height);
-    journal.describe(session.name, canvas.toDataURL('image/jpeg', 0.8));
+    journal.describe(session.members.length > 1 ? session.members.map(({ name }) => name).join(', ') : session.name, canvas.toDataURL('image/jpeg', 0.8));
   };
   page.watch((now, before) => {
     if (now.session !== before.session && now.session) later();

@@ -8,15 +8,17 @@ import { say } from '../words/say';
 
 const version = 1; // of the list of commands
 const list = 'commands.json';
+const namesFile = new Set(['open_file', 'add_file', 'add_motion']);
 
 /** `requests`: all that made the document. */
 export function toLimberFile(requests: Request[]): Uint8Array {
   const files: Zippable = {};
   const commands = requests.map((request, number): Command => {
     if (request.kind === 'run') return request.command;
-    if (request.kind !== 'open' && request.kind !== 'motion') throw new Error(`${request.kind} changes no document`);
+    if (request.kind !== 'open' && request.kind !== 'add' && request.kind !== 'motion') throw new Error(`${request.kind} changes no document`);
     const file = `files/${number}/${request.name.replace(/[\\/]/g, '_')}`;
     files[file] = [request.bytes, { level: 6 }];
+    if (request.kind === 'add') return { do: 'add_file', file, limbs_follow: request.limbsFollow, as_prop: request.asProp };
     return request.kind === 'open' ? { do: 'open_file', file, limbs_follow: request.limbsFollow ?? false } : { do: 'add_motion', file };
   });
   files[list] = strToU8(JSON.stringify({ limber_commands: version, commands }, null, 1));
@@ -37,10 +39,12 @@ export function fromLimberFile(archive: Uint8Array, name: string): Request[] {
   const commands = read.commands;
   if (!Array.isArray(commands)) throw refuse(say('its {file} holds no commands', { file: list }));
   return commands.map((command: Command): Request => {
-    if (command?.do !== 'open_file' && command?.do !== 'add_motion') return { kind: 'run', command };
+    if (!namesFile.has(command?.do)) return { kind: 'run', command };
     const path = String(command.file), bytes = files.get(path);
     if (!bytes) throw refuse(say('it holds no {file}', { file: path }));
     const name = path.split('/').pop() ?? path;
-    return command.do === 'open_file' ? { kind: 'open', bytes, name, limbsFollow: command.limbs_follow === true } : { kind: 'motion', bytes, name };
+    const limbsFollow = command.limbs_follow === true;
+    if (command.do === 'add_file') return { kind: 'add', bytes, name, limbsFollow, asProp: command.as_prop === true };
+    return command.do === 'open_file' ? { kind: 'open', bytes, name, limbsFollow } : { kind: 'motion', bytes, name };
   });
 }

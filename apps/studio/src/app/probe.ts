@@ -3,6 +3,7 @@ import { Vector3 } from 'three';
 import type { SessionState, Vector } from '../engine/messages';
 import type { Gizmo } from '../scene/gizmo';
 import type { HandleView } from '../scene/handle_view';
+import type { Places } from '../scene/places';
 import type { Viewport } from '../scene/viewport';
 import type { PageStore } from './state';
 import type { Studio } from './studio';
@@ -20,6 +21,9 @@ export interface StudioProbe {
   turned(joint: string): { turn: Vector; rotation: number[] };
   /** What of the gizmo is under the pointer. */
   gizmoAxis(): string | null;
+  /** Where a member of the scene has its origin, in metres; where the middle of its box is drawn, that far up in it, in pixels. */
+  memberAt(member: number): Vector;
+  memberPlace(member: number, up?: number): { x: number; y: number };
   /** Pixels of the page. */
   place(joint: string): { x: number; y: number };
 }
@@ -29,12 +33,18 @@ declare global {
 }
 
 export function exposeStage(
-  studio: Studio, page: PageStore, viewport: Viewport, handles: HandleView, gizmo: Gizmo, kept: () => boolean,
+  studio: Studio, page: PageStore, viewport: Viewport, handles: HandleView, gizmo: Gizmo, places: Places, kept: () => boolean,
 ) {
   const jointOf = (name: string) => {
     const joint = page.now.session?.joints.findIndex((known) => known.name === name) ?? -1;
     if (joint < 0) throw new Error(`no joint is called ${name}`);
     return joint;
+  };
+  const onPage = (at: Vector3) => {
+    viewport.camera.updateMatrixWorld();
+    const { x, y } = at.project(viewport.camera);
+    const box = viewport.canvas.getBoundingClientRect();
+    return { x: box.left + ((x + 1) / 2) * box.width, y: box.top + ((1 - y) / 2) * box.height };
   };
   const position = (name: string) => handles.position(jointOf(name), new Vector3());
   let turns: Float32Array = new Float32Array();
@@ -46,15 +56,16 @@ export function exposeStage(
     selected: () => page.now.selected,
     gizmoAxis: () => gizmo.axis,
     position: (name) => position(name).toArray(),
+    memberPlace: (member, up = 0.5) => {
+      const box = places.box(member, page.now.session!.members), at = box.getCenter(new Vector3());
+      at.y = box.min.y + up * (box.max.y - box.min.y);
+      return onPage(at.applyMatrix4(viewport.world.matrix));
+    },
     turned: (name) => {
       const [x = 0, y = 0, z = 0, ...rotation] = turns.slice(7 * jointOf(name), 7 * jointOf(name) + 7);
       return { turn: [x, y, z], rotation };
     },
-    place: (name) => {
-      viewport.camera.updateMatrixWorld();
-      const { x, y } = position(name).project(viewport.camera);
-      const box = viewport.canvas.getBoundingClientRect();
-      return { x: box.left + ((x + 1) / 2) * box.width, y: box.top + ((1 - y) / 2) * box.height };
-    },
+    memberAt: (member) => new Vector3().setFromMatrixPosition(places.of(member)).toArray(),
+    place: (name) => onPage(position(name)),
   };
 }

@@ -1,6 +1,6 @@
 // What the page shows, in one place.
 import type {
-  Curve, LimberError, Measures, MethodKind, Methods, Paths, SampleMotion, SessionState, SurfaceModel, Variant,
+  Curve, LimberError, Measures, MethodKind, Methods, OtherMember, Paths, SampleMotion, SessionState, SurfaceModel, Variant,
 } from '../engine/messages';
 import { told } from '../words/engine';
 import { Store } from './store';
@@ -50,6 +50,10 @@ export type KeyEditor = 'sheet' | 'curves';
 export interface PageState {
   session: SessionState | null;
   model: SurfaceModel | null;
+  /** The other members of the scene. */
+  others: readonly OtherMember[];
+  /** A model that is pressed goes over the floor with the pointer. */
+  arranging: boolean;
   mode: DragMode;
   display: Display;
   bones: boolean;
@@ -111,7 +115,7 @@ export interface PageState {
 export type PageStore = Store<PageState>;
 
 export const createPageStore = (): PageStore => new Store<PageState>({
-  session: null, model: null, mode: 'move', display: 'handles', bones: true, wireframe: false,
+  session: null, model: null, others: [], arranging: false, mode: 'move', display: 'handles', bones: true, wireframe: false,
   selected: null, also: new Set(), bothSides: false, hovered: null, work: null, notice: null, help: false,
   seconds: 0, playing: false, speed: 1, loop: true, autoKey: true, gizmo: false, gizmoSpace: 'world', snapping: false, selecting: false, limits: false, correcting: false,
   span: 0.3, keyEditor: null, chosenKeys: [], ghosts: false, paths: null, curve: null,

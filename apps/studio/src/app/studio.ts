@@ -2,15 +2,16 @@
 import { EngineClient, EngineError, refusal } from '../engine/client';
 import { canBeNamed } from '../engine/messages';
 import type {
-  Command, LimberError, MethodKind, MotionPreview, MotionRequest, PreviewRig, Ray, Request, SessionState, Stance, Step, SurfaceHit,
+  Command, LimberError, MethodKind, MotionPreview, MotionRequest, Placement, PreviewRig, Ray, Request, SessionState, Stance, Step, SurfaceHit,
   Vector, WeightArrays,
 } from '../engine/messages';
 import { counted } from '../ui/counted';
-import { sorted, withBuffers } from './files';
+import { sorted, withBuffers, type Brought } from './files';
 import type { Journal, KeptDocument } from './journal';
 import { fromLimberFile, toLimberFile } from './limber_file';
 import type { Motion } from './motion_trials';
 import { changedTime, keysThere, type KeyChange } from './keys';
+import { chosenClip, momentOf } from './clips';
 import { noticeOf, type DragMode, type KeyPlace, type Notice, type PageStore } from './state';
 import { stageName, told, warningText } from '../words/engine';
 import { say } from '../words/say';
@@ -30,6 +31,8 @@ const lostSteps = (failed: number, all: number, error: LimberError | null): Noti
 const openTwice = (name: string): Notice => ({
   kind: 'note', title: say('This model is open in another tab as well'), detail: say('What you do here is kept as a copy of {name}', { name }),
 });
+
+const noModel = (): Notice => ({ kind: 'error', title: say('There is no model in it'), detail: say('Open GLB, glTF, VRM, OBJ, FBX, STL, PLY or BVH') });
 
 const sampleMotion = (name: string): MotionRequest => ({ kind: 'run', command: { do: 'add_sample_motion', name } });
 const motionOf = async (file: File): Promise<MotionRequest> =>
@@ -101,34 +104,84 @@ export class Studio {
     await this.opening;
   }
 
+  /** Another model beside those that are there; as a prop without joints of its own. */
+  async addSample(name: string, asProp: boolean) {
+    await this.joining(() => this.engine.run({ do: 'add_sample', name, limbs_follow: !asProp, as_prop: asProp }));
+  }
+
+  async addFiles(files: File[], asProp: boolean) {
+    const brought = await this.broughtBy(files);
+    if (!brought) return;
+    const { model, beside } = brought;
+    if (!model || /\.limber$/i.test(model.name)) return this.page.set({ notice: noModel() });
+    await this.joining(async () => {
+      const { bytes, name } = await this.readModel(model, beside);
+      return this.engine.ask({ kind: 'add', bytes, name, limbsFollow: !asProp, asProp });
+    });
+  }
+
+  private async joining(make: () => Promise<Step>) {
+    if (!this.page.now.session) return;
+    this.page.set({ playing: false, comparison: null });
+    await this.guard(async () => {
+      this.take(await make());
+      this.onOpened();
+    });
+  }
+
+  async chooseMember(member: number) {
+    const { session } = this.page.now;
+    if (session && member !== session.member) await this.run({ do: 'choose_member', member: this.memberName(member) });
+  }
+  async placeMember(member: number, placement: Placement) {
+    await this.run({ do: 'place_member', member: this.memberName(member), ...placement });
+  }
+  async attachMember(member: number, to: number, joint: string, snap: boolean) {
+    await this.run({ do: 'attach_member', member: this.memberName(member), to: this.memberName(to), joint, snap });
+  }
+  async detachMember(member: number) { await this.run({ do: 'detach_member', member: this.memberName(member) }); }
+  async removeMember(member: number) { await this.run({ do: 'remove_member', member: this.memberName(member) }); }
+  async renameMember(member: number, name: string) {
+    await this.run({ do: 'rename_member', member: this.memberName(member), name });
+  }
+  private memberName(member: number) { return this.page.now.session?.members[member]?.name ?? ''; }
+
+  private async broughtBy(files: File[]): Promise<Brought | null> {
+    const large = files.find(({ size }) => size > mostFileSize);
+    if (!large) return this.guard(() => sorted(files));
+    this.page.set({ notice: { kind: 'error', title: say('This file is too large for a browser'), detail: large.name } });
+    return null;
+  }
+
   /** A model with what belongs to it, motions for it, or limits. */
   async openFiles(files: File[]) {
-    const large = files.find(({ size }) => size > mostFileSize);
-    if (large) {
-      this.page.set({ notice: { kind: 'error', title: say('This file is too large for a browser'), detail: large.name } });
-      return;
-    }
-    const brought = await this.guard(() => sorted(files));
+    const brought = await this.broughtBy(files);
     if (!brought) return;
     const { model, motions, limits, beside } = brought;
     if (model) await this.openModel(model, beside);
     await this.openMotions(motions);
     if (limits) await this.openLimits(limits);
     if (files.length > 0 && !model && motions.length === 0 && !limits) {
-      this.page.set({ notice: { kind: 'error', title: say('There is no model in it'), detail: say('Open GLB, glTF, VRM, OBJ, FBX, STL, PLY or BVH') } });
+      this.page.set({ notice: noModel() });
     }
   }
 
   private async openModel(file: File, beside: Map<string, File>) {
     await this.open(async () => {
-      const bytes = new Uint8Array(await file.arrayBuffer());
-      if (/\.limber$/i.test(file.name)) return this.restore(fromLimberFile(bytes, file.name), file.name);
-      if (/\.glb$/i.test(file.name)) return this.openBytes(bytes, file.name);
-      if (/\.gltf$/i.test(file.name)) return this.openBytes(await withBuffers(bytes, beside), file.name);
-      if (/\.ply$/i.test(file.name)) await this.engine.ask({ kind: 'check-ply', bytes, name: file.name });
-      const { toGlb } = await import('./import_model');
-      return this.openBytes(await toGlb(bytes, file.name, beside), file.name);
+      if (/\.limber$/i.test(file.name)) return this.restore(fromLimberFile(new Uint8Array(await file.arrayBuffer()), file.name), file.name);
+      const { bytes, name } = await this.readModel(file, beside);
+      return this.openBytes(bytes, name);
     });
+  }
+
+  /** What the engine reads of it. */
+  private async readModel(file: File, beside: Map<string, File>): Promise<{ bytes: Uint8Array; name: string }> {
+    const { name } = file, bytes = new Uint8Array(await file.arrayBuffer());
+    if (/\.glb$/i.test(name)) return { bytes, name };
+    if (/\.gltf$/i.test(name)) return { bytes: await withBuffers(bytes, beside), name };
+    if (/\.ply$/i.test(name)) await this.engine.ask({ kind: 'check-ply', bytes, name });
+    const { toGlb } = await import('./import_model');
+    return { bytes: await toGlb(bytes, name, beside), name };
   }
 
   /** One is put on the model at once; of several the user chooses on the shelf, where they stay while the page lives. */
@@ -375,9 +428,9 @@ export class Studio {
     this.page.set({}); // what was refused is not shown any more
   }
 
-  /** At most one moment is on its way; the newest waits. */
+  /** At most one moment is on its way; the newest waits. In a scene all members show it, each of its own clip. */
   showMoment(seconds: number) {
-    this.page.set({ seconds });
+    this.page.set({ seconds: momentOf(chosenClip(this.page.now.session), seconds) });
     this.waitingMoment = seconds;
     if (this.momentUnderWay) return;
     this.momentUnderWay = true;
@@ -385,10 +438,14 @@ export class Studio {
       while (this.waitingMoment !== null) {
         const next: number = this.waitingMoment;
         this.waitingMoment = null;
-        const { stance } = await this.engine.run({ do: 'set_time', seconds: next });
+        const { stance } = await this.engine.run(this.momentCommand(next));
         this.showStance(stance, true);
       }
     }).finally(() => { this.momentUnderWay = false; });
+  }
+
+  private momentCommand(seconds: number): Command {
+    return { do: (this.page.now.session?.members.length ?? 0) > 1 ? 'set_clock' : 'set_time', seconds };
   }
 
   /** On recorded motion the correction comes and goes, instead of a jump of one frame. */
@@ -452,7 +509,7 @@ export class Studio {
     this.page.set({ playing: false });
     await this.guard(async () => {
       const show = async (moment: number) => {
-        const { stance } = await this.engine.run({ do: 'set_time', seconds: moment });
+        const { stance } = await this.engine.run(this.momentCommand(moment));
         this.onStance(stance, false);
       };
       for (let i = 0; i < count; ++i) {
@@ -653,6 +710,10 @@ export class Studio {
   async selectSurface(ray: Ray, slope: number, besides = false) {
     if (this.page.now.placing) return this.placeJoint(ray);
     await this.guard(async () => {
+      if ((this.page.now.session?.members.length ?? 0) > 1 && !this.page.now.correcting) {
+        const met = await this.engine.ask({ kind: 'pick-member', ray });
+        if (met && met.member !== this.page.now.session?.member) return this.chooseMember(met.member);
+      }
       const hit = await this.engine.ask({ kind: 'pick', ray, slope });
       const { correcting, selected } = this.page.now;
       if (correcting && selected !== null && hit && !hit.on_handle) return this.pinJoint(selected, hit.inside);
@@ -678,6 +739,7 @@ export class Studio {
 
   private opened(step: Step) {
     this.page.set({
+      others: [], arranging: false,
       selected: null, hovered: null, notice: this.afterOpening, comparison: null, hiddenParts: new Set(), correcting: false, painting: false, placing: false, selecting: false, display: 'handles',
     });
     this.afterOpening = null;
@@ -686,12 +748,14 @@ export class Studio {
   }
 
   /** The document as it stands after a step. */
-  private take({ state, stance, model, weights }: Step) {
+  private take({ state, stance, model, weights, others }: Step) {
     const before = this.page.now;
     if (state && model) {
-      const { selected } = before;
+      const another = state.members[state.member]?.name !== before.session?.members[before.session.member]?.name;
+      const selected = another ? null : before.selected;
+      if (another) this.page.set({ also: new Set(), hiddenParts: new Set(), comparison: null, painting: false, placing: false, paths: null, curve: null });
       this.page.set({
-        session: state, model, seconds: state.seconds, playing: false, hovered: null,
+        session: state, model, others: others ?? (state.members.length > 1 ? before.others : []), seconds: state.seconds, playing: false, hovered: null,
         correcting: before.correcting && hasTemplate(state), chosenKeys: [],
         selected: selected !== null && selected < state.joints.length ? selected : null,
       });

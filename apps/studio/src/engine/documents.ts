@@ -1,9 +1,9 @@
-// The session that is worked on, and those that stand beside it: models that motions came with, and what other methods
+// The scene that is worked on, whose chosen member is the session, and what stands beside it: models that motions came with, and what other methods
 // make of the document. All show the same moment.
 import type { Failure, loadLimber, Session } from '@engine/limber.mjs';
 import {
   canBeNamed, opensModel, type Answers, type Command, type ExportFormat, type LimberError, type MotionPreview, type MotionRequest,
-  type Ray, type Request, type SessionState, type Stance, type Step, type Trial, type Variant, type Vector,
+  type OtherMember, type Ray, type Request, type SessionState, type Stance, type Step, type Trial, type Variant, type Vector,
 } from './messages';
 
 type Limber = Awaited<ReturnType<typeof loadLimber>>;
@@ -53,8 +53,10 @@ function middleOf(handles: Float32Array): Vector {
 const changesRig = new Set([
   'open_sample', 'open_file', 'set_handles', 'choose_methods', 'pin_joint', 'unpin_joint', 'set_rest_pose', 'rename_joint',
   'add_joint', 'delete_joint', 'reparent_joint',
-  'undo', 'redo',
+  'undo', 'redo', 'add_sample', 'add_file', 'choose_member', 'remove_member',
 ]);
+/** What shows all members at another moment. */
+const movesAll = new Set(['set_clock']);
 const drawnRate = 30, mostDrawn = 600; // moments a second of paths and curves, and of a whole clip
 const changesWeights = new Set(['paint_weights', 'mirror_weights']);
 const withModel = /\.(glb|gltf|vrm)$/i;
@@ -67,6 +69,7 @@ export class Documents {
   /** By the motion's name. */
   private sources = new Map<string, { session: Session; state: SessionState }>();
   private shownSource = '';
+  private shownOthers = '';
   private variants: { session: Session; clip: boolean }[] = [];
   /** The document with the rig of a named skeleton, or why there is none; made when a motion asks for it. */
   private named: { session: Session; state: SessionState } | EngineFailure | null = null;
@@ -79,12 +82,15 @@ export class Documents {
     return this.shown(this.take({ kind: 'open', bytes, name, limbsFollow }), true);
   }
 
+  add(request: Extract<Request, { kind: 'add' }>): Answers['add'] { return this.shown(this.take(request), true); }
+
   addMotion(bytes: Uint8Array, name: string): Answers['motion'] {
     return this.shown(this.take({ kind: 'motion', bytes, name }), false);
   }
 
   run(command: Command): Answers['run'] {
     const step = this.shown(this.take({ kind: 'run', command }), changesRig.has(command.do));
+    if (movesAll.has(command.do)) step.stance.others = this.otherSkins();
     return changesWeights.has(command.do) ? { ...step, weights: orThrow(this.session.weights()).weights } : step;
   }
 
@@ -181,6 +187,7 @@ export class Documents {
     const { moments, values } = orThrow(this.session.curve(joint, drawnRate, mostDrawn));
     return { joint, moments, values };
   }
+  pickMember(ray: Ray) { return orThrow(this.session.pickMember(ray)).hit; }
   surface(rays: Ray[]) { return rays.map((ray) => orThrow(this.session.surface(ray)).hit); }
   preview(stroke: Command | null) { return orThrow(stroke ? this.session.preview(stroke) : this.session.weights()).weights; }
   checkPly(bytes: Uint8Array, name: string) { orThrow(this.limber.checkPly(bytes, name)); }
@@ -215,7 +222,7 @@ export class Documents {
   /** One request, carried out on the document. */
   private take(request: Request): Taken {
     const taken = this.carryOut(request);
-    if (request.kind !== 'run' || request.command.do !== 'set_time') this.forgetNamed();
+    if (request.kind !== 'run' || !['set_time', 'set_clock'].includes(request.command.do)) this.forgetNamed();
     if (taken.state) {
       this.state = taken.state;
       this.seconds = taken.state.seconds;
@@ -230,6 +237,7 @@ export class Documents {
         this.forgetOthers();
         return opened;
       }
+      case 'add': return orThrow(this.session.add(request.bytes, request.name, request.limbsFollow, request.asProp));
       case 'motion': {
         const added = orThrow(this.session.addMotion(request.bytes, request.name)), motion = added.state?.motions.at(-1);
         if (motion && withModel.test(request.name)) this.addSource(motion.name, request.bytes, request.name);
@@ -238,7 +246,7 @@ export class Documents {
       case 'run': {
         const { command } = request, run = orThrow(this.session.run(command));
         if (opensModel(command)) this.forgetOthers();
-        if (command.do === 'set_time') this.seconds = Number(command.seconds);
+        if (command.do === 'set_time' || command.do === 'set_clock') this.seconds = Number(command.seconds);
         return run;
       }
       default: throw new Error(`${request.kind} changes no document`);
@@ -246,7 +254,38 @@ export class Documents {
   }
 
   private shown({ state, skin }: Taken, rig: boolean): Step {
-    return { state, stance: this.stance(skin), model: rig ? orThrow(this.session.model()).model : null, weights: null };
+    const step: Step = {
+      state, stance: this.stance(skin), model: rig ? orThrow(this.session.model()).model : null, weights: null, others: null,
+    };
+    const standing = this.standing();
+    if (standing === this.shownOthers) return step;
+    this.shownOthers = standing;
+    step.others = this.others();
+    step.stance.others = this.otherSkins();
+    return step;
+  }
+
+  /** Those that are not chosen stay as they are while they are the same ones. */
+  private standing() {
+    const { member, members } = this.state ?? { member: 0, members: [] };
+    return members.length > 1 ? JSON.stringify([member, members.map(({ name }) => name)]) : '';
+  }
+
+  /** Whether there is more to a place than a model in its own space. */
+  private get isPlaced() {
+    const members = this.state?.members ?? [], { position, turn, scale } = members[0]?.placement ?? {};
+    return members.length > 1 || scale !== 1 || [...position ?? [], ...turn ?? []].some((value) => value !== 0);
+  }
+
+  /** All members but the chosen one. */
+  private others(): OtherMember[] {
+    return this.eachOther((member, { joints }) => ({ member, joints: joints.length, model: orThrow(this.session.memberModel(member)).model }));
+  }
+  private otherSkins(): Stance['others'] {
+    return this.eachOther((member) => ({ member, skin: orThrow(this.session.memberSkin(member)).skin }));
+  }
+  private eachOther<T>(give: (member: number, of: SessionState['members'][number]) => T): T[] {
+    return (this.state?.members ?? []).flatMap((of, member) => (member === this.state?.member ? [] : [give(member, of)]));
   }
 
   private addSource(motion: string, bytes: Uint8Array, name: string) {
@@ -260,6 +299,7 @@ export class Documents {
     this.sources.forEach(({ session }) => session.free());
     this.sources.clear();
     this.shownSource = '';
+    this.shownOthers = '';
     this.endComparison();
   }
 
@@ -275,7 +315,7 @@ export class Documents {
     });
     return {
       skin, handles: orThrow(this.session.handles()).handles, turns: orThrow(this.session.turns()).turns, source: orThrow(this.session.sourceJoints()).places,
-      sourceSkin: this.sourceSkin(), variants,
+      sourceSkin: this.sourceSkin(), variants, places: this.isPlaced ? orThrow(this.session.places()).places : none, others: [],
     };
   }
 

@@ -1,10 +1,12 @@
 // What the page and the worker that holds the engine say to each other.
 import type {
-  Command, ExportFormat, LimberError, Measures, MethodKind, Methods, PickHit, Ray, SessionState, SurfaceHit, SurfaceModel, WeightArrays,
+  Command, ExportFormat, LimberError, Measures, MethodKind, Methods, PickHit, Placement, Ray, SceneMember, SessionState, SurfaceHit,
+  SurfaceModel, WeightArrays,
 } from '@engine/limber.mjs';
 
 export type {
-  Command, ExportFormat, LimberError, Measures, MethodKind, Methods, PickHit, Ray, SessionState, SurfaceHit, SurfaceModel, WeightArrays,
+  Command, ExportFormat, LimberError, Measures, MethodKind, Methods, PickHit, Placement, Ray, SceneMember, SessionState, SurfaceHit,
+  SurfaceModel, WeightArrays,
 };
 export type Vector = [number, number, number];
 
@@ -21,6 +23,17 @@ export interface Stance {
   sourceSkin: Float32Array;
   /** The same moment by the methods that are compared. */
   variants: { skin: Float32Array; handles: Float32Array }[];
+  /** 16 numbers for each member of the scene: its own space in that of the scene; empty where there is one alone. */
+  places: Float32Array;
+  /** What moves the surfaces of the members that are not chosen, by their place in the scene, where they have moved. */
+  others: { member: number; skin: Float32Array }[];
+}
+
+/** The surface of a member that is not chosen, and what moves it. */
+export interface OtherMember {
+  member: number;
+  model: SurfaceModel;
+  joints: number;
 }
 
 /** The document as another method has it. */
@@ -38,6 +51,8 @@ export interface Step {
   model: SurfaceModel | null;
   /** Where they alone have changed. */
   weights: WeightArrays | null;
+  /** All members of the scene but the chosen one, where there are others than before. */
+  others: OtherMember[] | null;
 }
 
 /** The joints of the chosen clip at even moments: x, y, z of each, moment after moment. */
@@ -97,6 +112,8 @@ export interface PreviewRig {
 
 export type Request =
   | { kind: 'open'; bytes: Uint8Array; name: string; limbsFollow?: boolean }
+  /** Another model beside those that are there; as a prop without joints of its own. */
+  | { kind: 'add'; bytes: Uint8Array; name: string; limbsFollow: boolean; asProp: boolean }
   /** Fails where the file is cut off. */
   | { kind: 'check-ply'; bytes: Uint8Array; name: string }
   | { kind: 'motion'; bytes: Uint8Array; name: string }
@@ -110,6 +127,8 @@ export type Request =
   /** A new document, by all that was asked for to make it. */
   | { kind: 'restore'; requests: Request[] }
   | { kind: 'pick'; ray: Ray; slope: number }
+  /** The member whose surface is met first. */
+  | { kind: 'pick-member'; ray: Ray }
   /** Where each of them meets the surface. */
   | { kind: 'surface'; rays: Ray[] }
   /** What the weights would be after a stroke of the brush; null: what they are. */
@@ -127,6 +146,7 @@ export type Request =
 /** The answer to each kind of request. */
 export interface Answers {
   open: Step;
+  add: Step;
   'check-ply': void;
   motion: Step;
   run: Step;
@@ -137,6 +157,7 @@ export interface Answers {
   /** null where nothing could be opened; how many of the requests failed, and the first error. */
   restore: { step: Step | null; failed: number; error: LimberError | null };
   pick: PickHit | null;
+  'pick-member': { member: number; joint: number } | null;
   surface: (SurfaceHit | null)[];
   preview: WeightArrays;
   'source-model': { motion: string; model: SurfaceModel; joints: number } | null;

@@ -1,4 +1,4 @@
-// Holds the engine and one session, away from the page's own thread.
+// Holds the engine and one scene, away from the page's own thread.
 import { loadLimber, type Codecs } from '@engine/limber.mjs';
 import engineUrl from '@engine/limber_engine.wasm.gz?url';
 import { Documents, EngineFailure } from './documents';
@@ -10,10 +10,12 @@ const say = (message: FromWorker) => postMessage(message);
 function answer(documents: Documents, request: Request): Answers[Kind] {
   switch (request.kind) {
     case 'open': return documents.open(request.bytes, request.name, request.limbsFollow);
+    case 'add': return documents.add(request);
     case 'check-ply': return documents.checkPly(request.bytes, request.name);
     case 'motion': return documents.addMotion(request.bytes, request.name);
     case 'run': return documents.run(request.command);
     case 'pick': return documents.pick(request.ray, request.slope);
+    case 'pick-member': return documents.pickMember(request.ray);
     case 'surface': return documents.surface(request.rays);
     case 'preview': return documents.preview(request.stroke);
     case 'try-motion': return documents.tryMotion(request.motion, request.named);
@@ -43,7 +45,7 @@ async function engine(): Promise<ArrayBuffer> {
 /** The files that a request brings. */
 function filesIn(request: Request): Uint8Array[] {
   switch (request.kind) {
-    case 'open': case 'motion': return [request.bytes];
+    case 'open': case 'add': case 'motion': return [request.bytes];
     case 'try-motion': case 'preview-motion': return request.motion.kind === 'motion' ? [request.motion.bytes] : [];
     case 'restore': return request.requests.flatMap(filesIn);
     default: return [];

@@ -19,6 +19,8 @@ const lines: Line[] = [
   { does: 'zoom', mouse: 'Wheel', touch: 'Pinch' },
   { does: 'shift the view', mouse: 'Right button', touch: 'Drag with two fingers' },
   { does: 'select its joint', mouse: 'Click the surface', touch: 'Touch the surface' },
+  { does: 'choose it', mouse: 'Click another model', touch: 'Touch another model' },
+  { does: 'add it to the scene', mouse: 'Drop a file with Shift' },
   { does: 'let go without a change', keys: 'Escape', touch: 'Undo, afterwards' },
   { does: 'move / turn', keys: 'G / R', touch: 'Move, Turn' },
   { does: 'limbs follow', keys: 'I', touch: 'Limbs follow' },

@@ -1,4 +1,5 @@
 // The clips of the model: choose, play, scrub, set keys.
+import { sceneDuration } from '../app/clips';
 import { togglePlaying } from '../app/player';
 import { frame } from '../app/keys';
 import type { PageStore } from '../app/state';
@@ -61,7 +62,8 @@ export function timeline(studio: Studio, page: PageStore, openSheet: () => Promi
     clips.value = clip?.name ?? '';
     clips.disabled = names.length === 0;
     const still = !clip || clip.duration <= 0;
-    play.disabled = loop.disabled = speed.disabled = sheet.disabled = ghosts.disabled = still;
+    play.disabled = loop.disabled = speed.disabled = sceneDuration(session) <= 0;
+    sheet.disabled = ghosts.disabled = still;
     ghosts.setAttribute('aria-pressed', String(seen));
     // Recorded motion has no curves of its own to choose; its corrections have a span.
     blend.hidden = !clip?.recorded;

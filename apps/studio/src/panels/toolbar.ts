@@ -1,11 +1,14 @@
 // The bar on top: open, undo, what leaves the page.
+import { Group, Matrix4 } from 'three';
 import type { Journal } from '../app/journal';
 import { samples } from '../app/samples';
 import type { PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
 import type { ModelView } from '../scene/model_view';
+import type { OthersView } from '../scene/others_view';
 import type { Viewport } from '../scene/viewport';
 import { button, element, offer } from '../ui/dom';
+import { addDialog } from './add_dialog';
 import { moreMenu } from './more_menu';
 import { recent } from './recent';
 import { chosenClip } from './moments';
@@ -15,8 +18,8 @@ const filmRate = 30; // pictures a second
 const ofClip = new Set(['bvh', 'webm']);
 const types = { glb: 'model/gltf-binary', obj: 'model/obj', stl: 'model/stl', bvh: 'text/plain', session: 'model/gltf-binary' };
 
-export function toolbar(studio: Studio, page: PageStore, journal: Journal, viewport: Viewport, model: ModelView): HTMLElement {
-  const kept = recent(studio, journal);
+export function toolbar(studio: Studio, page: PageStore, journal: Journal, viewport: Viewport, model: ModelView, others: OthersView): HTMLElement {
+  const kept = recent(studio, journal), adding = addDialog(studio);
   const file = element('input', {
     type: 'file', accept: '.glb,.gltf,.vrm,.obj,.fbx,.stl,.ply,.bvh,.json,.zip,.limber,.bin,.mtl,.png,.jpg,.jpeg', multiple: true, hidden: true, id: 'file',
   });
@@ -32,7 +35,8 @@ export function toolbar(studio: Studio, page: PageStore, journal: Journal, viewp
     sample.value = '';
   });
 
-  const stem = () => (page.now.session?.name ?? 'model').replace(/\.[^.]*$/, '');
+  const isScene = () => (page.now.session?.members.length ?? 0) > 1;
+  const stem = () => (isScene() ? 'scene' : (page.now.session?.name ?? 'model').replace(/\.[^.]*$/, ''));
   const save = async (format: keyof typeof types) => {
     const bytes = await studio.exportFile(format);
     const ending = format === 'session' ? '_session.glb' : format === 'bvh' ? '.bvh' : `_posed.${format}`;
@@ -57,7 +61,10 @@ export function toolbar(studio: Studio, page: PageStore, journal: Journal, viewp
   });
   const saveUsdz = async () => {
     const { toUsdz } = await import('../app/export_usdz');
-    offer(await toUsdz(model.posed()) as BlobPart, 'model/vnd.usdz+zip', `${stem()}_posed.usdz`);
+    const scene = new Group(), chosen = model.posed();
+    chosen.applyMatrix4(new Matrix4().copy(viewport.world.matrix).invert());
+    scene.add(chosen, ...others.posed());
+    offer(await toUsdz(scene) as BlobPart, 'model/vnd.usdz+zip', `${stem()}_posed.usdz`);
   };
   const saveRecord = async () => {
     const record = await studio.record();
@@ -78,13 +85,13 @@ export function toolbar(studio: Studio, page: PageStore, journal: Journal, viewp
   page.watch(({ session }) => {
     undo.disabled = !session?.undo;
     redo.disabled = !session?.redo;
-    glb.disabled = !session;
+    glb.disabled = adding.button.disabled = !session;
     for (const option of more.outlets) option.disabled = !session || (ofClip.has(option.value) && chosenClip(session) === null);
     name.textContent = session?.name ?? 'limber';
     document.title = session ? `${session.name} \u2013 limber studio` : 'limber studio';
   });
   return element('header', { class: 'bar' },
-    button(say('Open'), () => file.click(), { icon: 'open', id: 'open' }), sample, kept.button, kept.dialog, file, name,
+    button(say('Open'), () => file.click(), { icon: 'open', id: 'open' }), sample, adding.button, adding.dialog, kept.button, kept.dialog, file, name,
     element('div', { class: 'group' }, undo, redo), element('div', { class: 'group' }, glb, more.root),
     button('', () => page.set({ help: true }), { icon: 'help', label: say('Keyboard and mouse'), keys: '?', id: 'help-button' }));
 }

@@ -10,9 +10,10 @@ const shrink = 0.8; // of the fitted radius, so that neighbours stay apart
 const leastPixels = 6;
 const mostPixels = 26; // a trunk's sphere must not hide the others
 
-/** Metres that a pixel covers at a distance of one metre (perspective), or anywhere (orthographic). */
+/** Metres of the drawn scene that a pixel covers at a distance of one metre of the camera's world (perspective), or
+ *  anywhere (orthographic). */
 export function pixelSize(camera: Camera, height: number): number {
-  return 2 / (camera.projectionMatrix.elements[5]! * height);
+  return (2 * new Vector3().setFromMatrixColumn(camera.matrixWorld, 0).length()) / (camera.projectionMatrix.elements[5]! * height);
 }
 
 export class HandleView {

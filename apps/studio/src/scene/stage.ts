@@ -1,5 +1,5 @@
 // The scene shows what the page's state says.
-import { Vector3 } from 'three';
+import { Box3, Vector3 } from 'three';
 import type { PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
 import { ComparisonView } from './comparison_view';
@@ -8,10 +8,13 @@ import { HandleView } from './handle_view';
 import { LimitView } from './limit_view';
 import { ModelView } from './model_view';
 import { OnionView } from './onion_view';
+import { OthersView } from './others_view';
 import { boneColor, partColor } from './palette';
 import { BoxSelect } from './box_select';
 import { BrushView } from './brush_view';
 import { PaintInput } from './paint_input';
+import { PlaceInput } from './place_input';
+import { Places } from './places';
 import { PointerInput } from './pointer';
 import { matchColors, SourceView } from './source_view';
 import { Viewport } from './viewport';
@@ -22,6 +25,8 @@ export interface Stage {
   model: ModelView;
   comparison: ComparisonView;
   gizmo: Gizmo;
+  others: OthersView;
+  places: Places;
 }
 
 export function createStage(studio: Studio, page: PageStore): Stage {
@@ -31,11 +36,27 @@ export function createStage(studio: Studio, page: PageStore): Stage {
   viewport.tools.push(handles.root, source.root, limits.root, onion.root);
   viewport.scene.add(handles.root, model.root, source.root, source.model.root, limits.root, onion.root);
   source.model.onChange = () => viewport.draw();
+  const places = new Places(), others = new OthersView(() => viewport.draw());
+  viewport.world.add(others.root);
+  const stand = () => {
+    viewport.stand(places.of(page.now.session?.member ?? 0));
+    others.stand(places);
+  };
+  /** Anew where somebody was placed. */
+  let shaded = '';
+  const shade = () => {
+    if (page.now.playing) return;
+    const members = page.now.session?.members ?? [], boxes = members.map((_, member) => places.box(member, members));
+    const key = JSON.stringify([boxes, members.map(({ name }) => name)]);
+    if (key !== shaded) viewport.shade(boxes);
+    shaded = key;
+  };
   const gizmo = new Gizmo(viewport, handles, studio, page);
   const brush = new BrushView();
   viewport.scene.add(brush.root);
   viewport.tools.push(brush.root);
-  new PaintInput(viewport, brush, studio, page); // before the other, which then sees that it is not meant
+  new PlaceInput(viewport, places, () => { stand(); shade(); }, studio, page); // before the others, which then see that they are not meant
+  new PaintInput(viewport, brush, studio, page);
   new BoxSelect(viewport, handles, gizmo, studio, page);
   new PointerInput(viewport, handles, gizmo, studio, page);
   const root = new Vector3();
@@ -47,7 +68,11 @@ export function createStage(studio: Studio, page: PageStore): Stage {
     comparison.fit(camera, viewport.size.height, display === 'handles');
   };
   studio.onStance = (stance, ofClip) => {
-    const before = root.clone();
+    const before = root.clone(), member = page.now.session?.member ?? 0;
+    places.take(stance.places);
+    stand();
+    shade();
+    others.take(stance.others);
     model.take(stance.skin);
     handles.take(stance.handles);
     gizmo.take(stance.turns);
@@ -55,8 +80,9 @@ export function createStage(studio: Studio, page: PageStore): Stage {
     comparison.take(stance.variants);
     if (handles.count > 0) handles.position(0, root);
     source.take(stance.source, stance.sourceSkin, root);
+    root.applyMatrix4(places.of(member));
     // The camera walks along.
-    if (ofClip) viewport.follow(root.x - before.x, root.z - before.z);
+    if (ofClip) viewport.follow(root.x - before.x, root.z - before.z, member);
     gizmo.place();
     viewport.draw();
   };
@@ -65,8 +91,10 @@ export function createStage(studio: Studio, page: PageStore): Stage {
     viewport.draw();
   };
   studio.onOpened = () => {
-    const box = page.now.session?.box;
-    if (box) viewport.frame(box.min, box.max);
+    const { session } = page.now;
+    if (session) viewport.frame(places.boxOfAll(session.members));
+    shaded = '';
+    shade();
   };
   page.watch((now, before) => {
     if (now.session && now.model && now.model !== before.model) model.show(now.model, now.session.joints.length);
@@ -82,11 +110,14 @@ export function createStage(studio: Studio, page: PageStore): Stage {
     limits.root.visible = now.limits && now.display === 'handles';
     source.showModel(now);
     onion.show(now);
+    if (now.others !== before.others || now.wireframe !== before.wireframe) others.show(now.others, now.wireframe);
+    others.root.visible = now.comparison === null; // the figures stand there
     model.hide(now.hiddenParts);
     if (comparison.show(now) && now.session) {
-      const { min, max } = now.session.box;
+      const { min, max } = now.session.box, box = new Box3(new Vector3(...min), new Vector3(...max));
+      box.max.x += comparison.reach;
       // Once the measures have their room.
-      requestAnimationFrame(() => viewport.frame(min, [max[0] + comparison.reach, max[1], max[2]]));
+      requestAnimationFrame(() => viewport.frame(box.applyMatrix4(places.of(now.session!.member))));
     }
     const repaint = now.model !== before.model || now.display !== before.display || now.wireframe !== before.wireframe
       || (now.display === 'joint-weights' && now.selected !== before.selected);
@@ -95,5 +126,5 @@ export function createStage(studio: Studio, page: PageStore): Stage {
     handles.paint(new Set(selected), now.hovered, new Set(now.session?.targets.map((target) => target.joint)));
     viewport.draw();
   });
-  return { viewport, handles, model, comparison, gizmo };
+  return { viewport, handles, model, comparison, gizmo, others, places };
 }

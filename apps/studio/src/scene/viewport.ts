@@ -1,7 +1,7 @@
 // The canvas: camera, light, ground, and frames drawn only when something has changed.
 import {
-  Box3, CanvasTexture, Color, Group, LineSegments, BufferGeometry, Float32BufferAttribute,
-  LineBasicMaterial, Mesh, MeshBasicMaterial, type Object3D, OrthographicCamera, PerspectiveCamera, PlaneGeometry, Raycaster, Scene, Spherical,
+  Box3, type Camera, CanvasTexture, Color, DirectionalLight, Group, LineSegments, BufferGeometry, Float32BufferAttribute,
+  LineBasicMaterial, Matrix4, Mesh, MeshBasicMaterial, type Object3D, OrthographicCamera, PerspectiveCamera, PlaneGeometry, Raycaster, Scene, Spherical,
   Vector2, Vector3, WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
@@ -16,9 +16,19 @@ const viewDirections: Record<ViewName, Vector> = {
   front: [0, 0, 1], right: [1, 0, 0], top: [0, 1, 0.0001], start: [0.55, 0.3, 1],
 };
 
+/** Towards a point of the world that the camera is in, wherever that is: three takes the point to be of the drawn scene. */
+function looksWithinItsWorld(camera: Camera) {
+  camera.lookAt = (target: Vector3 | number) => {
+    if (target instanceof Vector3) camera.quaternion.setFromRotationMatrix(new Matrix4().lookAt(camera.position, target, camera.up));
+  };
+}
+
 export class Viewport {
   readonly canvas: HTMLCanvasElement;
+  /** In the chosen model's own space, as the engine speaks of it; so whatever is drawn of it needs no place. */
   readonly scene = new Scene();
+  /** Where the models of a scene stand, the light and the camera: it is moved round the chosen one. */
+  readonly world = new Group();
   readonly controls: OrbitControls;
   beforeFrame: (camera: PerspectiveCamera | OrthographicCamera) => void = () => {};
 
@@ -27,6 +37,8 @@ export class Viewport {
   private orthographic = new OrthographicCamera(-1, 1, 1, -1, 0.01, 1000);
   private current: PerspectiveCamera | OrthographicCamera = this.perspective;
   private ground = new Group();
+  private shadows: Mesh[] = [];
+  private shadowImage: CanvasTexture | null = null;
   private box = new Box3(new Vector3(-1, 0, -1), new Vector3(1, 2, 1));
   private asked = false;
   private step = 1; // metres between the ground's lines
@@ -38,7 +50,11 @@ export class Viewport {
     this.canvas.tabIndex = 0;
     this.canvas.setAttribute('role', 'application');
     this.canvas.setAttribute('aria-label', say('The model. The list of joints does everything that is done here by pointer.'));
-    this.scene.add(...studioLights(), this.ground);
+    this.world.matrixAutoUpdate = false;
+    for (const light of studioLights()) this.world.add(light, ...(light instanceof DirectionalLight ? [light.target] : []));
+    for (const camera of [this.perspective, this.orthographic]) looksWithinItsWorld(camera);
+    this.world.add(this.ground, this.perspective, this.orthographic);
+    this.scene.add(this.world);
     this.controls = new OrbitControls(this.perspective, this.canvas);
     this.controls.enableDamping = false;
     this.controls.addEventListener('change', () => this.draw());
@@ -72,13 +88,35 @@ export class Viewport {
   /** The camera's right and up, for moves by keyboard. */
   axes(): { right: Vector3; up: Vector3 } {
     const elements = this.current.matrixWorld.elements;
-    return { right: new Vector3().fromArray(elements, 0), up: new Vector3().fromArray(elements, 4) };
+    return { right: new Vector3().fromArray(elements, 0).normalize(), up: new Vector3().fromArray(elements, 4).normalize() };
   }
 
-  frame(min: Vector, max: Vector) {
-    this.box.set(new Vector3(...min), new Vector3(...max));
+  /** The chosen model's own space in the world. */
+  stand(place: Matrix4) {
+    this.world.matrix.copy(place).invert();
+    this.world.updateMatrixWorld(true);
+    this.draw();
+  }
+
+  /** Takes in a box of the world. */
+  frame(box: Box3) {
+    this.box.copy(box);
     this.makeGround();
     this.look('start');
+  }
+
+  /** A soft shadow below each of these boxes of the world. */
+  shade(boxes: Box3[]) {
+    this.shadows.splice(boxes.length).forEach((shadow) => {
+      shadow.geometry.dispose();
+      shadow.removeFromParent();
+    });
+    boxes.forEach((box, i) => {
+      const shadow = this.shadows[i] ??= this.makeShadow();
+      const size = box.getSize(new Vector3());
+      box.getCenter(shadow.position).setY(this.box.min.y);
+      shadow.scale.set(1.5 * size.x + 0.3 * size.y, 1.5 * size.z + 0.3 * size.y, 1);
+    });
   }
 
   look(view: ViewName) {
@@ -126,8 +164,9 @@ export class Viewport {
     this.draw();
   }
 
-  /** Goes along with what walks; the ground stays under it, its lines in their places. */
-  follow(x: number, z: number) {
+  /** Goes along with a member that walks; the ground stays under it, its lines in their places. */
+  follow(x: number, z: number, member: number) {
+    this.shadows[member]?.position.add(new Vector3(x, 0, z));
     for (const camera of [this.perspective, this.orthographic]) {
       camera.position.x += x;
       camera.position.z += z;
@@ -222,7 +261,7 @@ export class Viewport {
   }
 
   private drawNow() {
-    this.current.updateMatrixWorld();
+    this.world.updateMatrixWorld(true);
     this.beforeFrame(this.current);
     this.renderer.render(this.scene, this.current);
   }
@@ -244,7 +283,7 @@ export class Viewport {
     this.draw();
   }
 
-  /** A grid under the model with its axes in their colours, and a soft shadow. */
+  /** A grid under the models with its axes in their colours. */
   private makeGround() {
     this.ground.clear();
     const size = this.box.getSize(new Vector3()), center = this.box.getCenter(new Vector3());
@@ -261,26 +300,32 @@ export class Viewport {
     geometry.setAttribute('position', new Float32BufferAttribute(lines, 3));
     geometry.setAttribute('color', new Float32BufferAttribute(colors, 3));
     const material = new LineBasicMaterial({ vertexColors: true, transparent: true, opacity: 0.7, depthWrite: false });
-    this.ground.add(new LineSegments(geometry, material), this.makeShadow(size));
+    this.ground.add(new LineSegments(geometry, material));
     this.ground.position.set(Math.round(center.x / step) * step, this.box.min.y, Math.round(center.z / step) * step);
   }
 
-  private makeShadow(size: Vector3): Mesh {
-    const canvas = document.createElement('canvas');
-    canvas.width = canvas.height = 128;
-    const context = canvas.getContext('2d');
-    if (context) {
-      const fade = context.createRadialGradient(64, 64, 0, 64, 64, 64);
-      fade.addColorStop(0, 'rgba(40,45,60,0.42)');
-      fade.addColorStop(0.45, 'rgba(40,45,60,0.16)');
-      fade.addColorStop(1, 'rgba(40,45,60,0)');
-      context.fillStyle = fade;
-      context.fillRect(0, 0, 128, 128);
-    }
-    const material = new MeshBasicMaterial({ map: new CanvasTexture(canvas), transparent: true, depthWrite: false });
-    const shadow = new Mesh(new PlaneGeometry(1.5 * size.x + 0.3 * size.y, 1.5 * size.z + 0.3 * size.y), material);
+  /** Of a size of one. */
+  private makeShadow(): Mesh {
+    const material = new MeshBasicMaterial({ map: this.shadowImage ??= drawShadow(), transparent: true, depthWrite: false });
+    const shadow = new Mesh(new PlaneGeometry(1, 1), material);
     shadow.rotation.x = -Math.PI / 2;
     shadow.renderOrder = -2;
+    this.world.add(shadow);
     return shadow;
   }
+}
+
+function drawShadow(): CanvasTexture {
+  const canvas = document.createElement('canvas');
+  canvas.width = canvas.height = 128;
+  const context = canvas.getContext('2d');
+  if (context) {
+    const fade = context.createRadialGradient(64, 64, 0, 64, 64, 64);
+    fade.addColorStop(0, 'rgba(40,45,60,0.42)');
+    fade.addColorStop(0.45, 'rgba(40,45,60,0.16)');
+    fade.addColorStop(1, 'rgba(40,45,60,0)');
+    context.fillStyle = fade;
+    context.fillRect(0, 0, 128, 128);
+  }
+  return new CanvasTexture(canvas);
 }
