@@ -93,6 +93,10 @@ async function walk(locale) {
   await note('renaming');
   await at.locator('#rename').press('Escape');
   await click('#gizmo');
+  await click('#exact summary');
+  await click('#select-several');
+  await note('exact values');
+  await click('#select-several');
   await click('#limits');
   await click('#paint');
   await note('painting');
@@ -232,7 +236,7 @@ const cases = {
     const buttons = {
       g: '.pose [data-value=move]', r: '.pose [data-value=turn]', i: '#ik', s: '#both-sides', m: '#mirror', p: '#pin', h: '[data-value=surface]', f: '#whole-model', Home: '#whole-model',
       Delete: '#reset-joint', 1: '#view-front', 3: '#view-right', 7: '#view-top', 5: '#view-flat', ' ': '#play', k: '#add-key', b: '#paint', l: '#lock-joint', x: '#gizmo', '?': '#help-button',
-      z: '#undo', Z: '#redo', y: '#redo', o: '#open',
+      n: '#magnet', v: '#select-several', z: '#undo', Z: '#redo', y: '#redo', o: '#open',
     };
     await at.locator('#joints li:nth-child(9)').tap();
     await at.locator('#paint').tap();
@@ -264,6 +268,9 @@ const cases = {
     assert.deepEqual(await barriers(at), []);
     assert.deepEqual(await at.evaluate(() => [...document.querySelectorAll('*')].filter((one) => parseFloat(getComputedStyle(one).transitionDuration) > 0).map(({ id }) => id)), []);
     await context.close();
+  },
+  'the console stayed without errors'() {
+    assert.deepEqual(errors, []);
   },
 };
 

@@ -3,6 +3,7 @@ import type { PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
 import type { Stance, Vector } from '../engine/messages';
 import { element } from '../ui/dom';
+import { jointTitle } from '../words/parts';
 import { say, type Words } from '../words/say';
 
 const axes = ['x', 'y', 'z'] as const;
@@ -85,7 +86,7 @@ export function exactFields(studio: Studio, page: PageStore): HTMLElement {
   const show = () => {
     const { session, selected, also, correcting } = page.now;
     const none = !session || !stance || selected === null || correcting || stance.turns.length < 7 * (selected + 1);
-    const name = none ? '' : session.joints[selected]?.name ?? '';
+    const name = none ? '' : jointTitle(session.joints[selected]);
     of.textContent = also.size > 0 && name !== '' ? `${name} + ${also.size}` : name;
     if (!root.open) return;
     // A tenth of the step that the magnet makes.
