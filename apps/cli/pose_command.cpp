@@ -5,6 +5,7 @@
 #include "command.h"
 #include "limber/asset/clip_moment.h"
 #include "limber/asset/mesh_export.h"
+#include "limber/asset/pose_file.h"
 #include "limber/asset/pose_io.h"
 #include "limber/asset/read.h"
 #include "limber/asset/rest_pose.h"
@@ -12,6 +13,8 @@
 #include "limber/ik/ik_solver.h"
 #include "limber/ik/limits_json.h"
 #include "limber/pipeline/pose_asset.h"
+#include "limber/pipeline/put_pose.h"
+#include "limber/samples/sample_poses.h"
 #include "limber/skinning/deformer.h"
 #include "progress_line.h"
 
@@ -20,7 +23,7 @@ namespace limber::cli {
 namespace {
 
 struct PoseArguments {
-  std::string input, output, posesFile, poseName, limitsFile, deformer = "linear-blend", rootMotion = "fixed";
+  std::string input, output, applied, posesFile, poseName, limitsFile, deformer = "linear-blend", rootMotion = "fixed";
   std::optional<std::string> clip;
   std::optional<double> seconds;
   std::vector<std::string> turns, moves, reaches, poles, bases;
@@ -59,6 +62,21 @@ PoseEdits collectEdits(const PoseArguments& options) {
   return edits;
 }
 
+// A file, or the name of a sample.
+PortablePose portablePose(const std::string& named) {
+  if (!lowerCase(named).ends_with(".json")) return makeSamplePose(named);
+  const Bytes bytes = readFile(named);
+  try {
+    return poseFromJson({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  } catch (const Error& error) {
+    throw error.within(named);
+  }
+}
+
+bool isPoseFile(const std::string& file) {
+  return lowerCase(file).ends_with(kPoseFileEnding);
+}
+
 RootMotion rootMotionOf(const std::string& name) {
   if (name == "fixed") return RootMotion::kFixed;
   if (name == "turn") return RootMotion::kTurn;
@@ -93,7 +111,13 @@ std::string_view outcomeText(IkOutcome outcome) {
   return "not reached, though it may be possible";
 }
 
+void writePose(const Asset& asset, const AssetSkeleton& skeleton, const Pose& pose, const std::string& file) {
+  const std::string text = poseToJson({asset.name, skeleton.skeleton, pose});
+  writeFile(file, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+}
+
 void writeResult(Asset& asset, const AssetSkeleton& skeleton, const Pose& pose, const PoseArguments& options) {
+  if (isPoseFile(options.output)) return writePose(asset, skeleton, pose, options.output);
   if (!options.bake) {
     options.setRest ? setRestPose(asset, skeleton, pose) : writeNodePose(asset, skeleton, pose);
     return writeAsset(asset, options.output);
@@ -108,7 +132,7 @@ void run(PoseArguments options) {
   options.common.apply();
   if (options.bake) {
     checkOutput(options.output, {".glb", ".gltf", ".obj", ".stl", ".ply"});
-  } else {
+  } else if (!isPoseFile(options.output)) {
     checkOutput(options.output, {".glb", ".gltf"});
   }
   findIkMethod(options.pose.solver);
@@ -125,6 +149,7 @@ void run(PoseArguments options) {
   const AssetSkeleton skeleton = readSkeleton(asset);
   Pose pose = startPose(asset, skeleton, options);
   progress->stage("pose");
+  if (!options.applied.empty()) pose = putPose(portablePose(options.applied), skeleton.skeleton, pose);
   const std::optional<JointLimits> limits = readLimits(options.limitsFile, skeleton.skeleton);
   const std::vector<ReachReport> reports =
       editPose(skeleton.skeleton, pose, edits, limits ? &*limits : nullptr, options.pose);
@@ -145,8 +170,11 @@ std::string poseHelp() {
   for (const IkMethod& method : ikMethods()) text += fmt::format("  {:<20}{}\n", method.name, method.summary);
   text += "Deformers:\n";
   for (const Deformer& deformer : deformers()) text += fmt::format("  {:<20}{}\n", deformer.name, deformer.summary);
+  text += "Sample poses:\n";
+  for (const SamplePose& pose : samplePoses()) text += fmt::format("  {:<20}{}\n", pose.name, pose.summary);
   return text +
-         "\nAll turns are made first, then all moves, then all reaches at once. Axes and points are the world's.\n"
+         "\nThe pose of --apply comes first. All turns are made next, then all moves, then all reaches at once. Axes "
+         "and points are the world's.\n"
          "The file that --poses names: {\"poses\": [{\"name\": \"wave\", \"turn\": [{\"joint\": \"head\", \"axis\": "
          "[0, 1, 0],\n\"degrees\": 30}], \"move\": [{\"joint\": \"hips\", \"offset\": [0, -0.1, 0]}], \"reach\": "
          "[{\"joint\": \"hand.L\",\n\"target\": [0.4, 1.2, 0.3], \"pole\": [0, 1, -1], \"base\": \"chest\"}]}]}\n"
@@ -154,7 +182,9 @@ std::string poseHelp() {
          "  limber pose rigged.glb --turn head=y:30 --move handle_07=0,0.1,0 --reach hand.L=0.4,1.2,0.3 -o posed.glb\n"
          "  limber pose rigged.glb --poses poses.json --bake -o posed.obj\n"
          "  limber pose walking.glb --clip walk --time 0.4 --bake -o statue.stl\n"
-         "  limber pose rigged.glb --turn upper_arm.L=z:45 --set-rest -o t_pose.glb";
+         "  limber pose rigged.glb --turn upper_arm.L=z:45 --set-rest -o t_pose.glb\n"
+         "  limber pose person.glb --apply sit -o sitting.glb\n"
+         "  limber pose walking.glb --clip walk --time 0.4 -o step.pose.json";
 }
 
 }  // namespace
@@ -163,7 +193,9 @@ void addPoseCommand(CLI::App& program) {
   auto options = std::make_shared<PoseArguments>();
   CLI::App* command = program.add_subcommand("pose", "Turn, move and reach the joints of a rigged model");
   command->add_option("IN", options->input, "the rigged model; - is standard input")->required();
-  command->add_option("-o,--output", options->output, "the .glb or .gltf to write; - is standard output (GLB)")
+  command
+      ->add_option("-o,--output", options->output,
+                   "the .glb or .gltf to write, or the pose alone as .pose.json; - is standard output (GLB)")
       ->required()
       ->type_name("FILE");
   const auto addMany = [&](const char* name, std::vector<std::string>& values, const char* description,
@@ -180,6 +212,10 @@ void addPoseCommand(CLI::App& program) {
   command->add_option("--time", options->seconds, "at this moment of the clip, or of the first, in seconds")
       ->check(momentOfClip())
       ->type_name("S");
+  command
+      ->add_option("--apply", options->applied,
+                   "a pose of this or another skeleton: a .pose.json file, or a name of those below")
+      ->type_name("POSE");
   command->add_option("--poses", options->posesFile, "edits out of a JSON file, made before those of the options")
       ->type_name("FILE");
   command->add_option("--pose", options->poseName, "which pose of that file")->type_name("NAME")->needs("--poses");

@@ -103,6 +103,9 @@ export async function loadLimber(wasmBinary, given = {}) {
     /** The motions that the engine makes itself; the seconds are those of one repetition.
      *  @type {() => { name: string, summary: string, seconds: number }[]} */
     sampleMotions: () => call(engine, engine._limber_sample_motions, []).account,
+    /** The poses that the engine makes itself, each as the text that apply_pose takes.
+     *  @type {() => { name: string, summary: string, pose: string }[]} */
+    samplePoses: () => call(engine, engine._limber_sample_poses, []).account,
     /** Is a PLY file whole? For readers that would not notice. @type {(file: Uint8Array, name: string) => { ok: true } | Failure} */
     checkPly: (file, name) => call(engine, engine._limber_check_ply, [], file, name),
     createSession: () => createSession(engine),
@@ -245,6 +248,12 @@ function createSession(engine, handle = engine._limber_session_new()) {
     },
     /** @type {(format: ExportFormat) => { ok: true, bytes: Uint8Array } | Failure} */
     export: (format) => call(engine, engine._limber_session_export, [handle], format),
+    /** The pose that is shown, as the text of a file: for apply_pose, on this model or another.
+     *  @type {(name: string) => { ok: true, pose: string } | Failure} */
+    pose: (name) => {
+      const result = call(engine, engine._limber_session_pose, [handle], name);
+      return result.ok ? { ok: true, pose: result.account.pose } : result;
+    },
     /** What was done since a model was opened, as a list that `limber session replay` runs.
      *  @type {() => { limber_commands: number, commands: Command[] }} */
     record: () => call(engine, engine._limber_session_record, [handle]).account,

@@ -8,6 +8,7 @@
 
 #include "call_result.h"
 #include "limber/asset/ply_check.h"
+#include "limber/asset/pose_file.h"
 #include "limber/asset/read.h"
 #include "limber/asset/write.h"
 #include "limber/ik/ik_solver.h"
@@ -15,6 +16,7 @@
 #include "limber/pipeline/report_json.h"
 #include "limber/retarget/retarget_method.h"
 #include "limber/samples/sample_motions.h"
+#include "limber/samples/sample_poses.h"
 
 namespace {
 
@@ -116,6 +118,19 @@ LIMBER_EXPORT CallResult* limber_sample_motions() {
           {{"name", std::string(motion.name)}, {"summary", std::string(motion.summary)}, {"seconds", motion.seconds}});
     }
     return {true, {}, limber::dumpReport(motions, -1)};
+  });
+}
+
+// The poses that the engine makes itself, each with the text of its file.
+LIMBER_EXPORT CallResult* limber_sample_poses() {
+  return guarded({}, []() -> CallResult {
+    Json poses = Json::array();
+    for (const limber::SamplePose& pose : limber::samplePoses()) {
+      poses.push_back({{"name", std::string(pose.name)},
+                       {"summary", std::string(pose.summary)},
+                       {"pose", limber::poseToJson(limber::makeSamplePose(pose.name))}});
+    }
+    return {true, {}, limber::dumpReport(poses, -1)};
   });
 }
 

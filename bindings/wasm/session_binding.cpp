@@ -393,6 +393,13 @@ LIMBER_EXPORT CallResult* limber_session_export(const SessionHandle* handle, con
   return guarded({}, [&]() -> CallResult { return {true, exported(handle->scene, {format, size}), "{}"}; });
 }
 
+// The pose that is shown, as the text of a file.
+LIMBER_EXPORT CallResult* limber_session_pose(const SessionHandle* handle, const char* name, std::size_t size) {
+  return guarded({}, [&]() -> CallResult {
+    return {true, {}, textOf({{"pose", handle->session().savePose({name, size})}})};
+  });
+}
+
 LIMBER_EXPORT CallResult* limber_session_measures(const SessionHandle* handle) {
   return guarded({}, [&]() -> CallResult {
     return {true, {}, textOf(limber::measuresToJson(limber::measureSession(handle->session())))};

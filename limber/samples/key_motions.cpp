@@ -3,47 +3,11 @@
 
 #include "limber/core/numbers.h"
 #include "limber/samples/motion_recipes.h"
+#include "limber/samples/stances.h"
 
 namespace limber {
 
 namespace {
-
-// On the ground: toes where they are when the ankle of the flat foot is `side` from the middle, the heel lifted so far
-// that the foot's pitch is `pitch`.
-FootPlace planted(double side, double pitch = 0) {
-  FootPlace foot{{side, kAnkleHeight, 0}, 0.12, 0, 0};
-  const Vec3 toes = turnedFoot(foot, kToToes);
-  foot.pitch = pitch;
-  foot.ankle += toes - turnedFoot(foot, kToToes);
-  foot.toes = -pitch;
-  return foot;
-}
-
-// In the air, with hanging toes.
-FootPlace lifted(double side, double height, double pitch) {
-  FootPlace foot = planted(side, pitch);
-  foot.ankle.y() += height;
-  foot.toes *= 0.4;
-  return foot;
-}
-
-constexpr ArmPlace kHanging{.raise = 0.14, .elbow = 0.25};
-
-// Arms hang unless they are told otherwise.
-Stance both(const Vec3& pelvis, const FootPlace& foot, const ArmPlace& arm = kHanging) {
-  Stance stance;
-  stance.pelvis = pelvis;
-  stance.feet = {foot, foot};
-  stance.arms = {arm, arm};
-  return stance;
-}
-
-Stance leaning(Stance stance, double hips, double chest, double head) {
-  stance.hips.pitch = hips;
-  stance.chest.pitch = chest;
-  stance.head.pitch = head;
-  return stance;
-}
 
 // Two jumps of a fifth of a second: apart with the arms up, and together.
 std::span<const KeyPose> jumpingJackKeys() {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 
 #include "limber/samples/figure.h"
 
@@ -69,6 +70,16 @@ struct QuadrupedGait {
 };
 
 extern const QuadrupedGait kQuadrupedWalk, kTrot, kGallop;
+
+// Where the toes of a leg are; how far its last bone leans forward over them, and they are turned against it, radians.
+struct QuadrupedFoot {
+  Vec3 toes = Vec3::Zero();  // metres
+  double lean = 0, toesTurn = 0;
+};
+
+// The leg ("leftHind") of a body whose trunk stands as `globals` have it; `rest` are the skeleton's own.
+void placeQuadrupedLeg(const Skeleton& quadruped, const std::string& leg, const QuadrupedFoot& foot,
+                       std::span<const Affine> rest, std::span<const Affine> globals, Pose& pose);
 
 Pose quadrupedGaitAt(const QuadrupedGait& gait, const Skeleton& quadruped, double seconds);
 

@@ -174,25 +174,11 @@ class FourLegs {
     const bool front = leg.ends_with("Front");
     const double strides = strides_ - behind, phase = strides - std::floor(strides);
     const double lean = leanAt(gait_, phase, front);
-    const Index upper = joint(leg + "UpperLeg"), lower = joint(leg + "LowerLeg"), foot = joint(leg + "Foot"),
-                toes = joint(leg + "Toes");
-    const auto resting = [&](Index j) -> Vec3 { return rest_[j].translation(); };
-    const Vec3 stands = resting(toes) + toesWay(gait_, strides) + Vec3(0, 0, behind * gait_.stride);
-    const Quat leaning = turnAbout(Vec3::UnitX(), lean);
-    TwoBone bones;
-    bones.start = globals_[upper].translation();
-    bones.middle = globals_[lower].translation();
-    bones.end = globals_[foot].translation();
-    bones.target = stands - leaning * Vec3(resting(toes) - resting(foot));
-    bones.pole = bones.start + Vec3(0, -0.1, front ? -1 : 1);
-    const TwoBoneTurns turns = solveTwoBone(bones);
-    const Quat above(globals_[*skeleton_.joints[upper].parent].linear()), body(globals_[upper].linear());
-    const Quat upperTurn = turns.start * body, lowerTurn = turns.middle * body;
-    pose_.locals[upper].rotation = above.conjugate() * upperTurn;
-    pose_.locals[lower].rotation = upperTurn.conjugate() * lowerTurn;
-    pose_.locals[foot].rotation = lowerTurn.conjugate() * leaning;
+    const Vec3 stands =
+        rest_[joint(leg + "Toes")].translation() + toesWay(gait_, strides) + Vec3(0, 0, behind * gait_.stride);
     // Flat while they stand, hanging a little in the air.
-    pose_.locals[toes].rotation = turnAbout(Vec3::UnitX(), -lean * (1 - 0.7 * smoothBump(swingOf(gait_, phase))));
+    const double toes = -lean * (1 - 0.7 * smoothBump(swingOf(gait_, phase)));
+    placeQuadrupedLeg(skeleton_, leg, {stands, lean, toes}, rest_, globals_, pose_);
   }
 
   const QuadrupedGait& gait_;
@@ -203,6 +189,27 @@ class FourLegs {
 };
 
 }  // namespace
+
+void placeQuadrupedLeg(const Skeleton& quadruped, const std::string& leg, const QuadrupedFoot& foot,
+                       std::span<const Affine> rest, std::span<const Affine> globals, Pose& pose) {
+  const auto joint = [&](const char* name) { return quadruped.find(leg + name).value(); };
+  const Index upper = joint("UpperLeg"), lower = joint("LowerLeg"), ankle = joint("Foot"), toes = joint("Toes");
+  const auto resting = [&](Index j) -> Vec3 { return rest[j].translation(); };
+  const Quat leaning = turnAbout(Vec3::UnitX(), foot.lean);
+  TwoBone bones;
+  bones.start = globals[upper].translation();
+  bones.middle = globals[lower].translation();
+  bones.end = globals[ankle].translation();
+  bones.target = foot.toes - leaning * Vec3(resting(toes) - resting(ankle));
+  bones.pole = bones.start + Vec3(0, -0.1, leg.ends_with("Front") ? -1 : 1);
+  const TwoBoneTurns turns = solveTwoBone(bones);
+  const Quat above(globals[*quadruped.joints[upper].parent].linear()), body(globals[upper].linear());
+  const Quat upperTurn = turns.start * body, lowerTurn = turns.middle * body;
+  pose.locals[upper].rotation = above.conjugate() * upperTurn;
+  pose.locals[lower].rotation = upperTurn.conjugate() * lowerTurn;
+  pose.locals[ankle].rotation = lowerTurn.conjugate() * leaning;
+  pose.locals[toes].rotation = turnAbout(Vec3::UnitX(), foot.toesTurn);
+}
 
 Skeleton quadrupedSkeleton() {
   Skeleton skeleton;

@@ -137,6 +137,14 @@ struct MirrorPose {
   MirrorFrom from = MirrorFrom::kBoth;
 };
 
+// Puts the model, or only these joints of it, into a pose of this or of another skeleton (putPose); mirrored: swaps
+// both sides then, as MirrorPose does. Feet that stand are held where they stand then, and targets go along.
+struct ApplyPose {
+  std::string pose;                      // the text of a pose file (pose_file.h)
+  std::vector<std::string> joints = {};  // none: all
+  bool mirrored = false;
+};
+
 // The pose that the model stands in becomes the one that it is bound in.
 struct SetRestPose {};
 struct RenameJoint {
@@ -317,8 +325,8 @@ using Command =
                  ResetPose, MirrorPose, SetRestPose, RenameJoint, AddMotion, AddSampleMotion, RetargetMotion, AddClip,
                  RemoveClip, RenameClip, ChooseClip, SetTime, SetKey, MoveKey, DeleteKey, EditKeys, DeleteKeys,
                  SetJointKey, SetInterpolation, PaintWeights, LockWeights, MirrorWeights, AddJoint, DeleteJoint,
-                 ReparentJoint, PlaceJoint, SetTurn, Undo, Redo, AddSample, AddFile, RemoveMember, ChooseMember,
-                 RenameMember, PlaceMember, AttachMember, DetachMember, SetClock>;
+                 ReparentJoint, PlaceJoint, SetTurn, ApplyPose, Undo, Redo, AddSample, AddFile, RemoveMember,
+                 ChooseMember, RenameMember, PlaceMember, AttachMember, DetachMember, SetClock>;
 
 // "set_handles", as in JSON.
 std::string_view commandName(const Command& command);

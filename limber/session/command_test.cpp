@@ -1,5 +1,7 @@
 #include "limber/session/command.h"
 
+#include <algorithm>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -60,6 +62,7 @@ std::vector<Command> oneOfEach() {
           ReparentJoint{"head", "hips"},
           PlaceJoint{"hand.L", {0.5, 1, -0.25}, {"head"}, true},
           SetTurn{"hand.L", {30, -20, 0.125}, {"head"}, true},
+          ApplyPose{R"({"limber_pose": 1})", {"head", "hips"}, true},
           Undo{},
           Redo{},
           AddSample{"stool", true, true},
@@ -71,6 +74,13 @@ std::vector<Command> oneOfEach() {
           AttachMember{"sword", "fox", "paw.L", true},
           DetachMember{"sword"},
           SetClock{2.0 / 3}};
+}
+
+// The one of that kind, wherever it stands.
+template <class C>
+const C& only(const std::vector<Command>& commands) {
+  return std::get<C>(*std::find_if(commands.begin(), commands.end(),
+                                   [](const Command& command) { return std::holds_alternative<C>(command); }));
 }
 
 TEST(Command, JsonKeepsEveryCommandAndEveryField) {
@@ -116,12 +126,12 @@ TEST(Command, JsonKeepsEveryCommandAndEveryField) {
   EXPECT_EQ(std::get<EditKeys>(back[33]).scale, 2);
   EXPECT_EQ(std::get<DeleteKeys>(back[34]).keys.size(), 1u);
   EXPECT_EQ(std::get<SetJointKey>(back[35]).turn, Vec3(0, 30, 0));
-  EXPECT_TRUE(std::get<AddFile>(back[48]).asProp);
-  EXPECT_EQ(std::get<RenameMember>(back[51]).name, "vixen");
-  EXPECT_EQ(std::get<PlaceMember>(back[52]).turn, Vec3(0, 90, 0));
-  EXPECT_EQ(std::get<PlaceMember>(back[52]).scale, 0.5);
-  EXPECT_EQ(std::get<AttachMember>(back[53]).to, "fox");
-  EXPECT_TRUE(std::get<AttachMember>(back[53]).snap);
+  EXPECT_TRUE(only<AddFile>(back).asProp);
+  EXPECT_EQ(only<RenameMember>(back).name, "vixen");
+  EXPECT_EQ(only<PlaceMember>(back).turn, Vec3(0, 90, 0));
+  EXPECT_EQ(only<PlaceMember>(back).scale, 0.5);
+  EXPECT_EQ(only<AttachMember>(back).to, "fox");
+  EXPECT_TRUE(only<AttachMember>(back).snap);
   EXPECT_EQ(std::get<SetInterpolation>(back[36]).interpolation, Interpolation::kCubic);
 }
 

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "limber/asset/motion_io.h"
+#include "limber/asset/pose_file.h"
 #include "limber/asset/rest_pose.h"
 #include "limber/asset/uri.h"
 #include "limber/ik/limits_json.h"
@@ -15,6 +16,7 @@
 #include "limber/rigging/prop_rigger.h"
 #include "limber/samples/sample_motions.h"
 #include "limber/samples/samples.h"
+#include "limber/session/apply_pose.h"
 #include "limber/session/edit_joints.h"
 #include "limber/session/mirror_pose.h"
 #include "limber/session/pose_transfer.h"
@@ -84,6 +86,17 @@ void editPoseOf(SessionState& state, const PoseEdits& edits) {
 // Where limbs follow by themselves, feet that stand in this pose are held.
 void holdStandingFeet(SessionState& state) {
   if (state.limbsFollow && state.ik) state.targets = standingFeet(*state.rig, state.pose);
+}
+
+// Soles that were held are let go where the pose lifts them; what else has a target takes it along.
+void applyPose(SessionState& state, const ApplyPose& command) {
+  state.pose = appliedPose(*state.rig, state.pose, command);
+  if (state.limbsFollow && state.ik) {
+    std::erase_if(state.targets, [](const HeldTarget& target) { return target.rotation.has_value(); });
+  }
+  followPose(state, [](const HeldTarget&) { return true; });
+  if (!state.limbsFollow || !state.ik) return;
+  for (const HeldTarget& foot : standingFeet(*state.rig, state.pose)) setTarget(state.targets, foot);
 }
 
 void letLimbsFollow(SessionState& state) {
@@ -412,6 +425,13 @@ struct Session::Runner {
     session.commit(command, std::move(next));
   }
 
+  void operator()(const ApplyPose& c) const {
+    SessionState next = state();
+    applyPose(next, c);
+    authored(next);
+    session.commit(command, std::move(next));
+  }
+
   void operator()(const SetRestPose&) const {
     SessionState next = state();
     setRestPose(next);
@@ -713,6 +733,11 @@ std::vector<Affine> Session::skinMatrices() const {
 Bytes Session::exportModel(ExportFormat format) const {
   requireOpen();
   return exportState(state_, format);
+}
+
+std::string Session::savePose(std::string_view name) const {
+  requireOpen();
+  return poseToJson({std::string(name), state_.rig->skeleton(), state_.pose});
 }
 
 Bytes Session::saveSession() const {

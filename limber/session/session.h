@@ -112,6 +112,8 @@ class Session {
   Bytes exportModel(ExportFormat format) const;
   // See session_file.h. Motions are not part of it, the clips made of them are.
   Bytes saveSession() const;
+  // The pose that is shown, as the text of a pose file: for ApplyPose, here or on another model.
+  std::string savePose(std::string_view name) const;
   // What was done since a model was opened; run on a new session with the same files it gives the same bytes.
   std::span<const Command> record() const { return record_->commands(); }
 

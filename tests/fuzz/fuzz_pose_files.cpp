@@ -1,13 +1,15 @@
-// Any bytes as a file of poses or of joint limits: an Error, or something that the solvers can work with and, for
-// limits, that comes back from writing.
+// Any bytes as a file of poses, of one pose with its skeleton or of joint limits: an Error, or something that the
+// solvers can work with and, for limits and the one pose, that comes back from writing.
 #include <cmath>
 #include <cstdlib>
 #include <string_view>
 
+#include "limber/asset/pose_file.h"
 #include "limber/core/error.h"
 #include "limber/ik/ik_skeletons.h"
 #include "limber/ik/limits_json.h"
 #include "limber/pipeline/pose_asset.h"
+#include "limber/pipeline/put_pose.h"
 
 namespace {
 
@@ -40,6 +42,15 @@ void usePoses(const Skeleton& skeleton, const std::vector<NamedPose>& poses) {
   }
 }
 
+void useFreePose(const Skeleton& skeleton, const PortablePose& pose) {
+  const std::string written = poseToJson(pose);
+  if (poseToJson(poseFromJson(written)) != written) std::abort();
+  if (pose.skeleton.jointCount() > 100) return;
+  for (const Transform& local : putPose(pose, skeleton, restPose(skeleton)).locals) {
+    if (!local.translation.allFinite() || !local.rotation.coeffs().allFinite()) std::abort();
+  }
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -51,6 +62,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   try {
     usePoses(skeleton, parsePoses(text));
+  } catch (const Error&) {
+  }
+  try {
+    useFreePose(skeleton, poseFromJson(text));
   } catch (const Error&) {
   }
   return 0;

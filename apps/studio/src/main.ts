@@ -5,6 +5,8 @@ import { createPageStore } from './app/state';
 import { Studio } from './app/studio';
 import { droppedFiles } from './app/files';
 import { Journal } from './app/journal';
+import { PoseShelf } from './app/pose_shelf';
+import { PoseStore } from './app/pose_store';
 import { bindJournal } from './app/keep';
 import { bindPlayer } from './app/player';
 import { exposeStage } from './app/probe';
@@ -15,6 +17,7 @@ import { motionShelf } from './panels/motion_shelf';
 import { methodsPanel } from './panels/methods_panel';
 import { outliner } from './panels/outliner';
 import { paintPanel } from './panels/paint_panel';
+import { poseLibrary } from './panels/pose_library';
 import { posePanel } from './panels/pose_panel';
 import { poseTools } from './panels/pose_tools';
 import { scenePanel } from './panels/scene_panel';
@@ -49,6 +52,7 @@ const page = createPageStore();
 const journal = new Journal();
 const studio = new Studio(page, journal);
 studio.ask = ask;
+const poses = new PoseShelf(studio, page, new PoseStore());
 const { viewport, handles, model, comparison, gizmo, others, places } = stageOrApology();
 const sheet = contactSheet(studio, page, viewport);
 
@@ -56,10 +60,10 @@ const app = document.getElementById('app')!;
 app.append(
   toolbar(studio, page, journal, viewport, model, others),
   element('main', { class: 'stage' }, viewport.canvas, facts(page), hint(page), poseTools(page), views(viewport), comparisonPanel(studio, page, comparison)),
-  element('aside', { class: 'side' }, scenePanel(studio, page, places), posePanel(studio, page), paintPanel(studio, page), retargetPanel(studio, page), methodsPanel(studio, page), outliner(studio, page, handles)),
+  element('aside', { class: 'side' }, scenePanel(studio, page, places), posePanel(studio, page, poses), paintPanel(studio, page), retargetPanel(studio, page), methodsPanel(studio, page), outliner(studio, page, handles)),
   timeline(studio, page, sheet.open),
-  status(studio, page), help(page), sheet.dialog, motionShelf(studio, page));
-bindShortcuts(studio, page, viewport, handles);
+  status(studio, page), help(page), sheet.dialog, motionShelf(studio, page), poseLibrary(studio, page, poses));
+bindShortcuts(studio, page, viewport, handles, poses);
 bindPlayer(studio, page);
 bindJournal(journal, studio, page, viewport);
 

@@ -107,6 +107,11 @@ await picture('studio_shelf', { ...desk, search: '?sample=biped' }, async (page)
   await page.locator('#shelf [data-motion=sneak]').hover();
   await page.waitForTimeout(600);
 });
+await picture('studio_poses', { ...desk, search: '?sample=biped' }, async (page) => {
+  await page.locator('#open-poses').click();
+  await page.waitForFunction(() => document.querySelectorAll('#pose-samples .motion-card:not([aria-busy])').length >= 12);
+  await page.waitForTimeout(300);
+});
 await picture('studio_gizmo', { ...desk, search: '?sample=winged' }, async (page) => {
   await page.locator('#gizmo').check();
   await page.locator('#joints li').nth(5).click();

@@ -236,7 +236,7 @@ const cases = {
     const buttons = {
       g: '.pose [data-value=move]', r: '.pose [data-value=turn]', i: '#ik', s: '#both-sides', m: '#mirror', p: '#pin', h: '[data-value=surface]', f: '#whole-model', Home: '#whole-model',
       Delete: '#reset-joint', 1: '#view-front', 3: '#view-right', 7: '#view-top', 5: '#view-flat', ' ': '#play', k: '#add-key', b: '#paint', l: '#lock-joint', x: '#gizmo', '?': '#help-button',
-      n: '#magnet', v: '#select-several', z: '#undo', Z: '#redo', y: '#redo', o: '#open',
+      n: '#magnet', v: '#select-several', c: '#copy-pose', z: '#undo', Z: '#redo', y: '#redo', o: '#open',
     };
     await at.locator('#joints li:nth-child(9)').tap();
     await at.locator('#paint').tap();

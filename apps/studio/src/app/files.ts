@@ -52,6 +52,7 @@ export interface Brought {
   /** What is opened: the first that the page reads. */
   model: File | null;
   motions: File[];
+  poses: File[];
   limits: File | null;
   /** By name: what the model may refer to. */
   beside: Map<string, File>;
@@ -63,6 +64,16 @@ async function movingModels(files: File[]): Promise<Set<File>> {
   if (models.length < 2) return new Set();
   const moves = await Promise.all(models.map(hasAnimation));
   return new Set(models.filter((_, i) => moves[i]));
+}
+
+const poseStart = 200; // bytes of a file in which a pose says that it is one
+
+/** Poses, whatever they are called; and what is called so, whatever it holds. */
+async function posesAmong(files: File[]): Promise<File[]> {
+  const isPose = async (file: File) => /\.pose\.json$/i.test(file.name)
+    || (/\.json$/i.test(file.name) && /^\s*\{\s*"limber_pose"/.test(await file.slice(0, poseStart).text()));
+  const are = await Promise.all(files.map(isPose));
+  return files.filter((_, i) => are[i]);
 }
 
 const glbJson = 20, glbJsonLength = 12; // bytes: where a GLB's JSON begins, and where its length is told
@@ -89,11 +100,12 @@ export async function sorted(files: File[]): Promise<Brought> {
   }
   const moving = await movingModels(all);
   const motions = all.filter((file) => /\.bvh$/i.test(file.name) || moving.has(file));
+  const poses = await posesAmong(all);
   const found = all.find((file) => model.test(file.name) && !moving.has(file)) ?? null;
-  const limits = found === null && motions.length === 0 ? all.find(({ name }) => /\.json$/i.test(name)) ?? null : null;
+  const limits = found === null && motions.length === 0 ? all.find((file) => /\.json$/i.test(file.name) && !poses.includes(file)) ?? null : null;
   // What no reader knows is opened all the same: its reader says so.
-  const only = all.length === 1 && motions.length === 0 && limits === null ? all[0]! : null;
-  return { model: found ?? only, motions, limits, beside: new Map(all.map((file) => [file.name, file])) };
+  const only = all.length === 1 && motions.length === 0 && poses.length === 0 && limits === null ? all[0]! : null;
+  return { model: found ?? only, motions, poses, limits, beside: new Map(all.map((file) => [file.name, file])) };
 }
 
 const typeOf = (name: string) => ({ png: 'image/png', jpg: 'image/jpeg', jpeg: 'image/jpeg', webp: 'image/webp' }[name.split('.').pop()?.toLowerCase() ?? '']

@@ -18,7 +18,7 @@ export function bindPlayer(studio: Studio, page: PageStore) {
     // Clips of several lengths go on, each for itself.
     if (next > duration) next = !loop ? duration : session?.members.length === 1 ? next % duration : next;
     clock = next;
-    studio.showMoment(next);
+    studio.showMoment(momentOf(chosenClip(session), next), next);
     if (next === duration && !loop) page.set({ playing: false });
     requestAnimationFrame(step);
   };

@@ -4,10 +4,11 @@ import type { Viewport } from '../scene/viewport';
 import { resizeBrush, togglePainting } from '../panels/paint_panel';
 import { toggleSelecting } from '../panels/pose_tools';
 import { togglePlaying } from './player';
+import type { PoseShelf } from './pose_shelf';
 import type { PageStore } from './state';
 import type { Studio } from './studio';
 
-export function bindShortcuts(studio: Studio, page: PageStore, viewport: Viewport, handles: HandleView) {
+export function bindShortcuts(studio: Studio, page: PageStore, viewport: Viewport, handles: HandleView, poses: PoseShelf) {
   const selected = (act: (joint: number) => void) => () => {
     if (page.now.selected !== null) act(page.now.selected);
   };
@@ -42,6 +43,7 @@ export function bindShortcuts(studio: Studio, page: PageStore, viewport: Viewpor
   const withControl: Record<string, () => void> = {
     'z': () => void studio.undo(), 'Z': () => void studio.redo(), 'y': () => void studio.redo(),
     'o': () => document.getElementById('file')?.click(),
+    'c': () => void poses.copy(), 'v': () => void poses.paste(), 'V': () => void poses.paste({ mirrored: true }),
   };
   addEventListener('keydown', (event) => {
     const target = event.target as HTMLElement;
@@ -51,7 +53,7 @@ export function bindShortcuts(studio: Studio, page: PageStore, viewport: Viewpor
     else if (event.altKey) return;
     else if (event.ctrlKey || event.metaKey) {
       const act = withControl[event.shiftKey ? event.key.toUpperCase() : event.key];
-      if (!act) return;
+      if (!act || (event.key === 'c' && getSelection()?.isCollapsed === false)) return; // text is copied
       act();
     } else {
       const act = plain[event.key];

@@ -1,8 +1,9 @@
 // What the page shows, in one place.
 import type {
-  Curve, LimberError, Measures, MethodKind, Methods, OtherMember, Paths, SampleMotion, SessionState, SurfaceModel, Variant,
+  Curve, LimberError, Measures, MethodKind, Methods, OtherMember, Paths, SampleMotion, SamplePose, SessionState, SurfaceModel, Variant,
 } from '../engine/messages';
 import { told } from '../words/engine';
+import type { KeptPose } from './pose_store';
 import { Store } from './store';
 
 export type DragMode = 'move' | 'turn';
@@ -104,6 +105,13 @@ export interface PageState {
   ownMotions: readonly File[];
   /** Whether the shelf of motions is open. */
   shelf: boolean;
+  samplePoses: readonly SamplePose[];
+  /** The user's own, the newest first. */
+  ownPoses: readonly KeptPose[];
+  /** Whether the library of poses is open. */
+  poseLibrary: boolean;
+  /** The text of the pose that was copied. */
+  copiedPose: string | null;
   comparison: Comparison | null;
   /** Parts of the model that are not drawn, by their place in it. */
   hiddenParts: ReadonlySet<number>;
@@ -120,7 +128,7 @@ export const createPageStore = (): PageStore => new Store<PageState>({
   seconds: 0, playing: false, speed: 1, loop: true, autoKey: true, gizmo: false, gizmoSpace: 'world', snapping: false, selecting: false, limits: false, correcting: false,
   span: 0.3, keyEditor: null, chosenKeys: [], ghosts: false, paths: null, curve: null,
   painting: false, brush: { mode: 'add', size: 0.05, strength: 0.5 }, placing: false,
-  methods: null, sampleMotions: [], ownMotions: [], shelf: false, comparison: null, hiddenParts: new Set(), sourceModel: null, sourceShown: true,
+  methods: null, sampleMotions: [], ownMotions: [], shelf: false, samplePoses: [], ownPoses: [], poseLibrary: false, copiedPose: null, comparison: null, hiddenParts: new Set(), sourceModel: null, sourceShown: true,
 });
 
 export const noticeOf = (error: LimberError): Notice => ({ kind: 'error', ...told(error) });

@@ -3,22 +3,22 @@ import { EngineClient, EngineError, refusal } from '../engine/client';
 import { canBeNamed } from '../engine/messages';
 import type {
   Command, LimberError, MethodKind, MotionPreview, MotionRequest, Placement, PreviewRig, Ray, Request, SessionState, Stance, Step, SurfaceHit,
-  Vector, WeightArrays,
+  Trial, Vector, WeightArrays,
 } from '../engine/messages';
 import { counted } from '../ui/counted';
 import { sorted, withBuffers, type Brought } from './files';
 import type { Journal, KeptDocument } from './journal';
 import { fromLimberFile, toLimberFile } from './limber_file';
-import type { Motion } from './motion_trials';
 import { changedTime, keysThere, type KeyChange } from './keys';
 import { chosenClip, momentOf } from './clips';
 import { noticeOf, type DragMode, type KeyPlace, type Notice, type PageStore } from './state';
+import type { Motion } from './trials';
 import { stageName, told, warningText } from '../words/engine';
 import { say } from '../words/say';
 
 const mostFileSize = 500e6;
 /** Commands that leave the model in another pose, set by hand. */
-const poses = new Set(['end_drag', 'place_joint', 'set_turn', 'turn_joint', 'move_joint', 'reset_joint', 'reset_pose', 'mirror_pose']);
+const poses = new Set(['end_drag', 'place_joint', 'set_turn', 'turn_joint', 'move_joint', 'reset_joint', 'reset_pose', 'mirror_pose', 'apply_pose']);
 const nudgePause = 1000; // milliseconds: presses of keys that follow each other sooner are one step to undo
 const ahead: Vector = [0, 0, -1];
 const previewRate = 12; // frames a second of a motion on the shelf; between them it is blended
@@ -50,6 +50,8 @@ export class Studio {
   onWeights: (weights: WeightArrays) => void = () => {};
   /** A new model was opened: the camera goes to it. */
   onOpened: () => void = () => {};
+  /** Files of poses were brought. */
+  onPoses: (files: File[]) => Promise<void> = async () => {};
   /** Something is to be replaced: whether the user agrees. */
   ask: (title: string, detail: string, yes: string) => Promise<boolean> = async () => true;
 
@@ -69,7 +71,7 @@ export class Studio {
   private openings = 0;
   private afterOpening: Notice | null = null;
   private opening: Promise<unknown> = Promise.resolve();
-  private waitingMoment: number | null = null;
+  private waitingMoment: Command | null = null;
   private momentUnderWay = false;
 
   constructor(readonly page: PageStore, private journal: Journal) {
@@ -157,11 +159,12 @@ export class Studio {
   async openFiles(files: File[]) {
     const brought = await this.broughtBy(files);
     if (!brought) return;
-    const { model, motions, limits, beside } = brought;
+    const { model, motions, poses: poseFiles, limits, beside } = brought;
     if (model) await this.openModel(model, beside);
     await this.openMotions(motions);
+    if (poseFiles.length > 0) await this.onPoses(poseFiles);
     if (limits) await this.openLimits(limits);
-    if (files.length > 0 && !model && motions.length === 0 && !limits) {
+    if (files.length > 0 && !model && motions.length === 0 && poseFiles.length === 0 && !limits) {
       this.page.set({ notice: noModel() });
     }
   }
@@ -221,30 +224,63 @@ export class Studio {
     return this.engine.ask({ kind: 'preview-rig' }).catch(() => null);
   }
 
-  /** A model whose handles have no names gets a skeleton first, where the user agrees; else all stays as it was. */
   private async play(motion: MotionRequest) {
+    if (!this.page.now.session) return;
+    const title = say('The model needs a skeleton for this motion');
+    const trial = await this.withSkeleton(title, (named) => this.engine.ask({ kind: 'try-motion', motion, named }));
+    if (!trial) return;
+    const before = this.page.now.session?.clips.length ?? 0;
+    this.take(await this.engine.ask(motion));
+    this.take(await this.engine.run({ do: 'retarget', motion: trial.motion }));
+    if ((this.page.now.session?.clips.length ?? 0) > before) this.page.set({ playing: true, display: 'surface', correcting: false });
+  }
+
+  /** What is tried beside the document fits it then. A model whose handles have no names gets a skeleton first, where the
+   *  user agrees; else all stays as it was: null. */
+  private async withSkeleton(title: string, attempt: (named: boolean) => Promise<Trial>): Promise<Trial | null> {
     const state = this.page.now.session;
-    if (!state) return;
-    let trial = await this.engine.ask({ kind: 'try-motion', motion, named: false });
-    if (canBeNamed(trial.error, state)) {
+    let trial = await attempt(false);
+    if (state && canBeNamed(trial.error, state)) {
       const refused = trial.error;
-      trial = await this.engine.ask({ kind: 'try-motion', motion, named: true });
+      trial = await attempt(true);
       if (trial.error) throw new EngineError(refused ?? trial.error);
-      const agreed = await this.ask(say('The model needs a skeleton for this motion'),
+      const agreed = await this.ask(title,
         [
           say('Its {handles} will be replaced by a skeleton of {joints} with names.', { handles: counted(state.joints.length, 'handle'), joints: counted(trial.joints, 'joint') }),
           ...trial.warnings.map((warning) => say('Please look at the result: {warning}.', { warning: warningText(warning) })),
           say('Undo takes it back.'),
         ].join(' '),
         say('Give it a skeleton'));
-      if (!agreed) return;
+      if (!agreed) return null;
       this.take(await this.engine.run({ do: 'choose_methods', rigger: 'template', skinning: state.skinning }));
     }
     if (trial.error) throw new EngineError(trial.error);
-    const before = this.page.now.session?.clips.length ?? 0;
-    this.take(await this.engine.ask(motion));
-    this.take(await this.engine.run({ do: 'retarget', motion: trial.motion }));
-    if ((this.page.now.session?.clips.length ?? 0) > before) this.page.set({ playing: true, display: 'surface', correcting: false });
+    return trial;
+  }
+
+  /** The pose that is shown, as the text of a file. */
+  async copyPose(name: string): Promise<string | null> {
+    return this.guard(() => this.engine.ask({ kind: 'pose', name }));
+  }
+
+  /** Joints: these alone. */
+  async applyPose(pose: string, { joints = [], mirrored = false }: { joints?: readonly number[]; mirrored?: boolean } = {}) {
+    if (this.page.now.playing) this.page.set({ playing: false });
+    await this.guard(async () => {
+      const names = joints.map((joint) => this.jointName(joint));
+      const trial = await this.withSkeleton(say('The model needs a skeleton for this pose'), (named) => this.engine.ask({ kind: 'try-pose', pose, named }));
+      if (trial) await this.run({ do: 'apply_pose', pose, joints: names, mirrored });
+    });
+  }
+
+  /** How the model would look in that pose; null where the page is told to stop. */
+  async previewPose(pose: string): Promise<MotionPreview | null> {
+    try {
+      return await this.engine.ask({ kind: 'preview-pose', pose });
+    } catch (error) {
+      if (!(error instanceof EngineError)) throw error;
+      return error.cancelled ? null : { error: error.error, named: false, seconds: 0, frames: [] };
+    }
   }
 
   /** How far joints may turn: a file of limits, for this model's joints. */
@@ -328,6 +364,7 @@ export class Studio {
   async loadMethods() {
     await this.guard(async () => this.page.set({
       methods: await this.engine.ask({ kind: 'methods' }), sampleMotions: await this.engine.ask({ kind: 'sample-motions' }),
+      samplePoses: await this.engine.ask({ kind: 'sample-poses' }),
     }));
   }
 
@@ -428,24 +465,26 @@ export class Studio {
     this.page.set({}); // what was refused is not shown any more
   }
 
-  /** At most one moment is on its way; the newest waits. In a scene all members show it, each of its own clip. */
-  showMoment(seconds: number) {
-    this.page.set({ seconds: momentOf(chosenClip(this.page.now.session), seconds) });
-    this.waitingMoment = seconds;
+  /** At most one moment is on its way; the newest waits. In a scene all members show what the clock says, each of its own clip. */
+  showMoment(seconds: number, clock = seconds) {
+    this.page.set({ seconds });
+    this.waitingMoment = this.momentCommand(seconds, clock);
     if (this.momentUnderWay) return;
     this.momentUnderWay = true;
     void this.guard(async () => {
       while (this.waitingMoment !== null) {
-        const next: number = this.waitingMoment;
+        const next: Command = this.waitingMoment;
         this.waitingMoment = null;
-        const { stance } = await this.engine.run(this.momentCommand(next));
+        const { stance } = await this.engine.run(next);
         this.showStance(stance, true);
       }
     }).finally(() => { this.momentUnderWay = false; });
   }
 
-  private momentCommand(seconds: number): Command {
-    return { do: (this.page.now.session?.members.length ?? 0) > 1 ? 'set_clock' : 'set_time', seconds };
+  /** Behind the end of its clip the chosen member is alone: there is nothing to repeat, there its next key will be. */
+  private momentCommand(seconds: number, clock = seconds): Command {
+    const { session } = this.page.now, repeats = momentOf(chosenClip(session), clock) === seconds;
+    return (session?.members.length ?? 0) > 1 && repeats ? { do: 'set_clock', seconds: clock } : { do: 'set_time', seconds };
   }
 
   /** On recorded motion the correction comes and goes, instead of a jump of one frame. */

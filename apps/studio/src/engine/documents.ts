@@ -42,6 +42,13 @@ function framesOf(session: Session, request: MotionRequest, most: number, rate: 
   return { error: null, seconds, frames };
 }
 
+/** A document in that pose. */
+function frameIn(session: Session, pose: string): Omit<MotionPreview, 'named'> {
+  const put = session.run({ do: 'apply_pose', pose });
+  if (!put.ok) return { error: put.error, seconds: 0, frames: [] };
+  return { error: null, seconds: 0, frames: [{ skin: put.skin, middle: middleOf(orThrow(session.handles()).handles) }] };
+}
+
 /** Of x, y, z and radius of each joint: roots that stay behind while the hips walk away count little. */
 function middleOf(handles: Float32Array): Vector {
   const sum: Vector = [0, 0, 0];
@@ -115,10 +122,15 @@ export class Documents {
     return { step: this.shown({ state: this.state, skin }, true), failed, error };
   }
 
-  tryMotion(request: MotionRequest, named: boolean): Trial {
+  tryMotion(request: MotionRequest, named: boolean): Trial { return this.tryOn(named, (fork) => putOn(fork, request)); }
+  tryPose(pose: string, named: boolean): Trial {
+    return this.tryOn(named, (fork) => ({ motion: '', error: frameIn(fork, pose).error }));
+  }
+
+  private tryOn(named: boolean, act: (fork: Session) => Pick<Trial, 'motion' | 'error'>): Trial {
     const rigged = named ? this.withNames() : { session: this.session, state: this.state };
     return this.onFork(rigged.session, (fork) => {
-      const { motion, error } = putOn(fork, request);
+      const { motion, error } = act(fork);
       return {
         motion, error, joints: rigged.state?.joints.length ?? 0, warnings: rigged.state?.warnings ?? [],
       };
@@ -126,10 +138,15 @@ export class Documents {
   }
 
   previewMotion(request: MotionRequest, most: number, rate: number): MotionPreview {
-    const own = this.onFork(this.session, (fork) => framesOf(fork, request, most, rate));
+    return this.previewOf((fork) => framesOf(fork, request, most, rate));
+  }
+  previewPose(pose: string): MotionPreview { return this.previewOf((fork) => frameIn(fork, pose)); }
+
+  private previewOf(frames: (fork: Session) => Omit<MotionPreview, 'named'>): MotionPreview {
+    const own = this.onFork(this.session, frames);
     if (!canBeNamed(own.error, this.state)) return { ...own, named: false };
     try {
-      const named = this.onFork(this.withNames().session, (fork) => framesOf(fork, request, most, rate));
+      const named = this.onFork(this.withNames().session, frames);
       return named.error ? { ...own, named: false } : { ...named, named: true };
     } catch (error) {
       if (error instanceof EngineFailure) return { ...own, named: false };
@@ -143,6 +160,8 @@ export class Documents {
   }
 
   sampleMotions() { return this.limber.sampleMotions(); }
+  samplePoses() { return this.limber.samplePoses(); }
+  pose(name: string) { return orThrow(this.session.pose(name)).pose; }
 
   private withNames(): { session: Session; state: SessionState } {
     this.named ??= this.rigWithNames();

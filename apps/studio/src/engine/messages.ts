@@ -74,9 +74,9 @@ export type MotionRequest =
   | { kind: 'motion'; bytes: Uint8Array; name: string }
   | { kind: 'run'; command: { do: 'add_sample_motion'; name: string } };
 
-/** Whether a motion can be put on the model, tried beside the document. */
+/** Whether a motion or a pose can be put on the model, tried beside the document. */
 export interface Trial {
-  /** What it is called in the document then. */
+  /** What a motion is called in the document then. */
   motion: string;
   /** Why it cannot. */
   error: LimberError | null;
@@ -92,7 +92,14 @@ export interface SampleMotion {
   seconds: number;
 }
 
-/** How a motion would look on the model, tried beside the document. */
+/** A pose that the engine makes itself; `pose` is the text of its file. */
+export interface SamplePose {
+  name: string;
+  summary: string;
+  pose: string;
+}
+
+/** How a motion would look on the model, or a pose, which is one frame; tried beside the document. */
 export interface MotionPreview {
   /** Why it cannot be put on the model; there are no frames then. */
   error: LimberError | null;
@@ -124,6 +131,12 @@ export type Request =
   /** As much of the motion as that, in as many frames a second; changes nothing. */
   | { kind: 'preview-motion'; motion: MotionRequest; most: number; rate: number }
   | { kind: 'preview-rig' }
+  /** The pose that is shown, as the text of a file. */
+  | { kind: 'pose'; name: string }
+  | { kind: 'sample-poses' }
+  /** As try-motion and preview-motion. */
+  | { kind: 'try-pose'; pose: string; named: boolean }
+  | { kind: 'preview-pose'; pose: string }
   /** A new document, by all that was asked for to make it. */
   | { kind: 'restore'; requests: Request[] }
   | { kind: 'pick'; ray: Ray; slope: number }
@@ -154,6 +167,10 @@ export interface Answers {
   'sample-motions': SampleMotion[];
   'preview-motion': MotionPreview;
   'preview-rig': PreviewRig | null;
+  pose: string;
+  'sample-poses': SamplePose[];
+  'try-pose': Trial;
+  'preview-pose': MotionPreview;
   /** null where nothing could be opened; how many of the requests failed, and the first error. */
   restore: { step: Step | null; failed: number; error: LimberError | null };
   pick: PickHit | null;
@@ -176,7 +193,7 @@ export type Place = 'begins' | 'follows' | 'replaces';
 /** Whether a command begins another document. */
 export const opensModel = (command: Command) => command.do.startsWith('open_');
 
-/** Whether a motion was refused for want of names, which a skeleton would bring. */
+/** Whether a motion or a pose was refused for want of names, which a skeleton would bring. */
 export const canBeNamed = (error: LimberError | null, state: SessionState | null) =>
   error?.code === 'unsupported' && state !== null && !state.own_rig && state.rigger !== 'template';
 

@@ -22,6 +22,10 @@ function answer(documents: Documents, request: Request): Answers[Kind] {
     case 'sample-motions': return documents.sampleMotions();
     case 'preview-motion': return documents.previewMotion(request.motion, request.most, request.rate);
     case 'preview-rig': return documents.previewRig();
+    case 'pose': return documents.pose(request.name);
+    case 'sample-poses': return documents.samplePoses();
+    case 'try-pose': return documents.tryPose(request.pose, request.named);
+    case 'preview-pose': return documents.previewPose(request.pose);
     case 'restore': return documents.restore(request.requests);
     case 'source-model': return documents.sourceModel();
     case 'paths': return documents.paths();

@@ -34,6 +34,7 @@ const lines: Line[] = [
   { does: 'give the joint another name', keys: 'F2', touch: 'Rename' },
   { does: 'lock the joint against painting', keys: 'L', touch: 'Lock' },
   { does: 'mirror the pose', keys: 'M', touch: 'Mirror' },
+  { does: 'copy and paste the pose; with Shift, pasted mirrored', keys: 'Ctrl+C, Ctrl+V', touch: 'Copy, Paste' },
   { does: 'move or turn the selected joints; with Shift, finely', mouse: 'Arrow keys' },
   { does: 'put the selected joints back', keys: 'Del', touch: 'Reset, below the joints' },
   { does: 'put all joints back', keys: 'Alt+R', touch: 'Reset' },

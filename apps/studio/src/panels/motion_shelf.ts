@@ -1,9 +1,10 @@
 // Motions to try on: each plays on the user's own character in a small picture, and is put on it by a click.
-import { MotionTrials, type Motion } from '../app/motion_trials';
+import { Trials, type Motion } from '../app/trials';
 import type { PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
 import type { MotionPreview } from '../engine/messages';
 import { MotionPictures } from '../scene/motion_picture';
+import { arrowsMoveFocus } from '../ui/cards';
 import { button, element, fileInput } from '../ui/dom';
 import { motionName, motionSummary, told } from '../words/engine';
 import { say } from '../words/say';
@@ -37,7 +38,7 @@ export function motionShelf(studio: Studio, page: PageStore): HTMLElement {
   let pictures: MotionPictures | null = null; // made when the shelf is first opened
   let playing: Card | null = null, begun = 0;
   let tapped: Card | null = null; // touched for the first time: it plays, and is not chosen yet
-  const trials = new MotionTrials(studio, page);
+  const trials = new Trials<Motion>(page, (motion) => studio.previewMotion(motion), () => studio.previewRig());
   const cards = { sample: [] as Card[], own: [] as Card[] };
 
   const samples = element('ul', { class: 'cards', id: 'shelf-samples' }), own = element('ul', { class: 'cards', id: 'shelf-own' });
@@ -146,19 +147,9 @@ export function motionShelf(studio: Studio, page: PageStore): HTMLElement {
       if (first) play(card);
       else choose(card);
     });
-    press.addEventListener('keydown', (event) => moveFocus(event, card));
+    press.addEventListener('keydown', (event) => arrowsMoveFocus(event, all(), card));
     seen.observe(card.root);
     return card;
-  }
-
-  /** Arrows go from card to card. */
-  function moveFocus(event: KeyboardEvent, card: Card) {
-    const shown = all().filter(({ root }) => !root.hidden), at = shown.indexOf(card);
-    const inRow = shown.filter(({ root }) => root.offsetTop === card.root.offsetTop && root.parentElement === card.root.parentElement).length;
-    const way = { ArrowLeft: -1, ArrowRight: 1, ArrowUp: -inRow, ArrowDown: inRow }[event.key];
-    if (way === undefined) return;
-    event.preventDefault();
-    shown[at + way]?.press.focus();
   }
 
   /** Those that are on it already stay, with their pictures. */

@@ -1,4 +1,5 @@
 // How handles are moved, how many there are, and how the model is shown.
+import type { PoseShelf } from '../app/pose_shelf';
 import type { Display, DragMode, PageState, PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
 import { counted } from '../ui/counted';
@@ -8,7 +9,7 @@ import { exactFields } from './exact_fields';
 
 const mostHandles = 200;
 
-export function posePanel(studio: Studio, page: PageStore): HTMLElement {
+export function posePanel(studio: Studio, page: PageStore, poses: PoseShelf): HTMLElement {
   const mode = choice<DragMode>(say('What dragging a handle does'), [
     { value: 'move', text: say('Move'), icon: 'move', keys: 'G' },
     { value: 'turn', text: say('Turn'), icon: 'turn', keys: 'R' },
@@ -22,6 +23,11 @@ export function posePanel(studio: Studio, page: PageStore): HTMLElement {
   const mirror = button(say('Mirror'), () => void studio.mirrorPose(), { keys: 'M', label: say('Swap the pose of left and right'), id: 'mirror' });
   const reset = button(say('Reset'), () => void studio.resetPose(), { keys: 'Alt+R', label: say('Put all joints back'), id: 'reset' });
   const rest = button(say('New rest pose'), () => void studio.setRestPose(), { label: say('The pose becomes the one that the model rests in'), id: 'rest-pose' });
+  const copy = button(say('Copy'), () => void poses.copy(), { keys: 'Ctrl+C', label: say('Copy the pose'), id: 'copy-pose' });
+  const paste = button(say('Paste'), () => void poses.paste(), {
+    keys: 'Ctrl+V', label: say('Paste the pose that was copied: at another moment, or on another model'), id: 'paste-pose',
+  });
+  const library = button(say('Poses'), () => page.set({ poseLibrary: true }), { label: say('Poses to put the model into, and your own'), id: 'open-poses' });
   const display = choice<Display>(say('What is shown'), [
     { value: 'handles', text: say('Handles') }, { value: 'surface', text: say('Surface'), label: say('The model alone') },
     { value: 'weights', text: say('Areas'), label: say('Which area each joint moves (weights), each in its colour') },
@@ -33,12 +39,14 @@ export function posePanel(studio: Studio, page: PageStore): HTMLElement {
     page.watch((now) => { box.checked = now[key]; });
     return element('label', { class: 'check', title }, box, text);
   };
-  page.watch(({ session, mode: nowMode, display: nowDisplay, bothSides }) => {
+  page.watch(({ session, mode: nowMode, display: nowDisplay, bothSides, copiedPose }) => {
     mode.show(nowMode);
     display.show(nowDisplay);
     ik.setAttribute('aria-pressed', String(session?.ik ?? false));
     both.setAttribute('aria-pressed', String(bothSides));
     ik.disabled = both.disabled = mirror.disabled = !session;
+    copy.disabled = library.disabled = !session;
+    paste.disabled = !session || copiedPose === null;
     reset.disabled = rest.disabled = !session?.posed;
   });
   return element('section', { class: 'card pose', 'aria-label': say('Posing') },
@@ -46,6 +54,7 @@ export function posePanel(studio: Studio, page: PageStore): HTMLElement {
     element('div', { class: 'row' }, mode.root, ik),
     element('div', { class: 'row' }, both, mirror),
     element('div', { class: 'row' }, reset, rest),
+    element('div', { class: 'row' }, copy, paste, library),
     display.root,
     element('div', { class: 'row checks' }, toggle(say('Bones'), 'bones'), toggle(say('Mesh lines'), 'wireframe'),
       toggle(say('Arrows'), 'gizmo', say('Arrows and rings on the selected joint, for exact work (gizmo)')),

@@ -69,6 +69,17 @@ export const motionSummary = ({ name, summary }: { name: string; summary: string
   return known ? say(known.summary) : capital(summary);
 };
 
+const poses: Named = {
+  'stand': 'Stand', 'walk': 'Walk', 'run': 'Run', 'jump': 'Jump', 'sit': 'Sit', 'crouch': 'Crouch', 'kneel': 'Kneel', 'bow': 'Bow',
+  'reach': 'Reach', 'point': 'Point', 'wave': 'Wave', 'cheer': 'Cheer',
+  'animal-stand': 'Stand', 'animal-walk': 'Walk', 'animal-sit': 'Sit', 'animal-lie': 'Lie down', 'animal-stretch': 'Stretch', 'animal-howl': 'Howl',
+};
+/** Whether of a person or an animal its picture tells. */
+export const poseName = (name: string) => {
+  const known = poses[name];
+  return known ? say(known) : spaced(name);
+};
+
 const warnings: Named = {
   'no-place': 'limbs of the skeleton have no place in the model', 'low-confidence': 'the model hardly looks like the skeleton',
   'rigid-pieces': 'pieces follow one joint each, as hard parts', 'stray-pieces': 'pieces that float about the model are left out of account',
