@@ -20,6 +20,7 @@ const char* typeOf(std::string_view path) {
   if (extension == ".html") return "text/html; charset=utf-8";
   if (extension == ".js") return "text/javascript; charset=utf-8";
   if (extension == ".css") return "text/css; charset=utf-8";
+  if (extension == ".wasm") return "application/wasm";
   return "application/octet-stream";  // the packed engine
 }
 
