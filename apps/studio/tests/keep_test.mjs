@@ -9,7 +9,7 @@ import { execFileSync } from 'node:child_process';
 import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 import { walkBvh } from './walk_bvh.mjs';
-import { answer, barriers, chooseMotion, download, jointPosition, launch, motionPlayed, openStudio, runCases, serve, sessionState, settled } from './page.mjs';
+import { answer, barriers, chooseMotion, download, jointPlace, jointPosition, launch, motionPlayed, openStudio, runCases, serve, sessionState, settled } from './page.mjs';
 
 const [dist, program, output] = process.argv.slice(2).map((path) => resolve(path));
 const rounds = Number(process.env.LIMBER_ROUNDS ?? 6);
@@ -348,27 +348,42 @@ const cases = {
   async 'pictures and films show the model and no tools'() {
     await page.locator('#samples').selectOption('biped'); // nothing of it is as red as a handle
     await opened('biped');
-    const png = await download(page, () => page.locator('#export-as').selectOption('png'));
-    const red = await page.evaluate(async (bytes) => {
+    const take = (button) => download(page, async () => {
+      await page.locator('#export-as').selectOption('pictures');
+      await page.locator(button).click();
+    });
+    const colors = (png) => page.evaluate(async (bytes) => {
       const image = await createImageBitmap(new Blob([new Uint8Array(bytes)])), canvas = document.createElement('canvas');
       [canvas.width, canvas.height] = [image.width, image.height];
       const context = canvas.getContext('2d');
       context.drawImage(image, 0, 0);
       const { data } = context.getImageData(0, 0, image.width, image.height);
-      let handles = 0, opaque = 0;
+      let handles = 0, opaque = 0, white = 0;
       for (let i = 0; i < data.length; i += 4) {
         opaque += data[i + 3] > 250;
+        white += data[i] + data[i + 1] + data[i + 2] + data[i + 3] === 4 * 255;
         handles += data[i + 3] > 250 && data[i] > 180 && data[i + 1] < 80 && data[i + 2] < 90;
       }
-      return { handles, opaque, corner: data[3], all: data.length / 4 };
+      return { handles, opaque, white, corner: data[3], all: data.length / 4 };
     }, [...png]);
+    const red = await colors(await take('#picture'));
     assert.equal(red.handles, 0);
     assert.equal(red.corner, 0, 'the corner is not transparent');
     assert.ok(red.opaque > red.all / 100, `${red.opaque} of ${red.all} pixels are opaque`);
+    await page.locator('#export-as').selectOption('pictures');
+    assert.ok(await page.locator('#film-clip').isDisabled());
+    await page.locator('#no-background').uncheck();
+    const onWhite = await colors(await download(page, () => page.locator('#picture').click()));
+    assert.equal(onWhite.opaque, onWhite.all);
+    assert.ok(onWhite.white > onWhite.all / 4 && onWhite.handles === 0);
+    const joint = (await sessionState(page)).joints.at(-1).name, before = await jointPlace(page, joint), turn = await take('#film-turn');
+    assert.equal(turn.readUInt32BE(0), 0x1a45dfa3); // EBML
+    const after = await jointPlace(page, joint);
+    assert.ok(Math.hypot(after.x - before.x, after.y - before.y) < 0.01, 'the view is another one');
     await motionPlayed(page, () => page.locator('#motion-file').setInputFiles({ name: 'walk.bvh', mimeType: 'text/plain', buffer: Buffer.from(walkBvh()) }));
-    const film = await download(page, () => page.locator('#export-as').selectOption('webm'));
+    const film = await take('#film-clip');
     writeFileSync(join(output, 'walk.webm'), film);
-    assert.equal(film.readUInt32BE(0), 0x1a45dfa3); // EBML
+    assert.equal(film.readUInt32BE(0), 0x1a45dfa3);
     assert.ok(film.length > 10_000, `${film.length} bytes`);
     await settled(page);
   },

@@ -4,13 +4,13 @@ import { setTextSize, textSize, type TextSize } from '../app/text_size';
 import { element } from '../ui/dom';
 import { keptLanguage, languageChoices, languages, say, type Words } from '../words/say';
 
-export type Outlet = 'obj' | 'stl' | 'bvh' | 'usdz' | 'limber' | 'session' | 'record' | 'png' | 'webm';
+export type Outlet = 'obj' | 'stl' | 'bvh' | 'usdz' | 'limber' | 'session' | 'record' | 'pictures';
 
 /** What leaves the page besides GLB. */
 const outlets: [Outlet, Words][] = [
   ['obj', 'OBJ, posed surface'], ['stl', 'STL, posed surface'], ['bvh', 'BVH, the clip'], ['usdz', 'USDZ, for AR Quick Look'],
   ['limber', 'Limber file, everything to go on with'], ['session', 'Session in a GLB'], ['record', 'Commands, for limber session replay'],
-  ['png', 'Picture (PNG)'], ['webm', 'Film of the clip (WebM)'],
+  ['pictures', 'Pictures and films\u2026'],
 ];
 const sizes: [TextSize, Words][] = [['normal', 'Normal text'], ['large', 'Large text'], ['largest', 'Largest text']];
 

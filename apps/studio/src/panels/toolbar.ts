@@ -10,12 +10,13 @@ import type { Viewport } from '../scene/viewport';
 import { button, element, offer } from '../ui/dom';
 import { addDialog } from './add_dialog';
 import { moreMenu } from './more_menu';
+import { pictureDialog } from './picture_dialog';
 import { recent } from './recent';
 import { chosenClip } from './moments';
 import { say } from '../words/say';
 
 const filmRate = 30; // pictures a second
-const ofClip = new Set(['bvh', 'webm']);
+const turnSeconds = 4; // of a film all the way round
 const types = { glb: 'model/gltf-binary', obj: 'model/obj', stl: 'model/stl', bvh: 'text/plain', session: 'model/gltf-binary' };
 
 export function toolbar(studio: Studio, page: PageStore, journal: Journal, viewport: Viewport, model: ModelView, others: OthersView): HTMLElement {
@@ -49,15 +50,20 @@ export function toolbar(studio: Studio, page: PageStore, journal: Journal, viewp
     await act();
     page.set({ display });
   };
-  const savePicture = () => onSurface(async () => {
-    const picture = await viewport.picture();
-    if (picture) offer(picture, 'image/png', `${stem()}.png`);
-  });
-  const saveFilm = () => onSurface(async () => {
-    const clip = chosenClip(page.now.session);
-    if (!clip) return;
-    const film = await viewport.film(filmRate, (draw) => studio.eachMoment(Math.max(2, Math.ceil(clip.duration * filmRate)), draw));
-    offer(film, 'video/webm', `${clip.name}.webm`);
+  const pictures = pictureDialog({
+    picture: (background) => onSurface(async () => {
+      const picture = await viewport.picture(background);
+      if (picture) offer(picture, 'image/png', `${stem()}.png`);
+    }),
+    clip: (background) => onSurface(async () => {
+      const clip = chosenClip(page.now.session);
+      if (!clip) return;
+      const moments = Math.max(2, Math.ceil(clip.duration * filmRate));
+      offer(await viewport.film(filmRate, background, (draw) => studio.eachMoment(moments, draw)), 'video/webm', `${clip.name}.webm`);
+    }),
+    turn: (background) => onSurface(async () => {
+      offer(await viewport.turn(filmRate, turnSeconds, background), 'video/webm', `${stem()}_turn.webm`);
+    }),
   });
   const saveUsdz = async () => {
     const { toUsdz } = await import('../app/export_usdz');
@@ -71,8 +77,7 @@ export function toolbar(studio: Studio, page: PageStore, journal: Journal, viewp
     if (record) offer(record, 'application/json', `${stem()}_commands.json`);
   };
   const more = moreMenu((outlet) => {
-    if (outlet === 'png') void savePicture();
-    else if (outlet === 'webm') void saveFilm();
+    if (outlet === 'pictures') pictures.open(chosenClip(page.now.session) !== null);
     else if (outlet === 'usdz') void saveUsdz();
     else if (outlet === 'limber') offer(studio.limberFile() as BlobPart, 'application/zip', `${stem()}.limber`);
     else if (outlet === 'record') void saveRecord();
@@ -86,12 +91,12 @@ export function toolbar(studio: Studio, page: PageStore, journal: Journal, viewp
     undo.disabled = !session?.undo;
     redo.disabled = !session?.redo;
     glb.disabled = adding.button.disabled = !session;
-    for (const option of more.outlets) option.disabled = !session || (ofClip.has(option.value) && chosenClip(session) === null);
+    for (const option of more.outlets) option.disabled = !session || (option.value === 'bvh' && chosenClip(session) === null);
     name.textContent = session?.name ?? 'limber';
     document.title = session ? `${session.name} \u2013 limber studio` : 'limber studio';
   });
   return element('header', { class: 'bar' },
-    button(say('Open'), () => file.click(), { icon: 'open', id: 'open' }), sample, adding.button, adding.dialog, kept.button, kept.dialog, file, name,
+    button(say('Open'), () => file.click(), { icon: 'open', id: 'open' }), sample, adding.button, adding.dialog, pictures.dialog, kept.button, kept.dialog, file, name,
     element('div', { class: 'group' }, undo, redo), element('div', { class: 'group' }, glb, more.root),
     button('', () => page.set({ help: true }), { icon: 'help', label: say('Keyboard and mouse'), keys: '?', id: 'help-button' }));
 }

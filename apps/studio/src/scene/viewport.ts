@@ -208,12 +208,21 @@ export class Viewport {
   /** Handles, bones and arrows: on the page, but not in pictures that leave it. */
   readonly tools: Object3D[] = [];
 
-  /** The model and its shadow on nothing: without tools, without the ground's lines. */
-  async picture(): Promise<Blob | null> {
+  /** The model and its shadow on a colour or on nothing: without tools, without the ground's lines. */
+  async picture(background: string | null = null): Promise<Blob | null> {
     return this.withoutTools(() => {
       this.drawNow();
-      return new Promise((resolve) => this.canvas.toBlob(resolve, 'image/png'));
+      const screen = background === null ? this.canvas : element('canvas', { width: this.canvas.width, height: this.canvas.height });
+      if (background !== null) this.drawOn(screen, background);
+      return new Promise((resolve) => screen.toBlob(resolve, 'image/png'));
     });
+  }
+
+  private drawOn(screen: HTMLCanvasElement, background: string) {
+    const context = screen.getContext('2d')!;
+    context.fillStyle = background;
+    context.fillRect(0, 0, screen.width, screen.height);
+    context.drawImage(this.canvas, 0, 0);
   }
 
   async withoutTools<T>(act: () => Promise<T>): Promise<T> {
@@ -229,8 +238,9 @@ export class Viewport {
   }
 
   /** A film of pictures, each drawn when its turn comes: WebM, as many a second as `rate`. */
-  async film(rate: number, each: (draw: () => Promise<void>) => Promise<void>): Promise<Blob> {
-    const screen = element('canvas', { width: this.canvas.width & ~1, height: this.canvas.height & ~1 }), context = screen.getContext('2d')!;
+  async film(rate: number, background: string, each: (draw: () => Promise<void>) => Promise<void>): Promise<Blob> {
+    const screen = element('canvas', { width: this.canvas.width & ~1, height: this.canvas.height & ~1 });
+    screen.getContext('2d');
     const stream = screen.captureStream(0), [track] = stream.getVideoTracks() as CanvasCaptureMediaStreamTrack[];
     const recorder = new MediaRecorder(stream, { mimeType: 'video/webm', videoBitsPerSecond: 8e6 }), parts: Blob[] = [];
     recorder.ondataavailable = ({ data }) => parts.push(data);
@@ -238,10 +248,8 @@ export class Viewport {
     recorder.start();
     let next = performance.now();
     await this.withoutTools(() => each(async () => {
-      context.fillStyle = '#f4f5f7';
-      context.fillRect(0, 0, screen.width, screen.height);
       this.drawNow();
-      context.drawImage(this.canvas, 0, 0);
+      this.drawOn(screen, background);
       track?.requestFrame();
       next += 1000 / rate;
       await new Promise((resolve) => setTimeout(resolve, Math.max(0, next - performance.now())));
@@ -249,6 +257,20 @@ export class Viewport {
     recorder.stop();
     await stopped;
     return new Blob(parts, { type: 'video/webm' });
+  }
+
+  /** A film of the model from all around; the view is as it was then. */
+  async turn(rate: number, seconds: number, background: string): Promise<Blob> {
+    const before = this.current.position.clone(), count = Math.round(rate * seconds);
+    const film = await this.film(rate, background, async (draw) => {
+      for (let i = 0; i < count; ++i) {
+        await draw();
+        this.orbit(360 / count, 0);
+      }
+    });
+    this.current.position.copy(before);
+    this.controls.update();
+    return film;
   }
 
   /** The picture as it is now, cut to the shape of the place that it goes to. */
