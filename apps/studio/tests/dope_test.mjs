@@ -4,10 +4,9 @@
 //
 // Pictures of what it sees go into the folder. Ends with "N passed, N failed".
 import assert from 'node:assert/strict';
-import { mkdirSync, readFileSync } from 'node:fs';
-import { createRequire } from 'node:module';
+import { mkdirSync } from 'node:fs';
 import { join, resolve } from 'node:path';
-import { chooseMotion, jointPosition, launch, motionPlayed, openStudio, runCases, serve, sessionState, settled } from './page.mjs';
+import { barriers, chooseMotion, jointPosition, launch, motionPlayed, openStudio, runCases, serve, sessionState, settled } from './page.mjs';
 
 const [dist, output] = process.argv.slice(2).map((path) => resolve(path));
 mkdirSync(output, { recursive: true });
@@ -16,13 +15,6 @@ const desk = await openStudio(browser, server.address, { search: '?sample=biped'
 const { page } = desk;
 const errors = [desk.errors];
 
-const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
-/** What keeps people out who read with ears or press keys, and text that cannot be made out; each with where. */
-async function barriers(of) {
-  await of.evaluate(axe);
-  const { violations } = await of.evaluate(() => globalThis.axe.run(document, { resultTypes: ['violations'] }));
-  return violations.flatMap(({ id, nodes }) => nodes.map(({ target, failureSummary }) => `${id}: ${target} ${failureSummary}`));
-}
 
 const clipOf = async (of = page) => {
   const state = await sessionState(of);

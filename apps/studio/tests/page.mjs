@@ -106,3 +106,9 @@ export const jointPlace = (page, name) => page.evaluate((joint) => globalThis.li
 /** Where a joint stands, in metres. */
 export const jointPosition = (page, name) => page.evaluate((joint) => globalThis.limberStudio.position(joint), name);
 export const sessionState = (page) => page.evaluate(() => globalThis.limberStudio.state());
+/** The joint that is this part of the body; where several are, the last. */
+export async function lastJointOf(page, part) {
+  const found = (await sessionState(page)).joints.filter((joint) => joint.part === part).at(-1);
+  if (!found) throw new Error(`no joint is a ${part}`);
+  return found.name;
+}

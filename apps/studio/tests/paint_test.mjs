@@ -4,23 +4,17 @@
 //
 // Ends with "N passed, N failed".
 import assert from 'node:assert/strict';
-import { mkdirSync, readFileSync } from 'node:fs';
-import { createRequire } from 'node:module';
+import { mkdirSync } from 'node:fs';
 import { join, resolve } from 'node:path';
-import { answer, download, jointPlace, jointPosition, launch, openStudio, runCases, serve, sessionState, settled } from './page.mjs';
+import { answer, barriers, download, jointPlace, jointPosition, launch, openStudio, runCases, serve, sessionState, settled } from './page.mjs';
 
 const [dist, output] = process.argv.slice(2).map((path) => resolve(path));
 mkdirSync(output, { recursive: true });
 const server = await serve(dist), browser = await launch();
 let { page, errors } = await openStudio(browser, server.address, { search: '?sample=biped' });
-const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 
 const picture = (name) => page.screenshot({ path: join(output, `${name}.png`) });
-async function expectNoBarriers(state) {
-  await page.evaluate(axe);
-  const { violations } = await page.evaluate(() => globalThis.axe.run(document, { resultTypes: ['violations'] }));
-  assert.deepEqual(violations.flatMap(({ id, nodes }) => nodes.map(({ target }) => `${id}: ${target}`)), [], state);
-}
+const expectNoBarriers = async (state) => assert.deepEqual(await barriers(page), [], state);
 
 /** The sum over all vertices of what each joint of a GLB holds, by name. */
 function heldWeights(bytes) {

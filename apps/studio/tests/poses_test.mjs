@@ -5,10 +5,9 @@
 //
 // Ends with "N passed, N failed".
 import assert from 'node:assert/strict';
-import { mkdirSync, readFileSync } from 'node:fs';
-import { createRequire } from 'node:module';
+import { mkdirSync } from 'node:fs';
 import { join, resolve } from 'node:path';
-import { download, jointPosition, launch, openStudio, runCases, serve, sessionState, settled } from './page.mjs';
+import { barriers, download, jointPosition, launch, openStudio, runCases, serve, sessionState, settled } from './page.mjs';
 
 const [dist, output] = process.argv.slice(2).map((path) => resolve(path));
 mkdirSync(output, { recursive: true });
@@ -52,12 +51,7 @@ async function apply(card, at = page) {
   await settled(at);
 }
 
-const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
-async function expectNoBarriers(at, state) {
-  await at.evaluate(axe);
-  const { violations } = await at.evaluate(() => globalThis.axe.run(document, { resultTypes: ['violations'] }));
-  assert.deepEqual(violations.flatMap(({ id, nodes }) => nodes.map(({ target, failureSummary }) => `${id}: ${target} ${failureSummary}`)), [], state);
-}
+const expectNoBarriers = async (at, state) => assert.deepEqual(await barriers(at), [], state);
 /** Files dropped on the page. */
 const drop = (files) => page.evaluate((all) => {
   const transfer = new DataTransfer();

@@ -4,10 +4,9 @@
 //
 // Ends with "N passed, N failed".
 import assert from 'node:assert/strict';
-import { mkdirSync, readFileSync } from 'node:fs';
-import { createRequire } from 'node:module';
+import { mkdirSync } from 'node:fs';
 import { join, resolve } from 'node:path';
-import { answer, chooseMotion, download, launch, motionPlayed, openStudio, runCases, serve, sessionState, settled } from './page.mjs';
+import { answer, barriers, chooseMotion, download, launch, motionPlayed, openStudio, runCases, serve, sessionState, settled } from './page.mjs';
 import { walkBvh } from './walk_bvh.mjs';
 
 const [dist, output] = process.argv.slice(2).map((path) => resolve(path));
@@ -40,12 +39,7 @@ async function stands(name, at = page) {
   assert.equal(await pictureOf(name, at), first, `${name} moves`);
 }
 
-const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
-async function expectNoBarriers(at, state) {
-  await at.evaluate(axe);
-  const { violations } = await at.evaluate(() => globalThis.axe.run(document, { resultTypes: ['violations'] }));
-  assert.deepEqual(violations.flatMap(({ id, nodes }) => nodes.map(({ target, failureSummary }) => `${id}: ${target} ${failureSummary}`)), [], state);
-}
+const expectNoBarriers = async (at, state) => assert.deepEqual(await barriers(at), [], state);
 
 const bvhs = (count) => Array.from({ length: count }, (_, i) => ({ name: `step ${i + 1}.bvh`, mimeType: 'text/plain', buffer: Buffer.from(walkBvh(7 + i)) }));
 /** Files as they come from a folder that is dropped on the page. */

@@ -4,30 +4,23 @@
 //
 // Ends with "N passed, N failed".
 import assert from 'node:assert/strict';
-import { mkdirSync, readFileSync } from 'node:fs';
-import { createRequire } from 'node:module';
+import { mkdirSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 import { Quaternion, Vector3 } from 'three';
-import { jointPlace, jointPosition, launch, openStudio, runCases, serve, sessionState, settled } from './page.mjs';
+import { barriers, jointPlace, jointPosition, lastJointOf, launch, openStudio, runCases, serve, sessionState, settled } from './page.mjs';
 
 const [dist, output] = process.argv.slice(2).map((path) => resolve(path));
 mkdirSync(output, { recursive: true });
 const server = await serve(dist), browser = await launch();
 const desk = await openStudio(browser, server.address, { search: '?sample=biped' });
 const { page } = desk;
-const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 
 const distance = (a, b) => Math.hypot(...a.map((value, i) => value - b[i]));
 const near = (a, b, within, what) => assert.ok(distance(a, b) <= within, `${what ?? ''} ${a} is not ${b}`);
 const turned = (name, of = page) => of.evaluate((joint) => globalThis.limberStudio.turned(joint), name);
 const chosen = (of = page) => of.locator('#joints [aria-selected=true]').evaluateAll((rows) => rows.map((row) => Number(row.dataset.joint)));
 
-/** The joint that is this part of the body. */
-async function jointOf(part, of = page) {
-  const found = (await sessionState(of)).joints.filter((joint) => joint.part === part).at(-1);
-  assert.ok(found, `no joint is a ${part}`);
-  return found.name;
-}
+const jointOf = (part, of = page) => lastJointOf(of, part);
 async function parentOf(name) {
   const { joints } = await sessionState(page);
   return joints[joints.find((joint) => joint.name === name).parent].name;
@@ -66,11 +59,6 @@ async function type(field, value, end = 'Enter') {
   await settled(page);
 }
 const valueOf = async (field) => Number(await page.locator(field).inputValue());
-async function barriers(of) {
-  await of.evaluate(axe);
-  const { violations } = await of.evaluate(() => globalThis.axe.run(document, { resultTypes: ['violations'] }));
-  return violations.flatMap(({ id, nodes }) => nodes.map(({ target, failureSummary }) => `${id}: ${target} ${failureSummary}`));
-}
 
 const ringRadius = 62; // pixels; arrows are a little longer
 /** Where the pointer meets the X of the gizmo, looked for first where it should be from there, in pixels. */

@@ -240,7 +240,7 @@ export class Viewport {
   /** A film of pictures, each drawn when its turn comes: WebM, as many a second as `rate`. */
   async film(rate: number, background: string, each: (draw: () => Promise<void>) => Promise<void>): Promise<Blob> {
     const screen = element('canvas', { width: this.canvas.width & ~1, height: this.canvas.height & ~1 });
-    screen.getContext('2d');
+    screen.getContext('2d'); // before there is one, nothing can be captured
     const stream = screen.captureStream(0), [track] = stream.getVideoTracks() as CanvasCaptureMediaStreamTrack[];
     const recorder = new MediaRecorder(stream, { mimeType: 'video/webm', videoBitsPerSecond: 8e6 }), parts: Blob[] = [];
     recorder.ondataavailable = ({ data }) => parts.push(data);
@@ -262,15 +262,17 @@ export class Viewport {
   /** A film of the model from all around; the view is as it was then. */
   async turn(rate: number, seconds: number, background: string): Promise<Blob> {
     const before = this.current.position.clone(), count = Math.round(rate * seconds);
-    const film = await this.film(rate, background, async (draw) => {
-      for (let i = 0; i < count; ++i) {
-        await draw();
-        this.orbit(360 / count, 0);
-      }
-    });
-    this.current.position.copy(before);
-    this.controls.update();
-    return film;
+    try {
+      return await this.film(rate, background, async (draw) => {
+        for (let i = 0; i < count; ++i) {
+          await draw();
+          this.orbit(360 / count, 0);
+        }
+      });
+    } finally {
+      this.current.position.copy(before);
+      this.controls.update();
+    }
   }
 
   /** The picture as it is now, cut to the shape of the place that it goes to. */
