@@ -20,5 +20,9 @@ find_path(eigen_folder Eigen/Core PATHS /usr/include/eigen3 /usr/local/include/e
 add_library(Eigen3::Eigen INTERFACE IMPORTED GLOBAL)
 target_include_directories(Eigen3::Eigen SYSTEM INTERFACE ${eigen_folder})
 
+# A page loads the whole engine before its first picture: only what is small is inlined (its cost is counted as LLVM
+# does; -O3 says 250). A sixth smaller, packed a tenth, and 7 % slower by ./dev bench --web; -Os makes it a third smaller
+# and fourteen times as slow, since it leaves Eigen's expressions as calls.
+add_compile_options(-O2 "SHELL:-mllvm -inline-threshold=40")
 add_compile_options(-fwasm-exceptions)
 add_link_options(-fwasm-exceptions)

@@ -8,16 +8,17 @@ import { chromium } from 'playwright-core';
 const types = { '.html': 'text/html', '.js': 'text/javascript', '.css': 'text/css', '.wasm': 'application/wasm', '.glb': 'model/gltf-binary' };
 export const browserProgram = process.env.LIMBER_BROWSER ?? '/usr/bin/chromium';
 
-/** Serves a folder on a free port of the loopback address. */
+/** Serves a folder on a free port of the loopback address; `served` names the files that were asked for. */
 export async function serve(folder) {
-  const server = createServer((request, response) => {
+  const served = new Set(), server = createServer((request, response) => {
     const path = decodeURIComponent(new URL(request.url, 'http://localhost').pathname);
     const file = join(folder, normalize(path === '/' ? '/index.html' : path));
     if (!file.startsWith(folder) || !existsSync(file)) return response.writeHead(404).end();
+    served.add(file);
     response.writeHead(200, { 'content-type': types[extname(file)] ?? 'application/octet-stream' }).end(readFileSync(file));
   });
   await new Promise((resolve) => server.listen(0, '127.0.0.1', resolve));
-  return { address: `http://127.0.0.1:${server.address().port}/`, close: () => server.close() };
+  return { address: `http://127.0.0.1:${server.address().port}/`, served, close: () => server.close() };
 }
 
 /** Frames are drawn in software, so tests do without smooth edges: several samples for each pixel take half the time. */

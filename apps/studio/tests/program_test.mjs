@@ -32,7 +32,7 @@ const cases = {
     assert.deepEqual(listening.map(([, local]) => local.split(':')[0]), ['0100007F']);
   },
   async 'every file of the page comes as it was built, with its type'() {
-    const types = { html: /^text\/html/, js: /^text\/javascript/, css: /^text\/css/, wasm: /^application\/wasm$/, gz: /^application\/octet-stream$/ };
+    const types = { html: /^text\/html/, js: /^text\/javascript/, css: /^text\/css/, wasm: /^application\/wasm$/, zst: /^application\/octet-stream$/ };
     const files = readdirSync(dist, { recursive: true, withFileTypes: true }).filter((entry) => entry.isFile());
     assert.ok(files.length >= 4);
     for (const entry of files) {

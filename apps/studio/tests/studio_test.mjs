@@ -7,6 +7,7 @@ import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { mkdirSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
+import { gzipSync } from 'node:zlib';
 import { walkBvh } from './walk_bvh.mjs';
 import { chooseMotion, download as downloadFrom, jointPlace, jointPosition, launch, motionPlayed, openStudio, runCases, serve, sessionState, settled } from './page.mjs';
 
@@ -93,6 +94,10 @@ const cases = {
     await page.keyboard.press('Control+Shift+Z');
     await settled(page);
     assert.ok(distance(await jointPosition(page, name), before) > 0.01);
+  },
+  async 'what is loaded until the first pose is at most 1.2 MB, packed as hosts do'() {
+    const loaded = [...server.served].reduce((sum, file) => sum + gzipSync(readFileSync(file)).length, 0);
+    assert.ok(loaded > 0.5e6 && loaded <= 1.2e6, `${loaded} bytes`);
   },
   async 'turn mode keeps the distance from the parent'() {
     await page.locator('main canvas').focus();

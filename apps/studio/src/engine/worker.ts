@@ -1,6 +1,7 @@
 // Holds the engine and one scene, away from the page's own thread.
 import { loadLimber, type Codecs } from '@engine/limber.mjs';
-import engineUrl from '@engine/limber_engine.wasm.gz?url';
+import engineUrl from '@engine/limber_engine.wasm.zst?url';
+import { decompress } from 'fzstd';
 import { Documents, EngineFailure } from './documents';
 import { bringCodecs } from './codecs';
 import type { Answers, FromWorker, Kind, Request, ToWorker } from './messages';
@@ -37,13 +38,14 @@ function answer(documents: Documents, request: Request): Answers[Kind] {
   }
 }
 
+const zstandard = 0xfd2fb528; // the first four bytes of a packed file (RFC 8878)
+
 /** Packed, whatever the host serves; one that says how it is packed has it unpacked by the browser already. */
-async function engine(): Promise<ArrayBuffer> {
+async function engine(): Promise<BufferSource> {
   const response = await fetch(engineUrl);
   if (!response.ok) throw new Error(`answer ${response.status}`);
-  const bytes = await response.arrayBuffer(), [first, second] = new Uint8Array(bytes, 0, 2);
-  if (first !== 0x1f || second !== 0x8b) return bytes;
-  return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream('gzip'))).arrayBuffer();
+  const bytes = await response.arrayBuffer();
+  return new DataView(bytes).getUint32(0, true) === zstandard ? decompress(new Uint8Array(bytes)) as BufferSource : bytes;
 }
 
 /** The files that a request brings. */
