@@ -4,7 +4,7 @@
 import { remembered } from '../app/remembered';
 import { english } from './english';
 import type { Forms } from './forms';
-import { german } from './german';
+import type { german } from './german';
 
 export type Words = keyof typeof german;
 /** Those that have a singular and plurals, by {count}. */
@@ -14,7 +14,12 @@ export type Counted = { [W in Words]: (typeof german)[W] extends string ? never 
 export const languages = { en: 'English', de: 'Deutsch' };
 export type Language = keyof typeof languages;
 const tags = Object.keys(languages) as Language[];
-const tables: Record<Language, Partial<Record<Words, string | Forms>>> = { en: english, de: german satisfies Record<Words, string | Forms> };
+type Table = Partial<Record<Words, string | Forms>>;
+/** Fetched where they are spoken. */
+const tables: Record<Language, () => Promise<Table>> = {
+  en: async () => english,
+  de: async () => (await import('./german')).german satisfies Record<Words, string | Forms>,
+};
 
 /** What was chosen on this machine; "system" is the browser's own. */
 export const languageChoices = ['system', ...tags] as const;
@@ -32,7 +37,7 @@ function chosenLanguage(): Language {
 }
 
 export const language = chosenLanguage();
-const table = tables[language], plurals = new Intl.PluralRules(language);
+const table = await tables[language](), plurals = new Intl.PluralRules(language);
 
 export type Values = Record<string, string | number>;
 
