@@ -331,6 +331,10 @@ const cases = {
     const text = usdz.toString('latin1');
     assert.match(text, /point3f\[\] points/);
     assert.doesNotMatch(text, /NaN/);
+    // Each vertex is in it once: parts of several materials hold their own vertices alone.
+    const written = [...text.matchAll(/point3f\[\] points = \[([^\]]*)\]/g)].reduce((sum, [, points]) => sum + points.split('(').length - 1, 0);
+    const vertices = Number((await page.locator('#facts').textContent()).match(/([\d,]+) vertices/)[1].replaceAll(',', ''));
+    assert.ok(written >= vertices && written < 1.1 * vertices, `${written} points of ${vertices} vertices`);
   },
   async 'the keys are listed under ?'() {
     await page.keyboard.press('?');

@@ -97,13 +97,12 @@ export class ModelView {
     const group = new Group();
     const at = new Vector3();
     for (const mesh of this.meshes) {
-      const geometry = mesh.geometry.clone();
-      const positions = geometry.getAttribute('position') as BufferAttribute;
-      for (let v = 0; v < positions.count; ++v) {
-        this.place(mesh, v, at);
-        positions.setXYZ(v, at.x, at.y, at.z);
-      }
-      for (const name of ['skinIndex', 'skinWeight', 'color']) geometry.deleteAttribute(name);
+      const geometry = new BufferGeometry(), { index, vertices } = ownVertices(mesh.geometry.index!);
+      const positions = new Float32Array(3 * vertices.length), uv = mesh.geometry.getAttribute('uv') as BufferAttribute | undefined;
+      vertices.forEach((vertex, v) => this.place(mesh, vertex, at).toArray(positions, 3 * v));
+      geometry.setIndex(index);
+      geometry.setAttribute('position', new BufferAttribute(positions, 3));
+      if (uv) geometry.setAttribute('uv', new BufferAttribute(new Float32Array(vertices.flatMap((vertex) => [uv.getX(vertex), uv.getY(vertex)])), 2));
       geometry.computeVertexNormals();
       const material = new MeshStandardMaterial({
         color: mesh.userData['color'] as Color, map: mesh.userData['map'] as Texture | null, roughness: 0.75, metalness: 0,
@@ -113,7 +112,7 @@ export class ModelView {
     return group;
   }
 
-  private place(mesh: SkinnedMesh, vertex: number, at: Vector3) {
+  private place(mesh: SkinnedMesh, vertex: number, at: Vector3): Vector3 {
     const model = this.model!, matrices = this.skeleton!.boneMatrices;
     const from = new Vector3().fromBufferAttribute(mesh.geometry.getAttribute('position') as BufferAttribute, vertex);
     at.set(0, 0, 0);
@@ -122,6 +121,7 @@ export class ModelView {
       if (weight === 0 || !matrices) continue;
       at.addScaledVector(from.clone().applyMatrix4(new Matrix4().fromArray(matrices, 16 * (model.joints[i] ?? 0))), weight);
     }
+    return at;
   }
 
   private addPart(part: SurfaceModel['parts'][number]) {
@@ -185,4 +185,14 @@ export class ModelView {
     this.skeleton?.dispose();
     this.geometry?.dispose();
   }
+}
+
+/** The vertices that these triangles have, and the triangles by their places among them. */
+function ownVertices(triangles: BufferAttribute): { index: number[]; vertices: number[] } {
+  const places = new Map<number, number>(), index: number[] = [];
+  for (const vertex of triangles.array) {
+    if (!places.has(vertex)) places.set(vertex, places.size);
+    index.push(places.get(vertex)!);
+  }
+  return { index, vertices: [...places.keys()] };
 }
