@@ -11,6 +11,7 @@ import { bindJournal } from './app/keep';
 import { bindPlayer } from './app/player';
 import { exposeStage } from './app/probe';
 import { comparisonPanel } from './panels/comparison_panel';
+import { arButton } from './panels/ar_button';
 import { contactSheet } from './panels/contact_sheet';
 import { help } from './panels/help';
 import { motionShelf } from './panels/motion_shelf';
@@ -53,13 +54,14 @@ const journal = new Journal();
 const studio = new Studio(page, journal);
 studio.ask = ask;
 const poses = new PoseShelf(studio, page, new PoseStore());
-const { viewport, handles, model, comparison, gizmo, others, places } = stageOrApology();
+const stage = stageOrApology();
+const { viewport, handles, model, comparison, gizmo, others, places } = stage;
 const sheet = contactSheet(studio, page, viewport);
 
 const app = document.getElementById('app')!;
 app.append(
   toolbar(studio, page, journal, viewport, model, others),
-  element('main', { class: 'stage' }, viewport.canvas, facts(page), hint(page), poseTools(page), views(viewport), comparisonPanel(studio, page, comparison)),
+  element('main', { class: 'stage' }, viewport.canvas, facts(page), hint(page), poseTools(page), views(viewport), arButton(() => ({ ...stage, studio, page, app })), comparisonPanel(studio, page, comparison)),
   element('aside', { class: 'side' }, scenePanel(studio, page, places), posePanel(studio, page, poses), paintPanel(studio, page), retargetPanel(studio, page), methodsPanel(studio, page), outliner(studio, page, handles)),
   timeline(studio, page, sheet.open),
   status(studio, page), help(page), sheet.dialog, motionShelf(studio, page), poseLibrary(studio, page, poses));

@@ -29,8 +29,9 @@ export const launch = ({ smooth = false } = {}) => chromium.launch({
 });
 
 /** The page once its model stands. What the page throws is collected in `errors`. */
-export async function openStudio(browser, address, { width = 1280, height = 800, touch = false, search = '', locale = 'en-US', ...more } = {}) {
+export async function openStudio(browser, address, { width = 1280, height = 800, touch = false, search = '', locale = 'en-US', prepare = async () => {}, ...more } = {}) {
   const context = await browser.newContext({ viewport: { width, height }, hasTouch: touch, locale, acceptDownloads: true, ...more });
+  await prepare(context);
   const page = await context.newPage();
   page.setDefaultTimeout(120_000);
   const errors = [];

@@ -48,6 +48,20 @@ export interface KeyPlace {
 /** What opens below the timeline. */
 export type KeyEditor = 'sheet' | 'curves';
 
+/** The models of a scene, in a real place. */
+export interface ArState {
+  /** WebXR; a printed card before the camera; the camera with the device's turns alone. */
+  sight: 'webxr' | 'card' | 'camera';
+  /** Where the chosen model goes is being looked for, or it has its place. */
+  step: 'placing' | 'placed';
+  /** Whether a surface is met, where the chosen model may stand. */
+  surface: boolean;
+  /** What keeps it from going on. */
+  trouble: 'no-surface' | 'lost' | 'hidden' | null;
+  /** The chosen model has its real size. */
+  realSize: boolean;
+}
+
 export interface PageState {
   session: SessionState | null;
   model: SurfaceModel | null;
@@ -118,6 +132,8 @@ export interface PageState {
   /** The model that the chosen clip's motion came with. */
   sourceModel: { motion: string; model: SurfaceModel; joints: number } | null;
   sourceShown: boolean;
+  /** null at the desk. */
+  ar: ArState | null;
 }
 
 export type PageStore = Store<PageState>;
@@ -128,7 +144,7 @@ export const createPageStore = (): PageStore => new Store<PageState>({
   seconds: 0, playing: false, speed: 1, loop: true, autoKey: true, gizmo: false, gizmoSpace: 'world', snapping: false, selecting: false, limits: false, correcting: false,
   span: 0.3, keyEditor: null, chosenKeys: [], ghosts: false, paths: null, curve: null,
   painting: false, brush: { mode: 'add', size: 0.05, strength: 0.5 }, placing: false,
-  methods: null, sampleMotions: [], ownMotions: [], shelf: false, samplePoses: [], ownPoses: [], poseLibrary: false, copiedPose: null, comparison: null, hiddenParts: new Set(), sourceModel: null, sourceShown: true,
+  methods: null, sampleMotions: [], ownMotions: [], shelf: false, samplePoses: [], ownPoses: [], poseLibrary: false, copiedPose: null, comparison: null, hiddenParts: new Set(), sourceModel: null, sourceShown: true, ar: null,
 });
 
 export const noticeOf = (error: LimberError): Notice => ({ kind: 'error', ...told(error) });

@@ -12,9 +12,10 @@ export class Store<T extends object> {
     this.listeners.forEach((listener) => listener(this.value, before));
   }
 
-  /** Calls at once, and after each change. */
-  watch(listener: (now: T, before: T) => void) {
+  /** Calls at once, and after each change, until what it gives is called. */
+  watch(listener: (now: T, before: T) => void): () => void {
     this.listeners.add(listener);
     listener(this.value, this.value);
+    return () => { this.listeners.delete(listener); };
   }
 }

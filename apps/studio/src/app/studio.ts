@@ -38,6 +38,10 @@ const sampleMotion = (name: string): MotionRequest => ({ kind: 'run', command: {
 const motionOf = async (file: File): Promise<MotionRequest> =>
   ({ kind: 'motion', bytes: new Uint8Array(await file.arrayBuffer()), name: file.name });
 
+type DragUpdate =
+  | { do: 'update_drag'; ray: Ray; view: Vector; snap: boolean }
+  | { do: 'turn_drag'; axis: Vector; degrees: number };
+
 /** Whether its rig is a named skeleton's, whose joints can be corrected. */
 export const hasTemplate = (session: SessionState) => !session.own_rig && session.rigger === 'template';
 
@@ -45,7 +49,7 @@ export class Studio {
   /** The joints stand anew; called for every frame of a drag. */
   onStance: (stance: Stance, ofClip: boolean) => void = () => {};
   /** Panels that show how joints stand, told as often. */
-  private readers: ((stance: Stance) => void)[] = [];
+  private readers = new Set<(stance: Stance) => void>();
   /** The weights alone are others. */
   onWeights: (weights: WeightArrays) => void = () => {};
   /** A new model was opened: the camera goes to it. */
@@ -61,7 +65,8 @@ export class Studio {
   private stage = { stage: say('Starting'), fraction: 0 };
   private wantedHandles: number | null = null;
   private askedHandles = 0;
-  private dragUpdate: Command | null = null;
+  private dragUpdate: DragUpdate | null = null;
+  private dragAsked: DragUpdate | null = null;
   private dragging: Promise<void> = Promise.resolve();
   private dragsLeft = 0;
   private lastNudge = { of: '', at: -Infinity };
@@ -129,6 +134,12 @@ export class Studio {
       this.take(await make());
       this.onOpened();
     });
+  }
+
+  /** The member whose surface a ray meets first. */
+  async memberUnder(ray: Ray): Promise<number | null> {
+    const met = await this.guard(() => this.engine.ask({ kind: 'pick-member', ray }));
+    return met?.member ?? null;
   }
 
   async chooseMember(member: number) {
@@ -574,7 +585,11 @@ export class Studio {
   async resetPose() { await this.run({ do: 'reset_pose' }); }
   async mirrorPose() { await this.run({ do: 'mirror_pose', from: 'both' }); }
 
-  readStance(reader: (stance: Stance) => void) { this.readers.push(reader); }
+  /** Until what it gives is called. */
+  readStance(reader: (stance: Stance) => void): () => void {
+    this.readers.add(reader);
+    return () => { this.readers.delete(reader); };
+  }
 
   /** The others that are selected, where the joint is. */
   private besides(joint: number): number[] {
@@ -664,16 +679,21 @@ export class Studio {
   /** About the dragged joint's own place, from how it stood when the drag began. */
   turnDrag(axis: Vector, degrees: number) { this.dragTo({ do: 'turn_drag', axis, degrees }); }
 
-  private dragTo(command: Command) {
+  private dragTo(command: DragUpdate) {
     const waiting = this.dragUpdate !== null;
     this.dragUpdate = command;
     if (waiting) return;
     this.then(async () => {
       const command = this.dragUpdate;
       this.dragUpdate = null;
-      if (command && this.isDragging) await this.run(command);
+      if (!command || !this.isDragging) return;
+      this.dragAsked = command;
+      await this.run(command);
     });
   }
+
+  /** What the joints that are shown during a drag answer to. */
+  get shownDrag(): DragUpdate | null { return this.dragAsked; }
 
   endDrag(goesOn = false) {
     this.then(async () => {

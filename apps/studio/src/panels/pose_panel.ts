@@ -81,7 +81,7 @@ function limits(studio: Studio, page: PageStore): HTMLElement {
 }
 
 /** The slider runs evenly over the logarithm of the count: few handles differ more than many. */
-function handleCount(studio: Studio, page: PageStore): HTMLElement {
+export function handleCount(studio: Studio, page: PageStore): HTMLElement {
   const steps = 1000;
   const most = ({ session }: PageState) => Math.max(2, Math.min(mostHandles, session?.most_handles ?? mostHandles));
   const toCount = (place: number) => Math.round(most(page.now) ** (place / steps));

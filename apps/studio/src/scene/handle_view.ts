@@ -73,6 +73,13 @@ export class HandleView {
     ends.needsUpdate = true;
   }
 
+  /** Draws one where it is held, until the next stance. */
+  hold(joint: number, at: Vector3) {
+    const handles = this.handles.slice();
+    at.toArray(handles, 4 * joint);
+    this.take(handles);
+  }
+
   /** The radius that a handle is drawn with, in metres. */
   drawnRadius(joint: number, camera: Camera, height: number): number {
     const pixel = pixelSize(camera, height) * this.depth(joint, camera);

@@ -12,7 +12,11 @@ export class Places {
   /** As the page was told, unless what carries the member may have moved since. */
   placement(member: number, members: Members): Placement {
     const known = members[member]!;
-    if (!known.attached) return known.placement;
+    return known.attached ? this.shown(member) : known.placement;
+  }
+
+  /** As it is drawn now. */
+  shown(member: number): Placement {
     const position = new Vector3(), turn = new Quaternion(), scale = new Vector3();
     this.of(member).decompose(position, turn, scale);
     return { position: position.toArray(), turn: turnVector(turn), scale: Math.cbrt(Math.abs(scale.x * scale.y * scale.z)) };

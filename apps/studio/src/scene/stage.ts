@@ -27,6 +27,8 @@ export interface Stage {
   gizmo: Gizmo;
   others: OthersView;
   places: Places;
+  /** What is drawn goes to where the members stand. */
+  arrange: () => void;
 }
 
 export function createStage(studio: Studio, page: PageStore): Stage {
@@ -55,7 +57,11 @@ export function createStage(studio: Studio, page: PageStore): Stage {
   const brush = new BrushView();
   viewport.scene.add(brush.root);
   viewport.tools.push(brush.root);
-  new PlaceInput(viewport, places, () => { stand(); shade(); }, studio, page); // before the others, which then see that they are not meant
+  const arrange = () => {
+    stand();
+    shade();
+  };
+  new PlaceInput(viewport, places, arrange, studio, page); // before the others, which then see that they are not meant
   new PaintInput(viewport, brush, studio, page);
   new BoxSelect(viewport, handles, gizmo, studio, page);
   new PointerInput(viewport, handles, gizmo, studio, page);
@@ -126,5 +132,5 @@ export function createStage(studio: Studio, page: PageStore): Stage {
     handles.paint(new Set(selected), now.hovered, new Set(now.session?.targets.map((target) => target.joint)));
     viewport.draw();
   });
-  return { viewport, handles, model, comparison, gizmo, others, places };
+  return { viewport, handles, model, comparison, gizmo, others, places, arrange };
 }

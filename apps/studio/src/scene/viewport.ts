@@ -23,6 +23,12 @@ function looksWithinItsWorld(camera: Camera) {
   };
 }
 
+interface Guest {
+  eye: PerspectiveCamera;
+  /** Of what is looked through, in pixels of the page. */
+  size: () => { width: number; height: number };
+}
+
 export class Viewport {
   readonly canvas: HTMLCanvasElement;
   /** In the chosen model's own space, as the engine speaks of it; so whatever is drawn of it needs no place. */
@@ -31,8 +37,8 @@ export class Viewport {
   readonly world = new Group();
   readonly controls: OrbitControls;
   beforeFrame: (camera: PerspectiveCamera | OrthographicCamera) => void = () => {};
+  readonly renderer: WebGLRenderer;
 
-  private renderer: WebGLRenderer;
   private perspective = new PerspectiveCamera(32, 1, 0.01, 1000);
   private orthographic = new OrthographicCamera(-1, 1, 1, -1, 0.01, 1000);
   private current: PerspectiveCamera | OrthographicCamera = this.perspective;
@@ -42,6 +48,8 @@ export class Viewport {
   private box = new Box3(new Vector3(-1, 0, -1), new Vector3(1, 2, 1));
   private asked = false;
   private step = 1; // metres between the ground's lines
+  /** The eye of augmented reality, while it has the view. */
+  private guest: Guest | null = null;
 
   constructor() {
     this.renderer = new WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: false });
@@ -61,24 +69,37 @@ export class Viewport {
     new ResizeObserver(() => this.resize()).observe(this.canvas);
   }
 
-  get camera() { return this.current; }
-  get size() { return { width: this.canvas.clientWidth, height: this.canvas.clientHeight }; }
+  get camera() { return this.guest?.eye ?? this.current; }
+  get size() { return this.guest?.size() ?? { width: this.canvas.clientWidth, height: this.canvas.clientHeight }; }
+
+  /** Another eye has the view, and draws its own frames (drawNow), until what this gives is called: the desk's camera is
+   *  as it was then. */
+  lend(guest: Guest): () => void {
+    this.guest = guest;
+    this.ground.visible = this.controls.enabled = false;
+    return () => {
+      this.guest = null;
+      this.ground.visible = this.controls.enabled = true;
+      this.resize();
+      this.draw();
+    };
+  }
 
   /** Draws with the next frame. */
   draw() {
-    if (this.asked) return;
+    if (this.asked || this.guest) return;
     this.asked = true;
     requestAnimationFrame(() => {
       this.asked = false;
-      this.drawNow();
+      if (!this.guest) this.drawNow();
     });
   }
 
   ray(x: number, y: number): { ray: Ray; view: Vector } {
     const { width, height } = this.size;
     const caster = new Raycaster();
-    caster.setFromCamera(new Vector2((x / width) * 2 - 1, 1 - (y / height) * 2), this.current);
-    const view = this.current.getWorldDirection(new Vector3());
+    caster.setFromCamera(new Vector2((x / width) * 2 - 1, 1 - (y / height) * 2), this.camera);
+    const view = this.camera.getWorldDirection(new Vector3());
     return {
       ray: { origin: caster.ray.origin.toArray(), direction: caster.ray.direction.toArray() },
       view: view.toArray(),
@@ -87,7 +108,7 @@ export class Viewport {
 
   /** The camera's right and up, for moves by keyboard. */
   axes(): { right: Vector3; up: Vector3 } {
-    const elements = this.current.matrixWorld.elements;
+    const elements = this.camera.matrixWorld.elements;
     return { right: new Vector3().fromArray(elements, 0).normalize(), up: new Vector3().fromArray(elements, 4).normalize() };
   }
 
@@ -105,7 +126,7 @@ export class Viewport {
     this.look('start');
   }
 
-  /** A soft shadow below each of these boxes of the world. */
+  /** A soft shadow below each of these boxes of the world: on the ground or, in a real place, where the model stands. */
   shade(boxes: Box3[]) {
     this.shadows.splice(boxes.length).forEach((shadow) => {
       shadow.geometry.dispose();
@@ -114,7 +135,7 @@ export class Viewport {
     boxes.forEach((box, i) => {
       const shadow = this.shadows[i] ??= this.makeShadow();
       const size = box.getSize(new Vector3());
-      box.getCenter(shadow.position).setY(this.box.min.y);
+      box.getCenter(shadow.position).setY(this.guest ? box.min.y : this.box.min.y);
       shadow.scale.set(1.5 * size.x + 0.3 * size.y, 1.5 * size.z + 0.3 * size.y, 1);
     });
   }
@@ -284,15 +305,15 @@ export class Viewport {
     context.drawImage(this.canvas, (w - cutW) / 2, (h - cutH) / 2, cutW, cutH, x, y, width, height);
   }
 
-  private drawNow() {
+  drawNow() {
     this.world.updateMatrixWorld(true);
-    this.beforeFrame(this.current);
-    this.renderer.render(this.scene, this.current);
+    this.beforeFrame(this.camera);
+    this.renderer.render(this.scene, this.camera);
   }
 
   private resize() {
     const { width, height } = this.size;
-    if (width === 0 || height === 0) return;
+    if (this.guest || width === 0 || height === 0) return;
     this.renderer.setSize(width, height, false);
     this.perspective.aspect = width / height;
     this.perspective.updateProjectionMatrix();

@@ -1,0 +1,248 @@
+// The models of the scene in a real place: frames, where they stand, what is on the screen, until all is put back.
+import { Matrix4, MathUtils, Ray, Vector3 } from 'three';
+import type { ArState } from '../app/state';
+import type { Desk } from './desk';
+import { Reticle } from './reticle';
+import { Room, turnTowards } from './room';
+import type { Looker, Sight, Spot } from './sight';
+import { Touch } from './touch';
+
+const patience = 5000; // milliseconds without a surface before help is offered
+const ahead = 1.2; // metres before the device: there a model stands where no surface is known
+const markLayer = 3; // seen by both eyes of a headset; 1 and 2 are three's for one of them
+
+export class ArView implements Looker {
+  readonly room: Room['group'];
+  readonly eye: Room['eye'];
+  readonly renderer;
+  /** Called before each frame is drawn. */
+  readonly beforeFrame = new Set<() => void>();
+  /** What is left over at the end. */
+  onEnd: (byItself: boolean) => void = () => {};
+
+  private place = new Room();
+  private reticle = new Reticle();
+  private touch = new Touch(this);
+  private stands = false; // the scene has a place in the room
+  private at: Matrix4 | null = null; // of the surface that is met, in the room
+  private lookedSince = performance.now();
+  private leaving = false;
+  private giveBack: () => void;
+  private before;
+  private canvasPlace;
+
+  constructor(readonly desk: Desk, readonly sight: Sight, readonly overlay: HTMLElement) {
+    const { viewport, page } = desk;
+    this.renderer = viewport.renderer;
+    this.room = this.place.group;
+    this.eye = this.place.eye;
+    this.room.add(this.reticle.root);
+    this.reticle.root.layers.set(markLayer);
+    viewport.world.add(this.room);
+    const { display, mode, bones, gizmo, arranging, selecting } = page.now;
+    this.canvasPlace = { parent: viewport.canvas.parentElement!, next: viewport.canvas.nextSibling };
+    this.before = { display, mode, bones, gizmo, arranging, selecting };
+    this.giveBack = viewport.lend({ eye: this.eye, size: () => ({ width: overlay.clientWidth, height: overlay.clientHeight }) });
+    this.listen();
+  }
+
+  /** Once the sight has started. */
+  begin() {
+    const { page, app } = this.desk;
+    app.hidden = true;
+    page.set({
+      display: 'surface', gizmo: false, arranging: false, selecting: false, painting: false, placing: false, correcting: false, comparison: null, selected: null,
+      ar: { sight: this.sight.kind, step: 'placing', surface: false, trouble: null, realSize: true },
+    });
+    this.chooseMode();
+    this.lookedSince = performance.now();
+  }
+
+  get isPlacing() { return this.desk.page.now.ar?.step !== 'placed'; }
+
+  // What the sight tells.
+
+  frame(known: boolean) {
+    const trouble = this.trouble(known);
+    if (!known) {
+      if (this.desk.page.now.ar?.trouble !== 'lost') this.touch.letGo();
+      return this.tell({ trouble });
+    }
+    if (this.isPlacing) this.preview();
+    else this.touch.frame();
+    this.tell({ trouble, surface: this.at !== null });
+    this.beforeFrame.forEach((act) => act());
+    this.desk.viewport.drawNow();
+  }
+
+  hide(hidden: boolean) {
+    if (hidden) this.touch.letGo();
+    this.tell({ trouble: hidden ? 'hidden' : null });
+    this.lookedSince = performance.now();
+  }
+
+  finger(id: number, spot: Spot | null, phase: 'down' | 'move' | 'up' | 'cancel') {
+    if (phase === 'cancel') this.touch.letGo();
+    else if (phase === 'up') this.touch.up(id);
+    else if (phase === 'down') this.touch.down(id, spot!);
+    else this.touch.move(id, spot!);
+  }
+
+  ended() { this.close(!this.leaving); }
+
+  // What a user does.
+
+  async leave() {
+    this.leaving = true;
+    await this.sight.end();
+    this.close(false);
+  }
+
+  /** The chosen model stands where it is shown now; where no surface is met, before the device. */
+  async settle() {
+    const { page } = this.desk;
+    if (!this.isPlacing || !page.now.session) return;
+    if (!this.stands) this.standScene(this.at ?? this.spotAhead());
+    const later = this.stands;
+    this.stands = true;
+    this.tell({ step: 'placed', trouble: null });
+    this.reticle.show(null);
+    if (later) await this.keepPlace(page.now.session.member);
+  }
+
+  /** The chosen model is to have another place: it goes along with the surface that is looked at. */
+  placeAgain() {
+    this.touch.letGo();
+    this.lookedSince = performance.now();
+    this.desk.page.set({ display: 'surface' });
+    this.tell({ step: 'placing' });
+  }
+
+  async tap(spot: Spot) {
+    const { studio, page, viewport } = this.desk;
+    if (this.isPlacing) return this.settle();
+    const { ray } = viewport.ray(spot.x, spot.y), member = await studio.memberUnder(ray);
+    if (member === null || !page.now.session) return;
+    if (member !== page.now.session.member) {
+      await studio.chooseMember(member);
+      this.chooseMode();
+    } else if (page.now.display === 'handles') await studio.selectSurface(ray, 0);
+    else page.set({ display: 'handles' });
+  }
+
+  /** Where it is shown, a member stays: one step to undo. */
+  async keepPlace(member: number) {
+    await this.desk.studio.placeMember(member, this.desk.places.shown(member));
+  }
+
+  // What gestures ask.
+
+  /** In the world: what is below the middle of its feet. */
+  baseOf(member: number): Vector3 {
+    const box = this.desk.places.box(member, this.desk.page.now.session!.members);
+    return box.getCenter(new Vector3()).setY(box.min.y);
+  }
+
+  /** In the world, through a spot. */
+  ray({ x, y }: Spot): Ray {
+    const { viewport } = this.desk, { ray } = viewport.ray(x, y);
+    return new Ray(new Vector3(...ray.origin), new Vector3(...ray.direction)).applyMatrix4(new Matrix4().copy(viewport.world.matrix).invert());
+  }
+
+  /** In the world, where something real is below a spot. */
+  meets(spot: Spot): Vector3 | null {
+    const at = this.sight.meets(spot);
+    return at && this.place.toWorld(at);
+  }
+
+  showRealSize(realSize: boolean) { this.tell({ realSize }); }
+
+  /** Turning with limbs that follow leaves fewer artefacts, where a skeleton's joints are known by name. */
+  private chooseMode() {
+    const { page } = this.desk, { session } = page.now;
+    page.set({ mode: session && (session.own_rig || session.rigger === 'template') ? 'turn' : 'move' });
+  }
+
+  /** Along with the surface in the middle of the view. */
+  private preview() {
+    const { session } = this.desk.page.now;
+    this.at = this.sight.meets(null);
+    this.reticle.show(this.at);
+    if (this.at) this.lookedSince = performance.now();
+    if (this.at && !this.stands) this.standScene(this.at);
+    else if (this.at && session) this.standMember(session.member, this.at);
+    // Without a place there is nothing to see but where it could be.
+    if (this.at || this.stands) this.eye.layers.enableAll();
+    else this.eye.layers.set(markLayer);
+  }
+
+  private standScene(at: Matrix4) {
+    const { page, places } = this.desk, { member } = page.now.session!;
+    this.eye.layers.enableAll();
+    this.place.standAt(this.baseOf(member), frontOf(places.of(member)), at);
+  }
+
+  private standMember(member: number, at: Matrix4) {
+    const { page, places, arrange } = this.desk, base = this.baseOf(member), to = this.place.toWorld(at);
+    const turn = turnTowards(frontOf(places.of(member)), to, this.place.eyeInWorld);
+    const moved = new Matrix4().makeTranslation(to).multiply(new Matrix4().makeRotationY(turn)).multiply(new Matrix4().makeTranslation(base.negate()));
+    places.move(member, moved.multiply(places.of(member)), page.now.session!.members);
+    arrange();
+  }
+
+  /** On the floor, as far as it is known. */
+  private spotAhead(): Matrix4 {
+    const { position, quaternion } = this.eye, to = new Vector3(0, 0, -1).applyQuaternion(quaternion).setY(0);
+    if (to.length() < MathUtils.DEG2RAD) to.set(0, 1, 0).applyQuaternion(quaternion).setY(0); // it looks down
+    return new Matrix4().setPosition(to.setLength(ahead).add(position).setY(0));
+  }
+
+  private trouble(known: boolean): ArState['trouble'] {
+    if (!known) return 'lost';
+    return this.isPlacing && !this.at && performance.now() - this.lookedSince > patience ? 'no-surface' : null;
+  }
+
+  private tell(change: Partial<ArState>) {
+    const { page } = this.desk, { ar } = page.now;
+    if (ar && Object.entries(change).some(([key, value]) => ar[key as keyof ArState] !== value)) page.set({ ar: { ...ar, ...change } });
+  }
+
+  /** Fingers of the overlay. */
+  private listen() {
+    const surface = this.overlay.querySelector<HTMLElement>('.ar-surface')!;
+    const spot = (event: PointerEvent): Spot => {
+      const { left, top } = this.overlay.getBoundingClientRect();
+      return { x: event.clientX - left, y: event.clientY - top };
+    };
+    surface.addEventListener('pointerdown', (event) => {
+      if (!this.sight.hasOverlay || event.button !== 0) return;
+      surface.setPointerCapture(event.pointerId);
+      this.finger(event.pointerId, spot(event), 'down');
+    });
+    surface.addEventListener('pointermove', (event) => this.finger(event.pointerId, spot(event), 'move'));
+    surface.addEventListener('pointerup', (event) => this.finger(event.pointerId, null, 'up'));
+    surface.addEventListener('pointercancel', (event) => this.finger(event.pointerId, null, 'cancel'));
+    addEventListener('visibilitychange', this.onVisibility);
+  }
+
+  private onVisibility = () => this.hide(document.visibilityState === 'hidden');
+
+  /** The desk as it was, with the scene as it is now. */
+  close(byItself: boolean) {
+    const { page, app, viewport } = this.desk;
+    if (!this.room.parent) return;
+    this.touch.letGo();
+    removeEventListener('visibilitychange', this.onVisibility);
+    this.reticle.dispose();
+    this.room.removeFromParent();
+    app.hidden = false;
+    page.set({ ar: null, ...this.before });
+    this.canvasPlace.parent.insertBefore(viewport.canvas, this.canvasPlace.next);
+    this.giveBack();
+    viewport.canvas.focus({ preventScroll: true });
+    this.onEnd(byItself);
+  }
+}
+
+/** Which way a model looks that stands there: its own z. */
+const frontOf = (place: Matrix4) => new Vector3().setFromMatrixColumn(place, 2);

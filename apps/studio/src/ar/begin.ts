@@ -1,0 +1,34 @@
+// Begins augmented reality; fetched when the user asks for it.
+import { ask } from '../ui/ask';
+import { say } from '../words/say';
+import { arPanel } from './ar_panel';
+import { ArView } from './ar_view';
+import type { Desk } from './desk';
+import type { Sight } from './sight';
+import { WebXrSight } from './webxr_sight';
+
+/** Resolves once the models are seen in the real place, or the browser has refused: `refused` says what then. */
+export async function beginAr(desk: Desk, sight: Sight = new WebXrSight(), refused: (why: unknown) => Promise<void> = async () => tellRefusal(desk)) {
+  if (desk.page.now.ar || !desk.page.now.session) return;
+  const { studio, page } = desk, panel = arPanel(desk), askAtDesk = studio.ask;
+  document.body.append(panel.root);
+  const view = new ArView(desk, sight, panel.root);
+  panel.show(view);
+  view.onEnd = (byItself) => {
+    studio.ask = askAtDesk;
+    panel.close();
+    if (byItself) page.set({ notice: { kind: 'note', title: say('The device has ended augmented reality'), detail: say('Everything is as you left it.') } });
+  };
+  try {
+    await sight.start(view);
+  } catch (error) {
+    view.close(false);
+    return refused(error);
+  }
+  studio.ask = (title, detail, yes) => ask(title, detail, yes, panel.root);
+  view.begin();
+}
+
+function tellRefusal({ page }: Desk) {
+  page.set({ notice: { kind: 'error', title: say('This browser does not begin augmented reality'), detail: say('Allow it the camera and motion sensors, and try again. Everything else works as before.') } });
+}
