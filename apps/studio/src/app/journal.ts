@@ -95,7 +95,7 @@ export class Journal {
   /** Goes on with a document of which `kept` requests are kept. One that is open elsewhere goes on as a copy: false. */
   async resume(document: KeptDocument, requests: Request[], kept: number): Promise<boolean> {
     this.flush();
-    const own = await this.take(document.id);
+    const own = await this.take(document.id, AbortSignal.timeout(patience));
     this.document = { ...document, id: own ? document.id : newId(), count: requests.length };
     if (!own) await this.take(this.document.id);
     requests.forEach((request, number) => {
@@ -196,14 +196,15 @@ export class Journal {
     return this.writing;
   }
 
-  /** A document is open in one tab alone. Browsers without locks have to trust. */
-  private take(id: string): Promise<boolean> {
+  /** A document is open in one tab alone; nobody else knows a new one, whose turn comes however long a busy machine
+   *  takes. Browsers without locks have to trust. */
+  private take(id: string, signal?: AbortSignal): Promise<boolean> {
     this.free();
     this.free = () => {};
     if (!('locks' in navigator)) return Promise.resolve(true);
     return new Promise((resolve) => {
       // A page that is being reloaded may hold it a moment longer.
-      navigator.locks.request(`limber-document-${id}`, { signal: AbortSignal.timeout(patience) }, () => {
+      navigator.locks.request(`limber-document-${id}`, { ...signal && { signal } }, () => {
         resolve(true);
         return new Promise<void>((release) => { this.free = release; });
       }).catch(() => resolve(false));
