@@ -2,7 +2,7 @@
 import './style.css';
 import { bindShortcuts } from './app/shortcuts';
 import { createPageStore } from './app/state';
-import { Studio } from './app/studio';
+import { createStudio } from './app/studio';
 import { droppedFiles } from './app/files';
 import { Journal } from './app/journal';
 import { PoseShelf } from './app/pose_shelf';
@@ -51,7 +51,7 @@ setTextSize(textSize());
 document.querySelector('meta[name=description]')!.setAttribute('content', say('Rig and pose any 3D model, in the browser. Nothing is uploaded.'));
 const page = createPageStore();
 const journal = new Journal();
-const studio = new Studio(page, journal);
+const studio = createStudio(page, journal);
 studio.ask = ask;
 const poses = new PoseShelf(studio, page, new PoseStore());
 const stage = stageOrApology();

@@ -24,7 +24,7 @@ export class HandleDrag implements Gesture {
     const { ray, view } = this.ray();
     this.depth = this.from.clone().sub(new Vector3(...ray.origin)).dot(new Vector3(...view));
     this.stopReading = studio.readStance(({ handles: stood }) => {
-      const shown = studio.shownDrag;
+      const shown = studio.shownDrag();
       if (this.begun && shown?.do === 'update_drag') this.rest.fromArray(stood, 4 * joint).sub(this.wanted(shown));
     });
     // Through its middle: the screen's plane turns with the device, and an offset within it would turn away.

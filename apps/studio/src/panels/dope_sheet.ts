@@ -4,7 +4,7 @@ import type { KeyPlace, PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
 import type { SessionState } from '../engine/messages';
 import { element } from '../ui/dom';
-import type { KeyActions } from './key_editor';
+import type { KeyActions } from './key_actions';
 import { jointTitle } from '../words/parts';
 import { say } from '../words/say';
 import { shownSeconds } from './moments';

@@ -1,5 +1,5 @@
 // What opens below the timeline: keys as a sheet or as curves, with the buttons that both share.
-import { extentOf, frame, keysOf, sameKey } from '../app/keys';
+import { extentOf, frame, keysOf } from '../app/keys';
 import { remember, remembered } from '../app/remembered';
 import type { KeyEditor, KeyPlace, PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
@@ -9,66 +9,10 @@ import { button, choice, element } from '../ui/dom';
 import { say } from '../words/say';
 import { curveEditor } from './curve_editor';
 import { dopeSheet } from './dope_sheet';
+import { KeyActions } from './key_actions';
 
 const narrow = '(width <= 760px)';
 const kept = ['sheet', 'curves', 'closed'] as const;
-
-/** Keys that were copied, and the clip that has them. */
-interface Copied {
-  clip: string;
-  keys: readonly KeyPlace[];
-}
-
-/** Copy, paste, move and delete of what is chosen; the sheet's keyboard does the same as the buttons. */
-export class KeyActions {
-  private copied: Copied | null = null;
-
-  constructor(private studio: Studio, private page: PageStore) {}
-
-  get canPaste() { return this.pasted().length > 0; }
-
-  copy() {
-    const { session, chosenKeys } = this.page.now;
-    const clip = session?.clips[session.clip ?? -1]?.name;
-    if (clip === undefined || chosenKeys.length === 0) return;
-    this.copied = { clip, keys: chosenKeys };
-    this.page.set({});
-  }
-
-  /** The first of them comes to the moment that is shown. */
-  paste() {
-    const keys = this.pasted();
-    if (keys.length > 0) void this.studio.editKeys(keys, { shift: this.page.now.seconds - extentOf(keys)[0], copy: true });
-  }
-
-  remove() {
-    const { chosenKeys } = this.page.now;
-    if (chosenKeys.length > 0) void this.studio.deleteKeys(chosenKeys);
-  }
-
-  move(frames: number) {
-    const { chosenKeys } = this.page.now;
-    if (chosenKeys.length === 0) return;
-    const shift = Math.max(frames * frame, -extentOf(chosenKeys)[0]);
-    if (shift !== 0) void this.studio.editKeys(chosenKeys, { shift });
-  }
-
-  scale(times: number) {
-    const { chosenKeys } = this.page.now;
-    if (chosenKeys.length < 2) return;
-    const pivot = extentOf(chosenKeys)[0];
-    void this.studio.editKeys(chosenKeys, { scale: times, pivot });
-  }
-
-  chooseAll() { this.page.set({ chosenKeys: keysOf(this.page.now.session) }); }
-
-  /** Of the clip that is shown, as far as they are still there. */
-  private pasted(): KeyPlace[] {
-    const { session } = this.page.now;
-    if (!session || this.copied?.clip !== session.clips[session.clip ?? -1]?.name) return [];
-    return keysOf(session).filter((key) => this.copied?.keys.some((known) => sameKey(key, known)));
-  }
-}
 
 export function keyEditor(studio: Studio, page: PageStore): { toggle: HTMLButtonElement; root: HTMLElement } {
   const actions = new KeyActions(studio, page);

@@ -1,7 +1,8 @@
 // By which methods the model is rigged, and how others do beside them.
 import type { MethodKind } from '../engine/messages';
 import type { PageState, PageStore } from '../app/state';
-import { hasTemplate, type Studio } from '../app/studio';
+import { hasTemplate } from '../app/calls/core';
+import type { Studio } from '../app/studio';
 import { button, element } from '../ui/dom';
 import { methodName, methodSummary } from '../words/engine';
 import { say } from '../words/say';

@@ -96,7 +96,7 @@ export function handleCount(studio: Studio, page: PageStore): HTMLElement {
     void studio.setHandles(count);
   });
   const step = (by: number) => {
-    const count = Math.max(1, Math.min(most(page.now), studio.handleCount + by));
+    const count = Math.max(1, Math.min(most(page.now), studio.handleCount() + by));
     slider.valueAsNumber = toPlace(count);
     number.textContent = String(count);
     void studio.setHandles(count);
@@ -117,9 +117,9 @@ export function handleCount(studio: Studio, page: PageStore): HTMLElement {
     slider.disabled = fewer.disabled = more.disabled = !now.session;
     if (!now.session) return;
     const { joints, suggestions } = now.session;
-    if (!studio.settingHandles) {
+    if (!studio.settingHandles()) {
       number.textContent = String(joints.length);
-      slider.valueAsNumber = toPlace(studio.handleCount);
+      slider.valueAsNumber = toPlace(studio.handleCount());
       slider.setAttribute('aria-valuetext', counted(joints.length, 'handle'));
     }
     if (`${suggestions} ${most(now)}` === marked) return;

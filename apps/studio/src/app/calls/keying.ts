@@ -1,0 +1,66 @@
+// Keys of the chosen clip, and what is drawn of the whole clip: ghosts and curves.
+import type { Vector } from '../../engine/messages';
+import { chosenClip } from '../clips';
+import { changedTime, keysThere, type KeyChange } from '../keys';
+import type { KeyPlace } from '../state';
+import type { Core } from './core';
+
+/** Commands that leave the model in another pose, set by hand. */
+const poses = new Set(['end_drag', 'place_joint', 'set_turn', 'turn_joint', 'move_joint', 'reset_joint', 'reset_pose', 'mirror_pose', 'apply_pose']);
+
+export type KeyingCalls = ReturnType<typeof keyingCalls>;
+
+export function keyingCalls(core: Core) {
+  const { page, engine } = core;
+  const draw = () => void core.guard(drawClip);
+  core.followSteps(draw);
+  core.followCommands(async (command) => {
+    const { autoKey, session } = page.now;
+    if (autoKey && session?.clip != null && poses.has(command.do)) await setKey();
+  });
+  page.watch((now, before) => {
+    if (now.keyEditor === 'curves' && (now.selected !== before.selected || now.keyEditor !== before.keyEditor)) draw();
+  });
+
+  async function drawClip() {
+    const { session, ghosts, keyEditor, selected } = page.now;
+    const clip = chosenClip(session), still = session?.dragged === null;
+    if (!clip || clip.duration <= 0) return page.set({ paths: null, curve: null });
+    if (!still) return;
+    const [paths, curve] = await Promise.all([
+      ghosts ? engine.ask({ kind: 'paths' }) : null,
+      keyEditor === 'curves' && selected !== null ? engine.ask({ kind: 'curve', joint: selected }) : null,
+    ]);
+    const now = page.now;
+    if (now.session === session && now.selected === selected && now.ghosts === ghosts && now.keyEditor === keyEditor) page.set({ paths, curve });
+  }
+
+  /** On recorded motion the correction comes and goes, instead of a jump of one frame. */
+  async function setKey() {
+    const { session, span } = page.now;
+    await core.run({ do: 'set_key', span: chosenClip(session)?.recorded ? span : 0 });
+  }
+
+  const named = (keys: readonly KeyPlace[]) => keys.map(({ joint, seconds }) => ({ joint: core.jointName(joint), seconds }));
+
+  return {
+    setKey,
+
+    /** They are the chosen ones afterwards. */
+    async editKeys(keys: readonly KeyPlace[], change: KeyChange) {
+      await core.run({ do: 'edit_keys', keys: named(keys), ...change });
+      page.set({ chosenKeys: keysThere(keys.map(({ joint, seconds }) => ({ joint, seconds: changedTime(seconds, change) })), page.now.session) });
+    },
+    async deleteKeys(keys: readonly KeyPlace[]) { await core.run({ do: 'delete_keys', keys: named(keys) }); },
+
+    /** From its rest pose: degrees about x, y and z, and metres. */
+    async setJointKey({ joint, seconds }: KeyPlace, turn: Vector, offset: Vector) {
+      await core.run({ do: 'set_joint_key', joint: core.jointName(joint), seconds, turn, offset });
+    },
+
+    showGhosts(on: boolean) {
+      page.set({ ghosts: on });
+      draw();
+    },
+  };
+}
