@@ -183,7 +183,8 @@ CallResult modelOf(const limber::SessionState& state) {
 CallResult stateAfter(const limber::SessionScene& scene, const limber::Command& command) {
   const bool frame =
       std::holds_alternative<limber::UpdateDrag>(command) || std::holds_alternative<limber::TurnDrag>(command) ||
-      std::holds_alternative<limber::SetTime>(command) || std::holds_alternative<limber::SetClock>(command);
+      std::holds_alternative<limber::MoveDrag>(command) || std::holds_alternative<limber::SetTime>(command) ||
+      std::holds_alternative<limber::SetClock>(command);
   return {true, bytesOf(skinArray(scene.session())), frame ? "{}" : textOf(limber::sceneState(scene))};
 }
 

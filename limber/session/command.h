@@ -75,6 +75,12 @@ struct TurnDrag {
   Vec3 axis = Vec3::UnitY();
   double degrees = 0;
 };
+// The dragged joint goes along with a hand that has hold of it: by an offset in metres, and turned about its own origin
+// by a rotation vector in degrees. Counts from where the drag, one that moves, began.
+struct MoveDrag {
+  Vec3 offset = Vec3::Zero();
+  Vec3 turn = Vec3::Zero();
+};
 struct EndDrag {
   bool goesOn = false;  // one undo step with the drag that was ended before, where nothing was done between them
 };
@@ -321,12 +327,12 @@ struct SetClock {
 
 using Command =
     std::variant<OpenSample, OpenFile, SetHandles, ChooseMethods, PinJoint, UnpinJoint, BeginDrag, UpdateDrag, TurnDrag,
-                 EndDrag, CancelDrag, TurnJoint, MoveJoint, SetIk, SetTarget, ClearTarget, SetLimits, ResetJoint,
-                 ResetPose, MirrorPose, SetRestPose, RenameJoint, AddMotion, AddSampleMotion, RetargetMotion, AddClip,
-                 RemoveClip, RenameClip, ChooseClip, SetTime, SetKey, MoveKey, DeleteKey, EditKeys, DeleteKeys,
-                 SetJointKey, SetInterpolation, PaintWeights, LockWeights, MirrorWeights, AddJoint, DeleteJoint,
-                 ReparentJoint, PlaceJoint, SetTurn, ApplyPose, Undo, Redo, AddSample, AddFile, RemoveMember,
-                 ChooseMember, RenameMember, PlaceMember, AttachMember, DetachMember, SetClock>;
+                 MoveDrag, EndDrag, CancelDrag, TurnJoint, MoveJoint, SetIk, SetTarget, ClearTarget, SetLimits,
+                 ResetJoint, ResetPose, MirrorPose, SetRestPose, RenameJoint, AddMotion, AddSampleMotion,
+                 RetargetMotion, AddClip, RemoveClip, RenameClip, ChooseClip, SetTime, SetKey, MoveKey, DeleteKey,
+                 EditKeys, DeleteKeys, SetJointKey, SetInterpolation, PaintWeights, LockWeights, MirrorWeights,
+                 AddJoint, DeleteJoint, ReparentJoint, PlaceJoint, SetTurn, ApplyPose, Undo, Redo, AddSample, AddFile,
+                 RemoveMember, ChooseMember, RenameMember, PlaceMember, AttachMember, DetachMember, SetClock>;
 
 // "set_handles", as in JSON.
 std::string_view commandName(const Command& command);

@@ -26,6 +26,7 @@ std::vector<Command> oneOfEach() {
           BeginDrag{"hand.L", DragMode::kTurn, kRay, {0, 0.5, -1}, {"head", "foot.R"}, true},
           UpdateDrag{kRay, {1, 0, -1}, true},
           TurnDrag{{0, 2, 1}, -35.5},
+          MoveDrag{{0.1, 0, -0.25}, {0, 30, 0.5}},
           EndDrag{true},
           CancelDrag{},
           TurnJoint{"head", {0, 1.0 / 3, 1}, 12.5},
@@ -100,39 +101,40 @@ TEST(Command, JsonKeepsEveryCommandAndEveryField) {
   EXPECT_TRUE(std::get<OpenSample>(back[0]).limbsFollow);
   EXPECT_TRUE(std::get<OpenFile>(back[1]).limbsFollow);
   EXPECT_EQ(std::get<TurnDrag>(back[8]).degrees, -35.5);
-  EXPECT_EQ(std::get<SetIk>(back[13]).solver, "fabrik");
-  EXPECT_EQ(std::get<TurnJoint>(back[11]).axis.y(), 1.0 / 3);
-  EXPECT_EQ(std::get<SetTarget>(back[14]).position, Vec3(1e-17, 2, 3));
-  EXPECT_EQ(std::get<MirrorPose>(back[19]).from, MirrorFrom::kRight);
-  EXPECT_FALSE(std::get<SetIk>(back[13]).on);
-  EXPECT_EQ(std::get<RenameJoint>(back[21]).name, "skull");
-  EXPECT_EQ(std::get<RetargetMotion>(back[24]).clip, "fast");
-  EXPECT_EQ(std::get<RetargetMotion>(back[24]).reach, 0.25);
-  EXPECT_FALSE(std::get<RetargetMotion>(back[24]).contacts);
-  EXPECT_EQ(std::get<PaintWeights>(back[37]).dabs, std::get<PaintWeights>(commands[37]).dabs);
-  EXPECT_EQ(std::get<AddJoint>(back[40]).name, "hat");
-  EXPECT_EQ(std::get<ReparentJoint>(back[42]).parent, "hips");
-  EXPECT_EQ(std::get<PlaceJoint>(back[43]).position, Vec3(0.5, 1, -0.25));
-  EXPECT_EQ(std::get<SetTurn>(back[44]).turn, Vec3(30, -20, 0.125));
-  EXPECT_EQ(std::get<SetTurn>(back[44]).with, std::vector<std::string>{"head"});
+  EXPECT_EQ(std::get<MoveDrag>(back[9]).turn, Vec3(0, 30, 0.5));
+  EXPECT_EQ(std::get<SetIk>(back[14]).solver, "fabrik");
+  EXPECT_EQ(std::get<TurnJoint>(back[12]).axis.y(), 1.0 / 3);
+  EXPECT_EQ(std::get<SetTarget>(back[15]).position, Vec3(1e-17, 2, 3));
+  EXPECT_EQ(std::get<MirrorPose>(back[20]).from, MirrorFrom::kRight);
+  EXPECT_FALSE(std::get<SetIk>(back[14]).on);
+  EXPECT_EQ(std::get<RenameJoint>(back[22]).name, "skull");
+  EXPECT_EQ(std::get<RetargetMotion>(back[25]).clip, "fast");
+  EXPECT_EQ(std::get<RetargetMotion>(back[25]).reach, 0.25);
+  EXPECT_FALSE(std::get<RetargetMotion>(back[25]).contacts);
+  EXPECT_EQ(std::get<PaintWeights>(back[38]).dabs, std::get<PaintWeights>(commands[38]).dabs);
+  EXPECT_EQ(std::get<AddJoint>(back[41]).name, "hat");
+  EXPECT_EQ(std::get<ReparentJoint>(back[43]).parent, "hips");
+  EXPECT_EQ(std::get<PlaceJoint>(back[44]).position, Vec3(0.5, 1, -0.25));
+  EXPECT_EQ(std::get<SetTurn>(back[45]).turn, Vec3(30, -20, 0.125));
+  EXPECT_EQ(std::get<SetTurn>(back[45]).with, std::vector<std::string>{"head"});
   EXPECT_TRUE(std::get<UpdateDrag>(back[7]).snap);
-  EXPECT_TRUE(std::get<EndDrag>(back[9]).goesOn);
-  EXPECT_EQ(std::get<ResetJoint>(back[17]).with, std::vector<std::string>{"hips"});
-  EXPECT_EQ(std::get<PaintWeights>(back[37]).mode, PaintMode::kReplace);
-  EXPECT_EQ(std::get<MoveKey>(back[31]).to, 0.75);
-  ASSERT_EQ(std::get<EditKeys>(back[33]).keys.size(), 2u);
-  EXPECT_EQ(std::get<EditKeys>(back[33]).keys[1].joint, "Elbow");
-  EXPECT_EQ(std::get<EditKeys>(back[33]).keys[1].seconds, 0.25);
-  EXPECT_EQ(std::get<EditKeys>(back[33]).scale, 2);
-  EXPECT_EQ(std::get<DeleteKeys>(back[34]).keys.size(), 1u);
-  EXPECT_EQ(std::get<SetJointKey>(back[35]).turn, Vec3(0, 30, 0));
+  EXPECT_TRUE(std::get<EndDrag>(back[10]).goesOn);
+  EXPECT_EQ(std::get<ResetJoint>(back[18]).with, std::vector<std::string>{"hips"});
+  EXPECT_EQ(std::get<PaintWeights>(back[38]).mode, PaintMode::kReplace);
+  EXPECT_EQ(std::get<MoveKey>(back[32]).to, 0.75);
+  ASSERT_EQ(std::get<EditKeys>(back[34]).keys.size(), 2u);
+  EXPECT_EQ(std::get<EditKeys>(back[34]).keys[1].joint, "Elbow");
+  EXPECT_EQ(std::get<EditKeys>(back[34]).keys[1].seconds, 0.25);
+  EXPECT_EQ(std::get<EditKeys>(back[34]).scale, 2);
+  EXPECT_EQ(std::get<DeleteKeys>(back[35]).keys.size(), 1u);
+  EXPECT_EQ(std::get<SetJointKey>(back[36]).turn, Vec3(0, 30, 0));
   EXPECT_TRUE(only<AddFile>(back).asProp);
   EXPECT_EQ(only<RenameMember>(back).name, "vixen");
   EXPECT_EQ(only<PlaceMember>(back).turn, Vec3(0, 90, 0));
   EXPECT_EQ(only<PlaceMember>(back).scale, 0.5);
   EXPECT_EQ(only<AttachMember>(back).to, "fox");
   EXPECT_TRUE(only<AttachMember>(back).snap);
-  EXPECT_EQ(std::get<SetInterpolation>(back[36]).interpolation, Interpolation::kCubic);
+  EXPECT_EQ(std::get<SetInterpolation>(back[37]).interpolation, Interpolation::kCubic);
 }
 
 TEST(Command, FieldsThatAreAbsentKeepTheirDefault) {

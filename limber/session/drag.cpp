@@ -101,6 +101,25 @@ Pose Drag::moved(const Vec3& offset) {
   return pose;
 }
 
+Pose Drag::carried(const Vec3& offset, const Vec3& turn) {
+  Pose pose = scene_.start;
+  const Quat rotation = fromRotationVector(turn * kPi / 180);
+  std::vector<HeldTarget> targets = targets_;  // other moves of this drag do not turn what they pull
+  for (std::size_t p = 0; p < pulled_.size(); ++p) {
+    const DragFollower& m = moved_[pulled_[p]];
+    const Affine& start = globals_[m.joint];
+    targets[p].position = start.translation() + m.reflection * offset;
+    targets[p].rotation = reflected(rotation, m.reflection) * decompose(start).rotation;
+  }
+  for (const std::size_t s : slid_) {
+    const DragFollower& m = moved_[s];
+    swing(m.joint, globals_[m.joint].translation(), reflected(rotation, m.reflection), pose);
+    slide(m.joint, m.reflection * offset, pose);
+  }
+  pull_->solve(pose, targets);
+  return pose;
+}
+
 Pose Drag::turned(const Vec3& axis, double degrees) {
   Pose pose = scene_.start;
   const Quat rotation(Eigen::AngleAxisd(degrees * kPi / 180, unit(axis, "the axis")));

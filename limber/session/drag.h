@@ -45,6 +45,10 @@ class Drag {
   // a drag that moves, with inverse kinematics.
   Pose moved(const Vec3& offset);
 
+  // Likewise, and turned about its own origin by a rotation vector in degrees: as a hand that has hold of it carries
+  // it. A limb that is pulled comes along first. Mirror images do it reflected.
+  Pose carried(const Vec3& offset, const Vec3& turn);
+
   // The pose with the joint turned about its own origin, from how it stood at the start. Throws Error kBadArgument for
   // an axis without direction.
   Pose turned(const Vec3& axis, double degrees);

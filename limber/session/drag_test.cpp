@@ -52,6 +52,41 @@ TEST(Drag, ATurnAboutTheJointsOwnPlaceCountsFromTheStart) {
   EXPECT_THROW(drag.turned(Vec3::Zero(), 10), Error);
 }
 
+TEST(Drag, CarriedAJointGoesAndTurnsAsTheHandDoes) {
+  const Skeleton skeleton = twoArmedBody(BoneShape::kSphere);
+  const Pose rest = restPose(skeleton);
+  const Affine before = poseGlobals(skeleton, rest)[kHand];
+  const Vec3 offset(-0.5, 0.4, 0.3), turn(20, -50, 35);
+  const Quat wanted(Eigen::AngleAxisd(turn.norm() * kDegree, turn.normalized()));
+  for (const bool ik : {false, true}) {
+    Drag drag(sceneOf(skeleton, ik), kHand, DragMode::kMove, through(before.translation()), kView);
+    const Pose moved = drag.moved(offset), pose = drag.carried(offset, turn);
+    const Affine after = poseGlobals(skeleton, pose)[kHand];
+    EXPECT_LT((after.translation() - before.translation() - offset).norm(), 1e-3);
+    EXPECT_LT(angleBetween(Quat(Mat3(after.linear() * before.linear().transpose())), wanted), 1e-9);
+    // It leaves nothing behind for the moves that follow.
+    const Pose again = drag.moved(offset);
+    for (Index j = 0; j < moved.locals.size(); ++j) {
+      EXPECT_EQ(moved.locals[j].rotation.coeffs(), again.locals[j].rotation.coeffs());
+    }
+  }
+}
+
+TEST(Drag, TheMirrorImageIsCarriedReflected) {
+  const Skeleton skeleton = twoArmedBody(BoneShape::kSphere);
+  Mat3 flip = Mat3::Identity();
+  flip(0, 0) = -1;
+  DragScene scene = sceneOf(skeleton);
+  scene.followers = {{kOtherHand, flip, kHand}};
+  const std::vector<Affine> before = poseGlobals(skeleton, scene.start);
+  Drag drag(scene, kHand, DragMode::kMove, through(before[kHand].translation()), kView);
+  const std::vector<Affine> after = poseGlobals(skeleton, drag.carried({0.2, 0.3, -0.1}, {0, 0, 40}));
+  const auto offset = [&](Index j) { return Vec3(after[j].translation() - before[j].translation()); };
+  EXPECT_LT((flip * offset(kHand) - offset(kOtherHand)).norm(), 1e-12);
+  const Quat turned(Mat3(after[kOtherHand].linear() * before[kOtherHand].linear().transpose()));
+  EXPECT_LT(angleBetween(turned, Quat(Eigen::AngleAxisd(-40 * kDegree, Vec3::UnitZ()))), 1e-9);
+}
+
 TEST(Drag, ACameraThatWalksPullsTheJointAlong) {
   const Skeleton skeleton = twoArmedBody(BoneShape::kSphere);
   const Vec3 hand = at(skeleton, restPose(skeleton), kHand), step(0, 0, -0.5);

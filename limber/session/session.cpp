@@ -305,6 +305,11 @@ struct Session::Runner {
     session.state_.pose = drag().turned(c.axis, c.degrees);
     session.record_->add(command);
   }
+  void operator()(const MoveDrag& c) const {
+    if (!c.offset.allFinite() || !c.turn.allFinite()) refuse("the offset or the turn is no number");
+    session.state_.pose = drag().carried(c.offset, c.turn);
+    session.record_->add(command);
+  }
   // The undo step is the whole drag: it goes back to the pose at its beginning.
   void operator()(const EndDrag&) const {
     SessionState next = session.state_;

@@ -255,6 +255,10 @@ std::size_t tellStory(Session& session) {
   tell(Redo{});
   tell(BeginDrag{joint(8), DragMode::kTurn, {kCamera, kForward}, kForward});
   tell(CancelDrag{});
+  tell(BeginDrag{joint(6), DragMode::kMove, {kCamera, kForward}, kForward});
+  tell(MoveDrag{Vec3(0.1, 0, 0), Vec3(0, 0, 80)});
+  tell(MoveDrag{Vec3(0.02, 0.05, -0.04), Vec3(10, 25, 0)});
+  tell(EndDrag{});
   tell(SetHandles{30});
   tell(MirrorPose{MirrorFrom::kLeft});
   tell(ResetJoint{joint(5)});
