@@ -220,7 +220,8 @@ studio_in_browser() {
     counted node apps/studio/tests/words_test.mjs dist "$output/studio" &&
     counted node apps/studio/tests/scene_test.mjs dist build/release/limber "$output/studio" &&
     counted node apps/studio/tests/poses_test.mjs dist "$output/studio" &&
-    counted node apps/studio/tests/ar_test.mjs dist build/release/limber "$output/studio"
+    counted node apps/studio/tests/ar_test.mjs dist build/release/limber "$output/studio" &&
+    counted node apps/studio/tests/headset_test.mjs dist build/release/limber "$output/studio"
 }
 
 studio_in_program() {

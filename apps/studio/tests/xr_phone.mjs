@@ -2,18 +2,16 @@
 // in here: a DOM overlay, hit tests of fingers, light, and a screen to touch where there is no overlay.
 import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
+import { furnish, table } from './xr_room.mjs';
 
 const iwer = readFileSync(createRequire(import.meta.url).resolve('iwer/build/iwer.min.js'), 'utf8');
 
-/** Metres: a level box top. The floor goes on for ever. */
-export const table = { height: 0.7, x: [0.6, 1.6], z: [-2, -1] };
-
 /** Into each page of a context, before its own scripts. `without`: features that the phone has not. */
 export async function emulatePhone(context, { without = [] } = {}) {
-  await context.addInitScript(`${iwer};(${install})(globalThis.IWER, ${JSON.stringify({ table, without })})`);
+  await context.addInitScript(`${iwer};(${install})(globalThis.IWER, ${furnish}, ${JSON.stringify({ table, without })})`);
 }
 
-function install(IWER, { table, without }) {
+function install(IWER, furnish, { table, without }) {
   const has = (feature) => !without.includes(feature);
   const device = new IWER.XRDevice({
     name: 'phone', supportedSessionModes: ['inline', 'immersive-ar'],
@@ -30,26 +28,7 @@ function install(IWER, { table, without }) {
   device.canvasContainer.setAttribute('role', 'presentation');
   device.position.set(0, 1.5, 0);
 
-  const room = { floor: true, light: null };
-  /** What a ray meets, the nearest first. */
-  function meets(origin, direction) {
-    const found = [];
-    const onLevel = (height, inside) => {
-      const t = (height - origin[1]) / direction[1], at = origin.map((value, i) => value + t * direction[i]);
-      if (t > 0 && Number.isFinite(t) && inside(at)) found.push({ t, at });
-    };
-    if (room.floor) onLevel(0, () => true);
-    if (room.floor) onLevel(table.height, ([x, , z]) => x > table.x[0] && x < table.x[1] && z > table.z[0] && z < table.z[1]);
-    return found.sort((a, b) => a.t - b.t).map(({ at: [x, y, z] }) => new Float32Array([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, x, y, z, 1]));
-  }
-  device.installSEM(class {
-    trackedPlanes = new Set();
-    trackedMeshes = new Set();
-    environmentCanvas = Object.assign(document.createElement('canvas'), { hidden: true });
-    render() {}
-    computeHitTestResults(m) { return meets([m[12], m[13], m[14]], [-m[8], -m[9], -m[10]]); }
-  });
-
+  const { room, meets } = furnish(device, table);
   let current = null;
   const request = navigator.xr.requestSession.bind(navigator.xr);
   const phone = { device, room, fingers: new Map(), refuse: null, poseLost: false, get session() { return current; } };

@@ -57,7 +57,7 @@ export interface ArState {
   /** Whether a surface is met, where the chosen model may stand. */
   surface: boolean;
   /** What keeps it from going on. */
-  trouble: 'no-surface' | 'lost' | 'hidden' | null;
+  trouble: 'no-surface' | 'lost' | 'hidden' | 'hand' | null;
   /** The chosen model has its real size. */
   realSize: boolean;
 }

@@ -1,6 +1,7 @@
 // The models of the scene in a real place: frames, where they stand, what is on the screen, until all is put back.
 import { Matrix4, MathUtils, Ray, Vector3 } from 'three';
 import type { ArState } from '../app/state';
+import type { Ray as EngineRay } from '../engine/messages';
 import type { Desk } from './desk';
 import { Reticle } from './reticle';
 import { Room, turnTowards } from './room';
@@ -9,7 +10,7 @@ import { Touch } from './touch';
 
 const patience = 5000; // milliseconds without a surface before help is offered
 const ahead = 1.2; // metres before the device: there a model stands where no surface is known
-const markLayer = 3; // seen by both eyes of a headset; 1 and 2 are three's for one of them
+export const markLayer = 3; // seen by both eyes of a headset; 1 and 2 are three's for one of them
 
 export class ArView implements Looker {
   readonly room: Room['group'];
@@ -19,6 +20,9 @@ export class ArView implements Looker {
   readonly beforeFrame = new Set<() => void>();
   /** What is left over at the end. */
   onEnd: (byItself: boolean) => void = () => {};
+  /** A headset's hands: what they hold is let go of as fingers let go, and what may trouble them. */
+  alsoLetGo = () => {};
+  ownTrouble: () => ArState['trouble'] = () => null;
 
   private place = new Room();
   private reticle = new Reticle();
@@ -27,6 +31,7 @@ export class ArView implements Looker {
   private at: Matrix4 | null = null; // of the surface that is met, in the room
   private lookedSince = performance.now();
   private leaving = false;
+  private hidden = false;
   private giveBack: () => void;
   private before;
   private canvasPlace;
@@ -65,7 +70,7 @@ export class ArView implements Looker {
   frame(known: boolean) {
     const trouble = this.trouble(known);
     if (!known) {
-      if (this.desk.page.now.ar?.trouble !== 'lost') this.touch.letGo();
+      if (this.desk.page.now.ar?.trouble !== 'lost') this.letGo();
       return this.tell({ trouble });
     }
     if (this.isPlacing) this.preview();
@@ -76,13 +81,14 @@ export class ArView implements Looker {
   }
 
   hide(hidden: boolean) {
-    if (hidden) this.touch.letGo();
+    this.hidden = hidden;
+    if (hidden) this.letGo();
     this.tell({ trouble: hidden ? 'hidden' : null });
     this.lookedSince = performance.now();
   }
 
   finger(id: number, spot: Spot | null, phase: 'down' | 'move' | 'up' | 'cancel') {
-    if (phase === 'cancel') this.touch.letGo();
+    if (phase === 'cancel') this.letGo();
     else if (phase === 'up') this.touch.up(id);
     else if (phase === 'down') this.touch.down(id, spot!);
     else this.touch.move(id, spot!);
@@ -112,16 +118,20 @@ export class ArView implements Looker {
 
   /** The chosen model is to have another place: it goes along with the surface that is looked at. */
   placeAgain() {
-    this.touch.letGo();
+    this.letGo();
     this.lookedSince = performance.now();
     this.desk.page.set({ display: 'surface' });
     this.tell({ step: 'placing' });
   }
 
   async tap(spot: Spot) {
-    const { studio, page, viewport } = this.desk;
     if (this.isPlacing) return this.settle();
-    const { ray } = viewport.ray(spot.x, spot.y), member = await studio.memberUnder(ray);
+    await this.tapAlong(this.desk.viewport.ray(spot.x, spot.y).ray);
+  }
+
+  /** In the chosen model's own space. */
+  async tapAlong(ray: EngineRay) {
+    const { studio, page } = this.desk, member = await studio.memberUnder(ray);
     if (member === null || !page.now.session) return;
     if (member !== page.now.session.member) {
       await studio.chooseMember(member);
@@ -197,9 +207,15 @@ export class ArView implements Looker {
     return new Matrix4().setPosition(to.setLength(ahead).add(position).setY(0));
   }
 
+  private letGo() {
+    this.touch.letGo();
+    this.alsoLetGo();
+  }
+
   private trouble(known: boolean): ArState['trouble'] {
     if (!known) return 'lost';
-    return this.isPlacing && !this.at && performance.now() - this.lookedSince > patience ? 'no-surface' : null;
+    if (this.hidden) return 'hidden'; // blurred, a headset goes on asking for frames
+    return this.ownTrouble() ?? (this.isPlacing && !this.at && performance.now() - this.lookedSince > patience ? 'no-surface' : null);
   }
 
   private tell(change: Partial<ArState>) {
@@ -231,7 +247,7 @@ export class ArView implements Looker {
   close(byItself: boolean) {
     const { page, app, viewport } = this.desk;
     if (!this.room.parent) return;
-    this.touch.letGo();
+    this.letGo();
     removeEventListener('visibilitychange', this.onVisibility);
     this.reticle.dispose();
     this.room.removeFromParent();

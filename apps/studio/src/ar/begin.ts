@@ -27,6 +27,7 @@ export async function beginAr(desk: Desk, sight: Sight = new WebXrSight(), refus
   }
   studio.ask = (title, detail, yes) => ask(title, detail, yes, panel.root);
   view.begin();
+  if (sight instanceof WebXrSight && !sight.hasOverlay) (await import('./headset/headset')).beginHeadset(view, sight);
 }
 
 function tellRefusal({ page }: Desk) {

@@ -1,8 +1,8 @@
-// One finger on a model that is not being posed: it goes over the surface that it stands on, and onto others.
-import { Matrix4, Ray, Vector3 } from 'three';
-import { tapDistance } from '../scene/pointer';
+// A model held from afar that is not being posed: it goes over the surface that it stands on, and onto others.
+import { Matrix4, Vector3, type Ray } from 'three';
 import type { ArView } from './ar_view';
-import type { Finger, Gesture } from './gesture';
+import type { Gesture } from './gesture';
+import type { Pointing } from './pointing';
 import { onLevel } from './room';
 
 const sameSurface = 0.05; // metres between the heights of two surfaces that are one, as devices measure
@@ -10,7 +10,7 @@ const sameSurface = 0.05; // metres between the heights of two surfaces that are
 /** In the world. */
 interface Held {
   place: Matrix4;
-  /** The point that is under the finger. */
+  /** The point that is pointed at. */
   from: Vector3;
   base: Vector3;
   /** How high the surface is that was behind it at first; not looked for yet, or none. */
@@ -23,25 +23,26 @@ export class BodyDrag implements Gesture {
   private held: Held | null = null;
   private over = false;
 
-  /** `whose` tells which member the finger is on, null beside all of them. */
-  constructor(private ar: ArView, private finger: Finger, whose: Promise<number | null>) {
+  /** `whose` tells which member is pointed at, null beside all of them. */
+  constructor(private ar: ArView, private by: Pointing, whose: Promise<number | null>) {
+    const from = by.ray();
     void whose.then((member) => {
       if (member === null || this.over) return;
       this.member = member;
-      this.hold(finger.from);
+      this.hold(from);
     });
   }
 
   frame() {
-    const { finger, held, member, ar } = this, { places, page, arrange } = ar.desk;
-    if (Math.hypot(finger.x - finger.from.x, finger.y - finger.from.y) > tapDistance) this.begun = true;
+    const { by, held, member, ar } = this, { places, page, arrange } = ar.desk;
+    if (by.moved) this.begun = true;
     if (!this.begun || !held || member === null) return;
-    const surface = ar.meets(finger);
+    const surface = by.meets();
     held.behind ??= surface?.y ?? null;
-    const to = this.onSurface(surface, held) ?? onLevel(ar.ray(finger), held.from);
+    const to = this.onSurface(surface, held) ?? by.carry(held.from);
     if (!to) return;
-    const by = to.clone().sub(held.from);
-    places.move(member, new Matrix4().makeTranslation(by).multiply(held.place), page.now.session!.members);
+    const change = to.clone().sub(held.from);
+    places.move(member, new Matrix4().makeTranslation(change).multiply(held.place), page.now.session!.members);
     arrange();
     // From now on it is held by what stands on the new surface.
     if (surface && Math.abs(to.y - held.from.y) > sameSurface) this.holdAt(to);
@@ -52,10 +53,10 @@ export class BodyDrag implements Gesture {
     if (this.begun && this.member !== null) this.ar.keepPlace(this.member);
   }
 
-  /** By the point of the model's box that the finger is on. */
-  private hold(spot: { x: number; y: number }) {
+  /** By the point of the model's box that is pointed at. */
+  private hold(ray: Ray) {
     const { ar } = this, { places, page } = ar.desk, { members } = page.now.session!;
-    const base = ar.baseOf(this.member!), ray: Ray = ar.ray(spot);
+    const base = ar.baseOf(this.member!);
     const from = ray.intersectBox(places.box(this.member!, members), new Vector3()) ?? onLevel(ray, base) ?? base;
     this.holdAt(from);
   }

@@ -5,6 +5,7 @@ import type { ArView } from './ar_view';
 import { BodyDrag } from './body_drag';
 import type { Finger, Gesture } from './gesture';
 import { HandleDrag } from './handle_drag';
+import { pointingOf } from './pointing';
 import type { Spot } from './sight';
 import { TwoFingers } from './two_fingers';
 
@@ -59,7 +60,7 @@ export class Touch {
   private oneFinger(finger: Finger): Gesture | null {
     const { ar } = this, { page, studio, viewport } = ar.desk;
     if (ar.isPlacing) return null;
-    if (page.now.display !== 'handles') return new BodyDrag(ar, finger, studio.memberUnder(viewport.ray(finger.x, finger.y).ray));
+    if (page.now.display !== 'handles') return new BodyDrag(ar, pointingOf(ar, finger), studio.memberUnder(viewport.ray(finger.x, finger.y).ray));
     const joint = this.nearestHandle(finger);
     return joint === null ? null : new HandleDrag(ar.desk, joint, finger);
   }

@@ -9,9 +9,11 @@ const level = 0.7; // of a surface's normal along up: below it nothing stands th
 export class WebXrSight implements Sight {
   readonly kind = 'webxr';
   session: XRSession | null = null;
+  /** Asked in place of the middle of the view, where something else points. */
+  ahead: (() => Matrix4 | null) | null = null;
   private looker: Looker | null = null;
   private frame: XRFrame | null = null;
-  private ahead: XRHitTestSource | undefined;
+  private inView: XRHitTestSource | undefined;
   private touched: XRTransientInputHitTestSource | undefined;
   /** Inputs that touch the screen now. */
   private touches = new Map<XRInputSource, number>();
@@ -42,9 +44,18 @@ export class WebXrSight implements Sight {
   }
 
   meets(spot: Spot | null): Matrix4 | null {
-    const { frame, looker } = this, space = looker?.renderer.xr.getReferenceSpace();
-    if (!frame || !space) return null;
-    const results = spot ? this.hitsOf(frame, spot) : this.ahead ? frame.getHitTestResults(this.ahead) : [];
+    const { frame } = this;
+    if (!frame) return null;
+    if (spot) return this.level(this.hitsOf(frame, spot));
+    return this.ahead?.() ?? (this.inView ? this.met(this.inView) : null);
+  }
+
+  /** In this frame, in the room: where a model can stand. */
+  met(source: XRHitTestSource): Matrix4 | null { return this.frame && this.level(this.frame.getHitTestResults(source)); }
+
+  private level(results: readonly XRHitTestResult[]): Matrix4 | null {
+    const space = this.looker?.renderer.xr.getReferenceSpace();
+    if (!space) return null;
     for (const result of results) {
       const pose = result.getPose(space);
       if (!pose) continue;
@@ -58,7 +69,7 @@ export class WebXrSight implements Sight {
 
   private async askForHits(session: XRSession) {
     const viewer = await session.requestReferenceSpace('viewer');
-    this.ahead = await session.requestHitTestSource?.({ space: viewer })?.catch(() => undefined);
+    this.inView = await session.requestHitTestSource?.({ space: viewer })?.catch(() => undefined);
     this.touched = await session.requestHitTestSourceForTransientInput?.({ profile: 'generic-touchscreen' })?.catch(() => undefined);
   }
 
@@ -88,7 +99,8 @@ export class WebXrSight implements Sight {
   private ended() {
     const { looker } = this;
     this.session = this.looker = null;
-    this.ahead = this.touched = undefined;
+    this.inView = this.touched = undefined;
+    this.ahead = null;
     if (!looker) return;
     looker.renderer.setAnimationLoop(null);
     looker.renderer.xr.enabled = false;

@@ -132,7 +132,7 @@ export class EngineClient {
     if (!changesDocument(request)) return;
     if (opens(request)) this.history = [];
     const frame = (r: Request | undefined) =>
-      (r?.kind === 'run' && ['update_drag', 'turn_drag', 'set_time', 'set_clock', 'choose_member'].includes(r.command.do) ? r.command.do : null);
+      (r?.kind === 'run' && ['update_drag', 'turn_drag', 'move_drag', 'set_time', 'set_clock', 'choose_member'].includes(r.command.do) ? r.command.do : null);
     const replaces = frame(request) !== null && frame(request) === frame(this.history.at(-1));
     if (replaces) this.history.pop();
     this.history.push(request);

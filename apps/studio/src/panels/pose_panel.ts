@@ -80,12 +80,13 @@ function limits(studio: Studio, page: PageStore): HTMLElement {
   return row;
 }
 
+export const mostHandlesOf = ({ session }: PageState) => Math.max(2, Math.min(mostHandles, session?.most_handles ?? mostHandles));
+
 /** The slider runs evenly over the logarithm of the count: few handles differ more than many. */
 export function handleCount(studio: Studio, page: PageStore): HTMLElement {
   const steps = 1000;
-  const most = ({ session }: PageState) => Math.max(2, Math.min(mostHandles, session?.most_handles ?? mostHandles));
-  const toCount = (place: number) => Math.round(most(page.now) ** (place / steps));
-  const toPlace = (count: number) => Math.round((steps * Math.log(Math.max(1, count))) / Math.log(most(page.now)));
+  const toCount = (place: number) => Math.round(mostHandlesOf(page.now) ** (place / steps));
+  const toPlace = (count: number) => Math.round((steps * Math.log(Math.max(1, count))) / Math.log(mostHandlesOf(page.now)));
 
   const number = element('output', { class: 'count', for: 'handles' }, '0');
   const slider = element('input', { type: 'range', id: 'handles', min: 0, max: steps, step: 1 });
@@ -96,7 +97,7 @@ export function handleCount(studio: Studio, page: PageStore): HTMLElement {
     void studio.setHandles(count);
   });
   const step = (by: number) => {
-    const count = Math.max(1, Math.min(most(page.now), studio.handleCount() + by));
+    const count = Math.max(1, Math.min(mostHandlesOf(page.now), studio.handleCount() + by));
     slider.valueAsNumber = toPlace(count);
     number.textContent = String(count);
     void studio.setHandles(count);
@@ -122,8 +123,8 @@ export function handleCount(studio: Studio, page: PageStore): HTMLElement {
       slider.valueAsNumber = toPlace(studio.handleCount());
       slider.setAttribute('aria-valuetext', counted(joints.length, 'handle'));
     }
-    if (`${suggestions} ${most(now)}` === marked) return;
-    marked = `${suggestions} ${most(now)}`;
+    if (`${suggestions} ${mostHandlesOf(now)}` === marked) return;
+    marked = `${suggestions} ${mostHandlesOf(now)}`;
     marks.replaceChildren(...apart(suggestions.map((count) => ({ count, at: toPlace(count) / steps }))).map(({ count, at }) => {
       const mark = button(String(count), () => void studio.setHandles(count), {
         label: say(suggestions[0] === count ? '{handles}, the best suggestion' : '{handles}, suggested', { handles: counted(count, 'handle') }),

@@ -51,6 +51,9 @@ const icons = {
 };
 export type IconName = keyof typeof icons;
 
+/** In a box of 20 by 20. */
+export const iconPath = (name: IconName) => icons[name];
+
 export function icon(name: IconName): SVGSVGElement {
   const svg = document.createElementNS('http://www.w3.org/2000/svg', 'svg');
   svg.setAttribute('viewBox', '0 0 20 20');

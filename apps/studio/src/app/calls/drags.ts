@@ -9,7 +9,8 @@ const ahead: Vector = [0, 0, -1];
 
 type DragUpdate =
   | { do: 'update_drag'; ray: Ray; view: Vector; snap: boolean }
-  | { do: 'turn_drag'; axis: Vector; degrees: number };
+  | { do: 'turn_drag'; axis: Vector; degrees: number }
+  | { do: 'move_drag'; offset: Vector; turn: Vector };
 
 export type DragCalls = ReturnType<typeof dragCalls>;
 
@@ -83,6 +84,8 @@ export function dragCalls(core: Core, { pinJoint }: RigCalls) {
     updateDrag(ray: Ray, view: Vector, snap = false) { dragTo({ do: 'update_drag', ray, view, snap }); },
     /** About the dragged joint's own place, from how it stood when the drag began. */
     turnDrag(axis: Vector, degrees: number) { dragTo({ do: 'turn_drag', axis, degrees }); },
+    /** As a hand carries it, from where it was when the drag, one that moves, began: metres, and degrees about an axis as one vector. */
+    moveDrag(offset: Vector, turn: Vector) { dragTo({ do: 'move_drag', offset, turn }); },
     /** What the joints that are shown during a drag answer to. */
     shownDrag: (): DragUpdate | null => asked,
     endDrag,

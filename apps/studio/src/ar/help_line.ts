@@ -1,0 +1,36 @@
+// What is the matter in augmented reality, else what to do next.
+import type { ArState, PageState } from '../app/state';
+import { say } from '../words/say';
+
+/** `hands`: on a headset, by hands or controllers; else by fingers on a screen. */
+export function helpLine({ ar, display, mode }: PageState, hands: boolean): string {
+  if (!ar) return say('Starting');
+  if (ar.trouble) return troubles()[ar.trouble];
+  const step = ar.step === 'placing' ? (ar.surface ? 'place' : 'search') : display !== 'handles' ? (ar.realSize ? 'view' : 'size') : mode;
+  return (hands ? byHands : byFingers)()[step];
+}
+
+const byFingers = () => ({
+  place: say('Tap to place the model here'),
+  search: say('Point the device at the floor or a table, and move it slowly'),
+  view: say('Tap the model to pose it. Drag it to move it, turn and scale it with two fingers'),
+  size: say('Not its real size'),
+  move: say('Drag a handle; walk with it to push or pull'),
+  turn: say('Drag a handle to turn it about its parent'),
+});
+
+const byHands = () => ({
+  place: say('Pinch, or press the trigger, to place the model here'),
+  search: say('Point at the floor or a table'),
+  view: say('Point at the model and pinch to pose it. Hold it to move it, with both hands to turn and scale it'),
+  size: say('Not its real size'),
+  move: say('Pinch a handle and carry it, or drag it from afar with the ray'),
+  turn: say('A near handle goes and turns with the hand. With the ray it turns about its parent'),
+});
+
+const troubles = (): Record<NonNullable<ArState['trouble']>, string> => ({
+  'no-surface': say('No surface found yet. Look at one with a pattern and enough light, or place the model before you'),
+  lost: say('The place is lost for the moment. Move the device slowly, back to where it was'),
+  hidden: say('Waiting. Everything is as you left it'),
+  hand: say('The hand was out of sight. What it held stays as it is'),
+});
