@@ -98,6 +98,7 @@ if [ -d "$characters" ]; then
     "$motions"/{fair1_dab,pybvh_example,rokoko_dance}.bvh --most-frames 400 --quiet \
     --character "$characters"/{cesium_man,m2m_human_male,makehuman_mixamo,quaternius_man_casual}.glb)
   table="$table" perl -0pi -e 's/(<!-- made by [^\n]*: measures -->\n).*(<!-- end of measures -->)/$1\n$ENV{table}\n\n$2/s' docs/retargeting.md
+  tools/judge_retargeting.sh
   sed -i '/^\*\*People/,$d' docs/template-rigs.md
   {
     echo "**People, --template humanoid**" && echo

@@ -8,6 +8,7 @@
 #include "limber/asset/motion_io.h"
 #include "limber/asset/read.h"
 #include "limber/core/file.h"
+#include "limber/evaluate/judge_table.h"
 #include "limber/evaluate/retarget_table.h"
 #include "limber/evaluate/skinned_model.h"
 #include "limber/matching/plain_skeleton.h"
@@ -132,8 +133,11 @@ void runMatrix(const MatrixOptions& options) {
   Warnings skipped;
   const std::vector<RetargetScore> scores = scoreRetargeting(trial, *progress, skipped);
   refuseNothing(scores.empty(), skipped);
-  if (!options.each.empty()) writeText(options.each, retargetScoresTsv(scores));
-  writeText(options.output, retargetMethodTable(scores));
+  std::vector<AnswerScore> answers;
+  if (trial.judge) answers = scoreAnswers(trial, *progress, skipped);
+  if (!options.each.empty())
+    writeText(options.each, retargetScoresTsv(scores) + (trial.judge ? answersTsv(answers) : ""));
+  writeText(options.output, trial.judge ? judgeTable(scores, answers) : retargetMethodTable(scores));
   printWarnings(skipped, options.common.quiet);
 }
 
@@ -150,6 +154,14 @@ void addRetargetingEvaluation(CLI::App& evaluate) {
       ->allow_extra_args(false);
   command->add_option("--most-frames", options->trial.mostFrames, "of each clip")
       ->check(CLI::Range(5, 1000000).description(""))
+      ->type_name("N")
+      ->capture_default_str();
+  command->add_flag("--judge", options->trial.judge,
+                    "judge against aligned and known answers, half of the makers apart, by what no method minimises");
+  command
+      ->add_option("--inside-frames", options->trial.insideFrames,
+                   "frames of each clip in which it is seen what is inside the body; 0: none")
+      ->check(CLI::Range(0, 1000).description(""))
       ->type_name("N")
       ->capture_default_str();
   command->add_option("-o,--output", options->output, "the table to write, in Markdown; - is standard output")

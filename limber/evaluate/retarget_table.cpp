@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "limber/asset/motion_io.h"
+#include "limber/evaluate/held_out.h"
 #include "limber/evaluate/skinned_model.h"
 #include "limber/limbs/roughness.h"
 #include "limber/matching/plain_skeleton.h"
@@ -13,11 +14,11 @@ namespace limber {
 
 namespace {
 
-// Enough for means over many pairs.
-constexpr SelfPenetrationOptions kSparse = {.mostFrames = 10, .mostVertices = 1500};
+constexpr std::size_t kMostVertices = 1500;  // enough for means over many pairs
 
 struct Character {
   std::string name;
+  bool heldOut;
   Skeleton skeleton;
   std::optional<SkinnedModel> model;
 };
@@ -27,7 +28,7 @@ std::vector<Character> readCharacters(std::span<const std::filesystem::path> fil
   for (const std::filesystem::path& file : files) {
     try {
       const Asset asset = readAsset(file);
-      characters.push_back({file.stem().string(), animatedSkeleton(asset).skeleton, std::nullopt});
+      characters.push_back({file.stem().string(), isHeldOut(file), animatedSkeleton(asset).skeleton, std::nullopt});
       if (hasRig(asset)) characters.back().model = readSkinnedModel(asset);
     } catch (const Error& error) {
       skipped.add("unreadable", "characters that cannot be read left out", error.what());
@@ -57,34 +58,63 @@ class Scorer {
         continue;
       }
       const std::string name = motion.clips.size() == 1 ? motion.name : motion.name + ":" + clip.name;
-      for (const Character& character : characters_) scoreOn(plain.skeleton(), source, name, character, scores);
+      for (const Character& character : characters_) {
+        scoreOn(plain.skeleton(), source, {name, isHeldOut(file)}, character, scores);
+      }
     }
   }
 
  private:
-  void scoreOn(const Skeleton& skeleton, const PoseSequence& source, const std::string& motion,
-               const Character& character, std::vector<RetargetScore>& scores) const {
+  struct Named {
+    std::string name;
+    bool heldOut;
+  };
+
+  std::optional<double> insideOf(const Character& character, const std::vector<Pose>& poses) const {
+    if (!character.model || trial_.insideFrames == 0) return std::nullopt;
+    return measureSelfPenetration(*character.model, poses, {trial_.insideFrames, kMostVertices}).mean;
+  }
+
+  void scoreOn(const Skeleton& skeleton, const PoseSequence& source, const Named& motion, const Character& character,
+               std::vector<RetargetScore>& scores) const {
     try {
       const PlainSkeleton plain(character.skeleton);
       const RetargetSetup setup(skeleton, plain.skeleton(), matchSkeletons(skeleton, plain.skeleton()), {}, &source);
       if (!hasLegs(setup)) {
-        skipped_.add("legless", "pairs without legs left out", fmt::format("{} on {}", motion, character.name));
+        skipped_.add("legless", "pairs without legs left out", fmt::format("{} on {}", motion.name, character.name));
         return;
+      }
+      PoseSequence aligned;
+      std::optional<double> alignedInside;
+      if (trial_.judge) {
+        aligned = retargetFrames(findRetargetMethod("aligned"), setup, source);
+        alignedInside = insideOf(character, plain.original(aligned).poses);
       }
       for (const RetargetMethod* method : methods_) {
         const double start = secondsNow();
         const PoseSequence result = retargetFrames(*method, setup, source);
         const double seconds = secondsNow() - start;
         const double rate = seconds > 0 ? static_cast<double>(source.poses.size()) / seconds : 0;
-        MotionMetrics metrics = measureMotion(setup, source, result);
-        if (character.model) {
-          metrics.selfPenetration = measureSelfPenetration(*character.model, plain.original(result).poses, kSparse);
+        const MotionMetrics metrics = measureMotion(setup, source, result);
+        RetargetScore score = {motion.name,
+                               character.name,
+                               std::string(method->name),
+                               metrics,
+                               rate,
+                               motion.heldOut || character.heldOut,
+                               {},
+                               {}};
+        score.inside = insideOf(character, plain.original(result).poses);
+        if (trial_.judge) {
+          score.verdict = judgeRetargeting(setup, source, aligned, result);
+          score.verdict->inside = score.inside;
+          score.verdict->alignedInside = alignedInside;
         }
-        scores.push_back({motion, character.name, std::string(method->name), metrics, rate});
+        scores.push_back(std::move(score));
       }
     } catch (const Error& error) {
       skipped_.add("unmatched", "pairs that cannot be compared left out",
-                   fmt::format("{} on {}: {}", motion, character.name, error.message()));
+                   fmt::format("{} on {}: {}", motion.name, character.name, error.message()));
     }
   }
 
@@ -104,6 +134,11 @@ struct Summary {
   }
   std::string text(int digits) const { return fmt::format("{:.{}f} ({:.{}f})", sum / count, digits, worst, digits); }
 };
+
+std::string verdictTsv(const RetargetVerdict& v) {
+  return fmt::format("\t{:.3f}\t{:.3f}\t{:.3f}\t{:.4f}\t{:.4f}\t{:.4f}\t{:.4f}\t{:.3f}", v.jerk, v.jerkPeak, v.impact,
+                     v.sliding, v.sourceSliding, v.contacts.precision(), v.contacts.recall(), v.bones95);
+}
 
 }  // namespace
 
@@ -145,7 +180,7 @@ std::string retargetMethodTable(std::span<const RetargetScore> scores) {
       depth.add(1700 * m.penetration);
       jerk.add(m.jerk);
       contacts.add(100 * m.contactAgreement);
-      if (m.selfPenetration) inside.add(100 * m.selfPenetration->mean);
+      if (score.inside) inside.add(100 * *score.inside);
       rate.add(score.framesPerSecond);
     }
     table += fmt::format("| {} | {} | {} | {} | {} | {} | {} | {:.1f} | {} | {:.0f} |\n", method, bones.text(1),
@@ -158,14 +193,16 @@ std::string retargetMethodTable(std::span<const RetargetScore> scores) {
 std::string retargetScoresTsv(std::span<const RetargetScore> scores) {
   std::string text =
       "motion\tcharacter\tmethod\tbones\tends\tsliding\tsource_sliding\tpenetration\tsource_penetration\tjerk\t"
-      "joint_jerk\tcontacts\tself_penetration\tframes_per_second\n";
+      "joint_jerk\tcontacts\tself_penetration\tframes_per_second\theld_out\tjudged_jerk\tjudged_peak\tjudged_impact\t"
+      "judged_sliding\tjudged_source_sliding\tprecision\trecall\tbones95\n";
   for (const RetargetScore& score : scores) {
     const MotionMetrics& m = score.metrics;
-    text +=
-        fmt::format("{}\t{}\t{}\t{:.3f}\t{:.4f}\t{:.4f}\t{:.4f}\t{:.5f}\t{:.5f}\t{:.3f}\t{:.3f}\t{:.3f}\t{}\t{:.0f}\n",
-                    score.motion, score.character, score.method, m.boneDirection, m.endEffector, m.sliding,
-                    m.sourceSliding, m.penetration, m.sourcePenetration, m.jerk, m.jointJerk, m.contactAgreement,
-                    m.selfPenetration ? fmt::format("{:.5f}", m.selfPenetration->mean) : "", score.framesPerSecond);
+    text += fmt::format(
+        "{}\t{}\t{}\t{:.3f}\t{:.4f}\t{:.4f}\t{:.4f}\t{:.5f}\t{:.5f}\t{:.3f}\t{:.3f}\t{:.3f}\t{}\t{:.0f}\t{}{}\n",
+        score.motion, score.character, score.method, m.boneDirection, m.endEffector, m.sliding, m.sourceSliding,
+        m.penetration, m.sourcePenetration, m.jerk, m.jointJerk, m.contactAgreement,
+        score.inside ? fmt::format("{:.5f}", *score.inside) : "", score.framesPerSecond, score.heldOut ? 1 : 0,
+        score.verdict ? verdictTsv(*score.verdict) : "\t\t\t\t\t\t\t\t");
   }
   return text;
 }

@@ -10,6 +10,7 @@
 #include "limber/core/error.h"
 #include "limber/core/progress.h"
 #include "limber/evaluate/motion_metrics.h"
+#include "limber/evaluate/retarget_judge.h"
 #include "limber/skeleton/motion.h"
 
 namespace limber {
@@ -17,7 +18,10 @@ namespace limber {
 struct RetargetScore {
   std::string motion, character, method;
   MotionMetrics metrics;
-  double framesPerSecond = 0;  // of the method, on one thread
+  double framesPerSecond = 0;              // of the method, on one thread
+  bool heldOut = false;                    // no constant is set by it (held_out.h)
+  std::optional<double> inside;            // mean share of the surface inside the body, of a character with a skin
+  std::optional<RetargetVerdict> verdict;  // where RetargetTrial::judge
 };
 
 struct RetargetTrial {
@@ -25,6 +29,8 @@ struct RetargetTrial {
   std::function<Motion(Motion)> prepare;  // what is done to a motion before it is used, if anything
   std::vector<std::string> methods;       // empty: all
   Index mostFrames = 1000;                // of each clip; what comes later is left out
+  bool judge = false;                     // with verdicts
+  std::size_t insideFrames = 10;          // in which it is seen what of the surface is inside the body; 0: in none
 };
 
 // A score for each clip of each motion, on each character, by each method, in that order; clips of less than 5 frames
