@@ -63,7 +63,7 @@ LimbGoals::LimbGoals(const RetargetSetup& setup, const RootPlacer& root)
   } else {
     addAnimalsLegs(root);
   }
-  active_ = (setup.person || !legs_.empty()) && !isSame();
+  active_ = (setup.person || !legs_.empty()) && !setup.sameBody;
 }
 
 void LimbGoals::addPersonsLegs(const RootPlacer& root) {
@@ -122,32 +122,6 @@ std::optional<Index> LimbGoals::sourceBodyOf(const AnimalLeg& leg) const {
   std::optional<Index> body = source.joints[leg.source.upper].parent;
   while (body && !carriesOther(*body)) body = source.joints[*body].parent;
   return body;
-}
-
-// Nothing to correct where both neutral poses are one.
-bool LimbGoals::isSame() const {
-  const std::vector<Vec3>&from = setup_.sourceNeutral.positions, &to = setup_.targetNeutral.positions;
-  if (const std::optional<Twins>& twins = setup_.map.twins) {
-    // Of whatever size; the rounding of scales that are not even is no difference.
-    const double off = 1e-4 * setup_.targetHipHeight;
-    bool same = true;
-    for (Index t = 0; t < to.size() && same; ++t)
-      same = (setup_.scale * from[twins->sourceOf[t]] - to[t]).norm() <= off;
-    return same;
-  }
-  if (std::abs(setup_.scale - 1) > 1e-9) return false;
-  const auto isAt = [&](Index s, Index t) { return (from[s] - to[t]).norm() <= 1e-6 * setup_.targetHipHeight; };
-  Index alike = 0;
-  while (alike < from.size() && from.size() == to.size() && isAt(alike, alike)) ++alike;
-  if (alike == to.size()) return true;
-  // Or the target lacks joints of the source, and all that it has follow one.
-  std::size_t followed = 0;
-  for (const JointMatch& match : setup_.map.matches) {
-    if (match.source.size() > 1 || match.target.size() > 1) return false;
-    if (!isAt(match.source.front(), match.target.front())) return false;
-    ++followed;
-  }
-  return followed == to.size();
 }
 
 void LimbGoals::addLeg(Leg leg) {

@@ -21,7 +21,7 @@ class LimbGoals {
   // Both must outlive this.
   LimbGoals(const RetargetSetup& setup, const RootPlacer& root);
 
-  // False where nothing needs correcting: nobody with legs, or both neutral poses are one.
+  // False where nothing needs correcting: nobody with legs, or the same body (RetargetSetup::sameBody).
   bool active() const { return active_; }
 
   // Senses what of the feet stands in the source; wide hips, long feet and such as stand flat swing less than the
@@ -73,7 +73,6 @@ class LimbGoals {
     double value = 0, speed = 0;
   };
 
-  bool isSame() const;
   Rise nextRise(const BodyFrame& target, double seconds) const;
   void addPersonsLegs(const RootPlacer& root);
   void addAnimalsLegs(const RootPlacer& root);

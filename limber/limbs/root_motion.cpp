@@ -36,6 +36,7 @@ RootPlacer::RootPlacer(const RetargetSetup& setup) : setup_(setup) {
   hips_ = setup.map.find(body_part::kPelvis)->target.front();
   moved_.push_back(*hips_);
   findPelvis();
+  if (setup.sameBody) return;  // what is loose moves as its partner does
   for (const LooseJoint& loose : looseJoints(target, setup.map, MapSide::kTarget, setup.targetNeutral.restPositions)) {
     addLoose(loose);
     moved_.push_back(loose.joint);
@@ -147,6 +148,10 @@ void RootPlacer::place(const Pose& source, const BodyFrame& sourceFrame, Pose& t
     setup_.targetKinematics.place(target, frame);
     return;
   }
+  if (setup_.sameBody) {
+    placeEach(source, sourceFrame, target, frame);
+    setup_.targetKinematics.place(target, frame);
+  }
   const Vec3 there = setup_.placeOf(pelvisOf(setup_.map, MapSide::kSource, sourceFrame.positions));
   movePelvis(there - pelvisOf(setup_.map, MapSide::kTarget, frame.positions), target, frame);
 }
@@ -161,13 +166,18 @@ void RootPlacer::placeHindquarters(const BodyFrame& sourceFrame, Pose& target, B
 void RootPlacer::placeEach(const Pose& source, const BodyFrame& sourceFrame, Pose& target,
                            const BodyFrame& frame) const {
   for (std::size_t m = 0; m < setup_.map.matches.size(); ++m) {
-    const Index s = setup_.map.matches[m].source.front(), t = setup_.map.matches[m].target.front();
-    const Vec3 own = source.locals[s].translation - setup_.source->joints[s].rest.translation;
-    Vec3 way = setup_.sourceKinematics.parentRotation(s, sourceFrame) * (setup_.sourceKinematics.unit(s) * own);
-    if (carried_[m]) way = sourceFrame.positions[s] - setup_.sourceNeutral.restPositions[s];
-    const double unit = setup_.scale / setup_.targetKinematics.unit(t);
-    const Quat toParent = setup_.targetKinematics.parentRotation(t, frame).conjugate();
-    target.locals[t].translation = setup_.target->joints[t].rest.translation + unit * (toParent * way);
+    const JointMatch& match = setup_.map.matches[m];
+    for (std::size_t i = 0; i < (setup_.sameBody ? match.target.size() : 1); ++i) {
+      const Index s = match.source[i], t = match.target[i];
+      const Vec3 own = source.locals[s].translation - setup_.source->joints[s].rest.translation;
+      Vec3 way = setup_.sourceKinematics.parentRotation(s, sourceFrame) * (setup_.sourceKinematics.unit(s) * own);
+      if (i == 0 && !carried_.empty() && carried_[m]) {
+        way = sourceFrame.positions[s] - setup_.sourceNeutral.restPositions[s];
+      }
+      const double unit = setup_.scale / setup_.targetKinematics.unit(t);
+      const Quat toParent = setup_.targetKinematics.parentRotation(t, frame).conjugate();
+      target.locals[t].translation = setup_.target->joints[t].rest.translation + unit * (toParent * way);
+    }
   }
 }
 

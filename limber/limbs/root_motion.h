@@ -14,9 +14,11 @@ Vec3 middleOf(std::span<const Index> joints, const std::vector<Vec3>& positions)
 
 // Moves a posed target to where the source's motion has it.
 //
-// People: the hips' translation brings the pelvis to its place. Others: every matched joint's way from rest, scaled; of
+// People: the hips' translation brings the pelvis to its place; on the same body (RetargetSetup::sameBody) every joint
+// goes its partner's way from rest as well. Others: every matched joint's way from rest, scaled; of
 // quadrupeds that were matched by form that of the hindquarters alone.
-// Loose joints (looseJoints; of animals the feet that ride on their shins) are put where their carriers have them.
+// Loose joints (looseJoints; of animals the feet that ride on their shins) are put where their carriers have them, but
+// on the same body.
 class RootPlacer {
  public:
   explicit RootPlacer(const RetargetSetup& setup);
@@ -73,7 +75,7 @@ class RootPlacer {
   std::vector<Index> pelvisChildren_;  // what hangs on these and on the pelvis
   std::vector<Loose> loose_;
   bool turnsLoose_ = false;
-  std::vector<bool> carried_;  // #matches: whether nothing above it is matched, in the source either
+  std::vector<bool> carried_;  // of no people, #matches: whether nothing above it is matched, in the source either
   std::vector<Index> moved_;
 };
 

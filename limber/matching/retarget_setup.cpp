@@ -210,6 +210,52 @@ RetargetSetup::RetargetSetup(const Skeleton& from, const Skeleton& to, SkeletonM
     else if (!options.characterStands)
       targetGround = sourceGround * scale;
   }
+  sameBody = isSameBody();
+  // Two that rest at one height are in one space: where the recording's ground is not that of its rest pose, neither is
+  // the target's.
+  const auto restsAt = [&](const Skeleton& skeleton, MapSide side, const BodyKinematics& kinematics) {
+    BodyFrame frame;
+    kinematics.globals(restPose(skeleton), frame);
+    return lowest(groundJoints(map, side), frame.positions);
+  };
+  const double apart =
+      restsAt(to, MapSide::kTarget, targetKinematics) - scale * restsAt(from, MapSide::kSource, sourceKinematics);
+  const bool oneSpace = std::abs(apart) < kSameGround * targetHipHeight;
+  if (person && sameBody && oneSpace && !options.sourceGround) targetGround = scale * sourceGround;
+}
+
+// All bones alike, of whatever size; the rounding of scales that are not even is no difference.
+bool RetargetSetup::isTwin(const Twins& twins) const {
+  constexpr double kOff = 1e-4;  // hip heights of the target, and of its size
+  if (std::abs(scale / twins.scale - 1) > kOff) return false;
+  const std::vector<Vec3> from = posePositions(*source, turnedAlone(*source, sourceRest)),
+                          to = posePositions(*target, targetRest);
+  std::vector<Index> roots(to.size());
+  for (Index t = 0; t < to.size(); ++t) {
+    const std::optional<Index>& parent = target->joints[t].parent;
+    roots[t] = parent ? roots[*parent] : t;
+    const Vec3 way = twins.scale * (twins.turn * (from[twins.sourceOf[t]] - from[twins.sourceOf[roots[t]]]));
+    if ((way - (to[t] - to[roots[t]])).norm() > kOff * targetHipHeight) return false;
+  }
+  return true;
+}
+
+bool RetargetSetup::isSameBody() const {
+  const std::vector<Vec3>&from = sourceNeutral.positions, &to = targetNeutral.positions;
+  if (map.twins) return isTwin(*map.twins);
+  if (std::abs(scale - 1) > 1e-9) return false;
+  const auto isAt = [&](Index s, Index t) { return (from[s] - to[t]).norm() <= 1e-6 * targetHipHeight; };
+  Index alike = 0;
+  while (alike < from.size() && from.size() == to.size() && isAt(alike, alike)) ++alike;
+  if (alike == to.size()) return true;
+  // Or the target lacks joints of the source, and all that it has follow one.
+  std::size_t followed = 0;
+  for (const JointMatch& match : map.matches) {
+    if (match.source.size() > 1 || match.target.size() > 1) return false;
+    if (!isAt(match.source.front(), match.target.front())) return false;
+    ++followed;
+  }
+  return followed == to.size();
 }
 
 Vec3 RetargetSetup::placeOf(const Vec3& pelvis) const {

@@ -55,6 +55,9 @@ struct RetargetSetup {
   SkeletonMap map;
   RetargetOptions options;
   bool person = false;  // SkeletonMap::isBiped
+  // All bones are alike but for their size, and each joint of the target follows one: then every joint moves as its
+  // partner does, from where it rests, and there is nothing to correct.
+  bool sameBody = false;
   bool quadruped =
       false;        // SkeletonMap::isQuadruped, of no twins; else joints are matched one by one, and all may move
   Pose sourceRest;  // the rest pose, or what stands in for it (uprightPose)
@@ -71,6 +74,10 @@ struct RetargetSetup {
   double sourceLowest = 0, targetLowest = 0;  // likewise, in the neutral poses
   std::vector<AnimalLeg> animalLegs;          // of no people that stand on their joints
   std::vector<Index> targetTail;              // of no people with legs: it is kept off the ground
+
+ private:
+  bool isSameBody() const;
+  bool isTwin(const Twins& twins) const;
 };
 
 }  // namespace limber

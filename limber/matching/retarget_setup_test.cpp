@@ -52,6 +52,34 @@ TEST(RetargetSetup, ACharacterWithASurfaceStandsOnItsOwnGround) {
 }
 
 // Someone who drifts on the belly, half a metre up, moves the feet slowly; they do not stand there.
+TEST(RetargetSetup, TheSameBodyIsToldByItsBones) {
+  const Skeleton person = practiceHumanoid();
+  const auto isSame = [&](const Skeleton& other) {
+    return RetargetSetup(person, other, matchSkeletons(person, other), {}).sameBody;
+  };
+  EXPECT_TRUE(isSame(person));
+  EXPECT_TRUE(isSame(testing::scaled(testing::withOtherAxes(testing::renamed(person)), 0.5)));
+  EXPECT_FALSE(isSame(testing::oddlyBuilt()));
+  Skeleton longer = person;
+  longer.joints[person.find("leftHand").value()].rest.translation *= 1.01;
+  EXPECT_FALSE(isSame(longer)) << "a twin, whose hands would be elsewhere";
+}
+
+// Whose recording's ground is a hand's breadth over that of its rest pose.
+TEST(RetargetSetup, TheSameBodyIsAsHighOverItsGround) {
+  const Skeleton person = practiceHumanoid();
+  PoseSequence motion{std::vector(30, restPose(person)), 1.0 / 30};
+  for (Pose& pose : motion.poses) pose.locals[0].translation.y() += 0.12;
+  RetargetOptions stands;
+  stands.characterStands = true;
+  const RetargetSetup setup(person, person, matchSkeletons(person, person), stands, &motion);
+  EXPECT_GT(setup.sourceGround, 0.1);
+  EXPECT_DOUBLE_EQ(setup.targetGround, setup.sourceGround);
+  stands.sourceGround = setup.sourceGround;
+  const RetargetSetup asked(person, person, matchSkeletons(person, person), stands, &motion);
+  EXPECT_LT(asked.targetGround, 0.1) << "who says where the ground is wants it under the feet";
+}
+
 TEST(RetargetSetup, ASwimmersFeetTellNoGround) {
   using limber::testing::turn;
   const Skeleton person = practiceHumanoid();

@@ -51,16 +51,21 @@ class TwinMatcher {
 
     std::optional<Twins> best;
     double least = kMostOff, names = -1;
+    std::size_t most = 0;  // bones that are alike to the bit, but for limbs that rest otherwise
     for (const Quat& turn : turns()) {
       Twins twins{std::vector<Index>(target_.jointCount(), 0), turn, scale_};
       if (!layOn(twins)) continue;
       if (distance(twins) > kAlike) {
-        twins.turn = turnOf(twins);
+        const Quat near = turnOf(twins);
+        if (bonesAlike(twins, near) > bonesAlike(twins, turn)) twins.turn = near;
         if (!layOn(twins)) continue;
       }
       const double off = distance(twins), common = namesInCommon(twins);
-      const bool better = off < least - kAlike || (off < least + kAlike && common > names);
-      if (!better) continue;
+      const std::size_t alike = bonesAlike(twins, twins.turn);
+      const bool better =
+          alike > most || (alike == most && (off < least - kAlike || (off < least + kAlike && common > names)));
+      if (!better || off > kMostOff) continue;
+      most = alike;
       least = std::min(off, least);
       names = common;
       best = std::move(twins);
@@ -234,6 +239,19 @@ class TwinMatcher {
     return turn;
   }
 
+  // Bones that are parallel and equally long, turned so: where most limbs rest otherwise, a fitted turn meets none.
+  std::size_t bonesAlike(const Twins& twins, const Quat& turn) const {
+    std::size_t alike = 0;
+    for (Index j = 0; j < to_.size(); ++j) {
+      const Index own = twins.sourceOf[j];
+      if (!targetTree_.parent(j) || !sourceTree_.parent(own)) continue;
+      const Vec3 bone = to_[j] - to_[*targetTree_.parent(j)];
+      const Vec3 other = scale_ * (turn * (from_[own] - from_[*sourceTree_.parent(own)]));
+      alike += (bone - other).norm() < kAlike * std::max(bone.norm(), short_);
+    }
+    return alike;
+  }
+
   double namesInCommon(const Twins& twins) const {
     double common = 0;
     for (Index j = 0; j < target_.jointCount(); ++j)
@@ -254,9 +272,14 @@ std::optional<Twins> matchTwins(const Skeleton& source, const Skeleton& target) 
   return TwinMatcher(source, target).match();
 }
 
+Pose turnedAlone(const Skeleton& skeleton, Pose pose) {
+  for (Index j = 0; j < skeleton.jointCount(); ++j) pose.locals[j].translation = skeleton.joints[j].rest.translation;
+  return pose;
+}
+
 Pose poseAsTwin(const Skeleton& source, const Pose& sourcePose, const Skeleton& target, const Twins& twins) {
   const JointTree tree(target);
-  const std::vector<Vec3> from = posePositions(source, sourcePose), to = restPositions(target);
+  const std::vector<Vec3> from = posePositions(source, turnedAlone(source, sourcePose)), to = restPositions(target);
   std::vector<Quat> turns(target.jointCount());        // of each joint with what hangs on it, in the target's space
   std::vector<bool> lies(target.jointCount(), false);  // all below is where it has to be
   std::vector<Vec3> wanted, is;

@@ -21,8 +21,12 @@ struct Twins {
 // otherwise. Cost: joints times the 28 turns that are tried.
 std::optional<Twins> matchTwins(const Skeleton& source, const Skeleton& target);
 
-// The target's pose in which each bone is parallel to the source's in its pose. A limb that is turned as a whole is
-// turned back exactly; of a single bone that points elsewhere the twist about it is not known, and stays.
+// With every joint where its parent carries it at rest: what moves by itself, such as a foot on a root of its own, says
+// nothing about how bones are turned.
+Pose turnedAlone(const Skeleton& skeleton, Pose pose);
+
+// The target's pose in which each bone is parallel to the source's in its pose (turnedAlone). A limb that is turned as
+// a whole is turned back exactly; of a single bone that points elsewhere the twist about it is not known, and stays.
 Pose poseAsTwin(const Skeleton& source, const Pose& sourcePose, const Skeleton& target, const Twins& twins);
 
 }  // namespace limber

@@ -162,6 +162,20 @@ TEST(TwinMatch, LimbsThatRestOtherwiseAreTurnedBackExactly) {
   expectTurnedBack(withOtherAxes(inRestPose(original(), kBentLimbs)));
 }
 
+// More bones than stay as they are.
+TEST(TwinMatch, AllLimbsAtOnceAreTurnedBackExactly) {
+  std::vector<std::pair<const char*, Quat>> limbs;
+  for (const auto& [name, degrees] : {std::pair{"mixamorig:LeftArm", 40},
+                                      {"mixamorig:RightArm", -40},
+                                      {"mixamorig:LeftUpLeg", 7},
+                                      {"mixamorig:RightUpLeg", -7}}) {
+    limbs.push_back({name, turn(Vec3::UnitZ(), degrees)});
+  }
+  const Skeleton bent = inRestPose(original(), {limbs.begin(), limbs.end()});
+  expectTurnedBack(bent);
+  expectTurnedBack(scaled(withOtherAxes(bent), 3));
+}
+
 TEST(TwinMatch, SoTheyAreOfOneWhoIsTurnedAnyhow) {
   for (const auto& limb : kBentLimbs) {
     SCOPED_TRACE(limb.first);

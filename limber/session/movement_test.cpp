@@ -32,7 +32,21 @@ Bytes lyingGlb() {
   return writeGlb(asset);
 }
 
+// Walks a hand's breadth over the ground of its rest pose, by a clip of its own; a hand moves against its arm.
+Bytes movingGlb() {
+  Asset asset = readAsset(testing::namedPersonGlb(), "moving.glb");
+  const AssetSkeleton skeleton = readSkeleton(asset);
+  PoseSequence walk = testing::walk(skeleton.skeleton, 31, 30);
+  for (Pose& pose : walk.poses) {
+    pose.locals[0].translation.y() += 0.1;
+    pose.locals[skeleton.skeleton.find("leftHand").value()].translation *= 1.1;
+  }
+  addClips(asset, skeleton, std::vector{clipOf(skeleton.skeleton, walk, "walk")});
+  return writeGlb(asset);
+}
+
 std::optional<Bytes> movingFiles(std::string_view path) {
+  if (path == "moving.glb") return movingGlb();
   if (path == "person.glb") return testing::namedPersonGlb();
   if (path == "lying.glb") return lyingGlb();
   return path == "walk.bvh" ? std::optional<Bytes>(testing::walkBvh()) : std::nullopt;
@@ -85,6 +99,29 @@ TEST(Movement, AMotionOntoAModelIsAClipThatCanBeScrubbed) {
   act(session, Undo{});
   EXPECT_TRUE(session.state().movement.clips.empty());
   EXPECT_TRUE(samePose(session.state().pose, before));
+}
+
+TEST(Movement, AModelsOwnMotionPutBackIsTheSame) {
+  for (const char* method : {"limb-ik", "spacetime", "online", "aligned"}) {
+    Session session(movingFiles);
+    act(session, OpenFile{"moving.glb"});
+    act(session, AddMotion{"moving.glb"});
+    act(session, RetargetMotion{.motion = "moving", .clip = {}, .method = method, .map = {}});
+    const Movement& movement = session.state().movement;
+    ASSERT_EQ(movement.clips.size(), 2u);
+    const Skeleton& skeleton = session.state().rig->skeleton();
+    const auto at = [&](std::size_t clip, double seconds) {
+      Pose pose = restPose(skeleton);
+      sampleClip(*movement.clips[clip].clip, seconds, pose);
+      return posePositions(skeleton, pose);
+    };
+    for (const double seconds : {0.1, 0.4, 0.8}) {
+      const std::vector<Vec3> own = at(0, seconds), back = at(1, seconds);
+      for (Index j = 0; j < skeleton.jointCount(); ++j) {
+        EXPECT_LT((own[j] - back[j]).norm(), 1e-4) << method << ' ' << skeleton.joints[j].name;
+      }
+    }
+  }
 }
 
 TEST(Movement, OneWhoLiesAtRestStandsInMotion) {
