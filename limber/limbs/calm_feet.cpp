@@ -52,7 +52,7 @@ void calmFeet(const RetargetSetup& setup, const RootPlacer& root, std::span<cons
               BodyFrame& frame) {
   const NeutralPose& neutral = setup.targetNeutral;
   for (const Leg& leg : legs) {
-    const double standing = setup.person ? leg.flatness : 0;
+    const double standing = setup.person ? leg.contact.flatness : 0;
     if (!leg.toes || (leg.footPitch == 1 && standing == 0)) continue;
     const Quat turn = frame.rotations[leg.end] * neutral.rotations[leg.end].conjugate();
     const Vec3 stands = (neutral.positions[*leg.toes] - neutral.positions[leg.end]).normalized();

@@ -24,7 +24,7 @@ Calmed calmed(double times, const Quat& hips, const Quat& foot, double flatness 
   const RetargetSetup setup(person, longFooted, matchSkeletons(person, longFooted), {});
   const RootPlacer root(setup);
   LimbGoals goals(setup, root);
-  goals.legs()[0].flatness = flatness;
+  goals.legs()[0].contact.flatness = flatness;
   Pose pose = restPose(longFooted);
   const Index joint = longFooted.find("leftFoot").value();
   pose.locals[longFooted.find("hips").value()].rotation = hips;

@@ -3,12 +3,9 @@
 
 #include <optional>
 
-#include "limber/core/types.h"
+#include "limber/limbs/contact_track.h"
 
 namespace limber {
-
-// What holds the foot: nothing, its ankle, or its toes (about which it rolls).
-enum class FootAnchor { kNone, kAnkle, kToes };
 
 class FootLock {
  public:

@@ -31,12 +31,9 @@ struct Leg : Limb {
   double ankleGround = 0, toesGround = 0;              // heights when standing, target; of the tip, too
   double sourceAnkleGround = 0, sourceToesGround = 0;  // likewise, source
   double footPitch = 1;                                // share of the source's (calmFeet)
-  FootAnchor anchor = FootAnchor::kNone;               // what holds the foot in this frame
-  bool flat = false;                                   // heel and toes stand both
+  FootContact contact;                                 // of the source's foot in this frame
   double ankleFloor = 0, toesFloor = 0;                // below which neither goes in this frame
-  double planted = 0;                                  // 0 to 1, comes and goes smoothly
-  double changed = 0;                                  // likewise, to what share its goal is one (Pelvis::changeOf)
-  double flatness = 0;                                 // likewise
+  double changed = 0;                                  // 0 to 1, smoothly, how much its goal is one (Pelvis::changeOf)
   Vec3 place = Vec3::Zero();                           // of the end, by the joint angles or by its own way
   double bentReach = 0;                                // ownWay: from hip to end if bent as the source's (LegBend)
   // ownWay: of the source's foot from where it stands, hip heights; more of people who lie down.

@@ -17,8 +17,7 @@ namespace {
 // In hip heights of the target.
 constexpr double kFootSlack = 0.9;  // how far a planted foot may be from where the joint angles have it
 constexpr double kStretch = 0.998;  // of a leg's length: fully stretched knees pop
-constexpr double kPlantRate = 9;    // 1/seconds, of the smooth flag
-constexpr double kChangeRate = 25;  // likewise, of Leg::changed
+constexpr double kChangeRate = 25;  // 1/seconds, of Leg::changed
 constexpr double kRiseRate = 40;    // likewise, of an animal's pelvis
 constexpr double kSoftGround = 0.006;
 constexpr double kSoftLowered = 0.003;  // of the source: where its foot goes below where it stands
@@ -37,15 +36,6 @@ constexpr double kSlipSpeed = 0.65, kPersonSlipSpeed = 0.4, kSlipPower = 3;
 constexpr double kBentInRest = 0.01;  // of an animal's leg's length: a knee off its line by that tells where it bends
 constexpr double kBendsAlike = 0.05;  // likewise: the source's joint of that name bends to the same side
 constexpr double kSteep = 1.7, kSoleUp = 2.4, kSoftLevel = 0.05;  // radians that toes point down
-// Speeds of the source's pelvis or feet, hip heights a second, that are no motion but a cut. Many recordings have a
-// T-pose as their first frame.
-constexpr double kJump = 15, kFirstJump = 4;
-
-// 0 or 1 without a jump.
-void followPlanting(double wanted, double seconds, double& value, double& speed) {
-  springTo(wanted, kPlantRate, seconds, value, speed);
-  value = std::clamp(value, 0.0, 1.0);
-}
 
 // How far the lower joint is off the line from the upper one to the end, in lengths of that line.
 Vec3 bendAtRest(const LegJoints& leg, const NeutralPose& neutral) {
@@ -54,10 +44,14 @@ Vec3 bendAtRest(const LegJoints& leg, const NeutralPose& neutral) {
   return (lower - lower.dot(line) / line.squaredNorm() * line) / line.norm();
 }
 
+WatchedFoot watched(const Leg& leg) {
+  return {leg.sourceEnd, leg.toes ? leg.sourceToes : std::nullopt, leg.sourceAnkleGround, leg.sourceToesGround};
+}
+
 }  // namespace
 
 LimbGoals::LimbGoals(const RetargetSetup& setup, const RootPlacer& root)
-    : setup_(setup), root_(root), pelvis_(setup, root), lift_(setup), tail_(setup, root) {
+    : setup_(setup), root_(root), pelvis_(setup, root), lift_(setup), tail_(setup, root), contacts_(setup) {
   if (setup.person) {
     addPersonsLegs(root);
   } else {
@@ -140,30 +134,22 @@ void LimbGoals::addLeg(Leg leg) {
   if (leg.tip) leg.toesGround = targetGround(*leg.tip);
   leg.footPitch = footPitchShare(setup_, leg);
   legs_.push_back(leg);
-  feelers_.emplace_back(PlantDetector(setup_.sourceHipHeight));
+  feelers_.emplace_back();
+  contacts_.watch(watched(leg));
 }
 
-// What of the foot stands in the source.
-void LimbGoals::sense(Leg& leg, Feeler& feeler, const BodyFrame& source, double seconds) const {
-  const Vec3& ankle = source.positions[leg.sourceEnd];
-  const bool heel = feeler.ankle.next(ankle, ankle.y() - leg.sourceAnkleGround, seconds);
-  bool toes = false;
-  if (leg.toes) {
-    const Vec3& place = source.positions[*leg.sourceToes];
-    toes = feeler.toes.next(place, place.y() - leg.sourceToesGround, seconds);
-  }
-  leg.anchor = toes ? FootAnchor::kToes : heel ? FootAnchor::kAnkle : FootAnchor::kNone;
-  leg.flat = heel && toes;
-  followPlanting(leg.anchor != FootAnchor::kNone ? 1 : 0, seconds, leg.planted, feeler.plantedSpeed);
-  followPlanting(leg.flat ? 1 : 0, seconds, leg.flatness, feeler.flatSpeed);
+std::vector<WatchedFoot> LimbGoals::watchedFeet() const {
+  std::vector<WatchedFoot> feet;
+  for (const Leg& leg : legs_) feet.push_back(watched(leg));
+  return feet;
 }
 
 // Where the target's foot is by its joint angles, and the ground under it.
 void LimbGoals::feel(Leg& leg, Feeler& feeler, const BodyFrame& source, const BodyFrame& target, double seconds) const {
   FootLock::Frame& foot = feeler.foot;
   const FootLock::Frame before = foot;
-  foot.anchor = leg.anchor;
-  foot.flat = leg.flat;
+  foot.anchor = leg.contact.anchor;
+  foot.flat = leg.contact.flat;
   leg.place = target.positions[leg.end];
   if (leg.ownWay) leg.place = ownPlace(leg, source, target);
   foot.ankle = foot.toes = leg.place;
@@ -228,27 +214,6 @@ void LimbGoals::followFall(double down, double seconds, Fall& fall) {
   springTo(seconds > 0 ? std::max(down / seconds, 0.0) : 0.0, kFallRate, seconds, fall.speed, fall.change);
 }
 
-// Nobody moves that fast: what stood before the cut does not count behind it.
-bool LimbGoals::forgetAcrossCuts(const BodyFrame& source, double seconds) {
-  std::vector<Vec3>& now = landmarks_[1];
-  now.assign(1, pelvisOf(setup_.map, MapSide::kSource, source.positions));
-  for (const Leg& leg : legs_) now.push_back(source.positions[leg.sourceEnd]);
-  const double jump = (frames_++ == 1 ? kFirstJump : kJump) * setup_.sourceHipHeight * seconds;
-  bool cut = false;
-  for (std::size_t i = 0; i < landmarks_[0].size(); ++i) {
-    cut = cut || (now[i] - landmarks_[0][i]).norm() > jump;
-  }
-  std::swap(landmarks_[0], landmarks_[1]);
-  if (!cut) return false;
-  for (Feeler& feeler : feelers_) {
-    feeler.ankle.reset();
-    feeler.toes.reset();
-    feeler.lock.reset();
-    feeler.carried = Vec3::Zero();
-  }
-  return true;
-}
-
 // Animals that sit lay the whole foot down: as far as a joint in the source is below where it is when standing, it may
 // be in the target.
 double LimbGoals::loweredBy(double sourceGround, const Vec3& sourcePlace) const {
@@ -257,9 +222,13 @@ double LimbGoals::loweredBy(double sourceGround, const Vec3& sourcePlace) const 
 }
 
 void LimbGoals::calm(const BodyFrame& source, double seconds, Pose& target, BodyFrame& frame) {
-  cut_ = forgetAcrossCuts(source, seconds);
-  if (cut_) seconds = 0;
-  for (std::size_t i = 0; i < legs_.size(); ++i) sense(legs_[i], feelers_[i], source, seconds);
+  contacts_.next(source, seconds);
+  for (std::size_t i = 0; i < legs_.size(); ++i) {
+    legs_[i].contact = contacts_.foot(i);
+    if (!atCut()) continue;
+    feelers_[i].lock.reset();
+    feelers_[i].carried = Vec3::Zero();
+  }
   pelvis_.levelHips(target, frame);
   pelvis_.trunk().follow(source, target, frame);
   if (!setup_.person) root_.movePelvis(Vec3(0, lift_(source, frame), 0), target, frame);
@@ -267,7 +236,7 @@ void LimbGoals::calm(const BodyFrame& source, double seconds, Pose& target, Body
 }
 
 void LimbGoals::setFeet(const BodyFrame& source, const BodyFrame& target, double seconds) {
-  if (cut_) seconds = 0;
+  if (atCut()) seconds = 0;
   for (std::size_t i = 0; i < legs_.size(); ++i) feel(legs_[i], feelers_[i], source, target, seconds);
   carryFeet(target, seconds);
   for (std::size_t i = 0; i < legs_.size(); ++i) setFoot(legs_[i], feelers_[i], feelers_[i].lock, seconds);
@@ -321,13 +290,13 @@ void LimbGoals::keepAboveGround(Leg& leg, const FootLock::Frame& foot, const Fee
   const auto raise = [&](double under, const Fall& fall, double firm) {
     const double height = setup_.targetHipHeight, ahead = kFallSeconds * std::max(fall.speed, 0.0) / height;
     const double soft = kSoftGround + kMostSoft * ahead / (kMostSoft + ahead);
-    leg.goal.y() += softPositive(under, height * soft * (1 - firm * leg.planted));
+    leg.goal.y() += softPositive(under, height * soft * (1 - firm * leg.contact.strength));
   };
   const auto raiseAnkle = [&](double firm) { raise(foot.ankleGround - leg.goal.y(), feeler.ankleFall, firm); };
   const auto raiseToes = [&](double firm) {
     if (leg.toes) raise(foot.toesGround - toesOver - leg.goal.y(), feeler.toesFall, firm);
   };
-  if (leg.anchor == FootAnchor::kToes) {
+  if (leg.contact.anchor == FootAnchor::kToes) {
     raiseAnkle(kFirmBeside);
     raiseToes(kFirmHeld);
   } else {
@@ -365,7 +334,7 @@ void LimbGoals::levelToes(const Leg& leg, BodyFrame& frame, Pose& target) const 
   const Quat turn = frame.rotations[*toes] * setup_.targetNeutral.rotations[*toes].conjugate();
   const double down = std::max(std::atan2(-(turn * Vec3::UnitZ()).y(), (turn * Vec3::UnitY()).y()), 0.0);
   const double over = (frame.positions[*toes].y() - leg.toesGround) / setup_.targetHipHeight;
-  const double lies = leg.toes ? leg.planted : smoothStep(1 - over / kTipLies);
+  const double lies = leg.toes ? leg.contact.strength : smoothStep(1 - over / kTipLies);
   const double share = lies * std::clamp((kSoleUp - down) / (kSoleUp - kSteep), 0.0, 1.0);
   const double up = share * down * down / (down + kSoftLevel);
   if (up < 1e-9) return;

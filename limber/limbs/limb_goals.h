@@ -1,16 +1,15 @@
 // Where feet have to be: planted, on the ground, as the pelvis goes along. Shared by the methods that solve for it.
 #pragma once
 
-#include <array>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "limber/limbs/body_lift.h"
+#include "limber/limbs/contact_track.h"
 #include "limber/limbs/leg_bend.h"
 #include "limber/limbs/limb.h"
 #include "limber/limbs/pelvis.h"
-#include "limber/limbs/plant_detector.h"
 #include "limber/limbs/tail_lift.h"
 
 namespace limber {
@@ -36,7 +35,9 @@ class LimbGoals {
   // none stretches its leg wholly: knees else fold and snap. For hips that are where they stay.
   void bendAsSource(Leg& leg, const BodyFrame& target) const;
   // Whether the source jumped to the last frame: what was before it does not count.
-  bool atCut() const { return cut_; }
+  bool atCut() const { return contacts_.atCut(); }
+  // Of the legs, for a ContactTrack of the whole motion.
+  std::vector<WatchedFoot> watchedFeet() const;
   // Toes of a planted foot lie on the ground while the heel goes up, though recordings have them straight: else their
   // tips would go below it. So do toes that the source lacks wherever they are near the ground, and their foot tips no
   // further than lets them (keepTipUp). For a target that is posed but for that; soles that look up, as of someone who
@@ -58,10 +59,8 @@ class LimbGoals {
   };
   // What is known of a leg's foot.
   struct Feeler {
-    explicit Feeler(const PlantDetector& detector) : ankle(detector), toes(detector) {}
-    PlantDetector ankle, toes;
     FootLock lock;
-    double plantedSpeed = 0, flatSpeed = 0, changedSpeed = 0;
+    double changedSpeed = 0;
     FootLock::Frame foot;  // as its joint angles have it
     Fall ankleFall, toesFall;
     Vec3 carried = Vec3::Zero();    // by its hip
@@ -77,7 +76,6 @@ class LimbGoals {
   void addPersonsLegs(const RootPlacer& root);
   void addAnimalsLegs(const RootPlacer& root);
   void addLeg(Leg leg);
-  void sense(Leg& leg, Feeler& feeler, const BodyFrame& source, double seconds) const;
   void feel(Leg& leg, Feeler& feeler, const BodyFrame& source, const BodyFrame& target, double seconds) const;
   std::optional<Index> sourceBodyOf(const AnimalLeg& leg) const;
   Quat turnOfBody(const Leg& leg, const BodyFrame& source) const;
@@ -89,8 +87,6 @@ class LimbGoals {
   void setFoot(Leg& leg, const Feeler& feeler, FootLock& lock, double seconds) const;
   void keepAboveGround(Leg& leg, const FootLock::Frame& foot, const Feeler& feeler) const;
   double heightOverGround(const Leg& leg, const BodyFrame& target) const;
-  // True at a cut.
-  bool forgetAcrossCuts(const BodyFrame& source, double seconds);
   double loweredBy(double sourceGround, const Vec3& sourcePlace) const;
 
   const RetargetSetup& setup_;
@@ -99,11 +95,9 @@ class LimbGoals {
   BodyLift lift_;
   TailLift tail_;
   std::vector<Leg> legs_;
-  std::vector<Feeler> feelers_;                 // of the legs
-  Rise rise_;                                   // of the pelvis
-  std::array<std::vector<Vec3>, 2> landmarks_;  // of the frame before, and room for this one's
-  std::size_t frames_ = 0;
-  bool cut_ = false;
+  ContactReader contacts_;       // of the legs
+  std::vector<Feeler> feelers_;  // likewise
+  Rise rise_;                    // of the pelvis
   bool active_ = true;
 };
 

@@ -121,10 +121,10 @@ Quat Pelvis::turnFor(std::span<const Leg> legs, const BodyFrame& frame) const {
   const Leg &left = legs[0], &right = legs[1];
   const Vec3 toHip = 0.5 * (frame.positions[left.upper] - frame.positions[right.upper]);
   const Vec3 lackLeft = left.goal - frame.positions[left.end], lackRight = right.goal - frame.positions[right.end];
-  const double both = left.planted * right.planted, length = 0.5 * (left.length + right.length);
+  const double both = left.contact.strength * right.contact.strength, length = 0.5 * (left.length + right.length);
   const double onTwo = kStiffOnTwo * length, onOne = kStiffOnOne * length;
   Vec3 turn = 0.5 * both / (toHip.squaredNorm() + onTwo * onTwo) * toHip.cross(lackLeft - lackRight);
-  const Vec3 alone = (left.planted - both) * lackLeft - (right.planted - both) * lackRight;
+  const Vec3 alone = (left.contact.strength - both) * lackLeft - (right.contact.strength - both) * lackRight;
   turn.y() += toHip.cross(alone).y() / (toHip.squaredNorm() + onOne * onOne);
   return fromRotationVector(turn / std::sqrt(1 + turn.squaredNorm() / (kMostTurn * kMostTurn)));
 }
@@ -138,7 +138,7 @@ double Pelvis::riseFor(std::span<const Leg> legs, const BodyFrame& frame, const 
     const Vec3 hip = frame.positions[leg.upper], way = leg.goal - hip - hipWay({turn, 0}, leg, frame);
     const double length = (frame.positions[leg.end] - hip).norm(), across = std::hypot(way.x(), way.z());
     if (way.y() >= 0 || across >= length) continue;
-    const double weight = leg.planted * (1 - across * across / (length * length));
+    const double weight = leg.contact.strength * (1 - across * across / (length * length));
     sum += weight * (way.y() + std::sqrt(length * length - across * across));
     weights += weight;
   }

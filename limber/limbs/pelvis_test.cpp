@@ -115,7 +115,7 @@ TEST(Pelvis, HipsGoWhereTheMoveSays) {
     std::vector<Leg>& legs = goals.legs();
     ASSERT_EQ(legs.size(), 2u);
     for (Leg& leg : legs) {
-      leg.planted = 1;
+      leg.contact.strength = 1;
       leg.goal = wide.frame_.positions[leg.end] + Vec3(0, 0.03, leg.upper == legs[0].upper ? 0.1 : -0.05);
       leg.changed = wide.pelvis_.changeOf(leg, wide.frame_);
     }
@@ -156,7 +156,7 @@ TEST(Pelvis, NothingJumpsWhereALegBecomesTooShort) {
   LimbGoals goals(person.setup_, person.root_);
   Leg &leg = goals.legs()[0], &other = goals.legs()[1];
   other.goal = person.frame_.positions[other.end];
-  leg.planted = 1;
+  leg.contact.strength = 1;
   const Vec3 hip = person.frame_.positions[leg.upper];
   const double length = (person.frame_.positions[leg.end] - hip).norm();
   double before = 0;

@@ -6,7 +6,6 @@
 #include <span>
 
 #include "limber/limbs/limb_goals.h"
-#include "limber/retarget/aligned.h"
 #include "limber/retarget/even_changes.h"
 #include "limber/retarget/moved_legs.h"
 
@@ -20,8 +19,6 @@ constexpr double kLoops = 0.02;  // of a limb's bones, between the directions in
 // Jerk counts as for changes that come and go in that time, seconds; ever longer until the motion is even. And that
 // many frames: longer ones leave sums whose weights cannot be told apart.
 constexpr double kShortest = 0.007, kLongest = 1, kLonger = 1.2, kMostFrames = 30;
-// A foot of the source stands that is as low and as slow, hip heights (a second), seen over the step to a frame.
-constexpr double kLow = 0.05, kSlow = 0.15;
 constexpr double kFurthest = 0.3;   // of any change, hip heights
 constexpr double kStretch = 0.998;  // of a leg's length
 constexpr int kHalvings = 4;
@@ -69,24 +66,14 @@ class Evener {
                          [](const Path& path) { return (path.back() - path.front()).norm() < kLoops; });
   }
 
-  // Of the whole motion, as the methods saw them, and with what comes.
-  void senseFeet() {
-    AlignedRetargeter aligned(setup_);
-    Pose pose = restPose(*setup_.target);
-    std::vector<Vec3> before(legs_.size());
+  // What has to hold for the feet of the whole motion.
+  void boundFeet() {
+    const ContactTrack contacts(setup_, goals_.watchedFeet(), source_);
     for (std::size_t f = 0; f < target_.poses.size(); ++f) {
-      const double seconds = f == 0 ? 0 : source_.frameSeconds;
-      aligned.next(source_.poses[f], seconds, pose);
-      goals_.calm(aligned.sourceFrame(), seconds, pose, aligned.targetFrame());
       setup_.targetKinematics.globals(target_.poses[f], frame_);
       for (std::size_t i = 0; i < legs_.size(); ++i) {
-        const Leg& leg = legs_[i];
-        const Vec3& place = aligned.sourceFrame().positions[leg.sourceEnd];
-        const bool slow = f > 0 && (place - before[i]).norm() < kSlow * seconds * setup_.sourceHipHeight;
-        const bool low = place.y() - leg.sourceAnkleGround < kLow * setup_.sourceHipHeight;
-        feet_.push_back(boundsOf(leg));
-        feet_.back().stands = leg.anchor != FootAnchor::kNone || (slow && low);
-        before[i] = place;
+        feet_.push_back(boundsOf(legs_[i]));
+        feet_.back().stands = contacts.at(f, i).stands();
       }
     }
   }
@@ -134,7 +121,7 @@ class Evener {
   }
 
   void evenPart(const MotionEnds& ends) {
-    if (feet_.empty()) senseFeet();
+    if (feet_.empty()) boundFeet();
     feetHere_ = std::span(feet_).subspan(begin_ * legs_.size(), layout_.frames() * legs_.size());
     cutsHere_ = partsCuts();
     startFrom();

@@ -135,8 +135,8 @@ class Spacetime {
         FootFrame& foot = feet_[i].emplace_back();
         foot.ankle = leg.place;
         foot.sourceAnkle = from.positions[leg.sourceEnd];
-        foot.anchor = leg.anchor;
-        foot.flat = leg.flat;
+        foot.anchor = leg.contact.anchor;
+        foot.flat = leg.contact.flat;
         foot.ankleFloor = leg.ankleFloor;
         foot.ownWay = leg.ownWay;
         foot.bentReach = leg.bentReach;
@@ -226,7 +226,7 @@ class Spacetime {
       leg.lift = feet_[i][f].lift;
       leg.upright = feet_[i][f].upright;
       leg.turn = Eigen::AngleAxisd(plans_[i].twist[f], Vec3::UnitY());
-      leg.planted = std::clamp(plans_[i].planted[f], 0.0, 1.0);
+      leg.contact.strength = std::clamp(plans_[i].planted[f], 0.0, 1.0);
     }
   }
 

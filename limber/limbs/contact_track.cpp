@@ -1,0 +1,95 @@
+#include "limber/limbs/contact_track.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "limber/limbs/spring.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kPlantRate = 9;  // 1/seconds, of strength and flatness
+// A foot rests that is as low and as slow, hip heights (a second), seen over the step to a frame.
+constexpr double kLow = 0.05, kSlow = 0.15;
+// Speeds of the source's pelvis or feet, hip heights a second, that are no motion but a cut. Many recordings have a
+// T-pose as their first frame.
+constexpr double kJump = 15, kFirstJump = 4;
+
+// 0 or 1 without a jump.
+void follow(bool wanted, double seconds, double& value, double& speed) {
+  springTo(wanted ? 1.0 : 0.0, kPlantRate, seconds, value, speed);
+  value = std::clamp(value, 0.0, 1.0);
+}
+
+}  // namespace
+
+void ContactReader::watch(const WatchedFoot& foot) {
+  const PlantDetector detector(setup_.sourceHipHeight);
+  feet_.push_back({foot, detector, detector, {}, 0, 0, std::nullopt});
+}
+
+void ContactReader::next(const BodyFrame& source, double seconds) {
+  cut_ = jumps(source, seconds);
+  for (Watched& watched : feet_) {
+    if (cut_) {
+      watched.ankle.reset();
+      watched.toes.reset();
+    }
+    const Vec3& ankle = source.positions[watched.foot.ankle];
+    watched.contact.rests = rests(watched, ankle, seconds);
+    watched.before = ankle;
+    read(watched, source, cut_ ? 0 : seconds);
+  }
+}
+
+// Nobody moves that fast.
+bool ContactReader::jumps(const BodyFrame& source, double seconds) {
+  landmarks_.assign(1, pelvisOf(setup_.map, MapSide::kSource, source.positions));
+  for (const Watched& watched : feet_) landmarks_.push_back(source.positions[watched.foot.ankle]);
+  const double jump = (frames_++ == 1 ? kFirstJump : kJump) * setup_.sourceHipHeight * seconds;
+  bool jumped = false;
+  for (std::size_t i = 0; i < landmarksBefore_.size(); ++i) {
+    jumped = jumped || (landmarks_[i] - landmarksBefore_[i]).norm() > jump;
+  }
+  std::swap(landmarksBefore_, landmarks_);
+  return jumped;
+}
+
+bool ContactReader::rests(Watched& watched, const Vec3& ankle, double seconds) const {
+  const double unit = setup_.sourceHipHeight;
+  if (!watched.before || ankle.y() - watched.foot.ankleGround >= kLow * unit) return false;
+  return (ankle - *watched.before).norm() < kSlow * seconds * unit;
+}
+
+void ContactReader::read(Watched& watched, const BodyFrame& source, double seconds) const {
+  const WatchedFoot& foot = watched.foot;
+  const Vec3& ankle = source.positions[foot.ankle];
+  const bool heel = watched.ankle.next(ankle, ankle.y() - foot.ankleGround, seconds);
+  bool toes = false;
+  if (foot.toes) {
+    const Vec3& place = source.positions[*foot.toes];
+    toes = watched.toes.next(place, place.y() - foot.toesGround, seconds);
+  }
+  FootContact& contact = watched.contact;
+  contact.anchor = toes ? FootAnchor::kToes : heel ? FootAnchor::kAnkle : FootAnchor::kNone;
+  contact.flat = heel && toes;
+  follow(contact.anchor != FootAnchor::kNone, seconds, contact.strength, watched.strengthSpeed);
+  follow(contact.flat, seconds, contact.flatness, watched.flatSpeed);
+}
+
+ContactTrack::ContactTrack(const RetargetSetup& setup, std::span<const WatchedFoot> feet, const PoseSequence& source)
+    : feet_(feet.size()) {
+  ContactReader reader(setup);
+  for (const WatchedFoot& foot : feet) reader.watch(foot);
+  BodyFrame frame;
+  for (std::size_t f = 0; f < source.poses.size(); ++f) {
+    setup.sourceKinematics.globals(source.poses[f], frame);
+    reader.next(frame, f == 0 ? 0 : source.frameSeconds);
+    cuts_.push_back(reader.atCut());
+    for (std::size_t i = 0; i < feet_; ++i) contacts_.push_back(reader.foot(i));
+  }
+}
+
+}  // namespace limber

@@ -1,0 +1,59 @@
+#include "limber/limbs/contact_track.h"
+
+#include <gtest/gtest.h>
+
+#include "limber/limbs/limb_goals.h"
+#include "limber/matching/testing/test_motion.h"
+
+namespace limber {
+namespace {
+
+using namespace testing;
+
+class ContactTrackTest : public ::testing::Test {
+ protected:
+  ContactTrack track() const {
+    const RetargetSetup setup(person, odd, matchSkeletons(person, odd), {}, &motion);
+    const RootPlacer root(setup);
+    return {setup, LimbGoals(setup, root).watchedFeet(), motion};
+  }
+
+  const Skeleton person = practiceHumanoid(), odd = oddlyBuilt();
+  PoseSequence motion = walk(person, 240);
+};
+
+TEST_F(ContactTrackTest, AWalkStandsOnOneFootAfterTheOther) {
+  const ContactTrack contacts = track();
+  ASSERT_EQ(contacts.frames(), motion.poses.size());
+  std::size_t one = 0, none = 0, changes = 0;
+  for (std::size_t f = 0; f < contacts.frames(); ++f) {
+    const int standing = contacts.at(f, 0).stands() + contacts.at(f, 1).stands();
+    one += standing == 1;
+    none += standing == 0;
+    changes += f > 0 && contacts.at(f, 0).stands() != contacts.at(f - 1, 0).stands();
+    EXPECT_FALSE(f > 1 && contacts.isCut(f)) << "the walk begins at once";
+  }
+  EXPECT_GT(one, contacts.frames() / 2);
+  EXPECT_LT(none, contacts.frames() / 5);
+  EXPECT_GE(changes, 3u);
+}
+
+TEST_F(ContactTrackTest, StrengthComesAndGoesWithoutAJump) {
+  const ContactTrack contacts = track();
+  double most = 0;
+  for (std::size_t f = 1; f < contacts.frames(); ++f) {
+    most = std::max(most, std::abs(contacts.at(f, 0).strength - contacts.at(f - 1, 0).strength));
+  }
+  EXPECT_LT(most, 0.1);
+  EXPECT_GT(most, 0);
+}
+
+TEST_F(ContactTrackTest, WhatStoodBeforeACutDoesNotCount) {
+  for (std::size_t f = 120; f < motion.poses.size(); ++f) motion.poses[f].locals[0].translation += Vec3(3, 1, 0);
+  const ContactTrack contacts = track();
+  for (std::size_t f = 2; f < contacts.frames(); ++f) EXPECT_EQ(contacts.isCut(f), f == 120) << f;
+  EXPECT_FALSE(contacts.at(125, 0).stands() || contacts.at(125, 1).stands()) << "a metre over the ground";
+}
+
+}  // namespace
+}  // namespace limber
