@@ -38,8 +38,23 @@ void PlainSkeleton::mirror(Transform& local, Index joint) const {
   local.rotation.vec() = signs.prod() * signs.cwiseProduct(local.rotation.vec());
 }
 
+// What a parent's scale, against that at rest, does to the place of what hangs on it.
+void PlainSkeleton::takeScales(Pose& pose) const {
+  constexpr double kScaled = 1e-3;  // less is rounding
+  std::vector<double> factors;      // of each joint for its children
+  for (Index j = 0; j < skeleton_.jointCount(); ++j) {
+    const std::optional<Index>& parent = skeleton_.joints[j].parent;
+    const double above = parent ? factors[*parent] : 1;
+    if (above != 1) pose.locals[j].translation *= above;
+    const double rest = skeleton_.joints[j].rest.scale.x();
+    const double own = rest > 0 ? evenScale(pose.locals[j].scale).x() / rest : 1;
+    factors.push_back(std::abs(own - 1) > kScaled ? above * own : above);
+  }
+}
+
 PoseSequence PlainSkeleton::plain(PoseSequence frames) const {
   for (Pose& pose : frames.poses) {
+    takeScales(pose);
     for (Index j = 0; j < skeleton_.jointCount(); ++j) {
       mirror(pose.locals[j], j);
       pose.locals[j].scale = skeleton_.joints[j].rest.scale;

@@ -15,12 +15,14 @@ class PlainSkeleton {
   explicit PlainSkeleton(const Skeleton& original);
 
   const Skeleton& skeleton() const { return skeleton_; }
-  // Frames of the original as frames of skeleton(), and back with the original's scales at rest.
+  // Frames of the original as frames of skeleton(), and back with the original's scales at rest. Scales that change
+  // take joints along, as they do in the original.
   PoseSequence plain(PoseSequence frames) const;
   PoseSequence original(PoseSequence frames) const;
 
  private:
   void mirror(Transform& local, Index joint) const;
+  void takeScales(Pose& pose) const;
 
   Skeleton skeleton_;
   std::vector<Vec3> signs_;   // #J, of the axes of the space in which the joint's local transform is given

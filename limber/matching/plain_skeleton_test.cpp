@@ -63,5 +63,17 @@ TEST(PlainSkeleton, WithoutScalesNothingChanges) {
   }
 }
 
+// As something that grows out of nothing does.
+TEST(PlainSkeleton, ScalesThatChangeTakeJointsAlong) {
+  const Skeleton person = practiceHumanoid();
+  PoseSequence motion = turning(person);
+  for (std::size_t f = 0; f < motion.poses.size(); ++f) {
+    motion.poses[f].locals[0].scale *= 0.25 * static_cast<double>(f);
+    motion.poses[f].locals[person.find("chest").value()].scale *= 1.5;
+  }
+  const PlainSkeleton plain(person);
+  EXPECT_LT(largestDistance(person, motion, plain.skeleton(), plain.plain(motion)), 1e-9);
+}
+
 }  // namespace
 }  // namespace limber
