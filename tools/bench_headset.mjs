@@ -6,7 +6,7 @@ import { resolve } from 'node:path';
 import { launch, openStudio, serve, sessionState, settled } from '../apps/studio/tests/page.mjs';
 import { emulateHeadset } from '../apps/studio/tests/xr_headset.mjs';
 
-const [dist, sample = 'winged', handles = '20'] = process.argv.slice(2), count = 200;
+const [dist, sample = 'winged', handles = '20'] = process.argv.slice(2), count = 100;
 const server = await serve(resolve(dist)), browser = await launch();
 const { page } = await openStudio(browser, server.address, { width: 400, height: 400, search: `?sample=${sample}`, prepare: (context) => emulateHeadset(context, { stereo: true }) });
 await page.evaluate(() => {

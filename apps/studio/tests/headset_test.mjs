@@ -153,8 +153,17 @@ const cases = {
     assert.equal(joints[await page.evaluate(() => limberStudio.selected())].name, name);
     assert.equal(now, undo);
   },
-  async 'hidden, blurred or out of sight: a drag ends where it was'() {
+  async 'with one hand alone the panel is beside the model, within reach'() {
+    await page.evaluate(() => { headset.device.controllers.left.connected = false; });
+    await act(...ready.slice(1));
     await pressCell('mode-move');
+    const away = apart(await ask('cell', 'mode-move'), [0, 1.6, 0]);
+    assert.ok(away > 0.4 && away < 0.8, `${away} m from the eyes`);
+    await shot('one_hand');
+    await page.evaluate(() => { headset.device.controllers.left.connected = true; });
+    await act(...ready);
+  },
+  async 'hidden, blurred or out of sight: a drag ends where it was'() {
     const name = await jointOf('left hand'), from = [0.2, 1.3, -0.3];
     for (const [what, begin, back, says] of [
       ['hidden', () => headset.device.updateVisibilityState('hidden'), () => headset.device.updateVisibilityState('visible'), /Waiting/],
