@@ -1,5 +1,6 @@
 // Plays the clips of the scene on one clock: a moment for each frame that the screen shows.
 import { chosenClip, momentOf, sceneDuration } from './clips';
+import { nextFrame } from './frames';
 import type { PageStore } from './state';
 import type { Studio } from './studio';
 
@@ -20,7 +21,7 @@ export function bindPlayer(studio: Studio, page: PageStore) {
     clock = next;
     studio.showMoment(momentOf(chosenClip(session), next), next);
     if (next === duration && !loop) page.set({ playing: false });
-    requestAnimationFrame(step);
+    nextFrame(step);
   };
   /** Where it was, unless the moment that is shown is another one. */
   const clockNow = () => {
@@ -31,7 +32,7 @@ export function bindPlayer(studio: Studio, page: PageStore) {
     if (!playing || running) return;
     running = true;
     before = performance.now();
-    requestAnimationFrame(step);
+    nextFrame(step);
   });
 }
 

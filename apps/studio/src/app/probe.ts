@@ -1,5 +1,6 @@
 // What a program that drives the page (a test, a script that makes pictures) can ask of it.
 import { Vector3 } from 'three';
+import type { ArProbe } from '../ar/ar_probe';
 import type { SessionState, Vector } from '../engine/messages';
 import type { Gizmo } from '../scene/gizmo';
 import type { HandleView } from '../scene/handle_view';
@@ -26,6 +27,8 @@ export interface StudioProbe {
   memberPlace(member: number, up?: number): { x: number; y: number };
   /** Pixels of the page. */
   place(joint: string): { x: number; y: number };
+  /** While models are seen in a real place. */
+  ar?: ArProbe;
 }
 
 declare global {
@@ -43,8 +46,8 @@ export function exposeStage(
   const onPage = (at: Vector3) => {
     viewport.camera.updateMatrixWorld();
     const { x, y } = at.project(viewport.camera);
-    const box = viewport.canvas.getBoundingClientRect();
-    return { x: box.left + ((x + 1) / 2) * box.width, y: box.top + ((1 - y) / 2) * box.height };
+    const { width, height } = viewport.size, { left, top } = page.now.ar ? { left: 0, top: 0 } : viewport.canvas.getBoundingClientRect();
+    return { x: left + ((x + 1) / 2) * width, y: top + ((1 - y) / 2) * height };
   };
   const position = (name: string) => handles.position(jointOf(name), new Vector3());
   let turns: Float32Array = new Float32Array();

@@ -1,7 +1,10 @@
 // The models of the scene in a real place: frames, where they stand, what is on the screen, until all is put back.
 import { Matrix4, MathUtils, Ray, Vector3 } from 'three';
 import type { ArState } from '../app/state';
+import { framesFrom, nextFrame } from '../app/frames';
 import type { Ray as EngineRay } from '../engine/messages';
+import { ArLight } from './ar_light';
+import { takePicture } from './ar_picture';
 import type { Desk } from './desk';
 import { Reticle } from './reticle';
 import { Room, turnTowards } from './room';
@@ -25,6 +28,12 @@ export class ArView implements Looker {
   ownTrouble: () => ArState['trouble'] = () => null;
 
   private place = new Room();
+  private light: ArLight | null = null;
+  /** Done within the next frame, once it is drawn. */
+  private afterFrame: (() => void)[] = [];
+  private steps: ((now: number) => void)[] = [];
+  private stopWatching = () => {};
+  private stopFrames = () => {};
   private reticle = new Reticle();
   private touch = new Touch(this);
   private stands = false; // the scene has a place in the room
@@ -61,6 +70,13 @@ export class ArView implements Looker {
     });
     this.chooseMode();
     this.lookedSince = performance.now();
+    this.stopFrames = framesFrom((step) => this.steps.push(step));
+    // What comes into the scene is looked for a place; undone, it needs none.
+    this.stopWatching = page.watch(({ session }, { session: before }) => {
+      if (!session || !before || !this.stands || session.members.length === before.members.length) return;
+      if (session.members.length > before.members.length && session.redo === null) this.placeAgain();
+      else this.tell({ step: 'placed' });
+    });
   }
 
   get isPlacing() { return this.desk.page.now.ar?.step !== 'placed'; }
@@ -69,16 +85,22 @@ export class ArView implements Looker {
 
   frame(known: boolean) {
     const trouble = this.trouble(known);
+    for (const step of this.steps.splice(0)) step(performance.now());
     if (!known) {
       if (this.desk.page.now.ar?.trouble !== 'lost') this.letGo();
       return this.tell({ trouble });
     }
+    if (this.sight.watched && this.stands) this.place.correct(this.sight.watched);
     if (this.isPlacing) this.preview();
     else this.touch.frame();
     this.tell({ trouble, surface: this.at !== null });
+    this.light?.follow();
     this.beforeFrame.forEach((act) => act());
     this.desk.viewport.drawNow();
+    for (const act of this.afterFrame.splice(0)) act();
   }
+
+  expectLight() { this.light = new ArLight(this.desk.viewport, this.place); }
 
   hide(hidden: boolean) {
     this.hidden = hidden;
@@ -108,8 +130,12 @@ export class ArView implements Looker {
   async settle() {
     const { page } = this.desk;
     if (!this.isPlacing || !page.now.session) return;
-    if (!this.stands) this.standScene(this.at ?? this.spotAhead());
-    const later = this.stands;
+    const later = this.stands, at = this.at ?? this.spotAhead();
+    if (!later) {
+      this.standScene(at);
+      this.place.hold(at);
+      this.sight.watchOver(at);
+    }
     this.stands = true;
     this.tell({ step: 'placed', trouble: null });
     this.reticle.show(null);
@@ -138,6 +164,17 @@ export class ArView implements Looker {
       this.chooseMode();
     } else if (page.now.display === 'handles') await studio.selectSurface(ray, 0);
     else page.set({ display: 'handles' });
+  }
+
+  /** A PNG; null where no background is given and the browser keeps what the camera sees to itself. */
+  async picture(background: string | null): Promise<Blob | null> {
+    const { page } = this.desk, { display } = page.now;
+    const screen = await new Promise<HTMLCanvasElement | null>((resolve) => this.afterFrame.push(() => {
+      page.set({ display: 'surface' });
+      resolve(takePicture(this, background));
+      page.set({ display });
+    }));
+    return screen && new Promise((resolve) => screen.toBlob(resolve, 'image/png'));
   }
 
   /** Where it is shown, a member stays: one step to undo. */
@@ -249,6 +286,10 @@ export class ArView implements Looker {
     if (!this.room.parent) return;
     this.letGo();
     removeEventListener('visibilitychange', this.onVisibility);
+    this.stopWatching();
+    this.stopFrames();
+    this.steps.splice(0).forEach(nextFrame);
+    this.light?.dispose();
     this.reticle.dispose();
     this.room.removeFromParent();
     app.hidden = false;

@@ -2,6 +2,7 @@
 import { ask } from '../ui/ask';
 import { say } from '../words/say';
 import { arPanel } from './ar_panel';
+import { arProbe } from './ar_probe';
 import { ArView } from './ar_view';
 import type { Desk } from './desk';
 import type { Sight } from './sight';
@@ -16,6 +17,7 @@ export async function beginAr(desk: Desk, sight: Sight = new WebXrSight(), refus
   panel.show(view);
   view.onEnd = (byItself) => {
     studio.ask = askAtDesk;
+    delete globalThis.limberStudio?.ar;
     panel.close();
     if (byItself) page.set({ notice: { kind: 'note', title: say('The device has ended augmented reality'), detail: say('Everything is as you left it.') } });
   };
@@ -27,7 +29,8 @@ export async function beginAr(desk: Desk, sight: Sight = new WebXrSight(), refus
   }
   studio.ask = (title, detail, yes) => ask(title, detail, yes, panel.root);
   view.begin();
-  if (sight instanceof WebXrSight && !sight.hasOverlay) (await import('./headset/headset')).beginHeadset(view, sight);
+  if (globalThis.limberStudio) globalThis.limberStudio.ar = arProbe(view);
+  if (sight instanceof WebXrSight && !sight.hasOverlay && sight.session?.interactionMode !== 'screen-space') (await import('./headset/headset')).beginHeadset(view, sight);
 }
 
 function tellRefusal({ page }: Desk) {

@@ -12,6 +12,7 @@ export class HandleDrag implements Gesture {
   private readonly offset: { x: number; y: number }; // of the handle's middle from the finger, pixels
   private readonly depth: number; // of the handle before the camera, metres of the model's own space
   private readonly mode;
+  private asked = '';
   private rest = new Vector3(); // between where the finger wants the handle and where its limb reaches
   private readonly stopReading: () => void;
 
@@ -38,7 +39,9 @@ export class HandleDrag implements Gesture {
       this.begun = wanted.distanceTo(this.from) > tapDistance * pixelSize(camera, size.height) * away;
     }
     if (!this.begun) return;
-    studio.updateDrag(to.ray, to.view);
+    const asked = JSON.stringify(to);
+    if (asked !== this.asked) studio.updateDrag(to.ray, to.view); // else neither finger nor device has moved
+    this.asked = asked;
     // The engine answers a frame or two later, and the device has moved on by then.
     if (this.mode === 'move') handles.hold(this.joint, wanted.add(this.rest));
   }

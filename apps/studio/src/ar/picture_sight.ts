@@ -37,6 +37,12 @@ export class PictureSight implements Sight {
     return distance > 0 && distance < farthest ? new Matrix4().setPosition(direction.multiplyScalar(distance).add(eye.position)) : null;
   }
 
+  /** The surface is the card's, and goes with it. */
+  watchOver() {}
+  readonly watched = null;
+
+  seen() { return this.camera.video.videoWidth > 0 ? this.camera.video : null; }
+
   async end() {
     cancelAnimationFrame(this.asked);
     this.camera.stop();

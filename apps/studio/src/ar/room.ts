@@ -13,6 +13,8 @@ export class Room {
   readonly group = new Group();
   readonly eye = new PerspectiveCamera(60, 1, nearest, farthest);
 
+  private held: { at: Matrix4; point: Vector3; turn: Quaternion } | null = null;
+
   constructor() {
     this.group.matrixAutoUpdate = false;
     this.group.add(this.eye);
@@ -29,7 +31,22 @@ export class Room {
   standAt(point: Vector3, front: Vector3, at: Matrix4) {
     const place = new Vector3().setFromMatrixPosition(at);
     const turn = new Quaternion().setFromAxisAngle(up, heading(front) - heading(this.eye.position.clone().sub(place)));
-    this.group.matrix.makeRotationFromQuaternion(turn).setPosition(point.clone().sub(place.applyQuaternion(turn)));
+    this.put(turn, point, place);
+  }
+
+  /** What is watched over stands where the scene was put on it. */
+  hold(at: Matrix4) { this.held = { at: at.clone(), point: this.toWorld(at), turn: new Quaternion().setFromRotationMatrix(this.group.matrix) }; }
+
+  /** By now it is known to be there; upright all the same. */
+  correct(now: Matrix4) {
+    if (!this.held) return;
+    const z = (of: Matrix4) => heading(new Vector3().setFromMatrixColumn(of, 2)), turn = new Quaternion().setFromAxisAngle(up, z(this.held.at) - z(now));
+    this.put(turn.premultiply(this.held.turn), this.held.point, new Vector3().setFromMatrixPosition(now));
+  }
+
+  /** So turned, with a place of the room on a point of the world. */
+  private put(turn: Quaternion, point: Vector3, place: Vector3) {
+    this.group.matrix.makeRotationFromQuaternion(turn).setPosition(point.clone().sub(place.clone().applyQuaternion(turn)));
     this.group.updateMatrixWorld(true);
   }
 }

@@ -1,5 +1,5 @@
 // What augmented reality looks through: WebXR on a phone or a headset, or a camera behind the page (CameraSight).
-import type { Group, Matrix4, PerspectiveCamera, WebGLRenderer } from 'three';
+import type { Group, Matrix4, PerspectiveCamera, Texture, WebGLRenderer } from 'three';
 import type { ArState } from '../app/state';
 
 /** Where a finger is on what is looked through, in pixels of the page. */
@@ -16,6 +16,8 @@ export interface Looker {
   /** The eye stands where the device does, its projection is the device's: the frame is drawn now. Where the place is not
    *  known (`known` false) the last one stays. */
   frame(known: boolean): void;
+  /** The session about to begin estimates the real light. */
+  expectLight(): void;
   /** Nobody sees it, or again somebody does. */
   hide(hidden: boolean): void;
   /** Fingers where no DOM overlay hears them: `null` is lifted. */
@@ -33,5 +35,10 @@ export interface Sight {
   /** In this frame, in the room: where something real is met on which a model can stand, below the spot or, without one,
    *  in the middle of the view. */
   meets(spot: Spot | null): Matrix4 | null;
+  /** Keeps an eye on a place of the room, where the device can: where that is as far as it knows by now, frame by frame. */
+  watchOver(at: Matrix4): void;
+  readonly watched: Matrix4 | null;
+  /** In this frame: what the camera sees, where the browser gives it. */
+  seen(): Texture | HTMLVideoElement | null;
   end(): Promise<void>;
 }

@@ -1,5 +1,5 @@
 // WebXR's immersive-ar: the device tells where it is, and where real surfaces are.
-import { Matrix4, Vector3 } from 'three';
+import { Matrix4, Quaternion, Vector3 } from 'three';
 import type { Looker, Sight, Spot } from './sight';
 
 /** All that is asked for can be missing. */
@@ -18,6 +18,9 @@ export class WebXrSight implements Sight {
   /** Inputs that touch the screen now. */
   private touches = new Map<XRInputSource, number>();
   private touchCount = 0;
+  private toWatch: Matrix4 | null = null;
+  private anchor: XRAnchor | null = null;
+  watched: Matrix4 | null = null;
 
   get hasOverlay() { return this.session?.domOverlayState != null; }
 
@@ -34,6 +37,7 @@ export class WebXrSight implements Sight {
       const floor = await session.requestReferenceSpace('local-floor').then(() => true, () => false);
       xr.setReferenceSpaceType(floor ? 'local-floor' : 'local');
       xr.enabled = true;
+      if (session.enabledFeatures?.includes('light-estimation')) looker.expectLight();
       await xr.setSession(session);
       await this.askForHits(session);
     } catch (error) {
@@ -65,6 +69,16 @@ export class WebXrSight implements Sight {
     return null;
   }
 
+  /** An anchor, made within the next frame. */
+  watchOver(at: Matrix4) { this.toWatch = at.clone(); }
+
+  seen() {
+    const { frame, looker } = this, { xr } = looker!.renderer, space = xr.getReferenceSpace();
+    const view = frame && space ? frame.getViewerPose(space)?.views[0] as (XRView & { camera?: object }) | undefined : undefined;
+    // Its declared type is that of three's own cameras.
+    return view?.camera ? xr.getCameraTexture(view.camera as never) ?? null : null;
+  }
+
   async end() { await this.session?.end().catch(() => {}); }
 
   private async askForHits(session: XRSession) {
@@ -87,6 +101,7 @@ export class WebXrSight implements Sight {
   private see(frame: XRFrame, looker: Looker) {
     this.frame = frame;
     const { xr } = looker.renderer, known = frame.getViewerPose(xr.getReferenceSpace()!) != null;
+    this.watch(frame, xr.getReferenceSpace()!);
     if (known) {
       looker.room.updateWorldMatrix(true, true);
       xr.updateCamera(looker.eye);
@@ -96,11 +111,24 @@ export class WebXrSight implements Sight {
     this.frame = null;
   }
 
+  private watch(frame: XRFrame, space: XRReferenceSpace) {
+    const at = this.toWatch;
+    this.toWatch = null;
+    if (at && frame.createAnchor) {
+      const position = new Vector3(), turn = new Quaternion();
+      at.decompose(position, turn, new Vector3());
+      this.anchor?.delete();
+      this.anchor = null;
+      void frame.createAnchor(new XRRigidTransform(position, turn), space)?.then((anchor) => { this.anchor = anchor; }, () => { /* it has none: the place is as good as the device's */ });
+    }
+    const pose = this.anchor && frame.getPose(this.anchor.anchorSpace, space);
+    this.watched = pose ? new Matrix4().fromArray(pose.transform.matrix) : null;
+  }
+
   private ended() {
     const { looker } = this;
-    this.session = this.looker = null;
+    this.session = this.looker = this.anchor = this.watched = this.ahead = null;
     this.inView = this.touched = undefined;
-    this.ahead = null;
     if (!looker) return;
     looker.renderer.setAnimationLoop(null);
     looker.renderer.xr.enabled = false;

@@ -35,6 +35,7 @@ export class Viewport {
   readonly scene = new Scene();
   /** Where the models of a scene stand, the light and the camera: it is moved round the chosen one. */
   readonly world = new Group();
+  readonly lights = new Group();
   readonly controls: OrbitControls;
   beforeFrame: (camera: PerspectiveCamera | OrthographicCamera) => void = () => {};
   readonly renderer: WebGLRenderer;
@@ -59,9 +60,9 @@ export class Viewport {
     this.canvas.setAttribute('role', 'application');
     this.canvas.setAttribute('aria-label', say('The model. The list of joints does everything that is done here by pointer.'));
     this.world.matrixAutoUpdate = false;
-    for (const light of studioLights()) this.world.add(light, ...(light instanceof DirectionalLight ? [light.target] : []));
+    for (const light of studioLights()) this.lights.add(light, ...(light instanceof DirectionalLight ? [light.target] : []));
     for (const camera of [this.perspective, this.orthographic]) looksWithinItsWorld(camera);
-    this.world.add(this.ground, this.perspective, this.orthographic);
+    this.world.add(this.lights, this.ground, this.perspective, this.orthographic);
     this.scene.add(this.world);
     this.controls = new OrbitControls(this.perspective, this.canvas);
     this.controls.enableDamping = false;
