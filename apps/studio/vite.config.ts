@@ -1,5 +1,6 @@
 import { fileURLToPath } from 'node:url';
 import { defineConfig, type Plugin } from 'vite';
+import { installable } from './vite/installable';
 
 const at = (path: string) => fileURLToPath(new URL(path, import.meta.url));
 
@@ -15,8 +16,15 @@ const onlyPacked = (): Plugin => ({
 export default defineConfig({
   base: './',
   resolve: { alias: { '@engine': at('../../build/wasm') } },
-  build: { outDir: at('../../dist'), emptyOutDir: true, target: 'es2022', chunkSizeWarningLimit: 1000 },
-  plugins: [onlyPacked()],
+  build: {
+    outDir: at('../../dist'), emptyOutDir: true, target: 'es2022', chunkSizeWarningLimit: 1000,
+    rollupOptions: {
+      input: { index: at('index.html'), service_worker: at('src/offline/service_worker.ts') },
+      // A browser knows a service worker by its address, so that one stays.
+      output: { entryFileNames: ({ name }) => (name === 'service_worker' ? '[name].js' : 'assets/[name]-[hash].js') },
+    },
+  },
+  plugins: [onlyPacked(), installable()],
   worker: { format: 'es', plugins: () => [onlyPacked()] },
   preview: { host: '127.0.0.1', port: 8080, strictPort: true },
 });

@@ -58,13 +58,13 @@ const stage = stageOrApology();
 const { viewport, handles, model, comparison, gizmo, others, places } = stage;
 const sheet = contactSheet(studio, page, viewport);
 
-const app = document.getElementById('app')!;
+const app = document.getElementById('app')!, toasts = status(studio, page);
 app.append(
   toolbar(studio, page, journal, viewport, model, others),
   element('main', { class: 'stage' }, viewport.canvas, facts(page), hint(page), poseTools(page), views(viewport), arButton(() => ({ ...stage, studio, page, app })), comparisonPanel(studio, page, comparison)),
   element('aside', { class: 'side' }, scenePanel(studio, page, places), posePanel(studio, page, poses), paintPanel(studio, page), retargetPanel(studio, page), methodsPanel(studio, page), outliner(studio, page, handles)),
   timeline(studio, page, sheet.open),
-  status(studio, page), help(page), sheet.dialog, motionShelf(studio, page), poseLibrary(studio, page, poses));
+  toasts, help(page), sheet.dialog, motionShelf(studio, page), poseLibrary(studio, page, poses));
 bindShortcuts(studio, page, viewport, handles, poses);
 bindPlayer(studio, page);
 bindJournal(journal, studio, page, viewport);
@@ -97,4 +97,19 @@ async function begin() {
   if (last) await studio.openKept(last);
   if (!page.now.session) await studio.openSample(sample ?? samples[0][0]);
 }
-void begin();
+
+/** All that is done is written down. */
+async function kept() {
+  journal.flush();
+  while (!studio.idle || !journal.settled) await new Promise((resolve) => { setTimeout(resolve, 50); });
+}
+
+/** Not before the first model stands: until then all that is loaded is for it. */
+async function beInstalled() {
+  if (!import.meta.env.PROD) return; // the service worker is made with the page
+  const { keepForOffline, openLaunchedFiles } = await import('./app/installed');
+  const { newVersion } = await import('./panels/new_version');
+  await openLaunchedFiles(studio);
+  await keepForOffline((take) => toasts.append(newVersion(take)), kept);
+}
+void begin().then(beInstalled);

@@ -5,27 +5,28 @@ import { extname, join, normalize } from 'node:path';
 import { createRequire } from 'node:module';
 import { chromium } from 'playwright-core';
 
-const types = { '.html': 'text/html', '.js': 'text/javascript', '.css': 'text/css', '.wasm': 'application/wasm', '.glb': 'model/gltf-binary' };
+const types = { '.html': 'text/html', '.js': 'text/javascript', '.css': 'text/css', '.wasm': 'application/wasm', '.glb': 'model/gltf-binary', '.png': 'image/png',
+  '.webmanifest': 'application/manifest+json' };
 export const browserProgram = process.env.LIMBER_BROWSER ?? '/usr/bin/chromium';
 
-/** Serves a folder on a free port of the loopback address; `served` names the files that were asked for. */
-export async function serve(folder) {
+/** Serves a folder on a port of the loopback address, 0 takes a free one; `served` names the files that were asked for. */
+export async function serve(folder, port = 0) {
   const served = new Set(), server = createServer((request, response) => {
     const path = decodeURIComponent(new URL(request.url, 'http://localhost').pathname);
-    const file = join(folder, normalize(path === '/' ? '/index.html' : path));
+    const file = join(folder, normalize(path.endsWith('/') ? `${path}index.html` : path));
     if (!file.startsWith(folder) || !existsSync(file)) return response.writeHead(404).end();
     served.add(file);
     response.writeHead(200, { 'content-type': types[extname(file)] ?? 'application/octet-stream' }).end(readFileSync(file));
   });
-  await new Promise((resolve) => server.listen(0, '127.0.0.1', resolve));
-  return { address: `http://127.0.0.1:${server.address().port}/`, served, close: () => server.close() };
+  await new Promise((resolve) => server.listen(port, '127.0.0.1', resolve));
+  return { address: `http://127.0.0.1:${server.address().port}/`, served, close: () => { server.close(); server.closeAllConnections(); } };
 }
 
 /** Frames are drawn in software, so tests do without smooth edges: several samples for each pixel take half the time. */
-export const launch = ({ smooth = false } = {}) => chromium.launch({
+export const launch = ({ smooth = false, options = [] } = {}) => chromium.launch({
   executablePath: browserProgram,
   args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist',
-    ...(smooth ? [] : ['--webgl-antialiasing-mode=none'])],
+    ...(smooth ? [] : ['--webgl-antialiasing-mode=none']), ...options],
 });
 
 /** The page once its model stands. What the page throws is collected in `errors`. */

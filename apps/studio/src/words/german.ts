@@ -385,6 +385,11 @@ export const german = {
 
   // Questions and notices.
   'Close': 'Schließen',
+  'There is a new version of the studio': 'Es gibt eine neue Version des Studios',
+  'Reload to use it. What you have done is kept.': 'Lade neu, um sie zu benutzen. Was du gemacht hast, bleibt erhalten.',
+  'The studio is open in another tab, too: close that one first.': 'Das Studio ist auch in einem anderen Tab offen: Schließe den zuerst.',
+  'Reload': 'Neu laden',
+  'Later': 'Später',
   'Cancel': 'Abbrechen',
   'Leave it as it is': 'So lassen',
   'Stop': 'Anhalten',
