@@ -1,5 +1,5 @@
 # limber_embed_studio(<target> <folder>): the files of a built page become part of a program, as studioFiles() of
-# apps/cli/studio_server.h. The assembler reads them, so that megabytes take no time to compile.
+# apps/cli/studio/server.h. The assembler reads them, so that megabytes take no time to compile.
 function(limber_embed_studio target folder)
   file(GLOB_RECURSE files CONFIGURE_DEPENDS RELATIVE ${folder} ${folder}/*)
   if(NOT "index.html" IN_LIST files)
@@ -19,7 +19,7 @@ function(limber_embed_studio target folder)
   endforeach()
   set(source ${CMAKE_CURRENT_BINARY_DIR}/studio_files.cpp)
   file(CONFIGURE OUTPUT ${source} @ONLY CONTENT [[// Made by CMake from the built page.
-#include "studio_server.h"
+#include "server.h"
 
 @symbols@
 namespace limber::cli {

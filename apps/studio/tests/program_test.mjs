@@ -18,7 +18,7 @@ const address = await new Promise((found, failed) => {
 const port = Number(new URL(address).port);
 
 /** As it is written: fetch would tidy the path up. */
-const get = (path) => new Promise((done, failed) => request({ host: '127.0.0.1', port, path }, (response) => {
+const get = (path, { headers = {}, method = 'GET' } = {}) => new Promise((done, failed) => request({ host: '127.0.0.1', port, path, headers, method }, (response) => {
   const parts = [];
   response.on('data', (part) => parts.push(part));
   response.on('end', () => done({ status: response.statusCode, headers: response.headers, body: Buffer.concat(parts) }));
@@ -32,7 +32,8 @@ const cases = {
     assert.deepEqual(listening.map(([, local]) => local.split(':')[0]), ['0100007F']);
   },
   async 'every file of the page comes as it was built, with its type'() {
-    const types = { html: /^text\/html/, js: /^text\/javascript/, css: /^text\/css/, wasm: /^application\/wasm$/, zst: /^application\/octet-stream$/ };
+    const types = { html: /^text\/html/, js: /^text\/javascript/, css: /^text\/css/, wasm: /^application\/wasm$/, zst: /^application\/octet-stream$/,
+      png: /^image\/png$/, webmanifest: /^application\/manifest\+json$/ };
     const files = readdirSync(dist, { recursive: true, withFileTypes: true }).filter((entry) => entry.isFile());
     assert.ok(files.length >= 4);
     for (const entry of files) {
@@ -49,6 +50,18 @@ const cases = {
     for (const path of ['/no', '/../CMakeLists.txt', '/assets/', '/%2e%2e/etc/passwd', '/index.html/']) {
       assert.equal((await get(path)).status, 404, path);
     }
+  },
+  async 'a page of another site is not answered, whatever name it gives this machine'() {
+    for (const host of ['evil.example', `evil.example:${port}`, `127.0.0.1.evil.example:${port}`, `192.168.1.1:${port}`]) {
+      assert.equal((await get('/', { headers: { host } })).status, 403, host);
+    }
+    assert.equal((await get('/', { headers: { host: `127.0.0.1:${port}`, origin: 'https://evil.example' } })).status, 403);
+    assert.equal((await get('/', { headers: { host: `localhost:${port}`, origin: `http://localhost:${port}` } })).status, 200);
+    assert.equal((await get('/', { headers: { host: 'localhost:9000' } })).status, 200, 'a port that is forwarded');
+  },
+  async 'it is only read from'() {
+    assert.equal((await get('/', { method: 'HEAD' })).status, 200);
+    for (const method of ['POST', 'PUT', 'DELETE', 'OPTIONS']) assert.equal((await get('/', { method })).status, 405, method);
   },
   async 'a port that is taken is told'() {
     const second = spawnSync(program, ['studio', '--port', String(port)], { encoding: 'utf8', timeout: 10_000 });

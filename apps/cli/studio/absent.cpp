@@ -1,6 +1,7 @@
-// Stands in for studio_server.cpp where the program is built without the page.
+// Stands in for the server where the program is built without the page.
 #include "limber/core/error.h"
-#include "studio_server.h"
+#include "qr_code.h"
+#include "server.h"
 
 namespace limber::cli {
 
@@ -8,9 +9,13 @@ std::span<const StudioFile> studioFiles() {
   return {};
 }
 
-void serveStudio(int, const std::function<void(const std::string&)>&) {
+void serveStudio(const ServeOptions&, const ServeEvents&) {
   throw Error(ErrorCode::kUnsupported, "this limber was built without the studio", {},
               "./dev studio serves it from the source folder; ./dev studio --program puts it into the program");
+}
+
+Squares qrCode(const std::string&) {
+  return {};
 }
 
 }  // namespace limber::cli
