@@ -133,6 +133,8 @@ export function openingCalls(core: Core, journal: Journal, { forgetMoment }: Cli
       await open(async () => restore(await journal.requestsOf(document.id), document.name, document));
     },
 
+    stepCount: () => engine.requests.length,
+
     /** Everything, to go on with here or elsewhere. */
     limberFile: (): Uint8Array => toLimberFile(engine.requests),
 
