@@ -359,7 +359,9 @@ const cases = {
     const after = await jointPlace(page, joint);
     assert.ok(Math.hypot(after.x - before.x, after.y - before.y) < 0.01, 'the view is another one');
     await motionPlayed(page, () => page.locator('#motion-file').setInputFiles({ name: 'walk.bvh', mimeType: 'text/plain', buffer: Buffer.from(walkBvh()) }));
-    const moving = await take('#moving-picture'), chunks = chunksOf(moving);
+    await page.locator('#export-as').selectOption('pictures');
+    await page.locator('#no-background').check();
+    const moving = await download(page, () => page.locator('#moving-picture').click()), chunks = chunksOf(moving);
     writeFileSync(join(output, 'walk.png'), moving);
     const frames = chunks.find(({ kind }) => kind === 'acTL').data;
     assert.equal(frames.readUInt32BE(0), 20, 'pictures of a second');
@@ -370,7 +372,7 @@ const cases = {
     assert.equal(first.corner, 0);
     assert.equal(await page.evaluate(async (bytes) => {
       const decoder = new ImageDecoder({ data: new Uint8Array(bytes), type: 'image/png' });
-      await decoder.completed;
+      await Promise.all([decoder.tracks.ready, decoder.completed]);
       await decoder.decode({ frameIndex: decoder.tracks.selectedTrack.frameCount - 1 });
       return decoder.tracks.selectedTrack.frameCount;
     }, [...moving]), 20, 'a browser plays them all');
