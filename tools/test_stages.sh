@@ -212,6 +212,7 @@ studio_in_browser() {
   counted node apps/studio/tests/studio_test.mjs dist build/release/limber "$output/studio" $faulty &&
     counted node apps/studio/tests/beside_test.mjs dist "$output/studio" &&
     counted node apps/studio/tests/keep_test.mjs dist build/release/limber "$output/studio" &&
+    counted node apps/studio/tests/kill_test.mjs dist "$output/studio" &&
     counted node apps/studio/tests/dope_test.mjs dist "$output/studio" &&
     counted node apps/studio/tests/pose_test.mjs dist "$output/studio" &&
     counted node apps/studio/tests/tools_test.mjs dist "$output/studio" &&

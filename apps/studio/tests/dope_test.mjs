@@ -146,6 +146,25 @@ const cases = {
     await settled(page);
     assert.equal((await timesOf(leg)).length, 4);
   },
+  async 'zoomed in, keys lie farther apart and are chosen and moved as before'() {
+    const marks = page.locator('.lane[data-joint]').first().locator('.key');
+    const gap = async () => {
+      const boxes = await Promise.all([marks.first().boundingBox(), marks.last().boundingBox()]);
+      return boxes[1].x - boxes[0].x;
+    };
+    const before = await gap();
+    assert.ok(before > 0);
+    await page.locator('#zoom-in').click();
+    await page.locator('#zoom-in').click();
+    assert.ok(await gap() > 3.5 * before, 'they lie no farther apart');
+    await marks.last().click();
+    assert.match(await page.locator('#keys-told').textContent(), /^1 key/);
+    await page.locator('#dope-sheet').focus();
+    await page.keyboard.press('-');
+    await page.keyboard.press('-');
+    assert.ok(Math.abs(await gap() - before) < 1);
+    assert.ok(await page.locator('#zoom-out').isDisabled());
+  },
   async 'a key of a curve is dragged up and along'() {
     await page.locator(`#joint-${arm}`).click();
     await page.getByRole('button', { name: 'Curves', exact: true }).click();

@@ -3,7 +3,7 @@
 // motions and all that can be undone. Nothing ever leaves the machine.
 import type { Place, Request } from '../engine/messages';
 
-const frameDelay = 200; // milliseconds that frames of a drag or of a clip wait for the next one
+const frameDelay = 100; // milliseconds between two frames of a drag or of a clip that are written
 const patience = 700; // milliseconds that a document may still be open elsewhere
 const mostDocuments = 12;
 
@@ -61,9 +61,9 @@ export class Journal {
 
   private database = openDatabase();
   private document: KeptDocument | null = null;
-  private writing: Promise<void> = Promise.resolve();
   private waiting = 0;
   private frame: { request: Request; timer: number } | null = null;
+  private lastFrame = -Infinity;
   private free: () => void = () => {};
   private broken = false;
 
@@ -151,15 +151,16 @@ export class Journal {
     clearTimeout(this.frame.timer);
     const { request } = this.frame;
     this.frame = null;
+    this.lastFrame = performance.now();
     this.put(request, this.document.count - 1);
   }
 
+  /** Written at once where there was none lately: on a busy page a timer comes late. */
   private delay(request: Request) {
-    if (this.frame) {
-      this.frame.request = request;
-      return;
-    }
-    this.frame = { request, timer: window.setTimeout(() => this.flush(), frameDelay) };
+    const rest = this.lastFrame + frameDelay - performance.now();
+    if (this.frame) this.frame.request = request;
+    else this.frame = { request, timer: window.setTimeout(() => this.flush(), Math.max(0, rest)) };
+    if (rest <= 0) this.flush();
   }
 
   private put(request: Request, number: number) {
@@ -183,17 +184,18 @@ export class Journal {
     for (const { id } of documents.slice(mostDocuments)) void this.forget(id);
   }
 
-  /** One after the other. The first failure is told, and ends the keeping. */
-  private queue(act: () => Promise<void>): Promise<void> {
+  /** Each transaction is begun at once, behind those before it, which the database keeps in their order: a page that is
+   *  busy drawing must not hold up what is written. The first failure is told, and ends the keeping. */
+  private async queue(act: () => Promise<void>): Promise<void> {
     ++this.waiting;
-    this.writing = this.writing.then(async () => {
-      if (this.broken) return;
-      await act();
-    }).catch((error: unknown) => {
+    try {
+      if (!this.broken) await act();
+    } catch (error) {
+      if (!this.broken) this.onTrouble(String(error instanceof Error ? error.message : error));
       this.broken = true;
-      this.onTrouble(String(error instanceof Error ? error.message : error));
-    }).finally(() => { --this.waiting; });
-    return this.writing;
+    } finally {
+      --this.waiting;
+    }
   }
 
   /** A document is open in one tab alone; nobody else knows a new one, whose turn comes however long a busy machine

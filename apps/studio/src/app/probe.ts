@@ -15,6 +15,8 @@ export interface StudioProbe {
   /** Every change is kept in the browser. */
   kept(): boolean;
   state(): SessionState | null;
+  /** How many requests made the document. */
+  steps(): number;
   selected(): number | null;
   /** Metres. */
   position(joint: string): Vector;
@@ -56,6 +58,7 @@ export function exposeStage(
     idle: () => studio.idle,
     kept,
     state: () => page.now.session,
+    steps: () => studio.stepCount(),
     selected: () => page.now.selected,
     gizmoAxis: () => gizmo.axis,
     position: (name) => position(name).toArray(),

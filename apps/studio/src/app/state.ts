@@ -45,6 +45,13 @@ export interface KeyPlace {
   seconds: number;
 }
 
+/** The character at another moment: -1 is the one before the moment that is shown, 1 the one after it. */
+export interface Ghost {
+  order: number;
+  /** What moves the surface, 16 numbers for each joint. */
+  skin: Float32Array;
+}
+
 /** What opens below the timeline. */
 export type KeyEditor = 'sheet' | 'curves';
 
@@ -96,7 +103,8 @@ export interface PageState {
   chosenKeys: readonly KeyPlace[];
   /** The character before and after the moment that is shown, and the selected joint's path. */
   ghosts: boolean;
-  /** Of the chosen clip, for the ghosts; of the selected joint, for the curves. */
+  ghostsShown: readonly Ghost[];
+  /** Of the chosen clip, for the selected joint's path; of the selected joint, for the curves. */
   paths: Paths | null;
   curve: Curve | null;
   gizmo: boolean;
@@ -142,7 +150,7 @@ export const createPageStore = (): PageStore => new Store<PageState>({
   session: null, model: null, others: [], arranging: false, mode: 'move', display: 'handles', bones: true, wireframe: false,
   selected: null, also: new Set(), bothSides: false, hovered: null, work: null, notice: null, help: false,
   seconds: 0, playing: false, speed: 1, loop: true, autoKey: true, gizmo: false, gizmoSpace: 'world', snapping: false, selecting: false, limits: false, correcting: false,
-  span: 0.3, keyEditor: null, chosenKeys: [], ghosts: false, paths: null, curve: null,
+  span: 0.3, keyEditor: null, chosenKeys: [], ghosts: false, ghostsShown: [], paths: null, curve: null,
   painting: false, brush: { mode: 'add', size: 0.05, strength: 0.5 }, placing: false,
   methods: null, sampleMotions: [], ownMotions: [], shelf: false, samplePoses: [], ownPoses: [], poseLibrary: false, copiedPose: null, comparison: null, hiddenParts: new Set(), sourceModel: null, sourceShown: true, ar: null,
 });

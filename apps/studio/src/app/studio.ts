@@ -5,6 +5,7 @@ import { clipCalls } from './calls/clips';
 import { comparingCalls } from './calls/comparing';
 import { Core } from './calls/core';
 import { dragCalls } from './calls/drags';
+import { ghostCalls } from './calls/ghosts';
 import { jointCalls } from './calls/joints';
 import { keyingCalls } from './calls/keying';
 import { memberCalls } from './calls/members';
@@ -30,7 +31,7 @@ function allCalls(core: Core, journal: Journal) {
   const comparing = comparingCalls(core), keying = keyingCalls(core), motions = motionCalls(core);
   const clips = clipCalls(core), rig = rigCalls(core), joints = jointCalls(core), members = memberCalls(core);
   return {
-    ...openingCalls(core, journal, clips, motions, rig), ...members, ...motions, ...clips, ...keying,
+    ...openingCalls(core, journal, clips, motions, rig), ...members, ...motions, ...clips, ...keying, ...ghostCalls(core),
     ...posingCalls(core), ...dragCalls(core, rig), ...selectionCalls(core, joints, members, rig), ...rig, ...joints, ...comparing,
     ...outcomeCalls(core),
   };

@@ -154,6 +154,10 @@ export class Documents {
     }
   }
 
+  previewMoments(moments: number[]): Float32Array[] {
+    return this.onFork(this.session, (fork) => moments.map((seconds) => orThrow(fork.run({ do: 'set_time', seconds })).skin));
+  }
+
   previewRig(): Answers['preview-rig'] {
     if (!this.named || this.named instanceof EngineFailure) return null;
     return { model: orThrow(this.named.session.model()).model, joints: this.named.state.joints.length };

@@ -131,6 +131,8 @@ export type Request =
   /** As much of the motion as that, in as many frames a second; changes nothing. */
   | { kind: 'preview-motion'; motion: MotionRequest; most: number; rate: number }
   | { kind: 'preview-rig' }
+  /** What moves the surface at other moments of the chosen clip, in seconds; not while a joint is dragged. */
+  | { kind: 'preview-moments'; moments: number[] }
   /** The pose that is shown, as the text of a file. */
   | { kind: 'pose'; name: string }
   | { kind: 'sample-poses' }
@@ -167,6 +169,7 @@ export interface Answers {
   'sample-motions': SampleMotion[];
   'preview-motion': MotionPreview;
   'preview-rig': PreviewRig | null;
+  'preview-moments': Float32Array[];
   pose: string;
   'sample-poses': SamplePose[];
   'try-pose': Trial;

@@ -22,6 +22,7 @@ function answer(documents: Documents, request: Request): Answers[Kind] {
     case 'try-motion': return documents.tryMotion(request.motion, request.named);
     case 'sample-motions': return documents.sampleMotions();
     case 'preview-motion': return documents.previewMotion(request.motion, request.most, request.rate);
+    case 'preview-moments': return documents.previewMoments(request.moments);
     case 'preview-rig': return documents.previewRig();
     case 'pose': return documents.pose(request.name);
     case 'sample-poses': return documents.samplePoses();

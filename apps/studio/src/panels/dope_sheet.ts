@@ -10,6 +10,7 @@ import { say } from '../words/say';
 import { shownSeconds } from './moments';
 
 const inset = 8; // pixels left and right of the first and last moment, as the slider above has them
+const farthestOut = 1, nearest = 16, zoomStep = 2; // times as wide as the panel
 const leastDrag = 4; // pixels: less is a click
 
 /** What the pointer does since it went down. */
@@ -18,20 +19,29 @@ type Gesture =
   | { kind: 'move'; x: number; grabbed: number }
   | { kind: 'scale'; x: number; grabbed: number; pivot: number };
 
-export function dopeSheet(studio: Studio, page: PageStore, actions: KeyActions): HTMLElement {
+export interface DopeSheet {
+  root: HTMLElement;
+  /** Nearer (1) or farther (-1), round the moment that is shown. */
+  zoom(by: 1 | -1): void;
+  canZoom(by: 1 | -1): boolean;
+}
+
+export function dopeSheet(studio: Studio, page: PageStore, actions: KeyActions): DopeSheet {
   const lanes = element('div', {
     class: 'lanes', id: 'dope-sheet', role: 'application', tabindex: 0,
     'aria-label': say('Keys of each joint. Up and down choose a joint, Enter its key next to the playhead, left and right move the chosen keys by a frame.'),
   });
+  const sheet = element('div', { class: 'sheet' });
+  lanes.append(sheet);
   const box = element('div', { class: 'box', hidden: true }), now = element('div', { class: 'now' });
   const grips = (['first', 'last'] as const).map((end) => element('i', { class: `grip ${end}`, 'data-end': end, title: say('Drag to scale the chosen keys in time') }));
   const empty = element('p', { class: 'empty-keys' }, say('No keys yet. Pose the model: what is posed becomes a key here.'));
   let rows: HTMLElement[] = [], marks: { mark: HTMLElement; keys: KeyPlace[] }[] = [];
-  let drawn: unknown = null, end = 1, gesture: Gesture | null = null, dragged = false;
+  let drawn: unknown = null, end = 1, gesture: Gesture | null = null, dragged = false, near = farthestOut;
 
   const laneWidth = () => {
     const label = lanes.querySelector<HTMLElement>('.label')?.offsetWidth ?? 0;
-    return Math.max(1, lanes.clientWidth - label - 2 * inset);
+    return Math.max(1, sheet.clientWidth - label - 2 * inset);
   };
   const secondsPerPixel = () => end / laneWidth();
   const at = (element: HTMLElement, seconds: number) => element.style.setProperty('--at', String(seconds / end));
@@ -56,7 +66,7 @@ export function dopeSheet(studio: Studio, page: PageStore, actions: KeyActions):
       row(say('All joints'), null, (clip?.keys ?? []).map((seconds) => all.filter((key) => Math.abs(key.seconds - seconds) < 1e-3)).filter((keys) => keys.length > 0)),
       ...listed.map(({ joint, seconds }) => row(jointTitle(of(joint)), joint, seconds.map((moment) => [{ joint, seconds: moment }]))),
     ];
-    lanes.replaceChildren(...(listed.length > 0 ? rows : [empty]), now, box, ...grips);
+    sheet.replaceChildren(...(listed.length > 0 ? rows : [empty]), now, box, ...grips);
   };
   const place = (change: KeyChange = {}) => {
     const { chosenKeys } = page.now;
@@ -83,9 +93,9 @@ export function dopeSheet(studio: Studio, page: PageStore, actions: KeyActions):
   };
   const boxed = (event: PointerEvent, { x, y, before }: Gesture & { kind: 'box' }) => {
     const [left, right] = [Math.min(x, event.clientX), Math.max(x, event.clientX)], [top, bottom] = [Math.min(y, event.clientY), Math.max(y, event.clientY)];
-    const outer = lanes.getBoundingClientRect();
+    const outer = sheet.getBoundingClientRect();
     Object.assign(box.style, {
-      left: `${left - outer.left}px`, top: `${top - outer.top + lanes.scrollTop}px`, width: `${right - left}px`, height: `${bottom - top}px`,
+      left: `${left - outer.left}px`, top: `${top - outer.top}px`, width: `${right - left}px`, height: `${bottom - top}px`,
     });
     box.hidden = false;
     const inside = marks.filter(({ mark }) => {
@@ -146,9 +156,30 @@ export function dopeSheet(studio: Studio, page: PageStore, actions: KeyActions):
   lanes.addEventListener('pointerup', finish(true));
   lanes.addEventListener('pointercancel', finish(false));
 
+  const showNow = () => {
+    const label = lanes.querySelector<HTMLElement>('.label')?.offsetWidth ?? 0, room = lanes.clientWidth - label - 2 * inset;
+    const from = now.offsetLeft - label - inset;
+    if (from < lanes.scrollLeft || from > lanes.scrollLeft + room) lanes.scrollLeft = from - room / 2;
+  };
+  const canZoom = (by: 1 | -1) => (by > 0 ? near < nearest : near > farthestOut);
+  const zoom = (by: 1 | -1) => {
+    if (!canZoom(by)) return;
+    near *= zoomStep ** by;
+    sheet.style.setProperty('--near', String(near));
+    lanes.scrollLeft = 0;
+    showNow();
+    page.set({}); // buttons show whether there is more
+  };
+  lanes.addEventListener('wheel', (event) => {
+    if (!event.ctrlKey && !event.metaKey) return;
+    event.preventDefault();
+    if (event.deltaY !== 0) zoom(event.deltaY < 0 ? 1 : -1);
+  }, { passive: false });
+
   const plain: Record<string, () => void> = {
     ArrowLeft: () => actions.move(-1), ArrowRight: () => actions.move(1), Delete: () => actions.remove(), Backspace: () => actions.remove(),
     ArrowUp: () => step(-1), ArrowDown: () => step(1), Enter: () => chooseNearest(),
+    '+': () => zoom(1), '-': () => zoom(-1),
   };
   const withControl: Record<string, () => void> = { c: () => actions.copy(), v: () => actions.paste(), a: () => actions.chooseAll() };
   lanes.addEventListener('keydown', (event) => {
@@ -185,11 +216,12 @@ export function dopeSheet(studio: Studio, page: PageStore, actions: KeyActions):
     if (drawn !== session || state.chosenKeys !== before.chosenKeys) place();
     drawn = session;
     at(now, seconds);
+    if (near > farthestOut && seconds !== before.seconds) showNow();
     for (const row of rows) {
       const own = row.dataset['joint'] !== undefined && Number(row.dataset['joint']) === selected;
       if (own && !row.classList.contains('selected')) row.scrollIntoView({ block: 'nearest' });
       row.classList.toggle('selected', own);
     }
   });
-  return lanes;
+  return { root: lanes, zoom, canZoom };
 }

@@ -35,8 +35,10 @@ export function keyEditor(studio: Studio, page: PageStore): { toggle: HTMLButton
   const faster = button('\u00bd\u00d7', () => actions.scale(0.5), { label: say('Twice as fast: the chosen keys move together'), id: 'scale-down' });
   const all = button(say('All'), () => actions.chooseAll(), { label: say('Choose all keys'), keys: 'Ctrl+A', id: 'choose-keys' });
   const sheet = dopeSheet(studio, page, actions), curves = curveEditor(studio, page);
+  const nearer = button('+', () => sheet.zoom(1), { label: say('Zoom in: keys farther apart'), keys: '+', id: 'zoom-in' });
+  const farther = button('\u2212', () => sheet.zoom(-1), { label: say('Zoom out'), keys: '-', id: 'zoom-out' });
   const root = element('div', { class: 'key-editor', id: 'key-editor', hidden: true },
-    element('div', { class: 'row tools' }, shown.root, all, copy, paste, remove, slower, faster, told), sheet, curves);
+    element('div', { class: 'row tools' }, shown.root, all, copy, paste, remove, slower, faster, nearer, farther, told), sheet.root, curves);
   page.watch(({ session, keyEditor: editor, chosenKeys }) => {
     const clip = session?.clips[session.clip ?? -1] ?? null;
     root.hidden = editor === null || !clip;
@@ -44,7 +46,9 @@ export function keyEditor(studio: Studio, page: PageStore): { toggle: HTMLButton
     toggle.setAttribute('aria-expanded', String(!root.hidden));
     if (root.hidden) return;
     shown.show(editor ?? 'sheet');
-    sheet.hidden = editor !== 'sheet';
+    sheet.root.hidden = nearer.hidden = farther.hidden = editor !== 'sheet';
+    nearer.disabled = !sheet.canZoom(1);
+    farther.disabled = !sheet.canZoom(-1);
     curves.hidden = editor !== 'curves';
     copy.disabled = remove.disabled = chosenKeys.length === 0;
     slower.disabled = faster.disabled = chosenKeys.length < 2 || extentOf(chosenKeys)[1] - extentOf(chosenKeys)[0] < frame / 2;

@@ -16,6 +16,7 @@ import { chosenClip } from './moments';
 import { say } from '../words/say';
 
 const filmRate = 30; // pictures a second
+const movingRate = 20; // pictures a second of an animated PNG, each of which is a whole picture
 const turnSeconds = 4; // of a film all the way round
 const types = { glb: 'model/gltf-binary', obj: 'model/obj', stl: 'model/stl', bvh: 'text/plain', session: 'model/gltf-binary' };
 
@@ -60,6 +61,13 @@ export function toolbar(studio: Studio, page: PageStore, journal: Journal, viewp
       if (!clip) return;
       const moments = Math.max(2, Math.ceil(clip.duration * filmRate));
       offer(await viewport.film(filmRate, background, (draw) => studio.eachMoment(moments, draw)), 'video/webm', `${clip.name}.webm`);
+    }),
+    moving: (background) => onSurface(async () => {
+      const clip = chosenClip(page.now.session);
+      if (!clip) return;
+      const { animatedPng } = await import('../app/animated_png'), moments = Math.max(2, Math.round(clip.duration * movingRate));
+      const made = await viewport.pictures(background, (draw) => studio.eachMoment(moments, draw, { repeats: true }));
+      if (made.length > 0) offer(await animatedPng(made, movingRate), 'image/png', `${clip.name}.png`);
     }),
     turn: (background) => onSurface(async () => {
       offer(await viewport.turn(filmRate, turnSeconds, background), 'video/webm', `${stem()}_turn.webm`);

@@ -20,6 +20,14 @@ class EngineSkeleton extends Skeleton {
   }
 }
 
+/** The surface once more, in one material, moved by matrices of its own. */
+export interface Likeness {
+  root: Group;
+  joints: number;
+  take(matrices: Float32Array): void;
+  dispose(): void;
+}
+
 const heatSteps = 255; // from cold to hot
 
 async function loadTexture(bytes: Uint8Array): Promise<Texture> {
@@ -85,6 +93,26 @@ export class ModelView {
       material.wireframe = wireframe;
       material.needsUpdate = true;
     }
+  }
+
+  /** Of the model that is shown; it has this one's geometry, so it is of no use once another model is. */
+  likeness(material: Material): Likeness {
+    const skeleton = new EngineSkeleton(this.skeleton!.bones.length), root = new Group();
+    for (const { geometry } of this.meshes) {
+      const mesh = new SkinnedMesh(geometry, material);
+      mesh.bind(skeleton, new Matrix4());
+      mesh.bindMode = DetachedBindMode;
+      mesh.frustumCulled = false;
+      root.add(mesh);
+    }
+    return {
+      root, joints: skeleton.bones.length,
+      take: (matrices) => skeleton.take(matrices),
+      dispose: () => {
+        skeleton.dispose();
+        material.dispose();
+      },
+    };
   }
 
   /** Parts by their place in the model. */

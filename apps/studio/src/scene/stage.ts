@@ -33,7 +33,7 @@ export interface Stage {
 
 export function createStage(studio: Studio, page: PageStore): Stage {
   const viewport = new Viewport(), model = new ModelView(), handles = new HandleView();
-  const source = new SourceView(), limits = new LimitView(), onion = new OnionView();
+  const source = new SourceView(), limits = new LimitView(), onion = new OnionView(model);
   const comparison = new ComparisonView(viewport.scene, () => viewport.draw());
   viewport.tools.push(handles.root, source.root, limits.root, onion.root);
   viewport.scene.add(handles.root, model.root, source.root, source.model.root, limits.root, onion.root);

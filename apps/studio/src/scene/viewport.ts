@@ -231,13 +231,23 @@ export class Viewport {
   readonly tools: Object3D[] = [];
 
   /** The model and its shadow on a colour or on nothing: without tools, without the ground's lines. */
-  async picture(background: string | null = null): Promise<Blob | null> {
-    return this.withoutTools(() => {
-      this.drawNow();
-      const screen = background === null ? this.canvas : element('canvas', { width: this.canvas.width, height: this.canvas.height });
-      if (background !== null) this.drawOn(screen, background);
-      return new Promise((resolve) => screen.toBlob(resolve, 'image/png'));
-    });
+  async picture(background: string | null = null): Promise<Blob | null> { return this.withoutTools(() => this.pictureNow(background)); }
+
+  /** As many pictures as are drawn, each when its turn comes. */
+  async pictures(background: string | null, each: (draw: () => Promise<void>) => Promise<void>): Promise<Blob[]> {
+    const made: Blob[] = [];
+    await this.withoutTools(() => each(async () => {
+      const picture = await this.pictureNow(background);
+      if (picture) made.push(picture);
+    }));
+    return made;
+  }
+
+  private pictureNow(background: string | null): Promise<Blob | null> {
+    this.drawNow();
+    const screen = background === null ? this.canvas : element('canvas', { width: this.canvas.width, height: this.canvas.height });
+    if (background !== null) this.drawOn(screen, background);
+    return new Promise((resolve) => screen.toBlob(resolve, 'image/png'));
   }
 
   private drawOn(screen: HTMLCanvasElement, background: string) {

@@ -44,8 +44,9 @@ export function clipCalls(core: Core) {
     },
     forgetMoment() { waiting = null; },
 
-    /** Pictures of a clip at even moments, each once the scene stands there. */
-    async eachMoment(count: number, draw: (seconds: number) => void | Promise<void>) {
+    /** Pictures of a clip at even moments, each once the scene stands there: to its end, or to the one before it, where what
+     *  comes of them repeats. */
+    async eachMoment(count: number, draw: (seconds: number) => void | Promise<void>, { repeats = false } = {}) {
       const { session, seconds } = page.now, clip = chosenClip(session);
       if (!clip) return;
       page.set({ playing: false });
@@ -55,7 +56,7 @@ export function clipCalls(core: Core) {
           core.onStance(stance, false);
         };
         for (let i = 0; i < count; ++i) {
-          const moment = (clip.duration * i) / Math.max(1, count - 1);
+          const moment = (clip.duration * i) / Math.max(1, repeats ? count : count - 1);
           await show(moment);
           await draw(moment);
         }

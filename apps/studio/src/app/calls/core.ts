@@ -93,7 +93,7 @@ export class Core {
     if (state && model) {
       const another = state.members[state.member]?.name !== before.session?.members[before.session.member]?.name;
       const selected = another ? null : before.selected;
-      if (another) this.page.set({ also: new Set(), hiddenParts: new Set(), comparison: null, painting: false, placing: false, paths: null, curve: null });
+      if (another) this.page.set({ also: new Set(), hiddenParts: new Set(), comparison: null, painting: false, placing: false, paths: null, ghostsShown: [], curve: null });
       this.page.set({
         session: state, model, others: others ?? (state.members.length > 1 ? before.others : []), seconds: state.seconds, playing: false, hovered: null,
         correcting: before.correcting && hasTemplate(state), chosenKeys: [],

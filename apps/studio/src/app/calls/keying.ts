@@ -1,4 +1,4 @@
-// Keys of the chosen clip, and what is drawn of the whole clip: ghosts and curves.
+// Keys of the chosen clip, and what is drawn of the whole clip: paths and curves.
 import type { Vector } from '../../engine/messages';
 import { chosenClip } from '../clips';
 import { changedTime, keysThere, type KeyChange } from '../keys';
@@ -19,7 +19,8 @@ export function keyingCalls(core: Core) {
     if (autoKey && session?.clip != null && poses.has(command.do)) await setKey();
   });
   page.watch((now, before) => {
-    if (now.keyEditor === 'curves' && (now.selected !== before.selected || now.keyEditor !== before.keyEditor)) draw();
+    const curve = now.keyEditor === 'curves' && (now.selected !== before.selected || now.keyEditor !== before.keyEditor);
+    if (curve || now.ghosts !== before.ghosts) draw();
   });
 
   async function drawClip() {
@@ -56,11 +57,6 @@ export function keyingCalls(core: Core) {
     /** From its rest pose: degrees about x, y and z, and metres. */
     async setJointKey({ joint, seconds }: KeyPlace, turn: Vector, offset: Vector) {
       await core.run({ do: 'set_joint_key', joint: core.jointName(joint), seconds, turn, offset });
-    },
-
-    showGhosts(on: boolean) {
-      page.set({ ghosts: on });
-      draw();
     },
   };
 }

@@ -31,7 +31,9 @@ export function openingCalls(core: Core, journal: Journal, { forgetMoment }: Cli
     forgetMoment();
     opening = core.guard(async () => {
       await before;
-      if (mine === openings) show(await make());
+      if (mine !== openings) return;
+      page.set({ notice: null }); // before, not after: what cannot be kept is told while it opens
+      show(await make());
     });
     await opening;
   }
@@ -44,7 +46,8 @@ export function openingCalls(core: Core, journal: Journal, { forgetMoment }: Cli
   function show({ step, notice = null }: Opened) {
     page.set({
       others: [], arranging: false,
-      selected: null, hovered: null, notice, comparison: null, hiddenParts: new Set(), correcting: false, painting: false, placing: false, selecting: false, display: 'handles',
+      selected: null, hovered: null, comparison: null, hiddenParts: new Set(), correcting: false, painting: false, placing: false, selecting: false, display: 'handles',
+      ...notice && { notice },
     });
     core.take(step);
     core.onOpened();
@@ -132,6 +135,8 @@ export function openingCalls(core: Core, journal: Journal, { forgetMoment }: Cli
     async openKept(document: KeptDocument) {
       await open(async () => restore(await journal.requestsOf(document.id), document.name, document));
     },
+
+    stepCount: () => engine.requests.length,
 
     /** Everything, to go on with here or elsewhere. */
     limberFile: (): Uint8Array => toLimberFile(engine.requests),

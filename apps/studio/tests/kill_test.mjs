@@ -1,0 +1,138 @@
+// The tab is killed at any moment of a session; what was on the screen 0.3 s before is there when the page is opened again.
+//
+//   node apps/studio/tests/kill_test.mjs DIST OUTPUT_FOLDER
+//
+// LIMBER_ROUNDS: how often it is killed (default 6); LIMBER_SEED: another session (1 to 2^31 - 2). Prints by how much the oldest thing that was lost had been shown.
+// Ends with "N passed, N failed".
+import assert from 'node:assert/strict';
+import { mkdirSync } from 'node:fs';
+import { resolve } from 'node:path';
+import { jointPlace, launch, runCases, sessionState, serve, settled } from './page.mjs';
+
+const [dist, output] = process.argv.slice(2).map((path) => resolve(path));
+const rounds = Number(process.env.LIMBER_ROUNDS ?? 6), sessionLength = 100; // deeds, then the next session begins
+const leeway = 300; // milliseconds
+mkdirSync(output, { recursive: true });
+const server = await serve(dist), browser = await launch(), errors = [];
+const context = await browser.newContext({ viewport: { width: 900, height: 600 } });
+let page = null, shown = [], longestGap = 0, oldestLost = 0;
+
+/** What is on the screen, told with each frame in which it differs. */
+await context.exposeBinding('limberShown', (_, entry) => shown.push(entry));
+await context.addInitScript(() => {
+  const picture = () => {
+    const state = globalThis.limberStudio?.state();
+    if (!state) return '';
+    const places = state.joints.map(({ name }) => globalThis.limberStudio.position(name).map((value) => Math.round(value * 1e4)));
+    return JSON.stringify([state.name, state.ik, state.clip, state.clips.map(({ name, joint_keys: keys }) => [name, keys]), state.targets, places]);
+  };
+  let before = '', at = 0;
+  globalThis.limberPicture = picture;
+  const frame = () => {
+    const now = performance.timeOrigin + performance.now(), drawn = picture();
+    if (drawn !== before && drawn !== '') globalThis.limberShown({ drawn, from: now, steps: globalThis.limberStudio.steps() });
+    before = drawn;
+    globalThis.limberGap = Math.max(globalThis.limberGap ?? 0, at > 0 ? now - at : 0);
+    at = now;
+    requestAnimationFrame(frame);
+  };
+  requestAnimationFrame(frame);
+});
+
+// The same each time: a generator of its own.
+let seed = Number(process.env.LIMBER_SEED ?? 11);
+const random = (below) => {
+  seed = (seed * 48271) % 2147483647;
+  return seed % below;
+};
+const row = () => page.locator('#joints li').nth(random(8)).click({ timeout: 2000 });
+const keys = async (key) => {
+  await page.locator('main canvas').focus({ timeout: 2000 });
+  await page.keyboard.press(key);
+};
+const enabled = async (id, act) => { if (await page.locator(id).isEnabled({ timeout: 2000 })) await act(page.locator(id)); };
+const deeds = [
+  async () => { await row(); await keys('ArrowRight'); },
+  async () => { await row(); await keys('r'); await keys('ArrowUp'); await keys('g'); },
+  async () => {
+    const { joints } = await sessionState(page), { x, y } = await jointPlace(page, joints[random(joints.length)].name);
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    for (let i = 1; i <= 6; ++i) await page.mouse.move(x + 6 * i, y - 4 * i);
+    await page.mouse.up();
+  },
+  () => keys('Control+z'),
+  () => keys('Control+Shift+Z'),
+  () => keys('m'),
+  () => keys('i'),
+  () => enabled('#add-clip', (button) => button.click({ timeout: 2000 })),
+  () => keys('k'),
+  () => enabled('#scrub', (slider) => slider.fill(String(random(20) / 10), { timeout: 2000 })),
+  () => enabled('#play', (button) => button.click({ timeout: 2000 })),
+  async () => { await row(); await enabled('#pin', (button) => button.click({ timeout: 2000 })); },
+];
+
+async function open(search = '') {
+  page = await context.newPage();
+  page.setDefaultTimeout(120_000);
+  page.on('pageerror', (error) => errors.push(String(error)));
+  page.on('console', (message) => { if (message.type() === 'error') errors.push(message.text()); });
+  await page.goto(server.address + search);
+  await settled(page);
+}
+
+/** Gives when the tab died. */
+async function kill() {
+  const devtools = await context.newCDPSession(page), died = new Promise((resolve) => page.once('crash', resolve));
+  longestGap = Math.max(longestGap, await page.evaluate(() => globalThis.limberGap));
+  const at = Date.now();
+  devtools.send('Page.crash').catch(() => {});
+  await died;
+  return at;
+}
+
+const cases = {
+  async 'killed at any moment, what was shown 0.3 s before is there again'() {
+    let done = sessionLength;
+    for (let round = 0; round < rounds; ++round) {
+      if (done >= sessionLength) {
+        await page?.close();
+        await open('?sample=biped');
+        done = 0;
+      }
+      shown = shown.slice(-1);
+      let alive = true;
+      await page.evaluate(() => { globalThis.limberGap = 0; });
+      const busy = (async () => {
+        while (alive) {
+          await deeds[random(deeds.length)]().catch((error) => { if (alive) throw error; });
+          ++done;
+        }
+      })();
+      await Promise.race([busy, new Promise((wait) => setTimeout(wait, 300 + random(3000)))]);
+      alive = false;
+      const died = await kill();
+      await busy;
+      const last = shown.filter(({ from }) => from <= died);
+      await page.close().catch(() => {});
+      await open();
+      const { drawn, steps } = await page.evaluate(() => ({ drawn: globalThis.limberPicture(), steps: globalThis.limberStudio.steps() }));
+      const there = last.findLastIndex((entry) => entry.drawn === drawn);
+      if (there < 0) {
+        // Newer than all that was drawn before the end.
+        assert.ok(steps >= last.at(-1).steps, `round ${round}: ${steps} steps came back, ${last.at(-1).steps} were shown`);
+        continue;
+      }
+      const age = there + 1 < last.length ? died - last[there + 1].from : 0;
+      oldestLost = Math.max(oldestLost, age);
+      assert.ok(age <= leeway + longestGap, `round ${round}: what had been shown for ${age.toFixed(0)} ms is lost`);
+    }
+    console.log(`   ${rounds} kills: what was lost had been shown for ${oldestLost.toFixed(0)} ms at most (longest frame ${longestGap.toFixed(0)} ms)`);
+  },
+  'nothing was thrown'() { assert.deepEqual(errors, []); },
+};
+
+const failed = await runCases(cases, () => page, output);
+await browser.close();
+server.close();
+process.exitCode = failed > 0 ? 1 : 0;
