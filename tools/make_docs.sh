@@ -21,6 +21,12 @@ $limber pose $work/winged_rigged.glb --turn handle_03.L=z:30 --turn handle_03.R=
   -o $work/winged_posed.glb --quiet
 picture winged_posed.glb model dragon_posed.png
 
+for scene in samples/scenes/*.json; do
+  name=$(basename $scene .json)
+  $limber session replay $scene -o $work/$name.glb --quiet
+  $limber preview $work/$name.glb --size 480x400 -o $images/scene_$name.png --quiet
+done
+
 $limber evaluate ik --problems 100 --plot $images -o docs/ik.md --quiet
 
 for body in biped:humanoid quadruped:quadruped; do

@@ -220,6 +220,7 @@ studio_in_browser() {
     counted node apps/studio/tests/shelf_test.mjs dist "$output/studio" &&
     counted node apps/studio/tests/words_test.mjs dist "$output/studio" &&
     counted node apps/studio/tests/scene_test.mjs dist build/release/limber "$output/studio" &&
+    counted node apps/studio/tests/first_minute_test.mjs dist "$output/studio" &&
     counted node apps/studio/tests/poses_test.mjs dist "$output/studio" &&
     counted node apps/studio/tests/ar_test.mjs dist build/release/limber "$output/studio" &&
     counted node apps/studio/tests/ar_trouble_test.mjs dist "$output/studio" &&

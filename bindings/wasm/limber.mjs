@@ -87,11 +87,17 @@ import createEngine from './limber_engine.mjs';
  */
 
 /**
- * @param {BufferSource} wasmBinary the content of limber_engine.wasm
+ * @param {BufferSource | WebAssembly.Module} wasm limber_engine.wasm, as its content or compiled
  * @param {{ onProgress?: (stage: string, fraction: number) => void, codecs?: Codecs }} [given] codecs may be put in later
  */
-export async function loadLimber(wasmBinary, given = {}) {
-  const engine = await createEngine({ wasmBinary, ...given });
+export async function loadLimber(wasm, given = {}) {
+  const compiled = wasm instanceof WebAssembly.Module && {
+    instantiateWasm: (imports, done) => {
+      WebAssembly.instantiate(wasm, imports).then((instance) => done(instance, wasm));
+      return {};
+    },
+  };
+  const engine = await createEngine({ ...(compiled || { wasmBinary: wasm }), ...given });
   return {
     /** @type {(file: Uint8Array, name: string, options?: RigOptions) => RigResult} */
     rig: (file, name, options = {}) => {

@@ -3,12 +3,12 @@
 namespace limber {
 
 SymmetricMesh buildCharacter(const Character& character) {
-  HalfMesh half = polygonize(character.shape, character.cube);
-  remesh(half, character.shape, character.edge, character.details);
-  for (const Character::Paint& layer : character.paints) {
-    paint(half, character.shape, layer.region, layer.material);
-  }
-  return mirrorHalf(half, character.shape);
+  Sculpture shape = character.shape;
+  shape.prepare();
+  HalfMesh half = polygonize(shape, character.cube);
+  remesh(half, shape, character.edge, character.details);
+  for (const Character::Paint& layer : character.paints) paint(half, shape, layer.region, layer.material);
+  return mirrorHalf(half, shape);
 }
 
 }  // namespace limber

@@ -33,7 +33,9 @@ struct Character {
 Character bipedCharacter();
 Character quadrupedCharacter();
 Character wingedCharacter();
+Character theropodCharacter();
 Character stoolCharacter();
+Character footstoolCharacter();
 
 SymmetricMesh buildCharacter(const Character& character);
 

@@ -28,18 +28,30 @@ struct EdgeSide {
 };
 
 std::vector<EdgeSide> sortedEdges(const std::vector<Triangle>& triangles) {
-  std::vector<EdgeSide> sides;
-  sides.reserve(triangles.size() * 3);
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    for (int c = 0; c < 3; ++c) {
-      const Index a = triangles[t][std::size_t(c)], b = triangles[t][std::size_t((c + 1) % 3)];
-      sides.push_back({std::min(a, b), std::max(a, b), static_cast<Index>(t), c});
+  // By the lesser vertex in one pass, for few edges share it; those few by the other one.
+  std::vector<std::size_t> next;
+  const auto ofEach = [&](const auto& act) {
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+      for (int c = 0; c < 3; ++c) {
+        const Index a = triangles[t][std::size_t(c)], b = triangles[t][std::size_t((c + 1) % 3)];
+        act(EdgeSide{std::min(a, b), std::max(a, b), static_cast<Index>(t), c});
+      }
     }
-  }
-  std::sort(sides.begin(), sides.end(), [](const EdgeSide& a, const EdgeSide& b) {
-    return std::pair(a.low, a.high) != std::pair(b.low, b.high) ? std::pair(a.low, a.high) < std::pair(b.low, b.high)
-                                                                : a.triangle < b.triangle;
+  };
+  ofEach([&](const EdgeSide& side) {
+    if (next.size() < std::size_t{side.low} + 2) next.resize(std::size_t{side.low} + 2, 0);
+    ++next[side.low + 1];
   });
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  const std::vector<std::size_t> first = next;
+  std::vector<EdgeSide> sides(triangles.size() * 3);
+  ofEach([&](const EdgeSide& side) { sides[next[side.low]++] = side; });
+  for (std::size_t v = 0; v + 1 < first.size(); ++v) {
+    std::sort(sides.begin() + static_cast<std::ptrdiff_t>(first[v]),
+              sides.begin() + static_cast<std::ptrdiff_t>(first[v + 1]), [](const EdgeSide& a, const EdgeSide& b) {
+                return a.high != b.high ? a.high < b.high : a.triangle < b.triangle;
+              });
+  }
   return sides;
 }
 

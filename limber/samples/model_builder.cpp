@@ -121,4 +121,13 @@ Asset ModelBuilder::take() {
   return std::move(asset_);
 }
 
+Asset modelOf(const Character& character) {
+  ModelBuilder builder(character.name);
+  std::vector<Index> materials;
+  for (const SampleMaterial& material : character.materials) materials.push_back(builder.addMaterial(material));
+  const Index mesh = builder.addMesh(character.name, buildCharacter(character), materials);
+  builder.addNode(character.name, mesh);
+  return builder.take();
+}
+
 }  // namespace limber

@@ -28,4 +28,7 @@ class ModelBuilder {
   Asset asset_;
 };
 
+// The character as a document of one mesh.
+Asset modelOf(const Character& character);
+
 }  // namespace limber

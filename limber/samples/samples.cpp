@@ -1,12 +1,11 @@
 #include "limber/samples/samples.h"
 
 #include <array>
-#include <string>
-#include <vector>
 
 #include "limber/core/error.h"
 #include "limber/core/names.h"
 #include "limber/samples/character.h"
+#include "limber/samples/flying.h"
 #include "limber/samples/model_builder.h"
 #include "limber/samples/robot.h"
 
@@ -16,20 +15,17 @@ namespace {
 
 template <Character (*recipe)()>
 Asset makeCharacter() {
-  const Character character = recipe();
-  ModelBuilder builder(character.name);
-  std::vector<Index> materials;
-  for (const SampleMaterial& material : character.materials) materials.push_back(builder.addMaterial(material));
-  const Index mesh = builder.addMesh(character.name, buildCharacter(character), materials);
-  builder.addNode(character.name, mesh);
-  return builder.take();
+  return modelOf(recipe());
 }
 
-constexpr std::array<SampleModel, 5> kSamples = {{
+constexpr std::array<SampleModel, 8> kSamples = {{
     {"stool", "a four-legged stool: no character, but it can walk", &makeCharacter<stoolCharacter>},
+    {"footstool", "a stool without rungs, whose legs are free", &makeCharacter<footstoolCharacter>},
     {"biped", "a person in A-pose", &makeCharacter<bipedCharacter>},
     {"quadruped", "a young fox with a bushy tail", &makeCharacter<quadrupedCharacter>},
     {"winged", "a small dragon with spread wings", &makeCharacter<wingedCharacter>},
+    {"theropod", "a two-legged dinosaur with a heavy tail and small arms", &makeCharacter<theropodCharacter>},
+    {"flying", "the small dragon with a rig of its own, flying", &makeFlying},
     {"robot", "a robot of many pieces on nodes of their own", &makeRobot},
 }};
 

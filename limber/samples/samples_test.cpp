@@ -8,8 +8,10 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "limber/asset/clip_io.h"
 #include "limber/asset/geometry.h"
 #include "limber/asset/read.h"
+#include "limber/asset/rig_io.h"
 #include "limber/asset/write.h"
 #include "limber/core/error.h"
 #include "limber/core/parallel.h"
@@ -87,16 +89,18 @@ TEST_P(Samples, IsTheSameWithAnyNumberOfThreadsAndReadsBack) {
   writeFile(testing::testOutputFolder() / ("sample_" + std::string(GetParam()) + ".glb"), one);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Samples, ::testing::Values("stool", "biped", "quadruped", "winged", "robot"),
+INSTANTIATE_TEST_SUITE_P(All, Samples,
+                         ::testing::Values("stool", "footstool", "biped", "quadruped", "winged", "theropod", "flying",
+                                           "robot"),
                          [](const auto& sample) { return std::string(sample.param); });
 
-TEST(SampleTable, ListsFiveModelsWithASummaryEach) {
+TEST(SampleTable, ListsModelsWithASummaryEach) {
   std::set<std::string_view> names;
   for (const SampleModel& sample : sampleModels()) {
     names.insert(sample.name);
     EXPECT_FALSE(sample.summary.empty());
   }
-  EXPECT_EQ(names.size(), 5u);
+  EXPECT_EQ(names.size(), 8u);
 }
 
 TEST(SampleTable, AnUnknownNameListsTheOthers) {
@@ -105,7 +109,32 @@ TEST(SampleTable, AnUnknownNameListsTheOthers) {
     FAIL() << "made a unicorn";
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::kBadArgument);
-    EXPECT_THAT(error.what(), ::testing::HasSubstr("stool, biped, quadruped, winged, robot"));
+    EXPECT_THAT(error.what(),
+                ::testing::HasSubstr("stool, footstool, biped, quadruped, winged, theropod, flying, robot"));
+  }
+}
+
+TEST(Flying, ComesWithARigAndABeatOfItsWingsThatRepeats) {
+  const Asset flying = makeSample("flying");
+  ASSERT_TRUE(hasRig(flying));
+  const AssetSkeleton rig = readSkeleton(flying);
+  Warnings warnings;
+  const std::vector<Clip> clips = readClips(flying, rig, warnings);
+  EXPECT_TRUE(warnings.empty());
+  ASSERT_EQ(clips.size(), 1u);
+  EXPECT_EQ(clips[0].name, "fly");
+  const Index hand = rig.skeleton.find("wing_hand.L").value(), other = rig.skeleton.find("wing_hand.R").value();
+  const auto handsAt = [&](double share) {
+    Pose pose = restPose(rig.skeleton);
+    sampleClip(clips[0], share * clips[0].duration(), pose);
+    const std::vector<Vec3> places = posePositions(rig.skeleton, pose);
+    return std::pair(places[hand], places[other]);
+  };
+  EXPECT_GT(handsAt(0).first.y() - handsAt(0.5).first.y(), 0.3);  // metres, up and down
+  EXPECT_LT((handsAt(0).first - handsAt(1).first).norm(), 1e-5);
+  for (const double share : {0.0, 0.3, 0.7}) {
+    const auto [left, right] = handsAt(share);
+    EXPECT_LT((left - Vec3(-right.x(), right.y(), right.z())).norm(), 1e-5);
   }
 }
 

@@ -1,6 +1,7 @@
 #include "limber/samples/sculpture.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace limber {
@@ -53,6 +54,9 @@ double plateDistance(const Solid& s, const Vec3& point) {
   if (v + w > 1) nearest = std::min(nearest, coneDistance(s.b, s.rb, s.c, s.rc, point));
   return nearest;
 }
+
+// A power of two. Finer cells have shorter lists and take longer to make.
+constexpr std::uint32_t kCellsAlong = 32;
 
 Vec3 mirrored(const Vec3& point) {
   return {-point.x(), point.y(), point.z()};
@@ -124,7 +128,9 @@ void Sculpture::add(const Solid& solid, double blend) {
     step.reach = std::max((solid.a - step.center).norm() + solid.ra, (solid.b - step.center).norm() + solid.rb);
     if (flat) step.reach = std::max(step.reach, (solid.c - step.center).norm() + solid.rc);
   }
+  all_.push_back(static_cast<std::uint32_t>(steps_.size()));
   steps_.push_back(step);
+  cells_ = {};
 }
 
 void Sculpture::carve(const Solid& solid, double blend) {
@@ -143,10 +149,110 @@ bool Sculpture::near(const Vec3& point, const Step& step, double within) {
   return limit > 0 && (point - step.center).squaredNorm() < limit * limit;
 }
 
+// Of the step's solid and its mirror image, anywhere in the cube of that middle and half side.
+Sculpture::Range Sculpture::rangeOf(const Step& step, const Vec3& middle, double half) {
+  const double reach = std::sqrt(3.0) * half;
+  const auto of = [&](const Vec3& at) -> Range {
+    const Solid& s = step.solid;
+    if (s.kind == Solid::Kind::kEllipsoid) {
+      // (level - 1) times level / slope, which lies between the least and the greatest radius.
+      const Vec3 radii(s.ra, s.rb, s.rc), scaled = (s.axes * (at - s.a)).cwiseQuotient(radii);
+      const double least = radii.minCoeff(), most = radii.maxCoeff();
+      const double level = scaled.norm(), slope = scaled.cwiseQuotient(radii).norm();
+      const Range levels{std::max(0.0, level - reach / least), level + reach / least};
+      const Range slopes{slope - reach / (least * least), slope + reach / (least * least)};
+      const Range ratio{std::max(least, levels.low / slopes.high),
+                        slopes.low > 0 ? std::min(most, levels.high / slopes.low) : most};
+      const double low = levels.low - 1, high = levels.high - 1;
+      return {low * (low < 0 ? ratio.high : ratio.low), high * (high < 0 ? ratio.low : ratio.high)};
+    }
+    const double distance = s.distance(at);
+    if (s.kind == Solid::Kind::kRoundCone) return {distance - reach, distance + reach};
+    // Not quite a distance: its slope is a little steeper than 1, and it jumps by up to a difference of its radii.
+    const double error = 1.1 * reach + std::max({s.ra, s.rb, s.rc}) - std::min({s.ra, s.rb, s.rc});
+    return {distance - error, distance + error};
+  };
+  const Range one = of(middle);
+  if (!step.mirrored) return one;
+  const Range other = of(mirrored(middle));
+  return {std::min(one.low, other.low) - step.blend / 6, std::min(one.high, other.high)};
+}
+
+// The steps `among` those that change anything anywhere in the cube: all but those that are too far from the surface
+// that there is before them, and those before a solid that the cube lies so deep in, or that is so much nearer than all
+// before it, that it alone counts.
+std::vector<std::uint32_t> Sculpture::mattering(std::span<const std::uint32_t> among, const Vec3& middle,
+                                                double half) const {
+  std::vector<std::uint32_t> kept;
+  Range result{1e30, 1e30};
+  for (const std::uint32_t number : among) {
+    const Step& step = steps_[number];
+    const Range d = rangeOf(step, middle, half);
+    if (step.carved) {
+      if (d.low >= -result.low + step.blend) continue;
+      result = {std::max(result.low, -d.high), std::max(result.high, -d.low) + step.blend / 6};
+    } else {
+      if (d.low >= result.high + step.blend) continue;
+      if (d.high + step.blend <= result.low) {
+        kept.clear();
+        result = d;
+      } else {
+        result = {std::min(result.low, d.low) - step.blend / 6, std::min(result.high, d.high)};
+      }
+    }
+    kept.push_back(number);
+  }
+  return kept;
+}
+
+void Sculpture::prepare() {
+  const Box box = bounds();
+  const double side = box.size().maxCoeff();
+  Cells cells;
+  cells.origin = 0.5 * (box.min + box.max) - Vec3::Constant(0.5 * side);
+  cells.size = side / kCellsAlong;
+  std::vector<std::vector<std::uint32_t>> lists(std::size_t{kCellsAlong} * kCellsAlong * kCellsAlong);
+  const auto cut = [&](const auto& self, std::span<const std::uint32_t> among, const std::array<std::uint32_t, 3>& low,
+                       std::uint32_t width) -> void {
+    const double half = 0.5 * width * cells.size;
+    const Vec3 middle = cells.origin + cells.size * Vec3(low[0], low[1], low[2]) + Vec3::Constant(half);
+    std::vector<std::uint32_t> here = mattering(among, middle, half);
+    if (width == 1) {
+      lists[(std::size_t{low[2]} * kCellsAlong + low[1]) * kCellsAlong + low[0]] = std::move(here);
+      return;
+    }
+    const std::uint32_t step = width / 2;
+    for (std::uint32_t corner = 0; corner < 8; ++corner) {
+      self(self, here, {low[0] + step * (corner & 1), low[1] + step * (corner >> 1 & 1), low[2] + step * (corner >> 2)},
+           step);
+    }
+  };
+  cut(cut, all_, {0, 0, 0}, kCellsAlong);
+  for (const std::vector<std::uint32_t>& list : lists) {
+    cells.first.push_back(static_cast<std::uint32_t>(cells.steps.size()));
+    cells.steps.insert(cells.steps.end(), list.begin(), list.end());
+  }
+  cells.first.push_back(static_cast<std::uint32_t>(cells.steps.size()));
+  cells_ = std::move(cells);
+}
+
+// Those that matter there: all of them outside the cells.
+std::span<const std::uint32_t> Sculpture::stepsAt(const Vec3& point) const {
+  if (cells_.first.empty()) return all_;
+  const auto side = static_cast<double>(kCellsAlong);
+  const Vec3 at = (point - cells_.origin) / cells_.size;
+  if (at.minCoeff() < 0 || at.maxCoeff() >= side) return all_;
+  const auto x = static_cast<std::size_t>(at.x()), y = static_cast<std::size_t>(at.y()),
+             z = static_cast<std::size_t>(at.z());
+  const std::size_t cell = (z * kCellsAlong + y) * kCellsAlong + x;
+  return {cells_.steps.data() + cells_.first[cell], cells_.first[cell + 1] - cells_.first[cell]};
+}
+
 double Sculpture::distance(const Vec3& point) const {
   const Vec3 across = mirrored(point);
   double result = 1e30;
-  for (const Step& step : steps_) {
+  for (const std::uint32_t number : stepsAt(point)) {
+    const Step& step = steps_[number];
     const double within = (step.carved ? -result : result) + step.blend;  // farther away it changes nothing
     double d = 1e30;
     if (near(point, step, within)) d = step.solid.distance(point);

@@ -1,6 +1,8 @@
 // Shapes as distance fields: round cones, ellipsoids and plates, melted into one another and mirrored in x.
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "limber/core/types.h"
@@ -36,6 +38,11 @@ class Sculpture {
   // Cuts away what is below that height.
   void cutBelow(double height, double blend);
 
+  // Finds out which solids matter where, so that distances take less time. Near the surface they stay the same to the
+  // bit; far away, where that of an ellipsoid is approximate anyway, they keep their sign. For a sculpture that is
+  // complete: what is added or carved later undoes it. Cost: about that of 20,000 distances.
+  void prepare();
+
   // Even in x: distance(x, y, z) == distance(-x, y, z).
   double distance(const Vec3& point) const;
   // By central differences; and by one-sided ones, for less, where the distance is known.
@@ -52,9 +59,25 @@ class Sculpture {
     Vec3 center = Vec3::Zero();  // of a ball that holds the solid
     double reach = 0;            // its radius
   };
+  // Least and greatest.
+  struct Range {
+    double low = 0, high = 0;
+  };
+  // A cube that holds all solids, cut into cells; steps[first[cell]] up to steps[first[cell + 1]] are those that matter
+  // in it, in their order.
+  struct Cells {
+    Vec3 origin = Vec3::Zero();
+    double size = 0;  // metres, of a cell
+    std::vector<std::uint32_t> first, steps;
+  };
   static bool near(const Vec3& point, const Step& step, double within);
+  static Range rangeOf(const Step& step, const Vec3& middle, double half);
+  std::vector<std::uint32_t> mattering(std::span<const std::uint32_t> among, const Vec3& middle, double half) const;
+  std::span<const std::uint32_t> stepsAt(const Vec3& point) const;
 
   std::vector<Step> steps_;
+  std::vector<std::uint32_t> all_;  // 0, 1, 2, ...: of steps_
+  Cells cells_;
   double floor_ = -1e30, floorBlend_ = 0;
 };
 

@@ -28,6 +28,38 @@ double sphereSweep(const Solid& s, const Vec3& point) {
   return nearest;
 }
 
+// Of solids of all kinds, on both sides and in the middle, melted, carved and cut.
+Sculpture someFigure() {
+  Sculpture s;
+  s.add(ellipsoid({0, 0.3, 0}, {0.2, 0.25, 0.3}), 0.05);
+  s.add(ellipsoid({0.05, 0.45, 0.1}, {0.19, 0.04, 0.19}, {0.2, 0.1, 1}), 0.01);
+  s.add(roundCone({0.1, 0.4, 0}, 0.08, {0.5, 0.5, 0.1}, 0.03), 0.04);
+  s.add(plate({0.5, 0.5, 0.1}, 0.02, {0.8, 0.6, -0.2}, 0.01, {0.4, 0.4, -0.4}, 0.012), 0.02);
+  s.carve(roundCone({0.02, 0.5, 0.2}, 0.03, {0.02, 0.2, 0.35}, 0.02), 0.01);
+  s.add(ellipsoid({0, 0.62, 0}, {0.05, 0.05, 0.05}), 0.02);
+  s.cutBelow(0.1, 0.02);
+  return s;
+}
+
+TEST(Sculpture, IsTheSameToTheBitNearItsSurfaceOncePrepared) {
+  const Sculpture plain = someFigure();
+  Sculpture prepared = someFigure();
+  prepared.prepare();
+  int near = 0;
+  for (const Vec3& p : scatteredPoints(100000, 1)) {
+    const double distance = plain.distance(p);
+    if (std::abs(distance) < 0.1) {
+      ++near;
+      EXPECT_EQ(distance, prepared.distance(p));
+    } else {
+      EXPECT_GT(prepared.distance(p) / distance, 0) << "the sign changed";
+    }
+  }
+  EXPECT_GT(near, 5000);
+  prepared.add(ellipsoid({0, 0.9, 0}, {0.1, 0.1, 0.1}), 0.02);
+  EXPECT_LT(prepared.distance({0, 0.9, 0}), 0) << "what is added later is not there";
+}
+
 TEST(Solid, RoundConeIsTheHullOfItsSpheres) {
   for (const Solid& cone : {roundCone({0, 0, 0}, 0.3, {1, 0.5, 0.2}, 0.1), roundCone({-1, 0, 0}, 0.05, {0, 1, 0}, 0.4),
                             roundCone({0, 0, 0}, 0.2, {0, 0, 1}, 0.2)}) {

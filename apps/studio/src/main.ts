@@ -25,7 +25,7 @@ import { scenePanel } from './panels/scene_panel';
 import { retargetPanel } from './panels/retarget_panel';
 import { facts, status } from './panels/status';
 import { timeline } from './panels/timeline';
-import { samples } from './app/samples';
+import { samples, scenes } from './app/samples';
 import { setTextSize, textSize } from './app/text_size';
 import { toolbar } from './panels/toolbar';
 import { hint, views } from './panels/views';
@@ -61,7 +61,7 @@ const sheet = contactSheet(studio, page, viewport);
 const app = document.getElementById('app')!, toasts = status(studio, page);
 app.append(
   toolbar(studio, page, journal, viewport, model, others),
-  element('main', { class: 'stage' }, viewport.canvas, facts(page), hint(page), poseTools(page), views(viewport), arButton(() => ({ ...stage, studio, page, app })), comparisonPanel(studio, page, comparison)),
+  element('main', { class: 'stage' }, viewport.canvas, facts(page), hint(page, viewport), poseTools(page), views(viewport), arButton(() => ({ ...stage, studio, page, app })), comparisonPanel(studio, page, comparison)),
   element('aside', { class: 'side' }, scenePanel(studio, page, places), posePanel(studio, page, poses), paintPanel(studio, page), retargetPanel(studio, page), methodsPanel(studio, page), outliner(studio, page, handles)),
   timeline(studio, page, sheet.open),
   toasts, help(page), sheet.dialog, motionShelf(studio, page), poseLibrary(studio, page, poses));
@@ -85,15 +85,15 @@ addEventListener('drop', (event) => {
 
 exposeStage(studio, page, viewport, handles, gizmo, places, () => journal.settled);
 
-// ?model=address or ?sample=name; else what was worked on last, or the first sample, so that there is something to take
+// ?model=address, ?sample=name or ?scene=name; else what was worked on last, or the first sample, so that there is something to take
 // hold of.
 const parameters = new URLSearchParams(location.search);
 const address = parameters.get('model');
-const sample = parameters.get('sample');
+const sample = parameters.get('sample'), scene = parameters.get('scene');
 async function begin() {
-  void studio.loadMethods();
   if (address) return studio.openAddress(address);
-  const [last] = sample === null ? await journal.list() : [];
+  if (scene) await studio.openScene(scene, say(scenes.find(([name]) => name === scene)?.[1] ?? 'Scene'));
+  const [last] = sample === null && scene === null ? await journal.list() : [];
   if (last) await studio.openKept(last);
   if (!page.now.session) await studio.openSample(sample ?? samples[0][0]);
 }
@@ -112,4 +112,6 @@ async function beInstalled() {
   await openLaunchedFiles(studio);
   await keepForOffline((take) => toasts.append(newVersion(take)), kept);
 }
-void begin().then(beInstalled);
+const begun = begin();
+void studio.loadMethods(begun);
+void begun.then(beInstalled);

@@ -136,7 +136,19 @@ export class Journal {
     void this.queue(() => this.write(document, () => {}));
   }
 
-  async forget(id: string) {
+  /** Gives what brings it back. */
+  async forget(document: KeptDocument): Promise<() => Promise<void>> {
+    const requests = await this.requestsOf(document.id);
+    await this.erase(document.id);
+    return () => this.queue(async () => {
+      const transaction = (await this.database).transaction(['documents', 'requests'], 'readwrite');
+      transaction.objectStore('documents').put(document);
+      requests.forEach((request, number) => transaction.objectStore('requests').put(request, [document.id, number]));
+      await finished(transaction);
+    });
+  }
+
+  private async erase(id: string) {
     await this.queue(async () => {
       const transaction = (await this.database).transaction(['documents', 'requests'], 'readwrite');
       transaction.objectStore('documents').delete(id);
@@ -181,7 +193,7 @@ export class Journal {
 
   private async forgetOldest() {
     const documents = await this.list();
-    for (const { id } of documents.slice(mostDocuments)) void this.forget(id);
+    for (const { id } of documents.slice(mostDocuments)) void this.erase(id);
   }
 
   /** Each transaction is begun at once, behind those before it, which the database keeps in their order: a page that is

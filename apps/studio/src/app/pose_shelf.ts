@@ -59,6 +59,12 @@ export class PoseShelf {
     await this.store.forget(id).catch(() => {}); // it was never kept then
   }
 
+  /** One that was forgotten, in its place again: the newest come first. */
+  async bringBack(pose: KeptPose) {
+    this.page.set({ ownPoses: [...this.page.now.ownPoses, pose].sort((a, b) => b.made - a.made) });
+    await this.keep([pose]);
+  }
+
   /** Kept, and one that comes alone is put on the model at once. */
   private async open(files: File[]) {
     const poses: KeptPose[] = [];

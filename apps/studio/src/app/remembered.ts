@@ -1,14 +1,19 @@
 // What of the page's look this browser keeps from visit to visit.
 const prefix = 'limber.';
 
+/** Whatever was put there; empty where there is nothing. */
+export function rememberedText(name: string): string {
+  try {
+    return localStorage.getItem(prefix + name) ?? '';
+  } catch {
+    return '';
+  }
+}
+
 /** A browser that keeps nothing, or text that is not what was put there, gives `otherwise`. */
 export function remembered<T extends string>(name: string, known: readonly T[], otherwise: T): T {
-  try {
-    const kept = localStorage.getItem(prefix + name);
-    return known.find((value) => value === kept) ?? otherwise;
-  } catch {
-    return otherwise;
-  }
+  const kept = rememberedText(name);
+  return known.find((value) => value === kept) ?? otherwise;
 }
 
 export function remember(name: string, value: string) {

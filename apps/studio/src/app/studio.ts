@@ -14,6 +14,7 @@ import { openingCalls } from './calls/opening';
 import { posingCalls } from './calls/posing';
 import { rigCalls } from './calls/rig';
 import { selectionCalls } from './calls/selection';
+import { undoNotices } from './calls/undo_notices';
 import type { Journal } from './journal';
 import type { PageStore } from './state';
 
@@ -29,10 +30,11 @@ const outcomeCalls = (core: Core) => ({
 
 function allCalls(core: Core, journal: Journal) {
   const comparing = comparingCalls(core), keying = keyingCalls(core), motions = motionCalls(core);
-  const clips = clipCalls(core), rig = rigCalls(core), joints = jointCalls(core), members = memberCalls(core);
+  const posing = posingCalls(core), { told } = undoNotices(core, posing.undo);
+  const clips = clipCalls(core), rig = rigCalls(core, told), joints = jointCalls(core), members = memberCalls(core);
   return {
     ...openingCalls(core, journal, clips, motions, rig), ...members, ...motions, ...clips, ...keying, ...ghostCalls(core),
-    ...posingCalls(core), ...dragCalls(core, rig), ...selectionCalls(core, joints, members, rig), ...rig, ...joints, ...comparing,
+    ...posing, ...dragCalls(core, rig), ...selectionCalls(core, joints, members, rig), ...rig, ...joints, ...comparing,
     ...outcomeCalls(core),
   };
 }

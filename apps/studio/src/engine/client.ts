@@ -1,5 +1,6 @@
 // The page's side of the worker: promises, progress, and a way to stop what takes too long.
 import { opensModel, type Answer, type Command, type FromWorker, type Kind, type LimberError, type Place, type Request, type ToWorker } from './messages';
+import { takeWorker } from './start';
 import { say } from '../words/say';
 
 export class EngineError extends Error {
@@ -105,16 +106,17 @@ export class EngineClient {
   }
 
   private startWorker(): [Worker, Promise<void>] {
-    const worker = new Worker(new URL('./worker.ts', import.meta.url), { type: 'module' });
-    const ready = new Promise<void>((resolve, reject) => {
-      worker.onmessage = ({ data }: MessageEvent<FromWorker>) => {
-        if (data.kind === 'ready') resolve();
-        else if (data.kind === 'broken') reject(unreachable(data.message));
+    let ready: () => void, broken: (why: EngineError) => void;
+    const begun = new Promise<void>((resolve, reject) => { [ready, broken] = [resolve, reject]; });
+    const worker = takeWorker((started) => {
+      started.onmessage = ({ data }: MessageEvent<FromWorker>) => {
+        if (data.kind === 'ready') ready();
+        else if (data.kind === 'broken') broken(unreachable(data.message));
         else this.receive(data);
       };
-      worker.onerror = (event) => reject(unreachable(event.message));
+      started.onerror = (event) => broken(unreachable(event.message));
     });
-    return [worker, ready];
+    return [worker, begun];
   }
 
   private receive(data: Exclude<FromWorker, { kind: 'ready' } | { kind: 'broken' }>) {

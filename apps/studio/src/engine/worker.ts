@@ -1,7 +1,7 @@
 // Holds the engine and one scene, away from the page's own thread.
 import { loadLimber, type Codecs } from '@engine/limber.mjs';
 import engineUrl from '@engine/limber_engine.wasm.zst?url';
-import { decompress } from 'fzstd';
+import { Decompress } from 'fzstd';
 import { Documents, EngineFailure } from './documents';
 import { bringCodecs } from './codecs';
 import type { Answers, FromWorker, Kind, Request, ToWorker } from './messages';
@@ -39,14 +39,28 @@ function answer(documents: Documents, request: Request): Answers[Kind] {
   }
 }
 
-const zstandard = 0xfd2fb528; // the first four bytes of a packed file (RFC 8878)
+const zstandard = [0x28, 0xb5, 0x2f, 0xfd]; // how a packed file begins (RFC 8878)
 
-/** Packed, whatever the host serves; one that says how it is packed has it unpacked by the browser already. */
-async function engine(): Promise<BufferSource> {
+/** Unpacks what is packed; a host that says how it is packed has it unpacked by the browser already. */
+function unpacking(): TransformStream<Uint8Array, Uint8Array> {
+  let unpack: Decompress | null = null, begun = false;
+  return new TransformStream({
+    transform(chunk, out) {
+      if (!begun && zstandard.every((byte, i) => chunk[i] === byte)) unpack = new Decompress((part) => out.enqueue(part));
+      begun = true;
+      if (unpack) unpack.push(chunk);
+      else out.enqueue(chunk);
+    },
+    flush() { unpack?.push(new Uint8Array(), true); },
+  });
+}
+
+/** Unpacked and compiled while it comes. */
+async function engine(): Promise<WebAssembly.Module> {
   const response = await fetch(engineUrl);
-  if (!response.ok) throw new Error(`answer ${response.status}`);
-  const bytes = await response.arrayBuffer();
-  return new DataView(bytes).getUint32(0, true) === zstandard ? decompress(new Uint8Array(bytes)) as BufferSource : bytes;
+  if (!response.ok || !response.body) throw new Error(`answer ${response.status}`);
+  const unpacked = response.body.pipeThrough<Uint8Array>(unpacking() as ReadableWritablePair<Uint8Array, Uint8Array<ArrayBuffer>>);
+  return WebAssembly.compileStreaming(new Response(unpacked as ReadableStream<Uint8Array<ArrayBuffer>>, { headers: { 'content-type': 'application/wasm' } }));
 }
 
 /** The files that a request brings. */

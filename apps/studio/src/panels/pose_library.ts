@@ -9,6 +9,7 @@ import type { MotionPreview, SamplePose } from '../engine/messages';
 import { MotionPictures } from '../scene/motion_picture';
 import { arrowsMoveFocus } from '../ui/cards';
 import { button, element, fileInput, offer } from '../ui/dom';
+import { goneLine } from '../ui/gone_line';
 import { renameIn } from '../ui/rename';
 import { poseName, told } from '../words/engine';
 import { say } from '../words/say';
@@ -45,6 +46,7 @@ export function poseLibrary(studio: Studio, page: PageStore, shelf: PoseShelf): 
     await shelf.save(wanted);
   };
   name.addEventListener('keydown', ({ key }) => { if (key === 'Enter') void save(); });
+  const gone = goneLine('undo-pose');
   const files = fileInput('pose-files', { accept: '.json,.zip' }, (chosen) => void studio.openFiles(chosen));
   const partly = element('input', { type: 'checkbox', id: 'pose-partly' });
   const partlyLabel = element('label', { class: 'check' }, partly, say('Only the selected joints and what hangs on them'));
@@ -54,7 +56,7 @@ export function poseLibrary(studio: Studio, page: PageStore, shelf: PoseShelf): 
     partlyLabel,
     element('h3', {}, say('Your poses')), none,
     element('div', { class: 'row save-pose' }, name, button(say('Save this pose'), () => void save(), { id: 'save-pose', icon: 'add' })),
-    own, element('h3', {}, say('Poses to begin with')), samples,
+    gone.root, own, element('h3', {}, say('Poses to begin with')), samples,
     element('div', { class: 'row foot' }, files,
       button(say('Open poses'), () => files.click(), { icon: 'open', label: say('Open poses that were saved as files'), id: 'open-pose-files' })));
 
@@ -147,6 +149,7 @@ export function poseLibrary(studio: Studio, page: PageStore, shelf: PoseShelf): 
       }), { icon: 'save', label: say('Save {name} as a file', { name: named }) }),
       button('', act((kept) => {
         void shelf.forget(kept);
+        gone.tell(say('{name} was deleted', { name: kept.name }), () => shelf.bringBack(kept));
         name.focus();
       }), { icon: 'erase', label: say('Delete {name}', { name: named }) }));
     return actions;

@@ -13,8 +13,13 @@ export function status(studio: Studio, page: PageStore): HTMLElement {
     stage, bar, button(say('Stop'), () => void studio.stop(), { id: 'stop' }));
 
   const title = element('strong', {}), detail = element('span', { class: 'detail' });
+  const undo = button(say('Undo'), () => {
+    const { notice } = page.now;
+    page.set({ notice: null });
+    void notice?.undo?.();
+  }, { icon: 'undo', id: 'undo-notice', kind: 'primary' });
   const notice = element('div', { class: 'toast notice', role: 'alert', id: 'notice', hidden: true },
-    element('div', { class: 'text' }, title, detail), button(say('Close'), () => page.set({ notice: null }), { id: 'close-notice' }));
+    element('div', { class: 'text' }, title, detail), undo, button(say('Close'), () => page.set({ notice: null }), { id: 'close-notice' }));
 
   page.watch((now) => {
     work.hidden = now.work === null;
@@ -27,6 +32,7 @@ export function status(studio: Studio, page: PageStore): HTMLElement {
     notice.classList.toggle('error', now.notice?.kind === 'error');
     title.textContent = now.notice?.title ?? '';
     detail.textContent = now.notice?.detail ?? '';
+    undo.hidden = !now.notice?.undo;
     detail.lang = now.notice?.inEnglish ? 'en' : '';
   });
   return element('div', { class: 'status' }, work, notice);

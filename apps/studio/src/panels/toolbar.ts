@@ -1,7 +1,7 @@
 // The bar on top: open, undo, what leaves the page.
 import { Group, Matrix4 } from 'three';
 import type { Journal } from '../app/journal';
-import { samples } from '../app/samples';
+import { samples, scenes } from '../app/samples';
 import type { PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
 import type { ModelView } from '../scene/model_view';
@@ -31,9 +31,13 @@ export function toolbar(studio: Studio, page: PageStore, journal: Journal, viewp
     file.value = '';
   });
   const sample = element('select', { 'aria-label': say('Open a sample'), class: 'select', id: 'samples' },
-    element('option', { value: '' }, say('Samples')), ...samples.map(([value, text]) => element('option', { value }, say(text))));
+    element('option', { value: '' }, say('Samples')),
+    element('optgroup', { label: say('Models') }, ...samples.map(([value, text]) => element('option', { value }, say(text)))),
+    element('optgroup', { label: say('Scenes') }, ...scenes.map(([value, text]) => element('option', { value }, say(text)))));
   sample.addEventListener('change', () => {
-    if (sample.value !== '') void studio.openSample(sample.value);
+    const scene = scenes.find(([name]) => name === sample.value);
+    if (scene) void studio.openScene(scene[0], say(scene[1]));
+    else if (sample.value !== '') void studio.openSample(sample.value);
     sample.value = '';
   });
 

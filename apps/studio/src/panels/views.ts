@@ -1,4 +1,5 @@
 // From where the model is seen, and what to do first.
+import { hintFor } from '../app/hints';
 import type { PageStore } from '../app/state';
 import type { Viewport, ViewName } from '../scene/viewport';
 import { button, element } from '../ui/dom';
@@ -13,11 +14,14 @@ export function views(viewport: Viewport): HTMLElement {
     button(say('Flat'), () => viewport.toggleOrthographic(), { keys: '5', label: say('Without or with perspective'), id: 'view-flat' }));
 }
 
-/** Until something has been done. */
-export function hint(page: PageStore): HTMLElement {
-  const line = element('p', { class: 'hint', id: 'hint' }, say('Drag a red ball'));
-  page.watch(({ session, display, selected }) => {
-    line.hidden = !session || session.undo !== null || session.clips.length > 0 || display !== 'handles' || selected !== null;
+/** What to do next, for whoever has not done it yet. */
+export function hint(page: PageStore, viewport: Viewport): HTMLElement {
+  const line = element('p', { class: 'hint', id: 'hint', role: 'status' });
+  viewport.controls.addEventListener('start', () => { if (!page.now.looked) page.set({ looked: true }); });
+  page.watch((now, before) => {
+    const text = hintFor(now, before);
+    line.hidden = text === null;
+    if (text !== null) line.textContent = say(text);
   });
   return line;
 }

@@ -7,6 +7,7 @@ import { say } from '../../words/say';
 import { sorted, withBuffers, type Brought } from '../files';
 import type { Journal, KeptDocument } from '../journal';
 import { fromLimberFile, toLimberFile } from '../limber_file';
+import { sceneRecord } from '../samples';
 import type { Notice } from '../state';
 import type { ClipCalls } from './clips';
 import type { Core } from './core';
@@ -74,7 +75,7 @@ export function openingCalls(core: Core, journal: Journal, { forgetMoment }: Cli
   async function broughtBy(files: File[]): Promise<Brought | null> {
     const large = files.find(({ size }) => size > mostFileSize);
     if (!large) return core.guard(() => sorted(files));
-    page.set({ notice: { kind: 'error', title: say('This file is too large for a browser'), detail: large.name } });
+    page.set({ notice: { kind: 'error', title: say('This file is too large for a browser'), detail: say('{name} has more than {size} MB. Make it smaller, or rig it with the program: limber rig', { name: large.name, size: mostFileSize / 1e6 }) } });
     return null;
   }
 
@@ -108,6 +109,15 @@ export function openingCalls(core: Core, journal: Journal, { forgetMoment }: Cli
 
   return {
     async openSample(name: string) { await open(async () => ({ step: await engine.run({ do: 'open_sample', name, limbs_follow: true }) })); },
+
+    /** One of samples/scenes, done again command by command: each can be undone. */
+    async openScene(name: string, title: string) {
+      await open(async () => {
+        const record = await sceneRecord(name).catch(() => null);
+        if (!record) throw refusal(say('the scene cannot be fetched'), name, say('look at the connection, and try again'));
+        return restore(record.commands.map((command) => ({ kind: 'run', command })), title);
+      });
+    },
 
     /** A model with what belongs to it, motions for it, poses, or limits. */
     async openFiles(files: File[]) {

@@ -6,7 +6,8 @@ import type { Core } from './core';
 
 export type RigCalls = ReturnType<typeof rigCalls>;
 
-export function rigCalls(core: Core) {
+/** `told`: says that something is gone, with a way to bring it back. */
+export function rigCalls(core: Core, told: (title: string) => void) {
   const { page, engine } = core;
   let wantedHandles: number | null = null, askedHandles = 0;
 
@@ -18,9 +19,13 @@ export function rigCalls(core: Core) {
     }
     if (!session?.own_rig) return true;
     return core.ask(say('Replace the rig of this model?'),
-      say('It came with {joints} that have names; they and its clips go. Undo brings them back.', { joints: counted(session.joints.length, 'joint') }),
+      say('It came with {joints} that have names; they go, and its clips move to the new ones. Undo brings them back.', { joints: counted(session.joints.length, 'joint') }),
       say('Replace it'));
   }
+
+  /** Whether there is something in the rig that no method makes again. */
+  const isPrecious = () => page.now.session?.own_rig === true || page.now.session?.edited_rig === true;
+  const tellReplaced = (before: boolean) => { if (before && !isPrecious()) told(say('The rig was replaced')); };
 
   const mayFitAnew = async () => !page.now.session?.edited_rig || await mayReplaceRig();
 
@@ -31,12 +36,14 @@ export function rigCalls(core: Core) {
       wantedHandles = count;
       if (underWay) return;
       await core.guard(async () => {
+        const before = isPrecious();
         if (!await mayReplaceRig()) return;
         for (let next = count; ; next = wantedHandles ?? next) {
           core.take(await engine.run({ do: 'set_handles', count: next }));
           askedHandles = next;
-          if (wantedHandles === next) return;
+          if (wantedHandles === next) break;
         }
+        tellReplaced(before);
       });
       wantedHandles = null;
       page.set({});
@@ -52,11 +59,15 @@ export function rigCalls(core: Core) {
       return joints === askedHandles + 1 ? askedHandles : joints;
     },
 
-    async loadMethods() {
-      await core.guard(async () => page.set({
-        methods: await engine.ask({ kind: 'methods' }), sampleMotions: await engine.ask({ kind: 'sample-motions' }),
-        samplePoses: await engine.ask({ kind: 'sample-poses' }),
-      }));
+    /** Behind the first model: what lists show can wait for it. */
+    async loadMethods(first: Promise<unknown>) {
+      await core.guard(async () => {
+        await first;
+        page.set({
+          methods: await engine.ask({ kind: 'methods' }), sampleMotions: await engine.ask({ kind: 'sample-motions' }),
+          samplePoses: await engine.ask({ kind: 'sample-poses' }),
+        });
+      });
     },
 
     async chooseMethods(change: { rigger?: string; skinning?: string }) {
@@ -64,7 +75,10 @@ export function rigCalls(core: Core) {
       if (!session) return;
       const { rigger, skinning } = { ...session, ...change };
       await core.guard(async () => {
-        if (await mayReplaceRig()) core.take(await engine.run({ do: 'choose_methods', rigger, skinning }));
+        const before = isPrecious();
+        if (!await mayReplaceRig()) return;
+        core.take(await engine.run({ do: 'choose_methods', rigger, skinning }));
+        tellReplaced(before);
       });
       page.set({}); // lists show again what is chosen
     },

@@ -1,0 +1,5 @@
+// The page's first few lines.
+import { startEarly } from './engine/start';
+
+startEarly();
+void import('./main');
