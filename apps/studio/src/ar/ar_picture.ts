@@ -1,5 +1,5 @@
 // A picture of the models in the real place: on what the camera sees, or on a colour.
-import { Mesh, OrthographicCamera, PlaneGeometry, ShaderMaterial, Texture, type WebGLRenderer } from 'three';
+import { Mesh, OrthographicCamera, PlaneGeometry, ShaderMaterial, Texture, Vector4, type WebGLRenderer } from 'three';
 import { element } from '../ui/dom';
 import type { ArView } from './ar_view';
 
@@ -9,8 +9,10 @@ export function takePicture(view: ArView, background: string | null): HTMLCanvas
   if (!seen && background === null) return null;
   const { width, height } = renderer.domElement, screen = element('canvas', { width, height }), context = screen.getContext('2d')!;
   const { xr } = renderer, target = renderer.getRenderTarget(), inXr = xr.enabled;
+  const whole = renderer.getViewport(new Vector4()), ratio = renderer.getPixelRatio();
   xr.enabled = false; // into the canvas, not into the device's frame
   renderer.setRenderTarget(null);
+  renderer.setViewport(0, 0, width / ratio, height / ratio); // the device's frame can have another size
   void viewport.withoutTools(async () => {
     if (seen instanceof Texture) drawCamera(renderer, seen);
     else if (seen) drawVideo(context, seen);
@@ -23,6 +25,7 @@ export function takePicture(view: ArView, background: string | null): HTMLCanvas
     renderer.autoClear = true;
     context.drawImage(renderer.domElement, 0, 0);
   });
+  renderer.setViewport(whole);
   renderer.setRenderTarget(target);
   xr.enabled = inXr;
   return screen;

@@ -13,7 +13,7 @@ export function helpLine({ ar, display, mode }: PageState, hands: boolean): stri
 const byFingers = () => ({
   place: say('Tap to place the model here'),
   search: say('Point the device at the floor or a table, and move it slowly'),
-  view: say('Tap the model to pose it. Drag it to move it, turn and scale it with two fingers'),
+  view: say('Tap to pose it, drag to move it, two fingers turn and scale it'),
   size: say('Not its real size'),
   move: say('Drag a handle; walk with it to push or pull'),
   turn: say('Drag a handle to turn it about its parent'),

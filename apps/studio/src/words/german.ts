@@ -65,7 +65,7 @@ export const german = {
   'The model that is posed': 'Das Modell, das eine Pose bekommt',
   'Tap to place the model here': 'Tippe, um das Modell hierhin zu stellen',
   'Point the device at the floor or a table, and move it slowly': 'Richte das Gerät auf den Boden oder einen Tisch und bewege es langsam',
-  'Tap the model to pose it. Drag it to move it, turn and scale it with two fingers': 'Tippe das Modell an, um ihm eine Pose zu geben. Zieh es, um es zu verschieben; dreh und vergrößere es mit zwei Fingern',
+  'Tap to pose it, drag to move it, two fingers turn and scale it': 'Antippen für eine Pose, ziehen zum Verschieben, zwei Finger drehen und vergrößern',
   'Pinch, or press the trigger, to place the model here': 'Finger zusammen oder Abzug drücken, um das Modell hierhin zu stellen',
   'Point at the floor or a table': 'Zeige auf den Boden oder einen Tisch',
   'Point at the model and pinch to pose it. Hold it to move it, with both hands to turn and scale it': 'Zeige auf das Modell und drück die Finger zusammen, um ihm eine Haltung zu geben. Halte es fest, um es zu verschieben, mit beiden Händen, um es zu drehen und zu skalieren',

@@ -96,6 +96,7 @@ export function openingCalls(core: Core, journal: Journal, { forgetMoment }: Cli
   async function join(make: () => Promise<Step>) {
     if (!page.now.session) return;
     page.set({ playing: false, comparison: null });
+    forgetMoment(); // it was another model's
     await core.guard(async () => {
       core.take(await make());
       core.onOpened();
