@@ -177,9 +177,10 @@ export class ArView implements Looker {
     return screen && new Promise((resolve) => screen.toBlob(resolve, 'image/png'));
   }
 
-  /** Where it is shown, a member stays: one step to undo. */
-  async keepPlace(member: number) {
-    await this.desk.studio.placeMember(member, this.desk.places.shown(member));
+  /** Where it is shown, a member stays: one step to undo. A scale that is known is kept as it is. */
+  async keepPlace(member: number, scale?: number) {
+    const shown = this.desk.places.shown(member);
+    await this.desk.studio.placeMember(member, scale === undefined ? shown : { ...shown, scale });
   }
 
   // What gestures ask.

@@ -10,13 +10,14 @@ export class TurnScale {
   private readonly place: Matrix4;
   private readonly base: Vector3;
   private readonly scale: number;
+  private scaled: number;
 
   constructor(private ar: ArView) {
     const { places, page } = ar.desk;
     this.member = page.now.session!.member;
     this.place = places.of(this.member).clone();
     this.base = ar.baseOf(this.member);
-    this.scale = places.shown(this.member).scale;
+    this.scale = this.scaled = places.shown(this.member).scale;
   }
 
   /** From how it was at first: so many times as large, radians about y, and moved in the world. */
@@ -24,7 +25,7 @@ export class TurnScale {
     const { session } = this.ar.desk.page.now, { places, arrange } = this.ar.desk, { base } = this;
     if (!session || this.ar.isPlacing) return;
     const wanted = Math.min(mostScale, Math.max(leastScale, this.scale * times));
-    const scale = Math.abs(Math.log(wanted)) < Math.log(detent) ? 1 : wanted;
+    const scale = this.scaled = Math.abs(Math.log(wanted)) < Math.log(detent) ? 1 : wanted;
     const change = new Matrix4().makeTranslation(base.clone().add(shift))
       .multiply(new Matrix4().makeRotationY(turn)).scale(new Vector3().setScalar(scale / this.scale))
       .multiply(new Matrix4().makeTranslation(base.clone().negate()));
@@ -34,6 +35,6 @@ export class TurnScale {
   }
 
   keep() {
-    if (!this.ar.isPlacing) void this.ar.keepPlace(this.member);
+    if (!this.ar.isPlacing) void this.ar.keepPlace(this.member, this.scaled);
   }
 }
