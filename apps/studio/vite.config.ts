@@ -12,6 +12,20 @@ const onlyPacked = (): Plugin => ({
   },
 });
 
+// js-aruco2 is plain scripts that hang their names on `this`.
+const plainScripts = (): Plugin => ({
+  name: 'plain-scripts',
+  transform(code, id) {
+    if (!/js-aruco2\/src\/.*\.js$/.test(id)) return;
+    const needed = [...new Set([...code.matchAll(/require\(['"](.+?)['"]\)/g)].map(([, name]) => name!))];
+    const exported = [...new Set([...code.matchAll(/^this\.(\w+) = /gm)].map(([, name]) => name!))];
+    return `${needed.map((name, i) => `import * as needed${i} from '${name}.js';`).join('\n')}
+const scope = {}, needed = { ${needed.map((name, i) => `'${name}': needed${i}`).join(', ')} };
+(function (require) {${code}\n}).call(scope, (name) => needed[name]);
+export const { ${exported.join(', ')} } = scope;`;
+  },
+});
+
 // A folder of static files that any web host can serve, also below a path of its own.
 export default defineConfig({
   base: './',
@@ -24,7 +38,9 @@ export default defineConfig({
       output: { entryFileNames: ({ name }) => (name === 'service_worker' ? '[name].js' : 'assets/[name]-[hash].js') },
     },
   },
-  plugins: [onlyPacked(), installable()],
-  worker: { format: 'es', plugins: () => [onlyPacked()] },
+  optimizeDeps: { exclude: ['js-aruco2'] },
+  ssr: { noExternal: ['js-aruco2'] },
+  plugins: [onlyPacked(), plainScripts(), installable()],
+  worker: { format: 'es', plugins: () => [onlyPacked(), plainScripts()] },
   preview: { host: '127.0.0.1', port: 8080, strictPort: true },
 });
