@@ -1,5 +1,5 @@
 // Follows the card from picture to picture. Pure: runs in a worker and in a test alike.
-import type { Grey } from './card';
+import type { Corners, Grey } from './card';
 import { Detector } from './detector';
 import { refinedCorners } from './edges';
 import { stretched } from './picture';
@@ -10,6 +10,8 @@ const noise = 0.1, motion = 1, leastTrust = 0.2;
 const worstFit = 2; // pixels: corners that no square before this lens can have
 
 export class Tracker {
+  /** As they were seen last; null where they were not. */
+  corners: Corners | null = null;
   private detector = new Detector();
   private last: Pose | null = null;
 
@@ -25,8 +27,9 @@ export class Tracker {
 
   /** Without what was seen before. */
   measure(picture: Grey, lens: Lens): Pose | null {
-    const rough = this.detector.find(stretched(picture)), corners = rough && refinedCorners(picture, rough);
-    const pose = corners && poseOf(corners, this.side, lens);
+    const rough = this.detector.find(stretched(picture));
+    this.corners = rough && refinedCorners(picture, rough);
+    const pose = this.corners && poseOf(this.corners, this.side, lens);
     return pose && pose.error < worstFit ? pose : null;
   }
 
