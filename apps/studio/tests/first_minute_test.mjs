@@ -97,7 +97,7 @@ const cases = {
   async 'and a clip, and a key of it'() {
     await page.locator('#add-clip').click();
     await settled(page);
-    await page.locator('#key').click();
+    await page.locator('#add-key').click();
     await settled(page);
     const clips = async () => (await sessionState(page)).clips.map(({ name, keys }) => [name, keys]);
     await lostAndBack(() => page.locator('#delete-key').click(), clips);
