@@ -12,7 +12,8 @@ import { answer, barriers, jointPlace, jointPosition, launch, openStudio, runCas
 const [dist, output] = process.argv.slice(2).map((path) => resolve(path));
 mkdirSync(output, { recursive: true });
 const server = await serve(dist), browser = await launch();
-const desk = await openStudio(browser, server.address, { width: 1000, height: 700, search: '?sample=stool' });
+// Without the service worker, which keeps everything for offline: here it counts what the page itself fetches.
+const desk = await openStudio(browser, server.address, { width: 1000, height: 700, search: '?sample=stool', serviceWorkers: 'block' });
 let { page } = desk;
 const errors = [desk.errors];
 
@@ -130,6 +131,7 @@ const cases = {
     await page.waitForFunction(() => globalThis.limberStudio.kept());
     await page.locator('#open-recent').click();
     const rows = () => page.locator('.recent-list li').count();
+    await page.locator('.recent-list li').first().waitFor();
     const before = await rows();
     assert.ok(before > 0);
     await page.locator('.recent-list li').first().locator('button').last().click();
