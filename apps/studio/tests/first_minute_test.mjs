@@ -12,8 +12,7 @@ import { answer, barriers, jointPlace, jointPosition, launch, openStudio, runCas
 const [dist, output] = process.argv.slice(2).map((path) => resolve(path));
 mkdirSync(output, { recursive: true });
 const server = await serve(dist), browser = await launch();
-// Without the service worker, which keeps everything for offline: here it counts what the page itself fetches.
-const desk = await openStudio(browser, server.address, { width: 1000, height: 700, search: '?sample=stool', serviceWorkers: 'block' });
+const desk = await openStudio(browser, server.address, { width: 1000, height: 700, search: '?sample=stool' });
 let { page } = desk;
 const errors = [desk.errors];
 

@@ -29,9 +29,10 @@ export const launch = ({ smooth = false, options = [] } = {}) => chromium.launch
     ...(smooth ? [] : ['--webgl-antialiasing-mode=none']), ...options],
 });
 
-/** The page once its model stands. What the page throws is collected in `errors`. */
+/** The page once its model stands. What the page throws is collected in `errors`. Its service worker, which fetches all files
+ *  for offline, runs only where `serviceWorkers` is 'allow'. */
 export async function openStudio(browser, address, { width = 1280, height = 800, touch = false, search = '', locale = 'en-US', prepare = async () => {}, ...more } = {}) {
-  const context = await browser.newContext({ viewport: { width, height }, hasTouch: touch, locale, acceptDownloads: true, ...more });
+  const context = await browser.newContext({ viewport: { width, height }, hasTouch: touch, locale, acceptDownloads: true, serviceWorkers: 'block', ...more });
   await prepare(context);
   const page = await context.newPage();
   page.setDefaultTimeout(120_000);
