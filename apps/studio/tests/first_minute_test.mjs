@@ -7,7 +7,7 @@
 import assert from 'node:assert/strict';
 import { mkdirSync, readdirSync } from 'node:fs';
 import { join, resolve } from 'node:path';
-import { answer, barriers, jointPlace, jointPosition, launch, openStudio, runCases, serve, sessionState, settled } from './page.mjs';
+import { answer, barriers, dragMouse, jointPlace, jointPosition, launch, openStudio, runCases, serve, sessionState, settled } from './page.mjs';
 
 const [dist, output] = process.argv.slice(2).map((path) => resolve(path));
 mkdirSync(output, { recursive: true });
@@ -20,14 +20,7 @@ const hint = async (at = page) => (await at.locator('#hint').isVisible() ? at.lo
 const notice = (at = page) => at.locator('#notice');
 const moved = (a, b) => Math.hypot(...a.map((value, i) => value - b[i]));
 
-async function drag(from, to) {
-  await page.mouse.move(from.x, from.y);
-  await page.mouse.down();
-  await page.mouse.move((from.x + to.x) / 2, (from.y + to.y) / 2);
-  await page.mouse.move(to.x, to.y);
-  await page.mouse.up();
-  await settled(page);
-}
+const drag = (from, to) => dragMouse(page, from, to);
 /** The joint that is farthest from the root on the screen: nothing covers it. */
 async function freeJoint(at = page) {
   const { joints } = await sessionState(at), root = await jointPlace(at, joints[0].name);

@@ -105,6 +105,16 @@ export async function barriers(of) {
   return violations.flatMap(({ id, nodes }) => nodes.map(({ target, failureSummary }) => `${id}: ${target} ${failureSummary}`));
 }
 
+/** Pressed there, let go here, in pixels of the page. */
+export async function dragMouse(page, from, to) {
+  await page.mouse.move(from.x, from.y);
+  await page.mouse.down();
+  await page.mouse.move((from.x + to.x) / 2, (from.y + to.y) / 2);
+  await page.mouse.move(to.x, to.y);
+  await page.mouse.up();
+  await settled(page);
+}
+
 /** Where a joint is drawn, in pixels of the page. */
 export const jointPlace = (page, name) => page.evaluate((joint) => globalThis.limberStudio.place(joint), name);
 /** Where a joint stands, in metres. */

@@ -7,7 +7,7 @@ import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
-import { barriers, chooseMotion, download, jointPlace, jointPosition, launch, motionPlayed, openStudio, runCases, serve, sessionState, settled } from './page.mjs';
+import { barriers, dragMouse, chooseMotion, download, jointPlace, jointPosition, launch, motionPlayed, openStudio, runCases, serve, sessionState, settled } from './page.mjs';
 
 const [dist, program, output] = process.argv.slice(2).map((path) => resolve(path));
 mkdirSync(output, { recursive: true });
@@ -30,14 +30,7 @@ async function choose(member) {
   await page.locator(`#members [data-member="${member}"] button`).first().click();
   await settled(page);
 }
-async function drag(from, to) {
-  await page.mouse.move(from.x, from.y);
-  await page.mouse.down();
-  await page.mouse.move((from.x + to.x) / 2, (from.y + to.y) / 2);
-  await page.mouse.move(to.x, to.y);
-  await page.mouse.up();
-  await settled(page);
-}
+const drag = (from, to) => dragMouse(page, from, to);
 /** Of the chosen member: the joint of that part. */
 const jointOf = async (part) => (await sessionState(page)).joints.find((joint) => joint.part === part).name;
 async function pullHand() {
