@@ -4,6 +4,8 @@ export const dictionary = 'ARUCO_MIP_16h3';
 export const cardId = 11;
 /** Cells along a side of the black square. */
 export const cellsAcross = 6;
+/** Metres along the black square's side, as it is printed and shown. */
+export const cardSide = 0.08;
 
 /** A corner in the picture, in pixels: x to the right, y down, the middle of the first pixel at (0.5, 0.5). */
 export interface Corner { x: number; y: number }
