@@ -14,7 +14,10 @@ export function random(seed) {
 }
 
 // Knots of a value noise, for a table that is not of one colour.
-const knot = (i, j) => { const n = Math.sin(i * 127.1 + j * 311.7) * 43758.5453; return n - Math.floor(n); };
+const kind = random(1), knots = Float32Array.from({ length: 256 * 256 }, kind);
+const knot = (i, j) => knots[((i & 255) << 8) | (j & 255)];
+// Of a camera's sensor: normally distributed, drawn once for all pictures.
+const grain = Float32Array.from({ length: 262_139 }, () => Math.sqrt(-2 * Math.log(kind() + 1e-12)) * Math.cos(2 * Math.PI * kind()));
 function table(x, z) {
   const u = x * 60, v = z * 60, i = Math.floor(u), j = Math.floor(v), a = u - i, b = v - j;
   const value = (knot(i, j) * (1 - a) + knot(i + 1, j) * a) * (1 - b) + (knot(i, j + 1) * (1 - a) + knot(i + 1, j + 1) * a) * b;
@@ -30,9 +33,10 @@ function paper(x, z, code) {
 }
 
 /** Brightness of the picture from a pose of the card before the camera: `turn` its rotation by rows, `move` in metres. Each
-    pixel is the mean over its area and over the poses, which are those while the shutter is open. `light` scales, `noise` is in grey levels. */
-export function drawn(poses, focal, code, { light = 1, noise = 2, seed = 1 } = {}) {
-  const sums = new Float32Array(width * height), perSide = 3;
+    pixel is the mean over its area (of `perSide` squared rays) and over the poses, which are those while the shutter is open.
+    `light` scales, `noise` is in grey levels. */
+export function drawn(poses, focal, code, { light = 1, noise = 2, seed = 1, perSide = 3 } = {}) {
+  const sums = new Float32Array(width * height);
   for (const { turn: r, move: t } of poses) {
     for (let y = 0; y < height; ++y) {
       for (let x = 0; x < width; ++x) {
@@ -49,8 +53,8 @@ export function drawn(poses, focal, code, { light = 1, noise = 2, seed = 1 } = {
       }
     }
   }
-  const next = random(seed), data = new Uint8ClampedArray(width * height);
-  for (let i = 0; i < data.length; ++i) data[i] = sums[i] * light + noise * Math.sqrt(-2 * Math.log(next() + 1e-12)) * Math.cos(2 * Math.PI * next());
+  const data = new Uint8ClampedArray(width * height);
+  for (let i = 0, at = Math.floor(random(seed)() * grain.length); i < data.length; ++i) data[i] = sums[i] * light + noise * grain[at++ % grain.length];
   return { width, height, data };
 }
 
@@ -63,3 +67,6 @@ export function poseFrom(distance, elevation, turn, roll = 0, aside = [0, 0]) {
   const x = right.map((value, i) => Math.cos(k) * value + Math.sin(k) * down[i]), y = right.map((value, i) => -Math.sin(k) * value + Math.cos(k) * down[i]);
   return { turn: [...x, ...y, ...back.map((value) => -value)], move: [distance * Math.tan(aside[0]), distance * Math.tan(aside[1]), distance] };
 }
+
+/** The poses that `path` (of seconds) gives while the shutter is open, about that moment. */
+export const opened = (path, seconds, shutter = 1 / 60) => [-0.5, 0, 0.5].map((part) => path(seconds + part * shutter));
