@@ -224,6 +224,7 @@ studio_in_browser() {
     counted node apps/studio/tests/poses_test.mjs dist "$output/studio" &&
     counted node apps/studio/tests/ar_test.mjs dist build/release/limber "$output/studio" &&
     counted node apps/studio/tests/ar_trouble_test.mjs dist "$output/studio" &&
+    counted node apps/studio/tests/ways_test.mjs dist "$output/studio" &&
     counted node apps/studio/tests/headset_test.mjs dist build/release/limber "$output/studio" &&
     counted node apps/studio/tests/install_test.mjs dist build/release/limber "$output/studio" &&
     counted node apps/studio/tests/card_test.mjs

@@ -11,7 +11,7 @@ import { bindJournal } from './app/keep';
 import { bindPlayer } from './app/player';
 import { exposeStage } from './app/probe';
 import { comparisonPanel } from './panels/comparison_panel';
-import { arButton } from './panels/ar_button';
+import { arButton, arMenu } from './panels/ar_button';
 import { contactSheet } from './panels/contact_sheet';
 import { help } from './panels/help';
 import { motionShelf } from './panels/motion_shelf';
@@ -59,9 +59,10 @@ const { viewport, handles, model, comparison, gizmo, others, places } = stage;
 const sheet = contactSheet(studio, page, viewport);
 
 const app = document.getElementById('app')!, toasts = status(studio, page);
+const desk = () => ({ ...stage, studio, page, app });
 app.append(
-  toolbar(studio, page, journal, viewport, model, others),
-  element('main', { class: 'stage' }, viewport.canvas, facts(page), hint(page, viewport), poseTools(page), views(viewport), arButton(() => ({ ...stage, studio, page, app })), comparisonPanel(studio, page, comparison)),
+  toolbar(studio, page, journal, viewport, model, others, arMenu(desk)),
+  element('main', { class: 'stage' }, viewport.canvas, facts(page), hint(page, viewport), poseTools(page), views(viewport), arButton(desk), comparisonPanel(studio, page, comparison)),
   element('aside', { class: 'side' }, scenePanel(studio, page, places), posePanel(studio, page, poses), paintPanel(studio, page), retargetPanel(studio, page), methodsPanel(studio, page), outliner(studio, page, handles)),
   timeline(studio, page, sheet.open),
   toasts, help(page), sheet.dialog, motionShelf(studio, page), poseLibrary(studio, page, poses));

@@ -1,7 +1,11 @@
-// The posed surface as USDZ, which phones show in augmented reality. Loaded when it is first asked for.
-import type { Object3D } from 'three';
+// The posed surfaces of the scene as USDZ, which phones show in augmented reality. Loaded when it is first asked for.
+import { Group, Matrix4, type Object3D } from 'three';
 import { USDZExporter } from 'three/examples/jsm/exporters/USDZExporter.js';
+import type { Stage } from '../scene/stage';
 
-export async function toUsdz(model: Object3D): Promise<Uint8Array> {
-  return new USDZExporter().parseAsync(model);
+export async function posedUsdz({ model, others, viewport }: Pick<Stage, 'model' | 'others' | 'viewport'>): Promise<Uint8Array> {
+  const scene: Object3D = new Group(), chosen = model.posed();
+  chosen.applyMatrix4(new Matrix4().copy(viewport.world.matrix).invert());
+  scene.add(chosen, ...others.posed());
+  return new USDZExporter().parseAsync(scene);
 }

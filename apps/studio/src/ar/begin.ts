@@ -9,7 +9,7 @@ import type { Sight } from './sight';
 import { WebXrSight } from './webxr_sight';
 
 /** Resolves once the models are seen in the real place, or the browser has refused: `refused` says what then. */
-export async function beginAr(desk: Desk, sight: Sight = new WebXrSight(), refused: (why: unknown) => Promise<void> = async () => tellRefusal(desk)) {
+export async function beginAr(desk: Desk, sight: Sight, refused: (why: unknown) => Promise<void>) {
   if (desk.page.now.ar || !desk.page.now.session) return;
   const { studio, page } = desk, panel = arPanel(desk), askAtDesk = studio.ask;
   document.body.append(panel.root);
@@ -31,8 +31,4 @@ export async function beginAr(desk: Desk, sight: Sight = new WebXrSight(), refus
   view.begin();
   if (globalThis.limberStudio) globalThis.limberStudio.ar = arProbe(view);
   if (sight instanceof WebXrSight && !sight.hasOverlay && sight.session?.interactionMode !== 'screen-space') (await import('./headset/headset')).beginHeadset(view, sight);
-}
-
-function tellRefusal({ page }: Desk) {
-  page.set({ notice: { kind: 'error', title: say('This browser does not begin augmented reality'), detail: say('Allow it the camera and motion sensors, and try again. Everything else works as before.') } });
 }

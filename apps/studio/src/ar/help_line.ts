@@ -5,7 +5,13 @@ import { say } from '../words/say';
 /** `hands`: on a headset, by hands or controllers; else by fingers on a screen. */
 export function helpLine({ ar, display, mode }: PageState, hands: boolean): string {
   if (!ar) return say('Starting');
+  if (ar.trouble === 'lost' && ar.sight === 'card') return say('The card is not seen. Point the camera at it: all of it in the picture, in good light');
   if (ar.trouble) return troubles()[ar.trouble];
+  if (ar.sight === 'camera') {
+    if (ar.step === 'placing') return ar.surface ? say('Tap to place the model here') : say('Point the device down, at the floor');
+    if (display === 'handles' && mode === 'move') return say('Drag a handle; it keeps its distance from the device');
+    if (display !== 'handles' && ar.realSize) return say('Turn the device to look round; walking does not move the view. Tap to pose, drag to move');
+  }
   const step = ar.step === 'placing' ? (ar.surface ? 'place' : 'search') : display !== 'handles' ? (ar.realSize ? 'view' : 'size') : mode;
   return (hands ? byHands : byFingers)()[step];
 }

@@ -19,6 +19,8 @@ export class PictureSight implements Sight {
     this.camera.onGlimpse = (glimpse) => { this.glimpse = glimpse; };
     await this.camera.start();
     this.looker = looker;
+    // Unplugged, or taken by the device for something else.
+    if (video.srcObject instanceof MediaStream) video.srcObject.getTracks().forEach((track) => track.addEventListener('ended', () => void this.lose()));
     overlay.prepend(video, renderer.domElement);
     const step = () => {
       this.asked = requestAnimationFrame(step);
@@ -48,6 +50,12 @@ export class PictureSight implements Sight {
     this.camera.stop();
     this.camera.video.remove();
     this.looker = null;
+  }
+
+  private async lose() {
+    const { looker } = this;
+    await this.end();
+    looker?.ended();
   }
 
   private look(looker: Looker) {

@@ -1,15 +1,28 @@
-// The way into augmented reality, shown where the device has one.
+// The way into augmented reality, shown where the device has one, and what is in the menu about it.
 import type { Desk } from '../ar/desk';
+import { findWays, waysOf } from '../ar/ways';
 import { button } from '../ui/dom';
 import { say } from '../words/say';
+import type { MenuEntry } from './more_menu';
+
+const waysIn = () => import('../ar/ways_in');
 
 export function arButton(desk: () => Desk): HTMLElement {
-  const view = button(say('View in AR'), () => void import('../ar/begin').then(({ beginAr }) => beginAr(desk())), {
+  const view = button(say('View in AR'), () => void waysIn().then(({ viewInAr }) => viewInAr(desk())), {
     kind: 'primary', label: say('View in AR: the models in the real place that the camera sees'), id: 'view-in-ar',
   });
   view.hidden = true;
-  void canView().then((can) => { view.hidden = !can; });
+  let asked = '';
+  // A way can depend on the model.
+  desk().page.watch(({ session }) => {
+    const name = session?.name ?? '';
+    if (name === asked) return;
+    asked = name;
+    void findWays(desk().page.now).then((ways) => { view.hidden = waysOf(ways).length === 0; });
+  });
   return view;
 }
 
-const canView = async () => await navigator.xr?.isSessionSupported('immersive-ar').catch(() => false) ?? false;
+export const arMenu = (desk: () => Desk): MenuEntry[] => [
+  { id: 'ar-ways', text: say('Ways to view in AR'), act: () => void waysIn().then(({ listWays }) => listWays(desk())) },
+];

@@ -1,4 +1,4 @@
-// The menu "More": other formats to save as, the language, the size of the text.
+// The menu "More": other formats to save as, what augmented reality needs, the language, the size of the text.
 import { remember } from '../app/remembered';
 import { setTextSize, textSize, type TextSize } from '../app/text_size';
 import { element } from '../ui/dom';
@@ -20,20 +20,28 @@ function setLanguage(choice: (typeof languageChoices)[number]) {
   location.assign(location.pathname);
 }
 
-export function moreMenu(save: (outlet: Outlet) => void): { root: HTMLSelectElement; outlets: HTMLOptionElement[] } {
+export type MenuEntry = { id: string; text: string; act: () => void };
+
+export function moreMenu(save: (outlet: Outlet) => void, augmented: MenuEntry[]): { root: HTMLSelectElement; outlets: HTMLOptionElement[] } {
   const option = (text: string, act: () => void, chosen = false) => {
     const made = element('option', {}, chosen ? `\u2713 ${text}` : text);
     acts.set(made, act);
     return made;
   };
   const acts = new Map<Element, () => void>();
-  const root = element('select', { 'aria-label': say('More: save as another format, language, size of the text'), class: 'select', id: 'export-as' });
+  const root = element('select', { 'aria-label': say('More: save as another format, augmented reality, language, size of the text'), class: 'select', id: 'export-as' });
   const files = outlets.map(([outlet, text]) => {
     const made = option(say(text), () => save(outlet));
     made.value = outlet;
     return made;
   });
+  const reality = augmented.map(({ id, text, act }) => {
+    const made = option(text, act);
+    made.value = id;
+    return made;
+  });
   const fill = () => root.replaceChildren(element('option', { value: '' }, say('More')), element('optgroup', { label: say('Save as') }, ...files),
+    element('optgroup', { label: say('Augmented reality') }, ...reality),
     element('optgroup', { label: say('Language') }, ...languageChoices.map((choice) => {
       const made = option(choice === 'system' ? say('As the browser') : languages[choice], () => setLanguage(choice), choice === keptLanguage());
       made.value = choice;

@@ -1,5 +1,4 @@
 // The bar on top: open, undo, what leaves the page.
-import { Group, Matrix4 } from 'three';
 import type { Journal } from '../app/journal';
 import { samples, scenes } from '../app/samples';
 import type { PageStore } from '../app/state';
@@ -9,7 +8,7 @@ import type { OthersView } from '../scene/others_view';
 import type { Viewport } from '../scene/viewport';
 import { button, element, offer } from '../ui/dom';
 import { addDialog } from './add_dialog';
-import { moreMenu } from './more_menu';
+import { moreMenu, type MenuEntry } from './more_menu';
 import { pictureDialog } from './picture_dialog';
 import { recent } from './recent';
 import { chosenClip } from './moments';
@@ -20,7 +19,7 @@ const movingRate = 20; // pictures a second of an animated PNG, each of which is
 const turnSeconds = 4; // of a film all the way round
 const types = { glb: 'model/gltf-binary', obj: 'model/obj', stl: 'model/stl', bvh: 'text/plain', session: 'model/gltf-binary' };
 
-export function toolbar(studio: Studio, page: PageStore, journal: Journal, viewport: Viewport, model: ModelView, others: OthersView): HTMLElement {
+export function toolbar(studio: Studio, page: PageStore, journal: Journal, viewport: Viewport, model: ModelView, others: OthersView, augmented: MenuEntry[]): HTMLElement {
   const kept = recent(studio, journal), adding = addDialog(studio);
   const file = element('input', {
     type: 'file', accept: '.glb,.gltf,.vrm,.obj,.fbx,.stl,.ply,.bvh,.json,.zip,.limber,.bin,.mtl,.png,.jpg,.jpeg', multiple: true, hidden: true, id: 'file',
@@ -78,11 +77,8 @@ export function toolbar(studio: Studio, page: PageStore, journal: Journal, viewp
     }),
   });
   const saveUsdz = async () => {
-    const { toUsdz } = await import('../app/export_usdz');
-    const scene = new Group(), chosen = model.posed();
-    chosen.applyMatrix4(new Matrix4().copy(viewport.world.matrix).invert());
-    scene.add(chosen, ...others.posed());
-    offer(await toUsdz(scene) as BlobPart, 'model/vnd.usdz+zip', `${stem()}_posed.usdz`);
+    const { posedUsdz } = await import('../app/export_usdz');
+    offer(await posedUsdz({ model, others, viewport }) as BlobPart, 'model/vnd.usdz+zip', `${stem()}_posed.usdz`);
   };
   const saveRecord = async () => {
     const record = await studio.record();
@@ -94,7 +90,7 @@ export function toolbar(studio: Studio, page: PageStore, journal: Journal, viewp
     else if (outlet === 'limber') offer(studio.limberFile() as BlobPart, 'application/zip', `${stem()}.limber`);
     else if (outlet === 'record') void saveRecord();
     else void save(outlet);
-  });
+  }, augmented);
   const undo = button('', () => void studio.undo(), { icon: 'undo', label: say('Undo'), keys: 'Ctrl+Z', id: 'undo' });
   const redo = button('', () => void studio.redo(), { icon: 'redo', label: say('Redo'), keys: 'Ctrl+Shift+Z', id: 'redo' });
   const glb = button(say('Save GLB'), () => void save('glb'), { icon: 'save', kind: 'primary', id: 'save-glb' });

@@ -1,0 +1,53 @@
+// What the device itself shows models in AR with: Apple's Quick Look, Google's Scene Viewer, whatever a file is shared with.
+import { posedUsdz } from '../app/export_usdz';
+import { element } from '../ui/dom';
+import { say } from '../words/say';
+import type { Desk } from './desk';
+import { fileToShare, publicAddress, shareable } from './ways';
+
+const kept = 60_000; // milliseconds that the viewer has to fetch what it is given
+
+/** The scene as it is posed now. A link with rel=ar that has nothing but a picture in it opens Quick Look. */
+export async function openQuickLook(desk: Desk) {
+  const blob = new Blob([await posedUsdz(desk) as BlobPart], { type: 'model/vnd.usdz+zip' });
+  const link = element('a', { rel: 'ar', href: URL.createObjectURL(blob), download: 'model.usdz', class: 'quick-look', hidden: true }, element('img', { alt: say('AR Quick Look') }));
+  document.body.append(link);
+  link.click();
+  link.remove();
+  setTimeout(() => URL.revokeObjectURL(link.href), kept);
+}
+
+/** Where the browser comes back to on a device without it; the page stays, as only the part behind # is another. */
+const without = '#no-scene-viewer';
+
+/** Rejects when the device has none. */
+export function openSceneViewer({ page }: Desk): Promise<void> {
+  const file = publicAddress(page.now);
+  if (!file) return Promise.reject(new Error('the model has no public address'));
+  return new Promise((resolve, reject) => {
+    const back = new URL(without, location.href);
+    addEventListener('hashchange', function came() {
+      if (location.hash !== without) return;
+      removeEventListener('hashchange', came);
+      history.back();
+      reject(new Error('this device has no Scene Viewer'));
+    });
+    const asked = new URLSearchParams({ file: file.href, mode: 'ar_preferred', title: page.now.session!.name });
+    element('a', {
+      href: `intent://arvr.google.com/scene-viewer/1.0?${asked}#Intent;scheme=https;package=com.google.android.googlequicksearchbox;`
+        + `action=android.intent.action.VIEW;S.browser_fallback_url=${encodeURIComponent(back.href)};end;`,
+    }).click();
+    addEventListener('visibilitychange', () => resolve(), { once: true }); // the viewer is in front
+  });
+}
+
+export async function shareModel(desk: Desk) {
+  const format = shareable();
+  if (!format) throw new Error('this browser shares no models');
+  const stem = (desk.page.now.session?.name ?? 'model').replace(/\.[^.]*$/, '');
+  const bytes = format === 'usdz' ? await posedUsdz(desk) : await desk.studio.exportFile('glb');
+  if (!bytes) return;
+  await navigator.share({ files: [fileToShare(format, bytes as BlobPart, stem)] }).catch((error: unknown) => {
+    if (!(error instanceof DOMException && error.name === 'AbortError')) throw error; // thought better of it
+  });
+}

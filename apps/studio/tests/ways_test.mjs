@@ -1,0 +1,313 @@
+// The ways into augmented reality on devices that have no WebXR, or less than they claim: what is offered, and what is said
+// where it fails.
+//
+//   node apps/studio/tests/ways_test.mjs DIST OUTPUT_FOLDER
+//
+// Ends with "N passed, N failed".
+import assert from 'node:assert/strict';
+import { mkdirSync } from 'node:fs';
+import { join, resolve } from 'node:path';
+import { strFromU8, unzipSync } from 'three/examples/jsm/libs/fflate.module.js';
+import { barriers, jointPosition, launch, openStudio, runCases, serve, sessionState, settled } from './page.mjs';
+import { emulatePhone } from './xr_phone.mjs';
+
+const [dist, output] = process.argv.slice(2).map((path) => resolve(path));
+mkdirSync(output, { recursive: true });
+const server = await serve(dist);
+const browser = await launch({ options: ['--use-fake-device-for-media-stream', '--use-fake-ui-for-media-stream'] });
+let shown;
+
+const android = 'Mozilla/5.0 (Linux; Android 12; Phone) AppleWebKit/537.36 (KHTML, like Gecko) Chrome/120 Mobile Safari/537.36';
+
+/** What of a device stands in for the browser's own, before the page loads. */
+function stub({ cameras, sensors, quickLook, shares, camera }) {
+  if (cameras === 0) navigator.mediaDevices.enumerateDevices = async () => [];
+  if (camera) navigator.mediaDevices.getUserMedia = async () => { throw new DOMException('stub', globalThis.cameraFails ?? camera); };
+  if (quickLook) {
+    const { supports } = DOMTokenList.prototype;
+    DOMTokenList.prototype.supports = function (token) { return token === 'ar' || supports.call(this, token); };
+    const { click } = HTMLAnchorElement.prototype;
+    HTMLAnchorElement.prototype.click = function () {
+      if (this.rel !== 'ar') return click.call(this);
+      globalThis.quickLook = { href: this.href, children: [...this.children].map(({ tagName }) => tagName), bytes: fetch(this.href).then((answer) => answer.arrayBuffer()) };
+    };
+  }
+  const { click } = HTMLAnchorElement.prototype;
+  HTMLAnchorElement.prototype.click = function () {
+    if (this.href.startsWith('intent:')) globalThis.intent = this.href;
+    else click.call(this);
+  };
+  if (sensors) addEventListener('deviceorientation', (event) => event.stopImmediatePropagation());
+  if (sensors === 'none') delete globalThis.DeviceOrientationEvent.requestPermission;
+  if (sensors === 'asked') globalThis.DeviceOrientationEvent.requestPermission = async () => globalThis.sensorsAnswer ?? 'granted';
+  if (shares) {
+    Object.defineProperty(navigator, 'canShare', { value: ({ files }) => files.every(({ name }) => name.endsWith(shares)) });
+    Object.defineProperty(navigator, 'share', { value: async ({ files }) => { globalThis.sharedFile = { name: files[0].name, type: files[0].type, size: files[0].size }; } });
+  } else Object.defineProperty(navigator, 'canShare', { value: () => false });
+}
+
+/** `turned`: the angles that the sensors give; without, there are none. `xr`: WebXR is claimed. */
+async function on(device, steps, { search = '?sample=stool', userAgent, locale, xr = false } = {}) {
+  await shown?.context().close();
+  let sensors = null;
+  const turn = async ([alpha, beta, gamma]) => (await sensors).send('DeviceOrientation.setDeviceOrientationOverride', { alpha, beta, gamma });
+  const { page, context, errors } = await openStudio(browser, server.address, {
+    width: 390, height: 844, touch: true, search, locale, ...(userAgent ? { userAgent } : {}),
+    prepare: async (before) => {
+      await before.addInitScript(stub, device);
+      if (xr) await emulatePhone(before);
+      if (!device.turned) return;
+      before.on('page', (opened) => {
+        sensors = before.newCDPSession(opened);
+        void turn(device.turned);
+      });
+    },
+  });
+  shown = page;
+  page.setDefaultTimeout(15_000);
+  const button = page.locator('#view-in-ar');
+  const offered = () => page.locator('#ways [data-way]').evaluateAll((all) => all.map((one) => one.dataset.way));
+  const clean = async () => assert.deepEqual((await barriers(page)).filter((barrier) => !/^region: [^ ]* > canvas/.test(barrier)), []);
+  const shot = (name) => page.screenshot({ path: join(output, `ways_${name}.png`) });
+  await steps({
+    page, context, button, offered, clean, shot, turn: (...angles) => turn(angles),
+    /** By the menu, also where there is no button. */
+    async list() {
+      await page.locator('#export-as').selectOption('ar-ways');
+      await page.locator('#ways').waitFor();
+      return offered();
+    },
+    async press() {
+      await button.tap();
+      await page.locator('#ways').waitFor();
+      return offered();
+    },
+    notice: async () => {
+      await page.locator('#app #notice').waitFor();
+      return page.locator('#app #notice').textContent();
+    },
+    take: (way) => page.locator(`#ways [data-way=${way}]`).tap(),
+  });
+  assert.deepEqual(errors, []);
+}
+
+const flat = [0, 60, 0]; // the phone looks at the floor ahead
+
+const cases = {
+  async 'a device that has nothing: no button, and the menu says why'() {
+    await on({ cameras: 0 }, async ({ page, button, list, clean, shot }) => {
+      assert.deepEqual(await list(), []);
+      assert.equal(await button.isVisible(), false);
+      const told = await page.locator('#ways').textContent();
+      for (const why of ['on its screen alone', 'no WebXR', 'No camera was found', 'Only iPhones', 'Only Android', 'does not share']) assert.ok(told.includes(why), why);
+      await clean();
+      await shot('none');
+      await page.keyboard.press('Escape');
+      await page.locator('#ways').waitFor({ state: 'detached' });
+    });
+  },
+  async 'Quick Look alone is opened at once, with the model as it is posed'() {
+    await on({ cameras: 0, quickLook: true }, async ({ page, button, list }) => {
+      const heights = async () => {
+        await page.evaluate(() => { globalThis.quickLook = null; });
+        await button.tap();
+        await page.waitForFunction(() => globalThis.quickLook);
+        const { href, children } = await page.evaluate(() => ({ ...globalThis.quickLook, bytes: null }));
+        assert.deepEqual(children, ['IMG']);
+        assert.ok(href.startsWith('blob:'));
+        const files = unzipSync(Uint8Array.from(await page.evaluate(async () => [...new Uint8Array(await globalThis.quickLook.bytes)])));
+        const points = Object.values(files).map((file) => strFromU8(file)).join('').match(/point3f\[\] points = \[(.*?)\]/s)[1];
+        return { href, top: Math.max(...[...points.matchAll(/\(([^)]*)\)/g)].map(([, point]) => Number(point.split(',')[1]))) };
+      };
+      const before = await heights();
+      const { joints } = await sessionState(page), top = joints.reduce((best, one) => (one.position?.[1] > (best.position?.[1] ?? -1) ? one : best), joints.at(-1));
+      const at = await page.evaluate((name) => globalThis.limberStudio.place(name), top.name);
+      await page.mouse.move(at.x, at.y);
+      await page.mouse.down();
+      await page.mouse.move(at.x, at.y - 60, { steps: 4 });
+      await page.mouse.up();
+      await settled(page);
+      assert.equal((await sessionState(page)).posed, true);
+      const after = await heights();
+      assert.ok(after.top > before.top + 0.01, JSON.stringify([before, after]));
+      assert.notEqual(after.href, before.href);
+      assert.deepEqual(await list(), ['quick-look']);
+      assert.match(await page.locator('#ways').textContent(), /to look at, not to pose/);
+    });
+  },
+  async 'several ways: the best first, by keyboard as well'() {
+    await on({ quickLook: true, turned: flat }, async ({ page, button, press, clean, shot }) => {
+      assert.deepEqual(await press(), ['card', 'camera', 'quick-look']);
+      assert.match(await page.locator('#ways').textContent(), /walking does not move the view/);
+      await clean();
+      await shot('several');
+      await page.keyboard.press('Escape');
+      await button.focus();
+      await page.keyboard.press('Enter');
+      await page.locator('#ways').waitFor();
+      assert.equal(await page.evaluate(() => document.activeElement.dataset.way), 'card');
+      await page.keyboard.press('Tab');
+      await page.keyboard.press('Enter');
+      await page.locator('#ar-place').waitFor();
+    });
+  },
+  async 'German'() {
+    await on({ quickLook: true, turned: flat }, async ({ page, press, shot }) => {
+      await press();
+      assert.match(await page.locator('#ways').textContent(), /Kamera-Ansicht/);
+      await shot('german');
+    }, { locale: 'de-DE' });
+  },
+  async 'Scene Viewer: on Android, with a model at a public address'() {
+    await on({ cameras: 0 }, async ({ page, list }) => {
+      assert.deepEqual(await list(), []);
+      assert.match(await page.locator('#ways').textContent(), /needs an address on the web/);
+    }, { userAgent: android });
+  },
+  async 'sharing where the device has no viewer of its own, and the browser lets models out'() {
+    await on({ cameras: 0, shares: 'usdz' }, async ({ page, button, list }) => {
+      await button.tap();
+      await page.waitForFunction(() => globalThis.sharedFile);
+      const { name, type, size } = await page.evaluate(() => globalThis.sharedFile);
+      assert.equal(type, 'model/vnd.usdz+zip');
+      assert.match(name, /\.usdz$/);
+      assert.ok(size > 1000);
+      assert.deepEqual(await list(), ['share']);
+    });
+  },
+  async 'the camera refused, missing or in use: said, and what is left is offered'() {
+    await on({ quickLook: true, turned: flat, camera: 'NotAllowedError' }, async ({ page, press, take, offered, clean, shot }) => {
+      for (const [name, words] of [['NotAllowedError', 'The camera is not allowed'], ['NotFoundError', 'There is no camera'], ['NotReadableError', 'The camera is in use']]) {
+        await page.evaluate((fails) => { globalThis.cameraFails = fails; }, name);
+        await press();
+        await take(name === 'NotFoundError' ? 'card' : 'camera');
+        await page.locator('#ways[aria-label]').waitFor();
+        await page.waitForFunction((told) => document.querySelector('#ways h2')?.textContent === told, words);
+        assert.deepEqual(await offered(), ['quick-look', 'card', 'camera']);
+        assert.equal(await page.locator('#ar').count(), 0);
+        assert.equal(await page.locator('#app').isVisible(), true);
+        if (name === 'NotAllowedError') {
+          await clean();
+          await shot('camera_refused');
+        }
+        await page.locator('#ways-close').tap();
+      }
+    });
+  },
+  async 'with nothing else, a refused camera is told at the desk, and asked for again'() {
+    await on({ turned: flat, camera: 'NotAllowedError' }, async ({ page, press, take, notice }) => {
+      await press();
+      await take('camera');
+      assert.match(await notice(), /The camera is not allowed/);
+      await page.locator('#close-notice').tap();
+      await page.evaluate(() => { delete navigator.mediaDevices.getUserMedia; });
+      await press();
+      await take('camera');
+      await page.locator('#ar-place').waitFor();
+    });
+  },
+  async 'sensors refused, or silent'() {
+    await on({ sensors: 'asked' }, async ({ page, press, take, offered }) => {
+      for (const [answer, words] of [['denied', 'The motion sensors are not allowed'], ['granted', 'This device does not say how it is turned']]) {
+        await page.evaluate((given) => { globalThis.sensorsAnswer = given; }, answer);
+        await press();
+        await take('camera');
+        await page.waitForFunction((told) => document.querySelector('#ways h2')?.textContent === told, words);
+        assert.deepEqual(await offered(), ['card', 'camera']);
+        await page.locator('#ways-close').tap();
+      }
+      assert.equal(await page.evaluate(() => document.querySelector('video')), null);
+    });
+  },
+  async 'a browser that claims WebXR and refuses: what is left is offered, and WebXR again, last'() {
+    await on({ turned: flat }, async ({ page, press, button, offered, take, shot }) => {
+      await page.evaluate(() => { phone.refuse = 'NotSupportedError'; });
+      const before = await sessionState(page);
+      await button.tap();
+      await page.locator('#ways').waitFor();
+      assert.match(await page.locator('#ways h2').textContent(), /does not begin augmented reality/);
+      assert.deepEqual(await offered(), ['card', 'camera', 'webxr']);
+      await shot('webxr_refused');
+      assert.deepEqual(await sessionState(page), before);
+      await page.locator('#ways-close').tap();
+      assert.deepEqual(await press(), ['card', 'camera', 'webxr']);
+      await page.evaluate(() => { phone.refuse = null; });
+      await take('webxr');
+      await page.waitForFunction(() => phone.session);
+    }, { xr: true });
+  },
+  async 'without motion sensors there is the card; what is said while it is not seen'() {
+    await on({ sensors: 'none' }, async ({ page, press, take, clean, shot }) => {
+      assert.deepEqual(await press(), ['card']);
+      await take('card');
+      await page.waitForFunction(() => document.querySelector('#ar-line')?.textContent.includes('The card is not seen'));
+      await clean();
+      await shot('card_not_seen');
+      await page.locator('#ar-close').tap();
+      await page.waitForFunction(() => document.querySelector('#app').checkVisibility());
+      assert.equal(await page.evaluate(() => document.querySelector('video')), null);
+    });
+  },
+  async 'camera view: placed, turned with the device and with the screen, posed, ended'() {
+    await on({ turned: flat }, async ({ page, press, take, turn, clean, shot }) => {
+      await press();
+      await take('camera');
+      await page.locator('#ar-place').waitFor();
+      await page.waitForFunction(() => document.querySelector('#ar-line').textContent.includes('Tap to place'));
+      await shot('camera_placing');
+      await page.locator('#ar-place').tap();
+      await page.locator('#ar-pose').waitFor();
+      await page.waitForFunction(() => document.querySelector('#ar-line').textContent.includes('walking does not move the view'));
+      await settled(page);
+      await clean();
+      await shot('camera_placed');
+      const spot = (at) => page.evaluate((asked) => globalThis.limberStudio.ar.spot(asked), at);
+      const frames = () => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+      // The middle of the screen: 60 degrees from the table plane is 30 below level, 1.4 m above the floor.
+      const ahead = [0, 0, -1.4 / Math.tan(Math.PI / 6)], middle = await spot(ahead);
+      assert.ok(Math.hypot(middle.x - 195, middle.y - 422) < 1, JSON.stringify(middle));
+      const lower = await spot([0, 0, -1.4 / Math.tan(40 * Math.PI / 180)]), pixels = (lower.y - middle.y) / Math.tan(10 * Math.PI / 180); // focal length
+      await turn(10, 60, 0); // to the left about the upright: what was in the middle is at the right
+      await frames();
+      const turned = await spot(ahead);
+      assert.ok(turned.x > 195 + 0.8 * pixels * Math.tan(Math.PI / 18) * Math.cos(Math.PI / 6), JSON.stringify(turned));
+      await turn(0, 70, 0); // up: it goes down
+      await frames();
+      const up = await spot(ahead);
+      assert.ok(Math.abs(up.x - 195) < 1 && Math.abs(up.y - 422 - pixels * Math.tan(Math.PI / 18)) < 2, JSON.stringify([up, pixels]));
+      // It looks at the sky: where a model is to go has no surface.
+      await turn(0, 150, 0);
+      await page.locator('#ar-again').tap();
+      await page.waitForFunction(() => document.querySelector('#ar-line').textContent.includes('Point the device down'));
+      await turn(0, 60, 0);
+      await page.waitForFunction(() => document.querySelector('#ar-line').textContent.includes('Tap to place'));
+      await page.locator('#ar-place').tap();
+      await page.locator('#ar-pose').tap();
+      await settled(page);
+      await shot('camera_posing');
+      // Hidden in between, and the camera taken away in the end: the desk is back and nothing is lost.
+      await page.evaluate(() => {
+        Object.defineProperty(document, 'visibilityState', { value: 'hidden', configurable: true });
+        document.dispatchEvent(new Event('visibilitychange', { bubbles: true }));
+      });
+      await page.waitForFunction(() => document.querySelector('#ar-line').textContent.includes('Waiting'));
+      await page.evaluate(() => {
+        delete document.visibilityState;
+        document.dispatchEvent(new Event('visibilitychange', { bubbles: true }));
+      });
+      await page.waitForFunction(() => !document.querySelector('#ar-line').textContent.includes('Waiting'));
+      const stood = await jointPosition(page, (await sessionState(page)).joints.at(-1).name);
+      await page.evaluate(() => document.querySelector('#ar video').srcObject.getTracks()[0].dispatchEvent(new Event('ended')));
+      await page.waitForFunction(() => document.querySelector('#app').checkVisibility());
+      await settled(page);
+      assert.match(await page.locator('#notice').textContent(), /The device has ended augmented reality/);
+      assert.deepEqual(await jointPosition(page, (await sessionState(page)).joints.at(-1).name), stood);
+      assert.equal(await page.evaluate(() => document.querySelector('video')), null);
+    });
+  },
+};
+
+const failed = await runCases(cases, () => shown, output);
+await browser.close();
+server.close();
+process.exit(failed > 0 ? 1 : 0);
