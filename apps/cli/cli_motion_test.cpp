@@ -111,6 +111,19 @@ std::string archiveOf(const std::vector<std::pair<std::string, std::string>>& fi
          number(directory.size(), 4) + number(body.size(), 4) + std::string(2, '\0');
 }
 
+TEST_F(Cli, SampleListsAndWritesScenes) {
+  const Result list = run({"sample"});
+  EXPECT_EQ(list.code, 0);
+  EXPECT_THAT(list.out,
+              AllOf(HasSubstr("winged"), HasSubstr("walk"), HasSubstr("dancing-stool     the model footstool")));
+  EXPECT_EQ(run({"sample", "dancing-stool", "-o", "stool.glb", "-q"}).code, 0);
+  EXPECT_EQ(run({"sample", "dancing-stool", "-o", "stool.json", "-q"}).code, 0);
+  EXPECT_EQ(run({"session", "replay", "stool.json", "-o", "again.glb", "-q"}).code, 0);
+  EXPECT_EQ(content("stool.glb"), content("again.glb"));
+  EXPECT_NE(run({"sample", "dancing-stool", "-o", "stool.bvh"}).code, 0);
+  EXPECT_THAT(run({"sample", "dancing-stool"}).error, HasSubstr("limber sample dancing-stool -o FILE"));
+}
+
 TEST_F(Cli, SessionReplayTakesALimberFile) {
   run({"sample", "stool", "-o", "stool.glb", "-q"});
   const std::string list = R"({"limber_commands": 1, "commands": [{"do": "open_file", "file": "files/0/stool.glb"},
