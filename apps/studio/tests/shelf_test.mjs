@@ -106,6 +106,17 @@ const cases = {
     await page.locator('#play').click();
     await settled(page);
   },
+  async 'closed and opened in one moment, it is open'() {
+    for (const [opener, closer, dialog] of [['#open-shelf', '#close-shelf', '#shelf'], ['#open-poses', '#close-poses', '#poses'], ['#help-button', '#help button', '#help']]) {
+      await page.locator(opener).click();
+      await page.evaluate(([close, open]) => [close, open].forEach((one) => document.querySelector(one).click()), [closer, opener]);
+      // The event of the closing comes before the next frame is drawn.
+      await page.evaluate(() => new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn))));
+      assert.ok(await page.locator(dialog).isVisible(), `${dialog} was closed`);
+      await page.keyboard.press('Escape');
+      await page.locator(dialog).waitFor({ state: 'hidden' });
+    }
+  },
   async 'three motions that are dropped at once become a shelf'() {
     await drop(bvhs(3));
     const own = page.locator('#shelf-own li');

@@ -1,6 +1,7 @@
 // What every key does, under ?; on a device that is touched, what fingers do.
 import type { PageStore } from '../app/state';
 import { button, element } from '../ui/dom';
+import { shownWhile } from '../ui/shown_while';
 import { keyNames } from '../words/key_names';
 import { say, type Words } from '../words/say';
 
@@ -67,12 +68,12 @@ export function help(page: PageStore): HTMLElement {
       const by = how(line);
       return by ? [element('dt', {}, by), element('dd', {}, say(line.does))] : [];
     })),
-    button(say('Close'), () => dialog.close(), { kind: 'primary' }));
-  dialog.addEventListener('close', () => page.set({ help: false }));
-  page.watch(({ help: open }) => {
-    if (!open || dialog.open) return;
-    dialog.showModal();
-    dialog.scrollTop = 0; // the button at its end has the focus
+    button(say('Close'), () => page.set({ help: false }), { kind: 'primary' }));
+  shownWhile(dialog, page, 'help', {
+    opens() {
+      dialog.showModal();
+      dialog.scrollTop = 0; // the button at its end has the focus
+    },
   });
   return dialog;
 }

@@ -6,6 +6,7 @@ import type { MotionPreview } from '../engine/messages';
 import { MotionPictures } from '../scene/motion_picture';
 import { arrowsMoveFocus } from '../ui/cards';
 import { button, element, fileInput } from '../ui/dom';
+import { shownWhile } from '../ui/shown_while';
 import { motionName, motionSummary, told } from '../words/engine';
 import { say } from '../words/say';
 
@@ -39,6 +40,7 @@ export function motionShelf(studio: Studio, page: PageStore): HTMLElement {
   let playing: Card | null = null, begun = 0;
   let tapped: Card | null = null; // touched for the first time: it plays, and is not chosen yet
   const trials = new Trials<Motion>(page, (motion) => studio.previewMotion(motion), () => studio.previewRig());
+  const hide = () => page.set({ shelf: false });
   const cards = { sample: [] as Card[], own: [] as Card[] };
 
   const samples = element('ul', { class: 'cards', id: 'shelf-samples' }), own = element('ul', { class: 'cards', id: 'shelf-own' });
@@ -49,7 +51,7 @@ export function motionShelf(studio: Studio, page: PageStore): HTMLElement {
   const folder = fileInput('shelf-folder', { folder: true }, (chosen) => void studio.openFiles(chosen));
   const dialog = element('dialog', { class: 'shelf', id: 'shelf', 'aria-labelledby': 'shelf-title' },
     element('div', { class: 'row head' }, element('h2', { id: 'shelf-title', tabindex: -1, autofocus: true }, say('Motions')),
-      button(say('Close'), () => dialog.close(), { id: 'close-shelf' })),
+      button(say('Close'), hide, { id: 'close-shelf' })),
     samples, element('h3', {}, say('Your motions')), none, search, own,
     element('div', { class: 'row foot' }, files, folder, about,
       button(say('Add files'), () => files.click(), { icon: 'add', label: say('Add motions (BVH, GLB)'), id: 'shelf-add-files' }),
@@ -125,7 +127,7 @@ export function motionShelf(studio: Studio, page: PageStore): HTMLElement {
 
   function choose({ motion, preview }: Card) {
     if (preview?.error) return;
-    dialog.close();
+    hide();
     void (motion instanceof File ? studio.openMotion(motion) : studio.openSampleMotion(motion.name));
   }
 
@@ -192,12 +194,6 @@ export function motionShelf(studio: Studio, page: PageStore): HTMLElement {
   }
 
   dialog.addEventListener('keydown', (event) => event.stopPropagation()); // what is behind the shelf has keys, too
-  dialog.addEventListener('close', () => {
-    play(null);
-    trials.leaveAll();
-    pictures?.clear();
-    page.set({ shelf: false });
-  });
   const fillOwn = (motions: readonly File[]) => {
     cards.own = fill(own, cards.own, motions);
     none.hidden = motions.length > 0;
@@ -209,9 +205,16 @@ export function motionShelf(studio: Studio, page: PageStore): HTMLElement {
   page.watch((now, before) => {
     if (now.sampleMotions !== before.sampleMotions) cards.sample = fill(samples, cards.sample, now.sampleMotions);
     if (now.ownMotions !== before.ownMotions) fillOwn(now.ownMotions);
-    if (now.shelf && !dialog.open && now.session) open();
     if (dialog.open && now.model !== before.model) renew();
-    if (!now.shelf && dialog.open) dialog.close();
+  });
+  shownWhile(dialog, page, 'shelf', {
+    ready: ({ session }) => session !== null,
+    opens: open,
+    closes() {
+      play(null);
+      trials.leaveAll();
+      pictures?.clear();
+    },
   });
   return dialog;
 }

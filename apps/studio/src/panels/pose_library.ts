@@ -11,6 +11,7 @@ import { arrowsMoveFocus } from '../ui/cards';
 import { button, element, fileInput, offer } from '../ui/dom';
 import { goneLine } from '../ui/gone_line';
 import { renameIn } from '../ui/rename';
+import { shownWhile } from '../ui/shown_while';
 import { poseName, told } from '../words/engine';
 import { say } from '../words/say';
 
@@ -34,6 +35,7 @@ interface Card {
 export function poseLibrary(studio: Studio, page: PageStore, shelf: PoseShelf): HTMLElement {
   let pictures: MotionPictures | null = null; // made when the library is first opened
   const trials = new Trials<Card>(page, ({ entry }) => studio.previewPose(entry.pose), () => studio.previewRig());
+  const hide = () => page.set({ poseLibrary: false });
   const cards = { sample: [] as Card[], own: [] as Card[] };
   const all = () => [...cards.own, ...cards.sample];
 
@@ -52,7 +54,7 @@ export function poseLibrary(studio: Studio, page: PageStore, shelf: PoseShelf): 
   const partlyLabel = element('label', { class: 'check' }, partly, say('Only the selected joints and what hangs on them'));
   const dialog = element('dialog', { class: 'shelf poses', id: 'poses', 'aria-labelledby': 'poses-title' },
     element('div', { class: 'row head' }, element('h2', { id: 'poses-title', tabindex: -1, autofocus: true }, say('Poses')),
-      button(say('Close'), () => dialog.close(), { id: 'close-poses' })),
+      button(say('Close'), hide, { id: 'close-poses' })),
     partlyLabel,
     element('h3', {}, say('Your poses')), none,
     element('div', { class: 'row save-pose' }, name, button(say('Save this pose'), () => void save(), { id: 'save-pose', icon: 'add' })),
@@ -112,7 +114,7 @@ export function poseLibrary(studio: Studio, page: PageStore, shelf: PoseShelf): 
     if (preview?.error) return;
     const { selected, also } = page.now;
     const joints = partly.checked && selected !== null ? hangingOn(new Set([selected, ...also])) : [];
-    dialog.close();
+    hide();
     void studio.applyPose(entry.pose, { joints });
   }
 
@@ -212,21 +214,22 @@ export function poseLibrary(studio: Studio, page: PageStore, shelf: PoseShelf): 
   dialog.addEventListener('keydown', (event) => {
     if (event.key === 'Escape' && (event.target as HTMLElement).matches('.rename')) event.preventDefault(); // the field closes, not the library
   }, { capture: true });
-  dialog.addEventListener('close', () => {
-    trials.leaveAll();
-    keepPictures();
-    pictures?.clear();
-    page.set({ poseLibrary: false });
-  });
   page.watch((now, before) => {
     if (now.samplePoses !== before.samplePoses) cards.sample = fill(samples, cards.sample, now.samplePoses);
     if (now.ownPoses !== before.ownPoses) cards.own = fill(own, cards.own, now.ownPoses);
     none.hidden = now.ownPoses.length > 0;
     partly.disabled = now.selected === null;
     if (now.selected === null) partly.checked = false;
-    if (now.poseLibrary && !dialog.open && now.session) open();
     if (dialog.open && now.model !== before.model) renew();
-    if (!now.poseLibrary && dialog.open) dialog.close();
+  });
+  shownWhile(dialog, page, 'poseLibrary', {
+    ready: ({ session }) => session !== null,
+    opens: open,
+    closes() {
+      trials.leaveAll();
+      keepPictures();
+      pictures?.clear();
+    },
   });
   return dialog;
 }
