@@ -49,11 +49,12 @@ std::vector<Sample> samples() {
 }
 
 std::string sampleList() {
+  const std::vector<Sample> all = samples();
   std::string list;
   for (const auto& [kind, title] :
        {std::pair{Kind::kModel, "Models:\n"}, {Kind::kMotion, "\nMotions:\n"}, {Kind::kScene, "\nScenes:\n"}}) {
     list += title;
-    for (const Sample& sample : samples()) {
+    for (const Sample& sample : all) {
       if (sample.kind == kind) list += fmt::format("  {:<18}{}\n", sample.name, sample.summary);
     }
   }
@@ -140,7 +141,7 @@ void addSampleCommand(CLI::App& program) {
           "- is standard output (GLB)")
       ->type_name("FILE");
   options->common.addTo(*command);
-  command->footer(sampleHelp());
+  command->footer(std::function(sampleHelp));  // made when it is read: it goes through the commands of all scenes
   command->callback([options] { run(*options); });
 }
 

@@ -8,6 +8,16 @@ foreach(scene ${scenes})
   file(READ ${scene} commands)
   string(APPEND entries "    {\"${name}\", R\"scene(${commands})scene\"},\n")
 endforeach()
-file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/sample_scenes.cpp @ONLY CONTENT
-  "#include \"sample_scenes.h\"\n\nnamespace limber::cli {\n\nstd::span<const SampleScene> sampleScenes() {\n\
-  static constexpr SampleScene kScenes[] = {\n@entries@  };\n  return kScenes;\n}\n\n}  // namespace limber::cli\n")
+file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/sample_scenes.cpp @ONLY CONTENT [[// Made by CMake from samples/scenes.
+#include "sample_scenes.h"
+
+namespace limber::cli {
+
+std::span<const SampleScene> sampleScenes() {
+  static constexpr SampleScene kScenes[] = {
+@entries@  };
+  return kScenes;
+}
+
+}  // namespace limber::cli
+]])

@@ -59,7 +59,7 @@ const { viewport, handles, model, comparison, gizmo, others, places } = stage;
 const sheet = contactSheet(studio, page, viewport);
 
 const app = document.getElementById('app')!, toasts = status(studio, page);
-const desk = () => ({ ...stage, studio, page, app });
+const desk = { ...stage, studio, page, app };
 app.append(
   toolbar(studio, page, journal, viewport, model, others, arMenu(desk)),
   element('main', { class: 'stage' }, viewport.canvas, facts(page), hint(page, viewport), poseTools(page), views(viewport), arButton(desk), comparisonPanel(studio, page, comparison)),

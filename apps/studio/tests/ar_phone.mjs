@@ -3,6 +3,9 @@ import { join } from 'node:path';
 import { barriers, openStudio, sessionState, settled } from './page.mjs';
 import { emulatePhone } from './xr_phone.mjs';
 
+/** The emulation of WebXR shows its frames in a canvas of its own, outside the overlay. */
+export const overlayBarriers = async (page) => (await barriers(page)).filter((barrier) => !/^region: [^ ]* > canvas/.test(barrier));
+
 export const apart = (a, b) => Math.hypot(...a.map((value, i) => value - b[i]));
 
 /** `without`: features that it has not. Pictures go to the folder `output`. */
@@ -70,10 +73,8 @@ export async function openPhone(browser, address, output, search, { without = []
   }
   /** Metres from the phone to a joint. */
   const distanceTo = async (name) => apart(await ar('joint', name), await page.evaluate(() => [phone.device.position.x, phone.device.position.y, phone.device.position.z]));
-  /** The emulation shows the frames in a canvas of its own, outside the overlay. */
-  const overlayBarriers = async () => (await barriers(page)).filter((barrier) => !/^region: [^ ]* > canvas/.test(barrier));
 
   return {
-    page, context, errors, frames, stand, touch, drag, tap, shot, line, says, ar, jointSpot, memberBase, middleOf, jointOf, placement, enter, place, leave, pose, distanceTo, overlayBarriers,
+    page, context, errors, frames, stand, touch, drag, tap, shot, line, says, ar, jointSpot, memberBase, middleOf, jointOf, placement, enter, place, leave, pose, distanceTo, overlayBarriers: () => overlayBarriers(page),
   };
 }

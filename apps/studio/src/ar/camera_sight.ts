@@ -15,7 +15,7 @@ export interface CameraSight {
   readonly kind: 'card' | 'camera';
   /** The camera's picture, shown behind the model. */
   readonly video: HTMLVideoElement;
-  /** Asks for the camera; throws what `getUserMedia` throws where it is refused or there is none. */
+  /** Asks for the camera; throws what `getUserMedia` throws where it is refused or there is none. Stopped then, too. */
   start(): Promise<void>;
   /** Called for each picture of the camera, and with `camera: null` where the place was lost. */
   onGlimpse: (glimpse: Glimpse) => void;

@@ -45,7 +45,10 @@ export class CardSight implements CameraSight {
     // A phone that is being turned has moments without a picture.
     const picture = await createImageBitmap(this.video).catch(() => null);
     if (picture && this.tracker) this.tracker.postMessage({ picture, fieldOfView: guessedFieldOfView(this.video) } satisfies ToTracker, [picture]);
-    else this.underWay = false;
+    else {
+      picture?.close();
+      this.underWay = false;
+    }
   }
 
   private take({ camera, fieldOfView }: FromTracker) {

@@ -1,16 +1,17 @@
 // What the device itself shows models in AR with: Apple's Quick Look, Google's Scene Viewer, whatever a file is shared with.
 import { posedUsdz } from '../app/export_usdz';
+import { stemOf } from '../app/saved_files';
 import { element } from '../ui/dom';
 import { say } from '../words/say';
 import type { Desk } from './desk';
-import { fileToShare, publicAddress, shareable } from './ways';
+import { modelFile, publicAddress, shareable } from './ways';
 
 const kept = 60_000; // milliseconds that the viewer has to fetch what it is given
 
 /** The scene as it is posed now. A link with rel=ar that has nothing but a picture in it opens Quick Look. */
 export async function openQuickLook(desk: Desk) {
-  const blob = new Blob([await posedUsdz(desk) as BlobPart], { type: 'model/vnd.usdz+zip' });
-  const link = element('a', { rel: 'ar', href: URL.createObjectURL(blob), download: 'model.usdz', class: 'quick-look', hidden: true }, element('img', { alt: say('AR Quick Look') }));
+  const file = modelFile('usdz', await posedUsdz(desk) as BlobPart);
+  const link = element('a', { rel: 'ar', href: URL.createObjectURL(file), download: file.name, class: 'quick-look', hidden: true }, element('img', { alt: say('AR Quick Look') }));
   document.body.append(link);
   link.click();
   link.remove();
@@ -44,10 +45,9 @@ export function openSceneViewer({ page }: Desk): Promise<void> {
 export async function shareModel(desk: Desk) {
   const format = shareable();
   if (!format) throw new Error('this browser shares no models');
-  const stem = (desk.page.now.session?.name ?? 'model').replace(/\.[^.]*$/, '');
   const bytes = format === 'usdz' ? await posedUsdz(desk) : await desk.studio.exportFile('glb');
   if (!bytes) return;
-  await navigator.share({ files: [fileToShare(format, bytes as BlobPart, stem)] }).catch((error: unknown) => {
+  await navigator.share({ files: [modelFile(format, bytes as BlobPart, stemOf(desk.page.now))] }).catch((error: unknown) => {
     if (!(error instanceof DOMException && error.name === 'AbortError')) throw error; // thought better of it
   });
 }

@@ -27,15 +27,10 @@ export class OrientationSight implements CameraSight {
   get video() { return this.camera.video; }
 
   async start() {
-    try {
-      // Both are asked for within the tap, the sensors first: their question needs it.
-      await allowed();
-      await this.camera.open(1280, 720);
-      await this.firstTurns();
-    } catch (error) {
-      this.stop();
-      throw error;
-    }
+    // Both are asked for within the tap, the sensors first: their question needs it.
+    await allowed();
+    await this.camera.open(1280, 720);
+    await this.firstTurns();
     screen.orientation?.addEventListener('change', this.tell);
     this.tell();
   }

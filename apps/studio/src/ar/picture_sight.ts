@@ -17,7 +17,12 @@ export class PictureSight implements Sight {
   async start(looker: Looker) {
     const { video } = this.camera, { overlay, renderer } = looker;
     this.camera.onGlimpse = (glimpse) => { this.glimpse = glimpse; };
-    await this.camera.start();
+    try {
+      await this.camera.start();
+    } catch (error) {
+      this.camera.stop();
+      throw error;
+    }
     this.looker = looker;
     // Unplugged, or taken by the device for something else.
     if (video.srcObject instanceof MediaStream) video.srcObject.getTracks().forEach((track) => track.addEventListener('ended', () => void this.lose()));

@@ -1,5 +1,6 @@
 // Which ways this device has to show models in the real place, and why it has not the others. With the page from the
 // start: small, and no words.
+import { mediaTypes } from '../app/saved_files';
 import type { PageState } from '../app/state';
 
 /** The best first. Posed while it is seen: in a WebXR session, on a card before the camera, before the camera alone. Only
@@ -76,12 +77,11 @@ function isPrivate(host: string): boolean {
     || /\.(localhost|local|internal|home\.arpa)$/.test(host) || !/[.:]/.test(host);
 }
 
-const types = { usdz: 'model/vnd.usdz+zip', glb: 'model/gltf-binary' };
-export type SharedFormat = keyof typeof types;
-export const fileToShare = (format: SharedFormat, bytes: BlobPart, stem: string) => new File([bytes], `${stem}.${format}`, { type: types[format] });
+type SharedFormat = 'usdz' | 'glb';
+export const modelFile = (format: SharedFormat, bytes: BlobPart, stem = 'model') => new File([bytes], `${stem}.${format}`, { type: mediaTypes[format] });
 
 /** What this browser lets out, the one first that its device shows in AR. */
 export function shareable(): SharedFormat | null {
   const formats: SharedFormat[] = isAndroid() ? ['glb', 'usdz'] : ['usdz', 'glb'];
-  return formats.find((format) => navigator.canShare?.({ files: [fileToShare(format, '', 'model')] })) ?? null;
+  return formats.find((format) => navigator.canShare?.({ files: [modelFile(format, '')] })) ?? null;
 }

@@ -7,22 +7,22 @@ import type { MenuEntry } from './more_menu';
 
 const waysIn = () => import('../ar/ways_in');
 
-export function arButton(desk: () => Desk): HTMLElement {
-  const view = button(say('View in AR'), () => void waysIn().then(({ viewInAr }) => viewInAr(desk())), {
+export function arButton(desk: Desk): HTMLElement {
+  const view = button(say('View in AR'), () => void waysIn().then(({ viewInAr }) => viewInAr(desk)), {
     kind: 'primary', label: say('View in AR: the models in the real place that the camera sees'), id: 'view-in-ar',
   });
   view.hidden = true;
   let asked = '';
   // A way can depend on the model.
-  desk().page.watch(({ session }) => {
+  desk.page.watch(({ session }) => {
     const name = session?.name ?? '';
     if (name === asked) return;
     asked = name;
-    void findWays(desk().page.now).then((ways) => { view.hidden = waysOf(ways).length === 0; });
+    void findWays(desk.page.now).then((ways) => { view.hidden = waysOf(ways).length === 0; });
   });
   return view;
 }
 
-export const arMenu = (desk: () => Desk): MenuEntry[] => [
-  { id: 'ar-ways', text: say('Ways to view in AR'), act: () => void waysIn().then(({ listWays }) => listWays(desk())) },
+export const arMenu = (desk: Desk): MenuEntry[] => [
+  { id: 'ar-ways', text: say('Ways to view in AR'), act: () => void waysIn().then(({ listWays }) => listWays(desk)) },
 ];

@@ -1,6 +1,7 @@
 // The bar on top: open, undo, what leaves the page.
 import type { Journal } from '../app/journal';
 import { samples, scenes } from '../app/samples';
+import { mediaTypes, stemOf } from '../app/saved_files';
 import type { PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
 import type { ModelView } from '../scene/model_view';
@@ -17,7 +18,6 @@ import { say } from '../words/say';
 const filmRate = 30; // pictures a second
 const movingRate = 20; // pictures a second of an animated PNG, each of which is a whole picture
 const turnSeconds = 4; // of a film all the way round
-const types = { glb: 'model/gltf-binary', obj: 'model/obj', stl: 'model/stl', bvh: 'text/plain', session: 'model/gltf-binary' };
 
 export function toolbar(studio: Studio, page: PageStore, journal: Journal, viewport: Viewport, model: ModelView, others: OthersView, augmented: MenuEntry[]): HTMLElement {
   const kept = recent(studio, journal), adding = addDialog(studio);
@@ -40,12 +40,11 @@ export function toolbar(studio: Studio, page: PageStore, journal: Journal, viewp
     sample.value = '';
   });
 
-  const isScene = () => (page.now.session?.members.length ?? 0) > 1;
-  const stem = () => (isScene() ? 'scene' : (page.now.session?.name ?? 'model').replace(/\.[^.]*$/, ''));
-  const save = async (format: keyof typeof types) => {
+  const stem = () => stemOf(page.now);
+  const save = async (format: Exclude<keyof typeof mediaTypes, 'usdz'>) => {
     const bytes = await studio.exportFile(format);
     const ending = format === 'session' ? '_session.glb' : format === 'bvh' ? '.bvh' : `_posed.${format}`;
-    if (bytes) offer(bytes as BlobPart, types[format], stem() + ending);
+    if (bytes) offer(bytes as BlobPart, mediaTypes[format], stem() + ending);
   };
   /** The surface as a picture should have it, whatever is shown now. */
   const onSurface = async (act: () => Promise<void>) => {
@@ -78,7 +77,7 @@ export function toolbar(studio: Studio, page: PageStore, journal: Journal, viewp
   });
   const saveUsdz = async () => {
     const { posedUsdz } = await import('../app/export_usdz');
-    offer(await posedUsdz({ model, others, viewport }) as BlobPart, 'model/vnd.usdz+zip', `${stem()}_posed.usdz`);
+    offer(await posedUsdz({ model, others, viewport }) as BlobPart, mediaTypes.usdz, `${stem()}_posed.usdz`);
   };
   const saveRecord = async () => {
     const record = await studio.record();
