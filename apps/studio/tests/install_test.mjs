@@ -58,6 +58,20 @@ async function visit(options = {}) {
   return opened;
 }
 
+/** Until no build waits any more: the browser takes a moment to let go of a page that was closed. */
+async function nothingWaits(of) {
+  const wire = await context.newCDPSession(of), builds = new Map();
+  await new Promise((resolve) => {
+    wire.on('ServiceWorker.workerVersionUpdated', ({ versions }) => {
+      for (const { versionId, status } of versions) builds.set(versionId, status);
+      const now = [...builds.values()];
+      if (now.includes('activated') && !now.some((status) => ['new', 'installing', 'installed', 'activating'].includes(status))) resolve();
+    });
+    void wire.send('ServiceWorker.enable');
+  });
+  await wire.detach();
+}
+
 async function newPage(search = '') {
   const other = await context.newPage();
   other.setDefaultTimeout(60_000);
@@ -211,6 +225,7 @@ const cases = {
     await page.close();
     page = next;
     page.setDefaultTimeout(40_000);
+    await nothingWaits(page);
     await page.goto(address);
     await settled(page);
     await page.waitForFunction(async () => (await caches.keys()).length === 1);
