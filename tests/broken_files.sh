@@ -8,20 +8,14 @@
 set -uo pipefail
 
 program=$1 output=$2 folder=${3:-}
-memory_kb=$((2 * 1024 * 1024)) # address space, threads' stacks included
-seconds=20
-passed=0 failed=0
+export program memory_kb=$((2 * 1024 * 1024)) # address space, threads' stacks included
+export seconds=20
 
-fail() {
-  echo "FAILED $1: $2"
-  failed=$((failed + 1))
-}
-
-# The program on one file, under limits; its standard error goes to $output/stderr.
+# limited ERRORS ARGUMENT...: the program under limits; its standard error goes to the file ERRORS.
 limited() {
   (
     ulimit -v $memory_kb -c 0
-    exec timeout -k 1 $seconds "$program" "$@" </dev/null >/dev/null 2>"$output/stderr"
+    exec timeout -k 1 $seconds "$program" "${@:2}" </dev/null >/dev/null 2>"$1"
   )
 }
 
@@ -32,34 +26,36 @@ check() {
   [ ! -e "$output/$2.glb" ] || check_rig "$1" "$2.template" --template humanoid
 }
 
-# check_rig FILE NAME OPTIONS...
+# check_rig FILE NAME OPTIONS...: a line that says "passed", or what failed.
 check_rig() {
-  local file=$1 result=$output/$2.glb code
+  local file=$1 result=$output/$2.glb errors=$output/errors/$2 code
   shift 2
-  limited rig "$file" "$@" --replace-rig --quiet -o "$result"
+  limited "$errors" rig "$file" "$@" --replace-rig --quiet -o "$result"
   code=$?
   if [ $code -ge 124 ]; then
-    fail "$file" "the program was ended with code $code (time, memory or a crash): $(head -c 300 "$output/stderr")"
-  elif [ $code -ne 0 ] && [ "$(wc -l <"$output/stderr")" -ne 1 ]; then
-    fail "$file" "not one line of error: $(head -c 300 "$output/stderr")"
+    echo "FAILED $file: the program was ended with code $code (time, memory or a crash): $(head -c 300 "$errors")"
+  elif [ $code -ne 0 ] && [ "$(wc -l <"$errors")" -ne 1 ]; then
+    echo "FAILED $file: not one line of error: $(head -c 300 "$errors")"
   elif [ $code -ne 0 ] && compgen -G "$result*" >/dev/null; then
-    fail "$file" "an error, but a file was left: $(compgen -G "$result*" | tr '\n' ' ')"
-  elif [ $code -eq 0 ] && ! limited info "$result"; then
-    fail "$file" "the result is not read again: $(head -c 300 "$output/stderr")"
+    echo "FAILED $file: an error, but a file was left: $(compgen -G "$result*" | tr '\n' ' ')"
+  elif [ $code -eq 0 ] && ! limited "$errors" info "$result"; then
+    echo "FAILED $file: the result is not read again: $(head -c 300 "$errors")"
   else
     [ $code -ne 0 ] || echo "$file" >"$result.source"
-    passed=$((passed + 1))
+    echo passed
   fi
 }
+export -f limited check check_rig
 
-# The file's first bytes only, and copies with a few bytes overwritten, at places spread over it.
-check_damaged_copies() {
+# Makes the file's first bytes only, and copies with a few bytes overwritten, at places spread over it; names each twice,
+# as check takes them.
+damaged_copies() {
   local whole=$1 size copy at step i
   size=$(stat -c %s "$whole")
   for i in $(seq 0 24); do
     copy=$output/cut_$i.damaged
     head -c $((size * i / 25)) "$whole" >"$copy"
-    check "$copy" "cut_$i"
+    printf '%s\0' "$copy" "cut_$i"
   done
   # The JSON comes first; damage there is the more interesting.
   for i in $(seq 0 59); do
@@ -73,23 +69,30 @@ check_damaged_copies() {
       2) printf '9' ;;
       3) printf '"' ;;
     esac | dd of="$copy" bs=1 seek="$at" conv=notrunc status=none
-    check "$copy" "patched_$i"
+    printf '%s\0' "$copy" "patched_$i"
   done
 }
 
-rm -rf "$output"
-mkdir -p "$output"
-output=$(cd "$output" && pwd)
-"$program" sample stool -o "$output/whole.glb" --quiet || exit 1
-check_damaged_copies "$output/whole.glb"
-
-if [ -n "$folder" ]; then
+faulty_files() {
+  [ -n "$folder" ] || return 0
+  local file name
   while IFS= read -r file; do
     name=${file#"$folder"/}
-    check "$file" "${name//\//__}"
+    printf '%s\0' "$file" "${name//\//__}"
   done < <(find "$folder" -type f | grep -iE '\.(glb|gltf|obj|ply|stl|off|fbx|dae|bvh)$' | LC_ALL=C sort)
-fi
+}
 
-rm -f "$output/stderr"
+rm -rf "$output"
+mkdir -p "$output/errors"
+output=$(cd "$output" && pwd)
+export output
+"$program" sample stool -o "$output/whole.glb" --quiet || exit 1
+{ damaged_copies "$output/whole.glb" && faulty_files; } |
+  xargs -0 -n 2 -P "$(nproc)" bash -c 'check "$@"' - >"$output/results" || exit 1
+rm -rf "$output/errors"
+
+grep -v '^passed$' "$output/results"
+passed=$(grep -c '^passed$' "$output/results") failed=$(grep -c '^FAILED ' "$output/results")
+rm "$output/results"
 echo "$passed passed, $failed failed"
-[ $failed -eq 0 ]
+[ "$failed" -eq 0 ]

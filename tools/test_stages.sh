@@ -54,41 +54,41 @@ counted() {
   return $status
 }
 
-# run_ctest <preset> [ctest option...]: its own list of failures and skips is shown, passes are only counted.
-run_ctest() {
-  local preset=$1 junit=$PWD/$output/ctest.xml status=0
-  shift
-  rm -f "$junit"
-  mkdir -p "$output/files_$preset"
-  LIMBER_TEST_OUTPUT=$PWD/$output/files_$preset ctest --test-dir "build/$preset" -j "$jobs" --timeout 600 \
-    --output-on-failure --output-junit "$junit" "$@" </dev/null >"$output/ctest.log" 2>&1 || status=$?
-  if [ ! -f "$junit" ] || [ "$(junit_count tests)" = 0 ]; then
-    tail -n 40 "$output/ctest.log"
-    return 1
-  fi
-  local tests failures skipped
-  tests=$(junit_count tests) failures=$(junit_count failures) skipped=$(($(junit_count skipped) + $(junit_count disabled)))
-  add_counts $((tests - failures - skipped)) "$failures" "$skipped"
-  echo "   $((tests - failures - skipped)) passed, $failures failed, $skipped skipped"
-  if [ "$skipped" -gt 0 ]; then
-    grep -hoE 'the shared models are not there[^"&]*' "$junit" | sort | uniq -c | sed 's/^ */   skipped: /' || true
-  fi
-  [ $status -eq 0 ] || grep -vE '^ *(Start +[0-9]+:|[0-9]+/[0-9]+ Test +#.* (Passed|\*\*\*Skipped))' "$output/ctest.log" | tail -n 150
+# counted_at_once: the commands of its input, a line each, as many at a time as there are processors; the first that fails
+# lets no other begin.
+counted_at_once() {
+  local logs=$PWD/$output/at_once status=0 log counts
+  rm -rf "$logs"
+  mkdir -p "$logs"
+  # xargs begins no other command once one ends with 255.
+  nl -w 2 -n rz -s ' ' | xargs -P "$jobs" -L 1 sh -c 'log=$1/$2; shift 2; "$@" >"$log" 2>&1 </dev/null || exit 255' - "$logs" 2>/dev/null || status=1
+  for log in "$logs"/*; do
+    counts=$(tail -n 1 "$log")
+    if [[ $counts =~ ^([0-9]+)\ passed,\ ([0-9]+)\ failed$ ]]; then
+      add_counts "${BASH_REMATCH[1]}" "${BASH_REMATCH[2]}" 0
+      [ "${BASH_REMATCH[2]}" != 0 ] || continue
+    fi
+    status=1
+    head -n 60 "$log"
+  done
   return $status
 }
 
-# run_programs <preset> [regex of tests left out]: each unit test program once, for what its tests share is made once then;
-# run_ctest, which starts a program for each test, takes three times as long under sanitizers.
+# run_programs <preset> <regex of tests left out> <program>[:<parts>]...: each test program once, or at once in so many
+# parts, for what its tests share is made once then; a process for each test takes two to three times as long.
 run_programs() {
-  local preset=$1 left_out=${2:-^$} status=0 log
-  local logs=$PWD/$output/programs
+  local preset=$1 left_out=$2 status=0 log
+  shift 2
+  local logs=$PWD/$output/programs all_skipped=$total_skipped
   rm -rf "$logs"
   mkdir -p "$logs" "$output/files_$preset"
   export LIMBER_TEST_OUTPUT=$PWD/$output/files_$preset
   export -f run_program
-  # The largest first: they most likely take longest.
-  ls -S build/"$preset"/limber_*_tests | grep -v model_tests |
-    xargs -P "$jobs" -I{} bash -c 'run_program "$@"' - {} "$left_out" "$logs" || status=1
+  for program in "$@"; do
+    local parts=${program#*:} part
+    [ "$parts" != "$program" ] || parts=1
+    for ((part = 0; part < parts; ++part)); do echo "build/$preset/${program%:*} $part $parts"; done
+  done | xargs -P "$jobs" -L 1 bash -c 'run_program "$@"' - "$logs" "$left_out" || status=1
   for log in "$logs"/*.log; do
     local ran skipped failed
     ran=$(sed -nE 's/^\[=+\] ([0-9]+) tests? from .* ran\..*/\1/p' "$log")
@@ -98,18 +98,29 @@ run_programs() {
     add_counts $((ran - ${skipped:-0} - ${failed:-0})) "${failed:-0}" "${skipped:-0}"
     [ "${failed:-0}" = 0 ] || grep -vE '^\[ RUN|^\[       OK' "$log" | tail -n 60
   done
+  if [ $total_skipped -gt "$all_skipped" ]; then
+    grep -hoE 'the shared models are not there.*' "$logs"/*.log | sort | uniq -c | sed 's/^ */   skipped: /' || true
+  fi
   return $status
 }
 
-# run_program <program> <regex of tests left out> <folder of logs>
+# run_program <folder of logs> <regex of tests left out> <program> <part> <parts>
 run_program() {
   local tests
-  tests=$("$1" --gtest_list_tests | awk '/^[^ ]/ { suite = $1 } /^  / { sub(/^ */, suite); print }' | grep -vE "$2" |
+  tests=$("$3" --gtest_list_tests | awk '/^[^ ]/ { suite = $1 } /^  / { sub(/^ */, suite); print }' | grep -vP "$2" |
     sed 's/ *#.*//' | paste -sd: -)
-  timeout 1500 "$1" --gtest_filter="$tests" </dev/null >"$3/$(basename "$1").log" 2>&1
+  GTEST_SHARD_INDEX=$4 GTEST_TOTAL_SHARDS=$5 timeout 1500 "$3" --gtest_filter="$tests" </dev/null >"$1/$(basename "$3")_$4.log" 2>&1
 }
 
-junit_count() { grep -m1 -oE "^\s*$1=\"[0-9]+\"" "$output/ctest.xml" | grep -oE '[0-9]+'; }
+# unit_tests <preset> [regex of tests left out]: the largest programs first, for they most likely take longest.
+unit_tests() {
+  run_programs "$1" "${2:-^$}" $(cd "build/$1" && ls -S limber_*_tests | grep -v model_tests)
+}
+
+# model_tests <preset> [regex of tests left out]
+model_tests() {
+  run_programs "$1" "${2:-^$}" "limber_model_tests:$jobs"
+}
 
 shared_data() {
   local folder=${LIMBER_SHARED_DATA:-../shared/data}
@@ -209,25 +220,27 @@ studio_in_browser() {
   fi
   local faulty
   faulty=$(shared_data)/broken || faulty=
-  counted node apps/studio/tests/studio_test.mjs dist build/release/limber "$output/studio" $faulty &&
-    counted node apps/studio/tests/beside_test.mjs dist "$output/studio" &&
-    counted node apps/studio/tests/keep_test.mjs dist build/release/limber "$output/studio" &&
-    counted node apps/studio/tests/kill_test.mjs dist "$output/studio" &&
-    counted node apps/studio/tests/dope_test.mjs dist "$output/studio" &&
-    counted node apps/studio/tests/pose_test.mjs dist "$output/studio" &&
-    counted node apps/studio/tests/tools_test.mjs dist "$output/studio" &&
-    counted node apps/studio/tests/paint_test.mjs dist "$output/studio" &&
-    counted node apps/studio/tests/shelf_test.mjs dist "$output/studio" &&
-    counted node apps/studio/tests/words_test.mjs dist "$output/studio" &&
-    counted node apps/studio/tests/scene_test.mjs dist build/release/limber "$output/studio" &&
-    counted node apps/studio/tests/first_minute_test.mjs dist "$output/studio" &&
-    counted node apps/studio/tests/poses_test.mjs dist "$output/studio" &&
-    counted node apps/studio/tests/ar_test.mjs dist build/release/limber "$output/studio" &&
-    counted node apps/studio/tests/ar_trouble_test.mjs dist "$output/studio" &&
-    counted node apps/studio/tests/ways_test.mjs dist "$output/studio" &&
-    counted node apps/studio/tests/headset_test.mjs dist build/release/limber "$output/studio" &&
-    counted node apps/studio/tests/install_test.mjs dist build/release/limber "$output/studio" &&
-    counted node apps/studio/tests/card_test.mjs
+  counted_at_once <<TESTS
+node apps/studio/tests/studio_test.mjs dist build/release/limber $output/studio $faulty
+node apps/studio/tests/beside_test.mjs dist $output/studio
+node apps/studio/tests/keep_test.mjs dist build/release/limber $output/studio
+node apps/studio/tests/kill_test.mjs dist $output/studio
+node apps/studio/tests/dope_test.mjs dist $output/studio
+node apps/studio/tests/pose_test.mjs dist $output/studio
+node apps/studio/tests/tools_test.mjs dist $output/studio
+node apps/studio/tests/paint_test.mjs dist $output/studio
+node apps/studio/tests/shelf_test.mjs dist $output/studio
+node apps/studio/tests/words_test.mjs dist $output/studio
+node apps/studio/tests/scene_test.mjs dist build/release/limber $output/studio
+node apps/studio/tests/first_minute_test.mjs dist $output/studio
+node apps/studio/tests/poses_test.mjs dist $output/studio
+node apps/studio/tests/ar_test.mjs dist build/release/limber $output/studio
+node apps/studio/tests/ar_trouble_test.mjs dist $output/studio
+node apps/studio/tests/ways_test.mjs dist $output/studio
+node apps/studio/tests/headset_test.mjs dist build/release/limber $output/studio
+node apps/studio/tests/install_test.mjs dist build/release/limber $output/studio
+node apps/studio/tests/card_test.mjs
+TESTS
 }
 
 studio_in_program() {
@@ -309,8 +322,9 @@ release_stages() {
       "${packages_node[@]}" | LC_ALL=C sort -u)
   fi
   stage "release build, g++ with warnings as errors" build_release
-  stage "unit tests" run_ctest release -LE models
-  if [ -n "$quick" ]; then stage "the project's own samples" run_ctest release -L models -R Samples; fi
+  stage "types of one name" check "two types of one name (tests/type_names.sh)" tests/type_names.sh
+  stage "unit tests" unit_tests release
+  if [ -n "$quick" ]; then stage "the project's own samples" model_tests release '^(?!.*Samples)'; fi
 }
 
 # Fitting a template takes some ten seconds under sanitizers. Of the tests that do it over and over one runs every time;
@@ -319,7 +333,7 @@ minutes_under_sanitizers='TemplateRigger\.[^N]|PersonTemplate\.[^N]|PosedBodies\
 minutes_under_sanitizers+='|AnyNumberOfThreadsAndReadsBack/winged'
 
 remaining_stages() {
-  stage "every model, every count of handles" run_ctest release -L models
+  stage "every model, every count of handles" model_tests release
   stage "faulty files, through the program" broken_files
   stage "WebAssembly build" build_wasm
   stage "WebAssembly in Node against the native program" wasm_smoke
@@ -331,9 +345,9 @@ remaining_stages() {
   stage "installed package, and a program built against it" install_and_consume
   stage "sanitizer build, clang++ with warnings as errors" build_sanitize
   sanitizer_options
-  stage "unit tests under sanitizers" run_programs sanitize "$minutes_under_sanitizers"
+  stage "unit tests under sanitizers" unit_tests sanitize "$minutes_under_sanitizers"
   LIMBER_MATRIX_HANDLES=10 LIMBER_MATRIX_FRAMES=400 stage "every model at 10 handles under sanitizers" \
-    run_ctest sanitize -L models -E 'Template|OnlineKeepsFeet|MatchedByTheirForm'  # these take minutes there
+    model_tests sanitize 'Template|OnlineKeepsFeet|MatchedByTheirForm' # these take minutes there
   stage "fuzz targets, a few seconds each" fuzz_each_target 5
 }
 
@@ -341,6 +355,6 @@ sanitize_stages() {
   stage "packages" need "${packages_sanitize[@]}"
   stage "sanitizer build, clang++ with warnings as errors" build_sanitize
   sanitizer_options
-  stage "unit tests under sanitizers" run_programs sanitize
-  stage "every model, every count of handles, under sanitizers" run_ctest sanitize -L models
+  stage "unit tests under sanitizers" unit_tests sanitize
+  stage "every model, every count of handles, under sanitizers" model_tests sanitize
 }

@@ -45,12 +45,12 @@ const random = (below) => {
   seed = (seed * 48271) % 2147483647;
   return seed % below;
 };
-const row = () => page.locator('#joints li').nth(random(8)).click({ timeout: 2000 });
+const row = () => page.locator('#joints li').nth(random(8)).click();
 const keys = async (key) => {
-  await page.locator('main canvas').focus({ timeout: 2000 });
+  await page.locator('main canvas').focus();
   await page.keyboard.press(key);
 };
-const enabled = async (id, act) => { if (await page.locator(id).isEnabled({ timeout: 2000 })) await act(page.locator(id)); };
+const enabled = async (id, act) => { if (await page.locator(id).isEnabled()) await act(page.locator(id)); };
 const deeds = [
   async () => { await row(); await keys('ArrowRight'); },
   async () => { await row(); await keys('r'); await keys('ArrowUp'); await keys('g'); },
@@ -65,11 +65,11 @@ const deeds = [
   () => keys('Control+Shift+Z'),
   () => keys('m'),
   () => keys('i'),
-  () => enabled('#add-clip', (button) => button.click({ timeout: 2000 })),
+  () => enabled('#add-clip', (button) => button.click()),
   () => keys('k'),
-  () => enabled('#scrub', (slider) => slider.fill(String(random(20) / 10), { timeout: 2000 })),
-  () => enabled('#play', (button) => button.click({ timeout: 2000 })),
-  async () => { await row(); await enabled('#pin', (button) => button.click({ timeout: 2000 })); },
+  () => enabled('#scrub', (slider) => slider.fill(String(random(20) / 10))),
+  () => enabled('#play', (button) => button.click()),
+  async () => { await row(); await enabled('#pin', (button) => button.click()); },
 ];
 
 async function open(search = '') {
@@ -101,16 +101,19 @@ const cases = {
         done = 0;
       }
       shown = shown.slice(-1);
-      let alive = true;
+      let end, alive = true;
+      const ended = new Promise((resolve) => { end = resolve; });
       await page.evaluate(() => { globalThis.limberGap = 0; });
       const busy = (async () => {
         while (alive) {
-          await deeds[random(deeds.length)]().catch((error) => { if (alive) throw error; });
+          const deed = deeds[random(deeds.length)]().catch((error) => { if (alive) throw error; });
+          await Promise.race([deed, ended]); // some wait for ever on a page that was killed
           ++done;
         }
       })();
       await Promise.race([busy, new Promise((wait) => setTimeout(wait, 300 + random(3000)))]);
       alive = false;
+      end();
       const died = await kill();
       await busy;
       const last = shown.filter(({ from }) => from <= died);
