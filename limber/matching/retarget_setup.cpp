@@ -118,9 +118,11 @@ std::vector<Index> tailOf(const Skeleton& skeleton) {
 }
 
 // With the matched limbs of bodies of another kind as the motion has them in the mean: a person's arms hang, whatever
-// the rest pose, and a foreleg that follows one stands.
+// the rest pose, and a foreleg that follows one stands. Of twins the target is posed as that by turns alone: feet on
+// roots of their own, led elsewhere in that frame, would make the source's legs longer or shorter than its twin's.
 Pose restOf(const Skeleton& source, std::span<const Pose> motion, const SkeletonMap& map) {
   Pose rest = uprightPose(source, motion, map, MapSide::kSource);
+  if (map.twins) return turnedAlone(source, std::move(rest));
   if (!map.unlikeBodies) return rest;
   for (const JointMatch& match : map.matches) {
     const PartKind kind = match.part.kind;

@@ -65,6 +65,28 @@ TEST(RetargetSetup, TheSameBodyIsToldByItsBones) {
   EXPECT_FALSE(isSame(longer)) << "a twin, whose hands would be elsewhere";
 }
 
+// Whose rest pose has the legs up, so that it is compared from a frame, in which feet on roots of their own are
+// elsewhere.
+TEST(RetargetSetup, TheSameBodyIsToldByTurnsAlone) {
+  Skeleton person = practiceHumanoid();
+  const std::vector<Vec3> places = restPositions(person);
+  std::vector<Index> legs, feet;
+  for (const char* side : {"left", "right"}) {
+    legs.push_back(person.find(std::string(side) + "UpperLeg").value());
+    feet.push_back(person.find(std::string(side) + "Foot").value());
+    Joint& foot = person.joints[feet.back()];
+    foot.parent.reset();
+    foot.rest.translation = places[feet.back()];
+  }
+  PoseSequence motion{{restPose(person)}, 1.0 / 30};
+  for (const Index foot : feet) motion.poses[0].locals[foot].translation.y() += 0.1;
+  for (const Index leg : legs) person.joints[leg].rest.rotation = testing::turn(Vec3::UnitX(), 180);
+  for (const Index foot : feet) person.joints[foot].rest.translation.y() = 2 * places[0].y() - places[foot].y();
+  const RetargetSetup setup(person, person, matchSkeletons(person, person), {}, &motion);
+  EXPECT_TRUE(setup.sameBody);
+  EXPECT_NEAR(setup.scale, 1, 1e-9);
+}
+
 // Whose recording's ground is a hand's breadth over that of its rest pose.
 TEST(RetargetSetup, TheSameBodyIsAsHighOverItsGround) {
   const Skeleton person = practiceHumanoid();

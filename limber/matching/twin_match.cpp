@@ -16,13 +16,20 @@ namespace {
 constexpr double kSameLength = 0.02;  // of the bone; or of a hundredth of the skeleton's, for the shortest
 constexpr double kMostOff = 0.35;     // mean distance of joints laid on each other, in mean distances from their middle
 constexpr double kAlike = 1e-3;       // likewise: ways that differ by less are told apart by names
-constexpr double kRigid = 1e-3;       // of a limb's reach: how far its joints may be off to have been turned as a whole
+// Of a limb's reach: how far its joints may be off to have been turned as a whole. A tenth of what the motion may be
+// off in the end (0.1 mm of a person); places in files, in float, are exact to a hundredth of it.
+constexpr double kRigid = 1e-5;
+constexpr double kOnLine = 1e-8;  // second singular value over the first: joints within 1e-4 of their way on one line
 
-// The rotation that brings `from` nearest to `to`, both about their origin (Kabsch 1976).
+// The rotation that brings `from` nearest to `to`, both about their origin (Kabsch 1976). What lies on one line does
+// not tell how it is twisted about that: the shortest.
 Quat rotationBetween(const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
   Mat3 sum = Mat3::Zero();
   for (std::size_t i = 0; i < from.size(); ++i) sum += to[i] * from[i].transpose();
   const Eigen::JacobiSVD<Mat3> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  if (svd.singularValues()[1] <= kOnLine * svd.singularValues()[0]) {
+    return shortestRotation(svd.matrixV().col(0), svd.matrixU().col(0));
+  }
   Mat3 sign = Mat3::Identity();
   sign(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
   return Quat(Mat3(svd.matrixU() * sign * svd.matrixV().transpose())).normalized();
@@ -135,18 +142,27 @@ class TwinMatcher {
     return frame;
   }
 
-  // Children to the nearest of equal trees and bones.
+  // Children to the nearest of equal trees and bones. What hangs on a bone that points elsewhere is turned along with
+  // it: the fingers of an arm that rests otherwise would else change places.
   bool layOn(Twins& twins) const {
-    if (!pairUp(sourceTree_.roots(), targetTree_.roots(), std::nullopt, std::nullopt, twins)) return false;
+    if (!pairUp(sourceTree_.roots(), targetTree_.roots(), std::nullopt, std::nullopt, twins.turn, twins)) return false;
+    std::vector<Quat> turns(target_.jointCount(), twins.turn);
     for (const Index joint : targetTree_.order()) {
       const Index own = twins.sourceOf[joint];
-      if (!pairUp(sourceTree_.children(own), targetTree_.children(joint), own, joint, twins)) return false;
+      if (const std::optional<Index>& parent = targetTree_.parent(joint)) {
+        const Vec3 bone = to_[joint] - to_[*parent],
+                   other = turns[*parent] * (from_[own] - from_[twins.sourceOf[*parent]]);
+        const bool points = std::min(bone.norm(), scale_ * other.norm()) > short_;
+        turns[joint] = points ? (shortestRotation(other, bone) * turns[*parent]).normalized() : turns[*parent];
+      }
+      if (!pairUp(sourceTree_.children(own), targetTree_.children(joint), own, joint, turns[joint], twins))
+        return false;
     }
     return true;
   }
 
   bool pairUp(std::span<const Index> sources, std::span<const Index> targets, std::optional<Index> sourceParent,
-              std::optional<Index> targetParent, Twins& twins) const {
+              std::optional<Index> targetParent, const Quat& turn, Twins& twins) const {
     if (sources.size() != targets.size()) return false;
     struct Pair {
       double off;
@@ -163,7 +179,7 @@ class TwinMatcher {
           const double length = scale_ * one.norm();
           if (std::abs(length - other.norm()) > kSameLength * std::max(length, short_)) continue;
         }
-        pairs.push_back({(scale_ * (twins.turn * limbMiddle(sourceTree_, from_, s, sourceParent)) -
+        pairs.push_back({(scale_ * (turn * limbMiddle(sourceTree_, from_, s, sourceParent)) -
                           limbMiddle(targetTree_, to_, t, targetParent))
                              .norm(),
                          s, t});
@@ -308,7 +324,13 @@ Pose poseAsTwin(const Skeleton& source, const Pose& sourcePose, const Skeleton& 
     collect(tree.subtree(joint));
     lies[joint] = fits(turns[joint]);
     if (lies[joint]) continue;
-    const Quat whole = rotationBetween(is, wanted);
+    // From how its parent turns on, so that what no place tells stays as it is.
+    const auto turnedOn = [&] {
+      std::vector<Vec3> carried;
+      for (const Vec3& place : is) carried.push_back(turns[joint] * place);
+      return (rotationBetween(carried, wanted) * turns[joint]).normalized();
+    };
+    const Quat whole = turnedOn();
     lies[joint] = fits(whole);
     if (lies[joint]) {
       turns[joint] = whole;
@@ -316,8 +338,7 @@ Pose poseAsTwin(const Skeleton& source, const Pose& sourcePose, const Skeleton& 
     }
     collect(tree.children(joint));
     if (fits(turns[joint])) continue;
-    turns[joint] = is.size() > 1 ? rotationBetween(is, wanted)
-                                 : (shortestRotation(turns[joint] * is[0], wanted[0]) * turns[joint]).normalized();
+    turns[joint] = turnedOn();
   }
   Pose pose = restPose(target);
   const std::vector<Affine> rest = restGlobals(target);

@@ -162,6 +162,45 @@ TEST(TwinMatch, LimbsThatRestOtherwiseAreTurnedBackExactly) {
   expectTurnedBack(withOtherAxes(inRestPose(original(), kBentLimbs)));
 }
 
+// Equal fingers side by side, in the plane in which the arm is turned: where they lie, another would be nearer.
+TEST(TwinMatch, FingersOfALimbThatRestsOtherwiseKeepTheirPlaces) {
+  Skeleton source = original();
+  const Index hand = source.find("mixamorig:LeftHand").value();
+  const std::vector<Vec3> places = restPositions(source);
+  const Vec3 along = (places[hand] - places[*source.joints[hand].parent]).normalized();
+  const Vec3 across = along.cross(Vec3::UnitZ()).normalized();
+  const Quat toHand = Quat(restGlobals(source)[hand].rotation()).conjugate();
+  for (int i = 0; i < 4; ++i) {
+    Joint finger;
+    finger.name = "finger" + std::to_string(i);
+    finger.parent = hand;
+    finger.rest.translation = toHand * Vec3(0.1 * along + 0.02 * (i - 1.5) * across);
+    source.joints.push_back(finger);
+  }
+  const Skeleton target = nameless(inRestPose(source, {{"mixamorig:LeftArm", turn(Vec3::UnitZ(), 40)}}));
+  const std::optional<Twins> twins = matchTwins(source, target);
+  ASSERT_TRUE(twins);
+  for (Index j = 0; j < target.jointCount(); ++j) EXPECT_EQ(twins->sourceOf[j], j) << source.joints[j].name;
+}
+
+// Joints on one line tell nothing of how it is twisted: the shortest way.
+TEST(TwinMatch, AStraightLimbIsNotTwisted) {
+  Skeleton source;
+  for (Index i = 0; i < 5; ++i) {
+    Joint joint;
+    joint.name = "joint" + std::to_string(i);
+    if (i > 0) joint.parent = i < 4 ? i - 1 : 0;
+    joint.rest.translation = i < 4 ? Vec3(0.3, 0.2, -0.4) : Vec3(0, 0, 0.3);
+    source.joints.push_back(joint);
+  }
+  Skeleton target = source;
+  const Vec3 across = source.joints[1].rest.translation.cross(Vec3(1, 2, 3)).normalized();
+  target.joints[1].rest.rotation = turn(across, 30);
+  const Twins twins{{0, 1, 2, 3, 4}, Quat::Identity(), 1};
+  const Pose pose = poseAsTwin(source, restPose(source), target, twins);
+  EXPECT_LT(pose.locals[1].rotation.angularDistance(Quat::Identity()), 1e-7);
+}
+
 // More bones than stay as they are.
 TEST(TwinMatch, AllLimbsAtOnceAreTurnedBackExactly) {
   std::vector<std::pair<const char*, Quat>> limbs;
