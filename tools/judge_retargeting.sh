@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The judge's table of docs/retargeting.md, over the shared people and the motions of people (about ten minutes):
+# The judge's table of docs/retargeting.md, over the shared people and the motions of people (about two minutes on an idle machine):
 #   tools/judge_retargeting.sh [OPTION...]      options of limber evaluate retargeting, such as --each FILE
 # Without options the table of the page is made anew.
 set -euo pipefail
