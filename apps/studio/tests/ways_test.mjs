@@ -5,11 +5,11 @@
 //
 // Ends with "N passed, N failed".
 import assert from 'node:assert/strict';
-import { mkdirSync } from 'node:fs';
+import { mkdirSync, readFileSync } from 'node:fs';
+import { createRequire } from 'node:module';
 import { join, resolve } from 'node:path';
-import { strFromU8, unzipSync } from 'three/examples/jsm/libs/fflate.module.js';
 import { overlayBarriers } from './ar_phone.mjs';
-import { dragMouse, jointPlace, jointPosition, launch, openStudio, runCases, serve, sessionState, settled } from './page.mjs';
+import { download, dragMouse, jointPlace, jointPosition, launch, openStudio, runCases, serve, sessionState, settled } from './page.mjs';
 import { emulatePhone } from './xr_phone.mjs';
 
 const [dist, output] = process.argv.slice(2).map((path) => resolve(path));
@@ -48,7 +48,7 @@ function stub({ cameras, sensors, quickLook, shares, camera }) {
 }
 
 /** `turned`: the angles that the sensors give; without, there are none. `xr`: WebXR is claimed. */
-async function on(device, steps, { search = '?sample=stool', userAgent, locale, xr = false } = {}) {
+async function on(device, steps, { search = '?sample=stool', userAgent, locale, xr = false, prepare = async () => {} } = {}) {
   await shown?.context().close();
   let sensors = null;
   const turn = async ([alpha, beta, gamma]) => (await sensors).send('DeviceOrientation.setDeviceOrientationOverride', { alpha, beta, gamma });
@@ -56,6 +56,7 @@ async function on(device, steps, { search = '?sample=stool', userAgent, locale, 
     width: 390, height: 844, touch: true, search, locale, ...(userAgent ? { userAgent } : {}),
     prepare: async (before) => {
       await before.addInitScript(stub, device);
+      await prepare(before);
       if (xr) await emulatePhone(before);
       if (!device.turned) return;
       before.on('page', (opened) => {
@@ -116,9 +117,12 @@ const cases = {
         const { href, children } = await page.evaluate(() => ({ ...globalThis.quickLook, bytes: null }));
         assert.deepEqual(children, ['IMG']);
         assert.ok(href.startsWith('blob:'));
-        const files = unzipSync(Uint8Array.from(await page.evaluate(async () => [...new Uint8Array(await globalThis.quickLook.bytes)])));
-        const points = Object.values(files).map((file) => strFromU8(file)).join('').match(/point3f\[\] points = \[(.*?)\]/s)[1];
-        return { href, top: Math.max(...[...points.matchAll(/\(([^)]*)\)/g)].map(([, point]) => Number(point.split(',')[1]))) };
+        // A USDZ is a ZIP archive whose files are not packed.
+        const top = await page.evaluate(async () => {
+          const [, points] = new TextDecoder('latin1').decode(await globalThis.quickLook.bytes).match(/point3f\[\] points = \[(.*?)\]/s);
+          return [...points.matchAll(/\(([^)]*)\)/g)].reduce((most, [, point]) => Math.max(most, Number(point.split(',')[1])), -Infinity);
+        });
+        return { href, top };
       };
       const before = await heights();
       const { joints } = await sessionState(page), top = joints.reduce((best, one) => (one.position?.[1] > (best.position?.[1] ?? -1) ? one : best), joints.at(-1));
@@ -143,9 +147,72 @@ const cases = {
       await page.keyboard.press('Enter');
       await page.locator('#ways').waitFor();
       assert.equal(await page.evaluate(() => document.activeElement.dataset.way), 'card');
+      await page.keyboard.press('Tab'); // to the printed card
       await page.keyboard.press('Tab');
       await page.keyboard.press('Enter');
       await page.locator('#ar-place').waitFor();
+    });
+  },
+  async 'the card on paper: its size in millimetres, its cells, what goes to the printer'() {
+    await on({ sensors: 'none' }, async ({ page, press, clean, shot }) => {
+      assert.deepEqual(await press(), ['card']);
+      await page.locator('#ways-print-card').tap();
+      await page.locator('#print-card').waitFor();
+      const code = Number(readFileSync(createRequire(import.meta.url).resolve('js-aruco2/src/dictionaries/aruco_mip_16h3.js'), 'utf8').match(/codeList: \[(.*?)\]/s)[1].split(',')[11]);
+      for (const [paper, width, height] of [['a4', 210, 297], ['letter', 215.9, 279.4]]) {
+        await page.locator('#card-paper').selectOption(paper);
+        const svg = String(await download(page, () => page.locator('#card-save').tap()));
+        assert.ok(svg.includes(`width="${width}mm"`) && svg.includes(`height="${height}mm"`) && svg.includes(`viewBox="0 0 ${width} ${height}"`));
+        assert.match(svg, /class="ruler" d="M[\d.]+ [\d.]+h100M/);
+        // Drawn at 4 pixels for a millimetre: the white rim, the black frame and the bits, a cell of 80/6 mm each.
+        const cells = await page.evaluate(async ([text, wide, high]) => {
+          const image = new Image();
+          image.src = URL.createObjectURL(new Blob([text], { type: 'image/svg+xml' }));
+          await image.decode();
+          const canvas = document.createElement('canvas');
+          [canvas.width, canvas.height] = [wide * 4, high * 4];
+          const context = canvas.getContext('2d');
+          context.drawImage(image, 0, 0, wide * 4, high * 4);
+          const cell = 80 / 6, left = (wide - 8 * cell) / 2;
+          return Array.from({ length: 64 }, (_, i) => context.getImageData(4 * (left + cell * (i % 8 + 0.5)), 4 * (30 + cell * (Math.floor(i / 8) + 0.5)), 1, 1).data[0] > 128);
+        }, [svg, width, height]);
+        assert.deepEqual(cells, cells.map((_, i) => {
+          const x = i % 8, y = Math.floor(i / 8);
+          if (x < 2 || x > 5 || y < 2 || y > 5) return x === 0 || x === 7 || y === 0 || y === 7;
+          return ((code >> (15 - (4 * (y - 2) + x - 2))) & 1) === 1;
+        }));
+      }
+      await clean();
+      await shot('print_card');
+      await page.locator('#card-print').tap();
+      const printed = await page.evaluate(() => {
+        const { document: sheet } = document.querySelector('.print-frame').contentWindow;
+        return sheet.querySelector('svg').getAttribute('width') + sheet.querySelector('style').textContent;
+      });
+      assert.match(printed, /^215.9mm.*size: letter; margin: 0/);
+      await page.locator('#card-close').tap();
+      await page.locator('#print-card').waitFor({ state: 'detached' });
+    });
+  },
+  async 'the card on a screen: as large as a bank card says, and kept'() {
+    await on({ cameras: 0 }, async ({ page, clean, shot }) => {
+      await page.setViewportSize({ width: 1280, height: 800 });
+      const shownAt = async () => {
+        await page.locator('#export-as').selectOption('ar-show-card');
+        await page.locator('#show-card').waitFor();
+        const width = async (selector) => (await page.locator(selector).boundingBox()).width;
+        return { card: await width('.shown-card svg'), bank: await width('.bank-card') };
+      };
+      await shownAt();
+      await page.locator('#card-scale').focus();
+      await page.keyboard.press('ArrowRight');
+      await page.locator('#card-scale').fill('5');
+      await clean();
+      await shot('show_card');
+      await page.keyboard.press('Escape');
+      await page.locator('#show-card').waitFor({ state: 'detached' });
+      const { card, bank } = await shownAt();
+      assert.ok(Math.abs(card - 5 * 80 * 8 / 6) < 0.5 && Math.abs(bank - 5 * 85.6) < 0.5, JSON.stringify({ card, bank }));
     });
   },
   async 'German'() {
@@ -155,11 +222,28 @@ const cases = {
       await shot('german');
     }, { locale: 'de-DE' });
   },
-  async 'Scene Viewer is not offered for a model without a public address'() {
+  async 'Scene Viewer: on Android, for a model at a public address and for no other'() {
+    let glb;
     await on({ cameras: 0 }, async ({ page, list }) => {
       assert.deepEqual(await list(), []);
       assert.match(await page.locator('#ways').textContent(), /needs an address on the web/);
+      await page.keyboard.press('Escape');
+      glb = await download(page, () => page.locator('#save-glb').tap());
     }, { userAgent: android });
+    const address = 'https://models.example.org/stool.glb';
+    await on({ cameras: 0 }, async ({ page, button, notice }) => {
+      await button.tap();
+      await page.waitForFunction(() => globalThis.intent);
+      const intent = await page.evaluate(() => globalThis.intent);
+      assert.match(intent, /^intent:\/\/arvr\.google\.com\/scene-viewer\/1\.0\?/);
+      assert.equal(new URLSearchParams(intent.slice(intent.indexOf('?'), intent.indexOf('#'))).get('file'), address);
+      // A device without it comes back to the page.
+      const back = decodeURIComponent(intent.match(/S\.browser_fallback_url=(.*?);/)[1]);
+      await page.evaluate((to) => location.assign(to), back);
+      assert.match(await notice(), /has no Scene Viewer/);
+      assert.equal((await sessionState(page)).name, 'stool.glb');
+    }, { userAgent: android, search: `?model=${encodeURIComponent(address)}`,
+      prepare: (context) => context.route(address, (route) => route.fulfill({ body: glb, contentType: 'model/gltf-binary', headers: { 'access-control-allow-origin': '*' } })) });
   },
   async 'sharing where the device has no viewer of its own, and the browser lets models out'() {
     await on({ cameras: 0, shares: 'usdz' }, async ({ page, button, list }) => {

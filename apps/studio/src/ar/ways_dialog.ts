@@ -15,7 +15,7 @@ export function waysDialog(there: Way[], ways: Ways, trouble: Notice | null, tak
       close();
       take(way);
     });
-    return element('li', {}, made);
+    return element('li', {}, made, way === 'card' ? theCard() : null);
   };
   if (trouble) dialog.append(element('p', { role: 'alert' }, trouble.detail, ' ', say('These ways are left:')));
   else if (there.length === 0) dialog.append(element('p', {}, say('This device shows models in 3D on its screen alone.')));
@@ -29,6 +29,12 @@ export function waysDialog(there: Way[], ways: Ways, trouble: Notice | null, tak
   dialog.addEventListener('close', close);
   document.body.append(dialog);
   dialog.showModal();
+}
+
+/** No card at hand? */
+function theCard(): HTMLElement {
+  const print = button(say('Print the card'), () => void import('./card/card_dialogs').then(({ printCardDialog }) => printCardDialog()), { id: 'ways-print-card' });
+  return element('p', { class: 'the-card' }, say('No card? Open this page on a computer, and choose More, then Show the card.'), ' ', print);
 }
 
 const wordsOfWays = (): Record<Way, [string, string]> => ({

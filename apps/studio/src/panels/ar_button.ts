@@ -5,7 +5,7 @@ import { button } from '../ui/dom';
 import { say } from '../words/say';
 import type { MenuEntry } from './more_menu';
 
-const waysIn = () => import('../ar/ways_in');
+const waysIn = () => import('../ar/ways_in'), cards = () => import('../ar/card/card_dialogs');
 
 export function arButton(desk: Desk): HTMLElement {
   const view = button(say('View in AR'), () => void waysIn().then(({ viewInAr }) => viewInAr(desk)), {
@@ -25,4 +25,6 @@ export function arButton(desk: Desk): HTMLElement {
 
 export const arMenu = (desk: Desk): MenuEntry[] => [
   { id: 'ar-ways', text: say('Ways to view in AR'), act: () => void waysIn().then(({ listWays }) => listWays(desk)) },
+  { id: 'ar-print-card', text: say('Print the card'), act: () => void cards().then(({ printCardDialog }) => printCardDialog()) },
+  { id: 'ar-show-card', text: say('Show the card'), act: () => void cards().then(({ showCardDialog }) => showCardDialog()) },
 ];
