@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "limber/anatomy/anatomy.h"
 #include "limber/core/numbers.h"
 #include "limber/limbs/roughness.h"
 #include "limber/matching/plain_skeleton.h"
@@ -27,6 +28,7 @@ Skeleton nameless(Skeleton body) {
 Skeleton reposed(Skeleton body) {
   const std::vector<Affine> globals = restGlobals(body);
   const SkeletonMap parts = matchSkeletons(body, body);
+  const Vec3 front = readAnatomy(body).axes.front;
   for (const Side side : kSides) {
     for (const PartKind kind : {PartKind::kArm, PartKind::kLeg}) {
       const JointMatch* limb = parts.find({kind, side, 0, Segment::kUpper, 0});
@@ -34,7 +36,7 @@ Skeleton reposed(Skeleton body) {
       Joint& joint = body.joints[limb->target.front()];
       const Quat above = joint.parent ? Quat(globals[*joint.parent].rotation()) : Quat::Identity();
       const double angle = (kind == PartKind::kArm ? kReposedArms : kReposedLegs) * (side == Side::kLeft ? -1 : 1);
-      const Quat turn(Eigen::AngleAxisd(angle, Vec3::UnitZ()));
+      const Quat turn(Eigen::AngleAxisd(angle, front));
       joint.rest.rotation = (above.conjugate() * turn * above * joint.rest.rotation).normalized();
     }
   }

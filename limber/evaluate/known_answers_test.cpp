@@ -52,6 +52,27 @@ INSTANTIATE_TEST_SUITE_P(Methods, KnownAnswers, ::testing::Values("limb-ik", "sp
                            return name;
                          });
 
+// About the axis that it faces along itself, as in a file whose axes are others.
+TEST(ReposedAnswer, TurnsLimbsInTheBodysOwnFrame) {
+  const Skeleton person = practiceHumanoid();
+  Skeleton turned = person;
+  const Quat turns = turn(Vec3(1, 1, 1), 120);  // up along +Z, facing +X
+  for (Joint& joint : turned.joints) {
+    if (joint.parent) continue;
+    joint.rest.rotation = turns * joint.rest.rotation;
+    joint.rest.translation = turns * joint.rest.translation;
+  }
+  const auto reposed = [](const Skeleton& body) {
+    for (const KnownAnswer& answer : knownAnswers(body)) {
+      if (answer.change == "reposed") return restPositions(answer.body);
+    }
+    return std::vector<Vec3>();
+  };
+  const std::vector<Vec3> upright = reposed(person), lying = reposed(turned);
+  ASSERT_EQ(lying.size(), upright.size());
+  for (std::size_t j = 0; j < lying.size(); ++j) EXPECT_LT((lying[j] - turns * upright[j]).norm(), 1e-6) << j;
+}
+
 TEST(KnownAnswerError, IsThatOfTheWorstJoint) {
   const Skeleton person = practiceHumanoid();
   PoseSequence motion = walk(person, 10);
