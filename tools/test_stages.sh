@@ -240,6 +240,7 @@ node apps/studio/tests/ways_test.mjs dist $output/studio
 node apps/studio/tests/headset_test.mjs dist build/release/limber $output/studio
 node apps/studio/tests/install_test.mjs dist build/release/limber $output/studio
 node apps/studio/tests/card_test.mjs
+node apps/studio/tests/card_ar_test.mjs dist $output/studio
 TESTS
 }
 

@@ -1,0 +1,208 @@
+// Augmented reality by the card, in a browser whose camera is fed films that are drawn here: the card on a table, so that
+// the true place of the camera is known in each picture.
+//
+//   node apps/studio/tests/card_ar_test.mjs DIST OUTPUT_FOLDER
+//
+// Ends with "N passed, N failed".
+import assert from 'node:assert/strict';
+import { mkdirSync, rmSync } from 'node:fs';
+import { createRequire } from 'node:module';
+import { join, resolve } from 'node:path';
+import { Matrix4, PerspectiveCamera, Quaternion, Vector3 } from 'three';
+import { height, width } from './card_film.mjs';
+import { covered, degreesHigh, logTracker, rate, strip, walk, writeCovered, writeWalk } from './card_videos.mjs';
+import { barriers, jointPosition, launch, openStudio, runCases, serve, sessionState, settled } from './page.mjs';
+
+const [dist, output] = process.argv.slice(2).map((path) => resolve(path));
+mkdirSync(output, { recursive: true });
+
+const aruco = createRequire(import.meta.url);
+const { AR } = aruco('js-aruco2/src/aruco.js');
+aruco('js-aruco2/src/dictionaries/aruco_mip_16h3.js');
+const code = AR.DICTIONARIES.ARUCO_MIP_16h3.codeList[11];
+
+const films = { walk: join(output, 'card_walk.y4m'), covered: join(output, 'card_covered.y4m') };
+writeWalk(films.walk, code);
+writeCovered(films.covered, code);
+
+const server = await serve(dist);
+let browser, shown;
+
+/** In front of a camera that shows the film over and over. Frames are drawn in software: on a small screen there are more of them. */
+async function before(film, size, steps) {
+  await browser?.close();
+  browser = await launch({ options: ['--use-fake-device-for-media-stream', `--use-file-for-fake-video-capture=${film}`] });
+  const { page, context, errors } = await openStudio(browser, server.address, {
+    ...size, touch: true, search: '?sample=stool', permissions: ['camera'], prepare: (made) => made.addInitScript(logTracker, strip),
+  });
+  page.setDefaultTimeout(60_000);
+  shown = page;
+  const finger = await context.newCDPSession(page);
+  await steps({
+    page, context,
+    async enter() {
+      await page.locator('#view-in-ar').tap();
+      const card = page.locator('#ways [data-way="card"]');
+      await card.or(page.locator('#ar-place')).first().waitFor();
+      if (await card.isVisible()) await card.tap();
+      await page.locator('#ar-place').waitFor();
+    },
+    async touch(type, points) {
+      await finger.send('Input.dispatchTouchEvent', { type, touchPoints: points.map((point, id) => ({ ...point, id })) });
+      await page.evaluate(() => new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn))));
+    },
+    says: (words) => page.waitForFunction((wanted) => document.querySelector('#ar-line').textContent.includes(wanted), words),
+    shot: (name) => page.screenshot({ path: join(output, `card_${name}.png`) }),
+    /** What the tracker was given and said, `count` times from now on. */
+    async seen(count) {
+      const from = await page.evaluate(() => globalThis.cardLog.length);
+      await page.waitForFunction((until) => globalThis.cardLog.length >= until, from + count);
+      return page.evaluate((at) => globalThis.cardLog.slice(at), from);
+    },
+  });
+  assert.deepEqual(errors, []);
+}
+
+/** Where the camera of a film is, in the room of the card. */
+function cameraOf({ turn: r, move }) {
+  const card = new Matrix4().set(r[0], r[1], r[2], move[0], r[3], r[4], r[5], move[1], r[6], r[7], r[8], move[2], 0, 0, 0, 1);
+  return card.premultiply(new Matrix4().makeScale(1, -1, -1)).invert();
+}
+const placeOf = (matrix) => new Vector3().setFromMatrixPosition(matrix);
+const degreesApart = (a, b) => (new Quaternion().setFromRotationMatrix(a).angleTo(new Quaternion().setFromRotationMatrix(b)) * 180) / Math.PI;
+const median = (values) => values.toSorted((a, b) => a - b)[values.length >> 1];
+/** Metres about the mean of each time that the camera rests: root of the mean square. */
+function jitterAtRest(found) {
+  const rests = found.filter(({ number }) => number > 3 && number < walk.resting).reduce((all, { number, camera }, i, { [i - 1]: before }) => {
+    if (!before || number < before.number) all.push([]);
+    all.at(-1).push(placeOf(new Matrix4().fromArray(camera)));
+    return all;
+  }, []).filter((places) => places.length > 1);
+  assert.ok(rests.length > 0, 'no rest was seen');
+  let sum = 0, free = 0;
+  for (const places of rests) {
+    const middle = places.reduce((all, at) => all.add(at), new Vector3()).divideScalar(places.length);
+    for (const at of places) sum += at.distanceToSquared(middle);
+    free += places.length - 1;
+  }
+  return Math.sqrt(sum / free);
+}
+/** Where a point is in the picture, in pixels. */
+function spotOf(point, matrix, fieldOfView) {
+  const eye = new PerspectiveCamera(fieldOfView, width / height);
+  matrix.decompose(eye.position, eye.quaternion, eye.scale);
+  eye.updateMatrixWorld();
+  const { x, y } = point.clone().project(eye);
+  return [((x + 1) / 2) * width, ((1 - y) / 2) * height];
+}
+
+const cases = {
+  async 'the camera is where it is, in every picture of a film'() {
+    await before(films.walk, { width: 240, height: 320 }, async ({ enter, seen, shot }) => {
+      await enter();
+      await seen(15); // the focal length, which nobody told the page, is found meanwhile
+      const log = await seen(60), read = log.filter(({ number }) => number >= 0), found = read.filter(({ camera }) => camera);
+      await shot('walk');
+      assert.ok(read.length > 0.9 * log.length, `${read.length} of ${log.length} pictures have a number that can be read`);
+      assert.ok(found.length >= 0.95 * read.length, `found in ${found.length} of ${read.length}`);
+      const turned = [], distances = [], pixels = [], top = new Vector3(0, 0.1, 0);
+      for (const { number, camera, fieldOfView } of found) {
+        const truth = cameraOf(walk.path(number / rate)), is = new Matrix4().fromArray(camera);
+        turned.push(degreesApart(truth, is));
+        distances.push(Math.abs(placeOf(is).length() / placeOf(truth).length() - 1));
+        const a = spotOf(top, truth, degreesHigh), b = spotOf(top, is, fieldOfView);
+        pixels.push(Math.hypot(a[0] - b[0], a[1] - b[1]));
+      }
+      const jitter = jitterAtRest(found);
+      console.log(`   found in ${found.length} of ${read.length}: ${median(turned).toFixed(3)} degrees, ${(100 * median(distances)).toFixed(3)} % of the distance, ${median(pixels).toFixed(2)} (at most ${Math.max(...pixels).toFixed(2)}) pixels off; ` +
+        `jitter at rest ${(1000 * jitter).toFixed(3)} mm; answered after ${median(log.map(({ took }) => took)).toFixed(1)} ms`);
+      assert.ok(median(turned) < 0.2 && median(distances) < 0.002, 'median');
+      assert.ok(Math.max(...pixels) < 4 && jitter < 0.0002);
+    });
+  },
+  async 'a handle is dragged; the card is covered, the page hidden, the camera refused: nothing is lost'() {
+    await before(films.covered, { width: 390, height: 844 }, async ({ page, context, enter, seen, shot, touch, says }) => {
+      const ar = (what, ...asked) => page.evaluate(([name, all]) => globalThis.limberStudio.ar[name](...all), [what, asked]);
+      /** The card has just come out, and stays for a while. */
+      const uncovered = () => page.waitForFunction(([from]) => {
+        const { number, camera } = globalThis.cardLog.at(-1) ?? {};
+        return camera && number >= 0 && number < from;
+      }, [covered.from / 2]);
+      await enter();
+      await uncovered();
+      await touch('touchStart', [{ x: 195, y: 420 }]);
+      await touch('touchEnd', []);
+      await page.locator('#ar-pose').waitFor();
+      await uncovered();
+      // A stool is larger than what the camera sees of the table.
+      await touch('touchStart', [{ x: 60, y: 420 }, { x: 330, y: 420 }]);
+      for (const way of [0.4, 0.8, 1]) await touch('touchMove', [{ x: 60 + 120 * way, y: 420 }, { x: 330 - 105 * way, y: 420 }]);
+      await touch('touchEnd', []);
+      await settled(page);
+      const { scale } = (await sessionState(page)).members[0].placement;
+      await shot('placed');
+      assert.ok(scale < 0.4, `scale ${scale}`);
+      await page.locator('#ar-pose').tap();
+      await page.locator('#ar .choice [data-value=move]').tap();
+      assert.deepEqual(await barriers(page), []);
+
+      // The lowest on the screen: no other lies before it.
+      const name = await page.evaluate((joints) => {
+        const low = (joint) => globalThis.limberStudio.place(joint).y;
+        return joints.reduce((lowest, joint) => (low(joint) > low(lowest) ? joint : lowest));
+      }, (await sessionState(page)).joints.map((joint) => joint.name));
+      const spot = () => page.evaluate((joint) => globalThis.limberStudio.place(joint), name);
+      await uncovered();
+      const stood = await jointPosition(page, name), at = await spot(), [last] = (await seen(1));
+      await touch('touchStart', [at]);
+      for (const way of [0.5, 1]) await touch('touchMove', [{ x: at.x - 40 * way, y: at.y - 30 * way }]);
+      await shot('posing');
+      await page.waitForFunction(() => !document.querySelector('#ar-line').textContent.includes('Drag a handle')); // the card is covered
+      await shot('lost');
+      await settled(page);
+      const { dragged, undo } = await sessionState(page), left = await jointPosition(page, name);
+      assert.equal(dragged, null);
+      assert.equal(undo, 'end_drag');
+      assert.ok(left.some((value, i) => Math.abs(value - stood[i]) > 0.005), `it went along from ${stood} to ${left}`);
+      await touch('touchEnd', []);
+      const base = await ar('base', 0), from = await spot();
+      await says('Drag a handle');
+      const [found] = (await seen(2)).filter(({ camera }) => camera), [was, is] = [last, found].map(({ camera }) => new Matrix4().fromArray(camera));
+      assert.ok(placeOf(was).distanceTo(placeOf(is)) < 0.001 && degreesApart(was, is) < 0.2, 'found again without a jump');
+      assert.ok(placeOf(new Matrix4().setPosition(...base)).distanceTo(new Vector3(...await ar('base', 0))) < 1e-6);
+      const to = await spot();
+      assert.ok(Math.hypot(to.x - from.x, to.y - from.y) < 2, 'on the screen as well');
+
+      await page.evaluate(() => {
+        Object.defineProperty(document, 'visibilityState', { value: 'hidden', configurable: true });
+        document.dispatchEvent(new Event('visibilitychange', { bubbles: true }));
+      });
+      await says('Waiting');
+      await page.evaluate(() => {
+        delete document.visibilityState;
+        document.dispatchEvent(new Event('visibilitychange', { bubbles: true }));
+      });
+      await says('Drag a handle');
+
+      await page.locator('#ar-close').tap();
+      await page.waitForFunction(() => document.querySelector('#app').checkVisibility());
+      assert.ok(await page.evaluate(() => globalThis.cardTracks.length > 0 && globalThis.cardTracks.every(({ readyState }) => readyState === 'ended')), 'the camera is free');
+
+      await context.clearPermissions();
+      await page.locator('#view-in-ar').tap();
+      const card = page.locator('#ways [data-way="card"]'), told = page.locator('#ways [role=alert], #notice:not([hidden])');
+      await card.or(told).first().waitFor();
+      if (await card.isVisible() && !await told.isVisible()) await card.tap();
+      await told.waitFor();
+      assert.match(await page.locator('#ways, #notice:not([hidden])').first().textContent(), /camera/);
+      await shot('refused');
+      assert.ok(await page.locator('#app').isVisible());
+      assert.ok(await jointPosition(page, name).then((now) => now.every((value, i) => Math.abs(value - left[i]) < 1e-6)), 'the pose is kept');
+    });
+  },
+};
+const failed = await runCases(cases, () => shown, output);
+await browser.close();
+server.close();
+for (const film of Object.values(films)) rmSync(film);
+process.exit(failed ? 1 : 0);
