@@ -20,7 +20,7 @@ export const walk = { count: 40, resting: 12, path: (seconds) => {
 export const covered = { count: 140, from: 114, to: 140, pose: poseFrom(0.4, 45, -10) };
 
 export function writeWalk(file, code) {
-  write(file, walk.count, (i) => drawn(opened(walk.path, i / rate), focal, code, { seed: i, light: walk.light(i / rate) }));
+  write(file, walk.count, (i) => drawn(opened(walk.path, i / rate), focal, code, { seed: i, light: walk.light(i / rate), perSide: 2 }));
 }
 
 export function writeCovered(file, code) {

@@ -14,6 +14,7 @@ export class Tracker {
   corners: Corners | null = null;
   private detector = new Detector();
   private last: Pose | null = null;
+  private lens: Lens | null = null;
 
   /** Metres along the black square's side. */
   constructor(private side: number) {}
@@ -21,6 +22,9 @@ export class Tracker {
   /** Of the card before the camera; null where it is not seen. */
   follow(picture: Grey, lens: Lens): Pose | null {
     const pose = this.measure(picture, lens);
+    // What was seen through a lens that is now taken for a longer one was farther off.
+    if (this.last && this.lens) this.last.position.z *= lens.focal / this.lens.focal;
+    this.lens = lens;
     this.last = pose && this.last ? this.steadied(this.last, pose, lens) : pose;
     return this.last;
   }
