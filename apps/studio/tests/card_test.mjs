@@ -70,6 +70,15 @@ const failed = await runCases({
     const after = tracker.follow(picture(pose, { seed: 5 }), lens);
     assert.ok(before && after && before.position.distanceTo(after.position) < 0.0005 && degreesOff(before, after) < 0.2);
   },
+  'found where it jumps to, as well as where it was'() {
+    for (const [from, to] of [[[-0.35, 0.2], [0.35, -0.2]], [[0, 0], [0.4, 0]]]) {
+      const tracker = new Tracker(side), poses = [from, to].map((aside) => poseFrom(0.4, 50, 10, 0, aside));
+      for (const [i, pose] of [poses[0], poses[0], poses[1], poses[1], poses[0]].entries()) {
+        const found = tracker.follow(picture(pose, { seed: 400 + i }), lens), truth = known(pose);
+        assert.ok(found && degreesOff(found, truth) < 0.2 && Math.abs(found.position.length() / truth.position.length() - 1) < 0.002, `picture ${i}`);
+      }
+    }
+  },
   'a focal length 15 % wrong moves a point 100 mm above the card by at most 4 pixels'() {
     const pose = poseFrom(0.4, 40, 20), truth = known(pose), top = new Vector3(0, 0.1, 0), seen = picture(pose);
     for (const wrong of [0.85, 1.15]) {

@@ -1,5 +1,5 @@
 // What is done to the camera's picture before the card is looked for in it.
-import type { Grey } from './card';
+import type { Corner, Grey } from './card';
 
 /** From red, green, blue, opacity (ITU-R BT.601). */
 export function greyOf(width: number, height: number, rgba: Uint8ClampedArray): Grey {
@@ -29,4 +29,14 @@ export function halved({ width, height, data }: Grey): Grey {
     }
   }
   return { width: w, height: h, data: out };
+}
+
+/** The pixels within a box, and the place of the first; none where the box lies beside the picture. */
+export function cutOut({ width, height, data }: Grey, box: { left: number; top: number; right: number; bottom: number }): { part: Grey | null; at: Corner } {
+  const left = Math.max(0, Math.floor(box.left)), top = Math.max(0, Math.floor(box.top));
+  const w = Math.min(width, Math.ceil(box.right)) - left, h = Math.min(height, Math.ceil(box.bottom)) - top, at = { x: left, y: top };
+  if (w <= 0 || h <= 0) return { part: null, at };
+  const out = new Uint8ClampedArray(w * h);
+  for (let y = 0; y < h; ++y) out.set(data.subarray((top + y) * width + left, (top + y) * width + left + w), y * w);
+  return { part: { width: w, height: h, data: out }, at };
 }
