@@ -1,7 +1,7 @@
-// Given up: that a planted foot follows the source's anchor, by a capped chase at up to 0.02 body heights a second. By the
-// judge (docs/retargeting.md) limb-ik's feet slid by 0.023 heights/s instead of 0.015 (0.018 instead of 0.011 on the half
-// held out), while jerk, its peaks and accelerations at contacts stayed within 0.02 of what they were: what a standing
-// foot is held back by is not what makes the body jerk.
+// Given up: that a planted foot follows the source's anchor, by a capped chase at up to 0.02 body heights a second. By
+// the judge (docs/retargeting.md) feet of limb-ik slid by 0.023 heights/s instead of 0.015 (0.018 instead of 0.011 on
+// the half held out), while the means of jerk, its peaks and accelerations at contacts stayed as they were: that a
+// standing foot is held still is not what makes the body jerk.
 #include "limber/limbs/foot_lock.h"
 
 #include <cmath>
