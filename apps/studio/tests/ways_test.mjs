@@ -324,6 +324,11 @@ const cases = {
       await page.waitForFunction(() => document.querySelector('#ar-line')?.textContent.includes('The card is not seen'));
       await clean();
       await shot('card_not_seen');
+      // Nothing can stand on it yet.
+      assert.equal(await page.locator('#ar-place').isVisible(), false);
+      await page.touchscreen.tap(195, 420);
+      await page.evaluate(() => new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn))));
+      assert.equal(await page.locator('#ar-pose').isVisible(), false);
       await page.locator('#ar-close').tap();
       await page.waitForFunction(() => document.querySelector('#app').checkVisibility());
       assert.equal(await page.evaluate(() => document.querySelector('video')), null);

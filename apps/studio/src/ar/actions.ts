@@ -29,6 +29,9 @@ export interface ArActions {
 export const isPlacing = ({ ar }: PageState) => ar?.step !== 'placed';
 export const isPosing = (now: PageState) => !isPlacing(now) && now.display === 'handles';
 
+/** What stands on a card has no place while the card is not seen; elsewhere there is a floor. */
+export const hasFloor = ({ ar }: PageState) => ar !== null && !(ar.sight === 'card' && ar.trouble === 'lost');
+
 export const dragModes = (): { value: DragMode; text: string; icon: IconName }[] => [
   { value: 'move', text: say('Move'), icon: 'move' }, { value: 'turn', text: say('Turn'), icon: 'turn' },
 ];
@@ -41,7 +44,7 @@ export function arActions({ studio, page }: Desk, view: () => ArView | null): Ar
       { id: 'ar-undo', text: '', label: say('Undo'), icon: () => 'undo', act: () => void studio.undo(), shown: always, enabled: ({ session }) => Boolean(session?.undo) },
       { id: 'ar-redo', text: '', label: say('Redo'), icon: () => 'redo', act: () => void studio.redo(), shown: always, enabled: ({ session }) => Boolean(session?.redo) },
     ],
-    place: { id: 'ar-place', text: say('Place it here'), label: say('Place it here'), act: () => void view()?.settle(), shown: (now) => Boolean(now.ar) && isPlacing(now) },
+    place: { id: 'ar-place', text: say('Place it here'), label: say('Place it here'), act: () => void view()?.settle(), shown: (now) => isPlacing(now) && hasFloor(now) },
     tools: [
       {
         id: 'ar-pose', text: say('Pose'), label: say('Show handles to pose the model'), icon: () => 'motions', shown: placed, pressed: ({ display }) => display === 'handles',

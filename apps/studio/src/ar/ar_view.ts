@@ -3,6 +3,7 @@ import { Matrix4, MathUtils, Ray, Vector3 } from 'three';
 import type { ArState } from '../app/state';
 import { framesFrom, nextFrame } from '../app/frames';
 import type { Ray as EngineRay } from '../engine/messages';
+import { hasFloor } from './actions';
 import { ArLight } from './ar_light';
 import { takePicture } from './ar_picture';
 import type { Desk } from './desk';
@@ -126,10 +127,10 @@ export class ArView implements Looker {
     this.close(false);
   }
 
-  /** The chosen model stands where it is shown now; where no surface is met, before the device. */
+  /** The chosen model stands where it is shown now; where no surface is met, before the device, if there is a floor. */
   async settle() {
     const { page } = this.desk;
-    if (!this.isPlacing || !page.now.session) return;
+    if (!this.isPlacing || !page.now.session || !hasFloor(page.now)) return;
     const later = this.stands, at = this.at ?? this.spotAhead();
     if (!later) {
       this.standScene(at);
