@@ -1,6 +1,6 @@
 // Models in formats that the engine does not read in a browser, brought into GLB. Loaded when the first one is opened.
 import {
-  BufferAttribute, BufferGeometry, DirectionalLight, LoadingManager, Mesh, MeshStandardMaterial, Object3D, Scene, type TypedArray,
+  BufferAttribute, BufferGeometry, DirectionalLight, LoadingManager, Mesh, type MeshPhongMaterial, MeshStandardMaterial, Object3D, Scene, SRGBColorSpace, type TypedArray,
 } from 'three';
 import { GLTFExporter } from 'three/examples/jsm/exporters/GLTFExporter.js';
 import { FBXLoader } from 'three/examples/jsm/loaders/FBXLoader.js';
@@ -54,6 +54,21 @@ async function parseObj(text: string, beside: Beside): Promise<Object3D> {
   return model;
 }
 
+const fbxGrey = 0.8; // sRGB; DiffuseColor where a file says nothing (the FBX SDK's default)
+
+/** In FBX a picture takes the place of the diffuse colour, which the reader multiplies it with; and exporters that know no
+ *  colour write black for all of it, which would show nothing of the shape. */
+function withFbxColors(model: Object3D): Object3D {
+  const materials = new Set<MeshPhongMaterial>();
+  model.traverse((part) => {
+    if (part instanceof Mesh) [part.material as MeshPhongMaterial | MeshPhongMaterial[]].flat().forEach((material) => materials.add(material));
+  });
+  for (const { map, color } of materials) if (map) color.setScalar(1);
+  const black = [...materials].every(({ map, color, emissive }) => !map && color.getHex() === 0 && emissive.getHex() === 0);
+  if (black) materials.forEach(({ color }) => color.setRGB(fbxGrey, fbxGrey, fbxGrey, SRGBColorSpace));
+  return model;
+}
+
 /** Readers that know no shared vertices give three for each triangle: those that are equal in all become one. */
 function weld(geometry: BufferGeometry): BufferGeometry {
   const attributes = Object.entries(geometry.attributes) as [string, BufferAttribute][];
@@ -86,7 +101,7 @@ async function parse(bytes: Uint8Array, name: string, beside: Beside): Promise<O
   const buffer = bytes.slice().buffer;
   switch (name.split('.').pop()?.toLowerCase()) {
     case 'obj': return parseObj(new TextDecoder().decode(bytes), beside);
-    case 'fbx': return new FBXLoader(beside.manager).parse(buffer, '');
+    case 'fbx': return withFbxColors(new FBXLoader(beside.manager).parse(buffer, ''));
     case 'stl': {
       const geometry = new STLLoader().parse(buffer);
       geometry.deleteAttribute('normal'); // of each triangle: what it is shaded by without any

@@ -62,6 +62,7 @@ export class Journal {
   private database = openDatabase();
   private document: KeptDocument | null = null;
   private waiting = 0;
+  private unwritten = 0;
   private frame: { request: Request; timer: number } | null = null;
   private lastFrame = -Infinity;
   private free: () => void = () => {};
@@ -73,6 +74,8 @@ export class Journal {
 
   /** Everything is kept. */
   get settled() { return this.waiting === 0 && this.frame === null; }
+  /** All that was done is kept, but perhaps for the last frame of a drag or the moment of a clip that plays. */
+  get written() { return this.unwritten === 0; }
   /** Whether what is done now would be lost with the page. */
   get atRisk() { return this.broken; }
   get current() { return this.document?.id ?? null; }
@@ -99,7 +102,7 @@ export class Journal {
     this.document = { ...document, id: own ? document.id : newId(), count: requests.length };
     if (!own) await this.take(this.document.id);
     requests.forEach((request, number) => {
-      if (!own || number >= kept) this.put(request, number);
+      if (!own || number >= kept) void this.put(request, number);
     });
     return own;
   }
@@ -109,7 +112,7 @@ export class Journal {
     this.flush();
     this.document = { id: newId(), name, changed: 0, picture: '', count: requests.length };
     void this.take(this.document.id);
-    requests.forEach((request, number) => this.put(request, number));
+    requests.forEach((request, number) => void this.put(request, number));
     return true;
   }
 
@@ -124,7 +127,8 @@ export class Journal {
     if (!this.document) return;
     if (place === 'replaces') return this.delay(request);
     this.flush();
-    this.put(request, this.document.count++);
+    ++this.unwritten;
+    void this.put(request, this.document.count++).finally(() => { --this.unwritten; });
   }
 
   /** What the list of documents shows. */
@@ -164,7 +168,7 @@ export class Journal {
     const { request } = this.frame;
     this.frame = null;
     this.lastFrame = performance.now();
-    this.put(request, this.document.count - 1);
+    void this.put(request, this.document.count - 1);
   }
 
   /** Written at once where there was none lately: on a busy page a timer comes late. */
@@ -175,9 +179,9 @@ export class Journal {
     if (rest <= 0) this.flush();
   }
 
-  private put(request: Request, number: number) {
+  private put(request: Request, number: number): Promise<void> {
     const document = this.document!;
-    void this.queue(async () => {
+    return this.queue(async () => {
       await this.write(document, (requests) => requests.put(request, [document.id, number]));
       if (number === 0) await this.forgetOldest();
     });

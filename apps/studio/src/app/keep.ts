@@ -35,6 +35,6 @@ export function bindJournal(journal: Journal, studio: Studio, page: PageStore, v
   });
   addEventListener('pagehide', () => journal.flush());
   addEventListener('beforeunload', (event) => {
-    if (journal.atRisk && page.now.session?.undo) event.preventDefault();
+    if (!journal.written || studio.changing() || (journal.atRisk && page.now.session?.undo)) event.preventDefault();
   });
 }

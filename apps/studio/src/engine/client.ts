@@ -27,8 +27,13 @@ function withDragEnded(requests: Request[]): Request[] {
   return begins > ends ? [...requests, { kind: 'run', command: { do: 'end_drag' } }] : [...requests];
 }
 
-const unreachable = (why: string) =>
-  refusal(say('the engine cannot be loaded'), why, say('look at the connection, and load the page again'));
+/** Why there is no engine, and what to do about it. */
+function withoutEngine(broken: Extract<FromWorker, { kind: 'broken' }>): EngineError {
+  if (!broken.missing) return refusal(say('this browser cannot run the studio'), broken.why, say('bring the browser up to date, or use another one'));
+  const { status } = broken, title = say('a part of the studio did not arrive'), kept = say('what you made before is kept');
+  if (status === null) return refusal(title, say('look at your connection, and load the page again'), kept);
+  return refusal(title, say('load the page again; if that does not help, tell whoever runs this site that a file is missing (answer {status})', { status: String(status) }), kept);
+}
 
 interface Waiting {
   request: Request;
@@ -37,6 +42,9 @@ interface Waiting {
 }
 
 const changesDocument = ({ kind }: Request) => kind === 'open' || kind === 'add' || kind === 'motion' || kind === 'run';
+/** What the next of its kind replaces. */
+const frameOf = (request: Request) =>
+  (request.kind === 'run' && ['update_drag', 'turn_drag', 'move_drag', 'set_time', 'set_clock', 'choose_member'].includes(request.command.do) ? request.command.do : null);
 /** What is tried for a picture holds nobody up. */
 const quiet = ({ kind }: Request) => kind.startsWith('preview');
 const opens = (request: Request) => request.kind === 'open' || (request.kind === 'run' && opensModel(request.command));
@@ -64,6 +72,9 @@ export class EngineClient {
   }
 
   run(command: Command) { return this.ask({ kind: 'run', command }); }
+
+  /** Something is being done to the document that is not a frame. */
+  get changing() { return [...this.waiting.values()].some(({ request }) => changesDocument(request) && frameOf(request) === null); }
 
   /** All that made the document. */
   get requests(): Request[] { return [...this.history]; }
@@ -111,10 +122,11 @@ export class EngineClient {
     const worker = takeWorker((started) => {
       started.onmessage = ({ data }: MessageEvent<FromWorker>) => {
         if (data.kind === 'ready') ready();
-        else if (data.kind === 'broken') broken(unreachable(data.message));
+        else if (data.kind === 'broken') broken(withoutEngine(data));
         else this.receive(data);
       };
-      started.onerror = (event) => broken(unreachable(event.message));
+      // Without a message the worker's own code did not come.
+      started.onerror = ({ message }) => broken(withoutEngine({ kind: 'broken', ...message ? { missing: false, why: message } : { missing: true, status: null } }));
     });
     return [worker, begun];
   }
@@ -133,9 +145,7 @@ export class EngineClient {
   private remember(request: Request) {
     if (!changesDocument(request)) return;
     if (opens(request)) this.history = [];
-    const frame = (r: Request | undefined) =>
-      (r?.kind === 'run' && ['update_drag', 'turn_drag', 'move_drag', 'set_time', 'set_clock', 'choose_member'].includes(r.command.do) ? r.command.do : null);
-    const replaces = frame(request) !== null && frame(request) === frame(this.history.at(-1));
+    const last = this.history.at(-1), replaces = last !== undefined && frameOf(request) !== null && frameOf(request) === frameOf(last);
     if (replaces) this.history.pop();
     this.history.push(request);
     this.onChange(request, opens(request) ? 'begins' : replaces ? 'replaces' : 'follows');

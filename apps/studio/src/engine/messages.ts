@@ -206,7 +206,9 @@ export type Answer<K extends Kind> = Answers[K];
 export type ToWorker = { id: number; request: Request };
 export type FromWorker =
   | { kind: 'ready' }
-  | { kind: 'broken'; message: string }
+  /** The engine did not come: what the host answered, null where nobody did; or it came and does not run here. */
+  | { kind: 'broken'; missing: true; status: number | null }
+  | { kind: 'broken'; missing: false; why: string }
   | { kind: 'progress'; stage: string; fraction: number }
   | { kind: 'done'; id: number; answer: Answers[Kind] }
   | { kind: 'failed'; id: number; error: LimberError };

@@ -55,10 +55,15 @@ function unpacking(): TransformStream<Uint8Array, Uint8Array> {
   });
 }
 
+/** The engine did not come: what the host answered, null where nobody did. */
+class Missing extends Error {
+  constructor(readonly status: number | null) { super(); }
+}
+
 /** Unpacked and compiled while it comes. */
 async function engine(): Promise<WebAssembly.Module> {
-  const response = await fetch(engineUrl);
-  if (!response.ok || !response.body) throw new Error(`answer ${response.status}`);
+  const response = await fetch(engineUrl).catch(() => null);
+  if (!response?.ok || !response.body) throw new Missing(response?.status ?? null);
   const unpacked = response.body.pipeThrough<Uint8Array>(unpacking() as ReadableWritablePair<Uint8Array, Uint8Array<ArrayBuffer>>);
   return WebAssembly.compileStreaming(new Response(unpacked as ReadableStream<Uint8Array<ArrayBuffer>>, { headers: { 'content-type': 'application/wasm' } }));
 }
@@ -96,4 +101,4 @@ async function start() {
   say({ kind: 'ready' });
 }
 
-start().catch((error: unknown) => say({ kind: 'broken', message: String(error) }));
+start().catch((error: unknown) => say({ kind: 'broken', ...error instanceof Missing ? { missing: true, status: error.status } : { missing: false, why: String(error) } }));

@@ -27,7 +27,7 @@ export function retargetPanel(studio: Studio, page: PageStore): HTMLElement {
   const from = element('p', { class: 'from' });
   let drawn = '', choices = '';
   // Parts of this clip that were taken out of the match, to be put in again.
-  let half: SessionState['match'] = [], halfOf = '';
+  let half: SessionState['match'] = [], halfOf = '', matched = '';
   const card = element('section', { class: 'card retarget', 'aria-label': say('Motion'), id: 'retarget', hidden: true },
     element('h2', {}, say('Motion')), from,
     element('div', { class: 'field' }, element('label', { for: 'method' }, say('Method')), method, compareButton(studio, page, 'retargeting')),
@@ -53,16 +53,20 @@ export function retargetPanel(studio: Studio, page: PageStore): HTMLElement {
     const unsure = session.match.filter((match) => match.by !== 'file' && match.confidence < doubtful).length;
     summary.textContent = say(unsure > 0 ? '{parts} matched, {unsure} to look at' : '{parts} matched', { parts: counted(session.match.length, 'part'), unsure });
     const taken = new Set(session.match.map(({ part }) => part));
+    const match = JSON.stringify(session.match);
     if (halfOf !== clip.name) half = [];
     halfOf = clip.name;
-    half = half.filter(({ part }) => !taken.has(part));
-    const now = JSON.stringify([session.match, half, source.motion, session.joints.length]);
+    // The store also changes while the engine still retargets: until it has, the part is in the match.
+    if (match !== matched) half = half.filter(({ part }) => !taken.has(part));
+    matched = match;
+    const apart = half.filter(({ part }) => !taken.has(part));
+    const now = JSON.stringify([session.match, apart, source.motion, session.joints.length]);
     const chosen = () => [...rows.querySelectorAll('select')].map(({ value }) => value).join('\n');
     if (now === drawn && chosen() === choices) return;
     drawn = now;
     const motion = session.motions.find(({ name }) => name === source.motion);
     const sources = motion?.joints.map(({ name }) => name) ?? [], targets = session.joints.map(({ name }) => name);
-    const listed = [...session.match, ...half];
+    const listed = [...session.match, ...apart];
     rows.replaceChildren(...listed.map((match, index) => {
       const change = (side: 'source' | 'target') => (joints: string[]) => {
         const changed = { ...match, [side]: joints }, whole = changed.source.length > 0 && changed.target.length > 0;

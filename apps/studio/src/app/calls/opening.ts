@@ -147,6 +147,7 @@ export function openingCalls(core: Core, journal: Journal, { forgetMoment }: Cli
       await open(async () => restore(await journal.requestsOf(document.id), document.name, document));
     },
 
+    changing: () => engine.changing,
     stepCount: () => engine.requests.length,
 
     /** Everything, to go on with here or elsewhere. */

@@ -1,0 +1,196 @@
+// The second minute: what a person trusts a day's work to. What does not come or is not written yet is said, two tabs do
+// not fight, what is made stands on the floor and is drawn lit.
+//
+//   node apps/studio/tests/second_minute_test.mjs DIST NATIVE_PROGRAM OUTPUT_FOLDER
+//
+// Ends with "N passed, N failed".
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { existsSync, mkdirSync, readFileSync } from 'node:fs';
+import { join, resolve } from 'node:path';
+import { chooseMotion, download, dragMouse, jointPlace, jointPosition, lastJointOf, launch, motionPlayed, openStudio, runCases, serve, sessionState, settled } from './page.mjs';
+import { walkBvh } from './walk_bvh.mjs';
+
+const [dist, program, output] = process.argv.slice(2).map((path) => resolve(path));
+mkdirSync(output, { recursive: true });
+const server = await serve(dist), browser = await launch();
+const size = { width: 900, height: 600 };
+const desk = await openStudio(browser, server.address, { ...size, search: '?sample=biped' });
+let { page } = desk;
+
+const distance = (a, b) => Math.hypot(...a.map((value, i) => value - b[i]));
+const noticeText = (of = page) => of.locator('#notice').textContent();
+const kept = (of = page) => of.waitForFunction(() => globalThis.limberStudio.idle() && globalThis.limberStudio.kept());
+async function openSample(name) {
+  await page.locator('#samples').selectOption(name);
+  await page.waitForFunction((wanted) => globalThis.limberStudio.state()?.name === wanted, name);
+  await settled(page);
+}
+async function dragHand(of, by = -60) {
+  const hand = await lastJointOf(of, 'left hand'), from = await jointPlace(of, hand);
+  await dragMouse(of, from, { x: from.x - 10, y: from.y + by });
+  return hand;
+}
+const walkFile = { name: 'walk.bvh', mimeType: 'text/plain', buffer: Buffer.from(walkBvh()) };
+
+const statue = join('..', 'shared', 'data', 'meshes', 'statue_hermes.fbx'), black = existsSync(statue) ? statue : null;
+if (black === null) console.log('skipped: an FBX that knows no colour (the shared models are not there)');
+
+/** A sample with its origin that far above its soles, in metres. */
+function sampleFromMiddle(name, height) {
+  const path = join(output, `${name}_middle.glb`);
+  execFileSync(program, ['sample', name, '--quiet', '-o', path]);
+  const glb = readFileSync(path), length = glb.readUInt32LE(12), gltf = JSON.parse(glb.toString('utf8', 20, 20 + length));
+  const roots = gltf.scenes[gltf.scene ?? 0].nodes;
+  gltf.nodes.push({ children: roots, translation: [0, -height, 0] });
+  gltf.scenes[gltf.scene ?? 0].nodes = [gltf.nodes.length - 1];
+  const text = Buffer.from(JSON.stringify(gltf)), json = Buffer.concat([text, Buffer.alloc((4 - (text.length % 4)) % 4, ' ')]);
+  const head = Buffer.from(glb.subarray(0, 20));
+  head.writeUInt32LE(json.length, 12);
+  const whole = Buffer.concat([head, json, glb.subarray(20 + length)]);
+  whole.writeUInt32LE(whole.length, 8);
+  return whole;
+}
+
+/** A first visit where the engine does not come as it should. */
+async function visitWithout(answer, locale = 'en-US') {
+  const context = await browser.newContext({ viewport: size, locale, serviceWorkers: 'block' }), visit = await context.newPage();
+  await context.route(/limber_engine.*\.(wasm|zst)/, answer);
+  await visit.goto(server.address);
+  await visit.locator('#notice').waitFor();
+  const text = await noticeText(visit);
+  await context.close();
+  return text;
+}
+
+const cases = {
+  async 'an engine that does not come is told in the user\'s words, with what to do'() {
+    assert.match(await visitWithout((route) => route.abort('internetdisconnected')), /did not arrive.*connection.*load the page again/);
+    assert.match(await visitWithout((route) => route.fulfill({ status: 404 })), /did not arrive.*tell whoever runs this site.*404/);
+    assert.match(await visitWithout((route) => route.fulfill({ body: 'no engine' })), /cannot run the studio.*use another one/);
+    const german = await visitWithout((route) => route.abort('internetdisconnected'), 'de-DE');
+    assert.match(german, /nicht angekommen.*Verbindung/);
+    assert.doesNotMatch(german, /fetch/);
+  },
+  async 'who leaves before all is written is asked first'() {
+    await kept();
+    // Another one who writes holds the store up.
+    await page.evaluate(() => new Promise((held) => {
+      indexedDB.open('limber-studio').onsuccess = ({ target: { result } }) => {
+        const store = result.transaction(['documents', 'requests'], 'readwrite').objectStore('requests');
+        const again = () => { if (!globalThis.letGo) store.count().onsuccess = again; };
+        again();
+        held();
+      };
+    }));
+    const hand = await dragHand(page), at = await jointPosition(page, hand);
+    const [asked] = await Promise.all([page.waitForEvent('dialog'), page.close({ runBeforeUnload: true })]);
+    assert.equal(asked.type(), 'beforeunload');
+    await asked.dismiss();
+    await page.evaluate(() => { globalThis.letGo = true; });
+    await kept();
+    let dialogs = 0;
+    page.on('dialog', (dialog) => { ++dialogs; void dialog.accept(); });
+    await page.goto(server.address);
+    await settled(page);
+    assert.equal(dialogs, 0, 'asked though all was written');
+    assert.ok(distance(await jointPosition(page, hand), at) < 1e-5);
+  },
+  async 'in two tabs nothing is lost, and the second says that it goes on with a copy'() {
+    const second = await desk.context.newPage();
+    await second.goto(server.address);
+    await settled(second);
+    assert.match(await noticeText(second), /open in another tab as well.*copy/);
+    const hand = await dragHand(page, -30), other = await dragHand(second, 50);
+    await Promise.all([kept(page), kept(second)]);
+    const [here, there] = [await jointPosition(page, hand), await jointPosition(second, other)];
+    assert.ok(distance(here, there) > 0.05);
+    await second.close();
+    await page.goto(server.address);
+    await settled(page);
+    const found = [await jointPosition(page, hand)], { undo } = await sessionState(page);
+    assert.ok(undo, 'the last one is open again, with what was done');
+    await page.locator('#open-recent').click(); // it lists the others
+    await page.locator('#recent li', { hasText: 'biped' }).first().locator('.pick').click();
+    await page.waitForFunction((before) => globalThis.limberStudio.idle() && JSON.stringify(globalThis.limberStudio.position(before[0])) !== before[1], [hand, JSON.stringify(found[0])]);
+    await settled(page);
+    found.push(await jointPosition(page, hand));
+    for (const place of [here, there]) assert.ok(found.some((one) => distance(one, place) < 1e-5), `${place} is not in ${JSON.stringify(found)}`);
+  },
+  async 'a person whose origin is at mid-body walks on the floor that is drawn'() {
+    await page.locator('#file').setInputFiles({ name: 'middle.glb', mimeType: 'model/gltf-binary', buffer: sampleFromMiddle('biped', 0.9) });
+    await page.waitForFunction(() => globalThis.limberStudio.state()?.name === 'middle.glb');
+    await settled(page);
+    const { box } = await sessionState(page);
+    assert.ok(Math.abs(box.min[1] + 0.9) < 0.02, `the soles are at ${box.min[1]}`);
+    await motionPlayed(page, () => chooseMotion(page, 'walk'));
+    await page.locator('#play').click();
+    await settled(page);
+    const feet = [await lastJointOf(page, 'left foot'), await lastJointOf(page, 'right foot')], lowest = [Infinity, Infinity];
+    const { clips, clip } = await sessionState(page);
+    for (let i = 0; i < 12; ++i) {
+      await page.locator('#scrub').fill((clips[clip].duration * i / 12).toFixed(3));
+      await settled(page);
+      for (const [side, foot] of feet.entries()) lowest[side] = Math.min(lowest[side], (await jointPosition(page, foot))[1]);
+    }
+    await page.screenshot({ path: join(output, 'second_minute_floor.png') });
+    await page.locator('#clips').selectOption('');
+    await settled(page);
+    await page.locator('main canvas').focus();
+    await page.keyboard.press('Alt+r');
+    await settled(page);
+    for (const [side, foot] of feet.entries()) {
+      const rest = (await jointPosition(page, foot))[1];
+      assert.ok(Math.abs(lowest[side] - rest) < 0.03, `${foot} is at ${lowest[side]}, standing at ${rest}`);
+    }
+  },
+  async 'what the engine refuses in the match is not shown, and a row that was taken out can be put in again'() {
+    await openSample('biped');
+    await motionPlayed(page, () => page.locator('#motion-file').setInputFiles(walkFile));
+    await page.locator('#play').click();
+    await settled(page);
+    await page.locator('#retarget summary').click();
+    const hand = page.getByLabel('left hand in the model'), foot = page.getByLabel('right foot in the model');
+    const before = await hand.inputValue(), { match } = await sessionState(page);
+    await hand.selectOption(await foot.inputValue());
+    await settled(page);
+    if (JSON.stringify((await sessionState(page)).match) === JSON.stringify(match)) {
+      assert.ok(await page.locator('#notice').isVisible(), 'refused without a word');
+      assert.equal(await hand.inputValue(), before);
+      await page.locator('#close-notice').click();
+    } else await page.locator('#undo').click();
+    await settled(page);
+    // However long the engine takes, and whatever the page shows meanwhile.
+    await hand.selectOption('');
+    await page.locator('#loop').click();
+    await page.locator('#loop').click();
+    await settled(page);
+    assert.ok(!(await sessionState(page)).match.some(({ part }) => part === 'leftHand'));
+    await hand.selectOption(before);
+    await settled(page);
+    assert.ok((await sessionState(page)).match.some(({ part }) => part === 'leftHand'));
+  },
+  ...(black === null ? {} : { async 'an FBX that knows no colour is drawn lit'() {
+    await page.locator('#file').setInputFiles(black);
+    await page.waitForFunction(() => globalThis.limberStudio.state()?.name === 'statue_hermes.fbx');
+    await settled(page);
+    const png = await download(page, async () => {
+      await page.locator('#export-as').selectOption('pictures');
+      await page.locator('#picture').click();
+    });
+    const light = await page.evaluate(async (bytes) => {
+      const image = await createImageBitmap(new Blob([new Uint8Array(bytes)])), context = new OffscreenCanvas(image.width, image.height).getContext('2d');
+      context.drawImage(image, 0, 0);
+      const { data } = context.getImageData(0, 0, image.width, image.height), seen = [];
+      for (let i = 0; i < data.length; i += 4) if (data[i + 3] > 250) seen.push(data[i + 1]);
+      return seen.sort((a, b) => a - b)[seen.length >> 1];
+    }, [...png]);
+    assert.ok(light > 60, `half of it is darker than ${light} of 255`);
+  } }),
+  async 'nothing was thrown'() { assert.deepEqual(desk.errors, []); },
+};
+
+const failed = await runCases(cases, () => page, output);
+await browser.close();
+server.close();
+process.exit(failed > 0 ? 1 : 0);
