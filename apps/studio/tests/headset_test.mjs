@@ -298,6 +298,25 @@ const cases = {
     await settled(page);
     assert.equal((await sessionState(page)).undo, 'place_member');
   },
+  async 'the panel lists the models of the scene, and takes a picture'() {
+    await act(...ready);
+    await pressCell('open-members');
+    await shot('members');
+    await pressCell('member-0');
+    assert.equal((await sessionState(page)).member, 0);
+    await act(...ready);
+    await pressCell('open-members');
+    await pressCell('member-1');
+    assert.equal((await sessionState(page)).member, 1);
+    await act(...ready);
+    const png = await download(page, () => pressOnly('ar-picture'));
+    assert.equal(png.subarray(1, 4).toString(), 'PNG');
+    writeFileSync(join(output, 'headset_picture.png'), png);
+    await page.waitForFunction(() => limberHeadset.says().includes('The picture is saved'));
+    await act(...ready);
+    await pressCell('close-notice');
+    await act(...ready);
+  },
   async 'the end puts the desk back; the native program makes the same of the record'() {
     await act(...ready);
     await pressCell('ar-close');

@@ -6,6 +6,7 @@ import { status } from '../panels/status';
 import { button, choice, element, offer, setIcon } from '../ui/dom';
 import { say } from '../words/say';
 import { arActions, dragModes, isPlacing, isPosing, type ArAction } from './actions';
+import { plainBackground } from './ar_picture';
 import type { ArView } from './ar_view';
 import type { Desk } from './desk';
 import { helpLine } from './help_line';
@@ -78,7 +79,7 @@ export function arPanel(desk: Desk): ArPanel {
 
 /** For a picture without what the camera sees. */
 function backgroundDialog(take: (color: string) => void): HTMLDialogElement {
-  const color = element('input', { type: 'color', id: 'ar-background', value: '#dfe6ee' });
+  const color = element('input', { type: 'color', id: 'ar-background', value: plainBackground });
   const dialog: HTMLDialogElement = element('dialog', { class: 'ask', id: 'ar-backdrop', 'aria-label': say('Picture') },
     element('h2', {}, say('Picture')),
     element('p', {}, say('This browser does not give the page what the camera sees. Choose what is behind the models instead.')),

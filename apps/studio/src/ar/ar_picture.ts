@@ -3,6 +3,8 @@ import { Mesh, OrthographicCamera, PlaneGeometry, ShaderMaterial, Texture, Vecto
 import { element } from '../ui/dom';
 import type { ArView } from './ar_view';
 
+export const plainBackground = '#dfe6ee';
+
 /** Within a frame. Null where the browser keeps what the camera sees to itself, and no other background is given. */
 export function takePicture(view: ArView, background: string | null): HTMLCanvasElement | null {
   const { renderer, desk: { viewport } } = view, seen = background === null ? view.sight.seen() : null;

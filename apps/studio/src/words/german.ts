@@ -131,6 +131,7 @@ export const german = {
   'AR picture': 'AR-Bild',
   'This browser does not give the page what the camera sees. Choose what is behind the models instead.': 'Dieser Browser gibt der Seite nicht, was die Kamera sieht. Wähle stattdessen, was hinter den Modellen ist.',
   'Take the picture': 'Bild machen',
+  'The picture is saved': 'Das Bild ist gespeichert',
   'The model that is posed': 'Das Modell, das eine Pose bekommt',
   'Tap to place the model here': 'Tippe, um das Modell hierhin zu stellen',
   'Point the device at the floor or a table, and move it slowly': 'Richte das Gerät auf den Boden oder einen Tisch und bewege es langsam',

@@ -1,5 +1,5 @@
 // A headset's hands and controllers: what each points at, what they take hold of, and the panel that they press.
-import { Matrix4, Ray, Vector3 } from 'three';
+import { Group, Matrix4, Ray, Vector3 } from 'three';
 import type { ArView } from '../ar_view';
 import { BodyDrag } from '../body_drag';
 import type { Gesture } from '../gesture';
@@ -27,6 +27,8 @@ export function beginHeadset(ar: ArView, sight: WebXrSight) {
 }
 
 class Headset {
+  /** What the user sees and pictures do not show. */
+  private readonly aids = new Group();
   private readonly panel: SpacePanel;
   private readonly halo = new Halo();
   private hands = new Map<XRInputSource, Hand>();
@@ -41,7 +43,9 @@ class Headset {
   constructor(private ar: ArView, private sight: WebXrSight, private session: XRSession) {
     const { studio } = ar.desk;
     this.panel = new SpacePanel(ar);
-    ar.room.add(this.halo.root);
+    this.aids.add(this.halo.root, this.panel.root);
+    ar.room.add(this.aids);
+    ar.desk.viewport.tools.push(this.aids);
     // The desk has its own again at the end.
     studio.ask = (title, detail, yes) => this.panel.contents.ask(title, detail, yes);
     ar.beforeFrame.add(this.frame);
@@ -81,7 +85,7 @@ class Headset {
     if (known || this.over || source.targetRayMode === 'screen') return known ?? null;
     const hand = new Hand(source);
     this.hands.set(source, hand);
-    this.ar.room.add(hand.root);
+    this.aids.add(hand.root);
     void this.session.requestHitTestSource?.({ space: source.targetRaySpace })?.then((hits) => {
       if (this.hands.get(source) === hand) hand.hits = hits;
       else hits.cancel();
@@ -218,6 +222,9 @@ class Headset {
     for (const source of [...this.hands.keys()]) this.lose(source);
     this.panel.dispose();
     this.halo.dispose();
+    this.aids.removeFromParent();
+    const { tools } = this.ar.desk.viewport;
+    tools.splice(tools.indexOf(this.aids), 1);
   }
 
   // What is real there.

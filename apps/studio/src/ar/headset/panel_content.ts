@@ -3,9 +3,10 @@ import { samples } from '../../app/samples';
 import type { PageState } from '../../app/state';
 import { mostHandlesOf } from '../../panels/pose_panel';
 import { counted } from '../../ui/counted';
-import type { IconName } from '../../ui/dom';
+import { offer, type IconName } from '../../ui/dom';
 import { say } from '../../words/say';
 import { arActions, dragModes, isPlacing, isPosing, type ArAction, type ArActions } from '../actions';
+import { plainBackground } from '../ar_picture';
 import type { ArView } from '../ar_view';
 import { helpLine } from '../help_line';
 
@@ -29,13 +30,15 @@ export interface PanelContent {
 
 interface Question { title: string; detail: string; yes: string; answer(agreed: boolean): void }
 
+const listRows = 3; // above the one that leaves the list
 const handleStep = 0.2; // of the handles that there are, for a press
 
 export class PanelContents {
   onChange = () => {};
   private readonly actions: ArActions;
   private question: Question | null = null;
-  private choosing = false;
+  /** What a list is shown of, instead of the tools. */
+  private choosing: 'sample' | 'member' | null = null;
 
   constructor(private ar: ArView) { this.actions = arActions(ar.desk, () => ar); }
 
@@ -66,12 +69,19 @@ export class PanelContents {
       return { title: notice.title, detail: notice.detail, error: notice.kind === 'error', rows: [[this.cell('close-notice', say('Close'), () => page.set({ notice: null }))]] };
     }
     const line = work ? `${work.stage}\u2026` : helpLine(now, true);
-    return { title: line, detail: '', error: now.ar?.trouble != null, rows: this.choosing && !isPlacing(now) ? this.models() : this.tools(now) };
+    return { title: line, detail: '', error: now.ar?.trouble != null, rows: this.rows(now) };
+  }
+
+  private rows(now: PageState): Cell[][] {
+    if (isPlacing(now) || !this.choosing) return this.tools(now);
+    return this.choosing === 'sample' ? this.samples() : this.members(now);
   }
 
   private tools(now: PageState): Cell[][] {
     const { leave, history, place, tools } = this.actions, { studio, page } = this.ar.desk;
-    const add = this.cell('open-add', say('Add'), () => this.choose(true), { icon: 'add' });
+    const add = this.cell('open-add', say('Add'), () => this.choose('sample'), { icon: 'add' });
+    const others = this.cell('open-members', say('Models'), () => this.choose('member'), { enabled: (now.session?.members.length ?? 0) > 1 });
+    const picture = this.cell('ar-picture', say('Picture'), () => void this.takePicture(), { icon: 'camera' });
     const step = (text: string, id: string, by: 1 | -1) => this.cell(id, text, () => {
       const count = studio.handleCount();
       void studio.setHandles(Math.max(1, Math.min(mostHandlesOf(now), count + by * Math.max(1, Math.round(handleStep * count)))));
@@ -81,20 +91,44 @@ export class PanelContents {
     return [
       [place, ...tools].filter((action) => action.shown(now)).map((action) => this.cellOf(action, now, action === place)).concat(isPlacing(now) ? [] : [add]),
       ...(isPosing(now) ? [[step('\u2212', 'fewer-handles', -1), count, step('+', 'more-handles', 1)], modes] : []),
-      [...history, leave].map((action) => this.cellOf(action, now)),
+      [...history.map((action) => this.cellOf(action, now)), ...(isPlacing(now) ? [] : [others, picture]), this.cellOf(leave, now)],
     ];
   }
 
-  private models(): Cell[][] {
+  private samples(): Cell[][] {
     const { studio } = this.ar.desk;
-    const cells = samples.map(([name, text]) => this.cell(`sample-${name}`, say(text), () => {
-      this.choose(false);
-      void studio.addSample(name, false);
-    }));
-    return [cells.slice(0, 3), cells.slice(3), [this.cell('close-add', say('Cancel'), () => this.choose(false))]];
+    return this.list(samples.map(([name, text]) => this.chosen(`sample-${name}`, say(text), () => void studio.addSample(name, false))));
   }
 
-  private choose(choosing: boolean) {
+  private members({ session }: PageState): Cell[][] {
+    const { studio } = this.ar.desk;
+    return this.list((session?.members ?? []).map(({ name }, member) =>
+      this.chosen(`member-${member}`, name, () => void studio.chooseMember(member), { pressed: member === session?.member })));
+  }
+
+  private chosen(id: string, text: string, act: () => void, more: Partial<Cell> = {}): Cell {
+    return this.cell(id, text, () => {
+      this.choose(null);
+      act();
+    }, more);
+  }
+
+  /** In as few rows as the panel has room for. */
+  private list(cells: Cell[]): Cell[][] {
+    const wide = Math.max(3, Math.ceil(cells.length / listRows));
+    const rows = Array.from({ length: Math.ceil(cells.length / wide) }, (_, row) => cells.slice(row * wide, (row + 1) * wide));
+    return [...rows, [this.cell('close-list', say('Cancel'), () => this.choose(null))]];
+  }
+
+  /** On a colour where the browser keeps what the eyes see to itself. */
+  private async takePicture() {
+    const picture = await this.ar.picture(null) ?? await this.ar.picture(plainBackground);
+    if (!picture) return;
+    offer(picture, 'image/png', `${say('AR picture')}.png`);
+    this.ar.desk.page.set({ notice: { kind: 'note', title: say('The picture is saved'), detail: '' } });
+  }
+
+  private choose(choosing: 'sample' | 'member' | null) {
     this.choosing = choosing;
     this.onChange();
   }

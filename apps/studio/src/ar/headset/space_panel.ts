@@ -38,7 +38,6 @@ export class SpacePanel {
     this.root.renderOrder = 5; // over translucent models
     this.root.visible = false;
     this.root.layers.enable(markLayer);
-    ar.room.add(this.root);
     this.stopWatching = ar.desk.page.watch(() => { this.stale = true; });
   }
 
