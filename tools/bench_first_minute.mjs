@@ -4,8 +4,9 @@
 //   node tools/bench_first_minute.mjs DIST NATIVE_PROGRAM WORK_FOLDER [RATE]
 //
 // Two ways to it: the page's own first model and one drag; and a file of about ten thousand vertices, opened and dragged.
-// The best of several runs counts. All is served from this machine, so that no network is in it; the picture is drawn by
-// the processor, which a phone leaves to its graphics chip: what one frame takes is told apart.
+// The best of several runs counts. All is served from this machine, so that no network is in it. The picture is drawn by the
+// processor, which a phone leaves to its graphics chip: each way is gone once more with every call of WebGL that draws left
+// out, and the difference is the drawing.
 import { execFileSync } from 'node:child_process';
 import { mkdirSync } from 'node:fs';
 import { join, resolve } from 'node:path';
@@ -32,13 +33,17 @@ function listen() {
     }
   };
 }
+function leaveOutDrawing() {
+  for (const name of ['clear', 'drawArrays', 'drawArraysInstanced', 'drawElements', 'drawElementsInstanced']) WebGL2RenderingContext.prototype[name] = () => {};
+}
 const settled = () => globalThis.limberStudio?.idle() && globalThis.limberStudio.state();
 
-async function firstPose(own) {
+async function firstPose(own, drawing) {
   const context = await browser.newContext({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true, deviceScaleFactor: 2 });
   const page = await context.newPage(), wire = await context.newCDPSession(page);
   await wire.send('Emulation.setCPUThrottlingRate', { rate });
   await page.addInitScript(listen);
+  if (!drawing) await page.addInitScript(leaveOutDrawing);
   const now = () => page.evaluate(() => performance.now());
   const shown = () => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
   await page.goto(server.address + (own ? '' : '?sample=stool'), { waitUntil: 'commit' });
@@ -69,10 +74,11 @@ async function firstPose(own) {
   return { vertices, ...(own ? marks : {}), 'model on the screen': drawn - begun, 'drag, until it is drawn': posed - from, 'first pose': drawn - begun + posed - from, 'two frames alone': frame };
 }
 
-for (const own of [true, false]) {
+for (const [own, drawing] of [[true, true], [true, false], [false, true], [false, false]]) {
   const all = [];
-  for (let run = 0; run < runs; ++run) all.push(await firstPose(own));
-  console.log(own ? `the page is opened, a joint is dragged (1 action), slowed ${rate} times` : 'a file is opened, a joint is dragged (2 actions), in the page that is there');
+  for (let run = 0; run < runs; ++run) all.push(await firstPose(own, drawing));
+  const way = own ? 'the page is opened, a joint is dragged (1 action)' : 'a file is opened, a joint is dragged (2 actions), in the page that is there';
+  console.log(`${way}, slowed ${rate} times${drawing ? '' : ', without the drawing'}`);
   for (const name of Object.keys(all[0])) {
     const least = Math.min(...all.map((one) => one[name]));
     console.log(`  ${name.padEnd(26)}${name === 'vertices' ? String(least).padStart(8) : `${least.toFixed(0).padStart(8)} ms`}`);
