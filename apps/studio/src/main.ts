@@ -1,10 +1,11 @@
 // Puts the page together.
 import './style.css';
+import { asked, firstSample } from './app/beginning';
 import { bindShortcuts } from './app/shortcuts';
+import { Journal } from './app/journal';
 import { createPageStore } from './app/state';
 import { createStudio } from './app/studio';
 import { droppedFiles } from './app/files';
-import { Journal } from './app/journal';
 import { PoseShelf } from './app/pose_shelf';
 import { PoseStore } from './app/pose_store';
 import { bindJournal } from './app/keep';
@@ -25,11 +26,12 @@ import { scenePanel } from './panels/scene_panel';
 import { retargetPanel } from './panels/retarget_panel';
 import { facts, status } from './panels/status';
 import { timeline } from './panels/timeline';
-import { samples, scenes } from './app/samples';
+import { scenes } from './app/samples';
 import { setTextSize, textSize } from './app/text_size';
 import { toolbar } from './panels/toolbar';
 import { hint, views } from './panels/views';
 import { createStage } from './scene/stage';
+import { warmUp } from './scene/warm_up';
 import { ask } from './ui/ask';
 import { element } from './ui/dom';
 import { language, say } from './words/say';
@@ -86,17 +88,13 @@ addEventListener('drop', (event) => {
 
 exposeStage(studio, page, viewport, handles, gizmo, places, () => journal.settled);
 
-// ?model=address, ?sample=name or ?scene=name; else what was worked on last, or the first sample, so that there is something to take
-// hold of.
-const parameters = new URLSearchParams(location.search);
-const address = parameters.get('model');
-const sample = parameters.get('sample'), scene = parameters.get('scene');
 async function begin() {
-  if (address) return studio.openAddress(address);
-  if (scene) await studio.openScene(scene, say(scenes.find(([name]) => name === scene)?.[1] ?? 'Scene'));
-  const [last] = sample === null && scene === null ? await journal.list() : [];
-  if (last) await studio.openKept(last);
-  if (!page.now.session) await studio.openSample(sample ?? samples[0][0]);
+  const { address, scene, sample } = asked;
+  if (address !== null) return studio.openAddress(address);
+  if (scene !== null) await studio.openScene(scene, say(scenes.find(([name]) => name === scene)?.[1] ?? 'Scene'));
+  const [kept] = sample === null && scene === null ? await journal.list() : [];
+  if (kept) await studio.openKept(kept);
+  if (!page.now.session) await studio.openSample(firstSample);
 }
 
 /** All that is done is written down. */
@@ -105,7 +103,13 @@ async function kept() {
   while (!studio.idle || !journal.settled) await new Promise((resolve) => { setTimeout(resolve, 50); });
 }
 
-/** Not before the first model stands: until then all that is loaded is for it. */
+/** Once what is asked for is drawn; Safari does not tell. */
+const idle = () => new Promise<void>((resolve) => {
+  if (typeof requestIdleCallback === 'function') requestIdleCallback(() => resolve(), { timeout: 3000 });
+  else setTimeout(resolve, 1000);
+});
+
+/** Not before the first model is seen: until then all that is loaded is for it. */
 async function beInstalled() {
   if (!import.meta.env.PROD) return; // the service worker is made with the page
   const { keepForOffline, openLaunchedFiles } = await import('./app/installed');
@@ -114,5 +118,6 @@ async function beInstalled() {
   await keepForOffline((take) => toasts.append(newVersion(take)), kept);
 }
 const begun = begin();
+warmUp(viewport);
 void studio.loadMethods(begun);
-void begun.then(beInstalled);
+void begun.then(idle).then(beInstalled);

@@ -1,5 +1,6 @@
 // The page's first few lines.
+import { likelyFirst } from './app/beginning';
 import { startEarly } from './engine/start';
 
-startEarly();
+startEarly(likelyFirst());
 void import('./main');

@@ -2,6 +2,7 @@
 // A document is the requests that made it, in their order: carried out again they give the same document, with its
 // motions and all that can be undone. Nothing ever leaves the machine.
 import type { Place, Request } from '../engine/messages';
+import { noteDocuments } from './remembered';
 
 const frameDelay = 100; // milliseconds between two frames of a drag or of a clip that are written
 const patience = 700; // milliseconds that a document may still be open elsewhere
@@ -84,7 +85,9 @@ export class Journal {
   async list(): Promise<KeptDocument[]> {
     try {
       const all = (await this.database).transaction('documents').objectStore('documents').getAll() as IDBRequest<KeptDocument[]>;
-      return (await done(all)).sort((a, b) => b.changed - a.changed);
+      const documents = await done(all);
+      noteDocuments(documents.length > 0);
+      return documents.sort((a, b) => b.changed - a.changed);
     } catch {
       return [];
     }

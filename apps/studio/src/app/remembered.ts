@@ -23,3 +23,8 @@ export function remember(name: string, value: string) {
     // it is as on a first visit then
   }
 }
+
+const documents = 'documents';
+/** Known without a wait, and sometimes wrong: the journal has the truth. */
+export const mayHaveDocuments = () => rememberedText(documents) !== '';
+export const noteDocuments = (any: boolean) => remember(documents, any ? 'some' : '');

@@ -6,6 +6,8 @@ export const samples = [
   ['winged', 'Dragon'], ['quadruped', 'Fox'], ['biped', 'Person'], ['theropod', 'Dinosaur'], ['robot', 'Robot'], ['stool', 'Stool'], ['footstool', 'Footstool'], ['flying', 'Flying dragon'],
 ] as const satisfies [string, Words][];
 
+export const openSample = (name: string): Command => ({ do: 'open_sample', name, limbs_follow: true });
+
 /** What can be made of them: lists of commands in samples/scenes, by the names of their files. */
 export const scenes = [
   ['dancing-stool', 'Dancing stool'], ['standing-dinosaur', 'Standing dinosaur'], ['eating-dinosaur', 'Eating dinosaur'], ['sitting-dragon', 'Sitting dragon'],

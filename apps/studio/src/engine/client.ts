@@ -1,6 +1,6 @@
 // The page's side of the worker: promises, progress, and a way to stop what takes too long.
 import { opensModel, type Answer, type Command, type FromWorker, type Kind, type LimberError, type Place, type Request, type ToWorker } from './messages';
-import { takeWorker } from './start';
+import { earlyId, takeWorker } from './start';
 import { say } from '../words/say';
 
 export class EngineError extends Error {
@@ -41,6 +41,10 @@ interface Waiting {
   reject(error: EngineError): void;
 }
 
+type Answered = Extract<FromWorker, { kind: 'done' } | { kind: 'failed' }>;
+
+const sameCommand = (a: Request, b: Request) => a.kind === 'run' && b.kind === 'run' && JSON.stringify(a.command) === JSON.stringify(b.command);
+
 const changesDocument = ({ kind }: Request) => kind === 'open' || kind === 'add' || kind === 'motion' || kind === 'run';
 /** What the next of its kind replaces. */
 const frameOf = (request: Request) =>
@@ -59,6 +63,8 @@ export class EngineClient {
   private ready: Promise<void>;
   private waiting = new Map<number, Waiting>();
   private nextId = 0;
+  /** What the engine was asked before the page was there, until somebody asks for anything; its answer once that came. */
+  private early: { request: Request; answer: Answered | null } | null = null;
   /** What was done since a model was opened, so that a new worker can be brought to the same state. */
   private history: Request[] = [];
 
@@ -109,17 +115,20 @@ export class EngineClient {
 
   private send<K extends Kind>(request: Extract<Request, { kind: K }>): Promise<Answer<K>> {
     return new Promise((resolve, reject) => {
-      const id = this.nextId++;
+      const early = this.early && sameCommand(this.early.request, request) ? this.early : null, id = early ? earlyId : this.nextId++;
+      this.early = null;
       this.waiting.set(id, { request, resolve: resolve as (answer: unknown) => void, reject });
       if (!quiet(request)) this.onBusy(true);
-      this.worker.postMessage({ id, request } satisfies ToWorker);
+      if (!early) this.worker.postMessage({ id, request } satisfies ToWorker);
+      else if (early.answer) this.receive(early.answer);
     });
   }
 
   private startWorker(): [Worker, Promise<void>] {
     let ready: () => void, broken: (why: EngineError) => void;
     const begun = new Promise<void>((resolve, reject) => { [ready, broken] = [resolve, reject]; });
-    const worker = takeWorker((started) => {
+    const worker = takeWorker(({ worker: started, asked }) => {
+      this.early = asked && { request: asked, answer: null };
       started.onmessage = ({ data }: MessageEvent<FromWorker>) => {
         if (data.kind === 'ready') ready();
         else if (data.kind === 'broken') broken(withoutEngine(data));
@@ -133,6 +142,7 @@ export class EngineClient {
 
   private receive(data: Exclude<FromWorker, { kind: 'ready' } | { kind: 'broken' }>) {
     if (data.kind === 'progress') return this.onProgress(data.stage, data.fraction);
+    if (data.id === earlyId && this.early) this.early.answer = data;
     const waiting = this.waiting.get(data.id);
     if (!waiting) return;
     this.waiting.delete(data.id);

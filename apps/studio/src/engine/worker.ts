@@ -84,7 +84,8 @@ async function start() {
     codecs, onProgress: (stage, fraction) => say({ kind: 'progress', stage, fraction }),
   });
   const documents = new Documents(limber);
-  const carryOut = async ({ id, request }: ToWorker) => {
+  say({ kind: 'ready' });
+  return async ({ id, request }: ToWorker) => {
     try {
       for (const file of filesIn(request)) await bringCodecs(codecs, file);
       say({ kind: 'done', id, answer: answer(documents, request) });
@@ -95,10 +96,12 @@ async function start() {
       say({ kind: 'failed', id, error: failure });
     }
   };
-  // One after the other, also where a decoder is on its way.
-  let before = Promise.resolve();
-  onmessage = ({ data }: MessageEvent<ToWorker>) => { before = before.then(() => carryOut(data)); };
-  say({ kind: 'ready' });
 }
 
-start().catch((error: unknown) => say({ kind: 'broken', ...error instanceof Missing ? { missing: true, status: error.status } : { missing: false, why: String(error) } }));
+const started = start();
+// One after the other, also where the engine or a decoder is on its way.
+let before: Promise<unknown> = started.catch((error: unknown) =>
+  say({ kind: 'broken', ...error instanceof Missing ? { missing: true, status: error.status } : { missing: false, why: String(error) } }));
+onmessage = ({ data }: MessageEvent<ToWorker>) => {
+  before = before.then(async () => (await started)(data)).catch(() => { /* there is no engine, which was told */ });
+};

@@ -48,6 +48,7 @@ export class Viewport {
   private shadowImage: CanvasTexture | null = null;
   private box = new Box3(new Vector3(-1, 0, -1), new Vector3(1, 2, 1));
   private asked = false;
+  private framed = false; // before there is anything to look at nothing is drawn
   private step = 1; // metres between the ground's lines
   /** The eye of augmented reality, while it has the view. */
   private guest: Guest | null = null;
@@ -88,12 +89,20 @@ export class Viewport {
 
   /** Draws with the next frame. */
   draw() {
-    if (this.asked || this.guest) return;
+    if (this.asked || this.guest || !this.framed) return;
     this.asked = true;
     requestAnimationFrame(() => {
       this.asked = false;
       if (!this.guest) this.drawNow();
     });
+  }
+
+  /** Has the shaders of these things, the ground and a shadow made for this light. */
+  warmUp(things: Object3D[]) {
+    this.makeGround();
+    this.shadows.push(this.makeShadow());
+    const all = new Group().add(...things, this.ground.children[0]!.clone(), this.shadows[0]!.clone());
+    this.renderer.compileAsync(all, this.camera, this.scene).catch(() => { /* then they are made with the first frame */ });
   }
 
   ray(x: number, y: number): { ray: Ray; view: Vector } {
@@ -122,6 +131,7 @@ export class Viewport {
 
   /** Takes in a box of the world. */
   frame(box: Box3) {
+    this.framed = true;
     this.box.copy(box);
     this.makeGround();
     this.look('start');
@@ -135,6 +145,7 @@ export class Viewport {
     });
     boxes.forEach((box, i) => {
       const shadow = this.shadows[i] ??= this.makeShadow();
+      this.world.add(shadow);
       const size = box.getSize(new Vector3());
       box.getCenter(shadow.position).setY(this.guest ? box.min.y : this.box.min.y);
       shadow.scale.set(1.5 * size.x + 0.3 * size.y, 1.5 * size.z + 0.3 * size.y, 1);
@@ -366,7 +377,6 @@ export class Viewport {
     const shadow = new Mesh(new PlaneGeometry(1, 1), material);
     shadow.rotation.x = -Math.PI / 2;
     shadow.renderOrder = -2;
-    this.world.add(shadow);
     return shadow;
   }
 }
@@ -374,7 +384,7 @@ export class Viewport {
 function drawShadow(): CanvasTexture {
   const canvas = document.createElement('canvas');
   canvas.width = canvas.height = 128;
-  const context = canvas.getContext('2d');
+  const context = canvas.getContext('2d', { willReadFrequently: true }); // one by the graphics chip is fetched back, and long in the making
   if (context) {
     const fade = context.createRadialGradient(64, 64, 0, 64, 64, 64);
     fade.addColorStop(0, 'rgba(40,45,60,0.42)');

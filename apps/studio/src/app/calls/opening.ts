@@ -7,7 +7,7 @@ import { say } from '../../words/say';
 import { sorted, withBuffers, type Brought } from '../files';
 import type { Journal, KeptDocument } from '../journal';
 import { fromLimberFile, toLimberFile } from '../limber_file';
-import { sceneRecord } from '../samples';
+import { openSample, sceneRecord } from '../samples';
 import type { Notice } from '../state';
 import type { ClipCalls } from './clips';
 import type { Core } from './core';
@@ -108,7 +108,7 @@ export function openingCalls(core: Core, journal: Journal, { forgetMoment }: Cli
   }
 
   return {
-    async openSample(name: string) { await open(async () => ({ step: await engine.run({ do: 'open_sample', name, limbs_follow: true }) })); },
+    async openSample(name: string) { await open(async () => ({ step: await engine.run(openSample(name)) })); },
 
     /** One of samples/scenes, done again command by command: each can be undone. */
     async openScene(name: string, title: string) {

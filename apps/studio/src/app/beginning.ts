@@ -1,0 +1,16 @@
+// What the page begins with: ?model=address, ?scene=name or ?sample=name; else what was worked on last, or the first sample, so
+// that there is something to take hold of.
+import type { Request } from '../engine/messages';
+import { mayHaveDocuments } from './remembered';
+import { openSample, samples } from './samples';
+
+const parameters = new URLSearchParams(location.search);
+export const asked = { address: parameters.get('model') || null, scene: parameters.get('scene') || null, sample: parameters.get('sample') };
+
+export const firstSample = asked.sample ?? samples[0][0];
+
+/** What the engine will be asked first, as far as that is known at once. */
+export function likelyFirst(): Request | null {
+  const { address, scene, sample } = asked, other = address !== null || scene !== null || (sample === null && mayHaveDocuments());
+  return other ? null : { kind: 'run', command: openSample(firstSample) };
+}
