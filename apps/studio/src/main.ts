@@ -103,13 +103,7 @@ async function kept() {
   while (!studio.idle || !journal.settled) await new Promise((resolve) => { setTimeout(resolve, 50); });
 }
 
-/** Once what is asked for is drawn; Safari does not tell. */
-const idle = () => new Promise<void>((resolve) => {
-  if (typeof requestIdleCallback === 'function') requestIdleCallback(() => resolve(), { timeout: 3000 });
-  else setTimeout(resolve, 1000);
-});
-
-/** Not before the first model is seen: until then all that is loaded is for it. */
+/** Not before the first model stands: until then all that is loaded is for it. */
 async function beInstalled() {
   if (!import.meta.env.PROD) return; // the service worker is made with the page
   const { keepForOffline, openLaunchedFiles } = await import('./app/installed');
@@ -120,4 +114,4 @@ async function beInstalled() {
 const begun = begin();
 warmUp(viewport);
 void studio.loadMethods(begun);
-void begun.then(idle).then(beInstalled);
+void begun.then(beInstalled);
