@@ -39,14 +39,18 @@ check() {
   fi
 }
 
-# Adds the counts of a script whose last line is "N passed, N failed", and shows what else it said if it failed.
+# add_counts_of <log>: those of its last line, "N passed, N failed"; fails where it has none.
+add_counts_of() {
+  [[ $(tail -n 1 "$1") =~ ^([0-9]+)\ passed,\ ([0-9]+)\ failed$ ]] || return 1
+  add_counts "${BASH_REMATCH[1]}" "${BASH_REMATCH[2]}" 0
+}
+
+# Adds the counts of a script, and shows what else it said if it failed.
 counted() {
-  local log=$output/counted.log status=0 counts
+  local log=$output/counted.log status=0
   "$@" >"$log" 2>&1 || status=$?
-  counts=$(tail -n 1 "$log")
-  if [[ $counts =~ ^([0-9]+)\ passed,\ ([0-9]+)\ failed$ ]]; then
-    add_counts "${BASH_REMATCH[1]}" "${BASH_REMATCH[2]}" 0
-    echo "   $counts"
+  if add_counts_of "$log"; then
+    echo "   $(tail -n 1 "$log")"
   elif [ $status -eq 0 ]; then
     status=1
   fi
@@ -57,17 +61,13 @@ counted() {
 # counted_at_once: the commands of its input, a line each, as many at a time as there are processors; the first that fails
 # lets no other begin.
 counted_at_once() {
-  local logs=$PWD/$output/at_once status=0 log counts
+  local logs=$PWD/$output/at_once status=0 log
   rm -rf "$logs"
   mkdir -p "$logs"
   # xargs begins no other command once one ends with 255.
   nl -w 2 -n rz -s ' ' | xargs -P "$jobs" -L 1 sh -c 'log=$1/$2; shift 2; "$@" >"$log" 2>&1 </dev/null || exit 255' - "$logs" 2>/dev/null || status=1
   for log in "$logs"/*; do
-    counts=$(tail -n 1 "$log")
-    if [[ $counts =~ ^([0-9]+)\ passed,\ ([0-9]+)\ failed$ ]]; then
-      add_counts "${BASH_REMATCH[1]}" "${BASH_REMATCH[2]}" 0
-      [ "${BASH_REMATCH[2]}" != 0 ] || continue
-    fi
+    if add_counts_of "$log" && [[ $(tail -n 1 "$log") == *' 0 failed' ]]; then continue; fi
     status=1
     head -n 60 "$log"
   done
@@ -79,7 +79,7 @@ counted_at_once() {
 run_programs() {
   local preset=$1 left_out=$2 status=0 log
   shift 2
-  local logs=$PWD/$output/programs all_skipped=$total_skipped
+  local logs=$PWD/$output/programs skipped_before=$total_skipped
   rm -rf "$logs"
   mkdir -p "$logs" "$output/files_$preset"
   export LIMBER_TEST_OUTPUT=$PWD/$output/files_$preset
@@ -98,7 +98,7 @@ run_programs() {
     add_counts $((ran - ${skipped:-0} - ${failed:-0})) "${failed:-0}" "${skipped:-0}"
     [ "${failed:-0}" = 0 ] || grep -vE '^\[ RUN|^\[       OK' "$log" | tail -n 60
   done
-  if [ $total_skipped -gt "$all_skipped" ]; then
+  if [ $total_skipped -gt "$skipped_before" ]; then
     grep -hoE 'the shared models are not there.*' "$logs"/*.log | sort | uniq -c | sed 's/^ */   skipped: /' || true
   fi
   return $status
