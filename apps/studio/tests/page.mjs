@@ -22,10 +22,11 @@ export async function serve(folder, port = 0) {
   return { address: `http://127.0.0.1:${server.address().port}/`, served, close: () => { server.close(); server.closeAllConnections(); } };
 }
 
-/** Frames are drawn in software, so tests do without smooth edges: several samples for each pixel take half the time. */
+/** Frames are drawn in software, so tests do without smooth edges: several samples for each pixel take half the time. What is
+ *  not WebGL is drawn without the graphics process, which takes a third off the whole. */
 export const launch = ({ smooth = false, options = [] } = {}) => chromium.launch({
   executablePath: browserProgram,
-  args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist',
+  args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader-webgl', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist',
     ...(smooth ? [] : ['--webgl-antialiasing-mode=none']), ...options],
 });
 
