@@ -10,7 +10,7 @@ import { createRequire } from 'node:module';
 import { join, resolve } from 'node:path';
 import { Matrix4, PerspectiveCamera, Quaternion, Vector3 } from 'three';
 import { height, width } from './card_film.mjs';
-import { covered, degreesHigh, logTracker, rate, strip, walk, writeCovered, writeWalk } from './card_videos.mjs';
+import { degreesHigh, logTracker, rate, strip, walk, writeRest, writeWalk } from './card_videos.mjs';
 import { barriers, jointPosition, launch, openStudio, runCases, serve, sessionState, settled } from './page.mjs';
 
 const [dist, output] = process.argv.slice(2).map((path) => resolve(path));
@@ -21,46 +21,41 @@ const { AR } = aruco('js-aruco2/src/aruco.js');
 aruco('js-aruco2/src/dictionaries/aruco_mip_16h3.js');
 const code = AR.DICTIONARIES.ARUCO_MIP_16h3.codeList[11];
 
-const films = { walk: join(output, 'card_walk.y4m'), covered: join(output, 'card_covered.y4m') };
-writeWalk(films.walk, code);
-writeCovered(films.covered, code);
+const film = join(output, 'card_film.y4m');
+writeWalk(film, code);
 
 const server = await serve(dist);
-let browser, shown;
+const browser = await launch({ options: ['--use-fake-device-for-media-stream', `--use-file-for-fake-video-capture=${film}`] });
+// Frames are drawn in software: on a small screen there are more of them.
+const { page, context, errors } = await openStudio(browser, server.address, {
+  width: 240, height: 320, touch: true, search: '?sample=stool', permissions: ['camera'], prepare: (made) => made.addInitScript(logTracker, strip),
+});
+page.setDefaultTimeout(60_000);
+const finger = await context.newCDPSession(page);
 
-/** In front of a camera that shows the film over and over. Frames are drawn in software: on a small screen there are more of them. */
-async function before(film, size, steps) {
-  await browser?.close();
-  browser = await launch({ options: ['--use-fake-device-for-media-stream', `--use-file-for-fake-video-capture=${film}`] });
-  const { page, context, errors } = await openStudio(browser, server.address, {
-    ...size, touch: true, search: '?sample=stool', permissions: ['camera'], prepare: (made) => made.addInitScript(logTracker, strip),
-  });
-  page.setDefaultTimeout(60_000);
-  shown = page;
-  const finger = await context.newCDPSession(page);
-  await steps({
-    page, context,
-    async enter() {
-      await page.locator('#view-in-ar').tap();
-      const card = page.locator('#ways [data-way="card"]');
-      await card.or(page.locator('#ar-place')).first().waitFor();
-      if (await card.isVisible()) await card.tap();
-      await page.locator('#ar-place').waitFor();
-    },
-    async touch(type, points) {
-      await finger.send('Input.dispatchTouchEvent', { type, touchPoints: points.map((point, id) => ({ ...point, id })) });
-      await page.evaluate(() => new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn))));
-    },
-    says: (words) => page.waitForFunction((wanted) => document.querySelector('#ar-line').textContent.includes(wanted), words),
-    shot: (name) => page.screenshot({ path: join(output, `card_${name}.png`) }),
-    /** What the tracker was given and said, `count` times from now on. */
-    async seen(count) {
-      const from = await page.evaluate(() => globalThis.cardLog.length);
-      await page.waitForFunction((until) => globalThis.cardLog.length >= until, from + count);
-      return page.evaluate((at) => globalThis.cardLog.slice(at), from);
-    },
-  });
-  assert.deepEqual(errors, []);
+async function enter() {
+  await page.locator('#view-in-ar').tap();
+  const card = page.locator('#ways [data-way="card"]');
+  await card.or(page.locator('#ar-place')).first().waitFor();
+  if (await card.isVisible()) await card.tap();
+  await page.locator('#ar-place').waitFor();
+}
+async function leave() {
+  await page.locator('#ar-close').tap();
+  await page.waitForFunction(() => document.querySelector('#app').checkVisibility());
+  assert.ok(await page.evaluate(() => globalThis.cardTracks.length > 0 && globalThis.cardTracks.every(({ readyState }) => readyState === 'ended')), 'the camera is free');
+}
+async function touch(type, points) {
+  await finger.send('Input.dispatchTouchEvent', { type, touchPoints: points.map((point, id) => ({ ...point, id })) });
+  await page.evaluate(() => new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn))));
+}
+const says = (words) => page.waitForFunction((wanted) => document.querySelector('#ar-line').textContent.includes(wanted), words);
+const shot = (name) => page.screenshot({ path: join(output, `card_${name}.png`) });
+/** What the tracker was given and said, `count` times from now on. */
+async function seen(count) {
+  const from = await page.evaluate(() => globalThis.cardLog.length);
+  await page.waitForFunction((until) => globalThis.cardLog.length >= until, from + count);
+  return page.evaluate((at) => globalThis.cardLog.slice(at), from);
 }
 
 /** Where the camera of a film is, in the room of the card. */
@@ -99,114 +94,107 @@ function spotOf(point, matrix, fieldOfView) {
 
 const cases = {
   async 'the camera is where it is, in every picture of a film'() {
-    await before(films.walk, { width: 240, height: 320 }, async ({ enter, seen, shot }) => {
-      await enter();
-      await seen(15); // the focal length, which nobody told the page, is found meanwhile
-      const log = await seen(60), read = log.filter(({ number }) => number >= 0), found = read.filter(({ camera }) => camera);
-      await shot('walk');
-      assert.ok(read.length > 0.9 * log.length, `${read.length} of ${log.length} pictures have a number that can be read`);
-      assert.ok(found.length >= 0.95 * read.length, `found in ${found.length} of ${read.length}`);
-      // What is seen through a lens taken for longer than it is counts as farther off: distances are compared by focal lengths.
-      const turned = [], distances = [], pixels = [], longer = [], top = new Vector3(0, 0.1, 0);
-      for (const { number, camera, fieldOfView } of found) {
-        const truth = cameraOf(walk.path(number / rate)), is = new Matrix4().fromArray(camera);
-        longer.push(Math.tan((degreesHigh * Math.PI) / 360) / Math.tan((fieldOfView * Math.PI) / 360));
-        turned.push(degreesApart(truth, is));
-        distances.push(Math.abs(placeOf(is).length() / longer.at(-1) / placeOf(truth).length() - 1));
-        const a = spotOf(top, truth, degreesHigh), b = spotOf(top, is, fieldOfView);
-        pixels.push(Math.hypot(a[0] - b[0], a[1] - b[1]));
-      }
-      const jitter = jitterAtRest(found);
-      console.log(`   found in ${found.length} of ${read.length}: ${median(turned).toFixed(3)} degrees, ${(100 * median(distances)).toFixed(3)} % of the distance, ${median(pixels).toFixed(2)} (at most ${Math.max(...pixels).toFixed(2)}) pixels off; ` +
-        `jitter at rest ${(1000 * jitter).toFixed(3)} mm; focal length ${median(longer).toFixed(3)} of the true one; answered after ${median(log.map(({ took }) => took)).toFixed(1)} ms`);
-      assert.ok(median(turned) < 0.2 && median(distances) < 0.002, 'median');
-      assert.ok(Math.max(...pixels) < 4 && jitter < 0.0002);
-      assert.ok(Math.abs(Math.log(median(longer))) < 0.05, 'the focal length is found to a step of the search');
-    });
+    await enter();
+    await seen(15); // the focal length, which nobody told the page, is found meanwhile
+    const log = await seen(60), read = log.filter(({ number }) => number >= 0), found = read.filter(({ camera }) => camera);
+    await shot('walk');
+    assert.ok(read.length > 0.9 * log.length, `${read.length} of ${log.length} pictures have a number that can be read`);
+    assert.ok(found.length >= 0.95 * read.length, `found in ${found.length} of ${read.length}`);
+    // What is seen through a lens taken for longer than it is counts as farther off: distances are compared by focal lengths.
+    const turned = [], distances = [], pixels = [], longer = [], top = new Vector3(0, 0.1, 0);
+    for (const { number, camera, fieldOfView } of found) {
+      const truth = cameraOf(walk.path(number / rate)), is = new Matrix4().fromArray(camera);
+      longer.push(Math.tan((degreesHigh * Math.PI) / 360) / Math.tan((fieldOfView * Math.PI) / 360));
+      turned.push(degreesApart(truth, is));
+      distances.push(Math.abs(placeOf(is).length() / longer.at(-1) / placeOf(truth).length() - 1));
+      const a = spotOf(top, truth, degreesHigh), b = spotOf(top, is, fieldOfView);
+      pixels.push(Math.hypot(a[0] - b[0], a[1] - b[1]));
+    }
+    const jitter = jitterAtRest(found);
+    console.log(`   found in ${found.length} of ${read.length}: ${median(turned).toFixed(3)} degrees, ${(100 * median(distances)).toFixed(3)} % of the distance, ${median(pixels).toFixed(2)} (at most ${Math.max(...pixels).toFixed(2)}) pixels off; ` +
+      `jitter at rest ${(1000 * jitter).toFixed(3)} mm; focal length ${median(longer).toFixed(3)} of the true one; answered after ${median(log.map(({ took }) => took)).toFixed(1)} ms`);
+    assert.ok(median(turned) < 0.2 && median(distances) < 0.002, 'median');
+    assert.ok(Math.max(...pixels) < 4 && jitter < 0.0002);
+    assert.ok(Math.abs(Math.log(median(longer))) < 0.05, 'the focal length is found to a step of the search');
+    await leave();
   },
   async 'a handle is dragged; the card is covered, the page hidden, the camera refused: nothing is lost'() {
-    await before(films.covered, { width: 390, height: 844 }, async ({ page, context, enter, seen, shot, touch, says }) => {
-      const ar = (what, ...asked) => page.evaluate(([name, all]) => globalThis.limberStudio.ar[name](...all), [what, asked]);
-      /** The card has just come out, and stays for a while. */
-      const uncovered = () => page.waitForFunction(([from]) => {
-        const { number, camera } = globalThis.cardLog.at(-1) ?? {};
-        return camera && number >= 0 && number < from;
-      }, [covered.from / 2]);
-      await enter();
-      await uncovered();
-      await touch('touchStart', [{ x: 195, y: 420 }]);
-      await touch('touchEnd', []);
-      await page.locator('#ar-pose').waitFor();
-      await uncovered();
-      // A stool is larger than what the camera sees of the table.
-      await touch('touchStart', [{ x: 60, y: 420 }, { x: 330, y: 420 }]);
-      for (const way of [0.4, 0.8, 1]) await touch('touchMove', [{ x: 60 + 120 * way, y: 420 }, { x: 330 - 105 * way, y: 420 }]);
-      await touch('touchEnd', []);
-      await settled(page);
-      const { scale } = (await sessionState(page)).members[0].placement;
-      await shot('placed');
-      assert.ok(scale < 0.4, `scale ${scale}`);
-      await page.locator('#ar-pose').tap();
-      await page.locator('#ar .choice [data-value=move]').tap();
-      assert.deepEqual(await barriers(page), []);
+    const ar = (what, ...asked) => page.evaluate(([name, all]) => globalThis.limberStudio.ar[name](...all), [what, asked]);
+    const { cover } = writeRest(film, code); // the camera is opened anew
+    await page.setViewportSize({ width: 390, height: 844 });
+    await enter();
+    await says('Tap to place');
+    await touch('touchStart', [{ x: 195, y: 420 }]);
+    await touch('touchEnd', []);
+    await page.locator('#ar-pose').waitFor();
+    // A stool is larger than what the camera sees of the table.
+    await touch('touchStart', [{ x: 60, y: 420 }, { x: 330, y: 420 }]);
+    for (const way of [0.4, 0.8, 1]) await touch('touchMove', [{ x: 60 + 120 * way, y: 420 }, { x: 330 - 105 * way, y: 420 }]);
+    await touch('touchEnd', []);
+    await settled(page);
+    const { scale } = (await sessionState(page)).members[0].placement;
+    await shot('placed');
+    assert.ok(scale < 0.4, `scale ${scale}`);
+    await page.locator('#ar-pose').tap();
+    await page.locator('#ar .choice [data-value=move]').tap();
+    assert.deepEqual(await barriers(page), []);
 
-      // The lowest on the screen: no other lies before it.
-      const name = await page.evaluate((joints) => {
-        const low = (joint) => globalThis.limberStudio.place(joint).y;
-        return joints.reduce((lowest, joint) => (low(joint) > low(lowest) ? joint : lowest));
-      }, (await sessionState(page)).joints.map((joint) => joint.name));
-      const spot = () => page.evaluate((joint) => globalThis.limberStudio.place(joint), name);
-      await uncovered();
-      const stood = await jointPosition(page, name), at = await spot(), [last] = (await seen(1));
-      await touch('touchStart', [at]);
-      for (const way of [0.5, 1]) await touch('touchMove', [{ x: at.x - 40 * way, y: at.y - 30 * way }]);
-      await shot('posing');
-      await page.waitForFunction(() => !document.querySelector('#ar-line').textContent.includes('Drag a handle')); // the card is covered
-      await shot('lost');
-      await settled(page);
-      const { dragged, undo } = await sessionState(page), left = await jointPosition(page, name);
-      assert.equal(dragged, null);
-      assert.equal(undo, 'end_drag');
-      assert.ok(left.some((value, i) => Math.abs(value - stood[i]) > 0.005), `it went along from ${stood} to ${left}`);
-      await touch('touchEnd', []);
-      const base = await ar('base', 0), from = await spot();
-      await says('Drag a handle');
-      const [found] = (await seen(2)).filter(({ camera }) => camera), [was, is] = [last, found].map(({ camera }) => new Matrix4().fromArray(camera));
-      assert.ok(placeOf(was).distanceTo(placeOf(is)) < 0.001 && degreesApart(was, is) < 0.2, 'found again without a jump');
-      assert.ok(placeOf(new Matrix4().setPosition(...base)).distanceTo(new Vector3(...await ar('base', 0))) < 1e-6);
-      const to = await spot();
-      assert.ok(Math.hypot(to.x - from.x, to.y - from.y) < 2, 'on the screen as well');
+    // The lowest on the screen: no other lies before it.
+    const name = await page.evaluate((joints) => {
+      const low = (joint) => globalThis.limberStudio.place(joint).y;
+      return joints.reduce((lowest, joint) => (low(joint) > low(lowest) ? joint : lowest));
+    }, (await sessionState(page)).joints.map((joint) => joint.name));
+    const spot = () => page.evaluate((joint) => globalThis.limberStudio.place(joint), name);
+    const stood = await jointPosition(page, name), at = await spot(), [last] = (await seen(1));
+    await touch('touchStart', [at]);
+    for (const way of [0.5, 1]) await touch('touchMove', [{ x: at.x - 40 * way, y: at.y - 30 * way }]);
+    await shot('posing');
+    cover(true);
+    await says('The card is not seen');
+    await shot('lost');
+    await settled(page);
+    const { dragged, undo } = await sessionState(page), left = await jointPosition(page, name);
+    assert.equal(dragged, null);
+    assert.equal(undo, 'end_drag');
+    assert.ok(left.some((value, i) => Math.abs(value - stood[i]) > 0.005), `it went along from ${stood} to ${left}`);
+    await touch('touchEnd', []);
+    const base = await ar('base', 0), from = await spot();
+    cover(false);
+    await says('Drag a handle');
+    const [found] = (await seen(2)).filter(({ camera }) => camera), [was, is] = [last, found].map(({ camera }) => new Matrix4().fromArray(camera));
+    assert.ok(placeOf(was).distanceTo(placeOf(is)) < 0.001 && degreesApart(was, is) < 0.2, 'found again without a jump');
+    assert.ok(placeOf(new Matrix4().setPosition(...base)).distanceTo(new Vector3(...await ar('base', 0))) < 1e-6);
+    const to = await spot();
+    assert.ok(Math.hypot(to.x - from.x, to.y - from.y) < 2, 'on the screen as well');
 
-      await page.evaluate(() => {
-        Object.defineProperty(document, 'visibilityState', { value: 'hidden', configurable: true });
-        document.dispatchEvent(new Event('visibilitychange', { bubbles: true }));
-      });
-      await says('Waiting');
-      await page.evaluate(() => {
-        delete document.visibilityState;
-        document.dispatchEvent(new Event('visibilitychange', { bubbles: true }));
-      });
-      await says('Drag a handle');
-
-      await page.locator('#ar-close').tap();
-      await page.waitForFunction(() => document.querySelector('#app').checkVisibility());
-      assert.ok(await page.evaluate(() => globalThis.cardTracks.length > 0 && globalThis.cardTracks.every(({ readyState }) => readyState === 'ended')), 'the camera is free');
-
-      await context.clearPermissions();
-      await page.locator('#view-in-ar').tap();
-      const card = page.locator('#ways [data-way="card"]'), told = page.locator('#ways [role=alert], #notice:not([hidden])');
-      await card.or(told).first().waitFor();
-      if (await card.isVisible() && !await told.isVisible()) await card.tap();
-      await told.waitFor();
-      assert.match(await page.locator('#ways, #notice:not([hidden])').first().textContent(), /camera/);
-      await shot('refused');
-      assert.ok(await page.locator('#app').isVisible());
-      assert.ok(await jointPosition(page, name).then((now) => now.every((value, i) => Math.abs(value - left[i]) < 1e-6)), 'the pose is kept');
+    await page.evaluate(() => {
+      Object.defineProperty(document, 'visibilityState', { value: 'hidden', configurable: true });
+      document.dispatchEvent(new Event('visibilitychange', { bubbles: true }));
     });
+    await says('Waiting');
+    await page.evaluate(() => {
+      delete document.visibilityState;
+      document.dispatchEvent(new Event('visibilitychange', { bubbles: true }));
+    });
+    await says('Drag a handle');
+
+    await leave();
+
+    await context.clearPermissions();
+    await page.locator('#view-in-ar').tap();
+    const card = page.locator('#ways [data-way="card"]'), told = page.locator('#ways [role=alert], #notice:not([hidden])');
+    await card.or(told).first().waitFor();
+    if (await card.isVisible() && !await told.isVisible()) await card.tap();
+    await told.waitFor();
+    assert.match(await page.locator('#ways, #notice:not([hidden])').first().textContent(), /camera/);
+    await shot('refused');
+    assert.ok(await page.locator('#app').isVisible());
+    assert.ok(await jointPosition(page, name).then((now) => now.every((value, i) => Math.abs(value - left[i]) < 1e-6)), 'the pose is kept');
+    assert.deepEqual(errors, []);
   },
 };
-const failed = await runCases(cases, () => shown, output);
+const failed = await runCases(cases, page, output);
 await browser.close();
 server.close();
-for (const film of Object.values(films)) rmSync(film);
+rmSync(film);
 process.exit(failed ? 1 : 0);

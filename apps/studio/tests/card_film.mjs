@@ -33,9 +33,8 @@ function paper(x, z, code) {
 }
 
 /** Brightness of the picture from a pose of the card before the camera: `turn` its rotation by rows, `move` in metres. Each
-    pixel is the mean over its area (of `perSide` squared rays) and over the poses, which are those while the shutter is open.
-    `light` scales, `noise` is in grey levels. */
-export function drawn(poses, focal, code, { light = 1, noise = 2, seed = 1, perSide = 3 } = {}) {
+    pixel is the mean over its area (of `perSide` squared rays) and over the poses, which are those while the shutter is open. */
+export function exposed(poses, focal, code, perSide = 3) {
   const sums = new Float32Array(width * height);
   // Within its part of the pixel each pose's rays lie elsewhere: edges of few rays would be off by a twentieth of a pixel.
   for (const [i, { turn: r, move: t }] of poses.entries()) {
@@ -55,10 +54,17 @@ export function drawn(poses, focal, code, { light = 1, noise = 2, seed = 1, perS
       }
     }
   }
+  return sums;
+}
+
+/** What a sensor makes of it. `light` scales, `noise` is in grey levels. */
+export function developed(sums, { light = 1, noise = 2, seed = 1 } = {}) {
   const data = new Uint8ClampedArray(width * height);
   for (let i = 0, at = Math.floor(random(seed)() * grain.length); i < data.length; ++i) data[i] = sums[i] * light + noise * grain[at++ % grain.length];
   return { width, height, data };
 }
+
+export const drawn = (poses, focal, code, { perSide, ...sensor } = {}) => developed(exposed(poses, focal, code, perSide), sensor);
 
 /** The card seen from `distance` metres, `elevation` and `turn` in degrees, `roll` about the line of sight; the card's middle
     `aside` radians off the picture's. */

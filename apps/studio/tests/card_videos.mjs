@@ -1,6 +1,6 @@
 // Films of the card for a browser's fake camera, each picture with its number in a bar code along its upper edge.
 import { closeSync, openSync, writeSync } from 'node:fs';
-import { drawn, height, opened, poseFrom, width } from './card_film.mjs';
+import { developed, exposed, height, opened, poseFrom, width } from './card_film.mjs';
 
 export const rate = 20; // pictures a second
 const cell = 32, rows = 16; // pixels of a bit; the number's bits, the lowest first, then their opposites
@@ -16,27 +16,31 @@ export const walk = { count: 40, resting: 12, path: (seconds) => {
   return poseFrom(0.4 + 0.06 * way, 45 + 12 * way, 30 * way - 10, 8 * way, [0.03 * way, 0.02 * way]);
 }, light: (seconds) => 0.67 + 0.33 * Math.cos(Math.PI * seconds) };
 
-/** At rest; a hand covers the card from picture `from` to `to`. */
-export const covered = { count: 140, from: 114, to: 140, pose: poseFrom(0.4, 45, -10) };
-
 export function writeWalk(file, code) {
-  write(file, walk.count, (i) => drawn(opened(walk.path, i / rate), focal, code, { seed: i, light: walk.light(i / rate), perSide: 2 }));
-}
-
-export function writeCovered(file, code) {
-  const pictures = [1, 2, 3, 4].map((seed) => drawn([covered.pose], focal, code, { seed }));
-  write(file, covered.count, (i) => {
-    const { data, ...size } = pictures[i % pictures.length], copy = data.slice();
-    if (i >= covered.from && i < covered.to) {
-      for (let y = 150; y < height; ++y) copy.fill(140, y * width + 250, y * width + 420);
-    }
-    return { ...size, data: copy };
+  const sums = new Map(); // it comes back the way that it went
+  write(file, 'w', walk.count, (i) => {
+    const poses = opened(walk.path, i / rate), seen = poses.map(({ turn, move }) => [...turn, ...move].map((value) => value.toFixed(9)).join()).sort().join(' ');
+    if (!sums.has(seen)) sums.set(seen, exposed(poses, focal, code, 2));
+    return developed(sums.get(seen), { seed: i, light: walk.light(i / rate) });
   });
 }
 
+/** The camera at rest, four pictures over and over. `cover` lays a hand on the card, or takes it away, while the film is
+ *  played: a browser reads each picture when it comes to it. */
+export function writeRest(file, code) {
+  const sums = exposed([poseFrom(0.4, 45, -10)], focal, code), bare = [1, 2, 3, 4].map((seed) => developed(sums, { seed }));
+  const under = bare.map(({ data, ...size }) => {
+    const copy = data.slice();
+    for (let y = 150; y < height; ++y) copy.fill(140, y * width + 250, y * width + 420);
+    return { ...size, data: copy };
+  });
+  write(file, 'w', bare.length, (i) => bare[i]);
+  return { cover: (covered) => write(file, 'r+', bare.length, (i) => (covered ? under : bare)[i]) };
+}
+
 /** YUV4MPEG2 without colours, brightness from 16 to 235. */
-function write(file, count, picture) {
-  const out = openSync(file, 'w'), y = new Uint8Array(width * height), grey = new Uint8Array((width * height) / 2).fill(128);
+function write(file, mode, count, picture) {
+  const out = openSync(file, mode), y = new Uint8Array(width * height), grey = new Uint8Array((width * height) / 2).fill(128);
   writeSync(out, `YUV4MPEG2 W${width} H${height} F${rate}:1 Ip A1:1 C420\n`);
   for (let i = 0; i < count; ++i) {
     const { data } = picture(i);
