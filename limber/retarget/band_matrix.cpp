@@ -50,10 +50,6 @@ void subtractColumns(const Columns& columns, std::size_t j, std::size_t end, dou
 
 }  // namespace
 
-void BandMatrix::setScaled(const BandMatrix& other, double factor) {
-  std::transform(other.entries_.begin(), other.entries_.end(), entries_.begin(), [&](double e) { return factor * e; });
-}
-
 std::vector<double> BandMatrix::times(const std::vector<double>& column) const {
   std::vector<double> result(n_, 0.0);
   for (std::size_t j = 0; j < n_; ++j) {
@@ -111,9 +107,9 @@ void BandMatrix::substitute(std::vector<double>& right) const {
   }
 }
 
-void BandLeastSquares::setScaled(const BandLeastSquares& other, double factor) {
-  matrix_.setScaled(other.matrix_, factor);
-  std::transform(other.right_.begin(), other.right_.end(), right_.begin(), [&](double r) { return factor * r; });
+void BandLeastSquares::clear() {
+  matrix_.clear();
+  right_.assign(right_.size(), 0.0);
 }
 
 void BandLeastSquares::add(std::span<const Term> terms, double value, double weight) {

@@ -49,15 +49,17 @@ TEST(BandLeastSquares, FindsTheLeastSum) {
   squares.add(std::array{Term{1, 1}}, 3, 1);
   squares.add(std::array{Term{7, 2}}, 30, 1);
   for (std::size_t i = 2; i < 9; ++i) squares.add(std::array{Term{i, 1}, Term{i - 1, -2}, Term{i - 2, 1}}, 0, 5);
-  BandLeastSquares other(9, 2);
-  other.setScaled(squares, 3);
+  BandLeastSquares other = squares;
   const std::vector<double> line = squares.solve();
   for (std::size_t i = 0; i < 9; ++i) EXPECT_NEAR(line[i], 1 + 2 * static_cast<double>(i), 1e-9);
-  other.add(std::array{Term{7, 1}, Term{8, 1}}, 5, 3e12);
-  other.add(std::array{Term{8, 1}}, 0, 3e12);
+  other.add(std::array{Term{7, 1}, Term{8, 1}}, 5, 1e12);
+  other.add(std::array{Term{8, 1}}, 0, 1e12);
   const std::vector<double> bent = other.solve();
   EXPECT_NEAR(bent[8], 0, 1e-9) << "weights count";
   EXPECT_NEAR(bent[7], 5, 1e-9);
+  squares.clear();
+  for (std::size_t i = 0; i < 9; ++i) squares.add(std::array{Term{i, 1}}, 7, 1);
+  EXPECT_NEAR(squares.solve()[4], 7, 1e-9) << "of nothing that was before";
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "limber/limbs/limb_goals.h"
-#include "limber/retarget/even_changes.h"
+#include "limber/retarget/least_changes.h"
 #include "limber/retarget/moved_legs.h"
 
 namespace limber {
@@ -21,7 +21,16 @@ constexpr double kLoops = 0.02;  // of a limb's bones, between the directions in
 constexpr double kShortest = 0.007, kLongest = 1, kLonger = 1.2, kMostFrames = 30;
 constexpr double kFurthest = 0.3;   // of any change, hip heights
 constexpr double kStretch = 0.998;  // of a leg's length
+constexpr double kProbe = 1e-4;     // hip heights, over which the slopes of bones are seen
 constexpr int kHalvings = 4;
+constexpr double kFirmUpTo = 1e6;  // the weight of jerk up to which ChangeWeights::firm is enough
+
+ChangeWeights evening(double jerkWeight) {
+  ChangeWeights weights;
+  weights.pelvisJerk = weights.boneJerk = jerkWeight;
+  weights.firm *= std::max(1.0, jerkWeight / kFirmUpTo);
+  return weights;
+}
 
 class Evener {
  public:
@@ -132,11 +141,8 @@ class Evener {
     const double longest = std::min(kLongest, kMostFrames * source_.frameSeconds);
     Step step = Step::kTaken;
     for (double seconds = kShortest; seconds < longest && rough > kEven && step != Step::kTooFar; seconds *= kLonger) {
-      if (step == Step::kTaken) {
-        moved_.findSlopes(layout_, now_);
-        least.start(now_);
-      }
-      step = goTowards(least.find(std::pow(seconds / source_.frameSeconds, 6)), rough);
+      if (step == Step::kTaken) moved_.findSlopes(layout_, kProbe, now_);
+      step = goTowards(least.find(now_, evening(std::pow(seconds / source_.frameSeconds, 6))), rough);
     }
     if (!(rough < before)) return;
     for (std::size_t f = 0; f < layout_.frames(); ++f) moved_.pose(layout_, now_.changes, f, target_.poses[begin_ + f]);

@@ -7,7 +7,7 @@
 
 #include "limber/limbs/limb_reach.h"
 #include "limber/limbs/trunk_tilt.h"
-#include "limber/retarget/even_changes.h"
+#include "limber/retarget/least_changes.h"
 
 namespace limber {
 
@@ -26,10 +26,13 @@ class MovedLegs {
   // their places; `feet` of each frame, of each leg. About 0.1 us for a leg in a frame.
   bool follow(const ChangeLayout& layout, const Changes& changes, std::span<const FootFrame> feet,
               std::vector<Path>& paths) const;
-  // Of the paths as they are.
-  void findSlopes(const ChangeLayout& layout, ChangedMotion& motion) const;
-  // Changes a frame of the target, which is as it was before any changes.
-  void pose(const ChangeLayout& layout, const Changes& changes, std::size_t frame, Pose& target);
+  // About the changes as they are, over `probe` hip heights to each side: a leg that is nearly straight folds by more
+  // the first hundredth than the next.
+  void findSlopes(const ChangeLayout& layout, double probe, ChangedMotion& motion) const;
+  // Changes a frame of the target, which is as it was before any changes. `twists`, where given: of each leg's foot
+  // about +Y, radians.
+  void pose(const ChangeLayout& layout, const Changes& changes, std::size_t frame, Pose& target,
+            std::span<const double> twists = {});
 
  private:
   struct LegFrame {

@@ -1,4 +1,4 @@
-#include "limber/retarget/even_changes.h"
+#include "limber/retarget/least_changes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,12 +9,8 @@ namespace limber {
 namespace {
 
 constexpr std::size_t kJoinedFrames = 3;  // third differences reach no further
-// Of what has to hold, against changes in hip heights: feet that stand, bounds, and frames that do not change.
-constexpr double kFirmWeight = 1e8;
-constexpr double kFirmUpTo = 1e6;    // the weight of jerk; it is more for more
-constexpr double kLoopWeight = 100;  // that a loop closes, against the rest of it
+constexpr double kLoopWeight = 100;  // that a loop closes, against ChangeWeights::firm
 constexpr double kTooFar = 1e-5;     // hip heights
-constexpr int kRounds = 3;
 constexpr std::array<double, 4> kThird = {-1, 3, -3, 1};
 
 double axisOf(const Vec3& v, std::size_t axis) {
@@ -41,40 +37,32 @@ LeastChanges::LeastChanges(const ChangeLayout& layout, std::vector<FootFrame> fe
       cuts_(std::move(cuts)),
       ends_(ends),
       held_(feet_.size()),
-      jerk_(layout_.frames() * layout_.perFrame(), 4 * layout_.perFrame() - 1, layout_.perFrame()),
-      unbound_(jerk_),
-      squares_(jerk_),
+      unbound_(layout_.frames() * layout_.perFrame(), 4 * layout_.perFrame() - 1, layout_.perFrame()),
+      squares_(unbound_),
       values_(layout_.frames()),
       thirds_(layout_.frames() + 3, Vec3(Vec3::Zero())) {
   countThirds();
 }
 
-// Third differences of the paths as the changes would have them: frames meet in blocks.
-void LeastChanges::start(const ChangedMotion& now) {
-  start_ = now.changes;
-  jerk_.setScaled(jerk_, 0);
-  addPelvisJerk(now);
-  for (std::size_t leg = 0; leg < layout_.legs(); ++leg) addLegJerk(leg, now);
-}
-
-Changes LeastChanges::find(double jerkWeight) {
-  const double firm = kFirmWeight * std::max(1.0, jerkWeight / kFirmUpTo);
-  unbound_.setScaled(jerk_, jerkWeight);
-  holdFeet(firm);
+Changes LeastChanges::find(const ChangedMotion& now, const ChangeWeights& weights) {
+  unbound_.clear();
+  addChanges(weights);
+  addPelvisJerk(now, weights.pelvisJerk);
+  for (std::size_t leg = 0; leg < layout_.legs(); ++leg) addBones(leg, now, weights);
   std::fill(held_.begin(), held_.end(), Held{});
-  Changes changes = start_;
+  Changes changes = now.changes;
   int round = 0;
   do {
     const Changes about = changes;
     squares_ = unbound_;
-    holdBounds(firm, about);
+    holdBounds(weights.firm, about);
     changes = squares_.solve();
     if (!ends_.loops) continue;
     squares_ = unbound_;
-    holdBounds(firm, about);
-    closeLoop(kLoopWeight * firm, changes);
+    holdBounds(weights.firm, about);
+    closeLoop(kLoopWeight * weights.firm, changes);
     changes = squares_.solve();
-  } while (meetBounds(changes) && ++round < kRounds);
+  } while (meetBounds(changes) && ++round < weights.rounds);
   return changes;
 }
 
@@ -93,48 +81,63 @@ bool LeastChanges::isPinned(std::size_t frame) const {
          (ends_.endsJoined && layout_.frames() - 1 - frame < kJoinedFrames);
 }
 
-void LeastChanges::holdFeet(double weight) {
+void LeastChanges::addChanges(const ChangeWeights& weights) {
   for (std::size_t f = 0; f < layout_.frames(); ++f) {
-    for (std::size_t i = layout_.pelvis(f); i < layout_.pelvis(f + 1); ++i) {
-      unbound_.add(std::array{Term{i, 1}}, 0, isPinned(f) ? weight : 1);
+    const std::size_t first = layout_.pelvis(f), feet = layout_.foot(f, 0), shoulders = layout_.shoulders(f);
+    for (std::size_t i = first; i < layout_.pelvis(f + 1); ++i) {
+      const bool isFoot = i >= feet && i < shoulders;
+      const double own = isFoot ? weights.feet : i == first + 1 || i >= shoulders ? weights.pelvisUp : weights.pelvisLevel;
+      const bool isKnown = f < kJoinedFrames && !ends_.start.empty();
+      unbound_.add(std::array{Term{i, 1}}, isKnown ? ends_.start[i] : 0, isPinned(f) ? weights.firm : own);
     }
-    if (f == 0 || cuts_[f]) continue;
-    for (std::size_t leg = 0; leg < layout_.legs(); ++leg) {
-      if (!foot(f, leg).stands && !foot(f - 1, leg).stands) continue;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        unbound_.add(std::array{Term{layout_.foot(f, leg) + axis, 1}, Term{layout_.foot(f - 1, leg) + axis, -1}}, 0,
-                     weight);
-      }
-    }
+    for (std::size_t leg = 0; leg < layout_.legs(); ++leg) addFoot(f, leg, weights);
   }
 }
 
-void LeastChanges::addPelvisJerk(const ChangedMotion& now) {
+void LeastChanges::addFoot(std::size_t frame, std::size_t leg, const ChangeWeights& weights) {
+  const FootFrame& now = foot(frame, leg);
+  const std::size_t at = layout_.foot(frame, leg);
+  if (now.rest > 0) unbound_.add(std::array{Term{at + 1, 1}}, now.height, weights.rest * now.rest);
+  if (frame == 0 || cuts_[frame]) return;
+  const bool stands = now.stands || foot(frame - 1, leg).stands;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double weight = stands ? weights.firm : axis == 1 ? 0 : weights.hold * now.hold;
+    if (weight == 0) continue;
+    const std::array step = {Term{at + axis, 1}, Term{layout_.foot(frame - 1, leg) + axis, -1}};
+    unbound_.add(step, axisOf(now.step, axis), weight);
+  }
+}
+
+// Third differences of the paths as the changes would have them: frames meet in blocks.
+void LeastChanges::addPelvisJerk(const ChangedMotion& now, double weight) {
   for (std::size_t f = 0; f < layout_.frames(); ++f) {
     const std::size_t at = layout_.pelvis(f);
     values_[f] = wayAt(now.changes, at) - now.paths[0][f];
     for (std::size_t back = 0; back <= std::min<std::size_t>(f, 3); ++back) {
-      for (std::size_t a = 0; a < 3; ++a) jerk_.matrix().at(at + a, layout_.pelvis(f - back) + a) += meets_[f][back];
+      for (std::size_t a = 0; a < 3; ++a) {
+        unbound_.matrix().at(at + a, layout_.pelvis(f - back) + a) += weight * meets_[f][back];
+      }
     }
   }
   pullThirds();
   for (std::size_t f = 0; f < layout_.frames(); ++f) {
-    for (std::size_t a = 0; a < 3; ++a) jerk_.right()[layout_.pelvis(f) + a] += axisOf(values_[f], a);
+    for (std::size_t a = 0; a < 3; ++a) unbound_.right()[layout_.pelvis(f) + a] += weight * axisOf(values_[f], a);
   }
 }
 
 // Bones follow the foot's way against the hip.
-void LeastChanges::addLegJerk(std::size_t leg, const ChangedMotion& now) {
+void LeastChanges::addBones(std::size_t leg, const ChangedMotion& now, const ChangeWeights& weights) {
   const BoneSlopes& slopes = now.slopes[leg];
   for (std::size_t f = 0; f < layout_.frames(); ++f) {
     for (std::size_t back = 0; back <= std::min<std::size_t>(f, 3); ++back) {
-      if (meets_[f][back] == 0) continue;
+      const double weight = weights.boneJerk * meets_[f][back] + (back == 0 ? weights.bones : 0);
+      if (weight == 0) continue;
       Eigen::Matrix4d block = slopes[0][f].transpose() * slopes[0][f - back];
       block += slopes[1][f].transpose() * slopes[1][f - back];
-      addBlock(leg, f, back, meets_[f][back] * block);
+      addBlock(leg, f, back, weight * block);
     }
   }
-  std::vector<double>& right = jerk_.right();
+  std::vector<double>& right = unbound_.right();
   for (std::size_t bone = 0; bone < 2; ++bone) {
     for (std::size_t f = 0; f < layout_.frames(); ++f) {
       Eigen::Vector4d way;
@@ -142,9 +145,11 @@ void LeastChanges::addLegJerk(std::size_t leg, const ChangedMotion& now) {
           layout_.isTilted(leg) ? now.changes[layout_.shoulders(f)] : 0;
       values_[f] = slopes[bone][f] * way - now.bone(leg, bone)[f];
     }
+    const Path own = values_;
     pullThirds();
     for (std::size_t f = 0; f < layout_.frames(); ++f) {
-      const Eigen::Vector4d pull = slopes[bone][f].transpose() * values_[f];
+      const Vec3 value = weights.boneJerk * values_[f] + weights.bones * own[f];
+      const Eigen::Vector4d pull = slopes[bone][f].transpose() * value;
       for (std::size_t a = 0; a < 3; ++a) {
         right[layout_.pelvis(f) + a] -= pull[static_cast<Eigen::Index>(a)];
         right[layout_.foot(f, leg) + a] += pull[static_cast<Eigen::Index>(a)];
@@ -171,7 +176,7 @@ void LeastChanges::addBlock(std::size_t leg, std::size_t frame, std::size_t back
   const std::size_t row = layout_.pelvis(frame), column = layout_.pelvis(frame - back);
   for (std::size_t j = 0; j < count; ++j) {
     for (std::size_t i = back == 0 ? j : 0; i < count; ++i) {
-      jerk_.matrix().at(row + unknowns[i].at, column + unknowns[j].at) +=
+      unbound_.matrix().at(row + unknowns[i].at, column + unknowns[j].at) +=
           unknowns[i].sign * unknowns[j].sign * block(unknowns[i].of, unknowns[j].of);
     }
   }

@@ -1,4 +1,5 @@
-// What evening out changes in a motion (evenOut), and the least change that makes it less rough, to first order.
+// The least change of pelvis and feet over a whole motion that does what is asked of it: one banded least squares, to
+// first order. Planting feet (refineSpacetime) and evening out (evenOut) are two sets of weights.
 #pragma once
 
 #include <array>
@@ -42,6 +43,21 @@ struct FootFrame {
   Vec3 way = Vec3::Zero();   // from the hip, likewise
   double most = 0;           // that its leg reaches, likewise
   Vec3 lift = Vec3::Zero();  // of its hip, for each hip height that the shoulders rise
+  Vec3 step = Vec3::Zero();  // level change from the frame before that `hold` asks for, likewise
+  double hold = 0;           // how firmly, 0 to 1
+  double height = 0;         // change of its height that `rest` asks for, likewise
+  double rest = 0;           // how firmly, 0 to 1
+};
+
+// What counts how much, against each other. Changes are in hip heights, bones in their lengths, each squared.
+struct ChangeWeights {
+  double pelvisLevel = 1, pelvisUp = 1;  // changes of the pelvis, and the rise of shoulders
+  double feet = 1;                       // changes of feet
+  double bones = 0;                      // changes of the directions of legs' bones
+  double pelvisJerk = 0, boneJerk = 0;   // third differences of the paths
+  double hold = 0, rest = 0;             // FootFrame's
+  double firm = 1e8;                     // feet that stand, bounds, and frames that do not change
+  int rounds = 3;                        // of looking for bounds that are met
 };
 
 // How a bone's direction follows its foot's place (the first three columns) and the shoulders' rise.
@@ -61,6 +77,7 @@ struct ChangedMotion {
 // frame changes as the last one does.
 struct MotionEnds {
   bool startsJoined = false, endsJoined = false, loops = false;
+  Changes start = {};  // of the first three where they are not 0
 };
 
 class LeastChanges {
@@ -68,11 +85,9 @@ class LeastChanges {
   // Feet of each frame, of each leg; cuts by frame.
   LeastChanges(const ChangeLayout& layout, std::vector<FootFrame> feet, std::vector<bool> cuts, MotionEnds ends);
 
-  // The motion with the changes that are, about which jerk is seen to first order.
-  void start(const ChangedMotion& now);
-  // The least sum of squared changes and of `jerkWeight` times the squared jerk: feet that stand take no steps, none
-  // goes below its lowest nor beyond its leg. n (perFrame * 4)^2 operations a few times.
-  Changes find(double jerkWeight);
+  // The least sum about the motion `now`, whose bones are seen to first order: feet that stand take no steps, none goes
+  // below its lowest nor beyond its leg. n (perFrame * 4)^2 operations a few times.
+  Changes find(const ChangedMotion& now, const ChangeWeights& weights);
 
  private:
   // Which of its bounds hold a foot in one frame: those that were met on the way to the changes.
@@ -84,9 +99,10 @@ class LeastChanges {
   const FootFrame& foot(std::size_t frame, std::size_t leg) const { return feet_[frame * layout_.legs() + leg]; }
   bool isPinned(std::size_t frame) const;
   void countThirds();
-  void holdFeet(double weight);
-  void addPelvisJerk(const ChangedMotion& now);
-  void addLegJerk(std::size_t leg, const ChangedMotion& now);
+  void addChanges(const ChangeWeights& weights);
+  void addFoot(std::size_t frame, std::size_t leg, const ChangeWeights& weights);
+  void addPelvisJerk(const ChangedMotion& now, double weight);
+  void addBones(std::size_t leg, const ChangedMotion& now, const ChangeWeights& weights);
   void addBlock(std::size_t leg, std::size_t frame, std::size_t back, const Eigen::Matrix4d& block);
   void pullThirds();
   void closeLoop(double weight, const Changes& changes);
@@ -102,9 +118,7 @@ class LeastChanges {
   std::vector<Held> held_;
   // How often each frame meets one so many frames back in the sum of the squared third differences.
   std::vector<std::array<double, 4>> meets_;
-  Changes start_;
-  // The squared jerk alone, then all but bounds, then all.
-  BandLeastSquares jerk_, unbound_, squares_;
+  BandLeastSquares unbound_, squares_;  // all but bounds, then all
   std::vector<Vec3> values_, thirds_;  // of one path
 };
 

@@ -1,4 +1,4 @@
-#include "limber/retarget/even_changes.h"
+#include "limber/retarget/least_changes.h"
 
 #include <gtest/gtest.h>
 
@@ -8,6 +8,12 @@ namespace limber {
 namespace {
 
 constexpr std::size_t kFrames = 12, kJolt = 6;
+
+ChangeWeights evening(double jerkWeight) {
+  ChangeWeights weights;
+  weights.pelvisJerk = weights.boneJerk = jerkWeight;
+  return weights;
+}
 
 // A pelvis that stays and one leg, straight down and 1 long; its foot is moved aside in one frame. Its lower bone
 // points wherever the foot is, the upper one stays.
@@ -30,8 +36,7 @@ struct Leg {
 
   Changes changes() const {
     LeastChanges least(layout, feet, std::vector<bool>(kFrames), ends);
-    least.start(jolted(layout));
-    return least.find(jerkWeight);
+    return least.find(jolted(layout), evening(jerkWeight));
   }
   Vec3 footAt(std::size_t frame) const { return wayAt(changes(), layout.foot(frame, 0)); }
   Vec3 pelvisAt(std::size_t frame) const { return wayAt(changes(), layout.pelvis(frame)); }
@@ -56,7 +61,7 @@ double sumOf(const ChangeLayout& layout, const ChangedMotion& now, const Changes
   return sum;
 }
 
-TEST(EvenChanges, AreTheLeast) {
+TEST(LeastChanges, AreTheLeast) {
   const ChangeLayout layout(kFrames, {false, true});
   std::vector<bool> cuts(kFrames);
   cuts[5] = true;
@@ -76,8 +81,7 @@ TEST(EvenChanges, AreTheLeast) {
   }
   const std::vector<FootFrame> free(2 * kFrames, FootFrame{false, -100, Vec3(0, -1, 0), 100});
   LeastChanges squares(layout, free, cuts, {});
-  squares.start(now);
-  const Changes least = squares.find(10);
+  const Changes least = squares.find(now, evening(10));
   const double sum = sumOf(layout, now, least, cuts, 10);
   EXPECT_LT(sum, 0.5 * sumOf(layout, now, now.changes, cuts, 10));
   for (std::size_t i = 0; i < least.size(); ++i) {
@@ -90,7 +94,7 @@ TEST(EvenChanges, AreTheLeast) {
   }
 }
 
-TEST(EvenChanges, TheJoltIsTakenBackAndTheRestFollowsTheLess) {
+TEST(LeastChanges, TheJoltIsTakenBackAndTheRestFollowsTheLess) {
   const Leg leg;
   EXPECT_LT(leg.footAt(kJolt).x(), -0.1);
   EXPECT_NEAR(leg.footAt(kJolt).y(), 0, 1e-9);
@@ -99,13 +103,13 @@ TEST(EvenChanges, TheJoltIsTakenBackAndTheRestFollowsTheLess) {
   EXPECT_GT(lazy.footAt(kJolt).x(), -0.01) << "jerk hardly counts";
 }
 
-TEST(EvenChanges, FeetThatStandTakeNoSteps) {
+TEST(LeastChanges, FeetThatStandTakeNoSteps) {
   Leg leg;
   for (FootFrame& foot : leg.feet) foot.stands = true;
   for (std::size_t f = 1; f < kFrames; ++f) EXPECT_NEAR((leg.footAt(f) - leg.footAt(0)).norm(), 0, 1e-4);
 }
 
-TEST(EvenChanges, FeetStayAboveTheirLowestAndWithinReach) {
+TEST(LeastChanges, FeetStayAboveTheirLowestAndWithinReach) {
   Leg leg;
   leg.feet[kJolt].lowest = 0.3;  // up, whatever jerk asks
   EXPECT_NEAR(leg.footAt(kJolt).y(), 0.3, 1e-4);
@@ -117,33 +121,30 @@ TEST(EvenChanges, FeetStayAboveTheirLowestAndWithinReach) {
   EXPECT_NEAR(reached.norm(), 1, 1e-4) << "by the foot and by the hip";
 }
 
-TEST(EvenChanges, BoundsHoldWhileTheyAreMet) {
+TEST(LeastChanges, BoundsHoldWhileTheyAreMet) {
   Leg leg;
   for (FootFrame& foot : leg.feet) foot.lowest = -0.02;
   LeastChanges least(leg.layout, leg.feet, std::vector<bool>(kFrames), {});
   ChangedMotion motion = jolted(leg.layout);
   motion.paths[2][kJolt] = Vec3(0, 0.2, 0);
-  least.start(motion);
-  EXPECT_NEAR(least.find(1e4)[leg.layout.foot(kJolt, 0) + 1], -0.02, 1e-4);
+  EXPECT_NEAR(least.find(motion, evening(1e4))[leg.layout.foot(kJolt, 0) + 1], -0.02, 1e-4);
   motion.paths[2][kJolt] = Vec3::Zero();
-  least.start(motion);
-  EXPECT_NEAR(least.find(1e4)[leg.layout.foot(kJolt, 0) + 1], 0, 1e-6);
+  EXPECT_NEAR(least.find(motion, evening(1e4))[leg.layout.foot(kJolt, 0) + 1], 0, 1e-6);
 }
 
 // Shoulders that rise go back where the trunk goes up: the leg below them reaches as far as it does there.
-TEST(EvenChanges, LegsReachFromShouldersThatRise) {
+TEST(LeastChanges, LegsReachFromShouldersThatRise) {
   const ChangeLayout layout(kFrames, {true});
   std::vector<FootFrame> feet(kFrames, FootFrame{false, -1, Vec3(0.6, -0.9, 0), 1, Vec3(-0.5, 1, 0)});
   LeastChanges least(layout, feet, std::vector<bool>(kFrames), {});
-  least.start(jolted(layout));
-  const Changes changes = least.find(1e-3);
+  const Changes changes = least.find(jolted(layout), evening(1e-3));
   const double rise = changes[layout.shoulders(kJolt)];
   EXPECT_LT(rise, -0.01);
   const Vec3 way = feet[kJolt].way + wayAt(changes, layout.foot(kJolt, 0)) - wayAt(changes, layout.pelvis(kJolt));
   EXPECT_NEAR((way - rise * feet[kJolt].lift).norm(), 1, 1e-4);
 }
 
-TEST(EvenChanges, EndsStayOrCloseTheLoop) {
+TEST(LeastChanges, EndsStayOrCloseTheLoop) {
   Leg joined;
   joined.ends.startsJoined = joined.ends.endsJoined = true;
   for (const std::size_t f : {0u, 2u, 9u, 11u}) EXPECT_NEAR(joined.footAt(f).norm(), 0, 1e-6) << f;
@@ -153,7 +154,7 @@ TEST(EvenChanges, EndsStayOrCloseTheLoop) {
   EXPECT_NEAR((loop.footAt(0) - loop.footAt(kFrames - 1)).norm(), 0, 1e-6);
 }
 
-TEST(EvenChanges, ShouldersThatRiseHaveAPlaceInTheLayout) {
+TEST(LeastChanges, ShouldersThatRiseHaveAPlaceInTheLayout) {
   const ChangeLayout flat{4, {false, false}}, tilting{4, {false, true}};
   EXPECT_EQ(flat.perFrame(), 9u);
   EXPECT_EQ(tilting.perFrame(), 10u);
