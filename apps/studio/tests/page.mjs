@@ -23,7 +23,7 @@ export async function serve(folder, port = 0) {
 }
 
 /** Frames are drawn in software, so tests do without smooth edges: several samples for each pixel take half the time. What is
- *  not WebGL is drawn without the graphics process, which takes a third off the whole. */
+ *  not WebGL is drawn without the graphics process, which takes a quarter off the whole. */
 export const launch = ({ smooth = false, options = [] } = {}) => chromium.launch({
   executablePath: browserProgram,
   args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader-webgl', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist',
