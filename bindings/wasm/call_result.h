@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "limber/asset/json_text.h"
+#include "limber/core/known_error.h"
 
 #define LIMBER_EXPORT extern "C" __attribute__((used, visibility("default")))
 
@@ -22,12 +23,17 @@ struct CallResult {
 };
 
 inline CallResult failure(const Error& error) {
+  Json account = {{"code", std::string(errorCodeName(error.code()))},
+                  {"message", error.message()},
+                  {"where", error.where()},
+                  {"remedy", error.remedy()}};
+  if (const auto* known = dynamic_cast<const KnownError*>(&error)) {
+    account["kind"] = std::string(errorKindName(known->kind()));
+    account["values"] = Json::object();
+    for (const ErrorValue& value : known->values()) account["values"][value.name] = value.value;
+  }
   CallResult result;
-  result.account = dumpReport({{"code", std::string(errorCodeName(error.code()))},
-                               {"message", error.message()},
-                               {"where", error.where()},
-                               {"remedy", error.remedy()}},
-                              -1);
+  result.account = dumpReport(account, -1);
   return result;
 }
 
@@ -41,10 +47,10 @@ CallResult* guarded(std::string_view name, Call&& call) noexcept {
     } catch (const Error& error) {
       return new CallResult(failure(error));
     } catch (const std::bad_alloc&) {
-      return new CallResult(
-          failure({ErrorCode::kLimit, "not enough memory", std::string(name), "try a smaller model"}));
+      return new CallResult(failure(KnownError(ErrorKind::kOutOfMemory, {ErrorCode::kLimit, "not enough memory",
+                                                                         std::string(name), "try a smaller model"})));
     } catch (const std::exception& error) {
-      return new CallResult(failure({ErrorCode::kBadData, error.what(), std::string(name)}));
+      return new CallResult(failure(Error(ErrorCode::kBadData, error.what(), std::string(name))));
     }
   } catch (...) {
     return nullptr;

@@ -16,7 +16,16 @@ import createEngine from './limber_engine.mjs';
 /**
  * @typedef {{ handles?: number, maxInfluences?: number, rigger?: string, skinning?: string,
  *             existingRig?: 'refuse' | 'replace' | 'keep-skeleton' }} RigOptions
- * @typedef {{ code: string, message: string, where: string, remedy: string }} LimberError
+ * @typedef {'nothing-to-undo' | 'nothing-to-redo' | 'joint-dragged' | 'no-model' | 'no-clip' | 'name-missing'
+ *             | 'name-taken' | 'only-root' | 'joint-below-itself' | 'last-member' | 'holds-itself'
+ *             | 'model-not-mirrored' | 'nothing-mirrored' | 'joint-locked' | 'pin-outside' | 'handle-count'
+ *             | 'too-many-joints' | 'key-before-clip' | 'no-motion' | 'motion-too-long' | 'unlike-bodies'
+ *             | 'nothing-matched' | 'match-without-joint' | 'matched-twice' | 'joint-matched-twice'
+ *             | 'too-few-matched' | 'unlike-pose' | 'unfit-pose' | 'no-pose-file' | 'no-limits-file'
+ *             | 'limits-of-other' | 'empty-file' | 'cut-file' | 'no-glb' | 'unknown-format' | 'no-surface'
+ *             | 'out-of-memory' | 'no-bvh-name'} ErrorKind as limber/core/known_error.h has them
+ * @typedef {{ code: string, message: string, where: string, remedy: string,
+ *             kind?: ErrorKind, values?: { [name: string]: string } }} LimberError kind: where it is one of those that people meet
  * @typedef {{ ok: false, error: LimberError }} Failure
  * The report is the one of docs/report.md, from "methods" on.
  * @typedef {{ ok: true, glb: Uint8Array, report: object } | Failure} RigResult
@@ -142,7 +151,7 @@ function call(engine, method, leading, ...inputs) {
   const result = method(...leading, ...blocks.flatMap((bytes, i) => [places[i], bytes.length]));
   places.forEach((at) => engine._free(at));
   if (result === 0) {
-    return { ok: false, error: { code: 'limit', message: 'not enough memory', where: '', remedy: 'try a smaller model' } };
+    return { ok: false, error: { code: 'limit', kind: 'out-of-memory', values: {}, message: 'not enough memory', where: '', remedy: 'try a smaller model' } };
   }
   const account = JSON.parse(new TextDecoder().decode(
     copyOut(engine, engine._limber_account(result), engine._limber_account_size(result))));
@@ -209,7 +218,7 @@ function createSession(engine, handle = engine._limber_session_new()) {
      *  @type {(joint: number, framesPerSecond: number, most: number) => { ok: true, moments: number[], values: Float32Array } | Failure} */
     curve: (joint, framesPerSecond, most) => {
       const result = call(engine, engine._limber_session_curve, [handle, joint, framesPerSecond, most]);
-      return result.ok ? { ok: true, moments: result.account.moments, values: new Float32Array(result.bytes.buffer) } : result;
+      return result.ok ? { ok: true, ...result.account, values: new Float32Array(result.bytes.buffer) } : result;
     },
     /** @type {(command: Command) => StepResult} */
     run: (command) => step(call(engine, engine._limber_session_run, [handle], JSON.stringify(command))),

@@ -11,6 +11,7 @@
 #include "limber/asset/pose_file.h"
 #include "limber/asset/read.h"
 #include "limber/asset/write.h"
+#include "limber/core/known_error.h"
 #include "limber/ik/ik_solver.h"
 #include "limber/pipeline/auto_rig.h"
 #include "limber/pipeline/report_json.h"
@@ -85,7 +86,7 @@ LIMBER_EXPORT CallResult* limber_check_ply(const std::uint8_t* file, std::size_t
     try {
       limber::checkPly({file, fileSize});
     } catch (const limber::Error& error) {
-      throw error.within({name, nameSize});
+      limber::throwWithin(error, {name, nameSize});
     }
     return {true, {}, "{}"};
   });

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "limber/core/known_error.h"
 #include "limber/core/numbers.h"
 #include "limber/skeleton/chain.h"
 
@@ -118,8 +119,10 @@ class BvhWriter {
                          std::string_view(joint.name).substr(joint.name.size() - kEndSite.size()) == kEndSite;
       isEnd_.push_back(joint.parent && children_[j].empty() && named && !moved[j]);
       if (joint.name.find_first_of("\r\n{}") != std::string::npos) {
-        throw Error(ErrorCode::kBadArgument, "its name cannot stand in a BVH file",
-                    fmt::format("joint '{}'", joint.name), "rename the joint");
+        throw KnownError(ErrorKind::kNoBvhName,
+                         {ErrorCode::kBadArgument, "its name cannot stand in a BVH file",
+                          fmt::format("joint '{}'", joint.name), "rename the joint"},
+                         {{"joint", joint.name}});
       }
     }
   }

@@ -12,6 +12,7 @@
 #include "limber/asset/accessor.h"
 #include "limber/asset/bind_pose.h"
 #include "limber/asset/scene_graph.h"
+#include "limber/core/known_error.h"
 #include "limber/core/transform.h"
 
 namespace limber {
@@ -156,7 +157,8 @@ class Collector {
       for (Index p = 0; p < primitives.size(); ++p) addPrimitive(instance, p, primitives[p]);
     }
     if (geometry_.triangles.empty()) {
-      throw Error(ErrorCode::kBadData, "has no triangle", {}, "limber needs a surface, not points or lines");
+      throw KnownError(ErrorKind::kNoSurface,
+                       {ErrorCode::kBadData, "has no triangle", {}, "limber needs a surface, not points or lines"});
     }
     return std::move(geometry_);
   }
@@ -219,7 +221,7 @@ Geometry collectGeometry(const Asset& asset) {
   try {
     return Collector(asset).collect();
   } catch (const Error& error) {
-    throw error.within(asset.name);
+    throwWithin(error, asset.name);
   }
 }
 

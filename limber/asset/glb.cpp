@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "limber/core/known_error.h"
+
 namespace limber {
 
 static_assert(std::endian::native == std::endian::little, "glTF is little-endian and is read in place");
@@ -29,7 +31,9 @@ std::size_t padded(std::size_t size) {
 
 // The part of the file that its header speaks of.
 ByteSpan checkHeader(ByteSpan file, Warnings& warnings) {
-  if (file.size() < kHeaderSize) throw Error(ErrorCode::kBadData, "GLB is cut off inside its header");
+  if (file.size() < kHeaderSize) {
+    throw KnownError(ErrorKind::kCutFile, {ErrorCode::kBadData, "GLB is cut off inside its header"});
+  }
   if (const std::uint32_t version = word(file, 4); version != 2) {
     throw Error(ErrorCode::kUnsupported, fmt::format("GLB is of version {}, limber reads version 2", version), {},
                 "export the model as glTF 2.0");
@@ -37,8 +41,9 @@ ByteSpan checkHeader(ByteSpan file, Warnings& warnings) {
   const std::size_t length = word(file, 8);
   if (length < kHeaderSize) throw Error(ErrorCode::kBadData, fmt::format("GLB gives its length as {}", length));
   if (length > file.size()) {
-    throw Error(ErrorCode::kBadData,
-                fmt::format("GLB is cut off: it should have {} bytes and has {}", length, file.size()));
+    throw KnownError(
+        ErrorKind::kCutFile,
+        {ErrorCode::kBadData, fmt::format("GLB is cut off: it should have {} bytes and has {}", length, file.size())});
   }
   if (length < file.size()) {
     warnings.add("trailing-bytes", "bytes behind the end of the GLB left out", {}, file.size() - length);

@@ -11,6 +11,7 @@
 #include "limber/asset/node_edit.h"
 #include "limber/asset/scene_graph.h"
 #include "limber/asset/unique_names.h"
+#include "limber/core/known_error.h"
 #include "limber/core/names.h"
 
 namespace limber {
@@ -138,7 +139,9 @@ AssetSkeleton animatedSkeleton(const Asset& asset) {
     result.skeleton.joints.push_back(std::move(joint));
   }
   if (result.jointNode.empty()) {
-    throw Error(ErrorCode::kBadData, "has neither a skeleton nor anything that moves", asset.name);
+    throw KnownError(ErrorKind::kNoMotion,
+                     {ErrorCode::kBadData, "has neither a skeleton nor anything that moves", asset.name},
+                     {{"name", asset.name}});
   }
   return result;
 }

@@ -10,7 +10,7 @@
 
 #include "limber/asset/json_access.h"
 #include "limber/asset/json_text.h"
-#include "limber/core/error.h"
+#include "limber/core/known_error.h"
 
 namespace limber {
 
@@ -107,8 +107,11 @@ PortablePose poseFromJson(std::string_view text) {
   const Json document = parseJson(text, warnings);
   const JsonView root(document);
   if (!document.is_object() || root.number("limber_pose", 0) != kPoseVersion) {
-    throw Error(ErrorCode::kBadData, "is no pose that limber knows", {},
-                fmt::format("save one in the studio, or by limber pose -o NAME{}", kPoseFileEnding));
+    throw KnownError(ErrorKind::kNoPoseFile,
+                     {ErrorCode::kBadData,
+                      "is no pose that limber knows",
+                      {},
+                      fmt::format("save one in the studio, or by limber pose -o NAME{}", kPoseFileEnding)});
   }
   refuseOtherKeys(root, {"limber_pose", "name", "joints"});
   PortablePose pose;

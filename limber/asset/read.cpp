@@ -10,6 +10,7 @@
 #include "limber/asset/glb.h"
 #include "limber/asset/gltf_document.h"
 #include "limber/asset/motion_io.h"
+#include "limber/core/known_error.h"
 #include "limber/core/names.h"
 #ifdef LIMBER_IMPORT
 #include "limber/asset/import_model.h"
@@ -60,20 +61,24 @@ Asset readGltf(ByteSpan bytes, const Resolver& resolver) {
 }
 
 Asset readAny(ByteSpan bytes, std::string_view name, const Resolver& resolver) {
-  if (bytes.empty()) throw Error(ErrorCode::kBadData, "is empty");
+  if (bytes.empty()) throw KnownError(ErrorKind::kEmptyFile, {ErrorCode::kBadData, "is empty"});
   if (looksLikeGlb(bytes) || looksLikeJson(bytes)) return readGltf(bytes, resolver);
   const std::string extension = lowerExtension(std::string(name));
   // COLLADA is XML, which may well be in UTF-16; the bytes of a binary STL's title are anything.
   if (extension != ".dae" && extension != ".stl" && looksLikeUtf16(bytes)) {
     throw Error(ErrorCode::kUnsupported, "is text in UTF-16", {}, "save it as UTF-8");
   }
-  if (extension == ".glb") throw Error(ErrorCode::kBadData, "is no GLB: it does not start with \"glTF\"");
+  if (extension == ".glb") {
+    throw KnownError(ErrorKind::kNoGlb, {ErrorCode::kBadData, "is no GLB: it does not start with \"glTF\""});
+  }
   if (extension == ".gltf") throw Error(ErrorCode::kBadData, "is no glTF: it is not a JSON object");
 #ifdef LIMBER_IMPORT
   return importModel(bytes, name, resolver);
 #else
-  throw Error(ErrorCode::kUnsupported, "is of a format that limber does not read here", {},
-              "convert it to GLB or glTF, which are read");
+  throw KnownError(ErrorKind::kUnknownFormat, {ErrorCode::kUnsupported,
+                                               "is of a format that limber does not read here",
+                                               {},
+                                               "convert it to GLB or glTF, which are read"});
 #endif
 }
 
@@ -105,9 +110,9 @@ Asset readAsset(ByteSpan bytes, std::string_view name, const Resolver& resolver)
     checkAsset(asset);
     return asset;
   } catch (const Error& error) {
-    throw error.within(name);
+    throwWithin(error, name);
   } catch (const std::bad_alloc&) {
-    throw Error(ErrorCode::kLimit, "does not fit in memory", std::string(name));
+    throw KnownError(ErrorKind::kOutOfMemory, {ErrorCode::kLimit, "does not fit in memory", std::string(name)});
   }
 }
 

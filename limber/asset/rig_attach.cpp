@@ -11,6 +11,7 @@
 #include "limber/asset/skinned_nodes.h"
 #include "limber/asset/unique_names.h"
 #include "limber/asset/weight_attributes.h"
+#include "limber/core/known_error.h"
 
 namespace limber {
 
@@ -47,8 +48,10 @@ void checkArguments(const Asset& asset, const Geometry& geometry, const Skeleton
                     const SkinWeights& weights) {
   checkSkeleton(skeleton);
   if (skeleton.joints.empty() || skeleton.jointCount() > kMaxSkinJoints) {
-    throw Error(ErrorCode::kBadArgument,
-                fmt::format("a rig has 1 to {} joints, not {}", kMaxSkinJoints, skeleton.joints.size()));
+    throw KnownError(ErrorKind::kTooManyJoints,
+                     {ErrorCode::kBadArgument,
+                      fmt::format("a rig has 1 to {} joints, not {}", kMaxSkinJoints, skeleton.joints.size())},
+                     {{"count", fmt::to_string(skeleton.joints.size())}, {"most", fmt::to_string(kMaxSkinJoints)}});
   }
   if (weights.vertexCount() != geometry.positions.size()) {
     throw Error(ErrorCode::kBadArgument, fmt::format("weights for {} vertices, but the geometry has {}",

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "limber/core/error.h"
+#include "limber/core/known_error.h"
 #include "limber/core/numbers.h"
 #include "limber/ik/rotation.h"
 
@@ -182,7 +182,8 @@ Json parse(std::string_view text) {
   try {
     return Json::parse(text, watch);
   } catch (const Json::parse_error& error) {
-    throw Error(ErrorCode::kBadData, fmt::format("are not JSON at byte {}", error.byte), "limits");
+    throw KnownError(ErrorKind::kNoLimitsFile,
+                     {ErrorCode::kBadData, fmt::format("are not JSON at byte {}", error.byte), "limits"});
   } catch (const Json::out_of_range&) {
     throw Error(ErrorCode::kBadData, "hold a number that is too large", "limits");
   }
@@ -191,7 +192,9 @@ Json parse(std::string_view text) {
 }  // namespace
 
 JointLimits limitsFromJson(std::string_view text, const Skeleton& skeleton) {
-  const auto bad = [](const std::string& what) { throw Error(ErrorCode::kBadData, what, "limits"); };
+  const auto bad = [](const std::string& what) {
+    throw KnownError(ErrorKind::kNoLimitsFile, {ErrorCode::kBadData, what, "limits"});
+  };
   const Json file = parse(text);
   if (!file.is_object() || !file.contains("limber_limits")) bad("have no \"limber_limits\"");
   if (file["limber_limits"] != 1) bad("are of a version that is not known");
@@ -201,7 +204,10 @@ JointLimits limitsFromJson(std::string_view text, const Skeleton& skeleton) {
   for (const auto& item : file["joints"].items()) {
     const std::string where = "limits: joint '" + item.key() + "'";
     const std::optional<Index> joint = skeleton.find(item.key());
-    if (!joint) throw Error(ErrorCode::kBadData, "is not in the skeleton", where);
+    if (!joint) {
+      throw KnownError(ErrorKind::kLimitsOfOther, {ErrorCode::kBadData, "is not in the skeleton", where},
+                       {{"joint", item.key()}});
+    }
     limits.joints[*joint] = EntryReader(item.value(), where).read(skeleton.joints[*joint].rest);
   }
   return limits;

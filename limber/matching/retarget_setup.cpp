@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "limber/anatomy/anatomy.h"
-#include "limber/core/error.h"
+#include "limber/core/known_error.h"
 
 namespace limber {
 
@@ -142,9 +142,11 @@ Pose restOf(const Skeleton& source, std::span<const Pose> motion, const Skeleton
 // A map of the hips alone, or joints that all lie in one place, leave nothing to scale by.
 void checkSize(double size, const char* whose, const SkeletonMap& map) {
   if (size > 0) return;
-  throw Error(ErrorCode::kBadData, fmt::format("the matched joints do not tell how large the {}'s body is", whose),
-              map.matches.size() == 1 ? nameOf(map.matches.front().part) : "",
-              "match parts that lie further apart, such as hips, head and feet");
+  throw KnownError(
+      ErrorKind::kTooFewMatched,
+      {ErrorCode::kBadData, fmt::format("the matched joints do not tell how large the {}'s body is", whose),
+       map.matches.size() == 1 ? nameOf(map.matches.front().part) : "",
+       "match parts that lie further apart, such as hips, head and feet"});
 }
 
 }  // namespace

@@ -14,7 +14,7 @@
 #include "limber/anatomy/body_pieces.h"
 #include "limber/anatomy/joint_words.h"
 #include "limber/core/counted.h"
-#include "limber/core/error.h"
+#include "limber/core/known_error.h"
 #include "limber/matching/limb_groups.h"
 
 namespace limber {
@@ -519,15 +519,17 @@ class Matcher {
   }
 
   [[noreturn]] void refuse() const {
-    throw Error(ErrorCode::kUnsupported,
-                fmt::format("the motion's skeleton of {} and the character's of {} have too little in common to be "
-                            "matched: {}",
-                            counted(source_.jointCount(), "joint"), target_.jointCount(), whatDiffers()),
-                "",
-                unlikeBodies_
-                    ? "say in a map which joint follows which, as docs/retargeting.md tells"
-                    : "--unlike-bodies lets limbs follow others, and a map says which joint follows which, as "
-                      "docs/retargeting.md tells");
+    throw KnownError(
+        ErrorKind::kUnlikeBodies,
+        {ErrorCode::kUnsupported,
+         fmt::format(
+             "the motion's skeleton of {} and the character's of {} have too little in common to be matched: {}",
+             counted(source_.jointCount(), "joint"), target_.jointCount(), whatDiffers()),
+         "",
+         unlikeBodies_ ? "say in a map which joint follows which, as docs/retargeting.md tells"
+                       : "--unlike-bodies lets limbs follow others, and a map says which joint follows which, as "
+                         "docs/retargeting.md tells"},
+        {{"source", fmt::to_string(source_.jointCount())}, {"target", fmt::to_string(target_.jointCount())}});
   }
 
   std::string whatDiffers() const {
@@ -589,17 +591,27 @@ SkeletonMap matchSkeletons(const Skeleton& source, const Skeleton& target, bool 
 void checkSkeletonMap(const SkeletonMap& map, const Skeleton& source, const Skeleton& target) {
   std::set<Index> moved;
   std::set<BodyPart> parts;
-  if (map.matches.empty()) throw Error(ErrorCode::kBadData, "the map matches nothing");
+  if (map.matches.empty()) {
+    throw KnownError(ErrorKind::kNothingMatched, {ErrorCode::kBadData, "the map matches nothing"});
+  }
   for (const JointMatch& match : map.matches) {
-    const auto refuse = [&](const std::string& what) { throw Error(ErrorCode::kBadData, what, nameOf(match.part)); };
-    if (match.source.empty() || match.target.empty()) refuse("has no joint on one side");
-    if (!parts.insert(match.part).second) refuse("is matched twice");
+    const std::string part = nameOf(match.part);
+    const auto refuse = [&](const std::string& what) { throw Error(ErrorCode::kBadData, what, part); };
+    const auto refuseKnown = [&](ErrorKind kind, const std::string& what, const std::string& joint = {}) {
+      throw KnownError(kind, {ErrorCode::kBadData, what, part}, {{"part", part}, {"joint", joint}});
+    };
+    if (match.source.empty() || match.target.empty()) {
+      refuseKnown(ErrorKind::kMatchWithoutJoint, "has no joint on one side");
+    }
+    if (!parts.insert(match.part).second) refuseKnown(ErrorKind::kMatchedTwice, "is matched twice");
     for (const Index joint : match.source) {
       if (joint >= source.jointCount()) refuse("names a joint that the motion does not have");
     }
     for (const Index joint : match.target) {
       if (joint >= target.jointCount()) refuse("names a joint that the character does not have");
-      if (!moved.insert(joint).second) refuse(fmt::format("moves '{}' a second time", target.joints[joint].name));
+      if (moved.insert(joint).second) continue;
+      const std::string& name = target.joints[joint].name;
+      refuseKnown(ErrorKind::kJointMatchedTwice, fmt::format("moves '{}' a second time", name), name);
     }
   }
 }

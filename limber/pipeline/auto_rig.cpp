@@ -13,6 +13,7 @@
 #include "limber/asset/geometry.h"
 #include "limber/asset/rig_io.h"
 #include "limber/asset/scene_graph.h"
+#include "limber/core/known_error.h"
 #include "limber/mesh/components.h"
 #include "limber/mesh/prepare.h"
 #include "limber/pipeline/stand_upright.h"
@@ -256,7 +257,7 @@ AutoRigReport autoRig(Asset& asset, const AutoRigOptions& options, Progress& pro
   try {
     return runStages(asset, options, progress);
   } catch (const Error& error) {
-    throw error.within(asset.name);
+    throwWithin(error, asset.name);
   }
 }
 

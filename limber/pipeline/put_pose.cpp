@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "limber/core/error.h"
+#include "limber/core/known_error.h"
 #include "limber/matching/plain_skeleton.h"
 #include "limber/pipeline/stand_upright.h"
 #include "limber/retarget/retarget_clip.h"
@@ -29,8 +29,10 @@ SkeletonMap matchBodies(const PortablePose& pose, const Skeleton& posed, const S
     return matchSkeletons(posed, to);
   } catch (const Error& error) {
     if (error.code() != ErrorCode::kUnsupported) throw;
-    throw Error(ErrorCode::kUnsupported, "the pose was made for another kind of body", pose.name,
-                "choose one of a body that is built like this one");
+    throw KnownError(ErrorKind::kUnlikePose,
+                     {ErrorCode::kUnsupported, "the pose was made for another kind of body", pose.name,
+                      "choose one of a body that is built like this one"},
+                     {{"name", pose.name}});
   }
 }
 
@@ -92,7 +94,10 @@ Pose putPose(const PortablePose& pose, const Skeleton& to, const Pose& now) {
   }
   const std::vector<Index> standing = standingJoints(map, to);
   stayAbove(middleOfJoints(standing, posePositions(to, now)), standing, to, result);
-  if (!isFinite(result)) throw Error(ErrorCode::kUnsupported, "the pose does not fit this skeleton", pose.name);
+  if (!isFinite(result)) {
+    throw KnownError(ErrorKind::kUnfitPose, {ErrorCode::kUnsupported, "the pose does not fit this skeleton", pose.name},
+                     {{"name", pose.name}});
+  }
   return result;
 }
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "limber/core/error.h"
+#include "limber/core/known_error.h"
 #include "limber/matching/plain_skeleton.h"
 #include "limber/retarget/even_out.h"
 #include "limber/skeleton/motion.h"
@@ -24,7 +24,9 @@ Quat nearTo(const Quat& rotation, const Quat& before) {
 PoseSequence sampleFrames(const Skeleton& skeleton, const Clip& clip, double frameRate) {
   const double last = std::round(clip.duration() * frameRate);
   if (!(frameRate > 0) || !(last < kMostFrames)) {
-    throw Error(ErrorCode::kLimit, "the motion has too many frames", clip.name, "choose a lower frame rate");
+    throw KnownError(ErrorKind::kMotionTooLong,
+                     {ErrorCode::kLimit, "the motion has too many frames", clip.name, "choose a lower frame rate"},
+                     {{"name", clip.name}});
   }
   PoseSequence frames;
   frames.frameSeconds = 1 / frameRate;

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "limber/sphere_mesh/handle_count.h"
 #include "limber/sphere_mesh/handle_tree.h"
 
 namespace limber {
@@ -18,8 +19,7 @@ constexpr double kNeighborhood = 1.4;  // the trend is taken from a count divide
 void checkHandles(const TriMesh& mesh, const RigOptions& options) {
   if (!options.handles) return;
   if (*options.handles >= 1 && *options.handles <= mesh.vertexCount()) return;
-  throw Error(ErrorCode::kBadArgument, fmt::format("{} handles are asked for", *options.handles), {},
-              fmt::format("this model can have 1 to {}", mesh.vertexCount()));
+  refuseHandleCount(*options.handles, mesh.vertexCount());
 }
 
 // The number in a handle's name: one for each mirror pair or single handle, in the order of the joints.

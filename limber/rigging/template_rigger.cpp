@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "limber/body/body_volume.h"
+#include "limber/core/known_error.h"
 #include "limber/core/numbers.h"
 #include "limber/figure/figure_search.h"
 #include "limber/rigging/person_template.h"
@@ -48,8 +49,10 @@ void checkPins(const TriMesh& mesh, const std::vector<JointPin>& pins) {
     }
     const Vec3 low = box.min - margin, high = box.max + margin;
     if ((pin->place.array() < low.array()).any() || (pin->place.array() > high.array()).any()) {
-      throw Error(ErrorCode::kBadArgument, "is pinned far outside the model", pin->joint,
-                  "places are in the file's space and unit; limber info tells its size");
+      throw KnownError(ErrorKind::kPinOutside,
+                       {ErrorCode::kBadArgument, "is pinned far outside the model", pin->joint,
+                        "places are in the file's space and unit; limber info tells its size"},
+                       {{"joint", pin->joint}});
     }
   }
 }

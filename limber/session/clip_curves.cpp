@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "limber/core/error.h"
+#include "limber/session/refuse.h"
 
 namespace limber {
 
@@ -15,7 +15,7 @@ template <class Visit>
 void eachPose(const Movement& movement, const Skeleton& skeleton, std::span<const double> moments, const Visit& visit) {
   if (moments.empty()) return;
   const Clip* clip = movement.clip();
-  if (!clip) throw Error(ErrorCode::kBadArgument, "no clip is chosen");
+  if (!clip) refuse(ErrorKind::kNoClip, "no clip is chosen");
   Pose pose = restPose(skeleton);
   for (const double seconds : moments) {
     sampleClip(*clip, seconds, pose);

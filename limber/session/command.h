@@ -10,7 +10,7 @@
 
 #include "limber/asset/asset.h"
 #include "limber/core/types.h"
-#include "limber/skeleton/clip.h"
+#include "limber/skeleton/keyframes.h"
 
 namespace limber {
 

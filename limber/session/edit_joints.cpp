@@ -7,8 +7,8 @@
 
 #include "limber/asset/joint_edit.h"
 #include "limber/asset/node_edit.h"
-#include "limber/core/error.h"
 #include "limber/ik/limits_json.h"
+#include "limber/session/refuse.h"
 #include "limber/session/session_io.h"
 #include "limber/skeleton/keyframes.h"
 #include "limber/skinning/weight_edit.h"
@@ -18,10 +18,6 @@ namespace limber {
 namespace {
 
 constexpr double kSameScale = 1e-6;
-
-[[noreturn]] void refuseEditing(std::string message, std::string where = {}) {
-  throw Error(ErrorCode::kBadArgument, std::move(message), std::move(where));
-}
 
 // Its clips are the session's, which writes them when a file is made.
 Asset documentToEdit(const RiggedModel& model) {
@@ -222,11 +218,11 @@ std::string carriedLimits(const JointLimits& limits, const Skeleton& from, const
 
 JointEdit withJoint(const RiggedModel& model, const Pose& pose, Index parent, const Vec3& position,
                     const std::string& name) {
-  if (name.empty()) refuseEditing("a joint needs a name");
-  if (model.skeleton().find(name)) refuseEditing(fmt::format("there is a joint called '{}' already", name));
+  if (name.empty()) refuseNoName("joint");
+  if (model.skeleton().find(name)) refuseNameTaken("joint", name);
   const Affine above = poseGlobals(model.skeleton(), pose)[parent];
   const Vec3 translation = above.inverse(Eigen::Affine) * position;
-  if (!translation.allFinite()) refuseEditing("a joint cannot be there", model.skeleton().joints[parent].name);
+  if (!translation.allFinite()) refuse("a joint cannot be there", model.skeleton().joints[parent].name);
   Asset document = documentToEdit(model);
   addJoint(document, model.binding, parent, translation, name);
   return edited(model, std::move(document));
@@ -236,7 +232,8 @@ JointEdit withoutJoint(const RiggedModel& model, Index joint) {
   const Skeleton& skeleton = model.skeleton();
   const auto isRoot = [](const Joint& other) { return !other.parent; };
   if (isRoot(skeleton.joints[joint]) && std::count_if(skeleton.joints.begin(), skeleton.joints.end(), isRoot) == 1) {
-    refuseEditing("the root of the rig cannot be deleted", skeleton.joints[joint].name);
+    const std::string& name = skeleton.joints[joint].name;
+    refuse(ErrorKind::kOnlyRoot, "the root of the rig cannot be deleted", {{"joint", name}}, name);
   }
   const Index heir = skeleton.joints[joint].parent.value_or(nearestOther(skeleton, joint));
   auto given = std::make_shared<RiggedModel>(model);
@@ -252,7 +249,9 @@ JointEdit withoutJoint(const RiggedModel& model, Index joint) {
 JointEdit withJointOn(const RiggedModel& model, Index joint, Index parent) {
   const Skeleton& skeleton = model.skeleton();
   if (isAtOrBelow(skeleton, parent, joint)) {
-    refuseEditing(fmt::format("'{}' hangs on it", skeleton.joints[parent].name), skeleton.joints[joint].name);
+    const std::string &above = skeleton.joints[joint].name, &below = skeleton.joints[parent].name;
+    refuse(ErrorKind::kJointBelowItself, fmt::format("'{}' hangs on it", below), {{"joint", above}, {"parent", below}},
+           above);
   }
   Asset document = documentToEdit(model);
   hangJoint(document, model.binding, joint, parent);

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "limber/core/error.h"
+#include "limber/core/known_error.h"
 
 namespace limber {
 
@@ -77,7 +77,9 @@ RigMirror mirrorOfRig(const RiggedModel& rig) {
   RigMirror mirror = mirrorOfRig(rig, planeOfSkeleton(rig));
   const auto without = std::count(mirror.joints.begin(), mirror.joints.end(), kNoIndex);
   if (static_cast<double>(without) > (1 - kLeastWithImages) * static_cast<double>(mirror.joints.size())) {
-    throw Error(ErrorCode::kUnsupported, "neither the model nor its skeleton is its own mirror image", rig.asset->name);
+    throw KnownError(
+        ErrorKind::kNothingMirrored,
+        {ErrorCode::kUnsupported, "neither the model nor its skeleton is its own mirror image", rig.asset->name});
   }
   return mirror;
 }

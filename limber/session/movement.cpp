@@ -7,22 +7,18 @@
 
 #include <fmt/format.h>
 
-#include "limber/core/error.h"
 #include "limber/pipeline/stand_upright.h"
 #include "limber/retarget/retarget_clip.h"
 #include "limber/retarget/retarget_method.h"
 #include "limber/session/clip_curves.h"
 #include "limber/session/pose_transfer.h"
+#include "limber/session/refuse.h"
 #include "limber/skeleton/clip_edit.h"
 #include "limber/skeleton/keyframes.h"
 
 namespace limber {
 
 namespace {
-
-[[noreturn]] void refuseEdit(std::string message) {
-  throw Error(ErrorCode::kBadArgument, std::move(message));
-}
 
 std::optional<std::size_t> findClip(const Movement& movement, const std::string& name) {
   for (std::size_t c = 0; c < movement.clips.size(); ++c) {
@@ -33,13 +29,13 @@ std::optional<std::size_t> findClip(const Movement& movement, const std::string&
 
 std::size_t requireClip(const Movement& movement, const std::string& name) {
   const std::optional<std::size_t> clip = findClip(movement, name);
-  if (!clip) refuseEdit(fmt::format("no clip is called '{}'", name));
+  if (!clip) refuse(fmt::format("no clip is called '{}'", name));
   return *clip;
 }
 
 void requireFreeName(const Movement& movement, const std::string& name) {
-  if (name.empty()) refuseEdit("a clip needs a name");
-  if (findClip(movement, name)) refuseEdit(fmt::format("there is a clip called '{}' already", name));
+  if (name.empty()) refuseNoName("clip");
+  if (findClip(movement, name)) refuseNameTaken("clip", name);
 }
 
 // `taken` says whether something has the name.
@@ -51,7 +47,7 @@ std::string freeName(const std::string& wanted, const Taken& taken) {
 }
 
 SessionClip& requireChosen(Movement& movement) {
-  if (!movement.chosen) refuseEdit("no clip is chosen");
+  if (!movement.chosen) refuse(ErrorKind::kNoClip, "no clip is chosen");
   return movement.clips[*movement.chosen];
 }
 
@@ -96,11 +92,11 @@ std::vector<JointKey> layerKeysAt(const ClipLayer& layer, double seconds) {
 }
 
 std::vector<JointKey> keysNamed(const Skeleton& skeleton, const std::vector<KeyOfJoint>& named) {
-  if (named.empty()) refuseEdit("no keys are given");
+  if (named.empty()) refuse("no keys are given");
   std::vector<JointKey> keys;
   for (const KeyOfJoint& key : named) {
     const std::optional<Index> joint = skeleton.find(key.joint);
-    if (!joint) refuseEdit(fmt::format("no joint is called '{}'", key.joint));
+    if (!joint) refuse(fmt::format("no joint is called '{}'", key.joint));
     keys.push_back({*joint, key.seconds});
   }
   return keys;
@@ -135,15 +131,17 @@ std::shared_ptr<const Motion> requireMotion(const Movement& movement, const std:
   for (const std::shared_ptr<const Motion>& motion : movement.motions) {
     if (motion->name == name) return motion;
   }
-  refuseEdit(fmt::format("no motion is called '{}'", name));
+  refuse(fmt::format("no motion is called '{}'", name));
 }
 
 std::size_t clipOfMotion(const Motion& motion, const std::string& name) {
-  if (motion.clips.empty()) refuseEdit(fmt::format("the motion '{}' has no clip", motion.name));
+  if (motion.clips.empty()) {
+    refuse(ErrorKind::kNoMotion, fmt::format("the motion '{}' has no clip", motion.name), {{"name", motion.name}});
+  }
   for (std::size_t c = 0; c < motion.clips.size(); ++c) {
     if (name.empty() || motion.clips[c].name == name) return c;
   }
-  refuseEdit(fmt::format("the motion '{}' has no clip called '{}'", motion.name, name));
+  refuse(fmt::format("the motion '{}' has no clip called '{}'", motion.name, name));
 }
 
 Clip retargeted(const ClipSource& source, const Skeleton& skeleton) {
@@ -235,7 +233,7 @@ void retargetMotion(Movement& movement, const Skeleton& skeleton, const Retarget
   ClipSource source{requireMotion(movement, command.motion), 0, command, {}};
   const Motion& motion = *source.motion;
   source.clip = clipOfMotion(motion, command.clip);
-  if (!(command.reach >= 0 && command.reach <= 1)) refuseEdit("the reach is not between 0 and 1");
+  if (!(command.reach >= 0 && command.reach <= 1)) refuse("the reach is not between 0 and 1");
   source.map = command.map.empty() ? matchSkeletons(motion.skeleton, skeleton)
                                    : skeletonMapFromJson(command.map, motion.skeleton, skeleton);
   Clip made = retargeted(source, skeleton);
@@ -352,7 +350,7 @@ void chooseClip(Movement& movement, const std::string& name) {
 
 void setTime(Movement& movement, double seconds) {
   requireChosen(movement);
-  if (!std::isfinite(seconds) || seconds < 0) refuseEdit("a moment is not a positive number of seconds");
+  if (!std::isfinite(seconds) || seconds < 0) refuse("a moment is not a positive number of seconds");
   movement.seconds = seconds;
 }
 
@@ -405,7 +403,7 @@ void deleteKeysOf(Movement& movement, const Skeleton& skeleton, const std::vecto
 void setJointKeyOf(Movement& movement, const Skeleton& skeleton, const SetJointKey& command) {
   SessionClip& chosen = requireChosen(movement);
   const JointKey key = keysNamed(skeleton, {{command.joint, command.seconds}}).front();
-  if (!command.turn.allFinite() || !command.offset.allFinite()) refuseEdit("a key's value is no number");
+  if (!command.turn.allFinite() || !command.offset.allFinite()) refuse("a key's value is no number");
   const Pose shown = clipPose(*chosen.clip, skeleton, key.seconds);
   Pose pose = shown;
   placeFromRest(pose.locals[key.joint], skeleton.joints[key.joint].rest, {command.turn, command.offset});

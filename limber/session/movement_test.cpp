@@ -9,8 +9,8 @@
 #include "limber/asset/read.h"
 #include "limber/asset/turn_scene.h"
 #include "limber/asset/write.h"
-#include "limber/core/error.h"
 #include "limber/core/file.h"
+#include "limber/core/known_error.h"
 #include "limber/session/clip_curves.h"
 #include "limber/session/measures.h"
 #include "limber/session/session.h"
@@ -348,6 +348,35 @@ TEST(Movement, KeysOfOneJointOfAClipMadeByHand) {
   EXPECT_NEAR(turnOf(session, "head").angularDistance(Quat::Identity()), 40 * EIGEN_PI / 180, 1e-4);
   act(session, DeleteKeys{{{"hips", 0.5}}});
   EXPECT_THAT(keyTimes(*session.state().movement.clip()), ElementsAre(0, 1));
+}
+
+TEST(Movement, WhatIsRefusedHasAKind) {
+  Session session = walking();
+  const auto kindOf = [&](const Command& command) -> std::optional<ErrorKind> {
+    try {
+      act(session, command);
+    } catch (const KnownError& error) {
+      return error.kind();
+    } catch (const Error&) {
+    }
+    return std::nullopt;
+  };
+  const std::string twice =
+      R"({"matches": [{"part": "leftHand", "source": ["leftHand"], "target": ["rightFoot"]},
+                      {"part": "rightFoot", "source": ["rightFoot"], "target": ["rightFoot"]}]})";
+  const Json before = sessionState(session)["match"];
+  EXPECT_EQ(kindOf(RetargetMotion{.motion = "walk", .clip = {}, .map = twice}), ErrorKind::kJointMatchedTwice);
+  EXPECT_EQ(sessionState(session)["match"], before);
+  EXPECT_EQ(kindOf(RenameClip{"walk", ""}), ErrorKind::kNameMissing);
+  EXPECT_EQ(kindOf(AddClip{"walk"}), ErrorKind::kNameTaken);
+  EXPECT_EQ(kindOf(RenameJoint{"head", "hips"}), ErrorKind::kNameTaken);
+  EXPECT_EQ(kindOf(DeleteJoint{"hips"}), ErrorKind::kOnlyRoot);
+  EXPECT_EQ(kindOf(ReparentJoint{"hips", "head"}), ErrorKind::kJointBelowItself);
+  EXPECT_EQ(kindOf(SetLimits{"{}"}), ErrorKind::kNoLimitsFile);
+  EXPECT_EQ(kindOf(Redo{}), ErrorKind::kNothingToRedo);
+  EXPECT_EQ(kindOf(BeginDrag{}), std::nullopt) << "a joint without a name";
+  act(session, ChooseClip{""});
+  EXPECT_EQ(kindOf(SetKey{}), ErrorKind::kNoClip);
 }
 
 TEST(Movement, AJointsKeyIsGivenAValue) {

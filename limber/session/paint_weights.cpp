@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "limber/core/error.h"
 #include "limber/mesh/prepare.h"
+#include "limber/session/refuse.h"
 #include "limber/skinning/weight_edit.h"
 
 namespace limber {
@@ -15,10 +15,6 @@ namespace limber {
 namespace {
 
 constexpr double kBeside = 1e-6;  // that barycentric coordinates may lie outside, by rounding
-
-[[noreturn]] void refusePainting(std::string message, std::string where = {}) {
-  throw Error(ErrorCode::kBadArgument, std::move(message), std::move(where));
-}
 
 TriMesh weldedMesh(const Geometry& geometry, const std::vector<Index>& weldedVertex) {
   TriMesh mesh;
@@ -52,7 +48,9 @@ std::optional<Index> heirOf(const Skeleton& skeleton, Index joint, const std::ve
 
 const MirrorMap& requireMirror(const PaintSurface& surface) {
   const std::optional<MirrorMap>& mirror = surface.mirror();
-  if (!mirror) throw Error(ErrorCode::kUnsupported, "the model is not its own mirror image");
+  if (!mirror) {
+    throw KnownError(ErrorKind::kModelNotMirrored, {ErrorCode::kUnsupported, "the model is not its own mirror image"});
+  }
   return *mirror;
 }
 
@@ -106,12 +104,15 @@ WeightStroke::WeightStroke(const RiggedModel& rig, const PaintSurface& surface, 
                            const PaintWeights& settings)
     : rig_(rig), surface_(surface), locked_(std::move(locked)), settings_(settings) {
   settings_.dabs.clear();
-  if (!(settings.strength >= 0 && settings.strength <= 1)) refusePainting("the strength is not between 0 and 1");
-  if (!(settings.radius > 0) || !std::isfinite(settings.radius)) refusePainting("the brush has no radius");
+  if (!(settings.strength >= 0 && settings.strength <= 1)) refuse("the strength is not between 0 and 1");
+  if (!(settings.radius > 0) || !std::isfinite(settings.radius)) refuse("the brush has no radius");
   if (settings.mode != PaintMode::kSmooth) {
     joint_ = rig.skeleton().find(settings.joint);
-    if (!joint_) refusePainting(fmt::format("no joint is called '{}'", settings.joint));
-    if (locked_[*joint_]) refusePainting("the weights of this joint are locked", settings.joint);
+    if (!joint_) refuse(fmt::format("no joint is called '{}'", settings.joint));
+    if (locked_[*joint_]) {
+      refuse(ErrorKind::kJointLocked, "the weights of this joint are locked", {{"joint", settings.joint}},
+             settings.joint);
+    }
     heir_ = heirOf(rig.skeleton(), *joint_, locked_);
   }
   amounts_.assign(surface.distance().mesh().vertexCount(), 0);
@@ -133,8 +134,7 @@ void WeightStroke::add(std::span<const SurfaceDab> dabs) {
   const TriMesh& mesh = surface_.distance().mesh();
   for (const SurfaceDab& dab : dabs) {
     const Vec3 at = barycentricOf(dab);
-    if (dab.triangle >= mesh.triangleCount() || !(at.minCoeff() >= -kBeside))
-      refusePainting("a dab lies beside the surface");
+    if (dab.triangle >= mesh.triangleCount() || !(at.minCoeff() >= -kBeside)) refuse("a dab lies beside the surface");
   }
   // Both sides of a joint that is its own image, and of smoothing, are one.
   const bool both = settings_.mirrored && (!joint_ || image_ == joint_);
@@ -191,7 +191,7 @@ void WeightStroke::smooth(SkinWeights& weights) const {
 
 SkinWeights mirroredWeights(const RiggedModel& rig, const PaintSurface& surface, const std::vector<bool>& locked,
                             MirrorFrom from) {
-  if (from == MirrorFrom::kBoth) refusePainting("weights are mirrored from one side: left or right");
+  if (from == MirrorFrom::kBoth) refuse("weights are mirrored from one side: left or right");
   const MirrorMap& map = requireMirror(surface);
   const RigMirror mirror = mirrorOfRig(rig, map.plane);
   SkinWeights weights = rig.weights;

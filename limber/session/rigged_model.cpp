@@ -10,6 +10,7 @@
 #include "limber/asset/clip_io.h"
 #include "limber/asset/node_edit.h"
 #include "limber/asset/pose_io.h"
+#include "limber/session/refuse.h"
 #include "limber/skinning/deformer.h"
 
 namespace limber {
@@ -90,11 +91,9 @@ std::shared_ptr<const RiggedModel> openRiggedModel(const Asset& source) {
 }
 
 std::shared_ptr<const RiggedModel> renameJoint(const RiggedModel& model, Index joint, const std::string& name) {
-  if (name.empty()) throw Error(ErrorCode::kBadArgument, "a joint needs a name");
+  if (name.empty()) refuseNoName("joint");
   const std::optional<Index> known = model.skeleton().find(name);
-  if (known && *known != joint) {
-    throw Error(ErrorCode::kBadArgument, fmt::format("there is a joint called '{}' already", name));
-  }
+  if (known && *known != joint) refuseNameTaken("joint", name);
   auto renamed = std::make_shared<RiggedModel>(model);
   Asset document = model.asset->clone();
   document.json()["nodes"][model.binding.jointNode[joint]]["name"] = name;

@@ -71,7 +71,7 @@ struct SessionScene::Runner {
   void operator()(const RemoveMember& c) const {
     rearrange([&](Arrangement& now) {
       const std::size_t gone = scene.memberOf(c.member);
-      if (now.members.size() == 1) refuse("the last model of a scene cannot be removed");
+      if (now.members.size() == 1) refuse(ErrorKind::kLastMember, "the last model of a scene cannot be removed");
       letGoOf(now, gone);
       now.members.erase(now.members.begin() + static_cast<std::ptrdiff_t>(gone));
       if (now.chosen > gone || now.chosen == now.members.size()) --now.chosen;
@@ -100,9 +100,9 @@ struct SessionScene::Runner {
     rearrange([&](Arrangement& now) {
       SceneMember& member = now.members[scene.memberOf(c.member)];
       const auto taken = [&](const SceneMember& other) { return other.name == c.name && &other != &member; };
-      if (c.name.empty()) refuse("a member needs a name");
+      if (c.name.empty()) refuseNoName("member");
       if (std::any_of(now.members.begin(), now.members.end(), taken)) {
-        refuse(fmt::format("there is a member called '{}' already", c.name));
+        refuseNameTaken("member", c.name);
       }
       member.name = c.name;
     });
@@ -125,7 +125,9 @@ struct SessionScene::Runner {
     rearrange([&](Arrangement& now) {
       const std::size_t m = scene.memberOf(c.member), to = scene.memberOf(c.to);
       SceneMember& member = now.members[m];
-      if (isCarriedBy(now.members, to, member.session.get())) refuse(fmt::format("'{}' would hold itself", c.member));
+      if (isCarriedBy(now.members, to, member.session.get())) {
+        refuse(ErrorKind::kHoldsItself, fmt::format("'{}' would hold itself", c.member), {{"name", c.member}});
+      }
       const Affine joint = scene.toScene(to) * jointFrame(now.members[to].session->state(), c.joint);
       Affine place = scene.toScene(m);
       if (c.snap) place.pretranslate(joint.translation() - place * boxOf(*member.session, Affine::Identity()).center());
@@ -163,12 +165,12 @@ struct SessionScene::Runner {
 
   void operator()(const Undo&) const {
     scene.requireReady();
-    if (scene.undo_.empty()) refuse("there is nothing to undo");
+    if (scene.undo_.empty()) refuse(ErrorKind::kNothingToUndo, "there is nothing to undo");
     go(scene.undo_, scene.redo_);
   }
   void operator()(const Redo&) const {
     scene.requireReady();
-    if (scene.redo_.empty()) refuse("there is nothing to do again");
+    if (scene.redo_.empty()) refuse(ErrorKind::kNothingToRedo, "there is nothing to do again");
     go(scene.redo_, scene.undo_);
   }
   // Whose step it was is the chosen one, so that one sees what has changed.
@@ -307,8 +309,8 @@ void SessionScene::trim() {
 }
 
 void SessionScene::requireReady() const {
-  if (!isOpen()) refuse("no model is open", {}, "open_sample or open_file comes first");
-  if (session().draggedJoint()) refuse("a joint is being dragged", {}, "end_drag or cancel_drag comes first");
+  if (!isOpen()) refuse(ErrorKind::kNoModel, "no model is open", {}, {}, "open_sample or open_file comes first");
+  if (session().draggedJoint()) refuseDragged();
 }
 
 std::size_t SessionScene::memberOf(const std::string& name) const {

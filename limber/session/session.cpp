@@ -179,7 +179,7 @@ struct Session::Runner {
 
   SessionState state() const {
     session.requireOpen();
-    if (session.drag_) refuse("a joint is being dragged", {}, "end_drag or cancel_drag comes first");
+    if (session.drag_) refuseDragged();
     return session.state_;
   }
 
@@ -571,12 +571,12 @@ struct Session::Runner {
 
   void operator()(const Undo&) const {
     state();
-    if (session.undo_.empty()) refuse("there is nothing to undo");
+    if (session.undo_.empty()) refuse(ErrorKind::kNothingToUndo, "there is nothing to undo");
     go(session.undo_, session.redo_);
   }
   void operator()(const Redo&) const {
     state();
-    if (session.redo_.empty()) refuse("there is nothing to do again");
+    if (session.redo_.empty()) refuse(ErrorKind::kNothingToRedo, "there is nothing to do again");
     go(session.redo_, session.undo_);
   }
   void go(std::vector<Step>& from, std::vector<Step>& to) const {
@@ -618,7 +618,7 @@ Bytes Session::fileOf(const std::string& name) const {
 
 void Session::addMotion(ByteSpan bytes, std::string_view name) {
   requireOpen();
-  if (drag_) refuse("a joint is being dragged", {}, "end_drag or cancel_drag comes first");
+  if (drag_) refuseDragged();
   SessionState next = state_;
   limber::addMotion(next.movement, readMotion(bytes, name, {}, files_));
   commit(AddMotion{std::string(name)}, std::move(next));
@@ -674,13 +674,13 @@ void Session::commit(const Command& command, SessionState next) {
 
 void Session::showMoment(double seconds) {
   requireOpen();
-  if (drag_) refuse("a joint is being dragged", {}, "end_drag or cancel_drag comes first");
+  if (drag_) refuseDragged();
   setTime(state_.movement, seconds);
   show(state_);
 }
 
 void Session::requireOpen() const {
-  if (!isOpen()) refuse("no model is open");
+  if (!isOpen()) refuse(ErrorKind::kNoModel, "no model is open");
 }
 
 const SessionState& Session::state() const {
@@ -695,7 +695,7 @@ const Asset& Session::source() const {
 
 Session Session::fork() const {
   requireOpen();
-  if (drag_) refuse("a joint is being dragged", {}, "end_drag or cancel_drag comes first");
+  if (drag_) refuseDragged();
   Session session(files_, std::make_shared<CommandRecord>(*record_));
   session.state_ = state_;
   return session;

@@ -6,7 +6,7 @@
 
 #include "limber/asset/pose_io.h"
 #include "limber/asset/write.h"
-#include "limber/core/error.h"
+#include "limber/core/known_error.h"
 #include "limber/ik/ik_solver.h"
 #include "limber/ik/limits_json.h"
 #include "limber/pipeline/pose_asset.h"
@@ -68,7 +68,7 @@ auto saidOf(const std::string& entry, const Work& work) {
   try {
     return work();
   } catch (const Error& error) {
-    throw error.within(entry);
+    throwWithin(error, entry);
   }
 }
 

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "limber/core/error.h"
+#include "limber/core/known_error.h"
 #include "limber/skeleton/retime_keys.h"
 
 namespace limber {
@@ -289,8 +289,10 @@ void checkRetiming(std::span<const JointKey> keys, const KeyRetiming& retiming) 
   }
   for (const JointKey& key : keys) {
     if (!(retiming.at(key.seconds) > -kKeySnap)) {
-      throw Error(ErrorCode::kBadArgument,
-                  fmt::format("the key at {} s would come before the clip begins", key.seconds));
+      throw KnownError(
+          ErrorKind::kKeyBeforeClip,
+          {ErrorCode::kBadArgument, fmt::format("the key at {} s would come before the clip begins", key.seconds)},
+          {{"seconds", fmt::format("{:.2f}", key.seconds)}});
     }
   }
 }

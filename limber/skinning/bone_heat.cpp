@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "limber/core/known_error.h"
 #include "limber/core/parallel.h"
 #include "limber/mesh/components.h"
 #include "limber/skinning/heat_solver.h"
@@ -20,7 +21,9 @@ constexpr std::size_t kRange = 1024;  // vertices of one parallel piece of work
 
 void checkArguments(const TriMesh& mesh, std::span<const Bone> bones, const WeightOptions& options) {
   if (bones.empty()) throw Error(ErrorCode::kBadArgument, "there is no bone to take weights from");
-  if (mesh.triangles.empty()) throw Error(ErrorCode::kBadArgument, "the mesh has no triangle");
+  if (mesh.triangles.empty()) {
+    throw KnownError(ErrorKind::kNoSurface, {ErrorCode::kBadArgument, "the mesh has no triangle"});
+  }
   if (options.maxInfluences < 1 || options.maxInfluences > kMostInfluences) {
     throw Error(ErrorCode::kBadArgument, "a vertex can keep 1 to 8 influences", {}, "choose --max-influences 1 to 8");
   }

@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 
-#include "limber/core/error.h"
 #include "limber/core/parallel.h"
+#include "limber/sphere_mesh/handle_count.h"
 
 namespace limber {
 
@@ -62,10 +62,7 @@ SphereMesh SphereMesh::build(const TriMesh& mesh, Progress& progress) {
 }
 
 SphereMesh::Cut SphereMesh::cutAt(Index count) const {
-  if (count < 1 || count > vertexCount()) {
-    throw Error(ErrorCode::kBadArgument, fmt::format("{} handles are asked for", count), {},
-                fmt::format("this model can have 1 to {}", vertexCount()));
-  }
+  if (count < 1 || count > vertexCount()) refuseHandleCount(count, vertexCount());
   Cut cut;
   const auto& merges = sequence_.merges;
   if (count >= sequence_.initialCount) {

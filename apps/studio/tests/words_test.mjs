@@ -54,7 +54,7 @@ const texts = (of) => of.evaluate(() => {
 async function walk(locale) {
   const { page: at, context } = await open({ locale });
   at.setDefaultTimeout(60_000);
-  const met = new Map(), names = new Set();
+  const met = new Map(), names = new Set(), inEnglish = [];
   const note = async (where, asked = false) => {
     if (!asked) await settled(at);
     for (const text of await texts(at)) if (!met.has(text)) met.set(text, where);
@@ -68,8 +68,12 @@ async function walk(locale) {
   const close = (dialog) => at.locator(`#${dialog} button`).last().click();
   const bring = async (name, bytes) => {
     await at.locator('#file').setInputFiles({ name, mimeType: 'application/octet-stream', buffer: Buffer.from(bytes) });
+    await refused(`error of ${name}`);
+  };
+  const refused = async (what) => {
     await at.locator('#notice').waitFor();
-    await note(`error of ${name}`);
+    await note(what);
+    if (await at.locator('#notice .detail[lang=en]').count() > 0) inEnglish.push(what);
     await click('#close-notice');
   };
   await note('start');
@@ -91,7 +95,9 @@ async function walk(locale) {
   await click('#choose-no');
   await click('#rename-joint');
   await note('renaming');
-  await at.locator('#rename').press('Escape');
+  await at.locator('#rename').fill((await sessionState(at)).joints[0].name);
+  await at.locator('#rename').press('Enter');
+  await refused('a name that is taken');
   await click('#gizmo');
   await click('#exact summary');
   await click('#select-several');
@@ -144,7 +150,7 @@ async function walk(locale) {
   await bring('walk.bvh', 'nonsense');
   const language = await at.evaluate(() => document.documentElement.lang);
   await context.close();
-  return { met, names, language };
+  return { met, names, language, inEnglish };
 }
 
 /** Texts wider than what they stand in, panels that lie on each other or stick out of the page. */
@@ -165,6 +171,7 @@ const cases = {
   async 'every text is in German, and nothing is left in English'() {
     const [english, other] = await Promise.all([walk('en-US'), walk('de-DE')]);
     assert.deepEqual([english.language, other.language], ['en', 'de']);
+    assert.deepEqual(other.inEnglish, ['error of work.limber', 'error of walk.bvh'], 'what readers say of damaged files is English');
     const same = Object.entries(german).filter(([key, value]) => value === key).map(([key]) => key);
     // Names of files, joints and methods, addresses; units; the program's own name.
     const plain = (text) => [...other.names, ...english.names, ...same, 'limber', 'limber studio', 'Deutsch', 'English']
@@ -180,14 +187,17 @@ const cases = {
     };
     assert.deepEqual(Object.keys(german).filter((key) => !used(key)), []);
   },
-  'sentences and kinds of the engine that have words are still the engine\u2019s'() {
+  'warnings, errors and methods that have words are still the engine\u2019s'() {
     const engine = filesIn(join(repository, 'limber'), '.cpp').map((path) => readFileSync(path, 'utf8')).join('\n');
     const table = readFileSync(join(sources, 'words/engine.ts'), 'utf8'), part = (from, to) => table.slice(table.indexOf(from), table.indexOf(to));
-    const sentences = [...part('const sentences', 'const errors').matchAll(/'((?:the|no|neither|is|a) [^']*)'/g)].map(([, text]) => text.replaceAll('"', '\\"'));
+    const errorKinds = [...part('const kinds', 'const leads').matchAll(/^ {2}'([a-z-]+)': \{/gm)].map(([, kind]) => kind);
+    const thrown = [...readFileSync(join(repository, 'limber/core/known_error.cpp'), 'utf8').matchAll(/return "([a-z]+-[a-z-]+)";/g)].map(([, kind]) => kind);
+    assert.ok(thrown.length > 30);
+    assert.deepEqual(errorKinds, thrown);
     const kinds = [...part('const warnings', 'type Warning').matchAll(/'([a-z-]+)':/g)].map(([, kind]) => kind);
     const methods = [...part('const methods', 'export const methodName').matchAll(/'([a-z-]+)': \{/g)].map(([, name]) => name);
-    assert.ok(sentences.length > 4 && kinds.length > 10 && methods.length > 10);
-    assert.deepEqual([...sentences, ...kinds, ...methods].filter((text) => !engine.includes(`"${text}"`)), []);
+    assert.ok(kinds.length > 10 && methods.length > 10);
+    assert.deepEqual([...kinds, ...methods].filter((text) => !engine.includes(`"${text}"`)), []);
   },
   async 'a language and a size of the text that are chosen are kept'() {
     const { page: at, context } = await open();

@@ -15,7 +15,7 @@ export const refusal = (message: string, where = '', remedy = '') => new EngineE
 
 /** What a reader of other formats says, which speaks English. */
 export const unreadable = (name: string, why: unknown) => new EngineError({
-  code: 'file', message: 'the file cannot be read', where: name, remedy: why instanceof Error ? why.message : String(why),
+  code: 'file', message: why instanceof Error ? why.message : String(why), where: name, remedy: '',
 });
 
 const cancelled: LimberError = { code: 'cancelled', message: 'stopped', where: '', remedy: '' };

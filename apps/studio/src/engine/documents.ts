@@ -68,6 +68,7 @@ const drawnRate = 30, mostDrawn = 600; // moments a second of paths and curves, 
 const changesWeights = new Set(['paint_weights', 'mirror_weights']);
 const withModel = /\.(glb|gltf|vrm)$/i;
 const none = new Float32Array();
+const dragged: LimberError = { code: 'bad-argument', kind: 'joint-dragged', values: {}, message: 'a joint is being dragged', where: '', remedy: '' };
 
 export class Documents {
   private session: Session;
@@ -188,7 +189,7 @@ export class Documents {
 
   private fork(session: Session): Session {
     const fork = this.limber.forkSession(session);
-    if (!fork) throw new EngineFailure({ ok: false, error: { code: 'bad-argument', message: 'a joint is being dragged', where: '', remedy: '' } });
+    if (!fork) throw new EngineFailure({ ok: false, error: dragged });
     return fork;
   }
 
@@ -229,7 +230,7 @@ export class Documents {
     this.endComparison();
     const variants = commands.map((command): Variant | LimberError => {
       const session = this.limber.forkSession(this.session);
-      if (!session) return { code: 'bad-argument', message: 'a joint is being dragged', where: '', remedy: '' };
+      if (!session) return dragged;
       const step = session.run(command);
       if (!step.ok || !step.state) {
         session.free();

@@ -1,11 +1,11 @@
 // What the page and the worker that holds the engine say to each other.
 import type {
-  Command, ExportFormat, LimberError, Measures, MethodKind, Methods, PickHit, Placement, Ray, SceneMember, SessionState, SurfaceHit,
+  Command, ErrorKind, ExportFormat, LimberError, Measures, MethodKind, Methods, PickHit, Placement, Ray, SceneMember, SessionState, SurfaceHit,
   SurfaceModel, WeightArrays,
 } from '@engine/limber.mjs';
 
 export type {
-  Command, ExportFormat, LimberError, Measures, MethodKind, Methods, PickHit, Placement, Ray, SceneMember, SessionState, SurfaceHit,
+  Command, ErrorKind, ExportFormat, LimberError, Measures, MethodKind, Methods, PickHit, Placement, Ray, SceneMember, SessionState, SurfaceHit,
   SurfaceModel, WeightArrays,
 };
 export type Vector = [number, number, number];
@@ -74,7 +74,7 @@ export type MotionRequest =
   | { kind: 'motion'; bytes: Uint8Array; name: string }
   | { kind: 'run'; command: { do: 'add_sample_motion'; name: string } };
 
-/** Whether a motion or a pose can be put on the model, tried beside the document. */
+/** Whether a motion or a pose could be put on the model with a named skeleton's rig, tried beside the document. */
 export interface Trial {
   /** What a motion is called in the document then. */
   motion: string;
@@ -133,7 +133,7 @@ export type Request =
   | { kind: 'preview-rig' }
   /** What moves the surface at other moments of the chosen clip, in seconds; not while a joint is dragged. */
   | { kind: 'preview-moments'; moments: number[] }
-  /** The pose that is shown, as the text of a file. */
+  /** The pose that is shown, as the text of a file; poses of the chosen clip at other moments. */
   | { kind: 'pose'; name: string }
   | { kind: 'sample-poses' }
   /** As try-motion and preview-motion. */

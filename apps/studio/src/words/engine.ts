@@ -1,7 +1,8 @@
 // What comes from the engine as English, in the words of the page: stages, methods, motions, warnings and errors. What is
 // not known here is shown as the engine says it.
-import type { LimberError, SessionState } from '../engine/messages';
-import { language, say, type Words } from './say';
+import type { ErrorKind, LimberError, SessionState } from '../engine/messages';
+import { partName } from './parts';
+import { language, say, type Values, type Words } from './say';
 
 type Named = Readonly<Record<string, Words>>;
 const capital = (text: string) => text.charAt(0).toUpperCase() + text.slice(1);
@@ -100,13 +101,58 @@ export function warningText({ kind, message }: Pick<Warning, 'kind' | 'message'>
   return known && language !== 'en' ? say(known) : message;
 }
 
-/** Sentences of the engine that a user of the page meets. */
-const sentences: readonly Words[] = [
-  'the model is not its own mirror image', 'neither the model nor its skeleton is its own mirror image', 'a joint needs a name', 'no clip is chosen',
-  'the mesh has no triangle', 'is no GLB: it does not start with "glTF"',
-];
-/** All others: by what kind of error it is. */
-const errors: Named = {
+/** What a user of the page meets in ordinary work: what went wrong, and what to do; of a file also in which. */
+const kinds: Readonly<Record<ErrorKind, { title: Words; remedy?: Words; ofFile?: true }>> = {
+  'nothing-to-undo': { title: 'there is nothing to undo' },
+  'nothing-to-redo': { title: 'there is nothing to do again' },
+  'joint-dragged': { title: 'a joint is being dragged', remedy: 'let go of it first' },
+  'no-model': { title: 'no model is open', remedy: 'open a model first' },
+  'no-clip': { title: 'no clip is chosen', remedy: 'choose or make a clip first' },
+  'name-missing': { title: 'a name is missing' },
+  'name-taken': { title: 'something else is called {name} already', remedy: 'choose another name' },
+  'only-root': { title: '{joint} is the root of the rig, which cannot be deleted' },
+  'joint-below-itself': { title: '{joint} cannot hang on {parent}, which hangs on it' },
+  'last-member': { title: 'the last model of a scene cannot be taken out' },
+  'holds-itself': { title: '{name} would hold itself', remedy: 'attach it to another model' },
+  'model-not-mirrored': { title: 'the model is not its own mirror image' },
+  'nothing-mirrored': { title: 'neither the model nor its skeleton is its own mirror image' },
+  'joint-locked': { title: 'the weights of {joint} are locked', remedy: 'unlock the joint first' },
+  'pin-outside': { title: '{joint} cannot go so far outside the model' },
+  'handle-count': { title: '{count} handles are asked for', remedy: 'this model can have 1 to {most}' },
+  'too-many-joints': { title: 'a rig of {count} joints is too large', remedy: 'a model can have at most {most}' },
+  'key-before-clip': { title: 'the key at {seconds} s would come before the clip begins' },
+  'no-motion': { title: 'nothing moves in {name}', remedy: 'choose a file with a motion' },
+  'motion-too-long': { title: 'the motion {name} is too long', remedy: 'cut it into shorter ones' },
+  'unlike-bodies': {
+    title: 'the motion\u2019s skeleton of {source} joints and the model\u2019s of {target} have too little in common',
+    remedy: 'choose a motion of a body that is built like this one',
+  },
+  'nothing-matched': { title: 'no joint of the motion moves a joint of the model', remedy: 'match some joints' },
+  'match-without-joint': { title: '{part} has no joint on one side' },
+  'matched-twice': { title: '{part} is matched twice' },
+  'joint-matched-twice': { title: '{joint} cannot be the {part}: another part has it', remedy: 'give the other part another joint first' },
+  'too-few-matched': {
+    title: 'the matched joints do not tell how large the bodies are',
+    remedy: 'match parts that lie farther apart, such as hips, head and feet',
+  },
+  'unlike-pose': { title: 'the pose {name} was made for another kind of body', remedy: 'choose one of a body that is built like this one' },
+  'unfit-pose': { title: 'the pose {name} does not fit this skeleton' },
+  'no-pose-file': { title: 'this is no pose that limber knows', ofFile: true, remedy: 'poses are saved in the library of poses' },
+  'no-limits-file': { title: 'these are no limits of joints that limber knows' },
+  'limits-of-other': {
+    title: 'the model has no joint {joint}, for which there is a limit',
+    remedy: 'choose limits that were made for this skeleton',
+  },
+  'empty-file': { title: 'the file is empty', ofFile: true },
+  'cut-file': { title: 'the file is cut off', ofFile: true, remedy: 'copy or download it again' },
+  'no-glb': { title: 'this is no GLB', ofFile: true, remedy: 'export the model again' },
+  'unknown-format': { title: 'limber cannot read this format', ofFile: true, remedy: 'convert it to GLB or glTF' },
+  'no-surface': { title: 'there is nothing to rig: the model has no surface', ofFile: true, remedy: 'limber needs triangles, not points or lines' },
+  'out-of-memory': { title: 'not enough memory', ofFile: true, remedy: 'try a smaller model' },
+  'no-bvh-name': { title: 'the name of {joint} cannot stand in a BVH file', remedy: 'give the joint another name' },
+};
+/** What went wrong with all others, whose own sentence is English. */
+const leads: Named = {
   'bad-argument': 'This is not possible here', 'file': 'The file cannot be read', 'bad-data': 'The file is damaged, or of another kind than its name says',
   'unsupported': 'This cannot be done with this model', 'limit': 'That is too large', 'engine': 'Something went wrong in the engine',
 };
@@ -120,10 +166,18 @@ export interface ToldError {
 
 const joined = (...texts: string[]) => texts.filter((text) => text !== '').join(' \u2014 ');
 
+/** The engine names parts of bodies by their names. */
+const sayValues = (values: Values): Values =>
+  Object.fromEntries(Object.entries(values).map(([name, value]) => [name, name === 'part' ? partName(String(value)) : value]));
+
 /** An error for people. Those of the page itself (code "page") are in their language already. */
-export function told({ code, message, where, remedy }: LimberError): ToldError {
-  if (code === 'page' || language === 'en') return { title: capital(message), detail: joined(where, remedy), inEnglish: false };
-  const sentence = sentences.find((known) => known === message);
-  if (sentence) return { title: capital(say(sentence)), detail: where, inEnglish: false };
-  return { title: say(errors[code] ?? 'Something went wrong in the engine'), detail: joined(message, where, remedy), inEnglish: true };
+export function told({ code, kind, values = {}, message, where, remedy }: LimberError): ToldError {
+  if (kind) {
+    const { title, remedy: help, ofFile } = kinds[kind], said = sayValues(values);
+    return { title: capital(say(title, said)), detail: joined(ofFile ? where : '', help ? say(help, said) : ''), inEnglish: false };
+  }
+  if (code === 'page') return { title: capital(message), detail: joined(where, remedy), inEnglish: false };
+  if (code === 'file') return { title: say('The file cannot be read'), detail: joined(where, message, remedy), inEnglish: language !== 'en' };
+  if (language === 'en') return { title: capital(message), detail: joined(where, remedy), inEnglish: false };
+  return { title: say(leads[code] ?? 'Something went wrong in the engine'), detail: joined(where, message, remedy), inEnglish: true };
 }

@@ -69,7 +69,7 @@ export function motionCalls(core: Core) {
         const motion = of instanceof File ? await motionOf(of) : sampleMotion(of.name);
         return await engine.ask({ kind: 'preview-motion', motion, most: of instanceof File ? previewSeconds : of.seconds, rate: previewRate });
       } catch (error) {
-        const known = error instanceof EngineError ? error : refusal(say('the file cannot be read'));
+        const known = error instanceof EngineError ? error : refusal(say('The file cannot be read'));
         return known.cancelled ? null : { error: known.error, named: false, seconds: 0, frames: [] };
       }
     },
