@@ -199,8 +199,10 @@ function createSession(engine, handle = engine._limber_session_new()) {
       const result = call(engine, engine._limber_session_pick_member, [handle, ...ray.origin, ...ray.direction]);
       return result.ok ? { ok: true, hit: result.account } : result;
     },
-    /** Motions of a BVH file or of a model. @type {(file: Uint8Array, name: string) => StepResult} */
-    addMotion: (file, name) => step(call(engine, engine._limber_session_add_motion, [handle], file, name)),
+    /** Motions of a BVH file or of a model; `retarget`: as in the command add_motion.
+     *  @type {(file: Uint8Array, name: string, retarget?: boolean) => StepResult} */
+    addMotion: (file, name, retarget = false) =>
+      step(call(engine, engine._limber_session_add_motion, [handle, Number(retarget)], file, name)),
     /** Where the joints stand that the chosen clip's motion was made for: x, y, z each; empty where there are none.
      *  @type {() => { ok: true, places: Float32Array } | Failure} */
     sourceJoints: () => {

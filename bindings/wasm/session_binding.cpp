@@ -299,11 +299,12 @@ LIMBER_EXPORT CallResult* limber_session_pick_member(const SessionHandle* handle
   });
 }
 
-LIMBER_EXPORT CallResult* limber_session_add_motion(SessionHandle* handle, const std::uint8_t* file,
+LIMBER_EXPORT CallResult* limber_session_add_motion(SessionHandle* handle, int retarget, const std::uint8_t* file,
                                                     std::size_t fileSize, const char* name, std::size_t nameSize) {
   return guarded({name, nameSize}, [&] {
-    handle->scene.addMotion({file, fileSize}, {name, nameSize});
-    return stateAfter(handle->scene, limber::AddMotion{});
+    const limber::AddMotion command{std::string(name, nameSize), retarget != 0};
+    handle->scene.addMotion({file, fileSize}, command);
+    return stateAfter(handle->scene, command);
   });
 }
 

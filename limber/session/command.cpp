@@ -198,10 +198,12 @@ void visitFields(Visitor& field, ReparentJoint& c) {
 template <class Visitor>
 void visitFields(Visitor& field, AddMotion& c) {
   field("file", c.file);
+  field("retarget", c.retarget);
 }
 template <class Visitor>
 void visitFields(Visitor& field, AddSampleMotion& c) {
   field("name", c.name);
+  field("retarget", c.retarget);
 }
 template <class Visitor>
 void visitFields(Visitor& field, RetargetMotion& c) {

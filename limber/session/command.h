@@ -208,10 +208,12 @@ struct ReparentJoint {
 // without folder and extension, with a number behind it where that is taken.
 struct AddMotion {
   std::string file;
+  bool retarget = false;  // and puts its first clip onto the model; where that cannot be, nothing is added
 };
 // A motion that limber makes itself; called by its name.
 struct AddSampleMotion {
   std::string name;  // of sampleMotions()
+  bool retarget = false;
 };
 // Puts a clip of a motion onto the model. Again with other options, it takes the place of what it gave before.
 struct RetargetMotion {

@@ -350,6 +350,30 @@ TEST(Movement, KeysOfOneJointOfAClipMadeByHand) {
   EXPECT_THAT(keyTimes(*session.state().movement.clip()), ElementsAre(0, 1));
 }
 
+TEST(Movement, AMotionIsAddedAndPutOnAtOnceOrNotAtAll) {
+  Session session = person();
+  act(session, AddMotion{.file = "walk.bvh", .retarget = true});
+  Session apart = walking();
+  ASSERT_EQ(session.state().movement.clips.size(), 1u);
+  EXPECT_EQ(session.state().movement.clip()->rotations.front().values.size(),
+            apart.state().movement.clip()->rotations.front().values.size());
+  EXPECT_EQ(turnOf(session, "leftUpperLeg").coeffs(), turnOf(apart, "leftUpperLeg").coeffs());
+  act(session, Undo{});
+  EXPECT_TRUE(session.state().movement.clips.empty());
+  EXPECT_TRUE(session.state().movement.motions.empty());
+
+  const std::size_t recorded = session.record().size();
+  try {
+    act(session, AddSampleMotion{.name = "gallop", .retarget = true});
+    FAIL() << "a person does not gallop";
+  } catch (const KnownError& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::kUnlikeBodies);
+  }
+  EXPECT_TRUE(session.state().movement.motions.empty());
+  EXPECT_EQ(session.record().size(), recorded);
+  EXPECT_EQ(session.redoName(), "add_motion") << "what was undone can still be done again";
+}
+
 TEST(Movement, WhatIsRefusedHasAKind) {
   Session session = walking();
   const auto kindOf = [&](const Command& command) -> std::optional<ErrorKind> {

@@ -223,8 +223,8 @@ void SessionScene::add(ByteSpan bytes, const AddFile& command, Progress& progres
   join(command, std::move(session));
 }
 
-void SessionScene::addMotion(ByteSpan bytes, std::string_view name) {
-  onChosen(AddMotion{std::string(name)}, [&](Session& session) { session.addMotion(bytes, name); });
+void SessionScene::addMotion(ByteSpan bytes, const AddMotion& command) {
+  onChosen(command, [&](Session& session) { session.addMotion(bytes, command); });
 }
 
 Affine SessionScene::toScene(std::size_t member) const {

@@ -63,7 +63,7 @@ class SessionScene {
   // The same as OpenFile, AddFile and AddMotion, for files whose bytes are at hand.
   void open(ByteSpan bytes, std::string_view name, Progress& progress, bool limbsFollow = false);
   void add(ByteSpan bytes, const AddFile& command, Progress& progress);
-  void addMotion(ByteSpan bytes, std::string_view name);
+  void addMotion(ByteSpan bytes, const AddMotion& command);
 
   bool isOpen() const { return session().isOpen(); }
   // There is always one; its session has no model before one is opened.

@@ -169,6 +169,15 @@ void show(SessionState& next) {
   authored(next);
 }
 
+void addMotionTo(SessionState& next, Motion motion, bool retarget) {
+  limber::addMotion(next.movement, std::move(motion));
+  if (!retarget) return;
+  RetargetMotion command;
+  command.motion = next.movement.motions.back()->name;
+  retargetMotion(next.movement, next.rig->skeleton(), command);
+  show(next);
+}
+
 }  // namespace
 
 // Carries out one command; those that change the document commit a changed copy of its state.
@@ -502,10 +511,10 @@ struct Session::Runner {
     session.commit(command, std::move(next));
   }
 
-  void operator()(const AddMotion& c) const { session.addMotion(session.fileOf(c.file), c.file); }
+  void operator()(const AddMotion& c) const { session.addMotion(session.fileOf(c.file), c); }
   void operator()(const AddSampleMotion& c) const {
     SessionState next = state();
-    limber::addMotion(next.movement, makeSampleMotion(c.name));
+    addMotionTo(next, makeSampleMotion(c.name), c.retarget);
     session.commit(command, std::move(next));
   }
   // What changes clips, and then shows the moment anew.
@@ -616,12 +625,12 @@ Bytes Session::fileOf(const std::string& name) const {
   return *std::move(bytes);
 }
 
-void Session::addMotion(ByteSpan bytes, std::string_view name) {
+void Session::addMotion(ByteSpan bytes, const AddMotion& command) {
   requireOpen();
   if (drag_) refuseDragged();
   SessionState next = state_;
-  limber::addMotion(next.movement, readMotion(bytes, name, {}, files_));
-  commit(AddMotion{std::string(name)}, std::move(next));
+  addMotionTo(next, readMotion(bytes, command.file, {}, files_), command.retarget);
+  commit(command, std::move(next));
 }
 
 void Session::start(Asset source, const Command& command, Opening how, Progress& progress) {

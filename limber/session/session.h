@@ -75,7 +75,7 @@ class Session {
   // Likewise the same as AddFile.
   void add(ByteSpan bytes, const AddFile& command, Progress& progress);
   // The same as AddMotion, for a file whose bytes are at hand. Throws as readMotion does.
-  void addMotion(ByteSpan bytes, std::string_view name);
+  void addMotion(ByteSpan bytes, const AddMotion& command);
 
   // Another session with the same document, and nothing to undo: to try something beside this one. Shares everything
   // large. Throws Error kBadArgument during a drag.

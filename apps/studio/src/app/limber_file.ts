@@ -19,7 +19,7 @@ export function toLimberFile(requests: Request[]): Uint8Array {
     const file = `files/${number}/${request.name.replace(/[\\/]/g, '_')}`;
     files[file] = [request.bytes, { level: 6 }];
     if (request.kind === 'add') return { do: 'add_file', file, limbs_follow: request.limbsFollow, as_prop: request.asProp };
-    return request.kind === 'open' ? { do: 'open_file', file, limbs_follow: request.limbsFollow ?? false } : { do: 'add_motion', file };
+    return request.kind === 'open' ? { do: 'open_file', file, limbs_follow: request.limbsFollow ?? false } : { do: 'add_motion', file, retarget: request.retarget ?? false };
   });
   files[list] = strToU8(JSON.stringify({ limber_commands: version, commands }, null, 1));
   return zipSync(files);
@@ -45,6 +45,6 @@ export function fromLimberFile(archive: Uint8Array, name: string): Request[] {
     const name = path.split('/').pop() ?? path;
     const limbsFollow = command.limbs_follow === true;
     if (command.do === 'add_file') return { kind: 'add', bytes, name, limbsFollow, asProp: command.as_prop === true };
-    return command.do === 'open_file' ? { kind: 'open', bytes, name, limbsFollow } : { kind: 'motion', bytes, name };
+    return command.do === 'open_file' ? { kind: 'open', bytes, name, limbsFollow } : { kind: 'motion', bytes, name, retarget: command.retarget === true };
   });
 }

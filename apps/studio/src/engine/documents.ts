@@ -22,11 +22,10 @@ function orThrow<T extends { ok: true }>(result: T | Failure): T {
 }
 
 /** The motion in a document, as its newest clip, or why not. */
-function putOn(session: Session, request: MotionRequest): { motion: string; error: LimberError | null; state: SessionState | null } {
+function putOn(session: Session, request: MotionRequest, method = 'limb-ik'): { error: LimberError | null; state: SessionState | null } {
   const added = orThrow(request.kind === 'motion' ? session.addMotion(request.bytes, request.name) : session.run(request.command));
-  const motion = added.state?.motions.at(-1)?.name ?? '';
-  const put = session.run({ do: 'retarget', motion });
-  return put.ok ? { motion, error: null, state: put.state } : { motion, error: put.error, state: null };
+  const put = session.run({ do: 'retarget', motion: added.state?.motions.at(-1)?.name ?? '', method });
+  return put.ok ? { error: null, state: put.state } : { error: put.error, state: null };
 }
 
 /** The motion's first `most` seconds on a document. */
@@ -92,9 +91,7 @@ export class Documents {
 
   add(request: Extract<Request, { kind: 'add' }>): Answers['add'] { return this.shown(this.take(request), true); }
 
-  addMotion(bytes: Uint8Array, name: string): Answers['motion'] {
-    return this.shown(this.take({ kind: 'motion', bytes, name }), false);
-  }
+  addMotion(request: Extract<Request, { kind: 'motion' }>): Answers['motion'] { return this.shown(this.take(request), false); }
 
   run(command: Command): Answers['run'] {
     const step = this.shown(this.take({ kind: 'run', command }), changesRig.has(command.do));
@@ -123,19 +120,13 @@ export class Documents {
     return { step: this.shown({ state: this.state, skin }, true), failed, error };
   }
 
-  tryMotion(request: MotionRequest, named: boolean): Trial { return this.tryOn(named, (fork) => putOn(fork, request)); }
-  tryPose(pose: string, named: boolean): Trial {
-    return this.tryOn(named, (fork) => ({ motion: '', error: frameIn(fork, pose).error }));
-  }
+  /** By the method that takes the least time: all need the same joints. */
+  tryMotion(request: MotionRequest): Trial { return this.tryNamed((fork) => putOn(fork, request, 'aligned').error); }
+  tryPose(pose: string): Trial { return this.tryNamed((fork) => frameIn(fork, pose).error); }
 
-  private tryOn(named: boolean, act: (fork: Session) => Pick<Trial, 'motion' | 'error'>): Trial {
-    const rigged = named ? this.withNames() : { session: this.session, state: this.state };
-    return this.onFork(rigged.session, (fork) => {
-      const { motion, error } = act(fork);
-      return {
-        motion, error, joints: rigged.state?.joints.length ?? 0, warnings: rigged.state?.warnings ?? [],
-      };
-    });
+  private tryNamed(act: (fork: Session) => LimberError | null): Trial {
+    const { session, state } = this.withNames();
+    return { error: this.onFork(session, act), joints: state.joints.length, warnings: state.warnings };
   }
 
   previewMotion(request: MotionRequest, most: number, rate: number): MotionPreview {
@@ -263,7 +254,7 @@ export class Documents {
       }
       case 'add': return orThrow(this.session.add(request.bytes, request.name, request.limbsFollow, request.asProp));
       case 'motion': {
-        const added = orThrow(this.session.addMotion(request.bytes, request.name)), motion = added.state?.motions.at(-1);
+        const added = orThrow(this.session.addMotion(request.bytes, request.name, request.retarget)), motion = added.state?.motions.at(-1);
         if (motion && withModel.test(request.name)) this.addSource(motion.name, request.bytes, request.name);
         return added;
       }

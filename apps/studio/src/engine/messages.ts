@@ -71,14 +71,12 @@ export interface Curve {
 
 /** A motion on its way to the model: from a file, or one that the engine makes. */
 export type MotionRequest =
-  | { kind: 'motion'; bytes: Uint8Array; name: string }
-  | { kind: 'run'; command: { do: 'add_sample_motion'; name: string } };
+  | { kind: 'motion'; bytes: Uint8Array; name: string; retarget?: boolean }
+  | { kind: 'run'; command: { do: 'add_sample_motion'; name: string; retarget?: boolean } };
 
 /** Whether a motion or a pose could be put on the model with a named skeleton's rig, tried beside the document. */
 export interface Trial {
-  /** What a motion is called in the document then. */
-  motion: string;
-  /** Why it cannot. */
+  /** Why it could not. */
   error: LimberError | null;
   /** Of the rig that it would be put on. */
   joints: number;
@@ -123,10 +121,10 @@ export type Request =
   | { kind: 'add'; bytes: Uint8Array; name: string; limbsFollow: boolean; asProp: boolean }
   /** Fails where the file is cut off. */
   | { kind: 'check-ply'; bytes: Uint8Array; name: string }
-  | { kind: 'motion'; bytes: Uint8Array; name: string }
+  /** Put on the model as well, or not added, where `retarget` says so. */
+  | { kind: 'motion'; bytes: Uint8Array; name: string; retarget?: boolean }
   | { kind: 'run'; command: Command }
-  /** Before, the model gets a rig whose joints have names, where `named` says so. */
-  | { kind: 'try-motion'; motion: MotionRequest; named: boolean }
+  | { kind: 'try-motion'; motion: MotionRequest }
   | { kind: 'sample-motions' }
   /** As much of the motion as that, in as many frames a second; changes nothing. */
   | { kind: 'preview-motion'; motion: MotionRequest; most: number; rate: number }
@@ -137,7 +135,7 @@ export type Request =
   | { kind: 'pose'; name: string }
   | { kind: 'sample-poses' }
   /** As try-motion and preview-motion. */
-  | { kind: 'try-pose'; pose: string; named: boolean }
+  | { kind: 'try-pose'; pose: string }
   | { kind: 'preview-pose'; pose: string }
   /** A new document, by all that was asked for to make it. */
   | { kind: 'restore'; requests: Request[] }

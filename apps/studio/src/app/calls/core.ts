@@ -56,12 +56,13 @@ export class Core {
   /** Called behind each command that went well. */
   followCommands(follow: (command: Command) => Promise<void>) { this.runners.push(follow); }
 
-  async run(command: Command) {
-    await this.guard(async () => {
-      this.take(await this.engine.run(command));
-      for (const follow of this.runners) await follow(command);
-    });
+  /** Throws where the engine refuses. */
+  async carryOut(command: Command) {
+    this.take(await this.engine.run(command));
+    for (const follow of this.runners) await follow(command);
   }
+
+  async run(command: Command) { await this.guard(() => this.carryOut(command)); }
 
   /** What goes wrong is told; the page goes on. */
   async guard<T>(act: () => Promise<T>): Promise<T | null> {

@@ -10,9 +10,9 @@ import { withSkeleton } from './skeleton_first';
 const previewRate = 12; // frames a second of a motion on the shelf; between them it is blended
 const previewSeconds = 5; // of a user's motion
 
-const sampleMotion = (name: string): MotionRequest => ({ kind: 'run', command: { do: 'add_sample_motion', name } });
-const motionOf = async (file: File): Promise<MotionRequest> =>
-  ({ kind: 'motion', bytes: new Uint8Array(await file.arrayBuffer()), name: file.name });
+const sampleMotion = (name: string, retarget = false): MotionRequest => ({ kind: 'run', command: { do: 'add_sample_motion', name, retarget } });
+const motionOf = async (file: File, retarget = false): Promise<MotionRequest> =>
+  ({ kind: 'motion', bytes: new Uint8Array(await file.arrayBuffer()), name: file.name, retarget });
 
 export type MotionCalls = ReturnType<typeof motionCalls>;
 
@@ -34,17 +34,14 @@ export function motionCalls(core: Core) {
 
   async function play(motion: MotionRequest) {
     if (!page.now.session) return;
-    const title = say('The model needs a skeleton for this motion');
-    const trial = await withSkeleton(core, title, (named) => engine.ask({ kind: 'try-motion', motion, named }));
-    if (!trial) return;
-    const before = page.now.session?.clips.length ?? 0;
-    core.take(await engine.ask(motion));
-    core.take(await engine.run({ do: 'retarget', motion: trial.motion }));
+    const before = page.now.session.clips.length;
+    await withSkeleton(core, say('The model needs a skeleton for this motion'),
+      async () => core.take(await engine.ask(motion)), () => engine.ask({ kind: 'try-motion', motion }));
     if ((page.now.session?.clips.length ?? 0) > before) page.set({ playing: true, display: 'surface', correcting: false });
   }
 
   /** Plays what moves in the file on the model. */
-  async function openMotion(file: File) { await core.guard(async () => play(await motionOf(file))); }
+  async function openMotion(file: File) { await core.guard(async () => play(await motionOf(file, true))); }
 
   return {
     openMotion,
@@ -61,7 +58,7 @@ export function motionCalls(core: Core) {
     },
 
     /** One that the engine makes itself. */
-    async openSampleMotion(name: string) { await core.guard(() => play(sampleMotion(name))); },
+    async openSampleMotion(name: string) { await core.guard(() => play(sampleMotion(name, true))); },
 
     /** How a motion would look on the model as it is; null where the page is told to stop. */
     async previewMotion(of: Motion): Promise<MotionPreview | null> {

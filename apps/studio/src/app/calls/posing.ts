@@ -51,9 +51,8 @@ export function posingCalls(core: Core) {
       if (page.now.playing) page.set({ playing: false });
       await core.guard(async () => {
         const names = joints.map((joint) => core.jointName(joint));
-        const title = say('The model needs a skeleton for this pose');
-        const trial = await withSkeleton(core, title, (named) => engine.ask({ kind: 'try-pose', pose, named }));
-        if (trial) await core.run({ do: 'apply_pose', pose, joints: names, mirrored });
+        await withSkeleton(core, say('The model needs a skeleton for this pose'),
+          () => core.carryOut({ do: 'apply_pose', pose, joints: names, mirrored }), () => engine.ask({ kind: 'try-pose', pose }));
       });
     },
 

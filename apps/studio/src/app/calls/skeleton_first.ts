@@ -6,25 +6,30 @@ import { warningText } from '../../words/engine';
 import { say } from '../../words/say';
 import type { Core } from './core';
 
-/** What is tried beside the document fits it then. A model whose handles have no names gets a skeleton first, where the
- *  user agrees; else all stays as it was: null. */
-export async function withSkeleton(core: Core, title: string, attempt: (named: boolean) => Promise<Trial>): Promise<Trial | null> {
+/** Does it; where the model's handles have no names for it, with a skeleton first, where the user agrees. Where it cannot be
+ *  done all stays as it was. `trial`: whether it could be done with a skeleton. */
+export async function withSkeleton(core: Core, title: string, act: () => Promise<void>, trial: () => Promise<Trial>) {
   const state = core.page.now.session;
-  let trial = await attempt(false);
-  if (state && canBeNamed(trial.error, state)) {
-    const refused = trial.error;
-    trial = await attempt(true);
-    if (trial.error) throw new EngineError(refused ?? trial.error);
+  try {
+    return await act();
+  } catch (refused) {
+    if (!state || !(refused instanceof EngineError) || !canBeNamed(refused.error, state)) throw refused;
+    const { error, joints, warnings } = await trial();
+    if (error) throw refused;
     const agreed = await core.ask(title,
       [
-        say('Its {handles} will be replaced by a skeleton of {joints} with names.', { handles: counted(state.joints.length, 'handle'), joints: counted(trial.joints, 'joint') }),
-        ...trial.warnings.map((warning) => say('Please look at the result: {warning}.', { warning: warningText(warning) })),
+        say('Its {handles} will be replaced by a skeleton of {joints} with names.', { handles: counted(state.joints.length, 'handle'), joints: counted(joints, 'joint') }),
+        ...warnings.map((warning) => say('Please look at the result: {warning}.', { warning: warningText(warning) })),
         say('Undo takes it back.'),
       ].join(' '),
       say('Give it a skeleton'));
-    if (!agreed) return null;
+    if (!agreed) return;
     core.take(await core.engine.run({ do: 'choose_methods', rigger: 'template', skinning: state.skinning }));
   }
-  if (trial.error) throw new EngineError(trial.error);
-  return trial;
+  try {
+    await act();
+  } catch (refused) {
+    core.take(await core.engine.run({ do: 'undo' }));
+    throw refused;
+  }
 }
