@@ -69,8 +69,8 @@ import createEngine from './limber_engine.mjs';
  *                       contact_agreement: number, [figure: string]: number | boolean } | null }} Measures
  *
  * skin: 16 numbers for each joint, a matrix column by column; state: null after a drag's update
- * or turn and a moment of a clip.
- * @typedef {{ ok: true, state: SessionState | null, skin: Float32Array } | Failure} StepResult
+ * or turn and a moment of a clip; pinned: joints that hold on to a place.
+ * @typedef {{ ok: true, state: SessionState | null, skin: Float32Array, pinned: number[] } | Failure} StepResult
  * @typedef {{ joint: number, on_handle: boolean, position: Vector, distance: number,
  *             inside: Vector }} PickHit
  * @typedef {{ dab: [number, number, number], position: Vector, normal: Vector, joint: number,
@@ -164,9 +164,11 @@ function call(engine, method, leading, ...inputs) {
 
 function createSession(engine, handle = engine._limber_session_new()) {
   if (handle === 0) throw new RangeError('the engine is out of memory');
-  const step = (result) => result.ok
-    ? { ok: true, state: 'name' in result.account ? result.account : null, skin: new Float32Array(result.bytes.buffer) }
-    : result;
+  const step = (result) => {
+    if (!result.ok) return result;
+    const { account, bytes } = result, state = 'name' in account ? account : null;
+    return { ok: true, state, skin: new Float32Array(bytes.buffer), pinned: state?.targets.map(({ joint }) => joint) ?? account.pinned };
+  };
   return {
     /** The engine's own name for it. */
     handle,

@@ -179,13 +179,21 @@ CallResult modelOf(const limber::SessionState& state) {
   return result;
 }
 
-// A drag's updates and a clip's moments come once a frame and change nothing but the pose.
+// Of the joints that hold on to a place, which feet do where they stand at a clip's moment.
+std::string pinnedOf(const limber::SessionState& state) {
+  Json pinned = Json::array();
+  for (const limber::HeldTarget& target : state.targets) pinned.push_back(target.joint);
+  return textOf({{"pinned", pinned}});
+}
+
+// A drag's updates and a clip's moments come once a frame and change nothing but the pose, and which feet stand.
 CallResult stateAfter(const limber::SessionScene& scene, const limber::Command& command) {
   const bool frame =
       std::holds_alternative<limber::UpdateDrag>(command) || std::holds_alternative<limber::TurnDrag>(command) ||
       std::holds_alternative<limber::MoveDrag>(command) || std::holds_alternative<limber::SetTime>(command) ||
       std::holds_alternative<limber::SetClock>(command);
-  return {true, bytesOf(skinArray(scene.session())), frame ? "{}" : textOf(limber::sceneState(scene))};
+  return {true, bytesOf(skinArray(scene.session())),
+          frame ? pinnedOf(scene.session().state()) : textOf(limber::sceneState(scene))};
 }
 
 Json hitJson(const std::optional<limber::PickHit>& hit) {

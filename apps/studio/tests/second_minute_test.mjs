@@ -127,11 +127,16 @@ const cases = {
     await page.locator('#play').click();
     await settled(page);
     const feet = [await lastJointOf(page, 'left foot'), await lastJointOf(page, 'right foot')], lowest = [Infinity, Infinity];
-    const { clips, clip } = await sessionState(page);
+    const { clips, clip, joints } = await sessionState(page), pinned = [];
     for (let i = 0; i < 12; ++i) {
       await page.locator('#scrub').fill((clips[clip].duration * i / 12).toFixed(3));
       await settled(page);
       for (const [side, foot] of feet.entries()) lowest[side] = Math.min(lowest[side], (await jointPosition(page, foot))[1]);
+      pinned.push(await page.locator('#joints li.pinned').evaluateAll((rows) => rows.map(({ dataset }) => Number(dataset.joint))));
+    }
+    for (const foot of feet) {
+      const held = pinned.map((shown) => shown.some((joint) => joints[joint].name === foot));
+      assert.ok(held.includes(true) && held.includes(false), `${foot} is shown as pinned at ${held}`);
     }
     await page.screenshot({ path: join(output, 'second_minute_floor.png') });
     await page.locator('#clips').selectOption('');

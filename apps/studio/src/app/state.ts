@@ -88,6 +88,8 @@ export interface PageState {
   /** What is dragged or painted on one side is done on the other as well. */
   bothSides: boolean;
   hovered: number | null;
+  /** Joints that hold on to a place: those that the user pinned, and feet while they stand. */
+  pinned: readonly number[];
   /** The view was turned since the page was opened. */
   looked: boolean;
   /** A stage with how far it is; null when nothing takes long. */
@@ -152,7 +154,7 @@ export type PageStore = Store<PageState>;
 
 export const createPageStore = (): PageStore => new Store<PageState>({
   session: null, model: null, others: [], arranging: false, mode: 'move', display: 'handles', bones: true, wireframe: false,
-  selected: null, also: new Set(), bothSides: false, hovered: null, looked: false, work: null, notice: null, help: false,
+  selected: null, also: new Set(), bothSides: false, hovered: null, pinned: [], looked: false, work: null, notice: null, help: false,
   seconds: 0, playing: false, speed: 1, loop: true, autoKey: true, gizmo: false, gizmoSpace: 'world', snapping: false, selecting: false, limits: false, correcting: false,
   span: 0.3, keyEditor: null, chosenKeys: [], ghosts: false, ghostsShown: [], paths: null, curve: null,
   painting: false, brush: { mode: 'add', size: 0.05, strength: 0.5 }, placing: false,

@@ -7,7 +7,7 @@ import {
 } from './messages';
 
 type Limber = Awaited<ReturnType<typeof loadLimber>>;
-type Taken = { state: SessionState | null; skin: Float32Array };
+type Taken = { state: SessionState | null; skin: Float32Array; pinned: number[] };
 
 /** An engine's error on its way to the page. */
 export class EngineFailure extends Error {
@@ -73,6 +73,7 @@ export class Documents {
   private session: Session;
   private state: SessionState | null = null;
   private seconds = 0;
+  private pinned: number[] = [];
   /** By the motion's name. */
   private sources = new Map<string, { session: Session; state: SessionState }>();
   private shownSource = '';
@@ -238,6 +239,7 @@ export class Documents {
   private take(request: Request): Taken {
     const taken = this.carryOut(request);
     if (request.kind !== 'run' || !['set_time', 'set_clock'].includes(request.command.do)) this.forgetNamed();
+    this.pinned = taken.pinned;
     if (taken.state) {
       this.state = taken.state;
       this.seconds = taken.state.seconds;
@@ -268,7 +270,7 @@ export class Documents {
     }
   }
 
-  private shown({ state, skin }: Taken, rig: boolean): Step {
+  private shown({ state, skin }: Omit<Taken, 'pinned'>, rig: boolean): Step {
     const step: Step = {
       state, stance: this.stance(skin), model: rig ? orThrow(this.session.model()).model : null, weights: null, others: null,
     };
@@ -329,7 +331,7 @@ export class Documents {
       return { skin: moved, handles: orThrow(session.handles()).handles };
     });
     return {
-      skin, handles: orThrow(this.session.handles()).handles, turns: orThrow(this.session.turns()).turns, source: orThrow(this.session.sourceJoints()).places,
+      skin, handles: orThrow(this.session.handles()).handles, turns: orThrow(this.session.turns()).turns, pinned: this.pinned, source: orThrow(this.session.sourceJoints()).places,
       sourceSkin: this.sourceSkin(), variants, places: this.isPlaced ? orThrow(this.session.places()).places : none, others: [],
     };
   }

@@ -60,7 +60,7 @@ export function outliner(studio: Studio, page: PageStore, handles: HandleView): 
         list.replaceChildren(...rows(session));
       }
     }
-    const pinned = new Set(session?.targets.map((target) => target.joint));
+    const pinned = new Set(now.pinned);
     for (const row of list.children as HTMLCollectionOf<HTMLElement>) {
       const joint = Number(row.dataset['joint']);
       row.setAttribute('aria-selected', String(joint === selected || also.has(joint)));

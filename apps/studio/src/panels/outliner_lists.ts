@@ -53,9 +53,9 @@ function jointPick(page: PageStore, known: { name: string; part: string | null }
 
 export function targetList(studio: Studio, page: PageStore): HTMLElement {
   const { root, show } = group(say('Pinned joints'), 'targets', true);
-  page.watch(({ session }, before) => {
-    if (session?.targets === before.session?.targets && session !== null && session === before.session) return;
-    show((session?.targets ?? []).map(({ joint }) => {
+  page.watch(({ session, pinned }, before) => {
+    if (pinned === before.pinned && session !== null && session === before.session) return;
+    show(pinned.map((joint) => {
       const known = session?.joints[joint], title = jointTitle(known);
       return element('li', {}, jointPick(page, known, joint), button('', () => void studio.clearTarget(joint), { icon: 'erase', label: say('Let go of {joint}', { joint: title }) }));
     }));

@@ -112,6 +112,7 @@ export class Core {
 
   showStance(stance: Stance, ofClip: boolean) {
     this.stance = stance;
+    if (stance.pinned.join() !== this.page.now.pinned.join()) this.page.set({ pinned: stance.pinned });
     this.onStance(stance, ofClip);
     this.readers.forEach((read) => read(stance));
   }

@@ -38,7 +38,7 @@ export function posingCalls(core: Core) {
     async moveJointTo(joint: number, position: Vector) { await poseExactly({ do: 'place_joint', ...core.namedWith(joint), position }); },
 
     async togglePin(joint: number, position: Vector) {
-      const pinned = page.now.session?.targets.some((target) => target.joint === joint), names = core.namedWith(joint);
+      const pinned = page.now.pinned.includes(joint), names = core.namedWith(joint);
       await core.run(pinned ? { do: 'clear_target', ...names } : { do: 'set_target', ...names, position });
     },
     async clearTarget(joint: number) { await core.run({ do: 'clear_target', joint: core.jointName(joint) }); },
