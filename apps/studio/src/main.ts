@@ -62,7 +62,7 @@ const sheet = contactSheet(studio, page, viewport);
 
 const app = document.getElementById('app')!, toasts = status(studio, page);
 const desk = { ...stage, studio, page, app };
-app.append(
+app.replaceChildren(
   toolbar(studio, page, journal, viewport, model, others, arMenu(desk)),
   element('main', { class: 'stage' }, viewport.canvas, facts(page), hint(page, viewport), poseTools(page), views(viewport), arButton(desk), comparisonPanel(studio, page, comparison)),
   element('aside', { class: 'side' }, scenePanel(studio, page, places), posePanel(studio, page, poses), paintPanel(studio, page), retargetPanel(studio, page), methodsPanel(studio, page), outliner(studio, page, handles)),

@@ -53,12 +53,12 @@ function sampleFromMiddle(name, height) {
 }
 
 /** A first visit where the engine does not come as it should. */
-async function visitWithout(answer, locale = 'en-US') {
+async function visitWithout(answer, { locale = 'en-US', file = /limber_engine.*\.(wasm|zst)/, told = '#notice' } = {}) {
   const context = await browser.newContext({ viewport: size, locale, serviceWorkers: 'block' }), visit = await context.newPage();
-  await context.route(/limber_engine.*\.(wasm|zst)/, answer);
+  await context.route(file, answer);
   await visit.goto(server.address);
-  await visit.locator('#notice').waitFor();
-  const text = await noticeText(visit);
+  await visit.locator(told).waitFor();
+  const text = await visit.locator(told).textContent();
   await context.close();
   return text;
 }
@@ -68,9 +68,21 @@ const cases = {
     assert.match(await visitWithout((route) => route.abort('internetdisconnected')), /did not arrive.*connection.*load the page again/);
     assert.match(await visitWithout((route) => route.fulfill({ status: 404 })), /did not arrive.*tell whoever runs this site.*404/);
     assert.match(await visitWithout((route) => route.fulfill({ body: 'no engine' })), /cannot run the studio.*use another one/);
-    const german = await visitWithout((route) => route.abort('internetdisconnected'), 'de-DE');
+    const german = await visitWithout((route) => route.abort('internetdisconnected'), { locale: 'de-DE' });
     assert.match(german, /nicht angekommen.*Verbindung/);
     assert.doesNotMatch(german, /fetch/);
+  },
+  async 'a page whose code does not come or does not run says so, in all its languages'() {
+    const visit = (file, answer) => visitWithout(answer, { file, told: '#apology' });
+    const said = [
+      await visit(/assets\/index-.*\.js$/, (route) => route.fulfill({ status: 404 })),
+      await visit(/assets\/main-.*\.js$/, (route) => route.abort('internetdisconnected')),
+      await visit(/assets\/main-.*\.js$/, (route) => route.fulfill({ contentType: 'text/javascript', body: 'throw new Error("too old")' })),
+    ];
+    for (const text of said) assert.match(text, /did not arrive[^]*load the page again[^]*nicht angekommen[^]*lade die Seite neu/);
+    assert.match(said[0], /assets\/index-.*\.js/);
+    assert.match(said[1], /assets\/main-.*\.js/);
+    assert.match(said[2], /too old/);
   },
   async 'who leaves before all is written is asked first'() {
     await kept();
