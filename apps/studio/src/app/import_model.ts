@@ -69,22 +69,40 @@ function withFbxColors(model: Object3D): Object3D {
   return model;
 }
 
+/** For each vertex which of the different ones it is, and the first of each. */
+function different(attributes: BufferAttribute[], count: number): { index: Uint32Array; firsts: number[] } {
+  const index = new Uint32Array(count), firsts: number[] = [], value = new Float32Array(1), bits = new Uint32Array(value.buffer);
+  const slots = new Int32Array(2 ** Math.ceil(Math.log2(2 * count + 1))).fill(-1), last = slots.length - 1;
+  const hash = (vertex: number) => {
+    let mixed = 0;
+    for (const { array, itemSize } of attributes) {
+      for (let i = vertex * itemSize; i < (vertex + 1) * itemSize; ++i) {
+        value[0] = array[i]! + 0; // -0 is 0
+        mixed = Math.imul(mixed ^ bits[0]!, 0x9e3779b1);
+        mixed ^= mixed >>> 15;
+      }
+    }
+    return mixed & last;
+  };
+  const same = (a: number, b: number) => attributes.every(({ array, itemSize }) => {
+    for (let i = 0; i < itemSize; ++i) if (!Object.is(array[a * itemSize + i]! + 0, array[b * itemSize + i]! + 0)) return false;
+    return true;
+  });
+  for (let vertex = 0; vertex < count; ++vertex) {
+    let slot = hash(vertex);
+    while (slots[slot]! >= 0 && !same(firsts[slots[slot]!]!, vertex)) slot = (slot + 1) & last;
+    if (slots[slot]! < 0) slots[slot] = firsts.push(vertex) - 1;
+    index[vertex] = slots[slot]!;
+  }
+  return { index, firsts };
+}
+
 /** Readers that know no shared vertices give three for each triangle: those that are equal in all become one. */
 function weld(geometry: BufferGeometry): BufferGeometry {
   const attributes = Object.entries(geometry.attributes) as [string, BufferAttribute][];
   if (geometry.index || Object.keys(geometry.morphAttributes).length > 0) return geometry;
   if (attributes.some(([, attribute]) => !(attribute instanceof BufferAttribute))) return geometry;
-  const count = attributes[0]?.[1].count ?? 0, index = new Uint32Array(count), firsts: number[] = [];
-  const known = new Map<string, number>();
-  for (let vertex = 0; vertex < count; ++vertex) {
-    let key = '';
-    for (const [, { array, itemSize }] of attributes) {
-      for (let i = vertex * itemSize; i < (vertex + 1) * itemSize; ++i) key += `${array[i]} `;
-    }
-    const first = known.get(key) ?? firsts.push(vertex) - 1;
-    known.set(key, first);
-    index[vertex] = first;
-  }
+  const { index, firsts } = different(attributes.map(([, attribute]) => attribute), attributes[0]?.[1].count ?? 0);
   const welded = new BufferGeometry();
   for (const [name, { array, itemSize, normalized }] of attributes) {
     const Type = array.constructor as new (length: number) => TypedArray;
