@@ -65,6 +65,7 @@ const cases = {
     await openSample('biped');
     assert.equal(await hint(), null);
     await page.waitForFunction(() => globalThis.limberStudio.kept());
+    assert.equal(await page.evaluate(() => localStorage.getItem('limber.documents')), 'some', 'the next visit asks for what was kept, not for a sample');
     await page.reload();
     await settled(page);
     assert.equal(await hint(), null);
