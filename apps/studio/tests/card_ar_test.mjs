@@ -128,6 +128,16 @@ const cases = {
     await touch('touchEnd', []);
     await page.locator('#ar-pose').waitFor();
     // A stool is larger than what the camera sees of the table.
+    await says('larger than the view');
+    await shot('large');
+    await page.locator('#ar-fit').tap();
+    await says('Not its real size');
+    const fitted = (await sessionState(page)).members[0].placement.scale, ends = await page.evaluate(() => [0, 1].map((up) => globalThis.limberStudio.memberPlace(0, up)));
+    assert.ok(fitted < 0.5 && ends.every(({ x, y }) => x > 0 && x < 390 && y > 0 && y < 844), JSON.stringify([fitted, ends]));
+    await shot('fitted');
+    await page.locator('#ar-undo').tap();
+    await settled(page);
+    assert.equal((await sessionState(page)).members[0].placement.scale, 1);
     await touch('touchStart', [{ x: 60, y: 420 }, { x: 330, y: 420 }]);
     for (const way of [0.4, 0.8, 1]) await touch('touchMove', [{ x: 60 + 120 * way, y: 420 }, { x: 330 - 105 * way, y: 420 }]);
     await touch('touchEnd', []);
@@ -138,6 +148,15 @@ const cases = {
     await page.locator('#ar-pose').tap();
     await page.locator('#ar .choice [data-value=move]').tap();
     assert.deepEqual(await barriers(page), []);
+    // Small as it is, its handles leave it to be seen.
+    const discs = await page.evaluate(() => globalThis.limberStudio.state().joints.map(({ name: joint }) => ({
+      radius: globalThis.limberStudio.radius(joint), ...globalThis.limberStudio.place(joint),
+    })));
+    const span = (values) => [Math.min(...values), Math.max(...values)], radii = discs.map(({ radius }) => radius);
+    const [wide, high] = [span(discs.map(({ x }) => x)), span(discs.map(({ y }) => y))].map(([least, most]) => most - least);
+    const covered = radii.reduce((sum, radius) => sum + Math.PI * radius * radius, 0) / (wide * high);
+    console.log(`   ${discs.length} handles of ${span(radii).map((pixels) => pixels.toFixed(1)).join(' to ')} pixels cover ${(100 * covered).toFixed(0)} % of the model`);
+    assert.ok(covered < 0.5, `handles cover ${covered} of the model`);
 
     // The lowest on the screen: no other lies before it.
     const name = await page.evaluate((joints) => {

@@ -3,7 +3,7 @@ import { Vector3 } from 'three';
 import type { ArProbe } from '../ar/ar_probe';
 import type { SessionState, Vector } from '../engine/messages';
 import type { Gizmo } from '../scene/gizmo';
-import type { HandleView } from '../scene/handle_view';
+import { pixelSize, type HandleView } from '../scene/handle_view';
 import type { Places } from '../scene/places';
 import type { Viewport } from '../scene/viewport';
 import type { PageStore } from './state';
@@ -29,6 +29,8 @@ export interface StudioProbe {
   memberPlace(member: number, up?: number): { x: number; y: number };
   /** Pixels of the page. */
   place(joint: string): { x: number; y: number };
+  /** With which its handle is drawn, in pixels. */
+  radius(joint: string): number;
   /** While models are seen in a real place. */
   ar?: ArProbe;
 }
@@ -73,5 +75,9 @@ export function exposeStage(
     },
     memberAt: (member) => new Vector3().setFromMatrixPosition(places.of(member)).toArray(),
     place: (name) => onPage(position(name)),
+    radius: (name) => {
+      const { camera, size: { height } } = viewport;
+      return handles.drawnRadius(jointOf(name), camera, height) / pixelSize(position(name), camera, height);
+    },
   };
 }

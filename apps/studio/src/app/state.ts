@@ -69,6 +69,8 @@ export interface ArState {
   trouble: 'no-surface' | 'lost' | 'hidden' | 'hand' | null;
   /** The chosen model has its real size. */
   realSize: boolean;
+  /** It was placed larger than what is looked through, and has been since. */
+  large: boolean;
 }
 
 export interface PageState {

@@ -54,6 +54,10 @@ export function arActions({ studio, page }: Desk, view: () => ArView | null): Ar
         id: 'ar-play', text: '', label: say('Play'), icon: ({ playing }) => (playing ? 'pause' : 'play'), act: () => togglePlaying(studio, page),
         shown: (now) => placed(now) && sceneDuration(now.session) > 0,
       },
+      {
+        id: 'ar-fit', text: say('Fit it in'), label: say('Make it small enough to be seen whole'), act: () => view()?.fitView(),
+        shown: (now) => placed(now) && !isPosing(now) && Boolean(now.ar?.large),
+      },
       { id: 'ar-again', text: say('Move it'), label: say('Look for another place for it'), icon: () => 'pin', act: () => view()?.placeAgain(), shown: placed },
     ],
   };

@@ -7,10 +7,12 @@ import { hasFloor } from './actions';
 import { ArLight } from './ar_light';
 import { takePicture } from './ar_picture';
 import type { Desk } from './desk';
+import { shareOfView, timesToFit } from './fit_view';
 import { Reticle } from './reticle';
 import { Room, turnTowards } from './room';
 import type { Looker, Sight, Spot } from './sight';
 import { Touch } from './touch';
+import { TurnScale } from './turn_scale';
 
 const patience = 5000; // milliseconds without a surface before help is offered
 const ahead = 1.2; // metres before the device: there a model stands where no surface is known
@@ -67,7 +69,7 @@ export class ArView implements Looker {
     app.hidden = true;
     page.set({
       display: 'surface', gizmo: false, arranging: false, selecting: false, painting: false, placing: false, correcting: false, comparison: null, selected: null,
-      ar: { sight: this.sight.kind, step: 'placing', surface: false, trouble: null, realSize: true },
+      ar: { sight: this.sight.kind, step: 'placing', surface: false, trouble: null, realSize: true, large: false },
     });
     this.chooseMode();
     this.lookedSince = performance.now();
@@ -94,7 +96,8 @@ export class ArView implements Looker {
     if (this.sight.watched && this.stands) this.place.correct(this.sight.watched);
     if (this.isPlacing) this.preview();
     else this.touch.frame();
-    this.tell({ trouble, surface: this.at !== null });
+    const { ar } = this.desk.page.now;
+    this.tell({ trouble, surface: this.at !== null, large: Boolean(ar?.large) && this.isLarge() });
     this.light?.follow();
     this.beforeFrame.forEach((act) => act());
     this.desk.viewport.drawNow();
@@ -141,6 +144,16 @@ export class ArView implements Looker {
     this.tell({ step: 'placed', trouble: null });
     this.reticle.show(null);
     if (later) await this.keepPlace(page.now.session.member);
+    this.tell({ large: this.sight.hasOverlay && this.isLarge() }); // a headset is looked round in
+  }
+
+  /** The chosen model becomes small enough to be seen whole: one step to undo. */
+  fitView() {
+    const { places, page, viewport } = this.desk, { session } = page.now;
+    if (!session) return;
+    const model = new TurnScale(this), box = places.box(session.member, session.members);
+    model.to(timesToFit(box, this.baseOf(session.member), viewport.world.matrix, this.eye), 0);
+    model.keep();
   }
 
   /** The chosen model is to have another place: it goes along with the surface that is looked at. */
@@ -244,6 +257,11 @@ export class ArView implements Looker {
     const { position, quaternion } = this.eye, to = new Vector3(0, 0, -1).applyQuaternion(quaternion).setY(0);
     if (to.length() < MathUtils.DEG2RAD) to.set(0, 1, 0).applyQuaternion(quaternion).setY(0); // it looks down
     return new Matrix4().setPosition(to.setLength(ahead).add(position).setY(0));
+  }
+
+  private isLarge(): boolean {
+    const { places, page, viewport } = this.desk, { session } = page.now;
+    return session !== null && shareOfView(places.box(session.member, session.members), viewport.world.matrix, this.eye) > 1;
   }
 
   private letGo() {

@@ -35,8 +35,8 @@ export class HandleDrag implements Gesture {
   frame() {
     const { studio, viewport, handles } = this.desk, to = this.ray(), wanted = this.wanted(to);
     if (!this.begun) {
-      const { camera, size } = viewport, away = -this.from.clone().applyMatrix4(camera.matrixWorldInverse).z;
-      this.begun = wanted.distanceTo(this.from) > tapDistance * pixelSize(camera, size.height) * away;
+      const { camera, size } = viewport;
+      this.begun = wanted.distanceTo(this.from) > tapDistance * pixelSize(this.from, camera, size.height);
     }
     if (!this.begun) return;
     const asked = JSON.stringify(to);

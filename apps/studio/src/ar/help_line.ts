@@ -7,6 +7,7 @@ export function helpLine({ ar, display, mode }: PageState, hands: boolean): stri
   if (!ar) return say('Starting');
   if (ar.trouble === 'lost' && ar.sight === 'card') return say('The card is not seen. Point the camera at it: all of it in the picture, in good light');
   if (ar.trouble) return troubles()[ar.trouble];
+  if (ar.large && display !== 'handles') return say('It is larger than the view. Fit it in, or make it smaller with two fingers');
   if (ar.sight === 'camera') {
     if (ar.step === 'placing') return ar.surface ? say('Tap to place the model here') : say('Point the device down, at the floor');
     if (display === 'handles' && mode === 'move') return say('Drag a handle; it keeps its distance from the device');

@@ -1,19 +1,24 @@
 // Handles as spheres, and the bones between them.
 import {
-  BufferAttribute, BufferGeometry, Camera, Color, Group, InstancedMesh, LineBasicMaterial, LineSegments, Matrix4,
-  MeshStandardMaterial, PerspectiveCamera, SphereGeometry, Vector3,
+  Box2, BufferAttribute, BufferGeometry, Camera, Color, Group, InstancedMesh, LineBasicMaterial, LineSegments, Matrix4,
+  MeshStandardMaterial, PerspectiveCamera, SphereGeometry, Vector2, Vector3,
 } from 'three';
 import type { SessionState } from '../engine/messages';
 import { boneColor, handleColor, hoverColor, pinColor, rootColor, selectedColor } from './palette';
 
 const shrink = 0.8; // of the fitted radius, so that neighbours stay apart
-const leastPixels = 6;
+const leastPixels = 6; // where the model is small on the screen fewer, so that the handles do not hide it
+const fewestPixels = 3;
+const mostCover = 0.05; // all of them, of a square as large as the model
 const mostPixels = 26; // a trunk's sphere must not hide the others
 
-/** Metres of the drawn scene that a pixel covers at a distance of one metre of the camera's world (perspective), or
- *  anywhere (orthographic). */
-export function pixelSize(camera: Camera, height: number): number {
-  return (2 * new Vector3().setFromMatrixColumn(camera.matrixWorld, 0).length()) / (camera.projectionMatrix.elements[5]! * height);
+/** Metres of the drawn scene that a pixel covers at a point of it. By the camera's place alone: where its world is scaled, three scales its view
+ *  matrix with WebXR and not without. */
+export function pixelSize(at: Vector3, camera: Camera, height: number): number {
+  const ahead = new Vector3().setFromMatrixColumn(camera.matrixWorld, 2).normalize().negate();
+  const from = new Vector3().setFromMatrixPosition(camera.matrixWorld);
+  const depth = camera instanceof PerspectiveCamera ? Math.max(1e-6, at.clone().sub(from).dot(ahead)) : 1;
+  return (2 * depth) / (camera.projectionMatrix.elements[5]! * height);
 }
 
 export class HandleView {
@@ -23,6 +28,7 @@ export class HandleView {
   private bones: LineSegments<BufferGeometry, LineBasicMaterial> | null = null;
   private handles: Float32Array = new Float32Array();
   private joints: SessionState['joints'] = [];
+  private least = leastPixels; // as of the last frame
 
   get count() { return this.handles.length / 4; }
 
@@ -82,14 +88,20 @@ export class HandleView {
 
   /** The radius that a handle is drawn with, in metres. */
   drawnRadius(joint: number, camera: Camera, height: number): number {
-    const pixel = pixelSize(camera, height) * this.depth(joint, camera);
+    const pixel = pixelSize(this.position(joint), camera, height);
     const fitted = shrink * (this.handles[4 * joint + 3] ?? 0);
-    return Math.min(Math.max(fitted, leastPixels * pixel), mostPixels * pixel);
+    return Math.min(Math.max(fitted, this.least * pixel), mostPixels * pixel);
   }
 
-  private depth(joint: number, camera: Camera): number {
-    if (!(camera instanceof PerspectiveCamera)) return 1;
-    return Math.max(1e-6, -this.position(joint).applyMatrix4(camera.matrixWorldInverse).z);
+  /** Pixels of the smallest radius that this view of the model has room for. */
+  private leastIn(camera: Camera, height: number): number {
+    const { elements } = camera.projectionMatrix, width = (height * elements[5]!) / elements[0]!, spread = new Box2();
+    for (let joint = 0; joint < this.count; ++joint) {
+      const { x, y } = this.position(joint).project(camera);
+      spread.expandByPoint(new Vector2((x * width) / 2, (y * height) / 2));
+    }
+    const { x, y } = spread.getSize(new Vector2());
+    return Math.min(leastPixels, Math.max(fewestPixels, Math.max(x, y) * Math.sqrt(mostCover / (Math.PI * this.count))));
   }
 
   paint(selected: ReadonlySet<number>, hovered: number | null, pinned: ReadonlySet<number>) {
@@ -106,6 +118,7 @@ export class HandleView {
     if (!this.spheres || !this.bones || this.joints.length !== this.count) return;
     this.spheres.visible = spheres;
     this.bones.visible = bones;
+    this.least = this.leastIn(camera, height);
     const matrix = new Matrix4();
     for (let joint = 0; joint < this.count; ++joint) {
       const radius = this.drawnRadius(joint, camera, height);
@@ -130,7 +143,7 @@ export class HandleView {
       const place = this.position(joint).project(camera);
       if (place.z > 1) continue;
       const beside = Math.hypot((place.x + 1) / 2 * width - x, (1 - place.y) / 2 * height - y);
-      const pixels = this.drawnRadius(joint, camera, height) / (pixelSize(camera, height) * this.depth(joint, camera));
+      const pixels = this.drawnRadius(joint, camera, height) / pixelSize(this.position(joint), camera, height);
       const met = beside <= pixels;
       if (!met && beside > slop) continue;
       const rank = met ? place.z : beside;
