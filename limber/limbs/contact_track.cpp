@@ -17,6 +17,10 @@ constexpr double kLow = 0.05, kSlow = 0.15;
 // T-pose as their first frame.
 constexpr double kJump = 15, kFirstJump = 4;
 
+// A foot that stands at this speed (hip heights a second, seen over kSeenSeconds to each side) is held by a billionth.
+constexpr double kFreeSpeed = 0.6, kFreeFirmness = 1e-9;
+constexpr double kSeenSeconds = 1.0 / 30;
+
 // 0 or 1 without a jump.
 void follow(bool wanted, double seconds, double& value, double& speed) {
   springTo(wanted ? 1.0 : 0.0, kPlantRate, seconds, value, speed);
@@ -80,7 +84,7 @@ void ContactReader::read(Watched& watched, const BodyFrame& source, double secon
 }
 
 ContactTrack::ContactTrack(const RetargetSetup& setup, std::span<const WatchedFoot> feet, const PoseSequence& source)
-    : feet_(feet.size()) {
+    : feet_(feet.size()), frameSeconds_(source.frameSeconds), hipHeight_(setup.sourceHipHeight) {
   ContactReader reader(setup);
   for (const WatchedFoot& foot : feet) reader.watch(foot);
   BodyFrame frame;
@@ -88,8 +92,28 @@ ContactTrack::ContactTrack(const RetargetSetup& setup, std::span<const WatchedFo
     setup.sourceKinematics.globals(source.poses[f], frame);
     reader.next(frame, f == 0 ? 0 : source.frameSeconds);
     cuts_.push_back(reader.atCut());
-    for (std::size_t i = 0; i < feet_; ++i) contacts_.push_back(reader.foot(i));
+    for (std::size_t i = 0; i < feet_; ++i) {
+      contacts_.push_back(reader.foot(i));
+      Place& place = places_.emplace_back();
+      place.ankle = frame.positions[feet[i].ankle];
+      if (feet[i].toes) place.toes = frame.positions[*feet[i].toes];
+    }
   }
+}
+
+double ContactTrack::firmness(std::size_t frame, std::size_t foot) const {
+  const FootAnchor anchor = at(frame, foot).anchor;
+  if (anchor == FootAnchor::kNone) return 0;
+  const auto reach = static_cast<std::size_t>(std::max(1.0, std::round(kSeenSeconds / frameSeconds_)));
+  std::size_t before = frame, after = frame;
+  while (before > 0 && frame - before < reach && !cuts_[before]) --before;
+  while (after + 1 < frames() && after - frame < reach && !cuts_[after + 1]) ++after;
+  if (before == after) return 1;
+  const Place &from = placeAt(before, foot), &to = placeAt(after, foot);
+  const Vec3 way = anchor == FootAnchor::kToes ? to.toes - from.toes : to.ankle - from.ankle;
+  const double speed = Vec3(way.x(), 0, way.z()).norm() / (static_cast<double>(after - before) * frameSeconds_);
+  const double share = speed / (kFreeSpeed * hipHeight_);
+  return std::pow(kFreeFirmness, share * share);
 }
 
 }  // namespace limber

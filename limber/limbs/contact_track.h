@@ -5,7 +5,7 @@
 // it:
 //
 //     source --ContactReader, frame by frame--> FootContact --> LimbGoals, FootLock, Pelvis, levelToes
-//            --ContactTrack, the whole motion--> spans of contacts --> evenOut, and whatever solves whole motions
+//            --ContactTrack, the whole motion--> spans of contacts, how firm --> refineSpacetime, evenOut
 //
 // The reader is causal, so that live motion and whole motions have the same contacts. What else is to be known of a
 // contact (places on surfaces, of hands as well) belongs in here.
@@ -84,11 +84,21 @@ class ContactTrack {
   std::size_t frames() const { return cuts_.size(); }
   bool isCut(std::size_t frame) const { return cuts_[frame]; }
   const FootContact& at(std::size_t frame, std::size_t foot) const { return contacts_[frame * feet_ + foot]; }
+  // How firmly the contact holds the foot, 0 to 1: the less, the faster the source's own foot moves along the ground
+  // while it stands. 0 where nothing holds it.
+  double firmness(std::size_t frame, std::size_t foot) const;
 
  private:
+  struct Place {
+    Vec3 ankle = Vec3::Zero(), toes = Vec3::Zero();
+  };
+  const Place& placeAt(std::size_t frame, std::size_t foot) const { return places_[frame * feet_ + foot]; }
+
   std::size_t feet_;
+  double frameSeconds_, hipHeight_;    // the source's
   std::vector<bool> cuts_;             // by frame
   std::vector<FootContact> contacts_;  // of each frame, of each foot
+  std::vector<Place> places_;          // likewise
 };
 
 }  // namespace limber

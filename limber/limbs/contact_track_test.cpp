@@ -48,6 +48,23 @@ TEST_F(ContactTrackTest, StrengthComesAndGoesWithoutAJump) {
   EXPECT_GT(most, 0);
 }
 
+TEST_F(ContactTrackTest, AFootIsHeldTheLessTheFasterItMovesWhileItStands) {
+  const double hipHeight = RetargetSetup(person, odd, matchSkeletons(person, odd), {}).sourceHipHeight;
+  const auto firmnessAt = [&](double speed) {
+    motion.poses.assign(30, restPose(person));
+    for (std::size_t f = 0; f < motion.poses.size(); ++f) {
+      const double way = speed * hipHeight * motion.frameSeconds * static_cast<double>(f);
+      motion.poses[f].locals[0].translation += Vec3(way, 0, 0);
+    }
+    return track().firmness(15, 0);
+  };
+  EXPECT_EQ(firmnessAt(0), 1);
+  EXPECT_NEAR(firmnessAt(0.2), 0.1, 0.01);
+  EXPECT_LT(firmnessAt(0.28), 0.02);
+  for (std::size_t f = 0; f < motion.poses.size(); ++f) motion.poses[f].locals[0].translation.y() += f < 15 ? 0 : 0.5;
+  EXPECT_EQ(track().firmness(20, 0), 0) << "in the air";
+}
+
 TEST_F(ContactTrackTest, WhatStoodBeforeACutDoesNotCount) {
   for (std::size_t f = 120; f < motion.poses.size(); ++f) motion.poses[f].locals[0].translation += Vec3(3, 1, 0);
   const ContactTrack contacts = track();

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "limber/ik/rotation.h"
 #include "limber/limbs/hand_goals.h"
@@ -19,10 +20,6 @@ constexpr double kFootSeconds = 0.05, kHandSeconds = 0.1, kPlantSeconds = 0.12;
 constexpr double kOwnWaySeconds = 0.13;  // of two feet that go the source's way: little is left to change
 // Weights of a planted foot's steps and height, and of what a foot is below the ground.
 constexpr double kStandWeight = 1e8, kGroundWeight = 3e3, kFloorWeight = 1e8;
-// A planted foot at this speed (hip heights a second, seen over kSeenSeconds to each side) counts a billionth.
-constexpr double kFreeSpeed = 0.6, kFreeShare = 1e-9;
-constexpr double kSeenSeconds = 1.0 / 30;
-
 constexpr std::array<std::size_t, 2> kAlongGround = {0, 2};  // axes
 
 Vec3 level(const Vec3& v) {
@@ -60,7 +57,6 @@ void follow(const Vec3& value, std::size_t frame, Goals3& goals) {
 // A foot in one frame, as joint angles have it.
 struct FootFrame {
   Vec3 ankle = Vec3::Zero(), roll = Vec3::Zero();  // and the way from there to the toes
-  Vec3 sourceAnkle = Vec3::Zero(), sourceToes = Vec3::Zero();
   FootAnchor anchor = FootAnchor::kNone;
   bool flat = false;
   double ankleFloor = 0, toesFloor = 0;
@@ -122,6 +118,7 @@ class Spacetime {
   }
 
   void gatherFeet() {
+    contacts_.emplace(setup_, goals_.watchedFeet(), source_);
     feet_.resize(goals_.legs().size());
     for (std::size_t f = 0; f < frames(); ++f) {
       const BodyFrame& from = sourceAt(f);
@@ -134,7 +131,6 @@ class Spacetime {
         const Leg& leg = goals_.legs()[i];
         FootFrame& foot = feet_[i].emplace_back();
         foot.ankle = leg.place;
-        foot.sourceAnkle = from.positions[leg.sourceEnd];
         foot.anchor = leg.contact.anchor;
         foot.flat = leg.contact.flat;
         foot.ankleFloor = leg.ankleFloor;
@@ -145,54 +141,39 @@ class Spacetime {
         foot.toesFloor = -std::numeric_limits<double>::infinity();
         if (!leg.toes) continue;
         foot.roll = to.positions[*leg.toes] - to.positions[leg.end];
-        foot.sourceToes = from.positions[*leg.sourceToes];
         foot.toesFloor = leg.toesFloor;
       }
     }
   }
 
-  // How much it counts that a foot stands still, 0 to 1: of the planted the less, the more the source's moves.
-  double stillness(const std::vector<FootFrame>& foot, std::size_t f) const {
-    if (foot[f].anchor == FootAnchor::kNone) return 0;
-    const auto reach = static_cast<std::size_t>(std::max(1.0, std::round(kSeenSeconds / target_.frameSeconds)));
-    std::size_t before = f, after = f;
-    while (before > 0 && f - before < reach && !cuts_[before]) --before;
-    while (after + 1 < frames() && after - f < reach && !cuts_[after + 1]) ++after;
-    if (before == after) return 1;
-    const Vec3 way = foot[f].anchor == FootAnchor::kToes ? foot[after].sourceToes - foot[before].sourceToes
-                                                         : foot[after].sourceAnkle - foot[before].sourceAnkle;
-    const double speed = level(way).norm() / (static_cast<double>(after - before) * target_.frameSeconds);
-    const double share = speed / (kFreeSpeed * setup_.sourceHipHeight);
-    return std::pow(kFreeShare, share * share);
-  }
-
   void planFeet() {
     plans_.clear();
-    for (const std::vector<FootFrame>& foot : feet_) planFoot(foot);
+    for (std::size_t i = 0; i < feet_.size(); ++i) planFoot(i);
   }
 
   // Of steps, not of places: where a foot stands best is left to the curve.
-  void planFoot(const std::vector<FootFrame>& foot) {
-    std::vector<double> still(frames());
+  void planFoot(std::size_t i) {
+    const std::vector<FootFrame>& foot = feet_[i];
+    std::vector<double> firm(frames());
     Goals twist = noGoals(), planted = noGoals();
     for (std::size_t f = 0; f < frames(); ++f) {
-      still[f] = stillness(foot, f);
+      firm[f] = contacts_->firmness(f, i);
       planted[f].value = foot[f].anchor != FootAnchor::kNone ? 1 : 0;
       planted[f].valueWeight = 1;
       if (f == 0 || !foot[f].flat || !foot[f - 1].flat) continue;
       const Vec3 from = level(foot[f - 1].roll), to = level(foot[f].roll);
       twist[f].step = -std::atan2(from.cross(to).y(), from.dot(to));
-      twist[f].stepWeight = kStandWeight * still[f];
+      twist[f].stepWeight = kStandWeight * firm[f];
     }
     const std::vector<double> twists = curve(twist, {kFootSeconds});
     const bool ownWay = feet_.size() == 2 && foot.front().ownWay;
-    const Goals3 way = wayGoals(foot, still, twists);
+    const Goals3 way = wayGoals(foot, firm, twists);
     plans_.push_back({twists,
                       Curve3(way, target_.frameSeconds, {ownWay ? kOwnWaySeconds : kFootSeconds, 1, kFloorWeight}),
                       curve(planted, following(kPlantSeconds))});
   }
 
-  Goals3 wayGoals(const std::vector<FootFrame>& foot, const std::vector<double>& still,
+  Goals3 wayGoals(const std::vector<FootFrame>& foot, const std::vector<double>& firm,
                   const std::vector<double>& twists) const {
     Goals3 way = {noGoals(), noGoals(), noGoals()};
     Vec3 rollBefore = Vec3::Zero();
@@ -204,13 +185,13 @@ class Spacetime {
       CurveGoal& upright = way[1][f];
       upright.least = std::max(ankleUp, toesUp);
       upright.value = std::max(byToes ? toesUp : ankleUp, upright.least);
-      if (!now.ownWay) upright.valueWeight = kGroundWeight * still[f];
+      if (!now.ownWay) upright.valueWeight = kGroundWeight * firm[f];
       if (f > 0 && now.anchor != FootAnchor::kNone && foot[f - 1].anchor != FootAnchor::kNone) {
         Vec3 step = now.ankle - foot[f - 1].ankle;
         if (byToes) step += roll - rollBefore;
         for (const std::size_t axis : kAlongGround) {
           way[axis][f].step = -step[static_cast<Eigen::Index>(axis)];
-          way[axis][f].stepWeight = kStandWeight * still[f];
+          way[axis][f].stepWeight = kStandWeight * firm[f];
         }
       }
       rollBefore = roll;
@@ -295,6 +276,7 @@ class Spacetime {
   LimbReach reach_;
   const PoseSequence& source_;
   PoseSequence& target_;
+  std::optional<ContactTrack> contacts_;
   std::vector<bool> cuts_;
   std::vector<std::vector<FootFrame>> feet_;  // of each leg, by frame
   std::vector<FootPlan> plans_;
