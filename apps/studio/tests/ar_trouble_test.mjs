@@ -12,19 +12,23 @@ import { jointPosition, launch, runCases, serve, sessionState, settled } from '.
 const [dist, output] = process.argv.slice(2).map((path) => resolve(path));
 mkdirSync(output, { recursive: true });
 const server = await serve(dist), browser = await launch();
-let shown;
+let phone, whole = false;
 
-async function onPhone(search, options, steps) {
-  await shown?.context().close();
-  const phone = await openPhone(browser, server.address, output, search, options);
-  shown = phone.page;
+/** The phone at the desk with a person, the one of the case before where that ended well; with `options` another one. */
+async function onPhone(steps, { search = '?sample=biped', ...options } = {}) {
+  if (options.without || !whole) {
+    await phone?.context.close();
+    phone = await openPhone(browser, server.address, output, search, options);
+  }
+  whole = false;
   await steps(phone);
   assert.deepEqual(phone.errors, []);
+  whole = true;
 }
 
 const cases = {
   async 'no surface: help after some seconds, and a place all the same'() {
-    await onPhone('?sample=stool', {}, async ({ page, tap, shot, line, says, memberBase, enter }) => {
+    await onPhone(async ({ page, shot, line, says, memberBase, enter, leave }) => {
       await page.evaluate(() => { phone.room.floor = false; });
       await enter();
       assert.match(await line(), /Point the device/);
@@ -33,10 +37,12 @@ const cases = {
       await page.locator('#ar-place').tap();
       await page.locator('#ar-pose').waitFor();
       assert.ok(Math.abs((await memberBase(0))[2] + 1.2) < 0.01);
+      await leave();
+      await page.evaluate(() => { phone.room.floor = true; });
     });
   },
   async 'lost places, hidden pages and a session that ends in the middle of a drag lose nothing'() {
-    await onPhone('?sample=biped', {}, async ({ page, touch, tap, shot, says, jointSpot, jointOf, enter, place, pose }) => {
+    await onPhone(async ({ page, touch, shot, says, jointSpot, jointOf, enter, place, leave, pose }) => {
       await enter();
       await place();
       await pose('move');
@@ -83,10 +89,11 @@ const cases = {
       await page.locator('#close-notice').tap();
       await enter();
       await place();
+      await leave();
     });
   },
   async 'a browser that refuses says so, and the desk stays'() {
-    await onPhone('?sample=stool', {}, async ({ page, tap, enter }) => {
+    await onPhone(async ({ page, enter, leave }) => {
       await page.evaluate(() => { phone.refuse = 'NotSupportedError'; });
       await page.locator('#view-in-ar').tap();
       await page.locator('#notice').waitFor();
@@ -95,10 +102,36 @@ const cases = {
       assert.equal(await page.locator('#app').isVisible(), true);
       await page.evaluate(() => { phone.refuse = null; });
       await enter();
+      assert.equal(await page.locator('#ar #notice').isVisible(), false, 'what failed before is told no more');
+      await leave();
+    });
+  },
+  async 'the real light, where the device estimates it'() {
+    await onPhone(async ({ page, frames, shot, middleOf, enter, place, leave }) => {
+      await enter();
+      await place();
+      const brightness = async () => {
+        const { x, y } = await middleOf(0, 0.7), png = await page.screenshot({ clip: { x: x - 3, y: y - 3, width: 6, height: 6 } });
+        return page.evaluate(async (bytes) => {
+          const bitmap = await createImageBitmap(new Blob([new Uint8Array(bytes)])), canvas = document.createElement('canvas');
+          canvas.getContext('2d').drawImage(bitmap, 0, 0);
+          const { data } = canvas.getContext('2d').getImageData(2, 2, 1, 1);
+          return data[0] + data[1] + data[2];
+        }, [...png]);
+      };
+      const soft = await brightness();
+      await page.evaluate(() => {
+        phone.room.light = { sphericalHarmonicsCoefficients: new Float32Array(27).fill(0.02), primaryLightIntensity: { x: 0.05, y: 0.05, z: 0.05 }, primaryLightDirection: { x: 0, y: 1, z: 0 } };
+      });
+      await frames(6);
+      const dark = await brightness();
+      assert.ok(dark < 0.6 * soft, `${dark} against ${soft}`);
+      await shot('dark_room');
+      await leave();
     });
   },
   async 'without an overlay, anchors, light and hit tests it is still placed and posed'() {
-    await onPhone('?sample=stool', { without: ['dom-overlay', 'anchors', 'light-estimation', 'hit-test'] }, async ({ page, frames, tap, jointSpot, enter, pose }) => {
+    await onPhone(async ({ page, frames, jointSpot, enter, pose }) => {
       await enter();
       const screen = async (phase, spot) => {
         await page.evaluate(([name, at]) => phone.touchScreen(name, at), [phase, spot]);
@@ -115,34 +148,11 @@ const cases = {
       await screen('up', at);
       await settled(page);
       assert.ok(apart(before, await jointPosition(page, name)) > 0.01);
-    });
-  },
-  async 'the real light, where the device estimates it'() {
-    await onPhone('?sample=stool', {}, async ({ page, frames, shot, middleOf, enter, place }) => {
-      await enter();
-      await place();
-      const brightness = async () => {
-        const { x, y } = await middleOf(0, 0.9), png = await page.screenshot({ clip: { x: x - 3, y: y - 3, width: 6, height: 6 } });
-        return page.evaluate(async (bytes) => {
-          const bitmap = await createImageBitmap(new Blob([new Uint8Array(bytes)])), canvas = document.createElement('canvas');
-          canvas.getContext('2d').drawImage(bitmap, 0, 0);
-          const { data } = canvas.getContext('2d').getImageData(2, 2, 1, 1);
-          return data[0] + data[1] + data[2];
-        }, [...png]);
-      };
-      const soft = await brightness();
-      await page.evaluate(() => {
-        phone.room.light = { sphericalHarmonicsCoefficients: new Float32Array(27).fill(0.02), primaryLightIntensity: { x: 0.05, y: 0.05, z: 0.05 }, primaryLightDirection: { x: 0, y: 1, z: 0 } };
-      });
-      await frames(6);
-      const dark = await brightness();
-      assert.ok(dark < 0.6 * soft, `${dark} against ${soft}`);
-      await shot('dark_room');
-    });
+    }, { search: '?sample=stool', without: ['dom-overlay', 'anchors', 'light-estimation', 'hit-test'] });
   },
 };
 
-const failed = await runCases(cases, () => shown, output);
+const failed = await runCases(cases, () => phone.page, output);
 await browser.close();
 server.close();
 process.exit(failed > 0 ? 1 : 0);

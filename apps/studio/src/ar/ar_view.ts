@@ -69,6 +69,7 @@ export class ArView implements Looker {
     app.hidden = true;
     page.set({
       display: 'surface', gizmo: false, arranging: false, selecting: false, painting: false, placing: false, correcting: false, comparison: null, selected: null,
+      notice: null, // of a way that failed before
       ar: { sight: this.sight.kind, step: 'placing', surface: false, trouble: null, realSize: true, large: false },
     });
     this.chooseMode();

@@ -43,7 +43,10 @@ export class OrientationSight implements CameraSight {
 
   private firstTurns(): Promise<void> {
     return new Promise((resolve, reject) => {
-      const late = setTimeout(() => reject(new NoOrientation(false)), patience);
+      const late = setTimeout(() => {
+        removeEventListener('deviceorientation', first);
+        reject(new NoOrientation(false));
+      }, patience);
       const first = () => {
         if (!this.turns) return;
         removeEventListener('deviceorientation', first);

@@ -13,13 +13,15 @@ export function arButton(desk: Desk): HTMLElement {
   });
   view.hidden = true;
   let asked = '';
-  // A way can depend on the model.
+  const look = () => void findWays(desk.page.now).then((ways) => { view.hidden = waysOf(ways).length === 0; });
+  // A way can depend on the model, and on a camera or a headset that is plugged in.
   desk.page.watch(({ session }) => {
     const name = session?.name ?? '';
     if (name === asked) return;
     asked = name;
-    void findWays(desk.page.now).then((ways) => { view.hidden = waysOf(ways).length === 0; });
+    look();
   });
+  for (const devices of [navigator.mediaDevices, navigator.xr]) devices?.addEventListener('devicechange', look);
   return view;
 }
 
