@@ -76,6 +76,7 @@ import createEngine from './limber_engine.mjs';
  * @typedef {{ dab: [number, number, number], position: Vector, normal: Vector, joint: number,
  *             inside: Vector }} SurfaceHit dab: the same
  *   point as PaintWeights names it
+ * @typedef {{ seconds: number, kind: 'auto' | 'flat' | 'free', turn: Vector, offset: Vector }} Tangent
  * @typedef {{ weights: Float32Array, joints: Uint16Array }} WeightArrays four influences for each vertex
  * @typedef {{ positions: Float32Array, normals: Float32Array, uvs: Float32Array, triangles: Uint32Array,
  *             weights: Float32Array, joints: Uint16Array,
@@ -218,8 +219,9 @@ function createSession(engine, handle = engine._limber_session_new()) {
       return result.ok ? { ok: true, moments: result.account.moments, places: new Float32Array(result.bytes.buffer) } : result;
     },
     /** One joint of the chosen clip at even moments and at its keys, from its rest pose: a turn about x, y and z in degrees, and an
-     *  offset in metres.
-     *  @type {(joint: number, framesPerSecond: number, most: number) => { ok: true, moments: number[], values: Float32Array } | Failure} */
+     *  offset in metres; tangents: what these change by in a second at its keys, where they are cubic and can be edited.
+     *  @type {(joint: number, framesPerSecond: number, most: number) => { ok: true, moments: number[], values: Float32Array,
+     *          tangents: Tangent[] } | Failure} */
     curve: (joint, framesPerSecond, most) => {
       const result = call(engine, engine._limber_session_curve, [handle, joint, framesPerSecond, most]);
       return result.ok ? { ok: true, ...result.account, values: new Float32Array(result.bytes.buffer) } : result;

@@ -91,6 +91,18 @@ std::vector<float> turnArray(const limber::SessionState& state) {
   return values;
 }
 
+Json tangentsJson(const limber::SessionState& state, Index joint) {
+  Json list = Json::array();
+  for (const limber::CurveTangent& at : limber::curveTangents(state.movement, state.rig->skeleton(), joint)) {
+    const auto& [turn, offset] = at.slope;
+    list.push_back({{"seconds", at.seconds},
+                    {"kind", std::string(limber::keyTangentsName(at.tangents))},
+                    {"turn", {turn.x(), turn.y(), turn.z()}},
+                    {"offset", {offset.x(), offset.y(), offset.z()}}});
+  }
+  return list;
+}
+
 constexpr Index kSlots = 4;  // influences that a page draws with
 
 // The strongest of each vertex, scaled to a sum of 1; a vertex without any follows joint 0.
@@ -349,7 +361,7 @@ LIMBER_EXPORT CallResult* limber_session_curve(const SessionHandle* handle, Inde
       append(values, point.turn);
       append(values, point.offset);
     }
-    return {true, bytesOf(values), textOf({{"moments", moments}})};
+    return {true, bytesOf(values), textOf({{"moments", moments}, {"tangents", tangentsJson(state, joint)}})};
   });
 }
 

@@ -87,6 +87,32 @@ std::vector<CurvePoint> jointCurve(const Movement& movement, const Skeleton& ske
   return curve;
 }
 
+std::vector<CurveTangent> curveTangents(const Movement& movement, const Skeleton& skeleton, Index joint) {
+  constexpr double kStep = 1e-3;  // seconds
+  std::vector<CurveTangent> tangents;
+  if (!movement.chosen || movement.clips[*movement.chosen].base) return tangents;
+  const Clip& clip = *movement.clip();
+  const Transform& rest = skeleton.joints[joint].rest;
+  for (const JointKeyTimes& of : keyTimesOfJoints(clip)) {
+    for (const double seconds : of.seconds) {
+      const std::optional<KeySlope> slope = of.joint == joint ? slopeAt(clip, {joint, seconds}) : std::nullopt;
+      if (!slope) continue;
+      Pose pose = restPose(skeleton);
+      sampleClip(clip, seconds, pose);
+      Transform local = pose.locals[joint];
+      if (local.rotation.w() < 0) local.rotation.coeffs() *= -1;
+      const auto turnAfter = [&](double step) {
+        Transform after = local;
+        after.rotation = Quat(Eigen::Vector4d(local.rotation.coeffs() + step * slope->rotation)).normalized();
+        return pointFromRest(after, rest).turn;
+      };
+      const Vec3 before = turnAfter(-kStep), after = unwound(turnAfter(kStep), before);
+      tangents.push_back({seconds, slope->tangents, {(after - before) / (2 * kStep), slope->translation}});
+    }
+  }
+  return tangents;
+}
+
 CurvePoint pointFromRest(const Transform& local, const Transform& rest) {
   Quat turn = rest.rotation.conjugate() * local.rotation;
   if (turn.w() < 0) turn.coeffs() *= -1;

@@ -29,6 +29,15 @@ struct CurvePoint {
 std::vector<CurvePoint> jointCurve(const Movement& movement, const Skeleton& skeleton, Index joint,
                                    std::span<const double> moments);
 
+// How the joint's curves run through its keys, where they are cubic and can be edited: `slope` is what they change by
+// in a second.
+struct CurveTangent {
+  double seconds = 0;
+  KeyTangents tangents = KeyTangents::kAuto;
+  CurvePoint slope;
+};
+std::vector<CurveTangent> curveTangents(const Movement& movement, const Skeleton& skeleton, Index joint);
+
 // By the short way, at most half a turn.
 CurvePoint pointFromRest(const Transform& local, const Transform& rest);
 // The inverse: the joint stands so. Its scale stays.

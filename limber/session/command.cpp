@@ -21,17 +21,17 @@ constexpr int kCommandsVersion = 1;
 
 // In the order of the variant. The formatter would put each on a line of its own.
 // clang-format off
-constexpr std::array<std::string_view, 58> kNames = {
-    "open_sample",       "open_file",         "set_handles",   "choose_methods", "pin_joint",      "unpin_joint",
-    "begin_drag",        "update_drag",       "turn_drag",     "move_drag",      "end_drag",       "cancel_drag",
-    "turn_joint",        "move_joint",        "set_ik",        "set_target",     "clear_target",   "set_limits",
-    "reset_joint",       "reset_pose",        "mirror_pose",   "set_rest_pose",  "rename_joint",   "add_motion",
-    "add_sample_motion", "retarget",          "add_clip",      "remove_clip",    "rename_clip",    "choose_clip",
-    "set_time",          "set_key",           "move_key",      "delete_key",     "edit_keys",      "delete_keys",
-    "set_joint_key",     "set_interpolation", "paint_weights", "lock_weights",   "mirror_weights", "add_joint",
-    "delete_joint",      "reparent_joint",    "place_joint",   "set_turn",       "apply_pose",     "undo",
-    "redo",              "add_sample",        "add_file",      "remove_member",  "choose_member",  "rename_member",
-    "place_member",      "attach_member",     "detach_member", "set_clock"};
+constexpr std::array<std::string_view, 60> kNames = {
+    "open_sample",       "open_file",         "set_handles",  "choose_methods", "pin_joint",     "unpin_joint",
+    "begin_drag",        "update_drag",       "turn_drag",    "move_drag",      "end_drag",      "cancel_drag",
+    "turn_joint",        "move_joint",        "set_ik",       "set_target",     "clear_target",  "set_limits",
+    "reset_joint",       "reset_pose",        "mirror_pose",  "set_rest_pose",  "rename_joint",  "add_motion",
+    "add_sample_motion", "retarget",          "add_clip",     "remove_clip",    "rename_clip",   "choose_clip",
+    "set_time",          "set_key",           "move_key",     "delete_key",     "edit_keys",     "delete_keys",
+    "set_joint_key",     "set_interpolation", "set_tangents", "paste_keys",     "paint_weights", "lock_weights",
+    "mirror_weights",    "add_joint",         "delete_joint", "reparent_joint", "place_joint",   "set_turn",
+    "apply_pose",        "undo",              "redo",         "add_sample",     "add_file",      "remove_member",
+    "choose_member",     "rename_member",     "place_member", "attach_member",  "detach_member", "set_clock"};
 // clang-format on
 static_assert(kNames.size() == std::variant_size_v<Command>);
 
@@ -271,6 +271,17 @@ template <class Visitor>
 void visitFields(Visitor& field, SetInterpolation& c) {
   field("interpolation", c.interpolation);
 }
+template <class Visitor>
+void visitFields(Visitor& field, SetTangents& c) {
+  field("keys", c.keys);
+  field("tangents", c.tangents);
+  field("turn", c.turn);
+  field("offset", c.offset);
+}
+template <class Visitor>
+void visitFields(Visitor& field, PasteKeys& c) {
+  field("keys", c.keys);
+}
 
 template <class Visitor>
 void visitFields(Visitor& field, AddSample& c) {
@@ -333,6 +344,12 @@ constexpr std::array<std::pair<PaintMode, std::string_view>, 4> kPaintModes = {{
 constexpr std::array<std::pair<Interpolation, std::string_view>, 3> kInterpolations = {
     {{Interpolation::kStep, "step"}, {Interpolation::kLinear, "linear"}, {Interpolation::kCubic, "cubic"}}};
 
+constexpr std::array<std::pair<KeyTangents, std::string_view>, 3> kTangents = {
+    {{KeyTangents::kAuto, "auto"}, {KeyTangents::kFlat, "flat"}, {KeyTangents::kFree, "free"}}};
+
+const auto& wordsOf(KeyTangents) {
+  return kTangents;
+}
 const auto& wordsOf(DragMode) {
   return kDragModes;
 }
@@ -367,6 +384,11 @@ class Writer {
     } else if constexpr (std::is_same_v<T, std::vector<KeyOfJoint>>) {
       json_[key] = Json::array();
       for (const KeyOfJoint& one : value) json_[key].push_back({{"joint", one.joint}, {"seconds", one.seconds}});
+    } else if constexpr (std::is_same_v<T, std::vector<PoseKey>>) {
+      json_[key] = Json::array();
+      for (const PoseKey& one : value) {
+        json_[key].push_back({{"pose", one.pose}, {"joints", one.joints}, {"seconds", one.seconds}});
+      }
     } else if constexpr (std::is_same_v<T, std::vector<SurfaceDab>>) {
       Json& list = json_[key] = Json::array();
       for (const SurfaceDab& dab : value) list.push_back(Json::array({dab.triangle, dab.u, dab.v}));
@@ -430,18 +452,17 @@ class Reader {
     value = {readVector(ray, "origin", value.origin), readVector(ray, "direction", value.direction)};
   }
   void operator()(const char* key, std::vector<KeyOfJoint>& value) {
-    known_.push_back(key);
-    const JsonView list = object_.array(key);
-    if (!list.exists()) object_.fail(fmt::format("has no \"{}\"", key));
-    for (std::size_t i = 0; i < list.size(); ++i) {
-      const JsonView item = list[i];
-      Reader entry(item);
-      KeyOfJoint one;
+    readEntries(key, value, [](Reader& entry, KeyOfJoint& one) {
       entry("joint", one.joint);
       entry("seconds", one.seconds);
-      entry.refuseOthers();
-      value.push_back(std::move(one));
-    }
+    });
+  }
+  void operator()(const char* key, std::vector<PoseKey>& value) {
+    readEntries(key, value, [](Reader& entry, PoseKey& one) {
+      entry("pose", one.pose);
+      entry("joints", one.joints);
+      entry("seconds", one.seconds);
+    });
   }
   // [[triangle, u, v], ...]
   void operator()(const char* key, std::vector<SurfaceDab>& value) {
@@ -473,6 +494,21 @@ class Reader {
   }
 
  private:
+  template <class Entry, class Fields>
+  void readEntries(const char* key, std::vector<Entry>& value, const Fields& fields) {
+    known_.push_back(key);
+    const JsonView list = object_.array(key);
+    if (!list.exists()) object_.fail(fmt::format("has no \"{}\"", key));
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      const JsonView item = list[i];
+      Reader entry(item);
+      Entry one;
+      fields(entry, one);
+      entry.refuseOthers();
+      value.push_back(std::move(one));
+    }
+  }
+
   const JsonView& object_;
   std::vector<std::string_view> known_;
 };
@@ -501,6 +537,12 @@ Command readCommand(const JsonView& object) {
 }
 
 }  // namespace
+
+std::string_view keyTangentsName(KeyTangents tangents) {
+  const auto known =
+      std::find_if(kTangents.begin(), kTangents.end(), [&](const auto& entry) { return entry.first == tangents; });
+  return known->second;
+}
 
 std::string_view commandName(const Command& command) {
   return kNames[command.index()];

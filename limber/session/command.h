@@ -280,6 +280,23 @@ struct SetJointKey {
 struct SetInterpolation {
   Interpolation interpolation = Interpolation::kLinear;
 };
+// How the curves run through keys, where they are cubic.
+struct SetTangents {
+  std::vector<KeyOfJoint> keys;
+  KeyTangents tangents = KeyTangents::kAuto;
+  // With kFree what SetJointKey's change by, in a second.
+  Vec3 turn = Vec3::Zero();
+  Vec3 offset = Vec3::Zero();
+};
+// Joints of a pose file as keys at a moment: on this model or another, by anatomy (ApplyPose).
+struct PoseKey {
+  std::string pose;
+  std::vector<std::string> joints;
+  double seconds = 0;
+};
+struct PasteKeys {
+  std::vector<PoseKey> keys;
+};
 
 struct Undo {};
 struct Redo {};
@@ -332,9 +349,13 @@ using Command =
                  MoveDrag, EndDrag, CancelDrag, TurnJoint, MoveJoint, SetIk, SetTarget, ClearTarget, SetLimits,
                  ResetJoint, ResetPose, MirrorPose, SetRestPose, RenameJoint, AddMotion, AddSampleMotion,
                  RetargetMotion, AddClip, RemoveClip, RenameClip, ChooseClip, SetTime, SetKey, MoveKey, DeleteKey,
-                 EditKeys, DeleteKeys, SetJointKey, SetInterpolation, PaintWeights, LockWeights, MirrorWeights,
-                 AddJoint, DeleteJoint, ReparentJoint, PlaceJoint, SetTurn, ApplyPose, Undo, Redo, AddSample, AddFile,
-                 RemoveMember, ChooseMember, RenameMember, PlaceMember, AttachMember, DetachMember, SetClock>;
+                 EditKeys, DeleteKeys, SetJointKey, SetInterpolation, SetTangents, PasteKeys, PaintWeights, LockWeights,
+                 MirrorWeights, AddJoint, DeleteJoint, ReparentJoint, PlaceJoint, SetTurn, ApplyPose, Undo, Redo,
+                 AddSample, AddFile, RemoveMember, ChooseMember, RenameMember, PlaceMember, AttachMember, DetachMember,
+                 SetClock>;
+
+// "auto", "flat", "free", as in JSON.
+std::string_view keyTangentsName(KeyTangents tangents);
 
 // "set_handles", as in JSON.
 std::string_view commandName(const Command& command);

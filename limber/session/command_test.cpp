@@ -55,6 +55,8 @@ std::vector<Command> oneOfEach() {
           DeleteKeys{{{"Knee", 0.5}}},
           SetJointKey{"Knee", 0.5, {0, 30, 0}, {0, 0.1, 0}},
           SetInterpolation{Interpolation::kCubic},
+          SetTangents{{{"Knee", 0.5}}, KeyTangents::kFree, {0, 90, 0}, {0.5, 0, 0}},
+          PasteKeys{{{R"({"limber_pose": 1})", {"Knee", "Elbow"}, 0.75}}},
           PaintWeights{"head", PaintMode::kReplace, 0.75, 0.2, true, {{7, 0.25, 0.5}, {8, 0, 1}}},
           LockWeights{"head", false, {"hips"}},
           MirrorWeights{MirrorFrom::kRight},
@@ -111,16 +113,16 @@ TEST(Command, JsonKeepsEveryCommandAndEveryField) {
   EXPECT_EQ(std::get<RetargetMotion>(back[25]).clip, "fast");
   EXPECT_EQ(std::get<RetargetMotion>(back[25]).reach, 0.25);
   EXPECT_FALSE(std::get<RetargetMotion>(back[25]).contacts);
-  EXPECT_EQ(std::get<PaintWeights>(back[38]).dabs, std::get<PaintWeights>(commands[38]).dabs);
-  EXPECT_EQ(std::get<AddJoint>(back[41]).name, "hat");
-  EXPECT_EQ(std::get<ReparentJoint>(back[43]).parent, "hips");
-  EXPECT_EQ(std::get<PlaceJoint>(back[44]).position, Vec3(0.5, 1, -0.25));
-  EXPECT_EQ(std::get<SetTurn>(back[45]).turn, Vec3(30, -20, 0.125));
-  EXPECT_EQ(std::get<SetTurn>(back[45]).with, std::vector<std::string>{"head"});
+  EXPECT_EQ(std::get<PaintWeights>(back[40]).dabs, std::get<PaintWeights>(commands[40]).dabs);
+  EXPECT_EQ(std::get<AddJoint>(back[43]).name, "hat");
+  EXPECT_EQ(std::get<ReparentJoint>(back[45]).parent, "hips");
+  EXPECT_EQ(std::get<PlaceJoint>(back[46]).position, Vec3(0.5, 1, -0.25));
+  EXPECT_EQ(std::get<SetTurn>(back[47]).turn, Vec3(30, -20, 0.125));
+  EXPECT_EQ(std::get<SetTurn>(back[47]).with, std::vector<std::string>{"head"});
   EXPECT_TRUE(std::get<UpdateDrag>(back[7]).snap);
   EXPECT_TRUE(std::get<EndDrag>(back[10]).goesOn);
   EXPECT_EQ(std::get<ResetJoint>(back[18]).with, std::vector<std::string>{"hips"});
-  EXPECT_EQ(std::get<PaintWeights>(back[38]).mode, PaintMode::kReplace);
+  EXPECT_EQ(std::get<PaintWeights>(back[40]).mode, PaintMode::kReplace);
   EXPECT_EQ(std::get<MoveKey>(back[32]).to, 0.75);
   ASSERT_EQ(std::get<EditKeys>(back[34]).keys.size(), 2u);
   EXPECT_EQ(std::get<EditKeys>(back[34]).keys[1].joint, "Elbow");
@@ -128,6 +130,13 @@ TEST(Command, JsonKeepsEveryCommandAndEveryField) {
   EXPECT_EQ(std::get<EditKeys>(back[34]).scale, 2);
   EXPECT_EQ(std::get<DeleteKeys>(back[35]).keys.size(), 1u);
   EXPECT_EQ(std::get<SetJointKey>(back[36]).turn, Vec3(0, 30, 0));
+  EXPECT_TRUE(only<AddMotion>(back).retarget);
+  EXPECT_TRUE(only<AddSampleMotion>(back).retarget);
+  EXPECT_EQ(only<SetTangents>(back).tangents, KeyTangents::kFree);
+  EXPECT_EQ(only<SetTangents>(back).turn, Vec3(0, 90, 0));
+  ASSERT_EQ(only<PasteKeys>(back).keys.size(), 1u);
+  EXPECT_EQ(only<PasteKeys>(back).keys[0].joints, (std::vector<std::string>{"Knee", "Elbow"}));
+  EXPECT_EQ(only<PasteKeys>(back).keys[0].seconds, 0.75);
   EXPECT_TRUE(only<AddFile>(back).asProp);
   EXPECT_EQ(only<RenameMember>(back).name, "vixen");
   EXPECT_EQ(only<PlaceMember>(back).turn, Vec3(0, 90, 0));

@@ -10,6 +10,7 @@
 #include "limber/pipeline/stand_upright.h"
 #include "limber/retarget/retarget_clip.h"
 #include "limber/retarget/retarget_method.h"
+#include "limber/session/apply_pose.h"
 #include "limber/session/clip_curves.h"
 #include "limber/session/pose_transfer.h"
 #include "limber/session/refuse.h"
@@ -99,6 +100,12 @@ std::vector<JointKey> keysNamed(const Skeleton& skeleton, const std::vector<KeyO
     if (!joint) refuse(fmt::format("no joint is called '{}'", key.joint));
     keys.push_back({*joint, key.seconds});
   }
+  return keys;
+}
+
+std::vector<KeyOfJoint> keysAt(const PoseKey& key) {
+  std::vector<KeyOfJoint> keys;
+  for (const std::string& joint : key.joints) keys.push_back({joint, key.seconds});
   return keys;
 }
 
@@ -415,6 +422,58 @@ void setJointKeyOf(Movement& movement, const Skeleton& skeleton, const SetJointK
   const Pose base = clipPose(*chosen.base, skeleton, key.seconds);
   const double span = spanNear(chosen.layer, key);
   editLayer(chosen, skeleton, [&](ClipLayer& layer) { setKey(layer, base, shown, pose, key.seconds, span); });
+}
+
+namespace {
+
+// The joint's local transform at a key, and what it changes by in a second, for what its curves change by.
+KeySlope slopeOf(const Transform& local, const Transform& rest, const SetTangents& command) {
+  constexpr double kStep = 1e-3;  // seconds
+  const CurvePoint at = pointFromRest(local, rest);
+  const auto turnedAfter = [&](double seconds) {
+    Transform after = local;
+    placeFromRest(after, rest, {at.turn + seconds * command.turn, at.offset});
+    return Eigen::Vector4d(after.rotation.coeffs() * (after.rotation.dot(local.rotation) < 0 ? -1 : 1));
+  };
+  return {command.tangents, command.offset, (turnedAfter(kStep) - turnedAfter(-kStep)) / (2 * kStep)};
+}
+
+}  // namespace
+
+void setTangentsOf(Movement& movement, const Skeleton& skeleton, const SetTangents& command) {
+  SessionClip& chosen = requireChosen(movement);
+  if (chosen.base) refuse("corrections of recorded motion have no tangents", chosen.clip->name);
+  if (!command.turn.allFinite() || !command.offset.allFinite()) refuse("a tangent is no number");
+  const std::vector<JointKey> keys = keysNamed(skeleton, command.keys);
+  editOwnKeys(chosen, skeleton, [&](Clip& clip) {
+    for (const JointKey& key : keys) {
+      const Transform local = clipPose(clip, skeleton, key.seconds).locals[key.joint];
+      setSlope(clip, key, slopeOf(local, skeleton.joints[key.joint].rest, command), local.rotation);
+    }
+  });
+}
+
+void pasteKeysOf(Movement& movement, const RiggedModel& rig, const PasteKeys& command) {
+  SessionClip& chosen = requireChosen(movement);
+  const Skeleton& skeleton = rig.skeleton();
+  if (command.keys.empty()) refuse("no keys are given");
+  for (const PoseKey& key : command.keys) {
+    if (key.joints.empty()) refuse("no joints are given");
+    const std::vector<JointKey> places = keysNamed(skeleton, keysAt(key));
+    const Pose shown = clipPose(*chosen.clip, skeleton, key.seconds);
+    const Pose pose = appliedPose(rig, shown, {key.pose, key.joints});
+    if (!chosen.base) {
+      editOwnKeys(chosen, skeleton, [&](Clip& clip) {
+        for (const JointKey& place : places) {
+          setJointKey(clip, skeleton, place.joint, pose.locals[place.joint], key.seconds);
+        }
+      });
+      continue;
+    }
+    const Pose base = clipPose(*chosen.base, skeleton, key.seconds);
+    const double span = spanNear(chosen.layer, places.front());
+    editLayer(chosen, skeleton, [&](ClipLayer& layer) { setKey(layer, base, shown, pose, key.seconds, span); });
+  }
 }
 
 void setInterpolationOf(Movement& movement, const Skeleton& skeleton, Interpolation interpolation) {

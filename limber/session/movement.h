@@ -97,6 +97,10 @@ void retimeKeysOf(Movement& movement, const Skeleton& skeleton, const EditKeys& 
 void deleteKeysOf(Movement& movement, const Skeleton& skeleton, const std::vector<KeyOfJoint>& keys);
 void setJointKeyOf(Movement& movement, const Skeleton& skeleton, const SetJointKey& command);
 void setInterpolationOf(Movement& movement, const Skeleton& skeleton, Interpolation interpolation);
+// Of keys of a clip made by hand.
+void setTangentsOf(Movement& movement, const Skeleton& skeleton, const SetTangents& command);
+// Throws as appliedPose does.
+void pasteKeysOf(Movement& movement, const RiggedModel& rig, const PasteKeys& command);
 
 // What can be edited: all keys of a clip made by hand, those of the layer of recorded motion.
 std::vector<JointKeyTimes> editableKeys(const ClipContent& clip);

@@ -403,6 +403,114 @@ TEST(Movement, WhatIsRefusedHasAKind) {
   EXPECT_EQ(kindOf(SetKey{}), ErrorKind::kNoClip);
 }
 
+// At rest, 90 degrees, at rest, in two seconds.
+Session bowing(Interpolation interpolation) {
+  Session session = person();
+  act(session, AddClip{"bow"});
+  act(session, SetKey{});
+  for (const double seconds : {0.0, 1.0, 2.0}) {
+    act(session, SetJointKey{"leftLowerArm", seconds, {0, seconds == 1 ? 90.0 : 0.0, 0}, Vec3::Zero()});
+  }
+  act(session, SetInterpolation{interpolation});
+  return session;
+}
+
+std::vector<CurveTangent> armTangents(const Session& session) {
+  const Skeleton& skeleton = session.state().rig->skeleton();
+  return curveTangents(session.state().movement, skeleton, skeleton.find("leftLowerArm").value());
+}
+
+double armTurnAt(const Session& session, double seconds) {
+  const Skeleton& skeleton = session.state().rig->skeleton();
+  const Index arm = skeleton.find("leftLowerArm").value();
+  return jointCurve(session.state().movement, skeleton, arm, std::vector<double>{seconds})[0].turn.y();
+}
+
+TEST(Movement, TangentsSetByHandStayThroughEditsAndFiles) {
+  Session session = bowing(Interpolation::kCubic);
+  ASSERT_EQ(armTangents(session).size(), 3u);
+  EXPECT_EQ(armTangents(session)[1].tangents, KeyTangents::kAuto);
+  const double before = armTurnAt(session, 0.75);
+  act(session, SetTangents{{{"leftLowerArm", 1}}, KeyTangents::kFree, {0, 60, 0}, Vec3::Zero()});
+  const auto isKept = [](const Session& kept) {
+    const std::vector<CurveTangent> tangents = armTangents(kept);
+    ASSERT_EQ(tangents.size(), 3u);
+    EXPECT_EQ(tangents[1].tangents, KeyTangents::kFree);
+    EXPECT_NEAR(tangents[1].slope.turn.y(), 60, 0.1);
+    EXPECT_EQ(tangents[0].tangents, KeyTangents::kAuto);
+  };
+  isKept(session);
+  EXPECT_LT(armTurnAt(session, 0.75), before - 2) << "it comes from below";
+  EXPECT_GT(armTurnAt(session, 1.1), 90) << "and goes on upwards";
+  const double during = armTurnAt(session, 0.75);
+
+  act(session, SetJointKey{"leftLowerArm", 3, {0, 45, 0}, Vec3::Zero()});
+  isKept([&] {
+    Session shorter = session.fork();
+    act(shorter, DeleteKeys{{{"leftLowerArm", 3}}});
+    return shorter;
+  }());
+  act(session, Undo{});
+  isKept(session);
+
+  Session reopened(movingFiles);
+  Progress progress;
+  reopened.open(session.saveSession(), "saved.glb", progress);
+  act(reopened, ChooseClip{"bow"});
+  isKept(reopened);
+  EXPECT_NEAR(armTurnAt(reopened, 0.75), during, 1e-3);
+
+  act(session, EditKeys{.keys = {{"leftLowerArm", 0}, {"leftLowerArm", 1}, {"leftLowerArm", 2}}, .scale = 2});
+  EXPECT_NEAR(armTangents(session)[1].slope.turn.y(), 30, 0.1) << "twice as slow";
+  EXPECT_NEAR(armTurnAt(session, 1.5), during, 1e-3);
+  act(session, SetTangents{{{"leftLowerArm", 2}}, KeyTangents::kFlat});
+  EXPECT_EQ(armTangents(session)[1].tangents, KeyTangents::kAuto) << "level is what the spline has there";
+  act(session, Undo{});
+  act(session, Undo{});
+  act(session, SetTangents{{{"leftLowerArm", 1}}, KeyTangents::kAuto});
+  EXPECT_NEAR(armTurnAt(session, 0.75), before, 1e-3);
+}
+
+TEST(Movement, OnlyCubicKeysMadeByHandHaveTangents) {
+  Session linear = bowing(Interpolation::kLinear);
+  EXPECT_TRUE(armTangents(linear).empty());
+  EXPECT_THROW(act(linear, SetTangents{{{"leftLowerArm", 1}}}), Error);
+  Session session = correctedWalk();
+  EXPECT_TRUE(armTangents(session).empty());
+  EXPECT_THROW(act(session, SetTangents{{{"leftLowerArm", 0.5}}}), Error);
+}
+
+TEST(Movement, KeysArePastedIntoAnotherClipAndOntoAnotherCharacter) {
+  Session session = bowing(Interpolation::kLinear);
+  act(session, SetTime{1});
+  const std::string pose = session.savePose("bow");
+  act(session, AddClip{"other"});
+  act(session, ResetPose{});
+  act(session, SetKey{});
+  act(session, PasteKeys{{{pose, {"leftLowerArm"}, 0.5}}});
+  EXPECT_NEAR(armTurnAt(session, 0.5), 90, 1e-2);
+  EXPECT_NEAR(armTurnAt(session, 0.25), 45, 1e-2);
+  EXPECT_EQ(session.undoName(), "paste_keys");
+  act(session, ChooseClip{"bow"});
+  EXPECT_NEAR(armTurnAt(session, 0.5), 45, 1e-2) << "the clip that it came from is as it was";
+
+  Session other(movingFiles);
+  act(other, OpenSample{"biped"});
+  act(other, ChooseMethods{"template", "bone-heat"});
+  act(other, AddClip{"bow"});
+  act(other, SetKey{});
+  const Skeleton& skeleton = other.state().rig->skeleton();
+  const auto bend = [&] {
+    const Index arm = skeleton.find("leftLowerArm").value();
+    return other.state().pose.locals[arm].rotation.angularDistance(skeleton.joints[arm].rest.rotation);
+  };
+  act(other, SetTime{0.5});
+  const double straight = bend();
+  act(other, PasteKeys{{{pose, {"leftLowerArm"}, 0.5}}});
+  EXPECT_NEAR(bend() - straight, 90 * EIGEN_PI / 180, 0.35);
+  EXPECT_THROW(act(other, PasteKeys{{{pose, {"wing"}, 0.5}}}), Error);
+}
+
 TEST(Movement, AJointsKeyIsGivenAValue) {
   Session session = correctedWalk();
   const auto jointAt = [&](double seconds) {

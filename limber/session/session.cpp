@@ -574,6 +574,12 @@ struct Session::Runner {
   void operator()(const SetJointKey& c) const {
     move([&](SessionState& next) { setJointKeyOf(next.movement, next.rig->skeleton(), c); });
   }
+  void operator()(const SetTangents& c) const {
+    move([&](SessionState& next) { setTangentsOf(next.movement, next.rig->skeleton(), c); });
+  }
+  void operator()(const PasteKeys& c) const {
+    move([&](SessionState& next) { pasteKeysOf(next.movement, *next.rig, c); });
+  }
   void operator()(const SetInterpolation& c) const {
     move([&](SessionState& next) { setInterpolationOf(next.movement, next.rig->skeleton(), c.interpolation); });
   }

@@ -25,20 +25,18 @@ float requireTime(double seconds) {
   return static_cast<float>(seconds);
 }
 
-// A track's keys without their tangents.
+template <class Value>
+struct Tangents {
+  Value in, out;
+};
+
+// A track's keys, each with its tangents where they are not the spline's.
 template <class Value>
 struct Keys {
   std::vector<float> times;
   std::vector<Value> values;
+  std::vector<std::optional<Tangents<Value>>> tangents;
 };
-
-template <class Value>
-Keys<Value> keysOf(const Track<Value>& track) {
-  if (track.interpolation != Interpolation::kCubic) return {track.times, track.values};
-  Keys<Value> keys{track.times, {}};
-  for (std::size_t k = 0; k < track.times.size(); ++k) keys.values.push_back(track.values[3 * k + 1]);
-  return keys;
-}
 
 Vec3f slope(const Vec3f& from, const Vec3f& to, float seconds) {
   return (to - from) / seconds;
@@ -54,12 +52,62 @@ Rotation noSlope(const Rotation&) {
   return Rotation(Eigen::Vector4f(Eigen::Vector4f::Zero()));
 }
 
+Vec3f scaled(const Vec3f& slope, float by) {
+  return slope * by;
+}
+Rotation scaled(const Rotation& slope, float by) {
+  return Rotation(Eigen::Vector4f(slope.coeffs() * by));
+}
+
 // A spline goes the short way only where neighbours lie on the same side of the sphere.
-void alignSigns(std::vector<Vec3f>&) {}
-void alignSigns(std::vector<Rotation>& values) {
-  for (std::size_t k = 1; k < values.size(); ++k) {
-    if (values[k - 1].dot(values[k]) < 0) values[k].coeffs() *= -1;
+void alignSigns(Keys<Vec3f>&) {}
+void alignSigns(Keys<Rotation>& keys) {
+  for (std::size_t k = 1; k < keys.values.size(); ++k) {
+    if (!(keys.values[k - 1].dot(keys.values[k]) < 0)) continue;
+    keys.values[k].coeffs() *= -1;
+    if (auto& own = keys.tangents[k]) own = {scaled(own->in, -1), scaled(own->out, -1)};
   }
+}
+
+// Of the spline through the keys, which have aligned signs.
+template <class Value>
+Value splineSlope(const Keys<Value>& keys, std::size_t k) {
+  const bool inside = k > 0 && k + 1 < keys.times.size();
+  return inside ? slope(keys.values[k - 1], keys.values[k + 1], keys.times[k + 1] - keys.times[k - 1])
+                : noSlope(keys.values[k]);
+}
+
+double sizeOf(const Vec3f& slope) {
+  return slope.norm();
+}
+double sizeOf(const Rotation& slope) {
+  return slope.coeffs().norm();
+}
+
+template <class Value>
+bool sameSlope(const Value& a, const Value& b) {
+  constexpr double kRounding = 1e-4;
+  return sizeOf(Value(slope(a, b, 1))) <= kRounding * (1 + sizeOf(b));
+}
+
+template <class Value>
+Keys<Value> keysOf(const Track<Value>& track) {
+  const std::size_t count = track.times.size();
+  Keys<Value> keys{track.times, {}, std::vector<std::optional<Tangents<Value>>>(count)};
+  if (track.interpolation != Interpolation::kCubic) {
+    keys.values = track.values;
+    return keys;
+  }
+  for (std::size_t k = 0; k < count; ++k) {
+    keys.values.push_back(track.values[3 * k + 1]);
+    keys.tangents[k] = {track.values[3 * k], track.values[3 * k + 2]};
+  }
+  alignSigns(keys);
+  for (std::size_t k = 0; k < count; ++k) {
+    const Value spline = splineSlope(keys, k);
+    if (sameSlope(keys.tangents[k]->in, spline) && sameSlope(keys.tangents[k]->out, spline)) keys.tangents[k].reset();
+  }
+  return keys;
 }
 
 template <class Value>
@@ -70,13 +118,12 @@ void putKeys(Track<Value>& track, Keys<Value> keys, Interpolation interpolation)
     track.values = std::move(keys.values);
     return;
   }
-  alignSigns(keys.values);
+  alignSigns(keys);
   track.values.clear();
   for (std::size_t k = 0; k < keys.times.size(); ++k) {
-    const bool inside = k > 0 && k + 1 < keys.times.size();
-    const Value tangent = inside ? slope(keys.values[k - 1], keys.values[k + 1], keys.times[k + 1] - keys.times[k - 1])
-                                 : noSlope(keys.values[k]);
-    track.values.insert(track.values.end(), {tangent, keys.values[k], tangent});
+    const Value spline = splineSlope(keys, k);
+    const Tangents<Value> tangents = keys.tangents[k].value_or(Tangents<Value>{spline, spline});
+    track.values.insert(track.values.end(), {tangents.in, keys.values[k], tangents.out});
   }
   track.times = std::move(keys.times);
 }
@@ -93,14 +140,17 @@ template <class Value>
 void eraseKey(Keys<Value>& keys, std::size_t k) {
   keys.times.erase(keys.times.begin() + static_cast<std::ptrdiff_t>(k));
   keys.values.erase(keys.values.begin() + static_cast<std::ptrdiff_t>(k));
+  keys.tangents.erase(keys.tangents.begin() + static_cast<std::ptrdiff_t>(k));
 }
 
 template <class Value>
-void insertKey(Keys<Value>& keys, float seconds, const Value& value) {
+void insertKey(Keys<Value>& keys, float seconds, const Value& value,
+               const std::optional<Tangents<Value>>& tangents = std::nullopt) {
   while (const std::optional<std::size_t> there = keyAt(keys, seconds)) eraseKey(keys, *there);
   const auto at = std::lower_bound(keys.times.begin(), keys.times.end(), seconds) - keys.times.begin();
   keys.times.insert(keys.times.begin() + at, seconds);
   keys.values.insert(keys.values.begin() + at, value);
+  keys.tangents.insert(keys.tangents.begin() + at, tangents);
 }
 
 bool differs(const Vec3f& a, const Vec3f& b) {
@@ -126,7 +176,9 @@ void setValue(std::vector<Track<Value>>& tracks, Index joint, const Value& rest,
     return;
   }
   Keys<Value> keys = keysOf(*track);
-  insertKey(keys, seconds, value);
+  const std::optional<std::size_t> known = keyAt(keys, seconds);
+  const std::optional<Tangents<Value>> tangents = known ? keys.tangents[*known] : std::nullopt;
+  insertKey(keys, seconds, value, tangents);
   putKeys(*track, std::move(keys), track->interpolation);
 }
 
@@ -224,8 +276,9 @@ void moveKey(Clip& clip, double from, double to) {
     const std::optional<std::size_t> key = keyAt(keys, start);
     if (!key) return false;
     const auto value = keys.values[*key];
+    const auto tangents = keys.tangents[*key];
     eraseKey(keys, *key);
-    insertKey(keys, end, value);
+    insertKey(keys, end, value, tangents);
     return true;
   });
 }
@@ -245,6 +298,78 @@ void setInterpolation(Clip& clip, Interpolation interpolation) {
       if (track.interpolation != interpolation) putKeys(track, keysOf(track), interpolation);
     }
   });
+}
+
+namespace {
+
+// `act` gets each cubic track of the joint that has a key there, its keys, and which of them it is.
+template <class Tracks, class Act>
+bool eachCubicKey(Tracks& tracks, const JointKey& key, const Act& act) {
+  bool any = false;
+  for (auto& track : tracks) {
+    if (track.joint != key.joint || track.interpolation != Interpolation::kCubic) continue;
+    auto keys = keysOf(track);
+    const std::optional<std::size_t> at = keyAt(keys, static_cast<float>(key.seconds));
+    if (!at) continue;
+    act(track, keys, *at);
+    any = true;
+  }
+  return any;
+}
+
+template <class Value>
+KeyTangents kindOf(const std::optional<Tangents<Value>>& tangents) {
+  if (!tangents) return KeyTangents::kAuto;
+  const Value none = noSlope(tangents->in);
+  const bool flat = sameSlope(tangents->in, none) && sameSlope(tangents->out, none);
+  return flat ? KeyTangents::kFlat : KeyTangents::kFree;
+}
+
+// Those that a key is to have from then on.
+template <class Value>
+std::optional<Tangents<Value>> tangentsOf(KeyTangents kind, const Value& slope) {
+  if (kind == KeyTangents::kAuto) return std::nullopt;
+  const Value tangent = kind == KeyTangents::kFlat ? noSlope(slope) : slope;
+  return Tangents<Value>{tangent, tangent};
+}
+
+}  // namespace
+
+std::optional<KeySlope> slopeAt(const Clip& clip, const JointKey& key) {
+  KeySlope slope;
+  const auto outOf = [](const auto& keys, std::size_t at) {
+    return keys.tangents[at] ? keys.tangents[at]->out : splineSlope(keys, at);
+  };
+  // What was set by hand on one of its tracks was set on all.
+  const auto addKind = [&](KeyTangents kind) {
+    if (kind != KeyTangents::kAuto) slope.tangents = kind;
+  };
+  const bool moves = eachCubicKey(clip.translations, key, [&](const auto&, const auto& keys, std::size_t at) {
+    slope.translation = outOf(keys, at).template cast<double>();
+    addKind(kindOf(keys.tangents[at]));
+  });
+  const bool turns = eachCubicKey(clip.rotations, key, [&](const auto&, const auto& keys, std::size_t at) {
+    slope.rotation = outOf(keys, at).coeffs().template cast<double>();
+    if (keys.values[at].w() < 0) slope.rotation *= -1;
+    addKind(kindOf(keys.tangents[at]));
+  });
+  return moves || turns ? std::optional(slope) : std::nullopt;
+}
+
+void setSlope(Clip& clip, const JointKey& key, const KeySlope& slope, const Quat& rotation) {
+  const bool moves = eachCubicKey(clip.translations, key, [&](auto& track, auto& keys, std::size_t at) {
+    keys.tangents[at] = tangentsOf<Vec3f>(slope.tangents, slope.translation.cast<float>());
+    putKeys(track, std::move(keys), Interpolation::kCubic);
+  });
+  const bool turns = eachCubicKey(clip.rotations, key, [&](auto& track, auto& keys, std::size_t at) {
+    const bool other = keys.values[at].template cast<double>().dot(rotation) < 0;
+    const Rotation along(Eigen::Vector4f((other ? -slope.rotation : slope.rotation).template cast<float>()));
+    keys.tangents[at] = tangentsOf(slope.tangents, along);
+    putKeys(track, std::move(keys), Interpolation::kCubic);
+  });
+  if (!moves && !turns) {
+    throw Error(ErrorCode::kBadArgument, fmt::format("joint {} has no cubic key at {} s", key.joint, key.seconds));
+  }
 }
 
 std::vector<JointKeyTimes> keyTimesOfJoints(const Clip& clip) {
@@ -302,20 +427,27 @@ void retimeKeys(Clip& clip, std::span<const JointKey> keys, const KeyRetiming& r
   checkRetiming(keys, retiming);
   eachKind(clip, [&](auto& tracks) {
     for (auto& track : tracks) {
-      auto [times, values] = keysOf(track);
+      auto [times, values, tangents] = keysOf(track);
       using Value = typename decltype(values)::value_type;
       struct Key {
         double seconds;
         Value value;
+        std::optional<Tangents<Value>> tangents;
+
+        void retimed(double scale) {
+          const float by = static_cast<float>(1 / scale);
+          if (tangents) tangents = {scaled(tangents->in, by), scaled(tangents->out, by)};
+        }
       };
       std::vector<Key> timed;
-      for (std::size_t k = 0; k < times.size(); ++k) timed.push_back({times[k], values[k]});
+      for (std::size_t k = 0; k < times.size(); ++k) timed.push_back({times[k], values[k], tangents[k]});
       const auto chosen = [&](double seconds) { return isChosen(keys, track.joint, seconds); };
       if (!retime(timed, chosen, retiming)) continue;
       Keys<Value> moved;
       for (const Key& key : timed) {
         moved.times.push_back(static_cast<float>(std::max(0.0, key.seconds)));
         moved.values.push_back(key.value);
+        moved.tangents.push_back(key.tangents);
       }
       putKeys(track, std::move(moved), track.interpolation);
     }

@@ -1,6 +1,7 @@
 // Poses as keys of a clip: set, moved, taken out, and what lies between them.
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "limber/skeleton/clip.h"
@@ -20,7 +21,8 @@ std::vector<double> keyTimes(const Clip& clip);
 Interpolation interpolationOf(const Clip& clip);
 
 // The functions below give every track that they change and that is cubic the tangents of a Catmull-Rom spline, at rest
-// in its first and last key. The clip has passed checkClip for `skeleton`, and passes it afterwards. Seconds are finite
+// in its first and last key; a key whose tangents are others, set by hand or by a file, keeps them. The clip has passed
+// checkClip for `skeleton`, and passes it afterwards. Seconds are finite
 // and not negative, else Error kBadArgument; the same where there is no key to move or to take out.
 
 // All of `pose` at that moment, in place of a key that is there. A joint that stands as in rest pose and has no track
@@ -37,6 +39,9 @@ void deleteKey(Clip& clip, double seconds);
 
 void setInterpolation(Clip& clip, Interpolation interpolation);
 
+// How a cubic track runs through a key: as the spline through its neighbours, level, or otherwise.
+enum class KeyTangents { kAuto, kFlat, kFree };
+
 // A key of one joint: of its translation, rotation and scale alike, as far as it has them at that moment.
 struct JointKey {
   Index joint = 0;
@@ -47,6 +52,19 @@ struct JointKeyTimes {
   Index joint = 0;
   std::vector<double> seconds;  // ascending, each once
 };
+
+// What a joint's cubic tracks change by in a second at a key, as they leave it. A track that is not there changes
+// nothing.
+struct KeySlope {
+  KeyTangents tangents = KeyTangents::kAuto;
+  Vec3 translation = Vec3::Zero();
+  Eigen::Vector4d rotation = Eigen::Vector4d::Zero();  // x, y, z, w of the joint's local rotation
+};
+// Nothing where no cubic track of the joint has a key there.
+std::optional<KeySlope> slopeAt(const Clip& clip, const JointKey& key);
+// From then on the key's tangents are those, in and out alike; with kAuto and kFlat the slopes are what these say.
+// `rotation` is that of the key, of either sign. Throws Error kBadArgument where slopeAt gives nothing.
+void setSlope(Clip& clip, const JointKey& key, const KeySlope& slope, const Quat& rotation);
 
 // Of the joints that have tracks, by joint.
 std::vector<JointKeyTimes> keyTimesOfJoints(const Clip& clip);

@@ -9,8 +9,8 @@
 
 namespace limber {
 
-// Key has `seconds`; `chosen` says of a moment whether its key is meant. Returns whether one was. A key that arrives
-// takes the place of one that is there.
+// Key has `seconds`, and `retimed` where time stretched by a scale changes more of it; `chosen` says of a moment
+// whether its key is meant. Returns whether one was. A key that arrives takes the place of one that is there.
 template <class Key, class Chosen>
 bool retime(std::vector<Key>& keys, const Chosen& chosen, const KeyRetiming& retiming) {
   std::vector<Key> stay, arrive;
@@ -20,6 +20,7 @@ bool retime(std::vector<Key>& keys, const Chosen& chosen, const KeyRetiming& ret
     if (!meant) continue;
     arrive.push_back(key);
     arrive.back().seconds = retiming.at(key.seconds);
+    if constexpr (requires { arrive.back().retimed(retiming.scale); }) arrive.back().retimed(retiming.scale);
   }
   if (arrive.empty()) return false;
   for (const Key& key : arrive) {

@@ -183,8 +183,69 @@ const cases = {
     assert.ok((await timesOf(arm))[1] > 0.52);
     await page.screenshot({ path: join(output, 'dope_curves.png') });
     assert.deepEqual(await barriers(page), []);
+  },
+  async 'a tangent is dragged by its grip, undone, and made smooth again'() {
+    const grips = page.locator('#curves circle.tangent'), slope = async () => {
+      const { tangents } = await page.evaluate(() => globalThis.limberStudio.curve());
+      return tangents[1];
+    };
+    assert.equal(await grips.count(), 0, 'straight lines have no tangents');
+    await page.locator('#interpolation').selectOption('cubic');
+    await settled(page);
+    const key = page.locator('#curves circle.y:not(.tangent)').nth(1);
+    await drag(await middle(key), await middle(key));
+    assert.equal(await grips.count(), 6, 'two for each axis');
+    assert.equal((await slope()).kind, 'auto');
+    const right = page.locator('#curves circle.tangent.y[data-side="1"]'), from = await middle(right), before = await slope();
+    await drag(from, { x: from.x, y: from.y - 30 });
+    const after = await slope();
+    assert.equal(after.kind, 'free');
+    assert.ok(after.offset[1] > before.offset[1] + 0.01, `${after.offset} after ${before.offset}`);
+    near(after.offset[0], before.offset[0], 1e-4);
+    assert.ok(Math.abs((await middle(right)).y - (from.y - 30)) < 12, 'the grip stays where it was let go');
+    await page.screenshot({ path: join(output, 'dope_tangents.png') });
+    assert.deepEqual(await barriers(page), []);
+    await page.locator('#undo').click();
+    await settled(page);
+    assert.equal((await slope()).kind, 'auto');
+    await page.locator('#redo').click();
+    await settled(page);
+    assert.equal((await slope()).kind, 'free');
+    await drag(await middle(key), await middle(key)); // undo chooses no key
+    await page.locator('#tangents-flat').click();
+    await settled(page);
+    const { kind, offset } = await slope();
+    assert.equal(kind, 'flat');
+    offset.forEach((value) => near(value, 0, 1e-4));
+    await page.locator('#tangents-auto').click();
+    await settled(page);
+    assert.equal((await slope()).kind, 'auto');
+    await page.locator('#interpolation').selectOption('linear');
+    await settled(page);
     await page.getByRole('button', { name: 'Sheet', exact: true }).click();
     assert.deepEqual(await barriers(page), []);
+  },
+  async 'keys are pasted into another clip'() {
+    await page.mouse.click(...Object.values(await middle(keyOf(leg, 1))));
+    await page.locator('#copy-keys').click();
+    const { joints } = await sessionState(page), { name } = joints[leg];
+    await page.locator('#add-clip').click();
+    await settled(page);
+    await press('Alt+r');
+    await page.locator('#add-key').click();
+    await settled(page);
+    await scrub(0.4);
+    const before = await jointPosition(page, name);
+    await page.locator('#paste-keys').click();
+    await settled(page);
+    assert.equal((await sessionState(page)).undo, 'paste_keys');
+    assert.ok((await timesOf(leg)).some((seconds) => Math.abs(seconds - 0.4) < 2e-3));
+    assert.match(await chosen(), /^1 key chosen/, 'the pasted one is chosen');
+    assert.ok(Math.hypot(...(await jointPosition(page, name)).map((value, i) => value - before[i])) > 0.01, 'the joint has moved');
+    await page.locator('#remove-clip').click();
+    await settled(page);
+    await page.locator('#clips').selectOption({ index: 1 });
+    await settled(page);
   },
   async 'it opens again as it was left'() {
     await page.waitForFunction(() => globalThis.limberStudio.kept());
@@ -241,6 +302,25 @@ const cases = {
     await page.locator('#ghosts').click();
     await page.waitForTimeout(200);
     assert.ok(await differing(without, await picture()) < 0.001);
+  },
+  async 'and onto another character, by the parts of its body'() {
+    const partsOf = async () => {
+      const { joints } = await sessionState(page);
+      return (await clipOf()).joint_keys.map(({ joint }) => joints[joint].part);
+    };
+    await page.locator('#choose-keys').click();
+    await page.locator('#copy-keys').click();
+    const copied = await partsOf(), handles = (await sessionState(page)).joints.length;
+    await page.locator('#samples').selectOption('biped');
+    await page.waitForFunction(() => globalThis.limberStudio.idle() && globalThis.limberStudio.state().clips.length === 0);
+    await page.locator('#more-handles').click();
+    await settled(page);
+    assert.notEqual((await sessionState(page)).joints.length, handles);
+    await page.locator('#add-clip').click();
+    await settled(page);
+    await page.locator('#paste-keys').click();
+    await settled(page);
+    assert.deepEqual(new Set(await partsOf()), new Set(copied));
   },
   async 'by touch on a small screen'() {
     const { page: phone, context, errors: phoneErrors } = await openStudio(browser, server.address, { width: 390, height: 844, touch: true, search: '?sample=biped' });

@@ -13,6 +13,13 @@ export interface KeyChange {
   copy?: boolean;
 }
 
+/** Joints of a pose, to be keys at a moment. */
+export interface PoseKey {
+  pose: string;
+  joints: number[];
+  seconds: number;
+}
+
 export const changedTime = (seconds: number, { shift = 0, scale = 1, pivot = 0 }: KeyChange) => pivot + scale * (seconds - pivot) + shift;
 export const onFrame = (seconds: number) => Math.round(seconds / frame) * frame;
 export const sameKey = (a: KeyPlace, b: KeyPlace) => a.joint === b.joint && Math.abs(a.seconds - b.seconds) < same;

@@ -1,7 +1,7 @@
 // What a program that drives the page (a test, a script that makes pictures) can ask of it.
 import { Vector3 } from 'three';
 import type { ArProbe } from '../ar/ar_probe';
-import type { SessionState, Vector } from '../engine/messages';
+import type { Curve, SessionState, Vector } from '../engine/messages';
 import type { Gizmo } from '../scene/gizmo';
 import { pixelSize, type HandleView } from '../scene/handle_view';
 import type { Places } from '../scene/places';
@@ -15,6 +15,8 @@ export interface StudioProbe {
   /** Every change is kept in the browser. */
   kept(): boolean;
   state(): SessionState | null;
+  /** Of the selected joint, where curves are drawn. */
+  curve(): Curve | null;
   /** How many requests made the document. */
   steps(): number;
   selected(): number | null;
@@ -60,6 +62,7 @@ export function exposeStage(
     idle: () => studio.idle,
     kept,
     state: () => page.now.session,
+    curve: () => page.now.curve,
     steps: () => studio.stepCount(),
     selected: () => page.now.selected,
     gizmoAxis: () => gizmo.axis,

@@ -194,14 +194,21 @@ export class Documents {
     }
   }
 
+  posesAt(moments: number[]): Answers['poses-at'] {
+    return this.onFork(this.session, (fork) => moments.map((seconds) => {
+      orThrow(fork.run({ do: 'set_time', seconds }));
+      return orThrow(fork.pose('keys')).pose;
+    }));
+  }
+
   pick(ray: Ray, slope: number) { return orThrow(this.session.pick(ray, slope)).hit; }
   paths(): Answers['paths'] {
     const { moments, places } = orThrow(this.session.paths(drawnRate, mostDrawn));
     return { moments, places };
   }
   curve(joint: number): Answers['curve'] {
-    const { moments, values } = orThrow(this.session.curve(joint, drawnRate, mostDrawn));
-    return { joint, moments, values };
+    const { moments, values, tangents } = orThrow(this.session.curve(joint, drawnRate, mostDrawn));
+    return { joint, moments, values, tangents };
   }
   pickMember(ray: Ray) { return orThrow(this.session.pickMember(ray)).hit; }
   surface(rays: Ray[]) { return rays.map((ray) => orThrow(this.session.surface(ray)).hit); }

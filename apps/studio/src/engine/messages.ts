@@ -1,12 +1,12 @@
 // What the page and the worker that holds the engine say to each other.
 import type {
   Command, ErrorKind, ExportFormat, LimberError, Measures, MethodKind, Methods, PickHit, Placement, Ray, SceneMember, SessionState, SurfaceHit,
-  SurfaceModel, WeightArrays,
+  SurfaceModel, Tangent, WeightArrays,
 } from '@engine/limber.mjs';
 
 export type {
   Command, ErrorKind, ExportFormat, LimberError, Measures, MethodKind, Methods, PickHit, Placement, Ray, SceneMember, SessionState, SurfaceHit,
-  SurfaceModel, WeightArrays,
+  SurfaceModel, Tangent, WeightArrays,
 };
 export type Vector = [number, number, number];
 
@@ -69,6 +69,8 @@ export interface Curve {
   joint: number;
   moments: number[];
   values: Float32Array;
+  /** What it changes by in a second at its keys, where they are cubic and can be edited. */
+  tangents: Tangent[];
 }
 
 /** A motion on its way to the model: from a file, or one that the engine makes. */
@@ -135,6 +137,7 @@ export type Request =
   | { kind: 'preview-moments'; moments: number[] }
   /** The pose that is shown, as the text of a file; poses of the chosen clip at other moments. */
   | { kind: 'pose'; name: string }
+  | { kind: 'poses-at'; moments: number[] }
   | { kind: 'sample-poses' }
   /** As try-motion and preview-motion. */
   | { kind: 'try-pose'; pose: string }
@@ -171,6 +174,7 @@ export interface Answers {
   'preview-rig': PreviewRig | null;
   'preview-moments': Float32Array[];
   pose: string;
+  'poses-at': string[];
   'sample-poses': SamplePose[];
   'try-pose': Trial;
   'preview-pose': MotionPreview;

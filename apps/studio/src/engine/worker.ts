@@ -25,6 +25,7 @@ function answer(documents: Documents, request: Request): Answers[Kind] {
     case 'preview-moments': return documents.previewMoments(request.moments);
     case 'preview-rig': return documents.previewRig();
     case 'pose': return documents.pose(request.name);
+    case 'poses-at': return documents.posesAt(request.moments);
     case 'sample-poses': return documents.samplePoses();
     case 'try-pose': return documents.tryPose(request.pose);
     case 'preview-pose': return documents.previewPose(request.pose);

@@ -2,10 +2,11 @@
 import { extentOf, frame, keysOf, onFrame } from '../app/keys';
 import type { KeyPlace, PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
-import type { Curve, Vector } from '../engine/messages';
-import { choice, element } from '../ui/dom';
+import type { Curve, Tangent, Vector } from '../engine/messages';
+import { choice, element, svg } from '../ui/dom';
 import { jointTitle } from '../words/parts';
 import { number, say } from '../words/say';
+import { slopeTo, tangentGrips, type CurveScale, type Place } from './curve_tangents';
 import { chosenClip, shownSeconds } from './moments';
 
 const axes = ['x', 'y', 'z'] as const;
@@ -17,12 +18,6 @@ type Part = 'turn' | 'offset';
 const leastRange: Record<Part, number> = { turn: 20, offset: 0.1 };
 const unit: Record<Part, string> = { turn: '\u00b0', offset: ' m' };
 
-const svg = <K extends keyof SVGElementTagNameMap>(tag: K, attributes: Record<string, string | number> = {}) => {
-  const made = document.createElementNS('http://www.w3.org/2000/svg', tag);
-  for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, String(value));
-  return made;
-};
-
 interface Grabbed {
   key: KeyPlace;
   axis: number;
@@ -31,15 +26,24 @@ interface Grabbed {
   dot: SVGElement;
 }
 
+/** A grip of a tangent that is held, and how steep it makes the curve. */
+interface Pulled {
+  key: KeyPlace;
+  tangent: Tangent;
+  axis: number;
+  side: 1 | -1;
+  slope: number;
+}
+
 export function curveEditor(studio: Studio, page: PageStore): HTMLElement {
-  let part: Part = 'turn', grabbed: Grabbed | null = null, end = 1, low = 0, high = 1, drawn: unknown = null;
+  let part: Part = 'turn', grabbed: Grabbed | null = null, pulled: Pulled | null = null, end = 1, low = 0, high = 1, drawn: unknown = null;
   const parts = choice<Part>(say('Curves of'), [{ value: 'turn', text: say('Turn') }, { value: 'offset', text: say('Move') }], (value) => {
     part = value;
     draw();
   });
   const title = element('strong', { class: 'label' }), hint = element('p', { class: 'empty-keys' });
   const legend = element('div', { class: 'legend' }, ...axes.map((axis) => element('span', { class: axis }, axis)));
-  const plot = svg('svg', { class: 'plot', id: 'curves', role: 'img' });
+  const plot = svg('svg', { class: 'plot', id: 'curves', role: 'img' }), tangents = svg('g');
   const root = element('div', { class: 'curves', hidden: true }, element('div', { class: 'side-label' }, title, parts.root, legend), plot, hint);
 
   const width = () => Math.max(40, plot.clientWidth);
@@ -64,13 +68,45 @@ export function curveEditor(studio: Studio, page: PageStore): HTMLElement {
     const middle = (Math.min(...values) + Math.max(...values)) / 2, half = Math.max(leastRange[part], Math.max(...values) - Math.min(...values)) / 2;
     [low, high] = [middle - 1.08 * half, middle + 1.08 * half];
     plot.setAttribute('aria-label', say(part === 'turn' ? 'Turn of {joint} over the clip' : 'Movement of {joint} over the clip', { joint: title.textContent }));
+    drawTangents();
     plot.replaceChildren(...scale(), ...axes.map((axis, a) => svg('polyline', {
       class: axis, points: curve.moments.map((at, i) => `${xOf(at).toFixed(1)},${yOf(valueOf(curve, i, a)).toFixed(1)}`).join(' '),
     })), ...keysOf(session).filter((key) => key.joint === selected).flatMap((key) => axes.map((axis, a) => {
       const dot = svg('circle', { class: axis, r: 5, cx: xOf(key.seconds), cy: yOf(valueOf(curve, momentOf(curve, key), a)) });
       dot.addEventListener('pointerdown', (event) => take(event, key, a, dot));
       return dot;
-    })), svg('line', { class: 'now', x1: xOf(seconds), x2: xOf(seconds), y1: 0, y2: height }));
+    })), tangents, svg('line', { class: 'now', x1: xOf(seconds), x2: xOf(seconds), y1: 0, y2: height }));
+  };
+  /** Of the chosen key of the curves that are drawn. */
+  const drawTangents = () => {
+    const { curve, chosenKeys, selected } = page.now;
+    const key = chosenKeys.find(({ joint }) => joint === selected);
+    const at = key && curve?.tangents.find(({ seconds }) => Math.abs(seconds - key.seconds) < frame / 4);
+    tangents.replaceChildren(...!key || !at || !curve ? [] : axes.flatMap((axis, a) => {
+      const slope = pulled?.axis === a ? pulled.slope : at[part][a]!;
+      return tangentGrips(placeOf(curve, key, a), slope, scaleOf(), axis, (event, side) => {
+        event.preventDefault();
+        pulled = { key, tangent: at, axis: a, side, slope };
+        plot.setPointerCapture(event.pointerId);
+      });
+    }));
+  };
+  const placeOf = (curve: Curve, key: KeyPlace, axis: number): Place => ({ x: xOf(key.seconds), y: yOf(valueOf(curve, momentOf(curve, key), axis)) });
+  const scaleOf = (): CurveScale => ({ second: (width() - 2 * inset) / end, unit: (height - 2 * margin) / (high - low) });
+  const pull = ({ clientX, clientY }: PointerEvent) => {
+    const { curve } = page.now, { left, top } = plot.getBoundingClientRect();
+    if (!pulled || !curve) return;
+    const { x, y } = placeOf(curve, pulled.key, pulled.axis);
+    pulled.slope = slopeTo(clientX - left - x, clientY - top - y, pulled.side, scaleOf());
+    drawTangents();
+  };
+  const letGo = (act: boolean) => {
+    const done = pulled!;
+    pulled = null;
+    if (!act || done.slope === done.tangent[part][done.axis]) return drawTangents();
+    const slopes = { turn: [...done.tangent.turn] as Vector, offset: [...done.tangent.offset] as Vector };
+    slopes[part][done.axis] = done.slope;
+    void studio.setSlope(done.key, slopes.turn, slopes.offset);
   };
   /** The least, the middle and the most, each with its line. */
   const scale = () => [high - (high - low) * 0.04, (low + high) / 2, low + (high - low) * 0.04].flatMap((value) => {
@@ -94,6 +130,7 @@ export function curveEditor(studio: Studio, page: PageStore): HTMLElement {
   };
   plot.addEventListener('pointermove', (event) => {
     const { curve } = page.now;
+    if (pulled) return pull(event);
     if (!grabbed || !curve) return;
     const { seconds = 0, value = 0 } = wayOf(grabbed, event), { key, axis, dot } = grabbed;
     dot.setAttribute('cx', String(xOf(Math.max(0, key.seconds + seconds))));
@@ -101,6 +138,7 @@ export function curveEditor(studio: Studio, page: PageStore): HTMLElement {
   });
   const finish = (act: boolean) => (event: PointerEvent) => {
     const { curve } = page.now, done = grabbed;
+    if (pulled) return letGo(act);
     grabbed = null;
     if (!done || !curve) return;
     const { seconds, value } = wayOf(done, event), { key, axis } = done;
@@ -118,8 +156,9 @@ export function curveEditor(studio: Studio, page: PageStore): HTMLElement {
   plot.addEventListener('pointercancel', finish(false));
   new ResizeObserver(draw).observe(root);
 
-  page.watch(({ session, curve, selected, seconds, keyEditor }) => {
-    if (keyEditor !== 'curves' || grabbed) return;
+  page.watch(({ session, curve, selected, seconds, keyEditor, chosenKeys }, before) => {
+    if (keyEditor !== 'curves' || grabbed || pulled) return;
+    if (chosenKeys !== before.chosenKeys) drawTangents();
     const now = `${selected} ${session?.clip}`;
     if (drawn === curve && plot.dataset['of'] === now && plot.isConnected) {
       const line = plot.querySelector('.now');

@@ -181,7 +181,7 @@ export function dopeSheet(studio: Studio, page: PageStore, actions: KeyActions):
     ArrowUp: () => step(-1), ArrowDown: () => step(1), Enter: () => chooseNearest(),
     '+': () => zoom(1), '-': () => zoom(-1),
   };
-  const withControl: Record<string, () => void> = { c: () => actions.copy(), v: () => actions.paste(), a: () => actions.chooseAll() };
+  const withControl: Record<string, () => void> = { c: () => actions.copy(), v: () => void actions.paste(), a: () => actions.chooseAll() };
   lanes.addEventListener('keydown', (event) => {
     const control = event.ctrlKey || event.metaKey;
     if (event.altKey || (event.key === 'Escape' && page.now.chosenKeys.length === 0)) return;

@@ -29,17 +29,20 @@ export function keyEditor(studio: Studio, page: PageStore): { toggle: HTMLButton
   const shown = choice<KeyEditor>(say('Show keys as'), [{ value: 'sheet', text: say('Sheet') }, { value: 'curves', text: say('Curves') }], open);
   const told = element('output', { class: 'told', id: 'keys-told' });
   const copy = button(say('Copy'), () => actions.copy(), { icon: 'copy', keys: 'Ctrl+C', id: 'copy-keys' });
-  const paste = button(say('Paste'), () => actions.paste(), { icon: 'paste', label: say('Paste at this moment'), keys: 'Ctrl+V', id: 'paste-keys' });
+  const paste = button(say('Paste'), () => void actions.paste(), { icon: 'paste', label: say('Paste at this moment'), keys: 'Ctrl+V', id: 'paste-keys' });
   const remove = button(say('Delete'), () => actions.remove(), { icon: 'erase', keys: 'Del', id: 'delete-keys' });
   const slower = button('2\u00d7', () => actions.scale(2), { label: say('Twice as slow: the chosen keys move apart'), id: 'scale-up' });
   const faster = button('\u00bd\u00d7', () => actions.scale(0.5), { label: say('Twice as fast: the chosen keys move together'), id: 'scale-down' });
   const all = button(say('All'), () => actions.chooseAll(), { label: say('Choose all keys'), keys: 'Ctrl+A', id: 'choose-keys' });
+  const tangents = (kind: 'auto' | 'flat') => void studio.setTangents(page.now.chosenKeys, kind);
+  const smooth = button(say('Auto'), () => tangents('auto'), { label: say('Curves run smoothly through the chosen keys'), id: 'tangents-auto' });
+  const level = button(say('Level'), () => tangents('flat'), { label: say('Curves run level through the chosen keys'), id: 'tangents-flat' });
   const sheet = dopeSheet(studio, page, actions), curves = curveEditor(studio, page);
   const nearer = button('+', () => sheet.zoom(1), { label: say('Zoom in: keys farther apart'), keys: '+', id: 'zoom-in' });
   const farther = button('\u2212', () => sheet.zoom(-1), { label: say('Zoom out'), keys: '-', id: 'zoom-out' });
   const root = element('div', { class: 'key-editor', id: 'key-editor', hidden: true },
-    element('div', { class: 'row tools' }, shown.root, all, copy, paste, remove, slower, faster, nearer, farther, told), sheet.root, curves);
-  page.watch(({ session, keyEditor: editor, chosenKeys }) => {
+    element('div', { class: 'row tools' }, shown.root, all, copy, paste, remove, slower, faster, nearer, farther, smooth, level, told), sheet.root, curves);
+  page.watch(({ session, keyEditor: editor, chosenKeys, curve }) => {
     const clip = session?.clips[session.clip ?? -1] ?? null;
     root.hidden = editor === null || !clip;
     toggle.disabled = !clip;
@@ -49,7 +52,8 @@ export function keyEditor(studio: Studio, page: PageStore): { toggle: HTMLButton
     sheet.root.hidden = nearer.hidden = farther.hidden = editor !== 'sheet';
     nearer.disabled = !sheet.canZoom(1);
     farther.disabled = !sheet.canZoom(-1);
-    curves.hidden = editor !== 'curves';
+    curves.hidden = smooth.hidden = level.hidden = editor !== 'curves';
+    smooth.disabled = level.disabled = chosenKeys.length === 0 || !curve || curve.tangents.length === 0;
     copy.disabled = remove.disabled = chosenKeys.length === 0;
     slower.disabled = faster.disabled = chosenKeys.length < 2 || extentOf(chosenKeys)[1] - extentOf(chosenKeys)[0] < frame / 2;
     paste.disabled = !actions.canPaste;

@@ -16,6 +16,12 @@ export function element<K extends keyof HTMLElementTagNameMap>(
   return made;
 }
 
+export function svg<K extends keyof SVGElementTagNameMap>(tag: K, attributes: Record<string, string | number> = {}): SVGElementTagNameMap[K] {
+  const made = document.createElementNS('http://www.w3.org/2000/svg', tag);
+  for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, String(value));
+  return made;
+}
+
 const icons = {
   open: 'M3 17V5h5l2 2h7v10z',
   undo: 'M8 4 4 8l4 4M4 8h8a4 4 0 0 1 0 8H9',

@@ -563,6 +563,9 @@ export const german = {
   'numbers have a comma for the point': 'Zahlen haben ein Komma statt des Punkts',
   'the model lay down, and was turned upright': 'das Modell lag und wurde aufgerichtet',
 
+  'Level': 'Eben',
+  'Curves run smoothly through the chosen keys': 'Kurven laufen weich durch die gewählten Keyframes',
+  'Curves run level through the chosen keys': 'Kurven laufen eben durch die gewählten Keyframes',
 
   // What goes wrong, by what it is.
   'there is nothing to undo': 'es gibt nichts rückgängig zu machen',

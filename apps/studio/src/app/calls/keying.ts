@@ -1,7 +1,7 @@
 // Keys of the chosen clip, and what is drawn of the whole clip: paths and curves.
 import type { Vector } from '../../engine/messages';
 import { chosenClip } from '../clips';
-import { changedTime, keysThere, type KeyChange } from '../keys';
+import { changedTime, keysThere, type KeyChange, type PoseKey } from '../keys';
 import type { KeyPlace } from '../state';
 import type { Core } from './core';
 
@@ -53,6 +53,24 @@ export function keyingCalls(core: Core) {
       page.set({ chosenKeys: keysThere(keys.map(({ joint, seconds }) => ({ joint, seconds: changedTime(seconds, change) })), page.now.session) });
     },
     async deleteKeys(keys: readonly KeyPlace[]) { await core.run({ do: 'delete_keys', keys: named(keys) }); },
+
+    /** How curves run through keys: as a smooth spline, or level. */
+    async setTangents(keys: readonly KeyPlace[], tangents: 'auto' | 'flat') {
+      await core.run({ do: 'set_tangents', keys: named(keys), tangents });
+    },
+    /** What its curves change by in a second there: degrees about x, y and z, and metres. */
+    async setSlope(key: KeyPlace, turn: Vector, offset: Vector) {
+      await core.run({ do: 'set_tangents', keys: named([key]), tangents: 'free', turn, offset });
+    },
+
+    /** The chosen clip's poses, as the texts of files. */
+    async posesAt(moments: number[]): Promise<string[] | null> { return core.guard(() => engine.ask({ kind: 'poses-at', moments })); },
+    /** Joints of such poses as keys; they are the chosen ones afterwards. */
+    async pasteKeys(keys: readonly PoseKey[]) {
+      await core.run({ do: 'paste_keys', keys: keys.map((key) => ({ ...key, joints: key.joints.map((joint) => core.jointName(joint)) })) });
+      const pasted = keys.flatMap(({ joints, seconds }) => joints.map((joint) => ({ joint, seconds })));
+      page.set({ chosenKeys: keysThere(pasted, page.now.session) });
+    },
 
     /** From its rest pose: degrees about x, y and z, and metres. */
     async setJointKey({ joint, seconds }: KeyPlace, turn: Vector, offset: Vector) {
