@@ -1,6 +1,6 @@
 // Puts the page together.
 import './style.css';
-import { asked, firstSample } from './app/beginning';
+import { asked, documentBefore, firstSample } from './app/beginning';
 import { bindShortcuts } from './app/shortcuts';
 import { Journal } from './app/journal';
 import { createPageStore } from './app/state';
@@ -89,7 +89,9 @@ addEventListener('drop', (event) => {
 exposeStage(studio, page, viewport, handles, gizmo, places, () => journal.settled);
 
 async function begin() {
-  const { address, scene, sample } = asked;
+  const { address, scene, sample } = asked, before = documentBefore === null ? undefined : (await journal.list()).find(({ id }) => id === documentBefore);
+  if (before) await studio.openKept(before);
+  if (page.now.session) return;
   if (address !== null) return studio.openAddress(address);
   if (scene !== null) await studio.openScene(scene, say(scenes.find(([name]) => name === scene)?.[1] ?? 'Scene'));
   const [kept] = sample === null && scene === null ? await journal.list() : [];

@@ -2,7 +2,7 @@
 // A document is the requests that made it, in their order: carried out again they give the same document, with its
 // motions and all that can be undone. Nothing ever leaves the machine.
 import type { Place, Request } from '../engine/messages';
-import { noteDocuments } from './remembered';
+import { noteDocumentOfTab, noteDocuments } from './remembered';
 
 const frameDelay = 100; // milliseconds between two frames of a drag or of a clip that are written
 const patience = 700; // milliseconds that a document may still be open elsewhere
@@ -102,8 +102,8 @@ export class Journal {
   async resume(document: KeptDocument, requests: Request[], kept: number): Promise<boolean> {
     this.flush();
     const own = await this.take(document.id, AbortSignal.timeout(patience));
-    this.document = { ...document, id: own ? document.id : newId(), count: requests.length };
-    if (!own) await this.take(this.document.id);
+    const { id } = this.goOn({ ...document, id: own ? document.id : newId(), count: requests.length });
+    if (!own) await this.take(id);
     requests.forEach((request, number) => {
       if (!own || number >= kept) void this.put(request, number);
     });
@@ -113,8 +113,7 @@ export class Journal {
   /** A document that was made elsewhere. */
   begin(name: string, requests: Request[]): boolean {
     this.flush();
-    this.document = { id: newId(), name, changed: 0, picture: '', count: requests.length };
-    void this.take(this.document.id);
+    void this.take(this.goOn({ id: newId(), name, changed: 0, picture: '', count: requests.length }).id);
     requests.forEach((request, number) => void this.put(request, number));
     return true;
   }
@@ -124,14 +123,18 @@ export class Journal {
     if (place === 'begins') {
       const name = request.kind === 'open' ? request.name : request.kind === 'run' ? String(request.command.name) : '';
       this.flush();
-      this.document = { id: newId(), name, changed: 0, picture: '', count: 0 };
-      void this.take(this.document.id);
+      void this.take(this.goOn({ id: newId(), name, changed: 0, picture: '', count: 0 }).id);
     }
     if (!this.document) return;
     if (place === 'replaces') return this.delay(request);
     this.flush();
     ++this.unwritten;
     void this.put(request, this.document.count++).finally(() => { --this.unwritten; });
+  }
+
+  private goOn(document: KeptDocument): KeptDocument {
+    noteDocumentOfTab(document.id);
+    return this.document = document;
   }
 
   /** What the list of documents shows. */

@@ -1,4 +1,4 @@
-// What of the page's look this browser keeps from visit to visit.
+// What of the page's look this browser keeps from visit to visit, and which document is whose.
 const prefix = 'limber.';
 
 /** Whatever was put there; empty where there is nothing. */
@@ -21,6 +21,23 @@ export function remember(name: string, value: string) {
     localStorage.setItem(prefix + name, value);
   } catch {
     // it is as on a first visit then
+  }
+}
+
+const document = `${prefix}document`;
+/** The one that this tab had last. */
+export function documentOfTab(): string | null {
+  try {
+    return sessionStorage.getItem(document);
+  } catch {
+    return null;
+  }
+}
+export function noteDocumentOfTab(id: string) {
+  try {
+    sessionStorage.setItem(document, id);
+  } catch {
+    // a reload brings back what was changed last, in whatever tab
   }
 }
 

@@ -1,6 +1,7 @@
 // The scene that is worked on, whose chosen member is the session, and what stands beside it: models that motions came with, and what other methods
 // make of the document. All show the same moment.
 import type { Failure, loadLimber, Session } from '@engine/limber.mjs';
+import { chosenClip, momentOf } from '../app/clips';
 import {
   canBeNamed, opensModel, type Answers, type Command, type ExportFormat, type LimberError, type MotionPreview, type MotionRequest,
   type OtherMember, type Ray, type Request, type SessionState, type Stance, type Step, type Trial, type Variant, type Vector,
@@ -116,8 +117,10 @@ export class Documents {
         error ??= thrown.failure.error;
       }
     }
-    if (!this.state) return { step: null, failed, error };
+    const told = this.state as SessionState | null;
+    if (!told) return { step: null, failed, error };
     const { skin } = orThrow(this.session.skin());
+    this.state = { ...told, seconds: momentOf(chosenClip(told), this.seconds) }; // of a moment the engine tells no state
     return { step: this.shown({ state: this.state, skin }, true), failed, error };
   }
 
