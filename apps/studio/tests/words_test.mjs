@@ -245,7 +245,7 @@ const cases = {
     const fingers = { '+': 'main canvas', '-': 'main canvas', '[': '#brush-size', ']': '#brush-size' };
     const buttons = {
       g: '.pose [data-value=move]', r: '.pose [data-value=turn]', i: '#ik', s: '#both-sides', m: '#mirror', p: '#pin', h: '[data-value=surface]', f: '#whole-model', Home: '#whole-model',
-      Delete: '#reset-joint', 1: '#view-front', 3: '#view-right', 7: '#view-top', 5: '#view-flat', ' ': '#play', k: '#add-key', b: '#paint', l: '#lock-joint', x: '#gizmo', '?': '#help-button',
+      Delete: '#reset-joint', 1: '#view-front', 3: '#view-right', 7: '#view-top', 5: '#view-flat', ' ': '#play', k: '#add-key', b: '#paint', l: '#lock-joint', x: '#gizmo', '?': '#export-as',
       n: '#magnet', v: '#select-several', c: '#copy-pose', z: '#undo', Z: '#redo', y: '#redo', o: '#open',
     };
     await at.locator('#joints li:nth-child(9)').tap();
@@ -262,7 +262,7 @@ const cases = {
     await at.locator('#fewer-handles').tap();
     await settled(at);
     assert.ok((await sessionState(at)).joints.length < before);
-    await at.locator('#help-button').tap();
+    await at.locator('#export-as').selectOption('help');
     const help = await at.locator('#help').textContent();
     assert.match(help, /Was Finger tun/);
     assert.doesNotMatch(help, /Strg|Umschalt\+|Entf/);

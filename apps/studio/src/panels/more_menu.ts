@@ -22,14 +22,14 @@ function setLanguage(choice: (typeof languageChoices)[number]) {
 
 export type MenuEntry = { id: string; text: string; act: () => void };
 
-export function moreMenu(save: (outlet: Outlet) => void, augmented: MenuEntry[]): { root: HTMLSelectElement; outlets: HTMLOptionElement[] } {
+export function moreMenu(save: (outlet: Outlet) => void, augmented: MenuEntry[], help: () => void): { root: HTMLSelectElement; outlets: HTMLOptionElement[] } {
   const option = (text: string, act: () => void, chosen = false) => {
     const made = element('option', {}, chosen ? `\u2713 ${text}` : text);
     acts.set(made, act);
     return made;
   };
   const acts = new Map<Element, () => void>();
-  const root = element('select', { 'aria-label': say('More: save as another format, augmented reality, language, size of the text'), class: 'select', id: 'export-as' });
+  const root = element('select', { 'aria-label': say('More: save as another format, augmented reality, language, size of the text, help'), class: 'select', id: 'export-as' });
   const files = outlets.map(([outlet, text]) => {
     const made = option(say(text), () => save(outlet));
     made.value = outlet;
@@ -40,6 +40,8 @@ export function moreMenu(save: (outlet: Outlet) => void, augmented: MenuEntry[])
     made.value = id;
     return made;
   });
+  const helping = option(say('Help'), help);
+  helping.value = 'help';
   const fill = () => root.replaceChildren(element('option', { value: '' }, say('More')), element('optgroup', { label: say('Save as') }, ...files),
     element('optgroup', { label: say('Augmented reality') }, ...reality),
     element('optgroup', { label: say('Language') }, ...languageChoices.map((choice) => {
@@ -55,7 +57,7 @@ export function moreMenu(save: (outlet: Outlet) => void, augmented: MenuEntry[])
       }, size === textSize());
       made.value = size;
       return made;
-    })));
+    })), helping);
   fill();
   root.addEventListener('change', () => {
     const act = acts.get(root.selectedOptions[0]!);

@@ -7,7 +7,7 @@ import type { Studio } from '../app/studio';
 import type { ModelView } from '../scene/model_view';
 import type { OthersView } from '../scene/others_view';
 import type { Viewport } from '../scene/viewport';
-import { button, element, offer } from '../ui/dom';
+import { button, element, icon, offer } from '../ui/dom';
 import { addDialog } from './add_dialog';
 import { moreMenu, type MenuEntry } from './more_menu';
 import { pictureDialog } from './picture_dialog';
@@ -89,7 +89,7 @@ export function toolbar(studio: Studio, page: PageStore, journal: Journal, viewp
     else if (outlet === 'limber') offer(studio.limberFile() as BlobPart, 'application/zip', `${stem()}.limber`);
     else if (outlet === 'record') void saveRecord();
     else void save(outlet);
-  }, augmented);
+  }, augmented, () => page.set({ help: true }));
   const undo = button('', () => void studio.undo(), { icon: 'undo', label: say('Undo'), keys: 'Ctrl+Z', id: 'undo' });
   const redo = button('', () => void studio.redo(), { icon: 'redo', label: say('Redo'), keys: 'Ctrl+Shift+Z', id: 'redo' });
   const glb = button(say('Save GLB'), () => void save('glb'), { icon: 'save', kind: 'primary', id: 'save-glb' });
@@ -103,7 +103,7 @@ export function toolbar(studio: Studio, page: PageStore, journal: Journal, viewp
     document.title = session ? `${session.name} \u2013 limber studio` : 'limber studio';
   });
   return element('header', { class: 'bar' },
-    button(say('Open'), () => file.click(), { icon: 'open', id: 'open' }), sample, adding.button, adding.dialog, pictures.dialog, kept.button, kept.dialog, file, name,
+    button(say('Open'), () => file.click(), { icon: 'open', id: 'open' }), element('div', { class: 'samples' }, icon('samples'), sample), adding.button, adding.dialog, pictures.dialog, kept.button, kept.dialog, file, name,
     element('div', { class: 'group' }, undo, redo), element('div', { class: 'group' }, glb, more.root),
     button('', () => page.set({ help: true }), { icon: 'help', label: say('Keyboard and mouse'), keys: '?', id: 'help-button' }));
 }

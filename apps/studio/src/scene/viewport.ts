@@ -16,6 +16,8 @@ const viewDirections: Record<ViewName, Vector> = {
   front: [0, 0, 1], right: [1, 0, 0], top: [0, 1, 0.0001], start: [0.55, 0.3, 1],
 };
 
+const fitMargin = 0.055; // of the view, beside a model that fills it
+
 /** Towards a point of the world that the camera is in, wherever that is: three takes the point to be of the drawn scene. */
 function looksWithinItsWorld(camera: Camera) {
   camera.lookAt = (target: Vector3 | number) => {
@@ -38,6 +40,8 @@ export class Viewport {
   readonly lights = new Group();
   readonly controls: OrbitControls;
   beforeFrame: (camera: PerspectiveCamera | OrthographicCamera) => void = () => {};
+  /** Pixels at the upper edge that tools lie on. */
+  coveredAbove: () => number = () => 0;
   readonly renderer: WebGLRenderer;
 
   private perspective = new PerspectiveCamera(32, 1, 0.01, 1000);
@@ -153,9 +157,7 @@ export class Viewport {
   }
 
   look(view: ViewName) {
-    const center = this.box.getCenter(new Vector3());
-    const direction = new Vector3(...viewDirections[view]).normalize();
-    const distance = this.fittingDistance(direction);
+    const direction = new Vector3(...viewDirections[view]).normalize(), { center, distance } = this.fitting(direction);
     for (const camera of [this.perspective, this.orthographic]) {
       camera.position.copy(center).addScaledVector(direction, distance);
       camera.near = distance / 200;
@@ -170,9 +172,8 @@ export class Viewport {
 
   /** Back to where the model fills the view, from the side that is looked from now. */
   frameAgain() {
-    const center = this.box.getCenter(new Vector3());
-    const offset = this.current.position.clone().sub(this.controls.target).normalize();
-    this.current.position.copy(center).addScaledVector(offset, this.fittingDistance(offset));
+    const offset = this.current.position.clone().sub(this.controls.target).normalize(), { center, distance } = this.fitting(offset);
+    this.current.position.copy(center).addScaledVector(offset, distance);
     this.controls.target.copy(center);
     this.controls.update();
     this.draw();
@@ -212,19 +213,20 @@ export class Viewport {
     this.controls.update();
   }
 
-  /** From where, in that direction, all of the box is seen, with a little room round it. */
-  private fittingDistance(direction: Vector3): number {
-    const up = Math.tan((this.perspective.fov * Math.PI) / 360);
-    const across = (up * this.size.width) / Math.max(1, this.size.height);
+  /** Towards where and from how far, in that direction, all of the box is seen below the tools, with a little room round it. */
+  private fitting(direction: Vector3): { center: Vector3; distance: number } {
+    const { width, height } = this.size, above = Math.min(0.4, Math.max(fitMargin, this.coveredAbove() / Math.max(1, height)));
+    const halfHeight = Math.tan((this.perspective.fov * Math.PI) / 360);
+    const up = halfHeight * (1 - above - fitMargin), across = (halfHeight * (1 - 2 * fitMargin) * width) / Math.max(1, height);
     const side = new Vector3(0, 1, 0).cross(direction).normalize(), top = direction.clone().cross(side);
     const half = this.box.getSize(new Vector3()).multiplyScalar(0.5);
     let distance = 1e-6;
     for (let corner = 0; corner < 8; ++corner) {
       const at = half.clone().multiply(new Vector3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1));
       const needed = Math.max(Math.abs(at.dot(side)) / across, Math.abs(at.dot(top)) / up);
-      distance = Math.max(distance, at.dot(direction) + 1.12 * needed);
+      distance = Math.max(distance, at.dot(direction) + needed);
     }
-    return distance;
+    return { center: this.box.getCenter(new Vector3()).addScaledVector(top, (above - fitMargin) * halfHeight * distance), distance };
   }
 
   toggleOrthographic() {

@@ -24,6 +24,7 @@ export function svg<K extends keyof SVGElementTagNameMap>(tag: K, attributes: Re
 
 const icons = {
   open: 'M3 17V5h5l2 2h7v10z',
+  samples: 'M10 2.5 16.5 6v8L10 17.5 3.5 14V6zM3.5 6l6.5 3.5L16.5 6M10 9.5v8',
   undo: 'M8 4 4 8l4 4M4 8h8a4 4 0 0 1 0 8H9',
   redo: 'm12 4 4 4-4 4m4-4H8a4 4 0 0 0 0 8h3',
   move: 'M10 2v16M2 10h16M10 2 8 4m2-2 2 2M10 18l-2-2m2 2 2-2M2 10l2-2m-2 2 2 2m14-2-2-2m2 2-2 2',
