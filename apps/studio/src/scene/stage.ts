@@ -1,5 +1,5 @@
 // The scene shows what the page's state says.
-import { Box3, Vector3 } from 'three';
+import { Box3, Matrix4, Vector3 } from 'three';
 import type { PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
 import { ComparisonView } from './comparison_view';
@@ -65,7 +65,12 @@ export function createStage(studio: Studio, page: PageStore): Stage {
   new PaintInput(viewport, brush, studio, page);
   new BoxSelect(viewport, handles, gizmo, studio, page);
   new PointerInput(viewport, handles, gizmo, studio, page);
-  const root = new Vector3();
+  const root = new Vector3(), rootSkin = new Matrix4();
+  /** From where its root is bound, in the world. */
+  const walked = (member: number) => {
+    const now = handles.position(0, new Vector3()), bound = now.clone().applyMatrix4(rootSkin.clone().invert()), place = places.of(member);
+    return now.applyMatrix4(place).sub(bound.applyMatrix4(place));
+  };
   model.onChange = () => viewport.draw();
   viewport.beforeFrame = (camera) => {
     const { display, bones } = page.now;
@@ -80,6 +85,7 @@ export function createStage(studio: Studio, page: PageStore): Stage {
     shade();
     others.take(stance.others);
     model.take(stance.skin);
+    rootSkin.fromArray(stance.skin);
     handles.take(stance.handles);
     gizmo.take(stance.turns);
     limits.take(handles, stance.skin);
@@ -101,6 +107,10 @@ export function createStage(studio: Studio, page: PageStore): Stage {
     if (session) viewport.frame(places.boxOfAll(session.members));
     shaded = '';
     shade();
+    if (session?.clip == null || session.members.length > 1) return;
+    const { x, z } = walked(session.member);
+    viewport.follow(x, z, session.member);
+    viewport.draw();
   };
   page.watch((now, before) => {
     if (now.session && now.model && now.model !== before.model) model.show(now.model, now.session.joints.length);

@@ -201,6 +201,7 @@ export class Viewport {
   /** Goes along with a member that walks; the ground stays under it, its lines in their places. */
   follow(x: number, z: number, member: number) {
     this.shadows[member]?.position.add(new Vector3(x, 0, z));
+    this.box.translate(new Vector3(x, 0, z));
     for (const camera of [this.perspective, this.orthographic]) {
       camera.position.x += x;
       camera.position.z += z;

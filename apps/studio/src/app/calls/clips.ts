@@ -44,8 +44,8 @@ export function clipCalls(core: Core) {
     },
     forgetMoment() { waiting = null; },
 
-    /** Pictures of a clip at even moments, each once the scene stands there: to its end, or to the one before it, where what
-     *  comes of them repeats. */
+    /** Pictures of a clip at even moments, each once the scene stands there and the camera has walked along: to its end, or to
+     *  the one before it, where what comes of them repeats. */
     async eachMoment(count: number, draw: (seconds: number) => void | Promise<void>, { repeats = false } = {}) {
       const { session, seconds } = page.now, clip = chosenClip(session);
       if (!clip) return;
@@ -53,7 +53,7 @@ export function clipCalls(core: Core) {
       await core.guard(async () => {
         const show = async (moment: number) => {
           const { stance } = await engine.run(momentCommand(moment));
-          core.onStance(stance, false);
+          core.onStance(stance, true);
         };
         for (let i = 0; i < count; ++i) {
           const moment = (clip.duration * i) / Math.max(1, repeats ? count : count - 1);
