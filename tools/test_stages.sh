@@ -234,6 +234,7 @@ node apps/studio/tests/words_test.mjs dist $output/studio
 node apps/studio/tests/scene_test.mjs dist build/release/limber $output/studio
 node apps/studio/tests/first_minute_test.mjs dist $output/studio
 node apps/studio/tests/second_minute_test.mjs dist build/release/limber $output/studio
+node apps/studio/tests/narrow_test.mjs dist $output/studio
 node apps/studio/tests/poses_test.mjs dist $output/studio
 node apps/studio/tests/ar_test.mjs dist build/release/limber $output/studio
 node apps/studio/tests/ar_trouble_test.mjs dist $output/studio
