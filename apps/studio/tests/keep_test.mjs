@@ -323,6 +323,14 @@ const cases = {
     await opened('shape.obj');
     assert.equal((await sessionState(page)).vertices, 5);
   },
+  async 'an OBJ has the texture that lies beside it'() {
+    const obj = 'mtllib square.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl paper\nf 1/1 2/2 3/3\nf 1/1 3/3 4/4\n';
+    const dot = 'iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNkYPhfDwAChwGA60e6kgAAAABJRU5ErkJggg==';
+    await open([['square.obj', Buffer.from(obj)], ['square.mtl', Buffer.from('newmtl paper\nmap_Kd dot.png\n')], ['dot.png', Buffer.from(dot, 'base64')]]);
+    await opened('square.obj');
+    const glb = await download(page, () => page.locator('#save-glb').click());
+    assert.ok(glb.includes(Buffer.from('\x89PNG', 'latin1')), 'no picture is in it');
+  },
   async 'pictures and films show the model and no tools'() {
     await page.locator('#samples').selectOption('biped'); // nothing of it is as red as a handle
     await opened('biped');
