@@ -309,6 +309,16 @@ const cases = {
     await tap('#close-notice');
     await page.emulateMedia({ colorScheme: 'light' });
   },
+  async 'what was worked on before comes back from the list'() {
+    await page.waitForFunction(() => globalThis.limberStudio.kept());
+    await tap('#open-recent');
+    const kept = page.locator('#recent li:has(img)', { hasText: 'biped' }).first();
+    await kept.waitFor();
+    await expectNoBarriers('what was worked on before');
+    await kept.locator('.pick').tap();
+    await opened('biped');
+    assert.equal((await clip()).keys.length, 2);
+  },
   async 'of forty quick choices the last one counts, with a clip playing; its balls are there to drag'() {
     await tap('[data-value=surface]');
     await page.locator('#play').tap();
@@ -324,16 +334,6 @@ const cases = {
     assert.ok(distance(await jointPosition(page, dragged), from) > 0.01);
     const { x, y } = await jointPlace(page, joints[0].name);
     assert.ok(Math.hypot(x - seen.x, y - seen.y) < 0.5, 'the view turned');
-  },
-  async 'what was worked on before comes back from the list'() {
-    await page.waitForFunction(() => globalThis.limberStudio.kept());
-    await tap('#open-recent');
-    const kept = page.locator('#recent li:has(img)', { hasText: 'biped' }).first();
-    await kept.waitFor();
-    await expectNoBarriers('what was worked on before');
-    await kept.locator('.pick').tap();
-    await opened('biped');
-    assert.equal((await clip()).keys.length, 2);
   },
   async 'handles take the place of named joints only where the user agrees'() {
     await page.locator('#file').setInputFiles({ name: 'person.glb', mimeType: 'model/gltf-binary', buffer: glb });
