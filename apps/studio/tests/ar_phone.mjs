@@ -1,10 +1,23 @@
 // A phone in augmented reality, for tests: what a person does with it, and where things are then.
+import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { barriers, openStudio, sessionState, settled } from './page.mjs';
 import { emulatePhone } from './xr_phone.mjs';
 
 /** The emulation of WebXR shows its frames in a canvas of its own, outside the overlay. */
 export const overlayBarriers = async (page) => (await barriers(page)).filter((barrier) => !/^region: [^ ]* > canvas/.test(barrier));
+
+/** The screen turned a quarter to the left, or upright again; by a CDP session of the page. */
+export const turnScreen = (wire, landscape) => wire.send('Emulation.setDeviceMetricsOverride', {
+  ...(landscape ? { width: 844, height: 390 } : { width: 390, height: 844 }), deviceScaleFactor: 1, mobile: false,
+  screenOrientation: landscape ? { type: 'landscapePrimary', angle: 90 } : { type: 'portraitPrimary', angle: 0 },
+});
+
+/** Of the screen as it is turned: playwright's own turns it back. */
+export async function pictureOfScreen(wire, path) {
+  const { data } = await wire.send('Page.captureScreenshot');
+  writeFileSync(path, Buffer.from(data, 'base64'));
+}
 
 export const apart = (a, b) => Math.hypot(...a.map((value, i) => value - b[i]));
 

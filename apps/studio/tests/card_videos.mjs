@@ -25,10 +25,12 @@ export function writeWalk(file, code) {
   });
 }
 
+export const resting = poseFrom(0.4, 45, -10);
+
 /** The camera at rest, four pictures over and over. `cover` lays a hand on the card, or takes it away, while the film is
  *  played: a browser reads each picture when it comes to it. */
 export function writeRest(file, code) {
-  const sums = exposed([poseFrom(0.4, 45, -10)], focal, code), bare = [1, 2, 3, 4].map((seed) => developed(sums, { seed }));
+  const sums = exposed([resting], focal, code), bare = [1, 2, 3, 4].map((seed) => developed(sums, { seed }));
   const under = bare.map(({ data, ...size }) => {
     const copy = data.slice();
     for (let y = 150; y < height; ++y) copy.fill(140, y * width + 250, y * width + 420);

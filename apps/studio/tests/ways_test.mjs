@@ -8,7 +8,7 @@ import assert from 'node:assert/strict';
 import { mkdirSync, readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { join, resolve } from 'node:path';
-import { overlayBarriers } from './ar_phone.mjs';
+import { overlayBarriers, pictureOfScreen, turnScreen } from './ar_phone.mjs';
 import { download, dragMouse, jointPlace, jointPosition, launch, openStudio, runCases, serve, sessionState, settled } from './page.mjs';
 import { emulatePhone } from './xr_phone.mjs';
 
@@ -303,6 +303,23 @@ const cases = {
       await frames();
       const up = await spot(ahead);
       assert.ok(Math.abs(up.x - 195) < 1 && Math.abs(up.y - 422 - pixels * Math.tan(Math.PI / 18)) < 2, JSON.stringify([up, pixels]));
+      // Screen and device a quarter to the left, the camera looking as at first: the picture is upright, and fills the width.
+      await turnScreen(sensors, true);
+      await turn(90, 0, -60);
+      await page.waitForFunction(() => innerWidth === 844);
+      await frames();
+      const [here, above, below] = [await spot(ahead), await spot([0, 0.5, ahead[2]]), await spot([0, 0, -1.4 / Math.tan(40 * Math.PI / 180)])];
+      assert.ok(Math.hypot(here.x - 422, here.y - 195) < 1, JSON.stringify(here));
+      assert.ok(Math.abs(above.x - 422) < 1 && above.y < here.y - 30, JSON.stringify(above));
+      const [upright, turnedOver] = await page.evaluate(([...screens]) => {
+        const { videoWidth, videoHeight } = document.querySelector('#ar video');
+        return screens.map(([width, height]) => Math.max(width / videoWidth, height / videoHeight));
+      }, [[390, 844], [844, 390]]);
+      const longer = (below.y - here.y) / Math.tan(10 * Math.PI / 180);
+      assert.ok(Math.abs(longer - (pixels * turnedOver) / upright) < 2, `as large as what the camera sees: ${longer} of ${pixels} pixels`);
+      await clean();
+      await pictureOfScreen(sensors, join(output, 'ways_camera_landscape.png'));
+      await turnScreen(sensors, false);
       // It looks at the sky: where a model is to go has no surface.
       await turn(0, 150, 0);
       await page.locator('#ar-again').tap();

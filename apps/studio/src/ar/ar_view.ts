@@ -44,6 +44,7 @@ export class ArView implements Looker {
   private lookedSince = performance.now();
   private leaving = false;
   private hidden = false;
+  private width = 0; // pixels of what is looked through
   private giveBack: () => void;
   private before;
   private canvasPlace;
@@ -74,6 +75,7 @@ export class ArView implements Looker {
     });
     this.chooseMode();
     this.lookedSince = performance.now();
+    this.width = this.desk.viewport.size.width;
     this.stopFrames = framesFrom((step) => this.steps.push(step));
     // What comes into the scene is looked for a place; undone, it needs none.
     this.stopWatching = page.watch(({ session }, { session: before }) => {
@@ -90,6 +92,7 @@ export class ArView implements Looker {
   frame(known: boolean) {
     const trouble = this.trouble(known);
     for (const step of this.steps.splice(0)) step(performance.now());
+    this.noticeTurnedScreen();
     if (!known) {
       if (this.desk.page.now.ar?.trouble !== 'lost') this.letGo();
       return this.tell({ trouble });
@@ -263,6 +266,13 @@ export class ArView implements Looker {
   private isLarge(): boolean {
     const { places, page, viewport } = this.desk, { session } = page.now;
     return session !== null && shareOfView(places.box(session.member, session.members), viewport.world.matrix, this.eye) > 1;
+  }
+
+  /** Fingers that were down are elsewhere on the model by then. */
+  private noticeTurnedScreen() {
+    const { width } = this.desk.viewport.size;
+    if (width !== this.width) this.letGo();
+    this.width = width;
   }
 
   private letGo() {
