@@ -39,6 +39,15 @@ $limber preview $work/quadruped_template.glb --show anatomy --size 480x400 -o $i
 # The page, where its parts are built (./dev studio) and there is a browser to draw it.
 if [ -f dist/index.html ] && command -v chromium >/dev/null; then
   node apps/studio/tests/pictures.mjs dist $images
+  # The states of augmented reality, as its tests meet them.
+  node apps/studio/tests/ar_test.mjs dist $limber $work
+  node apps/studio/tests/headset_test.mjs dist $limber $work
+  for name in ar_trouble ways card_ar; do node apps/studio/tests/${name}_test.mjs dist $work; done
+  cp $work/ar_{placing,placed,posing,two,no_surface,lost,ended}.png $work/headset_{posing,far_drag,two_hands}.png $images
+  for name in ways_several:ways ways_camera_refused:refused ways_camera_placed:camera ways_camera_landscape:camera_landscape ways_print_card:card \
+    card_large:card_large card_fitted:card_fitted card_posing:card_posing card_lost:card_lost; do
+    cp $work/${name%:*}.png $images/ar_${name#*:}.png
+  done
 else
   echo "The pictures of the studio stay as they are: no dist/ (./dev studio makes it), or no chromium"
 fi
