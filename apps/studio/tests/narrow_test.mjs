@@ -335,6 +335,17 @@ const cases = {
     const { x, y } = await jointPlace(page, joints[0].name);
     assert.ok(Math.hypot(x - seen.x, y - seen.y) < 0.5, 'the view turned');
   },
+  async 'looking at many samples forgets nothing that was worked on'() {
+    for (let i = 0; i < 13; ++i) {
+      const name = ['robot', 'stool'][i % 2];
+      await page.locator('#samples').selectOption(name);
+      await opened(name);
+    }
+    await page.waitForFunction(() => globalThis.limberStudio.kept());
+    await tap('#open-recent');
+    await page.locator('#recent li', { hasText: 'biped' }).first().waitFor();
+    await tap('#close-recent');
+  },
   async 'handles take the place of named joints only where the user agrees'() {
     await page.locator('#file').setInputFiles({ name: 'person.glb', mimeType: 'model/gltf-binary', buffer: glb });
     await opened('person.glb');

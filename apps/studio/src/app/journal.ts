@@ -201,9 +201,11 @@ export class Journal {
     await finished(transaction);
   }
 
+  /** What was only looked at goes before what was worked on. */
   private async forgetOldest() {
-    const documents = await this.list();
-    for (const { id } of documents.slice(mostDocuments)) void this.erase(id);
+    const all = await this.list(), oldest = all.slice(1).reverse(), lookedAt = oldest.filter(({ count }) => count <= 1);
+    const going = [...lookedAt, ...oldest.filter(({ count }) => count > 1)].slice(0, Math.max(0, all.length - mostDocuments));
+    for (const { id } of going) void this.erase(id);
   }
 
   /** Each transaction is begun at once, behind those before it, which the database keeps in their order: a page that is
