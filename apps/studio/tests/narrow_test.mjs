@@ -31,6 +31,9 @@ const told = (selector) => page.locator(selector).textContent();
 const pressed = async (selector) => (await page.locator(selector).getAttribute('aria-pressed')) === 'true';
 
 async function tap(selector) {
+  await page.locator(selector).scrollIntoViewIfNeeded();
+  // The row stands where it was scrolled.
+  await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
   await page.locator(selector).tap();
   await settled(page);
 }
@@ -38,6 +41,7 @@ async function drag(name, [x, y]) {
   const from = await jointPlace(page, name);
   await touch('touchStart', from);
   for (let i = 1; i <= 5; ++i) await touch('touchMove', { x: from.x + (x * i) / 5, y: from.y + (y * i) / 5 });
+  await page.waitForTimeout(100); // a flick would swallow the next tap
   await touch('touchEnd');
   await settled(page);
 }
@@ -210,6 +214,7 @@ const cases = {
     await drag(hand, [18, -40]);
     assert.deepEqual((await clip()).keys, [0.4]);
     await tap('#auto-key');
+    assert.equal(await pressed('#auto-key'), false);
     await scrub(1.2);
     await drag(hand, [10, -30]);
     assert.equal((await clip()).keys.length, 1);
