@@ -45,9 +45,9 @@ export async function openStudio(browser, address, { width = 1280, height = 800,
   return { page, context, errors };
 }
 
-/** Nothing under way, and the frame drawn. */
+/** Nothing under way, and the frame drawn. Asked between frames: in a frame, a clip that plays has just asked for its next moment. */
 export async function settled(page) {
-  await page.waitForFunction(() => globalThis.limberStudio?.idle() && document.querySelector('#facts').textContent !== '');
+  await page.waitForFunction(() => globalThis.limberStudio?.idle() && document.querySelector('#facts').textContent !== '', undefined, { polling: 15 });
   await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
 }
 
