@@ -23,6 +23,6 @@ target_include_directories(Eigen3::Eigen SYSTEM INTERFACE ${eigen_folder})
 # A page loads the whole engine before its first picture: only what is small is inlined (its cost is counted as LLVM
 # does; -O3 says 250). A sixth smaller, packed a tenth, and 7 % slower by ./dev bench --web; -Os makes it a third smaller
 # and fourteen times as slow, since it leaves Eigen's expressions as calls.
-add_compile_options(-O2 "SHELL:-mllvm -inline-threshold=25")
+add_compile_options(-O2 "SHELL:-mllvm -inline-threshold=40")
 add_compile_options(-fwasm-exceptions)
 add_link_options(-fwasm-exceptions)
