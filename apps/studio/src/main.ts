@@ -15,11 +15,9 @@ import { comparisonPanel } from './panels/comparison_panel';
 import { arButton, arMenu } from './panels/ar_button';
 import { contactSheet } from './panels/contact_sheet';
 import { help } from './panels/help';
-import { motionShelf } from './panels/motion_shelf';
 import { methodsPanel } from './panels/methods_panel';
 import { outliner } from './panels/outliner';
 import { paintPanel } from './panels/paint_panel';
-import { poseLibrary } from './panels/pose_library';
 import { posePanel } from './panels/pose_panel';
 import { poseTools } from './panels/pose_tools';
 import { scenePanel } from './panels/scene_panel';
@@ -34,6 +32,7 @@ import { createStage } from './scene/stage';
 import { warmUp } from './scene/warm_up';
 import { ask } from './ui/ask';
 import { element } from './ui/dom';
+import { loadedWhenOpened } from './ui/loaded_when_opened';
 import { language, say } from './words/say';
 
 /** Without WebGL there is nothing to show the model with. */
@@ -67,7 +66,15 @@ app.replaceChildren(
   element('main', { class: 'stage' }, viewport.canvas, facts(page), hint(page, viewport), poseTools(page), views(viewport), arButton(desk), comparisonPanel(studio, page, comparison)),
   element('aside', { class: 'side' }, scenePanel(studio, page, places), posePanel(studio, page, poses), paintPanel(studio, page), retargetPanel(studio, page), methodsPanel(studio, page), outliner(studio, page, handles)),
   timeline(studio, page, sheet.open),
-  toasts, help(page), sheet.dialog, motionShelf(studio, page), poseLibrary(studio, page, poses));
+  toasts, help(page), sheet.dialog);
+loadedWhenOpened(studio, page, 'shelf', async () => {
+  const { motionShelf } = await import('./panels/motion_shelf');
+  return () => motionShelf(studio, page);
+}, app);
+loadedWhenOpened(studio, page, 'poseLibrary', async () => {
+  const { poseLibrary } = await import('./panels/pose_library');
+  return () => poseLibrary(studio, page, poses);
+}, app);
 bindShortcuts(studio, page, viewport, handles, poses);
 bindPlayer(studio, page);
 bindJournal(journal, studio, page, viewport);

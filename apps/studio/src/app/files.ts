@@ -4,6 +4,7 @@ import { EngineError, refusal, unreadable } from '../engine/client';
 import { say } from '../words/say';
 
 const mostUnpacked = 500e6, mostFiles = 1000; // bytes and files that an archive holds
+export const motionFiles = '.bvh,.glb,.gltf';
 const model = /\.(glb|gltf|vrm|obj|fbx|stl|ply|limber)$/i;
 
 /** All that was dropped, whole folders too; each file's path stands in webkitRelativePath or its name. */

@@ -40,7 +40,7 @@ function allCalls(core: Core, journal: Journal) {
 }
 
 export type Studio = ReturnType<typeof allCalls> &
-  Pick<Core, 'run' | 'idle' | 'readStance' | 'onStance' | 'onWeights' | 'onOpened' | 'onPoses' | 'ask'>;
+  Pick<Core, 'run' | 'guard' | 'idle' | 'readStance' | 'onStance' | 'onWeights' | 'onOpened' | 'onPoses' | 'ask'>;
 
 export function createStudio(page: PageStore, journal: Journal): Studio {
   const core = new Core(page);

@@ -30,7 +30,12 @@ function withDragEnded(requests: Request[]): Request[] {
 /** Why there is no engine, and what to do about it. */
 function withoutEngine(broken: Extract<FromWorker, { kind: 'broken' }>): EngineError {
   if (!broken.missing) return refusal(say('this browser cannot run the studio'), broken.why, say('bring the browser up to date, or use another one'));
-  const { status } = broken, title = say('a part of the studio did not arrive'), kept = say('what you made before is kept');
+  return partMissing(broken.status);
+}
+
+/** A file of the page did not come: the server's answer, or null where there was none. */
+export function partMissing(status: number | null): EngineError {
+  const title = say('a part of the studio did not arrive'), kept = say('what you made before is kept');
   if (status === null) return refusal(title, say('look at your connection, and load the page again'), kept);
   return refusal(title, say('load the page again; if that does not help, tell whoever runs this site that a file is missing (answer {status})', { status: String(status) }), kept);
 }

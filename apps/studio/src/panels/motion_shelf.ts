@@ -1,4 +1,5 @@
 // Motions to try on: each plays on the user's own character in a small picture, and is put on it by a click.
+import { motionFiles } from '../app/files';
 import { Trials, type Motion } from '../app/trials';
 import type { PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
@@ -10,7 +11,6 @@ import { shownWhile } from '../ui/shown_while';
 import { motionName, motionSummary, told } from '../words/engine';
 import { say } from '../words/say';
 
-export const motionFiles = '.bvh,.glb,.gltf';
 const width = 264, height = 198; // pixels of a picture
 const mostUnsearched = 12; // cards that are found without searching
 const stillShare = 0.45; // of the motion, which the picture of a card that does not play shows: about its middle
@@ -202,9 +202,10 @@ export function motionShelf(studio: Studio, page: PageStore): HTMLElement {
     filter();
   };
   fillOwn([]);
+  let listed: readonly Motion[] = [], brought: readonly File[] = [];
   page.watch((now, before) => {
-    if (now.sampleMotions !== before.sampleMotions) cards.sample = fill(samples, cards.sample, now.sampleMotions);
-    if (now.ownMotions !== before.ownMotions) fillOwn(now.ownMotions);
+    if (now.sampleMotions !== listed) cards.sample = fill(samples, cards.sample, listed = now.sampleMotions);
+    if (now.ownMotions !== brought) fillOwn(brought = now.ownMotions);
     if (dialog.open && now.model !== before.model) renew();
   });
   shownWhile(dialog, page, 'shelf', {

@@ -214,9 +214,10 @@ export function poseLibrary(studio: Studio, page: PageStore, shelf: PoseShelf): 
   dialog.addEventListener('keydown', (event) => {
     if (event.key === 'Escape' && (event.target as HTMLElement).matches('.rename')) event.preventDefault(); // the field closes, not the library
   }, { capture: true });
+  let listed: readonly SamplePose[] = [], kept: readonly KeptPose[] = [];
   page.watch((now, before) => {
-    if (now.samplePoses !== before.samplePoses) cards.sample = fill(samples, cards.sample, now.samplePoses);
-    if (now.ownPoses !== before.ownPoses) cards.own = fill(own, cards.own, now.ownPoses);
+    if (now.samplePoses !== listed) cards.sample = fill(samples, cards.sample, listed = now.samplePoses);
+    if (now.ownPoses !== kept) cards.own = fill(own, cards.own, kept = now.ownPoses);
     none.hidden = now.ownPoses.length > 0;
     partly.disabled = now.selected === null;
     if (now.selected === null) partly.checked = false;

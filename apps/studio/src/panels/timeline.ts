@@ -1,5 +1,6 @@
 // The clips of the model: choose, play, scrub, set keys.
 import { sceneDuration } from '../app/clips';
+import { motionFiles } from '../app/files';
 import { togglePlaying } from '../app/player';
 import { frame } from '../app/keys';
 import type { PageStore } from '../app/state';
@@ -7,7 +8,6 @@ import type { Studio } from '../app/studio';
 import { button, element, fileInput, setIcon } from '../ui/dom';
 import { inSeconds, language, number, say } from '../words/say';
 import { keyEditor } from './key_editor';
-import { motionFiles } from './motion_shelf';
 import { chosenClip, shownSeconds, type Clip } from './moments';
 
 const mostMarks = 400; // keys that are drawn; recorded motion has one for every frame

@@ -18,7 +18,7 @@ export function shownWhile(dialog: HTMLDialogElement, page: PageStore, flag: Fla
   dialog.addEventListener('cancel', ({ target }) => { if (target === dialog) hide(); }); // a field of files in it has such an event, too
   dialog.addEventListener('close', () => { if (!dialog.open) hide(); }); // by the browser itself
   page.watch((now) => {
-    if (now[flag] === shown || (now[flag] && !ready(now))) return;
+    if (now[flag] === shown || (now[flag] && !(dialog.isConnected && ready(now)))) return;
     shown = now[flag];
     if (shown) return opens();
     dialog.close();
