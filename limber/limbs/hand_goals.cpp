@@ -10,18 +10,27 @@ namespace limber {
 
 namespace {
 
-constexpr double kTouching = 0.12, kApart = 0.35;  // of two hands, hip heights of the target
-constexpr double kStretch = 0.998;                 // of an arm's length: fully stretched elbows pop
-constexpr double kSoftReach = 0.96;                // likewise: from there on stretching softens
-constexpr double kSoftFold = 0.45;  // likewise: from there on folding softens, or from where the joint angles fold it
-constexpr double kFold = 0.6;       // of that, the nearest that a hand comes to its shoulder: folded elbows snap
-constexpr double kTouchRate = 10;   // 1/seconds, of touches that come and go
-constexpr double kMostTouch = 0.5;  // of an arm's length: how far from its joint angles one takes a hand
+// Distances at which a hand touches wholly and not at all: from the other hand, forearms; from the middle of the head
+// and of the trunk, distances of the shoulders; from a thigh's and a forearm's bone, their lengths. An adult's chest is
+// about 0.3 shoulder distances deep before and behind its middle, a thigh 0.16 of its length, a forearm 0.13; the wrist
+// is half a hand's thickness above what the palm lies on.
+constexpr TouchDistances kHands = {0.46, 0.8}, kHead = {0.33, 0.6}, kTrunk = {0.37, 0.53}, kThigh = {0.21, 0.29},
+                         kForearm = {0.23, 0.46};
+constexpr double kStretch = 0.998;   // of an arm's length: fully stretched elbows pop
+constexpr double kSoftReach = 0.96;  // likewise: from there on stretching softens
+constexpr double kSoftFold = 0.45;   // likewise: from there on folding softens, or from where the joint angles fold it
+constexpr double kFold = 0.6;        // of that, the nearest that a hand comes to its shoulder: folded elbows snap
+constexpr double kTouchRate = 8;     // 1/seconds, of touches that come and go
+constexpr double kMostTouch = 0.5;   // of an arm's length: how far from its joint angles one takes a hand
 
 // `wanted` beyond `edge`, but the slower the nearer it comes to `end`.
 double towards(double end, double edge, double wanted) {
   const double room = end - edge, over = wanted - edge;
   return room * over > 0 ? edge + room * (1 - std::exp(-over / room)) : edge;
+}
+
+double closeness(double distance, const TouchDistances& of) {
+  return smoothStep((of.apart - distance) / (of.apart - of.touching));
 }
 
 // Short ways stay about as they are.
@@ -35,31 +44,44 @@ HandGoals::HandGoals(const RetargetSetup& setup, const RootPlacer& root) : setup
   if (!setup.person) return;
   using body_part::arm;
   using body_part::leg;
+  const Gauge shoulders = gaugeOf(arm(Side::kLeft, Segment::kUpper), arm(Side::kRight, Segment::kUpper));
+  hands_ = gaugeOf(arm(Side::kLeft, Segment::kMiddle), arm(Side::kLeft, Segment::kEnd));
   for (const Side side : kSides) {
     const auto limb = findLimb(setup_, root, PartKind::kArm, side);
     if (!limb) continue;
     arms_.push_back(*limb);
     const Side other = opposite(side);
     std::vector<Surface>& surfaces = surfaces_.emplace_back();
-    addSurface(body_part::kHead, body_part::kHead, 0.12, 0.35, surfaces);
-    addSurface(body_part::kPelvis, body_part::kNeck, 0.13, 0.19, surfaces);
+    const auto add = [&](const BodyPart& from, const BodyPart& to, const Gauge& gauge, const TouchDistances& at) {
+      addSurface(from, to, gauge, at, surfaces);
+    };
+    add(body_part::kHead, body_part::kHead, shoulders, kHead);
+    add(body_part::kPelvis, body_part::kNeck, shoulders, kTrunk);
     for (const Side thigh : kSides) {
-      addSurface(leg(thigh, Segment::kUpper), leg(thigh, Segment::kMiddle), 0.09, 0.15, surfaces);
+      const BodyPart hip = leg(thigh, Segment::kUpper), knee = leg(thigh, Segment::kMiddle);
+      add(hip, knee, gaugeOf(hip, knee), kThigh);
     }
-    addSurface(arm(other, Segment::kMiddle), arm(other, Segment::kEnd), 0.06, 0.12, surfaces);
+    const BodyPart elbow = arm(other, Segment::kMiddle), hand = arm(other, Segment::kEnd);
+    add(elbow, hand, gaugeOf(elbow, hand), kForearm);
   }
 }
 
-void HandGoals::addSurface(const BodyPart& from, const BodyPart& to, double touching, double apart,
-                           std::vector<Surface>& surfaces) const {
+HandGoals::Gauge HandGoals::gaugeOf(const BodyPart& from, const BodyPart& to) const {
   const JointMatch *begin = setup_.map.find(from), *end = setup_.map.find(to);
-  if (!begin || !end) return;
-  surfaces.push_back(
-      {{begin->source.front(), end->source.front()}, {begin->target.front(), end->target.front()}, touching, apart});
+  if (!begin || !end) return {setup_.sourceHipHeight, setup_.targetHipHeight};
+  const auto length = [](const NeutralPose& body, Index a, Index b) {
+    return (body.restPositions[b] - body.restPositions[a]).norm();
+  };
+  return {length(setup_.sourceNeutral, begin->source.front(), end->source.front()),
+          length(setup_.targetNeutral, begin->target.front(), end->target.front())};
 }
 
-double HandGoals::closeness(double distance, double touching, double apart) const {
-  return smoothStep((apart - distance / setup_.targetHipHeight) / (apart - touching));
+void HandGoals::addSurface(const BodyPart& from, const BodyPart& to, const Gauge& gauge,
+                           const TouchDistances& distances, std::vector<Surface>& surfaces) const {
+  const JointMatch *begin = setup_.map.find(from), *end = setup_.map.find(to);
+  if (!begin || !end || !(gauge.source > 0)) return;
+  surfaces.push_back(
+      {{begin->source.front(), end->source.front()}, {begin->target.front(), end->target.front()}, gauge, distances});
 }
 
 // Where touches want the hand, against where it is.
@@ -72,10 +94,10 @@ Vec3 HandGoals::touchOf(const Limb& arm, const std::vector<Surface>& surfaces, c
     const Vec3 begin = source.positions[surface.source[0]], bone = source.positions[surface.source[1]] - begin;
     const double along =
         bone.squaredNorm() > 0 ? std::clamp((hand - begin).dot(bone) / bone.squaredNorm(), 0.0, 1.0) : 0;
-    const Vec3 away = setup_.scale * (hand - begin - along * bone);
+    const Vec3 away = (hand - begin - along * bone) / surface.gauge.source;
     const Vec3 from = target.positions[surface.target[0]], to = target.positions[surface.target[1]];
-    const double weight = closeness(away.norm(), surface.touching, surface.apart);
-    sum += weight * (from + along * (to - from) + away - arm.goal);
+    const double weight = closeness(away.norm(), surface.distances);
+    sum += weight * (from + along * (to - from) + surface.gauge.target * away - arm.goal);
     weights += weight;
     missing *= 1 - weight;
   }
@@ -108,9 +130,9 @@ void HandGoals::set(const BodyFrame& source, const BodyFrame& target, double sec
   }
   if (!setup_.options.contacts) return;
   if (arms_.size() == 2) {
-    const Vec3 apart = setup_.scale * (source.positions[arms_[1].sourceEnd] - source.positions[arms_[0].sourceEnd]);
-    const Vec3 change = apart - (arms_[1].goal + touches[1] - arms_[0].goal - touches[0]);
-    const double weight = 0.5 * closeness(apart.norm(), kTouching, kApart);
+    const Vec3 apart = (source.positions[arms_[1].sourceEnd] - source.positions[arms_[0].sourceEnd]) / hands_.source;
+    const Vec3 change = hands_.target * apart - (arms_[1].goal + touches[1] - arms_[0].goal - touches[0]);
+    const double weight = 0.5 * closeness(apart.norm(), kHands);
     touches[0] -= weight * change;
     touches[1] += weight * change;
   }

@@ -8,6 +8,11 @@
 
 namespace limber {
 
+// From what a hand touches: where a touch counts wholly, and where no more.
+struct TouchDistances {
+  double touching, apart;
+};
+
 // Goals frame after frame, without looking ahead. Nothing jumps when touches come and go.
 class HandGoals {
  public:
@@ -15,7 +20,8 @@ class HandGoals {
   HandGoals(const RetargetSetup& setup, const RootPlacer& root);
 
   // Hands that are close to the other hand, the head, the trunk, a thigh or the other forearm in the source are as
-  // close in the result, scaled, as far as that takes them half an arm's length from their joint angles at most.
+  // close in the result for how thick that is there, as far as that takes them half an arm's length from their joint
+  // angles at most.
   // `reach` as in RetargetOptions. From the globals of both.
   void set(const BodyFrame& source, const BodyFrame& target, double seconds);
   // Forgets what was touched: the motion jumped.
@@ -28,25 +34,32 @@ class HandGoals {
   std::vector<Limb>& arms() { return arms_; }
 
  private:
-  // A bone that hands can touch, with distances, in hip heights, at which a touch counts wholly and not at all.
+  // Metres of the source and of the target by which what is touched is as thick: where motions come without a skin, the
+  // skeletons alone tell.
+  struct Gauge {
+    double source = 1, target = 1;
+  };
+  // A bone that hands can touch.
   struct Surface {
     std::array<Index, 2> source, target;
-    double touching, apart;
+    Gauge gauge;
+    TouchDistances distances;  // from the bone, of the gauge
   };
   struct Follow {
     Vec3 value = Vec3::Zero(), speed = Vec3::Zero();
   };
 
-  void addSurface(const BodyPart& from, const BodyPart& to, double touching, double apart,
+  // Nothing where one of them lacks a joint.
+  Gauge gaugeOf(const BodyPart& from, const BodyPart& to) const;
+  void addSurface(const BodyPart& from, const BodyPart& to, const Gauge& gauge, const TouchDistances& distances,
                   std::vector<Surface>& surfaces) const;
   Vec3 touchOf(const Limb& arm, const std::vector<Surface>& surfaces, const BodyFrame& source,
                const BodyFrame& target) const;
-  double closeness(double distance, double touching, double apart) const;
-
   const RetargetSetup& setup_;
   std::vector<Limb> arms_;
   std::vector<std::vector<Surface>> surfaces_;  // for each arm
   std::array<Follow, 2> follows_;               // the touches of each arm as they come and go
+  Gauge hands_;                                 // of hands that touch each other
 };
 
 }  // namespace limber

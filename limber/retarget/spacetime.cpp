@@ -16,7 +16,7 @@ namespace limber {
 namespace {
 
 // In which changes come and go, seconds. Feet: longer, and one that stops a foot would swing it far before and after.
-constexpr double kFootSeconds = 0.05, kHandSeconds = 0.1, kPlantSeconds = 0.12;
+constexpr double kFootSeconds = 0.05, kHandSeconds = 0.12, kPlantSeconds = 0.12;
 constexpr double kOwnWaySeconds = 0.13;  // of two feet that go the source's way: little is left to change
 // Weights of a planted foot's steps and height, and of what a foot is below the ground.
 constexpr double kStandWeight = 1e8, kGroundWeight = 3e3, kFloorWeight = 1e8;
