@@ -52,7 +52,6 @@ void retargetFrame(benchmark::State& state, const std::string& method) {
 
 BENCHMARK_CAPTURE(retargetFrame, aligned, "aligned");
 BENCHMARK_CAPTURE(retargetFrame, limb_ik, "limb-ik");
-BENCHMARK_CAPTURE(retargetFrame, online, "online");
 
 // A whole motion. The floor is a pass of forward kinematics over source and target, which is all that an even one
 // costs, as by joint angles alone. Legs with short shins that are solved for are rough, these so much that evening goes

@@ -147,7 +147,7 @@ TEST(RetargetAnimals, PawsStandWhereTheyStand) {
       if (walks) frames = walkingAhead(RetargetSetup(motion.skeleton, target, map, {}, &frames), frames);
       const RetargetSetup setup(motion.skeleton, target, map, {}, &frames);
       ASSERT_EQ(setup.animalLegs.size(), 4u);
-      for (const char* method : {"limb-ik", "online", "spacetime"}) {
+      for (const char* method : {"limb-ik", "spacetime"}) {
         const MotionMetrics result = measured(setup, method, frames);
         if (walks) {
           EXPECT_GT(result.planted, 0.05);
@@ -201,7 +201,7 @@ TEST(RetargetAnimals, LegsReachFeetOnRootsOfTheirOwn) {
         if (walks) frames = walkingAhead(RetargetSetup(motion.skeleton, target, map, {}, &frames), frames);
         const RetargetSetup setup(motion.skeleton, target, map, {}, &frames);
         ASSERT_EQ(setup.animalLegs.size(), 4u);
-        for (const char* method : {"limb-ik", "online", "spacetime"}) {
+        for (const char* method : {"limb-ik", "spacetime"}) {
           SCOPED_TRACE(method);
           const PoseSequence moved = retargetFrames(findRetargetMethod(method), setup, frames);
           const MotionMetrics result = measureMotion(setup, frames, moved);
@@ -237,7 +237,7 @@ TEST(RetargetAnimals, QuadrupedsAreMatchedByTheirForm) {
       const SkeletonMap map = matchSkeletons(motion.skeleton, plain.skeleton());
       if (!map.isQuadruped()) continue;  // of one family
       ++strangers;
-      for (const char* method : {"limb-ik", "online", "spacetime"}) {
+      for (const char* method : {"limb-ik", "spacetime"}) {
         EXPECT_GE(map.matches.size(), 17u);
         for (const Clip& clip : motion.clips) {
           SCOPED_TRACE(std::string(file).append(" ").append(clip.name).append(" ").append(animal) + " " + method);

@@ -80,7 +80,7 @@ TEST_P(RetargetKinds, MoveTheirOwn) {
       if (frames.poses.size() < 5) continue;
       const RetargetSetup setup(from.skeleton(), to.skeleton(), map, {}, &frames);
       EXPECT_EQ(setup.animalLegs.size(), kind.legs);
-      for (const char* method : {"limb-ik", "online", "spacetime"}) {
+      for (const char* method : {"limb-ik", "spacetime"}) {
         SCOPED_TRACE(std::string(clip.name).append(" ").append(body).append(" ").append(method));
         const PoseSequence result = retargetFrames(findRetargetMethod(method), setup, frames);
         EXPECT_LT(worstTurn(setup, frames, result), 0.5);
@@ -147,7 +147,7 @@ TEST(RetargetStrangers, DinosaursGoForwardByAnothersClips) {
       const PoseSequence frames = sampleFrames(motion.skeleton, clip, 30);
       if (frames.poses.size() < 5) continue;
       const RetargetSetup setup(motion.skeleton, to.skeleton(), map, {}, &frames);
-      for (const char* method : {"limb-ik", "online", "spacetime"}) {
+      for (const char* method : {"limb-ik", "spacetime"}) {
         SCOPED_TRACE(std::string(clip.name).append(" ").append(body).append(" ").append(method));
         const MotionMetrics result = measured(setup, method, frames);
         EXPECT_LT(result.jerk, 1.1);

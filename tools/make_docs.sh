@@ -58,7 +58,7 @@ once() {
   $limber convert $work/$1.bvh $work/$1_once.bvh --trim $2 --quiet
 }
 once jumping-jack 0:1.2
-for method in limb-ik online spacetime aligned copy; do
+for method in limb-ik spacetime aligned copy; do
   $limber retarget $work/biped_template.glb $work/jumping-jack_once.bvh --method $method -o $work/jumping_jack.glb --quiet
   $limber preview $work/jumping_jack.glb --frames 8 --size 120x150 --view 25,10 -o $images/retarget_$method.png --quiet
 done

@@ -45,7 +45,7 @@ TEST_P(KnownAnswers, AreGivenOfWhatMovesByItself) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, KnownAnswers, ::testing::Values("limb-ik", "spacetime", "online", "aligned"),
+INSTANTIATE_TEST_SUITE_P(Methods, KnownAnswers, ::testing::Values("limb-ik", "spacetime", "aligned"),
                          [](const ::testing::TestParamInfo<const char*>& method) {
                            std::string name = method.param;
                            std::erase(name, '-');

@@ -181,7 +181,7 @@ TEST(EvenOut, IsDoneToWholeMotionsUnlessItIsSwitchedOff) {
     return same;
   };
   EXPECT_FALSE(by(false, true, "limb-ik")) << "a motion that is rough without it";
-  for (const char* method : {"limb-ik", "online", "spacetime"}) EXPECT_TRUE(by(true, true, method)) << method;
+  for (const char* method : {"limb-ik", "spacetime"}) EXPECT_TRUE(by(true, true, method)) << method;
 }
 
 TEST(EvenOut, FewFramesAndNoLegsAreLeftAlone) {

@@ -70,7 +70,6 @@ TEST_F(LimbIk, WideHipsTurnLessThanTheSources) {
     return worst * 180 / kPi;
   };
   EXPECT_LT(worstBend("limb-ik"), 20);
-  EXPECT_LT(worstBend("online"), 20);
 }
 
 // On one leg, while the wide hips of a toy are turned to keep it standing: the other leg goes along with its hip.
@@ -122,7 +121,6 @@ TEST_F(LimbIk, ToesLieOnTheGroundWhileTheHeelGoesUp) {
   };
   EXPECT_NEAR(tipsDown("aligned"), 29.5, 0.1);
   EXPECT_LT(tipsDown("limb-ik"), 5);
-  EXPECT_LT(tipsDown("online"), 5);
 }
 
 // Toes that only the target has: its feet are longer than the source's ankles tell.
@@ -150,7 +148,6 @@ TEST_F(LimbIk, ToesStayAboveTheGroundWhereTheSourceHasNone) {
   };
   EXPECT_LT(lowest("aligned"), -0.03);
   EXPECT_GT(lowest("limb-ik"), -1e-6);
-  EXPECT_GT(lowest("online"), -0.002);
   EXPECT_GT(lowest("spacetime"), -1e-6);
 }
 

@@ -9,19 +9,16 @@
 #include "limber/retarget/aligned.h"
 #include "limber/retarget/copy_rotations.h"
 #include "limber/retarget/limb_ik.h"
-#include "limber/retarget/online.h"
 #include "limber/retarget/spacetime.h"
 
 namespace limber {
 
 std::span<const RetargetMethod> retargetMethods() {
-  static constexpr std::array<RetargetMethod, 5> kMethods = {{
+  static constexpr std::array<RetargetMethod, 4> kMethods = {{
       {"limb-ik", "joints turn as the source's; feet stay planted, hands touch what they touched",
        "Koerner; Feng et al.: Automating the Transfer of a Generic Set "
        "of Behaviors onto a Virtual Character, 2012",
        &makeLimbIk, nullptr, true},
-      {"online", "hands and feet first, joint angles in the freedom that they leave",
-       "Choi, Ko: Online motion retargetting, 1999", &makeOnline, nullptr, true},
       {"spacetime", "the smallest smooth change over the whole motion that keeps feet planted and hands touching",
        "Gleicher: Retargetting motion to new characters, 1998", &makeAligned, &refineSpacetime, true},
       {"aligned", "joints turn in the world as the source's, against a neutral pose that both share",

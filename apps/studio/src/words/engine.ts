@@ -33,7 +33,6 @@ const methods: Readonly<Record<string, { name: Words; summary: Words }>> = {
   'sdls': { name: 'SDLS', summary: 'selectively damped least squares' },
   'whole-body': { name: 'Whole body', summary: 'damped least squares with priorities, for many effectors and a moving root' },
   'limb-ik': { name: 'Limbs by IK', summary: 'joints turn as the source\u2019s; feet stay planted, hands touch what they touched' },
-  'online': { name: 'Hands and feet first', summary: 'hands and feet first, joint angles in the freedom that they leave' },
   'spacetime': { name: 'Whole motion', summary: 'the smallest smooth change over the whole motion that keeps feet planted and hands touching' },
   'aligned': { name: 'Aligned poses', summary: 'joints turn in the world as the source\u2019s, against a neutral pose that both share' },
   'copy': { name: 'Copied turns', summary: 'local rotations as they are; right for like skeletons only' },
