@@ -21,6 +21,8 @@ constexpr double kJump = 15, kFirstJump = 4;
 constexpr double kFreeSpeed = 0.6, kFreeFirmness = 1e-9;
 constexpr double kSeenSeconds = 1.0 / 30;
 
+constexpr double kSameMoment = 1e-6;  // seconds, between a frame and the edge of what the user says
+
 // 0 or 1 without a jump.
 void follow(bool wanted, double seconds, double& value, double& speed) {
   springTo(wanted ? 1.0 : 0.0, kPlantRate, seconds, value, speed);
@@ -31,11 +33,16 @@ void follow(bool wanted, double seconds, double& value, double& speed) {
 
 void ContactReader::watch(const WatchedFoot& foot) {
   const PlantDetector detector(setup_.sourceHipHeight);
-  feet_.push_back({foot, detector, detector, {}, 0, 0, std::nullopt});
+  feet_.push_back({foot, detector, detector, {}, 0, 0, std::nullopt, {}});
+  const std::string& name = setup_.source->joints[foot.ankle].name;
+  for (const ContactEdit& edit : setup_.options.contactEdits) {
+    if (edit.foot == name) feet_.back().edits.push_back(edit);
+  }
 }
 
 void ContactReader::next(const BodyFrame& source, double seconds) {
   cut_ = jumps(source, seconds);
+  time_ += seconds;
   for (Watched& watched : feet_) {
     if (cut_) {
       watched.ankle.reset();
@@ -70,17 +77,31 @@ bool ContactReader::rests(Watched& watched, const Vec3& ankle, double seconds) c
 void ContactReader::read(Watched& watched, const BodyFrame& source, double seconds) const {
   const WatchedFoot& foot = watched.foot;
   const Vec3& ankle = source.positions[foot.ankle];
-  const bool heel = watched.ankle.next(ankle, ankle.y() - foot.ankleGround, seconds);
+  bool heel = watched.ankle.next(ankle, ankle.y() - foot.ankleGround, seconds);
   bool toes = false;
   if (foot.toes) {
     const Vec3& place = source.positions[*foot.toes];
     toes = watched.toes.next(place, place.y() - foot.toesGround, seconds);
   }
   FootContact& contact = watched.contact;
+  if (const std::optional<bool> stands = told(watched)) {
+    const bool found = heel || toes;
+    heel = *stands && (heel || !found);
+    toes = *stands && (toes || (!found && foot.toes));
+    contact.rests = contact.rests && *stands;
+  }
   contact.anchor = toes ? FootAnchor::kToes : heel ? FootAnchor::kAnkle : FootAnchor::kNone;
   contact.flat = heel && toes;
   follow(contact.anchor != FootAnchor::kNone, seconds, contact.strength, watched.strengthSpeed);
   follow(contact.flat, seconds, contact.flatness, watched.flatSpeed);
+}
+
+std::optional<bool> ContactReader::told(const Watched& watched) const {
+  std::optional<bool> stands;
+  for (const ContactEdit& edit : watched.edits) {
+    if (time_ > edit.from - kSameMoment && time_ < edit.to + kSameMoment) stands = edit.stands;
+  }
+  return stands;
 }
 
 ContactTrack::ContactTrack(const RetargetSetup& setup, std::span<const WatchedFoot> feet, const PoseSequence& source)
@@ -114,6 +135,19 @@ double ContactTrack::firmness(std::size_t frame, std::size_t foot) const {
   const double speed = Vec3(way.x(), 0, way.z()).norm() / (static_cast<double>(after - before) * frameSeconds_);
   const double share = speed / (kFreeSpeed * hipHeight_);
   return std::pow(kFreeFirmness, share * share);
+}
+
+std::vector<FootSpans::Span> ContactTrack::spans(std::size_t foot) const {
+  std::vector<FootSpans::Span> spans;
+  bool stood = false;
+  for (std::size_t f = 0; f < frames(); ++f) {
+    const bool stands = at(f, foot).anchor != FootAnchor::kNone;
+    const double now = static_cast<double>(f) * frameSeconds_;
+    if (stands && !stood) spans.push_back({now, now});
+    if (stands) spans.back().to = now;
+    stood = stands;
+  }
+  return spans;
 }
 
 }  // namespace limber

@@ -41,7 +41,17 @@ struct WatchedFoot {
   double ankleGround = 0, toesGround = 0;
 };
 
-// Contacts frame after frame, without looking ahead.
+// While a foot of the source stands.
+struct FootSpans {
+  Index foot = 0;  // WatchedFoot::ankle
+  struct Span {
+    double from = 0, to = 0;  // seconds, of its first and its last frame
+  };
+  std::vector<Span> stands;
+};
+
+// Contacts frame after frame, without looking ahead; what the user says (RetargetOptions::contactEdits) counts more
+// than what is read.
 class ContactReader {
  public:
   // Must outlive this.
@@ -63,16 +73,20 @@ class ContactReader {
     FootContact contact;
     double strengthSpeed = 0, flatSpeed = 0;
     std::optional<Vec3> before;  // the ankle, in the frame before
+    std::vector<ContactEdit> edits;
   };
 
   bool jumps(const BodyFrame& source, double seconds);
   void read(Watched& watched, const BodyFrame& source, double seconds) const;
   bool rests(Watched& watched, const Vec3& ankle, double seconds) const;
+  // Whether it stands, where the user says so.
+  std::optional<bool> told(const Watched& watched) const;
 
   const RetargetSetup& setup_;
   std::vector<Watched> feet_;
   std::vector<Vec3> landmarks_, landmarksBefore_;  // the pelvis, then the ankles
   std::size_t frames_ = 0;
+  double time_ = 0;  // of the frame, seconds
   bool cut_ = false;
 };
 
@@ -87,6 +101,8 @@ class ContactTrack {
   // How firmly the contact holds the foot, 0 to 1: the less, the faster the source's own foot moves along the ground
   // while it stands. 0 where nothing holds it.
   double firmness(std::size_t frame, std::size_t foot) const;
+  // While something holds it.
+  std::vector<FootSpans::Span> spans(std::size_t foot) const;
 
  private:
   struct Place {

@@ -18,6 +18,13 @@ struct PoseSequence {
   double frameSeconds = 1.0 / 30;
 };
 
+// What a user says of a foot for a while, whatever its motion tells: whether it stands.
+struct ContactEdit {
+  std::string foot;         // the source's joint that stands (FootSpans::foot)
+  double from = 0, to = 0;  // seconds of the motion
+  bool stands = false;
+};
+
 enum class RootScale {
   kHipHeight,  // from the ground to the hips
   kLegLength,  // of upper and lower leg
@@ -29,9 +36,10 @@ struct RetargetOptions {
   // limb-ik: where a hand goes. 0: where its turned bones bring it; 1: where the source's hand is, scaled as the root's
   // way is (Koerner's d).
   double reach = 0;
-  bool contacts = true;             // limb-ik: keep planted feet and touching hands
-  bool evenOut = true;              // whole motions, with contacts: no rougher than the source (even_out.h)
-  std::string solver = "two-bone";  // limb-ik, online: of ikMethods()
+  bool contacts = true;                        // limb-ik: keep planted feet and touching hands
+  std::vector<ContactEdit> contactEdits = {};  // of several for one moment the last one counts
+  bool evenOut = true;                         // whole motions, with contacts: no rougher than the source (even_out.h)
+  std::string solver = "two-bone";             // limb-ik: of ikMethods()
   // Height of the ground under the source, metres; none: measured from the motion where there is one, else from the
   // rest pose.
   std::optional<double> sourceGround;

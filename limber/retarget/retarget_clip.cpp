@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "limber/core/known_error.h"
+#include "limber/limbs/limb_goals.h"
 #include "limber/matching/plain_skeleton.h"
 #include "limber/retarget/even_out.h"
 #include "limber/skeleton/motion.h"
@@ -17,6 +18,14 @@ constexpr double kMoved = 1e-7;  // of a translation, metres; of a rotation's co
 
 Quat nearTo(const Quat& rotation, const Quat& before) {
   return rotation.dot(before) < 0 ? Quat(-rotation.coeffs()) : rotation;
+}
+
+bool keepsContacts(const RetargetMethod& method, const RetargetOptions& options) {
+  return method.solvesLimbs && options.contacts;
+}
+
+PoseSequence plainFrames(const PlainSkeleton& plain, const Skeleton& source, const Clip& clip, double frameRate) {
+  return plain.plain(sampleFrames(source, clip, frameRate > 0 ? frameRate : frameRateOf(clip)));
 }
 
 }  // namespace
@@ -84,7 +93,7 @@ PoseSequence retargetFrames(const RetargetMethod& method, const RetargetSetup& s
     retargeter->next(source.poses[f], f == 0 ? 0 : source.frameSeconds, target.poses[f]);
   }
   if (method.refine) method.refine(setup, source, target);
-  if (method.solvesLimbs && setup.options.contacts && setup.options.evenOut) evenOut(setup, source, target);
+  if (keepsContacts(method, setup.options) && setup.options.evenOut) evenOut(setup, source, target);
   return target;
 }
 
@@ -92,9 +101,26 @@ Clip retargetClip(const RetargetMethod& method, const Skeleton& source, const Cl
                   const SkeletonMap& map, const RetargetOptions& options, double frameRate) {
   checkClip(clip, source);
   const PlainSkeleton from(source), to(target);
-  const PoseSequence frames = from.plain(sampleFrames(source, clip, frameRate > 0 ? frameRate : frameRateOf(clip)));
+  const PoseSequence frames = plainFrames(from, source, clip, frameRate);
   const RetargetSetup setup(from.skeleton(), to.skeleton(), map, options, &frames);
   return clipOf(target, to.original(retargetFrames(method, setup, frames)), clip.name);
+}
+
+std::vector<FootSpans> standingFeet(const RetargetMethod& method, const Skeleton& source, const Clip& clip,
+                                    const Skeleton& target, const SkeletonMap& map, const RetargetOptions& options,
+                                    double frameRate) {
+  if (!keepsContacts(method, options)) return {};
+  const PlainSkeleton from(source), to(target);
+  const PoseSequence frames = plainFrames(from, source, clip, frameRate);
+  const RetargetSetup setup(from.skeleton(), to.skeleton(), map, options, &frames);
+  const RootPlacer root(setup);
+  const LimbGoals goals(setup, root);
+  if (!goals.active()) return {};
+  const std::vector<WatchedFoot> watched = goals.watchedFeet();
+  const ContactTrack track(setup, watched, frames);
+  std::vector<FootSpans> feet;
+  for (std::size_t i = 0; i < watched.size(); ++i) feet.push_back({watched[i].ankle, track.spans(i)});
+  return feet;
 }
 
 }  // namespace limber

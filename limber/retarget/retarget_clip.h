@@ -1,6 +1,9 @@
 // A whole motion from one skeleton to another.
 #pragma once
 
+#include <vector>
+
+#include "limber/limbs/contact_track.h"
 #include "limber/retarget/retarget_method.h"
 #include "limber/skeleton/clip.h"
 
@@ -22,5 +25,11 @@ PoseSequence retargetFrames(const RetargetMethod& method, const RetargetSetup& s
 // same name and length for `target`.
 Clip retargetClip(const RetargetMethod& method, const Skeleton& source, const Clip& clip, const Skeleton& target,
                   const SkeletonMap& map, const RetargetOptions& options = {}, double frameRate = 0);
+
+// The feet of the source that retargetClip() keeps where they stand, and while they do: none where the method keeps no
+// contacts, or the target has nothing that could.
+std::vector<FootSpans> standingFeet(const RetargetMethod& method, const Skeleton& source, const Clip& clip,
+                                    const Skeleton& target, const SkeletonMap& map, const RetargetOptions& options = {},
+                                    double frameRate = 0);
 
 }  // namespace limber

@@ -17,16 +17,16 @@ namespace limber {
 
 namespace {
 
-constexpr int kCommandsVersion = 1;
+constexpr int kCommandsVersion = 2;  // 1 knew no motions that are put on as they are added
 
 // In the order of the variant. The formatter would put each on a line of its own.
 // clang-format off
-constexpr std::array<std::string_view, 60> kNames = {
+constexpr std::array<std::string_view, 61> kNames = {
     "open_sample",       "open_file",         "set_handles",  "choose_methods", "pin_joint",     "unpin_joint",
     "begin_drag",        "update_drag",       "turn_drag",    "move_drag",      "end_drag",      "cancel_drag",
     "turn_joint",        "move_joint",        "set_ik",       "set_target",     "clear_target",  "set_limits",
     "reset_joint",       "reset_pose",        "mirror_pose",  "set_rest_pose",  "rename_joint",  "add_motion",
-    "add_sample_motion", "retarget",          "add_clip",     "remove_clip",    "rename_clip",   "choose_clip",
+    "add_sample_motion", "retarget",          "set_contact", "add_clip",     "remove_clip",    "rename_clip",   "choose_clip",
     "set_time",          "set_key",           "move_key",     "delete_key",     "edit_keys",     "delete_keys",
     "set_joint_key",     "set_interpolation", "set_tangents", "paste_keys",     "paint_weights", "lock_weights",
     "mirror_weights",    "add_joint",         "delete_joint", "reparent_joint", "place_joint",   "set_turn",
@@ -215,6 +215,13 @@ void visitFields(Visitor& field, RetargetMotion& c) {
   field("contacts", c.contacts);
 }
 template <class Visitor>
+void visitFields(Visitor& field, SetContact& c) {
+  field("foot", c.foot);
+  field("from", c.from);
+  field("to", c.to);
+  field("contact", c.contact);
+}
+template <class Visitor>
 void visitFields(Visitor& field, AddClip& c) {
   field("clip", c.clip);
 }
@@ -344,6 +351,9 @@ constexpr std::array<std::pair<PaintMode, std::string_view>, 4> kPaintModes = {{
 constexpr std::array<std::pair<Interpolation, std::string_view>, 3> kInterpolations = {
     {{Interpolation::kStep, "step"}, {Interpolation::kLinear, "linear"}, {Interpolation::kCubic, "cubic"}}};
 
+constexpr std::array<std::pair<ContactChange, std::string_view>, 3> kContactChanges = {
+    {{ContactChange::kStands, "stands"}, {ContactChange::kFree, "free"}, {ContactChange::kFound, "found"}}};
+
 constexpr std::array<std::pair<KeyTangents, std::string_view>, 3> kTangents = {
     {{KeyTangents::kAuto, "auto"}, {KeyTangents::kFlat, "flat"}, {KeyTangents::kFree, "free"}}};
 
@@ -358,6 +368,9 @@ const auto& wordsOf(MirrorFrom) {
 }
 const auto& wordsOf(PaintMode) {
   return kPaintModes;
+}
+const auto& wordsOf(ContactChange) {
+  return kContactChanges;
 }
 const auto& wordsOf(Interpolation) {
   return kInterpolations;
@@ -529,10 +542,17 @@ std::optional<Command> readNamed(std::string_view name, const JsonView& object) 
   }
 }
 
+// The method "online", which older lists name, held feet and hands as limb-ik does.
+void bringUpToDate(Command& command) {
+  auto* const retarget = std::get_if<RetargetMotion>(&command);
+  if (retarget && retarget->method == "online") retarget->method = "limb-ik";
+}
+
 Command readCommand(const JsonView& object) {
   const std::string_view name = object.text("do");
   std::optional<Command> command = readNamed(name, object);
   if (!command) object.fail(fmt::format("no command is called '{}'", name));
+  bringUpToDate(*command);
   return *std::move(command);
 }
 
@@ -570,7 +590,9 @@ std::vector<Command> commandsFromJson(std::string_view text) {
   Warnings warnings;
   const Json document = parseJson(text, warnings);
   const JsonView root(document);
-  if (root.number("limber_commands", 0) != kCommandsVersion) root.fail("is no list of commands that limber knows");
+  const double version = root.number("limber_commands", 0);
+  if (version > kCommandsVersion) root.fail("is a list of commands by a newer version of limber");
+  if (version < 1) root.fail("is no list of commands");
   const JsonView list = root.array("commands");
   std::vector<Command> commands;
   for (std::size_t i = 0; i < list.size(); ++i) commands.push_back(readCommand(list[i]));

@@ -225,6 +225,15 @@ struct RetargetMotion {
   bool contacts = true;
 };
 
+// Says of a foot of the motion that the chosen clip is from whether it stands for a while, or takes back what was said;
+// the clip is made anew. What is said stays when the motion is put on by another method or map.
+enum class ContactChange { kStands, kFree, kFound };
+struct SetContact {
+  std::string foot;         // the motion's joint (ClipSource::feet)
+  double from = 0, to = 0;  // seconds, both included
+  ContactChange contact = ContactChange::kStands;
+};
+
 // Clips are named; one at a time is shown. A new clip has no keys.
 struct AddClip {
   std::string clip;
@@ -348,11 +357,11 @@ using Command =
     std::variant<OpenSample, OpenFile, SetHandles, ChooseMethods, PinJoint, UnpinJoint, BeginDrag, UpdateDrag, TurnDrag,
                  MoveDrag, EndDrag, CancelDrag, TurnJoint, MoveJoint, SetIk, SetTarget, ClearTarget, SetLimits,
                  ResetJoint, ResetPose, MirrorPose, SetRestPose, RenameJoint, AddMotion, AddSampleMotion,
-                 RetargetMotion, AddClip, RemoveClip, RenameClip, ChooseClip, SetTime, SetKey, MoveKey, DeleteKey,
-                 EditKeys, DeleteKeys, SetJointKey, SetInterpolation, SetTangents, PasteKeys, PaintWeights, LockWeights,
-                 MirrorWeights, AddJoint, DeleteJoint, ReparentJoint, PlaceJoint, SetTurn, ApplyPose, Undo, Redo,
-                 AddSample, AddFile, RemoveMember, ChooseMember, RenameMember, PlaceMember, AttachMember, DetachMember,
-                 SetClock>;
+                 RetargetMotion, SetContact, AddClip, RemoveClip, RenameClip, ChooseClip, SetTime, SetKey, MoveKey,
+                 DeleteKey, EditKeys, DeleteKeys, SetJointKey, SetInterpolation, SetTangents, PasteKeys, PaintWeights,
+                 LockWeights, MirrorWeights, AddJoint, DeleteJoint, ReparentJoint, PlaceJoint, SetTurn, ApplyPose, Undo,
+                 Redo, AddSample, AddFile, RemoveMember, ChooseMember, RenameMember, PlaceMember, AttachMember,
+                 DetachMember, SetClock>;
 
 // "auto", "flat", "free", as in JSON.
 std::string_view keyTangentsName(KeyTangents tangents);
@@ -366,7 +375,7 @@ std::string_view commandName(const Command& command);
 Json commandToJson(const Command& command);
 Command commandFromJson(const Json& json);
 
-// {"limber_commands": 1, "commands": [...]}
+// {"limber_commands": 2, "commands": [...]}; lists of older versions are read as well.
 std::string commandsToJson(std::span<const Command> commands);
 std::vector<Command> commandsFromJson(std::string_view text);
 

@@ -43,6 +43,7 @@ std::vector<Command> oneOfEach() {
           AddMotion{"motions/walk.bvh", true},
           AddSampleMotion{"walk", true},
           RetargetMotion{"walk", "fast", "aligned", R"({"matches": []})", 0.25, false},
+          SetContact{"LeftFoot", 0.25, 0.5, ContactChange::kFound},
           AddClip{"wave"},
           RemoveClip{"wave"},
           RenameClip{"wave", "hello"},
@@ -95,41 +96,43 @@ TEST(Command, JsonKeepsEveryCommandAndEveryField) {
   for (std::size_t i = 0; i < back.size(); ++i) EXPECT_EQ(back[i].index(), i);
   EXPECT_EQ(commandsToJson(back), text);
   // Against the values themselves, where reading and writing could agree on a mistake.
-  EXPECT_EQ(std::get<PinJoint>(back[4]).position, Vec3(0.5, 1, -0.25));
-  EXPECT_EQ(std::get<BeginDrag>(back[6]).ray.direction, kRay.direction);
-  EXPECT_EQ(std::get<BeginDrag>(back[6]).mode, DragMode::kTurn);
-  EXPECT_EQ(std::get<BeginDrag>(back[6]).with, std::get<BeginDrag>(commands[6]).with);
-  EXPECT_TRUE(std::get<BeginDrag>(back[6]).mirrored);
-  EXPECT_TRUE(std::get<OpenSample>(back[0]).limbsFollow);
-  EXPECT_TRUE(std::get<OpenFile>(back[1]).limbsFollow);
-  EXPECT_EQ(std::get<TurnDrag>(back[8]).degrees, -35.5);
-  EXPECT_EQ(std::get<MoveDrag>(back[9]).turn, Vec3(0, 30, 0.5));
-  EXPECT_EQ(std::get<SetIk>(back[14]).solver, "fabrik");
-  EXPECT_EQ(std::get<TurnJoint>(back[12]).axis.y(), 1.0 / 3);
-  EXPECT_EQ(std::get<SetTarget>(back[15]).position, Vec3(1e-17, 2, 3));
-  EXPECT_EQ(std::get<MirrorPose>(back[20]).from, MirrorFrom::kRight);
-  EXPECT_FALSE(std::get<SetIk>(back[14]).on);
-  EXPECT_EQ(std::get<RenameJoint>(back[22]).name, "skull");
-  EXPECT_EQ(std::get<RetargetMotion>(back[25]).clip, "fast");
-  EXPECT_EQ(std::get<RetargetMotion>(back[25]).reach, 0.25);
-  EXPECT_FALSE(std::get<RetargetMotion>(back[25]).contacts);
-  EXPECT_EQ(std::get<PaintWeights>(back[40]).dabs, std::get<PaintWeights>(commands[40]).dabs);
-  EXPECT_EQ(std::get<AddJoint>(back[43]).name, "hat");
-  EXPECT_EQ(std::get<ReparentJoint>(back[45]).parent, "hips");
-  EXPECT_EQ(std::get<PlaceJoint>(back[46]).position, Vec3(0.5, 1, -0.25));
-  EXPECT_EQ(std::get<SetTurn>(back[47]).turn, Vec3(30, -20, 0.125));
-  EXPECT_EQ(std::get<SetTurn>(back[47]).with, std::vector<std::string>{"head"});
-  EXPECT_TRUE(std::get<UpdateDrag>(back[7]).snap);
-  EXPECT_TRUE(std::get<EndDrag>(back[10]).goesOn);
-  EXPECT_EQ(std::get<ResetJoint>(back[18]).with, std::vector<std::string>{"hips"});
-  EXPECT_EQ(std::get<PaintWeights>(back[40]).mode, PaintMode::kReplace);
-  EXPECT_EQ(std::get<MoveKey>(back[32]).to, 0.75);
-  ASSERT_EQ(std::get<EditKeys>(back[34]).keys.size(), 2u);
-  EXPECT_EQ(std::get<EditKeys>(back[34]).keys[1].joint, "Elbow");
-  EXPECT_EQ(std::get<EditKeys>(back[34]).keys[1].seconds, 0.25);
-  EXPECT_EQ(std::get<EditKeys>(back[34]).scale, 2);
-  EXPECT_EQ(std::get<DeleteKeys>(back[35]).keys.size(), 1u);
-  EXPECT_EQ(std::get<SetJointKey>(back[36]).turn, Vec3(0, 30, 0));
+  EXPECT_EQ(only<PinJoint>(back).position, Vec3(0.5, 1, -0.25));
+  EXPECT_EQ(only<BeginDrag>(back).ray.direction, kRay.direction);
+  EXPECT_EQ(only<BeginDrag>(back).mode, DragMode::kTurn);
+  EXPECT_EQ(only<BeginDrag>(back).with, only<BeginDrag>(commands).with);
+  EXPECT_TRUE(only<BeginDrag>(back).mirrored);
+  EXPECT_TRUE(only<OpenSample>(back).limbsFollow);
+  EXPECT_TRUE(only<OpenFile>(back).limbsFollow);
+  EXPECT_EQ(only<TurnDrag>(back).degrees, -35.5);
+  EXPECT_EQ(only<MoveDrag>(back).turn, Vec3(0, 30, 0.5));
+  EXPECT_EQ(only<SetIk>(back).solver, "fabrik");
+  EXPECT_EQ(only<TurnJoint>(back).axis.y(), 1.0 / 3);
+  EXPECT_EQ(only<SetTarget>(back).position, Vec3(1e-17, 2, 3));
+  EXPECT_EQ(only<MirrorPose>(back).from, MirrorFrom::kRight);
+  EXPECT_FALSE(only<SetIk>(back).on);
+  EXPECT_EQ(only<RenameJoint>(back).name, "skull");
+  EXPECT_EQ(only<RetargetMotion>(back).clip, "fast");
+  EXPECT_EQ(only<RetargetMotion>(back).reach, 0.25);
+  EXPECT_FALSE(only<RetargetMotion>(back).contacts);
+  EXPECT_EQ(only<PaintWeights>(back).dabs, only<PaintWeights>(commands).dabs);
+  EXPECT_EQ(only<AddJoint>(back).name, "hat");
+  EXPECT_EQ(only<ReparentJoint>(back).parent, "hips");
+  EXPECT_EQ(only<PlaceJoint>(back).position, Vec3(0.5, 1, -0.25));
+  EXPECT_EQ(only<SetTurn>(back).turn, Vec3(30, -20, 0.125));
+  EXPECT_EQ(only<SetTurn>(back).with, std::vector<std::string>{"head"});
+  EXPECT_TRUE(only<UpdateDrag>(back).snap);
+  EXPECT_TRUE(only<EndDrag>(back).goesOn);
+  EXPECT_EQ(only<ResetJoint>(back).with, std::vector<std::string>{"hips"});
+  EXPECT_EQ(only<PaintWeights>(back).mode, PaintMode::kReplace);
+  EXPECT_EQ(only<MoveKey>(back).to, 0.75);
+  ASSERT_EQ(only<EditKeys>(back).keys.size(), 2u);
+  EXPECT_EQ(only<EditKeys>(back).keys[1].joint, "Elbow");
+  EXPECT_EQ(only<EditKeys>(back).keys[1].seconds, 0.25);
+  EXPECT_EQ(only<EditKeys>(back).scale, 2);
+  EXPECT_EQ(only<DeleteKeys>(back).keys.size(), 1u);
+  EXPECT_EQ(only<SetJointKey>(back).turn, Vec3(0, 30, 0));
+  EXPECT_EQ(only<SetContact>(back).contact, ContactChange::kFound);
+  EXPECT_EQ(only<SetContact>(back).to, 0.5);
   EXPECT_TRUE(only<AddMotion>(back).retarget);
   EXPECT_TRUE(only<AddSampleMotion>(back).retarget);
   EXPECT_EQ(only<SetTangents>(back).tangents, KeyTangents::kFree);
@@ -143,7 +146,7 @@ TEST(Command, JsonKeepsEveryCommandAndEveryField) {
   EXPECT_EQ(only<PlaceMember>(back).scale, 0.5);
   EXPECT_EQ(only<AttachMember>(back).to, "fox");
   EXPECT_TRUE(only<AttachMember>(back).snap);
-  EXPECT_EQ(std::get<SetInterpolation>(back[37]).interpolation, Interpolation::kCubic);
+  EXPECT_EQ(only<SetInterpolation>(back).interpolation, Interpolation::kCubic);
 }
 
 TEST(Command, FieldsThatAreAbsentKeepTheirDefault) {
@@ -155,6 +158,12 @@ TEST(Command, FieldsThatAreAbsentKeepTheirDefault) {
   const Command retarget = commandFromJson(Json{{"do", "retarget"}, {"motion", "walk"}});
   EXPECT_EQ(std::get<RetargetMotion>(retarget).method, "limb-ik");
   EXPECT_TRUE(std::get<RetargetMotion>(retarget).map.empty());
+}
+
+TEST(Command, ListsOfOlderVersionsAreRead) {
+  const std::vector<Command> old = commandsFromJson(
+      R"({"limber_commands": 1, "commands": [{"do": "retarget", "motion": "walk", "method": "online"}]})");
+  EXPECT_EQ(only<RetargetMotion>(old).method, "limb-ik") << "a method that there is no more";
 }
 
 void expectRefused(const char* text, const char* where, const char* why) {
@@ -171,7 +180,7 @@ void expectRefused(const char* text, const char* where, const char* why) {
 TEST(Command, WhatIsWrongIsNamed) {
   expectRefused("{", "", "");
   expectRefused("{}", "", "no list of commands");
-  expectRefused(R"({"limber_commands": 2, "commands": []})", "", "no list of commands");
+  expectRefused(R"({"limber_commands": 3, "commands": []})", "", "newer version of limber");
   const auto list = [](const char* entry) {
     static std::string text;
     text = std::string(R"({"limber_commands": 1, "commands": [{"do": "undo"}, )") + entry + "]}";

@@ -151,15 +151,44 @@ std::size_t clipOfMotion(const Motion& motion, const std::string& name) {
   refuse(fmt::format("the motion '{}' has no clip called '{}'", motion.name, name));
 }
 
-Clip retargeted(const ClipSource& source, const Skeleton& skeleton) {
+// Tells `source` which feet stand in it.
+Clip retargeted(ClipSource& source, const Skeleton& skeleton) {
   const Motion motion = asItRests(*source.motion);
   RetargetOptions options;
   options.reach = source.command.reach;
   options.contacts = source.command.contacts;
+  options.contactEdits = source.contactEdits;
   options.characterStands = true;
-  Clip clip = retargetClip(findRetargetMethod(source.command.method), motion.skeleton, motion.clips[source.clip],
-                           skeleton, source.map, options, frameRateOf(motion, source.clip));
+  const RetargetMethod& method = findRetargetMethod(source.command.method);
+  const Clip& moving = motion.clips[source.clip];
+  const double rate = frameRateOf(motion, source.clip);
+  source.feet = standingFeet(method, motion.skeleton, moving, skeleton, source.map, options, rate);
+  Clip clip = retargetClip(method, motion.skeleton, moving, skeleton, source.map, options, rate);
   return turnClip(std::move(clip), skeleton, turnToStand(skeleton));
+}
+
+// The motion below the layer.
+void makeAnew(SessionClip& entry, const Skeleton& skeleton, ClipSource source) {
+  Clip made = retargeted(source, skeleton);
+  made.name = entry.clip->name;
+  setInterpolation(made, interpolationOf(*entry.base));
+  entry.source = std::move(source);
+  entry.authored.reset();
+  setBase(entry, skeleton, std::make_shared<const Clip>(std::move(made)));
+}
+
+// What was said of a foot, but for what `change` says anew.
+std::vector<ContactEdit> editsBeside(const SetContact& change, const std::vector<ContactEdit>& edits) {
+  std::vector<ContactEdit> left;
+  for (const ContactEdit& edit : edits) {
+    if (edit.foot != change.foot || edit.to < change.from || edit.from > change.to) {
+      left.push_back(edit);
+      continue;
+    }
+    if (edit.from < change.from) left.push_back({edit.foot, edit.from, change.from, edit.stands});
+    if (edit.to > change.to) left.push_back({edit.foot, change.to, edit.to, edit.stands});
+  }
+  return left;
 }
 
 bool onlyNamesDiffer(const Skeleton& one, const Skeleton& other) {
@@ -243,21 +272,17 @@ void retargetMotion(Movement& movement, const Skeleton& skeleton, const Retarget
   if (!(command.reach >= 0 && command.reach <= 1)) refuse("the reach is not between 0 and 1");
   source.map = command.map.empty() ? matchSkeletons(motion.skeleton, skeleton)
                                    : skeletonMapFromJson(command.map, motion.skeleton, skeleton);
-  Clip made = retargeted(source, skeleton);
 
   for (std::size_t c = 0; c < movement.clips.size(); ++c) {
     const std::optional<ClipSource>& known = movement.clips[c].source;
     if (!known || known->motion != source.motion || known->clip != source.clip) continue;
-    SessionClip& entry = movement.clips[c];
-    made.name = entry.clip->name;
-    setInterpolation(made, interpolationOf(*entry.base));
-    entry.source = std::move(source);
-    entry.authored.reset();
-    setBase(entry, skeleton, std::make_shared<const Clip>(std::move(made)));
+    source.contactEdits = known->contactEdits;
+    makeAnew(movement.clips[c], skeleton, std::move(source));
     if (movement.chosen != c) movement.seconds = 0;
     movement.chosen = c;
     return;
   }
+  Clip made = retargeted(source, skeleton);
   const std::string& ofClip = motion.clips[source.clip].name;
   made.name = freeName(motion.clips.size() == 1 || ofClip.empty() ? motion.name : ofClip,
                        [&](const std::string& name) { return findClip(movement, name).has_value(); });
@@ -265,6 +290,22 @@ void retargetMotion(Movement& movement, const Skeleton& skeleton, const Retarget
   movement.clips.push_back({{clip, std::move(source), clip}});
   movement.chosen = movement.clips.size() - 1;
   movement.seconds = 0;
+}
+
+void setContactOf(Movement& movement, const Skeleton& skeleton, const SetContact& command) {
+  SessionClip& chosen = requireChosen(movement);
+  if (!chosen.source) refuse(fmt::format("the clip '{}' is from no motion", chosen.clip->name));
+  if (!(command.from >= 0 && command.to >= command.from)) refuse("a contact ends before it begins");
+  ClipSource source = *chosen.source;
+  const std::vector<Joint>& joints = source.motion->skeleton.joints;
+  const bool isKept = std::any_of(source.feet.begin(), source.feet.end(),
+                                  [&](const FootSpans& feet) { return joints[feet.foot].name == command.foot; });
+  if (!isKept) refuse(fmt::format("the clip keeps no foot that its motion calls '{}'", command.foot));
+  source.contactEdits = editsBeside(command, source.contactEdits);
+  if (command.contact != ContactChange::kFound) {
+    source.contactEdits.push_back({command.foot, command.from, command.to, command.contact == ContactChange::kStands});
+  }
+  makeAnew(chosen, skeleton, std::move(source));
 }
 
 namespace {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "limber/limbs/contact_track.h"
 #include "limber/matching/skeleton_map.h"
 #include "limber/session/command.h"
 #include "limber/session/rigged_model.h"
@@ -20,6 +21,8 @@ struct ClipSource {
   std::size_t clip = 0;  // of the motion
   RetargetMotion command;
   SkeletonMap map;
+  std::vector<ContactEdit> contactEdits = {};
+  std::vector<FootSpans> feet = {};  // of the motion's skeleton, as the clip has them (standingFeet)
 };
 
 // What a clip is made of. A clip that was made by hand is its keys; recorded motion is left as it is, and what is
@@ -81,6 +84,9 @@ void moveToRig(Movement& movement, const std::shared_ptr<const RiggedModel>& fro
 // it. Throws as
 // matchSkeletons and skeletonMapFromJson do.
 void retargetMotion(Movement& movement, const Skeleton& skeleton, const RetargetMotion& command);
+// Makes the chosen clip anew with what the user says of a foot. Throws where the clip is from no motion, or keeps no
+// such foot.
+void setContactOf(Movement& movement, const Skeleton& skeleton, const SetContact& command);
 void addClip(Movement& movement, const std::string& name);
 void removeClip(Movement& movement, const std::string& name);
 void renameClip(Movement& movement, const std::string& from, const std::string& to);

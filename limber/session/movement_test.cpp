@@ -45,9 +45,21 @@ Bytes movingGlb() {
   return writeGlb(asset);
 }
 
+// With shins that are a third longer.
+Bytes tallGlb() {
+  Asset asset = readAsset(testing::namedPersonGlb(), "tall.glb");
+  for (Json& node : asset.json()["nodes"]) {
+    const std::string name = node.value("name", "");
+    if (name != "leftFoot" && name != "rightFoot") continue;
+    for (Json& coordinate : node["translation"]) coordinate = 1.33 * coordinate.get<double>();
+  }
+  return writeGlb(asset);
+}
+
 std::optional<Bytes> movingFiles(std::string_view path) {
   if (path == "moving.glb") return movingGlb();
   if (path == "person.glb") return testing::namedPersonGlb();
+  if (path == "tall.glb") return tallGlb();
   if (path == "lying.glb") return lyingGlb();
   return path == "walk.bvh" ? std::optional<Bytes>(testing::walkBvh()) : std::nullopt;
 }
@@ -101,8 +113,59 @@ TEST(Movement, AMotionOntoAModelIsAClipThatCanBeScrubbed) {
   EXPECT_TRUE(samePose(session.state().pose, before));
 }
 
+// How far a joint of the model goes along the ground between two moments of the chosen clip.
+double slideOf(const Session& session, const char* joint, double from, double to) {
+  const Skeleton& skeleton = session.state().rig->skeleton();
+  const auto at = [&](double seconds) -> Vec3 {
+    Pose pose = restPose(skeleton);
+    sampleClip(*session.state().movement.clip(), seconds, pose);
+    return posePositions(skeleton, pose)[skeleton.find(joint).value()];
+  };
+  const Vec3 way = at(to) - at(from);
+  return std::hypot(way.x(), way.z());
+}
+
+TEST(Movement, AUserSaysWhetherAFootStands) {
+  Session session(movingFiles);
+  act(session, OpenFile{"tall.glb"});
+  act(session, AddMotion{"walk.bvh"});
+  act(session, RetargetMotion{.motion = "walk", .clip = {}, .map = {}});
+  const auto feet = [&] { return sessionState(session)["clips"][0]["feet"]; };
+  const Json found = feet();
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(found[0]["part"], "leftFoot");
+  EXPECT_FALSE(found[0]["told"].get<bool>());
+  ASSERT_FALSE(found[0]["stands"].empty());
+  const double from = found[0]["stands"][0][0], to = found[0]["stands"][0][1];
+  ASSERT_GT(to - from, 0.2);
+  const double middle = (from + to) / 2, held = slideOf(session, "leftFoot", middle, to);
+
+  act(session, SetContact{"leftFoot", from, to, ContactChange::kFree});
+  EXPECT_TRUE(feet()[0]["told"].get<bool>());
+  for (const Json& span : feet()[0]["stands"]) EXPECT_TRUE(span[1] < from || span[0] > to);
+  EXPECT_GT(slideOf(session, "leftFoot", middle, to), held + 1e-4) << "legs of other proportions slide by themselves";
+  // By another method the same is kept.
+  act(session, RetargetMotion{.motion = "walk", .clip = {}, .method = "spacetime", .map = {}});
+  EXPECT_TRUE(feet()[0]["told"].get<bool>());
+  act(session, Undo{});
+  act(session, SetContact{"leftFoot", from, to, ContactChange::kFound});
+  EXPECT_EQ(feet(), found);
+  EXPECT_NEAR(slideOf(session, "leftFoot", middle, to), held, 1e-6);
+
+  // Where it swings, it can be held.
+  const double swing = to + 0.15;
+  const double swung = slideOf(session, "leftFoot", swing, swing + 0.1);
+  act(session, SetContact{"leftFoot", swing - 0.1, swing + 0.1});
+  EXPECT_LT(slideOf(session, "leftFoot", swing, swing + 0.1), 0.5 * swung);
+  EXPECT_EQ(session.undoName(), "set_contact");
+  EXPECT_ANY_THROW(act(session, SetContact{"leftHand", 0, 1}));
+  EXPECT_ANY_THROW(act(session, SetContact{"leftFoot", 1, 0}));
+  act(session, RetargetMotion{.motion = "walk", .clip = {}, .map = {}, .contacts = false});
+  EXPECT_TRUE(feet().empty());
+}
+
 TEST(Movement, AModelsOwnMotionPutBackIsTheSame) {
-  for (const char* method : {"limb-ik", "spacetime", "online", "aligned"}) {
+  for (const char* method : {"limb-ik", "spacetime", "aligned"}) {
     Session session(movingFiles);
     act(session, OpenFile{"moving.glb"});
     act(session, AddMotion{"moving.glb"});

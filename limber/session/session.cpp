@@ -528,6 +528,9 @@ struct Session::Runner {
   void operator()(const RetargetMotion& c) const {
     move([&](SessionState& next) { retargetMotion(next.movement, next.rig->skeleton(), c); });
   }
+  void operator()(const SetContact& c) const {
+    move([&](SessionState& next) { setContactOf(next.movement, next.rig->skeleton(), c); });
+  }
   // A clip without keys shows nothing yet: the pose stays.
   void operator()(const AddClip& c) const {
     SessionState next = state();

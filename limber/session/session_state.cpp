@@ -1,5 +1,7 @@
 #include "limber/session/session_state.h"
 
+#include <algorithm>
+
 #include "limber/anatomy/body_part.h"
 #include "limber/anatomy/part_color.h"
 #include "limber/ik/limit_outline.h"
@@ -72,6 +74,30 @@ Json jointKeysJson(const ClipContent& clip) {
   return list;
 }
 
+// What the foot is in the model's map, where that names it.
+std::string partOfFoot(const ClipSource& source, const FootSpans& feet) {
+  for (const JointMatch& match : source.map.matches) {
+    if (std::count(match.source.begin(), match.source.end(), feet.foot) > 0) return nameOf(match.part);
+  }
+  return {};
+}
+
+Json feetJson(const ClipSource& source) {
+  Json list = Json::array();
+  for (const FootSpans& feet : source.feet) {
+    const std::string& name = source.motion->skeleton.joints[feet.foot].name;
+    Json stands = Json::array();
+    for (const FootSpans::Span& span : feet.stands) stands.push_back({span.from, span.to});
+    const bool told = std::any_of(source.contactEdits.begin(), source.contactEdits.end(),
+                                  [&](const ContactEdit& edit) { return edit.foot == name; });
+    list.push_back({{"foot", name},
+                    {"part", textOrNull(partOfFoot(source, feet))},
+                    {"stands", std::move(stands)},
+                    {"told", told}});
+  }
+  return list;
+}
+
 Json clipsJson(const Movement& movement) {
   Json clips = Json::array();
   for (const SessionClip& entry : movement.clips) {
@@ -91,7 +117,8 @@ Json clipsJson(const Movement& movement) {
                      {"keys", entry.base ? keyTimes(entry.layer) : keyTimes(clip)},
                      {"joint_keys", jointKeysJson(entry)},
                      {"interpolation", interpolationName(interpolationOf(clip))},
-                     {"source", std::move(source)}});
+                     {"source", std::move(source)},
+                     {"feet", entry.source ? feetJson(*entry.source) : Json::array()}});
   }
   return clips;
 }

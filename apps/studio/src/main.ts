@@ -13,8 +13,7 @@ import { bindPlayer } from './app/player';
 import { exposeStage } from './app/probe';
 import { comparisonPanel } from './panels/comparison_panel';
 import { arButton, arMenu } from './panels/ar_button';
-import { contactSheet } from './panels/contact_sheet';
-import { help } from './panels/help';
+import type { ContactSheet } from './panels/contact_sheet';
 import { methodsPanel } from './panels/methods_panel';
 import { outliner } from './panels/outliner';
 import { paintPanel } from './panels/paint_panel';
@@ -32,6 +31,7 @@ import { createStage } from './scene/stage';
 import { warmUp } from './scene/warm_up';
 import { ask } from './ui/ask';
 import { element } from './ui/dom';
+import { partMissing } from './engine/client';
 import { loadedWhenOpened } from './ui/loaded_when_opened';
 import { language, say } from './words/say';
 
@@ -57,7 +57,8 @@ studio.ask = ask;
 const poses = new PoseShelf(studio, page, new PoseStore());
 const stage = stageOrApology();
 const { viewport, handles, model, comparison, gizmo, others, places } = stage;
-const sheet = contactSheet(studio, page, viewport);
+const clips = timeline(studio, page, openSheet);
+let sheet: ContactSheet | null = null;
 
 const app = document.getElementById('app')!, toasts = status(studio, page);
 const desk = { ...stage, studio, page, app };
@@ -65,8 +66,16 @@ app.replaceChildren(
   toolbar(studio, page, journal, viewport, model, others, arMenu(desk)),
   element('main', { class: 'stage' }, viewport.canvas, facts(page), hint(page, viewport), poseTools(page), views(viewport), arButton(desk), comparisonPanel(studio, page, comparison)),
   element('aside', { class: 'side' }, scenePanel(studio, page, places), posePanel(studio, page, poses), paintPanel(studio, page), retargetPanel(studio, page), methodsPanel(studio, page), outliner(studio, page, handles)),
-  timeline(studio, page, sheet.open),
-  toasts, help(page), sheet.dialog);
+  clips,
+  toasts);
+loadedWhenOpened(studio, page, 'help', async () => {
+  const { help } = await import('./panels/help');
+  return () => help(page);
+}, app);
+loadedWhenOpened(studio, page, 'feet', async () => {
+  const { feetEditor } = await import('./panels/feet_editor');
+  return () => feetEditor(studio, page);
+}, clips);
 loadedWhenOpened(studio, page, 'shelf', async () => {
   const { motionShelf } = await import('./panels/motion_shelf');
   return () => motionShelf(studio, page);
@@ -75,6 +84,17 @@ loadedWhenOpened(studio, page, 'poseLibrary', async () => {
   const { poseLibrary } = await import('./panels/pose_library');
   return () => poseLibrary(studio, page, poses);
 }, app);
+/** Loaded when it is first opened. */
+async function openSheet() {
+  await studio.guard(async () => {
+    if (!sheet) {
+      const { contactSheet } = await import('./panels/contact_sheet').catch(() => { throw partMissing(null); });
+      sheet = contactSheet(studio, page, viewport);
+      app.append(sheet.dialog);
+    }
+    await sheet.open();
+  });
+}
 bindShortcuts(studio, page, viewport, handles, poses);
 bindPlayer(studio, page);
 bindJournal(journal, studio, page, viewport);

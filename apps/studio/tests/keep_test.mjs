@@ -186,7 +186,7 @@ const cases = {
     const moved = Math.hypot(...(await jointPosition(page, joint)).map((value, i) => value - before[i]));
     assert.ok(moved > 0.03, `${joint} moved by ${moved}`);
     assert.ok(Math.max(...distances) < 0.5 * moved + 0.05, `a jump of ${Math.max(...distances)} m`);
-    await page.locator('#method').selectOption('online');
+    await page.locator('#method').selectOption('spacetime');
     await settled(page);
     assert.ok(await page.locator('#ask').isHidden(), 'the correction stays, so nothing is asked');
     assert.equal((await sessionState(page)).clips[0].keys.length, 1);
@@ -429,6 +429,7 @@ const cases = {
       await expectNone('recent');
       await at.keyboard.press('Escape');
       await at.keyboard.press('?');
+      await at.locator('#help').waitFor();
       await expectNone('help');
       await at.keyboard.press('Escape');
       await at.locator('#file').setInputFiles({ name: 'none.glb', mimeType: 'model/gltf-binary', buffer: Buffer.from('glTF nothing') });

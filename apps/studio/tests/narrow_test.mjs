@@ -118,6 +118,7 @@ const cases = {
       for (const [selector, box] of covers) assert.ok(apart(box, { x: x - 5, y: y - 5, width: 10, height: 10 }), `${selector} lies on ${name}`);
     }
     await pickMore('help');
+    await page.locator('#help').waitFor();
     assert.match(await told('#help'), /What fingers do/);
     await tap('#help button');
     await expectNoBarriers('a model');
@@ -261,6 +262,7 @@ const cases = {
     assert.ok(opaque > all / 50 && clear > all / 3, `${opaque} opaque and ${clear} clear pixels of ${all}`);
     assert.equal(red, 0, 'handles are in it');
     await tap('#open-sheet');
+    await page.locator('#contact-sheet').waitFor();
     expectOnScreen(await boxOf('#contact-sheet'), 'the sheet');
     const greens = await page.locator('#sheet').evaluate((sheet) => Array.from({ length: 12 }, (_, cell) => {
       const { data } = sheet.getContext('2d').getImageData(8 + 328 * (cell % 4), 8 + 248 * Math.floor(cell / 4), 320, 240);

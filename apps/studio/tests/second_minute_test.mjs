@@ -21,7 +21,7 @@ let { page } = desk;
 const distance = (a, b) => Math.hypot(...a.map((value, i) => value - b[i]));
 const noticeText = (of = page) => of.locator('#notice').textContent();
 const kept = (of = page) => of.waitForFunction(() => globalThis.limberStudio.idle() && globalThis.limberStudio.kept());
-async function openSample(name) {
+async function openSample(page, name) {
   await page.locator('#samples').selectOption(name);
   await page.waitForFunction((wanted) => globalThis.limberStudio.state()?.name === wanted, name);
   await settled(page);
@@ -61,6 +61,66 @@ async function visitWithout(answer, { locale = 'en-US', file = /limber_engine.*\
   const text = await visit.locator(told).textContent();
   await context.close();
   return text;
+}
+
+/** A person whose origin is at mid-body walks on the floor that is drawn. */
+async function walksOnTheFloor(page) {
+  await page.locator('#file').setInputFiles({ name: 'middle.glb', mimeType: 'model/gltf-binary', buffer: sampleFromMiddle('biped', 0.9) });
+  await page.waitForFunction(() => globalThis.limberStudio.state()?.name === 'middle.glb');
+  await settled(page);
+  const { box } = await sessionState(page);
+  assert.ok(Math.abs(box.min[1] + 0.9) < 0.02, `the soles are at ${box.min[1]}`);
+  await motionPlayed(page, () => chooseMotion(page, 'walk'));
+  await page.locator('#play').click();
+  await settled(page);
+  const feet = [await lastJointOf(page, 'left foot'), await lastJointOf(page, 'right foot')], lowest = [Infinity, Infinity];
+  const { clips, clip, joints } = await sessionState(page), pinned = [];
+  for (let i = 0; i < 12; ++i) {
+    await page.locator('#scrub').fill((clips[clip].duration * i / 12).toFixed(3));
+    await settled(page);
+    for (const [side, foot] of feet.entries()) lowest[side] = Math.min(lowest[side], (await jointPosition(page, foot))[1]);
+    pinned.push(await page.locator('#joints li.pinned').evaluateAll((rows) => rows.map(({ dataset }) => Number(dataset.joint))));
+  }
+  for (const foot of feet) {
+    const held = pinned.map((shown) => shown.some((joint) => joints[joint].name === foot));
+    assert.ok(held.includes(true) && held.includes(false), `${foot} is shown as pinned at ${held}`);
+  }
+  await page.screenshot({ path: join(output, `second_minute_floor_${page.viewportSize().width}.png`) });
+  await page.locator('#clips').selectOption('');
+  await settled(page);
+  await page.locator('main canvas').focus();
+  await page.keyboard.press('Alt+r');
+  await settled(page);
+  for (const [side, foot] of feet.entries()) {
+    const rest = (await jointPosition(page, foot))[1];
+    assert.ok(Math.abs(lowest[side] - rest) < 0.03, `${foot} is at ${lowest[side]}, standing at ${rest}`);
+  }
+}
+
+/** What the engine refuses in the match is not shown, and a row that was taken out can be put in again. */
+async function matchIsCorrected(page) {
+  await openSample(page, 'biped');
+  await motionPlayed(page, () => page.locator('#motion-file').setInputFiles(walkFile));
+  await page.locator('#play').click();
+  await settled(page);
+  await page.locator('#retarget summary').click();
+  const hand = page.getByLabel('left hand in the model'), foot = page.getByLabel('right foot in the model');
+  const before = await hand.inputValue(), { match } = await sessionState(page);
+  await hand.selectOption(await foot.inputValue());
+  await settled(page);
+  assert.match(await noticeText(page), /cannot be the left hand: another part has it/);
+  assert.deepEqual((await sessionState(page)).match, match);
+  assert.equal(await hand.inputValue(), before);
+  await page.locator('#close-notice').click();
+  // However long the engine takes, and whatever the page shows meanwhile.
+  await hand.selectOption('');
+  await page.locator('#loop').click();
+  await page.locator('#loop').click();
+  await settled(page);
+  assert.ok(!(await sessionState(page)).match.some(({ part }) => part === 'leftHand'));
+  await hand.selectOption(before);
+  await settled(page);
+  assert.ok((await sessionState(page)).match.some(({ part }) => part === 'leftHand'));
 }
 
 const cases = {
@@ -129,61 +189,50 @@ const cases = {
     found.push(await jointPosition(page, hand));
     for (const place of [here, there]) assert.ok(found.some((one) => distance(one, place) < 1e-5), `${place} is not in ${JSON.stringify(found)}`);
   },
-  async 'a person whose origin is at mid-body walks on the floor that is drawn'() {
-    await page.locator('#file').setInputFiles({ name: 'middle.glb', mimeType: 'model/gltf-binary', buffer: sampleFromMiddle('biped', 0.9) });
-    await page.waitForFunction(() => globalThis.limberStudio.state()?.name === 'middle.glb');
-    await settled(page);
-    const { box } = await sessionState(page);
-    assert.ok(Math.abs(box.min[1] + 0.9) < 0.02, `the soles are at ${box.min[1]}`);
-    await motionPlayed(page, () => chooseMotion(page, 'walk'));
-    await page.locator('#play').click();
-    await settled(page);
-    const feet = [await lastJointOf(page, 'left foot'), await lastJointOf(page, 'right foot')], lowest = [Infinity, Infinity];
-    const { clips, clip, joints } = await sessionState(page), pinned = [];
-    for (let i = 0; i < 12; ++i) {
-      await page.locator('#scrub').fill((clips[clip].duration * i / 12).toFixed(3));
-      await settled(page);
-      for (const [side, foot] of feet.entries()) lowest[side] = Math.min(lowest[side], (await jointPosition(page, foot))[1]);
-      pinned.push(await page.locator('#joints li.pinned').evaluateAll((rows) => rows.map(({ dataset }) => Number(dataset.joint))));
-    }
-    for (const foot of feet) {
-      const held = pinned.map((shown) => shown.some((joint) => joints[joint].name === foot));
-      assert.ok(held.includes(true) && held.includes(false), `${foot} is shown as pinned at ${held}`);
-    }
-    await page.screenshot({ path: join(output, 'second_minute_floor.png') });
-    await page.locator('#clips').selectOption('');
-    await settled(page);
-    await page.locator('main canvas').focus();
-    await page.keyboard.press('Alt+r');
-    await settled(page);
-    for (const [side, foot] of feet.entries()) {
-      const rest = (await jointPosition(page, foot))[1];
-      assert.ok(Math.abs(lowest[side] - rest) < 0.03, `${foot} is at ${lowest[side]}, standing at ${rest}`);
-    }
+  async 'a person whose origin is at mid-body walks on the floor that is drawn'() { await walksOnTheFloor(page); },
+  async 'what the engine refuses in the match is not shown, and a row that was taken out can be put in again'() { await matchIsCorrected(page); },
+  async 'both on a narrow screen as well'() {
+    const narrow = await openStudio(browser, server.address, { width: 390, height: 844, touch: true, isMobile: true, search: '?sample=stool' });
+    await walksOnTheFloor(narrow.page);
+    await matchIsCorrected(narrow.page);
+    assert.deepEqual(narrow.errors, []);
+    await narrow.context.close();
   },
-  async 'what the engine refuses in the match is not shown, and a row that was taken out can be put in again'() {
-    await openSample('biped');
-    await motionPlayed(page, () => page.locator('#motion-file').setInputFiles(walkFile));
-    await page.locator('#play').click();
-    await settled(page);
-    await page.locator('#retarget summary').click();
-    const hand = page.getByLabel('left hand in the model'), foot = page.getByLabel('right foot in the model');
-    const before = await hand.inputValue(), { match } = await sessionState(page);
-    await hand.selectOption(await foot.inputValue());
-    await settled(page);
-    assert.match(await noticeText(), /cannot be the left hand: another part has it/);
-    assert.deepEqual((await sessionState(page)).match, match);
-    assert.equal(await hand.inputValue(), before);
-    await page.locator('#close-notice').click();
-    // However long the engine takes, and whatever the page shows meanwhile.
-    await hand.selectOption('');
-    await page.locator('#loop').click();
-    await page.locator('#loop').click();
-    await settled(page);
-    assert.ok(!(await sessionState(page)).match.some(({ part }) => part === 'leftHand'));
-    await hand.selectOption(before);
-    await settled(page);
-    assert.ok((await sessionState(page)).match.some(({ part }) => part === 'leftHand'));
+  async 'a shelf that does not come says so, and comes when it is asked for again'() {
+    const visit = await openStudio(browser, server.address, { ...size, search: '?sample=biped' });
+    for (const [opener, dialog, file] of [['#open-shelf', '#shelf', /assets\/motion_shelf-.*\.js$/], ['#open-poses', '#poses', /assets\/pose_library-.*\.js$/]]) {
+      await visit.context.route(file, (route) => route.abort('internetdisconnected'));
+      await visit.page.locator(opener).click();
+      await visit.page.locator('#notice').waitFor();
+      assert.match(await noticeText(visit.page), /did not arrive.*connection/);
+      await visit.page.locator('#close-notice').click();
+      assert.equal(await visit.page.locator(dialog).count(), 0);
+      await visit.context.unroute(file);
+      await visit.page.locator(opener).click();
+      await visit.page.locator(dialog).waitFor();
+      await visit.page.keyboard.press('Escape');
+    }
+    await visit.context.close();
+  },
+  async 'what the browser throws away while the page is open is told, before more is lost'() {
+    const visit = await openStudio(browser, server.address, { ...size, search: '?sample=biped' });
+    await kept(visit.page);
+    const wire = await visit.context.newCDPSession(visit.page);
+    await wire.send('Storage.clearDataForOrigin', { origin: new URL(server.address).origin, storageTypes: 'indexeddb' });
+    const hand = await dragHand(visit.page), there = await jointPosition(visit.page, hand);
+    await visit.page.locator('#notice').waitFor();
+    assert.match(await noticeText(visit.page), /cannot keep your work.*Save it as a file before you leave/);
+    const [asked] = await Promise.all([visit.page.waitForEvent('dialog'), visit.page.close({ runBeforeUnload: true })]);
+    assert.equal(asked.type(), 'beforeunload');
+    await asked.dismiss();
+    const saved = await download(visit.page, () => visit.page.locator('#export-as').selectOption('limber'));
+    await visit.context.close();
+    const again = await openStudio(browser, server.address, { ...size, search: '?sample=stool' });
+    await again.page.locator('#file').setInputFiles({ name: 'saved.limber', mimeType: 'application/zip', buffer: saved });
+    await again.page.waitForFunction(() => globalThis.limberStudio.state()?.name === 'biped');
+    await settled(again.page);
+    assert.ok(distance(await jointPosition(again.page, hand), there) < 1e-5);
+    await again.context.close();
   },
   ...(black === null ? {} : { async 'an FBX that knows no colour is drawn lit'() {
     await page.locator('#file').setInputFiles(black);

@@ -109,6 +109,7 @@ const cases = {
   async 'closed and opened in one moment, it is open'() {
     for (const [opener, closer, dialog] of [['#open-shelf', '#close-shelf', '#shelf'], ['#open-poses', '#close-poses', '#poses'], ['#help-button', '#help button', '#help']]) {
       await page.locator(opener).click();
+      await page.locator(dialog).waitFor();
       await page.evaluate(([close, open]) => [close, open].forEach((one) => document.querySelector(one).click()), [closer, opener]);
       // The event of the closing comes before the next frame is drawn.
       await page.evaluate(() => new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn))));

@@ -338,7 +338,7 @@ const cases = {
   },
   async 'the keys are listed under ?'() {
     await page.keyboard.press('?');
-    assert.ok(await page.locator('#help').isVisible());
+    await page.locator('#help').waitFor();
     assert.ok(await page.locator('#help h2').evaluate((title) => title.getBoundingClientRect().top >= 0), 'it begins above the screen');
     await page.keyboard.press('Escape');
     assert.ok(!(await page.locator('#help').isVisible()));

@@ -6,7 +6,7 @@ import type { Command, Request } from '../engine/messages';
 import { unpack } from './files';
 import { say } from '../words/say';
 
-const version = 1; // of the list of commands
+const version = 2; // of the list of commands; the first knew no motions that are put on as they are added
 const list = 'commands.json';
 const namesFile = new Set(['open_file', 'add_file', 'add_motion']);
 
@@ -35,7 +35,8 @@ export function fromLimberFile(archive: Uint8Array, name: string): Request[] {
   } catch {
     throw refuse(say('its {file} is no JSON', { file: list }));
   }
-  if (read?.limber_commands !== version) throw refuse(say('it was made by a newer version of this page'));
+  if (typeof read?.limber_commands !== 'number' || read.limber_commands < 1) throw refuse(say('its {file} holds no commands', { file: list }));
+  if (read.limber_commands > version) throw refuse(say('it was made by a newer version of this page'));
   const commands = read.commands;
   if (!Array.isArray(commands)) throw refuse(say('its {file} holds no commands', { file: list }));
   return commands.map((command: Command): Request => {

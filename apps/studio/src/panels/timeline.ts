@@ -39,6 +39,8 @@ export function timeline(studio: Studio, page: PageStore, openSheet: () => Promi
     ...spans.map((value) => element('option', { value }, say('Blend {seconds} s', { seconds: value }))));
   blend.addEventListener('change', () => page.set({ span: Number(blend.value) }));
   const ghosts = button('', () => studio.showGhosts(!page.now.ghosts), { icon: 'ghosts', label: say('Ghosts: before and after, and the selected joint\u2019s path'), id: 'ghosts' });
+  const feet = button(say('Feet'), () => page.set({ feet: !page.now.feet }), { icon: 'pin', label: say('While which foot stands'), id: 'open-feet' });
+  feet.setAttribute('aria-controls', 'feet');
   const editor = keyEditor(studio, page);
   const sheet = button('', () => void openSheet(), { icon: 'sheet', label: say('Contact sheet: the clip at a glance'), id: 'open-sheet' });
   const add = button(say('New clip'), () => void studio.addClip(), { icon: 'add', label: say('A clip of your own poses'), id: 'add-clip' });
@@ -48,10 +50,10 @@ export function timeline(studio: Studio, page: PageStore, openSheet: () => Promi
 
   const card = element('section', { class: 'card timeline', 'aria-label': say('Timeline'), id: 'timeline' },
     element('div', { class: 'row tools' }, play, clips, add, shelf, motion, file,
-      element('div', { class: 'row clip-tools' }, speed, loop, sheet, key, auto, blend, erase, between, remove)),
+      element('div', { class: 'row clip-tools' }, speed, loop, feet, sheet, key, auto, blend, erase, between, remove)),
     element('div', { class: 'row moment' }, editor.toggle, ghosts, element('div', { class: 'track' }, scrub, track), time), editor.root);
   let listed = '';
-  page.watch(({ session, seconds, playing, autoKey, span, ghosts: seen, loop: again }) => {
+  page.watch(({ session, seconds, playing, autoKey, span, ghosts: seen, loop: again, feet: standing }) => {
     const clip = chosenClip(session);
     const names = session?.clips.map(({ name }) => name) ?? [];
     if (names.join('\n') !== listed || clips.childElementCount === 0) {
@@ -65,6 +67,8 @@ export function timeline(studio: Studio, page: PageStore, openSheet: () => Promi
     play.disabled = loop.disabled = speed.disabled = sceneDuration(session) <= 0;
     sheet.disabled = ghosts.disabled = still;
     ghosts.setAttribute('aria-pressed', String(seen));
+    feet.hidden = !clip || clip.feet.length === 0;
+    feet.setAttribute('aria-expanded', String(standing));
     // Recorded motion has no curves of its own to choose; its corrections have a span.
     blend.hidden = !clip?.recorded;
     between.hidden = clip?.recorded ?? false;
