@@ -69,6 +69,8 @@ TEST_P(RetargetKinds, MoveTheirOwn) {
   const Kind& kind = GetParam();
   const Motion motion = readMotion(*sharedDataFolder() / kind.motion);
   const PlainSkeleton from(motion.skeleton);
+  Spread lost;
+  bool hasLegs = false;
   for (const char* body : kind.bodies) {
     const PlainSkeleton to(readMotion(*sharedDataFolder() / "rigged" / body).skeleton);
     const SkeletonMap map = matchSkeletons(from.skeleton(), to.skeleton());
@@ -88,12 +90,12 @@ TEST_P(RetargetKinds, MoveTheirOwn) {
         EXPECT_LT(measures.jerk, 1.1);
         if (!measures.hasLegs) continue;
         EXPECT_LT(measures.sliding, measures.sourceSliding + 0.01);
-        if (!clip.name.ends_with("Death")) {
-          EXPECT_GT(measures.contactAgreement, 0.95);
-        }
+        lost.add(1 - measures.contactAgreement, std::string(clip.name).append(" ").append(body).append(" ") + method);
+        hasLegs = true;
       }
     }
   }
+  if (hasLegs) lost.expectBelow(0.05, 0.8, "contacts lost");
 }
 
 // Of the same kind, but with other names and other counts of joints.

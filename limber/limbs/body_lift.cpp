@@ -11,9 +11,9 @@ namespace limber {
 namespace {
 
 // In hip heights of the target.
-constexpr double kLies = 0.2;  // a joint lower than that is held as high as the source's, scaled
-constexpr double kSoft = 0.04;
-constexpr double kMost = 2;  // that still tells which joint lacks most
+constexpr double kLies = 0.2;   // a joint lower than that is held as high as the source's, scaled
+constexpr double kSoft = 0.04;  // over which both come and go without a kink
+constexpr double kMost = 2;     // that still tells which joint lacks most
 
 }  // namespace
 

@@ -19,7 +19,7 @@ constexpr double kJump = 15, kFirstJump = 4;
 
 // A foot that stands at this speed (hip heights a second, seen over kSeenSeconds to each side) is held by a billionth.
 constexpr double kFreeSpeed = 0.6, kFreeFirmness = 1e-9;
-constexpr double kSeenSeconds = 1.0 / 30;
+constexpr double kSeenSeconds = 1.0 / 30;  // a frame of the slowest recordings
 
 constexpr double kSameMoment = 1e-6;  // seconds, between a frame and the edge of what the user says
 

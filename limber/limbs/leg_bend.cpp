@@ -12,8 +12,8 @@ namespace {
 // Radians.
 constexpr double kStraight = 0.5;       // added to bends, squared: the knee of a leg that is nearly straight turns much
 constexpr double kSoftStraight = 0.04;  // likewise squared
-constexpr double kSoftFold = 0.1;
-constexpr double kMostWithHock = 2.8;
+constexpr double kSoftFold = 0.1;       // before the most that a leg bends
+constexpr double kMostWithHock = 2.8;   // of knee and hock together: a right angle and a bit each
 
 struct Bones {
   double all = 0, longest = 0;

@@ -15,11 +15,11 @@ namespace limber {
 namespace {
 
 // In hip heights of the target.
-constexpr double kFootSlack = 0.9;  // how far a planted foot may be from where the joint angles have it
-constexpr double kStretch = 0.998;  // of a leg's length: fully stretched knees pop
-constexpr double kChangeRate = 25;  // 1/seconds, of Leg::changed
-constexpr double kRiseRate = 40;    // likewise, of an animal's pelvis
-constexpr double kSoftGround = 0.006;
+constexpr double kFootSlack = 0.9;      // how far a planted foot may be from where the joint angles have it
+constexpr double kStretch = 0.998;      // of a leg's length: fully stretched knees pop
+constexpr double kChangeRate = 25;      // 1/seconds, of Leg::changed
+constexpr double kRiseRate = 40;        // likewise, of an animal's pelvis
+constexpr double kSoftGround = 0.006;   // over the ground, where a point begins to slow down
 constexpr double kSoftLowered = 0.003;  // of the source: where its foot goes below where it stands
 constexpr double kMostSoft = 0.04;      // more of it, the faster a point comes down
 constexpr double kFallSeconds = 0.03;   // of its way: so much the earlier a point slows down

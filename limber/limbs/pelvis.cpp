@@ -20,11 +20,11 @@ constexpr double kSoftFar = 0.04;   // likewise: of legs at both ends of a body,
 constexpr double kNearLevel = 0.3;  // squared sine of the slope of a person's leg from which on sinking helps it less
 constexpr double kSoftBend = 0.1;   // by which feet on their own ways count the more, the lower they want the body
 constexpr double kStandsBelow = 0.45;  // Leg::lift from which on their bend no longer counts
-constexpr double kSoftFold = 0.02;
-constexpr double kStay = 0.5;        // legs that these go against, which want it to stay
-constexpr double kApart = 0.75;      // share of what the bends of legs at both ends want these to move apart
-constexpr double kStretch = 0.998;   // of a leg's length: fully stretched knees pop
-constexpr double kKneesFold = 0.75;  // of Limb::folded: about the nearest that people's feet come to their hips
+constexpr double kSoftFold = 0.02;     // before a leg folds wholly
+constexpr double kStay = 0.5;          // legs that these go against, which want it to stay
+constexpr double kApart = 0.75;        // share of what the bends of legs at both ends want these to move apart
+constexpr double kStretch = 0.998;     // of a leg's length: fully stretched knees pop
+constexpr double kKneesFold = 0.75;    // of Limb::folded: about the nearest that people's feet come to their hips
 // Of turning with planted legs: leg lengths, the more the less it does; and radians.
 constexpr double kStiffOnTwo = 0.15, kStiffOnOne = 0.3, kMostTurn = 0.8;
 

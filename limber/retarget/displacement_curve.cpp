@@ -11,8 +11,8 @@ namespace limber {
 
 namespace {
 
-constexpr int kMostPasses = 30;  // of the active set; it settles in a few
-constexpr std::size_t kWidth = 3;
+constexpr int kMostPasses = 30;     // of the active set; it settles in a few
+constexpr std::size_t kWidth = 3;   // frames back that a third difference reaches
 constexpr double kStiffest = 1e10;  // against the pull: more is lost in rounding (300 frames a second)
 
 bool isCutBetween(std::span<const CurveGoal> goals, std::size_t first, std::size_t last) {

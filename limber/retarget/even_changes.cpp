@@ -14,7 +14,7 @@ constexpr double kFirmWeight = 1e8;
 constexpr double kFirmUpTo = 1e6;    // the weight of jerk; it is more for more
 constexpr double kLoopWeight = 100;  // that a loop closes, against the rest of it
 constexpr double kTooFar = 1e-5;     // hip heights
-constexpr int kRounds = 3;
+constexpr int kRounds = 3;           // of looking for bounds that are met; nearly all are after two
 constexpr std::array<double, 4> kThird = {-1, 3, -3, 1};
 
 double axisOf(const Vec3& v, std::size_t axis) {

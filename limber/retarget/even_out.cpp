@@ -13,15 +13,15 @@ namespace limber {
 
 namespace {
 
-constexpr double kEven = 1.08;  // jerk, times the source's
-constexpr std::size_t kPartFrames = 1000;
-constexpr double kLoops = 0.02;  // of a limb's bones, between the directions in the first and the last frame
+constexpr double kEven = 1.08;             // jerk, times the source's
+constexpr std::size_t kPartFrames = 1000;  // of one solve: its time grows evenly, its memory is bounded
+constexpr double kLoops = 0.02;            // of a limb's bones, between the directions in the first and the last frame
 // Jerk counts as for changes that come and go in that time, seconds; ever longer until the motion is even. And that
 // many frames: longer ones leave sums whose weights cannot be told apart.
 constexpr double kShortest = 0.007, kLongest = 1, kLonger = 1.2, kMostFrames = 30;
 constexpr double kFurthest = 0.3;   // of any change, hip heights
 constexpr double kStretch = 0.998;  // of a leg's length
-constexpr int kHalvings = 4;
+constexpr int kHalvings = 4;        // of a step that made the motion rougher
 
 class Evener {
  public:
