@@ -72,6 +72,10 @@ loadedWhenOpened(studio, page, 'help', async () => {
   const { help } = await import('./panels/help');
   return () => help(page);
 }, app);
+loadedWhenOpened(studio, page, 'keyEditor', async () => {
+  const { keyEditor } = await import('./panels/key_editor');
+  return () => keyEditor(studio, page);
+}, clips);
 loadedWhenOpened(studio, page, 'feet', async () => {
   const { feetEditor } = await import('./panels/feet_editor');
   return () => feetEditor(studio, page);

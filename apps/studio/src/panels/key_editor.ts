@@ -1,6 +1,5 @@
 // What opens below the timeline: keys as a sheet or as curves, with the buttons that both share.
 import { extentOf, frame, keysOf } from '../app/keys';
-import { remember, remembered } from '../app/remembered';
 import type { KeyEditor, KeyPlace, PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
 import type { SessionState } from '../engine/messages';
@@ -10,23 +9,11 @@ import { say } from '../words/say';
 import { curveEditor } from './curve_editor';
 import { dopeSheet } from './dope_sheet';
 import { KeyActions } from './key_actions';
+import { showKeys } from './key_toggle';
 
-const narrow = '(width <= 760px)';
-const kept = ['sheet', 'curves', 'closed'] as const;
-
-export function keyEditor(studio: Studio, page: PageStore): { toggle: HTMLButtonElement; root: HTMLElement } {
+export function keyEditor(studio: Studio, page: PageStore): HTMLElement {
   const actions = new KeyActions(studio, page);
-  const stored = matchMedia(narrow).matches ? 'closed' : remembered('keys', kept, 'closed');
-  if (stored !== 'closed') page.set({ keyEditor: stored });
-  let last: KeyEditor = stored === 'curves' ? 'curves' : 'sheet';
-  const open = (editor: KeyEditor | null) => {
-    last = editor ?? last;
-    remember('keys', editor ?? 'closed');
-    page.set({ keyEditor: editor, chosenKeys: editor === null ? [] : page.now.chosenKeys });
-  };
-  const toggle = button(say('Keys'), () => open(page.now.keyEditor === null ? last : null), { icon: 'rows', label: say('Keys of each joint, and their curves'), id: 'open-keys' });
-  toggle.setAttribute('aria-controls', 'key-editor');
-  const shown = choice<KeyEditor>(say('Show keys as'), [{ value: 'sheet', text: say('Sheet') }, { value: 'curves', text: say('Curves') }], open);
+  const shown = choice<KeyEditor>(say('Show keys as'), [{ value: 'sheet', text: say('Sheet') }, { value: 'curves', text: say('Curves') }], (editor) => showKeys(page, editor));
   const told = element('output', { class: 'told', id: 'keys-told' });
   const copy = button(say('Copy'), () => actions.copy(), { icon: 'copy', keys: 'Ctrl+C', id: 'copy-keys' });
   const paste = button(say('Paste'), () => void actions.paste(), { icon: 'paste', label: say('Paste at this moment'), keys: 'Ctrl+V', id: 'paste-keys' });
@@ -45,8 +32,6 @@ export function keyEditor(studio: Studio, page: PageStore): { toggle: HTMLButton
   page.watch(({ session, keyEditor: editor, chosenKeys, curve }) => {
     const clip = session?.clips[session.clip ?? -1] ?? null;
     root.hidden = editor === null || !clip;
-    toggle.disabled = !clip;
-    toggle.setAttribute('aria-expanded', String(!root.hidden));
     if (root.hidden) return;
     shown.show(editor ?? 'sheet');
     sheet.root.hidden = nearer.hidden = farther.hidden = editor !== 'sheet';
@@ -60,7 +45,7 @@ export function keyEditor(studio: Studio, page: PageStore): { toggle: HTMLButton
     all.disabled = keysOf(session).length === 0;
     told.textContent = tell(session, chosenKeys);
   });
-  return { toggle, root };
+  return root;
 }
 
 function tell(session: SessionState | null, chosen: readonly KeyPlace[]): string {

@@ -7,7 +7,7 @@ import type { PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
 import { button, element, fileInput, setIcon } from '../ui/dom';
 import { inSeconds, language, number, say } from '../words/say';
-import { keyEditor } from './key_editor';
+import { keyToggle } from './key_toggle';
 import { chosenClip, shownSeconds, type Clip } from './moments';
 
 const mostMarks = 400; // keys that are drawn; recorded motion has one for every frame
@@ -41,7 +41,6 @@ export function timeline(studio: Studio, page: PageStore, openSheet: () => Promi
   const ghosts = button('', () => studio.showGhosts(!page.now.ghosts), { icon: 'ghosts', label: say('Ghosts: before and after, and the selected joint\u2019s path'), id: 'ghosts' });
   const feet = button(say('Feet'), () => page.set({ feet: !page.now.feet }), { icon: 'pin', label: say('While which foot stands'), id: 'open-feet' });
   feet.setAttribute('aria-controls', 'feet');
-  const editor = keyEditor(studio, page);
   const sheet = button('', () => void openSheet(), { icon: 'sheet', label: say('Contact sheet: the clip at a glance'), id: 'open-sheet' });
   const add = button(say('New clip'), () => void studio.addClip(), { icon: 'add', label: say('A clip of your own poses'), id: 'add-clip' });
   const motion = button(say('Motion file'), () => file.click(), { icon: 'open', label: say('Play a motion (BVH, GLB) on the model; several come to the shelf'), id: 'open-motion' });
@@ -51,7 +50,7 @@ export function timeline(studio: Studio, page: PageStore, openSheet: () => Promi
   const card = element('section', { class: 'card timeline', 'aria-label': say('Timeline'), id: 'timeline' },
     element('div', { class: 'row tools' }, play, clips, add, shelf, motion, file,
       element('div', { class: 'row clip-tools' }, speed, loop, feet, sheet, key, auto, blend, erase, between, remove)),
-    element('div', { class: 'row moment' }, editor.toggle, ghosts, element('div', { class: 'track' }, scrub, track), time), editor.root);
+    element('div', { class: 'row moment' }, keyToggle(page), ghosts, element('div', { class: 'track' }, scrub, track), time));
   let listed = '';
   page.watch(({ session, seconds, playing, autoKey, span, ghosts: seen, loop: again, feet: standing }) => {
     const clip = chosenClip(session);

@@ -1,20 +1,23 @@
 // Parts of the page whose code it does without until they are first opened.
-import type { PageStore } from '../app/state';
+import type { PageState, PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
 import { partMissing } from '../engine/client';
-import type { Flag } from './shown_while';
+
+/** What of the store shows such a part; where it is set to null or false it does not. */
+type Opener = { [K in keyof PageState]: false extends PageState[K] ? K : null extends PageState[K] ? K : never }[keyof PageState];
 
 /** Puts the part into the page once its flag of the store is first set; where its code does not come, that is told, and
  *  the next opening asks again. */
-export function loadedWhenOpened(studio: Studio, page: PageStore, flag: Flag, load: () => Promise<() => HTMLElement>, into: HTMLElement) {
+export function loadedWhenOpened(studio: Studio, page: PageStore, opener: Opener, load: () => Promise<() => HTMLElement>, into: HTMLElement) {
   let asked = false;
   page.watch((now) => {
-    if (!now[flag] || asked) return;
+    if (!now[opener] || asked) return;
     asked = true;
     void studio.guard(() => load().catch(() => { throw partMissing(null); })).then((make) => {
       asked = make !== null;
-      if (make) into.append(make());
-      page.set({ [flag]: make !== null && page.now[flag] }); // a dialog opens once it is in the page
+      if (!make) return page.set({ [opener]: typeof page.now[opener] === 'boolean' ? false : null });
+      into.append(make());
+      page.set({}); // a dialog opens once it is in the page
     });
   });
 }

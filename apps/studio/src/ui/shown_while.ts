@@ -1,7 +1,7 @@
 // Dialogs that are open while a flag of the store is set.
 import type { PageState, PageStore } from '../app/state';
 
-export type Flag = 'help' | 'poseLibrary' | 'shelf' | 'feet';
+export type Flag = 'help' | 'poseLibrary' | 'shelf';
 
 interface Shown {
   opens(): void;
