@@ -152,6 +152,7 @@ TEST(RetargetAnimals, PawsStandWhereTheyStand) {
   spreads.depth.expectAllBelow(5, "depth over the source's: those who sit lay their feet down");
   spreads.lost.expectAllBelow(0.01, "contacts lost");
   spreads.jerk.expectAllBelow(1.1, "jerk");
+  spreads.expectPlantedFeet();
 }
 
 // How far a shin's end is from the foot on a root of its own that belongs there, leg lengths, at worst.
@@ -203,6 +204,7 @@ TEST(RetargetAnimals, LegsReachFeetOnRootsOfTheirOwn) {
     }
   }
   spreads.jerk.expectAllBelow(1.1, "jerk");
+  spreads.expectPlantedFeet();
   spreads.sliding.expectBelow(0.011, 0.89, "sliding");
   spreads.sliding.expectAllBelow(0.1, "sliding");
   spreads.depth.expectAllBelow(5, "depth over the source's");
@@ -247,6 +249,7 @@ TEST(RetargetAnimals, QuadrupedsAreMatchedByTheirForm) {
     }
   }
   spreads.jerk.expectBelow(1.1, 0.99, "jerk");
+  spreads.expectPlantedFeet();
   spreads.sliding.expectBelow(0.02, 0.96, "sliding");
   spreads.depth.expectBelow(5, 0.99, "depth over the source's");
   spreads.lost.expectBelow(0.05, 0.96, "contacts lost");

@@ -104,6 +104,7 @@ TEST_P(RetargetMatrix, EveryHumanoidKeepsFeetAndGround) {
   spreads.slides.expectAllBelow(1e-4, "sliding over the source's");
   spreads.sliding.expectBelow(0.02, 0.99, "sliding");
   spreads.jerk.expectAllBelow(1.1, "jerk");
+  spreads.expectPlantedFeet();
   spreads.turned.expectAllBelow(15, "bones");
   spreads.lost.expectBelow(0.01, 0.92, "contacts lost");
   spreads.lost.expectBelow(0.02, 0.98, "contacts lost");
@@ -135,6 +136,7 @@ TEST(RetargetClips, EveryHumanoidKeepsFeetAndGround) {
   spreads.slides.expectBelow(1e-4, 0.86, "sliding over the source's");
   spreads.slides.expectAllBelow(0.15, "sliding over the source's");
   spreads.jerk.expectAllBelow(1.1, "jerk");
+  spreads.expectPlantedFeet();
   spreads.turned.expectAllBelow(15, "bones");
   spreads.lost.expectBelow(0.01, 0.68, "contacts lost");
   spreads.lost.expectBelow(0.2, 0.85, "contacts lost");
@@ -163,6 +165,7 @@ TEST_P(RetargetDinosaur, EveryHumanoidKeepsFeetAndGround) {
   spreads.slides.expectBelow(1e-4, 0.99, "sliding over the source's");
   spreads.sliding.expectBelow(0.02, 0.98, "sliding");
   spreads.jerk.expectBelow(1.1, 0.99, "jerk");
+  spreads.expectPlantedFeet();
   spreads.lost.expectBelow(0.01, 0.93, "contacts lost");
 }
 

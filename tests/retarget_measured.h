@@ -54,6 +54,7 @@ struct Spreads {
   Spread jerk;     // over the source's
   Spread turned;   // bones, degrees, mean
   Spread lost;     // contacts, share
+  Spread free;     // share of the frames in which the source's feet are not planted
 
   void add(const MotionMetrics& result, double sourceDepth, const std::string& pair) {
     depth.add(1700 * (result.penetration - sourceDepth), pair);
@@ -62,7 +63,10 @@ struct Spreads {
     jerk.add(result.jerk, pair);
     turned.add(result.boneDirection, pair);
     lost.add(1 - result.contactAgreement, pair);
+    free.add(1 - result.planted, pair);
   }
+  // Else bounds on planted feet would hold for want of any.
+  void expectPlantedFeet() { free.expectBelow(0.95, 0.5, "share of frames without a planted foot"); }
 };
 
 }  // namespace limber::testing

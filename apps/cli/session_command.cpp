@@ -118,7 +118,7 @@ void addSessionCommand(CLI::App& program) {
   options->common.addTo(*replay);
   replay->footer(
       "Models are opened beside the list, or in the .limber file. Commands are those of limber/session/command.h:\n"
-      "  {\"limber_commands\": 1, \"commands\": [{\"do\": \"open_file\", \"file\": \"fox.glb\"},\n"
+      "  {\"limber_commands\": 2, \"commands\": [{\"do\": \"open_file\", \"file\": \"fox.glb\"},\n"
       "   {\"do\": \"set_handles\", \"count\": 20}, {\"do\": \"turn_joint\", \"joint\": \"handle_03\", \"axis\": [0, "
       "1, 0],\n"
       "   \"degrees\": 30}]}\n"

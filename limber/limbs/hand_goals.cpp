@@ -67,19 +67,21 @@ HandGoals::HandGoals(const RetargetSetup& setup, const RootPlacer& root) : setup
 }
 
 HandGoals::Gauge HandGoals::gaugeOf(const BodyPart& from, const BodyPart& to) const {
+  const Gauge hips = {setup_.sourceHipHeight, setup_.targetHipHeight};
   const JointMatch *begin = setup_.map.find(from), *end = setup_.map.find(to);
-  if (!begin || !end) return {setup_.sourceHipHeight, setup_.targetHipHeight};
+  if (!begin || !end) return hips;
   const auto length = [](const NeutralPose& body, Index a, Index b) {
     return (body.restPositions[b] - body.restPositions[a]).norm();
   };
-  return {length(setup_.sourceNeutral, begin->source.front(), end->source.front()),
-          length(setup_.targetNeutral, begin->target.front(), end->target.front())};
+  const Gauge gauge = {length(setup_.sourceNeutral, begin->source.front(), end->source.front()),
+                       length(setup_.targetNeutral, begin->target.front(), end->target.front())};
+  return gauge.source > 0 ? gauge : hips;
 }
 
 void HandGoals::addSurface(const BodyPart& from, const BodyPart& to, const Gauge& gauge,
                            const TouchDistances& distances, std::vector<Surface>& surfaces) const {
   const JointMatch *begin = setup_.map.find(from), *end = setup_.map.find(to);
-  if (!begin || !end || !(gauge.source > 0)) return;
+  if (!begin || !end) return;
   surfaces.push_back(
       {{begin->source.front(), end->source.front()}, {begin->target.front(), end->target.front()}, gauge, distances});
 }

@@ -49,12 +49,14 @@ class HandGoals {
     Vec3 value = Vec3::Zero(), speed = Vec3::Zero();
   };
 
-  // Nothing where one of them lacks a joint.
+  // The distance of two parts at rest; hip heights where one of them is missing or both are in one place.
   Gauge gaugeOf(const BodyPart& from, const BodyPart& to) const;
+  // None where a body lacks one of the parts.
   void addSurface(const BodyPart& from, const BodyPart& to, const Gauge& gauge, const TouchDistances& distances,
                   std::vector<Surface>& surfaces) const;
   Vec3 touchOf(const Limb& arm, const std::vector<Surface>& surfaces, const BodyFrame& source,
                const BodyFrame& target) const;
+
   const RetargetSetup& setup_;
   std::vector<Limb> arms_;
   std::vector<std::vector<Surface>> surfaces_;  // for each arm

@@ -31,8 +31,7 @@ import { createStage } from './scene/stage';
 import { warmUp } from './scene/warm_up';
 import { ask } from './ui/ask';
 import { element } from './ui/dom';
-import { partMissing } from './engine/client';
-import { loadedWhenOpened } from './ui/loaded_when_opened';
+import { arriving, loadedWhenOpened } from './ui/loaded_when_opened';
 import { language, say } from './words/say';
 
 /** Without WebGL there is nothing to show the model with. */
@@ -92,7 +91,7 @@ loadedWhenOpened(studio, page, 'poseLibrary', async () => {
 async function openSheet() {
   await studio.guard(async () => {
     if (!sheet) {
-      const { contactSheet } = await import('./panels/contact_sheet').catch(() => { throw partMissing(null); });
+      const { contactSheet } = await arriving(import('./panels/contact_sheet'));
       sheet = contactSheet(studio, page, viewport);
       app.append(sheet.dialog);
     }

@@ -6,6 +6,9 @@ import { partMissing } from '../engine/client';
 /** What of the store shows such a part; where it is set to null or false it does not. */
 type Opener = { [K in keyof PageState]: false extends PageState[K] ? K : null extends PageState[K] ? K : never }[keyof PageState];
 
+/** The code of a part; where it does not come, that is told. */
+export const arriving = <T>(code: Promise<T>): Promise<T> => code.catch(() => { throw partMissing(null); });
+
 /** Puts the part into the page once its flag of the store is first set; where its code does not come, that is told, and
  *  the next opening asks again. */
 export function loadedWhenOpened(studio: Studio, page: PageStore, opener: Opener, load: () => Promise<() => HTMLElement>, into: HTMLElement) {
@@ -13,7 +16,7 @@ export function loadedWhenOpened(studio: Studio, page: PageStore, opener: Opener
   page.watch((now) => {
     if (!now[opener] || asked) return;
     asked = true;
-    void studio.guard(() => load().catch(() => { throw partMissing(null); })).then((make) => {
+    void studio.guard(() => arriving(load())).then((make) => {
       asked = make !== null;
       if (!make) return page.set({ [opener]: typeof page.now[opener] === 'boolean' ? false : null });
       into.append(make());
