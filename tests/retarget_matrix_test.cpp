@@ -21,7 +21,8 @@ namespace limber::testing {
 
 namespace {
 
-// Whole motions, or as many frames as LIMBER_MATRIX_FRAMES says.
+// Whole motions, or as many frames as LIMBER_MATRIX_FRAMES says: enough to find faulty memory, too few for the bounds,
+// which are those of whole motions.
 std::size_t mostFrames() {
   const char* named = std::getenv("LIMBER_MATRIX_FRAMES");
   return named ? std::strtoul(named, nullptr, 10) : std::numeric_limits<std::size_t>::max();
@@ -99,6 +100,7 @@ TEST_P(RetargetMatrix, EveryHumanoidKeepsFeetAndGround) {
       spreads.add(measured(setup, GetParam(), source.frames), 0, std::string(motion).append(" ").append(file));
     }
   }
+  if (std::getenv("LIMBER_MATRIX_FRAMES")) return;
   spreads.depth.expectBelow(5, 0.99, "depth");
   spreads.depth.expectAllBelow(9, "depth");
   spreads.slides.expectAllBelow(1e-4, "sliding over the source's");

@@ -350,7 +350,7 @@ remaining_stages() {
   stage "sanitizer build, clang++ with warnings as errors" build_sanitize
   sanitizer_options
   stage "unit tests under sanitizers" unit_tests sanitize "$minutes_under_sanitizers"
-  LIMBER_MATRIX_HANDLES=10 LIMBER_MATRIX_FRAMES=400 stage "every model at 10 handles under sanitizers" \
+  LIMBER_MATRIX_HANDLES=10 LIMBER_MATRIX_FRAMES=60 stage "every model at 10 handles under sanitizers" \
     model_tests sanitize 'Template|MatchedByTheirForm' # these take minutes there
   stage "fuzz targets, a few seconds each" fuzz_each_target 5
 }
