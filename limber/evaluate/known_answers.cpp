@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include <fmt/format.h>
 
@@ -60,26 +61,43 @@ Skeleton mirrored(Skeleton body) {
   return body;
 }
 
-// Whether each joint has one where its mirror image is.
-bool isSymmetric(const Skeleton& body) {
+// Whether each joint has one where `image` takes it.
+bool isAlike(const Skeleton& body, const Vec3& image) {
   const std::vector<Vec3> rest = restPositions(body);
   Box box;
   for (const Vec3& place : rest) box.add(place);
   return std::all_of(rest.begin(), rest.end(), [&](const Vec3& place) {
     return std::any_of(rest.begin(), rest.end(), [&](const Vec3& other) {
-      return (Vec3(-place.x(), place.y(), place.z()) - other).norm() < kAlike * box.diagonal();
+      return (image.cwiseProduct(place) - other).norm() < kAlike * box.diagonal();
     });
+  });
+}
+
+// Its mirror image is one body alone: of a figure that is the same from behind, one that is turned about is another.
+bool hasOneMirrorImage(const Skeleton& body) {
+  return isAlike(body, Vec3(-1, 1, 1)) && !isAlike(body, Vec3(-1, 1, -1));
+}
+
+// Else nothing tells up from down: recordings' rest poses may have all bones along one axis.
+bool hasHeadAndFeetApart(const Skeleton& body) {
+  const std::vector<Vec3> rest = restPositions(body);
+  const SkeletonMap parts = matchSkeletons(body, body);
+  const JointMatch *head = parts.find(body_part::kHead), *pelvis = parts.find(body_part::kPelvis);
+  if (!head || !pelvis) return true;
+  const Vec3 middle = rest[pelvis->target.back()], up = rest[head->target.back()] - middle;
+  return std::all_of(std::begin(kSides), std::end(kSides), [&](Side side) {
+    const JointMatch* foot = parts.find(body_part::leg(side, Segment::kEnd));
+    return !foot || up.dot(rest[foot->target.back()] - middle) < 0;
   });
 }
 
 }  // namespace
 
 std::vector<KnownAnswer> knownAnswers(const Skeleton& motion) {
-  std::vector<KnownAnswer> answers = {{"own", motion},
-                                      {"renamed", nameless(motion)},
-                                      {"reposed", reposed(motion)},
-                                      {"scaled", scaled(motion, kSmaller), kSmaller}};
-  if (isSymmetric(motion)) answers.push_back({"mirrored", mirrored(motion)});
+  std::vector<KnownAnswer> answers = {
+      {"own", motion}, {"renamed", nameless(motion)}, {"scaled", scaled(motion, kSmaller), kSmaller}};
+  if (hasHeadAndFeetApart(motion)) answers.push_back({"reposed", reposed(motion)});
+  if (hasOneMirrorImage(motion)) answers.push_back({"mirrored", mirrored(motion)});
   return answers;
 }
 
@@ -91,6 +109,8 @@ double errorOfAnswer(const RetargetMethod& method, const Skeleton& motion, const
                             &source);
   const PoseSequence result = to.original(retargetFrames(method, setup, source));
   const double height = standingHeight(setup, MapSide::kTarget);
+  // A recording's ground need not be where its rest pose stands; what is put on another body is put on that one's.
+  const Vec3 ground = (setup.targetGround - answer.scale * setup.sourceGround) * Vec3::UnitY();
   double worst = 0;
   for (std::size_t f = 0; f < frames.poses.size(); ++f) {
     const std::vector<Vec3> right = posePositions(motion, frames.poses[f]),
@@ -98,7 +118,8 @@ double errorOfAnswer(const RetargetMethod& method, const Skeleton& motion, const
     for (const JointMatch& match : setup.map.matches) {
       if (match.source.size() != match.target.size()) continue;
       for (std::size_t i = 0; i < match.source.size(); ++i) {
-        worst = std::max(worst, (given[match.target[i]] - answer.scale * right[match.source[i]]).norm() / height);
+        worst =
+            std::max(worst, (given[match.target[i]] - ground - answer.scale * right[match.source[i]]).norm() / height);
       }
     }
   }
