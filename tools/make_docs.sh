@@ -114,7 +114,9 @@ if [ -d "$characters" ]; then
     --character "$characters"/{cesium_man,m2m_human_male,makehuman_mixamo,quaternius_man_casual}.glb)
   table="$table" perl -0pi -e 's/(<!-- made by [^\n]*: measures -->\n).*(<!-- end of measures -->)/$1\n$ENV{table}\n\n$2/s' docs/retargeting.md
   tools/judge_retargeting.sh
-  sed -i '/^\*\*People/,$d' docs/template-rigs.md
+  kinds=$($limber evaluate templates --labels "$(dirname "$characters")/creatures/MANIFEST.tsv" --quiet)
+  table="$kinds" perl -0pi -e 's/(<!-- made by [^\n]*: kinds -->\n).*(<!-- end of kinds -->)/$1\n$ENV{table}\n$2/s' docs/template-rigs.md
+  sed -i '/^\*\*People, /,$d' docs/template-rigs.md
   {
     echo "**People, --template humanoid**" && echo
     $limber evaluate templates "${people[@]/#/$characters/}" --template humanoid --quiet

@@ -371,6 +371,14 @@ TEST_F(Cli, AnimateRigsWhatHasNoRig) {
               HasSubstr("warning: vertices that no face uses are left out [loose-vertices]"))
       << "counted once";
   EXPECT_EQ(run({"sample", "quadruped", "-o", "fox.glb", "-q"}).code, 0);
+  ASSERT_EQ(run({"sample", "stool", "-o", "stool.glb", "-q"}).code, 0);
+  const Result thing = run({"animate", "stool.glb", "wave.bvh", "-o", "thing.glb", "-q"});
+  expectOneLine(thing, 1);
+  EXPECT_THAT(thing.error, AllOf(HasSubstr("like no template"), HasSubstr("--template")));
+  EXPECT_FALSE(std::filesystem::exists("thing.glb"));
+  EXPECT_EQ(run({"animate", "stool.glb", "wave.bvh", "--template", "humanoid", "-o", "thing.glb", "-q"}).code, 0);
+  const Result handles = run({"rig", "stool.glb", "--template", "auto", "-o", "handles.glb"});
+  EXPECT_THAT(handles.error, HasSubstr("it gets handles [no-template]"));
   const Result unlike = run({"animate", "fox.glb", "wave.bvh", "-o", "no.glb", "-q"});
   expectOneLine(unlike, 1);
   EXPECT_THAT(unlike.error, HasSubstr("the model was rigged as quadruped"));

@@ -8,10 +8,12 @@
 #include "limber/asset/json_text.h"
 #include "limber/asset/read.h"
 #include "limber/core/file.h"
+#include "limber/core/known_error.h"
 #include "limber/evaluate/anatomy_table.h"
 #include "limber/evaluate/ik_evaluation.h"
 #include "limber/evaluate/ik_page.h"
 #include "limber/evaluate/rig_table.h"
+#include "limber/evaluate/template_table.h"
 #include "limber/evaluate/weight_report.h"
 #include "limber/evaluate/weight_table.h"
 #include "limber/pipeline/auto_rig.h"
@@ -52,14 +54,41 @@ void runRig(const RigFiles& options) {
 
 struct RiggersOptions {
   std::vector<std::string> files;
-  std::string output = "-", templateName = "auto", clip;
+  std::string labels, each, output = "-", templateName = "auto", clip;
   std::optional<double> time;  // seconds
   Common common;
 };
 
+// The rows that the list names, with its labels.
+std::vector<TemplateTrial> labelled(const std::vector<RigTableRow>& rows, const std::vector<LabelledFile>& labels,
+                                    const std::filesystem::path& folder) {
+  std::vector<TemplateTrial> trials;
+  for (const LabelledFile& file : labels) {
+    const auto row =
+        std::find_if(rows.begin(), rows.end(), [&](const RigTableRow& r) { return r.path == folder / file.path; });
+    if (row != rows.end()) trials.push_back({file, *row});
+  }
+  return trials;
+}
+
 void runRiggers(const RiggersOptions& options) {
   options.common.apply();
   checkOutput(options.output, {".md"});
+  if (options.files.empty() == options.labels.empty()) {
+    throw CLI::ValidationError("FILE", "name files, or a list of labelled ones by --labels");
+  }
+  std::vector<LabelledFile> labels;
+  const std::filesystem::path folder = std::filesystem::path(options.labels).parent_path();
+  std::vector<std::filesystem::path> files(options.files.begin(), options.files.end());
+  if (!options.labels.empty()) {
+    const Bytes text = readFile(options.labels);
+    try {
+      labels = parseLabelledFiles({reinterpret_cast<const char*>(text.data()), text.size()});
+    } catch (const Error& error) {
+      throwWithin(error, options.labels);
+    }
+    for (const LabelledFile& file : labels) files.push_back(folder / file.path);
+  }
   AutoRigOptions rig;
   rig.rigger = "template";
   rig.rig.templateName = options.templateName;
@@ -69,16 +98,17 @@ void runRiggers(const RiggersOptions& options) {
     Progress unheard;
     const AutoRigReport report = autoRig(asset, rig, unheard);
     const TemplateMatch& match = report.matches.front();
-    return fmt::format("{} {:.2f}", match.name, match.confidence);
+    return RigFit{report.rigger, match.name, match.confidence};
   };
   TerminalProgress progress(options.common.quiet);
   Warnings skipped;
-  const std::vector<std::filesystem::path> files(options.files.begin(), options.files.end());
   std::optional<ClipMoment> moment;
   if (!options.clip.empty() || options.time) moment = {options.clip, options.time.value_or(0)};
   const std::vector<RigTableRow> rows = compareRigsOf(files, rerig, *progress, skipped, moment);
   refuseNothing(rows.empty(), skipped);
-  writeText(options.output, rigTable(rows));
+  const std::vector<TemplateTrial> trials = labelled(rows, labels, folder);
+  if (!options.each.empty()) writeText(options.each, eachTemplateTrial(trials));
+  writeText(options.output, labels.empty() ? rigTable(rows) : templateTables(trials));
   printWarnings(skipped, options.common.quiet);
 }
 
@@ -190,7 +220,11 @@ void addRiggers(CLI::App& evaluate) {
   auto options = std::make_shared<RiggersOptions>();
   CLI::App* command =
       evaluate.add_subcommand("templates", "Rig characters anew from a template and compare with their own skeletons");
-  command->add_option("FILE", options->files, "characters with artists' rigs")->required();
+  command->add_option("FILE", options->files, "characters with artists' rigs");
+  command->add_option("--labels", options->labels, "a list of such files in their place, with kinds and splits, as TSV")
+      ->type_name("FILE");
+  command->add_option("--each", options->each, "with --labels: write the figures of each file, tab separated")
+      ->type_name("FILE");
   command->add_option("--template", options->templateName, "auto, or one by name; limber rig --help lists them")
       ->type_name("NAME")
       ->capture_default_str();
@@ -206,9 +240,13 @@ void addRiggers(CLI::App& evaluate) {
       "At a moment of a clip each character is what its own weights make of it, and its joints as they stand then are\n"
       "what is compared with. The name of a clip need not hold what is before the last \"|\". Files without the clip\n"
       "are left out.\n"
+      "\nWith --labels the tables are of a whole collection: how often the kind is told right, how far the confidence\n"
+      "can be believed, and what was taken for what. The list has a line for each file, and columns called path, kind\n"
+      "and split (docs/template-rigs.md).\n"
       "\nExamples:\n"
       "  limber evaluate templates characters/*.glb --template humanoid\n"
-      "  limber evaluate templates characters/*.glb --template humanoid --clip Walk --time 0.4");
+      "  limber evaluate templates characters/*.glb --template humanoid --clip Walk --time 0.4\n"
+      "  limber evaluate templates --labels creatures/MANIFEST.tsv -o reliability.md");
   command->callback([options] { runRiggers(*options); });
 }
 

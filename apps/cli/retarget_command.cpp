@@ -11,6 +11,7 @@
 #include "limber/pipeline/auto_rig.h"
 #include "limber/pipeline/retarget_asset.h"
 #include "limber/pipeline/stand_upright.h"
+#include "limber/templates/template_skeleton.h"
 #include "progress_line.h"
 
 namespace limber::cli {
@@ -18,11 +19,11 @@ namespace limber::cli {
 namespace {
 
 struct RetargetArguments {
-  std::string model, output, mapFile, saveMapFile, rootScale = "hip-height", rigger = "template";
+  std::string model, output, mapFile, saveMapFile, rootScale = "hip-height", rigger = "template", templateName = "auto";
   std::vector<std::string> motions;
   RetargetAssetOptions retarget;
   double frameRate = 0, ground = 0;
-  bool noContacts = false, noEvening = false, hasGround = false;
+  bool noContacts = false, noSmoothing = false, hasGround = false;
   Common common;
 };
 
@@ -50,7 +51,7 @@ void prepare(RetargetArguments& options) {
   findIkMethod(options.retarget.retarget.solver);
   options.retarget.retarget.rootScale = rootScaleOf(options.rootScale);
   options.retarget.retarget.contacts = !options.noContacts;
-  options.retarget.retarget.evenOut = !options.noEvening;
+  options.retarget.retarget.smoothMotion = !options.noSmoothing;
   if (options.frameRate > 0) options.retarget.frameRate = options.frameRate;
   if (options.hasGround) options.retarget.retarget.sourceGround = options.ground;
   if (!options.mapFile.empty()) {
@@ -116,15 +117,25 @@ void runRetarget(RetargetArguments options) {
 
 // What to do where a motion does not fit the rig that was made.
 std::string remedyFor(const std::vector<TemplateMatch>& matches) {
-  constexpr double kLooksLikeIt = 0.4;
   if (matches.empty()) return "--rigger template gives joints names that motions know; or match by --map";
   const TemplateMatch& best = matches.front();
-  if (best.confidence > kLooksLikeIt) {
+  if (best.confidence > kLikelyTemplate) {
     return fmt::format("the model was rigged as {}, {:.0f} % sure: take a motion of such a body, or match by --map",
                        best.name, 100 * best.confidence);
   }
   return "the model hardly looks like any template: turn it to stand upright with its arms away from the body, or "
          "match by --map";
+}
+
+// Handles have no names that motions know.
+[[noreturn]] void refuseAbstained(const Asset& asset, const AutoRigReport& report) {
+  const TemplateMatch& likeliest = report.matches.front();
+  throw Error(
+      ErrorCode::kUnsupported,
+      fmt::format("the model is like no template (the likeliest, {}, is {:.0f} % sure)", likeliest.name,
+                  100 * likeliest.confidence),
+      asset.name,
+      fmt::format("--template {} takes that one all the same; limber rig --pin corrects joints", likeliest.name));
 }
 
 void runAnimate(RetargetArguments options) {
@@ -141,7 +152,10 @@ void runAnimate(RetargetArguments options) {
     AutoRigOptions rig;
     rig.rigger = options.rigger;
     rig.standUpright = true;
+    rig.rig.templateName = options.templateName;
+    if (options.templateName != "auto") findTemplate(options.templateName);
     AutoRigReport report = autoRig(asset, rig, *progress);
+    if (report.rigger != options.rigger) refuseAbstained(asset, report);
     warnings = std::move(report.warnings);
     matches = std::move(report.matches);
   }
@@ -193,7 +207,7 @@ void addOptions(CLI::App& command, const std::shared_ptr<RetargetArguments>& opt
       ->type_name("NAME")
       ->capture_default_str();
   command.add_flag("--no-contacts", options->noContacts, "let feet slide and hands miss what they touched");
-  command.add_flag("--no-evening", options->noEvening, "leave rougher than the motion what came out so");
+  command.add_flag("--no-smoothing", options->noSmoothing, "leave rougher than the motion what came out so");
   command
       .add_option_function<double>(
           "--ground",
@@ -226,6 +240,9 @@ void addAnimateCommand(CLI::App& program) {
   command->add_option("MODEL", options->model, "the model, rigged or not")->required();
   addOptions(*command, options);
   command->add_option("--rigger", options->rigger, "how a model without a rig gets one; limber rig --help lists them")
+      ->type_name("NAME")
+      ->capture_default_str();
+  command->add_option("--template", options->templateName, "which skeleton: auto, or one by name, however unsure")
       ->type_name("NAME")
       ->capture_default_str();
   command->footer(retargetHelp("  limber animate scan.obj walk.bvh -o walking.glb"));

@@ -106,7 +106,9 @@ void printAccount(const Account& account, const RigArguments& options, const Aut
     for (const TemplateMatch& match : report.matches) {
       matches.push_back(fmt::format("{} ({:.0f} % sure)", match.name, 100 * match.confidence));
     }
-    account.line(fmt::format("template: {}", fmt::join(matches, ", else ")));
+    const bool abstained = report.rigger != options.rig.rigger;
+    account.line(fmt::format("template: {}{}", abstained ? "none; " : "", fmt::join(matches, ", else ")));
+    if (abstained) account.line(fmt::format("--template {} fits that one all the same", report.matches.front().name));
   }
   printWarnings(report.warnings, options.common.quiet);
   if (!options.common.quiet) printBridged(report);

@@ -78,14 +78,15 @@ std::vector<RigTableRow> compareRigsOf(std::span<const std::filesystem::path> fi
         continue;
       }
       RigTableRow row;
-      row.file = files[i].stem().string();
+      row.path = files[i];
+      row.name = files[i].stem().string();
       if (moment) {
         standAt(asset, *moment);
-        row.file += fmt::format(" {} {:.2f}", moment->clip, moment->seconds);
+        row.name += fmt::format(" {} {:.2f}", moment->clip, moment->seconds);
       }
       const SkinnedModel truth = readSkinnedModel(asset);
       const double start = secondsNow();
-      row.note = rerig(asset);
+      row.fit = rerig(asset);
       row.seconds = secondsNow() - start;
       row.comparison = compareRigs(readSkinnedModel(asset), truth);
       rows.push_back(std::move(row));
@@ -116,8 +117,9 @@ std::string rigTable(std::span<const RigTableRow> rows) {
       ++namedRows;
     }
     const std::string names = c.named.empty() ? "- | -" : fmt::format("{:.2f} | {:.2f}", c.namedMean, c.namedWorst);
-    table += fmt::format("| {} | {} | {}/{} | {} | {} | {:.2f} |\n", row.file, row.note, c.withoutFingers.joints,
-                         c.withoutFingers.truthJoints, cells(c.all, c.withoutFingers, 1), names, row.seconds);
+    table += fmt::format("| {} | {} {:.2f} | {}/{} | {} | {} | {:.2f} |\n", row.name, row.fit.likeliest,
+                         row.fit.confidence, c.withoutFingers.joints, c.withoutFingers.truthJoints,
+                         cells(c.all, c.withoutFingers, 1), names, row.seconds);
   }
   if (rows.empty()) return table;
   const double count = static_cast<double>(rows.size());

@@ -21,15 +21,23 @@ Json toJson(const RigComparison& comparison);
 // A few lines for a terminal.
 std::string toText(const RigComparison& comparison);
 
+// What a rigger said of its fit.
+struct RigFit {
+  std::string rigger;     // the method whose rig it is
+  std::string likeliest;  // of the templates
+  double confidence = 0;  // in it, 0 to 1
+};
+
 struct RigTableRow {
-  std::string file;  // without folder and extension; with the moment of a clip
-  std::string note;  // what the rigger said of the fit
+  std::filesystem::path path;
+  std::string name;  // the file's, without folder and extension; with the moment of a clip
+  RigFit fit;
   RigComparison comparison;
   double seconds = 0;  // to make the rig, reading and writing files left out
 };
 
-// Gives the asset a rig in place of its own; returns what is to be noted in the table.
-using Rerig = std::function<std::string(Asset&)>;
+// Gives the asset a rig in place of its own.
+using Rerig = std::function<RigFit(Asset&)>;
 
 // One row for each of the files that has a rig and triangles, in their order; what cannot be read or compared is
 // counted in `skipped`. Given a moment, each stands in that pose (standAt) before it is rigged and compared.

@@ -10,6 +10,7 @@
 
 #include "limber/asset/read.h"
 #include "limber/asset/rig_io.h"
+#include "limber/core/split_text.h"
 
 namespace limber {
 
@@ -65,16 +66,6 @@ std::vector<WeightTableRow> compareFolder(const std::filesystem::path& folder, c
 }
 
 namespace {
-
-std::vector<std::string_view> splitAt(std::string_view text, char separator) {
-  std::vector<std::string_view> parts;
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(separator, begin), text.size());
-    parts.push_back(text.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  return parts;
-}
 
 double parseNumber(std::string_view text, std::size_t line) {
   try {

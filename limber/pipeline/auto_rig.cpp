@@ -23,7 +23,6 @@ namespace limber {
 namespace {
 
 constexpr double kSureEnough = 0.75;  // of a template, to believe how it says that the model stands
-constexpr double kLikely = 0.4;       // to tell of it
 
 // Puts an asset back as it was unless the work on it was completed. Stages change the JSON and append to buffers, and
 // never touch bytes that were there: so the JSON and the lengths are enough to keep.
@@ -174,7 +173,7 @@ Rigged makeRig(const Asset& asset, const Geometry& geometry, const PreparedMesh&
     for (JointPin& pin : rigOptions.pins) pin.place = prepared.frame.toWorking(pin.place);
     AutoRig rig = findRigger(options.rigger).rig(prepared.mesh, rigOptions, progress);
     bones = bonesOf(rig.skeleton);
-    report.rigger = options.rigger;
+    report.rigger = rig.isAbstained ? AutoRigOptions().rigger : options.rigger;
     report.joints = rig.skeleton.jointCount();
     report.suggestions = std::move(rig.suggestions);
     report.matches = std::move(rig.matches);
@@ -182,7 +181,7 @@ Rigged makeRig(const Asset& asset, const Geometry& geometry, const PreparedMesh&
     const double confidence = report.matches.empty() ? 0 : report.matches.front().confidence;
     const bool sure = options.rig.up || confidence > kSureEnough;
     if (sure) result.up = rig.up;
-    if (!sure && rig.up && confidence > kLikely) warnMaybeLies(*rig.up, confidence, report.warnings);
+    if (!sure && rig.up && confidence > kLikelyTemplate) warnMaybeLies(*rig.up, confidence, report.warnings);
     result.made = toWorld(std::move(rig.skeleton), prepared.frame);
   }
 

@@ -36,10 +36,14 @@ struct RigOptions {
 
   // For riggers that fit a named skeleton.
   std::string templateName = "auto";              // auto: the one that fits best
+  bool mayAbstain = true;                         // auto: handles where none is likely (kLikelyTemplate)
   std::optional<Skeleton> templateSkeleton = {};  // a user's own, in place of that
   std::optional<Vec3> up = {}, front = {};        // along an axis of the mesh's space; none: found
   std::vector<JointPin> pins = {};
 };
+
+// The confidence from which on a template is taken for what the model is; below it is a guess.
+inline constexpr double kLikelyTemplate = 0.4;
 
 // A template that was tried, and how sure it is that the model is of its kind: 0 to 1.
 struct TemplateMatch {
@@ -54,9 +58,10 @@ struct HandleSuggestion {
 };
 
 struct AutoRig {
-  Skeleton skeleton;  // in the space of the mesh
+  Skeleton skeleton;         // in the space of the mesh
+  bool isAbstained = false;  // it has handles in place of a template (RigOptions::mayAbstain)
   std::vector<HandleSuggestion> suggestions;
-  std::vector<TemplateMatch> matches;  // the one that was fitted first
+  std::vector<TemplateMatch> matches;  // likeliest first: the one that was fitted, unless it abstained
   std::optional<Vec3> up;              // of the model as it was fitted
   Warnings warnings;
 };

@@ -11,6 +11,7 @@
 #include "limber/core/numbers.h"
 #include "limber/figure/figure_search.h"
 #include "limber/rigging/person_template.h"
+#include "limber/rigging/sphere_mesh_rigger.h"
 #include "limber/surface/stray_pieces.h"
 #include "limber/templates/arm_flatness.h"
 #include "limber/templates/bent_template.h"
@@ -26,10 +27,9 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kCoarseSpheres = 120;  // for a first look at every way to stand
-constexpr std::size_t kFramesRefined = 2;    // after it, with all spheres
-constexpr std::size_t kVariantsRefined = 4;  // of each of these
-constexpr double kLowConfidence = 0.4;
+constexpr std::size_t kCoarseSpheres = 120;        // for a first look at every way to stand
+constexpr std::size_t kFramesRefined = 2;          // after it, with all spheres
+constexpr std::size_t kVariantsRefined = 4;        // of each of these
 constexpr double kSureEnough = 0.75;               // not to look for people, or for animals, in other poses
 constexpr double kCostOfDoubt = 1.8;               // cost at which confidence is a half
 constexpr double kOtherHands = 0.05;               // cost of fingers that hands lack, or that a template lacks
@@ -213,11 +213,32 @@ void warn(const TemplateFit& fit, AutoRig& rig) {
                      limbsWithoutPlace(fit.skeleton, fit.limbs), missing);
   }
   const double confidence = confidenceOf(fit);
-  if (confidence < kLowConfidence) {
+  if (confidence < kLikelyTemplate) {
     rig.warnings.add("low-confidence",
                      fmt::format("the model hardly looks like the template (confidence {:.2f})", confidence),
                      fit.skeleton.name);
   }
+}
+
+std::vector<TemplateMatch> matchesOf(const std::vector<TemplateFit>& fits) {
+  std::vector<TemplateMatch> matches;
+  for (const TemplateFit& fit : fits) matches.push_back({fit.skeleton.name, confidenceOf(fit)});
+  return matches;
+}
+
+// Pinned joints are some template's: whoever pins one has chosen.
+bool mayAbstain(const RigOptions& options) {
+  return options.mayAbstain && options.templateName == "auto" && !options.templateSkeleton && options.pins.empty();
+}
+
+AutoRig withHandles(const TriMesh& mesh, const RigOptions& options, const TemplateFit& likeliest, Progress& progress) {
+  AutoRig rig = rigWithSphereMesh(mesh, options, progress);
+  rig.isAbstained = true;
+  rig.warnings.add("no-template",
+                   fmt::format("the model is like no template (the likeliest is {:.0f} % sure): it gets handles",
+                               100 * confidenceOf(likeliest)),
+                   likeliest.skeleton.name);
+  return rig;
 }
 
 }  // namespace
@@ -300,7 +321,12 @@ AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress
   std::stable_sort(fits.begin(), fits.end(),
                    [](const TemplateFit& a, const TemplateFit& b) { return confidenceOf(a) > confidenceOf(b); });
   TemplateFit& best = fits.front();
-  if (person && confidenceOf(best) < kLowConfidence) {
+  if (mayAbstain(options) && confidenceOf(best) < kLikelyTemplate) {
+    AutoRig rig = withHandles(mesh, options, best, progress);
+    rig.matches = matchesOf(fits);
+    return rig;
+  }
+  if (person && confidenceOf(best) < kLikelyTemplate) {
     // The model may stand as the user's skeleton does, and as no person of ours.
     TemplateFit asItIs = bestFit(own, model, options.pins, figure, progress);
     if (confidenceOf(asItIs) > confidenceOf(best)) {
@@ -328,7 +354,7 @@ AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress
                      mesh.triangleCount() - cleared->triangleCount());
   }
   rig.up = best.frame.axes.row(1).transpose();
-  for (const TemplateFit& fit : fits) rig.matches.push_back({fit.skeleton.name, confidenceOf(fit)});
+  rig.matches = matchesOf(fits);
   warn(best, rig);
   return rig;
 }

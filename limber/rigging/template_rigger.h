@@ -23,10 +23,11 @@ TemplateFit fitTemplate(const TemplateSkeleton& skeleton, const TriMesh& mesh, c
                         const RigOptions& options);
 
 // Measures the body, finds the way it stands and the template that fits best (options.templateName, "auto" tries all),
-// embeds and refines it; where a person's template is in doubt, looks for a figure (limber/figure). Warnings:
-// "no-place" with the limbs that the model seems to lack, "low-confidence", "stray-pieces" (withoutStrays), with their
-// triangles. Throws Error kBadArgument for an unknown template or pinned joint, one that is pinned twice or far outside
-// the mesh.
+// embeds and refines it; where a person's template is in doubt, looks for a figure (limber/figure). "auto" abstains
+// where no template is likely (RigOptions::mayAbstain): then the model gets handles, with the warning "no-template".
+// Others: "no-place" with the limbs that the model seems to lack, "low-confidence", "stray-pieces" (withoutStrays),
+// with their triangles. Throws Error kBadArgument for an unknown template or pinned joint, one that is pinned twice or
+// far outside the mesh.
 AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress& progress);
 
 }  // namespace limber

@@ -209,6 +209,22 @@ TEST(TemplateRigger, SaysWhereAPersonHasNoPlace) {
   checkSkeleton(result.skeleton);
 }
 
+// Handles then, as many as suit it, and what is likeliest is told; who asks for a template gets it.
+TEST(TemplateRigger, AbstainsWhereNoTemplateIsLikely) {
+  RigOptions options;
+  const AutoRig result = rig(ball(), options);
+  EXPECT_TRUE(result.isAbstained);
+  EXPECT_TRUE(warnsOf(result, "no-template"));
+  EXPECT_EQ(result.matches.size(), templateSkeletons().size());
+  EXPECT_LT(result.matches[0].confidence, kLikelyTemplate);
+  ASSERT_FALSE(result.suggestions.empty());
+  EXPECT_EQ(result.skeleton.jointCount(), result.suggestions[0].handles);
+  options.mayAbstain = false;
+  EXPECT_FALSE(rig(ball(), options).isAbstained);
+  EXPECT_FALSE(rig(ball(), person()).isAbstained);
+  EXPECT_FALSE(rig(testing::capsulePerson().mesh, RigOptions()).isAbstained);
+}
+
 // What is missing is cut off by a plane.
 AutoRig riggedPartOfAPerson(bool (*keep)(const Vec3f&)) {
   TriMesh mesh = testing::capsulePerson().mesh;

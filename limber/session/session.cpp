@@ -231,6 +231,7 @@ struct Session::Runner {
     options.rig.memory = next.memory;
     options.rig.pins = next.pins;
     options.rig.templateName = next.templateName;
+    options.rig.mayAbstain = false;  // who chose the rigger looks at what comes, and corrects it
     setRig(next, makeRiggedModel(*next.base, options, progress), progress);
   }
 

@@ -130,6 +130,7 @@ SessionState startState(std::shared_ptr<const Asset> asset, const std::optional<
                         Progress& progress) {
   const Asset& source = *asset;
   AutoRigOptions options;
+  options.rig.mayAbstain = false;  // as Session has it
   if (asProp) options.rigger = kPropRigger;
   const bool own = saved ? saved->ownRig : hasRig(source);
   if (saved && !own) {

@@ -1,0 +1,21 @@
+// Lines of a text, and cells of a line.
+#pragma once
+
+#include <algorithm>
+#include <string_view>
+#include <vector>
+
+namespace limber {
+
+// What is between the separators, in order; one more part than separators. They point into `text`.
+inline std::vector<std::string_view> splitAt(std::string_view text, char separator) {
+  std::vector<std::string_view> parts;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(separator, begin), text.size());
+    parts.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return parts;
+}
+
+}  // namespace limber

@@ -1,0 +1,241 @@
+#include "limber/evaluate/template_table.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <map>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "limber/core/error.h"
+#include "limber/core/split_text.h"
+
+namespace limber {
+
+namespace {
+
+constexpr std::string_view kTemplateRigger = "template";
+constexpr std::array<double, 6> kBins = {0, 0.2, 0.4, 0.6, 0.8, 1};  // of the confidence
+
+std::string_view cellOf(const std::vector<std::string_view>& cells, std::size_t column) {
+  if (column >= cells.size()) return {};
+  std::string_view cell = cells[column];
+  if (cell.ends_with('\r')) cell.remove_suffix(1);
+  return cell;
+}
+
+bool suits(const TemplateTrial& trial) {
+  const auto right = templatesFor(trial.file.kind);
+  return std::find(right.begin(), right.end(), trial.row.fit.likeliest) != right.end();
+}
+
+// "humanoid" whatever its fingers.
+std::string_view kindOfTemplate(std::string_view name) {
+  return name.starts_with("humanoid") ? "humanoid" : name;
+}
+
+bool abstained(const TemplateTrial& trial) {
+  return trial.row.fit.rigger != kTemplateRigger;
+}
+
+bool isNear(const TemplateTrial& trial) {
+  return trial.row.comparison.withoutFingers.jointToJoint <= kRigIsOff;
+}
+
+// Where no template suits it, handles are right.
+bool kindIsRight(const TemplateTrial& trial) {
+  return templatesFor(trial.file.kind).empty() ? abstained(trial) : !abstained(trial) && suits(trial);
+}
+
+struct Share {
+  std::size_t hits = 0, all = 0;
+
+  void add(bool hit) {
+    hits += hit ? 1 : 0;
+    ++all;
+  }
+};
+
+// With the interval of Wilson (1927) in which the share lies by 95 %.
+std::string shareText(const Share& share) {
+  if (share.all == 0) return "-";
+  constexpr double kZ = 1.96;  // standard deviations about 95 % of a normal distribution
+  const double n = static_cast<double>(share.all), p = static_cast<double>(share.hits) / n;
+  const double centre = (p + kZ * kZ / (2 * n)) / (1 + kZ * kZ / n);
+  const double half = kZ / (1 + kZ * kZ / n) * std::sqrt(p * (1 - p) / n + kZ * kZ / (4 * n * n));
+  return fmt::format("{} of {} ({:.0f} %; {:.0f} to {:.0f})", share.hits, share.all, 100 * p,
+                     100 * std::max(0.0, centre - half), 100 * std::min(1.0, centre + half));
+}
+
+std::vector<const TemplateTrial*> ofSplit(std::span<const TemplateTrial> trials, const std::string& split) {
+  std::vector<const TemplateTrial*> chosen;
+  for (const TemplateTrial& trial : trials) {
+    if (trial.file.split == split) chosen.push_back(&trial);
+  }
+  return chosen;
+}
+
+std::string meanOf(const std::vector<double>& values) {
+  if (values.empty()) return "-";
+  double sum = 0;
+  for (const double value : values) sum += value;
+  return fmt::format("{:.2f} ({:.2f})", sum / static_cast<double>(values.size()),
+                     *std::max_element(values.begin(), values.end()));
+}
+
+struct Column {
+  Share kind, sure, sureAndWrong;
+  std::vector<double> all, templates, handles, named, seconds;
+
+  explicit Column(const std::vector<const TemplateTrial*>& trials) {
+    for (const TemplateTrial* trial : trials) {
+      kind.add(kindIsRight(*trial));
+      sure.add(!abstained(*trial));
+      if (!abstained(*trial)) sureAndWrong.add(!suits(*trial) || !isNear(*trial));
+      seconds.push_back(trial->row.seconds);
+      const RigComparison& c = trial->row.comparison;
+      all.push_back(c.withoutFingers.jointToJoint);
+      (abstained(*trial) ? handles : templates).push_back(c.withoutFingers.jointToJoint);
+      if (!abstained(*trial) && !c.named.empty()) named.push_back(c.namedMean);
+    }
+  }
+};
+
+std::string summary(std::span<const TemplateTrial> trials, const std::set<std::string>& splits) {
+  std::vector<Column> columns;
+  std::string head = "| measure |", rule = "|---|";
+  for (const std::string& split : splits) {
+    columns.emplace_back(ofSplit(trials, split));
+    head += fmt::format(" {} |", split);
+    rule += "---|";
+  }
+  std::string table = head + "\n" + rule + "\n";
+  const auto row = [&](std::string_view title, auto text) {
+    table += fmt::format("| {} |", title);
+    for (const Column& column : columns) table += fmt::format(" {} |", text(column));
+    table += "\n";
+  };
+  row("kind told right", [](const Column& c) { return shareText(c.kind); });
+  row("a template is taken", [](const Column& c) { return shareText(c.sure); });
+  row(fmt::format("of these wrong (kind, or J2J above {:.0f} %)", kRigIsOff),
+      [](const Column& c) { return shareText(c.sureAndWrong); });
+  row("J2J without fingers, %, mean (worst)", [](const Column& c) { return meanOf(c.all); });
+  row("of templates", [](const Column& c) { return meanOf(c.templates); });
+  row("of handles", [](const Column& c) { return meanOf(c.handles); });
+  row("joints of the same meaning, % of the height", [](const Column& c) { return meanOf(c.named); });
+  row("seconds", [](const Column& c) { return meanOf(c.seconds); });
+  return table;
+}
+
+// Of bodies that a template suits and of those that none does: whoever is sure there is wrong.
+std::string reliability(std::span<const TemplateTrial> trials, const std::set<std::string>& splits) {
+  std::string table = "| confidence |", rule = "|---|";
+  for (const std::string& split : splits) {
+    table += fmt::format(" {}: likeliest kind is right |", split);
+    rule += "---|";
+  }
+  table += "\n" + rule + "\n";
+  for (std::size_t bin = 0; bin + 1 < kBins.size(); ++bin) {
+    table += fmt::format("| {:.1f} to {:.1f} |", kBins[bin], kBins[bin + 1]);
+    for (const std::string& split : splits) {
+      Share share;
+      for (const TemplateTrial* trial : ofSplit(trials, split)) {
+        const bool isLast = bin + 2 == kBins.size();
+        if (trial->row.fit.confidence < kBins[bin] || (!isLast && trial->row.fit.confidence >= kBins[bin + 1]))
+          continue;
+        share.add(suits(*trial));
+      }
+      table += fmt::format(" {} |", shareText(share));
+    }
+    table += "\n";
+  }
+  return table;
+}
+
+std::string confusion(std::span<const TemplateTrial> trials) {
+  std::set<std::string> kinds, told = {"handles"};
+  std::map<std::pair<std::string, std::string>, int> counts;
+  for (const TemplateTrial& trial : trials) {
+    const std::string by = abstained(trial) ? "handles" : std::string(kindOfTemplate(trial.row.fit.likeliest));
+    kinds.insert(trial.file.kind);
+    told.insert(by);
+    ++counts[{trial.file.kind, by}];
+  }
+  std::string table = "| kind |", rule = "|---|";
+  for (const std::string& by : told) {
+    table += fmt::format(" {} |", by);
+    rule += "---|";
+  }
+  table += "\n" + rule + "\n";
+  for (const std::string& kind : kinds) {
+    table += fmt::format("| {} |", kind);
+    for (const std::string& by : told) {
+      const auto found = counts.find({kind, by});
+      table += found == counts.end() ? " |" : fmt::format(" {} |", found->second);
+    }
+    table += "\n";
+  }
+  return table;
+}
+
+}  // namespace
+
+std::vector<LabelledFile> parseLabelledFiles(std::string_view text) {
+  std::vector<LabelledFile> files;
+  constexpr std::array<std::string_view, 3> kColumns = {"path", "kind", "split"};
+  std::array<std::size_t, 3> at = {};
+  bool isHead = true;
+  for (const std::string_view line : splitAt(text, '\n')) {
+    const std::vector<std::string_view> cells = splitAt(line, '\t');
+    if (isHead) {
+      for (std::size_t c = 0; c < kColumns.size(); ++c) {
+        while (at[c] < cells.size() && cellOf(cells, at[c]) != kColumns[c]) ++at[c];
+        if (at[c] == cells.size()) {
+          throw Error(ErrorCode::kBadData, fmt::format("has no column '{}'", kColumns[c]), {},
+                      "the first line names the columns, separated by tabs: path, kind, split");
+        }
+      }
+      isHead = false;
+      continue;
+    }
+    if (cellOf(cells, at[0]).empty()) continue;
+    files.push_back(
+        {std::string(cellOf(cells, at[0])), std::string(cellOf(cells, at[1])), std::string(cellOf(cells, at[2]))});
+  }
+  return files;
+}
+
+std::span<const std::string_view> templatesFor(std::string_view kind) {
+  static constexpr std::array<std::string_view, 2> kPeople = {"humanoid", "humanoid-fingers"};
+  static constexpr std::array<std::string_view, 1> kFourLegs = {"quadruped"}, kBirds = {"bird"};
+  for (const std::string_view person : {"human", "chibi", "robed-or-propped", "monster-biped", "robot"}) {
+    if (kind == person) return kPeople;
+  }
+  if (kind == "quadruped" || kind == "low-quadruped") return kFourLegs;
+  if (kind == "bird") return kBirds;
+  return {};
+}
+
+std::string templateTables(std::span<const TemplateTrial> trials) {
+  std::set<std::string> splits;
+  for (const TemplateTrial& trial : trials) splits.insert(trial.file.split);
+  return summary(trials, splits) + "\n" + reliability(trials, splits) + "\n" + confusion(trials);
+}
+
+std::string eachTemplateTrial(std::span<const TemplateTrial> trials) {
+  std::string text =
+      "path\tsplit\tkind\tlikeliest\tconfidence\trigger\tkind_right\tj2j\tnamed_mean\tnamed_worst\tseconds\n";
+  for (const TemplateTrial& trial : trials) {
+    text += fmt::format("{}\t{}\t{}\t{}\t{:.3f}\t{}\t{}", trial.file.path, trial.file.split, trial.file.kind,
+                        trial.row.fit.likeliest, trial.row.fit.confidence, trial.row.fit.rigger,
+                        kindIsRight(trial) ? 1 : 0);
+    const RigComparison& c = trial.row.comparison;
+    text += fmt::format("\t{:.2f}\t{:.2f}\t{:.2f}\t{:.2f}\n", c.withoutFingers.jointToJoint, c.namedMean, c.namedWorst,
+                        trial.row.seconds);
+  }
+  return text;
+}
+
+}  // namespace limber
