@@ -7,7 +7,7 @@
 
 #include "limber/ik/ik_skeletons.h"
 #include "limber/ik/rotation.h"
-#include "limber/retarget/even_out.h"
+#include "limber/retarget/motion_smoothing.h"
 #include "limber/retarget/retarget_clip.h"
 
 namespace {
@@ -54,25 +54,25 @@ BENCHMARK_CAPTURE(retargetFrame, aligned, "aligned");
 BENCHMARK_CAPTURE(retargetFrame, limb_ik, "limb-ik");
 
 // A whole motion. The floor is a pass of forward kinematics over source and target, which is all that an even one
-// costs, as by joint angles alone. Legs with short shins that are solved for are rough, these so much that evening goes
-// 24 rounds with 68 least squares of 9 unknowns a frame: half the time, each 0.7 us a frame for 4600 products.
-void evenOutMotion(benchmark::State& state, const std::string& method) {
+// costs, as by joint angles alone. Legs with short shins that are solved for are rough, these so much that smoothing
+// goes 24 rounds with 68 least squares of 9 unknowns a frame: half the time, each 0.7 us a frame for 4600 products.
+void smoothing(benchmark::State& state, const std::string& method) {
   const Skeleton source = practiceHumanoid(), target = withShortShins(source);
   const PoseSequence motion = swinging(source);
   RetargetOptions options;
-  options.evenOut = false;
+  options.smoothMotion = false;
   const RetargetSetup setup(source, target, matchSkeletons(source, target), options, &motion);
   const PoseSequence moved = retargetFrames(findRetargetMethod(method), setup, motion);
   for (auto _ : state) {
-    PoseSequence evened = moved;
-    evenOut(setup, motion, evened);
-    benchmark::DoNotOptimize(evened.poses.data());
+    PoseSequence smoothed = moved;
+    smoothMotion(setup, motion, smoothed);
+    benchmark::DoNotOptimize(smoothed.poses.data());
   }
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(motion.poses.size()));
 }
 
-BENCHMARK_CAPTURE(evenOutMotion, even, "aligned");
-BENCHMARK_CAPTURE(evenOutMotion, rough, "limb-ik");
+BENCHMARK_CAPTURE(smoothing, even, "aligned");
+BENCHMARK_CAPTURE(smoothing, rough, "limb-ik");
 
 // The same from the source on.
 void retargetMotion(benchmark::State& state, const std::string& method) {

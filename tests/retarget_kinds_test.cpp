@@ -30,7 +30,7 @@ void PrintTo(const Kind& kind, std::ostream* out) {
 }
 
 // Legs reach for the ground, and tails stay above it.
-bool goesOwnWay(const RetargetSetup& setup, const JointMatch& match) {
+bool isFootDriven(const RetargetSetup& setup, const JointMatch& match) {
   const Index joint = match.target.front();
   const std::vector<Index>& tail = setup.targetTail;
   const bool personsLeg = setup.person && match.part.kind == PartKind::kLeg;
@@ -53,7 +53,7 @@ double worstTurn(const RetargetSetup& setup, const PoseSequence& source, const P
     setup.targetKinematics.globals(result.poses[f], to);
     for (const JointMatch& match : setup.map.matches) {
       const Index s = match.source.front(), t = match.target.front();
-      if (match.source.size() > 1 || match.target.size() > 1 || goesOwnWay(setup, match)) continue;
+      if (match.source.size() > 1 || match.target.size() > 1 || isFootDriven(setup, match)) continue;
       const Quat turn = from.rotations[s] * setup.sourceNeutral.rotations[s].conjugate();
       const double off = (turn * setup.targetNeutral.rotations[t]).angularDistance(to.rotations[t]);
       worst = std::max(worst, off * 180 / kPi);

@@ -45,7 +45,7 @@ import createEngine from './limber_engine.mjs';
  *                      joint_keys: { joint: number, seconds: number[] }[], interpolation: 'step' | 'linear' | 'cubic',
  *                      source: { motion: string, clip: string, method: string, reach: number,
  *                                contacts: boolean } | null,
- *                      feet: { foot: string, part: string | null, stands: [number, number][], told: boolean }[] }[],
+ *                      feet: { foot: string, part: string | null, planted: [number, number][], edited: boolean }[] }[],
  *             clip: number | null, seconds: number, snap: { degrees: number, step: number },
  *             match: { part: string, source: string[], target: string[], confidence: number, by: string }[],
  *             limits: { [joint: string]: { type: string, [field: string]: unknown } },

@@ -84,11 +84,11 @@ void ContactReader::read(Watched& watched, const BodyFrame& source, double secon
     toes = watched.toes.next(place, place.y() - foot.toesGround, seconds);
   }
   FootContact& contact = watched.contact;
-  if (const std::optional<bool> stands = told(watched)) {
+  if (const std::optional<bool> edited = editAt(watched)) {
     const bool found = heel || toes;
-    heel = *stands && (heel || !found);
-    toes = *stands && (toes || (!found && foot.toes));
-    contact.rests = contact.rests && *stands;
+    heel = *edited && (heel || !found);
+    toes = *edited && (toes || (!found && foot.toes));
+    contact.rests = contact.rests && *edited;
   }
   contact.anchor = toes ? FootAnchor::kToes : heel ? FootAnchor::kAnkle : FootAnchor::kNone;
   contact.flat = heel && toes;
@@ -96,12 +96,12 @@ void ContactReader::read(Watched& watched, const BodyFrame& source, double secon
   follow(contact.flat, seconds, contact.flatness, watched.flatSpeed);
 }
 
-std::optional<bool> ContactReader::told(const Watched& watched) const {
-  std::optional<bool> stands;
+std::optional<bool> ContactReader::editAt(const Watched& watched) const {
+  std::optional<bool> planted;
   for (const ContactEdit& edit : watched.edits) {
-    if (time_ > edit.from - kSameMoment && time_ < edit.to + kSameMoment) stands = edit.stands;
+    if (time_ > edit.from - kSameMoment && time_ < edit.to + kSameMoment) planted = edit.planted;
   }
-  return stands;
+  return planted;
 }
 
 ContactTrack::ContactTrack(const RetargetSetup& setup, std::span<const WatchedFoot> feet, const PoseSequence& source)
@@ -139,13 +139,13 @@ double ContactTrack::firmness(std::size_t frame, std::size_t foot) const {
 
 std::vector<FootSpans::Span> ContactTrack::spans(std::size_t foot) const {
   std::vector<FootSpans::Span> spans;
-  bool stood = false;
+  bool wasPlanted = false;
   for (std::size_t f = 0; f < frames(); ++f) {
-    const bool stands = at(f, foot).anchor != FootAnchor::kNone;
+    const bool planted = at(f, foot).anchor != FootAnchor::kNone;
     const double now = static_cast<double>(f) * frameSeconds_;
-    if (stands && !stood) spans.push_back({now, now});
-    if (stands) spans.back().to = now;
-    stood = stands;
+    if (planted && !wasPlanted) spans.push_back({now, now});
+    if (planted) spans.back().to = now;
+    wasPlanted = planted;
   }
   return spans;
 }

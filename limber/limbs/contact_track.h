@@ -1,11 +1,11 @@
-// When which foot stands in a motion, told from the source alone: the one definition of a contact with the ground that
-// retargeting has. (limber/evaluate keeps one of its own, as a judge; contact_oracle.h.)
+// When which foot is planted in a motion, read off the source alone: the one definition of a contact with the ground
+// that retargeting has. (limber/evaluate keeps one of its own, as a judge; contact_oracle.h.)
 //
 // A contact is a property of the source, so it is read before anything is solved, and nothing that is solved changes
 // it:
 //
 //     source --ContactReader, frame by frame--> FootContact --> LimbGoals, FootLock, Pelvis, levelToes
-//            --ContactTrack, the whole motion--> spans of contacts, how firm --> refineSpacetime, evenOut
+//            --ContactTrack, the whole motion--> spans of contacts, how firm --> refineSpacetime, smoothMotion
 //
 // The reader is causal, so that live motion and whole motions have the same contacts. What else is to be known of a
 // contact (places on surfaces, of hands as well) belongs in here.
@@ -26,12 +26,12 @@ enum class FootAnchor { kNone, kAnkle, kToes };
 // A foot in one frame.
 struct FootContact {
   FootAnchor anchor = FootAnchor::kNone;
-  bool flat = false;    // heel and toes stand both
+  bool flat = false;    // heel and toes are planted
   bool rests = false;   // the ankle is low and all but still in this very frame, which the detector tells late
   double strength = 0;  // of the anchor, 0 to 1, comes and goes smoothly
   double flatness = 0;  // likewise
 
-  bool stands() const { return anchor != FootAnchor::kNone || rests; }
+  bool isPlanted() const { return anchor != FootAnchor::kNone || rests; }
 };
 
 // A foot of the source, and the heights that its joints have when standing, metres.
@@ -41,13 +41,13 @@ struct WatchedFoot {
   double ankleGround = 0, toesGround = 0;
 };
 
-// While a foot of the source stands.
+// While a foot of the source is planted.
 struct FootSpans {
   Index foot = 0;  // WatchedFoot::ankle
   struct Span {
     double from = 0, to = 0;  // seconds, of its first and its last frame
   };
-  std::vector<Span> stands;
+  std::vector<Span> planted;
 };
 
 // Contacts frame after frame, without looking ahead; what the user says (RetargetOptions::contactEdits) counts more
@@ -79,8 +79,8 @@ class ContactReader {
   bool jumps(const BodyFrame& source, double seconds);
   void read(Watched& watched, const BodyFrame& source, double seconds) const;
   bool rests(Watched& watched, const Vec3& ankle, double seconds) const;
-  // Whether it stands, where the user says so.
-  std::optional<bool> told(const Watched& watched) const;
+  // Whether it is planted in this frame, where the user says so.
+  std::optional<bool> editAt(const Watched& watched) const;
 
   const RetargetSetup& setup_;
   std::vector<Watched> feet_;

@@ -27,10 +27,10 @@ TEST_F(ContactTrackTest, AWalkStandsOnOneFootAfterTheOther) {
   ASSERT_EQ(contacts.frames(), motion.poses.size());
   std::size_t one = 0, none = 0, changes = 0;
   for (std::size_t f = 0; f < contacts.frames(); ++f) {
-    const int standing = contacts.at(f, 0).stands() + contacts.at(f, 1).stands();
+    const int standing = contacts.at(f, 0).isPlanted() + contacts.at(f, 1).isPlanted();
     one += standing == 1;
     none += standing == 0;
-    changes += f > 0 && contacts.at(f, 0).stands() != contacts.at(f - 1, 0).stands();
+    changes += f > 0 && contacts.at(f, 0).isPlanted() != contacts.at(f - 1, 0).isPlanted();
     EXPECT_FALSE(f > 1 && contacts.isCut(f)) << "the walk begins at once";
   }
   EXPECT_GT(one, contacts.frames() / 2);
@@ -69,7 +69,7 @@ TEST_F(ContactTrackTest, WhatStoodBeforeACutDoesNotCount) {
   for (std::size_t f = 120; f < motion.poses.size(); ++f) motion.poses[f].locals[0].translation += Vec3(3, 1, 0);
   const ContactTrack contacts = track();
   for (std::size_t f = 2; f < contacts.frames(); ++f) EXPECT_EQ(contacts.isCut(f), f == 120) << f;
-  EXPECT_FALSE(contacts.at(125, 0).stands() || contacts.at(125, 1).stands()) << "a metre over the ground";
+  EXPECT_FALSE(contacts.at(125, 0).isPlanted() || contacts.at(125, 1).isPlanted()) << "a metre over the ground";
 }
 
 }  // namespace

@@ -16,8 +16,8 @@ struct Limb {
   double folded = 0;                // how near to each other they bring the ends, at kMostBend
   std::optional<Index> hock;        // another joint that bends it (AnimalLeg)
   Vec3 goal = Vec3::Zero();         // where the end has to be, in the person's space
-  bool ownWay = false;              // a foot that goes as the source's, and the leg after it
-  std::optional<Index> sourceBody;  // ownWay: what the leg and another hang on
+  bool footDriven = false;          // a foot that goes as the source's, and the leg after it
+  std::optional<Index> sourceBody;  // footDriven: what the leg and another hang on
   bool ownBend = false;             // bends to its own side, wherever the joint angles bend it
   bool wanted = false;              // else it may be where it is
   Quat turn = Quat::Identity();     // of the end, against its joint angles
@@ -30,18 +30,18 @@ struct Leg : Limb {
   Vec3 kneeAhead = Vec3::UnitZ();                      // to which side the lower joint bends, in the neutral pose
   double ankleGround = 0, toesGround = 0;              // heights when standing, target; of the tip, too
   double sourceAnkleGround = 0, sourceToesGround = 0;  // likewise, source
-  double footPitch = 1;                                // share of the source's (calmFeet)
+  double footPitch = 1;                                // share of the source's (limitFootPitch)
   FootContact contact;                                 // of the source's foot in this frame
   double ankleFloor = 0, toesFloor = 0;                // below which neither goes in this frame
   double changed = 0;                                  // 0 to 1, smoothly, how much its goal is one (Pelvis::changeOf)
-  Vec3 place = Vec3::Zero();                           // of the end, by the joint angles or by its own way
-  double bentReach = 0;                                // ownWay: from hip to end if bent as the source's (LegBend)
-  // ownWay: of the source's foot from where it stands, hip heights; more of people who lie down.
+  Vec3 place = Vec3::Zero();                           // of the end, by the joint angles, or foot-driven
+  double bentReach = 0;                                // footDriven: from hip to end if bent as the source's (LegBend)
+  // footDriven: of the source's foot from where it stands, hip heights; more of people who lie down.
   double lift = 0;
-  double upright = 1;  // ownWay: of the source's body, 0 where it lies on its side
+  double upright = 1;  // footDriven: of the source's body, 0 where it lies on its side
 };
 
-// Leg::lift from which on a foot that goes its own way may leave it for the source's bend alone: the body no longer
+// Leg::lift from which on a foot-driven leg may leave its goal for the source's bend alone: the body no longer
 // follows it.
 inline constexpr double kLifted = 0.6;
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "limber/ik/rotation.h"
-#include "limber/limbs/calm_feet.h"
+#include "limber/limbs/foot_pitch.h"
 #include "limber/limbs/smooth.h"
 #include "limber/limbs/spring.h"
 #include "limber/skeleton/chain.h"
@@ -28,7 +28,7 @@ constexpr double kFallRate = 40;        // 1/seconds, of the speed that is taken
 constexpr double kFirmHeld = 0.9, kFirmBeside = 0.2;
 constexpr double kTipLies = 0.05;   // over the ground: from there on toes that the target alone has lie down
 constexpr double kCarriedUp = 0.5;  // share of its hip's way up that a person's free foot takes part in
-// Of legs whose feet go their own way.
+// Of foot-driven legs.
 constexpr double kSoftLeg = 0.03, kSoftStanding = 0.003;  // of the most that a leg reaches, leg lengths
 constexpr double kFaces = 0.5;  // squared cosine of half the angle by which a body leans that still faces a way
 // Hip heights a second at which planted feet slip by half.
@@ -74,12 +74,12 @@ void LimbGoals::addPersonsLegs(const RootPlacer& root) {
     }
     const JointMatch &shin = *setup_.map.find(body_part::leg(side, Segment::kMiddle)),
                      &hips = *setup_.map.find(body_part::kPelvis);
-    leg.ownWay = isBent(shin.source, leg.sourceEnd, setup_.sourceNeutral.restPositions);
-    if (leg.ownWay) leg.sourceBody = hips.source.back();
+    leg.footDriven = isBent(shin.source, leg.sourceEnd, setup_.sourceNeutral.restPositions);
+    if (leg.footDriven) leg.sourceBody = hips.source.back();
     addLeg(leg);
     const LegJoints from = {leg.sourceUpper, shin.source.front(), leg.sourceEnd, {}, {}, {}};
     const LegJoints to = {leg.upper, leg.lower, leg.end, {}, {}, {}};
-    if (leg.ownWay) feelers_.back().bend.emplace(setup_, AnimalLeg{from, to});
+    if (leg.footDriven) states_.back().bend.emplace(setup_, AnimalLeg{from, to});
   }
 }
 
@@ -96,13 +96,13 @@ void LimbGoals::addAnimalsLegs(const RootPlacer& root) {
     if (ahead.norm() > kBentInRest) leg.kneeAhead = ahead.normalized();
     leg.hock = found.target.hock;
     leg.fore = pelvis_.trunk().isFore(leg.upper);
-    leg.ownWay = root.goesOwnWay(found);
-    leg.ownBend = leg.ownWay || bendAtRest(found.source, setup_.sourceNeutral).dot(leg.kneeAhead) < kBendsAlike;
-    if (leg.ownWay) leg.sourceBody = sourceBodyOf(found);
+    leg.footDriven = root.isFootDriven(found);
+    leg.ownBend = leg.footDriven || bendAtRest(found.source, setup_.sourceNeutral).dot(leg.kneeAhead) < kBendsAlike;
+    if (leg.footDriven) leg.sourceBody = sourceBodyOf(found);
     leg.toes = found.target.toes;
     leg.sourceToes = found.source.toes;
     addLeg(leg);
-    if (leg.ownWay) feelers_.back().bend.emplace(setup_, found);
+    if (leg.footDriven) states_.back().bend.emplace(setup_, found);
   }
 }
 
@@ -134,7 +134,7 @@ void LimbGoals::addLeg(Leg leg) {
   if (leg.tip) leg.toesGround = targetGround(*leg.tip);
   leg.footPitch = footPitchShare(setup_, leg);
   legs_.push_back(leg);
-  feelers_.emplace_back();
+  states_.emplace_back();
   contacts_.watch(watched(leg));
 }
 
@@ -145,30 +145,31 @@ std::vector<WatchedFoot> LimbGoals::watchedFeet() const {
 }
 
 // Where the target's foot is by its joint angles, and the ground under it.
-void LimbGoals::feel(Leg& leg, Feeler& feeler, const BodyFrame& source, const BodyFrame& target, double seconds) const {
-  FootLock::Frame& foot = feeler.foot;
+void LimbGoals::readFoot(Leg& leg, FootState& state, const BodyFrame& source, const BodyFrame& target,
+                         double seconds) const {
+  FootLock::Frame& foot = state.foot;
   const FootLock::Frame before = foot;
   foot.anchor = leg.contact.anchor;
   foot.flat = leg.contact.flat;
   leg.place = target.positions[leg.end];
-  if (leg.ownWay) leg.place = ownPlace(leg, source, target);
+  if (leg.footDriven) leg.place = footDrivenPlace(leg, source, target);
   foot.ankle = foot.toes = leg.place;
   foot.ankleGround = leg.ankleGround - loweredBy(leg.sourceAnkleGround, source.positions[leg.sourceEnd]);
   if (leg.toes) {
     foot.toes += target.positions[*leg.toes] - target.positions[leg.end];
     foot.toesGround = leg.toesGround - loweredBy(leg.sourceToesGround, source.positions[*leg.sourceToes]);
   }
-  followFall(before.ankle.y() - foot.ankle.y(), seconds, feeler.ankleFall);
-  followFall(before.toes.y() - foot.toes.y(), seconds, feeler.toesFall);
+  followFall(before.ankle.y() - foot.ankle.y(), seconds, state.ankleFall);
+  followFall(before.toes.y() - foot.toes.y(), seconds, state.toesFall);
   leg.ankleFloor = foot.ankleGround;
   leg.toesFloor = foot.toesGround;
   leg.wanted = true;
-  if (leg.ownWay) feelOwnWay(leg, feeler, source, seconds);
+  if (leg.footDriven) readFootDriven(leg, state, source, seconds);
 }
 
 // Seen from its hip, which a longer or shorter trunk that turns takes further or less far; how it stands under it at
 // rest turns with the body. Up and down the source's way.
-Vec3 LimbGoals::ownPlace(const Leg& leg, const BodyFrame& source, const BodyFrame& target) const {
+Vec3 LimbGoals::footDrivenPlace(const Leg& leg, const BodyFrame& source, const BodyFrame& target) const {
   const std::vector<Vec3>&from = setup_.sourceNeutral.restPositions, &to = setup_.targetNeutral.restPositions;
   const Vec3 atRest = to[leg.end] - to[leg.upper] - setup_.scale * (from[leg.sourceEnd] - from[leg.sourceUpper]);
   const Vec3 way = setup_.scale * (source.positions[leg.sourceEnd] - source.positions[leg.sourceUpper]);
@@ -193,9 +194,9 @@ Quat LimbGoals::turnOfBody(const Leg& leg, const BodyFrame& source) const {
 }
 
 // It stands about as still as the source's: what moves there is meant to. People who lie down lift their feet.
-void LimbGoals::feelOwnWay(Leg& leg, Feeler& feeler, const BodyFrame& source, double seconds) const {
+void LimbGoals::readFootDriven(Leg& leg, FootState& state, const BodyFrame& source, double seconds) const {
   leg.lift = (source.positions[leg.sourceEnd].y() - leg.sourceAnkleGround) / setup_.sourceHipHeight;
-  leg.bentReach = feeler.bend->reach(source);
+  leg.bentReach = state.bend->reach(source);
   const Quat body = turnOfBody(leg, source);
   if (setup_.person) {
     leg.lift += kLifted * smoothStep(1 - (body * Vec3::UnitY()).y());
@@ -203,10 +204,10 @@ void LimbGoals::feelOwnWay(Leg& leg, Feeler& feeler, const BodyFrame& source, do
     const double leans = (body * Vec3::UnitX()).y();
     leg.upright = 1 - leans * leans;
   }
-  const Vec3 way = source.positions[leg.sourceEnd] - feeler.sourceEnd;
+  const Vec3 way = source.positions[leg.sourceEnd] - state.sourceEnd;
   const double speed = seconds > 0 ? std::hypot(way.x(), way.z()) / (seconds * setup_.sourceHipHeight) : 0;
-  feeler.foot.slip = 1 / (1 + std::pow((setup_.person ? kPersonSlipSpeed : kSlipSpeed) / speed, kSlipPower));
-  feeler.sourceEnd = source.positions[leg.sourceEnd];
+  state.foot.slip = 1 / (1 + std::pow((setup_.person ? kPersonSlipSpeed : kSlipSpeed) / speed, kSlipPower));
+  state.sourceEnd = source.positions[leg.sourceEnd];
 }
 
 // `down` is the way in this frame.
@@ -221,29 +222,29 @@ double LimbGoals::loweredBy(double sourceGround, const Vec3& sourcePlace) const 
   return setup_.person ? 0 : setup_.scale * softPositive(sourceGround - sourcePlace.y(), soft);
 }
 
-void LimbGoals::calm(const BodyFrame& source, double seconds, Pose& target, BodyFrame& frame) {
+void LimbGoals::adaptPose(const BodyFrame& source, double seconds, Pose& target, BodyFrame& frame) {
   contacts_.next(source, seconds);
   for (std::size_t i = 0; i < legs_.size(); ++i) {
     legs_[i].contact = contacts_.foot(i);
     if (!atCut()) continue;
-    feelers_[i].lock.reset();
-    feelers_[i].carried = Vec3::Zero();
+    states_[i].lock.reset();
+    states_[i].carried = Vec3::Zero();
   }
   pelvis_.levelHips(target, frame);
   pelvis_.trunk().follow(source, target, frame);
   if (!setup_.person) root_.movePelvis(Vec3(0, lift_(source, frame), 0), target, frame);
-  calmFeet(setup_, root_, legs_, target, frame);
+  limitFootPitch(setup_, root_, legs_, target, frame);
 }
 
 void LimbGoals::setFeet(const BodyFrame& source, const BodyFrame& target, double seconds) {
   if (atCut()) seconds = 0;
-  for (std::size_t i = 0; i < legs_.size(); ++i) feel(legs_[i], feelers_[i], source, target, seconds);
+  for (std::size_t i = 0; i < legs_.size(); ++i) readFoot(legs_[i], states_[i], source, target, seconds);
   carryFeet(target, seconds);
-  for (std::size_t i = 0; i < legs_.size(); ++i) setFoot(legs_[i], feelers_[i], feelers_[i].lock, seconds);
+  for (std::size_t i = 0; i < legs_.size(); ++i) setFoot(legs_[i], states_[i], states_[i].lock, seconds);
   const Quat turn = pelvis_.turnFor(legs_, target);
   for (std::size_t i = 0; i < legs_.size(); ++i) {
     const double change = pelvis_.changeOf(legs_[i], target, turn);
-    springTo(change, kChangeRate, seconds, legs_[i].changed, feelers_[i].changedSpeed);
+    springTo(change, kChangeRate, seconds, legs_[i].changed, states_[i].changedSpeed);
   }
   rise_ = nextRise(target, seconds);
 }
@@ -251,7 +252,7 @@ void LimbGoals::setFeet(const BodyFrame& source, const BodyFrame& target, double
 LimbGoals::Rise LimbGoals::nextRise(const BodyFrame& target, double seconds) const {
   Rise rise = rise_;
   const double wanted = pelvis_.riseFor(legs_, target, pelvis_.turnFor(legs_, target));
-  const bool atOnce = setup_.person || legs_.front().ownWay;
+  const bool atOnce = setup_.person || legs_.front().footDriven;
   springTo(wanted, kRiseRate, atOnce ? 0 : seconds, rise.value, rise.speed);
   return rise;
 }
@@ -264,37 +265,37 @@ Pelvis::Move LimbGoals::pelvisMove(const BodyFrame& target) const {
 // every move of it. Goals by the frame before tell where it goes in this one.
 void LimbGoals::carryFeet(const BodyFrame& target, double seconds) {
   for (std::size_t i = 0; i < legs_.size(); ++i) {
-    FootLock trial = feelers_[i].lock;
-    setFoot(legs_[i], feelers_[i], trial, seconds);
+    FootLock trial = states_[i].lock;
+    setFoot(legs_[i], states_[i], trial, seconds);
   }
   const Pelvis::Move move = pelvis_.moveFor(legs_, target, nextRise(target, seconds).value);
   for (std::size_t i = 0; i < legs_.size(); ++i) {
-    feelers_[i].carried = legs_[i].ownWay ? Vec3(Vec3::Zero()) : pelvis_.hipWay(move, legs_[i], target);
-    if (setup_.person) feelers_[i].carried.y() *= kCarriedUp;
+    states_[i].carried = legs_[i].footDriven ? Vec3(Vec3::Zero()) : pelvis_.hipWay(move, legs_[i], target);
+    if (setup_.person) states_[i].carried.y() *= kCarriedUp;
   }
 }
 
-void LimbGoals::setFoot(Leg& leg, const Feeler& feeler, FootLock& lock, double seconds) const {
-  FootLock::Frame foot = feeler.foot;
-  foot.ankle += feeler.carried;
-  foot.toes += feeler.carried;
+void LimbGoals::setFoot(Leg& leg, const FootState& state, FootLock& lock, double seconds) const {
+  FootLock::Frame foot = state.foot;
+  foot.ankle += state.carried;
+  foot.toes += state.carried;
   leg.goal = lock.next(foot, seconds, kFootSlack * setup_.targetHipHeight);
-  if (leg.ownWay) leg.goal.y() = foot.ankle.y();
+  if (leg.footDriven) leg.goal.y() = foot.ankle.y();
   leg.turn = Eigen::AngleAxisd(lock.twist(), Vec3::UnitY());
-  keepAboveGround(leg, foot, feeler);
+  keepAboveGround(leg, foot, state);
 }
 
 // Both ends of the foot, without a kink, and the earlier the faster they come down; last the one that holds it.
-void LimbGoals::keepAboveGround(Leg& leg, const FootLock::Frame& foot, const Feeler& feeler) const {
+void LimbGoals::keepAboveGround(Leg& leg, const FootLock::Frame& foot, const FootState& state) const {
   const double toesOver = foot.toes.y() - foot.ankle.y();
   const auto raise = [&](double under, const Fall& fall, double firm) {
     const double height = setup_.targetHipHeight, ahead = kFallSeconds * std::max(fall.speed, 0.0) / height;
     const double soft = kSoftGround + kMostSoft * ahead / (kMostSoft + ahead);
     leg.goal.y() += softPositive(under, height * soft * (1 - firm * leg.contact.strength));
   };
-  const auto raiseAnkle = [&](double firm) { raise(foot.ankleGround - leg.goal.y(), feeler.ankleFall, firm); };
+  const auto raiseAnkle = [&](double firm) { raise(foot.ankleGround - leg.goal.y(), state.ankleFall, firm); };
   const auto raiseToes = [&](double firm) {
-    if (leg.toes) raise(foot.toesGround - toesOver - leg.goal.y(), feeler.toesFall, firm);
+    if (leg.toes) raise(foot.toesGround - toesOver - leg.goal.y(), state.toesFall, firm);
   };
   if (leg.contact.anchor == FootAnchor::kToes) {
     raiseAnkle(kFirmBeside);
@@ -308,7 +309,7 @@ void LimbGoals::keepAboveGround(Leg& leg, const FootLock::Frame& foot, const Fee
 void LimbGoals::bendAsSource(Leg& leg, const BodyFrame& target) const {
   const Vec3 hip = target.positions[leg.upper], way = leg.goal - hip;
   const double own = way.norm(), most = kStretch * leg.length;
-  if (!leg.ownWay || !(own > 0)) return;
+  if (!leg.footDriven || !(own > 0)) return;
   const double free = smoothStep(leg.lift / kLifted), length = own + free * (leg.bentReach - own);
   const double soft = kSoftStanding + free * (kSoftLeg - kSoftStanding);
   const double reached = most - softPositive(most - length, soft * leg.length);

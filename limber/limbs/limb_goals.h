@@ -23,15 +23,15 @@ class LimbGoals {
   // False where nothing needs correcting: nobody with legs, or the same body (RetargetSetup::sameBody).
   bool active() const { return active_; }
 
-  // Senses what of the feet stands in the source; wide hips, long feet and such as stand flat swing less than the
-  // source's (Pelvis::levelHips, calmFeet), and bodies that lie do so on the ground (BodyLift). Before setFeet(), of
-  // the target by joint angles alone.
-  void calm(const BodyFrame& source, double seconds, Pose& target, BodyFrame& frame);
+  // Reads which feet are planted in the source; wide hips, long feet and such as stand flat swing less than the
+  // source's (Pelvis::levelHips, limitFootPitch), and bodies that lie do so on the ground (BodyLift). Before setFeet(),
+  // of the target by joint angles alone.
+  void adaptPose(const BodyFrame& source, double seconds, Pose& target, BodyFrame& frame);
   // Feet that are planted in the source stay where they came down, by their toes while the heel is up; none goes below
   // the ground. From the globals of both. The goals are for legs whose hips go with
   // the pelvis (Pelvis::moveFor).
   void setFeet(const BodyFrame& source, const BodyFrame& target, double seconds);
-  // A foot that goes its own way and is lifted comes as near to its hip as the source's does for its leg's length, and
+  // The lifted foot of a foot-driven leg comes as near to its hip as the source's does for its leg's length, and
   // none stretches its leg wholly: knees else fold and snap. For hips that are where they stay.
   void bendAsSource(Leg& leg, const BodyFrame& target) const;
   // Whether the source jumped to the last frame: what was before it does not count.
@@ -57,15 +57,15 @@ class LimbGoals {
   struct Fall {
     double speed = 0, change = 0;
   };
-  // What is known of a leg's foot.
-  struct Feeler {
+  // Of a leg's foot, what lasts from frame to frame.
+  struct FootState {
     FootLock lock;
     double changedSpeed = 0;
     FootLock::Frame foot;  // as its joint angles have it
     Fall ankleFall, toesFall;
     Vec3 carried = Vec3::Zero();    // by its hip
-    std::optional<LegBend> bend;    // ownWay
-    Vec3 sourceEnd = Vec3::Zero();  // ownWay: in the frame before
+    std::optional<LegBend> bend;    // footDriven
+    Vec3 sourceEnd = Vec3::Zero();  // footDriven: in the frame before
   };
 
   struct Rise {
@@ -76,16 +76,16 @@ class LimbGoals {
   void addPersonsLegs(const RootPlacer& root);
   void addAnimalsLegs(const RootPlacer& root);
   void addLeg(Leg leg);
-  void feel(Leg& leg, Feeler& feeler, const BodyFrame& source, const BodyFrame& target, double seconds) const;
+  void readFoot(Leg& leg, FootState& state, const BodyFrame& source, const BodyFrame& target, double seconds) const;
   std::optional<Index> sourceBodyOf(const AnimalLeg& leg) const;
   Quat turnOfBody(const Leg& leg, const BodyFrame& source) const;
   Vec3 turnedAsBody(const Vec3& way, const Leg& leg, const BodyFrame& source) const;
-  Vec3 ownPlace(const Leg& leg, const BodyFrame& source, const BodyFrame& target) const;
-  void feelOwnWay(Leg& leg, Feeler& feeler, const BodyFrame& source, double seconds) const;
+  Vec3 footDrivenPlace(const Leg& leg, const BodyFrame& source, const BodyFrame& target) const;
+  void readFootDriven(Leg& leg, FootState& state, const BodyFrame& source, double seconds) const;
   static void followFall(double down, double seconds, Fall& fall);
   void carryFeet(const BodyFrame& target, double seconds);
-  void setFoot(Leg& leg, const Feeler& feeler, FootLock& lock, double seconds) const;
-  void keepAboveGround(Leg& leg, const FootLock::Frame& foot, const Feeler& feeler) const;
+  void setFoot(Leg& leg, const FootState& state, FootLock& lock, double seconds) const;
+  void keepAboveGround(Leg& leg, const FootLock::Frame& foot, const FootState& state) const;
   double heightOverGround(const Leg& leg, const BodyFrame& target) const;
   double loweredBy(double sourceGround, const Vec3& sourcePlace) const;
 
@@ -95,9 +95,9 @@ class LimbGoals {
   BodyLift lift_;
   TailLift tail_;
   std::vector<Leg> legs_;
-  ContactReader contacts_;       // of the legs
-  std::vector<Feeler> feelers_;  // likewise
-  Rise rise_;                    // of the pelvis
+  ContactReader contacts_;         // of the legs
+  std::vector<FootState> states_;  // likewise
+  Rise rise_;                      // of the pelvis
   bool active_ = true;
 };
 

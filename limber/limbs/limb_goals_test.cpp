@@ -30,7 +30,7 @@ double heldUp(double speed) {
     setup.sourceKinematics.globals(from, source);
     setup.targetKinematics.globals(to, target);
     const double seconds = left == 10 ? 0 : kFrame;
-    goals.calm(source, seconds, to, target);
+    goals.adaptPose(source, seconds, to, target);
     goals.setFeet(source, target, seconds);
     up = leg.goal.y() - target.positions[leg.end].y();
   }
@@ -63,7 +63,7 @@ TEST(LimbGoals, LeaveWhatHasTheSameJoints) {
 }
 
 // Of a quadruped's paw on a root of its own, `lift` above where it stands in the source and at its place in the target:
-// how far its goal is from the hip, over the way by the paw's own way.
+// how far its goal is from the hip, over the distance that the paw's own path gives.
 double bentBy(double lift, double sunk) {
   const Skeleton animal = limber::testing::onTheGround(limber::testing::quadruped(0.5),
                                                        {"b0LeftThree", "b0RightThree", "b1LeftThree", "b1RightThree"}),
@@ -78,7 +78,7 @@ double bentBy(double lift, double sunk) {
   Pose to = restPose(bigger);
   setup.sourceKinematics.globals(from, source);
   setup.targetKinematics.globals(to, target);
-  goals.calm(source, 0, to, target);
+  goals.adaptPose(source, 0, to, target);
   goals.setFeet(source, target, 0);
   leg.goal = target.positions[leg.end] + Vec3(0, sunk, 0);
   const double own = (leg.goal - target.positions[leg.upper]).norm();
@@ -87,7 +87,7 @@ double bentBy(double lift, double sunk) {
 }
 
 TEST(LimbGoals, LegsOfLiftedFeetOnRootsOfTheirOwnBendAsTheSources) {
-  EXPECT_NEAR(bentBy(0, 0.4), 1, 0.01) << "what stands goes its own way";
+  EXPECT_NEAR(bentBy(0, 0.4), 1, 0.01) << "what is planted is foot-driven";
   EXPECT_NEAR(bentBy(0.5, 0), 0.4 / 0.9, 0.02) << "all of the source's bend";
   EXPECT_LT(bentBy(0, -1), 1.8 / 2.8) << "no further than a leg reaches";
 }
@@ -100,7 +100,7 @@ TEST(LimbGoals, FeetGoTheWayOfASourceWithHocks) {
   const RootPlacer root(setup);
   LimbGoals goals(setup, root);
   const Leg& leg = goals.legs().front();
-  ASSERT_TRUE(leg.ownWay);
+  ASSERT_TRUE(leg.footDriven);
   for (const double folds : {0.0, 40.0}) {
     Pose from = restPose(hocked), to = restPose(person);
     from.locals[hocked.find("leftLowerLeg").value()].rotation = limber::testing::turn(Vec3::UnitX(), folds);
@@ -108,7 +108,7 @@ TEST(LimbGoals, FeetGoTheWayOfASourceWithHocks) {
     BodyFrame source, target;
     setup.sourceKinematics.globals(from, source);
     setup.targetKinematics.globals(to, target);
-    goals.calm(source, 0, to, target);
+    goals.adaptPose(source, 0, to, target);
     goals.setFeet(source, target, 0);
     const double lifted = setup.scale * (source.positions[leg.sourceEnd].y() - leg.sourceAnkleGround);
     EXPECT_NEAR(leg.goal.y() - leg.ankleGround, lifted, 0.01);
@@ -126,7 +126,7 @@ TEST(LimbGoals, FeetOfTwoLeggedAnimalsGoTheSourcesWay) {
     const RootPlacer root(setup);
     LimbGoals goals(setup, root);
     ASSERT_EQ(goals.legs().size(), legs);
-    for (const Leg& leg : goals.legs()) EXPECT_EQ(leg.ownWay, legs == 2);
+    for (const Leg& leg : goals.legs()) EXPECT_EQ(leg.footDriven, legs == 2);
   }
 }
 
@@ -146,7 +146,7 @@ TEST(LimbGoals, WhoTurnsRoundStandsThereAsBefore) {
   BodyFrame source, target;
   setup.sourceKinematics.globals(from, source);
   setup.targetKinematics.globals(to, target);
-  goals.calm(source, 0, to, target);
+  goals.adaptPose(source, 0, to, target);
   goals.setFeet(source, target, 0);
   ASSERT_EQ(goals.legs().size(), 4u);
   const std::vector<Vec3>& rest = setup.targetNeutral.restPositions;
@@ -175,7 +175,7 @@ TEST(LimbGoals, AnAnimalsPelvisSinksSmoothly) {
     BodyFrame sourceFrame, frame;
     setup.sourceKinematics.globals(from, sourceFrame);
     setup.targetKinematics.globals(to, frame);
-    goals.calm(sourceFrame, f == 0 ? 0 : kFrame, to, frame);
+    goals.adaptPose(sourceFrame, f == 0 ? 0 : kFrame, to, frame);
     goals.setFeet(sourceFrame, frame, f == 0 ? 0 : kFrame);
     const double up = goals.pelvisMove(frame).up, atOnce = goals.pelvis().moveFor(goals.legs(), frame).up;
     if (f > 0) {

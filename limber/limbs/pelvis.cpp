@@ -10,15 +10,15 @@ namespace limber {
 
 namespace {
 
-constexpr double kCalmWide = 1.5;  // power of the hips' widths by which their turns are less
+constexpr double kWidthPower = 1.5;  // power of the hips' widths by which their turns are less
 // In hip heights of the target.
 constexpr double kMostShift = 0.3;
 constexpr double kMostAtEnd = 0.15;  // by which feet that cannot reach pull down hips or shoulders: then they lift
 constexpr double kSoftStretch = 0.015, kSoftChange = 0.004;  // of sinking, by how far a foot is moved
-constexpr double kSoftFar = 0.04;   // likewise: of legs at both ends of a body, and such as go their own way, some are
+constexpr double kSoftFar = 0.04;   // likewise: of legs at both ends of a body, and foot-driven ones, some are
                                     // far off and stretch more
 constexpr double kNearLevel = 0.3;  // squared sine of the slope of a person's leg from which on sinking helps it less
-constexpr double kSoftBend = 0.1;   // by which feet on their own ways count the more, the lower they want the body
+constexpr double kSoftBend = 0.1;   // by which feet of foot-driven legs count the more, the lower they want the body
 constexpr double kStandsBelow = 0.45;  // Leg::lift from which on their bend no longer counts
 constexpr double kSoftFold = 0.02;     // before a leg folds wholly
 constexpr double kStay = 0.5;          // legs that these go against, which want it to stay
@@ -40,11 +40,11 @@ double saturated(double x, double most) {
 
 // Share to which the body makes up for what the leg lacks to reach its goal.
 double followed(const Leg& leg) {
-  return leg.ownWay ? leg.upright * smoothStep(1 - leg.lift / kLifted) : 1;
+  return leg.footDriven ? leg.upright * smoothStep(1 - leg.lift / kLifted) : 1;
 }
 
-bool anyGoesOwnWay(std::span<const Leg> legs) {
-  return std::any_of(legs.begin(), legs.end(), [](const Leg& leg) { return leg.ownWay; });
+bool anyFootDriven(std::span<const Leg> legs) {
+  return std::any_of(legs.begin(), legs.end(), [](const Leg& leg) { return leg.footDriven; });
 }
 
 double hipWidth(const NeutralPose& neutral, Index left, Index right) {
@@ -62,7 +62,7 @@ Pelvis::Pelvis(const RetargetSetup& setup, const RootPlacer& root) : setup_(setu
   const double wide = hipWidth(setup.targetNeutral, leftHip_, rightHip_) / setup.targetHipHeight;
   const double source =
       hipWidth(setup.sourceNeutral, left.source.front(), right.source.front()) / setup.sourceHipHeight;
-  if (source > 0 && wide > source) hipTurns_ = std::pow(source / wide, kCalmWide);
+  if (source > 0 && wide > source) hipTurns_ = std::pow(source / wide, kWidthPower);
   if (const JointMatch* trunk = setup.map.find(body_part::kTrunk)) trunk_ = trunk->target.back();
 }
 
@@ -70,13 +70,13 @@ void Pelvis::levelHips(Pose& target, BodyFrame& frame) const {
   if (hipTurns_ == 1) return;
   const NeutralPose& neutral = setup_.targetNeutral;
   const Vec3 line = (frame.positions[leftHip_] - frame.positions[rightHip_]).normalized();
-  Vec3 calm = level(line);
+  Vec3 levelled = level(line);
   if (trunk_) {
     const Vec3 stands = (neutral.positions[leftHip_] - neutral.positions[rightHip_]).normalized();
-    calm = 0.5 * (calm + level(frame.rotations[*trunk_] * neutral.rotations[*trunk_].conjugate() * stands));
+    levelled = 0.5 * (levelled + level(frame.rotations[*trunk_] * neutral.rotations[*trunk_].conjugate() * stands));
   }
-  calm += (1 - calm.norm()) * line;
-  const Vec3 wanted = (hipTurns_ * line + (1 - hipTurns_) * calm).normalized();
+  levelled += (1 - levelled.norm()) * line;
+  const Vec3 wanted = (hipTurns_ * line + (1 - hipTurns_) * levelled).normalized();
   root_.turnPelvis(shortestRotation(line, wanted), target, frame);
 }
 
@@ -117,7 +117,7 @@ void Pelvis::apply(const Move& move, Pose& target, BodyFrame& frame) const {
 // Least squares over what the planted legs lack, against the turn itself. On one leg only the turn about the vertical
 // helps: the shift brings that leg to the ground.
 Quat Pelvis::turnFor(std::span<const Leg> legs, const BodyFrame& frame) const {
-  if (!setup_.person || legs.size() != 2 || !root_.turnsPelvis() || anyGoesOwnWay(legs)) return Quat::Identity();
+  if (!setup_.person || legs.size() != 2 || !root_.turnsPelvis() || anyFootDriven(legs)) return Quat::Identity();
   const Leg &left = legs[0], &right = legs[1];
   const Vec3 toHip = 0.5 * (frame.positions[left.upper] - frame.positions[right.upper]);
   const Vec3 lackLeft = left.goal - frame.positions[left.end], lackRight = right.goal - frame.positions[right.end];
@@ -134,7 +134,7 @@ Quat Pelvis::turnFor(std::span<const Leg> legs, const BodyFrame& frame) const {
 double Pelvis::riseFor(std::span<const Leg> legs, const BodyFrame& frame, const Quat& turn) const {
   double sum = 0, weights = 0;
   for (const Leg& leg : legs) {
-    if (leg.ownWay) continue;
+    if (leg.footDriven) continue;
     const Vec3 hip = frame.positions[leg.upper], way = leg.goal - hip - hipWay({turn, 0}, leg, frame);
     const double length = (frame.positions[leg.end] - hip).norm(), across = std::hypot(way.x(), way.z());
     if (way.y() >= 0 || across >= length) continue;
@@ -143,16 +143,16 @@ double Pelvis::riseFor(std::span<const Leg> legs, const BodyFrame& frame, const 
     weights += weight;
   }
   const double most = kMostShift * setup_.targetHipHeight;
-  return std::clamp(sum / std::max(weights, 1.0) + ownWaysShift(legs, frame), -most, most);
+  return std::clamp(sum / std::max(weights, 1.0) + footDrivenOffset(legs, frame), -most, most);
 }
 
 // Their joint angles have the foot elsewhere: legs that stand bend as the source's do. A mean of the ways, without a
 // kink where another leg takes over.
-double Pelvis::ownWaysShift(std::span<const Leg> legs, const BodyFrame& frame) const {
+double Pelvis::footDrivenOffset(std::span<const Leg> legs, const BodyFrame& frame) const {
   const double soft = kSoftBend * setup_.targetHipHeight;
   double sum = kStay, weights = kStay;
   for (const Leg& leg : legs) {
-    if (!leg.ownWay) continue;
+    if (!leg.footDriven) continue;
     const Vec3 way = leg.goal - frame.positions[leg.upper];
     const double reach = leg.bentReach, across = std::hypot(way.x(), way.z());
     if (across >= reach) continue;
@@ -165,21 +165,21 @@ double Pelvis::ownWaysShift(std::span<const Leg> legs, const BodyFrame& frame) c
   return -soft * std::log(sum / weights);
 }
 
-// What goes its own way may be led so far ahead that a person's leg is nearly level: then the body lets go of it.
+// A foot-driven leg may be led so far ahead that a person's leg is nearly level: then the body lets go of it.
 double Pelvis::steepness(const Leg& leg, double across, double reach) const {
-  if (!setup_.person || !leg.ownWay) return 1;
+  if (!setup_.person || !leg.footDriven) return 1;
   return smoothStep((1 - across * across / (reach * reach)) / kNearLevel);
 }
 
 double Pelvis::changeOf(const Leg& leg, const BodyFrame& frame, const Quat& turn) const {
-  if (leg.ownWay) return 1;
+  if (leg.footDriven) return 1;
   const double change = (leg.goal - frame.positions[leg.end] - hipWay({turn, 0}, leg, frame)).norm();
   return change / (change + kSoftChange * setup_.targetHipHeight);
 }
 
 double Pelvis::shiftFor(std::span<const Leg> legs, const BodyFrame& frame, const Quat& turn, double rise) const {
   const double height = setup_.targetHipHeight;
-  const bool byAngles = setup_.person && !anyGoesOwnWay(legs);
+  const bool byAngles = setup_.person && !anyFootDriven(legs);
   const double soft = (byAngles ? kSoftStretch : kSoftFar) * height;
   double sum = 0;
   for (const Leg& leg : legs) {
@@ -201,16 +201,16 @@ double Pelvis::shiftFor(std::span<const Leg> legs, const BodyFrame& frame, const
   return shift + raiseFor(legs, frame, shift);
 }
 
-// So that no foot that goes its own way and stands is nearer to its hip than the leg folds, where it would go astray,
+// So that no planted foot of a foot-driven leg is nearer to its hip than the leg folds, where it would go astray,
 // nor a person's further than knees do, which else turn round.
 double Pelvis::raiseFor(std::span<const Leg> legs, const BodyFrame& frame, double shift) const {
   double sum = 0;
   for (const Leg& leg : legs) {
     const Vec3 way = leg.goal - frame.positions[leg.upper] - Vec3(0, shift, 0);
     const double own = (frame.positions[leg.end] - frame.positions[leg.upper]).norm();
-    const double least = leg.ownWay ? leg.folded : std::min(kKneesFold * leg.folded, own);
+    const double least = leg.footDriven ? leg.folded : std::min(kKneesFold * leg.folded, own);
     const double across = std::hypot(way.x(), way.z());
-    if (leg.hock || across >= least || !(leg.ownWay || setup_.person)) continue;  // hocks fold as well
+    if (leg.hock || across >= least || !(leg.footDriven || setup_.person)) continue;  // hocks fold as well
     const double lacks = std::sqrt(least * least - across * across) + way.y();
     const double needed = followed(leg) * softPositive(lacks, kSoftFold * setup_.targetHipHeight);
     sum += needed * needed * needed * needed;

@@ -48,7 +48,7 @@ class Pelvis {
   double shiftFor(std::span<const Leg> legs, const BodyFrame& frame, const Quat& turn, double rise) const;
   double raiseFor(std::span<const Leg> legs, const BodyFrame& frame, double shift) const;
   double steepness(const Leg& leg, double across, double reach) const;
-  double ownWaysShift(std::span<const Leg> legs, const BodyFrame& frame) const;
+  double footDrivenOffset(std::span<const Leg> legs, const BodyFrame& frame) const;
 
   const RetargetSetup& setup_;
   const RootPlacer& root_;

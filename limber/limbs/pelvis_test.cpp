@@ -171,7 +171,7 @@ TEST(Pelvis, NothingJumpsWhereALegBecomesTooShort) {
   }
 }
 
-// One that goes its own way is led away in front, on the ground, as of someone who falls: it pulls the body down, and
+// A foot-driven one is led away in front, on the ground, as of someone who falls: it pulls the body down, and
 // lets go of it once the leg is nearly level.
 TEST(Pelvis, AFootTooFarAheadLetsGoOfTheBody) {
   PelvisOf person(practiceHumanoid());
@@ -180,7 +180,7 @@ TEST(Pelvis, AFootTooFarAheadLetsGoOfTheBody) {
   Leg &leg = goals.legs()[0], &other = goals.legs()[1];
   other.goal = person.frame_.positions[other.end];
   for (Leg& each : goals.legs()) {
-    each.ownWay = true;
+    each.footDriven = true;
     each.changed = 1;
     each.bentReach = each.length;
   }
@@ -209,7 +209,7 @@ class PelvisOfFour : public ::testing::Test {
     from.locals[0].rotation = to_.locals[0].rotation = turned;
     setup_.sourceKinematics.globals(from, source_);
     setup_.targetKinematics.globals(to_, frame_);
-    goals_.calm(source_, 0, to_, frame_);
+    goals_.adaptPose(source_, 0, to_, frame_);
     goals_.setFeet(source_, frame_, 0);
     before_ = frame_;
   }

@@ -214,7 +214,7 @@ void RootPlacer::settle(Pose& target, BodyFrame& frame) const {
   settleLoose(target, frame);
 }
 
-bool RootPlacer::goesOwnWay(const AnimalLeg& leg) const {
+bool RootPlacer::isFootDriven(const AnimalLeg& leg) const {
   return setup_.animalLegs.size() == 2 || setup_.quadruped || (leg.source.carrier && leg.target.carrier);
 }
 

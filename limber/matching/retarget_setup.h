@@ -22,7 +22,7 @@ struct PoseSequence {
 struct ContactEdit {
   std::string foot;         // the source's joint that stands (FootSpans::foot)
   double from = 0, to = 0;  // seconds of the motion
-  bool stands = false;
+  bool planted = false;
 };
 
 enum class RootScale {
@@ -38,8 +38,8 @@ struct RetargetOptions {
   double reach = 0;
   bool contacts = true;                        // limb-ik: keep planted feet and touching hands
   std::vector<ContactEdit> contactEdits = {};  // of several for one moment the last one counts
-  bool evenOut = true;                         // whole motions, with contacts: no rougher than the source (even_out.h)
-  std::string solver = "two-bone";             // limb-ik: of ikMethods()
+  bool smoothMotion = true;         // whole motions, with contacts: no rougher than the source (motion_smoothing.h)
+  std::string solver = "two-bone";  // limb-ik: of ikMethods()
   // Height of the ground under the source, metres; none: measured from the motion where there is one, else from the
   // rest pose.
   std::optional<double> sourceGround;

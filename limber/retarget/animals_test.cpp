@@ -83,7 +83,7 @@ TEST(RetargetAnimals, LiftedPawsOnRootsOfTheirOwnGoTheirOwnWay) {
     motion.poses.back().locals[lifted].translation.y() += lift(f);
   }
   RetargetOptions options;
-  options.evenOut = false;  // which would make it rise more smoothly
+  options.smoothMotion = false;  // which would make it rise more smoothly
   const RetargetSetup setup(one, other, matchSkeletons(one, other), options, &motion);
   for (const char* method : {"limb-ik", "spacetime"}) {
     SCOPED_TRACE(method);

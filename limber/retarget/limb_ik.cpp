@@ -28,7 +28,7 @@ class LimbIkRetargeter : public FrameRetargeter {
     if (!goals_.active()) return;
     if (setup_.options.contacts) {
       std::vector<Leg>& legs = goals_.legs();
-      goals_.calm(from(), seconds, target, to());
+      goals_.adaptPose(from(), seconds, target, to());
       if (goals_.atCut()) hands_.reset();
       goals_.setFeet(from(), to(), seconds);
       goals_.pelvis().apply(goals_.pelvisMove(to()), target, to());

@@ -91,7 +91,7 @@ bool MovedLegs::follow(const ChangeLayout& layout, const Changes& changes, std::
     paths[0][f] = (pelvis + wayOf(pelvis, pelvisShare_, frames_[f], move)) / unit;
     for (std::size_t leg = 0; leg < legs_.size(); ++leg) {
       const Reached to = reached(f, leg, move, unit * wayAt(changes, layout.foot(f, leg)));
-      if (feet[f * legs_.size() + leg].stands && to.missed > kMissed * unit) return false;
+      if (feet[f * legs_.size() + leg].planted && to.missed > kMissed * unit) return false;
       for (std::size_t bone = 0; bone < 2; ++bone) paths[1 + 2 * leg + bone][f] = to.bones[bone];
     }
   }

@@ -1,4 +1,4 @@
-// How evening out (evenOut) moves pelvis and feet: where the legs go then, and the pose that does it.
+// How motion smoothing (smoothMotion) moves pelvis and feet: where the legs go then, and the pose that does it.
 #pragma once
 
 #include <array>
@@ -7,7 +7,7 @@
 
 #include "limber/limbs/limb_reach.h"
 #include "limber/limbs/trunk_tilt.h"
-#include "limber/retarget/even_changes.h"
+#include "limber/retarget/least_changes.h"
 
 namespace limber {
 

@@ -198,7 +198,7 @@ TEST(MovedLegs, SayWhereFeetThatStandAreOutOfReach) {
   changes[moved.layout.foot(7, 1) + 1] = -1;
   std::vector<Path> paths;
   EXPECT_TRUE(moved.legs.follow(moved.layout, changes, moved.feet, paths));
-  moved.feet[7 * 2 + 1].stands = true;
+  moved.feet[7 * 2 + 1].planted = true;
   EXPECT_FALSE(moved.legs.follow(moved.layout, changes, moved.feet, paths));
 }
 

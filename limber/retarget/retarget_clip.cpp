@@ -6,7 +6,7 @@
 #include "limber/core/known_error.h"
 #include "limber/limbs/limb_goals.h"
 #include "limber/matching/plain_skeleton.h"
-#include "limber/retarget/even_out.h"
+#include "limber/retarget/motion_smoothing.h"
 #include "limber/skeleton/motion.h"
 
 namespace limber {
@@ -24,9 +24,38 @@ bool keepsContacts(const RetargetMethod& method, const RetargetOptions& options)
   return method.solvesLimbs && options.contacts;
 }
 
-PoseSequence plainFrames(const PlainSkeleton& plain, const Skeleton& source, const Clip& clip, double frameRate) {
-  return plain.plain(sampleFrames(source, clip, frameRate > 0 ? frameRate : frameRateOf(clip)));
-}
+// A clip that is ready to be retargeted.
+class PreparedClip {
+ public:
+  PreparedClip(const Skeleton& source, const Clip& clip, const Skeleton& target, const SkeletonMap& map,
+               const RetargetOptions& options, double frameRate)
+      : name_(clip.name),
+        source_(source),
+        target_(target),
+        frames_(source_.plain(sampleFrames(source, clip, frameRate > 0 ? frameRate : frameRateOf(clip)))),
+        setup_(source_.skeleton(), target_.skeleton(), map, options, &frames_) {}
+
+  Clip retargeted(const RetargetMethod& method, const Skeleton& target) const {
+    return clipOf(target, target_.original(retargetFrames(method, setup_, frames_)), name_);
+  }
+
+  std::vector<FootSpans> plantedFeet() const {
+    const RootPlacer root(setup_);
+    const LimbGoals goals(setup_, root);
+    if (!goals.active()) return {};
+    const std::vector<WatchedFoot> watched = goals.watchedFeet();
+    const ContactTrack track(setup_, watched, frames_);
+    std::vector<FootSpans> feet;
+    for (std::size_t i = 0; i < watched.size(); ++i) feet.push_back({watched[i].ankle, track.spans(i)});
+    return feet;
+  }
+
+ private:
+  std::string name_;
+  PlainSkeleton source_, target_;
+  PoseSequence frames_;
+  RetargetSetup setup_;
+};
 
 }  // namespace
 
@@ -93,34 +122,24 @@ PoseSequence retargetFrames(const RetargetMethod& method, const RetargetSetup& s
     retargeter->next(source.poses[f], f == 0 ? 0 : source.frameSeconds, target.poses[f]);
   }
   if (method.refine) method.refine(setup, source, target);
-  if (keepsContacts(method, setup.options) && setup.options.evenOut) evenOut(setup, source, target);
+  if (keepsContacts(method, setup.options) && setup.options.smoothMotion) smoothMotion(setup, source, target);
   return target;
 }
 
 Clip retargetClip(const RetargetMethod& method, const Skeleton& source, const Clip& clip, const Skeleton& target,
                   const SkeletonMap& map, const RetargetOptions& options, double frameRate) {
   checkClip(clip, source);
-  const PlainSkeleton from(source), to(target);
-  const PoseSequence frames = plainFrames(from, source, clip, frameRate);
-  const RetargetSetup setup(from.skeleton(), to.skeleton(), map, options, &frames);
-  return clipOf(target, to.original(retargetFrames(method, setup, frames)), clip.name);
+  return PreparedClip(source, clip, target, map, options, frameRate).retargeted(method, target);
 }
 
-std::vector<FootSpans> standingFeet(const RetargetMethod& method, const Skeleton& source, const Clip& clip,
-                                    const Skeleton& target, const SkeletonMap& map, const RetargetOptions& options,
-                                    double frameRate) {
-  if (!keepsContacts(method, options)) return {};
-  const PlainSkeleton from(source), to(target);
-  const PoseSequence frames = plainFrames(from, source, clip, frameRate);
-  const RetargetSetup setup(from.skeleton(), to.skeleton(), map, options, &frames);
-  const RootPlacer root(setup);
-  const LimbGoals goals(setup, root);
-  if (!goals.active()) return {};
-  const std::vector<WatchedFoot> watched = goals.watchedFeet();
-  const ContactTrack track(setup, watched, frames);
-  std::vector<FootSpans> feet;
-  for (std::size_t i = 0; i < watched.size(); ++i) feet.push_back({watched[i].ankle, track.spans(i)});
-  return feet;
+ClipWithContacts retargetClipWithContacts(const RetargetMethod& method, const Skeleton& source, const Clip& clip,
+                                          const Skeleton& target, const SkeletonMap& map,
+                                          const RetargetOptions& options, double frameRate) {
+  checkClip(clip, source);
+  const PreparedClip prepared(source, clip, target, map, options, frameRate);
+  ClipWithContacts result = {prepared.retargeted(method, target), {}};
+  if (keepsContacts(method, options)) result.feet = prepared.plantedFeet();
+  return result;
 }
 
 }  // namespace limber

@@ -26,10 +26,16 @@ PoseSequence retargetFrames(const RetargetMethod& method, const RetargetSetup& s
 Clip retargetClip(const RetargetMethod& method, const Skeleton& source, const Clip& clip, const Skeleton& target,
                   const SkeletonMap& map, const RetargetOptions& options = {}, double frameRate = 0);
 
-// The feet of the source that retargetClip() keeps where they stand, and while they do: none where the method keeps no
-// contacts, or the target has nothing that could.
-std::vector<FootSpans> standingFeet(const RetargetMethod& method, const Skeleton& source, const Clip& clip,
-                                    const Skeleton& target, const SkeletonMap& map, const RetargetOptions& options = {},
-                                    double frameRate = 0);
+struct ClipWithContacts {
+  Clip clip;
+  // Feet of the source that are planted, and while they are: none where the method keeps no contacts, or the target has
+  // nothing that could.
+  std::vector<FootSpans> feet;
+};
+
+// Likewise, with the contacts that it keeps. Cost: a forward pass over the source more.
+ClipWithContacts retargetClipWithContacts(const RetargetMethod& method, const Skeleton& source, const Clip& clip,
+                                          const Skeleton& target, const SkeletonMap& map,
+                                          const RetargetOptions& options = {}, double frameRate = 0);
 
 }  // namespace limber

@@ -27,7 +27,7 @@ struct RetargetMethod {
   std::unique_ptr<FrameRetargeter> (*make)(const RetargetSetup& setup);
   // What needs the whole motion: improves what the frames gave; null for methods that do not.
   void (*refine)(const RetargetSetup& setup, const PoseSequence& source, PoseSequence& target);
-  bool solvesLimbs;  // then whole motions are evened out (even_out.h)
+  bool solvesLimbs;  // then whole motions are smoothed (motion_smoothing.h)
 
   bool streams() const { return refine == nullptr; }
 };

@@ -17,7 +17,7 @@ namespace {
 
 // In which changes come and go, seconds. Feet: longer, and one that stops a foot would swing it far before and after.
 constexpr double kFootSeconds = 0.05, kHandSeconds = 0.12, kPlantSeconds = 0.12;
-constexpr double kOwnWaySeconds = 0.13;  // of two feet that go the source's way: little is left to change
+constexpr double kFootDrivenSeconds = 0.13;  // of two feet that go the source's way: little is left to change
 // Weights of a planted foot's steps and height, and of what a foot is below the ground.
 constexpr double kStandWeight = 1e8, kGroundWeight = 3e3, kFloorWeight = 1e8;
 constexpr std::array<std::size_t, 2> kAlongGround = {0, 2};  // axes
@@ -60,7 +60,7 @@ struct FootFrame {
   FootAnchor anchor = FootAnchor::kNone;
   bool flat = false;
   double ankleFloor = 0, toesFloor = 0;
-  bool ownWay = false;  // likewise in Leg, with what follows
+  bool footDriven = false;  // likewise in Leg, with what follows
   double bentReach = 0, lift = 0, upright = 1;
 };
 
@@ -124,7 +124,7 @@ class Spacetime {
       const BodyFrame& from = sourceAt(f);
       BodyFrame& to = targetAt(f);
       const double seconds = f == 0 ? 0 : target_.frameSeconds;
-      goals_.calm(from, seconds, target_.poses[f], to);
+      goals_.adaptPose(from, seconds, target_.poses[f], to);
       goals_.setFeet(from, to, seconds);
       cuts_[f] = goals_.atCut();
       for (std::size_t i = 0; i < feet_.size(); ++i) {
@@ -134,7 +134,7 @@ class Spacetime {
         foot.anchor = leg.contact.anchor;
         foot.flat = leg.contact.flat;
         foot.ankleFloor = leg.ankleFloor;
-        foot.ownWay = leg.ownWay;
+        foot.footDriven = leg.footDriven;
         foot.bentReach = leg.bentReach;
         foot.lift = leg.lift;
         foot.upright = leg.upright;
@@ -166,11 +166,11 @@ class Spacetime {
       twist[f].stepWeight = kStandWeight * firm[f];
     }
     const std::vector<double> twists = curve(twist, {kFootSeconds});
-    const bool ownWay = feet_.size() == 2 && foot.front().ownWay;
+    const bool footDriven = feet_.size() == 2 && foot.front().footDriven;
     const Goals3 way = wayGoals(foot, firm, twists);
-    plans_.push_back({twists,
-                      Curve3(way, target_.frameSeconds, {ownWay ? kOwnWaySeconds : kFootSeconds, 1, kFloorWeight}),
-                      curve(planted, following(kPlantSeconds))});
+    plans_.push_back(
+        {twists, Curve3(way, target_.frameSeconds, {footDriven ? kFootDrivenSeconds : kFootSeconds, 1, kFloorWeight}),
+         curve(planted, following(kPlantSeconds))});
   }
 
   Goals3 wayGoals(const std::vector<FootFrame>& foot, const std::vector<double>& firm,
@@ -185,7 +185,7 @@ class Spacetime {
       CurveGoal& upright = way[1][f];
       upright.least = std::max(ankleUp, toesUp);
       upright.value = std::max(byToes ? toesUp : ankleUp, upright.least);
-      if (!now.ownWay) upright.valueWeight = kGroundWeight * firm[f];
+      if (!now.footDriven) upright.valueWeight = kGroundWeight * firm[f];
       if (f > 0 && now.anchor != FootAnchor::kNone && foot[f - 1].anchor != FootAnchor::kNone) {
         Vec3 step = now.ankle - foot[f - 1].ankle;
         if (byToes) step += roll - rollBefore;
@@ -229,7 +229,7 @@ class Spacetime {
       const BodyFrame& to = targetAt(f);
       for (std::size_t i = 0; i < feet_.size(); ++i) {
         const Leg& leg = goals_.legs()[i];
-        if (!leg.ownWay) feet_[i][f].ankle = to.positions[leg.end];
+        if (!leg.footDriven) feet_[i][f].ankle = to.positions[leg.end];
       }
     }
   }

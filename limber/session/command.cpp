@@ -352,7 +352,7 @@ constexpr std::array<std::pair<Interpolation, std::string_view>, 3> kInterpolati
     {{Interpolation::kStep, "step"}, {Interpolation::kLinear, "linear"}, {Interpolation::kCubic, "cubic"}}};
 
 constexpr std::array<std::pair<ContactChange, std::string_view>, 3> kContactChanges = {
-    {{ContactChange::kStands, "stands"}, {ContactChange::kFree, "free"}, {ContactChange::kFound, "found"}}};
+    {{ContactChange::kPlanted, "planted"}, {ContactChange::kFree, "free"}, {ContactChange::kFound, "found"}}};
 
 constexpr std::array<std::pair<KeyTangents, std::string_view>, 3> kTangents = {
     {{KeyTangents::kAuto, "auto"}, {KeyTangents::kFlat, "flat"}, {KeyTangents::kFree, "free"}}};

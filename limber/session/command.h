@@ -227,11 +227,11 @@ struct RetargetMotion {
 
 // Says of a foot of the motion that the chosen clip is from whether it stands for a while, or takes back what was said;
 // the clip is made anew. What is said stays when the motion is put on by another method or map.
-enum class ContactChange { kStands, kFree, kFound };
+enum class ContactChange { kPlanted, kFree, kFound };
 struct SetContact {
   std::string foot;         // the motion's joint (ClipSource::feet)
   double from = 0, to = 0;  // seconds, both included
-  ContactChange contact = ContactChange::kStands;
+  ContactChange contact = ContactChange::kPlanted;
 };
 
 // Clips are named; one at a time is shown. A new clip has no keys.

@@ -162,9 +162,10 @@ Clip retargeted(ClipSource& source, const Skeleton& skeleton) {
   const RetargetMethod& method = findRetargetMethod(source.command.method);
   const Clip& moving = motion.clips[source.clip];
   const double rate = frameRateOf(motion, source.clip);
-  source.feet = standingFeet(method, motion.skeleton, moving, skeleton, source.map, options, rate);
-  Clip clip = retargetClip(method, motion.skeleton, moving, skeleton, source.map, options, rate);
-  return turnClip(std::move(clip), skeleton, turnToStand(skeleton));
+  ClipWithContacts made =
+      retargetClipWithContacts(method, motion.skeleton, moving, skeleton, source.map, options, rate);
+  source.feet = std::move(made.feet);
+  return turnClip(std::move(made.clip), skeleton, turnToStand(skeleton));
 }
 
 // The motion below the layer.
@@ -185,8 +186,8 @@ std::vector<ContactEdit> editsBeside(const SetContact& change, const std::vector
       left.push_back(edit);
       continue;
     }
-    if (edit.from < change.from) left.push_back({edit.foot, edit.from, change.from, edit.stands});
-    if (edit.to > change.to) left.push_back({edit.foot, change.to, edit.to, edit.stands});
+    if (edit.from < change.from) left.push_back({edit.foot, edit.from, change.from, edit.planted});
+    if (edit.to > change.to) left.push_back({edit.foot, change.to, edit.to, edit.planted});
   }
   return left;
 }
@@ -303,7 +304,7 @@ void setContactOf(Movement& movement, const Skeleton& skeleton, const SetContact
   if (!isKept) refuse(fmt::format("the clip keeps no foot that its motion calls '{}'", command.foot));
   source.contactEdits = editsBeside(command, source.contactEdits);
   if (command.contact != ContactChange::kFound) {
-    source.contactEdits.push_back({command.foot, command.from, command.to, command.contact == ContactChange::kStands});
+    source.contactEdits.push_back({command.foot, command.from, command.to, command.contact == ContactChange::kPlanted});
   }
   makeAnew(chosen, skeleton, std::move(source));
 }

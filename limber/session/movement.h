@@ -22,7 +22,7 @@ struct ClipSource {
   RetargetMotion command;
   SkeletonMap map;
   std::vector<ContactEdit> contactEdits = {};
-  std::vector<FootSpans> feet = {};  // of the motion's skeleton, as the clip has them (standingFeet)
+  std::vector<FootSpans> feet = {};  // of the motion's skeleton, as the clip has them (ClipWithContacts)
 };
 
 // What a clip is made of. A clip that was made by hand is its keys; recorded motion is left as it is, and what is

@@ -134,19 +134,19 @@ TEST(Movement, AUserSaysWhetherAFootStands) {
   const Json found = feet();
   ASSERT_EQ(found.size(), 2u);
   EXPECT_EQ(found[0]["part"], "leftFoot");
-  EXPECT_FALSE(found[0]["told"].get<bool>());
-  ASSERT_FALSE(found[0]["stands"].empty());
-  const double from = found[0]["stands"][0][0], to = found[0]["stands"][0][1];
+  EXPECT_FALSE(found[0]["edited"].get<bool>());
+  ASSERT_FALSE(found[0]["planted"].empty());
+  const double from = found[0]["planted"][0][0], to = found[0]["planted"][0][1];
   ASSERT_GT(to - from, 0.2);
   const double middle = (from + to) / 2, held = slideOf(session, "leftFoot", middle, to);
 
   act(session, SetContact{"leftFoot", from, to, ContactChange::kFree});
-  EXPECT_TRUE(feet()[0]["told"].get<bool>());
-  for (const Json& span : feet()[0]["stands"]) EXPECT_TRUE(span[1] < from || span[0] > to);
+  EXPECT_TRUE(feet()[0]["edited"].get<bool>());
+  for (const Json& span : feet()[0]["planted"]) EXPECT_TRUE(span[1] < from || span[0] > to);
   EXPECT_GT(slideOf(session, "leftFoot", middle, to), held + 1e-4) << "legs of other proportions slide by themselves";
   // By another method the same is kept.
   act(session, RetargetMotion{.motion = "walk", .clip = {}, .method = "spacetime", .map = {}});
-  EXPECT_TRUE(feet()[0]["told"].get<bool>());
+  EXPECT_TRUE(feet()[0]["edited"].get<bool>());
   act(session, Undo{});
   act(session, SetContact{"leftFoot", from, to, ContactChange::kFound});
   EXPECT_EQ(feet(), found);

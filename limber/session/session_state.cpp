@@ -86,14 +86,14 @@ Json feetJson(const ClipSource& source) {
   Json list = Json::array();
   for (const FootSpans& feet : source.feet) {
     const std::string& name = source.motion->skeleton.joints[feet.foot].name;
-    Json stands = Json::array();
-    for (const FootSpans::Span& span : feet.stands) stands.push_back({span.from, span.to});
-    const bool told = std::any_of(source.contactEdits.begin(), source.contactEdits.end(),
-                                  [&](const ContactEdit& edit) { return edit.foot == name; });
+    Json planted = Json::array();
+    for (const FootSpans::Span& span : feet.planted) planted.push_back({span.from, span.to});
+    const bool edited = std::any_of(source.contactEdits.begin(), source.contactEdits.end(),
+                                    [&](const ContactEdit& edit) { return edit.foot == name; });
     list.push_back({{"foot", name},
                     {"part", textOrNull(partOfFoot(source, feet))},
-                    {"stands", std::move(stands)},
-                    {"told", told}});
+                    {"planted", std::move(planted)},
+                    {"edited", edited}});
   }
   return list;
 }

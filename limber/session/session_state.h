@@ -13,7 +13,7 @@ namespace limber {
 //  "clips": [{"name", "duration", "recorded" (its keys are those of the layer on it), "keys": [seconds],
 //  "joint_keys": [{"joint": index, "seconds": [...]}] (the same for each joint that has any), "interpolation",
 //  "source": null or {"motion", "clip", "method", "reach", "contacts"}, "feet": of the motion, that
-//  are kept where they stand: [{"foot": its joint, "part", "stands": [[from, to] seconds], "told": whether the user
+//  are kept where they stand: [{"foot": its joint, "part", "planted": [[from, to] seconds], "edited": whether the user
 //  said something of it}]}], "clip": the chosen one's index or null,
 //  "seconds",
 //  "snap": {"degrees", "step" (metres)} (snap.h),

@@ -19,7 +19,7 @@ const clipOf = async (of) => {
   return clips[clip];
 };
 const footOf = async (of, part = 'leftFoot') => (await clipOf(of)).feet.find((foot) => foot.part === part);
-const standsAt = ({ stands }, seconds) => stands.some(([from, to]) => from <= seconds && seconds <= to);
+const standsAt = ({ planted }, seconds) => planted.some(([from, to]) => from <= seconds && seconds <= to);
 const row = (of, part = 'leftFoot') => of.locator(`#feet .lane[data-part="${part}"]`);
 const scrub = async (of, seconds) => {
   await of.locator('#scrub').fill(String(seconds));
@@ -50,16 +50,16 @@ const cases = {
     await walking(page);
     assert.equal(await page.locator('#feet .lane').count(), 2);
     const foot = await footOf(page);
-    span = foot.stands.find(([from, to]) => to - from > 0.3);
-    assert.ok(span, JSON.stringify(foot.stands));
-    assert.equal(await row(page).locator('.stand').count(), foot.stands.length);
+    span = foot.planted.find(([from, to]) => to - from > 0.3);
+    assert.ok(span, JSON.stringify(foot.planted));
+    assert.equal(await row(page).locator('.stand').count(), foot.planted.length);
     assert.deepEqual(await barriers(page), []);
     await page.screenshot({ path: join(output, 'feet.png') });
   },
   async 'pressed, a foot that stands goes free'() {
     const [from, to] = span, middle = (from + to) / 2, held = await slide(page, middle, to);
-    const { stands } = await footOf(page);
-    await row(page).locator('.stand').nth(stands.indexOf(stands.find(([begin]) => begin === from))).click();
+    const { planted } = await footOf(page);
+    await row(page).locator('.stand').nth(planted.indexOf(planted.find(([begin]) => begin === from))).click();
     await settled(page);
     assert.ok(!standsAt(await footOf(page), middle));
     const free = await slide(page, middle, to);
@@ -72,7 +72,7 @@ const cases = {
     await page.waitForFunction(() => globalThis.limberStudio.kept());
     await page.reload();
     await settled(page);
-    assert.ok((await footOf(page)).told);
+    assert.ok((await footOf(page)).edited);
     await page.locator('#undo').click();
     await settled(page);
     await page.locator('#open-feet').click();
@@ -80,10 +80,10 @@ const cases = {
     await page.getByRole('button', { name: 'left foot: as it was found' }).click();
     await settled(page);
     const foot = await footOf(page);
-    assert.ok(standsAt(foot, (span[0] + span[1]) / 2) && !foot.told);
+    assert.ok(standsAt(foot, (span[0] + span[1]) / 2) && !foot.edited);
   },
   async 'dragged along its row it is held, and by keyboard at the playhead'() {
-    const { stands } = await footOf(page), { duration } = await clipOf(page), swing = stands.find(([, to]) => to + 0.3 < duration)[1] + 0.1;
+    const { planted } = await footOf(page), { duration } = await clipOf(page), swing = planted.find(([, to]) => to + 0.3 < duration)[1] + 0.1;
     const beat = await row(page).locator('.beat').boundingBox(), x = (seconds) => beat.x + (seconds / duration) * beat.width;
     const swung = await slide(page, swing, swing + 0.1);
     await page.mouse.move(x(swing - 0.05), beat.y + beat.height / 2);
@@ -107,10 +107,10 @@ const cases = {
     const hand = await openStudio(browser, server.address, { width: 390, height: 844, touch: true, isMobile: true, colorScheme: 'dark', search: '?sample=biped' });
     all.push(hand.errors);
     await walking(hand.page);
-    const { stands } = await footOf(hand.page);
+    const { planted } = await footOf(hand.page);
     await row(hand.page).locator('.stand').first().tap();
     await settled(hand.page);
-    assert.equal((await footOf(hand.page)).stands.length, stands.length - 1);
+    assert.equal((await footOf(hand.page)).planted.length, planted.length - 1);
     assert.deepEqual(await barriers(hand.page), []);
     await hand.page.screenshot({ path: join(output, 'feet_narrow.png') });
     await hand.context.close();

@@ -14,7 +14,7 @@ const leastDrag = 4; // pixels: less is a press
 export function feetEditor(studio: Studio, page: PageStore): HTMLElement {
   const now = element('div', { class: 'now' });
   const root = element('div', { class: 'lanes feet', id: 'feet', role: 'group', 'aria-label': say('Feet that stand') });
-  const change = (foot: Foot, from: number, to: number, contact: 'stands' | 'free' | 'found') =>
+  const change = (foot: Foot, from: number, to: number, contact: 'planted' | 'free' | 'found') =>
     void studio.run({ do: 'set_contact', foot: foot.foot, from: Math.max(0, from), to, contact });
   let drawn: unknown = null;
   page.watch(({ session, seconds, feet }) => {
@@ -32,15 +32,15 @@ export function feetEditor(studio: Studio, page: PageStore): HTMLElement {
 
   function row(foot: Foot, duration: number, end: number): HTMLElement {
     const name = foot.part ? partName(foot.part) : foot.foot;
-    const around = (seconds: number) => change(foot, seconds - pressed / 2, Math.min(seconds + pressed / 2, duration), 'stands');
+    const around = (seconds: number) => change(foot, seconds - pressed / 2, Math.min(seconds + pressed / 2, duration), 'planted');
     const label = button(name, () => {
-      const { seconds } = page.now, here = foot.stands.find(([from, to]) => from <= seconds && seconds <= to);
+      const { seconds } = page.now, here = foot.planted.find(([from, to]) => from <= seconds && seconds <= to);
       if (here) change(foot, ...here, 'free');
       else around(seconds);
     }, { label: say('{foot}: stand or let go at this moment', { foot: name }) });
     const asFound = button('', () => change(foot, 0, duration, 'found'), { icon: 'reset', label: say('{foot}: as it was found', { foot: name }) });
-    asFound.hidden = !foot.told;
-    const beat = element('span', { class: 'beat' }, ...foot.stands.map(([from, to]) => stand(foot, name, from, to, end)));
+    asFound.hidden = !foot.edited;
+    const beat = element('span', { class: 'beat' }, ...foot.planted.map(([from, to]) => stand(foot, name, from, to, end)));
     beat.addEventListener('pointerdown', (down) => {
       if (down.target !== beat || down.button !== 0) return;
       beat.setPointerCapture(down.pointerId);
@@ -59,7 +59,7 @@ export function feetEditor(studio: Studio, page: PageStore): HTMLElement {
       beat.onpointerup = ({ clientX }) => {
         over();
         if (Math.abs(clientX - down.clientX) < leastDrag) around(at(clientX));
-        else change(foot, ...between(clientX), 'stands');
+        else change(foot, ...between(clientX), 'planted');
       };
     });
     return element('div', { class: 'lane', 'data-part': foot.part ?? foot.foot }, element('span', { class: 'label' }, label, asFound), beat);

@@ -1,4 +1,4 @@
-// What evening out changes in a motion (evenOut), and the least change that makes it less rough, to first order.
+// What motion smoothing changes (smoothMotion), and the least change that makes it less rough, to first order.
 #pragma once
 
 #include <array>
@@ -37,7 +37,7 @@ Vec3 wayAt(const Changes& changes, std::size_t first);
 
 // What has to hold for a foot in one frame.
 struct FootFrame {
-  bool stands = false;
+  bool planted = false;
   double lowest = 0;         // change of its height, at most 0: hip heights
   Vec3 way = Vec3::Zero();   // from the hip, likewise
   double most = 0;           // that its leg reaches, likewise

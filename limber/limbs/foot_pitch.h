@@ -15,8 +15,8 @@ double footPitchShare(const RetargetSetup& setup, const Leg& leg);
 // birds, swing further than a leg can follow. People's feet that stand flat (Leg::flat) lie as they do at rest, as far
 // as they are near it: what tips them is how the source was recorded, and would lift the ankle. Soles that look up or
 // to the side stay as they are. `frame` are the globals of `target`; both are brought up to date.
-void calmFeet(const RetargetSetup& setup, const RootPlacer& root, std::span<const Leg> legs, Pose& target,
-              BodyFrame& frame);
+void limitFootPitch(const RetargetSetup& setup, const RootPlacer& root, std::span<const Leg> legs, Pose& target,
+                    BodyFrame& frame);
 
 // A foot whose tip (Leg::tip) would be below the ground tips less, however high its ankle is. Soles that look up stay
 // as they are. `frame` as above.

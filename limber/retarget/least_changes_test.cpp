@@ -1,4 +1,4 @@
-#include "limber/retarget/even_changes.h"
+#include "limber/retarget/least_changes.h"
 
 #include <gtest/gtest.h>
 
@@ -56,7 +56,7 @@ double sumOf(const ChangeLayout& layout, const ChangedMotion& now, const Changes
   return sum;
 }
 
-TEST(EvenChanges, AreTheLeast) {
+TEST(LeastChanges, AreTheLeast) {
   const ChangeLayout layout(kFrames, {false, true});
   std::vector<bool> cuts(kFrames);
   cuts[5] = true;
@@ -90,7 +90,7 @@ TEST(EvenChanges, AreTheLeast) {
   }
 }
 
-TEST(EvenChanges, TheJoltIsTakenBackAndTheRestFollowsTheLess) {
+TEST(LeastChanges, TheJoltIsTakenBackAndTheRestFollowsTheLess) {
   const Leg leg;
   EXPECT_LT(leg.footAt(kJolt).x(), -0.1);
   EXPECT_NEAR(leg.footAt(kJolt).y(), 0, 1e-9);
@@ -99,13 +99,13 @@ TEST(EvenChanges, TheJoltIsTakenBackAndTheRestFollowsTheLess) {
   EXPECT_GT(lazy.footAt(kJolt).x(), -0.01) << "jerk hardly counts";
 }
 
-TEST(EvenChanges, FeetThatStandTakeNoSteps) {
+TEST(LeastChanges, FeetThatStandTakeNoSteps) {
   Leg leg;
-  for (FootFrame& foot : leg.feet) foot.stands = true;
+  for (FootFrame& foot : leg.feet) foot.planted = true;
   for (std::size_t f = 1; f < kFrames; ++f) EXPECT_NEAR((leg.footAt(f) - leg.footAt(0)).norm(), 0, 1e-4);
 }
 
-TEST(EvenChanges, FeetStayAboveTheirLowestAndWithinReach) {
+TEST(LeastChanges, FeetStayAboveTheirLowestAndWithinReach) {
   Leg leg;
   leg.feet[kJolt].lowest = 0.3;  // up, whatever jerk asks
   EXPECT_NEAR(leg.footAt(kJolt).y(), 0.3, 1e-4);
@@ -117,7 +117,7 @@ TEST(EvenChanges, FeetStayAboveTheirLowestAndWithinReach) {
   EXPECT_NEAR(reached.norm(), 1, 1e-4) << "by the foot and by the hip";
 }
 
-TEST(EvenChanges, BoundsHoldWhileTheyAreMet) {
+TEST(LeastChanges, BoundsHoldWhileTheyAreMet) {
   Leg leg;
   for (FootFrame& foot : leg.feet) foot.lowest = -0.02;
   LeastChanges least(leg.layout, leg.feet, std::vector<bool>(kFrames), {});
@@ -131,7 +131,7 @@ TEST(EvenChanges, BoundsHoldWhileTheyAreMet) {
 }
 
 // Shoulders that rise go back where the trunk goes up: the leg below them reaches as far as it does there.
-TEST(EvenChanges, LegsReachFromShouldersThatRise) {
+TEST(LeastChanges, LegsReachFromShouldersThatRise) {
   const ChangeLayout layout(kFrames, {true});
   std::vector<FootFrame> feet(kFrames, FootFrame{false, -1, Vec3(0.6, -0.9, 0), 1, Vec3(-0.5, 1, 0)});
   LeastChanges least(layout, feet, std::vector<bool>(kFrames), {});
@@ -143,7 +143,7 @@ TEST(EvenChanges, LegsReachFromShouldersThatRise) {
   EXPECT_NEAR((way - rise * feet[kJolt].lift).norm(), 1, 1e-4);
 }
 
-TEST(EvenChanges, EndsStayOrCloseTheLoop) {
+TEST(LeastChanges, EndsStayOrCloseTheLoop) {
   Leg joined;
   joined.ends.startsJoined = joined.ends.endsJoined = true;
   for (const std::size_t f : {0u, 2u, 9u, 11u}) EXPECT_NEAR(joined.footAt(f).norm(), 0, 1e-6) << f;
@@ -153,7 +153,7 @@ TEST(EvenChanges, EndsStayOrCloseTheLoop) {
   EXPECT_NEAR((loop.footAt(0) - loop.footAt(kFrames - 1)).norm(), 0, 1e-6);
 }
 
-TEST(EvenChanges, ShouldersThatRiseHaveAPlaceInTheLayout) {
+TEST(LeastChanges, ShouldersThatRiseHaveAPlaceInTheLayout) {
   const ChangeLayout flat{4, {false, false}}, tilting{4, {false, true}};
   EXPECT_EQ(flat.perFrame(), 9u);
   EXPECT_EQ(tilting.perFrame(), 10u);

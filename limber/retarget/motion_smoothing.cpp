@@ -1,4 +1,4 @@
-#include "limber/retarget/even_out.h"
+#include "limber/retarget/motion_smoothing.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <span>
 
 #include "limber/limbs/limb_goals.h"
-#include "limber/retarget/even_changes.h"
+#include "limber/retarget/least_changes.h"
 #include "limber/retarget/moved_legs.h"
 
 namespace limber {
@@ -23,9 +23,9 @@ constexpr double kFurthest = 0.3;   // of any change, hip heights
 constexpr double kStretch = 0.998;  // of a leg's length
 constexpr int kHalvings = 4;        // of a step that made the motion rougher
 
-class Evener {
+class MotionSmoother {
  public:
-  Evener(const RetargetSetup& setup, const PoseSequence& source, PoseSequence& target)
+  MotionSmoother(const RetargetSetup& setup, const PoseSequence& source, PoseSequence& target)
       : setup_(setup),
         root_(setup),
         goals_(setup, root_),
@@ -47,7 +47,7 @@ class Evener {
       layout_ = ChangeLayout(end - begin_, tilted);
       if (partsRatio() <= kEven) continue;
       const bool closes = loops_ && parts > 1;
-      evenPart({i > 0 || closes, i + 1 < parts || closes, loops_ && parts == 1});
+      smoothPart({i > 0 || closes, i + 1 < parts || closes, loops_ && parts == 1});
     }
   }
 
@@ -73,7 +73,7 @@ class Evener {
       setup_.targetKinematics.globals(target_.poses[f], frame_);
       for (std::size_t i = 0; i < legs_.size(); ++i) {
         feet_.push_back(boundsOf(legs_[i]));
-        feet_.back().stands = contacts.at(f, i).stands();
+        feet_.back().planted = contacts.at(f, i).isPlanted();
       }
     }
   }
@@ -120,7 +120,7 @@ class Evener {
     return jerkRatio(sourceJerk_, stillJerk_ + moved, layout_.frames());
   }
 
-  void evenPart(const MotionEnds& ends) {
+  void smoothPart(const MotionEnds& ends) {
     if (feet_.empty()) boundFeet();
     feetHere_ = std::span(feet_).subspan(begin_ * legs_.size(), layout_.frames() * legs_.size());
     cutsHere_ = partsCuts();
@@ -209,7 +209,7 @@ class Evener {
   std::vector<bool> cuts_;
   bool loops_ = false;
   std::vector<FootFrame> feet_;  // of each frame, of each leg; empty until they are needed
-  // Of the part that is evened.
+  // Of the part that is smoothed.
   std::size_t begin_ = 0;
   ChangeLayout layout_;
   std::span<const FootFrame> feetHere_;
@@ -224,8 +224,8 @@ class Evener {
 
 }  // namespace
 
-void evenOut(const RetargetSetup& setup, const PoseSequence& source, PoseSequence& target) {
-  if (hasLegs(setup)) Evener(setup, source, target).run();
+void smoothMotion(const RetargetSetup& setup, const PoseSequence& source, PoseSequence& target) {
+  if (hasLegs(setup)) MotionSmoother(setup, source, target).run();
 }
 
 }  // namespace limber

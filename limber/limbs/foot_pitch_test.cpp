@@ -1,4 +1,4 @@
-#include "limber/limbs/calm_feet.h"
+#include "limber/limbs/foot_pitch.h"
 
 #include <gtest/gtest.h>
 
@@ -10,12 +10,12 @@ namespace {
 
 using limber::testing::turn;
 
-// By how many degrees the left foot is turned by calmFeet, of someone with feet `times` as long who stands but for
-// `hips` and `foot`; `left` gets what is left of the turn of the foot against the ground.
-struct Calmed {
+// By how many degrees the left foot is turned by limitFootPitch, of someone with feet `times` as long who stands but
+// for `hips` and `foot`; `left` gets what is left of the turn of the foot against the ground.
+struct LimitedFoot {
   double changed = 0, left = 0, share = 0;
 };
-Calmed calmed(double times, const Quat& hips, const Quat& foot, double flatness = 0) {
+LimitedFoot limited(double times, const Quat& hips, const Quat& foot, double flatness = 0) {
   const Skeleton person = practiceHumanoid();
   Skeleton longFooted = person;
   for (const char* toes : {"leftToes", "rightToes"}) {
@@ -32,7 +32,7 @@ Calmed calmed(double times, const Quat& hips, const Quat& foot, double flatness 
   BodyFrame frame, after;
   setup.targetKinematics.globals(pose, frame);
   const Quat before = frame.rotations[joint];
-  calmFeet(setup, root, goals.legs(), pose, frame);
+  limitFootPitch(setup, root, goals.legs(), pose, frame);
   setup.targetKinematics.globals(pose, after);
   for (std::size_t j = 0; j < after.positions.size(); ++j) {
     EXPECT_LT((after.positions[j] - frame.positions[j]).norm(), 1e-12) << "the frame is up to date";
@@ -42,35 +42,35 @@ Calmed calmed(double times, const Quat& hips, const Quat& foot, double flatness 
           degrees * angleBetween(Quat::Identity(), after.rotations[joint]), goals.legs()[0].footPitch};
 }
 
-TEST(CalmFeet, OrdinaryFeetPitchAsTheSources) {
+TEST(FootPitch, OrdinaryFeetPitchAsTheSources) {
   for (const double times : {0.5, 1.0, 1.25}) {
-    const Calmed foot = calmed(times, Quat::Identity(), turn(Vec3::UnitX(), 40));
+    const LimitedFoot foot = limited(times, Quat::Identity(), turn(Vec3::UnitX(), 40));
     EXPECT_EQ(foot.share, 1);
     EXPECT_EQ(foot.changed, 0);
   }
 }
 
-TEST(CalmFeet, LongOnesPitchLess) {
-  const Calmed foot = calmed(4, Quat::Identity(), turn(Vec3::UnitX(), 40));
+TEST(FootPitch, LongOnesPitchLess) {
+  const LimitedFoot foot = limited(4, Quat::Identity(), turn(Vec3::UnitX(), 40));
   EXPECT_LT(foot.share, 0.5);
   EXPECT_NEAR(foot.left, 40 * foot.share, 2);
 }
 
-TEST(CalmFeet, OnesThatStandFlatLieAsAtRest) {
+TEST(FootPitch, OnesThatStandFlatLieAsAtRest) {
   const Quat tipped = turn(Vec3::UnitX(), 2);
-  EXPECT_LT(calmed(1, Quat::Identity(), tipped, 1).left, 0.3);
-  EXPECT_EQ(calmed(1, Quat::Identity(), tipped, 0).changed, 0);
-  EXPECT_LT(calmed(1, Quat::Identity(), turn(Vec3::UnitX(), 45), 1).changed, 1) << "the heel is up";
+  EXPECT_LT(limited(1, Quat::Identity(), tipped, 1).left, 0.3);
+  EXPECT_EQ(limited(1, Quat::Identity(), tipped, 0).changed, 0);
+  EXPECT_LT(limited(1, Quat::Identity(), turn(Vec3::UnitX(), 45), 1).changed, 1) << "the heel is up";
 }
 
-TEST(CalmFeet, TheyFaceWhereTheyFace) {
-  EXPECT_LT(calmed(4, Quat::Identity(), turn(Vec3::UnitY(), 50)).changed, 1e-5);
-  EXPECT_LT(calmed(1, Quat::Identity(), turn(Vec3::UnitY(), 50), 1).changed, 1e-5);
+TEST(FootPitch, TheyFaceWhereTheyFace) {
+  EXPECT_LT(limited(4, Quat::Identity(), turn(Vec3::UnitY(), 50)).changed, 1e-5);
+  EXPECT_LT(limited(1, Quat::Identity(), turn(Vec3::UnitY(), 50), 1).changed, 1e-5);
 }
 
-TEST(CalmFeet, SolesThatLookUpOrToTheSideStay) {
-  EXPECT_LT(calmed(4, Quat::Identity(), turn(Vec3::UnitX(), 130)).changed, 1e-5);
-  EXPECT_LT(calmed(4, turn(Vec3::UnitZ(), 90), turn(Vec3::UnitX(), 20)).changed, 1);
+TEST(FootPitch, SolesThatLookUpOrToTheSideStay) {
+  EXPECT_LT(limited(4, Quat::Identity(), turn(Vec3::UnitX(), 130)).changed, 1e-5);
+  EXPECT_LT(limited(4, turn(Vec3::UnitZ(), 90), turn(Vec3::UnitX(), 20)).changed, 1);
 }
 
 // What keepTipUp does to the left foot of someone who is lifted and whose foot is turned like that.
@@ -94,7 +94,7 @@ Tip keptUp(double lift, double degrees) {
   return {frame.positions[leg.tip.value()].y() - leg.toesGround, turned};
 }
 
-TEST(CalmFeet, ATipThatTheSourceLacksStaysAboveTheGround) {
+TEST(FootPitch, ATipThatTheSourceLacksStaysAboveTheGround) {
   for (const double degrees : {10.0, 40.0, 80.0, 110.0}) {
     EXPECT_GT(keptUp(0.03, degrees).over, -1e-9) << degrees;
   }

@@ -1,4 +1,4 @@
-#include "limber/limbs/calm_feet.h"
+#include "limber/limbs/foot_pitch.h"
 
 #include <algorithm>
 #include <cmath>
@@ -48,8 +48,8 @@ double footPitchShare(const RetargetSetup& setup, const Leg& leg) {
   return source > 0 && times > 1 ? 1 / (times * times) : 1;
 }
 
-void calmFeet(const RetargetSetup& setup, const RootPlacer& root, std::span<const Leg> legs, Pose& target,
-              BodyFrame& frame) {
+void limitFootPitch(const RetargetSetup& setup, const RootPlacer& root, std::span<const Leg> legs, Pose& target,
+                    BodyFrame& frame) {
   const NeutralPose& neutral = setup.targetNeutral;
   for (const Leg& leg : legs) {
     const double standing = setup.person ? leg.contact.flatness : 0;
@@ -57,13 +57,13 @@ void calmFeet(const RetargetSetup& setup, const RootPlacer& root, std::span<cons
     const Quat turn = frame.rotations[leg.end] * neutral.rotations[leg.end].conjugate();
     const Vec3 stands = (neutral.positions[*leg.toes] - neutral.positions[leg.end]).normalized();
     const Vec3 side = turn * Vec3::UnitX(), line = turn * stands;
-    const Vec3 calm = Eigen::AngleAxisd(std::atan2(-side.z(), side.x()), Vec3::UnitY()) * stands;
+    const Vec3 resting = Eigen::AngleAxisd(std::atan2(-side.z(), side.x()), Vec3::UnitY()) * stands;
     const double upright = std::hypot(side.x(), side.z()) * smoothStep(kSteepest + (turn * Vec3::UnitY()).y());
-    const double pitch = angleOf(line, calm), flat = standing * kFlat * kFlat / (kFlat * kFlat + pitch * pitch);
+    const double pitch = angleOf(line, resting), flat = standing * kFlat * kFlat / (kFlat * kFlat + pitch * pitch);
     const double less = (1 - leg.footPitch * (1 - flat)) * upright;
-    const Vec3 wanted = ((1 - less) * line + less * calm).normalized();
-    const Quat calmed = shortestRotation(line, wanted) * frame.rotations[leg.end];
-    LimbReach(setup, root).turnEnd(leg, calmed, frame, target);
+    const Vec3 wanted = ((1 - less) * line + less * resting).normalized();
+    const Quat limited = shortestRotation(line, wanted) * frame.rotations[leg.end];
+    LimbReach(setup, root).turnEnd(leg, limited, frame, target);
   }
 }
 

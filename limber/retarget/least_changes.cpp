@@ -1,4 +1,4 @@
-#include "limber/retarget/even_changes.h"
+#include "limber/retarget/least_changes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -100,7 +100,7 @@ void LeastChanges::holdFeet(double weight) {
     }
     if (f == 0 || cuts_[f]) continue;
     for (std::size_t leg = 0; leg < layout_.legs(); ++leg) {
-      if (!foot(f, leg).stands && !foot(f - 1, leg).stands) continue;
+      if (!foot(f, leg).planted && !foot(f - 1, leg).planted) continue;
       for (std::size_t axis = 0; axis < 3; ++axis) {
         unbound_.add(std::array{Term{layout_.foot(f, leg) + axis, 1}, Term{layout_.foot(f - 1, leg) + axis, -1}}, 0,
                      weight);

@@ -1,4 +1,4 @@
-#include "limber/retarget/even_out.h"
+#include "limber/retarget/motion_smoothing.h"
 
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ struct Case {
 
   RetargetSetup made() const {
     RetargetOptions options;
-    options.evenOut = false;
+    options.smoothMotion = false;
     return {source, target, matchSkeletons(source, target), options, &motion};
   }
   Positions positionsOf(const PoseSequence& frames) const {
@@ -57,8 +57,8 @@ struct Case {
     }
     return rough;
   }
-  PoseSequence evened(PoseSequence frames) const {
-    evenOut(setup, motion, frames);
+  PoseSequence smoothed(PoseSequence frames) const {
+    smoothMotion(setup, motion, frames);
     return frames;
   }
 
@@ -85,30 +85,30 @@ double furthestOf(const Case& made, const PoseSequence& one, const PoseSequence&
   return most;
 }
 
-TEST(EvenOut, WhatIsEvenStaysAsItIs) {
+TEST(MotionSmoothing, WhatIsSmoothStaysAsItIs) {
   const Case person(practiceHumanoid(), oddlyBuilt(), walk(practiceHumanoid()));
   ASSERT_LT(person.jerk(person.result), 1.08);
-  const PoseSequence evened = person.evened(person.result);
-  for (std::size_t f = 0; f < evened.poses.size(); ++f) ASSERT_TRUE(areEqual(evened, person.result, f)) << f;
+  const PoseSequence smoothed = person.smoothed(person.result);
+  for (std::size_t f = 0; f < smoothed.poses.size(); ++f) ASSERT_TRUE(areEqual(smoothed, person.result, f)) << f;
 }
 
 // The right foot stands up to frame 15 and from 45 to 75; the left one is lifted then.
-TEST(EvenOut, ASwingingLegThatJerksMovesAsSmoothlyAsTheSource) {
+TEST(MotionSmoothing, ASwingingLegThatJerksMovesAsSmoothlyAsTheSource) {
   const Case person(practiceHumanoid(), oddlyBuilt(), walk(practiceHumanoid()));
   const PoseSequence rough = person.jolted("leftUpperLeg", 58);
   ASSERT_GT(person.jerk(rough), 1.3);
-  const PoseSequence evened = person.evened(rough);
-  EXPECT_LT(person.jerk(evened), 1.08);
+  const PoseSequence smoothed = person.smoothed(rough);
+  EXPECT_LT(person.jerk(smoothed), 1.08);
   const double jolt = furthestOf(person, rough, person.result, "leftFoot", 58, 61);
-  EXPECT_LT(furthestOf(person, evened, person.result, "leftFoot", 50, 70), jolt);
-  EXPECT_LT(furthestOf(person, evened, rough, "rightFoot", 47, 74), 0.002) << "it stands";
-  EXPECT_LT(furthestOf(person, evened, rough, "leftFoot", 80, 100), 0.01) << "long after it";
+  EXPECT_LT(furthestOf(person, smoothed, person.result, "leftFoot", 50, 70), jolt);
+  EXPECT_LT(furthestOf(person, smoothed, rough, "rightFoot", 47, 74), 0.002) << "it stands";
+  EXPECT_LT(furthestOf(person, smoothed, rough, "leftFoot", 80, 100), 0.01) << "long after it";
 }
 
-TEST(EvenOut, FeetStayAboveTheGround) {
+TEST(MotionSmoothing, FeetStayAboveTheGround) {
   const Case person(practiceHumanoid(), oddlyBuilt(), walk(practiceHumanoid()));
   // Up at once, as it is about to come down.
-  const PoseSequence evened = person.evened(person.jolted("leftLowerLeg", 70, 25));
+  const PoseSequence smoothed = person.smoothed(person.jolted("leftLowerLeg", 70, 25));
   const auto lowest = [&](const PoseSequence& frames) {
     double low = 1;
     for (const auto& positions : person.positionsOf(frames)) {
@@ -118,7 +118,7 @@ TEST(EvenOut, FeetStayAboveTheGround) {
     }
     return low;
   };
-  EXPECT_GT(lowest(evened), lowest(person.result) - 1e-3);
+  EXPECT_GT(lowest(smoothed), lowest(person.result) - 1e-3);
 }
 
 PoseSequence steppingOnTheSpot(const Skeleton& animal) {
@@ -136,46 +136,46 @@ PoseSequence steppingOnTheSpot(const Skeleton& animal) {
   return motion;
 }
 
-TEST(EvenOut, AnimalsLegsAndLoops) {
+TEST(MotionSmoothing, AnimalsLegsAndLoops) {
   const Case animal(quadruped(0.5), quadruped(0.35), steppingOnTheSpot(quadruped(0.5)));
   ASSERT_EQ(animal.setup.animalLegs.size(), 4u);
   const PoseSequence rough = animal.jolted("b0LeftOne", 8);
   ASSERT_GT(animal.jerk(rough), 1.2);
-  const PoseSequence evened = animal.evened(rough);
-  EXPECT_LT(animal.jerk(evened), 1.08);
-  EXPECT_LT(furthestOf(animal, evened, rough, "b1LeftThree", 0, 61), 1e-3) << "it stands all the time";
+  const PoseSequence smoothed = animal.smoothed(rough);
+  EXPECT_LT(animal.jerk(smoothed), 1.08);
+  EXPECT_LT(furthestOf(animal, smoothed, rough, "b1LeftThree", 0, 61), 1e-3) << "it stands all the time";
   const Index foot = animal.target.find("b0LeftThree").value();
-  const Positions before = animal.positionsOf(rough), after = animal.positionsOf(evened);
+  const Positions before = animal.positionsOf(rough), after = animal.positionsOf(smoothed);
   EXPECT_LT((after[60][foot] - after[0][foot] - (before[60][foot] - before[0][foot])).norm(), 1e-5)
       << "a loop closes as it did";
 }
 
 // In parts that join.
-TEST(EvenOut, LongMotions) {
+TEST(MotionSmoothing, LongMotions) {
   const Case person(practiceHumanoid(), oddlyBuilt(), walk(practiceHumanoid(), 2100));
   const PoseSequence rough = person.jolted("leftUpperLeg", 1018, 25);
-  const PoseSequence evened = person.evened(rough);
-  EXPECT_LT(person.jerk(evened, 703), person.jerk(rough, 703));
+  const PoseSequence smoothed = person.smoothed(rough);
+  EXPECT_LT(person.jerk(smoothed, 703), person.jerk(rough, 703));
   for (std::size_t f = 0; f < 2100; ++f) {
     const bool ofIt = f >= 700 && f < 1400;
-    ASSERT_TRUE(ofIt || areEqual(evened, rough, f)) << f << " is of another part";
+    ASSERT_TRUE(ofIt || areEqual(smoothed, rough, f)) << f << " is of another part";
   }
   for (const std::size_t f : {700u, 702u, 1397u, 1399u}) {
-    EXPECT_LT(furthestOf(person, evened, rough, "leftFoot", f, f + 1), 1e-6) << f;
+    EXPECT_LT(furthestOf(person, smoothed, rough, "leftFoot", f, f + 1), 1e-6) << f;
   }
 }
 
-TEST(EvenOut, IsDoneToWholeMotionsUnlessItIsSwitchedOff) {
+TEST(MotionSmoothing, IsDoneToWholeMotionsUnlessItIsSwitchedOff) {
   const Skeleton source = quadruped(0.5), target = quadruped(0.1);
   const PoseSequence motion = steppingOnTheSpot(source);
-  const auto by = [&](bool evenOut, bool contacts, const char* method) {
+  const auto by = [&](bool smoothMotion, bool contacts, const char* method) {
     RetargetOptions options;
-    options.evenOut = evenOut;
+    options.smoothMotion = smoothMotion;
     options.contacts = contacts;
     const RetargetSetup setup(source, target, matchSkeletons(source, target), options, &motion);
     PoseSequence frames = retargetFrames(findRetargetMethod(method), setup, motion);
     PoseSequence again = frames;
-    limber::evenOut(setup, motion, again);
+    limber::smoothMotion(setup, motion, again);
     bool same = true;
     for (std::size_t f = 0; f < frames.poses.size(); ++f) same = same && areEqual(frames, again, f);
     return same;
@@ -184,10 +184,10 @@ TEST(EvenOut, IsDoneToWholeMotionsUnlessItIsSwitchedOff) {
   for (const char* method : {"limb-ik", "spacetime"}) EXPECT_TRUE(by(true, true, method)) << method;
 }
 
-TEST(EvenOut, FewFramesAndNoLegsAreLeftAlone) {
+TEST(MotionSmoothing, FewFramesAndNoLegsAreLeftAlone) {
   const Case person(practiceHumanoid(), oddlyBuilt(), walk(practiceHumanoid(), 4));
   PoseSequence frames = person.result;
-  evenOut(person.setup, person.motion, frames);
+  smoothMotion(person.setup, person.motion, frames);
   for (std::size_t f = 0; f < 4; ++f) EXPECT_TRUE(areEqual(frames, person.result, f));
 }
 
