@@ -98,7 +98,7 @@ void runRiggers(const RiggersOptions& options) {
     Progress unheard;
     const AutoRigReport report = autoRig(asset, rig, unheard);
     const TemplateMatch& match = report.matches.front();
-    return RigFit{report.rigger, match.name, match.confidence};
+    return RigFit{report.isAbstained, match.name, match.confidence};
   };
   TerminalProgress progress(options.common.quiet);
   Warnings skipped;
@@ -221,9 +221,12 @@ void addRiggers(CLI::App& evaluate) {
   CLI::App* command =
       evaluate.add_subcommand("templates", "Rig characters anew from a template and compare with their own skeletons");
   command->add_option("FILE", options->files, "characters with artists' rigs");
-  command->add_option("--labels", options->labels, "a list of such files in their place, with kinds and splits, as TSV")
-      ->type_name("FILE");
+  CLI::Option* labels = command
+                            ->add_option("--labels", options->labels,
+                                         "a list of such files in their place, with kinds and splits, as TSV")
+                            ->type_name("FILE");
   command->add_option("--each", options->each, "with --labels: write the figures of each file, tab separated")
+      ->needs(labels)
       ->type_name("FILE");
   command->add_option("--template", options->templateName, "auto, or one by name; limber rig --help lists them")
       ->type_name("NAME")

@@ -155,7 +155,7 @@ void runAnimate(RetargetArguments options) {
     rig.rig.templateName = options.templateName;
     if (options.templateName != "auto") findTemplate(options.templateName);
     AutoRigReport report = autoRig(asset, rig, *progress);
-    if (report.rigger != options.rigger) refuseAbstained(asset, report);
+    if (report.isAbstained) refuseAbstained(asset, report);
     warnings = std::move(report.warnings);
     matches = std::move(report.matches);
   }

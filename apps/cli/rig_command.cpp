@@ -106,9 +106,10 @@ void printAccount(const Account& account, const RigArguments& options, const Aut
     for (const TemplateMatch& match : report.matches) {
       matches.push_back(fmt::format("{} ({:.0f} % sure)", match.name, 100 * match.confidence));
     }
-    const bool abstained = report.rigger != options.rig.rigger;
-    account.line(fmt::format("template: {}{}", abstained ? "none; " : "", fmt::join(matches, ", else ")));
-    if (abstained) account.line(fmt::format("--template {} fits that one all the same", report.matches.front().name));
+    account.line(fmt::format("template: {}{}", report.isAbstained ? "none; " : "", fmt::join(matches, ", else ")));
+    if (report.isAbstained) {
+      account.line(fmt::format("--template {} fits that one all the same", report.matches.front().name));
+    }
   }
   printWarnings(report.warnings, options.common.quiet);
   if (!options.common.quiet) printBridged(report);

@@ -61,21 +61,16 @@ Skeleton mirrored(Skeleton body) {
   return body;
 }
 
-// Whether each joint has one where `image` takes it.
-bool isAlike(const Skeleton& body, const Vec3& image) {
+// Whether each joint has one where its mirror image is.
+bool isSymmetric(const Skeleton& body) {
   const std::vector<Vec3> rest = restPositions(body);
   Box box;
   for (const Vec3& place : rest) box.add(place);
   return std::all_of(rest.begin(), rest.end(), [&](const Vec3& place) {
     return std::any_of(rest.begin(), rest.end(), [&](const Vec3& other) {
-      return (image.cwiseProduct(place) - other).norm() < kAlike * box.diagonal();
+      return (Vec3(-place.x(), place.y(), place.z()) - other).norm() < kAlike * box.diagonal();
     });
   });
-}
-
-// Its mirror image is one body alone: of a figure that is the same from behind, one that is turned about is another.
-bool hasOneMirrorImage(const Skeleton& body) {
-  return isAlike(body, Vec3(-1, 1, 1)) && !isAlike(body, Vec3(-1, 1, -1));
 }
 
 // Else nothing tells up from down: recordings' rest poses may have all bones along one axis.
@@ -97,7 +92,7 @@ std::vector<KnownAnswer> knownAnswers(const Skeleton& motion) {
   std::vector<KnownAnswer> answers = {
       {"own", motion}, {"renamed", nameless(motion)}, {"scaled", scaled(motion, kSmaller), kSmaller}};
   if (hasHeadAndFeetApart(motion)) answers.push_back({"reposed", reposed(motion)});
-  if (hasOneMirrorImage(motion)) answers.push_back({"mirrored", mirrored(motion)});
+  if (isSymmetric(motion)) answers.push_back({"mirrored", mirrored(motion)});
   return answers;
 }
 

@@ -16,7 +16,7 @@ struct KnownAnswer {
 
 // As it is; under names that say nothing; at 0.6 of the size; with arms (or forelegs) and legs turned at rest, of
 // bodies that rest with head and feet apart; its mirror image by a negative scale, of bodies whose two sides are alike
-// within 1 %, and front and back are not.
+// within 1 %.
 std::vector<KnownAnswer> knownAnswers(const Skeleton& motion);
 
 // How far from the answer the method takes the worst matched joint in the worst frame, in metres over the body's height

@@ -95,8 +95,8 @@ TEST(RigTable, SaysWhatWasMeasured) {
   const RigComparison comparison = compareRigs(row({"a", "b", "c"}, {0.2, 0, 0}), row({"a", "b", "c"}));
   EXPECT_NEAR(toJson(comparison)["all"]["joint_to_joint"].get<double>(), 2, 1e-9);
   EXPECT_NE(toText(comparison).find("J2J 2.00 %"), std::string::npos);
-  const std::vector<RigTableRow> rows = {{"one.glb", "one", {"template", "humanoid", 0.9}, comparison, 0.5},
-                                         {"two.glb", "two", {"template", "humanoid", 0.8}, {}, 1.5}};
+  const std::vector<RigTableRow> rows = {{"one.glb", "one", {false, "humanoid", 0.9}, comparison, 0.5},
+                                         {"two.glb", "two", {false, "humanoid", 0.8}, {}, 1.5}};
   const std::string table = rigTable(rows);
   EXPECT_NE(table.find("| one | humanoid 0.90 | 3/3 | 2.00 |"), std::string::npos);
   EXPECT_NE(table.find("| **mean of 2** | | | 1.00 |"), std::string::npos);

@@ -23,9 +23,9 @@ std::string toText(const RigComparison& comparison);
 
 // What a rigger said of its fit.
 struct RigFit {
-  std::string rigger;     // the method whose rig it is
-  std::string likeliest;  // of the templates
-  double confidence = 0;  // in it, 0 to 1
+  bool isAbstained = false;  // handles in place of a template
+  std::string likeliest;     // of the templates
+  double confidence = 0;     // in it, 0 to 1
 };
 
 struct RigTableRow {

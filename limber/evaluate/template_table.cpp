@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 #include <map>
 #include <set>
 
@@ -16,7 +15,6 @@ namespace limber {
 
 namespace {
 
-constexpr std::string_view kTemplateRigger = "template";
 constexpr std::array<double, 6> kBins = {0, 0.2, 0.4, 0.6, 0.8, 1};  // of the confidence
 
 std::string_view cellOf(const std::vector<std::string_view>& cells, std::size_t column) {
@@ -36,17 +34,13 @@ std::string_view kindOfTemplate(std::string_view name) {
   return name.starts_with("humanoid") ? "humanoid" : name;
 }
 
-bool abstained(const TemplateTrial& trial) {
-  return trial.row.fit.rigger != kTemplateRigger;
-}
-
 bool isNear(const TemplateTrial& trial) {
   return trial.row.comparison.withoutFingers.jointToJoint <= kRigIsOff;
 }
 
 // Where no template suits it, handles are right.
 bool kindIsRight(const TemplateTrial& trial) {
-  return templatesFor(trial.file.kind).empty() ? abstained(trial) : !abstained(trial) && suits(trial);
+  return templatesFor(trial.file.kind).empty() ? trial.row.fit.isAbstained : !trial.row.fit.isAbstained && suits(trial);
 }
 
 struct Share {
@@ -92,13 +86,13 @@ struct Column {
   explicit Column(const std::vector<const TemplateTrial*>& trials) {
     for (const TemplateTrial* trial : trials) {
       kind.add(kindIsRight(*trial));
-      sure.add(!abstained(*trial));
-      if (!abstained(*trial)) sureAndWrong.add(!suits(*trial) || !isNear(*trial));
+      sure.add(!trial->row.fit.isAbstained);
+      if (!trial->row.fit.isAbstained) sureAndWrong.add(!suits(*trial) || !isNear(*trial));
       seconds.push_back(trial->row.seconds);
       const RigComparison& c = trial->row.comparison;
       all.push_back(c.withoutFingers.jointToJoint);
-      (abstained(*trial) ? handles : templates).push_back(c.withoutFingers.jointToJoint);
-      if (!abstained(*trial) && !c.named.empty()) named.push_back(c.namedMean);
+      (trial->row.fit.isAbstained ? handles : templates).push_back(c.withoutFingers.jointToJoint);
+      if (!trial->row.fit.isAbstained && !c.named.empty()) named.push_back(c.namedMean);
     }
   }
 };
@@ -158,7 +152,7 @@ std::string confusion(std::span<const TemplateTrial> trials) {
   std::set<std::string> kinds, told = {"handles"};
   std::map<std::pair<std::string, std::string>, int> counts;
   for (const TemplateTrial& trial : trials) {
-    const std::string by = abstained(trial) ? "handles" : std::string(kindOfTemplate(trial.row.fit.likeliest));
+    const std::string by = trial.row.fit.isAbstained ? "handles" : std::string(kindOfTemplate(trial.row.fit.likeliest));
     kinds.insert(trial.file.kind);
     told.insert(by);
     ++counts[{trial.file.kind, by}];
@@ -226,10 +220,10 @@ std::string templateTables(std::span<const TemplateTrial> trials) {
 
 std::string eachTemplateTrial(std::span<const TemplateTrial> trials) {
   std::string text =
-      "path\tsplit\tkind\tlikeliest\tconfidence\trigger\tkind_right\tj2j\tnamed_mean\tnamed_worst\tseconds\n";
+      "path\tsplit\tkind\tlikeliest\tconfidence\tabstained\tkind_right\tj2j\tnamed_mean\tnamed_worst\tseconds\n";
   for (const TemplateTrial& trial : trials) {
     text += fmt::format("{}\t{}\t{}\t{}\t{:.3f}\t{}\t{}", trial.file.path, trial.file.split, trial.file.kind,
-                        trial.row.fit.likeliest, trial.row.fit.confidence, trial.row.fit.rigger,
+                        trial.row.fit.likeliest, trial.row.fit.confidence, trial.row.fit.isAbstained ? 1 : 0,
                         kindIsRight(trial) ? 1 : 0);
     const RigComparison& c = trial.row.comparison;
     text += fmt::format("\t{:.2f}\t{:.2f}\t{:.2f}\t{:.2f}\n", c.withoutFingers.jointToJoint, c.namedMean, c.namedWorst,

@@ -25,7 +25,6 @@ std::vector<LabelledFile> parseLabelledFiles(std::string_view text);
 // humanoid, whoever walks on four legs is a quadruped.
 std::span<const std::string_view> templatesFor(std::string_view kind);
 
-// A rig of another rigger than "template" is one where templates abstain.
 struct TemplateTrial {
   LabelledFile file;
   RigTableRow row;

@@ -39,11 +39,11 @@ TemplateTrial trial(const char* kind, RigFit fit, double jointToJoint) {
 
 TEST(TemplateTables, CountKindsAndWhatIsSureAndWrong) {
   const std::vector<TemplateTrial> trials = {
-      trial("chibi", {"template", "humanoid-fingers", 0.9}, 3),  // right
-      trial("chibi", {"template", "humanoid", 0.85}, 9),         // right kind, far off
-      trial("bird", {"template", "humanoid", 0.7}, 4),           // wrong kind
-      trial("bird", {"sphere-mesh", "bird", 0.3}, 5),            // abstains where there is a template
-      trial("fish", {"sphere-mesh", "bird", 0.3}, 6),            // abstains where there is none
+      trial("chibi", {false, "humanoid-fingers", 0.9}, 3),  // right
+      trial("chibi", {false, "humanoid", 0.85}, 9),         // right kind, far off
+      trial("bird", {false, "humanoid", 0.7}, 4),           // wrong kind
+      trial("bird", {true, "bird", 0.3}, 5),                // abstains where there is a template
+      trial("fish", {true, "bird", 0.3}, 6),                // abstains where there is none
   };
   const std::string tables = templateTables(trials);
   EXPECT_THAT(tables, HasSubstr("| kind told right | 3 of 5 (60 %;"));
@@ -53,7 +53,7 @@ TEST(TemplateTables, CountKindsAndWhatIsSureAndWrong) {
   EXPECT_THAT(tables, HasSubstr("| 0.2 to 0.4 | 1 of 2 (50 %;"));
   EXPECT_THAT(tables, HasSubstr("| 0.8 to 1.0 | 2 of 2 (100 %; 34 to 100)"));
   EXPECT_THAT(tables, HasSubstr("| bird | 1 | 1 |")) << "one by handles, one taken for a person";
-  EXPECT_THAT(eachTemplateTrial(trials), HasSubstr("bird.glb\tcheck\tbird\thumanoid\t0.700\ttemplate\t0\t4.00"));
+  EXPECT_THAT(eachTemplateTrial(trials), HasSubstr("bird.glb\tcheck\tbird\thumanoid\t0.700\t0\t0\t4.00"));
 }
 
 }  // namespace

@@ -99,7 +99,7 @@ class ContactTrack {
   bool isCut(std::size_t frame) const { return cuts_[frame]; }
   const FootContact& at(std::size_t frame, std::size_t foot) const { return contacts_[frame * feet_ + foot]; }
   // How firmly the contact holds the foot, 0 to 1: the less, the faster the source's own foot moves along the ground
-  // while it stands. 0 where nothing holds it.
+  // while it is planted. 0 where nothing holds it.
   double firmness(std::size_t frame, std::size_t foot) const;
   // While something holds it.
   std::vector<FootSpans::Span> spans(std::size_t foot) const;

@@ -18,9 +18,9 @@ struct PoseSequence {
   double frameSeconds = 1.0 / 30;
 };
 
-// What a user says of a foot for a while, whatever its motion tells: whether it stands.
+// What a user says of a foot for a while, whatever its motion tells: whether it is planted.
 struct ContactEdit {
-  std::string foot;         // the source's joint that stands (FootSpans::foot)
+  std::string foot;         // the source's joint (FootSpans::foot)
   double from = 0, to = 0;  // seconds of the motion
   bool planted = false;
 };

@@ -173,6 +173,7 @@ Rigged makeRig(const Asset& asset, const Geometry& geometry, const PreparedMesh&
     for (JointPin& pin : rigOptions.pins) pin.place = prepared.frame.toWorking(pin.place);
     AutoRig rig = findRigger(options.rigger).rig(prepared.mesh, rigOptions, progress);
     bones = bonesOf(rig.skeleton);
+    report.isAbstained = rig.isAbstained;
     report.rigger = rig.isAbstained ? AutoRigOptions().rigger : options.rigger;
     report.joints = rig.skeleton.jointCount();
     report.suggestions = std::move(rig.suggestions);

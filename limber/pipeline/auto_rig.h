@@ -40,6 +40,7 @@ struct AutoRigReport {
   Index maxInfluences = 0;                    // as asked for
   Index removedJoints = 0, removedClips = 0;  // of the old rig, with ExistingRig::kReplace
   std::vector<HandleSuggestion> suggestions;
+  bool isAbstained = false;            // handles in place of a template (AutoRig)
   std::vector<TemplateMatch> matches;  // of templates that were tried, likeliest first
   std::vector<BridgedNode> bridged;    // most vertices first
   Warnings warnings;                   // of reading and of every stage

@@ -13,10 +13,10 @@ namespace limber {
 
 namespace {
 
-constexpr double kEven = 1.08;             // jerk, times the source's
+constexpr double kJerkLimit = 1.08;        // jerk, times the source's
 constexpr std::size_t kPartFrames = 1000;  // of one solve: its time grows evenly, its memory is bounded
 constexpr double kLoops = 0.02;            // of a limb's bones, between the directions in the first and the last frame
-// Jerk counts as for changes that come and go in that time, seconds; ever longer until the motion is even. And that
+// Jerk counts as for changes that come and go in that time, seconds; ever longer until the motion is smooth. And that
 // many frames: longer ones leave sums whose weights cannot be told apart.
 constexpr double kShortest = 0.007, kLongest = 1, kLonger = 1.2, kMostFrames = 30;
 constexpr double kFurthest = 0.3;   // of any change, hip heights
@@ -45,7 +45,7 @@ class MotionSmoother {
       const std::size_t end = (i + 1) * frames / parts;
       begin_ = i * frames / parts;
       layout_ = ChangeLayout(end - begin_, tilted);
-      if (partsRatio() <= kEven) continue;
+      if (partsRatio() <= kJerkLimit) continue;
       const bool closes = loops_ && parts > 1;
       smoothPart({i > 0 || closes, i + 1 < parts || closes, loops_ && parts == 1});
     }
@@ -131,7 +131,8 @@ class MotionSmoother {
     double rough = ratio(now_.paths);
     const double longest = std::min(kLongest, kMostFrames * source_.frameSeconds);
     Step step = Step::kTaken;
-    for (double seconds = kShortest; seconds < longest && rough > kEven && step != Step::kTooFar; seconds *= kLonger) {
+    for (double seconds = kShortest; seconds < longest && rough > kJerkLimit && step != Step::kTooFar;
+         seconds *= kLonger) {
       if (step == Step::kTaken) {
         moved_.findSlopes(layout_, now_);
         least.start(now_);

@@ -34,6 +34,9 @@ class PreparedClip {
         target_(target),
         frames_(source_.plain(sampleFrames(source, clip, frameRate > 0 ? frameRate : frameRateOf(clip)))),
         setup_(source_.skeleton(), target_.skeleton(), map, options, &frames_) {}
+  // The setup points into it.
+  PreparedClip(const PreparedClip&) = delete;
+  PreparedClip& operator=(const PreparedClip&) = delete;
 
   Clip retargeted(const RetargetMethod& method, const Skeleton& target) const {
     return clipOf(target, target_.original(retargetFrames(method, setup_, frames_)), name_);

@@ -4,7 +4,7 @@
 //
 // Ends with "N passed, N failed".
 import assert from 'node:assert/strict';
-import { mkdirSync } from 'node:fs';
+import { mkdirSync, rmSync, writeFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 import { answer, barriers, chooseMotion, download, launch, motionPlayed, openStudio, runCases, serve, sessionState, settled } from './page.mjs';
 import { walkBvh } from './walk_bvh.mjs';
@@ -42,7 +42,17 @@ async function stands(name, at = page) {
 const expectNoBarriers = async (at, state) => assert.deepEqual(await barriers(at), [], state);
 
 const bvhs = (count) => Array.from({ length: count }, (_, i) => ({ name: `step ${i + 1}.bvh`, mimeType: 'text/plain', buffer: Buffer.from(walkBvh(7 + i)) }));
-/** Files as they come from a folder that is dropped on the page. */
+/** A folder with a folder in it, by the browser's own drag from the desktop. */
+async function dropFolder(files) {
+  const folder = join(output, 'dropped');
+  rmSync(folder, { recursive: true, force: true });
+  mkdirSync(join(folder, 'more'), { recursive: true });
+  for (const [i, { name, buffer }] of files.entries()) writeFileSync(join(folder, i === 0 ? 'more' : '', name), buffer);
+  const devtools = await page.context().newCDPSession(page), data = { items: [], files: [folder], dragOperationsMask: 1 };
+  for (const type of ['dragEnter', 'dragOver', 'drop']) await devtools.send('Input.dispatchDragEvent', { type, x: 500, y: 400, data });
+  await devtools.detach();
+}
+/** Files that are dropped on the page. */
 const drop = (files) => page.evaluate((all) => {
   const transfer = new DataTransfer();
   for (const [name, text] of all) transfer.items.add(new File([text], name));
@@ -119,7 +129,7 @@ const cases = {
     }
   },
   async 'three motions that are dropped at once become a shelf'() {
-    await drop(bvhs(3));
+    await dropFolder(bvhs(3));
     const own = page.locator('#shelf-own li');
     await own.nth(2).waitFor();
     assert.equal(await own.count(), 3);
