@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kCut = 12;          // heights a second of any joint: no motion, but a cut
 constexpr double kLeastJerk = 2e-5;  // third differences of paths
+constexpr double kSmoothest = 1e10;  // against changes: more is lost in rounding (300 frames a second)
 
 // Each two matched joints of which one hangs on the other in both, and chains from end to end, as bones.
 std::vector<LimbPair> matchedBones(const RetargetSetup& setup) {
@@ -133,6 +134,10 @@ double squaredJerk(const std::vector<Path>& paths, const std::vector<bool>& cuts
 double jerkRatio(double source, double target, std::size_t frames) {
   const double least = kLeastJerk * kLeastJerk * static_cast<double>(frames);
   return target > least || source > least ? std::sqrt(target / std::max(source, least)) : 1;
+}
+
+double smoothnessWeight(double seconds, double frameSeconds) {
+  return std::min(std::pow(seconds / frameSeconds, 6), kSmoothest);
 }
 
 }  // namespace limber

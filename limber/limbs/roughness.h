@@ -67,5 +67,8 @@ double squaredJerk(const std::vector<Path>& paths, const std::vector<bool>& cuts
 // Root mean square jerk of the target against the source's, from the sums over as many frames. 1 where neither moves;
 // what hardly moves counts as a little rough.
 double jerkRatio(double source, double target, std::size_t frames);
+// How often squared third differences count against squared changes, for changes that come and go in `seconds`
+// (Whittaker's smoothing, of order three).
+double smoothnessWeight(double seconds, double frameSeconds);
 
 }  // namespace limber

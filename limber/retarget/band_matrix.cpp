@@ -50,8 +50,8 @@ void subtractColumns(const Columns& columns, std::size_t j, std::size_t end, dou
 
 }  // namespace
 
-void BandMatrix::setScaled(const BandMatrix& other, double factor) {
-  std::transform(other.entries_.begin(), other.entries_.end(), entries_.begin(), [&](double e) { return factor * e; });
+void BandMatrix::addScaled(const BandMatrix& other, double factor) {
+  for (std::size_t i = 0; i < entries_.size(); ++i) entries_[i] += factor * other.entries_[i];
 }
 
 std::vector<double> BandMatrix::times(const std::vector<double>& column) const {
@@ -111,9 +111,14 @@ void BandMatrix::substitute(std::vector<double>& right) const {
   }
 }
 
-void BandLeastSquares::setScaled(const BandLeastSquares& other, double factor) {
-  matrix_.setScaled(other.matrix_, factor);
-  std::transform(other.right_.begin(), other.right_.end(), right_.begin(), [&](double r) { return factor * r; });
+void BandLeastSquares::clear() {
+  matrix_.clear();
+  right_.assign(right_.size(), 0.0);
+}
+
+void BandLeastSquares::addScaled(const BandLeastSquares& other, double factor) {
+  matrix_.addScaled(other.matrix_, factor);
+  for (std::size_t i = 0; i < right_.size(); ++i) right_[i] += factor * other.right_[i];
 }
 
 void BandLeastSquares::add(std::span<const Term> terms, double value, double weight) {

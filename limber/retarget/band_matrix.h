@@ -15,8 +15,9 @@ class BandMatrix {
   explicit BandMatrix(std::size_t n, std::size_t width, std::size_t panel = 1)
       : n_(n), width_(width), panel_(panel), entries_(n * (width + 1), 0.0) {}
 
-  // All entries times `factor`; of another of this size.
-  void setScaled(const BandMatrix& other, double factor);
+  void clear() { entries_.assign(entries_.size(), 0.0); }
+  // The entries of another of this size, each so often.
+  void addScaled(const BandMatrix& other, double factor);
 
   // Of the lower triangle: column <= row, and row - column <= width.
   double& at(std::size_t row, std::size_t column) { return entries_[column * width_ + row]; }
@@ -46,8 +47,9 @@ class BandLeastSquares {
   BandLeastSquares(std::size_t n, std::size_t width, std::size_t panel = 1)
       : matrix_(n, width, panel), right_(n, 0.0) {}
 
+  void clear();
   // The sums of another of this size, each so often.
-  void setScaled(const BandLeastSquares& other, double factor);
+  void addScaled(const BandLeastSquares& other, double factor);
   // weight * (sum of the terms - value)^2
   void add(std::span<const Term> terms, double value, double weight);
   // The normal equations, for sums that come in blocks.

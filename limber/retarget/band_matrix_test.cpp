@@ -50,7 +50,8 @@ TEST(BandLeastSquares, FindsTheLeastSum) {
   squares.add(std::array{Term{7, 2}}, 30, 1);
   for (std::size_t i = 2; i < 9; ++i) squares.add(std::array{Term{i, 1}, Term{i - 1, -2}, Term{i - 2, 1}}, 0, 5);
   BandLeastSquares other(9, 2);
-  other.setScaled(squares, 3);
+  other.clear();
+  other.addScaled(squares, 3);
   const std::vector<double> line = squares.solve();
   for (std::size_t i = 0; i < 9; ++i) EXPECT_NEAR(line[i], 1 + 2 * static_cast<double>(i), 1e-9);
   other.add(std::array{Term{7, 1}, Term{8, 1}}, 5, 3e12);

@@ -5,15 +5,15 @@
 #include <cmath>
 #include <numeric>
 
+#include "limber/limbs/roughness.h"
 #include "limber/retarget/band_matrix.h"
 
 namespace limber {
 
 namespace {
 
-constexpr int kMostPasses = 30;     // of the active set; it settles in a few
-constexpr std::size_t kWidth = 3;   // frames back that a third difference reaches
-constexpr double kStiffest = 1e10;  // against the pull: more is lost in rounding (300 frames a second)
+constexpr int kMostPasses = 30;    // of the active set; it settles in a few
+constexpr std::size_t kWidth = 3;  // frames back that a third difference reaches
 
 bool isCutBetween(std::span<const CurveGoal> goals, std::size_t first, std::size_t last) {
   for (std::size_t f = first + 1; f <= last; ++f) {
@@ -76,7 +76,7 @@ std::vector<double> displacementCurve(std::span<const CurveGoal> goals, double f
   const std::size_t n = goals.size();
   BandMatrix fixed(n, kWidth);
   std::vector<double> right(n, 0.0);
-  const double stiffness = std::min(std::pow(options.seconds / frameSeconds, 6), kStiffest);
+  const double stiffness = smoothnessWeight(options.seconds, frameSeconds);
   constexpr std::array<double, 4> kThird = {-1, 3, -3, 1};
   for (std::size_t f = 0; f < n; ++f) {
     const CurveGoal& goal = goals[f];

@@ -9,12 +9,11 @@ namespace limber {
 namespace {
 
 constexpr std::size_t kJoinedFrames = 3;  // third differences reach no further
-// Of what has to hold, against changes in hip heights: feet that stand, bounds, and frames that do not change.
+// Of what has to hold, against changes in hip heights: planted feet, bounds, and frames that do not change.
 constexpr double kFirmWeight = 1e8;
 constexpr double kFirmUpTo = 1e6;    // the weight of jerk; it is more for more
 constexpr double kLoopWeight = 100;  // that a loop closes, against the rest of it
 constexpr double kTooFar = 1e-5;     // hip heights
-constexpr int kRounds = 3;           // of looking for bounds that are met; nearly all are after two
 constexpr std::array<double, 4> kThird = {-1, 3, -3, 1};
 
 double axisOf(const Vec3& v, std::size_t axis) {
@@ -35,13 +34,15 @@ Vec3 wayAt(const Changes& changes, std::size_t first) {
 }
 
 LeastChanges::LeastChanges(const ChangeLayout& layout, std::vector<FootFrame> feet, std::vector<bool> cuts,
-                           MotionEnds ends)
+                           MotionEnds ends, const ChangeWeights& weights)
     : layout_(layout),
       feet_(std::move(feet)),
       cuts_(std::move(cuts)),
-      ends_(ends),
+      ends_(std::move(ends)),
+      weights_(weights),
       held_(feet_.size()),
       jerk_(layout_.frames() * layout_.perFrame(), 4 * layout_.perFrame() - 1, layout_.perFrame()),
+      closeness_(jerk_),
       unbound_(jerk_),
       squares_(jerk_),
       values_(layout_.frames()),
@@ -49,18 +50,23 @@ LeastChanges::LeastChanges(const ChangeLayout& layout, std::vector<FootFrame> fe
   countThirds();
 }
 
-// Third differences of the paths as the changes would have them: frames meet in blocks.
 void LeastChanges::start(const ChangedMotion& now) {
   start_ = now.changes;
-  jerk_.setScaled(jerk_, 0);
+  jerk_.clear();
+  closeness_.clear();
+  for (std::size_t f = 0; f < layout_.frames(); ++f) {
+    addOwnChanges(f);
+    for (std::size_t leg = 0; leg < layout_.legs(); ++leg) addFoot(f, leg);
+  }
   addPelvisJerk(now);
-  for (std::size_t leg = 0; leg < layout_.legs(); ++leg) addLegJerk(leg, now);
+  for (std::size_t leg = 0; leg < layout_.legs(); ++leg) addBones(leg, now);
 }
 
 Changes LeastChanges::find(double jerkWeight) {
   const double firm = kFirmWeight * std::max(1.0, jerkWeight / kFirmUpTo);
-  unbound_.setScaled(jerk_, jerkWeight);
-  holdFeet(firm);
+  unbound_ = closeness_;
+  unbound_.addScaled(jerk_, jerkWeight);
+  holdPlanted(firm);
   std::fill(held_.begin(), held_.end(), Held{});
   Changes changes = start_;
   int round = 0;
@@ -74,7 +80,7 @@ Changes LeastChanges::find(double jerkWeight) {
     holdBounds(firm, about);
     closeLoop(kLoopWeight * firm, changes);
     changes = squares_.solve();
-  } while (meetBounds(changes) && ++round < kRounds);
+  } while (meetBounds(changes) && ++round < weights_.rounds);
   return changes;
 }
 
@@ -93,10 +99,32 @@ bool LeastChanges::isPinned(std::size_t frame) const {
          (ends_.endsJoined && layout_.frames() - 1 - frame < kJoinedFrames);
 }
 
-void LeastChanges::holdFeet(double weight) {
+void LeastChanges::addOwnChanges(std::size_t frame) {
+  if (isPinned(frame)) return;
+  const std::size_t first = layout_.pelvis(frame), feet = layout_.foot(frame, 0), shoulders = layout_.shoulders(frame);
+  for (std::size_t i = first; i < layout_.pelvis(frame + 1); ++i) {
+    const bool isFoot = i >= feet && i < shoulders, isUp = i == first + 1 || i >= shoulders;
+    closeness_.add(std::array{Term{i, 1}}, 0, isFoot ? weights_.feet : isUp ? weights_.pelvisUp : weights_.pelvisLevel);
+  }
+}
+
+void LeastChanges::addFoot(std::size_t frame, std::size_t leg) {
+  const FootFrame& now = foot(frame, leg);
+  const std::size_t at = layout_.foot(frame, leg);
+  if (now.rest > 0) closeness_.add(std::array{Term{at + 1, 1}}, now.height, weights_.rest * now.rest);
+  if (!(now.hold > 0) || frame == 0 || cuts_[frame]) return;
+  for (const std::size_t axis : {0, 2}) {
+    closeness_.add(std::array{Term{at + axis, 1}, Term{layout_.foot(frame - 1, leg) + axis, -1}},
+                   axisOf(now.step, axis), weights_.hold * now.hold);
+  }
+}
+
+// What has to hold whatever jerk counts.
+void LeastChanges::holdPlanted(double weight) {
   for (std::size_t f = 0; f < layout_.frames(); ++f) {
-    for (std::size_t i = layout_.pelvis(f); i < layout_.pelvis(f + 1); ++i) {
-      unbound_.add(std::array{Term{i, 1}}, 0, isPinned(f) ? weight : 1);
+    for (std::size_t i = layout_.pelvis(f); isPinned(f) && i < layout_.pelvis(f + 1); ++i) {
+      const bool isKnown = f < kJoinedFrames && !ends_.start.empty();
+      unbound_.add(std::array{Term{i, 1}}, isKnown ? ends_.start[i] : 0, weight);
     }
     if (f == 0 || cuts_[f]) continue;
     for (std::size_t leg = 0; leg < layout_.legs(); ++leg) {
@@ -109,6 +137,7 @@ void LeastChanges::holdFeet(double weight) {
   }
 }
 
+// Third differences of the paths as the changes would have them: frames meet in blocks.
 void LeastChanges::addPelvisJerk(const ChangedMotion& now) {
   for (std::size_t f = 0; f < layout_.frames(); ++f) {
     const std::size_t at = layout_.pelvis(f);
@@ -124,14 +153,15 @@ void LeastChanges::addPelvisJerk(const ChangedMotion& now) {
 }
 
 // Bones follow the foot's way against the hip.
-void LeastChanges::addLegJerk(std::size_t leg, const ChangedMotion& now) {
+void LeastChanges::addBones(std::size_t leg, const ChangedMotion& now) {
   const BoneSlopes& slopes = now.slopes[leg];
   for (std::size_t f = 0; f < layout_.frames(); ++f) {
     for (std::size_t back = 0; back <= std::min<std::size_t>(f, 3); ++back) {
-      if (meets_[f][back] == 0) continue;
+      if (meets_[f][back] == 0 && (back > 0 || weights_.bones == 0)) continue;
       Eigen::Matrix4d block = slopes[0][f].transpose() * slopes[0][f - back];
       block += slopes[1][f].transpose() * slopes[1][f - back];
-      addBlock(leg, f, back, meets_[f][back] * block);
+      addBlock(leg, f, back, meets_[f][back] * block, jerk_);
+      if (back == 0 && weights_.bones > 0) addBlock(leg, f, back, weights_.bones * block, closeness_);
     }
   }
   std::vector<double>& right = jerk_.right();
@@ -155,7 +185,8 @@ void LeastChanges::addLegJerk(std::size_t leg, const ChangedMotion& now) {
 }
 
 // `block`: of the foot's way against the hip and of the shoulders' rise, in a frame and so many frames back.
-void LeastChanges::addBlock(std::size_t leg, std::size_t frame, std::size_t back, const Eigen::Matrix4d& block) {
+void LeastChanges::addBlock(std::size_t leg, std::size_t frame, std::size_t back, const Eigen::Matrix4d& block,
+                            BandLeastSquares& squares) {
   struct Unknown {
     std::size_t at;
     Eigen::Index of;
@@ -171,7 +202,7 @@ void LeastChanges::addBlock(std::size_t leg, std::size_t frame, std::size_t back
   const std::size_t row = layout_.pelvis(frame), column = layout_.pelvis(frame - back);
   for (std::size_t j = 0; j < count; ++j) {
     for (std::size_t i = back == 0 ? j : 0; i < count; ++i) {
-      jerk_.matrix().at(row + unknowns[i].at, column + unknowns[j].at) +=
+      squares.matrix().at(row + unknowns[i].at, column + unknowns[j].at) +=
           unknowns[i].sign * unknowns[j].sign * block(unknowns[i].of, unknowns[j].of);
     }
   }

@@ -1,4 +1,5 @@
-// What motion smoothing changes (smoothMotion), and the least change that makes it less rough, to first order.
+// The least change of pelvis and feet over a whole motion that does what is asked of it: one banded least squares, to
+// first order. Planting feet (refineSpacetime) and motion smoothing (smoothMotion) are two sets of weights.
 #pragma once
 
 #include <array>
@@ -42,6 +43,19 @@ struct FootFrame {
   Vec3 way = Vec3::Zero();   // from the hip, likewise
   double most = 0;           // that its leg reaches, likewise
   Vec3 lift = Vec3::Zero();  // of its hip, for each hip height that the shoulders rise
+  Vec3 step = Vec3::Zero();  // level change from the frame before that `hold` asks for, likewise
+  double hold = 0;           // how firmly, 0 to 1
+  double height = 0;         // change of its height that `rest` asks for, likewise
+  double rest = 0;           // how firmly, 0 to 1
+};
+
+// What counts how much, against each other: changes in hip heights, bones in their lengths, each squared.
+struct ChangeWeights {
+  double pelvisLevel = 1, pelvisUp = 1;  // changes of the pelvis, and the rise of shoulders
+  double feet = 1;                       // changes of feet
+  double bones = 0;                      // changes of the directions of legs' bones
+  double hold = 0, rest = 0;             // FootFrame's
+  int rounds = 3;                        // of looking for bounds that are met
 };
 
 // How a bone's direction follows its foot's place (the first three columns) and the shoulders' rise.
@@ -61,17 +75,19 @@ struct ChangedMotion {
 // frame changes as the last one does.
 struct MotionEnds {
   bool startsJoined = false, endsJoined = false, loops = false;
+  Changes start = {};  // of the first three where they are not 0
 };
 
 class LeastChanges {
  public:
   // Feet of each frame, of each leg; cuts by frame.
-  LeastChanges(const ChangeLayout& layout, std::vector<FootFrame> feet, std::vector<bool> cuts, MotionEnds ends);
+  LeastChanges(const ChangeLayout& layout, std::vector<FootFrame> feet, std::vector<bool> cuts, MotionEnds ends,
+               const ChangeWeights& weights = {});
 
-  // The motion with the changes that are, about which jerk is seen to first order.
+  // The motion with the changes that are, about which bones are seen to first order.
   void start(const ChangedMotion& now);
-  // The least sum of squared changes and of `jerkWeight` times the squared jerk: feet that stand take no steps, none
-  // goes below its lowest nor beyond its leg. n (perFrame * 4)^2 operations a few times.
+  // The least sum of all that counts and of `jerkWeight` times the squared jerk: planted feet take no steps, none goes
+  // below its lowest nor beyond its leg. n (perFrame * 4)^2 operations a few times.
   Changes find(double jerkWeight);
 
  private:
@@ -84,10 +100,13 @@ class LeastChanges {
   const FootFrame& foot(std::size_t frame, std::size_t leg) const { return feet_[frame * layout_.legs() + leg]; }
   bool isPinned(std::size_t frame) const;
   void countThirds();
-  void holdFeet(double weight);
+  void addOwnChanges(std::size_t frame);
+  void addFoot(std::size_t frame, std::size_t leg);
+  void holdPlanted(double weight);
   void addPelvisJerk(const ChangedMotion& now);
-  void addLegJerk(std::size_t leg, const ChangedMotion& now);
-  void addBlock(std::size_t leg, std::size_t frame, std::size_t back, const Eigen::Matrix4d& block);
+  void addBones(std::size_t leg, const ChangedMotion& now);
+  void addBlock(std::size_t leg, std::size_t frame, std::size_t back, const Eigen::Matrix4d& block,
+                BandLeastSquares& squares);
   void pullThirds();
   void closeLoop(double weight, const Changes& changes);
   // False where no bound is met that was not before.
@@ -99,12 +118,13 @@ class LeastChanges {
   std::vector<FootFrame> feet_;
   std::vector<bool> cuts_;
   MotionEnds ends_;
+  ChangeWeights weights_;
   std::vector<Held> held_;
   // How often each frame meets one so many frames back in the sum of the squared third differences.
   std::vector<std::array<double, 4>> meets_;
   Changes start_;
-  // The squared jerk alone, then all but bounds, then all.
-  BandLeastSquares jerk_, unbound_, squares_;
+  // The squared jerk alone, the changes alone, then all but bounds, then all.
+  BandLeastSquares jerk_, closeness_, unbound_, squares_;
   std::vector<Vec3> values_, thirds_;  // of one path
 };
 

@@ -19,8 +19,9 @@ constexpr double kLoops = 0.02;            // of a limb's bones, between the dir
 // Jerk counts as for changes that come and go in that time, seconds; ever longer until the motion is smooth. And that
 // many frames: longer ones leave sums whose weights cannot be told apart.
 constexpr double kShortest = 0.007, kLongest = 1, kLonger = 1.2, kMostFrames = 30;
-constexpr double kFurthest = 0.3;   // of any change, hip heights
+constexpr double kFurthest = 0.15;  // of any change, hip heights: further ones flatten what is meant
 constexpr double kStretch = 0.998;  // of a leg's length
+constexpr double kProbe = 1e-4;     // hip heights to each side, over which the slopes of bones are seen
 constexpr int kHalvings = 4;        // of a step that made the motion rougher
 
 class MotionSmoother {
@@ -134,10 +135,10 @@ class MotionSmoother {
     for (double seconds = kShortest; seconds < longest && rough > kJerkLimit && step != Step::kTooFar;
          seconds *= kLonger) {
       if (step == Step::kTaken) {
-        moved_.findSlopes(layout_, now_);
+        moved_.findSlopes(layout_, kProbe, now_);
         least.start(now_);
       }
-      step = goTowards(least.find(std::pow(seconds / source_.frameSeconds, 6)), rough);
+      step = goTowards(least.find(smoothnessWeight(seconds, source_.frameSeconds)), rough);
     }
     if (!(rough < before)) return;
     for (std::size_t f = 0; f < layout_.frames(); ++f) moved_.pose(layout_, now_.changes, f, target_.poses[begin_ + f]);

@@ -6,8 +6,7 @@ namespace limber {
 
 namespace {
 
-// Hip heights: to see how the bones follow a foot; of a foot that stands and that its leg does not reach.
-constexpr double kProbe = 1e-4, kMissed = 1e-3;
+constexpr double kMissed = 1e-3;  // hip heights, of a planted foot that its leg does not reach
 
 }  // namespace
 
@@ -98,7 +97,7 @@ bool MovedLegs::follow(const ChangeLayout& layout, const Changes& changes, std::
   return true;
 }
 
-void MovedLegs::findSlopes(const ChangeLayout& layout, ChangedMotion& motion) const {
+void MovedLegs::findSlopes(const ChangeLayout& layout, double probe, ChangedMotion& motion) const {
   const double unit = setup_.targetHipHeight;
   motion.slopes.resize(legs_.size());
   for (BoneSlopes& bones : motion.slopes) bones.fill(std::vector<Slope>(layout.frames(), Slope(Slope::Zero())));
@@ -106,24 +105,29 @@ void MovedLegs::findSlopes(const ChangeLayout& layout, ChangedMotion& motion) co
     const Move move = moveAt(layout, motion.changes, f);
     for (std::size_t leg = 0; leg < legs_.size(); ++leg) {
       const Vec3 footWay = unit * wayAt(motion.changes, layout.foot(f, leg));
-      const auto probe = [&](Eigen::Index column, const Reached& to) {
+      const auto set = [&](Eigen::Index column, const Reached& before, const Reached& behind) {
         for (std::size_t bone = 0; bone < 2; ++bone) {
-          motion.slopes[leg][bone][f].col(column) = (to.bones[bone] - motion.paths[1 + 2 * leg + bone][f]) / kProbe;
+          motion.slopes[leg][bone][f].col(column) = (behind.bones[bone] - before.bones[bone]) / (2 * probe);
         }
       };
       for (Eigen::Index axis = 0; axis < 3; ++axis) {
-        probe(axis, reached(f, leg, move, footWay + kProbe * unit * Vec3::Unit(axis)));
+        const Vec3 way = probe * unit * Vec3::Unit(axis);
+        set(axis, reached(f, leg, move, footWay - way), reached(f, leg, move, footWay + way));
       }
-      if (layout.isTilted(leg)) probe(3, reached(f, leg, moveAt(layout, motion.changes, f, kProbe), footWay));
+      if (!layout.isTilted(leg)) continue;
+      set(3, reached(f, leg, moveAt(layout, motion.changes, f, -probe), footWay),
+          reached(f, leg, moveAt(layout, motion.changes, f, probe), footWay));
     }
   }
 }
 
-void MovedLegs::pose(const ChangeLayout& layout, const Changes& changes, std::size_t frame, Pose& target) {
+void MovedLegs::pose(const ChangeLayout& layout, const Changes& changes, std::size_t frame, Pose& target,
+                     std::span<const double> twists) {
   const double unit = setup_.targetHipHeight;
   setup_.targetKinematics.globals(target, posed_);
   for (std::size_t i = 0; i < legs_.size(); ++i) {
     legs_[i].goal = posed_.positions[legs_[i].end] + unit * wayAt(changes, layout.foot(frame, i));
+    legs_[i].turn = Eigen::AngleAxisd(twists.empty() ? 0 : twists[i], Vec3::UnitY());
   }
   const Move move = moveAt(layout, changes, frame);
   root_.movePelvis(move.shift, target, posed_);

@@ -1,4 +1,4 @@
-// How motion smoothing (smoothMotion) moves pelvis and feet: where the legs go then, and the pose that does it.
+// How pelvis and feet are moved by changes (LeastChanges): where the legs go then, and the pose that does it.
 #pragma once
 
 #include <array>
@@ -26,10 +26,12 @@ class MovedLegs {
   // their places; `feet` of each frame, of each leg. About 0.1 us for a leg in a frame.
   bool follow(const ChangeLayout& layout, const Changes& changes, std::span<const FootFrame> feet,
               std::vector<Path>& paths) const;
-  // Of the paths as they are.
-  void findSlopes(const ChangeLayout& layout, ChangedMotion& motion) const;
-  // Changes a frame of the target, which is as it was before any changes.
-  void pose(const ChangeLayout& layout, const Changes& changes, std::size_t frame, Pose& target);
+  // Of the paths as they are, seen over `probe` hip heights to each side.
+  void findSlopes(const ChangeLayout& layout, double probe, ChangedMotion& motion) const;
+  // Changes a frame of the target, which is as it was before any changes; feet turned so about the vertical (radians,
+  // of each leg).
+  void pose(const ChangeLayout& layout, const Changes& changes, std::size_t frame, Pose& target,
+            std::span<const double> twists = {});
 
  private:
   struct LegFrame {

@@ -171,7 +171,7 @@ TEST_P(MovedLegsOf, FollowTheirSlopes) {
   ChangedMotion now;
   now.changes = moved.waves();
   now.paths = moved.followed(now.changes);
-  moved.legs.findSlopes(moved.layout, now);
+  moved.legs.findSlopes(moved.layout, 1e-4, now);
   Changes further = now.changes;
   for (std::size_t f = 0; f < kFrames; ++f) {
     for (std::size_t leg = 0; leg < moved.layout.legs(); ++leg) further[moved.layout.foot(f, leg) + 1] += 1e-3;

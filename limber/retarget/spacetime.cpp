@@ -5,22 +5,46 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
+#include <utility>
+#include <vector>
 
 #include "limber/ik/rotation.h"
 #include "limber/limbs/hand_goals.h"
 #include "limber/limbs/limb_reach.h"
 #include "limber/retarget/displacement_curve.h"
+#include "limber/retarget/moved_legs.h"
 
 namespace limber {
 
 namespace {
 
-// In which changes come and go, seconds. Feet: longer, and one that stops a foot would swing it far before and after.
-constexpr double kFootSeconds = 0.05, kHandSeconds = 0.12, kPlantSeconds = 0.12;
-constexpr double kFootDrivenSeconds = 0.13;  // of two feet that go the source's way: little is left to change
-// Weights of a planted foot's steps and height, and of what a foot is below the ground.
-constexpr double kStandWeight = 1e8, kGroundWeight = 3e3, kFloorWeight = 1e8;
-constexpr std::array<std::size_t, 2> kAlongGround = {0, 2};  // axes
+// Seconds in which changes come and go: of the pelvis and of legs' bones, the same of foot-driven legs, of which little
+// is left to change, of feet's twists, of hands.
+constexpr double kChangeSeconds = 0.06, kFootDrivenSeconds = 0.13, kTwistSeconds = 0.05, kHandSeconds = 0.12;
+constexpr double kHold = 1e5;            // of a planted foot's speed along the ground (hip heights a second), squared
+constexpr double kTwistHold = 1e8;       // of its turn from frame to frame, radians, squared
+constexpr double kFootDrivenRest = 0.1;  // how firmly a foot-driven foot keeps its height, 0 to 1
+// Hip heights, over which it is seen how bones follow a foot: without the kink of legs that are nearly straight.
+constexpr double kBoneProbe = 0.2;
+constexpr double kStretched = 0.995;  // of its length to which a planted leg stretches: straight knees tremble
+// Motions are changed in parts of about so many frames; each sees so many seconds of the next.
+constexpr std::size_t kSolvedFrames = 1000;
+constexpr double kAheadSeconds = 0.5;
+
+// The pelvis rises and sinks freely, so that legs keep their bend; it hardly goes aside. A foot has no place of its
+// own: its leg's bones tell where it is to be.
+ChangeWeights planting(double frameSeconds) {
+  ChangeWeights weights;
+  weights.pelvisLevel = 10;
+  weights.pelvisUp = 0.02;
+  weights.feet = 0.02;
+  weights.bones = 1;
+  weights.hold = kHold / (frameSeconds * frameSeconds);
+  weights.rest = 3e4;
+  weights.rounds = 8;
+  return weights;
+}
 
 Vec3 level(const Vec3& v) {
   return {v.x(), 0, v.z()};
@@ -54,14 +78,10 @@ void follow(const Vec3& value, std::size_t frame, Goals3& goals) {
   }
 }
 
-// A foot in one frame, as joint angles have it.
-struct FootFrame {
+// A foot in one frame before it is planted.
+struct FreeFoot {
   Vec3 ankle = Vec3::Zero(), roll = Vec3::Zero();  // and the way from there to the toes
-  FootAnchor anchor = FootAnchor::kNone;
-  bool flat = false;
   double ankleFloor = 0, toesFloor = 0;
-  bool footDriven = false;  // likewise in Leg, with what follows
-  double bentReach = 0, lift = 0, upright = 1;
 };
 
 class Spacetime {
@@ -77,28 +97,18 @@ class Spacetime {
 
   void run() {
     if (!goals_.active() || target_.poses.empty()) return;
-    cuts_.assign(frames(), false);
+    contacts_.emplace(setup_, goals_.watchedFeet(), source_);
+    for (std::size_t f = 0; f < frames(); ++f) cuts_.push_back(contacts_->isCut(f));
     if (setup_.options.contacts) {
       gatherFeet();
-      planFeet();
-      movePelvis();
-      // Free feet go along with their hips: their legs would else make up for every move of the pelvis.
-      moveFeetWithHips();
-      planFeet();
-      movePelvis();
-      placeFeet();
+      twistFeet();
+      plantFeet();
+      layToes();
     }
     placeHands();
   }
 
  private:
-  // How one foot is changed.
-  struct FootPlan {
-    std::vector<double> twist;  // radians about +Y
-    Curve3 way;                 // of the ankle
-    std::vector<double> planted;
-  };
-
   std::size_t frames() const { return target_.poses.size(); }
   const BodyFrame& sourceAt(std::size_t f) {
     setup_.sourceKinematics.globals(source_.poses[f], from_);
@@ -113,31 +123,24 @@ class Spacetime {
     for (std::size_t f = 0; f < frames(); ++f) goals[f].cut = cuts_[f];
     return goals;
   }
-  std::vector<double> curve(const Goals& goals, const CurveOptions& options) const {
-    return displacementCurve(goals, target_.frameSeconds, options);
-  }
 
   void gatherFeet() {
-    contacts_.emplace(setup_, goals_.watchedFeet(), source_);
-    feet_.resize(goals_.legs().size());
+    std::vector<Leg>& legs = goals_.legs();
+    feet_.resize(legs.size());
     for (std::size_t f = 0; f < frames(); ++f) {
       const BodyFrame& from = sourceAt(f);
       BodyFrame& to = targetAt(f);
       const double seconds = f == 0 ? 0 : target_.frameSeconds;
       goals_.adaptPose(from, seconds, target_.poses[f], to);
       goals_.setFeet(from, to, seconds);
-      cuts_[f] = goals_.atCut();
+      // What turns wide hips take over of the source's, planted feet would have to make up for.
+      root_.turnPelvis(goals_.pelvis().turnFor(legs, to), target_.poses[f], to);
+      driveByFeet(f, to);
       for (std::size_t i = 0; i < feet_.size(); ++i) {
-        const Leg& leg = goals_.legs()[i];
-        FootFrame& foot = feet_[i].emplace_back();
-        foot.ankle = leg.place;
-        foot.anchor = leg.contact.anchor;
-        foot.flat = leg.contact.flat;
+        const Leg& leg = legs[i];
+        FreeFoot& foot = feet_[i].emplace_back();
+        foot.ankle = to.positions[leg.end];
         foot.ankleFloor = leg.ankleFloor;
-        foot.footDriven = leg.footDriven;
-        foot.bentReach = leg.bentReach;
-        foot.lift = leg.lift;
-        foot.upright = leg.upright;
         foot.toesFloor = -std::numeric_limits<double>::infinity();
         if (!leg.toes) continue;
         foot.roll = to.positions[*leg.toes] - to.positions[leg.end];
@@ -146,101 +149,133 @@ class Spacetime {
     }
   }
 
-  void planFeet() {
-    plans_.clear();
-    for (std::size_t i = 0; i < feet_.size(); ++i) planFoot(i);
-  }
-
-  // Of steps, not of places: where a foot stands best is left to the curve.
-  void planFoot(std::size_t i) {
-    const std::vector<FootFrame>& foot = feet_[i];
-    std::vector<double> firm(frames());
-    Goals twist = noGoals(), planted = noGoals();
-    for (std::size_t f = 0; f < frames(); ++f) {
-      firm[f] = contacts_->firmness(f, i);
-      planted[f].value = foot[f].anchor != FootAnchor::kNone ? 1 : 0;
-      planted[f].valueWeight = 1;
-      if (f == 0 || !foot[f].flat || !foot[f - 1].flat) continue;
-      const Vec3 from = level(foot[f - 1].roll), to = level(foot[f].roll);
-      twist[f].step = -std::atan2(from.cross(to).y(), from.dot(to));
-      twist[f].stepWeight = kStandWeight * firm[f];
+  // Foot-driven legs begin where their feet are driven, with the pelvis over them, not by joint angles.
+  void driveByFeet(std::size_t f, BodyFrame& to) {
+    std::vector<Leg>& legs = goals_.legs();
+    const auto isDriven = [](const Leg& leg) { return leg.footDriven; };
+    if (std::none_of(legs.begin(), legs.end(), isDriven)) return;
+    goals_.pelvis().apply(goals_.pelvis().moveFor(legs, to), target_.poses[f], to);
+    for (Leg& leg : legs) {
+      if (!leg.footDriven) continue;
+      goals_.bendAsSource(leg, to);
+      leg.turn = Quat::Identity();
+      reach_.reach(leg, &leg.kneeAhead, to, target_.poses[f]);
     }
-    const std::vector<double> twists = curve(twist, {kFootSeconds});
-    const bool footDriven = feet_.size() == 2 && foot.front().footDriven;
-    const Goals3 way = wayGoals(foot, firm, twists);
-    plans_.push_back(
-        {twists, Curve3(way, target_.frameSeconds, {footDriven ? kFootDrivenSeconds : kFootSeconds, 1, kFloorWeight}),
-         curve(planted, following(kPlantSeconds))});
   }
 
-  Goals3 wayGoals(const std::vector<FootFrame>& foot, const std::vector<double>& firm,
-                  const std::vector<double>& twists) const {
-    Goals3 way = {noGoals(), noGoals(), noGoals()};
-    Vec3 rollBefore = Vec3::Zero();
-    for (std::size_t f = 0; f < frames(); ++f) {
-      const FootFrame& now = foot[f];
-      const Vec3 roll = Eigen::AngleAxisd(twists[f], Vec3::UnitY()) * now.roll;
-      const bool byToes = now.anchor == FootAnchor::kToes;
-      const double toesUp = now.toesFloor - roll.y() - now.ankle.y(), ankleUp = now.ankleFloor - now.ankle.y();
-      CurveGoal& upright = way[1][f];
-      upright.least = std::max(ankleUp, toesUp);
-      upright.value = std::max(byToes ? toesUp : ankleUp, upright.least);
-      if (!now.footDriven) upright.valueWeight = kGroundWeight * firm[f];
-      if (f > 0 && now.anchor != FootAnchor::kNone && foot[f - 1].anchor != FootAnchor::kNone) {
-        Vec3 step = now.ankle - foot[f - 1].ankle;
-        if (byToes) step += roll - rollBefore;
-        for (const std::size_t axis : kAlongGround) {
-          way[axis][f].step = -step[static_cast<Eigen::Index>(axis)];
-          way[axis][f].stepWeight = kStandWeight * firm[f];
-        }
-      }
-      rollBefore = roll;
-    }
-    return way;
-  }
-
-  void setLegs(std::size_t f) {
+  // A foot that is planted flat does not turn about the vertical.
+  void twistFeet() {
+    twists_.assign(frames(), std::vector<double>(feet_.size(), 0.0));
     for (std::size_t i = 0; i < feet_.size(); ++i) {
-      Leg& leg = goals_.legs()[i];
-      leg.goal = feet_[i][f].ankle + plans_[i].way.at(f);
-      leg.bentReach = feet_[i][f].bentReach;
-      leg.lift = feet_[i][f].lift;
-      leg.upright = feet_[i][f].upright;
-      leg.turn = Eigen::AngleAxisd(plans_[i].twist[f], Vec3::UnitY());
-      leg.contact.strength = std::clamp(plans_[i].planted[f], 0.0, 1.0);
-    }
-  }
-
-  // In every frame at once, as a body does that trembles while its feet stand: a smoothed way would leave the trembling
-  // to the legs (jerk up to 1.46 times the source's instead of 1.13, on toys whose legs are short).
-  void movePelvis() {
-    const Pelvis& pelvis = goals_.pelvis();
-    for (std::size_t f = 0; f < frames(); ++f) {
-      setLegs(f);
-      BodyFrame& to = targetAt(f);
-      const Quat turn = pelvis.turnFor(goals_.legs(), to);
-      for (Leg& leg : goals_.legs()) leg.changed = pelvis.changeOf(leg, to, turn);
-      pelvis.apply(pelvis.moveFor(goals_.legs(), to), target_.poses[f], to);
-    }
-  }
-
-  void moveFeetWithHips() {
-    for (std::size_t f = 0; f < frames(); ++f) {
-      const BodyFrame& to = targetAt(f);
-      for (std::size_t i = 0; i < feet_.size(); ++i) {
-        const Leg& leg = goals_.legs()[i];
-        if (!leg.footDriven) feet_[i][f].ankle = to.positions[leg.end];
+      const std::vector<FreeFoot>& foot = feet_[i];
+      Goals twist = noGoals();
+      for (std::size_t f = 1; f < frames(); ++f) {
+        if (!contacts_->at(f, i).flat || !contacts_->at(f - 1, i).flat) continue;
+        const Vec3 from = level(foot[f - 1].roll), to = level(foot[f].roll);
+        twist[f].step = -std::atan2(from.cross(to).y(), from.dot(to));
+        twist[f].stepWeight = kTwistHold * contacts_->firmness(f, i);
       }
+      const std::vector<double> turns = displacementCurve(twist, target_.frameSeconds, {kTwistSeconds});
+      for (std::size_t f = 0; f < frames(); ++f) twists_[f][i] = turns[f];
     }
   }
 
-  void placeFeet() {
+  Vec3 rollOf(std::size_t i, std::size_t f) const {
+    return Eigen::AngleAxisd(twists_[f][i], Vec3::UnitY()) * feet_[i][f].roll;
+  }
+
+  // What is asked of the foot: of steps, not of places. Where it stands best is left to the least squares.
+  FootFrame askedOf(std::size_t i, std::size_t f, const BodyFrame& to) {
+    const double unit = 1 / setup_.targetHipHeight;
+    const Leg& leg = goals_.legs()[i];
+    const FreeFoot& now = feet_[i][f];
+    const FootAnchor anchor = contacts_->at(f, i).anchor;
+    const Vec3 roll = rollOf(i, f);
+    const bool byToes = anchor == FootAnchor::kToes;
+    const double toesUp = now.toesFloor - roll.y() - now.ankle.y(), ankleUp = now.ankleFloor - now.ankle.y();
+    FootFrame asked;
+    asked.lowest = unit * std::max(ankleUp, toesUp);
+    asked.height = std::max(leg.footDriven ? 0 : unit * (byToes ? toesUp : ankleUp), asked.lowest);
+    asked.rest = leg.footDriven ? kFootDrivenRest : contacts_->firmness(f, i);
+    asked.way = unit * (now.ankle - to.positions[leg.upper]);
+    asked.most = unit * kStretched * leg.length;
+    if (anchor == FootAnchor::kNone) asked.most = std::max(asked.most, asked.way.norm());
+    if (trunk().isFore(leg.upper)) asked.lift = TrunkTilt::liftOf(trunk().trunkOf(to));
+    if (f == 0 || anchor == FootAnchor::kNone || contacts_->at(f - 1, i).anchor == FootAnchor::kNone) return asked;
+    asked.hold = contacts_->firmness(f, i);
+    asked.step = unit * (feet_[i][f - 1].ankle - now.ankle);
+    if (byToes) asked.step += unit * (rollOf(i, f - 1) - roll);
+    return asked;
+  }
+
+  const TrunkTilt& trunk() const { return goals_.pelvis().trunk(); }
+
+  void plantFeet() {
+    if (feet_.empty()) return;
+    const auto ahead = static_cast<std::size_t>(std::round(kAheadSeconds / target_.frameSeconds));
+    const std::size_t parts = (frames() + kSolvedFrames - 1) / kSolvedFrames;
+    Part before;
+    for (std::size_t i = 0; i < parts; ++i) {
+      Part part;
+      part.first = i * frames() / parts;
+      part.begin = i == 0 ? 0 : part.first - kKnown;
+      part.end = (i + 1) * frames() / parts;
+      part.seen = std::min(frames(), part.end + ahead);
+      plantPart(before, part);
+      before = std::move(part);
+    }
+  }
+
+  // Frames [first, end), seen with those from `begin` up to `seen`; the changes of all these.
+  struct Part {
+    std::size_t begin = 0, first = 0, end = 0, seen = 0;
+    Changes changes;
+  };
+  static constexpr std::size_t kKnown = 3;  // frames of the part before: third differences reach no further
+
+  void plantPart(const Part& before, Part& part) {
+    std::vector<bool> tilted;
+    for (const Leg& leg : goals_.legs()) tilted.push_back(trunk().isFore(leg.upper));
+    const ChangeLayout layout(part.seen - part.begin, tilted);
+    MovedLegs moved(setup_, root_, trunk(), goals_.legs());
+    moved.solveAll(true);
+    std::vector<FootFrame> asked;
+    for (std::size_t f = part.begin; f < part.seen; ++f) {
+      const BodyFrame& to = f < part.first ? knownFrames_[f - part.begin] : targetAt(f);
+      moved.add(to);
+      for (std::size_t i = 0; i < feet_.size(); ++i) asked.push_back(askedOf(i, f, to));
+    }
+    MotionEnds ends;
+    if (part.begin < part.first) {
+      ends.startsJoined = true;
+      const std::span known(before.changes);
+      const auto changes = known.subspan((part.begin - before.begin) * layout.perFrame(), kKnown * layout.perFrame());
+      ends.start.assign(changes.begin(), changes.end());
+    }
+    // Paths of nothing: what counts is what the changes make of them.
+    ChangedMotion now;
+    now.changes.assign(layout.frames() * layout.perFrame(), 0.0);
+    now.paths.assign(1 + 2 * feet_.size(), Path(layout.frames(), Vec3(Vec3::Zero())));
+    moved.findSlopes(layout, kBoneProbe, now);
+    const auto cut = cuts_.begin() + static_cast<std::ptrdiff_t>(part.begin);
+    LeastChanges least(layout, std::move(asked), {cut, cut + static_cast<std::ptrdiff_t>(layout.frames())}, ends,
+                       planting(target_.frameSeconds));
+    least.start(now);
+    const double seconds = goals_.legs().front().footDriven ? kFootDrivenSeconds : kChangeSeconds;
+    part.changes = least.find(smoothnessWeight(seconds, target_.frameSeconds));
+    knownFrames_.clear();
+    for (std::size_t f = part.end - std::min(kKnown, part.end); f < part.end; ++f) knownFrames_.push_back(targetAt(f));
+    for (std::size_t f = part.first; f < part.end; ++f) {
+      moved.pose(layout, part.changes, f - part.begin, target_.poses[f], twists_[f]);
+    }
+  }
+
+  void layToes() {
     for (std::size_t f = 0; f < frames(); ++f) {
       BodyFrame& to = targetAt(f);
-      setLegs(f);
-      for (Leg& leg : goals_.legs()) {
-        goals_.bendAsSource(leg, to);
-        if (!LimbReach::isThere(leg, to)) reach_.reach(leg, &leg.kneeAhead, to, target_.poses[f]);
+      for (std::size_t i = 0; i < feet_.size(); ++i) {
+        Leg& leg = goals_.legs()[i];
+        leg.contact = contacts_->at(f, i);
         goals_.levelToes(leg, to, target_.poses[f]);
       }
       goals_.tail().apply(target_.poses[f], to);
@@ -278,8 +313,9 @@ class Spacetime {
   PoseSequence& target_;
   std::optional<ContactTrack> contacts_;
   std::vector<bool> cuts_;
-  std::vector<std::vector<FootFrame>> feet_;  // of each leg, by frame
-  std::vector<FootPlan> plans_;
+  std::vector<std::vector<FreeFoot>> feet_;  // of each leg, by frame
+  std::vector<std::vector<double>> twists_;  // of each frame, of each leg's foot: radians about +Y
+  std::vector<BodyFrame> knownFrames_;       // the last of the part before, as they were
   BodyFrame from_, to_;
 };
 
