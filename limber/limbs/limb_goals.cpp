@@ -34,7 +34,6 @@ constexpr double kFaces = 0.5;  // squared cosine of half the angle by which a b
 // Hip heights a second at which planted feet slip by half.
 constexpr double kSlipSpeed = 0.65, kPersonSlipSpeed = 0.4, kSlipPower = 3;
 constexpr double kBentInRest = 0.01;  // of an animal's leg's length: a knee off its line by that tells where it bends
-constexpr double kBendsAlike = 0.05;  // likewise: the source's joint of that name bends to the same side
 constexpr double kSteep = 1.7, kSoleUp = 2.4, kSoftLevel = 0.05;  // radians that toes point down
 
 // How far the lower joint is off the line from the upper one to the end, in lengths of that line.
@@ -97,7 +96,7 @@ void LimbGoals::addAnimalsLegs(const RootPlacer& root) {
     leg.hock = found.target.hock;
     leg.fore = pelvis_.trunk().isFore(leg.upper);
     leg.footDriven = root.isFootDriven(found);
-    leg.ownBend = leg.footDriven || bendAtRest(found.source, setup_.sourceNeutral).dot(leg.kneeAhead) < kBendsAlike;
+    leg.ownBend = leg.footDriven || bendAtRest(found.source, setup_.sourceNeutral).dot(leg.kneeAhead) < kBentInRest;
     if (leg.footDriven) leg.sourceBody = sourceBodyOf(found);
     leg.toes = found.target.toes;
     leg.sourceToes = found.source.toes;

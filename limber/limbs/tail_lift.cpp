@@ -10,11 +10,10 @@ namespace limber {
 
 namespace {
 
-constexpr double kClearance = 0.03;       // hip heights between the tail's joints and the ground
-constexpr double kSoft = 0.05;            // radians
-constexpr double kHighest = 0.9;          // of the tail's length, that it may have to rise over its first joint
-constexpr double kBack = 0.1;             // of its length, that counts for where it points at rest
-constexpr double kMost = 3, kFine = 0.1;  // of what one joint asks for, radians; how finely the most of it is told
+constexpr double kClearance = 0.03;  // hip heights between the tail's joints and the ground
+constexpr double kSoft = 0.05;       // radians
+constexpr double kBack = 0.1;        // of its length, that counts for where it points at rest
+constexpr double kFine = 0.1;        // how finely the most of what joints ask for is told, radians
 
 Vec3 level(const Vec3& v) {
   return {v.x(), 0, v.z()};
@@ -35,9 +34,9 @@ double TailLift::needed(const BodyFrame& frame) const {
     const Vec3 way = frame.positions[*joint] - base;
     const double length = way.norm();
     if (!(length > 0)) continue;
-    const double least = std::asin(std::clamp((floor - base.y()) / length, -1.0, kHighest));
+    const double least = std::asin(std::clamp((floor - base.y()) / length, -1.0, 1.0));
     const double up = softPositive(least - std::asin(std::clamp(way.y() / length, -1.0, 1.0)), kSoft);
-    const double weight = std::exp(std::min(up, kMost) / kFine);
+    const double weight = std::exp(up / kFine);
     sum += weight * up;
     weights += weight;
   }

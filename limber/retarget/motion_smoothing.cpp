@@ -16,9 +16,9 @@ namespace {
 constexpr double kJerkLimit = 1.08;        // jerk, times the source's
 constexpr std::size_t kPartFrames = 1000;  // of one solve: its time grows evenly, its memory is bounded
 constexpr double kLoops = 0.02;            // of a limb's bones, between the directions in the first and the last frame
-// Jerk counts as for changes that come and go in that time, seconds; ever longer until the motion is smooth. And that
-// many frames: longer ones leave sums whose weights cannot be told apart.
-constexpr double kShortest = 0.007, kLongest = 1, kLonger = 1.2, kMostFrames = 30;
+// Jerk counts as for changes that come and go in that time, seconds; ever longer until the motion is smooth, and up to
+// that many frames: longer ones leave sums whose weights cannot be told apart.
+constexpr double kShortest = 0.007, kLonger = 1.2, kMostFrames = 30;
 constexpr double kFurthest = 0.15;  // of any change, hip heights: further ones flatten what is meant
 constexpr double kStretch = 0.998;  // of a leg's length
 constexpr double kProbe = 1e-4;     // hip heights to each side, over which the slopes of bones are seen
@@ -130,7 +130,7 @@ class MotionSmoother {
     const double before = ratio(now_.paths);
     if (!ends.startsJoined && !ends.endsJoined) solveAll();
     double rough = ratio(now_.paths);
-    const double longest = std::min(kLongest, kMostFrames * source_.frameSeconds);
+    const double longest = kMostFrames * source_.frameSeconds;
     Step step = Step::kTaken;
     for (double seconds = kShortest; seconds < longest && rough > kJerkLimit && step != Step::kTooFar;
          seconds *= kLonger) {
