@@ -116,6 +116,11 @@ if [ -d "$characters" ]; then
   tools/judge_retargeting.sh
   kinds=$($limber evaluate templates --labels "$(dirname "$characters")/creatures/MANIFEST.tsv" --quiet)
   table="$kinds" perl -0pi -e 's/(<!-- made by [^\n]*: kinds -->\n).*(<!-- end of kinds -->)/$1\n$ENV{table}\n$2/s' docs/template-rigs.md
+  $limber evaluate templates --labels "$(dirname "$characters")/creatures/MANIFEST.tsv" --split check --sheet $images/check_rigs.png \
+    --each $work/check_rigs.tsv -o $work/check_rigs.md --quiet
+  named=$(awk -F'\t' 'NR > 1 { printf("%s%s (%s)", between, $3, $6 ? "handles" : $4); between = ", " }' \
+    $work/check_rigs.tsv | fold -s -w 118 | sed 's/ $//')
+  table="$named" perl -0pi -e 's/(<!-- made by [^\n]*: check -->\n).*(<!-- end of check -->)/$1\n$ENV{table}.\n\n$2/s' docs/template-rigs.md
   sed -i '/^\*\*People, /,$d' docs/template-rigs.md
   {
     echo "**People, --template humanoid**" && echo

@@ -256,6 +256,20 @@ TEST_F(Cli, WeightsAreComparedWithThemselvesAndWithOthers) {
   expectOneLine(run({"evaluate", "weights", "robot.glb", "truth.glb"}), 1);
 }
 
+TEST_F(Cli, RigsOfASplitAreDrawnIntoOnePicture) {
+  makeRobot();
+  ASSERT_EQ(run({"rig", "robot.glb", "--handles", "9", "-q", "-o", "truth.glb"}).code, 0);
+  put("list.tsv", "path\tkind\tsplit\ntruth.glb\trobot\tone\ntruth.glb\trobot\tone\nmissing.glb\trobot\tother\n");
+  const Result drawn = run({"evaluate", "templates", "--labels", "list.tsv", "--split", "one", "--sheet", "sheet.png"});
+  EXPECT_EQ(drawn.code, 0) << drawn.error;
+  EXPECT_THAT(drawn.out, HasSubstr("of 2"));
+  const std::string png = content("sheet.png");
+  EXPECT_EQ(png.substr(16, 8), std::string("\0\0\x01\x40\0\0\0\xa0", 8));  // two side by side
+  const Result none = run({"evaluate", "templates", "--labels", "list.tsv", "--split", "bogus"});
+  expectOneLine(none, 1);
+  EXPECT_THAT(none.error, HasSubstr("bogus"));
+}
+
 TEST_F(Cli, ATableOfNothingIsAnError) {
   makeRobot();
   put("walk.bvh", "no motion");

@@ -17,6 +17,7 @@
 #include "limber/evaluate/weight_report.h"
 #include "limber/evaluate/weight_table.h"
 #include "limber/pipeline/auto_rig.h"
+#include "limber/preview/render.h"
 #include "limber/templates/template_skeleton.h"
 #include "progress_line.h"
 
@@ -54,7 +55,7 @@ void runRig(const RigFiles& options) {
 
 struct RiggersOptions {
   std::vector<std::string> files;
-  std::string labels, each, output = "-", templateName = "auto", clip;
+  std::string labels, split, each, sheet, output = "-", templateName = "auto", clip;
   std::optional<double> time;  // seconds
   Common common;
 };
@@ -71,9 +72,19 @@ std::vector<TemplateTrial> labelled(const std::vector<RigTableRow>& rows, const 
   return trials;
 }
 
+constexpr int kSheetColumns = 8;
+
+PreviewOptions bonesOnSheet() {
+  PreviewOptions options;
+  options.show = PreviewShow::kBones;
+  options.width = options.height = 160;
+  return options;
+}
+
 void runRiggers(const RiggersOptions& options) {
   options.common.apply();
   checkOutput(options.output, {".md"});
+  if (!options.sheet.empty()) checkOutput(options.sheet, {".png"});
   if (options.files.empty() == options.labels.empty()) {
     throw CLI::ValidationError("FILE", "name files, or a list of labelled ones by --labels");
   }
@@ -86,6 +97,13 @@ void runRiggers(const RiggersOptions& options) {
       labels = parseLabelledFiles({reinterpret_cast<const char*>(text.data()), text.size()});
     } catch (const Error& error) {
       throwWithin(error, options.labels);
+    }
+    if (!options.split.empty()) {
+      std::erase_if(labels, [&](const LabelledFile& file) { return file.split != options.split; });
+      if (labels.empty()) {
+        throw Error(ErrorCode::kBadArgument, "no file is of the split \"" + options.split + "\"", options.labels,
+                    "name one that stands in its column split");
+      }
     }
     for (const LabelledFile& file : labels) files.push_back(folder / file.path);
   }
@@ -100,13 +118,20 @@ void runRiggers(const RiggersOptions& options) {
     const TemplateMatch& match = report.matches.front();
     return RigFit{report.isAbstained, match.name, match.confidence};
   };
+  std::vector<Image> pictures;
+  const auto draw = [&](const Asset& asset) {
+    if (!options.sheet.empty()) pictures.push_back(render(makeScene(asset), bonesOnSheet()));
+  };
   TerminalProgress progress(options.common.quiet);
   Warnings skipped;
   std::optional<ClipMoment> moment;
   if (!options.clip.empty() || options.time) moment = {options.clip, options.time.value_or(0)};
-  const std::vector<RigTableRow> rows = compareRigsOf(files, rerig, *progress, skipped, moment);
+  const std::vector<RigTableRow> rows = compareRigsOf(files, rerig, *progress, skipped, moment, draw);
   refuseNothing(rows.empty(), skipped);
   const std::vector<TemplateTrial> trials = labelled(rows, labels, folder);
+  if (!options.sheet.empty()) {
+    writeFile(options.sheet, encodePng(contactSheet(pictures, kSheetColumns, renderBackdrop(bonesOnSheet()))));
+  }
   if (!options.each.empty()) writeText(options.each, eachTemplateTrial(trials));
   writeText(options.output, labels.empty() ? rigTable(rows) : templateTables(trials));
   printWarnings(skipped, options.common.quiet);
@@ -225,6 +250,12 @@ void addRiggers(CLI::App& evaluate) {
                             ->add_option("--labels", options->labels,
                                          "a list of such files in their place, with kinds and splits, as TSV")
                             ->type_name("FILE");
+  command->add_option("--split", options->split, "with --labels: only the files of this split, such as check")
+      ->needs(labels)
+      ->type_name("NAME");
+  command
+      ->add_option("--sheet", options->sheet, "draw all with their new bones into one picture, in their order (.png)")
+      ->type_name("FILE");
   command->add_option("--each", options->each, "with --labels: write the figures of each file, tab separated")
       ->needs(labels)
       ->type_name("FILE");

@@ -66,7 +66,8 @@ std::string toText(const RigComparison& c) {
 }
 
 std::vector<RigTableRow> compareRigsOf(std::span<const std::filesystem::path> files, const Rerig& rerig,
-                                       Progress& progress, Warnings& skipped, const std::optional<ClipMoment>& moment) {
+                                       Progress& progress, Warnings& skipped, const std::optional<ClipMoment>& moment,
+                                       const RiggedSeen& seen) {
   std::vector<RigTableRow> rows;
   progress.stage("compare rigs");
   for (std::size_t i = 0; i < files.size(); ++i) {
@@ -90,6 +91,7 @@ std::vector<RigTableRow> compareRigsOf(std::span<const std::filesystem::path> fi
       row.seconds = secondsNow() - start;
       row.comparison = compareRigs(readSkinnedModel(asset), truth);
       rows.push_back(std::move(row));
+      if (seen) seen(asset);
     } catch (const Error& error) {
       if (error.code() == ErrorCode::kCancelled) throw;
       skipped.add("unreadable", "files that cannot be compared left out", error.what());

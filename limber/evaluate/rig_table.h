@@ -38,12 +38,15 @@ struct RigTableRow {
 
 // Gives the asset a rig in place of its own.
 using Rerig = std::function<RigFit(Asset&)>;
+// Is shown the asset of each row with its new rig.
+using RiggedSeen = std::function<void(const Asset&)>;
 
 // One row for each of the files that has a rig and triangles, in their order; what cannot be read or compared is
 // counted in `skipped`. Given a moment, each stands in that pose (standAt) before it is rigged and compared.
 std::vector<RigTableRow> compareRigsOf(std::span<const std::filesystem::path> files, const Rerig& rerig,
                                        Progress& progress, Warnings& skipped,
-                                       const std::optional<ClipMoment>& moment = std::nullopt);
+                                       const std::optional<ClipMoment>& moment = std::nullopt,
+                                       const RiggedSeen& seen = {});
 
 // A Markdown table with a line for each row and one of means.
 std::string rigTable(std::span<const RigTableRow> rows);
