@@ -47,9 +47,7 @@ struct Taken {
 Taken motionFrom(const std::string& file) {
   const Motion motion = readMotion(*sharedDataFolder() / "motions" / file);
   const Clip& clip = motion.clips.front();
-  Taken taken{motion.skeleton, sampleFrames(motion.skeleton, clip, frameRateOf(motion, 0))};
-  taken.frames.poses.resize(std::min(taken.frames.poses.size(), mostFrames()));
-  return taken;
+  return {motion.skeleton, sampleFrames(motion.skeleton, clip, frameRateOf(motion, 0))};
 }
 
 constexpr const char* kMotions[] = {"boxing_toes.bvh",
@@ -93,7 +91,8 @@ TEST_P(RetargetMatrix, EveryHumanoidKeepsFeetAndGround) {
   if (!sharedDataFolder()) GTEST_SKIP() << kNoSharedData;
   Spreads spreads;
   for (const char* motion : kMotions) {
-    const Taken source = motionFrom(motion);
+    Taken source = motionFrom(motion);
+    source.frames.poses.resize(std::min(source.frames.poses.size(), mostFrames()));
     for (const std::string& file : humanoids()) {
       const Skeleton target = readMotion(*sharedDataFolder() / "rigged" / file).skeleton;
       const RetargetSetup setup(source.skeleton, target, matchSkeletons(source.skeleton, target), {}, &source.frames);
