@@ -143,6 +143,53 @@ TEST(LeastChanges, LegsReachFromShouldersThatRise) {
   EXPECT_NEAR((way - rise * feet[kJolt].lift).norm(), 1, 1e-4);
 }
 
+TEST(LeastChanges, FeetTakeTheStepsAndComeToTheHeightsThatAreAsked) {
+  const ChangeLayout layout(kFrames, {false});
+  std::vector<FootFrame> feet(kFrames, FootFrame{false, -1, Vec3(0, -1, 0), 2});
+  for (FootFrame& foot : feet) {
+    foot.step = Vec3(0.01, 0, -0.02);
+    foot.height = 0.03;
+    foot.hold = foot.rest = 1;
+  }
+  ChangeWeights weights;
+  weights.hold = weights.rest = 1e6;
+  LeastChanges least(layout, feet, std::vector<bool>(kFrames), {}, weights);
+  least.start(jolted(layout));
+  const Changes changes = least.find(0);
+  for (std::size_t f = 0; f < kFrames; ++f) {
+    EXPECT_NEAR(changes[layout.foot(f, 0) + 1], 0.03, 1e-5);
+    if (f == 0) continue;
+    const Vec3 step = wayAt(changes, layout.foot(f, 0)) - wayAt(changes, layout.foot(f - 1, 0));
+    EXPECT_NEAR((Vec3(step.x(), 0, step.z()) - Vec3(0.01, 0, -0.02)).norm(), 0, 1e-5);
+  }
+}
+
+// The foot follows a pelvis that the ground pushes up where its bones count, and stays where they do not.
+TEST(LeastChanges, BonesKeepTheirDirectionsWhereTheyCount) {
+  const ChangeLayout layout(kFrames, {false});
+  std::vector<FootFrame> feet(kFrames, FootFrame{false, -1, Vec3(0, -1, 0), 2});
+  for (FootFrame& foot : feet) foot.lowest = 0.1;
+  const auto riseOfPelvis = [&](double bones) {
+    ChangeWeights weights;
+    weights.bones = bones;
+    weights.pelvisUp = 0.01;
+    LeastChanges least(layout, feet, std::vector<bool>(kFrames), {}, weights);
+    ChangedMotion still = jolted(layout);
+    still.paths[2][kJolt] = Vec3::Zero();
+    least.start(still);
+    return least.find(1)[layout.pelvis(kJolt) + 1];
+  };
+  EXPECT_NEAR(riseOfPelvis(0), 0, 1e-3);
+  EXPECT_NEAR(riseOfPelvis(1), 0.1, 2e-3);
+}
+
+TEST(LeastChanges, APartBeginsAsTheOneBeforeItEnded) {
+  Leg leg;
+  leg.ends.startsJoined = true;
+  leg.ends.start.assign(3 * leg.layout.perFrame(), 0.02);
+  for (std::size_t f = 0; f < 3; ++f) EXPECT_NEAR((leg.footAt(f) - Vec3::Constant(0.02)).norm(), 0, 1e-6) << f;
+}
+
 TEST(LeastChanges, EndsStayOrCloseTheLoop) {
   Leg joined;
   joined.ends.startsJoined = joined.ends.endsJoined = true;

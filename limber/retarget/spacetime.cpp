@@ -27,10 +27,9 @@ constexpr double kTwistHold = 1e8;       // of its turn from frame to frame, rad
 constexpr double kFootDrivenRest = 0.1;  // how firmly a foot-driven foot keeps its height, 0 to 1
 // Hip heights, over which it is seen how bones follow a foot: without the kink of legs that are nearly straight.
 constexpr double kBoneProbe = 0.2;
-constexpr double kStretched = 0.995;  // of its length to which a planted leg stretches: straight knees tremble
-// Motions are changed in parts of about so many frames; each sees so many seconds of the next.
-constexpr std::size_t kSolvedFrames = 1000;
-constexpr double kAheadSeconds = 0.5;
+constexpr double kStretched = 0.995;         // of its length to which a planted leg stretches: straight knees tremble
+constexpr std::size_t kSolvedFrames = 1000;  // about so many at once: memory is bounded
+constexpr double kAheadSeconds = 0.5;        // that each part sees of the next
 
 // The pelvis rises and sinks freely, so that legs keep their bend; it hardly goes aside. A foot has no place of its
 // own: its leg's bones tell where it is to be.
