@@ -8,7 +8,7 @@
 // (limber evaluate retargeting --judge) runs for every number and factor over a sample of people and animals. Prints a
 // line for each number with its largest effect on any measure: the mean change over all pairs of a motion and a
 // character, in percent of the measure's mean. Numbers without effect are tried again on whole motions of a larger
-// sample, bit by bit. Takes four minutes to build, later only what has changed, and ten to run, on two idle processors.
+// sample, bit by bit. Takes four minutes to build, later only what has changed, and thirteen to run, on two processors.
 import { execFile, spawnSync } from 'node:child_process';
 import { createHash } from 'node:crypto';
 import { existsSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
