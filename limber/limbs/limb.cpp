@@ -1,11 +1,16 @@
 #include "limber/limbs/limb.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "limber/limbs/leg_bend.h"
 #include "limber/skeleton/chain.h"
 
 namespace limber {
+
+bool anyFootDriven(std::span<const Leg> legs) {
+  return std::any_of(legs.begin(), legs.end(), [](const Leg& leg) { return leg.footDriven; });
+}
 
 std::optional<Limb> makeLimb(const RetargetSetup& setup, const RootPlacer& root, const LegJoints& source,
                              const LegJoints& target) {

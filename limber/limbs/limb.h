@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 
 #include "limber/limbs/foot_lock.h"
 #include "limber/limbs/root_motion.h"
@@ -44,6 +45,8 @@ struct Leg : Limb {
 // Leg::lift from which on a foot-driven leg may leave its goal for the source's bend alone: the body no longer
 // follows it.
 inline constexpr double kLifted = 0.6;
+
+bool anyFootDriven(std::span<const Leg> legs);
 
 // None where its joints do not hang on each other, or a bone has no length.
 std::optional<Limb> makeLimb(const RetargetSetup& setup, const RootPlacer& root, const LegJoints& source,

@@ -33,7 +33,8 @@ constexpr double kSoftLeg = 0.03, kSoftStanding = 0.003;  // of the most that a 
 constexpr double kFaces = 0.5;  // squared cosine of half the angle by which a body leans that still faces a way
 // Hip heights a second at which planted feet slip by half.
 constexpr double kSlipSpeed = 0.65, kPersonSlipSpeed = 0.4, kSlipPower = 3;
-constexpr double kBentInRest = 0.01;  // of an animal's leg's length: a knee off its line by that tells where it bends
+// Of an animal's leg's length: a knee off its line by that tells to which side it bends.
+constexpr double kBentInRest = 0.01;
 constexpr double kSteep = 1.7, kSoleUp = 2.4, kSoftLevel = 0.05;  // radians that toes point down
 
 // How far the lower joint is off the line from the upper one to the end, in lengths of that line.

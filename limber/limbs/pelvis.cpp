@@ -43,10 +43,6 @@ double followed(const Leg& leg) {
   return leg.footDriven ? leg.upright * smoothStep(1 - leg.lift / kLifted) : 1;
 }
 
-bool anyFootDriven(std::span<const Leg> legs) {
-  return std::any_of(legs.begin(), legs.end(), [](const Leg& leg) { return leg.footDriven; });
-}
-
 double hipWidth(const NeutralPose& neutral, Index left, Index right) {
   return (neutral.restPositions[left] - neutral.restPositions[right]).norm();
 }

@@ -8,7 +8,6 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kJoinedFrames = 3;  // third differences reach no further
 // Of what has to hold, against changes in hip heights: planted feet, bounds, and frames that do not change.
 constexpr double kFirmWeight = 1e8;
 constexpr double kFirmUpTo = 1e6;    // the weight of jerk; it is more for more

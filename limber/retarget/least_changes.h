@@ -34,6 +34,10 @@ class ChangeLayout {
   bool tilts_ = false;
 };
 using Changes = std::vector<double>;  // by such a layout
+
+inline constexpr std::size_t kPartFrames = 1000;  // about so many of a motion in one solve: its memory is bounded
+inline constexpr std::size_t kJoinedFrames = 3;   // that a part shares with another: third differences reach no further
+
 Vec3 wayAt(const Changes& changes, std::size_t first);
 
 // What has to hold for a foot in one frame.

@@ -13,9 +13,8 @@ namespace limber {
 
 namespace {
 
-constexpr double kJerkLimit = 1.08;        // jerk, times the source's
-constexpr std::size_t kPartFrames = 1000;  // of one solve: its time grows evenly, its memory is bounded
-constexpr double kLoops = 0.02;            // of a limb's bones, between the directions in the first and the last frame
+constexpr double kJerkLimit = 1.08;  // jerk, times the source's
+constexpr double kLoops = 0.02;      // of a limb's bones, between the directions in the first and the last frame
 // Jerk counts as for changes that come and go in that time, seconds; ever longer until the motion is smooth, and up to
 // that many frames: longer ones leave sums whose weights cannot be told apart.
 constexpr double kShortest = 0.007, kLonger = 1.2, kMostFrames = 30;
@@ -39,13 +38,11 @@ class MotionSmoother {
   void run() {
     const std::size_t frames = target_.poses.size(), parts = (frames + kPartFrames - 1) / kPartFrames;
     if (!goals_.active() || legs_.empty() || frames < 5) return;
-    std::vector<bool> tilted;
-    for (const Leg& leg : legs_) tilted.push_back(trunk_.isFore(leg.upper));
     traceSource();
     for (std::size_t i = 0; i < parts; ++i) {
       const std::size_t end = (i + 1) * frames / parts;
       begin_ = i * frames / parts;
-      layout_ = ChangeLayout(end - begin_, tilted);
+      layout_ = moved_.layoutOf(end - begin_);
       if (partsRatio() <= kJerkLimit) continue;
       const bool closes = loops_ && parts > 1;
       smoothPart({i > 0 || closes, i + 1 < parts || closes, loops_ && parts == 1});

@@ -33,6 +33,12 @@ void MovedLegs::findShares() {
   for (const Leg& leg : legs_) hipShares_.push_back(share(before.positions[leg.upper], after.positions[leg.upper]));
 }
 
+ChangeLayout MovedLegs::layoutOf(std::size_t frames) const {
+  std::vector<bool> tilted;
+  for (const Leg& leg : legs_) tilted.push_back(trunk_.isFore(leg.upper));
+  return ChangeLayout(frames, std::move(tilted));
+}
+
 void MovedLegs::add(const BodyFrame& frame) {
   Frame& seen = frames_.emplace_back();
   seen.pelvis = pelvisOf(setup_.map, MapSide::kTarget, frame.positions);

@@ -16,6 +16,8 @@ class MovedLegs {
   // All but the legs must outlive this.
   MovedLegs(const RetargetSetup& setup, const RootPlacer& root, const TrunkTilt& trunk, std::vector<Leg> legs);
 
+  // Of so many frames.
+  ChangeLayout layoutOf(std::size_t frames) const;
   // The motion before any changes, frame by frame: the globals of the target.
   void clear() { frames_.clear(); }
   void add(const BodyFrame& frame);
@@ -26,7 +28,7 @@ class MovedLegs {
   // their places; `feet` of each frame, of each leg. About 0.1 us for a leg in a frame.
   bool follow(const ChangeLayout& layout, const Changes& changes, std::span<const FootFrame> feet,
               std::vector<Path>& paths) const;
-  // Of the paths as they are, seen over `probe` hip heights to each side.
+  // About the motion with its changes, seen over `probe` hip heights to each side.
   void findSlopes(const ChangeLayout& layout, double probe, ChangedMotion& motion) const;
   // Changes a frame of the target, which is as it was before any changes; feet turned so about the vertical (radians,
   // of each leg).

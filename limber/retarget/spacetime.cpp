@@ -27,21 +27,23 @@ constexpr double kTwistHold = 1e8;       // of its turn from frame to frame, rad
 constexpr double kFootDrivenRest = 0.1;  // how firmly a foot-driven foot keeps its height, 0 to 1
 // Hip heights, over which it is seen how bones follow a foot: without the kink of legs that are nearly straight.
 constexpr double kBoneProbe = 0.2;
-constexpr double kStretched = 0.995;         // of its length to which a planted leg stretches: straight knees tremble
-constexpr std::size_t kSolvedFrames = 1000;  // about so many at once: memory is bounded
-constexpr double kAheadSeconds = 0.5;        // that each part sees of the next
+constexpr double kStretched = 0.995;   // of its length to which a planted leg stretches: straight knees tremble
+constexpr double kAheadSeconds = 0.5;  // that each part sees of the next
 
-// The pelvis rises and sinks freely, so that legs keep their bend; it hardly goes aside. A foot has no place of its
-// own: its leg's bones tell where it is to be.
+// ChangeWeights: the pelvis rises and sinks freely, so that legs keep their bend; it hardly goes aside. A foot has no
+// place of its own: its leg's bones tell where it is to be.
+constexpr double kPelvisLevel = 10, kPelvisUp = 0.02, kFeet = 0.02, kBones = 1, kRest = 3e4;
+constexpr int kRounds = 8;
+
 ChangeWeights planting(double frameSeconds) {
   ChangeWeights weights;
-  weights.pelvisLevel = 10;
-  weights.pelvisUp = 0.02;
-  weights.feet = 0.02;
-  weights.bones = 1;
+  weights.pelvisLevel = kPelvisLevel;
+  weights.pelvisUp = kPelvisUp;
+  weights.feet = kFeet;
+  weights.bones = kBones;
   weights.hold = kHold / (frameSeconds * frameSeconds);
-  weights.rest = 3e4;
-  weights.rounds = 8;
+  weights.rest = kRest;
+  weights.rounds = kRounds;
   return weights;
 }
 
@@ -151,8 +153,7 @@ class Spacetime {
   // Foot-driven legs begin where their feet are driven, with the pelvis over them, not by joint angles.
   void driveByFeet(std::size_t f, BodyFrame& to) {
     std::vector<Leg>& legs = goals_.legs();
-    const auto isDriven = [](const Leg& leg) { return leg.footDriven; };
-    if (std::none_of(legs.begin(), legs.end(), isDriven)) return;
+    if (!anyFootDriven(legs)) return;
     goals_.pelvis().apply(goals_.pelvis().moveFor(legs, to), target_.poses[f], to);
     for (Leg& leg : legs) {
       if (!leg.footDriven) continue;
@@ -212,12 +213,12 @@ class Spacetime {
   void plantFeet() {
     if (feet_.empty()) return;
     const auto ahead = static_cast<std::size_t>(std::round(kAheadSeconds / target_.frameSeconds));
-    const std::size_t parts = (frames() + kSolvedFrames - 1) / kSolvedFrames;
+    const std::size_t parts = (frames() + kPartFrames - 1) / kPartFrames;
     Part before;
     for (std::size_t i = 0; i < parts; ++i) {
       Part part;
       part.first = i * frames() / parts;
-      part.begin = i == 0 ? 0 : part.first - kKnown;
+      part.begin = i == 0 ? 0 : part.first - kJoinedFrames;
       part.end = (i + 1) * frames() / parts;
       part.seen = std::min(frames(), part.end + ahead);
       plantPart(before, part);
@@ -230,13 +231,10 @@ class Spacetime {
     std::size_t begin = 0, first = 0, end = 0, seen = 0;
     Changes changes;
   };
-  static constexpr std::size_t kKnown = 3;  // frames of the part before: third differences reach no further
 
   void plantPart(const Part& before, Part& part) {
-    std::vector<bool> tilted;
-    for (const Leg& leg : goals_.legs()) tilted.push_back(trunk().isFore(leg.upper));
-    const ChangeLayout layout(part.seen - part.begin, tilted);
     MovedLegs moved(setup_, root_, trunk(), goals_.legs());
+    const ChangeLayout layout = moved.layoutOf(part.seen - part.begin);
     moved.solveAll(true);
     std::vector<FootFrame> asked;
     for (std::size_t f = part.begin; f < part.seen; ++f) {
@@ -248,7 +246,8 @@ class Spacetime {
     if (part.begin < part.first) {
       ends.startsJoined = true;
       const std::span known(before.changes);
-      const auto changes = known.subspan((part.begin - before.begin) * layout.perFrame(), kKnown * layout.perFrame());
+      const auto changes =
+          known.subspan((part.begin - before.begin) * layout.perFrame(), kJoinedFrames * layout.perFrame());
       ends.start.assign(changes.begin(), changes.end());
     }
     // Paths of nothing: what counts is what the changes make of them.
@@ -260,10 +259,11 @@ class Spacetime {
     LeastChanges least(layout, std::move(asked), {cut, cut + static_cast<std::ptrdiff_t>(layout.frames())}, ends,
                        planting(target_.frameSeconds));
     least.start(now);
-    const double seconds = goals_.legs().front().footDriven ? kFootDrivenSeconds : kChangeSeconds;
+    const double seconds = anyFootDriven(goals_.legs()) ? kFootDrivenSeconds : kChangeSeconds;
     part.changes = least.find(smoothnessWeight(seconds, target_.frameSeconds));
     knownFrames_.clear();
-    for (std::size_t f = part.end - std::min(kKnown, part.end); f < part.end; ++f) knownFrames_.push_back(targetAt(f));
+    for (std::size_t f = part.end - std::min(kJoinedFrames, part.end); f < part.end; ++f)
+      knownFrames_.push_back(targetAt(f));
     for (std::size_t f = part.first; f < part.end; ++f) {
       moved.pose(layout, part.changes, f - part.begin, target_.poses[f], twists_[f]);
     }
