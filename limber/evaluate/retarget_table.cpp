@@ -7,6 +7,7 @@
 #include "limber/asset/motion_io.h"
 #include "limber/evaluate/held_out.h"
 #include "limber/evaluate/skinned_model.h"
+#include "limber/limbs/body_skin.h"
 #include "limber/limbs/roughness.h"
 #include "limber/matching/plain_skeleton.h"
 
@@ -21,6 +22,7 @@ struct Character {
   bool heldOut;
   Skeleton skeleton;
   std::optional<SkinnedModel> model;
+  std::shared_ptr<const BodySkin> skin;
 };
 
 std::vector<Character> readCharacters(std::span<const std::filesystem::path> files, Warnings& skipped) {
@@ -28,8 +30,12 @@ std::vector<Character> readCharacters(std::span<const std::filesystem::path> fil
   for (const std::filesystem::path& file : files) {
     try {
       const Asset asset = readAsset(file);
-      characters.push_back({file.stem().string(), isHeldOut(file), animatedSkeleton(asset).skeleton, std::nullopt});
-      if (hasRig(asset)) characters.back().model = readSkinnedModel(asset);
+      characters.push_back(
+          {file.stem().string(), isHeldOut(file), animatedSkeleton(asset).skeleton, std::nullopt, nullptr});
+      if (!hasRig(asset)) continue;
+      const SkinnedModel& model = characters.back().model.emplace(readSkinnedModel(asset));
+      characters.back().skin =
+          std::make_shared<const BodySkin>(makeBodySkin(model.skeleton, model.mesh.positions, model.weights));
     } catch (const Error& error) {
       skipped.add("unreadable", "characters that cannot be read left out", error.what());
     }
@@ -79,7 +85,10 @@ class Scorer {
                std::vector<RetargetScore>& scores) const {
     try {
       const PlainSkeleton plain(character.skeleton);
-      const RetargetSetup setup(skeleton, plain.skeleton(), matchSkeletons(skeleton, plain.skeleton()), {}, &source);
+      RetargetOptions options;
+      options.skin = character.skin;
+      const RetargetSetup setup(skeleton, plain.skeleton(), matchSkeletons(skeleton, plain.skeleton()), options,
+                                &source);
       if (!hasLegs(setup)) {
         skipped_.add("legless", "pairs without legs left out", fmt::format("{} on {}", motion.name, character.name));
         return;

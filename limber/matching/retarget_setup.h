@@ -1,6 +1,7 @@
 // What every retargeting method starts from: two skeletons, which joint follows which, and how their spaces compare.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,6 +26,13 @@ struct ContactEdit {
   bool planted = false;
 };
 
+// A character's skin, as far as it matters where its body is: places in the frames of the joints that carry them (their
+// rotations, metres). Made by makeBodySkin (limber/limbs/body_skin.h).
+struct BodySkin {
+  std::vector<Vec3> places;
+  std::vector<Index> joints;
+};
+
 enum class RootScale {
   kHipHeight,  // from the ground to the hips
   kLegLength,  // of upper and lower leg
@@ -46,6 +54,7 @@ struct RetargetOptions {
   // The character's rest pose stands on its ground, wherever that is, as models with a surface do. Else a person who
   // hangs about the origin, as bare skeletons may, is put where the motion's ground is.
   bool characterStands = false;
+  std::shared_ptr<const BodySkin> skin = nullptr;  // the character's: arms stay outside it (ArmClearance)
 };
 
 // Immutable once made; the skeletons must outlive it, and have no negative scales (plain_skeleton.h). `motion`, if

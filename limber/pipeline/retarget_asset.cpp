@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include "limber/asset/clip_io.h"
+#include "limber/asset/geometry.h"
 #include "limber/asset/motion_io.h"
+#include "limber/asset/rig_io.h"
 #include "limber/core/error.h"
+#include "limber/limbs/body_skin.h"
 #include "limber/pipeline/stand_upright.h"
 #include "limber/skeleton/clip_edit.h"
 
@@ -28,6 +31,13 @@ std::vector<std::string> doubtfulMatches(const SkeletonMap& map, const Skeleton&
   return lines;
 }
 
+std::shared_ptr<const BodySkin> bodySkinOf(const Asset& asset) {
+  const Geometry geometry = collectGeometry(asset);
+  const AssetSkeleton character = readSkeleton(asset);
+  return std::make_shared<const BodySkin>(
+      makeBodySkin(character.skeleton, geometry.positions, readWeights(asset, geometry, character)));
+}
+
 }  // namespace
 
 bool canMove(const Asset& asset) {
@@ -44,6 +54,7 @@ std::vector<RetargetedClip> retargetOnto(Asset& asset, const Motion& given, cons
                                           : matchSkeletons(motion.skeleton, character.skeleton, options.unlikeBodies);
   RetargetOptions retarget = options.retarget;
   retarget.characterStands = !isSkeletonAlone(asset);
+  if (hasRig(asset)) retarget.skin = bodySkinOf(asset);
   std::vector<RetargetedClip> reports;
   std::vector<Clip> clips;
   for (std::size_t c = 0; c < motion.clips.size(); ++c) {

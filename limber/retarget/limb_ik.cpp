@@ -1,13 +1,20 @@
 #include "limber/retarget/limb_ik.h"
 
+#include <array>
+#include <vector>
+
 #include "limber/ik/ik_solver.h"
+#include "limber/limbs/arm_clearance.h"
 #include "limber/limbs/hand_goals.h"
 #include "limber/limbs/limb_reach.h"
+#include "limber/limbs/spring.h"
 #include "limber/retarget/aligned.h"
 
 namespace limber {
 
 namespace {
+
+constexpr double kOutRate = 8;  // 1/seconds, of arms that give way
 
 class LimbIkRetargeter : public FrameRetargeter {
  public:
@@ -16,7 +23,8 @@ class LimbIkRetargeter : public FrameRetargeter {
         aligned_(setup),
         goals_(setup, aligned_.root()),
         hands_(setup, aligned_.root()),
-        reach_(setup, aligned_.root()) {
+        reach_(setup, aligned_.root()),
+        clearance_(setup, aligned_.root()) {
     findIkMethod(setup.options.solver);
     if (setup.options.solver == "two-bone") return;
     for (const Leg& leg : goals_.legs()) legSolvers_.push_back(solverOf(leg));
@@ -44,13 +52,28 @@ class LimbIkRetargeter : public FrameRetargeter {
     for (std::size_t i = 0; i < arms.size(); ++i) {
       if (arms[i].wanted) reach(arms[i], solver(armSolvers_, i), nullptr, target);
     }
+    if (setup_.options.contacts) keepArmsOut(seconds, target);
   }
 
  private:
+  struct Follow {
+    Vec3 value = Vec3::Zero(), speed = Vec3::Zero();
+  };
   using Solvers = std::vector<std::unique_ptr<IkSolver>>;
 
   const BodyFrame& from() const { return aligned_.sourceFrame(); }
   BodyFrame& to() { return aligned_.targetFrame(); }
+
+  void keepArmsOut(double seconds, Pose& target) {
+    waysOut_.resize(clearance_.arms());
+    for (std::size_t i = 0; i < clearance_.arms(); ++i) {
+      for (const ArmClearance::Bone bone : {ArmClearance::Bone::kUpper, ArmClearance::Bone::kForearm}) {
+        Follow& follow = waysOut_[i][static_cast<std::size_t>(bone)];
+        springTo(clearance_.wayOut(i, bone, to()), kOutRate, seconds, follow.value, follow.speed);
+        clearance_.swing(i, bone, follow.value, to(), target);
+      }
+    }
+  }
 
   std::unique_ptr<IkSolver> solverOf(const Limb& limb) const {
     // A limb whose end only rides on it is no chain: two bones serve it.
@@ -89,7 +112,9 @@ class LimbIkRetargeter : public FrameRetargeter {
   LimbGoals goals_;
   HandGoals hands_;
   LimbReach reach_;
-  Solvers legSolvers_, armSolvers_;  // empty: two-bone
+  ArmClearance clearance_;
+  std::vector<std::array<Follow, 2>> waysOut_;  // of each arm's bones
+  Solvers legSolvers_, armSolvers_;             // empty: two-bone
 };
 
 }  // namespace

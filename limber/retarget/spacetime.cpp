@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "limber/ik/rotation.h"
+#include "limber/limbs/arm_clearance.h"
 #include "limber/limbs/hand_goals.h"
 #include "limber/limbs/limb_reach.h"
 #include "limber/retarget/displacement_curve.h"
@@ -93,6 +94,7 @@ class Spacetime {
         goals_(setup, root_),
         hands_(setup, root_),
         reach_(setup, root_),
+        clearance_(setup, root_),
         source_(source),
         target_(target) {}
 
@@ -301,6 +303,20 @@ class Spacetime {
         reach_.reach(arms[a], nullptr, to, target_.poses[f]);
       }
     }
+    if (setup_.options.contacts) keepArmsOut();
+  }
+
+  void keepArmsOut() {
+    for (const ArmClearance::Bone bone : {ArmClearance::Bone::kUpper, ArmClearance::Bone::kForearm}) {
+      for (std::size_t a = 0; a < clearance_.arms(); ++a) {
+        Goals3 ways = {noGoals(), noGoals(), noGoals()};
+        for (std::size_t f = 0; f < frames(); ++f) follow(clearance_.wayOut(a, bone, targetAt(f)), f, ways);
+        const Curve3 smooth(ways, target_.frameSeconds, following(kHandSeconds));
+        for (std::size_t f = 0; f < frames(); ++f) {
+          clearance_.swing(a, bone, smooth.at(f), targetAt(f), target_.poses[f]);
+        }
+      }
+    }
   }
 
   const RetargetSetup& setup_;
@@ -308,6 +324,7 @@ class Spacetime {
   LimbGoals goals_;
   HandGoals hands_;
   LimbReach reach_;
+  ArmClearance clearance_;
   const PoseSequence& source_;
   PoseSequence& target_;
   std::optional<ContactTrack> contacts_;

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "limber/limbs/body_skin.h"
 #include "limber/pipeline/stand_upright.h"
 #include "limber/retarget/retarget_clip.h"
 #include "limber/retarget/retarget_method.h"
@@ -152,13 +153,15 @@ std::size_t clipOfMotion(const Motion& motion, const std::string& name) {
 }
 
 // Tells `source` which feet stand in it.
-Clip retargeted(ClipSource& source, const Skeleton& skeleton) {
+Clip retargeted(ClipSource& source, const RiggedModel& rig) {
+  const Skeleton& skeleton = rig.skeleton();
   const Motion motion = asItRests(*source.motion);
   RetargetOptions options;
   options.reach = source.command.reach;
   options.contacts = source.command.contacts;
   options.contactEdits = source.contactEdits;
   options.characterStands = true;
+  options.skin = std::make_shared<const BodySkin>(makeBodySkin(skeleton, rig.geometry->positions, rig.weights));
   const RetargetMethod& method = findRetargetMethod(source.command.method);
   const Clip& moving = motion.clips[source.clip];
   const double rate = frameRateOf(motion, source.clip);
@@ -169,13 +172,13 @@ Clip retargeted(ClipSource& source, const Skeleton& skeleton) {
 }
 
 // The motion below the layer.
-void makeAnew(SessionClip& entry, const Skeleton& skeleton, ClipSource source) {
-  Clip made = retargeted(source, skeleton);
+void makeAnew(SessionClip& entry, const RiggedModel& rig, ClipSource source) {
+  Clip made = retargeted(source, rig);
   made.name = entry.clip->name;
   setInterpolation(made, interpolationOf(*entry.base));
   entry.source = std::move(source);
   entry.authored.reset();
-  setBase(entry, skeleton, std::make_shared<const Clip>(std::move(made)));
+  setBase(entry, rig.skeleton(), std::make_shared<const Clip>(std::move(made)));
 }
 
 // What was said of a foot, but for what `change` says anew.
@@ -266,24 +269,24 @@ void addMotion(Movement& movement, Motion motion) {
   movement.motions.push_back(std::make_shared<const Motion>(std::move(motion)));
 }
 
-void retargetMotion(Movement& movement, const Skeleton& skeleton, const RetargetMotion& command) {
+void retargetMotion(Movement& movement, const RiggedModel& rig, const RetargetMotion& command) {
   ClipSource source{requireMotion(movement, command.motion), 0, command, {}};
   const Motion& motion = *source.motion;
   source.clip = clipOfMotion(motion, command.clip);
   if (!(command.reach >= 0 && command.reach <= 1)) refuse("the reach is not between 0 and 1");
-  source.map = command.map.empty() ? matchSkeletons(motion.skeleton, skeleton)
-                                   : skeletonMapFromJson(command.map, motion.skeleton, skeleton);
+  source.map = command.map.empty() ? matchSkeletons(motion.skeleton, rig.skeleton())
+                                   : skeletonMapFromJson(command.map, motion.skeleton, rig.skeleton());
 
   for (std::size_t c = 0; c < movement.clips.size(); ++c) {
     const std::optional<ClipSource>& known = movement.clips[c].source;
     if (!known || known->motion != source.motion || known->clip != source.clip) continue;
     source.contactEdits = known->contactEdits;
-    makeAnew(movement.clips[c], skeleton, std::move(source));
+    makeAnew(movement.clips[c], rig, std::move(source));
     if (movement.chosen != c) movement.seconds = 0;
     movement.chosen = c;
     return;
   }
-  Clip made = retargeted(source, skeleton);
+  Clip made = retargeted(source, rig);
   const std::string& ofClip = motion.clips[source.clip].name;
   made.name = freeName(motion.clips.size() == 1 || ofClip.empty() ? motion.name : ofClip,
                        [&](const std::string& name) { return findClip(movement, name).has_value(); });
@@ -293,7 +296,7 @@ void retargetMotion(Movement& movement, const Skeleton& skeleton, const Retarget
   movement.seconds = 0;
 }
 
-void setContactOf(Movement& movement, const Skeleton& skeleton, const SetContact& command) {
+void setContactOf(Movement& movement, const RiggedModel& rig, const SetContact& command) {
   SessionClip& chosen = requireChosen(movement);
   if (!chosen.source) refuse(fmt::format("the clip '{}' is from no motion", chosen.clip->name));
   if (!(command.from >= 0 && command.to >= command.from)) refuse("a contact ends before it begins");
@@ -306,7 +309,7 @@ void setContactOf(Movement& movement, const Skeleton& skeleton, const SetContact
   if (command.contact != ContactChange::kFound) {
     source.contactEdits.push_back({command.foot, command.from, command.to, command.contact == ContactChange::kPlanted});
   }
-  makeAnew(chosen, skeleton, std::move(source));
+  makeAnew(chosen, rig, std::move(source));
 }
 
 namespace {
@@ -341,8 +344,8 @@ ClipContent contentOn(const AuthoredClip& authored, Transfers& transfers,
     made.source.reset();
     return made;
   }
-  made.base = made.source ? std::make_shared<const Clip>(retargeted(*made.source, skeleton))
-                          : transferred(*authored.content.base);
+  made.base =
+      made.source ? std::make_shared<const Clip>(retargeted(*made.source, *to)) : transferred(*authored.content.base);
   made.layer = transferLayer(transfer, *authored.rig, *authored.content.base, authored.content.layer);
   applyLayerOf(made, skeleton);
   return made;

@@ -83,10 +83,10 @@ void moveToRig(Movement& movement, const std::shared_ptr<const RiggedModel>& fro
 // Makes the clip, or makes it anew below its layer where that clip of that motion is on the model already, and chooses
 // it. Throws as
 // matchSkeletons and skeletonMapFromJson do.
-void retargetMotion(Movement& movement, const Skeleton& skeleton, const RetargetMotion& command);
+void retargetMotion(Movement& movement, const RiggedModel& rig, const RetargetMotion& command);
 // Makes the chosen clip anew with what the user says of a foot. Throws where the clip is from no motion, or keeps no
 // such foot.
-void setContactOf(Movement& movement, const Skeleton& skeleton, const SetContact& command);
+void setContactOf(Movement& movement, const RiggedModel& rig, const SetContact& command);
 void addClip(Movement& movement, const std::string& name);
 void removeClip(Movement& movement, const std::string& name);
 void renameClip(Movement& movement, const std::string& from, const std::string& to);

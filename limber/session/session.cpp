@@ -174,7 +174,7 @@ void addMotionTo(SessionState& next, Motion motion, bool retarget) {
   if (!retarget) return;
   RetargetMotion command;
   command.motion = next.movement.motions.back()->name;
-  retargetMotion(next.movement, next.rig->skeleton(), command);
+  retargetMotion(next.movement, *next.rig, command);
   show(next);
 }
 
@@ -527,10 +527,10 @@ struct Session::Runner {
     session.commit(command, std::move(next));
   }
   void operator()(const RetargetMotion& c) const {
-    move([&](SessionState& next) { retargetMotion(next.movement, next.rig->skeleton(), c); });
+    move([&](SessionState& next) { retargetMotion(next.movement, *next.rig, c); });
   }
   void operator()(const SetContact& c) const {
-    move([&](SessionState& next) { setContactOf(next.movement, next.rig->skeleton(), c); });
+    move([&](SessionState& next) { setContactOf(next.movement, *next.rig, c); });
   }
   // A clip without keys shows nothing yet: the pose stays.
   void operator()(const AddClip& c) const {
