@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <limits>
-#include <queue>
-#include <utility>
 
+#include "limber/body/inside_graph.h"
 #include "limber/core/error.h"
 #include "limber/core/parallel.h"
 #include "limber/mesh/bvh.h"
@@ -20,15 +18,10 @@ namespace {
 
 constexpr double kMostCells = 96;        // along the longest side
 constexpr double kMostNodes = 250000;    // of the grid: fewer cells for what fills its box
-constexpr double kMostSlope = 0.6;       // depth gained for each step: from there on a place is not in the middle
 constexpr double kSphereSpacing = 0.45;  // radii that the centres of two spheres are apart, at least
 constexpr std::size_t kMostSpheres = 700;
 constexpr std::size_t kMostTips = 16;
 constexpr double kLeastReach = 0.05;  // longest sides
-// Spacings outside the surface over which parts that nearly touch hang together: more where else too little does.
-constexpr double kGaps[] = {1.2, 3, 6, 12, 24};
-constexpr double kGapCost = 5;        // of a way there, times the spacings outside, against one inside
-constexpr double kTogether = 0.9995;  // part of the inside that must hang together
 
 Index resolutionFor(const TriMesh& mesh) {
   Box box;
@@ -66,93 +59,6 @@ std::vector<bool> turnedPieces(const TriMesh& mesh) {
   return turned;
 }
 
-// The 26 nodes round a node, as steps, with the way there in spacings.
-struct Neighbor {
-  std::array<int, 3> step;
-  double length;
-};
-std::vector<Neighbor> neighbors() {
-  std::vector<Neighbor> all;
-  for (int z = -1; z <= 1; ++z) {
-    for (int y = -1; y <= 1; ++y) {
-      for (int x = -1; x <= 1; ++x) {
-        if (x != 0 || y != 0 || z != 0)
-          all.push_back({{x, y, z}, std::sqrt(static_cast<double>(x * x + y * y + z * z))});
-      }
-    }
-  }
-  return all;
-}
-
-// The grid as a graph of the nodes that are inside, or all but inside.
-class InsideGraph {
- public:
-  explicit InsideGraph(const SignedDistance& distance) : distance_(distance), neighbors_(neighbors()) {
-    const auto& size = distance.size();
-    for (const Neighbor& n : neighbors_) {
-      offsets_.push_back((static_cast<std::ptrdiff_t>(n.step[2]) * size[1] + n.step[1]) * size[0] + n.step[0]);
-    }
-  }
-
-  // The model keeps a margin to the grid's border, but the winding number of faces that lie on each other many times is
-  // large out there, too.
-  bool inside(std::size_t node) const { return distance_.value(node) < 0 && !onBorder(node); }
-  double depth(std::size_t node) const { return -distance_.value(node); }
-
-  bool medial(std::size_t node) const {
-    for (std::size_t n = 0; n < offsets_.size(); ++n) {
-      const double gain = depth(node + offsets_[n]) - depth(node);
-      if (gain > kMostSlope * neighbors_[n].length * distance_.spacing()) return false;
-    }
-    return true;
-  }
-
-  void allowGaps(double spacings) { gap_ = spacings * distance_.spacing(); }
-
-  // Lowers `way` to the shortest way from `sources`, and remembers whence in `from`.
-  void spread(const std::vector<std::size_t>& sources, std::vector<float>& way, std::vector<std::size_t>& from) const {
-    using Item = std::pair<float, std::size_t>;
-    std::priority_queue<Item, std::vector<Item>, std::greater<>> queue;
-    for (const std::size_t node : sources) {
-      way[node] = 0;
-      from[node] = node;
-      queue.push({0.0f, node});
-    }
-    while (!queue.empty()) {
-      const auto [length, node] = queue.top();
-      queue.pop();
-      if (length > way[node]) continue;
-      for (std::size_t n = 0; n < offsets_.size(); ++n) {
-        const std::size_t next = node + offsets_[n];
-        const double value = distance_.value(next);
-        if (value > gap_ || onBorder(next)) continue;
-        const double cost = value < 0 ? 1 : kGapCost * std::max(1.0, value / distance_.spacing());
-        const double step = neighbors_[n].length * distance_.spacing() * cost;
-        const float reached = length + static_cast<float>(step);
-        if (reached >= way[next]) continue;
-        way[next] = reached;
-        from[next] = node;
-        queue.push({reached, next});
-      }
-    }
-  }
-
- private:
-  bool onBorder(std::size_t node) const {
-    const auto& size = distance_.size();
-    const std::size_t place[3] = {node % size[0], node / size[0] % size[1], node / size[0] / size[1]};
-    for (int axis = 0; axis < 3; ++axis) {
-      if (place[axis] == 0 || place[axis] + 1 == size[axis]) return true;
-    }
-    return false;
-  }
-
-  const SignedDistance& distance_;
-  std::vector<Neighbor> neighbors_;
-  std::vector<std::ptrdiff_t> offsets_;
-  double gap_ = 0;
-};
-
 std::vector<MedialSphere> medialSpheres(const SignedDistance& distance, const InsideGraph& graph,
                                         const std::vector<std::size_t>& inside) {
   std::vector<std::size_t> middle;
@@ -182,17 +88,10 @@ std::vector<BodyTip> findTips(const SignedDistance& distance, InsideGraph& graph
   const std::size_t root = *std::min_element(inside.begin(), inside.end(), [&](std::size_t a, std::size_t b) {
     return (distance.position(a) - middle).squaredNorm() < (distance.position(b) - middle).squaredNorm();
   });
-  std::vector<float> way(distance.nodeCount(), std::numeric_limits<float>::infinity());
-  std::vector<std::size_t> from(distance.nodeCount());
+  std::vector<float> way;
+  std::vector<std::size_t> from;
+  graph.spreadToAll(root, inside, way, from);
   std::vector<std::size_t> sources = {root};
-  for (const double gap : kGaps) {
-    graph.allowGaps(gap);
-    graph.spread(sources, way, from);
-    const auto reached =
-        std::count_if(inside.begin(), inside.end(), [&](std::size_t node) { return std::isfinite(way[node]); });
-    if (static_cast<double>(reached) >= kTogether * static_cast<double>(inside.size())) break;
-    std::fill(way.begin(), way.end(), std::numeric_limits<float>::infinity());
-  }
   std::vector<BodyTip> tips;
   while (tips.size() < kMostTips) {
     graph.spread(sources, way, from);
@@ -219,10 +118,7 @@ BodyVolume measureBody(const TriMesh& mesh) {
   body.distance = std::make_unique<const SignedDistance>(mesh, *surface, *winding, resolutionFor(mesh));
   const SignedDistance& distance = *body.distance;
   InsideGraph graph(distance);
-  std::vector<std::size_t> inside;
-  for (std::size_t node = 0; node < distance.nodeCount(); ++node) {
-    if (graph.inside(node)) inside.push_back(node);
-  }
+  const std::vector<std::size_t> inside = graph.insideNodes();
   if (inside.empty()) {
     throw Error(ErrorCode::kUnsupported, "nothing lies inside the model, so that no skeleton fits into it", {},
                 "it is flat or too thin; the rigger sphere-mesh takes such models");

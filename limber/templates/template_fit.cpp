@@ -21,7 +21,7 @@ double unusual(const AnatomicalFrame& frame) {
   const Vec3 up = frame.axes.row(1).transpose(), front = frame.axes.row(2).transpose();
   const bool yUp = up.y() > 0.9, zUp = up.z() > 0.9;
   const double upCost = yUp ? 0 : zUp ? 0.2 : 0.8;
-  const bool usualFront = yUp ? front.z() > 0.9 : zUp ? front.y() < -0.9 : true;
+  const bool usualFront = frame.isFrontRead || (yUp ? front.z() > 0.9 : zUp ? front.y() < -0.9 : true);
   return upCost + (usualFront ? 0 : 0.6);
 }
 
