@@ -18,7 +18,7 @@
 #include "limber/evaluate/weight_table.h"
 #include "limber/pipeline/auto_rig.h"
 #include "limber/preview/render.h"
-#include "limber/templates/template_skeleton.h"
+#include "limber/rigging/template_rigger.h"
 #include "progress_line.h"
 
 namespace limber::cli {
@@ -110,7 +110,7 @@ void runRiggers(const RiggersOptions& options) {
   AutoRigOptions rig;
   rig.rigger = "template";
   rig.rig.templateName = options.templateName;
-  if (options.templateName != "auto") findTemplate(options.templateName);
+  checkTemplateName(options.templateName);
   rig.existingRig = ExistingRig::kReplace;
   const auto rerig = [&](Asset& asset) {
     Progress unheard;

@@ -11,7 +11,7 @@
 #include "limber/pipeline/auto_rig.h"
 #include "limber/pipeline/retarget_asset.h"
 #include "limber/pipeline/stand_upright.h"
-#include "limber/templates/template_skeleton.h"
+#include "limber/rigging/template_rigger.h"
 #include "progress_line.h"
 
 namespace limber::cli {
@@ -153,7 +153,7 @@ void runAnimate(RetargetArguments options) {
     rig.rigger = options.rigger;
     rig.standUpright = true;
     rig.rig.templateName = options.templateName;
-    if (options.templateName != "auto") findTemplate(options.templateName);
+    checkTemplateName(options.templateName);
     AutoRigReport report = autoRig(asset, rig, *progress);
     if (report.isAbstained) refuseAbstained(asset, report);
     warnings = std::move(report.warnings);

@@ -14,7 +14,7 @@
 #include "limber/core/counted.h"
 #include "limber/pipeline/report_json.h"
 #include "limber/pipeline/template_file.h"
-#include "limber/templates/template_skeleton.h"
+#include "limber/rigging/template_rigger.h"
 #include "progress_line.h"
 
 namespace limber::cli {
@@ -150,7 +150,7 @@ void chooseTemplate(const std::string& name, AutoRigOptions& rig) {
   rig.rigger = "template";
   rig.rig.templateName = name;
   if (std::filesystem::path(name).extension().empty()) {
-    if (name != "auto") findTemplate(name);
+    checkTemplateName(name);
     return;
   }
   rig.rig.templateSkeleton = readTemplateFile(name);
@@ -223,9 +223,7 @@ std::string listMethods(std::string_view title, std::span<const Method> methods)
 
 std::string listTemplates() {
   std::string text = "Templates:\n";
-  for (const TemplateSkeleton& skeleton : templateSkeletons()) {
-    text += fmt::format("  {:<18}{}\n", skeleton.name, skeleton.summary);
-  }
+  for (const NamedTemplate& named : namedTemplates()) text += fmt::format("  {:<18}{}\n", named.name, named.summary);
   return text;
 }
 

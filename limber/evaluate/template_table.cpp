@@ -203,12 +203,19 @@ std::vector<LabelledFile> parseLabelledFiles(std::string_view text) {
 
 std::span<const std::string_view> templatesFor(std::string_view kind) {
   static constexpr std::array<std::string_view, 2> kPeople = {"humanoid", "humanoid-fingers"};
-  static constexpr std::array<std::string_view, 1> kFourLegs = {"quadruped"}, kBirds = {"bird"};
+  static constexpr std::array<std::string_view, 2> kLow = {"quadruped", "crawler"}, kLegs = {"insect", "spider"};
+  static constexpr std::array<std::string_view, 1> kFourLegs = {"quadruped"}, kBirds = {"bird"}, kFish = {"fish"},
+                                                   kSerpents = {"serpent"}, kDinosaurs = {"dinosaur"};
   for (const std::string_view person : {"human", "chibi", "robed-or-propped", "monster-biped", "robot"}) {
     if (kind == person) return kPeople;
   }
-  if (kind == "quadruped" || kind == "low-quadruped") return kFourLegs;
+  if (kind == "quadruped") return kFourLegs;
+  if (kind == "low-quadruped") return kLow;
   if (kind == "bird") return kBirds;
+  if (kind == "fish") return kFish;
+  if (kind == "serpent") return kSerpents;
+  if (kind == "dinosaur-biped") return kDinosaurs;
+  if (kind == "insect-or-many-legged") return kLegs;
   return {};
 }
 

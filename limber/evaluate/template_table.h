@@ -22,7 +22,7 @@ struct LabelledFile {
 std::vector<LabelledFile> parseLabelledFiles(std::string_view text);
 
 // The templates that suit a kind of body; none: handles do. People of every build are
-// humanoid, whoever walks on four legs is a quadruped.
+// humanoid, whoever walks on four legs is a quadruped, low ones may be crawlers.
 std::span<const std::string_view> templatesFor(std::string_view kind);
 
 struct TemplateTrial {

@@ -43,7 +43,7 @@ TEST(TemplateTables, CountKindsAndWhatIsSureAndWrong) {
       trial("chibi", {false, "humanoid", 0.85}, 9),         // right kind, far off
       trial("bird", {false, "humanoid", 0.7}, 4),           // wrong kind
       trial("bird", {true, "bird", 0.3}, 5),                // abstains where there is a template
-      trial("fish", {true, "bird", 0.3}, 6),                // abstains where there is none
+      trial("blob", {true, "bird", 0.3}, 6),                // abstains where there is none
   };
   const std::string tables = templateTables(trials);
   EXPECT_THAT(tables, HasSubstr("| kind told right | 3 of 5 (60 %;"));

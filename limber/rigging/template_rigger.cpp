@@ -12,6 +12,8 @@
 #include "limber/figure/figure_search.h"
 #include "limber/rigging/person_template.h"
 #include "limber/rigging/sphere_mesh_rigger.h"
+#include "limber/shape/plan_fit.h"
+#include "limber/shape/shape_reading.h"
 #include "limber/surface/stray_pieces.h"
 #include "limber/templates/arm_flatness.h"
 #include "limber/templates/bent_template.h"
@@ -35,7 +37,9 @@ constexpr double kCostOfDoubt = 1.8;               // cost at which confidence i
 constexpr double kOtherHands = 0.05;               // cost of fingers that hands lack, or that a template lacks
 constexpr double kWings = 2;                       // cost of arms as flat as wings
 constexpr double kRoundArm = 2.5, kFlatArm = 3.5;  // times as wide as thick
-constexpr double kMostAsymmetry = 0.15;            // more than the most symmetric way to stand, of those looked at
+constexpr double kVoteOfShape = 8;                 // times the odds of a template that has the plan of a sure shape
+constexpr double kSureShape = 0.9;       // confidence of a shape from which on templates of other plans are not tried
+constexpr double kMostAsymmetry = 0.15;  // more than the most symmetric way to stand, of those looked at
 
 // Each joint once, and where the model may be: the model's size beyond its box is another unit.
 void checkPins(const TriMesh& mesh, const std::vector<JointPin>& pins) {
@@ -207,22 +211,98 @@ void tellByFingers(const TriMesh& mesh, std::vector<TemplateFit>& fits) {
   }
 }
 
-void warn(const TemplateFit& fit, AutoRig& rig) {
+// A template as it was fitted, and how sure it is that the model is of its kind.
+struct Guess {
+  TemplateFit fit;
+  double vote = 0;               // of the shape, -1 to 1 (voteOf)
+  std::optional<double> byPlan;  // the confidence of what is laid along the shape's curves
+
+  double confidence() const {
+    if (byPlan) return *byPlan;
+    const double own = confidenceOf(fit), odds = std::pow(kVoteOfShape, vote);
+    return odds * own / (1 + (odds - 1) * own);
+  }
+};
+
+bool isQuadruped(const TemplateSkeleton& skeleton) {
+  return skeleton.find("leftFrontUpperLeg").has_value();
+}
+
+// What the shape says of a template: 1 for it, -1 against it, 0 nothing, and between as far as the shape is sure.
+double voteOf(const ShapeReading& shape, const TemplateSkeleton& skeleton) {
+  const auto has = [&](BodyPlan plan) { return shape.plan == plan ? shape.confidence : -shape.confidence; };
+  if (isHumanoid(skeleton) && shape.plan != BodyPlan::kUnknown) return has(BodyPlan::kUpright);
+  if (isQuadruped(skeleton) && shape.plan != BodyPlan::kUnknown) return has(BodyPlan::kFourLegs);
+  if (skeleton.find("leftUpperWing")) return shape.hasWings() && shape.plan != BodyPlan::kFourLegs ? 1 : 0;
+  return 0;
+}
+
+// Whether it is worth while to try a template where the shape is sure of what it is.
+bool mayBe(const TemplateSkeleton& skeleton, const std::optional<ShapeReading>& shape) {
+  return !shape || shape->confidence < kSureShape || voteOf(*shape, skeleton) >= 0;
+}
+
+// Those that face as the shape of a four-legged animal does, where it is surely one; else all.
+std::vector<AnatomicalFrame> framesLike(const std::optional<ShapeReading>& shape,
+                                        const std::vector<AnatomicalFrame>& frames) {
+  const bool isSure = shape && shape->plan == BodyPlan::kFourLegs && shape->confidence > kSureEnough;
+  if (!isSure || !shape->frame.isFrontRead) return frames;
+  return {shape->frame};
+}
+
+Guess guessOf(TemplateFit fit, const std::optional<ShapeReading>& shape) {
+  const double vote = shape ? voteOf(*shape, fit.skeleton) : 0;
+  return {std::move(fit), vote, {}};
+}
+
+// Laid along the shape's curves, with its pins.
+Guess planGuess(const PlanKind& kind, const ShapeReading& shape, const std::vector<JointPin>& pins) {
+  TemplateFit fit = fitPlan(kind, shape);
+  fit.pins = pinsIn(fit.skeleton, fit.frame, pins);
+  for (Index j = 0; j < fit.skeleton.jointCount(); ++j) {
+    if (!fit.pins[j]) continue;
+    fit.embedding.places[j] = *fit.pins[j];
+    const std::optional<Index> mirror = fit.skeleton.joints[j].mirror;
+    if (mirror && !fit.pins[*mirror]) fit.embedding.places[*mirror] = fit.pins[j]->cwiseProduct(Vec3(-1, 1, 1));
+  }
+  return {std::move(fit), 0, likelihood(kind, shape)};
+}
+
+// Kinds of the shape's plan, of all or the one that is asked for.
+std::vector<Guess> planGuesses(const std::optional<ShapeReading>& shape, const PlanKind* asked,
+                               const std::vector<JointPin>& pins) {
+  if (asked && !shape) {
+    throw Error(ErrorCode::kUnsupported, "both sides of the model have too little in common to follow its curves",
+                std::string(asked->name),
+                "--up and --front say how it stands; humanoid, quadruped and bird need neither");
+  }
+  std::vector<Guess> guesses;
+  if (asked) {
+    guesses.push_back(planGuess(*asked, *shape, pins));
+  } else if (shape && pins.empty()) {
+    for (const PlanKind& kind : planKinds()) {
+      if (likelihood(kind, *shape) > 0) guesses.push_back(planGuess(kind, *shape, pins));
+    }
+  }
+  return guesses;
+}
+
+void warn(const Guess& guess, AutoRig& rig) {
+  const TemplateFit& fit = guess.fit;
   if (const std::size_t missing = missingLimbs(fit); missing > 0) {
     rig.warnings.add("no-place", "limbs of the template have no place in the model",
                      limbsWithoutPlace(fit.skeleton, fit.limbs), missing);
   }
-  const double confidence = confidenceOf(fit);
-  if (confidence < kLikelyTemplate) {
+  if (guess.confidence() < kLikelyTemplate) {
     rig.warnings.add("low-confidence",
-                     fmt::format("the model hardly looks like the template (confidence {:.2f})", confidence),
+                     fmt::format("the model hardly looks like the template (confidence {:.2f})", guess.confidence()),
                      fit.skeleton.name);
   }
 }
 
-std::vector<TemplateMatch> matchesOf(const std::vector<TemplateFit>& fits) {
+std::vector<TemplateMatch> matchesOf(const std::vector<Guess>& guesses) {
   std::vector<TemplateMatch> matches;
-  for (const TemplateFit& fit : fits) matches.push_back({fit.skeleton.name, confidenceOf(fit)});
+  for (const Guess& guess : guesses) matches.push_back({guess.fit.skeleton.name, guess.confidence()});
   return matches;
 }
 
@@ -231,17 +311,35 @@ bool mayAbstain(const RigOptions& options) {
   return options.mayAbstain && options.templateName == "auto" && !options.templateSkeleton && options.pins.empty();
 }
 
-AutoRig withHandles(const TriMesh& mesh, const RigOptions& options, const TemplateFit& likeliest, Progress& progress) {
+AutoRig withHandles(const TriMesh& mesh, const RigOptions& options, const Guess& likeliest, Progress& progress) {
   AutoRig rig = rigWithSphereMesh(mesh, options, progress);
   rig.isAbstained = true;
   rig.warnings.add("no-template",
                    fmt::format("the model is like no template (the likeliest is {:.0f} % sure): it gets handles",
-                               100 * confidenceOf(likeliest)),
-                   likeliest.skeleton.name);
+                               100 * likeliest.confidence()),
+                   likeliest.fit.skeleton.name);
   return rig;
 }
 
 }  // namespace
+
+std::vector<NamedTemplate> namedTemplates() {
+  std::vector<NamedTemplate> named;
+  for (const TemplateSkeleton& skeleton : templateSkeletons()) named.push_back({skeleton.name, skeleton.summary});
+  for (const PlanKind& kind : planKinds()) named.push_back({kind.name, kind.summary});
+  return named;
+}
+
+void checkTemplateName(std::string_view name) {
+  std::string known = "auto";
+  bool isKnown = name == known;
+  for (const NamedTemplate& named : namedTemplates()) {
+    isKnown = isKnown || named.name == name;
+    known += ", " + std::string(named.name);
+  }
+  if (isKnown) return;
+  throw Error(ErrorCode::kBadArgument, fmt::format("no template is called '{}'", name), {}, "there are: " + known);
+}
 
 TemplateFit fitTemplate(const TemplateSkeleton& skeleton, const TriMesh& mesh, const BodyVolume& body,
                         const RigOptions& options) {
@@ -290,7 +388,9 @@ Skeleton standingSkeleton(const TemplateSkeleton& skeleton, const std::vector<Ve
 }
 
 AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress& progress) {
+  if (!options.templateSkeleton) checkTemplateName(options.templateName);
   std::vector<const TemplateSkeleton*> candidates;
+  const PlanKind* plan = options.templateSkeleton ? nullptr : findPlanKind(options.templateName);
   TemplateSkeleton own;
   std::optional<PersonTemplate> person;
   if (options.templateSkeleton) {
@@ -299,7 +399,7 @@ AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress
     candidates = {person ? &findTemplate("humanoid") : &own};
   } else if (options.templateName == "auto") {
     for (const TemplateSkeleton& skeleton : templateSkeletons()) candidates.push_back(&skeleton);
-  } else {
+  } else if (!plan) {
     candidates = {&findTemplate(options.templateName)};
   }
   const std::vector<JointPin> pins = person ? humanoidPins(*person, options.pins) : options.pins;
@@ -309,37 +409,55 @@ AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress
   const TriMesh& surface = cleared ? *cleared : mesh;
   const BodyVolume body = measureBody(surface);
   const std::vector<AnatomicalFrame> frames = possibleFrames(surface, body, options.up, options.front);
+  const std::optional<ShapeReading> shape = readShape(body, frames, options.front.has_value());
   const Model model{body, frames, options.front};
+  // Animals face as their shape says: heads and tails look alike to a template.
+  const std::vector<AnatomicalFrame> likeShape = framesLike(shape, frames);
+  const Model animal{body, likeShape, options.front};
   FigureOnce figure;
   std::vector<TemplateFit> fits;
+  if (options.templateName == "auto" && !options.templateSkeleton && options.pins.empty()) {
+    std::erase_if(candidates, [&](const TemplateSkeleton* candidate) { return !mayBe(*candidate, shape); });
+  }
   for (const TemplateSkeleton* candidate : candidates) {
     // Where it is a person, no poses of animals are tried.
     const bool inPoses = isHumanoid(*candidate) || std::none_of(fits.begin(), fits.end(), isSure);
-    fits.push_back(bestFit(*candidate, model, pins, figure, progress, inPoses));
+    fits.push_back(bestFit(*candidate, isQuadruped(*candidate) ? animal : model, pins, figure, progress, inPoses));
   }
   if (fits.size() > 1) tellByFingers(surface, fits);
-  std::stable_sort(fits.begin(), fits.end(),
-                   [](const TemplateFit& a, const TemplateFit& b) { return confidenceOf(a) > confidenceOf(b); });
-  TemplateFit& best = fits.front();
-  if (mayAbstain(options) && confidenceOf(best) < kLikelyTemplate) {
-    AutoRig rig = withHandles(mesh, options, best, progress);
-    rig.matches = matchesOf(fits);
+  std::vector<Guess> guesses;
+  for (TemplateFit& fit : fits) guesses.push_back(guessOf(std::move(fit), shape));
+  if (plan || options.templateName == "auto") {
+    for (Guess& guess : planGuesses(shape, plan, pins)) guesses.push_back(std::move(guess));
+  }
+  std::stable_sort(guesses.begin(), guesses.end(),
+                   [](const Guess& a, const Guess& b) { return a.confidence() > b.confidence(); });
+  Guess& likeliest = guesses.front();
+  if (mayAbstain(options) && likeliest.confidence() < kLikelyTemplate) {
+    AutoRig rig = withHandles(mesh, options, likeliest, progress);
+    rig.matches = matchesOf(guesses);
     return rig;
   }
-  if (person && confidenceOf(best) < kLikelyTemplate) {
+  if (person && likeliest.confidence() < kLikelyTemplate) {
     // The model may stand as the user's skeleton does, and as no person of ours.
-    TemplateFit asItIs = bestFit(own, model, options.pins, figure, progress);
-    if (confidenceOf(asItIs) > confidenceOf(best)) {
-      best = std::move(asItIs);
+    Guess asItIs = guessOf(bestFit(own, model, options.pins, figure, progress), shape);
+    if (asItIs.confidence() > likeliest.confidence()) {
+      likeliest = std::move(asItIs);
       person.reset();
     }
   }
+  TemplateFit& best = likeliest.fit;
 
-  refineHumanoid(best.skeleton, body, best.frame, best.pins, best.embedding.places);
-  placeBetween(best.skeleton, best.embedding.places);
-  if (!best.skeleton.bent()) refineHocks(best.skeleton, body, best.frame, best.pins, best.embedding.places);
-  refineQuadruped(best.skeleton, body, best.frame, best.pins, best.embedding.places);
-  findHeadless(best.skeleton, best.embedding.places, best.limbs);
+  if (!likeliest.byPlan) {
+    refineHumanoid(best.skeleton, body, best.frame, best.pins, best.embedding.places);
+    placeBetween(best.skeleton, best.embedding.places);
+    if (!best.skeleton.bent()) refineHocks(best.skeleton, body, best.frame, best.pins, best.embedding.places);
+    refineQuadruped(best.skeleton, body, best.frame, best.pins, best.embedding.places);
+    const std::size_t missing = missingLimbs(best);
+    findHeadless(best.skeleton, best.embedding.places, best.limbs);
+    // A shape that ends at the shoulders speaks for nobody.
+    if (missingLimbs(best) > missing) likeliest.vote = std::min(likeliest.vote, 0.0);
+  }
   AutoRig rig;
   if (person) {
     const TemplatePins ownPins = pinsIn(person->skeleton, best.frame, options.pins);
@@ -354,8 +472,8 @@ AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress
                      mesh.triangleCount() - cleared->triangleCount());
   }
   rig.up = best.frame.axes.row(1).transpose();
-  rig.matches = matchesOf(fits);
-  warn(best, rig);
+  rig.matches = matchesOf(guesses);
+  warn(likeliest, rig);
   return rig;
 }
 

@@ -1,6 +1,9 @@
 // Template embedding as a rigger: a named skeleton is fitted into the model.
 #pragma once
 
+#include <string_view>
+#include <vector>
+
 #include "limber/body/anatomical_frame.h"
 #include "limber/body/body_volume.h"
 #include "limber/rigging/auto_rigger.h"
@@ -22,12 +25,22 @@ Skeleton standingSkeleton(const TemplateSkeleton& skeleton, const std::vector<Ve
 TemplateFit fitTemplate(const TemplateSkeleton& skeleton, const TriMesh& mesh, const BodyVolume& body,
                         const RigOptions& options);
 
+struct NamedTemplate {
+  std::string_view name, summary;  // one line for --help
+};
+
+// Skeletons that are searched for, and plans that follow a body's curves.
+std::vector<NamedTemplate> namedTemplates();
+// Throws Error kBadArgument that lists the names there are; "auto" is one.
+void checkTemplateName(std::string_view name);
+
 // Measures the body, finds the way it stands and the template that fits best (options.templateName, "auto" tries all),
-// embeds and refines it; where a person's template is in doubt, looks for a figure (limber/figure). "auto" abstains
-// where no template is likely (RigOptions::mayAbstain): then the model gets handles, with the warning "no-template".
-// Others: "no-place" with the limbs that the model seems to lack, "low-confidence", "stray-pieces" (withoutStrays),
-// with their triangles. Throws Error kBadArgument for an unknown template or pinned joint, one that is pinned twice or
-// far outside the mesh.
+// embeds and refines it; where a person's template is in doubt, looks for a figure (limber/figure). Kinds of bodies
+// that are told by their shape alone (planKinds) are laid along its curves, and what the shape stands on speaks for or
+// against every template (readShape). "auto" abstains where no template is likely (RigOptions::mayAbstain): then the
+// model gets handles, with the warning "no-template". Others: "no-place" with the limbs that the model seems to lack,
+// "low-confidence", "stray-pieces" (withoutStrays), with their triangles. Throws Error kBadArgument for an unknown
+// template or pinned joint, one that is pinned twice or far outside the mesh.
 AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress& progress);
 
 }  // namespace limber
