@@ -83,4 +83,15 @@ void placeQuadrupedLeg(const Skeleton& quadruped, const std::string& leg, const 
 
 Pose quadrupedGaitAt(const QuadrupedGait& gait, const Skeleton& quadruped, double seconds);
 
+// With the names and about the proportions of the templates fish, serpent and bird, facing +Z; one metre long, the bird
+// with wings of two.
+Skeleton fishSkeleton();
+Skeleton serpentSkeleton();
+Skeleton birdSkeleton();
+
+extern const double kSwimPeriod, kSlitherPeriod, kFlapPeriod;  // seconds
+Pose swimAt(const Skeleton& fish, double seconds);
+Pose slitherAt(const Skeleton& serpent, double seconds);
+Pose flapAt(const Skeleton& bird, double seconds);
+
 }  // namespace limber

@@ -57,6 +57,9 @@ const std::vector<SampleMotion>& allMotions() {
       onFourLegs<kQuadrupedWalk>("quadruped-walk", "an animal that walks on four legs"),
       onFourLegs<kTrot>("trot", "an animal that trots"),
       onFourLegs<kGallop>("gallop", "an animal that gallops"),
+      {"swim", "a fish that swims", kSwimPeriod, &fishSkeleton, &swimAt},
+      {"slither", "a snake that slithers", kSlitherPeriod, &serpentSkeleton, &slitherAt},
+      {"flap", "a bird that beats its wings", kFlapPeriod, &birdSkeleton, &flapAt},
   };
   return motions;
 }

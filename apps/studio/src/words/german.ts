@@ -406,6 +406,12 @@ export const german = {
   'An animal that trots': 'Ein Tier, das trabt',
   'Gallop': 'Galoppieren',
   'An animal that gallops': 'Ein Tier, das galoppiert',
+  'Swim': 'Schwimmen',
+  'A fish that swims': 'Ein Fisch, der schwimmt',
+  'Slither': 'Schlängeln',
+  'A snake that slithers': 'Eine Schlange, die sich schlängelt',
+  'Beat wings': 'Flügel schlagen',
+  'A bird that beats its wings': 'Ein Vogel, der mit den Flügeln schlägt',
 
   // The timeline and keys.
   'Timeline': 'Zeitleiste',
