@@ -89,6 +89,12 @@ Skeleton fishSkeleton();
 Skeleton serpentSkeleton();
 Skeleton birdSkeleton();
 
+// Likewise of the templates insect and spider, 0.7 metres long, and how they walk.
+Skeleton insectSkeleton();
+Skeleton spiderSkeleton();
+Pose scuttleAt(const Skeleton& skeleton, double seconds);
+
+extern const double kScuttlePeriod;  // seconds
 extern const double kSwimPeriod, kSlitherPeriod, kFlapPeriod;  // seconds
 Pose swimAt(const Skeleton& fish, double seconds);
 Pose slitherAt(const Skeleton& serpent, double seconds);

@@ -57,6 +57,8 @@ const std::vector<SampleMotion>& allMotions() {
       onFourLegs<kQuadrupedWalk>("quadruped-walk", "an animal that walks on four legs"),
       onFourLegs<kTrot>("trot", "an animal that trots"),
       onFourLegs<kGallop>("gallop", "an animal that gallops"),
+      {"insect-walk", "an insect that walks on six legs", kScuttlePeriod, &insectSkeleton, &scuttleAt},
+      {"spider-walk", "a spider that walks on eight legs", kScuttlePeriod, &spiderSkeleton, &scuttleAt},
       {"swim", "a fish that swims", kSwimPeriod, &fishSkeleton, &swimAt},
       {"slither", "a snake that slithers", kSlitherPeriod, &serpentSkeleton, &slitherAt},
       {"flap", "a bird that beats its wings", kFlapPeriod, &birdSkeleton, &flapAt},

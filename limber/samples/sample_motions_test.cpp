@@ -191,6 +191,34 @@ TEST(Slither, SlipsAlongItsBodyAlone) {
   }
 }
 
+// Tips on the ground stand where they are; those of no fewer than three legs are there at once, and each swings.
+TEST(Scuttle, StandsOnEveryOtherLeg) {
+  for (const Skeleton& skeleton : {insectSkeleton(), spiderSkeleton()}) {
+    std::vector<Index> tips;
+    for (Index j = 0; j < skeleton.jointCount(); ++j) {
+      const std::string& name = skeleton.joints[j].name;
+      if (name.find("Foot") != std::string::npos && name.ends_with("_end")) tips.push_back(j);
+    }
+    ASSERT_EQ(tips.size() % 2, 0u);
+    std::vector<double> highest(tips.size(), 0);
+    for (double seconds = 0; seconds < kScuttlePeriod; seconds += kFrame) {
+      const std::vector<Affine> now = poseGlobals(skeleton, scuttleAt(skeleton, seconds)),
+                                then = poseGlobals(skeleton, scuttleAt(skeleton, seconds + kFrame));
+      std::size_t standing = 0;
+      for (std::size_t t = 0; t < tips.size(); ++t) {
+        const Vec3 a = now[tips[t]].translation(), b = then[tips[t]].translation();
+        highest[t] = std::max(highest[t], a.y());
+        EXPECT_GT(a.y(), 0.01 - 1e-6);
+        if (std::max(a.y(), b.y()) > 0.01 + 1e-6) continue;
+        ++standing;
+        EXPECT_LT((b - a).norm(), 1e-6) << skeleton.joints[tips[t]].name << ' ' << seconds;
+      }
+      EXPECT_GE(standing, tips.size() / 2) << seconds;
+    }
+    for (const double height : highest) EXPECT_GT(height, 0.04);
+  }
+}
+
 TEST(Swim, TheTailSwingsWidest) {
   const Skeleton fish = fishSkeleton();
   const auto swing = [&](const char* name) {

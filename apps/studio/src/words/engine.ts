@@ -59,6 +59,8 @@ const motions: Readonly<Record<string, { name: Words; summary: Words }>> = {
   'quadruped-walk': { name: 'Walk on four legs', summary: 'An animal that walks on four legs' },
   'trot': { name: 'Trot', summary: 'An animal that trots' },
   'gallop': { name: 'Gallop', summary: 'An animal that gallops' },
+  'insect-walk': { name: 'Walk on six legs', summary: 'An insect that walks on six legs' },
+  'spider-walk': { name: 'Walk on eight legs', summary: 'A spider that walks on eight legs' },
   'swim': { name: 'Swim', summary: 'A fish that swims' },
   'slither': { name: 'Slither', summary: 'A snake that slithers' },
   'flap': { name: 'Beat wings', summary: 'A bird that beats its wings' },

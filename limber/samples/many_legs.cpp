@@ -1,0 +1,134 @@
+// Walks on six and on eight legs, for skeletons of the templates insect and spider. Legs next to each other, and the
+// two of a pair, take turns: an insect always stands on three (the tripod gait), a spider on four (Wilson: Insect
+// walking, 1966; Spider locomotion on level ground: Biancardi and others, 2011).
+#include <cmath>
+#include <string>
+
+#include "limber/core/numbers.h"
+#include "limber/ik/two_bone.h"
+#include "limber/samples/motion_recipes.h"
+#include "limber/samples/smooth_way.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kSeconds = 0.6, kStride = 0.16;  // of a stride, metres
+constexpr double kDutyFactor = 0.6;               // the share that a leg is on the ground
+constexpr double kLift = 0.06, kBob = 0.004;      // metres, of a foot in the air and of the body twice a stride
+constexpr double kTail = 0.04;                    // radians, of the tail to each side
+
+std::string legName(const char* bone, int pair, bool left) {
+  return (left ? "left" : "right") + std::string(bone) + (pair > 0 ? std::to_string(pair) : "");
+}
+
+// Where the limb's joints rest: the foot's tip last.
+struct LegPlaces {
+  Vec3 upper, lower, foot, tip;
+};
+LegPlaces legAt(int pair, int pairs) {
+  const double along = 0.5 - static_cast<double>(pair) / (pairs - 1);  // from 0.5 to -0.5
+  const double z = 0.2 * along, fan = 0.5 * along;
+  return {{0.06, 0.18, z}, {0.2, 0.3, z + 0.3 * fan}, {0.36, 0.14, z + 0.8 * fan}, {0.42, 0.01, z + fan}};
+}
+
+// What is left of the way that a standing foot has gone back when it swings ahead again, 0 to 1 and back to 0.
+double footWay(double phase) {
+  if (phase < kDutyFactor) return phase / kDutyFactor;
+  const double swing = (phase - kDutyFactor) / (1 - kDutyFactor);
+  return 1 - swing * swing * (3 - 2 * swing);
+}
+
+Skeleton manyLegged(int pairs) {
+  Skeleton skeleton;
+  std::vector<Vec3> places;
+  const auto add = [&](const std::string& name, const std::string& parent, const Vec3& place) {
+    Joint joint;
+    joint.name = name;
+    if (!parent.empty()) joint.parent = skeleton.find(parent).value();
+    joint.rest.translation = joint.parent ? Vec3(place - places[*joint.parent]) : place;
+    places.push_back(place);
+    skeleton.joints.push_back(std::move(joint));
+  };
+  add("hips", "", {0, 0.18, -0.1});
+  add("spine", "hips", {0, 0.18, 0});
+  add("chest", "spine", {0, 0.18, 0.1});
+  add("neck", "chest", {0, 0.18, 0.16});
+  add("head", "neck", {0, 0.18, 0.2});
+  add("head_end", "head", {0, 0.17, 0.28});
+  add("tail", "hips", {0, 0.19, -0.2});
+  add("tail1", "tail", {0, 0.2, -0.3});
+  add("tail2", "tail1", {0, 0.2, -0.4});
+  for (int pair = 0; pair < pairs; ++pair) {
+    const LegPlaces leg = legAt(pair, pairs);
+    const std::string carrier = 2 * pair < pairs ? "chest" : "hips";
+    for (const bool left : {true, false}) {
+      const auto sided = [&](const Vec3& place) { return Vec3(left ? place.x() : -place.x(), place.y(), place.z()); };
+      const std::string upper = legName("UpperLeg", pair, left), lower = legName("LowerLeg", pair, left),
+                        foot = legName("Foot", pair, left);
+      add(upper, carrier, sided(leg.upper));
+      add(lower, upper, sided(leg.lower));
+      add(foot, lower, sided(leg.foot));
+      add(foot + "_end", foot, sided(leg.tip));
+    }
+  }
+  return skeleton;
+}
+
+// The foot's bone stands as it rests, the two above it reach for its root.
+void placeLeg(const Skeleton& skeleton, int pair, bool left, const Vec3& tip, std::span<const Affine> rest,
+              std::span<const Affine> globals, Pose& pose) {
+  const Index upper = skeleton.find(legName("UpperLeg", pair, left)).value(), lower = upper + 1, foot = upper + 2,
+              end = upper + 3;
+  TwoBone bones;
+  bones.start = globals[upper].translation();
+  bones.middle = globals[lower].translation();
+  bones.end = globals[foot].translation();
+  bones.target = tip - (rest[end].translation() - rest[foot].translation());
+  bones.pole = 0.5 * (bones.start + bones.target) + Vec3(0, 1, 0);
+  const TwoBoneTurns turns = solveTwoBone(bones);
+  const Quat above(globals[*skeleton.joints[upper].parent].linear()), body(globals[upper].linear());
+  const Quat upperTurn = turns.start * body, lowerTurn = turns.middle * body;
+  pose.locals[upper].rotation = above.conjugate() * upperTurn;
+  pose.locals[lower].rotation = upperTurn.conjugate() * lowerTurn;
+  pose.locals[foot].rotation = lowerTurn.conjugate();
+}
+
+}  // namespace
+
+const double kScuttlePeriod = kSeconds;
+
+Skeleton insectSkeleton() {
+  return manyLegged(3);
+}
+Skeleton spiderSkeleton() {
+  return manyLegged(4);
+}
+
+Pose scuttleAt(const Skeleton& skeleton, double seconds) {
+  const int pairs = skeleton.find("leftFoot3") ? 4 : 3;
+  const double strides = seconds / kSeconds;
+  Pose pose = restPose(skeleton);
+  pose.locals[0].translation += Vec3(0, kBob * std::sin(4 * kPi * strides), kStride * strides);
+  const std::string tails[] = {"tail", "tail1"};
+  for (const std::string& tail : tails) {
+    pose.locals[skeleton.find(tail).value()].rotation =
+        Quat(Eigen::AngleAxisd(kTail * std::sin(2 * kPi * strides), Vec3::UnitY()));
+  }
+  const std::vector<Affine> rest = restGlobals(skeleton), globals = poseGlobals(skeleton, pose);
+  for (int pair = 0; pair < pairs; ++pair) {
+    for (const bool left : {true, false}) {
+      const double behind = (pair % 2 == 0) == left ? 0 : 0.5, own = strides - behind, phase = own - std::floor(own);
+      const double swing = std::max(0.0, (phase - kDutyFactor) / (1 - kDutyFactor));
+      // Ahead of where it rests by half the way that it stands, then back as far, as the body goes on.
+      const double way = kDutyFactor * kStride * (0.5 - footWay(phase));
+      const Index end = skeleton.find(legName("Foot", pair, left)).value() + 1;
+      const Vec3 tip = rest[end].translation() +
+                       Vec3(0, kLift * swing * swing * (1 - swing) * (1 - swing) * 16, kStride * strides + way);
+      placeLeg(skeleton, pair, left, tip, rest, globals, pose);
+    }
+  }
+  return pose;
+}
+
+}  // namespace limber
