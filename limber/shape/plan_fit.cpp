@@ -19,6 +19,7 @@ namespace {
 constexpr PlanKind kKinds[] = {
     {"dinosaur", "an animal on two legs with a long tail", BodyPlan::kTwoLegs, 1, 1},
     {"crawler", "a low animal on four legs, as lizards and tortoises", BodyPlan::kFourLegs, 2, 2},
+    {"dragon", "a winged animal on four legs, or on two with a long tail", BodyPlan::kFourLegs, 1, 2, true},
     {"insect", "an animal on six legs", BodyPlan::kManyLegs, 3, 3},
     {"spider", "an animal on eight legs and more", BodyPlan::kManyLegs, 4, 16},
     {"fish", "a fish or whale, with fins where it has some", BodyPlan::kSwimming, 0, 16},
@@ -241,9 +242,11 @@ const PlanKind* findPlanKind(std::string_view name) {
 
 double likelihood(const PlanKind& kind, const ShapeReading& reading) {
   const std::vector<PairedLimb> legs = reading.legs();
-  if (kind.plan != reading.plan) return 0;
+  const bool isOfPlan = kind.plan == reading.plan || (kind.hasWings && reading.plan == BodyPlan::kTwoLegs);
+  const bool mayHaveWings = kind.hasWings || (kind.plan != BodyPlan::kTwoLegs && kind.plan != BodyPlan::kFourLegs);
+  if (!isOfPlan || (kind.hasWings && !reading.hasWings()) || (!mayHaveWings && reading.hasWings())) return 0;
   if (legs.size() < kind.fewestLegs || legs.size() > kind.mostLegs) return 0;
-  if (kind.plan != BodyPlan::kFourLegs) return reading.confidence;
+  if (kind.hasWings || kind.plan != BodyPlan::kFourLegs) return reading.confidence;
   const double up = reading.trunk().points[legs.back().at].place.y() / reading.trunk().length;
   return reading.confidence * std::clamp((kHigh - up) / (kHigh - kLow), 0.0, 1.0);
 }

@@ -18,6 +18,7 @@ struct PlanKind {
   std::string_view summary;  // one line for --help
   BodyPlan plan;
   std::size_t fewestLegs, mostLegs;  // pairs
+  bool hasWings = false;
 };
 
 std::span<const PlanKind> planKinds();

@@ -63,6 +63,22 @@ TEST(PlanFit, KindsAreTheLikelierTheBetterTheShapeSuits) {
   }
 }
 
+TEST(PlanFit, WingsMakeADragon) {
+  TriMesh dragon = testing::capsuleHound();
+  for (const double z : {0.0, 0.03, 0.06, 0.09, 0.12, 0.15}) {
+    testing::addChain(dragon, {{0.05, 0.5, z}, {0.55, 0.6, z - 0.05}}, 0.018, 0.018);
+  }
+  const ShapeReading winged = shapeOf(dragon), hound = shapeOf(testing::capsuleHound());
+  EXPECT_GT(likelihood(*findPlanKind("dragon"), winged), 0.6);
+  EXPECT_EQ(likelihood(*findPlanKind("dragon"), hound), 0);
+  EXPECT_EQ(likelihood(*findPlanKind("crawler"), winged), 0);
+  const TemplateFit fit = fitPlan(*findPlanKind("dragon"), winged);
+  for (const char* joint : {"leftUpperWing", "rightWingHand", "leftFrontFoot", "rightHindFoot", "tail"}) {
+    EXPECT_TRUE(fit.skeleton.find(joint)) << joint;
+  }
+  EXPECT_GT(placeOf(fit, "leftWingHand").x(), 0.2);
+}
+
 TEST(PlanFit, AChainFollowsASnake) {
   const TriMesh mesh = testing::capsuleSnake();
   const TemplateFit fit = fitPlan(*findPlanKind("serpent"), shapeOf(mesh));
