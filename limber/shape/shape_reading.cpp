@@ -45,6 +45,7 @@ constexpr double kLongLeg = 0.25;      // of a leg that does not reach the groun
 constexpr double kLooksLikeLeg = 0.8;  // probability that such are legs where there are three pairs
 constexpr double kArm = 0.2;           // of arms at least
 constexpr double kWing = 0.3;          // of wings at least
+constexpr double kBeforeLegs = 0.1;    // of the trunk, that wings are before the front legs at most: not ears
 constexpr double kArmless = 0.1;       // of the confidence that is left where no arms are seen: chicks, busts
 constexpr double kUsualFront = 0.85;   // of files show the front: what speaks against it has to be surer
 constexpr int kTrunkBones = 8;         // of the skeleton that is laid along the curves
@@ -331,9 +332,12 @@ std::vector<PairedLimb> ShapeReading::legs() const {
 }
 
 bool ShapeReading::hasWings() const {
+  double foremost = kHeadShare;
+  if (plan == BodyPlan::kFourLegs) foremost = std::max(foremost, along[legs().front().at] - kBeforeLegs);
   return std::any_of(limbs.begin(), limbs.end(), [&](const PairedLimb& limb) {
     const BodyCurve& curve = curves[limb.curve];
-    return !limb.isLeg && along[limb.at] > kHeadShare && curve.length > kWing && curve.flatness() > kBroadWing;
+    return !limb.isLeg && limb.kind != PartKind::kEar && along[limb.at] > foremost && curve.length > kWing &&
+           curve.flatness() > kBroadWing;
   });
 }
 

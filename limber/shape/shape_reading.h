@@ -43,7 +43,7 @@ struct ShapeReading {
 
   const BodyCurve& trunk() const { return curves.front(); }
   std::vector<PairedLimb> legs() const;
-  // A pair of long, broad limbs that are no legs, behind the head.
+  // A pair of long, broad limbs that are no legs or ears; of four-legged animals by the front legs or behind them.
   bool hasWings() const;
 };
 
