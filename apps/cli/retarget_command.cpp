@@ -206,7 +206,8 @@ void addOptions(CLI::App& command, const std::shared_ptr<RetargetArguments>& opt
   command.add_option("--solver", retarget.solver, "how limbs reach; limber pose --help lists the solvers")
       ->type_name("NAME")
       ->capture_default_str();
-  command.add_flag("--no-contacts", options->noContacts, "let feet slide and hands miss what they touched");
+  command.add_flag("--no-contacts", options->noContacts,
+                   "let feet slide, hands miss what they touched and arms enter the body");
   command.add_flag("--no-smoothing", options->noSmoothing, "leave rougher than the motion what came out so");
   command
       .add_option_function<double>(

@@ -125,10 +125,15 @@ class CurveFinder {
     const double spacing = distance_.spacing();
     piece.point.place /= static_cast<double>(piece.nodes);
     piece.spread /= static_cast<double>(piece.nodes);
+    if (piece.isCentral) {
+      // With the other half: about the plane.
+      piece.point.place.x() = 0;
+      piece.spread.row(0).tail<2>().setZero();
+      piece.spread.col(0).tail<2>().setZero();
+    }
     piece.spread -= piece.point.place * piece.point.place.transpose();
     piece.spread += spacing * spacing / 12 * Mat3::Identity();
     piece.point.area = static_cast<double>(piece.nodes) * spacing * spacing / kLevel * (piece.isCentral ? 2 : 1);
-    if (piece.isCentral) piece.point.place.x() = 0;
     if (piece.parent) pieces_[*piece.parent].children.push_back(own);
     pieces_.push_back(std::move(piece));
   }
@@ -206,7 +211,7 @@ class CurveFinder {
     if (!(way.norm() > 0)) return 1;
     const Vec3 side = way.unitOrthogonal(), other = way.normalized().cross(side);
     const double a = side.dot(spread * side), b = other.dot(spread * other), mixed = side.dot(spread * other);
-    const double middle = 0.5 * (a + b), apart = std::hypot(0.5 * (a - b), mixed);
+    const double middle = 0.5 * (a + b), half = 0.5 * (a - b), apart = std::sqrt(half * half + mixed * mixed);
     return std::sqrt((middle + apart) / std::max(middle - apart, 1e-12));
   }
 
@@ -242,7 +247,7 @@ double BodyCurve::flatness() const {
 double BodyCurve::meanRadius() const {
   double sum = 0;
   for (std::size_t p = 1; p < points.size(); ++p) sum += points[p].radius;
-  return sum / static_cast<double>(points.size() - 1);
+  return sum / static_cast<double>(std::max<std::size_t>(points.size(), 2) - 1);
 }
 
 std::vector<BodyCurve> bodyCurves(const BodyVolume& body, const AnatomicalFrame& frame) {

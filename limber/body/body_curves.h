@@ -19,7 +19,8 @@ struct BodyCurve {
     double area = 0;      // of the section across the part, mesh squared
     double flatness = 1;  // how many times wider than thick the section is
   };
-  std::vector<Point> points;           // two or more, a few grid cells apart; of a branch the first lies on its carrier
+  std::vector<Point>
+      points;  // two or more of a branch, a few grid cells apart; of a branch the first lies on its carrier
   std::optional<std::size_t> carrier;  // the curve that it hangs on; none: the trunk
   std::size_t at = 0;                  // the carrier's point there
   bool isPaired = false;               // there is one on either side; this is the left one
@@ -38,7 +39,7 @@ struct BodyCurve {
 //
 // frame  of a symmetric body
 // The trunk comes first, from one end to the other, which are told apart by nobody yet; carriers come before what hangs
-// on them. Nothing where nothing lies between left and right. Cost: two shortest ways through the grid.
+// on them. Nothing where nothing lies between left and right. Cost: a few shortest ways through the grid.
 std::vector<BodyCurve> bodyCurves(const BodyVolume& body, const AnatomicalFrame& frame);
 
 }  // namespace limber

@@ -80,7 +80,7 @@ void InsideGraph::spreadToAll(std::size_t source, const std::vector<std::size_t>
                               std::vector<std::size_t>& from) {
   from.assign(distance_.nodeCount(), source);
   for (const double gap : kGaps) {
-    allowGaps(gap);
+    gap_ = gap * distance_.spacing();
     way.assign(distance_.nodeCount(), std::numeric_limits<float>::infinity());
     spread({source}, way, from);
     const auto reached =

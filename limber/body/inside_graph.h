@@ -1,7 +1,6 @@
 // Ways through the inside of a model.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -28,9 +27,6 @@ class InsideGraph {
   std::vector<std::size_t> insideNodes() const;
   // The 26 round an inside node, as steps to them.
   const std::vector<std::ptrdiff_t>& steps() const { return steps_; }
-
-  // Ways may cross what lies outside by at most so far, at a price: parts that nearly touch hang together.
-  void allowGaps(double spacings) { gap_ = spacings * distance_.spacing(); }
 
   // Lowers `way` (#nodes) to the shortest way from `sources`, and remembers whence in `from` (#nodes).
   void spread(const std::vector<std::size_t>& sources, std::vector<float>& way, std::vector<std::size_t>& from) const;

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "limber/anatomy/anatomy.h"
-#include "limber/limbs/smooth.h"
 
 namespace limber {
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "limber/core/numbers.h"
+#include "limber/matching/plain_skeleton.h"
 
 namespace limber {
 
@@ -11,16 +12,21 @@ namespace {
 
 constexpr std::size_t kMostSamples = 6000;
 constexpr std::size_t kLeastSamples = 12;  // of a joint
-constexpr double kOutermost = 0.9;         // of the samples of one side, the share within its radius
+// Of a sector: the skin of a limb that was made regular lies on no edge between two, where the last bit of an angle,
+// which compilers' libraries give differently, would tell to which it belongs.
+constexpr double kOffEdges = 0.13;
+constexpr double kOutermost = 0.9;  // of the samples of one side, the share within its radius
 
 }  // namespace
 
 BodySkin makeBodySkin(const Skeleton& skeleton, std::span<const Vec3f> bound, const SkinWeights& weights) {
   BodySkin skin;
-  const std::vector<Affine> globals = poseGlobals(skeleton, restPose(skeleton));
+  // As bodies are posed: without mirrored joints.
+  const PlainSkeleton plain(skeleton);
+  const std::vector<Affine> globals = restGlobals(plain.skeleton());
   std::vector<Mat3> toJoint;
   for (const Affine& global : globals) toJoint.push_back(global.rotation().transpose());
-  const std::size_t step = std::max<std::size_t>(1, bound.size() / kMostSamples);
+  const std::size_t step = (bound.size() + kMostSamples - 1) / kMostSamples;
   for (std::size_t v = 0; v < bound.size(); v += step) {
     const auto joints = weights.jointsOf(static_cast<Index>(v));
     const auto shares = weights.weightsOf(static_cast<Index>(v));
@@ -60,8 +66,8 @@ std::optional<SkinTube> SkinTube::about(Index joint, const BodySkin& skin) {
     const double x = places[i].dot(tube.side_), z = places[i].dot(tube.ahead_);
     const int ring =
         std::min(static_cast<int>(kRings * (along[i] - tube.begin_) / (tube.end_ - tube.begin_)), kRings - 1);
-    const int sector = static_cast<int>(std::floor(kSectors * (std::atan2(z, x) / (2 * kPi) + 1) + 0.5)) % kSectors;
-    found[static_cast<std::size_t>(ring * kSectors + sector)].push_back(std::hypot(x, z));
+    const int sector = static_cast<int>(std::floor(sectorAt(x, z) + 0.5)) % kSectors;
+    found[static_cast<std::size_t>(ring * kSectors + sector)].push_back(std::sqrt(x * x + z * z));
   }
   for (std::size_t cell = 0; cell < found.size(); ++cell) {
     std::vector<double>& radii = found[cell];
@@ -69,7 +75,7 @@ std::optional<SkinTube> SkinTube::about(Index joint, const BodySkin& skin) {
     std::sort(radii.begin(), radii.end());
     tube.radius_[cell] = radii[static_cast<std::size_t>(kOutermost * static_cast<double>(radii.size() - 1))];
   }
-  // Where there is no skin, as much as beside it, twice round.
+  // Where there is no skin, as much as beside it.
   for (int pass = 0; pass < kSectors; ++pass) {
     for (int cell = 0; cell < kRings * kSectors; ++cell) {
       double& radius = tube.radius_[static_cast<std::size_t>(cell)];
@@ -90,9 +96,12 @@ std::optional<SkinTube> SkinTube::about(Index joint, const BodySkin& skin) {
   return tube;
 }
 
-double SkinTube::radiusAt(double along, double angle) const {
+double SkinTube::sectorAt(double x, double z) {
+  return kSectors * (std::atan2(z, x) / (2 * kPi) + 1) + kOffEdges;
+}
+
+double SkinTube::radiusAt(double along, double sector) const {
   const double ring = std::clamp(kRings * (along - begin_) / (end_ - begin_) - 0.5, 0.0, kRings - 1.0);
-  const double sector = kSectors * (angle / (2 * kPi) + 1);
   const int r = std::min(static_cast<int>(ring), kRings - 2), s = static_cast<int>(std::floor(sector));
   const double up = ring - r, round = sector - s;
   const auto at = [&](int row, int column) {
@@ -105,11 +114,11 @@ double SkinTube::radiusAt(double along, double angle) const {
 std::optional<SkinTube::Depth> SkinTube::depthOf(const Vec3& point, const BodyFrame& frame) const {
   const Quat& turn = frame.rotations[joint_];
   const Vec3 place = turn.conjugate() * (point - frame.positions[joint_]);
-  const double along = place.dot(axis_), x = place.dot(side_), z = place.dot(ahead_), away = std::hypot(x, z);
+  const double along = place.dot(axis_), x = place.dot(side_), z = place.dot(ahead_), away = std::sqrt(x * x + z * z);
   if (along < begin_ || along > end_ || !(away > 0)) return std::nullopt;
   // Thinner towards the ends, so that nothing jumps there.
   const double inner = std::min(along - begin_, end_ - along) / (end_ - begin_);
-  const double radius = radiusAt(along, std::atan2(z, x)) * std::min(1.0, inner / 0.1);
+  const double radius = radiusAt(along, sectorAt(x, z)) * std::min(1.0, inner / 0.1);
   return Depth{radius - away, turn * (x * side_ + z * ahead_) / away};
 }
 

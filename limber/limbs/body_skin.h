@@ -20,8 +20,8 @@ BodySkin makeBodySkin(const Skeleton& skeleton, std::span<const Vec3f> bound, co
 // The skin that one joint carries, as a radius about an axis: by how far along it and by the angle about it.
 class SkinTube {
  public:
-  // None where a joint carries too little, or along no line. The axis goes from the joint to the middle of its skin and
-  // as far beyond.
+  // None where a joint carries too little, or along no line. The axis goes from the joint towards the middle of its
+  // skin, the tube from the first sample along it to the last.
   static std::optional<SkinTube> about(Index joint, const BodySkin& skin);
 
   struct Depth {
@@ -37,7 +37,9 @@ class SkinTube {
   static constexpr int kRings = 5, kSectors = 12;
   static constexpr std::size_t kCells = std::size_t{kRings} * kSectors;
 
-  double radiusAt(double along, double angle) const;
+  // Of a direction across the axis, in sectors: 0 to 2 kSectors.
+  static double sectorAt(double x, double z);
+  double radiusAt(double along, double sector) const;
 
   Index joint_ = 0;
   Vec3 axis_ = Vec3::UnitY(), side_ = Vec3::UnitX(), ahead_ = Vec3::UnitZ();  // in the joint's frame

@@ -44,7 +44,7 @@ struct RetargetOptions {
   // limb-ik: where a hand goes. 0: where its turned bones bring it; 1: where the source's hand is, scaled as the root's
   // way is (Koerner's d).
   double reach = 0;
-  bool contacts = true;                        // limb-ik: keep planted feet and touching hands
+  bool contacts = true;                        // limb-ik: keep planted feet, touching hands and arms outside the body
   std::vector<ContactEdit> contactEdits = {};  // of several for one moment the last one counts
   bool smoothMotion = true;         // whole motions, with contacts: no rougher than the source (motion_smoothing.h)
   std::string solver = "two-bone";  // limb-ik: of ikMethods()

@@ -31,11 +31,17 @@ std::vector<std::string> doubtfulMatches(const SkeletonMap& map, const Skeleton&
   return lines;
 }
 
-std::shared_ptr<const BodySkin> bodySkinOf(const Asset& asset) {
-  const Geometry geometry = collectGeometry(asset);
-  const AssetSkeleton character = readSkeleton(asset);
-  return std::make_shared<const BodySkin>(
-      makeBodySkin(character.skeleton, geometry.positions, readWeights(asset, geometry, character)));
+// Null, with a warning, where the character has a skin whose surface cannot be read: it moves all the same.
+std::shared_ptr<const BodySkin> bodySkinOf(Asset& asset) {
+  try {
+    const Geometry geometry = collectGeometry(asset);
+    const AssetSkeleton character = readSkeleton(asset);
+    return std::make_shared<const BodySkin>(
+        makeBodySkin(character.skeleton, geometry.positions, readWeights(asset, geometry, character)));
+  } catch (const Error& error) {
+    asset.warnings.add("no-surface", fmt::format("arms are not kept out of the body: {}", error.what()), asset.name);
+    return nullptr;
+  }
 }
 
 }  // namespace

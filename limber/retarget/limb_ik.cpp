@@ -52,7 +52,7 @@ class LimbIkRetargeter : public FrameRetargeter {
     for (std::size_t i = 0; i < arms.size(); ++i) {
       if (arms[i].wanted) reach(arms[i], solver(armSolvers_, i), nullptr, target);
     }
-    if (setup_.options.contacts) keepArmsOut(seconds, target);
+    if (setup_.options.contacts) keepArmsOut(goals_.atCut() ? 0 : seconds, target);
   }
 
  private:

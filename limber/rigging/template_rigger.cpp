@@ -228,13 +228,17 @@ bool isQuadruped(const TemplateSkeleton& skeleton) {
   return skeleton.find("leftFrontUpperLeg").has_value();
 }
 
-// What the shape says of a template: 1 for it, -1 against it, 0 nothing, and between as far as the shape is sure.
+// What the shape says of a template: 1 for it, -1 against it, 0 nothing, and between as far as its plan is sure.
 double voteOf(const ShapeReading& shape, const TemplateSkeleton& skeleton) {
   const auto has = [&](BodyPlan plan) { return shape.plan == plan ? shape.confidence : -shape.confidence; };
   if (isHumanoid(skeleton) && shape.plan != BodyPlan::kUnknown) return has(BodyPlan::kUpright);
   if (isQuadruped(skeleton) && shape.plan != BodyPlan::kUnknown) return has(BodyPlan::kFourLegs);
-  if (skeleton.find("leftUpperWing")) return shape.hasWings() && shape.plan != BodyPlan::kFourLegs ? 1 : 0;
-  return 0;
+  if (!skeleton.find("leftUpperWing")) return 0;
+  // Birds are seen to stand on two legs, or on none that are thick enough.
+  const bool mayBeBird =
+      shape.plan == BodyPlan::kUpright || shape.plan == BodyPlan::kTwoLegs || shape.plan == BodyPlan::kUnknown;
+  if (!mayBeBird) return -shape.confidence;
+  return shape.wings() ? 1 : 0;
 }
 
 // Whether it is worth while to try a template where the shape is sure of what it is.
@@ -272,7 +276,8 @@ Guess planGuess(const PlanKind& kind, const ShapeReading& shape, const std::vect
 std::vector<Guess> planGuesses(const std::optional<ShapeReading>& shape, const PlanKind* asked,
                                const std::vector<JointPin>& pins) {
   if (asked && !shape) {
-    throw Error(ErrorCode::kUnsupported, "both sides of the model have too little in common to follow its curves",
+    throw Error(ErrorCode::kUnsupported,
+                "the model has no trunk between two sides that are alike, whose curves could be followed",
                 std::string(asked->name),
                 "--up and --front say how it stands; humanoid, quadruped and bird need neither");
   }
@@ -427,7 +432,7 @@ AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress
   if (fits.size() > 1) tellByFingers(surface, fits);
   std::vector<Guess> guesses;
   for (TemplateFit& fit : fits) guesses.push_back(guessOf(std::move(fit), shape));
-  if (plan || options.templateName == "auto") {
+  if (plan || (options.templateName == "auto" && !options.templateSkeleton)) {
     for (Guess& guess : planGuesses(shape, plan, pins)) guesses.push_back(std::move(guess));
   }
   std::stable_sort(guesses.begin(), guesses.end(),

@@ -3,9 +3,13 @@
 // of slender fish, 1960); a snake lies on a serpenoid curve and moves along it, so that no part slides sideways
 // (Hirose: Biologically Inspired Robots, 1993); a bird's wings bend up late and down late, as their tips follow their
 // roots.
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "limber/core/numbers.h"
 #include "limber/samples/motion_recipes.h"

@@ -1,13 +1,15 @@
 // Walks on six and on eight legs, for skeletons of the templates insect and spider. Legs next to each other, and the
 // two of a pair, take turns: an insect always stands on three (the tripod gait), a spider on four (Wilson: Insect
 // walking, 1966; Spider locomotion on level ground: Biancardi and others, 2011).
+#include <algorithm>
 #include <cmath>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "limber/core/numbers.h"
 #include "limber/ik/two_bone.h"
 #include "limber/samples/motion_recipes.h"
-#include "limber/samples/smooth_way.h"
 
 namespace limber {
 

@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 
 #include "limber/core/error.h"
-#include "limber/core/names.h"
 
 namespace limber {
 
@@ -28,6 +27,7 @@ constexpr PlanKind kKinds[] = {
 
 constexpr double kLow = 0.16, kHigh = 0.2;  // of the trunk's length that the hips are up: crawlers, and others
 constexpr double kShortTail = 0.12;         // of the trunk's length behind the hips: no tail
+constexpr double kShortestFront = 0.2;      // of the trunk's length before the hips: so that no bone has no length
 constexpr double kEvenSegments = 0.1;       // weight of equal lengths against following the curve
 
 class PlanBuilder {
@@ -77,7 +77,7 @@ class PlanBuilder {
     return fit_.skeleton.jointCount() - 1;
   }
 
-  // Joints of that name along the trunk, and a tip at the end where they reach one.
+  // Joints of that name along the trunk; the last.
   Index addAlong(std::string_view name, Index parent, std::initializer_list<double> along) {
     std::size_t number = 0;
     for (const double at : along) {
@@ -151,14 +151,17 @@ class PlanBuilder {
 
   void walk() {
     const std::vector<PairedLimb> legs = reading_.legs();
-    const double hind = reading_.along[legs.back().at];
-    const std::optional<PairedLimb> arms = armsBefore(hind);
+    const double hind = std::max(reading_.along[legs.back().at], kShortestFront);
+    const std::optional<PairedLimb> wings = reading_.wings();
+    std::optional<PairedLimb> arms = wings;
+    if (!arms && kind_.plan == BodyPlan::kTwoLegs) arms = armsBefore(hind);
     double fore = 0.5 * hind;
     if (legs.size() > 1) {
       fore = reading_.along[legs.front().at];
     } else if (arms) {
       fore = reading_.along[arms->at];
     }
+    fore = std::clamp(fore, 0.5 * kShortestFront, 0.9 * hind);
     const Index hips = add("hips", {}, trunkAt(hind));
     const Index spine = add("spine", hips, trunkAt(0.5 * (hind + fore)));
     const Index chest = add("chest", spine, trunkAt(fore));
@@ -169,10 +172,9 @@ class PlanBuilder {
       addTip(addAlong("tail", hips, {behind(0.25), behind(0.5), behind(0.75)}), 1);
     }
     if (arms) {
-      const bool isWing = reading_.curves[arms->curve].flatness() >= kBroadWing;
       addLimb<3>(chest,
-                 isWing ? std::array<std::string, 3>{"UpperWing", "LowerWing", "WingHand"}
-                        : std::array<std::string, 3>{"UpperArm", "LowerArm", "Hand"},
+                 wings ? std::array<std::string, 3>{"UpperWing", "LowerWing", "WingHand"}
+                       : std::array<std::string, 3>{"UpperArm", "LowerArm", "Hand"},
                  bonesOf(*arms));
     }
     for (std::size_t pair = 0; pair < legs.size(); ++pair) {
@@ -193,7 +195,6 @@ class PlanBuilder {
     for (const PairedLimb& limb : reading_.limbs) {
       const double at = reading_.along[limb.at], length = reading_.curves[limb.curve].length;
       if (limb.isLeg || at < kHeadShare || at > hips) continue;
-      if (kind_.plan != BodyPlan::kTwoLegs && reading_.curves[limb.curve].flatness() < kBroadWing) continue;
       if (!arms || length > reading_.curves[arms->curve].length) arms = limb;
     }
     return arms;
@@ -203,8 +204,7 @@ class PlanBuilder {
   void swim() {
     const Index chest = add("chest", {}, trunkAt(0.3));
     addTip(addAlong("head", chest, {0.15}), 0);
-    const Index spine = addAlong("spine", chest, {0.42});
-    const Index tail = addAlong("tail", spine, {0.56, 0.7, 0.84});
+    const Index tail = addAlong("tail", addAlong("spine", chest, {0.42}), {0.56, 0.7, 0.84});
     addTip(tail, 1);
     std::size_t number = 0;
     for (const PairedLimb& limb : reading_.limbs) {
@@ -244,7 +244,7 @@ double likelihood(const PlanKind& kind, const ShapeReading& reading) {
   const std::vector<PairedLimb> legs = reading.legs();
   const bool isOfPlan = kind.plan == reading.plan || (kind.hasWings && reading.plan == BodyPlan::kTwoLegs);
   const bool mayHaveWings = kind.hasWings || (kind.plan != BodyPlan::kTwoLegs && kind.plan != BodyPlan::kFourLegs);
-  if (!isOfPlan || (kind.hasWings && !reading.hasWings()) || (!mayHaveWings && reading.hasWings())) return 0;
+  if (!isOfPlan || (kind.hasWings && !reading.wings()) || (!mayHaveWings && reading.wings())) return 0;
   if (legs.size() < kind.fewestLegs || legs.size() > kind.mostLegs) return 0;
   if (kind.hasWings || kind.plan != BodyPlan::kFourLegs) return reading.confidence;
   const double up = reading.trunk().points[legs.back().at].place.y() / reading.trunk().length;
@@ -254,9 +254,8 @@ double likelihood(const PlanKind& kind, const ShapeReading& reading) {
 TemplateFit fitPlan(const PlanKind& kind, const ShapeReading& reading) {
   const std::size_t legs = reading.legs().size();
   if (legs < kind.fewestLegs || legs > kind.mostLegs) {
-    const std::size_t nearest = std::clamp(legs, kind.fewestLegs, kind.mostLegs);
     throw Error(ErrorCode::kUnsupported,
-                fmt::format("has {} pairs of legs, where a {} has {}", legs, kind.name, nearest),
+                fmt::format("needs {} to {} pairs of legs, and the model has {}", kind.fewestLegs, kind.mostLegs, legs),
                 std::string(kind.name), "--template auto takes what suits the model");
   }
   return PlanBuilder(kind, reading).build();

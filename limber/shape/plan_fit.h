@@ -24,7 +24,8 @@ struct PlanKind {
 std::span<const PlanKind> planKinds();
 const PlanKind* findPlanKind(std::string_view name);  // null where there is none
 
-// How sure it is that a body is of the kind: the reading's confidence, or 0.
+// How sure it is that a body is of the kind: the reading's confidence, of crawlers the less the higher they stand; or
+// 0.
 double likelihood(const PlanKind& kind, const ShapeReading& reading);
 
 // The kind's skeleton in the body. Places are body space (of the reading's frame).

@@ -19,7 +19,7 @@ struct Margin {
 constexpr Margin kOnGround = {0.13, 0.07};   // height of its lowest place
 constexpr Margin kRound = {3.2, 2.4};        // times as wide as thick
 constexpr Margin kSolid = {0.005, 0.008};    // mean radius: what is one grid cell thick may be a sheet
-constexpr Margin kSticksOut = {0.9, 1.6};    // length, in radii of the trunk where it hangs
+constexpr Margin kSticksOut = {0.65, 1.15};  // length, in radii of the trunk where it hangs
 constexpr Margin kComesDown = {0.5, 0.8};    // of the height where it hangs, how far down it reaches
 constexpr Margin kLegLength = {0.08, 0.15};  // length
 // Of a trunk.
@@ -136,7 +136,9 @@ class ShapeReader {
       if (std::any_of(reading_.limbs.begin(), reading_.limbs.end(), isSame)) continue;
       PairedLimb limb;
       limb.curve = c;
-      limb.at = *curve.carrier == 0 ? curve.at : carrier.at;
+      limb.at = curve.at;
+      for (std::size_t on = *curve.carrier; on != 0; on = *reading_.curves[on].carrier)
+        limb.at = reading_.curves[on].at;
       limb.legLike = legLikeness(curve);
       reading_.limbs.push_back(limb);
     }
@@ -293,7 +295,8 @@ class ShapeReader {
     // That it stands as it is taken to stand, and that each limb is a leg or none.
     double counted = kStands.of(anatomy.axes.up.y());
     for (const PairedLimb& limb : reading_.limbs) {
-      counted *= limb.isLeg ? std::max(limb.legLike, kLooksLikeLeg) : 1 - limb.legLike;
+      // Of a leg that does not reach the ground its looks are all there is.
+      counted *= !limb.isLeg ? 1 - limb.legLike : limb.legLike > 0.5 ? limb.legLike : kLooksLikeLeg;
     }
     if (legs.size() >= 3) {
       decide(BodyPlan::kManyLegs, counted);
@@ -331,14 +334,17 @@ std::vector<PairedLimb> ShapeReading::legs() const {
   return legs;
 }
 
-bool ShapeReading::hasWings() const {
+std::optional<PairedLimb> ShapeReading::wings() const {
   double foremost = kHeadShare;
   if (plan == BodyPlan::kFourLegs) foremost = std::max(foremost, along[legs().front().at] - kBeforeLegs);
-  return std::any_of(limbs.begin(), limbs.end(), [&](const PairedLimb& limb) {
+  std::optional<PairedLimb> wings;
+  for (const PairedLimb& limb : limbs) {
     const BodyCurve& curve = curves[limb.curve];
-    return !limb.isLeg && limb.kind != PartKind::kEar && along[limb.at] > foremost && curve.length > kWing &&
-           curve.flatness() > kBroadWing;
-  });
+    if (limb.isLeg || limb.kind == PartKind::kEar || along[limb.at] <= foremost) continue;
+    if (curve.length <= kWing || curve.flatness() <= kBroadWing) continue;
+    if (!wings || curve.length > curves[wings->curve].length) wings = limb;
+  }
+  return wings;
 }
 
 std::optional<ShapeReading> readShape(const BodyVolume& body, const std::vector<AnatomicalFrame>& frames,

@@ -43,8 +43,8 @@ struct ShapeReading {
 
   const BodyCurve& trunk() const { return curves.front(); }
   std::vector<PairedLimb> legs() const;
-  // A pair of long, broad limbs that are no legs or ears; of four-legged animals by the front legs or behind them.
-  bool hasWings() const;
+  // The longest pair of long, broad limbs that are no legs or ears; of four-legged animals by the front legs or behind.
+  std::optional<PairedLimb> wings() const;
 };
 
 // Reads the curves of a symmetric body (bodyCurves) with the anatomy of a skeleton that is laid along them: which end

@@ -80,8 +80,8 @@ TEST(ShapeReading, SeesWings) {
   for (const double z : {0.1, 0.13, 0.16, 0.19, 0.22, 0.25}) {
     testing::addChain(bird, {{0.05, 0.48, z}, {0.5, 0.6, z - 0.05}}, 0.018, 0.018);
   }
-  EXPECT_TRUE(readingOf(bird)->hasWings());
-  EXPECT_FALSE(readingOf(testing::capsuleTheropod())->hasWings());
+  EXPECT_TRUE(readingOf(bird)->wings());
+  EXPECT_FALSE(readingOf(testing::capsuleTheropod())->wings());
 }
 
 }  // namespace
