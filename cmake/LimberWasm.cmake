@@ -21,9 +21,9 @@ add_library(Eigen3::Eigen INTERFACE IMPORTED GLOBAL)
 target_include_directories(Eigen3::Eigen SYSTEM INTERFACE ${eigen_folder})
 
 # A page loads the whole engine before its first picture: only what is small is inlined (its cost is counted as LLVM
-# does; -O3 says 250). At 40 a sixth smaller, packed a tenth, and 7 % slower by ./dev bench --web, and at 30 a hundredth
-# smaller still, not timed; -Os makes it a third smaller and fourteen times as slow, since it leaves Eigen's
-# expressions as calls.
-add_compile_options(-O2 "SHELL:-mllvm -inline-threshold=30")
+# does; -O3 says 250), and no loop is unrolled. At 40 a sixth smaller, packed a tenth, and 7 % slower by ./dev bench
+# --web; at 18 without unrolled loops packed a twentieth smaller still than at 30. -Os makes it a third smaller and
+# fourteen times as slow, since it leaves Eigen's expressions as calls.
+add_compile_options(-O2 -fno-unroll-loops "SHELL:-mllvm -inline-threshold=18")
 add_compile_options(-fwasm-exceptions)
 add_link_options(-fwasm-exceptions)

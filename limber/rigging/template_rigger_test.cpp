@@ -296,6 +296,23 @@ TEST(TemplateRigger, TakesTheKindThatTheShapeTells) {
   }
 }
 
+// Whoever brings a skeleton gets that one, whatever the shape tells.
+TEST(TemplateRigger, AUsersSkeletonIsNeverReplaced) {
+  Skeleton own;
+  for (const auto& [name, y] : {std::pair{"base", 0.1}, {"middle", 0.4}, {"top", 0.5}}) {
+    Joint joint;
+    joint.name = name;
+    if (!own.joints.empty()) joint.parent = own.jointCount() - 1;
+    joint.rest.translation = Vec3(0, y, 0);
+    own.joints.push_back(joint);
+  }
+  RigOptions options;
+  options.templateSkeleton = own;
+  const AutoRig result = autoRigged(testing::capsuleSpider(4), options);
+  ASSERT_EQ(result.skeleton.jointCount(), own.jointCount());
+  EXPECT_EQ(result.skeleton.joints[1].name, "middle");
+}
+
 TEST(TemplateRigger, PinsHoldWhatFollowsTheCurves) {
   RigOptions options;
   options.templateName = "serpent";
