@@ -244,6 +244,11 @@ double BodyCurve::flatness() const {
   return *middle;
 }
 
+Vec3 BodyCurve::root() const {
+  const Vec3 &inside = points[0].place, &outside = points[1].place;
+  return {outside.x(), 0.5 * (inside.y() + outside.y()), 0.5 * (inside.z() + outside.z())};
+}
+
 double BodyCurve::meanRadius() const {
   double sum = 0;
   for (std::size_t p = 1; p < points.size(); ++p) sum += points[p].radius;

@@ -27,6 +27,8 @@ struct BodyCurve {
   double length = 0;
 
   const Vec3& end() const { return points.back().place; }
+  // Of a branch: where it comes out of its carrier, half way into the flesh, as far aside as it comes out.
+  Vec3 root() const;
   // The points' in the middle, of the outer two thirds.
   double flatness() const;
   double meanRadius() const;

@@ -34,8 +34,7 @@ std::vector<Character> readCharacters(std::span<const std::filesystem::path> fil
           {file.stem().string(), isHeldOut(file), animatedSkeleton(asset).skeleton, std::nullopt, nullptr});
       if (!hasRig(asset)) continue;
       const SkinnedModel& model = characters.back().model.emplace(readSkinnedModel(asset));
-      characters.back().skin =
-          std::make_shared<const BodySkin>(makeBodySkin(model.skeleton, model.mesh.positions, model.weights));
+      characters.back().skin = makeBodySkin(model.skeleton, model.mesh.positions, model.weights);
     } catch (const Error& error) {
       skipped.add("unreadable", "characters that cannot be read left out", error.what());
     }

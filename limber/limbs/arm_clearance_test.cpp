@@ -40,7 +40,7 @@ TEST(SkinTube, TellsHowDeepAPointIsAndTheWayOut) {
   const Vec3 hips = frame.positions[joint];
   Pillars pillars;
   pillars.add(joint, hips, 0.1, 0.5, 0.3);
-  const std::optional<SkinTube> tube = SkinTube::about(joint, makeBodySkin(person, pillars.places, pillars.weights));
+  const std::optional<SkinTube> tube = SkinTube::about(joint, *makeBodySkin(person, pillars.places, pillars.weights));
   ASSERT_TRUE(tube);
   EXPECT_NEAR(tube->thickness(), 0.3, 0.01);
   for (const double angle : {0.1, 2.0, 4.5}) {
@@ -65,7 +65,7 @@ class ArmClearanceTest : public ::testing::Test {
     if (radius > 0) pillars.add(hips, rest[hips], 0.1, 0.6, radius);
     RetargetOptions options;
     if (radius > 0) {
-      options.skin = std::make_shared<const BodySkin>(makeBodySkin(person_, pillars.places, pillars.weights));
+      options.skin = makeBodySkin(person_, pillars.places, pillars.weights);
     }
     setup_.emplace(source, person_, matchSkeletons(source, person_), options);
     root_.emplace(*setup_);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "limber/core/numbers.h"
 #include "limber/matching/plain_skeleton.h"
@@ -19,7 +20,8 @@ constexpr double kOutermost = 0.9;  // of the samples of one side, the share wit
 
 }  // namespace
 
-BodySkin makeBodySkin(const Skeleton& skeleton, std::span<const Vec3f> bound, const SkinWeights& weights) {
+std::shared_ptr<const BodySkin> makeBodySkin(const Skeleton& skeleton, std::span<const Vec3f> bound,
+                                             const SkinWeights& weights) {
   BodySkin skin;
   // As bodies are posed: without mirrored joints.
   const PlainSkeleton plain(skeleton);
@@ -36,7 +38,7 @@ BodySkin makeBodySkin(const Skeleton& skeleton, std::span<const Vec3f> bound, co
     skin.joints.push_back(joint);
     skin.places.push_back(toJoint[joint] * (bound[v].cast<double>() - globals[joint].translation()));
   }
-  return skin;
+  return std::make_shared<const BodySkin>(std::move(skin));
 }
 
 std::optional<SkinTube> SkinTube::about(Index joint, const BodySkin& skin) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -15,7 +16,8 @@ namespace limber {
 // vertices, a few thousand.
 //
 // bound  #V positions in the pose in which the skeleton rests, metres
-BodySkin makeBodySkin(const Skeleton& skeleton, std::span<const Vec3f> bound, const SkinWeights& weights);
+std::shared_ptr<const BodySkin> makeBodySkin(const Skeleton& skeleton, std::span<const Vec3f> bound,
+                                             const SkinWeights& weights);
 
 // The skin that one joint carries, as a radius about an axis: by how far along it and by the angle about it.
 class SkinTube {

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "limber/limbs/smooth.h"
-#include "limber/limbs/spring.h"
 
 namespace limber {
 
@@ -139,8 +138,8 @@ void HandGoals::set(const BodyFrame& source, const BodyFrame& target, double sec
     touches[1] += weight * change;
   }
   for (std::size_t a = 0; a < arms_.size(); ++a) {
-    Follow& follow = follows_[a];
-    springTo(atMost(touches[a], kMostTouch * arms_[a].length), kTouchRate, seconds, follow.value, follow.speed);
+    Sprung& follow = follows_[a];
+    follow.drawTo(atMost(touches[a], kMostTouch * arms_[a].length), kTouchRate, seconds);
     if (follow.value.norm() < 1e-9 * setup_.targetHipHeight) continue;
     arms_[a].goal += follow.value;
     arms_[a].wanted = true;

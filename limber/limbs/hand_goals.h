@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "limber/limbs/limb.h"
+#include "limber/limbs/spring.h"
 
 namespace limber {
 
@@ -45,9 +46,6 @@ class HandGoals {
     Gauge gauge;
     TouchDistances distances;  // from the bone, of the gauge
   };
-  struct Follow {
-    Vec3 value = Vec3::Zero(), speed = Vec3::Zero();
-  };
 
   // The distance of two parts at rest; hip heights where one of them is missing or both are in one place.
   Gauge gaugeOf(const BodyPart& from, const BodyPart& to) const;
@@ -60,7 +58,7 @@ class HandGoals {
   const RetargetSetup& setup_;
   std::vector<Limb> arms_;
   std::vector<std::vector<Surface>> surfaces_;  // for each arm
-  std::array<Follow, 2> follows_;               // the touches of each arm as they come and go
+  std::array<Sprung, 2> follows_;               // the touches of each arm as they come and go
   Gauge hands_;                                 // of hands that touch each other
 };
 

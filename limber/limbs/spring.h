@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "limber/core/types.h"
+
 namespace limber {
 
 // Draws `value`, which moves at `speed`, towards `wanted` for `seconds`; `rate` in 1/seconds. The exact motion while
@@ -20,5 +22,12 @@ void springTo(const Value& wanted, double rate, double seconds, Value& value, Va
   value = wanted + fade * (off + seconds * pull);
   speed = fade * (speed - rate * seconds * pull);
 }
+
+// A vector that is drawn so, at rest at the origin.
+struct Sprung {
+  Vec3 value = Vec3::Zero(), speed = Vec3::Zero();
+
+  void drawTo(const Vec3& wanted, double rate, double seconds) { springTo(wanted, rate, seconds, value, speed); }
+};
 
 }  // namespace limber

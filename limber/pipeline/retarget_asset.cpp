@@ -36,8 +36,7 @@ std::shared_ptr<const BodySkin> bodySkinOf(Asset& asset) {
   try {
     const Geometry geometry = collectGeometry(asset);
     const AssetSkeleton character = readSkeleton(asset);
-    return std::make_shared<const BodySkin>(
-        makeBodySkin(character.skeleton, geometry.positions, readWeights(asset, geometry, character)));
+    return makeBodySkin(character.skeleton, geometry.positions, readWeights(asset, geometry, character));
   } catch (const Error& error) {
     asset.warnings.add("no-surface", fmt::format("arms are not kept out of the body: {}", error.what()), asset.name);
     return nullptr;

@@ -56,9 +56,6 @@ class LimbIkRetargeter : public FrameRetargeter {
   }
 
  private:
-  struct Follow {
-    Vec3 value = Vec3::Zero(), speed = Vec3::Zero();
-  };
   using Solvers = std::vector<std::unique_ptr<IkSolver>>;
 
   const BodyFrame& from() const { return aligned_.sourceFrame(); }
@@ -68,8 +65,8 @@ class LimbIkRetargeter : public FrameRetargeter {
     waysOut_.resize(clearance_.arms());
     for (std::size_t i = 0; i < clearance_.arms(); ++i) {
       for (const ArmClearance::Bone bone : {ArmClearance::Bone::kUpper, ArmClearance::Bone::kForearm}) {
-        Follow& follow = waysOut_[i][static_cast<std::size_t>(bone)];
-        springTo(clearance_.wayOut(i, bone, to()), kOutRate, seconds, follow.value, follow.speed);
+        Sprung& follow = waysOut_[i][static_cast<std::size_t>(bone)];
+        follow.drawTo(clearance_.wayOut(i, bone, to()), kOutRate, seconds);
         clearance_.swing(i, bone, follow.value, to(), target);
       }
     }
@@ -113,7 +110,7 @@ class LimbIkRetargeter : public FrameRetargeter {
   HandGoals hands_;
   LimbReach reach_;
   ArmClearance clearance_;
-  std::vector<std::array<Follow, 2>> waysOut_;  // of each arm's bones
+  std::vector<std::array<Sprung, 2>> waysOut_;  // of each arm's bones
   Solvers legSolvers_, armSolvers_;             // empty: two-bone
 };
 

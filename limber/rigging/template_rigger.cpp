@@ -272,6 +272,11 @@ Guess planGuess(const PlanKind& kind, const ShapeReading& shape, const std::vect
   return {std::move(fit), 0, likelihood(kind, shape)};
 }
 
+// Pinned joints are some template's: whoever pins one has chosen.
+bool leavesTheChoice(const RigOptions& options) {
+  return options.templateName == "auto" && !options.templateSkeleton && options.pins.empty();
+}
+
 // Kinds of the shape's plan, of all or the one that is asked for.
 std::vector<Guess> planGuesses(const std::optional<ShapeReading>& shape, const PlanKind* asked,
                                const std::vector<JointPin>& pins) {
@@ -284,7 +289,7 @@ std::vector<Guess> planGuesses(const std::optional<ShapeReading>& shape, const P
   std::vector<Guess> guesses;
   if (asked) {
     guesses.push_back(planGuess(*asked, *shape, pins));
-  } else if (shape && pins.empty()) {
+  } else if (shape) {
     for (const PlanKind& kind : planKinds()) {
       if (likelihood(kind, *shape) > 0) guesses.push_back(planGuess(kind, *shape, pins));
     }
@@ -309,11 +314,6 @@ std::vector<TemplateMatch> matchesOf(const std::vector<Guess>& guesses) {
   std::vector<TemplateMatch> matches;
   for (const Guess& guess : guesses) matches.push_back({guess.fit.skeleton.name, guess.confidence()});
   return matches;
-}
-
-// Pinned joints are some template's: whoever pins one has chosen.
-bool mayAbstain(const RigOptions& options) {
-  return options.mayAbstain && options.templateName == "auto" && !options.templateSkeleton && options.pins.empty();
 }
 
 AutoRig withHandles(const TriMesh& mesh, const RigOptions& options, const Guess& likeliest, Progress& progress) {
@@ -421,7 +421,7 @@ AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress
   const Model animal{body, likeShape, options.front};
   FigureOnce figure;
   std::vector<TemplateFit> fits;
-  if (options.templateName == "auto" && !options.templateSkeleton && options.pins.empty()) {
+  if (leavesTheChoice(options)) {
     std::erase_if(candidates, [&](const TemplateSkeleton* candidate) { return !mayBe(*candidate, shape); });
   }
   for (const TemplateSkeleton* candidate : candidates) {
@@ -432,13 +432,13 @@ AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress
   if (fits.size() > 1) tellByFingers(surface, fits);
   std::vector<Guess> guesses;
   for (TemplateFit& fit : fits) guesses.push_back(guessOf(std::move(fit), shape));
-  if (plan || (options.templateName == "auto" && !options.templateSkeleton)) {
+  if (plan || leavesTheChoice(options)) {
     for (Guess& guess : planGuesses(shape, plan, pins)) guesses.push_back(std::move(guess));
   }
   std::stable_sort(guesses.begin(), guesses.end(),
                    [](const Guess& a, const Guess& b) { return a.confidence() > b.confidence(); });
   Guess& likeliest = guesses.front();
-  if (mayAbstain(options) && likeliest.confidence() < kLikelyTemplate) {
+  if (options.mayAbstain && leavesTheChoice(options) && likeliest.confidence() < kLikelyTemplate) {
     AutoRig rig = withHandles(mesh, options, likeliest, progress);
     rig.matches = matchesOf(guesses);
     return rig;

@@ -13,6 +13,7 @@
 
 #include "limber/core/numbers.h"
 #include "limber/samples/motion_recipes.h"
+#include "limber/samples/placed_skeleton.h"
 
 namespace limber {
 
@@ -26,24 +27,15 @@ struct WaveBone {
 // Sides stand once, for the left. The rest pose turns nothing.
 template <std::size_t N>
 Skeleton skeletonOf(const WaveBone (&bones)[N]) {
-  Skeleton skeleton;
-  std::vector<Vec3> places;
-  const auto add = [&](const std::string& name, const std::string& parent, const Vec3& place) {
-    Joint joint;
-    joint.name = name;
-    if (!parent.empty()) joint.parent = skeleton.find(parent).value();
-    joint.rest.translation = joint.parent ? Vec3(place - places[*joint.parent]) : place;
-    places.push_back(place);
-    skeleton.joints.push_back(std::move(joint));
-  };
+  PlacedSkeleton skeleton;
   const auto rightOf = [](std::string name) { return name.starts_with("left") ? "right" + name.substr(4) : name; };
   for (const WaveBone& bone : bones) {
-    add(bone.name, bone.parent, bone.position);
+    skeleton.add(bone.name, bone.parent, bone.position);
     if (rightOf(bone.name) != bone.name) {
-      add(rightOf(bone.name), rightOf(bone.parent), bone.position.cwiseProduct(Vec3(-1, 1, 1)));
+      skeleton.add(rightOf(bone.name), rightOf(bone.parent), bone.position.cwiseProduct(Vec3(-1, 1, 1)));
     }
   }
-  return skeleton;
+  return skeleton.take();
 }
 
 const WaveBone kFish[] = {{"chest", "", {0, 0.5, 0.2}},

@@ -1,7 +1,6 @@
 // Walks on six and on eight legs, for skeletons of the templates insect and spider. Legs next to each other, and the
 // two of a pair, take turns: an insect always stands on three (the tripod gait), a spider on four (Wilson: Insect
 // walking, 1966; Spider locomotion on level ground: Biancardi and others, 2011).
-#include <algorithm>
 #include <cmath>
 #include <span>
 #include <string>
@@ -10,6 +9,8 @@
 #include "limber/core/numbers.h"
 #include "limber/ik/two_bone.h"
 #include "limber/samples/motion_recipes.h"
+#include "limber/samples/placed_skeleton.h"
+#include "limber/samples/smooth_way.h"
 
 namespace limber {
 
@@ -37,30 +38,20 @@ LegPlaces legAt(int pair, int pairs) {
 // What is left of the way that a standing foot has gone back when it swings ahead again, 0 to 1 and back to 0.
 double footWay(double phase) {
   if (phase < kDutyFactor) return phase / kDutyFactor;
-  const double swing = (phase - kDutyFactor) / (1 - kDutyFactor);
-  return 1 - swing * swing * (3 - 2 * swing);
+  return 1 - smoothRise((phase - kDutyFactor) / (1 - kDutyFactor));
 }
 
 Skeleton manyLegged(int pairs) {
-  Skeleton skeleton;
-  std::vector<Vec3> places;
-  const auto add = [&](const std::string& name, const std::string& parent, const Vec3& place) {
-    Joint joint;
-    joint.name = name;
-    if (!parent.empty()) joint.parent = skeleton.find(parent).value();
-    joint.rest.translation = joint.parent ? Vec3(place - places[*joint.parent]) : place;
-    places.push_back(place);
-    skeleton.joints.push_back(std::move(joint));
-  };
-  add("hips", "", {0, 0.18, -0.1});
-  add("spine", "hips", {0, 0.18, 0});
-  add("chest", "spine", {0, 0.18, 0.1});
-  add("neck", "chest", {0, 0.18, 0.16});
-  add("head", "neck", {0, 0.18, 0.2});
-  add("head_end", "head", {0, 0.17, 0.28});
-  add("tail", "hips", {0, 0.19, -0.2});
-  add("tail1", "tail", {0, 0.2, -0.3});
-  add("tail2", "tail1", {0, 0.2, -0.4});
+  PlacedSkeleton skeleton;
+  skeleton.add("hips", "", {0, 0.18, -0.1});
+  skeleton.add("spine", "hips", {0, 0.18, 0});
+  skeleton.add("chest", "spine", {0, 0.18, 0.1});
+  skeleton.add("neck", "chest", {0, 0.18, 0.16});
+  skeleton.add("head", "neck", {0, 0.18, 0.2});
+  skeleton.add("head_end", "head", {0, 0.17, 0.28});
+  skeleton.add("tail", "hips", {0, 0.19, -0.2});
+  skeleton.add("tail1", "tail", {0, 0.2, -0.3});
+  skeleton.add("tail2", "tail1", {0, 0.2, -0.4});
   for (int pair = 0; pair < pairs; ++pair) {
     const LegPlaces leg = legAt(pair, pairs);
     const std::string carrier = 2 * pair < pairs ? "chest" : "hips";
@@ -68,13 +59,13 @@ Skeleton manyLegged(int pairs) {
       const auto sided = [&](const Vec3& place) { return Vec3(left ? place.x() : -place.x(), place.y(), place.z()); };
       const std::string upper = legName("UpperLeg", pair, left), lower = legName("LowerLeg", pair, left),
                         foot = legName("Foot", pair, left);
-      add(upper, carrier, sided(leg.upper));
-      add(lower, upper, sided(leg.lower));
-      add(foot, lower, sided(leg.foot));
-      add(foot + "_end", foot, sided(leg.tip));
+      skeleton.add(upper, carrier, sided(leg.upper));
+      skeleton.add(lower, upper, sided(leg.lower));
+      skeleton.add(foot, lower, sided(leg.foot));
+      skeleton.add(foot + "_end", foot, sided(leg.tip));
     }
   }
-  return skeleton;
+  return skeleton.take();
 }
 
 // The foot's bone stands as it rests, the two above it reach for its root.
@@ -121,12 +112,11 @@ Pose scuttleAt(const Skeleton& skeleton, double seconds) {
   for (int pair = 0; pair < pairs; ++pair) {
     for (const bool left : {true, false}) {
       const double behind = (pair % 2 == 0) == left ? 0 : 0.5, own = strides - behind, phase = own - std::floor(own);
-      const double swing = std::max(0.0, (phase - kDutyFactor) / (1 - kDutyFactor));
+      const double swing = (phase - kDutyFactor) / (1 - kDutyFactor);  // below 0 while it stands
       // Ahead of where it rests by half the way that it stands, then back as far, as the body goes on.
       const double way = kDutyFactor * kStride * (0.5 - footWay(phase));
       const Index end = skeleton.find(legName("Foot", pair, left)).value() + 1;
-      const Vec3 tip = rest[end].translation() +
-                       Vec3(0, kLift * swing * swing * (1 - swing) * (1 - swing) * 16, kStride * strides + way);
+      const Vec3 tip = rest[end].translation() + Vec3(0, kLift * smoothBump(swing), kStride * strides + way);
       placeLeg(skeleton, pair, left, tip, rest, globals, pose);
     }
   }

@@ -161,7 +161,7 @@ Clip retargeted(ClipSource& source, const RiggedModel& rig) {
   options.contacts = source.command.contacts;
   options.contactEdits = source.contactEdits;
   options.characterStands = true;
-  options.skin = std::make_shared<const BodySkin>(makeBodySkin(skeleton, rig.geometry->positions, rig.weights));
+  options.skin = makeBodySkin(skeleton, rig.geometry->positions, rig.weights);
   const RetargetMethod& method = findRetargetMethod(source.command.method);
   const Clip& moving = motion.clips[source.clip];
   const double rate = frameRateOf(motion, source.clip);

@@ -108,14 +108,12 @@ class PlanBuilder {
     }
   }
 
-  // A limb in three bones: its root half way into the trunk, two bends where three straight bones follow it best.
+  // A limb in three bones from its root: two bends where three straight bones follow it best.
   std::array<Vec3, 4> bonesOf(const PairedLimb& limb) const {
     const std::vector<BodyCurve::Point>& points = reading_.curves[limb.curve].points;
     std::vector<Vec3> places;
     for (std::size_t p = 1; p < points.size(); ++p) places.push_back(points[p].place);
-    Vec3 root = places.front();
-    root.tail<2>() = 0.5 * (root.tail<2>() + points.front().place.tail<2>());
-    places.insert(places.begin(), root);
+    places.insert(places.begin(), reading_.curves[limb.curve].root());
     while (places.size() < 4) places.insert(places.end() - 1, 0.5 * (places[places.size() - 2] + places.back()));
     const std::size_t last = places.size() - 1;
     std::array<std::size_t, 2> bends = {1, 2};
@@ -255,7 +253,8 @@ TemplateFit fitPlan(const PlanKind& kind, const ShapeReading& reading) {
   const std::size_t legs = reading.legs().size();
   if (legs < kind.fewestLegs || legs > kind.mostLegs) {
     throw Error(ErrorCode::kUnsupported,
-                fmt::format("needs {} to {} pairs of legs, and the model has {}", kind.fewestLegs, kind.mostLegs, legs),
+                fmt::format("needs {}{} pairs of legs, and the model has {}", kind.fewestLegs,
+                            kind.mostLegs > kind.fewestLegs ? fmt::format(" to {}", kind.mostLegs) : "", legs),
                 std::string(kind.name), "--template auto takes what suits the model");
   }
   return PlanBuilder(kind, reading).build();

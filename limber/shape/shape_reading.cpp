@@ -52,20 +52,20 @@ constexpr int kTrunkBones = 8;         // of the skeleton that is laid along the
 constexpr double kThickest = 0.8;      // quantile of the trunk's radii that it is slender by
 constexpr double kLimbParts[] = {0, 0.34, 0.67, 1};  // of a limb's length, where that skeleton has joints
 
-double lowest(const BodyCurve& curve) {
-  double y = curve.end().y();
-  for (const BodyCurve::Point& point : curve.points) y = std::min(y, point.place.y());
-  return y;
+Vec3 lowest(const BodyCurve& curve) {
+  return std::min_element(curve.points.begin(), curve.points.end(),
+                          [](const auto& a, const auto& b) { return a.place.y() < b.place.y(); })
+      ->place;
 }
 
 double drop(const BodyCurve& curve) {
-  return curve.points.front().place.y() - lowest(curve);
+  return curve.points.front().place.y() - lowest(curve).y();
 }
 
 // Legs reach the ground, come down most of the way to it, and are no fins or sheets.
 double legLikeness(const BodyCurve& curve) {
   const BodyCurve::Point& root = curve.points.front();
-  return kOnGround.of(lowest(curve)) * kRound.of(curve.flatness()) * kSolid.of(curve.meanRadius()) *
+  return kOnGround.of(lowest(curve).y()) * kRound.of(curve.flatness()) * kSolid.of(curve.meanRadius()) *
          kSticksOut.of(curve.length / std::max(root.radius, 1e-9)) *
          kComesDown.of(drop(curve) / std::max(root.place.y(), 1e-9)) * kLegLength.of(curve.length);
 }
@@ -180,9 +180,7 @@ class ShapeReader {
       for (const double side : {1.0, -1.0}) {
         Index joint = nearest->second;
         for (const double part : kLimbParts) {
-          Vec3 place = placeAlong(curve, part);
-          // The first in the flesh of the trunk.
-          if (part == 0) place.tail<2>() = 0.5 * (place.tail<2>() + curve.points.front().place.tail<2>());
+          Vec3 place = part == 0 ? curve.root() : placeAlong(curve, part);
           place.x() *= side;
           joint = addJoint(place, joint);
         }
@@ -262,13 +260,7 @@ class ShapeReader {
       mass += point.area;
       middle += point.area * point.place.z();
     }
-    const std::vector<BodyCurve::Point>& points = reading_.curves[leg.curve].points;
-    double lowest = points.front().place.y(), foot = points.front().place.z();
-    for (const BodyCurve::Point& point : points) {
-      if (point.place.y() >= lowest) continue;
-      lowest = point.place.y();
-      foot = point.place.z();
-    }
+    const double foot = lowest(reading_.curves[leg.curve]).z();
     return std::abs(foot - middle / std::max(mass, 1e-12)) / reading_.trunk().length;
   }
 

@@ -1,0 +1,33 @@
+// Skeletons by where their joints rest.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "limber/skeleton/skeleton.h"
+
+namespace limber {
+
+// Joints in one space, each after its parent; the rest pose turns nothing.
+class PlacedSkeleton {
+ public:
+  // parent  its name; empty for the root
+  // place   metres
+  void add(const std::string& name, const std::string& parent, const Vec3& place) {
+    Joint joint;
+    joint.name = name;
+    if (!parent.empty()) joint.parent = skeleton_.find(parent).value();
+    joint.rest.translation = joint.parent ? Vec3(place - places_[*joint.parent]) : place;
+    places_.push_back(place);
+    skeleton_.joints.push_back(std::move(joint));
+  }
+
+  Skeleton take() { return std::move(skeleton_); }
+
+ private:
+  Skeleton skeleton_;
+  std::vector<Vec3> places_;  // #J
+};
+
+}  // namespace limber
