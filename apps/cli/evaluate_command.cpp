@@ -138,7 +138,8 @@ void runRiggers(const RiggersOptions& options) {
 }
 
 struct SkinningOptions {
-  std::string folder, references, output = "-", method = "bone-heat";
+  std::vector<std::string> folders;
+  std::string references, output = "-", method = "bone-heat", pieces = "auto";
   Common common;
 };
 
@@ -147,6 +148,7 @@ void runSkinning(const SkinningOptions& options) {
   checkOutput(options.output, {".md"});
   AutoRigOptions rig;
   rig.skinning = findWeightMethod(options.method).name;
+  rig.weights.pieces = findPieceMode(options.pieces);
   rig.existingRig = ExistingRig::kKeepSkeleton;
   std::vector<WeightReference> references;
   if (!options.references.empty()) {
@@ -160,7 +162,11 @@ void runSkinning(const SkinningOptions& options) {
     Progress unheard;
     autoRig(asset, rig, unheard);
   };
-  const auto rows = compareFolder(options.folder, reweight, *progress, skipped);
+  std::vector<WeightTableRow> rows;
+  for (const std::string& folder : options.folders) {
+    const std::vector<WeightTableRow> more = compareFolder(folder, reweight, *progress, skipped);
+    rows.insert(rows.end(), more.begin(), more.end());
+  }
   refuseNothing(rows.empty(), skipped);
   writeText(options.output, weightPage(rows, references));
   printWarnings(skipped, options.common.quiet);
@@ -302,14 +308,17 @@ void addWeights(CLI::App& evaluate) {
 void addSkinning(CLI::App& evaluate) {
   auto options = std::make_shared<SkinningOptions>();
   CLI::App* command = evaluate.add_subcommand(
-      "skinning", "Make the weights of a folder of rigged models anew and compare with their own");
-  command->add_option("FOLDER", options->folder, "a folder of .glb and .gltf with artists' rigs")->required();
+      "skinning", "Make the weights of folders of rigged models anew and compare with their own");
+  command->add_option("FOLDER", options->folders, "folders of .glb and .gltf with artists' rigs")->required();
   command->add_option("-o,--output", options->output, "the page to write, in Markdown; - is standard output")
       ->type_name("FILE")
       ->capture_default_str();
   command->add_option("--references", options->references, "another program's figures for the same files, as TSV")
       ->type_name("FILE");
   command->add_option("--skinning", options->method, "how weights are made; limber rig --help lists the methods")
+      ->type_name("NAME")
+      ->capture_default_str();
+  command->add_option("--pieces", options->pieces, "how pieces are bound; limber rig --help lists the ways")
       ->type_name("NAME")
       ->capture_default_str();
   options->common.addTo(*command);

@@ -24,7 +24,7 @@ namespace {
 struct RigArguments {
   std::string input, output, report;
   AutoRigOptions rig;
-  std::string templateName, up, front;
+  std::string templateName, up, front, pieces = "auto";
   std::vector<std::string> pins;
   bool replaceRig = false, keepSkeleton = false, strict = false;
   Common common;
@@ -187,6 +187,7 @@ void run(RigArguments options) {
   findRigger(options.rig.rigger);
   checkRigger(options);
   findWeightMethod(options.rig.skinning);
+  options.rig.weights.pieces = findPieceMode(options.pieces);
 
   TerminalProgress progress(options.common.quiet);
   progress->stage("read");
@@ -221,14 +222,16 @@ std::string listMethods(std::string_view title, std::span<const Method> methods)
   return text;
 }
 
-std::string listTemplates() {
-  std::string text = "Templates:\n";
-  for (const NamedTemplate& named : namedTemplates()) text += fmt::format("  {:<18}{}\n", named.name, named.summary);
+template <class Table>
+std::string listNamed(std::string_view title, const Table& table) {
+  std::string text = fmt::format("{}:\n", title);
+  for (const auto& named : table) text += fmt::format("  {:<18}{}\n", named.name, named.summary);
   return text;
 }
 
 std::string rigHelp() {
-  return listMethods("Riggers", riggerMethods()) + listTemplates() + listMethods("Skinning methods", weightMethods()) +
+  return listMethods("Riggers", riggerMethods()) + listNamed("Templates", namedTemplates()) +
+         listMethods("Skinning methods", weightMethods()) + listNamed("Pieces", pieceModes()) +
          "\nReads GLB, glTF, OBJ, PLY, STL, OFF, FBX and DAE. The result appears under its name only when it is\n"
          "complete; a file of that name is replaced, also where it is the input.\n"
          "\nExamples:\n"
@@ -272,6 +275,9 @@ void addRigCommand(CLI::App& program) {
   command->add_flag("--upright", options->rig.standUpright,
                     "turn a model that surely stands along another axis to stand along +Y");
   command->add_option("--skinning", options->rig.skinning, "how weights are made, see below")
+      ->type_name("NAME")
+      ->capture_default_str();
+  command->add_option("--pieces", options->pieces, "how pieces that are joined to no other are bound, see below")
       ->type_name("NAME")
       ->capture_default_str();
   CLI::Option* replace = command->add_flag("--replace-rig", options->replaceRig,

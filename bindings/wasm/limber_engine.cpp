@@ -56,6 +56,8 @@ limber::AutoRigOptions optionsFrom(std::string_view text) {
       options.rigger = value.get<std::string>();
     } else if (name == "skinning" && value.is_string()) {
       options.skinning = value.get<std::string>();
+    } else if (name == "pieces" && value.is_string()) {
+      options.weights.pieces = limber::findPieceMode(value.get<std::string>());
     } else if (name == "existingRig" && value.is_string()) {
       options.existingRig = existingRigNamed(value.get<std::string>());
     } else {

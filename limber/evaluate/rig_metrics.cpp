@@ -7,7 +7,7 @@
 
 #include "limber/anatomy/humanoid_joints.h"
 #include "limber/asset/asset.h"
-#include "limber/evaluate/assignment.h"
+#include "limber/core/assignment.h"
 #include "limber/evaluate/body_joints.h"
 
 namespace limber {

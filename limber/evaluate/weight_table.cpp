@@ -52,6 +52,7 @@ std::vector<WeightTableRow> compareFolder(const std::filesystem::path& folder, c
     progress.update(static_cast<double>(i) / static_cast<double>(files.size()));
     try {
       if (std::optional<WeightTableRow> row = compareFile(files[i], reweight)) {
+        row->folder = folder.filename().string();
         rows.push_back(std::move(*row));
       } else {
         skipped.add("without-rig", "files without a rig left out", files[i].filename().string());
@@ -171,7 +172,7 @@ Means meansOf(std::span<const PairedRow> pairs, Belongs belongs) {
 }
 
 template <typename Belongs>
-std::string meansLine(const char* name, std::span<const PairedRow> pairs, Belongs belongs) {
+std::string meansLine(std::string_view name, std::span<const PairedRow> pairs, Belongs belongs) {
   const Means m = meansOf(pairs, belongs);
   if (m.count == 0) return {};
   const auto other = [&](double value) { return value > 0 ? fmt::format("{:.3f}", value) : std::string(); };
@@ -190,7 +191,16 @@ std::string meansTable(std::span<const PairedRow> pairs) {
   table += meansLine("others", pairs, [&](const PairedRow& p) { return known(p) && !p.reference->manyPieces; });
   table += meansLine("not made with Blender's weights", pairs,
                      [&](const PairedRow& p) { return known(p) && !p.reference->madeByHeat; });
-  table += meansLine("without figures of Blender", pairs, [&](const PairedRow& p) { return !known(p); });
+  std::vector<std::string> folders;
+  for (const PairedRow& p : pairs) {
+    if (!known(p) && std::find(folders.begin(), folders.end(), p.row->folder) == folders.end()) {
+      folders.push_back(p.row->folder);
+    }
+  }
+  for (const std::string& folder : folders) {
+    table += meansLine("without figures of Blender" + (folder.empty() ? "" : ", " + folder), pairs,
+                       [&](const PairedRow& p) { return !known(p) && p.row->folder == folder; });
+  }
   return table;
 }
 
@@ -232,6 +242,11 @@ of the 45 files Blender deforms nearer to the artist, 11 of them marked `*`. Fou
 against plain bone heat (c = 1, a bone to each child, no facing, no rules for pieces) the mean L1 fell from 0.57 to 0.27 and the
 deformation from 1.83 to 1.05 %. Not every part helped every file there: without the rules for pieces the frog is nearer to
 its artist (0.17 instead of 0.26), and the bat deforms better with a bone to each child (1.68 instead of 2.41 %).
+
+Models put together from parts, each of which turns about its joint, get no heat at all: each piece follows one joint
+(`limber/skinning/jointed_pieces.h`). Those rules and their one distance (a tenth of a piece's diagonal, of 0.05 to 0.15
+that make no difference there) were chosen on `tune`, where the mean L1 fell from 0.654 to 0.362; on `check`, which was only
+measured, it fell from 0.553 to 0.457. No other file changed.
 
 )" + weightTable(rows, references);
 }

@@ -15,7 +15,8 @@
 namespace limber {
 
 struct WeightTableRow {
-  std::string file;  // without folder and extension
+  std::string file;    // without folder and extension
+  std::string folder;  // last name of the folder that was asked for
   WeightComparison comparison;
   double seconds = 0;  // to make the weights, reading and writing files left out
 };
@@ -40,7 +41,8 @@ struct WeightReference {
 // line that is no comment (#) names the columns. Throws Error kBadData naming the line.
 std::vector<WeightReference> parseWeightReferences(std::string_view text);
 
-// A Markdown table with a line for each row, the reference's figures beside, and a table of means over the groups.
+// A Markdown table with a line for each row, the reference's figures beside, and a table of means over the groups; files
+// without a reference are a group for each folder.
 // References may be empty.
 std::string weightTable(std::span<const WeightTableRow> rows, std::span<const WeightReference> references);
 

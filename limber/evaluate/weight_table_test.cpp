@@ -57,6 +57,14 @@ TEST(WeightTable, MeansCompareTheSameFilesOnly) {
   EXPECT_THAT(table, HasSubstr("| all that Blender was measured on | 2 | 0.300 | 0.300 | 0.400 | 0.875 |"));
   EXPECT_THAT(table, HasSubstr("| of many pieces | 1 | 0.400 | 0.500 | 0.500 | 1.500 |"));
   EXPECT_THAT(table, HasSubstr("| without figures of Blender | 1 | 1.000 |  | 8.000 |  |"));
+  std::vector<WeightTableRow> more = rows;
+  for (const char* folder : {"tune", "check"}) {
+    more.push_back(row("beast", 0.5, 2));
+    more.back().folder = folder;
+  }
+  const std::string byFolder = weightTable(more, parseWeightReferences(kReferences));
+  EXPECT_THAT(byFolder, HasSubstr("| without figures of Blender, tune | 1 | 0.500 |  | 2.000 |"));
+  EXPECT_THAT(byFolder, HasSubstr("| without figures of Blender, check | 1 | 0.500 |  | 2.000 |"));
   EXPECT_THAT(table, HasSubstr("| fox * |"));
   EXPECT_THAT(table, HasSubstr("| robot |"));
 }

@@ -90,9 +90,7 @@ std::vector<Bone> keptBones(const Asset& asset, const Geometry& geometry, const 
     warnings.add("single-joint", "one joint alone moves the whole model, as in the file; the others move nothing",
                  skeleton.skeleton.joints[static_cast<std::size_t>(first - deforms.begin())].name);
   }
-  std::vector<Bone> bones = bonesOf(skeleton.skeleton);
-  bones.erase(std::remove_if(bones.begin(), bones.end(), [&](const Bone& bone) { return !deforms[bone.joint]; }),
-              bones.end());
+  std::vector<Bone> bones = bonesOf(skeleton.skeleton, deforms);
   for (Bone& bone : bones) {
     bone.a = frame.toWorking(bone.a);
     bone.b = frame.toWorking(bone.b);

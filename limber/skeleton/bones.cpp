@@ -129,13 +129,27 @@ std::vector<Bone> spheres(const Skeleton& skeleton) {
   return bones;
 }
 
-}  // namespace
-
-std::vector<Bone> bonesOf(const Skeleton& skeleton) {
-  if (skeleton.boneShape == BoneShape::kSphere) return spheres(skeleton);
+std::vector<Bone> segments(const Skeleton& skeleton) {
   const BoneDrawer drawer(skeleton);
   std::vector<Bone> bones;
   for (Index j = 0; j < skeleton.jointCount(); ++j) drawer.draw(j, bones);
+  return bones;
+}
+
+}  // namespace
+
+std::vector<Bone> bonesOf(const Skeleton& skeleton, const std::vector<bool>& moves) {
+  std::vector<Bone> bones = skeleton.boneShape == BoneShape::kSphere ? spheres(skeleton) : segments(skeleton);
+  if (!moves.empty()) {
+    bones.erase(std::remove_if(bones.begin(), bones.end(), [&](const Bone& bone) { return !moves[bone.joint]; }),
+                bones.end());
+  }
+  std::vector<bool> hasBone(skeleton.jointCount(), false);
+  for (const Bone& bone : bones) hasBone[bone.joint] = true;
+  for (Bone& bone : bones) {
+    bone.parent = skeleton.joints[bone.joint].parent;
+    while (bone.parent && !hasBone[*bone.parent]) bone.parent = skeleton.joints[*bone.parent].parent;
+  }
   return bones;
 }
 

@@ -45,6 +45,7 @@ struct Bone {
   Index joint = 0;
   Vec3 a = Vec3::Zero(), b = Vec3::Zero();
   double radius = 0;
+  std::optional<Index> parent = std::nullopt;  // the joint above that has a bone, too; none at a root
 };
 
 // The bones of a skeleton in rest pose, ordered by joint.
@@ -56,6 +57,8 @@ struct Bone {
 // does, and at a leaf, the bone follows the axis. It is then as long as the children, or the parent, are far, at
 // most 2.5 times the median bone. Without a common axis a joint has a bone to each child, and a leaf goes on in its
 // parent's direction. A joint that lies on its only child has no bone; a leaf may be a point.
-std::vector<Bone> bonesOf(const Skeleton& skeleton);
+//
+// moves  #J: joints that are to have bones at all; empty for all joints
+std::vector<Bone> bonesOf(const Skeleton& skeleton, const std::vector<bool>& moves = {});
 
 }  // namespace limber

@@ -10,6 +10,7 @@
 #include "limber/mesh/components.h"
 #include "limber/skinning/heat_solver.h"
 #include "limber/skinning/influence_table.h"
+#include "limber/skinning/jointed_pieces.h"
 #include "limber/skinning/piece_rules.h"
 
 namespace limber {
@@ -174,6 +175,16 @@ WeightResult boneHeatWeightsWith(const BoneHeatOptions& heat, const TriMesh& mes
   progress.step("surface and bones in sight");
   Index pieceCount = 0;
   const std::vector<Index> piece = vertexComponents(mesh, &pieceCount);
+  const bool bound = options.pieces != PieceMode::kSoft && pieceCount > 1 && allSegments(bones);
+  if (bound) {
+    if (const std::optional<PieceBinding> parts = jointsOfPieces(mesh, piece, pieceCount, bones)) {
+      result.weights.slots = options.maxInfluences;
+      result.weights.joints.resize(piece.size() * options.maxInfluences);
+      result.weights.weights.resize(result.weights.joints.size());
+      bindPieces(*parts, piece, result.weights, result.warnings);
+      return result;
+    }
+  }
   HeatProblem problem = setUp(heat, mesh, bones, piece);
   if (!problem.sawBone) {
     result.warnings.add("no-bone-in-sight", "no bone is in sight of any vertex, so each vertex took the nearest bone");
@@ -188,14 +199,14 @@ WeightResult boneHeatWeightsWith(const BoneHeatOptions& heat, const TriMesh& mes
 
   progress.step("bridge pieces");
   std::optional<PieceRules> rules;
-  if (heat.pieceRules && pieceCount > 1 && allSegments(bones)) {
+  if (bound) {
     rules.emplace(mesh, bones, piece, pieceCount, problem.sources.pull);
     rules->classify(finish(table, heat));
     rules->dropHardlySeen(table);
   }
   result.bridged = bridge(mesh, table);
   result.weights = finish(table, heat);
-  if (rules) rules->bindRigid(result.weights, result.warnings);
+  if (rules) rules->bindRigid(options.pieces, result.weights, result.warnings);
   return result;
 }
 

@@ -15,7 +15,6 @@ struct BoneHeatOptions {
   // Weights fade out between these two, so that no vertex hangs on many joints by a thread.
   double fadeFrom = 0.05;
   double fadeTo = 0.025;
-  bool pieceRules = true;  // hard parts follow one joint each (PieceRules); only where bones are segments
 };
 
 // Bone heat (Baran, Popović: Automatic Rigging and Animation of 3D Characters, 2007) on the Laplacian of
@@ -24,8 +23,9 @@ struct BoneHeatOptions {
 // Pieces from which no bone is in sight take the weights of the nearest surface point of a piece that does; the result
 // lists their vertices. Where no vertex at all sees a bone, all bones count as in sight (`no-bone-in-sight`).
 //
-// Where bones are segments, PieceRules then binds hard parts whole (`rigid-pieces`) and has pieces that hardly see a
-// bone bridged likewise.
+// Where bones are segments, models that are put together from parts get no heat: each piece follows its joint
+// (jointsOfPieces). In others PieceRules binds hard parts whole and has pieces that hardly see a bone bridged. Both count
+// such pieces in the warning `rigid-pieces`; WeightOptions::pieces has all pieces bound whole, or none.
 //
 // mesh   working mesh: centred, longest side 1
 // bones  in the space of the mesh, at least one

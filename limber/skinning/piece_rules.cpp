@@ -117,22 +117,28 @@ std::optional<Index> PieceRules::jointAtMiddle(Index piece, const std::vector<do
   return result;
 }
 
-void PieceRules::bindRigid(SkinWeights& weights, Warnings& warnings) const {
-  std::vector<std::optional<Index>> binding(area_.size());
+void PieceRules::bindRigid(PieceMode pieces, SkinWeights& weights, Warnings& warnings) const {
+  PieceBinding binding(area_.size());
   visitShares(weights, [&](Index piece, const std::vector<double>& shares) {
     const Top top = topOf(shares);
-    if (madeOfParts_) {
+    if (pieces == PieceMode::kRigid) {
+      binding[piece] = top.joint;
+    } else if (madeOfParts_) {
       binding[piece] = top.share >= kRigidPart ? top.joint : jointAtMiddle(piece, shares);
     } else if (small(piece) && top.share >= kRigidTrinket) {
       binding[piece] = top.joint;
     }
   });
+  bindPieces(binding, piece_, weights, warnings);
+}
+
+void bindPieces(const PieceBinding& binding, std::span<const Index> piece, SkinWeights& weights, Warnings& warnings) {
   for (Index v = 0; v < weights.vertexCount(); ++v) {
-    if (!binding[piece_[v]]) continue;
+    if (!binding[piece[v]]) continue;
     const std::size_t first = std::size_t{v} * weights.slots;
     std::fill_n(weights.joints.begin() + first, weights.slots, 0);
     std::fill_n(weights.weights.begin() + first, weights.slots, 0.0f);
-    weights.joints[first] = *binding[piece_[v]];
+    weights.joints[first] = *binding[piece[v]];
     weights.weights[first] = 1;
   }
   const auto bound = std::count_if(binding.begin(), binding.end(), [](const auto& joint) { return joint.has_value(); });

@@ -10,8 +10,16 @@
 #include "limber/mesh/tri_mesh.h"
 #include "limber/skeleton/skin_weights.h"
 #include "limber/skinning/influence_table.h"
+#include "limber/skinning/weight_method.h"
 
 namespace limber {
+
+// By piece the joint that it follows whole; none where it bends.
+using PieceBinding = std::vector<std::optional<Index>>;
+
+// Gives the vertices of bound pieces their joint alone. Counts the pieces in the warning `rigid-pieces`.
+// piece  #V, as the weights have vertices
+void bindPieces(const PieceBinding& binding, std::span<const Index> piece, SkinWeights& weights, Warnings& warnings);
 
 // The pieces of a mesh and how well each sees the bones.
 class PieceRules {
@@ -33,9 +41,9 @@ class PieceRules {
   void dropHardlySeen(InfluenceTable& weights) const;
 
   // Binds pieces whole to one joint: in a model of parts those of which it holds 0.62, and those about whose middle it
-  // turns (the ball of a joint); in other models small pieces of which it holds 0.8 (eyes, buttons, buckles). Counts
-  // them in the warning `rigid-pieces`.
-  void bindRigid(SkinWeights& weights, Warnings& warnings) const;
+  // turns (the ball of a joint); in other models small pieces of which it holds 0.8 (eyes, buttons, buckles); with
+  // PieceMode::kRigid all pieces, to the joint that holds most.
+  void bindRigid(PieceMode pieces, SkinWeights& weights, Warnings& warnings) const;
 
  private:
   struct Top {

@@ -37,9 +37,9 @@ struct Machine {
 
 WeightResult heat(const TriMesh& mesh, std::span<const Bone> bones, bool rules = true) {
   Progress progress;
-  BoneHeatOptions options;
-  options.pieceRules = rules;
-  return boneHeatWeightsWith(options, mesh, bones, {}, progress);
+  WeightOptions options;
+  if (!rules) options.pieces = PieceMode::kSoft;
+  return boneHeatWeights(mesh, bones, options, progress);
 }
 
 // The joint that the vertices begin <= v < end follow alone, if it is one.

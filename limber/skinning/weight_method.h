@@ -12,8 +12,25 @@
 
 namespace limber {
 
+// How the pieces of a model that are not joined to others are bound.
+enum class PieceMode {
+  kAuto,   // pieces that are hard parts follow one joint each, others bend
+  kRigid,  // every piece follows one joint
+  kSoft,   // every piece may bend
+};
+
+struct NamedPieceMode {
+  std::string_view name;     // "auto"
+  std::string_view summary;  // one line for --help
+  PieceMode mode;
+};
+std::span<const NamedPieceMode> pieceModes();
+// Throws Error kBadArgument that lists the names there are.
+PieceMode findPieceMode(std::string_view name);
+
 struct WeightOptions {
   Index maxInfluences = 4;  // 1 to 8, kept per vertex
+  PieceMode pieces = PieceMode::kAuto;
 };
 
 struct WeightResult {

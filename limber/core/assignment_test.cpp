@@ -1,4 +1,4 @@
-#include "limber/evaluate/assignment.h"
+#include "limber/core/assignment.h"
 
 #include <algorithm>
 #include <limits>
