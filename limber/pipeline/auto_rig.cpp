@@ -16,6 +16,7 @@
 #include "limber/core/known_error.h"
 #include "limber/mesh/components.h"
 #include "limber/mesh/prepare.h"
+#include "limber/pipeline/accessories.h"
 #include "limber/pipeline/stand_upright.h"
 
 namespace limber {
@@ -80,6 +81,14 @@ std::vector<bool> deformingJoints(const SkinWeights& weights, Index jointCount) 
   return deforms;
 }
 
+void moveBones(const WorkingFrame& from, const WorkingFrame& to, std::vector<Bone>& bones) {
+  for (Bone& bone : bones) {
+    bone.a = to.toWorking(from.toSource(bone.a));
+    bone.b = to.toWorking(from.toSource(bone.b));
+    bone.radius = bone.radius * from.scale / to.scale;
+  }
+}
+
 // The bones of the asset's own skeleton, in the working space.
 std::vector<Bone> keptBones(const Asset& asset, const Geometry& geometry, const AssetSkeleton& skeleton,
                             const WorkingFrame& frame, Warnings& warnings) {
@@ -91,11 +100,7 @@ std::vector<Bone> keptBones(const Asset& asset, const Geometry& geometry, const 
                  skeleton.skeleton.joints[static_cast<std::size_t>(first - deforms.begin())].name);
   }
   std::vector<Bone> bones = bonesOf(skeleton.skeleton, deforms);
-  for (Bone& bone : bones) {
-    bone.a = frame.toWorking(bone.a);
-    bone.b = frame.toWorking(bone.b);
-    bone.radius /= frame.scale;
-  }
+  moveBones({}, frame, bones);
   return bones;
 }
 
@@ -150,6 +155,11 @@ WeightResult heldByOneJoint(const TriMesh& mesh) {
   return result;
 }
 
+RigOptions optionsIn(const WorkingFrame& frame, RigOptions options) {
+  for (JointPin& pin : options.pins) pin.place = frame.toWorking(pin.place);
+  return options;
+}
+
 struct Rigged {
   SkinWeights weights;           // for the source vertices
   std::optional<Skeleton> made;  // in world space; none where the asset's own was kept
@@ -161,16 +171,28 @@ Rigged makeRig(const Asset& asset, const Geometry& geometry, const PreparedMesh&
                const AutoRigOptions& options, AutoRigReport& report, Progress& progress) {
   Rigged result;
   std::vector<Bone> bones;
+  Accessories accessories;
   progress.stage("rig");
   if (options.existingRig == ExistingRig::kKeepSkeleton) {
     result.kept = readSkeleton(asset);
     bones = keptBones(asset, geometry, result.kept, prepared.frame, report.warnings);
     report.joints = result.kept.skeleton.jointCount();
   } else {
-    RigOptions rigOptions = options.rig;
-    for (JointPin& pin : rigOptions.pins) pin.place = prepared.frame.toWorking(pin.place);
-    AutoRig rig = findRigger(options.rigger).rig(prepared.mesh, rigOptions, progress);
+    const RiggerMethod& rigger = findRigger(options.rigger);
+    if (rigger.looksForLimbs) accessories = findAccessories(asset, geometry);
+    std::optional<PreparedMesh> body;
+    if (!accessories.empty()) body = prepareMesh(geometry.positions, bodyTriangles(geometry, accessories));
+    WorkingFrame frame = body ? body->frame : prepared.frame;
+    AutoRig rig = rigger.rig(body ? body->mesh : prepared.mesh, optionsIn(frame, options.rig), progress);
+    if (body && rig.isAbstained) {  // handles are for all of the model
+      accessories = {};
+      frame = prepared.frame;
+      AutoRig handles = findRigger(AutoRigOptions().rigger).rig(prepared.mesh, options.rig, progress);
+      rig.skeleton = std::move(handles.skeleton);
+      rig.suggestions = std::move(handles.suggestions);
+    }
     bones = bonesOf(rig.skeleton);
+    if (!accessories.empty()) moveBones(frame, prepared.frame, bones);
     report.isAbstained = rig.isAbstained;
     report.rigger = rig.isAbstained ? AutoRigOptions().rigger : options.rigger;
     report.joints = rig.skeleton.jointCount();
@@ -181,7 +203,7 @@ Rigged makeRig(const Asset& asset, const Geometry& geometry, const PreparedMesh&
     const bool sure = options.rig.up || confidence > kSureEnough;
     if (sure) result.up = rig.up;
     if (!sure && rig.up && confidence > kLikelyTemplate) warnMaybeLies(*rig.up, confidence, report.warnings);
-    result.made = toWorld(std::move(rig.skeleton), prepared.frame);
+    result.made = toWorld(std::move(rig.skeleton), frame);
   }
 
   progress.stage("skin");
@@ -190,6 +212,11 @@ Rigged makeRig(const Asset& asset, const Geometry& geometry, const PreparedMesh&
                           : findWeightMethod(options.skinning).compute(prepared.mesh, bones, options.weights, progress);
   report.warnings.append(skin.warnings);
   reportBridged(asset, geometry, prepared, pieces, skin.bridged, report);
+  if (!accessories.empty()) {
+    hangAccessories(geometry, prepared, accessories, skin.weights);
+    report.warnings.add("accessories", "things worn or held are no part of the body and follow one joint each",
+                        fmt::format("{}", fmt::join(accessories.names, ", ")), accessories.names.size());
+  }
   result.weights = expandWeights(skin.weights, prepared.weldedVertex);
   return result;
 }

@@ -11,10 +11,10 @@ namespace {
 
 constexpr RiggerMethod kMethods[] = {
     {"sphere-mesh", "handles where the model is thick, any number of them",
-     "Thiery, Guy, Boubekeur: Sphere-Meshes, 2013", &rigWithSphereMesh},
+     "Thiery, Guy, Boubekeur: Sphere-Meshes, 2013", &rigWithSphereMesh, false},
     {"template", "a named skeleton fitted into the model; --template names it", "after Baran, Popović: Pinocchio, 2007",
-     &rigWithTemplate},
-    {kPropRigger, "one joint for all of it: a thing that does not bend", "", &rigAsProp},
+     &rigWithTemplate, true},
+    {kPropRigger, "one joint for all of it: a thing that does not bend", "", &rigAsProp, false},
 };
 
 }  // namespace

@@ -73,6 +73,7 @@ struct RiggerMethod {
   std::string_view summary;  // one line for --help
   std::string_view paper;    // empty: none
   AutoRigger rig;
+  bool looksForLimbs;  // is better given a body without what it wears or holds
 };
 
 std::span<const RiggerMethod> riggerMethods();

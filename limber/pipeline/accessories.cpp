@@ -1,0 +1,162 @@
+#include "limber/pipeline/accessories.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <optional>
+#include <string_view>
+
+#include <nlohmann/json.hpp>
+
+#include "limber/anatomy/humanoid_words.h"
+#include "limber/asset/scene_graph.h"
+#include "limber/mesh/bvh.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kMostOfSurface = 0.5;
+constexpr double kNearestPart = 0.1;  // of an accessory's vertices, which tell what it hangs on
+
+// Not among them is what a head can be hidden in: helmets, hoods, masks, hair.
+constexpr std::array<std::string_view, 52> kWords = {
+    "sword",    "axe",     "shield",     "staff",     "wand",     "gun",     "rifle",  "pistol",   "bow",
+    "crossbow", "arrow",   "arrows",     "quiver",    "knife",    "dagger",  "spear",  "lance",    "mug",
+    "cup",      "bottle",  "book",       "spellbook", "torch",    "lantern", "hammer", "mace",     "club",
+    "scythe",   "shovel",  "pickaxe",    "weapon",    "weapons",  "prop",    "props",  "hat",      "cap",
+    "crown",    "cape",    "cloak",      "scarf",     "backpack", "bag",     "pouch",  "umbrella", "sunglasses",
+    "glasses",  "goggles", "headphones", "banner",    "flag",     "basket",  "guitar"};
+
+bool namesAccessory(std::string_view name) {
+  bool found = false;
+  std::string rest;
+  for (const std::string& word : detail::wordsOfName(name)) {
+    if (std::find(kWords.begin(), kWords.end(), word) != kWords.end()) {
+      found = true;
+    } else {
+      rest.append(rest.empty() ? "" : "_").append(word);
+    }
+  }
+  return found && detail::readBodyName(rest).word == detail::BodyWord::kNone;
+}
+
+// The first name of the instance that names an accessory: its node's, mesh's or material's.
+std::optional<std::string> accessoryName(const Asset& asset, const PrimitiveInstance& instance) {
+  const Json& mesh = elements(asset, "meshes")[instance.mesh];
+  std::vector<std::string> names = {nameOf(elements(asset, "nodes")[instance.node]), nameOf(mesh)};
+  const Json& primitive = mesh.at("primitives")[instance.primitive];
+  if (const std::optional<Index> material = indexMember(primitive, "material")) {
+    names.push_back(nameOf(elements(asset, "materials")[*material]));
+  }
+  const auto found = std::find_if(names.begin(), names.end(), namesAccessory);
+  return found == names.end() ? std::nullopt : std::optional(*found);
+}
+
+double areaOf(const Geometry& geometry, const Triangle& t) {
+  const Vec3 a = geometry.positions[t[0]].cast<double>(), b = geometry.positions[t[1]].cast<double>(),
+             c = geometry.positions[t[2]].cast<double>();
+  return 0.5 * (b - a).cross(c - a).norm();
+}
+
+// The vertices of prepared.mesh that belong to accessories alone, by accessory.
+std::vector<std::vector<Index>> ownVertices(const Geometry& geometry, const PreparedMesh& prepared,
+                                            const Accessories& accessories) {
+  std::vector<Index> owner(prepared.mesh.vertexCount(), kNoIndex);
+  std::vector<bool> ofBody(prepared.mesh.vertexCount(), false);
+  for (std::size_t t = 0; t < geometry.triangles.size(); ++t) {
+    for (const Index source : geometry.triangles[t]) {
+      const Index v = prepared.weldedVertex[source];
+      if (accessories.ofTriangle[t] == kNoIndex) {
+        ofBody[v] = true;
+      } else {
+        owner[v] = accessories.ofTriangle[t];
+      }
+    }
+  }
+  std::vector<std::vector<Index>> vertices(accessories.names.size());
+  for (Index v = 0; v < owner.size(); ++v) {
+    if (owner[v] != kNoIndex && !ofBody[v]) vertices[owner[v]].push_back(v);
+  }
+  return vertices;
+}
+
+}  // namespace
+
+Accessories findAccessories(const Asset& asset, const Geometry& geometry) {
+  std::vector<Index> ofVertex(geometry.positions.size(), kNoIndex);
+  std::map<Index, Index> ofNode;
+  Accessories result;
+  for (const PrimitiveInstance& instance : geometry.instances) {
+    const std::optional<std::string> name = accessoryName(asset, instance);
+    if (!name) continue;
+    const auto [entry, isNew] = ofNode.emplace(instance.node, static_cast<Index>(result.names.size()));
+    if (isNew) result.names.push_back(*name);
+    std::fill_n(ofVertex.begin() + instance.firstVertex, instance.vertexCount, entry->second);
+  }
+  if (result.empty()) return result;
+  double all = 0, ofAccessories = 0;
+  for (const Triangle& t : geometry.triangles) {
+    result.ofTriangle.push_back(ofVertex[t[0]]);
+    const double area = areaOf(geometry, t);
+    all += area;
+    if (result.ofTriangle.back() != kNoIndex) ofAccessories += area;
+  }
+  return ofAccessories < kMostOfSurface * all ? result : Accessories();
+}
+
+std::vector<Triangle> bodyTriangles(const Geometry& geometry, const Accessories& accessories) {
+  std::vector<Triangle> triangles;
+  for (std::size_t t = 0; t < geometry.triangles.size(); ++t) {
+    if (accessories.ofTriangle[t] == kNoIndex) triangles.push_back(geometry.triangles[t]);
+  }
+  return triangles;
+}
+
+void hangAccessories(const Geometry& geometry, const PreparedMesh& prepared, const Accessories& accessories,
+                     SkinWeights& weights) {
+  const TriMesh& mesh = prepared.mesh;
+  const std::vector<std::vector<Index>> vertices = ownVertices(geometry, prepared, accessories);
+  std::vector<bool> isOwn(mesh.vertexCount(), false);
+  for (const std::vector<Index>& own : vertices) {
+    for (const Index v : own) isOwn[v] = true;
+  }
+  std::vector<Index> body;
+  for (Index t = 0; t < mesh.triangleCount(); ++t) {
+    const Triangle& triangle = mesh.triangles[t];
+    if (std::none_of(triangle.begin(), triangle.end(), [&](Index v) { return isOwn[v]; })) body.push_back(t);
+  }
+  if (body.empty()) return;
+  const Bvh surface(mesh, body);
+  for (const std::vector<Index>& own : vertices) {
+    if (own.empty()) continue;
+    std::vector<SurfacePoint> nearest;
+    for (const Index v : own) nearest.push_back(surface.nearestPoint(mesh.position(v)));
+    const std::size_t count = std::max<std::size_t>(1, static_cast<std::size_t>(kNearestPart * own.size()));
+    std::nth_element(nearest.begin(), nearest.begin() + (count - 1), nearest.end(),
+                     [](const SurfacePoint& a, const SurfacePoint& b) { return a.distance < b.distance; });
+    const double reach = nearest[count - 1].distance;
+    std::map<Index, double> share;  // by joint
+    for (const SurfacePoint& point : nearest) {
+      if (point.distance > reach) continue;
+      for (int corner = 0; corner < 3; ++corner) {
+        const Index v = mesh.triangles[point.triangle][corner];
+        for (Index slot = 0; slot < weights.slots; ++slot) {
+          share[weights.jointsOf(v)[slot]] += point.weights[corner] * weights.weightsOf(v)[slot];
+        }
+      }
+    }
+    const Index joint = std::max_element(share.begin(), share.end(), [](const auto& a, const auto& b) {
+                          return a.second < b.second;
+                        })->first;
+    for (const Index v : own) {
+      const std::size_t first = std::size_t{v} * weights.slots;
+      std::fill_n(weights.joints.begin() + first, weights.slots, 0);
+      std::fill_n(weights.weights.begin() + first, weights.slots, 0.0f);
+      weights.joints[first] = joint;
+      weights.weights[first] = 1;
+    }
+  }
+}
+
+}  // namespace limber

@@ -1,0 +1,100 @@
+// A body of one tall box, with a small box beside it under different names.
+#include "limber/pipeline/accessories.h"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "limber/asset/accessor.h"
+
+namespace limber {
+namespace {
+
+struct Named {
+  std::string node, mesh, material;
+};
+
+Index addBox(Asset& asset, const Vec3f& low, const Vec3f& high, const Named& names) {
+  std::vector<float> positions;
+  for (int corner = 0; corner < 8; ++corner) {
+    for (int axis = 0; axis < 3; ++axis) positions.push_back((corner >> axis & 1) != 0 ? high[axis] : low[axis]);
+  }
+  const std::vector<std::uint32_t> corners = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
+                                              2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
+  const Index position = addFloatAccessor(asset, positions, 3, kVertexTarget, true);
+  const Index indices =
+      addAccessor(asset, {static_cast<Index>(corners.size()), 1, ComponentType::kU32, false},
+                  {reinterpret_cast<const std::uint8_t*>(corners.data()), 4 * corners.size()}, kIndexTarget);
+  Json& json = asset.json();
+  const std::size_t index = json["nodes"].size();
+  json["materials"].push_back({{"name", names.material}});
+  json["meshes"].push_back(
+      {{"name", names.mesh},
+       {"primitives", {{{"attributes", {{"POSITION", position}}}, {"indices", indices}, {"material", index}}}}});
+  json["nodes"].push_back({{"name", names.node}, {"mesh", index}});
+  json["scenes"][0]["nodes"].push_back(index);
+  return static_cast<Index>(index);
+}
+
+// The body reaches from 0 to 2 in y; the thing touches it at its top end.
+Asset bodyWith(const Named& thing, float size = 0.2f) {
+  Asset asset;
+  asset.json()["asset"] = {{"version", "2.0"}};
+  asset.json()["scenes"] = Json::array({{{"nodes", Json::array()}}});
+  addBox(asset, {-0.3f, 0, -0.3f}, {0.3f, 2, 0.3f}, {"Body", "Body", "Skin"});
+  addBox(asset, {0.31f, 1.8f, -0.1f}, {0.31f + size, 1.8f + size, 0.1f}, thing);
+  checkAsset(asset);
+  return asset;
+}
+
+std::vector<std::string> namesIn(const Named& thing, float size = 0.2f) {
+  const Asset asset = bodyWith(thing, size);
+  return findAccessories(asset, collectGeometry(asset)).names;
+}
+
+using Names = std::vector<std::string>;
+
+TEST(Accessories, AreToldByTheWordsOfNodesMeshesAndMaterials) {
+  EXPECT_EQ(namesIn({"Knight_Cape", "Cube.001", ""}), Names{"Knight_Cape"});
+  EXPECT_EQ(namesIn({"Cube", "1H_Sword", ""}), Names{"1H_Sword"});
+  EXPECT_EQ(namesIn({"Cube", "Cube", "GunMetal_gun"}), Names{"GunMetal_gun"});
+  EXPECT_EQ(namesIn({"Cube", "Cube", "Capelin"}), Names{});
+  EXPECT_EQ(namesIn({"ArmLeft_Shield", "Cube", ""}), Names{});  // names a part of the body, too
+}
+
+TEST(Accessories, AreNoneWhereTheyAreMostOfTheModel) {
+  EXPECT_EQ(namesIn({"Sword", "", ""}, 3), Names{});
+}
+
+TEST(Accessories, FollowTheJointOfTheBodyThatIsNearest) {
+  const Asset asset = bodyWith({"Mug", "", ""});
+  const Geometry geometry = collectGeometry(asset);
+  const Accessories accessories = findAccessories(asset, geometry);
+  EXPECT_EQ(bodyTriangles(geometry, accessories).size(), 12u);
+
+  const PreparedMesh prepared = prepareMesh(geometry.positions, geometry.triangles);
+  SkinWeights weights;
+  weights.slots = 2;
+  for (Index v = 0; v < prepared.mesh.vertexCount(); ++v) {
+    const double height = prepared.frame.toSource(prepared.mesh.position(v)).y();
+    const auto upper = static_cast<float>(std::clamp(height / 2, 0.0, 1.0));
+    weights.joints.insert(weights.joints.end(), {0, 1});
+    weights.weights.insert(weights.weights.end(), {1 - upper, upper});
+  }
+  const SkinWeights before = weights;
+  hangAccessories(geometry, prepared, accessories, weights);
+  for (Index source = 0; source < 16; ++source) {
+    const Index v = prepared.weldedVertex[source];
+    if (source < 8) {
+      EXPECT_EQ(weights.weightsOf(v)[0], before.weightsOf(v)[0]);
+    } else {
+      EXPECT_EQ(weights.jointsOf(v)[0], 1u);
+      EXPECT_EQ(weights.weightsOf(v)[0], 1);
+      EXPECT_EQ(weights.weightsOf(v)[1], 0);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace limber
