@@ -110,6 +110,10 @@ void printAccount(const Account& account, const RigArguments& options, const Aut
     if (report.isAbstained) {
       account.line(fmt::format("--template {} fits that one all the same", report.matches.front().name));
     }
+    if (!report.doubts.empty()) {
+      account.line(
+          fmt::format("most in doubt: {}; --pin JOINT=x,y,z tells where one is", fmt::join(report.doubts, ", ")));
+    }
   }
   printWarnings(report.warnings, options.common.quiet);
   if (!options.common.quiet) printBridged(report);

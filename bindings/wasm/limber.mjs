@@ -51,7 +51,7 @@ import createEngine from './limber_engine.mjs';
  *             limits: { [joint: string]: { type: string, [field: string]: unknown } },
  *             limit_outlines: { joint: number, length: number, closed: boolean, rim: Vector[] }[],
  *             solver: string, ik: boolean, limited: boolean, targets: { joint: number, position: Vector }[],
- *             pins: { joint: string, position: Vector }[], locked: number[], edited_rig: boolean,
+ *             pins: { joint: string, position: Vector }[], doubts: number[], locked: number[], edited_rig: boolean,
  *             dragged: number | null,
  *             posed: boolean, undo: string | null, redo: string | null,
  *             warnings: { kind: string, message: string, where: string, count: number }[],

@@ -23,8 +23,6 @@ namespace limber {
 
 namespace {
 
-constexpr double kSureEnough = 0.75;  // of a template, to believe how it says that the model stands
-
 // Puts an asset back as it was unless the work on it was completed. Stages change the JSON and append to buffers, and
 // never touch bytes that were there: so the JSON and the lengths are enough to keep.
 class Rollback {
@@ -183,7 +181,13 @@ Rigged makeRig(const Asset& asset, const Geometry& geometry, const PreparedMesh&
     std::optional<PreparedMesh> body;
     if (!accessories.empty()) body = prepareMesh(geometry.positions, bodyTriangles(geometry, accessories));
     WorkingFrame frame = body ? body->frame : prepared.frame;
-    AutoRig rig = rigger.rig(body ? body->mesh : prepared.mesh, optionsIn(frame, options.rig), progress);
+    RigOptions rigOptions = optionsIn(frame, options.rig);
+    if (body && rigOptions.memory) {
+      std::shared_ptr<RigMemory>& bare = options.rig.memory->bare;
+      if (!bare) bare = std::make_shared<RigMemory>();
+      rigOptions.memory = bare;
+    }
+    AutoRig rig = rigger.rig(body ? body->mesh : prepared.mesh, rigOptions, progress);
     if (body && rig.isAbstained) {  // handles are for all of the model
       accessories = {};
       frame = prepared.frame;
@@ -198,9 +202,10 @@ Rigged makeRig(const Asset& asset, const Geometry& geometry, const PreparedMesh&
     report.joints = rig.skeleton.jointCount();
     report.suggestions = std::move(rig.suggestions);
     report.matches = std::move(rig.matches);
+    report.doubts = std::move(rig.doubts);
     report.warnings.append(rig.warnings);
     const double confidence = report.matches.empty() ? 0 : report.matches.front().confidence;
-    const bool sure = options.rig.up || confidence > kSureEnough;
+    const bool sure = options.rig.up || confidence > kSureTemplate;
     if (sure) result.up = rig.up;
     if (!sure && rig.up && confidence > kLikelyTemplate) warnMaybeLies(*rig.up, confidence, report.warnings);
     result.made = toWorld(std::move(rig.skeleton), frame);

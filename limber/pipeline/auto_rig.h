@@ -42,6 +42,7 @@ struct AutoRigReport {
   std::vector<HandleSuggestion> suggestions;
   bool isAbstained = false;            // handles in place of a template (AutoRig)
   std::vector<TemplateMatch> matches;  // of templates that were tried, likeliest first
+  std::vector<std::string> doubts;     // joints whose pins would settle most (AutoRig)
   std::vector<BridgedNode> bridged;    // most vertices first
   Warnings warnings;                   // of reading and of every stage
   std::vector<StageTime> stages;

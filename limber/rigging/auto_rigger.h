@@ -22,10 +22,13 @@ struct JointPin {
 };
 
 class SphereMesh;
+struct MeasuredModel;
 
 // What a rigger found out about a mesh and can use again for the same mesh: filled by one call, read by the next.
 struct RigMemory {
   std::shared_ptr<const SphereMesh> spheres;
+  std::shared_ptr<const MeasuredModel> measured;
+  std::shared_ptr<RigMemory> bare;  // of the same model without what it wears or holds
 };
 
 struct RigOptions {
@@ -51,6 +54,9 @@ struct TemplateMatch {
   double confidence = 0;
 };
 
+// From which on a template is taken to be right in its limbs, too.
+inline constexpr double kSureTemplate = 0.75;
+
 // A count of handles worth choosing.
 struct HandleSuggestion {
   Index handles = 0;
@@ -62,7 +68,9 @@ struct AutoRig {
   bool isAbstained = false;  // it has handles in place of a template (RigOptions::mayAbstain)
   std::vector<HandleSuggestion> suggestions;
   std::vector<TemplateMatch> matches;  // likeliest first: the one that was fitted, unless it abstained
-  std::optional<Vec3> up;              // of the model as it was fitted
+  std::vector<std::string> doubts;  // joints at the ends of limbs whose pins would settle most of an unsure template,
+                                    // first things first, kMostDoubts at most; none where it is sure or has handles
+  std::optional<Vec3> up;           // of the model as it was fitted
   Warnings warnings;
 };
 

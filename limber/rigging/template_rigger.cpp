@@ -27,19 +27,30 @@
 
 namespace limber {
 
+// What all templates are tried on.
+struct MeasuredModel {
+  std::optional<Vec3> up, front;   // as they were given
+  std::optional<TriMesh> cleared;  // of stray pieces; none where the mesh has none
+  BodyVolume body;
+  std::vector<AnatomicalFrame> frames;
+  std::optional<ShapeReading> shape;
+};
+
 namespace {
 
 constexpr std::size_t kCoarseSpheres = 120;        // for a first look at every way to stand
 constexpr std::size_t kFramesRefined = 2;          // after it, with all spheres
 constexpr std::size_t kVariantsRefined = 4;        // of each of these
-constexpr double kSureEnough = 0.75;               // not to look for people, or for animals, in other poses
 constexpr double kCostOfDoubt = 1.8;               // cost at which confidence is a half
 constexpr double kOtherHands = 0.05;               // cost of fingers that hands lack, or that a template lacks
 constexpr double kWings = 2;                       // cost of arms as flat as wings
 constexpr double kRoundArm = 2.5, kFlatArm = 3.5;  // times as wide as thick
 constexpr double kVoteOfShape = 8;                 // times the odds of a template that has the plan of a sure shape
-constexpr double kSureShape = 0.9;       // confidence of a shape from which on templates of other plans are not tried
-constexpr double kMostAsymmetry = 0.15;  // more than the most symmetric way to stand, of those looked at
+constexpr double kSureShape = 0.9;  // confidence of a shape from which on templates of other plans are not tried
+constexpr std::size_t kMostDoubts = 3;
+constexpr double kLongLimb = 0.1;          // heights; fingers are shorter
+constexpr double kCostWithoutPlace = 100;  // above the cost of any limb that has one
+constexpr double kMostAsymmetry = 0.15;    // more than the most symmetric way to stand, of those looked at
 
 // Each joint once, and where the model may be: the model's size beyond its box is another unit.
 void checkPins(const TriMesh& mesh, const std::vector<JointPin>& pins) {
@@ -154,7 +165,7 @@ double confidenceOf(const TemplateFit& fit) {
 }
 
 bool isSure(const TemplateFit& fit) {
-  return confidenceOf(fit) > kSureEnough;
+  return confidenceOf(fit) > kSureTemplate;
 }
 
 // The person in a model, in whatever pose, for all templates.
@@ -249,7 +260,7 @@ bool mayBe(const TemplateSkeleton& skeleton, const std::optional<ShapeReading>& 
 // Those that face as the shape of a four-legged animal does, where it is surely one; else all.
 std::vector<AnatomicalFrame> framesLike(const std::optional<ShapeReading>& shape,
                                         const std::vector<AnatomicalFrame>& frames) {
-  const bool isSure = shape && shape->plan == BodyPlan::kFourLegs && shape->confidence > kSureEnough;
+  const bool isSure = shape && shape->plan == BodyPlan::kFourLegs && shape->confidence > kSureTemplate;
   if (!isSure || !shape->frame.isFrontRead) return frames;
   return {shape->frame};
 }
@@ -275,6 +286,23 @@ Guess planGuess(const PlanKind& kind, const ShapeReading& shape, const std::vect
 // Pinned joints are some template's: whoever pins one has chosen.
 bool leavesTheChoice(const RigOptions& options) {
   return options.templateName == "auto" && !options.templateSkeleton && options.pins.empty();
+}
+
+std::shared_ptr<const MeasuredModel> measure(const TriMesh& mesh, const RigOptions& options) {
+  if (options.memory && options.memory->measured) {
+    const MeasuredModel& known = *options.memory->measured;
+    if (known.up == options.up && known.front == options.front) return options.memory->measured;
+  }
+  auto model = std::make_shared<MeasuredModel>();
+  model->up = options.up;
+  model->front = options.front;
+  model->cleared = withoutStrays(mesh);
+  const TriMesh& surface = model->cleared ? *model->cleared : mesh;
+  model->body = measureBody(surface);
+  model->frames = possibleFrames(surface, model->body, options.up, options.front);
+  model->shape = readShape(model->body, model->frames, options.front.has_value());
+  if (options.memory) options.memory->measured = model;
+  return model;
 }
 
 // Kinds of the shape's plan, of all or the one that is asked for.
@@ -308,6 +336,55 @@ void warn(const Guess& guess, AutoRig& rig) {
                      fmt::format("the model hardly looks like the template (confidence {:.2f})", guess.confidence()),
                      fit.skeleton.name);
   }
+}
+
+// How ill a limb stands in the model: the mean cost of its joints. Of bodies laid along curves, which have no costs,
+// long limbs come before short ones.
+double doubtOf(const Guess& guess, const TemplateLimb& limb, double length) {
+  if (guess.byPlan) return length;
+  double cost = 0;
+  for (const Index joint : limb.placed) cost += guess.fit.embedding.costs[joint];
+  cost /= static_cast<double>(std::max<std::size_t>(1, limb.placed.size()));
+  return limb.hasPlace ? cost : kCostWithoutPlace + cost;
+}
+
+std::vector<std::string> doubtsOf(const Guess& guess) {
+  std::vector<std::string> doubts;
+  if (guess.confidence() >= kSureTemplate) return doubts;
+  const TemplateFit& fit = guess.fit;
+  const std::vector<TemplateJoint>& joints = fit.skeleton.joints;
+  struct Limb {
+    Index end;
+    double doubt;
+  };
+  std::vector<Limb> limbs;
+  std::vector<bool> parts(joints.size(), false);
+  for (const TemplateJoint& joint : joints) {
+    if (joint.parent && joint.role != TemplateRole::kTip) parts[*joint.parent] = true;
+  }
+  for (const TemplateLimb& limb : fit.limbs) {
+    if (limb.joints.empty()) continue;
+    const Index end = limb.joints.back();
+    double length = 0;
+    for (const Index joint : limb.joints) {
+      if (joints[joint].parent) length += (joints[joint].place - joints[*joints[joint].parent].place).norm();
+    }
+    const std::optional<Index> mirror = joints[end].mirror;
+    const bool isPinned = fit.pins[end] || (mirror && fit.pins[*mirror]);
+    if (parts[end] || length < kLongLimb || isPinned) continue;
+    const double doubt = doubtOf(guess, limb, length);
+    const auto other = std::find_if(limbs.begin(), limbs.end(), [&](const Limb& known) { return known.end == mirror; });
+    if (other == limbs.end()) {
+      limbs.push_back({end, doubt});
+    } else if (doubt > other->doubt) {
+      *other = {end, doubt};
+    }
+  }
+  std::stable_sort(limbs.begin(), limbs.end(), [](const Limb& a, const Limb& b) { return a.doubt > b.doubt; });
+  for (const Limb& limb : limbs) {
+    if (doubts.size() < kMostDoubts) doubts.push_back(joints[limb.end].name);
+  }
+  return doubts;
 }
 
 std::vector<TemplateMatch> matchesOf(const std::vector<Guess>& guesses) {
@@ -410,11 +487,12 @@ AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress
   const std::vector<JointPin> pins = person ? humanoidPins(*person, options.pins) : options.pins;
   checkPins(mesh, options.pins);
   progress.step("measure body");
-  const std::optional<TriMesh> cleared = withoutStrays(mesh);
+  const std::shared_ptr<const MeasuredModel> measured = measure(mesh, options);
+  const std::optional<TriMesh>& cleared = measured->cleared;
   const TriMesh& surface = cleared ? *cleared : mesh;
-  const BodyVolume body = measureBody(surface);
-  const std::vector<AnatomicalFrame> frames = possibleFrames(surface, body, options.up, options.front);
-  const std::optional<ShapeReading> shape = readShape(body, frames, options.front.has_value());
+  const BodyVolume& body = measured->body;
+  const std::vector<AnatomicalFrame>& frames = measured->frames;
+  const std::optional<ShapeReading>& shape = measured->shape;
   const Model model{body, frames, options.front};
   // Animals face as their shape says: heads and tails look alike to a template.
   const std::vector<AnatomicalFrame> likeShape = framesLike(shape, frames);
@@ -478,6 +556,7 @@ AutoRig rigWithTemplate(const TriMesh& mesh, const RigOptions& options, Progress
   }
   rig.up = best.frame.axes.row(1).transpose();
   rig.matches = matchesOf(guesses);
+  if (!person) rig.doubts = doubtsOf(likeliest);
   warn(likeliest, rig);
   return rig;
 }

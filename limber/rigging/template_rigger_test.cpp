@@ -242,6 +242,36 @@ TEST(TemplateRigger, SaysWhichLimbsHalfABodyLacks) {
   const AutoRig armless = riggedPartOfAPerson([](const Vec3f& p) { return std::abs(p.x()) < 0.15f; });
   EXPECT_LT(armless.matches[0].confidence, 0.4);
   EXPECT_EQ(whereOf(armless, "no-place"), "leftShoulder to leftHand, rightShoulder to rightHand");
+
+  // What has no place is asked for first, a pair once.
+  ASSERT_EQ(upper.doubts.size(), 3u);
+  EXPECT_TRUE(upper.doubts[0] == "leftToes" || upper.doubts[0] == "rightToes") << upper.doubts[0];
+  ASSERT_EQ(armless.doubts.size(), 3u);
+  EXPECT_TRUE(armless.doubts[0] == "leftHand" || armless.doubts[0] == "rightHand") << armless.doubts[0];
+  EXPECT_TRUE(riggedPerson().doubts.empty());
+}
+
+TEST(TemplateRigger, WhatIsPinnedIsNoLongerInDoubt) {
+  RigOptions options = person();
+  const AutoRig first = rig(ball(), options);
+  ASSERT_FALSE(first.doubts.empty());
+  options.pins.push_back({first.doubts[0], {0, 0.9, 0}});
+  for (const std::string& doubt : rig(ball(), options).doubts) EXPECT_NE(doubt, first.doubts[0]);
+}
+
+TEST(TemplateRigger, WithMemoryItGivesTheSame) {
+  RigOptions options = person();
+  options.pins.push_back({"leftHand", testing::capsulePerson().hand});
+  const AutoRig fresh = rig(testing::capsulePerson().mesh, options);
+  options.memory = std::make_shared<RigMemory>();
+  for (int round = 0; round < 2; ++round) {
+    const AutoRig again = rig(testing::capsulePerson().mesh, options);
+    ASSERT_EQ(again.skeleton.jointCount(), fresh.skeleton.jointCount());
+    for (Index j = 0; j < fresh.skeleton.jointCount(); ++j) {
+      EXPECT_EQ(again.skeleton.joints[j].rest.translation, fresh.skeleton.joints[j].rest.translation);
+    }
+  }
+  EXPECT_TRUE(options.memory->measured);
 }
 
 TEST(TemplateRigger, SaysWhereTheHeadIsCutOff) {

@@ -205,6 +205,7 @@ Json sessionState(const Session& session) {
       {"match", matchJson(state)},
       {"targets", Json::array()},
       {"pins", Json::array()},
+      {"doubts", Json::array()},
       {"locked", Json::array()},
       {"edited_rig", rig.edited},
       {"dragged", nullptr},
@@ -221,6 +222,11 @@ Json sessionState(const Session& session) {
   }
   for (const JointPin& pin : state.pins) {
     json["pins"].push_back({{"joint", pin.joint}, {"position", vectorJson(pin.place)}});
+  }
+  if (rig.report && !rig.edited) {
+    for (const std::string& doubt : rig.report->doubts) {
+      if (const std::optional<Index> joint = rig.skeleton().find(doubt)) json["doubts"].push_back(*joint);
+    }
   }
   for (Index j = 0; j < rig.skeleton().jointCount(); ++j) {
     if (state.locked.count(rig.skeleton().joints[j].name) > 0) json["locked"].push_back(j);

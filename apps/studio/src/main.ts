@@ -14,6 +14,7 @@ import { exposeStage } from './app/probe';
 import { comparisonPanel } from './panels/comparison_panel';
 import { arButton, arMenu } from './panels/ar_button';
 import type { ContactSheet } from './panels/contact_sheet';
+import { doubts } from './panels/doubts';
 import { methodsPanel } from './panels/methods_panel';
 import { outliner } from './panels/outliner';
 import { paintPanel } from './panels/paint_panel';
@@ -64,7 +65,7 @@ const desk = { ...stage, studio, page, app };
 app.replaceChildren(
   toolbar(studio, page, journal, viewport, model, others, arMenu(desk)),
   element('main', { class: 'stage' }, viewport.canvas, facts(page), hint(page, viewport), poseTools(page), views(viewport), arButton(desk), comparisonPanel(studio, page, comparison)),
-  element('aside', { class: 'side' }, scenePanel(studio, page, places), posePanel(studio, page, poses), paintPanel(studio, page), retargetPanel(studio, page), methodsPanel(studio, page), outliner(studio, page, handles)),
+  element('aside', { class: 'side' }, scenePanel(studio, page, places), doubts(studio, page), posePanel(studio, page, poses), paintPanel(studio, page), retargetPanel(studio, page), methodsPanel(studio, page), outliner(studio, page, handles)),
   clips,
   toasts);
 loadedWhenOpened(studio, page, 'help', async () => {

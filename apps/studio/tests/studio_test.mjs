@@ -238,6 +238,32 @@ const cases = {
     assert.deepEqual(other.errors, []);
     await other.context.close();
   },
+  async 'where a skeleton is not sure, its places are asked for one by one'() {
+    const other = await openStudio(browser, server.address, { search: '?sample=footstool' });
+    const at = other.page, asked = at.locator('#doubts'), doubts = async () => (await sessionState(at)).doubts;
+    assert.equal(await asked.isVisible(), false);
+    await at.locator('#methods summary').click();
+    await at.locator('#rigger').selectOption('template');
+    await at.waitForFunction(() => globalThis.limberStudio.state().doubts.length > 0);
+    await settled(at);
+    const names = (await sessionState(at)).joints.map(({ name }) => name), [first, second] = (await doubts()).map((joint) => names[joint]);
+    assert.ok(second);
+    await at.locator('#right-as-it-is').click();
+    await at.locator('#show-doubt').click();
+    await settled(at);
+    assert.match(await asked.textContent(), /Touch the model/);
+    assert.equal(names[await at.evaluate(() => globalThis.limberStudio.selected())], second);
+    const box = await at.locator('main canvas').boundingBox();
+    for (const [x, y] of [[0.5, 0.5], [0.5, 0.45], [0.46, 0.42], [0.54, 0.42], [0.5, 0.4]]) {
+      await at.mouse.click(box.x + x * box.width, box.y + y * box.height);
+      await settled(at);
+      if ((await sessionState(at)).pins.length > 0) break;
+    }
+    assert.deepEqual((await sessionState(at)).pins.map(({ joint }) => joint), [second]);
+    assert.ok(!(await doubts()).map((joint) => names[joint]).includes(second), first);
+    assert.deepEqual(other.errors, []);
+    await other.context.close();
+  },
   async 'an arrow of the gizmo moves the joint along its axis'() {
     await page.locator('#gizmo').check();
     const name = await freeHandle();

@@ -4,7 +4,7 @@ import {
   MeshStandardMaterial, PerspectiveCamera, SphereGeometry, Vector2, Vector3,
 } from 'three';
 import type { SessionState } from '../engine/messages';
-import { boneColor, handleColor, hoverColor, pinColor, rootColor, selectedColor } from './palette';
+import { boneColor, doubtColor, handleColor, hoverColor, pinColor, rootColor, selectedColor } from './palette';
 
 const shrink = 0.8; // of the fitted radius, so that neighbours stay apart
 const leastPixels = 6; // where the model is small on the screen fewer, so that the handles do not hide it
@@ -104,10 +104,10 @@ export class HandleView {
     return Math.min(leastPixels, Math.max(fewestPixels, Math.max(x, y) * Math.sqrt(mostCover / (Math.PI * this.count))));
   }
 
-  paint(selected: ReadonlySet<number>, hovered: number | null, pinned: ReadonlySet<number>) {
+  paint(selected: ReadonlySet<number>, hovered: number | null, pinned: ReadonlySet<number>, doubted: ReadonlySet<number> = new Set()) {
     for (let joint = 0; this.spheres && joint < this.joints.length; ++joint) {
       const color = selected.has(joint) ? selectedColor : joint === hovered ? hoverColor
-        : pinned.has(joint) ? pinColor : this.joints[joint]?.parent === -1 ? rootColor : handleColor;
+        : pinned.has(joint) ? pinColor : doubted.has(joint) ? doubtColor : this.joints[joint]?.parent === -1 ? rootColor : handleColor;
       this.spheres.setColorAt(joint, color);
     }
     if (this.spheres?.instanceColor) this.spheres.instanceColor.needsUpdate = true;

@@ -6,6 +6,7 @@ export const rootColor = new Color('#e8a317');
 export const hoverColor = new Color('#ff6b76');
 export const selectedColor = new Color('#2563eb');
 export const pinColor = new Color('#0f9d6b');
+export const doubtColor = new Color('#c026d3');
 export const limitColor = new Color('#7c3aed');
 export const beforeColor = new Color('#2b7de0');
 export const afterColor = new Color('#e07b1a');

@@ -139,7 +139,7 @@ export function createStage(studio: Studio, page: PageStore): Stage {
       || (now.display === 'joint-weights' && now.selected !== before.selected);
     if (repaint) model.setDisplay(now.display, now.selected, now.wireframe);
     const selected = now.selected === null ? [] : [now.selected, ...now.also];
-    handles.paint(new Set(selected), now.hovered, new Set(now.pinned));
+    handles.paint(new Set(selected), now.hovered, new Set(now.pinned), new Set(now.session?.doubts));
     viewport.draw();
   });
   return { viewport, handles, model, comparison, gizmo, others, places, arrange };
