@@ -110,6 +110,7 @@ void printAccount(const Account& account, const RigArguments& options, const Aut
     if (report.isAbstained) {
       account.line(fmt::format("--template {} fits that one all the same", report.matches.front().name));
     }
+    if (!report.chains.empty()) account.line(fmt::format("swinging: {}", fmt::join(report.chains, ", ")));
     if (!report.doubts.empty()) {
       account.line(
           fmt::format("most in doubt: {}; --pin JOINT=x,y,z tells where one is", fmt::join(report.doubts, ", ")));
@@ -170,7 +171,8 @@ void checkRigger(const RigArguments& options) {
   for (const auto& [option, isGiven] : {std::pair{"--pin", !options.pins.empty()},
                                         {"--up", !options.up.empty()},
                                         {"--front", !options.front.empty()},
-                                        {"--upright", options.rig.standUpright}}) {
+                                        {"--upright", options.rig.standUpright},
+                                        {"--chains", options.rig.chains}}) {
     if (isGiven) throw CLI::ValidationError(option, "takes a template to fit: --template NAME");
   }
 }
@@ -278,6 +280,8 @@ void addRigCommand(CLI::App& program) {
       ->type_name("AXIS");
   command->add_flag("--upright", options->rig.standUpright,
                     "turn a model that surely stands along another axis to stand along +Y");
+  command->add_flag("--chains", options->rig.chains,
+                    "give capes, scarves, braids and tails joints that swing (VRMC_springBone)");
   command->add_option("--skinning", options->rig.skinning, "how weights are made, see below")
       ->type_name("NAME")
       ->capture_default_str();

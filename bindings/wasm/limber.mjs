@@ -15,7 +15,7 @@ import createEngine from './limber_engine.mjs';
 
 /**
  * @typedef {{ handles?: number, maxInfluences?: number, rigger?: string, skinning?: string,
- *             pieces?: 'auto' | 'rigid' | 'soft', existingRig?: 'refuse' | 'replace' | 'keep-skeleton' }} RigOptions
+ *             pieces?: 'auto' | 'rigid' | 'soft', chains?: boolean, existingRig?: 'refuse' | 'replace' | 'keep-skeleton' }} RigOptions
  * @typedef {'nothing-to-undo' | 'nothing-to-redo' | 'joint-dragged' | 'no-model' | 'no-clip' | 'name-missing'
  *             | 'name-taken' | 'only-root' | 'joint-below-itself' | 'last-member' | 'holds-itself'
  *             | 'model-not-mirrored' | 'nothing-mirrored' | 'joint-locked' | 'pin-outside' | 'handle-count'

@@ -58,6 +58,8 @@ limber::AutoRigOptions optionsFrom(std::string_view text) {
       options.skinning = value.get<std::string>();
     } else if (name == "pieces" && value.is_string()) {
       options.weights.pieces = limber::findPieceMode(value.get<std::string>());
+    } else if (name == "chains" && value.is_boolean()) {
+      options.chains = value.get<bool>();
     } else if (name == "existingRig" && value.is_string()) {
       options.existingRig = existingRigNamed(value.get<std::string>());
     } else {

@@ -20,37 +20,52 @@ constexpr double kMostOfSurface = 0.5;
 constexpr double kNearestPart = 0.1;  // of an accessory's vertices, which tell what it hangs on
 
 // Not among them is what a head can be hidden in: helmets, hoods, masks, hair.
-constexpr std::array<std::string_view, 52> kWords = {
-    "sword",    "axe",     "shield",     "staff",     "wand",     "gun",     "rifle",  "pistol",   "bow",
-    "crossbow", "arrow",   "arrows",     "quiver",    "knife",    "dagger",  "spear",  "lance",    "mug",
-    "cup",      "bottle",  "book",       "spellbook", "torch",    "lantern", "hammer", "mace",     "club",
-    "scythe",   "shovel",  "pickaxe",    "weapon",    "weapons",  "prop",    "props",  "hat",      "cap",
-    "crown",    "cape",    "cloak",      "scarf",     "backpack", "bag",     "pouch",  "umbrella", "sunglasses",
-    "glasses",  "goggles", "headphones", "banner",    "flag",     "basket",  "guitar"};
+constexpr std::array<std::string_view, 47> kStiffWords = {
+    "sword",    "axe",        "shield",  "staff",   "wand",       "gun",    "rifle", "pistol",   "bow",    "crossbow",
+    "arrow",    "arrows",     "quiver",  "knife",   "dagger",     "spear",  "lance", "mug",      "cup",    "bottle",
+    "book",     "spellbook",  "torch",   "lantern", "hammer",     "mace",   "club",  "scythe",   "shovel", "pickaxe",
+    "weapon",   "weapons",    "prop",    "props",   "hat",        "cap",    "crown", "backpack", "bag",    "pouch",
+    "umbrella", "sunglasses", "glasses", "goggles", "headphones", "basket", "guitar"};
+constexpr std::array<std::string_view, 10> kHangingWords = {"cape",   "cloak",  "scarf",    "banner", "flag",
+                                                            "ribbon", "tassel", "ponytail", "braid",  "pigtail"};
 
-bool namesAccessory(std::string_view name) {
-  bool found = false;
+struct AccessoryName {
+  std::string name, word;
+  bool hangs = false;
+};
+
+template <std::size_t n>
+bool has(const std::array<std::string_view, n>& words, const std::string& word) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+std::optional<AccessoryName> readAccessoryName(const std::string& name) {
+  AccessoryName result{name, {}, false};
   std::string rest;
   for (const std::string& word : detail::wordsOfName(name)) {
-    if (std::find(kWords.begin(), kWords.end(), word) != kWords.end()) {
-      found = true;
+    if (has(kStiffWords, word) || has(kHangingWords, word)) {
+      if (result.word.empty()) result.word = word;
     } else {
       rest.append(rest.empty() ? "" : "_").append(word);
     }
   }
-  return found && detail::readBodyName(rest).word == detail::BodyWord::kNone;
+  if (result.word.empty() || detail::readBodyName(rest).word != detail::BodyWord::kNone) return std::nullopt;
+  result.hangs = has(kHangingWords, result.word);
+  return result;
 }
 
 // The first name of the instance that names an accessory: its node's, mesh's or material's.
-std::optional<std::string> accessoryName(const Asset& asset, const PrimitiveInstance& instance) {
+std::optional<AccessoryName> accessoryName(const Asset& asset, const PrimitiveInstance& instance) {
   const Json& mesh = elements(asset, "meshes")[instance.mesh];
   std::vector<std::string> names = {nameOf(elements(asset, "nodes")[instance.node]), nameOf(mesh)};
   const Json& primitive = mesh.at("primitives")[instance.primitive];
   if (const std::optional<Index> material = indexMember(primitive, "material")) {
     names.push_back(nameOf(elements(asset, "materials")[*material]));
   }
-  const auto found = std::find_if(names.begin(), names.end(), namesAccessory);
-  return found == names.end() ? std::nullopt : std::optional(*found);
+  for (const std::string& name : names) {
+    if (std::optional<AccessoryName> found = readAccessoryName(name)) return found;
+  }
+  return std::nullopt;
 }
 
 double areaOf(const Geometry& geometry, const Triangle& t) {
@@ -88,10 +103,14 @@ Accessories findAccessories(const Asset& asset, const Geometry& geometry) {
   std::map<Index, Index> ofNode;
   Accessories result;
   for (const PrimitiveInstance& instance : geometry.instances) {
-    const std::optional<std::string> name = accessoryName(asset, instance);
+    const std::optional<AccessoryName> name = accessoryName(asset, instance);
     if (!name) continue;
     const auto [entry, isNew] = ofNode.emplace(instance.node, static_cast<Index>(result.names.size()));
-    if (isNew) result.names.push_back(*name);
+    if (isNew) {
+      result.names.push_back(name->name);
+      result.words.push_back(name->word);
+      result.hangs.push_back(name->hangs);
+    }
     std::fill_n(ofVertex.begin() + instance.firstVertex, instance.vertexCount, entry->second);
   }
   if (result.empty()) return result;
@@ -113,8 +132,8 @@ std::vector<Triangle> bodyTriangles(const Geometry& geometry, const Accessories&
   return triangles;
 }
 
-void hangAccessories(const Geometry& geometry, const PreparedMesh& prepared, const Accessories& accessories,
-                     SkinWeights& weights) {
+std::vector<HungAccessory> hangAccessories(const Geometry& geometry, const PreparedMesh& prepared,
+                                           const Accessories& accessories, SkinWeights& weights) {
   const TriMesh& mesh = prepared.mesh;
   const std::vector<std::vector<Index>> vertices = ownVertices(geometry, prepared, accessories);
   std::vector<bool> isOwn(mesh.vertexCount(), false);
@@ -126,19 +145,29 @@ void hangAccessories(const Geometry& geometry, const PreparedMesh& prepared, con
     const Triangle& triangle = mesh.triangles[t];
     if (std::none_of(triangle.begin(), triangle.end(), [&](Index v) { return isOwn[v]; })) body.push_back(t);
   }
-  if (body.empty()) return;
+  if (body.empty()) return {};
   const Bvh surface(mesh, body);
+  std::vector<HungAccessory> result;
   for (const std::vector<Index>& own : vertices) {
+    HungAccessory& hung = result.emplace_back();
     if (own.empty()) continue;
+    hung.vertices = own;
     std::vector<SurfacePoint> nearest;
-    for (const Index v : own) nearest.push_back(surface.nearestPoint(mesh.position(v)));
-    const std::size_t count = std::max<std::size_t>(1, static_cast<std::size_t>(kNearestPart * own.size()));
-    std::nth_element(nearest.begin(), nearest.begin() + (count - 1), nearest.end(),
-                     [](const SurfacePoint& a, const SurfacePoint& b) { return a.distance < b.distance; });
-    const double reach = nearest[count - 1].distance;
+    std::vector<double> distances;
+    for (const Index v : own) {
+      nearest.push_back(surface.nearestPoint(mesh.position(v)));
+      distances.push_back(nearest.back().distance);
+    }
+    const auto last = distances.begin() + static_cast<std::ptrdiff_t>(kNearestPart * static_cast<double>(own.size()));
+    std::nth_element(distances.begin(), last, distances.end());
+    const double reach = *last;
     std::map<Index, double> share;  // by joint
-    for (const SurfacePoint& point : nearest) {
+    double count = 0;
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      const SurfacePoint& point = nearest[i];
       if (point.distance > reach) continue;
+      hung.place += mesh.position(own[i]);
+      ++count;
       for (int corner = 0; corner < 3; ++corner) {
         const Index v = mesh.triangles[point.triangle][corner];
         for (Index slot = 0; slot < weights.slots; ++slot) {
@@ -146,17 +175,19 @@ void hangAccessories(const Geometry& geometry, const PreparedMesh& prepared, con
         }
       }
     }
-    const Index joint = std::max_element(share.begin(), share.end(), [](const auto& a, const auto& b) {
-                          return a.second < b.second;
-                        })->first;
+    hung.place /= count;
+    hung.joint = std::max_element(share.begin(), share.end(), [](const auto& a, const auto& b) {
+                   return a.second < b.second;
+                 })->first;
     for (const Index v : own) {
       const std::size_t first = std::size_t{v} * weights.slots;
       std::fill_n(weights.joints.begin() + first, weights.slots, 0);
       std::fill_n(weights.weights.begin() + first, weights.slots, 0.0f);
-      weights.joints[first] = joint;
+      weights.joints[first] = hung.joint;
       weights.weights[first] = 1;
     }
   }
+  return result;
 }
 
 }  // namespace limber

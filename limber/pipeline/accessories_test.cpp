@@ -57,6 +57,9 @@ using Names = std::vector<std::string>;
 
 TEST(Accessories, AreToldByTheWordsOfNodesMeshesAndMaterials) {
   EXPECT_EQ(namesIn({"Knight_Cape", "Cube.001", ""}), Names{"Knight_Cape"});
+  const Asset cape = bodyWith({"Knight_Cape", "", ""});
+  EXPECT_EQ(findAccessories(cape, collectGeometry(cape)).words, Names{"cape"});
+  EXPECT_TRUE(findAccessories(cape, collectGeometry(cape)).hangs[0]);
   EXPECT_EQ(namesIn({"Cube", "1H_Sword", ""}), Names{"1H_Sword"});
   EXPECT_EQ(namesIn({"Cube", "Cube", "GunMetal_gun"}), Names{"GunMetal_gun"});
   EXPECT_EQ(namesIn({"Cube", "Cube", "Capelin"}), Names{});

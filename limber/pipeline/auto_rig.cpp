@@ -17,6 +17,7 @@
 #include "limber/mesh/components.h"
 #include "limber/mesh/prepare.h"
 #include "limber/pipeline/accessories.h"
+#include "limber/pipeline/hanging_chains.h"
 #include "limber/pipeline/stand_upright.h"
 
 namespace limber {
@@ -162,6 +163,7 @@ struct Rigged {
   SkinWeights weights;           // for the source vertices
   std::optional<Skeleton> made;  // in world space; none where the asset's own was kept
   std::optional<Vec3> up;        // of the model, where that is sure
+  std::vector<HangingChain> chains;
   AssetSkeleton kept;
 };
 
@@ -217,11 +219,21 @@ Rigged makeRig(const Asset& asset, const Geometry& geometry, const PreparedMesh&
                           : findWeightMethod(options.skinning).compute(prepared.mesh, bones, options.weights, progress);
   report.warnings.append(skin.warnings);
   reportBridged(asset, geometry, prepared, pieces, skin.bridged, report);
+  if (options.chains && result.made && !report.matches.empty() && !report.isAbstained) {
+    result.chains = chainsOfTails(*result.made);
+  }
   if (!accessories.empty()) {
-    hangAccessories(geometry, prepared, accessories, skin.weights);
+    const std::vector<HungAccessory> hung = hangAccessories(geometry, prepared, accessories, skin.weights);
+    if (options.chains) {
+      for (HangingChain& chain : addChains(prepared, accessories, hung, *result.made, skin.weights)) {
+        result.chains.push_back(std::move(chain));
+      }
+    }
     report.warnings.add("accessories", "things worn or held are no part of the body and follow one joint each",
                         fmt::format("{}", fmt::join(accessories.names, ", ")), accessories.names.size());
   }
+  if (result.made) report.joints = result.made->jointCount();
+  for (const HangingChain& chain : result.chains) report.chains.push_back(chain.name);
   result.weights = expandWeights(skin.weights, prepared.weldedVertex);
   return result;
 }
@@ -261,6 +273,7 @@ AutoRigReport runStages(Asset& asset, const AutoRigOptions& options, Progress& p
   progress.stage("write rig");
   if (rig.made) {
     attachRig(asset, geometry, *rig.made, rig.weights);
+    if (!rig.chains.empty()) writeSprings(asset, readSkeleton(asset), rig.chains);
     if (rig.up) standUpright(asset, *rig.up, options.standUpright, report.warnings);
   } else {
     replaceWeights(asset, geometry, rig.kept, rig.weights);

@@ -25,6 +25,7 @@ struct AutoRigOptions {
   RigOptions rig;  // pins in world space
   WeightOptions weights;
   ExistingRig existingRig = ExistingRig::kRefuse;
+  bool chains = false;  // what hangs gets joints of its own that swing (HangingChain), where a rigger finds bodies
   bool standUpright = false;  // turn a model that stands along another axis than +Y; else there is a warning
 };
 
@@ -42,6 +43,7 @@ struct AutoRigReport {
   std::vector<HandleSuggestion> suggestions;
   bool isAbstained = false;            // handles in place of a template (AutoRig)
   std::vector<TemplateMatch> matches;  // of templates that were tried, likeliest first
+  std::vector<std::string> chains;     // names of what got joints of its own (AutoRigOptions::chains)
   std::vector<std::string> doubts;     // joints whose pins would settle most (AutoRig)
   std::vector<BridgedNode> bridged;    // most vertices first
   Warnings warnings;                   // of reading and of every stage

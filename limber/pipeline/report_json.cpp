@@ -41,6 +41,7 @@ Json toJson(const AutoRigReport& report) {
   for (const TemplateMatch& match : report.matches) {
     json["templates"].push_back({{"name", match.name}, {"confidence", match.confidence}});
   }
+  if (!report.chains.empty()) json["chains"] = report.chains;
   if (!report.doubts.empty()) json["doubts"] = report.doubts;
   json["bridged"] = Json::array();
   for (const BridgedNode& node : report.bridged) {
