@@ -14,6 +14,7 @@ namespace {
 constexpr double kDoubtful = 1;         // cost of a fit from which it is bent
 constexpr double kWorthBending = 0.65;  // of the cost of the template that stands
 constexpr double kMostCost = 1.9;       // of a pose that nobody pinned
+constexpr double kHopeless = 1.5;       // times that cost: no limb that reaches for another end makes up for it
 constexpr int kMostBends = 6;
 constexpr int kMostReaches = 4;
 constexpr double kSizeSteps[] = {0.8, 1, 1.25};
@@ -126,6 +127,7 @@ void searchPose(TemplateEmbedder& embedder, TemplateFit& fit) {
   if (!pinned && (fit.cost < kDoubtful || fit.frame.symmetric())) return;
   TemplateFit bent = fit;
   bendNearer(embedder, bent);
+  if (!pinned && bent.cost > kHopeless * kMostCost) return;
   for (int reach = 0; reach < kMostReaches && reachOut(embedder, bent); ++reach) {
   }
   if (pinned || bent.cost < std::min(kMostCost, kWorthBending * fit.cost)) fit = std::move(bent);
