@@ -15,7 +15,7 @@ namespace {
 
 // Extensions of primitives, nodes, skins, animations and the document that name no accessor, or whose accessors are
 // followed here.
-constexpr std::array<std::string_view, 16> kTransparent = {"EXT_mesh_gpu_instancing",
+constexpr std::array<std::string_view, 17> kTransparent = {"EXT_mesh_gpu_instancing",
                                                            "KHR_animation_pointer",
                                                            "KHR_draco_mesh_compression",
                                                            "KHR_lights_punctual",
@@ -30,7 +30,8 @@ constexpr std::array<std::string_view, 16> kTransparent = {"EXT_mesh_gpu_instanc
                                                            "EXT_lights_ies",
                                                            "EXT_lights_image_based",
                                                            "VRM",
-                                                           "VRMC_vrm"};
+                                                           "VRMC_vrm",
+                                                           "VRMC_springBone"};
 
 bool transparent(const Json& object) {
   const Json* extensions = member(object, "extensions");

@@ -5,6 +5,9 @@
 
 namespace limber {
 
+// Of VRM 1.0: chains of nodes that swing.
+inline constexpr const char* kSpringBoneName = "VRMC_springBone";
+
 // The extension of that name of a node, a primitive, ...; absent where there is none.
 JsonView extensionOf(const JsonView& owner, const char* name);
 

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "limber/asset/extensions.h"
 #include "limber/asset/scene_graph.h"
 #include "limber/core/transform.h"
 
@@ -111,6 +112,49 @@ void renumberList(Json& object, const char* key, const std::vector<Index>& newIn
   }
 }
 
+// Renumbers the nodes of VRMC_springBone's springs: those of deleted joints go, and the extension where none is left.
+// False where colliders hang on deleted nodes: these are kept as they are.
+bool renumberSprings(Json& document, const std::vector<Index>& newIndex) {
+  Json& extension = document["extensions"][kSpringBoneName];
+  const auto isKept = [&](const Json& holder, const char* key) {
+    const std::optional<Index> node = holder.is_object() ? indexMember(holder, key) : std::nullopt;
+    return node && *node < newIndex.size() && newIndex[*node] != kNoIndex;
+  };
+  Json kept = Json::array();
+  for (Json& spring : extension["springs"]) {
+    if (!spring.is_object()) continue;
+    Json& joints = spring["joints"];
+    if (!joints.is_array() ||
+        !std::all_of(joints.begin(), joints.end(), [&](const Json& joint) { return isKept(joint, "node"); })) {
+      continue;
+    }
+    for (Json& joint : joints) joint["node"] = newIndex[joint["node"].get<Index>()];
+    if (isKept(spring, "center")) {
+      spring["center"] = newIndex[spring["center"].get<Index>()];
+    } else {
+      spring.erase("center");
+    }
+    kept.push_back(std::move(spring));
+  }
+  if (kept.empty()) {
+    eraseExtension(document, kSpringBoneName);
+    undeclareExtension(document, kSpringBoneName);
+    return true;
+  }
+  extension["springs"] = std::move(kept);
+  const auto colliders = extension.find("colliders");
+  if (colliders == extension.end() || !colliders->is_array()) return true;
+  bool allKept = true;
+  for (Json& collider : *colliders) {
+    if (isKept(collider, "node")) {
+      collider["node"] = newIndex[collider["node"].get<Index>()];
+    } else {
+      allKept = false;
+    }
+  }
+  return allKept;
+}
+
 // Does anything in there look like the number of a node?
 bool seemsToNameNodes(const Json& value) {
   if (value.is_object()) {
@@ -208,8 +252,10 @@ void deleteNodes(Asset& asset, const std::vector<bool>& keep) {
       for (Json& channel : *channels) renumberTarget(channel, newIndex);
     }
   }
-  const Json* extensions = member(json, "extensions");
-  if (extensions && seemsToNameNodes(*extensions)) {
+  Json others = json.value("extensions", Json::object());
+  const bool hasSprings = others.is_object() && others.contains(kSpringBoneName) && others[kSpringBoneName].is_object();
+  if (hasSprings) others.erase(kSpringBoneName);
+  if ((hasSprings && !renumberSprings(json, newIndex)) || seemsToNameNodes(others)) {
     asset.warnings.add("node-references", "extensions that name nodes by number may now name others");
   }
 }

@@ -36,8 +36,8 @@ void removeChannels(Asset& asset, const std::function<bool(Index node, std::stri
 void retargetMorphChannels(Asset& asset, Index from, Index to);
 
 // Deletes the nodes for which `keep` is false (#nodes) and renumbers every reference to a node: children, scenes,
-// skins, animation channels (KHR_animation_pointer too), MSFT_lod. Channels of deleted nodes go. Where other extensions
-// seem to name nodes, a warning "node-references" is added to the asset's.
+// skins, animation channels (KHR_animation_pointer too), MSFT_lod, VRMC_springBone. Channels and springs of deleted
+// nodes go. Where other extensions seem to name nodes, a warning "node-references" is added to the asset's.
 void deleteNodes(Asset& asset, const std::vector<bool>& keep);
 
 }  // namespace limber

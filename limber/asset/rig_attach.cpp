@@ -100,7 +100,8 @@ RigNodes addRigNodes(Asset& asset, const Skeleton& skeleton) {
 
 }  // namespace
 
-void attachRig(Asset& asset, const Geometry& geometry, const Skeleton& skeleton, const SkinWeights& weights) {
+std::vector<Index> attachRig(Asset& asset, const Geometry& geometry, const Skeleton& skeleton,
+                             const SkinWeights& weights) {
   checkArguments(asset, geometry, skeleton, weights);
   std::vector<Index> identity(skeleton.jointCount());
   for (Index j = 0; j < identity.size(); ++j) identity[j] = j;
@@ -119,6 +120,7 @@ void attachRig(Asset& asset, const Geometry& geometry, const Skeleton& skeleton,
   }
   skinned.finish();
   unused.sweep(asset);
+  return rig.joints;
 }
 
 }  // namespace limber

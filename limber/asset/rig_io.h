@@ -40,7 +40,9 @@ void removeRig(Asset& asset);
 //
 // skeleton  in world space, any bone shape; radius is written to the node's extras ("limber_radius")
 // weights   for the vertices of `geometry`, which must be collectGeometry(asset) of the asset as it is
-void attachRig(Asset& asset, const Geometry& geometry, const Skeleton& skeleton, const SkinWeights& weights);
+// Returns #J nodes of the joints.
+std::vector<Index> attachRig(Asset& asset, const Geometry& geometry, const Skeleton& skeleton,
+                             const SkinWeights& weights);
 
 // New weights for the skeleton that the asset has (skeleton = readSkeleton(asset)): joints, skins, clips stay as they
 // are, but that a skin is given the joints that its meshes now use and it lacks. Meshes that hung on a joint without a

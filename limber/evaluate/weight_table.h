@@ -41,8 +41,8 @@ struct WeightReference {
 // line that is no comment (#) names the columns. Throws Error kBadData naming the line.
 std::vector<WeightReference> parseWeightReferences(std::string_view text);
 
-// A Markdown table with a line for each row, the reference's figures beside, and a table of means over the groups; files
-// without a reference are a group for each folder.
+// A Markdown table with a line for each row, the reference's figures beside, and a table of means over the groups;
+// files without a reference are a group for each folder.
 // References may be empty.
 std::string weightTable(std::span<const WeightTableRow> rows, std::span<const WeightReference> references);
 

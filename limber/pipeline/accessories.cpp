@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string_view>
+#include <tuple>
 
 #include <nlohmann/json.hpp>
 
@@ -100,12 +101,13 @@ std::vector<std::vector<Index>> ownVertices(const Geometry& geometry, const Prep
 
 Accessories findAccessories(const Asset& asset, const Geometry& geometry) {
   std::vector<Index> ofVertex(geometry.positions.size(), kNoIndex);
-  std::map<Index, Index> ofNode;
+  std::map<std::tuple<Index, Index, std::string>, Index> known;  // by node, copy and name
   Accessories result;
   for (const PrimitiveInstance& instance : geometry.instances) {
     const std::optional<AccessoryName> name = accessoryName(asset, instance);
     if (!name) continue;
-    const auto [entry, isNew] = ofNode.emplace(instance.node, static_cast<Index>(result.names.size()));
+    const auto [entry, isNew] =
+        known.emplace(std::tuple(instance.node, instance.copy, name->name), static_cast<Index>(result.names.size()));
     if (isNew) {
       result.names.push_back(name->name);
       result.words.push_back(name->word);
@@ -179,13 +181,7 @@ std::vector<HungAccessory> hangAccessories(const Geometry& geometry, const Prepa
     hung.joint = std::max_element(share.begin(), share.end(), [](const auto& a, const auto& b) {
                    return a.second < b.second;
                  })->first;
-    for (const Index v : own) {
-      const std::size_t first = std::size_t{v} * weights.slots;
-      std::fill_n(weights.joints.begin() + first, weights.slots, 0);
-      std::fill_n(weights.weights.begin() + first, weights.slots, 0.0f);
-      weights.joints[first] = hung.joint;
-      weights.weights[first] = 1;
-    }
+    for (const Index v : own) bindTo(hung.joint, v, weights);
   }
   return result;
 }

@@ -12,7 +12,8 @@
 namespace limber {
 
 // Accessories are told by the words of their nodes, meshes and materials ("Knight_Cape", "1H_Sword"), where the other
-// words do not name a joint of the body ("Head_Hat" is a head). Those of one node are one.
+// words do not name a joint of the body ("Head_Hat" is a head). Those of one
+// name at one node are one.
 struct Accessories {
   std::vector<std::string> names;  // as in the file, of #A accessories
   std::vector<std::string> words;  // #A, by which each was told: "cape"

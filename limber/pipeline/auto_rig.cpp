@@ -201,7 +201,6 @@ Rigged makeRig(const Asset& asset, const Geometry& geometry, const PreparedMesh&
     if (!accessories.empty()) moveBones(frame, prepared.frame, bones);
     report.isAbstained = rig.isAbstained;
     report.rigger = rig.isAbstained ? AutoRigOptions().rigger : options.rigger;
-    report.joints = rig.skeleton.jointCount();
     report.suggestions = std::move(rig.suggestions);
     report.matches = std::move(rig.matches);
     report.doubts = std::move(rig.doubts);
@@ -218,18 +217,24 @@ Rigged makeRig(const Asset& asset, const Geometry& geometry, const PreparedMesh&
                           ? heldByOneJoint(prepared.mesh)
                           : findWeightMethod(options.skinning).compute(prepared.mesh, bones, options.weights, progress);
   report.warnings.append(skin.warnings);
+  const std::vector<HungAccessory> hung = accessories.empty()
+                                              ? std::vector<HungAccessory>()
+                                              : hangAccessories(geometry, prepared, accessories, skin.weights);
+  std::set<Index> ofAccessories;
+  for (const HungAccessory& accessory : hung)
+    ofAccessories.insert(accessory.vertices.begin(), accessory.vertices.end());
+  std::erase_if(skin.bridged, [&](Index v) { return ofAccessories.count(v) > 0; });
   reportBridged(asset, geometry, prepared, pieces, skin.bridged, report);
   if (options.chains && result.made && !report.matches.empty() && !report.isAbstained) {
     result.chains = chainsOfTails(*result.made);
   }
   if (!accessories.empty()) {
-    const std::vector<HungAccessory> hung = hangAccessories(geometry, prepared, accessories, skin.weights);
     if (options.chains) {
       for (HangingChain& chain : addChains(prepared, accessories, hung, *result.made, skin.weights)) {
         result.chains.push_back(std::move(chain));
       }
     }
-    report.warnings.add("accessories", "things worn or held are no part of the body and follow one joint each",
+    report.warnings.add("accessories", "things worn or held are no part of the body; each follows one joint or a chain",
                         fmt::format("{}", fmt::join(accessories.names, ", ")), accessories.names.size());
   }
   if (result.made) report.joints = result.made->jointCount();
@@ -272,8 +277,7 @@ AutoRigReport runStages(Asset& asset, const AutoRigOptions& options, Progress& p
 
   progress.stage("write rig");
   if (rig.made) {
-    attachRig(asset, geometry, *rig.made, rig.weights);
-    if (!rig.chains.empty()) writeSprings(asset, readSkeleton(asset), rig.chains);
+    writeSprings(asset, attachRig(asset, geometry, *rig.made, rig.weights), rig.chains);
     if (rig.up) standUpright(asset, *rig.up, options.standUpright, report.warnings);
   } else {
     replaceWeights(asset, geometry, rig.kept, rig.weights);
@@ -290,9 +294,13 @@ AutoRigReport runStages(Asset& asset, const AutoRigOptions& options, Progress& p
 }  // namespace
 
 AutoRigReport autoRig(Asset& asset, const AutoRigOptions& options, Progress& progress) {
-  findRigger(options.rigger);  // a name that is wrong is told before any work
+  const bool looksForLimbs = findRigger(options.rigger).looksForLimbs;  // a name that is wrong is told before any work
   findWeightMethod(options.skinning);
   const bool rigged = hasRig(asset);
+  if (options.chains && (!looksForLimbs || options.existingRig == ExistingRig::kKeepSkeleton)) {
+    throw Error(ErrorCode::kBadArgument, "chains need a rigger that looks for limbs", asset.name,
+                "choose the rigger template, or leave chains out");
+  }
   if (rigged && options.existingRig == ExistingRig::kRefuse) refuseRig(asset);
   if (!rigged && options.existingRig == ExistingRig::kKeepSkeleton) {
     throw Error(ErrorCode::kBadArgument, "the model has no skeleton to keep", asset.name, "leave --keep-skeleton out");

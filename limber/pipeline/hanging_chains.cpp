@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "limber/anatomy/anatomy.h"
+#include "limber/asset/extensions.h"
 
 namespace limber {
 
@@ -18,17 +19,23 @@ constexpr Index kSegments = 3;
 // Cloth falls, a tail is held up.
 constexpr double kClothStiffness = 0.5, kClothGravity = 0.5, kTailStiffness = 1, kTailGravity = 0.1;
 constexpr double kDrag = 0.4;
-constexpr const char* kSpringBone = "VRMC_springBone";
+constexpr double kShortest = 1e-4;    // longest sides: what reaches no farther does not hang
+constexpr double kAlongFront = 0.87;  // cosine of 30 degrees
+
+double reachOf(const PreparedMesh& prepared, const HungAccessory& hung) {
+  double reach = 0;
+  for (const Index v : hung.vertices) reach = std::max(reach, (prepared.mesh.position(v) - hung.place).norm());
+  return reach;
+}
 
 // Middles of what hangs, from where it hangs to its far end, evenly far from there: kSegments + 1.
 std::vector<Vec3> middlesOf(const PreparedMesh& prepared, const HungAccessory& hung) {
-  double reach = 0;
+  const double reach = reachOf(prepared, hung);
   const auto away = [&](Index v) { return (prepared.mesh.position(v) - hung.place).norm(); };
-  for (const Index v : hung.vertices) reach = std::max(reach, away(v));
   std::vector<Vec3> middles(kSegments + 1, Vec3::Zero());
   std::vector<Index> counts(kSegments + 1, 0);
   for (const Index v : hung.vertices) {
-    const auto level = static_cast<std::size_t>(std::lround(kSegments * away(v) / std::max(reach, 1e-12)));
+    const auto level = static_cast<std::size_t>(std::lround(kSegments * away(v) / reach));
     middles[level] += prepared.mesh.position(v);
     ++counts[level];
   }
@@ -58,12 +65,27 @@ double alongLine(const std::vector<Vec3>& line, const Vec3& point) {
   return best;
 }
 
-// Of the first joint of a chain called `word`, so that no joint of the skeleton has any of its names.
-std::string freeName(const Skeleton& skeleton, const std::string& word) {
+// "cape1", "cape2", "cape3" and "capeEnd", or others of which the skeleton has none.
+std::vector<std::string> freeNames(const Skeleton& skeleton, const std::string& word) {
   for (Index number = 1;; ++number) {
-    const std::string name = number == 1 ? word : fmt::format("{}{}_", word, number);
-    if (!skeleton.find(name + "1")) return name;
+    const std::string start = number == 1 ? word : fmt::format("{}{}_", word, number);
+    std::vector<std::string> names;
+    for (Index i = 1; i <= kSegments; ++i) names.push_back(fmt::format("{}{}", start, i));
+    names.push_back(start + "End");
+    if (std::none_of(names.begin(), names.end(), [&](const std::string& name) { return skeleton.find(name); })) {
+      return names;
+    }
   }
+}
+
+// +Y along the chain, +Z to the front or, where the chain points there, up.
+Mat3 axesAlong(const Vec3& way) {
+  const Vec3 y = way.norm() > 0 ? Vec3(way.normalized()) : Vec3(-Vec3::UnitY());
+  const Vec3 toward = std::abs(y.z()) > kAlongFront ? Vec3::UnitY() : Vec3::UnitZ();
+  const Vec3 z = (toward - toward.dot(y) * y).normalized();
+  Mat3 axes;
+  axes << y.cross(z), y, z;
+  return axes;
 }
 
 }  // namespace
@@ -72,28 +94,26 @@ std::vector<HangingChain> addChains(const PreparedMesh& prepared, const Accessor
                                     const std::vector<HungAccessory>& hung, Skeleton& made, SkinWeights& weights) {
   std::vector<HangingChain> chains;
   for (std::size_t a = 0; a < hung.size(); ++a) {
-    if (!accessories.hangs[a] || hung[a].vertices.empty()) continue;
+    if (!accessories.hangs[a] || reachOf(prepared, hung[a]) < kShortest) continue;
     const std::vector<Vec3> line = middlesOf(prepared, hung[a]);
     HangingChain chain;
     chain.name = accessories.names[a];
     chain.stiffness = kClothStiffness;
     chain.gravityPower = kClothGravity;
-    const std::string name = freeName(made, accessories.words[a]);
+    const std::vector<std::string> names = freeNames(made, accessories.words[a]);
     const Index first = made.jointCount();
     std::vector<Affine> globals = restGlobals(made);
     for (Index i = 0; i <= kSegments; ++i) {
       Joint joint;
-      joint.name = i < kSegments ? fmt::format("{}{}", name, i + 1) : name + "End";
+      joint.name = names[i];
       joint.parent = i == 0 ? hung[a].joint : first + i - 1;
-      // +Y along the chain.
       Affine global = Affine::Identity();
-      const Vec3 along = line[std::min(i + 1, kSegments)] - line[std::min(i, kSegments - 1)];
-      global.linear() = Quat::FromTwoVectors(Vec3::UnitY(), along.norm() > 0 ? along : Vec3(Vec3::UnitY())).matrix();
+      global.linear() = axesAlong(line[std::min(i + 1, kSegments)] - line[std::min(i, kSegments - 1)]);
       global.translation() = prepared.frame.toSource(line[i]);
       joint.rest = decompose(globals[*joint.parent].inverse(Eigen::Isometry) * global);
       joint.rest.scale = Vec3::Ones();
       globals.push_back(global);
-      chain.joints.push_back(joint.name);
+      chain.joints.push_back(made.jointCount());
       made.joints.push_back(std::move(joint));
     }
     for (const Index v : hung[a].vertices) {
@@ -125,18 +145,24 @@ std::vector<HangingChain> chainsOfTails(const Skeleton& made) {
     chain.name = nameOf(part.kind);
     chain.stiffness = kTailStiffness;
     chain.gravityPower = kTailGravity;
-    for (const Index joint : part.joints) chain.joints.push_back(made.joints[joint].name);
+    chain.joints = part.joints;
     chains.push_back(std::move(chain));
   }
   return chains;
 }
 
-void writeSprings(Asset& asset, const AssetSkeleton& rig, const std::vector<HangingChain>& chains) {
-  Json springs = Json::array();
+void writeSprings(Asset& asset, const std::vector<Index>& jointNode, const std::vector<HangingChain>& chains) {
+  if (chains.empty()) return;
+  Json& json = asset.json();
+  Json& extension = json["extensions"][kSpringBoneName];
+  if (!extension.is_object()) extension = Json::object();
+  extension["specVersion"] = "1.0";
+  Json& springs = extension["springs"];
+  if (!springs.is_array()) springs = Json::array();
   for (const HangingChain& chain : chains) {
     Json joints = Json::array();
-    for (const std::string& name : chain.joints) {
-      joints.push_back({{"node", rig.jointNode[rig.skeleton.find(name).value()]},
+    for (const Index joint : chain.joints) {
+      joints.push_back({{"node", jointNode[joint]},
                         {"stiffness", chain.stiffness},
                         {"gravityPower", chain.gravityPower},
                         {"gravityDir", {0, -1, 0}},
@@ -144,12 +170,9 @@ void writeSprings(Asset& asset, const AssetSkeleton& rig, const std::vector<Hang
     }
     springs.push_back({{"name", chain.name}, {"joints", std::move(joints)}});
   }
-  if (springs.empty()) return;
-  Json& json = asset.json();
-  json["extensions"][kSpringBone] = {{"specVersion", "1.0"}, {"springs", std::move(springs)}};
   Json& used = json["extensionsUsed"];
   if (!used.is_array()) used = Json::array();
-  if (std::find(used.begin(), used.end(), kSpringBone) == used.end()) used.push_back(kSpringBone);
+  if (std::find(used.begin(), used.end(), kSpringBoneName) == used.end()) used.push_back(kSpringBoneName);
 }
 
 }  // namespace limber

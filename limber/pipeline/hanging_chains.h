@@ -5,15 +5,15 @@
 #include <vector>
 
 #include "limber/asset/asset.h"
-#include "limber/asset/rig_io.h"
 #include "limber/pipeline/accessories.h"
+#include "limber/skeleton/skeleton.h"
 
 namespace limber {
 
 // Joints that hang one on the other and follow their carrier as springs do.
 struct HangingChain {
   std::string name;
-  std::vector<std::string> joints;  // carrier's first; the last one ends it and moves nothing
+  std::vector<Index> joints;  // of the skeleton; the last one ends it and does not swing
   // As VRMC_springBone has them.
   double stiffness = 1;     // how soon it returns to rest
   double gravityPower = 0;  // how much it hangs down
@@ -31,7 +31,8 @@ std::vector<HangingChain> addChains(const PreparedMesh& prepared, const Accessor
 // Those that the skeleton has already: tails of two joints and more.
 std::vector<HangingChain> chainsOfTails(const Skeleton& made);
 
-// Writes VRMC_springBone 1.0 into the asset: one spring a chain. joints  of the asset's rig
-void writeSprings(Asset& asset, const AssetSkeleton& rig, const std::vector<HangingChain>& chains);
+// Writes VRMC_springBone 1.0 into the asset: one spring a chain, beside those that it has.
+// jointNode  #J nodes of the skeleton's joints, as attachRig gives them
+void writeSprings(Asset& asset, const std::vector<Index>& jointNode, const std::vector<HangingChain>& chains);
 
 }  // namespace limber

@@ -1,7 +1,5 @@
 #include "limber/pipeline/hanging_chains.h"
 
-#include <algorithm>
-
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -54,9 +52,11 @@ TEST(HangingChains, RunFromTheBodyToTheFarEnd) {
   const std::vector<HangingChain> chains = strip.add();
   ASSERT_EQ(chains.size(), 1u);
   EXPECT_EQ(chains[0].name, "Red_Cape");
-  EXPECT_EQ(chains[0].joints, (std::vector<std::string>{"cape2_1", "cape2_2", "cape2_3", "cape2_End"}));
   checkSkeleton(strip.made);
   ASSERT_EQ(strip.made.jointCount(), 6u);
+  EXPECT_EQ(chains[0].joints, (std::vector<Index>{2, 3, 4, 5}));
+  EXPECT_EQ(strip.made.joints[2].name, "cape2_1");
+  EXPECT_EQ(strip.made.joints[5].name, "cape2_End");
   EXPECT_EQ(strip.made.joints[2].parent, 0u);
   const std::vector<Affine> globals = restGlobals(strip.made);
   EXPECT_NEAR(globals[2].translation().y(), 3, 1e-5);
@@ -92,25 +92,33 @@ TEST(HangingChains, AreNoneForWhatIsStiff) {
   EXPECT_EQ(strip.made.jointCount(), 2u);
 }
 
+TEST(HangingChains, AreNoneForWhatHasNoLength) {
+  Strip strip(4);
+  strip.hung[0].vertices = {0};
+  strip.hung[0].place = strip.prepared.mesh.position(0);
+  EXPECT_TRUE(strip.add().empty());
+  strip.hung[0].vertices.clear();
+  EXPECT_TRUE(strip.add().empty());
+}
+
 TEST(HangingChains, AreWrittenAsSprings) {
   Strip strip(4);
   const std::vector<HangingChain> chains = strip.add();
   Asset asset;
   asset.json()["asset"] = {{"version", "2.0"}};
-  AssetSkeleton rig;
-  rig.skeleton = strip.made;
-  for (Index j = 0; j < strip.made.jointCount(); ++j) rig.jointNode.push_back(10 + j);
-  writeSprings(asset, rig, chains);
+  const std::vector<Index> nodes = {10, 11, 12, 13, 14, 15};
+  writeSprings(asset, nodes, chains);
   const Json& springs = asset.json()["extensions"]["VRMC_springBone"]["springs"];
   ASSERT_EQ(springs.size(), 1u);
   ASSERT_EQ(springs[0]["joints"].size(), 4u);
   EXPECT_EQ(springs[0]["joints"][0]["node"], 12);
   EXPECT_GT(springs[0]["joints"][0]["gravityPower"], 0);
   EXPECT_EQ(asset.json()["extensionsUsed"], Json::array({"VRMC_springBone"}));
-  writeSprings(asset, rig, chains);
+  writeSprings(asset, nodes, chains);
+  EXPECT_EQ(springs.size(), 2u) << "beside those that there are";
   EXPECT_EQ(asset.json()["extensionsUsed"].size(), 1u);
   Asset bare;
-  writeSprings(bare, rig, {});
+  writeSprings(bare, nodes, {});
   EXPECT_FALSE(bare.json().contains("extensions"));
 }
 

@@ -54,7 +54,10 @@ struct TemplateMatch {
   double confidence = 0;
 };
 
-// From which on a template is taken to be right in its limbs, too.
+// Of an unsure template, joints to ask a user for.
+inline constexpr std::size_t kMostDoubts = 3;
+
+// The confidence from which on a template is taken to be right in its limbs, too.
 inline constexpr double kSureTemplate = 0.75;
 
 // A count of handles worth choosing.
@@ -68,9 +71,10 @@ struct AutoRig {
   bool isAbstained = false;  // it has handles in place of a template (RigOptions::mayAbstain)
   std::vector<HandleSuggestion> suggestions;
   std::vector<TemplateMatch> matches;  // likeliest first: the one that was fitted, unless it abstained
-  std::vector<std::string> doubts;  // joints at the ends of limbs whose pins would settle most of an unsure template,
-                                    // first things first, kMostDoubts at most; none where it is sure or has handles
-  std::optional<Vec3> up;           // of the model as it was fitted
+  // Joints at the ends of limbs whose pins would settle most of an unsure template, first things first, kMostDoubts at
+  // most; none where it is sure, has handles, or is a user's own skeleton of a person.
+  std::vector<std::string> doubts;
+  std::optional<Vec3> up;  // of the model as it was fitted
   Warnings warnings;
 };
 

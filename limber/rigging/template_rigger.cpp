@@ -29,8 +29,9 @@ namespace limber {
 
 // What all templates are tried on.
 struct MeasuredModel {
-  std::optional<Vec3> up, front;   // as they were given
-  std::optional<TriMesh> cleared;  // of stray pieces; none where the mesh has none
+  Index vertices = 0, triangles = 0;  // of the mesh
+  std::optional<Vec3> up, front;      // as they were given
+  std::optional<TriMesh> cleared;     // of stray pieces; none where the mesh has none
   BodyVolume body;
   std::vector<AnatomicalFrame> frames;
   std::optional<ShapeReading> shape;
@@ -46,8 +47,7 @@ constexpr double kOtherHands = 0.05;               // cost of fingers that hands
 constexpr double kWings = 2;                       // cost of arms as flat as wings
 constexpr double kRoundArm = 2.5, kFlatArm = 3.5;  // times as wide as thick
 constexpr double kVoteOfShape = 8;                 // times the odds of a template that has the plan of a sure shape
-constexpr double kSureShape = 0.9;  // confidence of a shape from which on templates of other plans are not tried
-constexpr std::size_t kMostDoubts = 3;
+constexpr double kSureShape = 0.9;         // confidence of a shape from which on templates of other plans are not tried
 constexpr double kLongLimb = 0.1;          // heights; fingers are shorter
 constexpr double kCostWithoutPlace = 100;  // above the cost of any limb that has one
 constexpr double kMostAsymmetry = 0.15;    // more than the most symmetric way to stand, of those looked at
@@ -291,9 +291,12 @@ bool leavesTheChoice(const RigOptions& options) {
 std::shared_ptr<const MeasuredModel> measure(const TriMesh& mesh, const RigOptions& options) {
   if (options.memory && options.memory->measured) {
     const MeasuredModel& known = *options.memory->measured;
-    if (known.up == options.up && known.front == options.front) return options.memory->measured;
+    const bool isSame = known.vertices == mesh.vertexCount() && known.triangles == mesh.triangleCount();
+    if (isSame && known.up == options.up && known.front == options.front) return options.memory->measured;
   }
   auto model = std::make_shared<MeasuredModel>();
+  model->vertices = mesh.vertexCount();
+  model->triangles = mesh.triangleCount();
   model->up = options.up;
   model->front = options.front;
   model->cleared = withoutStrays(mesh);

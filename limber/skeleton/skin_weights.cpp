@@ -4,6 +4,14 @@
 
 namespace limber {
 
+void bindTo(Index joint, Index vertex, SkinWeights& weights) {
+  const std::size_t first = std::size_t{vertex} * weights.slots;
+  std::fill_n(weights.joints.begin() + first, weights.slots, 0);
+  std::fill_n(weights.weights.begin() + first, weights.slots, 0.0f);
+  weights.joints[first] = joint;
+  weights.weights[first] = 1;
+}
+
 SkinWeights expandWeights(const SkinWeights& welded, std::span<const Index> weldedVertex) {
   SkinWeights result;
   result.slots = welded.slots;

@@ -21,6 +21,9 @@ struct SkinWeights {
   std::span<const float> weightsOf(Index v) const { return {weights.data() + std::size_t{v} * slots, slots}; }
 };
 
+// Has a vertex follow one joint alone.
+void bindTo(Index joint, Index vertex, SkinWeights& weights);
+
 // Weights of #S source vertices from those of the #V they were welded to. `weldedVertex` holds #S indices below #V.
 SkinWeights expandWeights(const SkinWeights& welded, std::span<const Index> weldedVertex);
 

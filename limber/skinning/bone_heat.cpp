@@ -175,9 +175,9 @@ WeightResult boneHeatWeightsWith(const BoneHeatOptions& heat, const TriMesh& mes
   progress.step("surface and bones in sight");
   Index pieceCount = 0;
   const std::vector<Index> piece = vertexComponents(mesh, &pieceCount);
-  const bool bound = options.pieces != PieceMode::kSoft && pieceCount > 1 && allSegments(bones);
-  if (bound) {
-    if (const std::optional<PieceBinding> parts = jointsOfPieces(mesh, piece, pieceCount, bones)) {
+  const bool mayBeOfParts = options.pieces != PieceMode::kSoft && pieceCount > 1 && allSegments(bones);
+  if (mayBeOfParts) {
+    if (const std::optional<PieceBinding> parts = jointsOfPieces(mesh, piece, pieceCount, bones, progress)) {
       result.weights.slots = options.maxInfluences;
       result.weights.joints.resize(piece.size() * options.maxInfluences);
       result.weights.weights.resize(result.weights.joints.size());
@@ -199,7 +199,7 @@ WeightResult boneHeatWeightsWith(const BoneHeatOptions& heat, const TriMesh& mes
 
   progress.step("bridge pieces");
   std::optional<PieceRules> rules;
-  if (bound) {
+  if (mayBeOfParts || options.pieces == PieceMode::kRigid) {
     rules.emplace(mesh, bones, piece, pieceCount, problem.sources.pull);
     rules->classify(finish(table, heat));
     rules->dropHardlySeen(table);

@@ -24,8 +24,8 @@ struct BoneHeatOptions {
 // lists their vertices. Where no vertex at all sees a bone, all bones count as in sight (`no-bone-in-sight`).
 //
 // Where bones are segments, models that are put together from parts get no heat: each piece follows its joint
-// (jointsOfPieces). In others PieceRules binds hard parts whole and has pieces that hardly see a bone bridged. Both count
-// such pieces in the warning `rigid-pieces`; WeightOptions::pieces has all pieces bound whole, or none.
+// (jointsOfPieces). In others PieceRules binds hard parts whole and has pieces that hardly see a bone bridged. Both
+// count such pieces in the warning `rigid-pieces`; WeightOptions::pieces has all pieces bound whole, or none.
 //
 // mesh   working mesh: centred, longest side 1
 // bones  in the space of the mesh, at least one

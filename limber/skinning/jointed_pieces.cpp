@@ -8,6 +8,7 @@
 #include <set>
 
 #include "limber/core/assignment.h"
+#include "limber/core/parallel.h"
 #include "limber/mesh/bvh.h"
 #include "limber/mesh/winding_number.h"
 
@@ -15,10 +16,13 @@ namespace limber {
 
 namespace {
 
-constexpr double kTouch = 0.1;        // a joint so many diagonals of a piece from it touches it
-constexpr double kLiesOn = 0.02;      // diagonals of a piece from another, at which a point of it counts half
-constexpr double kFirstReach = 0.05;  // diagonals of a piece to the parts that it may hang on at first
-constexpr double kInside = 2;         // votes of a point within another piece; one that lies on it has one
+constexpr double kTouch = 0.1;           // a joint so many diagonals of a piece from it touches it
+constexpr double kLiesOn = 0.02;         // diagonals of a piece from another, at which a point of it counts half
+constexpr double kFirstReach = 0.05;     // diagonals of a piece to the parts that it may hang on at first
+constexpr double kLeastPiece = 0.01;     // longest sides: smaller pieces, and single vertices, look as far as these
+constexpr std::size_t kMostPoints = 64;  // of a piece that look for what it hangs on
+constexpr int kBonePoints = 8;           // at which a bone is looked at
+constexpr double kInside = 2;            // votes of a point within another piece; one that lies on it has one
 
 // Costs of giving a joint a piece that others touch, too.
 constexpr double kNoPair = 1e6;  // does not touch it
@@ -59,19 +63,19 @@ class PieceJoints {
     }
   }
 
-  std::optional<PieceBinding> find() {
-    if (parts_.size() < std::max<std::size_t>(2, pivots_.size())) return std::nullopt;
+  std::optional<PieceBinding> find(Progress& progress) {
+    const auto solid =
+        std::count_if(parts_.begin(), parts_.end(), [](const Part& part) { return !part.triangles.empty(); });
+    if (static_cast<std::size_t>(solid) < std::max<std::size_t>(2, pivots_.size())) return std::nullopt;
     for (Index p = 0; p < parts_.size(); ++p) findTouched(p);
-    if (!givePiecesToAll()) return std::nullopt;
+    if (!givePiecesToAll() || (!isList() && anyPieceBends())) return std::nullopt;
     hangRoots();
     for (Index p = 0; p < parts_.size(); ++p) {
       if (!pivotOf_[p] && !touched_[p].empty()) pivotOf_[p] = above(touched_[p]);
     }
-    while (hangRest()) {
-    }
+    hangRest(progress);
     PieceBinding binding;
-    // Pieces without a triangle, which are loose vertices, may be left over.
-    for (const std::optional<Index>& pivot : pivotOf_) binding.push_back(pivots_[pivot.value_or(0)].joint);
+    for (const std::optional<Index>& pivot : pivotOf_) binding.push_back(pivots_[*pivot].joint);
     return binding;
   }
 
@@ -109,19 +113,27 @@ class PieceJoints {
     if (const std::optional<Index> top = above(touched_[p])) touched_[p].insert(*top);
   }
 
-  bool isInside(Index p, const Vec3& point) {
+  void measureInside(Index p) {
     Part& part = parts_[p];
-    if (!contains(part.box, point)) return false;
-    if (!part.inside) {
-      TriMesh alone;
-      for (const Index t : part.triangles) {
-        const Index first = alone.vertexCount();
-        for (const Index v : mesh_.triangles[t]) alone.positions.push_back(mesh_.positions[v]);
-        alone.triangles.push_back({first, first + 1, first + 2});
-      }
-      part.inside = std::make_unique<WindingNumber>(alone);
+    if (part.inside || part.triangles.empty()) return;
+    TriMesh alone;
+    for (const Index t : part.triangles) {
+      const Index first = alone.vertexCount();
+      for (const Index v : mesh_.triangles[t]) alone.positions.push_back(mesh_.positions[v]);
+      alone.triangles.push_back({first, first + 1, first + 2});
     }
-    return std::abs(part.inside->at(point)) > 0.5;
+    part.inside = std::make_unique<WindingNumber>(alone);
+  }
+
+  // Of a piece that was measured.
+  bool liesInside(Index p, const Vec3& point) const {
+    return parts_[p].inside && contains(parts_[p].box, point) && std::abs(parts_[p].inside->at(point)) > 0.5;
+  }
+
+  bool isInside(Index p, const Vec3& point) {
+    if (!contains(parts_[p].box, point)) return false;
+    measureInside(p);
+    return liesInside(p, point);
   }
 
   bool carries(Index upper, Index lower) const {
@@ -177,12 +189,33 @@ class PieceJoints {
     return true;
   }
 
+  // Whether a bone runs through a piece that belongs to another joint, as in a body of one skin that wears something at
+  // each of its joints: that piece has to bend there.
+  bool anyPieceBends() {
+    std::vector<Index> own(pivots_.size());
+    for (Index p = 0; p < parts_.size(); ++p) {
+      if (pivotOf_[p]) own[*pivotOf_[p]] = p;
+    }
+    for (const Pivot& child : pivots_) {
+      if (!child.parent) continue;
+      const Pivot& pivot = pivots_[*child.parent];
+      for (Index p = 0; p < parts_.size(); ++p) {
+        if (p == own[*child.parent] || touched_[p].count(*child.parent) == 0) continue;
+        int foreign = 0;
+        for (int k = 0; k < kBonePoints; ++k) {
+          const Vec3 at = pivot.place + (k + 0.5) / kBonePoints * (child.place - pivot.place);
+          foreign += isInside(p, at) && !isInside(own[*child.parent], at);
+        }
+        if (2 * foreign > kBonePoints) return true;
+      }
+    }
+    return false;
+  }
+
   // Hangs the roots but one on the joints whose parts they touch, from that one outwards; what touches nothing hangs on
   // it. Joints that all hang on one root are taken for roots, too: such a skeleton tells no more than a list.
   void hangRoots() {
-    const bool isList = std::none_of(pivots_.begin(), pivots_.end(),
-                                     [&](const Pivot& pivot) { return pivot.parent && pivots_[*pivot.parent].parent; });
-    if (isList && countRoots() == 1) {
+    if (isList() && countRoots() == 1) {
       for (Pivot& pivot : pivots_) pivot.parent.reset();
     }
     std::vector<Index> own(pivots_.size());
@@ -215,72 +248,116 @@ class PieceJoints {
     for (const Index root : loose) pivots_[root].parent = base;
   }
 
+  // Of a skeleton whose joints are roots or hang on one, which tells nothing of chains.
+  bool isList() const {
+    return std::none_of(pivots_.begin(), pivots_.end(),
+                        [&](const Pivot& pivot) { return pivot.parent && pivots_[*pivot.parent].parent; });
+  }
+
   std::ptrdiff_t countRoots() const {
     return std::count_if(pivots_.begin(), pivots_.end(), [](const Pivot& pivot) { return !pivot.parent; });
   }
 
-  // Hangs pieces on those that are hung already and are in reach; false where none is left.
-  bool hangRest() {
-    std::vector<Index> hung, rest;
-    for (Index p = 0; p < parts_.size(); ++p) {
-      if (parts_[p].triangles.empty()) continue;
-      if (!pivotOf_[p]) {
-        rest.push_back(p);
-      } else {
-        hung.insert(hung.end(), parts_[p].triangles.begin(), parts_[p].triangles.end());
-      }
-    }
-    if (rest.empty()) return false;
-    const Bvh surface(mesh_, hung);
-    std::vector<Vote> votes;
-    double nearest = std::numeric_limits<double>::infinity();
-    for (const Index p : rest) {
-      votes.push_back(voteFor(p, surface));
-      nearest = std::min(nearest, votes.back().distance);
-    }
-    const double reach = std::max(reach_, nearest);
-    for (std::size_t i = 0; i < rest.size(); ++i) {
-      if (votes[i].distance <= reach) pivotOf_[rest[i]] = votes[i].pivot;
-    }
-    reach_ *= 2;
-    return true;
-  }
-
-  struct Vote {
-    Index pivot = 0;
-    double distance = 0;  // to what is hung, in diagonals of the piece
+  // A piece that is not hung yet, and what its points have found so far.
+  struct LoosePiece {
+    Index part = 0;
+    double diagonal = 0;
+    std::vector<Vec3> points;
+    std::vector<double> away;        // by point: to what is hung
+    std::vector<Index> onPivot;      // by point: of what it is nearest to
+    std::map<Index, double> inside;  // votes by pivot
+    double distance = 0;             // of the nearest point, in diagonals
   };
 
-  Vote voteFor(Index p, const Bvh& hung) {
+  LoosePiece looseFrom(Index p) const {
     const Part& part = parts_[p];
-    std::vector<Vec3> points;
-    for (const Index v : part.vertices) points.push_back(mesh_.position(v));
-    for (const Index t : part.triangles) points.push_back((corner(t, 0) + corner(t, 1) + corner(t, 2)) / 3);
-    std::vector<Index> overlaps;
-    for (Index q = 0; q < parts_.size(); ++q) {
-      const Box& other = parts_[q].box;
-      if (pivotOf_[q] && (other.min.array() <= part.box.max.array()).all() &&
-          (part.box.min.array() <= other.max.array()).all()) {
-        overlaps.push_back(q);
+    LoosePiece loose;
+    loose.part = p;
+    loose.diagonal = std::max(part.box.diagonal(), kLeastPiece);
+    const std::size_t all = part.vertices.size() + part.triangles.size(), step = 1 + all / kMostPoints;
+    for (std::size_t i = 0; i < all; i += step) {
+      if (i < part.vertices.size()) {
+        loose.points.push_back(mesh_.position(part.vertices[i]));
+      } else {
+        const Index t = part.triangles[i - part.vertices.size()];
+        loose.points.push_back((corner(t, 0) + corner(t, 1) + corner(t, 2)) / 3);
       }
     }
-    const double diagonal = std::max(part.box.diagonal(), 1e-9);
-    Vote vote;
-    vote.distance = std::numeric_limits<double>::infinity();
-    std::map<Index, double> shares;
-    for (const Vec3& point : points) {
-      const SurfacePoint nearest = hung.nearestPoint(point);
-      const double away = nearest.distance / diagonal;
-      vote.distance = std::min(vote.distance, away);
-      shares[*pivotOf_[piece_[mesh_.triangles[nearest.triangle][0]]]] += 1 / (1 + std::pow(away / kLiesOn, 4));
-      for (const Index q : overlaps) {
-        if (isInside(q, point)) shares[*pivotOf_[q]] += kInside;
+    loose.away.assign(loose.points.size(), std::numeric_limits<double>::infinity());
+    loose.onPivot.assign(loose.points.size(), 0);
+    return loose;
+  }
+
+  // Pieces that are near enough to what is hung hang on it, and others on them: those in a small reach first, which
+  // grows, so that pieces far from all end the search soon.
+  void hangRest(Progress& progress) {
+    std::vector<LoosePiece> rest;
+    std::vector<Index> hung;
+    for (Index p = 0; p < parts_.size(); ++p) {
+      if (pivotOf_[p]) {
+        hung.push_back(p);
+      } else {
+        rest.push_back(looseFrom(p));
       }
     }
-    vote.pivot = std::max_element(shares.begin(), shares.end(), [](const auto& a, const auto& b) {
-                   return a.second < b.second;
-                 })->first;
-    return vote;
+    for (double reach = kFirstReach; !rest.empty(); reach *= 2) {
+      progress.update(1 - static_cast<double>(rest.size()) / static_cast<double>(parts_.size()));
+      lookAt(hung, rest);
+      hung.clear();
+      double nearest = std::numeric_limits<double>::infinity();
+      for (const LoosePiece& loose : rest) nearest = std::min(nearest, loose.distance);
+      std::erase_if(rest, [&](const LoosePiece& loose) {
+        if (loose.distance > std::max(reach, nearest)) return false;
+        pivotOf_[loose.part] = mostVotes(loose);
+        hung.push_back(loose.part);
+        return true;
+      });
+    }
+  }
+
+  // What the points of pieces find on pieces that were hung since they last looked.
+  void lookAt(const std::vector<Index>& hung, std::vector<LoosePiece>& rest) {
+    std::vector<Index> triangles;
+    for (const Index p : hung) {
+      triangles.insert(triangles.end(), parts_[p].triangles.begin(), parts_[p].triangles.end());
+      measureInside(p);
+    }
+    if (triangles.empty()) return;
+    const Bvh surface(mesh_, triangles);
+    parallelFor(rest.size(), 16, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) lookAt(surface, hung, rest[i]);
+    });
+  }
+
+  void lookAt(const Bvh& surface, const std::vector<Index>& hung, LoosePiece& loose) const {
+    loose.distance = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < loose.points.size(); ++i) {
+      const SurfacePoint nearest = surface.nearestPoint(loose.points[i]);
+      if (nearest.distance < loose.away[i]) {
+        loose.away[i] = nearest.distance;
+        loose.onPivot[i] = *pivotOf_[piece_[mesh_.triangles[nearest.triangle][0]]];
+      }
+      loose.distance = std::min(loose.distance, loose.away[i] / loose.diagonal);
+    }
+    const Box& own = parts_[loose.part].box;
+    for (const Index p : hung) {
+      const Box& other = parts_[p].box;
+      if ((other.min.array() > own.max.array()).any() || (own.min.array() > other.max.array()).any()) continue;
+      for (const Vec3& point : loose.points) {
+        if (liesInside(p, point)) loose.inside[*pivotOf_[p]] += kInside;
+      }
+    }
+  }
+
+  static Index mostVotes(const LoosePiece& loose) {
+    std::map<Index, double> votes = loose.inside;
+    for (std::size_t i = 0; i < loose.points.size(); ++i) {
+      const double away = loose.away[i] / (kLiesOn * loose.diagonal), squared = away * away;
+      votes[loose.onPivot[i]] += 1 / (1 + squared * squared);
+    }
+    return std::max_element(votes.begin(), votes.end(),
+                            [](const auto& a, const auto& b) { return a.second < b.second; })
+        ->first;
   }
 
   const TriMesh& mesh_;
@@ -289,14 +366,13 @@ class PieceJoints {
   std::vector<Pivot> pivots_;
   std::vector<PivotSet> touched_;              // by piece
   std::vector<std::optional<Index>> pivotOf_;  // by piece
-  double reach_ = kFirstReach;                 // grows, so that pieces far from all end the search soon
 };
 
 }  // namespace
 
 std::optional<PieceBinding> jointsOfPieces(const TriMesh& mesh, std::span<const Index> piece, Index pieceCount,
-                                           std::span<const Bone> bones) {
-  return PieceJoints(mesh, piece, pieceCount, bones).find();
+                                           std::span<const Bone> bones, Progress& progress) {
+  return PieceJoints(mesh, piece, pieceCount, bones).find(progress);
 }
 
 }  // namespace limber

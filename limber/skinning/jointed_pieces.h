@@ -26,8 +26,12 @@ namespace limber {
 // mesh   any; pieces may be open, and turned inside out
 // piece  #V, from vertexComponents; pieceCount of them
 // bones  from bonesOf(), in the space of the mesh
-// Cost: O(#F log #F) for models without such pieces; the pairing takes O(joints^2 pieces).
+// None, too, where a bone runs through a piece of another joint, which has to bend there then. A vertex without
+// triangles is a piece that follows what is nearest.
+//
+// Throws Error kCancelled. Cost: O(#F log #F) where joints have no such pieces; else the pairing takes O(joints^2
+// pieces) and each round of hanging the others 64 looks a piece and a comparison of boxes for each pair of pieces.
 std::optional<PieceBinding> jointsOfPieces(const TriMesh& mesh, std::span<const Index> piece, Index pieceCount,
-                                           std::span<const Bone> bones);
+                                           std::span<const Bone> bones, Progress& progress);
 
 }  // namespace limber

@@ -1,6 +1,9 @@
 // Dolls of overlapping balls, whose skeletons tell more or less of how they hang together.
 #include "limber/skinning/jointed_pieces.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "limber/mesh/components.h"
@@ -49,8 +52,9 @@ struct Doll {
 
   std::optional<std::vector<Index>> joints() const {
     Index count = 0;
+    Progress progress;
     const std::vector<Index> piece = vertexComponents(mesh, &count);
-    const std::optional<PieceBinding> binding = jointsOfPieces(mesh, piece, count, bones);
+    const std::optional<PieceBinding> binding = jointsOfPieces(mesh, piece, count, bones, progress);
     if (!binding) return std::nullopt;
     std::vector<Index> result;
     for (const std::optional<Index>& joint : *binding) result.push_back(joint.value_or(kNoIndex));
@@ -86,9 +90,9 @@ TEST(JointedPieces, ARootMayLieAnywhere) {
 TEST(JointedPieces, InsideOutPiecesAndLooseVerticesDoNotMatter) {
   Doll doll;
   for (Triangle& t : doll.mesh.triangles) std::swap(t[0], t[1]);
-  doll.mesh.positions.push_back({0.1f, 0.1f, 0.1f});
+  doll.mesh.positions.push_back({0.3f, -0.9f, 0.1f});
   std::vector<Index> expected = doll.expected;
-  expected.push_back(0);
+  expected.push_back(2);
   EXPECT_EQ(doll.joints(), expected);
 }
 
@@ -96,6 +100,27 @@ TEST(JointedPieces, NoneWhereAJointHasNoPieceOfItsOwn) {
   Doll doll;
   doll.addBone(4, {0, 0.1, 0}, {0, 0.28, 0}, 0);  // a chest, which bends the body
   EXPECT_EQ(doll.joints(), std::nullopt);
+}
+
+TEST(JointedPieces, NoneWhereOneSkinRunsThroughAllJoints) {
+  Doll doll;
+  doll.mesh = {};
+  doll.bones.pop_back();
+  doll.addBall({0, -0.3f, 0}, {0.15f, 0.8f, 0.15f});
+  for (const float height : {-0.28f, -0.62f}) doll.addBall({0, height, 0}, {0.18f, 0.04f, 0.18f});  // bands about it
+  EXPECT_EQ(doll.joints(), std::nullopt);
+}
+
+TEST(JointedPieces, ManyLoosePiecesAllFindTheirPart) {
+  Doll doll;
+  for (int i = 0; i < 300; ++i) {
+    const double turn = 0.7 * i, height = -0.9 + 1.5 * i / 300;
+    doll.addBall(Vec3(0.4 * std::cos(turn), height, 0.4 * std::sin(turn)).cast<float>(), Vec3f::Constant(0.01f));
+  }
+  const std::optional<std::vector<Index>> joints = doll.joints();
+  ASSERT_TRUE(joints);
+  EXPECT_EQ((*joints)[6], 2u);
+  EXPECT_EQ(joints->back(), 3u);
 }
 
 TEST(JointedPieces, WeightsAreOfOneJointAndAreSaidToBe) {

@@ -134,12 +134,7 @@ void PieceRules::bindRigid(PieceMode pieces, SkinWeights& weights, Warnings& war
 
 void bindPieces(const PieceBinding& binding, std::span<const Index> piece, SkinWeights& weights, Warnings& warnings) {
   for (Index v = 0; v < weights.vertexCount(); ++v) {
-    if (!binding[piece[v]]) continue;
-    const std::size_t first = std::size_t{v} * weights.slots;
-    std::fill_n(weights.joints.begin() + first, weights.slots, 0);
-    std::fill_n(weights.weights.begin() + first, weights.slots, 0.0f);
-    weights.joints[first] = *binding[piece[v]];
-    weights.weights[first] = 1;
+    if (binding[piece[v]]) bindTo(*binding[piece[v]], v, weights);
   }
   const auto bound = std::count_if(binding.begin(), binding.end(), [](const auto& joint) { return joint.has_value(); });
   if (bound > 0) {

@@ -8,7 +8,7 @@ import { say } from '../words/say';
 const mostQuestions = 3;
 
 export function doubts(studio: Studio, page: PageStore): HTMLElement {
-  let rightAsItIs = new Set<string>(), skeleton = '';
+  let rightAsItIs = new Set<string>(), skeleton = '', lastAsked = '';
   const asked = () => {
     const { session } = page.now;
     if (!session || session.pins.length + rightAsItIs.size >= mostQuestions) return undefined;
@@ -28,13 +28,16 @@ export function doubts(studio: Studio, page: PageStore): HTMLElement {
   const card = element('section', { class: 'card doubts', id: 'doubts', hidden: true }, text, element('div', { class: 'row' }, show, right));
 
   page.watch(({ session, correcting, selected }, before) => {
-    const made = session ? `${session.name} ${session.rigger} ${session.joints.length}` : '';
+    const made = session ? `${session.member} ${session.name} ${session.rigger} ${session.joints.length}` : '';
     if (made !== skeleton) [skeleton, rightAsItIs] = [made, new Set()];
     const joint = asked();
     card.hidden = joint === undefined;
     if (!session || joint === undefined) return;
-    // The next question is asked as the last one was answered: with a touch.
-    if (correcting && session.pins.length > (before.session?.pins.length ?? 0) && selected !== joint) return page.set({ selected: joint });
+    // Where the last question was answered with a touch, the next one is asked for one.
+    const isPinned = (of: typeof session | null) => of?.pins.some((pin) => pin.joint === lastAsked) === true;
+    const answered = correcting && isPinned(session) && !isPinned(before.session);
+    lastAsked = session.joints[joint]!.name;
+    if (answered && selected !== joint) return page.set({ selected: joint });
     const title = jointTitle(session.joints[joint]);
     text.textContent = correcting && selected === joint ? say('Touch the model where this belongs: {joint}', { joint: title })
       : say('Not sure of the skeleton. Is this in its place: {joint}?', { joint: title });

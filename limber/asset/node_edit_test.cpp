@@ -1,0 +1,57 @@
+// What refers to nodes that go: springs. The rest is tested with rigs and joints.
+#include "limber/asset/node_edit.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace limber {
+namespace {
+
+Asset withSprings(const Json& extension) {
+  Asset asset;
+  asset.json() = {{"asset", {{"version", "2.0"}}}, {"extensionsUsed", {"VRMC_springBone"}}};
+  for (int n = 0; n < 5; ++n) asset.json()["nodes"].push_back({{"name", std::to_string(n)}});
+  asset.json()["extensions"]["VRMC_springBone"] = extension;
+  return asset;
+}
+
+const Json kTwoSprings = Json::parse(R"({
+  "specVersion": "1.0",
+  "springs": [{"name": "gone", "joints": [{"node": 1}, {"node": 2}]},
+              {"name": "kept", "joints": [{"node": 3, "stiffness": 1}, {"node": 4}], "center": 2}]})");
+
+TEST(DeleteNodes, SpringsOfTheirsGoAndOthersAreRenumbered) {
+  Asset asset = withSprings(kTwoSprings);
+  deleteNodes(asset, {true, false, false, true, true});
+  const Json& springs = asset.json()["extensions"]["VRMC_springBone"]["springs"];
+  EXPECT_EQ(springs, Json::parse(R"([{"name": "kept", "joints": [{"node": 1, "stiffness": 1}, {"node": 2}]}])"));
+  EXPECT_TRUE(asset.warnings.items().empty());
+}
+
+TEST(DeleteNodes, WithTheLastSpringTheExtensionGoes) {
+  Asset asset = withSprings(kTwoSprings);
+  deleteNodes(asset, {true, false, false, false, true});
+  EXPECT_FALSE(asset.json().contains("extensions"));
+  EXPECT_FALSE(asset.json().contains("extensionsUsed"));
+}
+
+TEST(DeleteNodes, CollidersOnDeletedNodesAreTold) {
+  Json extension = kTwoSprings;
+  extension["colliders"] = Json::parse(R"([{"node": 4}, {"node": 1}])");
+  Asset asset = withSprings(extension);
+  deleteNodes(asset, {true, false, true, true, true});
+  EXPECT_EQ(asset.json()["extensions"]["VRMC_springBone"]["colliders"][0]["node"], 3);
+  ASSERT_EQ(asset.warnings.items().size(), 1u);
+  EXPECT_EQ(asset.warnings.items()[0].kind, "node-references");
+}
+
+TEST(DeleteNodes, BrokenSpringsDoNoHarm) {
+  for (const char* broken : {R"({"springs": 3})", R"({"springs": [1, {"joints": 2}, {"joints": [7]}]})", "{}", "[]",
+                             R"({"springs": [{"joints": [{"node": 99}]}], "colliders": {}})"}) {
+    Asset asset = withSprings(Json::parse(broken));
+    EXPECT_NO_THROW(deleteNodes(asset, {true, false, true, true, true})) << broken;
+  }
+}
+
+}  // namespace
+}  // namespace limber
