@@ -335,7 +335,7 @@ release_stages() {
 # Fitting a template takes some ten seconds under sanitizers. Of the tests that do it over and over one runs every time;
 # ./dev test --sanitize runs them all.
 minutes_under_sanitizers='TemplateRigger\.[^N]|PersonTemplate\.[^N]|PosedBodies\.[HOL]|FigureSearch\.([KGC]|Fe)|PinnedJointsOfATemplateStand|SampleMotionsMove|SampleFoxWalks|PosesStartFrom'
-minutes_under_sanitizers+='|AnyNumberOfThreadsAndReadsBack/winged|PlanFit\.[^A]|ShapeReading\.[^S]|ShapeReadingTest\..*/[^s]|BodyCurves\.[^A]'
+minutes_under_sanitizers+='|AnyNumberOfThreadsAndReadsBack/winged|EveryWeightMethod|GeodesicVoxel\.[^P]|PlanFit\.[^A]|ShapeReading\.[^S]|ShapeReadingTest\..*/[^s]|BodyCurves\.[^A]'
 
 remaining_stages() {
   stage "every model, every count of handles" model_tests release

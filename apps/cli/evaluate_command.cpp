@@ -138,18 +138,38 @@ void runRiggers(const RiggersOptions& options) {
 }
 
 struct SkinningOptions {
-  std::vector<std::string> folders;
-  std::string references, output = "-", method = "bone-heat", pieces = "auto";
+  std::vector<std::string> folders, methods = {"bone-heat"};
+  std::string references, output = "-", pieces = "auto";
   Common common;
 };
 
-void runSkinning(const SkinningOptions& options) {
-  options.common.apply();
-  checkOutput(options.output, {".md"});
+std::vector<WeightTableRow> compareFolders(const SkinningOptions& options, std::string_view method, Progress& progress,
+                                           Warnings& skipped) {
   AutoRigOptions rig;
-  rig.skinning = findWeightMethod(options.method).name;
+  rig.skinning = method;
   rig.weights.pieces = findPieceMode(options.pieces);
   rig.existingRig = ExistingRig::kKeepSkeleton;
+  const auto reweight = [&](Asset& asset) {
+    Progress unheard;
+    autoRig(asset, rig, unheard);
+  };
+  std::vector<WeightTableRow> rows;
+  for (const std::string& folder : options.folders) {
+    const std::vector<WeightTableRow> more = compareFolder(folder, reweight, progress, skipped);
+    rows.insert(rows.end(), more.begin(), more.end());
+  }
+  return rows;
+}
+
+void runSkinning(SkinningOptions options) {
+  options.common.apply();
+  checkOutput(options.output, {".md"});
+  if (options.methods == std::vector<std::string>{"all"}) {
+    options.methods.clear();
+    for (const WeightMethod& method : weightMethods()) options.methods.emplace_back(method.name);
+  }
+  for (const std::string& method : options.methods) findWeightMethod(method);
+  findPieceMode(options.pieces);
   std::vector<WeightReference> references;
   if (!options.references.empty()) {
     const Bytes text = readFile(options.references);
@@ -158,17 +178,14 @@ void runSkinning(const SkinningOptions& options) {
 
   TerminalProgress progress(options.common.quiet);
   Warnings skipped;
-  const auto reweight = [&](Asset& asset) {
-    Progress unheard;
-    autoRig(asset, rig, unheard);
-  };
-  std::vector<WeightTableRow> rows;
-  for (const std::string& folder : options.folders) {
-    const std::vector<WeightTableRow> more = compareFolder(folder, reweight, *progress, skipped);
-    rows.insert(rows.end(), more.begin(), more.end());
+  std::vector<MethodRows> methods;
+  for (const std::string& method : options.methods) {
+    Warnings again;  // each method skips the same files
+    methods.push_back({method, compareFolders(options, method, *progress, methods.empty() ? skipped : again)});
   }
-  refuseNothing(rows.empty(), skipped);
-  writeText(options.output, weightPage(rows, references));
+  refuseNothing(methods.front().rows.empty(), skipped);
+  writeText(options.output,
+            methods.size() == 1 ? weightPage(methods.front().rows, references) : weightMethodTable(methods));
   printWarnings(skipped, options.common.quiet);
 }
 
@@ -315,14 +332,18 @@ void addSkinning(CLI::App& evaluate) {
       ->capture_default_str();
   command->add_option("--references", options->references, "another program's figures for the same files, as TSV")
       ->type_name("FILE");
-  command->add_option("--skinning", options->method, "how weights are made; limber rig --help lists the methods")
+  command
+      ->add_option("--skinning", options->methods,
+                   "how weights are made; limber rig --help lists the methods; several, or all: a table of them")
       ->type_name("NAME")
       ->capture_default_str();
   command->add_option("--pieces", options->pieces, "how pieces are bound; limber rig --help lists the ways")
       ->type_name("NAME")
       ->capture_default_str();
   options->common.addTo(*command);
-  command->footer("Example:\n  limber evaluate skinning characters -o weights.md");
+  command->footer(
+      "Examples:\n  limber evaluate skinning characters -o weights.md\n"
+      "  limber evaluate skinning characters --skinning all -o methods.md");
   command->callback([options] { runSkinning(*options); });
 }
 

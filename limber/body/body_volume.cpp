@@ -1,7 +1,6 @@
 #include "limber/body/body_volume.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -9,7 +8,7 @@
 #include "limber/core/error.h"
 #include "limber/core/parallel.h"
 #include "limber/mesh/bvh.h"
-#include "limber/mesh/components.h"
+#include "limber/mesh/turned_pieces.h"
 #include "limber/mesh/winding_number.h"
 
 namespace limber {
@@ -31,32 +30,6 @@ Index resolutionFor(const TriMesh& mesh) {
   const Vec3 sides = box.size() / std::max(box.longestSide(), 1e-12);
   const double cells = std::cbrt(kMostNodes / std::max(sides.prod(), 1e-3));
   return static_cast<Index>(std::clamp(cells, 32.0, kMostCells));
-}
-
-std::vector<bool> turnedPieces(const TriMesh& mesh) {
-  Index count = 0;
-  const std::vector<Index> pieceOf = vertexComponents(mesh, &count);
-  std::vector<Vec3> middle(count, Vec3::Zero());
-  std::vector<double> area(count, 0.0), volume(count, 0.0);
-  const auto corners = [&](const Triangle& t) {
-    return std::array<Vec3, 3>{mesh.position(t[0]), mesh.position(t[1]), mesh.position(t[2])};
-  };
-  for (const Triangle& t : mesh.triangles) {
-    const auto [a, b, c] = corners(t);
-    const double part = (b - a).cross(c - a).norm();
-    middle[pieceOf[t[0]]] += part * (a + b + c) / 3;
-    area[pieceOf[t[0]]] += part;
-  }
-  for (const Triangle& t : mesh.triangles) {
-    const Index piece = pieceOf[t[0]];
-    if (!(area[piece] > 0)) continue;
-    const auto [a, b, c] = corners(t);
-    const Vec3 m = middle[piece] / area[piece];
-    volume[piece] += (a - m).dot((b - m).cross(c - m));
-  }
-  std::vector<bool> turned(mesh.triangles.size());
-  for (std::size_t t = 0; t < turned.size(); ++t) turned[t] = volume[pieceOf[mesh.triangles[t][0]]] < 0;
-  return turned;
 }
 
 std::vector<MedialSphere> medialSpheres(const SignedDistance& distance, const InsideGraph& graph,

@@ -216,6 +216,43 @@ std::string weightTable(std::span<const WeightTableRow> rows, std::span<const We
   return table;
 }
 
+std::string weightMethodTable(std::span<const MethodRows> methods) {
+  std::string table =
+      "| files | method | L1 | precision | recall | deform | median | p95 | left out | s |\n"
+      "|---|---|---|---|---|---|---|---|---|---|\n";
+  std::vector<std::string> folders;
+  for (const MethodRows& method : methods) {
+    for (const WeightTableRow& row : method.rows) {
+      if (std::find(folders.begin(), folders.end(), row.folder) == folders.end()) folders.push_back(row.folder);
+    }
+  }
+  for (const std::string& folder : folders) {
+    for (const MethodRows& method : methods) {
+      double l1 = 0, precision = 0, recall = 0, deform = 0, p95 = 0, seconds = 0;
+      Index leftOut = 0;
+      std::vector<double> deforms;
+      for (const WeightTableRow& row : method.rows) {
+        if (row.folder != folder) continue;
+        const WeightComparison& c = row.comparison;
+        deforms.push_back(c.deformMean);
+        l1 += c.l1;
+        precision += c.precision;
+        recall += c.recall;
+        deform += c.deformMean;
+        p95 += c.deformP95;
+        seconds += row.seconds;
+        leftOut += c.unweighted;
+      }
+      if (deforms.empty()) continue;
+      const auto count = static_cast<double>(deforms.size());
+      table += fmt::format("| {} ({}) | {} | {:.3f} | {:.2f} | {:.2f} | {:.3f} | {:.3f} | {:.2f} | {} | {:.3f} |\n",
+                           folder, deforms.size(), method.method, l1 / count, precision / count, recall / count,
+                           deform / count, median(deforms), p95 / count, leftOut, seconds / count);
+    }
+  }
+  return table;
+}
+
 std::string weightPage(std::span<const WeightTableRow> rows, std::span<const WeightReference> references) {
   return R"(# How near limber's weights come to an artist's
 

@@ -46,6 +46,13 @@ std::vector<WeightReference> parseWeightReferences(std::string_view text);
 // References may be empty.
 std::string weightTable(std::span<const WeightTableRow> rows, std::span<const WeightReference> references);
 
+// A Markdown table of means, a line for each folder and method: the methods side by side over the same files.
+struct MethodRows {
+  std::string method;
+  std::vector<WeightTableRow> rows;
+};
+std::string weightMethodTable(std::span<const MethodRows> methods);
+
 // docs/weights.md: what was measured and how, then weightTable.
 std::string weightPage(std::span<const WeightTableRow> rows, std::span<const WeightReference> references);
 

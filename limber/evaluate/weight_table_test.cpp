@@ -51,6 +51,18 @@ TEST(WeightReferences, BrokenLineIsNamed) {
   }
 }
 
+TEST(WeightMethodTable, HasALineForEachFolderAndMethod) {
+  std::vector<MethodRows> methods = {{"heat", {row("a", 0.2, 1), row("b", 0.4, 2)}},
+                                     {"voxel", {row("a", 0.6, 3), row("b", 1, 5)}}};
+  for (MethodRows& method : methods) {
+    method.rows[0].folder = "tune";
+    method.rows[1].folder = "check";
+  }
+  const std::string table = weightMethodTable(methods);
+  EXPECT_THAT(table, HasSubstr("| tune (1) | heat | 0.200 |"));
+  EXPECT_THAT(table, HasSubstr("| check (1) | voxel | 1.000 | 1.00 | 1.00 | 5.000 | 5.000 |"));
+}
+
 TEST(WeightTable, MeansCompareTheSameFilesOnly) {
   const std::vector<WeightTableRow> rows = {row("fox", 0.2, 0.3), row("robot", 0.4, 0.5), row("stranger", 1, 8)};
   const std::string table = weightTable(rows, parseWeightReferences(kReferences));

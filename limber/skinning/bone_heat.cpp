@@ -12,23 +12,13 @@
 #include "limber/skinning/influence_table.h"
 #include "limber/skinning/jointed_pieces.h"
 #include "limber/skinning/piece_rules.h"
+#include "limber/skinning/weight_steps.h"
 
 namespace limber {
 
 namespace {
 
-constexpr Index kMostInfluences = 8;
 constexpr std::size_t kRange = 1024;  // vertices of one parallel piece of work
-
-void checkArguments(const TriMesh& mesh, std::span<const Bone> bones, const WeightOptions& options) {
-  if (bones.empty()) throw Error(ErrorCode::kBadArgument, "there is no bone to take weights from");
-  if (mesh.triangles.empty()) {
-    throw KnownError(ErrorKind::kNoSurface, {ErrorCode::kBadArgument, "the mesh has no triangle"});
-  }
-  if (options.maxInfluences < 1 || options.maxInfluences > kMostInfluences) {
-    throw Error(ErrorCode::kBadArgument, "a vertex can keep 1 to 8 influences", {}, "choose --max-influences 1 to 8");
-  }
-}
 
 // Handles are spheres; they move what is round them, whatever it is a part of.
 bool allSegments(std::span<const Bone> bones) {
@@ -81,57 +71,6 @@ InfluenceTable solveStrongest(const HeatSolver& solver, Index vertexCount, Index
   return result;
 }
 
-// Joints of the three corners with their weights interpolated.
-void interpolate(const InfluenceTable& table, const Triangle& triangle, const Vec3& barycentric, std::size_t row,
-                 InfluenceTable& result) {
-  struct Influence {
-    Index joint;
-    double weight;
-  };
-  std::array<Influence, 3 * kMostInfluences> all;
-  std::size_t count = 0;
-  for (int corner = 0; corner < 3; ++corner) {
-    for (Index k = 0; k < table.slots(); ++k) {
-      const double weight = barycentric[corner] * table.weightsOf(triangle[corner])[k];
-      if (!(weight > 0)) continue;
-      const Index joint = table.jointsOf(triangle[corner])[k];
-      const auto same =
-          std::find_if(all.begin(), all.begin() + count, [&](const Influence& i) { return i.joint == joint; });
-      if (same != all.begin() + count) {
-        same->weight += weight;
-      } else {
-        all[count++] = {joint, weight};
-      }
-    }
-  }
-  for (std::size_t i = 0; i < count; ++i) result.offer(row, all[i].joint, static_cast<float>(all[i].weight));
-}
-
-// Gives rows without weights those of the nearest surface that has some. Returns these rows.
-std::vector<Index> bridge(const TriMesh& mesh, InfluenceTable& table) {
-  std::vector<Index> bare;
-  for (Index v = 0; v < mesh.vertexCount(); ++v) {
-    if (!(table.weightsOf(v)[0] > 0)) bare.push_back(v);
-  }
-  if (bare.empty()) return bare;
-  std::vector<Index> clothed;
-  for (Index t = 0; t < mesh.triangleCount(); ++t) {
-    const Triangle& triangle = mesh.triangles[t];
-    if (std::all_of(triangle.begin(), triangle.end(), [&](Index v) { return table.weightsOf(v)[0] > 0; })) {
-      clothed.push_back(t);
-    }
-  }
-  const Bvh bvh(mesh, clothed);
-  const InfluenceTable source = table;
-  parallelFor(bare.size(), 256, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const SurfacePoint nearest = bvh.nearestPoint(mesh.position(bare[i]));
-      interpolate(source, mesh.triangles[nearest.triangle], nearest.weights, bare[i], table);
-    }
-  });
-  return bare;
-}
-
 double faded(double weight, const BoneHeatOptions& heat) {
   if (weight >= heat.fadeFrom) return weight;
   if (weight <= heat.fadeTo) return 0;
@@ -147,7 +86,7 @@ SkinWeights finish(const InfluenceTable& table, const BoneHeatOptions& heat) {
     for (std::size_t v = begin; v < end; ++v) {
       const auto joints = table.jointsOf(v);
       const auto weights = table.weightsOf(v);
-      std::array<double, kMostInfluences> kept = {};
+      std::array<double, kMostSlots> kept = {};
       double sum = 0;
       for (Index k = 0; k < table.slots(); ++k) sum += kept[k] = faded(weights[k], heat);
       if (!(sum > 0)) sum = kept[0] = 1;  // many joints, all faint: the strongest holds it
@@ -169,7 +108,7 @@ WeightResult boneHeatWeights(const TriMesh& mesh, std::span<const Bone> bones, c
 
 WeightResult boneHeatWeightsWith(const BoneHeatOptions& heat, const TriMesh& mesh, std::span<const Bone> bones,
                                  const WeightOptions& options, Progress& progress) {
-  checkArguments(mesh, bones, options);
+  checkWeightArguments(mesh, bones, options);
   WeightResult result;
 
   progress.step("surface and bones in sight");
@@ -199,19 +138,23 @@ WeightResult boneHeatWeightsWith(const BoneHeatOptions& heat, const TriMesh& mes
 
   progress.step("bridge pieces");
   std::optional<PieceRules> rules;
-  if (mayBeOfParts || options.pieces == PieceMode::kRigid) {
+  if (mayBeOfParts) {
     rules.emplace(mesh, bones, piece, pieceCount, problem.sources.pull);
     rules->classify(finish(table, heat));
     rules->dropHardlySeen(table);
   }
-  result.bridged = bridge(mesh, table);
+  result.bridged = bridgeBare(mesh, table);
   result.weights = finish(table, heat);
-  if (rules) rules->bindRigid(options.pieces, result.weights, result.warnings);
+  if (options.pieces == PieceMode::kRigid) {
+    bindWholePieces(mesh, result);
+  } else if (rules) {
+    rules->bindRigid(result.weights, result.warnings);
+  }
   return result;
 }
 
 Eigen::MatrixXd fullBoneHeat(const BoneHeatOptions& heat, const TriMesh& mesh, std::span<const Bone> bones) {
-  checkArguments(mesh, bones, {});
+  checkWeightArguments(mesh, bones, {});
   HeatProblem problem = setUp(heat, mesh, bones, vertexComponents(mesh));
   problem.solver->factorize(problem.sources);
   Index jointCount = 0;

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "limber/core/progress.h"
 #include "limber/mesh/tri_mesh.h"
 #include "limber/skeleton/skeleton.h"
 #include "limber/skinning/piece_rules.h"

@@ -117,13 +117,11 @@ std::optional<Index> PieceRules::jointAtMiddle(Index piece, const std::vector<do
   return result;
 }
 
-void PieceRules::bindRigid(PieceMode pieces, SkinWeights& weights, Warnings& warnings) const {
+void PieceRules::bindRigid(SkinWeights& weights, Warnings& warnings) const {
   PieceBinding binding(area_.size());
   visitShares(weights, [&](Index piece, const std::vector<double>& shares) {
     const Top top = topOf(shares);
-    if (pieces == PieceMode::kRigid) {
-      binding[piece] = top.joint;
-    } else if (madeOfParts_) {
+    if (madeOfParts_) {
       binding[piece] = top.share >= kRigidPart ? top.joint : jointAtMiddle(piece, shares);
     } else if (small(piece) && top.share >= kRigidTrinket) {
       binding[piece] = top.joint;

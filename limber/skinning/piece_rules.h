@@ -10,7 +10,6 @@
 #include "limber/mesh/tri_mesh.h"
 #include "limber/skeleton/skin_weights.h"
 #include "limber/skinning/influence_table.h"
-#include "limber/skinning/weight_method.h"
 
 namespace limber {
 
@@ -41,9 +40,8 @@ class PieceRules {
   void dropHardlySeen(InfluenceTable& weights) const;
 
   // Binds pieces whole to one joint: in a model of parts those of which it holds 0.62, and those about whose middle it
-  // turns (the ball of a joint); in other models small pieces of which it holds 0.8 (eyes, buttons, buckles); with
-  // PieceMode::kRigid all pieces, to the joint that holds most.
-  void bindRigid(PieceMode pieces, SkinWeights& weights, Warnings& warnings) const;
+  // turns (the ball of a joint); in other models small pieces of which it holds 0.8 (eyes, buttons, buckles).
+  void bindRigid(SkinWeights& weights, Warnings& warnings) const;
 
  private:
   struct Top {

@@ -3,7 +3,9 @@
 #include <string>
 
 #include "limber/core/names.h"
+#include "limber/skinning/bone_distance.h"
 #include "limber/skinning/bone_heat.h"
+#include "limber/skinning/geodesic_voxel.h"
 
 namespace limber {
 
@@ -12,6 +14,10 @@ namespace {
 constexpr WeightMethod kMethods[] = {
     {"bone-heat", "heat that flows from each bone over the surface",
      "Baran, Popović: Automatic Rigging and Animation of 3D Characters, 2007", &boneHeatWeights},
+    {"geodesic-voxel", "the ways to bones through the inside, on a grid",
+     "Dionne, de Lasa: Geodesic Voxel Binding, 2013", &geodesicVoxelWeights},
+    {"envelopes", "bones hold what is near them, whatever lies between", "", &envelopeWeights},
+    {"nearest-bone", "each vertex follows the nearest bone alone", "", &nearestBoneWeights},
 };
 
 constexpr NamedPieceMode kPieceModes[] = {

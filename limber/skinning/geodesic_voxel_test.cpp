@@ -1,0 +1,130 @@
+// Ways in a box, where they have a closed form, and round the gap of a horseshoe.
+#include "limber/skinning/geodesic_voxel.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "limber/mesh/testing/shapes.h"
+#include "limber/skinning/bone_distance.h"
+#include "warning_kinds.h"
+
+namespace limber {
+namespace {
+
+using testing::countOf;
+
+Bone point(Index joint, const Vec3& at) {
+  return {joint, at, at, 0};
+}
+
+double pullOf(const SkinWeights& weights, Index vertex, Index joint) {
+  double sum = 0;
+  for (Index k = 0; k < weights.slots; ++k) {
+    if (weights.jointsOf(vertex)[k] == joint) sum += weights.weightsOf(vertex)[k];
+  }
+  return sum;
+}
+
+WeightResult voxelWeightsOf(const TriMesh& mesh, const std::vector<Bone>& bones, double falloff = 0.2) {
+  Progress progress;
+  GeodesicVoxelOptions voxels;
+  voxels.falloff = falloff;
+  return geodesicVoxelWeightsWith(voxels, mesh, bones, {}, progress);
+}
+
+// The shortest way in a grid whose steps are 10, 14 and 17 tenths, in its spacings.
+double chamferWay(const Vec3& between) {
+  std::array<double, 3> along = {std::abs(between.x()), std::abs(between.y()), std::abs(between.z())};
+  std::sort(along.begin(), along.end());
+  return 1.7 * along[0] + 1.4 * (along[1] - along[0]) + along[2] - along[1];
+}
+
+TEST(GeodesicVoxel, WaysInAConvexBodyAreStraight) {
+  const TriMesh ball = testing::moved(testing::icosphere(3), Vec3f::Constant(0.5f), Vec3f::Zero());
+  const std::array<Vec3, 2> at = {Vec3(-0.25, 0, 0), Vec3(0.2, 0.1, 0)};
+  for (const double falloff : {0.0, 0.5, 1.0}) {
+    const SkinWeights weights = voxelWeightsOf(ball, {point(0, at[0]), point(1, at[1])}, falloff).weights;
+    for (Index v = 0; v < ball.vertexCount(); ++v) {
+      std::array<double, 2> pull;
+      for (int j = 0; j < 2; ++j) {
+        const double way = 100 * chamferWay(ball.position(v) - at[j]);
+        pull[j] = 1 / std::pow((1 - falloff) * way + falloff * way * way, 2);
+      }
+      // Seeds and vertices lie up to half a cell from where they count.
+      EXPECT_NEAR(pullOf(weights, v, 0), pull[0] / (pull[0] + pull[1]), 0.08) << v << " " << falloff;
+    }
+  }
+}
+
+// Two arms side by side, joined at their lower ends: near to each other, and far.
+struct Horseshoe {
+  TriMesh mesh;
+  std::vector<Bone> bones;
+
+  Horseshoe() {
+    const TriMesh column = testing::moved(testing::icosphere(3), {0.08f, 0.45f, 0.08f}, Vec3f::Zero());
+    mesh = testing::join(testing::moved(column, Vec3f::Ones(), {-0.12f, 0.05f, 0}),
+                         testing::moved(column, Vec3f::Ones(), {0.12f, 0.05f, 0}));
+    mesh = testing::join(mesh, testing::moved(testing::icosphere(3), {0.22f, 0.08f, 0.09f}, {0, -0.4f, 0}));
+    for (const Index joint : {0u, 1u}) {
+      const double x = joint == 0 ? -0.12 : 0.12;
+      bones.push_back({joint, {x, 0, 0}, {x, 0.4, 0}, 0});
+    }
+  }
+};
+
+TEST(GeodesicVoxel, NoWeightLeapsAGap) {
+  const Horseshoe horseshoe;
+  const SkinWeights voxels = voxelWeightsOf(horseshoe.mesh, horseshoe.bones).weights;
+  Progress progress;
+  const SkinWeights envelopes = envelopeWeights(horseshoe.mesh, horseshoe.bones, {}, progress).weights;
+  double worst = 0, worstEnvelope = 0;
+  for (Index v = 0; v < horseshoe.mesh.vertexCount(); ++v) {
+    const Vec3 place = horseshoe.mesh.position(v);
+    if (place.y() < 0.1) continue;
+    const Index other = place.x() < 0 ? 1 : 0;
+    worst = std::max(worst, pullOf(voxels, v, other));
+    worstEnvelope = std::max(worstEnvelope, pullOf(envelopes, v, other));
+  }
+  EXPECT_LT(worst, 0.02);
+  EXPECT_GT(worstEnvelope, 0.02) << "what lies between does not stop them";
+}
+
+TEST(GeodesicVoxel, FacesThatAreTurnedOrOpenChangeLittle) {
+  const Horseshoe horseshoe;
+  const SkinWeights whole = voxelWeightsOf(horseshoe.mesh, horseshoe.bones).weights;
+  TriMesh open = horseshoe.mesh;
+  for (std::size_t t = 0; t < open.triangles.size(); t += 7) std::swap(open.triangles[t][0], open.triangles[t][1]);
+  for (std::size_t t = 0; t < open.triangles.size(); t += 50) open.triangles.erase(open.triangles.begin() + t);
+  const SkinWeights other = voxelWeightsOf(open, horseshoe.bones).weights;
+  double sum = 0;
+  for (Index v = 0; v < whole.vertexCount(); ++v) sum += std::abs(pullOf(whole, v, 0) - pullOf(other, v, 0));
+  EXPECT_LT(sum / whole.vertexCount(), 0.05);
+}
+
+TEST(GeodesicVoxel, PiecesThatNoWayLeadsToTakeTheNearestWeights) {
+  Horseshoe horseshoe;
+  const Index body = horseshoe.mesh.vertexCount();
+  horseshoe.mesh =
+      testing::join(horseshoe.mesh, testing::moved(testing::icosphere(1), Vec3f::Constant(0.02f), {0.3f, 0.3f, 0}));
+  const WeightResult result = voxelWeightsOf(horseshoe.mesh, horseshoe.bones);
+  EXPECT_EQ(result.bridged.size(), horseshoe.mesh.vertexCount() - body);
+  for (Index v = body; v < horseshoe.mesh.vertexCount(); ++v) EXPECT_GT(pullOf(result.weights, v, 1), 0.9);
+}
+
+TEST(GeodesicVoxel, BonesThatReachNothingLeaveTheNearest) {
+  const TriMesh ball = testing::icosphere(2);
+  const WeightResult result = voxelWeightsOf(ball, {point(0, {-9, 0, 0}), point(1, {9, 0, 0})});
+  EXPECT_EQ(countOf(result.warnings, "no-bone-in-sight"), 1u);
+  for (Index v = 0; v < ball.vertexCount(); ++v) {
+    const double x = ball.position(v).x();
+    if (std::abs(x) < 0.01) continue;
+    EXPECT_EQ(pullOf(result.weights, v, x > 0 ? 1 : 0), 1);
+  }
+}
+
+}  // namespace
+}  // namespace limber
