@@ -24,6 +24,6 @@ target_include_directories(Eigen3::Eigen SYSTEM INTERFACE ${eigen_folder})
 # does; -O3 says 250), and no loop is unrolled. At 40 a sixth smaller, packed a tenth, and 7 % slower by ./dev bench
 # --web; at 18 without unrolled loops packed a twentieth smaller still than at 30. -Os makes it a third smaller and
 # fourteen times as slow, since it leaves Eigen's expressions as calls.
-add_compile_options(-O2 -fno-unroll-loops "SHELL:-mllvm -inline-threshold=18")
+add_compile_options(-O2 -fno-unroll-loops "SHELL:-mllvm -inline-threshold=12")
 add_compile_options(-fwasm-exceptions)
 add_link_options(-fwasm-exceptions)
