@@ -10,9 +10,9 @@ namespace limber {
 
 namespace {
 
-constexpr double kOuter = 2;            // inner radii
-constexpr double kLeastRadius = 0.005;  // longest sides: of bones that lie on the surface
-constexpr std::size_t kVertexRange = 256;     // vertices of one parallel piece of work
+constexpr double kOuter = 2;               // inner radii
+constexpr double kLeastRadius = 0.005;     // longest sides: of bones that lie on the surface
+constexpr std::size_t kVertexRange = 256;  // vertices of one parallel piece of work
 
 // By vertex: the bone nearest to it.
 std::vector<std::size_t> nearestBones(const TriMesh& mesh, std::span<const Bone> bones) {

@@ -17,8 +17,8 @@ struct GeodesicVoxelOptions {
 // the mesh and all that its surface passes through are the cells of a grid; from the cells of each joint's bones the
 // shortest ways through them run to all others. A vertex whose way to a bone is d (hundredths of the longest side, as
 // the centimetres of a model of a metre; between cells as their distances say) is held by it as
-// 1 / ((1 - falloff) d + falloff d^2)^2. So no weight leaps a gap as wide as a cell, whatever the mesh: open, with faces
-// turned round, in pieces that overlap.
+// 1 / ((1 - falloff) d + falloff d^2)^2. So no weight leaps a gap as wide as a cell, whatever the mesh: open, with
+// faces turned round, in pieces that overlap.
 //
 // Only the nearest few joints of each cell are followed (options.maxInfluences and two more, at least four), all at
 // once. Ways are counted in tenths of a cell (10, 14, 17 to the neighbors by face, edge and corner), whole numbers, so
