@@ -134,7 +134,7 @@ if [ -d "$characters" ]; then
     echo && echo "**People in poses, --template humanoid**" && echo
     table_of_poses
   } >> docs/template-rigs.md
-  echo "Made docs/images, docs/ik.md, docs/weights.md and the tables of docs/template-rigs.md, docs/retargeting.md"
+  echo "Made docs/images, docs/ik.md, docs/weights.md and the tables of docs/methods.md, docs/template-rigs.md, docs/retargeting.md"
 else
   echo "Made docs/images and docs/ik.md; docs/weights.md stays as it is: no characters in $characters"
 fi

@@ -15,22 +15,12 @@ namespace limber {
 
 namespace {
 
-constexpr double kMostCells = 96;        // along the longest side
-constexpr double kMostNodes = 250000;    // of the grid: fewer cells for what fills its box
-constexpr double kSphereSpacing = 0.45;  // radii that the centres of two spheres are apart, at least
+constexpr double kLeastCells = 32, kMostCells = 96;  // along the longest side
+constexpr double kMostNodes = 250000;                // of the grid: fewer cells for what fills its box
+constexpr double kSphereSpacing = 0.45;              // radii that the centres of two spheres are apart, at least
 constexpr std::size_t kMostSpheres = 700;
 constexpr std::size_t kMostTips = 16;
 constexpr double kLeastReach = 0.05;  // longest sides
-
-Index resolutionFor(const TriMesh& mesh) {
-  Box box;
-  for (const Triangle& t : mesh.triangles) {
-    for (const Index v : t) box.add(mesh.position(v));
-  }
-  const Vec3 sides = box.size() / std::max(box.longestSide(), 1e-12);
-  const double cells = std::cbrt(kMostNodes / std::max(sides.prod(), 1e-3));
-  return static_cast<Index>(std::clamp(cells, 32.0, kMostCells));
-}
 
 std::vector<MedialSphere> medialSpheres(const SignedDistance& distance, const InsideGraph& graph,
                                         const std::vector<std::size_t>& inside) {
@@ -88,7 +78,8 @@ BodyVolume measureBody(const TriMesh& mesh) {
   parallelInvoke([&] { surface = std::make_unique<Bvh>(mesh); },
                  [&] { winding = std::make_unique<WindingNumber>(mesh, turnedPieces(mesh)); });
   BodyVolume body;
-  body.distance = std::make_unique<const SignedDistance>(mesh, *surface, *winding, resolutionFor(mesh));
+  body.distance = std::make_unique<const SignedDistance>(mesh, *surface, *winding,
+                                                         cellsForNodes(mesh, kMostNodes, kLeastCells, kMostCells));
   const SignedDistance& distance = *body.distance;
   InsideGraph graph(distance);
   const std::vector<std::size_t> inside = graph.insideNodes();

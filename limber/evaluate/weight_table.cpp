@@ -139,6 +139,7 @@ double median(std::vector<double> values) {
 // Means over the files of one group; of the reference only over files that it has.
 struct Means {
   std::size_t count = 0;
+  double precision = 0, recall = 0, seconds = 0;
   double l1 = 0, deform = 0, deformMedian = 0, p95 = 0, l1Reference = 0, deformReference = 0, deformReferenceMedian = 0;
   Index unweighted = 0;
 };
@@ -151,6 +152,9 @@ Means meansOf(std::span<const PairedRow> pairs, Belongs belongs) {
     if (!belongs(pair)) continue;
     const WeightComparison& c = pair.row->comparison;
     ++means.count;
+    means.precision += c.precision;
+    means.recall += c.recall;
+    means.seconds += pair.row->seconds;
     means.l1 += c.l1;
     means.deform += c.deformMean;
     means.p95 += c.deformP95;
@@ -162,7 +166,8 @@ Means meansOf(std::span<const PairedRow> pairs, Belongs belongs) {
     deformReference.push_back(pair.reference->deform);
   }
   if (means.count == 0) return means;
-  for (double* sum : {&means.l1, &means.deform, &means.p95}) *sum /= static_cast<double>(means.count);
+  for (double* sum : {&means.precision, &means.recall, &means.seconds, &means.l1, &means.deform, &means.p95})
+    *sum /= static_cast<double>(means.count);
   means.deformMedian = median(deform);
   if (deformReference.empty()) return means;
   means.l1Reference /= static_cast<double>(deformReference.size());
@@ -181,6 +186,10 @@ std::string meansLine(std::string_view name, std::span<const PairedRow> pairs, B
                      other(m.deformReferenceMedian), m.p95, m.unweighted);
 }
 
+void addOnce(const std::string& name, std::vector<std::string>& names) {
+  if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+}
+
 std::string meansTable(std::span<const PairedRow> pairs) {
   std::string table =
       "| characters | files | L1 | Blender | deform | Blender | median | Blender | p95 | left out |\n"
@@ -193,9 +202,7 @@ std::string meansTable(std::span<const PairedRow> pairs) {
                      [&](const PairedRow& p) { return known(p) && !p.reference->madeByHeat; });
   std::vector<std::string> folders;
   for (const PairedRow& p : pairs) {
-    if (!known(p) && std::find(folders.begin(), folders.end(), p.row->folder) == folders.end()) {
-      folders.push_back(p.row->folder);
-    }
+    if (!known(p)) addOnce(p.row->folder, folders);
   }
   for (const std::string& folder : folders) {
     table += meansLine("without figures of Blender" + (folder.empty() ? "" : ", " + folder), pairs,
@@ -222,32 +229,15 @@ std::string weightMethodTable(std::span<const MethodRows> methods) {
       "|---|---|---|---|---|---|---|---|---|---|\n";
   std::vector<std::string> folders;
   for (const MethodRows& method : methods) {
-    for (const WeightTableRow& row : method.rows) {
-      if (std::find(folders.begin(), folders.end(), row.folder) == folders.end()) folders.push_back(row.folder);
-    }
+    for (const WeightTableRow& row : method.rows) addOnce(row.folder, folders);
   }
   for (const std::string& folder : folders) {
     for (const MethodRows& method : methods) {
-      double l1 = 0, precision = 0, recall = 0, deform = 0, p95 = 0, seconds = 0;
-      Index leftOut = 0;
-      std::vector<double> deforms;
-      for (const WeightTableRow& row : method.rows) {
-        if (row.folder != folder) continue;
-        const WeightComparison& c = row.comparison;
-        deforms.push_back(c.deformMean);
-        l1 += c.l1;
-        precision += c.precision;
-        recall += c.recall;
-        deform += c.deformMean;
-        p95 += c.deformP95;
-        seconds += row.seconds;
-        leftOut += c.unweighted;
-      }
-      if (deforms.empty()) continue;
-      const auto count = static_cast<double>(deforms.size());
+      const Means m = meansOf(pairRows(method.rows, {}), [&](const PairedRow& p) { return p.row->folder == folder; });
+      if (m.count == 0) continue;
       table += fmt::format("| {} ({}) | {} | {:.3f} | {:.2f} | {:.2f} | {:.3f} | {:.3f} | {:.2f} | {} | {:.3f} |\n",
-                           folder, deforms.size(), method.method, l1 / count, precision / count, recall / count,
-                           deform / count, median(deforms), p95 / count, leftOut, seconds / count);
+                           folder, m.count, method.method, m.l1, m.precision, m.recall, m.deform, m.deformMedian, m.p95,
+                           m.unweighted, m.seconds);
     }
   }
   return table;

@@ -124,4 +124,13 @@ Vec3 SignedDistance::gradientAt(const Vec3& point) const {
   return gradient;
 }
 
+Index cellsForNodes(const TriMesh& mesh, double nodes, double least, double most) {
+  Box box;
+  for (const Triangle& t : mesh.triangles) {
+    for (const Index v : t) box.add(mesh.position(v));
+  }
+  const Vec3 sides = box.size() / std::max(box.longestSide(), 1e-12);
+  return static_cast<Index>(std::clamp(std::cbrt(nodes / std::max(sides.prod(), 1e-3)), least, most));
+}
+
 }  // namespace limber

@@ -17,6 +17,7 @@ namespace limber {
 
 namespace {
 
+constexpr Index kLeastCells = 8;         // along the longest side
 constexpr double kThroughCell = 0.87;    // spacings: half the diagonal of a cell, which the surface passes through then
 constexpr double kUnitOfFalloff = 0.01;  // longest sides
 constexpr int kUnit = 10;                // of a way, to a cell
@@ -222,16 +223,6 @@ class VoxelWays {
   std::vector<std::uint8_t> counts_;  // by cell: joints that came
 };
 
-Index cellsAlong(const TriMesh& mesh, const GeodesicVoxelOptions& voxels) {
-  Box box;
-  for (const Triangle& t : mesh.triangles) {
-    for (const Index v : t) box.add(mesh.position(v));
-  }
-  const Vec3 sides = box.size() / std::max(box.longestSide(), 1e-12);
-  const double cells = std::cbrt(static_cast<double>(voxels.nodes) / std::max(sides.prod(), 1e-3));
-  return static_cast<Index>(std::clamp(cells, 8.0, static_cast<double>(voxels.mostCells)));
-}
-
 }  // namespace
 
 WeightResult geodesicVoxelWeights(const TriMesh& mesh, std::span<const Bone> bones, const WeightOptions& options,
@@ -247,7 +238,7 @@ WeightResult geodesicVoxelWeightsWith(const GeodesicVoxelOptions& voxels, const 
   std::unique_ptr<WindingNumber> winding;
   parallelInvoke([&] { surface = std::make_unique<Bvh>(mesh); },
                  [&] { winding = std::make_unique<WindingNumber>(mesh, turnedPieces(mesh)); });
-  const SignedDistance grid(mesh, *surface, *winding, cellsAlong(mesh, voxels));
+  const SignedDistance grid(mesh, *surface, *winding, cellsForNodes(mesh, voxels.nodes, kLeastCells, voxels.mostCells));
 
   progress.step("ways to bones");
   VoxelWays ways(grid, std::max<Index>(4, options.maxInfluences + 2));

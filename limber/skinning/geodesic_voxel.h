@@ -8,9 +8,9 @@
 namespace limber {
 
 struct GeodesicVoxelOptions {
-  Index mostCells = 128;        // of the grid along the longest side, 8 to 512
-  std::size_t nodes = 400'000;  // of the grid, about: bulky models get fewer cells
-  double falloff = 0.2;         // 0 to 1: how much faster than with distance itself weights fall off far from a bone
+  Index mostCells = 128;   // of the grid along the longest side, 8 to 512
+  double nodes = 400'000;  // of the grid, about: bulky models get fewer cells
+  double falloff = 0.2;    // 0 to 1: how much faster than with distance itself weights fall off far from a bone
 };
 
 // Geodesic voxel binding (Dionne, de Lasa: Geodesic Voxel Binding for Production Character Meshes, 2013). The inside of

@@ -189,13 +189,19 @@ class PieceJoints {
     return true;
   }
 
-  // Whether a bone runs through a piece that belongs to another joint, as in a body of one skin that wears something at
-  // each of its joints: that piece has to bend there.
-  bool anyPieceBends() {
+  // By pivot: the piece that givePiecesToAll gave it.
+  std::vector<Index> pieceOfEach() const {
     std::vector<Index> own(pivots_.size());
     for (Index p = 0; p < parts_.size(); ++p) {
       if (pivotOf_[p]) own[*pivotOf_[p]] = p;
     }
+    return own;
+  }
+
+  // Whether a bone runs through a piece that belongs to another joint, as in a body of one skin that wears something at
+  // each of its joints: that piece has to bend there.
+  bool anyPieceBends() {
+    const std::vector<Index> own = pieceOfEach();
     for (const Pivot& child : pivots_) {
       if (!child.parent) continue;
       const Pivot& pivot = pivots_[*child.parent];
@@ -218,10 +224,7 @@ class PieceJoints {
     if (isList() && countRoots() == 1) {
       for (Pivot& pivot : pivots_) pivot.parent.reset();
     }
-    std::vector<Index> own(pivots_.size());
-    for (Index p = 0; p < parts_.size(); ++p) {
-      if (pivotOf_[p]) own[*pivotOf_[p]] = p;
-    }
+    const std::vector<Index> own = pieceOfEach();
     const auto size = [&](Index pivot) { return std::pair(carriedPart(pivot), parts_[own[pivot]].area); };
     PivotSet loose;
     for (Index i = 0; i < pivots_.size(); ++i) {

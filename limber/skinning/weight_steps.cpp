@@ -52,11 +52,10 @@ void checkWeightArguments(const TriMesh& mesh, std::span<const Bone> bones, cons
   }
 }
 
-double distanceToBone(const Bone& bone, const Vec3& point, double* along) {
+double distanceToBone(const Bone& bone, const Vec3& point) {
   const Vec3 way = bone.b - bone.a;
   const double squared = way.squaredNorm();
   const double share = squared > 0 ? std::clamp((point - bone.a).dot(way) / squared, 0.0, 1.0) : 0;
-  if (along) *along = share;
   return std::max(0.0, (point - bone.a - share * way).norm() - bone.radius);
 }
 

@@ -17,8 +17,8 @@ inline constexpr Index kMostSlots = 8;  // of WeightOptions::maxInfluences
 // outside 1 to kMostSlots.
 void checkWeightArguments(const TriMesh& mesh, std::span<const Bone> bones, const WeightOptions& options);
 
-// From a point to a bone's surface, 0 within it; `along` is where on the bone, 0 to 1.
-double distanceToBone(const Bone& bone, const Vec3& point, double* along = nullptr);
+// From a point to a bone's surface, 0 within it.
+double distanceToBone(const Bone& bone, const Vec3& point);
 
 // Gives rows without weights those of the nearest surface that has some. Returns these rows; none where no triangle has
 // weights at all its corners.
