@@ -20,10 +20,9 @@ find_path(eigen_folder Eigen/Core PATHS /usr/include/eigen3 /usr/local/include/e
 add_library(Eigen3::Eigen INTERFACE IMPORTED GLOBAL)
 target_include_directories(Eigen3::Eigen SYSTEM INTERFACE ${eigen_folder})
 
-# A page loads the whole engine before its first picture: only what is small is inlined (its cost is counted as LLVM
-# does; -O3 says 250), and no loop is unrolled. At 40 a sixth smaller, packed a tenth, and 7 % slower by ./dev bench
-# --web; at 18 without unrolled loops packed a twentieth smaller still than at 30. -Os makes it a third smaller and
-# fourteen times as slow, since it leaves Eigen's expressions as calls.
-add_compile_options(-O2 -fno-unroll-loops "SHELL:-mllvm -inline-threshold=12")
+# Small code is what a page waits for: only what is small is inlined (its cost is counted as LLVM does; -O3 says 250), and no
+# loop is unrolled. At 40 a sixth smaller, packed a tenth, and 7 % slower by ./dev bench --web. -Os makes it a third
+# smaller and fourteen times as slow, since it leaves Eigen's expressions as calls.
+add_compile_options(-O2 -fno-unroll-loops "SHELL:-mllvm -inline-threshold=40")
 add_compile_options(-fwasm-exceptions)
 add_link_options(-fwasm-exceptions)

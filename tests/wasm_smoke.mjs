@@ -13,7 +13,10 @@ import { pathToFileURL } from 'node:url';
 const [wasmFolder, program, model, output] = process.argv.slice(2).map((path) => resolve(path));
 mkdirSync(output, { recursive: true });
 const { loadLimber } = await import(pathToFileURL(join(wasmFolder, 'limber.mjs')));
-const limber = await loadLimber(readFileSync(join(wasmFolder, 'limber_engine.wasm')));
+const part = (name) => readFileSync(join(wasmFolder, `limber_engine${name}.wasm`));
+let restAsked = 0;
+// In two parts, as the page has it.
+const limber = await loadLimber(part('_first'), { rest: () => { ++restAsked; return part('_rest'); } });
 const bytes = new Uint8Array(readFileSync(model));
 
 function nativeRig(handles) {
@@ -47,6 +50,11 @@ cases['a person in mid-stride, whose template is bent: the native program\'s byt
   const result = limber.rig(new Uint8Array(readFileSync(at('stride.glb'))), 'stride.glb', { rigger: 'template' });
   assert.ok(result.ok, result.error?.message);
   assert.equal(Buffer.compare(result.glb, readFileSync(at('stride_native.glb'))), 0, 'the bytes differ');
+};
+cases['the whole engine: the bytes of the one in two parts, whose rest was asked for once'] = async () => {
+  const whole = await loadLimber(part('')), options = { handles: 12 };
+  assert.equal(Buffer.compare(whole.rig(bytes, 'model.glb', options).glb, limber.rig(bytes, 'model.glb', options).glb), 0, 'the bytes differ');
+  assert.equal(restAsked, 1);
 };
 cases['a damaged file is an error value'] = () => {
   const { ok, error } = limber.rig(bytes.slice(0, bytes.length / 2), 'half.glb');
@@ -177,7 +185,7 @@ cases['a scene: several models in one file, as the native program writes it'] = 
 let passed = 0, failed = 0;
 for (const [name, run] of Object.entries(cases)) {
   try {
-    run();
+    await run();
     ++passed;
   } catch (error) {
     ++failed;

@@ -2,7 +2,8 @@
 
 build_wasm() {
   export NODE_PATH=/usr/share/nodejs # Debian's emscripten looks for its own JavaScript packages there
-  configure wasm && compile wasm && zstd --ultra -22 -q -f build/wasm/limber_engine.wasm
+  configure wasm && compile wasm && node bindings/wasm/split_engine.mjs build/wasm &&
+    zstd --ultra -22 -q -f build/wasm/limber_engine_first.wasm build/wasm/limber_engine_rest.wasm
 }
 
 # install_node_packages <folder>: what its package-lock.json names, unless it is there.

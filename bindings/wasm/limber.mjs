@@ -98,17 +98,21 @@ import createEngine from './limber_engine.mjs';
  */
 
 /**
- * @param {BufferSource | WebAssembly.Module} wasm limber_engine.wasm, as its content or compiled
- * @param {{ onProgress?: (stage: string, fraction: number) => void, codecs?: Codecs }} [given] codecs may be put in later
+ * @param {BufferSource | WebAssembly.Module} wasm limber_engine.wasm, or its first part, as its content or compiled
+ * @param {{ onProgress?: (stage: string, fraction: number) => void, codecs?: Codecs, rest?: () => BufferSource | WebAssembly.Module,
+ *           onInstance?: (instance: WebAssembly.Instance) => void }} [given]
+ *   codecs may be put in later; rest: gives the other part of an engine in two (split_engine.mjs), asked once, by the first
+ *   call that needs it
  */
 export async function loadLimber(wasm, given = {}) {
-  const compiled = wasm instanceof WebAssembly.Module && {
-    instantiateWasm: (imports, done) => {
-      WebAssembly.instantiate(wasm, imports).then((instance) => done(instance, wasm));
+  const { rest, onInstance, ...settings } = given;
+  const engine = await new Promise((resolve, reject) => {
+    const instantiateWasm = (imports, done) => {
+      instantiate(wasm, imports, rest).then((instance) => { onInstance?.(instance); done(instance); }).catch(reject);
       return {};
-    },
-  };
-  const engine = await createEngine({ ...(compiled || { wasmBinary: wasm }), ...given });
+    };
+    createEngine({ ...settings, instantiateWasm }).then(resolve, reject);
+  });
   return {
     /** @type {(file: Uint8Array, name: string, options?: RigOptions) => RigResult} */
     rig: (file, name, options = {}) => {
@@ -133,6 +137,27 @@ export async function loadLimber(wasm, given = {}) {
       return handle === 0 ? null : createSession(engine, handle);
     },
   };
+}
+
+const compiled = (wasm) => (wasm instanceof WebAssembly.Module ? wasm : new WebAssembly.Module(wasm));
+
+// The first part of an engine in two imports a placeholder for each function of the rest that it names: a number, its place
+// in the table. Once the rest is there, it has put its functions in these places.
+async function instantiate(wasm, imports, rest) {
+  let instance = null, whole = false;
+  const table = () => Object.values(instance.exports).find((one) => one instanceof WebAssembly.Table);
+  const complete = () => {
+    if (whole) return;
+    new WebAssembly.Instance(compiled(rest()), { ...imports, primary: instance.exports });
+    whole = true;
+  };
+  const placeholder = new Proxy({}, { get: (_, place) => (...values) => {
+    complete();
+    return table().get(Number(place))(...values);
+  } });
+  const first = wasm instanceof WebAssembly.Module ? wasm : await WebAssembly.compile(wasm);
+  instance = await WebAssembly.instantiate(first, { ...imports, placeholder });
+  return instance;
 }
 
 // Copies into the engine's memory. The views on it are taken anew each time: memory that grows replaces them.

@@ -132,6 +132,14 @@ const cases = {
     assert.match(german, /nicht angekommen.*Verbindung/);
     assert.doesNotMatch(german, /fetch/);
   },
+  async 'the rest of the engine, where it does not come when it is needed, is told'() {
+    const prepare = (context) => context.route(/limber_engine_rest/, (route) => route.abort('internetdisconnected'));
+    const visit = await openStudio(browser, server.address, { search: '?sample=biped', prepare });
+    await visit.page.locator('#file').setInputFiles({ name: 'middle.glb', mimeType: 'model/gltf-binary', buffer: sampleFromMiddle('biped', 0.9) });
+    await visit.page.locator('#notice').waitFor();
+    assert.match(await visit.page.locator('#notice').textContent(), /did not arrive.*connection.*load the page again/);
+    await visit.context.close();
+  },
   async 'a page whose code does not come or does not run says so, in all its languages'() {
     const visit = (file, answer) => visitWithout(answer, { file, told: '#apology' });
     const said = [

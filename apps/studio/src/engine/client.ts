@@ -46,7 +46,7 @@ interface Waiting {
   reject(error: EngineError): void;
 }
 
-type Answered = Extract<FromWorker, { kind: 'done' } | { kind: 'failed' }>;
+type Answered = Extract<FromWorker, { id: number }>;
 
 const sameCommand = (a: Request, b: Request) => a.kind === 'run' && b.kind === 'run' && JSON.stringify(a.command) === JSON.stringify(b.command);
 
@@ -152,6 +152,7 @@ export class EngineClient {
     if (!waiting) return;
     this.waiting.delete(data.id);
     if (![...this.waiting.values()].some(({ request }) => !quiet(request))) this.onBusy(false);
+    if (data.kind === 'cut-short') return waiting.reject(partMissing(data.status));
     if (data.kind === 'failed') return waiting.reject(new EngineError(data.error));
     this.remember(waiting.request);
     waiting.resolve(data.answer);

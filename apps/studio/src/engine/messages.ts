@@ -215,4 +215,6 @@ export type FromWorker =
   | { kind: 'broken'; missing: false; why: string }
   | { kind: 'progress'; stage: string; fraction: number }
   | { kind: 'done'; id: number; answer: Answers[Kind] }
-  | { kind: 'failed'; id: number; error: LimberError };
+  | { kind: 'failed'; id: number; error: LimberError }
+  /** A part of the engine that it needed did not come; status: what the host answered. */
+  | { kind: 'cut-short'; id: number; status: number | null };

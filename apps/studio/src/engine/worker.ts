@@ -1,7 +1,8 @@
 // Holds the engine and one scene, away from the page's own thread.
 import { loadLimber, type Codecs } from '@engine/limber.mjs';
-import engineUrl from '@engine/limber_engine.wasm.zst?url';
-import { Decompress } from 'fzstd';
+import firstUrl from '@engine/limber_engine_first.wasm.zst?url';
+import restUrl from '@engine/limber_engine_rest.wasm.zst?url';
+import { decompress, Decompress } from 'fzstd';
 import { Documents, EngineFailure } from './documents';
 import { bringCodecs } from './codecs';
 import type { Answers, FromWorker, Kind, Request, ToWorker } from './messages';
@@ -42,12 +43,14 @@ function answer(documents: Documents, request: Request): Answers[Kind] {
 
 const zstandard = [0x28, 0xb5, 0x2f, 0xfd]; // how a packed file begins (RFC 8878)
 
+const isPacked = (bytes: Uint8Array) => zstandard.every((byte, i) => bytes[i] === byte);
+
 /** Unpacks what is packed; a host that says how it is packed has it unpacked by the browser already. */
 function unpacking(): TransformStream<Uint8Array, Uint8Array> {
   let unpack: Decompress | null = null, begun = false;
   return new TransformStream({
     transform(chunk, out) {
-      if (!begun && zstandard.every((byte, i) => chunk[i] === byte)) unpack = new Decompress((part) => out.enqueue(part));
+      if (!begun && isPacked(chunk)) unpack = new Decompress((part) => out.enqueue(part));
       begun = true;
       if (unpack) unpack.push(chunk);
       else out.enqueue(chunk);
@@ -56,17 +59,48 @@ function unpacking(): TransformStream<Uint8Array, Uint8Array> {
   });
 }
 
-/** The engine did not come: what the host answered, null where nobody did. */
+/** A part of the engine did not come: what the host answered, null where nobody did. */
 class Missing extends Error {
   constructor(readonly status: number | null) { super(); }
 }
 
-/** Unpacked and compiled while it comes. */
-async function engine(): Promise<WebAssembly.Module> {
-  const response = await fetch(engineUrl).catch(() => null);
+/** A part of the engine, unpacked and compiled while it comes. */
+async function enginePart(url: string): Promise<WebAssembly.Module> {
+  const response = await fetch(url).catch(() => null);
   if (!response?.ok || !response.body) throw new Missing(response?.status ?? null);
   const unpacked = response.body.pipeThrough<Uint8Array>(unpacking() as ReadableWritablePair<Uint8Array, Uint8Array<ArrayBuffer>>);
   return WebAssembly.compileStreaming(new Response(unpacked as ReadableStream<Uint8Array<ArrayBuffer>>, { headers: { 'content-type': 'application/wasm' } }));
+}
+
+/** What the first pose needs nothing of: it comes when the first request has been answered, or at once where one needs it. */
+class RestOfEngine {
+  private module: WebAssembly.Module | null = null;
+  private asked = false;
+
+  fetch(): void {
+    if (this.asked) return;
+    this.asked = true;
+    enginePart(restUrl).then((module) => { this.module ??= module; }, () => { /* asked for again when it is needed */ });
+  }
+
+  /** The engine cannot wait in the middle of a call, so this does not return before it is there. */
+  needed(): WebAssembly.Module {
+    return this.module ??= new WebAssembly.Module(this.fetchNow());
+  }
+
+  private fetchNow(): Uint8Array<ArrayBuffer> {
+    const request = new XMLHttpRequest();
+    request.open('GET', restUrl, false);
+    request.responseType = 'arraybuffer';
+    try {
+      request.send();
+    } catch {
+      throw new Missing(null);
+    }
+    if (request.status !== 200) throw new Missing(request.status);
+    const bytes = new Uint8Array(request.response as ArrayBuffer);
+    return isPacked(bytes) ? decompress(bytes) as Uint8Array<ArrayBuffer> : bytes;
+  }
 }
 
 /** The files that a request brings. */
@@ -80,9 +114,9 @@ function filesIn(request: Request): Uint8Array[] {
 }
 
 async function start() {
-  const codecs: Codecs = {};
-  const limber = await loadLimber(await engine(), {
-    codecs, onProgress: (stage, fraction) => say({ kind: 'progress', stage, fraction }),
+  const codecs: Codecs = {}, rest = new RestOfEngine();
+  const limber = await loadLimber(await enginePart(firstUrl), {
+    codecs, rest: () => rest.needed(), onProgress: (stage, fraction) => say({ kind: 'progress', stage, fraction }),
   });
   const documents = new Documents(limber);
   say({ kind: 'ready' });
@@ -90,7 +124,9 @@ async function start() {
     try {
       for (const file of filesIn(request)) await bringCodecs(codecs, file);
       say({ kind: 'done', id, answer: answer(documents, request) });
+      rest.fetch();
     } catch (error) {
+      if (error instanceof Missing) return say({ kind: 'cut-short', id, status: error.status });
       const failure = error instanceof EngineFailure
         ? error.failure.error
         : { code: 'engine', message: String(error instanceof Error ? error.message : error), where: '', remedy: 'reload the page' };
