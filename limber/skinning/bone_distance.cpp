@@ -102,4 +102,21 @@ WeightResult envelopeWeights(const TriMesh& mesh, std::span<const Bone> bones, c
   return result;
 }
 
+WeightResult bridgedWeights(const TriMesh& mesh, std::span<const Bone> bones, const WeightOptions& options,
+                            InfluenceTable& table, Progress& progress) {
+  progress.step("bridge pieces");
+  WeightResult result;
+  result.bridged = bridgeBare(mesh, table);
+  result.weights = normalizedWeights(table);
+  Index bare = 0;
+  while (bare < mesh.vertexCount() && result.weights.weightsOf(bare)[0] > 0) ++bare;
+  if (bare < mesh.vertexCount()) {
+    result = nearestBoneWeights(mesh, bones, options, progress);
+    result.warnings.add("no-bone-in-sight", "no bone reaches the model, so each vertex took the nearest bone");
+  } else if (options.pieces == PieceMode::kRigid) {
+    bindWholePieces(mesh, result);
+  }
+  return result;
+}
+
 }  // namespace limber

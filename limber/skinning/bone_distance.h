@@ -4,6 +4,7 @@
 
 #include <span>
 
+#include "limber/skinning/influence_table.h"
 #include "limber/skinning/weight_method.h"
 
 namespace limber {
@@ -20,5 +21,11 @@ WeightResult nearestBoneWeights(const TriMesh& mesh, std::span<const Bone> bones
 // `outside-envelopes`. Cost: O(#V #B), in parallel.
 WeightResult envelopeWeights(const TriMesh& mesh, std::span<const Bone> bones, const WeightOptions& options,
                              Progress& progress);
+
+// Finishes the weights that a method found, where it may have left vertices out: these take the weights of the nearest
+// surface that has some (WeightResult::bridged); where none has, each vertex follows its nearest bone, with the warning
+// `no-bone-in-sight`. Sums become 1, and pieces whole with PieceMode::kRigid.
+WeightResult bridgedWeights(const TriMesh& mesh, std::span<const Bone> bones, const WeightOptions& options,
+                            InfluenceTable& table, Progress& progress);
 
 }  // namespace limber

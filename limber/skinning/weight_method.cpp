@@ -5,6 +5,7 @@
 #include "limber/core/names.h"
 #include "limber/skinning/bone_distance.h"
 #include "limber/skinning/bone_heat.h"
+#include "limber/skinning/bounded_biharmonic.h"
 #include "limber/skinning/geodesic_voxel.h"
 
 namespace limber {
@@ -16,6 +17,8 @@ constexpr WeightMethod kMethods[] = {
      "Baran, Popović: Automatic Rigging and Animation of 3D Characters, 2007", &boneHeatWeights},
     {"geodesic-voxel", "the ways to bones through the inside, on a grid",
      "Dionne, de Lasa: Geodesic Voxel Binding, 2013", &geodesicVoxelWeights},
+    {"bounded-biharmonic", "the smoothest weights through the inside that stay between 0 and 1",
+     "Jacobson, Baran, Popović, Sorkine: Bounded Biharmonic Weights, 2011", &boundedBiharmonicWeights},
     {"envelopes", "bones hold what is near them, whatever lies between", "", &envelopeWeights},
     {"nearest-bone", "each vertex follows the nearest bone alone", "", &nearestBoneWeights},
 };
