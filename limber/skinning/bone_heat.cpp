@@ -4,6 +4,7 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "limber/core/known_error.h"
 #include "limber/core/parallel.h"
@@ -19,11 +20,6 @@ namespace limber {
 namespace {
 
 constexpr std::size_t kRange = 1024;  // vertices of one parallel piece of work
-
-// Handles are spheres; they move what is round them, whatever it is a part of.
-bool allSegments(std::span<const Bone> bones) {
-  return std::all_of(bones.begin(), bones.end(), [](const Bone& bone) { return bone.radius == 0; });
-}
 
 bool anySource(const HeatSources& sources) {
   return !sources.joints.empty();
@@ -114,15 +110,8 @@ WeightResult boneHeatWeightsWith(const BoneHeatOptions& heat, const TriMesh& mes
   progress.step("surface and bones in sight");
   Index pieceCount = 0;
   const std::vector<Index> piece = vertexComponents(mesh, &pieceCount);
-  const bool mayBeOfParts = options.pieces != PieceMode::kSoft && pieceCount > 1 && allSegments(bones);
-  if (mayBeOfParts) {
-    if (const std::optional<PieceBinding> parts = jointsOfPieces(mesh, piece, pieceCount, bones, progress)) {
-      result.weights.slots = options.maxInfluences;
-      result.weights.joints.resize(piece.size() * options.maxInfluences);
-      result.weights.weights.resize(result.weights.joints.size());
-      bindPieces(*parts, piece, result.weights, result.warnings);
-      return result;
-    }
+  if (std::optional<WeightResult> parts = jointedPieceWeights(mesh, piece, pieceCount, bones, options, progress)) {
+    return std::move(*parts);
   }
   HeatProblem problem = setUp(heat, mesh, bones, piece);
   if (!problem.sawBone) {
@@ -138,7 +127,7 @@ WeightResult boneHeatWeightsWith(const BoneHeatOptions& heat, const TriMesh& mes
 
   progress.step("bridge pieces");
   std::optional<PieceRules> rules;
-  if (mayBeOfParts) {
+  if (mayBeOfParts(pieceCount, bones, options.pieces)) {
     rules.emplace(mesh, bones, piece, pieceCount, problem.sources.pull);
     rules->classify(finish(table, heat));
     rules->dropHardlySeen(table);

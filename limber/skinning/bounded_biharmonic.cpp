@@ -4,11 +4,15 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <optional>
+#include <utility>
 
 #include "limber/core/parallel.h"
+#include "limber/mesh/components.h"
 #include "limber/mesh/signed_distance.h"
 #include "limber/skinning/bone_distance.h"
 #include "limber/skinning/inside_lattice.h"
+#include "limber/skinning/jointed_pieces.h"
 #include "limber/skinning/lattice_biharmonic.h"
 #include "limber/skinning/weight_steps.h"
 
@@ -16,20 +20,10 @@ namespace limber {
 
 namespace {
 
-constexpr double kFirstNodes = 2e4;  // of the grid that tells how much of it is inside
-constexpr double kSurely = 0.2;      // of the way to other bones: from there on weights begin at 1
-constexpr Index kJointsAtOnce = 16;  // between looks at whether to go on
-
-// A lattice with about as many cells as are asked for: the first grid tells how many a finer one will have.
-InsideLattice latticeOf(const BoundedBiharmonicOptions& biharmonic, const TriMesh& mesh) {
-  const InsideQueries queries(mesh);
-  const Index first = cellsForNodes(mesh, kFirstNodes, InsideLattice::kLeastCells, biharmonic.mostCells);
-  InsideLattice lattice(mesh, queries, first);
-  const double finer = std::cbrt(biharmonic.cells / std::max<Index>(1, lattice.cellCount()));
-  const Index second =
-      static_cast<Index>(std::clamp<double>(first * finer, InsideLattice::kLeastCells, biharmonic.mostCells));
-  return second == first ? std::move(lattice) : InsideLattice(mesh, queries, second);
-}
+constexpr double kCoarseNodes = 5e3;     // of the grid that the first descent is on
+constexpr double kCoarseTolerance = 10;  // times the tolerance, on it
+constexpr double kSurely = 0.2;          // of the way to other bones: from there on weights begin at 1
+constexpr Index kJointsAtOnce = 16;      // between looks at whether to go on
 
 LatticeGraph graphOf(const InsideLattice& lattice) {
   const std::array<std::ptrdiff_t, 6> steps = {lattice.step(-1, 0, 0), lattice.step(1, 0, 0),  lattice.step(0, -1, 0),
@@ -73,6 +67,22 @@ HeldCells holdCells(InsideLattice& lattice, std::span<const Bone> bones) {
   return result;
 }
 
+// One of the two lattices that weights are found on, one after the other.
+struct Level {
+  InsideLattice lattice;
+  HeldCells cells;
+  LatticeGraph graph;
+
+  Level(const TriMesh& mesh, const InsideQueries& queries, std::span<const Bone> bones, Index resolution)
+      : lattice(mesh, queries, resolution), cells(holdCells(lattice, bones)), graph(graphOf(lattice)) {}
+};
+
+// Weights at the cells of a lattice.
+struct LatticeWeights {
+  std::vector<Index> joints;   // ascending: those that hold any cell
+  std::vector<float> weights;  // cells' rows, a column for each of the joints
+};
+
 // By node: the fewest edges to one of some; kNoIndex where there is no way.
 std::vector<Index> edgesFrom(const LatticeGraph& graph, std::vector<Index> front) {
   std::vector<Index> edges(graph.nodeCount(), kNoIndex);
@@ -87,50 +97,93 @@ std::vector<Index> edgesFrom(const LatticeGraph& graph, std::vector<Index> front
   return edges;
 }
 
-// Where the descent begins: what the weights of a bar between two bones are, by the ways to the joint's own cells and
-// to those of others.
-std::vector<double> firstWeights(const LatticeGraph& graph, const HeldCells& cells, std::size_t joint) {
-  std::vector<double> part(graph.nodeCount(), 0);
-  std::vector<Index> own, others;
-  for (const HeldCells::Part& held : cells.parts[joint]) {
-    part[held.cell] = held.part;
-    own.push_back(held.cell);
-  }
-  for (Index node = 0; node < graph.nodeCount(); ++node) {
-    if (cells.held[node] && part[node] < 1) others.push_back(node);
-  }
-  const std::vector<Index> toOwn = edgesFrom(graph, own), toOthers = edgesFrom(graph, others);
-  for (Index node = 0; node < graph.nodeCount(); ++node) {
-    if (cells.held[node] || toOwn[node] == kNoIndex) continue;
-    const double along = toOthers[node] == kNoIndex ? 1 : toOthers[node] / (1.0 * toOthers[node] + toOwn[node]);
-    const double t = std::clamp((along - kSurely) / (1 - 2 * kSurely), 0.0, 1.0);
-    part[node] = t * t * (3 - 2 * t);
-  }
-  return part;
+// Nodes that a joint holds have its part there, all others 0.
+std::vector<double> heldWeights(const Level& level, std::size_t joint) {
+  std::vector<double> w(level.graph.nodeCount(), 0);
+  for (const HeldCells::Part& held : level.cells.parts[joint]) w[held.cell] = held.part;
+  return w;
 }
 
-// The weights of all joints at the cells of a lattice: cells' rows, a column for each joint that holds any.
-std::vector<float> solveJoints(const LatticeGraph& graph, const HeldCells& cells, double tolerance,
-                               Progress& progress) {
-  const std::size_t joints = cells.joints.size();
-  std::vector<float> weights(graph.nodeCount() * joints);
+// Where the first descent begins: what the weights of a bar between two bones are, by the ways to the joint's own cells
+// and to those of others.
+std::vector<double> weightsByWays(const Level& level, std::size_t joint) {
+  std::vector<double> w = heldWeights(level, joint);
+  std::vector<Index> own, others;
+  for (const HeldCells::Part& held : level.cells.parts[joint]) own.push_back(held.cell);
+  for (Index node = 0; node < w.size(); ++node) {
+    if (level.cells.held[node] && w[node] < 1) others.push_back(node);
+  }
+  const std::vector<Index> toOwn = edgesFrom(level.graph, own), toOthers = edgesFrom(level.graph, others);
+  for (Index node = 0; node < w.size(); ++node) {
+    if (level.cells.held[node] || toOwn[node] == kNoIndex) continue;
+    const double along = toOthers[node] == kNoIndex ? 1 : toOthers[node] / (1.0 * toOthers[node] + toOwn[node]);
+    const double t = std::clamp((along - kSurely) / (1 - 2 * kSurely), 0.0, 1.0);
+    w[node] = t * t * (3 - 2 * t);
+  }
+  return w;
+}
+
+// By cell of the fine lattice those of the coarse one round it. Cells that no bone reaches stay 0.
+std::vector<double> interpolated(const Level& fine, std::size_t joint, const std::vector<bool>& reached,
+                                 const Level& coarse, const LatticeWeights& weights, std::size_t column) {
+  std::vector<double> w = heldWeights(fine, joint);
+  for (Index node = 0; node < w.size(); ++node) {
+    if (fine.cells.held[node] || !reached[node]) continue;
+    std::array<Index, 8> cells;
+    std::array<double, 8> parts;
+    const int count = coarse.lattice.cellsRound(fine.lattice.position(node), cells, parts);
+    double all = 0, sum = 0;
+    for (int i = 0; i < count; ++i) {
+      all += parts[i];
+      sum += parts[i] * weights.weights[cells[i] * weights.joints.size() + column];
+    }
+    if (all > 0) w[node] = sum / all;
+  }
+  return w;
+}
+
+std::vector<bool> reachedCells(const Level& level) {
+  std::vector<Index> held;
+  for (Index node = 0; node < level.graph.nodeCount(); ++node) {
+    if (level.cells.held[node]) held.push_back(node);
+  }
+  std::vector<bool> reached;
+  for (const Index edges : edgesFrom(level.graph, held)) reached.push_back(edges != kNoIndex);
+  return reached;
+}
+
+// The weights of all joints, found by descent from `begin(joint)`.
+template <class Begin>
+LatticeWeights solveJoints(const Level& level, double tolerance, Progress& progress, const Begin& begin) {
+  LatticeWeights result{level.cells.joints, {}};
+  const std::size_t joints = result.joints.size();
+  result.weights.resize(level.graph.nodeCount() * joints);
   BiharmonicOptions options;
   options.tolerance = tolerance;
   for (std::size_t first = 0; first < joints; first += kJointsAtOnce) {
     progress.update(static_cast<double>(first) / static_cast<double>(joints));
-    parallelFor(std::min<std::size_t>(kJointsAtOnce, joints - first), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t j = first + begin; j < first + end; ++j) {
-        std::vector<double> w = firstWeights(graph, cells, j);
-        minimizeBoundedBiharmonic(graph, cells.held, w, options);
-        for (std::size_t node = 0; node < w.size(); ++node) weights[node * joints + j] = static_cast<float>(w[node]);
+    parallelFor(std::min<std::size_t>(kJointsAtOnce, joints - first), 1, [&](std::size_t from, std::size_t to) {
+      for (std::size_t j = first + from; j < first + to; ++j) {
+        std::vector<double> w = begin(j);
+        minimizeBoundedBiharmonic(level.graph, level.cells.held, w, options);
+        for (std::size_t node = 0; node < w.size(); ++node) {
+          result.weights[node * joints + j] = static_cast<float>(w[node]);
+        }
       }
     });
   }
-  return weights;
+  return result;
 }
 
-InfluenceTable sampleAtVertices(const TriMesh& mesh, const InsideLattice& lattice, const std::vector<Index>& joints,
-                                const std::vector<float>& weights, Index slots) {
+// A resolution at which about as many cells are inside as are asked for, told from those of a coarser one.
+Index resolutionFor(double cells, Index most, Index coarse, const InsideLattice& lattice) {
+  const double finer = std::cbrt(cells / std::max<Index>(1, lattice.cellCount()));
+  return static_cast<Index>(std::clamp<double>(coarse * finer, InsideLattice::kLeastCells, most));
+}
+
+InfluenceTable sampleAtVertices(const TriMesh& mesh, const InsideLattice& lattice, const LatticeWeights& weights,
+                                Index slots) {
+  const std::vector<Index>& joints = weights.joints;
   InfluenceTable table(mesh.vertexCount(), slots);
   parallelFor(mesh.vertexCount(), 256, [&](std::size_t begin, std::size_t end) {
     std::vector<double> sums(joints.size());
@@ -140,7 +193,7 @@ InfluenceTable sampleAtVertices(const TriMesh& mesh, const InsideLattice& lattic
       const int count = lattice.cellsRound(mesh.position(static_cast<Index>(v)), cells, parts);
       std::fill(sums.begin(), sums.end(), 0.0);
       for (int i = 0; i < count; ++i) {
-        const float* row = weights.data() + cells[i] * joints.size();
+        const float* row = weights.weights.data() + cells[i] * joints.size();
         for (std::size_t j = 0; j < joints.size(); ++j) sums[j] += parts[i] * row[j];
       }
       for (std::size_t j = 0; j < joints.size(); ++j) table.offer(v, joints[j], static_cast<float>(sums[j]));
@@ -160,15 +213,32 @@ WeightResult boundedBiharmonicWeightsWith(const BoundedBiharmonicOptions& biharm
                                           std::span<const Bone> bones, const WeightOptions& options,
                                           Progress& progress) {
   checkWeightArguments(mesh, bones, options);
+  progress.step("pieces");
+  Index pieceCount = 0;
+  const std::vector<Index> piece = vertexComponents(mesh, &pieceCount);
+  if (std::optional<WeightResult> parts = jointedPieceWeights(mesh, piece, pieceCount, bones, options, progress)) {
+    return std::move(*parts);
+  }
+
   progress.step("lattice");
-  InsideLattice lattice = latticeOf(biharmonic, mesh);
-  const HeldCells cells = holdCells(lattice, bones);
+  const InsideQueries queries(mesh);
+  const Index resolution = cellsForNodes(mesh, kCoarseNodes, InsideLattice::kLeastCells, biharmonic.mostCells);
+  const Level coarse(mesh, queries, bones, resolution);
+  const Level fine(mesh, queries, bones,
+                   resolutionFor(biharmonic.cells, biharmonic.mostCells, resolution, coarse.lattice));
 
   progress.step("smoothest weights");
-  const std::vector<float> weights = solveJoints(graphOf(lattice), cells, biharmonic.tolerance, progress);
+  const LatticeWeights first = solveJoints(coarse, kCoarseTolerance * biharmonic.tolerance, progress,
+                                           [&](std::size_t joint) { return weightsByWays(coarse, joint); });
+  const std::vector<bool> reached = reachedCells(fine);
+  const LatticeWeights weights = solveJoints(fine, biharmonic.tolerance, progress, [&](std::size_t joint) {
+    const auto column = std::lower_bound(first.joints.begin(), first.joints.end(), fine.cells.joints[joint]);
+    if (column == first.joints.end() || *column != fine.cells.joints[joint]) return weightsByWays(fine, joint);
+    return interpolated(fine, joint, reached, coarse, first, static_cast<std::size_t>(column - first.joints.begin()));
+  });
 
   progress.step("weights");
-  InfluenceTable table = sampleAtVertices(mesh, lattice, cells.joints, weights, options.maxInfluences);
+  InfluenceTable table = sampleAtVertices(mesh, fine.lattice, weights, options.maxInfluences);
   return bridgedWeights(mesh, bones, options, table, progress);
 }
 

@@ -10,7 +10,7 @@ namespace limber {
 struct BoundedBiharmonicOptions {
   double cells = 6'000;     // of the inside, about
   Index mostCells = 128;    // along the longest side, 8 to 512
-  double tolerance = 1e-3;  // of weights on the lattice, see BiharmonicOptions
+  double tolerance = 2e-4;  // of weights on the lattice, see BiharmonicOptions
 };
 
 // Bounded biharmonic weights (Jacobson, Baran, Popović, Sorkine: Bounded Biharmonic Weights for Real-Time Deformation,

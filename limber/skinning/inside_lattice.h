@@ -23,17 +23,20 @@ struct InsideQueries {
 
 // The nodes of a grid that lie inside a mesh, or so near to its surface that this passes through their cells; and those
 // that bones pass through, wherever they are. Cells are numbered along x, then y, then z; those of bones outside come
-// last, in the order in which they were added. Cost: that of SignedDistance.
+// last, in the order in which they were added. Cost: O(nodes near the surface) queries of both
+// trees, in parallel.
 class InsideLattice {
  public:
-  static constexpr Index kLeastCells = 8;  // along the longest side
+  static constexpr Index kLeastCells = 8, kMostCells = 512;  // along the longest side
 
-  // resolution  cells along the longest side of the mesh's box, kLeastCells to 512
-  // Throws Error kBadArgument for a mesh without triangles.
+  // resolution  cells along the longest side of the mesh's box, kLeastCells to kMostCells
+  // Throws Error kBadArgument for others, and for a mesh without triangles.
   InsideLattice(const TriMesh& mesh, const InsideQueries& queries, Index resolution);
 
   double spacing() const { return spacing_; }
   Index cellCount() const { return static_cast<Index>(nodes_.size()); }
+
+  Vec3 position(Index cell) const;
 
   // A step of -1, 0 or 1 along each axis, for neighbor().
   std::ptrdiff_t step(int x, int y, int z) const { return x + row_ * (y + std::ptrdiff_t{size_[1]} * z); }

@@ -378,4 +378,23 @@ std::optional<PieceBinding> jointsOfPieces(const TriMesh& mesh, std::span<const 
   return PieceJoints(mesh, piece, pieceCount, bones).find(progress);
 }
 
+bool mayBeOfParts(Index pieceCount, std::span<const Bone> bones, PieceMode pieces) {
+  return pieces != PieceMode::kSoft && pieceCount > 1 &&
+         std::all_of(bones.begin(), bones.end(), [](const Bone& bone) { return bone.radius == 0; });
+}
+
+std::optional<WeightResult> jointedPieceWeights(const TriMesh& mesh, std::span<const Index> piece, Index pieceCount,
+                                                std::span<const Bone> bones, const WeightOptions& options,
+                                                Progress& progress) {
+  if (!mayBeOfParts(pieceCount, bones, options.pieces)) return std::nullopt;
+  const std::optional<PieceBinding> parts = jointsOfPieces(mesh, piece, pieceCount, bones, progress);
+  if (!parts) return std::nullopt;
+  WeightResult result;
+  result.weights.slots = options.maxInfluences;
+  result.weights.joints.resize(piece.size() * options.maxInfluences);
+  result.weights.weights.resize(result.weights.joints.size());
+  bindPieces(*parts, piece, result.weights, result.warnings);
+  return result;
+}
+
 }  // namespace limber

@@ -10,6 +10,7 @@
 #include "limber/mesh/tri_mesh.h"
 #include "limber/skeleton/skeleton.h"
 #include "limber/skinning/piece_rules.h"
+#include "limber/skinning/weight_method.h"
 
 namespace limber {
 
@@ -34,5 +35,15 @@ namespace limber {
 // pieces) and each round of hanging the others 64 looks a piece and a comparison of boxes for each pair of pieces.
 std::optional<PieceBinding> jointsOfPieces(const TriMesh& mesh, std::span<const Index> piece, Index pieceCount,
                                            std::span<const Bone> bones, Progress& progress);
+
+// Whether jointsOfPieces is to be asked: there are several pieces, which may be bound whole, and the bones are
+// segments. Balls (handles) move what is round them, whatever it is a part of.
+bool mayBeOfParts(Index pieceCount, std::span<const Bone> bones, PieceMode pieces);
+
+// The weights of such a model, each piece bound to its joint; none where it is not one or may not be. Arguments as for
+// jointsOfPieces.
+std::optional<WeightResult> jointedPieceWeights(const TriMesh& mesh, std::span<const Index> piece, Index pieceCount,
+                                                std::span<const Bone> bones, const WeightOptions& options,
+                                                Progress& progress);
 
 }  // namespace limber

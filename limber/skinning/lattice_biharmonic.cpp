@@ -8,59 +8,67 @@ namespace limber {
 
 namespace {
 
-constexpr Index kRound = 32;      // steps between looks at how much has changed
-constexpr Index kWindow = 512;    // steps between looks at where there is something to change
-constexpr int kReach = 4;         // edges that a window reaches beyond what may change
-constexpr double kNoPull = 1e-7;  // gradients that let no node go from its bound
+constexpr Index kRound = 64;        // steps between looks at how much has changed
+constexpr int kReach = 6;           // edges that a window reaches beyond what may change
+constexpr double kNoPull = 1e-5;    // gradients that let no node go from its bound
+constexpr int kMostWindows = 8;     // the last ones add next to nothing
+constexpr double kOfLongest = 1.9;  // of 2, from which on a step along the gradient need not descend
 
 using Neighbors = std::array<Index, LatticeGraph::kDirections>;
 
-// L x, where the last entry of x is the 0 that missing neighbors stand for.
-void applyLaplacian(const std::vector<Neighbors>& neighbors, const std::vector<double>& degree, const double* x,
-                    std::size_t rows, double* result) {
-  for (std::size_t i = 0; i < rows; ++i) {
-    const Neighbors& n = neighbors[i];
-    result[i] = degree[i] * x[i] - ((x[n[0]] + x[n[1]]) + (x[n[2]] + x[n[3]]) + (x[n[4]] + x[n[5]]));
-  }
-}
+// Four sums side by side, so that they need not wait for each other; always in the same order.
+class Sum {
+ public:
+  void add(std::size_t i, double value) { parts_[i % 4] += value; }
+  double total() const { return (parts_[0] + parts_[1]) + (parts_[2] + parts_[3]); }
 
-double dot(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-  return sum;
-}
+ private:
+  std::array<double, 4> parts_ = {};
+};
 
-// The quadratic problem of the nodes of one window, the others kept as they are, in values scaled by the diagonal.
+// The quadratic problem of the nodes of one window, the others kept as they are.
 class WindowProblem {
  public:
-  // window  ascending; gradient  of the whole graph
+  // window  ascending; gradient  of the whole graph; localOf  scratch, #N of kNoIndex, and so again afterwards
   WindowProblem(const LatticeGraph& graph, const std::vector<Index>& window, std::span<const double> w,
                 const std::vector<double>& gradient, std::vector<Index>& localOf);
 
   // Descends until nothing changes much. Returns the steps taken.
   Index descend(double tolerance, Index most);
   void write(std::span<double> w) const {
-    for (std::size_t i = 0; i < nodes_.size(); ++i) w[nodes_[i]] = std::clamp(x_[i] * scale_[i], 0.0, 1.0);
+    for (std::size_t i = 0; i < nodes_.size(); ++i) w[nodes_[i]] = x_[i];
   }
 
  private:
-  std::size_t size() const { return nodes_.size(); }
-  void apply(const std::vector<double>& x, std::vector<double>& result);
-  void splitGradient();
-  double longestStep(const std::vector<double>& direction) const;
-  void move(double step, const std::vector<double>& direction);
+  double laplacian(const std::vector<double>& x, std::size_t i) const {
+    const Neighbors& n = neighbors_[i];
+    return degree_[i] * x[i] - ((x[n[0]] + x[n[1]]) + (x[n[2]] + x[n[3]]) + (x[n[4]] + x[n[5]]));
+  }
+  double between(std::size_t i) const { return x_[i] > 0 && x_[i] < 1 ? scale_[i] * gradient_[i] : 0; }
+  double leaving(std::size_t i) const {
+    const double g = scale_[i] * gradient_[i];
+    return x_[i] <= 0 ? std::min(g, 0.0) : x_[i] >= 1 ? std::max(g, 0.0) : 0;
+  }
+  void applyToDirection();
+  void look();
+  bool staysWithin(double step) const;
+  double longestStep() const;
+  void move(double step);
   void expand();
   double changeSince(const std::vector<double>& before) const;
 
   std::vector<Index> nodes_;
   std::vector<Neighbors> neighbors_;  // of the window's nodes, then of their neighbors outside; local
   std::vector<double> degree_;
-  std::vector<double> scale_, upper_;  // by node of the window: a value is x * scale, x in [0, upper]
-  std::vector<double> x_, gradient_;
-  std::vector<double> free_, chopped_;  // parts of the gradient: of nodes between bounds, and of those that leave them
-  std::vector<double> direction_, image_;
-  std::vector<double> padded_, laplacian_;  // scratch of apply()
-  double fixedStep_ = 0;                    // a step of projected gradients that always descends
+  std::vector<double> scale_;         // by node of the window: 1 / diagonal of L L
+  std::vector<double> x_, gradient_;  // likewise
+  std::vector<double> image_;         // L L direction
+  std::vector<double> direction_;     // 0 from the window's nodes on, where the last stands for missing neighbors
+  std::vector<double> once_;          // L direction, likewise
+  double curvature_ = 0, slope_ = 0;  // direction^T L L direction, and its product with the gradient
+  double reduced_ = 0, leaving_ = 0;  // squares of the gradient: between the bounds, as far as a fixed step along it
+                                      // would stay within them; and of the nodes that leave their bounds
+  double fixedStep_ = 0;              // of scaled gradients: always descends
 };
 
 WindowProblem::WindowProblem(const LatticeGraph& graph, const std::vector<Index>& window, std::span<const double> w,
@@ -68,8 +76,8 @@ WindowProblem::WindowProblem(const LatticeGraph& graph, const std::vector<Index>
     : nodes_(window) {
   std::vector<Index> all = window;
   for (std::size_t i = 0; i < all.size(); ++i) localOf[all[i]] = static_cast<Index>(i);
-  for (std::size_t i = 0; i < window.size(); ++i) {
-    for (const Index next : graph.neighbors[window[i]]) {
+  for (const Index node : window) {
+    for (const Index next : graph.neighbors[node]) {
       if (next == kNoIndex || localOf[next] != kNoIndex) continue;
       localOf[next] = static_cast<Index>(all.size());
       all.push_back(next);
@@ -89,116 +97,121 @@ WindowProblem::WindowProblem(const LatticeGraph& graph, const std::vector<Index>
   }
   for (const Index node : all) localOf[node] = kNoIndex;
   double largest = 1;
-  for (std::size_t i = 0; i < size(); ++i) {
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
     const double diagonal = std::max(1.0, degree_[i] * degree_[i] + degree_[i]);
-    scale_.push_back(1 / std::sqrt(diagonal));
-    upper_.push_back(std::sqrt(diagonal));
-    x_.push_back(w[nodes_[i]] * upper_[i]);
-    gradient_.push_back(gradient[nodes_[i]] * scale_[i]);
+    scale_.push_back(1 / diagonal);
+    x_.push_back(w[nodes_[i]]);
+    gradient_.push_back(gradient[nodes_[i]]);
     // Gershgorin's bound of L L by its rows, divided by the diagonal.
     double row = 2 * degree_[i] * degree_[i];
     for (const Index next : neighbors_[i]) row += next == none ? 0 : 2 * degree_[next];
     largest = std::max(largest, row / diagonal);
   }
-  fixedStep_ = 1.9 / largest;
-  padded_.assign(all.size() + 1, 0);
-  laplacian_.assign(all.size() + 1, 0);
-  image_.resize(size());
-  direction_.resize(size());
-  free_.resize(size());
-  chopped_.resize(size());
+  fixedStep_ = kOfLongest / largest;
+  direction_.assign(all.size() + 1, 0);
+  once_.assign(all.size() + 1, 0);
+  image_.resize(nodes_.size());
 }
 
-void WindowProblem::apply(const std::vector<double>& x, std::vector<double>& result) {
-  for (std::size_t i = 0; i < size(); ++i) padded_[i] = x[i] * scale_[i];
-  applyLaplacian(neighbors_, degree_, padded_.data(), neighbors_.size(), laplacian_.data());
-  applyLaplacian(neighbors_, degree_, laplacian_.data(), size(), result.data());
-  for (std::size_t i = 0; i < size(); ++i) result[i] *= scale_[i];
-}
-
-void WindowProblem::splitGradient() {
-  for (std::size_t i = 0; i < size(); ++i) {
-    const double g = gradient_[i];
-    const bool low = x_[i] <= 0, high = x_[i] >= upper_[i];
-    free_[i] = low || high ? 0 : g;
-    chopped_[i] = low ? std::min(g, 0.0) : high ? std::max(g, 0.0) : 0;
+void WindowProblem::applyToDirection() {
+  for (std::size_t i = 0; i < neighbors_.size(); ++i) once_[i] = laplacian(direction_, i);
+  Sum curvature, slope;
+  for (std::size_t i = 0; i < image_.size(); ++i) {
+    image_[i] = laplacian(once_, i);
+    curvature.add(i, direction_[i] * image_[i]);
+    slope.add(i, direction_[i] * gradient_[i]);
   }
+  curvature_ = curvature.total();
+  slope_ = slope.total();
 }
 
-// How far against a direction all values stay within bounds.
-double WindowProblem::longestStep(const std::vector<double>& direction) const {
+void WindowProblem::look() {
+  Sum reduced, leavingSum;
+  const double perStep = 1 / fixedStep_;
+  for (std::size_t i = 0; i < x_.size(); ++i) {
+    const double free = between(i), away = leaving(i);
+    reduced.add(i, gradient_[i] * std::clamp(free, (x_[i] - 1) * perStep, x_[i] * perStep));
+    leavingSum.add(i, gradient_[i] * away);
+  }
+  reduced_ = reduced.total();
+  leaving_ = leavingSum.total();
+}
+
+bool WindowProblem::staysWithin(double step) const {
+  double low = 0, high = 1;
+  for (std::size_t i = 0; i < x_.size(); ++i) {
+    const double moved = x_[i] - step * direction_[i];
+    low = std::min(low, moved);
+    high = std::max(high, moved);
+  }
+  return low >= 0 && high <= 1;
+}
+
+// How far against the direction all values stay within bounds.
+double WindowProblem::longestStep() const {
   double step = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < size(); ++i) {
-    if (direction[i] > 0) {
-      step = std::min(step, x_[i] / direction[i]);
-    } else if (direction[i] < 0) {
-      step = std::min(step, (x_[i] - upper_[i]) / direction[i]);
-    }
+  for (std::size_t i = 0; i < x_.size(); ++i) {
+    if (direction_[i] == 0) continue;
+    step = std::min(step, (x_[i] - (direction_[i] > 0 ? 0 : 1)) / direction_[i]);
   }
   return step;
 }
 
-void WindowProblem::move(double step, const std::vector<double>& direction) {
-  for (std::size_t i = 0; i < size(); ++i) {
-    x_[i] = std::clamp(x_[i] - step * direction[i], 0.0, upper_[i]);
+void WindowProblem::move(double step) {
+  for (std::size_t i = 0; i < x_.size(); ++i) {
+    x_[i] = std::clamp(x_[i] - step * direction_[i], 0.0, 1.0);
     gradient_[i] -= step * image_[i];
   }
 }
 
 // A step of fixed length along the projected gradient of the nodes between the bounds.
 void WindowProblem::expand() {
-  splitGradient();
-  for (std::size_t i = 0; i < size(); ++i) {
-    const double moved = std::clamp(x_[i] - fixedStep_ * free_[i], 0.0, upper_[i]);
-    direction_[i] = moved - x_[i];
+  for (std::size_t i = 0; i < x_.size(); ++i) {
+    const double moved = std::clamp(x_[i] - fixedStep_ * between(i), 0.0, 1.0);
+    direction_[i] = x_[i] - moved;
     x_[i] = moved;
   }
-  apply(direction_, image_);
-  for (std::size_t i = 0; i < size(); ++i) gradient_[i] += image_[i];
-  splitGradient();
-  direction_ = free_;
+  applyToDirection();
+  for (std::size_t i = 0; i < x_.size(); ++i) gradient_[i] -= image_[i];
 }
 
 double WindowProblem::changeSince(const std::vector<double>& before) const {
   double most = 0;
-  for (std::size_t i = 0; i < size(); ++i) most = std::max(most, std::abs(x_[i] - before[i]) * scale_[i]);
+  for (std::size_t i = 0; i < x_.size(); ++i) most = std::max(most, std::abs(x_[i] - before[i]));
   return most;
 }
 
 Index WindowProblem::descend(double tolerance, Index most) {
-  splitGradient();
-  direction_ = free_;
   std::vector<double> before = x_;
+  bool conjugate = false;  // whether the direction, and its image, is the last step's
+  look();
   for (Index step = 0; step < most; ++step) {
     if (step > 0 && step % kRound == 0) {
       if (changeSince(before) < tolerance) return step;
       before = x_;
     }
-    double reduced = 0;  // the free gradient, as far as a fixed step along it would stay within bounds
-    for (std::size_t i = 0; i < size(); ++i) {
-      const double g = free_[i];
-      reduced += g * (g > 0 ? std::min(x_[i] / fixedStep_, g) : std::max((x_[i] - upper_[i]) / fixedStep_, g));
+    if (!(reduced_ + leaving_ > 0)) return step;
+    const bool release = leaving_ > reduced_;
+    double back = 0;
+    if (conjugate && !release) {
+      Sum along;
+      for (std::size_t i = 0; i < x_.size(); ++i) along.add(i, between(i) * image_[i]);
+      back = along.total() / curvature_;
     }
-    const double leaving = dot(chopped_, chopped_);
-    if (!(reduced + leaving > 0)) return step;
-    if (leaving > reduced) direction_ = chopped_;
-    apply(direction_, image_);
-    const double curvature = dot(direction_, image_);
-    if (!(curvature > 0)) return step;
-    const double wanted = dot(gradient_, direction_) / curvature, allowed = longestStep(direction_);
-    if (wanted > allowed) {
-      move(allowed, direction_);
+    for (std::size_t i = 0; i < x_.size(); ++i) {
+      direction_[i] = release ? leaving(i) : between(i) - back * direction_[i];
+    }
+    applyToDirection();
+    if (!(curvature_ > 0)) return step;
+    const double wanted = slope_ / curvature_;
+    conjugate = !release && staysWithin(wanted);
+    if (conjugate || (release && staysWithin(wanted))) {
+      move(wanted);
+    } else {
+      move(std::min(wanted, longestStep()));
       expand();
-      continue;
     }
-    move(wanted, direction_);
-    splitGradient();
-    if (leaving > reduced) {
-      direction_ = free_;
-      continue;
-    }
-    const double back = dot(free_, image_) / curvature;
-    for (std::size_t i = 0; i < size(); ++i) direction_[i] = free_[i] - back * direction_[i];
+    look();
   }
   return most;
 }
@@ -217,50 +230,54 @@ void gradientOf(const LatticeGraph& graph, std::span<const double> w, std::vecto
   apply(scratch, gradient);
 }
 
-// Nodes that may change, and those within a few edges of them; ascending.
-std::vector<Index> windowOf(const LatticeGraph& graph, const std::vector<bool>& held, std::span<const double> w,
-                            const std::vector<double>& gradient) {
-  std::vector<char> inside(graph.nodeCount(), 0);
-  std::vector<Index> window;
+// Nodes that may change.
+std::vector<Index> pulledNodes(const LatticeGraph& graph, const std::vector<bool>& held, std::span<const double> w,
+                               const std::vector<double>& gradient) {
+  std::vector<Index> pulled;
   for (Index i = 0; i < graph.nodeCount(); ++i) {
-    if (held[i]) continue;
-    if (w[i] <= 0 ? gradient[i] > -kNoPull : w[i] >= 1 && gradient[i] < kNoPull) continue;
-    inside[i] = 1;
-    window.push_back(i);
+    if (held[i] || (w[i] <= 0 ? gradient[i] > -kNoPull : w[i] >= 1 && gradient[i] < kNoPull)) continue;
+    pulled.push_back(i);
   }
+  return pulled;
+}
+
+// Those nodes and all within a few edges, ascending; marks them.
+std::vector<Index> widened(const LatticeGraph& graph, const std::vector<bool>& held, std::vector<Index> nodes,
+                           std::vector<char>& inside) {
+  std::fill(inside.begin(), inside.end(), 0);
+  for (const Index node : nodes) inside[node] = 1;
   std::size_t from = 0;
   for (int ring = 0; ring < kReach; ++ring) {
-    const std::size_t to = window.size();
+    const std::size_t to = nodes.size();
     for (; from < to; ++from) {
-      for (const Index next : graph.neighbors[window[from]]) {
+      for (const Index next : graph.neighbors[nodes[from]]) {
         if (next == kNoIndex || held[next] || inside[next]) continue;
         inside[next] = 1;
-        window.push_back(next);
+        nodes.push_back(next);
       }
     }
   }
-  std::sort(window.begin(), window.end());
-  return window;
+  std::sort(nodes.begin(), nodes.end());
+  return nodes;
 }
 
 }  // namespace
 
 Index minimizeBoundedBiharmonic(const LatticeGraph& graph, const std::vector<bool>& held, std::span<double> w,
                                 const BiharmonicOptions& options) {
-  std::vector<double> scratch(graph.nodeCount()), gradient(graph.nodeCount()), before;
+  std::vector<double> scratch(graph.nodeCount()), gradient(graph.nodeCount());
+  std::vector<char> inWindow(graph.nodeCount(), 0);
   std::vector<Index> localOf(graph.nodeCount(), kNoIndex);
   Index steps = 0;
-  while (steps < options.mostIterations) {
+  for (int round = 0; round < kMostWindows && steps < options.mostIterations; ++round) {
     gradientOf(graph, w, scratch, gradient);
-    const std::vector<Index> window = windowOf(graph, held, w, gradient);
-    if (window.empty()) break;
-    before.assign(w.begin(), w.end());
+    const std::vector<Index> pulled = pulledNodes(graph, held, w, gradient);
+    const bool isNew = std::any_of(pulled.begin(), pulled.end(), [&](Index node) { return !inWindow[node]; });
+    if (!isNew) break;
+    const std::vector<Index> window = widened(graph, held, pulled, inWindow);
     WindowProblem problem(graph, window, w, gradient, localOf);
-    steps += std::max<Index>(1, problem.descend(options.tolerance, std::min(kWindow, options.mostIterations - steps)));
+    steps += problem.descend(options.tolerance, options.mostIterations - steps);
     problem.write(w);
-    double change = 0;
-    for (const Index node : window) change = std::max(change, std::abs(w[node] - before[node]));
-    if (change < options.tolerance) break;
   }
   return steps;
 }

@@ -19,7 +19,7 @@ struct LatticeGraph {
 };
 
 struct BiharmonicOptions {
-  double tolerance = 1e-4;       // ends when no value changes by more than this in a round of 32 steps
+  double tolerance = 1e-4;       // ends when no value changes by more than this in a round of 64 steps
   Index mostIterations = 20000;  // steps in all
 };
 
