@@ -181,8 +181,9 @@ Index resolutionFor(double cells, Index most, Index coarse, const InsideLattice&
   return static_cast<Index>(std::clamp<double>(coarse * finer, InsideLattice::kLeastCells, most));
 }
 
+// Weights that are not above the least count as none.
 InfluenceTable sampleAtVertices(const TriMesh& mesh, const InsideLattice& lattice, const LatticeWeights& weights,
-                                Index slots) {
+                                Index slots, double least) {
   const std::vector<Index>& joints = weights.joints;
   InfluenceTable table(mesh.vertexCount(), slots);
   parallelFor(mesh.vertexCount(), 256, [&](std::size_t begin, std::size_t end) {
@@ -196,7 +197,9 @@ InfluenceTable sampleAtVertices(const TriMesh& mesh, const InsideLattice& lattic
         const float* row = weights.weights.data() + cells[i] * joints.size();
         for (std::size_t j = 0; j < joints.size(); ++j) sums[j] += parts[i] * row[j];
       }
-      for (std::size_t j = 0; j < joints.size(); ++j) table.offer(v, joints[j], static_cast<float>(sums[j]));
+      for (std::size_t j = 0; j < joints.size(); ++j) {
+        if (sums[j] > least) table.offer(v, joints[j], static_cast<float>(sums[j]));
+      }
     }
   });
   return table;
@@ -238,7 +241,7 @@ WeightResult boundedBiharmonicWeightsWith(const BoundedBiharmonicOptions& biharm
   });
 
   progress.step("weights");
-  InfluenceTable table = sampleAtVertices(mesh, fine.lattice, weights, options.maxInfluences);
+  InfluenceTable table = sampleAtVertices(mesh, fine.lattice, weights, options.maxInfluences, biharmonic.tolerance);
   return bridgedWeights(mesh, bones, options, table, progress);
 }
 

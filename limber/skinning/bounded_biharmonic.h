@@ -8,9 +8,9 @@
 namespace limber {
 
 struct BoundedBiharmonicOptions {
-  double cells = 6'000;     // of the inside, about
+  double cells = 4'000;     // of the inside, about
   Index mostCells = 128;    // along the longest side, 8 to 512
-  double tolerance = 2e-4;  // of weights on the lattice, see BiharmonicOptions
+  double tolerance = 2e-4;  // of weights on the lattice, see BiharmonicOptions; less is none
 };
 
 // Bounded biharmonic weights (Jacobson, Baran, Popović, Sorkine: Bounded Biharmonic Weights for Real-Time Deformation,

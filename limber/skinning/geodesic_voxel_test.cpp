@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "limber/mesh/testing/shapes.h"
 #include "limber/skinning/bone_distance.h"
+#include "limber/skinning/inside_lattice.h"
 #include "warning_kinds.h"
 
 namespace limber {
@@ -103,6 +105,53 @@ TEST(GeodesicVoxel, FacesThatAreTurnedOrOpenChangeLittle) {
   double sum = 0;
   for (Index v = 0; v < whole.vertexCount(); ++v) sum += std::abs(pullOf(whole, v, 0) - pullOf(other, v, 0));
   EXPECT_LT(sum / whole.vertexCount(), 0.05);
+}
+
+// The shortest ways of a small lattice by rounds over all its edges (Bellman, Ford), and weights from these.
+TEST(GeodesicVoxel, WaysAreTheShortestInTheLattice) {
+  const Horseshoe horseshoe;
+  GeodesicVoxelOptions voxels;
+  voxels.mostCells = 24;
+  Progress progress;
+  const SkinWeights weights = geodesicVoxelWeightsWith(voxels, horseshoe.mesh, horseshoe.bones, {}, progress).weights;
+
+  InsideLattice lattice(horseshoe.mesh, InsideQueries(horseshoe.mesh), 24);
+  std::array<std::vector<Index>, 2> seeds;
+  for (int j = 0; j < 2; ++j) seeds[j] = lattice.cellsAlong(horseshoe.bones[j]);
+  std::array<std::vector<double>, 2> ways;
+  for (int j = 0; j < 2; ++j) {
+    ways[j].assign(lattice.cellCount(), 1e9);
+    for (const Index cell : seeds[j]) ways[j][cell] = 0;
+    for (bool shorter = true; shorter;) {
+      shorter = false;
+      for (Index cell = 0; cell < lattice.cellCount(); ++cell) {
+        for (int n = 0; n < 27; ++n) {
+          const int x = n % 3 - 1, y = n / 3 % 3 - 1, z = n / 9 - 1, axes = std::abs(x) + std::abs(y) + std::abs(z);
+          const Index next = lattice.neighbor(cell, lattice.step(x, y, z));
+          const double way = ways[j][cell] + (axes == 1 ? 1 : axes == 2 ? 1.4 : 1.7);
+          if (axes == 0 || next == kNoIndex || way > ways[j][next] - 1e-9) continue;
+          ways[j][next] = way;
+          shorter = true;
+        }
+      }
+    }
+  }
+  for (Index v = 0; v < horseshoe.mesh.vertexCount(); ++v) {
+    std::array<Index, 8> cells;
+    std::array<double, 8> parts;
+    const int count = lattice.cellsRound(horseshoe.mesh.position(v), cells, parts);
+    std::array<double, 2> pull;
+    for (int j = 0; j < 2; ++j) {
+      double all = 0, sum = 0;
+      for (int i = 0; i < count; ++i) {
+        all += parts[i];
+        sum += parts[i] * ways[j][cells[i]];
+      }
+      const double d = 100 * lattice.spacing() * std::max(0.5, sum / all), far = 0.8 * d + 0.2 * d * d;
+      pull[j] = 1 / (far * far);
+    }
+    EXPECT_NEAR(pullOf(weights, v, 0), pull[0] / (pull[0] + pull[1]), 1e-5) << v;
+  }
 }
 
 TEST(GeodesicVoxel, PiecesThatNoWayLeadsToTakeTheNearestWeights) {

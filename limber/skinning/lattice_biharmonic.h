@@ -20,7 +20,7 @@ struct LatticeGraph {
 
 struct BiharmonicOptions {
   double tolerance = 1e-4;       // ends when no value changes by more than this in a round of 64 steps
-  Index mostIterations = 20000;  // steps in all
+  Index mostIterations = 10000;  // steps in all
 };
 
 // Minimises the sum of (L w)^2 over all nodes, where (L w)(i) is the sum of w(i) - w(k) over the neighbors k of i, and

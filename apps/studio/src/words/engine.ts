@@ -24,6 +24,7 @@ const methods: Readonly<Record<string, { name: Words; summary: Words }>> = {
   'prop': { name: 'Prop', summary: 'one joint for all of it: a thing that does not bend' },
   'bone-heat': { name: 'Bone heat', summary: 'heat that flows from each bone over the surface' },
   'geodesic-voxel': { name: 'Ways inside', summary: 'the ways to bones through the inside, on a grid' },
+  'bounded-biharmonic': { name: 'Smoothest inside', summary: 'the smoothest weights through the inside that stay between 0 and 1' },
   'envelopes': { name: 'Envelopes', summary: 'bones hold what is near them, whatever lies between' },
   'nearest-bone': { name: 'Nearest bone', summary: 'each vertex follows the nearest bone alone' },
   'two-bone': { name: 'Two bones', summary: 'analytic, for limbs of two bones; bends to a pole' },

@@ -314,6 +314,8 @@ export const german = {
   'heat that flows from each bone over the surface': 'Wärme, die von jedem Knochen über die Oberfläche fließt',
   'Ways inside': 'Wege im Innern',
   'the ways to bones through the inside, on a grid': 'die Wege zu den Knochen durch das Innere, auf einem Gitter',
+  'Smoothest inside': 'Glatt durchs Innere',
+  'the smoothest weights through the inside that stay between 0 and 1': 'die glattesten Gewichte durch das Innere, die zwischen 0 und 1 bleiben',
   'Envelopes': 'Hüllen',
   'bones hold what is near them, whatever lies between': 'Knochen halten, was ihnen nahe ist, was auch dazwischen liegt',
   'Nearest bone': 'Nächster Knochen',
