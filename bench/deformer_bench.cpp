@@ -1,10 +1,16 @@
-// Deformers on one thread: nanoseconds a vertex with four influences and 100 joints, over growing meshes.
+// Deformers on one thread. Of those that need no surface, nanoseconds a vertex with four influences and 100 joints,
+// over growing meshes; of all on creatures bound by bone heat, frames and what is prepared once.
 #include <random>
 
 #include <benchmark/benchmark.h>
 
+#include "bench_meshes.h"
 #include "limber/core/parallel.h"
-#include "limber/skinning/deformer.h"
+#include "limber/core/progress.h"
+#include "limber/rigging/auto_rigger.h"
+#include "limber/skeleton/pose.h"
+#include "limber/skinning/centers_of_rotation.h"
+#include "limber/skinning/weight_method.h"
 
 namespace {
 
@@ -16,7 +22,7 @@ struct Character {
   std::vector<Vec3f> positions, normals;
   SkinWeights weights;
   std::vector<Affine> transforms;
-  std::vector<Vec3f> rotationCenters;
+  RotationCenters rotationCenters;
 };
 
 // Vertices in order along a chain, each bound to four neighbouring joints, as meshes of real characters mostly are.
@@ -29,7 +35,7 @@ Character character(Index vertices, bool scaled) {
   for (Index v = 0; v < vertices; ++v) {
     result.positions.push_back(vector());
     result.normals.push_back(vector().normalized());
-    result.rotationCenters.push_back(vector());
+    result.rotationCenters.centers.push_back(vector());
     const Index first = static_cast<Index>(std::size_t{v} * kJoints / vertices);
     for (Index slot = 0; slot < 4; ++slot) result.weights.joints.push_back((first + slot) % kJoints);
     result.weights.weights.insert(result.weights.weights.end(), {0.5f, 0.25f, 0.15f, 0.1f});
@@ -47,10 +53,10 @@ void deform(benchmark::State& state, const char* name, bool normals, bool scaled
   setThreadCount(1);
   const Character bound = character(static_cast<Index>(state.range(0)), scaled);
   const Deformer& deformer = findDeformer(name);
-  std::vector<float> scratch(deformer.scratchSize(kJoints));
+  std::vector<float> scratch(deformer.scratchSize(bound.positions.size(), kJoints));
   std::vector<Vec3f> positions(bound.positions.size()), turned(normals ? bound.normals.size() : 0);
-  const DeformInput input = {bound.positions,      bound.normals, bound.weights, bound.transforms, {},
-                             bound.rotationCenters};
+  const DeformInput input = {bound.positions,       bound.normals, bound.weights, bound.transforms, {},
+                             &bound.rotationCenters};
   for (auto _ : state) {
     deformer.deform(input, {positions, turned}, scratch);
     benchmark::DoNotOptimize(positions.data());
@@ -69,5 +75,72 @@ BENCHMARK_CAPTURE(deform, centersOfRotation, "centers-of-rotation", false, false
     ->Range(5000, 80000);
 BENCHMARK_CAPTURE(deform, centersOfRotationNormals, "centers-of-rotation", true, false)->Arg(20000);
 BENCHMARK_CAPTURE(deform, centersOfRotationScaled, "centers-of-rotation", false, true)->Arg(20000);
+
+// A creature with 40 handles, each turned by up to half a right angle.
+struct BoundCreature {
+  TriMesh mesh;
+  SkinWeights weights;
+  std::vector<Affine> transforms;
+
+  Index jointCount() const { return static_cast<Index>(transforms.size()); }
+  std::shared_ptr<const DeformPreparation> prepared(const Deformer& deformer) const {
+    return prepareDeformer(deformer, {mesh.positions, mesh.triangles, weights}, jointCount());
+  }
+};
+
+BoundCreature boundCreature(const benchmark::State& state) {
+  BoundCreature result;
+  result.mesh = bench::creature(static_cast<Index>(state.range(0)));
+  Progress progress;
+  RigOptions options;
+  options.handles = 40;
+  const Skeleton skeleton = findRigger("sphere-mesh").rig(result.mesh, options, progress).skeleton;
+  result.weights = findWeightMethod("bone-heat").compute(result.mesh, bonesOf(skeleton), {}, progress).weights;
+  std::mt19937 generator(1);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (const Vec3& joint : restPositions(skeleton)) {
+    const Eigen::AngleAxisd turn(0.8 * uniform(generator), Vec3::UnitY());
+    result.transforms.push_back(Affine(Eigen::Translation3d(joint) * turn * Eigen::Translation3d(-joint)));
+  }
+  return result;
+}
+
+void deformCreature(benchmark::State& state, const char* name) {
+  setThreadCount(1);
+  const BoundCreature creature = boundCreature(state);
+  const Deformer& deformer = findDeformer(name);
+  const auto prepared = creature.prepared(deformer);
+  std::vector<float> scratch(deformer.scratchSize(creature.mesh.positions.size(), creature.jointCount()));
+  std::vector<Vec3f> positions(creature.mesh.positions.size());
+  for (auto _ : state) {
+    deformer.deform({creature.mesh.positions, {}, creature.weights, creature.transforms, {}, prepared.get()},
+                    {positions, {}}, scratch);
+    benchmark::DoNotOptimize(positions.data());
+  }
+  state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * positions.size()));
+  setThreadCount(0);
+}
+
+void prepareCreature(benchmark::State& state, const char* name) {
+  setThreadCount(1);
+  const BoundCreature creature = boundCreature(state);
+  const Deformer& deformer = findDeformer(name);
+  for (auto _ : state) benchmark::DoNotOptimize(creature.prepared(deformer));
+  state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * creature.mesh.positions.size()));
+  setThreadCount(0);
+}
+
+void overCreatures(benchmark::internal::Benchmark* bench) {
+  bench->RangeMultiplier(4)->Range(5000, 80000)->Unit(benchmark::kMicrosecond);
+}
+
+BENCHMARK_CAPTURE(deformCreature, linearBlend, "linear-blend")->Apply(overCreatures);
+BENCHMARK_CAPTURE(deformCreature, dualQuaternion, "dual-quaternion")->Apply(overCreatures);
+BENCHMARK_CAPTURE(deformCreature, centersOfRotation, "centers-of-rotation")->Apply(overCreatures);
+BENCHMARK_CAPTURE(deformCreature, deltaMush, "delta-mush")->Apply(overCreatures);
+BENCHMARK_CAPTURE(deformCreature, directDeltaMush, "direct-delta-mush")->Apply(overCreatures);
+BENCHMARK_CAPTURE(prepareCreature, centersOfRotation, "centers-of-rotation")->Apply(overCreatures);
+BENCHMARK_CAPTURE(prepareCreature, deltaMush, "delta-mush")->Apply(overCreatures);
+BENCHMARK_CAPTURE(prepareCreature, directDeltaMush, "direct-delta-mush")->Apply(overCreatures);
 
 }  // namespace

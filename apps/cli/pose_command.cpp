@@ -122,7 +122,7 @@ void writeResult(Asset& asset, const AssetSkeleton& skeleton, const Pose& pose, 
     options.setRest ? setRestPose(asset, skeleton, pose) : writeNodePose(asset, skeleton, pose);
     return writeAsset(asset, options.output);
   }
-  const PosedGeometry posed = posedGeometry(asset, skeleton, pose, options.deformer);
+  const PosedGeometry posed = posedGeometry(asset, skeleton, pose, findDeformer(options.deformer));
   if (isMeshFormat(options.output)) return writeMesh(exportMesh(asset, posed.geometry), options.output);
   freezeGeometry(asset, collectGeometry(asset), posed.geometry.positions, posed.normals);
   writeAsset(asset, options.output);

@@ -8,7 +8,7 @@
 #include "limber/mesh/normals.h"
 #include "limber/mesh/prepare.h"
 #include "limber/mesh/winding_number.h"
-#include "limber/skinning/deformer.h"
+#include "limber/skinning/linear_blend.h"
 
 namespace limber {
 
@@ -84,13 +84,12 @@ SelfPenetration measureSelfPenetration(const SkinnedModel& model, const std::vec
   }
 
   SelfPenetration result;
-  const Deformer& deformer = findDeformer("linear-blend");
-  std::vector<float> scratch(deformer.scratchSize(skin.skeleton.jointCount()));
+  std::vector<float> scratch(linearBlendScratch(skin.mesh.positions.size(), skin.skeleton.jointCount()));
   TriMesh posed = skin.mesh;
   const std::vector<std::size_t> frames = evenly(poses.size(), options.mostFrames);
   for (const std::size_t f : frames) {
     const std::vector<Affine> transforms = skinTransforms(skin.skeleton, poses[f]);
-    deformer.deform({skin.mesh.positions, {}, skin.weights, transforms, {}}, {posed.positions, {}}, scratch);
+    linearBlend({skin.mesh.positions, {}, skin.weights, transforms, {}}, {posed.positions, {}}, scratch);
     const std::vector<double> winding = windingOff(posed, outside, kOffSurface * size);
     std::size_t inside = 0;
     for (std::size_t i = 0; i < outside.size(); ++i) inside += winding[i] > kInside && winding[i] - bound[i] > kInside;

@@ -131,7 +131,7 @@ double percentile95(std::vector<double>& values) {
 
 // Deforms by linear blend. Joints that the skeleton does not have leave what they hold where it is.
 std::vector<Vec3f> deformed(const PairedSkins& skins, const SkinWeights& weights, std::span<const Affine> transforms) {
-  std::vector<float> scratch(linearBlendScratch(static_cast<Index>(transforms.size())));
+  std::vector<float> scratch(linearBlendScratch(skins.positions.size(), static_cast<Index>(transforms.size())));
   std::vector<Vec3f> positions(skins.positions.size());
   linearBlend({skins.positions, {}, weights, transforms, {}}, {positions, {}}, scratch);
   return positions;

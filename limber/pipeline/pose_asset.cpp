@@ -8,8 +8,6 @@
 #include "limber/core/numbers.h"
 #include "limber/ik/ik_solver.h"
 #include "limber/skeleton/chain.h"
-#include "limber/skinning/deformer.h"
-#include "limber/skinning/rotation_centers.h"
 
 namespace limber {
 
@@ -97,26 +95,30 @@ std::vector<ReachReport> editPose(const Skeleton& skeleton, Pose& pose, const Po
   return reach(skeleton, pose, edits.reaches, limits, options);
 }
 
-PosedGeometry posedGeometry(const Asset& asset, const AssetSkeleton& skeleton, const Pose& pose,
-                            std::string_view deformer) {
-  PosedGeometry result;
-  result.geometry = collectGeometry(asset);
-  result.normals = readNormals(asset, result.geometry);
-  SkinWeights weights = readWeights(asset, result.geometry, skeleton);
-  normalizeWeights(weights);
+AssetPoser::AssetPoser(const Asset& asset, const AssetSkeleton& skeleton, const Deformer& deformer)
+    : skeleton_(skeleton.skeleton), deformer_(deformer) {
+  bound_.geometry = collectGeometry(asset);
+  bound_.normals = readNormals(asset, bound_.geometry);
+  weights_ = readWeights(asset, bound_.geometry, skeleton);
+  normalizeWeights(weights_);
+  centers_ = restPositions(skeleton_);
+  prepared_ = prepareDeformer(deformer, {bound_.geometry.positions, bound_.geometry.triangles, weights_},
+                              skeleton_.jointCount());
+}
 
-  const std::vector<Affine> transforms = skinTransforms(skeleton.skeleton, pose);
-  const std::vector<Vec3> centers = restPositions(skeleton.skeleton);
-  const Deformer& method = findDeformer(deformer);
-  std::vector<float> scratch(method.scratchSize(skeleton.skeleton.jointCount()));
+PosedGeometry AssetPoser::posed(const Pose& pose) const {
+  PosedGeometry result = bound_;
   std::vector<Vec3f>& positions = result.geometry.positions;
-  std::vector<Vec3f> rotationCenters;
-  if (method.needsRotationCenters) {
-    rotationCenters = limber::rotationCenters(positions, result.geometry.triangles, weights);
-  }
-  method.deform({positions, result.normals, weights, transforms, centers, rotationCenters}, {positions, result.normals},
-                scratch);
+  const std::vector<Affine> transforms = skinTransforms(skeleton_, pose);
+  std::vector<float> scratch(deformer_.scratchSize(positions.size(), skeleton_.jointCount()));
+  deformer_.deform({positions, result.normals, weights_, transforms, centers_, prepared_.get()},
+                   {positions, result.normals}, scratch);
   return result;
+}
+
+PosedGeometry posedGeometry(const Asset& asset, const AssetSkeleton& skeleton, const Pose& pose,
+                            const Deformer& deformer) {
+  return AssetPoser(asset, skeleton, deformer).posed(pose);
 }
 
 }  // namespace limber

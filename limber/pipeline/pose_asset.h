@@ -11,6 +11,7 @@
 #include "limber/ik/limits.h"
 #include "limber/pipeline/pose_edits.h"
 #include "limber/skeleton/pose.h"
+#include "limber/skinning/linear_blend.h"
 
 namespace limber {
 
@@ -37,12 +38,29 @@ std::vector<ReachReport> editPose(const Skeleton& skeleton, Pose& pose, const Po
 //
 // skeleton  readSkeleton(asset) of the asset as it is: where a bind pose lies in the world is told from how the nodes
 //           stand, so a skeleton read before writeNodePose is not that of the asset after it
-// deformer  of deformers(): "linear-blend", ...
+// deformer  of deformers()
 struct PosedGeometry {
   Geometry geometry;           // moved
   std::vector<Vec3f> normals;  // #S
 };
 PosedGeometry posedGeometry(const Asset& asset, const AssetSkeleton& skeleton, const Pose& pose,
-                            std::string_view deformer = "linear-blend");
+                            const Deformer& deformer = kLinearBlendDeformer);
+
+// The same for many poses: the asset is read and what the deformer needs prepared once.
+class AssetPoser {
+ public:
+  AssetPoser(const Asset& asset, const AssetSkeleton& skeleton, const Deformer& deformer);
+
+  PosedGeometry posed(const Pose& pose) const;
+  const SkinWeights& weights() const { return weights_; }  // #S rows, each with a sum of 1 or 0
+
+ private:
+  Skeleton skeleton_;
+  const Deformer& deformer_;
+  PosedGeometry bound_;
+  SkinWeights weights_;
+  std::vector<Vec3> centers_;  // of joints
+  std::shared_ptr<const DeformPreparation> prepared_;
+};
 
 }  // namespace limber

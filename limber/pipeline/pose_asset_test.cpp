@@ -169,6 +169,27 @@ TEST(PoseIo, AWrittenPoseIsReadAgainAndTouchesOnlyWhatMoved) {
   }
 }
 
+TEST(AssetPoser, PosesAgainAndAgainByEveryDeformer) {
+  const Asset asset = riggedStrip();
+  const AssetSkeleton skeleton = readSkeleton(asset);
+  const Pose rest = readNodePose(asset, skeleton);
+  Pose pose = rest;
+  editPose(skeleton.skeleton, pose, turned("knee=x:40,y:20"));
+  const Geometry bound = collectGeometry(asset);
+  for (const Deformer& deformer : deformers()) {
+    const AssetPoser poser(asset, skeleton, deformer);
+    const PosedGeometry bent = poser.posed(pose), still = poser.posed(rest), again = poser.posed(pose);
+    const std::vector<Vec3f> once = posedGeometry(asset, skeleton, pose, deformer).geometry.positions;
+    EXPECT_EQ(bent.geometry.positions, again.geometry.positions) << deformer.name;
+    EXPECT_EQ(bent.geometry.positions, once) << deformer.name;
+    EXPECT_NE(bent.geometry.positions, still.geometry.positions) << deformer.name;
+    for (std::size_t v = 0; v < bound.positions.size(); ++v) {
+      EXPECT_LT((still.geometry.positions[v] - bound.positions[v]).norm(), 1e-5f) << deformer.name << " " << v;
+    }
+    for (const Vec3f& normal : bent.normals) EXPECT_NEAR(normal.norm(), 1, 1e-4) << deformer.name;
+  }
+}
+
 TEST(PoseIo, AFrozenMeshStandsInThePoseWithoutARig) {
   Asset asset = riggedStrip();
   const AssetSkeleton skeleton = readSkeleton(asset);

@@ -11,7 +11,7 @@
 #include "limber/asset/node_edit.h"
 #include "limber/asset/pose_io.h"
 #include "limber/session/refuse.h"
-#include "limber/skinning/deformer.h"
+#include "limber/skinning/linear_blend.h"
 
 namespace limber {
 
@@ -178,9 +178,8 @@ std::vector<Vec3f> posedPositions(const RiggedModel& model, const Pose& pose) {
   std::vector<Affine> transforms(model.inverseBind.size());
   skinTransforms(poseGlobals(model.skeleton(), pose), model.inverseBind, transforms);
   std::vector<Vec3f> positions = model.geometry->positions;
-  const Deformer& deformer = findDeformer("linear-blend");
-  std::vector<float> scratch(deformer.scratchSize(model.skeleton().jointCount()));
-  deformer.deform({positions, {}, model.weights, transforms, {}}, {positions, {}}, scratch);
+  std::vector<float> scratch(linearBlendScratch(positions.size(), model.skeleton().jointCount()));
+  linearBlend({positions, {}, model.weights, transforms, {}}, {positions, {}}, scratch);
   return positions;
 }
 

@@ -45,10 +45,19 @@ void checkDeformCall(const DeformInput& input, const DeformOutput& output, std::
         output.normals.size(), input.normals.size());
   check(input.centers.empty() || input.centers.size() == input.transforms.size(), "joint centers", input.centers.size(),
         input.transforms.size());
-  check(input.rotationCenters.empty() || input.rotationCenters.size() == count, "rotation centers",
-        input.rotationCenters.size(), count);
   check(!input.transforms.empty() || entries == 0, "joint transforms", 0, 1);
   check(scratchSize >= scratchNeeded, "floats of scratch", scratchSize, scratchNeeded);
+}
+
+void refusePreparation() {
+  throw Error(ErrorCode::kBadArgument, "the deformer was not prepared for this surface", {}, "call prepareDeformer");
+}
+
+void checkPreparedFor(std::size_t vertexCount, std::size_t jointCount, const DeformInput& input) {
+  if (vertexCount == input.positions.size() && jointCount == input.transforms.size()) return;
+  throw Error(ErrorCode::kBadArgument,
+              fmt::format("prepared for {} vertices and {} joints, not for {} and {}", vertexCount, jointCount,
+                          input.positions.size(), input.transforms.size()));
 }
 
 float* alignedScratch(std::span<float> scratch) {

@@ -10,6 +10,17 @@ namespace limber {
 void checkDeformCall(const DeformInput& input, const DeformOutput& output, std::size_t scratchSize,
                      std::size_t scratchNeeded);
 
+// The preparation of type Own that the call holds; checkPreparedFor compares its numbers of vertices and joints. Throw
+// Error kBadArgument where it is missing, another deformer's or another surface's.
+[[noreturn]] void refusePreparation();
+template <typename Own>
+const Own& preparationOf(const DeformInput& input) {
+  const auto* own = dynamic_cast<const Own*>(input.preparation);
+  if (!own) refusePreparation();
+  return *own;
+}
+void checkPreparedFor(std::size_t vertexCount, std::size_t jointCount, const DeformInput& input);
+
 // The joints' maps start at a multiple of 64 bytes in the scratch, so that none of them lies across two lines of cache.
 inline constexpr std::size_t kScratchAlignment = 16;  // floats
 float* alignedScratch(std::span<float> scratch);

@@ -8,6 +8,15 @@ const DeformKernels& baselineDeformKernels() {
   return kKernels;
 }
 
+const DirectKernels& baselineDirectKernels() {
+  return kDirectKernels;
+}
+
+const DirectKernels& directKernels() {
+  static const DirectKernels* const avx2 = avx2DirectKernels();
+  return avx2 ? *avx2 : baselineDirectKernels();
+}
+
 const DeformKernels& deformKernels() {
   static const DeformKernels* const avx512 = avx512DeformKernels();
   static const DeformKernels* const avx2 = avx2DeformKernels();

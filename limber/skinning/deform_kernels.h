@@ -12,6 +12,9 @@ inline constexpr std::size_t kFloatsPerColumns = 16;
 // A unit dual quaternion: real x y z w, dual x y z w.
 inline constexpr std::size_t kFloatsPerMotion = 8;
 
+// A symmetric 4 x 4 matrix.
+inline constexpr std::size_t kFloatsPerMoments = 16;
+
 // Vertices are three floats, one after the other; `slots` joints and weights each.
 struct DeformJob {
   const float* positions = nullptr;
@@ -25,6 +28,14 @@ struct DeformJob {
   const float* stretches = nullptr;  // #J * kFloatsPerColumns: the scales, where columns are the maps
   const float* motions = nullptr;    // #J * kFloatsPerMotion
   const float* rotationCenters = nullptr;  // as positions
+
+  // Direct delta mush: of each vertex its row, of each row its entries, by which joint, and what they add to.
+  const float* turns = nullptr;              // #J * kFloatsPerColumns: the rotations alone, where columns are the maps
+  const std::uint32_t* rowOf = nullptr;      // #V
+  const std::uint32_t* rowBegin = nullptr;   // #R + 1
+  const std::uint32_t* rowJoints = nullptr;  // #E
+  const float* rowMoments = nullptr;         // #E * kFloatsPerMoments
+  const float* rowBases = nullptr;           // #R * kFloatsPerMoments
 };
 
 // Deforms the vertices begin <= v < end.
@@ -36,12 +47,20 @@ struct DeformKernels {
   DeformKernel centered[2][2][2];
 };
 
+// Direct delta mush's apart, so that a program without it has none of their code.
+struct DirectKernels {
+  DeformKernel direct[2][2];  // [normals?][scales?]
+};
+
 // Those for the machine that this runs on.
 const DeformKernels& deformKernels();
+const DirectKernels& directKernels();
 
 const DeformKernels& baselineDeformKernels();
+const DirectKernels& baselineDirectKernels();
 // Null where the machine or the build has no AVX2.
 const DeformKernels* avx2DeformKernels();
+const DirectKernels* avx2DirectKernels();
 // As well for AVX-512 (F, BW, DQ, VL).
 const DeformKernels* avx512DeformKernels();
 

@@ -11,6 +11,10 @@ const DeformKernels* avx2DeformKernels() {
   return __builtin_cpu_supports("avx2") ? &kKernels : nullptr;
 }
 
+const DirectKernels* avx2DirectKernels() {
+  return __builtin_cpu_supports("avx2") ? &kDirectKernels : nullptr;
+}
+
 }  // namespace limber
 
 #else
@@ -18,6 +22,10 @@ const DeformKernels* avx2DeformKernels() {
 namespace limber {
 
 const DeformKernels* avx2DeformKernels() {
+  return nullptr;
+}
+
+const DirectKernels* avx2DirectKernels() {
   return nullptr;
 }
 

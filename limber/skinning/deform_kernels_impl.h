@@ -276,6 +276,140 @@ LIMBER_INLINE void centeredBlock(const DeformJob& job, std::size_t v) {
   if (kNormals) storeLanes3(turnedNormals(motions, normals), job.outNormals + 3 * v);
 }
 
+// Four vertices' sums over the entries of their rows: of a symmetric matrix of moments for each joint, times its map.
+struct MomentSums {
+  Columns fits[4];       // the correlation of where the surroundings go with where they are, then the offset
+  Columns stretches[4];  // only where joints stretch
+  Float4 turns[4];       // blended quaternion
+  bool single = true;    // every vertex follows one joint alone
+};
+
+// One vertex' part of MomentSums.
+struct MomentSum {
+  Columns fit, stretch;
+  Float4 turn = {};
+};
+
+template <bool kScales>
+LIMBER_INLINE void addMoments(const DeformJob& job, std::uint32_t entry, const float* point, MomentSum& sum) {
+  const std::size_t joint = job.rowJoints[entry];
+  const float* moments = job.rowMoments + kFloatsPerMoments * entry;
+  const float* map = job.columns + kFloatsPerColumns * joint;
+  const float* turn = kScales ? job.turns + kFloatsPerColumns * joint : map;
+  const Float4 moved = displacementBy({loadFloat8(map), loadFloat8(map + 8)}, point);
+  for (int row = 0; row < 4; ++row) {
+    const float* m = moments + 4 * row;
+    const Float4 shift = row < 3 ? loadFloat4(map + 4 * row) : moved;
+    const Float4 turned = row < 3 ? loadFloat4(turn + 4 * row) : moved;
+    sum.fit.xy = sum.fit.xy + joinFloat4(turned, turned) * joinFloat4(broadcast(m[0]), broadcast(m[1]));
+    sum.fit.zOffset = sum.fit.zOffset + joinFloat4(turned, shift) * joinFloat4(broadcast(m[2]), broadcast(m[3]));
+  }
+  const float weight = moments[15];
+  const Float4 rotation = loadFloat4(job.motions + kFloatsPerMotion * joint);
+  const Float4 along = sum.turn * rotation;
+  sum.turn = sum.turn + (along[0] + along[1] + along[2] + along[3] < 0.0f ? -weight : weight) * rotation;
+  if (!kScales) return;
+  const float* stretch = job.stretches + kFloatsPerColumns * joint;
+  sum.stretch.xy = sum.stretch.xy + weight * loadFloat8(stretch);
+  sum.stretch.zOffset = sum.stretch.zOffset + weight * loadFloat8(stretch + 8);
+}
+
+template <bool kScales>
+LIMBER_INLINE MomentSums sumMoments(const DeformJob& job, std::size_t v) {
+  MomentSums sums;
+  for (int i = 0; i < 4; ++i) {
+    const std::size_t row = job.rowOf[v + i];
+    const float* base = job.rowBases + kFloatsPerMoments * row;
+    const std::uint32_t begin = job.rowBegin[row], end = job.rowBegin[row + 1];
+    MomentSum sum;
+    sum.fit = {loadFloat8(base), joinFloat4(loadFloat4(base + 8), Float4{})};
+    for (std::uint32_t entry = begin; entry < end; ++entry) addMoments<kScales>(job, entry, base + 12, sum);
+    sums.fits[i] = sum.fit;
+    sums.stretches[i] = sum.stretch;
+    sums.turns[i] = sum.turn;
+    sums.single &= end - begin == 1 && job.rowMoments[kFloatsPerMoments * begin + 15] == 1.0f;
+  }
+  return sums;
+}
+
+// One step of Newton's method towards the rotation nearest to `fit` (columns; of a trace of about 1): the turn by which
+// the rotation's transpose times `fit` becomes symmetric, to the first order; where that would lead away, along the
+// gradient.
+LIMBER_INLINE Lanes4 nearerRotation(const Lanes4& q, const Lanes3 fit[3]) {
+  const Float4 factor = 2.0f / (q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
+  const Lanes3 axis = xyzOf(q), x = {factor * q.x, factor * q.y, factor * q.z};
+  const Float4 one = broadcast(1), xx = x.x * axis.x, yy = x.y * axis.y, zz = x.z * axis.z, xy = x.x * axis.y,
+               yz = x.y * axis.z, zx = x.z * axis.x, wx = x.x * q.w, wy = x.y * q.w, wz = x.z * q.w;
+  const Lanes3 columns[3] = {
+      {one - yy - zz, xy + wz, zx - wy}, {xy - wz, one - xx - zz, yz + wx}, {zx + wy, yz - wx, one - xx - yy}};
+  Float4 a[3][3];
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) a[row][column] = dot(columns[row], fit[column]);
+  }
+  const Lanes3 skew = {a[2][1] - a[1][2], a[0][2] - a[2][0], a[1][0] - a[0][1]};
+  // g = trace * identity - symmetric part
+  const Float4 g00 = a[1][1] + a[2][2], g11 = a[0][0] + a[2][2], g22 = a[0][0] + a[1][1],
+               g01 = -0.5f * (a[0][1] + a[1][0]), g02 = -0.5f * (a[0][2] + a[2][0]), g12 = -0.5f * (a[1][2] + a[2][1]);
+  const Lanes3 c0 = {g11 * g22 - g12 * g12, g02 * g12 - g01 * g22, g01 * g12 - g02 * g11};
+  const Lanes3 c1 = {c0.y, g00 * g22 - g02 * g02, g01 * g02 - g00 * g12};
+  const Lanes3 c2 = {c0.z, c1.z, g00 * g11 - g01 * g01};
+  const Float4 determinant = g00 * c0.x + g01 * c0.y + g02 * c0.z;
+  const Int4 convex = (g00 > 0.0f) & (c2.z > 0.0f) & (determinant > 1e-9f);
+  const Float4 half = 0.5f / determinant;
+  const Lanes3 turn = {convex ? half * dot(c0, skew) : 0.5f * skew.x, convex ? half * dot(c1, skew) : 0.5f * skew.y,
+                       convex ? half * dot(c2, skew) : 0.5f * skew.z};
+  const Lanes3 vector = axis + q.w * turn + cross(axis, turn);
+  return {vector.x, vector.y, vector.z, q.w - dot(axis, turn)};
+}
+
+// The rotations that take the surroundings of four vertices nearest to where the joints take them.
+LIMBER_INLINE AppliedMotions fitRotations(const DeformJob& job, std::size_t v, const MomentSums& sums) {
+  constexpr int kSteps = 4;
+  Lanes4 q = transposed(sums.turns[0], sums.turns[1], sums.turns[2], sums.turns[3]);
+  const Int4 none = (q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w) == 0.0f;
+  q.w = none ? broadcast(1) : q.w;
+  if (!sums.single) {
+    Lanes3 fit[3] = {xyzOf(transposed(lowHalf(sums.fits[0].xy), lowHalf(sums.fits[1].xy), lowHalf(sums.fits[2].xy),
+                                      lowHalf(sums.fits[3].xy))),
+                     xyzOf(transposed(highHalf(sums.fits[0].xy), highHalf(sums.fits[1].xy), highHalf(sums.fits[2].xy),
+                                      highHalf(sums.fits[3].xy))),
+                     xyzOf(transposed(lowHalf(sums.fits[0].zOffset), lowHalf(sums.fits[1].zOffset),
+                                      lowHalf(sums.fits[2].zOffset), lowHalf(sums.fits[3].zOffset)))};
+    Float4 perTrace = {};
+    for (int i = 0; i < 4; ++i) perTrace[i] = job.rowBases[kFloatsPerMoments * job.rowOf[v + i] + 15];
+    for (Lanes3& column : fit) column = perTrace * column;
+    for (int i = 0; i < kSteps; ++i) q = nearerRotation(q, fit);
+  }
+  return {xyzOf(q), q.w, Lanes3{}, 2.0f / (q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w)};
+}
+
+// v' = p + offset + R S (v - p) about the vertex' smoothed place p.
+template <bool kNormals, bool kScales>
+LIMBER_INLINE void directBlock(const DeformJob& job, std::size_t v) {
+  const MomentSums sums = sumMoments<kScales>(job, v);
+  const Lanes3 positions = loadLanes3(job.positions + 3 * v);
+  Float4 bases[4];
+  for (int i = 0; i < 4; ++i) bases[i] = loadFloat4(job.rowBases + kFloatsPerMoments * job.rowOf[v + i] + 12);
+  Lanes3 arm = positions - xyzOf(transposed(bases[0], bases[1], bases[2], bases[3])), normals = {};
+  Lanes3 shift = xyzOf(transposed(highHalf(sums.fits[0].zOffset), highHalf(sums.fits[1].zOffset),
+                                  highHalf(sums.fits[2].zOffset), highHalf(sums.fits[3].zOffset)));
+  if (kNormals) normals = loadLanes3(job.normals + 3 * v);
+  if (kScales) {
+    Float4 growths[4];
+    for (int i = 0; i < 4; ++i) {
+      growths[i] = displacementBy(sums.stretches[i], joinFloat4(broadcast(arm.x[i]), broadcast(arm.y[i])),
+                                  joinFloat4(broadcast(arm.z[i]), broadcast(0)));
+    }
+    const Lanes3 growth = xyzOf(transposed(growths[0], growths[1], growths[2], growths[3]));
+    shift = shift + growth;
+    arm = arm + growth;
+    if (kNormals) normals = normalsAfter(sums.stretches, normals);
+  }
+  const AppliedMotions motions = fitRotations(job, v, sums);
+  storeLanes3(displaced(positions, shift + motions.factor * turnOf(motions, arm)), job.outPositions + 3 * v);
+  if (kNormals) storeLanes3(turnedNormals(motions, normals), job.outNormals + 3 * v);
+}
+
 using DeformBlock = void (*)(const DeformJob& job, std::size_t v);
 
 // The last one to three vertices, as a block with copies of the last.
@@ -284,11 +418,12 @@ void deformRest(const DeformJob& job, std::size_t begin, std::size_t end) {
   constexpr std::uint32_t kMostSlots = 8;
   float positions[12] = {}, normals[12] = {}, centers[12] = {}, outPositions[12], outNormals[12],
         weights[4 * kMostSlots] = {};
-  std::uint32_t joints[4 * kMostSlots] = {};
+  std::uint32_t joints[4 * kMostSlots] = {}, rows[4] = {};
   const std::size_t count = end - begin;
   for (std::size_t i = 0; i < 3 * count; ++i) positions[i] = job.positions[3 * begin + i];
   for (std::size_t i = 0; i < 3 * count && job.normals; ++i) normals[i] = job.normals[3 * begin + i];
   for (std::size_t i = 0; i < 3 * count && job.rotationCenters; ++i) centers[i] = job.rotationCenters[3 * begin + i];
+  for (std::size_t i = 0; i < 4 && job.rowOf; ++i) rows[i] = job.rowOf[begin + (i < count ? i : count - 1)];
   for (std::size_t i = 0; i < job.slots * count; ++i) {
     joints[i] = job.joints[job.slots * begin + i];
     weights[i] = job.weights[job.slots * begin + i];
@@ -301,6 +436,7 @@ void deformRest(const DeformJob& job, std::size_t begin, std::size_t end) {
   rest.outNormals = outNormals;
   rest.joints = joints;
   rest.weights = weights;
+  rest.rowOf = rows;
   kBlock(rest, 0);
   for (std::size_t i = 0; i < 3 * count; ++i) job.outPositions[3 * begin + i] = outPositions[i];
   for (std::size_t i = 0; i < 3 * count && job.outNormals; ++i) job.outNormals[3 * begin + i] = outNormals[i];
@@ -323,6 +459,10 @@ constexpr DeformKernels kKernels = {
       {&deformRange<centeredBlock<0, true, false>>, &deformRange<centeredBlock<0, true, true>>}},
      {{&deformRange<centeredBlock<4, false, false>>, &deformRange<centeredBlock<4, false, true>>},
       {&deformRange<centeredBlock<4, true, false>>, &deformRange<centeredBlock<4, true, true>>}}}};
+
+[[maybe_unused]] constexpr DirectKernels kDirectKernels = {
+    {{&deformRange<directBlock<false, false>>, &deformRange<directBlock<false, true>>},
+     {&deformRange<directBlock<true, false>>, &deformRange<directBlock<true, true>>}}};
 
 }  // namespace
 }  // namespace limber

@@ -1,5 +1,6 @@
 #include "limber/skinning/deformer.h"
 
+#include <algorithm>
 #include <limits>
 #include <string>
 
@@ -8,6 +9,8 @@
 #include "limber/core/error.h"
 #include "limber/core/names.h"
 #include "limber/skinning/centers_of_rotation.h"
+#include "limber/skinning/delta_mush.h"
+#include "limber/skinning/direct_delta_mush.h"
 #include "limber/skinning/dual_quaternion.h"
 #include "limber/skinning/linear_blend.h"
 
@@ -16,15 +19,19 @@ namespace limber {
 namespace {
 
 constexpr Deformer kDeformers[] = {
-    {"linear-blend", "weighted mean of what each joint alone would do",
-     "Magnenat-Thalmann, Laperrière, Thalmann: Joint-Dependent Local Deformations, 1988", &linearBlendScratch,
-     &linearBlend, false},
+    kLinearBlendDeformer,
     {"dual-quaternion", "weighted mean of the joints' motions; keeps volume where joints twist",
      "Kavan, Collins, Žára, O'Sullivan: Geometric Skinning with Approximate Dual Quaternion Blending, 2008",
-     &dualQuaternionScratch, &dualQuaternion, false},
+     &dualQuaternionScratch, &dualQuaternion, nullptr},
     {"centers-of-rotation", "turns each vertex about the middle of what is bound like it; no bulge where joints bend",
      "Le, Hodgins: Real-time Skeletal Skinning with Optimized Centers of Rotation, 2016", &centersOfRotationScratch,
-     &centersOfRotation, true},
+     &centersOfRotation, &prepareRotationCenters},
+    {"delta-mush", "smooths the bent surface and puts its detail back; soft joints whatever the weights",
+     "Mancewicz, Derksen, Rijpkema, Wilson: Delta Mush: Smoothing Deformations While Preserving Detail, 2014",
+     &deltaMushScratch, &deltaMush, &prepareDeltaMush},
+    {"direct-delta-mush", "delta mush with its smoothing done once, so that a frame takes a small part of the time",
+     "Le, Lewis: Direct Delta Mush Skinning and Variants, 2019", &directDeltaMushScratch, &directDeltaMush,
+     &prepareDirectDeltaMush},
 };
 
 }  // namespace
@@ -35,6 +42,24 @@ std::span<const Deformer> deformers() {
 
 const Deformer& findDeformer(std::string_view name) {
   return findByName(kDeformers, "deformer", name);
+}
+
+std::shared_ptr<const DeformPreparation> prepareDeformer(const Deformer& deformer, const BoundSurface& surface,
+                                                         Index jointCount) {
+  if (!deformer.prepare) return nullptr;
+  const std::size_t count = surface.positions.size(), entries = count * surface.weights.slots;
+  if (surface.weights.weights.size() != entries || surface.weights.joints.size() != entries) {
+    throw Error(ErrorCode::kBadArgument, fmt::format("{} weights, {} needed", surface.weights.weights.size(), entries));
+  }
+  for (const Triangle& t : surface.triangles) {
+    if (*std::max_element(t.begin(), t.end()) < count) continue;
+    throw Error(ErrorCode::kBadArgument, fmt::format("a triangle of a vertex beyond the {} there are", count));
+  }
+  for (const Index joint : surface.weights.joints) {
+    if (joint < jointCount) continue;
+    throw Error(ErrorCode::kBadArgument, fmt::format("a weight for joint {} of {}", joint, jointCount));
+  }
+  return deformer.prepare(surface, jointCount);
 }
 
 void checkWeights(const SkinWeights& weights, Index jointCount) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <string_view>
 
@@ -9,21 +10,25 @@
 
 namespace limber {
 
+// What a deformer computes once from a bound surface, so that a frame costs little; each deformer derives its own.
+struct DeformPreparation {
+  virtual ~DeformPreparation() = default;
+};
+
 // positions   #V, as bound
 // normals     #V unit vectors, or empty
 // weights     of #V vertices; every joint index below #J (checkWeights makes sure, once)
 // transforms  #J, each from where a point is bound to where its joint takes it (skinTransforms)
 // centers     #J joint positions as bound, or empty: the points about which dual quaternions scale, the origin where
 //             empty. Without scale they do not matter.
-// rotationCenters  #V points as bound (rotation_centers.h), for deformers that turn vertices about them; empty for all
-//             others
+// preparation  what the deformer's `prepare` gave for these positions and weights; null for deformers without one
 struct DeformInput {
   std::span<const Vec3f> positions;
   std::span<const Vec3f> normals;
   const SkinWeights& weights;
   std::span<const Affine> transforms;
   std::span<const Vec3> centers;
-  std::span<const Vec3f> rotationCenters = {};
+  const DeformPreparation* preparation = nullptr;
 };
 
 // positions  #V
@@ -35,24 +40,43 @@ struct DeformOutput {
 };
 
 // Runs in parallel, allocates nothing; the result does not depend on the number of threads. A vertex whose joints'
-// transforms are all exactly the identity comes out bit for bit; so does one without weights. Throws Error kBadArgument
-// where sizes do not match.
+// transforms are all exactly the identity comes out bit for bit; so does one without weights. (Delta mush means all
+// vertices within its reach there.) Throws Error kBadArgument where sizes do not match or the preparation is another
+// deformer's or surface's.
 //
-// scratch  at least Deformer::scratchSize(#J) floats; holds nothing between calls
+// scratch  at least Deformer::scratchSize(#V, #J) floats; holds nothing between calls
 using DeformFunction = void (*)(const DeformInput& input, const DeformOutput& output, std::span<float> scratch);
+
+// A surface and how it is bound.
+//
+// positions  #V, as bound
+// triangles  of #V vertices
+// weights    of #V vertices, each with a sum of 1 or 0
+struct BoundSurface {
+  std::span<const Vec3f> positions;
+  std::span<const Triangle> triangles;
+  const SkinWeights& weights;
+};
+
+using PrepareFunction = std::shared_ptr<const DeformPreparation> (*)(const BoundSurface& surface, Index jointCount);
 
 struct Deformer {
   std::string_view name;     // "linear-blend"
   std::string_view summary;  // one line for --help
   std::string_view paper;
-  std::size_t (*scratchSize)(Index jointCount);  // in floats
+  std::size_t (*scratchSize)(std::size_t vertexCount, Index jointCount);  // in floats
   DeformFunction deform;
-  bool needsRotationCenters;  // of DeformInput
+  PrepareFunction prepare;  // null where there is nothing to prepare
 };
 
 std::span<const Deformer> deformers();
 // Throws Error kBadArgument that lists the names there are.
 const Deformer& findDeformer(std::string_view name);
+
+// What `deformer` needs for a surface; null where that is nothing. Throws Error kBadArgument where sizes do not match,
+// a triangle names a vertex or a weight a joint that is not there.
+std::shared_ptr<const DeformPreparation> prepareDeformer(const Deformer& deformer, const BoundSurface& surface,
+                                                         Index jointCount);
 
 // Throws Error kBadData where a joint index is not below `jointCount`, or a weight is negative or not finite.
 void checkWeights(const SkinWeights& weights, Index jointCount);

@@ -14,6 +14,7 @@
 #include "limber/core/numbers.h"
 #include "limber/core/parallel.h"
 #include "limber/skeleton/pose.h"
+#include "limber/skinning/centers_of_rotation.h"
 #include "limber/skinning/deform_kernels.h"
 
 namespace limber {
@@ -26,9 +27,18 @@ struct Scene {
   SkinWeights weights;
   std::vector<Affine> transforms;
   std::vector<Vec3> centers;
-  std::vector<Vec3f> rotationCenters;
+  std::vector<Triangle> triangles;
+  std::shared_ptr<const RotationCenters> rotationCenters;
 
-  DeformInput input() const { return {positions, normals, weights, transforms, centers, rotationCenters}; }
+  Index jointCount() const { return static_cast<Index>(transforms.size()); }
+  // As prepared for the deformer; random rotation centers, where there are any.
+  std::shared_ptr<const DeformPreparation> prepared(const Deformer& deformer) const {
+    if (deformer.prepare == &prepareRotationCenters && rotationCenters) return rotationCenters;
+    return prepareDeformer(deformer, {positions, triangles, weights}, jointCount());
+  }
+  DeformInput input(const DeformPreparation* preparation) const {
+    return {positions, normals, weights, transforms, centers, preparation};
+  }
 };
 
 struct Deformed {
@@ -37,13 +47,14 @@ struct Deformed {
 
 Deformed run(std::string_view name, const Scene& scene) {
   const Deformer& deformer = findDeformer(name);
-  std::vector<float> scratch(deformer.scratchSize(static_cast<Index>(scene.transforms.size())));
+  const auto prepared = scene.prepared(deformer);
+  std::vector<float> scratch(deformer.scratchSize(scene.positions.size(), scene.jointCount()));
   Deformed out = {std::vector<Vec3f>(scene.positions.size()), std::vector<Vec3f>(scene.normals.size())};
-  deformer.deform(scene.input(), {out.positions, out.normals}, scratch);
+  deformer.deform(scene.input(prepared.get()), {out.positions, out.normals}, scratch);
   return out;
 }
 
-class Random {
+class RandomValues {
  public:
   double in(double low, double high) { return std::uniform_real_distribution<double>(low, high)(generator_); }
   Vec3 vector() { return {in(-1, 1), in(-1, 1), in(-1, 1)}; }
@@ -56,7 +67,7 @@ class Random {
 
 enum class Maps { kIdentity, kRigid, kScaled, kSheared };
 
-Affine randomMap(Random& random, Maps kind, const Vec3& center) {
+Affine randomMap(RandomValues& random, Maps kind, const Vec3& center) {
   Affine map = Affine::Identity();
   if (kind == Maps::kIdentity) return map;
   map.linear() = random.rotation(2.0).toRotationMatrix();
@@ -69,8 +80,9 @@ Affine randomMap(Random& random, Maps kind, const Vec3& center) {
 }
 
 Scene randomScene(Index vertices, Index slots, Maps kind) {
-  Random random;
+  RandomValues random;
   Scene scene;
+  auto rotationCenters = std::make_shared<RotationCenters>();
   constexpr Index kJoints = 9;
   for (Index j = 0; j < kJoints; ++j) {
     scene.centers.push_back(random.vector());
@@ -80,7 +92,7 @@ Scene randomScene(Index vertices, Index slots, Maps kind) {
   for (Index v = 0; v < vertices; ++v) {
     scene.positions.push_back(random.vector().cast<float>());
     scene.normals.push_back(random.vector().normalized().cast<float>());
-    scene.rotationCenters.push_back(random.vector().cast<float>());
+    rotationCenters->centers.push_back(random.vector().cast<float>());
     std::vector<double> raw;
     for (Index s = 0; s < slots; ++s) raw.push_back(random.in(0.01, 1));
     std::sort(raw.rbegin(), raw.rend());
@@ -91,6 +103,7 @@ Scene randomScene(Index vertices, Index slots, Maps kind) {
       scene.weights.weights.push_back(static_cast<float>(raw[s] / sum));
     }
   }
+  scene.rotationCenters = std::move(rotationCenters);
   return scene;
 }
 
@@ -151,7 +164,7 @@ Vec3 centeredOracle(const Scene& scene, Index v) {
     turn += weight * q.coeffs();
     stretch += weight * s0;
   }
-  const Vec3 center = scene.rotationCenters[v].cast<double>();
+  const Vec3 center = scene.rotationCenters->centers[v].cast<double>();
   const Vec3 arm = stretch * (scene.positions[v].cast<double>() - center);
   return (blendedMatrix(scene, v) * center.homogeneous()).head<3>() + Quat(turn).normalized() * arm;
 }
@@ -204,7 +217,7 @@ TEST_P(DeformerTest, EveryBuildOfTheInnerLoopsGivesTheSameBits) {
   const Scene s = scene();
   const std::size_t count = s.positions.size();
   std::vector<float> columns(kFloatsPerColumns * 9), stretches(columns.size()), motions(kFloatsPerMotion * 9);
-  Random random;
+  RandomValues random;
   for (float& x : columns) x = static_cast<float>(random.in(-1, 1));
   for (float& x : stretches) x = static_cast<float>(random.in(-1, 1));
   for (float& x : motions) x = static_cast<float>(random.in(-1, 1));
@@ -220,7 +233,7 @@ TEST_P(DeformerTest, EveryBuildOfTheInnerLoopsGivesTheSameBits) {
                            columns.data(),
                            stretches.data(),
                            motions.data(),
-                           s.rotationCenters[0].data()};
+                           s.rotationCenters->centers[0].data()};
     kernel(job, 0, count);
     return out;
   };
@@ -314,8 +327,9 @@ TEST_P(EveryDeformer, MayWriteOverItsInput) {
   Scene s = randomScene(103, 4, Maps::kScaled);
   const Deformed apart = run(GetParam(), s);
   const Deformer& deformer = findDeformer(GetParam());
-  std::vector<float> scratch(deformer.scratchSize(9));
-  deformer.deform(s.input(), {s.positions, s.normals}, scratch);
+  const auto prepared = s.prepared(deformer);
+  std::vector<float> scratch(deformer.scratchSize(s.positions.size(), 9));
+  deformer.deform(s.input(prepared.get()), {s.positions, s.normals}, scratch);
   EXPECT_EQ(bitsOf(s.positions), bitsOf(apart.positions));
   EXPECT_EQ(bitsOf(s.normals), bitsOf(apart.normals));
 }
@@ -334,17 +348,51 @@ TEST_P(EveryDeformer, ThreadsDoNotChangeABit) {
 TEST_P(EveryDeformer, SizesThatDoNotMatchAreRefused) {
   Scene s = randomScene(10, 4, Maps::kRigid);
   const Deformer& deformer = findDeformer(GetParam());
-  std::vector<float> scratch(deformer.scratchSize(9));
+  const auto prepared = s.prepared(deformer);
+  const DeformInput input = s.input(prepared.get());
+  std::vector<float> scratch(deformer.scratchSize(10, 9));
   std::vector<Vec3f> out(10), tooFew(9);
-  EXPECT_THROW(deformer.deform(s.input(), {tooFew, {}}, scratch), Error);
-  EXPECT_THROW(deformer.deform(s.input(), {out, tooFew}, scratch), Error);
-  EXPECT_THROW(deformer.deform(s.input(), {out, {}}, std::span(scratch).first(8)), Error);
+  EXPECT_THROW(deformer.deform(input, {tooFew, {}}, scratch), Error);
+  EXPECT_THROW(deformer.deform(input, {out, tooFew}, scratch), Error);
+  EXPECT_THROW(deformer.deform(input, {out, {}}, std::span(scratch).first(8)), Error);
   s.weights.weights.pop_back();
-  EXPECT_THROW(deformer.deform(s.input(), {out, {}}, scratch), Error);
+  EXPECT_THROW(deformer.deform(input, {out, {}}, scratch), Error);
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, EveryDeformer,
-                         ::testing::Values("linear-blend", "dual-quaternion", "centers-of-rotation"));
+TEST_P(EveryDeformer, NeedsItsOwnPreparation) {
+  const Scene s = randomScene(10, 4, Maps::kRigid), other = randomScene(11, 4, Maps::kRigid);
+  const Deformer& deformer = findDeformer(GetParam());
+  if (!deformer.prepare) GTEST_SKIP() << "prepares nothing";
+  struct : DeformPreparation {
+  } foreign;
+  const auto forOther = other.prepared(deformer);
+  std::vector<float> scratch(deformer.scratchSize(10, 9));
+  std::vector<Vec3f> out(10);
+  for (const DeformPreparation* wrong : {static_cast<const DeformPreparation*>(nullptr),
+                                         static_cast<const DeformPreparation*>(&foreign), forOther.get()}) {
+    EXPECT_THROW(deformer.deform(s.input(wrong), {out, {}}, scratch), Error);
+  }
+}
+
+TEST_P(EveryDeformer, RefusesToPrepareWhatDoesNotFit) {
+  Scene s = randomScene(10, 4, Maps::kRigid);
+  const Deformer& deformer = findDeformer(GetParam());
+  if (!deformer.prepare) GTEST_SKIP() << "prepares nothing";
+  s.rotationCenters = nullptr;
+  EXPECT_NO_THROW(s.prepared(deformer));
+  EXPECT_THROW(prepareDeformer(deformer, {s.positions, s.triangles, s.weights}, 3), Error);
+  s.triangles = {{0, 1, 10}};
+  EXPECT_THROW(s.prepared(deformer), Error);
+  s.triangles.clear();
+  s.positions.pop_back();
+  EXPECT_THROW(s.prepared(deformer), Error);
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, EveryDeformer, ::testing::ValuesIn([] {
+                           std::vector<std::string_view> names;
+                           for (const Deformer& deformer : deformers()) names.push_back(deformer.name);
+                           return names;
+                         }()));
 
 // A tube along x, its far half twisted about x: the classic case that tells the two apart.
 Scene twistedMiddle(double angle) {
@@ -376,14 +424,6 @@ TEST(DualQuaternion, ScaleAboutTheJointKeepsTheJoint) {
   s.transforms = {Affine::Identity(), forearm};
   s.centers = {Vec3::Zero(), elbow};
   expectNear(run("dual-quaternion", s).positions[0], elbow, 1e-6, 0);
-}
-
-TEST(CentersOfRotation, AreNeeded) {
-  Scene s = randomScene(10, 4, Maps::kRigid);
-  s.rotationCenters.clear();
-  EXPECT_THROW(run("centers-of-rotation", s), Error);
-  s.rotationCenters.resize(9);
-  EXPECT_THROW(run("centers-of-rotation", s), Error);
 }
 
 TEST(DeformerTable, NamesWhatThereIs) {

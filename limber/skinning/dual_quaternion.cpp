@@ -4,13 +4,13 @@
 
 namespace limber {
 
-std::size_t dualQuaternionScratch(Index jointCount) {
+std::size_t dualQuaternionScratch(std::size_t /*vertexCount*/, Index jointCount) {
   return (kFloatsPerMotion + kFloatsPerColumns) * jointCount + kScratchAlignment;
 }
 
 void dualQuaternion(const DeformInput& input, const DeformOutput& output, std::span<float> scratch) {
   const Index jointCount = static_cast<Index>(input.transforms.size());
-  checkDeformCall(input, output, scratch.size(), dualQuaternionScratch(jointCount));
+  checkDeformCall(input, output, scratch.size(), dualQuaternionScratch(input.positions.size(), jointCount));
   float* scales = alignedScratch(scratch);
   float* motions = scales + kFloatsPerColumns * jointCount;
   bool scaled = false;

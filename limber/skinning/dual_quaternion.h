@@ -11,6 +11,6 @@ namespace limber {
 // vertex without weights stays; a mirroring transform is a mirroring S. Cost: 8 multiplications and additions of four
 // floats for the blend, some 40 for signs and the motion.
 void dualQuaternion(const DeformInput& input, const DeformOutput& output, std::span<float> scratch);
-std::size_t dualQuaternionScratch(Index jointCount);
+std::size_t dualQuaternionScratch(std::size_t vertexCount, Index jointCount);
 
 }  // namespace limber

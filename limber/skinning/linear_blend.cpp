@@ -4,13 +4,13 @@
 
 namespace limber {
 
-std::size_t linearBlendScratch(Index jointCount) {
+std::size_t linearBlendScratch(std::size_t /*vertexCount*/, Index jointCount) {
   return kFloatsPerColumns * jointCount + kScratchAlignment;
 }
 
 void linearBlend(const DeformInput& input, const DeformOutput& output, std::span<float> scratch) {
   const Index jointCount = static_cast<Index>(input.transforms.size());
-  checkDeformCall(input, output, scratch.size(), linearBlendScratch(jointCount));
+  checkDeformCall(input, output, scratch.size(), linearBlendScratch(input.positions.size(), jointCount));
   float* columns = alignedScratch(scratch);
   for (Index j = 0; j < jointCount; ++j) packColumns(input.transforms[j], columns + kFloatsPerColumns * j);
 

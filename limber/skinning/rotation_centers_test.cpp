@@ -124,13 +124,13 @@ TEST(RotationCenters, RefuseWhatDoesNotFit) {
 }
 
 std::vector<Vec3f> deformed(const Tube& t, const char* name, const Quat& turn) {
-  const std::vector<Vec3f> centers = rotationCenters(t.positions, t.triangles, t.weights);
   const Affine identity = Affine::Identity(), turned(turn);
   const std::vector<Affine> transforms = {identity, turned, turned};
   const Deformer& deformer = findDeformer(name);
-  std::vector<float> scratch(deformer.scratchSize(3));
+  const auto prepared = prepareDeformer(deformer, {t.positions, t.triangles, t.weights}, 3);
+  std::vector<float> scratch(deformer.scratchSize(t.positions.size(), 3));
   std::vector<Vec3f> out(t.positions.size());
-  deformer.deform({t.positions, {}, t.weights, transforms, {}, centers}, {out, {}}, scratch);
+  deformer.deform({t.positions, {}, t.weights, transforms, {}, prepared.get()}, {out, {}}, scratch);
   return out;
 }
 

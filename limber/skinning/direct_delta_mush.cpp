@@ -1,0 +1,285 @@
+#include "limber/skinning/direct_delta_mush.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "limber/core/error.h"
+#include "limber/core/parallel.h"
+#include "limber/skinning/deform_call.h"
+#include "limber/skinning/implicit_smoother.h"
+
+namespace limber {
+
+namespace {
+
+// Of the surroundings' mean squared distance, as if they had it in every direction; with it R of a flat or straight
+// surface is known. Small against what a bend does to it.
+constexpr double kRoundness = 1e-3;
+// The same where all surroundings lie at one place, in squared longest sides.
+constexpr double kLeastRoundness = 1e-12;
+
+// Moments of weighted points up to the second order.
+struct PointMoments {
+  double weight = 0;
+  Vec3 first = Vec3::Zero();
+  Mat3 second = Mat3::Zero();
+
+  PointMoments& operator+=(const PointMoments& other) {
+    weight += other.weight;
+    first += other.first;
+    second += other.second;
+    return *this;
+  }
+  bool isFinite() const { return std::isfinite(weight) && first.allFinite() && second.allFinite(); }
+};
+
+PointMoments operator*(double factor, const PointMoments& m) {
+  return {factor * m.weight, factor * m.first, factor * m.second};
+}
+
+PointMoments operator-(const PointMoments& a, const PointMoments& b) {
+  return {a.weight - b.weight, a.first - b.first, a.second - b.second};
+}
+
+// About a point that lies at `offset` from the one they are about. Bit for bit symmetric as `m` is: where nothing
+// moves, nothing must seem to turn.
+PointMoments about(const PointMoments& m, const Vec3& offset) {
+  const Mat3 mixed = m.first * offset.transpose(), square = offset * offset.transpose();
+  const Mat3 both = mixed + mixed.transpose();
+  return {m.weight, m.first - m.weight * offset, (m.second - both) + m.weight * square};
+}
+
+struct VertexWeight {
+  Index vertex = 0;
+  double weight = 0;
+};
+
+// A joint's part in a vertex' row.
+struct JointPart {
+  Index vertex = 0, joint = 0;
+  PointMoments moments;
+};
+
+class MomentTable {
+ public:
+  MomentTable(const SmoothingSurface& surface, Index jointCount, const DirectDeltaMushOptions& options)
+      : surface_(surface),
+        options_(options),
+        rotation_(surface, surface.stepsFor(options.rotationReach) / options.smoothings, options.smoothings),
+        translation_(surface, surface.stepsFor(options.translationReach) / options.smoothings, options.smoothings),
+        boundTo_(jointCount) {
+    gatherWeights();
+    makePlaces();
+  }
+
+  std::shared_ptr<DirectDeltaMushRows> rows() {
+    const std::vector<PointMoments> whole = momentsOf(everything_), bound = momentsOf(bound_);
+    std::vector<std::vector<JointPart>> ofJoint(boundTo_.size());
+    parallelFor(boundTo_.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t joint = begin; joint < end; ++joint) {
+        if (!boundTo_[joint].empty()) ofJoint[joint] = partsOf(static_cast<Index>(joint));
+      }
+    });
+    std::vector<std::vector<JointPart>> ofVertex(surface_.vertexCount());
+    for (std::vector<JointPart>& parts : ofJoint) {
+      for (const JointPart& part : parts) ofVertex[part.vertex].push_back(part);
+      parts = {};
+    }
+    auto result = std::make_shared<DirectDeltaMushRows>();
+    result->rowOf = surface_.weldedVertex;
+    result->jointCount = static_cast<Index>(boundTo_.size());
+    result->begin.push_back(0);
+    for (Index v = 0; v < surface_.vertexCount(); ++v) addRow(v, ofVertex[v], whole[v], bound[v], *result);
+    return result;
+  }
+
+ private:
+  void gatherWeights() {
+    for (Index v = 0; v < surface_.vertexCount(); ++v) {
+      everything_.push_back({v, 1});
+      double sum = 0;
+      for (Index slot = 0; slot < surface_.weights.slots; ++slot) {
+        const double weight = surface_.weights.weightsOf(v)[slot];
+        if (!(weight > 0)) continue;
+        boundTo_[surface_.weights.jointsOf(v)[slot]].push_back({v, weight});
+        sum += weight;
+      }
+      if (sum > 0) bound_.push_back({v, sum});
+    }
+  }
+
+  Vec3 position(Index vertex) const { return surface_.positions[vertex].cast<double>(); }
+
+  // p = B u.
+  void makePlaces() {
+    std::vector<double> x(std::size_t{ImplicitSmoother::kColumns} * surface_.vertexCount());
+    for (Index v = 0; v < surface_.vertexCount(); ++v) {
+      for (int i = 0; i < 3; ++i) x[rotation_.place(v) + i] = position(v)[i];
+    }
+    rotation_.smooth(x, 3);
+    for (Index v = 0; v < surface_.vertexCount(); ++v) {
+      const double* at = x.data() + rotation_.place(v);
+      Vec3 place(at[0], at[1], at[2]);
+      const bool alone = surface_.stiffness.coeff(v, v) == 0;
+      places_.push_back(alone || !place.allFinite() ? position(v) : place);
+    }
+  }
+
+  // Moments of the smoothed weights about each vertex' smoothed place; by the paper's Psi and w' (equations 15 and 18).
+  std::vector<PointMoments> momentsOf(const std::vector<VertexWeight>& weights) const {
+    // About their middle, so that little is lost by taking differences.
+    Vec3 middle = Vec3::Zero();
+    for (const VertexWeight& w : weights) middle += position(w.vertex) / static_cast<double>(weights.size());
+    const std::size_t size = std::size_t{ImplicitSmoother::kColumns} * surface_.vertexCount();
+    std::vector<double> lower(size, 0.0), upper(size, 0.0), translation(size, 0.0);
+    for (const VertexWeight& w : weights) {
+      const Vec3 arm = position(w.vertex) - middle;
+      double* low = lower.data() + rotation_.place(w.vertex);
+      double* high = upper.data() + rotation_.place(w.vertex);
+      low[0] += w.weight;
+      translation[translation_.place(w.vertex)] += w.weight;
+      for (int i = 0; i < 3; ++i) {
+        low[1 + i] += w.weight * arm[i];
+        low[4 + i] += w.weight * arm[i] * arm[i];
+        high[i] += w.weight * arm[i] * arm[(i + 1) % 3];
+      }
+    }
+    rotation_.smooth(lower, 7);
+    rotation_.smooth(upper, 3);
+    translation_.smooth(translation, 1);
+    std::vector<PointMoments> result;
+    for (Index v = 0; v < surface_.vertexCount(); ++v) {
+      const double* low = lower.data() + rotation_.place(v);
+      const double* high = upper.data() + rotation_.place(v);
+      PointMoments m = {low[0], {low[1], low[2], low[3]}, Mat3::Zero()};
+      m.second << low[4], high[0], high[2], high[0], low[5], high[1], high[2], high[1], low[6];
+      m = (1 - options_.translationWeight) * about(m, places_[v] - middle);
+      m.weight += options_.translationWeight * translation[translation_.place(v)];
+      if (surface_.stiffness.coeff(v, v) == 0 || !m.isFinite()) m = {low[0], Vec3::Zero(), Mat3::Zero()};
+      result.push_back(m);
+    }
+    return result;
+  }
+
+  std::vector<JointPart> partsOf(Index joint) const {
+    std::vector<JointPart> parts;
+    const std::vector<PointMoments> moments = momentsOf(boundTo_[joint]);
+    for (Index v = 0; v < moments.size(); ++v) {
+      if (moments[v].weight >= options_.leastWeight) parts.push_back({v, joint, moments[v]});
+    }
+    return parts;
+  }
+
+  // What small parts had is given to the others, so that one motion of all joints stays one motion.
+  static void completeParts(std::vector<JointPart>& parts, const PointMoments& bound) {
+    PointMoments kept;
+    for (const JointPart& part : parts) kept += part.moments;
+    const PointMoments missing = bound - kept;
+    for (JointPart& part : parts) part.moments += part.moments.weight / kept.weight * missing;
+  }
+
+  void addRow(Index vertex, std::vector<JointPart>& parts, PointMoments whole, PointMoments bound,
+              DirectDeltaMushRows& rows) const {
+    constexpr double kRounding = 1e-6;
+    std::stable_sort(parts.begin(), parts.end(),
+                     [](const JointPart& a, const JointPart& b) { return a.moments.weight > b.moments.weight; });
+    if (std::abs(bound.weight - 1) < kRounding) bound = whole, bound.weight = 1;
+    completeParts(parts, bound);
+    const double round =
+        kRoundness / 3 * whole.second.trace() + kLeastRoundness * surface_.longestSide * surface_.longestSide;
+    for (JointPart& part : parts) {
+      part.moments.second.diagonal().array() += round * part.moments.weight;
+      rows.joints.push_back(part.joint);
+      addMatrix(part.moments, rows.moments);
+    }
+    rows.begin.push_back(static_cast<Index>(rows.joints.size()));
+    whole.second.diagonal().array() += round;
+    addBase(whole.second, places_[vertex], rows.bases);
+  }
+
+  static void addMatrix(const PointMoments& m, std::vector<float>& to) {
+    for (int row = 0; row < 3; ++row) {
+      for (int column = 0; column < 3; ++column) to.push_back(static_cast<float>(m.second(row, column)));
+      to.push_back(static_cast<float>(m.first[row]));
+    }
+    for (int column = 0; column < 3; ++column) to.push_back(static_cast<float>(m.first[column]));
+    to.push_back(static_cast<float>(m.weight));
+  }
+
+  static void addBase(const Mat3& second, const Vec3& place, std::vector<float>& to) {
+    for (int column = 0; column < 3; ++column) {
+      for (int row = 0; row < 3; ++row) to.push_back(static_cast<float>(second(row, column)));
+      to.push_back(0);
+    }
+    for (int i = 0; i < 3; ++i) to.push_back(static_cast<float>(place[i]));
+    to.push_back(static_cast<float>(1 / second.trace()));
+  }
+
+  const SmoothingSurface& surface_;
+  const DirectDeltaMushOptions& options_;
+  ImplicitSmoother rotation_, translation_;
+  std::vector<std::vector<VertexWeight>> boundTo_;  // by joint
+  std::vector<VertexWeight> everything_, bound_;
+  std::vector<Vec3> places_;
+};
+
+void checkOptions(const DirectDeltaMushOptions& options) {
+  const bool right = options.rotationReach > 0 && options.translationReach > 0 && options.smoothings > 0 &&
+                     options.translationWeight >= 0 && options.translationWeight < 1 && options.leastWeight >= 0 &&
+                     options.leastWeight <= 0.1;
+  if (!right) throw Error(ErrorCode::kBadArgument, "an option of direct delta mush is out of its range");
+}
+
+}  // namespace
+
+std::shared_ptr<const DirectDeltaMushRows> directDeltaMushRows(const BoundSurface& surface, Index jointCount,
+                                                               const DirectDeltaMushOptions& options) {
+  checkOptions(options);
+  const SmoothingSurface smooth = smoothingSurface(surface);
+  return MomentTable(smooth, jointCount, options).rows();
+}
+
+std::shared_ptr<const DeformPreparation> prepareDirectDeltaMush(const BoundSurface& surface, Index jointCount) {
+  return directDeltaMushRows(surface, jointCount);
+}
+
+std::size_t directDeltaMushScratch(std::size_t /*vertexCount*/, Index jointCount) {
+  return (kFloatsPerMotion + 3 * kFloatsPerColumns) * jointCount + kScratchAlignment;
+}
+
+void directDeltaMush(const DeformInput& input, const DeformOutput& output, std::span<float> scratch) {
+  const Index jointCount = static_cast<Index>(input.transforms.size());
+  checkDeformCall(input, output, scratch.size(), directDeltaMushScratch(input.positions.size(), jointCount));
+  const auto& rows = preparationOf<DirectDeltaMushRows>(input);
+  checkPreparedFor(rows.rowOf.size(), rows.jointCount, input);
+  float* columns = alignedScratch(scratch);
+  float* stretches = columns + kFloatsPerColumns * jointCount;
+  float* turns = stretches + kFloatsPerColumns * jointCount;
+  float* motions = turns + kFloatsPerColumns * jointCount;
+  bool stretched = false;
+  for (Index j = 0; j < jointCount; ++j) {
+    packColumns(input.transforms[j], columns + kFloatsPerColumns * j);
+    // About the origin: only the linear part of the stretch and the rotation of the motion are used.
+    float* motion = motions + kFloatsPerMotion * j;
+    stretched |= packMotion(input.transforms[j], Vec3::Zero(), motion, stretches + kFloatsPerColumns * j);
+    const Quat rotation(motion[3], motion[0], motion[1], motion[2]);
+    packColumns(Affine(rotation.normalized()), turns + kFloatsPerColumns * j);
+  }
+
+  DeformJob job = deformJob(input, output);
+  job.columns = columns;
+  job.stretches = stretches;
+  job.turns = turns;
+  job.motions = motions;
+  job.rowOf = rows.rowOf.data();
+  job.rowBegin = rows.begin.data();
+  job.rowJoints = rows.joints.data();
+  job.rowMoments = rows.moments.data();
+  job.rowBases = rows.bases.data();
+  runDeformJob(directKernels().direct[job.outNormals != nullptr][stretched], job, input.positions.size());
+}
+
+}  // namespace limber

@@ -1,0 +1,50 @@
+// Direct delta mush: the smoothing of delta mush, taken from each frame into matrices that are made once.
+#pragma once
+
+#include <vector>
+
+#include "limber/skinning/deformer.h"
+
+namespace limber {
+
+// The paper smooths by B = (I + lambda L)^-p and C = (I + kappa L)^-p; here lambda and kappa follow from how far that
+// reaches, so that a surface bends alike however finely it is cut (SmoothingSurface::stepsFor).
+struct DirectDeltaMushOptions {
+  // Of B and C: root mean square distance, in longest sides of the model; those of the paper's lambda = 3, kappa = 1
+  // and p = 20 on a body of some 6,000 vertices.
+  double rotationReach = 0.08, translationReach = 0.046;
+  double translationWeight = 0.8;  // alpha of the paper, in [0, 1): 0 smooths as delta mush does, which shrinks bends
+  int smoothings = 2;              // p; more make the reach end sooner
+  double leastWeight = 1.0 / 256;  // of a joint's share in a vertex; less is given to the others
+};
+
+// One row of moments for each vertex of the welded surface: for each joint that its surroundings are bound to, the
+// symmetric matrix sum over k of b_k w_kj [u_k - p; 1] [u_k - p; 1]^T about the smoothed place p = sum of b_k u_k.
+struct DirectDeltaMushRows : DeformPreparation {
+  std::vector<Index> rowOf;    // #V
+  std::vector<Index> begin;    // #S + 1
+  std::vector<Index> joints;   // #E, strongest first
+  std::vector<float> moments;  // #E * 16
+  Index jointCount = 0;
+  std::vector<float> bases;  // #S * 16: columns of the sum over all joints, then p; 1 / trace in the last
+};
+
+std::shared_ptr<const DeformPreparation> prepareDirectDeltaMush(const BoundSurface& surface, Index jointCount);
+// Throws Error kBadArgument where an option is out of its range. In parallel; the result does not depend on the number
+// of threads. Cost: two factorisations and about 3 solves of 8 columns, `smoothings` times, for each joint with
+// weights.
+std::shared_ptr<const DirectDeltaMushRows> directDeltaMushRows(const BoundSurface& surface, Index jointCount,
+                                                               const DirectDeltaMushOptions& options = {});
+
+// v' = q + R (v - p): q is where the joints take the surroundings' mean, R the rotation nearest to what they do to the
+// surroundings (Le, Lewis 2019, equations 14 to 18, variant 0). A little of the joints' blended rotation is added to
+// the surroundings, which tells R where they are flat or a line. Joints' scales and shears are blended apart, as for
+// centersOfRotation (the paper has rigid motions only). Vertices far from joints that bend follow theirs exactly. R is
+// found by four steps of Newton's method from the blended quaternions, within 1e-5 where joints turn against each other
+// by less than a right angle.
+// Cost: 20 multiplications and additions of four floats for each joint of a vertex, some 130 for R where there are
+// several: up to eight times that of dual quaternions.
+void directDeltaMush(const DeformInput& input, const DeformOutput& output, std::span<float> scratch);
+std::size_t directDeltaMushScratch(std::size_t vertexCount, Index jointCount);
+
+}  // namespace limber

@@ -1,0 +1,179 @@
+// Direct delta mush against the paper's formulas in dense matrices, and what it is for: joints that bend softly.
+#include "limber/skinning/direct_delta_mush.h"
+
+#include <gtest/gtest.h>
+#include <Eigen/Dense>
+
+#include "limber/core/error.h"
+#include "limber/core/random.h"
+#include "limber/mesh/components.h"
+#include "limber/mesh/laplacian.h"
+#include "limber/skinning/deform_kernels.h"
+#include "limber/skinning/testing/bent_tube.h"
+
+namespace limber {
+namespace {
+
+using testing::bentTube;
+using testing::BoundMesh;
+
+Quat bendBy(double angle) {
+  return Quat(Eigen::AngleAxisd(angle, Vec3::UnitZ()));
+}
+
+std::vector<Vec3f> directly(const BoundMesh& bound, const DirectDeltaMushOptions& options) {
+  return bound.deformed(findDeformer("direct-delta-mush"),
+                        directDeltaMushRows(bound.surface(), bound.jointCount(), options).get());
+}
+
+using Dense = Eigen::MatrixXd;
+
+// (I + lambda L)^-p with L the normalised Laplacian, lambda as the reach asks for.
+Dense denseSmoothing(const BoundMesh& bound, double reach, int times) {
+  const TriMesh& mesh = bound.mesh;
+  const Laplacian laplacian = robustLaplacian(mesh, vertexComponents(mesh));
+  Dense full(laplacian.stiffness);
+  full.triangularView<Eigen::StrictlyUpper>() = full.transpose();
+  const Eigen::Index count = full.rows();
+  double step = 0;
+  Box box;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    box.add(mesh.position(static_cast<Index>(i)));
+    for (Eigen::Index k = 0; k < count; ++k) {
+      const double length2 =
+          (mesh.position(static_cast<Index>(i)) - mesh.position(static_cast<Index>(k))).squaredNorm();
+      if (i != k) step += laplacian.mass[i] * -full(i, k) / full(i, i) * length2 / laplacian.mass.sum();
+    }
+  }
+  const double steps = std::max(1.0, std::pow(reach * box.longestSide(), 2) / step);
+  const Dense normalised = full.diagonal().cwiseInverse().asDiagonal() * full;
+  const Dense once = (Dense::Identity(count, count) + steps / times * normalised).inverse();
+  Dense result = Dense::Identity(count, count);
+  for (int i = 0; i < times; ++i) result *= once;
+  return result;
+}
+
+// Equations 14 to 18: Omega = (1 - alpha) Psi + alpha w' [p; 1] [p; 1]^T, [Q q; p 1] = sum of M Omega, R = U V^T.
+std::vector<Vec3> byThePaper(const BoundMesh& bound, const DirectDeltaMushOptions& options) {
+  const Eigen::Index count = bound.mesh.vertexCount();
+  const Dense b = denseSmoothing(bound, options.rotationReach, options.smoothings);
+  const Dense c = denseSmoothing(bound, options.translationReach, options.smoothings);
+  Dense u(count, 4), w = Dense::Zero(count, bound.jointCount());
+  for (Index v = 0; v < count; ++v) {
+    u.row(v) = bound.mesh.position(v).homogeneous().transpose();
+    for (Index s = 0; s < bound.weights.slots; ++s) {
+      w(v, bound.weights.jointsOf(v)[s]) += bound.weights.weightsOf(v)[s];
+    }
+  }
+  const Dense p = b * u, smoothWeights = c * w;
+  std::vector<Vec3> result;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    Mat4 sum = Mat4::Zero();
+    for (Index j = 0; j < bound.jointCount(); ++j) {
+      Mat4 psi = Mat4::Zero();
+      for (Eigen::Index k = 0; k < count; ++k) psi += b(i, k) * w(k, j) * u.row(k).transpose() * u.row(k);
+      const Mat4 omega = (1 - options.translationWeight) * psi +
+                         options.translationWeight * smoothWeights(i, j) * p.row(i).transpose() * p.row(i);
+      sum += bound.transforms[j].matrix() * omega;
+    }
+    const Vec3 q = sum.block<3, 1>(0, 3), place = p.row(i).head<3>().transpose();
+    const Eigen::JacobiSVD<Mat3> svd(sum.topLeftCorner<3, 3>() - q * place.transpose(),
+                                     Eigen::ComputeFullU | Eigen::ComputeFullV);
+    Mat3 flip = Mat3::Identity();
+    flip(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
+    const Mat3 rotation = svd.matrixU() * flip * svd.matrixV().transpose();
+    result.push_back(rotation * (u.row(i).head<3>().transpose() - place) + q);
+  }
+  return result;
+}
+
+double farthest(const std::vector<Vec3f>& actual, const std::vector<Vec3>& wanted) {
+  double most = 0;
+  for (std::size_t v = 0; v < wanted.size(); ++v) {
+    const double distance = (actual[v].cast<double>() - wanted[v]).norm();
+    if (!(distance <= most)) most = distance;
+  }
+  return most;
+}
+
+TEST(DirectDeltaMush, IsThePapersFormula) {
+  for (const double alpha : {0.0, 0.8}) {
+    for (const int smoothings : {1, 2, 5}) {
+      const BoundMesh bound = bentTube(10, 21, 0.2, bendBy(1.4));
+      DirectDeltaMushOptions options;
+      options.translationWeight = alpha;
+      options.smoothings = smoothings;
+      options.leastWeight = 0;
+      EXPECT_LT(farthest(directly(bound, options), byThePaper(bound, options)), 1e-4) << alpha << " " << smoothings;
+    }
+  }
+}
+
+TEST(DirectDeltaMush, SmallWeightsThatAreLeftOutShowLittle) {
+  const BoundMesh bound = bentTube(10, 21, 0.2, bendBy(1.4));
+  EXPECT_LT(farthest(bound.deformed("direct-delta-mush"), byThePaper(bound, {})), 3e-3);
+}
+
+TEST(DirectDeltaMush, FarFromTheJointIsRigid) {
+  const Quat turn = bendBy(2);
+  const BoundMesh bound = bentTube(12, 61, 0.1, turn);
+  const std::vector<Vec3f> out = bound.deformed("direct-delta-mush");
+  for (Index v = 0; v < bound.mesh.vertexCount(); ++v) {
+    if (bound.mesh.positions[v].x() < -0.35f) {
+      EXPECT_EQ(out[v], bound.mesh.positions[v]) << v;
+    }
+    if (bound.mesh.positions[v].x() > 0.35f) {
+      EXPECT_LT((out[v].cast<double>() - turn * bound.mesh.position(v)).norm(), 1e-6) << v;
+    }
+  }
+}
+
+TEST(DirectDeltaMush, EveryBuildOfTheInnerLoopGivesTheSameBits) {
+  if (!avx2DirectKernels()) GTEST_SKIP() << "no AVX2 here";
+  const BoundMesh bound = testing::boundAtRandom(testing::tube(7, 9, true));
+  const auto rows = directDeltaMushRows(bound.surface(), bound.jointCount());
+  const std::size_t count = bound.mesh.positions.size();
+  Random random(5);
+  std::vector<float> maps(3 * kFloatsPerColumns * bound.jointCount()), motions(kFloatsPerMotion * bound.jointCount());
+  for (float& x : maps) x = static_cast<float>(random.uniform(-1, 1));
+  for (float& x : motions) x = static_cast<float>(random.uniform(-1, 1));
+  const auto bits = [&](const DirectKernels& kernels, bool normals, bool scales) {
+    std::vector<float> out(6 * count);
+    DeformJob job;
+    job.positions = bound.mesh.positions[0].data();
+    job.normals = normals ? bound.mesh.positions[0].data() : nullptr;
+    job.outPositions = out.data();
+    job.outNormals = normals ? out.data() + 3 * count : nullptr;
+    job.columns = maps.data();
+    job.stretches = maps.data() + kFloatsPerColumns * bound.jointCount();
+    job.turns = maps.data() + 2 * kFloatsPerColumns * bound.jointCount();
+    job.motions = motions.data();
+    job.rowOf = rows->rowOf.data();
+    job.rowBegin = rows->begin.data();
+    job.rowJoints = rows->joints.data();
+    job.rowMoments = rows->moments.data();
+    job.rowBases = rows->bases.data();
+    kernels.direct[normals][scales](job, 0, count);
+    return out;
+  };
+  for (const bool normals : {false, true}) {
+    for (const bool scales : {false, true}) {
+      EXPECT_EQ(bits(*avx2DirectKernels(), normals, scales), bits(baselineDirectKernels(), normals, scales))
+          << normals << scales;
+    }
+  }
+}
+
+TEST(DirectDeltaMush, RefusesOptionsOutOfRange) {
+  const BoundMesh bound = bentTube(6, 5, 0.2, bendBy(1));
+  DirectDeltaMushOptions alpha, reach, times;
+  alpha.translationWeight = 1;
+  reach.rotationReach = 0;
+  times.smoothings = 0;
+  for (const DirectDeltaMushOptions& wrong : {alpha, reach, times}) {
+    EXPECT_THROW(directDeltaMushRows(bound.surface(), 2, wrong), Error);
+  }
+}
+
+}  // namespace
+}  // namespace limber
