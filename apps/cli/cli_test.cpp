@@ -165,6 +165,7 @@ TEST_F(Cli, UnknownNamesListTheKnownOnes) {
   EXPECT_THAT(run({"sample", "unicorn", "-o", "o.glb"}).error, AllOf(HasSubstr("quadruped"), HasSubstr("walk")));
   EXPECT_THAT(run({"preview", "robot.glb", "-o", "o.png", "--show", "magic"}).error, HasSubstr("weights"));
   EXPECT_THAT(run({"preview", "robot.glb", "-o", "o.png", "--view", "magic"}).error, HasSubstr("three-quarter"));
+  EXPECT_THAT(run({"preview", "robot.glb", "-o", "o.png", "--deformer", "magic"}).error, HasSubstr("delta-mush"));
 }
 
 TEST_F(Cli, AnUnknownCommandIsNamedAndTheKnownOnesListed) {

@@ -11,6 +11,7 @@
 #include "limber/preview/animation.h"
 #include "limber/preview/apng.h"
 #include "limber/preview/render.h"
+#include "limber/skinning/deformer.h"
 #include "progress_line.h"
 
 namespace limber::cli {
@@ -18,7 +19,7 @@ namespace limber::cli {
 namespace {
 
 struct PreviewArguments {
-  std::string input, output, show = "model", size, view = "three-quarter", joint, clip;
+  std::string input, output, show = "model", size, view = "three-quarter", joint, clip, deformer = "linear-blend";
   std::optional<double> time;  // seconds
   int frames = 0;              // of a contact sheet; 0: one picture
   bool animate = false, turntable = false;
@@ -74,20 +75,20 @@ void checkPixels(std::size_t pictures, const PreviewOptions& preview) {
 }
 
 // A picture of a moment, a sheet of several, or an animation.
-Bytes clipPicture(const Asset& asset, const PreviewArguments& options, const PreviewOptions& preview,
-                  Progress& progress, Warnings& warnings) {
+Bytes clipPicture(const Asset& asset, const SceneMaker& scenes, const PreviewArguments& options,
+                  const PreviewOptions& preview, Progress& progress, Warnings& warnings) {
   const Clip clip = findClip(asset, options.clip);
   const std::vector<double> moments = momentsOf(options, clip);
   checkPixels(moments.size(), preview);
-  const std::vector<Image> images = renderClip(asset, clip, moments, preview, progress, warnings);
+  const std::vector<Image> images = renderClip(scenes, clip, moments, preview, progress, warnings);
   if (options.animate) return encodeApng(images, options.fps.value_or(kUsualFps));
   return encodePng(contactSheet(images, sheetColumns(static_cast<int>(images.size())), renderBackdrop(preview)));
 }
 
-Bytes turntable(const Asset& asset, const PreviewArguments& options, const PreviewOptions& preview, Progress& progress,
-                Warnings& warnings) {
+Bytes turntable(const Asset& asset, const SceneMaker& scenes, const PreviewArguments& options,
+                const PreviewOptions& preview, Progress& progress, Warnings& warnings) {
   const Scene scene =
-      showsClip(options) ? sceneAt(asset, findClip(asset, options.clip), options.time.value_or(0)) : makeScene(asset);
+      showsClip(options) ? scenes.at(findClip(asset, options.clip), options.time.value_or(0)) : scenes.still();
   warnings = scene.warnings;
   const double fps = options.fps.value_or(kUsualFps);
   const int count = std::max(1, static_cast<int>(std::lround(kTurnSeconds * fps)));
@@ -95,8 +96,8 @@ Bytes turntable(const Asset& asset, const PreviewArguments& options, const Previ
   return encodeApng(renderTurn(scene, preview, count, progress), fps);
 }
 
-Bytes stillPicture(const Asset& asset, const PreviewOptions& preview, Warnings& warnings) {
-  const Scene scene = makeScene(asset);
+Bytes stillPicture(const SceneMaker& scenes, const PreviewOptions& preview, Warnings& warnings) {
+  const Scene scene = scenes.still();
   warnings = scene.warnings;
   return encodePng(render(scene, preview));
 }
@@ -107,6 +108,7 @@ void run(PreviewArguments options) {
   if (options.fps && !options.animate && !options.turntable) {
     throw Error(ErrorCode::kBadArgument, "--fps is for moving pictures", "", "add --animate or --turntable");
   }
+  const Deformer& deformer = findDeformer(options.deformer);
   PreviewOptions preview;
   preview.show = parsePreviewShow(options.show);
   preview.view = parseView(options.view);
@@ -123,9 +125,10 @@ void run(PreviewArguments options) {
   progress->stage("draw");
   Warnings warnings;
   const auto draw = [&] {
-    if (options.turntable) return turntable(asset, options, preview, *progress, warnings);
-    if (showsClip(options)) return clipPicture(asset, options, preview, *progress, warnings);
-    return stillPicture(asset, preview, warnings);
+    const SceneMaker scenes(asset, deformer);
+    if (options.turntable) return turntable(asset, scenes, options, preview, *progress, warnings);
+    if (showsClip(options)) return clipPicture(asset, scenes, options, preview, *progress, warnings);
+    return stillPicture(scenes, preview, warnings);
   };
   const Bytes png = draw();
   progress->stage("write");
@@ -176,14 +179,19 @@ void addPreviewCommand(CLI::App& program) {
       ->capture_default_str();
   command->add_option("--joint", options->joint, "the weight of this joint alone, from blue (none) to red (all)")
       ->type_name("NAME");
+  command->add_option("--deformer", options->deformer, "how the surface of a rigged model bends, see below")
+      ->type_name("NAME")
+      ->capture_default_str();
   options->common.addTo(*command);
-  command->footer(
-      "A file with a skeleton and no mesh, such as a BVH, is shown as its bones.\n"
-      "\nExamples:\n"
-      "  limber preview rigged.glb --show handles --view 30,15 -o handles.png\n"
-      "  limber preview walking.glb --frames 8 -o sheet.png\n"
-      "  limber preview walk.bvh --animate -o walk.png\n"
-      "  limber preview dragon.glb --turntable --background transparent -o dragon.png");
+  std::string names = "Deformers:\n";
+  for (const Deformer& deformer : deformers()) names += fmt::format("  {:<20}{}\n", deformer.name, deformer.summary);
+  command->footer("A file with a skeleton and no mesh, such as a BVH, is shown as its bones.\n" + names +
+                  "\nExamples:\n"
+                  "  limber preview rigged.glb --show handles --view 30,15 -o handles.png\n"
+                  "  limber preview walking.glb --frames 8 -o sheet.png\n"
+                  "  limber preview walk.bvh --animate -o walk.png\n"
+                  "  limber preview walking.glb --animate --deformer direct-delta-mush -o walk.png\n"
+                  "  limber preview dragon.glb --turntable --background transparent -o dragon.png");
   command->callback([options] { run(*options); });
 }
 

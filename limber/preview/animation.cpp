@@ -16,12 +16,12 @@ std::vector<double> clipMoments(const Clip& clip, int count, bool withEnd) {
   return moments;
 }
 
-std::vector<Image> renderClip(const Asset& asset, const Clip& clip, std::span<const double> seconds,
+std::vector<Image> renderClip(const SceneMaker& scenes, const Clip& clip, std::span<const double> seconds,
                               PreviewOptions options, Progress& progress, Warnings& warnings) {
   Box frame;
   for (std::size_t i = 0; i < seconds.size(); ++i) {
     progress.update(0.2 * static_cast<double>(i) / static_cast<double>(seconds.size()));
-    const Scene scene = sceneAt(asset, clip, seconds[i]);
+    const Scene scene = scenes.at(clip, seconds[i]);
     for (const Vec3f& position : scene.positions) frame.add(position.cast<double>());
     if (i == 0) warnings = scene.warnings;
   }
@@ -30,7 +30,7 @@ std::vector<Image> renderClip(const Asset& asset, const Clip& clip, std::span<co
   images.reserve(seconds.size());
   for (const double moment : seconds) {
     progress.update(0.2 + 0.8 * static_cast<double>(images.size()) / static_cast<double>(seconds.size()));
-    images.push_back(render(sceneAt(asset, clip, moment), options));
+    images.push_back(render(scenes.at(clip, moment), options));
   }
   return images;
 }

@@ -11,14 +11,12 @@
 
 namespace limber {
 
-class Asset;
-
 // `count` moments from the clip's start to its end, evenly: both ends for a sheet; for a loop without the end.
 std::vector<double> clipMoments(const Clip& clip, int count, bool withEnd);
 
 // One picture for each moment, all in one frame that holds the whole movement. Gets the first scene's warnings. The
 // scene is made twice for each moment, so that one alone is in memory.
-std::vector<Image> renderClip(const Asset& asset, const Clip& clip, std::span<const double> seconds,
+std::vector<Image> renderClip(const SceneMaker& scenes, const Clip& clip, std::span<const double> seconds,
                               PreviewOptions options, Progress& progress, Warnings& warnings);
 
 // So many pictures from all around, the first as the options have it, all in one frame; the last is followed by the

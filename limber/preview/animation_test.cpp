@@ -46,6 +46,19 @@ TEST(Animation, ShowsTheSceneAtAMomentOfAClip) {
   EXPECT_LT((later.joints[0].position - still.joints[0].position - Vec3(0, 0.25, 0)).norm(), 1e-6);
 }
 
+TEST(Animation, BendsByTheDeformerThatIsAskedFor) {
+  Asset asset = riggedStool();
+  const AssetSkeleton skeleton = readSkeleton(asset);
+  Pose pose = restPose(skeleton.skeleton);
+  pose.locals[1].rotation = Quat(Eigen::AngleAxisd(1.2, Vec3::UnitZ())) * pose.locals[1].rotation;
+  writeNodePose(asset, skeleton, pose);
+  const Deformer& mush = findDeformer("direct-delta-mush");
+  const Scene plain = makeScene(asset), soft = SceneMaker(asset, mush).still();
+  EXPECT_EQ(soft.positions, posedGeometry(asset, skeleton, pose, mush).geometry.positions);
+  EXPECT_NE(soft.positions, plain.positions);
+  EXPECT_EQ(soft.triangles, plain.triangles);
+}
+
 TEST(Animation, ShowsASkeletonAloneAsItsBones) {
   Motion motion;
   motion.skeleton.joints.push_back({"hips", std::nullopt, {}, 0});
@@ -66,13 +79,15 @@ TEST(Animation, ShowsASkeletonAloneAsItsBones) {
   Progress progress;
   options.width = options.height = 64;
   const std::vector<double> moments = clipMoments(motion.clips[0], 3, true);
-  const std::vector<Image> images = renderClip(asset, motion.clips[0], moments, options, progress, warnings);
+  const std::vector<Image> images =
+      renderClip(SceneMaker(asset), motion.clips[0], moments, options, progress, warnings);
   ASSERT_EQ(images.size(), 3u);
   EXPECT_NE(images[0].pixels, images[2].pixels);
-  EXPECT_EQ(renderClip(asset, motion.clips[0], moments, options, progress, warnings)[1].pixels, images[1].pixels);
+  EXPECT_EQ(renderClip(SceneMaker(asset), motion.clips[0], moments, options, progress, warnings)[1].pixels,
+            images[1].pixels);
 
   progress.cancel();
-  EXPECT_THROW(renderClip(asset, motion.clips[0], moments, options, progress, warnings), Error);
+  EXPECT_THROW(renderClip(SceneMaker(asset), motion.clips[0], moments, options, progress, warnings), Error);
 }
 
 // Each joint's sphere has hundreds of triangles.

@@ -9,7 +9,6 @@
 #include "limber/asset/motion_io.h"
 #include "limber/asset/pose_io.h"
 #include "limber/asset/scene_graph.h"
-#include "limber/pipeline/pose_asset.h"
 #include "limber/preview/palette.h"
 #include "limber/preview/scene_materials.h"
 #include "limber/preview/shapes.h"
@@ -83,15 +82,6 @@ void addSurface(const Asset& asset, Geometry geometry, Scene& scene) {
   scene.positions = std::move(geometry.positions);
 }
 
-Scene riggedScene(const Asset& asset, const AssetSkeleton& rig, const Pose& pose) {
-  Scene scene;
-  Geometry geometry = posedGeometry(asset, rig, pose).geometry;
-  addSkeleton(rig.skeleton, pose, scene);
-  scene.weights = readWeights(asset, geometry, rig);
-  addSurface(asset, std::move(geometry), scene);
-  return scene;
-}
-
 // A skeleton without a mesh: its bones are what is seen.
 Scene boneScene(const Skeleton& skeleton, const Pose& pose) {
   Scene scene;
@@ -115,28 +105,45 @@ Scene boneScene(const Skeleton& skeleton, const Pose& pose) {
 
 }  // namespace
 
-Scene makeScene(const Asset& asset) {
-  if (hasRig(asset)) {
-    const AssetSkeleton rig = readSkeleton(asset);
-    return riggedScene(asset, rig, readNodePose(asset, rig));
-  }
-  if (isSkeletonAlone(asset)) {
-    const AssetSkeleton skeleton = animatedSkeleton(asset);
-    return boneScene(skeleton.skeleton, readNodePose(asset, skeleton));
-  }
+SceneMaker::SceneMaker(const Asset& asset, const Deformer& deformer) : asset_(asset) {
+  const bool isRigged = hasRig(asset);
+  if (isRigged || isSkeletonAlone(asset)) skeleton_ = animatedSkeleton(asset);
+  if (isRigged) poser_ = std::make_unique<AssetPoser>(asset, skeleton_, deformer);
+}
+
+Scene SceneMaker::rigged(const Pose& pose) const {
   Scene scene;
-  addSurface(asset, collectGeometry(asset), scene);
+  Geometry geometry = poser_->posed(pose).geometry;
+  addSkeleton(skeleton_.skeleton, pose, scene);
+  scene.weights = poser_->weights();
+  addSurface(asset_, std::move(geometry), scene);
   return scene;
 }
 
-Scene sceneAt(const Asset& asset, const Clip& clip, double seconds) {
-  const AssetSkeleton skeleton = animatedSkeleton(asset);
-  Pose pose = restPose(skeleton.skeleton);
+Scene SceneMaker::still() const {
+  if (poser_) return rigged(readNodePose(asset_, skeleton_));
+  if (isSkeletonAlone(asset_)) return boneScene(skeleton_.skeleton, readNodePose(asset_, skeleton_));
+  Scene scene;
+  addSurface(asset_, collectGeometry(asset_), scene);
+  return scene;
+}
+
+Scene SceneMaker::at(const Clip& clip, double seconds) const {
+  if (!poser_ && !isSkeletonAlone(asset_)) {
+    throw Error(ErrorCode::kUnsupported, "its clips move meshes without a skeleton, which limber does not draw",
+                asset_.name);
+  }
+  Pose pose = restPose(skeleton_.skeleton);
   sampleClip(clip, seconds, pose);
-  if (hasRig(asset)) return riggedScene(asset, skeleton, pose);
-  if (isSkeletonAlone(asset)) return boneScene(skeleton.skeleton, pose);
-  throw Error(ErrorCode::kUnsupported, "its clips move meshes without a skeleton, which limber does not draw",
-              asset.name);
+  return poser_ ? rigged(pose) : boneScene(skeleton_.skeleton, pose);
+}
+
+Scene makeScene(const Asset& asset) {
+  return SceneMaker(asset).still();
+}
+
+Scene sceneAt(const Asset& asset, const Clip& clip, double seconds) {
+  return SceneMaker(asset).at(clip, seconds);
 }
 
 }  // namespace limber

@@ -8,12 +8,12 @@
 
 #include "limber/anatomy/anatomy.h"
 #include "limber/core/error.h"
+#include "limber/pipeline/pose_asset.h"
 #include "limber/preview/texture.h"
 #include "limber/skeleton/skin_weights.h"
 
 namespace limber {
 
-class Asset;
 struct Clip;
 
 struct SceneJoint {
@@ -55,5 +55,22 @@ Scene makeScene(const Asset& asset);
 // The same at a moment of a clip over the asset's animatedSkeleton. Throws Error kUnsupported where meshes move without
 // a skin.
 Scene sceneAt(const Asset& asset, const Clip& clip, double seconds);
+
+// Both for an asset of which several pictures are made: what its deformer prepares is prepared once. The asset must
+// outlive it.
+class SceneMaker {
+ public:
+  explicit SceneMaker(const Asset& asset, const Deformer& deformer = kLinearBlendDeformer);
+
+  Scene still() const;
+  Scene at(const Clip& clip, double seconds) const;
+
+ private:
+  Scene rigged(const Pose& pose) const;
+
+  const Asset& asset_;
+  AssetSkeleton skeleton_;             // of a rigged asset, or a skeleton alone
+  std::unique_ptr<AssetPoser> poser_;  // of a rigged asset
+};
 
 }  // namespace limber
