@@ -36,6 +36,13 @@ for body in biped:humanoid quadruped:quadruped; do
   picture ${sample}_template.glb bones ${sample}_template.png
 done
 $limber preview $work/quadruped_template.glb --show anatomy --size 480x400 -o $images/anatomy_fox.png --quiet
+# An elbow bent far, bound as roughly as can be, by each deformer.
+$limber rig $work/biped.glb --template humanoid --skinning nearest-bone -o $work/biped_rough.glb --quiet
+$limber pose $work/biped_rough.glb --turn leftLowerArm=y:-130 --turn leftUpperArm=z:30 -o $work/biped_bent.glb --quiet
+for deformer in linear-blend dual-quaternion delta-mush direct-delta-mush; do
+  $limber preview $work/biped_bent.glb --deformer $deformer --view 20,20 --size 400x400 -o $images/deform_$deformer.png --quiet
+done
+
 # The page, where its parts are built (./dev studio) and there is a browser to draw it.
 if [ -f dist/index.html ] && command -v chromium >/dev/null; then
   node apps/studio/tests/pictures.mjs dist $images
