@@ -21,12 +21,14 @@ struct JointPin {
   Vec3 place = Vec3::Zero();  // in the space of the mesh
 };
 
+class CurveSkeleton;
 class SphereMesh;
 struct MeasuredModel;
 
 // What a rigger found out about a mesh and can use again for the same mesh: filled by one call, read by the next.
 struct RigMemory {
   std::shared_ptr<const SphereMesh> spheres;
+  std::shared_ptr<const CurveSkeleton> curves;
   std::shared_ptr<const MeasuredModel> measured;
   std::shared_ptr<RigMemory> bare;  // of the same model without what it wears or holds
 };

@@ -16,12 +16,6 @@ constexpr Index kFewestSuggested = 5, kMostSuggested = 64, kMostListed = 8;
 constexpr Index kUsual = 20;           // handles that suit a character of four limbs and a head
 constexpr double kNeighborhood = 1.4;  // the trend is taken from a count divided by this to one multiplied by it
 
-void checkHandles(const TriMesh& mesh, const RigOptions& options) {
-  if (!options.handles) return;
-  if (*options.handles >= 1 && *options.handles <= mesh.vertexCount()) return;
-  refuseHandleCount(*options.handles, mesh.vertexCount());
-}
-
 // The number in a handle's name: one for each mirror pair or single handle, in the order of the joints.
 std::vector<Index> handleNumbers(const HandleTree& tree, const SphereMeshLevel& level) {
   std::vector<Index> numbers(tree.order.size(), kNoIndex);
@@ -75,8 +69,22 @@ double distanceFromUsual(Index count) {
 
 }  // namespace
 
+void checkHandles(const TriMesh& mesh, const RigOptions& options) {
+  if (!options.handles) return;
+  if (*options.handles >= 1 && *options.handles <= mesh.vertexCount()) return;
+  refuseHandleCount(*options.handles, mesh.vertexCount());
+}
+
+Index suggestedFrom() {
+  return static_cast<Index>(kMostSuggested * kNeighborhood) + 1;
+}
+
 std::vector<HandleSuggestion> suggestHandles(const SphereMesh& spheres) {
-  const ErrorCurve curve(spheres.errors(static_cast<Index>(kMostSuggested * kNeighborhood) + 1));
+  return suggestHandles(spheres.errors(suggestedFrom()), spheres.vertexCount());
+}
+
+std::vector<HandleSuggestion> suggestHandles(std::vector<double> errors, Index mostHandles) {
+  const ErrorCurve curve(std::move(errors));
   std::vector<HandleSuggestion> steps;
   const Index most = std::min(kMostSuggested, static_cast<Index>(curve.most() / kNeighborhood));
   for (Index count = kFewestSuggested; count <= most; ++count) {
@@ -93,15 +101,18 @@ std::vector<HandleSuggestion> suggestHandles(const SphereMesh& spheres) {
     });
     if (isNew && suggestions.size() < kMostListed) suggestions.push_back(step);
   }
-  if (suggestions.empty()) suggestions.push_back({std::min(kUsual, spheres.vertexCount()), 0});
+  if (suggestions.empty()) suggestions.push_back({std::min(kUsual, mostHandles), 0});
   return suggestions;
 }
 
 Skeleton handleSkeleton(const SphereMesh& spheres, Index count) {
-  const SphereMeshLevel level = spheres.level(count);
+  return handleSkeleton(spheres.level(count));
+}
+
+Skeleton handleSkeleton(const SphereMeshLevel& level) {
   const HandleTree tree = handleTree(level);
   const std::vector<Index> numbers = handleNumbers(tree, level);
-  const std::size_t width = std::max<std::size_t>(2, fmt::formatted_size("{}", count - 1));
+  const std::size_t width = std::max<std::size_t>(2, fmt::formatted_size("{}", level.spheres.size() - 1));
   Skeleton skeleton;
   skeleton.boneShape = BoneShape::kSphere;
   skeleton.joints.reserve(tree.order.size());

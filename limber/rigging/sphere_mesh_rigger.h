@@ -9,12 +9,19 @@ namespace limber {
 // Counts of handles worth choosing, best first: where the error (SphereMesh::errors) falls steeply on the way up and
 // slowly from there on, both in logarithms; counts near 20 before others. There is always at least one. Cost: O(1).
 std::vector<HandleSuggestion> suggestHandles(const SphereMesh& spheres);
+// The same of any errors for each count from 0 to suggestedFrom(), of a model that can have up to mostHandles.
+std::vector<HandleSuggestion> suggestHandles(std::vector<double> errors, Index mostHandles);
+Index suggestedFrom();
 
 // The skeleton of `count` handles: a joint at each sphere's centre with the sphere's radius, without rotation, all in
 // one tree. Names: handle_00 (the root), handle_01, ...; the two of a mirror pair share a number and end in .L (the
 // positive side of the plane: the model's left where it faces +Z) and .R. Throws as SphereMesh::level does. Cost:
 // O(count log #V).
 Skeleton handleSkeleton(const SphereMesh& spheres, Index count);
+Skeleton handleSkeleton(const SphereMeshLevel& level);
+
+// Throws Error kBadArgument unless 1 <= options.handles <= #V, where a number is asked for.
+void checkHandles(const TriMesh& mesh, const RigOptions& options);
 
 // Builds the sphere mesh, suggests counts, and makes the skeleton of options.handles handles (default: the best
 // suggestion). Throws Error kBadArgument, before it computes, where there are fewer vertices than handles.

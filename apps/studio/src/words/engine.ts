@@ -20,6 +20,7 @@ export function stageName(stage: string): string {
 
 const methods: Readonly<Record<string, { name: Words; summary: Words }>> = {
   'sphere-mesh': { name: 'Handles in balls', summary: 'handles where the model is thick, any number of them' },
+  'curve-skeleton': { name: 'Handles on curves', summary: 'joints along curves through the middle of limbs, any number of them' },
   'template': { name: 'Named skeleton', summary: 'a skeleton with names, fitted into the model' },
   'prop': { name: 'Prop', summary: 'one joint for all of it: a thing that does not bend' },
   'bone-heat': { name: 'Bone heat', summary: 'heat that flows from each bone over the surface' },

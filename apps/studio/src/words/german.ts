@@ -308,6 +308,8 @@ export const german = {
   'Jerk': 'Ruck',
   'Handles in balls': 'Griffe in Kugeln',
   'handles where the model is thick, any number of them': 'Griffe, wo das Modell dick ist, in beliebiger Anzahl',
+  'Handles on curves': 'Griffe auf Kurven',
+  'joints along curves through the middle of limbs, any number of them': 'Gelenke auf Kurven durch die Mitte der Glieder, in beliebiger Anzahl',
   'Named skeleton': 'Skelett mit Namen',
   'a skeleton with names, fitted into the model': 'ein Skelett mit Namen, ins Modell eingepasst',
   'Bone heat': 'Knochenwärme',
