@@ -113,6 +113,13 @@ if [ -d "$characters" ]; then
     --references docs/data/blender_weights.tsv -o docs/weights.md --quiet
   table=$($limber evaluate skinning "$characters" "$creatures"/tune "$creatures"/check --skinning all --quiet)
   table="$table" perl -0pi -e 's/(<!-- made by [^\n]*: weight methods -->\n).*(<!-- end of weight methods -->)/$1\n$ENV{table}\n$2/s' docs/methods.md
+  table=$($limber evaluate templates "$characters"/*.{glb,gltf} --rigger all --quiet
+    $limber evaluate templates --labels "$creatures/MANIFEST.tsv" --rigger all --quiet | tail -n +3)
+  table="$table" perl -0pi -e 's/(<!-- made by [^\n]*: riggers -->\n).*(<!-- end of riggers -->)/$1\n$ENV{table}\n$2/s' docs/methods.md
+  curved=(m2m_human_male fox_khronos m2m_bird_eagle quaternius_{spider,dolphin,trex,snake} robot_expressive)
+  curved=("${curved[@]/#/$characters/}")
+  $limber evaluate templates "${curved[@]/%/.glb}" --rigger curve-skeleton --sheet $images/curve_skeletons.png \
+    -o $work/curved.md --quiet
   people=(cesium_man.glb kaykit_mannequin/manny_med_mod.gltf kenney_human.glb m2m_human_{female,male,zombie}.glb
     makehuman_{cmu_mb,default,game_engine,mixamo}.glb quaternius_cyberpunk_character.glb quaternius_knightcharacter.glb
     quaternius_{man_casual,man_king,man_spacesuit,platformer_character,platformer_character_humanoidrig,woman_casual,woman_scifi,mech_george}.glb

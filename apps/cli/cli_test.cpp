@@ -266,6 +266,11 @@ TEST_F(Cli, RigsOfASplitAreDrawnIntoOnePicture) {
   EXPECT_THAT(drawn.out, HasSubstr("of 2"));
   const std::string png = content("sheet.png");
   EXPECT_EQ(png.substr(16, 8), std::string("\0\0\x01\x40\0\0\0\xa0", 8));  // two side by side
+  const Result riggers = run({"evaluate", "templates", "--labels", "list.tsv", "--split", "one", "--rigger", "prop",
+                              "--rigger", "curve-skeleton"});
+  EXPECT_EQ(riggers.code, 0) << riggers.error;
+  EXPECT_THAT(riggers.out, AllOf(HasSubstr("| one (2) | prop |"), HasSubstr("| one (2) | curve-skeleton |")));
+  expectOneLine(run({"evaluate", "templates", "truth.glb", "--rigger", "magic"}), 1);
   const Result none = run({"evaluate", "templates", "--labels", "list.tsv", "--split", "bogus"});
   expectOneLine(none, 1);
   EXPECT_THAT(none.error, HasSubstr("bogus"));

@@ -55,6 +55,7 @@ void runRig(const RigFiles& options) {
 
 struct RiggersOptions {
   std::vector<std::string> files;
+  std::vector<std::string> riggers;  // none: template alone, in tables of its own
   std::string labels, split, each, sheet, output = "-", templateName = "auto", clip;
   std::optional<double> time;  // seconds
   Common common;
@@ -72,6 +73,15 @@ std::vector<TemplateTrial> labelled(const std::vector<RigTableRow>& rows, const 
   return trials;
 }
 
+// The split that a list gives a file, or its folder's name.
+std::string groupOf(const std::filesystem::path& path, const std::vector<LabelledFile>& labels,
+                    const std::filesystem::path& folder) {
+  for (const LabelledFile& file : labels) {
+    if (path == folder / file.path) return file.split;
+  }
+  return std::filesystem::absolute(path).parent_path().filename().string();
+}
+
 constexpr int kSheetColumns = 8;
 
 PreviewOptions bonesOnSheet() {
@@ -81,7 +91,7 @@ PreviewOptions bonesOnSheet() {
   return options;
 }
 
-void runRiggers(const RiggersOptions& options) {
+void runRiggers(RiggersOptions options) {
   options.common.apply();
   checkOutput(options.output, {".md"});
   if (!options.sheet.empty()) checkOutput(options.sheet, {".png"});
@@ -107,33 +117,54 @@ void runRiggers(const RiggersOptions& options) {
     }
     for (const LabelledFile& file : labels) files.push_back(folder / file.path);
   }
+  const bool isSideBySide = !options.riggers.empty();
+  if (options.riggers == std::vector<std::string>{"all"}) {
+    options.riggers.clear();
+    for (const RiggerMethod& method : riggerMethods()) options.riggers.emplace_back(method.name);
+  }
+  if (!isSideBySide) options.riggers = {"template"};
+  for (const std::string& rigger : options.riggers) findRigger(rigger);
   AutoRigOptions rig;
-  rig.rigger = "template";
   rig.rig.templateName = options.templateName;
   checkTemplateName(options.templateName);
   rig.existingRig = ExistingRig::kReplace;
   const auto rerig = [&](Asset& asset) {
     Progress unheard;
     const AutoRigReport report = autoRig(asset, rig, unheard);
+    if (report.matches.empty()) return RigFit{};
     const TemplateMatch& match = report.matches.front();
     return RigFit{report.isAbstained, match.name, match.confidence};
   };
   std::vector<Image> pictures;
-  const auto draw = [&](const Asset& asset) {
+  std::vector<double> inside;
+  const auto look = [&](const Asset& asset) {
+    if (isSideBySide) inside.push_back(insideShare(readSkinnedModel(asset)));
     if (!options.sheet.empty()) pictures.push_back(render(makeScene(asset), bonesOnSheet()));
   };
   TerminalProgress progress(options.common.quiet);
   Warnings skipped;
   std::optional<ClipMoment> moment;
   if (!options.clip.empty() || options.time) moment = {options.clip, options.time.value_or(0)};
-  const std::vector<RigTableRow> rows = compareRigsOf(files, rerig, *progress, skipped, moment, draw);
-  refuseNothing(rows.empty(), skipped);
+  std::vector<RigTableRow> rows;
+  std::vector<RiggerTrial> sideBySide;
+  for (const std::string& rigger : options.riggers) {
+    rig.rigger = rigger;
+    inside.clear();
+    Warnings again;  // each rigger skips the same files, besides those that it cannot rig
+    rows = compareRigsOf(files, rerig, *progress, sideBySide.empty() ? skipped : again, moment, look);
+    for (std::size_t i = 0; i < inside.size(); ++i) {
+      sideBySide.push_back({rigger, groupOf(rows[i].path, labels, folder), rows[i], inside[i]});
+    }
+  }
+  refuseNothing(rows.empty() && sideBySide.empty(), skipped);
   const std::vector<TemplateTrial> trials = labelled(rows, labels, folder);
   if (!options.sheet.empty()) {
     writeFile(options.sheet, encodePng(contactSheet(pictures, kSheetColumns, renderBackdrop(bonesOnSheet()))));
   }
   if (!options.each.empty()) writeText(options.each, eachTemplateTrial(trials));
-  writeText(options.output, labels.empty() ? rigTable(rows) : templateTables(trials));
+  writeText(options.output, isSideBySide     ? riggerTable(sideBySide)
+                            : labels.empty() ? rigTable(rows)
+                                             : templateTables(trials));
   printWarnings(skipped, options.common.quiet);
 }
 
@@ -279,9 +310,16 @@ void addRiggers(CLI::App& evaluate) {
   command
       ->add_option("--sheet", options->sheet, "draw all with their new bones into one picture, in their order (.png)")
       ->type_name("FILE");
-  command->add_option("--each", options->each, "with --labels: write the figures of each file, tab separated")
-      ->needs(labels)
-      ->type_name("FILE");
+  CLI::Option* each =
+      command->add_option("--each", options->each, "with --labels: write the figures of each file, tab separated")
+          ->needs(labels)
+          ->type_name("FILE");
+  command
+      ->add_option("--rigger", options->riggers,
+                   "compare these riggers side by side instead, or \"all\"; limber rig --help lists them")
+      ->excludes(each)
+      ->allow_extra_args(false)
+      ->type_name("NAME");
   command->add_option("--template", options->templateName, "auto, or one by name; limber rig --help lists them")
       ->type_name("NAME")
       ->capture_default_str();
@@ -300,10 +338,13 @@ void addRiggers(CLI::App& evaluate) {
       "\nWith --labels the tables are of a whole collection: how often the kind is told right, how far the confidence\n"
       "can be believed, and what was taken for what. The list has a line for each file, and columns called path, kind\n"
       "and split (docs/template-rigs.md).\n"
+      "\nWith --rigger the table has a line for each rigger and split or folder: means without fingers, the share of\n"
+      "the joints that lie inside the model, and seconds. Riggers of handles choose their number themselves.\n"
       "\nExamples:\n"
       "  limber evaluate templates characters/*.glb --template humanoid\n"
       "  limber evaluate templates characters/*.glb --template humanoid --clip Walk --time 0.4\n"
-      "  limber evaluate templates --labels creatures/MANIFEST.tsv -o reliability.md");
+      "  limber evaluate templates --labels creatures/MANIFEST.tsv -o reliability.md\n"
+      "  limber evaluate templates --labels creatures/MANIFEST.tsv --rigger all");
   command->callback([options] { runRiggers(*options); });
 }
 

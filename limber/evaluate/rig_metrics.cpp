@@ -9,6 +9,7 @@
 #include "limber/asset/asset.h"
 #include "limber/core/assignment.h"
 #include "limber/evaluate/body_joints.h"
+#include "limber/mesh/winding_number.h"
 
 namespace limber {
 
@@ -134,6 +135,13 @@ RigComparison compareRigs(const SkinnedModel& predicted, const SkinnedModel& tru
 
 RigComparison compareRigs(const Asset& predicted, const Asset& truth) {
   return compareRigs(readSkinnedModel(predicted), readSkinnedModel(truth));
+}
+
+double insideShare(const SkinnedModel& model) {
+  const WindingNumber winding(model.mesh);
+  double inside = 0;
+  for (const Affine& global : restGlobals(model.skeleton)) inside += winding.exactAt(global.translation()) > 0.5;
+  return model.skeleton.joints.empty() ? 0 : inside / model.skeleton.jointCount();
 }
 
 }  // namespace limber

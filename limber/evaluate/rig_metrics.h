@@ -40,4 +40,7 @@ struct RigComparison {
 RigComparison compareRigs(const SkinnedModel& predicted, const SkinnedModel& truth);
 RigComparison compareRigs(const Asset& predicted, const Asset& truth);
 
+// The share of the joints that lie inside the model's surface: a winding number above a half. Cost: O(#J #F).
+double insideShare(const SkinnedModel& model);
+
 }  // namespace limber

@@ -102,4 +102,12 @@ TEST(RigTable, SaysWhatWasMeasured) {
   EXPECT_NE(table.find("| **mean of 2** | | | 1.00 |"), std::string::npos);
 }
 
+TEST(RigMetrics, CountJointsInside) {
+  // A tetrahedron that faces outwards; the joints lie at y = 0.1, 1.1 and 2.1, its tip at 2.
+  SkinnedModel model = row({"a", "b", "c"}, {0.1, 0.1, 0.1});
+  model.mesh.positions = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 0, 2}};
+  model.mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+  EXPECT_NEAR(insideShare(model), 2.0 / 3, 1e-12);
+}
+
 }  // namespace limber

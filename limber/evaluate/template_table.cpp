@@ -239,4 +239,44 @@ std::string eachTemplateTrial(std::span<const TemplateTrial> trials) {
   return text;
 }
 
+std::string riggerTable(std::span<const RiggerTrial> trials) {
+  std::vector<std::string> groups, riggers;
+  const auto addNew = [](const std::string& name, std::vector<std::string>& names) {
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  };
+  for (const RiggerTrial& trial : trials) {
+    addNew(trial.group, groups);
+    addNew(trial.rigger, riggers);
+  }
+  std::string table =
+      "| files | rigger | joints for one of the artist's | J2J | J2B | B2B | precision | recall | IoU | inside | s |\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|\n";
+  for (const std::string& group : groups) {
+    for (const std::string& rigger : riggers) {
+      std::array<double, 9> sums = {};
+      std::size_t count = 0;
+      for (const RiggerTrial& trial : trials) {
+        if (trial.group != group || trial.rigger != rigger) continue;
+        const RigDistances& d = trial.row.comparison.withoutFingers;
+        const std::array<double, 9> values = {d.truthJoints > 0 ? static_cast<double>(d.joints) / d.truthJoints : 0,
+                                              d.jointToJoint,
+                                              d.jointToBone,
+                                              d.boneToBone,
+                                              d.precision,
+                                              d.recall,
+                                              d.iou,
+                                              trial.inside,
+                                              trial.row.seconds};
+        for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += values[i];
+        ++count;
+      }
+      if (count == 0) continue;
+      table += fmt::format("| {} ({}) | {} |", group, count, rigger);
+      for (const double sum : sums) table += fmt::format(" {:.2f} |", sum / static_cast<double>(count));
+      table += "\n";
+    }
+  }
+  return table;
+}
+
 }  // namespace limber

@@ -40,4 +40,16 @@ std::string templateTables(std::span<const TemplateTrial> trials);
 // A line for each trial, tab separated.
 std::string eachTemplateTrial(std::span<const TemplateTrial> trials);
 
+// A file rigged by one of several riggers.
+struct RiggerTrial {
+  std::string rigger;
+  std::string group;  // its split or folder
+  RigTableRow row;
+  double inside = 0;  // share of the joints (insideShare)
+};
+
+// Means of each group and rigger, side by side in the order in which they come: joints that there are for the artist's,
+// the distances and the pairing of joints without fingers, those inside, and seconds. Markdown.
+std::string riggerTable(std::span<const RiggerTrial> trials);
+
 }  // namespace limber

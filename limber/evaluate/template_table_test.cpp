@@ -1,5 +1,7 @@
 #include "limber/evaluate/template_table.h"
 
+#include <algorithm>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -54,6 +56,25 @@ TEST(TemplateTables, CountKindsAndWhatIsSureAndWrong) {
   EXPECT_THAT(tables, HasSubstr("| 0.8 to 1.0 | 2 of 2 (100 %; 34 to 100)"));
   EXPECT_THAT(tables, HasSubstr("| bird | 1 | 1 |")) << "one by handles, one taken for a person";
   EXPECT_THAT(eachTemplateTrial(trials), HasSubstr("bird.glb\tcheck\tbird\thumanoid\t0.700\t0\t0\t4.00"));
+}
+
+TEST(RiggerTable, HasALineForEachGroupAndRigger) {
+  const auto riggerTrial = [](const char* rigger, const char* group, double distance, double inside) {
+    RiggerTrial result{rigger, group, {}, inside};
+    RigDistances& distances = result.row.comparison.withoutFingers;
+    distances.jointToJoint = distance;
+    distances.joints = 30;
+    distances.truthJoints = 20;
+    result.row.seconds = 0.5;
+    return result;
+  };
+  const std::string table =
+      riggerTable(std::vector<RiggerTrial>{riggerTrial("a", "tune", 2, 1), riggerTrial("a", "tune", 4, 0.5),
+                                           riggerTrial("a", "check", 7, 1), riggerTrial("b", "tune", 9, 0)});
+  EXPECT_THAT(table, HasSubstr("| tune (2) | a | 1.50 | 3.00 | 0.00 | 0.00 | 0.00 | 0.00 | 0.00 | 0.75 | 0.50 |"));
+  EXPECT_THAT(table, HasSubstr("| tune (1) | b | 1.50 | 9.00 |"));
+  EXPECT_THAT(table, HasSubstr("| check (1) | a | 1.50 | 7.00 |"));
+  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 5);
 }
 
 }  // namespace
