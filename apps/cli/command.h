@@ -26,6 +26,7 @@ void addAnimateCommand(CLI::App& program);
 void addStudioCommand(CLI::App& program);
 void addMotionEvaluation(CLI::App& evaluate);  // subcommands of evaluate
 void addRetargetingEvaluation(CLI::App& evaluate);
+void addDecompositionEvaluation(CLI::App& evaluate);
 
 // Options that most commands have.
 struct Common {

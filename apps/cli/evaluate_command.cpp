@@ -436,6 +436,7 @@ void addEvaluateCommand(CLI::App& program) {
   addIk(*evaluate);
   addMotionEvaluation(*evaluate);
   addRetargetingEvaluation(*evaluate);
+  addDecompositionEvaluation(*evaluate);
 }
 
 }  // namespace limber::cli

@@ -10,6 +10,7 @@
 #include "limber/asset/read.h"
 #include "limber/asset/rest_pose.h"
 #include "limber/asset/write.h"
+#include "limber/core/names.h"
 #include "limber/ik/ik_solver.h"
 #include "limber/ik/limits_json.h"
 #include "limber/pipeline/pose_asset.h"

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "animation_rig.h"
 #include "command.h"
 #include "limber/asset/json_text.h"
 #include "limber/asset/read.h"
@@ -27,6 +28,7 @@ struct RigArguments {
   std::string templateName, up, front, pieces = "auto";
   std::vector<std::string> pins;
   bool replaceRig = false, keepSkeleton = false, strict = false;
+  AnimationRigArguments animation;
   Common common;
 };
 
@@ -180,6 +182,12 @@ void checkRigger(const RigArguments& options) {
 void run(RigArguments options) {
   options.common.apply();
   checkOutput(options.output, {".glb", ".gltf"});
+  if (!options.animation.frames.empty()) {
+    return runAnimationRig(options.animation,
+                           {options.output, options.report, options.rig.weights.maxInfluences, options.strict},
+                           options.common);
+  }
+  if (options.input.empty()) throw CLI::RequiredError("IN");
   checkBeside("--json", options.report, {options.input, options.output, options.templateName});
   if (options.replaceRig) options.rig.existingRig = ExistingRig::kReplace;
   if (options.keepSkeleton) options.rig.existingRig = ExistingRig::kKeepSkeleton;
@@ -244,6 +252,8 @@ std::string rigHelp() {
          "  limber rig dragon.glb --handles 20 -o rigged.glb\n"
          "  limber rig scan.obj --template humanoid --pin leftHand=0.71,1.43,0.02 -o character.glb\n"
          "  limber rig person.glb --keep-skeleton --max-influences 8 -o weighted.glb --json report.json\n"
+         "  limber rig --from-animation baked.glb --bones 30 -o rigged.glb\n"
+         "  limber rig --from-animation frames/ --fps 24 -o rigged.glb\n"
          "  curl -s https://example.org/dragon.glb | limber rig - -o - > rigged.glb";
 }
 
@@ -252,7 +262,7 @@ std::string rigHelp() {
 void addRigCommand(CLI::App& program) {
   auto options = std::make_shared<RigArguments>();
   CLI::App* command = program.add_subcommand("rig", "Give a model handles and skin weights");
-  command->add_option("IN", options->input, "the model; - is standard input")->required();
+  command->add_option("IN", options->input, "the model; - is standard input");
   command->add_option("-o,--output", options->output, "the .glb or .gltf to write; - is standard output (GLB)")
       ->required()
       ->type_name("FILE");
@@ -288,10 +298,17 @@ void addRigCommand(CLI::App& program) {
   command->add_option("--pieces", options->pieces, "how pieces that are joined to no other are bound, see below")
       ->type_name("NAME")
       ->capture_default_str();
+  CLI::Option* animation = addAnimationRigOptions(*command, options->animation);
+  for (const char* other : {"IN", "--handles", "--rigger", "--template", "--pin", "--up", "--front", "--upright",
+                            "--chains", "--skinning", "--pieces"}) {
+    animation->excludes(command->get_option(other));
+  }
   CLI::Option* replace = command->add_flag("--replace-rig", options->replaceRig,
                                            "take the model's own rig and its joint animation out first");
+  replace->excludes(animation);
   command->add_flag("--keep-skeleton", options->keepSkeleton, "keep the model's own skeleton, make its weights anew")
       ->excludes(replace)
+      ->excludes(animation)
       ->excludes("--handles")
       ->excludes("--template");
   command

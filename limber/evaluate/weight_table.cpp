@@ -11,22 +11,11 @@
 #include "limber/asset/read.h"
 #include "limber/asset/rig_io.h"
 #include "limber/core/split_text.h"
+#include "limber/evaluate/model_files.h"
 
 namespace limber {
 
 namespace {
-
-std::vector<std::filesystem::path> modelsBelow(const std::filesystem::path& folder) {
-  std::vector<std::filesystem::path> files;
-  std::error_code error;
-  for (std::filesystem::recursive_directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-    const std::string extension = it->path().extension().string();
-    if (extension == ".glb" || extension == ".gltf") files.push_back(it->path());
-  }
-  if (error) throw Error(ErrorCode::kFile, error.message(), folder.string());
-  std::sort(files.begin(), files.end(), [](const auto& a, const auto& b) { return a.stem() < b.stem(); });
-  return files;
-}
 
 std::optional<WeightTableRow> compareFile(const std::filesystem::path& path, const Reweight& reweight) {
   Asset asset = readAsset(path);
@@ -52,7 +41,7 @@ std::vector<WeightTableRow> compareFolder(const std::filesystem::path& folder, c
     progress.update(static_cast<double>(i) / static_cast<double>(files.size()));
     try {
       if (std::optional<WeightTableRow> row = compareFile(files[i], reweight)) {
-        row->folder = (folder.has_filename() ? folder : folder.parent_path()).filename().string();
+        row->folder = lastName(folder);
         rows.push_back(std::move(*row));
       } else {
         skipped.add("without-rig", "files without a rig left out", files[i].filename().string());

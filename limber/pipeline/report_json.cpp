@@ -51,4 +51,17 @@ Json toJson(const AutoRigReport& report) {
   return json;
 }
 
+Json toJson(const AnimationRigReport& report) {
+  Json json;
+  json["methods"] = {{"rigger", "animation"}, {"skinning", "animation"}};
+  json["counts"] = {{"vertices", report.sourceVertices}, {"points", report.points},
+                    {"frames", report.frames},           {"clips", report.clips},
+                    {"joints", report.joints},           {"max_influences", report.maxInfluences}};
+  json["error_percent"] = 100 * report.error;
+  json["seconds"] = totalSeconds(report.stages);
+  json["stages"] = stagesJson(report.stages);
+  json["warnings"] = toJson(report.warnings);
+  return json;
+}
+
 }  // namespace limber

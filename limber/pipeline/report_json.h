@@ -1,11 +1,14 @@
-// What autoRig did, as JSON: one form for the command line, the studio and WebAssembly (docs/report.md).
+// What autoRig and rigFromAnimation did, as JSON: one form for the command line, the studio and WebAssembly
+// (docs/report.md).
 #pragma once
 
 #include "limber/pipeline/auto_rig.h"
+#include "limber/pipeline/rig_from_animation.h"
 
 namespace limber {
 
 // Keys in the order of docs/report.md, in snake_case. Text out of the file stands in it as it is: dumpReport writes it.
 Json toJson(const AutoRigReport& report);
+Json toJson(const AnimationRigReport& report);
 
 }  // namespace limber

@@ -1,0 +1,185 @@
+#include "limber/decomposition/skin_decomposition.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "limber/core/error.h"
+#include "limber/core/parallel.h"
+#include "limber/decomposition/bone_weights.h"
+#include "limber/decomposition/motion_clusters.h"
+#include "limber/decomposition/motion_fit.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kLeastShare = 3;   // sum of squared weights below which a bone begins anew (Le, Deng 2012)
+constexpr int kLastIterations = 5;  // in which no bone begins anew, so that all settle
+constexpr double kStands = 1e-4;    // relative fall of the error below which nothing more is to be had
+constexpr double kWorthMore = 0.9;  // of the error with half as many bones: more bones are not worth it
+
+// A sequence about the origin with a box of unit diagonal at rest, every frame about its own middle; and the way back.
+class Centred {
+ public:
+  explicit Centred(VertexSequence& sequence) {
+    Box box;
+    for (const Vec3f& p : sequence.rest) box.add(p.cast<double>());
+    diagonal_ = box.diagonal();
+    if (!(diagonal_ > 0) || !std::isfinite(diagonal_)) {
+      throw Error(ErrorCode::kBadData, "the mesh at rest has no size", {}, "all of its vertices are at one place");
+    }
+    middle_ = box.center();
+    for (Vec3f& p : sequence.rest) p = ((p.cast<double>() - middle_) / diagonal_).cast<float>();
+    middles_.assign(sequence.frameCount(), Vec3::Zero());
+    parallelFor(sequence.frameCount(), 1, [&](std::size_t begin, std::size_t end) {
+      for (auto f = static_cast<Index>(begin); f < end; ++f) centre(sequence, f);
+    });
+    for (const Vec3& middle : middles_) {
+      if (!middle.allFinite()) throw Error(ErrorCode::kBadData, "a vertex moves to a place that is not finite");
+    }
+  }
+
+  void restore(BoneMotions& motions) const {
+    for (Index b = 0; b < motions.boneCount(); ++b) {
+      for (Index f = 0; f < motions.frameCount; ++f) {
+        RigidMotion& motion = motions.of(b)[f];
+        motion.col(3) = diagonal_ * motion.col(3) + middles_[f] - motion.leftCols<3>() * middle_;
+      }
+    }
+  }
+
+ private:
+  void centre(VertexSequence& sequence, Index f) {
+    Vec3 middle = Vec3::Zero();
+    for (Index v = 0; v < sequence.pointCount(); ++v) middle += sequence.at(v, f).cast<double>();
+    middle /= sequence.pointCount();
+    middles_[f] = middle;
+    for (Index v = 0; v < sequence.pointCount(); ++v) {
+      sequence.set(v, f, ((sequence.at(v, f).cast<double>() - middle) / diagonal_).cast<float>());
+    }
+  }
+
+  double diagonal_ = 0;
+  Vec3 middle_ = Vec3::Zero();
+  std::vector<Vec3> middles_;  // #frames
+};
+
+std::vector<double> sharesOf(const SkinWeights& weights, Index bones) {
+  std::vector<double> shares(bones, 0);
+  for (std::size_t i = 0; i < weights.weights.size(); ++i) {
+    shares[weights.joints[i]] += double{weights.weights[i]} * weights.weights[i];
+  }
+  return shares;
+}
+
+double rootMeanSquare(const VertexSequence& sequence, const std::vector<double>& errors) {
+  double sum = 0;
+  for (const double error : errors) sum += error;
+  return std::sqrt(sum / sequence.pointCount() / sequence.frameCount());
+}
+
+// Bones with next to no weight take the motion of the neighbourhood that fits worst.
+bool beginAnew(const VertexSequence& sequence, FittedWeights& fitted, BoneMotions& motions) {
+  const std::vector<double> shares = sharesOf(fitted.weights, motions.boneCount());
+  std::vector<bool> isTaken(sequence.pointCount(), false);
+  const double least = std::min(kLeastShare, 0.5 * sequence.pointCount() / motions.boneCount());
+  bool any = false;
+  for (Index b = 0; b < motions.boneCount(); ++b) {
+    if (shares[b] >= least) continue;
+    Index worst = kNoIndex;
+    for (Index v = 0; v < sequence.pointCount(); ++v) {
+      if (!isTaken[v] && (worst == kNoIndex || fitted.errors[v] > fitted.errors[worst])) worst = v;
+    }
+    if (worst == kNoIndex) break;
+    const std::vector<Index> seeds = nearestPoints(sequence, worst, kSeedPoints, [&](Index v) { return !isTaken[v]; });
+    for (const Index v : seeds) isTaken[v] = true;
+    BoneMotions seeded{motions.frameCount, {}};
+    appendMotionOf(sequence, seeds, seeded);
+    std::copy(seeded.motions.begin(), seeded.motions.end(), motions.of(b));
+    any = true;
+  }
+  return any;
+}
+
+void dropUnused(Decomposition& result) {
+  const Index count = result.motions.boneCount();
+  const std::vector<double> shares = sharesOf(result.weights, count);
+  std::vector<Index> renumbered(count, 0);
+  Index kept = 0;
+  for (Index b = 0; b < count; ++b) {
+    if (shares[b] == 0) continue;
+    renumbered[b] = kept;
+    std::copy_n(result.motions.of(b), result.motions.frameCount, result.motions.of(kept));
+    ++kept;
+  }
+  result.motions.motions.resize(std::size_t{kept} * result.motions.frameCount);
+  for (Index& joint : result.weights.joints) joint = renumbered[joint];
+  for (std::size_t i = 0; i < result.weights.joints.size(); ++i) {
+    if (result.weights.weights[i] == 0) result.weights.joints[i] = 0;
+  }
+}
+
+// With at most so many bones; the sequence is centred.
+Decomposition decomposeWith(const VertexSequence& sequence, Index bones, const DecompositionOptions& options,
+                            Progress& progress) {
+  Decomposition result;
+  result.motions = motionClusters(sequence, bones, progress).motions;
+  FittedWeights fitted = fitWeights(sequence, result.motions, options.maxInfluences, {});
+  double error = rootMeanSquare(sequence, fitted.errors);
+  for (int i = 0; i < options.iterations; ++i) {
+    progress.update(static_cast<double>(i) / options.iterations);
+    const bool isNew = i + kLastIterations < options.iterations && beginAnew(sequence, fitted, result.motions);
+    if (!isNew) fitMotions(sequence, fitted.weights, result.motions);
+    fitted = fitWeights(sequence, result.motions, options.maxInfluences, isNew ? SkinWeights() : fitted.weights);
+    const double before = error;
+    error = rootMeanSquare(sequence, fitted.errors);
+    if (!isNew && before - error <= kStands * before) break;
+  }
+  result.weights = std::move(fitted.weights);
+  result.error = error;
+  dropUnused(result);
+  return result;
+}
+
+Decomposition decomposeWithin(const VertexSequence& sequence, const DecompositionOptions& options, Progress& progress) {
+  Index low = 1;
+  Decomposition best = decomposeWith(sequence, 1, options, progress);
+  while (best.error > options.tolerance && best.motions.boneCount() == low && low < kMostBones) {
+    Decomposition more = decomposeWith(sequence, 2 * low, options, progress);
+    const bool isWorth = more.error <= kWorthMore * best.error;
+    if (!isWorth) return best;
+    if (more.error <= options.tolerance) {
+      best = std::move(more);
+      break;
+    }
+    low *= 2;
+    best = std::move(more);
+  }
+  Index high = best.motions.boneCount();
+  while (best.error <= options.tolerance && high > low + 1) {
+    const Index middle = low + (high - low) / 2;
+    Decomposition fewer = decomposeWith(sequence, middle, options, progress);
+    if (fewer.error <= options.tolerance) {
+      best = std::move(fewer);
+      high = std::min(middle, best.motions.boneCount());
+    } else {
+      low = middle;
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+Decomposition decomposeSkin(VertexSequence sequence, const DecompositionOptions& options, Progress& progress) {
+  if (sequence.pointCount() == 0 || sequence.frameCount() == 0) {
+    throw Error(ErrorCode::kBadArgument, "a decomposition takes a point and a frame at least");
+  }
+  const Centred centred(sequence);
+  Decomposition result = options.bones ? decomposeWith(sequence, *options.bones, options, progress)
+                                       : decomposeWithin(sequence, options, progress);
+  centred.restore(result.motions);
+  return result;
+}
+
+}  // namespace limber

@@ -1,0 +1,236 @@
+#include "limber/decomposition/skin_decomposition.h"
+
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "limber/core/error.h"
+#include "limber/core/parallel.h"
+#include "limber/decomposition/bone_skeleton.h"
+#include "limber/decomposition/motion_clusters.h"
+#include "limber/decomposition/testing/moving_meshes.h"
+
+namespace limber {
+namespace {
+
+using testing::bentTube;
+using testing::hingedBoxes;
+using testing::KnownMotion;
+
+Decomposition decompose(const KnownMotion& known, std::optional<Index> bones, double tolerance = 0.002) {
+  DecompositionOptions options;
+  options.bones = bones;
+  options.tolerance = tolerance;
+  Progress progress;
+  return decomposeSkin(known.sequence(), options, progress);
+}
+
+// The result's error by its own definition, in the units of the mesh.
+double measuredError(const KnownMotion& known, const Decomposition& result) {
+  const VertexSequence sequence = known.sequence();
+  double sum = 0;
+  for (Index v = 0; v < sequence.pointCount(); ++v) {
+    for (Index f = 0; f < sequence.frameCount(); ++f) {
+      Vec3 moved = Vec3::Zero();
+      for (Index i = 0; i < result.weights.slots; ++i) {
+        moved += result.weights.weightsOf(v)[i] *
+                 (result.motions.of(result.weights.jointsOf(v)[i])[f] * known.rest[v].cast<double>().homogeneous());
+      }
+      sum += (moved - sequence.at(v, f).cast<double>()).squaredNorm();
+    }
+  }
+  return std::sqrt(sum / sequence.pointCount() / sequence.frameCount());
+}
+
+double diagonalOf(const KnownMotion& known) {
+  Box box;
+  for (const Vec3f& p : known.rest) box.add(p.cast<double>());
+  return box.diagonal();
+}
+
+void expectSound(const Decomposition& result) {
+  for (Index v = 0; v < result.weights.vertexCount(); ++v) {
+    double sum = 0;
+    float last = 1;
+    for (Index i = 0; i < result.weights.slots; ++i) {
+      const float w = result.weights.weightsOf(v)[i];
+      EXPECT_GE(w, 0);
+      EXPECT_LE(w, last);
+      EXPECT_LT(result.weights.jointsOf(v)[i], result.motions.boneCount());
+      last = w;
+      sum += w;
+    }
+    EXPECT_NEAR(sum, 1, 1e-6);
+  }
+  for (const RigidMotion& motion : result.motions.motions) {
+    const Mat3 turn = motion.leftCols<3>();
+    EXPECT_LT((turn * turn.transpose() - Mat3::Identity()).norm(), 1e-9);
+    EXPECT_GT(turn.determinant(), 0);
+  }
+}
+
+TEST(SkinDecomposition, FindsTheBonesOfHingedBoxes) {
+  const KnownMotion known = hingedBoxes();
+  const Decomposition result = decompose(known, 3);
+  expectSound(result);
+  ASSERT_EQ(result.motions.boneCount(), 3u);
+  EXPECT_LT(result.error, 1e-5);
+  std::set<Index> used;
+  for (Index box = 0; box < 3; ++box) {
+    const Index bone = result.weights.jointsOf(27 * box)[0];
+    used.insert(bone);
+    for (Index v = 27 * box; v < 27 * box + 27; ++v) {
+      EXPECT_EQ(result.weights.jointsOf(v)[0], bone) << v;
+      EXPECT_NEAR(result.weights.weightsOf(v)[0], 1, 1e-3) << v;
+    }
+    for (Index f = 0; f < 30; ++f) {
+      EXPECT_LT((result.motions.of(bone)[f] - known.motions.of(box)[f]).norm(), 1e-4) << f;
+    }
+  }
+  EXPECT_EQ(used.size(), 3u);
+}
+
+TEST(SkinDecomposition, FindsTheJointsOfHingedBoxes) {
+  const KnownMotion known = hingedBoxes();
+  const Decomposition result = decompose(known, 3);
+  const BoneSkeleton bones = skeletonOfBones(known.rest, result);
+  ASSERT_EQ(bones.skeleton.jointCount(), 3u);
+  checkSkeleton(bones.skeleton);
+  // The middle box is nearest to the middle: the root, with both others hinged to it.
+  EXPECT_EQ(bones.boneOf[0], result.weights.jointsOf(27)[0]);
+  std::vector<double> along;
+  for (Index j = 1; j < 3; ++j) {
+    EXPECT_EQ(bones.skeleton.joints[j].parent, std::optional<Index>(0));
+    const Vec3 place = restGlobals(bones.skeleton)[j].translation();
+    const Vec3& joint = bones.boneOf[j] == result.weights.jointsOf(0)[0] ? known.joints[0] : known.joints[1];
+    EXPECT_LT((place - joint).norm(), 0.005) << place.transpose();
+  }
+}
+
+TEST(SkinDecomposition, FindsTheSmoothWeightsOfABentTube) {
+  const KnownMotion known = bentTube();
+  const Decomposition result = decompose(known, 2);
+  expectSound(result);
+  ASSERT_EQ(result.motions.boneCount(), 2u);
+  EXPECT_LT(result.error, 2e-4);
+  EXPECT_NEAR(result.error, measuredError(known, result) / diagonalOf(known), 1e-5);
+  const Index first = result.weights.jointsOf(0)[0];
+  for (Index v = 0; v < known.rest.size(); ++v) {
+    double w = 0;
+    for (Index i = 0; i < result.weights.slots; ++i) {
+      if (result.weights.jointsOf(v)[i] == first) w += result.weights.weightsOf(v)[i];
+    }
+    EXPECT_NEAR(w, known.weights[v][0], 0.05) << v;
+  }
+}
+
+TEST(SkinDecomposition, TakesAsFewBonesAsItNeeds) {
+  EXPECT_EQ(decompose(hingedBoxes(), std::nullopt).motions.boneCount(), 3u);
+  const Decomposition tube = decompose(bentTube(), std::nullopt);
+  EXPECT_EQ(tube.motions.boneCount(), 2u);
+  EXPECT_LE(tube.error, 0.002);
+}
+
+TEST(SkinDecomposition, MoreBonesThanMoveAreNotMade) {
+  const Decomposition result = decompose(hingedBoxes(), 12);
+  expectSound(result);
+  EXPECT_EQ(result.motions.boneCount(), 3u);
+}
+
+TEST(SkinDecomposition, InfluencesAreAtMostAsAskedFor) {
+  KnownMotion known = bentTube();
+  DecompositionOptions options;
+  options.bones = 4;
+  options.maxInfluences = 1;
+  Progress progress;
+  const Decomposition result = decomposeSkin(known.sequence(), options, progress);
+  EXPECT_EQ(result.weights.slots, 1u);
+  expectSound(result);
+}
+
+TEST(SkinDecomposition, UnitsAndPlaceDoNotMatter) {
+  const KnownMotion known = bentTube();
+  KnownMotion moved = known;
+  const Vec3 offset(1000, -500, 300);
+  for (Vec3f& p : moved.rest) p = 100.0f * p + offset.cast<float>();
+  for (RigidMotion& motion : moved.motions.motions) {
+    motion.col(3) = 100 * motion.col(3) - motion.leftCols<3>() * offset;
+  }
+  EXPECT_LT(decompose(moved, 2).error, 3e-4);
+}
+
+TEST(SkinDecomposition, DoesNotDependOnThreads) {
+  std::vector<Decomposition> results;
+  for (const int threads : {1, 2, 5}) {
+    setThreadCount(threads);
+    results.push_back(decompose(bentTube(), 5));
+  }
+  setThreadCount(0);
+  for (const Decomposition& result : results) {
+    EXPECT_EQ(result.weights.joints, results[0].weights.joints);
+    EXPECT_EQ(result.weights.weights, results[0].weights.weights);
+    EXPECT_EQ(result.error, results[0].error);
+  }
+}
+
+TEST(SkinDecomposition, DegenerateSequencesComeOutSound) {
+  Progress progress;
+  VertexSequence line(5, 2);
+  for (Index v = 0; v < 5; ++v) {
+    line.rest[v] = Vec3f(static_cast<float>(v), 0, 0);
+    for (Index f = 0; f < 2; ++f) line.set(v, f, Vec3f(0, static_cast<float>(v * f), 0));
+  }
+  DecompositionOptions options;
+  options.bones = 4;
+  expectSound(decomposeSkin(line, options, progress));
+  VertexSequence pair(2, 1);
+  pair.rest[1] = pair.rest[0] + Vec3f(1, 0, 0);
+  expectSound(decomposeSkin(pair, options, progress));
+}
+
+TEST(SkinDecomposition, RefusesWhatHasNoSizeOrIsNotFinite) {
+  Progress progress;
+  EXPECT_THROW(decomposeSkin(VertexSequence(0, 3), {}, progress), Error);
+  EXPECT_THROW(decomposeSkin(VertexSequence(3, 0), {}, progress), Error);
+  EXPECT_THROW(decomposeSkin(VertexSequence(3, 2), {}, progress), Error);  // all at the origin
+  VertexSequence broken = bentTube(3).sequence();
+  broken.set(4, 1, Vec3f(std::numeric_limits<float>::quiet_NaN(), 0, 0));
+  EXPECT_THROW(decomposeSkin(broken, {}, progress), Error);
+}
+
+TEST(SkinDecomposition, CanBeCancelled) {
+  Progress progress;
+  progress.cancel();
+  EXPECT_THROW(decomposeSkin(bentTube().sequence(), {}, progress), Error);
+}
+
+TEST(MotionClusters, OfBoxesAreTheBoxes) {
+  const KnownMotion known = hingedBoxes();
+  Progress progress;
+  const MotionClusters clusters = motionClusters(known.sequence(), 3, progress);
+  ASSERT_EQ(clusters.motions.boneCount(), 3u);
+  for (Index v = 0; v < known.rest.size(); ++v) EXPECT_EQ(clusters.clusterOf[v], clusters.clusterOf[v / 27 * 27]);
+}
+
+TEST(BoneSkeleton, TheClipMovesPointsAsTheBonesDo) {
+  const KnownMotion known = hingedBoxes(8);
+  const Decomposition result = decompose(known, 3);
+  const BoneSkeleton bones = skeletonOfBones(known.rest, result);
+  const Clip clip = clipOfBones(bones, result.motions, {"swing", 2, 5}, 10);
+  checkClip(clip, bones.skeleton);
+  EXPECT_NEAR(clip.duration(), 0.4, 1e-6);
+  for (Index f = 0; f < 5; ++f) {
+    Pose pose = restPose(bones.skeleton);
+    sampleClip(clip, f / 10.0, pose);
+    const std::vector<Affine> moved = skinTransforms(bones.skeleton, pose);
+    for (Index v = 0; v < known.rest.size(); ++v) {
+      const Vec3 place = moved[bones.weights.jointsOf(v)[0]] * known.rest[v].cast<double>();
+      EXPECT_LT((place - known.sequence().at(v, f + 2).cast<double>()).norm(), 1e-3);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace limber

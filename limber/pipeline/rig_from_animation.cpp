@@ -1,0 +1,83 @@
+#include "limber/pipeline/rig_from_animation.h"
+
+#include <algorithm>
+
+#include <nlohmann/json.hpp>
+
+#include "limber/asset/clip_io.h"
+#include "limber/asset/json_text.h"
+#include "limber/asset/node_edit.h"
+#include "limber/asset/pose_io.h"
+#include "limber/asset/rig_io.h"
+#include "limber/asset/scene_graph.h"
+#include "limber/core/known_error.h"
+#include "limber/pipeline/report_json.h"
+
+namespace limber {
+
+namespace {
+
+// Nodes that show a mesh, and those above: what moves them would move the mesh a second time.
+std::vector<bool> nodesOfMeshes(const Asset& asset) {
+  const SceneGraph graph = readSceneGraph(asset);
+  std::vector<bool> carries(graph.nodeCount(), false);
+  for (auto n = graph.allNodes.rbegin(); n != graph.allNodes.rend(); ++n) {
+    if (elements(asset, "nodes")[*n].contains("mesh")) carries[*n] = true;
+    if (carries[*n] && graph.parent[*n]) carries[*graph.parent[*n]] = true;
+  }
+  return carries;
+}
+
+// The meshes alone as they are bound, at the scene's root; returns them.
+Geometry bareGeometry(Asset& asset) {
+  const std::vector<bool> carries = nodesOfMeshes(asset);
+  removeChannels(asset, [&](Index node, std::string_view) { return node < carries.size() && carries[node]; });
+  const Geometry geometry = collectGeometry(asset);
+  freezeGeometry(asset, geometry, geometry.positions, readNormals(asset, geometry));
+  return collectGeometry(asset);
+}
+
+void attach(Asset& asset, const VertexAnimation& animation, const BoneSkeleton& bones, const BoneMotions& motions) {
+  const Geometry geometry = bareGeometry(asset);
+  if (geometry.positions.size() != animation.pointOf.size()) {
+    throw Error(ErrorCode::kBadArgument, "the animation is not that of this model");
+  }
+  attachRig(asset, geometry, bones.skeleton, expandWeights(bones.weights, animation.pointOf));
+  std::vector<Clip> clips;
+  for (const FrameSpan& span : animation.clips) {
+    clips.push_back(clipOfBones(bones, motions, span, animation.framesPerSecond));
+  }
+  addClips(asset, readSkeleton(asset), clips);
+}
+
+}  // namespace
+
+AnimationRigReport rigFromAnimation(Asset& asset, VertexAnimation animation, const DecompositionOptions& options,
+                                    Progress& progress) {
+  try {
+    AnimationRigReport report;
+    report.sourceVertices = static_cast<Index>(animation.pointOf.size());
+    report.points = animation.sequence.pointCount();
+    report.frames = animation.sequence.frameCount();
+    report.clips = static_cast<Index>(animation.clips.size());
+    report.maxInfluences = options.maxInfluences;
+    progress.stage("find bones");
+    const std::vector<Vec3f> rest = animation.sequence.rest;
+    const Decomposition decomposition = decomposeSkin(std::move(animation.sequence), options, progress);
+    progress.stage("find joints");
+    const BoneSkeleton bones = skeletonOfBones(rest, decomposition);
+    progress.stage("write rig");
+    attach(asset, animation, bones, decomposition.motions);
+    checkAsset(asset);
+    report.joints = bones.skeleton.jointCount();
+    report.error = decomposition.error;
+    report.warnings = asset.warnings;
+    progress.finish();
+    report.stages = progress.stages();
+    return report;
+  } catch (const Error& error) {
+    throwWithin(error, asset.name);
+  }
+}
+
+}  // namespace limber
