@@ -132,7 +132,7 @@ class WeightFit {
         problem.gram(i, j) = problem.gram(j, i) = products_.of(candidates.bones[i], candidates.bones[j], p);
       }
     }
-    const WeightProblem::Vector weights = sparseConvexWeights(problem, maxInfluences_);
+    const WeightProblem::Vector weights = sparseConvexWeights(problem, maxInfluences_, startOf(v, candidates));
     result_.errors[v] = std::max(0.0, problem.value(weights) + sums.square(lane));
     store(v, candidates, weights);
   }
@@ -150,6 +150,13 @@ class WeightFit {
       if (!candidates.has(alone[i].second)) candidates.bones[candidates.count++] = alone[i].second;
     }
     return candidates;
+  }
+
+  // The weights before: those bones are the first candidates, in their order.
+  WeightProblem::Vector startOf(Index v, const Candidates& candidates) const {
+    WeightProblem::Vector start = WeightProblem::Vector::Zero(candidates.count);
+    for (Index i = 0; i < before_.slots; ++i) start[i] = before_.weightsOf(v)[i];
+    return start;
   }
 
   // Strongest first.

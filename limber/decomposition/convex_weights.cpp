@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 
 #include "limber/ik/small_solve.h"
@@ -76,51 +77,94 @@ Vector feasibleLeast(const WeightProblem& problem, Support& support, Vector weig
   }
 }
 
+struct Solution {
+  Support support;
+  Vector weights;
+
+  double value(const WeightProblem& problem) const {
+    double sum = 0;
+    for (int i = 0; i < support.count; ++i) {
+      const int m = support.members[i];
+      sum += weights[m] * (halfSlope(problem, m) - problem.linear[m]);
+    }
+    return sum;
+  }
+
+  // How steeply the value rises with one of the weights, halved.
+  double halfSlope(const WeightProblem& problem, int m) const {
+    double sum = -problem.linear[m];
+    for (int i = 0; i < support.count; ++i) {
+      sum += problem.gram(support.members[i], m) * weights[support.members[i]];
+    }
+    return sum;
+  }
+};
+
 // The bone out of the support that lowers the value most steeply; none where none does.
-std::optional<int> steepest(const WeightProblem& problem, const Support& support, const Vector& weights,
-                            const Support& allowed) {
-  const Vector slope = problem.gram * weights - problem.linear;
-  double level = 0;
-  for (int i = 0; i < support.count; ++i) level += slope[support.members[i]] * weights[support.members[i]];
-  double best = level - kGain * (problem.gram.diagonal().maxCoeff() + problem.linear.cwiseAbs().maxCoeff());
+std::optional<int> steepest(const WeightProblem& problem, const Solution& solution, const Support& allowed) {
+  double level = 0, size = 0;
+  for (int i = 0; i < solution.support.count; ++i) {
+    const int m = solution.support.members[i];
+    level += solution.halfSlope(problem, m) * solution.weights[m];
+    size = std::max({size, problem.gram(m, m), std::abs(problem.linear[m])});
+  }
+  double best = level - kGain * size;
   std::optional<int> result;
   for (int i = 0; i < allowed.count; ++i) {
     const int m = allowed.members[i];
-    if (weights[m] > 0 || !(slope[m] < best)) continue;
-    best = slope[m];
+    if (solution.weights[m] > 0) continue;
+    const double slope = solution.halfSlope(problem, m);
+    if (!(slope < best)) continue;
+    best = slope;
     result = m;
   }
   return result;
 }
 
-struct Solution {
-  Support support;
-  Vector weights;
-};
-
-Solution solveAmong(const WeightProblem& problem, const Support& allowed) {
-  Solution solution;
+// The best bone alone.
+Solution bestAlone(const WeightProblem& problem, const Support& allowed) {
   int first = allowed.members[0];
   const auto alone = [&](int m) { return problem.gram(m, m) - 2 * problem.linear[m]; };
   for (int i = 1; i < allowed.count; ++i) {
     if (alone(allowed.members[i]) < alone(first)) first = allowed.members[i];
   }
+  Solution solution;
   solution.support.add(first);
   solution.weights = Vector::Zero(problem.linear.size());
   solution.weights[first] = 1;
-  double value = problem.value(solution.weights);
+  return solution;
+}
+
+// From weights that are 0 or more and sum to 1 to the best among the bones allowed.
+Solution solveAmong(const WeightProblem& problem, const Support& allowed, Solution solution) {
+  solution.weights = feasibleLeast(problem, solution.support, solution.weights);
+  double value = solution.value(problem);
   for (Index round = 0; round < 4 * kMostCandidates; ++round) {
-    const std::optional<int> entering = steepest(problem, solution.support, solution.weights, allowed);
+    const std::optional<int> entering = steepest(problem, solution, allowed);
     if (!entering) break;
     Solution next = solution;
     next.support.add(*entering);
     next.weights = feasibleLeast(problem, next.support, next.weights);
-    const double better = problem.value(next.weights);
+    const double better = next.value(problem);
     if (!(better < value)) break;  // rounding
     solution = next;
     value = better;
   }
   return solution;
+}
+
+// Without the member of the support at `at`: the other weights grow together.
+Solution withoutMember(const WeightProblem& problem, const Solution& solution, int at) {
+  Solution fewer = solution;
+  const double left = 1 - fewer.weights[fewer.support.members[at]];
+  fewer.weights[fewer.support.members[at]] = 0;
+  fewer.support.remove(at);
+  if (left > 0) {
+    fewer.weights /= left;
+  } else {
+    fewer = bestAlone(problem, fewer.support);
+  }
+  return solveAmong(problem, fewer.support, fewer);
 }
 
 }  // namespace
@@ -129,18 +173,24 @@ double WeightProblem::value(const Vector& weights) const {
   return weights.dot(gram * weights) - 2 * linear.dot(weights);
 }
 
-WeightProblem::Vector sparseConvexWeights(const WeightProblem& problem, Index maxInfluences) {
+WeightProblem::Vector sparseConvexWeights(const WeightProblem& problem, Index maxInfluences, const Vector& start) {
   Support all;
   for (int m = 0; m < problem.linear.size(); ++m) all.add(m);
-  Solution solution = solveAmong(problem, all);
+  Solution solution = bestAlone(problem, all);
+  if (start.size() == problem.linear.size() && start.sum() > 0) {
+    solution.support = {};
+    solution.weights = start / start.sum();
+    for (int m = 0; m < start.size(); ++m) {
+      if (start[m] > 0) solution.support.add(m);
+    }
+  }
+  solution = solveAmong(problem, all, solution);
   while (solution.support.count > static_cast<int>(maxInfluences)) {
     std::optional<Solution> best;
     double least = 0;
     for (int i = 0; i < solution.support.count; ++i) {
-      Support fewer = solution.support;
-      fewer.remove(i);
-      const Solution tried = solveAmong(problem, fewer);
-      const double value = problem.value(tried.weights);
+      const Solution tried = withoutMember(problem, solution, i);
+      const double value = tried.value(problem);
       if (best && value >= least) continue;
       best = tried;
       least = value;

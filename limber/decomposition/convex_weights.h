@@ -24,6 +24,9 @@ struct WeightProblem {
 // `maxInfluences` (1 or more) are left above 0, the one without which the value grows least goes, one after the other,
 // and the rest is solved again: the result is the best of its own support, and the best of all where nothing had to
 // go. Deterministic; allocates nothing.
-WeightProblem::Vector sparseConvexWeights(const WeightProblem& problem, Index maxInfluences);
+//
+// start  weights to begin at, 0 or more, from which the way is short where little has changed; empty: the best bone
+WeightProblem::Vector sparseConvexWeights(const WeightProblem& problem, Index maxInfluences,
+                                          const WeightProblem::Vector& start = {});
 
 }  // namespace limber

@@ -37,17 +37,33 @@ Geometry bareGeometry(Asset& asset) {
   return collectGeometry(asset);
 }
 
+// The clips over the joints as the document orders them.
+void nameJointsBy(const std::vector<Index>& jointNodes, const AssetSkeleton& skeleton, std::vector<Clip>& clips) {
+  std::vector<Index> jointOf;
+  for (const Index node : jointNodes) {
+    const auto found = std::find(skeleton.jointNode.begin(), skeleton.jointNode.end(), node);
+    jointOf.push_back(static_cast<Index>(found - skeleton.jointNode.begin()));
+  }
+  for (Clip& clip : clips) {
+    for (auto& track : clip.translations) track.joint = jointOf[track.joint];
+    for (auto& track : clip.rotations) track.joint = jointOf[track.joint];
+  }
+}
+
 void attach(Asset& asset, const VertexAnimation& animation, const BoneSkeleton& bones, const BoneMotions& motions) {
   const Geometry geometry = bareGeometry(asset);
   if (geometry.positions.size() != animation.pointOf.size()) {
     throw Error(ErrorCode::kBadArgument, "the animation is not that of this model");
   }
-  attachRig(asset, geometry, bones.skeleton, expandWeights(bones.weights, animation.pointOf));
+  const std::vector<Index> nodes =
+      attachRig(asset, geometry, bones.skeleton, expandWeights(bones.weights, animation.pointOf));
   std::vector<Clip> clips;
   for (const FrameSpan& span : animation.clips) {
     clips.push_back(clipOfBones(bones, motions, span, animation.framesPerSecond));
   }
-  addClips(asset, readSkeleton(asset), clips);
+  const AssetSkeleton skeleton = readSkeleton(asset);
+  nameJointsBy(nodes, skeleton, clips);
+  addClips(asset, skeleton, clips);
 }
 
 }  // namespace

@@ -1,0 +1,62 @@
+// limber rig --from-animation, and its evaluation, as a user runs them.
+#include <nlohmann/json.hpp>
+
+#include "cli_fixture.h"
+
+namespace limber {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+class AnimationRig : public Cli {
+ protected:
+  void makeFlying() { ASSERT_EQ(run({"sample", "flying", "-o", "flying.glb", "--quiet"}).code, 0); }
+};
+
+TEST_F(AnimationRig, FindsTheBonesOfAClip) {
+  makeFlying();
+  const Result result = run({"rig", "--from-animation", "flying.glb", "--bones", "12", "--fps", "10", "-o", "out.glb",
+                             "--json", "report.json"});
+  EXPECT_EQ(result.code, 0) << result.error;
+  EXPECT_THAT(result.out, AllOf(HasSubstr("12 bones"), HasSubstr("% of the diagonal"), HasSubstr("out.glb")));
+  const auto report = nlohmann::json::parse(content("report.json"));
+  EXPECT_EQ(report.at("counts").at("joints"), 12);
+  EXPECT_EQ(report.at("methods").at("rigger"), "animation");
+  EXPECT_LT(report.at("error_percent").get<double>(), 1);
+  const auto info = nlohmann::json::parse(run({"info", "out.glb", "--json"}).out);
+  EXPECT_EQ(info.at("joints"), 12);
+  EXPECT_EQ(info.at("weights").at("without_weights"), 0);
+  EXPECT_LE(info.at("weights").at("most_influences"), 4);
+  EXPECT_EQ(info.at("clips").size(), report.at("counts").at("clips"));
+  keep("out.glb");
+}
+
+TEST_F(AnimationRig, WhatCannotBeServedIsOneLineAndLeavesNoFile) {
+  makeRobot();
+  put("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  put("b.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\n");
+  const std::vector<std::string> before = files();
+  for (const std::vector<std::string>& frames : std::vector<std::vector<std::string>>{
+           {"robot.glb"}, {"a.obj"}, {"a.obj", "a.obj"}, {"a.obj", "b.obj"}, {"a.obj", "robot.glb"}, {"none.glb"}}) {
+    std::vector<std::string> arguments = {"rig", "-o", "out.glb", "--from-animation"};
+    arguments.insert(arguments.end(), frames.begin(), frames.end());
+    expectOneLine(run(arguments), 1);
+  }
+  expectOneLine(run({"rig", "robot.glb", "--from-animation", "a.obj", "-o", "out.glb"}), 2);
+  expectOneLine(run({"rig", "robot.glb", "--bones", "4", "-o", "out.glb"}), 2);
+  expectOneLine(run({"rig", "-o", "out.glb"}), 2);
+  EXPECT_EQ(files(), before);
+}
+
+TEST_F(AnimationRig, IsEvaluatedOverAFolder) {
+  fs::create_directory(folder_ / "models");
+  ASSERT_EQ(run({"sample", "flying", "-o", "models/flying.glb", "--quiet"}).code, 0);
+  const Result result = run({"evaluate", "decomposition", "models", "--each", "each.tsv", "--quiet"});
+  EXPECT_EQ(result.code, 0) << result.error;
+  EXPECT_THAT(result.out, AllOf(HasSubstr("within 0.3 %"), HasSubstr("| models | 1 |")));
+  EXPECT_THAT(content("each.tsv"), HasSubstr("models\tflying\t"));
+}
+
+}  // namespace
+}  // namespace limber

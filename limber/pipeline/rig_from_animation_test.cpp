@@ -1,0 +1,236 @@
+#include "limber/pipeline/rig_from_animation.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "limber/asset/accessor.h"
+#include "limber/asset/clip_io.h"
+#include "limber/asset/read.h"
+#include "limber/asset/rig_io.h"
+#include "limber/asset/write.h"
+#include "limber/core/error.h"
+#include "limber/pipeline/obj_series.h"
+
+namespace limber {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+constexpr int kRows = 9;
+
+// Where a strip along +Y, two vertices a row, is when its upper half is bent at y = 1 by an angle; the bend spreads
+// over the middle three rows.
+std::vector<float> bentStrip(double angle) {
+  std::vector<float> positions;
+  for (int row = 0; row < kRows; ++row) {
+    const double y = 0.25 * row, w = std::min(1.0, std::max(0.0, 0.5 + (y - 1)));
+    for (const double x : {-0.2, 0.2}) {
+      const double turnedX = std::cos(angle) * x - std::sin(angle) * (y - 1);
+      const double turnedY = std::sin(angle) * x + std::cos(angle) * (y - 1) + 1;
+      for (const double value : {(1 - w) * x + w * turnedX, (1 - w) * y + w * turnedY, 0.05 * (row % 2)}) {
+        positions.push_back(static_cast<float>(value));
+      }
+    }
+  }
+  return positions;
+}
+
+std::vector<std::uint16_t> stripCorners() {
+  std::vector<std::uint16_t> corners;
+  for (int row = 0; row + 1 < kRows; ++row) {
+    for (const int corner : {0, 1, 2, 2, 1, 3}) corners.push_back(static_cast<std::uint16_t>(2 * row + corner));
+  }
+  return corners;
+}
+
+// A strip with a morph target for each bend, played one after the other, on a node that stands aside and turns as well.
+Asset morphingStrip(int frames, double reach, bool isTurning = true) {
+  Asset asset;
+  asset.name = "strip.glb";
+  const std::vector<float> rest = bentStrip(0);
+  const std::vector<std::uint16_t> corners = stripCorners();
+  const Index position = addFloatAccessor(asset, rest, 3, kVertexTarget, true);
+  const AccessorInfo info{static_cast<Index>(corners.size()), 1, ComponentType::kU16, false};
+  const auto* bytes = reinterpret_cast<const std::uint8_t*>(corners.data());
+  const Index index = addAccessor(asset, info, {bytes, 2 * corners.size()}, kIndexTarget);
+  Json primitive = {{"attributes", {{"POSITION", position}}}, {"indices", index}, {"material", 0}};
+  std::vector<float> times, weights;
+  for (int f = 0; f < frames; ++f) {
+    std::vector<float> offsets = bentStrip(reach * std::sin(1.0 + 0.5 * f));
+    for (std::size_t i = 0; i < offsets.size(); ++i) offsets[i] -= rest[i];
+    primitive["targets"].push_back({{"POSITION", addFloatAccessor(asset, offsets, 3, kVertexTarget, true)}});
+    times.push_back(static_cast<float>(f) / 10);
+    for (int t = 0; t < frames; ++t) weights.push_back(t == f ? 1.0f : 0.0f);
+  }
+  const Index input = addFloatAccessor(asset, times, 1, 0, true), output = addFloatAccessor(asset, weights, 1);
+  Json& json = asset.json();
+  json["asset"] = {{"version", "2.0"}};
+  json["materials"] = Json::array({{{"name", "paint"}}});
+  json["meshes"] = Json::array({{{"primitives", Json::array({primitive})}}});
+  json["nodes"] = Json::array({{{"name", "strip"}, {"mesh", 0}, {"translation", {5, 0, 0}}}});
+  json["scenes"] = Json::array({{{"nodes", {0}}}});
+  json["scene"] = 0;
+  Json samplers = Json::array({{{"input", input}, {"output", output}}});
+  Json channels = Json::array({{{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}}});
+  if (isTurning) {
+    const std::vector<float> ends = {0, times.back()}, turns = {0, 0, 0, 1, 0, std::sqrt(0.5f), 0, std::sqrt(0.5f)};
+    samplers.push_back(
+        {{"input", addFloatAccessor(asset, ends, 1, 0, true)}, {"output", addFloatAccessor(asset, turns, 4)}});
+    channels.push_back({{"sampler", 1}, {"target", {{"node", 0}, {"path", "rotation"}}}});
+  }
+  json["animations"] = Json::array({{{"name", "bend"}, {"samplers", samplers}, {"channels", channels}}});
+  checkAsset(asset);
+  return asset;
+}
+
+// Largest distance between where two documents put their vertices, frame by frame.
+double farthestApart(const VertexAnimation& a, const VertexAnimation& b) {
+  EXPECT_EQ(a.pointOf.size(), b.pointOf.size());
+  EXPECT_EQ(a.sequence.frameCount(), b.sequence.frameCount());
+  double farthest = 0;
+  for (std::size_t v = 0; v < a.pointOf.size(); ++v) {
+    for (Index f = 0; f < a.sequence.frameCount(); ++f) {
+      const Vec3f apart = a.sequence.at(a.pointOf[v], f) - b.sequence.at(b.pointOf[v], f);
+      farthest = std::max(farthest, double{apart.norm()});
+    }
+  }
+  return farthest;
+}
+
+std::string messageOf(const std::function<void()>& call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+DecompositionOptions someBones(Index count) {
+  DecompositionOptions options;
+  options.bones = count;
+  return options;
+}
+
+TEST(RigFromAnimation, MorphTargetsOnATurningNodeBecomeBones) {
+  Asset asset = morphingStrip(12, 0.8);
+  const VertexAnimation before = readVertexAnimation(asset, {});
+  EXPECT_EQ(before.sequence.frameCount(), 12u);
+  EXPECT_EQ(before.framesPerSecond, 10);
+  Progress progress;
+  const AnimationRigReport report = rigFromAnimation(asset, readVertexAnimation(asset, {}), someBones(2), progress);
+  EXPECT_EQ(report.joints, 2u);
+  EXPECT_LT(report.error, 1e-3);
+
+  // Written and read again it does what the morphs did.
+  const Asset written = readAsset(writeGlb(asset), "strip.glb");
+  EXPECT_TRUE(hasRig(written));
+  EXPECT_FALSE(written.json()["meshes"][0]["primitives"][0].contains("targets"));
+  EXPECT_EQ(written.json()["meshes"][0]["primitives"][0]["material"], 0);
+  ASSERT_EQ(written.json()["animations"].size(), 1u);
+  EXPECT_EQ(written.json()["animations"][0]["name"], "bend");
+  EXPECT_LT(farthestApart(before, readVertexAnimation(written, {"bend", 10})), 0.01);
+}
+
+TEST(RigFromAnimation, ARiggedModelIsRiggedAnew) {
+  Asset asset = morphingStrip(12, 0.8);
+  Progress progress;
+  rigFromAnimation(asset, readVertexAnimation(asset, {}), someBones(2), progress);
+  const VertexAnimation before = readVertexAnimation(asset, {"", 20});
+  const AnimationRigReport report =
+      rigFromAnimation(asset, readVertexAnimation(asset, {"", 20}), someBones(3), progress);
+  EXPECT_LT(report.error, 1e-4);
+  EXPECT_EQ(asset.json()["skins"].size(), 1u);
+  EXPECT_EQ(asset.json()["animations"].size(), 1u);
+  EXPECT_LT(farthestApart(before, readVertexAnimation(asset, {"", 20})), 0.002);
+}
+
+TEST(RigFromAnimation, RefusesWhatDoesNotMove) {
+  Asset still = morphingStrip(5, 0, false);
+  EXPECT_THAT(messageOf([&] { readVertexAnimation(still, {}); }), HasSubstr("nothing moves"));
+  Asset single = morphingStrip(1, 0.5, false);
+  EXPECT_THAT(messageOf([&] { readVertexAnimation(single, {}); }), HasSubstr("a single frame"));
+  still.json().erase("animations");
+  EXPECT_THAT(messageOf([&] { readVertexAnimation(still, {}); }), HasSubstr("strip.glb: has no animation"));
+}
+
+TEST(RigFromAnimation, RefusesClipsAndRatesThatMakeNoSense) {
+  const Asset asset = morphingStrip(5, 0.5);
+  EXPECT_THAT(messageOf([&] { readVertexAnimation(asset, {"run", std::nullopt}); }), HasSubstr("there are: bend"));
+  EXPECT_THAT(messageOf([&] { readVertexAnimation(asset, {"", 0.0}); }), HasSubstr("frame rate"));
+  EXPECT_THAT(messageOf([&] { readVertexAnimation(asset, {"", 1e12}); }), HasSubstr("--fps"));
+}
+
+class ObjFrames : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::string pattern = (fs::temp_directory_path() / "limber_obj_XXXXXX").string();
+    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+    folder_ = pattern;
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  fs::path put(const std::string& name, double angle, int leftOut = 0) const {
+    std::ofstream file(folder_ / name);
+    const std::vector<float> positions = bentStrip(angle);
+    for (std::size_t i = 0; i < positions.size(); i += 3) {
+      file << "v " << positions[i] << " " << positions[i + 1] << " " << positions[i + 2] << "\n";
+    }
+    const std::vector<std::uint16_t> corners = stripCorners();
+    for (std::size_t i = 0; i + 3 * leftOut < corners.size(); i += 3) {
+      file << "f " << corners[i] + 1 << " " << corners[i + 1] + 1 << " " << corners[i + 2] + 1 << "\n";
+    }
+    return folder_ / name;
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(ObjFrames, OfAFolderBecomeOneClipInTheOrderOfTheirNumbers) {
+  for (int f = 0; f < 12; ++f) put("bend_" + std::to_string(f) + ".obj", 0.08 * f);
+  const std::vector<fs::path> files = objFilesIn(folder_);
+  ASSERT_EQ(files.size(), 12u);
+  EXPECT_EQ(files[2].filename(), "bend_2.obj");
+  EXPECT_EQ(files[11].filename(), "bend_11.obj");
+  ObjSeries series = readObjSeries(files, 24);
+  ASSERT_EQ(series.animation.clips.size(), 1u);
+  EXPECT_EQ(series.animation.clips[0].name, "bend");
+  const VertexAnimation before = series.animation;
+  Progress progress;
+  const AnimationRigReport report = rigFromAnimation(series.asset, std::move(series.animation), someBones(2), progress);
+  EXPECT_LT(report.error, 1e-3);
+  EXPECT_LT(farthestApart(before, readVertexAnimation(series.asset, {"", 24})), 0.01);
+}
+
+TEST_F(ObjFrames, ThatAreNotOneMeshAreRefused) {
+  const fs::path first = put("a1.obj", 0), second = put("a2.obj", 0.5), fewer = put("a3.obj", 0.7, 1);
+  EXPECT_THAT(messageOf([&] {
+                readObjSeries(std::vector{first, second, fewer}, 30);
+              }),
+              HasSubstr("a3.obj: has other faces than a1.obj"));
+  std::ofstream(folder_ / "a4.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  EXPECT_THAT(messageOf([&] {
+                readObjSeries(std::vector{first, folder_ / "a4.obj"}, 30);
+              }),
+              HasSubstr("a4.obj: has 3 vertices where a1.obj has 18"));
+  EXPECT_THAT(messageOf([&] { readObjSeries(std::vector{first}, 30); }), HasSubstr("a single frame"));
+  EXPECT_THAT(messageOf([&] { readObjSeries(std::vector{first, first}, 30); }), HasSubstr("nothing moves"));
+  std::ofstream(folder_ / "a5.obj") << "v 0 0 x\n";
+  EXPECT_THAT(messageOf([&] {
+                readObjSeries(std::vector{first, folder_ / "a5.obj"}, 30);
+              }),
+              HasSubstr("three finite numbers"));
+}
+
+}  // namespace
+}  // namespace limber
