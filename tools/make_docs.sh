@@ -120,6 +120,8 @@ if [ -d "$characters" ]; then
   curved=("${curved[@]/#/$characters/}")
   $limber evaluate templates "${curved[@]/%/.glb}" --rigger curve-skeleton --sheet $images/curve_skeletons.png \
     -o $work/curved.md --quiet
+  table=$($limber evaluate decomposition "$characters" "$creatures"/tune "$creatures"/check --quiet)
+  table="$table" perl -0pi -e 's/(<!-- made by [^\n]*: decomposition -->\n).*(<!-- end of decomposition -->)/$1\n$ENV{table}\n$2/s' docs/methods.md
   people=(cesium_man.glb kaykit_mannequin/manny_med_mod.gltf kenney_human.glb m2m_human_{female,male,zombie}.glb
     makehuman_{cmu_mb,default,game_engine,mixamo}.glb quaternius_cyberpunk_character.glb quaternius_knightcharacter.glb
     quaternius_{man_casual,man_king,man_spacesuit,platformer_character,platformer_character_humanoidrig,woman_casual,woman_scifi,mech_george}.glb

@@ -55,7 +55,7 @@ CLI::Option* addAnimationRigOptions(CLI::App& command, AnimationRigArguments& ar
   CLI::Option* from =
       command
           .add_option("--from-animation", arguments.frames,
-                      "find the bones of a mesh that moves: a file with clips or animated morph targets, a folder of\n"
+                      "find the bones of a mesh that moves: a file with clips or animated morph targets, a folder of "
                       "OBJ files, or OBJ files, one for each frame")
           ->type_name("FILE...");
   command.add_option("--clip", arguments.clip, "with --from-animation: only this clip (default: all)")

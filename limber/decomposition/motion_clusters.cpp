@@ -128,7 +128,8 @@ bool split(const VertexSequence& sequence, Index count, MotionClusters& clusters
     const double fits = kFitsAlready * kFitsAlready * error.points * sequence.frameCount();
     if (clusters.motions.boneCount() >= count || error.sum < mean || error.sum <= fits || error.points < 2) break;
     const auto ofCluster = [&](Index v) { return clusters.clusterOf[v] == error.cluster; };
-    appendMotionOf(sequence, nearestPoints(sequence, error.worst, kSeedPoints, ofCluster), clusters.motions);
+    appendMotionOf(sequence, nearestPoints(sequence, error.worst, seedPoints(error.points), ofCluster),
+                   clusters.motions);
   }
   return clusters.motions.boneCount() > before;
 }

@@ -1,6 +1,7 @@
 // Points that move together: where a decomposition begins.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <vector>
 
@@ -27,7 +28,10 @@ MotionClusters motionClusters(const VertexSequence& sequence, Index count, Progr
 std::vector<Index> nearestPoints(const VertexSequence& sequence, Index seed, std::size_t count,
                                  const std::function<bool(Index)>& isAllowed);
 
-// Points from whose neighbourhood a new bone gets its motion (Le, Deng 2012).
-inline constexpr std::size_t kSeedPoints = 20;
+// From how many of `points` a new bone gets its motion: a quarter of them, as a seed with all of them would move as
+// they do, at most 20 (Le, Deng 2012), at least the three that tell a motion.
+inline std::size_t seedPoints(std::size_t points) {
+  return std::clamp<std::size_t>(points / 4, 3, 20);
+}
 
 }  // namespace limber

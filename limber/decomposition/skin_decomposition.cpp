@@ -13,7 +13,7 @@ namespace limber {
 
 namespace {
 
-constexpr double kLeastShare = 3;   // sum of squared weights below which a bone begins anew (Le, Deng 2012)
+constexpr double kLeastShare = 1;   // sum of squared weights: a bone with less than one point of its own begins anew
 constexpr int kLastIterations = 5;  // in which no bone begins anew, so that all settle
 constexpr double kStands = 1e-4;    // relative fall of the error below which nothing more is to be had
 constexpr double kWorthMore = 0.9;  // of the error with half as many bones: more bones are not worth it
@@ -82,16 +82,16 @@ double rootMeanSquare(const VertexSequence& sequence, const std::vector<double>&
 bool beginAnew(const VertexSequence& sequence, FittedWeights& fitted, BoneMotions& motions) {
   const std::vector<double> shares = sharesOf(fitted.weights, motions.boneCount());
   std::vector<bool> isTaken(sequence.pointCount(), false);
-  const double least = std::min(kLeastShare, 0.5 * sequence.pointCount() / motions.boneCount());
+  const std::size_t seedCount = seedPoints(sequence.pointCount() / motions.boneCount());
   bool any = false;
   for (Index b = 0; b < motions.boneCount(); ++b) {
-    if (shares[b] >= least) continue;
+    if (shares[b] >= kLeastShare) continue;
     Index worst = kNoIndex;
     for (Index v = 0; v < sequence.pointCount(); ++v) {
       if (!isTaken[v] && (worst == kNoIndex || fitted.errors[v] > fitted.errors[worst])) worst = v;
     }
     if (worst == kNoIndex) break;
-    const std::vector<Index> seeds = nearestPoints(sequence, worst, kSeedPoints, [&](Index v) { return !isTaken[v]; });
+    const std::vector<Index> seeds = nearestPoints(sequence, worst, seedCount, [&](Index v) { return !isTaken[v]; });
     for (const Index v : seeds) isTaken[v] = true;
     BoneMotions seeded{motions.frameCount, {}};
     appendMotionOf(sequence, seeds, seeded);

@@ -142,6 +142,14 @@ TEST(RigFromAnimation, MorphTargetsOnATurningNodeBecomeBones) {
   EXPECT_LT(farthestApart(before, readVertexAnimation(written, {"bend", 10})), 0.01);
 }
 
+TEST(RigFromAnimation, MorphTargetsAloneBecomeBones) {
+  Asset asset = morphingStrip(12, 0.8, false);
+  const VertexAnimation before = readVertexAnimation(asset, {});
+  Progress progress;
+  rigFromAnimation(asset, readVertexAnimation(asset, {}), someBones(2), progress);
+  EXPECT_LT(farthestApart(before, readVertexAnimation(asset, {"", 10})), 0.01);
+}
+
 TEST(RigFromAnimation, ARiggedModelIsRiggedAnew) {
   Asset asset = morphingStrip(12, 0.8);
   Progress progress;

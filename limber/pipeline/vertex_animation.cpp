@@ -150,10 +150,11 @@ class VertexPoser {
   explicit VertexPoser(const Asset& asset) : geometry_(collectGeometry(asset)) {
     morphs_ = morphTargetsOf(asset, geometry_);
     if (elementCount(asset, "skins") > 0 || movesNodes(asset)) skeleton_ = animatedSkeleton(asset);
+    if (skeleton_.jointNode.empty()) return;
     weights_ = readWeights(asset, geometry_, skeleton_);
     normalizeWeights(weights_);
     checkWeights(weights_, skeleton_.skeleton.jointCount());
-    if (!skeleton_.jointNode.empty()) nodePose_ = readNodePose(asset, skeleton_);
+    nodePose_ = readNodePose(asset, skeleton_);
     scratch_.resize(deformer().scratchSize(skeleton_.skeleton.jointCount()));
   }
 
