@@ -24,9 +24,11 @@ void addSessionCommand(CLI::App& program);
 void addRetargetCommand(CLI::App& program);
 void addAnimateCommand(CLI::App& program);
 void addStudioCommand(CLI::App& program);
+void addTransferCommand(CLI::App& program);
 void addMotionEvaluation(CLI::App& evaluate);  // subcommands of evaluate
 void addRetargetingEvaluation(CLI::App& evaluate);
 void addDecompositionEvaluation(CLI::App& evaluate);
+void addTransferEvaluation(CLI::App& evaluate);
 
 // Options that most commands have.
 struct Common {

@@ -437,6 +437,7 @@ void addEvaluateCommand(CLI::App& program) {
   addMotionEvaluation(*evaluate);
   addRetargetingEvaluation(*evaluate);
   addDecompositionEvaluation(*evaluate);
+  addTransferEvaluation(*evaluate);
 }
 
 }  // namespace limber::cli

@@ -68,6 +68,7 @@ int main(int argc, char** argv) {
   limber::cli::addSessionCommand(program);
   limber::cli::addRetargetCommand(program);
   limber::cli::addAnimateCommand(program);
+  limber::cli::addTransferCommand(program);
   limber::cli::addStudioCommand(program);
   program.footer("limber COMMAND --help shows the options of a command, with an example.");
   if (const std::string problem = wrongCommand(program, argc, argv); !problem.empty()) return usage(program, problem);

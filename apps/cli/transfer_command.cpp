@@ -1,0 +1,126 @@
+// limber transfer: somebody's rig on another model.
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "command.h"
+#include "limber/asset/json_text.h"
+#include "limber/asset/read.h"
+#include "limber/asset/write.h"
+#include "limber/core/counted.h"
+#include "limber/pipeline/transfer_asset.h"
+#include "progress_line.h"
+
+namespace limber::cli {
+
+namespace {
+
+struct TransferArguments {
+  std::string source, target, output, report;
+  TransferAssetOptions transfer;
+  bool noShapes = false, ignoreRig = false, strict = false;
+  Common common;
+};
+
+constexpr std::size_t kPartsListed = 4;
+
+std::string reportText(const TransferArguments& options, const TransferReport& report) {
+  Json json;
+  json["limber"] = LIMBER_VERSION;
+  json["command"] = "transfer";
+  json["source"] = options.source;
+  json["target"] = options.target;
+  json["output"] = options.output;
+  json.update(toJson(report));
+  return dumpReport(json) + "\n";
+}
+
+void printGaps(const Account& account, const SurfaceGaps& gaps) {
+  account.line(fmt::format("surfaces apart   {:.2f} % of the height (RMS), 95 % within {:.2f} %, worst {:.2f} %", gaps.rms,
+                           gaps.p95, gaps.worst));
+  account.line(fmt::format("beyond {} %       {:.1f} % of the surface", kGap, 100 * gaps.beyond));
+  for (std::size_t i = 0; i < std::min(kPartsListed, gaps.parts.size()) && gaps.parts[i].beyond > 0; ++i) {
+    const PartGap& part = gaps.parts[i];
+    account.line(fmt::format("  {:<15}{:.0f} % of it", part.part, 100 * part.beyond));
+  }
+}
+
+void printAccount(const TransferArguments& options, const TransferReport& report) {
+  const Account account(options.common.quiet, options.output);
+  account.line(fmt::format("source           {}", counted(report.sourceVertices, "vertex", "vertices")));
+  std::string target = counted(report.targetVertices, "vertex", "vertices");
+  if (report.removedJoints > 0) {
+    target += fmt::format("; taken out: {}, {}", counted(report.removedJoints, "joint"),
+                          counted(report.removedClips, "clip"));
+  }
+  account.line(fmt::format("target           {}", target));
+  account.line(fmt::format("landmarks        {}, by {} ({:.0f} % sure)", report.landmarks, report.landmarksBy,
+                           100 * report.confidence));
+  account.line(fmt::format("joints           {}", report.joints));
+  if (!report.blendShapes.empty()) {
+    account.line(fmt::format("blend shapes     {}", joinNames(report.blendShapes)));
+  }
+  printGaps(account, report.gaps);
+  account.line(fmt::format("seconds          {:.2f}", totalSeconds(report.stages)));
+  printWarnings(report.warnings, options.common.quiet);
+  if (options.output != "-") account.line(fmt::format("written: {}", options.output));
+}
+
+void runTransferCommand(TransferArguments options) {
+  options.common.apply();
+  checkOutput(options.output, {".glb", ".gltf"});
+  checkBeside("--report", options.report, {options.source, options.target, options.output});
+  options.transfer.blendShapes = !options.noShapes;
+  options.transfer.ownSkeleton = !options.ignoreRig;
+  TerminalProgress progress(options.common.quiet);
+  progress->stage("read");
+  const Asset source = readAsset(options.source);
+  Asset target = readAsset(options.target);
+  const TransferReport report = transferOnto(source, target, options.transfer, *progress);
+  if (options.strict) refuseWarnings(report.warnings);
+  const std::string text = reportText(options, report);
+  std::vector<OutputFile> companions;
+  if (!options.report.empty()) companions.push_back({options.report, asBytes(text)});
+  writeAsset(target, options.output, companions);
+  progress.finish();
+  printAccount(options, report);
+}
+
+}  // namespace
+
+void addTransferCommand(CLI::App& program) {
+  auto options = std::make_shared<TransferArguments>();
+  CLI::App* command = program.add_subcommand("transfer", "Put the rig of one model onto another model");
+  command->add_option("SOURCE", options->source, "the model whose joints, weights and blend shapes are taken")
+      ->required();
+  command->add_option("TARGET", options->target, "the model that gets them: a scan, a sculpture, another character")
+      ->required();
+  command->add_option("-o,--output", options->output, "the .glb or .gltf to write; - is standard output (GLB)")
+      ->required()
+      ->type_name("FILE");
+  command
+      ->add_option("--max-influences", options->transfer.rig.maxInfluences, "joints that move a vertex, at most")
+      ->check(CLI::Range(1, 8).description(""))
+      ->type_name("N")
+      ->capture_default_str();
+  command->add_option("--report", options->report, "write what was done, and where the surfaces stay apart, as JSON")
+      ->type_name("FILE");
+  command->add_flag("--no-blend-shapes", options->noShapes, "leave the source's blend shapes out");
+  command->add_flag("--ignore-target-rig", options->ignoreRig,
+                    "find the target's limbs by its surface alone, even if it has a rig that tells");
+  command->add_flag("--strict", options->strict, "take warnings as errors: write nothing");
+  options->common.addTo(*command);
+  command->footer(
+      "The source is laid along the limbs of the target, which a template fitted to both, or the target's own rig,\n"
+      "tells; then its surface is bent onto the target's, and joints, weights and blend shapes go along. Joints keep\n"
+      "their names, their tree and their axes. Both bodies should be of one kind, such as people; the poses in which\n"
+      "they stand may differ. docs/transfer.md tells more.\n"
+      "\nExamples:\n"
+      "  limber transfer hero.glb scan.obj -o scan_rigged.glb\n"
+      "  limber transfer hero.glb villain.glb -o villain_as_hero.glb --report gaps.json\n"
+      "  limber retarget scan_rigged.glb walk.bvh -o scan_walks.glb");
+  command->callback([options] { runTransferCommand(*options); });
+}
+
+}  // namespace limber::cli
