@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
+#include <utility>
 
 #include "limber/anatomy/anatomy.h"
 
@@ -10,6 +12,7 @@
 #include "limber/transfer/facing_surface.h"
 #include "limber/transfer/joint_follow.h"
 #include "limber/transfer/weight_projection.h"
+#include "limber/transfer/whole_alignment.h"
 
 namespace limber {
 
@@ -26,6 +29,33 @@ double extentAlong(const TriMesh& mesh, const Vec3& axis) {
   return high - low;
 }
 
+struct AlignedBody {
+  LimbAlignment alignment;
+  TriMesh surface;
+};
+
+// By its limbs, or as a whole where it then lies nearer to the target: bodies that stand alike do, and the limbs of a
+// target that was read wrong do not matter to them.
+AlignedBody alignBody(const RiggedBody& source, const TriMesh& surface, std::span<const Affine> globals,
+                      std::span<const JointLandmark> landmarks, const TriMesh& target, const Vec3& up) {
+  std::vector<LimbAlignment> candidates = {alignLimbs(source.skeleton, globals, landmarks)};
+  const Quat turn(candidates[0].whole.rotation());
+  for (const Quat& whole : {turn, Quat::Identity()}) {
+    candidates.push_back(alignWhole(globals, wholeSimilarity(surface, target, whole, whole * up)));
+  }
+  std::optional<AlignedBody> best;
+  double least = 0;
+  for (LimbAlignment& candidate : candidates) {
+    TriMesh aligned = surface;
+    aligned.positions = alignedSurface(source.mesh.positions, source.weights, candidate);
+    const double apart = surfacesApart(aligned, target);
+    if (best && !(apart < least)) continue;
+    least = apart;
+    best = {std::move(candidate), std::move(aligned)};
+  }
+  return std::move(*best);
+}
+
 }  // namespace
 
 RigTransfer transferRig(const RiggedBody& source, std::span<const JointLandmark> landmarks, const TriMesh& target,
@@ -33,11 +63,10 @@ RigTransfer transferRig(const RiggedBody& source, std::span<const JointLandmark>
   RigTransfer result;
   progress.step("align limbs");
   const std::vector<Affine> globals = restGlobals(source.skeleton);
-  const LimbAlignment alignment = alignLimbs(source.skeleton, globals, landmarks);
+  const Anatomy anatomy = readAnatomy(source.skeleton);
   result.source = facingOutwards(source.mesh);
-  TriMesh aligned = result.source;
-  aligned.positions = alignedSurface(source.mesh.positions, source.weights, alignment);
   const TriMesh goal = facingOutwards(target);
+  auto [alignment, aligned] = alignBody(source, result.source, globals, landmarks, goal, anatomy.axes.up);
 
   const std::vector<VertexPair> links = pieceLinks(source.mesh.positions, surfaceEdges(source.mesh).edges);
   result.registered = registerSurface(aligned, links, goal, options.registration, progress);
@@ -51,7 +80,6 @@ RigTransfer transferRig(const RiggedBody& source, std::span<const JointLandmark>
   }
   result.points = takenAfter(aligned, goal);
   result.weights = projectWeights(aligned, source.weights, result.points, options.maxInfluences);
-  const Anatomy anatomy = readAnatomy(source.skeleton);
   result.gaps = measureGaps(goal, result.points, anatomy, result.weights,
                             extentAlong(goal, whole * anatomy.axes.up));
   return result;
