@@ -122,6 +122,15 @@ if [ -d "$characters" ]; then
     -o $work/curved.md --quiet
   table=$($limber evaluate decomposition "$characters" "$creatures"/tune "$creatures"/check --quiet)
   table="$table" perl -0pi -e 's/(<!-- made by [^\n]*: decomposition -->\n).*(<!-- end of decomposition -->)/$1\n$ENV{table}\n$2/s' docs/methods.md
+  $limber evaluate transfer "$characters" "$creatures"/tune "$creatures"/check -o $work/transfer.md --quiet
+  table="$(cat $work/transfer.md)" perl -0pi -e 's/(<!-- made by [^\n]*: transfer -->\n).*(<!-- end of transfer -->)/$1\n$ENV{table}\n$2/s' docs/methods.md
+  $limber transfer "$characters"/quaternius_man_casual.glb "$characters"/m2m_human_zombie.glb --ignore-target-rig \
+    -o $work/transfer.glb --quiet
+  $limber pose $work/transfer.glb --turn UpperArm.L=z:40 --turn LowerArm.L=y:-50 --turn UpperLeg.R=x:-50 \
+    --turn LowerLeg.R=x:70 --turn Head=y:25 -o $work/transfer_posed.glb --quiet
+  $limber preview "$characters"/quaternius_man_casual.glb --show bones --size 360x400 -o $images/transfer_source.png --quiet
+  $limber preview "$characters"/m2m_human_zombie.glb --size 360x400 -o $images/transfer_target.png --quiet
+  $limber preview $work/transfer_posed.glb --size 360x400 -o $images/transfer_posed.png --quiet
   people=(cesium_man.glb kaykit_mannequin/manny_med_mod.gltf kenney_human.glb m2m_human_{female,male,zombie}.glb
     makehuman_{cmu_mb,default,game_engine,mixamo}.glb quaternius_cyberpunk_character.glb quaternius_knightcharacter.glb
     quaternius_{man_casual,man_king,man_spacesuit,platformer_character,platformer_character_humanoidrig,woman_casual,woman_scifi,mech_george}.glb

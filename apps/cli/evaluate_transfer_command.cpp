@@ -53,7 +53,8 @@ void addTransferEvaluation(CLI::App& evaluate) {
   CLI::App* command =
       evaluate.add_subcommand("transfer", "Transfer rigs between people and compare with their artists' own");
   command->add_option("FOLDER", options->folders, "folders with rigged characters")->required();
-  command->add_option("--sources", options->trials.mostSources, "rigs for each target: of its own joints, and of others")
+  command
+      ->add_option("--sources", options->trials.mostSources, "rigs for each target: of its own joints, and of others")
       ->check(CLI::Range(1, 1000).description(""))
       ->type_name("N")
       ->capture_default_str();
@@ -64,7 +65,8 @@ void addTransferEvaluation(CLI::App& evaluate) {
       ->capture_default_str();
   options->common.addTo(*command);
   command->footer(
-      "Every person of a folder loses its rig and takes those of others there: of some whose joints have the same names,\n"
+      "Every person of a folder loses its rig and takes those of others there: of some whose joints have the same "
+      "names,\n"
       "and of some of other makers. Joints are compared by what they are of a body, weights by joints of one name or,\n"
       "between makers, by parts of the body.\n"
       "\nExample:\n  limber evaluate transfer characters --each pairs.tsv");

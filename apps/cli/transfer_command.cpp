@@ -37,8 +37,8 @@ std::string reportText(const TransferArguments& options, const TransferReport& r
 }
 
 void printGaps(const Account& account, const SurfaceGaps& gaps) {
-  account.line(fmt::format("surfaces apart   {:.2f} % of the height (RMS), 95 % within {:.2f} %, worst {:.2f} %", gaps.rms,
-                           gaps.p95, gaps.worst));
+  account.line(fmt::format("surfaces apart   {:.2f} % of the height (RMS), 95 % within {:.2f} %, worst {:.2f} %",
+                           gaps.rms, gaps.p95, gaps.worst));
   account.line(fmt::format("beyond {} %       {:.1f} % of the surface", kGap, 100 * gaps.beyond));
   for (std::size_t i = 0; i < std::min(kPartsListed, gaps.parts.size()) && gaps.parts[i].beyond > 0; ++i) {
     const PartGap& part = gaps.parts[i];
@@ -99,8 +99,7 @@ void addTransferCommand(CLI::App& program) {
   command->add_option("-o,--output", options->output, "the .glb or .gltf to write; - is standard output (GLB)")
       ->required()
       ->type_name("FILE");
-  command
-      ->add_option("--max-influences", options->transfer.rig.maxInfluences, "joints that move a vertex, at most")
+  command->add_option("--max-influences", options->transfer.rig.maxInfluences, "joints that move a vertex, at most")
       ->check(CLI::Range(1, 8).description(""))
       ->type_name("N")
       ->capture_default_str();
@@ -115,7 +114,7 @@ void addTransferCommand(CLI::App& program) {
       "The source is laid along the limbs of the target, which a template fitted to both, or the target's own rig,\n"
       "tells; then its surface is bent onto the target's, and joints, weights and blend shapes go along. Joints keep\n"
       "their names, their tree and their axes. Both bodies should be of one kind, such as people; the poses in which\n"
-      "they stand may differ. docs/transfer.md tells more.\n"
+      "they stand may differ. docs/methods.md tells more.\n"
       "\nExamples:\n"
       "  limber transfer hero.glb scan.obj -o scan_rigged.glb\n"
       "  limber transfer hero.glb villain.glb -o villain_as_hero.glb --report gaps.json\n"

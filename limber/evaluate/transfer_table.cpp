@@ -201,7 +201,8 @@ std::string transferTable(std::span<const TransferFolder> folders) {
 }
 
 std::string eachTransferTrial(std::span<const TransferFolder> folders) {
-  std::string text = "folder\tsource\ttarget\tfamily\tnamed_mean\tnamed_worst\tworst_joint\tweights_l1\tdeform_p95\ts\n";
+  std::string text =
+      "folder\tsource\ttarget\tfamily\tnamed_mean\tnamed_worst\tworst_joint\tweights_l1\tdeform_p95\ts\n";
   for (const TransferFolder& folder : folders) {
     for (const TransferTrial& t : folder.trials) {
       const auto worst = std::max_element(t.rig.named.begin(), t.rig.named.end(),

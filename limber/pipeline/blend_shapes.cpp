@@ -4,8 +4,8 @@
 #include <map>
 #include <set>
 
-#include <Eigen/LU>
 #include <fmt/format.h>
+#include <Eigen/LU>
 #include <nlohmann/json.hpp>
 
 #include "limber/asset/accessor.h"

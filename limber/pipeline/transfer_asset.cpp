@@ -68,8 +68,7 @@ void removeOldRig(Asset& target, TransferReport& report) {
 }
 
 std::vector<JointLandmark> templateLandmarks(const Asset& sourceAsset, const SourceModel& source,
-                                             const Asset& targetAsset, const Geometry& target,
-                                             TransferReport& report) {
+                                             const Asset& targetAsset, const Geometry& target, TransferReport& report) {
   std::optional<FittedSkeleton> inSource, inTarget;
   parallelInvoke([&] { inTarget = fittedSkeleton(targetAsset, target); },
                  [&] { inSource = fittedSkeleton(sourceAsset, source.geometry); });
@@ -80,7 +79,8 @@ std::vector<JointLandmark> templateLandmarks(const Asset& sourceAsset, const Sou
   report.landmarksBy = inTarget->name;
   report.confidence = inTarget->confidence;
   if (inSource && inSource->name == inTarget->name) {
-    return landmarksByTemplate(source.body.skeleton, inSource->skeleton, inTarget->skeleton, source.prepared.frame.scale);
+    return landmarksByTemplate(source.body.skeleton, inSource->skeleton, inTarget->skeleton,
+                               source.prepared.frame.scale);
   }
   return commonLandmarks(source.body.skeleton, inTarget->skeleton);
 }
@@ -185,9 +185,12 @@ TransferReport transferOnto(const Asset& source, Asset& target, const TransferAs
 
 Json toJson(const TransferReport& report) {
   Json json;
-  json["counts"] = {{"source_vertices", report.sourceVertices},   {"target_vertices", report.targetVertices},
-                    {"joints", report.joints},                    {"landmarks", report.landmarks},
-                    {"removed_joints", report.removedJoints},     {"removed_clips", report.removedClips}};
+  json["counts"] = {{"source_vertices", report.sourceVertices},
+                    {"target_vertices", report.targetVertices},
+                    {"joints", report.joints},
+                    {"landmarks", report.landmarks},
+                    {"removed_joints", report.removedJoints},
+                    {"removed_clips", report.removedClips}};
   json["landmarks_by"] = report.landmarksBy;
   json["confidence"] = report.confidence;
   json["blend_shapes"] = report.blendShapes;
@@ -195,8 +198,8 @@ Json toJson(const TransferReport& report) {
   for (const PartGap& part : report.gaps.parts) {
     parts.push_back({{"part", part.part}, {"area", part.area}, {"rms", part.rms}, {"beyond", part.beyond}});
   }
-  json["gaps"] = {{"rms", report.gaps.rms},       {"p95", report.gaps.p95},          {"worst", report.gaps.worst},
-                  {"beyond", report.gaps.beyond}, {"limit", kGap}, {"parts", std::move(parts)}};
+  json["gaps"] = {{"rms", report.gaps.rms},       {"p95", report.gaps.p95}, {"worst", report.gaps.worst},
+                  {"beyond", report.gaps.beyond}, {"limit", kGap},          {"parts", std::move(parts)}};
   json["seconds"] = totalSeconds(report.stages);
   json["stages"] = Json::array();
   for (const StageTime& stage : report.stages) {

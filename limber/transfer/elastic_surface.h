@@ -47,12 +47,12 @@ class ElasticSurface {
 
   std::vector<Vec3> rest_;
   std::vector<double> masses_;
-  std::vector<Edge> edges_;                   // a < b, in order
-  std::vector<Index> first_, neighbour_;      // neighbours of a vertex, by edge
+  std::vector<Edge> edges_;               // a < b, in order
+  std::vector<Index> first_, neighbour_;  // neighbours of a vertex, by edge
   std::vector<double> neighbourWeight_;
-  Eigen::SparseMatrix<double> matrix_;        // lower triangle
-  std::vector<std::ptrdiff_t> diagonal_;      // #V, where in its values
-  std::vector<std::ptrdiff_t> offDiagonal_;   // of each edge
+  Eigen::SparseMatrix<double> matrix_;       // lower triangle
+  std::vector<std::ptrdiff_t> diagonal_;     // #V, where in its values
+  std::vector<std::ptrdiff_t> offDiagonal_;  // of each edge
   std::unique_ptr<SparseCholesky> factor_;
 };
 

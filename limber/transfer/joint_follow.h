@@ -10,8 +10,9 @@
 namespace limber {
 
 // Where joints are once the surface has moved: each by the affine map that takes the surface near it nearest to where
-// it is now. A vertex counts by its area over the fourth power of its distance, as far as it hangs on the joint, on the one above it
-// or on one right below; where too little of it lies round the joint to tell an affine map, the map is nearer to a shift.
+// it is now. A vertex counts by its area over the fourth power of its distance, as far as it hangs on the joint, on the
+// one above it or on one right below; where too little of it lies round the joint to tell an affine map, the map is
+// nearer to a shift.
 //
 // before   the surface as `places` (#J) lie in it
 // after    #V, where its vertices are now

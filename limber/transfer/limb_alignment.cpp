@@ -192,8 +192,8 @@ std::vector<Quat> turnsBetween(const Skeleton& skeleton, std::span<const Affine>
   // Ways below a joint, before they are turned as the joint above it is.
   for (Index j = 0; j < skeleton.jointCount(); ++j) {
     if (const std::optional<Index> parent = skeleton.joints[j].parent) {
-      correlations[*parent] += (places[j] - places[*parent]) *
-                               (globals[j].translation() - globals[*parent].translation()).transpose();
+      correlations[*parent] +=
+          (places[j] - places[*parent]) * (globals[j].translation() - globals[*parent].translation()).transpose();
     }
   }
   for (Index j = 0; j < skeleton.jointCount(); ++j) {

@@ -10,7 +10,8 @@ namespace limber {
 
 // #V, how the surface round each vertex was deformed: the deformation gradients of the triangles (their edges and their
 // normal, whose length goes with the root of the area: Sumner, Popović 2004, equations 1 to 3), their mean by area. The
-// identity where a vertex has no triangle with an area. Under a rotation each is that rotation, under a scale that scale.
+// identity where a vertex has no triangle with an area. Under a rotation each is that rotation, under a scale that
+// scale.
 std::vector<Mat3> deformationGradients(const TriMesh& before, std::span<const Vec3> after);
 
 // #points offsets: those of the triangle's corners, each taken along by its vertex's gradient, mixed by the point's

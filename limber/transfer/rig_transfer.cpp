@@ -34,8 +34,11 @@ struct AlignedBody {
   TriMesh surface;
 };
 
-// By its limbs, or as a whole where it then lies nearer to the target: bodies that stand alike do, and the limbs of a
-// target that was read wrong do not matter to them.
+// What lies nearer by less than this part says little: surfaces that do not match each other are near by chance.
+constexpr double kClearlyNearer = 0.8;
+
+// By its limbs, or as a whole where it then lies clearly nearer to the target: bodies that stand alike do, and the
+// limbs of a target that was read wrong do not matter to them.
 AlignedBody alignBody(const RiggedBody& source, const TriMesh& surface, std::span<const Affine> globals,
                       std::span<const JointLandmark> landmarks, const TriMesh& target, const Vec3& up) {
   std::vector<LimbAlignment> candidates = {alignLimbs(source.skeleton, globals, landmarks)};
@@ -50,7 +53,7 @@ AlignedBody alignBody(const RiggedBody& source, const TriMesh& surface, std::spa
     aligned.positions = alignedSurface(source.mesh.positions, source.weights, candidate);
     const double apart = surfacesApart(aligned, target);
     if (best && !(apart < least)) continue;
-    least = apart;
+    least = best ? apart : kClearlyNearer * apart;
     best = {std::move(candidate), std::move(aligned)};
   }
   return std::move(*best);
@@ -80,8 +83,7 @@ RigTransfer transferRig(const RiggedBody& source, std::span<const JointLandmark>
   }
   result.points = takenAfter(aligned, goal);
   result.weights = projectWeights(aligned, source.weights, result.points, options.maxInfluences);
-  result.gaps = measureGaps(goal, result.points, anatomy, result.weights,
-                            extentAlong(goal, whole * anatomy.axes.up));
+  result.gaps = measureGaps(goal, result.points, anatomy, result.weights, extentAlong(goal, whole * anatomy.axes.up));
   return result;
 }
 

@@ -13,10 +13,10 @@ namespace limber {
 
 // Distances in percent of the body's height.
 struct PartGap {
-  std::string part;       // "left hand"; "other" for joints of no part
-  double area = 0;        // of the target's surface, 0 to 1
+  std::string part;  // "left hand"; "other" for joints of no part
+  double area = 0;   // of the target's surface, 0 to 1
   double rms = 0;
-  double beyond = 0;      // part of its area that is farther than kGap, 0 to 1
+  double beyond = 0;  // part of its area that is farther than kGap, 0 to 1
 };
 
 struct SurfaceGaps {

@@ -43,7 +43,8 @@ std::vector<TargetPoint> pointsOf(const TriMesh& target) {
   const std::size_t step = (target.positions.size() + kMostTargetPoints - 1) / kMostTargetPoints;
   std::vector<TargetPoint> points;
   for (Index v = 0; v < target.vertexCount(); v += static_cast<Index>(step)) {
-    if (areas[v] > 0) points.push_back({target.position(v), normals[v].normalized(), areas[v] * static_cast<double>(step)});
+    if (areas[v] > 0)
+      points.push_back({target.position(v), normals[v].normalized(), areas[v] * static_cast<double>(step)});
   }
   return points;
 }
@@ -101,8 +102,8 @@ class Registration {
       for (std::size_t v = begin; v < end; ++v) {
         const auto found = onTarget_.nearestFacing(positions_[v], normals[v]);
         if (!found) continue;
-        const double weight = elastic_.masses()[v] *
-                              agreement(normals[v], normalOf(target_, found->triangle), found->distance, most);
+        const double weight =
+            elastic_.masses()[v] * agreement(normals[v], normalOf(target_, found->triangle), found->distance, most);
         pulls_[v] += weight;
         goals_[v] += weight * found->position;
       }
@@ -122,8 +123,8 @@ class Registration {
         const TargetPoint& point = targetPoints_[i];
         const auto found = onSource.nearestFacing(point.position, point.normal);
         if (!found) continue;
-        pulls[i] = {*found, point.area * agreement(point.normal, normalOf(moved_, found->triangle), found->distance,
-                                                   most)};
+        pulls[i] = {*found,
+                    point.area * agreement(point.normal, normalOf(moved_, found->triangle), found->distance, most)};
       }
     });
     for (std::size_t i = 0; i < pulls.size(); ++i) {

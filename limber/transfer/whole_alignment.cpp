@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::size_t kMostPoints = 2000;
 constexpr int kClosestRounds = 10;
+constexpr double kMostGrowth = 1.25;
 // Pairs that lie farther apart say nothing; parts of the target's longest side.
 constexpr double kFar = 0.1;
 
@@ -106,6 +107,7 @@ Affine wholeSimilarity(const TriMesh& source, const TriMesh& target, const Quat&
   map.linear() = (height > 0 ? extentOf(target, up) / height : 1.0) * turn.toRotationMatrix();
   map.translation() = goal.center() - map.linear() * (turn.conjugate() * boxOf(turned).center());
 
+  const Affine first = map;
   const FacingSurface onSource(source), onTarget(target);
   const std::vector<SurfaceSample> ofSource = samplesOf(source), ofTarget = samplesOf(target);
   for (int round = 0; round < kClosestRounds; ++round) {
@@ -124,7 +126,8 @@ Affine wholeSimilarity(const TriMesh& source, const TriMesh& target, const Quat&
     }
     map = similarityOf(pairs, map);
   }
-  return map;
+  const double growth = std::cbrt(map.linear().determinant() / first.linear().determinant());
+  return growth <= kMostGrowth && growth * kMostGrowth >= 1 ? map : first;
 }
 
 LimbAlignment alignWhole(std::span<const Affine> globals, const Affine& similarity) {

@@ -1,0 +1,158 @@
+#include "limber/pipeline/transfer_asset.h"
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include "limber/asset/accessor.h"
+#include "limber/asset/geometry.h"
+#include "limber/asset/json_access.h"
+#include "limber/asset/rig_io.h"
+#include "limber/asset/testing/scene_builder.h"
+#include "limber/transfer/testing/capsule_person.h"
+
+namespace limber {
+
+namespace {
+
+using testing::capsulePerson;
+using testing::SceneBuilder;
+
+Asset sceneOf(const TriMesh& mesh, const std::string& name) {
+  SceneBuilder scene;
+  Json primitives = Json::array({scene.primitive(mesh.positions, mesh.triangles)});
+  scene.addNode({{"mesh", scene.addMesh(std::move(primitives))}});
+  scene.json()["scenes"] = Json::array({{{"nodes", Json::array({0})}}});
+  scene.json()["scene"] = 0;
+  Asset asset = scene.asset().clone();
+  asset.name = name;
+  return asset;
+}
+
+Asset riggedPerson(bool withShape = false) {
+  const RiggedBody person = capsulePerson();
+  Asset asset = sceneOf(person.mesh, "person.glb");
+  if (withShape) {
+    std::vector<float> offsets;
+    for (const Vec3f& p : person.mesh.positions) offsets.insert(offsets.end(), {0, p.y() > 1.6f ? 0.05f : 0.0f, 0});
+    const Index accessor = addFloatAccessor(asset, offsets, 3, kVertexTarget, true);
+    Json& mesh = asset.json()["meshes"][0];
+    mesh["primitives"][0]["targets"] = Json::array({{{"POSITION", accessor}}});
+    mesh["extras"]["targetNames"] = {"hat"};
+  }
+  attachRig(asset, collectGeometry(asset), person.skeleton, person.weights);
+  return asset;
+}
+
+TransferReport transferred(const Asset& source, Asset& target, const TransferAssetOptions& options = {}) {
+  Progress progress;
+  TransferReport report = transferOnto(source, target, options, progress);
+  checkAsset(target);
+  return report;
+}
+
+std::vector<Vec3> placesIn(const Asset& asset) {
+  return testing::jointPlaces(readSkeleton(asset).skeleton);
+}
+
+// A target with a rig of its own, under other names: its joints are the landmarks.
+TEST(TransferAssetTest, PutsARigOntoABodyWithAnotherOne) {
+  const Asset source = riggedPerson();
+  RiggedBody other = capsulePerson();
+  for (Joint& joint : other.skeleton.joints) {
+    joint.rest.translation *= 1.4;
+    joint.name += "_old";
+  }
+  for (Vec3f& p : other.mesh.positions) p *= 1.4f;
+  Asset target = sceneOf(other.mesh, "other.glb");
+  attachRig(target, collectGeometry(target), other.skeleton, other.weights);
+  const std::vector<Vec3> wanted = placesIn(target);
+  const TransferReport report = transferred(source, target);
+  EXPECT_EQ(report.removedJoints, 15u);
+  const Skeleton skeleton = readSkeleton(target).skeleton;
+  ASSERT_EQ(skeleton.jointCount(), 15u);
+  for (Index j = 0; j < 15; ++j) {
+    EXPECT_EQ(skeleton.joints[j].name, capsulePerson().skeleton.joints[j].name);
+    EXPECT_LT((placesIn(target)[j] - wanted[j]).norm(), 0.005) << skeleton.joints[j].name;
+  }
+}
+
+TEST(TransferAssetTest, FindsTheLimbsOfABareBody) {
+  const Asset source = riggedPerson();
+  Asset target = sceneOf(testing::cutInFour(capsulePerson().mesh), "bare.obj");
+  const TransferReport report = transferred(source, target);
+  EXPECT_THAT(report.landmarksBy, ::testing::StartsWith("humanoid"));
+  const std::vector<Vec3> wanted = placesIn(source), found = placesIn(target);
+  for (std::size_t j = 0; j < wanted.size(); ++j) EXPECT_LT((found[j] - wanted[j]).norm(), 0.005) << j;
+}
+
+TEST(TransferAssetTest, BringsBlendShapesAlong) {
+  const Asset source = riggedPerson(true);
+  RiggedBody turned = capsulePerson();
+  const Quat turn(Eigen::AngleAxisd(M_PI / 2, Vec3::UnitZ()));  // lies on its side: what was up is -x
+  for (Vec3f& p : turned.mesh.positions) p = (turn * p.cast<double>()).cast<float>();
+  for (Joint& joint : turned.skeleton.joints) joint.rest.translation = turn * joint.rest.translation;
+  Asset target = sceneOf(turned.mesh, "turned.glb");
+  attachRig(target, collectGeometry(target), turned.skeleton, turned.weights);
+  const TransferReport report = transferred(source, target);
+  EXPECT_THAT(report.blendShapes, ::testing::ElementsAre("hat"));
+  const Json& mesh = target.json()["meshes"][0];
+  EXPECT_EQ(mesh.at("extras").at("targetNames"), Json::array({"hat"}));
+  const std::vector<float> offsets =
+      readFloats(target, mesh.at("primitives")[0].at("targets")[0].at("POSITION").get<Index>());
+  double most = 0;
+  for (Index v = 0; v < turned.mesh.vertexCount(); ++v) {
+    const bool isHat = capsulePerson().mesh.positions[v].y() > 1.6f;
+    most = std::max(
+        most, (Vec3(offsets[3 * v], offsets[3 * v + 1], offsets[3 * v + 2]) - Vec3(isHat ? -0.05 : 0, 0, 0)).norm());
+  }
+  EXPECT_LT(most, 0.01);
+  Asset without = sceneOf(turned.mesh, "turned.glb");
+  attachRig(without, collectGeometry(without), turned.skeleton, turned.weights);
+  TransferAssetOptions options;
+  options.blendShapes = false;
+  EXPECT_TRUE(transferred(source, without, options).blendShapes.empty());
+  EXPECT_FALSE(without.json()["meshes"][0]["primitives"][0].contains("targets"));
+}
+
+void expectRefused(const Asset& source, Asset& target, const std::string& what) {
+  const Json before = target.json();
+  Progress progress;
+  try {
+    transferOnto(source, target, {}, progress);
+    ADD_FAILURE() << "took it";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr(what));
+    EXPECT_THAT(error.what(), ::testing::Not(::testing::HasSubstr("\n")));
+  }
+  EXPECT_EQ(target.json(), before);
+}
+
+TEST(TransferAssetTest, RefusesASourceWithoutARig) {
+  Asset target = sceneOf(capsulePerson().mesh, "bare.obj");
+  expectRefused(sceneOf(capsulePerson().mesh, "plain.glb"), target, "plain.glb: has no rig to transfer");
+}
+
+TEST(TransferAssetTest, RefusesWhatIsNoBody) {
+  TriMesh chair;
+  for (const Vec3& foot : {Vec3(0, 0, 0), Vec3(0.4, 0, 0), Vec3(0, 0, 0.4), Vec3(0.4, 0, 0.4)}) {
+    testing::addCapsule(chair, foot, foot + Vec3(0, 0.45, 0), 0.02);
+  }
+  testing::addCapsule(chair, Vec3(0, 0.45, 0.2), Vec3(0.4, 0.45, 0.2), 0.2);
+  Asset target = sceneOf(chair, "chair.obj");
+  expectRefused(riggedPerson(), target, "chair.obj: ");
+}
+
+TEST(TransferAssetTest, RefusesATargetWithoutTriangles) {
+  SceneBuilder scene;
+  Json primitives =
+      Json::array({{{"attributes", {{"POSITION", scene.addPositions({{0, 0, 0}, {1, 0, 0}})}}}, {"mode", 0}}});
+  scene.addNode({{"mesh", scene.addMesh(std::move(primitives))}});
+  scene.json()["scenes"] = Json::array({{{"nodes", Json::array({0})}}});
+  Asset target = scene.asset().clone();
+  target.name = "points.glb";
+  expectRefused(riggedPerson(), target, "points.glb: ");
+}
+
+}  // namespace
+
+}  // namespace limber
