@@ -64,8 +64,10 @@ std::vector<JointLandmark> roughLandmarks(std::vector<Vec3> places, double off) 
 
 RigTransfer transferPerson(const RiggedBody& source, const std::vector<JointLandmark>& landmarks,
                            const TriMesh& target) {
+  RigTransferOptions options;
+  options.registration.rounds = 2;  // quick, and enough for bodies that differ little
   Progress progress;
-  return transferRig(source, landmarks, target, {}, progress);
+  return transferRig(source, landmarks, target, options, progress);
 }
 
 TEST(RigTransferTest, GivesACopyItsOwnRig) {
