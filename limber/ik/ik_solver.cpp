@@ -8,6 +8,8 @@
 #include "limber/ik/damped_least_squares.h"
 #include "limber/ik/fabrik.h"
 #include "limber/ik/jacobian_transpose.h"
+#include "limber/ik/mass_spring.h"
+#include "limber/ik/particle_ik.h"
 #include "limber/ik/pseudo_inverse.h"
 #include "limber/ik/rotation.h"
 #include "limber/ik/selectively_damped.h"
@@ -26,6 +28,9 @@ constexpr IkMethod kMethods[] = {
      "Wang, Chen: A combined optimization method for solving the inverse kinematics problem, 1991", &makeCcdForward},
     {"fabrik", "forward and backward reaching, for chains and trees",
      "Aristidou, Chrysanthou, Lasenby: Extending FABRIK with model constraints, 2016", &makeFabrik},
+    {"particle", "joints as particles at fixed distances, the spine first, then the limbs",
+     "Hecker and others: Real-time motion retargeting to highly varied user-created morphologies, 2008",
+     &makeParticleIk},
     {"jacobian-transpose", "steepest descent that goes on in the last step's direction too",
      "Wolovich, Elliott: A computational technique for inverse kinematics, 1984", &makeJacobianTranspose},
     {"pseudo-inverse", "smallest step by singular values", "Whitney: Resolved motion rate control, 1969",
@@ -35,6 +40,10 @@ constexpr IkMethod kMethods[] = {
      &makeDampedLeastSquares},
     {"sdls", "selectively damped least squares",
      "Buss, Kim: Selectively damped least squares for inverse kinematics, 2005", &makeSelectivelyDamped},
+    {"mass-spring", "springs to the targets pull at bones with masses: light tips go first",
+     "Sekiguchi, Takesue: Fast and robust numerical method for inverse kinematics with prioritized multiple targets "
+     "for redundant robots, 2020",
+     &makeMassSpring},
     {"whole-body", "damped least squares with priorities, for many effectors and a moving root",
      "Baerlocher, Boulic: An inverse kinematics architecture enforcing an arbitrary number of strict priority levels, "
      "2004",
@@ -105,23 +114,11 @@ bool IkSolver::worthAnotherTry() const {
   return false;
 }
 
-// splitmix64 (Steele, Lea, Flood 2014), to [0, 1).
+// Jumps get shorter: from anywhere to near the best state.
 void IkSolver::perturb(Index restart) {
   const Index count = system_.options().restarts;
   const double cooled = count > 2 ? (restart - 1.0) / (count - 2.0) : 0;
-  const double jump = restart == 0 ? kNudge : 1 + cooled * (kSmallestJump - 1);
-  static const JointLimit kFree;
-  for (int n = 0; n < system_.nodeCount(); ++n) {
-    const auto i = static_cast<std::size_t>(n);
-    const IkSystem::Node& node = system_.nodes[i];
-    if (node.freedom == 0) continue;
-    // One after the other: in which order arguments are evaluated differs between compilers.
-    const double z = random_.uniform(), y = random_.uniform(), x = random_.uniform();
-    const Quat anywhere = allowedRotation(node.limit ? *node.limit : kFree, Vec3(x, y, z));
-    system_.locals[i] = system_.locals[i].slerp(jump, anywhere);
-    system_.limitNode(n);
-  }
-  system_.forward();
+  perturbNodes(system_, random_, restart == 0 ? kNudge : 1 + cooled * (kSmallestJump - 1));
 }
 
 void IkSolver::report() {
@@ -133,6 +130,21 @@ void IkSolver::report() {
                      : system_.outOfReach(e) ? IkOutcome::kOutOfReach
                                              : IkOutcome::kStuck;
   }
+}
+
+void perturbNodes(IkSystem& system, Random& random, double jump) {
+  static const JointLimit kFree;
+  for (int n = 0; n < system.nodeCount(); ++n) {
+    const auto i = static_cast<std::size_t>(n);
+    const IkSystem::Node& node = system.nodes[i];
+    if (node.freedom == 0) continue;
+    // One after the other: in which order arguments are evaluated differs between compilers.
+    const double z = random.uniform(), y = random.uniform(), x = random.uniform();
+    const Quat anywhere = allowedRotation(node.limit ? *node.limit : kFree, Vec3(x, y, z));
+    system.locals[i] = system.locals[i].slerp(jump, anywhere);
+    system.limitNode(n);
+  }
+  system.forward();
 }
 
 IkResult solveIk(const IkMethod& method, const Skeleton& skeleton, Pose& pose, std::span<const IkTarget> targets,

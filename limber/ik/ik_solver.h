@@ -65,7 +65,10 @@ class IkSolver {
   bool stillGaining_ = false;  // when the last attempt's iterations were used up
 };
 
-// The same for a single solve.
+// Turns every node that moves by the share `jump` of the way to a random rotation that its limits allow.
+void perturbNodes(IkSystem& system, Random& random, double jump);
+
+// The same as an IkSolver's for a single solve.
 IkResult solveIk(const IkMethod& method, const Skeleton& skeleton, Pose& pose, std::span<const IkTarget> targets,
                  const JointLimits* limits = nullptr, const IkOptions& options = {});
 
