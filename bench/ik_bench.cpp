@@ -6,6 +6,7 @@
 
 #include "limber/ik/ik_skeletons.h"
 #include "limber/ik/ik_solver.h"
+#include "limber/ik/ik_task.h"
 #include "limber/ik/rotation.h"
 #include "limber/ik/two_bone.h"
 
@@ -66,6 +67,8 @@ BENCHMARK_CAPTURE(chain, transpose, "jacobian-transpose")->Arg(10);
 BENCHMARK_CAPTURE(chain, pseudoInverse, "pseudo-inverse")->Arg(10);
 BENCHMARK_CAPTURE(chain, dls, "dls")->Arg(3)->Arg(10)->Arg(30)->Arg(100);
 BENCHMARK_CAPTURE(chain, sdls, "sdls")->Arg(10);
+BENCHMARK_CAPTURE(chain, particle, "particle")->Arg(3)->Arg(10)->Arg(30)->Arg(100);
+BENCHMARK_CAPTURE(chain, massSpring, "mass-spring")->Arg(3)->Arg(10)->Arg(30)->Arg(100);
 
 // Hands, feet and head of 60 joints follow circles at walking pace, 60 frames a second. With the root fixed, the head's
 // target is further than the spine is long in 10 of 60 frames: 0.83 is all that can be reached.
@@ -97,6 +100,58 @@ void wholeBody(benchmark::State& state, RootMotion rootMotion) {
 }
 BENCHMARK_CAPTURE(wholeBody, rootFixed, RootMotion::kFixed);
 BENCHMARK_CAPTURE(wholeBody, rootMoves, RootMotion::kTranslate);
+
+// A chain that bends to a point from one frame to the next, round a sphere in its way: grows with the joints.
+void tasksOfChain(benchmark::State& state) {
+  const auto joints = static_cast<Index>(state.range(0));
+  const Skeleton skeleton = straightChain(joints, 0.9);
+  Pose pose = restPose(skeleton);
+  for (Transform& local : pose.locals) local.rotation = fromRotationVector(Vec3(0.05, 0, 0.05));
+  const std::vector<Vec3> positions = targetsWithin(0.9);
+  IkTaskOptions options;
+  options.ik.restarts = 0;
+  std::size_t i = 0;
+  double met = 0;
+  for (auto _ : state) {
+    Pose answer = pose;
+    const Vec3 target = positions[i++ % positions.size()], middle = 0.5 * target;
+    const std::vector<IkTask> tasks = {{PositionTask{joints - 1, target}, 1, 1},
+                                       {KeepOutTask{joints / 2, middle, middle, 0.1}}};
+    met += solveIkTasks(skeleton, answer, tasks, nullptr, options).met();
+  }
+  state.counters["met"] = met / static_cast<double>(i);
+}
+BENCHMARK(tasksOfChain)->Arg(3)->Arg(10)->Arg(30)->Arg(100);
+
+// On 60 joints, from rest pose: the first 1, 2, ... of a list.
+void tasksOfHumanoid(benchmark::State& state) {
+  const Skeleton humanoid = practiceHumanoid();
+  const auto joint = [&](const char* name) { return humanoid.find(name).value(); };
+  const std::vector<Vec3> rest = posePositions(humanoid, restPose(humanoid));
+  const Index leftFoot = joint("leftFoot"), rightFoot = joint("rightFoot");
+  std::vector<IkTask> tasks = {
+      {PositionTask{joint("leftHand"), Vec3(0.3, 1.3, 0.35)}, 1, 1},
+      {LookAtTask{joint("head"), Vec3(0.5, 1.2, 1), Vec3::UnitZ()}, 1, 2},
+      {PositionTask{leftFoot, rest[leftFoot]}},
+      {PositionTask{rightFoot, rest[rightFoot]}},
+      {KeepOutTask{joint("rightHand"), Vec3(-0.6, 1.3, 0), Vec3(-0.6, 1.3, 0), 0.2}, 1, 1},
+      {BalanceTask{{leftFoot, rightFoot, joint("leftToes"), joint("rightToes")}}, 1, 1},
+      {CouplingTask{joint("neck"), joint("head"), 0.5}, 1, 3},
+      {PlaneTask{joint("rightLowerArm"), Vec3::UnitY(), 1.2}, 1, 2},
+  };
+  tasks.resize(static_cast<std::size_t>(state.range(0)));
+  IkTaskOptions options;
+  options.ik.restarts = 0;
+  options.ik.rootMotion = RootMotion::kTranslate;
+  std::size_t met = 0, solves = 0;
+  for (auto _ : state) {
+    Pose pose = restPose(humanoid);
+    met += solveIkTasks(humanoid, pose, tasks, nullptr, options).met();
+    ++solves;
+  }
+  state.counters["met"] = static_cast<double>(met) / static_cast<double>(solves);
+}
+BENCHMARK(tasksOfHumanoid)->Arg(1)->Arg(2)->Arg(4)->Arg(6)->Arg(8);
 
 }  // namespace
 }  // namespace limber

@@ -1,5 +1,7 @@
 // limber pose: the joints of a rigged model are turned, moved and reached, and stand so in the written file.
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "command.h"
@@ -13,6 +15,7 @@
 #include "limber/core/names.h"
 #include "limber/ik/ik_solver.h"
 #include "limber/ik/limits_json.h"
+#include "limber/pipeline/body_masses.h"
 #include "limber/pipeline/pose_asset.h"
 #include "limber/pipeline/put_pose.h"
 #include "limber/samples/sample_poses.h"
@@ -27,7 +30,7 @@ struct PoseArguments {
   std::string input, output, applied, posesFile, poseName, limitsFile, deformer = "linear-blend", rootMotion = "fixed";
   std::optional<std::string> clip;
   std::optional<double> seconds;
-  std::vector<std::string> turns, moves, reaches, poles, bases;
+  std::vector<std::string> turns, moves, reaches, poles, bases, tasks;
   PoseOptions pose;
   bool bake = false, setRest = false;
   Common common;
@@ -60,6 +63,7 @@ PoseEdits collectEdits(const PoseArguments& options) {
   for (const std::string& text : options.reaches) edits.reaches.push_back(parseReach(text));
   for (const std::string& text : options.poles) parsePole(text, edits);
   for (const std::string& text : options.bases) parseBase(text, edits);
+  for (const std::string& text : options.tasks) edits.tasks.push_back(parseTask(text));
   return edits;
 }
 
@@ -98,6 +102,14 @@ std::optional<JointLimits> readLimits(const std::string& file, const Skeleton& s
 Pose startPose(const Asset& asset, const AssetSkeleton& skeleton, const PoseArguments& options) {
   if (!options.clip && !options.seconds) return readNodePose(asset, skeleton);
   return poseAt(asset, skeleton, {options.clip.value_or(""), options.seconds.value_or(0)});
+}
+
+// As heavy as the skin says, where there is one: only balance asks.
+std::vector<PointMass> massesFor(const PoseEdits& edits, const Asset& asset, const AssetSkeleton& skeleton) {
+  const auto isBalance = [](const TaskEdit& task) { return task.kind == TaskKind::kBalance; };
+  if (std::none_of(edits.tasks.begin(), edits.tasks.end(), isBalance)) return {};
+  const Geometry geometry = collectGeometry(asset);
+  return bodyMasses(geometry, readWeights(asset, geometry, skeleton), skeleton.skeleton);
 }
 
 std::string_view outcomeText(IkOutcome outcome) {
@@ -154,6 +166,11 @@ void run(PoseArguments options) {
   const std::optional<JointLimits> limits = readLimits(options.limitsFile, skeleton.skeleton);
   const std::vector<ReachReport> reports =
       editPose(skeleton.skeleton, pose, edits, limits ? &*limits : nullptr, options.pose);
+  IkTaskResult tasks;
+  if (!edits.tasks.empty()) {
+    tasks = applyTasks(skeleton.skeleton, pose, edits.tasks, limits ? &*limits : nullptr,
+                       {options.pose.ik, massesFor(edits, asset, skeleton)});
+  }
   progress->stage("write");
   writeResult(asset, skeleton, pose, options);
   progress.finish();
@@ -161,6 +178,9 @@ void run(PoseArguments options) {
   const Account account(options.common.quiet, options.output);
   for (const ReachReport& report : reports) {
     account.line(fmt::format("{:<16} {:.6f} m left: {}", report.joint, report.distance, outcomeText(report.outcome)));
+  }
+  for (std::size_t t = 0; t < tasks.tasks.size(); ++t) {
+    account.line(fmt::format("{}: {}", edits.tasks[t].where, taskOutcome(tasks.tasks[t])));
   }
   printWarnings(asset.warnings, options.common.quiet);
   if (options.output != "-") account.line(fmt::format("written: {}", options.output));
@@ -171,16 +191,27 @@ std::string poseHelp() {
   for (const IkMethod& method : ikMethods()) text += fmt::format("  {:<20}{}\n", method.name, method.summary);
   text += "Deformers:\n";
   for (const Deformer& deformer : deformers()) text += fmt::format("  {:<20}{}\n", deformer.name, deformer.summary);
-  text += "Sample poses:\n";
+  text += "Tasks:\n";
+  for (const TaskForm& form : taskForms()) text += fmt::format("  {}\n      {}\n", form.form, form.summary);
+  text +=
+      "  Behind each, where it matters: @weight=2,priority=1. Priority 0 comes first; later ones get what those "
+      "before\n"
+      "  leave free. What cannot be met is said, with what is left and what is in the way.\n"
+      "Sample poses:\n";
   for (const SamplePose& pose : samplePoses()) text += fmt::format("  {:<20}{}\n", pose.name, pose.summary);
   return text +
-         "\nThe pose of --apply comes first. All turns are made next, then all moves, then all reaches at once. Axes "
-         "and points are the world's.\n"
+         "\nThe pose of --apply comes first. All turns are made next, then all moves, then all reaches at once, then "
+         "all "
+         "tasks at once. Axes "
+         "and points are the world's. Joints are called as in the file or as VRM's bones (leftHand).\n"
          "The file that --poses names: {\"poses\": [{\"name\": \"wave\", \"turn\": [{\"joint\": \"head\", \"axis\": "
          "[0, 1, 0],\n\"degrees\": 30}], \"move\": [{\"joint\": \"hips\", \"offset\": [0, -0.1, 0]}], \"reach\": "
-         "[{\"joint\": \"hand.L\",\n\"target\": [0.4, 1.2, 0.3], \"pole\": [0, 1, -1], \"base\": \"chest\"}]}]}\n"
+         "[{\"joint\": \"hand.L\",\n\"target\": [0.4, 1.2, 0.3], \"pole\": [0, 1, -1], \"base\": \"chest\"}], "
+         "\"tasks\": [{\"kind\": \"look-at\", \"joint\": \"head\",\n\"target\": [0, 1.6, 2], \"weight\": 2, "
+         "\"priority\": 1}]}]}  (docs/poses.schema.json)\n"
          "\nExamples:\n"
          "  limber pose rigged.glb --turn head=y:30 --move handle_07=0,0.1,0 --reach hand.L=0.4,1.2,0.3 -o posed.glb\n"
+         "  limber pose rigged.glb --task look-at:head=0,1.6,2 --task keep-out:leftHand=sphere:0,1,0,0.3 -o posed.glb\n"
          "  limber pose rigged.glb --poses poses.json --bake -o posed.obj\n"
          "  limber pose walking.glb --clip walk --time 0.4 --bake -o statue.stl\n"
          "  limber pose rigged.glb --turn upper_arm.L=z:45 --set-rest -o t_pose.glb\n"
@@ -209,6 +240,7 @@ void addPoseCommand(CLI::App& program) {
   addMany("--pole", options->poles, "the point to which the middle of a reaching limb bends", "JOINT=x,y,z");
   addMany("--base", options->bases, "the highest joint that turns for a reaching one (default: the root's children)",
           "JOINT=JOINT");
+  addMany("--task", options->tasks, "what a joint shall do or keep from doing, see below", "KIND:JOINT=VALUE");
   command->add_option("--clip", options->clip, "start from this clip (default: as the file stands)")->type_name("NAME");
   command->add_option("--time", options->seconds, "at this moment of the clip, or of the first, in seconds")
       ->check(momentOfClip())
@@ -225,7 +257,7 @@ void addPoseCommand(CLI::App& program) {
       ->capture_default_str();
   command->add_option("--limits", options->limitsFile, "how far joints turn, in JSON (docs/limits.schema.json)")
       ->type_name("FILE");
-  command->add_option("--root-motion", options->rootMotion, "what the root may do for a reaching joint")
+  command->add_option("--root-motion", options->rootMotion, "what the root may do for reaching joints and tasks")
       ->check(CLI::IsMember({"fixed", "turn", "move"}))
       ->type_name("WHAT")
       ->capture_default_str();

@@ -11,8 +11,8 @@ namespace limber {
 
 namespace {
 
-constexpr std::string_view kColors[] = {"#1b6ca8", "#d1495b", "#edae49", "#3c9d6d", "#7b4ea3",
-                                        "#00798c", "#8d5a3a", "#e07be0", "#444444"};
+constexpr std::string_view kColors[] = {"#1b6ca8", "#d1495b", "#edae49", "#3c9d6d", "#7b4ea3", "#00798c",
+                                        "#8d5a3a", "#e07be0", "#444444", "#9aa31b", "#5b8def"};
 
 std::vector<std::string> namesIn(std::span<const IkScore> scores, std::string IkScore::*member) {
   std::vector<std::string> names;
@@ -171,7 +171,8 @@ std::string ikPage(std::span<const IkScore> scores, const std::string& plotFolde
       "has the effectors; borderline ones at 97 to 99.9 % of a chain's length or, with limits, where joints stand at\n"
       "their bounds; unreachable ones count as solved when the method says so. Solved is within a thousandth of the\n"
       "chain's length (`millionth`: a millionth); `frames`: from the answer for the frame before, without restarts;\n"
-      "`{}`: the closed form of two bones without a solver round it.\n\n"
+      "`{}`: the closed form of two bones without a solver round it. What a body shall do besides\n"
+      "reaching (look, keep out, balance, ...), with priorities, is told in [tasks.md](tasks.md).\n\n"
       "**Best with limits: {}.**\n\n"
       "![Share solved, in percent]({}{})\n\n"
       "![Median time of a solve]({}{})\n\n"

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "limber/core/error.h"
+#include "limber/ik/ik_task_rows.h"
 #include "limber/ik/rotation.h"
 #include "limber/skeleton/chain.h"
 
@@ -40,17 +41,39 @@ Quat unit(const Quat& q) {
 IkSystem::IkSystem(const Skeleton& skeleton, std::span<const IkTarget> targets, const JointLimits* limits,
                    const IkOptions& options)
     : skeleton_(&skeleton), options_(options), shape_(targets.begin(), targets.end()) {
-  const Index count = skeleton.jointCount();
   if (targets.empty()) bad("inverse kinematics without a target", {});
+  checkTargets(targets);
+  setUp(targets, limits);
+  addEffectors(targets);
+  listEffectorsBelow();
+  updateReach();
+  mirror_ = IkMirror(*this);
+  if (options_.reference) setReference(*options_.reference);
+}
+
+IkSystem::IkSystem(const Skeleton& skeleton, IkTaskRows& tasks, const JointLimits* limits, const IkOptions& options)
+    : skeleton_(&skeleton), tasks_(&tasks), options_(options) {
+  std::vector<IkTarget> moved;
+  for (const Index joint : tasks.joints()) moved.emplace_back().joint = joint;
+  if (moved.empty()) bad("inverse kinematics without a task", {});
+  setUp(moved, limits);
+  listEffectorsBelow();
+  tasks.bind(*this);
+  if (options_.reference) setReference(*options_.reference);
+}
+
+// Nodes for the joints above those that are moved, standing in rest pose.
+void IkSystem::setUp(std::span<const IkTarget> moved, const JointLimits* limits) {
+  const Index count = skeleton_->jointCount();
   if (limits && limits->joints.size() != count) {
     bad(fmt::format("{} limits for {} joints", limits->joints.size(), count), {});
   }
-  if (options.reference && options.reference->locals.size() != count) {
-    bad(fmt::format("a reference pose of {} joints for a skeleton of {}", options.reference->locals.size(), count), {});
+  if (options_.reference && options_.reference->locals.size() != count) {
+    bad(fmt::format("a reference pose of {} joints for a skeleton of {}", options_.reference->locals.size(), count),
+        {});
   }
-  checkTargets(targets);
-  addNodes(skeleton, targets);
-  for (Node& node : nodes) setUpNode(skeleton, limits, node);
+  addNodes(*skeleton_, moved);
+  for (Node& node : nodes) setUpNode(*skeleton_, limits, node);
 
   const std::size_t n = nodes.size();
   locals.resize(n, Quat::Identity());
@@ -58,13 +81,8 @@ IkSystem::IkSystem(const Skeleton& skeleton, std::span<const IkTarget> targets, 
   offsets.resize(n, Vec3::Zero());
   positions = basePositions_ = referenceOffsets = offsets;
   scales_.resize(n, 1.0);
-  addEffectors(targets);
-  listEffectorsBelow();
-  setReference(restPose(skeleton));
+  setReference(restPose(*skeleton_));
   forward();
-  updateReach();
-  mirror_ = IkMirror(*this);
-  if (options_.reference) setReference(*options_.reference);
 }
 
 void IkSystem::checkTargets(std::span<const IkTarget> targets) const {
@@ -234,7 +252,7 @@ void IkSystem::load(const Pose& pose, std::span<const IkTarget> targets) {
       effector.angleScale = effector.reach > 0 ? options_.angleWeight * effector.reach : 1;
     }
   }
-  symmetric_ = mirror_.fits(*this);
+  symmetric_ = !tasks_ && mirror_.fits(*this);
 }
 
 void IkSystem::updateReach() {
@@ -301,6 +319,7 @@ bool IkSystem::reached(std::size_t effector) const {
 }
 
 bool IkSystem::allReached() const {
+  if (tasks_) return tasks_->met(*this);
   for (std::size_t e = 0; e < effectors.size(); ++e) {
     if (!reached(e)) return false;
   }
@@ -308,6 +327,7 @@ bool IkSystem::allReached() const {
 }
 
 double IkSystem::cost() const {
+  if (tasks_) return tasks_->cost(*this);
   double sum = 0;
   for (std::size_t e = 0; e < effectors.size(); ++e) {
     const Effector& effector = effectors[e];

@@ -10,6 +10,8 @@
 
 namespace limber {
 
+class IkTaskRows;
+
 // The joints on the ways from bases to effectors ("nodes", parents first), where they stand, and what the targets want.
 // Memory is taken in the constructor only. Bones keep their length: a method changes `locals`, and `offsets` only of
 // nodes that slide; forward() derives the rest.
@@ -42,6 +44,8 @@ class IkSystem {
   // above the joint, weight not positive, numbers not finite, limits not one for each joint.
   IkSystem(const Skeleton& skeleton, std::span<const IkTarget> targets, const JointLimits* limits,
            const IkOptions& options);
+  // The same for tasks, which must outlive the system, in place of targets: for Jacobian methods only.
+  IkSystem(const Skeleton& skeleton, IkTaskRows& tasks, const JointLimits* limits, const IkOptions& options);
 
   // Takes over a pose and where the targets are now, bends the pose into the limits and derives all state. Throws Error
   // kBadArgument where the targets differ from those of the constructor in more than position, orientation, weight and
@@ -72,7 +76,7 @@ class IkSystem {
   double angle(std::size_t effector) const;
   bool reached(std::size_t effector) const;
   bool allReached() const;
-  // Sum over effectors of weight * (distance^2 + (angleScale * angle)^2).
+  // Sum over effectors of weight * (distance^2 + (angleScale * angle)^2); with tasks, IkTaskRows::cost().
   double cost() const;
   // True where no pose of free joints can reach the target: lengths alone say so.
   bool outOfReach(std::size_t effector) const;
@@ -92,6 +96,10 @@ class IkSystem {
   bool symmetric() const { return symmetric_; }
   // Effectors at or below a node.
   std::span<const int> effectorsBelow(int node) const;
+  // Null for a system that was made for targets.
+  IkTaskRows* tasks() const { return tasks_; }
+  // -1 for joints that are not nodes.
+  int nodeOf(Index joint) const { return nodeOf_[joint]; }
 
   std::vector<Node> nodes;
   std::vector<Effector> effectors;
@@ -103,6 +111,7 @@ class IkSystem {
   std::vector<Vec3> referenceOffsets;
 
  private:
+  void setUp(std::span<const IkTarget> moved, const JointLimits* limits);
   void addNodes(const Skeleton& skeleton, std::span<const IkTarget> targets);
   void addEffectors(std::span<const IkTarget> targets);
   void listEffectorsBelow();
@@ -112,6 +121,7 @@ class IkSystem {
   void updateReach();
 
   const Skeleton* skeleton_;
+  IkTaskRows* tasks_ = nullptr;
   IkOptions options_;
   bool limited_ = false;
   bool symmetric_ = false;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "limber/ik/ik_task_rows.h"
 #include "limber/ik/rotation.h"
 
 namespace limber {
@@ -16,13 +17,17 @@ constexpr double kSlideShare = 0.3;
 }  // namespace
 
 IkJacobian::IkJacobian(const IkSystem& system, std::vector<double> gains) : gains_(std::move(gains)) {
+  Eigen::Index rows = 0;
+  if (const IkTaskRows* tasks = system.tasks()) {
+    levelBegin.assign(tasks->levelBegin().begin(), tasks->levelBegin().end());
+    rows = levelBegin.back();
+  }
   std::vector<std::size_t> order(system.effectors.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return system.effectors[a].level < system.effectors[b].level; });
   rowBegin.resize(order.size());
   rowCount.resize(order.size());
-  Eigen::Index rows = 0;
   for (const std::size_t e : order) {
     const auto level = static_cast<std::size_t>(system.effectors[e].level);
     if (levelBegin.size() <= level) levelBegin.push_back(rows);
@@ -30,7 +35,7 @@ IkJacobian::IkJacobian(const IkSystem& system, std::vector<double> gains) : gain
     rowCount[e] = system.oriented(e) ? 6 : 3;
     rows += rowCount[e];
   }
-  levelBegin.push_back(rows);
+  if (!system.tasks()) levelBegin.push_back(rows);
   std::size_t columns = 0;
   for (const IkSystem::Node& node : system.nodes) columns += node.slides ? 6 : 3;
   matrix.resize(rows, static_cast<Eigen::Index>(columns));
@@ -41,6 +46,11 @@ IkJacobian::IkJacobian(const IkSystem& system, std::vector<double> gains) : gain
 void IkJacobian::addColumn(const IkSystem& system, int node, bool slides, const Vec3& axis, const Vec3& globalAxis) {
   matrix.col(columns()).setZero();
   const double gain = gains_[static_cast<std::size_t>(node)] * (slides ? slideLength_ : 1);
+  if (const IkTaskRows* tasks = system.tasks()) {
+    for (Eigen::Index r = 0; r < rows(); ++r) {
+      matrix(r, columns()) = gain * tasks->slope(system, r, node, globalAxis, slides);
+    }
+  }
   const Vec3& pivot = system.positions[static_cast<std::size_t>(node)];
   for (const int below : system.effectorsBelow(node)) {
     const auto e = static_cast<std::size_t>(below);
@@ -58,6 +68,10 @@ void IkJacobian::addColumn(const IkSystem& system, int node, bool slides, const 
 void IkJacobian::build(const IkSystem& system) {
   double reach = 0;
   for (const IkSystem::Effector& effector : system.effectors) reach = std::max(reach, effector.reach);
+  if (IkTaskRows* tasks = system.tasks()) {
+    tasks->measure(system, true);
+    reach = tasks->size();
+  }
   slideLength_ = reach > 0 ? kSlideShare * reach : 1;
   freedoms.clear();
   for (int n = 0; n < system.nodeCount(); ++n) {
@@ -90,6 +104,9 @@ void IkJacobian::build(const IkSystem& system) {
 }
 
 void IkJacobian::residual(const IkSystem& system, Eigen::VectorXd& error) const {
+  if (const IkTaskRows* tasks = system.tasks()) {
+    for (Eigen::Index r = 0; r < rows(); ++r) error[r] = tasks->residual(r);
+  }
   for (std::size_t e = 0; e < system.effectors.size(); ++e) {
     const IkSystem::Effector& effector = system.effectors[e];
     const auto node = static_cast<std::size_t>(effector.node);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limber/ik/ik_task_rows.h"
 #include "limber/ik/rotation.h"
 #include "limber/ik/small_solve.h"
 
@@ -30,7 +31,11 @@ std::vector<double> freedomsOf(const IkSystem& system) {
 JacobianIteration::JacobianIteration(const IkSystem& system) : JacobianIteration(system, freedomsOf(system)) {}
 
 JacobianIteration::JacobianIteration(const IkSystem& system, std::vector<double> gains)
-    : jacobian_(system, std::move(gains)), before_(system.makeState()), gained_(before_), rowsOf_(system.nodes.size()) {
+    : jacobian_(system, std::move(gains)),
+      before_(system.makeState()),
+      gained_(before_),
+      rowsOf_(system.nodes.size()),
+      masksRows_(system.tasks() != nullptr) {
   const Eigen::Index rows = jacobian_.rows(), columns = jacobian_.maxColumns();
   for (int n = 0; n < system.nodeCount(); ++n) {
     std::vector<Eigen::Index>& list = rowsOf_[static_cast<std::size_t>(n)];
@@ -38,6 +43,7 @@ JacobianIteration::JacobianIteration(const IkSystem& system, std::vector<double>
       const auto e = static_cast<std::size_t>(below);
       for (int k = 0; k < jacobian_.rowCount[e]; ++k) list.push_back(jacobian_.rowBegin[e] + k);
     }
+    for (Eigen::Index r = 0; system.tasks() && r < rows; ++r) list.push_back(r);
     std::sort(list.begin(), list.end());
   }
   reduced_.resize(rows, columns);
@@ -88,7 +94,7 @@ bool JacobianIteration::improve(IkSystem& system) {
     apply(system);
     const double now = system.cost();
     const bool gained = reached ? system.allReached() && referenceDistance(system) < distance : now < least;
-    if (gained && (reached || cost - now >= kEnough * firstOrderGain())) {
+    if (gained && (reached || cost - now >= kEnough * firstOrderGain(system))) {
       becomeBolder();
       return true;
     }
@@ -110,21 +116,47 @@ void JacobianIteration::becomeBolder() {
   caution_ = std::max(heedsCaution() ? 1e-3 : 1.0, caution_ / 4);
 }
 
-// What the step would take off the cost, were the effectors to go on as they begin.
-double JacobianIteration::firstOrderGain() const {
+int JacobianIteration::servedLevels(const IkSystem& system) const {
+  return system.tasks() ? static_cast<int>(system.tasks()->servedLevels()) : jacobian_.levels();
+}
+
+// What the step would take off the cost, were the effectors to go on as they begin. The cost of tasks is that of the
+// last priority served.
+double JacobianIteration::firstOrderGain(const IkSystem& system) const {
+  Eigen::Index begin = 0, end = jacobian_.rows();
+  if (system.tasks()) {
+    const auto last = static_cast<std::size_t>(servedLevels(system));
+    begin = jacobian_.levelBegin[last - 1];
+    end = jacobian_.levelBegin[last];
+  }
   double sum = 0;
-  for (Eigen::Index c = 0; c < jacobian_.columns(); ++c) sum += step_[c] * jacobian_.matrix.col(c).dot(error_);
+  for (Eigen::Index c = 0; c < jacobian_.columns(); ++c) {
+    sum += step_[c] * jacobian_.matrix.col(c).segment(begin, end - begin).dot(error_.segment(begin, end - begin));
+  }
   return 2 * sum;
 }
 
+// Inequalities that the step would violate become active, and the step is found anew.
 void JacobianIteration::findStep(const IkSystem& system) {
+  findStepOfActive(system);
+  while (system.tasks() && system.tasks()->activate(jacobian_.matrix, step_, jacobian_.columns())) {
+    jacobian_.residual(system, error_);
+    findStepOfActive(system);
+  }
+}
+
+void JacobianIteration::findStepOfActive(const IkSystem& system) {
   const Eigen::Index columns = jacobian_.columns();
+  const int levels = servedLevels(system);
   reduced_.leftCols(columns) = jacobian_.matrix.leftCols(columns);
+  for (Eigen::Index r = 0; system.tasks() && r < jacobian_.rows(); ++r) {
+    if (!system.tasks()->active(r)) reduced_.row(r).setZero();
+  }
   fixed_.head(columns).setZero();
   for (int pass = 0; pass < kLimitPasses; ++pass) {
     step_.head(columns) = fixed_.head(columns);
     basisRows_ = 0;
-    for (int level = 0; level < jacobian_.levels(); ++level) addLevel(level);
+    for (int level = 0; level < levels; ++level) addLevel(level, level + 1 == levels);
     if (system.options().referenceGain > 0) addSecondary(system);
     shorten();
     if (!system.limited() || !blockLimits(system)) break;
@@ -132,15 +164,18 @@ void JacobianIteration::findStep(const IkSystem& system) {
 }
 
 // Adds what one priority asks for, in directions that do not disturb the higher ones.
-void JacobianIteration::addLevel(int level) {
+void JacobianIteration::addLevel(int level, bool last) {
   const auto l = static_cast<std::size_t>(level);
   const Eigen::Index begin = jacobian_.levelBegin[l], end = jacobian_.levelBegin[l + 1], rows = end - begin;
   const Eigen::Index columns = jacobian_.columns();
-  const bool first = level == 0, last = level + 1 == jacobian_.levels();
+  const bool first = level == 0;
   auto y = y_.segment(begin, rows);
   y = error_.segment(begin, rows);
   for (Eigen::Index c = 0; c < columns; ++c) {
     if (step_[c] != 0) y -= step_[c] * jacobian_.matrix.col(c).segment(begin, rows);
+  }
+  for (Eigen::Index r = 0; masksRows_ && r < rows; ++r) {
+    if (reduced_.row(begin + r).head(columns).isZero(0)) y[r] = 0;  // out of play: not to count as left to go
   }
   if (!first) projectLevel(begin, end);
   const Eigen::MatrixXd& matrix = first ? reduced_ : projected_;

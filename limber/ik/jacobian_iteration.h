@@ -37,9 +37,11 @@ class JacobianIteration : public IkIteration {
  private:
   bool improve(IkSystem& system);
   void becomeBolder();
-  double firstOrderGain() const;
+  double firstOrderGain(const IkSystem& system) const;
+  int servedLevels(const IkSystem& system) const;
   void findStep(const IkSystem& system);
-  void addLevel(int level);
+  void findStepOfActive(const IkSystem& system);
+  void addLevel(int level, bool last);
   void projectLevel(Eigen::Index begin, Eigen::Index end);
   void extendBasis(Eigen::Index begin, Eigen::Index end);
   void gramOfRows(Eigen::Index begin, Eigen::Index end, const Eigen::MatrixXd& matrix, bool dense);
@@ -53,6 +55,7 @@ class JacobianIteration : public IkIteration {
   IkJacobian jacobian_;
   IkSystem::State before_, gained_;
   std::vector<std::vector<Eigen::Index>> rowsOf_;  // #nodes; rows that a node's columns can have entries in
+  bool masksRows_ = false;                         // rows that are out of play are 0 in `reduced_`
   Eigen::MatrixXd reduced_;                        // the Jacobian without the directions in which limits block
   Eigen::MatrixXd projected_;                      // one level's rows of it, without what higher priorities span
   Eigen::MatrixXd basis_;                          // orthonormal rows: that span

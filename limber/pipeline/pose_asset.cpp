@@ -7,23 +7,12 @@
 #include "limber/asset/pose_io.h"
 #include "limber/core/numbers.h"
 #include "limber/ik/ik_solver.h"
+#include "limber/pipeline/edit_text.h"
 #include "limber/skeleton/chain.h"
 
 namespace limber {
 
 namespace {
-
-constexpr std::size_t kNamesListed = 12;
-
-Index requireJoint(const Skeleton& skeleton, const std::string& name, const std::string& where) {
-  if (const std::optional<Index> joint = skeleton.find(name)) return *joint;
-  std::string known;
-  for (std::size_t j = 0; j < std::min(kNamesListed, skeleton.joints.size()); ++j) {
-    known += (j == 0 ? "" : ", ") + skeleton.joints[j].name;
-  }
-  if (skeleton.joints.size() > kNamesListed) known += ", ...";
-  throw Error(ErrorCode::kBadArgument, fmt::format("no joint is called '{}'", name), where, "there are: " + known);
-}
 
 Affine parentGlobal(const Skeleton& skeleton, const Pose& pose, Index joint) {
   const std::optional<Index> parent = skeleton.joints[joint].parent;

@@ -27,9 +27,10 @@ struct ReachReport {
   IkOutcome outcome = IkOutcome::kReached;
 };
 
-// Changes `pose`, given in the world's space, as the edits say. Limits (none: null) are kept by the joints that reach,
-// and bend the joints that were turned. Throws Error kBadArgument, with the edit's `where`, on a joint that is not
-// there (and lists some that are), a base that is not above its joint, and a joint that reaches for two points.
+// Changes `pose`, given in the world's space, as the edits say but for their tasks. Limits (none: null) are kept by the
+// joints that reach, and bend the joints that were turned. Throws Error kBadArgument, with the edit's `where`, on a
+// joint that is not there (and lists some that are), a base that is not above its joint, and a joint that reaches for
+// two points.
 std::vector<ReachReport> editPose(const Skeleton& skeleton, Pose& pose, const PoseEdits& edits,
                                   const JointLimits* limits = nullptr, const PoseOptions& options = {});
 

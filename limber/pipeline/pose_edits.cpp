@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <initializer_list>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -12,19 +13,12 @@
 #include "limber/asset/json_access.h"
 #include "limber/asset/json_text.h"
 #include "limber/core/error.h"
-#include "limber/core/parse_number.h"
+#include "limber/core/numbers.h"
+#include "limber/pipeline/edit_text.h"
 
 namespace limber {
 
 namespace {
-
-std::string inQuotes(std::string_view text) {
-  return fmt::format("'{}'", text);
-}
-
-[[noreturn]] void failText(std::string_view text, std::string message, std::string remedy) {
-  throw Error(ErrorCode::kBadArgument, std::move(message), inQuotes(text), std::move(remedy));
-}
 
 // Joint names may hold anything but '='; the last one counts, since values hold none.
 std::pair<std::string, std::string_view> splitAtEquals(std::string_view text) {
@@ -33,33 +27,10 @@ std::pair<std::string, std::string_view> splitAtEquals(std::string_view text) {
   return {std::string(text.substr(0, equals)), text.substr(equals + 1)};
 }
 
-// The whole of `word` as a finite number.
-std::optional<double> numberOf(std::string_view word) {
-  const char* at = word.data();
-  const char* const end = at + word.size();
-  const std::optional<double> value = parseNumber(at, end);
-  return value && at == end && std::isfinite(*value) ? value : std::nullopt;
-}
-
-std::vector<std::string_view> splitAtCommas(std::string_view text) {
-  std::vector<std::string_view> words;
-  while (true) {
-    const std::size_t comma = text.find(',');
-    words.push_back(text.substr(0, comma));
-    if (comma == std::string_view::npos) return words;
-    text.remove_prefix(comma + 1);
-  }
-}
-
 Vec3 pointOf(std::string_view text, std::string_view value) {
-  const std::vector<std::string_view> words = splitAtCommas(value);
-  Vec3 point = Vec3::Zero();
-  for (std::size_t i = 0; i < 3; ++i) {
-    const std::optional<double> number = words.size() == 3 ? numberOf(words[i]) : std::nullopt;
-    if (!number) failText(text, "has no point after the '='", "write joint=x,y,z in metres");
-    point[static_cast<Eigen::Index>(i)] = *number;
-  }
-  return point;
+  const std::vector<double> numbers = numbersOf(value, 3);
+  if (numbers.empty()) failText(text, "has no point after the '='", "write joint=x,y,z in metres");
+  return {numbers[0], numbers[1], numbers[2]};
 }
 
 JointReach& reachOf(std::string_view text, const std::string& joint, PoseEdits& edits) {
@@ -74,7 +45,7 @@ JointReach& reachOf(std::string_view text, const std::string& joint, PoseEdits& 
 std::vector<JointTurn> parseTurn(std::string_view text) {
   const auto [joint, value] = splitAtEquals(text);
   std::vector<JointTurn> turns;
-  for (const std::string_view word : splitAtCommas(value)) {
+  for (const std::string_view word : splitAt(',', value)) {
     const bool axis = word.size() > 2 && word[0] >= 'x' && word[0] <= 'z' && word[1] == ':';
     const std::optional<double> degrees = axis ? numberOf(word.substr(2)) : std::nullopt;
     if (!degrees) failText(text, "has no turn after the '='", "write joint=y:30, an axis and degrees");
@@ -105,7 +76,7 @@ void parseBase(std::string_view text, PoseEdits& edits) {
 
 namespace {
 
-void refuseOtherKeys(const JsonView& object, std::initializer_list<std::string_view> known) {
+void refuseOtherKeys(const JsonView& object, std::span<const std::string_view> known) {
   object.requireObject();
   object.forEachMember([&](std::string_view key, const JsonView& value) {
     if (std::find(known.begin(), known.end(), key) == known.end()) value.fail("is not part of a pose");
@@ -131,34 +102,137 @@ Vec3 requirePoint(const JsonView& object, std::string_view key) {
   return *point;
 }
 
+Vec3 requireAxis(const JsonView& object, std::string_view key) {
+  const Vec3 axis = requirePoint(object, key);
+  if (!(axis.stableNorm() > 0)) object.fail(fmt::format("has an {} of length 0", key));
+  return axis.stableNormalized();
+}
+
 JointTurn readTurn(const JsonView& entry) {
-  refuseOtherKeys(entry, {"joint", "axis", "degrees"});
-  const Vec3 axis = requirePoint(entry, "axis");
-  if (!(axis.stableNorm() > 0)) entry.fail("has an axis of length 0");
+  refuseOtherKeys(entry, std::array<std::string_view, 3>{"joint", "axis", "degrees"});
+  const Vec3 axis = requireAxis(entry, "axis");
   if (!entry.member("degrees").exists()) entry.fail("has no \"degrees\"");
-  return {requireText(entry, "joint"), axis.stableNormalized(), entry.number("degrees", 0), entry.path()};
+  return {requireText(entry, "joint"), axis, entry.number("degrees", 0), entry.path()};
 }
 
 JointMove readMove(const JsonView& entry) {
-  refuseOtherKeys(entry, {"joint", "offset"});
+  refuseOtherKeys(entry, std::array<std::string_view, 2>{"joint", "offset"});
   return {requireText(entry, "joint"), requirePoint(entry, "offset"), entry.path()};
 }
 
 JointReach readReach(const JsonView& entry) {
-  refuseOtherKeys(entry, {"joint", "target", "pole", "base"});
+  refuseOtherKeys(entry, std::array<std::string_view, 4>{"joint", "target", "pole", "base"});
   JointReach reach{
       requireText(entry, "joint"), requirePoint(entry, "target"), pointMember(entry, "pole"), {}, entry.path()};
   if (entry.member("base").exists()) reach.base = requireText(entry, "base");
   return reach;
 }
 
+TaskKind readKind(const JsonView& entry) {
+  const std::string kind = requireText(entry, "kind");
+  std::string known;
+  for (std::size_t k = 0; k < taskForms().size(); ++k) {
+    if (taskForms()[k].name == kind) return static_cast<TaskKind>(k);
+    known += fmt::format(" \"{}\"", taskForms()[k].name);
+  }
+  entry.member("kind").fail(fmt::format("is no kind of task; there are{}", known));
+}
+
+double requireNumber(const JsonView& entry, std::string_view key) {
+  if (!entry.member(key).exists()) entry.fail(fmt::format("has no \"{}\"", key));
+  return entry.number(key, 0);
+}
+
+bool isWord(const JsonView& entry, std::string_view key, std::string_view usual, std::string_view other) {
+  const std::string_view word = entry.text(key, usual);
+  if (word != usual && word != other) {
+    entry.member(key).fail(fmt::format("is neither \"{}\" nor \"{}\"", usual, other));
+  }
+  return word == other;
+}
+
+// What each kind has besides.
+void readTaskMembers(const JsonView& entry, TaskEdit& task) {
+  const auto onlyThese = [&](std::initializer_list<std::string_view> members) {
+    std::vector<std::string_view> known = {"kind", "joint", "weight", "priority"};
+    known.insert(known.end(), members.begin(), members.end());
+    refuseOtherKeys(entry, known);
+  };
+  switch (task.kind) {
+    case TaskKind::kPosition:
+      onlyThese({"target"});
+      task.point = requirePoint(entry, "target");
+      break;
+    case TaskKind::kOrientation:
+      onlyThese({"axis", "degrees"});
+      task.turn = Eigen::AngleAxisd(requireNumber(entry, "degrees") * kDegree, requireAxis(entry, "axis"));
+      break;
+    case TaskKind::kLookAt:
+      onlyThese({"target", "axis"});
+      task.point = requirePoint(entry, "target");
+      if (entry.member("axis").exists()) task.axis = requireAxis(entry, "axis");
+      break;
+    case TaskKind::kDistance:
+      onlyThese({"from", "distance"});
+      task.amount = requireNumber(entry, "distance");
+      if (entry.member("from").exists() && entry.member("from").json().is_string()) {
+        task.other = requireText(entry, "from");
+      } else {
+        task.point = requirePoint(entry, "from");
+      }
+      break;
+    case TaskKind::kPlane:
+      onlyThese({"normal", "offset", "side"});
+      task.axis = requireAxis(entry, "normal");
+      task.amount = requireNumber(entry, "offset");
+      task.exact = isWord(entry, "side", "above", "on");
+      break;
+    case TaskKind::kBalance: {
+      onlyThese({"supports", "over"});
+      const JsonView supports = entry.array("supports");
+      for (std::size_t k = 0; k < supports.size(); ++k) {
+        if (!supports[k].json().is_string()) supports[k].fail("is not the name of a joint");
+        task.supports.push_back(supports[k].json().get<std::string>());
+      }
+      task.exact = isWord(entry, "over", "within", "centred");
+      break;
+    }
+    case TaskKind::kKeepOut:
+      onlyThese({"from", "to", "radius"});
+      task.point = requirePoint(entry, "from");
+      task.end = pointMember(entry, "to").value_or(task.point);
+      task.amount = requireNumber(entry, "radius");
+      break;
+    case TaskKind::kCoupling:
+      onlyThese({"leader", "ratio"});
+      task.other = requireText(entry, "leader");
+      task.amount = requireNumber(entry, "ratio");
+      break;
+  }
+}
+
+TaskEdit readTask(const JsonView& entry) {
+  entry.requireObject();
+  TaskEdit task;
+  task.kind = readKind(entry);
+  if (task.kind != TaskKind::kBalance) task.joint = requireText(entry, "joint");
+  task.weight = entry.number("weight", 1);
+  if (!(task.weight > 0)) entry.member("weight").fail("is not above 0");
+  task.priority = static_cast<int>(entry.index("priority", 1001).value_or(0));
+  readTaskMembers(entry, task);
+  task.where = entry.path();
+  return task;
+}
+
 NamedPose readPose(const JsonView& entry) {
-  refuseOtherKeys(entry, {"name", "turn", "move", "reach"});
+  refuseOtherKeys(entry, std::array<std::string_view, 5>{"name", "turn", "move", "reach", "tasks"});
   NamedPose pose{requireText(entry, "name"), {}};
   const JsonView turns = entry.array("turn"), moves = entry.array("move"), reaches = entry.array("reach");
   for (std::size_t k = 0; k < turns.size(); ++k) pose.edits.turns.push_back(readTurn(turns[k]));
   for (std::size_t k = 0; k < moves.size(); ++k) pose.edits.moves.push_back(readMove(moves[k]));
   for (std::size_t k = 0; k < reaches.size(); ++k) pose.edits.reaches.push_back(readReach(reaches[k]));
+  const JsonView tasks = entry.array("tasks");
+  for (std::size_t k = 0; k < tasks.size(); ++k) pose.edits.tasks.push_back(readTask(tasks[k]));
   return pose;
 }
 
@@ -167,7 +241,7 @@ std::vector<NamedPose> readPoses(std::string_view json) {
   const Json document = parseJson(json, warnings);
   const JsonView root(document);
   if (!warnings.empty()) root.fail(warnings.items().front().message);
-  refuseOtherKeys(root, {"poses"});
+  refuseOtherKeys(root, std::array<std::string_view, 1>{"poses"});
   const JsonView list = root.array("poses");
   std::vector<NamedPose> poses;
   for (std::size_t i = 0; i < list.size(); ++i) {
@@ -188,7 +262,9 @@ std::vector<NamedPose> parsePoses(std::string_view json, std::string_view file) 
     const auto place = [&](auto& edits) {
       for (auto& edit : edits) edit.where = file.empty() ? edit.where : fmt::format("{}: {}", file, edit.where);
     };
-    for (NamedPose& pose : poses) place(pose.edits.turns), place(pose.edits.moves), place(pose.edits.reaches);
+    for (NamedPose& pose : poses) {
+      place(pose.edits.turns), place(pose.edits.moves), place(pose.edits.reaches), place(pose.edits.tasks);
+    }
     return poses;
   } catch (const Error& error) {
     throw error.within(file);

@@ -1,4 +1,5 @@
-// What somebody wants of a pose, in words: joints turned, moved and reached. From the command line or a JSON file.
+// What somebody wants of a pose, in words: joints turned, moved and reached, and tasks. From the command line or a JSON
+// file.
 #pragma once
 
 #include <optional>
@@ -7,6 +8,7 @@
 #include <vector>
 
 #include "limber/core/types.h"
+#include "limber/pipeline/pose_tasks.h"
 
 namespace limber {
 
@@ -35,11 +37,13 @@ struct JointReach {
   std::string where = {};
 };
 
-// Carried out in this order: all turns as listed, all moves as listed, all reaches at once.
+// Carried out in this order: all turns as listed, all moves as listed, all reaches at once (editPose), then all tasks
+// at once (applyTasks).
 struct PoseEdits {
   std::vector<JointTurn> turns;
   std::vector<JointMove> moves;
   std::vector<JointReach> reaches;
+  std::vector<TaskEdit> tasks = {};
 };
 
 // "head=y:30" or "head=x:10,y:30": axes x, y, z; degrees. Throws Error kBadArgument that quotes the text.
@@ -60,7 +64,9 @@ struct NamedPose {
 // {"poses": [{"name": "wave",
 //             "turn":  [{"joint": "head", "axis": [0, 1, 0], "degrees": 30}],
 //             "move":  [{"joint": "hips", "offset": [0, -0.1, 0]}],
-//             "reach": [{"joint": "hand.L", "target": [0.4, 1.2, 0.3], "pole": [0, 1, -1], "base": "chest"}]}]}
+//             "reach": [{"joint": "hand.L", "target": [0.4, 1.2, 0.3], "pole": [0, 1, -1], "base": "chest"}],
+//             "tasks": [{"kind": "look-at", "joint": "head", "target": [0, 1.6, 2], "weight": 2, "priority": 1}]}]}
+// Schema: docs/poses.schema.json.
 // Every list may be absent; other keys, keys that stand twice and two poses of one name are refused. Throws Error
 // kBadData with the file and the entry: "poses.json: poses[0].reach[1].target".
 //

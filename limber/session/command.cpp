@@ -21,7 +21,7 @@ constexpr int kCommandsVersion = 2;  // 1 knew no motions that are put on as the
 
 // In the order of the variant. The formatter would put each on a line of its own.
 // clang-format off
-constexpr std::array<std::string_view, 61> kNames = {
+constexpr std::array<std::string_view, 62> kNames = {
     "open_sample",       "open_file",         "set_handles",  "choose_methods", "pin_joint",     "unpin_joint",
     "begin_drag",        "update_drag",       "turn_drag",    "move_drag",      "end_drag",      "cancel_drag",
     "turn_joint",        "move_joint",        "set_ik",       "set_target",     "clear_target",  "set_limits",
@@ -30,7 +30,7 @@ constexpr std::array<std::string_view, 61> kNames = {
     "set_time",          "set_key",           "move_key",     "delete_key",     "edit_keys",     "delete_keys",
     "set_joint_key",     "set_interpolation", "set_tangents", "paste_keys",     "paint_weights", "lock_weights",
     "mirror_weights",    "add_joint",         "delete_joint", "reparent_joint", "place_joint",   "set_turn",
-    "apply_pose",        "undo",              "redo",         "add_sample",     "add_file",      "remove_member",
+    "apply_pose", "apply_tasks",        "undo",              "redo",         "add_sample",     "add_file",      "remove_member",
     "choose_member",     "rename_member",     "place_member", "attach_member",  "detach_member", "set_clock"};
 // clang-format on
 static_assert(kNames.size() == std::variant_size_v<Command>);
@@ -155,6 +155,11 @@ void visitFields(Visitor& field, ApplyPose& c) {
   field("pose", c.pose);
   field("joints", c.joints);
   field("mirrored", c.mirrored);
+}
+template <class Visitor>
+void visitFields(Visitor& field, ApplyTasks& c) {
+  field("tasks", c.tasks);
+  field("root_moves", c.rootMoves);
 }
 template <class Visitor>
 void visitFields(Visitor& field, RenameJoint& c) {

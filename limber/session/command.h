@@ -151,6 +151,13 @@ struct ApplyPose {
   bool mirrored = false;
 };
 
+// Tasks for the whole body at once (parseTask: "look-at:head=0,1.6,2"). What is held stays, but for joints of the
+// tasks. The state says what became of each, until the pose is another one.
+struct ApplyTasks {
+  std::vector<std::string> tasks;
+  bool rootMoves = false;
+};
+
 // The pose that the model stands in becomes the one that it is bound in.
 struct SetRestPose {};
 struct RenameJoint {
@@ -359,9 +366,9 @@ using Command =
                  ResetJoint, ResetPose, MirrorPose, SetRestPose, RenameJoint, AddMotion, AddSampleMotion,
                  RetargetMotion, SetContact, AddClip, RemoveClip, RenameClip, ChooseClip, SetTime, SetKey, MoveKey,
                  DeleteKey, EditKeys, DeleteKeys, SetJointKey, SetInterpolation, SetTangents, PasteKeys, PaintWeights,
-                 LockWeights, MirrorWeights, AddJoint, DeleteJoint, ReparentJoint, PlaceJoint, SetTurn, ApplyPose, Undo,
-                 Redo, AddSample, AddFile, RemoveMember, ChooseMember, RenameMember, PlaceMember, AttachMember,
-                 DetachMember, SetClock>;
+                 LockWeights, MirrorWeights, AddJoint, DeleteJoint, ReparentJoint, PlaceJoint, SetTurn, ApplyPose,
+                 ApplyTasks, Undo, Redo, AddSample, AddFile, RemoveMember, ChooseMember, RenameMember, PlaceMember,
+                 AttachMember, DetachMember, SetClock>;
 
 // "auto", "flat", "free", as in JSON.
 std::string_view keyTangentsName(KeyTangents tangents);

@@ -67,6 +67,7 @@ std::vector<Command> oneOfEach() {
           PlaceJoint{"hand.L", {0.5, 1, -0.25}, {"head"}, true},
           SetTurn{"hand.L", {30, -20, 0.125}, {"head"}, true},
           ApplyPose{R"({"limber_pose": 1})", {"head", "hips"}, true},
+          ApplyTasks{{"look-at:head=0,1,2", "balance=within"}, true},
           Undo{},
           Redo{},
           AddSample{"stool", true, true},

@@ -12,6 +12,8 @@
 #include "limber/asset/rest_pose.h"
 #include "limber/asset/uri.h"
 #include "limber/ik/limits_json.h"
+#include "limber/pipeline/body_masses.h"
+#include "limber/pipeline/edit_text.h"
 #include "limber/pipeline/pose_asset.h"
 #include "limber/rigging/prop_rigger.h"
 #include "limber/samples/sample_motions.h"
@@ -81,6 +83,34 @@ void editPoseOf(SessionState& state, const PoseEdits& edits) {
   editPose(state.rig->skeleton(), state.pose, edits, state.limits.get());
   holdTargets(state);
   authored(state);
+}
+
+// What is held counts before what is asked for.
+void applyTasks(SessionState& state, const ApplyTasks& command) {
+  const Skeleton& skeleton = state.rig->skeleton();
+  std::vector<TaskEdit> edits;
+  for (const std::string& text : command.tasks) edits.push_back(parseTask(text));
+  if (edits.empty()) refuse("there are no tasks");
+  std::vector<IkTask> tasks = resolveTasks(skeleton, edits);
+  const auto isAsked = [&](Index joint) {
+    return std::any_of(edits.begin(), edits.end(), [&](const TaskEdit& edit) {
+      return !edit.joint.empty() && requireJoint(skeleton, edit.joint, edit.where) == joint;
+    });
+  };
+  for (const HeldTarget& target : state.targets) {
+    if (!state.ik || isAsked(target.joint)) continue;
+    tasks.push_back({PositionTask{target.joint, target.position}, 1, -1});
+    if (target.rotation) tasks.push_back({OrientationTask{target.joint, *target.rotation}, 1, -1});
+  }
+  IkTaskOptions options;
+  options.ik.rootMotion = command.rootMoves ? RootMotion::kTranslate : RootMotion::kFixed;
+  options.masses = bodyMasses(*state.rig->geometry, state.rig->weights, skeleton);
+  const IkTaskResult result = solveIkTasks(skeleton, state.pose, tasks, state.limits.get(), options);
+  followPose(state, [&](const HeldTarget& target) { return isAsked(target.joint); });
+  authored(state);
+  for (std::size_t t = 0; t < edits.size(); ++t) {
+    state.tasks.push_back({command.tasks[t], taskOutcome(result.tasks[t]), result.tasks[t].met});
+  }
 }
 
 // Where limbs follow by themselves, feet that stand in this pose are held.
@@ -444,6 +474,12 @@ struct Session::Runner {
     SessionState next = state();
     applyPose(next, c);
     authored(next);
+    session.commit(command, std::move(next));
+  }
+
+  void operator()(const ApplyTasks& c) const {
+    SessionState next = state();
+    applyTasks(next, c);
     session.commit(command, std::move(next));
   }
 

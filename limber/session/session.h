@@ -22,6 +22,12 @@
 namespace limber {
 
 // What the user works on, at one moment. Copies share everything large, so that each undo step is one.
+// Of ApplyTasks.
+struct TaskOutcome {
+  std::string task, outcome;  // as it was asked for; taskOutcome()
+  bool met = false;
+};
+
 struct SessionState {
   std::shared_ptr<const Asset> base;  // what rigs are made from: as opened, or with another rest pose
   std::shared_ptr<RigMemory> memory;  // of the base
@@ -40,7 +46,8 @@ struct SessionState {
   std::vector<HeldTarget> targets;
   std::string limitsText;  // empty: none
   std::shared_ptr<const JointLimits> limits;
-  std::set<std::string> locked;  // joints whose weights painting leaves as they are
+  std::set<std::string> locked;    // joints whose weights painting leaves as they are
+  std::vector<TaskOutcome> tasks;  // of the tasks that made this pose
   Movement movement;
 };
 

@@ -122,6 +122,7 @@ void setLimits(SessionState& state, const std::string& text) {
 }
 
 void authored(SessionState& state) {
+  state.tasks.clear();
   state.authoredRig = state.rig;
   state.authoredPose = state.pose;
 }

@@ -204,6 +204,7 @@ Json sessionState(const Session& session) {
       {"snap", snapJson(rig)},
       {"match", matchJson(state)},
       {"targets", Json::array()},
+      {"tasks", Json::array()},
       {"pins", Json::array()},
       {"doubts", Json::array()},
       {"locked", Json::array()},
@@ -219,6 +220,9 @@ Json sessionState(const Session& session) {
   }
   for (const HeldTarget& target : state.targets) {
     json["targets"].push_back({{"joint", target.joint}, {"position", vectorJson(target.position)}});
+  }
+  for (const TaskOutcome& task : state.tasks) {
+    json["tasks"].push_back({{"task", task.task}, {"outcome", task.outcome}, {"met", task.met}});
   }
   for (const JointPin& pin : state.pins) {
     json["pins"].push_back({{"joint", pin.joint}, {"position", vectorJson(pin.place)}});
