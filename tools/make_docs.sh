@@ -35,6 +35,16 @@ for body in biped:humanoid quadruped:quadruped; do
   $limber rig $work/$sample.glb --template ${body#*:} -o $work/${sample}_template.glb --quiet
   picture ${sample}_template.glb bones ${sample}_template.png
 done
+# The same reach with and without balance: feet held, the hand next, the look and the neck last (docs/tasks.md).
+tasks=(--root-motion move --task position:leftFoot=0.113,0.079,-0.024 --task orientation:leftFoot=y:0
+  --task position:rightFoot=-0.113,0.079,-0.024 --task orientation:rightFoot=y:0
+  --task position:leftHand=0.25,0.45,0.6@priority=1 --task look-at:head=0.25,0.3,0.7@priority=2
+  --task coupling:neck=head:0.5@priority=3)
+$limber pose $work/biped_template.glb "${tasks[@]}" -o $work/tasks_reach.glb --quiet
+$limber pose $work/biped_template.glb "${tasks[@]}" --task balance=within -o $work/tasks_balance.glb --quiet
+for name in reach balance; do
+  $limber preview $work/tasks_$name.glb --view 70,8 --size 320x400 -o $images/tasks_$name.png --quiet
+done
 $limber preview $work/quadruped_template.glb --show anatomy --size 480x400 -o $images/anatomy_fox.png --quiet
 # An elbow bent far, bound as roughly as can be, by each deformer.
 $limber rig $work/biped.glb --template humanoid --skinning nearest-bone -o $work/biped_rough.glb --quiet

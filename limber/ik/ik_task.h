@@ -110,8 +110,8 @@ struct IkTaskResult {
 //
 // Throws Error kBadArgument, with "task 2" as the place, for joints that are not there, numbers that are not finite,
 // weights and radii that are not positive, axes and normals that are not unit vectors; otherwise as IkSystem. Joints
-// that are at or above none of a task stay as they are; balance is every joint's task. About 0.2 ms for five tasks of
-// 60 joints.
+// that are at or above none of a task stay as they are; balance is every joint's task. On 60 joints 0.4 ms for a reach,
+// a look and two feet, 3 ms with balance and three more; what cannot be met takes some ten times as long, by restarts.
 IkTaskResult solveIkTasks(const Skeleton& skeleton, Pose& pose, std::span<const IkTask> tasks,
                           const JointLimits* limits = nullptr, const IkTaskOptions& options = {});
 

@@ -8,6 +8,9 @@ namespace {
 
 constexpr int kSpineSweeps = 4;  // of one iteration, over all bones
 constexpr int kLimbSweeps = 8;
+// Of a bone's error, what the particle ahead takes, the rest the one behind. With halves errors go to and fro: chains
+// of 30 joints take 763 iterations to a millionth, so 12.
+constexpr double kAhead = 0.8;
 
 // Moves two particles along their line to the distance `length`; `share` of it the first, the rest the second.
 void keepLength(Vec3& a, Vec3& b, double length, double share) {
@@ -87,7 +90,11 @@ class ParticleIk : public GoalIteration {
     const bool parentStays = isPinned(system, parent) || (!spine && isSpine(system, parent));
     const bool nodeStays = inwards && !spine && held_[n] != 0;
     if (parentStays && nodeStays) return;
-    keepLength(goals_[p], goals_[n], system.offsets[n].norm(), parentStays ? 0.0 : nodeStays ? 1.0 : 0.5);
+    keepLength(goals_[p], goals_[n], system.offsets[n].norm(),
+               parentStays ? 0.0
+               : nodeStays ? 1.0
+               : inwards   ? kAhead
+                           : 1 - kAhead);
   }
 
   std::vector<char> held_;  // #nodes, whether it is an effector's
