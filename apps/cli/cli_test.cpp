@@ -21,8 +21,8 @@ using ::testing::StartsWith;
 TEST_F(Cli, EveryCommandHasHelpWithAnExample) {
   EXPECT_THAT(run({"--help"}).out,
               AllOf(HasSubstr("rig"), HasSubstr("info"), HasSubstr("preview"), HasSubstr("sample")));
-  for (const char* command : {"rig", "info", "preview", "sample", "evaluate", "convert", "pose", "session", "retarget",
-                              "animate", "transfer", "studio"}) {
+  for (const char* command : {"rig", "info", "preview", "sample", "evaluate", "convert", "parts", "pose", "session",
+                              "retarget", "animate", "transfer", "studio"}) {
     const Result help = run({command, "--help"});
     EXPECT_EQ(help.code, 0);
     EXPECT_THAT(help.out, AllOf(HasSubstr("Example"), HasSubstr(std::string("limber ") + command)));

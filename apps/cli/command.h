@@ -20,6 +20,7 @@ void addSampleCommand(CLI::App& program);
 void addEvaluateCommand(CLI::App& program);
 void addPoseCommand(CLI::App& program);
 void addConvertCommand(CLI::App& program);
+void addPartsCommand(CLI::App& program);
 void addSessionCommand(CLI::App& program);
 void addRetargetCommand(CLI::App& program);
 void addAnimateCommand(CLI::App& program);

@@ -65,6 +65,7 @@ int main(int argc, char** argv) {
   limber::cli::addEvaluateCommand(program);
   limber::cli::addPoseCommand(program);
   limber::cli::addConvertCommand(program);
+  limber::cli::addPartsCommand(program);
   limber::cli::addSessionCommand(program);
   limber::cli::addRetargetCommand(program);
   limber::cli::addAnimateCommand(program);

@@ -12,6 +12,7 @@
 #include "limber/preview/apng.h"
 #include "limber/preview/render.h"
 #include "limber/skinning/deformer.h"
+#include "part_arguments.h"
 #include "progress_line.h"
 
 namespace limber::cli {
@@ -25,6 +26,7 @@ struct PreviewArguments {
   bool animate = false, turntable = false;
   std::optional<double> fps;  // of an animation or a turntable
   std::string background = "studio";
+  PartArguments parts;
   Common common;
 };
 
@@ -118,10 +120,17 @@ void run(PreviewArguments options) {
   if (options.size.empty()) options.size = several ? "320x320" : "1024x768";
   parseSize(options.size, preview);
   if (!options.joint.empty()) preview.show = PreviewShow::kWeights;
+  if (options.parts.given() && preview.show != PreviewShow::kParts) {
+    throw Error(ErrorCode::kBadArgument, "--by, --detail and --count are for parts", "", "add --show parts");
+  }
 
   TerminalProgress progress(options.common.quiet);
   progress->stage("read");
   const Asset asset = readAsset(options.input);
+  if (preview.show == PreviewShow::kParts) {
+    progress->stage("parts");
+    preview.partOf = modelParts(asset, collectGeometry(asset), options.parts.options(), *progress).partOf;
+  }
   progress->stage("draw");
   Warnings warnings;
   const auto draw = [&] {
@@ -143,12 +152,12 @@ void run(PreviewArguments options) {
 void addPreviewCommand(CLI::App& program) {
   auto options = std::make_shared<PreviewArguments>();
   CLI::App* command =
-      program.add_subcommand("preview", "Draw a picture of a model, its handles, bones, weights or anatomy");
+      program.add_subcommand("preview", "Draw a picture of a model, its handles, bones, weights, anatomy or parts");
   command->add_option("FILE", options->input, "the model; - is standard input")->required();
   command->add_option("-o,--output", options->output, "the .png to write; - is standard output")
       ->required()
       ->type_name("FILE");
-  command->add_option("--show", options->show, "model, handles, weights, bones or anatomy")
+  command->add_option("--show", options->show, "model, handles, weights, bones, anatomy or parts")
       ->type_name("WHAT")
       ->capture_default_str();
   command->add_option("--view", options->view, "front, side, back, top, three-quarter, or azimuth,elevation in degrees")
@@ -182,6 +191,7 @@ void addPreviewCommand(CLI::App& program) {
   command->add_option("--deformer", options->deformer, "how the surface of a rigged model bends, see below")
       ->type_name("NAME")
       ->capture_default_str();
+  options->parts.addTo(*command);
   options->common.addTo(*command);
   std::string names = "Deformers:\n";
   for (const Deformer& deformer : deformers()) names += fmt::format("  {:<20}{}\n", deformer.name, deformer.summary);
@@ -189,6 +199,7 @@ void addPreviewCommand(CLI::App& program) {
                   "\nExamples:\n"
                   "  limber preview rigged.glb --show handles --view 30,15 -o handles.png\n"
                   "  limber preview walking.glb --frames 8 -o sheet.png\n"
+                  "  limber preview scan.obj --show parts --count 6 -o parts.png\n"
                   "  limber preview walk.bvh --animate -o walk.png\n"
                   "  limber preview walking.glb --animate --deformer direct-delta-mush -o walk.png\n"
                   "  limber preview dragon.glb --turntable --background transparent -o dragon.png");

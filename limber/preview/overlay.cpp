@@ -101,8 +101,9 @@ std::vector<Vec3f> surfaceColors(const Scene& scene, const PreviewOptions& optio
     }
     return options.joint.empty() ? weightColors(scene) : heatColors(scene, options.joint);
   }
-  if (options.show == PreviewShow::kModel && !scene.colors.empty()) return scene.colors;
-  const bool inside = options.show != PreviewShow::kModel;
+  const bool isSolid = options.show == PreviewShow::kModel || options.show == PreviewShow::kParts;
+  if (isSolid && !scene.colors.empty()) return scene.colors;
+  const bool inside = !isSolid;
   const Vec3f clay = inside ? linearFromSrgb(150, 170, 195) : linearFromSrgb(190, 181, 172);
   return std::vector<Vec3f>(scene.positions.size(), clay);
 }

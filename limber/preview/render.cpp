@@ -11,6 +11,7 @@
 #include "limber/preview/corner_normals.h"
 #include "limber/preview/overlay.h"
 #include "limber/preview/palette.h"
+#include "limber/preview/part_scene.h"
 #include "limber/preview/rasterizer.h"
 #include "limber/preview/studio_light.h"
 
@@ -389,8 +390,9 @@ PreviewShow parsePreviewShow(std::string_view name) {
   if (name == "weights") return PreviewShow::kWeights;
   if (name == "bones") return PreviewShow::kBones;
   if (name == "anatomy") return PreviewShow::kAnatomy;
+  if (name == "parts") return PreviewShow::kParts;
   throw Error(ErrorCode::kBadArgument, "there is no picture of \"" + std::string(name) + "\"", "",
-              "use model, handles, weights, bones or anatomy");
+              "use model, handles, weights, bones, anatomy or parts");
 }
 
 Backdrop parseBackdrop(std::string_view text) {
@@ -411,6 +413,7 @@ Backdrop parseBackdrop(std::string_view text) {
 Image render(const Scene& scene, const PreviewOptions& options) {
   checkPictureSize(options);
   if (scene.positions.empty()) throw Error(ErrorCode::kBadArgument, "there is nothing to show");
+  if (options.show == PreviewShow::kParts) return Painter(coloredByParts(scene, options.partOf), options).paint();
   return Painter(scene, options).paint();
 }
 

@@ -18,9 +18,10 @@ enum class PreviewShow {
   kWeights,  // each vertex in the colours of its joints
   kBones,    // the model translucent, its bones inside
   kAnatomy,  // likewise, in the colours of the parts of the body
+  kParts,    // each triangle in the colour of its part (PreviewOptions::partOf)
 };
 
-// "model", "handles", "weights", "bones", "anatomy". Throws Error kBadArgument that lists them.
+// "model", "handles", "weights", "bones", "anatomy", "parts". Throws Error kBadArgument that lists them.
 PreviewShow parsePreviewShow(std::string_view name);
 
 // What is seen behind the model; its shadow on the ground falls on that.
@@ -43,13 +44,15 @@ struct PreviewOptions {
   ViewDirection view;
   double turn = 0;  // degrees that the camera, and with it the light, goes on round the middle of the frame
   Backdrop backdrop;
-  std::string joint;         // kWeights: the weight of this joint alone, as heat; empty: all
-  std::optional<Box> frame;  // what has to be in the picture; none: the scene. For the frames of a clip.
+  std::string joint;          // kWeights: the weight of this joint alone, as heat; empty: all
+  std::optional<Box> frame;   // what has to be in the picture; none: the scene. For the frames of a clip.
+  std::vector<Index> partOf;  // kParts: #F, the part of each triangle (modelParts)
 };
 
 // The same scene and options give the same picture, whatever the number of threads. Throws Error kBadArgument where the
-// scene lacks what is to be shown (no joints, no weights, no joint of that name) or the size is out of range.
-// Cost: a fraction of a second for 1024 x 768 and 50k triangles; memory grows with the picture and the triangles.
+// scene lacks what is to be shown (no joints, no weights, no joint of that name, parts of another number of triangles)
+// or the size is out of range. Cost: a fraction of a second for 1024 x 768 and 50k triangles; memory grows with the
+// picture and the triangles.
 Image render(const Scene& scene, const PreviewOptions& options = {});
 
 // What such a picture shows where there is neither model nor shadow.

@@ -1,0 +1,95 @@
+#include "limber/parts/model_parts.h"
+
+#include <array>
+
+#include "limber/asset/rig_io.h"
+#include "limber/core/names.h"
+#include "limber/mesh/prepare.h"
+
+namespace limber {
+
+namespace {
+
+struct MethodName {
+  std::string_view name;
+  PartMethod method;
+};
+struct DetailName {
+  std::string_view name;
+  PartDetail detail;
+};
+
+constexpr std::array<MethodName, 3> kMethods = {
+    {{"auto", PartMethod::kAuto}, {"weights", PartMethod::kWeights}, {"shape", PartMethod::kShape}}};
+constexpr std::array<DetailName, 2> kDetails = {{{"limbs", PartDetail::kLimbs}, {"joints", PartDetail::kJoints}}};
+
+// The triangles of the geometry that prepareMesh kept, in its order.
+std::vector<Index> keptTriangles(const Geometry& geometry, const PreparedMesh& prepared) {
+  std::vector<Index> kept;
+  kept.reserve(prepared.mesh.triangles.size());
+  for (Index t = 0; t < geometry.triangles.size(); ++t) {
+    const Triangle& v = geometry.triangles[t];
+    const Index a = prepared.weldedVertex[v[0]], b = prepared.weldedVertex[v[1]], c = prepared.weldedVertex[v[2]];
+    if (a != b && b != c && c != a) kept.push_back(t);
+  }
+  return kept;
+}
+
+SurfaceParts byWeights(const Asset& asset, const Geometry& geometry, std::span<const Index> kept,
+                       const FaceGraph& graph, PartDetail detail) {
+  const AssetSkeleton rig = readSkeleton(asset);
+  const SkinWeights weights = readWeights(asset, geometry, rig);
+  std::vector<Triangle> triangles;
+  triangles.reserve(kept.size());
+  for (const Index t : kept) triangles.push_back(geometry.triangles[t]);
+  SurfaceParts parts = partsByWeights(graph, triangles, weights, jointGroups(rig.skeleton, detail));
+  if (detail == PartDetail::kLimbs && parts.partCount() == 1) {
+    parts = partsByWeights(graph, triangles, weights, jointGroups(rig.skeleton, PartDetail::kJoints));
+  }
+  return parts;
+}
+
+// From the kept triangles to all of the geometry.
+std::vector<Index> expand(const Geometry& geometry, const PreparedMesh& prepared, std::span<const Index> kept,
+                          std::span<const Index> partOf) {
+  std::vector<Index> all(geometry.triangles.size(), kNoIndex), partAt(prepared.mesh.vertexCount(), kNoIndex);
+  for (std::size_t i = kept.size(); i-- > 0;) {
+    all[kept[i]] = partOf[i];
+    for (const Index v : prepared.mesh.triangles[i]) partAt[v] = partOf[i];
+  }
+  for (std::size_t t = 0; t < all.size(); ++t) {
+    for (const Index v : geometry.triangles[t]) {
+      if (all[t] == kNoIndex) all[t] = partAt[prepared.weldedVertex[v]];
+    }
+    if (all[t] == kNoIndex) all[t] = 0;
+  }
+  return all;
+}
+
+}  // namespace
+
+PartMethod parsePartMethod(std::string_view name) {
+  return findByName(kMethods, "way to find parts", name).method;
+}
+
+PartDetail parsePartDetail(std::string_view name) {
+  return findByName(kDetails, "detail of parts", name).detail;
+}
+
+SurfaceParts modelParts(const Asset& asset, const Geometry& geometry, const PartOptions& options, Progress& progress) {
+  const bool rigged = hasRig(asset);
+  if (options.method == PartMethod::kWeights && !rigged) {
+    throw Error(ErrorCode::kBadArgument, "has no rig whose weights could tell parts", asset.name,
+                "make one with limber rig, or take the parts by shape");
+  }
+  const PreparedMesh prepared = prepareMesh(geometry.positions, geometry.triangles);
+  const std::vector<Index> kept = keptTriangles(geometry, prepared);
+  const FaceGraph graph = faceGraph(prepared.mesh);
+  SurfaceParts parts = rigged && options.method != PartMethod::kShape
+                           ? byWeights(asset, geometry, kept, graph, options.detail)
+                           : partsByShape(graph, {options.count}, progress);
+  parts.partOf = expand(geometry, prepared, kept, parts.partOf);
+  return parts;
+}
+
+}  // namespace limber

@@ -1,0 +1,51 @@
+// Parts of a surface by its shape alone, cut where it is concave.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "limber/core/progress.h"
+#include "limber/parts/fuzzy_cut.h"
+
+namespace limber {
+
+inline constexpr Index kMostShapeParts = 20;  // as in the paper
+
+struct ShapePartOptions {
+  std::optional<Index> count;  // 1 to kMostShapeParts; none: found from the shape
+};
+
+// Katz, Tal 2003, k parts at once: representatives as far apart as can be by FaceGraph distances, the first one the
+// middle of all; as many as leave the largest drop in how far the next one would be from those before it; each
+// triangle fuzzy between its two nearest; the fuzzy ones cut along concave edges.
+//
+// Distances between all pairs are taken between at most 1000 patches of triangles, grown from seeds as far apart as can
+// be; up to 1000 triangles each is its own patch, and all is as in the paper but for two things: sums are weighted by
+// area, and a representative moves to the middle of what is nearest to it (with the paper's sum over everything those
+// of limbs drift into the body). Distances from the chosen representatives are exact.
+//
+// mesh  any, each triangle with three different vertices; loose pieces are linked where they are nearest
+// Parts are numbered and named from the largest, "part_01" on. There may be fewer than asked for: no more than patches.
+// Throws Error kBadArgument for a count out of range, kCancelled. Cost: O(#F log #F) in practice; memory for 1000^2
+// distances.
+SurfaceParts partsByShape(const TriMesh& mesh, const ShapePartOptions& options, Progress& progress);
+
+// The same on a graph that is there already.
+SurfaceParts partsByShape(const FaceGraph& graph, const ShapePartOptions& options, Progress& progress);
+
+// The stages, for who wants to see between them.
+
+// Triangles grown together from at most `most` seeds.
+struct FacePatches {
+  std::vector<Index> patchOf;        // #F
+  std::vector<Index> seeds;          // #patches, triangles
+  std::vector<double> seedDistance;  // #F, to the seed of the own patch
+};
+FacePatches growPatches(const FaceGraph& graph, Index most);
+
+// Of triangles with these distances to representatives, distances[r][f]: the nearest first, with the lead
+// (d2 - d1) / (d1 + d2), which is p1 - p2 of the paper's probabilities p1 = d2 / (d1 + d2).
+FuzzyParts fuzzyByDistance(std::span<const std::vector<double>> distances);
+
+}  // namespace limber
