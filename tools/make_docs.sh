@@ -141,6 +141,13 @@ if [ -d "$characters" ]; then
   $limber preview "$characters"/quaternius_man_casual.glb --show bones --size 360x400 -o $images/transfer_source.png --quiet
   $limber preview "$characters"/m2m_human_zombie.glb --size 360x400 -o $images/transfer_target.png --quiet
   $limber preview $work/transfer_posed.glb --size 360x400 -o $images/transfer_posed.png --quiet
+  parts() { $limber preview "$(dirname "$characters")/$2" --show parts --size 300x250 -o $images/parts_$1.png --quiet "${@:3}"; }
+  parts man rigged/cesium_man.glb
+  parts horse rigged/quaternius_horse.glb
+  parts spider rigged/quaternius_spider.glb
+  parts statue meshes/statue_hermes.obj
+  parts hand meshes/hand_lowres.obj --count 6
+  parts scorpion meshes/scorpion_low_resolution.obj
   people=(cesium_man.glb kaykit_mannequin/manny_med_mod.gltf kenney_human.glb m2m_human_{female,male,zombie}.glb
     makehuman_{cmu_mb,default,game_engine,mixamo}.glb quaternius_cyberpunk_character.glb quaternius_knightcharacter.glb
     quaternius_{man_casual,man_king,man_spacesuit,platformer_character,platformer_character_humanoidrig,woman_casual,woman_scifi,mech_george}.glb

@@ -4,6 +4,7 @@
 #include <limits>
 #include <queue>
 
+#include "limber/core/disjoint_sets.h"
 #include "limber/mesh/edge_groups.h"
 #include "limber/surface/piece_links.h"
 #include "limber/surface/surface_edges.h"
@@ -12,9 +13,12 @@ namespace limber {
 
 namespace {
 
-constexpr double kGeodesicShare = 0.03;  // delta; the paper: 0.01 to 0.05
-constexpr double kConvexShare = 0.2;     // eta of convex edges; the paper: small, 0.1 to 0.2
-constexpr double kLinkAngle = 1;         // 1 - cos of a right angle
+// delta. The paper takes 0.01 to 0.05, by which a nostril is farther away than a foot. Measured over the shared tune
+// characters as how well parts by shape agree with limbs by weights, as many as these (adjusted Rand index by area):
+// 0.03: 0.44, 0.1: 0.45, 0.2: 0.47, 0.4: 0.52, 0.7: 0.52.
+constexpr double kGeodesicShare = 0.5;
+constexpr double kConvexShare = 0.2;  // eta of convex edges; the paper: small, 0.1 to 0.2
+constexpr double kLinkAngle = 1;      // 1 - cos of a right angle
 
 // What the arcs are made of, before the means are known.
 struct Bend {
@@ -69,6 +73,24 @@ void addEdges(const TriMesh& mesh, const Faces& faces, FaceGraph& graph, std::ve
   });
 }
 
+void addLink(const Faces& faces, Index a, Index b, const Vec3& from, const Vec3& to, FaceGraph& graph,
+             std::vector<Bend>& bends) {
+  graph.arcs.push_back({a, b, 0, 0, 0, true});
+  bends.push_back({(from - to).norm() + (faces.centers[a] - from).norm() + (faces.centers[b] - to).norm(), kLinkAngle});
+}
+
+// What hangs together by a vertex alone.
+void linkAtVertices(const TriMesh& mesh, const Faces& faces, std::span<const Index> faceAt, FaceGraph& graph,
+                    std::vector<Bend>& bends) {
+  DisjointSets sets(mesh.triangles.size());
+  for (const FaceArc& arc : graph.arcs) sets.unite(arc.a, arc.b);
+  for (Index t = 0; t < mesh.triangleCount(); ++t) {
+    for (const Index v : mesh.triangles[t]) {
+      if (sets.unite(faceAt[v], t)) addLink(faces, faceAt[v], t, mesh.position(v), mesh.position(v), graph, bends);
+    }
+  }
+}
+
 void addLinks(const TriMesh& mesh, const SurfaceEdges& surface, const Faces& faces, FaceGraph& graph,
               std::vector<Bend>& bends) {
   std::vector<Index> faceAt(mesh.vertexCount(), kNoIndex), number(mesh.vertexCount(), kNoIndex), used;
@@ -82,16 +104,14 @@ void addLinks(const TriMesh& mesh, const SurfaceEdges& surface, const Faces& fac
     used.push_back(v);
     points.push_back(mesh.positions[v]);
   }
+  linkAtVertices(mesh, faces, faceAt, graph, bends);
   std::vector<VertexPair> edges;
   edges.reserve(surface.edges.size());
   for (const auto& [v, w] : surface.edges) edges.push_back({number[v], number[w]});
   for (const auto& [i, j] : pieceLinks(points, edges)) {
     const Index v = used[i], w = used[j], a = faceAt[v], b = faceAt[w];
     if (a == b) continue;
-    graph.arcs.push_back({a, b, 0, 0, 0, true});
-    const double gap = (mesh.position(v) - mesh.position(w)).norm();
-    bends.push_back({gap + (faces.centers[a] - mesh.position(v)).norm() + (faces.centers[b] - mesh.position(w)).norm(),
-                     kLinkAngle});
+    addLink(faces, a, b, mesh.position(v), mesh.position(w), graph, bends);
   }
 }
 

@@ -23,8 +23,8 @@ struct FaceArc {
 //     distance = delta geo / mean(geo) + (1 - delta) ang / mean(ang)
 //     capacity = length / mean(length) / (1 + ang / mean(ang))
 // The length is ours: cuts are short in metres, however the surface is triangulated. An edge with more than two
-// triangles joins each to the next. Pieces are linked where they are nearest (pieceLinks), each link as one sharp
-// concave edge, so that the graph is connected.
+// triangles joins each to the next. What hangs together by a vertex alone is linked there, and pieces where
+// they are nearest (pieceLinks), each link as one sharp concave edge, so that the graph is connected.
 struct FaceGraph {
   std::vector<double> areas;    // #F
   std::vector<FaceArc> arcs;    // ordered by shared edge, links last

@@ -43,13 +43,17 @@ TEST(FuzzyCut, IsTheSmallestOfAllWaysToGiveTheFuzzyTriangles) {
     // Fuzzy triangles that touch no sure ones of both parts stay, which can only be dearer.
     bool apart = false;
     for (Index t = 0; t < 32; ++t) {
-      if (fuzzy.lead[t] == 1) EXPECT_EQ(cut[t], fuzzy.first[t]);
+      if (fuzzy.lead[t] == 1) {
+        EXPECT_EQ(cut[t], fuzzy.first[t]);
+      }
       apart = apart || cut[t] > 1;
     }
     EXPECT_FALSE(apart);
     EXPECT_LE(cutOf(graph, cut), cutOf(graph, fuzzy.first) + 1e-12);
     EXPECT_GE(cutOf(graph, cut), least - 1e-12);
-    if (open.size() == 12) EXPECT_NEAR(cutOf(graph, cut), least, 1e-12) << trial;
+    if (open.size() == 12) {
+      EXPECT_NEAR(cutOf(graph, cut), least, 1e-12) << trial;
+    }
   }
 }
 

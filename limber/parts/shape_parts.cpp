@@ -17,6 +17,8 @@ namespace {
 
 constexpr Index kMostPatches = 1000;
 constexpr int kMedoidRounds = 20;    // settles within a few
+constexpr double kLeastArea = 0.01;  // of the surface, nearer to a representative than to those before it
+constexpr double kWorthwhile = 0.5;  // of the second representative's gain
 constexpr double kFuzzyBelow = 0.3;  // lead: probabilities from 0.35 to 0.65
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
@@ -136,6 +138,23 @@ struct Representatives {
   std::vector<double> gains;  // one more than patches where there would be a next one
 };
 
+// The patch farthest from all representatives that stands for enough of the surface: tips of ears and folds of cloth
+// are far from everything. The very farthest where none does.
+Index farthest(const PatchDistances& distances, std::span<const float> nearest) {
+  std::vector<Index> order(nearest.size());
+  std::iota(order.begin(), order.end(), Index{0});
+  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return nearest[a] > nearest[b]; });
+  const double enough = kLeastArea * std::accumulate(distances.areas.begin(), distances.areas.end(), 0.0);
+  for (const Index candidate : order) {
+    double area = 0;
+    for (Index i = 0; i < distances.count(); ++i) {
+      if (distances.rows[candidate][i] < nearest[i]) area += distances.areas[i];
+    }
+    if (area >= enough) return candidate;
+  }
+  return order.front();
+}
+
 Representatives farApart(const PatchDistances& distances, Index most) {
   Representatives found;
   std::vector<float> nearest(distances.count(), std::numeric_limits<float>::infinity());
@@ -144,25 +163,23 @@ Representatives farApart(const PatchDistances& distances, Index most) {
   while (found.patches.size() < most) {
     found.patches.push_back(next);
     for (Index i = 0; i < distances.count(); ++i) nearest[i] = std::min(nearest[i], distances.rows[next][i]);
-    next = static_cast<Index>(std::max_element(nearest.begin(), nearest.end()) - nearest.begin());
+    next = farthest(distances, nearest);
     found.gains.push_back(static_cast<double>(nearest[next]));
     if (!(nearest[next] > 0)) break;
   }
   return found;
 }
 
-// As many as leave the largest drop to the gain of the next one; 1 where nothing is gained.
+// All that are at least half as far from those before them as the second is from the first; 1 where nothing is gained.
+// The paper's rule, the largest drop from one gain to the next, mostly stops at two (adjusted Rand index over the
+// shared tune characters 0.34, this one 0.44).
 std::size_t bestCount(const Representatives& found) {
-  std::size_t best = 1;
-  double largest = 0;
-  for (std::size_t k = 2; k < found.gains.size(); ++k) {
-    const double drop = found.gains[k - 1] - found.gains[k];
-    if (drop > largest) {
-      best = k;
-      largest = drop;
-    }
+  std::size_t count = 1;
+  while (count + 1 < found.gains.size() && found.gains[count] > 0 &&
+         found.gains[count] >= kWorthwhile * found.gains[1]) {
+    ++count;
   }
-  return best;
+  return count;
 }
 
 std::vector<Index> nearestOf(const PatchDistances& distances, std::span<const Index> representatives) {

@@ -17,8 +17,10 @@ struct ShapePartOptions {
 };
 
 // Katz, Tal 2003, k parts at once: representatives as far apart as can be by FaceGraph distances, the first one the
-// middle of all; as many as leave the largest drop in how far the next one would be from those before it; each
-// triangle fuzzy between its two nearest; the fuzzy ones cut along concave edges.
+// middle of all; each triangle fuzzy between its two nearest; the fuzzy ones cut along concave edges. As many as are at
+// least half as far from those before them as the second is from the first, each nearest to a hundredth of the surface
+// at least: both ours, as the paper's largest drop of that distance mostly finds two parts, and its farthest triangles
+// lie in ears and folds.
 //
 // Distances between all pairs are taken between at most 1000 patches of triangles, grown from seeds as far apart as can
 // be; up to 1000 triangles each is its own patch, and all is as in the paper but for two things: sums are weighted by

@@ -57,8 +57,8 @@ TEST(WeightParts, TrianglesWithoutWeightsGoWithTheNearest) {
 TEST(WeightParts, PartsThatNoTriangleHasAreNone) {
   const TriMesh mesh = testing::icosphere(1);
   const SkinWeights weights = testing::twoJointWeights(mesh.positions, 5, 1);
-  const SurfaceParts parts = partsByWeights(faceGraph(mesh), mesh.triangles, weights,
-                                            jointGroups(testing::twoJoints(5), PartDetail::kJoints));
+  const SurfaceParts parts =
+      partsByWeights(faceGraph(mesh), mesh.triangles, weights, jointGroups(testing::twoJoints(5), PartDetail::kJoints));
   EXPECT_THAT(parts.names, ::testing::ElementsAre("lower"));
   EXPECT_THAT(parts.partOf, ::testing::Each(0u));
 }
@@ -77,13 +77,44 @@ TEST_P(WeightPartsOf, EachTriangleHasAPartAndEachPartATriangle) {
   EXPECT_THAT(used, ::testing::Each(true));
 }
 
-TEST(JointGroups, FingersGoWithTheArmAndCollarsWithTheTrunk) {
-  const Skeleton person = kBody();
+TEST(JointGroups, HandsGoWithTheArmAndCollarsWithTheTrunk) {
+  const Skeleton person = testing::vrmPerson();
   const JointGroups groups = jointGroups(person, PartDetail::kLimbs);
   ASSERT_EQ(groups.groupOf.size(), person.joints.size());
   std::map<std::string, std::string> partOf;
   for (Index j = 0; j < person.jointCount(); ++j) partOf[person.joints[j].name] = groups.names[groups.groupOf[j]];
-  for (const auto& [joint, part] : kExpected()) EXPECT_EQ(partOf.at(joint), part) << joint;
+  const std::map<std::string, std::string> expected = {{"hips", "trunk"},         {"chest", "trunk"},
+                                                       {"leftShoulder", "trunk"}, {"leftUpperArm", "leftArm"},
+                                                       {"leftHand", "leftArm"},   {"rightUpperArm", "rightArm"},
+                                                       {"rightHand", "rightArm"}, {"leftUpperLeg", "leftLeg"},
+                                                       {"rightFoot", "rightLeg"}, {"neck", "neck"},
+                                                       {"head", "head"}};
+  for (const auto& [joint, part] : expected) EXPECT_EQ(partOf[joint], part) << joint;
+}
+
+TEST(JointGroups, EarsAndJawGoWithTheHeadAndShoulderBladesWithTheTrunk) {
+  const Skeleton dog = testing::dog().skeleton;
+  const JointGroups groups = jointGroups(dog, PartDetail::kLimbs);
+  const auto groupOf = [&](Index joint) { return groups.groupOf[joint]; };
+  for (Index j = 0; j < dog.jointCount(); ++j) {
+    const std::string& name = dog.joints[j].name;
+    if (name.ends_with("Ear") || name == "Jaw") {
+      EXPECT_EQ(groupOf(j), groupOf(*dog.find("Head"))) << name;
+    }
+    if (name.ends_with("Scapula")) {
+      EXPECT_EQ(groupOf(j), groupOf(*dog.find("Pelvis"))) << name;
+    }
+    if (name.ends_with("Hand")) {
+      EXPECT_EQ(groupOf(j), groupOf(*dog.joints[j].parent)) << name;
+      EXPECT_NE(groupOf(j), groupOf(*dog.find("Pelvis"))) << name;
+    }
+  }
+}
+
+TEST(JointGroups, JointsKeepTheirNames) {
+  const Skeleton person = testing::vrmPerson();
+  const JointGroups groups = jointGroups(person, PartDetail::kJoints);
+  for (Index j = 0; j < person.jointCount(); ++j) EXPECT_EQ(groups.names[groups.groupOf[j]], person.joints[j].name);
 }
 
 }  // namespace

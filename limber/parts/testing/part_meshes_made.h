@@ -58,7 +58,7 @@ inline double middleX(const TriMesh& mesh, Index triangle) {
   return sum / 3;
 }
 
-// A trunk of cubes 2 x 4 x 2, with four limbs and a head of one cube across: a person of blocks, welded, closed. Part
+// A person of blocks, welded and closed: a trunk with four limbs and a head that are all thinner than it. Part
 // numbers of its triangles: 0 trunk, 1 to 5 the limbs and the head.
 struct BlockPerson {
   TriMesh mesh;
@@ -70,9 +70,9 @@ inline BlockPerson blockPerson() {
     int part;
     Eigen::Vector3i from, to;
   };
-  const std::vector<Block> blocks = {{0, {-4, 0, -2}, {4, 12, 2}},    {1, {-4, -16, -1}, {-1, 0, 1}},
-                                     {2, {1, -16, -1}, {4, 0, 1}},    {3, {-16, 9, -1}, {-4, 11, 1}},
-                                     {4, {4, 9, -1}, {16, 11, 1}},    {5, {-2, 12, -2}, {2, 18, 2}}};
+  const std::vector<Block> blocks = {{0, {-4, 0, -2}, {4, 12, 2}}, {1, {-4, -16, -1}, {-1, 0, 1}},
+                                     {2, {1, -16, -1}, {4, 0, 1}}, {3, {-16, 9, -1}, {-4, 11, 1}},
+                                     {4, {4, 9, -1}, {16, 11, 1}}, {5, {-2, 12, -1}, {2, 18, 1}}};
   const auto blockAt = [&](const Eigen::Vector3i& cell) {
     for (const Block& block : blocks) {
       if ((cell.array() >= block.from.array()).all() && (cell.array() < block.to.array()).all()) return block.part;
