@@ -262,6 +262,7 @@ SurfaceParts partsByShape(const FaceGraph& graph, const ShapePartOptions& option
     throw Error(ErrorCode::kBadArgument, fmt::format("{} parts by shape are asked for", *options.count), {},
                 fmt::format("1 to {} can be told apart", kMostShapeParts));
   }
+  if (graph.faceCount() == 0) return {};
   progress.step("patches");
   const FacePatches patches = growPatches(graph, kMostPatches);
   progress.step("distances");

@@ -121,6 +121,11 @@ TEST(ShapeParts, MoreTrianglesThanPatchesGiveTheSameParts) {
   }
 }
 
+TEST(ShapeParts, NothingHasNoParts) {
+  Progress progress;
+  EXPECT_EQ(partsByShape(TriMesh{}, {}, progress).partCount(), 0u);
+}
+
 TEST(ShapeParts, RefusesCountsThatItCannotTellApart) {
   Progress progress;
   for (const Index count : {Index{0}, kMostShapeParts + 1}) {
