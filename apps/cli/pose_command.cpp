@@ -201,9 +201,9 @@ std::string poseHelp() {
   for (const SamplePose& pose : samplePoses()) text += fmt::format("  {:<20}{}\n", pose.name, pose.summary);
   return text +
          "\nThe pose of --apply comes first. All turns are made next, then all moves, then all reaches at once, then "
-         "all "
-         "tasks at once. Axes "
-         "and points are the world's. Joints are called as in the file or as VRM's bones (leftHand).\n"
+         "all\n"
+         "tasks at once. Axes and points are the world's. Joints are called as in the file or as VRM's bones "
+         "(leftHand).\n"
          "The file that --poses names: {\"poses\": [{\"name\": \"wave\", \"turn\": [{\"joint\": \"head\", \"axis\": "
          "[0, 1, 0],\n\"degrees\": 30}], \"move\": [{\"joint\": \"hips\", \"offset\": [0, -0.1, 0]}], \"reach\": "
          "[{\"joint\": \"hand.L\",\n\"target\": [0.4, 1.2, 0.3], \"pole\": [0, 1, -1], \"base\": \"chest\"}], "
