@@ -165,12 +165,11 @@ FaceGraph faceGraph(const TriMesh& mesh) {
   return graph;
 }
 
-std::vector<double> distancesFrom(const FaceGraph& graph, Index face) {
+void shortenFrom(const FaceGraph& graph, std::span<const Index> sources, std::vector<double>& distances,
+                 const std::function<void(Index from, Index to)>& reach) {
   using Entry = std::pair<double, Index>;
-  std::vector<double> distances(graph.faceCount(), std::numeric_limits<double>::infinity());
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-  distances[face] = 0;
-  queue.emplace(0, face);
+  for (const Index face : sources) queue.emplace(distances[face], face);
   while (!queue.empty()) {
     const auto [distance, at] = queue.top();
     queue.pop();
@@ -180,9 +179,16 @@ std::vector<double> distancesFrom(const FaceGraph& graph, Index face) {
       const double further = distance + graph.arcs[arc].distance;
       if (!(further < distances[next])) continue;
       distances[next] = further;
+      reach(at, next);
       queue.emplace(further, next);
     }
   }
+}
+
+std::vector<double> distancesFrom(const FaceGraph& graph, Index face) {
+  std::vector<double> distances(graph.faceCount(), std::numeric_limits<double>::infinity());
+  distances[face] = 0;
+  shortenFrom(graph, std::span(&face, 1), distances, [](Index, Index) {});
   return distances;
 }
 

@@ -1,6 +1,7 @@
 // The dual graph of a surface: its triangles, and how far and how sharp it is from each to its neighbours.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -42,7 +43,12 @@ struct FaceGraph {
 // Cost: O(#F), and pieceLinks.
 FaceGraph faceGraph(const TriMesh& mesh);
 
-// Shortest distances from one triangle to all others (Dijkstra). Cost: O(#F log #F).
+// Makes `distances` (#F) the shortest that lead on from the sources, whose own are set, wherever that is less than what
+// is there (Dijkstra); tells each time from where a triangle is reached. Cost: O(n log n) in the triangles reached.
+void shortenFrom(const FaceGraph& graph, std::span<const Index> sources, std::vector<double>& distances,
+                 const std::function<void(Index from, Index to)>& reach);
+
+// Shortest distances from one triangle to all others. Cost: O(#F log #F).
 std::vector<double> distancesFrom(const FaceGraph& graph, Index face);
 
 }  // namespace limber

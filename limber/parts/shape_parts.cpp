@@ -29,23 +29,10 @@ using Queue = std::priority_queue<Entry, std::vector<Entry>, std::greater<>>;
 void growFrom(const FaceGraph& graph, Index seed, FacePatches& patches) {
   const auto patch = static_cast<Index>(patches.seeds.size());
   patches.seeds.push_back(seed);
-  Queue queue;
   patches.seedDistance[seed] = 0;
   patches.patchOf[seed] = patch;
-  queue.emplace(0, seed);
-  while (!queue.empty()) {
-    const auto [distance, at] = queue.top();
-    queue.pop();
-    if (distance > patches.seedDistance[at]) continue;
-    for (const Index arc : graph.arcsOf(at)) {
-      const Index next = graph.across(arc, at);
-      const double further = distance + graph.arcs[arc].distance;
-      if (!(further < patches.seedDistance[next])) continue;
-      patches.seedDistance[next] = further;
-      patches.patchOf[next] = patch;
-      queue.emplace(further, next);
-    }
-  }
+  shortenFrom(graph, std::span(&seed, 1), patches.seedDistance,
+              [&](Index, Index reached) { patches.patchOf[reached] = patch; });
 }
 
 FacePatches singlePatches(Index count) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <limits>
 #include <optional>
-#include <queue>
 
 #include "limber/anatomy/body_part.h"
 #include "limber/asset/unique_names.h"
@@ -124,27 +123,15 @@ FuzzyParts fuzzyByWeights(std::span<const Triangle> triangles, const SkinWeights
 }
 
 void spreadParts(const FaceGraph& graph, FuzzyParts& fuzzy) {
-  using Entry = std::pair<double, Index>;
   std::vector<double> distances(graph.faceCount(), std::numeric_limits<double>::infinity());
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+  std::vector<Index> sources;
   for (Index t = 0; t < graph.faceCount(); ++t) {
     if (fuzzy.first[t] == kNoIndex) continue;
     distances[t] = 0;
-    queue.emplace(0, t);
+    sources.push_back(t);
   }
-  while (!queue.empty()) {
-    const auto [distance, at] = queue.top();
-    queue.pop();
-    if (distance > distances[at]) continue;
-    for (const Index arc : graph.arcsOf(at)) {
-      const Index next = graph.across(arc, at);
-      const double further = distance + graph.arcs[arc].distance;
-      if (!(further < distances[next])) continue;
-      distances[next] = further;
-      fuzzy.first[next] = fuzzy.second[next] = fuzzy.first[at];
-      queue.emplace(further, next);
-    }
-  }
+  shortenFrom(graph, sources, distances,
+              [&](Index from, Index to) { fuzzy.first[to] = fuzzy.second[to] = fuzzy.first[from]; });
 }
 
 SurfaceParts partsByWeights(const FaceGraph& graph, std::span<const Triangle> triangles, const SkinWeights& weights,
