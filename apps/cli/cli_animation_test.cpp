@@ -1,7 +1,7 @@
 // limber rig --from-animation, and its evaluation, as a user runs them.
 #include <nlohmann/json.hpp>
 
-#include "cli_fixture.h"
+#include "testing/cli_fixture.h"
 
 namespace limber {
 namespace {
