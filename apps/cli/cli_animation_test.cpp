@@ -1,5 +1,8 @@
 // limber rig --from-animation, and its evaluation, as a user runs them.
 #include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "testing/cli_fixture.h"
 
@@ -49,13 +52,21 @@ TEST_F(AnimationRig, WhatCannotBeServedIsOneLineAndLeavesNoFile) {
   EXPECT_EQ(files(), before);
 }
 
-TEST_F(AnimationRig, IsEvaluatedOverAFolder) {
+TEST_F(AnimationRig, OfObjFilesIsEvaluatedOverAFolder) {
   fs::create_directory(folder_ / "models");
-  ASSERT_EQ(run({"sample", "flying", "-o", "models/flying.glb", "--quiet"}).code, 0);
+  // Two triangles, the second of which turns up about the edge that they share.
+  for (const auto& [name, corner] :
+       {std::pair{"f1.obj", "1 1 0"}, {"f2.obj", "0.9 0.9 0.3"}, {"f3.obj", "0.7 0.7 0.4"}}) {
+    put(name, std::string("v 0 0 0\nv 1 0 0\nv 0 1 0\nv ") + corner + "\nf 1 2 3\nf 2 4 3\n");
+  }
+  const Result rigged =
+      run({"rig", "--from-animation", "f1.obj", "f2.obj", "f3.obj", "--bones", "2", "-o", "models/fold.glb"});
+  EXPECT_EQ(rigged.code, 0) << rigged.error;
+  EXPECT_THAT(rigged.out, HasSubstr("3 frames of 1 clip"));
   const Result result = run({"evaluate", "decomposition", "models", "--each", "each.tsv", "--quiet"});
   EXPECT_EQ(result.code, 0) << result.error;
   EXPECT_THAT(result.out, AllOf(HasSubstr("within 0.3 %"), HasSubstr("| models | 1 |")));
-  EXPECT_THAT(content("each.tsv"), HasSubstr("models\tflying\t"));
+  EXPECT_THAT(content("each.tsv"), HasSubstr("models\tfold\tf\t"));
 }
 
 }  // namespace
