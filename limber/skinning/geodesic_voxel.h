@@ -27,7 +27,7 @@ struct GeodesicVoxelOptions {
 // (`no-bone-in-sight`).
 //
 // mesh, bones  as for all methods; bones outside the mesh hold the cells that they pass through
-// Errors as checkWeightArguments, kCancelled. Cost: the grid of SignedDistance, and O(cells within x joints followed).
+// Errors as checkWeightArguments, kCancelled. Cost: that of InsideLattice, and O(cells within x joints followed).
 WeightResult geodesicVoxelWeights(const TriMesh& mesh, std::span<const Bone> bones, const WeightOptions& options,
                                   Progress& progress);
 WeightResult geodesicVoxelWeightsWith(const GeodesicVoxelOptions& voxels, const TriMesh& mesh,
