@@ -218,7 +218,9 @@ std::vector<Stub> branchesWithEnds(const std::vector<NodePlace>& places, const s
     stub.carrier = node;
     stubs.push_back(std::move(stub));
   }
-  std::stable_sort(stubs.begin(), stubs.end(), [](const Stub& a, const Stub& b) { return a.length < b.length; });
+  std::sort(stubs.begin(), stubs.end(), [](const Stub& a, const Stub& b) {
+    return a.length != b.length ? a.length < b.length : a.nodes.front() < b.nodes.front();
+  });
   return stubs;
 }
 

@@ -191,8 +191,10 @@ void renumber(const std::vector<Index>& pointOf, EvenSurface& surface) {
     std::sort(t.begin(), t.end());
     return t;
   };
-  std::stable_sort(surface.triangles.begin(), surface.triangles.end(),
-                   [&](const Triangle& a, const Triangle& b) { return sorted(a) < sorted(b); });
+  std::sort(surface.triangles.begin(), surface.triangles.end(), [&](const Triangle& a, const Triangle& b) {
+    const Triangle low = sorted(a), high = sorted(b);
+    return low != high ? low < high : a < b;
+  });
   surface.triangles.erase(std::unique(surface.triangles.begin(), surface.triangles.end(),
                                       [&](const Triangle& a, const Triangle& b) { return sorted(a) == sorted(b); }),
                           surface.triangles.end());
