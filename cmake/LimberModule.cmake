@@ -63,7 +63,7 @@ function(limber_precompile target kind)
   endif()
   string(TOLOWER limber_precompiled_${kind} owner)
   if(NOT TARGET ${owner})
-    file(WRITE ${PROJECT_BINARY_DIR}/${owner}.cpp "")
+    file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/${owner}.cpp CONTENT "")  # written only where it is not there yet
     add_library(${owner} OBJECT ${PROJECT_BINARY_DIR}/${owner}.cpp)
     target_compile_features(${owner} PRIVATE cxx_std_20)
     target_compile_definitions(${owner} PRIVATE ${limber_eigen_definitions})
