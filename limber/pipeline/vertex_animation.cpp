@@ -14,7 +14,7 @@
 #include "limber/asset/node_edit.h"
 #include "limber/asset/pose_io.h"
 #include "limber/asset/scene_graph.h"
-#include "limber/skinning/deformer.h"
+#include "limber/skinning/linear_blend.h"
 
 namespace limber {
 
@@ -155,7 +155,7 @@ class VertexPoser {
     normalizeWeights(weights_);
     checkWeights(weights_, skeleton_.skeleton.jointCount());
     nodePose_ = readNodePose(asset, skeleton_);
-    scratch_.resize(deformer().scratchSize(skeleton_.skeleton.jointCount()));
+    scratch_.resize(linearBlendScratch(geometry_.positions.size(), skeleton_.skeleton.jointCount()));
   }
 
   const Geometry& geometry() const { return geometry_; }
@@ -182,13 +182,11 @@ class VertexPoser {
     Pose pose = nodePose_;
     sampleClip(clip.clip, seconds, pose);
     const std::vector<Affine> transforms = skinTransforms(skeleton_.skeleton, pose);
-    deformer().deform({positions_, {}, weights_, transforms, {}}, {positions_, {}}, scratch_);
+    linearBlend({positions_, {}, weights_, transforms, {}}, {positions_, {}}, scratch_);
     return positions_;
   }
 
  private:
-  static const Deformer& deformer() { return findDeformer("linear-blend"); }
-
   void addMorphs(const MorphTargets& morph, const SampledClip& clip, double seconds) {
     std::vector<float> amounts = morph.still;
     for (const MorphTrack& track : clip.morphs) {
