@@ -332,10 +332,12 @@ release_stages() {
   if [ -n "$quick" ]; then stage "the project's own samples" model_tests release '^(?!.*Samples)'; fi
 }
 
-# Fitting a template takes some ten seconds under sanitizers. Of the tests that do it over and over one runs every time;
-# ./dev test --sanitize runs them all.
+# Fitting a template takes some ten seconds under sanitizers, as do surfaces made from distance fields. Of the tests that
+# do it over and over one runs every time; ./dev test --sanitize runs them all.
 minutes_under_sanitizers='TemplateRigger\.[^N]|PersonTemplate\.[^N]|PosedBodies\.[HOL]|FigureSearch\.([KGC]|Fe)|PinnedJointsOfATemplateStand|SampleMotionsMove|SampleFoxWalks|PosesStartFrom'
-minutes_under_sanitizers+='|AnyNumberOfThreadsAndReadsBack/winged|EveryWeightMethod|GeodesicVoxel\.[^P]|PlanFit\.[^A]|ShapeReading\.[^S]|ShapeReadingTest\..*/[^s]|BodyCurves\.[^A]'
+minutes_under_sanitizers+='|AnyNumberOfThreadsAndReadsBack/(winged|flying|theropod)|ClosedSymmetricModelOnItsFeet/(winged|flying)|PlanFit\.[^A]|ShapeReading\.[^S]|ShapeReadingTest\..*/[^s]|BodyCurves\.[^A]'
+minutes_under_sanitizers+='|EveryWeightMethod|WeightMethods\.[GK]|GeodesicVoxel\.[^P]|LegBend\.OverstretchedLegs|BodyVolume\.RefusesAFace|AnatomicalFrame\.Follows|FeetDirection\.IsUnknown|TransferAssetTest\.[^B]'
+minutes_under_sanitizers+='|Cli\.(AnimateRigs|PeopleOfFiles|RigsOfASplit|TheClipThatWasAdded)'
 
 remaining_stages() {
   stage "every model, every count of handles" model_tests release
