@@ -278,7 +278,7 @@ class IkTaskRows::Measure {
 };
 
 IkTaskRows::IkTaskRows(const Skeleton& skeleton, std::span<const IkTask> tasks, const IkTaskOptions& options)
-    : skeleton_(&skeleton), tasks_(tasks.begin(), tasks.end()), options_(options.ik), masses_(options.masses) {
+    : tasks_(tasks.begin(), tasks.end()), options_(options.ik), masses_(options.masses) {
   if (masses_.empty()) masses_ = massesOfBones(skeleton);
   for (const PointMass& mass : masses_) totalMass_ += mass.mass;
   std::vector<int> priorities;

@@ -67,7 +67,6 @@ class IkTaskRows {
   double errorOf(std::size_t task) const;  // in rows' units
   double toleranceOf(std::size_t task) const;
 
-  const Skeleton* skeleton_;
   std::vector<IkTask> tasks_;
   IkOptions options_;
   std::vector<PointMass> masses_;

@@ -39,7 +39,7 @@ class InsideLattice {
   Vec3 position(Index cell) const;
 
   // A step of -1, 0 or 1 along each axis, for neighbor().
-  std::ptrdiff_t step(int x, int y, int z) const { return x + row_ * (y + std::ptrdiff_t{size_[1]} * z); }
+  std::ptrdiff_t step(int x, int y, int z) const { return x + row_ * (y + static_cast<std::ptrdiff_t>(size_[1]) * z); }
   // kNoIndex where nothing is inside.
   Index neighbor(Index cell, std::ptrdiff_t step) const {
     return cellOf_[static_cast<std::size_t>(static_cast<std::ptrdiff_t>(nodes_[cell]) + step)];
