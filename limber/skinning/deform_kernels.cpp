@@ -12,8 +12,14 @@ const DirectKernels& baselineDirectKernels() {
   return kDirectKernels;
 }
 
+const FullDirectKernels& baselineFullDirectKernels() {
+  return kFullDirectKernels;
+}
+
 const DirectKernels& directKernels() {
+  static const DirectKernels* const avx512 = avx512DirectKernels();
   static const DirectKernels* const avx2 = avx2DirectKernels();
+  if (avx512) return *avx512;
   return avx2 ? *avx2 : baselineDirectKernels();
 }
 

@@ -12,7 +12,7 @@ inline constexpr std::size_t kFloatsPerColumns = 16;
 // A unit dual quaternion: real x y z w, dual x y z w.
 inline constexpr std::size_t kFloatsPerMotion = 8;
 
-// A symmetric 4 x 4 matrix.
+// Of four joints' first moments the x, then the y, z and weights; in full a joint's symmetric 4 x 4 matrix.
 inline constexpr std::size_t kFloatsPerMoments = 16;
 
 // Vertices are three floats, one after the other; `slots` joints and weights each.
@@ -29,13 +29,16 @@ struct DeformJob {
   const float* motions = nullptr;    // #J * kFloatsPerMotion
   const float* rotationCenters = nullptr;  // as positions
 
-  // Direct delta mush: of each vertex its row, of each row its entries, by which joint, and what they add to.
-  const float* turns = nullptr;              // #J * kFloatsPerColumns: the rotations alone, where columns are the maps
+  // Direct delta mush: of each vertex its row, of each row its entries (of four joints each; in full of
+  // one), and the smoothed place.
   const std::uint32_t* rowOf = nullptr;      // #V
   const std::uint32_t* rowBegin = nullptr;   // #R + 1
-  const std::uint32_t* rowJoints = nullptr;  // #E
+  const std::uint32_t* rowJoints = nullptr;  // #E * 4; in full #E
   const float* rowMoments = nullptr;         // #E * kFloatsPerMoments
-  const float* rowBases = nullptr;           // #R * kFloatsPerMoments
+  const float* rowPlaces = nullptr;          // #R * 4
+  // In full only: the rotations alone, where columns are the maps; what the entries add to.
+  const float* turns = nullptr;     // #J * kFloatsPerColumns
+  const float* rowBases = nullptr;  // #R * kFloatsPerMoments
 };
 
 // Deforms the vertices begin <= v < end.
@@ -51,6 +54,9 @@ struct DeformKernels {
 struct DirectKernels {
   DeformKernel direct[2][2];  // [normals?][scales?]
 };
+struct FullDirectKernels {
+  DeformKernel direct[2][2];  // [normals?][scales?]
+};
 
 // Those for the machine that this runs on.
 const DeformKernels& deformKernels();
@@ -58,10 +64,12 @@ const DirectKernels& directKernels();
 
 const DeformKernels& baselineDeformKernels();
 const DirectKernels& baselineDirectKernels();
+const FullDirectKernels& baselineFullDirectKernels();
 // Null where the machine or the build has no AVX2.
 const DeformKernels* avx2DeformKernels();
 const DirectKernels* avx2DirectKernels();
 // As well for AVX-512 (F, BW, DQ, VL).
 const DeformKernels* avx512DeformKernels();
+const DirectKernels* avx512DirectKernels();
 
 }  // namespace limber

@@ -153,6 +153,13 @@ LIMBER_INLINE AppliedMotions prepareMotions(const Float8 motions[4]) {
           square > 0.0f ? inverse : Float4{}};
 }
 
+// Rotations alone; none where a vertex has no quaternion.
+LIMBER_INLINE AppliedMotions rotationsOf(const Lanes4& q) {
+  const Float4 square = q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w;
+  const Float4 inverse = 2.0f / square;
+  return {xyzOf(q), q.w, Lanes3{}, square > 0.0f ? inverse : Float4{}};
+}
+
 LIMBER_INLINE Lanes3 turnOf(const AppliedMotions& motions, const Lanes3& v) {
   return cross(motions.axis, cross(motions.axis, v) + motions.w * v);
 }
@@ -242,6 +249,16 @@ LIMBER_INLINE void dualBlock(const DeformJob& job, std::size_t v) {
   if (kNormals) storeLanes3(turnedNormals(motions, normals), job.outNormals + 3 * v);
 }
 
+// What four vertices' stretches add to their arms.
+LIMBER_INLINE Lanes3 growthOf(const Columns stretches[4], const Lanes3& arm) {
+  Float4 growths[4];
+  for (int i = 0; i < 4; ++i) {
+    growths[i] = displacementBy(stretches[i], joinFloat4(broadcast(arm.x[i]), broadcast(arm.y[i])),
+                                joinFloat4(broadcast(arm.z[i]), broadcast(0)));
+  }
+  return xyzOf(transposed(growths[0], growths[1], growths[2], growths[3]));
+}
+
 // v' = M c + R S (v - c) about the vertex' centre c: the blended matrix M takes the centre, the blended rotation R and
 // stretch S what stands out from it. Again as displacements, so that nothing moves where all are the identity.
 template <int kSlots, bool kNormals, bool kScales>
@@ -260,18 +277,106 @@ LIMBER_INLINE void centeredBlock(const DeformJob& job, std::size_t v) {
   if (kNormals) normals = loadLanes3(job.normals + 3 * v);
   if (kScales) {
     Columns stretches[4];
-    Float4 growths[4];
-    for (int i = 0; i < 4; ++i) {
-      stretches[i] = blendColumns(job.stretches, influencesOf<kSlots>(job, v + i));
-      growths[i] = displacementBy(stretches[i], joinFloat4(broadcast(arm.x[i]), broadcast(arm.y[i])),
-                                  joinFloat4(broadcast(arm.z[i]), broadcast(0)));
-    }
-    const Lanes3 growth = xyzOf(transposed(growths[0], growths[1], growths[2], growths[3]));
+    for (int i = 0; i < 4; ++i) stretches[i] = blendColumns(job.stretches, influencesOf<kSlots>(job, v + i));
+    const Lanes3 growth = growthOf(stretches, arm);
     shift = shift + growth;
     arm = arm + growth;
     if (kNormals) normals = normalsAfter(stretches, normals);
   }
   const AppliedMotions motions = prepareMotions(sums);
+  storeLanes3(displaced(positions, shift + motions.factor * turnOf(motions, arm)), job.outPositions + 3 * v);
+  if (kNormals) storeLanes3(turnedNormals(motions, normals), job.outNormals + 3 * v);
+}
+
+// What the joints of a row do to its surroundings' mean, the blended quaternion, and the blended stretch where there is
+// any.
+struct RowSum {
+  Float4 shift, turn;
+  Columns stretch;
+};
+
+// The joints' maps, each times its first moment and weight: of four joints the x, then the y, z and weights.
+struct ShiftSum {
+#ifdef __AVX512F__
+  Float16 all = {};
+
+  LIMBER_INLINE void addFour(const float* palette, const std::uint32_t* joints, const float* moments) {
+    const Float16 m = loadFloat16(moments);
+    const float* const maps[4] = {palette + kFloatsPerColumns * joints[0], palette + kFloatsPerColumns * joints[1],
+                                  palette + kFloatsPerColumns * joints[2], palette + kFloatsPerColumns * joints[3]};
+    all =
+        all + loadFloat16(maps[0]) * __builtin_shufflevector(m, m, 0, 0, 0, 0, 4, 4, 4, 4, 8, 8, 8, 8, 12, 12, 12, 12);
+    all =
+        all + loadFloat16(maps[1]) * __builtin_shufflevector(m, m, 1, 1, 1, 1, 5, 5, 5, 5, 9, 9, 9, 9, 13, 13, 13, 13);
+    all = all +
+          loadFloat16(maps[2]) * __builtin_shufflevector(m, m, 2, 2, 2, 2, 6, 6, 6, 6, 10, 10, 10, 10, 14, 14, 14, 14);
+    all = all +
+          loadFloat16(maps[3]) * __builtin_shufflevector(m, m, 3, 3, 3, 3, 7, 7, 7, 7, 11, 11, 11, 11, 15, 15, 15, 15);
+  }
+  LIMBER_INLINE Float8 halves() const {
+    return lowHalf(all) + highHalf(all);
+  }
+#else
+  Float8 xy = {}, zOffset = {};
+
+  LIMBER_INLINE void addFour(const float* palette, const std::uint32_t* joints, const float* moments) {
+    for (int i = 0; i < 4; ++i) {
+      const float* map = palette + kFloatsPerColumns * joints[i];
+      xy = xy + loadFloat8(map) * joinFloat4(broadcast(moments[i]), broadcast(moments[4 + i]));
+      zOffset = zOffset + loadFloat8(map + 8) * joinFloat4(broadcast(moments[8 + i]), broadcast(moments[12 + i]));
+    }
+  }
+  LIMBER_INLINE Float8 halves() const {
+    return xy + zOffset;
+  }
+#endif
+};
+
+template <bool kScales>
+LIMBER_INLINE RowSum sumRow(const DeformJob& job, std::size_t row) {
+  const std::uint32_t begin = job.rowBegin[row], end = job.rowBegin[row + 1];
+  RowSum sum = {};
+  if (begin == end) return sum;
+  const Float4 pivot = loadFloat4(job.motions + kFloatsPerMotion * job.rowJoints[4 * std::size_t{begin}]);
+  ShiftSum shift;
+  for (std::size_t four = begin; four < end; ++four) {
+    const std::uint32_t* joints = job.rowJoints + 4 * four;
+    const float* moments = job.rowMoments + kFloatsPerMoments * four;
+    shift.addFour(job.columns, joints, moments);
+    sum.turn = sum.turn + lowHalf(blendFourMotions(job.motions, joints, loadFloat4(moments + 12), pivot));
+    for (int i = 0; kScales && i < 4; ++i) {
+      const float* stretch = job.stretches + kFloatsPerColumns * joints[i];
+      sum.stretch.xy = sum.stretch.xy + moments[12 + i] * loadFloat8(stretch);
+      sum.stretch.zOffset = sum.stretch.zOffset + moments[12 + i] * loadFloat8(stretch + 8);
+    }
+  }
+  sum.shift = lowHalf(shift.halves()) + highHalf(shift.halves());
+  return sum;
+}
+
+// v' = p + shift + R S (v - p) about the vertex' smoothed place p.
+template <bool kNormals, bool kScales>
+LIMBER_INLINE void directBlock(const DeformJob& job, std::size_t v) {
+  RowSum sums[4];
+  Float4 places[4];
+  for (int i = 0; i < 4; ++i) {
+    const std::size_t row = job.rowOf[v + i];
+    sums[i] = sumRow<kScales>(job, row);
+    places[i] = loadFloat4(job.rowPlaces + 4 * row);
+  }
+  const Lanes3 positions = loadLanes3(job.positions + 3 * v);
+  Lanes3 arm = positions - xyzOf(transposed(places[0], places[1], places[2], places[3])), normals = {};
+  Lanes3 shift = xyzOf(transposed(sums[0].shift, sums[1].shift, sums[2].shift, sums[3].shift));
+  if (kNormals) normals = loadLanes3(job.normals + 3 * v);
+  if (kScales) {
+    const Columns stretches[4] = {sums[0].stretch, sums[1].stretch, sums[2].stretch, sums[3].stretch};
+    const Lanes3 growth = growthOf(stretches, arm);
+    shift = shift + growth;
+    arm = arm + growth;
+    if (kNormals) normals = normalsAfter(stretches, normals);
+  }
+  const Lanes4 q = transposed(sums[0].turn, sums[1].turn, sums[2].turn, sums[3].turn);
+  const AppliedMotions motions = rotationsOf(q);
   storeLanes3(displaced(positions, shift + motions.factor * turnOf(motions, arm)), job.outPositions + 3 * v);
   if (kNormals) storeLanes3(turnedNormals(motions, normals), job.outNormals + 3 * v);
 }
@@ -380,12 +485,12 @@ LIMBER_INLINE AppliedMotions fitRotations(const DeformJob& job, std::size_t v, c
     for (Lanes3& column : fit) column = perTrace * column;
     for (int i = 0; i < kSteps; ++i) q = nearerRotation(q, fit);
   }
-  return {xyzOf(q), q.w, Lanes3{}, 2.0f / (q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w)};
+  return rotationsOf(q);
 }
 
 // v' = p + offset + R S (v - p) about the vertex' smoothed place p.
 template <bool kNormals, bool kScales>
-LIMBER_INLINE void directBlock(const DeformJob& job, std::size_t v) {
+LIMBER_INLINE void fullDirectBlock(const DeformJob& job, std::size_t v) {
   const MomentSums sums = sumMoments<kScales>(job, v);
   const Lanes3 positions = loadLanes3(job.positions + 3 * v);
   Float4 bases[4];
@@ -395,12 +500,7 @@ LIMBER_INLINE void directBlock(const DeformJob& job, std::size_t v) {
                                   highHalf(sums.fits[2].zOffset), highHalf(sums.fits[3].zOffset)));
   if (kNormals) normals = loadLanes3(job.normals + 3 * v);
   if (kScales) {
-    Float4 growths[4];
-    for (int i = 0; i < 4; ++i) {
-      growths[i] = displacementBy(sums.stretches[i], joinFloat4(broadcast(arm.x[i]), broadcast(arm.y[i])),
-                                  joinFloat4(broadcast(arm.z[i]), broadcast(0)));
-    }
-    const Lanes3 growth = xyzOf(transposed(growths[0], growths[1], growths[2], growths[3]));
+    const Lanes3 growth = growthOf(sums.stretches, arm);
     shift = shift + growth;
     arm = arm + growth;
     if (kNormals) normals = normalsAfter(sums.stretches, normals);
@@ -463,6 +563,10 @@ constexpr DeformKernels kKernels = {
 [[maybe_unused]] constexpr DirectKernels kDirectKernels = {
     {{&deformRange<directBlock<false, false>>, &deformRange<directBlock<false, true>>},
      {&deformRange<directBlock<true, false>>, &deformRange<directBlock<true, true>>}}};
+
+[[maybe_unused]] constexpr FullDirectKernels kFullDirectKernels = {
+    {{&deformRange<fullDirectBlock<false, false>>, &deformRange<fullDirectBlock<false, true>>},
+     {&deformRange<fullDirectBlock<true, false>>, &deformRange<fullDirectBlock<true, true>>}}};
 
 }  // namespace
 }  // namespace limber

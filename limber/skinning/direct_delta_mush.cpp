@@ -63,11 +63,16 @@ struct JointPart {
   PointMoments moments;
 };
 
+enum class MomentOrder { kFirst, kSecond };
+
+// Every joint's parts in the rows of all vertices.
 class MomentTable {
  public:
-  MomentTable(const SmoothingSurface& surface, Index jointCount, const DirectDeltaMushOptions& options)
+  MomentTable(const SmoothingSurface& surface, Index jointCount, const DirectDeltaMushOptions& options,
+              MomentOrder order)
       : surface_(surface),
         options_(options),
+        order_(order),
         rotation_(surface, surface.stepsFor(options.rotationReach) / options.smoothings, options.smoothings),
         translation_(surface, surface.stepsFor(options.translationReach) / options.smoothings, options.smoothings),
         boundTo_(jointCount) {
@@ -75,26 +80,27 @@ class MomentTable {
     makePlaces();
   }
 
-  std::shared_ptr<DirectDeltaMushRows> rows() {
+  // Calls addRow(vertex, parts, whole) of each vertex in order: its joints' parts, strongest first, and the moments of
+  // all its surroundings.
+  template <class AddRow>
+  void forEachRow(const AddRow& addRow) const {
+    constexpr double kRounding = 1e-6;
     const std::vector<PointMoments> whole = momentsOf(everything_), bound = momentsOf(bound_);
-    std::vector<std::vector<JointPart>> ofJoint(boundTo_.size());
-    parallelFor(boundTo_.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t joint = begin; joint < end; ++joint) {
-        if (!boundTo_[joint].empty()) ofJoint[joint] = partsOf(static_cast<Index>(joint));
-      }
-    });
-    std::vector<std::vector<JointPart>> ofVertex(surface_.vertexCount());
-    for (std::vector<JointPart>& parts : ofJoint) {
-      for (const JointPart& part : parts) ofVertex[part.vertex].push_back(part);
-      parts = {};
+    std::vector<std::vector<JointPart>> ofVertex = partsOfVertices();
+    for (Index v = 0; v < surface_.vertexCount(); ++v) {
+      std::vector<JointPart>& parts = ofVertex[v];
+      std::stable_sort(parts.begin(), parts.end(),
+                       [](const JointPart& a, const JointPart& b) { return a.moments.weight > b.moments.weight; });
+      if (order_ == MomentOrder::kFirst && parts.size() > options_.mostJoints) parts.resize(options_.mostJoints);
+      PointMoments all = bound[v];
+      if (std::abs(all.weight - 1) < kRounding) all = whole[v], all.weight = 1;
+      completeParts(parts, all);
+      addRow(v, parts, whole[v]);
     }
-    auto result = std::make_shared<DirectDeltaMushRows>();
-    result->rowOf = surface_.weldedVertex;
-    result->jointCount = static_cast<Index>(boundTo_.size());
-    result->begin.push_back(0);
-    for (Index v = 0; v < surface_.vertexCount(); ++v) addRow(v, ofVertex[v], whole[v], bound[v], *result);
-    return result;
   }
+
+  const Vec3& place(Index vertex) const { return places_[vertex]; }
+  Index jointCount() const { return static_cast<Index>(boundTo_.size()); }
 
  private:
   void gatherWeights() {
@@ -147,8 +153,8 @@ class MomentTable {
         high[i] += w.weight * arm[i] * arm[(i + 1) % 3];
       }
     }
-    rotation_.smooth(lower, 7);
-    rotation_.smooth(upper, 3);
+    rotation_.smooth(lower, order_ == MomentOrder::kFirst ? 4 : 7);
+    if (order_ == MomentOrder::kSecond) rotation_.smooth(upper, 3);
     translation_.smooth(translation, 1);
     std::vector<PointMoments> result;
     for (Index v = 0; v < surface_.vertexCount(); ++v) {
@@ -181,55 +187,87 @@ class MomentTable {
     for (JointPart& part : parts) part.moments += part.moments.weight / kept.weight * missing;
   }
 
-  void addRow(Index vertex, std::vector<JointPart>& parts, PointMoments whole, PointMoments bound,
-              DirectDeltaMushRows& rows) const {
-    constexpr double kRounding = 1e-6;
-    std::stable_sort(parts.begin(), parts.end(),
-                     [](const JointPart& a, const JointPart& b) { return a.moments.weight > b.moments.weight; });
-    if (std::abs(bound.weight - 1) < kRounding) bound = whole, bound.weight = 1;
-    completeParts(parts, bound);
-    const double round =
-        kRoundness / 3 * whole.second.trace() + kLeastRoundness * surface_.longestSide * surface_.longestSide;
-    for (JointPart& part : parts) {
-      part.moments.second.diagonal().array() += round * part.moments.weight;
-      rows.joints.push_back(part.joint);
-      addMatrix(part.moments, rows.moments);
+  std::vector<std::vector<JointPart>> partsOfVertices() const {
+    std::vector<std::vector<JointPart>> ofJoint(boundTo_.size());
+    parallelFor(boundTo_.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t joint = begin; joint < end; ++joint) {
+        if (!boundTo_[joint].empty()) ofJoint[joint] = partsOf(static_cast<Index>(joint));
+      }
+    });
+    std::vector<std::vector<JointPart>> ofVertex(surface_.vertexCount());
+    for (std::vector<JointPart>& parts : ofJoint) {
+      for (const JointPart& part : parts) ofVertex[part.vertex].push_back(part);
+      parts = {};
     }
-    rows.begin.push_back(static_cast<Index>(rows.joints.size()));
-    whole.second.diagonal().array() += round;
-    addBase(whole.second, places_[vertex], rows.bases);
-  }
-
-  static void addMatrix(const PointMoments& m, std::vector<float>& to) {
-    for (int row = 0; row < 3; ++row) {
-      for (int column = 0; column < 3; ++column) to.push_back(static_cast<float>(m.second(row, column)));
-      to.push_back(static_cast<float>(m.first[row]));
-    }
-    for (int column = 0; column < 3; ++column) to.push_back(static_cast<float>(m.first[column]));
-    to.push_back(static_cast<float>(m.weight));
-  }
-
-  static void addBase(const Mat3& second, const Vec3& place, std::vector<float>& to) {
-    for (int column = 0; column < 3; ++column) {
-      for (int row = 0; row < 3; ++row) to.push_back(static_cast<float>(second(row, column)));
-      to.push_back(0);
-    }
-    for (int i = 0; i < 3; ++i) to.push_back(static_cast<float>(place[i]));
-    to.push_back(static_cast<float>(1 / second.trace()));
+    return ofVertex;
   }
 
   const SmoothingSurface& surface_;
   const DirectDeltaMushOptions& options_;
+  MomentOrder order_;
   ImplicitSmoother rotation_, translation_;
   std::vector<std::vector<VertexWeight>> boundTo_;  // by joint
   std::vector<VertexWeight> everything_, bound_;
   std::vector<Vec3> places_;
 };
 
+void addMatrix(const PointMoments& m, std::vector<float>& to) {
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) to.push_back(static_cast<float>(m.second(row, column)));
+    to.push_back(static_cast<float>(m.first[row]));
+  }
+  for (int column = 0; column < 3; ++column) to.push_back(static_cast<float>(m.first[column]));
+  to.push_back(static_cast<float>(m.weight));
+}
+
+void addBase(const Mat3& second, const Vec3& place, std::vector<float>& to) {
+  for (int column = 0; column < 3; ++column) {
+    for (int row = 0; row < 3; ++row) to.push_back(static_cast<float>(second(row, column)));
+    to.push_back(0);
+  }
+  for (int i = 0; i < 3; ++i) to.push_back(static_cast<float>(place[i]));
+  to.push_back(static_cast<float>(1 / second.trace()));
+}
+
+// Four joints from `first` on.
+void addEntry(const std::vector<JointPart>& parts, std::size_t first, const Vec3& place, DirectDeltaMushRows& rows) {
+  const std::size_t begin = rows.moments.size();
+  rows.moments.resize(begin + kFloatsPerMoments, 0.0f);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const bool there = first + i < parts.size();
+    rows.joints.push_back(there ? parts[first + i].joint : parts.front().joint);
+    if (!there) continue;
+    const PointMoments& moments = parts[first + i].moments;
+    const Vec3 sum = moments.first + moments.weight * place;
+    for (std::size_t axis = 0; axis < 3; ++axis) rows.moments[begin + 4 * axis + i] = static_cast<float>(sum[axis]);
+    rows.moments[begin + 12 + i] = static_cast<float>(moments.weight);
+  }
+}
+
+// About the origin: only the linear part of the stretch and the rotation of the motion are used. Whether any stretches.
+bool packJoints(std::span<const Affine> transforms, float* columns, float* stretches, float* motions) {
+  bool stretched = false;
+  for (std::size_t j = 0; j < transforms.size(); ++j) {
+    packColumns(transforms[j], columns + kFloatsPerColumns * j);
+    stretched |=
+        packMotion(transforms[j], Vec3::Zero(), motions + kFloatsPerMotion * j, stretches + kFloatsPerColumns * j);
+  }
+  return stretched;
+}
+
+template <class Rows>
+std::shared_ptr<Rows> emptyRows(const SmoothingSurface& surface, const MomentTable& table) {
+  auto rows = std::make_shared<Rows>();
+  rows->rowOf = surface.weldedVertex;
+  rows->jointCount = table.jointCount();
+  rows->begin.push_back(0);
+  return rows;
+}
+
 void checkOptions(const DirectDeltaMushOptions& options) {
   const bool right = options.rotationReach > 0 && options.translationReach > 0 && options.smoothings > 0 &&
                      options.translationWeight >= 0 && options.translationWeight < 1 && options.leastWeight >= 0 &&
-                     options.leastWeight <= 0.1;
+                     options.leastWeight <= 0.1 && options.mostJoints > 0;
   if (!right) throw Error(ErrorCode::kBadArgument, "an option of direct delta mush is out of its range");
 }
 
@@ -239,15 +277,49 @@ std::shared_ptr<const DirectDeltaMushRows> directDeltaMushRows(const BoundSurfac
                                                                const DirectDeltaMushOptions& options) {
   checkOptions(options);
   const SmoothingSurface smooth = smoothingSurface(surface);
-  return MomentTable(smooth, jointCount, options).rows();
+  const MomentTable table(smooth, jointCount, options, MomentOrder::kFirst);
+  auto rows = emptyRows<DirectDeltaMushRows>(smooth, table);
+  table.forEachRow([&](Index v, const std::vector<JointPart>& parts, const PointMoments&) {
+    const Vec3& place = table.place(v);
+    for (std::size_t first = 0; first < parts.size(); first += 4) addEntry(parts, first, place, *rows);
+    rows->begin.push_back(static_cast<Index>(rows->joints.size() / 4));
+    for (int axis = 0; axis < 3; ++axis) rows->places.push_back(static_cast<float>(place[axis]));
+    rows->places.push_back(0);
+  });
+  return rows;
+}
+
+std::shared_ptr<const FullDirectDeltaMushRows> fullDirectDeltaMushRows(const BoundSurface& surface, Index jointCount,
+                                                                       const DirectDeltaMushOptions& options) {
+  checkOptions(options);
+  const SmoothingSurface smooth = smoothingSurface(surface);
+  const MomentTable table(smooth, jointCount, options, MomentOrder::kSecond);
+  auto rows = emptyRows<FullDirectDeltaMushRows>(smooth, table);
+  table.forEachRow([&](Index v, std::vector<JointPart>& parts, PointMoments whole) {
+    const double round =
+        kRoundness / 3 * whole.second.trace() + kLeastRoundness * smooth.longestSide * smooth.longestSide;
+    for (JointPart& part : parts) {
+      part.moments.second.diagonal().array() += round * part.moments.weight;
+      rows->joints.push_back(part.joint);
+      addMatrix(part.moments, rows->moments);
+    }
+    rows->begin.push_back(static_cast<Index>(rows->joints.size()));
+    whole.second.diagonal().array() += round;
+    addBase(whole.second, table.place(v), rows->bases);
+  });
+  return rows;
 }
 
 std::shared_ptr<const DeformPreparation> prepareDirectDeltaMush(const BoundSurface& surface, Index jointCount) {
   return directDeltaMushRows(surface, jointCount);
 }
 
+std::shared_ptr<const DeformPreparation> prepareFullDirectDeltaMush(const BoundSurface& surface, Index jointCount) {
+  return fullDirectDeltaMushRows(surface, jointCount);
+}
+
 std::size_t directDeltaMushScratch(std::size_t /*vertexCount*/, Index jointCount) {
-  return (kFloatsPerMotion + 3 * kFloatsPerColumns) * jointCount + kScratchAlignment;
+  return (kFloatsPerMotion + 2 * kFloatsPerColumns) * jointCount + kScratchAlignment;
 }
 
 void directDeltaMush(const DeformInput& input, const DeformOutput& output, std::span<float> scratch) {
@@ -257,14 +329,37 @@ void directDeltaMush(const DeformInput& input, const DeformOutput& output, std::
   checkPreparedFor(rows.rowOf.size(), rows.jointCount, input);
   float* columns = alignedScratch(scratch);
   float* stretches = columns + kFloatsPerColumns * jointCount;
+  float* motions = stretches + kFloatsPerColumns * jointCount;
+  const bool stretched = packJoints(input.transforms, columns, stretches, motions);
+
+  DeformJob job = deformJob(input, output);
+  job.columns = columns;
+  job.stretches = stretches;
+  job.motions = motions;
+  job.rowOf = rows.rowOf.data();
+  job.rowBegin = rows.begin.data();
+  job.rowJoints = rows.joints.data();
+  job.rowMoments = rows.moments.data();
+  job.rowPlaces = rows.places.data();
+  runDeformJob(directKernels().direct[job.outNormals != nullptr][stretched], job, input.positions.size());
+}
+
+std::size_t fullDirectDeltaMushScratch(std::size_t /*vertexCount*/, Index jointCount) {
+  return (kFloatsPerMotion + 3 * kFloatsPerColumns) * jointCount + kScratchAlignment;
+}
+
+void fullDirectDeltaMush(const DeformInput& input, const DeformOutput& output, std::span<float> scratch) {
+  const Index jointCount = static_cast<Index>(input.transforms.size());
+  checkDeformCall(input, output, scratch.size(), fullDirectDeltaMushScratch(input.positions.size(), jointCount));
+  const auto& rows = preparationOf<FullDirectDeltaMushRows>(input);
+  checkPreparedFor(rows.rowOf.size(), rows.jointCount, input);
+  float* columns = alignedScratch(scratch);
+  float* stretches = columns + kFloatsPerColumns * jointCount;
   float* turns = stretches + kFloatsPerColumns * jointCount;
   float* motions = turns + kFloatsPerColumns * jointCount;
-  bool stretched = false;
+  const bool stretched = packJoints(input.transforms, columns, stretches, motions);
   for (Index j = 0; j < jointCount; ++j) {
-    packColumns(input.transforms[j], columns + kFloatsPerColumns * j);
-    // About the origin: only the linear part of the stretch and the rotation of the motion are used.
-    float* motion = motions + kFloatsPerMotion * j;
-    stretched |= packMotion(input.transforms[j], Vec3::Zero(), motion, stretches + kFloatsPerColumns * j);
+    const float* motion = motions + kFloatsPerMotion * j;
     const Quat rotation(motion[3], motion[0], motion[1], motion[2]);
     packColumns(Affine(rotation.normalized()), turns + kFloatsPerColumns * j);
   }
@@ -279,7 +374,7 @@ void directDeltaMush(const DeformInput& input, const DeformOutput& output, std::
   job.rowJoints = rows.joints.data();
   job.rowMoments = rows.moments.data();
   job.rowBases = rows.bases.data();
-  runDeformJob(directKernels().direct[job.outNormals != nullptr][stretched], job, input.positions.size());
+  runDeformJob(baselineFullDirectKernels().direct[job.outNormals != nullptr][stretched], job, input.positions.size());
 }
 
 }  // namespace limber

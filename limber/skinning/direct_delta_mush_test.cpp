@@ -26,6 +26,11 @@ std::vector<Vec3f> directly(const BoundMesh& bound, const DirectDeltaMushOptions
                         directDeltaMushRows(bound.surface(), bound.jointCount(), options).get());
 }
 
+std::vector<Vec3f> inFull(const BoundMesh& bound, const DirectDeltaMushOptions& options) {
+  return bound.deformed(kFullDirectDeltaMush,
+                        fullDirectDeltaMushRows(bound.surface(), bound.jointCount(), options).get());
+}
+
 using Dense = Eigen::MatrixXd;
 
 // (I + lambda L)^-p with L the normalised Laplacian, lambda as the reach asks for.
@@ -53,8 +58,18 @@ Dense denseSmoothing(const BoundMesh& bound, double reach, int times) {
   return result;
 }
 
-// Equations 14 to 18: Omega = (1 - alpha) Psi + alpha w' [p; 1] [p; 1]^T, [Q q; p 1] = sum of M Omega, R = U V^T.
-std::vector<Vec3> byThePaper(const BoundMesh& bound, const DirectDeltaMushOptions& options) {
+enum class RotationBy { kFit, kBlendedQuaternions };
+
+Mat3 fittedRotation(const Mat3& moments) {
+  const Eigen::JacobiSVD<Mat3> svd(moments, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Mat3 flip = Mat3::Identity();
+  flip(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
+  return svd.matrixU() * flip * svd.matrixV().transpose();
+}
+
+// Equations 14 to 18: Omega = (1 - alpha) Psi + alpha w' [p; 1] [p; 1]^T, [Q q; p 1] = sum of M Omega, R = U V^T; or
+// R of the quaternions' sum by Omega's last entries.
+std::vector<Vec3> byThePaper(const BoundMesh& bound, const DirectDeltaMushOptions& options, RotationBy by) {
   const Eigen::Index count = bound.mesh.vertexCount();
   const Dense b = denseSmoothing(bound, options.rotationReach, options.smoothings);
   const Dense c = denseSmoothing(bound, options.translationReach, options.smoothings);
@@ -69,19 +84,18 @@ std::vector<Vec3> byThePaper(const BoundMesh& bound, const DirectDeltaMushOption
   std::vector<Vec3> result;
   for (Eigen::Index i = 0; i < count; ++i) {
     Mat4 sum = Mat4::Zero();
+    Vec4 turn = Vec4::Zero();
     for (Index j = 0; j < bound.jointCount(); ++j) {
       Mat4 psi = Mat4::Zero();
       for (Eigen::Index k = 0; k < count; ++k) psi += b(i, k) * w(k, j) * u.row(k).transpose() * u.row(k);
       const Mat4 omega = (1 - options.translationWeight) * psi +
                          options.translationWeight * smoothWeights(i, j) * p.row(i).transpose() * p.row(i);
       sum += bound.transforms[j].matrix() * omega;
+      turn += omega(3, 3) * Quat(bound.transforms[j].linear()).coeffs();
     }
     const Vec3 q = sum.block<3, 1>(0, 3), place = p.row(i).head<3>().transpose();
-    const Eigen::JacobiSVD<Mat3> svd(sum.topLeftCorner<3, 3>() - q * place.transpose(),
-                                     Eigen::ComputeFullU | Eigen::ComputeFullV);
-    Mat3 flip = Mat3::Identity();
-    flip(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
-    const Mat3 rotation = svd.matrixU() * flip * svd.matrixV().transpose();
+    const Mat3 rotation = by == RotationBy::kFit ? fittedRotation(sum.topLeftCorner<3, 3>() - q * place.transpose())
+                                                 : Quat(turn).normalized().toRotationMatrix();
     result.push_back(rotation * (u.row(i).head<3>().transpose() - place) + q);
   }
   return result;
@@ -104,14 +118,67 @@ TEST(DirectDeltaMush, IsThePapersFormula) {
       options.translationWeight = alpha;
       options.smoothings = smoothings;
       options.leastWeight = 0;
-      EXPECT_LT(farthest(directly(bound, options), byThePaper(bound, options)), 1e-4) << alpha << " " << smoothings;
+      EXPECT_LT(farthest(inFull(bound, options), byThePaper(bound, options, RotationBy::kFit)), 1e-4)
+          << alpha << " " << smoothings;
+      EXPECT_LT(farthest(directly(bound, options), byThePaper(bound, options, RotationBy::kBlendedQuaternions)), 1e-5)
+          << alpha << " " << smoothings;
     }
   }
 }
 
 TEST(DirectDeltaMush, SmallWeightsThatAreLeftOutShowLittle) {
   const BoundMesh bound = bentTube(10, 21, 0.2, bendBy(1.4));
-  EXPECT_LT(farthest(bound.deformed("direct-delta-mush"), byThePaper(bound, {})), 3e-3);
+  EXPECT_LT(farthest(inFull(bound, {}), byThePaper(bound, {}, RotationBy::kFit)), 3e-3);
+  EXPECT_LT(farthest(directly(bound, {}), byThePaper(bound, {}, RotationBy::kBlendedQuaternions)), 3e-3);
+}
+
+// Bent and twisted, the tube being 1 long.
+TEST(DirectDeltaMush, IsNearerToTheFullOneThanOtherDeformers) {
+  for (const Vec3& axis : {Vec3(0, 0, 1), Vec3(1, 0, 0), Vec3(1, 1, 0)}) {
+    const BoundMesh bound = bentTube(12, 41, 0, Quat(Eigen::AngleAxisd(1.2, axis.normalized())));
+    std::vector<Vec3> full;
+    for (const Vec3f& v : inFull(bound, {})) full.push_back(v.cast<double>());
+    const double distance = farthest(directly(bound, {}), full);
+    EXPECT_LT(distance, 0.015) << axis.transpose();
+    EXPECT_GT(farthest(bound.deformed("linear-blend"), full), 2 * distance) << axis.transpose();
+    EXPECT_GT(farthest(bound.deformed("dual-quaternion"), full), 2 * distance) << axis.transpose();
+  }
+}
+
+struct RowPart {
+  Index joint = 0;
+  float weight = 0;
+};
+
+std::vector<RowPart> partsOf(const DirectDeltaMushRows& rows, std::size_t row) {
+  std::vector<RowPart> parts;
+  for (std::size_t e = 4 * std::size_t{rows.begin[row]}; e < 4 * std::size_t{rows.begin[row + 1]}; ++e) {
+    const float weight = rows.moments[16 * (e / 4) + 12 + e % 4];
+    if (weight != 0) parts.push_back({rows.joints[e], weight});
+  }
+  return parts;
+}
+
+TEST(DirectDeltaMush, KeepsTheStrongestJoints) {
+  const BoundMesh bound = testing::boundAtRandom(testing::tube(7, 9, true));
+  const auto all = directDeltaMushRows(bound.surface(), bound.jointCount());
+  for (const Index most : {1u, 2u, 3u}) {
+    DirectDeltaMushOptions options;
+    options.mostJoints = most;
+    const auto rows = directDeltaMushRows(bound.surface(), bound.jointCount(), options);
+    ASSERT_EQ(rows->begin.size(), all->begin.size());
+    for (std::size_t r = 0; r + 1 < rows->begin.size(); ++r) {
+      const std::vector<RowPart> parts = partsOf(*rows, r), wanted = partsOf(*all, r);
+      ASSERT_EQ(parts.size(), std::min<std::size_t>(most, wanted.size()));
+      double sum = 0, whole = 0;
+      for (std::size_t i = 0; i < parts.size(); ++i) {
+        EXPECT_EQ(parts[i].joint, wanted[i].joint) << r;
+        sum += static_cast<double>(parts[i].weight);
+      }
+      for (const RowPart& part : wanted) whole += static_cast<double>(part.weight);
+      EXPECT_NEAR(sum, whole, 1e-6) << r;
+    }
+  }
 }
 
 TEST(DirectDeltaMush, FarFromTheJointIsRigid) {
@@ -134,7 +201,7 @@ TEST(DirectDeltaMush, EveryBuildOfTheInnerLoopGivesTheSameBits) {
   const auto rows = directDeltaMushRows(bound.surface(), bound.jointCount());
   const std::size_t count = bound.mesh.positions.size();
   Random random(5);
-  std::vector<float> maps(3 * kFloatsPerColumns * bound.jointCount()), motions(kFloatsPerMotion * bound.jointCount());
+  std::vector<float> maps(2 * kFloatsPerColumns * bound.jointCount()), motions(kFloatsPerMotion * bound.jointCount());
   for (float& x : maps) x = static_cast<float>(random.uniform(-1, 1));
   for (float& x : motions) x = static_cast<float>(random.uniform(-1, 1));
   const auto bits = [&](const DirectKernels& kernels, bool normals, bool scales) {
@@ -146,31 +213,33 @@ TEST(DirectDeltaMush, EveryBuildOfTheInnerLoopGivesTheSameBits) {
     job.outNormals = normals ? out.data() + 3 * count : nullptr;
     job.columns = maps.data();
     job.stretches = maps.data() + kFloatsPerColumns * bound.jointCount();
-    job.turns = maps.data() + 2 * kFloatsPerColumns * bound.jointCount();
     job.motions = motions.data();
     job.rowOf = rows->rowOf.data();
     job.rowBegin = rows->begin.data();
     job.rowJoints = rows->joints.data();
     job.rowMoments = rows->moments.data();
-    job.rowBases = rows->bases.data();
+    job.rowPlaces = rows->places.data();
     kernels.direct[normals][scales](job, 0, count);
     return out;
   };
   for (const bool normals : {false, true}) {
     for (const bool scales : {false, true}) {
-      EXPECT_EQ(bits(*avx2DirectKernels(), normals, scales), bits(baselineDirectKernels(), normals, scales))
-          << normals << scales;
+      const std::vector<float> plain = bits(baselineDirectKernels(), normals, scales);
+      EXPECT_EQ(bits(*avx2DirectKernels(), normals, scales), plain) << normals << scales;
+      if (!avx512DirectKernels()) continue;
+      EXPECT_EQ(bits(*avx512DirectKernels(), normals, scales), plain) << normals << scales;
     }
   }
 }
 
 TEST(DirectDeltaMush, RefusesOptionsOutOfRange) {
   const BoundMesh bound = bentTube(6, 5, 0.2, bendBy(1));
-  DirectDeltaMushOptions alpha, reach, times;
+  DirectDeltaMushOptions alpha, reach, times, joints;
   alpha.translationWeight = 1;
   reach.rotationReach = 0;
   times.smoothings = 0;
-  for (const DirectDeltaMushOptions& wrong : {alpha, reach, times}) {
+  joints.mostJoints = 0;
+  for (const DirectDeltaMushOptions& wrong : {alpha, reach, times, joints}) {
     EXPECT_THROW(directDeltaMushRows(bound.surface(), 2, wrong), Error);
   }
 }
