@@ -15,7 +15,9 @@ struct DirectDeltaMushOptions {
   double rotationReach = 0.08, translationReach = 0.046;
   double translationWeight = 0.8;  // alpha of the paper, in [0, 1): 0 smooths as delta mush does, which shrinks bends
   int smoothings = 2;              // p; more make the reach end sooner
-  double leastWeight = 1.0 / 256;  // of a joint's share in a vertex; less is given to the others
+  // Of a joint's share in a vertex; less is given to the others. On people the mean distance of directDeltaMush from
+  // the full one grows by 4 to 7 % with 1 / 96 against 1 / 256, by 12 to 21 % with 1 / 48.
+  double leastWeight = 1.0 / 64;
   // Of a vertex, the strongest; what the rest had is given to them. Not in full. With 8 the mean distance from the full
   // one is at most 4 % above that with all joints, with 6 20 %, with 4 75 % (a person of 163 joints).
   Index mostJoints = 8;
