@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -22,6 +23,7 @@ namespace {
 
 constexpr double kCoarseNodes = 5e3;     // of the grid that the first descent is on
 constexpr double kCoarseTolerance = 10;  // times the tolerance, on it
+constexpr double kCoarseEnough = 0.7;    // of the resolution of the grid that the last descent is on
 constexpr double kSurely = 0.2;          // of the way to other bones: from there on weights begin at 1
 constexpr Index kJointsAtOnce = 16;      // between looks at whether to go on
 
@@ -175,10 +177,11 @@ LatticeWeights solveJoints(const Level& level, double tolerance, Progress& progr
   return result;
 }
 
-// A resolution at which about as many cells are inside as are asked for, told from those of a coarser one.
-Index resolutionFor(double cells, Index most, Index coarse, const InsideLattice& lattice) {
-  const double finer = std::cbrt(cells / std::max<Index>(1, lattice.cellCount()));
-  return static_cast<Index>(std::clamp<double>(coarse * finer, InsideLattice::kLeastCells, most));
+// A resolution at which about as many cells are inside as are asked for, told from those of another one. Seldom more:
+// finer ones of a body, and coarser ones of a sheet, have as many; others fewer.
+Index resolutionFor(double cells, Index most, Index other, Index otherCells) {
+  const double ratio = cells / std::max<Index>(1, otherCells), finer = ratio > 1 ? std::cbrt(ratio) : std::sqrt(ratio);
+  return static_cast<Index>(std::clamp<double>(other * finer, InsideLattice::kLeastCells, most));
 }
 
 // Weights that are not above the least count as none.
@@ -225,19 +228,23 @@ WeightResult boundedBiharmonicWeightsWith(const BoundedBiharmonicOptions& biharm
 
   progress.step("lattice");
   const InsideQueries queries(mesh);
-  const Index resolution = cellsForNodes(mesh, kCoarseNodes, InsideLattice::kLeastCells, biharmonic.mostCells);
-  const Level coarse(mesh, queries, bones, resolution);
-  const Level fine(mesh, queries, bones,
-                   resolutionFor(biharmonic.cells, biharmonic.mostCells, resolution, coarse.lattice));
+  const Index first = cellsForNodes(mesh, kCoarseNodes, InsideLattice::kLeastCells, biharmonic.mostCells);
+  auto coarse = std::make_unique<Level>(mesh, queries, bones, first);
+  const Index cells = coarse->graph.nodeCount(),
+              resolution = resolutionFor(biharmonic.cells, biharmonic.mostCells, first, cells);
+  const Level fine(mesh, queries, bones, resolution);
+  if (first > kCoarseEnough * resolution) {
+    coarse = std::make_unique<Level>(mesh, queries, bones, std::max(InsideLattice::kLeastCells, resolution / 2));
+  }
 
   progress.step("smoothest weights");
-  const LatticeWeights first = solveJoints(coarse, kCoarseTolerance * biharmonic.tolerance, progress,
-                                           [&](std::size_t joint) { return weightsByWays(coarse, joint); });
+  const LatticeWeights begin = solveJoints(*coarse, kCoarseTolerance * biharmonic.tolerance, progress,
+                                           [&](std::size_t joint) { return weightsByWays(*coarse, joint); });
   const std::vector<bool> reached = reachedCells(fine);
   const LatticeWeights weights = solveJoints(fine, biharmonic.tolerance, progress, [&](std::size_t joint) {
-    const auto column = std::lower_bound(first.joints.begin(), first.joints.end(), fine.cells.joints[joint]);
-    if (column == first.joints.end() || *column != fine.cells.joints[joint]) return weightsByWays(fine, joint);
-    return interpolated(fine, joint, reached, coarse, first, static_cast<std::size_t>(column - first.joints.begin()));
+    const auto column = std::lower_bound(begin.joints.begin(), begin.joints.end(), fine.cells.joints[joint]);
+    if (column == begin.joints.end() || *column != fine.cells.joints[joint]) return weightsByWays(fine, joint);
+    return interpolated(fine, joint, reached, *coarse, begin, static_cast<std::size_t>(column - begin.joints.begin()));
   });
 
   progress.step("weights");

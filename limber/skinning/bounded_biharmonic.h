@@ -26,7 +26,7 @@ struct BoundedBiharmonicOptions {
 // geodesicVoxelWeights (WeightResult::bridged, `no-bone-in-sight`).
 //
 // mesh, bones  as for all methods
-// Errors as checkWeightArguments, kCancelled. Cost: two lattices, and some hundred to some thousand steps over the
+// Errors as checkWeightArguments, kCancelled. Cost: two lattices (three of sheets), and some hundred steps over the
 // cells where each joint's weights are neither 0 nor 1, joints in parallel; 4 bytes for each cell and joint.
 WeightResult boundedBiharmonicWeights(const TriMesh& mesh, std::span<const Bone> bones, const WeightOptions& options,
                                       Progress& progress);

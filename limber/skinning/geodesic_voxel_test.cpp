@@ -47,7 +47,7 @@ double chamferWay(const Vec3& between) {
 TEST(GeodesicVoxel, WaysInAConvexBodyAreStraight) {
   const TriMesh ball = testing::moved(testing::icosphere(3), Vec3f::Constant(0.5f), Vec3f::Zero());
   const std::array<Vec3, 2> at = {Vec3(-0.25, 0, 0), Vec3(0.2, 0.1, 0)};
-  for (const double falloff : {0.0, 0.5, 1.0}) {
+  for (const double falloff : {0.0, 1.0}) {
     const SkinWeights weights = voxelWeightsOf(ball, {point(0, at[0]), point(1, at[1])}, falloff).weights;
     for (Index v = 0; v < ball.vertexCount(); ++v) {
       std::array<double, 2> pull;

@@ -4,11 +4,18 @@
 #include <cmath>
 #include <limits>
 
+#include <Eigen/SparseCore>
+
+#include "limber/mesh/sparse_cholesky.h"
+
 namespace limber {
 
 namespace {
 
+// Conjugate gradients alone need steps by the square of a sheet's width: 9,000 for one of 40 x 40 x 2 from nothing.
+
 constexpr Index kRound = 64;        // steps between looks at how much has changed
+constexpr Index kPatience = 4;      // rounds, from which on each begins with the minimum of all that is free
 constexpr int kReach = 6;           // edges that a window reaches beyond what may change
 constexpr double kNoPull = 1e-5;    // gradients that let no node go from its bound
 constexpr int kMostWindows = 8;     // the last ones add next to nothing
@@ -33,8 +40,8 @@ class WindowProblem {
   WindowProblem(const LatticeGraph& graph, const std::vector<Index>& window, std::span<const double> w,
                 const std::vector<double>& gradient, std::vector<Index>& localOf);
 
-  // Descends until nothing changes much. Returns the steps taken.
-  Index descend(double tolerance, Index most);
+  // Descends until nothing changes much, or there are `most` steps with those before it. Returns how many there are.
+  Index descend(double tolerance, Index steps, Index most);
   void write(std::span<double> w) const {
     for (std::size_t i = 0; i < nodes_.size(); ++i) w[nodes_[i]] = x_[i];
   }
@@ -50,10 +57,15 @@ class WindowProblem {
     return x_[i] <= 0 ? std::min(g, 0.0) : x_[i] >= 1 ? std::max(g, 0.0) : 0;
   }
   void applyToDirection();
+  Eigen::SparseMatrix<double> freeEnergy(const std::vector<Index>& free, const std::vector<Index>& freeOf) const;
+  void minimizeFree();
+  bool keepIfBelow(const std::vector<double>& x, const std::vector<double>& gradient);
+  Index descendRound(Index most);
   void look();
   bool staysWithin(double step) const;
   double longestStep() const;
   void move(double step);
+  void moveWithin();
   void expand();
   double changeSince(const std::vector<double>& before) const;
 
@@ -68,6 +80,7 @@ class WindowProblem {
   double curvature_ = 0, slope_ = 0;  // direction^T L L direction, and its product with the gradient
   double reduced_ = 0, leaving_ = 0;  // squares of the gradient: between the bounds, as far as a fixed step along it
                                       // would stay within them; and of the nodes that leave their bounds
+  bool conjugate_ = false;            // whether the direction, and its image, is that of the last step of a descent
   double fixedStep_ = 0;              // of scaled gradients: always descends
 };
 
@@ -164,15 +177,95 @@ void WindowProblem::move(double step) {
   }
 }
 
-// A step of fixed length along the projected gradient of the nodes between the bounds.
-void WindowProblem::expand() {
+// Against the direction, each value as far as it stays within bounds.
+void WindowProblem::moveWithin() {
   for (std::size_t i = 0; i < x_.size(); ++i) {
-    const double moved = std::clamp(x_[i] - fixedStep_ * between(i), 0.0, 1.0);
+    const double moved = std::clamp(x_[i] - direction_[i], 0.0, 1.0);
     direction_[i] = x_[i] - moved;
     x_[i] = moved;
   }
   applyToDirection();
   for (std::size_t i = 0; i < x_.size(); ++i) gradient_[i] -= image_[i];
+}
+
+// A step of fixed length along the projected gradient of the nodes between the bounds.
+void WindowProblem::expand() {
+  for (std::size_t i = 0; i < x_.size(); ++i) direction_[i] = fixedStep_ * between(i);
+  moveWithin();
+}
+
+// The lower triangle of L L between some nodes.
+//   freeOf  by node of the window and its neighbors, and one more: which of `free` it is, kNoIndex where it is none
+Eigen::SparseMatrix<double> WindowProblem::freeEnergy(const std::vector<Index>& free,
+                                                      const std::vector<Index>& freeOf) const {
+  const auto count = static_cast<int>(free.size());
+  Eigen::SparseMatrix<double> lower(count, count);
+  lower.reserve(free.size() * 13);  // of 25 entries a row
+  std::vector<double> sums(free.size());
+  std::vector<int> lastColumn(free.size(), -1);
+  std::vector<Index> rows;
+  for (int column = 0; column < count; ++column) {
+    const Index node = free[column];
+    const auto add = [&](Index to, double entry) {
+      const Index row = freeOf[to];
+      if (row == kNoIndex || row < static_cast<Index>(column)) return;
+      if (lastColumn[row] != column) {
+        lastColumn[row] = column;
+        rows.push_back(row);
+        sums[row] = 0;
+      }
+      sums[row] += entry;
+    };
+    const auto addColumn = [&](Index of, double factor) {
+      add(of, factor * degree_[of]);
+      for (const Index next : neighbors_[of]) add(next, -factor);
+    };
+    rows.clear();
+    addColumn(node, degree_[node]);
+    for (const Index next : neighbors_[node]) {
+      if (next < neighbors_.size()) addColumn(next, -1);
+    }
+    std::sort(rows.begin(), rows.end());
+    lower.startVec(column);
+    for (const Index row : rows) lower.insertBack(static_cast<int>(row), column) = sums[row];
+  }
+  lower.finalize();
+  return lower;
+}
+
+// Takes all that is free to where they are best if no bound is met on the way, and back within bounds.
+void WindowProblem::minimizeFree() {
+  std::vector<Index> free, freeOf(direction_.size(), kNoIndex);
+  for (Index i = 0; i < x_.size(); ++i) {
+    if (x_[i] <= 0 ? gradient_[i] > -kNoPull : x_[i] >= 1 && gradient_[i] < kNoPull) continue;
+    freeOf[i] = static_cast<Index>(free.size());
+    free.push_back(i);
+  }
+  if (free.empty()) return;
+  const Eigen::SparseMatrix<double> energy = freeEnergy(free, freeOf);
+  SparseCholesky cholesky(energy);
+  cholesky.factorize(energy);
+  std::vector<double> solution(free.size() * SparseCholesky::kColumns, 0);
+  const auto at = [&](Index i) -> double& {
+    return solution[cholesky.place(i) * std::size_t{SparseCholesky::kColumns}];
+  };
+  for (Index i = 0; i < free.size(); ++i) at(i) = gradient_[free[i]];
+  cholesky.solve(solution.data(), 1);
+  std::fill(direction_.begin(), direction_.end(), 0.0);
+  for (Index i = 0; i < free.size(); ++i) direction_[free[i]] = at(i);
+  moveWithin();
+  conjugate_ = false;
+}
+
+// Goes back to other values, whose gradient is given, unless these have less energy.
+bool WindowProblem::keepIfBelow(const std::vector<double>& x, const std::vector<double>& gradient) {
+  Sum difference;
+  for (std::size_t i = 0; i < x_.size(); ++i) difference.add(i, (x_[i] - x[i]) * (gradient_[i] + gradient[i]));
+  if (difference.total() < 0) return true;
+  x_ = x;
+  gradient_ = gradient;
+  conjugate_ = false;
+  return false;
 }
 
 double WindowProblem::changeSince(const std::vector<double>& before) const {
@@ -181,19 +274,14 @@ double WindowProblem::changeSince(const std::vector<double>& before) const {
   return most;
 }
 
-Index WindowProblem::descend(double tolerance, Index most) {
-  std::vector<double> before = x_;
-  bool conjugate = false;  // whether the direction, and its image, is the last step's
+// Up to `most` steps of MPRGP, fewer where there is nothing left to do. Returns how many.
+Index WindowProblem::descendRound(Index most) {
   look();
   for (Index step = 0; step < most; ++step) {
-    if (step > 0 && step % kRound == 0) {
-      if (changeSince(before) < tolerance) return step;
-      before = x_;
-    }
     if (!(reduced_ + leaving_ > 0)) return step;
     const bool release = leaving_ > reduced_;
     double back = 0;
-    if (conjugate && !release) {
+    if (conjugate_ && !release) {
       Sum along;
       for (std::size_t i = 0; i < x_.size(); ++i) along.add(i, between(i) * image_[i]);
       back = along.total() / curvature_;
@@ -204,14 +292,30 @@ Index WindowProblem::descend(double tolerance, Index most) {
     applyToDirection();
     if (!(curvature_ > 0)) return step;
     const double wanted = slope_ / curvature_;
-    conjugate = !release && staysWithin(wanted);
-    if (conjugate || (release && staysWithin(wanted))) {
+    conjugate_ = !release && staysWithin(wanted);
+    if (conjugate_ || (release && staysWithin(wanted))) {
       move(wanted);
     } else {
       move(std::min(wanted, longestStep()));
       expand();
     }
     look();
+  }
+  return most;
+}
+
+Index WindowProblem::descend(double tolerance, Index steps, Index most) {
+  std::vector<double> before, gradientBefore;
+  bool leaps = true;  // unless the last leap led nowhere
+  while (steps < most) {
+    before = x_;
+    gradientBefore = gradient_;
+    const bool leap = leaps && steps >= kPatience * kRound;
+    if (leap) minimizeFree();
+    const Index round = std::min(kRound, most - steps), taken = descendRound(round);
+    steps += taken;
+    if (taken < round || changeSince(before) < tolerance) return steps;
+    leaps = !leap || keepIfBelow(before, gradientBefore);
   }
   return most;
 }
@@ -276,7 +380,7 @@ Index minimizeBoundedBiharmonic(const LatticeGraph& graph, const std::vector<boo
     if (!isNew) break;
     const std::vector<Index> window = widened(graph, held, pulled, inWindow);
     WindowProblem problem(graph, window, w, gradient, localOf);
-    steps += problem.descend(options.tolerance, options.mostIterations - steps);
+    steps = problem.descend(options.tolerance, steps, options.mostIterations);
     problem.write(w);
   }
   return steps;

@@ -33,8 +33,11 @@ struct BiharmonicOptions {
 //
 // MPRGP (Dostál, Schöberl 2005): conjugate gradients on the nodes between the bounds, and steps along the projected
 // gradient that let nodes go or bring them to their bounds; it descends to the one minimum from anywhere. Values are
-// scaled by the diagonal. It works within a few steps of where values are neither 0 nor 1, and widens that as needed.
-// Returns the steps taken. Cost: O(nodes between the bounds) a step.
+// scaled by the diagonal. After 256 steps each round begins with Newton's step of all free nodes, projected onto the
+// bounds (Bertsekas 1982), which a Cholesky factor gives: then steps grow by a sheet's width at most, not by its
+// square. What a round leaves is kept only if it has less energy. It works within a few steps of where values are
+// neither 0 nor 1, and widens that as needed. Returns the steps taken. Cost: O(nodes between the bounds) a step, and a
+// factor of these for each round that begins with one.
 Index minimizeBoundedBiharmonic(const LatticeGraph& graph, const std::vector<bool>& held, std::span<double> w,
                                 const BiharmonicOptions& options = {});
 

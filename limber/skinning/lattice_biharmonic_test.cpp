@@ -135,6 +135,32 @@ TEST(LatticeBiharmonic, EndsNearTheMinimumWithItsOwnTolerance) {
   for (Index i = 0; i < graph.nodeCount(); ++i) EXPECT_NEAR(w[i], tight[i], 4e-3) << i;
 }
 
+// A sheet whose edge belongs half to one joint and half to others, from nothing.
+Index stepsOfSheet(int width, std::vector<double>& w, const BiharmonicOptions& options) {
+  const LatticeGraph graph = boxGraph(width, width, 2);
+  std::vector<bool> held(graph.nodeCount(), false);
+  w.assign(graph.nodeCount(), 0);
+  for (int i = 0; i < width; ++i) {
+    held[i * width] = i > width / 2;
+    held[i] = i < width / 4;
+    if (held[i]) w[i] = 1;
+  }
+  return minimizeBoundedBiharmonic(graph, held, w, options);
+}
+
+// Conjugate gradients alone need steps by the square of the width.
+TEST(LatticeBiharmonic, StepsGrowNoFasterThanASheetsWidth) {
+  std::vector<double> w;
+  const Index narrow = stepsOfSheet(12, w, {});
+  const Index wide = stepsOfSheet(48, w, {});
+  EXPECT_LT(wide, 4 * narrow);
+  RecordProperty("narrow", static_cast<int>(narrow));
+  RecordProperty("wide", static_cast<int>(wide));
+  std::vector<double> tight;
+  stepsOfSheet(48, tight, kTight);
+  for (std::size_t i = 0; i < w.size(); ++i) ASSERT_NEAR(w[i], tight[i], 1e-3) << i;
+}
+
 TEST(LatticeBiharmonic, LeavesWhatNothingHoldsAsItIs) {
   const LatticeGraph graph = boxGraph(3, 3, 3);
   std::vector<double> w(27, 0);
