@@ -1,14 +1,18 @@
 // limber transfer: somebody's rig on another model.
 #include <algorithm>
+#include <filesystem>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "archive.h"
 #include "command.h"
 #include "limber/asset/json_text.h"
 #include "limber/asset/read.h"
 #include "limber/asset/write.h"
 #include "limber/core/counted.h"
+#include "limber/core/names.h"
+#include "limber/pipeline/smpl_body.h"
 #include "limber/pipeline/transfer_asset.h"
 #include "progress_line.h"
 
@@ -67,6 +71,11 @@ void printAccount(const TransferArguments& options, const TransferReport& report
   if (options.output != "-") account.line(fmt::format("written: {}", options.output));
 }
 
+Asset readSource(const std::filesystem::path& path) {
+  const std::string name = path.filename().string();
+  return lowerExtension(name) == ".npz" ? smplBody(readArchive(readFile(path), name), name) : readAsset(path);
+}
+
 void runTransferCommand(TransferArguments options) {
   options.common.apply();
   checkOutput(options.output, {".glb", ".gltf"});
@@ -75,9 +84,10 @@ void runTransferCommand(TransferArguments options) {
   options.transfer.ownSkeleton = !options.ignoreRig;
   TerminalProgress progress(options.common.quiet);
   progress->stage("read");
-  const Asset source = readAsset(options.source);
+  const Asset source = readSource(options.source);
   Asset target = readAsset(options.target);
-  const TransferReport report = transferOnto(source, target, options.transfer, *progress);
+  TransferReport report = transferOnto(source, target, options.transfer, *progress);
+  report.warnings.append(source.warnings);
   if (options.strict) refuseWarnings(report.warnings);
   const std::string text = reportText(options, report);
   std::vector<OutputFile> companions;
@@ -92,7 +102,9 @@ void runTransferCommand(TransferArguments options) {
 void addTransferCommand(CLI::App& program) {
   auto options = std::make_shared<TransferArguments>();
   CLI::App* command = program.add_subcommand("transfer", "Put the rig of one model onto another model");
-  command->add_option("SOURCE", options->source, "the model whose joints, weights and blend shapes are taken")
+  command
+      ->add_option("SOURCE", options->source,
+                   "the model whose joints, weights and blend shapes are taken; or a body in SMPL's layout, .npz")
       ->required();
   command->add_option("TARGET", options->target, "the model that gets them: a scan, a sculpture, another character")
       ->required();
