@@ -34,11 +34,13 @@ struct AlignedBody {
   TriMesh surface;
 };
 
-// What lies nearer by less than this part says little: surfaces that do not match each other are near by chance.
-constexpr double kClearlyNearer = 0.8;
+// Part of the longest side. Bodies that stand alike lie this near to each other when one is moved as a whole; others may
+// be nearer so by chance. Over `tune`, pairs that a whole move lays nearer than limbs do lie up to 0.034 apart where it
+// is right, and from 0.049 on where it mostly is wrong (surfacesApart tells up to 0.1).
+constexpr double kStandAlike = 0.04;
 
-// By its limbs, or as a whole where it then lies clearly nearer to the target: bodies that stand alike do, and the
-// limbs of a target that was read wrong do not matter to them.
+// By its limbs; or as a whole where it then lies nearer to the target and both stand alike, so that the limbs of a
+// target that was read wrong do not matter.
 AlignedBody alignBody(const RiggedBody& source, const TriMesh& surface, std::span<const Affine> globals,
                       std::span<const JointLandmark> landmarks, const TriMesh& target, const Vec3& up) {
   std::vector<LimbAlignment> candidates = {alignLimbs(source.skeleton, globals, landmarks)};
@@ -52,8 +54,8 @@ AlignedBody alignBody(const RiggedBody& source, const TriMesh& surface, std::spa
     TriMesh aligned = surface;
     aligned.positions = alignedSurface(source.mesh.positions, source.weights, candidate);
     const double apart = surfacesApart(aligned, target);
-    if (best && !(apart < least)) continue;
-    least = best ? apart : kClearlyNearer * apart;
+    if (best && !(apart < std::min(least, kStandAlike))) continue;
+    least = apart;
     best = {std::move(candidate), std::move(aligned)};
   }
   return std::move(*best);
