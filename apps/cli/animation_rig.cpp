@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-ObjSeries readFrames(const AnimationRigArguments& arguments) {
+ObjSeries readFrames(const AnimationRigArguments& arguments, Progress& progress) {
   std::vector<fs::path> files(arguments.frames.begin(), arguments.frames.end());
   if (files.size() == 1 && fs::is_directory(files.front())) files = objFilesIn(files.front());
   const bool isSeries = files.size() > 1 || lowerExtension(files.front()) == ".obj";
@@ -32,17 +32,18 @@ ObjSeries readFrames(const AnimationRigArguments& arguments) {
   }
   if (isSeries) {
     if (!arguments.clip.empty()) throw CLI::ValidationError("--clip", "OBJ files are one clip");
-    return readObjSeries(files, arguments.fps.value_or(30));
+    return readObjSeries(files, arguments.fps.value_or(30), progress);
   }
   ObjSeries result;
   result.asset = readAsset(files.front());
-  result.animation = readVertexAnimation(result.asset, {arguments.clip, arguments.fps});
+  result.animation = readVertexAnimation(result.asset, {arguments.clip, arguments.fps}, progress);
   return result;
 }
 
 void printAnimationRig(const Account& account, const AnimationRigReport& report, const std::string& output) {
-  account.line(fmt::format("{} that move in {} ways, {} of {}", counted(report.sourceVertices, "vertex", "vertices"),
-                           report.points, counted(report.frames, "frame"), counted(report.clips, "clip")));
+  account.line(fmt::format("{}, {}, {} of {}", counted(report.sourceVertices, "vertex", "vertices"),
+                           counted(report.points, "distinct trajectory", "distinct trajectories"),
+                           counted(report.frames, "frame"), counted(report.clips, "clip")));
   for (const StageTime& stage : report.stages) account.line(fmt::format("{:<12}{:>9.3f} s", stage.name, stage.seconds));
   account.line(fmt::format("{}, at most {} a vertex; root mean square error {:.4f} % of the diagonal",
                            counted(report.joints, "bone"), report.maxInfluences, 100 * report.error));
@@ -69,7 +70,7 @@ CLI::Option* addAnimationRigOptions(CLI::App& command, AnimationRigArguments& ar
       ->type_name("N");
   command
       .add_option("--fps", arguments.fps,
-                  "with --from-animation: frames a second (default: that of the keys; of OBJ files 30)")
+                  "with --from-animation: frames a second (default: that of each clip's keys; of OBJ files 30)")
       ->needs(from)
       ->check(numberIn(0.01, 10000))
       ->type_name("RATE");
@@ -82,7 +83,7 @@ void runAnimationRig(const AnimationRigArguments& arguments, const AnimationRigO
   checkBeside("--json", output.report, others);
   TerminalProgress progress(common.quiet);
   progress->stage("read");
-  ObjSeries model = readFrames(arguments);
+  ObjSeries model = readFrames(arguments, *progress);
   DecompositionOptions options;
   options.bones = arguments.bones;
   options.maxInfluences = output.maxInfluences;

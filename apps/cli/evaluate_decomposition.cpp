@@ -18,13 +18,13 @@ struct DecompositionArguments {
 };
 
 void decomposeClip(const Asset& asset, const std::string& clip, Index bones, DecompositionRow& row) {
-  VertexAnimation animation = readVertexAnimation(asset, {clip, std::nullopt});
+  Progress unheard;
+  VertexAnimation animation = readVertexAnimation(asset, {clip, std::nullopt}, unheard);
   row.points = animation.sequence.pointCount();
   row.frames = animation.sequence.frameCount();
   const std::vector<Vec3f> rest = animation.sequence.rest;
   DecompositionOptions options;
   options.bones = bones;
-  Progress unheard;
   const double start = secondsNow();
   const Decomposition found = decomposeSkin(std::move(animation.sequence), options, unheard);
   row.bones = skeletonOfBones(rest, found).skeleton.jointCount();

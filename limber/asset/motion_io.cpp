@@ -8,6 +8,7 @@
 
 #include "limber/asset/accessor.h"
 #include "limber/asset/clip_io.h"
+#include "limber/asset/clip_name.h"
 #include "limber/asset/node_edit.h"
 #include "limber/asset/scene_graph.h"
 #include "limber/asset/unique_names.h"
@@ -93,11 +94,6 @@ Index addJointNodes(Asset& asset, const Motion& motion) {
   return static_cast<Index>(nodes.size() - 1);
 }
 
-// "Walk" of the exporters' "Armature|Walk".
-std::string_view ownName(std::string_view clip) {
-  return clip.substr(clip.rfind('|') + 1);
-}
-
 }  // namespace
 
 Clip findClip(const Asset& asset, std::string_view name) {
@@ -106,13 +102,7 @@ Clip findClip(const Asset& asset, std::string_view name) {
   if (name.empty()) return clips.empty() ? Clip() : std::move(clips.front());
   std::vector<std::string> names;
   for (const Clip& clip : clips) names.push_back(clip.name);
-  auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) {
-    found = std::find_if(names.begin(), names.end(), [&](const std::string& own) { return ownName(own) == name; });
-  }
-  if (found != names.end()) return std::move(clips[found - names.begin()]);
-  throw Error(ErrorCode::kBadArgument, fmt::format("there is no clip called '{}'", name), asset.name,
-              names.empty() ? "the file has no clip" : fmt::format("there are: {}", fmt::join(names, ", ")));
+  return std::move(clips[clipNamed(names, name, asset.name)]);
 }
 
 bool isSkeletonAlone(const Asset& asset) {

@@ -19,4 +19,8 @@ struct BoneMotions {
   const RigidMotion* of(Index bone) const { return motions.data() + std::size_t{bone} * frameCount; }
 };
 
+// Takes out the bones for which `isUsed` is false. Returns the new number of each (#bones), kNoIndex for those that
+// went.
+std::vector<Index> compactBones(BoneMotions& motions, const std::vector<bool>& isUsed);
+
 }  // namespace limber

@@ -230,7 +230,7 @@ BoneSkeleton skeletonOfBones(std::span<const Vec3f> rest, const Decomposition& d
   return result;
 }
 
-Clip clipOfBones(const BoneSkeleton& bones, const BoneMotions& motions, const FrameSpan& span, double framesPerSecond) {
+Clip clipOfBones(const BoneSkeleton& bones, const BoneMotions& motions, const FrameSpan& span) {
   const Skeleton& skeleton = bones.skeleton;
   const std::vector<Affine> rest = restGlobals(skeleton);
   const auto globalOf = [&](Index joint, Index frame) {
@@ -241,8 +241,8 @@ Clip clipOfBones(const BoneSkeleton& bones, const BoneMotions& motions, const Fr
   Clip clip;
   clip.name = span.name;
   for (Index j = 0; j < skeleton.jointCount(); ++j) {
-    Track<Vec3f> translation = emptyTrack<Vec3f>(j, span.count, framesPerSecond);
-    Track<Eigen::Quaternionf> rotation = emptyTrack<Eigen::Quaternionf>(j, span.count, framesPerSecond);
+    Track<Vec3f> translation = emptyTrack<Vec3f>(j, span.count, span.framesPerSecond);
+    Track<Eigen::Quaternionf> rotation = emptyTrack<Eigen::Quaternionf>(j, span.count, span.framesPerSecond);
     const std::optional<Index> parent = skeleton.joints[j].parent;
     for (Index f = span.first; f < span.first + span.count; ++f) {
       const Affine global = globalOf(j, f);

@@ -29,10 +29,11 @@ BoneSkeleton skeletonOfBones(std::span<const Vec3f> rest, const Decomposition& d
 struct FrameSpan {
   std::string name;
   Index first = 0, count = 0;
+  double framesPerSecond = 30;
 };
 
 // Frames of the decomposition as a clip that begins at 0 s, linear between frames. The motion is that of the bones to
 // rounding: where two bones do not quite keep to a common point the joint's translation is animated too.
-Clip clipOfBones(const BoneSkeleton& bones, const BoneMotions& motions, const FrameSpan& span, double framesPerSecond);
+Clip clipOfBones(const BoneSkeleton& bones, const BoneMotions& motions, const FrameSpan& span);
 
 }  // namespace limber

@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "limber/core/error.h"
 #include "limber/core/parallel.h"
 #include "limber/decomposition/convex_weights.h"
 
@@ -152,10 +153,13 @@ class WeightFit {
     return candidates;
   }
 
-  // The weights before: those bones are the first candidates, in their order.
+  // The weights before: the bones that had one are the first candidates, in their order.
   WeightProblem::Vector startOf(Index v, const Candidates& candidates) const {
     WeightProblem::Vector start = WeightProblem::Vector::Zero(candidates.count);
-    for (Index i = 0; i < before_.slots; ++i) start[i] = before_.weightsOf(v)[i];
+    Index at = 0;
+    for (Index i = 0; i < before_.slots; ++i) {
+      if (before_.weightsOf(v)[i] > 0) start[at++] = before_.weightsOf(v)[i];
+    }
     return start;
   }
 
@@ -190,6 +194,9 @@ class WeightFit {
 
 FittedWeights fitWeights(const VertexSequence& sequence, const BoneMotions& motions, Index maxInfluences,
                          const SkinWeights& before) {
+  if (maxInfluences < 1 || maxInfluences > kMostInfluences || before.slots > kMostInfluences) {
+    throw Error(ErrorCode::kBadArgument, "points can follow 1 to 8 bones");
+  }
   return WeightFit(sequence, motions, maxInfluences, before).run();
 }
 

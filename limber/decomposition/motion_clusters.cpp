@@ -83,17 +83,9 @@ SkinWeights hardWeights(const std::vector<Index>& clusterOf) {
 
 // Clusters without a point are taken out.
 void dropEmpty(MotionClusters& clusters) {
-  const Index count = clusters.motions.boneCount();
-  std::vector<Index> renumbered(count, kNoIndex);
-  for (const Index c : clusters.clusterOf) renumbered[c] = 0;
-  Index kept = 0;
-  for (Index c = 0; c < count; ++c) {
-    if (renumbered[c] == kNoIndex) continue;
-    renumbered[c] = kept;
-    std::copy_n(clusters.motions.of(c), clusters.motions.frameCount, clusters.motions.of(kept));
-    ++kept;
-  }
-  clusters.motions.motions.resize(std::size_t{kept} * clusters.motions.frameCount);
+  std::vector<bool> isUsed(clusters.motions.boneCount(), false);
+  for (const Index c : clusters.clusterOf) isUsed[c] = true;
+  const std::vector<Index> renumbered = compactBones(clusters.motions, isUsed);
   for (Index& c : clusters.clusterOf) c = renumbered[c];
 }
 

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
 
 #include "limber/core/error.h"
 #include "limber/core/parallel.h"
@@ -13,8 +16,8 @@ namespace limber {
 
 namespace {
 
-constexpr double kLeastShare = 1;   // sum of squared weights: a bone with less than one point of its own begins anew
-constexpr int kLastIterations = 5;  // in which no bone begins anew, so that all settle
+constexpr double kLeastShare = 1;   // sum of squared weights: a bone with less than one point of its own is reseeded
+constexpr int kLastIterations = 5;  // in which no bone is reseeded, so that all settle
 constexpr double kStands = 1e-4;    // relative fall of the error below which nothing more is to be had
 constexpr double kWorthMore = 0.9;  // of the error with half as many bones: more bones are not worth it
 
@@ -35,7 +38,10 @@ class Centred {
       for (auto f = static_cast<Index>(begin); f < end; ++f) centre(sequence, f);
     });
     for (const Vec3& middle : middles_) {
-      if (!middle.allFinite()) throw Error(ErrorCode::kBadData, "a vertex moves to a place that is not finite");
+      if (!middle.allFinite()) {
+        throw Error(ErrorCode::kBadData,
+                    "a vertex moves to a place that is not finite, or farther than can be computed");
+      }
     }
   }
 
@@ -49,13 +55,16 @@ class Centred {
   }
 
  private:
+  // The middle is not finite where a place, or its square in diagonals, is not.
   void centre(VertexSequence& sequence, Index f) {
     Vec3 middle = Vec3::Zero();
     for (Index v = 0; v < sequence.pointCount(); ++v) middle += sequence.at(v, f).cast<double>();
     middle /= sequence.pointCount();
     middles_[f] = middle;
     for (Index v = 0; v < sequence.pointCount(); ++v) {
-      sequence.set(v, f, ((sequence.at(v, f).cast<double>() - middle) / diagonal_).cast<float>());
+      const Vec3f place = ((sequence.at(v, f).cast<double>() - middle) / diagonal_).cast<float>();
+      if (!std::isfinite(place.squaredNorm())) middles_[f].fill(std::numeric_limits<double>::quiet_NaN());
+      sequence.set(v, f, place);
     }
   }
 
@@ -79,7 +88,7 @@ double rootMeanSquare(const VertexSequence& sequence, const std::vector<double>&
 }
 
 // Bones with next to no weight take the motion of the neighbourhood that fits worst.
-bool beginAnew(const VertexSequence& sequence, FittedWeights& fitted, BoneMotions& motions) {
+bool reseed(const VertexSequence& sequence, FittedWeights& fitted, BoneMotions& motions) {
   const std::vector<double> shares = sharesOf(fitted.weights, motions.boneCount());
   std::vector<bool> isTaken(sequence.pointCount(), false);
   const std::size_t seedCount = seedPoints(sequence.pointCount() / motions.boneCount());
@@ -102,49 +111,42 @@ bool beginAnew(const VertexSequence& sequence, FittedWeights& fitted, BoneMotion
 }
 
 void dropUnused(Decomposition& result) {
-  const Index count = result.motions.boneCount();
-  const std::vector<double> shares = sharesOf(result.weights, count);
-  std::vector<Index> renumbered(count, 0);
-  Index kept = 0;
-  for (Index b = 0; b < count; ++b) {
-    if (shares[b] == 0) continue;
-    renumbered[b] = kept;
-    std::copy_n(result.motions.of(b), result.motions.frameCount, result.motions.of(kept));
-    ++kept;
-  }
-  result.motions.motions.resize(std::size_t{kept} * result.motions.frameCount);
-  for (Index& joint : result.weights.joints) joint = renumbered[joint];
+  std::vector<bool> isUsed;
+  for (const double share : sharesOf(result.weights, result.motions.boneCount())) isUsed.push_back(share > 0);
+  const std::vector<Index> renumbered = compactBones(result.motions, isUsed);
   for (std::size_t i = 0; i < result.weights.joints.size(); ++i) {
-    if (result.weights.weights[i] == 0) result.weights.joints[i] = 0;
+    Index& joint = result.weights.joints[i];
+    joint = result.weights.weights[i] > 0 ? renumbered[joint] : 0;
   }
 }
 
-// With at most so many bones; the sequence is centred.
+// With at most so many bones; the sequence is centred. The best of all iterations: one that reseeds bones may come out
+// worse than those before.
 Decomposition decomposeWith(const VertexSequence& sequence, Index bones, const DecompositionOptions& options,
                             Progress& progress) {
-  Decomposition result;
-  result.motions = motionClusters(sequence, bones, progress).motions;
-  FittedWeights fitted = fitWeights(sequence, result.motions, options.maxInfluences, {});
+  BoneMotions motions = motionClusters(sequence, bones, progress).motions;
+  FittedWeights fitted = fitWeights(sequence, motions, options.maxInfluences, {});
   double error = rootMeanSquare(sequence, fitted.errors);
+  Decomposition best{motions, fitted.weights, error};
   for (int i = 0; i < options.iterations; ++i) {
     progress.update(static_cast<double>(i) / options.iterations);
-    const bool isNew = i + kLastIterations < options.iterations && beginAnew(sequence, fitted, result.motions);
-    if (!isNew) fitMotions(sequence, fitted.weights, result.motions);
-    fitted = fitWeights(sequence, result.motions, options.maxInfluences, isNew ? SkinWeights() : fitted.weights);
+    const bool isNew = i + kLastIterations < options.iterations && reseed(sequence, fitted, motions);
+    if (!isNew) fitMotions(sequence, fitted.weights, motions);
+    fitted = fitWeights(sequence, motions, options.maxInfluences, isNew ? SkinWeights() : fitted.weights);
     const double before = error;
     error = rootMeanSquare(sequence, fitted.errors);
+    if (error < best.error) best = {motions, fitted.weights, error};
     if (!isNew && before - error <= kStands * before) break;
   }
-  result.weights = std::move(fitted.weights);
-  result.error = error;
-  dropUnused(result);
-  return result;
+  dropUnused(best);
+  return best;
 }
 
+// Tries 1, 2, 4, ... bones while the error falls, whether or not all of them are put to use, then those between.
 Decomposition decomposeWithin(const VertexSequence& sequence, const DecompositionOptions& options, Progress& progress) {
   Index low = 1;
   Decomposition best = decomposeWith(sequence, 1, options, progress);
-  while (best.error > options.tolerance && best.motions.boneCount() == low && low < kMostBones) {
+  while (best.error > options.tolerance && low < kMostBones) {
     Decomposition more = decomposeWith(sequence, 2 * low, options, progress);
     const bool isWorth = more.error <= kWorthMore * best.error;
     if (!isWorth) return best;
@@ -169,12 +171,28 @@ Decomposition decomposeWithin(const VertexSequence& sequence, const Decompositio
   return best;
 }
 
+void checkOptions(const DecompositionOptions& options) {
+  if (options.bones && (*options.bones < 1 || *options.bones > kMostBones)) {
+    throw Error(ErrorCode::kBadArgument, fmt::format("a mesh can be given 1 to {} bones", kMostBones), {},
+                fmt::format("choose --bones 1 to {}", kMostBones));
+  }
+  if (options.maxInfluences < 1 || options.maxInfluences > kMostInfluences) {
+    throw Error(ErrorCode::kBadArgument, fmt::format("a vertex can keep 1 to {} influences", kMostInfluences), {},
+                fmt::format("choose --max-influences 1 to {}", kMostInfluences));
+  }
+  if (options.iterations < 1) throw Error(ErrorCode::kBadArgument, "a decomposition takes an iteration at least");
+  if (!(options.tolerance >= 0) || !std::isfinite(options.tolerance)) {
+    throw Error(ErrorCode::kBadArgument, "the tolerance is not 0 or more");
+  }
+}
+
 }  // namespace
 
 Decomposition decomposeSkin(VertexSequence sequence, const DecompositionOptions& options, Progress& progress) {
   if (sequence.pointCount() == 0 || sequence.frameCount() == 0) {
     throw Error(ErrorCode::kBadArgument, "a decomposition takes a point and a frame at least");
   }
+  checkOptions(options);
   const Centred centred(sequence);
   Decomposition result = options.bones ? decomposeWith(sequence, *options.bones, options, progress)
                                        : decomposeWithin(sequence, options, progress);

@@ -11,11 +11,11 @@
 namespace limber {
 
 struct DecompositionOptions {
-  std::optional<Index> bones;  // at most so many, 1 or more; none: as few as the tolerance asks for
+  std::optional<Index> bones;  // at most so many, 1 to kMostBones; none: as few as the tolerance asks for
   Index maxInfluences = 4;     // 1 to 8
   int iterations = 20;         // of weights and motions in turn, 1 or more
-  double tolerance = 0.002;    // of the diagonal of the rest pose's box: the error at which bones are enough, where
-                               // their number is not given
+  double tolerance = 0.002;  // 0 or more, of the diagonal of the rest pose's box: the error at which bones are enough,
+                             // where their number is not given
 };
 
 // Where a point bound at p is in frame f: the sum over its bones b of weight * motions.of(b)[f] * (p, 1).
@@ -25,17 +25,19 @@ struct Decomposition {
   double error = 0;     // root mean square over points and frames, of the diagonal of the rest pose's box
 };
 
-inline constexpr Index kMostBones = 512;  // found where no number is given
+inline constexpr Index kMostBones = 512;
 
 // Smooth skinning decomposition with rigid bones (Le, Deng 2012): clusters of rigid motion (motionClusters), then
-// weights (fitWeights) and motions (fitMotions) in turn; a bone that came to nearly nothing begins anew where the error
-// is largest. Without a number of bones the counts 2, 4, 8, ... are tried until the error is within the tolerance or
-// twice the bones take less than a tenth of it away, then those between.
+// weights (fitWeights) and motions (fitMotions) in turn; a bone that came to nearly nothing is reseeded where the error
+// is largest, and of all iterations the one of least error is the result. Without a number of bones the counts 2, 4, 8,
+// ... are tried until the error is within the tolerance or twice the bones take less than a tenth of it away, then
+// those between.
 //
 // The sequence is taken over: its frames are centred and scaled where they lie. One point and one frame at least, in
-// any unit and place. Throws Error kBadData where the rest pose has no size or a position is not finite.
-// Parallel, the same for any number of threads. Memory beside the sequence: 100 bytes a point at 4 influences (+16 an
-// influence), 96 a bone and frame, 256 a pair of bones.
+// any unit and place. Throws Error kBadData where the rest pose has no size, a position is not finite, or one is
+// farther away than 1e19 diagonals of the rest pose; kBadArgument for options out of range. Parallel, the same for any
+// number of threads. Memory beside the sequence: 100 bytes a point at 4 influences (+16 an influence), 96 a bone and
+// frame, 256 a pair of bones.
 Decomposition decomposeSkin(VertexSequence sequence, const DecompositionOptions& options, Progress& progress);
 
 }  // namespace limber

@@ -17,6 +17,19 @@ class VertexSequence {
   static constexpr Index kLanes = 8;
   static constexpr std::size_t kFrameSize = 3 * kLanes;  // floats of one block in one frame: x of eight points, y, z
 
+  static constexpr double kMostFrames = 1 << 20;  // nine hours at 30 a second
+  static constexpr double kMostPositions = 2e9;   // stored, those that fill up the last block among them: 24 GB
+
+  // Throws Error kLimit beyond kMostFrames or kMostPositions. Numbers that may not be whole, as those of untrusted
+  // files.
+  static void checkSize(double pointCount, double frameCount);
+
+  // A sequence of a size that is not known to be sound. Throws as checkSize does.
+  static VertexSequence forFrames(std::size_t pointCount, std::size_t frameCount) {
+    checkSize(static_cast<double>(pointCount), static_cast<double>(frameCount));
+    return {static_cast<Index>(pointCount), static_cast<Index>(frameCount)};
+  }
+
   // Both 0 or more.
   VertexSequence(Index pointCount, Index frameCount)
       : rest(pointCount, Vec3f::Zero()),

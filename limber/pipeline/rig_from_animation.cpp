@@ -1,6 +1,7 @@
 #include "limber/pipeline/rig_from_animation.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -59,7 +60,7 @@ void attach(Asset& asset, const VertexAnimation& animation, const BoneSkeleton& 
       attachRig(asset, geometry, bones.skeleton, expandWeights(bones.weights, animation.pointOf));
   std::vector<Clip> clips;
   for (const FrameSpan& span : animation.clips) {
-    clips.push_back(clipOfBones(bones, motions, span, animation.framesPerSecond));
+    clips.push_back(clipOfBones(bones, motions, span));
   }
   const AssetSkeleton skeleton = readSkeleton(asset);
   nameJointsBy(nodes, skeleton, clips);
@@ -83,12 +84,14 @@ AnimationRigReport rigFromAnimation(Asset& asset, VertexAnimation animation, con
     progress.stage("find joints");
     const BoneSkeleton bones = skeletonOfBones(rest, decomposition);
     progress.stage("write rig");
-    attach(asset, animation, bones, decomposition.motions);
-    checkAsset(asset);
+    Asset result = asset.clone();
+    attach(result, animation, bones, decomposition.motions);
+    checkAsset(result);
     report.joints = bones.skeleton.jointCount();
     report.error = decomposition.error;
-    report.warnings = asset.warnings;
+    report.warnings = result.warnings;
     progress.finish();
+    asset = std::move(result);
     report.stages = progress.stages();
     return report;
   } catch (const Error& error) {

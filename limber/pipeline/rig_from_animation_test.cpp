@@ -6,6 +6,8 @@
 #include <fstream>
 #include <functional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -122,13 +124,23 @@ DecompositionOptions someBones(Index count) {
   return options;
 }
 
+VertexAnimation readAnimation(const Asset& asset, const VertexAnimationOptions& options) {
+  Progress progress;
+  return readVertexAnimation(asset, options, progress);
+}
+
+ObjSeries readSeries(const std::vector<fs::path>& files, double framesPerSecond) {
+  Progress progress;
+  return readObjSeries(files, framesPerSecond, progress);
+}
+
 TEST(RigFromAnimation, MorphTargetsOnATurningNodeBecomeBones) {
   Asset asset = morphingStrip(12, 0.8);
-  const VertexAnimation before = readVertexAnimation(asset, {});
+  const VertexAnimation before = readAnimation(asset, {});
   EXPECT_EQ(before.sequence.frameCount(), 12u);
-  EXPECT_EQ(before.framesPerSecond, 10);
+  EXPECT_EQ(before.clips[0].framesPerSecond, 10);
   Progress progress;
-  const AnimationRigReport report = rigFromAnimation(asset, readVertexAnimation(asset, {}), someBones(2), progress);
+  const AnimationRigReport report = rigFromAnimation(asset, readAnimation(asset, {}), someBones(2), progress);
   EXPECT_EQ(report.joints, 2u);
   EXPECT_LT(report.error, 1e-3);
 
@@ -139,44 +151,118 @@ TEST(RigFromAnimation, MorphTargetsOnATurningNodeBecomeBones) {
   EXPECT_EQ(written.json()["meshes"][0]["primitives"][0]["material"], 0);
   ASSERT_EQ(written.json()["animations"].size(), 1u);
   EXPECT_EQ(written.json()["animations"][0]["name"], "bend");
-  EXPECT_LT(farthestApart(before, readVertexAnimation(written, {"bend", 10})), 0.01);
+  EXPECT_LT(farthestApart(before, readAnimation(written, {"bend", 10})), 0.01);
 }
 
 TEST(RigFromAnimation, MorphTargetsAloneBecomeBones) {
   Asset asset = morphingStrip(12, 0.8, false);
-  const VertexAnimation before = readVertexAnimation(asset, {});
+  const VertexAnimation before = readAnimation(asset, {});
   Progress progress;
-  rigFromAnimation(asset, readVertexAnimation(asset, {}), someBones(2), progress);
-  EXPECT_LT(farthestApart(before, readVertexAnimation(asset, {"", 10})), 0.01);
+  rigFromAnimation(asset, readAnimation(asset, {}), someBones(2), progress);
+  EXPECT_LT(farthestApart(before, readAnimation(asset, {"", 10})), 0.01);
 }
 
 TEST(RigFromAnimation, ARiggedModelIsRiggedAnew) {
   Asset asset = morphingStrip(12, 0.8);
   Progress progress;
-  rigFromAnimation(asset, readVertexAnimation(asset, {}), someBones(2), progress);
-  const VertexAnimation before = readVertexAnimation(asset, {"", 20});
-  const AnimationRigReport report =
-      rigFromAnimation(asset, readVertexAnimation(asset, {"", 20}), someBones(3), progress);
+  rigFromAnimation(asset, readAnimation(asset, {}), someBones(2), progress);
+  const VertexAnimation before = readAnimation(asset, {"", 20});
+  const AnimationRigReport report = rigFromAnimation(asset, readAnimation(asset, {"", 20}), someBones(3), progress);
   EXPECT_LT(report.error, 5e-4);
   EXPECT_EQ(asset.json()["skins"].size(), 1u);
   EXPECT_EQ(asset.json()["animations"].size(), 1u);
-  EXPECT_LT(farthestApart(before, readVertexAnimation(asset, {"", 20})), 0.002);
+  EXPECT_LT(farthestApart(before, readAnimation(asset, {"", 20})), 0.002);
 }
 
 TEST(RigFromAnimation, RefusesWhatDoesNotMove) {
   Asset still = morphingStrip(5, 0, false);
-  EXPECT_THAT(messageOf([&] { readVertexAnimation(still, {}); }), HasSubstr("nothing moves"));
+  EXPECT_THAT(messageOf([&] { readAnimation(still, {}); }), HasSubstr("nothing moves"));
   Asset single = morphingStrip(1, 0.5, false);
-  EXPECT_THAT(messageOf([&] { readVertexAnimation(single, {}); }), HasSubstr("a single frame"));
+  EXPECT_THAT(messageOf([&] { readAnimation(single, {}); }), HasSubstr("a single frame"));
   still.json().erase("animations");
-  EXPECT_THAT(messageOf([&] { readVertexAnimation(still, {}); }), HasSubstr("strip.glb: has no animation"));
+  EXPECT_THAT(messageOf([&] { readAnimation(still, {}); }), HasSubstr("strip.glb: has no animation"));
 }
 
 TEST(RigFromAnimation, RefusesClipsAndRatesThatMakeNoSense) {
   const Asset asset = morphingStrip(5, 0.5);
-  EXPECT_THAT(messageOf([&] { readVertexAnimation(asset, {"run", std::nullopt}); }), HasSubstr("there are: bend"));
-  EXPECT_THAT(messageOf([&] { readVertexAnimation(asset, {"", 0.0}); }), HasSubstr("frame rate"));
-  EXPECT_THAT(messageOf([&] { readVertexAnimation(asset, {"", 1e12}); }), HasSubstr("--fps"));
+  EXPECT_THAT(messageOf([&] { readAnimation(asset, {"run", std::nullopt}); }), HasSubstr("there are: bend"));
+  EXPECT_THAT(messageOf([&] { readAnimation(asset, {"", 0.0}); }), HasSubstr("frame rate"));
+  EXPECT_THAT(messageOf([&] { readAnimation(asset, {"", 1e12}); }), HasSubstr("--fps"));
+}
+
+// A second clip of the node alone, with keys at another rate.
+void addTurns(Asset& asset, const std::string& name, const std::vector<float>& times) {
+  std::vector<float> turns;
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    const double angle = 0.1 * static_cast<double>(k);
+    for (const double value : {0.0, std::sin(angle), 0.0, std::cos(angle)}) turns.push_back(static_cast<float>(value));
+  }
+  const Index input = addFloatAccessor(asset, times, 1, 0, true), output = addFloatAccessor(asset, turns, 4);
+  asset.json()["animations"].push_back(
+      {{"name", name},
+       {"samplers", Json::array({{{"input", input}, {"output", output}}})},
+       {"channels", Json::array({{{"sampler", 0}, {"target", {{"node", 0}, {"path", "rotation"}}}}})}});
+  checkAsset(asset);
+}
+
+TEST(RigFromAnimation, EachClipIsSampledAtItsOwnRate) {
+  Asset asset = morphingStrip(12, 0.8);
+  addTurns(asset, "slow", {0, 0.5f, 1, 1.5f, 2});
+  const VertexAnimation both = readAnimation(asset, {});
+  ASSERT_EQ(both.clips.size(), 2u);
+  EXPECT_EQ(both.clips[0].framesPerSecond, 10);
+  EXPECT_EQ(both.clips[0].count, 12u);
+  EXPECT_EQ(both.clips[1].framesPerSecond, 2);
+  EXPECT_EQ(both.clips[1].first, 12u);
+  EXPECT_EQ(both.clips[1].count, 5u);
+  Progress progress;
+  rigFromAnimation(asset, readAnimation(asset, {}), someBones(3), progress);
+  const VertexAnimation again = readAnimation(asset, {});
+  ASSERT_EQ(again.clips.size(), 2u);
+  EXPECT_EQ(again.clips[1].framesPerSecond, 2);
+  EXPECT_LT(farthestApart(both, again), 0.01);
+}
+
+TEST(RigFromAnimation, AClipCalledSoInFullGoesFirst) {
+  Asset asset = morphingStrip(12, 0.8);
+  asset.json()["animations"][0]["name"] = "Armature|turn";
+  addTurns(asset, "turn", {0, 0.5f, 1});
+  EXPECT_EQ(readAnimation(asset, {"turn", std::nullopt}).clips[0].count, 3u);
+  EXPECT_EQ(readAnimation(asset, {"Armature|turn", std::nullopt}).clips[0].count, 12u);
+}
+
+TEST(RigFromAnimation, RefusesClipsTooLongToBeHeld) {
+  Asset asset = morphingStrip(3, 0.5);
+  addTurns(asset, "long", {0, 0.01f, 1e6f});
+  EXPECT_THAT(messageOf([&] { readAnimation(asset, {"long", 30.0}); }), HasSubstr("30000001 frames"));
+}
+
+TEST(RigFromAnimation, ReadingCanBeCancelled) {
+  const Asset asset = morphingStrip(12, 0.8);
+  for (const int last : {1, 7, 15, 23}) {
+    int told = 0;
+    Progress progress([&](std::string_view, double) {
+      if (++told == last) progress.cancel();
+    });
+    ErrorCode code = ErrorCode::kFile;
+    try {
+      readVertexAnimation(asset, {}, progress);
+    } catch (const Error& error) {
+      code = error.code();
+    }
+    EXPECT_EQ(code, ErrorCode::kCancelled) << last;
+    EXPECT_EQ(told, last);
+  }
+}
+
+TEST(RigFromAnimation, AnErrorLeavesTheModelAsItWas) {
+  Asset asset = morphingStrip(12, 0.8);
+  const Bytes before = writeGlb(asset);
+  VertexAnimation other = readAnimation(asset, {});
+  other.pointOf.push_back(0);
+  Progress progress;
+  EXPECT_THROW(rigFromAnimation(asset, std::move(other), someBones(2), progress), Error);
+  EXPECT_EQ(writeGlb(asset), before);
 }
 
 class ObjFrames : public ::testing::Test {
@@ -210,32 +296,32 @@ TEST_F(ObjFrames, OfAFolderBecomeOneClipInTheOrderOfTheirNumbers) {
   ASSERT_EQ(files.size(), 12u);
   EXPECT_EQ(files[2].filename(), "bend_2.obj");
   EXPECT_EQ(files[11].filename(), "bend_11.obj");
-  ObjSeries series = readObjSeries(files, 24);
+  ObjSeries series = readSeries(files, 24);
   ASSERT_EQ(series.animation.clips.size(), 1u);
   EXPECT_EQ(series.animation.clips[0].name, "bend");
   const VertexAnimation before = series.animation;
   Progress progress;
   const AnimationRigReport report = rigFromAnimation(series.asset, std::move(series.animation), someBones(2), progress);
   EXPECT_LT(report.error, 1e-3);
-  EXPECT_LT(farthestApart(before, readVertexAnimation(series.asset, {"", 24})), 0.01);
+  EXPECT_LT(farthestApart(before, readAnimation(series.asset, {"", 24})), 0.01);
 }
 
 TEST_F(ObjFrames, ThatAreNotOneMeshAreRefused) {
   const fs::path first = put("a1.obj", 0), second = put("a2.obj", 0.5), fewer = put("a3.obj", 0.7, 1);
   EXPECT_THAT(messageOf([&] {
-                readObjSeries(std::vector{first, second, fewer}, 30);
+                readSeries(std::vector{first, second, fewer}, 30);
               }),
               HasSubstr("a3.obj: has other faces than a1.obj"));
   std::ofstream(folder_ / "a4.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
   EXPECT_THAT(messageOf([&] {
-                readObjSeries(std::vector{first, folder_ / "a4.obj"}, 30);
+                readSeries(std::vector{first, folder_ / "a4.obj"}, 30);
               }),
               HasSubstr("a4.obj: has 3 vertices where a1.obj has 18"));
-  EXPECT_THAT(messageOf([&] { readObjSeries(std::vector{first}, 30); }), HasSubstr("a single frame"));
-  EXPECT_THAT(messageOf([&] { readObjSeries(std::vector{first, first}, 30); }), HasSubstr("nothing moves"));
+  EXPECT_THAT(messageOf([&] { readSeries(std::vector{first}, 30); }), HasSubstr("a single frame"));
+  EXPECT_THAT(messageOf([&] { readSeries(std::vector{first, first}, 30); }), HasSubstr("nothing moves"));
   std::ofstream(folder_ / "a5.obj") << "v 0 0 x\n";
   EXPECT_THAT(messageOf([&] {
-                readObjSeries(std::vector{first, folder_ / "a5.obj"}, 30);
+                readSeries(std::vector{first, folder_ / "a5.obj"}, 30);
               }),
               HasSubstr("three finite numbers"));
 }

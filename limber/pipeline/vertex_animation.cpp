@@ -10,17 +10,17 @@
 
 #include "limber/asset/accessor.h"
 #include "limber/asset/clip_io.h"
+#include "limber/asset/clip_name.h"
 #include "limber/asset/motion_io.h"
 #include "limber/asset/node_edit.h"
 #include "limber/asset/pose_io.h"
 #include "limber/asset/scene_graph.h"
+#include "limber/core/known_error.h"
 #include "limber/skinning/linear_blend.h"
 
 namespace limber {
 
 namespace {
-
-constexpr double kMostPositions = 2e9;  // 24 GB of frames
 
 // The weights of a node's morph targets over time, three to a track.
 struct MorphTrack {
@@ -218,18 +218,11 @@ std::vector<SampledClip> chosenClips(std::vector<SampledClip> clips, const std::
                 "give a file with clips or animated morph targets, or one OBJ file for each frame");
   }
   if (name.empty()) return clips;
-  std::string known;
-  for (SampledClip& clip : clips) {
-    const std::string& full = clip.clip.name;
-    if (full == name || full.substr(full.rfind('|') + 1) == name) {
-      std::vector<SampledClip> chosen;
-      chosen.push_back(std::move(clip));
-      return chosen;
-    }
-    known += (known.empty() ? "" : ", ") + full;
-  }
-  throw Error(ErrorCode::kBadArgument, fmt::format("there is no clip called '{}'", name), asset.name,
-              "there are: " + known);
+  std::vector<std::string> names;
+  for (const SampledClip& clip : clips) names.push_back(clip.clip.name);
+  std::vector<SampledClip> chosen;
+  chosen.push_back(std::move(clips[clipNamed(names, name, asset.name)]));
+  return chosen;
 }
 
 // Keys a second of what a clip's tracks, morphs among them, tell.
@@ -256,11 +249,12 @@ void mix(std::uint64_t& hash, const Vec3f& value) {
 
 // Vertices that begin at one place and move alike are one point. Sequences are told apart by 64 bits of hash, and only
 // among vertices at one place.
-std::vector<Index> pointsOf(VertexPoser& poser, const std::vector<Moment>& moments) {
+std::vector<Index> pointsOf(VertexPoser& poser, const std::vector<Moment>& moments, Progress& progress) {
   const std::vector<Vec3f>& rest = poser.geometry().positions;
   std::vector<std::uint64_t> hashes(rest.size(), 0);
-  for (const Moment& moment : moments) {
-    const std::vector<Vec3f>& positions = poser.positionsAt(*moment.clip, moment.seconds);
+  for (std::size_t m = 0; m < moments.size(); ++m) {
+    progress.update(0.5 * static_cast<double>(m) / static_cast<double>(moments.size()));
+    const std::vector<Vec3f>& positions = poser.positionsAt(*moments[m].clip, moments[m].seconds);
     for (std::size_t v = 0; v < positions.size(); ++v) mix(hashes[v], positions[v]);
   }
   std::vector<Index> order(rest.size());
@@ -278,14 +272,24 @@ std::vector<Index> pointsOf(VertexPoser& poser, const std::vector<Moment>& momen
   return pointOf;
 }
 
-void fill(VertexPoser& poser, const std::vector<Moment>& moments, VertexAnimation& animation) {
+void fill(VertexPoser& poser, const std::vector<Moment>& moments, VertexAnimation& animation, Progress& progress) {
   const std::vector<Vec3f>& rest = poser.geometry().positions;
   const Index points = *std::max_element(animation.pointOf.begin(), animation.pointOf.end()) + 1;
-  animation.sequence = VertexSequence(points, static_cast<Index>(moments.size()));
+  animation.sequence = VertexSequence::forFrames(points, moments.size());
   for (std::size_t v = 0; v < rest.size(); ++v) animation.sequence.rest[animation.pointOf[v]] = rest[v];
   for (Index f = 0; f < moments.size(); ++f) {
+    progress.update(0.5 + 0.5 * f / static_cast<double>(moments.size()));
     const std::vector<Vec3f>& positions = poser.positionsAt(*moments[f].clip, moments[f].seconds);
     for (std::size_t v = 0; v < positions.size(); ++v) animation.sequence.set(animation.pointOf[v], f, positions[v]);
+  }
+}
+
+// Before anything is posed, as if no two vertices moved alike.
+void checkFrames(const VertexPoser& poser, double frames, const Asset& asset) {
+  try {
+    VertexSequence::checkSize(static_cast<double>(poser.geometry().positions.size()), frames);
+  } catch (const Error& error) {
+    throwWithin(error, asset.name);
   }
 }
 
@@ -302,28 +306,22 @@ void refuseStill(const VertexSequence& sequence, const std::string& name) {
               "bones are found by motion: give frames in which the mesh bends, or rig it without --from-animation");
 }
 
-VertexAnimation readVertexAnimation(const Asset& asset, const VertexAnimationOptions& options) {
+VertexAnimation readVertexAnimation(const Asset& asset, const VertexAnimationOptions& options, Progress& progress) {
   VertexPoser poser(asset);
   const std::vector<SampledClip> clips = chosenClips(poser.clipsOf(asset), options.clip, asset);
   VertexAnimation animation;
-  animation.framesPerSecond = options.framesPerSecond.value_or(rateOf(clips.front()));
-  if (!(animation.framesPerSecond > 0) || !std::isfinite(animation.framesPerSecond)) {
-    throw Error(ErrorCode::kBadArgument, "the frame rate is not above 0");
-  }
   std::vector<Moment> moments;
   for (const SampledClip& clip : clips) {
-    const double frames = std::floor(clip.seconds() * animation.framesPerSecond + 0.5) + 1;
-    if ((static_cast<double>(moments.size()) + frames) * static_cast<double>(poser.geometry().positions.size()) >
-        kMostPositions) {
-      throw Error(ErrorCode::kLimit, "the frames are too many to be held in memory", asset.name,
-                  "choose one clip by --clip, or fewer frames a second by --fps");
-    }
+    const double rate = options.framesPerSecond.value_or(rateOf(clip));
+    if (!(rate > 0) || !std::isfinite(rate)) throw Error(ErrorCode::kBadArgument, "the frame rate is not above 0");
+    const double frames = std::floor(clip.seconds() * rate + 0.5) + 1;
     const auto first = static_cast<Index>(moments.size());
-    for (Index f = 0; f < frames; ++f) moments.push_back({&clip, f / animation.framesPerSecond});
-    animation.clips.push_back({clip.clip.name, first, static_cast<Index>(frames)});
+    checkFrames(poser, first + frames, asset);
+    for (Index f = 0; f < frames; ++f) moments.push_back({&clip, f / rate});
+    animation.clips.push_back({clip.clip.name, first, static_cast<Index>(frames), rate});
   }
-  animation.pointOf = pointsOf(poser, moments);
-  fill(poser, moments, animation);
+  animation.pointOf = pointsOf(poser, moments, progress);
+  fill(poser, moments, animation, progress);
   refuseStill(animation.sequence, asset.name);
   return animation;
 }

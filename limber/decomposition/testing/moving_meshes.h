@@ -85,4 +85,31 @@ inline KnownMotion bentTube(Index frames = 30) {
   return known;
 }
 
+// Pieces of four to nine points each, strewn about, every one with a rigid motion of its own.
+inline KnownMotion scatteredPieces(Index pieces, Index frames = 12) {
+  Random random(pieces);
+  const auto anywhere = [&](double reach) {
+    const double x = random.uniform(-reach, reach), y = random.uniform(-reach, reach);
+    return Vec3(x, y, random.uniform(-reach, reach));
+  };
+  KnownMotion known;
+  known.motions.frameCount = frames;
+  for (Index b = 0; b < pieces; ++b) {
+    const Vec3 middle = anywhere(1);
+    const std::uint64_t points = 4 + random.below(6);
+    for (std::uint64_t i = 0; i < points; ++i) {
+      known.rest.push_back((middle + anywhere(0.1)).cast<float>());
+      known.weights.emplace_back(pieces, 0.0);
+      known.weights.back()[b] = 1;
+    }
+    for (Index f = 0; f < frames; ++f) {
+      const Quat turn = Quat(Eigen::AngleAxisd(random.uniform(-1, 1), anywhere(1).normalized()));
+      const Vec3 place = middle + anywhere(0.3);
+      known.motions.motions.push_back(
+          rigidMotion(Eigen::Translation3d(place) * Affine(turn) * Eigen::Translation3d(-middle)));
+    }
+  }
+  return known;
+}
+
 }  // namespace limber::testing
