@@ -123,7 +123,6 @@ TEST_F(ObjSeriesFiles, FacesMayCountBackwardsAndLinesBeContinued) {
   EXPECT_EQ(series.animation.sequence.at(0, 1), Vec3f(0, 0, 1));
   EXPECT_EQ(series.animation.sequence.at(1, 1), Vec3f(1, 0, 1));
   EXPECT_EQ(series.animation.sequence.at(2, 1), Vec3f(0, 1, 1)) << "divided by w";
-  EXPECT_EQ(read({put("b0.obj", relative), put("b1.obj", absolute)}).animation.pointOf.size(), 3u);
 }
 
 TEST_F(ObjSeriesFiles, ThatLieAreRefused) {
