@@ -1,5 +1,5 @@
-// Tried and given up: an indexed heap of four or eight ways in place of the radix heap (20,000 vertices, one thread of
-// a busy machine, best of ten: 0.042 s against 0.032 s, two smaller changes included); a pull towards the points of
+// Tried and given up: an indexed heap of four or eight ways in place of the radix heap (20,000 vertices, one thread,
+// two cores, best of ten: 0.042 s against 0.032 s, two smaller changes included); a pull towards the points of
 // 0.01 or more (SphereQuadric::kCentering), which draws handles out to the skin, and of 0.0001 or less, which lets
 // spheres of flat parts grow out of the model. Edges are evaluated 3.75 times a merge on a smooth closed surface;
 // evaluating all edges of the merged node would be 7 times.
