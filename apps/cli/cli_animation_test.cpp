@@ -67,6 +67,27 @@ TEST_F(AnimationRig, OfObjFilesIsEvaluatedOverAFolder) {
   EXPECT_EQ(result.code, 0) << result.error;
   EXPECT_THAT(result.out, AllOf(HasSubstr("within 0.3 %"), HasSubstr("| models | 1 |")));
   EXPECT_THAT(content("each.tsv"), HasSubstr("models\tfold\tf\t"));
+  fs::remove(folder_ / "each.tsv");
+  const std::vector<std::string> before = files();
+  for (const std::vector<std::string>& outputs : std::vector<std::vector<std::string>>{
+           {"--each", "same.tsv", "-o", "same.tsv"},  // not even a table
+           {"--each", "./-", "-o", "table.md"},
+           {"--each", "each.txt", "-o", "table.md"},
+           {"--each", "each.tsv", "-o", "missing/table.md"},
+       }) {
+    std::vector<std::string> arguments = {"evaluate", "decomposition", "models", "--quiet"};
+    arguments.insert(arguments.end(), outputs.begin(), outputs.end());
+    EXPECT_EQ(run(arguments).code, 1) << outputs[1];
+    EXPECT_EQ(files(), before) << outputs[1];
+  }
+  // The flat fold has no curve skeleton: that is said, and no rigger's means count it.
+  ASSERT_EQ(run({"sample", "robot", "-o", "robot.glb", "-q"}).code, 0);
+  ASSERT_EQ(run({"rig", "robot.glb", "--handles", "9", "-q", "-o", "models/robot.glb"}).code, 0);
+  const Result riggers = run({"evaluate", "templates", "models/fold.glb", "models/robot.glb", "--rigger", "prop",
+                              "--rigger", "curve-skeleton"});
+  EXPECT_EQ(riggers.code, 0) << riggers.error;
+  EXPECT_THAT(riggers.error, AllOf(HasSubstr("[not-rigged]"), HasSubstr("curve-skeleton: ")));
+  EXPECT_THAT(riggers.out, AllOf(HasSubstr("| models (1) | prop |"), HasSubstr("| models (1) | curve-skeleton |")));
 }
 
 }  // namespace

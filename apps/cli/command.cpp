@@ -108,6 +108,14 @@ void writeText(const std::string& path, const std::string& text) {
   writeFile(path, asBytes(text));
 }
 
+void writeTexts(const std::string& pathBeside, const std::string& beside, const std::string& path,
+                const std::string& text) {
+  std::vector<OutputFile> files;
+  if (!pathBeside.empty()) files.push_back({pathBeside, asBytes(beside)});
+  files.push_back({path, asBytes(text)});
+  writeFiles(files);
+}
+
 void flushOutput() {
   errno = 0;
   if (std::fflush(stdout) == 0 && !std::ferror(stdout)) return;

@@ -71,6 +71,9 @@ CLI::Validator numberIn(double low, double high);
 CLI::Validator momentOfClip();
 
 void writeText(const std::string& path, const std::string& text);
+// Two texts, both or none; the first only where `pathBeside` is not empty.
+void writeTexts(const std::string& pathBeside, const std::string& beside, const std::string& path,
+                const std::string& text);
 // Throws Error kFile where standard output did not take all that was printed.
 void flushOutput();
 

@@ -138,8 +138,9 @@ void runRiggers(RiggersOptions options) {
   std::vector<Image> pictures;
   std::vector<double> inside;
   const auto look = [&](const Asset& asset) {
-    if (isSideBySide) inside.push_back(insideShare(readSkinnedModel(asset)));
+    const double share = isSideBySide ? insideShare(readSkinnedModel(asset)) : 0;
     if (!options.sheet.empty()) pictures.push_back(render(makeScene(asset), bonesOnSheet()));
+    inside.push_back(share);
   };
   TerminalProgress progress(options.common.quiet);
   Warnings skipped;
@@ -150,9 +151,17 @@ void runRiggers(RiggersOptions options) {
   for (const std::string& rigger : options.riggers) {
     rig.rigger = rigger;
     inside.clear();
-    Warnings again;  // each rigger skips the same files, besides those that it cannot rig
-    rows = compareRigsOf(files, rerig, *progress, sideBySide.empty() ? skipped : again, moment, look);
-    for (std::size_t i = 0; i < inside.size(); ++i) {
+    Warnings own;
+    rows = compareRigsOf(files, rerig, *progress, own, moment, look);
+    for (const Warning& warning : own.items()) {
+      // All riggers skip the same files, besides those that they cannot rig.
+      const bool isOfRigger = warning.kind == "not-rigged";
+      const std::string where = isOfRigger && isSideBySide ? rigger + ": " + warning.where : warning.where;
+      if (isOfRigger || &rigger == &options.riggers.front()) {
+        skipped.add(warning.kind, warning.message, where, warning.count);
+      }
+    }
+    for (std::size_t i = 0; isSideBySide && i < rows.size(); ++i) {
       sideBySide.push_back({rigger, groupOf(rows[i].path, labels, folder), rows[i], inside[i]});
     }
   }
@@ -161,10 +170,10 @@ void runRiggers(RiggersOptions options) {
   if (!options.sheet.empty()) {
     writeFile(options.sheet, encodePng(contactSheet(pictures, kSheetColumns, renderBackdrop(bonesOnSheet()))));
   }
-  if (!options.each.empty()) writeText(options.each, eachTemplateTrial(trials));
-  writeText(options.output, isSideBySide     ? riggerTable(sideBySide)
-                            : labels.empty() ? rigTable(rows)
-                                             : templateTables(trials));
+  writeTexts(options.each, eachTemplateTrial(trials), options.output,
+             isSideBySide     ? riggerTable(sideBySide)
+             : labels.empty() ? rigTable(rows)
+                              : templateTables(trials));
   printWarnings(skipped, options.common.quiet);
 }
 
@@ -339,7 +348,8 @@ void addRiggers(CLI::App& evaluate) {
       "can be believed, and what was taken for what. The list has a line for each file, and columns called path, kind\n"
       "and split (docs/template-rigs.md).\n"
       "\nWith --rigger the table has a line for each rigger and split or folder: means without fingers, the share of\n"
-      "the joints that lie inside the model, and seconds. Riggers of handles choose their number themselves.\n"
+      "the joints that lie inside the model, and seconds, over the files that all of them rigged. Riggers of handles\n"
+      "choose their number themselves.\n"
       "\nExamples:\n"
       "  limber evaluate templates characters/*.glb --template humanoid\n"
       "  limber evaluate templates characters/*.glb --template humanoid --clip Walk --time 0.4\n"

@@ -35,6 +35,8 @@ void decomposeClip(const Asset& asset, const std::string& clip, Index bones, Dec
 void runDecomposition(const DecompositionArguments& arguments) {
   arguments.common.apply();
   checkOutput(arguments.output, {".md"});
+  if (!arguments.each.empty()) checkOutput(arguments.each, {".tsv"});
+  checkBeside("--each", arguments.each, {arguments.output});
   TerminalProgress progress(arguments.common.quiet);
   Warnings skipped;
   std::vector<DecompositionRow> rows;
@@ -43,8 +45,7 @@ void runDecomposition(const DecompositionArguments& arguments) {
     rows.insert(rows.end(), more.begin(), more.end());
   }
   refuseNothing(rows.empty(), skipped);
-  if (!arguments.each.empty()) writeText(arguments.each, eachDecomposition(rows));
-  writeText(arguments.output, decompositionTable(rows));
+  writeTexts(arguments.each, eachDecomposition(rows), arguments.output, decompositionTable(rows));
   printWarnings(skipped, arguments.common.quiet);
 }
 
@@ -55,7 +56,8 @@ void addDecompositionEvaluation(CLI::App& evaluate) {
   CLI::App* command = evaluate.add_subcommand(
       "decomposition", "Bake the clips of rigged characters to moving vertices and find their bones again");
   command->add_option("FOLDER", arguments->folders, "folders of rigged characters with clips")->required();
-  command->add_option("--each", arguments->each, "write the figures of each file, tab separated")->type_name("FILE");
+  command->add_option("--each", arguments->each, "write the figures of each file, tab separated (.tsv)")
+      ->type_name("FILE");
   command->add_option("-o,--output", arguments->output, "the table to write, in Markdown; - is standard output")
       ->type_name("FILE")
       ->capture_default_str();

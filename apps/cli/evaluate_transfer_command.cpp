@@ -28,6 +28,7 @@ void runTransferTrials(const TransferTrialArguments& options) {
   options.common.apply();
   checkOutput(options.output, {".md"});
   if (!options.each.empty()) checkOutput(options.each, {".tsv"});
+  checkBeside("--each", options.each, {options.output});
   TerminalProgress progress(options.common.quiet);
   Warnings skipped;
   std::vector<TransferFolder> folders;
@@ -41,8 +42,7 @@ void runTransferTrials(const TransferTrialArguments& options) {
     isEmpty = isEmpty && folders.back().trials.empty();
   }
   refuseNothing(isEmpty, skipped);
-  if (!options.each.empty()) writeText(options.each, eachTransferTrial(folders));
-  writeText(options.output, transferTable(folders));
+  writeTexts(options.each, eachTransferTrial(folders), options.output, transferTable(folders));
   printWarnings(skipped, options.common.quiet);
 }
 

@@ -8,6 +8,7 @@
 #include "limber/asset/clip_io.h"
 #include "limber/asset/read.h"
 #include "limber/asset/rig_io.h"
+#include "limber/evaluate/median.h"
 #include "limber/evaluate/model_files.h"
 
 namespace limber {
@@ -42,12 +43,6 @@ std::optional<DecompositionRow> decomposeFile(const std::filesystem::path& path,
   return row;
 }
 
-double medianOf(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t half = values.size() / 2;
-  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
-}
-
 std::string folderLine(std::span<const DecompositionRow> rows) {
   std::vector<double> errors, seconds;
   double joints = 0, bones = 0, sum = 0, time = 0;
@@ -62,7 +57,7 @@ std::string folderLine(std::span<const DecompositionRow> rows) {
   const auto count = static_cast<double>(rows.size());
   const auto within = std::count_if(errors.begin(), errors.end(), [](double e) { return e <= kComesBack; });
   return fmt::format("| {} | {} | {:.1f} | {:.1f} | {:.3f} | {:.3f} | {:.3f} | {} | {:.1f} | {:.1f} |\n",
-                     rows.front().folder, rows.size(), joints / count, bones / count, sum / count, medianOf(errors),
+                     rows.front().folder, rows.size(), joints / count, bones / count, sum / count, median(errors),
                      *std::max_element(errors.begin(), errors.end()), within, time / count,
                      *std::max_element(seconds.begin(), seconds.end()));
 }

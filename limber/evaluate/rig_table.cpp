@@ -72,6 +72,7 @@ std::vector<RigTableRow> compareRigsOf(std::span<const std::filesystem::path> fi
   progress.stage("compare rigs");
   for (std::size_t i = 0; i < files.size(); ++i) {
     progress.update(static_cast<double>(i) / static_cast<double>(files.size()));
+    std::string_view failure = "unreadable";
     try {
       Asset asset = readAsset(files[i]);
       if (!hasRig(asset)) {
@@ -86,15 +87,19 @@ std::vector<RigTableRow> compareRigsOf(std::span<const std::filesystem::path> fi
         row.name += fmt::format(" {} {:.2f}", moment->clip, moment->seconds);
       }
       const SkinnedModel truth = readSkinnedModel(asset);
+      failure = "not-rigged";
       const double start = secondsNow();
       row.fit = rerig(asset);
       row.seconds = secondsNow() - start;
       row.comparison = compareRigs(readSkinnedModel(asset), truth);
-      rows.push_back(std::move(row));
       if (seen) seen(asset);
+      rows.push_back(std::move(row));
     } catch (const Error& error) {
       if (error.code() == ErrorCode::kCancelled) throw;
-      skipped.add("unreadable", "files that cannot be compared left out", error.what());
+      skipped.add(
+          failure,
+          failure == "not-rigged" ? "files that were not rigged left out" : "files that cannot be compared left out",
+          error.what());
     }
   }
   progress.finish();

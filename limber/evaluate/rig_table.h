@@ -41,8 +41,9 @@ using Rerig = std::function<RigFit(Asset&)>;
 // Is shown the asset of each row with its new rig.
 using RiggedSeen = std::function<void(const Asset&)>;
 
-// One row for each of the files that has a rig and triangles, in their order; what cannot be read or compared is
-// counted in `skipped`. Given a moment, each stands in that pose (standAt) before it is rigged and compared.
+// One row for each of the files that has a rig and triangles, in their order. The others are counted in `skipped`:
+// "without-rig", "unreadable", and "not-rigged" where `rerig`, or the comparison of what it made, fails. Given a
+// moment, each stands in that pose (standAt) before it is rigged and compared.
 std::vector<RigTableRow> compareRigsOf(std::span<const std::filesystem::path> files, const Rerig& rerig,
                                        Progress& progress, Warnings& skipped,
                                        const std::optional<ClipMoment>& moment = std::nullopt,

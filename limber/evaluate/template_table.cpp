@@ -174,6 +174,21 @@ std::string confusion(std::span<const TemplateTrial> trials) {
   return table;
 }
 
+// Those of files that every rigger has.
+std::vector<RiggerTrial> ofCommonFiles(std::span<const RiggerTrial> trials) {
+  std::set<std::string> riggers;
+  std::map<std::filesystem::path, std::set<std::string>> riggersOf;
+  for (const RiggerTrial& trial : trials) {
+    riggers.insert(trial.rigger);
+    riggersOf[trial.row.path].insert(trial.rigger);
+  }
+  std::vector<RiggerTrial> common;
+  for (const RiggerTrial& trial : trials) {
+    if (riggersOf[trial.row.path].size() == riggers.size()) common.push_back(trial);
+  }
+  return common;
+}
+
 }  // namespace
 
 std::vector<LabelledFile> parseLabelledFiles(std::string_view text) {
@@ -239,7 +254,8 @@ std::string eachTemplateTrial(std::span<const TemplateTrial> trials) {
   return text;
 }
 
-std::string riggerTable(std::span<const RiggerTrial> trials) {
+std::string riggerTable(std::span<const RiggerTrial> all) {
+  const std::vector<RiggerTrial> trials = ofCommonFiles(all);
   std::vector<std::string> groups, riggers;
   const auto addNew = [](const std::string& name, std::vector<std::string>& names) {
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);

@@ -49,7 +49,8 @@ struct RiggerTrial {
 };
 
 // Means of each group and rigger, side by side in the order in which they come: joints that there are for the artist's,
-// the distances and the pairing of joints without fingers, those inside, and seconds. Markdown.
+// the distances and the pairing of joints without fingers, those inside, and seconds. Over the files (by their paths)
+// that all the riggers have rigged, so that lines of a group compare. Markdown.
 std::string riggerTable(std::span<const RiggerTrial> trials);
 
 }  // namespace limber

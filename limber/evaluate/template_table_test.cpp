@@ -59,8 +59,9 @@ TEST(TemplateTables, CountKindsAndWhatIsSureAndWrong) {
 }
 
 TEST(RiggerTable, HasALineForEachGroupAndRigger) {
-  const auto riggerTrial = [](const char* rigger, const char* group, double distance, double inside) {
+  const auto riggerTrial = [](const char* rigger, const char* group, const char* file, double distance, double inside) {
     RiggerTrial result{rigger, group, {}, inside};
+    result.row.path = file;
     RigDistances& distances = result.row.comparison.withoutFingers;
     distances.jointToJoint = distance;
     distances.joints = 30;
@@ -68,13 +69,21 @@ TEST(RiggerTable, HasALineForEachGroupAndRigger) {
     result.row.seconds = 0.5;
     return result;
   };
-  const std::string table =
-      riggerTable(std::vector<RiggerTrial>{riggerTrial("a", "tune", 2, 1), riggerTrial("a", "tune", 4, 0.5),
-                                           riggerTrial("a", "check", 7, 1), riggerTrial("b", "tune", 9, 0)});
+  const std::string table = riggerTable(
+      std::vector<RiggerTrial>{riggerTrial("a", "tune", "1.glb", 2, 1), riggerTrial("a", "tune", "2.glb", 4, 0.5),
+                               riggerTrial("a", "check", "3.glb", 7, 1), riggerTrial("b", "tune", "1.glb", 9, 0),
+                               riggerTrial("b", "tune", "2.glb", 9, 0), riggerTrial("b", "check", "3.glb", 5, 0)});
   EXPECT_THAT(table, HasSubstr("| tune (2) | a | 1.50 | 3.00 | 0.00 | 0.00 | 0.00 | 0.00 | 0.00 | 0.75 | 0.50 |"));
-  EXPECT_THAT(table, HasSubstr("| tune (1) | b | 1.50 | 9.00 |"));
+  EXPECT_THAT(table, HasSubstr("| tune (2) | b | 1.50 | 9.00 |"));
   EXPECT_THAT(table, HasSubstr("| check (1) | a | 1.50 | 7.00 |"));
-  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 5);
+  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 6);
+  // A file that one rigger could not do counts for none.
+  const std::string common = riggerTable(
+      std::vector<RiggerTrial>{riggerTrial("a", "tune", "1.glb", 2, 1), riggerTrial("a", "tune", "2.glb", 4, 0.5),
+                               riggerTrial("b", "tune", "1.glb", 9, 0), riggerTrial("a", "check", "3.glb", 7, 1)});
+  EXPECT_THAT(common, HasSubstr("| tune (1) | a | 1.50 | 2.00 |"));
+  EXPECT_THAT(common, HasSubstr("| tune (1) | b | 1.50 | 9.00 |"));
+  EXPECT_EQ(std::count(common.begin(), common.end(), '\n'), 4);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "limber/asset/read.h"
 #include "limber/asset/rig_io.h"
 #include "limber/core/split_text.h"
+#include "limber/evaluate/median.h"
 #include "limber/evaluate/model_files.h"
 
 namespace limber {
@@ -117,12 +118,6 @@ std::string fileLine(const PairedRow& pair) {
   return fmt::format("| {}{} | {}/{} | {:.3f} {} {:.2f} | {:.2f} | {:.3f} {} {:.2f} | {:.3f}/{:.3f} | {} | {:.3f} |\n",
                      pair.row->file, mark, c.usedJoints, c.joints, c.l1, l1Others, c.precision, c.recall, c.deformMean,
                      deformOthers, c.deformP95, c.smoothness, c.truthSmoothness, c.unweighted, pair.row->seconds);
-}
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t half = values.size() / 2;
-  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
 // Means over the files of one group; of the reference only over files that it has.
