@@ -22,16 +22,19 @@ constexpr int kCommandsVersion = 2;  // 1 knew no motions that are put on as the
 // In the order of the variant. The formatter would put each on a line of its own.
 // clang-format off
 constexpr std::array<std::string_view, 62> kNames = {
-    "open_sample",       "open_file",         "set_handles",  "choose_methods", "pin_joint",     "unpin_joint",
-    "begin_drag",        "update_drag",       "turn_drag",    "move_drag",      "end_drag",      "cancel_drag",
-    "turn_joint",        "move_joint",        "set_ik",       "set_target",     "clear_target",  "set_limits",
-    "reset_joint",       "reset_pose",        "mirror_pose",  "set_rest_pose",  "rename_joint",  "add_motion",
-    "add_sample_motion", "retarget",          "set_contact", "add_clip",     "remove_clip",    "rename_clip",   "choose_clip",
-    "set_time",          "set_key",           "move_key",     "delete_key",     "edit_keys",     "delete_keys",
-    "set_joint_key",     "set_interpolation", "set_tangents", "paste_keys",     "paint_weights", "lock_weights",
-    "mirror_weights",    "add_joint",         "delete_joint", "reparent_joint", "place_joint",   "set_turn",
-    "apply_pose", "apply_tasks",        "undo",              "redo",         "add_sample",     "add_file",      "remove_member",
-    "choose_member",     "rename_member",     "place_member", "attach_member",  "detach_member", "set_clock"};
+    "open_sample",   "open_file",      "set_handles",   "choose_methods",    "pin_joint",
+    "unpin_joint",   "begin_drag",     "update_drag",   "turn_drag",         "move_drag",
+    "end_drag",      "cancel_drag",    "turn_joint",    "move_joint",        "set_ik",
+    "set_target",    "clear_target",   "set_limits",    "reset_joint",       "reset_pose",
+    "mirror_pose",   "set_rest_pose",  "rename_joint",  "add_motion",        "add_sample_motion",
+    "retarget",      "set_contact",    "add_clip",      "remove_clip",       "rename_clip",
+    "choose_clip",   "set_time",       "set_key",       "move_key",          "delete_key",
+    "edit_keys",     "delete_keys",    "set_joint_key", "set_interpolation", "set_tangents",
+    "paste_keys",    "paint_weights",  "lock_weights",  "mirror_weights",    "add_joint",
+    "delete_joint",  "reparent_joint", "place_joint",   "set_turn",          "apply_pose",
+    "apply_tasks",   "undo",           "redo",          "add_sample",        "add_file",
+    "remove_member", "choose_member",  "rename_member", "place_member",      "attach_member",
+    "detach_member", "set_clock"};
 // clang-format on
 static_assert(kNames.size() == std::variant_size_v<Command>);
 
