@@ -49,15 +49,18 @@ void partsOfWeights(benchmark::State& state) {
   const SkinWeights weights = fadingWeights(mesh);
   const JointGroups groups = tenGroups();
   for (auto _ : state) {
-    benchmark::DoNotOptimize(partsByWeights(faceGraph(mesh), mesh.triangles, weights, groups));
+    Progress progress;
+    benchmark::DoNotOptimize(partsByWeights(faceGraph(mesh), mesh.triangles, weights, groups, progress));
   }
   state.counters["triangles"] = mesh.triangleCount();
 }
 
 void capsOfParts(benchmark::State& state) {
   const TriMesh mesh = creature(static_cast<Index>(state.range(0)));
-  const SurfaceParts parts = partsByWeights(faceGraph(mesh), mesh.triangles, fadingWeights(mesh), tenGroups());
-  for (auto _ : state) benchmark::DoNotOptimize(capParts(mesh, parts.partOf, parts.partCount()));
+  Progress progress;
+  const SurfaceParts parts =
+      partsByWeights(faceGraph(mesh), mesh.triangles, fadingWeights(mesh), tenGroups(), progress);
+  for (auto _ : state) benchmark::DoNotOptimize(capParts(mesh, parts.partOf, parts.partCount(), progress));
   state.counters["triangles"] = mesh.triangleCount();
 }
 

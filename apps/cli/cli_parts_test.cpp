@@ -34,6 +34,32 @@ TEST_F(Cli, EachPartIsAWatertightFileToPrint) {
   }
 }
 
+TEST_F(Cli, APartsFileNeverTakesThePlaceOfTheModel) {
+  ASSERT_EQ(run({"sample", "quadruped", "-o", "fox.glb", "--quiet"}).code, 0);
+  ASSERT_EQ(run({"parts", "fox.glb", "--count", "3", "--split", "-o", "print.stl", "--quiet"}).code, 0);
+  const std::string before = content("print_part_01.stl");
+  const Result again = run({"parts", "print_part_01.stl", "--count", "2", "--split", "-o", "print.stl"});
+  EXPECT_NE(again.code, 0);
+  EXPECT_THAT(again.error, HasSubstr("would take the place of"));
+  EXPECT_EQ(content("print_part_01.stl"), before);
+}
+
+TEST_F(Cli, FilesOfPartsHaveNamesThatEveryFileSystemTakes) {
+  ASSERT_EQ(run({"sample", "quadruped", "-o", "fox.glb", "--quiet"}).code, 0);
+  ASSERT_EQ(run({"rig", "fox.glb", "--handles", "3", "-o", "rigged.gltf", "--quiet"}).code, 0);
+  std::string text = content("rigged.gltf");
+  for (const auto& [handle, name] : std::vector<std::pair<std::string, std::string>>{
+           {"handle_00", "Bone"}, {"handle_01", "bone"}, {"handle_02", "a<b>|c?*\\\"d"}}) {
+    const std::size_t at = text.find("\"" + handle + "\"");
+    ASSERT_NE(at, std::string::npos);
+    text.replace(at + 1, handle.size(), name);
+  }
+  put("rigged.gltf", text);
+  const Result split = run({"parts", "rigged.gltf", "--detail", "joints", "--split", "-o", "out.ply"});
+  EXPECT_EQ(split.code, 0) << split.error;
+  EXPECT_THAT(files(), ::testing::IsSupersetOf({"out_Bone.ply", "out_bone_2.ply", "out_a_b__c___d.ply"}));
+}
+
 TEST_F(Cli, PartsThatCannotBeAreOneLineAndNoFile) {
   makeRobot();
   for (const std::vector<std::string>& arguments :
@@ -56,6 +82,16 @@ TEST_F(Cli, APictureShowsTheParts) {
   EXPECT_EQ(run({"preview", "robot.glb", "--show", "parts", "-o", "parts.png", "--size", "64x64"}).code, 0);
   EXPECT_EQ(run({"preview", "robot.glb", "-o", "model.png", "--size", "64x64"}).code, 0);
   EXPECT_NE(content("parts.png"), content("model.png"));
+  // One colour for each part: the picture goes by how many there are, and by nothing else.
+  const auto pictureOf = [&](const std::string& count) {
+    EXPECT_EQ(run({"preview", "robot.glb", "--show", "parts", "--count", count, "-o", "n.png", "--size", "64x64"}).code,
+              0);
+    return content("n.png");
+  };
+  const std::string two = pictureOf("2");
+  EXPECT_NE(two, pictureOf("3"));
+  EXPECT_NE(two, pictureOf("1"));
+  EXPECT_EQ(two, pictureOf("2"));
 }
 
 }  // namespace

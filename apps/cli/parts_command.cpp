@@ -1,13 +1,14 @@
 // limber parts: a model taken apart, as materials or as meshes.
 #include <algorithm>
 #include <filesystem>
+#include <set>
+#include <string_view>
 
 #include <fmt/format.h>
 
 #include "command.h"
 #include "limber/asset/mesh_export.h"
 #include "limber/asset/read.h"
-#include "limber/asset/unique_names.h"
 #include "limber/asset/write.h"
 #include "limber/core/counted.h"
 #include "limber/core/names.h"
@@ -69,20 +70,41 @@ Geometry geometryOf(const Geometry& all, const std::vector<Index>& nodes) {
   return some;
 }
 
+// With what no file system takes replaced: Windows refuses more than others.
+std::string fileNameOf(std::string name) {
+  const auto isRefused = [](unsigned char c) {
+    return c < 0x20 || std::string_view("<>:\"/\\|?*").find(static_cast<char>(c)) != std::string_view::npos;
+  };
+  std::replace_if(name.begin(), name.end(), isRefused, '_');
+  return name;
+}
+
+// Names that differ by more than by upper and lower case: file systems of macOS and Windows do not tell these apart.
+class FileNames {
+ public:
+  std::string add(const std::string& wanted) {
+    std::string name = wanted;
+    for (std::size_t n = 2; !used_.insert(lowerCase(name)).second; ++n) name = fmt::format("{}_{}", wanted, n);
+    return name;
+  }
+
+ private:
+  std::set<std::string> used_;
+};
+
 // A file for each part: OUT_PART.stl.
 void writePartFiles(const Asset& asset, const std::vector<PartNodes>& parts, const PartsArguments& options,
                     const Account& account) {
   const Geometry geometry = collectGeometry(asset);
   const fs::path output = options.output;
   const bool stl = lowerExtension(output) == ".stl";
-  UniqueNames names;
+  FileNames names;
   std::vector<std::pair<fs::path, Bytes>> files;
   for (const PartNodes& part : parts) {
-    std::string name = part.name;
-    std::replace_if(
-        name.begin(), name.end(), [](unsigned char c) { return c < 0x20 || c == '/' || c == '\\' || c == ':'; }, '_');
+    const std::string name = names.add(fileNameOf(part.name));
     fs::path path = output;
-    path.replace_filename(names.add(output.stem().string() + "_" + name) + output.extension().string());
+    path.replace_filename(output.stem().string() + "_" + name + output.extension().string());
+    checkBeside("--output", path.string(), {options.input});
     const ExportMesh mesh = exportMesh(asset, geometryOf(geometry, part.nodes));
     files.emplace_back(path, stl ? encodeStl(mesh) : encodePly(mesh));
   }
@@ -134,7 +156,7 @@ void run(const PartsArguments& options) {
   progress->stage("write");
   std::vector<PartNodes> nodes;
   if (options.split) {
-    nodes = splitParts(asset, geometry, parts, {!options.open});
+    nodes = splitParts(asset, geometry, parts, {!options.open}, *progress);
   } else {
     std::vector<Vec3f> tints;
     for (Index p = 0; p < parts.partCount() && !options.keepColors; ++p) tints.push_back(jointColor(p));

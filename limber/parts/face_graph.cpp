@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <limits>
-#include <queue>
 
 #include "limber/core/disjoint_sets.h"
 #include "limber/mesh/edge_groups.h"
+#include "limber/parts/shortest_paths.h"
 #include "limber/surface/piece_links.h"
 #include "limber/surface/surface_edges.h"
 
@@ -16,9 +16,9 @@ namespace {
 // delta. The paper takes 0.01 to 0.05, by which a nostril is farther away than a foot. Measured over the shared tune
 // characters as how well parts by shape agree with limbs by weights, as many as these (adjusted Rand index by area):
 // 0.03: 0.44, 0.1: 0.45, 0.2: 0.47, 0.4: 0.52, 0.7: 0.52.
-constexpr double kGeodesicShare = 0.5;
-constexpr double kConvexShare = 0.2;  // eta of convex edges; the paper: small, 0.1 to 0.2
-constexpr double kLinkAngle = 1;      // 1 - cos of a right angle
+constexpr double kGeodesicWeight = 0.5;
+constexpr double kConvexWeight = 0.2;  // eta of convex edges; the paper: small, 0.1 to 0.2
+constexpr double kLinkAngle = 1;       // 1 - cos of a right angle
 
 // What the arcs are made of, before the means are known.
 struct Bend {
@@ -57,7 +57,7 @@ double bendAngle(const Faces& faces, Index a, Index b) {
   if (faces.normals[a].isZero() || faces.normals[b].isZero()) return 0;
   const double angle = std::max(0.0, 1 - faces.normals[a].dot(faces.normals[b]));
   const bool concave = (faces.centers[b] - faces.centers[a]).dot(faces.normals[a] - faces.normals[b]) > 0;
-  return concave ? angle : kConvexShare * angle;
+  return concave ? angle : kConvexWeight * angle;
 }
 
 void addEdges(const TriMesh& mesh, const Faces& faces, FaceGraph& graph, std::vector<Bend>& bends) {
@@ -131,7 +131,7 @@ void weighArcs(std::span<const Bend> bends, FaceGraph& graph) {
   for (std::size_t i = 0; i < bends.size(); ++i) {
     FaceArc& arc = graph.arcs[i];
     const double bend = overMean(bends[i].angle, angle);
-    arc.distance = kGeodesicShare * overMean(bends[i].geodesic, geodesic) + (1 - kGeodesicShare) * bend;
+    arc.distance = kGeodesicWeight * overMean(bends[i].geodesic, geodesic) + (1 - kGeodesicWeight) * bend;
     arc.capacity = overMean(arc.length, length) / (1 + bend);
   }
 }
@@ -167,22 +167,12 @@ FaceGraph faceGraph(const TriMesh& mesh) {
 
 void shortenFrom(const FaceGraph& graph, std::span<const Index> sources, std::vector<double>& distances,
                  const std::function<void(Index from, Index to)>& reach) {
-  using Entry = std::pair<double, Index>;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-  for (const Index face : sources) queue.emplace(distances[face], face);
-  while (!queue.empty()) {
-    const auto [distance, at] = queue.top();
-    queue.pop();
-    if (distance > distances[at]) continue;
-    for (const Index arc : graph.arcsOf(at)) {
-      const Index next = graph.across(arc, at);
-      const double further = distance + graph.arcs[arc].distance;
-      if (!(further < distances[next])) continue;
-      distances[next] = further;
-      reach(at, next);
-      queue.emplace(further, next);
-    }
-  }
+  shortenPaths(
+      sources, distances,
+      [&](Index at, const auto& visit) {
+        for (const Index arc : graph.arcsOf(at)) visit(graph.across(arc, at), graph.arcs[arc].distance);
+      },
+      reach);
 }
 
 std::vector<double> distancesFrom(const FaceGraph& graph, Index face) {

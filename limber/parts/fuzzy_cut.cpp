@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -14,7 +15,7 @@ namespace limber {
 
 namespace {
 
-constexpr double kIslandShare = 0.1;  // of a part's area
+constexpr double kIslandFraction = 0.1;  // of a part's area
 constexpr int kIslandRounds = 8;
 
 using PartPair = std::array<Index, 2>;  // first < second
@@ -25,7 +26,7 @@ class PairCut {
   PairCut(const FaceGraph& graph, const PartPair& parts, std::vector<Index>& partOf, std::vector<Index>& nodeOf)
       : graph_(graph), parts_(parts), partOf_(partOf), nodeOf_(nodeOf) {}
 
-  void run(std::span<const Index> region) {
+  void run(std::span<const Index> region, const std::function<void()>& heartbeat) {
     const auto count = static_cast<Index>(region.size());
     for (Index n = 0; n < count; ++n) nodeOf_[region[n]] = n;
     MaxFlow flow(count + 2);
@@ -33,7 +34,7 @@ class PairCut {
     touches_[1].assign(count, false);
     DisjointSets patches(count);
     for (Index n = 0; n < count; ++n) addNode(n, region[n], count, flow, patches);
-    flow.run(count, count + 1);
+    flow.run(count, count + 1, heartbeat);
     for (Index n = 0; n < count; ++n) {
       for (std::vector<bool>& touches : touches_) {
         if (touches[n]) touches[patches.find(n)] = true;
@@ -113,7 +114,7 @@ std::vector<Index> islandsOf(const Patches& patches, std::span<const Index> part
   for (Index t = 0; t < partOf.size(); ++t) {
     if (patches.patchOf[t] != t) continue;
     const PartArea& area = areas[partOf[t]];
-    if (t != area.largestPatch && patches.areas[t] < kIslandShare * area.all) islands.push_back(t);
+    if (t != area.largestPatch && patches.areas[t] < kIslandFraction * area.all) islands.push_back(t);
   }
   std::stable_sort(islands.begin(), islands.end(),
                    [&](Index a, Index b) { return patches.areas[a] < patches.areas[b]; });
@@ -138,7 +139,8 @@ std::optional<Index> partRound(const FaceGraph& graph, std::span<const Index> fa
 
 }  // namespace
 
-std::vector<Index> cutFuzzyParts(const FaceGraph& graph, const FuzzyParts& fuzzy, double fuzziness) {
+std::vector<Index> cutFuzzyParts(const FaceGraph& graph, const FuzzyParts& fuzzy, double fuzziness,
+                                 Progress& progress) {
   std::vector<Index> partOf = fuzzy.first;
   std::map<PartPair, std::vector<Index>> regions;
   for (Index t = 0; t < graph.faceCount(); ++t) {
@@ -148,12 +150,17 @@ std::vector<Index> cutFuzzyParts(const FaceGraph& graph, const FuzzyParts& fuzzy
     }
   }
   std::vector<Index> nodeOf(graph.faceCount(), kNoIndex);
-  for (const auto& [pair, region] : regions) PairCut(graph, pair, partOf, nodeOf).run(region);
+  std::size_t cuts = 0;
+  for (const auto& [pair, region] : regions) {
+    const double fraction = static_cast<double>(cuts++) / static_cast<double>(regions.size());
+    PairCut(graph, pair, partOf, nodeOf).run(region, [&] { progress.update(fraction); });
+  }
   return partOf;
 }
 
-void mergeIslands(const FaceGraph& graph, std::vector<Index>& partOf) {
+void mergeIslands(const FaceGraph& graph, std::vector<Index>& partOf, Progress& progress) {
   for (int round = 0; round < kIslandRounds; ++round) {
+    progress.update(static_cast<double>(round) / kIslandRounds);
     const Patches patches = findPatches(graph, partOf);
     std::vector<Index> order(graph.faceCount());
     std::iota(order.begin(), order.end(), Index{0});

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "limber/core/progress.h"
 #include "limber/parts/face_graph.h"
 
 namespace limber {
@@ -24,12 +25,13 @@ struct FuzzyParts {
 
 // The triangles that lead by less than `fuzziness` go to either of their two parts so that the boundary between them is
 // the smallest cut through the arcs' capacities (Katz, Tal 2003, section 5), pair of parts by pair; all others, and
-// fuzzy ones that do not lie between both parts, to their likeliest. Returns #F part numbers. Cost: that of the flows.
-std::vector<Index> cutFuzzyParts(const FaceGraph& graph, const FuzzyParts& fuzzy, double fuzziness);
+// fuzzy ones that do not lie between both parts, to their likeliest. Returns #F part numbers. Throws Error kCancelled.
+// Cost: that of the flows.
+std::vector<Index> cutFuzzyParts(const FaceGraph& graph, const FuzzyParts& fuzzy, double fuzziness, Progress& progress);
 
 // Gives what is scattered over other parts to these: a connected patch of a part that holds less than a tenth of its
 // area, and is not its largest, goes to the part with which it shares the longest boundary. Pieces of the model are
-// never split off or merged by this. Cost: O(#F) a round, at most 8 rounds.
-void mergeIslands(const FaceGraph& graph, std::vector<Index>& partOf);
+// never split off or merged by this. Throws Error kCancelled. Cost: O(#F log #F) a round, at most 8 rounds.
+void mergeIslands(const FaceGraph& graph, std::vector<Index>& partOf, Progress& progress);
 
 }  // namespace limber

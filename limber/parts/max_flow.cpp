@@ -62,9 +62,12 @@ double MaxFlow::blockingFlow(Index source, Index sink) {
   }
 }
 
-double MaxFlow::run(Index source, Index sink) {
+double MaxFlow::run(Index source, Index sink, const std::function<void()>& heartbeat) {
   double flow = 0;
-  while (findLevels(source, sink)) flow += blockingFlow(source, sink);
+  while (findLevels(source, sink)) {
+    if (heartbeat) heartbeat();
+    flow += blockingFlow(source, sink);
+  }
   return flow;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 #include "limber/core/types.h"
@@ -18,8 +19,9 @@ class MaxFlow {
   // What may flow from a to b and from b to a: 0 or more, finite.
   void addEdge(Index a, Index b, double forward, double backward);
 
-  // The largest flow; once for each network. source != sink.
-  double run(Index source, Index sink);
+  // The largest flow; once for each network. source != sink. `heartbeat`, if any, is called before each pass over the
+  // edges, and may throw.
+  double run(Index source, Index sink, const std::function<void()>& heartbeat = {});
 
   // After run(): can the node still be reached from the source? The edges that leave the nodes for which this holds are
   // a smallest cut, of all such the one nearest to the source.

@@ -36,15 +36,15 @@ std::vector<Index> keptTriangles(const Geometry& geometry, const PreparedMesh& p
 }
 
 SurfaceParts byWeights(const Asset& asset, const Geometry& geometry, std::span<const Index> kept,
-                       const FaceGraph& graph, PartDetail detail) {
+                       const FaceGraph& graph, PartDetail detail, Progress& progress) {
   const AssetSkeleton rig = readSkeleton(asset);
   const SkinWeights weights = readWeights(asset, geometry, rig);
   std::vector<Triangle> triangles;
   triangles.reserve(kept.size());
   for (const Index t : kept) triangles.push_back(geometry.triangles[t]);
-  SurfaceParts parts = partsByWeights(graph, triangles, weights, jointGroups(rig.skeleton, detail));
+  SurfaceParts parts = partsByWeights(graph, triangles, weights, jointGroups(rig.skeleton, detail), progress);
   if (detail == PartDetail::kLimbs && parts.partCount() == 1) {
-    parts = partsByWeights(graph, triangles, weights, jointGroups(rig.skeleton, PartDetail::kJoints));
+    parts = partsByWeights(graph, triangles, weights, jointGroups(rig.skeleton, PartDetail::kJoints), progress);
   }
   return parts;
 }
@@ -69,7 +69,7 @@ std::vector<Index> expand(const Geometry& geometry, const PreparedMesh& prepared
 }  // namespace
 
 PartMethod parsePartMethod(std::string_view name) {
-  return findByName(kMethods, "way to find parts", name).method;
+  return findByName(kMethods, "segmentation method", name).method;
 }
 
 PartDetail parsePartDetail(std::string_view name) {
@@ -86,7 +86,7 @@ SurfaceParts modelParts(const Asset& asset, const Geometry& geometry, const Part
   const std::vector<Index> kept = keptTriangles(geometry, prepared);
   const FaceGraph graph = faceGraph(prepared.mesh);
   SurfaceParts parts = rigged && options.method != PartMethod::kShape
-                           ? byWeights(asset, geometry, kept, graph, options.detail)
+                           ? byWeights(asset, geometry, kept, graph, options.detail, progress)
                            : partsByShape(graph, {options.count}, progress);
   parts.partOf = expand(geometry, prepared, kept, parts.partOf);
   return parts;

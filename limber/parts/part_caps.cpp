@@ -1,8 +1,11 @@
 #include "limber/parts/part_caps.h"
 
 #include <algorithm>
+#include <functional>
 #include <map>
-#include <numeric>
+#include <optional>
+#include <queue>
+#include <set>
 #include <utility>
 
 #include "limber/mesh/edge_groups.h"
@@ -85,10 +88,10 @@ Vec3 loopArea(const TriMesh& mesh, std::span<const Index> loop) {
   return area;
 }
 
-// Fills one loop.
+// Fills one loop. An ear stays one until a neighbour goes, so that each is looked at a few times only.
 class LoopFiller {
  public:
-  LoopFiller(const TriMesh& mesh, std::span<const Edge> partEdges, std::vector<Edge>& diagonals, PartCap& cap)
+  LoopFiller(const TriMesh& mesh, std::span<const Edge> partEdges, std::set<Edge>& diagonals, PartCap& cap)
       : partEdges_(partEdges), diagonals_(diagonals), cap_(cap) {
     Vec3 u = cap.normal.unitOrthogonal();
     if (cap.normal.isZero()) u = Vec3::UnitX();
@@ -99,12 +102,26 @@ class LoopFiller {
     }
   }
 
-  void fill() {
-    if (!clipEars()) fanOut();
+  // Calls `heartbeat`, which may throw, every few ears.
+  void fill(const std::function<void()>& heartbeat) {
+    if (!clipEars(heartbeat)) fanOut();
   }
 
  private:
   using Flat = Eigen::Vector2d;
+
+  static constexpr std::size_t kEarsBetweenBeats = 256;
+
+  // A corner between its neighbours of the moment; the shortest diagonal first.
+  struct Candidate {
+    double length = 0;  // squared
+    Index at = 0, before = 0, after = 0;
+
+    bool operator>(const Candidate& other) const {
+      return length != other.length ? length > other.length : at > other.at;
+    }
+  };
+  using Candidates = std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>>;
 
   static double turn(const Flat& a, const Flat& b, const Flat& c) {
     return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
@@ -112,43 +129,83 @@ class LoopFiller {
 
   bool isFree(Index a, Index b) const {
     const Edge edge = lowHigh(cap_.loop[a], cap_.loop[b]);
-    return !std::binary_search(partEdges_.begin(), partEdges_.end(), edge) &&
-           std::find(diagonals_.begin(), diagonals_.end(), edge) == diagonals_.end();
+    return !std::binary_search(partEdges_.begin(), partEdges_.end(), edge) && diagonals_.count(edge) == 0;
   }
 
-  bool isEar(std::span<const Index> rest, std::size_t i) const {
-    const Index a = rest[(i + rest.size() - 1) % rest.size()], b = rest[i], c = rest[(i + 1) % rest.size()];
+  bool isEar(const Candidate& corner) const {
+    const Index a = corner.before, b = corner.at, c = corner.after;
     if (!(turn(flat_[a], flat_[b], flat_[c]) > 0)) return false;
-    if (rest.size() > 3 && !isFree(a, c)) return false;
-    return std::none_of(rest.begin(), rest.end(), [&](Index p) {
-      return p != a && p != b && p != c && turn(flat_[a], flat_[b], flat_[p]) >= 0 &&
-             turn(flat_[b], flat_[c], flat_[p]) >= 0 && turn(flat_[c], flat_[a], flat_[p]) >= 0;
-    });
+    if (left_ > 3 && !isFree(a, c)) return false;
+    for (Index p = next_[c]; p != a; p = next_[p]) {
+      if (p != c && turn(flat_[a], flat_[b], flat_[p]) >= 0 && turn(flat_[b], flat_[c], flat_[p]) >= 0 &&
+          turn(flat_[c], flat_[a], flat_[p]) >= 0) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  void linkAll() {
+    left_ = cap_.loop.size();
+    const auto count = static_cast<Index>(left_);
+    for (Index i = 0; i < count; ++i) {
+      previous_.push_back((i + count - 1) % count);
+      next_.push_back((i + 1) % count);
+    }
+  }
+
+  void offer(Index at, Candidates& candidates) const {
+    const Index a = previous_[at], c = next_[at];
+    candidates.push({(points_[a] - points_[c]).squaredNorm(), at, a, c});
+  }
+
+  // The next ear, and none where no corner that is left is one. Corners of loops that cross themselves, or that lost
+  // their diagonal to another ear, may become ears later: where the queue runs dry all are looked at once more.
+  std::optional<Candidate> takeEar(Candidates& candidates, Index any) const {
+    for (const bool isLast : {false, true}) {
+      while (!candidates.empty()) {
+        const Candidate corner = candidates.top();
+        candidates.pop();
+        const bool isStale = next_[corner.before] != corner.at || next_[corner.at] != corner.after;
+        if (!isStale && isEar(corner)) return corner;
+      }
+      if (isLast) break;
+      Index at = any;
+      do {
+        offer(at, candidates);
+        at = next_[at];
+      } while (at != any);
+    }
+    return std::nullopt;
   }
 
   // False, and nothing done, where some part of the loop has no ear.
-  bool clipEars() {
-    std::vector<Index> rest(cap_.loop.size());
-    std::iota(rest.begin(), rest.end(), Index{0});
-    const std::size_t diagonalsBefore = diagonals_.size();
-    while (rest.size() > 2) {
-      std::vector<std::pair<double, std::size_t>> order;
-      for (std::size_t i = 0; i < rest.size(); ++i) {
-        const Index a = rest[(i + rest.size() - 1) % rest.size()], c = rest[(i + 1) % rest.size()];
-        order.emplace_back((points_[a] - points_[c]).squaredNorm(), i);
-      }
-      std::sort(order.begin(), order.end());
-      const auto ear = std::find_if(order.begin(), order.end(), [&](const auto& at) { return isEar(rest, at.second); });
-      if (ear == order.end()) {
+  bool clipEars(const std::function<void()>& heartbeat) {
+    linkAll();
+    Candidates candidates;
+    std::vector<Edge> added;
+    Index any = 0;  // that is left
+    while (left_ > 2) {
+      if (left_ % kEarsBetweenBeats == 0) heartbeat();
+      const std::optional<Candidate> ear = takeEar(candidates, any);
+      if (!ear) {
         cap_.triangles.clear();
-        diagonals_.resize(diagonalsBefore);
+        for (const Edge& edge : added) diagonals_.erase(edge);
         return false;
       }
-      const std::size_t i = ear->second;
-      const Index a = rest[(i + rest.size() - 1) % rest.size()], c = rest[(i + 1) % rest.size()];
-      cap_.triangles.push_back({a, rest[i], c});
-      if (rest.size() > 3) diagonals_.push_back(lowHigh(cap_.loop[a], cap_.loop[c]));
-      rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(i));
+      const auto [length, at, a, c] = *ear;
+      cap_.triangles.push_back({a, at, c});
+      if (left_ > 3) {
+        added.push_back(lowHigh(cap_.loop[a], cap_.loop[c]));
+        diagonals_.insert(added.back());
+      }
+      next_[a] = c;
+      previous_[c] = a;
+      next_[at] = kNoIndex;
+      any = a;
+      --left_;
+      offer(a, candidates);
+      offer(c, candidates);
     }
     return true;
   }
@@ -160,26 +217,30 @@ class LoopFiller {
   }
 
   std::span<const Edge> partEdges_;
-  std::vector<Edge>& diagonals_;
+  std::set<Edge>& diagonals_;
   PartCap& cap_;
   std::vector<Vec3> points_;
   std::vector<Flat> flat_;
+  std::vector<Index> previous_, next_;  // of the corners that are left; next_ is kNoIndex for the others
+  std::size_t left_ = 0;
 };
 
 }  // namespace
 
-PartCaps capParts(const TriMesh& mesh, std::span<const Index> partOf, Index partCount) {
+PartCaps capParts(const TriMesh& mesh, std::span<const Index> partOf, Index partCount, Progress& progress) {
   PartCaps result;
   result.capsOf.resize(partCount);
   const std::vector<PartEdges> edges = collectEdges(mesh, partOf, partCount);
   for (Index p = 0; p < partCount; ++p) {
-    std::vector<Edge> diagonals;
+    const auto heartbeat = [&] { progress.update(static_cast<double>(p) / partCount); };
+    heartbeat();
+    std::set<Edge> diagonals;
     for (std::vector<Index>& loop : simpleLoops(edges[p].cut, result.openEdges)) {
       PartCap& cap = result.capsOf[p].emplace_back();
       cap.loop = std::move(loop);
       const Vec3 area = loopArea(mesh, cap.loop);
       if (area.norm() > 0) cap.normal = area.normalized();
-      LoopFiller(mesh, edges[p].own, diagonals, cap).fill();
+      LoopFiller(mesh, edges[p].own, diagonals, cap).fill(heartbeat);
     }
   }
   return result;

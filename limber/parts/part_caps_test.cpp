@@ -1,15 +1,22 @@
 #include "limber/parts/part_caps.h"
 
+#include <cmath>
 #include <map>
 
 #include <gtest/gtest.h>
 
+#include "limber/core/error.h"
 #include "limber/core/random.h"
 #include "limber/mesh/testing/shapes.h"
 #include "limber/parts/testing/part_meshes_made.h"
 
 namespace limber {
 namespace {
+
+PartCaps cap(const TriMesh& mesh, std::span<const Index> partOf, Index partCount) {
+  Progress progress;
+  return capParts(mesh, partOf, partCount, progress);
+}
 
 // A part with its caps as one mesh; middles of fans are new vertices.
 TriMesh cappedPart(const TriMesh& mesh, std::span<const Index> partOf, Index part, const PartCaps& caps) {
@@ -63,11 +70,11 @@ double volume(const TriMesh& mesh) {
   return sum;
 }
 
-TEST(PartCaps, ATubeCutAcrossHasTwoFlatLids) {
+TEST(PartCaps, ATubeCutAcrossHasTwoFlatCaps) {
   const TriMesh mesh = testing::revolved(4, 5, 12, [](double) { return 1.0; });
   std::vector<Index> partOf;
   for (Index t = 0; t < mesh.triangleCount(); ++t) partOf.push_back(testing::middleX(mesh, t) < 2 ? 0 : 1);
-  const PartCaps caps = capParts(mesh, partOf, 2);
+  const PartCaps caps = cap(mesh, partOf, 2);
   EXPECT_EQ(caps.openEdges, 0u);
   double volumes = 0;
   for (const Index part : {0u, 1u}) {
@@ -106,7 +113,7 @@ TEST(PartCaps, PartsOfClosedSurfacesAreClosedHoweverTheyAreCut) {
         }
         partOf.push_back(trial == 0 ? static_cast<Index>(random.below(4)) : nearest);
       }
-      const PartCaps caps = capParts(mesh, partOf, 4);
+      const PartCaps caps = cap(mesh, partOf, 4);
       EXPECT_EQ(caps.openEdges, 0u);
       for (Index part = 0; part < 4; ++part) {
         const TriMesh whole = cappedPart(mesh, partOf, part, caps);
@@ -136,7 +143,7 @@ TEST(PartCaps, LoopsThatAreNotConvexAreFilledWithinTheirOutline) {
       partOf.insert(partOf.end(), 2, ring);
     }
   }
-  const PartCaps caps = capParts(mesh, partOf, 2);
+  const PartCaps caps = cap(mesh, partOf, 2);
   ASSERT_EQ(caps.capsOf[0].size(), 1u);
   EXPECT_FALSE(caps.capsOf[0][0].hasMiddle);
   double area = 0;
@@ -149,11 +156,60 @@ TEST(PartCaps, LoopsThatAreNotConvexAreFilledWithinTheirOutline) {
   EXPECT_NEAR(area, 7, 1e-6);
 }
 
+TEST(PartCaps, JaggedLoopsOfThousandsOfEdgesAreFilledWithoutAMiddle) {
+  // A prism over a star with teeth of random depth.
+  constexpr Index kCount = 3000;
+  Random random(11);
+  std::vector<double> radii;
+  for (Index i = 0; i < kCount; ++i) radii.push_back(i % 2 == 0 ? 1 : random.uniform(0.7, 0.95));
+  TriMesh mesh;
+  for (const float x : {0.0f, 1.0f, 2.0f}) {
+    for (Index i = 0; i < kCount; ++i) {
+      const double angle = 2 * kPi * i / kCount;
+      mesh.positions.push_back(
+          {x, static_cast<float>(radii[i] * std::cos(angle)), static_cast<float>(radii[i] * std::sin(angle))});
+    }
+  }
+  std::vector<Index> partOf;
+  for (Index ring = 0; ring < 2; ++ring) {
+    for (Index i = 0; i < kCount; ++i) {
+      const Index a = ring * kCount + i, b = ring * kCount + (i + 1) % kCount;
+      mesh.triangles.push_back({a, b, a + kCount});
+      mesh.triangles.push_back({b, b + kCount, a + kCount});
+      partOf.insert(partOf.end(), 2, ring);
+    }
+  }
+  const PartCaps caps = cap(mesh, partOf, 2);
+  for (const Index part : {0u, 1u}) {
+    ASSERT_EQ(caps.capsOf[part].size(), 1u);
+    const PartCap& found = caps.capsOf[part][0];
+    EXPECT_FALSE(found.hasMiddle);
+    double outline = 0, filled = 0;
+    const auto at = [&](Index i) { return mesh.position(found.loop[i % kCount]); };
+    for (Index i = 0; i < kCount; ++i) outline += 0.5 * at(i).cross(at(i + 1)).dot(found.normal);
+    for (const Triangle& t : found.triangles) {
+      const double area = 0.5 * (at(t[1]) - at(t[0])).cross(at(t[2]) - at(t[0])).dot(found.normal);
+      EXPECT_GE(area, 0);
+      filled += area;
+    }
+    EXPECT_NEAR(filled, outline, 1e-6);
+  }
+}
+
+TEST(PartCaps, StopWhenCancelled) {
+  const TriMesh mesh = testing::icosphere(1);
+  std::vector<Index> partOf;
+  for (Index t = 0; t < mesh.triangleCount(); ++t) partOf.push_back(testing::middleX(mesh, t) < 0 ? 0 : 1);
+  Progress progress;
+  progress.cancel();
+  EXPECT_THROW(capParts(mesh, partOf, 2, progress), Error);
+}
+
 TEST(PartCaps, CutsThatEndAtAnOpenEdgeAreCountedAndLeftOpen) {
   const TriMesh mesh = testing::flatGrid(4, 3);
   std::vector<Index> partOf;
   for (Index t = 0; t < mesh.triangleCount(); ++t) partOf.push_back(testing::middleX(mesh, t) < 0.5 ? 0 : 1);
-  const PartCaps caps = capParts(mesh, partOf, 2);
+  const PartCaps caps = cap(mesh, partOf, 2);
   EXPECT_TRUE(caps.capsOf[0].empty());
   EXPECT_EQ(caps.openEdges, 6u);  // three of each part
 }
@@ -161,12 +217,12 @@ TEST(PartCaps, CutsThatEndAtAnOpenEdgeAreCountedAndLeftOpen) {
 class PartCapsOf : public ::testing::TestWithParam<testing::NamedMesh> {};
 INSTANTIATE_TEST_SUITE_P(Catalogue, PartCapsOf, ::testing::ValuesIn(testing::catalogue()), testing::MeshName());
 
-TEST_P(PartCapsOf, LidsAreWholeLoopsOnAnySurface) {
+TEST_P(PartCapsOf, CapsAreWholeLoopsOnAnySurface) {
   TriMesh mesh = GetParam().mesh;
   std::erase_if(mesh.triangles, [](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
   std::vector<Index> partOf;
   for (Index t = 0; t < mesh.triangleCount(); ++t) partOf.push_back(t % 3);
-  const PartCaps caps = capParts(mesh, partOf, 3);
+  const PartCaps caps = cap(mesh, partOf, 3);
   for (const std::vector<PartCap>& list : caps.capsOf) {
     for (const PartCap& cap : list) {
       ASSERT_GE(cap.loop.size(), 3u);

@@ -50,11 +50,24 @@ class Splitter {
     }
     for (const Json& node : elements(asset, "nodes")) taken_.insert(nameOf(node));
     makeGroups();
+    findScenes();
+    findMorphChannels();
   }
 
-  std::vector<PartNodes> run(bool caps) {
-    if (caps) findCaps();
-    for (const SplitGroup& group : groups_) splitGroup(group);
+  std::vector<PartNodes> run(bool caps, Progress& progress) {
+    progress.step("caps");
+    if (caps) findCaps(progress);
+    progress.step("meshes");
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      progress.update(static_cast<double>(g) / static_cast<double>(groups_.size()));
+      splitGroup(groups_[g]);
+    }
+    if (!emptied_.empty()) {
+      const auto isEmptied = [&](Index node, std::string_view path) {
+        return path == "weights" && emptied_.count(node) > 0;
+      };
+      removeChannels(asset_, isEmptied);
+    }
     if (missedCaps_ > 0) {
       asset_.warnings.add("open-cuts", "edges of cuts could not be closed", {}, missedCaps_);
     }
@@ -85,7 +98,7 @@ class Splitter {
     }
   }
 
-  void findCaps() {
+  void findCaps(Progress& progress) {
     prepared_ = prepareMesh(geometry_.positions, geometry_.triangles);
     std::vector<Index> partOf;
     for (std::size_t t = 0; t < geometry_.triangles.size(); ++t) {
@@ -93,7 +106,7 @@ class Splitter {
       const std::vector<Index>& at = prepared_.weldedVertex;
       if (at[v[0]] != at[v[1]] && at[v[1]] != at[v[2]] && at[v[2]] != at[v[0]]) partOf.push_back(parts_.partOf[t]);
     }
-    PartCaps caps = capParts(prepared_.mesh, partOf, parts_.partCount());
+    PartCaps caps = capParts(prepared_.mesh, partOf, parts_.partCount(), progress);
     caps_ = std::move(caps.capsOf);
     missedCaps_ = caps.openEdges;
     for (const std::vector<PartCap>& list : caps_) {
@@ -154,17 +167,18 @@ class Splitter {
         }
       }
     }
-    CapPrimitive lids(asset_, geometry_, primitives_);
+    CapPrimitive capped(asset_, geometry_, primitives_);
     for (PartCap& cap : caps_[part]) {
       const auto isHere = [&](Index v) { return stampAt_[v] == stamp_; };
       if (cap.triangles.empty() || !std::all_of(cap.loop.begin(), cap.loop.end(), isHere)) continue;
       std::vector<ModelVertex> loop;
       for (const Index v : cap.loop) loop.push_back(vertexAt_[v]);
-      lids.add(cap, loop);
+      capped.add(cap, loop);
       missedCaps_ -= cap.loop.size();
       cap.triangles.clear();
     }
-    if (!lids.empty()) primitives.push_back(lids.write(asset_, cutMaterial(), group.skin.has_value(), group.targets));
+    if (capped.empty()) return;
+    primitives.push_back(capped.write(asset_, cutMaterial(), group.skin.has_value(), group.targets));
   }
 
   Index cutMaterial() {
@@ -204,26 +218,39 @@ class Splitter {
     if (group.targets > 0) copyMorphChannels(group.nodes[0], number);
   }
 
-  void showInScenes(const std::vector<Index>& beside, Index number) {
+  void findScenes() {
     for (Index s = 0; s < elementCount(asset_, "scenes"); ++s) {
-      const std::vector<Index> shown = sceneNodes(asset_, s);
-      const auto isShown = [&](Index node) { return std::find(shown.begin(), shown.end(), node) != shown.end(); };
-      if (std::any_of(beside.begin(), beside.end(), isShown)) asset_.json()["scenes"][s]["nodes"].push_back(number);
+      for (const Index node : sceneNodes(asset_, s)) scenesOf_[node].push_back(s);
+    }
+  }
+
+  void showInScenes(const std::vector<Index>& beside, Index number) {
+    std::set<Index> scenes;
+    for (const Index node : beside) {
+      const auto known = scenesOf_.find(node);
+      if (known != scenesOf_.end()) scenes.insert(known->second.begin(), known->second.end());
+    }
+    for (const Index s : scenes) asset_.json()["scenes"][s]["nodes"].push_back(number);
+  }
+
+  void findMorphChannels() {
+    const Json& animations = elements(asset_, "animations");
+    for (std::size_t a = 0; a < animations.size(); ++a) {
+      for (const Json& channel : animations[a]["channels"]) {
+        const Json& target = channel.at("target");
+        const std::optional<Index> node = indexMember(target, "node");
+        if (node && target.value("path", "") == "weights") morphChannels_[*node].emplace_back(a, channel);
+      }
     }
   }
 
   void copyMorphChannels(Index from, Index to) {
-    const auto animations = asset_.json().find("animations");
-    if (animations == asset_.json().end()) return;
-    for (Json& animation : *animations) {
-      Json added = Json::array();
-      for (const Json& channel : animation["channels"]) {
-        const Json& target = channel.at("target");
-        if (indexMember(target, "node") != from || target.value("path", "") != "weights") continue;
-        added.push_back(channel);
-        added.back()["target"]["node"] = to;
-      }
-      for (const Json& channel : added) animation["channels"].push_back(channel);
+    const auto known = morphChannels_.find(from);
+    if (known == morphChannels_.end()) return;
+    for (const auto& [animation, channel] : known->second) {
+      Json& channels = asset_.json()["animations"][animation]["channels"];
+      channels.push_back(channel);
+      channels.back()["target"]["node"] = to;
     }
   }
 
@@ -236,9 +263,7 @@ class Splitter {
       return;
     }
     for (const char* key : {"mesh", "skin", "weights"}) json["nodes"][number].erase(key);
-    if (group.targets > 0) {
-      removeChannels(asset_, [&](Index node, std::string_view path) { return node == number && path == "weights"; });
-    }
+    if (group.targets > 0) emptied_.insert(number);
   }
 
   // Nodes that carried a skinned mesh and nothing else.
@@ -301,14 +326,17 @@ class Splitter {
   Index stamp_ = 0;
   std::optional<Index> cutMaterial_;
   std::vector<NewNode> newNodes_;
+  std::map<Index, std::vector<Index>> scenesOf_;                              // node -> scenes that show it
+  std::map<Index, std::vector<std::pair<std::size_t, Json>>> morphChannels_;  // node -> animations and their channels
+  std::set<Index> emptied_;                                                   // nodes whose morph targets went on
 };
 
 }  // namespace
 
 std::vector<PartNodes> splitParts(Asset& asset, const Geometry& geometry, const SurfaceParts& parts,
-                                  const SplitOptions& options) {
+                                  const SplitOptions& options, Progress& progress) {
   const AccessorSweep sweep(asset);
-  std::vector<PartNodes> nodes = Splitter(asset, geometry, parts).run(options.caps);
+  std::vector<PartNodes> nodes = Splitter(asset, geometry, parts).run(options.caps, progress);
   sweep.sweep(asset);
   return nodes;
 }

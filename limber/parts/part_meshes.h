@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "limber/asset/geometry.h"
+#include "limber/core/progress.h"
 #include "limber/parts/fuzzy_cut.h"
 
 namespace limber {
@@ -28,9 +29,9 @@ struct PartNodes {
 //
 // geometry  collectGeometry(asset) as it is; `parts` one for each of its triangles
 // Warning "open-cuts": edges of cuts that no cap closes, since the surface is open there, or two nodes share the cut.
-// What is no triangles stays where it is. Throws Error kUnsupported where GPU instances show a mesh.
-// Cost: O(#F log #F + #parts #S).
+// What is no triangles stays where it is. Throws Error kUnsupported where GPU instances show a mesh,
+// kCancelled. Cost: O(#F log #F + #parts #S).
 std::vector<PartNodes> splitParts(Asset& asset, const Geometry& geometry, const SurfaceParts& parts,
-                                  const SplitOptions& options = {});
+                                  const SplitOptions& options, Progress& progress);
 
 }  // namespace limber

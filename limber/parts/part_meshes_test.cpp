@@ -42,6 +42,12 @@ SurfaceParts byWeights(const Asset& asset, const Geometry& geometry) {
   return modelParts(asset, geometry, {PartMethod::kWeights, PartDetail::kJoints, {}}, progress);
 }
 
+std::vector<PartNodes> takeApart(Asset& asset, const Geometry& geometry, const SurfaceParts& parts,
+                                 const SplitOptions& options = {}) {
+  Progress progress;
+  return splitParts(asset, geometry, parts, options, progress);
+}
+
 // The corners of all triangles, those of each smallest first: positions, and weights in order of joints.
 using Corner = std::vector<float>;
 std::vector<std::array<Corner, 3>> cornersOf(const Asset& asset, const std::set<std::string>& without = {}) {
@@ -103,7 +109,7 @@ TEST(SplitParts, ARiggedModelKeepsSkinWeightsAndTrianglesAndIsClosed) {
   Asset asset = bendingTube();
   const std::vector<std::array<Corner, 3>> before = cornersOf(asset);
   const Geometry geometry = collectGeometry(asset);
-  const std::vector<PartNodes> parts = splitParts(asset, geometry, byWeights(asset, geometry));
+  const std::vector<PartNodes> parts = takeApart(asset, geometry, byWeights(asset, geometry));
   ASSERT_EQ(parts.size(), 2u);
   EXPECT_EQ(parts[0].name, "lower");
   for (const PartNodes& part : parts) {
@@ -122,7 +128,7 @@ TEST(SplitParts, ARiggedModelKeepsSkinWeightsAndTrianglesAndIsClosed) {
 TEST(SplitParts, CapsHaveTheWeightsRoundThem) {
   Asset asset = bendingTube();
   const Geometry geometry = collectGeometry(asset);
-  splitParts(asset, geometry, byWeights(asset, geometry));
+  takeApart(asset, geometry, byWeights(asset, geometry));
   const Geometry split = collectGeometry(asset);
   const SkinWeights weights = readWeights(asset, split, readSkeleton(asset));
   std::map<std::array<float, 3>, float> upper;
@@ -141,7 +147,7 @@ TEST(SplitParts, WithoutCapsTheSameTrianglesAreLeft) {
   Asset asset = bendingTube();
   const std::vector<std::array<Corner, 3>> before = cornersOf(asset);
   const Geometry geometry = collectGeometry(asset);
-  splitParts(asset, geometry, byWeights(asset, geometry), {false});
+  takeApart(asset, geometry, byWeights(asset, geometry), {false});
   EXPECT_EQ(cornersOf(asset), before);
   checkAsset(asset);
 }
@@ -154,7 +160,7 @@ TEST(SplitParts, AStaticModelHangsItsPartsBelowItsNode) {
     const Geometry geometry = collectGeometry(asset);
     Progress progress;
     const SurfaceParts found = modelParts(asset, geometry, {PartMethod::kAuto, {}, 2}, progress);
-    const std::vector<PartNodes> parts = splitParts(asset, geometry, found);
+    const std::vector<PartNodes> parts = takeApart(asset, geometry, found);
     EXPECT_EQ(cornersOf(asset, {"cut"}), before);
     EXPECT_EQ(asset.json()["nodes"][0]["children"].size(), 2u);
     EXPECT_FALSE(asset.json()["nodes"][0].contains("mesh"));
@@ -172,7 +178,7 @@ TEST(SplitParts, MorphTargetsAndTheirAnimationGoWithEachPart) {
     parts.names.push_back("part_" + std::to_string(t));
   }
   const std::vector<std::array<Corner, 3>> before = cornersOf(asset);
-  const std::vector<PartNodes> split = splitParts(asset, geometry, parts);
+  const std::vector<PartNodes> split = takeApart(asset, geometry, parts);
   EXPECT_EQ(cornersOf(asset, {"cut"}), before);
   ASSERT_EQ(split.size(), 2u);
   for (const PartNodes& part : split) {
@@ -192,7 +198,7 @@ TEST(SplitParts, ASampleComesApartWhole) {
   Progress progress;
   const SurfaceParts found = modelParts(asset, geometry, {}, progress);
   EXPECT_GT(found.partCount(), 1u);
-  const std::vector<PartNodes> parts = splitParts(asset, geometry, found);
+  const std::vector<PartNodes> parts = takeApart(asset, geometry, found);
   EXPECT_EQ(cornersOf(asset, {"cut"}), before);
   for (const PartNodes& part : parts) EXPECT_EQ(oddEdges(asset, part.nodes), 0u) << part.name;
   keepForValidator(asset, "split_quadruped");
@@ -241,27 +247,9 @@ TEST(PaintParts, NodesThatShowOneMeshGetOneEach) {
   EXPECT_EQ(cornersOf(asset), before);
   EXPECT_EQ(asset.json()["meshes"].size(), 2u);
   EXPECT_EQ(cornersOf(asset, {"c"}).size(), 80u);
-  splitParts(split, geometry, parts);
+  takeApart(split, geometry, parts);
   EXPECT_EQ(cornersOf(split, {"cut"}), before);
   EXPECT_EQ(split.json()["meshes"].size(), 3u);
-}
-
-TEST(ModelParts, ByWeightsNeedsARig) {
-  const Asset asset = testing::assetOf(testing::icosphere(1));
-  EXPECT_THROW(byWeights(asset, collectGeometry(asset)), Error);
-  EXPECT_THROW(parsePartMethod("colour"), Error);
-  EXPECT_THROW(parsePartDetail("cells"), Error);
-}
-
-TEST(ModelParts, TrianglesWithoutAreaGoWithTheirNeighbours) {
-  TriMesh mesh = testing::dumbbell();
-  mesh.triangles.push_back({0, 0, 1});
-  const Asset asset = testing::assetOf(mesh);
-  const Geometry geometry = collectGeometry(asset);
-  Progress progress;
-  const SurfaceParts parts = modelParts(asset, geometry, {PartMethod::kShape, {}, 2}, progress);
-  ASSERT_EQ(parts.partOf.size(), geometry.triangles.size());
-  EXPECT_EQ(parts.partOf.back(), parts.partOf.front());
 }
 
 }  // namespace

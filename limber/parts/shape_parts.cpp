@@ -4,12 +4,12 @@
 #include <limits>
 #include <map>
 #include <numeric>
-#include <queue>
 
 #include <fmt/format.h>
 
 #include "limber/core/error.h"
 #include "limber/core/parallel.h"
+#include "limber/parts/shortest_paths.h"
 
 namespace limber {
 
@@ -21,9 +21,6 @@ constexpr double kLeastArea = 0.01;  // of the surface, nearer to a representati
 constexpr double kWorthwhile = 0.5;  // of the second representative's gain
 constexpr double kFuzzyBelow = 0.3;  // lead: probabilities from 0.35 to 0.65
 constexpr double kFar = std::numeric_limits<double>::infinity();
-
-using Entry = std::pair<double, Index>;
-using Queue = std::priority_queue<Entry, std::vector<Entry>, std::greater<>>;
 
 // Lets a new seed take the triangles that are nearer to it than to those before.
 void growFrom(const FaceGraph& graph, Index seed, FacePatches& patches) {
@@ -55,31 +52,25 @@ class PatchGraph {
       if (!fresh) at->second = std::min(at->second, step);
     }
     for (const auto& [pair, step] : steps) {
-      neighbours_[pair.first].emplace_back(step, pair.second);
-      neighbours_[pair.second].emplace_back(step, pair.first);
+      neighbours_[pair.first].emplace_back(pair.second, step);
+      neighbours_[pair.second].emplace_back(pair.first, step);
     }
   }
 
   std::vector<float> distancesFrom(Index patch) const {
     std::vector<double> distances(neighbours_.size(), kFar);
-    Queue queue;
     distances[patch] = 0;
-    queue.emplace(0, patch);
-    while (!queue.empty()) {
-      const auto [distance, at] = queue.top();
-      queue.pop();
-      if (distance > distances[at]) continue;
-      for (const auto& [step, next] : neighbours_[at]) {
-        if (!(distance + step < distances[next])) continue;
-        distances[next] = distance + step;
-        queue.emplace(distance + step, next);
-      }
-    }
+    shortenPaths(
+        std::span(&patch, 1), distances,
+        [&](Index at, const auto& visit) {
+          for (const auto& [next, length] : neighbours_[at]) visit(next, length);
+        },
+        [](Index, Index) {});
     return {distances.begin(), distances.end()};
   }
 
  private:
-  std::vector<std::vector<Entry>> neighbours_;
+  std::vector<std::vector<std::pair<Index, double>>> neighbours_;  // patch, length
 };
 
 struct PatchDistances {
@@ -209,11 +200,12 @@ SurfaceParts namedBySize(const FaceGraph& graph, std::vector<Index> partOf, std:
 
 }  // namespace
 
-FacePatches growPatches(const FaceGraph& graph, Index most) {
+FacePatches growPatches(const FaceGraph& graph, Index most, Progress& progress) {
   if (graph.faceCount() <= most) return singlePatches(graph.faceCount());
   FacePatches patches{std::vector<Index>(graph.faceCount(), 0), {}, std::vector<double>(graph.faceCount(), kFar)};
   Index next = 0;
   while (patches.seeds.size() < most) {
+    progress.update(static_cast<double>(patches.seeds.size()) / most);
     growFrom(graph, next, patches);
     const auto farthest = std::max_element(patches.seedDistance.begin(), patches.seedDistance.end());
     if (!(*farthest > 0)) break;
@@ -251,7 +243,7 @@ SurfaceParts partsByShape(const FaceGraph& graph, const ShapePartOptions& option
   }
   if (graph.faceCount() == 0) return {};
   progress.step("patches");
-  const FacePatches patches = growPatches(graph, kMostPatches);
+  const FacePatches patches = growPatches(graph, kMostPatches, progress);
   progress.step("distances");
   const PatchDistances distances = patchDistances(graph, patches);
   progress.step("parts");
@@ -264,8 +256,9 @@ SurfaceParts partsByShape(const FaceGraph& graph, const ShapePartOptions& option
     for (std::size_t r = begin; r < end; ++r) exact[r] = distancesFrom(graph, patches.seeds[found.patches[r]]);
   });
   progress.step("cuts");
-  std::vector<Index> partOf = cutFuzzyParts(graph, fuzzyByDistance(exact), kFuzzyBelow);
-  mergeIslands(graph, partOf);
+  std::vector<Index> partOf = cutFuzzyParts(graph, fuzzyByDistance(exact), kFuzzyBelow, progress);
+  progress.step("islands");
+  mergeIslands(graph, partOf, progress);
   return namedBySize(graph, std::move(partOf), count);
 }
 

@@ -17,15 +17,19 @@ struct ShapePartOptions {
 };
 
 // Katz, Tal 2003, k parts at once: representatives as far apart as can be by FaceGraph distances, the first one the
-// middle of all; each triangle fuzzy between its two nearest; the fuzzy ones cut along concave edges. As many as are at
-// least half as far from those before them as the second is from the first, each nearest to a hundredth of the surface
-// at least: both ours, as the paper's largest drop of that distance mostly finds two parts, and its farthest triangles
-// lie in ears and folds.
+// middle of all; each triangle fuzzy between its two nearest; the fuzzy ones cut along concave edges.
 //
 // Distances between all pairs are taken between at most 1000 patches of triangles, grown from seeds as far apart as can
-// be; up to 1000 triangles each is its own patch, and all is as in the paper but for two things: sums are weighted by
-// area, and a representative moves to the middle of what is nearest to it (with the paper's sum over everything those
-// of limbs drift into the body). Distances from the chosen representatives are exact.
+// be; distances from the chosen representatives are exact. Up to 1000 triangles each is its own patch, and all is as in
+// the paper but for these:
+// - lengths count as much as bends: delta = 0.5 (FaceGraph)
+// - capacities of cuts are weighted by the edges' lengths, sums by area
+// - pieces are linked where they are nearest (FaceGraph)
+// - each part is nearest to a hundredth of the surface at least: farthest triangles lie in ears and folds
+// - as many parts as are at least half as far from those before them as the second is from the first: the paper's
+//   largest drop of that distance mostly finds two
+// - a representative moves to the middle of what is nearest to it: with the paper's sum over everything those of limbs
+//   drift into the body
 //
 // mesh  any, each triangle with three different vertices; loose pieces are linked where they are nearest
 // Parts are numbered and named from the largest, "part_01" on. There may be fewer than asked for: no more than patches.
@@ -38,13 +42,13 @@ SurfaceParts partsByShape(const FaceGraph& graph, const ShapePartOptions& option
 
 // The stages, for who wants to see between them.
 
-// Triangles grown together from at most `most` seeds.
+// Triangles grown together from at most `most` seeds. Throws Error kCancelled. Cost: O(most #F).
 struct FacePatches {
   std::vector<Index> patchOf;        // #F
   std::vector<Index> seeds;          // #patches, triangles
   std::vector<double> seedDistance;  // #F, to the seed of the own patch
 };
-FacePatches growPatches(const FaceGraph& graph, Index most);
+FacePatches growPatches(const FaceGraph& graph, Index most, Progress& progress);
 
 // Of triangles with these distances to representatives, distances[r][f]: the nearest first, with the lead
 // (d2 - d1) / (d1 + d2), which is p1 - p2 of the paper's probabilities p1 = d2 / (d1 + d2).

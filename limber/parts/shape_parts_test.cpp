@@ -93,7 +93,8 @@ TEST(ShapeParts, FuzzyProbabilitiesAreThePapers) {
 
 TEST(ShapeParts, PatchesHoldWhatIsNearestToTheirSeeds) {
   const FaceGraph graph = faceGraph(testing::icosphere(2));
-  const FacePatches patches = growPatches(graph, 17);
+  Progress progress;
+  const FacePatches patches = growPatches(graph, 17, progress);
   ASSERT_EQ(patches.seeds.size(), 17u);
   std::vector<std::vector<double>> distances;
   for (const Index seed : patches.seeds) distances.push_back(distancesFrom(graph, seed));
@@ -103,6 +104,26 @@ TEST(ShapeParts, PatchesHoldWhatIsNearestToTheirSeeds) {
     EXPECT_EQ(patches.seedDistance[t], least);
     EXPECT_EQ(distances[patches.patchOf[t]][t], least);
   }
+}
+
+TEST(ShapeParts, GrowingStopsWhenCancelled) {
+  Progress progress;
+  progress.cancel();
+  EXPECT_THROW(growPatches(faceGraph(testing::icosphere(2)), 17, progress), Error);
+}
+
+TEST(ShapeParts, AreTheSameForAnyNumberOfThreads) {
+  const TriMesh mesh = testing::dumbbell(61, 30);  // 3600 triangles: more than patches
+  const auto partsWith = [&](int threads) {
+    setThreadCount(threads);
+    Progress progress;
+    const std::vector<Index> partOf = partsByShape(mesh, {5}, progress).partOf;
+    setThreadCount(0);
+    return partOf;
+  };
+  const std::vector<Index> alone = partsWith(1);
+  EXPECT_GT(*std::max_element(alone.begin(), alone.end()), 1u);
+  for (const int threads : {2, 3, 8}) EXPECT_EQ(partsWith(threads), alone) << threads;
 }
 
 TEST(ShapeParts, MoreTrianglesThanPatchesGiveTheSameParts) {

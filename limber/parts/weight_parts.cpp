@@ -135,15 +135,17 @@ void spreadParts(const FaceGraph& graph, FuzzyParts& fuzzy) {
 }
 
 SurfaceParts partsByWeights(const FaceGraph& graph, std::span<const Triangle> triangles, const SkinWeights& weights,
-                            const JointGroups& groups) {
+                            const JointGroups& groups, Progress& progress) {
   FuzzyParts fuzzy = fuzzyByWeights(triangles, weights, groups);
   if (std::all_of(fuzzy.first.begin(), fuzzy.first.end(), [](Index part) { return part == kNoIndex; })) {
     throw Error(ErrorCode::kBadArgument, "no triangle has a skin weight", {},
                 "make weights with limber rig, or take the parts by shape");
   }
   spreadParts(graph, fuzzy);
-  std::vector<Index> partOf = cutFuzzyParts(graph, fuzzy, kOpenBelow);
-  mergeIslands(graph, partOf);
+  progress.step("cuts");
+  std::vector<Index> partOf = cutFuzzyParts(graph, fuzzy, kOpenBelow, progress);
+  progress.step("islands");
+  mergeIslands(graph, partOf, progress);
   return usedParts(std::move(partOf), groups.names);
 }
 

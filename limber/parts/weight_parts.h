@@ -40,8 +40,8 @@ void spreadParts(const FaceGraph& graph, FuzzyParts& fuzzy);
 // parts of which neither has three quarters. A part of a bone without a triangle is none.
 //
 // graph      of the same triangles as `triangles`, which need not share vertices
-// Throws Error kBadArgument where no triangle has a weight. Cost: O(#F log #F) and the cuts.
+// Throws Error kBadArgument where no triangle has a weight, kCancelled. Cost: O(#F log #F) and the cuts.
 SurfaceParts partsByWeights(const FaceGraph& graph, std::span<const Triangle> triangles, const SkinWeights& weights,
-                            const JointGroups& groups);
+                            const JointGroups& groups, Progress& progress);
 
 }  // namespace limber

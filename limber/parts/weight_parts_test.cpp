@@ -14,11 +14,12 @@ namespace limber {
 namespace {
 
 TEST(WeightParts, TheCutIsTheShortestLoopWhereWeightsLeaveTheChoice) {
+  Progress progress;
   // A tube that is thinnest at x = 2.4, weights even at x = 2.1, between 3 to 1 and 1 to 3 from 1.6 to 2.6.
   const TriMesh mesh = testing::revolved(4, 41, 16, [](double x) { return 0.5 + 0.3 * std::abs(x - 2.4); });
   const SkinWeights weights = testing::twoJointWeights(mesh.positions, 2.1, 2);
   const JointGroups groups = jointGroups(testing::twoJoints(2), PartDetail::kJoints);
-  const SurfaceParts parts = partsByWeights(faceGraph(mesh), mesh.triangles, weights, groups);
+  const SurfaceParts parts = partsByWeights(faceGraph(mesh), mesh.triangles, weights, groups, progress);
   EXPECT_THAT(parts.names, ::testing::ElementsAre("lower", "upper"));
   for (Index t = 0; t < mesh.triangleCount(); ++t) {
     EXPECT_EQ(parts.partOf[t], testing::middleX(mesh, t) < 2.4 ? 0u : 1u) << testing::middleX(mesh, t);
@@ -38,6 +39,7 @@ TEST(WeightParts, LeadsAreThoseOfTheCornersSums) {
 }
 
 TEST(WeightParts, TrianglesWithoutWeightsGoWithTheNearest) {
+  Progress progress;
   const TriMesh mesh = testing::flatGrid(10, 1);
   SkinWeights weights = testing::twoJointWeights(mesh.positions, 0.5, 1e-3);
   for (Index v = 0; v < mesh.vertexCount(); ++v) {
@@ -46,19 +48,20 @@ TEST(WeightParts, TrianglesWithoutWeightsGoWithTheNearest) {
     }
   }
   const JointGroups groups = jointGroups(testing::twoJoints(1), PartDetail::kJoints);
-  const SurfaceParts parts = partsByWeights(faceGraph(mesh), mesh.triangles, weights, groups);
+  const SurfaceParts parts = partsByWeights(faceGraph(mesh), mesh.triangles, weights, groups, progress);
   EXPECT_EQ(parts.partOf.front(), 0u);
   EXPECT_EQ(parts.partOf.back(), 1u);
   EXPECT_TRUE(std::is_sorted(parts.partOf.begin(), parts.partOf.end()));
   std::fill(weights.weights.begin(), weights.weights.end(), 0.0f);
-  EXPECT_THROW(partsByWeights(faceGraph(mesh), mesh.triangles, weights, groups), Error);
+  EXPECT_THROW(partsByWeights(faceGraph(mesh), mesh.triangles, weights, groups, progress), Error);
 }
 
 TEST(WeightParts, PartsThatNoTriangleHasAreNone) {
+  Progress progress;
   const TriMesh mesh = testing::icosphere(1);
   const SkinWeights weights = testing::twoJointWeights(mesh.positions, 5, 1);
-  const SurfaceParts parts =
-      partsByWeights(faceGraph(mesh), mesh.triangles, weights, jointGroups(testing::twoJoints(5), PartDetail::kJoints));
+  const SurfaceParts parts = partsByWeights(faceGraph(mesh), mesh.triangles, weights,
+                                            jointGroups(testing::twoJoints(5), PartDetail::kJoints), progress);
   EXPECT_THAT(parts.names, ::testing::ElementsAre("lower"));
   EXPECT_THAT(parts.partOf, ::testing::Each(0u));
 }
@@ -67,11 +70,12 @@ class WeightPartsOf : public ::testing::TestWithParam<testing::NamedMesh> {};
 INSTANTIATE_TEST_SUITE_P(Catalogue, WeightPartsOf, ::testing::ValuesIn(testing::catalogue()), testing::MeshName());
 
 TEST_P(WeightPartsOf, EachTriangleHasAPartAndEachPartATriangle) {
+  Progress progress;
   TriMesh mesh = GetParam().mesh;
   std::erase_if(mesh.triangles, [](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
   const SkinWeights weights = testing::twoJointWeights(mesh.positions, 0.1, 0.3);
   const SurfaceParts parts = partsByWeights(faceGraph(mesh), mesh.triangles, weights,
-                                            jointGroups(testing::twoJoints(0.1), PartDetail::kJoints));
+                                            jointGroups(testing::twoJoints(0.1), PartDetail::kJoints), progress);
   std::vector<bool> used(parts.names.size(), false);
   for (const Index part : parts.partOf) used.at(part) = true;
   EXPECT_THAT(used, ::testing::Each(true));
