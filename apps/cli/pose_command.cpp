@@ -240,7 +240,7 @@ void addPoseCommand(CLI::App& program) {
   addMany("--pole", options->poles, "the point to which the middle of a reaching limb bends", "JOINT=x,y,z");
   addMany("--base", options->bases, "the highest joint that turns for a reaching one (default: the root's children)",
           "JOINT=JOINT");
-  addMany("--task", options->tasks, "what a joint shall do or keep from doing, see below", "KIND:JOINT=VALUE");
+  addMany("--task", options->tasks, "goals and constraints of a joint, see below", "KIND:JOINT=VALUE");
   command->add_option("--clip", options->clip, "start from this clip (default: as the file stands)")->type_name("NAME");
   command->add_option("--time", options->seconds, "at this moment of the clip, or of the first, in seconds")
       ->check(momentOfClip())

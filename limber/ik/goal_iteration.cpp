@@ -19,8 +19,8 @@ GoalIteration::GoalIteration(const IkSystem& system)
       leap_(system),
       best_(system.makeState()) {
   for (int n = 0; n < system.nodeCount(); ++n) {
-    hangBegin_.push_back(hangs_.size());
-    hangs_.resize(hangs_.size() + system.effectorsBelow(n).size());
+    firstOffset_.push_back(effectorOffsets_.size());
+    effectorOffsets_.resize(effectorOffsets_.size() + system.effectorsBelow(n).size());
   }
 }
 
@@ -58,7 +58,7 @@ bool GoalIteration::isTurnOfEffectors(Index done) const {
 }
 
 void GoalIteration::forward(IkSystem& system) {
-  if (system.limited()) hang(system);
+  if (system.limited()) recordEffectorOffsets(system);
   for (int n = 0; n < system.nodeCount(); ++n) {
     const auto i = static_cast<std::size_t>(n);
     const IkSystem::Node& node = system.nodes[i];
@@ -73,16 +73,16 @@ void GoalIteration::forward(IkSystem& system) {
   }
 }
 
-// Where each effector hangs in the frames of the joints above it. That holds until a joint below such a frame turns,
+// Where each effector is in the frames of the joints above it. That holds until a joint below such a frame turns,
 // which forward() does later.
-void GoalIteration::hang(const IkSystem& system) {
+void GoalIteration::recordEffectorOffsets(const IkSystem& system) {
   for (int n = 0; n < system.nodeCount(); ++n) {
     const auto i = static_cast<std::size_t>(n);
-    std::size_t slot = hangBegin_[i];
+    std::size_t slot = firstOffset_[i];
     for (const int below : system.effectorsBelow(n)) {
       const int effector = system.effectors[static_cast<std::size_t>(below)].node;
       const Vec3 way = system.positions[static_cast<std::size_t>(effector)] - system.positions[i];
-      hangs_[slot++] = system.globals[i].conjugate() * way;
+      effectorOffsets_[slot++] = system.globals[i].conjugate() * way;
     }
   }
 }
@@ -146,7 +146,7 @@ bool GoalIteration::hasOrientation(const IkSystem& system, int node) {
   return false;
 }
 
-// The turn about the node's bone that brings the effectors nearest to their targets, as they hang now. Without it a
+// The turn about the node's bone that brings the effectors nearest to their targets, as they are now. Without it a
 // hinge further down could not choose the plane in which it bends.
 Quat GoalIteration::twistAlong(const IkSystem& system, int node, const Quat& global) const {
   const auto n = static_cast<std::size_t>(node);
@@ -156,7 +156,7 @@ Quat GoalIteration::twistAlong(const IkSystem& system, int node, const Quat& glo
   return Quat(Eigen::AngleAxisd(bestAngle(effectorsAgainstTargets(system, node, global), axis), axis));
 }
 
-// The turn that brings the effectors nearest, as they hang now, about the axes that the node has: as CCD turns. Many
+// The turn that brings the effectors nearest, as they are now, about the axes that the node has: as CCD turns. Many
 // iterations go so where there are limits, since by the goals of joints alone, limbs that bend into their limits stay
 // there: 30 of 100 limited humanoids were solved.
 Quat GoalIteration::turnForEffectors(const IkSystem& system, int node) const {
@@ -173,15 +173,16 @@ Quat GoalIteration::turnForEffectors(const IkSystem& system, int node) const {
   return turned * global.conjugate();
 }
 
-// The correlation of where the effectors below hang, were the node turned so, and where they should.
+// The correlation of where the effectors below are, were the node turned so, and where they should.
 Mat3 GoalIteration::effectorsAgainstTargets(const IkSystem& system, int node, const Quat& global) const {
   const auto n = static_cast<std::size_t>(node);
   Mat3 correlation = Mat3::Zero();
-  std::size_t slot = hangBegin_[n];
+  std::size_t slot = firstOffset_[n];
   for (const int below : system.effectorsBelow(node)) {
     const IkSystem::Effector& effector = system.effectors[static_cast<std::size_t>(below)];
-    const Vec3 hangs = global * hangs_[slot++];
-    correlation += heed_[static_cast<std::size_t>(below)] * (effector.target - system.positions[n]) * hangs.transpose();
+    const Vec3 offset = global * effectorOffsets_[slot++];
+    correlation +=
+        heed_[static_cast<std::size_t>(below)] * (effector.target - system.positions[n]) * offset.transpose();
   }
   return correlation;
 }

@@ -27,7 +27,7 @@ class GoalIteration : public IkIteration {
  private:
   bool isTurnOfEffectors(Index done) const;
   void forward(IkSystem& system);
-  void hang(const IkSystem& system);
+  void recordEffectorOffsets(const IkSystem& system);
   static void place(IkSystem& system, int node);
   void turn(IkSystem& system, int node) const;
   Quat wantedTurn(const IkSystem& system, int node) const;
@@ -36,8 +36,8 @@ class GoalIteration : public IkIteration {
   Quat turnForEffectors(const IkSystem& system, int node) const;
   Mat3 effectorsAgainstTargets(const IkSystem& system, int node, const Quat& global) const;
 
-  std::vector<std::size_t> hangBegin_;  // #nodes, into hangs_
-  std::vector<Vec3> hangs_;             // for each node and each effector below it
+  std::vector<std::size_t> firstOffset_;  // #nodes, into effectorOffsets_
+  std::vector<Vec3> effectorOffsets_;     // for each node and each effector below it
   Leap leap_;
   IkSystem::State best_;
   bool servesEffectors_ = false;  // in this iteration, rather than the joints' goals

@@ -1,4 +1,4 @@
-// Tasks for a whole body: what joints shall do or keep from doing, several at once, the important ones first.
+// Tasks for a whole body: goals and constraints of its joints, several at once, the important ones first.
 #pragma once
 
 #include <optional>
@@ -39,9 +39,9 @@ struct PlaneTask {  // normal . position = offset, or at least that
   double offset = 0;
   bool above = true;  // inequality: false keeps the joint on the plane
 };
-struct BalanceTask {  // the centre of mass lies over the supports, seen along Y
-  std::vector<Index> supports;
-  bool centred = false;  // over their mean; false: anywhere over their convex hull
+struct BalanceTask {            // the centre of mass lies over the supports, seen along Y
+  std::vector<Index> supports;  // 1 to kMostSupports
+  bool centred = false;         // over their mean; false: anywhere over their convex hull
 };
 struct KeepOutTask {  // the joint stays out of a sphere, or of a capsule round the segment
   Index joint = 0;
@@ -101,6 +101,10 @@ struct IkTaskResult {
   bool met() const;
 };
 
+// Each unmet task is solved alone once or twice more, and the steps' systems grow with the rows.
+inline constexpr std::size_t kMostIkTasks = 200;  // two and more for each joint of a body with hands
+inline constexpr std::size_t kMostSupports = 100;
+
 // Brings `pose`, the start, to one that serves the tasks: priority by priority, each within what leaves the earlier
 // ones as well served as they were (to the tolerance), by the damped steps in null spaces of the whole-body solver;
 // after iTaSC (De Schutter and others 2007) and Baerlocher, Boulic 2004. An inequality takes part where it is violated
@@ -108,10 +112,11 @@ struct IkTaskResult {
 // give the same bits. Where something is not met, further attempts start from poses nearby (IkOptions::restarts), and
 // what is in the way is looked for by solving that task alone.
 //
-// Throws Error kBadArgument, with "task 2" as the place, for joints that are not there, numbers that are not finite,
-// weights and radii that are not positive, axes and normals that are not unit vectors; otherwise as IkSystem. Joints
-// that are at or above none of a task stay as they are; balance is every joint's task. On 60 joints 0.4 ms for a reach,
-// a look and two feet, 3 ms with balance and three more; what cannot be met takes some ten times as long, by restarts.
+// Throws Error kBadArgument for more than kMostIkTasks, and, with "task 2" as the place, for joints that are not there,
+// numbers that are not finite, weights and radii that are not positive, axes and normals that are not unit vectors;
+// otherwise as IkSystem. Joints that are at or above none of a task stay as they are; balance is every joint's task. On
+// 60 joints 0.4 ms for a reach, a look and two feet, 3 ms with balance and three more; what cannot be met takes some
+// ten times as long, by restarts.
 IkTaskResult solveIkTasks(const Skeleton& skeleton, Pose& pose, std::span<const IkTask> tasks,
                           const JointLimits* limits = nullptr, const IkTaskOptions& options = {});
 

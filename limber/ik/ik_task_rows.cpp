@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "limber/ik/rotation.h"
+#include "limber/ik/support_polygon.h"
 
 namespace limber {
 
@@ -16,60 +17,9 @@ namespace {
 constexpr double kActivated = 1e-12;  // of the body's size: what a step must violate an inequality by
 constexpr double kOpposite = 1e-6;    // of a look the other way, where no turn is better than another
 
-using Points2 = std::vector<Eigen::Vector2d>;
-
 // Along Y.
 Eigen::Vector2d flat(const Vec3& point) {
   return {point.x(), point.z()};
-}
-
-// Where a segment comes nearest to a point: the share of b.
-template <class Vector>
-double shareOnSegment(const Vector& point, const Vector& a, const Vector& b) {
-  const Vector line = b - a;
-  const double squared = line.squaredNorm();
-  return squared > 0 ? std::clamp((point - a).dot(line) / squared, 0.0, 1.0) : 0.0;
-}
-
-// How a point lies to the convex hull of others: outside by `distance`, or inside by minus that, nearest to the place
-// between corners a and b, away from it in direction `out`.
-struct HullPlace {
-  double distance = std::numeric_limits<double>::infinity();
-  std::size_t a = 0, b = 0;
-  double share = 0;  // of b
-  Eigen::Vector2d out = Eigen::Vector2d::UnitX();
-};
-
-// Of all segments between two corners, so without ordering them: supports are few.
-HullPlace placeOnHull(const Eigen::Vector2d& point, const Points2& corners) {
-  HullPlace outside, inside;
-  inside.distance = -std::numeric_limits<double>::infinity();
-  bool isInside = corners.size() > 2;
-  for (std::size_t a = 0; a < corners.size(); ++a) {
-    for (std::size_t b = 0; b < corners.size(); ++b) {
-      if (a == b && corners.size() > 1) continue;
-      const double share = shareOnSegment(point, corners[a], corners[b]);
-      const Eigen::Vector2d away = point - (corners[a] + share * (corners[b] - corners[a]));
-      const double distance = away.norm();
-      if (distance < outside.distance) {
-        outside = {distance, a, b, share, distance > 0 ? Eigen::Vector2d(away / distance) : outside.out};
-      }
-      const Eigen::Vector2d line = corners[b] - corners[a];
-      const double length = line.norm();
-      if (!(length > 0)) continue;
-      const Eigen::Vector2d normal = Eigen::Vector2d(line.y(), -line.x()) / length;
-      double beyond = -std::numeric_limits<double>::infinity(), before = 0;
-      for (const Eigen::Vector2d& corner : corners) {
-        beyond = std::max(beyond, normal.dot(corner - corners[a]));
-        before = std::min(before, normal.dot(corner - corners[a]));
-      }
-      if (beyond > 1e-9 * length) continue;  // no edge of the hull
-      const double height = normal.dot(point - corners[a]);
-      if (height > 0 || !(before < -1e-9 * length)) isInside = false;  // a hull without an inside has none
-      if (height > inside.distance) inside = {height, a, b, share, normal};
-    }
-  }
-  return isInside ? inside : outside;
 }
 
 Mat3 crossMatrix(const Vec3& v) {
@@ -184,29 +134,29 @@ class IkTaskRows::Measure {
     for (const PointMass& mass : rows_.masses_) center += mass.mass / rows_.totalMass_ * massPoint(mass);
     if (task.centred) {
       Vec3 mean = Vec3::Zero();
-      const double share = 1 / static_cast<double>(task.supports.size());
-      for (const Index support : task.supports) mean += share * position(support);
+      const double weight = 1 / static_cast<double>(task.supports.size());
+      for (const Index support : task.supports) mean += weight * position(support);
       for (std::size_t k = 0; k < 2; ++k) {
         const Vec3 axis = k == 0 ? Vec3::UnitX() : Vec3::UnitZ();
         set(k, axis.dot(mean - center));
         pushMasses(k, axis);
-        for (const Index support : task.supports) push(k, support, -share * axis);
+        for (const Index support : task.supports) push(k, support, -weight * axis);
       }
       return;
     }
-    Points2 corners;
+    std::vector<Eigen::Vector2d> corners;
     for (const Index support : task.supports) corners.push_back(flat(position(support)));
     const HullPlace place = placeOnHull(flat(center), corners);
     const Vec3 out(place.out.x(), 0, place.out.y());
     set(0, place.distance);
     pushMasses(0, -out);
-    push(0, task.supports[place.a], (1 - place.share) * out);
-    push(0, task.supports[place.b], place.share * out);
+    push(0, task.supports[place.a], (1 - place.weight) * out);
+    push(0, task.supports[place.b], place.weight * out);
   }
 
   void operator()(const KeepOutTask& task) const {
     const Vec3 here = position(task.joint);
-    const Vec3 nearest = task.from + shareOnSegment(here, task.from, task.to) * (task.to - task.from);
+    const Vec3 nearest = task.from + nearestOnSegment(here, task.from, task.to) * (task.to - task.from);
     const Vec3 line = here - nearest;
     const double distance = line.norm();
     const Vec3 along = task.to - task.from;

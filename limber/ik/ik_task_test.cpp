@@ -5,6 +5,7 @@
 
 #include "limber/core/error.h"
 #include "limber/core/numbers.h"
+#include "limber/core/parallel.h"
 #include "limber/ik/humanoid_limits.h"
 #include "limber/ik/ik_skeletons.h"
 #include "limber/ik/ik_solver.h"
@@ -383,8 +384,35 @@ TEST_F(IkTaskTest, BadTasksAreRefusedByNumber) {
   refused({BalanceTask{}});
   refused({KeepOutTask{0, Vec3::Zero(), Vec3::Zero(), 0}});
   refused({CouplingTask{3, 3, 1}});
+  refused({BalanceTask{std::vector<Index>(kMostSupports + 1, 0)}});
   Pose pose = restPose(humanoid);
   EXPECT_THROW(solve({}, pose), Error);
+}
+
+TEST_F(IkTaskTest, MoreTasksThanCanBeAreRefused) {
+  Pose pose = restPose(humanoid);
+  const IkTask task = {PositionTask{joint("head"), position(pose, "head")}};
+  EXPECT_TRUE(solve(std::vector<IkTask>(kMostIkTasks, task), pose).met());
+  try {
+    solve(std::vector<IkTask>(kMostIkTasks + 1, task), pose);
+    ADD_FAILURE();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::kBadArgument);
+  }
+}
+
+TEST_F(IkTaskTest, AnyNumberOfThreadsGivesTheSameBits) {
+  std::vector<Pose> poses;
+  for (const int threads : {1, 2, 5}) {
+    setThreadCount(threads);
+    solve(oneOfEach(), poses.emplace_back(restPose(humanoid)));
+  }
+  setThreadCount(0);
+  for (const Pose& pose : poses) {
+    for (Index j = 0; j < humanoid.jointCount(); ++j) {
+      EXPECT_EQ(pose.locals[j].rotation.coeffs(), poses[0].locals[j].rotation.coeffs());
+    }
+  }
 }
 
 }  // namespace

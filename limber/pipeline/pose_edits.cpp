@@ -130,12 +130,11 @@ JointReach readReach(const JsonView& entry) {
 
 TaskKind readKind(const JsonView& entry) {
   const std::string kind = requireText(entry, "kind");
-  std::string known;
-  for (std::size_t k = 0; k < taskForms().size(); ++k) {
-    if (taskForms()[k].name == kind) return static_cast<TaskKind>(k);
-    known += fmt::format(" \"{}\"", taskForms()[k].name);
+  try {
+    return findTaskKind(kind);
+  } catch (const Error& error) {
+    entry.member("kind").fail(fmt::format("{} ({})", error.message(), error.remedy()));
   }
-  entry.member("kind").fail(fmt::format("is no kind of task; there are{}", known));
 }
 
 double requireNumber(const JsonView& entry, std::string_view key) {
@@ -218,7 +217,7 @@ TaskEdit readTask(const JsonView& entry) {
   if (task.kind != TaskKind::kBalance) task.joint = requireText(entry, "joint");
   task.weight = entry.number("weight", 1);
   if (!(task.weight > 0)) entry.member("weight").fail("is not above 0");
-  task.priority = static_cast<int>(entry.index("priority", 1001).value_or(0));
+  task.priority = static_cast<int>(entry.index("priority", kHighestPriority + 1).value_or(0));
   readTaskMembers(entry, task);
   task.where = entry.path();
   return task;

@@ -6,14 +6,13 @@
 
 #include "limber/anatomy/anatomy.h"
 #include "limber/core/error.h"
+#include "limber/core/names.h"
 #include "limber/core/numbers.h"
 #include "limber/pipeline/edit_text.h"
 
 namespace limber {
 
 namespace {
-
-constexpr int kHighestPriority = 1000;
 
 const TaskForm& formOf(TaskKind kind) {
   return taskForms()[static_cast<std::size_t>(kind)];
@@ -43,12 +42,11 @@ class TaskText {
   }
 
   TaskKind kindOf(std::string_view name) const {
-    std::string known;
-    for (std::size_t k = 0; k < taskForms().size(); ++k) {
-      if (taskForms()[k].name == name) return static_cast<TaskKind>(k);
-      known += (k == 0 ? "" : ", ") + std::string(taskForms()[k].name);
+    try {
+      return findTaskKind(name);
+    } catch (const Error& error) {
+      failText(text_, error.message(), error.remedy());
     }
-    failText(text_, fmt::format("is no kind of task: '{}'", name), "there are: " + known);
   }
 
   // Reads "@weight=2,priority=1" off the end.
@@ -58,7 +56,9 @@ class TaskText {
     const std::string_view suffix = text.substr(at + 1);
     if (!suffix.starts_with("weight=") && !suffix.starts_with("priority=")) return text;
     const auto refuse = [&](const char* what) {
-      failText(text, what, "write @weight=2,priority=1: a weight above 0, a whole priority from 0 (first) to 1000");
+      failText(text, what,
+               fmt::format("write @weight=2,priority=1: a weight above 0, a whole priority from 0 (first) to {}",
+                           kHighestPriority));
     };
     for (const std::string_view word : splitAt(',', suffix)) {
       const std::size_t equals = word.find('=');
@@ -281,6 +281,11 @@ const std::vector<TaskForm>& taskForms() {
       {"coupling", "coupling:JOINT=LEADER:0.5", "turned half as far from the rest pose as the leader"},
   };
   return kForms;
+}
+
+TaskKind findTaskKind(std::string_view name) {
+  const TaskForm& form = findByName(taskForms(), "kind of task", name);
+  return static_cast<TaskKind>(&form - taskForms().data());
 }
 
 std::vector<IkTask> resolveTasks(const Skeleton& skeleton, const std::vector<TaskEdit>& edits) {

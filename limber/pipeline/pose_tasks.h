@@ -38,6 +38,10 @@ struct TaskForm {
   std::string_view name, form, summary;
 };
 const std::vector<TaskForm>& taskForms();
+// Of that name ("look-at"). Throws Error kBadArgument that lists them.
+TaskKind findTaskKind(std::string_view name);
+
+inline constexpr int kHighestPriority = 1000;  // of a task that is read
 
 // As solveIkTasks, for joints by name (requireJoint). Throws Error kBadArgument, with the edit's `where`, for a joint
 // or a number that cannot be, and for balance without supports on a body without feet.
@@ -45,7 +49,7 @@ std::vector<IkTask> resolveTasks(const Skeleton& skeleton, const std::vector<Tas
 IkTaskResult applyTasks(const Skeleton& skeleton, Pose& pose, const std::vector<TaskEdit>& edits,
                         const JointLimits* limits = nullptr, const IkTaskOptions& options = {});
 
-// "met", or "12.3 degrees left: its joints' limits are in the way".
+// "met", or "not met, 12.30 degrees left: the joints' limits are in the way".
 std::string taskOutcome(const IkTaskReport& report);
 
 }  // namespace limber

@@ -63,7 +63,7 @@ TEST(PoseTasks, EveryFormOfTextIsRead) {
 }
 
 TEST(PoseTasks, BadTextsAreRefusedWithWhatIsAccepted) {
-  EXPECT_THAT(refusalOf("stare:head=1,2,3"), HasSubstr("'stare:head=1,2,3': is no kind of task: 'stare'"));
+  EXPECT_THAT(refusalOf("stare:head=1,2,3"), HasSubstr("'stare:head=1,2,3': no kind of task is called 'stare'"));
   EXPECT_THAT(refusalOf("stare:head=1,2,3"), HasSubstr("look-at, distance"));
   EXPECT_THAT(refusalOf("look-at:head"), HasSubstr("has no value (write look-at:JOINT=x,y,z"));
   EXPECT_THAT(refusalOf("look-at:head=1,2"), HasSubstr("has no point"));
@@ -79,7 +79,7 @@ TEST(PoseTasks, BadTextsAreRefusedWithWhatIsAccepted) {
   EXPECT_THAT(refusalOf("look-at:head=1,2,3@weight=0"), HasSubstr("weight that is not above 0"));
   EXPECT_THAT(refusalOf("look-at:head=1,2,3@priority=0.5"), HasSubstr("priority that cannot be"));
   EXPECT_THAT(refusalOf("look-at:head=1,2,3@weight=1,wait=2"), HasSubstr("something else"));
-  EXPECT_THAT(refusalOf(""), HasSubstr("is no kind of task"));
+  EXPECT_THAT(refusalOf(""), HasSubstr("no kind of task is called ''"));
 }
 
 TEST(PoseTasks, NumbersAndJointsThatCannotBeAreRefusedAtTheirTask) {
@@ -149,7 +149,8 @@ TEST(PoseTasks, BadEntriesOfFilesAreRefusedWithTheirPlace) {
   };
   EXPECT_THAT(refusal("7"), HasSubstr("p.json: poses[0].tasks[0]"));
   EXPECT_THAT(refusal(R"({"joint": "head"})"), HasSubstr("has no \"kind\""));
-  EXPECT_THAT(refusal(R"({"kind": "stare", "joint": "head"})"), HasSubstr("tasks[0].kind: is no kind of task"));
+  EXPECT_THAT(refusal(R"({"kind": "stare", "joint": "head"})"),
+              HasSubstr("tasks[0].kind: no kind of task is called 'stare'"));
   EXPECT_THAT(refusal(R"({"kind": "look-at", "joint": "head"})"), HasSubstr("has no \"target\""));
   EXPECT_THAT(refusal(R"({"kind": "position", "joint": "head", "target": [1, 2, 3], "radius": 1})"),
               HasSubstr("tasks[0].radius: is not part of a pose"));
