@@ -50,7 +50,8 @@ import createEngine from './limber_engine.mjs';
  *             match: { part: string, source: string[], target: string[], confidence: number, by: string }[],
  *             limits: { [joint: string]: { type: string, [field: string]: unknown } },
  *             limit_outlines: { joint: number, length: number, closed: boolean, rim: Vector[] }[],
- *             solver: string, ik: boolean, limited: boolean, targets: { joint: number, position: Vector }[],
+ *             solver: string, ik: boolean, limited: boolean,
+ *             tasks: { task: string, outcome: string, met: boolean }[], targets: { joint: number, position: Vector }[],
  *             pins: { joint: string, position: Vector }[], doubts: number[], locked: number[], edited_rig: boolean,
  *             dragged: number | null,
  *             posed: boolean, undo: string | null, redo: string | null,
@@ -79,6 +80,7 @@ import createEngine from './limber_engine.mjs';
  *   point as PaintWeights names it
  * @typedef {{ seconds: number, kind: 'auto' | 'flat' | 'free', turn: Vector, offset: Vector }} Tangent
  * @typedef {{ weights: Float32Array, joints: Uint16Array }} WeightArrays four influences for each vertex
+ * @typedef {{ names: string[], partOf: Uint32Array }} SurfaceParts
  * @typedef {{ positions: Float32Array, normals: Float32Array, uvs: Float32Array, triangles: Uint32Array,
  *             weights: Float32Array, joints: Uint16Array,
  *             parts: { name: string, first: number, count: number, material: number | null }[],
@@ -270,6 +272,12 @@ function createSession(engine, handle = engine._limber_session_new()) {
     /** The weights that a stroke would leave; nothing changes.
      *  @type {(stroke: Command) => { ok: true, weights: WeightArrays } | Failure} */
     preview: (stroke) => weightArrays(call(engine, engine._limber_session_preview, [handle], JSON.stringify(stroke))),
+    /** The limbs as the weights have them: a part for each triangle of model(), and what the parts are called.
+     *  @type {() => { ok: true, parts: SurfaceParts } | Failure} */
+    parts: () => {
+      const result = call(engine, engine._limber_session_parts, [handle]);
+      return result.ok ? { ok: true, parts: { names: result.account.names, partOf: new Uint32Array(result.bytes.buffer) } } : result;
+    },
     /** The joints' matrices, as run() gives them. @type {() => { ok: true, skin: Float32Array } | Failure} */
     skin: () => {
       const result = call(engine, engine._limber_session_skin, [handle]);

@@ -15,6 +15,7 @@
 #include "limber/session/measures.h"
 #include "limber/session/scene.h"
 #include "limber/session/scene_state.h"
+#include "limber/session/surface_parts.h"
 #include "limber/skeleton/keyframes.h"
 
 namespace {
@@ -392,6 +393,14 @@ LIMBER_EXPORT CallResult* limber_session_preview(const SessionHandle* handle, co
     const auto* stroke = std::get_if<limber::PaintWeights>(&command);
     if (!stroke) throw limber::Error(limber::ErrorCode::kBadArgument, "only painting has a preview");
     return {true, weightsArray(handle->session().previewPaint(*stroke)), "{}"};
+  });
+}
+
+// A part for each triangle, in 32 bits, and what the parts are called.
+LIMBER_EXPORT CallResult* limber_session_parts(const SessionHandle* handle) {
+  return guarded({}, [&]() -> CallResult {
+    const limber::SurfaceParts parts = limber::surfaceParts(handle->session().state());
+    return {true, bytesOf(parts.partOf), textOf({{"names", parts.names}})};
   });
 }
 

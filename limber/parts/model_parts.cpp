@@ -35,26 +35,39 @@ std::vector<Index> keptTriangles(const Geometry& geometry, const PreparedMesh& p
   return kept;
 }
 
-SurfaceParts byWeights(const Asset& asset, const Geometry& geometry, std::span<const Index> kept,
-                       const FaceGraph& graph, PartDetail detail, Progress& progress) {
-  const AssetSkeleton rig = readSkeleton(asset);
-  const SkinWeights weights = readWeights(asset, geometry, rig);
+// The surface as the methods take it, and which of its triangles that are.
+struct KeptSurface {
+  PreparedMesh prepared;
+  std::vector<Index> kept;
+  FaceGraph graph;
+};
+
+KeptSurface keptSurface(const Geometry& geometry) {
+  KeptSurface surface;
+  surface.prepared = prepareMesh(geometry.positions, geometry.triangles);
+  surface.kept = keptTriangles(geometry, surface.prepared);
+  surface.graph = faceGraph(surface.prepared.mesh);
+  return surface;
+}
+
+SurfaceParts byWeights(const Geometry& geometry, const KeptSurface& surface, const Skeleton& skeleton,
+                       const SkinWeights& weights, PartDetail detail, Progress& progress) {
   std::vector<Triangle> triangles;
-  triangles.reserve(kept.size());
-  for (const Index t : kept) triangles.push_back(geometry.triangles[t]);
-  SurfaceParts parts = partsByWeights(graph, triangles, weights, jointGroups(rig.skeleton, detail), progress);
+  triangles.reserve(surface.kept.size());
+  for (const Index t : surface.kept) triangles.push_back(geometry.triangles[t]);
+  SurfaceParts parts = partsByWeights(surface.graph, triangles, weights, jointGroups(skeleton, detail), progress);
   if (detail == PartDetail::kLimbs && parts.partCount() == 1) {
-    parts = partsByWeights(graph, triangles, weights, jointGroups(rig.skeleton, PartDetail::kJoints), progress);
+    parts = partsByWeights(surface.graph, triangles, weights, jointGroups(skeleton, PartDetail::kJoints), progress);
   }
   return parts;
 }
 
 // From the kept triangles to all of the geometry.
-std::vector<Index> expand(const Geometry& geometry, const PreparedMesh& prepared, std::span<const Index> kept,
-                          std::span<const Index> partOf) {
+std::vector<Index> expand(const Geometry& geometry, const KeptSurface& surface, std::span<const Index> partOf) {
+  const PreparedMesh& prepared = surface.prepared;
   std::vector<Index> all(geometry.triangles.size(), kNoIndex), partAt(prepared.mesh.vertexCount(), kNoIndex);
-  for (std::size_t i = kept.size(); i-- > 0;) {
-    all[kept[i]] = partOf[i];
+  for (std::size_t i = surface.kept.size(); i-- > 0;) {
+    all[surface.kept[i]] = partOf[i];
     for (const Index v : prepared.mesh.triangles[i]) partAt[v] = partOf[i];
   }
   for (std::size_t t = 0; t < all.size(); ++t) {
@@ -82,13 +95,24 @@ SurfaceParts modelParts(const Asset& asset, const Geometry& geometry, const Part
     throw Error(ErrorCode::kBadArgument, "has no rig whose weights could tell parts", asset.name,
                 "make one with limber rig, or take the parts by shape");
   }
-  const PreparedMesh prepared = prepareMesh(geometry.positions, geometry.triangles);
-  const std::vector<Index> kept = keptTriangles(geometry, prepared);
-  const FaceGraph graph = faceGraph(prepared.mesh);
-  SurfaceParts parts = rigged && options.method != PartMethod::kShape
-                           ? byWeights(asset, geometry, kept, graph, options.detail, progress)
-                           : partsByShape(graph, {options.count}, progress);
-  parts.partOf = expand(geometry, prepared, kept, parts.partOf);
+  const KeptSurface surface = keptSurface(geometry);
+  SurfaceParts parts;
+  if (rigged && options.method != PartMethod::kShape) {
+    const AssetSkeleton rig = readSkeleton(asset);
+    parts = byWeights(geometry, surface, rig.skeleton, readWeights(asset, geometry, rig), options.detail, progress);
+  } else {
+    parts = partsByShape(surface.graph, {options.count}, progress);
+  }
+  parts.partOf = expand(geometry, surface, parts.partOf);
+  return parts;
+}
+
+SurfaceParts riggedParts(const Geometry& geometry, const Skeleton& skeleton, const SkinWeights& weights,
+                         PartDetail detail) {
+  const KeptSurface surface = keptSurface(geometry);
+  Progress ignored;
+  SurfaceParts parts = byWeights(geometry, surface, skeleton, weights, detail, ignored);
+  parts.partOf = expand(geometry, surface, parts.partOf);
   return parts;
 }
 

@@ -31,4 +31,8 @@ PartDetail parsePartDetail(std::string_view name);
 // weights are asked of a model without a rig, and what the methods throw. Cost: theirs and O(#F).
 SurfaceParts modelParts(const Asset& asset, const Geometry& geometry, const PartOptions& options, Progress& progress);
 
+// The same by weights, for a surface and a rig that no file has yet. `weights` has #S rows over the skeleton's joints.
+SurfaceParts riggedParts(const Geometry& geometry, const Skeleton& skeleton, const SkinWeights& weights,
+                         PartDetail detail);
+
 }  // namespace limber

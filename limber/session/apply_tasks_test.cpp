@@ -54,6 +54,18 @@ TEST(ApplyTasks, WhatIsHeldStays) {
   }
 }
 
+// A key of the pose leaves it as it is; another moment of the clip does not.
+TEST(ApplyTasks, OutcomesStayWithThePose) {
+  Session session;
+  tell(session, OpenSample{"biped"});
+  tell(session, AddClip{"looking"});
+  tell(session, ApplyTasks{{"balance=centred"}, true});
+  tell(session, SetKey{});
+  EXPECT_EQ(session.state().tasks.size(), 1u);
+  tell(session, SetTime{1});
+  EXPECT_TRUE(session.state().tasks.empty());
+}
+
 TEST(ApplyTasks, BadTasksAreRefusedAndNothingChanges) {
   Session session;
   tell(session, OpenSample{"biped"});

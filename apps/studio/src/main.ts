@@ -65,7 +65,7 @@ const desk = { ...stage, studio, page, app };
 app.replaceChildren(
   toolbar(studio, page, journal, viewport, model, others, arMenu(desk)),
   element('main', { class: 'stage' }, viewport.canvas, facts(page), hint(page, viewport), poseTools(page), views(viewport), arButton(desk), comparisonPanel(studio, page, comparison)),
-  element('aside', { class: 'side' }, scenePanel(studio, page, places), doubts(studio, page), posePanel(studio, page, poses), paintPanel(studio, page), retargetPanel(studio, page), methodsPanel(studio, page), outliner(studio, page, handles)),
+  element('aside', { class: 'side' }, scenePanel(studio, page, places), doubts(studio, page), posePanel(studio, page, poses, viewport), paintPanel(studio, page), retargetPanel(studio, page), methodsPanel(studio, page), outliner(studio, page, handles)),
   clips,
   toasts);
 loadedWhenOpened(studio, page, 'help', async () => {

@@ -1,4 +1,4 @@
-// Tools for exact posing: several joints by box and by touch, numbers, the magnet, axes of the gizmo, arrow keys.
+// Tools for exact posing: several joints by box and by touch, numbers, the magnet, axes of the gizmo, arrow keys, tasks; limbs in colours.
 //
 //   node apps/studio/tests/tools_test.mjs DIST OUTPUT_FOLDER
 //
@@ -277,6 +277,71 @@ const cases = {
     await press('Control+z');
     near(await jointPosition(page, left), from, 1e-5, 'the run is more than a step:');
     assert.equal((await sessionState(page)).undo, undo);
+  },
+  async 'tasks are asked for by mouse and keyboard, say what became of them, and are one step each'() {
+    await page.goto('about:blank');
+    await page.goto(`${server.address}?sample=biped`);
+    await settled(page);
+    const tasks = async () => (await sessionState(page)).tasks, rows = page.locator('#task-list li');
+    await page.locator('#tasks summary').click();
+    await page.locator('#task-look').waitFor();
+    assert.ok(await page.locator('#task-look').isDisabled(), 'no joint is selected');
+    const head = await jointOf('head'), rest = (await turned(head)).rotation;
+    await press('3');
+    await select(head);
+    await page.locator('#task-look').focus();
+    await page.keyboard.press('Enter');
+    await settled(page);
+    assert.deepEqual((await tasks()).map(({ met, task }) => [met, task.startsWith(`look-at:${head}=`)]), [[true, true]]);
+    const looks = (await turned(head)).rotation, turn = new Quaternion(...looks).angleTo(new Quaternion(...rest)) * (180 / Math.PI);
+    assert.ok(turn > 60 && turn < 120, `seen from the side it turned by ${turn} degrees`);
+    await page.locator('#task-balance').click();
+    await settled(page);
+    assert.equal((await tasks()).length, 2);
+    assert.equal(await page.locator('#task-balance').getAttribute('aria-pressed'), 'true');
+    await select(left);
+    await page.locator('#task-ground').click();
+    await settled(page);
+    await page.locator('#task-kind').selectOption('position');
+    assert.ok((await page.locator('#task-text').inputValue()).startsWith(`position:${left}=`));
+    await type('#task-text', `position:${left}=9,9,9@priority=1`);
+    assert.deepEqual((await tasks()).map(({ met }) => met), [true, true, true, false]);
+    assert.match(await rows.nth(3).textContent(), /\d\.\d+ m left: the bones are too short/);
+    await type('#task-text', 'stare:head=1,2,3');
+    await page.locator('#notice', { hasText: 'no kind of task' }).waitFor();
+    await page.locator('#close-notice').click();
+    assert.equal((await tasks()).length, 4);
+    assert.deepEqual(await barriers(page), []);
+    await page.screenshot({ path: join(output, 'tools_tasks.png') });
+    await rows.nth(3).locator('button').last().focus();
+    await page.keyboard.press('Enter');
+    assert.equal(await rows.count(), 3);
+    await press('Alt+r');
+    await page.locator('#tasks-again').click();
+    await settled(page);
+    assert.deepEqual((await tasks()).map(({ met }) => met), [true, true, true]);
+    await press('Control+z');
+    assert.deepEqual((await sessionState(page)).tasks, []);
+    assert.equal(await rows.filter({ hasText: 'not in this pose' }).count(), 3);
+    await page.locator('#tasks summary').click();
+  },
+  async 'limbs are shown in their colours, by name, and anew for another rig'() {
+    const handles = page.locator('.pose [data-value=handles]'), legend = page.locator('#legend li');
+    await page.locator('.pose [data-value=parts]').click();
+    await legend.first().waitFor();
+    await page.locator('#methods summary').click();
+    await page.locator('#rigger').selectOption('template');
+    await legend.filter({ hasText: 'left arm' }).waitFor();
+    await settled(page);
+    const names = await legend.allTextContents();
+    assert.ok(['right arm', 'left leg', 'right leg'].every((name) => names.includes(name)), names.join());
+    assert.equal(new Set(await legend.locator('.swatch').evaluateAll((all) => all.map(({ style }) => style.background))).size, names.length);
+    assert.deepEqual(await barriers(page), []);
+    await page.screenshot({ path: join(output, 'tools_limbs.png') });
+    await handles.click();
+    assert.ok(await page.locator('#legend').isHidden());
+    await press('Control+z');
+    await page.locator('#methods summary').click();
   },
   async 'by touch: taps and a box select, two fingers still move the camera'() {
     const phone = await openStudio(browser, server.address, { width: 390, height: 844, touch: true, search: '?sample=biped' });

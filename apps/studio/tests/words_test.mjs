@@ -104,6 +104,17 @@ async function walk(locale) {
   await note('exact values');
   await click('#select-several');
   await click('#limits');
+  await click('#tasks summary');
+  await at.locator('#task-ground').waitFor();
+  await click('#task-ground');
+  await note('a task that is met');
+  await click('#undo');
+  await note('a task that was taken back');
+  await click('#tasks summary');
+  await click('.pose [data-value=parts]');
+  await at.locator('#legend li').first().waitFor();
+  await note('limbs');
+  await click('.pose [data-value=handles]');
   await click('#paint');
   await note('painting');
   await click('#paint');

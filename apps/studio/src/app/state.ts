@@ -1,6 +1,7 @@
 // What the page shows, in one place.
 import type {
-  Curve, LimberError, Measures, MethodKind, Methods, OtherMember, Paths, SampleMotion, SamplePose, SessionState, SurfaceModel, Variant,
+  Curve, LimberError, Measures, MethodKind, Methods, OtherMember, Paths, SampleMotion, SamplePose, SessionState, SurfaceModel, SurfaceParts,
+  Variant,
 } from '../engine/messages';
 import { told } from '../words/engine';
 import type { KeptPose } from './pose_store';
@@ -9,7 +10,7 @@ import { Store } from './store';
 export type DragMode = 'move' | 'turn';
 /** Whose axes arrows and rings have. */
 export type GizmoSpace = 'world' | 'parent' | 'local' | 'view';
-export type Display = 'handles' | 'surface' | 'weights' | 'joint-weights';
+export type Display = 'handles' | 'surface' | 'weights' | 'joint-weights' | 'parts';
 
 export type PaintMode = 'add' | 'subtract' | 'smooth';
 
@@ -82,6 +83,8 @@ export interface PageState {
   arranging: boolean;
   mode: DragMode;
   display: Display;
+  /** Of the model and the weights that are shown; null until they are asked for. */
+  parts: SurfaceParts | null;
   bones: boolean;
   wireframe: boolean;
   selected: number | null;
@@ -157,7 +160,7 @@ export interface PageState {
 export type PageStore = Store<PageState>;
 
 export const createPageStore = (): PageStore => new Store<PageState>({
-  session: null, model: null, others: [], arranging: false, mode: 'move', display: 'handles', bones: true, wireframe: false,
+  session: null, model: null, others: [], arranging: false, mode: 'move', display: 'handles', parts: null, bones: true, wireframe: false,
   selected: null, also: new Set(), bothSides: false, hovered: null, pinned: [], looked: false, work: null, notice: null, help: false,
   seconds: 0, playing: false, speed: 1, loop: true, autoKey: true, gizmo: false, gizmoSpace: 'world', snapping: false, selecting: false, limits: false, correcting: false,
   span: 0.3, keyEditor: null, feet: false, chosenKeys: [], ghosts: false, ghostsShown: [], paths: null, curve: null,

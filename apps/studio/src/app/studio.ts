@@ -10,6 +10,7 @@ import { jointCalls } from './calls/joints';
 import { keyingCalls } from './calls/keying';
 import { memberCalls } from './calls/members';
 import { motionCalls } from './calls/motions';
+import { bindParts } from './calls/parts';
 import { openingCalls } from './calls/opening';
 import { posingCalls } from './calls/posing';
 import { rigCalls } from './calls/rig';
@@ -44,5 +45,6 @@ export type Studio = ReturnType<typeof allCalls> &
 
 export function createStudio(page: PageStore, journal: Journal): Studio {
   const core = new Core(page);
+  bindParts(core);
   return Object.assign(core, allCalls(core, journal));
 }

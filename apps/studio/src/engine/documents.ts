@@ -216,6 +216,7 @@ export class Documents {
   pickMember(ray: Ray) { return orThrow(this.session.pickMember(ray)).hit; }
   surface(rays: Ray[]) { return rays.map((ray) => orThrow(this.session.surface(ray)).hit); }
   preview(stroke: Command | null) { return orThrow(stroke ? this.session.preview(stroke) : this.session.weights()).weights; }
+  parts() { return orThrow(this.session.parts()).parts; }
   checkPly(bytes: Uint8Array, name: string) { orThrow(this.limber.checkPly(bytes, name)); }
   methods() { return this.limber.methods(); }
   export(format: ExportFormat) { return orThrow(this.session.export(format)).bytes; }

@@ -1,12 +1,12 @@
 // What the page and the worker that holds the engine say to each other.
 import type {
   Command, ErrorKind, ExportFormat, LimberError, Measures, MethodKind, Methods, PickHit, Placement, Ray, SceneMember, SessionState, SurfaceHit,
-  SurfaceModel, Tangent, WeightArrays,
+  SurfaceModel, SurfaceParts, Tangent, WeightArrays,
 } from '@engine/limber.mjs';
 
 export type {
   Command, ErrorKind, ExportFormat, LimberError, Measures, MethodKind, Methods, PickHit, Placement, Ray, SceneMember, SessionState, SurfaceHit,
-  SurfaceModel, Tangent, WeightArrays,
+  SurfaceModel, SurfaceParts, Tangent, WeightArrays,
 };
 export type Vector = [number, number, number];
 
@@ -151,6 +151,8 @@ export type Request =
   | { kind: 'surface'; rays: Ray[] }
   /** What the weights would be after a stroke of the brush; null: what they are. */
   | { kind: 'preview'; stroke: Command | null }
+  /** The limbs as the weights have them. */
+  | { kind: 'parts' }
   /** The model that the chosen clip's motion came with. */
   | { kind: 'source-model' }
   | { kind: 'paths' }
@@ -184,6 +186,7 @@ export interface Answers {
   'pick-member': { member: number; joint: number } | null;
   surface: (SurfaceHit | null)[];
   preview: WeightArrays;
+  parts: SurfaceParts;
   'source-model': { motion: string; model: SurfaceModel; joints: number } | null;
   paths: Paths;
   curve: Curve;

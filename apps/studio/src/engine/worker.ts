@@ -20,6 +20,7 @@ function answer(documents: Documents, request: Request): Answers[Kind] {
     case 'pick-member': return documents.pickMember(request.ray);
     case 'surface': return documents.surface(request.rays);
     case 'preview': return documents.preview(request.stroke);
+    case 'parts': return documents.parts();
     case 'try-motion': return documents.tryMotion(request.motion);
     case 'sample-motions': return documents.sampleMotions();
     case 'preview-motion': return documents.previewMotion(request.motion, request.most, request.rate);

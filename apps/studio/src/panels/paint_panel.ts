@@ -53,7 +53,7 @@ export function paintPanel(studio: Studio, page: PageStore): HTMLElement {
     element('p', { class: 'hint-text' }, say('Red moves with the joint, blue does not. Pick joints in the list, or with Alt and a click. Drag beside the model, with Alt or with two fingers to turn it.')));
   page.watch(({ session, painting, brush, bothSides, selected, display }) => {
     // Who looks at something else paints no longer.
-    if (painting && (display === 'handles' || display === 'surface')) return page.set({ painting: false });
+    if (painting && display !== 'weights' && display !== 'joint-weights') return page.set({ painting: false });
     toggle.disabled = !session;
     toggle.setAttribute('aria-pressed', String(painting));
     body.hidden = !painting;

@@ -2,14 +2,18 @@
 import type { PoseShelf } from '../app/pose_shelf';
 import type { Display, DragMode, PageState, PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
+import { jointColor } from '../scene/palette';
+import type { Viewport } from '../scene/viewport';
 import { counted } from '../ui/counted';
 import { button, choice, element } from '../ui/dom';
+import { arriving } from '../ui/loaded_when_opened';
+import { partName } from '../words/parts';
 import { say } from '../words/say';
 import { exactFields } from './exact_fields';
 
 const mostHandles = 200;
 
-export function posePanel(studio: Studio, page: PageStore, poses: PoseShelf): HTMLElement {
+export function posePanel(studio: Studio, page: PageStore, poses: PoseShelf, viewport: Viewport): HTMLElement {
   const mode = choice<DragMode>(say('What dragging a handle does'), [
     { value: 'move', text: say('Move'), icon: 'move', keys: 'G' },
     { value: 'turn', text: say('Turn'), icon: 'turn', keys: 'R' },
@@ -32,6 +36,7 @@ export function posePanel(studio: Studio, page: PageStore, poses: PoseShelf): HT
     { value: 'handles', text: say('Handles') }, { value: 'surface', text: say('Surface'), label: say('The model alone') },
     { value: 'weights', text: say('Areas'), label: say('Which area each joint moves (weights), each in its colour') },
     { value: 'joint-weights', text: say('By joint'), label: say('What the selected joint moves (weights): red much, blue nothing') },
+    { value: 'parts', text: say('Limbs'), label: say('The limbs of the model as the weights have them, each in its colour') },
   ], (value) => page.set({ display: value }));
   const toggle = (text: string, key: 'bones' | 'wireframe' | 'gizmo' | 'limits', title = text) => {
     const box = element('input', { type: 'checkbox', id: key });
@@ -55,11 +60,41 @@ export function posePanel(studio: Studio, page: PageStore, poses: PoseShelf): HT
     element('div', { class: 'row' }, both, mirror),
     element('div', { class: 'row' }, reset, rest),
     element('div', { class: 'row' }, copy, paste, library),
-    display.root,
+    display.root, legend(page),
     element('div', { class: 'row checks' }, toggle(say('Bones'), 'bones'), toggle(say('Mesh lines'), 'wireframe'),
       toggle(say('Arrows'), 'gizmo', say('Arrows and rings on the selected joint, for exact work (gizmo)')),
       toggle(say('Limits'), 'limits', say('How far joints may turn'))),
-    limits(studio, page), exactFields(studio, page));
+    limits(studio, page), exactFields(studio, page), tasks(studio, page, viewport));
+}
+
+/** What the parts that are shown are called, each beside its colour. */
+function legend(page: PageStore): HTMLElement {
+  const list = element('ul', { class: 'legend', id: 'legend', 'aria-label': say('Limbs') });
+  page.watch(({ display, parts }, before) => {
+    list.hidden = display !== 'parts' || !parts;
+    if (parts === before.parts) return;
+    list.replaceChildren(...(parts?.names ?? []).map((name, part) => {
+      const swatch = element('span', { class: 'swatch' });
+      swatch.style.background = jointColor(part).getStyle();
+      return element('li', {}, swatch, element('span', { title: name }, partName(name)));
+    }));
+  });
+  return list;
+}
+
+/** Its code comes when it is first opened. */
+function tasks(studio: Studio, page: PageStore, viewport: Viewport): HTMLElement {
+  const root = element('details', { class: 'fold tasks', id: 'tasks' }, element('summary', {}, say('Tasks')));
+  let asked = false;
+  root.addEventListener('toggle', () => {
+    if (!root.open || asked) return;
+    asked = true;
+    void studio.guard(() => arriving(import('./tasks_panel'))).then((code) => {
+      if (code) return root.append(code.tasksPanel(studio, page, viewport));
+      asked = root.open = false;
+    });
+  });
+  return root;
 }
 
 /** How far joints may turn: a file of limits; what is shown where there are none. */

@@ -4,7 +4,7 @@ import {
   RepeatWrapping, Skeleton, SkinnedMesh, SRGBColorSpace, Texture, Vector3,
 } from 'three';
 import type { Display } from '../app/state';
-import type { SurfaceModel, WeightArrays } from '../engine/messages';
+import type { SurfaceModel, SurfaceParts, WeightArrays } from '../engine/messages';
 import { heatColor, jointColor } from './palette';
 
 /** Takes its matrices as they come from the engine instead of making them from bones. */
@@ -79,9 +79,11 @@ export class ModelView {
     if (display === 'joint-weights') this.paint(selected ?? 0);
   }
 
-  setDisplay(display: Display, selected: number | null, wireframe: boolean) {
-    const painted = display === 'weights' || display === 'joint-weights';
-    if (painted) this.paint(display === 'joint-weights' ? selected ?? 0 : null);
+  setDisplay(display: Display, selected: number | null, wireframe: boolean, parts: SurfaceParts | null = null) {
+    const byParts = display === 'parts' && parts?.partOf.length === (this.model?.triangles.length ?? 0) / 3 ? parts : null;
+    const painted = display === 'weights' || display === 'joint-weights' || byParts !== null;
+    if (byParts) this.paintParts(byParts);
+    else if (painted) this.paint(display === 'joint-weights' ? selected ?? 0 : null);
     for (const mesh of this.meshes) {
       const material = mesh.material;
       const own = mesh.userData['color'] as Color;
@@ -199,6 +201,17 @@ export class ModelView {
       if (joint !== null) color.copy(heat[Math.round(heatSteps * Math.min(1, own))]!);
       colors.setXYZ(v, color.r, color.g, color.b);
     }
+    colors.needsUpdate = true;
+  }
+
+  /** Each vertex in the colour of one part that it is in. */
+  private paintParts({ names, partOf }: SurfaceParts) {
+    const { triangles } = this.model!, colors = this.geometry!.getAttribute('color') as BufferAttribute;
+    const palette = names.map((_, part) => jointColor(part));
+    triangles.forEach((vertex, corner) => {
+      const { r, g, b } = palette[partOf[Math.floor(corner / 3)]!]!;
+      colors.setXYZ(vertex, r, g, b);
+    });
     colors.needsUpdate = true;
   }
 

@@ -136,8 +136,9 @@ export function createStage(studio: Studio, page: PageStore): Stage {
       requestAnimationFrame(() => viewport.frame(box.applyMatrix4(places.of(now.session!.member))));
     }
     const repaint = now.model !== before.model || now.display !== before.display || now.wireframe !== before.wireframe
-      || (now.display === 'joint-weights' && now.selected !== before.selected);
-    if (repaint) model.setDisplay(now.display, now.selected, now.wireframe);
+      || (now.display === 'joint-weights' && now.selected !== before.selected)
+      || (now.display === 'parts' && now.parts !== before.parts);
+    if (repaint) model.setDisplay(now.display, now.selected, now.wireframe, now.parts);
     const selected = now.selected === null ? [] : [now.selected, ...now.also];
     handles.paint(new Set(selected), now.hovered, new Set(now.pinned), new Set(now.session?.doubts));
     viewport.draw();

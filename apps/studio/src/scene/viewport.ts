@@ -126,6 +126,16 @@ export class Viewport {
     return { right: new Vector3().fromArray(elements, 0).normalize(), up: new Vector3().fromArray(elements, 4).normalize() };
   }
 
+  /** Where the camera is, in the chosen model's own space. */
+  eye(): Vector { return this.camera.getWorldPosition(new Vector3()).toArray(); }
+
+  /** The plane of the ground there: its normal, and how far it is from the origin along it. */
+  floor(): { normal: Vector; distance: number } {
+    this.ground.updateWorldMatrix(true, false);
+    const normal = new Vector3().setFromMatrixColumn(this.ground.matrixWorld, 1).normalize();
+    return { normal: normal.toArray(), distance: normal.dot(new Vector3().setFromMatrixPosition(this.ground.matrixWorld)) };
+  }
+
   /** The chosen model's own space in the world. */
   stand(place: Matrix4) {
     this.world.matrix.copy(place).invert();

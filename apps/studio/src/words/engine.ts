@@ -2,7 +2,7 @@
 // not known here is shown as the engine says it.
 import type { ErrorKind, LimberError, SessionState } from '../engine/messages';
 import { partName } from './parts';
-import { language, say, type Values, type Words } from './say';
+import { language, number, say, type Values, type Words } from './say';
 
 type Named = Readonly<Record<string, Words>>;
 const capital = (text: string) => text.charAt(0).toUpperCase() + text.slice(1);
@@ -32,10 +32,12 @@ const methods: Readonly<Record<string, { name: Words; summary: Words }>> = {
   'ccd': { name: 'CCD', summary: 'cyclic coordinate descent from the tip to the base' },
   'ccd-forward': { name: 'CCD, forward', summary: 'cyclic coordinate descent from the base to the tip' },
   'fabrik': { name: 'FABRIK', summary: 'forward and backward reaching, for chains and trees' },
+  'particle': { name: 'Particles', summary: 'joints as particles at fixed distances, the spine first, then the limbs' },
   'jacobian-transpose': { name: 'Jacobian transpose', summary: 'steepest descent that goes on in the last step\u2019s direction too' },
   'pseudo-inverse': { name: 'Pseudo-inverse', summary: 'smallest step by singular values' },
   'dls': { name: 'DLS', summary: 'damped least squares, the damping scaled to what is left to go' },
   'sdls': { name: 'SDLS', summary: 'selectively damped least squares' },
+  'mass-spring': { name: 'Masses and springs', summary: 'springs to the targets pull at bones with masses: light tips go first' },
   'whole-body': { name: 'Whole body', summary: 'damped least squares with priorities, for many effectors and a moving root' },
   'limb-ik': { name: 'Limbs by IK', summary: 'joints turn as the source\u2019s; feet stay planted, hands touch what they touched' },
   'spacetime': { name: 'Whole motion', summary: 'the smallest smooth change over the whole motion that keeps feet planted and hands touching' },
@@ -50,6 +52,29 @@ export const methodSummary = ({ name, summary }: { name: string; summary: string
   const known = methods[name];
   return known ? say(known.summary) : summary;
 };
+
+const tasks: Named = {
+  'position': 'at a place', 'orientation': 'turned as it rests', 'look-at': 'looks at a place', 'distance': 'at a distance', 'plane': 'keeps to a plane',
+  'balance': 'Balance over the feet', 'keep-out': 'stays out of a ball', 'coupling': 'turns with another',
+};
+/** What kind of task it is, of "kind:joint=...". */
+export const taskName = (kind: string) => {
+  const known = tasks[kind];
+  return known ? say(known) : kind;
+};
+
+const obstacles: Named = {
+  'the bones are too short': '{left} left: the bones are too short',
+  'the joints\' limits are in the way': '{left} left: the joints\u2019 limits are in the way',
+  'other tasks are in the way': '{left} left: other tasks are in the way',
+  'no pose was found that meets it, even alone': '{left} left: no pose was found that meets it, even alone',
+};
+/** What is left of a task and why, of "not met, 0.1 m left: ...". */
+export function taskOutcome({ met, outcome }: SessionState['tasks'][number]): string {
+  if (met) return say('met');
+  const [, amount = '', unit, why = ''] = /^not met, ([\d.]+) (degrees|m) left: (.*)$/.exec(outcome) ?? [], known = obstacles[why];
+  return known ? say(known, { left: unit === 'm' ? `${number(Number(amount), 3)} m` : `${number(Number(amount), 1)}\u00b0` }) : outcome;
+}
 
 const motions: Readonly<Record<string, { name: Words; summary: Words }>> = {
   'walk': { name: 'Walk', summary: 'A person who walks' },

@@ -96,7 +96,7 @@ export class Core {
       const selected = another ? null : before.selected;
       if (another) this.page.set({ also: new Set(), hiddenParts: new Set(), comparison: null, painting: false, placing: false, paths: null, ghostsShown: [], curve: null });
       this.page.set({
-        session: state, model, others: others ?? (state.members.length > 1 ? before.others : []), seconds: state.seconds, playing: false, hovered: null,
+        session: state, model, parts: null, others: others ?? (state.members.length > 1 ? before.others : []), seconds: state.seconds, playing: false, hovered: null,
         correcting: before.correcting && hasTemplate(state), chosenKeys: [],
         selected: selected !== null && selected < state.joints.length ? selected : null,
       });
@@ -104,10 +104,15 @@ export class Core {
       const sameClip = state.clip === before.session?.clip;
       this.page.set({ session: state, seconds: state.seconds, chosenKeys: sameClip ? keysThere(before.chosenKeys, state) : [] });
     }
-    if (weights) this.onWeights(weights);
+    if (weights) this.changeWeights(weights);
     const another = !model && state !== null && (state.clip !== before.session?.clip || state.seconds !== before.session?.seconds);
     this.showStance(stance, another);
     if (state) this.followers.forEach((follow) => follow());
+  }
+
+  private changeWeights(weights: WeightArrays) {
+    this.onWeights(weights);
+    if (this.page.now.parts) this.page.set({ parts: null });
   }
 
   showStance(stance: Stance, ofClip: boolean) {

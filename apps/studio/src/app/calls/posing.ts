@@ -43,6 +43,12 @@ export function posingCalls(core: Core) {
     },
     async clearTarget(joint: number) { await core.run({ do: 'clear_target', joint: core.jointName(joint) }); },
 
+    /** All of them at once, each as docs/tasks.md has it; for balance the whole body may move. */
+    async applyTasks(tasks: string[]) {
+      if (page.now.playing) page.set({ playing: false });
+      await core.run({ do: 'apply_tasks', tasks, root_moves: tasks.some((task) => task.startsWith('balance')) });
+    },
+
     /** The pose that is shown, as the text of a file. */
     async copyPose(name: string): Promise<string | null> { return core.guard(() => engine.ask({ kind: 'pose', name })); },
 
