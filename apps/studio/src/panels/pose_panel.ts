@@ -69,7 +69,7 @@ export function posePanel(studio: Studio, page: PageStore, poses: PoseShelf, vie
 
 /** What the parts that are shown are called, each beside its colour. */
 function legend(page: PageStore): HTMLElement {
-  const list = element('ul', { class: 'legend', id: 'legend', 'aria-label': say('Limbs') });
+  const list = element('ul', { class: 'part-names', id: 'legend', 'aria-label': say('Limbs') });
   page.watch(({ display, parts }, before) => {
     list.hidden = display !== 'parts' || !parts;
     if (parts === before.parts) return;

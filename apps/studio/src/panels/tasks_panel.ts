@@ -68,6 +68,7 @@ export function tasksPanel(studio: Studio, page: PageStore, viewport: Viewport):
     text.value = make(joint.name, at, Math.max(2 * joint.radius, 0.01), parent);
     text.focus();
   });
+  const enter = button(say('Do it'), add, { id: 'do-task' });
   const again = button(say('Do all again'), () => apply(wanted), { id: 'tasks-again' });
   const list = element('ul', { class: 'items', id: 'task-list', 'aria-label': say('Tasks'), 'aria-live': 'polite' });
 
@@ -101,13 +102,13 @@ export function tasksPanel(studio: Studio, page: PageStore, viewport: Viewport):
     [skeleton, known] = [names, asked.join('\n')];
     if (session !== before.session) moment = seconds;
     look.disabled = ground.disabled = other.disabled = !session || joint === null;
-    stand.disabled = !session;
+    stand.disabled = enter.disabled = !session;
     if (session !== before.session || seconds !== before.seconds || list.childElementCount !== wanted.length) show();
   });
   show();
   return element('div', { class: 'body' },
-    element('p', { class: 'hint-text' }, say('What the body shall do, all at once. Each task is held to as long as you ask for it anew.')),
+    element('p', { class: 'hint-text' }, say('What the body shall do, all at once. Where you change the pose afterwards, ask for it again.')),
     element('div', { class: 'row' }, look, ground, stand),
-    element('div', { class: 'row' }, other, text, button(say('Do it'), add, { id: 'do-task' })),
+    element('div', { class: 'row' }, other, text, enter),
     list, again);
 }

@@ -224,7 +224,7 @@ export const german = {
 
   // Tasks.
   'Tasks': 'Aufgaben',
-  'What the body shall do, all at once. Each task is held to as long as you ask for it anew.': 'Was der Körper tun soll, alles zugleich. Wo sich die Pose danach ändert, frag noch einmal danach.',
+  'What the body shall do, all at once. Where you change the pose afterwards, ask for it again.': 'Was der Körper tun soll, alles zugleich. Änderst du danach die Pose, führ es noch einmal aus.',
   'Look at me': 'Schau her',
   'The selected joint turns so that what it carries looks at the camera': 'Das gewählte Gelenk dreht sich so, dass zur Kamera schaut, was es trägt',
   'Above the ground': 'Über dem Boden',
