@@ -4,9 +4,9 @@ import type { Studio } from '../app/studio';
 import type { Vector } from '../engine/messages';
 import type { Viewport } from '../scene/viewport';
 import { button, element } from '../ui/dom';
-import { taskName, taskOutcome } from '../words/engine';
 import { jointTitle } from '../words/parts';
 import { say } from '../words/say';
+import { taskName, taskOutcome } from '../words/tasks';
 
 const balance = 'balance=within';
 const kindOf = (task: string) => task.split(/[:=]/)[0]!;

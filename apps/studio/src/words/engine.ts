@@ -2,7 +2,7 @@
 // not known here is shown as the engine says it.
 import type { ErrorKind, LimberError, SessionState } from '../engine/messages';
 import { partName } from './parts';
-import { language, number, say, type Values, type Words } from './say';
+import { language, say, type Values, type Words } from './say';
 
 type Named = Readonly<Record<string, Words>>;
 const capital = (text: string) => text.charAt(0).toUpperCase() + text.slice(1);
@@ -52,29 +52,6 @@ export const methodSummary = ({ name, summary }: { name: string; summary: string
   const known = methods[name];
   return known ? say(known.summary) : summary;
 };
-
-const tasks: Named = {
-  'position': 'at a place', 'orientation': 'turned as it rests', 'look-at': 'looks at a place', 'distance': 'at a distance', 'plane': 'keeps to a plane',
-  'balance': 'Balance over the feet', 'keep-out': 'stays out of a ball', 'coupling': 'turns with another',
-};
-/** What kind of task it is, of "kind:joint=...". */
-export const taskName = (kind: string) => {
-  const known = tasks[kind];
-  return known ? say(known) : kind;
-};
-
-const obstacles: Named = {
-  'the bones are too short': '{left} left: the bones are too short',
-  'the joints\' limits are in the way': '{left} left: the joints\u2019 limits are in the way',
-  'other tasks are in the way': '{left} left: other tasks are in the way',
-  'no pose was found that meets it, even alone': '{left} left: no pose was found that meets it, even alone',
-};
-/** What is left of a task and why, of "not met, 0.1 m left: ...". */
-export function taskOutcome({ met, outcome }: SessionState['tasks'][number]): string {
-  if (met) return say('met');
-  const [, amount = '', unit, why = ''] = /^not met, ([\d.]+) (degrees|m) left: (.*)$/.exec(outcome) ?? [], known = obstacles[why];
-  return known ? say(known, { left: unit === 'm' ? `${number(Number(amount), 3)} m` : `${number(Number(amount), 1)}\u00b0` }) : outcome;
-}
 
 const motions: Readonly<Record<string, { name: Words; summary: Words }>> = {
   'walk': { name: 'Walk', summary: 'A person who walks' },
