@@ -306,7 +306,7 @@ const cases = {
     assert.ok((await page.locator('#task-text').inputValue()).startsWith(`position:${left}=`));
     await type('#task-text', `position:${left}=9,9,9@priority=1`);
     assert.deepEqual((await tasks()).map(({ met }) => met), [true, true, true, false]);
-    assert.match(await rows.nth(3).textContent(), /\d\.\d+ m left: the bones are too short/);
+    assert.match(await rows.nth(3).textContent(), /\d\.\d+ m left: other tasks are in the way/);
     await type('#task-text', 'stare:head=1,2,3');
     await page.locator('#notice', { hasText: 'no kind of task' }).waitFor();
     await page.locator('#close-notice').click();

@@ -76,7 +76,7 @@ function legend(page: PageStore): HTMLElement {
     list.replaceChildren(...(parts?.names ?? []).map((name, part) => {
       const swatch = element('span', { class: 'swatch' });
       swatch.style.background = jointColor(part).getStyle();
-      return element('li', {}, swatch, element('span', { title: name }, partName(name)));
+      return element('li', {}, swatch, element('span', {}, partName(name)));
     }));
   });
   return list;
