@@ -269,12 +269,13 @@ TEST_F(IkTaskTest, LaterPrioritiesTakeNothingFromEarlierOnes) {
   for (int i = 0; i < 40; ++i) {
     const auto anyTask = [&](int priority) {
       const Index end = joint(kEnds[random.below(4)]);
-      const Vec3 point = Vec3(0, 1.2, 0) + random.uniform(0.2, 1) * random.direction();
+      const double far = random.uniform(0.2, 1);  // in a statement of its own: the order of operands is the compiler's
+      const Vec3 direction = random.direction(), point = Vec3(0, 1.2, 0) + far * direction;
       switch (random.below(5)) {
         case 0:
           return IkTask{LookAtTask{joint("head"), point, Vec3::UnitZ()}, 1, priority};
         case 1:
-          return IkTask{PlaneTask{end, random.direction(), random.uniform(0.5, 1.2), true}, 1, priority};
+          return IkTask{PlaneTask{end, direction, random.uniform(0.5, 1.2), true}, 1, priority};
         case 2:
           return IkTask{KeepOutTask{end, point, point, random.uniform(0.1, 0.4)}, 1, priority};
         default:
@@ -286,8 +287,11 @@ TEST_F(IkTaskTest, LaterPrioritiesTakeNothingFromEarlierOnes) {
     both.push_back(anyTask(1));
     both.push_back(anyTask(2));
     const JointLimits* some = i % 2 == 0 ? &limits : nullptr;
-    Pose alone = restPose(humanoid), together = restPose(humanoid);
-    const IkTaskResult before = solve(first, alone, some), after = solve(both, together, some);
+    // From the pose that serves the first priority alone: what comes later may take nothing away from it.
+    Pose alone = restPose(humanoid);
+    const IkTaskResult before = solve(first, alone, some);
+    Pose together = alone;
+    const IkTaskResult after = solve(both, together, some);
     const auto sumOf = [&](const IkTaskResult& result) {
       double sum = 0;
       for (std::size_t t = 0; t < 2; ++t) {
