@@ -1,4 +1,4 @@
-// limber transfer: somebody's rig on another model.
+// limber transfer: the rig of one model on another.
 #include <algorithm>
 #include <filesystem>
 

@@ -1,4 +1,4 @@
-// From two Assets to one: somebody's rig on another model.
+// Rig transfer between documents: the rig of one Asset on the model of another.
 #pragma once
 
 #include <string>

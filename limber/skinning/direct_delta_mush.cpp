@@ -271,6 +271,17 @@ void checkOptions(const DirectDeltaMushOptions& options) {
   if (!right) throw Error(ErrorCode::kBadArgument, "an option of direct delta mush is out of its range");
 }
 
+// A job with the arrays that both forms have in their rows.
+template <class Rows>
+DeformJob rowsJob(const DeformInput& input, const DeformOutput& output, const Rows& rows) {
+  DeformJob job = deformJob(input, output);
+  job.rowOf = rows.rowOf.data();
+  job.rowBegin = rows.begin.data();
+  job.rowJoints = rows.joints.data();
+  job.rowMoments = rows.moments.data();
+  return job;
+}
+
 }  // namespace
 
 std::shared_ptr<const DirectDeltaMushRows> directDeltaMushRows(const BoundSurface& surface, Index jointCount,
@@ -332,14 +343,10 @@ void directDeltaMush(const DeformInput& input, const DeformOutput& output, std::
   float* motions = stretches + kFloatsPerColumns * jointCount;
   const bool stretched = packJoints(input.transforms, columns, stretches, motions);
 
-  DeformJob job = deformJob(input, output);
+  DeformJob job = rowsJob(input, output, rows);
   job.columns = columns;
   job.stretches = stretches;
   job.motions = motions;
-  job.rowOf = rows.rowOf.data();
-  job.rowBegin = rows.begin.data();
-  job.rowJoints = rows.joints.data();
-  job.rowMoments = rows.moments.data();
   job.rowPlaces = rows.places.data();
   runDeformJob(directKernels().direct[job.outNormals != nullptr][stretched], job, input.positions.size());
 }
@@ -364,15 +371,11 @@ void fullDirectDeltaMush(const DeformInput& input, const DeformOutput& output, s
     packColumns(Affine(rotation.normalized()), turns + kFloatsPerColumns * j);
   }
 
-  DeformJob job = deformJob(input, output);
+  DeformJob job = rowsJob(input, output, rows);
   job.columns = columns;
   job.stretches = stretches;
   job.turns = turns;
   job.motions = motions;
-  job.rowOf = rows.rowOf.data();
-  job.rowBegin = rows.begin.data();
-  job.rowJoints = rows.joints.data();
-  job.rowMoments = rows.moments.data();
   job.rowBases = rows.bases.data();
   runDeformJob(baselineFullDirectKernels().direct[job.outNormals != nullptr][stretched], job, input.positions.size());
 }

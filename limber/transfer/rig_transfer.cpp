@@ -1,7 +1,6 @@
 #include "limber/transfer/rig_transfer.h"
 
 #include <algorithm>
-#include <limits>
 #include <optional>
 #include <utility>
 
@@ -18,25 +17,14 @@ namespace limber {
 
 namespace {
 
-double extentAlong(const TriMesh& mesh, const Vec3& axis) {
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const Triangle& t : mesh.triangles) {
-    for (const Index v : t) {
-      low = std::min(low, axis.dot(mesh.position(v)));
-      high = std::max(high, axis.dot(mesh.position(v)));
-    }
-  }
-  return high - low;
-}
-
 struct AlignedBody {
   LimbAlignment alignment;
   TriMesh surface;
 };
 
-// Part of the longest side. Bodies that stand alike lie this near to each other when one is moved as a whole; others may
-// be nearer so by chance. Over `tune`, pairs that a whole move lays nearer than limbs do lie up to 0.034 apart where it
-// is right, and from 0.049 on where it mostly is wrong (surfacesApart tells up to 0.1).
+// Part of the longest side. Bodies that stand alike lie this near to each other when one is moved as a whole; others
+// may be nearer so by chance. Over `tune`, pairs that a whole move lays nearer than limbs do lie up to 0.034 apart
+// where it is right, and from 0.049 on where it mostly is wrong (surfacesApart tells up to 0.1).
 constexpr double kStandAlike = 0.04;
 
 // By its limbs; or as a whole where it then lies nearer to the target and both stand alike, so that the limbs of a

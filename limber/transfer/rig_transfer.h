@@ -1,4 +1,4 @@
-// Somebody's rig on another body: skeleton and weights, by the surface.
+// Rig transfer: one body's skeleton and weights on another body, by the surface.
 #pragma once
 
 #include <span>

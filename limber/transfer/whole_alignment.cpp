@@ -40,17 +40,6 @@ Box boxOf(const TriMesh& mesh) {
   return box;
 }
 
-double extentOf(const TriMesh& mesh, const Vec3& axis) {
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const Triangle& t : mesh.triangles) {
-    for (const Index v : t) {
-      low = std::min(low, axis.dot(mesh.position(v)));
-      high = std::max(high, axis.dot(mesh.position(v)));
-    }
-  }
-  return high - low;
-}
-
 struct PointPair {
   Vec3 source, target;
   double weight;
@@ -98,13 +87,24 @@ double squareApart(const std::vector<SurfaceSample>& from, const FacingSurface& 
 
 }  // namespace
 
+double extentAlong(const TriMesh& mesh, const Vec3& axis) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const Triangle& t : mesh.triangles) {
+    for (const Index v : t) {
+      low = std::min(low, axis.dot(mesh.position(v)));
+      high = std::max(high, axis.dot(mesh.position(v)));
+    }
+  }
+  return high - low;
+}
+
 Affine wholeSimilarity(const TriMesh& source, const TriMesh& target, const Quat& turn, const Vec3& up) {
   const Box goal = boxOf(target);
   TriMesh turned = source;
   for (Vec3f& p : turned.positions) p = (turn * p.cast<double>()).cast<float>();
-  const double height = extentOf(turned, up), far = kFar * goal.longestSide();
+  const double height = extentAlong(turned, up), far = kFar * goal.longestSide();
   Affine map = Affine::Identity();
-  map.linear() = (height > 0 ? extentOf(target, up) / height : 1.0) * turn.toRotationMatrix();
+  map.linear() = (height > 0 ? extentAlong(target, up) / height : 1.0) * turn.toRotationMatrix();
   map.translation() = goal.center() - map.linear() * (turn.conjugate() * boxOf(turned).center());
 
   const Affine first = map;

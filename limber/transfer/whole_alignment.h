@@ -9,6 +9,9 @@
 
 namespace limber {
 
+// How far the triangles of a mesh reach along a unit vector, from one end to the other; -infinity where it has none.
+double extentAlong(const TriMesh& mesh, const Vec3& axis);
+
 // The similarity that brings `source` onto `target`: turned by `turn`, as high along the target's `up` and with its box
 // on the target's; from there by iterative closest points, with normals that agree (Besl, McKay 1992; with scale).
 // Where these shrink or grow it by more than a quarter, as surfaces that do not match make them do, it stays as at
