@@ -54,7 +54,7 @@ const cases = {
     const { joints } = await sessionState(page);
     const [own, other] = await measured();
     assert.equal(Number(own.Joints), joints.length);
-    assert.notEqual(own.Joints, other.Joints);
+    assert.notDeepEqual(other, own, 'the other rigger\'s figures are those of the first');
     assert.equal((await sessionState(page)).undo, null, 'the document was changed');
     await page.locator('#end-comparison').click();
     await settled(page);
