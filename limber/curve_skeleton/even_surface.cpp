@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "limber/core/disjoint_sets.h"
+#include "limber/mesh/areas.h"
 #include "limber/mesh/edge_groups.h"
 
 namespace limber {
@@ -40,7 +41,7 @@ class EdgePoints {
 };
 
 double areaOf(const std::vector<Vec3>& points, const Triangle& t) {
-  return 0.5 * (points[t[1]] - points[t[0]]).cross(points[t[2]] - points[t[0]]).norm();
+  return triangleArea(points[t[0]], points[t[1]], points[t[2]]);
 }
 
 bool isProper(const Triangle& t) {

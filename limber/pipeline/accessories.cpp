@@ -11,6 +11,7 @@
 
 #include "limber/anatomy/humanoid_words.h"
 #include "limber/asset/scene_graph.h"
+#include "limber/mesh/areas.h"
 #include "limber/mesh/bvh.h"
 
 namespace limber {
@@ -70,9 +71,8 @@ std::optional<AccessoryName> accessoryName(const Asset& asset, const PrimitiveIn
 }
 
 double areaOf(const Geometry& geometry, const Triangle& t) {
-  const Vec3 a = geometry.positions[t[0]].cast<double>(), b = geometry.positions[t[1]].cast<double>(),
-             c = geometry.positions[t[2]].cast<double>();
-  return 0.5 * (b - a).cross(c - a).norm();
+  const auto corner = [&](std::size_t k) { return Vec3(geometry.positions[t[k]].cast<double>()); };
+  return triangleArea(corner(0), corner(1), corner(2));
 }
 
 // The vertices of prepared.mesh that belong to accessories alone, by accessory.

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "limber/mesh/areas.h"
+
 namespace limber {
 
 namespace {
@@ -27,7 +29,7 @@ std::vector<PointMass> bodyMasses(const Geometry& geometry, const SkinWeights& w
   const auto corner = [&](const Triangle& t, std::size_t k) { return Vec3(geometry.positions[t[k]].cast<double>()); };
   for (const Triangle& t : geometry.triangles) {
     const Vec3 a = corner(t, 0), b = corner(t, 1), c = corner(t, 2);
-    const double area = 0.5 * (b - a).cross(c - a).norm();
+    const double area = triangleArea(a, b, c);
     forEachShare(weights, t, [&](Index joint, double share) {
       areas[joint] += share * area;
       middles[joint] += share * area * (a + b + c) / 3;

@@ -9,6 +9,7 @@
 
 #include "limber/core/assignment.h"
 #include "limber/core/parallel.h"
+#include "limber/mesh/areas.h"
 #include "limber/mesh/bvh.h"
 #include "limber/mesh/winding_number.h"
 
@@ -59,7 +60,7 @@ class PieceJoints {
     for (Index t = 0; t < mesh.triangleCount(); ++t) {
       Part& part = parts_[piece[mesh.triangles[t][0]]];
       part.triangles.push_back(t);
-      part.area += 0.5 * (corner(t, 1) - corner(t, 0)).cross(corner(t, 2) - corner(t, 0)).norm();
+      part.area += triangleArea(mesh, mesh.triangles[t]);
     }
   }
 

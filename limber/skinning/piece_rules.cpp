@@ -4,6 +4,8 @@
 #include <numeric>
 #include <optional>
 
+#include "limber/mesh/areas.h"
+
 namespace limber {
 
 namespace {
@@ -35,8 +37,7 @@ PieceRules::PieceRules(const TriMesh& mesh, std::span<const Bone> bones, const s
     box_[piece[v]].add(mesh.position(v));
   }
   for (const Triangle& t : mesh.triangles) {
-    const Vec3 a = mesh.position(t[0]);
-    area_[piece[t[0]]] += 0.5 * (mesh.position(t[1]) - a).cross(mesh.position(t[2]) - a).norm();
+    area_[piece[t[0]]] += triangleArea(mesh, t);
   }
   totalArea_ = std::accumulate(area_.begin(), area_.end(), 0.0);
   std::vector<bool> hasBone;

@@ -8,6 +8,7 @@
 
 #include "limber/core/error.h"
 #include "limber/core/parallel.h"
+#include "limber/mesh/areas.h"
 
 namespace limber {
 
@@ -109,7 +110,7 @@ std::vector<Group> groupTriangles(std::span<const Vec3f> positions, std::span<co
   for (const Triangle& t : triangles) {
     const Vec3 p = positions[t[0]].cast<double>(), q = positions[t[1]].cast<double>(),
                r = positions[t[2]].cast<double>();
-    const double area = 0.5 * (q - p).cross(r - p).norm();
+    const double area = triangleArea(p, q, r);
     const Vec3 centroid = (p + q + r) / 3;
     if (!(area > 0) || !std::isfinite(area)) continue;
     binding.clear();

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "limber/core/disjoint_sets.h"
+#include "limber/mesh/areas.h"
 #include "limber/mesh/components.h"
 #include "limber/surface/piece_links.h"
 
@@ -91,14 +92,9 @@ std::optional<TriMesh> withoutStrays(const TriMesh& mesh) {
   Index pieces = 0;
   vertexComponents(mesh, &pieces);
   if (pieces < 2) return std::nullopt;
-  std::vector<double> areas(mesh.vertexCount(), 0);
-  for (const auto& [a, b, c] : mesh.triangles) {
-    const Vec3 first = mesh.position(b) - mesh.position(a), second = mesh.position(c) - mesh.position(a);
-    for (const Index corner : {a, b, c}) areas[corner] += first.cross(second).norm() / 6;
-  }
   const SurfaceEdges surface = surfaceEdges(mesh);
   const std::vector<double> shares =
-      strayShares(mesh.positions, areas, surface.edges, pieceLinks(mesh.positions, surface.edges));
+      strayShares(mesh.positions, vertexAreas(mesh), surface.edges, pieceLinks(mesh.positions, surface.edges));
   TriMesh kept{mesh.positions, {}};
   for (const Triangle& t : mesh.triangles) {
     if (shares[t[0]] >= kStray) kept.triangles.push_back(t);

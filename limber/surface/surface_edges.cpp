@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "limber/core/numbers.h"
+#include "limber/mesh/areas.h"
 
 namespace limber {
 
@@ -128,7 +129,7 @@ std::vector<std::int8_t> facingOf(const TriMesh& mesh, FacingSets& sets) {
     }
     Part& part = parts[partOf[rootOf[t]]];
     const auto [a, b, c] = corners(t);
-    const double area = 0.5 * (b - a).cross(c - a).norm();
+    const double area = triangleArea(a, b, c);
     part.area += area;
     if (!sets.turned(t)) part.keptArea += area;
     part.center += (area / 3) * (a + b + c);

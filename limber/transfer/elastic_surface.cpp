@@ -4,7 +4,8 @@
 #include <cmath>
 
 #include "limber/core/parallel.h"
-#include "limber/ik/rotation_fit.h"
+#include "limber/core/rotation_fit.h"
+#include "limber/mesh/areas.h"
 
 namespace limber {
 
@@ -53,12 +54,8 @@ std::vector<Edge> weightedEdges(const TriMesh& rest, std::span<const VertexPair>
 }  // namespace
 
 ElasticSurface::ElasticSurface(const TriMesh& rest, std::span<const VertexPair> links)
-    : masses_(rest.vertexCount(), 0), edges_(weightedEdges(rest, links)) {
+    : masses_(vertexAreas(rest)), edges_(weightedEdges(rest, links)) {
   for (Index v = 0; v < rest.vertexCount(); ++v) rest_.push_back(rest.position(v));
-  for (const auto& [a, b, c] : rest.triangles) {
-    const double area = 0.5 * (rest_[b] - rest_[a]).cross(rest_[c] - rest_[a]).norm();
-    for (const Index v : {a, b, c}) masses_[v] += area / 3;
-  }
   first_.assign(rest_.size() + 1, 0);
   for (const Edge& edge : edges_) {
     ++first_[edge.a + 1];

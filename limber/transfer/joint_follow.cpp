@@ -2,6 +2,8 @@
 
 #include <Eigen/LU>
 
+#include "limber/mesh/areas.h"
+
 namespace limber {
 
 namespace {
@@ -31,15 +33,6 @@ struct Moments {
     return b - map * a;
   }
 };
-
-std::vector<double> vertexAreas(const TriMesh& mesh) {
-  std::vector<double> areas(mesh.vertexCount(), 0);
-  for (const auto& [a, b, c] : mesh.triangles) {
-    const double area = (mesh.position(b) - mesh.position(a)).cross(mesh.position(c) - mesh.position(a)).norm() / 6;
-    for (const Index v : {a, b, c}) areas[v] += area;
-  }
-  return areas;
-}
 
 }  // namespace
 

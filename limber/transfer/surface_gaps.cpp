@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "limber/anatomy/body_part.h"
+#include "limber/mesh/areas.h"
 
 namespace limber {
 
@@ -40,12 +41,8 @@ double percentileOf(const std::vector<double>& percents, const std::vector<doubl
 
 SurfaceGaps measureGaps(const TriMesh& target, std::span<const SurfacePoint> points, const Anatomy& anatomy,
                         const SkinWeights& weights, double height) {
-  std::vector<double> areas(points.size(), 0), percents(points.size());
-  for (const auto& [a, b, c] : target.triangles) {
-    const double area =
-        (target.position(b) - target.position(a)).cross(target.position(c) - target.position(a)).norm() / 6;
-    for (const Index v : {a, b, c}) areas[v] += area;
-  }
+  const std::vector<double> areas = vertexAreas(target);
+  std::vector<double> percents(points.size());
   std::vector<std::string> labels;
   for (Index j = 0; j < anatomy.partOf.size(); ++j) labels.push_back(labelOf(anatomy, j));
   GapSum all;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "limber/core/parallel.h"
+#include "limber/mesh/areas.h"
 #include "limber/mesh/normals.h"
 #include "limber/transfer/elastic_surface.h"
 #include "limber/transfer/facing_surface.h"
@@ -34,12 +35,7 @@ std::vector<Vec3> unitNormals(std::span<const Vec3f> positions, std::span<const 
 
 std::vector<TargetPoint> pointsOf(const TriMesh& target) {
   const std::vector<Vec3> normals = areaNormals<Vec3f>(target.positions, target.triangles);
-  std::vector<double> areas(target.vertexCount(), 0);
-  for (const auto& [a, b, c] : target.triangles) {
-    const double area =
-        (target.position(b) - target.position(a)).cross(target.position(c) - target.position(a)).norm() / 6;
-    for (const Index v : {a, b, c}) areas[v] += area;
-  }
+  const std::vector<double> areas = vertexAreas(target);
   const std::size_t step = (target.positions.size() + kMostTargetPoints - 1) / kMostTargetPoints;
   std::vector<TargetPoint> points;
   for (Index v = 0; v < target.vertexCount(); v += static_cast<Index>(step)) {
