@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "limber/ik/small_solve.h"
+#include "limber/core/small_solve.h"
 
 namespace limber {
 

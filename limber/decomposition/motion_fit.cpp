@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "limber/core/parallel.h"
-#include "limber/ik/rotation_fit.h"
+#include "limber/core/rotation_fit.h"
 
 namespace limber {
 

@@ -2,9 +2,9 @@
 
 #include <cmath>
 
+#include "limber/core/rotation_fit.h"
 #include "limber/ik/leap.h"
 #include "limber/ik/rotation.h"
-#include "limber/ik/rotation_fit.h"
 
 namespace limber {
 

@@ -1,7 +1,7 @@
 #include "limber/ik/damped_least_squares.h"
 
+#include "limber/core/small_solve.h"
 #include "limber/ik/jacobian_iteration.h"
-#include "limber/ik/small_solve.h"
 
 namespace limber {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "limber/core/numbers.h"
+#include "limber/core/small_solve.h"
 #include "limber/ik/jacobian_iteration.h"
-#include "limber/ik/small_solve.h"
 
 namespace limber {
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limber/core/small_solve.h"
 #include "limber/ik/jacobian_iteration.h"
 #include "limber/ik/rotation.h"
-#include "limber/ik/small_solve.h"
 
 namespace limber {
 

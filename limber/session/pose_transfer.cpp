@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "limber/ik/rotation_fit.h"
+#include "limber/core/rotation_fit.h"
 #include "limber/skeleton/keyframes.h"
 
 namespace limber {

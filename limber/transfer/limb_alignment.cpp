@@ -8,7 +8,7 @@
 
 #include "limber/core/error.h"
 #include "limber/core/parallel.h"
-#include "limber/ik/rotation_fit.h"
+#include "limber/core/rotation_fit.h"
 
 namespace limber {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "limber/ik/rotation_fit.h"
+#include "limber/core/rotation_fit.h"
 #include "limber/mesh/normals.h"
 #include "limber/transfer/facing_surface.h"
 

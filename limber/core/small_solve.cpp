@@ -1,4 +1,4 @@
-#include "limber/ik/small_solve.h"
+#include "limber/core/small_solve.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "limber/ik/rotation_fit.h"
+#include "limber/core/rotation_fit.h"
 
 #include <cmath>
 
