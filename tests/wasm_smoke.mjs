@@ -127,6 +127,74 @@ cases['a session: the pose that the native program makes of its record'] = () =>
     numbers.forEach((value, i) => assert.ok(Math.abs(value - there[n].numbers[i]) < 1e-5, `${name}: ${value}, ${there[n].numbers[i]}`));
   });
 };
+const verticesOf = (obj) => [...Buffer.from(obj).toString().matchAll(/^v (\S+) (\S+) (\S+)$/gm)].flatMap(([, ...xyz]) => xyz.map(Number));
+const farthest = (a, b) => a.reduce((most, value, i) => Math.max(most, Math.abs(value - b[i])), 0);
+
+/** A rotation's quaternion, of the matrix of 16 numbers there: by its largest component. */
+function quaternionAt(skin, joint) {
+  const m = (row, column) => skin[16 * joint + 4 * column + row];
+  const squares = [[1, -1, -1], [-1, 1, -1], [-1, -1, 1], [1, 1, 1]].map((s) => 1 + s[0] * m(0, 0) + s[1] * m(1, 1) + s[2] * m(2, 2));
+  const r = Math.sqrt(Math.max(...squares));
+  const [xy, xz, yz, xw, yw, zw] = [m(0, 1) + m(1, 0), m(0, 2) + m(2, 0), m(1, 2) + m(2, 1), m(2, 1) - m(1, 2), m(0, 2) - m(2, 0), m(1, 0) - m(0, 1)].map((v) => v / r / 2);
+  return [[r / 2, xy, xz, xw], [xy, r / 2, yz, yw], [xz, yz, r / 2, zw], [xw, yw, zw, r / 2]][squares.indexOf(Math.max(...squares))];
+}
+
+/** What the rows make of rigid joints: v' = p + sum of (M - I) m + R (v - p). */
+function byRows({ positions, deformation: { places, ranges, entries } }, skin) {
+  return Array.from({ length: positions.length / 3 }, (_, v) => {
+    const place = [...places.slice(3 * v, 3 * v + 3)], arm = place.map((p, i) => positions[3 * v + i] - p), turn = [0, 0, 0, 0];
+    let pivot = null;
+    for (let entry = ranges[2 * v]; entry < ranges[2 * v] + ranges[2 * v + 1]; ++entry) {
+      for (let i = 0; i < 4; ++i) {
+        const [joint, ...moment] = [0, 1, 2, 3, 4].map((k) => entries[20 * entry + 4 * k + i]), quaternion = quaternionAt(skin, joint);
+        pivot ??= quaternion;
+        const sign = quaternion.reduce((sum, value, k) => sum + value * pivot[k], 0) < 0 ? -1 : 1;
+        for (let k = 0; k < 4; ++k) turn[k] += sign * moment[3] * quaternion[k];
+        for (let row = 0; row < 3; ++row) {
+          for (let column = 0; column < 4; ++column) place[row] += (skin[16 * joint + 4 * column + row] - (row === column)) * moment[column];
+        }
+      }
+    }
+    const [x, y, z, w] = turn, scale = pivot ? 2 / (x * x + y * y + z * z + w * w) : 0;
+    const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+    const inner = cross([x, y, z], arm).map((value, i) => value + w * arm[i]), outer = cross([x, y, z], inner);
+    return place.map((p, i) => p + arm[i] + scale * outer[i]);
+  }).flat();
+}
+
+cases['a session: every deformer bends what is drawn and exported as the native program does'] = () => {
+  const { joints } = session.run({ do: 'reset_pose' }).state;
+  run({ do: 'set_ik', on: false });
+  for (const j of [3, 8, 14, 20]) run({ do: 'turn_joint', joint: joints[j].name, axis: [1, 0.3, 1], degrees: 60 });
+  const linear = verticesOf(session.export('obj').bytes), { positions } = session.model().model;
+  assert.equal(linear.length, positions.length);
+  const forms = {};
+  for (const { name } of limber.methods().deformer) {
+    const started = performance.now();
+    assert.equal(run({ do: 'set_deformer', deformer: name }).state.deformer, name);
+    const { model } = session.model(), { skin } = session.skin(), took = performance.now() - started;
+    const bent = verticesOf(session.export('obj').bytes), { posed } = session.posed();
+    forms[name] = model.deformation.form;
+    if (name !== 'linear-blend') assert.ok(farthest(bent, linear) > 1e-3, `${name} bends as linear blend does`);
+    assert.equal(posed.length, forms[name] === 'engine' ? 2 * positions.length : 0, name);
+    if (forms[name] === 'engine') {
+      assert.ok(farthest([...posed.subarray(0, positions.length)], bent) < 1e-5, name);
+      for (let v = positions.length; v < posed.length; v += 3) assert.ok(Math.abs(Math.hypot(posed[v], posed[v + 1], posed[v + 2]) - 1) < 1e-3, name);
+    }
+    if (forms[name] === 'rows') assert.ok(farthest(byRows(model, skin), bent) < 1e-5, `${name}: ${farthest(byRows(model, skin), bent)}`);
+    writeFileSync(join(output, 'bent.json'), JSON.stringify(session.record()));
+    const path = join(output, 'bent.obj');
+    execFileSync(program, ['session', 'replay', join(output, 'bent.json'), '-o', path, '--quiet'], { stdio: ['ignore', 'ignore', 'inherit'] });
+    const there = verticesOf(readFileSync(path));
+    assert.equal(there.length, bent.length);
+    assert.ok(farthest(bent, there) < 1e-5, `${name}: ${farthest(bent, there)}`);
+    console.log(`${name}: drawn by ${forms[name]}, ready after ${took.toFixed(0)} ms`);
+  }
+  assert.deepEqual(forms, {
+    'linear-blend': 'weights', 'dual-quaternion': 'engine', 'centers-of-rotation': 'rows', 'delta-mush': 'engine', 'direct-delta-mush': 'rows',
+  });
+  run({ do: 'set_deformer' });
+};
 cases['a session: an error is a value and changes nothing'] = () => {
   const before = session.export('session').bytes;
   for (const command of [{ do: 'fly' }, { do: 'reset_joint', joint: 'none' }, { do: 'set_handles', count: 0 }, { do: 'end_drag' }]) {

@@ -50,7 +50,7 @@ import createEngine from './limber_engine.mjs';
  *             match: { part: string, source: string[], target: string[], confidence: number, by: string }[],
  *             limits: { [joint: string]: { type: string, [field: string]: unknown } },
  *             limit_outlines: { joint: number, length: number, closed: boolean, rim: Vector[] }[],
- *             solver: string, ik: boolean, limited: boolean,
+ *             solver: string, deformer: string, ik: boolean, limited: boolean,
  *             tasks: { task: string, outcome: string, met: boolean }[], targets: { joint: number, position: Vector }[],
  *             pins: { joint: string, position: Vector }[], doubts: number[], locked: number[], edited_rig: boolean,
  *             dragged: number | null,
@@ -62,7 +62,7 @@ import createEngine from './limber_engine.mjs';
  *             attached: { to: number, joint: string } | null, clip: string | null, duration: number,
  *             box: { min: Vector, max: Vector } }} SceneMember
  *
- * @typedef {'rigger' | 'skinning' | 'solver' | 'retargeting'} MethodKind
+ * @typedef {'rigger' | 'skinning' | 'deformer' | 'solver' | 'retargeting'} MethodKind
  * @typedef {{ [kind in MethodKind]: { name: string, summary: string }[] }} Methods
  * @typedef {{ joints: number, influences: number, smoothness: number, stretch: number, volume: number,
  *             target_distance: number | null,
@@ -85,7 +85,13 @@ import createEngine from './limber_engine.mjs';
  *             weights: Float32Array, joints: Uint16Array,
  *             parts: { name: string, first: number, count: number, material: number | null }[],
  *             materials: { name: string, color: [number, number, number, number], texture: number | null }[],
- *             textures: Uint8Array[] }} SurfaceModel four influences for each vertex; the files of the textures
+ *             textures: Uint8Array[], deformation: Deformation }} SurfaceModel four influences for each vertex; the files of the textures
+ *
+ * How the surface bends in drawing: by its weights (linear blend); as the rows say (DeformRows in limber/skinning/deformer.h);
+ * or as the engine gives it in posed() for each frame. ranges: of each vertex its first entry and how many there are; entries:
+ * 20 numbers each, the joints and their moments.
+ * @typedef {{ form: 'weights' } | { form: 'engine' }
+ *           | { form: 'rows', places: Float32Array, ranges: Float32Array, entries: Float32Array }} Deformation
  * @typedef {'glb' | 'obj' | 'stl' | 'ply' | 'bvh' | 'session'} ExportFormat
  * @typedef {ReturnType<typeof createSession>} Session
  *
@@ -217,8 +223,10 @@ function createSession(engine, handle = engine._limber_session_new()) {
     /** As model() and skin(), of any member. @type {(member: number) => { ok: true, model: SurfaceModel } | Failure} */
     memberModel: (member) => {
       const result = call(engine, engine._limber_session_member_model, [handle, member]);
-      return result.ok ? { ok: true, model: surfaceModel(result.bytes, result.account) } : result;
+      return surfaceModel(result, deformation(call(engine, engine._limber_session_member_deformation, [handle, member])));
     },
+    /** @type {(member: number) => { ok: true, posed: Float32Array } | Failure} */
+    memberPosed: (member) => posed(call(engine, engine._limber_session_member_posed, [handle, member])),
     /** @type {(member: number) => { ok: true, skin: Float32Array } | Failure} */
     memberSkin: (member) => {
       const result = call(engine, engine._limber_session_member_skin, [handle, member]);
@@ -299,8 +307,13 @@ function createSession(engine, handle = engine._limber_session_new()) {
     /** The surface as bound. @type {() => { ok: true, model: SurfaceModel } | Failure} */
     model: () => {
       const result = call(engine, engine._limber_session_model, [handle]);
-      return result.ok ? { ok: true, model: surfaceModel(result.bytes, result.account) } : result;
+      return surfaceModel(result, deformation(call(engine, engine._limber_session_deformation, [handle])));
     },
+    /** As in model(), where the weights or the deformer alone are others. @type {() => { ok: true, deformation: Deformation } | Failure} */
+    deformation: () => deformation(call(engine, engine._limber_session_deformation, [handle])),
+    /** The surface as it stands, positions, then normals, where the engine bends it; else nothing.
+     *  @type {() => { ok: true, posed: Float32Array } | Failure} */
+    posed: () => posed(call(engine, engine._limber_session_posed, [handle])),
     /** @type {(format: ExportFormat) => { ok: true, bytes: Uint8Array } | Failure} */
     export: (format) => call(engine, engine._limber_session_export, [handle], format),
     /** The pose that is shown, as the text of a file: for apply_pose, on this model or another.
@@ -328,9 +341,22 @@ function weightArrays(result) {
   return { ok: true, weights: { weights: new Float32Array(buffer, 0, floats / 4), joints: new Uint16Array(buffer, floats) } };
 }
 
-function surfaceModel(bytes, { arrays, textures, ...rest }) {
+function deformation(result) {
+  if (!result.ok) return result;
+  const { form, vertices, entries } = result.account, { buffer } = result.bytes;
+  if (form !== 'rows') return { ok: true, deformation: { form } };
+  const floats = (first, count) => new Float32Array(buffer, 4 * first, count);
+  return { ok: true, deformation: { form, places: floats(0, 3 * vertices), ranges: floats(3 * vertices, 2 * vertices), entries: floats(5 * vertices, 20 * entries) } };
+}
+
+const posed = (result) => (result.ok ? { ok: true, posed: new Float32Array(result.bytes.buffer) } : result);
+
+function surfaceModel(result, bent) {
+  if (!result.ok) return result;
+  if (!bent.ok) return bent;
+  const { bytes, account: { arrays, textures, ...rest } } = result;
   const view = (Type, { offset, size }) => new Type(bytes.buffer, offset, size / Type.BYTES_PER_ELEMENT);
-  return {
+  const model = {
     positions: view(Float32Array, arrays.positions),
     normals: view(Float32Array, arrays.normals),
     uvs: view(Float32Array, arrays.uvs),
@@ -338,6 +364,8 @@ function surfaceModel(bytes, { arrays, textures, ...rest }) {
     weights: view(Float32Array, arrays.weights),
     joints: view(Uint16Array, arrays.joints),
     textures: textures.map(({ offset, size }) => bytes.slice(offset, offset + size)),
+    deformation: bent.deformation,
     ...rest,
   };
+  return { ok: true, model };
 }

@@ -18,6 +18,7 @@
 #include "limber/retarget/retarget_method.h"
 #include "limber/samples/sample_motions.h"
 #include "limber/samples/sample_poses.h"
+#include "limber/skinning/deformer.h"
 
 namespace {
 
@@ -108,6 +109,7 @@ LIMBER_EXPORT CallResult* limber_methods() {
     };
     const Json json = {{"rigger", list(limber::riggerMethods())},
                        {"skinning", list(limber::weightMethods())},
+                       {"deformer", list(limber::deformers())},
                        {"solver", list(limber::ikMethods())},
                        {"retargeting", list(limber::retargetMethods())}};
     return {true, {}, limber::dumpReport(json, -1)};

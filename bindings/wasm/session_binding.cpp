@@ -17,6 +17,7 @@
 #include "limber/session/scene_state.h"
 #include "limber/session/surface_parts.h"
 #include "limber/skeleton/keyframes.h"
+#include "limber/skinning/direct_delta_mush.h"
 
 namespace {
 
@@ -26,8 +27,30 @@ using limber::Json;
 using limber::wasm::CallResult;
 using limber::wasm::guarded;
 
+// The normals that a page shades surfaces with, as bound; of the rigs that were asked for last.
+class ShadingNormals {
+ public:
+  const std::vector<limber::Vec3f>& of(const std::shared_ptr<const limber::RiggedModel>& rig) {
+    for (const Kept& kept : kept_) {
+      if (kept.rig == rig) return kept.normals;
+    }
+    constexpr std::size_t kMostKept = 4;
+    if (kept_.size() == kMostKept) kept_.erase(kept_.begin());
+    kept_.push_back({rig, limber::exportMesh(*rig->asset, *rig->geometry).normals});
+    return kept_.back().normals;
+  }
+
+ private:
+  struct Kept {
+    std::shared_ptr<const limber::RiggedModel> rig;
+    std::vector<limber::Vec3f> normals;
+  };
+  std::vector<Kept> kept_;
+};
+
 struct SessionHandle {
   limber::SessionScene scene;
+  mutable ShadingNormals normals = {};
 
   const limber::Session& session() const { return scene.session(); }
 };
@@ -192,6 +215,59 @@ CallResult modelOf(const limber::SessionState& state) {
   return result;
 }
 
+// What bends the surface that a page draws.
+enum class DrawnBy {
+  kWeights,  // of limber_session_model
+  kRows,     // of limber_session_deformation
+  kEngine    // limber_session_posed, for every frame
+};
+
+DrawnBy drawnBy(const limber::SessionState& state, const limber::Deformer& deformer) {
+  if (deformer.name == limber::kLinearBlendDeformer.name) return DrawnBy::kWeights;
+  constexpr std::size_t kMostEntries = 2048 * 400;  // of 5 texels, in the least that WebGL 2 has room for
+  constexpr std::size_t kJointsOfEntry = 4, kMostJoints = limber::DirectDeltaMushOptions().mostJoints;
+  const limber::SkinWeights& weights = state.rig->weights;
+  const std::size_t most = (std::max<std::size_t>(weights.slots, kMostJoints) + kJointsOfEntry - 1) / kJointsOfEntry;
+  return deformer.rows && most * weights.vertexCount() <= kMostEntries ? DrawnBy::kRows : DrawnBy::kEngine;
+}
+
+// {"form": "weights"}, {"form": "engine"} or {"form": "rows", "vertices", "entries"} with the rows as floats: of each
+// vertex its place (x, y, z), then of each its first entry and how many there are; of each entry its four joints and 16
+// moments.
+CallResult deformationOf(const limber::SessionState& state) {
+  const limber::Deformer& deformer = limber::findDeformer(state.deformer);
+  const DrawnBy drawn = drawnBy(state, deformer);
+  if (drawn != DrawnBy::kRows) return {true, {}, textOf({{"form", drawn == DrawnBy::kEngine ? "engine" : "weights"}})};
+  const std::shared_ptr<const limber::DeformRows> rows = limber::deformRows(*state.rig, deformer);
+  std::vector<float> values;
+  for (const Index row : rows->rowOf) {
+    const auto place = rows->places.begin() + 4 * std::ptrdiff_t{row};
+    values.insert(values.end(), place, place + 3);
+  }
+  for (const Index row : rows->rowOf) {
+    values.push_back(static_cast<float>(rows->begin[row]));
+    values.push_back(static_cast<float>(rows->begin[row + 1] - rows->begin[row]));
+  }
+  const std::size_t entries = rows->joints.size() / 4;
+  for (std::size_t entry = 0; entry < entries; ++entry) {
+    for (std::size_t i = 4 * entry; i < 4 * entry + 4; ++i) values.push_back(static_cast<float>(rows->joints[i]));
+    const auto moments = rows->moments.begin() + static_cast<std::ptrdiff_t>(16 * entry);
+    values.insert(values.end(), moments, moments + 16);
+  }
+  return {true, bytesOf(values), textOf({{"form", "rows"}, {"vertices", rows->rowOf.size()}, {"entries", entries}})};
+}
+
+// Positions, then normals, of a surface that the engine bends; nothing where the page does.
+CallResult posedOf(const limber::SessionState& state, ShadingNormals& normals) {
+  const limber::Deformer& deformer = limber::findDeformer(state.deformer);
+  if (drawnBy(state, deformer) != DrawnBy::kEngine) return {true, {}, "{}"};
+  const limber::PosedSurface surface = limber::posedSurface(*state.rig, state.pose, deformer, normals.of(state.rig));
+  Bytes bytes = bytesOf(surface.positions);
+  const Bytes behind = bytesOf(surface.normals);
+  bytes.insert(bytes.end(), behind.begin(), behind.end());
+  return {true, std::move(bytes), "{}"};
+}
+
 // Of the joints that hold on to a place, which feet do where they stand at a clip's moment.
 std::string pinnedOf(const limber::SessionState& state) {
   Json pinned = Json::array();
@@ -310,6 +386,12 @@ LIMBER_EXPORT CallResult* limber_session_member_skin(const SessionHandle* handle
     return {true, bytesOf(skinArray(*handle->scene.members()[member].session)), "{}"};
   });
 }
+LIMBER_EXPORT CallResult* limber_session_member_deformation(const SessionHandle* handle, Index member) {
+  return guarded({}, [&] { return deformationOf(handle->scene.members()[member].session->state()); });
+}
+LIMBER_EXPORT CallResult* limber_session_member_posed(const SessionHandle* handle, Index member) {
+  return guarded({}, [&] { return posedOf(handle->scene.members()[member].session->state(), handle->normals); });
+}
 
 // The member whose surface the ray meets first, or null.
 LIMBER_EXPORT CallResult* limber_session_pick_member(const SessionHandle* handle, double ox, double oy, double oz,
@@ -418,6 +500,14 @@ LIMBER_EXPORT CallResult* limber_session_turns(const SessionHandle* handle) {
 
 LIMBER_EXPORT CallResult* limber_session_model(const SessionHandle* handle) {
   return guarded({}, [&] { return modelOf(handle->session().state()); });
+}
+
+// How the surface is bent in drawing, and as it stands now where the engine does that.
+LIMBER_EXPORT CallResult* limber_session_deformation(const SessionHandle* handle) {
+  return guarded({}, [&] { return deformationOf(handle->session().state()); });
+}
+LIMBER_EXPORT CallResult* limber_session_posed(const SessionHandle* handle) {
+  return guarded({}, [&] { return posedOf(handle->session().state(), handle->normals); });
 }
 
 LIMBER_EXPORT CallResult* limber_session_export(const SessionHandle* handle, const char* format, std::size_t size) {

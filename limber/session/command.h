@@ -42,6 +42,10 @@ struct ChooseMethods {
   std::string rigger = "sphere-mesh";
   std::string skinning = "bone-heat";
 };
+// How the surface bends with the joints; the rig stays as it is.
+struct SetDeformer {
+  std::string deformer = "linear-blend";  // of deformers()
+};
 
 // A correction of a rig that a template gave: the model is rigged anew with that joint where it is told to be, as the
 // model is bound. Pins hold for every rig that a template gives this model, until its rest pose is another one.
@@ -368,7 +372,7 @@ using Command =
                  DeleteKey, EditKeys, DeleteKeys, SetJointKey, SetInterpolation, SetTangents, PasteKeys, PaintWeights,
                  LockWeights, MirrorWeights, AddJoint, DeleteJoint, ReparentJoint, PlaceJoint, SetTurn, ApplyPose,
                  ApplyTasks, Undo, Redo, AddSample, AddFile, RemoveMember, ChooseMember, RenameMember, PlaceMember,
-                 AttachMember, DetachMember, SetClock>;
+                 AttachMember, DetachMember, SetClock, SetDeformer>;
 
 // "auto", "flat", "free", as in JSON.
 std::string_view keyTangentsName(KeyTangents tangents);

@@ -78,7 +78,8 @@ std::vector<Command> oneOfEach() {
           PlaceMember{"fox", {1, 0, -2}, {0, 90, 0}, 0.5},
           AttachMember{"sword", "fox", "paw.L", true},
           DetachMember{"sword"},
-          SetClock{2.0 / 3}};
+          SetClock{2.0 / 3},
+          SetDeformer{"delta-mush"}};
 }
 
 // The one of that kind, wherever it stands.
@@ -107,6 +108,7 @@ TEST(Command, JsonKeepsEveryCommandAndEveryField) {
   EXPECT_EQ(only<TurnDrag>(back).degrees, -35.5);
   EXPECT_EQ(only<MoveDrag>(back).turn, Vec3(0, 30, 0.5));
   EXPECT_EQ(only<SetIk>(back).solver, "fabrik");
+  EXPECT_EQ(only<SetDeformer>(back).deformer, "delta-mush");
   EXPECT_EQ(only<TurnJoint>(back).axis.y(), 1.0 / 3);
   EXPECT_EQ(only<SetTarget>(back).position, Vec3(1e-17, 2, 3));
   EXPECT_EQ(only<MirrorPose>(back).from, MirrorFrom::kRight);

@@ -61,7 +61,7 @@ double volumeOf(const std::vector<Vec3f>& positions, const std::vector<Triangle>
 
 void measureSurface(const SessionState& state, SessionMeasures& measures) {
   const Geometry& bound = *state.rig->geometry;
-  const std::vector<Vec3f> posed = posedPositions(*state.rig, state.pose);
+  const std::vector<Vec3f> posed = posedPositions(*state.rig, state.pose, findDeformer(state.deformer));
   double change = 0, length = 0;
   for (const Triangle& t : bound.triangles) {
     for (int c = 0; c < 3; ++c) {

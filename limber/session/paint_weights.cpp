@@ -214,9 +214,11 @@ SkinWeights mirroredWeights(const RiggedModel& rig, const PaintSurface& surface,
   return weights;
 }
 
-std::optional<SurfaceHit> Brush::hit(const Ray& ray, const std::shared_ptr<const RiggedModel>& rig, const Pose& pose) {
-  if (!picker_ || pickedRig_ != rig || !samePose(pickedPose_, pose)) {
-    picker_ = std::make_unique<SurfacePicker>(*rig, pose);
+std::optional<SurfaceHit> Brush::hit(const Ray& ray, const std::shared_ptr<const RiggedModel>& rig, const Pose& pose,
+                                     const Deformer& deformer) {
+  if (!picker_ || pickedRig_ != rig || pickedDeformer_ != &deformer || !samePose(pickedPose_, pose)) {
+    picker_ = std::make_unique<SurfacePicker>(*rig, pose, deformer);
+    pickedDeformer_ = &deformer;
     pickedRig_ = rig;
     pickedPose_ = pose;
   }

@@ -72,8 +72,9 @@ SkinWeights mirroredWeights(const RiggedModel& rig, const PaintSurface& surface,
 // What painting needs again for every dab, kept between them.
 class Brush {
  public:
-  // Where the ray meets the surface as it stands in that pose.
-  std::optional<SurfaceHit> hit(const Ray& ray, const std::shared_ptr<const RiggedModel>& rig, const Pose& pose);
+  // Where the ray meets the surface as the deformer bends it in that pose.
+  std::optional<SurfaceHit> hit(const Ray& ray, const std::shared_ptr<const RiggedModel>& rig, const Pose& pose,
+                                const Deformer& deformer);
   const PaintSurface& surface(const RiggedModel& rig);
   // The weights that the stroke would leave. Cheapest where it is the last one with further dabs.
   SkinWeights preview(const std::shared_ptr<const RiggedModel>& rig, const std::vector<bool>& locked,
@@ -83,6 +84,7 @@ class Brush {
   std::unique_ptr<PaintSurface> surface_;
   std::shared_ptr<const RiggedModel> pickedRig_, paintedRig_;
   Pose pickedPose_;
+  const Deformer* pickedDeformer_ = nullptr;
   std::unique_ptr<SurfacePicker> picker_;
   std::unique_ptr<WeightStroke> stroke_;
   PaintWeights painted_;

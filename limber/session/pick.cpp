@@ -73,8 +73,8 @@ std::optional<PickHit> pickHandle(const Ray& ray, std::span<const Vec3> centers,
   return best;
 }
 
-SurfacePicker::SurfacePicker(const RiggedModel& model, const Pose& pose)
-    : model_(model), posed_{posedPositions(model, pose), model.geometry->triangles}, tree_(posed_) {}
+SurfacePicker::SurfacePicker(const RiggedModel& model, const Pose& pose, const Deformer& deformer)
+    : model_(model), posed_{posedPositions(model, pose, deformer), model.geometry->triangles}, tree_(posed_) {}
 
 std::optional<SurfaceHit> SurfacePicker::hit(const Ray& ray) const {
   const Vec3 direction = ray.direction.normalized();
@@ -91,8 +91,9 @@ std::optional<SurfaceHit> SurfacePicker::hit(const Ray& ray) const {
   return hit;
 }
 
-std::optional<PickHit> pickSurface(const Ray& ray, const RiggedModel& model, const Pose& pose) {
-  const std::optional<SurfaceHit> hit = SurfacePicker(model, pose).hit(ray);
+std::optional<PickHit> pickSurface(const Ray& ray, const RiggedModel& model, const Pose& pose,
+                                   const Deformer& deformer) {
+  const std::optional<SurfaceHit> hit = SurfacePicker(model, pose, deformer).hit(ray);
   if (!hit) return std::nullopt;
   return PickHit{hit->joint, false, hit->position, (hit->position - ray.origin).norm(), hit->inside};
 }

@@ -38,8 +38,8 @@ struct SurfaceHit {
 // A tree of the surface as it stands, for many rays.
 class SurfacePicker {
  public:
-  // `model` must outlive it. Cost: O(#F log #F).
-  SurfacePicker(const RiggedModel& model, const Pose& pose);
+  // `model` must outlive it. Cost: that of posedPositions and O(#F log #F).
+  SurfacePicker(const RiggedModel& model, const Pose& pose, const Deformer& deformer = kLinearBlendDeformer);
   std::optional<SurfaceHit> hit(const Ray& ray) const;
 
  private:
@@ -49,6 +49,7 @@ class SurfacePicker {
 };
 
 // The point of the posed surface that the ray meets first. Cost: O(#F log #F), a tree of the surface as it stands.
-std::optional<PickHit> pickSurface(const Ray& ray, const RiggedModel& model, const Pose& pose);
+std::optional<PickHit> pickSurface(const Ray& ray, const RiggedModel& model, const Pose& pose,
+                                   const Deformer& deformer = kLinearBlendDeformer);
 
 }  // namespace limber

@@ -11,7 +11,6 @@
 #include "limber/asset/node_edit.h"
 #include "limber/asset/pose_io.h"
 #include "limber/session/refuse.h"
-#include "limber/skinning/linear_blend.h"
 
 namespace limber {
 
@@ -63,6 +62,10 @@ void completeWeights(SkinWeights& weights, const Geometry& geometry) {
   }
 }
 
+BoundSurface boundSurface(const RiggedModel& model) {
+  return {model.geometry->positions, model.geometry->triangles, model.weights};
+}
+
 bool holds(std::span<const std::shared_ptr<const Clip>> clips, const std::shared_ptr<const Clip>& clip) {
   return std::find(clips.begin(), clips.end(), clip) != clips.end();
 }
@@ -107,6 +110,7 @@ std::shared_ptr<const RiggedModel> renameJoint(const RiggedModel& model, Index j
 std::shared_ptr<const RiggedModel> withWeights(const RiggedModel& model, SkinWeights weights) {
   auto painted = std::make_shared<RiggedModel>(model);
   painted->weights = std::move(weights);
+  painted->preparations = std::make_shared<DeformPreparations>();
   painted->edited = painted->painted = true;
   return painted;
 }
@@ -174,13 +178,28 @@ bool samePose(const Pose& a, const Pose& b) {
   return std::equal(a.locals.begin(), a.locals.end(), b.locals.begin(), b.locals.end(), sameTransform);
 }
 
-std::vector<Vec3f> posedPositions(const RiggedModel& model, const Pose& pose) {
+PosedSurface posedSurface(const RiggedModel& model, const Pose& pose, const Deformer& deformer,
+                          std::vector<Vec3f> normals) {
+  const Index jointCount = model.skeleton().jointCount();
   std::vector<Affine> transforms(model.inverseBind.size());
   skinTransforms(poseGlobals(model.skeleton(), pose), model.inverseBind, transforms);
-  std::vector<Vec3f> positions = model.geometry->positions;
-  std::vector<float> scratch(linearBlendScratch(positions.size(), model.skeleton().jointCount()));
-  linearBlend({positions, {}, model.weights, transforms, {}}, {positions, {}}, scratch);
-  return positions;
+  const std::vector<Vec3> centers = restPositions(model.skeleton());
+  PosedSurface surface{model.geometry->positions, std::move(normals)};
+  std::vector<float> scratch(deformer.scratchSize(surface.positions.size(), jointCount));
+  const auto prepared = model.preparations->of(deformer, boundSurface(model), jointCount);
+  deformer.deform({surface.positions, surface.normals, model.weights, transforms, centers, prepared.get()},
+                  {surface.positions, surface.normals}, scratch);
+  return surface;
+}
+
+std::vector<Vec3f> posedPositions(const RiggedModel& model, const Pose& pose, const Deformer& deformer) {
+  return posedSurface(model, pose, deformer, {}).positions;
+}
+
+std::shared_ptr<const DeformRows> deformRows(const RiggedModel& model, const Deformer& deformer) {
+  if (!deformer.rows) return nullptr;
+  const BoundSurface surface = boundSurface(model);
+  return deformer.rows(surface, model.preparations->of(deformer, surface, model.skeleton().jointCount()));
 }
 
 }  // namespace limber

@@ -13,6 +13,8 @@
 #include "limber/pipeline/auto_rig.h"
 #include "limber/skeleton/clip.h"
 #include "limber/skeleton/pose.h"
+#include "limber/skinning/deform_preparations.h"
+#include "limber/skinning/linear_blend.h"
 
 namespace limber {
 
@@ -27,6 +29,8 @@ struct RiggedModel {
   std::shared_ptr<const Geometry> geometry;           // #S vertices in world space, bound
   std::shared_ptr<const std::vector<Vec3f>> normals;  // #S, zero where the file has none
   SkinWeights weights;                                // #S, each used vertex sums to 1
+  // For `geometry` and `weights`; shared with copies that have the same.
+  std::shared_ptr<DeformPreparations> preparations = std::make_shared<DeformPreparations>();
   Pose home;  // as the joints stand in a fresh rig's file; the bind pose of a rig that was there
   std::optional<AutoRigReport> report;             // none for a rig that the file came with
   std::vector<std::shared_ptr<const Clip>> clips;  // the file's own that move joints; names unique
@@ -73,7 +77,19 @@ double longestSide(const RiggedModel& model);
 bool sameTransform(const Transform& a, const Transform& b);
 bool samePose(const Pose& a, const Pose& b);
 
-// The vertices as the joints stand in `pose` (linear blend).
-std::vector<Vec3f> posedPositions(const RiggedModel& model, const Pose& pose);
+// The vertices as the joints stand in `pose`; unit normals where `normals`, those as bound, are given. The first time
+// that a deformer is asked for, it is prepared.
+//
+// deformer  of deformers()
+struct PosedSurface {
+  std::vector<Vec3f> positions, normals;
+};
+PosedSurface posedSurface(const RiggedModel& model, const Pose& pose, const Deformer& deformer,
+                          std::vector<Vec3f> normals);
+std::vector<Vec3f> posedPositions(const RiggedModel& model, const Pose& pose,
+                                  const Deformer& deformer = kLinearBlendDeformer);
+
+// What a graphics card bends the surface with; null where the deformer has no rows.
+std::shared_ptr<const DeformRows> deformRows(const RiggedModel& model, const Deformer& deformer);
 
 }  // namespace limber

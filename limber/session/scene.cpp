@@ -239,7 +239,7 @@ std::optional<SceneHit> SessionScene::pick(const Ray& ray) const {
     const Affine toOwn = toScene(m).inverse() * fromChosen;
     const Ray own{toOwn * ray.origin, toOwn.linear() * ray.direction};
     const SessionState& state = now_.members[m].session->state();
-    const std::optional<PickHit> hit = pickSurface(own, *state.rig, state.pose);
+    const std::optional<PickHit> hit = pickSurface(own, *state.rig, state.pose, findDeformer(state.deformer));
     if (!hit) continue;
     const double distance = (toScene(m) * hit->position - fromChosen * ray.origin).norm();
     if (nearest && distance >= least) continue;

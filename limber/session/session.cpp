@@ -414,6 +414,11 @@ struct Session::Runner {
     authored(next);
     session.commit(command, std::move(next));
   }
+  void operator()(const SetDeformer& c) const {
+    SessionState next = state();
+    next.deformer = findDeformer(c.deformer).name;
+    session.commit(command, std::move(next));
+  }
   void operator()(const SetTarget& c) const {
     SessionState next = state();
     setTarget(next.targets, {requireJoint(next, c.joint), c.position});
@@ -637,7 +642,8 @@ struct Session::Runner {
   void go(std::vector<Step>& from, std::vector<Step>& to) const {
     Step step = std::move(from.back());
     from.pop_back();
-    std::swap(step.before, session.state_);
+    SessionState now = session.state_;
+    session.setState(std::exchange(step.before, std::move(now)));
     to.push_back(std::move(step));
     session.record_->add(command);
   }
@@ -701,13 +707,19 @@ bool Session::goesOnWithLast(const Command& command) const {
   return std::holds_alternative<EndDrag>(*before);
 }
 
+// Rigs of an undo history keep nothing that their deformers prepared.
+void Session::setState(SessionState next) {
+  if (next.rig->preparations != state_.rig->preparations) state_.rig->preparations->forget();
+  state_ = std::move(next);
+}
+
 void Session::commit(const Command& command, SessionState next) {
   const bool again = !undo_.empty() && goesOnWithLast(command);
   if (!again) {
     undo_.push_back({commandName(command), state_});
     ++stepsMade_;
   }
-  state_ = std::move(next);
+  setState(std::move(next));
   redo_.clear();
   record_->add(command);
 
@@ -767,7 +779,7 @@ std::optional<PickHit> Session::pick(const Ray& ray, double slope) const {
   }
   const std::vector<Vec3> centers = posePositions(state_.rig->skeleton(), state_.pose);
   if (const std::optional<PickHit> handle = pickHandle(ray, centers, state_.rig->radii, slope)) return handle;
-  return limber::pickSurface(ray, *state_.rig, state_.pose);
+  return limber::pickSurface(ray, *state_.rig, state_.pose, findDeformer(state_.deformer));
 }
 
 std::optional<SurfaceHit> Session::pickSurface(const Ray& ray) const {
@@ -775,7 +787,7 @@ std::optional<SurfaceHit> Session::pickSurface(const Ray& ray) const {
   if (!ray.origin.allFinite() || !ray.direction.allFinite() || !(ray.direction.norm() > 0)) {
     refuse("the ray has no direction");
   }
-  return brush_->hit(ray, state_.rig, state_.pose);
+  return brush_->hit(ray, state_.rig, state_.pose, findDeformer(state_.deformer));
 }
 
 SkinWeights Session::previewPaint(const PaintWeights& stroke) const {

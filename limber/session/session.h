@@ -42,7 +42,8 @@ struct SessionState {
   Pose authoredPose;
   bool ik = false;
   bool limbsFollow = false;  // feet that stand are held while inverse kinematics is on, on each rig of the model anew
-  std::string solver{kLimbSolver};  // of ikMethods()
+  std::string solver{kLimbSolver};                  // of ikMethods()
+  std::string deformer{kLinearBlendDeformer.name};  // of deformers()
   std::vector<HeldTarget> targets;
   std::string limitsText;  // empty: none
   std::shared_ptr<const JointLimits> limits;
@@ -114,8 +115,9 @@ class Session {
   // #J, from where a point is bound to where its joint takes it.
   std::vector<Affine> skinMatrices() const;
 
-  // GLB: the rigged model with its clips, its joints standing in the pose. The others: the posed surface alone, an OBJ
-  // without its materials.
+  // GLB: the rigged model with its clips, its joints standing in the pose; other programs blend its weights linearly,
+  // whatever the deformer, as glTF knows nothing else. The others: the posed surface alone as the deformer bends it, an
+  // OBJ without its materials.
   Bytes exportModel(ExportFormat format) const;
   // See session_file.h. Motions are not part of it, the clips made of them are.
   Bytes saveSession() const;
@@ -131,6 +133,7 @@ class Session {
   };
   struct Runner;
 
+  void setState(SessionState next);
   void commit(const Command& command, SessionState next);
   bool goesOnWithLast(const Command& command) const;
   void start(Asset source, const Command& command, Opening how, Progress& progress);

@@ -6,6 +6,7 @@
 
 #include "limber/asset/json_access.h"
 #include "limber/session/limb_pull.h"
+#include "limber/skinning/linear_blend.h"
 
 namespace limber {
 
@@ -140,6 +141,8 @@ SavedSession readSession(const JsonView& json) {
   session.ik = json.flag("ik", false);
   session.limbsFollow = json.flag("limbs_follow", false);
   session.solver = json.member("solver").exists() ? requireText(json, "solver") : std::string(kLimbSolver);
+  session.deformer =
+      json.member("deformer").exists() ? requireText(json, "deformer") : std::string(kLinearBlendDeformer.name);
   session.limits = json.text("limits");
   const JsonView locked = json.array("locked");
   for (std::size_t i = 0; i < locked.size(); ++i) {
@@ -170,6 +173,7 @@ void putSession(Asset& asset, const SavedSession& session) {
     }
   }
   if (session.limbsFollow) json["limbs_follow"] = true;
+  if (session.deformer != kLinearBlendDeformer.name) json["deformer"] = session.deformer;
   if (!session.limits.empty()) json["limits"] = session.limits;
   if (!session.locked.empty()) json["locked"] = session.locked;
   if (!session.clip.empty()) {

@@ -38,7 +38,8 @@ struct SavedSession {
   std::string templateName;       // whose joints are pinned; empty: none are
   std::vector<SavedTarget> pins;  // where these joints have to be
   bool ik = false, limbsFollow = false;
-  std::string solver;  // of ikMethods()
+  std::string solver;    // of ikMethods()
+  std::string deformer;  // of deformers()
   std::vector<SavedTarget> targets;
   std::string limits;               // text of a limits file; empty: none
   std::vector<std::string> locked;  // joints whose weights are

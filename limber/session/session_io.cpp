@@ -9,7 +9,6 @@
 #include "limber/core/known_error.h"
 #include "limber/ik/ik_solver.h"
 #include "limber/ik/limits_json.h"
-#include "limber/pipeline/pose_asset.h"
 #include "limber/rigging/prop_rigger.h"
 
 namespace limber {
@@ -41,6 +40,7 @@ SavedSession savedOf(const SessionState& state) {
   saved.ik = state.ik;
   saved.limbsFollow = state.limbsFollow;
   saved.solver = state.solver;
+  saved.deformer = state.deformer;
   saved.limits = state.limitsText;
   saved.locked.assign(state.locked.begin(), state.locked.end());
   for (const HeldTarget& target : state.targets) {
@@ -91,6 +91,7 @@ void restore(SessionState& state, const SavedSession& saved) {
   state.ik = saved.ik;
   state.limbsFollow = saved.limbsFollow;
   state.solver = findIkMethod(saved.solver).name;
+  state.deformer = findDeformer(saved.deformer).name;
   for (std::size_t i = 0; i < saved.layers.size(); ++i) {
     ClipLayer layer;
     for (const SavedLayerTrack& track : saved.layers[i].tracks) {
@@ -163,8 +164,9 @@ Asset posedDocument(const SessionState& state) {
 }
 
 ExportMesh posedMesh(const SessionState& state) {
-  const Asset document = documentOf(*state.rig);
-  return exportMesh(document, posedGeometry(document, state.rig->binding, state.pose).geometry);
+  Geometry geometry = *state.rig->geometry;
+  geometry.positions = posedPositions(*state.rig, state.pose, findDeformer(state.deformer));
+  return exportMesh(*state.rig->asset, geometry);
 }
 
 Bytes encodeMesh(const ExportMesh& mesh, ExportFormat format) {

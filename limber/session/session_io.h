@@ -18,7 +18,7 @@ SessionState startState(std::shared_ptr<const Asset> source, const std::optional
 
 // The rigged model with its clips, its joints standing in the pose.
 Asset posedDocument(const SessionState& state);
-// The posed surface alone.
+// The posed surface alone, as the deformer bends it.
 ExportMesh posedMesh(const SessionState& state);
 Bytes encodeMesh(const ExportMesh& mesh, ExportFormat format);
 

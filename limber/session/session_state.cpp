@@ -194,6 +194,7 @@ Json sessionState(const Session& session) {
       {"joints", jointsJson(rig)},
       {"ik", state.ik},
       {"solver", state.solver},
+      {"deformer", state.deformer},
       {"limited", state.limits != nullptr},
       {"limits", state.limits ? Json::parse(limitsToJson(*state.limits, rig.skeleton()))["joints"] : Json::object()},
       {"limit_outlines", limitOutlinesJson(state)},

@@ -22,7 +22,7 @@ namespace limber {
 //  "limits": {joint's name: limit} as in a limits file,
 //  "limit_outlines": [{"joint": index, "length": metres, "closed", "rim": [directions]}] (limit_outline.h), in the
 //  world as its parent stands at rest,
-//  "solver", "ik", "limited", "targets": [{"joint": index, "position"}],
+//  "solver", "deformer", "ik", "limited", "targets": [{"joint": index, "position"}],
 //  "tasks": [{"task", "outcome" (in words), "met"}] (ApplyTasks), "pins": [{"joint": name, "position"}],
 //  "doubts": [indices of joints whose pins would settle most (AutoRig)], "locked": [indices of joints whose weights
 //  are], "edited_rig" (weights or joints, by hand), "dragged" (a joint's index or null), "posed", "undo", "redo"

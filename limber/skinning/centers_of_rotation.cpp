@@ -5,10 +5,49 @@
 
 namespace limber {
 
+namespace {
+
+// Each takes its weight of the centre.
+void addInfluences(const SkinWeights& weights, Index vertex, const Vec3f& center, DeformRows& rows) {
+  std::size_t taken = 0;
+  for (Index slot = 0; slot < weights.slots; ++slot) {
+    const float weight = weights.weightsOf(vertex)[slot];
+    if (!(weight > 0)) continue;
+    const Index joint = weights.jointsOf(vertex)[slot];
+    if (taken % 4 == 0) {
+      rows.joints.insert(rows.joints.end(), 4, joint);
+      rows.moments.resize(rows.moments.size() + kFloatsPerMoments, 0.0f);
+    }
+    float* moments = rows.moments.data() + rows.moments.size() - kFloatsPerMoments + taken % 4;
+    rows.joints[rows.joints.size() - 4 + taken % 4] = joint;
+    for (int axis = 0; axis < 3; ++axis) moments[4 * axis] = weight * center[axis];
+    moments[12] = weight;
+    ++taken;
+  }
+}
+
+}  // namespace
+
 std::shared_ptr<const DeformPreparation> prepareRotationCenters(const BoundSurface& surface, Index /*jointCount*/) {
   auto prepared = std::make_shared<RotationCenters>();
   prepared->centers = rotationCenters(surface.positions, surface.triangles, surface.weights);
   return prepared;
+}
+
+std::shared_ptr<const DeformRows> centersOfRotationRows(const BoundSurface& surface,
+                                                        const std::shared_ptr<const DeformPreparation>& preparation) {
+  const auto* prepared = dynamic_cast<const RotationCenters*>(preparation.get());
+  if (!prepared || prepared->centers.size() != surface.positions.size()) refusePreparation();
+  auto rows = std::make_shared<DeformRows>();
+  rows->begin.push_back(0);
+  for (Index v = 0; v < surface.positions.size(); ++v) {
+    const Vec3f& center = prepared->centers[v];
+    rows->rowOf.push_back(v);
+    rows->places.insert(rows->places.end(), {center.x(), center.y(), center.z(), 0.0f});
+    addInfluences(surface.weights, v, center, *rows);
+    rows->begin.push_back(static_cast<Index>(rows->joints.size() / 4));
+  }
+  return rows;
 }
 
 std::size_t centersOfRotationScratch(std::size_t /*vertexCount*/, Index jointCount) {

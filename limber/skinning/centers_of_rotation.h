@@ -11,6 +11,9 @@ struct RotationCenters : DeformPreparation {
   std::vector<Vec3f> centers;  // #V points as bound
 };
 std::shared_ptr<const DeformPreparation> prepareRotationCenters(const BoundSurface& surface, Index jointCount);
+// A row for each vertex, about its centre.
+std::shared_ptr<const DeformRows> centersOfRotationRows(const BoundSurface& surface,
+                                                        const std::shared_ptr<const DeformPreparation>& preparation);
 
 // v' = M c + R S (v - c) about the vertex' rotation centre c (rotation_centers.h): M is the linear blend of the joints'
 // maps, R the blend of their rotations as unit quaternions on the half sphere of the strongest influence's, S the

@@ -22,16 +22,16 @@ constexpr Deformer kDeformers[] = {
     kLinearBlendDeformer,
     {"dual-quaternion", "weighted mean of the joints' motions; keeps volume where joints twist",
      "Kavan, Collins, Žára, O'Sullivan: Geometric Skinning with Approximate Dual Quaternion Blending, 2008",
-     &dualQuaternionScratch, &dualQuaternion, nullptr},
+     &dualQuaternionScratch, &dualQuaternion, nullptr, nullptr},
     {"centers-of-rotation", "turns each vertex about the middle of what is bound like it; no bulge where joints bend",
      "Le, Hodgins: Real-time Skeletal Skinning with Optimized Centers of Rotation, 2016", &centersOfRotationScratch,
-     &centersOfRotation, &prepareRotationCenters},
+     &centersOfRotation, &prepareRotationCenters, &centersOfRotationRows},
     {"delta-mush", "smooths the bent surface and puts its detail back; soft joints whatever the weights",
      "Mancewicz, Derksen, Rijpkema, Wilson: Delta Mush: Smoothing Deformations While Preserving Detail, 2014",
-     &deltaMushScratch, &deltaMush, &prepareDeltaMush},
+     &deltaMushScratch, &deltaMush, &prepareDeltaMush, nullptr},
     {"direct-delta-mush", "delta mush with its smoothing done once, so that a frame takes a small part of the time",
      "Le, Lewis: Direct Delta Mush Skinning and Variants, 2019", &directDeltaMushScratch, &directDeltaMush,
-     &prepareDirectDeltaMush},
+     &prepareDirectDeltaMush, &directDeltaMushDrawRows},
 };
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "limber/skeleton/skin_weights.h"
 
@@ -60,6 +61,22 @@ struct BoundSurface {
 
 using PrepareFunction = std::shared_ptr<const DeformPreparation> (*)(const BoundSurface& surface, Index jointCount);
 
+// A deformer as sums that a graphics card makes vertex by vertex: v' = p + sum of (M_j - I) [m_j; w_j] + R S (v - p).
+// M_j are the joints' transforms; R and S their rotations and their scales and shears blended by w_j, the rotations as
+// quaternions on the half sphere of the row's first joint. A row without entries leaves its vertices where they are.
+struct DeformRows {
+  std::vector<Index> rowOf;   // #V
+  std::vector<Index> begin;   // #R + 1, into the entries
+  std::vector<Index> joints;  // #E * 4, strongest first
+  std::vector<float>
+      moments;                // #E * 16: of four joints the x of m_j, then the y, z and w_j; zero where there are fewer
+  std::vector<float> places;  // #R * 4: p
+};
+
+// preparation  what `prepare` gave for that surface
+using RowsFunction = std::shared_ptr<const DeformRows> (*)(const BoundSurface& surface,
+                                                           const std::shared_ptr<const DeformPreparation>& preparation);
+
 struct Deformer {
   std::string_view name;     // "linear-blend"
   std::string_view summary;  // one line for --help
@@ -67,6 +84,7 @@ struct Deformer {
   std::size_t (*scratchSize)(std::size_t vertexCount, Index jointCount);  // in floats
   DeformFunction deform;
   PrepareFunction prepare;  // null where there is nothing to prepare
+  RowsFunction rows;        // null where rows cannot say it
 };
 
 std::span<const Deformer> deformers();

@@ -16,6 +16,7 @@
 #include "limber/skeleton/pose.h"
 #include "limber/skinning/centers_of_rotation.h"
 #include "limber/skinning/deform_kernels.h"
+#include "limber/skinning/testing/bent_tube.h"
 
 namespace limber {
 namespace {
@@ -386,6 +387,71 @@ TEST_P(EveryDeformer, RefusesToPrepareWhatDoesNotFit) {
   s.triangles.clear();
   s.positions.pop_back();
   EXPECT_THROW(s.prepared(deformer), Error);
+}
+
+// The sums of DeformRows in double.
+Vec3 rowsOracle(const DeformRows& rows, std::span<const Vec3f> positions, std::span<const Affine> transforms, Index v) {
+  const Vec3 position = positions[v].cast<double>();
+  const Index row = rows.rowOf[v];
+  if (rows.begin[row] == rows.begin[row + 1]) return position;
+  const float* at = rows.places.data() + 4 * std::size_t{row};
+  const Vec3 place(at[0], at[1], at[2]);
+  Vec3 sum = place;
+  Mat3 stretch = Mat3::Zero();
+  Vec4 turn = Vec4::Zero();
+  std::optional<Quat> pivot;
+  double total = 0;
+  for (std::size_t e = rows.begin[row]; e < rows.begin[row + 1]; ++e) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      const float* m = rows.moments.data() + kFloatsPerMoments * e + i;
+      const Vec4 moment(m[0], m[4], m[8], m[12]);
+      const Affine& map = transforms[rows.joints[4 * e + i]];
+      const Mat3 linear = map.linear();
+      const Mat3 s0 = Eigen::SelfAdjointEigenSolver<Mat3>(linear.transpose() * linear).operatorSqrt();
+      Quat q(Mat3(linear * s0.inverse()));
+      if (!pivot) pivot = q;
+      if (pivot->dot(q) < 0) q.coeffs() = -q.coeffs();
+      sum += (map.matrix() * moment - moment).head<3>();
+      turn += moment.w() * q.coeffs();
+      stretch += moment.w() * (s0 - Mat3::Identity());
+      total += moment.w();
+    }
+  }
+  EXPECT_NEAR(total, 1, 1e-4) << v;
+  return sum + Quat(turn).normalized() * (Vec3((Mat3::Identity() + stretch) * (position - place)));
+}
+
+TEST_P(EveryDeformer, ItsRowsMoveVerticesAsItDoes) {
+  const Deformer& deformer = findDeformer(GetParam());
+  if (!deformer.rows) GTEST_SKIP() << "rows cannot say it";
+  for (const Index slots : {1u, 4u, 6u}) {
+    const Scene s = randomScene(60, slots, slots == 4 ? Maps::kRigid : Maps::kScaled);
+    const auto prepared = s.prepared(deformer);
+    const auto rows = deformer.rows({s.positions, s.triangles, s.weights}, prepared);
+    const Deformed out = run(GetParam(), s);
+    for (Index v = 0; v < 60; ++v) {
+      expectNear(out.positions[v], rowsOracle(*rows, s.positions, s.transforms, v), 5e-5, v);
+    }
+  }
+  for (const double angle : {0.0, 0.7, 2.0}) {
+    const testing::BoundMesh tube =
+        testing::bentTube(12, 17, 0.2, Quat(Eigen::AngleAxisd(angle, Vec3(1, 0, 2).normalized())));
+    const auto prepared = prepareDeformer(deformer, tube.surface(), 2);
+    const auto rows = deformer.rows(tube.surface(), prepared);
+    const std::vector<Vec3f> out = tube.deformed(deformer, prepared.get());
+    for (Index v = 0; v < out.size(); ++v) {
+      expectNear(out[v], rowsOracle(*rows, tube.mesh.positions, tube.transforms, v), 1e-5, v);
+    }
+  }
+}
+
+TEST_P(EveryDeformer, RowsNeedItsOwnPreparation) {
+  const Deformer& deformer = findDeformer(GetParam());
+  if (!deformer.rows) GTEST_SKIP() << "rows cannot say it";
+  const Scene s = randomScene(10, 4, Maps::kRigid), other = randomScene(11, 4, Maps::kRigid);
+  const BoundSurface surface = {s.positions, s.triangles, s.weights};
+  EXPECT_THROW(deformer.rows(surface, nullptr), Error);
+  EXPECT_THROW(deformer.rows(surface, other.prepared(deformer)), Error);
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, EveryDeformer, ::testing::ValuesIn([] {

@@ -325,6 +325,13 @@ std::shared_ptr<const DeformPreparation> prepareDirectDeltaMush(const BoundSurfa
   return directDeltaMushRows(surface, jointCount);
 }
 
+std::shared_ptr<const DeformRows> directDeltaMushDrawRows(const BoundSurface& surface,
+                                                          const std::shared_ptr<const DeformPreparation>& preparation) {
+  auto rows = std::dynamic_pointer_cast<const DirectDeltaMushRows>(preparation);
+  if (!rows || rows->rowOf.size() != surface.positions.size()) refusePreparation();
+  return rows;
+}
+
 std::shared_ptr<const DeformPreparation> prepareFullDirectDeltaMush(const BoundSurface& surface, Index jointCount) {
   return fullDirectDeltaMushRows(surface, jointCount);
 }

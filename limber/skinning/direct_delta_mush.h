@@ -25,16 +25,14 @@ struct DirectDeltaMushOptions {
 
 // One row of moments for each vertex of the welded surface, with an entry for each joint that its surroundings are
 // bound to: the sums over k of b_k w_kj [u_k; 1], by which the joints take the smoothed place p = sum of b_k u_k.
-struct DirectDeltaMushRows : DeformPreparation {
-  std::vector<Index> rowOf;    // #V
-  std::vector<Index> begin;    // #S + 1
-  std::vector<Index> joints;   // #E * 4, strongest first
-  std::vector<float> moments;  // #E * 16: of four joints the x, then the y, z and weights
-  std::vector<float> places;   // #S * 4: p
+struct DirectDeltaMushRows : DeformPreparation, DeformRows {
   Index jointCount = 0;
 };
 
 std::shared_ptr<const DeformPreparation> prepareDirectDeltaMush(const BoundSurface& surface, Index jointCount);
+// The preparation's own.
+std::shared_ptr<const DeformRows> directDeltaMushDrawRows(const BoundSurface& surface,
+                                                          const std::shared_ptr<const DeformPreparation>& preparation);
 // Throws Error kBadArgument where an option is out of its range. In parallel; the result does not depend on the number
 // of threads. Cost: two factorisations and about 2 solves of 8 columns, `smoothings` times, for each joint with
 // weights.
@@ -80,6 +78,7 @@ inline constexpr Deformer kFullDirectDeltaMush = {"full-direct-delta-mush",
                                                   "Le, Lewis: Direct Delta Mush Skinning and Variants, 2019",
                                                   &fullDirectDeltaMushScratch,
                                                   &fullDirectDeltaMush,
-                                                  &prepareFullDirectDeltaMush};
+                                                  &prepareFullDirectDeltaMush,
+                                                  nullptr};
 
 }  // namespace limber

@@ -18,6 +18,7 @@ inline constexpr Deformer kLinearBlendDeformer = {
     "Magnenat-Thalmann, Laperrière, Thalmann: Joint-Dependent Local Deformations, 1988",
     &linearBlendScratch,
     &linearBlend,
+    nullptr,
     nullptr};
 
 }  // namespace limber

@@ -31,6 +31,8 @@ export interface StudioProbe {
   memberPlace(member: number, up?: number): { x: number; y: number };
   /** Pixels of the page. */
   place(joint: string): { x: number; y: number };
+  /** Of a point in the chosen model's own space. */
+  placeOf(position: Vector): { x: number; y: number };
   /** With which its handle is drawn, in pixels. */
   radius(joint: string): number;
   /** While models are seen in a real place. */
@@ -78,6 +80,7 @@ export function exposeStage(
     },
     memberAt: (member) => new Vector3().setFromMatrixPosition(places.of(member)).toArray(),
     place: (name) => onPage(position(name)),
+    placeOf: (at) => onPage(new Vector3(...at)),
     radius: (name) => {
       const { camera, size: { height } } = viewport;
       return handles.drawnRadius(jointOf(name), camera, height) / pixelSize(position(name), camera, height);

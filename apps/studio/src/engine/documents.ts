@@ -58,7 +58,7 @@ function middleOf(handles: Float32Array): Vector {
 
 /** What may make another rig, and with it another surface. */
 const changesRig = new Set([
-  'open_sample', 'open_file', 'set_handles', 'choose_methods', 'pin_joint', 'unpin_joint', 'set_rest_pose', 'rename_joint',
+  'open_sample', 'open_file', 'set_handles', 'choose_methods', 'set_deformer', 'pin_joint', 'unpin_joint', 'set_rest_pose', 'rename_joint',
   'add_joint', 'delete_joint', 'reparent_joint',
   'undo', 'redo', 'add_sample', 'add_file', 'choose_member', 'remove_member',
 ]);
@@ -98,7 +98,8 @@ export class Documents {
   run(command: Command): Answers['run'] {
     const step = this.shown(this.take({ kind: 'run', command }), changesRig.has(command.do));
     if (movesAll.has(command.do)) step.stance.others = this.otherSkins();
-    return changesWeights.has(command.do) ? { ...step, weights: orThrow(this.session.weights()).weights } : step;
+    if (!changesWeights.has(command.do)) return step;
+    return { ...step, weights: { ...orThrow(this.session.weights()).weights, deformation: orThrow(this.session.deformation()).deformation } };
   }
 
   restore(requests: Request[]): Answers['restore'] {
@@ -310,7 +311,9 @@ export class Documents {
     return this.eachOther((member, { joints }) => ({ member, joints: joints.length, model: orThrow(this.session.memberModel(member)).model }));
   }
   private otherSkins(): Stance['others'] {
-    return this.eachOther((member) => ({ member, skin: orThrow(this.session.memberSkin(member)).skin }));
+    return this.eachOther((member) => ({
+      member, skin: orThrow(this.session.memberSkin(member)).skin, posed: orThrow(this.session.memberPosed(member)).posed,
+    }));
   }
   private eachOther<T>(give: (member: number, of: SessionState['members'][number]) => T): T[] {
     return (this.state?.members ?? []).flatMap((of, member) => (member === this.state?.member ? [] : [give(member, of)]));
@@ -339,10 +342,10 @@ export class Documents {
   private stance(skin: Float32Array): Stance {
     const variants = this.variants.map(({ session, clip }) => {
       const { skin: moved } = orThrow(clip ? session.run({ do: 'set_time', seconds: this.seconds }) : session.skin());
-      return { skin: moved, handles: orThrow(session.handles()).handles };
+      return { skin: moved, posed: orThrow(session.posed()).posed, handles: orThrow(session.handles()).handles };
     });
     return {
-      skin, handles: orThrow(this.session.handles()).handles, turns: orThrow(this.session.turns()).turns, pinned: this.pinned, source: orThrow(this.session.sourceJoints()).places,
+      skin, posed: orThrow(this.session.posed()).posed, handles: orThrow(this.session.handles()).handles, turns: orThrow(this.session.turns()).turns, pinned: this.pinned, source: orThrow(this.session.sourceJoints()).places,
       sourceSkin: this.sourceSkin(), variants, places: this.isPlaced ? orThrow(this.session.places()).places : none, others: [],
     };
   }

@@ -1,18 +1,23 @@
 // What the page and the worker that holds the engine say to each other.
 import type {
-  Command, ErrorKind, ExportFormat, LimberError, Measures, MethodKind, Methods, PickHit, Placement, Ray, SceneMember, SessionState, SurfaceHit,
-  SurfaceModel, SurfaceParts, Tangent, WeightArrays,
+  Command, Deformation, ErrorKind, ExportFormat, LimberError, Measures, MethodKind, Methods, PickHit, Placement, Ray, SceneMember, SessionState,
+  SurfaceHit, SurfaceModel, SurfaceParts, Tangent, WeightArrays,
 } from '@engine/limber.mjs';
 
 export type {
-  Command, ErrorKind, ExportFormat, LimberError, Measures, MethodKind, Methods, PickHit, Placement, Ray, SceneMember, SessionState, SurfaceHit,
-  SurfaceModel, SurfaceParts, Tangent, WeightArrays,
+  Command, Deformation, ErrorKind, ExportFormat, LimberError, Measures, MethodKind, Methods, PickHit, Placement, Ray, SceneMember, SessionState,
+  SurfaceHit, SurfaceModel, SurfaceParts, Tangent, WeightArrays,
 };
 export type Vector = [number, number, number];
+
+/** Weights, and how the surface bends by them; without that as it did before. */
+export type PaintedWeights = WeightArrays & { deformation?: Deformation };
 
 /** The joints as they stand: 16 numbers each to move the surface, and x, y, z, radius each to draw handles. */
 export interface Stance {
   skin: Float32Array;
+  /** The surface itself, positions, then normals, where the engine bends it; else empty. So are those below. */
+  posed: Float32Array;
   handles: Float32Array;
   /** 7 numbers each: the turn from the rest pose in degrees about x, y and z, as set_turn takes it; the rotation in the
    *  world as x, y, z, w. */
@@ -24,11 +29,11 @@ export interface Stance {
   /** What moves the model that the chosen clip's motion came with; empty where it came with none. */
   sourceSkin: Float32Array;
   /** The same moment by the methods that are compared. */
-  variants: { skin: Float32Array; handles: Float32Array }[];
+  variants: { skin: Float32Array; posed: Float32Array; handles: Float32Array }[];
   /** 16 numbers for each member of the scene: its own space in that of the scene; empty where there is one alone. */
   places: Float32Array;
   /** What moves the surfaces of the members that are not chosen, by their place in the scene, where they have moved. */
-  others: { member: number; skin: Float32Array }[];
+  others: { member: number; skin: Float32Array; posed: Float32Array }[];
 }
 
 /** The surface of a member that is not chosen, and what moves it. */
@@ -52,7 +57,7 @@ export interface Step {
   stance: Stance;
   model: SurfaceModel | null;
   /** Where they alone have changed. */
-  weights: WeightArrays | null;
+  weights: PaintedWeights | null;
   /** All members of the scene but the chosen one, where there are others than before. */
   others: OtherMember[] | null;
 }

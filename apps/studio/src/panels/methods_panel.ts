@@ -28,12 +28,13 @@ export function compareButton(studio: Studio, page: PageStore, kind: MethodKind)
 }
 
 export function methodsPanel(studio: Studio, page: PageStore): HTMLElement {
-  const choose: Record<'rigger' | 'skinning' | 'solver', (name: string) => void> = {
+  const choose: Record<'rigger' | 'skinning' | 'deformer' | 'solver', (name: string) => void> = {
     rigger: (rigger) => void studio.chooseMethods({ rigger }),
     skinning: (skinning) => void studio.chooseMethods({ skinning }),
+    deformer: (deformer) => void studio.chooseDeformer(deformer),
     solver: (solver) => void studio.chooseSolver(solver),
   };
-  const row = (kind: 'rigger' | 'skinning' | 'solver', text: string) => {
+  const row = (kind: keyof typeof choose, text: string) => {
     const select = element('select', { class: 'select', id: kind });
     select.addEventListener('change', () => choose[kind](select.value));
     page.watch(({ methods, session }) => {
@@ -46,7 +47,7 @@ export function methodsPanel(studio: Studio, page: PageStore): HTMLElement {
     return element('div', { class: 'field' }, element('label', { for: kind }, text), select, compareButton(studio, page, kind));
   };
   return element('details', { class: 'card methods', id: 'methods' }, element('summary', {}, say('How it is done')),
-    row('rigger', say('Joints')), correction(studio, page), row('skinning', say('Skin')), row('solver', say('Limbs')));
+    row('rigger', say('Joints')), correction(studio, page), row('skinning', say('Skin')), row('deformer', say('Deformation')), row('solver', say('Limbs')));
 }
 
 /** Joints of a named skeleton that are not where they should be. */

@@ -50,7 +50,7 @@ export class ComparisonView {
     this.shown?.variants.forEach((variant, i) => {
       const stance = 'model' in variant ? variants[next++] : undefined;
       if (!stance) return;
-      this.figures[i]?.model.take(stance.skin);
+      this.figures[i]?.model.take(stance.skin, stance.posed);
       this.figures[i]?.handles.take(stance.handles);
     });
   }

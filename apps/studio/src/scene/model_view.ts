@@ -4,7 +4,8 @@ import {
   RepeatWrapping, Skeleton, SkinnedMesh, SRGBColorSpace, Texture, Vector3,
 } from 'three';
 import type { Display } from '../app/state';
-import type { SurfaceModel, SurfaceParts, WeightArrays } from '../engine/messages';
+import type { PaintedWeights, SurfaceModel, SurfaceParts } from '../engine/messages';
+import { PosedSurface, RowMotion, RowSurface } from './deformation';
 import { heatColor, jointColor } from './palette';
 
 /** Takes its matrices as they come from the engine instead of making them from bones. */
@@ -49,6 +50,9 @@ export class ModelView {
   private skeleton: EngineSkeleton | null = null;
   private meshes: SkinnedMesh<BufferGeometry, MeshStandardMaterial>[] = [];
   private geometry: BufferGeometry | null = null;
+  /** What bends the surface in place of its weights. */
+  private rows: { surface: RowSurface; motion: RowMotion } | null = null;
+  private posedSurface: PosedSurface | null = null;
 
   show(model: SurfaceModel, joints: number) {
     this.clear();
@@ -62,18 +66,29 @@ export class ModelView {
     add('skinIndex', new BufferAttribute(model.joints, 4));
     add('skinWeight', new BufferAttribute(model.weights, 4));
     add('color', new BufferAttribute(new Float32Array(model.positions.length).fill(1), 3));
+    const { deformation } = model;
+    if (deformation.form === 'rows') {
+      const surface = new RowSurface(deformation, this.geometry);
+      this.rows = { surface, motion: new RowMotion(surface, joints) };
+    }
+    if (deformation.form === 'engine') this.posedSurface = new PosedSurface(this.geometry, model.positions.length / 3);
     for (const part of model.parts) this.meshes.push(this.addPart(part));
   }
 
-  take(matrices: Float32Array) {
-    if (this.skeleton && matrices.length === 16 * this.skeleton.bones.length) this.skeleton.take(matrices);
+  /** Posed: the surface, where the engine bends it (Session.posed). */
+  take(matrices: Float32Array, posed: Float32Array = new Float32Array()) {
+    if (!this.skeleton || matrices.length !== 16 * this.skeleton.bones.length) return;
+    this.skeleton.take(matrices);
+    this.rows?.motion.take(matrices);
+    this.posedSurface?.take(posed);
   }
 
   /** Other weights for the surface that is shown. */
-  takeWeights({ weights, joints }: WeightArrays, display: Display, selected: number | null) {
+  takeWeights({ weights, joints, deformation }: PaintedWeights, display: Display, selected: number | null) {
     if (!this.model || !this.geometry || weights.length !== this.model.weights.length) return;
     this.model.weights.set(weights);
     this.model.joints.set(joints);
+    if (deformation?.form === 'rows') this.rows?.surface.take(deformation);
     for (const name of ['skinIndex', 'skinWeight']) this.geometry.getAttribute(name).needsUpdate = true;
     if (display === 'weights') this.paint(null);
     if (display === 'joint-weights') this.paint(selected ?? 0);
@@ -100,6 +115,8 @@ export class ModelView {
   /** Of the model that is shown; it has this one's geometry, so it is of no use once another model is. */
   likeness(material: Material): Likeness {
     const skeleton = new EngineSkeleton(this.skeleton!.bones.length), root = new Group();
+    const motion = this.rows && new RowMotion(this.rows.surface, skeleton.bones.length);
+    motion?.bend(material);
     for (const { geometry } of this.meshes) {
       const mesh = new SkinnedMesh(geometry, material);
       mesh.bind(skeleton, new Matrix4());
@@ -109,9 +126,13 @@ export class ModelView {
     }
     return {
       root, joints: skeleton.bones.length,
-      take: (matrices) => skeleton.take(matrices),
+      take: (matrices) => {
+        skeleton.take(matrices);
+        motion?.take(matrices);
+      },
       dispose: () => {
         skeleton.dispose();
+        motion?.dispose();
         material.dispose();
       },
     };
@@ -145,6 +166,8 @@ export class ModelView {
   private place(mesh: SkinnedMesh, vertex: number, at: Vector3): Vector3 {
     const model = this.model!, matrices = this.skeleton!.boneMatrices;
     const from = new Vector3().fromBufferAttribute(mesh.geometry.getAttribute('position') as BufferAttribute, vertex);
+    if (this.rows && matrices) return this.rows.motion.place(vertex, at.copy(from), matrices);
+    if (this.posedSurface?.place(vertex, at)) return at;
     at.set(0, 0, 0);
     for (let i = 4 * vertex; i < 4 * vertex + 4; ++i) {
       const weight = model.weights[i] ?? 0;
@@ -161,6 +184,7 @@ export class ModelView {
     const source = part.material === null ? null : this.model!.materials[part.material] ?? null;
     const color = source ? new Color(...source.color.slice(0, 3) as [number, number, number]) : new Color('#b9c0ca');
     const material = new MeshStandardMaterial({ color, roughness: 0.75, metalness: 0, side: DoubleSide });
+    (this.rows?.motion ?? this.posedSurface)?.bend(material);
     const mesh = new SkinnedMesh(geometry, material);
     mesh.bind(this.skeleton!, new Matrix4());
     mesh.bindMode = DetachedBindMode; // the group that it is in moves it, too
@@ -224,6 +248,9 @@ export class ModelView {
     }
     this.meshes = [];
     this.skeleton?.dispose();
+    this.rows?.motion.dispose();
+    this.rows?.surface.dispose();
+    this.rows = this.posedSurface = null;
     this.geometry?.dispose();
   }
 }

@@ -32,7 +32,7 @@ export class OthersView {
   }
 
   take(skins: Stance['others']) {
-    skins.forEach(({ member, skin }) => this.views.get(member)?.take(skin));
+    skins.forEach(({ member, skin, posed }) => this.views.get(member)?.take(skin, posed));
   }
 
   stand(places: Places) {

@@ -84,7 +84,7 @@ export function createStage(studio: Studio, page: PageStore): Stage {
     stand();
     shade();
     others.take(stance.others);
-    model.take(stance.skin);
+    model.take(stance.skin, stance.posed);
     rootSkin.fromArray(stance.skin);
     handles.take(stance.handles);
     gizmo.take(stance.turns);

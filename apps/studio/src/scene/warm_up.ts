@@ -8,7 +8,7 @@ import type { Viewport } from './viewport';
 const triangle: SurfaceModel = {
   positions: new Float32Array([0, 0, 0, 1, 0, 0, 0, 1, 0]), normals: new Float32Array([0, 0, 1, 0, 0, 1, 0, 0, 1]), uvs: new Float32Array(),
   triangles: new Uint32Array([0, 1, 2]), weights: new Float32Array([1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0]), joints: new Uint16Array(12),
-  parts: [{ name: '', first: 0, count: 3, material: null }], materials: [], textures: [],
+  parts: [{ name: '', first: 0, count: 3, material: null }], materials: [], textures: [], deformation: { form: 'weights' },
 };
 
 export function warmUp(viewport: Viewport) {

@@ -39,6 +39,7 @@ export function comparingCalls(core: Core) {
     switch (kind) {
       case 'rigger': return { do: 'choose_methods', rigger: name, skinning };
       case 'skinning': return { do: 'choose_methods', rigger, skinning: name };
+      case 'deformer': return { do: 'set_deformer', deformer: name };
       case 'solver': return { do: 'set_ik', on: true, solver: name };
       case 'retargeting': {
         const source = chosenClip(session)?.source;

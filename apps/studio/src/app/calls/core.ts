@@ -1,6 +1,6 @@
 // What all calls share: the engine, the store, and how a step of the one comes into the other.
 import { EngineClient, EngineError } from '../../engine/client';
-import type { Command, SessionState, Stance, Step, WeightArrays } from '../../engine/messages';
+import type { Command, PaintedWeights, SessionState, Stance, Step } from '../../engine/messages';
 import { stageName } from '../../words/engine';
 import { say } from '../../words/say';
 import { keysThere } from '../keys';
@@ -15,7 +15,7 @@ export class Core {
   /** The joints stand anew; called for every frame of a drag. */
   onStance: (stance: Stance, ofClip: boolean) => void = () => {};
   /** The weights alone are others. */
-  onWeights: (weights: WeightArrays) => void = () => {};
+  onWeights: (weights: PaintedWeights) => void = () => {};
   /** A new model was opened: the camera goes to it. */
   onOpened: () => void = () => {};
   /** Files of poses were brought. */
@@ -110,7 +110,7 @@ export class Core {
     if (state) this.followers.forEach((follow) => follow());
   }
 
-  private changeWeights(weights: WeightArrays) {
+  private changeWeights(weights: PaintedWeights) {
     this.onWeights(weights);
     if (this.page.now.parts) this.page.set({ parts: null });
   }

@@ -70,6 +70,7 @@ export function rigCalls(core: Core, told: (title: string) => void) {
       });
     },
 
+    async chooseDeformer(deformer: string) { await core.run({ do: 'set_deformer', deformer }); },
     async chooseMethods(change: { rigger?: string; skinning?: string }) {
       const { session } = page.now;
       if (!session) return;
