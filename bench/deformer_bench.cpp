@@ -10,6 +10,7 @@
 #include "limber/rigging/auto_rigger.h"
 #include "limber/skeleton/pose.h"
 #include "limber/skinning/centers_of_rotation.h"
+#include "limber/skinning/direct_delta_mush.h"
 #include "limber/skinning/weight_method.h"
 
 namespace {
@@ -109,9 +110,12 @@ BoundCreature boundCreature(const benchmark::State& state) {
 class CreatureFrames {
  public:
   CreatureFrames(const BoundCreature& creature, const char* name)
+      : CreatureFrames(creature, findDeformer(name), creature.prepared(findDeformer(name))) {}
+  CreatureFrames(const BoundCreature& creature, const Deformer& deformer,
+                 std::shared_ptr<const DeformPreparation> prepared)
       : creature_(creature),
-        deformer_(findDeformer(name)),
-        prepared_(creature.prepared(deformer_)),
+        deformer_(deformer),
+        prepared_(std::move(prepared)),
         scratch_(deformer_.scratchSize(creature.mesh.positions.size(), creature.jointCount())),
         positions_(creature.mesh.positions.size()) {}
 
@@ -122,6 +126,18 @@ class CreatureFrames {
                      {positions_, {}}, scratch_);
     benchmark::DoNotOptimize(positions_.data());
     return secondsNow() - start;
+  }
+
+  // Of the last frames of both, in thousandths of the longest side, least first.
+  std::vector<double> distancesTo(const CreatureFrames& other) const {
+    Box box;
+    for (const Vec3f& position : creature_.mesh.positions) box.add(position.cast<double>());
+    std::vector<double> distances;
+    for (std::size_t v = 0; v < positions_.size(); ++v) {
+      distances.push_back(1000 * static_cast<double>((positions_[v] - other.positions_[v]).norm()) / box.longestSide());
+    }
+    std::sort(distances.begin(), distances.end());
+    return distances;
   }
 
  private:
@@ -153,6 +169,36 @@ void deformCreature(benchmark::State& state, const char* name) {
   setThreadCount(0);
 }
 
+// Direct delta mush with fewer joints: what a frame costs against dual quaternions, measured in turns, and how far
+// vertices lie from the full one, in thousandths of the longest side.
+void directWithFewerJoints(benchmark::State& state) {
+  setThreadCount(1);
+  const BoundCreature creature = boundCreature(state);
+  DirectDeltaMushOptions options, all;
+  options.mostJoints = static_cast<Index>(state.range(1));
+  options.leastEntry = 1e-3 * static_cast<double>(state.range(2));
+  all.leastWeight = 1.0 / 256;
+  const BoundSurface surface = {creature.mesh.positions, creature.mesh.triangles, creature.weights};
+  const auto rows = directDeltaMushRows(surface, creature.jointCount(), options);
+  const auto full = fullDirectDeltaMushRows(surface, creature.jointCount(), all);
+  CreatureFrames own(creature, findDeformer("direct-delta-mush"), rows), dual(creature, "dual-quaternion");
+  CreatureFrames whole(creature, kFullDirectDeltaMush, full);
+  double best = 1e9, turned = 1e9;
+  for (auto _ : state) {
+    const double seconds = own.run();
+    state.SetIterationTime(seconds);
+    best = std::min(best, seconds);
+    turned = std::min(turned, dual.run());
+  }
+  whole.run();
+  const std::vector<double> off = own.distancesTo(whole);
+  state.counters["to_dual_quaternion"] = best / turned;
+  state.counters["entries"] = static_cast<double>(rows->joints.size()) / 4 / static_cast<double>(rows->rowOf.size());
+  state.counters["off_p95"] = off[off.size() * 95 / 100];
+  state.counters["off_most"] = off.back();
+  setThreadCount(0);
+}
+
 void prepareCreature(benchmark::State& state, const char* name) {
   setThreadCount(1);
   const BoundCreature creature = boundCreature(state);
@@ -176,6 +222,10 @@ BENCHMARK_CAPTURE(deformCreature, dualQuaternion, "dual-quaternion")->Apply(over
 BENCHMARK_CAPTURE(deformCreature, centersOfRotation, "centers-of-rotation")->Apply(overCreaturesInTurns);
 BENCHMARK_CAPTURE(deformCreature, deltaMush, "delta-mush")->Apply(overCreaturesInTurns);
 BENCHMARK_CAPTURE(deformCreature, directDeltaMush, "direct-delta-mush")->Apply(overCreaturesInTurns);
+BENCHMARK(directWithFewerJoints)
+    ->ArgsProduct({{20000}, {4, 8}, {0, 31, 50}})
+    ->Unit(benchmark::kMicrosecond)
+    ->UseManualTime();
 BENCHMARK_CAPTURE(prepareCreature, centersOfRotation, "centers-of-rotation")->Apply(overCreatures);
 BENCHMARK_CAPTURE(prepareCreature, deltaMush, "delta-mush")->Apply(overCreatures);
 BENCHMARK_CAPTURE(prepareCreature, directDeltaMush, "direct-delta-mush")->Apply(overCreatures);

@@ -241,7 +241,7 @@ CallResult deformationOf(const limber::SessionState& state) {
   const std::shared_ptr<const limber::DeformRows> rows = limber::deformRows(*state.rig, deformer);
   std::vector<float> values;
   for (const Index row : rows->rowOf) {
-    const auto place = rows->places.begin() + 4 * std::ptrdiff_t{row};
+    const float* place = rows->places.data() + 4 * std::size_t{row};
     values.insert(values.end(), place, place + 3);
   }
   for (const Index row : rows->rowOf) {
@@ -251,7 +251,7 @@ CallResult deformationOf(const limber::SessionState& state) {
   const std::size_t entries = rows->joints.size() / 4;
   for (std::size_t entry = 0; entry < entries; ++entry) {
     for (std::size_t i = 4 * entry; i < 4 * entry + 4; ++i) values.push_back(static_cast<float>(rows->joints[i]));
-    const auto moments = rows->moments.begin() + static_cast<std::ptrdiff_t>(16 * entry);
+    const float* moments = rows->moments.data() + 16 * entry;
     values.insert(values.end(), moments, moments + 16);
   }
   return {true, bytesOf(values), textOf({{"form", "rows"}, {"vertices", rows->rowOf.size()}, {"entries", entries}})};

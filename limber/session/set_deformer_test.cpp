@@ -20,7 +20,11 @@ namespace {
 
 using ::testing::HasSubstr;
 
-void follow(Session& session, const Command& command) {
+std::optional<Bytes> bipedFiles(std::string_view path) {
+  return path == "biped.glb" ? std::optional<Bytes>(testing::bipedGlb()) : std::nullopt;
+}
+
+void take(Session& session, const Command& command) {
   Progress progress;
   session.run(command, progress);
 }
@@ -34,8 +38,8 @@ Session bentBiped() {
   Session session;
   Progress progress;
   session.open(testing::bipedGlb(), "biped.glb", progress);
-  follow(session, SetHandles{16});
-  for (const Index joint : {3u, 6u, 9u, 12u}) follow(session, TurnJoint{jointName(session, joint), {1, 0.5, 1}, 55});
+  take(session, SetHandles{16});
+  for (const Index joint : {3u, 6u, 9u, 12u}) take(session, TurnJoint{jointName(session, joint), {1, 0.5, 1}, 55});
   return session;
 }
 
@@ -69,15 +73,16 @@ TEST(SetDeformer, TheExportedSurfaceIsThatOfTheBakedModel) {
   const Asset asset = readAsset(glb, "posed.glb");
   const AssetSkeleton skeleton = readSkeleton(asset);
   for (const Deformer& deformer : deformers()) {
-    follow(session, SetDeformer{std::string(deformer.name)});
+    take(session, SetDeformer{std::string(deformer.name)});
     const std::vector<Vec3f> bent = exported(session);
     const auto baked = posedGeometry(asset, skeleton, readNodePose(asset, skeleton), deformer).geometry.positions;
     EXPECT_LT(farthest(bent, baked), 2e-5) << deformer.name;
-    if (deformer.name != kLinearBlendDeformer.name) EXPECT_GT(farthest(bent, linear), 1e-3) << deformer.name;
+    const bool isLinear = deformer.name == kLinearBlendDeformer.name;
+    EXPECT_EQ(farthest(bent, linear) > 1e-3, !isLinear) << deformer.name;
     EXPECT_EQ(session.exportModel(ExportFormat::kGlb), glb) << "a GLB has weights alone";
     for (const ExportFormat format : {ExportFormat::kStl, ExportFormat::kPly}) {
       Session plain = bentBiped();
-      EXPECT_EQ(session.exportModel(format) == plain.exportModel(format), deformer.name == kLinearBlendDeformer.name);
+      EXPECT_EQ(session.exportModel(format) == plain.exportModel(format), isLinear);
     }
   }
 }
@@ -87,7 +92,7 @@ TEST(SetDeformer, IsOneStepThatChangesNothingElse) {
   const Json before = sessionState(session);
   EXPECT_EQ(before["deformer"], "linear-blend");
   const auto rig = session.state().rig;
-  follow(session, SetDeformer{"delta-mush"});
+  take(session, SetDeformer{"delta-mush"});
   EXPECT_EQ(session.undoName(), "set_deformer");
   EXPECT_EQ(session.state().rig, rig);
   Json after = sessionState(session);
@@ -95,13 +100,13 @@ TEST(SetDeformer, IsOneStepThatChangesNothingElse) {
   for (const char* changed : {"deformer", "undo"}) after[changed] = before[changed];
   EXPECT_EQ(after, before);
   const std::vector<Vec3f> soft = exported(session);
-  follow(session, Undo{});
+  take(session, Undo{});
   EXPECT_EQ(session.state().deformer, "linear-blend");
   EXPECT_NE(exported(session), soft);
-  follow(session, Redo{});
+  take(session, Redo{});
   EXPECT_EQ(exported(session), soft);
   // Another rig is bent alike.
-  follow(session, SetHandles{9});
+  take(session, SetHandles{9});
   EXPECT_EQ(session.state().deformer, "delta-mush");
 }
 
@@ -109,25 +114,25 @@ TEST(SetDeformer, WhatIsNotThereIsRefused) {
   Session session = bentBiped();
   const std::size_t recorded = session.record().size();
   try {
-    follow(session, SetDeformer{"jelly"});
+    take(session, SetDeformer{"jelly"});
     FAIL() << "nothing was thrown";
   } catch (const Error& error) {
     EXPECT_THAT(error.what(), HasSubstr("jelly"));
   }
   EXPECT_EQ(session.state().deformer, "linear-blend");
   EXPECT_EQ(session.record().size(), recorded);
-  follow(session, BeginDrag{jointName(session, 3), DragMode::kMove, {Vec3(0, 1, 10)}});
-  EXPECT_THROW(follow(session, SetDeformer{"delta-mush"}), Error);
+  take(session, BeginDrag{jointName(session, 3), DragMode::kMove, {Vec3(0, 1, 10)}});
+  EXPECT_THROW(take(session, SetDeformer{"delta-mush"}), Error);
 }
 
 TEST(SetDeformer, TheRecordAndTheSavedSessionHaveIt) {
   for (const Deformer& deformer : deformers()) {
-    Session session;
-    follow(session, OpenSample{"stool"});
-    follow(session, SetDeformer{std::string(deformer.name)});
-    follow(session, TurnJoint{jointName(session, 1), {0, 0, 1}, 40});
-    Session again;
-    for (const Command& command : commandsFromJson(commandsToJson(session.record()))) follow(again, command);
+    Session session(bipedFiles);
+    take(session, OpenFile{"biped.glb"});
+    take(session, SetDeformer{std::string(deformer.name)});
+    take(session, TurnJoint{jointName(session, 1), {0, 0, 1}, 40});
+    Session again(bipedFiles);
+    for (const Command& command : commandsFromJson(commandsToJson(session.record()))) take(again, command);
     EXPECT_EQ(again.exportModel(ExportFormat::kObj), session.exportModel(ExportFormat::kObj)) << deformer.name;
     const Bytes saved = session.saveSession();
     Session reopened;
@@ -145,7 +150,7 @@ TEST(SetDeformer, AFileThatNamesNoneBlendsLinearlyAndABadNameIsRefused) {
   const auto savedWith = [&](const Json& deformer) {
     Asset asset = readAsset(session.saveSession(), "saved.glb");
     Json& kept = asset.json()["extras"]["limber_session"];
-    EXPECT_FALSE(kept.contains("deformer")) << "as files before this were";
+    EXPECT_FALSE(kept.contains("deformer")) << "as bipedFiles before this were";
     if (!deformer.is_null()) kept["deformer"] = deformer;
     return writeGlb(asset);
   };
@@ -166,7 +171,7 @@ TEST(SetDeformer, AFileThatNamesNoneBlendsLinearlyAndABadNameIsRefused) {
 TEST(SetDeformer, RaysMeetTheSurfaceThatItBends) {
   Session session = bentBiped();
   for (const Deformer& deformer : deformers()) {
-    follow(session, SetDeformer{std::string(deformer.name)});
+    take(session, SetDeformer{std::string(deformer.name)});
     const std::vector<Vec3f> positions = exported(session);
     const std::vector<Triangle>& triangles = session.state().rig->geometry->triangles;
     int met = 0;
@@ -179,7 +184,7 @@ TEST(SetDeformer, RaysMeetTheSurfaceThatItBends) {
       EXPECT_LT((at - hit->position).norm(), 1e-5) << deformer.name << " " << height;
       const auto pick = session.pick({Vec3(0.03, height, 10), Vec3(0, 0, -1)}, 0);
       ASSERT_TRUE(pick.has_value());
-      if (!pick->onHandle) EXPECT_EQ(pick->position, hit->position) << deformer.name;
+      EXPECT_TRUE(pick->onHandle || pick->position == hit->position) << deformer.name;
       ++met;
     }
     EXPECT_GE(met, 2) << deformer.name;
@@ -189,7 +194,7 @@ TEST(SetDeformer, RaysMeetTheSurfaceThatItBends) {
 TEST(SetDeformer, MeasuresAreOfTheSurfaceThatItBends) {
   Session session = bentBiped();
   const SessionMeasures linear = measureSession(session);
-  follow(session, SetDeformer{"direct-delta-mush"});
+  take(session, SetDeformer{"direct-delta-mush"});
   const SessionMeasures soft = measureSession(session);
   EXPECT_NE(soft.volume, linear.volume);
   EXPECT_NE(soft.stretch, linear.stretch);
@@ -198,14 +203,14 @@ TEST(SetDeformer, MeasuresAreOfTheSurfaceThatItBends) {
 
 TEST(SetDeformer, PaintedWeightsArePreparedAnewAndOldOnesForgotten) {
   Session session = bentBiped();
-  follow(session, SetDeformer{"direct-delta-mush"});
+  take(session, SetDeformer{"direct-delta-mush"});
   const std::vector<Vec3f> before = exported(session);
   const auto first = session.state().rig;
   EXPECT_EQ(first->preparations->size(), 1u);
   const std::string joint = jointName(session, 3);
   PaintWeights stroke{joint, PaintMode::kReplace, 1, 0.4, false, {}};
   for (Index t = 0; t < 24; ++t) stroke.dabs.push_back({t, 0.3, 0.3});
-  follow(session, stroke);
+  take(session, stroke);
   ASSERT_NE(session.state().rig, first);
   EXPECT_EQ(first->preparations->size(), 0u);
   const std::vector<Vec3f> after = exported(session);
@@ -214,19 +219,19 @@ TEST(SetDeformer, PaintedWeightsArePreparedAnewAndOldOnesForgotten) {
   RiggedModel fresh = *session.state().rig;
   fresh.preparations = std::make_shared<DeformPreparations>();
   EXPECT_EQ(farthest(posedPositions(fresh, session.state().pose, findDeformer("direct-delta-mush")), after), 0);
-  follow(session, Undo{});
+  take(session, Undo{});
   EXPECT_EQ(exported(session), before);
   EXPECT_EQ(session.state().rig, first);
 }
 
 TEST(SetDeformer, ForksAndRenamedRigsShareWhatIsPrepared) {
   Session session = bentBiped();
-  follow(session, SetDeformer{"delta-mush"});
+  take(session, SetDeformer{"delta-mush"});
   exported(session);
   Session fork = session.fork();
   EXPECT_EQ(fork.state().deformer, "delta-mush");
   EXPECT_EQ(fork.state().rig->preparations, session.state().rig->preparations);
-  follow(session, RenameJoint{jointName(session, 2), "knee"});
+  take(session, RenameJoint{jointName(session, 2), "knee"});
   EXPECT_EQ(session.state().rig->preparations, fork.state().rig->preparations);
   EXPECT_EQ(session.state().rig->preparations->size(), 1u);
   EXPECT_EQ(exported(session), exported(fork));
@@ -246,10 +251,10 @@ TEST(SetDeformer, NormalsBendAlong) {
 }
 
 TEST(SetDeformer, EachMemberOfASceneHasItsOwn) {
-  SessionScene scene;
+  SessionScene scene(bipedFiles);
   Progress progress;
-  scene.run(OpenSample{"stool"}, progress);
-  scene.run(AddSample{"biped"}, progress);
+  scene.run(OpenFile{"biped.glb"}, progress);
+  scene.run(AddFile{"biped.glb"}, progress);
   scene.run(SetDeformer{"dual-quaternion"}, progress);
   EXPECT_EQ(scene.members()[0].session->state().deformer, "linear-blend");
   EXPECT_EQ(scene.members()[1].session->state().deformer, "dual-quaternion");
@@ -258,9 +263,9 @@ TEST(SetDeformer, EachMemberOfASceneHasItsOwn) {
   const std::vector<Vec3f> all = verticesOf(scene.exportModel(ExportFormat::kObj));
   scene.run(SetDeformer{"linear-blend"}, progress);
   const std::vector<Vec3f> linear = verticesOf(scene.exportModel(ExportFormat::kObj));
-  const std::size_t stool = scene.members()[0].session->state().rig->geometry->positions.size();
-  ASSERT_GT(all.size(), stool);
-  for (std::size_t v = 0; v < stool; ++v) EXPECT_EQ(all[v], linear[v]);
+  const std::size_t first = scene.members()[0].session->state().rig->geometry->positions.size();
+  ASSERT_GT(all.size(), first);
+  for (std::size_t v = 0; v < first; ++v) EXPECT_EQ(all[v], linear[v]);
   EXPECT_NE(all, linear);
 }
 

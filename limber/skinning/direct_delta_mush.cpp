@@ -91,7 +91,7 @@ class MomentTable {
       std::vector<JointPart>& parts = ofVertex[v];
       std::stable_sort(parts.begin(), parts.end(),
                        [](const JointPart& a, const JointPart& b) { return a.moments.weight > b.moments.weight; });
-      if (order_ == MomentOrder::kFirst && parts.size() > options_.mostJoints) parts.resize(options_.mostJoints);
+      if (order_ == MomentOrder::kFirst) dropWeakest(parts);
       PointMoments all = bound[v];
       if (std::abs(all.weight - 1) < kRounding) all = whole[v], all.weight = 1;
       completeParts(parts, all);
@@ -177,6 +177,18 @@ class MomentTable {
       if (moments[v].weight >= options_.leastWeight) parts.push_back({v, joint, moments[v]});
     }
     return parts;
+  }
+
+  // Strongest first; a whole entry of four is left out where it costs more than it changes.
+  void dropWeakest(std::vector<JointPart>& parts) const {
+    if (parts.size() > options_.mostJoints) parts.resize(options_.mostJoints);
+    while (parts.size() > 4) {
+      const std::size_t first = (parts.size() - 1) / 4 * 4;
+      double held = 0;
+      for (std::size_t i = first; i < parts.size(); ++i) held += parts[i].moments.weight;
+      if (held >= options_.leastEntry) return;
+      parts.resize(first);
+    }
   }
 
   // What small parts had is given to the others, so that one motion of all joints stays one motion.
@@ -267,7 +279,8 @@ std::shared_ptr<Rows> emptyRows(const SmoothingSurface& surface, const MomentTab
 void checkOptions(const DirectDeltaMushOptions& options) {
   const bool right = options.rotationReach > 0 && options.translationReach > 0 && options.smoothings > 0 &&
                      options.translationWeight >= 0 && options.translationWeight < 1 && options.leastWeight >= 0 &&
-                     options.leastWeight <= 0.1 && options.mostJoints > 0;
+                     options.leastWeight <= 0.1 && options.mostJoints > 0 && options.leastEntry >= 0 &&
+                     options.leastEntry <= 0.5;
   if (!right) throw Error(ErrorCode::kBadArgument, "an option of direct delta mush is out of its range");
 }
 

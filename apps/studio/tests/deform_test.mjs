@@ -50,13 +50,16 @@ async function engineSurface() {
 
 /** The page's picture, with the model and without. */
 async function pictures() {
-  const shot = async () => (await page.locator('main canvas').screenshot()).toString('base64'), eyes = page.locator('#parts-list button, [aria-label^="Show "]');
-  const shown = await shot(), count = await eyes.count();
-  for (let i = 0; i < count; ++i) await eyes.nth(i).click();
-  await settled(page);
+  const shot = async () => (await page.locator('main canvas').screenshot()).toString('base64'), eyes = page.locator('#meshes button');
+  const turnAll = async () => {
+    for (let i = 0; i < await eyes.count(); ++i) await eyes.nth(i).dispatchEvent('click');
+    await settled(page);
+  };
+  const shown = await shot();
+  await turnAll();
   const without = await shot();
-  for (let i = 0; i < count; ++i) await eyes.nth(i).click();
-  await settled(page);
+  await turnAll();
+  assert.notEqual(shown, without, 'there is no model in the picture');
   return [shown, without];
 }
 

@@ -88,7 +88,10 @@ export class ModelView {
     if (!this.model || !this.geometry || weights.length !== this.model.weights.length) return;
     this.model.weights.set(weights);
     this.model.joints.set(joints);
-    if (deformation?.form === 'rows') this.rows?.surface.take(deformation);
+    if (deformation?.form === 'rows') {
+      this.model.deformation = deformation;
+      this.rows?.surface.take(deformation);
+    }
     for (const name of ['skinIndex', 'skinWeight']) this.geometry.getAttribute(name).needsUpdate = true;
     if (display === 'weights') this.paint(null);
     if (display === 'joint-weights') this.paint(selected ?? 0);
