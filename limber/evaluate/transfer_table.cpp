@@ -113,7 +113,7 @@ std::vector<std::size_t> drawn(std::vector<std::size_t> from, std::size_t most, 
   return from;
 }
 
-TransferTrial tryTransfer(const Person& source, const Person& target, const TransferRig& transfer) {
+TransferTrial tryTransfer(const Person& source, const Person& target, const TransferFunction& transfer) {
   const Asset giver = readAsset(source.path);
   Asset taker = readAsset(target.path);
   removeRig(taker);
@@ -156,7 +156,7 @@ TransferMeans meansOf(const TransferFolder& folder, bool ofFamilies) {
 }  // namespace
 
 std::vector<TransferTrial> tryTransfers(const std::filesystem::path& folder, const TransferTrialOptions& options,
-                                        const TransferRig& transfer, Progress& progress, Warnings& skipped) {
+                                        const TransferFunction& transfer, Progress& progress, Warnings& skipped) {
   progress.stage("transfer");
   const std::vector<Person> people = peopleBelow(folder, skipped);
   Random random(1);

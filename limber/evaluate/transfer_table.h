@@ -15,7 +15,7 @@
 namespace limber {
 
 // Gives the target, which has no rig, that of the source.
-using TransferRig = std::function<void(const Asset& source, Asset& target)>;
+using TransferFunction = std::function<void(const Asset& source, Asset& target)>;
 
 struct TransferTrial {
   std::string source, target;  // files' names, without folder and extension
@@ -34,7 +34,7 @@ struct TransferTrialOptions {
 // Every model below the folder that has a rig, triangles and the skeleton of a person, as target of others there: of
 // each kind that many, drawn at random with a fixed seed. What cannot be read or transferred is counted in `skipped`.
 std::vector<TransferTrial> tryTransfers(const std::filesystem::path& folder, const TransferTrialOptions& options,
-                                        const TransferRig& transfer, Progress& progress, Warnings& skipped);
+                                        const TransferFunction& transfer, Progress& progress, Warnings& skipped);
 
 struct TransferFolder {
   std::string name;
