@@ -123,6 +123,45 @@ TEST_F(ObjSeriesFiles, FacesMayCountBackwardsAndLinesBeContinued) {
   EXPECT_EQ(series.animation.sequence.at(0, 1), Vec3f(0, 0, 1));
   EXPECT_EQ(series.animation.sequence.at(1, 1), Vec3f(1, 0, 1));
   EXPECT_EQ(series.animation.sequence.at(2, 1), Vec3f(0, 1, 1)) << "divided by w";
+  const ObjSeries turned = read({put("b0.obj", relative), put("b1.obj", absolute)});
+  EXPECT_EQ(turned.animation.sequence.at(2, 0), Vec3f(0, 1, 1));
+  EXPECT_EQ(turned.animation.sequence.at(2, 1), Vec3f(0, 1, 0));
+}
+
+// The model is the first frame's, whichever way that counts: faces, texture coordinates and normals are the same.
+TEST_F(ObjSeriesFiles, AFirstFrameThatCountsBackwardsIsTheSameModel) {
+  const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n", uvs = "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n";
+  const std::string lifted = "v 0 0 0\nv 1 0 0\nv 1 1 1\nv 0 1 1\n", normal = "vn 0 0 1\n";
+  const std::vector<std::string> firsts = {
+      square + uvs + normal + "f 1/1/1 2/2/1 3/3/1 4/4/1\n",
+      square + uvs + normal + "f -4/-4/-1 -3/-3/-1 -2/-2/-1 -1/-1/-1\n",
+      square + uvs + normal + "f -4/1/1 2/-3/-1 -2/3/1 4/-1/1 # the square\n",
+      square + uvs + normal + "f 1/1/1 \\\n2/2/1 3/3/1\\\r\n 4/4/1#all of it\n",
+      square + uvs + "vt 9 9\n" + normal + "vn 1 0 0\nf -4/-5/-2 -3/-4/-2 -2/-3/-2 -1/-2/-2\n"};
+  const std::filesystem::path second = put("second.obj", lifted + "f 1 2 3 4\n");
+  std::vector<std::vector<float>> seen;
+  for (std::size_t i = 0; i < firsts.size(); ++i) {
+    const ObjSeries series = read({put("first.obj", firsts[i]), second});
+    const Geometry geometry = collectGeometry(series.asset);
+    ASSERT_EQ(geometry.positions.size(), 4u) << i;
+    EXPECT_EQ(geometry.triangles.size(), 2u) << i;
+    const Json& attributes = series.asset.json()["meshes"][0]["primitives"][0]["attributes"];
+    std::vector<float> values = readFloats(series.asset, attributes.at("TEXCOORD_0").get<Index>());
+    for (const float x : readFloats(series.asset, attributes.at("NORMAL").get<Index>())) values.push_back(x);
+    seen.push_back(std::move(values));
+    EXPECT_EQ(seen[i], seen[0]) << i;
+    for (std::size_t v = 0; v < 4; ++v) {
+      const Vec3f& p = geometry.positions[v];
+      EXPECT_EQ(series.animation.sequence.at(series.animation.pointOf[v], 1), Vec3f(p.x(), p.y(), p.y())) << i;
+    }
+  }
+}
+
+TEST_F(ObjSeriesFiles, CornersThatCountBackwardsBeyondTheFirstAreRefused) {
+  const std::string good = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  const std::filesystem::path second = put("second.obj", good + "f 1 2 3\n");
+  EXPECT_THAT(refusal({put("a.obj", "f -1 -2 -3\n" + good), second}), HasSubstr("a face names a vertex '-1'"));
+  EXPECT_THAT(refusal({put("b.obj", good + "f -1 -2 -4 # no\n"), second}), HasSubstr("a face names a vertex '-4'"));
 }
 
 TEST_F(ObjSeriesFiles, ThatLieAreRefused) {

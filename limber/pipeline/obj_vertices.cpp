@@ -86,7 +86,8 @@ void addFace(std::string_view line, const std::string& name, ObjVertices& result
   const auto badCorner = [&](std::string_view word) {
     return Error(ErrorCode::kBadData, fmt::format("a face names a vertex '{}'", word), name);
   };
-  for (std::string_view word = takeWord(line); !word.empty() && word.front() != '#'; word = takeWord(line)) {
+  line = line.substr(0, line.find('#'));
+  for (std::string_view word = takeWord(line); !word.empty(); word = takeWord(line)) {
     const char* at = word.data();
     const std::optional<double> number = parseNumber(at, word.data() + word.size());
     const double vertex = !number ? -1 : *number < 0 ? *number + double(result.positions.size()) : *number - 1;
@@ -113,13 +114,53 @@ ObjVertices verticesIn(std::string_view text, const std::string& name) {
   return result;
 }
 
+// How many vertices, texture coordinates and normals there are so far: of what a corner's numbers count, in their
+// order.
+using CornerCounts = std::array<Index, 3>;
+
+// "7/-1/3" with numbers that count from the file's beginning; what is no number stays, for the importer to refuse.
+std::string absoluteCorner(std::string_view corner, const CornerCounts& counts) {
+  std::string result;
+  for (const Index count : counts) {
+    const std::string_view word = corner.substr(0, corner.find('/'));
+    const char* at = word.data();
+    const std::optional<double> number = parseNumber(at, word.data() + word.size());
+    if (number && *number < 0 && *number >= -static_cast<double>(count) && *number == std::floor(*number)) {
+      result += fmt::to_string(count + 1 - static_cast<Index>(-*number));
+    } else {
+      result += word;
+    }
+    corner.remove_prefix(word.size());
+    if (corner.empty()) break;
+    result += '/';
+    corner.remove_prefix(1);
+  }
+  return result.append(corner);
+}
+
+// The importer reads neither a comment behind a face nor every number that counts backwards.
+std::string absoluteFace(std::string_view line, const CornerCounts& counts) {
+  std::string result = "f";
+  line = line.substr(0, line.find('#'));
+  for (std::string_view word = takeWord(line); !word.empty(); word = takeWord(line)) {
+    result.append(" ").append(absoluteCorner(word, counts));
+  }
+  return result;
+}
+
 // The text with each vertex's number as its color: the importer splits meshes by material, joins vertices that are
 // alike in everything, and tells no numbers.
 std::string numberedText(std::string_view text, const ObjVertices& vertices) {
   std::string result;
-  Index v = 0;
+  Index v = 0, uvs = 0, normals = 0;
   forEachLine(text, [&](std::string_view keyword, std::string_view line) {
+    if (keyword == "f") {
+      result.append(absoluteFace(line, {v, uvs, normals})).append("\n");
+      return;
+    }
     if (keyword != "v") {
+      uvs += keyword == "vt" ? 1 : 0;
+      normals += keyword == "vn" ? 1 : 0;
       result.append(keyword).append(line).append("\n");
       return;
     }
