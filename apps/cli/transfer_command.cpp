@@ -1,6 +1,7 @@
 // limber transfer: the rig of one model on another.
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -14,6 +15,7 @@
 #include "limber/core/names.h"
 #include "limber/pipeline/smpl_body.h"
 #include "limber/pipeline/transfer_asset.h"
+#include "limber/preview/surface_colors.h"
 #include "progress_line.h"
 
 namespace limber::cli {
@@ -23,7 +25,7 @@ namespace {
 struct TransferArguments {
   std::string source, target, output, report;
   TransferAssetOptions transfer;
-  bool noShapes = false, ignoreRig = false, strict = false;
+  bool noShapes = false, colors = false, ignoreRig = false, strict = false;
   Common common;
 };
 
@@ -86,7 +88,17 @@ void runTransferCommand(TransferArguments options) {
   progress->stage("read");
   const Asset source = readSource(options.source);
   Asset target = readAsset(options.target);
+  std::optional<SurfaceColors> colors;
+  if (options.colors) {
+    if (!hasColors(source)) {
+      throw Error(ErrorCode::kUnsupported, "has no colours: no texture, no base colour, none at its vertices",
+                  options.source, "leave out --colors");
+    }
+    colors.emplace(source);
+    options.transfer.colors = [&](Index triangle, const Vec3& weights) { return colors->at(triangle, weights); };
+  }
   TransferReport report = transferOnto(source, target, options.transfer, *progress);
+  if (colors) report.warnings.append(colors->warnings());
   report.warnings.append(source.warnings);
   if (options.strict) refuseWarnings(report.warnings);
   const std::string text = reportText(options, report);
@@ -118,6 +130,8 @@ void addTransferCommand(CLI::App& program) {
   command->add_option("--report", options->report, "write what was done, and where the surfaces stay apart, as JSON")
       ->type_name("FILE");
   command->add_flag("--no-blend-shapes", options->noShapes, "leave the source's blend shapes out");
+  command->add_flag("--colors", options->colors,
+                    "give the target the source's colours (textures too) at its vertices, in place of its own");
   command->add_flag("--ignore-target-rig", options->ignoreRig,
                     "find the target's limbs by its surface alone, even if it has a rig that tells");
   command->add_flag("--strict", options->strict, "take warnings as errors: write nothing");
@@ -130,6 +144,7 @@ void addTransferCommand(CLI::App& program) {
       "\nExamples:\n"
       "  limber transfer hero.glb scan.obj -o scan_rigged.glb\n"
       "  limber transfer hero.glb villain.glb -o villain_as_hero.glb --report gaps.json\n"
+      "  limber transfer hero.glb scan.obj --colors -o scan_as_hero.glb\n"
       "  limber retarget scan_rigged.glb walk.bvh -o scan_walks.glb");
   command->callback([options] { runTransferCommand(*options); });
 }

@@ -82,6 +82,14 @@ std::string_view errorKindName(ErrorKind kind) {
       return "out-of-memory";
     case ErrorKind::kNoBvhName:
       return "no-bvh-name";
+    case ErrorKind::kNoRig:
+      return "no-rig";
+    case ErrorKind::kNoLimbs:
+      return "no-limbs";
+    case ErrorKind::kUnlikeRigs:
+      return "unlike-rigs";
+    case ErrorKind::kNoAnimation:
+      return "no-animation";
   }
   return "unknown";
 }

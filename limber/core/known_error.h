@@ -47,7 +47,11 @@ enum class ErrorKind {
   kUnknownFormat,
   kNoSurface,
   kOutOfMemory,
-  kNoBvhName,  // joint
+  kNoBvhName,   // joint
+  kNoRig,       // to transfer
+  kNoLimbs,     // that can be told
+  kUnlikeRigs,  // source, target: how many joints
+  kNoAnimation,
 };
 
 // Stable and short: "nothing-to-undo".

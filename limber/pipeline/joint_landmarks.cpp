@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <utility>
 
+#include <fmt/format.h>
+
+#include "limber/core/counted.h"
+#include "limber/core/known_error.h"
 #include "limber/matching/skeleton_map.h"
 #include "limber/mesh/prepare.h"
 #include "limber/pipeline/accessories.h"
@@ -19,8 +23,29 @@ struct JointPair {
   Index source = 0, target = 0;
 };
 
+[[noreturn]] void refuseUnlike(const Skeleton& source, const Skeleton& target) {
+  const Index joints = source.jointCount(), others = target.jointCount();
+  throw KnownError(
+      ErrorKind::kUnlikeRigs,
+      {ErrorCode::kUnsupported,
+       fmt::format("the rig of {} and the other body's skeleton of {} have too few limbs in common to lay one body on "
+                   "the other",
+                   counted(joints, "joint"), others),
+       "", "take a rigged model of the same kind of body"},
+      {{"source", fmt::to_string(joints)}, {"target", fmt::to_string(others)}});
+}
+
+SkeletonMap mapOfLimbs(const Skeleton& source, const Skeleton& target) {
+  try {
+    return matchSkeletons(source, target);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::kUnsupported) throw;
+    refuseUnlike(source, target);
+  }
+}
+
 std::vector<JointPair> commonJoints(const Skeleton& source, const Skeleton& target) {
-  const SkeletonMap map = matchSkeletons(source, target);
+  const SkeletonMap map = mapOfLimbs(source, target);
   std::vector<JointPair> pairs;
   std::vector<bool> taken(source.jointCount(), false);
   for (const JointMatch& match : map.matches) {
@@ -33,20 +58,17 @@ std::vector<JointPair> commonJoints(const Skeleton& source, const Skeleton& targ
       pairs.push_back({match.source[i], match.target[i]});
     }
   }
-  if (pairs.size() < 3) {
-    throw Error(ErrorCode::kUnsupported, "the two bodies have too few joints in common to lay one on the other");
-  }
+  if (pairs.size() < 3) refuseUnlike(source, target);
   return pairs;
 }
 
 }  // namespace
 
-std::optional<FittedSkeleton> fittedSkeleton(const Asset& asset, const Geometry& geometry) {
+std::optional<FittedSkeleton> fittedSkeleton(const Asset& asset, const Geometry& geometry, Progress& progress) {
   const Accessories accessories = findAccessories(asset, geometry);
   const PreparedMesh prepared =
       prepareMesh(geometry.positions, accessories.empty() ? geometry.triangles : bodyTriangles(geometry, accessories));
-  Progress unheard;
-  AutoRig rig = rigWithTemplate(prepared.mesh, {}, unheard);
+  AutoRig rig = rigWithTemplate(prepared.mesh, {}, progress);
   if (rig.isAbstained || rig.matches.empty()) return std::nullopt;
   for (Joint& joint : rig.skeleton.joints) {
     joint.rest.translation = joint.parent ? Vec3(prepared.frame.scale * joint.rest.translation)

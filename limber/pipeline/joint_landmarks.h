@@ -21,12 +21,12 @@ struct FittedSkeleton {
 };
 
 // What the body is taken for without its rig, its accessories left out (findAccessories). Nothing where no template is
-// likely (RigOptions::mayAbstain).
-std::optional<FittedSkeleton> fittedSkeleton(const Asset& asset, const Geometry& geometry);
+// likely (RigOptions::mayAbstain). The steps are those of rigWithTemplate.
+std::optional<FittedSkeleton> fittedSkeleton(const Asset& asset, const Geometry& geometry, Progress& progress);
 
 // Landmarks of the joints that `source` has in common with `target`, by their anatomy (matchSkeletons); but for the
-// trunk between pelvis and neck, whose joints makers put where they like. Throws Error kUnsupported where there are too
-// few.
+// trunk between pelvis and neck, whose joints makers put where they like. Throws KnownError kUnlikeRigs where there are
+// too few.
 std::vector<JointLandmark> commonLandmarks(const Skeleton& source, const Skeleton& target);
 
 // The same by one template in both bodies. Makers put a hip, a neck or a wrist elsewhere in the same body than the

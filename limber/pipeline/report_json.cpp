@@ -6,8 +6,6 @@
 
 namespace limber {
 
-namespace {
-
 Json stagesJson(const std::vector<StageTime>& stages) {
   Json list = Json::array();
   for (const StageTime& stage : stages) {
@@ -17,8 +15,6 @@ Json stagesJson(const std::vector<StageTime>& stages) {
   }
   return list;
 }
-
-}  // namespace
 
 Json toJson(const AutoRigReport& report) {
   Json json;

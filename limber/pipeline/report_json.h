@@ -10,5 +10,7 @@ namespace limber {
 // Keys in the order of docs/report.md, in snake_case. Text out of the file stands in it as it is: dumpReport writes it.
 Json toJson(const AutoRigReport& report);
 Json toJson(const AnimationRigReport& report);
+// [{"name", "seconds", "steps": the same, where there are any}]
+Json stagesJson(const std::vector<StageTime>& stages);
 
 }  // namespace limber

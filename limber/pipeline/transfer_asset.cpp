@@ -1,5 +1,6 @@
 #include "limber/pipeline/transfer_asset.h"
 
+#include <algorithm>
 #include <optional>
 #include <set>
 #include <utility>
@@ -10,10 +11,10 @@
 #include "limber/asset/json_text.h"
 #include "limber/asset/rig_io.h"
 #include "limber/core/known_error.h"
-#include "limber/core/parallel.h"
 #include "limber/mesh/prepare.h"
 #include "limber/pipeline/blend_shapes.h"
 #include "limber/pipeline/joint_landmarks.h"
+#include "limber/pipeline/report_json.h"
 #include "limber/transfer/offset_transfer.h"
 
 namespace limber {
@@ -29,8 +30,8 @@ struct SourceModel {
 
 SourceModel readSource(const Asset& asset) {
   if (!hasRig(asset)) {
-    throw Error(ErrorCode::kUnsupported, "has no rig to transfer", asset.name,
-                "name the rigged model first, then the one that is to get its rig");
+    throw KnownError(ErrorKind::kNoRig, {ErrorCode::kUnsupported, "has no rig to transfer", asset.name,
+                                         "name the rigged model first, then the one that is to get its rig"});
   }
   SourceModel result;
   result.geometry = collectGeometry(asset);
@@ -68,14 +69,17 @@ void removeOldRig(Asset& target, TransferReport& report) {
 }
 
 std::vector<JointLandmark> templateLandmarks(const Asset& sourceAsset, const SourceModel& source,
-                                             const Asset& targetAsset, const Geometry& target, TransferReport& report) {
-  std::optional<FittedSkeleton> inSource, inTarget;
-  parallelInvoke([&] { inTarget = fittedSkeleton(targetAsset, target); },
-                 [&] { inSource = fittedSkeleton(sourceAsset, source.geometry); });
+                                             const Asset& targetAsset, const Geometry& target, TransferReport& report,
+                                             Progress& progress) {
+  progress.stage("fit target");
+  const std::optional<FittedSkeleton> inTarget = fittedSkeleton(targetAsset, target, progress);
   if (!inTarget) {
-    throw Error(ErrorCode::kUnsupported, "has no limbs that can be told, so that no joint has a place in it",
-                targetAsset.name, "rig it by hand or with limber rig first: its own skeleton then tells");
+    throw KnownError(ErrorKind::kNoLimbs,
+                     {ErrorCode::kUnsupported, "has no limbs that can be told, so that no joint has a place in it",
+                      targetAsset.name, "rig it by hand or with limber rig first: its own skeleton then tells"});
   }
+  progress.stage("fit source");
+  const std::optional<FittedSkeleton> inSource = fittedSkeleton(sourceAsset, source.geometry, progress);
   report.landmarksBy = inTarget->name;
   report.confidence = inTarget->confidence;
   if (inSource && inSource->name == inTarget->name) {
@@ -87,15 +91,10 @@ std::vector<JointLandmark> templateLandmarks(const Asset& sourceAsset, const Sou
 
 std::vector<JointLandmark> findLandmarks(const Asset& sourceAsset, const SourceModel& source, const Asset& targetAsset,
                                          const Geometry& target, const std::optional<Skeleton>& own,
-                                         TransferReport& report) {
-  try {
-    if (!own) return templateLandmarks(sourceAsset, source, targetAsset, target, report);
-    report.landmarksBy = "its own skeleton";
-    return commonLandmarks(source.body.skeleton, *own);
-  } catch (const Error& error) {
-    if (error.code() != ErrorCode::kUnsupported || !error.where().empty()) throw;
-    throw Error(error.code(), error.message(), targetAsset.name, "take a rigged model of the same kind of body");
-  }
+                                         TransferReport& report, Progress& progress) {
+  if (!own) return templateLandmarks(sourceAsset, source, targetAsset, target, report, progress);
+  report.landmarksBy = "its own skeleton";
+  return commonLandmarks(source.body.skeleton, *own);
 }
 
 std::vector<std::string> transferShapes(const Asset& sourceAsset, const SourceModel& source, const RigTransfer& rig,
@@ -119,6 +118,37 @@ std::vector<std::string> transferShapes(const Asset& sourceAsset, const SourceMo
   return addBlendShapes(target, geometry, carried);
 }
 
+// Of the triangles of the source's body, which those of its Geometry are: welding leaves some out, and keeps the order.
+std::vector<Index> trianglesOfBody(const SourceModel& source) {
+  const std::vector<Index>& welded = source.prepared.weldedVertex;
+  std::vector<Index> triangles;
+  for (Index t = 0; t < source.geometry.triangles.size(); ++t) {
+    const auto& [a, b, c] = source.geometry.triangles[t];
+    if (welded[a] != welded[b] && welded[b] != welded[c] && welded[c] != welded[a]) triangles.push_back(t);
+  }
+  return triangles;
+}
+
+void transferColors(const SourceModel& source, const RigTransfer& rig, const SurfaceColor& color, Asset& target,
+                    const Geometry& geometry, const PreparedMesh& prepared) {
+  const std::vector<Index> triangles = trianglesOfBody(source);
+  std::vector<Vec3f> ofWelded;
+  for (const SurfacePoint& point : rig.points) {
+    const Triangle& turned = rig.source.triangles[point.triangle];  // two of its corners may have changed places
+    const Index triangle = triangles[point.triangle];
+    Vec3 weights = Vec3::Zero();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Index corner = source.prepared.weldedVertex[source.geometry.triangles[triangle][k]];
+      const auto at = std::find(turned.begin(), turned.end(), corner) - turned.begin();
+      weights[static_cast<Eigen::Index>(k)] = point.weights[at];
+    }
+    ofWelded.push_back(color(triangle, weights));
+  }
+  std::vector<Vec3f> colors;
+  for (const Index v : prepared.weldedVertex) colors.push_back(ofWelded[v]);
+  setVertexColors(target, geometry, colors);
+}
+
 // Landmarks go into the working space of the target, joints come back out of it.
 RigTransfer transferInto(const PreparedMesh& prepared, const SourceModel& source, std::vector<JointLandmark> landmarks,
                          const RigTransferOptions& options, Progress& progress) {
@@ -131,7 +161,7 @@ RigTransfer transferInto(const PreparedMesh& prepared, const SourceModel& source
 TransferReport runTransfer(const Asset& sourceAsset, Asset& target, const TransferAssetOptions& options,
                            Progress& progress) {
   TransferReport report;
-  progress.stage("read");
+  progress.stage("read geometry");
   const SourceModel source = readSource(sourceAsset);
   std::optional<Skeleton> own;
   if (hasRig(target)) {
@@ -144,8 +174,7 @@ TransferReport runTransfer(const Asset& sourceAsset, Asset& target, const Transf
   report.targetVertices = prepared.mesh.vertexCount();
   report.warnings.append(prepared.warnings);
 
-  progress.stage("landmarks");
-  std::vector<JointLandmark> landmarks = findLandmarks(sourceAsset, source, target, geometry, own, report);
+  std::vector<JointLandmark> landmarks = findLandmarks(sourceAsset, source, target, geometry, own, report, progress);
   report.landmarks = static_cast<Index>(landmarks.size());
 
   progress.stage("transfer");
@@ -159,6 +188,7 @@ TransferReport runTransfer(const Asset& sourceAsset, Asset& target, const Transf
   if (options.blendShapes) {
     report.blendShapes = transferShapes(sourceAsset, source, rig, target, geometry, prepared);
   }
+  if (options.colors) transferColors(source, rig, options.colors, target, geometry, prepared);
   attachRig(target, geometry, skeleton, expandWeights(rig.weights, prepared.weldedVertex));
   progress.finish();
   report.warnings.append(target.warnings);
@@ -183,6 +213,15 @@ TransferReport transferOnto(const Asset& source, Asset& target, const TransferAs
   return report;
 }
 
+Json toJson(const SurfaceGaps& gaps) {
+  Json parts = Json::array();
+  for (const PartGap& part : gaps.parts) {
+    parts.push_back({{"part", part.part}, {"area", part.area}, {"rms", part.rms}, {"beyond", part.beyond}});
+  }
+  return {{"rms", gaps.rms},       {"p95", gaps.p95}, {"worst", gaps.worst},
+          {"beyond", gaps.beyond}, {"limit", kGap},   {"parts", std::move(parts)}};
+}
+
 Json toJson(const TransferReport& report) {
   Json json;
   json["counts"] = {{"source_vertices", report.sourceVertices},
@@ -194,17 +233,9 @@ Json toJson(const TransferReport& report) {
   json["landmarks_by"] = report.landmarksBy;
   json["confidence"] = report.confidence;
   json["blend_shapes"] = report.blendShapes;
-  Json parts = Json::array();
-  for (const PartGap& part : report.gaps.parts) {
-    parts.push_back({{"part", part.part}, {"area", part.area}, {"rms", part.rms}, {"beyond", part.beyond}});
-  }
-  json["gaps"] = {{"rms", report.gaps.rms},       {"p95", report.gaps.p95}, {"worst", report.gaps.worst},
-                  {"beyond", report.gaps.beyond}, {"limit", kGap},          {"parts", std::move(parts)}};
+  json["gaps"] = toJson(report.gaps);
   json["seconds"] = totalSeconds(report.stages);
-  json["stages"] = Json::array();
-  for (const StageTime& stage : report.stages) {
-    json["stages"].push_back({{"name", stage.name}, {"seconds", stage.seconds}});
-  }
+  json["stages"] = stagesJson(report.stages);
   json["warnings"] = toJson(report.warnings);
   return json;
 }

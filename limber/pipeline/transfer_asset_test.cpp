@@ -89,6 +89,12 @@ TEST(TransferAssetTest, FindsTheLimbsOfABareBody) {
   Asset target = sceneOf(capsulePerson().mesh, "bare.obj");
   const TransferReport report = transferred(source, target);
   EXPECT_THAT(report.landmarksBy, ::testing::StartsWith("humanoid"));
+  const Json json = toJson(report);
+  std::vector<std::string> names;
+  for (const Json& stage : json.at("stages")) names.push_back(stage.at("name"));
+  EXPECT_THAT(names, ::testing::ElementsAre("read geometry", "fit target", "fit source", "transfer", "write rig"));
+  EXPECT_EQ(json.at("stages")[1].at("steps")[0].at("name"), "measure body");
+  EXPECT_FALSE(json.at("stages")[3].at("steps").empty());
   const std::vector<Vec3> wanted = placesIn(source), found = placesIn(target);
   for (std::size_t j = 0; j < wanted.size(); ++j) EXPECT_LT((found[j] - wanted[j]).norm(), 0.005) << j;
 }
@@ -120,6 +126,76 @@ TEST(TransferAssetTest, BringsBlendShapesAlong) {
   options.blendShapes = false;
   EXPECT_TRUE(transferred(source, without, options).blendShapes.empty());
   EXPECT_FALSE(without.json()["meshes"][0]["primitives"][0].contains("targets"));
+}
+
+// Half as large again, with a rig of its own.
+Asset tallPerson() {
+  RiggedBody tall = capsulePerson();
+  for (Joint& joint : tall.skeleton.joints) joint.rest.translation *= 1.5;
+  for (Vec3f& p : tall.mesh.positions) p *= 1.5f;
+  Asset asset = sceneOf(tall.mesh, "tall.glb");
+  attachRig(asset, collectGeometry(asset), tall.skeleton, tall.weights);
+  return asset;
+}
+
+TEST(TransferAssetTest, ColorsAreThoseOfThePointThatAVertexTakesAfter) {
+  for (const bool isInsideOut : {false, true}) {
+    RiggedBody person = capsulePerson();
+    if (isInsideOut) {
+      for (Triangle& t : person.mesh.triangles) std::swap(t[1], t[2]);
+    }
+    person.mesh.triangles.insert(person.mesh.triangles.begin() + 1, Triangle{0, 0, 1});  // which welding leaves out
+    Asset source = sceneOf(person.mesh, "person.glb");
+    attachRig(source, collectGeometry(source), person.skeleton, person.weights);
+    Asset target = tallPerson();
+    const Geometry geometry = collectGeometry(source);
+    TransferAssetOptions options = fewRounds();
+    // Places as colours, so that each vertex of the target says where it was looked for.
+    options.colors = [&](Index triangle, const Vec3& weights) {
+      Vec3f place = Vec3f::Zero();
+      for (std::size_t k = 0; k < 3; ++k) {
+        place += static_cast<float>(weights[static_cast<Eigen::Index>(k)]) *
+                 geometry.positions[geometry.triangles[triangle][k]];
+      }
+      return Vec3f(place / 4 + Vec3f::Constant(0.5f));
+    };
+    transferred(source, target, options);
+    const Json& attributes = target.json()["meshes"][0]["primitives"][0]["attributes"];
+    const std::vector<float> colors = readFloats(target, attributes.at("COLOR_0").get<Index>());
+    ASSERT_EQ(colors.size(), 4 * person.mesh.positions.size());
+    for (Index v = 0; v < person.mesh.vertexCount(); ++v) {
+      const Vec3f place = 4 * (Vec3f(colors[4 * v], colors[4 * v + 1], colors[4 * v + 2]) - Vec3f::Constant(0.5f));
+      EXPECT_LT((place - person.mesh.positions[v]).norm(), 0.03) << v;
+    }
+  }
+}
+
+TEST(TransferAssetTest, WithoutColorsTheTargetsOwnStay) {
+  Asset target = tallPerson();
+  const std::vector<float> red(4 * collectGeometry(target).positions.size(), 0.5f);
+  const Index accessor = addFloatAccessor(target, red, 4, kVertexTarget);
+  target.json()["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = accessor;
+  transferred(riggedPerson(), target);
+  const Json& attributes = target.json()["meshes"][0]["primitives"][0]["attributes"];
+  EXPECT_EQ(readFloats(target, attributes.at("COLOR_0").get<Index>()), red);
+}
+
+TEST(TransferAssetTest, CanBeCancelledInEveryStage) {
+  const Asset source = riggedPerson();
+  for (const std::string stage : {"read geometry", "fit target: ", "transfer: "}) {
+    Asset target = stage == "fit target: " ? sceneOf(capsulePerson().mesh, "bare.obj") : tallPerson();
+    const Json before = target.json();
+    Progress progress([&](std::string_view told, double) {
+      if (told.starts_with(stage)) progress.cancel();
+    });
+    try {
+      transferOnto(source, target, fewRounds(), progress);
+      ADD_FAILURE() << "went on: " << stage;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::kCancelled) << stage;
+      EXPECT_EQ(target.json(), before);
+    }
+  }
 }
 
 void expectRefused(const Asset& source, Asset& target, const std::string& what) {

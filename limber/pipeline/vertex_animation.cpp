@@ -214,8 +214,9 @@ class VertexPoser {
 
 std::vector<SampledClip> chosenClips(std::vector<SampledClip> clips, const std::string& name, const Asset& asset) {
   if (clips.empty()) {
-    throw Error(ErrorCode::kBadData, "has no animation", asset.name,
-                "give a file with clips or animated morph targets, or one OBJ file for each frame");
+    throw KnownError(ErrorKind::kNoAnimation,
+                     {ErrorCode::kBadData, "has no animation", asset.name,
+                      "give a file with clips or animated morph targets, or one OBJ file for each frame"});
   }
   if (name.empty()) return clips;
   std::vector<std::string> names;
@@ -301,9 +302,11 @@ void refuseStill(const VertexSequence& sequence, const std::string& name) {
       if (sequence.at(v, f) != sequence.at(v, 0)) return;
     }
   }
-  throw Error(ErrorCode::kBadData,
-              sequence.frameCount() == 1 ? "has a single frame" : "all frames are the same: nothing moves", name,
-              "bones are found by motion: give frames in which the mesh bends, or rig it without --from-animation");
+  throw KnownError(
+      ErrorKind::kNoAnimation,
+      {ErrorCode::kBadData,
+       sequence.frameCount() == 1 ? "has a single frame" : "all frames are the same: nothing moves", name,
+       "bones are found by motion: give frames in which the mesh bends, or rig it without --from-animation"});
 }
 
 VertexAnimation readVertexAnimation(const Asset& asset, const VertexAnimationOptions& options, Progress& progress) {

@@ -1,0 +1,23 @@
+// Colours of a model's vertices, in place of what it was coloured with.
+#pragma once
+
+#include <functional>
+#include <span>
+
+#include "limber/asset/asset.h"
+#include "limber/asset/geometry.h"
+
+namespace limber {
+
+// The colour of a surface, linear RGB in [0, 1], at a triangle of its Geometry by the weights of its three corners.
+using SurfaceColor = std::function<Vec3f(Index triangle, const Vec3& weights)>;
+
+// Gives every primitive that the scene shows these colours as COLOR_0. Its material keeps all but what they would be
+// multiplied by: the base colour becomes white, the base colour texture goes. One that has no material gets a plain
+// one.
+//
+// geometry  of the asset (collectGeometry)
+// colors    #S linear RGB in [0, 1]
+void setVertexColors(Asset& asset, const Geometry& geometry, std::span<const Vec3f> colors);
+
+}  // namespace limber
