@@ -1,0 +1,98 @@
+#include "limber/asset/stored_archive.h"
+
+#include <string>
+#include <string_view>
+
+#include <gmock/gmock.h>
+
+#include "limber/asset/testing/stored_zip.h"
+#include "limber/core/error.h"
+
+namespace limber {
+namespace {
+
+using testing::storedZip;
+
+ErrorCode refusalOf(const Bytes& archive) {
+  try {
+    readStoredArchive(archive, "a.zip");
+  } catch (const Error& error) {
+    EXPECT_EQ(error.where(), "a.zip");
+    return error.code();
+  }
+  ADD_FAILURE() << "took it";
+  return ErrorCode::kFile;
+}
+
+Bytes bytesOf(std::string_view text) {
+  return Bytes(text.begin(), text.end());
+}
+
+TEST(StoredArchive, HoldsItsFilesByTheirPaths) {
+  const auto files = readStoredArchive(storedZip({{"a.npy", "one"}, {"folder/b.npy", ""}, {"c", "three"}}), "a.zip");
+  ASSERT_EQ(files.size(), 3u);
+  EXPECT_EQ(files.at("a.npy"), bytesOf("one"));
+  EXPECT_TRUE(files.at("folder/b.npy").empty());
+  EXPECT_EQ(files.at("c"), bytesOf("three"));
+}
+
+// By Python's zipfile, with the local sizes in a ZIP64 field, as numpy.savez has it.
+TEST(StoredArchive, ReadsWhatNumpyWrites) {
+  const std::string_view digits =
+      "504b03042d0000000000000021002639f4cbffffffffffffffff05001400612e6e7079010010000900000000000000090000"
+      "0000000000313233343536373839504b01022d032d0000000000000021002639f4cb09000000090000000500000000000000"
+      "00000000800100000000612e6e7079504b0506000000000100010033000000400000000000";
+  Bytes archive;
+  for (std::size_t i = 0; i < digits.size(); i += 2) {
+    archive.push_back(static_cast<std::uint8_t>(std::stoi(std::string(digits.substr(i, 2)), nullptr, 16)));
+  }
+  EXPECT_EQ(readStoredArchive(archive, "a.npz").at("a.npy"), bytesOf("123456789"));
+  archive[57] ^= 1;  // within the digits: their checksum tells
+  EXPECT_EQ(refusalOf(archive), ErrorCode::kBadData);
+}
+
+TEST(StoredArchive, MayEndInAComment) {
+  Bytes archive = storedZip({{"a", "one"}});
+  archive[archive.size() - 2] = 5;
+  for (const char c : std::string_view("PK\5\6!")) archive.push_back(static_cast<std::uint8_t>(c));
+  EXPECT_EQ(readStoredArchive(archive, "a.zip").at("a"), bytesOf("one"));
+}
+
+TEST(StoredArchive, IsRefusedAtEveryLength) {
+  const Bytes archive = storedZip({{"a.npy", "some numbers"}, {"b.npy", "others"}});
+  for (std::size_t size = 0; size < archive.size(); ++size) {
+    EXPECT_EQ(refusalOf(Bytes(archive.begin(), archive.begin() + static_cast<std::ptrdiff_t>(size))),
+              ErrorCode::kBadData);
+  }
+}
+
+// What is read of a patched archive is what was in it, or it is refused.
+TEST(StoredArchive, DoesNotTrustAByte) {
+  const Bytes archive = storedZip({{"a.npy", "some numbers"}, {"b.npy", "others"}});
+  for (std::size_t at = 0; at < archive.size(); ++at) {
+    for (const int flip : {1, 0x80, 0xff}) {
+      Bytes patched = archive;
+      patched[at] = static_cast<std::uint8_t>(patched[at] ^ flip);
+      try {
+        std::size_t size = 0;
+        for (const auto& [path, content] : readStoredArchive(patched, "a.zip")) size += content.size();
+        EXPECT_LE(size, archive.size());
+      } catch (const Error&) {
+      }
+    }
+  }
+}
+
+TEST(StoredArchive, TellsWhatItCannotRead) {
+  Bytes compressed = storedZip({{"a", "one"}});
+  const std::size_t entry = compressed.size() - 22 - 47;
+  compressed[entry + 10] = 8;
+  EXPECT_EQ(refusalOf(compressed), ErrorCode::kUnsupported);
+  Bytes encrypted = storedZip({{"a", "one"}});
+  encrypted[entry + 8] = 1;
+  EXPECT_EQ(refusalOf(encrypted), ErrorCode::kUnsupported);
+  EXPECT_EQ(refusalOf(storedZip({{"a", "one"}, {"a", "two"}})), ErrorCode::kBadData);
+}
+
+}  // namespace
+}  // namespace limber
