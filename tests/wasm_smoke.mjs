@@ -250,6 +250,39 @@ cases['a scene: several models in one file, as the native program writes it'] = 
   scene.free();
 };
 
+/** What the native program makes of a session's record, whose files are in the output folder. */
+function replayed(own, name) {
+  const record = join(output, `${name}.json`), path = join(output, `${name}_native.glb`);
+  writeFileSync(record, JSON.stringify(own.record()));
+  execFileSync(program, ['session', 'replay', record, '-o', path, '--quiet'], { stdio: ['ignore', 'ignore', 'inherit'] });
+  return readFileSync(path);
+}
+cases['the rig of another model: the native program\'s bytes'] = () => {
+  const at = (name) => join(output, name);
+  execFileSync(program, ['sample', 'biped', '-o', at('bare.glb'), '--quiet']);
+  execFileSync(program, ['rig', at('bare.glb'), '--rigger', 'template', '-o', at('hero.glb'), '--quiet'], { stdio: 'ignore' });
+  const own = limber.createSession(), hero = new Uint8Array(readFileSync(at('hero.glb')));
+  assert.ok(own.open(new Uint8Array(readFileSync(at('bare.glb'))), 'bare.glb').ok);
+  const plain = own.transferRig(bytes, 'model.glb');
+  assert.equal(plain.error?.kind, 'no-rig');
+  const taken = own.transferRig(hero, 'hero.glb');
+  assert.ok(taken.ok, taken.error?.message);
+  assert.ok(taken.state.joints.some(({ name }) => name === 'leftHand') && taken.state.own_rig);
+  assert.ok(taken.state.gaps.rms < 0.5);
+  assert.equal(Buffer.compare(own.export('glb').bytes, replayed(own, 'taken')), 0, 'the bytes differ');
+  own.free();
+};
+cases['bones of an animation: the native program\'s bytes'] = () => {
+  const path = join(output, 'flying.glb'), own = limber.createSession();
+  execFileSync(program, ['sample', 'flying', '-o', path, '--quiet']);
+  assert.ok(own.open(new Uint8Array(readFileSync(path)), 'flying.glb').ok);
+  const found = own.run({ do: 'rig_from_animation', bones: 6 });
+  assert.ok(found.ok, found.error?.message);
+  assert.equal(found.state.joints.length, 6);
+  assert.equal(Buffer.compare(own.export('glb').bytes, replayed(own, 'flapping')), 0, 'the bytes differ');
+  own.free();
+};
+
 let passed = 0, failed = 0;
 for (const [name, run] of Object.entries(cases)) {
   try {

@@ -233,6 +233,7 @@ node apps/studio/tests/tools_test.mjs dist $output/studio
 node apps/studio/tests/paint_test.mjs dist $output/studio
 node apps/studio/tests/deform_test.mjs dist build/release/limber $output/studio
 node apps/studio/tests/shelf_test.mjs dist $output/studio
+node apps/studio/tests/rigs_test.mjs dist build/release/limber $output/studio
 node apps/studio/tests/words_test.mjs dist $output/studio
 node apps/studio/tests/scene_test.mjs dist build/release/limber $output/studio
 node apps/studio/tests/first_minute_test.mjs dist $output/studio

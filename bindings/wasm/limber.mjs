@@ -23,7 +23,7 @@ import createEngine from './limber_engine.mjs';
  *             | 'nothing-matched' | 'match-without-joint' | 'matched-twice' | 'joint-matched-twice'
  *             | 'too-few-matched' | 'unlike-pose' | 'unfit-pose' | 'no-pose-file' | 'no-limits-file'
  *             | 'limits-of-other' | 'empty-file' | 'cut-file' | 'no-glb' | 'unknown-format' | 'no-surface'
- *             | 'out-of-memory' | 'no-bvh-name'} ErrorKind as limber/core/known_error.h has them
+ *             | 'out-of-memory' | 'no-bvh-name' | 'no-rig' | 'no-limbs' | 'unlike-rigs' | 'no-animation'} ErrorKind as limber/core/known_error.h has them
  * @typedef {{ code: string, message: string, where: string, remedy: string,
  *             kind?: ErrorKind, values?: { [name: string]: string } }} LimberError kind: where it is one of those that people meet
  * @typedef {{ ok: false, error: LimberError }} Failure
@@ -53,6 +53,8 @@ import createEngine from './limber_engine.mjs';
  *             solver: string, deformer: string, ik: boolean, limited: boolean,
  *             tasks: { task: string, outcome: string, met: boolean }[], targets: { joint: number, position: Vector }[],
  *             pins: { joint: string, position: Vector }[], doubts: number[], locked: number[], edited_rig: boolean,
+ *             gaps: { rms: number, p95: number, worst: number, beyond: number, limit: number,
+ *                     parts: { part: string, area: number, rms: number, beyond: number }[] } | null, animated: boolean,
  *             dragged: number | null,
  *             posed: boolean, undo: string | null, redo: string | null,
  *             warnings: { kind: string, message: string, where: string, count: number }[],
@@ -242,6 +244,9 @@ function createSession(engine, handle = engine._limber_session_new()) {
      *  @type {(file: Uint8Array, name: string, retarget?: boolean) => StepResult} */
     addMotion: (file, name, retarget = false) =>
       step(call(engine, engine._limber_session_add_motion, [handle, Number(retarget)], file, name)),
+    /** The rig of another model, or of a body in SMPL's layout (.npz), as the command transfer_rig.
+     *  @type {(file: Uint8Array, name: string) => StepResult} */
+    transferRig: (file, name) => step(call(engine, engine._limber_session_transfer_rig, [handle], file, name)),
     /** Where the joints stand that the chosen clip's motion was made for: x, y, z each; empty where there are none.
      *  @type {() => { ok: true, places: Float32Array } | Failure} */
     sourceJoints: () => {

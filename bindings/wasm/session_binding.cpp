@@ -411,6 +411,16 @@ LIMBER_EXPORT CallResult* limber_session_add_motion(SessionHandle* handle, int r
   });
 }
 
+LIMBER_EXPORT CallResult* limber_session_transfer_rig(SessionHandle* handle, const std::uint8_t* file,
+                                                      std::size_t fileSize, const char* name, std::size_t nameSize) {
+  return guarded({name, nameSize}, [&] {
+    limber::Progress progress(reportProgress);
+    const limber::TransferRig command{std::string(name, nameSize)};
+    handle->scene.transferRig({file, fileSize}, command, progress);
+    return stateAfter(handle->scene, command);
+  });
+}
+
 // Three numbers for each joint of the skeleton that the chosen clip comes from.
 LIMBER_EXPORT CallResult* limber_session_source_joints(const SessionHandle* handle) {
   return guarded({}, [&]() -> CallResult {

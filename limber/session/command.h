@@ -364,6 +364,16 @@ struct SetClock {
   double seconds = 0;
 };
 
+// The rig of another file's body on the model: joints, weights and blend shapes (transferOnto). The file is asked of
+// the session's resolver: a rigged model, or a body in SMPL's layout (.npz). Clips come along as to any other rig.
+struct TransferRig {
+  std::string file;
+};
+// Bones, weights and clips out of the file's own animation, whatever moves it (rigFromAnimation).
+struct RigFromAnimation {
+  Index bones = 0;  // 0: as many as an error of 0.2 % of the diagonal takes
+};
+
 using Command =
     std::variant<OpenSample, OpenFile, SetHandles, ChooseMethods, PinJoint, UnpinJoint, BeginDrag, UpdateDrag, TurnDrag,
                  MoveDrag, EndDrag, CancelDrag, TurnJoint, MoveJoint, SetIk, SetTarget, ClearTarget, SetLimits,
@@ -372,7 +382,7 @@ using Command =
                  DeleteKey, EditKeys, DeleteKeys, SetJointKey, SetInterpolation, SetTangents, PasteKeys, PaintWeights,
                  LockWeights, MirrorWeights, AddJoint, DeleteJoint, ReparentJoint, PlaceJoint, SetTurn, ApplyPose,
                  ApplyTasks, Undo, Redo, AddSample, AddFile, RemoveMember, ChooseMember, RenameMember, PlaceMember,
-                 AttachMember, DetachMember, SetClock, SetDeformer>;
+                 AttachMember, DetachMember, SetClock, SetDeformer, TransferRig, RigFromAnimation>;
 
 // "auto", "flat", "free", as in JSON.
 std::string_view keyTangentsName(KeyTangents tangents);

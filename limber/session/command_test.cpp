@@ -79,7 +79,9 @@ std::vector<Command> oneOfEach() {
           AttachMember{"sword", "fox", "paw.L", true},
           DetachMember{"sword"},
           SetClock{2.0 / 3},
-          SetDeformer{"delta-mush"}};
+          SetDeformer{"delta-mush"},
+          TransferRig{"hero.glb"},
+          RigFromAnimation{12}};
 }
 
 // The one of that kind, wherever it stands.

@@ -18,6 +18,8 @@
 
 namespace limber {
 
+struct TransferReport;
+
 // Never changed once made, so that a session's undo steps share it. Copies share the document and the surface: a rig
 // whose weights alone are others costs no more than those.
 struct RiggedModel {
@@ -32,7 +34,8 @@ struct RiggedModel {
   // For `geometry` and `weights`; shared with copies that have the same.
   std::shared_ptr<DeformPreparations> preparations = std::make_shared<DeformPreparations>();
   Pose home;  // as the joints stand in a fresh rig's file; the bind pose of a rig that was there
-  std::optional<AutoRigReport> report;             // none for a rig that the file came with
+  std::optional<AutoRigReport> report;             // none for a rig that no rigger made: the file's, another model's
+  std::shared_ptr<const TransferReport> transfer;  // of a rig that came from another model, else null
   std::vector<std::shared_ptr<const Clip>> clips;  // the file's own that move joints; names unique
   bool renamed = false;                            // joints are not called as they were
   bool edited = false;                             // by hand: weights painted; joints added, deleted, hung elsewhere

@@ -227,6 +227,10 @@ void SessionScene::addMotion(ByteSpan bytes, const AddMotion& command) {
   onChosen(command, [&](Session& session) { session.addMotion(bytes, command); });
 }
 
+void SessionScene::transferRig(ByteSpan bytes, const TransferRig& command, Progress& progress) {
+  onChosen(command, [&](Session& session) { session.transferRig(bytes, command, progress); });
+}
+
 Affine SessionScene::toScene(std::size_t member) const {
   return limber::toScene(now_.members, member);
 }

@@ -60,10 +60,11 @@ class SessionScene {
   // Errors and cost as of Session::run; kBadArgument too for members that are not there, names that are taken, and
   // members that would hold themselves. Opening starts a new scene.
   void run(const Command& command, Progress& progress);
-  // The same as OpenFile, AddFile and AddMotion, for files whose bytes are at hand.
+  // The same as OpenFile, AddFile, AddMotion and TransferRig, for files whose bytes are at hand.
   void open(ByteSpan bytes, std::string_view name, Progress& progress, bool limbsFollow = false);
   void add(ByteSpan bytes, const AddFile& command, Progress& progress);
   void addMotion(ByteSpan bytes, const AddMotion& command);
+  void transferRig(ByteSpan bytes, const TransferRig& command, Progress& progress);
 
   bool isOpen() const { return session().isOpen(); }
   // There is always one; its session has no model before one is opened.

@@ -26,6 +26,7 @@
 #include "limber/session/session_file.h"
 #include "limber/session/session_io.h"
 #include "limber/session/standing_feet.h"
+#include "limber/session/taken_rig.h"
 
 namespace limber {
 
@@ -553,6 +554,16 @@ struct Session::Runner {
     session.commit(command, std::move(next));
   }
 
+  void operator()(const TransferRig& c) const { session.transferRig(session.fileOf(c.file), c, progress); }
+  void operator()(const RigFromAnimation& c) const {
+    SessionState next = state();
+    const std::shared_ptr<const RiggedModel> made = rigOfAnimation(*next.base, c, progress);
+    setRig(next, made, progress);
+    takeOwnClips(next.movement, *made);
+    show(next);
+    session.commit(command, std::move(next));
+  }
+
   void operator()(const AddMotion& c) const { session.addMotion(session.fileOf(c.file), c); }
   void operator()(const AddSampleMotion& c) const {
     SessionState next = state();
@@ -682,6 +693,14 @@ void Session::addMotion(ByteSpan bytes, const AddMotion& command) {
   if (drag_) refuseDragged();
   SessionState next = state_;
   addMotionTo(next, readMotion(bytes, command.file, {}, files_), command.retarget);
+  commit(command, std::move(next));
+}
+
+void Session::transferRig(ByteSpan bytes, const TransferRig& command, Progress& progress) {
+  requireOpen();
+  if (drag_) refuseDragged();
+  SessionState next = state_;
+  setRig(next, rigOfOther(next, bytes, command.file, files_, progress), progress);
   commit(command, std::move(next));
 }
 

@@ -84,6 +84,8 @@ class Session {
   void add(ByteSpan bytes, const AddFile& command, Progress& progress);
   // The same as AddMotion, for a file whose bytes are at hand. Throws as readMotion does.
   void addMotion(ByteSpan bytes, const AddMotion& command);
+  // The same as TransferRig. Throws as rigOfOther does.
+  void transferRig(ByteSpan bytes, const TransferRig& command, Progress& progress);
 
   // Another session with the same document, and nothing to undo: to try something beside this one. Shares everything
   // large. Throws Error kBadArgument during a drag.

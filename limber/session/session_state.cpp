@@ -4,8 +4,10 @@
 
 #include "limber/anatomy/body_part.h"
 #include "limber/anatomy/part_color.h"
+#include "limber/asset/scene_graph.h"
 #include "limber/ik/limit_outline.h"
 #include "limber/ik/limits_json.h"
+#include "limber/pipeline/transfer_asset.h"
 #include "limber/session/state_json.h"
 #include "limber/skeleton/keyframes.h"
 
@@ -210,6 +212,8 @@ Json sessionState(const Session& session) {
       {"doubts", Json::array()},
       {"locked", Json::array()},
       {"edited_rig", rig.edited},
+      {"gaps", rig.transfer ? toJson(rig.transfer->gaps) : Json(nullptr)},
+      {"animated", elementCount(*state.base, "animations") > 0},
       {"dragged", nullptr},
       {"posed", !samePose(state.pose, rig.home)},
       {"undo", textOrNull(session.undoName())},

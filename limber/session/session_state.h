@@ -25,8 +25,10 @@ namespace limber {
 //  "solver", "deformer", "ik", "limited", "targets": [{"joint": index, "position"}],
 //  "tasks": [{"task", "outcome" (in words), "met"}] (ApplyTasks), "pins": [{"joint": name, "position"}],
 //  "doubts": [indices of joints whose pins would settle most (AutoRig)], "locked": [indices of joints whose weights
-//  are], "edited_rig" (weights or joints, by hand), "dragged" (a joint's index or null), "posed", "undo", "redo"
-//  (command names or null), "warnings": [{"kind", "message", "where", "count"}]}
+//  are], "edited_rig" (weights or joints, by hand), "gaps": null or, of a rig that came from another model,
+//  where its surface stays apart from this one (toJson), "animated" (the file has animations), "dragged" (a joint's
+//  index or null), "posed", "undo", "redo" (command names or null), "warnings": [{"kind", "message", "where",
+//  "count"}]}
 // Throws Error kBadArgument while nothing is open.
 Json sessionState(const Session& session);
 

@@ -8,17 +8,18 @@ import { say } from '../words/say';
 
 const version = 2; // of the list of commands; the first knew no motions that are put on as they are added
 const list = 'commands.json';
-const namesFile = new Set(['open_file', 'add_file', 'add_motion']);
+const namesFile = new Set(['open_file', 'add_file', 'add_motion', 'transfer_rig']);
 
 /** `requests`: all that made the document. */
 export function toLimberFile(requests: Request[]): Uint8Array {
   const files: Zippable = {};
   const commands = requests.map((request, number): Command => {
     if (request.kind === 'run') return request.command;
-    if (request.kind !== 'open' && request.kind !== 'add' && request.kind !== 'motion') throw new Error(`${request.kind} changes no document`);
+    if (request.kind !== 'open' && request.kind !== 'add' && request.kind !== 'motion' && request.kind !== 'transfer') throw new Error(`${request.kind} changes no document`);
     const file = `files/${number}/${request.name.replace(/[\\/]/g, '_')}`;
     files[file] = [request.bytes, { level: 6 }];
     if (request.kind === 'add') return { do: 'add_file', file, limbs_follow: request.limbsFollow, as_prop: request.asProp };
+    if (request.kind === 'transfer') return { do: 'transfer_rig', file };
     return request.kind === 'open' ? { do: 'open_file', file, limbs_follow: request.limbsFollow ?? false } : { do: 'add_motion', file, retarget: request.retarget ?? false };
   });
   files[list] = strToU8(JSON.stringify({ limber_commands: version, commands }, null, 1));
@@ -46,6 +47,7 @@ export function fromLimberFile(archive: Uint8Array, name: string): Request[] {
     const name = path.split('/').pop() ?? path;
     const limbsFollow = command.limbs_follow === true;
     if (command.do === 'add_file') return { kind: 'add', bytes, name, limbsFollow, asProp: command.as_prop === true };
+    if (command.do === 'transfer_rig') return { kind: 'transfer', bytes, name };
     return command.do === 'open_file' ? { kind: 'open', bytes, name, limbsFollow } : { kind: 'motion', bytes, name, retarget: command.retarget === true };
   });
 }

@@ -50,7 +50,7 @@ type Answered = Extract<FromWorker, { id: number }>;
 
 const sameCommand = (a: Request, b: Request) => a.kind === 'run' && b.kind === 'run' && JSON.stringify(a.command) === JSON.stringify(b.command);
 
-const changesDocument = ({ kind }: Request) => kind === 'open' || kind === 'add' || kind === 'motion' || kind === 'run';
+const changesDocument = ({ kind }: Request) => ['open', 'add', 'motion', 'transfer', 'run'].includes(kind);
 /** What the next of its kind replaces. */
 const frameOf = (request: Request) =>
   (request.kind === 'run' && ['update_drag', 'turn_drag', 'move_drag', 'set_time', 'set_clock', 'choose_member'].includes(request.command.do) ? request.command.do : null);

@@ -59,7 +59,7 @@ function middleOf(handles: Float32Array): Vector {
 /** What may make another rig, and with it another surface. */
 const changesRig = new Set([
   'open_sample', 'open_file', 'set_handles', 'choose_methods', 'set_deformer', 'pin_joint', 'unpin_joint', 'set_rest_pose', 'rename_joint',
-  'add_joint', 'delete_joint', 'reparent_joint',
+  'add_joint', 'delete_joint', 'reparent_joint', 'rig_from_animation',
   'undo', 'redo', 'add_sample', 'add_file', 'choose_member', 'remove_member',
 ]);
 /** What shows all members at another moment. */
@@ -94,6 +94,8 @@ export class Documents {
   add(request: Extract<Request, { kind: 'add' }>): Answers['add'] { return this.shown(this.take(request), true); }
 
   addMotion(request: Extract<Request, { kind: 'motion' }>): Answers['motion'] { return this.shown(this.take(request), false); }
+
+  transfer(request: Extract<Request, { kind: 'transfer' }>): Answers['transfer'] { return this.shown(this.take(request), true); }
 
   run(command: Command): Answers['run'] {
     const step = this.shown(this.take({ kind: 'run', command }), changesRig.has(command.do));
@@ -272,6 +274,7 @@ export class Documents {
         if (motion && withModel.test(request.name)) this.addSource(motion.name, request.bytes, request.name);
         return added;
       }
+      case 'transfer': return orThrow(this.session.transferRig(request.bytes, request.name));
       case 'run': {
         const { command } = request, run = orThrow(this.session.run(command));
         if (opensModel(command)) this.forgetOthers();

@@ -132,6 +132,8 @@ export type Request =
   | { kind: 'check-ply'; bytes: Uint8Array; name: string }
   /** Put on the model as well, or not added, where `retarget` says so. */
   | { kind: 'motion'; bytes: Uint8Array; name: string; retarget?: boolean }
+  /** The rig of the model in the file, on the model. */
+  | { kind: 'transfer'; bytes: Uint8Array; name: string }
   | { kind: 'run'; command: Command }
   | { kind: 'try-motion'; motion: MotionRequest }
   | { kind: 'sample-motions' }
@@ -174,6 +176,7 @@ export interface Answers {
   add: Step;
   'check-ply': void;
   motion: Step;
+  transfer: Step;
   run: Step;
   'try-motion': Trial;
   'sample-motions': SampleMotion[];

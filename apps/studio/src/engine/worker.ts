@@ -15,6 +15,7 @@ function answer(documents: Documents, request: Request): Answers[Kind] {
     case 'add': return documents.add(request);
     case 'check-ply': return documents.checkPly(request.bytes, request.name);
     case 'motion': return documents.addMotion(request);
+    case 'transfer': return documents.transfer(request);
     case 'run': return documents.run(request.command);
     case 'pick': return documents.pick(request.ray, request.slope);
     case 'pick-member': return documents.pickMember(request.ray);
@@ -107,7 +108,7 @@ class RestOfEngine {
 /** The files that a request brings. */
 function filesIn(request: Request): Uint8Array[] {
   switch (request.kind) {
-    case 'open': case 'add': case 'motion': return [request.bytes];
+    case 'open': case 'add': case 'motion': case 'transfer': return [request.bytes];
     case 'try-motion': case 'preview-motion': return request.motion.kind === 'motion' ? [request.motion.bytes] : [];
     case 'restore': return request.requests.flatMap(filesIn);
     default: return [];

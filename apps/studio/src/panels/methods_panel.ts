@@ -1,11 +1,14 @@
 // By which methods the model is rigged, and how others do beside them.
-import type { MethodKind } from '../engine/messages';
+import type { MethodKind, SessionState } from '../engine/messages';
 import type { PageState, PageStore } from '../app/state';
 import { hasTemplate } from '../app/calls/core';
 import type { Studio } from '../app/studio';
 import { button, element } from '../ui/dom';
 import { methodName, methodSummary } from '../words/engine';
+import { partName } from '../words/parts';
 import { say } from '../words/say';
+
+const rigFiles = '.glb,.gltf,.vrm,.fbx,.npz';
 
 /** What the document has of that kind. */
 export function currentMethod(kind: MethodKind, { session }: PageState): string {
@@ -47,7 +50,8 @@ export function methodsPanel(studio: Studio, page: PageStore): HTMLElement {
     return element('div', { class: 'field' }, element('label', { for: kind }, text), select, compareButton(studio, page, kind));
   };
   return element('details', { class: 'card methods', id: 'methods' }, element('summary', {}, say('How it is done')),
-    row('rigger', say('Joints')), correction(studio, page), row('skinning', say('Skin')), row('deformer', say('Deformation')), row('solver', say('Limbs')));
+    row('rigger', say('Joints')), correction(studio, page), otherRigs(studio, page), row('skinning', say('Skin')),
+    row('deformer', say('Deformation')), row('solver', say('Limbs')));
 }
 
 /** Joints of a named skeleton that are not where they should be. */
@@ -63,4 +67,37 @@ function correction(studio: Studio, page: PageStore): HTMLElement {
     hint.hidden = !correcting;
   });
   return row;
+}
+
+/** Rigs that no method makes: another model's, or the one that the file's own animation tells. */
+function otherRigs(studio: Studio, page: PageStore): HTMLElement {
+  const file = element('input', { type: 'file', accept: rigFiles, hidden: true, id: 'rig-file' });
+  file.addEventListener('change', () => {
+    const chosen = file.files?.[0];
+    file.value = '';
+    if (chosen) void studio.takeRig(chosen);
+  });
+  const take = button(say('Take a rig from another model\u2026'), () => file.click(), {
+    id: 'take-rig', label: say('The joints, weights and blend shapes of another model of the same kind, fitted to this one'),
+  });
+  const found = button(say('Bones from its motion'), () => void studio.rigFromAnimation(), {
+    id: 'rig-from-animation', label: say('Joints and weights that move the model as the animation in its file does'),
+  });
+  const apart = element('p', { id: 'rig-gaps' });
+  page.watch(({ session }) => {
+    take.disabled = !session;
+    found.hidden = !session?.animated;
+    apart.hidden = !session?.gaps;
+    if (session?.gaps) apart.textContent = gapsText(session.gaps);
+  });
+  return element('div', { class: 'correction' }, take, found, file, apart);
+}
+
+/** Where the other model's surface stays apart from this one. */
+function gapsText({ rms, beyond, limit, parts }: NonNullable<SessionState['gaps']>): string {
+  const percent = (value: number) => value.toFixed(1);
+  const all = say('Both surfaces lie {rms} % of the height apart.', { rms: percent(rms) });
+  const worst = parts.filter((part) => part.beyond > 0).slice(0, 3).map(({ part }) => partName(part));
+  if (worst.length === 0) return all;
+  return `${all} ${say('{share} % of this one is farther than {limit} %: {parts}.', { share: percent(100 * beyond), limit: String(limit), parts: worst.join(', ') })}`;
 }

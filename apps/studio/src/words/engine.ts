@@ -11,6 +11,8 @@ const spaced = (name: string) => capital(name).replaceAll('-', ' ');
 const stages: Named = {
   'read': 'Reading the model', 'read geometry': 'Reading the surface', 'weld': 'Joining the surface',
   'rig': 'Finding handles', 'skin': 'Binding the surface', 'write rig': 'Finishing',
+  'fit target': 'Finding the limbs', 'fit source': 'Finding the limbs', 'transfer': 'Laying one model on the other',
+  'find bones': 'Finding bones', 'find joints': 'Finding joints',
 };
 /** "rig: fit humanoid" is a step of the stage "rig". */
 export function stageName(stage: string): string {
@@ -166,6 +168,13 @@ const kinds: Readonly<Record<ErrorKind, { title: Words; remedy?: Words; ofFile?:
   'no-surface': { title: 'there is nothing to rig: the model has no surface', ofFile: true, remedy: 'limber needs triangles, not points or lines' },
   'out-of-memory': { title: 'not enough memory', ofFile: true, remedy: 'try a smaller model' },
   'no-bvh-name': { title: 'the name of {joint} cannot stand in a BVH file', remedy: 'give the joint another name' },
+  'no-rig': { title: 'the model has no rig that could be taken', ofFile: true, remedy: 'choose one that has joints and weights' },
+  'no-limbs': { title: 'no limbs can be told in this model', remedy: 'give it a rig first, whose joints then tell where they are' },
+  'unlike-rigs': {
+    title: 'the rig of {source} joints is for another kind of body',
+    remedy: 'choose a model that is built like this one',
+  },
+  'no-animation': { title: 'nothing moves in the file of this model' },
 };
 /** What went wrong with all others, whose own sentence is English. */
 const leads: Named = {

@@ -84,6 +84,25 @@ export function rigCalls(core: Core, told: (title: string) => void) {
       page.set({}); // lists show again what is chosen
     },
 
+    /** The rig of another model, or of a body in SMPL's layout. */
+    async takeRig(file: File) {
+      await core.guard(async () => {
+        if (!await mayReplaceRig()) return;
+        const { rigFile } = await import('../import_rig');
+        core.take(await engine.ask({ kind: 'transfer', ...await rigFile(file) }));
+        page.set({ display: 'handles' });
+      });
+    },
+
+    /** Bones, weights and clips that move the model as its file does. */
+    async rigFromAnimation() {
+      await core.guard(async () => {
+        if (!await mayReplaceRig()) return;
+        core.take(await engine.run({ do: 'rig_from_animation' }));
+        page.set({ display: 'handles' });
+      });
+    },
+
     /** How far joints may turn: a file of limits, for this model's joints. */
     async openLimits(file: File) {
       await core.guard(async () => {
