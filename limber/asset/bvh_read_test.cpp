@@ -9,8 +9,8 @@
 
 #include <fmt/format.h>
 
-#include "limber/asset/testing/temporary_folder.h"
 #include "shared_data.h"
+#include "temporary_folder.h"
 
 namespace limber {
 namespace {

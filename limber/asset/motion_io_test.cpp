@@ -9,9 +9,9 @@
 #include <nlohmann/json.hpp>
 
 #include "limber/asset/testing/gltf_builder.h"
-#include "limber/asset/testing/temporary_folder.h"
 #include "limber/asset/write.h"
 #include "shared_data.h"
+#include "temporary_folder.h"
 
 namespace limber {
 namespace {

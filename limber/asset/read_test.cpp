@@ -8,7 +8,7 @@
 
 #include "limber/asset/accessor.h"
 #include "limber/asset/testing/gltf_builder.h"
-#include "limber/asset/testing/temporary_folder.h"
+#include "temporary_folder.h"
 #include "warning_kinds.h"
 
 namespace limber {

@@ -1,0 +1,218 @@
+#include "limber/jobs/job_pool.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <fstream>
+#include <new>
+#include <string>
+#include <thread>
+
+#include "limber/core/error.h"
+#include "limber/core/sanitizers.h"
+#include "limber/jobs/own_program.h"
+#include "temporary_folder.h"
+
+namespace limber {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::EndsWith;
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+
+constexpr int kNoMemoryCode = 77;
+
+Job shell(const std::string& script) {
+  Job job;
+  job.command = {"/bin/sh", "-c", script};
+  job.limits.seconds = 20;
+  return job;
+}
+
+std::vector<JobResult> runChain(const JobChain& chain) {
+  std::vector<JobResult> results;
+  Progress progress;
+  runJobs({&chain, 1}, 1, progress, [&](std::size_t, const std::vector<JobResult>& r) { results = r; });
+  return results;
+}
+
+JobResult runOne(const Job& job) {
+  const std::vector<JobResult> results = runChain({job});
+  return results.empty() ? JobResult{} : results.front();
+}
+
+TEST(JobPool, TellsCodesAndOutput) {
+  const JobResult result = runOne(shell("echo told; echo why >&2; exit 3"));
+  EXPECT_EQ(result.outcome, JobOutcome::kFailed);
+  EXPECT_EQ(result.code, 3);
+  EXPECT_EQ(result.out, "told\n");
+  EXPECT_EQ(result.error, "why\n");
+  EXPECT_GT(result.peakMemory, 0u);
+  EXPECT_EQ(runOne(shell("true")).outcome, JobOutcome::kDone);
+}
+
+TEST(JobPool, TellsASignalFromACode) {
+  const JobResult result = runOne(shell("kill -SEGV $$"));
+  EXPECT_EQ(result.outcome, JobOutcome::kCrashed);
+  EXPECT_EQ(result.code, SIGSEGV);
+}
+
+TEST(JobPool, ArgumentsAreNoShellText) {
+  Job job;
+  job.command = {"/bin/echo", "$HOME", "a  b", "'\"; exit 1"};
+  EXPECT_EQ(runOne(job).out, "$HOME a  b '\"; exit 1\n");
+}
+
+TEST(JobPool, StandardInputIsEmpty) {
+  EXPECT_EQ(runOne(shell("cat; echo end")).out, "end\n");
+}
+
+TEST(JobPool, WorksInItsFolder) {
+  Job job = shell("pwd -P");
+  job.folder = "/";
+  EXPECT_EQ(runOne(job).out, "/\n");
+  job.folder = "/no/such/folder";
+  const JobResult result = runOne(job);
+  EXPECT_EQ(result.outcome, JobOutcome::kNotStarted);
+  EXPECT_EQ(result.code, ENOENT);
+}
+
+TEST(JobPool, AProgramThatIsNotThereIsAResult) {
+  Job job;
+  job.command = {"/no/such/program"};
+  const JobResult result = runOne(job);
+  EXPECT_EQ(result.outcome, JobOutcome::kNotStarted);
+  EXPECT_EQ(result.code, ENOENT);
+  EXPECT_THAT(jobOutcomeText(job, result), HasSubstr("cannot be run"));
+}
+
+// Is the process gone, or waits only to be collected by whoever inherited it?
+bool isGone(pid_t pid) {
+  std::ifstream file("/proc/" + std::to_string(pid) + "/stat");
+  std::string text((std::istreambuf_iterator<char>(file)), {});
+  const std::size_t name = text.rfind(')');
+  return name == std::string::npos || text.compare(name, 3, ") Z") == 0;
+}
+
+TEST(JobPool, TimeEndsTheWholeGroup) {
+  Job job = shell("sleep 100 & echo $!; wait");
+  job.limits.seconds = 0.2;
+  const JobResult result = runOne(job);
+  EXPECT_EQ(result.outcome, JobOutcome::kTimedOut);
+  EXPECT_EQ(jobOutcomeText(job, result), "more than 0.2 s");
+  const pid_t grandchild = std::stoi(result.out);
+  for (int i = 0; i < 500 && !isGone(grandchild); ++i) usleep(10000);
+  EXPECT_TRUE(isGone(grandchild));
+}
+
+TEST(JobPool, WhatAJobLeavesRunningEndsWithIt) {
+  const JobResult result = runOne(shell("sleep 100 & echo $!"));
+  EXPECT_EQ(result.outcome, JobOutcome::kDone);
+  EXPECT_LT(result.seconds, 20);
+  const pid_t left = std::stoi(result.out);
+  for (int i = 0; i < 500 && !isGone(left); ++i) usleep(10000);
+  EXPECT_TRUE(isGone(left));
+}
+
+TEST(JobPool, KeepsTheLastOfALongOutput) {
+  Job job = shell("i=0; while [ $i -lt 2000 ]; do echo line $i; i=$((i+1)); done");
+  job.mostOutput = 100;
+  const JobResult result = runOne(job);
+  EXPECT_THAT(result.out, AllOf(SizeIs(100), EndsWith("line 1999\n")));
+}
+
+TEST(JobPool, EndlessOutputEndsInTime) {
+  Job job;
+  job.command = {"/bin/cat", "/dev/zero"};
+  job.limits.seconds = 0.2;
+  job.mostOutput = 1000;
+  const JobResult result = runOne(job);
+  EXPECT_EQ(result.outcome, JobOutcome::kTimedOut);
+  EXPECT_EQ(result.out, std::string(1000, '\0'));
+}
+
+// Run by the test below in a process of its own.
+TEST(JobPoolChild, DISABLED_TakesTwoHundredMegabytes) {
+  std::set_new_handler([] { _exit(kNoMemoryCode); });
+  std::vector<std::string> taken;
+  for (int i = 0; i < 200; ++i) taken.emplace_back(std::size_t{1} << 20, 'x');
+  std::printf("%zu\n", taken.size());
+}
+
+TEST(JobPool, MemoryIsLimitedBeforeTheProgramBegins) {
+  if (kAddressSanitizer) GTEST_SKIP() << "which takes terabytes of addresses for itself";
+  Job job;
+  job.command = {ownProgram().string(), "--gtest_also_run_disabled_tests",
+                 "--gtest_filter=JobPoolChild.DISABLED_TakesTwoHundredMegabytes"};
+  job.outOfMemoryCode = kNoMemoryCode;
+  job.limits.memory = std::size_t{100} << 20;
+  JobResult result = runOne(job);
+  EXPECT_EQ(result.outcome, JobOutcome::kOutOfMemory) << result.out << result.error;
+  EXPECT_EQ(jobOutcomeText(job, result), "more than 100 MB of memory");
+  EXPECT_LT(result.peakMemory, std::size_t{120} << 20);
+  job.limits.memory = std::size_t{400} << 20;
+  result = runOne(job);
+  EXPECT_EQ(result.outcome, JobOutcome::kDone) << result.error;
+  EXPECT_GT(result.peakMemory, std::size_t{200} << 20);
+}
+
+TEST(JobPool, AChainStopsAtTheFirstThatIsNotDone) {
+  const std::vector<JobResult> results = runChain({shell("echo 1"), shell("exit 4"), shell("echo 3")});
+  ASSERT_EQ(results.size(), 2u);
+  EXPECT_EQ(results[0].out, "1\n");
+  EXPECT_EQ(results[1].code, 4);
+  EXPECT_EQ(runChain({shell("echo 1"), shell("echo 2"), shell("echo 3")}).size(), 3u);
+  EXPECT_TRUE(runChain({}).empty());
+}
+
+// Each waits until as many as run at once have begun: fewer would run out of time.
+TEST(JobPool, RunsAsManyAtOnceAsAsked) {
+  const testing::TemporaryFolder folder;
+  std::vector<JobChain> chains;
+  for (int i = 0; i < 6; ++i) {
+    Job job = shell("touch " + std::to_string(i) + "; while [ $(ls | wc -l) -lt 3 ]; do sleep 0.01; done");
+    job.folder = folder.path();
+    chains.push_back({job});
+  }
+  std::vector<bool> isDone(chains.size());
+  Progress progress;
+  runJobs(chains, 3, progress, [&](std::size_t chain, const std::vector<JobResult>& results) {
+    isDone[chain] = results.front().outcome == JobOutcome::kDone;
+  });
+  EXPECT_THAT(isDone, ::testing::Each(true));
+}
+
+TEST(JobPool, CancellingEndsWhatRuns) {
+  Progress progress;
+  std::thread canceller([&] {
+    usleep(100000);
+    progress.cancel();
+  });
+  const JobChain chain = {shell("sleep 100")};
+  const double start = secondsNow();
+  EXPECT_THROW(runJobs({&chain, 1}, 1, progress, [](std::size_t, const auto&) {}), Error);
+  EXPECT_LT(secondsNow() - start, 20);
+  canceller.join();
+}
+
+TEST(JobPool, RefusesWhatMakesNoSense) {
+  Progress progress;
+  EXPECT_THROW(runJobs({}, 0, progress, [](std::size_t, const auto&) {}), Error);
+  const JobChain none = {Job{}};
+  EXPECT_THROW(runJobs({&none, 1}, 1, progress, [](std::size_t, const auto&) {}), Error);
+}
+
+TEST(JobOutcome, NamesAreFoundAgain) {
+  for (const JobOutcome outcome : {JobOutcome::kDone, JobOutcome::kFailed, JobOutcome::kCrashed, JobOutcome::kTimedOut,
+                                   JobOutcome::kOutOfMemory, JobOutcome::kNotStarted}) {
+    EXPECT_EQ(findJobOutcome(jobOutcomeName(outcome)), outcome);
+  }
+  EXPECT_THROW(findJobOutcome("lost"), Error);
+}
+
+}  // namespace
+}  // namespace limber

@@ -1,0 +1,238 @@
+// fork and exec rather than posix_spawn: only a child between the two can limit its own memory before the program
+// begins. It calls nothing there but what is safe after a fork, so other threads of this process do not matter.
+#include "limber/jobs/running_job.h"
+
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <utility>
+
+#ifdef __linux__
+#include <sys/prctl.h>
+#endif
+
+#include "limber/core/error.h"
+#include "limber/core/progress.h"
+#include "limber/core/sanitizers.h"
+
+namespace limber {
+
+namespace {
+
+constexpr int kCannotRun = 127;
+constexpr std::size_t kPiece = std::size_t{1} << 16;  // bytes read at once
+
+[[noreturn]] void failToStart(const char* what, int reason) {
+  throw Error(ErrorCode::kFile, std::string(what) + ": " + std::strerror(reason));
+}
+
+void closeEnd(int& end) {
+  if (end >= 0) close(end);
+  end = -1;
+}
+
+// A pipe whose ends no other program inherits, beside the three standard streams even where one of those is closed.
+class Pipe {
+ public:
+  Pipe() {
+    std::array<int, 2> ends{};
+    if (pipe(ends.data()) != 0) failToStart("cannot open a pipe", errno);
+    constexpr int kFirstFree = 3;
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+      ends_[i] = fcntl(ends[i], F_DUPFD_CLOEXEC, kFirstFree);
+    }
+    const int reason = errno;
+    for (int& end : ends) closeEnd(end);
+    if (ends_[0] >= 0 && ends_[1] >= 0) return;
+    for (int& end : ends_) closeEnd(end);
+    failToStart("cannot open a pipe", reason);
+  }
+  Pipe(const Pipe&) = delete;
+  Pipe& operator=(const Pipe&) = delete;
+  ~Pipe() {
+    for (int& end : ends_) closeEnd(end);
+  }
+
+  int reading() const { return ends_[0]; }
+  int writing() const { return ends_[1]; }
+  void closeWriting() { closeEnd(ends_[1]); }
+  int takeReading() { return std::exchange(ends_[0], -1); }
+
+ private:
+  std::array<int, 2> ends_{-1, -1};
+};
+
+void lower(int resource, rlim_t value) {
+  rlimit now{};
+  if (getrlimit(resource, &now) != 0) return;
+  if (now.rlim_max != RLIM_INFINITY) value = std::min(value, now.rlim_max);
+  const rlimit wanted{value, value};
+  setrlimit(resource, &wanted);
+}
+
+void limitMemory(std::size_t bytes) {
+  if (kAddressSanitizer) return;  // which takes terabytes of addresses for itself
+#ifdef __linux__
+  lower(RLIMIT_DATA, bytes);
+#elif defined(RLIMIT_AS)
+  lower(RLIMIT_AS, bytes);
+#endif
+}
+
+struct ChildStart {
+  char* const* arguments;
+  const char* folder;
+  std::size_t memory;
+  pid_t parent;
+  int out, error, status;
+};
+
+// Between fork and exec.
+[[noreturn]] void becomeProgram(const ChildStart& start) {
+  setpgid(0, 0);
+#ifdef __linux__
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != start.parent) _exit(kCannotRun);  // it ended before that took effect
+#endif
+  sigset_t none;
+  sigemptyset(&none);
+  sigprocmask(SIG_SETMASK, &none, nullptr);
+  std::signal(SIGPIPE, SIG_DFL);  // the one that is left ignored across exec, where this program ignores it
+  lower(RLIMIT_CORE, 0);
+  limitMemory(start.memory);
+  const int nothing = open("/dev/null", O_RDONLY);
+  if (nothing >= 0 && dup2(nothing, STDIN_FILENO) >= 0 && dup2(start.out, STDOUT_FILENO) >= 0 &&
+      dup2(start.error, STDERR_FILENO) >= 0 && chdir(start.folder) == 0) {
+    if (nothing > STDERR_FILENO) close(nothing);
+    execv(start.arguments[0], start.arguments);
+  }
+  const int reason = errno;
+  const ssize_t told = write(start.status, &reason, sizeof reason);
+  _exit(told == sizeof reason ? kCannotRun : kCannotRun - 1);
+}
+
+// What the child says of its start: 0 once the program runs, else why it does not.
+int startErrorFrom(int pipe) {
+  int reason = 0;
+  ssize_t got = 0;
+  while ((got = read(pipe, &reason, sizeof reason)) < 0 && errno == EINTR) {
+  }
+  return got == sizeof reason ? reason : 0;
+}
+
+}  // namespace
+
+RunningJob::RunningJob(const Job& job) : job_(job) {
+  if (job.command.empty()) throw Error(ErrorCode::kBadArgument, "a job has no command");
+  std::vector<char*> arguments;
+  for (std::string& argument : job_.command) arguments.push_back(argument.data());
+  arguments.push_back(nullptr);
+  const std::string folder = job.folder.empty() ? "." : job.folder.string();
+  Pipe out, error, status;
+  startedAt_ = secondsNow();
+  deadline_ = startedAt_ + job.limits.seconds;
+  const ChildStart start{arguments.data(), folder.c_str(),  job.limits.memory, getpid(),
+                         out.writing(),    error.writing(), status.writing()};
+  pid_ = fork();
+  if (pid_ < 0) failToStart("cannot start a process", errno);
+  if (pid_ == 0) becomeProgram(start);
+  setpgid(pid_, pid_);  // here as well, so that the group is there whoever comes first
+  status.closeWriting();
+  startError_ = startErrorFrom(status.reading());
+  for (auto [stream, pipe] : {std::pair{&out_, &out}, {&error_, &error}}) {
+    stream->pipe = pipe->takeReading();
+    fcntl(stream->pipe, F_SETFL, O_NONBLOCK);
+  }
+}
+
+RunningJob::~RunningJob() {
+  if (!isCollected_) {
+    endGroup();
+    collect();
+  }
+  closeEnd(out_.pipe);
+  closeEnd(error_.pipe);
+}
+
+void RunningJob::readWhatIsThere(Stream& stream) const {
+  std::array<char, kPiece> piece;
+  while (stream.pipe >= 0) {
+    const ssize_t got = read(stream.pipe, piece.data(), piece.size());
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) return;
+    if (got <= 0) return closeEnd(stream.pipe);
+    stream.text.append(piece.data(), static_cast<std::size_t>(got));
+    if (stream.text.size() > 2 * job_.mostOutput) stream.text.erase(0, stream.text.size() - job_.mostOutput);
+    if (secondsNow() > deadline_) return;  // of a program that never stops printing
+  }
+}
+
+void RunningJob::endGroup() const {
+  kill(-pid_, SIGKILL);
+  kill(pid_, SIGKILL);  // should it have no group yet
+}
+
+bool RunningJob::isOver() {
+  if (isCollected_) return true;
+  readWhatIsThere(out_);
+  readWhatIsThere(error_);
+  siginfo_t ended{};
+  // The process stays until its group is ended: so that its number means no other group.
+  const bool hasEnded =
+      waitid(P_PID, static_cast<id_t>(pid_), &ended, WEXITED | WNOHANG | WNOWAIT) == 0 && ended.si_pid == pid_;
+  isTimedOut_ = !hasEnded && secondsNow() > deadline_;
+  if (!hasEnded && !isTimedOut_) return false;
+  endGroup();
+  collect();
+  return true;
+}
+
+void RunningJob::collect() {
+  int status = 0;
+  rusage usage{};
+  while (wait4(pid_, &status, 0, &usage) < 0 && errno == EINTR) {
+  }
+  isCollected_ = true;
+  result_.seconds = secondsNow() - startedAt_;
+#ifdef __APPLE__
+  constexpr std::size_t kUnit = 1;
+#else
+  constexpr std::size_t kUnit = 1024;
+#endif
+  result_.peakMemory = kUnit * static_cast<std::size_t>(usage.ru_maxrss);
+  if (startError_ != 0) {
+    result_.outcome = JobOutcome::kNotStarted;
+    result_.code = startError_;
+  } else if (isTimedOut_) {
+    result_.outcome = JobOutcome::kTimedOut;
+  } else if (WIFSIGNALED(status)) {
+    result_.outcome = JobOutcome::kCrashed;
+    result_.code = WTERMSIG(status);
+  } else {
+    result_.code = WEXITSTATUS(status);
+    result_.outcome = result_.code == 0                      ? JobOutcome::kDone
+                      : result_.code == job_.outOfMemoryCode ? JobOutcome::kOutOfMemory
+                                                             : JobOutcome::kFailed;
+  }
+}
+
+JobResult RunningJob::takeResult() {
+  for (Stream* stream : {&out_, &error_}) {
+    readWhatIsThere(*stream);
+    closeEnd(stream->pipe);
+    std::string& text = stream->text;
+    if (text.size() > job_.mostOutput) text.erase(0, text.size() - job_.mostOutput);
+  }
+  result_.out = std::move(out_.text);
+  result_.error = std::move(error_.text);
+  return std::move(result_);
+}
+
+}  // namespace limber
