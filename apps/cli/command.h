@@ -26,10 +26,14 @@ void addRetargetCommand(CLI::App& program);
 void addAnimateCommand(CLI::App& program);
 void addStudioCommand(CLI::App& program);
 void addTransferCommand(CLI::App& program);
+void addStudyCommand(CLI::App& program);
 void addMotionEvaluation(CLI::App& evaluate);  // subcommands of evaluate
 void addRetargetingEvaluation(CLI::App& evaluate);
 void addDecompositionEvaluation(CLI::App& evaluate);
 void addTransferEvaluation(CLI::App& evaluate);
+
+// The exit code of a command for which memory did not suffice.
+inline constexpr int kOutOfMemoryCode = 3;
 
 // Options that most commands have.
 struct Common {

@@ -8,19 +8,20 @@
 #include <fmt/format.h>
 
 #include "command.h"
+#include "limber/core/known_error.h"
 #include "progress_line.h"
 
 namespace {
 
 constexpr int kFailed = 1, kUsage = 2, kInterrupted = 130;
 
-int fail(const char* what) {
+int fail(const char* what, int code = kFailed) {
   if (limber::cli::interrupted()) {
     fmt::print(stderr, "limber: interrupted\n");
     return kInterrupted;
   }
   fmt::print(stderr, "limber: {}\n", what);
-  return kFailed;
+  return code;
 }
 
 int usage(const CLI::App& program, const std::string& what) {
@@ -70,6 +71,7 @@ int main(int argc, char** argv) {
   limber::cli::addRetargetCommand(program);
   limber::cli::addAnimateCommand(program);
   limber::cli::addTransferCommand(program);
+  limber::cli::addStudyCommand(program);
   limber::cli::addStudioCommand(program);
   program.footer("limber COMMAND --help shows the options of a command, with an example.");
   if (const std::string problem = wrongCommand(program, argc, argv); !problem.empty()) return usage(program, problem);
@@ -84,7 +86,10 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return usage(program, error.what());
   } catch (const std::bad_alloc&) {
-    return fail("there is not enough memory for this");
+    return fail("there is not enough memory for this", limber::cli::kOutOfMemoryCode);
+  } catch (const limber::KnownError& error) {
+    const bool isOutOfMemory = error.kind() == limber::ErrorKind::kOutOfMemory;
+    return fail(error.what(), isOutOfMemory ? limber::cli::kOutOfMemoryCode : kFailed);
   } catch (const std::exception& error) {
     return fail(error.what());
   }

@@ -1,7 +1,6 @@
 // The name of a job's result: equal for equal inputs, arguments and programs, wherever their files lie.
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <string_view>
 
@@ -19,10 +18,5 @@ class JobKey {
  private:
   Sha256 hash_;
 };
-
-// A digest of a file's bytes and its extension, and of those files in its folder that its bytes name (a .gltf's .bin,
-// an .obj's .mtl and the pictures that this names). Files in other folders that it refers to do not count. Throws Error
-// kFile.
-std::string inputDigest(const std::filesystem::path& file);
 
 }  // namespace limber

@@ -1,0 +1,134 @@
+// limber study, run as a user runs it.
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "limber/core/sanitizers.h"
+#include "testing/cli_fixture.h"
+
+namespace limber {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+// Two cells of the smallest sample.
+constexpr std::string_view kPlan = R"({
+  "limber_study": 1,
+  "title": "Stools",
+  "rig": {
+    "models": ["sample:stool"],
+    "riggers": ["sphere-mesh", "prop"]
+  },
+  "limits": {"seconds": 100, "memory_mb": 4096}
+})";
+
+std::string withoutSeconds(const std::string& csv) {
+  std::string rest;
+  for (std::size_t at = 0; at < csv.size();) {
+    const std::size_t end = csv.find('\n', at) + 1;
+    const std::string line = csv.substr(at, end - at);
+    if (line.find(",seconds,") == std::string::npos) rest += line;
+    at = end;
+  }
+  return rest;
+}
+
+std::size_t keptCells(const fs::path& report) {
+  std::error_code unseen;
+  std::size_t count = 0;
+  for (fs::directory_iterator it(report / "cells", unseen), end; !unseen && it != end; it.increment(unseen)) {
+    count += it->path().extension() == ".json" ? 1 : 0;
+  }
+  return count;
+}
+
+TEST_F(Cli, AStudyIsTablesAndAPageAndGoesOnWhenKilled) {
+  put("plan.json", std::string(kPlan));
+  const Result study = run({"study", "plan.json", "-o", "report", "--jobs", "2"});
+  EXPECT_EQ(study.code, 0) << study.error;
+  EXPECT_EQ(study.error, "");
+  EXPECT_THAT(study.out, AllOf(HasSubstr("2 cells: 2 run, 0 kept from before; 0 did not end well"),
+                               HasSubstr("written: report/index.html")));
+  const std::string csv = content("report/cells.csv");
+  EXPECT_THAT(csv, AllOf(HasSubstr("rig,samples,stool,,sphere-mesh,bone-heat,"), HasSubstr(",done,,joints,")));
+  EXPECT_THAT(content("report/index.html"),
+              AllOf(HasSubstr("<title>Stools</title>"), HasSubstr("data:image/png;base64")));
+  const Result again = run({"study", "plan.json", "-o", "report"});
+  EXPECT_THAT(again.out, HasSubstr("0 run, 2 kept from before"));
+  EXPECT_EQ(content("report/cells.csv"), csv);
+
+  Running killed({"study", "plan.json", "-o", "killed", "--jobs", "1", "--quiet"}, folder_);
+  // Until a cell is kept besides what was read of the model.
+  for (int i = 0; i < 6000 && keptCells(folder_ / "killed") < 2; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  killed.signal(SIGKILL);
+  EXPECT_EQ(killed.waitWithOpenInput().code, 128 + SIGKILL);
+  EXPECT_FALSE(fs::exists(folder_ / "killed/cells.csv"));
+  const Result rest = run({"study", "plan.json", "-o", "killed"});
+  EXPECT_EQ(rest.code, 0) << rest.error;
+  EXPECT_THAT(rest.out, HasSubstr("1 run, 1 kept from before"));
+  EXPECT_EQ(withoutSeconds(content("killed/cells.csv")), withoutSeconds(csv));
+}
+
+TEST_F(Cli, AStudyIsInterruptedInOneLine) {
+  put("plan.json", std::string(kPlan));
+  Running running({"study", "plan.json", "-o", "report", "--jobs", "1"}, folder_);
+  for (int i = 0; i < 6000 && !fs::exists(folder_ / "report/samples/stool.glb"); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  running.signal(SIGINT);
+  expectOneLine(running.waitWithOpenInput(), 130);
+  EXPECT_FALSE(fs::exists(folder_ / "report/index.html"));
+}
+
+TEST_F(Cli, AStudysExampleIsAPlan) {
+  const Result example = run({"study", "--example"});
+  EXPECT_EQ(example.code, 0);
+  EXPECT_THAT(example.out, HasSubstr("\"limber_study\": 1"));
+  EXPECT_TRUE(files().empty());
+}
+
+TEST_F(Cli, AStudyThatCannotBeIsOneLineAndNoReport) {
+  put("plan.json", std::string(kPlan));
+  put("typo.json", R"({"limber_study": 1, "rig": {"modles": ["a.glb"]}})");
+  put("missing.json", R"({"limber_study": 1, "rig": {"models": ["missing.glb"]}})");
+  put("sample.json", R"({"limber_study": 1, "rig": {"models": ["sample:unicorn"]}})");
+  const Result typo = run({"study", "typo.json", "-o", "report"});
+  expectOneLine(typo, 1);
+  EXPECT_THAT(typo.error, AllOf(HasSubstr("typo.json"), HasSubstr("rig"), HasSubstr("'modles'")));
+  const Result missing = run({"study", "missing.json", "-o", "report"});
+  expectOneLine(missing, 1);
+  EXPECT_THAT(missing.error, HasSubstr("missing.glb"));
+  const Result sample = run({"study", "sample.json", "-o", "report"});
+  expectOneLine(sample, 1);
+  EXPECT_THAT(sample.error, HasSubstr("'unicorn'"));
+  expectOneLine(run({"study", "plan.json"}), 2);
+  expectOneLine(run({"study", "-o", "report"}), 2);
+  expectOneLine(run({"study", "plan.json", "-o", "report", "--jobs", "0"}), 2);
+  expectOneLine(run({"study", "plan.json", "-o", "plan.json"}), 1);
+  EXPECT_FALSE(fs::exists(folder_ / "report/index.html"));
+}
+
+// From what the program needs to begin to what it needs to end there is room for memory that does not suffice.
+TEST_F(Cli, TooLittleMemoryHasACodeOfItsOwn) {
+  if (kAddressSanitizer) GTEST_SKIP() << "which takes terabytes of addresses for itself";
+  const auto codeWithin = [&](int megabytes) {
+    const std::string command = "ulimit -d " + std::to_string(1024 * megabytes) +
+                                "; exec '" LIMBER_PROGRAM "' sample stool -q -o '" + (folder_ / "stool.glb").string() +
+                                "' 2>/dev/null";
+    const int status = std::system(command.c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  };
+  std::vector<int> codes;
+  for (int megabytes = 4; megabytes < 40; megabytes += 4) codes.push_back(codeWithin(megabytes));
+  EXPECT_THAT(codes, ::testing::Contains(3));
+  EXPECT_EQ(codeWithin(4000), 0);
+}
+
+}  // namespace
+}  // namespace limber

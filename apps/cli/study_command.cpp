@@ -1,0 +1,101 @@
+// limber study: methods side by side over many models, as tables and as a page.
+#include <algorithm>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "command.h"
+#include "limber/core/counted.h"
+#include "limber/core/file.h"
+#include "limber/core/known_error.h"
+#include "limber/core/parallel.h"
+#include "limber/jobs/own_program.h"
+#include "limber/study/cell_table.h"
+#include "limber/study/report_page.h"
+#include "limber/study/study_run.h"
+#include "progress_line.h"
+
+namespace limber::cli {
+
+namespace {
+
+struct StudyArguments {
+  std::string plan, output;
+  int jobs = 0;  // 0: as many as there are processors for
+  bool retries = false, prints = false, quiet = false;
+};
+
+StudyPlan readPlan(const std::string& file) {
+  const Bytes text = readFile(file);
+  try {
+    return studyPlanFromJson({reinterpret_cast<const char*>(text.data()), text.size()});
+  } catch (const Error& error) {
+    throwWithin(error, file == "-" ? "standard input" : file);
+  }
+}
+
+void writeReport(const StudyResult& study, const std::filesystem::path& folder) {
+  const std::string csv = cellsCsv(study), json = cellsJson(study), page = reportPage(study, folder);
+  const OutputFile files[] = {{folder / "cells.csv", asBytes(csv)},
+                              {folder / "cells.json", asBytes(json)},
+                              {folder / "index.html", asBytes(page)}};
+  writeFiles(files);
+}
+
+void run(const StudyArguments& arguments) {
+  if (arguments.prints) {
+    fmt::print("{}", exampleStudyPlan());
+    return;
+  }
+  if (arguments.plan.empty()) throw CLI::RequiredError("PLAN");
+  if (arguments.output.empty()) throw CLI::RequiredError("--output");
+  const StudyPlan plan = readPlan(arguments.plan);
+  StudyOptions options;
+  options.program = ownProgram();
+  options.planFolder =
+      arguments.plan == "-" ? std::filesystem::path() : std::filesystem::path(arguments.plan).parent_path();
+  options.output = arguments.output;
+  options.jobs = arguments.jobs > 0 ? arguments.jobs : std::max(1, threadCount() / std::max(1, plan.threads));
+  options.outOfMemoryCode = kOutOfMemoryCode;
+  options.retries = arguments.retries;
+  TerminalProgress progress(arguments.quiet);
+  const StudyResult study = runStudy(plan, options, *progress);
+  progress->stage("write");
+  writeReport(study, options.output);
+  progress.finish();
+  const auto failed = std::count_if(study.results.begin(), study.results.end(),
+                                    [](const CellResult& result) { return result.outcome != JobOutcome::kDone; });
+  const Account account(arguments.quiet, {});
+  account.line(fmt::format("{}: {} run, {} kept from before; {} did not end well", counted(study.cells.size(), "cell"),
+                           study.ran, study.cells.size() - study.ran, failed));
+  account.line(fmt::format("written: {}", (options.output / "index.html").string()));
+}
+
+}  // namespace
+
+void addStudyCommand(CLI::App& program) {
+  auto arguments = std::make_shared<StudyArguments>();
+  CLI::App* command = program.add_subcommand("study", "Compare methods over many models, in tables and on a page");
+  command->add_option("PLAN", arguments->plan,
+                      "what to compare, in JSON (docs/study.schema.json); - is standard input");
+  command->add_option("-o,--output", arguments->output, "the folder to write; a study that was stopped there goes on")
+      ->type_name("FOLDER");
+  command->add_option("--jobs", arguments->jobs, "cells at once (default: as many as there are processors for)")
+      ->check(CLI::Range(1, 1024).description(""))
+      ->type_name("N");
+  command->add_flag("--retry", arguments->retries, "run again what crashed, was refused or ran out of time or memory");
+  command->add_flag("--example", arguments->prints, "print a plan that runs as it is");
+  command->add_flag("--quiet,-q", arguments->quiet, "print nothing but errors");
+  command->footer(
+      "Each cell (a method on a model) is a process of its own, within limits of time and memory; its result is kept\n"
+      "in FOLDER/cells under a hash of the program, the arguments and the model's bytes. So a study that was stopped\n"
+      "goes on, and another method costs its own cells alone. FOLDER/cells.csv and cells.json have a line for each\n"
+      "cell and measure; FOLDER/index.html shows rankings, tests, the worst cells and all pictures. docs/study.md\n"
+      "tells more.\n"
+      "\nExamples:\n"
+      "  limber study --example > plan.json\n"
+      "  limber study plan.json -o report");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace limber::cli

@@ -1,0 +1,129 @@
+#include "limber/study/method_ranking.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <optional>
+
+#include "limber/core/error.h"
+#include "limber/study/time_plot.h"
+
+namespace limber {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+// A cell of `method` for each value; none: it failed.
+void addMethod(StudyResult& study, const std::string& method, const std::string& measure,
+               const std::vector<std::optional<double>>& values, double seconds = 1) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    StudyCell cell;
+    cell.model = "model " + std::to_string(i);
+    cell.group = i % 2 == 0 ? "even" : "odd";
+    cell.rigger = method;
+    cell.steps = {{"rig", {}, MeasureSource::kRigReport, {}, {}, true}, {"evaluate", {}, findMeasure(measure).source}};
+    CellResult result;
+    if (values[i]) {
+      result.measures = {{&findMeasure("seconds"), seconds}, {&findMeasure(measure), *values[i]}};
+    } else {
+      result.outcome = JobOutcome::kCrashed;
+    }
+    study.cells.push_back(cell);
+    study.results.push_back(result);
+  }
+}
+
+std::vector<std::string> methodsOf(const Ranking& ranking) {
+  std::vector<std::string> names;
+  for (const MethodScore& score : ranking.scores) names.push_back(score.method.substr(0, score.method.find(' ')));
+  return names;
+}
+
+TEST(Ranking, TheBetterMedianComesFirst) {
+  StudyResult study;
+  addMethod(study, "bad", "joint_to_joint", {5, 6, 7, 8, 9, 10});
+  addMethod(study, "good", "joint_to_joint", {1, 2, 3, 4, 5, 6});
+  const Ranking ranking = rankMethods(study, CellKind::kRig, findMeasure("joint_to_joint"));
+  EXPECT_THAT(methodsOf(ranking), ElementsAre("good", "bad"));
+  EXPECT_EQ(ranking.scores[0].value.median, 3.5);
+  EXPECT_LE(ranking.scores[0].value.low, 3.5);
+  EXPECT_GE(ranking.scores[0].value.high, 3.5);
+  ASSERT_EQ(ranking.pairs.size(), 1u);
+  EXPECT_EQ(ranking.pairs[0].firstWins, 6u);
+  EXPECT_EQ(ranking.pairs[0].secondWins, 0u);
+  EXPECT_NEAR(ranking.pairs[0].p, 2 / 64.0, 1e-12);
+  EXPECT_EQ(ranking.worstCells.front(), 5u);
+  EXPECT_EQ(ranking.worstCells.size(), 10u);
+}
+
+TEST(Ranking, MoreIsBetterWhereTheMeasureSaysSo) {
+  StudyResult study;
+  addMethod(study, "low", "joint_iou", {0.1, 0.2, 0.3});
+  addMethod(study, "high", "joint_iou", {0.7, 0.8, 0.9});
+  const Ranking ranking = rankMethods(study, CellKind::kRig, findMeasure("joint_iou"));
+  EXPECT_THAT(methodsOf(ranking), ElementsAre("high", "low"));
+  EXPECT_EQ(ranking.scores[0].value.median, 0.8);
+  EXPECT_EQ(ranking.scores[0].value.low, 0.7);
+  EXPECT_EQ(ranking.scores[0].value.high, 0.9);
+  EXPECT_EQ(ranking.worstCells.front(), 0u);
+}
+
+TEST(Ranking, FailingOnHardModelsGainsNothing) {
+  StudyResult study;
+  addMethod(study, "brave", "joint_to_joint", {1, 2, 30, 40, 50});
+  addMethod(study, "coward", "joint_to_joint", {0.5, 1, std::nullopt, std::nullopt, std::nullopt});
+  const Ranking ranking = rankMethods(study, CellKind::kRig, findMeasure("joint_to_joint"));
+  EXPECT_THAT(methodsOf(ranking), ElementsAre("brave", "coward"));
+  EXPECT_EQ(ranking.scores[1].failures, 3u);
+  EXPECT_EQ(ranking.scores[1].subjects, 5u);
+  EXPECT_TRUE(std::isinf(ranking.scores[1].value.median));
+  EXPECT_EQ(ranking.pairs[0].firstWins, 3u);
+}
+
+TEST(Ranking, ModelsThatNoMethodManagesDoNotCount) {
+  StudyResult study;
+  addMethod(study, "one", "joint_to_joint", {1, std::nullopt, 3});
+  addMethod(study, "two", "joint_to_joint", {2, std::nullopt, 4});
+  const Ranking ranking = rankMethods(study, CellKind::kRig, findMeasure("joint_to_joint"));
+  EXPECT_EQ(ranking.scores[0].subjects, 2u);
+  EXPECT_EQ(ranking.scores[0].failures, 0u);
+}
+
+TEST(Ranking, IsOfOneGroupOnDemand) {
+  StudyResult study;
+  addMethod(study, "one", "joint_to_joint", {1, 9, 1, 9});
+  addMethod(study, "two", "joint_to_joint", {2, 2, 2, 2});
+  EXPECT_THAT(methodsOf(rankMethods(study, CellKind::kRig, findMeasure("joint_to_joint"), "even")),
+              ElementsAre("one", "two"));
+  EXPECT_THAT(methodsOf(rankMethods(study, CellKind::kRig, findMeasure("joint_to_joint"), "odd")),
+              ElementsAre("two", "one"));
+}
+
+TEST(Ranking, IsEmptyWhereNothingWasMeasured) {
+  StudyResult study;
+  addMethod(study, "one", "joint_to_joint", {1});
+  EXPECT_TRUE(rankMethods(study, CellKind::kRig, findMeasure("weight_l1")).scores.empty());
+  EXPECT_TRUE(rankMethods(study, CellKind::kRetarget, findMeasure("joint_to_joint")).scores.empty());
+  EXPECT_TRUE(rankMethods({}, CellKind::kRig, findMeasure("joint_to_joint")).scores.empty());
+  EXPECT_THROW(rankMethods(study, CellKind::kRig, findMeasure("joints")), Error);
+}
+
+TEST(TimePlot, HasAPointForEachMethodThatHasBoth) {
+  StudyResult study;
+  addMethod(study, "one", "joint_to_joint", {1, 2}, 0.5);
+  addMethod(study, "two", "joint_to_joint", {3, 4}, 5);
+  addMethod(study, "none", "joint_to_joint", {std::nullopt, std::nullopt});
+  const std::string svg = timePlot(rankMethods(study, CellKind::kRig, findMeasure("joint_to_joint")));
+  EXPECT_THAT(svg, HasSubstr(">1</text>"));
+  EXPECT_THAT(svg, HasSubstr(">2</text>"));
+  EXPECT_THAT(svg, Not(HasSubstr(">3</text>")));
+  EXPECT_THAT(svg, Not(HasSubstr("inf")));
+  EXPECT_THAT(svg, Not(HasSubstr("nan")));
+  EXPECT_EQ(timePlot(rankMethods(study, CellKind::kRig, findMeasure("seconds"))), "");
+}
+
+}  // namespace
+}  // namespace limber

@@ -1,0 +1,302 @@
+#include "limber/study/report_page.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "limber/asset/uri.h"
+#include "limber/core/counted.h"
+#include "limber/core/file.h"
+#include "limber/core/names.h"
+#include "limber/study/html_text.h"
+#include "limber/study/method_ranking.h"
+#include "limber/study/report_assets.h"
+#include "limber/study/time_plot.h"
+
+namespace limber {
+
+namespace {
+
+constexpr std::size_t kMostEmbedded = 13000000;  // bytes of pictures as text, of a page below 15 MB
+constexpr CellKind kKinds[] = {CellKind::kRig, CellKind::kRetarget};
+
+// Rankings of one kind, of measures that have any.
+struct KindReport {
+  CellKind kind;
+  std::vector<Ranking> rankings;
+};
+
+std::string_view titleOf(CellKind kind) {
+  return kind == CellKind::kRig ? "Rigs" : "Retargeting";
+}
+
+std::string_view sideOf(const Measure& measure) {
+  return measure.better == Better::kMore ? "more is better" : "less is better";
+}
+
+std::string number(double value) {
+  return std::isfinite(value) ? fmt::format("{:.4g}", value) : "failed";
+}
+
+std::string numberCell(double value) {
+  return fmt::format("<td data-value=\"{}\"{}>{}</td>", std::isfinite(value) ? fmt::format("{}", value) : "Infinity",
+                     std::isfinite(value) ? "" : " class=\"bad\"", number(value));
+}
+
+std::string countCell(std::size_t count, bool isBad = false) {
+  return fmt::format("<td data-value=\"{0}\"{1}>{0}</td>", count, isBad && count > 0 ? " class=\"bad\"" : "");
+}
+
+struct Column {
+  std::string name;
+  bool isText = false;
+};
+
+std::string tableHead(std::string_view caption, const std::vector<Column>& columns) {
+  std::string html = fmt::format(
+      "<div class=\"scroll\" role=\"group\" tabindex=\"0\" "
+      "aria-label=\"{0}\"><table><caption>{0}</caption><thead><tr>",
+      htmlText(caption));
+  for (const Column& column : columns) {
+    html += fmt::format("<th scope=\"col\" aria-sort=\"none\"{}><button type=\"button\">{}</button></th>",
+                        column.isText ? " class=\"text\"" : "", htmlText(column.name));
+  }
+  return html + "</tr></thead><tbody>\n";
+}
+
+constexpr std::string_view kTableEnd = "</tbody></table></div>\n";
+
+std::string rowStart(std::string_view words) {
+  return fmt::format("<tr data-words=\"{}\">", htmlText(lowerCase(words)));
+}
+
+std::string textCell(std::string_view text) {
+  return fmt::format("<td class=\"text\">{}</td>", htmlText(text));
+}
+
+std::string cellLink(const StudyResult& study, std::size_t cell) {
+  return fmt::format("<td class=\"text\"><a href=\"#cell-{}\">{}</a></td>", cell,
+                     htmlText(study.cells[cell].subject()));
+}
+
+std::vector<std::string> groupsOf(const StudyResult& study, CellKind kind) {
+  std::vector<std::string> groups;
+  for (const StudyCell& cell : study.cells) {
+    if (cell.kind == kind && std::find(groups.begin(), groups.end(), cell.group) == groups.end()) {
+      groups.push_back(cell.group);
+    }
+  }
+  return groups;
+}
+
+// The medians of all measures side by side: a line for each method, over all and in each folder.
+std::string overview(const StudyResult& study, const KindReport& report) {
+  std::vector<Column> columns = {{"method", true}, {"folder", true}};
+  for (const Ranking& ranking : report.rankings) {
+    columns.push_back({fmt::format("{} ({})", ranking.measure->label, ranking.measure->unit)});
+  }
+  std::string html = tableHead(fmt::format("{}: medians of all methods", titleOf(report.kind)), columns);
+  std::vector<std::string> groups = groupsOf(study, report.kind);
+  if (groups.size() > 1) {
+    groups.insert(groups.begin(), std::string());
+  } else {
+    groups = {std::string()};
+  }
+  std::vector<std::string> methods;
+  for (const StudyCell& cell : study.cells) {
+    const std::string method = cell.method();
+    if (cell.kind == report.kind && std::find(methods.begin(), methods.end(), method) == methods.end()) {
+      methods.push_back(method);
+    }
+  }
+  for (const std::string& group : groups) {
+    std::vector<Ranking> rankings;
+    for (const Ranking& ranking : report.rankings) {
+      rankings.push_back(group.empty() ? ranking : rankMethods(study, report.kind, *ranking.measure, group));
+    }
+    for (const std::string& method : methods) {
+      html += rowStart(method + " " + group) + textCell(method) + textCell(group.empty() ? "all" : group);
+      for (const Ranking& ranking : rankings) {
+        const auto score = std::find_if(ranking.scores.begin(), ranking.scores.end(),
+                                        [&](const MethodScore& s) { return s.method == method; });
+        html += score == ranking.scores.end() ? "<td>-</td>" : numberCell(score->value.median);
+      }
+      html += "</tr>\n";
+    }
+  }
+  return html + std::string(kTableEnd);
+}
+
+std::string rankingTable(const Ranking& ranking) {
+  std::string html = tableHead(
+      fmt::format("Ranking by {}", ranking.measure->label),
+      {{"rank"}, {"method", true}, {"models"}, {"failed"}, {"median"}, {"95 % from"}, {"95 % to"}, {"time (s)"}});
+  for (std::size_t i = 0; i < ranking.scores.size(); ++i) {
+    const MethodScore& score = ranking.scores[i];
+    html += rowStart(score.method) + countCell(i + 1) + textCell(score.method) + countCell(score.subjects) +
+            countCell(score.failures, true) + numberCell(score.value.median) + numberCell(score.value.low) +
+            numberCell(score.value.high) + (score.seconds > 0 ? numberCell(score.seconds) : "<td>-</td>") + "</tr>\n";
+  }
+  return html + std::string(kTableEnd);
+}
+
+std::string pairTable(const Ranking& ranking) {
+  if (ranking.pairs.empty()) return {};
+  std::string html = tableHead("Are they different? Wilcoxon's signed rank test, p after Holm",
+                               {{"method", true}, {"against", true}, {"better"}, {"worse"}, {"the same"}, {"p"}});
+  for (const MethodPair& pair : ranking.pairs) {
+    html += rowStart(pair.first + " " + pair.second) + textCell(pair.first) + textCell(pair.second) +
+            countCell(pair.firstWins) + countCell(pair.secondWins) + countCell(pair.ties) + numberCell(pair.p) +
+            "</tr>\n";
+  }
+  return html + std::string(kTableEnd);
+}
+
+std::string worstTable(const StudyResult& study, const Ranking& ranking) {
+  std::string html =
+      tableHead("Worst cells", {{"model", true}, {"method", true}, {std::string(ranking.measure->label)}});
+  for (const std::size_t cell : ranking.worstCells) {
+    const StudyCell& one = study.cells[cell];
+    html += rowStart(one.subject() + " " + one.group + " " + one.method()) + cellLink(study, cell) +
+            textCell(one.method()) + numberCell(study.results[cell].valueOf(*ranking.measure).value_or(0)) + "</tr>\n";
+  }
+  return html + std::string(kTableEnd);
+}
+
+std::string kindSection(const StudyResult& study, const KindReport& report) {
+  std::string html = fmt::format("<section><h2>{}: rankings</h2>\n", titleOf(report.kind)) + overview(study, report);
+  html += "<p>A method that failed on a model counts as worse there than any that did not.</p>\n";
+  bool isFirst = true;
+  for (const Ranking& ranking : report.rankings) {
+    html += fmt::format("<details class=\"measure\"{}><summary>{} ({}; {})</summary>\n", isFirst ? " open" : "",
+                        htmlText(ranking.measure->label), htmlText(ranking.measure->unit), sideOf(*ranking.measure));
+    html +=
+        rankingTable(ranking) + timePlot(ranking) + pairTable(ranking) + worstTable(study, ranking) + "</details>\n";
+    isFirst = false;
+  }
+  return html + "</section>\n";
+}
+
+std::string failureSection(const StudyResult& study) {
+  std::string rows;
+  for (std::size_t i = 0; i < study.cells.size(); ++i) {
+    const CellResult& result = study.results[i];
+    if (result.outcome == JobOutcome::kDone) continue;
+    const StudyCell& cell = study.cells[i];
+    rows += rowStart(cell.subject() + " " + cell.group + " " + cell.method()) + cellLink(study, i) +
+            textCell(cell.method()) + textCell(jobOutcomeName(result.outcome)) +
+            fmt::format("<td class=\"text wrap\">{}</td></tr>\n", htmlText(result.problem));
+  }
+  if (rows.empty()) return {};
+  return "<section><h2>What did not end well</h2>\n" +
+         tableHead("Cells that failed", {{"model", true}, {"method", true}, {"outcome", true}, {"why", true}}) + rows +
+         std::string(kTableEnd) + "</section>\n";
+}
+
+// Where a picture is, as an attribute has it: its bytes, or its name beside the page.
+using PictureSource = std::function<std::string(const CellPicture&)>;
+
+PictureSource pictureSource(const StudyResult& study, const std::filesystem::path& folder) {
+  std::size_t total = 0;
+  for (const CellResult& result : study.results) {
+    for (const CellPicture& picture : result.pictures) {
+      std::error_code unseen;
+      const std::uintmax_t size = std::filesystem::file_size(folder / picture.file, unseen);
+      if (!unseen) total += static_cast<std::size_t>((size + 2) / 3 * 4);
+    }
+  }
+  if (total > kMostEmbedded)
+    return [](const CellPicture& picture) { return htmlText(percentEncode(picture.file.generic_string())); };
+  return [folder](const CellPicture& picture) {
+    return "data:image/png;base64," + encodeBase64(readFile(folder / picture.file));
+  };
+}
+
+std::string pictureHtml(const CellPicture& picture, const std::string& alt, const PictureSource& source) {
+  const bool moves = picture.name == "motion";
+  const std::string image = fmt::format("<img loading=\"lazy\" alt=\"{}: {}\" src=\"{}\" width=\"{}\" height=\"{}\">",
+                                        htmlText(picture.name), htmlText(alt), source(picture), 240, 240);
+  // Whoever does not want things to move does not open it.
+  return moves ? "<details><summary>Motion</summary>" + image + "</details>" : image;
+}
+
+std::string cellFigure(const StudyResult& study, std::size_t number_, const PictureSource& source) {
+  const StudyCell& cell = study.cells[number_];
+  const CellResult& result = study.results[number_];
+  std::string html = fmt::format("<figure id=\"cell-{}\" data-words=\"{}\"><figcaption>{}</figcaption>\n", number_,
+                                 htmlText(lowerCase(cell.subject() + " " + cell.group + " " + cell.method())),
+                                 htmlText(cell.method()));
+  for (const CellPicture& picture : result.pictures) {
+    html += pictureHtml(picture, cell.subject() + " by " + cell.method(), source);
+  }
+  if (!result.problem.empty()) {
+    html += fmt::format("<p class=\"bad\">{}: {}</p>", jobOutcomeName(result.outcome), htmlText(result.problem));
+  }
+  std::string values;
+  for (const MeasuredValue& one : result.measures) {
+    values += fmt::format("{}{} {} {}", values.empty() ? "" : "<br>", htmlText(one.measure->label), number(one.value),
+                          htmlText(one.measure->unit));
+  }
+  html += "<details><summary>Figures and commands</summary><p>" + values + "</p><pre>";
+  for (const CellStep& step : cell.steps) html += htmlText(commandText(step)) + "\n";
+  return html + "</pre><button type=\"button\" class=\"copy\">Copy commands</button></details></figure>\n";
+}
+
+std::string pictureSection(const StudyResult& study, const PictureSource& source) {
+  std::string html = "<section><h2>Side by side</h2>\n";
+  std::string subject;
+  bool isOpen = false;
+  for (std::size_t i = 0; i < study.cells.size(); ++i) {
+    const std::string next = fmt::format("{}: {}", titleOf(study.cells[i].kind), study.cells[i].subject());
+    if (!isOpen || next != subject) {
+      html += fmt::format("{}<div class=\"subject\"><h3>{}</h3><div class=\"cells\">\n", isOpen ? "</div></div>\n" : "",
+                          htmlText(next));
+      subject = next;
+      isOpen = true;
+    }
+    html += cellFigure(study, i, source);
+  }
+  return html + (isOpen ? "</div></div>\n" : "") + "</section>\n";
+}
+
+std::string header(const StudyResult& study) {
+  const auto failed = std::count_if(study.results.begin(), study.results.end(),
+                                    [](const CellResult& r) { return r.outcome != JobOutcome::kDone; });
+  return fmt::format(
+      "<header><h1>{}</h1>\n<p>{}, of which {} did not end well. All figures: <a href=\"cells.csv\">cells.csv</a>, "
+      "<a href=\"cells.json\">cells.json</a>.</p>\n"
+      "<label for=\"filter\">Show only what has these words</label>"
+      "<input type=\"search\" id=\"filter\" placeholder=\"model, method or folder\"> "
+      "<span id=\"shown\" role=\"status\"></span></header>\n",
+      htmlText(study.title), counted(study.cells.size(), "cell"), failed);
+}
+
+}  // namespace
+
+std::string reportPage(const StudyResult& study, const std::filesystem::path& folder) {
+  std::string html = fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">"
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data: file: 'self'; "
+      "style-src 'unsafe-inline'; script-src 'unsafe-inline'\">"
+      "<title>{}</title><style>{}</style></head><body>\n{}<main>\n",
+      htmlText(study.title), kReportStyle, header(study));
+  for (const CellKind kind : kKinds) {
+    KindReport report{kind, {}};
+    for (const Measure& measure : studyMeasures()) {
+      if (measure.better == Better::kNeither) continue;
+      Ranking ranking = rankMethods(study, kind, measure);
+      if (!ranking.scores.empty()) report.rankings.push_back(std::move(ranking));
+    }
+    if (!report.rankings.empty()) html += kindSection(study, report);
+  }
+  html += failureSection(study) + pictureSection(study, pictureSource(study, folder));
+  return html + fmt::format("</main><script>{}</script></body></html>\n", kReportScript);
+}
+
+}  // namespace limber

@@ -1,0 +1,117 @@
+#include "limber/study/study_cell.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <set>
+
+#include <nlohmann/json.hpp>
+
+namespace limber {
+namespace {
+
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::Not;
+
+std::vector<std::string> stepsOf(const StudyCell& cell) {
+  std::vector<std::string> names;
+  for (const CellStep& step : cell.steps) names.push_back(step.name);
+  return names;
+}
+
+StudyPlan rigPlanOf(std::vector<RigCombination> combinations) {
+  StudyPlan plan;
+  plan.rig.models = {"m"};
+  plan.rig.combinations = std::move(combinations);
+  return plan;
+}
+
+const StudyModel kBare = {{"/data/bare.obj", "bare", "data", {}}, false};
+const StudyModel kRigged = {{"/data/rigged.glb", "rigged", "data", {}}, true};
+
+TEST(StudyCells, ARiggedModelIsComparedWithItsOwnRig) {
+  const std::vector<StudyCell> cells =
+      rigCells(rigPlanOf({{"template", "bone-heat", {}}}), std::vector{kBare, kRigged});
+  ASSERT_EQ(cells.size(), 2u);
+  EXPECT_THAT(stepsOf(cells[0]), ElementsAre("rig", "preview bones", "preview weights"));
+  EXPECT_THAT(stepsOf(cells[1]), ElementsAre("rig", "evaluate rig", "preview bones", "preview weights"));
+  EXPECT_THAT(cells[0].steps[0].arguments, Not(Contains("--replace-rig")));
+  EXPECT_THAT(cells[1].steps[0].arguments, Contains("--replace-rig"));
+}
+
+TEST(StudyCells, OwnSkeletonsAreKeptAndTheirWeightsCompared) {
+  const std::vector<StudyCell> cells = rigCells(rigPlanOf({{"own", "bone-heat", {}}}), std::vector{kBare, kRigged});
+  ASSERT_EQ(cells.size(), 1u);
+  EXPECT_THAT(stepsOf(cells[0]), ElementsAre("rig", "evaluate weights", "preview bones", "preview weights"));
+  EXPECT_THAT(cells[0].steps[0].arguments, Contains("--keep-skeleton"));
+}
+
+TEST(StudyCells, MethodsAreToldApartByTheirNames) {
+  const std::vector<StudyCell> cells = rigCells(
+      rigPlanOf({{"template", "bone-heat", {}}, {"template", "bone-heat", {"20 handles", {"--handles", "20"}}}}),
+      std::vector{kBare});
+  EXPECT_EQ(cells[0].method(), "template + bone-heat");
+  EXPECT_EQ(cells[1].method(), "template + bone-heat, 20 handles");
+  EXPECT_THAT(cells[1].steps[0].arguments, Contains("--handles"));
+}
+
+TEST(StudyCells, EachCharacterMeetsEachMotion) {
+  StudyPlan plan;
+  plan.retarget.combinations = {{"limb-ik", "fabrik"}, {"copy", ""}};
+  const std::vector<StudyInput> characters = {kRigged.input},
+                                motions = {{"/m/walk.bvh", "walk", "m", {}}, {"/m/run.bvh", "run", "m", {}}};
+  const std::vector<StudyCell> cells = retargetCells(plan, characters, motions);
+  ASSERT_EQ(cells.size(), 4u);
+  EXPECT_EQ(cells[0].subject(), "rigged, walk");
+  EXPECT_EQ(cells[0].method(), "limb-ik + fabrik");
+  EXPECT_EQ(cells[3].subject(), "rigged, run");
+  EXPECT_EQ(cells[3].method(), "copy");
+  EXPECT_THAT(cells[3].steps[0].arguments, Not(Contains("--solver")));
+}
+
+// A shell gives back what it was given.
+TEST(CommandText, IsReadByAShellAsItWasMeant) {
+  CellStep step;
+  step.arguments = {"rig", "a b.glb", "it's", "$HOME", "`id`", "", "x;y", "\"", "back\\slash", "new\nline"};
+  const std::string script = "limber() { printf '%s|' \"$@\"; }\n" + commandText(step);
+  std::FILE* shell = popen(("/bin/sh -c '" +
+                            [&] {
+                              std::string quoted;
+                              for (const char c : script)
+                                quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+                              return quoted;
+                            }() +
+                            "'")
+                               .c_str(),
+                           "r");
+  ASSERT_NE(shell, nullptr);
+  std::string out;
+  for (int c = 0; (c = std::fgetc(shell)) != EOF;) out += static_cast<char>(c);
+  EXPECT_EQ(pclose(shell), 0);
+  std::string expected;
+  for (const std::string& argument : step.arguments) expected += argument + "|";
+  EXPECT_EQ(out, expected);
+}
+
+TEST(Measures, NamesAreAllDifferentAndFoundAgain) {
+  std::set<std::string_view> names;
+  for (const Measure& measure : studyMeasures()) {
+    EXPECT_TRUE(names.insert(measure.name).second) << measure.name;
+    EXPECT_EQ(&findMeasure(measure.name), &measure);
+  }
+}
+
+TEST(Measures, AreReadWhereTheyAreNumbers) {
+  const Json figures = {{"l1", 0.5}, {"precision", "much"}, {"deform_mean", 2}, {"other", 1}};
+  const std::vector<MeasuredValue> values = measuresIn(figures, MeasureSource::kWeightTruth);
+  ASSERT_EQ(values.size(), 2u);
+  EXPECT_EQ(values[0].measure->name, "weight_l1");
+  EXPECT_EQ(values[0].value, 0.5);
+  EXPECT_EQ(values[1].value, 2);
+  EXPECT_TRUE(measuresIn(Json::array(), MeasureSource::kMotion).empty());
+}
+
+}  // namespace
+}  // namespace limber

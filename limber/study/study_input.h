@@ -1,0 +1,25 @@
+// The files that the names in a plan stand for.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace limber {
+
+enum class InputKind { kModel, kMotion };
+
+struct StudyInput {
+  std::filesystem::path file;  // absolute
+  std::string name;            // short and unlike all others of the list
+  std::string group;           // its folder's name
+  std::string sample;          // that the file is to be made of; empty: it is there
+};
+
+// In the order of the names, those of a folder by their paths. `folder` is what relative paths are seen from; samples
+// are to be made in `samples`. Throws Error kFile: a name that is no file or folder, a folder without such files.
+std::vector<StudyInput> findInputs(std::span<const std::string> names, InputKind kind,
+                                   const std::filesystem::path& folder, const std::filesystem::path& samples);
+
+}  // namespace limber

@@ -1,0 +1,256 @@
+#include "limber/study/study_plan.h"
+
+#include <algorithm>
+#include <initializer_list>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "limber/asset/json_access.h"
+#include "limber/asset/json_text.h"
+#include "limber/ik/ik_solver.h"
+#include "limber/retarget/retarget_method.h"
+#include "limber/rigging/auto_rigger.h"
+#include "limber/rigging/template_rigger.h"
+#include "limber/skinning/weight_method.h"
+
+namespace limber {
+
+namespace {
+
+constexpr std::string_view kAll = "all", kVersionKey = "limber_study";
+constexpr std::size_t kMostThreads = 1024, kMostSeconds = 1000000, kMostMegabytes = std::size_t{1} << 24;
+
+// A misspelt key would silently do nothing.
+void allow(const JsonView& object, std::initializer_list<std::string_view> keys) {
+  object.forEachMember([&](std::string_view key, const JsonView&) {
+    if (std::find(keys.begin(), keys.end(), key) != keys.end()) return;
+    object.fail(fmt::format("has a key that is not known: '{}'; there are: {}", key, fmt::join(keys, ", ")));
+  });
+}
+
+std::string textOf(const JsonView& value) {
+  if (!value.exists() || !value.json().is_string() || value.json().get_ref<const std::string&>().empty()) {
+    value.fail("is not a text");
+  }
+  return value.json().get<std::string>();
+}
+
+std::vector<std::string> textsOf(const JsonView& object, std::string_view key) {
+  const JsonView list = object.array(key);
+  std::vector<std::string> texts;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    texts.push_back(textOf(list[i]));
+    if (std::count(texts.begin(), texts.end(), texts.back()) > 1) list[i].fail("stands there twice");
+  }
+  return texts;
+}
+
+// Calls `check` for a name at its place in the plan.
+template <typename Check>
+void checkAt(const JsonView& value, const std::string& name, const Check& check) {
+  try {
+    check(name);
+  } catch (const Error& error) {
+    value.fail(error.message() + "; " + error.remedy());
+  }
+}
+
+// The methods that a list names; `byDefault` where it is missing.
+template <typename Table, typename Check>
+std::vector<std::string> methodsOf(const JsonView& object, std::string_view key, const Table& table,
+                                   std::vector<std::string> byDefault, const Check& check) {
+  const JsonView list = object.array(key);
+  if (!list.exists()) return byDefault;
+  std::vector<std::string> names = textsOf(object, key);
+  if (names == std::vector<std::string>{std::string(kAll)}) {
+    names.clear();
+    for (const auto& method : table) names.emplace_back(method.name);
+    return names;
+  }
+  for (std::size_t i = 0; i < names.size(); ++i) checkAt(list[i], names[i], check);
+  return names;
+}
+
+void checkRigger(std::string_view name) {
+  if (name != kOwnSkeleton) findRigger(name);
+}
+
+RigSetting settingOf(const JsonView& entry) {
+  entry.requireObject();
+  allow(entry, {"name", "handles", "max_influences", "pieces", "template"});
+  RigSetting setting;
+  setting.name = textOf(entry.member("name"));
+  const auto add = [&](std::string_view option, std::string value) {
+    setting.arguments.insert(setting.arguments.end(), {std::string(option), std::move(value)});
+  };
+  if (const auto handles = entry.count("handles")) {
+    if (*handles == 0) entry.member("handles").fail("is not at least 1");
+    add("--handles", std::to_string(*handles));
+  }
+  if (const auto influences = entry.count("max_influences")) {
+    if (*influences < 1 || *influences > 8) entry.member("max_influences").fail("is not from 1 to 8");
+    add("--max-influences", std::to_string(*influences));
+  }
+  if (const JsonView pieces = entry.member("pieces"); pieces.exists()) {
+    checkAt(pieces, textOf(pieces), findPieceMode);
+    add("--pieces", textOf(pieces));
+  }
+  if (const JsonView name = entry.member("template"); name.exists()) {
+    checkAt(name, textOf(name), checkTemplateName);
+    add("--template", textOf(name));
+  }
+  return setting;
+}
+
+std::vector<RigSetting> settingsOf(const JsonView& rig) {
+  const JsonView list = rig.array("options");
+  std::vector<RigSetting> settings;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    settings.push_back(settingOf(list[i]));
+    const auto isSame = [&](const RigSetting& s) { return s.name == settings.back().name; };
+    if (std::count_if(settings.begin(), settings.end(), isSame) > 1) list[i].fail("has a name that is taken");
+  }
+  return settings;
+}
+
+// The plan's own combinations, in place of all.
+std::vector<RigCombination> namedPairs(const JsonView& pairs, const std::vector<RigSetting>& settings) {
+  std::vector<RigCombination> combinations;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const JsonView pair = pairs[i];
+    pair.requireObject();
+    allow(pair, {"rigger", "skinning", "options"});
+    RigCombination one{textOf(pair.member("rigger")), textOf(pair.member("skinning")), {}};
+    checkAt(pair.member("rigger"), one.rigger, checkRigger);
+    checkAt(pair.member("skinning"), one.skinning, findWeightMethod);
+    if (const JsonView name = pair.member("options"); name.exists()) {
+      const auto find = [&](const std::string& wanted) {
+        one.setting = findByName(settings, "set of options", wanted);
+      };
+      checkAt(name, textOf(name), find);
+    }
+    combinations.push_back(std::move(one));
+  }
+  return combinations;
+}
+
+RigPlan rigPlanOf(const JsonView& rig) {
+  RigPlan plan;
+  if (!rig.exists()) return plan;
+  allow(rig, {"models", "riggers", "skinning", "options", "pairs"});
+  plan.models = textsOf(rig, "models");
+  if (plan.models.empty()) rig.fail("names no models");
+  std::vector<RigSetting> settings = settingsOf(rig);
+  if (const JsonView pairs = rig.array("pairs"); pairs.exists()) {
+    for (const std::string_view list : {"riggers", "skinning"}) {
+      if (rig.member(list).exists()) rig.fail(fmt::format("has both 'pairs' and '{}'", list));
+    }
+    plan.combinations = namedPairs(pairs, settings);
+  } else {
+    if (settings.empty()) settings.emplace_back();
+    const std::vector<std::string> riggers = methodsOf(rig, "riggers", riggerMethods(), {"template"}, checkRigger);
+    const std::vector<std::string> methods =
+        methodsOf(rig, "skinning", weightMethods(), {"bone-heat"}, findWeightMethod);
+    for (const std::string& rigger : riggers) {
+      for (const std::string& skinning : methods) {
+        for (const RigSetting& setting : settings) plan.combinations.push_back({rigger, skinning, setting});
+      }
+    }
+  }
+  if (plan.combinations.empty()) rig.fail("names no methods");
+  return plan;
+}
+
+RetargetPlan retargetPlanOf(const JsonView& retarget) {
+  RetargetPlan plan;
+  if (!retarget.exists()) return plan;
+  allow(retarget, {"characters", "motions", "methods", "solvers"});
+  plan.characters = textsOf(retarget, "characters");
+  plan.motions = textsOf(retarget, "motions");
+  if (plan.characters.empty()) retarget.fail("names no characters");
+  if (plan.motions.empty()) retarget.fail("names no motions");
+  const std::vector<std::string> methods =
+      methodsOf(retarget, "methods", retargetMethods(), {"limb-ik"}, findRetargetMethod);
+  const std::vector<std::string> solvers = methodsOf(retarget, "solvers", ikMethods(), {"two-bone"}, findIkMethod);
+  for (const std::string& method : methods) {
+    // What solves for no limbs gives the same by every solver.
+    const bool usesSolver = findRetargetMethod(method).solvesLimbs;
+    for (std::size_t i = 0; i < (usesSolver ? solvers.size() : std::min<std::size_t>(1, solvers.size())); ++i) {
+      plan.combinations.push_back({method, usesSolver ? solvers[i] : std::string()});
+    }
+  }
+  if (plan.combinations.empty()) retarget.fail("names no methods");
+  return plan;
+}
+
+void readLimits(const JsonView& limits, StudyPlan& plan) {
+  if (!limits.exists()) return;
+  allow(limits, {"seconds", "memory_mb"});
+  plan.limits.seconds = limits.number("seconds", plan.limits.seconds);
+  if (!(plan.limits.seconds > 0 && plan.limits.seconds <= kMostSeconds)) {
+    limits.member("seconds").fail(fmt::format("is not above 0 and at most {}", kMostSeconds));
+  }
+  if (const auto megabytes = limits.count("memory_mb")) {
+    if (*megabytes < 1 || *megabytes > kMostMegabytes) {
+      limits.member("memory_mb").fail(fmt::format("is not from 1 to {}", kMostMegabytes));
+    }
+    plan.limits.memory = *megabytes << 20;
+  }
+}
+
+StudyPlan planOf(const JsonView& root) {
+  root.requireObject();
+  if (root.count(kVersionKey) != 1) root.fail(fmt::format("has no \"{}\": 1", kVersionKey));
+  allow(root, {kVersionKey, "title", "rig", "retarget", "limits", "threads"});
+  StudyPlan plan;
+  if (root.member("title").exists()) plan.title = textOf(root.member("title"));
+  plan.rig = rigPlanOf(root.object("rig"));
+  plan.retarget = retargetPlanOf(root.object("retarget"));
+  readLimits(root.object("limits"), plan);
+  if (const auto threads = root.count("threads")) {
+    if (*threads > kMostThreads) root.member("threads").fail(fmt::format("is not from 0 to {}", kMostThreads));
+    plan.threads = static_cast<int>(*threads);
+  }
+  if (plan.rig.models.empty() && plan.retarget.characters.empty()) root.fail("has neither \"rig\" nor \"retarget\"");
+  return plan;
+}
+
+}  // namespace
+
+StudyPlan studyPlanFromJson(std::string_view text) {
+  try {
+    Warnings warnings;
+    const Json json = parseJson(text, warnings);
+    if (!warnings.empty()) {
+      const Warning& first = warnings.items().front();
+      throw Error(ErrorCode::kBadData, first.message, first.where);
+    }
+    return planOf(JsonView(json));
+  } catch (const Error& error) {
+    throw error.within("study plan");
+  }
+}
+
+std::string exampleStudyPlan() {
+  return R"({
+  "limber_study": 1,
+  "title": "Riggers and weights on samples",
+  "rig": {
+    "models": ["sample:biped", "sample:quadruped", "sample:flying"],
+    "riggers": ["own", "template", "sphere-mesh"],
+    "skinning": ["bone-heat", "geodesic-voxel"]
+  },
+  "retarget": {
+    "characters": ["sample:flying"],
+    "motions": ["sample:flap", "sample:trot"],
+    "methods": ["limb-ik", "copy"],
+    "solvers": ["two-bone", "fabrik"]
+  },
+  "limits": {"seconds": 60, "memory_mb": 2048},
+  "threads": 1
+}
+)";
+}
+
+}  // namespace limber

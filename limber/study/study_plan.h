@@ -1,0 +1,60 @@
+// What a study runs over: models, methods and settings; docs/study.schema.json describes the file.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "limber/jobs/job.h"
+
+namespace limber {
+
+// Stands where a rigger does, for each model's own skeleton with weights made anew.
+inline constexpr std::string_view kOwnSkeleton = "own";
+// What a sample of the program's own is named with, in place of a file: "sample:quadruped".
+inline constexpr std::string_view kSamplePrefix = "sample:";
+
+// Options of `limber rig` under a name.
+struct RigSetting {
+  std::string name;                    // empty: the usual ones
+  std::vector<std::string> arguments;  // of the program
+};
+
+struct RigCombination {
+  std::string rigger, skinning;
+  RigSetting setting;
+};
+
+// models         files, folders and samples, as the plan has them
+// combinations   each is tried on each model
+struct RigPlan {
+  std::vector<std::string> models;
+  std::vector<RigCombination> combinations;
+};
+
+struct RetargetCombination {
+  std::string method, solver;
+};
+
+// Each combination is tried on each pair of a character and a motion.
+struct RetargetPlan {
+  std::vector<std::string> characters, motions;
+  std::vector<RetargetCombination> combinations;
+};
+
+struct StudyPlan {
+  std::string title = "Study";
+  RigPlan rig;            // without models where the plan has none
+  RetargetPlan retarget;  // without characters likewise
+  JobLimits limits;       // of each command
+  int threads = 1;        // of each command
+};
+
+// Lists of methods are multiplied out, in the order of the plan; "all" stands for all there are. Throws Error kBadData
+// that names the entry: not JSON, another version, a key or a method that is not known, nothing to run.
+StudyPlan studyPlanFromJson(std::string_view text);
+
+// A plan of samples that runs as it is.
+std::string exampleStudyPlan();
+
+}  // namespace limber

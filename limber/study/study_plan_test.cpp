@@ -1,0 +1,146 @@
+#include "limber/study/study_plan.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include <nlohmann/json.hpp>
+
+#include "limber/core/error.h"
+#include "limber/ik/ik_solver.h"
+#include "limber/rigging/auto_rigger.h"
+#include "limber/skinning/weight_method.h"
+
+namespace limber {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+std::string refusalOf(const std::string& text) {
+  try {
+    studyPlanFromJson(text);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::kBadData) << text;
+    return error.what();
+  }
+  ADD_FAILURE() << "taken: " << text;
+  return {};
+}
+
+std::string rigPlan(const std::string& members) {
+  return R"({"limber_study": 1, "rig": {"models": ["a.glb"])" + members + "}}";
+}
+
+TEST(StudyPlan, ListsAreMultipliedOut) {
+  const StudyPlan plan = studyPlanFromJson(rigPlan(
+      R"(, "riggers": ["own", "template"], "skinning": ["bone-heat", "geodesic-voxel"],
+         "options": [{"name": "usual"}, {"name": "rigid", "pieces": "rigid", "max_influences": 2}])"));
+  ASSERT_EQ(plan.rig.combinations.size(), 8u);
+  EXPECT_EQ(plan.rig.combinations.front().rigger, "own");
+  const RigCombination& last = plan.rig.combinations.back();
+  EXPECT_EQ(last.rigger, "template");
+  EXPECT_EQ(last.skinning, "geodesic-voxel");
+  EXPECT_EQ(last.setting.name, "rigid");
+  EXPECT_THAT(last.setting.arguments, ElementsAre("--max-influences", "2", "--pieces", "rigid"));
+  EXPECT_TRUE(plan.retarget.characters.empty());
+}
+
+TEST(StudyPlan, AllStandsForAllThereAre) {
+  const StudyPlan plan = studyPlanFromJson(rigPlan(R"(, "riggers": ["all"], "skinning": ["all"])"));
+  EXPECT_EQ(plan.rig.combinations.size(), riggerMethods().size() * weightMethods().size());
+  const StudyPlan moving = studyPlanFromJson(
+      R"({"limber_study": 1, "retarget": {"characters": ["c"], "motions": ["m"], "methods": ["limb-ik", "copy"],
+          "solvers": ["all"]}})");
+  // Copying local rotations solves for nothing: once, without a solver.
+  ASSERT_EQ(moving.retarget.combinations.size(), ikMethods().size() + 1);
+  EXPECT_EQ(moving.retarget.combinations.back().solver, "");
+}
+
+TEST(StudyPlan, PairsStandForThemselves) {
+  const StudyPlan plan = studyPlanFromJson(rigPlan(R"(, "options": [{"name": "20", "handles": 20}],
+         "pairs": [{"rigger": "sphere-mesh", "skinning": "bone-heat", "options": "20"},
+                   {"rigger": "template", "skinning": "geodesic-voxel"}])"));
+  ASSERT_EQ(plan.rig.combinations.size(), 2u);
+  EXPECT_THAT(plan.rig.combinations[0].setting.arguments, ElementsAre("--handles", "20"));
+  EXPECT_TRUE(plan.rig.combinations[1].setting.arguments.empty());
+}
+
+TEST(StudyPlan, LimitsAreThoseOfThePlan) {
+  const StudyPlan plan = studyPlanFromJson(
+      R"({"limber_study": 1, "title": "T", "rig": {"models": ["a"]}, "limits": {"seconds": 1.5, "memory_mb": 300},
+          "threads": 2})");
+  EXPECT_EQ(plan.title, "T");
+  EXPECT_EQ(plan.limits.seconds, 1.5);
+  EXPECT_EQ(plan.limits.memory, std::size_t{300} << 20);
+  EXPECT_EQ(plan.threads, 2);
+}
+
+TEST(StudyPlan, WhatIsWrongIsToldWithItsPlace) {
+  EXPECT_THAT(refusalOf("{"), HasSubstr("study plan"));
+  EXPECT_THAT(refusalOf("[]"), HasSubstr("study plan"));
+  EXPECT_THAT(refusalOf("{}"), HasSubstr("limber_study"));
+  EXPECT_THAT(refusalOf(R"({"limber_study": 2})"), HasSubstr("limber_study"));
+  EXPECT_THAT(refusalOf(R"({"limber_study": 1})"), HasSubstr("neither"));
+  EXPECT_THAT(refusalOf(R"({"limber_study": 1, "rig": {"models": []}})"), AllOf(HasSubstr("rig"), HasSubstr("models")));
+  EXPECT_THAT(refusalOf(R"({"limber_study": 1, "rig": {"models": [3]}})"), HasSubstr("rig.models[0]"));
+  EXPECT_THAT(refusalOf(R"({"limber_study": 1, "rig": {"models": ["a", "a"]}})"), HasSubstr("rig.models[1]"));
+  EXPECT_THAT(refusalOf(R"({"limber_study": 1, "limber_study": 1})"), HasSubstr("twice"));
+  EXPECT_THAT(refusalOf(rigPlan(R"(, "rigers": ["template"])")), AllOf(HasSubstr("rig"), HasSubstr("'rigers'")));
+  EXPECT_THAT(refusalOf(rigPlan(R"(, "riggers": ["template", "magic"])")),
+              AllOf(HasSubstr("rig.riggers[1]"), HasSubstr("'magic'"), HasSubstr("sphere-mesh")));
+  EXPECT_THAT(refusalOf(rigPlan(R"(, "riggers": [])")), HasSubstr("no methods"));
+  EXPECT_THAT(refusalOf(rigPlan(R"(, "riggers": ["own"], "pairs": [])")), HasSubstr("both 'pairs' and 'riggers'"));
+  EXPECT_THAT(refusalOf(rigPlan(R"(, "pairs": [{"rigger": "own"}])")), HasSubstr("rig.pairs[0].skinning"));
+  EXPECT_THAT(refusalOf(rigPlan(R"(, "pairs": [{"rigger": "own", "skinning": "bone-heat", "options": "x"}])")),
+              HasSubstr("rig.pairs[0].options"));
+  EXPECT_THAT(refusalOf(rigPlan(R"(, "options": [{"handles": 3}])")), HasSubstr("rig.options[0].name"));
+  EXPECT_THAT(refusalOf(rigPlan(R"(, "options": [{"name": "n", "handles": 0}])")), HasSubstr("handles"));
+  EXPECT_THAT(refusalOf(rigPlan(R"(, "options": [{"name": "n", "max_influences": 9}])")), HasSubstr("max_influences"));
+  EXPECT_THAT(refusalOf(rigPlan(R"(, "options": [{"name": "n", "pieces": "none"}])")), HasSubstr("pieces"));
+  EXPECT_THAT(refusalOf(rigPlan(R"(, "options": [{"name": "n", "template": "yeti"}])")), HasSubstr("template"));
+  EXPECT_THAT(refusalOf(rigPlan(R"(, "options": [{"name": "n"}, {"name": "n"}])")), HasSubstr("rig.options[1]"));
+  EXPECT_THAT(refusalOf(R"({"limber_study": 1, "rig": {"models": ["a"]}, "limits": {"seconds": 0}})"),
+              HasSubstr("limits.seconds"));
+  EXPECT_THAT(refusalOf(R"({"limber_study": 1, "rig": {"models": ["a"]}, "limits": {"memory_mb": 1e12}})"),
+              HasSubstr("limits.memory_mb"));
+  EXPECT_THAT(refusalOf(R"({"limber_study": 1, "rig": {"models": ["a"]}, "threads": -1})"), HasSubstr("threads"));
+  EXPECT_THAT(refusalOf(R"({"limber_study": 1, "retarget": {"characters": ["a"]}})"), HasSubstr("motions"));
+}
+
+TEST(StudyPlan, TheExampleIsAPlan) {
+  const StudyPlan plan = studyPlanFromJson(exampleStudyPlan());
+  EXPECT_FALSE(plan.rig.models.empty());
+  EXPECT_FALSE(plan.retarget.characters.empty());
+}
+
+// Every key of the schema is read, and only these are, so that the two cannot drift apart.
+TEST(StudyPlan, TheSchemaKnowsEveryKey) {
+  std::ifstream file(std::string(LIMBER_SOURCE_DIR) + "/docs/study.schema.json");
+  const nlohmann::json schema = nlohmann::json::parse(file);
+  const auto keysOf = [](const nlohmann::json& object) {
+    EXPECT_EQ(object["additionalProperties"], false);
+    std::string keys;
+    for (const auto& item : object["properties"].items()) keys += item.key() + " ";
+    return keys;
+  };
+  const nlohmann::json& plan = schema["properties"];
+  EXPECT_EQ(keysOf(schema), "limber_study limits retarget rig threads title ");
+  EXPECT_EQ(keysOf(plan["rig"]), "models options pairs riggers skinning ");
+  EXPECT_EQ(keysOf(plan["rig"]["properties"]["options"]["items"]), "handles max_influences name pieces template ");
+  EXPECT_EQ(keysOf(plan["rig"]["properties"]["pairs"]["items"]), "options rigger skinning ");
+  EXPECT_EQ(keysOf(plan["retarget"]), "characters methods motions solvers ");
+  EXPECT_EQ(keysOf(plan["limits"]), "memory_mb seconds ");
+  EXPECT_THAT(refusalOf(R"({"limber_study": 1, "x": 1})"),
+              HasSubstr("limber_study, title, rig, retarget, limits, threads"));
+  EXPECT_THAT(refusalOf(rigPlan(R"(, "x": 1)")), HasSubstr("models, riggers, skinning, options, pairs"));
+  EXPECT_THAT(refusalOf(rigPlan(R"(, "options": [{"x": 1}])")),
+              HasSubstr("name, handles, max_influences, pieces, template"));
+  EXPECT_THAT(refusalOf(R"({"limber_study": 1, "retarget": {"x": 1}})"),
+              HasSubstr("characters, motions, methods, solvers"));
+}
+
+}  // namespace
+}  // namespace limber
