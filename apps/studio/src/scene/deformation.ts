@@ -87,7 +87,7 @@ export class RowSurface {
   /** Where the card draws a vertex. */
   place(vertex: number, at: Vector3, matrices: Float32Array, motions: Float32Array): Vector3 {
     const { places, ranges, entries } = this.rows, place = new Vector3().fromArray(places, 3 * vertex);
-    const moment = new Vector4(), turn = new Vector4(), sum = new Vector4(), pivot = new Vector4(), shift = new Vector3(), matrix = new Matrix4();
+    const moment = new Vector4(), turn = new Vector4(), sum = new Vector4(0, 0, 0, 0), pivot = sum.clone(), shift = new Vector3(), matrix = new Matrix4();
     const arm = at.clone().sub(place), stretched = arm.clone();
     const first = ranges[2 * vertex]!, end = first + ranges[2 * vertex + 1]!;
     for (let entry = first; entry < end; ++entry) {
