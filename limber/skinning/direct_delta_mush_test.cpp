@@ -1,6 +1,8 @@
 // Direct delta mush against the paper's formulas in dense matrices, and what it is for: joints that bend softly.
 #include "limber/skinning/direct_delta_mush.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 #include <Eigen/Dense>
 
@@ -234,14 +236,60 @@ TEST(DirectDeltaMush, EveryBuildOfTheInnerLoopGivesTheSameBits) {
   }
 }
 
+// A tube of nine joints one behind the other, each point held by the three nearest.
+BoundMesh manyJointedTube() {
+  BoundMesh bound;
+  bound.mesh = testing::tube(8, 33, true);
+  bound.weights.slots = 3;
+  for (const Vec3f& p : bound.mesh.positions) {
+    const Index middle = std::clamp(static_cast<Index>(8 * (p.x() + 0.5f) + 0.5f), 1u, 7u);
+    bound.weights.joints.insert(bound.weights.joints.end(), {middle, middle - 1, middle + 1});
+    bound.weights.weights.insert(bound.weights.weights.end(), {0.5f, 0.25f, 0.25f});
+  }
+  bound.transforms.assign(9, Affine(Eigen::Translation3d(1, 2, 3) * bendBy(0.6)));
+  return bound;
+}
+
+TEST(DirectDeltaMush, AnEntryIsKeptWhereItsJointsHoldEnoughTogether) {
+  const BoundMesh bound = manyJointedTube();
+  DirectDeltaMushOptions every;
+  every.leastEntry = 0;
+  const auto all = directDeltaMushRows(bound.surface(), bound.jointCount(), every);
+  std::size_t before = all->joints.size();
+  ASSERT_GT(before, 4 * (all->begin.size() - 1)) << "no row has a second entry";
+  for (const double least : {0.02, 0.06, 0.5}) {
+    DirectDeltaMushOptions options;
+    options.leastEntry = least;
+    const auto rows = directDeltaMushRows(bound.surface(), bound.jointCount(), options);
+    EXPECT_LE(rows->joints.size(), before) << least;
+    before = rows->joints.size();
+    for (std::size_t r = 0; r + 1 < rows->begin.size(); ++r) {
+      const std::vector<RowPart> parts = partsOf(*rows, r), wanted = partsOf(*all, r);
+      double behind = 0, sum = 0;
+      for (std::size_t i = 4; i < wanted.size(); ++i) behind += static_cast<double>(wanted[i].weight);
+      EXPECT_EQ(parts.size(), behind < least ? std::min<std::size_t>(4, wanted.size()) : wanted.size()) << r;
+      for (const RowPart& part : parts) sum += static_cast<double>(part.weight);
+      EXPECT_NEAR(sum, 1, 1e-6) << r;
+    }
+    // One motion of all joints stays one motion.
+    const std::vector<Vec3f> moved = bound.deformed(findDeformer("direct-delta-mush"), rows.get());
+    for (Index v = 0; v < moved.size(); ++v) {
+      const Vec3 wanted = bound.transforms[0] * bound.mesh.position(v);
+      EXPECT_LT((moved[v].cast<double>() - wanted).norm(), 2e-6) << v;
+    }
+  }
+  EXPECT_EQ(before, 4 * (all->begin.size() - 1));
+}
+
 TEST(DirectDeltaMush, RefusesOptionsOutOfRange) {
   const BoundMesh bound = bentTube(6, 5, 0.2, bendBy(1));
-  DirectDeltaMushOptions alpha, reach, times, joints;
+  DirectDeltaMushOptions alpha, reach, times, joints, entry;
   alpha.translationWeight = 1;
   reach.rotationReach = 0;
   times.smoothings = 0;
   joints.mostJoints = 0;
-  for (const DirectDeltaMushOptions& wrong : {alpha, reach, times, joints}) {
+  entry.leastEntry = -0.1;
+  for (const DirectDeltaMushOptions& wrong : {alpha, reach, times, joints, entry}) {
     EXPECT_THROW(directDeltaMushRows(bound.surface(), 2, wrong), Error);
   }
 }

@@ -156,9 +156,9 @@ const cases = {
     await page.locator('#brush-strength').fill('100');
     await settled(page);
     const place = await jointPlace(page, 'spine');
-    await page.mouse.move(place.x - 30, place.y);
+    await page.mouse.move(place.x - 8, place.y);
     await page.mouse.down();
-    await page.mouse.move(place.x + 30, place.y + 40, { steps: 6 });
+    await page.mouse.move(place.x + 8, place.y + 10, { steps: 6 });
     await page.mouse.up();
     await page.waitForFunction(() => globalThis.limberStudio.state().undo === 'paint_weights');
     await settled(page);

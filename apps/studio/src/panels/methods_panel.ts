@@ -51,7 +51,7 @@ export function methodsPanel(studio: Studio, page: PageStore): HTMLElement {
   };
   return element('details', { class: 'card methods', id: 'methods' }, element('summary', {}, say('How it is done')),
     row('rigger', say('Joints')), correction(studio, page), otherRigs(studio, page), row('skinning', say('Skin')),
-    row('deformer', say('Deformation')), row('solver', say('Limbs')));
+    row('deformer', say('Bending')), row('solver', say('Limbs')));
 }
 
 /** Joints of a named skeleton that are not where they should be. */

@@ -313,7 +313,7 @@ export const german = {
   'How it is done': 'Wie es gemacht wird',
   'Joints': 'Gelenke',
   'Skin': 'Haut',
-  'Deformation': 'Verformung',
+  'Bending': 'Biegung',
   'Limbs': 'Glieder',
   'Not sure of the skeleton. Is this in its place: {joint}?': 'Das Skelett ist nicht sicher. Sitzt das richtig: {joint}?',
   'Touch the model where this belongs: {joint}': 'Berühr das Modell da, wo das hingehört: {joint}',
