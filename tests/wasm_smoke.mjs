@@ -135,7 +135,9 @@ function quaternionAt(skin, joint) {
   const m = (row, column) => skin[16 * joint + 4 * column + row];
   const squares = [[1, -1, -1], [-1, 1, -1], [-1, -1, 1], [1, 1, 1]].map((s) => 1 + s[0] * m(0, 0) + s[1] * m(1, 1) + s[2] * m(2, 2));
   const r = Math.sqrt(Math.max(...squares));
-  const [xy, xz, yz, xw, yw, zw] = [m(0, 1) + m(1, 0), m(0, 2) + m(2, 0), m(1, 2) + m(2, 1), m(2, 1) - m(1, 2), m(0, 2) - m(2, 0), m(1, 0) - m(0, 1)].map((v) => v / r / 2);
+  const [xy, xz, yz, xw, yw, zw] = [
+    m(0, 1) + m(1, 0), m(0, 2) + m(2, 0), m(1, 2) + m(2, 1), m(2, 1) - m(1, 2), m(0, 2) - m(2, 0), m(1, 0) - m(0, 1),
+  ].map((value) => value / r / 2);
   return [[r / 2, xy, xz, xw], [xy, r / 2, yz, yw], [xz, yz, r / 2, zw], [xw, yw, zw, r / 2]][squares.indexOf(Math.max(...squares))];
 }
 

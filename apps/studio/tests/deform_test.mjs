@@ -75,7 +75,7 @@ async function misdrawn([shown, without], surface) {
       return context.getImageData(0, 0, width, height).data;
     };
     const a = await pixels(shown), b = await pixels(without), count = width * height;
-    const drawn = Array.from({ length: count }, (_, i) => Math.abs(a[4 * i] - b[4 * i]) + Math.abs(a[4 * i + 1] - b[4 * i + 1]) + Math.abs(a[4 * i + 2] - b[4 * i + 2]) > 12);
+    const drawn = Array.from({ length: count }, (_, i) => [0, 1, 2].reduce((sum, c) => sum + Math.abs(a[4 * i + c] - b[4 * i + c]), 0) > 12);
     const context = new OffscreenCanvas(width, height).getContext('2d');
     const places = surface.vertices.map((vertex) => globalThis.limberStudio.placeOf(vertex));
     for (const corners of surface.triangles) {
