@@ -95,7 +95,8 @@ void runTransferCommand(TransferArguments options) {
                   options.source, "leave out --colors");
     }
     colors.emplace(source);
-    options.transfer.colors = [&](Index triangle, const Vec3& weights) { return colors->at(triangle, weights); };
+    options.transfer.colors.at = [&](Index triangle, const Vec3& weights) { return colors->at(triangle, weights); };
+    if (options.transfer.colors.pictureSize > 0) options.transfer.colors.picture = pngOfColors;
   }
   TransferReport report = transferOnto(source, target, options.transfer, *progress);
   if (colors) report.warnings.append(colors->warnings());
@@ -131,7 +132,14 @@ void addTransferCommand(CLI::App& program) {
       ->type_name("FILE");
   command->add_flag("--no-blend-shapes", options->noShapes, "leave the source's blend shapes out");
   command->add_flag("--colors", options->colors,
-                    "give the target the source's colours (textures too) at its vertices, in place of its own");
+                    "give the target the source's colours in place of its own: as a texture where its texture "
+                    "coordinates take one, else at its vertices");
+  command
+      ->add_option("--texture-size", options->transfer.colors.pictureSize,
+                   "with --colors: width and height of a texture, in pixels; 0: colours at vertices alone")
+      ->check(CLI::Range(0, 8192).description(""))
+      ->type_name("N")
+      ->capture_default_str();
   command->add_flag("--ignore-target-rig", options->ignoreRig,
                     "find the target's limbs by its surface alone, even if it has a rig that tells");
   command->add_flag("--strict", options->strict, "take warnings as errors: write nothing");

@@ -15,6 +15,7 @@
 #include "limber/pipeline/blend_shapes.h"
 #include "limber/pipeline/joint_landmarks.h"
 #include "limber/pipeline/report_json.h"
+#include "limber/pipeline/transfer_colors.h"
 #include "limber/transfer/offset_transfer.h"
 
 namespace limber {
@@ -118,37 +119,6 @@ std::vector<std::string> transferShapes(const Asset& sourceAsset, const SourceMo
   return addBlendShapes(target, geometry, carried);
 }
 
-// Of the triangles of the source's body, which those of its Geometry are: welding leaves some out, and keeps the order.
-std::vector<Index> trianglesOfBody(const SourceModel& source) {
-  const std::vector<Index>& welded = source.prepared.weldedVertex;
-  std::vector<Index> triangles;
-  for (Index t = 0; t < source.geometry.triangles.size(); ++t) {
-    const auto& [a, b, c] = source.geometry.triangles[t];
-    if (welded[a] != welded[b] && welded[b] != welded[c] && welded[c] != welded[a]) triangles.push_back(t);
-  }
-  return triangles;
-}
-
-void transferColors(const SourceModel& source, const RigTransfer& rig, const SurfaceColor& color, Asset& target,
-                    const Geometry& geometry, const PreparedMesh& prepared) {
-  const std::vector<Index> triangles = trianglesOfBody(source);
-  std::vector<Vec3f> ofWelded;
-  for (const SurfacePoint& point : rig.points) {
-    const Triangle& turned = rig.source.triangles[point.triangle];  // two of its corners may have changed places
-    const Index triangle = triangles[point.triangle];
-    Vec3 weights = Vec3::Zero();
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Index corner = source.prepared.weldedVertex[source.geometry.triangles[triangle][k]];
-      const auto at = std::find(turned.begin(), turned.end(), corner) - turned.begin();
-      weights[static_cast<Eigen::Index>(k)] = point.weights[at];
-    }
-    ofWelded.push_back(color(triangle, weights));
-  }
-  std::vector<Vec3f> colors;
-  for (const Index v : prepared.weldedVertex) colors.push_back(ofWelded[v]);
-  setVertexColors(target, geometry, colors);
-}
-
 // Landmarks go into the working space of the target, joints come back out of it.
 RigTransfer transferInto(const PreparedMesh& prepared, const SourceModel& source, std::vector<JointLandmark> landmarks,
                          const RigTransferOptions& options, Progress& progress) {
@@ -188,7 +158,10 @@ TransferReport runTransfer(const Asset& sourceAsset, Asset& target, const Transf
   if (options.blendShapes) {
     report.blendShapes = transferShapes(sourceAsset, source, rig, target, geometry, prepared);
   }
-  if (options.colors) transferColors(source, rig, options.colors, target, geometry, prepared);
+  if (options.colors.at) {
+    const LaidSource laid = {source.geometry, source.prepared, rig};
+    transferColors(laid, options.colors, target, geometry, prepared);
+  }
   attachRig(target, geometry, skeleton, expandWeights(rig.weights, prepared.weldedVertex));
   progress.finish();
   report.warnings.append(target.warnings);

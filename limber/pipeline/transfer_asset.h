@@ -6,7 +6,7 @@
 
 #include "limber/asset/asset.h"
 #include "limber/core/progress.h"
-#include "limber/pipeline/vertex_colors.h"
+#include "limber/pipeline/transfer_colors.h"
 #include "limber/transfer/rig_transfer.h"
 
 namespace limber {
@@ -14,7 +14,7 @@ namespace limber {
 struct TransferAssetOptions {
   RigTransferOptions rig;
   bool blendShapes = true;
-  SurfaceColor colors;      // of the source, where the target is to have them as vertex colours (setVertexColors)
+  ColorTransfer colors;     // where the target is to have the source's (transferColors)
   bool ownSkeleton = true;  // a target that has a rig tells by it where its joints are; else it is read as bare
 };
 
@@ -32,7 +32,7 @@ struct TransferReport {
 
 // Gives `target` the rig of `source`: its joints with their names, tree and axes, its weights, and its blend shapes
 // where the target's meshes have none. The target's old rig goes, with its clips. The source stays as it is. With
-// options.colors each vertex of the target has the colour of the point of the source's surface that it takes after.
+// options.colors the target's own colours go, too.
 //
 // Where the target has no rig, a template is fitted to both bodies (rigWithTemplate) to tell where the limbs are.
 // Throws Error kUnsupported where the source has no rig or a body has no limbs that can be told, and as the stages do;

@@ -1,5 +1,7 @@
 #include "limber/pipeline/transfer_asset.h"
 
+#include <cmath>
+
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
@@ -8,6 +10,7 @@
 #include "limber/asset/json_access.h"
 #include "limber/asset/rig_io.h"
 #include "limber/asset/testing/scene_builder.h"
+#include "limber/pipeline/texture_bake.h"
 #include "limber/transfer/testing/capsule_person.h"
 
 namespace limber {
@@ -151,7 +154,7 @@ TEST(TransferAssetTest, ColorsAreThoseOfThePointThatAVertexTakesAfter) {
     const Geometry geometry = collectGeometry(source);
     TransferAssetOptions options = fewRounds();
     // Places as colours, so that each vertex of the target says where it was looked for.
-    options.colors = [&](Index triangle, const Vec3& weights) {
+    options.colors.at = [&](Index triangle, const Vec3& weights) {
       Vec3f place = Vec3f::Zero();
       for (std::size_t k = 0; k < 3; ++k) {
         place += static_cast<float>(weights[static_cast<Eigen::Index>(k)]) *
@@ -166,6 +169,87 @@ TEST(TransferAssetTest, ColorsAreThoseOfThePointThatAVertexTakesAfter) {
     for (Index v = 0; v < person.mesh.vertexCount(); ++v) {
       const Vec3f place = 4 * (Vec3f(colors[4 * v], colors[4 * v + 1], colors[4 * v + 2]) - Vec3f::Constant(0.5f));
       EXPECT_LT((place - person.mesh.positions[v]).norm(), 0.03) << v;
+    }
+  }
+}
+
+// Each triangle with corners of its own, and a cell of the texture.
+struct UnfoldedMesh {
+  TriMesh mesh;
+  std::vector<Vec2f> uvs;
+};
+
+UnfoldedMesh unfolded(const TriMesh& mesh) {
+  UnfoldedMesh result;
+  const auto cells = static_cast<Index>(std::ceil(std::sqrt(static_cast<double>(mesh.triangleCount()))));
+  for (Index t = 0; t < mesh.triangleCount(); ++t) {
+    const Vec2f cell(static_cast<float>(t % cells), static_cast<float>(t / cells));
+    for (std::size_t k = 0; k < 3; ++k) {
+      result.mesh.positions.push_back(mesh.positions[mesh.triangles[t][k]]);
+      const Vec2f corner(k == 1 ? 0.9f : 0.1f, k == 2 ? 0.9f : 0.1f);
+      result.uvs.push_back((cell + corner) / static_cast<float>(cells));
+    }
+    result.mesh.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
+  }
+  return result;
+}
+
+TEST(TransferAssetTest, ColorsGoToATextureWhereTheTargetHasRoomForOne) {
+  const RiggedBody person = capsulePerson();
+  const UnfoldedMesh plan = unfolded(person.mesh);
+  const Asset source = riggedPerson();
+  const Geometry geometry = collectGeometry(source);
+  for (const bool isOverlapping : {false, true}) {
+    Asset target = sceneOf(plan.mesh, "plan.glb");
+    std::vector<float> uvs;
+    for (const Vec2f& uv : plan.uvs) uvs.insert(uvs.end(), {uv.x(), uv.y()});
+    if (isOverlapping) std::copy_n(uvs.begin(), 6, uvs.begin() + 6);  // the second triangle on the first
+    target.json()["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] =
+        addFloatAccessor(target, uvs, 2, kVertexTarget);
+    SkinWeights weights;
+    weights.slots = person.weights.slots;
+    for (const Triangle& t : person.mesh.triangles) {
+      for (const Index v : t) {
+        const auto joints = person.weights.jointsOf(v);
+        const auto of = person.weights.weightsOf(v);
+        weights.joints.insert(weights.joints.end(), joints.begin(), joints.end());
+        weights.weights.insert(weights.weights.end(), of.begin(), of.end());
+      }
+    }
+    attachRig(target, collectGeometry(target), person.skeleton, weights);
+    TransferAssetOptions options = fewRounds();
+    options.colors.at = [&](Index triangle, const Vec3& at) {
+      Vec3f place = Vec3f::Zero();
+      for (std::size_t k = 0; k < 3; ++k) {
+        place +=
+            static_cast<float>(at[static_cast<Eigen::Index>(k)]) * geometry.positions[geometry.triangles[triangle][k]];
+      }
+      return Vec3f(place / 4 + Vec3f::Constant(0.5f));
+    };
+    std::vector<Vec3f> seen;
+    options.colors.pictureSize = 512;
+    options.colors.picture = [&](int size, std::span<const Vec3f> pixels) {
+      EXPECT_EQ(size, 512);
+      seen.assign(pixels.begin(), pixels.end());
+      return Bytes{0x89, 'P', 'N', 'G', 13, 10, 26, 10};
+    };
+    transferred(source, target, options);
+    const Json& primitive = target.json()["meshes"][0]["primitives"][0];
+    EXPECT_EQ(primitive.at("attributes").contains("COLOR_0"), isOverlapping);
+    EXPECT_EQ(target.json().contains("textures"), !isOverlapping);
+    EXPECT_EQ(seen.empty(), isOverlapping);
+    if (isOverlapping) continue;
+    const auto texels = texelsOf(plan.mesh.triangles, plan.uvs, 512);
+    ASSERT_TRUE(texels);
+    EXPECT_GT(texels->size(), 10000u);
+    for (const Texel& texel : *texels) {
+      Vec3f wanted = Vec3f::Zero();
+      for (std::size_t k = 0; k < 3; ++k) {
+        wanted += static_cast<float>(texel.weights[static_cast<Eigen::Index>(k)]) *
+                  plan.mesh.positions[plan.mesh.triangles[texel.triangle][k]];
+      }
+      const Vec3f place = 4 * (seen[texel.pixel] - Vec3f::Constant(0.5f));
+      ASSERT_LT((place - wanted).norm(), 0.03) << texel.pixel;
     }
   }
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <set>
 #include <span>
 
 #include "limber/asset/asset.h"
@@ -18,6 +19,11 @@ using SurfaceColor = std::function<Vec3f(Index triangle, const Vec3& weights)>;
 //
 // geometry  of the asset (collectGeometry)
 // colors    #S linear RGB in [0, 1]
-void setVertexColors(Asset& asset, const Geometry& geometry, std::span<const Vec3f> colors);
+// pictured  materials whose colours a texture will give: only made ready, and COLOR_0 goes
+void setVertexColors(Asset& asset, const Geometry& geometry, std::span<const Vec3f> colors,
+                     const std::set<Index>& pictured = {});
+
+// Every primitive that the scene shows and that has no material gets a plain white one, all the same.
+void addMissingMaterials(Asset& asset, const Geometry& geometry);
 
 }  // namespace limber

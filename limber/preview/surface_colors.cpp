@@ -3,6 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "limber/asset/scene_graph.h"
+#include "limber/preview/image.h"
+#include "limber/preview/palette.h"
 
 namespace limber {
 
@@ -32,6 +34,14 @@ Vec3f SurfaceColors::at(Index triangle, const Vec3& weights) const {
   const Index material = scene_.materialOf.empty() ? kNoIndex : scene_.materialOf[triangle];
   if (material == kNoIndex || !scene_.materials[material].texture) return color;
   return color.cwiseProduct(scene_.materials[material].texture->sample(uv, 0).cast<float>());
+}
+
+Bytes pngOfColors(int size, std::span<const Vec3f> pixels) {
+  Image image{size, size, {}};
+  for (const Vec3f& pixel : pixels) {
+    for (int channel = 0; channel < 3; ++channel) image.pixels.push_back(srgbByte(double{pixel[channel]}));
+  }
+  return encodePng(image);
 }
 
 }  // namespace limber

@@ -1,6 +1,8 @@
 // The colours of a model's surface, as it is drawn without light.
 #pragma once
 
+#include <span>
+
 #include "limber/pipeline/vertex_colors.h"
 #include "limber/preview/scene.h"
 
@@ -22,5 +24,8 @@ class SurfaceColors {
  private:
   Scene scene_;
 };
+
+// A PNG file of a square picture, linear RGB, rows from the top.
+Bytes pngOfColors(int size, std::span<const Vec3f> pixels);
 
 }  // namespace limber

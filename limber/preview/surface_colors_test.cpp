@@ -5,6 +5,7 @@
 
 #include "limber/asset/read.h"
 #include "limber/asset/testing/gltf_builder.h"
+#include "limber/preview/image_decode.h"
 
 namespace limber {
 namespace {
@@ -50,6 +51,14 @@ TEST(SurfaceColors, OfAModelThatSaysNothingAreNone) {
   EXPECT_TRUE(hasColors(readAsset(model.glb(), "vertices.glb")));
   model.json["meshes"][0]["primitives"][0]["attributes"].erase("COLOR_0");
   EXPECT_FALSE(hasColors(readAsset(model.glb(), "bare.glb")));
+}
+
+TEST(SurfaceColors, AsAPictureComeBackAsTheyWere) {
+  const std::vector<Vec3f> pixels = {{1, 0, 0}, {0, 0.2158605f, 0}, {0, 0, 2}, {0, 0, 0}};
+  const std::optional<DecodedImage> read = decodeImage(pngOfColors(2, pixels));
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->colors.width, 2);
+  EXPECT_EQ(read->colors.pixels, (std::vector<std::uint8_t>{255, 0, 0, 0, 128, 0, 0, 0, 255, 0, 0, 0}));
 }
 
 TEST(SurfaceColors, ABrokenPictureIsTold) {

@@ -5,7 +5,6 @@
 #include "limber/core/error.h"
 #include "limber/core/parallel.h"
 #include "limber/mesh/normals.h"
-#include "limber/transfer/facing_surface.h"
 
 namespace limber {
 
@@ -80,17 +79,21 @@ void storeShares(std::vector<Share>& shares, Index vertex, SkinWeights& result) 
 
 }  // namespace
 
+SurfaceProjector::SurfaceProjector(const TriMesh& source) : surface_(source), near_(kNearEnough * diagonalOf(source)) {}
+
+SurfacePoint SurfaceProjector::at(const Vec3& position, const Vec3& normal) const {
+  const SurfacePoint nearest = surface_.nearest(position);
+  const auto facing = surface_.nearestFacing(position, normal);
+  return facing && facing->distance <= std::max(near_, kMuchFarther * nearest.distance) ? *facing : nearest;
+}
+
 std::vector<SurfacePoint> takenAfter(const TriMesh& source, const TriMesh& target) {
-  const FacingSurface surface(source);
+  const SurfaceProjector projector(source);
   const std::vector<Vec3> normals = areaNormals<Vec3f>(target.positions, target.triangles);
-  const double near = kNearEnough * diagonalOf(source);
   std::vector<SurfacePoint> points(target.positions.size());
   parallelFor(points.size(), kProjectionGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
-      const Vec3 position = target.position(static_cast<Index>(v));
-      points[v] = surface.nearest(position);
-      const auto facing = surface.nearestFacing(position, normals[v]);
-      if (facing && facing->distance <= std::max(near, kMuchFarther * points[v].distance)) points[v] = *facing;
+      points[v] = projector.at(target.position(static_cast<Index>(v)), normals[v]);
     }
   });
   return points;

@@ -7,12 +7,25 @@
 #include "limber/mesh/bvh.h"
 #include "limber/skeleton/skin_weights.h"
 #include "limber/surface/surface_edges.h"
+#include "limber/transfer/facing_surface.h"
 
 namespace limber {
 
-// For each vertex of `target` the point of `source` that it takes after: the nearest one that faces about its own
-// direction, unless that is far and one that does not is much nearer.
-// Both facing outwards, with triangles. Cost: O(#V log #F).
+// Points of `source` that points of another surface take after: the nearest one that faces about its own direction,
+// unless that is far and one that does not is much nearer.
+class SurfaceProjector {
+ public:
+  // source  facing outwards, with triangles
+  explicit SurfaceProjector(const TriMesh& source);
+
+  SurfacePoint at(const Vec3& position, const Vec3& normal) const;
+
+ private:
+  FacingSurface surface_;
+  double near_ = 0;
+};
+
+// The same for each vertex of `target`. Both facing outwards, with triangles. Cost: O(#V log #F).
 std::vector<SurfacePoint> takenAfter(const TriMesh& source, const TriMesh& target);
 
 // Weights of #points target vertices: those of the source at the three corners, mixed by the point's barycentric
