@@ -68,7 +68,8 @@ void addTransferEvaluation(CLI::App& evaluate) {
       "Every person of a folder loses its rig and takes those of others there: of some whose joints have the same "
       "names,\n"
       "and of some of other makers. Joints are compared by what they are of a body, weights by joints of one name or,\n"
-      "between makers, by parts of the body.\n"
+      "between makers, by parts of the body; what is out of reach are weights on joints that hold nothing in the "
+      "source.\n"
       "\nExample:\n  limber evaluate transfer characters --each pairs.tsv");
   command->callback([options] { runTransferTrials(*options); });
 }

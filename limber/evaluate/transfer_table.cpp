@@ -107,6 +107,23 @@ SkinnedModel byParts(const SkinnedModel& model) {
   return result;
 }
 
+// Joints of the truth, by name, that hold nothing in the source: weights on them cannot come from it. Each such weight
+// is missing on its joint and too much on another, so it counts twice (WeightComparison::l1).
+double outOfReach(const SkinnedModel& source, const SkinnedModel& truth) {
+  std::vector<bool> holds(source.skeleton.jointCount(), false);
+  for (std::size_t i = 0; i < source.weights.joints.size(); ++i) {
+    if (source.weights.weights[i] > 0) holds[source.weights.joints[i]] = true;
+  }
+  const std::vector<Index> partner = pairJoints(truth.skeleton, source.skeleton);
+  const SkinWeights weights = strongestFour(truth.weights);
+  double sum = 0;
+  for (std::size_t i = 0; i < weights.joints.size(); ++i) {
+    const Index joint = partner[weights.joints[i]];
+    if (joint == kNoIndex || !holds[joint]) sum += 2 * weights.weights[i];
+  }
+  return sum / std::max<Index>(1, weights.vertexCount());
+}
+
 std::vector<std::size_t> drawn(std::vector<std::size_t> from, std::size_t most, Random& random) {
   for (std::size_t i = 0; i + 1 < from.size(); ++i) std::swap(from[i], from[i + random.below(from.size() - i)]);
   if (from.size() > most) from.resize(most);
@@ -129,15 +146,18 @@ TransferTrial tryTransfer(const Person& source, const Person& target, const Tran
   if (trial.isFamily) {
     const WeightComparison weights = compareWeights(result, target.model);
     trial.weightsL1 = weights.l1;
+    trial.outOfReachL1 = outOfReach(source.model, target.model);
     trial.deformP95 = weights.deformP95;
   } else {
-    trial.weightsL1 = compareWeights(byParts(result), byParts(target.model)).l1;
+    const SkinnedModel truth = byParts(target.model);
+    trial.weightsL1 = compareWeights(byParts(result), truth).l1;
+    trial.outOfReachL1 = outOfReach(byParts(source.model), truth);
   }
   return trial;
 }
 
 struct TransferMeans {
-  double count = 0, mean = 0, worst = 0, l1 = 0, seconds = 0;
+  double count = 0, mean = 0, worst = 0, l1 = 0, outOfReach = 0, seconds = 0;
 };
 
 TransferMeans meansOf(const TransferFolder& folder, bool ofFamilies) {
@@ -148,6 +168,7 @@ TransferMeans meansOf(const TransferFolder& folder, bool ofFamilies) {
     sum.mean += trial.rig.namedMean;
     sum.worst += trial.rig.namedWorst;
     sum.l1 += trial.weightsL1;
+    sum.outOfReach += trial.outOfReachL1;
     sum.seconds += trial.seconds;
   }
   return sum;
@@ -186,15 +207,17 @@ std::vector<TransferTrial> tryTransfers(const std::filesystem::path& folder, con
 
 std::string transferTable(std::span<const TransferFolder> folders) {
   std::string table =
-      "| folder | rigs | pairs | named joints off by (% of height) | worst joint, mean | weights L1 | s |\n"
-      "|---|---|---|---|---|---|---|\n";
+      "| folder | rigs | pairs | named joints off by (% of height) | worst joint, mean | weights L1 | of it out of "
+      "reach | s |\n"
+      "|---|---|---|---|---|---|---|---|\n";
   for (const TransferFolder& folder : folders) {
     for (const bool ofFamilies : {true, false}) {
       const TransferMeans sum = meansOf(folder, ofFamilies);
       if (sum.count == 0) continue;
-      table += fmt::format("| {} | {} | {} | {:.2f} | {:.2f} | {:.3f} | {:.2f} |\n", folder.name,
-                           ofFamilies ? "same joints" : "other makers'", sum.count, sum.mean / sum.count,
-                           sum.worst / sum.count, sum.l1 / sum.count, sum.seconds / sum.count);
+      table +=
+          fmt::format("| {} | {} | {} | {:.2f} | {:.2f} | {:.3f} | {:.3f} | {:.2f} |\n", folder.name,
+                      ofFamilies ? "same joints" : "other makers'", sum.count, sum.mean / sum.count,
+                      sum.worst / sum.count, sum.l1 / sum.count, sum.outOfReach / sum.count, sum.seconds / sum.count);
     }
   }
   return table;
@@ -202,14 +225,15 @@ std::string transferTable(std::span<const TransferFolder> folders) {
 
 std::string eachTransferTrial(std::span<const TransferFolder> folders) {
   std::string text =
-      "folder\tsource\ttarget\tfamily\tnamed_mean\tnamed_worst\tworst_joint\tweights_l1\tdeform_p95\ts\n";
+      "folder\tsource\ttarget\tfamily\tnamed_mean\tnamed_worst\tworst_joint\tweights_l1\tout_of_reach\tdeform_p95\ts\n";
   for (const TransferFolder& folder : folders) {
     for (const TransferTrial& t : folder.trials) {
       const auto worst = std::max_element(t.rig.named.begin(), t.rig.named.end(),
                                           [](const auto& a, const auto& b) { return a.percent < b.percent; });
-      text += fmt::format("{}\t{}\t{}\t{}\t{:.3f}\t{:.3f}\t{}\t{:.4f}\t{:.3f}\t{:.2f}\n", folder.name, t.source,
+      text += fmt::format("{}\t{}\t{}\t{}\t{:.3f}\t{:.3f}\t{}\t{:.4f}\t{:.4f}\t{:.3f}\t{:.2f}\n", folder.name, t.source,
                           t.target, t.isFamily ? 1 : 0, t.rig.namedMean, t.rig.namedWorst,
-                          worst == t.rig.named.end() ? "" : worst->bone, t.weightsL1, t.deformP95, t.seconds);
+                          worst == t.rig.named.end() ? "" : worst->bone, t.weightsL1, t.outOfReachL1, t.deformP95,
+                          t.seconds);
     }
   }
   return text;

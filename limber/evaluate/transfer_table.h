@@ -23,6 +23,8 @@ struct TransferTrial {
   RigComparison rig;
   // By joints of one name in a family; else by the parts of the body (bodyPartAt): makers cut trunks differently.
   double weightsL1 = 0;
+  // At least this much of it no transfer could avoid: weights on joints, or parts, to which the source binds nothing.
+  double outOfReachL1 = 0;
   double deformP95 = 0;  // of a family (WeightComparison)
   double seconds = 0;    // of the transfer alone
 };

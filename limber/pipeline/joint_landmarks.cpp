@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "limber/anatomy/humanoid_joints.h"
 #include "limber/core/counted.h"
 #include "limber/core/known_error.h"
 #include "limber/matching/skeleton_map.h"
@@ -44,12 +45,30 @@ SkeletonMap mapOfLimbs(const Skeleton& source, const Skeleton& target) {
   }
 }
 
+std::optional<Index> hipsOf(const Skeleton& skeleton) {
+  const std::vector<HumanoidJoint> joints = humanoidJoints(skeleton);
+  const auto hips = std::find_if(joints.begin(), joints.end(), [](const HumanoidJoint& j) { return j.bone == "hips"; });
+  return hips != joints.end() ? std::optional(hips->joint) : std::nullopt;
+}
+
+// The joints of a pelvis. Where one on the ground carries legs and spine, the hips are another one above it, and only
+// these lie in the body.
+JointPair pelvisPair(const Skeleton& source, const Skeleton& target, const JointMatch& match) {
+  return {hipsOf(source).value_or(match.source[0]), hipsOf(target).value_or(match.target[0])};
+}
+
 std::vector<JointPair> commonJoints(const Skeleton& source, const Skeleton& target) {
   const SkeletonMap map = mapOfLimbs(source, target);
   std::vector<JointPair> pairs;
   std::vector<bool> taken(source.jointCount(), false);
   for (const JointMatch& match : map.matches) {
     if (match.source.empty() || match.target.empty()) continue;
+    if (match.part == body_part::kPelvis && !map.twins) {
+      const JointPair hips = pelvisPair(source, target, match);
+      if (!taken[hips.source]) pairs.push_back(hips);
+      taken[hips.source] = true;
+      continue;
+    }
     const bool alike = match.source.size() == match.target.size();
     if (match.part == body_part::kTrunk && !map.twins) continue;
     for (std::size_t i = 0; i < (alike ? match.source.size() : 1); ++i) {

@@ -139,5 +139,51 @@ TEST(JointLandmarks, WhatHasNoLimbsHasNoTemplate) {
   EXPECT_FALSE(fittedSkeleton(asset, collectGeometry(asset), progress));
 }
 
+// The person on a joint on the ground that carries legs and hips side by side, as some makers have it.
+Skeleton onTheGround() {
+  Skeleton result;
+  result.joints.push_back({"root", std::nullopt, {}, 0});
+  for (Joint joint : testing::capsulePerson().skeleton.joints) {
+    if (!joint.parent) {
+      joint.parent = 0;
+    } else if (*joint.parent == 0) {  // the spine hangs on the hips, the legs on the ground
+      const bool isLeg = joint.name != "spine";
+      if (isLeg) joint.rest.translation += testing::personJoints()[0].place;
+      joint.parent = isLeg ? 0 : 1;
+    } else {
+      ++*joint.parent;
+    }
+    result.joints.push_back(joint);
+  }
+  return result;
+}
+
+std::optional<Vec3> landmarkOf(const std::vector<JointLandmark>& landmarks, const Skeleton& skeleton,
+                               const std::string& name) {
+  for (const JointLandmark& landmark : landmarks) {
+    if (skeleton.joints[landmark.joint].name == name) return landmark.place;
+  }
+  return std::nullopt;
+}
+
+TEST(JointLandmarks, HipsAreInTheBodyAndNotOnTheGround) {
+  const Skeleton source = onTheGround(), target = testing::capsulePerson().skeleton;
+  const std::vector<JointLandmark> landmarks = commonLandmarks(source, target);
+  const std::optional<Vec3> hips = landmarkOf(landmarks, source, "hips");
+  ASSERT_TRUE(hips);
+  EXPECT_LT((*hips - testing::personJoints()[0].place).norm(), 1e-6);
+  EXPECT_FALSE(landmarkOf(landmarks, source, "root"));
+}
+
+TEST(JointLandmarks, EachJointHasOneAtMost) {
+  const Skeleton source = onTheGround();
+  std::vector<Index> joints;
+  for (const JointLandmark& landmark : commonLandmarks(source, testing::capsulePerson().skeleton)) {
+    joints.push_back(landmark.joint);
+  }
+  std::sort(joints.begin(), joints.end());
+  EXPECT_EQ(std::adjacent_find(joints.begin(), joints.end()), joints.end());
+}
+
 }  // namespace
 }  // namespace limber

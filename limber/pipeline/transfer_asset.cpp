@@ -5,13 +5,17 @@
 #include <set>
 #include <utility>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "limber/asset/geometry.h"
 #include "limber/asset/json_text.h"
 #include "limber/asset/rig_io.h"
+#include "limber/asset/scene_graph.h"
+#include "limber/asset/unique_names.h"
 #include "limber/core/known_error.h"
 #include "limber/mesh/prepare.h"
+#include "limber/pipeline/accessories.h"
 #include "limber/pipeline/blend_shapes.h"
 #include "limber/pipeline/joint_landmarks.h"
 #include "limber/pipeline/report_json.h"
@@ -25,18 +29,66 @@ namespace {
 // A model with a rig, as the transfer takes it, and how its vertices came to be those of the body.
 struct SourceModel {
   Geometry geometry;
-  PreparedMesh prepared;
-  RiggedBody body;  // in world space
+  PreparedMesh prepared;  // without accessories and vertices of no triangle: their weldedVertex is kNoIndex
+  RiggedBody body;        // in world space
 };
 
-SourceModel readSource(const Asset& asset) {
-  if (!hasRig(asset)) {
-    throw KnownError(ErrorKind::kNoRig, {ErrorCode::kUnsupported, "has no rig to transfer", asset.name,
-                                         "name the rigged model first, then the one that is to get its rig"});
+void dropUnusedVertices(PreparedMesh& prepared) {
+  TriMesh& mesh = prepared.mesh;
+  std::vector<Index> kept(mesh.positions.size(), kNoIndex);
+  for (const Triangle& t : mesh.triangles) {
+    for (const Index v : t) kept[v] = 0;
   }
+  Index count = 0;
+  for (std::size_t v = 0; v < kept.size(); ++v) {
+    if (kept[v] == kNoIndex) continue;
+    mesh.positions[count] = mesh.positions[v];
+    kept[v] = count++;
+  }
+  mesh.positions.resize(count);
+  for (Triangle& t : mesh.triangles) {
+    for (Index& v : t) v = kept[v];
+  }
+  for (Index& v : prepared.weldedVertex) v = kept[v];
+}
+
+// What both models wear or hold, by the words that tell it, is part of both bodies: the one cape lies on the other.
+void leaveInCommon(Accessories& a, Accessories& b) {
+  const std::vector<std::string> words = a.words;
+  for (auto& [own, others] : {std::pair{&a, b.words}, std::pair{&b, words}}) {
+    for (Index& accessory : own->ofTriangle) {
+      if (accessory != kNoIndex && std::count(others.begin(), others.end(), own->words[accessory]))
+        accessory = kNoIndex;
+    }
+  }
+}
+
+std::vector<std::string> namesOnSurface(const Accessories& accessories) {
+  std::vector<std::string> names;
+  for (Index i = 0; i < accessories.names.size(); ++i) {
+    if (std::count(accessories.ofTriangle.begin(), accessories.ofTriangle.end(), i)) {
+      names.push_back(accessories.names[i]);
+    }
+  }
+  return names;
+}
+
+PreparedMesh prepareBody(const Geometry& geometry, const Accessories& accessories) {
+  if (accessories.empty()) return prepareMesh(geometry.positions, geometry.triangles);
+  return prepareMesh(geometry.positions, bodyTriangles(geometry, accessories));
+}
+
+void checkHasRig(const Asset& source) {
+  if (hasRig(source)) return;
+  throw KnownError(ErrorKind::kNoRig, {ErrorCode::kUnsupported, "has no rig to transfer", source.name,
+                                       "name the rigged model first, then the one that is to get its rig"});
+}
+
+SourceModel readSource(const Asset& asset, Geometry geometry, const Accessories& accessories) {
   SourceModel result;
-  result.geometry = collectGeometry(asset);
-  result.prepared = prepareMesh(result.geometry.positions, result.geometry.triangles);
+  result.geometry = std::move(geometry);
+  result.prepared = prepareBody(result.geometry, accessories);
+  dropUnusedVertices(result.prepared);
   AssetSkeleton skeleton = readSkeleton(asset);
   const SkinWeights weights = readWeights(asset, result.geometry, skeleton);
   result.body.mesh = result.prepared.mesh;
@@ -46,7 +98,7 @@ SourceModel readSource(const Asset& asset) {
   welded.joints.assign(std::size_t{result.body.mesh.vertexCount()} * weights.slots, 0);
   welded.weights.assign(welded.joints.size(), 0.0f);
   for (Index v = weights.vertexCount(); v-- > 0;) {  // the first vertex at a place that has weights counts
-    if (!(weights.weightsOf(v)[0] > 0)) continue;
+    if (result.prepared.weldedVertex[v] == kNoIndex || !(weights.weightsOf(v)[0] > 0)) continue;
     const std::size_t at = std::size_t{result.prepared.weldedVertex[v]} * weights.slots;
     std::copy(weights.jointsOf(v).begin(), weights.jointsOf(v).end(), welded.joints.begin() + at);
     std::copy(weights.weightsOf(v).begin(), weights.weightsOf(v).end(), welded.weights.begin() + at);
@@ -107,7 +159,7 @@ std::vector<std::string> transferShapes(const Asset& sourceAsset, const SourceMo
   for (const BlendShape& shape : shapes) {
     std::vector<Vec3f> welded(rig.source.positions.size(), Vec3f::Zero());
     for (std::size_t v = shape.offsets.size(); v-- > 0;) {
-      welded[source.prepared.weldedVertex[v]] = shape.offsets[v];
+      if (source.prepared.weldedVertex[v] != kNoIndex) welded[source.prepared.weldedVertex[v]] = shape.offsets[v];
     }
     const std::vector<Vec3f> offsets = carriedOffsets(rig.source, gradients, welded, rig.points);
     BlendShape result{shape.name, {}};
@@ -119,36 +171,86 @@ std::vector<std::string> transferShapes(const Asset& sourceAsset, const SourceMo
   return addBlendShapes(target, geometry, carried);
 }
 
+// The target as the transfer takes it: with the vertices of all of it, but no triangles of its accessories.
+struct TargetModel {
+  Geometry geometry;
+  PreparedMesh prepared;
+  Accessories accessories;
+  TriMesh body;
+};
+
+TargetModel readTarget(Geometry geometry, Accessories accessories) {
+  TargetModel result;
+  result.geometry = std::move(geometry);
+  result.prepared = prepareMesh(result.geometry.positions, result.geometry.triangles);
+  result.accessories = std::move(accessories);
+  result.body = result.prepared.mesh;
+  if (result.accessories.empty()) return result;
+  result.body.triangles.clear();
+  for (const auto& [a, b, c] : bodyTriangles(result.geometry, result.accessories)) {
+    const std::vector<Index>& welded = result.prepared.weldedVertex;
+    const Triangle t = {welded[a], welded[b], welded[c]};
+    if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) result.body.triangles.push_back(t);
+  }
+  return result;
+}
+
 // Landmarks go into the working space of the target, joints come back out of it.
-RigTransfer transferInto(const PreparedMesh& prepared, const SourceModel& source, std::vector<JointLandmark> landmarks,
+RigTransfer transferInto(const TargetModel& target, const SourceModel& source, std::vector<JointLandmark> landmarks,
                          const RigTransferOptions& options, Progress& progress) {
-  for (JointLandmark& landmark : landmarks) landmark.place = prepared.frame.toWorking(landmark.place);
-  RigTransfer rig = transferRig(source.body, landmarks, prepared.mesh, options, progress);
-  for (Vec3& place : rig.places) place = prepared.frame.toSource(place);
+  const WorkingFrame& frame = target.prepared.frame;
+  for (JointLandmark& landmark : landmarks) landmark.place = frame.toWorking(landmark.place);
+  RigTransfer rig = transferRig(source.body, landmarks, target.body, options, progress);
+  for (Vec3& place : rig.places) place = frame.toSource(place);
+  if (!target.accessories.empty()) hangAccessories(target.geometry, target.prepared, target.accessories, rig.weights);
   return rig;
+}
+
+// A rig's joints keep their names: nodes of the target that have one of these, as those of an old rig that hold more
+// than it, are the ones to get another.
+void freeNames(const Skeleton& skeleton, Asset& target) {
+  if (elementCount(target, "nodes") == 0) return;
+  UniqueNames names;
+  std::set<std::string> ofJoints;
+  for (const Joint& joint : skeleton.joints) ofJoints.insert(names.add(joint.name));
+  Json& nodes = target.json()["nodes"];
+  for (const Json& node : nodes) {
+    if (!ofJoints.count(nameOf(node))) names.add(nameOf(node));
+  }
+  for (Json& node : nodes) {
+    if (ofJoints.count(nameOf(node))) node["name"] = names.add(nameOf(node));
+  }
 }
 
 TransferReport runTransfer(const Asset& sourceAsset, Asset& target, const TransferAssetOptions& options,
                            Progress& progress) {
   TransferReport report;
   progress.stage("read geometry");
-  const SourceModel source = readSource(sourceAsset);
+  checkHasRig(sourceAsset);
   std::optional<Skeleton> own;
   if (hasRig(target)) {
     if (options.ownSkeleton) own = readSkeleton(target).skeleton;
     removeOldRig(target, report);
   }
-  const Geometry geometry = collectGeometry(target);
-  const PreparedMesh prepared = prepareMesh(geometry.positions, geometry.triangles);
+  Geometry sourceGeometry = collectGeometry(sourceAsset), geometry = collectGeometry(target);
+  Accessories ofSource = findAccessories(sourceAsset, sourceGeometry), ofTarget = findAccessories(target, geometry);
+  leaveInCommon(ofSource, ofTarget);
+  const SourceModel source = readSource(sourceAsset, std::move(sourceGeometry), ofSource);
+  const TargetModel bare = readTarget(std::move(geometry), std::move(ofTarget));
   report.sourceVertices = source.body.mesh.vertexCount();
-  report.targetVertices = prepared.mesh.vertexCount();
-  report.warnings.append(prepared.warnings);
+  report.targetVertices = bare.prepared.mesh.vertexCount();
+  report.warnings.append(bare.prepared.warnings);
+  if (const std::vector<std::string> hung = namesOnSurface(bare.accessories); !hung.empty()) {
+    report.warnings.add("accessories", "things worn or held are no part of the body; each follows one joint",
+                        fmt::format("{}", fmt::join(hung, ", ")), hung.size());
+  }
 
-  std::vector<JointLandmark> landmarks = findLandmarks(sourceAsset, source, target, geometry, own, report, progress);
+  std::vector<JointLandmark> landmarks =
+      findLandmarks(sourceAsset, source, target, bare.geometry, own, report, progress);
   report.landmarks = static_cast<Index>(landmarks.size());
 
   progress.stage("transfer");
-  const RigTransfer rig = transferInto(prepared, source, std::move(landmarks), options.rig, progress);
+  const RigTransfer rig = transferInto(bare, source, std::move(landmarks), options.rig, progress);
   const Skeleton skeleton =
       movedSkeleton(source.body.skeleton, restGlobals(source.body.skeleton), rig.places, rig.turns);
   report.joints = skeleton.jointCount();
@@ -156,13 +258,14 @@ TransferReport runTransfer(const Asset& sourceAsset, Asset& target, const Transf
 
   progress.stage("write rig");
   if (options.blendShapes) {
-    report.blendShapes = transferShapes(sourceAsset, source, rig, target, geometry, prepared);
+    report.blendShapes = transferShapes(sourceAsset, source, rig, target, bare.geometry, bare.prepared);
   }
   if (options.colors.at) {
     const LaidSource laid = {source.geometry, source.prepared, rig};
-    transferColors(laid, options.colors, target, geometry, prepared);
+    transferColors(laid, options.colors, target, bare.geometry, bare.prepared);
   }
-  attachRig(target, geometry, skeleton, expandWeights(rig.weights, prepared.weldedVertex));
+  freeNames(skeleton, target);
+  attachRig(target, bare.geometry, skeleton, expandWeights(rig.weights, bare.prepared.weldedVertex));
   progress.finish();
   report.warnings.append(target.warnings);
   report.stages = progress.stages();

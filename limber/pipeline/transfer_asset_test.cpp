@@ -1,5 +1,6 @@
 #include "limber/pipeline/transfer_asset.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gmock/gmock.h>
@@ -280,6 +281,106 @@ TEST(TransferAssetTest, CanBeCancelledInEveryStage) {
       EXPECT_EQ(target.json(), before);
     }
   }
+}
+
+// A box in a node of its own, behind the person's back.
+void addBox(SceneBuilder& scene, const char* name, const Vec3f& middle, float size) {
+  std::vector<Vec3f> corners;
+  for (int i = 0; i < 8; ++i) {
+    corners.push_back(middle + size * Vec3f((i & 1 ? 0.5f : -0.5f), (i & 2 ? 0.5f : -0.5f), (i & 4 ? 0.5f : -0.5f)));
+  }
+  const std::vector<Triangle> triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                                           {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  scene.addNode({{"name", name}, {"mesh", scene.addMesh(Json::array({scene.primitive(corners, triangles)}), name)}});
+}
+
+const Vec3f kBack(0, 1.2f, -0.25f);
+
+Asset personAndBox(const char* name) {
+  SceneBuilder scene;
+  const TriMesh& mesh = capsulePerson().mesh;
+  scene.addNode({{"mesh", scene.addMesh(Json::array({scene.primitive(mesh.positions, mesh.triangles)}))}});
+  addBox(scene, name, kBack, 0.2f);
+  scene.json()["scenes"] = Json::array({{{"nodes", Json::array({0, 1})}}});
+  scene.json()["scene"] = 0;
+  Asset asset = scene.asset().clone();
+  asset.name = "laden.glb";
+  return asset;
+}
+
+// The person's own rig; what the box hangs on is the leg, which no neighbour of it does.
+Asset riggedPersonAndBox(const char* name) {
+  Asset asset = personAndBox(name);
+  const RiggedBody person = capsulePerson();
+  SkinWeights weights = person.weights;
+  for (int corner = 0; corner < 8; ++corner) {
+    weights.joints.insert(weights.joints.end(), {9, 0});
+    weights.weights.insert(weights.weights.end(), {1, 0});
+  }
+  attachRig(asset, collectGeometry(asset), person.skeleton, weights);
+  return asset;
+}
+
+SkinWeights weightsIn(const Asset& asset) {
+  return readWeights(asset, collectGeometry(asset), readSkeleton(asset));
+}
+
+bool tellsOfAccessories(const TransferReport& report) {
+  const std::vector<Warning>& all = report.warnings.items();
+  return std::any_of(all.begin(), all.end(), [](const Warning& w) { return w.kind == "accessories"; });
+}
+
+TEST(TransferAssetTest, AccessoriesOfTheTargetFollowOneJoint) {
+  Asset target = riggedPersonAndBox("Backpack");
+  const TransferReport report = transferred(riggedPerson(), target);
+  EXPECT_TRUE(tellsOfAccessories(report));
+  const SkinWeights weights = weightsIn(target);
+  const Index first = capsulePerson().mesh.vertexCount();
+  ASSERT_EQ(weights.vertexCount(), first + 8);
+  for (Index v = first; v < first + 8; ++v) {
+    EXPECT_FLOAT_EQ(weights.weightsOf(v)[0], 1) << v;
+    EXPECT_EQ(weights.jointsOf(v)[0], 1u) << v;  // the spine
+  }
+  const std::vector<Vec3> found = placesIn(target), wanted = placesIn(riggedPerson());
+  for (std::size_t j = 0; j < wanted.size(); ++j) EXPECT_LT((found[j] - wanted[j]).norm(), 0.005) << j;
+}
+
+// What only the source wears gives its weights to nobody.
+TEST(TransferAssetTest, AccessoriesOfTheSourceStayWithIt) {
+  Asset target = riggedPerson();
+  transferred(riggedPersonAndBox("Backpack"), target);
+  const SkinWeights found = weightsIn(target), wanted = weightsIn(riggedPerson());
+  double most = 0;
+  for (Index v = 0; v < wanted.vertexCount(); ++v) {
+    if (wanted.jointsOf(v)[0] == found.jointsOf(v)[0]) {
+      most = std::max(most, std::abs(double{wanted.weightsOf(v)[0]} - found.weightsOf(v)[0]));
+    } else {  // two that hold it about alike
+      most = std::max(most, 2.0 * wanted.weightsOf(v)[0] - 1);
+    }
+  }
+  EXPECT_LT(most, 0.2);
+}
+
+// The one bag lies on the other, and gives it its weights.
+TEST(TransferAssetTest, AccessoriesOfBothArePartOfThem) {
+  Asset target = riggedPersonAndBox("Old_Backpack");
+  const TransferReport report = transferred(riggedPersonAndBox("Backpack"), target);
+  EXPECT_FALSE(tellsOfAccessories(report));
+  const SkinWeights weights = weightsIn(target);
+  const Index first = capsulePerson().mesh.vertexCount();
+  for (Index v = first; v < first + 8; ++v) EXPECT_EQ(weights.jointsOf(v)[0], 9u) << v;
+}
+
+TEST(TransferAssetTest, JointsKeepTheirNamesWhereNodesHaveThem) {
+  Asset target = riggedPersonAndBox("head");  // no accessory: a word of the body
+  const TransferReport report = transferred(riggedPerson(), target);
+  EXPECT_EQ(report.removedJoints, 15u);
+  const Skeleton skeleton = readSkeleton(target).skeleton;
+  std::vector<std::string> names, wanted;
+  for (const Joint& joint : skeleton.joints) names.push_back(joint.name);
+  for (const Joint& joint : capsulePerson().skeleton.joints) wanted.push_back(joint.name);
+  EXPECT_EQ(names, wanted);
+  EXPECT_EQ(target.json()["nodes"][1]["name"], "head_2");
 }
 
 void expectRefused(const Asset& source, Asset& target, const std::string& what) {

@@ -23,17 +23,21 @@ constexpr std::size_t kTexelGrain = 1024;
 // The colour of points of the source's welded surface, facing outwards.
 class LaidColors {
  public:
-  // Welding leaves triangles out, and keeps the order.
+  // Welding and leaving out what is worn keep the order of the triangles that stay.
   LaidColors(const LaidSource& source, const SurfaceColor& color) : source_(source), color_(color) {
     const std::vector<Index>& welded = source.prepared.weldedVertex;
-    for (Index t = 0; t < source.geometry.triangles.size(); ++t) {
+    const std::vector<Triangle>& kept = source.rig.source.triangles;
+    for (Index t = 0; t < source.geometry.triangles.size() && triangles_.size() < kept.size(); ++t) {
       const auto& [a, b, c] = source.geometry.triangles[t];
-      if (welded[a] != welded[b] && welded[b] != welded[c] && welded[c] != welded[a]) triangles_.push_back(t);
+      const Triangle& next = kept[triangles_.size()];  // two corners may have changed places
+      if (std::is_permutation(next.begin(), next.end(), Triangle{welded[a], welded[b], welded[c]}.begin())) {
+        triangles_.push_back(t);
+      }
     }
   }
 
   Vec3f at(const SurfacePoint& point) const {
-    const Triangle& turned = source_.rig.source.triangles[point.triangle];  // two corners may have changed places
+    const Triangle& turned = source_.rig.source.triangles[point.triangle];
     const Index triangle = triangles_[point.triangle];
     Vec3 weights = Vec3::Zero();
     for (std::size_t k = 0; k < 3; ++k) {

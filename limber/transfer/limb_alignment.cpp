@@ -54,7 +54,12 @@ class Alignment {
  public:
   Alignment(const Skeleton& skeleton, std::span<const Affine> globals, std::span<const JointLandmark> landmarks)
       : skeleton_(skeleton), whole_(bodySimilarity(globals, landmarks)), place_(skeleton.jointCount()) {
-    for (const Affine& global : globals) rest_.push_back(global.translation());
+    Box box;
+    for (const Affine& global : globals) {
+      rest_.push_back(global.translation());
+      box.add(rest_.back());
+    }
+    leastSquare_ = 1e-6 * box.size().squaredNorm() + 1e-300;
     children_.resize(rest_.size());
     for (Index j = 0; j < skeleton.jointCount(); ++j) {
       if (skeleton.joints[j].parent) children_[*skeleton.joints[j].parent].push_back(j);
@@ -81,19 +86,21 @@ class Alignment {
  private:
   struct Below {
     Vec3 rest = Vec3::Zero(), place = Vec3::Zero();
-    double count = 0;
+    double weight = 0;
   };
 
-  // The nearest joints with a landmark on each way down.
-  void addBelow(Index joint, Below& below) const {
+  // The nearest joints with a landmark on each way down from `from`, which count by nearness: hips lie by the legs, not
+  // between head and hands.
+  void addBelow(Index from, Index joint, Below& below) const {
     for (const Index child : children_[joint]) {
-      if (place_[child]) {
-        below.rest += rest_[child];
-        below.place += *place_[child];
-        ++below.count;
-      } else {
-        addBelow(child, below);
+      if (!place_[child]) {
+        addBelow(from, child, below);
+        continue;
       }
+      const double weight = 1 / std::max((rest_[child] - rest_[from]).squaredNorm(), leastSquare_);
+      below.rest += weight * rest_[child];
+      below.place += weight * *place_[child];
+      below.weight += weight;
     }
   }
 
@@ -105,10 +112,10 @@ class Alignment {
       placedAbove[j] = above;
       if (place_[j]) continue;
       Below below;
-      addBelow(j, below);
-      if (below.count == 0) continue;
-      below.rest /= below.count;
-      below.place /= below.count;
+      addBelow(j, j, below);
+      if (below.weight == 0) continue;
+      below.rest /= below.weight;
+      below.place /= below.weight;
       const Vec3 fromBelow = below.place + whole_.map.linear() * (rest_[j] - below.rest);
       if (!above) {
         place_[j] = fromBelow;
@@ -159,6 +166,7 @@ class Alignment {
   const Skeleton& skeleton_;
   Similarity whole_;
   std::vector<Vec3> rest_;
+  double leastSquare_ = 0;  // squared distance, so that a joint in the place of another counts finitely
   std::vector<std::vector<Index>> children_;
   std::vector<std::optional<Vec3>> place_;
 };

@@ -49,6 +49,18 @@ TEST(LimbAlignmentTest, TakesTheSurfaceAlongALimb) {
   EXPECT_NEAR((alignment.maps[3].linear() * across).norm(), std::cbrt(alignment.whole.linear().determinant()), 1e-6);
 }
 
+// Hips without a landmark lie by the legs, wherever head and arms are.
+TEST(LimbAlignmentTest, NearLandmarksTellMoreThanFarOnes) {
+  const Skeleton skeleton = testing::capsulePerson().skeleton;
+  std::vector<Vec3> places = jointPlaces(skeleton);
+  const Vec3 hips = places[0];
+  for (Index j = 2; j <= 8; ++j) places[j] += Vec3(0, 0.5, 0);
+  std::vector<JointLandmark> landmarks = landmarksAt(places);
+  std::erase_if(landmarks, [](const JointLandmark& l) { return l.joint <= 1; });
+  const LimbAlignment alignment = alignLimbs(skeleton, restGlobals(skeleton), landmarks);
+  EXPECT_LT((alignment.places[0] - hips).norm(), 0.05);
+}
+
 TEST(LimbAlignmentTest, RefusesLandmarksThatFitNoJoint) {
   const Skeleton skeleton = testing::capsulePerson().skeleton;
   const std::vector<Affine> globals = restGlobals(skeleton);

@@ -10,6 +10,7 @@
 #include "limber/surface/surface_edges.h"
 #include "limber/transfer/facing_surface.h"
 #include "limber/transfer/joint_follow.h"
+#include "limber/transfer/limb_girth.h"
 #include "limber/transfer/weight_projection.h"
 #include "limber/transfer/whole_alignment.h"
 
@@ -23,9 +24,9 @@ struct AlignedBody {
 };
 
 // Part of the longest side. Bodies that stand alike lie this near to each other when one is moved as a whole; others
-// may be nearer so by chance. Over `tune`, pairs that a whole move lays nearer than limbs do lie up to 0.034 apart
+// may be nearer so by chance. Over `tune`, pairs that a whole move lays nearer than limbs do lie up to 0.044 apart
 // where it is right, and from 0.049 on where it mostly is wrong (surfacesApart tells up to 0.1).
-constexpr double kStandAlike = 0.04;
+constexpr double kStandAlike = 0.045;
 
 // By its limbs; or as a whole where it then lies nearer to the target and both stand alike, so that the limbs of a
 // target that was read wrong do not matter.
@@ -36,17 +37,19 @@ AlignedBody alignBody(const RiggedBody& source, const TriMesh& surface, std::spa
   for (const Quat& whole : {turn, Quat::Identity()}) {
     candidates.push_back(alignWhole(globals, wholeSimilarity(surface, target, whole, whole * up)));
   }
-  std::optional<AlignedBody> best;
+  TriMesh aligned = surface;
+  std::size_t best = 0;
   double least = 0;
-  for (LimbAlignment& candidate : candidates) {
-    TriMesh aligned = surface;
-    aligned.positions = alignedSurface(source.mesh.positions, source.weights, candidate);
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    aligned.positions = alignedSurface(source.mesh.positions, source.weights, candidates[i]);
     const double apart = surfacesApart(aligned, target);
-    if (best && !(apart < std::min(least, kStandAlike))) continue;
+    if (i > 0 && !(apart < std::min(least, kStandAlike))) continue;
     least = apart;
-    best = {std::move(candidate), std::move(aligned)};
+    best = i;
   }
-  return std::move(*best);
+  if (best == 0) fitGirths(source.skeleton, globals, landmarks, surface, source.weights, target, candidates[0]);
+  aligned.positions = alignedSurface(source.mesh.positions, source.weights, candidates[best]);
+  return {std::move(candidates[best]), std::move(aligned)};
 }
 
 }  // namespace
