@@ -132,7 +132,7 @@ if [ -d "$characters" ]; then
     -o $work/curved.md --quiet
   table=$($limber evaluate decomposition "$characters" "$creatures"/tune "$creatures"/check --quiet)
   table="$table" perl -0pi -e 's/(<!-- made by [^\n]*: decomposition -->\n).*(<!-- end of decomposition -->)/$1\n$ENV{table}\n$2/s' docs/methods.md
-  $limber evaluate transfer "$characters" "$creatures"/tune "$creatures"/check --sources 1 -o $work/transfer.md --quiet
+  $limber evaluate transfer "$characters" "$creatures"/tune "$creatures"/check -o $work/transfer.md --quiet
   table="$(cat $work/transfer.md)" perl -0pi -e 's/(<!-- made by [^\n]*: transfer -->\n).*(<!-- end of transfer -->)/$1\n$ENV{table}\n$2/s' docs/methods.md
   $limber transfer "$characters"/quaternius_man_casual.glb "$characters"/m2m_human_zombie.glb --ignore-target-rig \
     -o $work/transfer.glb --quiet
