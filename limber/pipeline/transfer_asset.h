@@ -34,6 +34,9 @@ struct TransferReport {
 // where the target's meshes have none. The target's old rig goes, with its clips. The source stays as it is. With
 // options.colors the target's own colours go, too.
 //
+// What only one of them wears or holds (findAccessories) is no part of the body: the target's follows one joint, with a
+// warning "accessories"; the source's is left out. Nodes of the target that have a joint's name get another.
+//
 // Where the target has no rig, a template is fitted to both bodies (rigWithTemplate) to tell where the limbs are.
 // Throws Error kUnsupported where the source has no rig or a body has no limbs that can be told, and as the stages do;
 // the target is then as it was. where() begins with an asset's name.

@@ -34,9 +34,9 @@ struct RigTransfer {
 
 // After Avril, Ghafourzadeh, Ramachandran, Fallahdoust, Ribet, Dionne, de Lasa, Paquette 2016, Animation Setup Transfer
 // for 3D Characters, without markers: `landmarks` say where some of the source's joints lie in the target. The source
-// is laid along the target's limbs by its skeleton (alignLimbs), its surface is registered onto the target's
-// (registerSurface), its joints follow the surface round them (followSurface), and each vertex of the target takes the
-// weights of the point that it lies on (projectWeights).
+// is laid along the target's limbs by its skeleton (alignLimbs) and made as thick as they are (fitGirths), its surface
+// is registered onto the target's (registerSurface), its joints follow the surface round them (followSurface), and each
+// vertex of the target takes the weights of the point that it lies on (projectWeights).
 //
 // target  welded, with triangles
 // Throws Error kBadArgument as these do.
