@@ -44,15 +44,19 @@ svg .axis { stroke: var(--line); fill: none; }
 [hidden] { display: none !important; }
 )css";
 
-// Tables sort by a cell's data-value, else by its text; the filter hides whatever has data-words without all of the
-// words.
+// Tables sort by a cell's data-value, else by its text, what has none last; the filter hides whatever has data-words
+// without all of the words.
 const std::string_view kReportScript = R"js(
 'use strict';
 const valueOf = (row, column) => {
   const cell = row.cells[column];
-  return cell.dataset.value === undefined ? cell.textContent : Number(cell.dataset.value);
+  if (cell.dataset.value === undefined) return cell.textContent;
+  return cell.dataset.value === '' ? undefined : Number(cell.dataset.value);
 };
-const compare = (a, b) => (typeof a === 'number' && typeof b === 'number' ? a - b || 0 : String(a).localeCompare(String(b)));
+const compare = (a, b, sign) => {
+  if (a === undefined || b === undefined) return (a === undefined) - (b === undefined);
+  return sign * (typeof a === 'number' ? a - b || 0 : a.localeCompare(b));
+};
 for (const button of document.querySelectorAll('thead button')) {
   button.addEventListener('click', () => {
     const head = button.closest('th');
@@ -60,8 +64,9 @@ for (const button of document.querySelectorAll('thead button')) {
     for (const other of head.parentElement.cells) if (other.hasAttribute('aria-sort')) other.setAttribute('aria-sort', 'none');
     head.setAttribute('aria-sort', ascending ? 'ascending' : 'descending');
     const body = head.closest('table').tBodies[0];
-    const rows = [...body.rows].sort((a, b) => compare(valueOf(a, head.cellIndex), valueOf(b, head.cellIndex)));
-    body.append(...(ascending ? rows : rows.reverse()));
+    const column = head.cellIndex;
+    const sign = ascending ? 1 : -1;
+    body.append(...[...body.rows].sort((a, b) => compare(valueOf(a, column), valueOf(b, column), sign)));
   });
 }
 const filter = document.getElementById('filter');

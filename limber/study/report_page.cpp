@@ -48,6 +48,8 @@ std::string numberCell(double value) {
                      std::isfinite(value) ? "" : " class=\"bad\"", number(value));
 }
 
+constexpr const char* kNoNumber = "<td data-value=\"\">-</td>";
+
 std::string countCell(std::size_t count, bool isBad = false) {
   return fmt::format("<td data-value=\"{0}\"{1}>{0}</td>", count, isBad && count > 0 ? " class=\"bad\"" : "");
 }
@@ -124,7 +126,7 @@ std::string overview(const StudyResult& study, const KindReport& report) {
       for (const Ranking& ranking : rankings) {
         const auto score = std::find_if(ranking.scores.begin(), ranking.scores.end(),
                                         [&](const MethodScore& s) { return s.method == method; });
-        html += score == ranking.scores.end() ? "<td>-</td>" : numberCell(score->value.median);
+        html += score == ranking.scores.end() ? kNoNumber : numberCell(score->value.median);
       }
       html += "</tr>\n";
     }
@@ -140,7 +142,7 @@ std::string rankingTable(const Ranking& ranking) {
     const MethodScore& score = ranking.scores[i];
     html += rowStart(score.method) + countCell(i + 1) + textCell(score.method) + countCell(score.subjects) +
             countCell(score.failures, true) + numberCell(score.value.median) + numberCell(score.value.low) +
-            numberCell(score.value.high) + (score.seconds > 0 ? numberCell(score.seconds) : "<td>-</td>") + "</tr>\n";
+            numberCell(score.value.high) + (score.seconds > 0 ? numberCell(score.seconds) : kNoNumber) + "</tr>\n";
   }
   return html + std::string(kTableEnd);
 }
@@ -220,7 +222,7 @@ PictureSource pictureSource(const StudyResult& study, const std::filesystem::pat
 std::string pictureHtml(const CellPicture& picture, const std::string& alt, const PictureSource& source) {
   const bool moves = picture.name == "motion";
   const std::string image = fmt::format("<img loading=\"lazy\" alt=\"{}: {}\" src=\"{}\" width=\"{}\" height=\"{}\">",
-                                        htmlText(picture.name), htmlText(alt), source(picture), 240, 240);
+                                        htmlText(picture.name), htmlText(alt), source(picture), 160, 160);
   // Whoever does not want things to move does not open it.
   return moves ? "<details><summary>Motion</summary>" + image + "</details>" : image;
 }
@@ -239,8 +241,8 @@ std::string cellFigure(const StudyResult& study, std::size_t number_, const Pict
   }
   std::string values;
   for (const MeasuredValue& one : result.measures) {
-    values += fmt::format("{}{} {} {}", values.empty() ? "" : "<br>", htmlText(one.measure->label), number(one.value),
-                          htmlText(one.measure->unit));
+    values += fmt::format("{}{}: {}", values.empty() ? "" : "<br>", htmlText(one.measure->label), number(one.value));
+    if (!one.measure->unit.empty()) values += fmt::format(" ({})", htmlText(one.measure->unit));
   }
   html += "<details><summary>Figures and commands</summary><p>" + values + "</p><pre>";
   for (const CellStep& step : cell.steps) html += htmlText(commandText(step)) + "\n";

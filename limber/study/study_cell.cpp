@@ -6,7 +6,7 @@ namespace limber {
 
 namespace {
 
-constexpr std::string_view kPictureSize = "240x240", kMovingSize = "160x160", kMovingFps = "8";
+constexpr std::string_view kPictureSize = "160x160", kMovingSize = "160x160", kMovingFps = "8";
 constexpr std::string_view kShown = "0:4";  // seconds of a motion that its picture shows
 
 void addPictures(StudyCell& cell) {

@@ -8,6 +8,7 @@
 
 #include "limber/asset/json_access.h"
 #include "limber/asset/json_text.h"
+#include "limber/core/names.h"
 #include "limber/ik/ik_solver.h"
 #include "limber/retarget/retarget_method.h"
 #include "limber/rigging/auto_rigger.h"

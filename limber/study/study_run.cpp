@@ -23,7 +23,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char *kCells = "cells", *kPictures = "pictures", *kWork = "work", *kSamples = "samples";
+// kWork is also what a study's folder is known by.
+constexpr const char *kCells = "cells", *kPictures = "pictures", *kWork = ".limber-study", *kSamples = "samples";
 constexpr std::size_t kMostProblem = 1000;  // bytes of a program's own words
 
 void makeFolder(const fs::path& folder) {
@@ -120,9 +121,9 @@ class StudyRun {
         options_(options),
         output_(fs::absolute(options.output).lexically_normal()),
         progress_(progress),
-        store_(output_ / kCells) {
+        store_(prepared(output_) / kCells) {
     removeAll(output_ / kWork);
-    for (const char* folder : {kPictures, kWork, kSamples}) makeFolder(output_ / folder);
+    for (const char* folder : {kWork, kPictures, kSamples}) makeFolder(output_ / folder);
     program_ = sha256OfFile(options.program);
   }
 
@@ -139,11 +140,24 @@ class StudyRun {
     for (StudyCell& cell : retargetCells(plan_, characters, motions)) study.cells.push_back(std::move(cell));
     progress_.stage("run cells");
     runCells(study);
-    removeAll(output_ / kWork);
     return study;
   }
 
  private:
+  // The study's folder, marked as such before anything else is in it. One with other files, in which a study would
+  // replace and remove some, is refused.
+  static const fs::path& prepared(const fs::path& output) {
+    std::error_code unseen;
+    const bool isFree =
+        !fs::exists(output, unseen) || fs::is_empty(output, unseen) || fs::is_directory(output / kWork, unseen);
+    if (!isFree) {
+      throw Error(ErrorCode::kFile, "holds other files than a study's", output.string(),
+                  "name a folder that is empty or new");
+    }
+    makeFolder(output / kWork);
+    return output;
+  }
+
   std::vector<StudyInput> find(const std::vector<std::string>& names, InputKind kind) const {
     return findInputs(names, kind, options_.planFolder, output_ / kSamples);
   }

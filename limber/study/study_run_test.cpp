@@ -109,7 +109,7 @@ TEST_F(StudyRuns, MeasuresEachCell) {
     ASSERT_EQ(result.pictures.size(), 2u);
     for (const CellPicture& picture : result.pictures) EXPECT_TRUE(fs::exists(options_.output / picture.file));
   }
-  EXPECT_FALSE(fs::exists(options_.output / "work"));
+  EXPECT_TRUE(fs::is_empty(options_.output / ".limber-study"));
 }
 
 TEST_F(StudyRuns, ACellThatEndsBadlySaysSo) {
@@ -155,7 +155,7 @@ TEST_F(StudyRuns, GoesOnWhereItStopped) {
   std::sort(kept.begin(), kept.end());
   for (std::size_t i = 0; i < kept.size(); i += 2) fs::remove(kept[i]);
   put("report/cells/half.json.limber-part", "{");
-  fs::create_directories(options_.output / "work" / "left");
+  fs::create_directories(options_.output / ".limber-study" / "left");
   // What takes the script no time differs in its seconds alone.
   const auto withoutSeconds = [](const std::string& csv) {
     std::string rest;
@@ -172,7 +172,7 @@ TEST_F(StudyRuns, GoesOnWhereItStopped) {
   EXPECT_EQ(runs(), again.ran);
   EXPECT_GT(again.ran, 0u);
   EXPECT_LT(again.ran, 7u);
-  EXPECT_FALSE(fs::exists(options_.output / "work"));
+  EXPECT_TRUE(fs::is_empty(options_.output / ".limber-study"));
   EXPECT_EQ(run().ran, 0u);
 }
 
@@ -224,6 +224,18 @@ TEST_F(StudyRuns, WhatIsMissingStopsItBeforeAnythingRuns) {
   plan_.rig.models.push_back("missing.glb");
   EXPECT_THROW(run(), Error);
   EXPECT_EQ(runs(), 0u);
+}
+
+TEST_F(StudyRuns, AFolderWithOtherFilesIsLeftAlone) {
+  addModels({"a.glb"});
+  options_.output = folder();
+  EXPECT_THROW(run(), Error);
+  EXPECT_FALSE(fs::exists(folder() / "cells"));
+  options_.output = folder() / "a.glb";
+  EXPECT_THROW(run(), Error);
+  fs::create_directories(folder() / "empty");
+  options_.output = folder() / "empty";
+  EXPECT_NO_THROW(run());
 }
 
 TEST(CellTable, QuotesAsCsvDoes) {
