@@ -227,10 +227,10 @@ std::string pictureHtml(const CellPicture& picture, const std::string& alt, cons
   return moves ? "<details><summary>Motion</summary>" + image + "</details>" : image;
 }
 
-std::string cellFigure(const StudyResult& study, std::size_t number_, const PictureSource& source) {
-  const StudyCell& cell = study.cells[number_];
-  const CellResult& result = study.results[number_];
-  std::string html = fmt::format("<figure id=\"cell-{}\" data-words=\"{}\"><figcaption>{}</figcaption>\n", number_,
+std::string cellFigure(const StudyResult& study, std::size_t index, const PictureSource& source) {
+  const StudyCell& cell = study.cells[index];
+  const CellResult& result = study.results[index];
+  std::string html = fmt::format("<figure id=\"cell-{}\" data-words=\"{}\"><figcaption>{}</figcaption>\n", index,
                                  htmlText(lowerCase(cell.subject() + " " + cell.group + " " + cell.method())),
                                  htmlText(cell.method()));
   for (const CellPicture& picture : result.pictures) {
