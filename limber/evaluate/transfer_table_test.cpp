@@ -5,10 +5,10 @@
 #include "limber/asset/read.h"
 #include "limber/asset/rig_io.h"
 #include "limber/asset/testing/scene_builder.h"
-#include "limber/asset/testing/temporary_folder.h"
 #include "limber/asset/write.h"
 #include "limber/matching/testing/test_motion.h"
 #include "limber/mesh/testing/capsule.h"
+#include "temporary_folder.h"
 
 namespace limber {
 namespace {
