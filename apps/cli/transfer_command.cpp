@@ -48,7 +48,7 @@ void printGaps(const Account& account, const SurfaceGaps& gaps) {
   account.line(fmt::format("beyond {} %       {:.1f} % of the surface", kGap, 100 * gaps.beyond));
   for (std::size_t i = 0; i < std::min(kPartsListed, gaps.parts.size()) && gaps.parts[i].beyond > 0; ++i) {
     const PartGap& part = gaps.parts[i];
-    account.line(fmt::format("  {:<15}{:.0f} % of it", part.part, 100 * part.beyond));
+    account.line(fmt::format("  {:<16}{:.0f} % of it", part.part, 100 * part.beyond));
   }
 }
 
