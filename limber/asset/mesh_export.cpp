@@ -13,6 +13,7 @@
 #include "limber/asset/accessor.h"
 #include "limber/asset/images.h"
 #include "limber/asset/scene_graph.h"
+#include "limber/asset/texture_coordinates.h"
 #include "limber/core/names.h"
 #include "limber/mesh/normals.h"
 
@@ -40,13 +41,10 @@ std::optional<Index> attribute(const Json& primitive, const char* name) {
 }
 
 void copyUvs(const Asset& asset, const PrimitiveInstance& instance, std::vector<Vec2f>& uvs, std::size_t vertexCount) {
-  const std::optional<Index> accessor = attribute(primitiveOf(asset, instance), "TEXCOORD_0");
-  if (!accessor) return;
+  const std::vector<Vec2f> own = readUvs(asset, instance);
+  if (own.empty()) return;
   uvs.resize(vertexCount, Vec2f::Zero());
-  const std::vector<float> values = readFloats(asset, *accessor);
-  for (Index v = 0; v < instance.vertexCount; ++v) {
-    uvs[instance.firstVertex + v] = {values[2 * v], 1 - values[2 * v + 1]};
-  }
+  for (Index v = 0; v < instance.vertexCount; ++v) uvs[instance.firstVertex + v] = {own[v].x(), 1 - own[v].y()};
 }
 
 // Vertices that share a place and, where the file has normals, the file's normal: these shade smoothly together.

@@ -121,16 +121,6 @@ std::vector<Vec3f> pictureOf(std::span<const Texel> texels, std::span<const Vec3
   return picture;
 }
 
-std::vector<Vec2f> readUvs(const Asset& asset, const PrimitiveInstance& instance) {
-  const Json& primitive = elements(asset, "meshes")[instance.mesh].at("primitives")[instance.primitive];
-  const std::optional<Index> accessor = indexMember(primitive.at("attributes"), "TEXCOORD_0");
-  const std::vector<float> values = accessor ? readFloats(asset, *accessor) : std::vector<float>();
-  std::vector<Vec2f> uvs;
-  if (values.size() != 2 * std::size_t{instance.vertexCount}) return uvs;
-  for (std::size_t v = 0; v < instance.vertexCount; ++v) uvs.emplace_back(values[2 * v], values[2 * v + 1]);
-  return uvs;
-}
-
 void setBaseColorPicture(Asset& asset, Index material, ByteSpan png) {
   constexpr int kClampToEdge = 33071;  // glTF's number
   const Index view = addBufferView(asset, png);

@@ -29,9 +29,6 @@ std::optional<std::vector<Texel>> texelsOf(std::span<const Triangle> triangles, 
 // what is known beside them, eight pixels far; so nothing foreign shows at a seam. The others are black.
 std::vector<Vec3f> pictureOf(std::span<const Texel> texels, std::span<const Vec3f> colors, int size);
 
-// TEXCOORD_0 of an instance; empty where it has none.
-std::vector<Vec2f> readUvs(const Asset& asset, const PrimitiveInstance& instance);
-
 // The material shows that PNG file by TEXCOORD_0, clamped at its edges, as its base colour.
 void setBaseColorPicture(Asset& asset, Index material, ByteSpan png);
 

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "limber/asset/json_access.h"
+#include "limber/asset/texture_coordinates.h"
 #include "limber/core/parallel.h"
 #include "limber/mesh/normals.h"
 #include "limber/pipeline/texture_bake.h"
