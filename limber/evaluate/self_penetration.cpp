@@ -6,7 +6,6 @@
 #include "limber/core/error.h"
 #include "limber/core/parallel.h"
 #include "limber/mesh/normals.h"
-#include "limber/mesh/prepare.h"
 #include "limber/mesh/winding_number.h"
 #include "limber/skinning/linear_blend.h"
 
@@ -24,28 +23,6 @@ std::vector<std::size_t> evenly(std::size_t count, std::size_t most) {
   const std::size_t number = std::min(count, std::max<std::size_t>(most, 1));
   for (std::size_t i = 0; i < number; ++i) chosen.push_back(number > 1 ? i * (count - 1) / (number - 1) : 0);
   return chosen;
-}
-
-// The model with one vertex for each place, so that normals are those of the whole surface.
-SkinnedModel weldedModel(const SkinnedModel& model, double& size) {
-  PreparedMesh prepared = prepareMesh(model.mesh.positions, model.mesh.triangles);
-  size = prepared.frame.scale;
-  SkinnedModel welded;
-  welded.skeleton = model.skeleton;
-  welded.mesh = std::move(prepared.mesh);
-  const Index count = welded.mesh.vertexCount(), slots = model.weights.slots;
-  welded.weights = {slots, std::vector<Index>(std::size_t{count} * slots),
-                    std::vector<float>(std::size_t{count} * slots)};
-  for (std::size_t v = 0; v < prepared.weldedVertex.size(); ++v) {
-    const Index to = prepared.weldedVertex[v];
-    welded.mesh.positions[to] = model.mesh.positions[v];
-    const auto joints = model.weights.jointsOf(static_cast<Index>(v));
-    const auto weights = model.weights.weightsOf(static_cast<Index>(v));
-    std::copy(joints.begin(), joints.end(), &welded.weights.joints[std::size_t{to} * slots]);
-    std::copy(weights.begin(), weights.end(), &welded.weights.weights[std::size_t{to} * slots]);
-  }
-  normalizeWeights(welded.weights);
-  return welded;
 }
 
 // How often the surface winds round the points just off those vertices; nothing is off a vertex without a triangle.
@@ -67,8 +44,8 @@ std::vector<double> windingOff(const TriMesh& mesh, std::span<const Index> verti
 SelfPenetration measureSelfPenetration(const SkinnedModel& model, const std::vector<Pose>& poses,
                                        const SelfPenetrationOptions& options) {
   if (poses.empty()) throw Error(ErrorCode::kBadArgument, "there is no frame to look for self-penetration in");
-  double size = 1;
-  const SkinnedModel skin = weldedModel(model, size);
+  const SkinnedModel skin = weldedModel(model);
+  const double size = longestSide(skin.mesh);
   checkWeights(skin.weights, skin.skeleton.jointCount());
 
   std::vector<Index> sampled, outside;

@@ -19,4 +19,11 @@ struct SkinnedModel {
 // Throws Error kUnsupported where the asset has no rig.
 SkinnedModel readSkinnedModel(const Asset& asset);
 
+// The model with one vertex for each place, whose weights are those of the last vertex there to a sum of 1, and without
+// degenerate triangles. Errors and cost of prepareMesh.
+SkinnedModel weldedModel(const SkinnedModel& model);
+
+// Of the box round the surface: vertices without a triangle do not count. 0 where there is no triangle.
+double longestSide(const TriMesh& mesh);
+
 }  // namespace limber

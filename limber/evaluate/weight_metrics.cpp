@@ -30,20 +30,6 @@ float weightOf(const SkinWeights& weights, Index vertex, Index joint) {
   return sum;
 }
 
-// Sum over joints of |a - b|. No joint stands twice among a vertex's used slots.
-double difference(const SkinWeights& a, Index va, const SkinWeights& b, Index vb) {
-  double sum = 0;
-  for (Index slot = 0; slot < a.slots; ++slot) {
-    const float weight = a.weightsOf(va)[slot];
-    if (weight > 0) sum += std::abs(weight - weightOf(b, vb, a.jointsOf(va)[slot]));
-  }
-  for (Index slot = 0; slot < b.slots; ++slot) {
-    const float weight = b.weightsOf(vb)[slot];
-    if (weight > 0 && weightOf(a, va, b.jointsOf(vb)[slot]) == 0) sum += weight;
-  }
-  return sum;
-}
-
 bool isUnweighted(const SkinWeights& weights, Index vertex) {
   const auto of = weights.weightsOf(vertex);
   return std::none_of(of.begin(), of.end(), [](float w) { return w > 0; });
@@ -104,7 +90,7 @@ void measureInfluences(const PairedSkins& skins, WeightComparison& report) {
   std::size_t inResult = 0, inTruth = 0, inBoth = 0;
   double sum = 0;
   for (Index v = 0; v < report.vertices; ++v) {
-    sum += difference(skins.result, v, skins.truth, v);
+    sum += weightDifference(skins.result, v, skins.truth, v);
     report.unweighted += isUnweighted(skins.result, v);
     report.truthUnweighted += isUnweighted(skins.truth, v);
     for (Index slot = 0; slot < kSlots; ++slot) {
@@ -168,8 +154,8 @@ void measureSmoothness(const SkinnedModel& truth, const PairedSkins& skins, Weig
   std::sort(edges.begin(), edges.end());
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
   for (const auto& [a, b] : edges) {
-    report.smoothness += difference(skins.result, sourceVertex[a], skins.result, sourceVertex[b]);
-    report.truthSmoothness += difference(skins.truth, sourceVertex[a], skins.truth, sourceVertex[b]);
+    report.smoothness += weightDifference(skins.result, sourceVertex[a], skins.result, sourceVertex[b]);
+    report.truthSmoothness += weightDifference(skins.truth, sourceVertex[a], skins.truth, sourceVertex[b]);
   }
   report.smoothness /= static_cast<double>(edges.size());
   report.truthSmoothness /= static_cast<double>(edges.size());
@@ -184,6 +170,19 @@ Index countUsedJoints(const SkinWeights& weights, Index jointCount) {
 }
 
 }  // namespace
+
+double weightDifference(const SkinWeights& a, Index va, const SkinWeights& b, Index vb) {
+  double sum = 0;
+  for (Index slot = 0; slot < a.slots; ++slot) {
+    const float weight = a.weightsOf(va)[slot];
+    if (weight > 0) sum += std::abs(weight - weightOf(b, vb, a.jointsOf(va)[slot]));
+  }
+  for (Index slot = 0; slot < b.slots; ++slot) {
+    const float weight = b.weightsOf(vb)[slot];
+    if (weight > 0 && weightOf(a, va, b.jointsOf(vb)[slot]) == 0) sum += weight;
+  }
+  return sum;
+}
 
 SkinWeights strongestFour(const SkinWeights& weights) {
   SkinWeights result;

@@ -8,6 +8,7 @@
 
 #include "limber/core/error.h"
 #include "limber/matching/plain_skeleton.h"
+#include "limber/mesh/enclosed_volume.h"
 #include "limber/pipeline/stand_upright.h"
 #include "limber/retarget/retarget_clip.h"
 #include "limber/skeleton/motion.h"
@@ -49,16 +50,6 @@ void measureWeights(const RiggedModel& rig, SessionMeasures& measures) {
   measures.smoothness = differences / std::max<double>(1, 3.0 * static_cast<double>(rig.geometry->triangles.size()));
 }
 
-double volumeOf(const std::vector<Vec3f>& positions, const std::vector<Triangle>& triangles) {
-  double six = 0;
-  for (const Triangle& t : triangles) {
-    const Vec3 a = positions[t[0]].cast<double>(), b = positions[t[1]].cast<double>(),
-               c = positions[t[2]].cast<double>();
-    six += a.dot(b.cross(c));
-  }
-  return six / 6;
-}
-
 void measureSurface(const SessionState& state, SessionMeasures& measures) {
   const Geometry& bound = *state.rig->geometry;
   const std::vector<Vec3f> posed = posedPositions(*state.rig, state.pose, findDeformer(state.deformer));
@@ -74,9 +65,9 @@ void measureSurface(const SessionState& state, SessionMeasures& measures) {
   measures.stretch = length > 0 ? change / length : 0;
   Box box;
   for (const Vec3f& position : bound.positions) box.add(position.cast<double>());
-  const double before = volumeOf(bound.positions, bound.triangles);
+  const double before = enclosedVolume(bound.positions, bound.triangles);
   const double room = box.longestSide() * box.longestSide() * box.longestSide();
-  if (std::abs(before) > kLeastVolume * room) measures.volume = volumeOf(posed, bound.triangles) / before - 1;
+  if (std::abs(before) > kLeastVolume * room) measures.volume = enclosedVolume(posed, bound.triangles) / before - 1;
 }
 
 void measureTargets(const SessionState& state, SessionMeasures& measures) {

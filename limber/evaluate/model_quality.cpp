@@ -1,0 +1,189 @@
+#include "limber/evaluate/model_quality.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "limber/asset/accessor.h"
+#include "limber/asset/geometry.h"
+#include "limber/asset/scene_graph.h"
+#include "limber/evaluate/body_joints.h"
+#include "limber/evaluate/bone_coverage.h"
+#include "limber/evaluate/range_of_motion.h"
+#include "limber/evaluate/rig_symmetry.h"
+#include "limber/evaluate/self_penetration.h"
+#include "limber/evaluate/weight_metrics.h"
+#include "limber/mesh/enclosed_volume.h"
+#include "limber/skinning/linear_blend.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kNoVolume = 1e-6;  // of the longest side's cube: less holds nothing
+
+std::vector<Vec3f> posedBy(const SkinnedModel& model, const Pose& pose) {
+  const std::vector<Affine> transforms = skinTransforms(model.skeleton, pose);
+  std::vector<float> scratch(linearBlendScratch(model.mesh.positions.size(), model.skeleton.jointCount()));
+  std::vector<Vec3f> positions(model.mesh.positions.size());
+  linearBlend({model.mesh.positions, {}, model.weights, transforms, {}}, {positions, {}}, scratch);
+  return positions;
+}
+
+SurfaceChange changeOf(const TriMesh& rest, std::span<const Vec3f> posed, std::span<const Vec2f> uvs) {
+  SurfaceChange change;
+  change.stretch = surfaceStretch(rest.positions, posed, rest.triangles);
+  if (!uvs.empty()) {
+    const std::optional<double> before = textureStretch(uvs, rest.positions, rest.triangles),
+                                after = textureStretch(uvs, posed, rest.triangles);
+    if (before && after) change.texture = *after / *before - 1;
+  }
+  const double side = longestSide(rest), before = enclosedVolume(rest.positions, rest.triangles);
+  if (std::abs(before) > kNoVolume * side * side * side) {
+    change.volumeLoss = 1 - enclosedVolume(posed, rest.triangles) / before;
+  }
+  return change;
+}
+
+SurfaceChange meanChange(std::span<const PoseChange> poses) {
+  SurfaceChange mean;
+  const double count = static_cast<double>(poses.size());
+  double texture = 0, textured = 0;
+  for (const PoseChange& one : poses) {
+    mean.stretch.mean += one.change.stretch.mean / count;
+    mean.stretch.p95 += one.change.stretch.p95 / count;
+    mean.volumeLoss += std::max(0.0, one.change.volumeLoss) / count;
+    texture += one.change.texture.value_or(0);
+    textured += one.change.texture.has_value();
+  }
+  if (textured > 0) mean.texture = texture / textured;
+  return mean;
+}
+
+std::optional<MotionQuality> measureMoving(const SkinnedModel& model, std::span<const Vec2f> uvs) {
+  const std::vector<RangeOfMotionPose> range = rangeOfMotion(model.skeleton, readAnatomy(model.skeleton));
+  if (range.empty()) return std::nullopt;
+  MotionQuality result;
+  std::vector<Pose> poses;
+  for (const RangeOfMotionPose& one : range) {
+    result.poses.push_back({std::string(one.name), changeOf(model.mesh, posedBy(model, one.pose), uvs)});
+    poses.push_back(one.pose);
+  }
+  result.mean = meanChange(result.poses);
+  const SelfPenetration inside = measureSelfPenetration(model, poses);
+  result.selfPenetration = inside.mean;
+  if (inside.worst > 0) result.mostPenetrating = range[inside.worstFrame].name;
+  return result;
+}
+
+// #S, 0 where a primitive has none; empty where none has any.
+std::vector<Vec2f> textureCoordinates(const Asset& asset, const Geometry& geometry) {
+  std::vector<Vec2f> uvs;
+  for (const PrimitiveInstance& instance : geometry.instances) {
+    const Json& primitive = elements(asset, "meshes")[instance.mesh].at("primitives")[instance.primitive];
+    const auto accessor = indexMember(primitive.at("attributes"), "TEXCOORD_0");
+    if (!accessor) continue;
+    const std::vector<float> values = readFloats(asset, *accessor);
+    if (values.size() != std::size_t{2} * instance.vertexCount) continue;
+    uvs.resize(geometry.positions.size(), Vec2f::Zero());
+    for (Index v = 0; v < instance.vertexCount; ++v) {
+      uvs[instance.firstVertex + v] = {values[2 * std::size_t{v}], values[2 * std::size_t{v} + 1]};
+    }
+  }
+  return uvs;
+}
+
+Json orNull(const std::optional<double>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+Json changeJson(const SurfaceChange& change) {
+  return {{"stretch", change.stretch.mean},
+          {"stretch_p95", change.stretch.p95},
+          {"texture_stretch", orNull(change.texture)},
+          {"volume_loss", change.volumeLoss}};
+}
+
+Json motionJson(const MotionQuality& motion) {
+  Json json = changeJson(motion.mean);
+  json["self_penetration"] = motion.selfPenetration;
+  json["most_penetrating"] = motion.mostPenetrating.empty() ? Json(nullptr) : Json(motion.mostPenetrating);
+  json["poses"] = Json::array();
+  for (const PoseChange& one : motion.poses) {
+    Json pose = changeJson(one.change);
+    pose["pose"] = one.pose;
+    json["poses"].push_back(std::move(pose));
+  }
+  return json;
+}
+
+std::string percentOr(const std::optional<double>& share, std::string_view otherwise) {
+  return share ? fmt::format("{:.1f} %", 100 * *share) : std::string(otherwise);
+}
+
+std::string motionText(const MotionQuality& motion) {
+  const SurfaceChange& mean = motion.mean;
+  const auto most = std::max_element(motion.poses.begin(), motion.poses.end(), [](const auto& a, const auto& b) {
+    return a.change.stretch.mean < b.change.stretch.mean;
+  });
+  std::string text = fmt::format("stretch       mean {:.1f} %, 95th percentile {:.1f} %; most in \"{}\"\n",
+                                 100 * mean.stretch.mean, 100 * mean.stretch.p95, most->pose);
+  text += fmt::format("texture       {} more than at rest\n", percentOr(mean.texture, "no coordinates"));
+  text += fmt::format("volume        {:.1f} % lost\n", 100 * mean.volumeLoss);
+  text += fmt::format("inside        {:.1f} % of the vertices go into the body", 100 * motion.selfPenetration);
+  if (!motion.mostPenetrating.empty()) text += fmt::format("; most in \"{}\"", motion.mostPenetrating);
+  return text + fmt::format("\n              (means over {} poses)\n", motion.poses.size());
+}
+
+}  // namespace
+
+ModelQuality measureModel(const SkinnedModel& given, std::span<const Vec2f> uvs) {
+  checkWeights(given.weights, given.skeleton.jointCount());
+  SkinnedModel model = given;
+  model.weights = strongestFour(given.weights);
+  const SkinnedModel welded = weldedModel(model);
+  const std::vector<bool> counts = countedJoints(model);
+  ModelQuality quality;
+  quality.joints = model.skeleton.jointCount();
+  const auto idle = std::count(counts.begin(), counts.end(), false);
+  if (quality.joints > 0) quality.idleJoints = static_cast<double>(idle) / quality.joints;
+  quality.placement = measureJointPlacement(welded, counts);
+  quality.coverage = boneCoverage(welded, counts);
+  quality.asymmetry = jointAsymmetry(welded, counts);
+  quality.weights = measureWeights(welded);
+  quality.motion = measureMoving(model, uvs);
+  return quality;
+}
+
+ModelQuality measureModel(const Asset& asset) {
+  return measureModel(readSkinnedModel(asset), textureCoordinates(asset, collectGeometry(asset)));
+}
+
+Json toJson(const ModelQuality& q) {
+  return {{"joints", q.joints},
+          {"idle_joints", q.idleJoints},
+          {"joints_inside", q.placement.inside},
+          {"joints_off_center", q.placement.offCenter},
+          {"coverage", orNull(q.coverage)},
+          {"asymmetry", orNull(q.asymmetry)},
+          {"weight_islands", q.weights.islands},
+          {"influences", q.weights.influences},
+          {"roughness", q.weights.roughness},
+          {"motion", q.motion ? motionJson(*q.motion) : Json(nullptr)}};
+}
+
+std::string toText(const ModelQuality& q) {
+  std::string text = fmt::format("joints        {}, of which {:.0f} % move nothing\n", q.joints, 100 * q.idleJoints);
+  text += fmt::format("placement     {:.0f} % inside; {:.2f} off the middle (0 in it, 1 on the surface)\n",
+                      100 * q.placement.inside, q.placement.offCenter);
+  text += fmt::format("coverage      {} of the surface has a bone near\n", percentOr(q.coverage, "nothing"));
+  text += "asymmetry     " + (q.asymmetry ? fmt::format("{:.2f} % of the longest side\n", *q.asymmetry)
+                                          : std::string("the surface is not symmetric\n"));
+  text += fmt::format("weights       {:.2f} joints a vertex; roughness {:.3f}; {:.2f} % in islands\n",
+                      q.weights.influences, q.weights.roughness, 100 * q.weights.islands);
+  return text + (q.motion ? motionText(*q.motion) : std::string("no part of the body moves\n"));
+}
+
+}  // namespace limber
