@@ -1,5 +1,6 @@
 // limber evaluate: how good a result is, in figures.
 #include <filesystem>
+#include <span>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -12,6 +13,7 @@
 #include "limber/evaluate/anatomy_table.h"
 #include "limber/evaluate/ik_evaluation.h"
 #include "limber/evaluate/ik_page.h"
+#include "limber/evaluate/model_quality.h"
 #include "limber/evaluate/rig_table.h"
 #include "limber/evaluate/template_table.h"
 #include "limber/evaluate/weight_report.h"
@@ -19,6 +21,7 @@
 #include "limber/pipeline/auto_rig.h"
 #include "limber/preview/render.h"
 #include "limber/rigging/template_rigger.h"
+#include "limber/study/measure_agreement.h"
 #include "progress_line.h"
 
 namespace limber::cli {
@@ -37,6 +40,46 @@ void runWeights(const WeightsOptions& options) {
   } else {
     fmt::print("{}", toText(comparison));
   }
+}
+
+struct ModelFile {
+  std::string model;
+  bool json = false;
+};
+
+void runModel(const ModelFile& options) {
+  const ModelQuality quality = measureModel(readAsset(options.model));
+  if (options.json) {
+    fmt::print("{}\n", dumpReport(toJson(quality)));
+  } else {
+    fmt::print("{}", toText(quality));
+  }
+}
+
+struct AgreementFiles {
+  std::vector<std::string> cells;
+  std::string output = "-";
+};
+
+void runMeasures(const AgreementFiles& options) {
+  checkOutput(options.output, {".md"});
+  std::vector<Json> documents;
+  for (const std::string& file : options.cells) {
+    const Bytes text = readFile(file);
+    try {
+      Warnings unheard;
+      documents.push_back(parseJson({reinterpret_cast<const char*>(text.data()), text.size()}, unheard));
+      measureAgreement(std::span(&documents.back(), 1));
+    } catch (const Error& error) {
+      throwWithin(error, file);
+    }
+  }
+  const std::vector<MeasureAgreement> agreements = measureAgreement(documents);
+  if (agreements.empty()) {
+    throw Error(ErrorCode::kBadData, "no model was rigged in three ways and compared with a rig of its own",
+                options.cells.front(), "run a study of three methods or more over characters that artists rigged");
+  }
+  writeText(options.output, agreementTable(agreements));
 }
 
 struct RigFiles {
@@ -287,6 +330,43 @@ void addIk(CLI::App& evaluate) {
   command->callback([options] { runIk(*options); });
 }
 
+void addModel(CLI::App& evaluate) {
+  auto options = std::make_shared<ModelFile>();
+  CLI::App* command =
+      evaluate.add_subcommand("model", "Measure how good a rigged model is, with nothing to compare it with");
+  command->add_option("FILE", options->model, "the rigged model")->required();
+  command->add_flag("--json", options->json, "print JSON, with the figures of each pose");
+  command->footer(
+      "Prints what can be told of the skeleton (joints that move nothing, inside the body, off its middle; how much "
+      "of\n"
+      "the surface has a bone near; asymmetry on a symmetric surface), of the weights (joints that a vertex follows,\n"
+      "roughness, weights over gaps), and of the surface in a range of motion: limbs, trunk, neck, tail, wings and "
+      "fins\n"
+      "bent one after the other, half as far as a person can. There: stretch of the surface and of its texture, "
+      "volume\n"
+      "lost, and vertices that go into the body. Compare rigs of one model by these, not rigs of different models.\n"
+      "\nExample:\n  limber rig person.glb --replace-rig -o rigged.glb\n  limber evaluate model rigged.glb --json");
+  command->callback([options] { runModel(*options); });
+}
+
+void addMeasures(CLI::App& evaluate) {
+  auto options = std::make_shared<AgreementFiles>();
+  CLI::App* command =
+      evaluate.add_subcommand("measures", "Tell how far measures without a truth agree with those that know it");
+  command->add_option("CELLS", options->cells, "cells.json of studies over characters that artists rigged")->required();
+  command->add_option("-o,--output", options->output, "the table to write, in Markdown; - is standard output")
+      ->type_name("FILE")
+      ->capture_default_str();
+  command->footer(
+      "For each measure of limber evaluate model and each one that knows the artist's rig: Spearman's rank "
+      "correlation\n"
+      "over the methods tried on one model, mean over the models, and how many these are. 1: what is better by the "
+      "one\n"
+      "is better by the other; 0: it says nothing.\n"
+      "\nExample:\n  limber study plan.json -o report\n  limber evaluate measures report/cells.json");
+  command->callback([options] { runMeasures(*options); });
+}
+
 void addRig(CLI::App& evaluate) {
   auto options = std::make_shared<RigFiles>();
   CLI::App* command = evaluate.add_subcommand("rig", "Compare the skeletons of two files of one model");
@@ -440,6 +520,8 @@ void addEvaluateCommand(CLI::App& program) {
   evaluate->footer("Example:\n  limber evaluate weights result.glb truth.glb");
   addWeights(*evaluate);
   addRig(*evaluate);
+  addModel(*evaluate);
+  addMeasures(*evaluate);
   addAnatomy(*evaluate);
   addRiggers(*evaluate);
   addSkinning(*evaluate);

@@ -18,6 +18,7 @@ enum class MeasureSource {
   kRigReport,      // limber rig --json
   kSkeletonTruth,  // limber evaluate rig --json
   kWeightTruth,    // limber evaluate weights --json
+  kModel,          // limber evaluate model --json
   kMotion,         // limber evaluate motion --json
 };
 
@@ -28,6 +29,7 @@ struct Measure {
   Better better;
   MeasureSource source;
   std::string_view pointer;  // into the figures (RFC 6901); kClock: unused
+  bool ranks = true;         // false: shown, but orders no methods, as it says too little of who is better
 };
 
 // In the order in which tables have them.

@@ -134,7 +134,8 @@ std::vector<std::size_t> worstCells(const StudyResult& study, const Grid& grid, 
 }  // namespace
 
 Ranking rankMethods(const StudyResult& study, CellKind kind, const Measure& measure, const std::string& group) {
-  if (measure.better == Better::kNeither) throw Error(ErrorCode::kBadArgument, "the measure ranks nothing");
+  if (measure.better == Better::kNeither || !measure.ranks)
+    throw Error(ErrorCode::kBadArgument, "the measure ranks nothing");
   Ranking ranking;
   ranking.measure = &measure;
   const Grid grid = gridOf(study, kind, measure, group);

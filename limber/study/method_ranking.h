@@ -34,7 +34,7 @@ struct Ranking {
 };
 
 // Over the cells of a kind, in one group or, where that is empty, in all. Nothing in it where no cell has the measure.
-// The measure must have a better side.
+// The measure must have a better side and rank.
 Ranking rankMethods(const StudyResult& study, CellKind kind, const Measure& measure, const std::string& group = {});
 
 }  // namespace limber

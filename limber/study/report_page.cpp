@@ -291,7 +291,7 @@ std::string reportPage(const StudyResult& study, const std::filesystem::path& fo
   for (const CellKind kind : kKinds) {
     KindReport report{kind, {}};
     for (const Measure& measure : studyMeasures()) {
-      if (measure.better == Better::kNeither) continue;
+      if (measure.better == Better::kNeither || !measure.ranks) continue;
       Ranking ranking = rankMethods(study, kind, measure);
       if (!ranking.scores.empty()) report.rankings.push_back(std::move(ranking));
     }

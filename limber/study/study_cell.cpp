@@ -48,6 +48,7 @@ StudyCell rigCell(const StudyModel& model, const RigCombination& combination, co
                           {"evaluate", what, "rigged.glb", file, "--json"},
                           keepsSkeleton ? MeasureSource::kWeightTruth : MeasureSource::kSkeletonTruth});
   }
+  cell.steps.push_back({"evaluate model", {"evaluate", "model", "rigged.glb", "--json"}, MeasureSource::kModel});
   addPictures(cell);
   return cell;
 }

@@ -35,8 +35,9 @@ TEST(StudyCells, ARiggedModelIsComparedWithItsOwnRig) {
   const std::vector<StudyCell> cells =
       rigCells(rigPlanOf({{"template", "bone-heat", {}}}), std::vector{kBare, kRigged});
   ASSERT_EQ(cells.size(), 2u);
-  EXPECT_THAT(stepsOf(cells[0]), ElementsAre("rig", "preview bones", "preview weights"));
-  EXPECT_THAT(stepsOf(cells[1]), ElementsAre("rig", "evaluate rig", "preview bones", "preview weights"));
+  EXPECT_THAT(stepsOf(cells[0]), ElementsAre("rig", "evaluate model", "preview bones", "preview weights"));
+  EXPECT_THAT(stepsOf(cells[1]),
+              ElementsAre("rig", "evaluate rig", "evaluate model", "preview bones", "preview weights"));
   EXPECT_THAT(cells[0].steps[0].arguments, Not(Contains("--replace-rig")));
   EXPECT_THAT(cells[1].steps[0].arguments, Contains("--replace-rig"));
 }
@@ -44,7 +45,8 @@ TEST(StudyCells, ARiggedModelIsComparedWithItsOwnRig) {
 TEST(StudyCells, OwnSkeletonsAreKeptAndTheirWeightsCompared) {
   const std::vector<StudyCell> cells = rigCells(rigPlanOf({{"own", "bone-heat", {}}}), std::vector{kBare, kRigged});
   ASSERT_EQ(cells.size(), 1u);
-  EXPECT_THAT(stepsOf(cells[0]), ElementsAre("rig", "evaluate weights", "preview bones", "preview weights"));
+  EXPECT_THAT(stepsOf(cells[0]),
+              ElementsAre("rig", "evaluate weights", "evaluate model", "preview bones", "preview weights"));
   EXPECT_THAT(cells[0].steps[0].arguments, Contains("--keep-skeleton"));
 }
 
