@@ -75,6 +75,44 @@ TEST_F(Cli, AStudyIsTablesAndAPageAndGoesOnWhenKilled) {
   EXPECT_EQ(withoutSeconds(content("killed/cells.csv")), withoutSeconds(csv));
 }
 
+TEST_F(Cli, ARigIsMeasuredAndDrawnWithNothingToCompareItWith) {
+  ASSERT_EQ(run({"sample", "robot", "-o", "robot.glb", "--quiet"}).code, 0);
+  ASSERT_EQ(run({"rig", "robot.glb", "--template", "humanoid", "-o", "rigged.glb", "--quiet"}).code, 0);
+  const Result text = run({"evaluate", "model", "rigged.glb"});
+  EXPECT_EQ(text.code, 0) << text.error;
+  EXPECT_THAT(text.out, AllOf(HasSubstr("joints "), HasSubstr("stretch ")));
+  const Result json = run({"evaluate", "model", "rigged.glb", "--json"});
+  EXPECT_THAT(json.out, AllOf(HasSubstr("\"joints_inside\""), HasSubstr("\"pose\": \"elbows\"")));
+  EXPECT_EQ(run({"preview", "rigged.glb", "--show", "stretch", "--size", "64x64", "-o", "stretch.png"}).code, 0);
+  EXPECT_TRUE(fs::exists(folder_ / "stretch.png"));
+  expectOneLine(run({"evaluate", "model", "robot.glb"}), 1);
+  expectOneLine(run({"preview", "robot.glb", "--show", "stretch", "-o", "none.png"}), 1);
+  EXPECT_FALSE(fs::exists(folder_ / "none.png"));
+}
+
+TEST_F(Cli, MeasuresAreComparedWithTheTruthByAStudysCells) {
+  std::string rows;
+  for (int method = 0; method < 3; ++method) {
+    for (const std::string measure : {"stretch", "weight_l1"}) {
+      rows += std::string(rows.empty() ? "" : ",") +
+              R"({"kind": "rig", "group": "g", "model": "m", "rigger": "own", "options": "", "skinning": ")" +
+              std::to_string(method) + R"(", "measure": ")" + measure + R"(", "value": )" + std::to_string(method) +
+              "}";
+    }
+  }
+  put("cells.json", R"({"title": "t", "cells": [)" + rows + "]}");
+  const Result table = run({"evaluate", "measures", "cells.json"});
+  EXPECT_EQ(table.code, 0) << table.error;
+  EXPECT_THAT(table.out, HasSubstr("| `stretch` | 1.00 (1) |"));
+  put("empty.json", R"({"cells": []})");
+  put("other.json", "[1]");
+  const Result other = run({"evaluate", "measures", "other.json"});
+  expectOneLine(other, 1);
+  EXPECT_THAT(other.error, HasSubstr("other.json"));
+  expectOneLine(run({"evaluate", "measures", "empty.json", "-o", "table.md"}), 1);
+  EXPECT_FALSE(fs::exists(folder_ / "table.md"));
+}
+
 TEST_F(Cli, AStudyIsInterruptedInOneLine) {
   put("plan.json", std::string(kPlan));
   Running running({"study", "plan.json", "-o", "report", "--jobs", "1"}, folder_);

@@ -8,6 +8,7 @@
 #include "limber/asset/motion_io.h"
 #include "limber/asset/read.h"
 #include "limber/core/file.h"
+#include "limber/evaluate/range_of_motion.h"
 #include "limber/preview/animation.h"
 #include "limber/preview/apng.h"
 #include "limber/preview/render.h"
@@ -98,6 +99,28 @@ Bytes turntable(const Asset& asset, const SceneMaker& scenes, const PreviewArgum
   return encodeApng(renderTurn(scene, preview, count, progress), fps);
 }
 
+// A sheet of a range of motion test, whatever clips there are.
+Bytes rangePicture(const Asset& asset, const SceneMaker& scenes, const PreviewOptions& preview, Warnings& warnings) {
+  if (!hasRig(asset)) {
+    throw Error(ErrorCode::kUnsupported, "has no rig by which it could be stretched", asset.name,
+                "make one with limber rig");
+  }
+  const Skeleton skeleton = animatedSkeleton(asset).skeleton;
+  const std::vector<RangeOfMotionPose> range = rangeOfMotion(skeleton, readAnatomy(skeleton));
+  if (range.empty()) {
+    throw Error(ErrorCode::kUnsupported, "has no part of a body that could be bent", asset.name,
+                "name a clip by --clip, and --time or --frames");
+  }
+  checkPixels(range.size(), preview);
+  std::vector<Image> images;
+  for (const RangeOfMotionPose& one : range) {
+    const Scene scene = scenes.at(one.pose);
+    if (images.empty()) warnings = scene.warnings;
+    images.push_back(render(scene, preview));
+  }
+  return encodePng(contactSheet(images, sheetColumns(static_cast<int>(images.size())), renderBackdrop(preview)));
+}
+
 Bytes stillPicture(const SceneMaker& scenes, const PreviewOptions& preview, Warnings& warnings) {
   const Scene scene = scenes.still();
   warnings = scene.warnings;
@@ -116,7 +139,8 @@ void run(PreviewArguments options) {
   preview.view = parseView(options.view);
   preview.joint = options.joint;
   preview.backdrop = parseBackdrop(options.background);
-  const bool several = options.animate || options.turntable || options.frames > 0;
+  const bool isRange = preview.show == PreviewShow::kStretch && !showsClip(options) && !options.turntable;
+  const bool several = options.animate || options.turntable || options.frames > 0 || isRange;
   if (options.size.empty()) options.size = several ? "320x320" : "1024x768";
   parseSize(options.size, preview);
   if (!options.joint.empty()) preview.show = PreviewShow::kWeights;
@@ -137,6 +161,7 @@ void run(PreviewArguments options) {
     const SceneMaker scenes(asset, deformer);
     if (options.turntable) return turntable(asset, scenes, options, preview, *progress, warnings);
     if (showsClip(options)) return clipPicture(asset, scenes, options, preview, *progress, warnings);
+    if (isRange) return rangePicture(asset, scenes, preview, warnings);
     return stillPicture(scenes, preview, warnings);
   };
   const Bytes png = draw();
@@ -151,13 +176,13 @@ void run(PreviewArguments options) {
 
 void addPreviewCommand(CLI::App& program) {
   auto options = std::make_shared<PreviewArguments>();
-  CLI::App* command =
-      program.add_subcommand("preview", "Draw a picture of a model, its handles, bones, weights, anatomy or parts");
+  CLI::App* command = program.add_subcommand(
+      "preview", "Draw a picture of a model, its handles, bones, weights, anatomy, parts or stretch");
   command->add_option("FILE", options->input, "the model; - is standard input")->required();
   command->add_option("-o,--output", options->output, "the .png to write; - is standard output")
       ->required()
       ->type_name("FILE");
-  command->add_option("--show", options->show, "model, handles, weights, bones, anatomy or parts")
+  command->add_option("--show", options->show, "model, handles, weights, bones, anatomy, parts or stretch")
       ->type_name("WHAT")
       ->capture_default_str();
   command->add_option("--view", options->view, "front, side, back, top, three-quarter, or azimuth,elevation in degrees")
@@ -195,14 +220,19 @@ void addPreviewCommand(CLI::App& program) {
   options->common.addTo(*command);
   std::string names = "Deformers:\n";
   for (const Deformer& deformer : deformers()) names += fmt::format("  {:<20}{}\n", deformer.name, deformer.summary);
-  command->footer("A file with a skeleton and no mesh, such as a BVH, is shown as its bones.\n" + names +
-                  "\nExamples:\n"
-                  "  limber preview rigged.glb --show handles --view 30,15 -o handles.png\n"
-                  "  limber preview walking.glb --frames 8 -o sheet.png\n"
-                  "  limber preview scan.obj --show parts --count 6 -o parts.png\n"
-                  "  limber preview walk.bvh --animate -o walk.png\n"
-                  "  limber preview walking.glb --animate --deformer direct-delta-mush -o walk.png\n"
-                  "  limber preview dragon.glb --turntable --background transparent -o dragon.png");
+  command->footer(
+      "A file with a skeleton and no mesh, such as a BVH, is shown as its bones.\n"
+      "Stretch is blue where the surface keeps its size at rest, and red where it is twice or half of it: at a\n"
+      "moment of a clip, or without one as a sheet of a range of motion test (limber evaluate model --help).\n" +
+      names +
+      "\nExamples:\n"
+      "  limber preview rigged.glb --show stretch -o stretch.png\n"
+      "  limber preview rigged.glb --show handles --view 30,15 -o handles.png\n"
+      "  limber preview walking.glb --frames 8 -o sheet.png\n"
+      "  limber preview scan.obj --show parts --count 6 -o parts.png\n"
+      "  limber preview walk.bvh --animate -o walk.png\n"
+      "  limber preview walking.glb --animate --deformer direct-delta-mush -o walk.png\n"
+      "  limber preview dragon.glb --turntable --background transparent -o dragon.png");
   command->callback([options] { run(*options); });
 }
 

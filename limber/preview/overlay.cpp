@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "limber/core/error.h"
+#include "limber/evaluate/surface_stretch.h"
+#include "limber/mesh/areas.h"
 #include "limber/preview/palette.h"
 
 namespace limber {
@@ -13,6 +15,7 @@ constexpr double kHandleShrink = 0.80;     // of the fitted radius, so that neig
 constexpr double kSmallestHandle = 0.009;  // of the model's diagonal
 constexpr double kLargestHandle = 0.045;
 constexpr double kDotRadius = 0.0055;
+constexpr double kFullStretch = 1;   // above the size at rest: twice as long, or half, is red
 constexpr double kLinkWidth = 0.30;  // of the handle's radius
 
 double modelSize(const Scene& scene) {
@@ -92,6 +95,29 @@ void addAnatomy(ShapeMesh& shapes, const Scene& scene, double size) {
     addSphere(shapes, joint.position, kDotRadius * size, linearFromHsv(partColor(joint.kind, joint.side)));
 }
 
+// Of each vertex the mean over its triangles, by their area at rest.
+std::vector<Vec3f> stretchColors(const Scene& scene) {
+  if (scene.boundPositions.size() != scene.positions.size()) {
+    throw Error(ErrorCode::kBadArgument, "the model has no rig by which it could be stretched", "",
+                "make one with limber rig");
+  }
+  const std::vector<double> distortions = triangleDistortions(scene.boundPositions, scene.positions, scene.triangles);
+  const TriMesh bound{scene.boundPositions, scene.triangles};
+  std::vector<double> sum(scene.positions.size(), 0), areas(scene.positions.size(), 0);
+  for (std::size_t f = 0; f < scene.triangles.size(); ++f) {
+    const double area = triangleArea(bound, scene.triangles[f]);
+    for (const Index v : scene.triangles[f]) {
+      sum[v] += area * distortions[f];
+      areas[v] += area;
+    }
+  }
+  std::vector<Vec3f> colors;
+  for (std::size_t v = 0; v < sum.size(); ++v) {
+    colors.push_back(heatColor(areas[v] > 0 ? (sum[v] / areas[v] - 1) / kFullStretch : 0));
+  }
+  return colors;
+}
+
 }  // namespace
 
 std::vector<Vec3f> surfaceColors(const Scene& scene, const PreviewOptions& options) {
@@ -101,6 +127,7 @@ std::vector<Vec3f> surfaceColors(const Scene& scene, const PreviewOptions& optio
     }
     return options.joint.empty() ? weightColors(scene) : heatColors(scene, options.joint);
   }
+  if (options.show == PreviewShow::kStretch) return stretchColors(scene);
   const bool isSolid = options.show == PreviewShow::kModel || options.show == PreviewShow::kParts;
   if (isSolid && !scene.colors.empty()) return scene.colors;
   const bool inside = !isSolid;

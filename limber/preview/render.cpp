@@ -391,8 +391,9 @@ PreviewShow parsePreviewShow(std::string_view name) {
   if (name == "bones") return PreviewShow::kBones;
   if (name == "anatomy") return PreviewShow::kAnatomy;
   if (name == "parts") return PreviewShow::kParts;
+  if (name == "stretch") return PreviewShow::kStretch;
   throw Error(ErrorCode::kBadArgument, "there is no picture of \"" + std::string(name) + "\"", "",
-              "use model, handles, weights, bones, anatomy or parts");
+              "use model, handles, weights, bones, anatomy, parts or stretch");
 }
 
 Backdrop parseBackdrop(std::string_view text) {

@@ -19,9 +19,10 @@ enum class PreviewShow {
   kBones,    // the model translucent, its bones inside
   kAnatomy,  // likewise, in the colours of the parts of the body
   kParts,    // each triangle in the colour of its part (PreviewOptions::partOf)
+  kStretch,  // how far the surface is from its size at rest: blue where it keeps it, red where twice or half of it
 };
 
-// "model", "handles", "weights", "bones", "anatomy", "parts". Throws Error kBadArgument that lists them.
+// "model", "handles", "weights", "bones", "anatomy", "parts", "stretch". Throws Error kBadArgument that lists them.
 PreviewShow parsePreviewShow(std::string_view name);
 
 // What is seen behind the model; its shadow on the ground falls on that.
@@ -50,9 +51,9 @@ struct PreviewOptions {
 };
 
 // The same scene and options give the same picture, whatever the number of threads. Throws Error kBadArgument where the
-// scene lacks what is to be shown (no joints, no weights, no joint of that name, parts of another number of triangles)
-// or the size is out of range. Cost: a fraction of a second for 1024 x 768 and 50k triangles; memory grows with the
-// picture and the triangles.
+// scene lacks what is to be shown (no joints, no weights, no joint of that name, no rig, parts of another number of
+// triangles) or the size is out of range. Cost: a fraction of a second for 1024 x 768 and 50k triangles; memory grows
+// with the picture and the triangles.
 Image render(const Scene& scene, const PreviewOptions& options = {});
 
 // What such a picture shows where there is neither model nor shadow.

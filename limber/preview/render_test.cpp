@@ -103,6 +103,18 @@ TEST(Render, TheHeatOfOneJointIsRedWhereItRulesAndBlueWhereNot) {
   EXPECT_GT(cold.blue, cold.red);
 }
 
+TEST(Render, WhatIsTwiceAsLargeIsRedAndWhatIsNotStretchedBlue) {
+  Scene scene = ballScene();
+  scene.boundPositions = scene.positions;
+  const Pixel still = pixelAt(render(scene, smallPicture(PreviewShow::kStretch)), 0.62, 0.62);
+  EXPECT_GT(still.blue, still.red);
+  for (Vec3f& p : scene.boundPositions) p *= 0.5f;
+  const Pixel twice = pixelAt(render(scene, smallPicture(PreviewShow::kStretch)), 0.62, 0.62);
+  EXPECT_GT(twice.red, 2 * twice.blue);
+  scene.boundPositions.clear();
+  EXPECT_THROW(render(scene, smallPicture(PreviewShow::kStretch)), Error);
+}
+
 TEST(Render, HandlesAreRedAndTheirRootIsNot) {
   const Image image = render(ballScene(), smallPicture(PreviewShow::kHandles));
   const Pixel root = pixelAt(image, 0.655, 0.5), handle = pixelAt(image, 0.33, 0.5);

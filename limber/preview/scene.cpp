@@ -108,20 +108,24 @@ Scene boneScene(const Skeleton& skeleton, const Pose& pose) {
 SceneMaker::SceneMaker(const Asset& asset, const Deformer& deformer) : asset_(asset) {
   const bool isRigged = hasRig(asset);
   if (isRigged || isSkeletonAlone(asset)) skeleton_ = animatedSkeleton(asset);
-  if (isRigged) poser_ = std::make_unique<AssetPoser>(asset, skeleton_, deformer);
+  if (!isRigged) return;
+  poser_ = std::make_unique<AssetPoser>(asset, skeleton_, deformer);
+  boundPositions_ = poser_->posed(restPose(skeleton_.skeleton)).geometry.positions;
 }
 
-Scene SceneMaker::rigged(const Pose& pose) const {
+Scene SceneMaker::at(const Pose& pose) const {
+  if (!poser_) throw Error(ErrorCode::kUnsupported, "has no rig to pose", asset_.name, "rig it first: limber rig");
   Scene scene;
   Geometry geometry = poser_->posed(pose).geometry;
   addSkeleton(skeleton_.skeleton, pose, scene);
   scene.weights = poser_->weights();
+  scene.boundPositions = boundPositions_;
   addSurface(asset_, std::move(geometry), scene);
   return scene;
 }
 
 Scene SceneMaker::still() const {
-  if (poser_) return rigged(readNodePose(asset_, skeleton_));
+  if (poser_) return at(readNodePose(asset_, skeleton_));
   if (isSkeletonAlone(asset_)) return boneScene(skeleton_.skeleton, readNodePose(asset_, skeleton_));
   Scene scene;
   addSurface(asset_, collectGeometry(asset_), scene);
@@ -135,7 +139,7 @@ Scene SceneMaker::at(const Clip& clip, double seconds) const {
   }
   Pose pose = restPose(skeleton_.skeleton);
   sampleClip(clip, seconds, pose);
-  return poser_ ? rigged(pose) : boneScene(skeleton_.skeleton, pose);
+  return poser_ ? at(pose) : boneScene(skeleton_.skeleton, pose);
 }
 
 Scene makeScene(const Asset& asset) {

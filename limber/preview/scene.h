@@ -42,9 +42,10 @@ struct Scene {
   std::vector<Index> materialOf;  // #F: which of `materials`, kNoIndex for none
   std::vector<SceneMaterial> materials;
   std::vector<SceneJoint> joints;
-  std::vector<Bone> bones;  // segments, as bonesOf gives them
-  SkinWeights weights;      // empty, or one row for each vertex, over `joints`
-  Warnings warnings;        // of what cannot be drawn as it is: undrawn-textures
+  std::vector<Bone> bones;            // segments, as bonesOf gives them
+  SkinWeights weights;                // empty, or one row for each vertex, over `joints`
+  std::vector<Vec3f> boundPositions;  // of a rigged model: #V, where the vertices are while no joint moves; else empty
+  Warnings warnings;                  // of what cannot be drawn as it is: undrawn-textures
 };
 
 // The model as its file shows it before any clip plays: a rigged one in the pose in which its joints' nodes stand; a
@@ -64,13 +65,14 @@ class SceneMaker {
 
   Scene still() const;
   Scene at(const Clip& clip, double seconds) const;
+  // In a pose of animatedSkeleton(asset), which must be rigged.
+  Scene at(const Pose& pose) const;
 
  private:
-  Scene rigged(const Pose& pose) const;
-
   const Asset& asset_;
   AssetSkeleton skeleton_;             // of a rigged asset, or a skeleton alone
   std::unique_ptr<AssetPoser> poser_;  // of a rigged asset
+  std::vector<Vec3f> boundPositions_;
 };
 
 }  // namespace limber
