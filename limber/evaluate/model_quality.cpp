@@ -119,10 +119,6 @@ Json motionJson(const MotionQuality& motion) {
   return json;
 }
 
-std::string percentOr(const std::optional<double>& share, std::string_view otherwise) {
-  return share ? fmt::format("{:.1f} %", 100 * *share) : std::string(otherwise);
-}
-
 std::string motionText(const MotionQuality& motion) {
   const SurfaceChange& mean = motion.mean;
   const auto most = std::max_element(motion.poses.begin(), motion.poses.end(), [](const auto& a, const auto& b) {
@@ -130,7 +126,9 @@ std::string motionText(const MotionQuality& motion) {
   });
   std::string text = fmt::format("stretch       mean {:.1f} %, 95th percentile {:.1f} %; most in \"{}\"\n",
                                  100 * mean.stretch.mean, 100 * mean.stretch.p95, most->pose);
-  text += fmt::format("texture       {} more than at rest\n", percentOr(mean.texture, "no coordinates"));
+  text += fmt::format("texture       {}\n",
+                      mean.texture ? fmt::format("stretched {:.1f} % more than at rest", 100 * *mean.texture)
+                                   : std::string("no coordinates"));
   text += fmt::format("volume        {:.1f} % lost\n", 100 * mean.volumeLoss);
   text += fmt::format("inside        {:.1f} % of the vertices go into the body", 100 * motion.selfPenetration);
   if (!motion.mostPenetrating.empty()) text += fmt::format("; most in \"{}\"", motion.mostPenetrating);
@@ -178,7 +176,8 @@ std::string toText(const ModelQuality& q) {
   std::string text = fmt::format("joints        {}, of which {:.0f} % move nothing\n", q.joints, 100 * q.idleJoints);
   text += fmt::format("placement     {:.0f} % inside; {:.2f} off the middle (0 in it, 1 on the surface)\n",
                       100 * q.placement.inside, q.placement.offCenter);
-  text += fmt::format("coverage      {} of the surface has a bone near\n", percentOr(q.coverage, "nothing"));
+  text += "coverage      " + (q.coverage ? fmt::format("{:.1f} % of the surface has a bone near\n", 100 * *q.coverage)
+                                         : std::string("no part of the surface has an inside\n"));
   text += "asymmetry     " + (q.asymmetry ? fmt::format("{:.2f} % of the longest side\n", *q.asymmetry)
                                           : std::string("the surface is not symmetric\n"));
   text += fmt::format("weights       {:.2f} joints a vertex; roughness {:.3f}; {:.2f} % in islands\n",

@@ -138,22 +138,22 @@ std::optional<Vec3> bendAxis(const Body& body, const Part& part, const Vec3& low
   return axisBetween(lower, part.kind == PartKind::kLeg ? Vec3(-front) : front);
 }
 
+// What a movement turns the part about; nothing where it points there already, or straight away.
+std::optional<Vec3> turnAxis(const Body& body, const Part& part, Towards towards, const Vec3& direction) {
+  if (towards == Towards::kTwist) return body.anatomy.axes.up;
+  if (towards == Towards::kBend) return bendAxis(body, part, direction);
+  return axisBetween(direction, directionOf(body.anatomy.axes, towards, part.side));
+}
+
 // Whether the part can do it.
 bool movePart(const Body& body, const Part& part, const Movement& movement, Pose& pose) {
   const std::span<const Index> joints = jointsTurned(part, movement.turned);
   if (joints.empty()) return false;
-  const Vec3 direction = partDirection(body, part, joints);
-  const Axes& axes = body.anatomy.axes;
-  std::optional<Vec3> axis = axes.up;
-  if (movement.towards == Towards::kBend) {
-    axis = bendAxis(body, part, direction);
-  } else if (movement.towards != Towards::kTwist) {
-    axis = axisBetween(direction, directionOf(axes, movement.towards, part.side));
-  }
+  const std::optional<Vec3> axis = turnAxis(body, part, movement.towards, partDirection(body, part, joints));
   if (!axis) return false;
-  const double angle = kShare * movement.degrees * kDegree;
   const std::size_t count = movement.turned == Turned::kAlong ? joints.size() : 1;
-  for (const Index joint : joints.first(count)) turnJoint(body, joint, *axis, angle / static_cast<double>(count), pose);
+  const double angle = kShare * movement.degrees * kDegree / static_cast<double>(count);
+  for (const Index joint : joints.first(count)) turnJoint(body, joint, *axis, angle, pose);
   return true;
 }
 
