@@ -7,8 +7,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "adapter_arguments.h"
 #include "animation_rig.h"
 #include "command.h"
+#include "limber/adapters/rig_by_program.h"
 #include "limber/asset/json_text.h"
 #include "limber/asset/read.h"
 #include "limber/asset/write.h"
@@ -29,6 +31,7 @@ struct RigArguments {
   std::vector<std::string> pins;
   bool replaceRig = false, keepSkeleton = false, strict = false;
   AnimationRigArguments animation;
+  AdapterArguments adapters;
   Common common;
 };
 
@@ -163,9 +166,46 @@ void chooseTemplate(const std::string& name, AutoRigOptions& rig) {
   rig.rig.templateSkeleton = readTemplateFile(name);
 }
 
+template <class Method>
+std::vector<std::string> namesOf(std::span<const Method> methods) {
+  std::vector<std::string> names;
+  for (const Method& method : methods) names.emplace_back(method.name);
+  return names;
+}
+
+// Programs of the user's in place of methods of limber's.
+struct RigPrograms {
+  std::optional<Adapter> rigger, weights;
+};
+
+RigPrograms findPrograms(const RigArguments& options) {
+  const AdapterArguments& adapters = options.adapters;
+  return {
+      adapters.programFor(options.rig.rigger, "rigger", AdapterKind::kRig, namesOf(riggerMethods())),
+      adapters.programFor(options.rig.skinning, "skinning method", AdapterKind::kWeights, namesOf(weightMethods()))};
+}
+
+// A program that weighs gets a rig, with weights of limber's.
+AutoRigReport rigAsTold(Asset& asset, AutoRigOptions rig, const RigPrograms& programs, Progress& progress) {
+  if (programs.weights) rig.skinning = AutoRigOptions().skinning;
+  const bool isKept = rig.existingRig == ExistingRig::kKeepSkeleton;
+  AutoRigReport report =
+      programs.rigger && !isKept ? rigByProgram(asset, *programs.rigger, rig, progress) : autoRig(asset, rig, progress);
+  if (programs.weights) {
+    report.warnings.append(weightsByProgram(asset, *programs.weights, rig.weights, progress));
+    report.skinning = programs.weights->name;
+    progress.finish();
+    report.stages = progress.stages();
+  }
+  return report;
+}
+
 // What only some riggers take is refused with others.
-void checkRigger(const RigArguments& options) {
+void checkRigger(const RigArguments& options, const RigPrograms& programs) {
   const bool isTemplate = !options.keepSkeleton && options.rig.rigger == "template";
+  if (programs.rigger && options.rig.rig.handles) {
+    throw CLI::ValidationError("--handles", "a program of yours makes as many joints as it does");
+  }
   if (isTemplate && options.rig.rig.handles) {
     throw CLI::ValidationError("--handles", "a template has the joints that it has");
   }
@@ -198,15 +238,14 @@ void run(RigArguments options) {
     throw CLI::ValidationError("--front", "must be square to --up");
   }
   for (const std::string& pin : options.pins) options.rig.rig.pins.push_back(parsePin(pin));
-  findRigger(options.rig.rigger);
-  checkRigger(options);
-  findWeightMethod(options.rig.skinning);
+  const RigPrograms programs = findPrograms(options);
+  checkRigger(options, programs);
   options.rig.weights.pieces = findPieceMode(options.pieces);
 
   TerminalProgress progress(options.common.quiet);
   progress->stage("read");
   Asset asset = readAsset(options.input);
-  AutoRigReport report = autoRig(asset, options.rig, *progress);
+  AutoRigReport report = rigAsTold(asset, options.rig, programs, *progress);
   if (options.strict) refuseWarnings(report.warnings);
   progress->stage("write");
   // The report is written with the model, so it cannot tell how long that took.
@@ -246,12 +285,14 @@ std::string listNamed(std::string_view title, const Table& table) {
 std::string rigHelp() {
   return listMethods("Riggers", riggerMethods()) + listNamed("Templates", namedTemplates()) +
          listMethods("Skinning methods", weightMethods()) + listNamed("Pieces", pieceModes()) +
+         "\nPrograms of yours rig (--rigger NAME) and make weights (--skinning NAME), too: docs/adapters.md.\n"
          "\nReads GLB, glTF, OBJ, PLY, STL, OFF, FBX and DAE. The result appears under its name only when it is\n"
          "complete; a file of that name is replaced, also where it is the input.\n"
          "\nExamples:\n"
          "  limber rig dragon.glb --handles 20 -o rigged.glb\n"
          "  limber rig scan.obj --template humanoid --pin leftHand=0.71,1.43,0.02 -o character.glb\n"
          "  limber rig person.glb --keep-skeleton --max-influences 8 -o weighted.glb --json report.json\n"
+         "  limber rig scan.obj --rigger unirig --seed 7 -o character.glb\n"
          "  limber rig --from-animation baked.glb --bones 30 -o rigged.glb\n"
          "  limber rig --from-animation frames/ --fps 24 -o rigged.glb\n"
          "  curl -s https://example.org/dragon.glb | limber rig - -o - > rigged.glb";
@@ -316,6 +357,7 @@ void addRigCommand(CLI::App& program) {
                    "write a report: stages, seconds, counts, suggestions, warnings; - is standard output")
       ->type_name("FILE");
   command->add_flag("--strict", options->strict, "take warnings as errors");
+  options->adapters.addTo(*command);
   options->common.addTo(*command);
   command->footer(rigHelp());
   command->callback([options] { run(*options); });

@@ -1,0 +1,278 @@
+#include "limber/adapters/adapter.h"
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <initializer_list>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "limber/asset/json_access.h"
+#include "limber/asset/json_text.h"
+
+namespace limber {
+
+namespace {
+
+constexpr std::string_view kVersionKey = "limber_adapter";
+constexpr double kMostSeconds = 1000000, kLeastSize = 1e-3, kMostSize = 1e6;
+constexpr std::size_t kMostMegabytes = std::size_t{1} << 24;
+// Learned riggers load networks of gigabytes.
+constexpr std::size_t kMemoryByDefault = std::size_t{16384} << 20;
+
+struct NamedKind {
+  std::string_view name;
+  AdapterKind kind;
+};
+constexpr std::array kKinds = {NamedKind{"rig", AdapterKind::kRig}, NamedKind{"weights", AdapterKind::kWeights}};
+
+struct NamedFormat {
+  std::string_view name, extension;
+  AdapterFormat format;
+};
+constexpr std::array kFormats = {
+    NamedFormat{"obj", ".obj", AdapterFormat::kObj}, NamedFormat{"glb", ".glb", AdapterFormat::kGlb},
+    NamedFormat{"fbx", ".fbx", AdapterFormat::kFbx}, NamedFormat{"rignet-text", ".txt", AdapterFormat::kRignetText}};
+
+struct NamedUp {
+  std::string_view name;
+  AdapterUp up;
+};
+constexpr std::array kUps = {NamedUp{"+y", AdapterUp::kY}, NamedUp{"+z", AdapterUp::kZ}};
+
+// What can go in and come out, the first by default.
+std::span<const AdapterFormat> inputFormatsOf(AdapterKind kind) {
+  static constexpr std::array kRig = {AdapterFormat::kObj, AdapterFormat::kGlb};
+  static constexpr std::array kWeights = {AdapterFormat::kGlb};
+  if (kind == AdapterKind::kRig) return kRig;
+  return kWeights;
+}
+
+std::span<const AdapterFormat> outputFormatsOf(AdapterKind kind) {
+  static constexpr std::array kRig = {AdapterFormat::kRignetText, AdapterFormat::kGlb, AdapterFormat::kFbx};
+  static constexpr std::array kWeights = {AdapterFormat::kGlb, AdapterFormat::kFbx};
+  if (kind == AdapterKind::kRig) return kRig;
+  return kWeights;
+}
+
+const NamedFormat& formatEntry(AdapterFormat format) {
+  return *std::find_if(kFormats.begin(), kFormats.end(), [&](const NamedFormat& f) { return f.format == format; });
+}
+
+// A misspelt key would silently do nothing.
+void allowKeys(const JsonView& object, std::initializer_list<std::string_view> keys) {
+  object.forEachMember([&](std::string_view key, const JsonView&) {
+    if (std::find(keys.begin(), keys.end(), key) != keys.end()) return;
+    object.fail(fmt::format("has a key that is not known: '{}'; there are: {}", key, fmt::join(keys, ", ")));
+  });
+}
+
+template <typename Table>
+const auto& entryOf(const Table& table, const JsonView& object, std::string_view key, std::string_view byDefault) {
+  const std::string_view name = object.exists() ? object.text(key, byDefault) : byDefault;
+  std::string known;
+  for (const auto& entry : table) {
+    if (entry.name == name) return entry;
+    known += (known.empty() ? "" : ", ") + std::string(entry.name);
+  }
+  object.member(key).fail(fmt::format("is none of {}", known));
+}
+
+AdapterFormat formatOf(const JsonView& object, std::span<const AdapterFormat> possible, std::string_view kind) {
+  std::vector<NamedFormat> table;
+  for (const AdapterFormat format : possible) table.push_back(formatEntry(format));
+  const std::string_view name = object.exists() ? object.text("format", table.front().name) : table.front().name;
+  std::string known;
+  for (const NamedFormat& entry : table) {
+    if (entry.name == name) return entry.format;
+    known += (known.empty() ? "" : ", ") + std::string(entry.name);
+  }
+  object.member("format").fail(fmt::format("is none of {}, which go with the kind {}", known, kind));
+}
+
+// Calls `take` with each piece of `text`: plain, or the name of a placeholder. Braces round anything but small letters
+// and underscores are plain text, as in a line of a program.
+void walkPlaceholders(std::string_view text, const std::function<void(std::string_view piece, bool isName)>& take) {
+  std::size_t plainFrom = 0;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    if (text[at] != '{') continue;
+    const std::size_t end = text.find_first_not_of("abcdefghijklmnopqrstuvwxyz_", at + 1);
+    if (end == std::string_view::npos || text[end] != '}' || end == at + 1) continue;
+    take(text.substr(plainFrom, at - plainFrom), false);
+    take(text.substr(at + 1, end - at - 1), true);
+    plainFrom = end + 1;
+    at = end;
+  }
+  take(text.substr(plainFrom), false);
+}
+
+constexpr std::array<std::string_view, 5> kPlaceholders = {"folder", "input", "input_folder", "output", "seed"};
+
+void checkPlaceholders(const JsonView& place, std::string_view text) {
+  walkPlaceholders(text, [&](std::string_view name, bool isName) {
+    if (!isName) return;
+    if (std::find(kPlaceholders.begin(), kPlaceholders.end(), name) == kPlaceholders.end()) {
+      place.fail(fmt::format("has a placeholder that is not known: {{{}}}; there are: {}", name,
+                             fmt::join(kPlaceholders, ", ")));
+    }
+  });
+}
+
+std::string requiredText(const JsonView& value) {
+  if (!value.exists() || !value.json().is_string() || value.json().get_ref<const std::string&>().empty()) {
+    value.fail("is not a text");
+  }
+  std::string text = value.json().get<std::string>();
+  if (text.find('\0') != std::string::npos) value.fail("holds a zero byte");
+  return text;
+}
+
+AdapterStep stepOf(const JsonView& entry) {
+  entry.requireObject();
+  allowKeys(entry, {"command", "folder"});
+  AdapterStep step;
+  const JsonView command = entry.array("command");
+  for (std::size_t i = 0; i < command.size(); ++i) {
+    step.command.push_back(requiredText(command[i]));
+    checkPlaceholders(command[i], step.command.back());
+  }
+  if (step.command.empty()) entry.fail("has no command");
+  if (const JsonView folder = entry.member("folder"); folder.exists()) {
+    step.folder = requiredText(folder);
+    checkPlaceholders(folder, step.folder.string());
+  }
+  return step;
+}
+
+void readSteps(const JsonView& root, Adapter& adapter) {
+  const JsonView steps = root.array("steps");
+  for (std::size_t i = 0; i < steps.size(); ++i) adapter.steps.push_back(stepOf(steps[i]));
+  if (adapter.steps.empty()) root.fail("has no steps");
+  bool isGiven = false;
+  for (const AdapterStep& step : adapter.steps) {
+    for (const std::string& argument : step.command) {
+      walkPlaceholders(argument, [&](std::string_view name, bool isName) {
+        isGiven = isGiven || (isName && (name == "input" || name == "input_folder" || name == "folder"));
+      });
+    }
+  }
+  if (!isGiven) steps.fail("never name the file that is handed over: {input} or {input_folder}");
+}
+
+void readInput(const JsonView& input, Adapter& adapter) {
+  if (input.exists()) allowKeys(input, {"format", "up", "size"});
+  adapter.inputFormat = formatOf(input, inputFormatsOf(adapter.kind), adapterKindName(adapter.kind));
+  adapter.inputUp = entryOf(kUps, input, "up", "+y").up;
+  if (adapter.inputUp != AdapterUp::kY && adapter.inputFormat == AdapterFormat::kGlb) {
+    input.member("up").fail("is not +y, which a GLB always has");
+  }
+  if (input.exists()) adapter.inputSize = input.number("size", adapter.inputSize);
+  if (!(adapter.inputSize >= kLeastSize && adapter.inputSize <= kMostSize)) {
+    input.member("size").fail(fmt::format("is not from {} to {}", kLeastSize, kMostSize));
+  }
+}
+
+void readOutput(const JsonView& output, Adapter& adapter) {
+  if (output.exists()) allowKeys(output, {"format", "up", "file", "may_rescale", "weights"});
+  adapter.outputFormat = formatOf(output, outputFormatsOf(adapter.kind), adapterKindName(adapter.kind));
+  const bool isText = adapter.outputFormat == AdapterFormat::kRignetText;
+  const bool isTurned = isText && adapter.inputUp == AdapterUp::kZ;
+  adapter.outputUp = entryOf(kUps, output, "up", isTurned ? "+z" : "+y").up;
+  adapter.outputFile = fmt::format("output/model{}", adapterExtension(adapter.outputFormat));
+  if (!output.exists()) return;
+  if (const JsonView file = output.member("file"); file.exists()) {
+    adapter.outputFile = requiredText(file);
+    const std::filesystem::path path(adapter.outputFile);
+    const bool leaves = std::find(path.begin(), path.end(), "..") != path.end();
+    if (path.is_absolute() || leaves) file.fail("does not lie in the run's folder, from which it is seen");
+  }
+  adapter.mayRescale = output.flag("may_rescale", false);
+  if (adapter.mayRescale && isText) output.member("may_rescale").fail("needs a surface in the file that comes back");
+  adapter.ignoresWeights = !output.flag("weights", true);
+  if (adapter.ignoresWeights && adapter.kind != AdapterKind::kRig) {
+    output.member("weights").fail("is for riggers alone");
+  }
+}
+
+void readAdapterLimits(const JsonView& limits, Adapter& adapter) {
+  adapter.limits.memory = kMemoryByDefault;
+  if (!limits.exists()) return;
+  allowKeys(limits, {"seconds", "memory_mb"});
+  adapter.limits.seconds = limits.number("seconds", adapter.limits.seconds);
+  if (!(adapter.limits.seconds > 0 && adapter.limits.seconds <= kMostSeconds)) {
+    limits.member("seconds").fail(fmt::format("is not above 0 and at most {}", kMostSeconds));
+  }
+  if (const auto megabytes = limits.count("memory_mb")) {
+    if (*megabytes < 1 || *megabytes > kMostMegabytes) {
+      limits.member("memory_mb").fail(fmt::format("is not from 1 to {}", kMostMegabytes));
+    }
+    adapter.limits.memory = *megabytes << 20;
+  }
+}
+
+Adapter adapterOf(const JsonView& root) {
+  root.requireObject();
+  if (root.count(kVersionKey) != 1) root.fail(fmt::format("has no \"{}\": 1", kVersionKey));
+  allowKeys(root, {kVersionKey, "summary", "kind", "steps", "input", "output", "limits", "seed"});
+  Adapter adapter;
+  adapter.summary = root.text("summary");
+  adapter.kind = entryOf(kKinds, root, "kind", "").kind;
+  readSteps(root, adapter);
+  readInput(root.object("input"), adapter);
+  readOutput(root.object("output"), adapter);
+  readAdapterLimits(root.object("limits"), adapter);
+  adapter.seed = root.count("seed").value_or(0);
+  return adapter;
+}
+
+}  // namespace
+
+std::string_view adapterKindName(AdapterKind kind) {
+  return std::find_if(kKinds.begin(), kKinds.end(), [&](const NamedKind& k) { return k.kind == kind; })->name;
+}
+
+std::string_view adapterExtension(AdapterFormat format) {
+  return formatEntry(format).extension;
+}
+
+Adapter adapterFromJson(std::string_view text, std::string name) {
+  try {
+    Warnings warnings;
+    const Json json = parseJson(text, warnings);
+    if (!warnings.empty()) {
+      const Warning& first = warnings.items().front();
+      throw Error(ErrorCode::kBadData, first.message, first.where);
+    }
+    Adapter adapter = adapterOf(JsonView(json));
+    adapter.name = std::move(name);
+    return adapter;
+  } catch (const Error& error) {
+    throw error.within("adapter " + name);
+  }
+}
+
+std::string filledIn(std::string_view text, const AdapterPaths& paths, std::uint64_t seed) {
+  std::string result;
+  walkPlaceholders(text, [&](std::string_view piece, bool isName) {
+    if (!isName) {
+      result += piece;
+    } else if (piece == "folder") {
+      result += paths.folder.string();
+    } else if (piece == "input") {
+      result += paths.input.string();
+    } else if (piece == "input_folder") {
+      result += paths.input.parent_path().string();
+    } else if (piece == "output") {
+      result += paths.output.string();
+    } else {
+      result += std::to_string(seed);
+    }
+  });
+  return result;
+}
+
+}  // namespace limber

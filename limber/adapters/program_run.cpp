@@ -1,0 +1,156 @@
+#include "limber/adapters/program_run.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <system_error>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "limber/asset/utf8.h"
+#include "limber/core/error.h"
+#include "limber/core/split_text.h"
+#include "limber/jobs/job_pool.h"
+
+namespace limber {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::size_t kMostWords = 300;  // bytes of a program's own words
+
+// Of one run, gone with it.
+class RunFolder {
+ public:
+  RunFolder() {
+    std::error_code problem;
+    std::string name = (fs::temp_directory_path(problem) / "limber-run-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) {
+      throw Error(ErrorCode::kFile, std::string("cannot be made: ") + std::strerror(errno), name);
+    }
+    path_ = name;
+  }
+  RunFolder(const RunFolder&) = delete;
+  RunFolder& operator=(const RunFolder&) = delete;
+  ~RunFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+void makeParent(const fs::path& file) {
+  std::error_code problem;
+  fs::create_directories(file.parent_path(), problem);
+  if (problem) throw Error(ErrorCode::kFile, "cannot be made: " + problem.message(), file.parent_path().string());
+}
+
+void put(const fs::path& file, ByteSpan bytes) {
+  makeParent(file);
+  writeFile(file, bytes);
+}
+
+AdapterPaths prepareRun(const Adapter& adapter, ByteSpan input, const fs::path& folder) {
+  AdapterPaths paths;
+  paths.folder = folder;
+  paths.input = folder / "input" / fmt::format("model{}", adapterExtension(adapter.inputFormat));
+  paths.output = folder / adapter.outputFile;
+  put(paths.input, input);
+  makeParent(paths.output);
+  return paths;
+}
+
+// As a shell finds it; the name itself where it is nowhere, which then says so when it is run.
+std::string programPath(const std::string& name) {
+  if (name.find('/') != std::string::npos) return name;
+  const char* path = std::getenv("PATH");
+  for (const std::string_view folder : splitAt(path == nullptr ? "" : path, ':')) {
+    if (folder.empty()) continue;
+    std::string file = fmt::format("{}/{}", folder, name);
+    std::error_code unseen;
+    if (fs::is_regular_file(file, unseen) && access(file.c_str(), X_OK) == 0) return file;
+  }
+  return name;
+}
+
+Job jobOf(const Adapter& adapter, const AdapterStep& step, const AdapterPaths& paths) {
+  Job job;
+  for (const std::string& argument : step.command) job.command.push_back(filledIn(argument, paths, adapter.seed));
+  job.command.front() = programPath(job.command.front());
+  job.folder = step.folder.empty() ? paths.folder : fs::path(filledIn(step.folder.string(), paths, adapter.seed));
+  job.limits = adapter.limits;
+  return job;
+}
+
+// The last line that is not empty: of what it says of errors, else of its output.
+std::string lastWords(const JobResult& result) {
+  for (const std::string* text : {&result.error, &result.out}) {
+    const std::vector<std::string_view> lines = splitAt(*text, '\n');
+    for (auto line = lines.rbegin(); line != lines.rend(); ++line) {
+      const std::size_t begin = line->find_first_not_of(" \t\r"), end = line->find_last_not_of(" \t\r");
+      if (begin == std::string_view::npos) continue;
+      std::string words = validUtf8(line->substr(begin, std::min(end + 1 - begin, kMostWords)));
+      std::replace_if(
+          words.begin(), words.end(), [](char c) { return c >= 0 && c < ' '; }, ' ');
+      return words;
+    }
+  }
+  return {};
+}
+
+std::string saying(const JobResult& result) {
+  const std::string words = lastWords(result);
+  return words.empty() ? std::string() : fmt::format("; its last words: {}", words);
+}
+
+[[noreturn]] void failStep(const Adapter& adapter, std::size_t step, const Job& job, const JobResult& result) {
+  const std::string where = fmt::format("{}: step {} ({})", adapter.name, step + 1, job.command.front());
+  switch (result.outcome) {
+    case JobOutcome::kNotStarted:
+      throw Error(ErrorCode::kUnsupported, fmt::format("cannot be run: {}", std::strerror(result.code)), where,
+                  "correct the command and the folder in the adapter");
+    case JobOutcome::kTimedOut:
+      throw Error(ErrorCode::kUnsupported, fmt::format("did not end within {:g} s", job.limits.seconds), where,
+                  "raise \"seconds\" in the adapter's limits");
+    case JobOutcome::kCrashed:
+      throw Error(ErrorCode::kUnsupported, fmt::format("crashed: {}{}", jobOutcomeText(job, result), saying(result)),
+                  where);
+    default:
+      throw Error(ErrorCode::kUnsupported, fmt::format("failed: {}{}", jobOutcomeText(job, result), saying(result)),
+                  where);
+  }
+}
+
+}  // namespace
+
+ProgramOutput runProgram(const Adapter& adapter, ByteSpan input, Progress& progress) {
+  const RunFolder folder;
+  const AdapterPaths paths = prepareRun(adapter, input, folder.path());
+  JobChain chain;
+  for (const AdapterStep& step : adapter.steps) chain.push_back(jobOf(adapter, step, paths));
+  JobResult last;
+  runJobs({&chain, 1}, 1, progress, [&](std::size_t, const std::vector<JobResult>& results) {
+    const std::size_t step = results.size() - 1;
+    last = results.back();
+    if (last.outcome != JobOutcome::kDone) failStep(adapter, step, chain[step], last);
+  });
+  std::error_code unseen;
+  const bool isThere = fs::is_regular_file(paths.output, unseen);
+  const auto size = isThere ? fs::file_size(paths.output, unseen) : 0;
+  if (!isThere || unseen || size == 0) {
+    throw Error(ErrorCode::kBadData,
+                fmt::format("{} {}{}", isThere ? "left an empty" : "wrote no", adapter.outputFile, saying(last)),
+                adapter.name);
+  }
+  return {paths.output.filename().string(), readFile(paths.output)};
+}
+
+}  // namespace limber

@@ -1,0 +1,192 @@
+#include "limber/adapters/rig_by_program.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "limber/adapters/returned_rig.h"
+#include "limber/asset/geometry.h"
+#include "limber/asset/rig_io.h"
+#include "limber/asset/write.h"
+#include "limber/core/known_error.h"
+#include "limber/mesh/components.h"
+#include "limber/mesh/prepare.h"
+
+namespace limber {
+
+namespace {
+
+// Of the longest side: a joint that came back is the one at its place.
+constexpr double kSameJoint = 0.01;
+
+void checkCanRig(const Asset& asset, const Adapter& adapter, const AutoRigOptions& options) {
+  if (adapter.kind != AdapterKind::kRig) {
+    throw Error(ErrorCode::kBadArgument, fmt::format("is of kind {}, not a rigger", adapterKindName(adapter.kind)),
+                adapter.name);
+  }
+  findWeightMethod(options.skinning);
+  if (options.existingRig == ExistingRig::kKeepSkeleton) {
+    throw Error(ErrorCode::kBadArgument, "makes a skeleton of its own", adapter.name, "leave --keep-skeleton out");
+  }
+  if (hasRig(asset) && options.existingRig == ExistingRig::kRefuse) {
+    throw Error(ErrorCode::kUnsupported, "the model has a rig of its own", asset.name,
+                "--replace-rig takes it out first");
+  }
+}
+
+AutoRigReport reportOf(const Geometry& geometry, const PreparedMesh& prepared, const AutoRigOptions& options) {
+  AutoRigReport report;
+  report.skinning = options.skinning;
+  report.maxInfluences = options.weights.maxInfluences;
+  report.sourceVertices = static_cast<Index>(geometry.positions.size());
+  report.weldedVertices = prepared.mesh.vertexCount();
+  report.triangles = prepared.mesh.triangleCount();
+  std::vector<bool> isSolid;
+  Index pieces = 0;
+  const std::vector<Index> pieceOf = vertexComponents(prepared.mesh, &pieces);
+  isSolid.assign(pieces, false);
+  for (const Triangle& t : prepared.mesh.triangles) isSolid[pieceOf[t[0]]] = true;
+  report.pieces = static_cast<Index>(std::count(isSolid.begin(), isSolid.end(), true));
+  report.warnings.append(prepared.warnings);
+  return report;
+}
+
+Bytes inputFor(const HandedModel& handed, const Adapter& adapter) {
+  return adapter.inputFormat == AdapterFormat::kObj ? handedObj(handed.mesh) : writeGlb(handedAsset(handed.mesh));
+}
+
+Affine worldOf(const WorkingFrame& frame) {
+  Affine map = Affine::Identity();
+  map.linear() *= frame.scale;
+  map.translation() = frame.offset;
+  return map;
+}
+
+// What the source vertices have, at the first of those that were welded to each vertex handed over.
+SkinWeights handedWeights(const SkinWeights& source, const PreparedMesh& prepared, const HandedModel& handed) {
+  std::vector<std::optional<Index>> sourceOf(handed.mesh.positions.size());
+  for (std::size_t s = prepared.weldedVertex.size(); s-- > 0;) {
+    if (const auto& v = handed.vertexOf[prepared.weldedVertex[s]]) sourceOf[*v] = static_cast<Index>(s);
+  }
+  std::vector<Index> taken;
+  for (const auto& s : sourceOf) taken.push_back(*s);
+  SkinWeights weights = expandWeights(source, taken);
+  for (Index v = 0; v < weights.vertexCount(); ++v) {
+    if (!(weights.weightsOf(v)[0] > 0)) bindTo(0, v, weights);
+  }
+  normalizeWeights(weights);
+  return weights;
+}
+
+// The skeleton's joint that each one that came back is, by its name or else its place; none for those that are
+// nobody's. No two are the same one.
+std::vector<std::optional<Index>> sameJoints(const Skeleton& returned, const Skeleton& own) {
+  const std::vector<Affine> returnedAt = restGlobals(returned), ownAt = restGlobals(own);
+  std::vector<std::optional<Index>> same(returned.joints.size());
+  std::vector<bool> isTaken(own.joints.size(), false);
+  for (std::size_t r = 0; r < same.size(); ++r) {
+    same[r] = own.find(returned.joints[r].name);
+    if (same[r]) isTaken[*same[r]] = true;
+  }
+  for (std::size_t r = 0; r < same.size(); ++r) {
+    if (same[r]) continue;
+    double nearest = kSameJoint;
+    for (Index j = 0; j < own.jointCount(); ++j) {
+      const double distance = (ownAt[j].translation() - returnedAt[r].translation()).norm();
+      if (isTaken[j] || distance >= nearest) continue;
+      nearest = distance;
+      same[r] = j;
+    }
+    if (same[r]) isTaken[*same[r]] = true;
+  }
+  return same;
+}
+
+// Weights over the skeleton's own joints.
+void renameJoints(SkinWeights& weights, const Skeleton& returned, const Skeleton& own, const std::string& name) {
+  const std::vector<std::optional<Index>> same = sameJoints(returned, own);
+  for (std::size_t i = 0; i < weights.weights.size(); ++i) {
+    if (!(weights.weights[i] > 0)) continue;
+    const auto& joint = same[weights.joints[i]];
+    if (!joint) {
+      throw Error(ErrorCode::kBadData,
+                  fmt::format("the joint '{}' is none of the model's", returned.joints[weights.joints[i]].name), name,
+                  "the program must keep the skeleton that it is given");
+    }
+    weights.joints[i] = *joint;
+  }
+}
+
+}  // namespace
+
+AutoRigReport rigByProgram(Asset& asset, const Adapter& adapter, const AutoRigOptions& options, Progress& progress) {
+  checkCanRig(asset, adapter, options);
+  try {
+    progress.stage("read geometry");
+    Asset rigged = asset.clone();
+    if (hasRig(rigged)) removeRig(rigged);
+    const Geometry geometry = collectGeometry(rigged);
+    progress.stage("weld");
+    const PreparedMesh prepared = prepareMesh(geometry.positions, geometry.triangles);
+    AutoRigReport report = reportOf(geometry, prepared, options);
+
+    progress.stage("rig");
+    const HandedModel handed = handedModel(prepared.mesh, adapter);
+    const ProgramOutput output = runProgram(adapter, inputFor(handed, adapter), progress);
+    ReturnedRig rig = readReturnedRig(output, adapter, prepared.mesh, handed, options.weights.maxInfluences);
+    report.rigger = adapter.name;
+    report.joints = rig.skeleton.jointCount();
+    report.warnings.append(rig.warnings);
+
+    progress.stage("skin");
+    if (rig.weights) {
+      report.skinning = adapter.name;
+    } else {
+      WeightResult skin =
+          findWeightMethod(options.skinning).compute(prepared.mesh, bonesOf(rig.skeleton), options.weights, progress);
+      report.warnings.append(skin.warnings);
+      rig.weights = std::move(skin.weights);
+    }
+    progress.stage("write rig");
+    attachRig(rigged, geometry, movedSkeleton(rig.skeleton, worldOf(prepared.frame)),
+              expandWeights(*rig.weights, prepared.weldedVertex));
+    asset = std::move(rigged);
+    progress.finish();
+    const Warnings stageWarnings = std::exchange(report.warnings, asset.warnings);
+    report.warnings.append(stageWarnings);
+    report.stages = progress.stages();
+    return report;
+  } catch (const Error& error) {
+    throwWithin(error, asset.name);
+  }
+}
+
+Warnings weightsByProgram(Asset& asset, const Adapter& adapter, const WeightOptions& options, Progress& progress) {
+  if (adapter.kind != AdapterKind::kWeights) {
+    throw Error(ErrorCode::kBadArgument,
+                fmt::format("is of kind {}, no skinning method", adapterKindName(adapter.kind)), adapter.name);
+  }
+  try {
+    progress.stage("weights");
+    const AssetSkeleton own = readSkeleton(asset);
+    const Geometry geometry = collectGeometry(asset);
+    const PreparedMesh prepared = prepareMesh(geometry.positions, geometry.triangles);
+    const HandedModel handed = handedModel(prepared.mesh, adapter);
+    const Skeleton working = movedSkeleton(own.skeleton, worldOf(prepared.frame).inverse());
+    Asset given = handedAsset(handed.mesh);
+    attachRig(given, collectGeometry(given), movedSkeleton(working, toHandedSpace(adapter.inputUp, adapter.inputSize)),
+              handedWeights(readWeights(asset, geometry, own), prepared, handed));
+    const ProgramOutput output = runProgram(adapter, writeGlb(given), progress);
+    ReturnedRig rig = readReturnedRig(output, adapter, prepared.mesh, handed, options.maxInfluences);
+    if (!rig.weights) throw Error(ErrorCode::kBadData, "gave no weights", adapter.name);
+    renameJoints(*rig.weights, rig.skeleton, working, adapter.name);
+    replaceWeights(asset, geometry, own, expandWeights(*rig.weights, prepared.weldedVertex));
+    return rig.warnings;
+  } catch (const Error& error) {
+    throwWithin(error, asset.name);
+  }
+}
+
+}  // namespace limber
