@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "adapter_arguments.h"
 #include "command.h"
 #include "limber/core/counted.h"
 #include "limber/core/file.h"
@@ -23,12 +24,13 @@ struct StudyArguments {
   std::string plan, output;
   int jobs = 0;  // 0: as many as there are processors for
   bool retries = false, prints = false, quiet = false;
+  AdapterArguments adapters;
 };
 
-StudyPlan readPlan(const std::string& file) {
+StudyPlan readPlan(const std::string& file, const AdapterArguments& adapters) {
   const Bytes text = readFile(file);
   try {
-    return studyPlanFromJson({reinterpret_cast<const char*>(text.data()), text.size()});
+    return studyPlanFromJson({reinterpret_cast<const char*>(text.data()), text.size()}, adapters.allFolders());
   } catch (const Error& error) {
     throwWithin(error, file == "-" ? "standard input" : file);
   }
@@ -49,7 +51,7 @@ void run(const StudyArguments& arguments) {
   }
   if (arguments.plan.empty()) throw CLI::RequiredError("PLAN");
   if (arguments.output.empty()) throw CLI::RequiredError("--output");
-  const StudyPlan plan = readPlan(arguments.plan);
+  const StudyPlan plan = readPlan(arguments.plan, arguments.adapters);
   StudyOptions options;
   options.program = ownProgram();
   options.planFolder =
@@ -83,6 +85,7 @@ void addStudyCommand(CLI::App& program) {
   command->add_option("--jobs", arguments->jobs, "cells at once (default: as many as there are processors for)")
       ->check(CLI::Range(1, 1024).description(""))
       ->type_name("N");
+  arguments->adapters.addFolderTo(*command);
   command->add_flag("--retry", arguments->retries, "run again what crashed, was refused or ran out of time or memory");
   command->add_flag("--example", arguments->prints, "print a plan that runs as it is");
   command->add_flag("--quiet,-q", arguments->quiet, "print nothing but errors");

@@ -39,6 +39,10 @@ StudyCell rigCell(const StudyModel& model, const RigCombination& combination, co
     if (model.isRigged) rig.emplace_back("--replace-rig");
   }
   rig.insert(rig.end(), {"--skinning", combination.skinning});
+  for (const std::filesystem::path& adapter : combination.adapters) {
+    rig.insert(rig.end(), {"--adapter", adapter.string()});
+    cell.inputs.push_back(adapter);
+  }
   rig.insert(rig.end(), combination.setting.arguments.begin(), combination.setting.arguments.end());
   rig.insert(rig.end(), {"--threads", threads, "--quiet", "-o", "rigged.glb", "--json", "report.json"});
   cell.steps.push_back({"rig", std::move(rig), MeasureSource::kRigReport, "report.json", {}, true});

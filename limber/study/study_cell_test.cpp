@@ -50,6 +50,14 @@ TEST(StudyCells, OwnSkeletonsAreKeptAndTheirWeightsCompared) {
   EXPECT_THAT(cells[0].steps[0].arguments, Contains("--keep-skeleton"));
 }
 
+// So that a changed adapter runs anew.
+TEST(StudyCells, AdaptersAreInputsOfTheirCells) {
+  const std::vector<StudyCell> cells =
+      rigCells(rigPlanOf({{"learned", "bone-heat", {}, {"/mine/learned.json"}}}), std::vector{kBare});
+  EXPECT_THAT(cells[0].steps[0].arguments, ::testing::IsSupersetOf({"--adapter", "/mine/learned.json"}));
+  EXPECT_THAT(cells[0].inputs, Contains(std::filesystem::path("/mine/learned.json")));
+}
+
 TEST(StudyCells, MethodsAreToldApartByTheirNames) {
   const std::vector<StudyCell> cells = rigCells(
       rigPlanOf({{"template", "bone-heat", {}}, {"template", "bone-heat", {"20 handles", {"--handles", "20"}}}}),

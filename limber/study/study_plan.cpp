@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <initializer_list>
+#include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "limber/adapters/adapter_folder.h"
 #include "limber/asset/json_access.h"
 #include "limber/asset/json_text.h"
 #include "limber/core/names.h"
@@ -53,7 +56,7 @@ void checkAt(const JsonView& value, const std::string& name, const Check& check)
   try {
     check(name);
   } catch (const Error& error) {
-    value.fail(error.message() + "; " + error.remedy());
+    value.fail(error.remedy().empty() ? std::string(error.what()) : error.message() + "; " + error.remedy());
   }
 }
 
@@ -73,9 +76,43 @@ std::vector<std::string> methodsOf(const JsonView& object, std::string_view key,
   return names;
 }
 
-void checkRigger(std::string_view name) {
-  if (name != kOwnSkeleton) findRigger(name);
-}
+// Methods of limber's by name, and programs of the user's where there is no such method.
+class RigMethods {
+ public:
+  explicit RigMethods(const std::vector<std::filesystem::path>& adapterFolders) : folders_(adapterFolders) {}
+
+  // Throw Error kBadArgument where nobody is called so.
+  void checkRigger(std::string_view name) const {
+    if (name != kOwnSkeleton && !adapterOf(name, AdapterKind::kRig)) findRigger(name);
+  }
+  void checkSkinning(std::string_view name) const {
+    if (!adapterOf(name, AdapterKind::kWeights)) findWeightMethod(name);
+  }
+  RigCombination combination(std::string rigger, std::string skinning, RigSetting setting) const {
+    RigCombination one{std::move(rigger), std::move(skinning), std::move(setting)};
+    for (const auto& adapter :
+         {adapterOf(one.rigger, AdapterKind::kRig), adapterOf(one.skinning, AdapterKind::kWeights)}) {
+      if (adapter) one.adapters.push_back(adapter->file);
+    }
+    return one;
+  }
+
+ private:
+  static bool isOwn(std::string_view name, AdapterKind kind) {
+    const auto isCalledSo = [&](const auto& method) { return method.name == name; };
+    if (kind == AdapterKind::kWeights) {
+      return std::any_of(weightMethods().begin(), weightMethods().end(), isCalledSo);
+    }
+    return name == kOwnSkeleton || std::any_of(riggerMethods().begin(), riggerMethods().end(), isCalledSo);
+  }
+  std::optional<Adapter> adapterOf(std::string_view name, AdapterKind kind) const {
+    if (isOwn(name, kind)) return std::nullopt;
+    std::optional<Adapter> adapter = findAdapter(name, folders_);
+    return adapter && adapter->kind == kind ? adapter : std::nullopt;
+  }
+
+  const std::vector<std::filesystem::path>& folders_;
+};
 
 RigSetting settingOf(const JsonView& entry) {
   entry.requireObject();
@@ -116,15 +153,17 @@ std::vector<RigSetting> settingsOf(const JsonView& rig) {
 }
 
 // The plan's own combinations, in place of all.
-std::vector<RigCombination> namedPairs(const JsonView& pairs, const std::vector<RigSetting>& settings) {
+std::vector<RigCombination> namedPairs(const JsonView& pairs, const std::vector<RigSetting>& settings,
+                                       const RigMethods& methods) {
   std::vector<RigCombination> combinations;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const JsonView pair = pairs[i];
     pair.requireObject();
     allow(pair, {"rigger", "skinning", "options"});
-    RigCombination one{textOf(pair.member("rigger")), textOf(pair.member("skinning")), {}};
-    checkAt(pair.member("rigger"), one.rigger, checkRigger);
-    checkAt(pair.member("skinning"), one.skinning, findWeightMethod);
+    const std::string rigger = textOf(pair.member("rigger")), skinning = textOf(pair.member("skinning"));
+    checkAt(pair.member("rigger"), rigger, [&](const std::string& name) { methods.checkRigger(name); });
+    checkAt(pair.member("skinning"), skinning, [&](const std::string& name) { methods.checkSkinning(name); });
+    RigCombination one = methods.combination(rigger, skinning, {});
     if (const JsonView name = pair.member("options"); name.exists()) {
       const auto find = [&](const std::string& wanted) {
         one.setting = findByName(settings, "set of options", wanted);
@@ -136,7 +175,7 @@ std::vector<RigCombination> namedPairs(const JsonView& pairs, const std::vector<
   return combinations;
 }
 
-RigPlan rigPlanOf(const JsonView& rig) {
+RigPlan rigPlanOf(const JsonView& rig, const RigMethods& methods) {
   RigPlan plan;
   if (!rig.exists()) return plan;
   allow(rig, {"models", "riggers", "skinning", "options", "pairs"});
@@ -147,15 +186,18 @@ RigPlan rigPlanOf(const JsonView& rig) {
     for (const std::string_view list : {"riggers", "skinning"}) {
       if (rig.member(list).exists()) rig.fail(fmt::format("has both 'pairs' and '{}'", list));
     }
-    plan.combinations = namedPairs(pairs, settings);
+    plan.combinations = namedPairs(pairs, settings, methods);
   } else {
     if (settings.empty()) settings.emplace_back();
-    const std::vector<std::string> riggers = methodsOf(rig, "riggers", riggerMethods(), {"template"}, checkRigger);
-    const std::vector<std::string> methods =
-        methodsOf(rig, "skinning", weightMethods(), {"bone-heat"}, findWeightMethod);
+    const std::vector<std::string> riggers = methodsOf(rig, "riggers", riggerMethods(), {"template"},
+                                                       [&](const std::string& name) { methods.checkRigger(name); });
+    const std::vector<std::string> skinnings = methodsOf(rig, "skinning", weightMethods(), {"bone-heat"},
+                                                         [&](const std::string& name) { methods.checkSkinning(name); });
     for (const std::string& rigger : riggers) {
-      for (const std::string& skinning : methods) {
-        for (const RigSetting& setting : settings) plan.combinations.push_back({rigger, skinning, setting});
+      for (const std::string& skinning : skinnings) {
+        for (const RigSetting& setting : settings) {
+          plan.combinations.push_back(methods.combination(rigger, skinning, setting));
+        }
       }
     }
   }
@@ -200,13 +242,13 @@ void readLimits(const JsonView& limits, StudyPlan& plan) {
   }
 }
 
-StudyPlan planOf(const JsonView& root) {
+StudyPlan planOf(const JsonView& root, const RigMethods& methods) {
   root.requireObject();
   if (root.count(kVersionKey) != 1) root.fail(fmt::format("has no \"{}\": 1", kVersionKey));
   allow(root, {kVersionKey, "title", "rig", "retarget", "limits", "threads"});
   StudyPlan plan;
   if (root.member("title").exists()) plan.title = textOf(root.member("title"));
-  plan.rig = rigPlanOf(root.object("rig"));
+  plan.rig = rigPlanOf(root.object("rig"), methods);
   plan.retarget = retargetPlanOf(root.object("retarget"));
   readLimits(root.object("limits"), plan);
   if (const auto threads = root.count("threads")) {
@@ -219,7 +261,7 @@ StudyPlan planOf(const JsonView& root) {
 
 }  // namespace
 
-StudyPlan studyPlanFromJson(std::string_view text) {
+StudyPlan studyPlanFromJson(std::string_view text, const std::vector<std::filesystem::path>& adapterFolders) {
   try {
     Warnings warnings;
     const Json json = parseJson(text, warnings);
@@ -227,7 +269,7 @@ StudyPlan studyPlanFromJson(std::string_view text) {
       const Warning& first = warnings.items().front();
       throw Error(ErrorCode::kBadData, first.message, first.where);
     }
-    return planOf(JsonView(json));
+    return planOf(JsonView(json), RigMethods(adapterFolders));
   } catch (const Error& error) {
     throw error.within("study plan");
   }

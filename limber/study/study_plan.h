@@ -1,6 +1,7 @@
 // What a study runs over: models, methods and settings; docs/study.schema.json describes the file.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,6 +24,7 @@ struct RigSetting {
 struct RigCombination {
   std::string rigger, skinning;
   RigSetting setting;
+  std::vector<std::filesystem::path> adapters = {};  // files of the programs of the user's among these
 };
 
 // models         files, folders and samples, as the plan has them
@@ -50,9 +52,10 @@ struct StudyPlan {
   int threads = 1;        // of each command
 };
 
-// Lists of methods are multiplied out, in the order of the plan; "all" stands for all there are. Throws Error kBadData
-// that names the entry: not JSON, another version, a key or a method that is not known, nothing to run.
-StudyPlan studyPlanFromJson(std::string_view text);
+// Lists of methods are multiplied out, in the order of the plan; "all" stands for all of limber's own. A rigger or
+// skinning method that is none of these is an adapter (findAdapter) in `adapterFolders`. Throws Error kBadData that
+// names the entry: not JSON, another version, a key or a method that is not known, nothing to run; and as findAdapter.
+StudyPlan studyPlanFromJson(std::string_view text, const std::vector<std::filesystem::path>& adapterFolders = {});
 
 // A plan of samples that runs as it is.
 std::string exampleStudyPlan();

@@ -11,6 +11,7 @@
 #include "limber/ik/ik_solver.h"
 #include "limber/rigging/auto_rigger.h"
 #include "limber/skinning/weight_method.h"
+#include "temporary_folder.h"
 
 namespace limber {
 namespace {
@@ -46,6 +47,35 @@ TEST(StudyPlan, ListsAreMultipliedOut) {
   EXPECT_EQ(last.setting.name, "rigid");
   EXPECT_THAT(last.setting.arguments, ElementsAre("--max-influences", "2", "--pieces", "rigid"));
   EXPECT_TRUE(plan.retarget.characters.empty());
+}
+
+TEST(StudyPlan, ANameThatIsNoMethodIsAnAdapters) {
+  const testing::TemporaryFolder folder;
+  const auto put = [&](const char* name, const char* text) { std::ofstream(folder.path() / name) << text; };
+  put("learned.json", R"({"limber_adapter": 1, "kind": "rig", "steps": [{"command": ["rig", "{input}"]}]})");
+  put("weigher.json", R"({"limber_adapter": 1, "kind": "weights", "steps": [{"command": ["w", "{input}"]}]})");
+  put("broken.json", R"({"limber_adapter": 1, "kinds": "rig"})");
+  const std::string text = rigPlan(R"(, "riggers": ["learned", "template"], "skinning": ["weigher", "bone-heat"])");
+  const StudyPlan plan = studyPlanFromJson(text, {folder.path()});
+  ASSERT_EQ(plan.rig.combinations.size(), 4u);
+  EXPECT_THAT(plan.rig.combinations[0].adapters,
+              ElementsAre(folder.path() / "learned.json", folder.path() / "weigher.json"));
+  EXPECT_THAT(plan.rig.combinations[1].adapters, ElementsAre(folder.path() / "learned.json"));
+  EXPECT_TRUE(plan.rig.combinations[3].adapters.empty());
+  const StudyPlan pairs =
+      studyPlanFromJson(rigPlan(R"(, "pairs": [{"rigger": "own", "skinning": "weigher"}])"), {folder.path()});
+  EXPECT_THAT(pairs.rig.combinations[0].adapters, ElementsAre(folder.path() / "weigher.json"));
+  EXPECT_THAT(refusalOf(text), HasSubstr("riggers[0]: no rigger is called 'learned'"));
+  const auto refusal = [&](const std::string& members) {
+    try {
+      studyPlanFromJson(rigPlan(members), {folder.path()});
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_THAT(refusal(R"(, "riggers": ["weigher"])"), HasSubstr("no rigger is called 'weigher'"));
+  EXPECT_THAT(refusal(R"(, "riggers": ["broken"])"), HasSubstr("riggers[0]: adapter broken"));
 }
 
 TEST(StudyPlan, AllStandsForAllThereAre) {
