@@ -41,6 +41,7 @@ case "$1" in
     case "$2" in
       rig) echo '{"without_fingers": {"joint_to_joint": 3.5}}';;
       weights) echo '{"l1": 0.25}';;
+      model) echo '{"coverage": 0.75}';;
     esac;;
   preview) for name; do :; done; echo "picture of $4" > "$name";;
   sample) for name; do if [ "$before" = -o ]; then echo made > "$name"; fi; before=$name; done;;
@@ -105,6 +106,7 @@ TEST_F(StudyRuns, MeasuresEachCell) {
   EXPECT_EQ(study.results[2].valueOf(findMeasure("weight_l1")), 0.25);
   for (const CellResult& result : study.results) {
     EXPECT_EQ(result.outcome, JobOutcome::kDone) << result.problem;
+    EXPECT_EQ(result.valueOf(findMeasure("coverage")), 0.75);
     EXPECT_TRUE(result.valueOf(findMeasure("seconds")));
     ASSERT_EQ(result.pictures.size(), 2u);
     for (const CellPicture& picture : result.pictures) EXPECT_TRUE(fs::exists(options_.output / picture.file));

@@ -109,12 +109,73 @@ async function usdzApart({ vertices }) {
   return Math.max(...points.map((p) => Math.min(...vertices.map((v) => Math.hypot(p[0] - v[0], p[1] - v[1], p[2] - v[2])))));
 }
 
+/** Distortion above 1 of each triangle (limber/evaluate/surface_stretch.h), at most 1. */
+function stretches(rest, posed) {
+  const edges = ({ vertices }, [a, b, c]) => [b, c].map((corner) => vertices[corner].map((value, axis) => value - vertices[a][axis]));
+  const dot = (u, v) => u.reduce((sum, value, axis) => sum + value * v[axis], 0);
+  return posed.triangles.map((corners) => {
+    // In the frame of the triangle at rest: columns of the map are what becomes of its first edge's direction and of the one across.
+    const [u, v] = edges(rest, corners), [p, q] = edges(posed, corners), length = Math.hypot(...u), along = dot(u, v) / length;
+    const across = Math.sqrt(Math.max(0, dot(v, v) - along * along));
+    const first = p.map((value) => value / length), second = q.map((value, axis) => (value - along * first[axis]) / across);
+    const sum = dot(first, first) + dot(second, second), turned = Math.hypot(dot(first, first) - dot(second, second), 2 * dot(first, second));
+    return Math.min(1, Math.max(Math.sqrt((sum + turned) / 2), 1 / Math.sqrt(Math.max(1e-12, (sum - turned) / 2))) - 1);
+  });
+}
+
+/** Where one triangle alone faces the camera: the heat that is drawn there, and the one that it should have. */
+async function drawnHeat(surface, heats) {
+  const shot = (await page.locator('main canvas').screenshot()).toString('base64');
+  return page.evaluate(async ({ shot, surface, heats }) => {
+    const { left, top, width, height } = document.querySelector('main canvas').getBoundingClientRect();
+    const image = await createImageBitmap(await (await fetch(`data:image/png;base64,${shot}`)).blob());
+    const context = new OffscreenCanvas(width, height).getContext('2d');
+    context.drawImage(image, 0, 0);
+    const { data } = context.getImageData(0, 0, width, height);
+    const places = surface.vertices.map((vertex) => globalThis.limberStudio.placeOf(vertex)).map(({ x, y }) => [x - left, y - top]);
+    const layers = new Uint8Array(width * height), own = new Int32Array(width * height).fill(-1);
+    const cross = (a, b, x, y) => (b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0]);
+    surface.triangles.forEach((corners, f) => {
+      const [a, b, c] = corners.map((corner) => places[corner]);
+      if (cross(a, b, ...c) >= 0) return; // seen from behind
+      const span = (axis, end) => [Math.floor(Math.min(a[axis], b[axis], c[axis])), Math.min(end - 1, Math.ceil(Math.max(a[axis], b[axis], c[axis])))];
+      const [x0, x1] = span(0, width), [y0, y1] = span(1, height);
+      for (let y = Math.max(0, y0); y <= y1; ++y) for (let x = Math.max(0, x0); x <= x1; ++x) {
+        const inside = [[a, b], [b, c], [c, a]].map(([from, to]) => cross(from, to, x + 0.5, y + 0.5) / Math.hypot(to[0] - from[0], to[1] - from[1]));
+        if (inside.some((distance) => distance > 1)) continue; // farther than a pixel outside
+        layers[y * width + x] += 1;
+        if (inside.every((distance) => distance < -1)) own[y * width + x] = f;
+      }
+    });
+    // Hues go from blue, 0, to red, 1; light and shade leave them as they are.
+    const heatOf = (bytes) => {
+      const [r, g, b] = bytes.map((byte) => (byte / 255) ** 2.2), most = Math.max(r, g, b), range = most - Math.min(r, g, b);
+      const sixth = most === r ? ((g - b) / range + 6) % 6 : most === g ? (b - r) / range + 2 : (r - g) / range + 4;
+      return 1 - sixth / 6 / 0.62;
+    };
+    const pairs = [];
+    for (let i = 0; i < own.length; ++i) {
+      if (own[i] < 0 || layers[i] !== 1) continue;
+      pairs.push([heatOf(Array.from(data.subarray(4 * i, 4 * i + 3))), heats[own[i]]]);
+    }
+    return pairs;
+  }, { shot, surface, heats });
+}
+
+async function open(name, buffer) {
+  await page.locator('#file').setInputFiles({ name, mimeType: 'model/gltf-binary', buffer });
+  await page.waitForFunction((opened) => globalThis.limberStudio.state().name === opened, name);
+  await settled(page);
+}
+
 const surfaces = {};
+let atRest = null;
 const cases = {
   async 'a deformer is chosen among the methods, and taken back'() {
-    await page.locator('#file').setInputFiles({ name: 'bent.glb', mimeType: 'model/gltf-binary', buffer: bentPerson() });
-    await page.waitForFunction(() => globalThis.limberStudio.state().name === 'bent.glb');
-    await settled(page);
+    const bent = bentPerson();
+    await open('rigged.glb', readFileSync(join(output, 'deform_rigged.glb')));
+    atRest = await engineSurface();
+    await open('bent.glb', bent);
     await page.locator('#methods summary').click();
     assert.equal(await page.locator('#deformer').inputValue(), 'linear-blend');
     assert.deepEqual(await page.$$eval('#deformer option', (options) => options.map(({ value }) => value)), deformers);
@@ -141,6 +202,22 @@ const cases = {
       if (name !== 'linear-blend') assert.ok(linear.share > 5 * own.share + 0.002, `${name} is drawn as linear blend: ${JSON.stringify(figures[name])}`);
     }
     console.log(`misdrawn, by the engine's surface and by linear blend: ${JSON.stringify(figures)}`);
+  },
+  async 'stretch is drawn as the engine has it'() {
+    await page.locator('.pose [data-value=stretch]').click();
+    await page.locator('#bones').uncheck();
+    const shares = [];
+    for (const name of deformers) {
+      await choose(name);
+      const pairs = await drawnHeat(surfaces[name], stretches(atRest, surfaces[name]));
+      await page.screenshot({ path: join(output, `deform_stretch_${name}.png`) });
+      const alike = pairs.filter(([drawn, wanted]) => Math.abs(drawn - wanted) < 0.05).length / pairs.length;
+      assert.ok(pairs.length > 1000 && pairs.some(([, wanted]) => wanted > 0.3), `${pairs.length} pixels`);
+      assert.ok(alike > 0.95, `${name}: ${alike}`); // the others lie below a handle
+      shares.push(alike);
+    }
+    await page.locator('#bones').check();
+    console.log(`drawn as the engine has it: ${shares}`);
   },
   async 'a USDZ holds the surface as it is bent'() {
     for (const name of ['linear-blend', 'delta-mush', 'centers-of-rotation', 'direct-delta-mush']) {

@@ -1,7 +1,7 @@
 // Hints: each is shown in place until it was followed, and never again in this browser.
 import type { Words } from '../words/say';
 import { remember, rememberedText } from './remembered';
-import type { PageState } from './state';
+import { hasHandles, type PageState } from './state';
 
 interface Hint {
   id: string;
@@ -12,7 +12,7 @@ interface Hint {
   known(now: PageState, before: PageState): boolean;
 }
 
-const posing = ({ session, display }: PageState) => session !== null && session.clip === null && session.dragged === null && display === 'handles';
+const posing = ({ session, display }: PageState) => session !== null && session.clip === null && session.dragged === null && hasHandles(display);
 
 const hints: Hint[] = [
   {
@@ -32,7 +32,7 @@ const hints: Hint[] = [
   },
   {
     id: 'key', text: 'Drag a joint: it becomes a key of the clip',
-    helps: ({ session, playing, autoKey, display }) => session?.clip != null && !playing && autoKey && display === 'handles' && session.dragged === null,
+    helps: ({ session, playing, autoKey, display }) => session?.clip != null && !playing && autoKey && hasHandles(display) && session.dragged === null,
     known: ({ session }) => session?.undo === 'set_key',
   },
 ];

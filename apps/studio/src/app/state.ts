@@ -10,7 +10,9 @@ import { Store } from './store';
 export type DragMode = 'move' | 'turn';
 /** Whose axes arrows and rings have. */
 export type GizmoSpace = 'world' | 'parent' | 'local' | 'view';
-export type Display = 'handles' | 'surface' | 'weights' | 'joint-weights' | 'parts';
+export type Display = 'handles' | 'surface' | 'weights' | 'joint-weights' | 'parts' | 'stretch';
+/** There are handles to drag. */
+export const hasHandles = (display: Display) => display === 'handles' || display === 'stretch';
 
 export type PaintMode = 'add' | 'subtract' | 'smooth';
 

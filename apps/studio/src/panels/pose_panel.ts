@@ -37,6 +37,7 @@ export function posePanel(studio: Studio, page: PageStore, poses: PoseShelf, vie
     { value: 'weights', text: say('Areas'), label: say('Which area each joint moves (weights), each in its colour') },
     { value: 'joint-weights', text: say('By joint'), label: say('What the selected joint moves (weights): red much, blue nothing') },
     { value: 'parts', text: say('Limbs'), label: say('The limbs of the model as the weights have them, each in its colour') },
+    { value: 'stretch', text: say('Stretching'), label: say('How far the surface is stretched or squeezed: red is twice as long or half, blue as at rest') },
   ], (value) => page.set({ display: value }));
   const toggle = (text: string, key: 'bones' | 'wireframe' | 'gizmo' | 'limits', title = text) => {
     const box = element('input', { type: 'checkbox', id: key });

@@ -1,7 +1,7 @@
 // Several joints at once: a box drawn with Shift beside them or, as touch has no Shift, while joints are being selected
 // (state.ts, `selecting`): taps add one or take it back, and two fingers still move the camera.
 import { MOUSE, TOUCH } from 'three';
-import type { PageStore } from '../app/state';
+import { hasHandles, type PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
 import { element } from '../ui/dom';
 import type { Gizmo } from './gizmo';
@@ -49,7 +49,7 @@ export class BoxSelect {
   private press(event: PointerEvent) {
     if (this.from) return this.cancel(); // a second finger: the camera is meant
     const { display, placing, selecting, session } = this.page.now;
-    if (!session || display !== 'handles' || placing || this.gizmo.meant || event.button !== 0 || !event.isPrimary) return;
+    if (!session || !hasHandles(display) || placing || this.gizmo.meant || event.button !== 0 || !event.isPrimary) return;
     if (!selecting && !(event.shiftKey && this.under(event) === null)) return;
     if (!selecting) event.stopImmediatePropagation(); // the camera would be shifted
     this.viewport.canvas.focus({ preventScroll: true });

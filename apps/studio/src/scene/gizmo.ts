@@ -1,7 +1,7 @@
 // Arrows and rings on the selected joint, for exact work.
 import { Object3D, Quaternion } from 'three';
 import { TransformControls } from 'three/examples/jsm/controls/TransformControls.js';
-import type { PageStore } from '../app/state';
+import { hasHandles, type PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
 import type { HandleView } from './handle_view';
 import type { Viewport } from './viewport';
@@ -53,7 +53,7 @@ export class Gizmo {
   place() {
     const { gizmo, gizmoSpace, selected, mode, display } = this.page.now;
     this.controls.camera = this.viewport.camera;
-    if (!gizmo || selected === null || selected >= this.handles.count || display !== 'handles') {
+    if (!gizmo || selected === null || selected >= this.handles.count || !hasHandles(display)) {
       this.controls.detach();
       return;
     }

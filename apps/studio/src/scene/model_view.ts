@@ -7,6 +7,7 @@ import type { Display } from '../app/state';
 import type { PaintedWeights, SurfaceModel, SurfaceParts } from '../engine/messages';
 import { PosedSurface, RowMotion, RowSurface } from './deformation';
 import { heatColor, jointColor } from './palette';
+import { readyForStretch, showStretch } from './stretch';
 
 /** Takes its matrices as they come from the engine instead of making them from bones. */
 class EngineSkeleton extends Skeleton {
@@ -99,18 +100,19 @@ export class ModelView {
 
   setDisplay(display: Display, selected: number | null, wireframe: boolean, parts: SurfaceParts | null = null) {
     const byParts = display === 'parts' && parts?.partOf.length === (this.model?.triangles.length ?? 0) / 3 ? parts : null;
-    const painted = display === 'weights' || display === 'joint-weights' || byParts !== null;
+    const painted = display === 'weights' || display === 'joint-weights' || byParts !== null, plain = painted || display === 'stretch';
     if (byParts) this.paintParts(byParts);
     else if (painted) this.paint(display === 'joint-weights' ? selected ?? 0 : null);
     for (const mesh of this.meshes) {
       const material = mesh.material;
       const own = mesh.userData['color'] as Color;
-      material.color.copy(painted ? new Color(1, 1, 1) : own);
-      material.map = painted ? null : (mesh.userData['map'] as Texture | null);
+      material.color.copy(plain ? new Color(1, 1, 1) : own);
+      material.map = plain ? null : (mesh.userData['map'] as Texture | null);
       material.vertexColors = painted;
       material.transparent = display === 'handles';
       material.opacity = display === 'handles' ? 0.36 : 1;
       material.wireframe = wireframe;
+      showStretch(material, display === 'stretch');
       material.needsUpdate = true;
     }
   }
@@ -188,6 +190,7 @@ export class ModelView {
     const color = source ? new Color(...source.color.slice(0, 3) as [number, number, number]) : new Color('#b9c0ca');
     const material = new MeshStandardMaterial({ color, roughness: 0.75, metalness: 0, side: DoubleSide });
     (this.rows?.motion ?? this.posedSurface)?.bend(material);
+    readyForStretch(material);
     const mesh = new SkinnedMesh(geometry, material);
     mesh.bind(this.skeleton!, new Matrix4());
     mesh.bindMode = DetachedBindMode; // the group that it is in moves it, too

@@ -1,6 +1,6 @@
 // Mouse, pen and fingers on the canvas: a handle under one is dragged, anything else moves the camera.
 import { Vector3 } from 'three';
-import type { PageState, PageStore } from '../app/state';
+import { hasHandles, type PageState, type PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
 import type { Gizmo } from './gizmo';
 import type { HandleView } from './handle_view';
@@ -36,7 +36,7 @@ export class PointerInput {
   private snaps(event: PointerEvent) { return this.page.now.snapping !== (event.ctrlKey || event.metaKey); }
 
   private under(event: PointerEvent): number | null {
-    if (this.page.now.display !== 'handles' || this.page.now.placing) return null;
+    if (!hasHandles(this.page.now.display) || this.page.now.placing) return null;
     const { width, height } = this.viewport.size;
     const near = slop[event.pointerType as keyof typeof slop] ?? slop.mouse;
     return this.handles.pick(event.offsetX, event.offsetY, this.viewport.camera, width, height, near);

@@ -1,6 +1,6 @@
 // The scene shows what the page's state says.
 import { Box3, Matrix4, Vector3 } from 'three';
-import type { PageStore } from '../app/state';
+import { hasHandles, type PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
 import { ComparisonView } from './comparison_view';
 import { Gizmo } from './gizmo';
@@ -75,8 +75,8 @@ export function createStage(studio: Studio, page: PageStore): Stage {
   viewport.beforeFrame = (camera) => {
     const { display, bones } = page.now;
     const matched = (page.now.session?.match.length ?? 0) > 0;
-    handles.fit(camera, viewport.size.height, display === 'handles', bones && (display === 'handles' || matched || page.now.painting));
-    comparison.fit(camera, viewport.size.height, display === 'handles');
+    handles.fit(camera, viewport.size.height, hasHandles(display), bones && (hasHandles(display) || matched || page.now.painting));
+    comparison.fit(camera, viewport.size.height, hasHandles(display));
   };
   studio.onStance = (stance, ofClip) => {
     const before = root.clone(), member = page.now.session?.member ?? 0;
@@ -123,7 +123,7 @@ export function createStage(studio: Studio, page: PageStore): Stage {
       const others = joints.map(({ color }) => (match.length > 0 ? boneColor : partColor(color)));
       handles.colorBones(matchColors(joints.map(({ name }) => name), match, 'target', others));
     }
-    limits.root.visible = now.limits && now.display === 'handles';
+    limits.root.visible = now.limits && hasHandles(now.display);
     source.showModel(now);
     onion.show(now);
     if (now.others !== before.others || now.wireframe !== before.wireframe) others.show(now.others, now.wireframe);

@@ -212,6 +212,9 @@ export const german = {
   'By joint': 'Je Gelenk',
   'What the selected joint moves (weights): red much, blue nothing': 'Was das gewählte Gelenk bewegt (Gewichte): Rot viel, Blau nichts',
   'The limbs of the model as the weights have them, each in its colour': 'Die Glieder des Modells, wie die Gewichte sie haben, jedes in seiner Farbe',
+  'Stretching': 'Dehnung',
+  'How far the surface is stretched or squeezed: red is twice as long or half, blue as at rest':
+    'Wie weit die Oberfläche gedehnt oder gestaucht ist: Rot doppelt so lang oder halb, Blau wie in Ruhe',
   'Bones': 'Knochen',
   'Mesh lines': 'Netzlinien',
   'Arrows': 'Pfeile',
