@@ -38,8 +38,8 @@ function(limber_module name)
     target_compile_options(${target} PRIVATE -fsanitize-coverage=inline-8bit-counters,indirect-calls,trace-cmp,pc-table)
   endif()
 
-  install(TARGETS ${target} EXPORT limberTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-  install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/limber/${name})
+  install(TARGETS ${target} EXPORT limberTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
+  install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/limber/${name} COMPONENT development)
   set_property(GLOBAL APPEND PROPERTY LIMBER_MODULES ${target})
 
   if(LIMBER_TESTS AND tests)

@@ -19,6 +19,11 @@ build_program_with_studio() {
   configure release -DLIMBER_STUDIO=ON && compile release limber
 }
 
+# The libraries, too, for a package of them.
+build_everything_with_studio() {
+  configure release -DLIMBER_STUDIO=ON && compile release
+}
+
 # Types checked, then dist/ made.
 build_studio() {
   install_node_packages apps/studio || return 1

@@ -22,7 +22,7 @@ TEST_F(Cli, EveryCommandHasHelpWithAnExample) {
   EXPECT_THAT(run({"--help"}).out,
               AllOf(HasSubstr("rig"), HasSubstr("info"), HasSubstr("preview"), HasSubstr("sample")));
   for (const char* command : {"rig", "info", "preview", "sample", "evaluate", "convert", "parts", "pose", "session",
-                              "retarget", "animate", "transfer", "studio"}) {
+                              "retarget", "animate", "transfer", "studio", "study", "completion"}) {
     const Result help = run({command, "--help"});
     EXPECT_EQ(help.code, 0);
     EXPECT_THAT(help.out, AllOf(HasSubstr("Example"), HasSubstr(std::string("limber ") + command)));

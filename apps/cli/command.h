@@ -27,6 +27,7 @@ void addAnimateCommand(CLI::App& program);
 void addStudioCommand(CLI::App& program);
 void addTransferCommand(CLI::App& program);
 void addStudyCommand(CLI::App& program);
+void addCompletionCommand(CLI::App& program);
 void addMotionEvaluation(CLI::App& evaluate);  // subcommands of evaluate
 void addRetargetingEvaluation(CLI::App& evaluate);
 void addDecompositionEvaluation(CLI::App& evaluate);

@@ -73,6 +73,7 @@ int main(int argc, char** argv) {
   limber::cli::addTransferCommand(program);
   limber::cli::addStudyCommand(program);
   limber::cli::addStudioCommand(program);
+  limber::cli::addCompletionCommand(program);
   program.footer("limber COMMAND --help shows the options of a command, with an example.");
   if (const std::string problem = wrongCommand(program, argc, argv); !problem.empty()) return usage(program, problem);
   try {

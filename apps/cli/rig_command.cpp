@@ -269,7 +269,7 @@ template <class Method>
 std::string listMethods(std::string_view title, std::span<const Method> methods) {
   std::string text = fmt::format("{}:\n", title);
   for (const Method& method : methods) {
-    text += fmt::format("  {:<14}{}", method.name, method.summary);
+    text += fmt::format("  {:<20}{}", method.name, method.summary);
     text += method.paper.empty() ? "\n" : fmt::format(" ({})\n", method.paper);
   }
   return text;
@@ -278,7 +278,7 @@ std::string listMethods(std::string_view title, std::span<const Method> methods)
 template <class Table>
 std::string listNamed(std::string_view title, const Table& table) {
   std::string text = fmt::format("{}:\n", title);
-  for (const auto& named : table) text += fmt::format("  {:<18}{}\n", named.name, named.summary);
+  for (const auto& named : table) text += fmt::format("  {:<20}{}\n", named.name, named.summary);
   return text;
 }
 

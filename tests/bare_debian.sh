@@ -1,0 +1,50 @@
+#!/usr/bin/env bash
+# bare_debian.sh PACKAGES_FOLDER WORK_FOLDER: a Debian 12 with nothing on it runs the program out of the .tar.gz, then installs the .deb
+# with apt, then the library's, and builds a program against that (tests/consumer). All give the same bytes.
+# Needs mmdebstrap and root. Ends with "N passed, N failed".
+set -uo pipefail
+
+packages=$(cd "$1" && pwd)
+mkdir -p "$2"
+work=$(cd "$2" && pwd)
+passed=0 failed=0
+consumer=$(cd "$(dirname "$0")/consumer" && pwd)
+
+cat >"$work/inside.sh" <<'INSIDE'
+set -e
+export DEBIAN_FRONTEND=noninteractive
+cd /limber
+say() { echo "bare: $*"; }
+mkdir portable && tar -xzf ./*.tar.gz -C portable --strip-components=1
+try() {
+  local limber=$1 name=$2
+  $limber --version
+  $limber sample biped --quiet -o model.glb
+  $limber rig model.glb --template humanoid --quiet -o $name.glb
+  $limber preview $name.glb --quiet -o $name.png
+}
+! ls /usr/lib/*/libfmt.so* 2>/dev/null
+try portable/bin/limber portable && say the tar.gz runs
+# The mirror of the machine itself may be gone once the system stands, but not what mmdebstrap was told to fetch.
+apt-get -q -y install ./limber_*.deb </dev/null && try limber installed && say the deb installs
+cmp portable.glb installed.glb && say both give the same bytes
+zcat /usr/share/man/man1/limber-rig.1.gz | grep -q skinning && say the manual is there
+bash -c '. /usr/share/bash-completion/completions/limber; COMP_WORDS=(limber rig --skin); COMP_CWORD=2; _limber; [ "${COMPREPLY[*]}" = --skinning ]' &&
+  say bash completes an option
+apt-get -q -y install --no-install-recommends cmake ninja-build g++ ./liblimber-dev_*.deb </dev/null
+cmake -S consumer -B build -G Ninja && cmake --build build && build/consumer | grep '^joints: 12$' && say a program builds against the library
+INSIDE
+
+mkdir -p "$work/files"
+cp "$packages"/*.deb "$packages"/*.tar.gz "$work/files"
+mmdebstrap --variant=apt --hook-dir=/usr/share/mmdebstrap/hooks/file-mirror-automount \
+  --customize-hook="mkdir \"\$1/limber\" && cp -r $work/files/. $work/inside.sh $consumer \"\$1/limber\"" \
+  --customize-hook='chroot "$1" bash /limber/inside.sh' \
+  bookworm /dev/null >"$work/bare.log" 2>&1 </dev/null
+for said in "the tar.gz runs" "the deb installs" "both give the same bytes" "the manual is there" "bash completes an option" \
+  "a program builds against the library"; do
+  if grep -q "^bare: $said$" "$work/bare.log"; then passed=$((passed + 1)); else failed=$((failed + 1)); echo "FAILED: $said"; fi
+done
+[ $failed = 0 ] || tail -n 40 "$work/bare.log"
+echo "$passed passed, $failed failed"
+[ $failed = 0 ]

@@ -1,0 +1,83 @@
+#!/usr/bin/env bash
+# make_packages.sh BUILD_FOLDER OUTPUT_FOLDER: limber_VERSION_ARCH.deb and liblimber-dev_VERSION_ARCH.deb, and a .tar.gz of the
+# program that carries its shared libraries with their notices. The program is built already. Called by ./dev package.
+set -euo pipefail
+
+build=$(cd "$1" && pwd)
+mkdir -p "$2"
+output=$(cd "$2" && pwd)
+limber=$build/limber manual=$build/manual/program
+version=$($limber --version | cut -d' ' -f2)
+export SOURCE_DATE_EPOCH=${SOURCE_DATE_EPOCH:-$(git log -1 --format=%ct 2>/dev/null || echo 0)}
+
+# manual_page <limber command...>: from what --help says.
+manual_page() {
+  local name=${*// /-} summary
+  name=${name// /-}
+  summary=$("$limber" "${@:2}" --help | head -n 1)
+  PATH=$build:$PATH help2man --no-info --version-string="$version" --name="$summary" "$*" |
+    sed "s/^$* \\\\-/${name//-/\\\\-} \\\\-/" | gzip -9n >"$manual/man/man1/$name.1.gz"
+}
+
+commands_of() { "$limber" "$@" --help | sed -n '/^Subcommands:/,/^$/s/^  \([a-z]\+\) .*/\1/p'; }
+
+# notices <folder>: as Debian's policy has them.
+notices() {
+  mkdir -p "$1"
+  cat >"$1/copyright" <<TEXT
+Format: https://www.debian.org/doc/packaging-manuals/copyright-format/1.0/
+Upstream-Name: limber
+
+Files: *
+Copyright: 2026 the authors of limber
+License: Apache-2.0
+ The whole text is in /usr/share/common-licenses/Apache-2.0 on Debian systems.
+TEXT
+  gzip -9n <CHANGELOG.md >"$1/changelog.gz"
+  gzip -9n >"$1/changelog.Debian.gz" <<TEXT
+limber ($version-1) bookworm; urgency=medium
+
+  * Built from limber $version: see changelog.gz.
+
+ -- limber maintainers <maintainers@limber.invalid>  $(date -R -u -d "@$SOURCE_DATE_EPOCH")
+TEXT
+}
+
+rm -rf "$build/manual"
+mkdir -p "$manual"/{man/man1,bash-completion/completions,zsh/vendor-completions,fish/vendor_completions.d}
+notices "$manual/doc/limber"
+notices "$build/manual/development/doc/liblimber-dev"
+manual_page limber
+for command in $(commands_of); do
+  manual_page limber "$command"
+  for part in $(commands_of "$command"); do manual_page limber "$command" "$part"; done
+done
+"$limber" completion bash >"$manual/bash-completion/completions/limber"
+"$limber" completion zsh >"$manual/zsh/vendor-completions/_limber"
+"$limber" completion fish >"$manual/fish/vendor_completions.d/limber.fish"
+
+work=$build/packages
+rm -rf "$work"
+cpack --config "$build/CPackConfig.cmake" -G 'DEB;TGZ' -B "$work" >"$build/cpack.log" 2>&1 || { tail -n 20 "$build/cpack.log" >&2; exit 1; }
+rm -f "$output"/*.deb "$output"/*.tar.gz
+cp "$work"/*.deb "$output"
+
+# Every shared library but the C library's own, found from the program's folder; and who made each.
+portable=limber-$version-linux-$(uname -m)
+root=$work/$portable
+rm -rf "$root"
+mkdir "$root"
+tar -xzf "$work/$portable.tar.gz" -C "$root" --strip-components=1
+cp LICENSE "$root/share/doc/limber/LICENSE"
+mkdir -p "$root/lib" "$root/share/doc/limber/libraries"
+ldd "$limber" | sed -n 's/.* => \(\/[^ ]*\) .*/\1/p' | sort | while read -r library; do
+  case $(basename "$library") in libc.so* | libm.so* | libdl.so* | libpthread.so* | librt.so* | ld-linux*) continue ;; esac
+  cp -L "$library" "$root/lib/"
+  patchelf --set-rpath '$ORIGIN' "$root/lib/$(basename "$library")"
+  package=$(dpkg-query -S "$(readlink -f "$library")" 2>/dev/null || dpkg-query -S "*/$(basename "$(readlink -f "$library")")")
+  package=$(echo "$package" | head -n 1 | cut -d: -f1)
+  cp -L "/usr/share/doc/$package/copyright" "$root/share/doc/limber/libraries/$package.txt"
+done
+patchelf --set-rpath '$ORIGIN/../lib' "$root/bin/limber"
+tar -C "$work" --sort=name --owner=0 --group=0 --numeric-owner --mtime="@$SOURCE_DATE_EPOCH" -cf - "$portable" | gzip -9n >"$output/$portable.tar.gz"
+ls -l "$output" | awk 'NR > 1 { printf "%6.1f MB  %s\n", $5 / 1e6, $NF }'
