@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # bare_debian.sh PACKAGES_FOLDER WORK_FOLDER: a Debian 12 with nothing on it runs the program out of the .tar.gz, then installs the .deb
-# with apt, then the library's, and builds a program against that (tests/consumer). All give the same bytes.
+# with apt, then the library's, and builds a program against that (tests/consumer), and the wheel. All give the same bytes.
 # Needs mmdebstrap and root. Ends with "N passed, N failed".
 set -uo pipefail
 
@@ -31,17 +31,28 @@ cmp portable.glb installed.glb && say both give the same bytes
 zcat /usr/share/man/man1/limber-rig.1.gz | grep -q skinning && say the manual is there
 bash -c '. /usr/share/bash-completion/completions/limber; COMP_WORDS=(limber rig --skin); COMP_CWORD=2; _limber; [ "${COMPREPLY[*]}" = --skinning ]' &&
   say bash completes an option
+apt-get -q -y install --no-install-recommends python3-venv python3-numpy </dev/null
+python3 -m venv --system-site-packages venv && venv/bin/pip install --no-index ./*.whl
+apt-get -q -y purge limber libassimp5 libfmt9 >/dev/null </dev/null
+venv/bin/python - <<'PYTHON'
+import limber
+model = limber.read("model.glb")
+model.rig(template="humanoid")
+model.write("wheel.glb")
+PYTHON
+cmp portable.glb wheel.glb && [ "$(venv/bin/python -m limber --version)" = "$(portable/bin/limber --version)" ] && say the wheel gives them, too
 apt-get -q -y install --no-install-recommends cmake ninja-build g++ ./liblimber-dev_*.deb </dev/null
 cmake -S consumer -B build -G Ninja && cmake --build build && build/consumer | grep '^joints: 12$' && say a program builds against the library
 INSIDE
 
 mkdir -p "$work/files"
-cp "$packages"/*.deb "$packages"/*.tar.gz "$work/files"
+cp "$packages"/*.deb "$packages"/*.tar.gz "$packages"/*.whl "$work/files"
 mmdebstrap --variant=apt --hook-dir=/usr/share/mmdebstrap/hooks/file-mirror-automount \
   --customize-hook="mkdir \"\$1/limber\" && cp -r $work/files/. $work/inside.sh $consumer \"\$1/limber\"" \
   --customize-hook='chroot "$1" bash /limber/inside.sh' \
   bookworm /dev/null >"$work/bare.log" 2>&1 </dev/null
 for said in "the tar.gz runs" "the deb installs" "both give the same bytes" "the manual is there" "bash completes an option" \
+  "the wheel gives them, too" \
   "a program builds against the library"; do
   if grep -q "^bare: $said$" "$work/bare.log"; then passed=$((passed + 1)); else failed=$((failed + 1)); echo "FAILED: $said"; fi
 done

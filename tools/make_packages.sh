@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# make_packages.sh BUILD_FOLDER OUTPUT_FOLDER: limber_VERSION_ARCH.deb and liblimber-dev_VERSION_ARCH.deb, and a .tar.gz of the
-# program that carries its shared libraries with their notices. The program is built already. Called by ./dev package.
+# make_packages.sh BUILD_FOLDER OUTPUT_FOLDER: limber_VERSION_ARCH.deb and liblimber-dev_VERSION_ARCH.deb, a .tar.gz of the program
+# and a wheel for Debian 12's Python; the last two carry their shared libraries with their notices. Everything is built already.
+# Called by ./dev package.
 set -euo pipefail
 
 build=$(cd "$1" && pwd)
@@ -69,15 +70,52 @@ rm -rf "$root"
 mkdir "$root"
 tar -xzf "$work/$portable.tar.gz" -C "$root" --strip-components=1
 cp LICENSE "$root/share/doc/limber/LICENSE"
-mkdir -p "$root/lib" "$root/share/doc/limber/libraries"
-ldd "$limber" | sed -n 's/.* => \(\/[^ ]*\) .*/\1/p' | sort | while read -r library; do
-  case $(basename "$library") in libc.so* | libm.so* | libdl.so* | libpthread.so* | librt.so* | ld-linux*) continue ;; esac
-  cp -L "$library" "$root/lib/"
-  patchelf --set-rpath '$ORIGIN' "$root/lib/$(basename "$library")"
-  package=$(dpkg-query -S "$(readlink -f "$library")" 2>/dev/null || dpkg-query -S "*/$(basename "$(readlink -f "$library")")")
-  package=$(echo "$package" | head -n 1 | cut -d: -f1)
-  cp -L "/usr/share/doc/$package/copyright" "$root/share/doc/limber/libraries/$package.txt"
-done
+# carry_libraries <program> <folder for libraries> <folder for notices>
+carry_libraries() {
+  local library package
+  mkdir -p "$2" "$3"
+  ldd "$1" | sed -n 's/.* => \(\/[^ ]*\) .*/\1/p' | sort | while read -r library; do
+    case $(basename "$library") in libc.so* | libm.so* | libdl.so* | libpthread.so* | librt.so* | ld-linux*) continue ;; esac
+    cp -L "$library" "$2"
+    patchelf --set-rpath '$ORIGIN' "$2/$(basename "$library")"
+    package=$(dpkg-query -S "$(readlink -f "$library")" 2>/dev/null || dpkg-query -S "*/$(basename "$(readlink -f "$library")")")
+    package=$(echo "$package" | head -n 1 | cut -d: -f1)
+    cp -L "/usr/share/doc/$package/copyright" "$3/$package.txt"
+  done
+}
+
+carry_libraries "$limber" "$root/lib" "$root/share/doc/limber/libraries"
 patchelf --set-rpath '$ORIGIN/../lib' "$root/bin/limber"
 tar -C "$work" --sort=name --owner=0 --group=0 --numeric-owner --mtime="@$SOURCE_DATE_EPOCH" -cf - "$portable" | gzip -9n >"$output/$portable.tar.gz"
+# The module, the program for python -m limber, and what both need.
+module=$(echo "$build"/python/limber/_limber.*.so)
+wheel=$work/wheel tag=cp$(basename "$module" | sed -E 's/.*cpython-([0-9]+)-.*/\1/')
+rm -rf "$wheel"
+mkdir -p "$wheel/limber/bin" "$wheel/limber-$version.dist-info"
+cp bindings/python/limber/* "$wheel/limber"
+cp "$module" "$wheel/limber"
+cp "$root/bin/limber" "$wheel/limber/bin"
+carry_libraries "$module" "$wheel/limber/lib" "$wheel/limber-$version.dist-info/libraries"
+carry_libraries "$limber" "$wheel/limber/lib" "$wheel/limber-$version.dist-info/libraries"
+strip "$wheel"/limber/_limber.*.so
+patchelf --set-rpath '$ORIGIN/lib' "$wheel"/limber/_limber.*.so
+cp LICENSE "$wheel/limber-$version.dist-info"
+cat >"$wheel/limber-$version.dist-info/METADATA" <<TEXT
+Metadata-Version: 2.1
+Name: limber
+Version: $version
+Summary: Rigs, skins, poses and retargets 3D models
+License: Apache-2.0
+Requires-Python: >=3.11,<3.12
+Requires-Dist: numpy
+TEXT
+cat >"$wheel/limber-$version.dist-info/WHEEL" <<TEXT
+Wheel-Version: 1.0
+Generator: limber
+Root-Is-Purelib: false
+Tag: $tag-$tag-linux_$(uname -m)
+TEXT
+rm -f "$output"/*.whl
+/usr/bin/python3 -m wheel pack "$wheel" -d "$output" >/dev/null
+
 ls -l "$output" | awk 'NR > 1 { printf "%6.1f MB  %s\n", $5 / 1e6, $NF }'

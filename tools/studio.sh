@@ -19,9 +19,9 @@ build_program_with_studio() {
   configure release -DLIMBER_STUDIO=ON && compile release limber
 }
 
-# The libraries, too, for a package of them.
+# The libraries and the module for Python, too, for packages of them.
 build_everything_with_studio() {
-  configure release -DLIMBER_STUDIO=ON && compile release
+  configure release -DLIMBER_STUDIO=ON -DLIMBER_PYTHON=ON && compile release
 }
 
 # Types checked, then dist/ made.

@@ -202,7 +202,8 @@ install_and_consume() {
 }
 
 build_release() {
-  configure release -DLIMBER_TESTS=ON -DLIMBER_BENCH=ON -DLIMBER_STUDIO=OFF && compile release
+  configure release -DLIMBER_TESTS=ON -DLIMBER_BENCH=ON -DLIMBER_STUDIO=OFF -DLIMBER_PYTHON="$([ -n "$quick" ] && echo OFF || echo ON)" &&
+    compile release
 }
 
 wasm_smoke() {
@@ -255,6 +256,12 @@ studio_in_program() {
     counted node apps/studio/tests/program_test.mjs build/release/limber dist || return 1
   command -v chromium >/dev/null || { echo "   no chromium here: limber studio --host is not tried"; add_counts 0 0 1; return 0; }
   counted node apps/studio/tests/host_test.mjs build/release/limber dist "$output/studio"
+}
+
+# The module as it is built, against the program; and the tour of it.
+python_module() {
+  cp bindings/python/limber/* build/release/python/limber &&
+    PYTHONPATH=build/release/python LIMBER_PROGRAM=build/release/limber counted bindings/python/tests/run.sh "$output/python"
 }
 
 # What is made for others to install, on a system that has nothing: skipped where none can be made.
@@ -338,7 +345,7 @@ release_stages() {
     stage "packages" need "${packages_tests[@]}"
   else
     stage "packages" need $(printf '%s\n' "${packages_bench[@]}" "${packages_sanitize[@]}" "${packages_wasm[@]}" \
-      "${packages_node[@]}" | LC_ALL=C sort -u)
+      "${packages_node[@]}" "${packages_python[@]}" | LC_ALL=C sort -u)
   fi
   stage "release build, g++ with warnings as errors" build_release
   stage "types of one name" check "two types of one name (tests/type_names.sh)" tests/type_names.sh
@@ -359,6 +366,7 @@ remaining_stages() {
   stage "faulty files, through the program" broken_files
   stage "WebAssembly build" build_wasm
   stage "WebAssembly in Node against the native program" wasm_smoke
+  stage "module for Python" python_module
   stage "motions in three.js" motions_in_three
   stage "studio: types, bundle" build_studio
   stage "studio in a browser: mouse, touch, keyboard, bad files" studio_in_browser
