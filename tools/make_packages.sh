@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# make_packages.sh BUILD_FOLDER OUTPUT_FOLDER: limber_VERSION_ARCH.deb and liblimber-dev_VERSION_ARCH.deb, a .tar.gz of the program
-# and a wheel for Debian 12's Python; the last two carry their shared libraries with their notices. Everything is built already.
+# make_packages.sh BUILD_FOLDER OUTPUT_FOLDER: limber_VERSION_ARCH.deb and liblimber-dev_VERSION_ARCH.deb, a .tar.gz of the program,
+# a wheel for Debian 12's Python and the add-on for Blender; .tar.gz and wheel carry their shared libraries with their notices. Everything is built already.
 # Called by ./dev package.
 set -euo pipefail
 
@@ -15,7 +15,7 @@ export SOURCE_DATE_EPOCH=${SOURCE_DATE_EPOCH:-$(git log -1 --format=%ct 2>/dev/n
 manual_page() {
   local name=${*// /-} summary
   name=${name// /-}
-  summary=$("$limber" "${@:2}" --help | head -n 1)
+  summary=$("$limber" "${@:2}" --help | sed -n 1p)
   PATH=$build:$PATH help2man --no-info --version-string="$version" --name="$summary" "$*" |
     sed "s/^$* \\\\-/${name//-/\\\\-} \\\\-/" | gzip -9n >"$manual/man/man1/$name.1.gz"
 }
@@ -79,7 +79,7 @@ carry_libraries() {
     cp -L "$library" "$2"
     patchelf --set-rpath '$ORIGIN' "$2/$(basename "$library")"
     package=$(dpkg-query -S "$(readlink -f "$library")" 2>/dev/null || dpkg-query -S "*/$(basename "$(readlink -f "$library")")")
-    package=$(echo "$package" | head -n 1 | cut -d: -f1)
+    package=$(sed "1!d;s/:.*//" <<<"$package")
     cp -L "/usr/share/doc/$package/copyright" "$3/$package.txt"
   done
 }
@@ -117,5 +117,11 @@ Tag: $tag-$tag-linux_$(uname -m)
 TEXT
 rm -f "$output"/*.whl
 /usr/bin/python3 -m wheel pack "$wheel" -d "$output" >/dev/null
+
+# The add-on for Blender.
+rm -rf "$work/blender" "$output"/*.zip
+mkdir -p "$work/blender/limber"
+cp apps/blender/limber/*.py apps/blender/limber/*.toml LICENSE "$work/blender/limber"
+/usr/bin/python3 -c 'import shutil, sys; shutil.make_archive(sys.argv[1], "zip", sys.argv[2], "limber")' "$output/limber-blender-$version" "$work/blender"
 
 ls -l "$output" | awk 'NR > 1 { printf "%6.1f MB  %s\n", $5 / 1e6, $NF }'

@@ -10,6 +10,7 @@ packages_node=(nodejs npm)
 packages_studio=(libcpp-httplib-dev libqrencode-dev) # for the page in the program
 packages_python=(pybind11-dev python3-dev python3-numpy)
 packages_installers=(dpkg-dev file help2man patchelf python3-wheel) # for ./dev package
+packages_blender=(blender python3-numpy xvfb xauth) # for the add-on's tests
 packages_bare=(mmdebstrap) # for a Debian with nothing on it
 packages_browser=(chromium fonts-dejavu-core)
 packages_format=(clang-format)

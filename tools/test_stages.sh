@@ -276,6 +276,17 @@ packages_on_bare_debian() {
   counted tests/bare_debian.sh build/packages "$output/bare"
 }
 
+# The add-on in Blender, without a window and in one: skipped where there is no Blender to be had.
+blender_addon() {
+  need "${packages_blender[@]}" >/dev/null 2>&1 || true
+  if ! command -v blender >/dev/null || ! command -v xvfb-run >/dev/null; then
+    echo "   no Blender here: the add-on is not tried"
+    add_counts 0 0 1
+    return 0
+  fi
+  counted apps/blender/tests/run.sh build/packages/limber-blender-*.zip build/release/limber "$output/blender_addon"
+}
+
 build_sanitize() {
   configure sanitize && compile sanitize
 }
@@ -374,6 +385,7 @@ remaining_stages() {
   stage "glTF validator over every file written" validate_written_files
   stage "installed package, and a program built against it" install_and_consume
   stage "packages, installed on a Debian with nothing on it" packages_on_bare_debian
+  stage "add-on in Blender" blender_addon
   stage "sanitizer build, clang++ with warnings as errors" build_sanitize
   sanitizer_options
   stage "unit tests under sanitizers" unit_tests sanitize "$minutes_under_sanitizers"

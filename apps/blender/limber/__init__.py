@@ -1,0 +1,294 @@
+"""limber in Blender: rigs, weights and motions for the objects of the scene, by the program limber."""
+import os
+
+import bpy
+from mathutils import Vector
+
+from . import program, scene
+from .program import Trouble
+
+bl_info = {
+    "name": "limber", "author": "limber maintainers", "version": (0, 1, 0), "blender": (3, 4, 0), "category": "Rigging",
+    "location": "3D View > Sidebar > limber", "description": "Rig, weight and retarget with limber",
+}
+
+TEMPLATES = ("auto", "humanoid", "humanoid-fingers", "quadruped", "bird", "dinosaur", "crawler", "dragon", "spider", "insect", "fish", "serpent")
+SKINNING = ("bone-heat", "geodesic-voxel", "bounded-biharmonic", "envelopes", "nearest-bone")
+CORRECTIONS = "limber joints"  # the collection of the empties
+
+
+class Preferences(bpy.types.AddonPreferences):
+    bl_idname = __package__
+    program: bpy.props.StringProperty(name="Program", subtype="FILE_PATH", description="limber itself; empty: looked for on the path")
+
+    def draw(self, context):
+        self.layout.prop(self, "program")
+
+
+class Settings(bpy.types.PropertyGroup):
+    """Of the scene."""
+    kind: bpy.props.EnumProperty(name="Joints", items=[
+        ("template", "Named skeleton", "A skeleton with names, fitted into the model"),
+        ("handles", "Handles", "As many joints as wanted, wherever the model is thick"),
+        ("curve-skeleton", "Along limbs", "Joints on curves through the middle of limbs")], default="template")
+    template: bpy.props.EnumProperty(name="Body", items=[(name, name, "") for name in TEMPLATES])
+    handles: bpy.props.IntProperty(name="How many", min=0, max=200, default=0, description="0: as many as suit the model")
+    skinning: bpy.props.EnumProperty(name="Weights", items=[(name, name, "") for name in SKINNING])
+    motion: bpy.props.StringProperty(name="Motion", subtype="FILE_PATH", description=".bvh, .glb, .gltf, .fbx or .dae")
+    source: bpy.props.PointerProperty(name="Or from", type=bpy.types.Object, poll=lambda _, thing: thing.type == "ARMATURE",
+                                      description="Another armature, whose action is put on this one")
+
+
+def selected_meshes(context):
+    things = [thing for thing in context.selected_objects if thing.type == "MESH"]
+    if not things:
+        raise Trouble("select the mesh objects of the model first")
+    return sorted(things, key=lambda thing: thing.name)
+
+
+def chosen_armature(context):
+    thing = context.active_object
+    if thing and thing.type == "ARMATURE":
+        return thing
+    for one in context.selected_objects:
+        if one.type == "ARMATURE":
+            return one
+    armature = thing and thing.type == "MESH" and thing.find_armature()
+    if not armature:
+        raise Trouble("select an armature, too")
+    return armature
+
+
+def meshes_of(armature):
+    return sorted((thing for thing in bpy.data.objects if thing.type == "MESH" and thing.find_armature() == armature), key=lambda thing: thing.name)
+
+
+def corrections():
+    """By joint: the empty that was made for it."""
+    folder = bpy.data.collections.get(CORRECTIONS)
+    return {empty["limber_joint"]: empty for empty in folder.objects if "limber_joint" in empty} if folder else {}
+
+
+def pins():
+    """Of joints whose empty was moved, as the program takes them."""
+    arguments = []
+    for joint, empty in sorted(corrections().items()):
+        place = empty.matrix_world.translation
+        if (place - Vector(empty["limber_place"])).length > 1e-5:
+            x, y, z = (scene.TURN @ place)[:3]
+            arguments += ["--pin", f"{joint}={x!r},{y!r},{z!r}"]
+    return arguments
+
+
+def forget_corrections():
+    for empty in corrections().values():
+        bpy.data.objects.remove(empty)
+    folder = bpy.data.collections.get(CORRECTIONS)
+    if folder and not folder.objects:
+        bpy.data.collections.remove(folder)
+
+
+class Call(bpy.types.Operator):
+    """Writes what the program needs, lets it work, and takes what it gives; nothing of the scene changes before that."""
+    bl_options = {"REGISTER", "UNDO"}
+
+    def prepare(self, context, folder):
+        """The program's arguments, once its files are in the folder."""
+        raise NotImplementedError
+
+    def take(self, context, folder):
+        """What is said of it."""
+        raise NotImplementedError
+
+    def start(self, context):
+        preferences = context.preferences.addons.get(__package__)
+        found = program.find(bpy.path.abspath(preferences.preferences.program) if preferences else "")
+        folder = program.new_folder()
+        try:
+            self.call = program.Call(found, self.prepare(context, folder.name), folder)
+        except BaseException:
+            folder.cleanup()
+            raise
+
+    def finish(self, context):
+        try:
+            self.call.check()
+            said = self.take(context, self.call.folder.name)
+        except Trouble as trouble:
+            self.report({"ERROR"}, str(trouble))
+            return {"CANCELLED"}
+        finally:
+            self.end()
+        self.report({"INFO"}, said)
+        return {"FINISHED"}
+
+    def end(self):
+        self.call.stop()
+        self.call.folder.cleanup()
+
+    def execute(self, context):
+        try:
+            self.start(context)
+        except Trouble as trouble:
+            self.report({"ERROR"}, str(trouble))
+            return {"CANCELLED"}
+        self.call.wait()
+        return self.finish(context)
+
+    def invoke(self, context, event):
+        if bpy.app.background:
+            return self.execute(context)
+        try:
+            self.start(context)
+        except Trouble as trouble:
+            self.report({"ERROR"}, str(trouble))
+            return {"CANCELLED"}
+        self.timer = context.window_manager.event_timer_add(0.1, window=context.window)
+        context.window_manager.modal_handler_add(self)
+        context.workspace.status_text_set(f"limber: {self.bl_label} (Esc stops it)")
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context, event):
+        if event.type == "ESC":
+            self.leave(context)
+            self.end()
+            return {"CANCELLED"}
+        if event.type != "TIMER" or not self.call.poll():
+            return {"PASS_THROUGH"}
+        self.leave(context)
+        return self.finish(context)
+
+    def leave(self, context):
+        context.window_manager.event_timer_remove(self.timer)
+        context.workspace.status_text_set(None)
+
+
+class Rig(Call):
+    """Joints and weights for the selected objects"""
+    bl_idname = "limber.rig"
+    bl_label = "Rig"
+
+    def prepare(self, context, folder):
+        things, settings = selected_meshes(context), context.scene.limber
+        for thing in things:
+            if thing.find_armature():
+                raise Trouble(f"{thing.name} follows the armature {thing.find_armature().name}: take weights for that, or remove its modifier")
+        self.things = [thing.name for thing in things]
+        scene.write_meshes(things, os.path.join(folder, "in.glb"))
+        joints = {"template": ["--template", settings.template], "handles": ["--handles", str(settings.handles)] if settings.handles else [],
+                  "curve-skeleton": ["--rigger", "curve-skeleton"] + (["--handles", str(settings.handles)] if settings.handles else [])}[settings.kind]
+        if settings.kind == "template":
+            joints = joints + pins()
+        return ["rig", "in.glb", *joints, "--skinning", settings.skinning, "-o", "out.glb"]
+
+    def take(self, context, folder):
+        armature = scene.take_rig([bpy.data.objects[name] for name in self.things], os.path.join(folder, "out.glb"))
+        forget_corrections()
+        return f"{len(armature.data.bones)} joints"
+
+
+class Joints(Call):
+    """Shows where the joints of the named skeleton would be, as empties to be moved; Rig then keeps those that were"""
+    bl_idname = "limber.joints"
+    bl_label = "Fit template"
+
+    def prepare(self, context, folder):
+        scene.write_meshes(selected_meshes(context), os.path.join(folder, "in.glb"))
+        return ["rig", "in.glb", "--template", context.scene.limber.template, *pins(), "-o", "out.glb"]
+
+    def take(self, context, folder):
+        places = scene.joint_places(os.path.join(folder, "out.glb"))
+        forget_corrections()
+        collection = bpy.data.collections.new(CORRECTIONS)
+        context.scene.collection.children.link(collection)
+        size = max((a - b).length for a in places.values() for b in places.values())
+        for joint, place in places.items():
+            empty = bpy.data.objects.new(joint, None)
+            empty.empty_display_type, empty.empty_display_size, empty.show_in_front = "SPHERE", 0.015 * size, True
+            empty.location = place
+            empty["limber_joint"], empty["limber_place"] = joint, tuple(place)
+            collection.objects.link(empty)
+        return f"{len(places)} joints to correct"
+
+
+class Weights(Call):
+    """Weights of the selected objects for the selected armature"""
+    bl_idname = "limber.weights"
+    bl_label = "Weights for this armature"
+
+    def prepare(self, context, folder):
+        armature, things = chosen_armature(context), selected_meshes(context)
+        self.armature, self.things = armature.name, [thing.name for thing in things]
+        scene.write_character(armature, things, os.path.join(folder, "in.glb"), are_bound=False)
+        return ["rig", "in.glb", "--keep-skeleton", "--skinning", context.scene.limber.skinning, "-o", "out.glb"]
+
+    def take(self, context, folder):
+        reader = scene.glb.Reader(os.path.join(folder, "out.glb"))
+        things = [bpy.data.objects[name] for name in self.things]
+        scene.take_weights(things, reader.skin()[0], reader)
+        for thing in things:
+            scene.bind(thing, bpy.data.objects[self.armature])
+        return f"weights of {len(things)} objects"
+
+
+class Retarget(Call):
+    """Puts a motion out of a file, or another armature's action, onto the selected armature"""
+    bl_idname = "limber.retarget"
+    bl_label = "Retarget"
+
+    def prepare(self, context, folder):
+        armature, settings = chosen_armature(context), context.scene.limber
+        self.armature = armature.name
+        if settings.source:
+            if settings.source == armature:
+                raise Trouble("the motion is that of the armature itself: choose another")
+            motion = "motion.glb"
+            scene.write_motion(settings.source, os.path.join(folder, motion))
+        else:
+            motion = bpy.path.abspath(settings.motion)
+            if not os.path.isfile(motion):
+                raise Trouble("choose a file with a motion, or an armature that has one")
+        scene.write_character(armature, meshes_of(armature), os.path.join(folder, "in.glb"))
+        return ["retarget", "in.glb", motion, "-o", "out.glb"]
+
+    def take(self, context, folder):
+        actions = scene.take_clips(bpy.data.objects[self.armature], os.path.join(folder, "out.glb"))
+        context.scene.frame_end = max(context.scene.frame_end, int(actions[-1].frame_range[1]))
+        return f"{', '.join(action.name for action in actions)} put on"
+
+
+class Panel(bpy.types.Panel):
+    bl_idname = "LIMBER_PT_panel"
+    bl_label = "limber"
+    bl_category = "limber"
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+
+    def draw(self, context):
+        layout, settings = self.layout, context.scene.limber
+        layout.prop(settings, "kind")
+        layout.prop(settings, "template" if settings.kind == "template" else "handles")
+        layout.prop(settings, "skinning")
+        if settings.kind == "template":
+            layout.operator(Joints.bl_idname)
+        layout.operator(Rig.bl_idname)
+        layout.operator(Weights.bl_idname)
+        layout.separator()
+        layout.prop(settings, "motion")
+        layout.prop(settings, "source")
+        layout.operator(Retarget.bl_idname)
+
+
+CLASSES = (Preferences, Settings, Rig, Joints, Weights, Retarget, Panel)
+
+
+def register():
+    for one in CLASSES:
+        bpy.utils.register_class(one)
+    bpy.types.Scene.limber = bpy.props.PointerProperty(type=Settings)
+
+
+def unregister():
+    del bpy.types.Scene.limber
+    for one in reversed(CLASSES):
+        bpy.utils.unregister_class(one)

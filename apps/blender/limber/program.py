@@ -1,0 +1,61 @@
+"""The program limber: where it is, and one call of it."""
+import os
+import shutil
+import subprocess
+import tempfile
+
+NEEDED = (0, 1)
+
+
+class Trouble(Exception):
+    """What went wrong and what to do, in one line."""
+
+
+def find(preferred=""):
+    """The program: as the preferences have it, else on the path. Throws Trouble."""
+    program = preferred or shutil.which("limber")
+    if not program or not os.access(program, os.X_OK):
+        where = f"is not at {preferred}" if preferred else "is not on the path"
+        raise Trouble(f"the program limber {where}: install it, or name it in the add-on's preferences")
+    try:
+        said = subprocess.run([program, "--version"], capture_output=True, text=True, timeout=20).stdout.split()
+    except (OSError, subprocess.TimeoutExpired) as problem:
+        raise Trouble(f"{program} does not start: {problem}") from problem
+    if len(said) != 2 or said[0] != "limber":
+        raise Trouble(f"{program} is not limber: name another in the add-on's preferences")
+    if tuple(int(part) for part in said[1].split(".")[:2]) < NEEDED:
+        raise Trouble(f"{program} is limber {said[1]}; {'.'.join(map(str, NEEDED))} is needed: install a newer one")
+    return program
+
+
+class Call:
+    """A call in a temporary folder of its own, under way until `poll` gives True."""
+
+    def __init__(self, program, arguments, folder):
+        self.folder = folder
+        self.said = open(os.path.join(folder.name, "said"), "w+")
+        self.process = subprocess.Popen([program, *arguments, "--quiet"], cwd=folder.name, stdin=subprocess.DEVNULL,
+                                        stdout=subprocess.DEVNULL, stderr=self.said)
+
+    def poll(self):
+        return self.process.poll() is not None
+
+    def wait(self):
+        self.process.wait()
+
+    def stop(self):
+        if self.process.poll() is None:
+            self.process.kill()
+            self.process.wait()
+        self.said.close()
+
+    def check(self):
+        """Throws Trouble with the program's own words where it did not end well."""
+        self.said.seek(0)
+        words = [line for line in self.said.read().splitlines() if line.strip()]
+        if self.process.returncode != 0:
+            raise Trouble(words[-1].removeprefix("limber: ") if words else f"limber ended with code {self.process.returncode}")
+
+
+def new_folder():
+    return tempfile.TemporaryDirectory(prefix="limber-")
