@@ -9,11 +9,9 @@
 function(limber_module name)
   cmake_parse_arguments(ARG "FUZZED" "" "USES;PUBLIC;PRIVATE;TEST_LIBRARIES" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
-  file(GLOB headers CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.h)
   set(tests ${sources})
   list(FILTER tests INCLUDE REGEX "_test\\.cpp$")
   list(FILTER sources EXCLUDE REGEX "_test\\.cpp$")
-  list(FILTER headers EXCLUDE REGEX "_test\\.h$")
 
   # The module's own include tree: build/.../include/<folder>/limber/<folder> -> source folder.
   set(tree ${PROJECT_BINARY_DIR}/include/${name})
@@ -39,7 +37,6 @@ function(limber_module name)
   endif()
 
   install(TARGETS ${target} EXPORT limberTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
-  install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/limber/${name} COMPONENT development)
   set_property(GLOBAL APPEND PROPERTY LIMBER_MODULES ${target})
 
   if(LIMBER_TESTS AND tests)

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # bare_debian.sh PACKAGES_FOLDER WORK_FOLDER: a Debian 12 with nothing on it runs the program out of the .tar.gz, then installs the .deb
-# with apt, then the library's, and builds a program against that (tests/consumer), and the wheel. All give the same bytes.
+# with apt, then the library's, and builds the examples against that, and the wheel. All give the same bytes.
 # Needs mmdebstrap and root. Ends with "N passed, N failed".
 set -uo pipefail
 
@@ -8,7 +8,7 @@ packages=$(cd "$1" && pwd)
 mkdir -p "$2"
 work=$(cd "$2" && pwd)
 passed=0 failed=0
-consumer=$(cd "$(dirname "$0")/consumer" && pwd)
+examples=$(cd "$(dirname "$0")/../examples" && pwd)
 
 cat >"$work/inside.sh" <<'INSIDE'
 set -e
@@ -42,18 +42,18 @@ model.write("wheel.glb")
 PYTHON
 cmp portable.glb wheel.glb && [ "$(venv/bin/python -m limber --version)" = "$(portable/bin/limber --version)" ] && say the wheel gives them, too
 apt-get -q -y install --no-install-recommends cmake ninja-build g++ ./liblimber-dev_*.deb </dev/null
-cmake -S consumer -B build -G Ninja && cmake --build build && build/consumer | grep '^joints: 12$' && say a program builds against the library
+cmake -S examples -B build -G Ninja && cmake --build build && examples/run.sh build portable/bin/limber files && say the examples build against the library and run
 INSIDE
 
 mkdir -p "$work/files"
 cp "$packages"/*.deb "$packages"/*.tar.gz "$packages"/*.whl "$work/files"
 mmdebstrap --variant=apt --hook-dir=/usr/share/mmdebstrap/hooks/file-mirror-automount \
-  --customize-hook="mkdir \"\$1/limber\" && cp -r $work/files/. $work/inside.sh $consumer \"\$1/limber\"" \
+  --customize-hook="mkdir \"\$1/limber\" && cp -r $work/files/. $work/inside.sh $examples \"\$1/limber\"" \
   --customize-hook='chroot "$1" bash /limber/inside.sh' \
   bookworm /dev/null >"$work/bare.log" 2>&1 </dev/null
 for said in "the tar.gz runs" "the deb installs" "both give the same bytes" "the manual is there" "bash completes an option" \
   "the wheel gives them, too" \
-  "a program builds against the library"; do
+  "the examples build against the library and run"; do
   if grep -q "^bare: $said$" "$work/bare.log"; then passed=$((passed + 1)); else failed=$((failed + 1)); echo "FAILED: $said"; fi
 done
 [ $failed = 0 ] || tail -n 40 "$work/bare.log"

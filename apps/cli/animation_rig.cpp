@@ -13,6 +13,7 @@
 #include "limber/core/names.h"
 #include "limber/pipeline/obj_series.h"
 #include "limber/pipeline/report_json.h"
+#include "limber/pipeline/rig_from_animation.h"
 #include "progress_line.h"
 
 namespace limber::cli {

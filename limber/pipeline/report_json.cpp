@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "limber/asset/json_text.h"
+#include "limber/pipeline/rig_from_animation.h"
 
 namespace limber {
 

@@ -3,9 +3,10 @@
 #pragma once
 
 #include "limber/pipeline/auto_rig.h"
-#include "limber/pipeline/rig_from_animation.h"
 
 namespace limber {
+
+struct AnimationRigReport;
 
 // Keys in the order of docs/report.md, in snake_case. Text out of the file stands in it as it is: dumpReport writes it.
 Json toJson(const AutoRigReport& report);
