@@ -85,6 +85,12 @@ TEST_F(Cli, ARigIsMeasuredAndDrawnWithNothingToCompareItWith) {
   EXPECT_THAT(json.out, AllOf(HasSubstr("\"joints_inside\""), HasSubstr("\"pose\": \"elbows\"")));
   EXPECT_EQ(run({"preview", "rigged.glb", "--show", "stretch", "--size", "64x64", "-o", "stretch.png"}).code, 0);
   EXPECT_TRUE(fs::exists(folder_ / "stretch.png"));
+  const Result dual = run({"evaluate", "model", "rigged.glb", "--deformer", "dual-quaternion"});
+  EXPECT_EQ(dual.code, 0) << dual.error;
+  EXPECT_THAT(dual.out, HasSubstr("by dual-quaternion"));
+  const Result unknown = run({"evaluate", "model", "rigged.glb", "--deformer", "jelly"});
+  expectOneLine(unknown, 1);
+  EXPECT_THAT(unknown.error, AllOf(HasSubstr("'jelly'"), HasSubstr("delta-mush")));
   expectOneLine(run({"evaluate", "model", "robot.glb"}), 1);
   expectOneLine(run({"preview", "robot.glb", "--show", "stretch", "-o", "none.png"}), 1);
   EXPECT_FALSE(fs::exists(folder_ / "none.png"));

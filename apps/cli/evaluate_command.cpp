@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "command.h"
+#include "deformer_list.h"
 #include "limber/asset/json_text.h"
 #include "limber/asset/read.h"
 #include "limber/core/file.h"
@@ -43,12 +44,13 @@ void runWeights(const WeightsOptions& options) {
 }
 
 struct ModelFile {
-  std::string model;
+  std::string model, deformer = "linear-blend";
   bool json = false;
 };
 
 void runModel(const ModelFile& options) {
-  const ModelQuality quality = measureModel(readAsset(options.model));
+  const Deformer& deformer = findDeformer(options.deformer);
+  const ModelQuality quality = measureModel(readAsset(options.model), deformer);
   if (options.json) {
     fmt::print("{}\n", dumpReport(toJson(quality)));
   } else {
@@ -335,6 +337,9 @@ void addModel(CLI::App& evaluate) {
   CLI::App* command =
       evaluate.add_subcommand("model", "Measure how good a rigged model is, with nothing to compare it with");
   command->add_option("FILE", options->model, "the rigged model")->required();
+  command->add_option("--deformer", options->deformer, "how the surface bends, see below")
+      ->type_name("NAME")
+      ->capture_default_str();
   command->add_flag("--json", options->json, "print JSON, with the figures of each pose");
   command->footer(
       "Prints what can be told of the skeleton (joints that move nothing, inside the body, off its middle; how much "
@@ -345,6 +350,9 @@ void addModel(CLI::App& evaluate) {
       "bent one after the other, half as far as a person can. There: stretch of the surface and of its texture, "
       "volume\n"
       "lost, and vertices that go into the body. Compare rigs of one model by these, not rigs of different models.\n"
+      "The deformer changes the figures in motion alone.\n"
+      "\n" +
+      deformerList() +
       "\nExample:\n  limber rig person.glb --replace-rig -o rigged.glb\n  limber evaluate model rigged.glb --json");
   command->callback([options] { runModel(*options); });
 }

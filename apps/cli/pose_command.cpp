@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "command.h"
+#include "deformer_list.h"
 #include "limber/asset/clip_moment.h"
 #include "limber/asset/mesh_export.h"
 #include "limber/asset/pose_file.h"
@@ -189,9 +190,7 @@ void run(PoseArguments options) {
 std::string poseHelp() {
   std::string text = "Solvers:\n";
   for (const IkMethod& method : ikMethods()) text += fmt::format("  {:<20}{}\n", method.name, method.summary);
-  text += "Deformers:\n";
-  for (const Deformer& deformer : deformers()) text += fmt::format("  {:<20}{}\n", deformer.name, deformer.summary);
-  text += "Tasks:\n";
+  text += deformerList() + "Tasks:\n";
   for (const TaskForm& form : taskForms()) text += fmt::format("  {}\n      {}\n", form.form, form.summary);
   text +=
       "  Behind each, where it matters: @weight=2,priority=1. Priority 0 comes first; later ones get what those "

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "command.h"
+#include "deformer_list.h"
 #include "limber/asset/motion_io.h"
 #include "limber/asset/read.h"
 #include "limber/core/file.h"
@@ -218,13 +219,11 @@ void addPreviewCommand(CLI::App& program) {
       ->capture_default_str();
   options->parts.addTo(*command);
   options->common.addTo(*command);
-  std::string names = "Deformers:\n";
-  for (const Deformer& deformer : deformers()) names += fmt::format("  {:<20}{}\n", deformer.name, deformer.summary);
   command->footer(
       "A file with a skeleton and no mesh, such as a BVH, is shown as its bones.\n"
       "Stretch is blue where the surface keeps its size at rest, and red where it is twice or half of it: at a\n"
       "moment of a clip, or without one as a sheet of a range of motion test (limber evaluate model --help).\n" +
-      names +
+      deformerList() +
       "\nExamples:\n"
       "  limber preview rigged.glb --show stretch -o stretch.png\n"
       "  limber preview rigged.glb --show handles --view 30,15 -o handles.png\n"

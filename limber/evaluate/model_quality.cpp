@@ -11,26 +11,18 @@
 #include "limber/asset/scene_graph.h"
 #include "limber/evaluate/body_joints.h"
 #include "limber/evaluate/bone_coverage.h"
+#include "limber/evaluate/model_poser.h"
 #include "limber/evaluate/range_of_motion.h"
 #include "limber/evaluate/rig_symmetry.h"
 #include "limber/evaluate/self_penetration.h"
 #include "limber/evaluate/weight_metrics.h"
 #include "limber/mesh/enclosed_volume.h"
-#include "limber/skinning/linear_blend.h"
 
 namespace limber {
 
 namespace {
 
 constexpr double kNoVolume = 1e-6;  // of the longest side's cube: less holds nothing
-
-std::vector<Vec3f> posedBy(const SkinnedModel& model, const Pose& pose) {
-  const std::vector<Affine> transforms = skinTransforms(model.skeleton, pose);
-  std::vector<float> scratch(linearBlendScratch(model.mesh.positions.size(), model.skeleton.jointCount()));
-  std::vector<Vec3f> positions(model.mesh.positions.size());
-  linearBlend({model.mesh.positions, {}, model.weights, transforms, {}}, {positions, {}}, scratch);
-  return positions;
-}
 
 SurfaceChange changeOf(const TriMesh& rest, std::span<const Vec3f> posed, std::span<const Vec2f> uvs) {
   SurfaceChange change;
@@ -62,17 +54,24 @@ SurfaceChange meanChange(std::span<const PoseChange> poses) {
   return mean;
 }
 
-std::optional<MotionQuality> measureMoving(const SkinnedModel& model, std::span<const Vec2f> uvs) {
+std::optional<MotionQuality> measureMoving(const SkinnedModel& model, std::span<const Vec2f> uvs,
+                                           const Deformer& deformer) {
   const std::vector<RangeOfMotionPose> range = rangeOfMotion(model.skeleton, readAnatomy(model.skeleton));
   if (range.empty()) return std::nullopt;
   MotionQuality result;
+  result.deformer = deformer.name;
   std::vector<Pose> poses;
+  ModelPoser poser(model, deformer);
+  std::vector<Vec3f> posed(model.mesh.positions.size());
   for (const RangeOfMotionPose& one : range) {
-    result.poses.push_back({std::string(one.name), changeOf(model.mesh, posedBy(model, one.pose), uvs)});
+    poser.pose(one.pose, posed);
+    result.poses.push_back({std::string(one.name), changeOf(model.mesh, posed, uvs)});
     poses.push_back(one.pose);
   }
   result.mean = meanChange(result.poses);
-  const SelfPenetration inside = measureSelfPenetration(model, poses);
+  SelfPenetrationOptions options;
+  options.deformer = &deformer;
+  const SelfPenetration inside = measureSelfPenetration(model, poses, options);
   result.selfPenetration = inside.mean;
   if (inside.worst > 0) result.mostPenetrating = range[inside.worstFrame].name;
   return result;
@@ -108,6 +107,7 @@ Json changeJson(const SurfaceChange& change) {
 
 Json motionJson(const MotionQuality& motion) {
   Json json = changeJson(motion.mean);
+  json["deformer"] = motion.deformer;
   json["self_penetration"] = motion.selfPenetration;
   json["most_penetrating"] = motion.mostPenetrating.empty() ? Json(nullptr) : Json(motion.mostPenetrating);
   json["poses"] = Json::array();
@@ -132,12 +132,12 @@ std::string motionText(const MotionQuality& motion) {
   text += fmt::format("volume        {:.1f} % lost\n", 100 * mean.volumeLoss);
   text += fmt::format("inside        {:.1f} % of the vertices go into the body", 100 * motion.selfPenetration);
   if (!motion.mostPenetrating.empty()) text += fmt::format("; most in \"{}\"", motion.mostPenetrating);
-  return text + fmt::format("\n              (means over {} poses)\n", motion.poses.size());
+  return text + fmt::format("\n              (means over {} poses, by {})\n", motion.poses.size(), motion.deformer);
 }
 
 }  // namespace
 
-ModelQuality measureModel(const SkinnedModel& given, std::span<const Vec2f> uvs) {
+ModelQuality measureModel(const SkinnedModel& given, std::span<const Vec2f> uvs, const Deformer& deformer) {
   checkWeights(given.weights, given.skeleton.jointCount());
   SkinnedModel model = given;
   model.weights = strongestFour(given.weights);
@@ -151,12 +151,12 @@ ModelQuality measureModel(const SkinnedModel& given, std::span<const Vec2f> uvs)
   quality.coverage = boneCoverage(welded, counts);
   quality.asymmetry = jointAsymmetry(welded, counts);
   quality.weights = measureWeights(welded);
-  quality.motion = measureMoving(model, uvs);
+  quality.motion = measureMoving(model, uvs, deformer);
   return quality;
 }
 
-ModelQuality measureModel(const Asset& asset) {
-  return measureModel(readSkinnedModel(asset), textureCoordinates(asset, collectGeometry(asset)));
+ModelQuality measureModel(const Asset& asset, const Deformer& deformer) {
+  return measureModel(readSkinnedModel(asset), textureCoordinates(asset, collectGeometry(asset)), deformer);
 }
 
 Json toJson(const ModelQuality& q) {

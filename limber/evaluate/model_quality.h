@@ -10,6 +10,7 @@
 #include "limber/evaluate/joint_placement.h"
 #include "limber/evaluate/surface_stretch.h"
 #include "limber/evaluate/weight_quality.h"
+#include "limber/skinning/linear_blend.h"
 
 namespace limber {
 
@@ -28,6 +29,7 @@ struct PoseChange {
 };
 
 struct MotionQuality {
+  std::string deformer;         // by which the surface moves
   SurfaceChange mean;           // over the poses; volumeLoss: of the poses that lose some
   double selfPenetration = 0;   // SelfPenetration::mean
   std::string mostPenetrating;  // the pose in which the most goes inside; empty where nothing does
@@ -44,15 +46,17 @@ struct ModelQuality {
   std::optional<MotionQuality> motion;  // in rangeOfMotion; none where the body has no part that moves
 };
 
-// Weights are cut to the four strongest of each vertex, as glTF readers do, and the surface moves by linear blending.
-// Two models are compared by these figures only where the surface is the same: they depend on how it is cut into
-// triangles, and how thick a body is.
+// Weights are cut to the four strongest of each vertex, as glTF readers do, whatever the deformer, so that all bend the
+// same rig. The deformer changes `motion` alone. Two models are compared by these figures only where the surface is the
+// same: they depend on how it is cut into triangles, and how thick a body is.
 //
-// uvs  of the model's vertices, or empty
+// uvs       of the model's vertices, or empty
+// deformer  of deformers()
 // Throws Error kBadData where a weight names a joint that is not there, and as prepareMesh and readAnatomy do.
-ModelQuality measureModel(const SkinnedModel& model, std::span<const Vec2f> uvs = {});
+ModelQuality measureModel(const SkinnedModel& model, std::span<const Vec2f> uvs = {},
+                          const Deformer& deformer = kLinearBlendDeformer);
 // With the texture coordinates TEXCOORD_0 of the file. Throws Error kUnsupported where it has no rig.
-ModelQuality measureModel(const Asset& asset);
+ModelQuality measureModel(const Asset& asset, const Deformer& deformer = kLinearBlendDeformer);
 
 // Every figure by its name; null for what there is not.
 Json toJson(const ModelQuality& quality);

@@ -2,6 +2,7 @@
 #include "limber/evaluate/model_quality.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -11,6 +12,7 @@
 #include "limber/core/error.h"
 #include "limber/evaluate/body_contacts.h"
 #include "limber/mesh/testing/capsule.h"
+#include "limber/mesh/testing/shapes.h"
 
 namespace limber {
 namespace {
@@ -127,6 +129,46 @@ TEST(ModelQuality, DoesNotDependOnTheUnit) {
   EXPECT_NEAR(a.placement.offCenter, b.placement.offCenter, 1e-4);
   EXPECT_NEAR(*a.coverage, *b.coverage, 1e-3);
   EXPECT_NEAR(*a.asymmetry, *b.asymmetry, 1e-3);
+}
+
+// A tube about the vertical through the head's joint, which goes over from the neck to the head along its length.
+SkinnedModel turnedNeck() {
+  SkinnedModel model;
+  model.skeleton = contactFigure({});
+  const Index neck = model.skeleton.find("neck").value(), head = model.skeleton.find("head").value();
+  const Vec3f middle = restPositions(model.skeleton)[head].cast<float>();
+  model.mesh = limber::testing::tube(32, 41, true);
+  model.weights.slots = 2;
+  for (Vec3f& p : model.mesh.positions) {
+    model.weights.joints.insert(model.weights.joints.end(), {neck, head});
+    model.weights.weights.insert(model.weights.weights.end(), {0.5f - p.x(), 0.5f + p.x()});
+    p = middle + Vec3f(p.z(), p.x(), p.y());
+  }
+  return model;
+}
+
+// Turned by a, a ring that is half way over by w has an area of 1 - 2 w (1 - w) (1 - cos a) by linear blending: a third
+// of 1 - cos a is lost in the mean. By dual quaternions each ring is whole.
+TEST(ModelQuality, TheDeformerDecidesHowMuchVolumeIsLost) {
+  const SkinnedModel model = turnedNeck();
+  const Deformer& dual = findDeformer("dual-quaternion");
+  const ModelQuality byLinear = measureModel(model), byDual = measureModel(model, {}, dual);
+  const auto lossOf = [](const ModelQuality& quality) {
+    for (const PoseChange& one : quality.motion->poses) {
+      if (one.pose == "head turned") return one.change.volumeLoss;
+    }
+    ADD_FAILURE();
+    return 0.0;
+  };
+  EXPECT_NEAR(lossOf(byLinear), (1 - std::cos(30 * kDegree)) / 3, 1e-3);
+  EXPECT_NEAR(lossOf(byDual), 0, 1e-3);
+  EXPECT_THAT(toText(byDual), HasSubstr("by dual-quaternion"));
+  Json linear = toJson(byLinear), other = toJson(byDual);
+  EXPECT_EQ(linear.at("motion").at("deformer"), "linear-blend");
+  EXPECT_EQ(other.at("motion").at("deformer"), "dual-quaternion");
+  linear.erase("motion");
+  other.erase("motion");
+  EXPECT_EQ(linear, other);
 }
 
 TEST(ModelQuality, WhatDoesNotMoveHasNoMotion) {

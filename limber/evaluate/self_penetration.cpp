@@ -5,9 +5,9 @@
 
 #include "limber/core/error.h"
 #include "limber/core/parallel.h"
+#include "limber/evaluate/model_poser.h"
 #include "limber/mesh/normals.h"
 #include "limber/mesh/winding_number.h"
-#include "limber/skinning/linear_blend.h"
 
 namespace limber {
 
@@ -46,7 +46,7 @@ SelfPenetration measureSelfPenetration(const SkinnedModel& model, const std::vec
   if (poses.empty()) throw Error(ErrorCode::kBadArgument, "there is no frame to look for self-penetration in");
   const SkinnedModel skin = weldedModel(model);
   const double size = longestSide(skin.mesh);
-  checkWeights(skin.weights, skin.skeleton.jointCount());
+  ModelPoser poser(skin, *options.deformer);
 
   std::vector<Index> sampled, outside;
   for (const std::size_t v : evenly(skin.mesh.positions.size(), options.mostVertices)) {
@@ -61,12 +61,10 @@ SelfPenetration measureSelfPenetration(const SkinnedModel& model, const std::vec
   }
 
   SelfPenetration result;
-  std::vector<float> scratch(linearBlendScratch(skin.mesh.positions.size(), skin.skeleton.jointCount()));
   TriMesh posed = skin.mesh;
   const std::vector<std::size_t> frames = evenly(poses.size(), options.mostFrames);
   for (const std::size_t f : frames) {
-    const std::vector<Affine> transforms = skinTransforms(skin.skeleton, poses[f]);
-    linearBlend({skin.mesh.positions, {}, skin.weights, transforms, {}}, {posed.positions, {}}, scratch);
+    poser.pose(poses[f], posed.positions);
     const std::vector<double> winding = windingOff(posed, outside, kOffSurface * size);
     std::size_t inside = 0;
     for (std::size_t i = 0; i < outside.size(); ++i) inside += winding[i] > kInside && winding[i] - bound[i] > kInside;

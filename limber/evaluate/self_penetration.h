@@ -5,12 +5,14 @@
 
 #include "limber/evaluate/skinned_model.h"
 #include "limber/skeleton/pose.h"
+#include "limber/skinning/linear_blend.h"
 
 namespace limber {
 
 struct SelfPenetrationOptions {
-  std::size_t mostFrames = 24;      // of the motion, evenly from its first to its last
-  std::size_t mostVertices = 5000;  // of the skin, evenly in the file's order
+  std::size_t mostFrames = 24;                       // of the motion, evenly from its first to its last
+  std::size_t mostVertices = 5000;                   // of the skin, evenly in the file's order
+  const Deformer* deformer = &kLinearBlendDeformer;  // by which the skin moves
 };
 
 // Shares, 0 to 1, of those vertices that lie outside the body in bind pose.
@@ -20,8 +22,7 @@ struct SelfPenetration {
 };
 
 // A vertex is inside where a point a thousandth of the body's size off its surface has a winding number above a half,
-// and by more than a half above that in bind pose (open models wind round a point by fractions). The skin moves by
-// linear blending.
+// and by more than a half above that in bind pose (open models wind round a point by fractions).
 //
 // poses  of the model's skeleton
 // Throws Error kBadArgument where there is no frame, and as prepareMesh does. Cost: for each frame O(#F log #F).
