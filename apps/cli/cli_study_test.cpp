@@ -57,9 +57,12 @@ TEST_F(Cli, AStudyIsTablesAndAPageAndGoesOnWhenKilled) {
   EXPECT_THAT(csv, AllOf(HasSubstr("rig,samples,stool,,sphere-mesh,bone-heat,"), HasSubstr(",done,,joints,")));
   EXPECT_THAT(content("report/index.html"),
               AllOf(HasSubstr("<title>Stools</title>"), HasSubstr("data:image/png;base64")));
-  const Result again = run({"study", "plan.json", "-o", "report"});
+  EXPECT_THAT(content("report/summary.md"), AllOf(HasSubstr("# Stools\n"), HasSubstr("| time (s) |")));
+  const Result again = run({"study", "plan.json", "-o", "report", "--no-times"});
   EXPECT_THAT(again.out, HasSubstr("0 run, 2 kept from before"));
   EXPECT_EQ(content("report/cells.csv"), csv);
+  const std::string summary = content("report/summary.md");
+  EXPECT_THAT(summary, AllOf(HasSubstr("| sphere-mesh + bone-heat |"), ::testing::Not(HasSubstr("time (s)"))));
 
   Running killed({"study", "plan.json", "-o", "killed", "--jobs", "1", "--quiet"}, folder_);
   // Until a cell is kept besides what was read of the model.
@@ -69,10 +72,11 @@ TEST_F(Cli, AStudyIsTablesAndAPageAndGoesOnWhenKilled) {
   killed.signal(SIGKILL);
   EXPECT_EQ(killed.waitWithOpenInput().code, 128 + SIGKILL);
   EXPECT_FALSE(fs::exists(folder_ / "killed/cells.csv"));
-  const Result rest = run({"study", "plan.json", "-o", "killed"});
+  const Result rest = run({"study", "plan.json", "-o", "killed", "--no-times"});
   EXPECT_EQ(rest.code, 0) << rest.error;
   EXPECT_THAT(rest.out, HasSubstr("1 run, 1 kept from before"));
   EXPECT_EQ(withoutSeconds(content("killed/cells.csv")), withoutSeconds(csv));
+  EXPECT_EQ(content("killed/summary.md"), summary);
 }
 
 TEST_F(Cli, ARigIsMeasuredAndDrawnWithNothingToCompareItWith) {

@@ -14,6 +14,7 @@
 #include "limber/study/cell_table.h"
 #include "limber/study/report_page.h"
 #include "limber/study/study_run.h"
+#include "limber/study/study_summary.h"
 #include "progress_line.h"
 
 namespace limber::cli {
@@ -23,7 +24,7 @@ namespace {
 struct StudyArguments {
   std::string plan, output;
   int jobs = 0;  // 0: as many as there are processors for
-  bool retries = false, prints = false, quiet = false;
+  bool retries = false, noTimes = false, prints = false, quiet = false;
   AdapterArguments adapters;
 };
 
@@ -36,10 +37,12 @@ StudyPlan readPlan(const std::string& file, const AdapterArguments& adapters) {
   }
 }
 
-void writeReport(const StudyResult& study, const std::filesystem::path& folder) {
-  const std::string csv = cellsCsv(study), json = cellsJson(study), page = reportPage(study, folder);
+void writeReport(const StudyResult& study, const std::filesystem::path& folder, const SummaryOptions& options) {
+  const std::string csv = cellsCsv(study), json = cellsJson(study), page = reportPage(study, folder),
+                    summary = studySummary(study, options);
   const OutputFile files[] = {{folder / "cells.csv", asBytes(csv)},
                               {folder / "cells.json", asBytes(json)},
+                              {folder / "summary.md", asBytes(summary)},
                               {folder / "index.html", asBytes(page)}};
   writeFiles(files);
 }
@@ -63,7 +66,7 @@ void run(const StudyArguments& arguments) {
   TerminalProgress progress(arguments.quiet);
   const StudyResult study = runStudy(plan, options, *progress);
   progress->stage("write");
-  writeReport(study, options.output);
+  writeReport(study, options.output, {!arguments.noTimes});
   progress.finish();
   const auto failed = std::count_if(study.results.begin(), study.results.end(),
                                     [](const CellResult& result) { return result.outcome != JobOutcome::kDone; });
@@ -87,14 +90,16 @@ void addStudyCommand(CLI::App& program) {
       ->type_name("N");
   arguments->adapters.addFolderTo(*command);
   command->add_flag("--retry", arguments->retries, "run again what crashed, was refused or ran out of time or memory");
+  command->add_flag("--no-times", arguments->noTimes,
+                    "leave times out of summary.md, which is then the same each time");
   command->add_flag("--example", arguments->prints, "print a plan that runs as it is");
   command->add_flag("--quiet,-q", arguments->quiet, "print nothing but errors");
   command->footer(
       "Each cell (a method on a model) is a process of its own, within limits of time and memory; its result is kept\n"
       "in FOLDER/cells under a hash of the program, the arguments and the model's bytes. So a study that was stopped\n"
       "goes on, and another method costs its own cells alone. FOLDER/cells.csv and cells.json have a line for each\n"
-      "cell and measure; FOLDER/index.html shows rankings, tests, the worst cells and all pictures. docs/study.md\n"
-      "tells more.\n"
+      "cell and measure; FOLDER/index.html shows rankings, tests, the worst cells and all pictures, and\n"
+      "FOLDER/summary.md has the medians and which methods the tests tell apart, to quote. docs/study.md tells more.\n"
       "\nExamples:\n"
       "  limber study --example > plan.json\n"
       "  limber study plan.json -o report");

@@ -22,6 +22,7 @@ std::vector<Field> fieldsOf(const StudyCell& cell, const CellResult& result) {
           {"motion", cell.motion},
           {"rigger", cell.rigger},
           {"skinning", cell.skinning},
+          {"deformer", cell.deformer},
           {"options", cell.options},
           {"retargeting", cell.retargeting},
           {"solver", cell.solver},

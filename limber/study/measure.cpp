@@ -51,16 +51,16 @@ constexpr Measure kMeasures[] = {
      kUnprovenRanks},
     {"roughness", "change of weights along edges", "0 to 2", Better::kLess, MeasureSource::kModel, "/roughness",
      kUnprovenRanks},
-    {"stretch", "stretch of the surface in motion", "share", Better::kLess, MeasureSource::kModel, "/motion/stretch",
-     kUnprovenRanks},
-    {"stretch_p95", "stretch of the surface in motion, 95th percentile", "share", Better::kLess, MeasureSource::kModel,
-     "/motion/stretch_p95", kUnprovenRanks},
-    {"texture_stretch", "stretch of the texture in motion", "share", Better::kLess, MeasureSource::kModel,
+    {"stretch", "stretch of the surface in motion", "share", Better::kLess, MeasureSource::kModelMotion,
+     "/motion/stretch", kUnprovenRanks},
+    {"stretch_p95", "stretch of the surface in motion, 95th percentile", "share", Better::kLess,
+     MeasureSource::kModelMotion, "/motion/stretch_p95", kUnprovenRanks},
+    {"texture_stretch", "stretch of the texture in motion", "share", Better::kLess, MeasureSource::kModelMotion,
      "/motion/texture_stretch", kUnprovenRanks},
-    {"volume_loss", "volume lost in motion", "share", Better::kLess, MeasureSource::kModel, "/motion/volume_loss",
+    {"volume_loss", "volume lost in motion", "share", Better::kLess, MeasureSource::kModelMotion, "/motion/volume_loss",
      kUnprovenRanks},
-    {"pose_penetration", "vertices that go into the body in motion", "0 to 1", Better::kLess, MeasureSource::kModel,
-     "/motion/self_penetration", kUnprovenRanks},
+    {"pose_penetration", "vertices that go into the body in motion", "0 to 1", Better::kLess,
+     MeasureSource::kModelMotion, "/motion/self_penetration", kUnprovenRanks},
     {"bone_direction", "angle between bones", "degrees", Better::kLess, MeasureSource::kMotion,
      "/bone_direction_degrees"},
     {"end_effector", "hands and feet off", "limb lengths", Better::kLess, MeasureSource::kMotion,
@@ -79,6 +79,11 @@ constexpr Measure kMeasures[] = {
 
 }  // namespace
 
+bool includes(MeasureSource figures, const Measure& measure) {
+  return measure.source == figures ||
+         (figures == MeasureSource::kModel && measure.source == MeasureSource::kModelMotion);
+}
+
 std::span<const Measure> studyMeasures() {
   return kMeasures;
 }
@@ -90,7 +95,7 @@ const Measure& findMeasure(std::string_view name) {
 std::vector<MeasuredValue> measuresIn(const Json& figures, MeasureSource source) {
   std::vector<MeasuredValue> values;
   for (const Measure& measure : kMeasures) {
-    if (measure.source != source) continue;
+    if (!includes(source, measure)) continue;
     const Json::json_pointer place{std::string(measure.pointer)};
     if (!figures.contains(place) || !figures[place].is_number()) continue;
     const double value = figures[place].get<double>();

@@ -19,6 +19,7 @@ enum class MeasureSource {
   kSkeletonTruth,  // limber evaluate rig --json
   kWeightTruth,    // limber evaluate weights --json
   kModel,          // limber evaluate model --json
+  kModelMotion,    // of these what the surface does in motion, all that depends on the deformer
   kMotion,         // limber evaluate motion --json
 };
 
@@ -31,6 +32,9 @@ struct Measure {
   std::string_view pointer;  // into the figures (RFC 6901); kClock: unused
   bool ranks = true;         // false: shown, but orders no methods, as it says too little of who is better
 };
+
+// Whether what a command gives has the measure: kModel has those of kModelMotion, too.
+bool includes(MeasureSource figures, const Measure& measure);
 
 // In the order in which tables have them.
 std::span<const Measure> studyMeasures();

@@ -51,7 +51,8 @@ std::vector<ModelMethods> readModels(const Json& document) {
   for (const Json& row : document["cells"]) {
     if (!row.is_object() || textOf(row, "kind") != "rig") continue;
     if (!row.contains("value") || !row["value"].is_number()) continue;
-    const std::string method = textOf(row, "rigger") + "\n" + textOf(row, "skinning") + "\n" + textOf(row, "options");
+    std::string method = textOf(row, "rigger") + "\n" + textOf(row, "skinning") + "\n" + textOf(row, "options");
+    if (row.contains("deformer")) method += "\n" + textOf(row, "deformer");  // not in earlier versions
     models[{textOf(row, "group"), textOf(row, "model")}][method][textOf(row, "measure")] = row["value"].get<double>();
   }
   std::vector<ModelMethods> result;
@@ -111,7 +112,7 @@ std::vector<MeasureAgreement> measureAgreement(std::span<const Json> cells) {
   }
   std::vector<MeasureAgreement> agreements;
   for (const Measure& measure : studyMeasures()) {
-    if (measure.source != MeasureSource::kModel) continue;
+    if (!includes(MeasureSource::kModel, measure)) continue;
     for (const Measure& truth : studyMeasures()) {
       if (!knowsTruth(truth)) continue;
       const MeasureAgreement agreement = agreementOf(measure, truth, models);

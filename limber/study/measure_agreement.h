@@ -18,7 +18,7 @@ std::optional<double> rankCorrelation(std::span<const double> a, std::span<const
 // Of a measure without a truth and one that knows it, over the methods tried on one model, then the mean over the
 // models. Positive: what is better by the one tends to be so by the other.
 struct MeasureAgreement {
-  const Measure* measure = nullptr;  // of MeasureSource::kModel
+  const Measure* measure = nullptr;  // of MeasureSource::kModel or kModelMotion
   const Measure* truth = nullptr;    // of kSkeletonTruth or kWeightTruth
   std::size_t models = 0;            // that have three methods or more with both, not all alike
   double correlation = 0;

@@ -18,7 +18,7 @@ constexpr double kFailure = std::numeric_limits<double>::infinity();
 
 bool asksFor(const StudyCell& cell, const Measure& measure) {
   return std::any_of(cell.steps.begin(), cell.steps.end(), [&](const CellStep& step) {
-    return measure.source == MeasureSource::kClock ? step.isTimed : step.measures == measure.source;
+    return measure.source == MeasureSource::kClock ? step.isTimed : includes(step.measures, measure);
   });
 }
 
@@ -69,7 +69,7 @@ Losses lossesOf(const StudyResult& study, const Grid& grid, const Measure& measu
   return losses;
 }
 
-MethodScore scoreOf(const std::string& method, const std::vector<std::optional<double>>& losses) {
+MethodScore scoreFrom(const std::string& method, const std::vector<std::optional<double>>& losses) {
   MethodScore score;
   score.method = method;
   std::vector<double> tried;
@@ -133,9 +133,13 @@ std::vector<std::size_t> worstCells(const StudyResult& study, const Grid& grid, 
 
 }  // namespace
 
+const MethodScore* Ranking::scoreOf(std::string_view method) const {
+  const auto score = std::find_if(scores.begin(), scores.end(), [&](const auto& s) { return s.method == method; });
+  return score == scores.end() ? nullptr : &*score;
+}
+
 Ranking rankMethods(const StudyResult& study, CellKind kind, const Measure& measure, const std::string& group) {
-  if (measure.better == Better::kNeither || !measure.ranks)
-    throw Error(ErrorCode::kBadArgument, "the measure ranks nothing");
+  if (measure.better == Better::kNeither) throw Error(ErrorCode::kBadArgument, "the measure has no better side");
   Ranking ranking;
   ranking.measure = &measure;
   const Grid grid = gridOf(study, kind, measure, group);
@@ -146,14 +150,16 @@ Ranking rankMethods(const StudyResult& study, CellKind kind, const Measure& meas
   };
   std::vector<Ranked> ranked;
   for (std::size_t m = 0; m < grid.methods.size(); ++m) {
-    MethodScore score = scoreOf(grid.methods[m], losses[m]);
+    MethodScore score = scoreFrom(grid.methods[m], losses[m]);
     if (score.subjects == 0) continue;
     score.seconds = medianSeconds(study, grid, m);
     ranked.push_back({std::move(score), m});
   }
-  std::stable_sort(ranked.begin(), ranked.end(),
-                   [](const Ranked& a, const Ranked& b) { return a.score.value.median < b.score.value.median; });
-  for (std::size_t i = 0; i < ranked.size(); ++i) {
+  if (measure.ranks) {
+    std::stable_sort(ranked.begin(), ranked.end(),
+                     [](const Ranked& a, const Ranked& b) { return a.score.value.median < b.score.value.median; });
+  }
+  for (std::size_t i = 0; measure.ranks && i < ranked.size(); ++i) {
     for (std::size_t j = i + 1; j < ranked.size(); ++j) {
       ranking.pairs.push_back(
           pairOf(ranked[i].score.method, ranked[j].score.method, losses[ranked[i].method], losses[ranked[j].method]));
@@ -164,7 +170,7 @@ Ranking rankMethods(const StudyResult& study, CellKind kind, const Measure& meas
     if (measure.better == Better::kMore) turnBack(one.score);
     ranking.scores.push_back(std::move(one.score));
   }
-  if (!ranking.scores.empty()) ranking.worstCells = worstCells(study, grid, measure);
+  if (measure.ranks && !ranking.scores.empty()) ranking.worstCells = worstCells(study, grid, measure);
   return ranking;
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "limber/study/paired_statistics.h"
@@ -31,10 +32,13 @@ struct Ranking {
   std::vector<MethodScore> scores;      // best first; alike ones in the order of the study
   std::vector<MethodPair> pairs;        // the first is the one that ranks higher
   std::vector<std::size_t> worstCells;  // by number, worst first: those with a value, no more than ten
+
+  const MethodScore* scoreOf(std::string_view method) const;  // null where it has none
 };
 
 // Over the cells of a kind, in one group or, where that is empty, in all. Nothing in it where no cell has the measure.
-// The measure must have a better side and rank.
+// Of a measure that ranks nothing it has the scores alone, in the order of the study. The measure must have a better
+// side.
 Ranking rankMethods(const StudyResult& study, CellKind kind, const Measure& measure, const std::string& group = {});
 
 }  // namespace limber

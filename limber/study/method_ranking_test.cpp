@@ -111,6 +111,18 @@ TEST(Ranking, IsEmptyWhereNothingWasMeasured) {
   EXPECT_THROW(rankMethods(study, CellKind::kRig, findMeasure("joints")), Error);
 }
 
+TEST(Ranking, WhatRanksNothingKeepsTheOrderOfTheStudy) {
+  ASSERT_FALSE(findMeasure("stretch").ranks);
+  StudyResult study;
+  addMethod(study, "bad", "stretch", {5, 6, 7});
+  addMethod(study, "good", "stretch", {1, 2, 3});
+  const Ranking ranking = rankMethods(study, CellKind::kRig, findMeasure("stretch"));
+  EXPECT_THAT(methodsOf(ranking), ElementsAre("bad", "good"));
+  EXPECT_EQ(ranking.scores[1].value.median, 2);
+  EXPECT_TRUE(ranking.pairs.empty());
+  EXPECT_TRUE(ranking.worstCells.empty());
+}
+
 TEST(TimePlot, HasAPointForEachMethodThatHasBoth) {
   StudyResult study;
   addMethod(study, "one", "joint_to_joint", {1, 2}, 0.5);

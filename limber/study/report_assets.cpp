@@ -51,6 +51,7 @@ figure {
   border-radius: .4rem;
 }
 figure img { width: 49%; height: auto; background: #fff; }
+figure img.sheet { width: 100%; }
 figure details img { width: 100%; max-width: 15rem; }
 figcaption { font-weight: 600; overflow-wrap: anywhere; }
 figure p { margin: .3rem 0; overflow-wrap: anywhere; font-size: .9rem; }

@@ -14,8 +14,8 @@
 #include "limber/core/file.h"
 #include "limber/core/names.h"
 #include "limber/study/html_text.h"
-#include "limber/study/method_ranking.h"
 #include "limber/study/report_assets.h"
+#include "limber/study/study_rankings.h"
 #include "limber/study/time_plot.h"
 
 namespace limber {
@@ -23,29 +23,9 @@ namespace limber {
 namespace {
 
 constexpr std::size_t kMostEmbedded = 13000000;  // bytes of pictures as text, of a page below 15 MB
-constexpr CellKind kKinds[] = {CellKind::kRig, CellKind::kRetarget};
-
-// Rankings of one kind, of measures that have any.
-struct KindReport {
-  CellKind kind;
-  std::vector<Ranking> rankings;
-};
-
-std::string_view titleOf(CellKind kind) {
-  return kind == CellKind::kRig ? "Rigs" : "Retargeting";
-}
-
-std::string_view sideOf(const Measure& measure) {
-  return measure.better == Better::kMore ? "more is better" : "less is better";
-}
-
-std::string number(double value) {
-  return std::isfinite(value) ? fmt::format("{:.4g}", value) : "failed";
-}
-
 std::string numberCell(double value) {
   return fmt::format("<td data-value=\"{}\"{}>{}</td>", std::isfinite(value) ? fmt::format("{}", value) : "Infinity",
-                     std::isfinite(value) ? "" : " class=\"bad\"", number(value));
+                     std::isfinite(value) ? "" : " class=\"bad\"", numberText(value));
 }
 
 constexpr const char* kNoNumber = "<td data-value=\"\">-</td>";
@@ -86,47 +66,24 @@ std::string cellLink(const StudyResult& study, std::size_t cell) {
                      htmlText(study.cells[cell].subject()));
 }
 
-std::vector<std::string> groupsOf(const StudyResult& study, CellKind kind) {
-  std::vector<std::string> groups;
-  for (const StudyCell& cell : study.cells) {
-    if (cell.kind == kind && std::find(groups.begin(), groups.end(), cell.group) == groups.end()) {
-      groups.push_back(cell.group);
-    }
-  }
-  return groups;
-}
-
-// The medians of all measures side by side: a line for each method, over all and in each folder.
-std::string overview(const StudyResult& study, const KindReport& report) {
+// The medians of all measures that rank, or of those that do not, side by side: a line for each method, over all and in
+// each folder.
+std::string overview(const KindRankings& report, bool ranks, std::string_view title) {
   std::vector<Column> columns = {{"method", true}, {"folder", true}};
-  for (const Ranking& ranking : report.rankings) {
+  for (const Ranking& ranking : report.groups.front().rankings) {
+    if (ranking.measure->ranks != ranks) continue;
     columns.push_back({fmt::format("{} ({})", ranking.measure->label, ranking.measure->unit)});
   }
-  std::string html = tableHead(fmt::format("{}: medians of all methods", titleOf(report.kind)), columns);
-  std::vector<std::string> groups = groupsOf(study, report.kind);
-  if (groups.size() > 1) {
-    groups.insert(groups.begin(), std::string());
-  } else {
-    groups = {std::string()};
-  }
-  std::vector<std::string> methods;
-  for (const StudyCell& cell : study.cells) {
-    const std::string method = cell.method();
-    if (cell.kind == report.kind && std::find(methods.begin(), methods.end(), method) == methods.end()) {
-      methods.push_back(method);
-    }
-  }
-  for (const std::string& group : groups) {
-    std::vector<Ranking> rankings;
-    for (const Ranking& ranking : report.rankings) {
-      rankings.push_back(group.empty() ? ranking : rankMethods(study, report.kind, *ranking.measure, group));
-    }
-    for (const std::string& method : methods) {
-      html += rowStart(method + " " + group) + textCell(method) + textCell(group.empty() ? "all" : group);
-      for (const Ranking& ranking : rankings) {
-        const auto score = std::find_if(ranking.scores.begin(), ranking.scores.end(),
-                                        [&](const MethodScore& s) { return s.method == method; });
-        html += score == ranking.scores.end() ? kNoNumber : numberCell(score->value.median);
+  if (columns.size() == 2) return {};
+  std::string html = tableHead(fmt::format("{}: {}", kindTitle(report.kind), title), columns);
+  for (const GroupRankings& group : report.groups) {
+    for (const std::string& method : report.methods) {
+      html +=
+          rowStart(method + " " + group.name) + textCell(method) + textCell(group.name.empty() ? "all" : group.name);
+      for (const Ranking& ranking : group.rankings) {
+        if (ranking.measure->ranks != ranks) continue;
+        const MethodScore* score = ranking.scoreOf(method);
+        html += score ? numberCell(score->value.median) : kNoNumber;
       }
       html += "</tr>\n";
     }
@@ -170,18 +127,21 @@ std::string worstTable(const StudyResult& study, const Ranking& ranking) {
   return html + std::string(kTableEnd);
 }
 
-std::string kindSection(const StudyResult& study, const KindReport& report) {
-  std::string html = fmt::format("<section><h2>{}: rankings</h2>\n", titleOf(report.kind)) + overview(study, report);
+std::string kindSection(const StudyResult& study, const KindRankings& report) {
+  std::string html = fmt::format("<section><h2>{}: rankings</h2>\n", kindTitle(report.kind)) +
+                     overview(report, true, "medians of all methods");
   html += "<p>A method that failed on a model counts as worse there than any that did not.</p>\n";
   bool isFirst = true;
-  for (const Ranking& ranking : report.rankings) {
-    html += fmt::format("<details class=\"measure\"{}><summary>{} ({}; {})</summary>\n", isFirst ? " open" : "",
-                        htmlText(ranking.measure->label), htmlText(ranking.measure->unit), sideOf(*ranking.measure));
+  for (const Ranking& ranking : report.groups.front().rankings) {
+    if (!ranking.measure->ranks) continue;
+    html +=
+        fmt::format("<details class=\"measure\"{}><summary>{} ({}; {})</summary>\n", isFirst ? " open" : "",
+                    htmlText(ranking.measure->label), htmlText(ranking.measure->unit), betterSide(*ranking.measure));
     html +=
         rankingTable(ranking) + timePlot(ranking) + pairTable(ranking) + worstTable(study, ranking) + "</details>\n";
     isFirst = false;
   }
-  return html + "</section>\n";
+  return html + overview(report, false, "medians of measures that rank nothing") + "</section>\n";
 }
 
 std::string failureSection(const StudyResult& study) {
@@ -220,9 +180,10 @@ PictureSource pictureSource(const StudyResult& study, const std::filesystem::pat
 }
 
 std::string pictureHtml(const CellPicture& picture, const std::string& alt, const PictureSource& source) {
-  const bool moves = picture.name == "motion";
-  const std::string image = fmt::format("<img loading=\"lazy\" alt=\"{}: {}\" src=\"{}\" width=\"{}\" height=\"{}\">",
-                                        htmlText(picture.name), htmlText(alt), source(picture), 160, 160);
+  const bool moves = picture.name == "motion", isSheet = picture.name == "stretch";
+  const std::string image = fmt::format("<img loading=\"lazy\"{} alt=\"{}: {}\" src=\"{}\" width=\"{}\" height=\"{}\">",
+                                        isSheet ? " class=\"sheet\"" : "", htmlText(picture.name), htmlText(alt),
+                                        source(picture), isSheet ? 320 : 160, isSheet ? 192 : 160);
   // Whoever does not want things to move does not open it.
   return moves ? "<details><summary>Motion</summary>" + image + "</details>" : image;
 }
@@ -241,7 +202,8 @@ std::string cellFigure(const StudyResult& study, std::size_t index, const Pictur
   }
   std::string values;
   for (const MeasuredValue& one : result.measures) {
-    values += fmt::format("{}{}: {}", values.empty() ? "" : "<br>", htmlText(one.measure->label), number(one.value));
+    values +=
+        fmt::format("{}{}: {}", values.empty() ? "" : "<br>", htmlText(one.measure->label), numberText(one.value));
     if (!one.measure->unit.empty()) values += fmt::format(" ({})", htmlText(one.measure->unit));
   }
   html += "<details><summary>Figures and commands</summary><p>" + values + "</p><pre>";
@@ -254,7 +216,7 @@ std::string pictureSection(const StudyResult& study, const PictureSource& source
   std::string subject;
   bool isOpen = false;
   for (std::size_t i = 0; i < study.cells.size(); ++i) {
-    const std::string next = fmt::format("{}: {}", titleOf(study.cells[i].kind), study.cells[i].subject());
+    const std::string next = fmt::format("{}: {}", kindTitle(study.cells[i].kind), study.cells[i].subject());
     if (!isOpen || next != subject) {
       html += fmt::format("{}<div class=\"subject\"><h3>{}</h3><div class=\"cells\">\n", isOpen ? "</div></div>\n" : "",
                           htmlText(next));
@@ -288,15 +250,7 @@ std::string reportPage(const StudyResult& study, const std::filesystem::path& fo
       "style-src 'unsafe-inline'; script-src 'unsafe-inline'\">"
       "<title>{}</title><style>{}</style></head><body>\n{}<main>\n",
       htmlText(study.title), kReportStyle, header(study));
-  for (const CellKind kind : kKinds) {
-    KindReport report{kind, {}};
-    for (const Measure& measure : studyMeasures()) {
-      if (measure.better == Better::kNeither || !measure.ranks) continue;
-      Ranking ranking = rankMethods(study, kind, measure);
-      if (!ranking.scores.empty()) report.rankings.push_back(std::move(ranking));
-    }
-    if (!report.rankings.empty()) html += kindSection(study, report);
-  }
+  for (const KindRankings& report : studyRankings(study)) html += kindSection(study, report);
   html += failureSection(study) + pictureSection(study, pictureSource(study, folder));
   return html + fmt::format("</main><script>{}</script></body></html>\n", kReportScript);
 }

@@ -56,6 +56,16 @@ TEST_F(ReportPage, RanksMethodsAndShowsCells) {
                     HasSubstr("2 cells, of which 0 did not end well"), Not(HasSubstr("What did not end well"))));
 }
 
+TEST_F(ReportPage, ShowsWhatRanksNothingInATableOfItsOwn) {
+  putPicture(3);
+  StudyResult study = studyOf("fox");
+  EXPECT_THAT(pageOf(study), Not(HasSubstr("rank nothing")));
+  for (StudyCell& cell : study.cells) cell.steps.push_back({"evaluate model", {}, MeasureSource::kModel});
+  study.results[0].measures.push_back({&findMeasure("stretch"), 0.125});
+  EXPECT_THAT(pageOf(study),
+              AllOf(HasSubstr("medians of measures that rank nothing"), Not(HasSubstr("Ranking by stretch"))));
+}
+
 TEST_F(ReportPage, EscapesWhateverComesOutOfFiles) {
   putPicture(3);
   StudyResult study = studyOf(std::string(kHostile));

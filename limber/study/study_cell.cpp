@@ -1,13 +1,28 @@
 #include "limber/study/study_cell.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 namespace limber {
 
 namespace {
 
-constexpr std::string_view kPictureSize = "160x160", kMovingSize = "160x160", kMovingFps = "8";
-constexpr std::string_view kShown = "0:4";  // seconds of a motion that its picture shows
+constexpr std::string_view kPictureSize = "160x160", kMovingSize = "160x160", kMovingFps = "8",
+                           kPoseSize = "64x64";  // of each pose of a range of motion
+constexpr std::string_view kShown = "0:4";       // seconds of a motion that its picture shows
+
+// A sheet of the range of motion, by the cell's deformer. What has no part that bends has none.
+void addStretchPicture(StudyCell& cell) {
+  cell.steps.push_back({"preview stretch",
+                        {"preview", "rigged.glb", "--show", "stretch", "--deformer", cell.deformer, "--size",
+                         std::string(kPoseSize), "--quiet", "-o", "stretch.png"},
+                        MeasureSource::kNone,
+                        {},
+                        "stretch",
+                        false,
+                        true});
+}
 
 void addPictures(StudyCell& cell) {
   for (const std::string_view what : {"bones", "weights"}) {
@@ -20,7 +35,19 @@ void addPictures(StudyCell& cell) {
   }
 }
 
-StudyCell rigCell(const StudyModel& model, const RigCombination& combination, const std::string& threads) {
+// Whether there is a combination before it with the same rig and another deformer.
+bool hasRigOfEarlier(std::span<const RigCombination> combinations, std::size_t index) {
+  const RigCombination& one = combinations[index];
+  return std::any_of(combinations.begin(), combinations.begin() + static_cast<std::ptrdiff_t>(index),
+                     [&](const RigCombination& earlier) {
+                       return earlier.rigger == one.rigger && earlier.skinning == one.skinning &&
+                              earlier.setting.name == one.setting.name && earlier.deformer != one.deformer;
+                     });
+}
+
+// measuresRig  else what depends on the deformer alone
+StudyCell rigCell(const StudyModel& model, const RigCombination& combination, const std::string& threads,
+                  bool measuresRig) {
   const std::string file = model.input.file.string();
   const bool keepsSkeleton = combination.rigger == kOwnSkeleton;
   StudyCell cell;
@@ -30,6 +57,7 @@ StudyCell rigCell(const StudyModel& model, const RigCombination& combination, co
   cell.rigger = combination.rigger;
   cell.skinning = combination.skinning;
   cell.options = combination.setting.name;
+  cell.deformer = combination.deformer;
   cell.inputs = {model.input.file};
   std::vector<std::string> rig = {"rig", file};
   if (keepsSkeleton) {
@@ -45,15 +73,22 @@ StudyCell rigCell(const StudyModel& model, const RigCombination& combination, co
   }
   rig.insert(rig.end(), combination.setting.arguments.begin(), combination.setting.arguments.end());
   rig.insert(rig.end(), {"--threads", threads, "--quiet", "-o", "rigged.glb", "--json", "report.json"});
-  cell.steps.push_back({"rig", std::move(rig), MeasureSource::kRigReport, "report.json", {}, true});
-  if (model.isRigged) {
+  cell.steps.push_back({"rig", std::move(rig), MeasureSource::kRigReport, "report.json", {}, measuresRig});
+  if (model.isRigged && measuresRig) {
     const std::string what = keepsSkeleton ? "weights" : "rig";
     cell.steps.push_back({"evaluate " + what,
                           {"evaluate", what, "rigged.glb", file, "--json"},
                           keepsSkeleton ? MeasureSource::kWeightTruth : MeasureSource::kSkeletonTruth});
   }
-  cell.steps.push_back({"evaluate model", {"evaluate", "model", "rigged.glb", "--json"}, MeasureSource::kModel});
-  addPictures(cell);
+  CellStep evaluation = {"evaluate model",
+                         {"evaluate", "model", "rigged.glb", "--json"},
+                         measuresRig ? MeasureSource::kModel : MeasureSource::kModelMotion};
+  if (!cell.deformer.empty()) {
+    evaluation.arguments.insert(evaluation.arguments.end(), {"--deformer", cell.deformer});
+  }
+  cell.steps.push_back(std::move(evaluation));
+  if (measuresRig) addPictures(cell);
+  if (!cell.deformer.empty()) addStretchPicture(cell);
   return cell;
 }
 
@@ -98,6 +133,7 @@ std::string StudyCell::subject() const {
 
 std::string StudyCell::method() const {
   std::string text = kind == CellKind::kRig ? rigger + " + " + skinning : retargeting;
+  if (!deformer.empty()) text += " + " + deformer;
   if (!solver.empty()) text += " + " + solver;
   if (!options.empty()) text += ", " + options;
   return text;
@@ -106,9 +142,11 @@ std::string StudyCell::method() const {
 std::vector<StudyCell> rigCells(const StudyPlan& plan, std::span<const StudyModel> models) {
   std::vector<StudyCell> cells;
   for (const StudyModel& model : models) {
-    for (const RigCombination& combination : plan.rig.combinations) {
+    for (std::size_t i = 0; i < plan.rig.combinations.size(); ++i) {
+      const RigCombination& combination = plan.rig.combinations[i];
       if (combination.rigger == kOwnSkeleton && !model.isRigged) continue;
-      cells.push_back(rigCell(model, combination, std::to_string(plan.threads)));
+      const bool measuresRig = !hasRigOfEarlier(plan.rig.combinations, i);
+      cells.push_back(rigCell(model, combination, std::to_string(plan.threads), measuresRig));
     }
   }
   return cells;

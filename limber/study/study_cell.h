@@ -26,18 +26,20 @@ struct CellStep {
   std::string report = {};   // the file with the measures; empty: they are printed
   std::string picture = {};  // the picture that is made, without .png; empty: none
   bool isTimed = false;      // takes the cell's seconds, with reading and writing of files
+  bool mayRefuse = false;  // where it says that it cannot be done, the cell goes without, and ends well; the last step
 };
 
 struct StudyCell {
   CellKind kind = CellKind::kRig;
   std::string group, model, motion;           // motion: of retargeting
   std::string rigger, skinning, options;      // of rigs
+  std::string deformer;                       // of rigs, where the plan names some
   std::string retargeting, solver;            // of retargeting
   std::vector<std::filesystem::path> inputs;  // as they stand among the arguments
   std::vector<CellStep> steps;                // in order; a cell ends with the first that fails
 
   std::string subject() const;  // the model, and the motion where there is one
-  std::string method() const;   // "template + bone-heat, 20 handles"
+  std::string method() const;   // "template + bone-heat + delta-mush, 20 handles"
 };
 
 // A model of a study with what is known of it.
@@ -47,7 +49,8 @@ struct StudyModel {
 };
 
 // For each model each combination, in order. Models without a skeleton of their own are left out where that is to be
-// kept.
+// kept. Of combinations that differ in the deformer alone, the first measures (and times) the rig; the others make the
+// same again, and measure what the surface does in motion.
 std::vector<StudyCell> rigCells(const StudyPlan& plan, std::span<const StudyModel> models);
 // For each character each motion and each combination, in order.
 std::vector<StudyCell> retargetCells(const StudyPlan& plan, std::span<const StudyInput> characters,

@@ -50,6 +50,34 @@ TEST(StudyCells, OwnSkeletonsAreKeptAndTheirWeightsCompared) {
   EXPECT_THAT(cells[0].steps[0].arguments, Contains("--keep-skeleton"));
 }
 
+// What does not depend on the deformer is measured once: else methods with one rig would differ in chance alone.
+TEST(StudyCells, FurtherDeformersMeasureTheSurfaceInMotionAlone) {
+  RigCombination first{"template", "bone-heat", {}}, second = first, other{"template", "geodesic-voxel", {}};
+  first.deformer = "linear-blend";
+  second.deformer = other.deformer = "delta-mush";
+  const std::vector<StudyCell> cells = rigCells(rigPlanOf({first, second, other}), std::vector{kRigged});
+  ASSERT_EQ(cells.size(), 3u);
+  const auto whole =
+      ElementsAre("rig", "evaluate rig", "evaluate model", "preview bones", "preview weights", "preview stretch");
+  EXPECT_THAT(stepsOf(cells[0]), whole);
+  EXPECT_THAT(stepsOf(cells[1]), ElementsAre("rig", "evaluate model", "preview stretch"));
+  EXPECT_THAT(stepsOf(cells[2]), whole);
+  EXPECT_TRUE(cells[0].steps[0].isTimed);
+  EXPECT_FALSE(cells[1].steps[0].isTimed);
+  EXPECT_EQ(cells[1].steps[0].arguments, cells[0].steps[0].arguments);
+  EXPECT_EQ(cells[1].method(), "template + bone-heat + delta-mush");
+  for (const std::size_t step : {1u, 2u}) {
+    EXPECT_THAT(cells[1].steps[step].arguments, ::testing::IsSupersetOf({"--deformer", "delta-mush"}));
+  }
+  EXPECT_EQ(cells[1].steps[1].measures, MeasureSource::kModelMotion);
+}
+
+TEST(StudyCells, WithoutADeformerInThePlanNoneIsMentioned) {
+  const std::vector<StudyCell> cells = rigCells(rigPlanOf({{"template", "bone-heat", {}}}), std::vector{kBare});
+  EXPECT_EQ(cells[0].deformer, "");
+  for (const CellStep& step : cells[0].steps) EXPECT_THAT(step.arguments, Not(Contains("--deformer")));
+}
+
 // So that a changed adapter runs anew.
 TEST(StudyCells, AdaptersAreInputsOfTheirCells) {
   const std::vector<StudyCell> cells =
@@ -121,6 +149,16 @@ TEST(Measures, AreReadWhereTheyAreNumbers) {
   EXPECT_EQ(values[0].value, 0.5);
   EXPECT_EQ(values[1].value, 2);
   EXPECT_TRUE(measuresIn(Json::array(), MeasureSource::kMotion).empty());
+}
+
+TEST(Measures, OfAModelHoldThoseOfItsMotion) {
+  const Json figures = {{"coverage", 0.5}, {"motion", {{"stretch", 0.25}}}};
+  const std::vector<MeasuredValue> all = measuresIn(figures, MeasureSource::kModel),
+                                   motion = measuresIn(figures, MeasureSource::kModelMotion);
+  ASSERT_EQ(all.size(), 2u);
+  ASSERT_EQ(motion.size(), 1u);
+  EXPECT_EQ(motion[0].measure->name, "stretch");
+  EXPECT_FALSE(includes(MeasureSource::kModelMotion, findMeasure("coverage")));
 }
 
 }  // namespace

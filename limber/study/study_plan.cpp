@@ -16,13 +16,14 @@
 #include "limber/retarget/retarget_method.h"
 #include "limber/rigging/auto_rigger.h"
 #include "limber/rigging/template_rigger.h"
+#include "limber/skinning/deformer.h"
 #include "limber/skinning/weight_method.h"
 
 namespace limber {
 
 namespace {
 
-constexpr std::string_view kAll = "all", kVersionKey = "limber_study";
+constexpr std::string_view kAll = "all", kVersionKey = "limber_study", kUsualSolver = "two-bone";
 constexpr std::size_t kMostThreads = 1024, kMostSeconds = 1000000, kMostMegabytes = std::size_t{1} << 24;
 
 // A misspelt key would silently do nothing.
@@ -152,6 +153,13 @@ std::vector<RigSetting> settingsOf(const JsonView& rig) {
   return settings;
 }
 
+// Pairs stand in place of what is multiplied out.
+void refuseBeside(const JsonView& object, std::initializer_list<std::string_view> lists) {
+  for (const std::string_view list : lists) {
+    if (object.member(list).exists()) object.fail(fmt::format("has both 'pairs' and '{}'", list));
+  }
+}
+
 // The plan's own combinations, in place of all.
 std::vector<RigCombination> namedPairs(const JsonView& pairs, const std::vector<RigSetting>& settings,
                                        const RigMethods& methods) {
@@ -159,7 +167,7 @@ std::vector<RigCombination> namedPairs(const JsonView& pairs, const std::vector<
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const JsonView pair = pairs[i];
     pair.requireObject();
-    allow(pair, {"rigger", "skinning", "options"});
+    allow(pair, {"rigger", "skinning", "deformer", "options"});
     const std::string rigger = textOf(pair.member("rigger")), skinning = textOf(pair.member("skinning"));
     checkAt(pair.member("rigger"), rigger, [&](const std::string& name) { methods.checkRigger(name); });
     checkAt(pair.member("skinning"), skinning, [&](const std::string& name) { methods.checkSkinning(name); });
@@ -170,7 +178,34 @@ std::vector<RigCombination> namedPairs(const JsonView& pairs, const std::vector<
       };
       checkAt(name, textOf(name), find);
     }
+    if (const JsonView deformer = pair.member("deformer"); deformer.exists()) {
+      one.deformer = textOf(deformer);
+      checkAt(deformer, one.deformer, findDeformer);
+    }
     combinations.push_back(std::move(one));
+  }
+  return combinations;
+}
+
+// Every rigger with every skinning method, every set of options and every deformer.
+std::vector<RigCombination> rigProduct(const JsonView& rig, std::vector<RigSetting> settings,
+                                       const RigMethods& methods) {
+  if (settings.empty()) settings.emplace_back();
+  const std::vector<std::string> riggers = methodsOf(rig, "riggers", riggerMethods(), {"template"},
+                                                     [&](const std::string& name) { methods.checkRigger(name); });
+  const std::vector<std::string> skinnings = methodsOf(rig, "skinning", weightMethods(), {"bone-heat"},
+                                                       [&](const std::string& name) { methods.checkSkinning(name); });
+  const std::vector<std::string> bendings = methodsOf(rig, "deformers", deformers(), {std::string()}, findDeformer);
+  std::vector<RigCombination> combinations;
+  for (const std::string& rigger : riggers) {
+    for (const std::string& skinning : skinnings) {
+      for (const RigSetting& setting : settings) {
+        for (const std::string& deformer : bendings) {
+          combinations.push_back(methods.combination(rigger, skinning, setting));
+          combinations.back().deformer = deformer;
+        }
+      }
+    }
   }
   return combinations;
 }
@@ -178,50 +213,72 @@ std::vector<RigCombination> namedPairs(const JsonView& pairs, const std::vector<
 RigPlan rigPlanOf(const JsonView& rig, const RigMethods& methods) {
   RigPlan plan;
   if (!rig.exists()) return plan;
-  allow(rig, {"models", "riggers", "skinning", "options", "pairs"});
+  allow(rig, {"models", "riggers", "skinning", "deformers", "options", "pairs"});
   plan.models = textsOf(rig, "models");
   if (plan.models.empty()) rig.fail("names no models");
-  std::vector<RigSetting> settings = settingsOf(rig);
+  const std::vector<RigSetting> settings = settingsOf(rig);
   if (const JsonView pairs = rig.array("pairs"); pairs.exists()) {
-    for (const std::string_view list : {"riggers", "skinning"}) {
-      if (rig.member(list).exists()) rig.fail(fmt::format("has both 'pairs' and '{}'", list));
-    }
+    refuseBeside(rig, {"riggers", "skinning", "deformers"});
     plan.combinations = namedPairs(pairs, settings, methods);
   } else {
-    if (settings.empty()) settings.emplace_back();
-    const std::vector<std::string> riggers = methodsOf(rig, "riggers", riggerMethods(), {"template"},
-                                                       [&](const std::string& name) { methods.checkRigger(name); });
-    const std::vector<std::string> skinnings = methodsOf(rig, "skinning", weightMethods(), {"bone-heat"},
-                                                         [&](const std::string& name) { methods.checkSkinning(name); });
-    for (const std::string& rigger : riggers) {
-      for (const std::string& skinning : skinnings) {
-        for (const RigSetting& setting : settings) {
-          plan.combinations.push_back(methods.combination(rigger, skinning, setting));
-        }
-      }
-    }
+    plan.combinations = rigProduct(rig, settings, methods);
   }
   if (plan.combinations.empty()) rig.fail("names no methods");
   return plan;
 }
 
-RetargetPlan retargetPlanOf(const JsonView& retarget) {
-  RetargetPlan plan;
-  if (!retarget.exists()) return plan;
-  allow(retarget, {"characters", "motions", "methods", "solvers"});
-  plan.characters = textsOf(retarget, "characters");
-  plan.motions = textsOf(retarget, "motions");
-  if (plan.characters.empty()) retarget.fail("names no characters");
-  if (plan.motions.empty()) retarget.fail("names no motions");
+std::vector<RetargetCombination> retargetPairs(const JsonView& pairs) {
+  std::vector<RetargetCombination> combinations;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const JsonView pair = pairs[i];
+    pair.requireObject();
+    allow(pair, {"method", "solver"});
+    const JsonView solver = pair.member("solver");
+    RetargetCombination one{textOf(pair.member("method")), {}};
+    checkAt(pair.member("method"), one.method, findRetargetMethod);
+    const bool usesSolver = findRetargetMethod(one.method).solvesLimbs;
+    if (solver.exists()) {
+      one.solver = textOf(solver);
+      checkAt(solver, one.solver, findIkMethod);
+      if (!usesSolver) solver.fail(fmt::format("is of no use: '{}' solves for no limbs", one.method));
+    } else if (usesSolver) {
+      one.solver = kUsualSolver;
+    }
+    combinations.push_back(std::move(one));
+  }
+  return combinations;
+}
+
+// Every method with every solver.
+std::vector<RetargetCombination> retargetProduct(const JsonView& retarget) {
   const std::vector<std::string> methods =
       methodsOf(retarget, "methods", retargetMethods(), {"limb-ik"}, findRetargetMethod);
-  const std::vector<std::string> solvers = methodsOf(retarget, "solvers", ikMethods(), {"two-bone"}, findIkMethod);
+  const std::vector<std::string> solvers =
+      methodsOf(retarget, "solvers", ikMethods(), {std::string(kUsualSolver)}, findIkMethod);
+  std::vector<RetargetCombination> combinations;
   for (const std::string& method : methods) {
     // What solves for no limbs gives the same by every solver.
     const bool usesSolver = findRetargetMethod(method).solvesLimbs;
     for (std::size_t i = 0; i < (usesSolver ? solvers.size() : std::min<std::size_t>(1, solvers.size())); ++i) {
-      plan.combinations.push_back({method, usesSolver ? solvers[i] : std::string()});
+      combinations.push_back({method, usesSolver ? solvers[i] : std::string()});
     }
+  }
+  return combinations;
+}
+
+RetargetPlan retargetPlanOf(const JsonView& retarget) {
+  RetargetPlan plan;
+  if (!retarget.exists()) return plan;
+  allow(retarget, {"characters", "motions", "methods", "solvers", "pairs"});
+  plan.characters = textsOf(retarget, "characters");
+  plan.motions = textsOf(retarget, "motions");
+  if (plan.characters.empty()) retarget.fail("names no characters");
+  if (plan.motions.empty()) retarget.fail("names no motions");
+  if (const JsonView pairs = retarget.array("pairs"); pairs.exists()) {
+    refuseBeside(retarget, {"methods", "solvers"});
+    plan.combinations = retargetPairs(pairs);
+  } else {
+    plan.combinations = retargetProduct(retarget);
   }
   if (plan.combinations.empty()) retarget.fail("names no methods");
   return plan;

@@ -25,6 +25,7 @@ struct RigCombination {
   std::string rigger, skinning;
   RigSetting setting;
   std::vector<std::filesystem::path> adapters = {};  // files of the programs of the user's among these
+  std::string deformer = {};                         // empty: the plan names none; linear blending
 };
 
 // models         files, folders and samples, as the plan has them
@@ -35,7 +36,7 @@ struct RigPlan {
 };
 
 struct RetargetCombination {
-  std::string method, solver;
+  std::string method, solver;  // solver: empty where the method solves for no limbs
 };
 
 // Each combination is tried on each pair of a character and a motion.

@@ -10,6 +10,7 @@
 #include "limber/core/error.h"
 #include "limber/ik/ik_solver.h"
 #include "limber/rigging/auto_rigger.h"
+#include "limber/skinning/deformer.h"
 #include "limber/skinning/weight_method.h"
 #include "temporary_folder.h"
 
@@ -98,6 +99,47 @@ TEST(StudyPlan, PairsStandForThemselves) {
   EXPECT_TRUE(plan.rig.combinations[1].setting.arguments.empty());
 }
 
+TEST(StudyPlan, DeformersAreMultipliedOutWhereThePlanNamesSome) {
+  const auto deformersOf = [](const std::string& members) {
+    std::vector<std::string> names;
+    for (const RigCombination& one : studyPlanFromJson(rigPlan(members)).rig.combinations)
+      names.push_back(one.deformer);
+    return names;
+  };
+  EXPECT_THAT(deformersOf(""), ElementsAre(""));
+  EXPECT_THAT(deformersOf(R"(, "riggers": ["template", "own"], "deformers": ["linear-blend", "dual-quaternion"])"),
+              ElementsAre("linear-blend", "dual-quaternion", "linear-blend", "dual-quaternion"));
+  EXPECT_EQ(deformersOf(R"(, "deformers": ["all"])").size(), deformers().size());
+  EXPECT_THAT(deformersOf(R"(, "pairs": [{"rigger": "own", "skinning": "bone-heat", "deformer": "delta-mush"},
+                                         {"rigger": "own", "skinning": "bone-heat"}])"),
+              ElementsAre("delta-mush", ""));
+}
+
+TEST(StudyPlan, PairsOfRetargetingStandForThemselves) {
+  const auto planOf = [](const std::string& pairs) {
+    return R"({"limber_study": 1, "retarget": {"characters": ["c"], "motions": ["m"], "pairs": [)" + pairs + "]}}";
+  };
+  const std::vector<RetargetCombination> pairs =
+      studyPlanFromJson(
+          planOf(R"({"method": "limb-ik", "solver": "fabrik"}, {"method": "copy"}, {"method": "limb-ik"})"))
+          .retarget.combinations;
+  ASSERT_EQ(pairs.size(), 3u);
+  EXPECT_EQ(pairs[0].method, "limb-ik");
+  EXPECT_EQ(pairs[0].solver, "fabrik");
+  EXPECT_EQ(pairs[1].solver, "");
+  EXPECT_EQ(pairs[2].solver, "two-bone");
+  EXPECT_THAT(refusalOf(planOf(R"({"method": "copy", "solver": "fabrik"})")),
+              AllOf(HasSubstr("retarget.pairs[0].solver"), HasSubstr("'copy'")));
+  EXPECT_THAT(refusalOf(planOf(R"({"method": "limb-ik", "solver": "magic"})")),
+              AllOf(HasSubstr("retarget.pairs[0].solver"), HasSubstr("'magic'")));
+  EXPECT_THAT(refusalOf(planOf(R"({"solver": "fabrik"})")), HasSubstr("retarget.pairs[0].method"));
+  EXPECT_THAT(refusalOf(planOf("3")), HasSubstr("retarget.pairs[0]"));
+  EXPECT_THAT(refusalOf(planOf("")), HasSubstr("no methods"));
+  EXPECT_THAT(refusalOf(R"({"limber_study": 1, "retarget": {"characters": ["c"], "motions": ["m"], "methods": ["copy"],
+                            "pairs": [{"method": "copy"}]}})"),
+              HasSubstr("both 'pairs' and 'methods'"));
+}
+
 TEST(StudyPlan, LimitsAreThoseOfThePlan) {
   const StudyPlan plan = studyPlanFromJson(
       R"({"limber_study": 1, "title": "T", "rig": {"models": ["a"]}, "limits": {"seconds": 1.5, "memory_mb": 300},
@@ -124,6 +166,13 @@ TEST(StudyPlan, WhatIsWrongIsToldWithItsPlace) {
   EXPECT_THAT(refusalOf(rigPlan(R"(, "riggers": [])")), HasSubstr("no methods"));
   EXPECT_THAT(refusalOf(rigPlan(R"(, "riggers": ["own"], "pairs": [])")), HasSubstr("both 'pairs' and 'riggers'"));
   EXPECT_THAT(refusalOf(rigPlan(R"(, "pairs": [{"rigger": "own"}])")), HasSubstr("rig.pairs[0].skinning"));
+  EXPECT_THAT(refusalOf(rigPlan(R"(, "deformers": ["jelly"])")),
+              AllOf(HasSubstr("rig.deformers[0]"), HasSubstr("'jelly'"), HasSubstr("delta-mush")));
+  EXPECT_THAT(refusalOf(rigPlan(R"(, "deformers": [])")), HasSubstr("no methods"));
+  EXPECT_THAT(refusalOf(rigPlan(R"(, "deformers": ["delta-mush"], "pairs": [])")),
+              HasSubstr("both 'pairs' and 'deformers'"));
+  EXPECT_THAT(refusalOf(rigPlan(R"(, "pairs": [{"rigger": "own", "skinning": "bone-heat", "deformer": "jelly"}])")),
+              HasSubstr("rig.pairs[0].deformer"));
   EXPECT_THAT(refusalOf(rigPlan(R"(, "pairs": [{"rigger": "own", "skinning": "bone-heat", "options": "x"}])")),
               HasSubstr("rig.pairs[0].options"));
   EXPECT_THAT(refusalOf(rigPlan(R"(, "options": [{"handles": 3}])")), HasSubstr("rig.options[0].name"));
@@ -158,18 +207,20 @@ TEST(StudyPlan, TheSchemaKnowsEveryKey) {
   };
   const nlohmann::json& plan = schema["properties"];
   EXPECT_EQ(keysOf(schema), "limber_study limits retarget rig threads title ");
-  EXPECT_EQ(keysOf(plan["rig"]), "models options pairs riggers skinning ");
+  EXPECT_EQ(keysOf(plan["rig"]), "deformers models options pairs riggers skinning ");
   EXPECT_EQ(keysOf(plan["rig"]["properties"]["options"]["items"]), "handles max_influences name pieces template ");
-  EXPECT_EQ(keysOf(plan["rig"]["properties"]["pairs"]["items"]), "options rigger skinning ");
-  EXPECT_EQ(keysOf(plan["retarget"]), "characters methods motions solvers ");
+  EXPECT_EQ(keysOf(plan["rig"]["properties"]["pairs"]["items"]), "deformer options rigger skinning ");
+  EXPECT_EQ(keysOf(plan["retarget"]), "characters methods motions pairs solvers ");
+  EXPECT_EQ(keysOf(plan["retarget"]["properties"]["pairs"]["items"]), "method solver ");
   EXPECT_EQ(keysOf(plan["limits"]), "memory_mb seconds ");
   EXPECT_THAT(refusalOf(R"({"limber_study": 1, "x": 1})"),
               HasSubstr("limber_study, title, rig, retarget, limits, threads"));
-  EXPECT_THAT(refusalOf(rigPlan(R"(, "x": 1)")), HasSubstr("models, riggers, skinning, options, pairs"));
+  EXPECT_THAT(refusalOf(rigPlan(R"(, "x": 1)")), HasSubstr("models, riggers, skinning, deformers, options, pairs"));
   EXPECT_THAT(refusalOf(rigPlan(R"(, "options": [{"x": 1}])")),
               HasSubstr("name, handles, max_influences, pieces, template"));
   EXPECT_THAT(refusalOf(R"({"limber_study": 1, "retarget": {"x": 1}})"),
-              HasSubstr("characters, motions, methods, solvers"));
+              HasSubstr("characters, motions, methods, solvers, pairs"));
+  EXPECT_THAT(refusalOf(rigPlan(R"(, "pairs": [{"x": 1}])")), HasSubstr("rigger, skinning, deformer, options"));
 }
 
 }  // namespace

@@ -303,6 +303,7 @@ class StudyRun {
     for (std::size_t s = 0; s < results.size(); ++s) {
       const CellStep& step = cell.steps[s];
       const JobResult& result = results[s];
+      if (step.mayRefuse && result.outcome == JobOutcome::kFailed) break;
       if (result.outcome != JobOutcome::kDone) {
         taken.outcome = result.outcome;
         taken.problem = fmt::format("{}: {}", step.name, jobOutcomeText(jobs[s], result));

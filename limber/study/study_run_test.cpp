@@ -36,14 +36,16 @@ case "$1" in
     esac
     case "$*" in *curve-skeleton*) j=12;; *) j=22;; esac
     echo "{\"seconds\": 0.5, \"counts\": {\"joints\": $j}}" > report.json
-    echo rigged > rigged.glb;;
+    echo "$2" > rigged.glb;;
   evaluate)
     case "$2" in
       rig) echo '{"without_fingers": {"joint_to_joint": 3.5}}';;
       weights) echo '{"l1": 0.25}';;
-      model) echo '{"coverage": 0.75}';;
+      model) case "$*" in *delta-mush*) echo '{"motion": {"stretch": 0.125}}';; *) echo '{"coverage": 0.75, "motion": {"stretch": 0.5}}';; esac;;
     esac;;
-  preview) for name; do :; done; echo "picture of $4" > "$name";;
+  preview)
+    case "$4$(cat rigged.glb)" in stretch*stiff*) exit 1;; esac
+    for name; do :; done; echo "picture of $4" > "$name";;
   sample) for name; do if [ "$before" = -o ]; then echo made > "$name"; fi; before=$name; done;;
 esac
 )sh";
@@ -204,6 +206,34 @@ TEST_F(StudyRuns, DamagedResultsRunAgain) {
   EXPECT_EQ(run().ran, 0u);
 }
 
+TEST_F(StudyRuns, ADeformerMakesItsOwnCells) {
+  addModels({"fox.glb"});
+  plan_.rig.combinations = {{"template", "bone-heat", {}}};
+  plan_.rig.combinations[0].deformer = "linear-blend";
+  EXPECT_EQ(run().ran, 1u);
+  plan_.rig.combinations.push_back(plan_.rig.combinations[0]);
+  plan_.rig.combinations[1].deformer = "delta-mush";
+  const StudyResult study = run();
+  EXPECT_EQ(study.ran, 1u);
+  EXPECT_EQ(study.results[0].valueOf(findMeasure("stretch")), 0.5);
+  EXPECT_EQ(study.results[1].valueOf(findMeasure("stretch")), 0.125);
+  EXPECT_EQ(study.results[0].pictures.size(), 3u);
+  ASSERT_EQ(study.results[1].pictures.size(), 1u);
+  EXPECT_EQ(study.results[1].pictures[0].name, "stretch");
+  EXPECT_THAT(cellsCsv(study), HasSubstr("fox,,template,bone-heat,delta-mush,,,,done,,stretch,0.125,share"));
+}
+
+// A body without a part that bends is no failure of its rig.
+TEST_F(StudyRuns, WhatCannotBeBentHasNoPictureOfIt) {
+  addModels({"stiff.glb"});
+  plan_.rig.combinations = {{"template", "bone-heat", {}}};
+  plan_.rig.combinations[0].deformer = "delta-mush";
+  const StudyResult study = run();
+  EXPECT_EQ(study.results[0].outcome, JobOutcome::kDone) << study.results[0].problem;
+  EXPECT_EQ(study.results[0].pictures.size(), 2u);
+  EXPECT_EQ(run().ran, 0u);
+}
+
 TEST_F(StudyRuns, AlikeCellsRunOnce) {
   addModels({"a.glb", "b.glb"});
   put("b.glb", "model a.glb");
@@ -251,9 +281,10 @@ TEST(CellTable, QuotesAsCsvDoes) {
   study.results[0].problem = "x";
   study.results[1].measures = {{&findMeasure("joints"), 3}};
   EXPECT_EQ(cellsCsv(study),
-            "kind,group,model,motion,rigger,skinning,options,retargeting,solver,outcome,problem,measure,value,unit\r\n"
-            "rig,,\"a,\"\"b\"\"\nc\",,template,,,,,failed,x,,,\r\n"
-            "rig,,\"a,\"\"b\"\"\nc\",,template,,,,,done,,joints,3,\r\n");
+            "kind,group,model,motion,rigger,skinning,deformer,options,retargeting,solver,outcome,problem,measure,value,"
+            "unit\r\n"
+            "rig,,\"a,\"\"b\"\"\nc\",,template,,,,,,failed,x,,,\r\n"
+            "rig,,\"a,\"\"b\"\"\nc\",,template,,,,,,done,,joints,3,\r\n");
   EXPECT_THAT(cellsJson(study), HasSubstr(R"("model": "a,\"b\"\nc")"));
 }
 
