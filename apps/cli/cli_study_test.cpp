@@ -95,6 +95,17 @@ TEST_F(Cli, ARigIsMeasuredAndDrawnWithNothingToCompareItWith) {
   const Result unknown = run({"evaluate", "model", "rigged.glb", "--deformer", "jelly"});
   expectOneLine(unknown, 1);
   EXPECT_THAT(unknown.error, AllOf(HasSubstr("'jelly'"), HasSubstr("delta-mush")));
+  const auto sheet = [&](const char* name, const std::vector<std::string>& options) {
+    std::vector<std::string> arguments = {"preview", "rigged.glb", "--size", "32x32", "-o", name};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    return run(arguments);
+  };
+  ASSERT_EQ(sheet("two.png", {"--show", "stretch", "--worst", "2"}).code, 0);
+  ASSERT_EQ(sheet("all.png", {"--show", "stretch", "--worst", "400"}).code, 0);
+  ASSERT_EQ(sheet("range.png", {"--show", "stretch"}).code, 0);
+  EXPECT_LT(content("two.png").size(), content("all.png").size());
+  EXPECT_EQ(content("all.png"), content("range.png"));
+  expectOneLine(sheet("none.png", {"--worst", "2"}), 1);
   expectOneLine(run({"evaluate", "model", "robot.glb"}), 1);
   expectOneLine(run({"preview", "robot.glb", "--show", "stretch", "-o", "none.png"}), 1);
   EXPECT_FALSE(fs::exists(folder_ / "none.png"));

@@ -1,6 +1,7 @@
 // limber preview: a picture of a model, its rig or its movement.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -10,6 +11,7 @@
 #include "limber/asset/read.h"
 #include "limber/core/file.h"
 #include "limber/evaluate/range_of_motion.h"
+#include "limber/evaluate/surface_stretch.h"
 #include "limber/preview/animation.h"
 #include "limber/preview/apng.h"
 #include "limber/preview/render.h"
@@ -25,6 +27,7 @@ struct PreviewArguments {
   std::string input, output, show = "model", size, view = "three-quarter", joint, clip, deformer = "linear-blend";
   std::optional<double> time;  // seconds
   int frames = 0;              // of a contact sheet; 0: one picture
+  int worst = 0;               // poses of a range of motion; 0: all
   bool animate = false, turntable = false;
   std::optional<double> fps;  // of an animation or a turntable
   std::string background = "studio";
@@ -100,18 +103,38 @@ Bytes turntable(const Asset& asset, const SceneMaker& scenes, const PreviewArgum
   return encodeApng(renderTurn(scene, preview, count, progress), fps);
 }
 
+// In their order the `count` poses that stretch the surface the most by linear blending, so that deformers are shown in
+// the same ones.
+std::vector<RangeOfMotionPose> worstOf(std::vector<RangeOfMotionPose> range, std::size_t count, const Asset& asset) {
+  if (range.size() <= count) return range;
+  const SceneMaker scenes(asset);
+  std::vector<std::pair<double, std::size_t>> order;
+  for (std::size_t i = 0; i < range.size(); ++i) {
+    const Scene scene = scenes.at(range[i].pose);
+    order.emplace_back(-surfaceStretch(scene.boundPositions, scene.positions, scene.triangles).mean, i);
+  }
+  std::sort(order.begin(), order.end());
+  order.resize(count);
+  std::sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  std::vector<RangeOfMotionPose> worst;
+  for (const auto& [stretch, index] : order) worst.push_back(std::move(range[index]));
+  return worst;
+}
+
 // A sheet of a range of motion test, whatever clips there are.
-Bytes rangePicture(const Asset& asset, const SceneMaker& scenes, const PreviewOptions& preview, Warnings& warnings) {
+Bytes rangePicture(const Asset& asset, const SceneMaker& scenes, int worst, const PreviewOptions& preview,
+                   Warnings& warnings) {
   if (!hasRig(asset)) {
     throw Error(ErrorCode::kUnsupported, "has no rig by which it could be stretched", asset.name,
                 "make one with limber rig");
   }
   const Skeleton skeleton = animatedSkeleton(asset).skeleton;
-  const std::vector<RangeOfMotionPose> range = rangeOfMotion(skeleton, readAnatomy(skeleton));
+  std::vector<RangeOfMotionPose> range = rangeOfMotion(skeleton, readAnatomy(skeleton));
   if (range.empty()) {
     throw Error(ErrorCode::kUnsupported, "has no part of a body that could be bent", asset.name,
                 "name a clip by --clip, and --time or --frames");
   }
+  if (worst > 0) range = worstOf(std::move(range), static_cast<std::size_t>(worst), asset);
   checkPixels(range.size(), preview);
   std::vector<Image> images;
   for (const RangeOfMotionPose& one : range) {
@@ -141,6 +164,9 @@ void run(PreviewArguments options) {
   preview.joint = options.joint;
   preview.backdrop = parseBackdrop(options.background);
   const bool isRange = preview.show == PreviewShow::kStretch && !showsClip(options) && !options.turntable;
+  if (options.worst > 0 && !isRange) {
+    throw Error(ErrorCode::kBadArgument, "--worst is for a range of motion", "", "add --show stretch, and no clip");
+  }
   const bool several = options.animate || options.turntable || options.frames > 0 || isRange;
   if (options.size.empty()) options.size = several ? "320x320" : "1024x768";
   parseSize(options.size, preview);
@@ -162,7 +188,7 @@ void run(PreviewArguments options) {
     const SceneMaker scenes(asset, deformer);
     if (options.turntable) return turntable(asset, scenes, options, preview, *progress, warnings);
     if (showsClip(options)) return clipPicture(asset, scenes, options, preview, *progress, warnings);
-    if (isRange) return rangePicture(asset, scenes, preview, warnings);
+    if (isRange) return rangePicture(asset, scenes, options.worst, preview, warnings);
     return stillPicture(scenes, preview, warnings);
   };
   const Bytes png = draw();
@@ -206,6 +232,9 @@ void addPreviewCommand(CLI::App& program) {
   command->add_flag("--turntable", options->turntable, "an animated PNG of the model from all around, in 4 seconds")
       ->excludes(animate)
       ->excludes(frames);
+  command->add_option("--worst", options->worst, "of a range of motion the N poses that stretch the surface the most")
+      ->check(CLI::Range(1, 400))
+      ->type_name("N");
   command->add_option("--fps", options->fps, "pictures a second of an animation or a turntable (default 20)")
       ->check(numberIn(0.1, 100))
       ->type_name("RATE");
@@ -222,10 +251,12 @@ void addPreviewCommand(CLI::App& program) {
   command->footer(
       "A file with a skeleton and no mesh, such as a BVH, is shown as its bones.\n"
       "Stretch is blue where the surface keeps its size at rest, and red where it is twice or half of it: at a\n"
-      "moment of a clip, or without one as a sheet of a range of motion test (limber evaluate model --help).\n" +
+      "moment of a clip, or without one as a sheet of a range of motion test (limber evaluate model --help), of which\n"
+      "--worst takes the poses that stretch the most by linear blending, whatever the deformer.\n" +
       deformerList() +
       "\nExamples:\n"
       "  limber preview rigged.glb --show stretch -o stretch.png\n"
+      "  limber preview rigged.glb --show stretch --worst 4 --deformer delta-mush -o stretch.png\n"
       "  limber preview rigged.glb --show handles --view 30,15 -o handles.png\n"
       "  limber preview walking.glb --frames 8 -o sheet.png\n"
       "  limber preview scan.obj --show parts --count 6 -o parts.png\n"

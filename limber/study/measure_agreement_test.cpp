@@ -86,6 +86,19 @@ TEST(MeasureAgreement, KnowsWhichSideIsBetter) {
   EXPECT_NEAR(measureAgreement(cells).at(0).correlation, 1, 1e-12);
 }
 
+// Only the first deformer of a rig is compared with the artist's; the others' figures do not take its place.
+TEST(MeasureAgreement, FurtherDeformersDoNotMix) {
+  Json cells = study("m", "stretch", {1, 2, 3}, "weight_l1", {0.1, 0.2, 0.3});
+  for (Json& row : cells["cells"]) row["deformer"] = "linear-blend";
+  for (int i = 0; i < 3; ++i) {
+    Json row = rowOf("m", std::string(1, static_cast<char>('a' + i)), "stretch", 3 - i);
+    row["deformer"] = "delta-mush";
+    cells["cells"].push_back(row);
+  }
+  const Json all[] = {cells};
+  EXPECT_NEAR(measureAgreement(all).at(0).correlation, 1, 1e-12);
+}
+
 TEST(MeasureAgreement, TwoMethodsOrOnesAlikeSayNothing) {
   const Json two[] = {study("m", "stretch", {1, 2}, "weight_l1", {1, 2})};
   EXPECT_TRUE(measureAgreement(two).empty());

@@ -78,6 +78,9 @@ std::string overview(const KindRankings& report, bool ranks, std::string_view ti
   std::string html = tableHead(fmt::format("{}: {}", kindTitle(report.kind), title), columns);
   for (const GroupRankings& group : report.groups) {
     for (const std::string& method : report.methods) {
+      const auto isThere = [&](const Ranking& all) { return all.measure->ranks == ranks && all.scoreOf(method); };
+      const std::vector<Ranking>& all = report.groups.front().rankings;
+      if (std::none_of(all.begin(), all.end(), isThere)) continue;
       html +=
           rowStart(method + " " + group.name) + textCell(method) + textCell(group.name.empty() ? "all" : group.name);
       for (const Ranking& ranking : group.rankings) {
@@ -183,7 +186,7 @@ std::string pictureHtml(const CellPicture& picture, const std::string& alt, cons
   const bool moves = picture.name == "motion", isSheet = picture.name == "stretch";
   const std::string image = fmt::format("<img loading=\"lazy\"{} alt=\"{}: {}\" src=\"{}\" width=\"{}\" height=\"{}\">",
                                         isSheet ? " class=\"sheet\"" : "", htmlText(picture.name), htmlText(alt),
-                                        source(picture), isSheet ? 320 : 160, isSheet ? 192 : 160);
+                                        source(picture), isSheet ? 224 : 160, isSheet ? 224 : 160);
   // Whoever does not want things to move does not open it.
   return moves ? "<details><summary>Motion</summary>" + image + "</details>" : image;
 }
@@ -233,7 +236,7 @@ std::string header(const StudyResult& study) {
                                     [](const CellResult& r) { return r.outcome != JobOutcome::kDone; });
   return fmt::format(
       "<header><h1>{}</h1>\n<p>{}, of which {} did not end well. All figures: <a href=\"cells.csv\">cells.csv</a>, "
-      "<a href=\"cells.json\">cells.json</a>.</p>\n"
+      "<a href=\"cells.json\">cells.json</a>; to quote: <a href=\"summary.md\">summary.md</a>.</p>\n"
       "<label for=\"filter\">Show only what has these words</label>"
       "<input type=\"search\" id=\"filter\" placeholder=\"model, method or folder\"> "
       "<span id=\"shown\" role=\"status\"></span></header>\n",

@@ -8,15 +8,15 @@ namespace limber {
 
 namespace {
 
-constexpr std::string_view kPictureSize = "160x160", kMovingSize = "160x160", kMovingFps = "8",
-                           kPoseSize = "64x64";  // of each pose of a range of motion
-constexpr std::string_view kShown = "0:4";       // seconds of a motion that its picture shows
+constexpr std::string_view kPictureSize = "160x160", kMovingSize = "160x160", kMovingFps = "8", kPoseSize = "112x112",
+                           kPoses = "4";    // of a range of motion
+constexpr std::string_view kShown = "0:4";  // seconds of a motion that its picture shows
 
-// A sheet of the range of motion, by the cell's deformer. What has no part that bends has none.
+// The poses that stretch the most, by the cell's deformer. What has no part that bends has none.
 void addStretchPicture(StudyCell& cell) {
   cell.steps.push_back({"preview stretch",
-                        {"preview", "rigged.glb", "--show", "stretch", "--deformer", cell.deformer, "--size",
-                         std::string(kPoseSize), "--quiet", "-o", "stretch.png"},
+                        {"preview", "rigged.glb", "--show", "stretch", "--worst", std::string(kPoses), "--deformer",
+                         cell.deformer, "--size", std::string(kPoseSize), "--quiet", "-o", "stretch.png"},
                         MeasureSource::kNone,
                         {},
                         "stretch",
