@@ -32,6 +32,7 @@ void addMotionEvaluation(CLI::App& evaluate);  // subcommands of evaluate
 void addRetargetingEvaluation(CLI::App& evaluate);
 void addDecompositionEvaluation(CLI::App& evaluate);
 void addTransferEvaluation(CLI::App& evaluate);
+void addVotesEvaluation(CLI::App& evaluate);
 
 // The exit code of a command for which memory did not suffice.
 inline constexpr int kOutOfMemoryCode = 3;

@@ -530,6 +530,7 @@ void addEvaluateCommand(CLI::App& program) {
   addRig(*evaluate);
   addModel(*evaluate);
   addMeasures(*evaluate);
+  addVotesEvaluation(*evaluate);
   addAnatomy(*evaluate);
   addRiggers(*evaluate);
   addSkinning(*evaluate);
