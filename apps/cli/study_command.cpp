@@ -1,6 +1,8 @@
 // limber study: methods side by side over many models, as tables and as a page.
 #include <algorithm>
 #include <filesystem>
+#include <span>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -16,6 +18,7 @@
 #include "limber/study/study_run.h"
 #include "limber/study/study_summary.h"
 #include "progress_line.h"
+#include "vote_files.h"
 
 namespace limber::cli {
 
@@ -23,6 +26,7 @@ namespace {
 
 struct StudyArguments {
   std::string plan, output;
+  std::vector<std::string> votes;
   int jobs = 0;  // 0: as many as there are processors for
   bool retries = false, noTimes = false, prints = false, quiet = false;
   AdapterArguments adapters;
@@ -37,9 +41,10 @@ StudyPlan readPlan(const std::string& file, const AdapterArguments& adapters) {
   }
 }
 
-void writeReport(const StudyResult& study, const std::filesystem::path& folder, const SummaryOptions& options) {
-  const std::string csv = cellsCsv(study), json = cellsJson(study), page = reportPage(study, folder),
-                    summary = studySummary(study, options);
+void writeReport(const StudyResult& study, std::span<const Vote> votes, const std::filesystem::path& folder,
+                 const SummaryOptions& options) {
+  const std::string csv = cellsCsv(study), json = cellsJson(study),
+                    page = reportPage(study, folder, rankByVotes(votes)), summary = studySummary(study, options);
   const OutputFile files[] = {{folder / "cells.csv", asBytes(csv)},
                               {folder / "cells.json", asBytes(json)},
                               {folder / "summary.md", asBytes(summary)},
@@ -55,6 +60,7 @@ void run(const StudyArguments& arguments) {
   if (arguments.plan.empty()) throw CLI::RequiredError("PLAN");
   if (arguments.output.empty()) throw CLI::RequiredError("--output");
   const StudyPlan plan = readPlan(arguments.plan, arguments.adapters);
+  const std::vector<Vote> allVotes = readVotes(arguments.votes);
   StudyOptions options;
   options.program = ownProgram();
   options.planFolder =
@@ -66,8 +72,15 @@ void run(const StudyArguments& arguments) {
   TerminalProgress progress(arguments.quiet);
   const StudyResult study = runStudy(plan, options, *progress);
   progress->stage("write");
-  writeReport(study, options.output, {!arguments.noTimes});
+  const std::vector<Vote> votes = votesOn(study.cells, allVotes);
+  writeReport(study, votes, options.output, {!arguments.noTimes});
   progress.finish();
+  Warnings skipped;
+  if (votes.size() < allVotes.size()) {
+    skipped.add("votes-on-other-results", "votes left out that are on results of other studies", {},
+                allVotes.size() - votes.size());
+  }
+  printWarnings(skipped, arguments.quiet);
   const auto failed = std::count_if(study.results.begin(), study.results.end(),
                                     [](const CellResult& result) { return result.outcome != JobOutcome::kDone; });
   const Account account(arguments.quiet, {});
@@ -88,6 +101,8 @@ void addStudyCommand(CLI::App& program) {
   command->add_option("--jobs", arguments->jobs, "cells at once (default: as many as there are processors for)")
       ->check(CLI::Range(1, 1024).description(""))
       ->type_name("N");
+  command->add_option("--votes", arguments->votes, "votes.csv files that this study's page saved: rank by them as well")
+      ->type_name("FILE");
   arguments->adapters.addFolderTo(*command);
   command->add_flag("--retry", arguments->retries, "run again what crashed, was refused or ran out of time or memory");
   command->add_flag("--no-times", arguments->noTimes,
@@ -99,10 +114,12 @@ void addStudyCommand(CLI::App& program) {
       "in FOLDER/cells under a hash of the program, the arguments and the model's bytes. So a study that was stopped\n"
       "goes on, and another method costs its own cells alone. FOLDER/cells.csv and cells.json have a line for each\n"
       "cell and measure; FOLDER/index.html shows rankings, tests, the worst cells and all pictures, and\n"
-      "FOLDER/summary.md has the medians and which methods the tests tell apart, to quote. docs/study.md tells more.\n"
+      "has a blind ballot whose votes --votes ranks; FOLDER/summary.md has the medians and which methods the tests\n"
+      "tell apart, to quote. docs/study.md tells more.\n"
       "\nExamples:\n"
       "  limber study --example > plan.json\n"
-      "  limber study plan.json -o report");
+      "  limber study plan.json -o report\n"
+      "  limber study plan.json -o report --votes anna.csv ben.csv");
   command->callback([arguments] { run(*arguments); });
 }
 

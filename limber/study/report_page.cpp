@@ -13,6 +13,7 @@
 #include "limber/core/counted.h"
 #include "limber/core/file.h"
 #include "limber/core/names.h"
+#include "limber/study/ballot_page.h"
 #include "limber/study/html_text.h"
 #include "limber/study/report_assets.h"
 #include "limber/study/study_rankings.h"
@@ -66,21 +67,29 @@ std::string cellLink(const StudyResult& study, std::size_t cell) {
                      htmlText(study.cells[cell].subject()));
 }
 
+// In percent.
+std::string strengthCell(const VoteRanking& byEye, const std::string& method) {
+  const auto score = std::find_if(byEye.scores.begin(), byEye.scores.end(),
+                                  [&](const VoteScore& one) { return one.method == method; });
+  return score == byEye.scores.end() ? kNoNumber : numberCell(100 * score->strength);
+}
+
 // The medians of all measures that rank, or of those that do not, side by side: a line for each method, over all and in
-// each folder.
-std::string overview(const KindRankings& report, bool ranks, std::string_view title) {
+// each folder. byEye: the ranking by votes beside them, or null.
+std::string overview(const KindRankings& report, bool ranks, std::string_view title, const VoteRanking* byEye) {
   std::vector<Column> columns = {{"method", true}, {"folder", true}};
   for (const Ranking& ranking : report.groups.front().rankings) {
     if (ranking.measure->ranks != ranks) continue;
     columns.push_back({fmt::format("{} ({})", ranking.measure->label, ranking.measure->unit)});
   }
-  if (columns.size() == 2) return {};
+  if (columns.size() == 2 && !byEye) return {};
+  if (byEye) columns.push_back({"by eye (%)"});
   std::string html = tableHead(fmt::format("{}: {}", kindTitle(report.kind), title), columns);
   for (const GroupRankings& group : report.groups) {
     for (const std::string& method : report.methods) {
       const auto isThere = [&](const Ranking& all) { return all.measure->ranks == ranks && all.scoreOf(method); };
       const std::vector<Ranking>& all = report.groups.front().rankings;
-      if (std::none_of(all.begin(), all.end(), isThere)) continue;
+      if (!byEye && std::none_of(all.begin(), all.end(), isThere)) continue;
       html +=
           rowStart(method + " " + group.name) + textCell(method) + textCell(group.name.empty() ? "all" : group.name);
       for (const Ranking& ranking : group.rankings) {
@@ -88,6 +97,7 @@ std::string overview(const KindRankings& report, bool ranks, std::string_view ti
         const MethodScore* score = ranking.scoreOf(method);
         html += score ? numberCell(score->value.median) : kNoNumber;
       }
+      if (byEye) html += group.name.empty() ? strengthCell(*byEye, method) : kNoNumber;
       html += "</tr>\n";
     }
   }
@@ -107,16 +117,36 @@ std::string rankingTable(const Ranking& ranking) {
   return html + std::string(kTableEnd);
 }
 
-std::string pairTable(const Ranking& ranking) {
-  if (ranking.pairs.empty()) return {};
-  std::string html = tableHead("Are they different? Wilcoxon's signed rank test, p after Holm",
-                               {{"method", true}, {"against", true}, {"better"}, {"worse"}, {"the same"}, {"p"}});
-  for (const MethodPair& pair : ranking.pairs) {
+std::string pairTable(std::span<const MethodPair> pairs, std::string_view caption) {
+  if (pairs.empty()) return {};
+  std::string html =
+      tableHead(caption, {{"method", true}, {"against", true}, {"better"}, {"worse"}, {"the same"}, {"p"}});
+  for (const MethodPair& pair : pairs) {
     html += rowStart(pair.first + " " + pair.second) + textCell(pair.first) + textCell(pair.second) +
             countCell(pair.firstWins) + countCell(pair.secondWins) + countCell(pair.ties) + numberCell(pair.p) +
             "</tr>\n";
   }
   return html + std::string(kTableEnd);
+}
+
+std::string votesHtml(const VoteRanking& byEye) {
+  std::string html = fmt::format(
+      "<details class=\"measure\" open><summary>By eye ({} of {}; more is better)</summary>\n"
+      "<p>Strength: the chance that a method is chosen beside one of middling strength (Bradley-Terry). The interval "
+      "is "
+      "of the votes.</p>\n",
+      counted(byEye.votes, "vote"), counted(byEye.voters, "voter"));
+  html +=
+      tableHead("Ranking by eye",
+                {{"rank"}, {"method", true}, {"votes"}, {"chosen (%)"}, {"strength (%)"}, {"95 % from"}, {"95 % to"}});
+  for (std::size_t i = 0; i < byEye.scores.size(); ++i) {
+    const VoteScore& score = byEye.scores[i];
+    html += rowStart(score.method) + countCell(i + 1) + textCell(score.method) + countCell(score.votes);
+    for (const double part : {score.chosen, score.strength, score.low, score.high}) html += numberCell(100 * part);
+    html += "</tr>\n";
+  }
+  return html + std::string(kTableEnd) + pairTable(byEye.pairs, "Are they different by eye? Sign test, p after Holm") +
+         "</details>\n";
 }
 
 std::string worstTable(const StudyResult& study, const Ranking& ranking) {
@@ -130,21 +160,23 @@ std::string worstTable(const StudyResult& study, const Ranking& ranking) {
   return html + std::string(kTableEnd);
 }
 
-std::string kindSection(const StudyResult& study, const KindRankings& report) {
+std::string kindSection(const StudyResult& study, const KindRankings& report, const VoteRanking* byEye) {
   std::string html = fmt::format("<section><h2>{}: rankings</h2>\n", kindTitle(report.kind)) +
-                     overview(report, true, "medians of all methods");
+                     overview(report, true, "medians of all methods", byEye);
   html += "<p>A method that failed on a model counts as worse there than any that did not.</p>\n";
+  if (byEye) html += votesHtml(*byEye);
   bool isFirst = true;
   for (const Ranking& ranking : report.groups.front().rankings) {
     if (!ranking.measure->ranks) continue;
     html +=
         fmt::format("<details class=\"measure\"{}><summary>{} ({}; {})</summary>\n", isFirst ? " open" : "",
                     htmlText(ranking.measure->label), htmlText(ranking.measure->unit), betterSide(*ranking.measure));
-    html +=
-        rankingTable(ranking) + timePlot(ranking) + pairTable(ranking) + worstTable(study, ranking) + "</details>\n";
+    html += rankingTable(ranking) + timePlot(ranking) +
+            pairTable(ranking.pairs, "Are they different? Wilcoxon's signed rank test, p after Holm") +
+            worstTable(study, ranking) + "</details>\n";
     isFirst = false;
   }
-  return html + overview(report, false, "medians of measures that rank nothing") + "</section>\n";
+  return html + overview(report, false, "medians of measures that rank nothing", nullptr) + "</section>\n";
 }
 
 std::string failureSection(const StudyResult& study) {
@@ -184,9 +216,9 @@ PictureSource pictureSource(const StudyResult& study, const std::filesystem::pat
 
 std::string pictureHtml(const CellPicture& picture, const std::string& alt, const PictureSource& source) {
   const bool moves = picture.name == "motion", isSheet = picture.name == "stretch";
-  const std::string image = fmt::format("<img loading=\"lazy\"{} alt=\"{}: {}\" src=\"{}\" width=\"{}\" height=\"{}\">",
-                                        isSheet ? " class=\"sheet\"" : "", htmlText(picture.name), htmlText(alt),
-                                        source(picture), isSheet ? 224 : 160, isSheet ? 224 : 160);
+  const std::string image = fmt::format(
+      "<img loading=\"lazy\"{4} data-picture=\"{0}\" alt=\"{0}: {1}\" src=\"{2}\" width=\"{3}\" height=\"{3}\">",
+      htmlText(picture.name), htmlText(alt), source(picture), isSheet ? 224 : 160, isSheet ? " class=\"sheet\"" : "");
   // Whoever does not want things to move does not open it.
   return moves ? "<details><summary>Motion</summary>" + image + "</details>" : image;
 }
@@ -194,9 +226,11 @@ std::string pictureHtml(const CellPicture& picture, const std::string& alt, cons
 std::string cellFigure(const StudyResult& study, std::size_t index, const PictureSource& source) {
   const StudyCell& cell = study.cells[index];
   const CellResult& result = study.results[index];
-  std::string html = fmt::format("<figure id=\"cell-{}\" data-words=\"{}\"><figcaption>{}</figcaption>\n", index,
-                                 htmlText(lowerCase(cell.subject() + " " + cell.group + " " + cell.method())),
-                                 htmlText(cell.method()));
+  std::string html = fmt::format(
+      "<figure id=\"cell-{0}\" data-words=\"{1}\" data-kind=\"{2}\" data-subject=\"{3}\" data-method=\"{4}\">"
+      "<figcaption>{4}</figcaption>\n",
+      index, htmlText(lowerCase(cell.subject() + " " + cell.group + " " + cell.method())), cellKindName(cell.kind),
+      htmlText(cell.subject()), htmlText(cell.method()));
   for (const CellPicture& picture : result.pictures) {
     html += pictureHtml(picture, cell.subject() + " by " + cell.method(), source);
   }
@@ -236,7 +270,8 @@ std::string header(const StudyResult& study) {
                                     [](const CellResult& r) { return r.outcome != JobOutcome::kDone; });
   return fmt::format(
       "<header><h1>{}</h1>\n<p>{}, of which {} did not end well. All figures: <a href=\"cells.csv\">cells.csv</a>, "
-      "<a href=\"cells.json\">cells.json</a>; to quote: <a href=\"summary.md\">summary.md</a>.</p>\n"
+      "<a href=\"cells.json\">cells.json</a>; to quote: <a href=\"summary.md\">summary.md</a>. "
+      "<a href=\"#ballot\" hidden>Judge by eye</a></p>\n"
       "<label for=\"filter\">Show only what has these words</label>"
       "<input type=\"search\" id=\"filter\" placeholder=\"model, method or folder\"> "
       "<span id=\"shown\" role=\"status\"></span></header>\n",
@@ -245,17 +280,22 @@ std::string header(const StudyResult& study) {
 
 }  // namespace
 
-std::string reportPage(const StudyResult& study, const std::filesystem::path& folder) {
+std::string reportPage(const StudyResult& study, const std::filesystem::path& folder,
+                       std::span<const VoteRanking> byEye) {
   std::string html = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">"
       "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data: file: 'self'; "
       "style-src 'unsafe-inline'; script-src 'unsafe-inline'\">"
-      "<title>{}</title><style>{}</style></head><body>\n{}<main>\n",
-      htmlText(study.title), kReportStyle, header(study));
-  for (const KindRankings& report : studyRankings(study)) html += kindSection(study, report);
-  html += failureSection(study) + pictureSection(study, pictureSource(study, folder));
-  return html + fmt::format("</main><script>{}</script></body></html>\n", kReportScript);
+      "<title>{}</title><style>{}{}</style></head><body>\n{}<main>\n",
+      htmlText(study.title), kReportStyle, kBallotStyle, header(study));
+  for (const KindRankings& report : studyRankings(study)) {
+    const auto votes =
+        std::find_if(byEye.begin(), byEye.end(), [&](const VoteRanking& one) { return one.kind == report.kind; });
+    html += kindSection(study, report, votes == byEye.end() ? nullptr : &*votes);
+  }
+  html += failureSection(study) + ballotSection(study) + pictureSection(study, pictureSource(study, folder));
+  return html + fmt::format("</main><script>{}{}</script></body></html>\n", kReportScript, kBallotScript);
 }
 
 }  // namespace limber

@@ -79,6 +79,29 @@ TEST_F(ReportPage, EscapesWhateverComesOutOfFiles) {
   EXPECT_THAT(page, HasSubstr("What did not end well"));
 }
 
+TEST_F(ReportPage, HasABallotThatTellsNoMethod) {
+  putPicture(3);
+  const std::string page = pageOf(studyOf("fox"));
+  const std::size_t begin = page.find("<section id=\"ballot\""), end = page.find("</section>", begin);
+  ASSERT_NE(end, std::string::npos);
+  EXPECT_THAT(page.substr(begin, end - begin), Not(HasSubstr("template")));
+  EXPECT_THAT(page, AllOf(HasSubstr("data-kind=\"rig\" data-subject=\"fox\" data-method=\"template + bone-heat\""),
+                          HasSubstr("data-picture=\"bones\""), Not(HasSubstr("Ranking by eye"))));
+  EXPECT_EQ(pageOf(studyOf("fox")), page);
+  // Other pictures have other votes.
+  const auto keyOf = [](const std::string& text) { return text.substr(text.find("data-study="), 80); };
+  EXPECT_NE(keyOf(pageOf(studyOf("hen"))), keyOf(page));
+}
+
+TEST_F(ReportPage, ShowsRankingsByEyeBesideTheMeasuredOnes) {
+  putPicture(3);
+  const Vote votes[] = {{"anna", CellKind::kRig, "fox", "template + bone-heat", "<b> + bone-heat", Choice::kFirst}};
+  const std::vector<VoteRanking> byEye = rankByVotes(votes);
+  const std::string page = reportPage(studyOf("fox"), folder_.path(), byEye);
+  EXPECT_THAT(page, AllOf(HasSubstr("By eye (1 vote of 1 voter"), HasSubstr("Ranking by eye"), HasSubstr("by eye (%)"),
+                          HasSubstr("Sign test"), HasSubstr("&lt;b&gt; + bone-heat"), Not(HasSubstr("<b> +"))));
+}
+
 // No server and no network: nothing but the tables and pictures beside the page is referred to.
 TEST_F(ReportPage, ReachesForNothingElsewhere) {
   putPicture(3);
