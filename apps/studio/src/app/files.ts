@@ -55,6 +55,8 @@ export interface Brought {
   motions: File[];
   poses: File[];
   limits: File | null;
+  /** The cells.json of a study. */
+  report: File | null;
   /** By name: what the model may refer to. */
   beside: Map<string, File>;
 }
@@ -103,10 +105,11 @@ export async function sorted(files: File[]): Promise<Brought> {
   const motions = all.filter((file) => /\.bvh$/i.test(file.name) || moving.has(file));
   const poses = await posesAmong(all);
   const found = all.find((file) => model.test(file.name) && !moving.has(file)) ?? null;
-  const limits = found === null && motions.length === 0 ? all.find((file) => /\.json$/i.test(file.name) && !poses.includes(file)) ?? null : null;
+  const report = all.find((file) => /cells[^/]*\.json$/i.test(file.name)) ?? null;
+  const limits = found === null && motions.length === 0 ? all.find((file) => /\.json$/i.test(file.name) && !poses.includes(file) && file !== report) ?? null : null;
   // What no reader knows is opened all the same: its reader says so.
-  const only = all.length === 1 && motions.length === 0 && poses.length === 0 && limits === null ? all[0]! : null;
-  return { model: found ?? only, motions, poses, limits, beside: new Map(all.map((file) => [file.name, file])) };
+  const only = all.length === 1 && motions.length === 0 && poses.length === 0 && limits === null && report === null ? all[0]! : null;
+  return { model: found ?? only, motions, poses, limits, report, beside: new Map(all.map((file) => [file.name, file])) };
 }
 
 const typeOf = (name: string) => ({ png: 'image/png', jpg: 'image/jpeg', jpeg: 'image/jpeg', webp: 'image/webp' }[name.split('.').pop()?.toLowerCase() ?? '']

@@ -1,4 +1,5 @@
 // What the page shows, in one place.
+import type { ReportRow } from './report_rows';
 import type {
   Curve, LimberError, Measures, MethodKind, Methods, OtherMember, Paths, SampleMotion, SamplePose, SessionState, SurfaceModel, SurfaceParts,
   Variant,
@@ -36,8 +37,9 @@ export interface Notice {
 
 /** The document beside what other methods make of it. */
 export interface Comparison {
-  kind: MethodKind;
-  /** Of the others, in their order. */
+  /** "report": with rows of a study's report. */
+  kind: MethodKind | 'report';
+  /** Of the others, in their order; of rows, what PageState.report calls them. */
   names: string[];
   /** What came of each; empty while they are being made. */
   variants: (Variant | LimberError)[];
@@ -150,6 +152,8 @@ export interface PageState {
   /** The text of the pose that was copied. */
   copiedPose: string | null;
   comparison: Comparison | null;
+  /** Rows of a study's report that the user opened, which the page can do as well or says why not. */
+  report: readonly ReportRow[];
   /** Parts of the model that are not drawn, by their place in it. */
   hiddenParts: ReadonlySet<number>;
   /** The model that the chosen clip's motion came with. */
@@ -167,7 +171,7 @@ export const createPageStore = (): PageStore => new Store<PageState>({
   seconds: 0, playing: false, speed: 1, loop: true, autoKey: true, gizmo: false, gizmoSpace: 'world', snapping: false, selecting: false, limits: false, correcting: false,
   span: 0.3, keyEditor: null, feet: false, chosenKeys: [], ghosts: false, ghostsShown: [], paths: null, curve: null,
   painting: false, brush: { mode: 'add', size: 0.05, strength: 0.5 }, placing: false,
-  methods: null, sampleMotions: [], ownMotions: [], shelf: false, samplePoses: [], ownPoses: [], poseLibrary: false, copiedPose: null, comparison: null, hiddenParts: new Set(), sourceModel: null, sourceShown: true, ar: null,
+  methods: null, sampleMotions: [], ownMotions: [], shelf: false, samplePoses: [], ownPoses: [], poseLibrary: false, copiedPose: null, comparison: null, report: [], hiddenParts: new Set(), sourceModel: null, sourceShown: true, ar: null,
 });
 
 export const noticeOf = (error: LimberError): Notice => ({ kind: 'error', ...told(error) });

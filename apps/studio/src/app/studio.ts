@@ -34,7 +34,7 @@ function allCalls(core: Core, journal: Journal) {
   const posing = posingCalls(core), { told } = undoNotices(core, posing.undo);
   const clips = clipCalls(core), rig = rigCalls(core, told), joints = jointCalls(core), members = memberCalls(core);
   return {
-    ...openingCalls(core, journal, clips, motions, rig), ...members, ...motions, ...clips, ...keying, ...ghostCalls(core),
+    ...openingCalls(core, journal, clips, motions, rig, comparing), ...members, ...motions, ...clips, ...keying, ...ghostCalls(core),
     ...posing, ...dragCalls(core, rig), ...selectionCalls(core, joints, members, rig), ...rig, ...joints, ...comparing,
     ...outcomeCalls(core),
   };

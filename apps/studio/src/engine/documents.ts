@@ -232,18 +232,24 @@ export class Documents {
     return { motion, model: orThrow(source.session.model()).model, joints: source.state.joints.length };
   }
 
-  compare(commands: Command[]): Answers['compare'] {
+  compare(lists: Command[][]): Answers['compare'] {
     this.endComparison();
-    const variants = commands.map((command): Variant | LimberError => {
+    const variants = lists.map((commands): Variant | LimberError => {
       const session = this.limber.forkSession(this.session);
       if (!session) return dragged;
-      const step = session.run(command);
-      if (!step.ok || !step.state) {
-        session.free();
-        return step.ok ? { code: 'engine', message: 'nothing came of it', where: '', remedy: '' } : step.error;
+      let state: SessionState | null = null, error: LimberError = { code: 'engine', message: 'nothing came of it', where: '', remedy: '' };
+      for (const command of commands) {
+        const step = session.run(command);
+        state = step.ok ? step.state : null;
+        if (!step.ok) error = step.error;
+        if (!state) break;
       }
-      this.variants.push({ session, clip: step.state.clip !== null });
-      return { model: orThrow(session.model()).model, state: step.state, measures: orThrow(session.measures()).measures };
+      if (!state) {
+        session.free();
+        return error;
+      }
+      this.variants.push({ session, clip: state.clip !== null });
+      return { model: orThrow(session.model()).model, state, measures: orThrow(session.measures()).measures };
     });
     const { skin } = orThrow(this.session.skin());
     return { measures: orThrow(this.session.measures()).measures, variants, stance: this.stance(skin) };

@@ -166,7 +166,8 @@ export type Request =
   | { kind: 'curve'; joint: number }
   | { kind: 'methods' }
   /** Beside the document one more for each command, carried out on it; none: the document alone. */
-  | { kind: 'compare'; commands: Command[] }
+  /** For each of the others what makes it, in order. */
+  | { kind: 'compare'; commands: Command[][] }
   | { kind: 'export'; format: ExportFormat }
   | { kind: 'record' };
 

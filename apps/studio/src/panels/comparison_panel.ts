@@ -1,11 +1,13 @@
 // Below each figure of a comparison: its method, and what it measures.
 import type { LimberError, Measures, Variant } from '../engine/messages';
-import type { Comparison, PageStore } from '../app/state';
+import { chosenClip } from '../app/clips';
+import { obstacleOf, type Obstacle, type ReportRow } from '../app/report_rows';
+import type { Comparison, PageState, PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
 import type { ComparisonView } from '../scene/comparison_view';
 import { button, element } from '../ui/dom';
 import { methodName, methodSummary, told } from '../words/engine';
-import { number, percent, say } from '../words/say';
+import { language, number, percent, say } from '../words/say';
 import { currentMethod } from './methods_panel';
 
 const most = 4; // figures beside each other
@@ -31,6 +33,43 @@ function figuresOf(measures: Measures): [string, string][] {
   return rows;
 }
 
+/** What can stand beside the model. */
+interface Choice {
+  name: string;
+  text: string;
+  summary: string;
+  /** Why it cannot, else empty. */
+  why: string;
+  row?: ReportRow;
+}
+
+const whyNot: Record<Obstacle, string> = {
+  method: say('not in the page'), own: say('keeps each model\u2019s own skeleton'), solver: say('another solver'), motion: say('needs a motion'),
+};
+
+function choicesOf({ kind }: Comparison, { methods, report, session }: PageState): Choice[] {
+  if (!methods) return [];
+  if (kind !== 'report') return methods[kind].map((method) => ({ name: method.name, text: methodName(method.name), summary: methodSummary(method), why: '' }));
+  return report.map((row) => {
+    const obstacle = obstacleOf(row, methods, Boolean(chosenClip(session)?.source));
+    return { name: row.name, text: row.name, summary: '', why: obstacle ? whyNot[obstacle] : '', row };
+  });
+}
+
+function ownName({ kind }: Comparison, now: PageState): string {
+  if (kind !== 'report') return methodName(currentMethod(kind, now));
+  return (['rigger', 'skinning', 'deformer', 'retargeting'] as const).map((one) => currentMethod(one, now)).filter(Boolean).join(' + ');
+}
+
+/** What the report says of a row; its own words. */
+function fromReport({ cells, done, options, figures }: ReportRow): HTMLElement {
+  const rows: [string, string][] = [[say('Ended well'), `${done}/${cells}`], ...figures.map(({ measure, median }): [string, string] =>
+    [measure.replaceAll('_', ' '), median.toLocaleString(language, { maximumSignificantDigits: 4 })])];
+  return element('details', { class: 'report' }, element('summary', {}, say('In the report')),
+    options ? element('p', { class: 'note' }, say('with options that are not set here: {options}', { options })) : null,
+    element('dl', {}, ...rows.flatMap(([name, value]) => [element('dt', {}, name), element('dd', {}, value)])));
+}
+
 export function comparisonPanel(studio: Studio, page: PageStore, view: ComparisonView): HTMLElement {
   const root = element('section', { class: 'comparison', 'aria-label': say('Comparison'), id: 'comparison', hidden: true });
   const close = button(say('End comparison'), () => void studio.endComparison(), { id: 'end-comparison', kind: 'primary' });
@@ -43,20 +82,21 @@ export function comparisonPanel(studio: Studio, page: PageStore, view: Compariso
   const column = (comparison: Comparison, index: number): HTMLElement => {
     const card = element('div', { class: 'card column' });
     if (index < 0) {
-      card.append(element('h3', {}, methodName(currentMethod(comparison.kind, page.now))));
+      card.append(element('h3', {}, ownName(comparison, page.now)));
       if (comparison.measures) card.append(table(comparison.measures));
       return card;
     }
-    const methods = page.now.methods?.[comparison.kind] ?? [];
+    const choices = choicesOf(comparison, page.now);
     const select = element('select', { class: 'select', 'aria-label': say('The method beside it') },
-      ...methods.map((method) => element('option', { value: method.name, title: methodSummary(method) }, methodName(method.name))));
+      ...choices.map(({ name, text, summary, why }) => element('option', { value: name, title: summary, disabled: why !== '' }, why ? `${text} (${why})` : text)));
     select.value = comparison.names[index] ?? '';
     select.addEventListener('change', () => void studio.compare(comparison.kind, comparison.names.map((name, i) => (i === index ? select.value : name))));
     const remove = button('', () => {
       const names = comparison.names.filter((_, i) => i !== index);
       void (names.length > 0 ? studio.compare(comparison.kind, names) : studio.endComparison());
     }, { icon: 'erase', label: say('Take this one out') });
-    card.append(element('div', { class: 'row head' }, select, remove), result(comparison.variants[index]));
+    const row = choices.find(({ name }) => name === select.value)?.row;
+    card.append(element('div', { class: 'row head' }, select, remove), result(comparison.variants[index]), row ? fromReport(row) : '');
     return card;
   };
 
@@ -68,8 +108,8 @@ export function comparisonPanel(studio: Studio, page: PageStore, view: Compariso
     if (!comparison) return;
     columns = [column(comparison, -1), ...comparison.names.map((_, i) => column(comparison, i))];
     columns.forEach((one, i) => one.style.setProperty('--at', String((i + 1) / (columns.length + 1))));
-    const unused = page.now.methods?.[comparison.kind].find(({ name }) =>
-      name !== currentMethod(comparison.kind, page.now) && !comparison.names.includes(name));
+    const own = comparison.kind === 'report' ? '' : currentMethod(comparison.kind, page.now);
+    const unused = choicesOf(comparison, page.now).find(({ name, why }) => !why && name !== own && !comparison.names.includes(name));
     const add = button(say('Another'), () => void studio.compare(comparison.kind, [...comparison.names, unused!.name]), { icon: 'add', id: 'compare-another' });
     add.disabled = !unused || comparison.names.length + 1 >= most;
     root.style.setProperty('--count', String(columns.length));

@@ -3,7 +3,7 @@ import type { MethodKind, SessionState } from '../engine/messages';
 import type { PageState, PageStore } from '../app/state';
 import { hasTemplate } from '../app/calls/core';
 import type { Studio } from '../app/studio';
-import { button, element } from '../ui/dom';
+import { button, element, fileInput } from '../ui/dom';
 import { methodName, methodSummary } from '../words/engine';
 import { partName } from '../words/parts';
 import { say } from '../words/say';
@@ -51,7 +51,17 @@ export function methodsPanel(studio: Studio, page: PageStore): HTMLElement {
   };
   return element('details', { class: 'card methods', id: 'methods' }, element('summary', {}, say('How it is done')),
     row('rigger', say('Joints')), correction(studio, page), otherRigs(studio, page), row('skinning', say('Skin')),
-    row('deformer', say('Bending')), row('solver', say('Limbs')));
+    row('deformer', say('Bending')), row('solver', say('Limbs')), report(studio, page));
+}
+
+/** Whole rows of a study's report beside the model. */
+function report(studio: Studio, page: PageStore): HTMLElement {
+  const file = fileInput('report-file', { accept: '.json' }, ([chosen]) => void studio.openReport(chosen!));
+  const open = button(say('Compare with a report\u2026'), () => file.click(), {
+    icon: 'compare', id: 'compare-report', label: say('Methods out of the cells.json that limber study writes, beside this model'),
+  });
+  page.watch(({ session }) => { open.disabled = !session; });
+  return element('div', { class: 'row' }, open, file);
 }
 
 /** Joints of a named skeleton that are not where they should be. */

@@ -10,6 +10,7 @@ import { fromLimberFile, toLimberFile } from '../limber_file';
 import { openSample, sceneRecord } from '../samples';
 import type { Notice } from '../state';
 import type { ClipCalls } from './clips';
+import type { ComparingCalls } from './comparing';
 import type { Core } from './core';
 import type { MotionCalls } from './motions';
 import type { RigCalls } from './rig';
@@ -20,7 +21,9 @@ const noModel = (): Notice => ({ kind: 'error', title: say('There is no model in
 
 export type OpeningCalls = ReturnType<typeof openingCalls>;
 
-export function openingCalls(core: Core, journal: Journal, { forgetMoment }: ClipCalls, { openMotions }: MotionCalls, { openLimits }: RigCalls) {
+export function openingCalls(
+  core: Core, journal: Journal, { forgetMoment }: ClipCalls, { openMotions }: MotionCalls, { openLimits }: RigCalls, { openReport }: ComparingCalls,
+) {
   const { page, engine } = core;
   let openings = 0, opening: Promise<unknown> = Promise.resolve();
   engine.onChange = (request, place) => journal.add(request, place);
@@ -119,16 +122,17 @@ export function openingCalls(core: Core, journal: Journal, { forgetMoment }: Cli
       });
     },
 
-    /** A model with what belongs to it, motions for it, poses, or limits. */
+    /** A model with what belongs to it, motions for it, poses, limits, or a study's report. */
     async openFiles(files: File[]) {
       const brought = await broughtBy(files);
       if (!brought) return;
-      const { model, motions, poses, limits, beside } = brought;
+      const { model, motions, poses, limits, report, beside } = brought;
       if (model) await openModel(model, beside);
       await openMotions(motions);
       if (poses.length > 0) await core.onPoses(poses);
       if (limits) await openLimits(limits);
-      if (files.length > 0 && !model && motions.length === 0 && poses.length === 0 && !limits) page.set({ notice: noModel() });
+      if (report) await openReport(report);
+      if (files.length > 0 && !model && motions.length === 0 && poses.length === 0 && !limits && !report) page.set({ notice: noModel() });
     },
 
     async openAddress(address: string) {
