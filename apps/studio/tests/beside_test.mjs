@@ -6,10 +6,10 @@
 // Ends with "N passed, N failed".
 import assert from 'node:assert/strict';
 import { mkdirSync } from 'node:fs';
-import { resolve } from 'node:path';
+import { join, resolve } from 'node:path';
 import { asciiFbx, asciiPly, binaryStl, triangleCount, vertexCount, vrmOf } from './small_files.mjs';
 import { walkBvh } from './walk_bvh.mjs';
-import { download, jointPlace, jointPosition, launch, motionPlayed, openStudio, runCases, serve, sessionState, settled } from './page.mjs';
+import { barriers, download, jointPlace, jointPosition, launch, motionPlayed, openStudio, runCases, serve, sessionState, settled } from './page.mjs';
 
 const [dist, output] = process.argv.slice(2).map((path) => resolve(path));
 mkdirSync(output, { recursive: true });
@@ -78,6 +78,42 @@ const cases = {
     assert.equal((await sessionState(page)).targets.length, targets.length);
     await page.locator('#reset').click();
     await settled(page);
+  },
+  async 'a row of a study\u2019s report stands beside the model, with the report\u2019s figures'() {
+    const cell = (more) => ({ kind: 'rig', group: '', model: 'fox', motion: '', skinning: 'bone-heat', options: '', retargeting: '', solver: '', outcome: 'done', problem: '', ...more });
+    const cells = [cell({ rigger: 'uni<b>rig</b>', measure: 'joint_to_joint', value: 1 }), cell({ rigger: 'own', measure: 'seconds', value: 1 }),
+      cell({ rigger: 'curve-skeleton', options: '2 influences', measure: 'joint_to_joint', value: 3.25 }), cell({ rigger: 'sphere-mesh', measure: 'joint_to_joint', value: 4 }),
+      cell({ kind: 'retarget', rigger: '', skinning: '', retargeting: 'copy', measure: 'sliding', value: 2 })];
+    const bring = (input, text) => page.locator(input).setInputFiles({ name: 'cells.json', mimeType: 'application/json', buffer: Buffer.from(text) });
+    await bring('#report-file', JSON.stringify({ title: 'Riggers', cells }));
+    await columns(3); // the model's, the row's, and the report's own
+    await settled(page);
+    const choice = page.getByLabel('The method beside it');
+    assert.equal(await choice.inputValue(), 'curve-skeleton + bone-heat, 2 influences');
+    assert.deepEqual(await choice.locator('option:disabled').allTextContents(),
+      ['uni<b>rig</b> + bone-heat (not in the page)', 'own + bone-heat (keeps each model\u2019s own skeleton)', 'copy (needs a motion)']);
+    const [own, other, reported] = await measured();
+    assert.notDeepEqual(other, own);
+    assert.deepEqual(reported, { 'Ended well': '1/1', 'joint to joint': '3.25' });
+    await page.locator('#comparison .report summary').click();
+    await page.screenshot({ path: join(output, 'beside_report.png') });
+    assert.match(await page.locator('#comparison .report').textContent(), /options that are not set here: 2 influences/);
+    await page.locator('#compare-another').click();
+    await columns(5);
+    await settled(page);
+    assert.equal(await page.locator('#compare-another').isDisabled(), true);
+    assert.deepEqual(await barriers(page), []);
+    assert.equal((await sessionState(page)).undo, null, 'the document was changed');
+    await page.locator('#end-comparison').click();
+    await settled(page);
+    // As any other file; what is no report is refused, and one of which nothing can be done says so.
+    for (const [text, notice] of [['{"cells":[7]}', /holds no rows/], [JSON.stringify({ cells: cells.slice(0, 2) }), /none of the report\u2019s rows.*uni<b>rig/]]) {
+      await bring('#file', text);
+      await page.locator('#notice').waitFor();
+      assert.match(await page.locator('#notice').textContent(), notice);
+      await page.locator('#close-notice').click();
+    }
+    assert.equal(await page.locator('#comparison').isVisible(), false);
   },
   async 'handles that make no person become a named skeleton when a motion is opened'() {
     await setHandles(330);

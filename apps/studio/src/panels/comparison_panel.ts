@@ -82,7 +82,7 @@ export function comparisonPanel(studio: Studio, page: PageStore, view: Compariso
   const column = (comparison: Comparison, index: number): HTMLElement => {
     const card = element('div', { class: 'card column' });
     if (index < 0) {
-      card.append(element('h3', {}, ownName(comparison, page.now)));
+      card.append(element('h2', {}, ownName(comparison, page.now)));
       if (comparison.measures) card.append(table(comparison.measures));
       return card;
     }
