@@ -247,6 +247,8 @@ node apps/studio/tests/ways_test.mjs dist $output/studio
 node apps/studio/tests/headset_test.mjs dist build/release/limber $output/studio
 node apps/studio/tests/install_test.mjs dist build/release/limber $output/studio
 node apps/studio/tests/card_test.mjs
+node apps/studio/tests/report_rows_test.mjs
+node apps/studio/tests/ballot_test.mjs build/release/limber $output/studio
 node apps/studio/tests/card_ar_test.mjs dist $output/studio
 TESTS
 }
