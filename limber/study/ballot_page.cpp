@@ -51,7 +51,7 @@ const std::string_view kBallotStyle = R"css(
   display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 9rem), 1fr)); gap: .4rem; align-content: start;
   padding: .4rem; border: 1px solid var(--line); border-radius: .4rem; min-height: 10rem;
 }
-.sides img { display: block; width: 100%; max-width: 20rem; height: auto; background: #fff; }
+.sides img { display: block; width: 100%; max-width: 20rem; margin: 0 auto; height: auto; background: #fff; }
 @media (pointer: coarse) { #pair-keys { display: none; } }
 .choices { grid-template-columns: repeat(3, 1fr); margin-top: .6rem; }
 .choices button { min-height: 3rem; font-weight: 600; }

@@ -335,7 +335,7 @@ export const german = {
   'Comparison': 'Vergleich',
   'End comparison': 'Vergleich beenden',
   'The method beside it': 'Die Methode daneben',
-  'Compare with a report\u2026': 'Mit einem Bericht vergleichen\u2026',
+  'Compare with a report\u2026': 'Mit Bericht vergleichen\u2026',
   'Methods out of the cells.json that limber study writes, beside this model': 'Methoden aus der cells.json, die limber study schreibt, neben diesem Modell',
   'It holds no rows of a study\u2019s report': 'Darin stehen keine Zeilen aus dem Bericht einer Studie',
   'limber study writes them as cells.json': 'limber study schreibt sie als cells.json',
