@@ -73,13 +73,27 @@ TEST(Ballot, SaysWhichLineIsBad) {
   for (const auto& [text, problem] : cases) EXPECT_THAT(problemOf(text), HasSubstr(problem)) << text;
 }
 
-TEST(Ballot, ATextCutAnywhereIsReadOrRefused) {
+// Votes that hold what they promise, or an error that names a line.
+void expectReadOrRefused(const std::string& text) {
+  try {
+    for (const Vote& vote : parseVotes(text)) {
+      EXPECT_FALSE(vote.first.empty()) << text;
+      EXPECT_NE(vote.first, vote.second) << text;
+    }
+  } catch (const Error& error) {
+    EXPECT_THAT(error.where(), HasSubstr("line ")) << text;
+  }
+}
+
+TEST(Ballot, ATextCutOrDamagedAnywhereIsReadOrRefused) {
   const std::string text = kHead + "anna,rig,\"fox, \"\"red\"\"\",a,b,first\r\nben,rig,fox,a,b,alike\r\n";
-  for (std::size_t length = 0; length < text.size(); ++length) {
-    try {
-      EXPECT_LE(parseVotes(text.substr(0, length)).size(), 2u);
-    } catch (const Error& error) {
-      EXPECT_THAT(error.where(), HasSubstr("line "));
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    expectReadOrRefused(text.substr(0, at));
+    for (const char damage : {'"', ',', '\r', '\n', '\0', '\xff', 'a'}) {
+      std::string damaged = text;
+      damaged[at] = damage;
+      expectReadOrRefused(damaged);
+      expectReadOrRefused(text.substr(0, at) + damage + text.substr(at));
     }
   }
 }
