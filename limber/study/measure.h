@@ -29,8 +29,9 @@ struct Measure {
   std::string_view unit;   // may be empty
   Better better;
   MeasureSource source;
-  std::string_view pointer;  // into the figures (RFC 6901); kClock: unused
-  bool ranks = true;         // false: shown, but orders no methods, as it says too little of who is better
+  std::string_view pointer;      // into the figures (RFC 6901); kClock: unused
+  bool ranks = true;             // false: shown, but orders no methods, as it says too little of who is better
+  bool needsSameJoints = false;  // orders methods on one skeleton alone: fewer joints are smoother and stretch less
 };
 
 // Whether what a command gives has the measure: kModel has those of kModelMotion, too.

@@ -35,12 +35,32 @@ std::size_t placeIn(std::vector<std::string>& names, std::map<std::string, std::
   return found->second;
 }
 
+// The rigger that the most methods have in common, at least two; the first of several.
+std::optional<std::string> sharedRigger(const StudyResult& study, CellKind kind, const Measure& measure) {
+  std::vector<std::pair<std::string, std::vector<std::string>>> methodsOf;  // by rigger, in the study's order
+  for (const StudyCell& cell : study.cells) {
+    if (cell.kind != kind || !asksFor(cell, measure)) continue;
+    const auto isIts = [&](const auto& entry) { return entry.first == cell.rigger; };
+    auto entry = std::find_if(methodsOf.begin(), methodsOf.end(), isIts);
+    if (entry == methodsOf.end()) entry = methodsOf.insert(entry, {cell.rigger, {}});
+    std::vector<std::string>& methods = entry->second;
+    if (std::find(methods.begin(), methods.end(), cell.method()) == methods.end()) methods.push_back(cell.method());
+  }
+  const auto fewer = [](const auto& a, const auto& b) { return a.second.size() < b.second.size(); };
+  const auto most = std::max_element(methodsOf.begin(), methodsOf.end(), fewer);
+  if (most == methodsOf.end() || most->second.size() < 2) return std::nullopt;
+  return most->first;
+}
+
 Grid gridOf(const StudyResult& study, CellKind kind, const Measure& measure, const std::string& group) {
   Grid grid;
+  const std::optional<std::string> rigger = measure.needsSameJoints ? sharedRigger(study, kind, measure) : std::nullopt;
+  if (measure.needsSameJoints && !rigger) return grid;
   std::map<std::string, std::size_t> methods, subjects;
   for (std::size_t i = 0; i < study.cells.size(); ++i) {
     const StudyCell& cell = study.cells[i];
     if (cell.kind != kind || !asksFor(cell, measure) || (!group.empty() && cell.group != group)) continue;
+    if (rigger && cell.rigger != *rigger) continue;
     const std::size_t method = placeIn(grid.methods, methods, cell.method());
     grid.cellOf.try_emplace({method, placeIn(grid.subjects, subjects, cell.subject())}, i);
   }

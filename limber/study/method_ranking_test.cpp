@@ -112,15 +112,40 @@ TEST(Ranking, IsEmptyWhereNothingWasMeasured) {
 }
 
 TEST(Ranking, WhatRanksNothingKeepsTheOrderOfTheStudy) {
-  ASSERT_FALSE(findMeasure("stretch").ranks);
+  ASSERT_FALSE(findMeasure("volume_loss").ranks);
   StudyResult study;
-  addMethod(study, "bad", "stretch", {5, 6, 7});
-  addMethod(study, "good", "stretch", {1, 2, 3});
-  const Ranking ranking = rankMethods(study, CellKind::kRig, findMeasure("stretch"));
+  addMethod(study, "bad", "volume_loss", {5, 6, 7});
+  addMethod(study, "good", "volume_loss", {1, 2, 3});
+  const Ranking ranking = rankMethods(study, CellKind::kRig, findMeasure("volume_loss"));
   EXPECT_THAT(methodsOf(ranking), ElementsAre("bad", "good"));
   EXPECT_EQ(ranking.scores[1].value.median, 2);
   EXPECT_TRUE(ranking.pairs.empty());
   EXPECT_TRUE(ranking.worstCells.empty());
+}
+
+// Cells of one rigger with several skinning methods.
+void addSkinning(StudyResult& study, const std::string& rigger, const std::string& skinning,
+                 const std::vector<double>& values) {
+  const std::size_t first = study.cells.size();
+  addMethod(study, rigger, "stretch", {values.begin(), values.end()});
+  for (std::size_t i = first; i < study.cells.size(); ++i) study.cells[i].skinning = skinning;
+}
+
+TEST(Ranking, MeasuresOfWeightsCompareThoseOnTheSameJoints) {
+  ASSERT_TRUE(findMeasure("stretch").needsSameJoints);
+  StudyResult study;
+  addSkinning(study, "few joints", "stiff", {0, 0, 0});
+  addSkinning(study, "own", "bad", {5, 6, 7});
+  addSkinning(study, "own", "good", {1, 2, 3});
+  const Ranking ranking = rankMethods(study, CellKind::kRig, findMeasure("stretch"));
+  ASSERT_EQ(ranking.scores.size(), 2u);
+  EXPECT_EQ(ranking.scores[0].method, "own + good");
+  EXPECT_EQ(ranking.scores[1].method, "own + bad");
+  // Without two methods on the same joints there is nothing to compare.
+  StudyResult apart;
+  addSkinning(apart, "few joints", "stiff", {0, 0, 0});
+  addSkinning(apart, "own", "good", {1, 2, 3});
+  EXPECT_TRUE(rankMethods(apart, CellKind::kRig, findMeasure("stretch")).scores.empty());
 }
 
 TEST(TimePlot, HasAPointForEachMethodThatHasBoth) {

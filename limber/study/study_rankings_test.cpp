@@ -28,7 +28,7 @@ TEST(StudyRankings, AreOverAllAndInEachFolder) {
   StudyResult study;
   addValue(study, "people", "template", "joint_to_joint", 3);
   addValue(study, "animals", "sphere-mesh", "joint_to_joint", 5);
-  addValue(study, "people", "own", "stretch", 0.5);
+  addValue(study, "people", "own", "volume_loss", 0.5);
   const std::vector<KindRankings> kinds = studyRankings(study);
   ASSERT_EQ(kinds.size(), 1u);
   EXPECT_EQ(kinds[0].kind, CellKind::kRig);
@@ -40,7 +40,7 @@ TEST(StudyRankings, AreOverAllAndInEachFolder) {
   for (const GroupRankings& group : kinds[0].groups) {
     ASSERT_EQ(group.rankings.size(), 2u);
     EXPECT_EQ(group.rankings[0].measure->name, "joint_to_joint");
-    EXPECT_EQ(group.rankings[1].measure->name, "stretch");
+    EXPECT_EQ(group.rankings[1].measure->name, "volume_loss");
   }
   const GroupRankings& animals = kinds[0].groups[2];
   EXPECT_EQ(animals.rankings[0].scoreOf("sphere-mesh + bone-heat")->value.median, 5);

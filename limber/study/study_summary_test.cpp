@@ -28,7 +28,7 @@ void addCells(StudyResult& study, const std::string& rigger, const std::vector<s
     if (distances[i]) {
       result.measures = {{&findMeasure("seconds"), seconds},
                          {&findMeasure("joint_to_joint"), *distances[i]},
-                         {&findMeasure("stretch"), *distances[i] / 100}};
+                         {&findMeasure("volume_loss"), *distances[i] / 100}};
     } else {
       result.outcome = JobOutcome::kFailed;
     }
