@@ -15,6 +15,7 @@
 #include "limber/core/error.h"
 #include "limber/core/split_text.h"
 #include "limber/jobs/job_pool.h"
+#include "limber/jobs/last_line.h"
 
 namespace limber {
 
@@ -90,20 +91,10 @@ Job jobOf(const Adapter& adapter, const AdapterStep& step, const AdapterPaths& p
   return job;
 }
 
-// The last line that is not empty: of what it says of errors, else of its output.
+// Of what it says of errors, else of its output.
 std::string lastWords(const JobResult& result) {
-  for (const std::string* text : {&result.error, &result.out}) {
-    const std::vector<std::string_view> lines = splitAt(*text, '\n');
-    for (auto line = lines.rbegin(); line != lines.rend(); ++line) {
-      const std::size_t begin = line->find_first_not_of(" \t\r"), end = line->find_last_not_of(" \t\r");
-      if (begin == std::string_view::npos) continue;
-      std::string words = validUtf8(line->substr(begin, std::min(end + 1 - begin, kMostWords)));
-      std::replace_if(
-          words.begin(), words.end(), [](char c) { return c >= 0 && c < ' '; }, ' ');
-      return words;
-    }
-  }
-  return {};
+  const std::string words = lastLine(result.error, kMostWords);
+  return validUtf8(words.empty() ? lastLine(result.out, kMostWords) : words);
 }
 
 std::string saying(const JobResult& result) {

@@ -10,6 +10,8 @@
 
 namespace limber {
 
+// Time counts for all that the job starts; it is ended with it. Memory counts for each process for itself, and a job
+// may give one that it starts another limit: for programs of the user's, an adapter tells it.
 struct JobLimits {
   double seconds = 600;                          // on the clock, above 0
   std::size_t memory = std::size_t{4096} << 20;  // bytes of memory of its own (RLIMIT_DATA; RLIMIT_AS off Linux)

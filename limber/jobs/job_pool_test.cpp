@@ -15,6 +15,7 @@
 #include "limber/core/sanitizers.h"
 #include "limber/jobs/own_program.h"
 #include "temporary_folder.h"
+#include "testing/process_state.h"
 
 namespace limber {
 namespace {
@@ -90,32 +91,20 @@ TEST(JobPool, AProgramThatIsNotThereIsAResult) {
   EXPECT_THAT(jobOutcomeText(job, result), HasSubstr("cannot be run"));
 }
 
-// Is the process gone, or waits only to be collected by whoever inherited it?
-bool isGone(pid_t pid) {
-  std::ifstream file("/proc/" + std::to_string(pid) + "/stat");
-  std::string text((std::istreambuf_iterator<char>(file)), {});
-  const std::size_t name = text.rfind(')');
-  return name == std::string::npos || text.compare(name, 3, ") Z") == 0;
-}
-
 TEST(JobPool, TimeEndsTheWholeGroup) {
   Job job = shell("sleep 100 & echo $!; wait");
   job.limits.seconds = 0.2;
   const JobResult result = runOne(job);
   EXPECT_EQ(result.outcome, JobOutcome::kTimedOut);
   EXPECT_EQ(jobOutcomeText(job, result), "more than 0.2 s");
-  const pid_t grandchild = std::stoi(result.out);
-  for (int i = 0; i < 500 && !isGone(grandchild); ++i) usleep(10000);
-  EXPECT_TRUE(isGone(grandchild));
+  EXPECT_TRUE(testing::endsSoon(std::stoi(result.out)));
 }
 
 TEST(JobPool, WhatAJobLeavesRunningEndsWithIt) {
   const JobResult result = runOne(shell("sleep 100 & echo $!"));
   EXPECT_EQ(result.outcome, JobOutcome::kDone);
   EXPECT_LT(result.seconds, 20);
-  const pid_t left = std::stoi(result.out);
-  for (int i = 0; i < 500 && !isGone(left); ++i) usleep(10000);
-  EXPECT_TRUE(isGone(left));
+  EXPECT_TRUE(testing::endsSoon(std::stoi(result.out)));
 }
 
 TEST(JobPool, KeepsTheLastOfALongOutput) {

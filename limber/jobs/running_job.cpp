@@ -14,10 +14,6 @@
 #include <cstring>
 #include <utility>
 
-#ifdef __linux__
-#include <sys/prctl.h>
-#endif
-
 #include "limber/core/error.h"
 #include "limber/core/progress.h"
 #include "limber/core/sanitizers.h"
@@ -29,60 +25,20 @@ namespace {
 constexpr int kCannotRun = 127;
 constexpr std::size_t kPiece = std::size_t{1} << 16;  // bytes read at once
 
-[[noreturn]] void failToStart(const char* what, int reason) {
-  throw Error(ErrorCode::kFile, std::string(what) + ": " + std::strerror(reason));
-}
-
-void closeEnd(int& end) {
-  if (end >= 0) close(end);
-  end = -1;
-}
-
-// A pipe whose ends no other program inherits, beside the three standard streams even where one of those is closed.
-class Pipe {
- public:
-  Pipe() {
-    std::array<int, 2> ends{};
-    if (pipe(ends.data()) != 0) failToStart("cannot open a pipe", errno);
-    constexpr int kFirstFree = 3;
-    for (std::size_t i = 0; i < ends.size(); ++i) {
-      ends_[i] = fcntl(ends[i], F_DUPFD_CLOEXEC, kFirstFree);
-    }
-    const int reason = errno;
-    for (int& end : ends) closeEnd(end);
-    if (ends_[0] >= 0 && ends_[1] >= 0) return;
-    for (int& end : ends_) closeEnd(end);
-    failToStart("cannot open a pipe", reason);
-  }
-  Pipe(const Pipe&) = delete;
-  Pipe& operator=(const Pipe&) = delete;
-  ~Pipe() {
-    for (int& end : ends_) closeEnd(end);
-  }
-
-  int reading() const { return ends_[0]; }
-  int writing() const { return ends_[1]; }
-  void closeWriting() { closeEnd(ends_[1]); }
-  int takeReading() { return std::exchange(ends_[0], -1); }
-
- private:
-  std::array<int, 2> ends_{-1, -1};
-};
-
-void lower(int resource, rlim_t value) {
-  rlimit now{};
-  if (getrlimit(resource, &now) != 0) return;
-  if (now.rlim_max != RLIM_INFINITY) value = std::min(value, now.rlim_max);
-  const rlimit wanted{value, value};
-  setrlimit(resource, &wanted);
+// The soft limit alone: a program may give one that it starts another.
+void limitResource(int resource, rlim_t value) {
+  rlimit limit{};
+  if (getrlimit(resource, &limit) != 0) return;
+  limit.rlim_cur = limit.rlim_max == RLIM_INFINITY ? value : std::min(value, limit.rlim_max);
+  setrlimit(resource, &limit);
 }
 
 void limitMemory(std::size_t bytes) {
   if (kAddressSanitizer) return;  // which takes terabytes of addresses for itself
 #ifdef __linux__
-  lower(RLIMIT_DATA, bytes);
+  limitResource(RLIMIT_DATA, bytes);
 #elif defined(RLIMIT_AS)
-  lower(RLIMIT_AS, bytes);
+  limitResource(RLIMIT_AS, bytes);
 #endif
 }
 
@@ -90,22 +46,25 @@ struct ChildStart {
   char* const* arguments;
   const char* folder;
   std::size_t memory;
-  pid_t parent;
+  pid_t parent, group;
   int out, error, status;
 };
 
+[[noreturn]] void failBeforeProgram(const ChildStart& start) {
+  const int reason = errno;
+  const ssize_t told = write(start.status, &reason, sizeof reason);
+  _exit(told == sizeof reason ? kCannotRun : kCannotRun - 1);
+}
+
 // Between fork and exec.
 [[noreturn]] void becomeProgram(const ChildStart& start) {
-  setpgid(0, 0);
-#ifdef __linux__
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != start.parent) _exit(kCannotRun);  // it ended before that took effect
-#endif
+  // One that has joined the group ends with it; the parent may have ended before.
+  if (setpgid(0, start.group) != 0 || getppid() != start.parent) failBeforeProgram(start);
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);
   std::signal(SIGPIPE, SIG_DFL);  // the one that is left ignored across exec, where this program ignores it
-  lower(RLIMIT_CORE, 0);
+  limitResource(RLIMIT_CORE, 0);
   limitMemory(start.memory);
   const int nothing = open("/dev/null", O_RDONLY);
   if (nothing >= 0 && dup2(nothing, STDIN_FILENO) >= 0 && dup2(start.out, STDOUT_FILENO) >= 0 &&
@@ -113,9 +72,7 @@ struct ChildStart {
     if (nothing > STDERR_FILENO) close(nothing);
     execv(start.arguments[0], start.arguments);
   }
-  const int reason = errno;
-  const ssize_t told = write(start.status, &reason, sizeof reason);
-  _exit(told == sizeof reason ? kCannotRun : kCannotRun - 1);
+  failBeforeProgram(start);
 }
 
 // What the child says of its start: 0 once the program runs, else why it does not.
@@ -138,12 +95,13 @@ RunningJob::RunningJob(const Job& job) : job_(job) {
   Pipe out, error, status;
   startedAt_ = secondsNow();
   deadline_ = startedAt_ + job.limits.seconds;
-  const ChildStart start{arguments.data(), folder.c_str(),  job.limits.memory, getpid(),
-                         out.writing(),    error.writing(), status.writing()};
+  const ChildStart start{arguments.data(), folder.c_str(), job.limits.memory, getpid(),
+                         group_.id(),      out.writing(),  error.writing(),   status.writing()};
   pid_ = fork();
-  if (pid_ < 0) failToStart("cannot start a process", errno);
+  if (pid_ < 0) {
+    throw Error(ErrorCode::kFile, std::string("cannot start a process: ") + std::strerror(errno));
+  }
   if (pid_ == 0) becomeProgram(start);
-  setpgid(pid_, pid_);  // here as well, so that the group is there whoever comes first
   status.closeWriting();
   startError_ = startErrorFrom(status.reading());
   for (auto [stream, pipe] : {std::pair{&out_, &out}, {&error_, &error}}) {
@@ -154,7 +112,7 @@ RunningJob::RunningJob(const Job& job) : job_(job) {
 
 RunningJob::~RunningJob() {
   if (!isCollected_) {
-    endGroup();
+    endAll();
     collect();
   }
   closeEnd(out_.pipe);
@@ -174,9 +132,9 @@ void RunningJob::readWhatIsThere(Stream& stream) const {
   }
 }
 
-void RunningJob::endGroup() const {
-  kill(-pid_, SIGKILL);
-  kill(pid_, SIGKILL);  // should it have no group yet
+void RunningJob::endAll() {
+  group_.end();
+  kill(pid_, SIGKILL);  // should it have left its group
 }
 
 bool RunningJob::isOver() {
@@ -184,12 +142,11 @@ bool RunningJob::isOver() {
   readWhatIsThere(out_);
   readWhatIsThere(error_);
   siginfo_t ended{};
-  // The process stays until its group is ended: so that its number means no other group.
   const bool hasEnded =
       waitid(P_PID, static_cast<id_t>(pid_), &ended, WEXITED | WNOHANG | WNOWAIT) == 0 && ended.si_pid == pid_;
   isTimedOut_ = !hasEnded && secondsNow() > deadline_;
   if (!hasEnded && !isTimedOut_) return false;
-  endGroup();
+  endAll();
   collect();
   return true;
 }

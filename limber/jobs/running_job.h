@@ -6,11 +6,12 @@
 #include <string>
 
 #include "limber/jobs/job.h"
+#include "limber/jobs/process_group.h"
 
 namespace limber {
 
-// Starts the job on construction: in a process group of its own, with standard input empty, no core dumps, and (on
-// Linux) ended with the thread that started it. Destroying one that still runs ends its whole group.
+// Starts the job on construction: in a process group of its own that ends with this program (process_group.h), with
+// standard input empty and no core dumps. When the job ends, or one that still runs is destroyed, so does its group.
 class RunningJob {
  public:
   // Throws Error kFile where the system gives no pipe or no process; a program that cannot be run is a result.
@@ -36,10 +37,11 @@ class RunningJob {
   };
 
   void readWhatIsThere(Stream& stream) const;
-  void endGroup() const;
+  void endAll();
   void collect();
 
   Job job_;
+  ProcessGroup group_;
   pid_t pid_ = -1;
   double startedAt_ = 0, deadline_ = 0;
   Stream out_, error_;

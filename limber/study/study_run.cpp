@@ -14,6 +14,7 @@
 #include "limber/asset/utf8.h"
 #include "limber/jobs/job_key.h"
 #include "limber/jobs/job_pool.h"
+#include "limber/jobs/last_line.h"
 #include "limber/jobs/result_store.h"
 #include "limber/study/input_digest.h"
 
@@ -39,16 +40,11 @@ void removeAll(const fs::path& folder) {
   if (problem) throw Error(ErrorCode::kFile, "cannot be removed: " + problem.message(), folder.string());
 }
 
-// The last line that is not empty, in valid UTF-8, without who says it.
-std::string lastLine(const std::string& text) {
-  const std::size_t end = text.find_last_not_of(" \n\r\t");
-  if (end == std::string::npos) return {};
-  const std::size_t before = text.find_last_of("\n\r", end);
-  const std::size_t begin = before == std::string::npos ? 0 : before + 1;
-  std::string_view line = std::string_view(text).substr(begin, std::min(end + 1 - begin, kMostProblem));
+// What a command said last, without who says it.
+std::string wordsOf(const std::string& text) {
+  const std::string line = lastLine(text, kMostProblem);
   constexpr std::string_view kSpeaker = "limber: ";
-  if (line.starts_with(kSpeaker)) line.remove_prefix(kSpeaker.size());
-  return validUtf8(line);
+  return validUtf8(line.starts_with(kSpeaker) ? std::string_view(line).substr(kSpeaker.size()) : line);
 }
 
 // Files by their names alone, so that tables do not depend on where a study runs.
@@ -185,7 +181,7 @@ class StudyRun {
     }
     runJobs(chains, options_.jobs, progress_, [&](std::size_t i, const std::vector<JobResult>& results) {
       if (results.back().outcome == JobOutcome::kDone) return;
-      const std::string words = lastLine(results.back().error);
+      const std::string words = wordsOf(results.back().error);
       throw Error(ErrorCode::kFile, words.empty() ? jobOutcomeText(chains[i].front(), results.back()) : words,
                   names[i]);
     });
@@ -307,7 +303,7 @@ class StudyRun {
       if (result.outcome != JobOutcome::kDone) {
         taken.outcome = result.outcome;
         taken.problem = fmt::format("{}: {}", step.name, jobOutcomeText(jobs[s], result));
-        const std::string words = withoutFolders(lastLine(result.error), cell.inputs);
+        const std::string words = withoutFolders(wordsOf(result.error), cell.inputs);
         if (!words.empty()) taken.problem += ": " + words;
         break;
       }
