@@ -185,9 +185,9 @@ RigPrograms findPrograms(const RigArguments& options) {
       adapters.programFor(options.rig.skinning, "skinning method", AdapterKind::kWeights, namesOf(weightMethods()))};
 }
 
-// A program that weighs gets a rig, with weights of limber's.
+// A program that weighs gets a rig, with weights of limber's: the usual ones, or those that cost next to nothing.
 AutoRigReport rigAsTold(Asset& asset, AutoRigOptions rig, const RigPrograms& programs, Progress& progress) {
-  if (programs.weights) rig.skinning = AutoRigOptions().skinning;
+  if (programs.weights) rig.skinning = programs.weights->takesWeights ? AutoRigOptions().skinning : "nearest-bone";
   const bool isKept = rig.existingRig == ExistingRig::kKeepSkeleton;
   AutoRigReport report =
       programs.rigger && !isKept ? rigByProgram(asset, *programs.rigger, rig, progress) : autoRig(asset, rig, progress);

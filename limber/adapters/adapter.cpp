@@ -19,7 +19,7 @@ namespace limber {
 namespace {
 
 constexpr std::string_view kVersionKey = "limber_adapter";
-constexpr double kMostSeconds = 1000000, kLeastSize = 1e-3, kMostSize = 1e6;
+constexpr double kMostSeconds = 1000000, kLeastSize = 1e-3, kMostSize = 1e6, kLeastUnit = 1e-6, kMostUnit = 1e6;
 constexpr std::size_t kMostMegabytes = std::size_t{1} << 24;
 // Learned riggers load networks of gigabytes.
 constexpr std::size_t kMemoryByDefault = std::size_t{16384} << 20;
@@ -28,7 +28,8 @@ struct NamedKind {
   std::string_view name;
   AdapterKind kind;
 };
-constexpr std::array kKinds = {NamedKind{"rig", AdapterKind::kRig}, NamedKind{"weights", AdapterKind::kWeights}};
+constexpr std::array kKinds = {NamedKind{"rig", AdapterKind::kRig}, NamedKind{"weights", AdapterKind::kWeights},
+                               NamedKind{"retarget", AdapterKind::kRetarget}};
 
 struct NamedFormat {
   std::string_view name, extension;
@@ -36,7 +37,8 @@ struct NamedFormat {
 };
 constexpr std::array kFormats = {
     NamedFormat{"obj", ".obj", AdapterFormat::kObj}, NamedFormat{"glb", ".glb", AdapterFormat::kGlb},
-    NamedFormat{"fbx", ".fbx", AdapterFormat::kFbx}, NamedFormat{"rignet-text", ".txt", AdapterFormat::kRignetText}};
+    NamedFormat{"fbx", ".fbx", AdapterFormat::kFbx}, NamedFormat{"rignet-text", ".txt", AdapterFormat::kRignetText},
+    NamedFormat{"bvh", ".bvh", AdapterFormat::kBvh}};
 
 struct NamedUp {
   std::string_view name;
@@ -44,10 +46,13 @@ struct NamedUp {
 };
 constexpr std::array kUps = {NamedUp{"+y", AdapterUp::kY}, NamedUp{"+z", AdapterUp::kZ}};
 
+constexpr std::array kMotions = {AdapterFormat::kBvh};
+
 // What can go in and come out, the first by default.
 std::span<const AdapterFormat> inputFormatsOf(AdapterKind kind) {
   static constexpr std::array kRig = {AdapterFormat::kObj, AdapterFormat::kGlb};
   static constexpr std::array kWeights = {AdapterFormat::kGlb};
+  if (kind == AdapterKind::kRetarget) return kMotions;
   if (kind == AdapterKind::kRig) return kRig;
   return kWeights;
 }
@@ -55,6 +60,7 @@ std::span<const AdapterFormat> inputFormatsOf(AdapterKind kind) {
 std::span<const AdapterFormat> outputFormatsOf(AdapterKind kind) {
   static constexpr std::array kRig = {AdapterFormat::kRignetText, AdapterFormat::kGlb, AdapterFormat::kFbx};
   static constexpr std::array kWeights = {AdapterFormat::kGlb, AdapterFormat::kFbx};
+  if (kind == AdapterKind::kRetarget) return kMotions;
   if (kind == AdapterKind::kRig) return kRig;
   return kWeights;
 }
@@ -110,14 +116,21 @@ void walkPlaceholders(std::string_view text, const std::function<void(std::strin
   take(text.substr(plainFrom), false);
 }
 
-constexpr std::array<std::string_view, 5> kPlaceholders = {"folder", "input", "input_folder", "output", "seed"};
+std::span<const std::string_view> placeholdersOf(AdapterKind kind) {
+  static constexpr std::array<std::string_view, 5> kModels = {"folder", "input", "input_folder", "output", "seed"};
+  static constexpr std::array<std::string_view, 6> kOfMotions = {"folder",       "motion", "skeleton",
+                                                                 "input_folder", "output", "seed"};
+  if (kind == AdapterKind::kRetarget) return kOfMotions;
+  return kModels;
+}
 
-void checkPlaceholders(const JsonView& place, std::string_view text) {
+void checkPlaceholders(const JsonView& place, std::string_view text, AdapterKind kind) {
+  const std::span<const std::string_view> known = placeholdersOf(kind);
   walkPlaceholders(text, [&](std::string_view name, bool isName) {
     if (!isName) return;
-    if (std::find(kPlaceholders.begin(), kPlaceholders.end(), name) == kPlaceholders.end()) {
-      place.fail(fmt::format("has a placeholder that is not known: {{{}}}; there are: {}", name,
-                             fmt::join(kPlaceholders, ", ")));
+    if (std::find(known.begin(), known.end(), name) == known.end()) {
+      place.fail(
+          fmt::format("has a placeholder that is not known: {{{}}}; there are: {}", name, fmt::join(known, ", ")));
     }
   });
 }
@@ -131,40 +144,68 @@ std::string requiredText(const JsonView& value) {
   return text;
 }
 
-AdapterStep stepOf(const JsonView& entry) {
+AdapterStep stepOf(const JsonView& entry, AdapterKind kind) {
   entry.requireObject();
   allowKeys(entry, {"command", "folder"});
   AdapterStep step;
   const JsonView command = entry.array("command");
   for (std::size_t i = 0; i < command.size(); ++i) {
     step.command.push_back(requiredText(command[i]));
-    checkPlaceholders(command[i], step.command.back());
+    checkPlaceholders(command[i], step.command.back(), kind);
   }
   if (step.command.empty()) entry.fail("has no command");
   if (const JsonView folder = entry.member("folder"); folder.exists()) {
     step.folder = requiredText(folder);
-    checkPlaceholders(folder, step.folder.string());
+    checkPlaceholders(folder, step.folder.string(), kind);
   }
   return step;
 }
 
 void readSteps(const JsonView& root, Adapter& adapter) {
   const JsonView steps = root.array("steps");
-  for (std::size_t i = 0; i < steps.size(); ++i) adapter.steps.push_back(stepOf(steps[i]));
+  for (std::size_t i = 0; i < steps.size(); ++i) adapter.steps.push_back(stepOf(steps[i], adapter.kind));
   if (adapter.steps.empty()) root.fail("has no steps");
-  bool isGiven = false;
+  std::vector<std::string> named;
   for (const AdapterStep& step : adapter.steps) {
     for (const std::string& argument : step.command) {
       walkPlaceholders(argument, [&](std::string_view name, bool isName) {
-        isGiven = isGiven || (isName && (name == "input" || name == "input_folder" || name == "folder"));
+        if (isName) named.emplace_back(name);
       });
     }
   }
-  if (!isGiven) steps.fail("never name the file that is handed over: {input} or {input_folder}");
+  const auto isNamed = [&](std::string_view name) {
+    return std::find(named.begin(), named.end(), name) != named.end() ||
+           std::find(named.begin(), named.end(), "input_folder") != named.end() ||
+           std::find(named.begin(), named.end(), "folder") != named.end();
+  };
+  if (adapter.kind == AdapterKind::kRetarget && !(isNamed("motion") && isNamed("skeleton"))) {
+    steps.fail("never name the files that are handed over: {motion} and {skeleton}, or {input_folder}");
+  }
+  if (adapter.kind != AdapterKind::kRetarget && !isNamed("input")) {
+    steps.fail("never name the file that is handed over: {input} or {input_folder}");
+  }
+}
+
+// Of lengths in a BVH, which does not say its own.
+double unitOf(const JsonView& object, double byDefault) {
+  constexpr std::string_view kKey = "metres_per_unit";
+  const double unit = object.exists() ? object.number(kKey, byDefault) : byDefault;
+  if (!(unit >= kLeastUnit && unit <= kMostUnit)) {
+    object.member(kKey).fail(fmt::format("is not from {} to {}", kLeastUnit, kMostUnit));
+  }
+  return unit;
+}
+
+void readMotions(const JsonView& input, const JsonView& output, Adapter& adapter) {
+  if (input.exists()) allowKeys(input, {"format", "up", "metres_per_unit"});
+  if (output.exists()) allowKeys(output, {"format", "up", "metres_per_unit", "file"});
+  adapter.inputMetresPerUnit = unitOf(input, 1);
+  adapter.outputMetresPerUnit = unitOf(output, adapter.inputMetresPerUnit);
 }
 
 void readInput(const JsonView& input, Adapter& adapter) {
-  if (input.exists()) allowKeys(input, {"format", "up", "size"});
+  if (input.exists() && adapter.kind == AdapterKind::kRig) allowKeys(input, {"format", "up", "size"});
+  if (input.exists() && adapter.kind == AdapterKind::kWeights) allowKeys(input, {"format", "up", "size", "weights"});
   adapter.inputFormat = formatOf(input, inputFormatsOf(adapter.kind), adapterKindName(adapter.kind));
   adapter.inputUp = entryOf(kUps, input, "up", "+y").up;
   if (adapter.inputUp != AdapterUp::kY && adapter.inputFormat == AdapterFormat::kGlb) {
@@ -174,15 +215,17 @@ void readInput(const JsonView& input, Adapter& adapter) {
   if (!(adapter.inputSize >= kLeastSize && adapter.inputSize <= kMostSize)) {
     input.member("size").fail(fmt::format("is not from {} to {}", kLeastSize, kMostSize));
   }
+  if (input.exists()) adapter.takesWeights = input.flag("weights", true);
 }
 
 void readOutput(const JsonView& output, Adapter& adapter) {
-  if (output.exists()) allowKeys(output, {"format", "up", "file", "may_rescale", "weights"});
+  const bool isMotion = adapter.kind == AdapterKind::kRetarget;
+  if (output.exists() && !isMotion) allowKeys(output, {"format", "up", "file", "may_rescale", "weights"});
   adapter.outputFormat = formatOf(output, outputFormatsOf(adapter.kind), adapterKindName(adapter.kind));
   const bool isText = adapter.outputFormat == AdapterFormat::kRignetText;
-  const bool isTurned = isText && adapter.inputUp == AdapterUp::kZ;
+  const bool isTurned = (isText || isMotion) && adapter.inputUp == AdapterUp::kZ;
   adapter.outputUp = entryOf(kUps, output, "up", isTurned ? "+z" : "+y").up;
-  adapter.outputFile = fmt::format("output/model{}", adapterExtension(adapter.outputFormat));
+  adapter.outputFile = fmt::format("output/{}{}", adapterFileStem(adapter.kind), adapterExtension(adapter.outputFormat));
   if (!output.exists()) return;
   if (const JsonView file = output.member("file"); file.exists()) {
     adapter.outputFile = requiredText(file);
@@ -222,6 +265,7 @@ Adapter adapterOf(const JsonView& root) {
   adapter.summary = root.text("summary");
   adapter.kind = entryOf(kKinds, root, "kind", "").kind;
   readSteps(root, adapter);
+  if (adapter.kind == AdapterKind::kRetarget) readMotions(root.object("input"), root.object("output"), adapter);
   readInput(root.object("input"), adapter);
   readOutput(root.object("output"), adapter);
   readAdapterLimits(root.object("limits"), adapter);
@@ -237,6 +281,10 @@ std::string_view adapterKindName(AdapterKind kind) {
 
 std::string_view adapterExtension(AdapterFormat format) {
   return formatEntry(format).extension;
+}
+
+std::string_view adapterFileStem(AdapterKind kind) {
+  return kind == AdapterKind::kRetarget ? "motion" : "model";
 }
 
 Adapter adapterFromJson(std::string_view text, std::string name) {
@@ -262,8 +310,10 @@ std::string filledIn(std::string_view text, const AdapterPaths& paths, std::uint
       result += piece;
     } else if (piece == "folder") {
       result += paths.folder.string();
-    } else if (piece == "input") {
+    } else if (piece == "input" || piece == "motion") {
       result += paths.input.string();
+    } else if (piece == "skeleton") {
+      result += paths.skeleton.string();
     } else if (piece == "input_folder") {
       result += paths.input.parent_path().string();
     } else if (piece == "output") {

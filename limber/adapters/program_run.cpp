@@ -3,7 +3,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <system_error>
@@ -59,12 +61,17 @@ void put(const fs::path& file, ByteSpan bytes) {
   writeFile(file, bytes);
 }
 
-AdapterPaths prepareRun(const Adapter& adapter, ByteSpan input, const fs::path& folder) {
+AdapterPaths prepareRun(const Adapter& adapter, const ProgramInput& input, const fs::path& folder) {
   AdapterPaths paths;
   paths.folder = folder;
-  paths.input = folder / "input" / fmt::format("model{}", adapterExtension(adapter.inputFormat));
+  const std::string_view extension = adapterExtension(adapter.inputFormat);
+  paths.input = folder / "input" / fmt::format("{}{}", adapterFileStem(adapter.kind), extension);
   paths.output = folder / adapter.outputFile;
-  put(paths.input, input);
+  put(paths.input, input.file);
+  if (adapter.kind == AdapterKind::kRetarget) {
+    paths.skeleton = folder / "input" / fmt::format("skeleton{}", extension);
+    put(paths.skeleton, input.skeleton);
+  }
   makeParent(paths.output);
   return paths;
 }
@@ -102,8 +109,27 @@ std::string saying(const JobResult& result) {
   return words.empty() ? std::string() : fmt::format("; its last words: {}", words);
 }
 
+// What Python, C++, the C library, CUDA and the kernel's own killer say when memory does not suffice. No exit code tells.
+bool ranOutOfMemory(const JobResult& result) {
+  constexpr std::array<std::string_view, 4> kSigns = {"memoryerror", "out of memory", "cannot allocate memory",
+                                                      "std::bad_alloc"};
+  if (result.outcome == JobOutcome::kCrashed && result.code == SIGKILL) return true;  // not ours: that is kTimedOut
+  std::string words = lastLine(result.error, kMostWords);
+  std::transform(words.begin(), words.end(), words.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? c | 0x20 : c; });
+  return std::any_of(kSigns.begin(), kSigns.end(),
+                     [&](std::string_view sign) { return words.find(sign) != std::string::npos; });
+}
+
 [[noreturn]] void failStep(const Adapter& adapter, std::size_t step, const Job& job, const JobResult& result) {
   const std::string where = fmt::format("{}: step {} ({})", adapter.name, step + 1, job.command.front());
+  constexpr double kMegabyte = 1 << 20;
+  if (ranOutOfMemory(result)) {
+    throw Error(ErrorCode::kUnsupported,
+                fmt::format("ran out of memory (its limit is {:.0f} MB): {}{}",
+                            static_cast<double>(job.limits.memory) / kMegabyte, jobOutcomeText(job, result),
+                            saying(result)),
+                where, "raise \"memory_mb\" in the adapter's limits, unless it is the graphics card's");
+  }
   switch (result.outcome) {
     case JobOutcome::kNotStarted:
       throw Error(ErrorCode::kUnsupported, fmt::format("cannot be run: {}", std::strerror(result.code)), where,
@@ -122,7 +148,7 @@ std::string saying(const JobResult& result) {
 
 }  // namespace
 
-ProgramOutput runProgram(const Adapter& adapter, ByteSpan input, Progress& progress) {
+ProgramOutput runProgram(const Adapter& adapter, const ProgramInput& input, Progress& progress) {
   const RunFolder folder;
   const AdapterPaths paths = prepareRun(adapter, input, folder.path());
   JobChain chain;

@@ -1,4 +1,4 @@
-// One run of an adapter's program: a file in, a file out.
+// One run of an adapter's program: a file in (for retargeting two), a file out.
 #pragma once
 
 #include <string>
@@ -8,6 +8,11 @@
 #include "limber/core/progress.h"
 
 namespace limber {
+
+struct ProgramInput {
+  ByteSpan file;           // the model, or the motion
+  ByteSpan skeleton = {};  // of adapters of kind retarget
+};
 
 struct ProgramOutput {
   std::string name;  // of the file, for messages
@@ -19,8 +24,9 @@ struct ProgramOutput {
 // $PATH.
 //
 // Throws Error kUnsupported, beginning with the adapter's name and with the program's last words: a step that cannot be
-// started, ends with another exit code than 0, crashes, or takes longer than its limits; kBadData: no output, or an
-// empty one, whatever the exit code says. Progress as runJobs.
-ProgramOutput runProgram(const Adapter& adapter, ByteSpan input, Progress& progress);
+// started, ends with another exit code than 0, crashes, takes longer than its limits, or runs out of memory (as its last
+// words say, or the system that ended it); kBadData: no output, or an empty one, whatever the exit code says. Progress
+// as runJobs.
+ProgramOutput runProgram(const Adapter& adapter, const ProgramInput& input, Progress& progress);
 
 }  // namespace limber

@@ -2,11 +2,13 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <chrono>
 #include <filesystem>
 
 #include "limber/core/error.h"
+#include "limber/core/sanitizers.h"
 #include "temporary_folder.h"
 #include "testing/made_body.h"
 
@@ -22,7 +24,7 @@ const Bytes kGiven = {'g', 'i', 'v', 'e', 'n'};
 
 std::string textFrom(const Adapter& adapter) {
   Progress progress;
-  const ProgramOutput output = runProgram(adapter, kGiven, progress);
+  const ProgramOutput output = runProgram(adapter, {kGiven}, progress);
   return {output.bytes.begin(), output.bytes.end()};
 }
 
@@ -90,6 +92,30 @@ TEST(ProgramRun, AFailureSaysSoWithTheLastWords) {
   EXPECT_THAT(runProblem(shellAdapter("echo \"$1\" > \"$2\"; exit 1")), HasSubstr("failed: exit code 1"));
 }
 
+TEST(ProgramRun, RunningOutOfMemorySaysSo) {
+  for (const char* words : {"MemoryError", "torch.OutOfMemoryError: CUDA out of memory.", "what():  std::bad_alloc",
+                            "cat: Cannot allocate memory"}) {
+    EXPECT_THAT(runProblem(shellAdapter(fmt::format("echo '{}' >&2; exit 1", words))),
+                AllOf(HasSubstr("ran out of memory (its limit is "), HasSubstr(words), HasSubstr("\"memory_mb\"")));
+  }
+  EXPECT_THAT(runProblem(shellAdapter("kill -KILL $$")), HasSubstr("ran out of memory"));
+  EXPECT_THAT(runProblem(shellAdapter("echo memory is fine >&2; exit 1")), Not(HasSubstr("ran out")));
+}
+
+// The limit is the adapter's, also below a program that has a smaller one of its own, as a study's cells have.
+TEST(ProgramRun, TheLimitOfMemoryIsTheAdaptersOwn) {
+  Adapter adapter = shellAdapter("ulimit -d > \"$2\"");
+  adapter.limits.memory = std::size_t{3000} << 20;
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_DATA, &before), 0);
+  const rlimit small{std::size_t{2000} << 20, before.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_DATA, &small), 0);
+  const std::string text = textFrom(adapter);
+  setrlimit(RLIMIT_DATA, &before);
+  if (kAddressSanitizer) GTEST_SKIP() << "which takes terabytes of addresses for itself";
+  EXPECT_EQ(text, std::to_string(3000 << 10) + "\n");
+}
+
 TEST(ProgramRun, AFirstStepThatFailsIsTheLastThatRuns) {
   Adapter adapter = shellAdapter("exit 1");
   adapter.steps.push_back({{"cp", "{input}", "{output}"}, {}});
@@ -114,7 +140,7 @@ TEST(ProgramRun, WhatIsNotThereCannotBeRun) {
 TEST(ProgramRun, ACancelEndsIt) {
   Progress progress;
   progress.cancel();
-  EXPECT_THROW(runProgram(shellAdapter("sleep 100"), kGiven, progress), Error);
+  EXPECT_THROW(runProgram(shellAdapter("sleep 100"), {kGiven}, progress), Error);
 }
 
 }  // namespace

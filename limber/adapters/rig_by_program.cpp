@@ -134,7 +134,8 @@ AutoRigReport rigByProgram(Asset& asset, const Adapter& adapter, const AutoRigOp
 
     progress.stage("rig");
     const HandedModel handed = handedModel(prepared.mesh, adapter);
-    const ProgramOutput output = runProgram(adapter, inputFor(handed, adapter), progress);
+    const Bytes input = inputFor(handed, adapter);
+    const ProgramOutput output = runProgram(adapter, {input}, progress);
     ReturnedRig rig = readReturnedRig(output, adapter, prepared.mesh, handed, options.weights.maxInfluences);
     report.rigger = adapter.name;
     report.joints = rig.skeleton.jointCount();
@@ -178,7 +179,8 @@ Warnings weightsByProgram(Asset& asset, const Adapter& adapter, const WeightOpti
     Asset given = handedAsset(handed.mesh);
     attachRig(given, collectGeometry(given), movedSkeleton(working, toHandedSpace(adapter.inputUp, adapter.inputSize)),
               handedWeights(readWeights(asset, geometry, own), prepared, handed));
-    const ProgramOutput output = runProgram(adapter, writeGlb(given), progress);
+    const Bytes input = writeGlb(given);
+    const ProgramOutput output = runProgram(adapter, {input}, progress);
     ReturnedRig rig = readReturnedRig(output, adapter, prepared.mesh, handed, options.maxInfluences);
     if (!rig.weights) throw Error(ErrorCode::kBadData, "gave no weights", adapter.name);
     renameJoints(*rig.weights, rig.skeleton, working, adapter.name);
