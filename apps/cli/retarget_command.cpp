@@ -1,7 +1,9 @@
 // limber retarget and limber animate: motions onto a character.
 #include <fmt/format.h>
 
+#include "adapter_arguments.h"
 #include "command.h"
+#include "limber/adapters/retarget_by_program.h"
 #include "limber/asset/motion_io.h"
 #include "limber/asset/read.h"
 #include "limber/asset/write.h"
@@ -24,6 +26,9 @@ struct RetargetArguments {
   RetargetAssetOptions retarget;
   double frameRate = 0, ground = 0;
   bool noContacts = false, noSmoothing = false, hasGround = false;
+  const CLI::App* command = nullptr;
+  AdapterArguments adapters;
+  std::optional<Adapter> program;  // of the user's, in place of a method of limber's
   Common common;
 };
 
@@ -41,13 +46,27 @@ Bytes readMap(const RetargetArguments& options) {
   }
 }
 
+std::optional<Adapter> findProgram(const RetargetArguments& options) {
+  std::vector<std::string> known;
+  for (const RetargetMethod& method : retargetMethods()) known.emplace_back(method.name);
+  std::optional<Adapter> program =
+      options.adapters.programFor(options.retarget.method, "retargeting method", AdapterKind::kRetarget, known);
+  for (const char* option : {"--map", "--save-map", "--unlike-bodies", "--root-scale", "--reach", "--solver",
+                             "--no-contacts", "--no-smoothing", "--ground"}) {
+    if (program && options.command->count(option) > 0) {
+      throw CLI::ValidationError(option, "is for limber's own methods; a program of yours decides for itself");
+    }
+  }
+  return program;
+}
+
 void prepare(RetargetArguments& options) {
   options.common.apply();
   checkOutput(options.output, {".glb", ".gltf"});
   std::vector<std::string> others = options.motions;
   others.insert(others.end(), {options.model, options.output});
   checkBeside("--save-map", options.saveMapFile, others);
-  findRetargetMethod(options.retarget.method);
+  options.program = findProgram(options);
   findIkMethod(options.retarget.retarget.solver);
   options.retarget.retarget.rootScale = rootScaleOf(options.rootScale);
   options.retarget.retarget.contacts = !options.noContacts;
@@ -70,7 +89,14 @@ std::vector<RetargetedClip> addMotions(Asset& asset, const RetargetArguments& op
     const Motion motion = readMotion(file);
     warnings.append(motion.warnings);
     try {
-      for (RetargetedClip& clip : retargetOnto(asset, motion, options.retarget)) clips.push_back(std::move(clip));
+      ProgramClips made;
+      if (options.program) {
+        made = retargetByProgram(asset, motion, *options.program, options.retarget, progress);
+        warnings.append(made.warnings);
+      } else {
+        made.clips = retargetOnto(asset, motion, options.retarget);
+      }
+      for (RetargetedClip& clip : made.clips) clips.push_back(std::move(clip));
     } catch (const Error& error) {
       throw error.within(options.retarget.mapJson ? file + ": " + options.mapFile : file);
     }
@@ -81,8 +107,9 @@ std::vector<RetargetedClip> addMotions(Asset& asset, const RetargetArguments& op
 void tell(const RetargetArguments& options, const std::vector<RetargetedClip>& clips, const Warnings& warnings) {
   const Account account(options.common.quiet, options.output);
   for (const RetargetedClip& clip : clips) {
-    account.line(fmt::format("{:<24} {} at {:g} a second, {} matched", clip.name, counted(clip.frames, "frame"),
-                             clip.framesPerSecond, counted(clip.map.matches.size(), "part")));
+    account.line(fmt::format(
+        "{:<24} {} at {:g} a second, {}", clip.name, counted(clip.frames, "frame"), clip.framesPerSecond,
+        options.program ? "by " + options.program->name : counted(clip.map.matches.size(), "part") + " matched"));
   }
   if (!clips.empty() && !clips.front().doubtful.empty()) {
     account.line("matches to look at (--save-map writes them all, --map reads them again):");
@@ -176,6 +203,7 @@ std::string retargetHelp(const char* examples) {
   std::string text = "Methods:\n";
   for (const RetargetMethod& method : retargetMethods())
     text += fmt::format("  {:<12}{}\n", method.name, method.summary);
+  text += "\nPrograms of yours retarget (--method NAME), too: docs/adapters.md.\n";
   return text + "\nMotions: .bvh, and .glb, .gltf, .fbx and .dae with animations. docs/retargeting.md tells more.\n" +
          "\nExamples:\n" + examples;
 }
@@ -219,6 +247,8 @@ void addOptions(CLI::App& command, const std::shared_ptr<RetargetArguments>& opt
           "height of the ground in the motion, in its unit (default: measured)")
       ->check(numberIn(-1e9, 1e9))
       ->type_name("Y");
+  options->command = &command;
+  options->adapters.addTo(command);
   options->common.addTo(command);
 }
 

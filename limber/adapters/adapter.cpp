@@ -225,7 +225,8 @@ void readOutput(const JsonView& output, Adapter& adapter) {
   const bool isText = adapter.outputFormat == AdapterFormat::kRignetText;
   const bool isTurned = (isText || isMotion) && adapter.inputUp == AdapterUp::kZ;
   adapter.outputUp = entryOf(kUps, output, "up", isTurned ? "+z" : "+y").up;
-  adapter.outputFile = fmt::format("output/{}{}", adapterFileStem(adapter.kind), adapterExtension(adapter.outputFormat));
+  adapter.outputFile =
+      fmt::format("output/{}{}", adapterFileStem(adapter.kind), adapterExtension(adapter.outputFormat));
   if (!output.exists()) return;
   if (const JsonView file = output.member("file"); file.exists()) {
     adapter.outputFile = requiredText(file);

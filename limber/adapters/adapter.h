@@ -48,7 +48,7 @@ struct Adapter {
   AdapterUp inputUp = AdapterUp::kY;
   double inputSize = 1;           // the longest side of the box that is handed over; its centre is the origin
   double inputMetresPerUnit = 1;  // of kind retarget, in place of a size
-  bool takesWeights = true;       // of kind weights: else it is handed the skeleton, and each vertex with its nearest bone
+  bool takesWeights = true;  // of kind weights: else it is handed the skeleton, and each vertex with its nearest bone
 
   AdapterFormat outputFormat = AdapterFormat::kRignetText;
   AdapterUp outputUp = AdapterUp::kY;

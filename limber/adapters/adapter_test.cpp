@@ -106,6 +106,41 @@ TEST(Adapter, RefusesWhatDoesNotGoTogether) {
   EXPECT_THAT(with(R"("limits": {"memory_mb": 0})"), HasSubstr("limits.memory_mb"));
 }
 
+TEST(Adapter, RetargetingHasMotionsInAndOut) {
+  const std::string text =
+      R"({"limber_adapter": 1, "kind": "retarget", "steps": [{"command": ["r", "{motion}", "{skeleton}", "{output}"]}],
+          "input": {"up": "+z", "metres_per_unit": 0.01}})";
+  const Adapter adapter = adapterFromJson(text, "mine");
+  EXPECT_EQ(adapter.kind, AdapterKind::kRetarget);
+  EXPECT_EQ(adapter.inputFormat, AdapterFormat::kBvh);
+  EXPECT_EQ(adapter.outputFile, "output/motion.bvh");
+  EXPECT_EQ(adapter.outputUp, AdapterUp::kZ);
+  EXPECT_EQ(adapter.inputMetresPerUnit, 0.01);
+  EXPECT_EQ(adapter.outputMetresPerUnit, 0.01);
+  const auto with = [&](std::string_view from, std::string_view to) {
+    std::string other = text;
+    other.replace(other.find(from), from.size(), to);
+    return adapterProblem(other);
+  };
+  EXPECT_THAT(with("{motion}", "{input}"), HasSubstr("not known: {input}; there are: folder, motion, skeleton"));
+  EXPECT_THAT(with("\"{skeleton}\", ", ""), HasSubstr("never name the files that are handed over: {motion} and"));
+  EXPECT_THAT(with("0.01", "0"), HasSubstr("input.metres_per_unit: is not from"));
+  EXPECT_THAT(with("\"up\"", "\"size\": 1, \"up\""), HasSubstr("'size'"));
+  EXPECT_THAT(with("}}", R"(}, "output": {"may_rescale": true}})"), HasSubstr("'may_rescale'"));
+  EXPECT_THAT(adapterProblem(changed("{input}", "{motion}")), HasSubstr("not known: {motion}"));
+  const AdapterPaths paths{"/run", "/run/input/motion.bvh", "/run/output/motion.bvh", "/run/input/skeleton.bvh"};
+  EXPECT_EQ(filledIn("{motion}|{skeleton}|{input_folder}", paths, 7),
+            "/run/input/motion.bvh|/run/input/skeleton.bvh|/run/input");
+}
+
+TEST(Adapter, WeightsOfLimbersAreHandedOverWhereTheProgramTakesThem) {
+  const std::string text =
+      R"({"limber_adapter": 1, "kind": "weights", "steps": [{"command": ["w", "{input}"]}], "input": {)";
+  EXPECT_TRUE(adapterFromJson(text + "}}", "mine").takesWeights);
+  EXPECT_FALSE(adapterFromJson(text + "\"weights\": false}}", "mine").takesWeights);
+  EXPECT_THAT(adapterProblem(changed("\"kind\"", R"("input": {"weights": false}, "kind")")), HasSubstr("'weights'"));
+}
+
 TEST(Adapter, PlaceholdersAreFilledInAndOtherBracesStay) {
   const AdapterPaths paths{"/run", "/run/input/model.obj", "/run/output/model.txt"};
   EXPECT_EQ(filledIn("{folder}|{input}|{input_folder}|{output}|{seed}", paths, 7),
@@ -143,7 +178,7 @@ TEST(AdapterFolder, ANameLeadsNowhereElse) {
 TEST(AdapterFolder, TheOnesThatComeWithLimberAreRead) {
   const std::filesystem::path folder = std::filesystem::path(LIMBER_SOURCE_DIR) / "docs/adapters";
   const std::vector<std::string> names = adapterNames({folder});
-  EXPECT_THAT(names, ElementsAre("magicarticulate", "puppeteer", "rignet", "skintokens", "unirig"));
+  EXPECT_THAT(names, ElementsAre("magicarticulate", "puppeteer", "retarget-script", "rignet", "skintokens", "unirig"));
   for (const std::string& name : names) EXPECT_NO_THROW(EXPECT_TRUE(findAdapter(name, {folder}))) << name;
 }
 

@@ -109,7 +109,8 @@ std::string saying(const JobResult& result) {
   return words.empty() ? std::string() : fmt::format("; its last words: {}", words);
 }
 
-// What Python, C++, the C library, CUDA and the kernel's own killer say when memory does not suffice. No exit code tells.
+// What Python, C++, the C library, CUDA and the kernel's own killer say when memory does not suffice. No exit code
+// tells.
 bool ranOutOfMemory(const JobResult& result) {
   constexpr std::array<std::string_view, 4> kSigns = {"memoryerror", "out of memory", "cannot allocate memory",
                                                       "std::bad_alloc"};
@@ -124,11 +125,11 @@ bool ranOutOfMemory(const JobResult& result) {
   const std::string where = fmt::format("{}: step {} ({})", adapter.name, step + 1, job.command.front());
   constexpr double kMegabyte = 1 << 20;
   if (ranOutOfMemory(result)) {
-    throw Error(ErrorCode::kUnsupported,
-                fmt::format("ran out of memory (its limit is {:.0f} MB): {}{}",
-                            static_cast<double>(job.limits.memory) / kMegabyte, jobOutcomeText(job, result),
-                            saying(result)),
-                where, "raise \"memory_mb\" in the adapter's limits, unless it is the graphics card's");
+    throw Error(
+        ErrorCode::kUnsupported,
+        fmt::format("ran out of memory (its limit is {:.0f} MB): {}{}",
+                    static_cast<double>(job.limits.memory) / kMegabyte, jobOutcomeText(job, result), saying(result)),
+        where, "raise \"memory_mb\" in the adapter's limits, unless it is the graphics card's");
   }
   switch (result.outcome) {
     case JobOutcome::kNotStarted:

@@ -24,9 +24,9 @@ struct ProgramOutput {
 // $PATH.
 //
 // Throws Error kUnsupported, beginning with the adapter's name and with the program's last words: a step that cannot be
-// started, ends with another exit code than 0, crashes, takes longer than its limits, or runs out of memory (as its last
-// words say, or the system that ended it); kBadData: no output, or an empty one, whatever the exit code says. Progress
-// as runJobs.
+// started, ends with another exit code than 0, crashes, takes longer than its limits, or runs out of memory (as its
+// last words say, or the system that ended it); kBadData: no output, or an empty one, whatever the exit code says.
+// Progress as runJobs.
 ProgramOutput runProgram(const Adapter& adapter, const ProgramInput& input, Progress& progress);
 
 }  // namespace limber

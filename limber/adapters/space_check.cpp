@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -22,6 +24,8 @@ constexpr double kJointsBeside = 0.25;
 // are where there are none.
 constexpr double kClearlyNearer = 4;
 constexpr std::size_t kFewestJoints = 3;  // that tell axes apart
+// Of the longest offset: what texts with three digits round off and more; units and axes differ by far more.
+constexpr double kSameOffset = 0.01;
 
 constexpr std::string_view kAxes = "xyz";
 
@@ -112,6 +116,16 @@ void checkAxes(const std::vector<Anchor>& anchors, const std::string& where) {
               "set \"up\" in the adapter's \"output\" (or \"input\")");
 }
 
+// The joint that is farthest off when the returned offsets are mapped and scaled, and by how much.
+std::pair<std::size_t, double> worstOffset(const std::vector<JointOffset>& offsets, const AxisMap& map, double scale) {
+  std::pair<std::size_t, double> worst = {0, 0};
+  for (std::size_t i = 0; i < offsets.size(); ++i) {
+    const double apart = (scale * map.of(offsets[i].returned) - offsets[i].own).norm();
+    if (!(apart <= worst.second)) worst = {i, apart};
+  }
+  return worst;
+}
+
 }  // namespace
 
 Box surfaceBox(const TriMesh& mesh) {
@@ -164,6 +178,38 @@ void checkJointSpace(const Skeleton& skeleton, const TriMesh& surface, const Ski
                             skeleton.joints[j].name, outside),
                 where, "the program has another unit, or other axes: set \"size\" or \"up\" in the adapter");
   }
+}
+
+void checkSameOffsets(const std::vector<JointOffset>& offsets, const std::string& where) {
+  const AxisMap same{{0, 1, 2}, Vec3::Ones()};
+  double longest = 0, own = 0, returned = 0;
+  for (const JointOffset& offset : offsets) {
+    longest = std::max(longest, offset.own.norm());
+    own += offset.own.norm();
+    returned += offset.returned.norm();
+  }
+  const auto [worst, apart] = worstOffset(offsets, same, 1);
+  if (apart <= kSameOffset * longest) return;
+  const double larger = own > 0 ? returned / own : 0;
+  const bool isSameLength = std::abs(larger - 1) <= kSameOffset;
+  for (const AxisMap& map : allAxisMaps()) {
+    if (!(larger > 0) || worstOffset(offsets, map, 1 / larger).second > kSameOffset * longest) continue;
+    const std::string axes =
+        map.isIdentity() ? "" : fmt::format("in swapped axes: the character's x, y, z are its {}", axesText(map));
+    if (isSameLength) {
+      throw Error(ErrorCode::kBadData, "the skeleton stands " + axes, where,
+                  "set \"up\" in the adapter's \"output\" (or \"input\")");
+    }
+    throw Error(ErrorCode::kBadData,
+                fmt::format("the skeleton is {:.4g} times as large as what was handed over{}{}", larger,
+                            axes.empty() ? "" : ", and ", axes),
+                where, "set \"metres_per_unit\" in the adapter's \"output\"");
+  }
+  const Vec3 &a = offsets[worst].returned, &b = offsets[worst].own;
+  throw Error(ErrorCode::kBadData,
+              fmt::format("the joint '{}' has another offset: {:.4g} {:.4g} {:.4g} in place of {:.4g} {:.4g} {:.4g}",
+                          offsets[worst].name, a.x(), a.y(), a.z(), b.x(), b.y(), b.z()),
+              where, "the program must keep the skeleton that it is given");
 }
 
 }  // namespace limber

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "limber/core/types.h"
 #include "limber/mesh/tri_mesh.h"
@@ -23,5 +24,15 @@ void checkSameBox(const Box& returned, const Box& own, const std::string& where)
 // weights  of its vertices; null: none
 void checkJointSpace(const Skeleton& skeleton, const TriMesh& surface, const SkinWeights* weights,
                      const std::string& where);
+
+// A joint's rest position seen from one above it, without the skeleton's rotations.
+struct JointOffset {
+  std::string name;
+  Vec3 own, returned;
+};
+
+// Throws Error kBadData where offsets differ by more than 1 % of the longest one's length, and says whether the
+// skeleton has another size, its axes swapped, or which joint lies elsewhere.
+void checkSameOffsets(const std::vector<JointOffset>& offsets, const std::string& where);
 
 }  // namespace limber

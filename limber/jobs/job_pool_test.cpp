@@ -14,8 +14,8 @@
 #include "limber/core/error.h"
 #include "limber/core/sanitizers.h"
 #include "limber/jobs/own_program.h"
+#include "process_state.h"
 #include "temporary_folder.h"
-#include "testing/process_state.h"
 
 namespace limber {
 namespace {

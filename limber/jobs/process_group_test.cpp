@@ -15,8 +15,8 @@
 #include "limber/jobs/job_pool.h"
 #include "limber/jobs/own_program.h"
 #include "limber/jobs/running_job.h"
+#include "process_state.h"
 #include "temporary_folder.h"
-#include "testing/process_state.h"
 
 namespace limber {
 namespace {

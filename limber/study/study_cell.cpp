@@ -45,6 +45,14 @@ bool hasRigOfEarlier(std::span<const RigCombination> combinations, std::size_t i
                      });
 }
 
+void addAdapters(std::span<const std::filesystem::path> adapters, std::vector<std::string>& arguments,
+                 StudyCell& cell) {
+  for (const std::filesystem::path& adapter : adapters) {
+    arguments.insert(arguments.end(), {"--adapter", adapter.string()});
+    cell.inputs.push_back(adapter);
+  }
+}
+
 // measuresRig  else what depends on the deformer alone
 StudyCell rigCell(const StudyModel& model, const RigCombination& combination, const std::string& threads,
                   bool measuresRig) {
@@ -67,10 +75,7 @@ StudyCell rigCell(const StudyModel& model, const RigCombination& combination, co
     if (model.isRigged) rig.emplace_back("--replace-rig");
   }
   rig.insert(rig.end(), {"--skinning", combination.skinning});
-  for (const std::filesystem::path& adapter : combination.adapters) {
-    rig.insert(rig.end(), {"--adapter", adapter.string()});
-    cell.inputs.push_back(adapter);
-  }
+  addAdapters(combination.adapters, rig, cell);
   rig.insert(rig.end(), combination.setting.arguments.begin(), combination.setting.arguments.end());
   rig.insert(rig.end(), {"--threads", threads, "--quiet", "-o", "rigged.glb", "--json", "report.json"});
   cell.steps.push_back({"rig", std::move(rig), MeasureSource::kRigReport, "report.json", {}, measuresRig});
@@ -105,6 +110,7 @@ StudyCell retargetCell(const StudyInput& character, const StudyInput& motion, co
   std::vector<std::string> retarget = {"retarget", character.file.string(), motion.file.string(), "--method",
                                        combination.method};
   if (!combination.solver.empty()) retarget.insert(retarget.end(), {"--solver", combination.solver});
+  addAdapters(combination.adapters, retarget, cell);
   retarget.insert(retarget.end(), {"--threads", threads, "--quiet", "-o", "moving.glb"});
   cell.steps.push_back({"retarget", std::move(retarget), MeasureSource::kNone, {}, {}, true});
   cell.steps.push_back({"evaluate motion",

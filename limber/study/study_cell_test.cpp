@@ -84,6 +84,13 @@ TEST(StudyCells, AdaptersAreInputsOfTheirCells) {
       rigCells(rigPlanOf({{"learned", "bone-heat", {}, {"/mine/learned.json"}}}), std::vector{kBare});
   EXPECT_THAT(cells[0].steps[0].arguments, ::testing::IsSupersetOf({"--adapter", "/mine/learned.json"}));
   EXPECT_THAT(cells[0].inputs, Contains(std::filesystem::path("/mine/learned.json")));
+  StudyPlan plan;
+  plan.retarget.combinations = {{"moves", "", {"/mine/moves.json"}}};
+  const StudyInput motion = {"/m/walk.bvh", "walk", "m", {}};
+  const StudyCell moving = retargetCells(plan, {&kRigged.input, 1}, {&motion, 1}).front();
+  EXPECT_THAT(moving.steps[0].arguments,
+              ::testing::IsSupersetOf({"--method", "moves", "--adapter", "/mine/moves.json"}));
+  EXPECT_THAT(moving.inputs, Contains(std::filesystem::path("/mine/moves.json")));
 }
 
 TEST(StudyCells, MethodsAreToldApartByTheirNames) {

@@ -78,9 +78,9 @@ std::vector<std::string> methodsOf(const JsonView& object, std::string_view key,
 }
 
 // Methods of limber's by name, and programs of the user's where there is no such method.
-class RigMethods {
+class PlanMethods {
  public:
-  explicit RigMethods(const std::vector<std::filesystem::path>& adapterFolders) : folders_(adapterFolders) {}
+  explicit PlanMethods(const std::vector<std::filesystem::path>& adapterFolders) : folders_(adapterFolders) {}
 
   // Throw Error kBadArgument where nobody is called so.
   void checkRigger(std::string_view name) const {
@@ -88,6 +88,18 @@ class RigMethods {
   }
   void checkSkinning(std::string_view name) const {
     if (!adapterOf(name, AdapterKind::kWeights)) findWeightMethod(name);
+  }
+  void checkRetargeting(std::string_view name) const {
+    if (!adapterOf(name, AdapterKind::kRetarget)) findRetargetMethod(name);
+  }
+  // By each solver, or by none where the method solves for no limbs, or is a program that decides for itself.
+  std::vector<RetargetCombination> retargetCombinations(const std::string& method,
+                                                        const std::vector<std::string>& solvers) const {
+    if (const auto adapter = adapterOf(method, AdapterKind::kRetarget)) return {{method, {}, {adapter->file}}};
+    if (!findRetargetMethod(method).solvesLimbs) return {{method, {}}};
+    std::vector<RetargetCombination> combinations;
+    for (const std::string& solver : solvers) combinations.push_back({method, solver});
+    return combinations;
   }
   RigCombination combination(std::string rigger, std::string skinning, RigSetting setting) const {
     RigCombination one{std::move(rigger), std::move(skinning), std::move(setting)};
@@ -103,6 +115,9 @@ class RigMethods {
     const auto isCalledSo = [&](const auto& method) { return method.name == name; };
     if (kind == AdapterKind::kWeights) {
       return std::any_of(weightMethods().begin(), weightMethods().end(), isCalledSo);
+    }
+    if (kind == AdapterKind::kRetarget) {
+      return std::any_of(retargetMethods().begin(), retargetMethods().end(), isCalledSo);
     }
     return name == kOwnSkeleton || std::any_of(riggerMethods().begin(), riggerMethods().end(), isCalledSo);
   }
@@ -162,7 +177,7 @@ void refuseBeside(const JsonView& object, std::initializer_list<std::string_view
 
 // The plan's own combinations, in place of all.
 std::vector<RigCombination> namedPairs(const JsonView& pairs, const std::vector<RigSetting>& settings,
-                                       const RigMethods& methods) {
+                                       const PlanMethods& methods) {
   std::vector<RigCombination> combinations;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const JsonView pair = pairs[i];
@@ -189,7 +204,7 @@ std::vector<RigCombination> namedPairs(const JsonView& pairs, const std::vector<
 
 // Every rigger with every skinning method, every set of options and every deformer.
 std::vector<RigCombination> rigProduct(const JsonView& rig, std::vector<RigSetting> settings,
-                                       const RigMethods& methods) {
+                                       const PlanMethods& methods) {
   if (settings.empty()) settings.emplace_back();
   const std::vector<std::string> riggers = methodsOf(rig, "riggers", riggerMethods(), {"template"},
                                                      [&](const std::string& name) { methods.checkRigger(name); });
@@ -210,7 +225,7 @@ std::vector<RigCombination> rigProduct(const JsonView& rig, std::vector<RigSetti
   return combinations;
 }
 
-RigPlan rigPlanOf(const JsonView& rig, const RigMethods& methods) {
+RigPlan rigPlanOf(const JsonView& rig, const PlanMethods& methods) {
   RigPlan plan;
   if (!rig.exists()) return plan;
   allow(rig, {"models", "riggers", "skinning", "deformers", "options", "pairs"});
@@ -227,22 +242,20 @@ RigPlan rigPlanOf(const JsonView& rig, const RigMethods& methods) {
   return plan;
 }
 
-std::vector<RetargetCombination> retargetPairs(const JsonView& pairs) {
+std::vector<RetargetCombination> retargetPairs(const JsonView& pairs, const PlanMethods& methods) {
   std::vector<RetargetCombination> combinations;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const JsonView pair = pairs[i];
     pair.requireObject();
     allow(pair, {"method", "solver"});
+    const std::string method = textOf(pair.member("method"));
+    checkAt(pair.member("method"), method, [&](const std::string& name) { methods.checkRetargeting(name); });
     const JsonView solver = pair.member("solver");
-    RetargetCombination one{textOf(pair.member("method")), {}};
-    checkAt(pair.member("method"), one.method, findRetargetMethod);
-    const bool usesSolver = findRetargetMethod(one.method).solvesLimbs;
-    if (solver.exists()) {
-      one.solver = textOf(solver);
-      checkAt(solver, one.solver, findIkMethod);
-      if (!usesSolver) solver.fail(fmt::format("is of no use: '{}' solves for no limbs", one.method));
-    } else if (usesSolver) {
-      one.solver = kUsualSolver;
+    if (solver.exists()) checkAt(solver, textOf(solver), findIkMethod);
+    RetargetCombination one =
+        methods.retargetCombinations(method, {solver.exists() ? textOf(solver) : std::string(kUsualSolver)}).front();
+    if (solver.exists() && one.solver.empty()) {
+      solver.fail(fmt::format("is of no use: '{}' solves for no limbs", method));
     }
     combinations.push_back(std::move(one));
   }
@@ -250,23 +263,20 @@ std::vector<RetargetCombination> retargetPairs(const JsonView& pairs) {
 }
 
 // Every method with every solver.
-std::vector<RetargetCombination> retargetProduct(const JsonView& retarget) {
-  const std::vector<std::string> methods =
-      methodsOf(retarget, "methods", retargetMethods(), {"limb-ik"}, findRetargetMethod);
+std::vector<RetargetCombination> retargetProduct(const JsonView& retarget, const PlanMethods& methods) {
+  const std::vector<std::string> names =
+      methodsOf(retarget, "methods", retargetMethods(), {"limb-ik"},
+                [&](const std::string& name) { methods.checkRetargeting(name); });
   const std::vector<std::string> solvers =
       methodsOf(retarget, "solvers", ikMethods(), {std::string(kUsualSolver)}, findIkMethod);
   std::vector<RetargetCombination> combinations;
-  for (const std::string& method : methods) {
-    // What solves for no limbs gives the same by every solver.
-    const bool usesSolver = findRetargetMethod(method).solvesLimbs;
-    for (std::size_t i = 0; i < (usesSolver ? solvers.size() : std::min<std::size_t>(1, solvers.size())); ++i) {
-      combinations.push_back({method, usesSolver ? solvers[i] : std::string()});
-    }
+  for (const std::string& name : names) {
+    for (RetargetCombination& one : methods.retargetCombinations(name, solvers)) combinations.push_back(std::move(one));
   }
   return combinations;
 }
 
-RetargetPlan retargetPlanOf(const JsonView& retarget) {
+RetargetPlan retargetPlanOf(const JsonView& retarget, const PlanMethods& methods) {
   RetargetPlan plan;
   if (!retarget.exists()) return plan;
   allow(retarget, {"characters", "motions", "methods", "solvers", "pairs"});
@@ -276,9 +286,9 @@ RetargetPlan retargetPlanOf(const JsonView& retarget) {
   if (plan.motions.empty()) retarget.fail("names no motions");
   if (const JsonView pairs = retarget.array("pairs"); pairs.exists()) {
     refuseBeside(retarget, {"methods", "solvers"});
-    plan.combinations = retargetPairs(pairs);
+    plan.combinations = retargetPairs(pairs, methods);
   } else {
-    plan.combinations = retargetProduct(retarget);
+    plan.combinations = retargetProduct(retarget, methods);
   }
   if (plan.combinations.empty()) retarget.fail("names no methods");
   return plan;
@@ -299,14 +309,14 @@ void readLimits(const JsonView& limits, StudyPlan& plan) {
   }
 }
 
-StudyPlan planOf(const JsonView& root, const RigMethods& methods) {
+StudyPlan planOf(const JsonView& root, const PlanMethods& methods) {
   root.requireObject();
   if (root.count(kVersionKey) != 1) root.fail(fmt::format("has no \"{}\": 1", kVersionKey));
   allow(root, {kVersionKey, "title", "rig", "retarget", "limits", "threads"});
   StudyPlan plan;
   if (root.member("title").exists()) plan.title = textOf(root.member("title"));
   plan.rig = rigPlanOf(root.object("rig"), methods);
-  plan.retarget = retargetPlanOf(root.object("retarget"));
+  plan.retarget = retargetPlanOf(root.object("retarget"), methods);
   readLimits(root.object("limits"), plan);
   if (const auto threads = root.count("threads")) {
     if (*threads > kMostThreads) root.member("threads").fail(fmt::format("is not from 0 to {}", kMostThreads));
@@ -326,7 +336,7 @@ StudyPlan studyPlanFromJson(std::string_view text, const std::vector<std::filesy
       const Warning& first = warnings.items().front();
       throw Error(ErrorCode::kBadData, first.message, first.where);
     }
-    return planOf(JsonView(json), RigMethods(adapterFolders));
+    return planOf(JsonView(json), PlanMethods(adapterFolders));
   } catch (const Error& error) {
     throw error.within("study plan");
   }

@@ -36,7 +36,8 @@ struct RigPlan {
 };
 
 struct RetargetCombination {
-  std::string method, solver;  // solver: empty where the method solves for no limbs
+  std::string method, solver;                        // solver: empty where the method solves for no limbs
+  std::vector<std::filesystem::path> adapters = {};  // the file of a program of the user's
 };
 
 // Each combination is tried on each pair of a character and a motion.
@@ -53,9 +54,10 @@ struct StudyPlan {
   int threads = 1;        // of each command
 };
 
-// Lists of methods are multiplied out, in the order of the plan; "all" stands for all of limber's own. A rigger or
-// skinning method that is none of these is an adapter (findAdapter) in `adapterFolders`. Throws Error kBadData that
-// names the entry: not JSON, another version, a key or a method that is not known, nothing to run; and as findAdapter.
+// Lists of methods are multiplied out, in the order of the plan; "all" stands for all of limber's own. A rigger,
+// skinning or retargeting method that is none of these is an adapter (findAdapter) in `adapterFolders`. Throws Error
+// kBadData that names the entry: not JSON, another version, a key or a method that is not known, nothing to run; and as
+// findAdapter.
 StudyPlan studyPlanFromJson(std::string_view text, const std::vector<std::filesystem::path>& adapterFolders = {});
 
 // A plan of samples that runs as it is.

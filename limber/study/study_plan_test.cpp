@@ -79,6 +79,21 @@ TEST(StudyPlan, ANameThatIsNoMethodIsAnAdapters) {
   EXPECT_THAT(refusal(R"(, "riggers": ["broken"])"), HasSubstr("riggers[0]: adapter broken"));
 }
 
+TEST(StudyPlan, RetargetingMethodsCanBeAdapters) {
+  const testing::TemporaryFolder folder;
+  std::ofstream(folder.path() / "learned.json")
+      << R"({"limber_adapter": 1, "kind": "retarget", "steps": [{"command": ["r", "{input_folder}"]}]})";
+  const std::string text = R"({"limber_study": 1, "retarget": {"characters": ["c"], "motions": ["m"],
+                                "methods": ["learned", "limb-ik"], "solvers": ["two-bone", "fabrik"]}})";
+  const StudyPlan plan = studyPlanFromJson(text, {folder.path()});
+  ASSERT_EQ(plan.retarget.combinations.size(), 3u);  // a program takes no solver
+  EXPECT_EQ(plan.retarget.combinations[0].method, "learned");
+  EXPECT_EQ(plan.retarget.combinations[0].solver, "");
+  EXPECT_THAT(plan.retarget.combinations[0].adapters, ElementsAre(folder.path() / "learned.json"));
+  EXPECT_TRUE(plan.retarget.combinations[1].adapters.empty());
+  EXPECT_THAT(refusalOf(text), HasSubstr("methods[0]: "));
+}
+
 TEST(StudyPlan, AllStandsForAllThereAre) {
   const StudyPlan plan = studyPlanFromJson(rigPlan(R"(, "riggers": ["all"], "skinning": ["all"])"));
   EXPECT_EQ(plan.rig.combinations.size(), riggerMethods().size() * weightMethods().size());
