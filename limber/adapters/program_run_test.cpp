@@ -102,6 +102,7 @@ TEST(ProgramRun, RunningOutOfMemorySaysSo) {
   EXPECT_THAT(runProblem(shellAdapter("echo memory is fine >&2; exit 1")), Not(HasSubstr("ran out")));
 }
 
+#ifdef __linux__  // elsewhere it is not RLIMIT_DATA
 // The limit is the adapter's, also below a program that has a smaller one of its own, as a study's cells have.
 TEST(ProgramRun, TheLimitOfMemoryIsTheAdaptersOwn) {
   Adapter adapter = shellAdapter("ulimit -d > \"$2\"");
@@ -115,6 +116,7 @@ TEST(ProgramRun, TheLimitOfMemoryIsTheAdaptersOwn) {
   if (kAddressSanitizer) GTEST_SKIP() << "which takes terabytes of addresses for itself";
   EXPECT_EQ(text, std::to_string(3000 << 10) + "\n");
 }
+#endif
 
 TEST(ProgramRun, AFirstStepThatFailsIsTheLastThatRuns) {
   Adapter adapter = shellAdapter("exit 1");
