@@ -289,6 +289,10 @@ blender_addon() {
   counted apps/blender/tests/run.sh build/packages/limber-blender-*.zip build/release/limber "$output/blender_addon"
 }
 
+documentation_site() {
+  need "${packages_site[@]}" && check "a page of the site is wrong" site/make.sh >/dev/null
+}
+
 build_sanitize() {
   configure sanitize && compile sanitize
 }
@@ -388,6 +392,7 @@ remaining_stages() {
   stage "installed package, and the examples built against it" install_and_use
   stage "packages, installed on a Debian with nothing on it" packages_on_bare_debian
   stage "add-on in Blender" blender_addon
+  stage "documentation as a site" documentation_site
   stage "sanitizer build, clang++ with warnings as errors" build_sanitize
   sanitizer_options
   stage "unit tests under sanitizers" unit_tests sanitize "$minutes_under_sanitizers"

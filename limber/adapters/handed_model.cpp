@@ -3,9 +3,7 @@
 #include <iterator>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
-#include "limber/asset/accessor.h"
 #include "limber/core/transform.h"
 
 namespace limber {
@@ -43,29 +41,6 @@ Bytes handedObj(const TriMesh& mesh) {
   for (const Vec3f& p : mesh.positions) fmt::format_to(out, "v {} {} {}\n", p.x(), p.y(), p.z());
   for (const Triangle& t : mesh.triangles) fmt::format_to(out, "f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1);
   return {text.begin(), text.end()};
-}
-
-Asset handedAsset(const TriMesh& mesh) {
-  Asset asset;
-  std::vector<float> places;
-  std::vector<Index> corners;
-  for (const Vec3f& p : mesh.positions) places.insert(places.end(), {p.x(), p.y(), p.z()});
-  for (const Triangle& t : mesh.triangles) corners.insert(corners.end(), t.begin(), t.end());
-  Json& json = asset.json();
-  json["asset"] = {{"version", "2.0"}, {"generator", "limber"}};
-  json["scene"] = 0;
-  json["scenes"] = Json::array({{{"nodes", {0}}}});
-  json["nodes"] = Json::array({{{"name", "model"}, {"mesh", 0}}});
-  const Index positions = addFloatAccessor(asset, places, 3, kVertexTarget, true);
-  const Index indices = addAccessor(
-      asset, {static_cast<Index>(corners.size()), 1, ComponentType::kU32, false},
-      {reinterpret_cast<const std::uint8_t*>(corners.data()), corners.size() * sizeof(Index)}, kIndexTarget);
-  json["meshes"] =
-      Json::array({{{"name", "model"},
-                    {"primitives", Json::array({{{"attributes", {{"POSITION", positions}}}, {"indices", indices}}})}}});
-  asset.name = "model.glb";
-  asset.format = "glb";
-  return asset;
 }
 
 Skeleton movedSkeleton(const Skeleton& skeleton, const Affine& map) {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "limber/adapters/adapter.h"
-#include "limber/asset/asset.h"
+#include "limber/core/file.h"
 #include "limber/mesh/tri_mesh.h"
 #include "limber/skeleton/skin_weights.h"
 
@@ -26,9 +26,6 @@ HandedModel handedModel(const TriMesh& working, const Adapter& adapter);
 // Positions and faces alone, in the mesh's order: what reorders vertices by normals or materials has no cause to.
 // Numbers are written so that they read back equal.
 Bytes handedObj(const TriMesh& mesh);
-
-// A document with one node that shows the mesh.
-Asset handedAsset(const TriMesh& mesh);
 
 // The skeleton under a map that turns, scales evenly and moves. Rest scales are taken into the places of the joints:
 // the result has none.

@@ -11,6 +11,7 @@
 
 #include "limber/adapters/handed_motion.h"
 #include "limber/asset/clip_io.h"
+#include "limber/asset/mesh_asset.h"
 #include "limber/asset/motion_io.h"
 #include "limber/asset/write.h"
 #include "limber/core/numbers.h"
@@ -439,7 +440,7 @@ TEST_F(RetargetByProgram, RefusesWhatCannotBeDone) {
   Motion none = puppetMotion(puppet());
   none.clips.clear();
   EXPECT_THROW(retarget(asset, none, retargetAdapter("true")), Error);
-  Asset bare = handedAsset(testing::madeBody());
+  Asset bare = meshAsset(testing::madeBody());
   EXPECT_THROW(retarget(bare, puppetMotion(puppet()), retargetAdapter("true")), Error);
 }
 

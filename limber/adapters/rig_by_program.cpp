@@ -8,6 +8,7 @@
 
 #include "limber/adapters/returned_rig.h"
 #include "limber/asset/geometry.h"
+#include "limber/asset/mesh_asset.h"
 #include "limber/asset/rig_io.h"
 #include "limber/asset/write.h"
 #include "limber/core/known_error.h"
@@ -54,7 +55,7 @@ AutoRigReport reportOf(const Geometry& geometry, const PreparedMesh& prepared, c
 }
 
 Bytes inputFor(const HandedModel& handed, const Adapter& adapter) {
-  return adapter.inputFormat == AdapterFormat::kObj ? handedObj(handed.mesh) : writeGlb(handedAsset(handed.mesh));
+  return adapter.inputFormat == AdapterFormat::kObj ? handedObj(handed.mesh) : writeGlb(meshAsset(handed.mesh));
 }
 
 Affine worldOf(const WorkingFrame& frame) {
@@ -176,7 +177,7 @@ Warnings weightsByProgram(Asset& asset, const Adapter& adapter, const WeightOpti
     const PreparedMesh prepared = prepareMesh(geometry.positions, geometry.triangles);
     const HandedModel handed = handedModel(prepared.mesh, adapter);
     const Skeleton working = movedSkeleton(own.skeleton, worldOf(prepared.frame).inverse());
-    Asset given = handedAsset(handed.mesh);
+    Asset given = meshAsset(handed.mesh);
     attachRig(given, collectGeometry(given), movedSkeleton(working, toHandedSpace(adapter.inputUp, adapter.inputSize)),
               handedWeights(readWeights(asset, geometry, own), prepared, handed));
     const Bytes input = writeGlb(given);

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "limber/asset/accessor.h"
+#include "limber/asset/mesh_asset.h"
 #include "limber/asset/read.h"
 #include "limber/core/random.h"
 #include "temporary_folder.h"
@@ -42,7 +43,7 @@ Affine placeInWorld() {
 
 // The made body under a node that moves and scales it.
 Asset placedModel() {
-  Asset asset = handedAsset(madeBody());
+  Asset asset = meshAsset(madeBody());
   asset.json()["nodes"][0]["translation"] = {3, -2, 5};
   asset.json()["nodes"][0]["scale"] = {2.5, 2.5, 2.5};
   asset.name = "scan.glb";
@@ -323,7 +324,7 @@ TEST_F(RigByProgram, AnotherSurfaceIsRefused) {
   const Affine map = madeToHanded(shellAdapter(""));
   EXPECT_THAT(problemOf(copying(madeGlb(other, madeWeights(other), map), AdapterFormat::kGlb)),
               HasSubstr("the surface is not the model's"));
-  EXPECT_THAT(problemOf(copying(writeGlb(handedAsset(madeBody())), AdapterFormat::kGlb)),
+  EXPECT_THAT(problemOf(copying(writeGlb(meshAsset(madeBody())), AdapterFormat::kGlb)),
               HasSubstr("has no skeleton with a skin"));
 }
 
@@ -350,7 +351,7 @@ TEST_F(RigByProgram, FewerTrianglesStillTellTheWeights) {
   const TriMesh body = madeBody();
   const SkinWeights coarse = madeWeights(body);
   std::vector<std::pair<Index, Index>> ends;
-  Asset asset = handedAsset(subdivided(body, ends));
+  Asset asset = meshAsset(subdivided(body, ends));
   rig(asset, copying(madeGlb(body, coarse, madeToHanded(shellAdapter(""))), AdapterFormat::kGlb));
   const AssetSkeleton read = readSkeleton(asset);
   const SkinWeights weights = readWeights(asset, collectGeometry(asset), read);
@@ -422,7 +423,7 @@ Bytes renamedGlb(const Affine& map, bool isElsewhere) {
   Skeleton skeleton = movedSkeleton(testing::madeSkeleton(), map);
   for (Joint& joint : skeleton.joints) joint.name = "bone_" + joint.name;
   if (isElsewhere) skeleton.joints[3].rest.translation += Vec3(0.1, 0, 0);
-  Asset asset = handedAsset(moved);
+  Asset asset = meshAsset(moved);
   attachRig(asset, collectGeometry(asset), skeleton, madeWeights(madeBody()));
   return writeGlb(asset);
 }

@@ -14,6 +14,7 @@
 #include "limber/adapters/adapter.h"
 #include "limber/adapters/handed_model.h"
 #include "limber/asset/geometry.h"
+#include "limber/asset/mesh_asset.h"
 #include "limber/asset/rig_io.h"
 #include "limber/asset/write.h"
 #include "limber/mesh/prepare.h"
@@ -85,7 +86,7 @@ inline SkinWeights madeWeights(const TriMesh& body) {
 inline Bytes madeGlb(const TriMesh& body, const SkinWeights& weights, const Affine& map = Affine::Identity()) {
   TriMesh moved = body;
   for (Vec3f& p : moved.positions) p = (map * Vec3(p.cast<double>())).cast<float>();
-  Asset asset = handedAsset(moved);
+  Asset asset = meshAsset(moved);
   attachRig(asset, collectGeometry(asset), movedSkeleton(madeSkeleton(), map), weights);
   return writeGlb(asset);
 }

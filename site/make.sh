@@ -1,0 +1,36 @@
+#!/usr/bin/env bash
+# make.sh: the documentation as a site in build/site/html, with pages of the library's headers below api/. Fails on a warning: a link
+# that leads nowhere, a comment that doxygen does not understand. Run from the repository's root by ./dev site.
+set -euo pipefail
+
+work=build/site
+rm -rf $work
+mkdir -p $work/docs $work/api
+
+# What limber/limber.h reaches.
+reached() {
+  local open=(limber/limber.h) header included
+  local -A found=([limber/limber.h]=yes)
+  while [ ${#open[@]} -gt 0 ]; do
+    header=${open[0]}
+    open=("${open[@]:1}")
+    echo "$header"
+    for included in $(sed -n 's/^#include "\(limber\/.*\)"$/\1/p' "$header"); do
+      [ -n "${found[$included]:-}" ] || open+=("$included")
+      found[$included]=yes
+    done
+  done
+}
+
+{ cat site/Doxyfile; echo "INPUT = site/api.md $(reached | tr '\n' ' ')"; } | doxygen - 2>$work/doxygen.log ||
+  { cat $work/doxygen.log >&2; exit 1; }
+
+# The pages, with the README as the first; what links to a file of the repository that is no page leads to that file's name alone.
+cp -r docs/. $work/docs
+sed -E 's#\(docs/#(#g' README.md >$work/docs/index.md
+for page in $work/docs/*.md; do
+  sed -i -E 's#\[([^]]*)\]\((\.\./[^)]*|adapters|data/[^)]*|examples/[^)]*|bindings/[^)]*|[A-Z]+(\.md)?)\)#\1#g' "$page"
+done
+mkdocs build --quiet -f site/mkdocs.yml
+cp -r $work/api $work/html/api
+echo "The site is in $work/html"
