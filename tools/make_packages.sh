@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # make_packages.sh BUILD_FOLDER OUTPUT_FOLDER: limber_VERSION_ARCH.deb and liblimber-dev_VERSION_ARCH.deb, a .tar.gz of the program,
-# a wheel for Debian 12's Python and the add-on for Blender; .tar.gz and wheel carry their shared libraries with their notices. Everything is built already.
+# a wheel for Debian 12's Python the add-on for Blender, and a package for npm; .tar.gz and wheel carry their shared libraries with their notices. Everything is built already.
 # Called by ./dev package.
 set -euo pipefail
 
@@ -123,5 +123,9 @@ rm -rf "$work/blender" "$output"/*.zip
 mkdir -p "$work/blender/limber"
 cp apps/blender/limber/*.py apps/blender/limber/*.toml LICENSE "$work/blender/limber"
 /usr/bin/python3 -c 'import shutil, sys; shutil.make_archive(sys.argv[1], "zip", sys.argv[2], "limber")' "$output/limber-blender-$version" "$work/blender"
+
+# The npm package, where the engine is built as WebAssembly.
+rm -f "$output"/*.tgz
+[ ! -f build/wasm/limber_engine.wasm ] || bindings/npm/make.sh build/wasm "$limber" "$output"
 
 ls -l "$output" | awk 'NR > 1 { printf "%6.1f MB  %s\n", $5 / 1e6, $NF }'

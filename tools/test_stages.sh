@@ -278,6 +278,12 @@ packages_on_bare_debian() {
   counted tests/bare_debian.sh build/packages "$output/bare"
 }
 
+npm_package() {
+  need "${packages_browser[@]}" >/dev/null 2>&1 || true
+  command -v chromium >/dev/null || { echo "   no chromium here: the npm package is not tried"; add_counts 0 0 1; return 0; }
+  counted node bindings/npm/tests/package_test.mjs build/packages/limber-*.tgz build/release/limber "$output/npm"
+}
+
 # The add-on in Blender, without a window and in one: skipped where there is no Blender to be had.
 blender_addon() {
   need "${packages_blender[@]}" >/dev/null 2>&1 || true
@@ -391,6 +397,7 @@ remaining_stages() {
   stage "glTF validator over every file written" validate_written_files
   stage "installed package, and the examples built against it" install_and_use
   stage "packages, installed on a Debian with nothing on it" packages_on_bare_debian
+  stage "npm package" npm_package
   stage "add-on in Blender" blender_addon
   stage "documentation as a site" documentation_site
   stage "sanitizer build, clang++ with warnings as errors" build_sanitize

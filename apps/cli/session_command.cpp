@@ -128,6 +128,10 @@ void addSessionCommand(CLI::App& program) {
       "  limber session replay commands.json -o posed.glb\n"
       "  limber session replay fox.limber -o posed.glb");
   replay->callback([options] { run(*options); });
+
+  CLI::App* types = command->add_subcommand("types", "Print the commands as a union of TypeScript types");
+  types->footer("Example:\n  limber session types > commands.d.ts");
+  types->callback([] { fmt::print("{}", commandTypes()); });
 }
 
 }  // namespace limber::cli

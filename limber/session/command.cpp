@@ -546,6 +546,53 @@ class Reader {
   std::vector<std::string_view> known_;
 };
 
+// The fields as members of a TypeScript type.
+class TypeWriter {
+ public:
+  explicit TypeWriter(std::string& text) : text_(text) {}
+
+  void operator()(const char* key, const std::string& value) { member(key, value.empty(), "string"); }
+  void optional(const char* key, const std::string&) { member(key, false, "string"); }
+  void operator()(const char* key, bool) { member(key, false, "boolean"); }
+  void operator()(const char* key, Index) { member(key, false, "number"); }
+  void operator()(const char* key, double) { member(key, false, "number"); }
+  void operator()(const char* key, const Vec3&) { member(key, false, "Vector"); }
+  void operator()(const char* key, const Ray&) { member(key, false, "Ray"); }
+  void operator()(const char* key, const std::vector<std::string>&) { member(key, false, "string[]"); }
+  void operator()(const char* key, const std::vector<KeyOfJoint>&) { member(key, true, "KeyOfJoint[]"); }
+  void operator()(const char* key, const std::vector<PoseKey>&) { member(key, true, "PoseKey[]"); }
+  void operator()(const char* key, const std::vector<SurfaceDab>&) { member(key, false, "SurfaceDab[]"); }
+  template <class E>
+  std::enable_if_t<std::is_enum_v<E>> operator()(const char* key, const E& value) {
+    std::string words;
+    for (const auto& [known, word] : wordsOf(value)) {
+      words += fmt::format("{}'{}'", words.empty() ? "" : " | ", word);
+    }
+    member(key, false, words);
+  }
+
+ private:
+  void member(const char* key, bool isNeeded, std::string_view type) {
+    text_ += fmt::format("; {}{}: {}", key, isNeeded ? "" : "?", type);
+  }
+
+  std::string& text_;
+};
+
+template <std::size_t... I>
+std::string unionOfCommands(std::index_sequence<I...>) {
+  std::string text;
+  const auto add = [&]<std::size_t N>(std::integral_constant<std::size_t, N>) {
+    text += fmt::format("\n  | {{ do: '{}'", kNames[N]);
+    TypeWriter writer(text);
+    std::variant_alternative_t<N, Command> command;
+    visitFields(writer, command);
+    text += " }";
+  };
+  (add(std::integral_constant<std::size_t, I>()), ...);
+  return text;
+}
+
 // Reads the alternative of that name, trying one after the other.
 template <std::size_t I = 0>
 std::optional<Command> readNamed(std::string_view name, const JsonView& object) {
@@ -598,6 +645,18 @@ Json commandToJson(const Command& command) {
 
 Command commandFromJson(const Json& json) {
   return readCommand(JsonView(json));
+}
+
+std::string commandTypes() {
+  return "// The commands of a session, made by limber session types. Vectors are in world space, metres.\n"
+         "export type Vector = [number, number, number];\n"
+         "export type Ray = { origin: Vector; direction: Vector };\n"
+         "export type KeyOfJoint = { joint: string; seconds?: number };\n"
+         "export type PoseKey = { pose: string; joints?: string[]; seconds?: number };\n"
+         "/** A triangle of the surface, and where on it: (1 - u - v, u, v) of its corners. */\n"
+         "export type SurfaceDab = [triangle: number, u: number, v: number];\n"
+         "export type Command =" +
+         unionOfCommands(std::make_index_sequence<std::variant_size_v<Command>>()) + ";\n";
 }
 
 std::string commandsToJson(std::span<const Command> commands) {

@@ -396,6 +396,9 @@ std::string_view commandName(const Command& command);
 Json commandToJson(const Command& command);
 Command commandFromJson(const Json& json);
 
+// The commands as a union of TypeScript types, as commandFromJson takes them: a misspelt field does not compile.
+std::string commandTypes();
+
 // {"limber_commands": 2, "commands": [...]}; lists of older versions are read as well.
 std::string commandsToJson(std::span<const Command> commands);
 std::vector<Command> commandsFromJson(std::string_view text);

@@ -1,7 +1,5 @@
 #include "limber/session/command.h"
 
-#include <algorithm>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -207,6 +205,29 @@ TEST(Command, WhatIsWrongIsNamed) {
   expectRefused(list(R"({"do": "edit_keys", "keys": [{"joint": "a", "at": 1}]})"), "commands[1].keys[0].at",
                 "not part");
   expectRefused(list(R"({"do": "set_interpolation", "interpolation": "wavy"})"), "commands[1].interpolation", "'wavy'");
+}
+
+// Each command's line has the fields that it is written with, and no others.
+TEST(Commands, TypesNameEveryField) {
+  const std::string types = commandTypes();
+  for (const Command& command : oneOfEach()) {
+    const Json json = commandToJson(command);
+    const std::string start = "  | { do: '" + json["do"].get<std::string>() + "'";
+    const std::size_t begin = types.find(start);
+    ASSERT_NE(begin, std::string::npos) << start;
+    const std::string line = types.substr(begin + start.size(), types.find('\n', begin) - begin - start.size());
+    std::size_t fields = 0;
+    for (const auto& [key, value] : json.items()) {
+      if (key == "do") continue;
+      ++fields;
+      const bool isThere =
+          line.find("; " + key + ": ") != std::string::npos || line.find("; " + key + "?: ") != std::string::npos;
+      EXPECT_TRUE(isThere) << start << " " << key;
+    }
+    std::size_t named = 0;
+    for (std::size_t at = line.find(": "); at != std::string::npos; at = line.find(": ", at + 1)) ++named;
+    EXPECT_EQ(named, fields) << line;
+  }
 }
 
 }  // namespace
