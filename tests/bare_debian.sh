@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # bare_debian.sh PACKAGES_FOLDER WORK_FOLDER: a Debian 12 with nothing on it runs the program out of the .tar.gz, then installs the .deb
 # with apt, then the library's, and builds the examples against that, and the wheel. All give the same bytes.
-# Needs mmdebstrap and root. Ends with "N passed, N failed".
+# Needs mmdebstrap and root. Ends with "N passed, N failed"; where no such system can be made, with code 77 and why.
 set -uo pipefail
 
 packages=$(cd "$1" && pwd)
@@ -15,6 +15,7 @@ set -e
 export DEBIAN_FRONTEND=noninteractive
 cd /limber
 say() { echo "bare: $*"; }
+say it stands
 mkdir portable && tar -xzf ./*.tar.gz -C portable --strip-components=1
 try() {
   local limber=$1 name=$2
@@ -51,6 +52,10 @@ mmdebstrap --variant=apt --hook-dir=/usr/share/mmdebstrap/hooks/file-mirror-auto
   --customize-hook="mkdir \"\$1/limber\" && cp -r $work/files/. $work/inside.sh $examples \"\$1/limber\"" \
   --customize-hook='chroot "$1" bash /limber/inside.sh' \
   bookworm /dev/null >"$work/bare.log" 2>&1 </dev/null
+if ! grep -q '^bare: it stands$' "$work/bare.log"; then
+  grep -E '^E: ' "$work/bare.log" | head -n 1
+  exit 77
+fi
 for said in "the tar.gz runs" "the deb installs" "both give the same bytes" "the manual is there" "bash completes an option" \
   "the wheel gives them, too" \
   "the examples build against the library and run"; do

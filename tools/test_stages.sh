@@ -275,7 +275,11 @@ packages_on_bare_debian() {
     add_counts 0 0 1
     return 0
   fi
-  counted tests/bare_debian.sh build/packages "$output/bare"
+  local status=0
+  counted tests/bare_debian.sh build/packages "$output/bare" || status=$?
+  [ $status = 77 ] || return $status
+  echo "   no bare system can be made here: the packages are made, and not tried"
+  add_counts 0 0 1
 }
 
 npm_package() {
