@@ -10,9 +10,9 @@ install(TARGETS limber_everything EXPORT limberTargets COMPONENT development)
 
 # Nothing but limber/limber.h and what it includes is for other programs.
 install(CODE "
-  set(SOURCE ${PROJECT_SOURCE_DIR})
+  set(SOURCE \"${PROJECT_SOURCE_DIR}\")
   set(DESTINATION \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_INCLUDEDIR}\")
-  include(${CMAKE_CURRENT_LIST_DIR}/public_headers.cmake)" COMPONENT development)
+  include(\"${CMAKE_CURRENT_LIST_DIR}/public_headers.cmake\")" COMPONENT development)
 
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/limber)
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/limberConfig.cmake.in ${PROJECT_BINARY_DIR}/limberConfig.cmake

@@ -32,6 +32,7 @@
 #include "limber/ik/ik_solver.h"
 #include "limber/pipeline/pose_asset.h"
 #include "limber/pipeline/retarget_asset.h"
+#include "limber/pipeline/stand_upright.h"
 #include "limber/retarget/retarget_method.h"
 #include "limber/skeleton/clip.h"
 

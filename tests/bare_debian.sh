@@ -24,7 +24,9 @@ try() {
   $limber rig model.glb --template humanoid --quiet -o $name.glb
   $limber preview $name.glb --quiet -o $name.png
 }
-! ls /usr/lib/*/libfmt.so* 2>/dev/null
+for name in fmt assimp draco tbb zip meshoptimizer; do
+  if ls /usr/lib/*/lib$name.so* 2>/dev/null; then exit 1; fi # it is no bare system
+done
 try portable/bin/limber portable && say the tar.gz runs
 # The mirror of the machine itself may be gone once the system stands, but not what mmdebstrap was told to fetch.
 apt-get -q -y install ./limber_*.deb </dev/null && try limber installed && say the deb installs
@@ -34,7 +36,8 @@ bash -c '. /usr/share/bash-completion/completions/limber; COMP_WORDS=(limber rig
   say bash completes an option
 apt-get -q -y install --no-install-recommends python3-venv python3-numpy </dev/null
 python3 -m venv --system-site-packages venv && venv/bin/pip install --no-index ./*.whl
-apt-get -q -y purge limber libassimp5 libfmt9 >/dev/null </dev/null
+apt-get -q -y purge limber >/dev/null </dev/null && apt-get -q -y autoremove --purge >/dev/null </dev/null
+if ls /usr/lib/*/libassimp.so* /usr/lib/*/libfmt.so* 2>/dev/null; then exit 1; fi
 venv/bin/python - <<'PYTHON'
 import limber
 model = limber.read("model.glb")
@@ -47,9 +50,10 @@ cmake -S examples -B build -G Ninja && cmake --build build && examples/run.sh bu
 INSIDE
 
 mkdir -p "$work/files"
+export work examples # for the hook
 cp "$packages"/*.deb "$packages"/*.tar.gz "$packages"/*.whl "$work/files"
 mmdebstrap --variant=apt --hook-dir=/usr/share/mmdebstrap/hooks/file-mirror-automount \
-  --customize-hook="mkdir \"\$1/limber\" && cp -r $work/files/. $work/inside.sh $examples \"\$1/limber\"" \
+  --customize-hook='mkdir "$1/limber" && cp -r "$work/files/." "$work/inside.sh" "$examples" "$1/limber"' \
   --customize-hook='chroot "$1" bash /limber/inside.sh' \
   bookworm /dev/null >"$work/bare.log" 2>&1 </dev/null
 if ! grep -q '^bare: it stands$' "$work/bare.log"; then

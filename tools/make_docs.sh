@@ -69,6 +69,12 @@ else
   echo "The pictures of the studio stay as they are: no dist/ (./dev studio makes it), or no chromium"
 fi
 
+# The study of all methods, which takes half an hour.
+if [ -d "${LIMBER_SHARED_DATA:-../shared/data}" ]; then
+  $limber study docs/data/study_all_methods.json -o $work/study --no-times --quiet
+  cp $work/study/summary.md docs/study_results.md
+fi
+
 # Sheets of one repetition of the sample motions.
 once() {
   $limber sample $1 -o $work/$1.bvh --quiet

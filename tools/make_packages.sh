@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
-# make_packages.sh BUILD_FOLDER OUTPUT_FOLDER: limber_VERSION_ARCH.deb and liblimber-dev_VERSION_ARCH.deb, a .tar.gz of the program,
-# a wheel for Debian 12's Python the add-on for Blender, and a package for npm; .tar.gz and wheel carry their shared libraries with their notices. Everything is built already.
-# Called by ./dev package.
+# make_packages.sh BUILD_FOLDER OUTPUT_FOLDER: .deb of the program and of the library, a .tar.gz of the program, a wheel for
+# Debian 12's Python, a package for npm and the add-on for Blender. The .tar.gz and the wheel carry their shared libraries with
+# their notices. Everything is built already. Called by ./dev package.
 set -euo pipefail
+umask 022
 
 build=$(cd "$1" && pwd)
 mkdir -p "$2"
@@ -86,13 +87,13 @@ carry_libraries() {
 
 carry_libraries "$limber" "$root/lib" "$root/share/doc/limber/libraries"
 patchelf --set-rpath '$ORIGIN/../lib' "$root/bin/limber"
-tar -C "$work" --sort=name --owner=0 --group=0 --numeric-owner --mtime="@$SOURCE_DATE_EPOCH" -cf - "$portable" | gzip -9n >"$output/$portable.tar.gz"
+tar -C "$work" --mode=u+rw,go=rX --sort=name --owner=0 --group=0 --numeric-owner --mtime="@$SOURCE_DATE_EPOCH" -cf - "$portable" | gzip -9n >"$output/$portable.tar.gz"
 # The module, the program for python -m limber, and what both need.
 module=$(echo "$build"/python/limber/_limber.*.so)
 wheel=$work/wheel tag=cp$(basename "$module" | sed -E 's/.*cpython-([0-9]+)-.*/\1/')
 rm -rf "$wheel"
 mkdir -p "$wheel/limber/bin" "$wheel/limber-$version.dist-info"
-cp bindings/python/limber/* "$wheel/limber"
+cp bindings/python/limber/*.py* bindings/python/limber/py.typed "$wheel/limber"
 cp "$module" "$wheel/limber"
 cp "$root/bin/limber" "$wheel/limber/bin"
 carry_libraries "$module" "$wheel/limber/lib" "$wheel/limber-$version.dist-info/libraries"
@@ -122,7 +123,16 @@ rm -f "$output"/*.whl
 rm -rf "$work/blender" "$output"/*.zip
 mkdir -p "$work/blender/limber"
 cp apps/blender/limber/*.py apps/blender/limber/*.toml LICENSE "$work/blender/limber"
-/usr/bin/python3 -c 'import shutil, sys; shutil.make_archive(sys.argv[1], "zip", sys.argv[2], "limber")' "$output/limber-blender-$version" "$work/blender"
+/usr/bin/python3 - "$output/limber-blender-$version.zip" "$work/blender" <<'PYTHON'
+import os, pathlib, sys, time, zipfile
+moment = time.gmtime(max(315532800, int(os.environ["SOURCE_DATE_EPOCH"])))[:6]
+with zipfile.ZipFile(sys.argv[1], "w", zipfile.ZIP_DEFLATED) as archive:
+    for path in sorted(pathlib.Path(sys.argv[2]).rglob("*")):
+        if path.is_file():
+            entry = zipfile.ZipInfo(str(path.relative_to(sys.argv[2])), moment)
+            entry.external_attr = 0o644 << 16
+            archive.writestr(entry, path.read_bytes(), zipfile.ZIP_DEFLATED)
+PYTHON
 
 # The npm package, where the engine is built as WebAssembly.
 rm -f "$output"/*.tgz

@@ -262,7 +262,7 @@ studio_in_program() {
 
 # The module as it is built, against the program; and the tour of it.
 python_module() {
-  cp bindings/python/limber/* build/release/python/limber &&
+  cp bindings/python/limber/*.py* bindings/python/limber/py.typed build/release/python/limber &&
     PYTHONPATH=build/release/python LIMBER_PROGRAM=build/release/limber counted bindings/python/tests/run.sh "$output/python"
 }
 

@@ -54,4 +54,13 @@ std::optional<Adapter> AdapterArguments::programFor(std::string_view name, std::
   return adapter;
 }
 
+void AdapterArguments::refuseUnused(const std::vector<std::string>& methods, bool hasProgram) const {
+  for (const std::string& file : files) {
+    const std::string name = std::filesystem::path(file).stem().string();
+    if (std::find(methods.begin(), methods.end(), name) != methods.end()) continue;
+    throw CLI::ValidationError("--adapter", fmt::format("{} is not used: ask for the method '{}'", file, name));
+  }
+  if (seed && !hasProgram) throw CLI::ValidationError("--seed", "is for a program of yours");
+}
+
 }  // namespace limber::cli

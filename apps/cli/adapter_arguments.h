@@ -28,6 +28,9 @@ struct AdapterArguments {
   // it is no adapter's either, or the adapter is of another kind: "no rigger is called 'x'" where `what` is "rigger".
   std::optional<Adapter> programFor(std::string_view name, std::string_view what, AdapterKind kind,
                                     const std::vector<std::string>& known) const;
+  // Throws CLI::ValidationError where a file given is the adapter of none of the methods asked for, or there is a seed
+  // and no program.
+  void refuseUnused(const std::vector<std::string>& methods, bool hasProgram) const;
 };
 
 }  // namespace limber::cli

@@ -159,7 +159,7 @@ void run(PreviewArguments options) {
   }
   const Deformer& deformer = findDeformer(options.deformer);
   PreviewOptions preview;
-  preview.show = parsePreviewShow(options.show);
+  preview.show = options.joint.empty() ? parsePreviewShow(options.show) : PreviewShow::kWeights;
   preview.view = parseView(options.view);
   preview.joint = options.joint;
   preview.backdrop = parseBackdrop(options.background);
@@ -170,7 +170,6 @@ void run(PreviewArguments options) {
   const bool several = options.animate || options.turntable || options.frames > 0 || isRange;
   if (options.size.empty()) options.size = several ? "320x320" : "1024x768";
   parseSize(options.size, preview);
-  if (!options.joint.empty()) preview.show = PreviewShow::kWeights;
   if (options.parts.given() && preview.show != PreviewShow::kParts) {
     throw Error(ErrorCode::kBadArgument, "--by, --detail and --count are for parts", "", "add --show parts");
   }

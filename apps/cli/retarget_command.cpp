@@ -57,6 +57,7 @@ std::optional<Adapter> findProgram(const RetargetArguments& options) {
       throw CLI::ValidationError(option, "is for limber's own methods; a program of yours decides for itself");
     }
   }
+  options.adapters.refuseUnused({options.retarget.method}, program.has_value());
   return program;
 }
 

@@ -240,6 +240,7 @@ void run(RigArguments options) {
   for (const std::string& pin : options.pins) options.rig.rig.pins.push_back(parsePin(pin));
   const RigPrograms programs = findPrograms(options);
   checkRigger(options, programs);
+  options.adapters.refuseUnused({options.rig.rigger, options.rig.skinning}, programs.rigger || programs.weights);
   options.rig.weights.pieces = findPieceMode(options.pieces);
 
   TerminalProgress progress(options.common.quiet);

@@ -59,6 +59,20 @@ void checkShape(const py::array& array, const std::string& argument, py::ssize_t
                                columns == 0 ? "N" : std::to_string(columns), shapeOf(array)));
 }
 
+// Whole numbers: of another kind they would be cut.
+Indices wholeNumbers(const py::object& given, const std::string& argument) {
+  const py::array array = py::array::ensure(given);
+  if (!array) {
+    PyErr_Clear();
+    refuse(argument, "must be an array of whole numbers");
+  }
+  const char kind = array.dtype().kind();
+  if (kind != 'i' && kind != 'u' && kind != 'b' && array.size() > 0) {
+    refuse(argument, fmt::format("must be whole numbers, not of the type {}", std::string(py::str(array.dtype()))));
+  }
+  return Indices(array);
+}
+
 template <class Array>
 void checkFinite(const Array& array, const std::string& argument) {
   const auto* values = array.data();
@@ -96,9 +110,9 @@ class PythonProgress {
       const py::gil_scoped_release release;
       work(progress_);
     } catch (const Error&) {
-      if (raised_) std::rethrow_exception(raised_);
-      throw;
+      if (!raised_) throw;
     }
+    if (raised_) std::rethrow_exception(raised_);
   }
 
  private:
@@ -167,7 +181,8 @@ class Model {
     const auto text = std::string_view(data);
     return Model(readAsset(ByteSpan(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()), name));
   }
-  static Model fromMesh(const Floats& vertices, const Indices& faces) {
+  static Model fromMesh(const Floats& vertices, const py::object& given) {
+    const Indices faces = wholeNumbers(given, "faces");
     checkShape(vertices, "vertices", -1, 3);
     checkShape(faces, "faces", -1, 3);
     checkFinite(vertices, "vertices");
@@ -190,8 +205,9 @@ class Model {
   }
 
   void write(const std::filesystem::path& path) const {
+    const Asset asset = asset_.clone();
     const py::gil_scoped_release release;
-    writeAsset(asset_, path);
+    writeAsset(asset, path);
   }
   py::bytes glb() const {
     const Bytes bytes = writeGlb(asset_);
@@ -231,12 +247,15 @@ class Model {
   py::object rig(const AutoRigOptions& options, const py::object& listener) {
     PythonProgress progress(listener);
     AutoRigReport report;
-    progress.run([&](Progress& told) { report = autoRig(asset_, options, told); });
+    Asset rigged = asset_.clone();  // so that other calls meanwhile, and what goes wrong, find the document as it was
+    progress.run([&](Progress& told) { report = autoRig(rigged, options, told); });
+    asset_ = std::move(rigged);
     return pythonOf(toJson(report));
   }
 
-  void attach(const std::vector<std::string>& names, const Indices& parents, const Doubles& positions,
-              const Indices& joints, const Floats& weights) {
+  void attach(const std::vector<std::string>& names, const py::object& givenParents, const Doubles& positions,
+              const py::object& givenJoints, const Floats& weights) {
+    const Indices parents = wholeNumbers(givenParents, "parents"), joints = wholeNumbers(givenJoints, "joints");
     if (isRigged())
       throw Error(ErrorCode::kBadArgument, "the model has a rig already", name(),
                   "take it out with remove_rig() first");
@@ -265,7 +284,8 @@ class Model {
     attachRig(rigged, geometry, made, skin);
     asset_ = std::move(rigged);
   }
-  void setWeights(const Indices& joints, const Floats& weights) {
+  void setWeights(const py::object& given, const Floats& weights) {
+    const Indices joints = wholeNumbers(given, "joints");
     const AssetSkeleton own = skeleton();
     const Geometry geometry = collectGeometry(asset_);
     const SkinWeights skin =
@@ -278,6 +298,7 @@ class Model {
 
   py::array_t<float> posed(const std::map<std::string, Doubles>& turns, const std::string& deformer) const {
     const AssetSkeleton own = skeleton();
+    const Asset asset = asset_.clone();  // another thread may change the model meanwhile
     Pose pose = restPose(own.skeleton);
     for (const auto& [joint, turn] : turns) {
       const std::optional<Index> j = own.skeleton.find(joint);
@@ -287,19 +308,21 @@ class Model {
     std::vector<Vec3f> positions;
     {
       const py::gil_scoped_release release;
-      positions = std::move(posedGeometry(asset_, own, pose, findDeformer(deformer)).geometry.positions);
+      positions = std::move(posedGeometry(asset, own, pose, findDeformer(deformer)).geometry.positions);
     }
     return arrayOf<float>(std::move(positions), 3);
   }
 
   py::list retarget(const std::filesystem::path& motion, RetargetAssetOptions options) {
     std::vector<RetargetedClip> clips;
-    Warnings warnings;
+    Asset moving = asset_.clone();
     {
       const py::gil_scoped_release release;
-      options.turn = standUpright(asset_, warnings);
-      clips = retargetOnto(asset_, readMotion(motion), options);
+      const Motion read = readMotion(motion);
+      options.turn = standUpright(moving, moving.warnings);
+      clips = retargetOnto(moving, read, options);
     }
+    asset_ = std::move(moving);
     py::list added;
     for (const RetargetedClip& clip : clips) {
       py::dict one;
@@ -313,9 +336,10 @@ class Model {
 
   py::object quality() const {
     ModelQuality measured;
+    const Asset asset = asset_.clone();
     {
       const py::gil_scoped_release release;
-      measured = measureModel(asset_);
+      measured = measureModel(asset);
     }
     return pythonOf(toJson(measured));
   }
@@ -329,9 +353,18 @@ class Model {
   Asset asset_;
 };
 
+constexpr std::string_view kUsualRigger = "sphere-mesh";
+
 AutoRigOptions rigOptions(const std::string& rigger, const std::string& templateName, const std::string& skinning,
                           std::optional<Index> handles, Index maxInfluences, const std::string& existing,
                           const std::map<std::string, Doubles>& pins) {
+  const bool isTemplate = !templateName.empty() || rigger == "template";
+  if (!templateName.empty() && rigger != "template" && rigger != kUsualRigger) {
+    refuse("template", fmt::format("is of no use with the rigger {}", rigger));
+  }
+  if (!isTemplate && !pins.empty()) refuse("pins", "are for the joints of a template: name one");
+  if (isTemplate && handles) refuse("handles", "a template has the joints that it has");
+  if (existing == "keep-skeleton" && (isTemplate || handles)) refuse("existing_rig", "keep-skeleton finds no joints");
   AutoRigOptions options;
   options.rigger = templateName.empty() ? rigger : "template";
   if (!templateName.empty()) options.rig.templateName = templateName;

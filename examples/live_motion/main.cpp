@@ -11,6 +11,7 @@ int main(int argc, char** argv) {
     const limber::Asset character = limber::readAsset(argv[1]);
     const limber::AssetSkeleton rig = limber::readSkeleton(character);
     const limber::Motion motion = limber::readMotion(argv[2]);
+    if (motion.clips.empty()) return std::fprintf(stderr, "%s: holds no motion\n", argv[2]), 1;
 
     // Once: which joint follows which, how the bodies' spaces compare, what the surface needs.
     limber::RetargetOptions options;
@@ -22,7 +23,7 @@ int main(int argc, char** argv) {
 
     // Each frame: what the source sent, the character's joints, its surface.
     limber::Pose source = limber::restPose(motion.skeleton), target = limber::restPose(rig.skeleton);
-    const limber::Clip& clip = motion.clips.at(0);
+    const limber::Clip& clip = motion.clips.front();
     const limber::Index frames = limber::frameCount(clip, motion.framesPerSecond);
     const auto started = std::chrono::steady_clock::now();
     float highest = 0;

@@ -17,6 +17,8 @@ int main(int argc, char** argv) {
 
     limber::RetargetAssetOptions options;
     options.method = "limb-ik";  // of retargetMethods()
+    limber::Warnings warnings;
+    options.turn = limber::standUpright(character, warnings);  // a character that lies in its file
     std::size_t failed = 0;
     for (const std::filesystem::path& file : motions) {
       try {

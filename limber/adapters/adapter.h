@@ -27,7 +27,7 @@ struct AdapterStep {
   std::filesystem::path folder;      // that it works in, with placeholders; empty: the run's own
 };
 
-// Placeholders stand for absolute paths of one run, whose folder is gone after it:
+// Placeholders stand for absolute paths of one run, whose folder is gone after it, unless limber is killed:
 //   {folder}        the run's own
 //   {input}         the file that is handed over: {folder}/input/model.obj (or .glb)
 //   {motion}        of kind retarget in its place: {folder}/input/motion.bvh,

@@ -124,7 +124,8 @@ bool ranOutOfMemory(const JobResult& result) {
 [[noreturn]] void failStep(const Adapter& adapter, std::size_t step, const Job& job, const JobResult& result) {
   const std::string where = fmt::format("{}: step {} ({})", adapter.name, step + 1, job.command.front());
   constexpr double kMegabyte = 1 << 20;
-  if (ranOutOfMemory(result)) {
+  const bool hasEnded = result.outcome != JobOutcome::kTimedOut && result.outcome != JobOutcome::kNotStarted;
+  if (hasEnded && ranOutOfMemory(result)) {
     throw Error(
         ErrorCode::kUnsupported,
         fmt::format("ran out of memory (its limit is {:.0f} MB): {}{}",

@@ -24,6 +24,16 @@ namespace {
 
 constexpr double kNoVolume = 1e-6;  // of the longest side's cube: less holds nothing
 
+double volumeAboutMiddle(std::span<const Vec3f> positions, std::span<const Triangle> triangles) {
+  Vec3 sum = Vec3::Zero();
+  for (const Vec3f& p : positions) sum += p.cast<double>();
+  const Vec3 middle = sum / static_cast<double>(std::max<std::size_t>(1, positions.size()));
+  std::vector<Vec3f> moved;
+  moved.reserve(positions.size());
+  for (const Vec3f& p : positions) moved.push_back((p.cast<double>() - middle).cast<float>());
+  return enclosedVolume(moved, triangles);
+}
+
 SurfaceChange changeOf(const TriMesh& rest, std::span<const Vec3f> posed, std::span<const Vec2f> uvs) {
   SurfaceChange change;
   change.stretch = surfaceStretch(rest.positions, posed, rest.triangles);
@@ -32,9 +42,10 @@ SurfaceChange changeOf(const TriMesh& rest, std::span<const Vec3f> posed, std::s
                                 after = textureStretch(uvs, posed, rest.triangles);
     if (before && after) change.texture = *after / *before - 1;
   }
-  const double side = longestSide(rest), before = enclosedVolume(rest.positions, rest.triangles);
+  // Of open surfaces the volume depends on the origin: then it is the surface's own middle, wherever the model stands.
+  const double side = longestSide(rest), before = volumeAboutMiddle(rest.positions, rest.triangles);
   if (std::abs(before) > kNoVolume * side * side * side) {
-    change.volumeLoss = 1 - enclosedVolume(posed, rest.triangles) / before;
+    change.volumeLoss = 1 - volumeAboutMiddle(posed, rest.triangles) / before;
   }
   return change;
 }

@@ -18,7 +18,7 @@ namespace limber {
 namespace {
 
 // Signals that a program sends to its own group, to end its children, are none of the guard's business.
-constexpr const char* kGuard = "trap '' HUP INT TERM; read -r end; kill -s KILL 0";
+constexpr const char* kGuard = "trap '' HUP INT QUIT TERM USR1 USR2 ALRM PIPE TSTP; read -r end; kill -s KILL 0";
 
 // In a group of its own; `input` becomes its standard input. Returns 0, or why it does not run.
 int startGuard(int input, pid_t& guard) {

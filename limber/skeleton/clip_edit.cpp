@@ -204,6 +204,7 @@ Clip resampleClip(const Clip& clip, double framesPerSecond) {
 }
 
 Clip trimClip(const Clip& clip, double from, double to) {
+  if (clip.duration() == 0 && from <= 0 && to > 0) return clip;  // a pose
   const double begin = std::max(from, 0.0), end = std::min(to, clip.duration());
   if (!(begin < end)) {
     throw Error(ErrorCode::kBadArgument, fmt::format("nothing of it lies between {:g} and {:g} s", from, to),

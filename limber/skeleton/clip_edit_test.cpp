@@ -127,6 +127,15 @@ TEST(ClipEdit, TrimmingNothingIsAnError) {
   EXPECT_THROW(trimClip(clip, std::nan(""), 1), Error);
 }
 
+TEST(ClipEdit, APoseIsTrimmedToItself) {
+  Clip pose;
+  pose.translations.push_back({0, Interpolation::kLinear, {0.0f}, {Vec3f(1, 2, 3)}});
+  const Clip trimmed = trimClip(pose, 0, 4);
+  ASSERT_EQ(trimmed.translations.size(), 1u);
+  EXPECT_EQ(trimmed.translations[0].values.front(), Vec3f(1, 2, 3));
+  EXPECT_THROW(trimClip(pose, 1, 4), Error);
+}
+
 TEST(ClipEdit, TurningTakesAllJointsAlong) {
   Skeleton skeleton = chain(3);
   skeleton.joints[2].parent.reset();  // a root that the clip leaves alone

@@ -10,7 +10,7 @@ namespace limber {
 
 namespace {
 
-// Of measures without a truth those rank that agree with a distance from the artist's rig by kAgrees or more on both
+// Of measures without a truth those rank that agree with a distance from the artist's rig by 0.3 or more on both
 // halves of the creatures (docs/study.md has the figures).
 constexpr bool kAgreesTooLittle = false, kSameJoints = true;
 

@@ -24,9 +24,6 @@ struct MeasureAgreement {
   double correlation = 0;
 };
 
-// Below it a measure does not rank methods (Measure::ranks).
-inline constexpr double kAgrees = 0.3;
-
 // cells  documents as cellsJson writes them. Those of several studies are other models.
 // Pairs without any model are left out; in the measures' order. Throws Error kBadData where a document is none such.
 std::vector<MeasureAgreement> measureAgreement(std::span<const Json> cells);

@@ -35,14 +35,19 @@ std::size_t placeIn(std::vector<std::string>& names, std::map<std::string, std::
   return found->second;
 }
 
-// The rigger that the most methods have in common, at least two; the first of several.
-std::optional<std::string> sharedRigger(const StudyResult& study, CellKind kind, const Measure& measure) {
-  std::vector<std::pair<std::string, std::vector<std::string>>> methodsOf;  // by rigger, in the study's order
+// What the joints of a cell's rig depend on: rigger and options, which may tell how many.
+std::string jointsOf(const StudyCell& cell) {
+  return cell.rigger + ", " + cell.options;
+}
+
+// The joints (jointsOf) that the most methods have in common, at least two; the first of several.
+std::optional<std::string> sharedJoints(const StudyResult& study, CellKind kind, const Measure& measure) {
+  std::vector<std::pair<std::string, std::vector<std::string>>> methodsOf;  // by joints, in the study's order
   for (const StudyCell& cell : study.cells) {
     if (cell.kind != kind || !asksFor(cell, measure)) continue;
-    const auto isIts = [&](const auto& entry) { return entry.first == cell.rigger; };
+    const auto isIts = [&](const auto& entry) { return entry.first == jointsOf(cell); };
     auto entry = std::find_if(methodsOf.begin(), methodsOf.end(), isIts);
-    if (entry == methodsOf.end()) entry = methodsOf.insert(entry, {cell.rigger, {}});
+    if (entry == methodsOf.end()) entry = methodsOf.insert(entry, {jointsOf(cell), {}});
     std::vector<std::string>& methods = entry->second;
     if (std::find(methods.begin(), methods.end(), cell.method()) == methods.end()) methods.push_back(cell.method());
   }
@@ -54,13 +59,13 @@ std::optional<std::string> sharedRigger(const StudyResult& study, CellKind kind,
 
 Grid gridOf(const StudyResult& study, CellKind kind, const Measure& measure, const std::string& group) {
   Grid grid;
-  const std::optional<std::string> rigger = measure.needsSameJoints ? sharedRigger(study, kind, measure) : std::nullopt;
-  if (measure.needsSameJoints && !rigger) return grid;
+  const std::optional<std::string> joints = measure.needsSameJoints ? sharedJoints(study, kind, measure) : std::nullopt;
+  if (measure.needsSameJoints && !joints) return grid;
   std::map<std::string, std::size_t> methods, subjects;
   for (std::size_t i = 0; i < study.cells.size(); ++i) {
     const StudyCell& cell = study.cells[i];
     if (cell.kind != kind || !asksFor(cell, measure) || (!group.empty() && cell.group != group)) continue;
-    if (rigger && cell.rigger != *rigger) continue;
+    if (joints && jointsOf(cell) != *joints) continue;
     const std::size_t method = placeIn(grid.methods, methods, cell.method());
     grid.cellOf.try_emplace({method, placeIn(grid.subjects, subjects, cell.subject())}, i);
   }
@@ -113,6 +118,7 @@ MethodPair pairOf(const std::string& first, const std::string& second, const std
     (*a[s] < *b[s] ? pair.firstWins : *b[s] < *a[s] ? pair.secondWins : pair.ties) += 1;
   }
   pair.p = signedRankP(differences);
+  pair.isTurned = signedRankSide(differences) < 0;
   return pair;
 }
 

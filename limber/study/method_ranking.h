@@ -24,7 +24,8 @@ struct MethodScore {
 struct MethodPair {
   std::string first, second;
   std::size_t firstWins = 0, secondWins = 0, ties = 0;
-  double p = 1;  // signed rank test, corrected for all pairs of the ranking
+  double p = 1;           // signed rank test, corrected for all pairs of the ranking
+  bool isTurned = false;  // by that test the second is the better one
 };
 
 struct Ranking {
@@ -37,8 +38,8 @@ struct Ranking {
 };
 
 // Over the cells of a kind, in one group or, where that is empty, in all. Nothing in it where no cell has the measure.
-// Of a measure that needs the same joints only methods of one rigger are in it: of that which most of them have in
-// common, two at least. Of a measure that ranks nothing it has the scores alone, in the order of the study. The measure
+// Of a measure that needs the same joints only methods of one rigger with the same options are in it: of those that
+// most methods have in common, two at least. Of a measure that ranks nothing it has the scores alone, in the order of the study. The measure
 // must have a better side.
 Ranking rankMethods(const StudyResult& study, CellKind kind, const Measure& measure, const std::string& group = {});
 

@@ -111,6 +111,22 @@ TEST(Ranking, IsEmptyWhereNothingWasMeasured) {
   EXPECT_THROW(rankMethods(study, CellKind::kRig, findMeasure("joints")), Error);
 }
 
+// Many small wins and few large losses: the test is about ranks, not about counts.
+TEST(Ranking, TheTestsSideIsNotThatOfTheWins) {
+  StudyResult study;
+  std::vector<std::optional<double>> even(21, 10.0), other;
+  for (int i = 0; i < 12; ++i) other.push_back(10.001 + 0.001 * i);
+  for (int i = 0; i < 9; ++i) other.push_back(1.0 - 0.01 * i);
+  addMethod(study, "even", "joint_to_joint", even);
+  addMethod(study, "other", "joint_to_joint", other);
+  const Ranking ranking = rankMethods(study, CellKind::kRig, findMeasure("joint_to_joint"));
+  ASSERT_EQ(ranking.pairs.size(), 1u);
+  const MethodPair& pair = ranking.pairs[0];
+  EXPECT_EQ(pair.first, "even " + ranking.pairs[0].first.substr(5));
+  EXPECT_GT(pair.firstWins, pair.secondWins);
+  EXPECT_TRUE(pair.isTurned);
+}
+
 TEST(Ranking, WhatRanksNothingKeepsTheOrderOfTheStudy) {
   ASSERT_FALSE(findMeasure("volume_loss").ranks);
   StudyResult study;
@@ -141,6 +157,15 @@ TEST(Ranking, MeasuresOfWeightsCompareThoseOnTheSameJoints) {
   ASSERT_EQ(ranking.scores.size(), 2u);
   EXPECT_EQ(ranking.scores[0].method, "own + good");
   EXPECT_EQ(ranking.scores[1].method, "own + bad");
+  // Options may tell how many joints there are.
+  StudyResult counted = study;
+  addSkinning(counted, "handles", "a", {1, 1, 1});
+  addSkinning(counted, "handles", "b", {2, 2, 2});
+  addSkinning(counted, "handles", "c", {3, 3, 3});
+  for (std::size_t i = study.cells.size(); i < counted.cells.size(); ++i) {
+    counted.cells[i].options = std::to_string(i / 3) + " of them";
+  }
+  EXPECT_EQ(rankMethods(counted, CellKind::kRig, findMeasure("stretch")).scores[0].method, "own + good");
   // Without two methods on the same joints there is nothing to compare.
   StudyResult apart;
   addSkinning(apart, "few joints", "stiff", {0, 0, 0});

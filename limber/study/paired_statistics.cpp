@@ -26,6 +26,24 @@ std::vector<std::size_t> doubledRanks(std::span<const double> sorted) {
   return ranks;
 }
 
+// Doubled ranks of the differences that count, and what they add up to on either side of 0.
+struct RankSums {
+  std::vector<std::size_t> ranks;
+  std::size_t positive = 0, negative = 0;
+};
+
+RankSums rankSums(std::span<const double> differences) {
+  std::vector<double> sorted;
+  for (const double d : differences) {
+    if (d != 0 && !std::isnan(d)) sorted.push_back(d);
+  }
+  std::sort(sorted.begin(), sorted.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+  RankSums sums;
+  sums.ranks = doubledRanks(sorted);
+  for (std::size_t i = 0; i < sorted.size(); ++i) (sorted[i] > 0 ? sums.positive : sums.negative) += sums.ranks[i];
+  return sums;
+}
+
 // Of all choices of signs, the part whose positive ranks add up to at most `least`.
 double lowerTail(std::span<const std::size_t> ranks, std::size_t least) {
   std::vector<double> probability(std::accumulate(ranks.begin(), ranks.end(), std::size_t{0}) + 1);
@@ -71,21 +89,16 @@ MedianInterval bootstrapMedian(std::span<const double> values) {
 }
 
 double signedRankP(std::span<const double> differences) {
-  std::vector<double> sorted;
-  for (const double d : differences) {
-    if (d != 0 && !std::isnan(d)) sorted.push_back(d);
-  }
-  if (sorted.empty()) return 1;
-  std::sort(sorted.begin(), sorted.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
-  const std::vector<std::size_t> ranks = doubledRanks(sorted);
-  std::size_t positive = 0, all = 0;
-  for (std::size_t i = 0; i < sorted.size(); ++i) {
-    all += ranks[i];
-    if (sorted[i] > 0) positive += ranks[i];
-  }
-  const std::size_t least = std::min(positive, all - positive);
-  const double tail = sorted.size() <= kMostExact ? lowerTail(ranks, least) : normalTail(ranks, least);
+  const RankSums sums = rankSums(differences);
+  if (sums.ranks.empty()) return 1;
+  const std::size_t least = std::min(sums.positive, sums.negative);
+  const double tail = sums.ranks.size() <= kMostExact ? lowerTail(sums.ranks, least) : normalTail(sums.ranks, least);
   return std::min(1.0, 2 * tail);
+}
+
+int signedRankSide(std::span<const double> differences) {
+  const RankSums sums = rankSums(differences);
+  return sums.positive > sums.negative ? 1 : sums.positive < sums.negative ? -1 : 0;
 }
 
 std::vector<double> holmCorrected(std::span<const double> pValues) {

@@ -21,6 +21,9 @@ MedianInterval bootstrapMedian(std::span<const double> values);
 // without any.
 double signedRankP(std::span<const double> differences);
 
+// To which side signedRankP's differences are: 1, -1, or 0 where their ranks add up to the same on both.
+int signedRankSide(std::span<const double> differences);
+
 // Each p-value corrected for there being several of them (Holm 1979), in their order; at most 1.
 std::vector<double> holmCorrected(std::span<const double> pValues);
 

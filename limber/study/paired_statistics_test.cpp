@@ -123,5 +123,13 @@ TEST(Holm, CorrectsStepByStep) {
   EXPECT_TRUE(holmCorrected({}).empty());
 }
 
+TEST(PairedStatistics, ASideIsTakenByRanks) {
+  EXPECT_EQ(signedRankSide(std::vector<double>{1, 2, 3}), 1);
+  EXPECT_EQ(signedRankSide(std::vector<double>{-1, 2, -3}), -1);
+  EXPECT_EQ(signedRankSide(std::vector<double>{1, 1, 1, -9}), 1);  // ranks 2, 2, 2 against 4
+  EXPECT_EQ(signedRankSide(std::vector<double>{1, 1, -9}), 0);
+  EXPECT_EQ(signedRankSide({}), 0);
+}
+
 }  // namespace
 }  // namespace limber

@@ -1,7 +1,6 @@
 #include "limber/study/report_page.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <optional>
@@ -24,8 +23,12 @@ namespace limber {
 namespace {
 
 constexpr std::size_t kMostEmbedded = 13000000;  // bytes of pictures as text, of a page below 15 MB
+
 std::string numberCell(double value) {
-  return fmt::format("<td data-value=\"{}\"{}>{}</td>", std::isfinite(value) ? fmt::format("{}", value) : "Infinity",
+  return fmt::format("<td data-value=\"{}\"{}>{}</td>",
+                     std::isfinite(value) ? fmt::format("{}", value)
+                     : value < 0          ? "-Infinity"
+                                          : "Infinity",
                      std::isfinite(value) ? "" : " class=\"bad\"", numberText(value));
 }
 
@@ -80,7 +83,7 @@ std::string overview(const KindRankings& report, bool ranks, std::string_view ti
   std::vector<Column> columns = {{"method", true}, {"folder", true}};
   for (const Ranking& ranking : report.groups.front().rankings) {
     if (ranking.measure->ranks != ranks) continue;
-    columns.push_back({fmt::format("{} ({})", ranking.measure->label, ranking.measure->unit)});
+    columns.push_back({measureTitle(*ranking.measure)});
   }
   if (columns.size() == 2 && !byEye) return {};
   if (byEye) columns.push_back({"by eye (%)"});
@@ -168,9 +171,8 @@ std::string kindSection(const StudyResult& study, const KindRankings& report, co
   bool isFirst = true;
   for (const Ranking& ranking : report.groups.front().rankings) {
     if (!ranking.measure->ranks) continue;
-    html +=
-        fmt::format("<details class=\"measure\"{}><summary>{} ({}; {})</summary>\n", isFirst ? " open" : "",
-                    htmlText(ranking.measure->label), htmlText(ranking.measure->unit), betterSide(*ranking.measure));
+    html += fmt::format("<details class=\"measure\"{}><summary>{}</summary>\n", isFirst ? " open" : "",
+                        htmlText(measureTitle(*ranking.measure)));
     html += rankingTable(ranking) + timePlot(ranking) +
             pairTable(ranking.pairs, "Are they different? Wilcoxon's signed rank test, p after Holm") +
             worstTable(study, ranking) + "</details>\n";

@@ -26,7 +26,7 @@ struct CellStep {
   std::string report = {};   // the file with the measures; empty: they are printed
   std::string picture = {};  // the picture that is made, without .png; empty: none
   bool isTimed = false;      // takes the cell's seconds, with reading and writing of files
-  bool mayRefuse = false;  // where it says that it cannot be done, the cell goes without, and ends well; the last step
+  bool needsMotion = false;  // refuses what has no part that bends: the cell goes without, and ends well; the last step
 };
 
 struct StudyCell {

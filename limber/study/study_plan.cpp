@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <initializer_list>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -197,6 +198,11 @@ std::vector<RigCombination> namedPairs(const JsonView& pairs, const std::vector<
       one.deformer = textOf(deformer);
       checkAt(deformer, one.deformer, findDeformer);
     }
+    const auto isSame = [&](const RigCombination& other) {
+      return std::tie(other.rigger, other.skinning, other.setting.name, other.deformer) ==
+             std::tie(one.rigger, one.skinning, one.setting.name, one.deformer);
+    };
+    if (std::any_of(combinations.begin(), combinations.end(), isSame)) pair.fail("stands there twice");
     combinations.push_back(std::move(one));
   }
   return combinations;
@@ -257,6 +263,10 @@ std::vector<RetargetCombination> retargetPairs(const JsonView& pairs, const Plan
     if (solver.exists() && one.solver.empty()) {
       solver.fail(fmt::format("is of no use: '{}' solves for no limbs", method));
     }
+    const auto isSame = [&](const RetargetCombination& other) {
+      return other.method == one.method && other.solver == one.solver;
+    };
+    if (std::any_of(combinations.begin(), combinations.end(), isSame)) pair.fail("stands there twice");
     combinations.push_back(std::move(one));
   }
   return combinations;
@@ -264,9 +274,8 @@ std::vector<RetargetCombination> retargetPairs(const JsonView& pairs, const Plan
 
 // Every method with every solver.
 std::vector<RetargetCombination> retargetProduct(const JsonView& retarget, const PlanMethods& methods) {
-  const std::vector<std::string> names =
-      methodsOf(retarget, "methods", retargetMethods(), {"limb-ik"},
-                [&](const std::string& name) { methods.checkRetargeting(name); });
+  const std::vector<std::string> names = methodsOf(retarget, "methods", retargetMethods(), {"limb-ik"},
+                                                   [&](const std::string& name) { methods.checkRetargeting(name); });
   const std::vector<std::string> solvers =
       methodsOf(retarget, "solvers", ikMethods(), {std::string(kUsualSolver)}, findIkMethod);
   std::vector<RetargetCombination> combinations;

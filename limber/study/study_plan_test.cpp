@@ -149,6 +149,11 @@ TEST(StudyPlan, PairsOfRetargetingStandForThemselves) {
               AllOf(HasSubstr("retarget.pairs[0].solver"), HasSubstr("'magic'")));
   EXPECT_THAT(refusalOf(planOf(R"({"solver": "fabrik"})")), HasSubstr("retarget.pairs[0].method"));
   EXPECT_THAT(refusalOf(planOf("3")), HasSubstr("retarget.pairs[0]"));
+  EXPECT_THAT(refusalOf(planOf(R"({"method": "limb-ik"}, {"method": "limb-ik", "solver": "two-bone"})")),
+              AllOf(HasSubstr("retarget.pairs[1]"), HasSubstr("twice")));
+  EXPECT_THAT(refusalOf(rigPlan(R"(, "pairs": [{"rigger": "own", "skinning": "bone-heat"},
+                                              {"rigger": "own", "skinning": "bone-heat"}])")),
+              AllOf(HasSubstr("rig.pairs[1]"), HasSubstr("twice")));
   EXPECT_THAT(refusalOf(planOf("")), HasSubstr("no methods"));
   EXPECT_THAT(refusalOf(R"({"limber_study": 1, "retarget": {"characters": ["c"], "motions": ["m"], "methods": ["copy"],
                             "pairs": [{"method": "copy"}]}})"),

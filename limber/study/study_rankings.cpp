@@ -55,8 +55,9 @@ std::string_view kindTitle(CellKind kind) {
   return kind == CellKind::kRig ? "Rigs" : "Retargeting";
 }
 
-std::string_view betterSide(const Measure& measure) {
-  return measure.better == Better::kMore ? "more is better" : "less is better";
+std::string measureTitle(const Measure& measure) {
+  const std::string unit = measure.unit.empty() ? std::string() : std::string(measure.unit) + "; ";
+  return fmt::format("{} ({}{} is better)", measure.label, unit, measure.better == Better::kMore ? "more" : "less");
 }
 
 std::string numberText(double value) {

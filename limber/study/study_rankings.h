@@ -24,7 +24,7 @@ struct KindRankings {
 std::vector<KindRankings> studyRankings(const StudyResult& study);
 
 std::string_view kindTitle(CellKind kind);            // "Rigs", "Retargeting"
-std::string_view betterSide(const Measure& measure);  // "less is better"
+std::string measureTitle(const Measure& measure);     // "joints in common (0 to 1; more is better)"
 std::string numberText(double value);                 // "3.125", "failed" where it is infinite
 
 }  // namespace limber

@@ -292,6 +292,12 @@ class StudyRun {
     });
   }
 
+  // Whether the model has a part that bends.
+  static bool hasMotion(const CellResult& result) {
+    return std::any_of(result.measures.begin(), result.measures.end(),
+                       [](const MeasuredValue& one) { return one.measure->source == MeasureSource::kModelMotion; });
+  }
+
   // What the commands of a cell have left: measures, and pictures that are moved to their place.
   CellResult takeCell(const StudyCell& cell, const std::string& key, const JobChain& jobs,
                       const std::vector<JobResult>& results) const {
@@ -299,7 +305,8 @@ class StudyRun {
     for (std::size_t s = 0; s < results.size(); ++s) {
       const CellStep& step = cell.steps[s];
       const JobResult& result = results[s];
-      if (step.mayRefuse && result.outcome == JobOutcome::kFailed) break;
+      const bool mayRefuse = step.needsMotion && !hasMotion(taken);
+      if (mayRefuse && result.outcome == JobOutcome::kFailed) break;
       if (result.outcome != JobOutcome::kDone) {
         taken.outcome = result.outcome;
         taken.problem = fmt::format("{}: {}", step.name, jobOutcomeText(jobs[s], result));

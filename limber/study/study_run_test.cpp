@@ -41,7 +41,7 @@ case "$1" in
     case "$2" in
       rig) echo '{"without_fingers": {"joint_to_joint": 3.5}}';;
       weights) echo '{"l1": 0.25}';;
-      model) case "$*" in *delta-mush*) echo '{"motion": {"stretch": 0.125}}';; *) echo '{"coverage": 0.75, "motion": {"stretch": 0.5}}';; esac;;
+      model) case "$*$(cat rigged.glb)" in *stiff*) echo '{"coverage": 0.75}';; *delta-mush*) echo '{"motion": {"stretch": 0.125}}';; *) echo '{"coverage": 0.75, "motion": {"stretch": 0.5}}';; esac;;
     esac;;
   preview)
     case "$4$(cat rigged.glb)" in stretch*stiff*) exit 1;; esac

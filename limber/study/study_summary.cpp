@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
-#include "limber/asset/utf8.h"
 #include "limber/core/counted.h"
+#include "limber/study/markdown_text.h"
 #include "limber/study/study_rankings.h"
 
 namespace limber {
@@ -25,18 +25,6 @@ constexpr std::pair<MeasureSource, std::string_view> kTables[] = {
     {MeasureSource::kModelMotion, "The surface in motion"},
     {MeasureSource::kMotion, "Motions"}};
 
-// As Markdown shows it in a line of text or in a cell of a table.
-std::string markdownText(std::string_view text) {
-  constexpr std::string_view kMarks = "\\`*_{}[]<>#|~&";
-  std::string escaped;
-  for (const char c : validUtf8(text)) {
-    const bool isControl = static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
-    if (kMarks.find(c) != std::string_view::npos) escaped += '\\';
-    escaped += isControl ? ' ' : c;
-  }
-  return escaped;
-}
-
 using Columns = std::vector<const Ranking*>;
 
 Columns columnsOf(const GroupRankings& group, MeasureSource source, bool ranks) {
@@ -46,11 +34,6 @@ Columns columnsOf(const GroupRankings& group, MeasureSource source, bool ranks) 
     if (isIn && !ranking.scores.empty()) columns.push_back(&ranking);
   }
   return columns;
-}
-
-std::string columnTitle(const Measure& measure) {
-  const std::string unit = measure.unit.empty() ? std::string() : std::string(measure.unit) + "; ";
-  return fmt::format("{} ({}{})", measure.label, unit, betterSide(measure));
 }
 
 // "6.45 (4.42 to 9.21), 2 of 40 failed"
@@ -75,7 +58,7 @@ std::string tableText(const KindRankings& kind, const GroupRankings& group, cons
                       const SummaryOptions& options) {
   std::string head = "| method |", line = "| --- |", rows;
   for (const Ranking* ranking : columns) {
-    head += fmt::format(" {} |", columnTitle(*ranking->measure));
+    head += fmt::format(" {} |", measureTitle(*ranking->measure));
     line += " --- |";
   }
   if (options.hasTimes) {
@@ -98,15 +81,14 @@ std::string pText(double p) {
   return p < kLeastShown ? fmt::format("p below {}", kLeastShown) : fmt::format("p = {:.3f}", p);
 }
 
-// The one that is ahead more often comes first, whatever the medians.
+// The one that the test says is better comes first, whatever the medians.
 std::string pairText(const Measure& measure, const MethodPair& pair) {
-  const bool isTurned = pair.secondWins > pair.firstWins;
-  const std::size_t wins = std::max(pair.firstWins, pair.secondWins),
-                    all = pair.firstWins + pair.secondWins + pair.ties;
-  return fmt::format("- {}: {} before {} on {} of {}, behind on {}, {}\n", measure.label,
-                     markdownText(isTurned ? pair.second : pair.first),
-                     markdownText(isTurned ? pair.first : pair.second), wins, all, all - wins - pair.ties,
-                     pText(pair.p));
+  const std::size_t all = pair.firstWins + pair.secondWins + pair.ties;
+  const std::string &better = pair.isTurned ? pair.second : pair.first,
+                    &worse = pair.isTurned ? pair.first : pair.second;
+  return fmt::format("- {}: {} before {} on {} of {}, behind on {}, {}\n", measure.label, markdownText(better),
+                     markdownText(worse), pair.isTurned ? pair.secondWins : pair.firstWins, all,
+                     pair.isTurned ? pair.firstWins : pair.secondWins, pText(pair.p));
 }
 
 // Which methods of a table are told apart.

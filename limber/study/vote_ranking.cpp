@@ -14,6 +14,7 @@
 #include "limber/core/error.h"
 #include "limber/core/random.h"
 #include "limber/study/bradley_terry.h"
+#include "limber/study/markdown_text.h"
 #include "limber/study/paired_statistics.h"
 
 namespace limber {
@@ -195,16 +196,6 @@ VoteRanking rankingOf(std::span<const Vote> votes, CellKind kind) {
   return ranking;
 }
 
-// As it stands in a cell of a table.
-std::string cellText(std::string_view text) {
-  std::string cell;
-  for (const char c : text) {
-    if (c == '|' || c == '\\' || c == '`' || c == '<') cell += '\\';
-    cell += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
-  }
-  return cell;
-}
-
 }  // namespace
 
 std::vector<VoteRanking> rankByVotes(std::span<const Vote> votes) {
@@ -225,12 +216,12 @@ std::string voteTables(std::span<const VoteRanking> rankings) {
         text.empty() ? "" : "\n", cellKindName(ranking.kind), counted(ranking.votes, "vote"),
         counted(ranking.voters, "voter"));
     for (const VoteScore& score : ranking.scores) {
-      text += fmt::format("| {} | {} | {:.1f} % | {:.1f} % | {:.1f} to {:.1f} |\n", cellText(score.method), score.votes,
-                          100 * score.chosen, 100 * score.strength, 100 * score.low, 100 * score.high);
+      text += fmt::format("| {} | {} | {:.1f} % | {:.1f} % | {:.1f} to {:.1f} |\n", markdownText(score.method),
+                          score.votes, 100 * score.chosen, 100 * score.strength, 100 * score.low, 100 * score.high);
     }
     text += "\n| method | against | better | worse | alike | p |\n| --- | --- | ---: | ---: | ---: | ---: |\n";
     for (const MethodPair& pair : ranking.pairs) {
-      text += fmt::format("| {} | {} | {} | {} | {} | {:.3g} |\n", cellText(pair.first), cellText(pair.second),
+      text += fmt::format("| {} | {} | {} | {} | {} | {:.3g} |\n", markdownText(pair.first), markdownText(pair.second),
                           pair.firstWins, pair.secondWins, pair.ties, pair.p);
     }
   }

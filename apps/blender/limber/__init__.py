@@ -43,6 +43,11 @@ def selected_meshes(context):
     things = [thing for thing in context.selected_objects if thing.type == "MESH"]
     if not things:
         raise Trouble("select the mesh objects of the model first")
+    for thing in things:
+        if thing.mode != "OBJECT":
+            raise Trouble(f"{thing.name} is being edited: go to Object mode first")
+        if thing.data.users > 1 or thing.data.library or thing.library:
+            raise Trouble(f"{thing.name} shares its mesh, or is linked: make it a single user first")
     return sorted(things, key=lambda thing: thing.name)
 
 
@@ -60,7 +65,8 @@ def chosen_armature(context):
 
 
 def meshes_of(armature):
-    return sorted((thing for thing in bpy.data.objects if thing.type == "MESH" and thing.find_armature() == armature), key=lambda thing: thing.name)
+    things = (thing for thing in bpy.context.scene.objects if thing.type == "MESH" and thing.find_armature() == armature and thing.data.polygons)
+    return sorted(things, key=lambda thing: thing.name)
 
 
 def corrections():
@@ -69,12 +75,15 @@ def corrections():
     return {empty["limber_joint"]: empty for empty in folder.objects if "limber_joint" in empty} if folder else {}
 
 
-def pins():
-    """Of joints whose empty was moved, as the program takes them."""
-    arguments = []
+def pins(things, template):
+    """Of joints whose empty was moved, as the program takes them; of corrections of this very model alone."""
+    folder, arguments = bpy.data.collections.get(CORRECTIONS), []
+    if folder and (list(folder["limber_objects"]) != [thing.name for thing in things] or folder["limber_template"] != template):
+        raise Trouble(f"the joints to correct are those of {', '.join(folder['limber_objects'])} as {folder['limber_template']}: "
+                      f"select that, or delete the collection {CORRECTIONS}")
     for joint, empty in sorted(corrections().items()):
         place = empty.matrix_world.translation
-        if (place - Vector(empty["limber_place"])).length > 1e-5:
+        if joint in folder["limber_pinned"] or (place - Vector(empty["limber_place"])).length > 1e-5:
             x, y, z = (scene.TURN @ place)[:3]
             arguments += ["--pin", f"{joint}={x!r},{y!r},{z!r}"]
     return arguments
@@ -91,6 +100,7 @@ def forget_corrections():
 class Call(bpy.types.Operator):
     """Writes what the program needs, lets it work, and takes what it gives; nothing of the scene changes before that."""
     bl_options = {"REGISTER", "UNDO"}
+    under_way = False  # of all operators one at a time
 
     def prepare(self, context, folder):
         """The program's arguments, once its files are in the folder."""
@@ -138,11 +148,15 @@ class Call(bpy.types.Operator):
     def invoke(self, context, event):
         if bpy.app.background:
             return self.execute(context)
+        if Call.under_way:
+            self.report({"ERROR"}, "limber is at work: wait for it, or stop it by Escape")
+            return {"CANCELLED"}
         try:
             self.start(context)
         except Trouble as trouble:
             self.report({"ERROR"}, str(trouble))
             return {"CANCELLED"}
+        Call.under_way = True
         self.timer = context.window_manager.event_timer_add(0.1, window=context.window)
         context.window_manager.modal_handler_add(self)
         context.workspace.status_text_set(f"limber: {self.bl_label} (Esc stops it)")
@@ -158,7 +172,13 @@ class Call(bpy.types.Operator):
         self.leave(context)
         return self.finish(context)
 
+    def cancel(self, context):
+        """Blender opens another file, or ends."""
+        self.leave(context)
+        self.end()
+
     def leave(self, context):
+        Call.under_way = False
         context.window_manager.event_timer_remove(self.timer)
         context.workspace.status_text_set(None)
 
@@ -178,11 +198,14 @@ class Rig(Call):
         joints = {"template": ["--template", settings.template], "handles": ["--handles", str(settings.handles)] if settings.handles else [],
                   "curve-skeleton": ["--rigger", "curve-skeleton"] + (["--handles", str(settings.handles)] if settings.handles else [])}[settings.kind]
         if settings.kind == "template":
-            joints = joints + pins()
+            joints = joints + pins(things, settings.template)
         return ["rig", "in.glb", *joints, "--skinning", settings.skinning, "-o", "out.glb"]
 
     def take(self, context, folder):
-        armature = scene.take_rig([bpy.data.objects[name] for name in self.things], os.path.join(folder, "out.glb"))
+        things = scene.objects_of(self.things, folder)
+        if any(thing.find_armature() for thing in things):
+            raise Trouble("the model got an armature while limber was at work")
+        armature = scene.take_rig(things, os.path.join(folder, "out.glb"))
         forget_corrections()
         return f"{len(armature.data.bones)} joints"
 
@@ -193,13 +216,18 @@ class Joints(Call):
     bl_label = "Fit template"
 
     def prepare(self, context, folder):
-        scene.write_meshes(selected_meshes(context), os.path.join(folder, "in.glb"))
-        return ["rig", "in.glb", "--template", context.scene.limber.template, *pins(), "-o", "out.glb"]
+        things, self.template = selected_meshes(context), context.scene.limber.template
+        self.things, arguments = [thing.name for thing in things], pins(things, self.template)
+        self.pinned = [argument.split("=")[0] for argument in arguments[1::2]]
+        scene.write_meshes(things, os.path.join(folder, "in.glb"))
+        return ["rig", "in.glb", "--template", self.template, *arguments, "-o", "out.glb"]
 
     def take(self, context, folder):
         places = scene.joint_places(os.path.join(folder, "out.glb"))
         forget_corrections()
         collection = bpy.data.collections.new(CORRECTIONS)
+        collection["limber_objects"], collection["limber_template"] = self.things, self.template
+        collection["limber_pinned"] = self.pinned or [""]  # corrected before: they stay so
         context.scene.collection.children.link(collection)
         size = max((a - b).length for a in places.values() for b in places.values())
         for joint, place in places.items():
@@ -218,16 +246,21 @@ class Weights(Call):
 
     def prepare(self, context, folder):
         armature, things = chosen_armature(context), selected_meshes(context)
+        for thing in things:
+            if thing.find_armature() not in (None, armature):
+                raise Trouble(f"{thing.name} follows the armature {thing.find_armature().name}: remove its modifier first")
         self.armature, self.things = armature.name, [thing.name for thing in things]
         scene.write_character(armature, things, os.path.join(folder, "in.glb"), are_bound=False)
         return ["rig", "in.glb", "--keep-skeleton", "--skinning", context.scene.limber.skinning, "-o", "out.glb"]
 
     def take(self, context, folder):
         reader = scene.glb.Reader(os.path.join(folder, "out.glb"))
-        things = [bpy.data.objects[name] for name in self.things]
+        things, armature = scene.objects_of(self.things, folder), bpy.data.objects.get(self.armature)
+        if armature is None:
+            raise Trouble(f"{self.armature} is gone")
         scene.take_weights(things, reader.skin()[0], reader)
         for thing in things:
-            scene.bind(thing, bpy.data.objects[self.armature])
+            scene.bind(thing, armature)
         return f"weights of {len(things)} objects"
 
 
@@ -245,14 +278,17 @@ class Retarget(Call):
             motion = "motion.glb"
             scene.write_motion(settings.source, os.path.join(folder, motion))
         else:
-            motion = bpy.path.abspath(settings.motion)
+            motion = os.path.abspath(bpy.path.abspath(settings.motion))
             if not os.path.isfile(motion):
                 raise Trouble("choose a file with a motion, or an armature that has one")
         scene.write_character(armature, meshes_of(armature), os.path.join(folder, "in.glb"))
         return ["retarget", "in.glb", motion, "-o", "out.glb"]
 
     def take(self, context, folder):
-        actions = scene.take_clips(bpy.data.objects[self.armature], os.path.join(folder, "out.glb"))
+        armature = bpy.data.objects.get(self.armature)
+        if armature is None:
+            raise Trouble(f"{self.armature} is gone")
+        actions = scene.take_clips(armature, os.path.join(folder, "out.glb"))
         context.scene.frame_end = max(context.scene.frame_end, int(actions[-1].frame_range[1]))
         return f"{', '.join(action.name for action in actions)} put on"
 

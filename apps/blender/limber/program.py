@@ -13,7 +13,7 @@ class Trouble(Exception):
 
 def find(preferred=""):
     """The program: as the preferences have it, else on the path. Throws Trouble."""
-    program = preferred or shutil.which("limber")
+    program = os.path.abspath(preferred) if preferred else shutil.which("limber")
     if not program or not os.access(program, os.X_OK):
         where = f"is not at {preferred}" if preferred else "is not on the path"
         raise Trouble(f"the program limber {where}: install it, or name it in the add-on's preferences")
@@ -23,7 +23,8 @@ def find(preferred=""):
         raise Trouble(f"{program} does not start: {problem}") from problem
     if len(said) != 2 or said[0] != "limber":
         raise Trouble(f"{program} is not limber: name another in the add-on's preferences")
-    if tuple(int(part) for part in said[1].split(".")[:2]) < NEEDED:
+    numbers = [int(part) if part.isdigit() else 0 for part in said[1].split(".")[:2]]
+    if tuple(numbers) < NEEDED:
         raise Trouble(f"{program} is limber {said[1]}; {'.'.join(map(str, NEEDED))} is needed: install a newer one")
     return program
 
@@ -33,7 +34,7 @@ class Call:
 
     def __init__(self, program, arguments, folder):
         self.folder = folder
-        self.said = open(os.path.join(folder.name, "said"), "w+")
+        self.said = open(os.path.join(folder.name, "said"), "w+", encoding="utf-8", errors="replace")
         self.process = subprocess.Popen([program, *arguments, "--quiet"], cwd=folder.name, stdin=subprocess.DEVNULL,
                                         stdout=subprocess.DEVNULL, stderr=self.said)
 

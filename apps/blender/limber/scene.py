@@ -144,17 +144,21 @@ def write_motion(armature, path):
     if not action:
         raise Trouble(f"{armature.name} has no action")
     scene, writer = bpy.context.scene, glb.Writer()
+    if any(min(abs(axis) for axis in bone.scale) < 1e-9 for bone in armature.pose.bones):
+        raise Trouble(f"{armature.name} has a bone that is scaled to nothing")
     _, nodes, _ = add_skeleton(writer, armature)
     del writer.document["skins"]
     first, last = (int(round(frame)) for frame in action.frame_range)
-    rate, before = scene.render.fps / scene.render.fps_base, scene.frame_current
+    rate, before, part = scene.render.fps / scene.render.fps_base, scene.frame_current, scene.frame_subframe
     moved = {name: [] for name in nodes}
-    for frame in range(first, last + 1):
-        scene.frame_set(frame)
-        for bone in armature.pose.bones:
-            above = bone.parent.matrix.inverted() if bone.parent else TURN @ armature.matrix_world
-            moved[bone.name].append((above @ bone.matrix).decompose())
-    scene.frame_set(before)
+    try:
+        for frame in range(first, last + 1):
+            scene.frame_set(frame)
+            for bone in armature.pose.bones:
+                above = bone.parent.matrix.inverted() if bone.parent else TURN @ armature.matrix_world
+                moved[bone.name].append((above @ bone.matrix).decompose())
+    finally:
+        scene.frame_set(before, subframe=part)
     times = writer.add_array((np.arange(last - first + 1) / rate).astype(np.float32), min=[0.0], max=[(last - first) / rate])
     animation = {"name": action.name, "channels": [], "samplers": []}
     for name, poses in moved.items():
@@ -172,8 +176,15 @@ def joint_places(path):
     return {name: BACK @ Vector(matrix[:3, 3]) for name, matrix in zip(names, bound)}
 
 
+def check_names(names):
+    """Throws Trouble where Blender would call bones otherwise."""
+    if len(set(names)) != len(names) or any(len(name.encode()) > 63 or not name for name in names):
+        raise Trouble("joints of the result have names that Blender does not take")
+
+
 def make_armature(names, parents, bound, name):
     """A new armature object of these joints; each bone goes to the child that has most below it."""
+    check_names(names)
     armature = bpy.data.objects.new(name, bpy.data.armatures.new(name))
     bpy.context.scene.collection.objects.link(armature)
     heads = [BACK @ Vector(matrix[:3, 3]) for matrix in bound]
@@ -198,21 +209,30 @@ def make_armature(names, parents, bound, name):
         if parents[j] >= 0:
             bone.parent = made[parents[j]]
         made.append(bone)
-    renamed = [bone.name for bone in made]
     bpy.ops.object.mode_set(mode="OBJECT")
     bpy.context.view_layer.objects.active = active
-    if renamed != list(names):
-        raise Trouble("joints of the result have names that Blender does not take")
     armature.show_in_front = True
     return armature
 
 
+def objects_of(names, folder):
+    """The objects of these names as they were when their file was written; throws Trouble where one is not."""
+    written, things = glb.Reader(folder + "/in.glb"), []
+    for i, name in enumerate(names):
+        thing = bpy.data.objects.get(name)
+        if thing is None or thing.type != "MESH" or thing.mode != "OBJECT" or not np.array_equal(positions_of(thing), written.mesh(i)[0]):
+            raise Trouble(f"{name} has changed while limber was at work: try again")
+        things.append(thing)
+    return things
+
+
 def take_weights(things, names, reader):
     """Vertex groups of these bones anew; all others stay."""
-    for i, thing in enumerate(things):
-        joints, weights = reader.weights(i)
+    every = [reader.weights(i) for i in range(len(things))]
+    for thing, (joints, _) in zip(things, every):
         if len(joints) != len(thing.data.vertices):
-            raise Trouble(f"{thing.name} has changed while limber was at work")
+            raise Trouble(f"{thing.name} has changed while limber was at work: try again")
+    for thing, (joints, weights) in zip(things, every):
         for group in [group for group in thing.vertex_groups if group.name in names]:
             thing.vertex_groups.remove(group)
         used = sorted(set(joints[weights > 0].tolist()))
@@ -234,10 +254,20 @@ def bind(thing, armature):
 def take_rig(things, path, name="limber_rig"):
     reader = glb.Reader(path)
     names, parents, bound = reader.skin()
-    armature = make_armature(names, parents, bound, name)
-    take_weights(things, names, reader)
     for thing in things:
-        bind(thing, armature)
+        taken = [group.name for group in thing.vertex_groups if group.name in names]
+        if taken:
+            raise Trouble(f"{thing.name} has a vertex group {taken[0]} of its own, as a joint is called: rename it first")
+    armature = make_armature(names, parents, bound, name)
+    try:
+        take_weights(things, names, reader)
+        for thing in things:
+            bind(thing, armature)
+    except BaseException:
+        data = armature.data
+        bpy.data.objects.remove(armature)
+        bpy.data.armatures.remove(data)
+        raise
     return armature
 
 
@@ -249,12 +279,18 @@ def take_clips(armature, path):
     data, actions = armature.animation_data or armature.animation_data_create(), []
     if data.action:
         data.action.use_fake_user = True
-    for name, moved in reader.clips():
-        action = bpy.data.actions.new(name)
-        actions.append(action)
-        for node, paths in moved.items():
-            if node in nodes:
-                add_keys(action, armature.pose.bones[nodes[node]], locals_[nodes[node]], reader.document["nodes"][node], paths, rate)
+    try:
+        for name, moved in reader.clips():
+            action = bpy.data.actions.new(name)
+            action.use_fake_user = True  # of several one alone is played: the others must not be lost
+            actions.append(action)
+            for node, paths in moved.items():
+                if node in nodes:
+                    add_keys(action, armature.pose.bones[nodes[node]], locals_[nodes[node]], reader.document["nodes"][node], paths, rate)
+    except BaseException:
+        for action in actions:
+            bpy.data.actions.remove(action)
+        raise
     if not actions:
         raise Trouble("limber gave no motion back")
     data.action = actions[-1]

@@ -1,7 +1,7 @@
 #!/usr/bin/env node
 // npx limber rig IN -o OUT: the options of limber rig that the engine takes by itself.
 import { readFileSync, renameSync, rmSync, writeFileSync } from 'node:fs';
-import { basename } from 'node:path';
+import { basename, resolve } from 'node:path';
 import { parseArgs } from 'node:util';
 import { load } from '../dist/index.mjs';
 
@@ -65,6 +65,11 @@ async function main() {
   if (values.help || !command) return console.log(usage);
   if (command !== 'rig') throw new Refused(`there is no command '${command}' here; there is: rig (the native program has the others)`);
   if (!input || others.length > 0 || !values.output) throw new Refused('rig takes one model and -o OUT.glb');
+  const { output, json } = values;
+  if (output !== '-' && !/\.glb$/i.test(output)) throw new Refused(`${output}: a .glb is written, or - for standard output`);
+  if (json !== undefined && (json === output || (json !== '-' && [input, output].some((path) => resolve(path) === resolve(json))))) {
+    throw new Refused('--json needs a file of its own');
+  }
   if (values['replace-rig'] && values['keep-skeleton']) throw new Refused('--replace-rig and --keep-skeleton exclude each other');
   const rig = {
     handles: number(values.handles, 'handles'), maxInfluences: number(values['max-influences'], 'max-influences'), rigger: values.rigger, skinning: values.skinning,
@@ -83,10 +88,12 @@ async function main() {
     const { where, message, remedy } = result.error;
     return fail(`${where ? `${where}: ` : ''}${message}${remedy ? ` (${remedy})` : ''}`);
   }
-  write(values.output, result.glb);
-  if (values.json === '-') console.log(JSON.stringify(result.report, null, 2));
-  else if (values.json) write(values.json, `${JSON.stringify(result.report, null, 2)}\n`);
-  if (!values.quiet && values.json !== '-') console.log(`written: ${values.output}`);
+  const report = `${JSON.stringify(result.report, null, 2)}\n`;
+  if (json !== undefined && json !== '-') write(json, report); // before the model: what cannot be written leaves none
+  if (output === '-') process.stdout.write(result.glb);
+  else write(output, result.glb);
+  if (json === '-') process.stdout.write(report);
+  else if (!values.quiet && output !== '-') console.log(`written: ${output}`);
 }
 
 main().catch((error) => fail(error.message, error instanceof Refused ? 2 : 1));

@@ -55,6 +55,8 @@ const cases = {
       [['rig', 'nothing.glb', '-o', 'x.glb'], 1, 'nothing.glb: cannot be opened'], [['rig', 'garbage.glb', '-o', 'x.glb'], 1, 'garbage.glb'],
       [['rig', 'model.glb'], 2, '-o OUT.glb'], [['pose', 'model.glb'], 2, 'there is no command'], [['rig', 'model.glb', '-o', 'x.glb', '--handles', 'many'], 2, '--handles'],
       [['rig', 'model.glb', '-o', 'x.glb', '--rigger', 'nobody'], 1, 'nobody'], [['rig', 'model.glb', '-o', 'x.glb', '--colour'], 2, '--colour'],
+      [['rig', 'model.glb', '-o', 'x.obj'], 2, 'a .glb is written'], [['rig', 'model.glb', '-o', 'x.glb', '--json', './x.glb'], 2, '--json'],
+      [['rig', 'model.glb', '-o', 'x.glb', '--json', 'no/such/folder.json'], 1, 'no/such'],
     ]) {
       const done = npx(...args);
       assert.equal(done.status, code, `${args}: ${done.stderr}`);

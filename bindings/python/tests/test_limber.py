@@ -110,6 +110,10 @@ class Arrays(unittest.TestCase):
             with self.assertRaises(limber.Error) as caught:
                 limber.Model.from_mesh(*given)
             self.assertEqual(caught.exception.where, names)
+        for wrong in [faces + 0.5, "faces", None]:
+            with self.assertRaises(limber.Error) as caught:
+                limber.Model.from_mesh(vertices, wrong)
+            self.assertEqual(caught.exception.where, "faces")
         with self.assertRaises(TypeError):
             limber.Model.from_mesh("vertices", faces)
 
@@ -175,7 +179,8 @@ class Rigging(unittest.TestCase):
         with self.assertRaises(limber.Error):
             model.rig()  # has a rig
         self.assertEqual(model.rig(handles=5, existing_rig="replace")["counts"]["joints"], 5)
-        for wrong in [dict(rigger="x"), dict(skinning="x"), dict(existing_rig="x"), dict(max_influences=0), dict(template="x"),
+        for wrong in [dict(rigger="x"), dict(skinning="x"), dict(existing_rig="x"), dict(max_influences=0), dict(template="x"), dict(pins={"head": (0, 1, 0)}),
+                      dict(template="quadruped", handles=3), dict(template="quadruped", rigger="prop"), dict(existing_rig="keep-skeleton", handles=3),
                       dict(template="quadruped", pins={"head": (0, 1)})]:
             with self.assertRaises(limber.Error):
                 limber.sample("quadruped").rig(**wrong)
@@ -189,6 +194,20 @@ class Rigging(unittest.TestCase):
 
         with self.assertRaises(KeyError):
             model.rig(template="auto", progress=listener)
+        self.assertEqual(model.glb(), before)
+
+    def test_a_listener_may_use_the_model(self):
+        model, seen = limber.sample("winged"), []
+        model.rig(template="auto", progress=lambda *_: seen.append((model.is_rigged, len(model.vertices))))
+        self.assertTrue(seen and not any(rigged for rigged, _ in seen))  # it is rigged once all is done
+        self.assertTrue(model.is_rigged)
+
+    def test_a_motion_that_fails_leaves_the_model(self):
+        model = limber.sample("biped")
+        model.rig(template="humanoid")
+        before = model.glb()
+        with self.assertRaises(limber.Error):
+            model.retarget("there/is/no.bvh")
         self.assertEqual(model.glb(), before)
 
     def test_other_threads_run_meanwhile(self):
@@ -215,7 +234,7 @@ class Rigging(unittest.TestCase):
         threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
         one = model.copy()
         with self.assertRaises(KeyboardInterrupt):
-            while True:  # until the signal comes, which is while the engine is at work
+            for _ in range(200):  # until the signal comes, which is while the engine is at work
                 one = model.copy()
                 one.rig(template="auto")
         self.assertIn(one.glb(), (model.glb(), whole.glb()))  # nothing half done

@@ -79,6 +79,15 @@ async function posesAmong(files: File[]): Promise<File[]> {
   return files.filter((_, i) => are[i]);
 }
 
+const reportStart = 4096; // bytes in which a study's cells.json says that it is one, behind its title
+
+async function reportAmong(files: File[]): Promise<File | null> {
+  for (const file of files.filter(({ name }) => /\.json$/i.test(name))) {
+    if (/^\s*\{\s*"title"\s*:[^]*"cells"\s*:\s*\[/.test(await file.slice(0, reportStart).text())) return file;
+  }
+  return null;
+}
+
 const glbJson = 20, glbJsonLength = 12; // bytes: where a GLB's JSON begins, and where its length is told
 
 /** Whether a glTF's JSON has animations; one that cannot be read has none. */
@@ -105,7 +114,7 @@ export async function sorted(files: File[]): Promise<Brought> {
   const motions = all.filter((file) => /\.bvh$/i.test(file.name) || moving.has(file));
   const poses = await posesAmong(all);
   const found = all.find((file) => model.test(file.name) && !moving.has(file)) ?? null;
-  const report = all.find((file) => /cells[^/]*\.json$/i.test(file.name)) ?? null;
+  const report = await reportAmong(all);
   const limits = found === null && motions.length === 0 ? all.find((file) => /\.json$/i.test(file.name) && !poses.includes(file) && file !== report) ?? null : null;
   // What no reader knows is opened all the same: its reader says so.
   const only = all.length === 1 && motions.length === 0 && poses.length === 0 && limits === null && report === null ? all[0]! : null;

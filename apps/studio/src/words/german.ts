@@ -674,6 +674,7 @@ export const german = {
   'a joint is being dragged': 'ein Gelenk wird gerade gezogen',
   'let go of it first': 'lass es zuerst los',
   'no model is open': 'kein Modell ist offen',
+  'A report needs a model to compare with': 'Ein Bericht braucht ein Modell zum Vergleich',
   'open a model first': 'öffne zuerst ein Modell',
   'choose or make a clip first': 'wähle zuerst einen Clip oder leg einen an',
   'a name is missing': 'der Name fehlt',

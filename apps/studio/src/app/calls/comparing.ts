@@ -74,7 +74,8 @@ export function comparingCalls(core: Core) {
         return read;
       });
       const { session, methods } = page.now;
-      if (!rows || !session || !methods) return;
+      if (!rows) return;
+      if (!session || !methods) return page.set({ notice: { kind: 'note', title: say('A report needs a model to compare with'), detail: say('open a model first') } });
       page.set({ report: rows });
       const hasMotion = Boolean(chosenClip(session)?.source);
       const first = rows.find((row) => obstacleOf(row, methods, hasMotion) === null);
