@@ -20,8 +20,8 @@ struct ProgramOutput {
 };
 
 // Writes the input into a folder of the run's own, carries out the steps one after the other and reads what the last
-// one wrote. The folder is gone afterwards, unless limber itself is killed. A program without a '/' in its name is looked for in
-// $PATH.
+// one wrote. The folder is gone afterwards, unless limber itself is killed. A program without a '/' in its name is
+// looked for in $PATH.
 //
 // Throws Error kUnsupported, beginning with the adapter's name and with the program's last words: a step that cannot be
 // started, ends with another exit code than 0, crashes, takes longer than its limits, or runs out of memory (as its

@@ -39,8 +39,8 @@ struct Ranking {
 
 // Over the cells of a kind, in one group or, where that is empty, in all. Nothing in it where no cell has the measure.
 // Of a measure that needs the same joints only methods of one rigger with the same options are in it: of those that
-// most methods have in common, two at least. Of a measure that ranks nothing it has the scores alone, in the order of the study. The measure
-// must have a better side.
+// most methods have in common, two at least. Of a measure that ranks nothing it has the scores alone, in the order of
+// the study. The measure must have a better side.
 Ranking rankMethods(const StudyResult& study, CellKind kind, const Measure& measure, const std::string& group = {});
 
 }  // namespace limber
