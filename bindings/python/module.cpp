@@ -159,7 +159,7 @@ SkinWeights weightsFrom(const Indices& joints, const Floats& weights, py::ssize_
 
 Transform turnedBy(const Transform& rest, const std::string& joint, const Doubles& turn) {
   if (turn.ndim() != 1 || turn.shape(0) != 4)
-    refuse(joint, "a turn is a quaternion (x, y, z, w), not of shape " + shapeOf(turn));
+    refuse(joint, "must be a quaternion (x, y, z, w), not of shape " + shapeOf(turn));
   checkFinite(turn, joint);
   const Quat rotation(turn.at(3), turn.at(0), turn.at(1), turn.at(2));
   if (rotation.norm() < 1e-9) refuse(joint, "a quaternion of length 0 turns nothing");
@@ -378,7 +378,7 @@ AutoRigOptions rigOptions(const std::string& rigger, const std::string& template
   else if (existing != "refuse")
     refuse("existing_rig", fmt::format("is refuse, replace or keep-skeleton, not {}", existing));
   for (const auto& [joint, place] : pins) {
-    if (place.ndim() != 1 || place.shape(0) != 3) refuse("pins", fmt::format("{} must be a place (x, y, z)", joint));
+    if (place.ndim() != 1 || place.shape(0) != 3) refuse("pins", fmt::format("{} must be a position (x, y, z)", joint));
     checkFinite(place, "pins");
     options.rig.pins.push_back({joint, Vec3(place.at(0), place.at(1), place.at(2))});
   }

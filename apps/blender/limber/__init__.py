@@ -5,7 +5,7 @@ import bpy
 from mathutils import Vector
 
 from . import program, scene
-from .program import Trouble
+from .program import LimberError
 
 bl_info = {
     "name": "limber", "author": "limber maintainers", "version": (0, 1, 0), "blender": (3, 4, 0), "category": "Rigging",
@@ -35,38 +35,38 @@ class Settings(bpy.types.PropertyGroup):
     handles: bpy.props.IntProperty(name="How many", min=0, max=200, default=0, description="0: as many as suit the model")
     skinning: bpy.props.EnumProperty(name="Weights", items=[(name, name, "") for name in SKINNING])
     motion: bpy.props.StringProperty(name="Motion", subtype="FILE_PATH", description=".bvh, .glb, .gltf, .fbx or .dae")
-    source: bpy.props.PointerProperty(name="Or from", type=bpy.types.Object, poll=lambda _, thing: thing.type == "ARMATURE",
+    source: bpy.props.PointerProperty(name="Or from", type=bpy.types.Object, poll=lambda _, obj: obj.type == "ARMATURE",
                                       description="Another armature, whose action is put on this one")
 
 
 def selected_meshes(context):
-    things = [thing for thing in context.selected_objects if thing.type == "MESH"]
-    if not things:
-        raise Trouble("select the mesh objects of the model first")
-    for thing in things:
-        if thing.mode != "OBJECT":
-            raise Trouble(f"{thing.name} is being edited: go to Object mode first")
-        if thing.data.users > 1 or thing.data.library or thing.library:
-            raise Trouble(f"{thing.name} shares its mesh, or is linked: make it a single user first")
-    return sorted(things, key=lambda thing: thing.name)
+    objects = [obj for obj in context.selected_objects if obj.type == "MESH"]
+    if not objects:
+        raise LimberError("select the mesh objects of the model first")
+    for obj in objects:
+        if obj.mode != "OBJECT":
+            raise LimberError(f"{obj.name} is being edited: go to Object mode first")
+        if obj.data.users > 1 or obj.data.library or obj.library:
+            raise LimberError(f"{obj.name} shares its mesh, or is linked: make it a single user first")
+    return sorted(objects, key=lambda obj: obj.name)
 
 
 def chosen_armature(context):
-    thing = context.active_object
-    if thing and thing.type == "ARMATURE":
-        return thing
+    obj = context.active_object
+    if obj and obj.type == "ARMATURE":
+        return obj
     for one in context.selected_objects:
         if one.type == "ARMATURE":
             return one
-    armature = thing and thing.type == "MESH" and thing.find_armature()
+    armature = obj and obj.type == "MESH" and obj.find_armature()
     if not armature:
-        raise Trouble("select an armature, too")
+        raise LimberError("select an armature, too")
     return armature
 
 
 def meshes_of(armature):
-    things = (thing for thing in bpy.context.scene.objects if thing.type == "MESH" and thing.find_armature() == armature and thing.data.polygons)
-    return sorted(things, key=lambda thing: thing.name)
+    objects = (obj for obj in bpy.context.scene.objects if obj.type == "MESH" and obj.find_armature() == armature and obj.data.polygons)
+    return sorted(objects, key=lambda obj: obj.name)
 
 
 def corrections():
@@ -75,16 +75,16 @@ def corrections():
     return {empty["limber_joint"]: empty for empty in folder.objects if "limber_joint" in empty} if folder else {}
 
 
-def pins(things, template):
+def pins(objects, template):
     """Of joints whose empty was moved, as the program takes them; of corrections of this very model alone."""
     folder, arguments = bpy.data.collections.get(CORRECTIONS), []
-    if folder and (list(folder["limber_objects"]) != [thing.name for thing in things] or folder["limber_template"] != template):
-        raise Trouble(f"the joints to correct are those of {', '.join(folder['limber_objects'])} as {folder['limber_template']}: "
+    if folder and (list(folder["limber_objects"]) != [obj.name for obj in objects] or folder["limber_template"] != template):
+        raise LimberError(f"the joints to correct are those of {', '.join(folder['limber_objects'])} as {folder['limber_template']}: "
                       f"select that, or delete the collection {CORRECTIONS}")
     for joint, empty in sorted(corrections().items()):
-        place = empty.matrix_world.translation
-        if joint in folder["limber_pinned"] or (place - Vector(empty["limber_place"])).length > 1e-5:
-            x, y, z = (scene.TURN @ place)[:3]
+        position = empty.matrix_world.translation
+        if joint in folder["limber_pinned"] or (position - Vector(empty["limber_position"])).length > 1e-5:
+            x, y, z = (scene.TURN @ position)[:3]
             arguments += ["--pin", f"{joint}={x!r},{y!r},{z!r}"]
     return arguments
 
@@ -106,8 +106,8 @@ class Call(bpy.types.Operator):
         """The program's arguments, once its files are in the folder."""
         raise NotImplementedError
 
-    def take(self, context, folder):
-        """What is said of it."""
+    def apply(self, context, folder):
+        """What is message of it."""
         raise NotImplementedError
 
     def start(self, context):
@@ -123,13 +123,13 @@ class Call(bpy.types.Operator):
     def finish(self, context):
         try:
             self.call.check()
-            said = self.take(context, self.call.folder.name)
-        except Trouble as trouble:
-            self.report({"ERROR"}, str(trouble))
+            message = self.apply(context, self.call.folder.name)
+        except LimberError as error:
+            self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         finally:
             self.end()
-        self.report({"INFO"}, said)
+        self.report({"INFO"}, message)
         return {"FINISHED"}
 
     def end(self):
@@ -139,8 +139,8 @@ class Call(bpy.types.Operator):
     def execute(self, context):
         try:
             self.start(context)
-        except Trouble as trouble:
-            self.report({"ERROR"}, str(trouble))
+        except LimberError as error:
+            self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         self.call.wait()
         return self.finish(context)
@@ -153,8 +153,8 @@ class Call(bpy.types.Operator):
             return {"CANCELLED"}
         try:
             self.start(context)
-        except Trouble as trouble:
-            self.report({"ERROR"}, str(trouble))
+        except LimberError as error:
+            self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         Call.under_way = True
         self.timer = context.window_manager.event_timer_add(0.1, window=context.window)
@@ -189,23 +189,23 @@ class Rig(Call):
     bl_label = "Rig"
 
     def prepare(self, context, folder):
-        things, settings = selected_meshes(context), context.scene.limber
-        for thing in things:
-            if thing.find_armature():
-                raise Trouble(f"{thing.name} follows the armature {thing.find_armature().name}: take weights for that, or remove its modifier")
-        self.things = [thing.name for thing in things]
-        scene.write_meshes(things, os.path.join(folder, "in.glb"))
+        objects, settings = selected_meshes(context), context.scene.limber
+        for obj in objects:
+            if obj.find_armature():
+                raise LimberError(f"{obj.name} follows the armature {obj.find_armature().name}: take weights for that, or remove its modifier")
+        self.objects = [obj.name for obj in objects]
+        scene.write_meshes(objects, os.path.join(folder, "in.glb"))
         joints = {"template": ["--template", settings.template], "handles": ["--handles", str(settings.handles)] if settings.handles else [],
                   "curve-skeleton": ["--rigger", "curve-skeleton"] + (["--handles", str(settings.handles)] if settings.handles else [])}[settings.kind]
         if settings.kind == "template":
-            joints = joints + pins(things, settings.template)
+            joints = joints + pins(objects, settings.template)
         return ["rig", "in.glb", *joints, "--skinning", settings.skinning, "-o", "out.glb"]
 
-    def take(self, context, folder):
-        things = scene.objects_of(self.things, folder)
-        if any(thing.find_armature() for thing in things):
-            raise Trouble("the model got an armature while limber was at work")
-        armature = scene.take_rig(things, os.path.join(folder, "out.glb"))
+    def apply(self, context, folder):
+        objects = scene.objects_of(self.objects, folder)
+        if any(obj.find_armature() for obj in objects):
+            raise LimberError("the model got an armature while limber was at work")
+        armature = scene.apply_rig(objects, os.path.join(folder, "out.glb"))
         forget_corrections()
         return f"{len(armature.data.bones)} joints"
 
@@ -216,27 +216,27 @@ class Joints(Call):
     bl_label = "Fit template"
 
     def prepare(self, context, folder):
-        things, self.template = selected_meshes(context), context.scene.limber.template
-        self.things, arguments = [thing.name for thing in things], pins(things, self.template)
+        objects, self.template = selected_meshes(context), context.scene.limber.template
+        self.objects, arguments = [obj.name for obj in objects], pins(objects, self.template)
         self.pinned = [argument.split("=")[0] for argument in arguments[1::2]]
-        scene.write_meshes(things, os.path.join(folder, "in.glb"))
+        scene.write_meshes(objects, os.path.join(folder, "in.glb"))
         return ["rig", "in.glb", "--template", self.template, *arguments, "-o", "out.glb"]
 
-    def take(self, context, folder):
-        places = scene.joint_places(os.path.join(folder, "out.glb"))
+    def apply(self, context, folder):
+        positions = scene.joint_positions(os.path.join(folder, "out.glb"))
         forget_corrections()
         collection = bpy.data.collections.new(CORRECTIONS)
-        collection["limber_objects"], collection["limber_template"] = self.things, self.template
+        collection["limber_objects"], collection["limber_template"] = self.objects, self.template
         collection["limber_pinned"] = self.pinned or [""]  # corrected before: they stay so
         context.scene.collection.children.link(collection)
-        size = max((a - b).length for a in places.values() for b in places.values())
-        for joint, place in places.items():
+        size = max((a - b).length for a in positions.values() for b in positions.values())
+        for joint, position in positions.items():
             empty = bpy.data.objects.new(joint, None)
             empty.empty_display_type, empty.empty_display_size, empty.show_in_front = "SPHERE", 0.015 * size, True
-            empty.location = place
-            empty["limber_joint"], empty["limber_place"] = joint, tuple(place)
+            empty.location = position
+            empty["limber_joint"], empty["limber_position"] = joint, tuple(position)
             collection.objects.link(empty)
-        return f"{len(places)} joints to correct"
+        return f"{len(positions)} joints to correct"
 
 
 class Weights(Call):
@@ -245,23 +245,23 @@ class Weights(Call):
     bl_label = "Weights for this armature"
 
     def prepare(self, context, folder):
-        armature, things = chosen_armature(context), selected_meshes(context)
-        for thing in things:
-            if thing.find_armature() not in (None, armature):
-                raise Trouble(f"{thing.name} follows the armature {thing.find_armature().name}: remove its modifier first")
-        self.armature, self.things = armature.name, [thing.name for thing in things]
-        scene.write_character(armature, things, os.path.join(folder, "in.glb"), are_bound=False)
+        armature, objects = chosen_armature(context), selected_meshes(context)
+        for obj in objects:
+            if obj.find_armature() not in (None, armature):
+                raise LimberError(f"{obj.name} follows the armature {obj.find_armature().name}: remove its modifier first")
+        self.armature, self.objects = armature.name, [obj.name for obj in objects]
+        scene.write_character(armature, objects, os.path.join(folder, "in.glb"), are_bound=False)
         return ["rig", "in.glb", "--keep-skeleton", "--skinning", context.scene.limber.skinning, "-o", "out.glb"]
 
-    def take(self, context, folder):
+    def apply(self, context, folder):
         reader = scene.glb.Reader(os.path.join(folder, "out.glb"))
-        things, armature = scene.objects_of(self.things, folder), bpy.data.objects.get(self.armature)
+        objects, armature = scene.objects_of(self.objects, folder), bpy.data.objects.get(self.armature)
         if armature is None:
-            raise Trouble(f"{self.armature} is gone")
-        scene.take_weights(things, reader.skin()[0], reader)
-        for thing in things:
-            scene.bind(thing, armature)
-        return f"weights of {len(things)} objects"
+            raise LimberError(f"{self.armature} is gone")
+        scene.apply_weights(objects, reader.skin()[0], reader)
+        for obj in objects:
+            scene.bind(obj, armature)
+        return f"weights of {len(objects)} objects"
 
 
 class Retarget(Call):
@@ -274,21 +274,21 @@ class Retarget(Call):
         self.armature = armature.name
         if settings.source:
             if settings.source == armature:
-                raise Trouble("the motion is that of the armature itself: choose another")
+                raise LimberError("the motion is that of the armature itself: choose another")
             motion = "motion.glb"
             scene.write_motion(settings.source, os.path.join(folder, motion))
         else:
             motion = os.path.abspath(bpy.path.abspath(settings.motion))
             if not os.path.isfile(motion):
-                raise Trouble("choose a file with a motion, or an armature that has one")
+                raise LimberError("choose a file with a motion, or an armature that has one")
         scene.write_character(armature, meshes_of(armature), os.path.join(folder, "in.glb"))
         return ["retarget", "in.glb", motion, "-o", "out.glb"]
 
-    def take(self, context, folder):
+    def apply(self, context, folder):
         armature = bpy.data.objects.get(self.armature)
         if armature is None:
-            raise Trouble(f"{self.armature} is gone")
-        actions = scene.take_clips(armature, os.path.join(folder, "out.glb"))
+            raise LimberError(f"{self.armature} is gone")
+        actions = scene.apply_clips(armature, os.path.join(folder, "out.glb"))
         context.scene.frame_end = max(context.scene.frame_end, int(actions[-1].frame_range[1]))
         return f"{', '.join(action.name for action in actions)} put on"
 

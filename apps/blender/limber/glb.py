@@ -19,13 +19,13 @@ class Writer:
         self.binary = bytearray()
 
     def add(self, name, entry):
-        """Into one of the document's lists; the place there."""
+        """Into one of the document's lists; its index there."""
         entries = self.document.setdefault(name, [])
         entries.append(entry)
         return len(entries) - 1
 
     def add_array(self, values, **more):
-        """(N,), (N, 3), (N, 4, 4), ...: the accessor's place. Matrices are given row by row, and kept column by column."""
+        """(N,), (N, 3), (N, 4, 4), ...: the index of the accessor. Matrices are given row by row, and kept column by column."""
         values = np.ascontiguousarray(values if values.ndim < 3 else values.transpose(0, 2, 1))
         self.binary += b"\0" * (-len(self.binary) % 4)
         view = self.add("bufferViews", {"buffer": 0, "byteOffset": len(self.binary), "byteLength": values.nbytes})
@@ -78,7 +78,7 @@ class Reader:
         return [document["nodes"][joint]["name"] for joint in joints], parents, bound
 
     def weights(self, mesh):
-        """Of a mesh's one primitive: (V, K) places in skin's joints, (V, K) weights."""
+        """Of a mesh's one primitive: (V, K) indices of the skin's joints, (V, K) weights."""
         attributes = self.document["meshes"][mesh]["primitives"][0]["attributes"]
         joints, weights, n = [], [], 0
         while f"JOINTS_{n}" in attributes:

@@ -4,7 +4,7 @@ import numpy as np
 from mathutils import Matrix, Quaternion, Vector
 
 from . import glb
-from .program import Trouble
+from .program import LimberError
 
 # Blender's +Z up to glTF's +Y up.
 TURN = Matrix(((1, 0, 0, 0), (0, 0, 1, 0), (0, -1, 0, 0), (0, 0, 0, 1)))
@@ -12,36 +12,36 @@ BACK = TURN.inverted()
 MOST_WEIGHTS = 4  # that go to limber with a character whose motion is wanted
 
 
-def positions_of(thing):
+def positions_of(obj):
     """(V, 3): the mesh's own vertices, in the world and in glTF's axes. Modifiers and shape keys do not count."""
-    vertices = thing.data.vertices
+    vertices = obj.data.vertices
     local = np.empty(3 * len(vertices), np.float32)
     vertices.foreach_get("co", local)
-    matrix = np.array(TURN @ thing.matrix_world)
+    matrix = np.array(TURN @ obj.matrix_world)
     return (local.reshape(-1, 3).astype(float) @ matrix[:3, :3].T + matrix[:3, 3]).astype(np.float32)
 
 
-def triangles_of(thing):
-    mesh = thing.data
+def triangles_of(obj):
+    mesh = obj.data
     mesh.calc_loop_triangles()
     corners = np.empty(3 * len(mesh.loop_triangles), np.int32)
     mesh.loop_triangles.foreach_get("vertices", corners)
     triangles = corners.reshape(-1, 3).astype(np.uint32)
-    return triangles[:, ::-1] if thing.matrix_world.determinant() < 0 else triangles
+    return triangles[:, ::-1] if obj.matrix_world.determinant() < 0 else triangles
 
 
-def add_meshes(writer, things, skin=None, weights_of=None):
+def add_meshes(writer, objects, skin=None, weights_of=None):
     """A node and a mesh for each object, in their order; what has no triangle is refused."""
-    for i, thing in enumerate(things):
-        positions, triangles = positions_of(thing), triangles_of(thing)
+    for i, obj in enumerate(objects):
+        positions, triangles = positions_of(obj), triangles_of(obj)
         if len(triangles) == 0:
-            raise Trouble(f"{thing.name} has no faces: fill them, or leave it out of the selection")
+            raise LimberError(f"{obj.name} has no faces: fill them, or leave it out of the selection")
         if not np.isfinite(positions).all():
-            raise Trouble(f"{thing.name} has vertices that are nowhere (not a number)")
+            raise LimberError(f"{obj.name} has vertices whose coordinates are not a number")
         attributes = {"POSITION": writer.add_array(positions, min=positions.min(axis=0).tolist(), max=positions.max(axis=0).tolist())}
         node = {"name": f"object_{i}"}
         if skin is not None:
-            joints, weights = weights_of(thing)
+            joints, weights = weights_of(obj)
             attributes["JOINTS_0"], attributes["WEIGHTS_0"] = writer.add_array(joints), writer.add_array(weights)
             node["skin"] = skin
         primitive = {"attributes": attributes, "indices": writer.add_array(triangles.reshape(-1))}
@@ -49,22 +49,22 @@ def add_meshes(writer, things, skin=None, weights_of=None):
         writer.document["scenes"][0]["nodes"].append(writer.add("nodes", node))
 
 
-def placeholder_weights(thing, joints):
+def placeholder_weights(obj, joints):
     """Vertices to these joints in turn: what is bound anew is bound to the joints that hold something."""
-    places = np.zeros((len(thing.data.vertices), MOST_WEIGHTS), np.uint16)
-    places[:, 0] = np.resize(joints, len(places))
-    weights = np.zeros(places.shape, np.float32)
+    slots = np.zeros((len(obj.data.vertices), MOST_WEIGHTS), np.uint16)
+    slots[:, 0] = np.resize(joints, len(slots))
+    weights = np.zeros(slots.shape, np.float32)
     weights[:, 0] = 1
-    return places, weights
+    return slots, weights
 
 
-def group_weights(thing, bones):
+def group_weights(obj, bones):
     """The strongest of each vertex over these bones, by the vertex groups; the first bone where it has none."""
-    place = {group.index: bones.index(group.name) for group in thing.vertex_groups if group.name in bones}
-    joints = np.zeros((len(thing.data.vertices), MOST_WEIGHTS), np.uint16)
-    weights = np.zeros((len(thing.data.vertices), MOST_WEIGHTS), np.float32)
-    for v, vertex in enumerate(thing.data.vertices):
-        held = sorted(((g.weight, place[g.group]) for g in vertex.groups if g.group in place and g.weight > 0), reverse=True)
+    bone_of = {group.index: bones.index(group.name) for group in obj.vertex_groups if group.name in bones}
+    joints = np.zeros((len(obj.data.vertices), MOST_WEIGHTS), np.uint16)
+    weights = np.zeros((len(obj.data.vertices), MOST_WEIGHTS), np.float32)
+    for v, vertex in enumerate(obj.data.vertices):
+        held = sorted(((g.weight, bone_of[g.group]) for g in vertex.groups if g.group in bone_of and g.weight > 0), reverse=True)
         for k, (weight, joint) in enumerate(held[:MOST_WEIGHTS]):
             joints[v, k], weights[v, k] = joint, weight
     total = weights.sum(axis=1)
@@ -94,18 +94,18 @@ def rest_locals(armature):
 
 
 def transform_entries(matrix, name):
-    place, turn, scale = matrix.decompose()
-    back = Matrix.LocRotScale(place, turn, scale)
+    position, turn, scale = matrix.decompose()
+    back = Matrix.LocRotScale(position, turn, scale)
     if max(abs(back[i][j] - matrix[i][j]) for i in range(4) for j in range(4)) > 1e-4 * max(1, max(scale)):
-        raise Trouble(f"{name} is sheared: apply the scale of the armature first")
-    return {"translation": list(place), "rotation": [turn.x, turn.y, turn.z, turn.w], "scale": list(scale)}
+        raise LimberError(f"{name} is sheared: apply the scale of the armature first")
+    return {"translation": list(position), "rotation": [turn.x, turn.y, turn.z, turn.w], "scale": list(scale)}
 
 
 def add_skeleton(writer, armature):
     """Nodes of the bones, and a skin of them. (names, nodes by name, the skin)"""
     bones, locals_ = ordered_bones(armature), rest_locals(armature)
     if not bones:
-        raise Trouble(f"{armature.name} has no bones")
+        raise LimberError(f"{armature.name} has no bones")
     nodes = {}
     for bone in bones:
         nodes[bone.name] = writer.add("nodes", {"name": bone.name, **transform_entries(locals_[bone.name], bone.name)})
@@ -119,21 +119,21 @@ def add_skeleton(writer, armature):
     return [bone.name for bone in bones], nodes, skin
 
 
-def write_meshes(things, path):
+def write_meshes(objects, path):
     writer = glb.Writer()
-    add_meshes(writer, things)
+    add_meshes(writer, objects)
     writer.write(path)
 
 
-def write_character(armature, things, path, are_bound=True):
+def write_character(armature, objects, path, are_bound=True):
     """are_bound: with the weights of the vertex groups; else they are to be made, for the bones that deform."""
     writer = glb.Writer()
     names, _, skin = add_skeleton(writer, armature)
     deforming = [j for j, name in enumerate(names) if armature.data.bones[name].use_deform]
     if not are_bound and not deforming:
-        raise Trouble(f"no bone of {armature.name} deforms: switch Deform on for those that are to")
-    add_meshes(writer, things, skin, lambda thing: group_weights(thing, names) if are_bound else placeholder_weights(thing, deforming))
-    if not things:
+        raise LimberError(f"no bone of {armature.name} deforms: switch Deform on for those that are to")
+    add_meshes(writer, objects, skin, lambda obj: group_weights(obj, names) if are_bound else placeholder_weights(obj, deforming))
+    if not objects:
         del writer.document["skins"]
     writer.write(path)
 
@@ -142,10 +142,10 @@ def write_motion(armature, path):
     """The armature's action, frame by frame."""
     action = armature.animation_data and armature.animation_data.action
     if not action:
-        raise Trouble(f"{armature.name} has no action")
+        raise LimberError(f"{armature.name} has no action")
     scene, writer = bpy.context.scene, glb.Writer()
     if any(min(abs(axis) for axis in bone.scale) < 1e-9 for bone in armature.pose.bones):
-        raise Trouble(f"{armature.name} has a bone that is scaled to nothing")
+        raise LimberError(f"{armature.name} has a bone that is scaled to nothing")
     _, nodes, _ = add_skeleton(writer, armature)
     del writer.document["skins"]
     first, last = (int(round(frame)) for frame in action.frame_range)
@@ -170,16 +170,16 @@ def write_motion(armature, path):
     writer.write(path)
 
 
-def joint_places(path):
+def joint_positions(path):
     """By joint: where it is, in Blender's world."""
     names, _, bound = glb.Reader(path).skin()
     return {name: BACK @ Vector(matrix[:3, 3]) for name, matrix in zip(names, bound)}
 
 
 def check_names(names):
-    """Throws Trouble where Blender would call bones otherwise."""
+    """Throws LimberError where Blender would call bones otherwise."""
     if len(set(names)) != len(names) or any(len(name.encode()) > 63 or not name for name in names):
-        raise Trouble("joints of the result have names that Blender does not take")
+        raise LimberError("joints of the result have names that Blender does not take")
 
 
 def make_armature(names, parents, bound, name):
@@ -216,53 +216,53 @@ def make_armature(names, parents, bound, name):
 
 
 def objects_of(names, folder):
-    """The objects of these names as they were when their file was written; throws Trouble where one is not."""
-    written, things = glb.Reader(folder + "/in.glb"), []
+    """The objects of these names as they were when their file was written; throws LimberError where one is not."""
+    written, objects = glb.Reader(folder + "/in.glb"), []
     for i, name in enumerate(names):
-        thing = bpy.data.objects.get(name)
-        if thing is None or thing.type != "MESH" or thing.mode != "OBJECT" or not np.array_equal(positions_of(thing), written.mesh(i)[0]):
-            raise Trouble(f"{name} has changed while limber was at work: try again")
-        things.append(thing)
-    return things
+        obj = bpy.data.objects.get(name)
+        if obj is None or obj.type != "MESH" or obj.mode != "OBJECT" or not np.array_equal(positions_of(obj), written.mesh(i)[0]):
+            raise LimberError(f"{name} has changed while limber was at work: try again")
+        objects.append(obj)
+    return objects
 
 
-def take_weights(things, names, reader):
+def apply_weights(objects, names, reader):
     """Vertex groups of these bones anew; all others stay."""
-    every = [reader.weights(i) for i in range(len(things))]
-    for thing, (joints, _) in zip(things, every):
-        if len(joints) != len(thing.data.vertices):
-            raise Trouble(f"{thing.name} has changed while limber was at work: try again")
-    for thing, (joints, weights) in zip(things, every):
-        for group in [group for group in thing.vertex_groups if group.name in names]:
-            thing.vertex_groups.remove(group)
+    every = [reader.weights(i) for i in range(len(objects))]
+    for obj, (joints, _) in zip(objects, every):
+        if len(joints) != len(obj.data.vertices):
+            raise LimberError(f"{obj.name} has changed while limber was at work: try again")
+    for obj, (joints, weights) in zip(objects, every):
+        for group in [group for group in obj.vertex_groups if group.name in names]:
+            obj.vertex_groups.remove(group)
         used = sorted(set(joints[weights > 0].tolist()))
-        groups = {j: thing.vertex_groups.new(name=names[j]) for j in used}
+        groups = {j: obj.vertex_groups.new(name=names[j]) for j in used}
         for v, slot in zip(*np.nonzero(weights > 0)):
             groups[joints[v, slot]].add((int(v),), float(weights[v, slot]), "REPLACE")
 
 
-def bind(thing, armature):
-    if not any(modifier.type == "ARMATURE" and modifier.object == armature for modifier in thing.modifiers):
-        thing.modifiers.new("Armature", "ARMATURE").object = armature
-    if thing.parent is None:
-        world = thing.matrix_world.copy()
-        thing.parent = armature
-        thing.matrix_parent_inverse = armature.matrix_world.inverted()
-        thing.matrix_world = world
+def bind(obj, armature):
+    if not any(modifier.type == "ARMATURE" and modifier.object == armature for modifier in obj.modifiers):
+        obj.modifiers.new("Armature", "ARMATURE").object = armature
+    if obj.parent is None:
+        world = obj.matrix_world.copy()
+        obj.parent = armature
+        obj.matrix_parent_inverse = armature.matrix_world.inverted()
+        obj.matrix_world = world
 
 
-def take_rig(things, path, name="limber_rig"):
+def apply_rig(objects, path, name="limber_rig"):
     reader = glb.Reader(path)
     names, parents, bound = reader.skin()
-    for thing in things:
-        taken = [group.name for group in thing.vertex_groups if group.name in names]
+    for obj in objects:
+        taken = [group.name for group in obj.vertex_groups if group.name in names]
         if taken:
-            raise Trouble(f"{thing.name} has a vertex group {taken[0]} of its own, as a joint is called: rename it first")
+            raise LimberError(f"{obj.name} has a vertex group {taken[0]} of its own, as a joint is called: rename it first")
     armature = make_armature(names, parents, bound, name)
     try:
-        take_weights(things, names, reader)
-        for thing in things:
-            bind(thing, armature)
+        apply_weights(objects, names, reader)
+        for obj in objects:
+            bind(obj, armature)
     except BaseException:
         data = armature.data
         bpy.data.objects.remove(armature)
@@ -271,7 +271,7 @@ def take_rig(things, path, name="limber_rig"):
     return armature
 
 
-def take_clips(armature, path):
+def apply_clips(armature, path):
     """Actions of the armature for the clips of the file; the last is the one that it plays."""
     reader, locals_ = glb.Reader(path), rest_locals(armature)
     rate = bpy.context.scene.render.fps / bpy.context.scene.render.fps_base
@@ -292,7 +292,7 @@ def take_clips(armature, path):
             bpy.data.actions.remove(action)
         raise
     if not actions:
-        raise Trouble("limber gave no motion back")
+        raise LimberError("limber gave no motion back")
     data.action = actions[-1]
     return actions
 
@@ -314,13 +314,13 @@ def add_keys(action, bone, rest, node, paths, rate):
     values = {key: at_times(times, paths.get(key), fixed[key]) for key in fixed}
     frames, back, last = 1 + times * rate, rest.inverted(), None
     keys = {"location": [], "rotation_quaternion": [], "scale": []}
-    for place, turn, scale in zip(values["translation"], values["rotation"], values["scale"]):
+    for position, turn, scale in zip(values["translation"], values["rotation"], values["scale"]):
         x, y, z, w = turn.tolist()
-        place, turn, scale = (back @ Matrix.LocRotScale(Vector(place.tolist()), Quaternion((w, x, y, z)).normalized(), Vector(scale.tolist()))).decompose()
+        position, turn, scale = (back @ Matrix.LocRotScale(Vector(position.tolist()), Quaternion((w, x, y, z)).normalized(), Vector(scale.tolist()))).decompose()
         if last is not None and last.dot(turn) < 0:
             turn.negate()
         last = turn
-        for key, value in zip(keys, (place, turn, scale)):
+        for key, value in zip(keys, (position, turn, scale)):
             keys[key].append(value)
     bone.rotation_mode = "QUATERNION"
     for key, rows in keys.items():

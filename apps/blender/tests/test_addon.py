@@ -53,26 +53,26 @@ def sample(name, matrix=Matrix()):
     inverse = np.array(matrix.inverted() @ scene.BACK)
     mesh = bpy.data.meshes.new(name)
     mesh.from_pydata((positions.astype(float) @ inverse[:3, :3].T + inverse[:3, 3]).tolist(), [], triangles.tolist())
-    thing = bpy.data.objects.new(name, mesh)
-    thing.matrix_world = matrix
-    bpy.context.scene.collection.objects.link(thing)
-    return thing
+    obj = bpy.data.objects.new(name, mesh)
+    obj.matrix_world = matrix
+    bpy.context.scene.collection.objects.link(obj)
+    return obj
 
 
-def select(*things):
+def select(*objects):
     for one in bpy.data.objects:
-        one.select_set(one in things)
-    bpy.context.view_layer.objects.active = things[-1]
+        one.select_set(one in objects)
+    bpy.context.view_layer.objects.active = objects[-1]
     bpy.context.view_layer.update()
 
 
-def dense_groups(thing, names):
-    weights = np.zeros((len(thing.data.vertices), len(names)))
-    places = {group.index: names.index(group.name) for group in thing.vertex_groups if group.name in names}
-    for v, vertex in enumerate(thing.data.vertices):
+def dense_groups(obj, names):
+    weights = np.zeros((len(obj.data.vertices), len(names)))
+    joint_of = {group.index: names.index(group.name) for group in obj.vertex_groups if group.name in names}
+    for v, vertex in enumerate(obj.data.vertices):
         for one in vertex.groups:
-            if one.group in places:
-                weights[v, places[one.group]] = one.weight
+            if one.group in joint_of:
+                weights[v, joint_of[one.group]] = one.weight
     return weights
 
 
@@ -85,12 +85,12 @@ def dense_file(path, mesh=0):
     return names, full
 
 
-def shown(thing):
+def shown(obj):
     """(V, 3): where Blender has the vertices, in glTF's axes."""
     bpy.context.view_layer.update()
-    made = thing.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    made = obj.evaluated_get(bpy.context.evaluated_depsgraph_get())
     mesh = made.to_mesh()
-    positions = np.array([tuple(scene.TURN @ thing.matrix_world @ vertex.co) for vertex in mesh.vertices])
+    positions = np.array([tuple(scene.TURN @ obj.matrix_world @ vertex.co) for vertex in mesh.vertices])
     made.to_mesh_clear()
     return positions
 
@@ -105,44 +105,44 @@ def refused(words, call, *arguments, **more):
 
 
 def rigs_an_object_and_leaves_the_rest_alone():
-    thing = sample("biped", Matrix.Translation((3, 1, 0.5)) @ Matrix.Rotation(0.7, 4, "Z") @ Matrix.Scale(2, 4))
-    thing.modifiers.new("Subdivision", "SUBSURF").levels = 0
-    thing.shape_key_add(name="Basis")
-    thing.shape_key_add(name="Smile").data[5].co.x += 0.1
-    thing.data.materials.append(bpy.data.materials.new("Skin"))
-    thing.vertex_groups.new(name="mine").add((0, 1), 0.5, "REPLACE")
-    before = shown(thing)
-    world = thing.matrix_world.copy()
-    select(thing)
+    obj = sample("biped", Matrix.Translation((3, 1, 0.5)) @ Matrix.Rotation(0.7, 4, "Z") @ Matrix.Scale(2, 4))
+    obj.modifiers.new("Subdivision", "SUBSURF").levels = 0
+    obj.shape_key_add(name="Basis")
+    obj.shape_key_add(name="Smile").data[5].co.x += 0.1
+    obj.data.materials.append(bpy.data.materials.new("Skin"))
+    obj.vertex_groups.new(name="mine").add((0, 1), 0.5, "REPLACE")
+    before = shown(obj)
+    world = obj.matrix_world.copy()
+    select(obj)
     bpy.context.scene.limber.template = "humanoid"
     assert bpy.ops.limber.rig() == {"FINISHED"}
-    armature = thing.find_armature()
+    armature = obj.find_armature()
     assert armature and len(armature.data.bones) == 22, armature
-    assert [modifier.name for modifier in thing.modifiers] == ["Subdivision", "Armature"]
-    assert list(thing.data.shape_keys.key_blocks.keys()) == ["Basis", "Smile"] and thing.data.materials[0].name == "Skin"
-    assert thing.vertex_groups["mine"].weight(1) == 0.5
-    assert max(abs(a - b) for x, y in zip(world, thing.matrix_world) for a, b in zip(x, y)) < 1e-6
-    assert np.abs(shown(thing) - before).max() < 1e-5
+    assert [modifier.name for modifier in obj.modifiers] == ["Subdivision", "Armature"]
+    assert list(obj.data.shape_keys.key_blocks.keys()) == ["Basis", "Smile"] and obj.data.materials[0].name == "Skin"
+    assert obj.vertex_groups["mine"].weight(1) == 0.5
+    assert max(abs(a - b) for x, y in zip(world, obj.matrix_world) for a, b in zip(x, y)) < 1e-6
+    assert np.abs(shown(obj) - before).max() < 1e-5
     # The weights of the program for the same surface.
     run("rig", at("biped.glb"), "--template", "humanoid", "-o", at("biped_rigged.glb"))
     names, weights = dense_file(at("biped_rigged.glb"))
-    groups = dense_groups(thing, names)
+    groups = dense_groups(obj, names)
     assert np.abs(groups.sum(axis=1) - 1).max() < 1e-5  # no vertex is left out
     apart = np.abs(groups - weights)
-    assert np.quantile(apart.max(axis=1), 0.999) < 0.02, apart.max()  # the object is scaled: places are rounded otherwise
+    assert np.quantile(apart.max(axis=1), 0.999) < 0.02, apart.max()  # the object is scaled: positions are rounded otherwise
 
 
 def weights_are_those_of_the_program():
-    thing = sample("quadruped")
-    select(thing)
+    obj = sample("quadruped")
+    select(obj)
     bpy.context.scene.limber.template = "quadruped"
     assert bpy.ops.limber.rig() == {"FINISHED"}
     run("rig", at("quadruped.glb"), "--template", "quadruped", "-o", at("quadruped_rigged.glb"))
     names, weights = dense_file(at("quadruped_rigged.glb"))
-    apart = np.abs(dense_groups(thing, names) - weights).max()
+    apart = np.abs(dense_groups(obj, names) - weights).max()
     assert apart < 1e-6, apart
     # And the armature bends the surface as the program does: a turn about the world's axis.
-    armature, turn = thing.find_armature(), Quaternion((0, 1, 0), 0.6)
+    armature, turn = obj.find_armature(), Quaternion((0, 1, 0), 0.6)
     bone = armature.pose.bones["leftHindUpperLeg" if "leftHindUpperLeg" in names else names[3]]
     rest = (scene.TURN @ bone.bone.matrix_local).to_3x3()
     rest.normalize()
@@ -151,42 +151,42 @@ def weights_are_those_of_the_program():
     bone.rotation_quaternion = rest.inverted() @ turn @ rest
     run("pose", at("quadruped_rigged.glb"), "--turn", f"{bone.name}=y:{np.degrees(0.6)}", "--bake", "-o", at("posed.glb"))
     expected, _ = glb.Reader(at("posed.glb")).mesh(0)
-    assert np.abs(shown(thing) - expected).max() < 1e-4, np.abs(shown(thing) - expected).max()
+    assert np.abs(shown(obj) - expected).max() < 1e-4, np.abs(shown(obj) - expected).max()
 
 
 def weights_for_an_armature_that_is_there():
-    thing = sample("biped")
-    select(thing)
+    obj = sample("biped")
+    select(obj)
     bpy.context.scene.limber.template = "humanoid"
     bpy.ops.limber.rig()
-    armature = thing.find_armature()
+    armature = obj.find_armature()
     names = [bone.name for bone in scene.ordered_bones(armature)]
-    first = dense_groups(thing, names)
-    for group in list(thing.vertex_groups):
-        thing.vertex_groups.remove(group)
-    select(thing, armature)
+    first = dense_groups(obj, names)
+    for group in list(obj.vertex_groups):
+        obj.vertex_groups.remove(group)
+    select(obj, armature)
     bpy.context.scene.limber.skinning = "bone-heat"
     assert bpy.ops.limber.weights() == {"FINISHED"}
-    again = dense_groups(thing, names)
+    again = dense_groups(obj, names)
     assert np.abs(again.sum(axis=1) - 1).max() < 1e-5
     apart = np.abs(again - first).max(axis=1)
     print(f"weights made anew: median {np.median(apart):.3f}, 95th percentile {np.quantile(apart, 0.95):.3f} apart")
     assert np.median(apart) < 0.05, np.median(apart)  # bones end where Blender draws them: not quite the same
     bpy.context.scene.limber.skinning = "nearest-bone"
     bpy.ops.limber.weights()
-    assert np.abs(dense_groups(thing, names) - again).max() > 0.3
+    assert np.abs(dense_groups(obj, names) - again).max() > 0.3
     armature.data.bones["leftHand"].use_deform = False
     bpy.ops.limber.weights()
-    assert dense_groups(thing, names)[:, names.index("leftHand")].max() == 0
-    assert len([m for m in thing.modifiers if m.type == "ARMATURE"]) == 1
+    assert dense_groups(obj, names)[:, names.index("leftHand")].max() == 0
+    assert len([m for m in obj.modifiers if m.type == "ARMATURE"]) == 1
 
 
 def retargets_a_file_and_an_action():
-    thing = sample("biped", Matrix.Translation((0.5, -1, 0)))
-    select(thing)
+    obj = sample("biped", Matrix.Translation((0.5, -1, 0)))
+    select(obj)
     bpy.context.scene.limber.template = "humanoid"
     bpy.ops.limber.rig()
-    armature = thing.find_armature()
+    armature = obj.find_armature()
     run("sample", "walk", "-o", at("walk.bvh"))
     bpy.context.scene.limber.motion = at("walk.bvh")
     select(armature)
@@ -194,7 +194,7 @@ def retargets_a_file_and_an_action():
     action = armature.animation_data.action
     assert action.name == "walk" and len(action.fcurves) > 100
     # Each joint is where the program's own file has it.
-    scene.write_character(armature, [thing], at("character.glb"))
+    scene.write_character(armature, [obj], at("character.glb"))
     run("retarget", at("character.glb"), at("walk.bvh"), "-o", at("moving.glb"))
     rate, feet = bpy.context.scene.render.fps / bpy.context.scene.render.fps_base, []
     for seconds in (0.0, 24 / 60, 54 / 60):
@@ -202,7 +202,7 @@ def retargets_a_file_and_an_action():
         bpy.context.scene.frame_set(int(frame), subframe=frame % 1)
         run("pose", at("moving.glb"), "--clip", "walk", "--time", str(seconds), "--bake", "-o", at("moment.glb"))
         expected, _ = glb.Reader(at("moment.glb")).mesh(0)
-        apart = np.abs(shown(thing) - expected).max()
+        apart = np.abs(shown(obj) - expected).max()
         assert apart < 1e-4, (seconds, apart)  # at keys: between them Blender blends quaternions by component
         feet.append(armature.pose.bones["leftFoot"].head.y)
     assert max(feet) - min(feet) > 0.05
@@ -222,48 +222,48 @@ def retargets_a_file_and_an_action():
 
 
 def joints_are_corrected_by_empties():
-    thing = sample("biped")
-    select(thing)
+    obj = sample("biped")
+    select(obj)
     bpy.context.scene.limber.template = "humanoid"
     assert bpy.ops.limber.joints() == {"FINISHED"}
     empties = limber.corrections()
-    assert len(empties) == 22 and thing.find_armature() is None
+    assert len(empties) == 22 and obj.find_armature() is None
     moved = empties["leftHand"]
     moved.location += Vector((0, 0, 0.03))
-    select(thing)
-    place = moved.location.copy()
+    select(obj)
+    position = moved.location.copy()
     assert bpy.ops.limber.rig() == {"FINISHED"}
-    bone = thing.find_armature().data.bones["leftHand"]
-    assert (bone.head_local - place).length < 1e-3, (bone.head_local, place)
+    bone = obj.find_armature().data.bones["leftHand"]
+    assert (bone.head_local - position).length < 1e-3, (bone.head_local, position)
     assert limber.CORRECTIONS not in bpy.data.collections
 
 
 def corrections_stay_through_another_fit_and_with_their_model():
-    thing, other = sample("biped"), sample("stool")
-    select(thing)
+    obj, other = sample("biped"), sample("stool")
+    select(obj)
     bpy.context.scene.limber.template = "humanoid"
     bpy.ops.limber.joints()
     limber.corrections()["leftHand"].location.z += 0.03
-    place = limber.corrections()["leftHand"].location.copy()
+    position = limber.corrections()["leftHand"].location.copy()
     assert bpy.ops.limber.joints() == {"FINISHED"}  # again: what was corrected stays
     select(other)
     refused("joints to correct are those of biped", bpy.ops.limber.rig)
     assert len(limber.corrections()) == 22 and other.find_armature() is None
-    select(thing)
+    select(obj)
     bpy.ops.limber.rig()
-    assert (thing.find_armature().data.bones["leftHand"].head_local - place).length < 1e-3
+    assert (obj.find_armature().data.bones["leftHand"].head_local - position).length < 1e-3
 
 
 def what_changes_meanwhile_is_refused_whole():
-    thing = sample("biped")
-    thing.vertex_groups.new(name="mine")
-    select(thing)
+    obj = sample("biped")
+    obj.vertex_groups.new(name="mine")
+    select(obj)
     bpy.context.scene.limber.template = "humanoid"
     real, names = scene.objects_of, []
 
     def moved(objects, folder):
         names.extend(objects)
-        thing.data.vertices[0].co.x += 0.5
+        obj.data.vertices[0].co.x += 0.5
         return real(objects, folder)
 
     scene.objects_of = moved
@@ -272,21 +272,21 @@ def what_changes_meanwhile_is_refused_whole():
     finally:
         scene.objects_of = real
     assert names == ["biped"] and not any(one.type == "ARMATURE" for one in bpy.data.objects)
-    assert [group.name for group in thing.vertex_groups] == ["mine"] and not thing.modifiers and thing.parent is None
+    assert [group.name for group in obj.vertex_groups] == ["mine"] and not obj.modifiers and obj.parent is None
     # A group that is called as a joint would be is the user's own.
-    thing.vertex_groups.new(name="head")
+    obj.vertex_groups.new(name="head")
     refused("vertex group head of its own", bpy.ops.limber.rig)
-    assert not any(one.type == "ARMATURE" for one in bpy.data.objects) and len(thing.vertex_groups) == 2
+    assert not any(one.type == "ARMATURE" for one in bpy.data.objects) and len(obj.vertex_groups) == 2
     # Two objects of one mesh.
-    twin = bpy.data.objects.new("twin", thing.data)
+    twin = bpy.data.objects.new("twin", obj.data)
     bpy.context.scene.collection.objects.link(twin)
-    select(thing)
+    select(obj)
     refused("shares its mesh", bpy.ops.limber.rig)
 
 
 def is_one_step_to_undo():
-    thing = sample("stool")
-    select(thing)
+    obj = sample("stool")
+    select(obj)
     bpy.context.scene.limber.kind = "handles"
     bpy.ops.ed.undo_push(message="before")
     bpy.ops.limber.rig()
@@ -298,7 +298,7 @@ def is_one_step_to_undo():
 
 
 def what_cannot_be_done_says_so_and_changes_nothing():
-    thing = sample("biped")
+    obj = sample("biped")
     empty = bpy.data.objects.new("nothing", bpy.data.meshes.new("nothing"))
     bpy.context.scene.collection.objects.link(empty)
     select(empty)
@@ -306,11 +306,11 @@ def what_cannot_be_done_says_so_and_changes_nothing():
     for one in bpy.data.objects:
         one.select_set(False)
     refused("select the mesh objects", bpy.ops.limber.rig)
-    select(thing)
+    select(obj)
     refused("select an armature", bpy.ops.limber.weights)
-    thing.data.vertices[3].co.x = float("nan")
+    obj.data.vertices[3].co.x = float("nan")
     refused("not a number", bpy.ops.limber.rig)
-    thing.data.vertices[3].co.x = 0
+    obj.data.vertices[3].co.x = 0
     preferences = bpy.context.preferences.addons["limber"].preferences
     preferences.program = at("no-such-program")
     refused("the program limber is not at", bpy.ops.limber.rig)
@@ -324,35 +324,35 @@ def what_cannot_be_done_says_so_and_changes_nothing():
     bpy.context.scene.limber.template = "humanoid"
     bpy.ops.limber.rig()
     refused("follows the armature", bpy.ops.limber.rig)
-    select(thing.find_armature())
+    select(obj.find_armature())
     bpy.context.scene.limber.motion = at("none.bvh")
     refused("choose a file with a motion", bpy.ops.limber.retarget)
     pathlib.Path(at("broken.bvh")).write_text("HIERARCHY\nROOT x\n")
     bpy.context.scene.limber.motion = at("broken.bvh")
     refused("broken.bvh", bpy.ops.limber.retarget)
-    assert thing.find_armature().animation_data is None or thing.find_armature().animation_data.action is None
+    assert obj.find_armature().animation_data is None or obj.find_armature().animation_data.action is None
 
 
 def beside_blenders_own_weights():
     """No claim, a note: time and vertices without weights of both, on one model."""
-    thing = sample("winged")
-    select(thing)
+    obj = sample("winged")
+    select(obj)
     bpy.context.scene.limber.kind = "handles"
     started = time.perf_counter()
     bpy.ops.limber.rig()
-    ours, armature = time.perf_counter() - started, thing.find_armature()
-    assert all(vertex.groups for vertex in thing.data.vertices)
-    for group in list(thing.vertex_groups):
-        thing.vertex_groups.remove(group)
-    for modifier in list(thing.modifiers):
-        thing.modifiers.remove(modifier)
-    thing.parent = None
-    select(thing, armature)
+    ours, armature = time.perf_counter() - started, obj.find_armature()
+    assert all(vertex.groups for vertex in obj.data.vertices)
+    for group in list(obj.vertex_groups):
+        obj.vertex_groups.remove(group)
+    for modifier in list(obj.modifiers):
+        obj.modifiers.remove(modifier)
+    obj.parent = None
+    select(obj, armature)
     started = time.perf_counter()
     bpy.ops.object.parent_set(type="ARMATURE_AUTO")
     theirs = time.perf_counter() - started
-    bare = sum(1 for vertex in thing.data.vertices if not any(one.weight > 0 for one in vertex.groups))
-    print(f"{len(thing.data.vertices)} vertices: limber's joints and weights {ours:.2f} s, none left out; "
+    bare = sum(1 for vertex in obj.data.vertices if not any(one.weight > 0 for one in vertex.groups))
+    print(f"{len(obj.data.vertices)} vertices: limber's joints and weights {ours:.2f} s, none left out; "
           f"Blender's weights for these joints {theirs:.2f} s, {bare} left out")
 
 
