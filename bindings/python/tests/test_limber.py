@@ -231,6 +231,8 @@ class Rigging(unittest.TestCase):
         model = limber.sample("winged")
         whole = model.copy()
         whole.rig(template="auto")
+        # A shell's background job begins with the signal ignored.
+        self.addCleanup(signal.signal, signal.SIGINT, signal.signal(signal.SIGINT, signal.default_int_handler))
         threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
         one = model.copy()
         with self.assertRaises(KeyboardInterrupt):
