@@ -83,7 +83,7 @@ const reportStart = 4096; // bytes in which a study's cells.json says that it is
 
 async function reportAmong(files: File[]): Promise<File | null> {
   for (const file of files.filter(({ name }) => /\.json$/i.test(name))) {
-    if (/^\s*\{\s*"title"\s*:[^]*"cells"\s*:\s*\[/.test(await file.slice(0, reportStart).text())) return file;
+    if (file.name === 'cells.json' || /^\s*\{\s*"title"\s*:[^]*"cells"\s*:\s*\[/.test(await file.slice(0, reportStart).text())) return file;
   }
   return null;
 }
