@@ -70,7 +70,8 @@ TEST(VoteRanking, FindsTheStrengthsThatVotesWereDrawnFrom) {
 TEST(VoteRanking, IntervalsHoldTheTruthAboutAsOftenAsTheySay) {
   int held = 0;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
-    for (const VoteScore& score : rankByVotes(drawnVotes(std::vector<double>{1, 1, 1, 1}, 5, seed))[0].scores) {
+    const std::vector<VoteRanking> rankings = rankByVotes(drawnVotes(std::vector<double>{1, 1, 1, 1}, 5, seed));
+    for (const VoteScore& score : rankings[0].scores) {
       held += score.low <= 0.5 && 0.5 <= score.high ? 1 : 0;
     }
   }
