@@ -61,7 +61,8 @@ class CsvReader {
   std::string plainField() {
     const std::size_t end = std::min(text_.find_first_of(",\r\n\"", at_), text_.size());
     if (end < text_.size() && text_[end] == '"') failAt(line_, "a quotation mark stands within a field without any");
-    return std::string(text_.substr(std::exchange(at_, end), end - at_));
+    const std::size_t begin = std::exchange(at_, end);
+    return std::string(text_.substr(begin, end - begin));
   }
 
   std::string quotedField() {
