@@ -7,23 +7,9 @@ work=build/site
 rm -rf $work
 mkdir -p $work/docs $work/api
 
-# What limber/limber.h reaches.
-reached() {
-  local open=(limber/limber.h) header included
-  local -A found=([limber/limber.h]=yes)
-  while [ ${#open[@]} -gt 0 ]; do
-    header=${open[0]}
-    open=("${open[@]:1}")
-    echo "$header"
-    for included in $(sed -n 's/^#include "\(limber\/.*\)"$/\1/p' "$header"); do
-      [ -n "${found[$included]:-}" ] || open+=("$included")
-      found[$included]=yes
-    done
-  done
-}
-
-{ cat site/Doxyfile; echo "INPUT = site/api.md $(reached | tr '\n' ' ')"; } | doxygen - 2>$work/doxygen.log ||
-  { cat $work/doxygen.log >&2; exit 1; }
+# The headers that are installed.
+cmake -DSOURCE="$PWD" -DDESTINATION="$PWD/$work/include" -P cmake/public_headers.cmake >/dev/null
+doxygen site/Doxyfile 2>$work/doxygen.log || { cat $work/doxygen.log >&2; exit 1; }
 
 # The pages, with the README as the first; what links to a file of the repository that is no page leads to that file's name alone.
 cp -r docs/. $work/docs

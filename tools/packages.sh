@@ -13,7 +13,7 @@ packages_installers=(dpkg-dev file help2man patchelf python3-wheel) # for ./dev 
 packages_blender=(blender python3-numpy xvfb xauth) # for the add-on's tests
 packages_bare=(mmdebstrap) # for a Debian with nothing on it
 packages_browser=(chromium fonts-dejavu-core)
-packages_site=(doxygen mkdocs mkdocs-material)
+packages_site=(cmake doxygen mkdocs mkdocs-material)
 packages_format=(clang-format)
 packages_lint=("${packages_release[@]}" clang clang-tidy)
 

@@ -353,13 +353,11 @@ class Model {
   Asset asset_;
 };
 
-constexpr std::string_view kUsualRigger = "sphere-mesh";
-
 AutoRigOptions rigOptions(const std::string& rigger, const std::string& templateName, const std::string& skinning,
                           std::optional<Index> handles, Index maxInfluences, const std::string& existing,
                           const std::map<std::string, Doubles>& pins) {
   const bool isTemplate = !templateName.empty() || rigger == "template";
-  if (!templateName.empty() && rigger != "template" && rigger != kUsualRigger) {
+  if (!templateName.empty() && rigger != "template" && rigger != AutoRigOptions().rigger) {
     refuse("template", fmt::format("is of no use with the rigger {}", rigger));
   }
   if (!isTemplate && !pins.empty()) refuse("pins", "are for the joints of a template: name one");
@@ -468,7 +466,7 @@ PYBIND11_MODULE(_limber, module) {
                 rigOptions(rigger, templateName.value_or(""), skinning, handles, maxInfluences, existing, pins),
                 progress);
           },
-          py::arg("rigger") = "sphere-mesh", py::kw_only(), py::arg("template") = py::none(),
+          py::arg("rigger") = AutoRigOptions().rigger, py::kw_only(), py::arg("template") = py::none(),
           py::arg("skinning") = "bone-heat", py::arg("handles") = py::none(), py::arg("max_influences") = 4,
           py::arg("existing_rig") = "refuse", py::arg("pins") = py::dict(), py::arg("progress") = py::none(), kRigHelp)
       .def("attach_rig", &Model::attach, py::arg("names"), py::arg("parents"), py::arg("positions"), py::arg("joints"),

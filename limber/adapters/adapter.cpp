@@ -11,7 +11,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "limber/adapters/job_limits.h"
 #include "limber/asset/json_access.h"
+#include "limber/asset/json_keys.h"
 #include "limber/asset/json_text.h"
 
 namespace limber {
@@ -19,8 +21,7 @@ namespace limber {
 namespace {
 
 constexpr std::string_view kVersionKey = "limber_adapter";
-constexpr double kMostSeconds = 1000000, kLeastSize = 1e-3, kMostSize = 1e6, kLeastUnit = 1e-6, kMostUnit = 1e6;
-constexpr std::size_t kMostMegabytes = std::size_t{1} << 24;
+constexpr double kLeastSize = 1e-3, kMostSize = 1e6, kLeastUnit = 1e-6, kMostUnit = 1e6;
 // Learned riggers load networks of gigabytes.
 constexpr std::size_t kMemoryByDefault = std::size_t{16384} << 20;
 
@@ -67,14 +68,6 @@ std::span<const AdapterFormat> outputFormatsOf(AdapterKind kind) {
 
 const NamedFormat& formatEntry(AdapterFormat format) {
   return *std::find_if(kFormats.begin(), kFormats.end(), [&](const NamedFormat& f) { return f.format == format; });
-}
-
-// A misspelt key would silently do nothing.
-void allowKeys(const JsonView& object, std::initializer_list<std::string_view> keys) {
-  object.forEachMember([&](std::string_view key, const JsonView&) {
-    if (std::find(keys.begin(), keys.end(), key) != keys.end()) return;
-    object.fail(fmt::format("has a key that is not known: '{}'; there are: {}", key, fmt::join(keys, ", ")));
-  });
 }
 
 template <typename Table>
@@ -242,22 +235,6 @@ void readOutput(const JsonView& output, Adapter& adapter) {
   }
 }
 
-void readAdapterLimits(const JsonView& limits, Adapter& adapter) {
-  adapter.limits.memory = kMemoryByDefault;
-  if (!limits.exists()) return;
-  allowKeys(limits, {"seconds", "memory_mb"});
-  adapter.limits.seconds = limits.number("seconds", adapter.limits.seconds);
-  if (!(adapter.limits.seconds > 0 && adapter.limits.seconds <= kMostSeconds)) {
-    limits.member("seconds").fail(fmt::format("is not above 0 and at most {}", kMostSeconds));
-  }
-  if (const auto megabytes = limits.count("memory_mb")) {
-    if (*megabytes < 1 || *megabytes > kMostMegabytes) {
-      limits.member("memory_mb").fail(fmt::format("is not from 1 to {}", kMostMegabytes));
-    }
-    adapter.limits.memory = *megabytes << 20;
-  }
-}
-
 Adapter adapterOf(const JsonView& root) {
   root.requireObject();
   if (root.count(kVersionKey) != 1) root.fail(fmt::format("has no \"{}\": 1", kVersionKey));
@@ -269,7 +246,8 @@ Adapter adapterOf(const JsonView& root) {
   if (adapter.kind == AdapterKind::kRetarget) readMotions(root.object("input"), root.object("output"), adapter);
   readInput(root.object("input"), adapter);
   readOutput(root.object("output"), adapter);
-  readAdapterLimits(root.object("limits"), adapter);
+  adapter.limits.memory = kMemoryByDefault;
+  readJobLimits(root.object("limits"), adapter.limits);
   adapter.seed = root.count("seed").value_or(0);
   return adapter;
 }

@@ -10,7 +10,9 @@
 #include <nlohmann/json.hpp>
 
 #include "limber/adapters/adapter_folder.h"
+#include "limber/adapters/job_limits.h"
 #include "limber/asset/json_access.h"
+#include "limber/asset/json_keys.h"
 #include "limber/asset/json_text.h"
 #include "limber/core/names.h"
 #include "limber/ik/ik_solver.h"
@@ -25,15 +27,7 @@ namespace limber {
 namespace {
 
 constexpr std::string_view kAll = "all", kVersionKey = "limber_study", kUsualSolver = "two-bone";
-constexpr std::size_t kMostThreads = 1024, kMostSeconds = 1000000, kMostMegabytes = std::size_t{1} << 24;
-
-// A misspelt key would silently do nothing.
-void allow(const JsonView& object, std::initializer_list<std::string_view> keys) {
-  object.forEachMember([&](std::string_view key, const JsonView&) {
-    if (std::find(keys.begin(), keys.end(), key) != keys.end()) return;
-    object.fail(fmt::format("has a key that is not known: '{}'; there are: {}", key, fmt::join(keys, ", ")));
-  });
-}
+constexpr std::size_t kMostThreads = 1024;
 
 std::string textOf(const JsonView& value) {
   if (!value.exists() || !value.json().is_string() || value.json().get_ref<const std::string&>().empty()) {
@@ -133,7 +127,7 @@ class PlanMethods {
 
 RigSetting settingOf(const JsonView& entry) {
   entry.requireObject();
-  allow(entry, {"name", "handles", "max_influences", "pieces", "template"});
+  allowKeys(entry, {"name", "handles", "max_influences", "pieces", "template"});
   RigSetting setting;
   setting.name = textOf(entry.member("name"));
   const auto add = [&](std::string_view option, std::string value) {
@@ -183,7 +177,7 @@ std::vector<RigCombination> namedPairs(const JsonView& pairs, const std::vector<
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const JsonView pair = pairs[i];
     pair.requireObject();
-    allow(pair, {"rigger", "skinning", "deformer", "options"});
+    allowKeys(pair, {"rigger", "skinning", "deformer", "options"});
     const std::string rigger = textOf(pair.member("rigger")), skinning = textOf(pair.member("skinning"));
     checkAt(pair.member("rigger"), rigger, [&](const std::string& name) { methods.checkRigger(name); });
     checkAt(pair.member("skinning"), skinning, [&](const std::string& name) { methods.checkSkinning(name); });
@@ -234,7 +228,7 @@ std::vector<RigCombination> rigProduct(const JsonView& rig, std::vector<RigSetti
 RigPlan rigPlanOf(const JsonView& rig, const PlanMethods& methods) {
   RigPlan plan;
   if (!rig.exists()) return plan;
-  allow(rig, {"models", "riggers", "skinning", "deformers", "options", "pairs"});
+  allowKeys(rig, {"models", "riggers", "skinning", "deformers", "options", "pairs"});
   plan.models = textsOf(rig, "models");
   if (plan.models.empty()) rig.fail("names no models");
   const std::vector<RigSetting> settings = settingsOf(rig);
@@ -253,7 +247,7 @@ std::vector<RetargetCombination> retargetPairs(const JsonView& pairs, const Plan
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const JsonView pair = pairs[i];
     pair.requireObject();
-    allow(pair, {"method", "solver"});
+    allowKeys(pair, {"method", "solver"});
     const std::string method = textOf(pair.member("method"));
     checkAt(pair.member("method"), method, [&](const std::string& name) { methods.checkRetargeting(name); });
     const JsonView solver = pair.member("solver");
@@ -288,7 +282,7 @@ std::vector<RetargetCombination> retargetProduct(const JsonView& retarget, const
 RetargetPlan retargetPlanOf(const JsonView& retarget, const PlanMethods& methods) {
   RetargetPlan plan;
   if (!retarget.exists()) return plan;
-  allow(retarget, {"characters", "motions", "methods", "solvers", "pairs"});
+  allowKeys(retarget, {"characters", "motions", "methods", "solvers", "pairs"});
   plan.characters = textsOf(retarget, "characters");
   plan.motions = textsOf(retarget, "motions");
   if (plan.characters.empty()) retarget.fail("names no characters");
@@ -303,30 +297,15 @@ RetargetPlan retargetPlanOf(const JsonView& retarget, const PlanMethods& methods
   return plan;
 }
 
-void readLimits(const JsonView& limits, StudyPlan& plan) {
-  if (!limits.exists()) return;
-  allow(limits, {"seconds", "memory_mb"});
-  plan.limits.seconds = limits.number("seconds", plan.limits.seconds);
-  if (!(plan.limits.seconds > 0 && plan.limits.seconds <= kMostSeconds)) {
-    limits.member("seconds").fail(fmt::format("is not above 0 and at most {}", kMostSeconds));
-  }
-  if (const auto megabytes = limits.count("memory_mb")) {
-    if (*megabytes < 1 || *megabytes > kMostMegabytes) {
-      limits.member("memory_mb").fail(fmt::format("is not from 1 to {}", kMostMegabytes));
-    }
-    plan.limits.memory = *megabytes << 20;
-  }
-}
-
 StudyPlan planOf(const JsonView& root, const PlanMethods& methods) {
   root.requireObject();
   if (root.count(kVersionKey) != 1) root.fail(fmt::format("has no \"{}\": 1", kVersionKey));
-  allow(root, {kVersionKey, "title", "rig", "retarget", "limits", "threads"});
+  allowKeys(root, {kVersionKey, "title", "rig", "retarget", "limits", "threads"});
   StudyPlan plan;
   if (root.member("title").exists()) plan.title = textOf(root.member("title"));
   plan.rig = rigPlanOf(root.object("rig"), methods);
   plan.retarget = retargetPlanOf(root.object("retarget"), methods);
-  readLimits(root.object("limits"), plan);
+  readJobLimits(root.object("limits"), plan.limits);
   if (const auto threads = root.count("threads")) {
     if (*threads > kMostThreads) root.member("threads").fail(fmt::format("is not from 0 to {}", kMostThreads));
     plan.threads = static_cast<int>(*threads);

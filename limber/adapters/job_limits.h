@@ -1,0 +1,13 @@
+// Limits of a job in a file of the user's: an adapter, a plan of a study.
+#pragma once
+
+#include "limber/asset/json_access.h"
+#include "limber/jobs/job.h"
+
+namespace limber {
+
+// {"seconds": 120, "memory_mb": 2048}; what is missing there stays as it is in `limits`, and all where there is no such
+// object. Throws Error kBadData at the place of what is wrong.
+void readJobLimits(const JsonView& object, JobLimits& limits);
+
+}  // namespace limber
