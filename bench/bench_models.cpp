@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <nlohmann/json.hpp>
-
 #include "limber/asset/accessor.h"
 #include "limber/asset/write.h"
 #include "limber/core/numbers.h"
@@ -94,17 +92,18 @@ void writeMeshGlb(const TriMesh& mesh, const std::filesystem::path& path) {
   Asset asset;
   std::vector<float> positions;
   for (const Vec3f& p : mesh.positions) positions.insert(positions.end(), {p.x(), p.y(), p.z()});
-  const Index position = addFloatAccessor(asset, positions, 3, kVertexTarget, true);
+  gltf::Primitive primitive;
+  primitive.attributes.set("POSITION", addFloatAccessor(asset, positions, 3, kVertexTarget, true));
   const auto* indices = reinterpret_cast<const std::uint8_t*>(mesh.triangles.data());
   const AccessorInfo info{3 * mesh.triangleCount(), 1, ComponentType::kU32};
-  const Index index = addAccessor(asset, info, {indices, mesh.triangles.size() * sizeof(Triangle)}, kIndexTarget);
-  Json& json = asset.json();
-  json["asset"] = {{"version", "2.0"}};
-  const Json primitive = {{"attributes", {{"POSITION", position}}}, {"indices", index}};
-  json["meshes"] = Json::array({{{"primitives", Json::array({primitive})}}});
-  json["nodes"] = Json::array({{{"name", "model"}, {"mesh", 0}}});
-  json["scenes"] = Json::array({{{"nodes", {0}}}});
-  json["scene"] = 0;
+  primitive.indices = addAccessor(asset, info, {indices, mesh.triangles.size() * sizeof(Triangle)}, kIndexTarget);
+  gltf::Document& document = asset.document;
+  document.meshes.emplace_back().primitives.push_back(std::move(primitive));
+  gltf::Node& node = document.nodes.emplace_back();
+  node.name = "model";
+  node.mesh = 0;
+  document.scenes.emplace_back().nodes = {0};
+  document.scene = 0;
   writeAsset(asset, path);
 }
 

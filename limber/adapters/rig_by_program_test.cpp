@@ -44,8 +44,8 @@ Affine placeInWorld() {
 // The made body under a node that moves and scales it.
 Asset placedModel() {
   Asset asset = meshAsset(madeBody());
-  asset.json()["nodes"][0]["translation"] = {3, -2, 5};
-  asset.json()["nodes"][0]["scale"] = {2.5, 2.5, 2.5};
+  asset.document.nodes[0].translation = Vec3(3, -2, 5);
+  asset.document.nodes[0].scale = Vec3::Constant(2.5);
   asset.name = "scan.glb";
   return asset;
 }

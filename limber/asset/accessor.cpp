@@ -6,7 +6,6 @@
 #include <type_traits>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "limber/asset/accessor_layout.h"
 
@@ -30,45 +29,32 @@ std::string accessorPath(Index accessor) {
   return fmt::format("accessors[{}]", accessor);
 }
 
-const char* typeName(Index components) {
+gltf::ElementType elementType(Index components) {
   switch (components) {
     case 1:
-      return "SCALAR";
+      return gltf::ElementType::kScalar;
     case 2:
-      return "VEC2";
+      return gltf::ElementType::kVec2;
     case 3:
-      return "VEC3";
+      return gltf::ElementType::kVec3;
     case 4:
-      return "VEC4";
+      return gltf::ElementType::kVec4;
     case 9:
-      return "MAT3";
+      return gltf::ElementType::kMat3;
     case 16:
-      return "MAT4";
+      return gltf::ElementType::kMat4;
     default:
       throw Error(ErrorCode::kBadArgument, fmt::format("no accessor has {} components", components));
   }
 }
 
-Json& arrayMember(Asset& asset, const char* key) {
-  Json& array = asset.json()[key];
-  if (array.is_null()) array = Json::array();
-  return array;
-}
-
-// Whole numbers stay so in the text.
-Json boundValues(ComponentType type, const std::vector<double>& values) {
-  if (type == ComponentType::kF32) return values;
-  return std::vector<std::int64_t>(values.begin(), values.end());
-}
-
 // The buffer that bytes are added to: the binary chunk, else the one made here the last time.
-std::size_t growingBuffer(Asset& asset) {
+Index growingBuffer(Asset& asset) {
   const auto found = std::find_if(asset.buffers.begin(), asset.buffers.end(),
                                   [](const Asset::Buffer& buffer) { return buffer.uri.empty(); });
-  if (found != asset.buffers.end()) return static_cast<std::size_t>(found - asset.buffers.begin());
-  arrayMember(asset, "buffers").push_back(Json::object());
+  if (found != asset.buffers.end()) return static_cast<Index>(found - asset.buffers.begin());
   asset.buffers.emplace_back();
-  return asset.buffers.size() - 1;
+  return addElement(asset.document.buffers, gltf::Buffer());
 }
 
 }  // namespace
@@ -104,34 +90,34 @@ std::vector<Index> readIndices(const Asset& asset, Index accessor) {
   return values;
 }
 
-Index addBufferView(Asset& asset, ByteSpan bytes, int target) {
-  const std::size_t buffer = growingBuffer(asset);
+Index addBufferView(Asset& asset, ByteSpan bytes, Index target) {
+  const Index buffer = growingBuffer(asset);
   Bytes& storage = asset.buffers[buffer].bytes;
   storage.resize((storage.size() + 3) / 4 * 4);
-  Json view = {{"buffer", buffer}, {"byteOffset", storage.size()}, {"byteLength", bytes.size()}};
-  if (target != 0) view["target"] = target;
+  gltf::BufferView view;
+  view.buffer = buffer;
+  view.byteOffset = storage.size();
+  view.byteLength = bytes.size();
+  view.target = target;
   storage.insert(storage.end(), bytes.begin(), bytes.end());
-  asset.json()["buffers"][buffer]["byteLength"] = storage.size();
-  Json& views = arrayMember(asset, "bufferViews");
-  views.push_back(std::move(view));
-  return static_cast<Index>(views.size() - 1);
+  asset.document.buffers[buffer].byteLength = storage.size();
+  return addElement(asset.document.bufferViews, std::move(view));
 }
 
-Index addAccessor(Asset& asset, const AccessorInfo& info, ByteSpan bytes, int target) {
+Index addAccessor(Asset& asset, const AccessorInfo& info, ByteSpan bytes, Index target) {
   if (bytes.size() != std::size_t{info.count} * info.components * componentSize(info.type)) {
     throw Error(ErrorCode::kBadArgument, "the bytes of a new accessor do not fit its count and type");
   }
-  Json accessor = {{"bufferView", addBufferView(asset, bytes, target)},
-                   {"componentType", static_cast<int>(info.type)},
-                   {"count", info.count},
-                   {"type", typeName(info.components)}};
-  if (info.normalized) accessor["normalized"] = true;
-  Json& accessors = arrayMember(asset, "accessors");
-  accessors.push_back(std::move(accessor));
-  return static_cast<Index>(accessors.size() - 1);
+  gltf::Accessor accessor;
+  accessor.type = elementType(info.components);
+  accessor.componentType = info.type;
+  accessor.normalized = info.normalized;
+  accessor.count = info.count;
+  accessor.bufferView = addBufferView(asset, bytes, target);
+  return addElement(asset.document.accessors, std::move(accessor));
 }
 
-Index addFloatAccessor(Asset& asset, std::span<const float> values, Index components, int target, bool withMinMax) {
+Index addFloatAccessor(Asset& asset, std::span<const float> values, Index components, Index target, bool withMinMax) {
   if (components == 0 || values.size() % components != 0) {
     throw Error(ErrorCode::kBadArgument, "the values of a new accessor do not fit its components");
   }
@@ -145,9 +131,9 @@ Index addFloatAccessor(Asset& asset, std::span<const float> values, Index compon
 void setBounds(Asset& asset, Index index) {
   const AccessorLayout layout = accessorLayout(asset, index);
   const std::size_t components = layout.info.components;
-  Json& accessor = asset.json()["accessors"][index];
-  accessor.erase("min");
-  accessor.erase("max");
+  gltf::Accessor& accessor = asset.document.accessors[index];
+  accessor.min.clear();
+  accessor.max.clear();
   if (layout.info.count == 0) return;
 
   std::vector<double> values(std::size_t{layout.info.count} * components);
@@ -162,8 +148,8 @@ void setBounds(Asset& asset, Index index) {
     low[i % components] = std::min(low[i % components], values[i]);
     high[i % components] = std::max(high[i % components], values[i]);
   }
-  accessor["min"] = boundValues(layout.info.type, low);
-  accessor["max"] = boundValues(layout.info.type, high);
+  accessor.min = std::move(low);
+  accessor.max = std::move(high);
 }
 
 }  // namespace limber

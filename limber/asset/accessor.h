@@ -9,10 +9,9 @@
 
 namespace limber {
 
-// What a buffer view holds ("target"): ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER.
-inline constexpr int kVertexTarget = 34962, kIndexTarget = 34963;
-
-enum class ComponentType { kI8 = 5120, kU8 = 5121, kI16 = 5122, kU16 = 5123, kU32 = 5125, kF32 = 5126 };
+using gltf::ComponentType;
+using gltf::kIndexTarget;
+using gltf::kVertexTarget;
 
 // What an accessor says of itself. `components` is 1 for SCALAR, 3 for VEC3, 16 for MAT4.
 struct AccessorInfo {
@@ -34,12 +33,12 @@ std::vector<Index> readIndices(const Asset& asset, Index accessor);
 
 // Appends `bytes`, aligned to 4, to the buffer that limber adds to (the binary chunk's, else a new one) as a new buffer
 // view; returns the view's index. Amortised linear in bytes.size(), whatever the buffer holds.
-Index addBufferView(Asset& asset, ByteSpan bytes, int target = 0);
+Index addBufferView(Asset& asset, ByteSpan bytes, Index target = 0);
 
 // The same with an accessor of its own; returns the accessor's index. bytes.size() == count * components * size of
 // type. `target`: kVertexTarget for vertex attributes, kIndexTarget for indices, 0 for none.
-Index addAccessor(Asset& asset, const AccessorInfo& info, ByteSpan bytes, int target = 0);
-Index addFloatAccessor(Asset& asset, std::span<const float> values, Index components, int target = 0,
+Index addAccessor(Asset& asset, const AccessorInfo& info, ByteSpan bytes, Index target = 0);
+Index addFloatAccessor(Asset& asset, std::span<const float> values, Index components, Index target = 0,
                        bool withMinMax = false);
 
 // Writes "min" and "max" as the accessor's data have them (raw values, before normalisation); takes them out where

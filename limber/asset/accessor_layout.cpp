@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <string_view>
+#include <string>
+#include <utility>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
+
+#include "limber/asset/document_errors.h"
 
 namespace limber {
 
@@ -18,74 +20,61 @@ constexpr std::size_t kFreeZeros = 4096;
 // glTF allows 252. Others still read well, as long as products of sizes fit 64 bits.
 constexpr std::size_t kMaxStride = 65536;
 
-ComponentType readComponentType(const JsonView& owner) {
-  const JsonView type = owner.member("componentType");
-  const std::size_t code = type.asCount();
-  constexpr std::array<std::size_t, 6> kCodes = {5120, 5121, 5122, 5123, 5125, 5126};
-  if (std::find(kCodes.begin(), kCodes.end(), code) == kCodes.end()) {
-    type.fail(fmt::format("is {}, which is no component type", code));
-  }
-  return static_cast<ComponentType>(code);
+// Numbers of rows and columns of each ElementType.
+struct Shape {
+  std::size_t columns, rows;
+};
+constexpr std::array<Shape, 7> kShapes = {{{1, 1}, {1, 2}, {1, 3}, {1, 4}, {2, 2}, {3, 3}, {4, 4}}};
+
+std::string accessorPlace(Index accessor) {
+  return fmt::format("accessors[{}]", accessor);
 }
 
-void readShape(const JsonView& accessor, AccessorLayout& layout) {
-  struct Shape {
-    std::string_view name;
-    std::size_t columns, rows;
-  };
-  constexpr std::array<Shape, 7> kShapes = {{{"SCALAR", 1, 1},
-                                             {"VEC2", 1, 2},
-                                             {"VEC3", 1, 3},
-                                             {"VEC4", 1, 4},
-                                             {"MAT2", 2, 2},
-                                             {"MAT3", 3, 3},
-                                             {"MAT4", 4, 4}}};
-  const std::string_view name = accessor.text("type");
-  const auto* shape = std::find_if(kShapes.begin(), kShapes.end(), [&](const Shape& s) { return s.name == name; });
-  if (shape == kShapes.end()) accessor.member("type").fail("is missing or no element type");
-
-  const std::size_t components = shape->columns * shape->rows;
-  const std::size_t columnSize = shape->rows * layout.componentBytes;
+void setShape(gltf::ElementType type, AccessorLayout& layout) {
+  const Shape shape = kShapes[static_cast<std::size_t>(type)];
+  const std::size_t components = shape.columns * shape.rows;
+  const std::size_t columnSize = shape.rows * layout.componentBytes;
   const std::size_t columnStride = (columnSize + 3) / 4 * 4;
   layout.info.components = static_cast<Index>(components);
-  const bool padded = shape->columns > 1 && columnStride != columnSize;
-  layout.columns = padded ? shape->columns : 1;
-  layout.rows = padded ? shape->rows : components;
+  const bool padded = shape.columns > 1 && columnStride != columnSize;
+  layout.columns = padded ? shape.columns : 1;
+  layout.rows = padded ? shape.rows : components;
   layout.columnStride = padded ? columnStride : components * layout.componentBytes;
   layout.elementSize = layout.columns * layout.columnStride;
 }
 
-ViewLayout viewOf(const Asset& asset, const JsonView& owner) {
-  const JsonView views = JsonView(asset).array("bufferViews");
-  return viewLayout(asset, views[owner.requireIndex("bufferView", views.size())]);
+// The view that something at `place` names.
+ViewLayout viewOf(const Asset& asset, Index view, const std::string& place) {
+  requireElement(view, asset.document.bufferViews.size(), [&] { return place + ".bufferView"; });
+  return viewLayout(asset, view);
 }
 
-// Where `owner`'s data begin in its view, checked to be `size` bytes that suit components of `alignment` bytes.
-const std::uint8_t* dataOf(const ViewLayout& view, const JsonView& owner, std::size_t size, std::size_t alignment) {
-  const std::size_t offset = owner.count("byteOffset").value_or(0);
+// Where data begin in their view, checked to be `size` bytes that suit components of `alignment` bytes.
+const std::uint8_t* dataOf(const ViewLayout& view, std::size_t offset, std::size_t size, std::size_t alignment,
+                           const std::string& place) {
   if (offset > view.bytes.size() || size > view.bytes.size() - offset) {
-    owner.fail(
-        fmt::format("needs {} bytes from byte {} on, but its buffer view has {}", size, offset, view.bytes.size()));
+    failAt(place,
+           fmt::format("needs {} bytes from byte {} on, but its buffer view has {}", size, offset, view.bytes.size()));
   }
   if ((view.offset + offset) % alignment != 0 || view.stride % alignment != 0) {
-    owner.fail(fmt::format("its data are not aligned to {} bytes", alignment));
+    failAt(place, fmt::format("its data are not aligned to {} bytes", alignment));
   }
   return view.bytes.data() + offset;
 }
 
-void readData(const Asset& asset, const JsonView& accessor, AccessorLayout& layout) {
-  const ViewLayout view = viewOf(asset, accessor);
+void findData(const Asset& asset, const gltf::Accessor& accessor, const std::string& place, AccessorLayout& layout) {
+  const ViewLayout view = viewOf(asset, *accessor.bufferView, place);
   if (view.stride != 0) {
-    if (view.stride < layout.elementSize) accessor.fail("has elements larger than its buffer view's byteStride");
-    if (view.stride > kMaxStride) accessor.fail(fmt::format("has a byteStride above {}", kMaxStride));
+    if (view.stride < layout.elementSize) failAt(place, "has elements larger than its buffer view's byteStride");
+    if (view.stride > kMaxStride) failAt(place, fmt::format("has a byteStride above {}", kMaxStride));
     layout.stride = view.stride;
   }
   const std::size_t count = layout.info.count;
   const std::size_t size = count == 0 ? 0 : (count - 1) * layout.stride + layout.usedSize();
-  layout.data = dataOf(view, accessor, size, layout.componentBytes);
+  layout.data = dataOf(view, accessor.byteOffset, size, layout.componentBytes, place);
 }
 
-void checkZeroCount(const Asset& asset, const JsonView& accessor, Index count) {
+void checkZeroCount(const Asset& asset, const std::string& place, Index count) {
   std::size_t allowed = kFreeZeros;
   for (const Asset::Buffer& buffer : asset.buffers) {
     if (allowed >= count) break;
@@ -93,28 +82,31 @@ void checkZeroCount(const Asset& asset, const JsonView& accessor, Index count) {
   }
   if (count > allowed) {
     throw Error(ErrorCode::kLimit, fmt::format("has {} elements without data, more than the file's size allows", count),
-                accessor.path());
+                place);
   }
 }
 
-SparseLayout readSparse(const Asset& asset, const JsonView& sparse, const AccessorLayout& layout) {
+SparseLayout findSparse(const Asset& asset, const gltf::Sparse& sparse, const std::string& place,
+                        const AccessorLayout& layout) {
   SparseLayout result;
-  const std::size_t count = sparse.member("count").asCount();
-  if (count > layout.info.count) sparse.fail("has more substitutions than the accessor has elements");
+  const std::size_t count = sparse.count;
+  if (count > layout.info.count) failAt(place, "has more substitutions than the accessor has elements");
   result.count = static_cast<Index>(count);
-  const JsonView indices = sparse.object("indices"), values = sparse.object("values");
-  result.indexType = readComponentType(indices);
+  const std::string indices = place + ".indices", values = place + ".values";
+  result.indexType = sparse.indices.componentType;
   if (result.indexType != ComponentType::kU8 && result.indexType != ComponentType::kU16 &&
       result.indexType != ComponentType::kU32) {
-    indices.fail("must be of an unsigned component type");
+    failAt(indices, "must be of an unsigned component type");
   }
   const std::size_t indexSize = componentSize(result.indexType);
-  result.indices = dataOf(viewOf(asset, indices), indices, count * indexSize, indexSize);
+  result.indices = dataOf(viewOf(asset, sparse.indices.bufferView, indices), sparse.indices.byteOffset,
+                          count * indexSize, indexSize, indices);
   const std::size_t size = count == 0 ? 0 : (count - 1) * layout.elementSize + layout.usedSize();
-  result.values = dataOf(viewOf(asset, values), values, size, layout.componentBytes);
+  result.values = dataOf(viewOf(asset, sparse.values.bufferView, values), sparse.values.byteOffset, size,
+                         layout.componentBytes, values);
   for (std::size_t i = 0; i < count; ++i) {
     if (result.index(i) >= layout.info.count || (i > 0 && result.index(i) <= result.index(i - 1))) {
-      indices.fail("must be in rising order and below the accessor's count");
+      failAt(indices, "must be in rising order and below the accessor's count");
     }
   }
   return result;
@@ -132,41 +124,45 @@ Index SparseLayout::index(std::size_t i) const {
   return loadAs<std::uint32_t>(indices + 4 * i);
 }
 
-ViewLayout viewLayout(const Asset& asset, const JsonView& view) {
-  const Index buffer = view.requireIndex("buffer", asset.buffers.size());
-  const Bytes& bytes = asset.buffers[buffer].bytes;
-  const std::size_t offset = view.count("byteOffset").value_or(0);
-  const std::size_t length = view.member("byteLength").asCount();
+ViewLayout viewLayout(const Asset& asset, Index index) {
+  const gltf::BufferView& view = asset.document.bufferViews[index];
+  const auto place = [&] { return fmt::format("bufferViews[{}]", index); };
+  requireElement(view.buffer, asset.buffers.size(), [&] { return place() + ".buffer"; });
+  const Bytes& bytes = asset.buffers[view.buffer].bytes;
+  const std::size_t offset = view.byteOffset, length = view.byteLength;
   if (offset > bytes.size() || length > bytes.size() - offset) {
-    view.fail(fmt::format("needs {} bytes from byte {} on, but its buffer has {}", length, offset, bytes.size()));
+    failAt(place(), fmt::format("needs {} bytes from byte {} on, but its buffer has {}", length, offset, bytes.size()));
   }
-  return {ByteSpan(bytes).subspan(offset, length), offset, view.count("byteStride").value_or(0)};
+  return {ByteSpan(bytes).subspan(offset, length), offset, view.byteStride};
 }
 
-AccessorLayout accessorShape(const JsonView& accessor) {
+AccessorLayout accessorShape(const Asset& asset, Index index) {
+  const gltf::Accessor& accessor = asset.document.accessors[index];
   AccessorLayout layout;
-  layout.info.type = readComponentType(accessor);
-  layout.info.normalized = accessor.flag("normalized", false);
-  const std::size_t count = accessor.member("count").asCount();
-  if (count >= kNoIndex) throw Error(ErrorCode::kLimit, "has more elements than 32 bits count", accessor.path());
-  layout.info.count = static_cast<Index>(count);
+  layout.info.type = accessor.componentType;
+  layout.info.normalized = accessor.normalized;
+  if (accessor.count >= kNoIndex) {
+    throw Error(ErrorCode::kLimit, "has more elements than 32 bits count", accessorPlace(index));
+  }
+  layout.info.count = static_cast<Index>(accessor.count);
   layout.componentBytes = componentSize(layout.info.type);
-  readShape(accessor, layout);
+  setShape(accessor.type, layout);
   layout.stride = layout.elementSize;
   return layout;
 }
 
 AccessorLayout accessorLayout(const Asset& asset, Index index) {
-  const JsonView accessor = JsonView(asset).array("accessors")[index];
-  AccessorLayout layout = accessorShape(accessor);
-  if (accessor.member("bufferView").exists()) {
-    readData(asset, accessor, layout);
+  const std::size_t count = asset.document.accessors.size();
+  if (index >= count) failAt(accessorPlace(index), fmt::format("is missing: there are {} elements", count));
+  const gltf::Accessor& accessor = asset.document.accessors[index];
+  const std::string place = accessorPlace(index);
+  AccessorLayout layout = accessorShape(asset, index);
+  if (accessor.bufferView) {
+    findData(asset, accessor, place, layout);
   } else {
-    checkZeroCount(asset, accessor, layout.info.count);
+    checkZeroCount(asset, place, layout.info.count);
   }
-  if (const JsonView sparse = accessor.object("sparse"); sparse.exists()) {
-    layout.sparse = readSparse(asset, sparse, layout);
-  }
+  if (accessor.sparse) layout.sparse = findSparse(asset, *accessor.sparse, place + ".sparse", layout);
   return layout;
 }
 

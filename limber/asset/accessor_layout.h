@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "limber/asset/accessor.h"
-#include "limber/asset/json_access.h"
 
 namespace limber {
 
@@ -47,10 +46,10 @@ struct AccessorLayout {
 };
 
 // Throw Error kBadData, naming the view or accessor, where it does not fit what it lies in.
-ViewLayout viewLayout(const Asset& asset, const JsonView& view);
+ViewLayout viewLayout(const Asset& asset, Index view);
 AccessorLayout accessorLayout(const Asset& asset, Index accessor);
-// Without a look at the data: they are not there yet.
-AccessorLayout accessorShape(const JsonView& accessor);
+// Without a look at the data: they are not there yet. Throws kLimit where there are more elements than 32 bits count.
+AccessorLayout accessorShape(const Asset& asset, Index accessor);
 
 template <typename T>
 T loadAs(const std::uint8_t* at) {

@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "limber/asset/scene_graph.h"
+#include "limber/asset/references.h"
 
 namespace limber {
 
@@ -33,85 +33,41 @@ constexpr std::array<std::string_view, 17> kTransparent = {"EXT_mesh_gpu_instanc
                                                            "VRMC_vrm",
                                                            "VRMC_springBone"};
 
-bool transparent(const Json& object) {
-  const Json* extensions = member(object, "extensions");
-  if (!extensions || !extensions->is_object()) return true;
-  for (const auto& [name, content] : extensions->items()) {
-    if (std::find(kTransparent.begin(), kTransparent.end(), name) == kTransparent.end()) return false;
-  }
-  return true;
-}
-
-// Visits everything that holds the number of an accessor; works on const and changeable documents alike.
-template <typename Document, typename Visit>
-void visitMembers(Document& object, const char* key, const Visit& visit) {
-  const auto found = object.find(key);
-  if (found == object.end() || !found->is_object()) return;
-  for (auto& value : *found) visit(value);
-}
-
-template <typename Document, typename Visit>
-void visitMember(Document& object, const char* key, const Visit& visit) {
-  const auto found = object.find(key);
-  if (found != object.end()) visit(*found);
-}
-
-template <typename Document, typename Visit>
-void visitElements(Document& object, const char* key, const Visit& visit) {
-  const auto found = object.find(key);
-  if (found == object.end() || !found->is_array()) return;
-  for (auto& element : *found) visit(element);
-}
-
-template <typename Document, typename Visit>
-void visitAccessors(Document& json, const Visit& visit) {
-  visitElements(json, "meshes", [&](auto& mesh) {
-    visitElements(mesh, "primitives", [&](auto& primitive) {
-      visitMembers(primitive, "attributes", visit);
-      visitMember(primitive, "indices", visit);
-      visitElements(primitive, "targets", [&](auto& target) {
-        for (auto& accessor : target) visit(accessor);
-      });
-    });
-  });
-  visitElements(json, "skins", [&](auto& skin) { visitMember(skin, "inverseBindMatrices", visit); });
-  visitElements(json, "animations", [&](auto& animation) {
-    visitElements(animation, "samplers", [&](auto& sampler) {
-      visitMember(sampler, "input", visit);
-      visitMember(sampler, "output", visit);
-    });
-  });
-  visitElements(json, "nodes", [&](auto& node) {
-    visitMember(node, "extensions", [&](auto& extensions) {
-      visitMember(extensions, "EXT_mesh_gpu_instancing",
-                  [&](auto& instancing) { visitMembers(instancing, "attributes", visit); });
-    });
+bool transparent(const gltf::Object& object) {
+  if (!object.extensions.exists()) return true;
+  const auto& all = object.extensions->items();
+  return std::all_of(all.begin(), all.end(), [](const auto& extension) {
+    return std::find(kTransparent.begin(), kTransparent.end(), extension.key()) != kTransparent.end();
   });
 }
 
-std::vector<bool> usedAccessors(const Asset& asset) {
-  std::vector<bool> used(elementCount(asset, "accessors"), false);
-  visitAccessors(asset.json(), [&](const Json& accessor) {
-    const auto index = accessor.get<std::size_t>();
-    if (index < used.size()) used[index] = true;
+template <typename Element>
+bool allTransparent(const std::vector<Element>& list) {
+  return std::all_of(list.begin(), list.end(), [](const Element& element) { return transparent(element); });
+}
+
+bool understood(const gltf::Document& document) {
+  return transparent(document) && allTransparent(document.meshes) && allTransparent(document.nodes) &&
+         allTransparent(document.skins) && allTransparent(document.animations) && allTransparent(document.scenes) &&
+         std::all_of(document.meshes.begin(), document.meshes.end(),
+                     [](const gltf::Mesh& mesh) { return allTransparent(mesh.primitives); });
+}
+
+std::vector<bool> usedAccessors(const gltf::Document& document) {
+  std::vector<bool> used(document.accessors.size(), false);
+  visitReferences(document, [&](ElementKind kind, Index number) {
+    if (kind == ElementKind::kAccessor && number < used.size()) used[number] = true;
   });
   return used;
 }
 
-bool understood(const Json& json) {
-  bool result = transparent(json);
-  const auto look = [&](const Json& element) { result = result && transparent(element); };
-  for (const char* kind : {"meshes", "nodes", "skins", "animations", "scenes"}) visitElements(json, kind, look);
-  visitElements(json, "meshes", [&](const Json& mesh) { visitElements(mesh, "primitives", look); });
-  return result;
-}
-
 }  // namespace
 
-AccessorSweep::AccessorSweep(const Asset& asset) : usedBefore_(usedAccessors(asset)) {}
+AccessorSweep::AccessorSweep(const Asset& asset) : usedBefore_(usedAccessors(asset.document)) {}
 
 void AccessorSweep::sweep(Asset& asset) const {
-  const std::vector<bool> used = usedAccessors(asset);
+  gltf::Document& document = asset.document;
+  const std::vector<bool> used = usedAccessors(document);
   const auto count = static_cast<Index>(used.size());
   const auto countBefore = static_cast<Index>(usedBefore_.size());
   // What stands at each place of the new list. New accessors fill the places that became free, so that as few numbers
@@ -130,17 +86,15 @@ void AccessorSweep::sweep(Asset& asset) const {
     }
   }
   places.erase(std::remove(places.begin(), places.end(), std::nullopt), places.end());
-  if (places.size() == used.size() || !understood(asset.json())) return;
+  if (places.size() == used.size() || !understood(document)) return;
 
-  Json& accessors = asset.json()["accessors"];
-  Json list = Json::array();
+  std::vector<gltf::Accessor> kept;
   std::vector<Index> newIndex(count, kNoIndex);
-  for (const std::optional<Index>& a : places) {
-    newIndex[*a] = static_cast<Index>(list.size());
-    list.push_back(std::move(accessors[*a]));
-  }
-  accessors = std::move(list);
-  visitAccessors(asset.json(), [&](Json& accessor) { accessor = newIndex.at(accessor.get<std::size_t>()); });
+  for (const std::optional<Index>& a : places) newIndex[*a] = addElement(kept, std::move(document.accessors[*a]));
+  document.accessors = std::move(kept);
+  changeReferences(document, [&](ElementKind kind, Index& number) {
+    if (kind == ElementKind::kAccessor) number = newIndex.at(number);
+  });
 }
 
 }  // namespace limber

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "limber/asset/read.h"
+#include "limber/asset/testing/document_json.h"
 #include "limber/asset/testing/gltf_builder.h"
 #include "limber/asset/write.h"
 
@@ -125,11 +126,11 @@ TEST(Accessor, AddedOnesReadBack) {
   const Asset again = readAsset(writeGlb(asset), "again.glb");
   EXPECT_THAT(readIndices(again, a), ElementsAre(1, 2, 3, 4, 250, 0, 0, 9));
   EXPECT_EQ(readFloats(again, b), values);
-  const Json& json = again.json()["accessors"][b];
-  EXPECT_EQ(json["min"].get<std::vector<float>>(), (std::vector<float>{0.1f, 3, -8}));
-  EXPECT_EQ(json["max"].get<std::vector<float>>(), (std::vector<float>{1, 5, -2}));
-  EXPECT_EQ(json["type"], "VEC3");
-  EXPECT_EQ(again.json()["bufferViews"][json["bufferView"].get<Index>()]["target"], kVertexTarget);
+  const gltf::Accessor& accessor = again.document.accessors[b];
+  EXPECT_EQ(accessor.min, (std::vector<double>{0.1f, 3, -8}));
+  EXPECT_EQ(accessor.max, (std::vector<double>{1, 5, -2}));
+  EXPECT_EQ(accessor.type, gltf::ElementType::kVec3);
+  EXPECT_EQ(again.document.bufferViews[*accessor.bufferView].target, kVertexTarget);
 }
 
 TEST(Accessor, AddingToFilesBesideMakesANewBuffer) {
@@ -146,7 +147,6 @@ TEST(Accessor, AddingToFilesBesideMakesANewBuffer) {
 
 TEST(Accessor, AddingToAnEmptyAsset) {
   Asset asset;
-  asset.json()["asset"]["version"] = "2.0";
   const Index index = addFloatAccessor(asset, std::vector<float>{1, 2, 3, 4}, 4);
   checkAsset(asset);
   EXPECT_EQ(readFloats(asset, index), (std::vector<float>{1, 2, 3, 4}));
@@ -169,9 +169,10 @@ TEST(Accessor, BoundsAreRawValuesAndFinite) {
   Asset asset = read(model);
   setBounds(asset, shorts);
   setBounds(asset, bad);
-  EXPECT_EQ(asset.json()["accessors"][shorts]["min"].dump(), "[-5,-9]");
-  EXPECT_EQ(asset.json()["accessors"][shorts]["max"].dump(), "[32767,7]");
-  EXPECT_FALSE(asset.json()["accessors"][bad].contains("min"));
+  const Json json = testing::documentJson(asset);
+  EXPECT_EQ(json["accessors"][shorts]["min"].dump(), "[-5,-9]");
+  EXPECT_EQ(json["accessors"][shorts]["max"].dump(), "[32767,7]");
+  EXPECT_FALSE(json["accessors"][bad].contains("min"));
 }
 
 }  // namespace

@@ -1,56 +1,47 @@
 // What a file held, kept whole: the home of everything that limber does not touch.
 #pragma once
 
-#include <filesystem>
-#include <memory>
 #include <string>
 #include <vector>
 
-#include <nlohmann/json_fwd.hpp>
-
+#include "limber/asset/gltf.h"
 #include "limber/core/error.h"
 #include "limber/core/file.h"
 
 namespace limber {
 
-using Json = nlohmann::ordered_json;  // keeps the order of keys as read
-
 // A glTF document with the bytes it refers to. Other formats become one on reading.
 //
-// The JSON is kept as read; what limber adds goes behind what is there. Every buffer's bytes are held in memory;
-// buffers that came out of a GLB's binary chunk, a data URI or a file beside are alike here, `uri` says which. Images
-// beside the file are read too, so that a written copy is complete.
+// What limber adds goes behind what is there. Every buffer's bytes are held in memory; buffers that came out of a GLB's
+// binary chunk, a data URI or a file beside are alike here, `uri` says which. Images beside the file are read too, so
+// that a written copy is complete.
 //
 // Moves cheaply; copying is explicit through clone().
-class Asset {
- public:
+struct Asset {
   struct Buffer {
-    Bytes bytes;      // as many as its "byteLength" in the JSON
+    Bytes bytes;      // as many as its byteLength in the document
     std::string uri;  // empty: the GLB's binary chunk, or made by limber; the start of a data URI up to its comma (the
-                      // JSON has no more of it either); else a relative path, and the bytes are that file's
+                      // document has no more of it either); else a relative path, and the bytes are that file's
   };
   struct SideFile {  // an image that the document names by relative path
     std::string uri;
     Bytes bytes;
   };
 
-  Asset();
-  Asset(Asset&&) noexcept;
-  Asset& operator=(Asset&&) noexcept;
-  ~Asset();
-  Asset clone() const;
+  Asset() = default;
+  Asset(Asset&&) noexcept = default;
+  Asset& operator=(Asset&&) noexcept = default;
+  Asset clone() const { return Asset(*this); }
 
-  Json& json() { return *json_; }
-  const Json& json() const { return *json_; }
-
-  std::vector<Buffer> buffers;  // one for each of json()["buffers"], in order
+  gltf::Document document;
+  std::vector<Buffer> buffers;  // one for each of document.buffers, in order
   std::vector<SideFile> sideFiles;
   std::string name;    // for messages: the file's name
   std::string format;  // "glb", "gltf", "obj", "ply", "stl", "off", "fbx", "dae", "bvh"
   Warnings warnings;   // what reading had to convert, decode or leave out
 
  private:
-  std::unique_ptr<Json> json_;
+  Asset(const Asset&) = default;
 };
 
 // Walks the whole document and throws Error kBadData, with the path of the element ("meshes[0].primitives[2].indices"),

@@ -5,21 +5,18 @@
 #include <algorithm>
 #include <cmath>
 
-#include <nlohmann/json.hpp>
-
 #include "limber/asset/accessor.h"
 
 namespace limber {
 
 SkinBinding readSkinBinding(const Asset& asset, Index skin) {
-  const Json& source = elements(asset, "skins")[skin];
+  const gltf::Skin& source = asset.document.skins[skin];
   SkinBinding binding;
-  for (const Json& joint : source.at("joints")) binding.joints.push_back(joint.get<Index>());
+  binding.joints = source.joints;
   binding.inverseBinds.assign(binding.joints.size(), Affine::Identity());
-  const std::optional<Index> accessor = indexMember(source, "inverseBindMatrices");
-  if (!accessor) return binding;
+  if (!source.inverseBindMatrices) return binding;
 
-  const std::vector<float> values = readFloats(asset, *accessor);
+  const std::vector<float> values = readFloats(asset, *source.inverseBindMatrices);
   binding.given = true;
   for (std::size_t j = 0; j < binding.joints.size() && 16 * (j + 1) <= values.size(); ++j) {
     const Eigen::Map<const Eigen::Matrix4f> matrix(values.data() + 16 * j);
@@ -59,7 +56,7 @@ class SkinPlacer {
   SkinPlacer(const Asset& asset, const SceneGraph& graph) : asset_(asset), graph_(graph) {
     bind_.resize(graph.nodeCount());
     placedBelow_.resize(graph.nodeCount());
-    pose_.skinToWorld.assign(elementCount(asset, "skins"), Affine::Identity());
+    pose_.skinToWorld.assign(asset.document.skins.size(), Affine::Identity());
     pose_.isJoint.assign(graph.nodeCount(), false);
   }
 
@@ -72,13 +69,12 @@ class SkinPlacer {
 
  private:
   void findSkins() {
-    const Json& nodes = elements(asset_, "nodes");
     std::vector<bool> met(pose_.skinToWorld.size(), false);
     for (const Index n : graph_.order) {
-      const std::optional<Index> skin = indexMember(nodes[n], "skin");
-      if (!skin || met[*skin] || !nodes[n].contains("mesh")) continue;
-      met[*skin] = true;
-      pose_.skins.push_back(*skin);
+      const gltf::Node& node = asset_.document.nodes[n];
+      if (!node.skin || !node.mesh || met[*node.skin]) continue;
+      met[*node.skin] = true;
+      pose_.skins.push_back(*node.skin);
       skinNodes_.push_back(n);
     }
     if (!pose_.skins.empty()) return;

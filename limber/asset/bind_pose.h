@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "limber/asset/asset.h"
 #include "limber/asset/scene_graph.h"
 
 namespace limber {

@@ -1,13 +1,15 @@
 #include <algorithm>
 #include <optional>
-#include <type_traits>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "limber/asset/accessor_layout.h"
 #include "limber/asset/check_asset.h"
+#include "limber/asset/document_errors.h"
+#include "limber/asset/extensions.h"
 
 namespace limber {
 
@@ -59,40 +61,43 @@ Index largest(const AccessorLayout& layout) {
 
 class DataChecker {
  public:
-  DataChecker(const Asset& asset, const Sections& sections) : asset_(asset), sections_(sections) {}
+  explicit DataChecker(const Asset& asset) : asset_(asset), document_(asset.document) {}
 
   void run() {
     checkBuffers();
-    for (std::size_t i = 0; i < sections_.accessors.size(); ++i) {
-      layouts_.push_back(accessorLayout(asset_, static_cast<Index>(i)));
-    }
+    for (Index i = 0; i < document_.accessors.size(); ++i) layouts_.push_back(accessorLayout(asset_, i));
     finite_.assign(layouts_.size(), false);
     largest_.assign(layouts_.size(), std::nullopt);
-    for (std::size_t i = 0; i < sections_.meshes.size(); ++i) checkMesh(sections_.meshes[i]);
-    for (std::size_t i = 0; i < sections_.skins.size(); ++i) checkSkin(sections_.skins[i]);
-    namedJoint_.assign(sections_.meshes.size(), std::nullopt);
-    usedJoint_.assign(sections_.meshes.size(), std::nullopt);
-    for (std::size_t i = 0; i < sections_.nodes.size(); ++i) checkSkinnedNode(sections_.nodes[i]);
-    for (std::size_t i = 0; i < sections_.nodes.size(); ++i) checkInstancing(sections_.nodes[i]);
+    for (std::size_t m = 0; m < document_.meshes.size(); ++m) {
+      const std::vector<gltf::Primitive>& primitives = document_.meshes[m].primitives;
+      for (std::size_t p = 0; p < primitives.size(); ++p) {
+        checkPrimitive(primitives[p], fmt::format("meshes[{}].primitives[{}]", m, p));
+      }
+    }
+    for (std::size_t i = 0; i < document_.skins.size(); ++i) checkSkin(document_.skins[i], fmt::format("skins[{}]", i));
+    namedJoint_.assign(document_.meshes.size(), std::nullopt);
+    usedJoint_.assign(document_.meshes.size(), std::nullopt);
+    for (std::size_t i = 0; i < document_.nodes.size(); ++i) checkSkinnedNode(document_.nodes[i], i);
+    for (std::size_t i = 0; i < document_.nodes.size(); ++i) checkInstancing(document_.nodes[i], i);
   }
 
  private:
   void checkBuffers() {
-    if (sections_.buffers.size() != asset_.buffers.size()) {
-      sections_.buffers.fail(fmt::format("has {} elements, but {} buffers are in memory", sections_.buffers.size(),
-                                         asset_.buffers.size()));
+    const std::vector<gltf::Buffer>& buffers = document_.buffers;
+    if (buffers.size() != asset_.buffers.size()) {
+      failAt("buffers",
+             fmt::format("has {} elements, but {} buffers are in memory", buffers.size(), asset_.buffers.size()));
     }
-    for (std::size_t i = 0; i < asset_.buffers.size(); ++i) {
-      const std::size_t length = sections_.buffers[i].member("byteLength").asCount();
-      if (length != asset_.buffers[i].bytes.size())
-        sections_.buffers[i].fail("has not as many bytes as its byteLength");
+    for (std::size_t i = 0; i < buffers.size(); ++i) {
+      if (buffers[i].byteLength == asset_.buffers[i].bytes.size()) continue;
+      failAt(fmt::format("buffers[{}]", i), "has not as many bytes as its byteLength");
     }
-    for (std::size_t i = 0; i < sections_.bufferViews.size(); ++i) viewLayout(asset_, sections_.bufferViews[i]);
+    for (Index i = 0; i < document_.bufferViews.size(); ++i) viewLayout(asset_, i);
   }
 
-  void requireFinite(Index accessor, const JsonView& user) {
+  void requireFinite(Index accessor, const std::string& user) {
     if (!finite_[accessor] && !allFinite(layouts_[accessor])) {
-      user.fail(fmt::format("accessor {} holds a number that is not finite", accessor));
+      failAt(user, fmt::format("accessor {} holds a number that is not finite", accessor));
     }
     finite_[accessor] = true;
   }
@@ -104,126 +109,113 @@ class DataChecker {
 
   // Shapes that a primitive's attributes and its morph targets share. `tangent`: components of TANGENT, of which morph
   // targets leave out the handedness.
-  void checkShape(std::string_view name, const JsonView& attribute, const AccessorInfo& info, Index tangent) {
-    const auto startsWith = [&](std::string_view prefix) { return name.substr(0, prefix.size()) == prefix; };
+  static void checkShape(std::string_view name, const AccessorInfo& info, Index tangent, const std::string& place) {
     const auto require = [&](Index least, Index most, std::string_view shape) {
       if (info.components >= least && info.components <= most && info.type != ComponentType::kU32) return;
-      attribute.fail(fmt::format("must be of type {}, of floats or of integers of 8 or 16 bits", shape));
+      failAt(place, fmt::format("must be of type {}, of floats or of integers of 8 or 16 bits", shape));
     };
     if (name == "NORMAL") {
       require(3, 3, "VEC3");
     } else if (name == "TANGENT") {
       require(tangent, tangent, tangent == 3 ? "VEC3" : "VEC4");
-    } else if (startsWith("TEXCOORD_")) {
+    } else if (name.starts_with("TEXCOORD_")) {
       require(2, 2, "VEC2");
-    } else if (startsWith("COLOR_")) {
+    } else if (name.starts_with("COLOR_")) {
       require(3, 4, "VEC3 or VEC4");
+    } else if (name == "POSITION" && (info.components != 3 || info.type == ComponentType::kU32)) {
+      failAt(place, "positions must be of type VEC3");
     }
   }
 
-  void checkAttribute(std::string_view name, const JsonView& attribute, const AccessorInfo& info) {
-    const auto startsWith = [&](std::string_view prefix) { return name.substr(0, prefix.size()) == prefix; };
-    checkShape(name, attribute, info, 4);
-    if (name == "POSITION") {
-      if (info.components != 3 || info.type == ComponentType::kU32) attribute.fail("positions must be of type VEC3");
-      requireFinite(attribute.asIndex(layouts_.size()), attribute);
-    } else if (startsWith("JOINTS_")) {
-      if (info.components != 4 || !isUnsigned(info.type)) attribute.fail("joints must be four unsigned integers");
-    } else if (startsWith("WEIGHTS_")) {
+  static void checkInfluences(std::string_view name, const AccessorInfo& info, const std::string& place) {
+    if (name.starts_with("JOINTS_")) {
+      if (info.components != 4 || !isUnsigned(info.type)) failAt(place, "joints must be four unsigned integers");
+    } else if (name.starts_with("WEIGHTS_")) {
       const bool fraction = info.type == ComponentType::kF32 || (isUnsigned(info.type) && info.normalized);
-      if (info.components != 4 || !fraction) attribute.fail("weights must be four floats or normalised integers");
+      if (info.components != 4 || !fraction) failAt(place, "weights must be four floats or normalised integers");
     }
   }
 
   // Counts of all of a primitive's attributes and morph targets, which must agree.
-  Index checkAttributes(const JsonView& primitive) {
-    const JsonView attributes = primitive.object("attributes");
-    if (!attributes.exists()) attributes.fail("is missing");
+  Index checkAttributes(const gltf::Primitive& primitive, const std::string& where) {
     std::optional<Index> count;
-    const auto checkCount = [&](const JsonView& attribute) {
-      const AccessorInfo& info = layouts_[attribute.asIndex(layouts_.size())].info;
-      if (!count) count = info.count;
-      if (info.count != *count) {
-        attribute.fail(fmt::format("has {} elements where other attributes have {}", info.count, *count));
+    const auto checked = [&](Index accessor, const std::string& place) -> const AccessorInfo& {
+      requireElement(accessor, layouts_.size(), [&] { return place; });
+      const AccessorInfo& info = layouts_[accessor].info;
+      if (count.value_or(info.count) != info.count) {
+        failAt(place, fmt::format("has {} elements where other attributes have {}", info.count, *count));
       }
+      count = info.count;
+      return info;
     };
-    attributes.forEachMember([&](std::string_view name, const JsonView& attribute) {
-      checkCount(attribute);
-      checkAttribute(name, attribute, layouts_[attribute.asIndex(layouts_.size())].info);
-    });
-    const JsonView targets = primitive.array("targets");
-    for (std::size_t i = 0; i < targets.size(); ++i) {
-      targets[i].forEachMember([&](std::string_view name, const JsonView& attribute) {
-        checkCount(attribute);
-        const AccessorInfo& info = layouts_[attribute.asIndex(layouts_.size())].info;
-        if (name == "POSITION" && (info.components != 3 || info.type == ComponentType::kU32)) {
-          attribute.fail("positions must be of type VEC3");
-        }
-        checkShape(name, attribute, info, 3);
-      });
+    for (const auto& [name, accessor] : primitive.attributes) {
+      const std::string place = fmt::format("{}.attributes.{}", where, name);
+      const AccessorInfo& info = checked(accessor, place);
+      checkShape(name, info, 4, place);
+      checkInfluences(name, info, place);
+      if (name == "POSITION") requireFinite(accessor, place);
+    }
+    for (std::size_t t = 0; t < primitive.targets.size(); ++t) {
+      for (const auto& [name, accessor] : primitive.targets[t]) {
+        const std::string place = fmt::format("{}.targets[{}].{}", where, t, name);
+        checkShape(name, checked(accessor, place), 3, place);
+      }
     }
     return count.value_or(0);
   }
 
-  void checkPrimitive(const JsonView& primitive) {
-    const Index vertexCount = checkAttributes(primitive);
-    primitive.index("material", sections_.materials.size());
-    primitive.index("mode", 7);
-    primitive.object("extensions");
-    const std::optional<Index> indices = primitive.index("indices", layouts_.size());
-    if (!indices) return;
-    const AccessorInfo& info = layouts_[*indices].info;
-    const JsonView place = primitive.member("indices");
-    if (info.components != 1 || !isUnsigned(info.type)) place.fail("indices must be unsigned integers");
-    if (info.count > 0 && largestOf(*indices) >= vertexCount) {
-      place.fail(fmt::format("index {} is beyond the {} vertices", largestOf(*indices), vertexCount));
+  void checkPrimitive(const gltf::Primitive& primitive, const std::string& where) {
+    const Index vertexCount = checkAttributes(primitive, where);
+    requireElement(primitive.material, document_.materials.size(), [&] { return where + ".material"; });
+    requireElement(primitive.mode, gltf::kTriangleFan + 1, [&] { return where + ".mode"; });
+    if (!primitive.indices) return;
+    const auto place = [&] { return where + ".indices"; };
+    requireElement(primitive.indices, layouts_.size(), place);
+    const AccessorInfo& info = layouts_[*primitive.indices].info;
+    if (info.components != 1 || !isUnsigned(info.type)) failAt(place(), "indices must be unsigned integers");
+    if (info.count > 0 && largestOf(*primitive.indices) >= vertexCount) {
+      failAt(place(), fmt::format("index {} is beyond the {} vertices", largestOf(*primitive.indices), vertexCount));
     }
   }
 
-  void checkMesh(const JsonView& mesh) {
-    const JsonView primitives = mesh.array("primitives");
-    if (!primitives.exists()) primitives.fail("is missing");
-    for (std::size_t i = 0; i < primitives.size(); ++i) checkPrimitive(primitives[i]);
-  }
-
-  void checkSkin(const JsonView& skin) {
-    const JsonView joints = skin.array("joints");
-    if (joints.size() == 0) joints.fail("has no joint");
-    std::vector<Index> sorted;
-    for (std::size_t i = 0; i < joints.size(); ++i) sorted.push_back(joints[i].asIndex(sections_.nodes.size()));
+  void checkSkin(const gltf::Skin& skin, const std::string& where) {
+    const std::string joints = where + ".joints";
+    if (skin.joints.empty()) failAt(joints, "has no joint");
+    for (std::size_t i = 0; i < skin.joints.size(); ++i) {
+      requireElement(skin.joints[i], document_.nodes.size(), [&] { return fmt::format("{}[{}]", joints, i); });
+    }
+    std::vector<Index> sorted = skin.joints;
     std::sort(sorted.begin(), sorted.end());
     const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
-    if (twice != sorted.end()) joints.fail(fmt::format("has node {} twice", *twice));
-    skin.index("skeleton", sections_.nodes.size());
+    if (twice != sorted.end()) failAt(joints, fmt::format("has node {} twice", *twice));
+    requireElement(skin.skeleton, document_.nodes.size(), [&] { return where + ".skeleton"; });
 
-    const std::optional<Index> bind = skin.index("inverseBindMatrices", layouts_.size());
-    if (!bind) return;
-    const JsonView place = skin.member("inverseBindMatrices");
-    const AccessorInfo& info = layouts_[*bind].info;
-    if (info.components != 16 || info.type != ComponentType::kF32) place.fail("must be matrices of floats");
-    if (info.count < joints.size()) {
-      place.fail(fmt::format("has {} matrices for {} joints", info.count, joints.size()));
+    if (!skin.inverseBindMatrices) return;
+    const std::string place = where + ".inverseBindMatrices";
+    requireElement(skin.inverseBindMatrices, layouts_.size(), [&] { return place; });
+    const AccessorInfo& info = layouts_[*skin.inverseBindMatrices].info;
+    if (info.components != 16 || info.type != ComponentType::kF32) failAt(place, "must be matrices of floats");
+    if (info.count < skin.joints.size()) {
+      failAt(place, fmt::format("has {} matrices for {} joints", info.count, skin.joints.size()));
     }
-    requireFinite(*bind, place);
+    requireFinite(*skin.inverseBindMatrices, place);
   }
 
   // The largest joint number that a primitive's vertices name.
-  Index largestJoint(const JsonView& primitive) {
+  Index largestJoint(const gltf::Primitive& primitive) {
     Index result = 0;
-    primitive.object("attributes").forEachMember([&](std::string_view name, const JsonView& attribute) {
-      if (name.substr(0, 7) == "JOINTS_") result = std::max(result, largestOf(attribute.asIndex(layouts_.size())));
-    });
+    for (const auto& [name, accessor] : primitive.attributes) {
+      if (name.starts_with("JOINTS_")) result = std::max(result, largestOf(accessor));
+    }
     return result;
   }
 
   // The same of those whose weight is not zero: unused slots may hold anything.
-  Index largestUsedJoint(const JsonView& primitive) {
+  Index largestUsedJoint(const gltf::Primitive& primitive) {
     Index result = 0;
-    const JsonView attributes = primitive.object("attributes");
     for (int set = 0;; ++set) {
-      const std::string jointsKey = fmt::format("JOINTS_{}", set), weightsKey = fmt::format("WEIGHTS_{}", set);
-      const std::optional<Index> joints = attributes.index(jointsKey, layouts_.size());
-      const std::optional<Index> weights = attributes.index(weightsKey, layouts_.size());
+      const std::optional<Index> joints = primitive.attributes.find(fmt::format("JOINTS_{}", set));
+      const std::optional<Index> weights = primitive.attributes.find(fmt::format("WEIGHTS_{}", set));
       if (!joints || !weights) return result;
       const std::vector<Index> joint = readIndices(asset_, *joints);
       const std::vector<float> weight = readFloats(asset_, *weights);
@@ -234,50 +226,51 @@ class DataChecker {
   }
 
   template <typename OfPrimitive>
-  Index overPrimitives(std::optional<Index>& known, const JsonView& mesh, const OfPrimitive& ofPrimitive) {
+  static Index overPrimitives(std::optional<Index>& known, const gltf::Mesh& mesh, const OfPrimitive& ofPrimitive) {
     if (!known) {
       known = 0;
-      const JsonView primitives = mesh.array("primitives");
-      for (std::size_t i = 0; i < primitives.size(); ++i) known = std::max(*known, ofPrimitive(primitives[i]));
+      for (const gltf::Primitive& primitive : mesh.primitives) known = std::max(*known, ofPrimitive(primitive));
     }
     return *known;
   }
 
-  void checkSkinnedNode(const JsonView& node) {
-    const std::optional<Index> index = node.index("mesh", sections_.meshes.size());
-    const std::optional<Index> skin = node.index("skin", sections_.skins.size());
-    if (!index || !skin) return;
-    const JsonView mesh = sections_.meshes[*index];
-    const std::size_t jointCount = sections_.skins[*skin].array("joints").size();
-    const auto named = [&](const JsonView& primitive) { return largestJoint(primitive); };
-    if (overPrimitives(namedJoint_[*index], mesh, named) < jointCount) return;
-    const auto used = [&](const JsonView& primitive) { return largestUsedJoint(primitive); };
-    const Index joint = overPrimitives(usedJoint_[*index], mesh, used);
+  void checkSkinnedNode(const gltf::Node& node, std::size_t index) {
+    if (!node.mesh || !node.skin) return;
+    const gltf::Mesh& mesh = document_.meshes[*node.mesh];
+    const std::size_t jointCount = document_.skins[*node.skin].joints.size();
+    const auto named = [&](const gltf::Primitive& primitive) { return largestJoint(primitive); };
+    if (overPrimitives(namedJoint_[*node.mesh], mesh, named) < jointCount) return;
+    const auto used = [&](const gltf::Primitive& primitive) { return largestUsedJoint(primitive); };
+    const Index joint = overPrimitives(usedJoint_[*node.mesh], mesh, used);
     if (joint >= jointCount) {
-      node.member("mesh").fail(fmt::format("has a vertex on joint {}, but the skin has {} joints", joint, jointCount));
+      failAt(fmt::format("nodes[{}].mesh", index),
+             fmt::format("has a vertex on joint {}, but the skin has {} joints", joint, jointCount));
     }
   }
 
   // EXT_mesh_gpu_instancing: a transform per instance. Attributes of other names are the application's own.
-  void checkInstancing(const JsonView& node) {
-    const JsonView attributes = node.object("extensions").object("EXT_mesh_gpu_instancing").object("attributes");
+  void checkInstancing(const gltf::Node& node, std::size_t index) {
+    if (extensionOf(node, kInstancingName) == nullptr) return;
+    const std::string where = fmt::format("nodes[{}]", index);
     std::optional<Index> count;
-    attributes.forEachMember([&](std::string_view name, const JsonView& attribute) {
-      const AccessorInfo& info = layouts_[attribute.asIndex(layouts_.size())].info;
+    for (const auto& [name, accessor] : instancingOf(node, where)) {
+      const std::string place = fmt::format("{}.extensions.{}.attributes.{}", where, kInstancingName, name);
+      requireElement(accessor, layouts_.size(), [&] { return place; });
+      const AccessorInfo& info = layouts_[accessor].info;
       const bool rotation = name == "ROTATION";
-      if (!rotation && name != "TRANSLATION" && name != "SCALE") return;
+      if (!rotation && name != "TRANSLATION" && name != "SCALE") continue;
       if (info.components != (rotation ? 4u : 3u)) {
-        attribute.fail(fmt::format("must be of type {}", rotation ? "VEC4" : "VEC3"));
+        failAt(place, fmt::format("must be of type {}", rotation ? "VEC4" : "VEC3"));
       }
       if (!count) count = info.count;
       if (info.count != *count) {
-        attribute.fail(fmt::format("has {} elements where other attributes have {}", info.count, *count));
+        failAt(place, fmt::format("has {} elements where other attributes have {}", info.count, *count));
       }
-    });
+    }
   }
 
   const Asset& asset_;
-  const Sections& sections_;
+  const gltf::Document& document_;
   std::vector<AccessorLayout> layouts_;                       // #accessors
   std::vector<bool> finite_;                                  // #accessors: checked and found so
   std::vector<std::optional<Index>> largest_;                 // #accessors, where it was asked for
@@ -286,8 +279,8 @@ class DataChecker {
 
 }  // namespace
 
-void checkData(const Asset& asset, const Sections& sections) {
-  DataChecker(asset, sections).run();
+void checkData(const Asset& asset) {
+  DataChecker(asset).run();
 }
 
 }  // namespace limber

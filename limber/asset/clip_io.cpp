@@ -7,7 +7,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "limber/asset/accessor.h"
 #include "limber/asset/node_edit.h"
@@ -29,7 +28,7 @@ void sortUnique(std::vector<float>& times) {
 }
 
 template <typename Value>
-void append(Track<Value>& track, float time, const Value& value) {
+void addKey(Track<Value>& track, float time, const Value& value) {
   track.times.push_back(time);
   track.values.push_back(value);
 }
@@ -37,7 +36,7 @@ void append(Track<Value>& track, float time, const Value& value) {
 template <typename Value>
 Track<Value> constantTrack(const Value& value) {
   Track<Value> track;
-  append(track, 0.0f, value);
+  addKey(track, 0.0f, value);
   return track;
 }
 
@@ -107,30 +106,25 @@ void premultiply(const Affine& frame, NodeTracks& tracks) {
 class ClipReader {
  public:
   ClipReader(const Asset& asset, const AssetSkeleton& skeleton, Warnings& warnings)
-      : asset_(asset), skeleton_(skeleton), warnings_(warnings), graph_(readSceneGraph(asset)) {
+      : asset_(asset), skeleton_(skeleton), warnings_(warnings), graph_(readSceneGraph(asset.document)) {
     nodePose_ = readNodePose(asset, skeleton);
     for (const Affine& global : restGlobals(skeleton.skeleton)) box_.add(global.translation());
   }
 
-  Clip read(const Json& animation) {
+  Clip read(const gltf::Animation& animation) {
     Clip clip;
-    clip.name = nameOf(animation);
+    clip.name = animation.name;
     nodes_.clear();
-    static const Json kNone = Json::array();
-    const Json *samplers = member(animation, "samplers"), *channels = member(animation, "channels");
-    for (const Json& channel : samplers&& channels ? *channels : kNone) {
-      const Json* target = member(channel, "target");
-      const std::optional<Index> node = target ? indexMember(*target, "node") : std::nullopt;
-      const std::optional<Index> sampler = indexMember(channel, "sampler");
-      if (!node || !sampler || !target->contains("path") || !target->at("path").is_string()) continue;
-      readChannel(samplers->at(*sampler), target->at("path").get<std::string>(), *node);
+    for (const gltf::AnimationChannel& channel : animation.channels) {
+      if (!channel.target.node) continue;
+      readChannel(animation.samplers[channel.sampler], channel.target.path, *channel.target.node);
     }
     for (Index j = 0; j < skeleton_.skeleton.jointCount(); ++j) addJoint(j, clip);
     return clip;
   }
 
  private:
-  void readChannel(const Json& sampler, const std::string& path, Index node) {
+  void readChannel(const gltf::AnimationSampler& sampler, const std::string& path, Index node) {
     NodeTracks& tracks = nodes_[node];
     if (path == kTranslation) tracks.translation = readTrack<Vec3f>(sampler);
     if (path == kRotation) tracks.rotation = readTrack<Eigen::Quaternionf>(sampler);
@@ -139,16 +133,14 @@ class ClipReader {
   }
 
   template <typename Value>
-  std::optional<Track<Value>> readTrack(const Json& sampler) {
+  std::optional<Track<Value>> readTrack(const gltf::AnimationSampler& sampler) {
     constexpr bool kIsRotation = std::is_same_v<Value, Eigen::Quaternionf>;
     constexpr std::size_t kComponents = kIsRotation ? 4 : 3;
     Track<Value> track;
-    const std::string interpolation = sampler.value("interpolation", "LINEAR");
-    if (interpolation == "STEP") track.interpolation = Interpolation::kStep;
-    if (interpolation == "CUBICSPLINE") track.interpolation = Interpolation::kCubic;
+    track.interpolation = sampler.interpolation;
     const std::size_t valuesPerKey = track.interpolation == Interpolation::kCubic ? 3 : 1;
-    const std::vector<float> times = readFloats(asset_, sampler.at("input").get<Index>());
-    const std::vector<float> numbers = readFloats(asset_, sampler.at("output").get<Index>());
+    const std::vector<float> times = readFloats(asset_, sampler.input);
+    const std::vector<float> numbers = readFloats(asset_, sampler.output);
     const std::size_t keys = std::min(times.size(), numbers.size() / (kComponents * valuesPerKey));
     for (std::size_t k = 0; k < keys; ++k) {
       std::array<Value, 3> values;
@@ -279,7 +271,7 @@ class ClipReader {
 class ClipWriter {
  public:
   ClipWriter(Asset& asset, const AssetSkeleton& skeleton) : asset_(asset), skeleton_(skeleton) {
-    const SceneGraph graph = readSceneGraph(asset);
+    const SceneGraph graph = readSceneGraph(asset.document);
     nodePose_ = readNodePose(asset, skeleton);
     for (Index j = 0; j < skeleton.skeleton.jointCount(); ++j) {
       const Index node = skeleton.jointNode[j];
@@ -287,12 +279,11 @@ class ClipWriter {
       const bool root = !skeleton.skeleton.joints[j].parent;
       frames_.push_back(root ? frameAbove(graph, node) : Affine::Identity());
     }
-    for (const Json& animation : elements(asset, "animations")) names_.add(nameOf(animation));
+    for (const gltf::Animation& animation : asset.document.animations) names_.add(animation.name);
   }
 
   std::string write(const Clip& clip) {
-    channels_ = Json::array();
-    samplers_ = Json::array();
+    animation_ = {};
     inputs_.clear();
     hold_ = durationToHold(clip);
     std::vector<NodeTracks> joints(skeleton_.skeleton.jointCount());
@@ -300,15 +291,12 @@ class ClipWriter {
     for (const auto& track : clip.rotations) joints[track.joint].rotation = track;
     for (const auto& track : clip.scales) joints[track.joint].scale = track;
     for (Index j = 0; j < joints.size(); ++j) writeJoint(j, joints[j]);
-    if (channels_.empty()) {  // glTF wants one
+    if (animation_.channels.empty()) {  // glTF wants one
       addSampler(0, kRotation, constantTrack(Eigen::Quaternionf(nodeLocal_[0].rotation.cast<float>())));
     }
-    Json animation = Json::object();
     const std::string name = names_.add(clip.name.empty() ? "clip" : clip.name);
-    animation["name"] = name;
-    animation["channels"] = std::move(channels_);
-    animation["samplers"] = std::move(samplers_);
-    asset_.json()["animations"].push_back(std::move(animation));
+    animation_.name = name;
+    asset_.document.animations.push_back(std::move(animation_));
     return name;
   }
 
@@ -363,9 +351,9 @@ class ClipWriter {
     sortUnique(times);
     for (const float time : times) {
       const Transform local = decompose(inverse * tracks.at(time, {}).toAffine());
-      append(*result.translation, time, Vec3f(local.translation.cast<float>()));
-      append(*result.rotation, time, Eigen::Quaternionf(local.rotation.cast<float>()));
-      append(*result.scale, time, Vec3f(local.scale.cast<float>()));
+      addKey(*result.translation, time, Vec3f(local.translation.cast<float>()));
+      addKey(*result.rotation, time, Eigen::Quaternionf(local.rotation.cast<float>()));
+      addKey(*result.scale, time, Vec3f(local.scale.cast<float>()));
     }
     tracks = std::move(result);
   }
@@ -377,7 +365,7 @@ class ClipWriter {
     if (!isConstant(track)) return addSampler(j, path, track);
     if (isSame(first, standing) && hold_ == 0) return;
     Track<Value> kept = constantTrack(first);
-    if (hold_ > 0) append(kept, std::exchange(hold_, 0.0f), first);
+    if (hold_ > 0) addKey(kept, std::exchange(hold_, 0.0f), first);
     addSampler(j, path, kept);
   }
 
@@ -419,15 +407,13 @@ class ClipWriter {
     for (const Value& value : track.values) {
       values.insert(values.end(), numbers(value).data(), numbers(value).data() + numbers(value).size());
     }
-    Json sampler = {{"input", input(track.times)}};
-    if (track.interpolation == Interpolation::kStep) sampler["interpolation"] = "STEP";
-    if (track.interpolation == Interpolation::kCubic) sampler["interpolation"] = "CUBICSPLINE";
-    sampler["output"] = addFloatAccessor(asset_, values, static_cast<Index>(numbers(track.values[0]).size()));
+    const Index times = input(track.times);
+    const Index output = addFloatAccessor(asset_, values, static_cast<Index>(numbers(track.values[0]).size()));
+    const Index sampler = addElement(animation_.samplers, {{}, times, output, track.interpolation});
     const Index node = skeleton_.jointNode[j];
-    channels_.push_back({{"sampler", samplers_.size()}, {"target", {{"node", node}, {"path", path}}}});
-    samplers_.push_back(std::move(sampler));
-    Json& json = asset_.json()["nodes"][node];
-    if (json.contains("matrix")) setNodeTransform(json, nodeLocal_[j].toAffine(), false);
+    animation_.channels.push_back({{}, sampler, {{}, node, path}});
+    gltf::Node& moved = asset_.document.nodes[node];
+    if (moved.matrix) setNodeTransform(moved, nodeLocal_[j].toAffine(), false);
   }
 
   Index input(const std::vector<float>& times) {
@@ -443,7 +429,7 @@ class ClipWriter {
   std::vector<Affine> frames_;        // #J, above a root joint; identity elsewhere
   UniqueNames names_;
   // Of the clip being written:
-  Json channels_, samplers_;
+  gltf::Animation animation_;
   std::map<std::vector<float>, Index> inputs_;
   float hold_ = 0;  // how long the next constant track has to last, so that the clip does
 };
@@ -453,7 +439,7 @@ class ClipWriter {
 std::vector<Clip> readClips(const Asset& asset, const AssetSkeleton& skeleton, Warnings& warnings) {
   ClipReader reader(asset, skeleton, warnings);
   std::vector<Clip> clips;
-  for (const Json& animation : elements(asset, "animations")) {
+  for (const gltf::Animation& animation : asset.document.animations) {
     clips.push_back(reader.read(animation));
     checkClip(clips.back(), skeleton.skeleton);
   }
@@ -461,7 +447,7 @@ std::vector<Clip> readClips(const Asset& asset, const AssetSkeleton& skeleton, W
 }
 
 std::vector<std::string> addClips(Asset& asset, const AssetSkeleton& skeleton, std::span<const Clip> clips) {
-  const Index nodeCount = elementCount(asset, "nodes");
+  const Index nodeCount = asset.document.nodeCount();
   const bool fits =
       !skeleton.jointNode.empty() && skeleton.jointNode.size() == skeleton.skeleton.joints.size() &&
       std::all_of(skeleton.jointNode.begin(), skeleton.jointNode.end(), [&](Index node) { return node < nodeCount; });

@@ -15,6 +15,7 @@
 #include "limber/asset/motion_io.h"
 #include "limber/asset/read.h"
 #include "limber/asset/scene_graph.h"
+#include "limber/asset/testing/document_json.h"
 #include "limber/asset/testing/gltf_builder.h"
 #include "limber/asset/write.h"
 #include "random_values.h"
@@ -23,6 +24,7 @@
 namespace limber {
 namespace {
 
+using testing::documentJson;
 using testing::randomRotation;
 
 namespace fs = std::filesystem;
@@ -33,16 +35,16 @@ Vec3 randomVector(std::mt19937& random) {
 }
 
 // What the document says at a moment, by the letter of the specification: the world transforms of its nodes.
-std::vector<Affine> nodeWorldsAt(const Asset& asset, const Json& animation, double time) {
-  const SceneGraph graph = readSceneGraph(asset);
+std::vector<Affine> nodeWorldsAt(const Asset& asset, const gltf::Animation& animation, double time) {
+  const SceneGraph graph = readSceneGraph(asset.document);
   std::vector<Transform> locals;
   for (const Affine& local : graph.local) locals.push_back(decompose(local));
-  for (const Json& channel : animation.at("channels")) {
-    const Json& sampler = animation.at("samplers").at(channel.at("sampler").get<std::size_t>());
-    const std::vector<float> times = readFloats(asset, sampler.at("input").get<Index>());
-    const std::vector<float> values = readFloats(asset, sampler.at("output").get<Index>());
-    const std::string path = channel.at("target").at("path"), kind = sampler.value("interpolation", "LINEAR");
-    if (path == "weights" || !channel.at("target").contains("node")) continue;
+  for (const gltf::AnimationChannel& channel : animation.channels) {
+    const gltf::AnimationSampler& sampler = animation.samplers.at(channel.sampler);
+    const std::vector<float> times = readFloats(asset, sampler.input);
+    const std::vector<float> values = readFloats(asset, sampler.output);
+    const std::string& path = channel.target.path;
+    if (path == "weights" || !channel.target.node) continue;
     const std::size_t width = path == "rotation" ? 4 : 3;
     std::size_t k = 0;
     while (k + 1 < times.size() && times[k + 1] <= time) ++k;
@@ -54,20 +56,20 @@ std::vector<Affine> nodeWorldsAt(const Asset& asset, const Json& animation, doub
       return v;
     };
     Eigen::VectorXd value;
-    if (kind == "CUBICSPLINE") {
+    if (sampler.interpolation == Interpolation::kCubic) {
       value = at(3 * k + 1);
       if (between) {
         value = (2 * u * u * u - 3 * u * u + 1) * at(3 * k + 1) + span * (u * u * u - 2 * u * u + u) * at(3 * k + 2) +
                 (-2 * u * u * u + 3 * u * u) * at(3 * k + 4) + span * (u * u * u - u * u) * at(3 * k + 3);
       }
-    } else if (kind == "STEP" || !between) {
+    } else if (sampler.interpolation == Interpolation::kStep || !between) {
       value = at(k);
     } else if (path == "rotation") {
       value = Quat(Vec4(at(k))).slerp(u, Quat(Vec4(at(k + 1)))).coeffs();
     } else {
       value = (1 - u) * at(k) + u * at(k + 1);
     }
-    Transform& local = locals[channel.at("target").at("node").get<std::size_t>()];
+    Transform& local = locals[*channel.target.node];
     if (path == "rotation") local.rotation = Quat(Vec4(value)).normalized();
     if (path == "translation") local.translation = value;
     if (path == "scale") local.scale = value;
@@ -80,8 +82,8 @@ std::vector<Affine> nodeWorldsAt(const Asset& asset, const Json& animation, doub
 }
 
 // The largest difference between where the clip and where the document has the joints.
-double largestError(const Asset& asset, const AssetSkeleton& skeleton, const Clip& clip, const Json& animation,
-                    int samples) {
+double largestError(const Asset& asset, const AssetSkeleton& skeleton, const Clip& clip,
+                    const gltf::Animation& animation, int samples) {
   double largest = 0;
   for (int i = 0; i <= samples; ++i) {
     const double time = clip.duration() * i / samples;
@@ -183,43 +185,40 @@ TEST(ClipIo, ReadsBackWhatItWrote) {
       expectEqual(back.clips[c].translations, expected.translations);
       expectEqual(back.clips[c].rotations, expected.rotations);
       expectEqual(back.clips[c].scales, expected.scales);
-      EXPECT_LT(largestError(asset, skeleton, back.clips[c], asset.json()["animations"][c], 31), 1e-5) << seed;
+      EXPECT_LT(largestError(asset, skeleton, back.clips[c], asset.document.animations[c], 31), 1e-5) << seed;
     }
   }
 }
 
 // The same document below a node that moves, turns and scales it.
-Asset belowArmature(const Motion& motion, const Json& armature) {
+Asset belowArmature(const Motion& motion) {
+  gltf::Node armature;
+  armature.name = "armature";
+  armature.translation = Vec3(1, 2, 3);
+  armature.rotation = Vec4(-0.70710678, 0, 0, 0.70710678);
+  armature.scale = Vec3::Constant(0.25);
   Asset asset = motionAsset(motion);
-  Json& json = asset.json();
-  json["nodes"].push_back(armature);
-  const std::size_t top = json["nodes"].size() - 1;
-  json["nodes"][top]["children"] = json["scenes"][0]["nodes"];
-  json["scenes"][0]["nodes"] = {top};
+  armature.children = asset.document.scenes[0].nodes;
+  asset.document.scenes[0].nodes = {addElement(asset.document.nodes, std::move(armature))};
   return asset;
 }
 
-const Json kArmature = {{"name", "armature"},
-                        {"translation", {1.0, 2.0, 3.0}},
-                        {"rotation", {-0.70710678, 0.0, 0.0, 0.70710678}},
-                        {"scale", {0.25, 0.25, 0.25}}};
-
 TEST(ClipIo, CarriesNodesAboveTheRootIntoItsTracks) {
   for (unsigned seed = 0; seed < 10; ++seed) {
-    const Asset asset = belowArmature(randomMotion(seed), kArmature);
+    const Asset asset = belowArmature(randomMotion(seed));
     const AssetSkeleton skeleton = readSkeleton(asset);
     Warnings warnings;
     const std::vector<Clip> clips = readClips(asset, skeleton, warnings);
     EXPECT_TRUE(warnings.empty());
     for (std::size_t c = 0; c < clips.size(); ++c) {
-      EXPECT_LT(largestError(asset, skeleton, clips[c], asset.json()["animations"][c], 31), 1e-5) << seed;
+      EXPECT_LT(largestError(asset, skeleton, clips[c], asset.document.animations[c], 31), 1e-5) << seed;
     }
     // And back out of them on writing.
-    Asset other = belowArmature(randomMotion(seed), kArmature);
-    other.json().erase("animations");
+    Asset other = belowArmature(randomMotion(seed));
+    other.document.animations.clear();
     addClips(other, skeleton, clips);
     for (std::size_t c = 0; c < clips.size(); ++c) {
-      EXPECT_LT(largestError(other, skeleton, clips[c], other.json()["animations"][c], 31), 1e-5) << seed;
+      EXPECT_LT(largestError(other, skeleton, clips[c], other.document.animations[c], 31), 1e-5) << seed;
     }
     writeAsset(other, limber::testing::testOutputFolder() / fmt::format("clip_io_armature_{}.glb", seed));
   }
@@ -228,14 +227,13 @@ TEST(ClipIo, CarriesNodesAboveTheRootIntoItsTracks) {
 TEST(ClipIo, FollowsMovingNodesAboveTheRoot) {
   Motion motion = randomMotion(3);
   motion.clips.erase(motion.clips.begin() + 1, motion.clips.end());
-  Asset asset = belowArmature(motion, kArmature);
-  Json& animation = asset.json()["animations"][0];
+  Asset asset = belowArmature(motion);
+  gltf::Animation& animation = asset.document.animations[0];
   const std::vector<float> times = {0, 0.3f, 0.9f}, places = {0, 0, 0, 1, 2, 3, 0, 1, 0};
   const Index input = addFloatAccessor(asset, times, 1, 0, true), output = addFloatAccessor(asset, places, 3);
-  animation["samplers"].push_back({{"input", input}, {"output", output}});
-  const std::size_t armature = asset.json()["nodes"].size() - 1;
-  animation["channels"].push_back(
-      {{"sampler", animation["samplers"].size() - 1}, {"target", {{"node", armature}, {"path", "translation"}}}});
+  const Index sampler = addElement(animation.samplers, {{}, input, output});
+  const Index armature = asset.document.nodeCount() - 1;
+  animation.channels.push_back({{}, sampler, {{}, armature, "translation"}});
   const AssetSkeleton skeleton = readSkeleton(asset);
   Warnings warnings;
   const Clip clip = readClips(asset, skeleton, warnings).at(0);
@@ -254,19 +252,20 @@ TEST(ClipIo, LeavesTheRestOfTheDocumentAlone) {
       {1, Interpolation::kLinear, {0, 1}, {Eigen::Quaternionf(1, 0, 0, 0), Eigen::Quaternionf(0, 1, 0, 0)}});
   EXPECT_EQ(addClips(asset, skeleton, {{clip, clip}}), (std::vector<std::string>{"turn_2", "turn_3"}));
   checkAsset(asset);
-  for (const auto& [key, value] : before.json().items()) {
+  const Json read = documentJson(before), json = documentJson(asset);
+  for (const auto& [key, value] : read.items()) {
     if (key == "accessors" || key == "bufferViews" || key == "buffers" || key == "animations") {
-      for (std::size_t i = 0; key != "buffers" && i < value.size(); ++i) EXPECT_EQ(asset.json()[key][i], value[i]);
+      for (std::size_t i = 0; key != "buffers" && i < value.size(); ++i) EXPECT_EQ(json[key][i], value[i]);
     } else {
-      EXPECT_EQ(asset.json()[key], value) << key;
+      EXPECT_EQ(json[key], value) << key;
     }
   }
   const Bytes &old = before.buffers[0].bytes, &now = asset.buffers[0].bytes;
   ASSERT_GE(now.size(), old.size());
   EXPECT_TRUE(std::equal(old.begin(), old.end(), now.begin()));
-  ASSERT_EQ(asset.json()["animations"].size(), 3u);
-  EXPECT_EQ(asset.json()["animations"][1]["name"], "turn_2");
-  EXPECT_EQ(asset.json()["animations"][2]["name"], "turn_3");
+  ASSERT_EQ(asset.document.animations.size(), 3u);
+  EXPECT_EQ(asset.document.animations[1].name, "turn_2");
+  EXPECT_EQ(asset.document.animations[2].name, "turn_3");
 }
 
 TEST(ClipIo, CollapsesWhatStandsStillAndKeepsTheDuration) {
@@ -289,31 +288,31 @@ TEST(ClipIo, CollapsesWhatStandsStillAndKeepsTheDuration) {
 
   motion.clips[0].translations.push_back({3, Interpolation::kLinear, {0, 2}, {Vec3f::Zero(), Vec3f::Ones()}});
   const Asset moving = motionAsset(motion);
-  EXPECT_EQ(moving.json()["animations"][0]["channels"].size(), 2u);  // what stands as the node does is left out
+  EXPECT_EQ(moving.document.animations[0].channels.size(), 2u);  // what stands as the node does is left out
 
   motion.clips = {Clip()};
   const Asset empty = motionAsset(motion);
   checkAsset(empty);
-  EXPECT_EQ(empty.json()["animations"][0]["channels"].size(), 1u);
+  EXPECT_EQ(empty.document.animations[0].channels.size(), 1u);
   writeAsset(empty, limber::testing::testOutputFolder() / "clip_io_empty.glb");
 }
 
 TEST(ClipIo, StandsAsTheNodesStandWhereNoChannelIs) {
   Motion motion = randomMotion(5);
   Asset asset = motionAsset(motion);
-  asset.json()["nodes"][4]["translation"] = {9.0, 8.0, 7.0};  // off the bind pose
-  asset.json()["nodes"][4]["rotation"] = {0.0, 1.0, 0.0, 0.0};
+  asset.document.nodes[4].translation = Vec3(9, 8, 7);  // off the bind pose
+  asset.document.nodes[4].rotation = Vec4(0, 1, 0, 0);
   const AssetSkeleton skeleton = readSkeleton(asset);
   Warnings warnings;
   const std::vector<Clip> clips = readClips(asset, skeleton, warnings);
   for (std::size_t c = 0; c < clips.size(); ++c) {
-    EXPECT_LT(largestError(asset, skeleton, clips[c], asset.json()["animations"][c], 11), 1e-5);
+    EXPECT_LT(largestError(asset, skeleton, clips[c], asset.document.animations[c], 11), 1e-5);
   }
   // Written again, a joint without a track goes to its rest pose and not where the node stands.
-  asset.json().erase("animations");
+  asset.document.animations.clear();
   addClips(asset, skeleton, motion.clips);
   for (std::size_t c = 0; c < clips.size(); ++c) {
-    EXPECT_LT(largestError(asset, skeleton, motion.clips[c], asset.json()["animations"][c], 11), 1e-5);
+    EXPECT_LT(largestError(asset, skeleton, motion.clips[c], asset.document.animations[c], 11), 1e-5);
   }
 }
 
@@ -325,12 +324,11 @@ TEST(ClipIo, LeavesInvalidKeysOut) {
   std::vector<float> turns;
   for (int k = 0; k < 7; ++k) turns.insert(turns.end(), {0, 0, k == 4 ? 0.0f : 2.0f, 0});
   const Index input = addFloatAccessor(asset, times, 1), output = addFloatAccessor(asset, turns, 4);
-  Json& sampler = asset.json()["animations"][0]["samplers"][0];
-  sampler = {{"input", input}, {"output", output}};
-  const Json& channel = asset.json()["animations"][0]["channels"][0];
-  ASSERT_EQ(channel["sampler"], 0);
-  asset.json()["animations"][0]["channels"] =
-      Json::array({{{"sampler", 0}, {"target", {{"node", 0}, {"path", "rotation"}}}}});
+  gltf::Animation& animation = asset.document.animations[0];
+  animation.samplers[0] = {{}, input, output};
+  ASSERT_EQ(animation.channels[0].sampler, 0u);
+  animation.channels.clear();
+  animation.channels.push_back({{}, 0, {{}, 0, "rotation"}});
   Warnings warnings;
   const Clip clip = readClips(asset, readSkeleton(asset), warnings).at(0);
   ASSERT_EQ(clip.rotations.size(), 1u);
@@ -364,7 +362,7 @@ TEST(ClipIo, ReadsEverySharedMotionAsTheDocumentHasIt) {
     const std::vector<Clip> clips = readClips(asset, skeleton, warnings);
     EXPECT_FALSE(clips.empty());
     for (std::size_t c = 0; c < clips.size(); c += 5) {
-      EXPECT_LT(largestError(asset, skeleton, clips[c], asset.json()["animations"][c], 3), 1e-4) << clips[c].name;
+      EXPECT_LT(largestError(asset, skeleton, clips[c], asset.document.animations[c], 3), 1e-4) << clips[c].name;
     }
     ++count;
   }

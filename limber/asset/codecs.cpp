@@ -4,12 +4,13 @@
 #include <optional>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "limber/asset/accessor.h"
 #include "limber/asset/codecs_detail.h"
 #include "limber/asset/compact_buffers.h"
+#include "limber/asset/document_errors.h"
 #include "limber/asset/extensions.h"
+#include "limber/asset/json_access.h"
 
 namespace limber {
 
@@ -22,54 +23,59 @@ struct Found {
   std::size_t total() const { return views + primitives; }
 };
 
-Found findCompressed(const Asset& asset) {
+Found findCompressed(const gltf::Document& document) {
   Found found;
-  const JsonView views = JsonView(asset).array("bufferViews"), meshes = JsonView(asset).array("meshes");
-  for (std::size_t i = 0; i < views.size(); ++i) found.views += hasMeshopt(views[i]);
-  for (std::size_t m = 0; m < meshes.size(); ++m) {
-    const JsonView primitives = meshes[m].array("primitives");
-    for (std::size_t p = 0; p < primitives.size(); ++p) {
-      found.primitives += extensionOf(primitives[p], kDraco).exists();
+  for (const gltf::BufferView& view : document.bufferViews) found.views += meshoptOf(view) != nullptr;
+  for (const gltf::Mesh& mesh : document.meshes) {
+    for (const gltf::Primitive& primitive : mesh.primitives) {
+      found.primitives += extensionOf(primitive, kDraco) != nullptr;
     }
   }
   return found;
 }
 
 // Does the file hold the view's bytes uncompressed too?
-bool hasPlainBytes(const Asset& asset, const JsonView& view) {
-  const std::size_t size = asset.buffers[view.requireIndex("buffer", asset.buffers.size())].bytes.size();
-  const std::size_t offset = view.count("byteOffset").value_or(0), length = view.member("byteLength").asCount();
-  return offset <= size && length <= size - offset;
+bool hasPlainBytes(const Asset& asset, Index index) {
+  const gltf::BufferView& view = asset.document.bufferViews[index];
+  requireElement(view.buffer, asset.buffers.size(), [&] { return fmt::format("bufferViews[{}].buffer", index); });
+  const std::size_t size = asset.buffers[view.buffer].bytes.size();
+  return view.byteOffset <= size && view.byteLength <= size - view.byteOffset;
 }
 
-bool hasPlainAccessors(const Asset& asset, const JsonView& primitive) {
-  const JsonView accessors = JsonView(asset).array("accessors"), attributes = primitive.object("attributes");
+bool hasPlainAccessors(const gltf::Document& document, const gltf::Primitive& primitive, const std::string& place) {
   bool plain = true;
-  const auto look = [&](std::optional<Index> accessor) {
-    plain = plain && (!accessor || accessors[*accessor].member("bufferView").exists());
+  const auto look = [&](std::optional<Index> accessor, std::string_view name) {
+    requireElement(accessor, document.accessors.size(), [&] { return fmt::format("{}.{}", place, name); });
+    plain = plain && (!accessor || document.accessors[*accessor].bufferView);
   };
-  look(primitive.index("indices", accessors.size()));
-  extensionOf(primitive, kDraco).object("attributes").forEachMember([&](std::string_view name, const JsonView&) {
-    look(attributes.index(name, accessors.size()));
-  });
+  look(primitive.indices, "indices");
+  const std::string path = fmt::format("{}.extensions.{}", place, kDraco);
+  JsonView(extensionOf(primitive, kDraco), path)
+      .object("attributes")
+      .forEachMember([&](std::string_view name, const JsonView&) {
+        look(primitive.attributes.find(name), fmt::format("attributes.{}", name));
+      });
   return plain;
 }
 
 void takePlainData(Asset& asset, Decoded& decoded) {
-  const JsonView views = JsonView(asset).array("bufferViews"), meshes = JsonView(asset).array("meshes");
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    if (!hasMeshopt(views[i]) || !hasPlainBytes(asset, views[i])) continue;
+  gltf::Document& document = asset.document;
+  for (Index i = 0; i < document.bufferViews.size(); ++i) {
+    gltf::BufferView& view = document.bufferViews[i];
+    if (meshoptOf(view) == nullptr || !hasPlainBytes(asset, i)) continue;
     for (const char* name : kMeshopt) {
-      const std::optional<Index> source = extensionOf(views[i], name).index("buffer", asset.buffers.size());
-      if (source) decoded.buffers.insert(*source);
-      eraseExtension(asset.json()["bufferViews"][i], name);
+      const std::string path = fmt::format("bufferViews[{}].extensions.{}", i, name);
+      const JsonView extension(extensionOf(view, name), path);
+      if (const auto source = extension.index("buffer", asset.buffers.size())) decoded.buffers.insert(*source);
+      eraseExtension(view, name);
     }
   }
-  for (std::size_t m = 0; m < meshes.size(); ++m) {
-    const JsonView primitives = meshes[m].array("primitives");
+  for (std::size_t m = 0; m < document.meshes.size(); ++m) {
+    std::vector<gltf::Primitive>& primitives = document.meshes[m].primitives;
     for (std::size_t p = 0; p < primitives.size(); ++p) {
-      if (!extensionOf(primitives[p], kDraco).exists() || !hasPlainAccessors(asset, primitives[p])) continue;
-      eraseExtension(asset.json()["meshes"][m]["primitives"][p], kDraco);
+      if (extensionOf(primitives[p], kDraco) == nullptr) continue;
+      const std::string place = fmt::format("meshes[{}].primitives[{}]", m, p);
+      if (hasPlainAccessors(document, primitives[p], place)) eraseExtension(primitives[p], kDraco);
     }
   }
 }
@@ -78,20 +84,18 @@ void decode(Asset& asset, const Found& found, Decoded& decoded) {
   DecodeBudget budget(asset);
   if (found.views > 0) decodeMeshopt(asset, budget, decoded);
   if (found.primitives > 0) decodeDraco(asset, budget, decoded);
-  const JsonView accessors = JsonView(asset).array("accessors");
-  for (const Index accessor : decoded.accessors) {
+  for (const Index index : decoded.accessors) {
     // Decoded values are near those from which the encoder took its bounds, not always equal to them.
-    if (accessors[accessor].member("min").exists() || accessors[accessor].member("max").exists()) {
-      setBounds(asset, accessor);
-    }
+    const gltf::Accessor& accessor = asset.document.accessors[index];
+    if (!accessor.min.empty() || !accessor.max.empty()) setBounds(asset, index);
   }
 }
 
 // What says of the whole document that it is compressed.
-void dropDeclarations(Asset& asset) {
-  for (const char* name : {kDraco, kMeshopt[0], kMeshopt[1]}) undeclareExtension(asset.json(), name);
-  for (std::size_t i = 0; i < asset.buffers.size(); ++i) {
-    for (const char* name : kMeshopt) eraseExtension(asset.json()["buffers"][i], name);
+void dropDeclarations(gltf::Document& document) {
+  for (const char* name : {kDraco, kMeshopt[0], kMeshopt[1]}) undeclareExtension(document, name);
+  for (gltf::Buffer& buffer : document.buffers) {
+    for (const char* name : kMeshopt) eraseExtension(buffer, name);
   }
 }
 
@@ -108,19 +112,22 @@ void DecodeBudget::take(std::size_t bytes, const std::string& where) {
   left_ -= bytes;
 }
 
-bool hasMeshopt(const JsonView& view) {
-  return extensionOf(view, kMeshopt[0]).exists() || extensionOf(view, kMeshopt[1]).exists();
+const char* meshoptOf(const gltf::BufferView& view) {
+  for (const char* name : kMeshopt) {
+    if (extensionOf(view, name) != nullptr) return name;
+  }
+  return nullptr;
 }
 
 void decompress(Asset& asset) {
-  const std::size_t compressed = findCompressed(asset).total();
+  const std::size_t compressed = findCompressed(asset.document).total();
   if (compressed == 0) return;
   Decoded decoded;
   takePlainData(asset, decoded);
-  decode(asset, findCompressed(asset), decoded);
+  decode(asset, findCompressed(asset.document), decoded);
   dropUnusedBytes(asset, decoded.buffers);
   removeEmptyBuffers(asset);
-  dropDeclarations(asset);
+  dropDeclarations(asset.document);
   asset.warnings.add("decompressed", "compressed buffer views and meshes decompressed; they are written uncompressed",
                      {}, compressed);
 }

@@ -5,7 +5,7 @@
 #include <set>
 #include <string>
 
-#include "limber/asset/json_access.h"
+#include "limber/asset/asset.h"
 
 namespace limber {
 
@@ -30,7 +30,8 @@ struct Decoded {
   std::set<Index> buffers;    // that held compressed bytes
 };
 
-bool hasMeshopt(const JsonView& view);
+// Which of kMeshopt the view is compressed by; null where by none.
+const char* meshoptOf(const gltf::BufferView& view);
 
 // Decode all buffer views, all primitives.
 void decodeMeshopt(Asset& asset, DecodeBudget& budget, Decoded& decoded);

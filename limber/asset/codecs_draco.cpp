@@ -4,17 +4,20 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "limber/asset/accessor.h"
 #include "limber/asset/accessor_layout.h"
 #include "limber/asset/codec_library.h"
 #include "limber/asset/codecs_detail.h"
+#include "limber/asset/document_errors.h"
 #include "limber/asset/extensions.h"
+#include "limber/asset/json_access.h"
+#include "limber/asset/references.h"
 
 namespace limber {
 
@@ -28,20 +31,24 @@ constexpr std::string_view kDracoMagic = "DRACO";
 constexpr std::size_t kDracoMajor = 5, kDracoMinor = 6, kDracoGeometry = 7, kDracoHeaderSize = 11;  // bytes
 constexpr std::uint8_t kTriangularMesh = 1;
 
-[[noreturn]] void failBroken(const JsonView& place) {
-  place.fail("its Draco data are broken or do not hold what the accessors say");
+[[noreturn]] void failBroken(const std::string& place) {
+  failAt(place, "its Draco data are broken or do not hold what the accessors say");
+}
+
+std::string accessorPlace(Index accessor) {
+  return fmt::format("accessors[{}]", accessor);
 }
 
 // glTF allows triangle meshes of one version of the bitstream.
-void checkHeader(ByteSpan bytes, const JsonView& place) {
+void checkHeader(ByteSpan bytes, const std::string& place) {
   if (bytes.size() < kDracoHeaderSize || std::memcmp(bytes.data(), kDracoMagic.data(), kDracoMagic.size()) != 0)
     failBroken(place);
-  if (bytes[kDracoGeometry] != kTriangularMesh) place.fail("its Draco data are not a mesh");
+  if (bytes[kDracoGeometry] != kTriangularMesh) failAt(place, "its Draco data are not a mesh");
   if (bytes[kDracoMajor] != 2 || bytes[kDracoMinor] != 2) {
     throw Error(
         ErrorCode::kUnsupported,
-        fmt::format("is Draco of version {}.{}, glTF holds version 2.2", bytes[kDracoMajor], bytes[kDracoMinor]),
-        place.path(), "export the model again");
+        fmt::format("is Draco of version {}.{}, glTF holds version 2.2", bytes[kDracoMajor], bytes[kDracoMinor]), place,
+        "export the model again");
   }
 }
 
@@ -54,9 +61,9 @@ struct Piece {
 };
 
 template <typename T>
-void copyIndices(const DracoMesh& mesh, const JsonView& place, Piece& piece) {
+void copyIndices(const DracoMesh& mesh, const std::string& place, Piece& piece) {
   if (mesh.points() > 0 && mesh.points() - 1 > std::numeric_limits<T>::max()) {
-    place.fail("has more vertices than its indices can count");
+    failAt(place, "has more vertices than its indices can count");
   }
   std::vector<std::uint32_t> points(3 * mesh.faces());
   mesh.copyFaces(points.data());
@@ -73,19 +80,24 @@ class DracoReader {
  public:
   DracoReader(Asset& asset, DecodeBudget& budget) : asset_(asset), budget_(budget) {}
 
-  void readPrimitive(const JsonView& primitive) {
-    const JsonView extension = extensionOf(primitive, kDraco);
-    const JsonView accessors = JsonView(asset_).array("accessors"), views = JsonView(asset_).array("bufferViews");
-    const Index view = extension.requireIndex("bufferView", views.size());
-    const Index indices = primitive.requireIndex("indices", accessors.size());
-    const bool isStrip = primitive.index("mode", 7).value_or(4) == 5;
+  void readPrimitive(const gltf::Primitive& primitive, const std::string& place) {
+    const std::string path = fmt::format("{}.extensions.{}", place, kDraco);
+    const JsonView extension(extensionOf(primitive, kDraco), path);
+    const std::vector<gltf::Accessor>& accessors = asset_.document.accessors;
+    const Index view = extension.requireIndex("bufferView", asset_.document.bufferViews.size());
+    if (!primitive.indices) failAt(place + ".indices", "is missing");
+    const Index indices = *primitive.indices;
+    requireElement(indices, accessors.size(), [&] { return place + ".indices"; });
 
     std::map<Index, int> attributes;  // accessor -> Draco's unique id
     std::vector<Index> weights;
     extension.object("attributes").forEachMember([&](std::string_view name, const JsonView& id) {
-      const Index accessor = primitive.object("attributes").requireIndex(name, accessors.size());
-      attributes[accessor] = static_cast<int>(id.asIndex(std::numeric_limits<int>::max()));
-      if (name.substr(0, 8) == "WEIGHTS_") weights.push_back(accessor);
+      const auto attribute = [&] { return fmt::format("{}.attributes.{}", place, name); };
+      const std::optional<Index> accessor = primitive.attributes.find(name);
+      if (!accessor) failAt(attribute(), "is missing");
+      requireElement(accessor, accessors.size(), attribute);
+      attributes[*accessor] = static_cast<int>(id.asIndex(std::numeric_limits<int>::max()));
+      if (name.starts_with("WEIGHTS_")) weights.push_back(*accessor);
     });
     if (attributes.empty()) extension.fail("has no attributes");
     if (isKnown(view, indices, attributes)) return;
@@ -95,15 +107,15 @@ class DracoReader {
     }
 
     DracoBounds bounds;
-    bounds.points = accessors[attributes.begin()->first].member("count").asCount();
-    if (!isStrip) bounds.faces = accessors[indices].member("count").asCount() / 3;
+    bounds.points = accessors[attributes.begin()->first].count;
+    if (primitive.mode != gltf::kTriangleStrip) bounds.faces = accessors[indices].count / 3;
     bounds.memory = budget_.left();
-    const ByteSpan bytes = viewLayout(asset_, views[view]).bytes;
-    checkHeader(bytes, extension);
+    const ByteSpan bytes = viewLayout(asset_, view).bytes;
+    checkHeader(bytes, path);
     const std::unique_ptr<DracoMesh> mesh = decodeDracoData(bytes, bounds);
-    if (!mesh) failBroken(extension);
-    for (const auto& [accessor, id] : attributes) addAttribute(*mesh, view, accessor, id, accessors[accessor]);
-    addIndices(*mesh, view, indices, accessors[indices]);
+    if (!mesh) failBroken(path);
+    for (const auto& [accessor, id] : attributes) addAttribute(*mesh, view, accessor, id);
+    addIndices(*mesh, view, indices);
     if (!weights.empty()) weightSets_.insert(weights);
   }
 
@@ -126,7 +138,8 @@ class DracoReader {
     return true;
   }
 
-  void addAttribute(const DracoMesh& mesh, Index view, Index accessor, int id, const JsonView& place) {
+  void addAttribute(const DracoMesh& mesh, Index view, Index accessor, int id) {
+    const std::string place = accessorPlace(accessor);
     const AccessorLayout layout = shapeOf(accessor);
     const std::optional<Index> components = mesh.components(id);
     if (components != layout.info.components || layout.info.count != mesh.points()) failBroken(place);
@@ -141,7 +154,8 @@ class DracoReader {
     store(accessor, std::move(piece), place);
   }
 
-  void addIndices(const DracoMesh& mesh, Index view, Index accessor, const JsonView& place) {
+  void addIndices(const DracoMesh& mesh, Index view, Index accessor) {
+    const std::string place = accessorPlace(accessor);
     const AccessorLayout layout = shapeOf(accessor);
     if (layout.info.components != 1) failBroken(place);
     Piece piece{view, std::nullopt, 3 * mesh.faces(), layout.componentBytes, {}};
@@ -153,13 +167,13 @@ class DracoReader {
     } else if (layout.info.type == ComponentType::kU32) {
       copyIndices<std::uint32_t>(mesh, place, piece);
     } else {
-      place.fail("indices must be unsigned integers");
+      failAt(place, "indices must be unsigned integers");
     }
     store(accessor, std::move(piece), place);
   }
 
   // The accessor's type and count. Its data are what is being decoded, so the count is held to what was.
-  AccessorLayout shapeOf(Index accessor) const { return accessorShape(JsonView(asset_).array("accessors")[accessor]); }
+  AccessorLayout shapeOf(Index accessor) const { return accessorShape(asset_, accessor); }
 
   // Draco rounds each skin weight by itself; the sum of a vertex's weights is made 1 again.
   void normalizeWeights(const std::vector<Index>& accessors) {
@@ -190,14 +204,14 @@ class DracoReader {
     }
   }
 
-  void allocate(Piece& piece, const JsonView& place) {
-    budget_.take(piece.count * piece.stride, place.path());
+  void allocate(Piece& piece, const std::string& place) {
+    budget_.take(piece.count * piece.stride, place);
     piece.bytes.resize(piece.count * piece.stride);
   }
 
-  void store(Index accessor, Piece&& piece, const JsonView& place) {
+  void store(Index accessor, Piece&& piece, const std::string& place) {
     const auto [known, isNew] = pieces_.try_emplace(accessor, std::move(piece));
-    if (!isNew && known->second.bytes != piece.bytes) place.fail("is used for two differing Draco attributes");
+    if (!isNew && known->second.bytes != piece.bytes) failAt(place, "is used for two differing Draco attributes");
   }
 
   Asset& asset_;
@@ -207,63 +221,53 @@ class DracoReader {
   std::set<std::vector<Index>> weightSets_;  // accessors of one primitive's weights
 };
 
-// The buffer views that something in the document refers to, extensions included.
-void collectViewReferences(const Json& json, std::vector<bool>& used) {
-  for (auto it = json.begin(); it != json.end(); ++it) {
-    if (it->is_structured()) {
-      collectViewReferences(*it, used);
-    } else if (json.is_object() && it.key() == "bufferView" && it->is_number_unsigned()) {
-      const auto view = it->get<std::uint64_t>();
-      if (view < used.size()) used[view] = true;
-    }
-  }
-}
-
 // Puts the pieces in new buffer views. The views of compressed data that nothing refers to any more are used first.
 void placePieces(Asset& asset, const std::map<Index, Piece>& pieces) {
-  std::vector<bool> used(JsonView(asset).array("bufferViews").size(), false);
-  collectViewReferences(asset.json(), used);
+  gltf::Document& document = asset.document;
+  std::vector<bool> used(document.bufferViews.size(), false);
+  visitReferences(document, [&](ElementKind kind, Index number) {
+    if (kind == ElementKind::kBufferView && number < used.size()) used[number] = true;
+  });
   for (const auto& [index, piece] : pieces) {
-    Json& accessor = asset.json()["accessors"][index];
     Index view = addBufferView(asset, piece.bytes, piece.attribute ? kVertexTarget : kIndexTarget);
-    Json& views = asset.json()["bufferViews"];
-    if (piece.stride % 4 == 0 && piece.attribute) views[view]["byteStride"] = piece.stride;
+    std::vector<gltf::BufferView>& views = document.bufferViews;
+    if (piece.stride % 4 == 0 && piece.attribute) views[view].byteStride = piece.stride;
     if (!used[piece.view]) {
       used[piece.view] = true;
       views[piece.view] = std::move(views[view]);
-      views.erase(view);
+      views.pop_back();
       view = piece.view;
     }
-    accessor["bufferView"] = view;
-    accessor["count"] = piece.count;
-    accessor.erase("byteOffset");
+    gltf::Accessor& accessor = document.accessors[index];
+    accessor.bufferView = view;
+    accessor.count = piece.count;
+    accessor.byteOffset = 0;
   }
 }
 
 }  // namespace
 
 void decodeDraco(Asset& asset, DecodeBudget& budget, Decoded& decoded) {
+  gltf::Document& document = asset.document;
   DracoReader reader(asset, budget);
-  const JsonView meshes = JsonView(asset).array("meshes"), views = JsonView(asset).array("bufferViews");
-  std::vector<std::pair<std::size_t, std::size_t>> primitives;
-  for (std::size_t m = 0; m < meshes.size(); ++m) {
-    const JsonView all = meshes[m].array("primitives");
+  std::vector<gltf::Primitive*> primitives;
+  for (std::size_t m = 0; m < document.meshes.size(); ++m) {
+    std::vector<gltf::Primitive>& all = document.meshes[m].primitives;
     for (std::size_t p = 0; p < all.size(); ++p) {
-      if (!extensionOf(all[p], kDraco).exists()) continue;
-      reader.readPrimitive(all[p]);
-      primitives.emplace_back(m, p);
+      if (extensionOf(all[p], kDraco) == nullptr) continue;
+      reader.readPrimitive(all[p], fmt::format("meshes[{}].primitives[{}]", m, p));
+      primitives.push_back(&all[p]);
     }
   }
   reader.finish();
   for (const auto& [accessor, piece] : reader.pieces()) {
     decoded.accessors.insert(accessor);
-    decoded.buffers.insert(views[piece.view].requireIndex("buffer", asset.buffers.size()));
+    decoded.buffers.insert(document.bufferViews[piece.view].buffer);
   }
-  for (const auto& [m, p] : primitives) {
-    Json& primitive = asset.json()["meshes"][m]["primitives"][p];
-    eraseExtension(primitive, kDraco);
+  for (gltf::Primitive* primitive : primitives) {
+    eraseExtension(*primitive, kDraco);
     // Strips come out of Draco as single triangles.
-    if (primitive.value("mode", 4) == 5) primitive["mode"] = 4;
+    if (primitive->mode == gltf::kTriangleStrip) primitive->mode = gltf::kTriangles;
   }
   placePieces(asset, reader.pieces());
 }

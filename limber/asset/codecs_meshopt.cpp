@@ -1,13 +1,14 @@
-#include <limits>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "limber/asset/codec_library.h"
 #include "limber/asset/codecs_detail.h"
+#include "limber/asset/document_errors.h"
 #include "limber/asset/extensions.h"
+#include "limber/asset/json_access.h"
 
 namespace limber {
 
@@ -15,16 +16,20 @@ namespace {
 
 // One compressed buffer view.
 struct EncodedView {
-  std::size_t view = 0;
+  Index view = 0;
   Index target = 0;  // buffer that the decoded bytes belong to
   Index source = 0;
   MeshoptData data;
 };
 
-EncodedView readEncoded(const Asset& asset, const JsonView& view, const JsonView& extension) {
+EncodedView readEncoded(const Asset& asset, Index index, const JsonView& extension) {
+  const gltf::BufferView& view = asset.document.bufferViews[index];
+  const std::string place = fmt::format("bufferViews[{}]", index);
   EncodedView encoded;
-  encoded.target = view.requireIndex("buffer", asset.buffers.size());
-  if (!asset.buffers[encoded.target].bytes.empty()) view.fail("reaches beyond its buffer");
+  encoded.view = index;
+  encoded.target = view.buffer;
+  requireElement(view.buffer, asset.buffers.size(), [&] { return place + ".buffer"; });
+  if (!asset.buffers[encoded.target].bytes.empty()) failAt(place, "reaches beyond its buffer");
   encoded.source = extension.requireIndex("buffer", asset.buffers.size());
   const Bytes& source = asset.buffers[encoded.source].bytes;
   const std::size_t offset = extension.count("byteOffset").value_or(0);
@@ -36,9 +41,8 @@ EncodedView readEncoded(const Asset& asset, const JsonView& view, const JsonView
   data.stride = extension.member("byteStride").asCount();
   data.mode = extension.text("mode");
   data.filter = extension.text("filter", "NONE");
-  const std::size_t decodedSize = view.member("byteLength").asCount();
-  if (data.stride == 0 || data.stride > 256 || data.count != decodedSize / data.stride ||
-      decodedSize % data.stride != 0) {
+  if (data.stride == 0 || data.stride > 256 || data.count != view.byteLength / data.stride ||
+      view.byteLength % data.stride != 0) {
     extension.fail("its count and byteStride do not make up the byteLength of its buffer view");
   }
   return encoded;
@@ -64,13 +68,14 @@ void checkShape(const MeshoptData& data, const JsonView& extension) {
 
 std::vector<EncodedView> findEncoded(const Asset& asset) {
   std::vector<EncodedView> found;
-  const JsonView views = JsonView(asset).array("bufferViews");
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    if (!hasMeshopt(views[i])) continue;
-    const JsonView first = extensionOf(views[i], kMeshopt[0]);
-    const JsonView extension = first.exists() ? first : extensionOf(views[i], kMeshopt[1]);
-    found.push_back(readEncoded(asset, views[i], extension));
-    found.back().view = i;
+  const std::vector<gltf::BufferView>& views = asset.document.bufferViews;
+  for (Index i = 0; i < views.size(); ++i) {
+    const char* name = meshoptOf(views[i]);
+    if (name == nullptr) continue;
+    const std::string path = fmt::format("bufferViews[{}].extensions.{}", i, name);
+    const JsonView extension(extensionOf(views[i], name), path);
+    extension.requireObject();
+    found.push_back(readEncoded(asset, i, extension));
     checkShape(found.back().data, extension);
   }
   return found;
@@ -97,23 +102,24 @@ void decodeMeshopt(Asset& asset, DecodeBudget& budget, Decoded& decoded) {
     decoded.buffers.insert(encoded.source);
   }
 
-  std::vector<bool> isNew(JsonView(asset).array("bufferViews").size(), false);
+  gltf::Document& document = asset.document;
+  std::vector<bool> isNew(document.bufferViews.size(), false);
   for (std::size_t i = 0; i < views.size(); ++i) {
-    Json& view = asset.json()["bufferViews"][views[i].view];
-    view["byteOffset"] = offsets[i];
+    gltf::BufferView& view = document.bufferViews[views[i].view];
+    view.byteOffset = offsets[i];
     for (const char* name : kMeshopt) eraseExtension(view, name);
     isNew[views[i].view] = true;
   }
   for (std::size_t i = 0; i < filled.size(); ++i) {
     if (filled[i].empty()) continue;
-    asset.json()["buffers"][i]["byteLength"] = filled[i].size();
-    asset.json()["buffers"][i].erase("uri");
+    document.buffers[i].byteLength = filled[i].size();
+    document.buffers[i].uri.clear();
     asset.buffers[i] = {std::move(filled[i]), {}};
   }
-  const JsonView accessors = JsonView(asset).array("accessors");
-  for (std::size_t i = 0; i < accessors.size(); ++i) {
-    const auto view = accessors[i].index("bufferView", isNew.size());
-    if (view && isNew[*view]) decoded.accessors.insert(static_cast<Index>(i));
+  for (Index a = 0; a < document.accessors.size(); ++a) {
+    const std::optional<Index> view = document.accessors[a].bufferView;
+    requireElement(view, isNew.size(), [&] { return fmt::format("accessors[{}].bufferView", a); });
+    if (view && isNew[*view]) decoded.accessors.insert(a);
   }
 }
 

@@ -14,12 +14,14 @@
 
 #include "limber/asset/accessor.h"
 #include "limber/asset/read.h"
+#include "limber/asset/testing/document_json.h"
 #include "limber/asset/testing/gltf_builder.h"
 #include "limber/asset/write.h"
 
 namespace limber {
 namespace {
 
+using testing::documentJson;
 using ::testing::ElementsAre;
 using testing::GltfBuilder;
 
@@ -102,8 +104,8 @@ TEST(Meshopt, DecodesVerticesAndBothKindsOfIndices) {
     EXPECT_EQ(readIndices(asset, 1), indices);
     EXPECT_EQ(readIndices(asset, 2), indices);
     // Nothing of the compression is left, and no compressed byte.
-    EXPECT_EQ(asset.json().dump().find("meshopt"), std::string::npos);
-    EXPECT_FALSE(asset.json().contains("extensionsUsed"));
+    EXPECT_EQ(documentJson(asset).dump().find("meshopt"), std::string::npos);
+    EXPECT_TRUE(asset.document.extensionsUsed.empty());
     ASSERT_EQ(asset.buffers.size(), 1u);
     EXPECT_EQ(asset.buffers[0].bytes.size(), 1200u + 24 + 48);
     ASSERT_EQ(asset.warnings.items().size(), 1u);
@@ -172,7 +174,7 @@ TEST(Meshopt, PlainFallbackIsTakenAsItIs) {
   model.json["extensionsUsed"] = {kMeshoptName, "KHR_other"};
   const Asset asset = readAsset(model.glb(), "m.glb");
   EXPECT_THAT(readFloats(asset, 0), ElementsAre(1, 2, 3));
-  EXPECT_EQ(asset.json()["extensionsUsed"], Json({"KHR_other"}));
+  EXPECT_THAT(asset.document.extensionsUsed, ElementsAre("KHR_other"));
   EXPECT_EQ(asset.buffers[0].bytes.size(), 12u);
 }
 
@@ -335,11 +337,11 @@ TEST(Draco, DecodesBothMethods) {
       EXPECT_NEAR(weights[4 * v] + weights[4 * v + 1], 1, 1e-6);  // rounded apart by Draco, made whole again
     }
     EXPECT_THAT(readFloats(asset, 4), ElementsAre(1, 2, 3));
-    EXPECT_EQ(asset.json().dump().find("draco"), std::string::npos);
-    EXPECT_EQ(asset.json()["bufferViews"].size(), 2u + 3);  // the compressed one's place is used again
+    EXPECT_EQ(documentJson(asset).dump().find("draco"), std::string::npos);
+    EXPECT_EQ(asset.document.bufferViews.size(), 2u + 3);  // the compressed one's place is used again
     EXPECT_EQ(asset.buffers[0].bytes.size(), 12u + 144 * (12 + 4 + 16) + 726 * 2);
-    const float highest = asset.json()["accessors"][1]["max"][0].get<float>();
-    EXPECT_EQ(highest, *std::max_element(positions.begin(), positions.end()));  // told anew
+    const std::vector<double>& highest = asset.document.accessors[1].max;
+    EXPECT_EQ(static_cast<float>(highest.at(0)), *std::max_element(positions.begin(), positions.end()));  // told anew
     EXPECT_EQ(asset.warnings.items()[0].kind, "decompressed");
   }
 }
@@ -349,8 +351,9 @@ TEST(Draco, SharedDataAreDecodedOnce) {
   Json& primitives = file.model.json["meshes"][0]["primitives"];
   primitives.push_back(primitives[0]);
   const Asset asset = readAsset(file.model.glb(), "m.glb");
-  EXPECT_EQ(asset.json()["bufferViews"].size(), 5u);
-  EXPECT_EQ(asset.json()["meshes"][0]["primitives"][0], asset.json()["meshes"][0]["primitives"][1]);
+  EXPECT_EQ(asset.document.bufferViews.size(), 5u);
+  const Json written = documentJson(asset)["meshes"][0]["primitives"];
+  EXPECT_EQ(written[0], written[1]);
 }
 
 TEST(Draco, PlainFallbackIsTakenAsItIs) {
@@ -361,7 +364,7 @@ TEST(Draco, PlainFallbackIsTakenAsItIs) {
   model.json["extensionsUsed"] = {kDracoName};
   const Asset asset = readAsset(model.glb(), "m.glb");
   EXPECT_EQ(readFloats(asset, 0).size(), 12u);
-  EXPECT_FALSE(asset.json()["meshes"][0]["primitives"][0].contains("extensions"));
+  EXPECT_FALSE(asset.document.meshes[0].primitives[0].extensions.exists());
 }
 
 TEST(Draco, WhatTheAccessorsDoNotPromiseIsAnError) {

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "limber/asset/accessor_layout.h"
 #include "limber/asset/uri.h"
 
@@ -35,10 +33,9 @@ void sortAndMerge(Ranges& ranges) {
 // For each buffer what views cover of it, widened to multiples of four, in rising order without overlap.
 std::vector<Ranges> coveredRanges(const Asset& asset) {
   std::vector<Ranges> covered(asset.buffers.size());
-  const JsonView views = JsonView(asset).array("bufferViews");
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    const Index buffer = views[i].requireIndex("buffer", asset.buffers.size());
-    const ViewLayout view = viewLayout(asset, views[i]);
+  for (Index i = 0; i < asset.document.bufferViews.size(); ++i) {
+    const ViewLayout view = viewLayout(asset, i);
+    const Index buffer = asset.document.bufferViews[i].buffer;
     const std::size_t end = std::min((view.offset + view.bytes.size() + 3) / 4 * 4, asset.buffers[buffer].bytes.size());
     if (!view.bytes.empty()) covered[buffer].push_back({view.offset / 4 * 4, end});
   }
@@ -65,12 +62,11 @@ bool cutBuffer(Asset& asset, Index buffer, Ranges& ranges) {
   }
   if (kept.size() == old.size()) return false;
   old = std::move(kept);
-  Json& json = asset.json()["buffers"][buffer];
-  json["byteLength"] = old.size();
+  asset.document.buffers[buffer].byteLength = old.size();
   std::string& uri = asset.buffers[buffer].uri;
   if (!isDataUri(uri)) {
     uri.clear();
-    json.erase("uri");
+    asset.document.buffers[buffer].uri.clear();
   }
   return true;
 }
@@ -81,36 +77,28 @@ void dropUnusedBytes(Asset& asset, const std::set<Index>& buffers) {
   std::vector<Ranges> covered = coveredRanges(asset);
   std::vector<bool> changed(covered.size(), false);
   for (const Index buffer : buffers) changed[buffer] = cutBuffer(asset, buffer, covered[buffer]);
-  const JsonView views = JsonView(asset).array("bufferViews");
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    const Index buffer = views[i].requireIndex("buffer", covered.size());
-    if (!changed[buffer]) continue;
-    const std::size_t offset = views[i].count("byteOffset").value_or(0);
-    asset.json()["bufferViews"][i]["byteOffset"] = newOffset(covered[buffer], offset);
+  for (gltf::BufferView& view : asset.document.bufferViews) {
+    if (changed[view.buffer]) view.byteOffset = newOffset(covered[view.buffer], view.byteOffset);
   }
 }
 
 void removeEmptyBuffers(Asset& asset) {
-  const JsonView views = JsonView(asset).array("bufferViews");
+  gltf::Document& document = asset.document;
   std::vector<bool> named(asset.buffers.size(), false);
-  for (std::size_t i = 0; i < views.size(); ++i) named[views[i].requireIndex("buffer", named.size())] = true;
+  for (const gltf::BufferView& view : document.bufferViews) named.at(view.buffer) = true;
 
   std::vector<Index> newIndex;
   std::vector<Asset::Buffer> kept;
-  Json keptJson = Json::array();
+  std::vector<gltf::Buffer> keptBuffers;
   for (std::size_t i = 0; i < asset.buffers.size(); ++i) {
     newIndex.push_back(static_cast<Index>(kept.size()));
     if (!named[i] && asset.buffers[i].bytes.empty()) continue;
     kept.push_back(std::move(asset.buffers[i]));
-    keptJson.push_back(std::move(asset.json()["buffers"][i]));
+    keptBuffers.push_back(std::move(document.buffers[i]));
   }
   asset.buffers = std::move(kept);
-  asset.json()["buffers"] = std::move(keptJson);
-  if (asset.buffers.empty()) asset.json().erase("buffers");
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    Json& buffer = asset.json()["bufferViews"][i]["buffer"];
-    buffer = newIndex[buffer.get<Index>()];
-  }
+  document.buffers = std::move(keptBuffers);
+  for (gltf::BufferView& view : document.bufferViews) view.buffer = newIndex[view.buffer];
 }
 
 }  // namespace limber

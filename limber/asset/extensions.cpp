@@ -1,13 +1,17 @@
 #include "limber/asset/extensions.h"
 
 #include <algorithm>
-#include <string_view>
+#include <string>
 
 #include <nlohmann/json.hpp>
+
+#include "limber/asset/json_access.h"
 
 namespace limber {
 
 namespace {
+
+constexpr const char* kPointerName = "KHR_animation_pointer";
 
 // What limber follows itself, and what only says how a surface is lit or described.
 bool isHarmless(std::string_view name) {
@@ -23,31 +27,56 @@ bool isHarmless(std::string_view name) {
 
 }  // namespace
 
-JsonView extensionOf(const JsonView& owner, const char* name) {
-  return owner.object("extensions").object(name);
+const Json* extensionOf(const gltf::Object& owner, const char* name) {
+  return owner.extensions.exists() ? member(*owner.extensions, name) : nullptr;
 }
 
-bool eraseExtension(Json& owner, const char* name) {
-  const auto extensions = owner.find("extensions");
-  if (extensions == owner.end() || extensions->erase(name) == 0) return false;
-  if (extensions->empty()) owner.erase("extensions");
+Json& changeExtension(gltf::Object& owner, const char* name) {
+  Json& content = owner.extensions.change()[name];
+  if (content.is_null()) content = Json::object();
+  return content;
+}
+
+bool eraseExtension(gltf::Object& owner, const char* name) {
+  if (extensionOf(owner, name) == nullptr) return false;
+  owner.extensions.change().erase(name);
+  if (owner.extensions->empty()) owner.extensions.reset();
   return true;
 }
 
-void undeclareExtension(Json& document, const char* name) {
-  for (const char* list : {"extensionsUsed", "extensionsRequired"}) {
-    const auto names = document.find(list);
-    if (names == document.end()) continue;
-    names->erase(std::remove(names->begin(), names->end(), name), names->end());
-    if (names->empty()) document.erase(list);
-  }
+void declareExtension(gltf::Document& document, std::string_view name) {
+  std::vector<std::string>& used = document.extensionsUsed;
+  if (std::find(used.begin(), used.end(), name) == used.end()) used.emplace_back(name);
+}
+
+void undeclareExtension(gltf::Document& document, std::string_view name) {
+  std::erase(document.extensionsUsed, name);
+  std::erase(document.extensionsRequired, name);
+}
+
+gltf::Attributes instancingOf(const gltf::Node& node, std::string_view place) {
+  gltf::Attributes result;
+  const Json* content = extensionOf(node, kInstancingName);
+  if (content == nullptr) return result;
+  const std::string path = std::string(place) + ".extensions." + kInstancingName;
+  const JsonView attributes = JsonView(content, path).object("attributes");
+  attributes.forEachMember(
+      [&](std::string_view name, const JsonView& accessor) { result.set(name, accessor.asIndex(kNoIndex)); });
+  return result;
+}
+
+const std::string* animationPointer(const gltf::AnimationChannel::Target& target) {
+  const Json* extension = extensionOf(target, kPointerName);
+  const Json* pointer = extension != nullptr ? member(*extension, "pointer") : nullptr;
+  return pointer != nullptr ? pointer->get_ptr<const std::string*>() : nullptr;
+}
+
+void setAnimationPointer(gltf::AnimationChannel::Target& target, std::string_view pointer) {
+  changeExtension(target, kPointerName)["pointer"] = pointer;
 }
 
 void warnOfUnknownExtensions(Asset& asset) {
-  const JsonView required = JsonView(asset).array("extensionsRequired");
-  for (std::size_t i = 0; i < required.size(); ++i) {
-    if (!required[i].json().is_string()) continue;
-    const std::string& name = required[i].json().get_ref<const std::string&>();
+  for (const std::string& name : asset.document.extensionsRequired) {
     if (isHarmless(name)) continue;
     asset.warnings.add("unknown-extensions",
                        "extensions that the file requires are unknown to limber and stay as they are", name);

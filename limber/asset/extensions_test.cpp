@@ -7,27 +7,47 @@
 namespace limber {
 namespace {
 
-TEST(Extensions, ErasingLeavesTheOthers) {
-  Json node = Json::parse(R"({"extensions": {"A": {"x": 1}, "B": {}}, "name": "n"})");
-  EXPECT_EQ(extensionOf(JsonView(node), "A").number("x", 0), 1);
-  EXPECT_FALSE(extensionOf(JsonView(node), "C").exists());
-  EXPECT_FALSE(eraseExtension(node, "C"));
-  EXPECT_TRUE(eraseExtension(node, "A"));
-  EXPECT_EQ(node, Json::parse(R"({"extensions": {"B": {}}, "name": "n"})"));
-  EXPECT_TRUE(eraseExtension(node, "B"));
-  EXPECT_EQ(node, Json::parse(R"({"name": "n"})"));
+gltf::Node nodeWith(const char* extensions) {
+  gltf::Node node;
+  node.extensions = gltf::KeptJson(Json::parse(extensions));
+  return node;
 }
 
-TEST(Extensions, UndeclaringTakesEmptyListsAway) {
-  Json document = Json::parse(R"({"extensionsUsed": ["A", "B"], "extensionsRequired": ["A"]})");
+TEST(Extensions, ErasingLeavesTheOthers) {
+  gltf::Node node = nodeWith(R"({"A": {"x": 1}, "B": {}})");
+  ASSERT_NE(extensionOf(node, "A"), nullptr);
+  EXPECT_EQ(extensionOf(node, "A")->at("x"), 1);
+  EXPECT_EQ(extensionOf(node, "C"), nullptr);
+  EXPECT_FALSE(eraseExtension(node, "C"));
+  EXPECT_TRUE(eraseExtension(node, "A"));
+  EXPECT_EQ(*node.extensions, Json::parse(R"({"B": {}})"));
+  EXPECT_TRUE(eraseExtension(node, "B"));
+  EXPECT_FALSE(node.extensions.exists());
+}
+
+TEST(Extensions, ACopyKeepsItsOwn) {
+  gltf::Node node = nodeWith(R"({"A": {"x": 1}})");
+  const gltf::Node copy = node;
+  changeExtension(node, "A")["x"] = 2;
+  changeExtension(node, "B")["y"] = 3;
+  EXPECT_EQ(*copy.extensions, Json::parse(R"({"A": {"x": 1}})"));
+  EXPECT_EQ(*node.extensions, Json::parse(R"({"A": {"x": 2}, "B": {"y": 3}})"));
+}
+
+TEST(Extensions, DeclaringIsDoneOnceAndUndone) {
+  gltf::Document document;
+  document.extensionsRequired = {"A"};
+  for (const char* name : {"A", "B", "A"}) declareExtension(document, name);
+  EXPECT_THAT(document.extensionsUsed, ::testing::ElementsAre("A", "B"));
   undeclareExtension(document, "A");
-  EXPECT_EQ(document, Json::parse(R"({"extensionsUsed": ["B"]})"));
+  EXPECT_THAT(document.extensionsUsed, ::testing::ElementsAre("B"));
+  EXPECT_TRUE(document.extensionsRequired.empty());
 }
 
 TEST(Extensions, OnlyThoseThatMayMatterAreWarnedOf) {
   Asset asset;
-  asset.json()["extensionsRequired"] = {"KHR_mesh_quantization", "ACME_bent_space",    "KHR_materials_unlit",
-                                        "KHR_texture_basisu",    "ACME_more_vertices", "KHR_texture_transform"};
+  asset.document.extensionsRequired = {"KHR_mesh_quantization", "ACME_bent_space",    "KHR_materials_unlit",
+                                       "KHR_texture_basisu",    "ACME_more_vertices", "KHR_texture_transform"};
   warnOfUnknownExtensions(asset);
   ASSERT_EQ(asset.warnings.items().size(), 1u);
   EXPECT_EQ(asset.warnings.items()[0].kind, "unknown-extensions");

@@ -7,10 +7,11 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "limber/asset/accessor.h"
 #include "limber/asset/bind_pose.h"
+#include "limber/asset/document_errors.h"
+#include "limber/asset/extensions.h"
 #include "limber/asset/scene_graph.h"
 #include "limber/core/known_error.h"
 #include "limber/core/transform.h"
@@ -26,8 +27,6 @@ constexpr std::uint64_t kMaxAddedVertices = 16'000'000;
 // The same for instances, which cost memory even where their mesh has no vertices.
 constexpr std::uint64_t kMaxAddedInstances = 1'000'000;
 
-constexpr int kTriangleList = 4, kTriangleStrip = 5, kTriangleFan = 6;  // glTF's primitive modes
-
 // One showing of a mesh.
 struct MeshInstance {
   Index node, mesh, copy;
@@ -40,23 +39,18 @@ struct GpuInstancing {
   Index count = 0;  // 0 where the node does not use it
 };
 
-GpuInstancing gpuInstancing(const Asset& asset, const Json& node, const std::string& where) {
-  const Json* extensions = member(node, "extensions");
-  const Json* instancing = extensions ? member(*extensions, "EXT_mesh_gpu_instancing") : nullptr;
-  const Json* attributes = instancing ? member(*instancing, "attributes") : nullptr;
-  if (!attributes) return {};
-
-  std::optional<std::size_t> count;
+GpuInstancing gpuInstancing(const Asset& asset, Index node) {
+  const std::string where = fmt::format("nodes[{}]", node);
+  const gltf::Attributes attributes = instancingOf(asset.document.nodes[node], where);
+  std::optional<Index> count;
   const auto find = [&](const char* name, Index components) {
-    const std::optional<Index> accessor = indexMember(*attributes, name);
+    const std::optional<Index> accessor = attributes.find(name);
     if (!accessor) return accessor;
-    const auto bad = [&](const char* what) {
-      throw Error(ErrorCode::kBadData, what, where + ".extensions.EXT_mesh_gpu_instancing." + name);
-    };
-    if (*accessor >= elementCount(asset, "accessors")) bad("names an accessor that does not exist");
+    const std::string place = fmt::format("{}.extensions.{}.{}", where, kInstancingName, name);
+    if (*accessor >= asset.document.accessors.size()) failAt(place, "names an accessor that does not exist");
     const AccessorInfo info = accessorInfo(asset, *accessor);
-    if (info.components != components) bad("has the wrong accessor type");
-    if (count.value_or(info.count) != info.count) bad("is not as long as the other attributes");
+    if (info.components != components) failAt(place, "has the wrong accessor type");
+    if (count.value_or(info.count) != info.count) failAt(place, "is not as long as the other attributes");
     count = info.count;
     return accessor;
   };
@@ -91,9 +85,9 @@ std::vector<Affine> gpuInstances(const Asset& asset, const GpuInstancing& instan
 
 // Throws Error kLimit before the memory for too many instances is asked for.
 std::vector<MeshInstance> meshInstances(const Asset& asset) {
-  const SceneGraph graph = readSceneGraph(asset);
+  const SceneGraph graph = readSceneGraph(asset.document);
   const BindPose bindPose = readBindPose(asset, graph);
-  const Json& nodes = elements(asset, "nodes");
+  const std::vector<gltf::Node>& nodes = asset.document.nodes;
   std::vector<MeshInstance> result;
   std::uint64_t total = 0;
   const auto count = [&](std::uint64_t added) {
@@ -103,14 +97,14 @@ std::vector<MeshInstance> meshInstances(const Asset& asset) {
                 "rig the meshes one by one, or with fewer instances");
   };
   for (const Index n : graph.order) {
-    const std::optional<Index> mesh = indexMember(nodes[n], "mesh");
+    const std::optional<Index> mesh = nodes[n].mesh;
     if (!mesh) continue;
-    if (const std::optional<Index> skin = indexMember(nodes[n], "skin")) {
+    if (nodes[n].skin) {
       count(1);
-      result.push_back({n, *mesh, 0, bindPose.skinToWorld[*skin]});
+      result.push_back({n, *mesh, 0, bindPose.skinToWorld[*nodes[n].skin]});
       continue;
     }
-    const GpuInstancing instancing = gpuInstancing(asset, nodes[n], fmt::format("nodes[{}]", n));
+    const GpuInstancing instancing = gpuInstancing(asset, n);
     count(std::max<std::uint64_t>(1, instancing.count));
     const std::vector<Affine> copies = gpuInstances(asset, instancing);
     if (copies.empty()) result.push_back({n, *mesh, 0, bindPose.nodeWorld[n]});
@@ -120,21 +114,20 @@ std::vector<MeshInstance> meshInstances(const Asset& asset) {
 }
 
 // The corners of one primitive's triangles, as indices into its own vertices.
-std::vector<Triangle> primitiveTriangles(const Asset& asset, const Json& primitive, Index vertexCount) {
-  const Json* modeMember = member(primitive, "mode");
-  const int mode = modeMember ? modeMember->get<int>() : kTriangleList;
-  if (mode != kTriangleList && mode != kTriangleStrip && mode != kTriangleFan) return {};
+std::vector<Triangle> primitiveTriangles(const Asset& asset, const gltf::Primitive& primitive, Index vertexCount) {
+  const Index mode = primitive.mode;
+  if (mode != gltf::kTriangles && mode != gltf::kTriangleStrip && mode != gltf::kTriangleFan) return {};
 
-  const std::optional<Index> accessor = indexMember(primitive, "indices");
+  const std::optional<Index> accessor = primitive.indices;
   const std::vector<Index> indices = accessor ? readIndices(asset, *accessor) : std::vector<Index>();
   const std::size_t corners = accessor ? indices.size() : vertexCount;
   const auto corner = [&](std::size_t i) { return accessor ? indices[i] : static_cast<Index>(i); };
 
   std::vector<Triangle> triangles;
-  if (mode == kTriangleList) {
+  if (mode == gltf::kTriangles) {
     triangles.reserve(corners / 3);
     for (std::size_t i = 0; i + 2 < corners; i += 3) triangles.push_back({corner(i), corner(i + 1), corner(i + 2)});
-  } else if (mode == kTriangleStrip) {
+  } else if (mode == gltf::kTriangleStrip) {
     for (std::size_t i = 0; i + 2 < corners; ++i) {
       triangles.push_back({corner(i), corner(i + 1 + i % 2), corner(i + 2 - i % 2)});
     }
@@ -146,14 +139,14 @@ std::vector<Triangle> primitiveTriangles(const Asset& asset, const Json& primiti
 
 class Collector {
  public:
-  explicit Collector(const Asset& asset) : asset_(asset), meshes_(elements(asset, "meshes")) {}
+  explicit Collector(const Asset& asset) : asset_(asset), meshes_(asset.document.meshes) {}
 
   Geometry collect() {
     const std::vector<MeshInstance> instances = meshInstances(asset_);
     checkSize(instances);
     geometry_.positions.reserve(vertexCount_);
     for (const MeshInstance& instance : instances) {
-      const Json& primitives = meshes_[instance.mesh].at("primitives");
+      const std::vector<gltf::Primitive>& primitives = meshes_[instance.mesh].primitives;
       for (Index p = 0; p < primitives.size(); ++p) addPrimitive(instance, p, primitives[p]);
     }
     if (geometry_.triangles.empty()) {
@@ -164,17 +157,12 @@ class Collector {
   }
 
  private:
-  static std::optional<Index> positionAccessor(const Json& primitive) {
-    const Json* attributes = member(primitive, "attributes");
-    return attributes ? indexMember(*attributes, "POSITION") : std::nullopt;
-  }
-
   void checkSize(const std::vector<MeshInstance>& instances) {
     std::uint64_t stored = 0;
     std::set<Index> met;
     for (const MeshInstance& instance : instances) {
-      for (const Json& primitive : meshes_[instance.mesh].at("primitives")) {
-        const std::optional<Index> accessor = positionAccessor(primitive);
+      for (const gltf::Primitive& primitive : meshes_[instance.mesh].primitives) {
+        const std::optional<Index> accessor = primitive.attributes.find("POSITION");
         if (!accessor) continue;
         const Index count = accessorInfo(asset_, *accessor).count;
         vertexCount_ += count;
@@ -187,8 +175,8 @@ class Collector {
     }
   }
 
-  void addPrimitive(const MeshInstance& instance, Index index, const Json& primitive) {
-    const std::optional<Index> accessor = positionAccessor(primitive);
+  void addPrimitive(const MeshInstance& instance, Index index, const gltf::Primitive& primitive) {
+    const std::optional<Index> accessor = primitive.attributes.find("POSITION");
     if (!accessor) return;
     const std::vector<float> stored = readFloats(asset_, *accessor);
     const auto first = static_cast<Index>(geometry_.positions.size());
@@ -210,7 +198,7 @@ class Collector {
   }
 
   const Asset& asset_;
-  const Json& meshes_;
+  const std::vector<gltf::Mesh>& meshes_;
   Geometry geometry_;
   std::uint64_t vertexCount_ = 0;
 };

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "limber/asset/extensions.h"
 #include "limber/asset/testing/scene_builder.h"
 
 namespace limber {
@@ -68,19 +69,19 @@ TEST(CollectGeometry, TakesTheDefaultSceneOnly) {
   const Index third = scene.addNode({{"mesh", mesh}});
   scene.addScene({first});
   scene.addScene({third, second});
-  scene.json()["scene"] = 1;
+  scene.asset().document.scene = 1;
   Asset asset = scene.build();
   Geometry geometry = collectGeometry(asset);
   ASSERT_EQ(geometry.instances.size(), 2u);
   EXPECT_EQ(geometry.instances[0].node, third);  // in the order of the scene
   EXPECT_EQ(geometry.instances[1].node, second);
 
-  asset.json().erase("scene");
+  asset.document.scene.reset();
   geometry = collectGeometry(asset);
   ASSERT_EQ(geometry.instances.size(), 1u);
   EXPECT_EQ(geometry.instances[0].node, first);
 
-  asset.json().erase("scenes");
+  asset.document.scenes.clear();
   EXPECT_EQ(collectGeometry(asset).instances.size(), 3u);
 }
 
@@ -145,8 +146,8 @@ TEST(CollectGeometry, QuantisedPositionsAreWhatADrawingProgramSees) {
     padded.insert(padded.end(), {0, 0});
   }
   const Index accessor = addAccessor(scene.asset(), {3, 4, ComponentType::kU16, true}, padded, kVertexTarget);
-  scene.json()["accessors"][accessor]["type"] = "VEC3";
-  scene.json()["bufferViews"].back()["byteStride"] = 8;
+  scene.asset().document.accessors[accessor].type = gltf::ElementType::kVec3;
+  scene.asset().document.bufferViews.back().byteStride = 8;
   scene.addNode({{"mesh", scene.addMesh(Json::array({{{"attributes", {{"POSITION", accessor}}}}}))},
                  {"scale", {3, 3, 3}},
                  {"translation", {-1, 0, 0}}});
@@ -180,8 +181,8 @@ TEST(CollectGeometry, GpuInstancesAreShownOneByOne) {
   EXPECT_TRUE(geometry.positions[8].isApprox(Vec3f(0, 5, 1)));
 
   Asset uneven = asset.clone();
-  uneven.json()["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["SCALE"] =
-      uneven.json()["meshes"][0]["primitives"][0]["attributes"]["POSITION"];  // four instead of three
+  changeExtension(uneven.document.nodes[0], kInstancingName)["attributes"]["SCALE"] =
+      *uneven.document.meshes[0].primitives[0].attributes.find("POSITION");  // four instead of three
   EXPECT_EQ(errorCodeOf(uneven), ErrorCode::kBadData);
 }
 
@@ -212,9 +213,9 @@ TEST(CollectGeometry, TheNodeOfASkinnedMeshDoesNotMoveIt) {
 
 TEST(CollectGeometry, TheBindPoseCountsNotTheStoredPose) {
   SkinnedScene s;
-  s.scene.node(s.body).erase("translation");
-  s.scene.node(s.head)["rotation"] = {1, 0, 0, 0};
-  s.scene.node(s.head)["translation"] = {4, 4, 4};
+  s.scene.node(s.body).translation.reset();
+  s.scene.node(s.head).rotation = Vec4(1, 0, 0, 0);
+  s.scene.node(s.head).translation = Vec3(4, 4, 4);
   const Geometry geometry = collectGeometry(s.scene.build());
   for (std::size_t v = 0; v < 4; ++v) {
     EXPECT_TRUE(geometry.positions[v].isApprox(SceneBuilder::tetrahedron()[v], 1e-6f)) << v;
@@ -242,8 +243,8 @@ TEST(CollectGeometry, SkinsBoundInDifferentSpacesMeetInOne) {
   const Index skin = s.scene.addSkin({s.head}, {translation(0, -3, 0) * other});
   s.scene.addNode({{"mesh", mesh}, {"skin", skin}});
   // Even where the file stores a pose, in which the two skins disagree about the world.
-  s.scene.node(s.head)["rotation"] = {0, 0, 1, 0};
-  s.scene.node(s.body).erase("translation");
+  s.scene.node(s.head).rotation = Vec4(0, 0, 1, 0);
+  s.scene.node(s.body).translation.reset();
   const Geometry geometry = collectGeometry(s.scene.build());
   ASSERT_EQ(geometry.positions.size(), 8u);
   for (std::size_t v = 0; v < 4; ++v) {
@@ -254,13 +255,13 @@ TEST(CollectGeometry, SkinsBoundInDifferentSpacesMeetInOne) {
 TEST(CollectGeometry, SkinsWithoutACommonJointMeetThroughTheTree) {
   SkinnedScene s;
   const Index hat = s.scene.addNode({{"name", "hat"}, {"translation", {0, 0.5, 0}}});
-  s.scene.node(s.head)["children"] = {hat};
+  s.scene.node(s.head).children = {hat};
   const Index mesh = s.scene.addTetrahedron();
   s.scene.bindRigidly(mesh, {0, 0, 0, 0});
   const Index skin = s.scene.addSkin({hat}, {translation(0, -3.5, 0)});
   s.scene.addNode({{"mesh", mesh}, {"skin", skin}});
-  s.scene.node(s.head)["rotation"] = {0, 0, 1, 0};  // the stored pose turns head and hat over
-  s.scene.node(s.body).erase("translation");
+  s.scene.node(s.head).rotation = Vec4(0, 0, 1, 0);  // the stored pose turns head and hat over
+  s.scene.node(s.body).translation.reset();
   const Geometry geometry = collectGeometry(s.scene.build());
   for (std::size_t v = 0; v < 4; ++v) {
     EXPECT_LT((geometry.positions[v] - geometry.positions[v + 4]).norm(), 1e-5f) << v;
@@ -271,9 +272,9 @@ TEST(CollectGeometry, AMeshThatHangsOnAJointStandsInTheBindPoseToo) {
   SkinnedScene s;
   const Index mesh = s.scene.addTetrahedron();
   const Index helmet = s.scene.addNode({{"mesh", mesh}, {"translation", {0, 0.25, 0}}});
-  s.scene.node(s.head)["children"] = {helmet};
-  s.scene.node(s.head)["translation"] = {9, 9, 9};  // posed away
-  s.scene.node(s.body).erase("translation");
+  s.scene.node(s.head).children = {helmet};
+  s.scene.node(s.head).translation = Vec3(9, 9, 9);  // posed away
+  s.scene.node(s.body).translation.reset();
   const Geometry geometry = collectGeometry(s.scene.build());
   ASSERT_EQ(geometry.instances.size(), 2u);
   const PrimitiveInstance& part = geometry.instances[0].node == helmet ? geometry.instances[0] : geometry.instances[1];
@@ -282,8 +283,8 @@ TEST(CollectGeometry, AMeshThatHangsOnAJointStandsInTheBindPoseToo) {
 
 TEST(CollectGeometry, WithoutInverseBindsJointsStandWhereTheirNodesAre) {
   SkinnedScene s;
-  s.scene.json()["skins"][0].erase("inverseBindMatrices");
-  s.scene.node(s.hip)["translation"] = {0, 0, 0};
+  s.scene.asset().document.skins[0].inverseBindMatrices.reset();
+  s.scene.node(s.hip).translation = Vec3(0, 0, 0);
   const Geometry geometry = collectGeometry(s.scene.build());
   EXPECT_TRUE(geometry.positions[1].isApprox(Vec3f(1, 0, 0), 1e-6f));
 }
@@ -311,10 +312,17 @@ TEST(CollectGeometry, AVertexBeyondSinglePrecisionIsAnErrorThatSaysWhere) {
   }
 }
 
+// An accessor of positions without bytes.
+void addZeros(SceneBuilder& scene, Index count) {
+  gltf::Accessor accessor;
+  accessor.count = count;
+  accessor.type = gltf::ElementType::kVec3;
+  scene.asset().document.accessors.push_back(std::move(accessor));
+}
+
 TEST(CollectGeometry, AFewNodesMustNotAskForGigabytes) {
   SceneBuilder scene;
-  Json& accessors = scene.json()["accessors"];
-  accessors.push_back({{"componentType", 5126}, {"count", 200000}, {"type", "VEC3"}});  // zeros, no bytes
+  addZeros(scene, 200000);
   const Index mesh = scene.addMesh(Json::array({{{"attributes", {{"POSITION", 0}}}}}));
   for (int i = 0; i < 1000; ++i) scene.addNode({{"mesh", mesh}});
   EXPECT_EQ(errorCodeOf(scene.asset()), ErrorCode::kLimit);
@@ -323,9 +331,8 @@ TEST(CollectGeometry, AFewNodesMustNotAskForGigabytes) {
 // A node whose mesh has `vertices` of no bytes, shown `copies` times from transforms that have no bytes either.
 SceneBuilder manyCopies(Index vertices, Index copies, int nodes) {
   SceneBuilder scene;
-  Json& accessors = scene.json()["accessors"];
-  accessors.push_back({{"componentType", 5126}, {"count", vertices}, {"type", "VEC3"}});
-  accessors.push_back({{"componentType", 5126}, {"count", copies}, {"type", "VEC3"}});
+  addZeros(scene, vertices);
+  addZeros(scene, copies);
   const Index mesh = scene.addMesh(Json::array({{{"attributes", {{"POSITION", 0}}}}}));
   const Json instancing = {{"EXT_mesh_gpu_instancing", {{"attributes", {{"TRANSLATION", 1}}}}}};
   for (int i = 0; i < nodes; ++i) scene.addNode({{"mesh", mesh}, {"extensions", instancing}});

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "limber/asset/json_access.h"
+#include "limber/asset/gltf_json.h"
 #include "limber/asset/json_text.h"
 #include "limber/asset/uri.h"
 
@@ -86,22 +86,21 @@ std::string placeBytes(Names& names, const std::string& uri, ByteSpan bytes) {
 }  // namespace
 
 GltfFiles gltfFiles(const Asset& asset, const fs::path& place) {
-  Json json = asset.json();
+  gltf::Document document = asset.document;
   Names names(place);
   for (std::size_t i = 0; i < asset.buffers.size(); ++i) {
     const auto& [bytes, uri] = asset.buffers[i];
     const bool inside = isDataUri(uri) || bytes.empty();
     const std::string header = uri.empty() ? "data:application/octet-stream;base64," : uri;
-    json["buffers"][i]["uri"] = inside ? header + encodeBase64(bytes) : placeBytes(names, uri, bytes);
+    document.buffers[i].uri = inside ? header + encodeBase64(bytes) : placeBytes(names, uri, bytes);
   }
   std::map<std::string_view, std::string> imageUri;
   for (const Asset::SideFile& file : asset.sideFiles) imageUri[file.uri] = placeBytes(names, file.uri, file.bytes);
-  const JsonView images = JsonView(asset).array("images");
-  for (std::size_t i = 0; i < images.size(); ++i) {
-    const auto written = imageUri.find(images[i].text("uri"));
-    if (written != imageUri.end()) json["images"][i]["uri"] = written->second;
+  for (gltf::Image& image : document.images) {
+    const auto written = imageUri.find(image.uri);
+    if (written != imageUri.end()) image.uri = written->second;
   }
-  return {dumpJson(json, 2) + '\n', names.files()};
+  return {dumpJson(gltf::jsonOf(document), 2) + '\n', names.files()};
 }
 
 }  // namespace limber

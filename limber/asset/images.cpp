@@ -3,9 +3,6 @@
 #include <array>
 #include <cstddef>
 
-#include <nlohmann/json.hpp>
-
-#include "limber/asset/json_access.h"
 #include "limber/asset/uri.h"
 
 namespace limber {
@@ -30,18 +27,15 @@ ImageFormat imageFormat(ByteSpan bytes) {
 }
 
 std::optional<Bytes> imageBytes(const Asset& asset, Index image) {
-  const JsonView views = JsonView(asset).array("bufferViews"), json = JsonView(asset).array("images")[image];
-  if (const std::optional<Index> number = json.index("bufferView", views.size())) {
-    const JsonView view = views[*number];
-    const Bytes& buffer = asset.buffers[view.requireIndex("buffer", asset.buffers.size())].bytes;
-    const std::size_t offset = view.count("byteOffset").value_or(0), length = view.member("byteLength").asCount();
-    return Bytes(buffer.begin() + static_cast<std::ptrdiff_t>(offset),
-                 buffer.begin() + static_cast<std::ptrdiff_t>(offset + length));
+  const gltf::Image& source = asset.document.images[image];
+  if (source.bufferView) {
+    const gltf::BufferView& view = asset.document.bufferViews[*source.bufferView];
+    const auto start = asset.buffers[view.buffer].bytes.begin() + static_cast<std::ptrdiff_t>(view.byteOffset);
+    return Bytes(start, start + static_cast<std::ptrdiff_t>(view.byteLength));
   }
-  const std::string uri(json.text("uri"));
-  if (isDataUri(uri)) return decodeDataUri(uri).bytes;
+  if (isDataUri(source.uri)) return decodeDataUri(source.uri).bytes;
   for (const Asset::SideFile& file : asset.sideFiles) {
-    if (file.uri == uri) return file.bytes;
+    if (file.uri == source.uri) return file.bytes;
   }
   return std::nullopt;
 }

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <assimp/scene.h>
-#include <nlohmann/json.hpp>
 
 #include "limber/asset/accessor.h"
 #include "limber/asset/import_text.h"
@@ -28,6 +28,7 @@ struct Track {
 class AnimationImporter {
  public:
   AnimationImporter(Asset& asset, const aiAnimation& source, double scale) : asset_(asset), scale_(scale) {
+    animation_.name = textOf(source.mName);
     if (source.mTicksPerSecond > 0 && std::isfinite(source.mTicksPerSecond)) ticks_ = source.mTicksPerSecond;
   }
 
@@ -58,15 +59,7 @@ class AnimationImporter {
                  3));
   }
 
-  bool empty() const { return channels_.empty(); }
-
-  Json json(const std::string& name) && {
-    Json result = Json::object();
-    if (!name.empty()) result["name"] = name;
-    result["channels"] = std::move(channels_);
-    result["samplers"] = std::move(samplers_);
-    return result;
-  }
+  gltf::Animation take() && { return std::move(animation_); }
 
  private:
   template <typename Key, typename Value>
@@ -105,9 +98,14 @@ class AnimationImporter {
 
   void addTrack(Index node, const char* path, Index components, const Track& track) {
     if (track.times.empty()) return;
-    const Index output = addFloatAccessor(asset_, track.values, components);
-    samplers_.push_back({{"input", input(track.times)}, {"output", output}});
-    channels_.push_back({{"sampler", samplers_.size() - 1}, {"target", {{"node", node}, {"path", path}}}});
+    gltf::AnimationSampler sampler;
+    sampler.output = addFloatAccessor(asset_, track.values, components);
+    sampler.input = input(track.times);
+    gltf::AnimationChannel channel;
+    channel.sampler = addElement(animation_.samplers, std::move(sampler));
+    channel.target.node = node;
+    channel.target.path = path;
+    animation_.channels.push_back(std::move(channel));
   }
 
   // Most tracks of a clip have the same times: they share one accessor.
@@ -120,7 +118,7 @@ class AnimationImporter {
   Asset& asset_;
   double scale_;
   double ticks_ = kDefaultTicks;
-  Json channels_ = Json::array(), samplers_ = Json::array();
+  gltf::Animation animation_;
   std::map<std::vector<float>, Index> inputs_;
 };
 
@@ -135,16 +133,16 @@ void importAnimations(Asset& asset, const aiScene& scene, const std::map<const a
   }
   for (unsigned a = 0; a < scene.mNumAnimations; ++a) {
     const aiAnimation& source = *scene.mAnimations[a];
-    AnimationImporter animation(asset, source, scale);
+    AnimationImporter importer(asset, source, scale);
     std::set<Index> moved;
     for (unsigned c = 0; c < source.mNumChannels; ++c) {
       const aiNodeAnim& channel = *source.mChannels[c];
       const auto node = nodeByName.find(std::string(channel.mNodeName.data, channel.mNodeName.length));
       const bool isNew = node != nodeByName.end() && moved.insert(node->second).second;
-      if (isNew) animation.addChannels(channel, node->second);
+      if (isNew) importer.addChannels(channel, node->second);
     }
-    if (animation.empty()) continue;
-    asset.json()["animations"].push_back(std::move(animation).json(textOf(source.mName)));
+    gltf::Animation animation = std::move(importer).take();
+    if (!animation.channels.empty()) asset.document.animations.push_back(std::move(animation));
   }
 }
 

@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <assimp/GltfMaterial.h>
 #include <assimp/material.h>
 #include <assimp/scene.h>
-#include <nlohmann/json.hpp>
 
+#include "limber/asset/accessor.h"
 #include "limber/asset/images.h"
 #include "limber/asset/import_text.h"
 
@@ -36,75 +37,54 @@ double roughnessOf(double exponent) {
   return std::sqrt(2 / (2 + std::max(exponent, 0.0)));
 }
 
-// Appends bytes to the document's buffer as a view without an accessor.
-Index addImageView(Asset& asset, ByteSpan bytes) {
-  Json& json = asset.json();
-  if (asset.buffers.empty()) {
-    asset.buffers.emplace_back();
-    json["buffers"].push_back(Json::object());
-  }
-  Bytes& buffer = asset.buffers[0].bytes;
-  buffer.resize((buffer.size() + 3) / 4 * 4);
-  const std::size_t offset = buffer.size();
-  buffer.insert(buffer.end(), bytes.begin(), bytes.end());
-  json["buffers"][0]["byteLength"] = buffer.size();
-  Json& views = json["bufferViews"];
-  views.push_back({{"buffer", 0}, {"byteOffset", offset}, {"byteLength", bytes.size()}});
-  return static_cast<Index>(views.size() - 1);
-}
-
 }  // namespace
 
 Index MaterialImporter::material(unsigned index) {
   const auto known = materials_.find(index);
   if (known != materials_.end()) return known->second;
-  Json converted = convert(*scene_.mMaterials[index]);
-  Json& materials = asset_.json()["materials"];
-  materials.push_back(std::move(converted));
-  return materials_[index] = static_cast<Index>(materials.size() - 1);
+  return materials_[index] = addElement(asset_.document.materials, convert(*scene_.mMaterials[index]));
 }
 
-Json MaterialImporter::convert(const aiMaterial& material) {
-  Json result = Json::object();
+gltf::Material MaterialImporter::convert(const aiMaterial& material) {
+  gltf::Material result;
   aiString name;
-  if (material.Get(AI_MATKEY_NAME, name) == aiReturn_SUCCESS && name.length > 0) result["name"] = textOf(name);
+  if (material.Get(AI_MATKEY_NAME, name) == aiReturn_SUCCESS) result.name = textOf(name);
 
-  Json pbr = Json::object();
-  std::optional<Json> texture = textureInfo(material, aiTextureType_BASE_COLOR);
-  if (!texture) texture = textureInfo(material, aiTextureType_DIFFUSE);
+  gltf::MetallicRoughness& surface = result.pbrMetallicRoughness.emplace();
+  surface.baseColorTexture = textureUse(material, aiTextureType_BASE_COLOR);
+  if (!surface.baseColorTexture) surface.baseColorTexture = textureUse(material, aiTextureType_DIFFUSE);
   const aiColor3D base =
       color(material, "$clr.base").value_or(color(material, "$clr.diffuse").value_or(aiColor3D(1, 1, 1)));
   double opacity = unit(number(material, "$mat.opacity").value_or(1), 1);
   if (opacity == 0) opacity = 1;  // exporters that mean "not set"; a wholly invisible surface helps nobody
-  pbr["baseColorFactor"] = {unit(base.r, 1), unit(base.g, 1), unit(base.b, 1), opacity};
-  if (texture) pbr["baseColorTexture"] = *texture;
-  pbr["metallicFactor"] = unit(number(material, "$mat.metallicFactor").value_or(0), 0);
+  surface.baseColorFactor = Vec4(unit(base.r, 1), unit(base.g, 1), unit(base.b, 1), opacity);
+  surface.metallicFactor = unit(number(material, "$mat.metallicFactor").value_or(0), 0);
   const double roughness = roughnessOf(number(material, "$mat.shininess").value_or(0));
-  pbr["roughnessFactor"] = unit(number(material, "$mat.roughnessFactor").value_or(roughness), 1);
-  result["pbrMetallicRoughness"] = std::move(pbr);
+  surface.roughnessFactor = unit(number(material, "$mat.roughnessFactor").value_or(roughness), 1);
 
-  if (const auto normal = textureInfo(material, aiTextureType_NORMALS)) result["normalTexture"] = *normal;
-  if (const auto glow = textureInfo(material, aiTextureType_EMISSIVE)) result["emissiveTexture"] = *glow;
+  result.normalTexture = textureUse(material, aiTextureType_NORMALS);
+  result.emissiveTexture = textureUse(material, aiTextureType_EMISSIVE);
   const aiColor3D emissive = color(material, "$clr.emissive").value_or(aiColor3D(0, 0, 0));
   if (emissive.r > 0 || emissive.g > 0 || emissive.b > 0) {
-    result["emissiveFactor"] = {unit(emissive.r, 0), unit(emissive.g, 0), unit(emissive.b, 0)};
+    result.emissiveFactor = Vec3(unit(emissive.r, 0), unit(emissive.g, 0), unit(emissive.b, 0));
   }
-  if (opacity < 1) result["alphaMode"] = "BLEND";
+  if (opacity < 1) result.alphaMode = "BLEND";
   int twoSided = 0;
-  if (material.Get(AI_MATKEY_TWOSIDED, twoSided) == aiReturn_SUCCESS && twoSided != 0) result["doubleSided"] = true;
+  result.doubleSided = material.Get(AI_MATKEY_TWOSIDED, twoSided) == aiReturn_SUCCESS && twoSided != 0;
   return result;
 }
 
-std::optional<Json> MaterialImporter::textureInfo(const aiMaterial& material, int kind) {
+std::optional<gltf::TextureUse> MaterialImporter::textureUse(const aiMaterial& material, int kind) {
   aiString path;
   unsigned uvSet = 0;
   const auto type = static_cast<aiTextureType>(kind);
   if (material.GetTexture(type, 0, &path, nullptr, &uvSet) != aiReturn_SUCCESS || path.length == 0) return std::nullopt;
   const std::optional<Index> index = texture(std::string(path.data, path.length));
   if (!index) return std::nullopt;
-  Json info = {{"index", *index}};
-  if (uvSet > 0 && uvSet < AI_MAX_NUMBER_OF_TEXTURECOORDS) info["texCoord"] = uvSet;
-  return info;
+  gltf::TextureUse use;
+  use.index = *index;
+  if (uvSet < AI_MAX_NUMBER_OF_TEXTURECOORDS) use.texCoord = uvSet;
+  return use;
 }
 
 std::optional<Index> MaterialImporter::texture(const std::string& path) {
@@ -120,11 +100,13 @@ std::optional<Index> MaterialImporter::texture(const std::string& path) {
     asset_.warnings.add("unsupported-images", "textures that are neither PNG nor JPEG are left out", validUtf8(path));
     return std::nullopt;
   }
-  const Index view = addImageView(asset_, *bytes);
-  Json& json = asset_.json();
-  json["images"].push_back({{"name", validUtf8(path)}, {"bufferView", view}, {"mimeType", mime}});
-  json["textures"].push_back({{"source", json["images"].size() - 1}});
-  return known->second = static_cast<Index>(json["textures"].size() - 1);
+  gltf::Image image;
+  image.name = validUtf8(path);
+  image.bufferView = addBufferView(asset_, *bytes);
+  image.mimeType = mime;
+  gltf::Texture texture;
+  texture.source = addElement(asset_.document.images, std::move(image));
+  return known->second = addElement(asset_.document.textures, std::move(texture));
 }
 
 std::optional<Bytes> MaterialImporter::imageBytes(const std::string& path) {

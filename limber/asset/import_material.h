@@ -23,9 +23,9 @@ class MaterialImporter {
   Index material(unsigned index);
 
  private:
-  Json convert(const aiMaterial& material);
-  // {"index": texture} for the first texture of that kind; none where there is none or it cannot be had.
-  std::optional<Json> textureInfo(const aiMaterial& material, int kind);
+  gltf::Material convert(const aiMaterial& material);
+  // The first texture of that kind; none where there is none or it cannot be had.
+  std::optional<gltf::TextureUse> textureUse(const aiMaterial& material, int kind);
   std::optional<Index> texture(const std::string& path);
   std::optional<Bytes> imageBytes(const std::string& path);
 

@@ -9,10 +9,10 @@
 #include <cstring>
 #include <numeric>
 #include <string>
+#include <utility>
 
 #include <assimp/mesh.h>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "limber/asset/accessor.h"
 #include "limber/asset/import_text.h"
@@ -23,7 +23,7 @@ namespace limber {
 
 namespace {
 
-constexpr int kPoints = 0, kLines = 1, kTriangles = 4;  // primitive modes
+constexpr Index kPoints = 0, kLines = 1;  // primitive modes
 
 // A vertex attribute: #V rows of `components` floats.
 struct Attribute {
@@ -217,18 +217,15 @@ Index addIndices(Asset& asset, const std::vector<Index>& indices, ComponentType 
                      kIndexTarget);
 }
 
-Json primitiveOf(Asset& asset, const Json& attributes, std::vector<Index> corners, const Joined& joined, int mode) {
+Index addCorners(Asset& asset, std::vector<Index> corners, const Joined& joined) {
   for (Index& corner : corners) corner = joined.vertex[corner];
-  Json primitive = Json::object();
-  primitive["attributes"] = attributes;
-  primitive["indices"] = joined.kept.size() < 0xffff ? addIndices<std::uint16_t>(asset, corners, ComponentType::kU16)
-                                                     : addIndices<std::uint32_t>(asset, corners, ComponentType::kU32);
-  if (mode != kTriangles) primitive["mode"] = mode;
-  return primitive;
+  return joined.kept.size() < 0xffff ? addIndices<std::uint16_t>(asset, corners, ComponentType::kU16)
+                                     : addIndices<std::uint32_t>(asset, corners, ComponentType::kU32);
 }
 
 // JOINTS_n and WEIGHTS_n of the joined vertices.
-Json weightAttributes(Asset& asset, const SkinWeights& weights, const Joined& joined, Index skinJointCount) {
+gltf::Attributes weightAttributes(Asset& asset, const SkinWeights& weights, const Joined& joined,
+                                  Index skinJointCount) {
   SkinWeights kept;
   kept.slots = weights.slots;
   kept.joints = pickRows(weights.joints, weights.slots, joined.kept);
@@ -242,30 +239,37 @@ Json weightAttributes(Asset& asset, const SkinWeights& weights, const Joined& jo
 
 }  // namespace
 
-std::vector<Json> importPrimitives(Asset& asset, const aiMesh& mesh, double scale, const SkinWeights& weights,
-                                   Index skinJointCount) {
+std::vector<gltf::Primitive> importPrimitives(Asset& asset, const aiMesh& mesh, double scale,
+                                              const SkinWeights& weights, Index skinJointCount) {
   if (mesh.mNumVertices == 0) return {};
   const Faces faces = facesOf(mesh);
   const std::vector<Attribute> attributes = attributesOf(asset, mesh, scale, faces);
   const Joined joined = joinVertices(VertexRows(attributes, weights, mesh.mNumVertices), mesh.mNumVertices);
 
-  Json accessors = Json::object();
+  gltf::Primitive primitive;
   for (const Attribute& attribute : attributes) {
-    accessors[attribute.name] = addFloatAccessor(asset, pickRows(attribute.values, attribute.components, joined.kept),
-                                                 attribute.components, kVertexTarget, attribute.name == "POSITION");
+    const std::vector<float> values = pickRows(attribute.values, attribute.components, joined.kept);
+    primitive.attributes.set(attribute.name, addFloatAccessor(asset, values, attribute.components, kVertexTarget,
+                                                              attribute.name == "POSITION"));
   }
   if (weights.slots > 0) {
-    const Json added = weightAttributes(asset, weights, joined, skinJointCount);
-    for (const auto& [name, accessor] : added.items()) accessors[name] = accessor;
+    for (const auto& [name, accessor] : weightAttributes(asset, weights, joined, skinJointCount)) {
+      primitive.attributes.set(name, accessor);
+    }
   }
 
-  std::vector<Json> primitives;
-  constexpr std::array<int, 3> kModes = {kPoints, kLines, kTriangles};
+  std::vector<gltf::Primitive> primitives;
+  constexpr std::array<Index, 3> kModes = {kPoints, kLines, gltf::kTriangles};
   for (int kind = 2; kind >= 0; --kind) {
     if (faces.corners[kind].empty()) continue;
-    primitives.push_back(primitiveOf(asset, accessors, faces.corners[kind], joined, kModes[kind]));
+    primitive.indices = addCorners(asset, faces.corners[kind], joined);
+    primitive.mode = kModes[kind];
+    primitives.push_back(primitive);
   }
-  if (primitives.empty()) primitives.push_back({{"attributes", accessors}, {"mode", kPoints}});
+  if (primitives.empty()) {
+    primitive.mode = kPoints;
+    primitives.push_back(std::move(primitive));
+  }
   return primitives;
 }
 

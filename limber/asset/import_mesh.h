@@ -16,7 +16,7 @@ namespace limber {
 // positions are multiplied by `scale`. `weights` are those of the mesh's vertices over the joints of its skin; none (no
 // slots) for a mesh without a skin. Throws Error kBadData for a position that is not finite or an index out of range.
 // Repairs (normals of length 0, attributes that are not finite) are counted in the asset's warnings.
-std::vector<Json> importPrimitives(Asset& asset, const aiMesh& mesh, double scale, const SkinWeights& weights,
-                                   Index skinJointCount);
+std::vector<gltf::Primitive> importPrimitives(Asset& asset, const aiMesh& mesh, double scale,
+                                              const SkinWeights& weights, Index skinJointCount);
 
 }  // namespace limber

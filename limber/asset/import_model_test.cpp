@@ -7,11 +7,11 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 #include "limber/asset/accessor.h"
 #include "limber/asset/import_obj.h"
 #include "limber/asset/rig_io.h"
+#include "limber/asset/testing/document_json.h"
 #include "warning_kinds.h"
 
 namespace limber {
@@ -45,8 +45,12 @@ Error errorOf(std::string_view text, std::string_view name) {
   return Error(ErrorCode::kCancelled, "");
 }
 
-const Json& primitiveOf(const Asset& asset, Index mesh = 0) {
-  return asset.json()["meshes"][mesh]["primitives"][0];
+const gltf::Primitive& primitiveOf(const Asset& asset) {
+  return asset.document.meshes.at(0).primitives.at(0);
+}
+
+std::vector<float> attributeOf(const Asset& asset, const char* name) {
+  return readFloats(asset, primitiveOf(asset).attributes.find(name).value());
 }
 
 double areaOf(const Geometry& geometry) {
@@ -80,16 +84,15 @@ constexpr const char* kSquareObj =
 TEST(ImportObj, AQuadIsTwoTrianglesOverFourVertices) {
   const Asset asset = import(kSquareObj, "square.obj");
   EXPECT_EQ(asset.format, "obj");
-  EXPECT_EQ(asset.json()["nodes"][0]["name"], "square");
+  EXPECT_EQ(asset.document.nodes.at(0).name, "square");
   const Geometry geometry = collectGeometry(asset);
   EXPECT_EQ(geometry.positions.size(), 4u);
   EXPECT_EQ(geometry.triangles.size(), 2u);
   EXPECT_DOUBLE_EQ(areaOf(geometry), 1);
-  const Json& attributes = primitiveOf(asset)["attributes"];
-  const std::vector<float> normals = readFloats(asset, attributes["NORMAL"].get<Index>());
+  const std::vector<float> normals = attributeOf(asset, "NORMAL");
   EXPECT_EQ(std::vector<float>(normals.begin(), normals.begin() + 3), (std::vector<float>{0, 0, 1}));
   // v counts downwards in glTF: the corner at the origin is at the bottom of the picture.
-  const std::vector<float> uvs = readFloats(asset, attributes["TEXCOORD_0"].get<Index>());
+  const std::vector<float> uvs = attributeOf(asset, "TEXCOORD_0");
   for (Index v = 0; v < 4; ++v) {
     EXPECT_EQ(uvs[2 * v], geometry.positions[v].x());
     EXPECT_EQ(uvs[2 * v + 1], 1 - geometry.positions[v].y());
@@ -122,16 +125,15 @@ TEST(ImportObj, MaterialsAndTexturesComeThroughTheResolver) {
   const Asset asset = import(kSquareObj, "square.obj",
                              folder({{"looks.mtl", "newmtl red\nKd 1 0.5 0.25\nd 0.5\nmap_Kd textures\\skin.png\n"},
                                      {"textures/skin.png", png}}));
-  const Json& json = asset.json();
-  const Json& material = json["materials"][primitiveOf(asset)["material"].get<Index>()];
-  EXPECT_EQ(material["name"], "red");
-  EXPECT_EQ(material["pbrMetallicRoughness"]["baseColorFactor"], Json::array({1.0, 0.5, 0.25, 0.5}));
-  EXPECT_EQ(material["alphaMode"], "BLEND");
-  EXPECT_EQ(material["pbrMetallicRoughness"]["baseColorTexture"]["index"], 0);
-  const Json& view = json["bufferViews"][json["images"][0]["bufferView"].get<Index>()];
-  const Bytes& buffer = asset.buffers[0].bytes;
-  const auto start = buffer.begin() + view["byteOffset"].get<std::ptrdiff_t>();
-  EXPECT_EQ(std::string(start, start + view["byteLength"].get<std::ptrdiff_t>()), png);
+  const gltf::Document& document = asset.document;
+  const gltf::Material& material = document.materials.at(primitiveOf(asset).material.value());
+  EXPECT_EQ(material.name, "red");
+  EXPECT_EQ(material.pbrMetallicRoughness.value().baseColorFactor, Vec4(1, 0.5, 0.25, 0.5));
+  EXPECT_EQ(material.alphaMode, "BLEND");
+  EXPECT_EQ(material.pbrMetallicRoughness.value().baseColorTexture.value().index, 0u);
+  const gltf::BufferView& view = document.bufferViews.at(document.images.at(0).bufferView.value());
+  const auto start = asset.buffers[0].bytes.begin() + static_cast<std::ptrdiff_t>(view.byteOffset);
+  EXPECT_EQ(std::string(start, start + static_cast<std::ptrdiff_t>(view.byteLength)), png);
   EXPECT_TRUE(asset.warnings.empty());
 }
 
@@ -139,7 +141,7 @@ TEST(ImportObj, AMissingTextureIsTold) {
   const Asset asset =
       import(kSquareObj, "square.obj", folder({{"looks.mtl", "newmtl red\nKd 1 1 1\nmap_Kd C:/gone/skin.png\n"}}));
   EXPECT_EQ(warningKinds(asset.warnings), std::vector<std::string>{"missing-images"});
-  EXPECT_FALSE(asset.json().contains("textures"));
+  EXPECT_TRUE(asset.document.textures.empty());
 }
 
 TEST(ImportObj, NothingOutsideTheFolderIsOpened) {
@@ -180,7 +182,7 @@ TEST(ImportObj, LooseVerticesAreCounted) {
 TEST(ImportObj, NormalsWithoutADirectionAreMadeAnew) {
   const Asset asset = import("v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 0\nf 1//1 2//1 3//1\n", "t.obj");
   EXPECT_EQ(warningKinds(asset.warnings), std::vector<std::string>{"invalid-normals"});
-  const std::vector<float> normals = readFloats(asset, primitiveOf(asset)["attributes"]["NORMAL"].get<Index>());
+  const std::vector<float> normals = attributeOf(asset, "NORMAL");
   EXPECT_EQ(std::vector<float>(normals.begin(), normals.begin() + 3), (std::vector<float>{0, 0, 1}));
 }
 
@@ -195,7 +197,7 @@ constexpr const char* kTrianglePly =
 TEST(ImportPly, ColoursComeAlong) {
   const Asset asset = import(kTrianglePly, "t.ply");
   EXPECT_EQ(asset.format, "ply");
-  const std::vector<float> colors = readFloats(asset, primitiveOf(asset)["attributes"]["COLOR_0"].get<Index>());
+  const std::vector<float> colors = attributeOf(asset, "COLOR_0");
   ASSERT_EQ(colors.size(), 12u);
   EXPECT_NEAR(colors[0], 1, 1e-3);
   EXPECT_NEAR(colors[1], 0, 1e-3);
@@ -222,7 +224,7 @@ TEST(ImportPly, APointCloudIsReadAndHasNoTriangle) {
       "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\nend_header\n"
       "0 0 0\n1 0 0\n",
       "t.ply");
-  EXPECT_EQ(primitiveOf(asset)["mode"], 0);
+  EXPECT_EQ(primitiveOf(asset).mode, 0u);
   EXPECT_THROW(collectGeometry(asset), Error);
 }
 
@@ -241,7 +243,7 @@ TEST(ImportStl, FacetsShareTheirCornersAndHaveNoNormals) {
   const Geometry geometry = collectGeometry(asset);
   EXPECT_EQ(geometry.positions.size(), 4u);
   EXPECT_DOUBLE_EQ(areaOf(geometry), 1);
-  EXPECT_FALSE(primitiveOf(asset)["attributes"].contains("NORMAL"));
+  EXPECT_FALSE(primitiveOf(asset).attributes.find("NORMAL"));
 }
 
 TEST(ImportStl, BinaryIsToldFromItsLength) {
@@ -295,7 +297,7 @@ TEST(ImportFbx, CentimetresBecomeMetres) {
   const Geometry geometry = collectGeometry(asset);
   EXPECT_TRUE(sizeOf(geometry).isApprox(Vec3(1, 0, 2), 1e-6));
   EXPECT_NEAR(geometry.positions[0].z(), 0.5, 1e-6);  // the node's translation is converted too
-  EXPECT_FALSE(asset.json()["nodes"][0].contains("scale"));
+  EXPECT_FALSE(asset.document.nodes.at(0).scale);
 }
 
 TEST(ImportFbx, ZUpBecomesYUp) {
@@ -371,31 +373,30 @@ TEST(ImportDae, SkinAndSkeletonComeInMetres) {
 
 TEST(ImportDae, TheSkinnedMeshStandsAtTheRoot) {
   const Asset asset = import(kCharacterDae, "t.dae");
-  const Json& nodes = asset.json()["nodes"];
-  const auto& roots = asset.json()["scenes"][0]["nodes"];
-  for (Index n = 0; n < nodes.size(); ++n) {
-    if (!nodes[n].contains("skin")) continue;
-    EXPECT_THAT(roots.get<std::vector<Index>>(), Contains(n));
-    EXPECT_EQ(nodes[n]["name"], "actor");
-    EXPECT_FALSE(nodes[n].contains("translation"));
+  for (Index n = 0; n < asset.document.nodeCount(); ++n) {
+    const gltf::Node& node = asset.document.nodes[n];
+    if (!node.skin) continue;
+    EXPECT_THAT(asset.document.scenes.at(0).nodes, Contains(n));
+    EXPECT_EQ(node.name, "actor");
+    EXPECT_FALSE(node.translation);
   }
 }
 
 TEST(ImportDae, TheClipMovesTheJointInSecondsAndMetres) {
   const Asset asset = import(kCharacterDae, "t.dae");
-  ASSERT_EQ(asset.json()["animations"].size(), 1u);
-  const Json& clip = asset.json()["animations"][0];
+  ASSERT_EQ(asset.document.animations.size(), 1u);
+  const gltf::Animation& clip = asset.document.animations[0];
   bool sawTranslation = false;
-  for (const Json& channel : clip["channels"]) {
-    const Json& sampler = clip["samplers"][channel["sampler"].get<Index>()];
-    const std::vector<float> times = readFloats(asset, sampler["input"].get<Index>());
+  for (const gltf::AnimationChannel& channel : clip.channels) {
+    const gltf::AnimationSampler& sampler = clip.samplers.at(channel.sampler);
+    const std::vector<float> times = readFloats(asset, sampler.input);
     EXPECT_FLOAT_EQ(times.back(), 1.5f);
-    EXPECT_EQ(asset.json()["nodes"][channel["target"]["node"].get<Index>()]["name"], "chest");
-    const std::vector<float> values = readFloats(asset, sampler["output"].get<Index>());
-    if (channel["target"]["path"] == "translation") {
+    EXPECT_EQ(asset.document.nodes.at(channel.target.node.value()).name, "chest");
+    const std::vector<float> values = readFloats(asset, sampler.output);
+    if (channel.target.path == "translation") {
       sawTranslation = true;
       EXPECT_NEAR(values[values.size() - 2], 0.7, 1e-6);
-    } else if (channel["target"]["path"] == "rotation") {
+    } else if (channel.target.path == "rotation") {
       EXPECT_NEAR(values[values.size() - 1], std::sqrt(0.5), 1e-5);
     }
   }
@@ -432,7 +433,7 @@ TEST(ImportModel, AnswersOnOneLineWhatAssimpSays) {
 
 TEST(ImportModel, IsTheSameEveryTime) {
   const Asset a = import(kCharacterDae, "t.dae"), b = import(kCharacterDae, "t.dae");
-  EXPECT_EQ(a.json(), b.json());
+  EXPECT_EQ(testing::documentJson(a), testing::documentJson(b));
   EXPECT_EQ(a.buffers[0].bytes, b.buffers[0].bytes);
 }
 

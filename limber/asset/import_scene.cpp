@@ -3,10 +3,10 @@
 #include <map>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <assimp/scene.h>
-#include <nlohmann/json.hpp>
 
 #include "limber/asset/accessor.h"
 #include "limber/asset/import_animation.h"
@@ -29,14 +29,14 @@ class SceneConverter {
   }
 
   Asset convert() {
-    asset_.json()["asset"] = {{"version", "2.0"}, {"generator", "limber"}};
+    document_.about.generator = "limber";
     findAnimated();
     planSkins(*scene_.mRootNode);
     addNodes();
     for (const SkinnedPart& part : parts_) addSkinnedPart(part);
-    if (asset_.json().contains("nodes")) {
-      asset_.json()["scene"] = 0;
-      asset_.json()["scenes"] = Json::array({{{"nodes", roots_}}});
+    if (!document_.nodes.empty()) {
+      document_.scene = 0;
+      document_.scenes.emplace_back().nodes = roots_;
     }
     importAnimations(asset_, scene_, nodeOf_, scale_);
     warnOfOthers();
@@ -97,56 +97,47 @@ class SceneConverter {
   }
 
   void addNode(const aiNode& node) {
-    Json result = Json::object();
+    gltf::Node result;
     const std::string name = textOf(node.mName);
-    if (!name.empty()) result["name"] = names_.add(name);
+    if (!name.empty()) result.name = names_.add(name);
     setNodeTransform(result, localOf(node), animated_.count(&node) == 0 && joints_.count(&node) == 0);
     const std::vector<unsigned> meshes = rigidMeshes(node);
-    if (!meshes.empty()) {
-      if (const std::optional<Index> mesh = rigidMesh(meshes, name)) result["mesh"] = *mesh;
-    }
+    if (!meshes.empty()) result.mesh = rigidMesh(meshes, name);
 
-    Json& nodes = asset_.json()["nodes"];
-    const auto index = static_cast<Index>(nodes.size());
-    nodes.push_back(std::move(result));
+    const Index index = addElement(document_.nodes, std::move(result));
     nodeOf_[&node] = index;
     const auto parent = node.mParent ? nodeOf_.find(node.mParent) : nodeOf_.end();
-    if (parent == nodeOf_.end()) {
-      roots_.push_back(index);
-    } else {
-      nodes[parent->second]["children"].push_back(index);
-    }
+    (parent == nodeOf_.end() ? roots_ : document_.nodes[parent->second].children).push_back(index);
   }
 
   std::optional<Index> rigidMesh(const std::vector<unsigned>& meshes, const std::string& nodeName) {
     const auto known = rigidMeshes_.find(meshes);
     if (known != rigidMeshes_.end()) return known->second;
-    Json primitives = Json::array();
+    std::vector<gltf::Primitive> primitives;
     for (const unsigned m : meshes) appendPrimitives(primitives, *scene_.mMeshes[m], {}, 0);
     return rigidMeshes_[meshes] = addMesh(std::move(primitives), nodeName);
   }
 
-  void appendPrimitives(Json& primitives, const aiMesh& mesh, const SkinWeights& weights, Index joints) {
-    for (Json& primitive : importPrimitives(asset_, mesh, scale_, weights, joints)) {
-      if (mesh.mMaterialIndex < scene_.mNumMaterials) primitive["material"] = materials_.material(mesh.mMaterialIndex);
+  void appendPrimitives(std::vector<gltf::Primitive>& primitives, const aiMesh& mesh, const SkinWeights& weights,
+                        Index joints) {
+    for (gltf::Primitive& primitive : importPrimitives(asset_, mesh, scale_, weights, joints)) {
+      if (mesh.mMaterialIndex < scene_.mNumMaterials) primitive.material = materials_.material(mesh.mMaterialIndex);
       primitives.push_back(std::move(primitive));
     }
     asset_.warnings.add("morph-targets", "morph targets are left out", textOf(mesh.mName), mesh.mNumAnimMeshes);
   }
 
-  std::optional<Index> addMesh(Json primitives, const std::string& name) {
+  std::optional<Index> addMesh(std::vector<gltf::Primitive> primitives, const std::string& name) {
     if (primitives.empty()) return std::nullopt;
-    Json mesh = Json::object();
-    if (!name.empty()) mesh["name"] = name;
-    mesh["primitives"] = std::move(primitives);
-    Json& meshes = asset_.json()["meshes"];
-    meshes.push_back(std::move(mesh));
-    return static_cast<Index>(meshes.size() - 1);
+    gltf::Mesh mesh;
+    mesh.name = name;
+    mesh.primitives = std::move(primitives);
+    return addElement(document_.meshes, std::move(mesh));
   }
 
   void addSkinnedPart(const SkinnedPart& part) {
     const ImportSkin& skin = part.skin;
-    Json primitives = Json::array();
+    std::vector<gltf::Primitive> primitives;
     for (const unsigned m : skin.meshes) {
       appendPrimitives(primitives, *scene_.mMeshes[m], skins_.weightsOf(*scene_.mMeshes[m], skin),
                        static_cast<Index>(skin.joints.size()));
@@ -156,21 +147,18 @@ class SceneConverter {
     if (!mesh) return;
 
     std::vector<float> inverseBinds;
-    Json joints = Json::array();
+    gltf::Skin bound;
     for (std::size_t j = 0; j < skin.joints.size(); ++j) {
       const Mat4 matrix = scaledAffine(skin.inverseBinds[j], scale_).matrix();
       for (int i = 0; i < 16; ++i) inverseBinds.push_back(static_cast<float>(matrix(i % 4, i / 4)));
-      joints.push_back(nodeOf_.at(skin.joints[j]));
+      bound.joints.push_back(nodeOf_.at(skin.joints[j]));
     }
-    const Index accessor = addFloatAccessor(asset_, inverseBinds, 16);
-    Json& json = asset_.json();
-    json["skins"].push_back({{"inverseBindMatrices", accessor}, {"joints", std::move(joints)}});
-    Json node = Json::object();
-    if (!name.empty()) node["name"] = names_.add(nodeOf_.count(part.owner) > 0 ? name + "_skinned" : name);
-    node["mesh"] = *mesh;
-    node["skin"] = json["skins"].size() - 1;
-    roots_.push_back(static_cast<Index>(json["nodes"].size()));
-    json["nodes"].push_back(std::move(node));
+    bound.inverseBindMatrices = addFloatAccessor(asset_, inverseBinds, 16);
+    gltf::Node node;
+    if (!name.empty()) node.name = names_.add(nodeOf_.count(part.owner) > 0 ? name + "_skinned" : name);
+    node.mesh = mesh;
+    node.skin = addElement(document_.skins, std::move(bound));
+    roots_.push_back(addElement(document_.nodes, std::move(node)));
   }
 
   void warnOfOthers() {
@@ -182,6 +170,7 @@ class SceneConverter {
   double scale_;
   Affine axes_ = Affine::Identity();
   Asset asset_;
+  gltf::Document& document_ = asset_.document;
   MaterialImporter materials_;
   SkinImporter skins_;
   UniqueNames names_;

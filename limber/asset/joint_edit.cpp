@@ -3,11 +3,11 @@
 #include <algorithm>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "limber/asset/accessor.h"
 #include "limber/asset/accessor_sweep.h"
 #include "limber/asset/bind_pose.h"
+#include "limber/asset/joint_radius.h"
 #include "limber/asset/node_edit.h"
 #include "limber/asset/scene_graph.h"
 
@@ -18,8 +18,7 @@ namespace {
 // A joint's name is its node's from now on, so that no other joint changes its name when one comes or goes.
 void writeNames(Asset& asset, const AssetSkeleton& skeleton) {
   for (Index j = 0; j < skeleton.jointNode.size(); ++j) {
-    Json& node = asset.json()["nodes"][skeleton.jointNode[j]];
-    if (nameOf(node) != skeleton.skeleton.joints[j].name) node["name"] = skeleton.skeleton.joints[j].name;
+    asset.document.nodes[skeleton.jointNode[j]].name = skeleton.skeleton.joints[j].name;
   }
 }
 
@@ -29,10 +28,9 @@ void appendMatrix(std::vector<float>& values, const Affine& matrix) {
 
 // Other joints for a skin, each with where it was bound.
 void writeSkinJoints(Asset& asset, Index skin, const std::vector<Index>& nodes, const std::vector<float>& matrices) {
-  const Index accessor = addFloatAccessor(asset, matrices, 16);
-  Json& target = asset.json()["skins"][skin];
-  target["joints"] = nodes;
-  target["inverseBindMatrices"] = accessor;
+  gltf::Skin& target = asset.document.skins[skin];
+  target.joints = nodes;
+  target.inverseBindMatrices = addFloatAccessor(asset, matrices, 16);
 }
 
 // Mesh space of the skin -> a joint that is bound at `bind` in the world.
@@ -46,8 +44,8 @@ Affine toJoint(const Affine& bind, const Affine& skinToWorld, Index node) {
 std::vector<Index> skinsOf(const Asset& asset, const AssetSkeleton& skeleton, Index joint) {
   const auto with = [&](Index node) {
     std::vector<Index> skins;
-    for (Index skin = 0; skin < elementCount(asset, "skins"); ++skin) {
-      const std::vector<Index> joints = readSkinBinding(asset, skin).joints;
+    for (Index skin = 0; skin < asset.document.skins.size(); ++skin) {
+      const std::vector<Index>& joints = asset.document.skins[skin].joints;
       if (std::find(joints.begin(), joints.end(), node) != joints.end()) skins.push_back(skin);
     }
     return skins;
@@ -59,44 +57,30 @@ std::vector<Index> skinsOf(const Asset& asset, const AssetSkeleton& skeleton, In
   return {};
 }
 
-void eraseNode(Json& list, Index node) {
-  list.erase(std::remove(list.begin(), list.end(), Json(node)), list.end());
-}
-
 // Takes a node off what it hangs on: a node, or scenes that show it as a root.
-void unhang(Asset& asset, const SceneGraph& graph, Index node) {
-  Json& json = asset.json();
+void unhang(gltf::Document& document, const SceneGraph& graph, Index node) {
   if (graph.parent[node]) {
-    Json& above = json["nodes"][*graph.parent[node]];
-    eraseNode(above["children"], node);
-    if (above["children"].empty()) above.erase("children");
+    std::erase(document.nodes[*graph.parent[node]].children, node);
     return;
   }
-  const auto scenes = json.find("scenes");
-  if (scenes == json.end()) return;
-  for (Json& scene : *scenes) {
-    if (!scene.contains("nodes")) continue;
-    eraseNode(scene["nodes"], node);
-    if (scene["nodes"].empty()) scene.erase("nodes");
-  }
+  for (gltf::Scene& scene : document.scenes) std::erase(scene.nodes, node);
 }
 
 // Below another node, standing in the same place.
 void hangNode(Asset& asset, Index node, Index parent) {
-  const SceneGraph graph = readSceneGraph(asset);
+  const SceneGraph graph = readSceneGraph(asset.document);
   const Affine local = graph.world[parent].inverse(Eigen::Affine) * graph.world[node];
   if (!local.matrix().allFinite()) {
     throw Error(ErrorCode::kBadData, "has a scale of 0, so nothing can hang on it", fmt::format("nodes[{}]", parent));
   }
-  unhang(asset, graph, node);
-  Json& nodes = asset.json()["nodes"];
-  nodes[parent]["children"].push_back(node);
-  setNodeTransform(nodes[node], local, false);
+  unhang(asset.document, graph, node);
+  asset.document.nodes[parent].children.push_back(node);
+  setNodeTransform(asset.document.nodes[node], local, false);
 }
 
 // Node -> its skins' joints without it, with `heir` in its place where nothing would be left.
 void takeOutOfSkins(Asset& asset, const BindPose& bind, Index node, Index heir) {
-  for (Index skin = 0; skin < elementCount(asset, "skins"); ++skin) {
+  for (Index skin = 0; skin < asset.document.skins.size(); ++skin) {
     const SkinBinding binding = readSkinBinding(asset, skin);
     if (std::find(binding.joints.begin(), binding.joints.end(), node) == binding.joints.end()) continue;
     std::vector<Index> nodes;
@@ -111,13 +95,13 @@ void takeOutOfSkins(Asset& asset, const BindPose& bind, Index node, Index heir) 
       appendMatrix(matrices, toJoint(bind.nodeWorld[heir], bind.skinToWorld[skin], heir));
     }
     writeSkinJoints(asset, skin, nodes, matrices);
-    Json& target = asset.json()["skins"][skin];
-    if (indexMember(target, "skeleton") == node) target.erase("skeleton");
+    std::optional<Index>& root = asset.document.skins[skin].skeleton;
+    if (root == node) root.reset();
   }
 }
 
-bool holdsMore(const Json& node) {
-  return node.contains("mesh") || node.contains("camera") || node.contains("extensions");
+bool holdsMore(const gltf::Node& node) {
+  return node.mesh || node.camera || node.extensions.exists();
 }
 
 }  // namespace
@@ -125,20 +109,19 @@ bool holdsMore(const Json& node) {
 void addJoint(Asset& asset, const AssetSkeleton& skeleton, Index parent, const Vec3& translation,
               const std::string& name) {
   const AccessorSweep unused(asset);
-  const BindPose bind = readBindPose(asset, readSceneGraph(asset));
+  const BindPose bind = readBindPose(asset, readSceneGraph(asset.document));
   const std::vector<Index> skins = skinsOf(asset, skeleton, parent);
   writeNames(asset, skeleton);
   const Index above = skeleton.jointNode[parent];
   Affine local = Affine::Identity();
   local.translation() = translation;
-  Json& nodes = asset.json()["nodes"];
-  const auto node = static_cast<Index>(nodes.size());
-  Json added = {{"name", name}};
+  gltf::Node added;
+  added.name = name;
   setNodeTransform(added, local, false);
   const double radius = skeleton.skeleton.joints[parent].radius;
-  if (radius > 0) added["extras"]["limber_radius"] = shortDouble(radius);
-  nodes.push_back(std::move(added));
-  nodes[above]["children"].push_back(node);
+  if (radius > 0) storeRadius(added, radius);
+  const Index node = addElement(asset.document.nodes, std::move(added));
+  asset.document.nodes[above].children.push_back(node);
   for (const Index skin : skins) {
     const SkinBinding binding = readSkinBinding(asset, skin);
     std::vector<Index> joints = binding.joints;
@@ -162,16 +145,16 @@ void removeJoint(Asset& asset, const Geometry& geometry, const AssetSkeleton& sk
     const AccessorSweep unused(asset);
     writeNames(asset, skeleton);
     const Index node = skeleton.jointNode[joint];
-    takeOutOfSkins(asset, readBindPose(asset, readSceneGraph(asset)), node, skeleton.jointNode[heir]);
+    takeOutOfSkins(asset, readBindPose(asset, readSceneGraph(asset.document)), node, skeleton.jointNode[heir]);
     unused.sweep(asset);
   }
   replaceWeights(asset, geometry, skeleton, weights);
   if (!skeleton.skeleton.joints[joint].parent) return;
-  const SceneGraph graph = readSceneGraph(asset);
+  const SceneGraph graph = readSceneGraph(asset.document);
   const Index node = skeleton.jointNode[joint];
-  const Json children = elements(asset, "nodes")[node].value("children", Json::array());
-  for (const Json& child : children) hangNode(asset, child.get<Index>(), *graph.parent[node]);
-  if (holdsMore(elements(asset, "nodes")[node])) return;
+  const std::vector<Index> children = asset.document.nodes[node].children;
+  for (const Index child : children) hangNode(asset, child, *graph.parent[node]);
+  if (holdsMore(asset.document.nodes[node])) return;
   std::vector<bool> keep(graph.nodeCount(), true);
   keep[node] = false;
   deleteNodes(asset, keep);

@@ -146,4 +146,9 @@ Index JsonView::asIndex(std::size_t limit) const {
   return static_cast<Index>(number);
 }
 
+const Json* member(const Json& object, const char* key) {
+  const auto found = object.find(key);
+  return found == object.end() ? nullptr : &*found;
+}
+
 }  // namespace limber

@@ -10,8 +10,8 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "limber/asset/asset.h"
-#include "limber/core/types.h"
+#include "limber/asset/gltf.h"
+#include "limber/core/error.h"
 
 namespace limber {
 
@@ -23,7 +23,8 @@ namespace limber {
 class JsonView {
  public:
   explicit JsonView(const Json& root) : value_(&root) {}
-  explicit JsonView(const Asset& asset) : JsonView(asset.json()) {}
+  // A value that stands at `place` of a larger one; null: absent. `place` must live as long.
+  JsonView(const Json* value, std::string_view place) : value_(value), steps_{Step{place}}, depth_(1) {}
 
   bool exists() const { return value_ != nullptr; }
   const Json& json() const { return *value_; }  // only where exists()
@@ -58,7 +59,7 @@ class JsonView {
 
  private:
   struct Step {
-    std::string_view key;  // data() is null: an array element
+    std::string_view key = {};  // data() is null: an array element
     std::size_t element = 0;
   };
   static constexpr std::size_t kSteps = 10;  // deeper places are shortened to this in messages
@@ -69,5 +70,8 @@ class JsonView {
   std::array<Step, kSteps> steps_;
   std::size_t depth_ = 0;
 };
+
+// A member of a JSON object; null where it has none of that name, or is no object.
+const Json* member(const Json& object, const char* key);
 
 }  // namespace limber

@@ -6,6 +6,7 @@
 #include "limber/asset/check_asset.h"
 #include "limber/asset/read.h"
 #include "limber/asset/scene_graph.h"
+#include "limber/asset/testing/document_json.h"
 #include "limber/asset/testing/gltf_builder.h"
 #include "limber/asset/write.h"
 
@@ -60,7 +61,7 @@ Asset merged() {
 TEST(MergeAssets, RenumbersWhatTheSecondPartRefersTo) {
   const Asset asset = merged();
   checkAsset(asset);
-  const Json& json = asset.json();
+  const Json json = testing::documentJson(asset);
   EXPECT_EQ(json["materials"][1]["pbrMetallicRoughness"]["baseColorTexture"]["index"], 1);
   EXPECT_EQ(json["materials"][1]["extensions"]["KHR_materials_sheen"]["sheenColorTexture"]["index"], 1);
   EXPECT_EQ(json["textures"][1]["source"], 1);
@@ -80,25 +81,25 @@ TEST(MergeAssets, RenumbersWhatTheSecondPartRefersTo) {
 
 TEST(MergeAssets, PartsStandInTheirPlacesAndHangOnTheirCarriers) {
   const Asset asset = merged();
-  const SceneGraph graph = readSceneGraph(asset);
-  EXPECT_EQ(nameOf(asset.json()["nodes"][3]), "first");
-  EXPECT_EQ(nameOf(asset.json()["nodes"][7]), "body");
-  EXPECT_EQ(nameOf(asset.json()["nodes"][0]), "body_2");
+  const SceneGraph graph = readSceneGraph(asset.document);
+  EXPECT_EQ(asset.document.nodes[3].name, "first");
+  EXPECT_EQ(asset.document.nodes[7].name, "body");
+  EXPECT_EQ(asset.document.nodes[0].name, "body_2");
   EXPECT_EQ(graph.parent[7], 1u);
   EXPECT_TRUE(graph.world[5].translation().isApprox(Vec3(1, 2, 0)));
-  EXPECT_EQ(asset.json()["scenes"][0]["nodes"], Json({3}));
+  EXPECT_EQ(asset.document.scenes[0].nodes, std::vector<Index>{3});
 }
 
 TEST(MergeAssets, FilesOfOneNameStayTwo) {
   const Asset asset = merged();
   ASSERT_EQ(asset.sideFiles.size(), 2u);
   EXPECT_NE(asset.sideFiles[0].uri, asset.sideFiles[1].uri);
-  EXPECT_EQ(asset.json()["images"][1]["uri"], asset.sideFiles[1].uri);
+  EXPECT_EQ(asset.document.images[1].uri, asset.sideFiles[1].uri);
 }
 
 TEST(MergeAssets, WhatIsSaidOfAWholeModelIsLeftOutWithAWarning) {
   const Asset asset = merged();
-  EXPECT_FALSE(asset.json()["extensions"].contains("VRMC_vrm"));
+  EXPECT_FALSE(asset.document.extensions->contains("VRMC_vrm"));
   std::size_t warned = 0;
   for (const Warning& warning : asset.warnings.items()) warned += warning.kind == "scene-extensions";
   EXPECT_EQ(warned, 1u);

@@ -8,11 +8,9 @@
 #include <map>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "limber/asset/accessor.h"
 #include "limber/asset/images.h"
-#include "limber/asset/scene_graph.h"
 #include "limber/asset/texture_coordinates.h"
 #include "limber/core/names.h"
 #include "limber/mesh/normals.h"
@@ -31,13 +29,8 @@ std::string oneWord(std::string name, std::string_view kind, Index element) {
   return name;
 }
 
-const Json& primitiveOf(const Asset& asset, const PrimitiveInstance& instance) {
-  return asset.json()["meshes"][instance.mesh]["primitives"][instance.primitive];
-}
-
-// The accessor of an attribute, if the primitive has it.
-std::optional<Index> attribute(const Json& primitive, const char* name) {
-  return indexMember(primitive.at("attributes"), name);
+const gltf::Primitive& primitiveOf(const Asset& asset, const PrimitiveInstance& instance) {
+  return asset.document.meshes[instance.mesh].primitives[instance.primitive];
 }
 
 void copyUvs(const Asset& asset, const PrimitiveInstance& instance, std::vector<Vec2f>& uvs, std::size_t vertexCount) {
@@ -54,7 +47,7 @@ class SmoothGroups {
     std::vector<std::array<float, 7>> keys(rest.positions.size());
     for (std::size_t i = 0; i < rest.instances.size(); ++i) {
       const PrimitiveInstance& instance = rest.instances[i];
-      const std::optional<Index> accessor = attribute(primitiveOf(asset, instance), "NORMAL");
+      const std::optional<Index> accessor = primitiveOf(asset, instance).attributes.find("NORMAL");
       const std::vector<float> normals = accessor ? readFloats(asset, *accessor) : std::vector<float>();
       for (Index v = 0; v < instance.vertexCount; ++v) {
         std::array<float, 7>& key = keys[instance.firstVertex + v];
@@ -90,12 +83,11 @@ class SmoothGroups {
 };
 
 // The image of a material's base colour texture as a texture of the mesh, each image once.
-std::optional<Index> exportTexture(const Asset& asset, const Json& material, std::map<Index, Index>& known,
+std::optional<Index> exportTexture(const Asset& asset, const gltf::Material& material, std::map<Index, Index>& known,
                                    ExportMesh& mesh) {
-  const Json::json_pointer place("/pbrMetallicRoughness/baseColorTexture/index");
-  if (!material.contains(place)) return std::nullopt;
-  const Json& texture = asset.json()["textures"][material.at(place).get<std::size_t>()];
-  const std::optional<Index> source = indexMember(texture, "source");
+  const std::optional<gltf::MetallicRoughness>& surface = material.pbrMetallicRoughness;
+  if (!surface || !surface->baseColorTexture) return std::nullopt;
+  const std::optional<Index> source = asset.document.textures[surface->baseColorTexture->index].source;
   if (!source) return std::nullopt;
   if (const auto found = known.find(*source); found != known.end()) return found->second;
   std::optional<Bytes> bytes = imageBytes(asset, *source);
@@ -110,13 +102,11 @@ std::optional<Index> exportTexture(const Asset& asset, const Json& material, std
 void exportMaterials(const Asset& asset, ExportMesh& mesh) {
   std::map<Index, Index> known;
   Index count = 0;
-  for (const Json& material : elements(asset, "materials")) {
+  for (const gltf::Material& material : asset.document.materials) {
     ExportMaterial result;
-    result.name = fmt::format("{}_{}", oneWord(nameOf(material), "material", count), count);
-    if (const Json::json_pointer color("/pbrMetallicRoughness/baseColorFactor"); material.contains(color)) {
-      const Json& factor = material.at(color);
-      for (int i = 0; i < 4; ++i) result.color[i] = factor.at(static_cast<std::size_t>(i)).get<float>();
-    }
+    result.name = fmt::format("{}_{}", oneWord(material.name, "material", count), count);
+    const auto& surface = material.pbrMetallicRoughness;
+    if (surface && surface->baseColorFactor) result.color = surface->baseColorFactor->cast<float>();
     result.texture = exportTexture(asset, material, known, mesh);
     mesh.materials.push_back(std::move(result));
     ++count;
@@ -128,8 +118,8 @@ void exportParts(const Asset& asset, const Geometry& geometry, ExportMesh& mesh)
   std::size_t next = 0;
   for (const PrimitiveInstance& instance : geometry.instances) {
     ExportPart part;
-    const Json& node = asset.json()["nodes"][instance.node];
-    part.name = fmt::format("{}_{}", oneWord(nameOf(node), "node", instance.node), instance.primitive);
+    const std::string& node = asset.document.nodes[instance.node].name;
+    part.name = fmt::format("{}_{}", oneWord(node, "node", instance.node), instance.primitive);
     part.firstTriangle = next;
     const Index end = instance.firstVertex + instance.vertexCount;
     while (next < geometry.triangles.size() && geometry.triangles[next][0] >= instance.firstVertex &&
@@ -137,7 +127,7 @@ void exportParts(const Asset& asset, const Geometry& geometry, ExportMesh& mesh)
       ++next;
     }
     part.triangleCount = next - part.firstTriangle;
-    part.material = indexMember(primitiveOf(asset, instance), "material");
+    part.material = primitiveOf(asset, instance).material;
     if (part.triangleCount > 0) mesh.parts.push_back(std::move(part));
   }
 }

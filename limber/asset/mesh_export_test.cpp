@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "limber/asset/accessor.h"
+#include "limber/asset/testing/document_json.h"
 #include "limber/asset/testing/gltf_builder.h"
 
 namespace limber {
@@ -23,19 +24,19 @@ Asset strip() {
   const std::vector<std::uint16_t> indices = {0, 1, 2, 2, 1, 3};
   const auto* bytes = reinterpret_cast<const std::uint8_t*>(indices.data());
   const Index index = addAccessor(asset, {6, 1, ComponentType::kU16, false}, {bytes, 12}, kIndexTarget);
-  Json& json = asset.json();
-  json["asset"] = {{"version", "2.0"}};
-  json["meshes"] = Json::array(
-      {{{"primitives",
-         Json::array(
-             {{{"attributes", {{"POSITION", position}, {"TEXCOORD_0", uv}}}, {"indices", index}, {"material", 0}}})}}});
-  json["nodes"] = Json::array({{{"name", "bent strip"}, {"mesh", 0}, {"translation", {10, 0, 0}}}});
-  json["scenes"] = Json::array({{{"nodes", {0}}}});
-  json["materials"] = Json::array(
-      {{{"name", "blue cloth"},
-        {"pbrMetallicRoughness", {{"baseColorFactor", {0.25, 0.5, 1, 1}}, {"baseColorTexture", {{"index", 0}}}}}}});
-  json["textures"] = Json::array({{{"source", 0}}});
-  json["images"] = Json::array({{{"uri", "cloth.png"}}});
+  testing::editDocument(asset, [&](Json& json) {
+    json["meshes"] =
+        Json::array({{{"primitives", Json::array({{{"attributes", {{"POSITION", position}, {"TEXCOORD_0", uv}}},
+                                                   {"indices", index},
+                                                   {"material", 0}}})}}});
+    json["nodes"] = Json::array({{{"name", "bent strip"}, {"mesh", 0}, {"translation", {10, 0, 0}}}});
+    json["scenes"] = Json::array({{{"nodes", {0}}}});
+    json["materials"] = Json::array(
+        {{{"name", "blue cloth"},
+          {"pbrMetallicRoughness", {{"baseColorFactor", {0.25, 0.5, 1, 1}}, {"baseColorTexture", {{"index", 0}}}}}}});
+    json["textures"] = Json::array({{{"source", 0}}});
+    json["images"] = Json::array({{{"uri", "cloth.png"}}});
+  });
   asset.sideFiles.push_back({"cloth.png", testing::pngBytes()});
   return asset;
 }

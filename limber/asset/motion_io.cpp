@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "limber/asset/accessor.h"
 #include "limber/asset/clip_io.h"
@@ -24,74 +23,73 @@ std::string stemOf(std::string_view name) {
 }
 
 // #nodes: does a channel move the node?
-std::vector<bool> animatedNodes(const Asset& asset) {
-  std::vector<bool> animated(elementCount(asset, "nodes"), false);
-  for (const Json& animation : elements(asset, "animations")) {
-    const Json* channels = member(animation, "channels");
-    if (!channels) continue;
-    for (const Json& channel : *channels) {
-      const Json& target = channel.at("target");
-      const std::optional<Index> node = indexMember(target, "node");
-      if (node && target.value("path", "") != "weights") animated[*node] = true;
+std::vector<bool> animatedNodes(const gltf::Document& document) {
+  std::vector<bool> animated(document.nodes.size(), false);
+  for (const gltf::Animation& animation : document.animations) {
+    for (const gltf::AnimationChannel& channel : animation.channels) {
+      if (channel.target.node && channel.target.path != "weights") animated[*channel.target.node] = true;
     }
   }
   return animated;
 }
 
 // Shows nothing itself.
-bool isBare(const Json& node) {
-  return !node.contains("mesh") && !node.contains("camera") && !node.contains("extensions");
+bool isBare(const gltf::Node& node) {
+  return !node.mesh && !node.camera && !node.extensions.exists();
 }
 
 // Animated nodes, those between, and bare ones below: the ends of bones. Of a skeleton that nothing moves all bare
 // ones.
 std::vector<bool> movingTree(const Asset& asset, const SceneGraph& graph) {
-  const std::vector<bool> animated = animatedNodes(asset);
+  const std::vector<bool> animated = animatedNodes(asset.document);
   const bool all = isSkeletonAlone(asset) && std::find(animated.begin(), animated.end(), true) == animated.end();
   std::vector<bool> below(animated), inside(animated), wanted(animated);
   for (auto n = graph.order.rbegin(); n != graph.order.rend(); ++n) {
     if (graph.parent[*n] && below[*n]) below[*graph.parent[*n]] = true;
   }
   for (const Index n : graph.order) {
-    const bool bare = isBare(elements(asset, "nodes")[n]);
+    const bool bare = isBare(asset.document.nodes[n]);
     inside[n] = animated[n] || (all && bare) || (graph.parent[n] && inside[*graph.parent[n]] && (bare || below[n]));
     wanted[n] = inside[n] && graph.shown[n];
   }
   return wanted;
 }
 
-Json vectorJson(const Vec3& v) {
+Vec3 rounded(const Vec3& v) {
   return {shortDouble(v.x()), shortDouble(v.y()), shortDouble(v.z())};
 }
 
-Json nodeJson(const Joint& joint) {
-  Json node = {{"name", joint.name}, {"translation", vectorJson(joint.rest.translation)}};
+gltf::Node nodeOf(const Joint& joint) {
+  gltf::Node node;
+  node.name = joint.name;
+  node.translation = rounded(joint.rest.translation);
   const Quat& q = joint.rest.rotation;
   if (q.coeffs() != Quat::Identity().coeffs()) {
-    node["rotation"] = {shortDouble(q.x()), shortDouble(q.y()), shortDouble(q.z()), shortDouble(q.w())};
+    node.rotation = {shortDouble(q.x()), shortDouble(q.y()), shortDouble(q.z()), shortDouble(q.w())};
   }
-  if (joint.rest.scale != Vec3::Ones()) node["scale"] = vectorJson(joint.rest.scale);
+  if (joint.rest.scale != Vec3::Ones()) node.scale = rounded(joint.rest.scale);
   return node;
 }
 
 // The nodes of the joints, and one above several roots. Returns the root.
-Index addJointNodes(Asset& asset, const Motion& motion) {
-  Json& nodes = asset.json()["nodes"];
+Index addJointNodes(std::vector<gltf::Node>& nodes, const Motion& motion) {
   std::vector<Index> roots;
   UniqueNames names;
   for (Index j = 0; j < motion.skeleton.jointCount(); ++j) {
     const Joint& joint = motion.skeleton.joints[j];
     names.add(joint.name);
-    nodes.push_back(nodeJson(joint));
+    nodes.push_back(nodeOf(joint));
     if (joint.parent) {
-      nodes[*joint.parent]["children"].push_back(j);
+      nodes[*joint.parent].children.push_back(j);
     } else {
       roots.push_back(j);
     }
   }
   if (roots.size() == 1) return roots.front();
-  nodes.push_back({{"name", names.add(motion.name.empty() ? "motion" : motion.name)}, {"children", roots}});
-  return static_cast<Index>(nodes.size() - 1);
+  gltf::Node above;
+  above.name = names.add(motion.name.empty() ? "motion" : motion.name);
+  above.children = std::move(roots);
+  return addElement(nodes, std::move(above));
 }
 
 }  // namespace
@@ -106,13 +104,14 @@ Clip findClip(const Asset& asset, std::string_view name) {
 }
 
 bool isSkeletonAlone(const Asset& asset) {
-  if (elementCount(asset, "meshes") > 0) return false;
-  return elementCount(asset, "skins") > 0 || elementCount(asset, "animations") > 0 || elementCount(asset, "nodes") > 1;
+  const gltf::Document& document = asset.document;
+  if (!document.meshes.empty()) return false;
+  return !document.skins.empty() || !document.animations.empty() || document.nodes.size() > 1;
 }
 
 AssetSkeleton animatedSkeleton(const Asset& asset) {
-  if (elementCount(asset, "skins") > 0) return readSkeleton(asset);
-  const SceneGraph graph = readSceneGraph(asset);
+  if (!asset.document.skins.empty()) return readSkeleton(asset);
+  const SceneGraph graph = readSceneGraph(asset.document);
   const std::vector<bool> wanted = movingTree(asset, graph);
   AssetSkeleton result;
   UniqueNames names;
@@ -120,7 +119,7 @@ AssetSkeleton animatedSkeleton(const Asset& asset) {
   for (const Index n : graph.order) {
     if (!wanted[n]) continue;
     Joint joint;
-    const std::string name = nameOf(elements(asset, "nodes")[n]);
+    const std::string& name = asset.document.nodes[n].name;
     joint.name = names.add(name.empty() ? "joint_" + std::to_string(n) : name);
     if (graph.parent[n]) joint.parent = jointOfNode[*graph.parent[n]];
     joint.rest = decompose(joint.parent ? graph.local[n] : graph.world[n]);
@@ -170,13 +169,12 @@ Asset motionAsset(const Motion& motion) {
   Asset asset;
   asset.name = motion.name;
   asset.warnings = motion.warnings;
-  Json& json = asset.json();
-  json["asset"] = {{"version", "2.0"}, {"generator", "limber"}};
-  json["scene"] = 0;
-  json["scenes"] = Json::array();
-  json["nodes"] = Json::array();
-  const Index root = addJointNodes(asset, motion);
-  json["scenes"].push_back({{"nodes", {root}}});
+  gltf::Document& document = asset.document;
+  document.about.generator = "limber";
+  const Index root = addJointNodes(document.nodes, motion);
+  gltf::Scene scene;
+  scene.nodes = {root};
+  document.scene = addElement(document.scenes, std::move(scene));
 
   AssetSkeleton skeleton;
   skeleton.skeleton = motion.skeleton;
@@ -186,9 +184,12 @@ Asset motionAsset(const Motion& motion) {
     skeleton.jointNode.push_back(j);
     for (int i = 0; i < 16; ++i) binds.push_back(static_cast<float>(inverseBinds[j](i % 4, i / 4)));
   }
-  const Index accessor = addFloatAccessor(asset, binds, 16);
-  json["skins"].push_back(
-      {{"name", motion.name}, {"inverseBindMatrices", accessor}, {"skeleton", root}, {"joints", skeleton.jointNode}});
+  gltf::Skin skin;
+  skin.name = motion.name;
+  skin.inverseBindMatrices = addFloatAccessor(asset, binds, 16);
+  skin.skeleton = root;
+  skin.joints = skeleton.jointNode;
+  document.skins.push_back(std::move(skin));
   addClips(asset, skeleton, motion.clips);
   return asset;
 }

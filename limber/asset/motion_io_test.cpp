@@ -74,8 +74,8 @@ TEST(MotionIo, FindsClipsByName) {
 TEST(MotionIo, ABvhIsAModelToo) {
   const Asset asset = readAsset(asBytes(kBvh), "walk.bvh");
   EXPECT_EQ(asset.format, "bvh");
-  EXPECT_EQ(asset.json()["animations"].size(), 1u);
-  EXPECT_EQ(asset.json()["animations"][0]["name"], "walk");
+  EXPECT_EQ(asset.document.animations.size(), 1u);
+  EXPECT_EQ(asset.document.animations[0].name, "walk");
   try {
     readAsset(asBytes("HIERARCHY\nROOT\n"), "walk.bvh");
     FAIL();
@@ -90,7 +90,7 @@ TEST(MotionIo, SeveralRootsHangOnOneNode) {
       readMotion(asBytes("HIERARCHY\n" + root + root + "MOTION\nFrames: 2\nFrame Time: 1\n1 2\n3 4\n"), "two.bvh");
   const Asset asset = motionAsset(motion);
   checkAsset(asset);
-  EXPECT_EQ(asset.json()["scenes"][0]["nodes"].size(), 1u);
+  EXPECT_EQ(asset.document.scenes[0].nodes.size(), 1u);
   writeAsset(asset, limber::testing::testOutputFolder() / "motion_io_two_roots.glb");
   const Motion back = motionOf(asset);
   EXPECT_LT(largestDistanceAt(motion, back, 0.5), 1e-6);

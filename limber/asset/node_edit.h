@@ -18,7 +18,7 @@ double shortDouble(double value);
 
 // Writes a local transform into a node: translation, rotation, scale, each only where it says something; "matrix" where
 // the transform has shear and `mayHaveMatrix` (an animated node may not).
-void setNodeTransform(Json& node, const Affine& local, bool mayHaveMatrix);
+void setNodeTransform(gltf::Node& node, const Affine& local, bool mayHaveMatrix);
 
 // What the target of an animation's channel names, by KHR_animation_pointer too: a node, and what of it
 // ("translation").
@@ -26,7 +26,7 @@ struct ChannelTarget {
   std::optional<Index> node;
   std::string path;
 };
-ChannelTarget channelTarget(const Json& channel);
+ChannelTarget channelTarget(const gltf::AnimationChannel& channel);
 
 // Takes animation channels out for which `drop` is true, with the samplers that nothing uses then, and animations that
 // are left empty. `drop` sees the node, if the channel has one, and the path ("translation", ...).

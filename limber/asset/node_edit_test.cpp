@@ -4,14 +4,16 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "limber/asset/extensions.h"
+
 namespace limber {
 namespace {
 
 Asset withSprings(const Json& extension) {
   Asset asset;
-  asset.json() = {{"asset", {{"version", "2.0"}}}, {"extensionsUsed", {"VRMC_springBone"}}};
-  for (int n = 0; n < 5; ++n) asset.json()["nodes"].push_back({{"name", std::to_string(n)}});
-  asset.json()["extensions"]["VRMC_springBone"] = extension;
+  asset.document.extensionsUsed = {"VRMC_springBone"};
+  for (int n = 0; n < 5; ++n) asset.document.nodes.emplace_back().name = std::to_string(n);
+  changeExtension(asset.document, kSpringBoneName) = extension;
   return asset;
 }
 
@@ -23,7 +25,7 @@ const Json kTwoSprings = Json::parse(R"({
 TEST(DeleteNodes, SpringsOfTheirsGoAndOthersAreRenumbered) {
   Asset asset = withSprings(kTwoSprings);
   deleteNodes(asset, {true, false, false, true, true});
-  const Json& springs = asset.json()["extensions"]["VRMC_springBone"]["springs"];
+  const Json& springs = extensionOf(asset.document, kSpringBoneName)->at("springs");
   EXPECT_EQ(springs, Json::parse(R"([{"name": "kept", "joints": [{"node": 1, "stiffness": 1}, {"node": 2}]}])"));
   EXPECT_TRUE(asset.warnings.items().empty());
 }
@@ -31,8 +33,8 @@ TEST(DeleteNodes, SpringsOfTheirsGoAndOthersAreRenumbered) {
 TEST(DeleteNodes, WithTheLastSpringTheExtensionGoes) {
   Asset asset = withSprings(kTwoSprings);
   deleteNodes(asset, {true, false, false, false, true});
-  EXPECT_FALSE(asset.json().contains("extensions"));
-  EXPECT_FALSE(asset.json().contains("extensionsUsed"));
+  EXPECT_FALSE(asset.document.extensions.exists());
+  EXPECT_TRUE(asset.document.extensionsUsed.empty());
 }
 
 TEST(DeleteNodes, CollidersOnDeletedNodesAreTold) {
@@ -40,7 +42,7 @@ TEST(DeleteNodes, CollidersOnDeletedNodesAreTold) {
   extension["colliders"] = Json::parse(R"([{"node": 4}, {"node": 1}])");
   Asset asset = withSprings(extension);
   deleteNodes(asset, {true, false, true, true, true});
-  EXPECT_EQ(asset.json()["extensions"]["VRMC_springBone"]["colliders"][0]["node"], 3);
+  EXPECT_EQ(extensionOf(asset.document, kSpringBoneName)->at("colliders")[0]["node"], 3);
   ASSERT_EQ(asset.warnings.items().size(), 1u);
   EXPECT_EQ(asset.warnings.items()[0].kind, "node-references");
 }

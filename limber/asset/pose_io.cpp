@@ -1,7 +1,6 @@
 #include "limber/asset/pose_io.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "limber/asset/accessor.h"
 #include "limber/asset/node_edit.h"
@@ -41,7 +40,8 @@ std::span<const float> floatsOf(std::span<const Vec3f> vectors, const PrimitiveI
 }
 
 // Under a mirroring transform the triangles turn round, so that outside stays outside.
-void turnTriangles(Asset& asset, Json& primitive, const Geometry& geometry, const PrimitiveInstance& instance) {
+void turnTriangles(Asset& asset, gltf::Primitive& primitive, const Geometry& geometry,
+                   const PrimitiveInstance& instance) {
   std::vector<Index> indices;
   for (const Triangle& triangle : geometry.triangles) {
     if (triangle[0] < instance.firstVertex || triangle[0] >= instance.firstVertex + instance.vertexCount) continue;
@@ -50,33 +50,38 @@ void turnTriangles(Asset& asset, Json& primitive, const Geometry& geometry, cons
   if (indices.empty()) return;
   const auto* bytes = reinterpret_cast<const std::uint8_t*>(indices.data());
   const AccessorInfo info{static_cast<Index>(indices.size()), 1, ComponentType::kU32, false};
-  primitive["indices"] = addAccessor(asset, info, {bytes, sizeof(Index) * indices.size()}, kIndexTarget);
-  primitive.erase("mode");
+  primitive.indices = addAccessor(asset, info, {bytes, sizeof(Index) * indices.size()}, kIndexTarget);
+  primitive.mode = gltf::kTriangles;
 }
 
-void freezePrimitive(Asset& asset, Json& primitive, const Geometry& geometry, const PrimitiveInstance& instance,
-                     std::span<const Vec3f> positions, std::span<const Vec3f> normals) {
-  Json& attributes = primitive["attributes"];
-  attributes["POSITION"] = addFloatAccessor(asset, floatsOf(positions, instance), 3, kVertexTarget, true);
-  if (attributes.contains("NORMAL")) {
-    attributes["NORMAL"] = addFloatAccessor(asset, floatsOf(normals, instance), 3, kVertexTarget);
+void freezePrimitive(Asset& asset, gltf::Primitive& primitive, const Geometry& geometry,
+                     const PrimitiveInstance& instance, std::span<const Vec3f> positions,
+                     std::span<const Vec3f> normals) {
+  gltf::Attributes& attributes = primitive.attributes;
+  attributes.set("POSITION", addFloatAccessor(asset, floatsOf(positions, instance), 3, kVertexTarget, true));
+  if (attributes.find("NORMAL")) {
+    attributes.set("NORMAL", addFloatAccessor(asset, floatsOf(normals, instance), 3, kVertexTarget));
   }
-  asset.warnings.add("tangents", "parts lose their tangents, which readers make anew", {}, attributes.erase("TANGENT"));
+  asset.warnings.add("tangents", "parts lose their tangents, which readers make anew", {},
+                     attributes.erase("TANGENT") ? 1 : 0);
   asset.warnings.add("morph-targets", "parts lose their morph targets, which no longer fit", {},
-                     primitive.erase("targets"));
+                     primitive.targets.empty() ? 0 : 1);
+  primitive.targets.clear();
   eraseWeightAttributes(primitive);
   if (instance.toWorld.linear().determinant() < 0) turnTriangles(asset, primitive, geometry, instance);
 }
 
-bool canMorph(const Asset& asset, Index node) {
-  const std::optional<Index> mesh = indexMember(elements(asset, "nodes")[node], "mesh");
-  return mesh && elements(asset, "meshes")[*mesh].at("primitives")[0].contains("targets");
+bool canMorph(const gltf::Document& document, Index node) {
+  const std::optional<Index> mesh = document.nodes[node].mesh;
+  if (!mesh) return false;
+  const std::vector<gltf::Primitive>& primitives = document.meshes[*mesh].primitives;
+  return !primitives.empty() && !primitives[0].targets.empty();
 }
 
 }  // namespace
 
 Pose readNodePose(const Asset& asset, const AssetSkeleton& skeleton) {
-  const SceneGraph graph = readSceneGraph(asset);
+  const SceneGraph graph = readSceneGraph(asset.document);
   Pose pose;
   for (Index j = 0; j < skeleton.skeleton.jointCount(); ++j) {
     pose.locals.push_back(decompose(frameAbove(graph, skeleton, j) * graph.local[skeleton.jointNode[j]]));
@@ -89,7 +94,7 @@ void writeNodePose(Asset& asset, const AssetSkeleton& skeleton, const Pose& pose
     throw Error(ErrorCode::kBadArgument,
                 fmt::format("{} transforms for {} joints", pose.locals.size(), skeleton.jointNode.size()));
   }
-  const SceneGraph graph = readSceneGraph(asset);
+  const SceneGraph graph = readSceneGraph(asset.document);
   const Pose before = readNodePose(asset, skeleton);
   std::vector<Transform> locals(pose.locals);
   for (Index j = 0; j < locals.size(); ++j) {
@@ -103,15 +108,15 @@ void writeNodePose(Asset& asset, const AssetSkeleton& skeleton, const Pose& pose
   }
   for (Index j = 0; j < locals.size(); ++j) {
     if (same(pose.locals[j], before.locals[j])) continue;
-    setNodeTransform(asset.json()["nodes"][skeleton.jointNode[j]], locals[j].toAffine(), false);
+    setNodeTransform(asset.document.nodes[skeleton.jointNode[j]], locals[j].toAffine(), false);
   }
 }
 
 std::vector<Vec3f> readNormals(const Asset& asset, const Geometry& geometry) {
   std::vector<Vec3f> normals(geometry.positions.size(), Vec3f::Zero());
   for (const PrimitiveInstance& instance : geometry.instances) {
-    const Json& primitive = elements(asset, "meshes")[instance.mesh].at("primitives")[instance.primitive];
-    const std::optional<Index> accessor = indexMember(primitive.at("attributes"), "NORMAL");
+    const gltf::Primitive& primitive = asset.document.meshes[instance.mesh].primitives[instance.primitive];
+    const std::optional<Index> accessor = primitive.attributes.find("NORMAL");
     if (!accessor) continue;
     const std::vector<float> values = readFloats(asset, *accessor);
     for (std::size_t v = 0; v < instance.vertexCount; ++v) {
@@ -130,17 +135,18 @@ void freezeGeometry(Asset& asset, const Geometry& geometry, std::span<const Vec3
   }
   SkinnedNodes nodes(asset, geometry);
   for (const MeshGroup& group : nodes.groups()) {
-    const Index mesh = nodes.meshFor(group);
+    const Index number = nodes.meshFor(group);
+    gltf::Mesh& mesh = asset.document.meshes[number];
     for (Index i = group.firstInstance; i < group.endInstance; ++i) {
-      Json primitive = asset.json()["meshes"][mesh]["primitives"][geometry.instances[i].primitive];
-      freezePrimitive(asset, primitive, geometry, geometry.instances[i], positions, normals);
-      asset.json()["meshes"][mesh]["primitives"][geometry.instances[i].primitive] = std::move(primitive);
+      const PrimitiveInstance& instance = geometry.instances[i];
+      freezePrimitive(asset, mesh.primitives[instance.primitive], geometry, instance, positions, normals);
     }
-    asset.json()["meshes"][mesh].erase("weights");
-    nodes.placeStatic(group, mesh);
+    mesh.weights.clear();
+    nodes.placeStatic(group, number);
   }
   nodes.finish();
-  removeChannels(asset, [&](Index node, std::string_view path) { return path == "weights" && !canMorph(asset, node); });
+  removeChannels(
+      asset, [&](Index node, std::string_view path) { return path == "weights" && !canMorph(asset.document, node); });
   removeRig(asset);
 }
 

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "limber/asset/accessor.h"
+#include "limber/asset/testing/document_json.h"
 #include "limber/asset/testing/gltf_builder.h"
 #include "temporary_folder.h"
 #include "warning_kinds.h"
@@ -14,6 +15,7 @@
 namespace limber {
 namespace {
 
+using testing::documentJson;
 using ::testing::ElementsAre;
 using testing::everythingModel;
 using testing::GltfBuilder;
@@ -60,8 +62,8 @@ TEST(ReadAsset, GlbAndGltfHoldTheSame) {
   EXPECT_EQ(glb.buffers[0].uri, "");
   EXPECT_EQ(gltf.buffers[0].uri, "data:application/octet-stream;base64,");
   EXPECT_TRUE(glb.warnings.empty());
-  EXPECT_EQ(glb.json()["nodes"], model.json["nodes"]);
-  EXPECT_EQ(glb.json()["nodes"][3]["extras"]["large"].get<std::uint64_t>(), 9007199254740993u);
+  EXPECT_EQ(documentJson(glb)["nodes"], model.json["nodes"]);
+  EXPECT_EQ(glb.document.nodes[3].extras->at("large").get<std::uint64_t>(), 9007199254740993u);
   EXPECT_THAT(readFloats(glb, 1), ElementsAre(0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1));
   EXPECT_THAT(readFloats(glb, 8), ElementsAre(0, 0, 0, 1, 2, 3, 0, 0, 0, 4, 5, 6));
 }
@@ -132,7 +134,7 @@ TEST(ReadAsset, MissingOrForeignImagesStayReferences) {
           return path == "notes.txt" ? std::optional(Bytes{'s', 'e', 'c', 'r', 'e', 't'}) : std::nullopt;
         });
     EXPECT_TRUE(asset.sideFiles.empty()) << uri;
-    EXPECT_EQ(asset.json()["images"][0]["uri"], uri);
+    EXPECT_EQ(asset.document.images[0].uri, uri);
     EXPECT_THAT(warningKinds(asset.warnings), ElementsAre("missing-images"));
   }
 }
@@ -213,12 +215,12 @@ TEST(ReadAsset, UnknownRequiredExtensionsAreKept) {
   model.json["extensionsUsed"] = model.json["extensionsRequired"] = {"EXT_never_heard_of"};
   model.json["materials"][0]["extensions"]["EXT_never_heard_of"] = {{"texture", 77}};
   const Asset asset = readAsset(model.glb(), "m.glb");
-  EXPECT_EQ(asset.json()["extensionsRequired"], model.json["extensionsRequired"]);
+  EXPECT_EQ(documentJson(asset)["extensionsRequired"], model.json["extensionsRequired"]);
   const Warning& warning = asset.warnings.items().back();
   EXPECT_EQ(warning.kind, "unknown-extensions");
   EXPECT_EQ(warning.where, "EXT_never_heard_of");
   EXPECT_EQ(warning.count, 1u);
-  EXPECT_EQ(asset.json()["materials"], model.json["materials"]);
+  EXPECT_EQ(documentJson(asset)["materials"], model.json["materials"]);
 }
 
 }  // namespace

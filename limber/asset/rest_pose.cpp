@@ -5,7 +5,6 @@
 #include <set>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "limber/asset/accessor.h"
 #include "limber/asset/accessor_sweep.h"
@@ -18,7 +17,6 @@ namespace limber {
 
 namespace {
 
-constexpr int kVertexBuffer = 34962;
 constexpr double kSameNumber = 1e-6;  // relative: transforms of single precision that differ less are one
 
 using Maps = std::vector<Affine>;  // of a mesh's space into itself
@@ -77,14 +75,13 @@ class VertexMover {
 
   std::size_t sharedVertices() const { return sharedVertices_; }
 
-  void move(Json& primitive) {
-    Json& attributes = primitive["attributes"];
-    const std::optional<Index> position = indexMember(attributes, "POSITION");
+  void move(gltf::Primitive& primitive) {
+    const std::optional<Index> position = primitive.attributes.find("POSITION");
     if (!position) return;
     Source source;
     source.accessors.push_back(*position);
-    for (const auto& [name, accessor] : attributes.items()) {
-      if (name.rfind("JOINTS_", 0) == 0 || name.rfind("WEIGHTS_", 0) == 0) source.accessors.push_back(accessor);
+    for (const auto& [name, accessor] : primitive.attributes) {
+      if (name.starts_with("JOINTS_") || name.starts_with("WEIGHTS_")) source.accessors.push_back(accessor);
     }
     const auto [maps, isNew] = maps_.try_emplace(source.accessors);
     if (isNew) {
@@ -92,14 +89,12 @@ class VertexMover {
       maps->second = vertexMaps(readInfluenceSets(asset_, primitive), count, jointMaps_, sharedVertices_);
     }
     source.maps = &maps->second;
-    if (const std::optional<Index> normal = indexMember(attributes, "NORMAL")) {
+    if (const std::optional<Index> normal = primitive.attributes.find("NORMAL")) {
       source.accessors.push_back(*normal);
       source.normals = readFloats(asset_, *normal);
     }
-    moveAttributes(attributes, source, false);
-    if (const auto targets = primitive.find("targets"); targets != primitive.end()) {
-      for (Json& target : *targets) moveAttributes(target, source, true);
-    }
+    moveAttributes(primitive.attributes, source, false);
+    for (gltf::Attributes& target : primitive.targets) moveAttributes(target, source, true);
   }
 
  private:
@@ -109,10 +104,10 @@ class VertexMover {
     std::vector<float> normals;
   };
 
-  void moveAttributes(Json& attributes, const Source& source, bool morph) {
+  void moveAttributes(gltf::Attributes& attributes, const Source& source, bool morph) {
     for (const char* name : {"POSITION", "NORMAL", "TANGENT"}) {
-      const std::optional<Index> accessor = indexMember(attributes, name);
-      if (accessor) attributes[name] = moved(name, *accessor, source, morph);
+      const std::optional<Index> accessor = attributes.find(name);
+      if (accessor) attributes.set(name, moved(name, *accessor, source, morph));
     }
   }
 
@@ -140,7 +135,7 @@ class VertexMover {
       if (!after.allFinite()) after = before;
       for (int i = 0; i < 3; ++i) value[i] = static_cast<float>(after[i]);
     }
-    return known->second = addFloatAccessor(asset_, values, components, kVertexBuffer, name == "POSITION");
+    return known->second = addFloatAccessor(asset_, values, components, kVertexTarget, name == "POSITION");
   }
 
   // A morph target's difference of normals is scaled as its normal was to be of unit length again.
@@ -164,7 +159,7 @@ class VertexMover {
 // Binds every skin that a mesh is shown with where its joints' nodes stand now, its vertices with it.
 class Rebinder {
  public:
-  explicit Rebinder(Asset& asset) : asset_(asset), graph_(readSceneGraph(asset)) {}
+  explicit Rebinder(Asset& asset) : asset_(asset), graph_(readSceneGraph(asset.document)) {}
 
   // skinToWorld  #skins: where each skin's mesh space lies in the world; it stays there
   void run(const std::vector<Affine>& skinToWorld) {
@@ -178,10 +173,8 @@ class Rebinder {
         mover = movers.emplace(skin, VertexMover(asset_, rebind(skin, skinToWorld[skin]))).first;
       }
       const Index target = meshFor(mesh);
-      Json primitives = asset_.json()["meshes"][target]["primitives"];
-      for (Json& primitive : primitives) mover->second.move(primitive);
-      asset_.json()["meshes"][target]["primitives"] = std::move(primitives);
-      for (const Index node : nodes) asset_.json()["nodes"][node]["mesh"] = target;
+      for (gltf::Primitive& primitive : asset_.document.meshes[target].primitives) mover->second.move(primitive);
+      for (const Index node : nodes) asset_.document.nodes[node].mesh = target;
     }
     for (const auto& [skin, mover] : movers) sharedVertices += mover.sharedVertices();
     asset_.warnings.add(
@@ -192,10 +185,9 @@ class Rebinder {
 
  private:
   void findUses() {
-    const Json& nodes = elements(asset_, "nodes");
-    std::vector<Index> withoutSkin(elementCount(asset_, "meshes"), 0);
-    for (Index n = 0; n < nodes.size(); ++n) {
-      const std::optional<Index> mesh = indexMember(nodes[n], "mesh"), skin = indexMember(nodes[n], "skin");
+    std::vector<Index> withoutSkin(asset_.document.meshes.size(), 0);
+    for (Index n = 0; n < asset_.document.nodeCount(); ++n) {
+      const std::optional<Index> mesh = asset_.document.nodes[n].mesh, skin = asset_.document.nodes[n].skin;
       if (!mesh) continue;
       if (skin) {
         nodesOfUse_[{*mesh, *skin}].push_back(n);
@@ -219,18 +211,14 @@ class Rebinder {
       const Affine toJoint = inverseOrThrow(joint, fmt::format("nodes[{}]", binding.joints[j])) * toWorld;
       for (int i = 0; i < 16; ++i) inverseBinds.push_back(static_cast<float>(toJoint.matrix()(i % 4, i / 4)));
     }
-    const Index accessor = addFloatAccessor(asset_, inverseBinds, 16);
-    asset_.json()["skins"][skin]["inverseBindMatrices"] = accessor;
+    asset_.document.skins[skin].inverseBindMatrices = addFloatAccessor(asset_, inverseBinds, 16);
     return maps;
   }
 
   // A copy while other uses need the mesh as it was, the mesh itself for the last.
   Index meshFor(Index mesh) {
     if (--usesLeft_[mesh] == 0) return mesh;
-    Json& meshes = asset_.json()["meshes"];
-    Json copy = meshes[mesh];
-    meshes.push_back(std::move(copy));
-    return static_cast<Index>(meshes.size() - 1);
+    return addElement(asset_.document.meshes, gltf::Mesh(asset_.document.meshes[mesh]));
   }
 
   Asset& asset_;
@@ -274,8 +262,7 @@ std::vector<ChangedPart> changedParts(const SceneGraph& before, const SceneGraph
 
 // What an animation does not move stays where its node has it, and that has changed.
 void holdInClips(Asset& asset, const std::vector<ChangedPart>& parts) {
-  const auto animations = asset.json().find("animations");
-  if (animations == asset.json().end() || parts.empty()) return;
+  if (asset.document.animations.empty() || parts.empty()) return;
   const std::vector<float> start = {0};
   const Index input = addFloatAccessor(asset, start, 1, 0, true);
   std::vector<Index> outputs;
@@ -283,18 +270,16 @@ void holdInClips(Asset& asset, const std::vector<ChangedPart>& parts) {
   for (const ChangedPart& part : parts) {
     outputs.push_back(addFloatAccessor(asset, part.before, static_cast<Index>(part.before.size())));
   }
-  for (Json& animation : asset.json()["animations"]) {
+  for (gltf::Animation& animation : asset.document.animations) {
     std::set<std::pair<Index, std::string>> driven;
-    for (const Json& channel : animation.at("channels")) {
+    for (const gltf::AnimationChannel& channel : animation.channels) {
       const ChannelTarget target = channelTarget(channel);
       if (target.node) driven.insert({*target.node, target.path});
     }
     for (std::size_t i = 0; i < parts.size(); ++i) {
       if (driven.count({parts[i].node, parts[i].path}) > 0) continue;
-      const auto sampler = static_cast<Index>(animation["samplers"].size());
-      animation["samplers"].push_back({{"input", input}, {"output", outputs[i]}});
-      animation["channels"].push_back(
-          {{"sampler", sampler}, {"target", {{"node", parts[i].node}, {"path", parts[i].path}}}});
+      const Index sampler = addElement(animation.samplers, {{}, input, outputs[i]});
+      animation.channels.push_back({{}, sampler, {{}, parts[i].node, parts[i].path}});
     }
   }
 }
@@ -303,11 +288,11 @@ void holdInClips(Asset& asset, const std::vector<ChangedPart>& parts) {
 
 void setRestPose(Asset& asset, const AssetSkeleton& skeleton, const Pose& pose) {
   const AccessorSweep unused(asset);
-  const SceneGraph before = readSceneGraph(asset);
+  const SceneGraph before = readSceneGraph(asset.document);
   const std::vector<Affine> skinToWorld = readBindPose(asset, before).skinToWorld;
   writeNodePose(asset, skeleton, pose);
   Rebinder(asset).run(skinToWorld);
-  holdInClips(asset, changedParts(before, readSceneGraph(asset), skeleton.jointNode));
+  holdInClips(asset, changedParts(before, readSceneGraph(asset.document), skeleton.jointNode));
   unused.sweep(asset);
 }
 

@@ -10,12 +10,14 @@
 #include "limber/asset/bind_pose.h"
 #include "limber/asset/pose_io.h"
 #include "limber/asset/scene_graph.h"
+#include "limber/asset/testing/document_json.h"
 #include "limber/asset/testing/scene_builder.h"
 #include "limber/asset/weight_attributes.h"
 
 namespace limber {
 namespace {
 
+using testing::documentJson;
 using testing::SceneBuilder;
 
 class Random {
@@ -42,15 +44,15 @@ struct TwoSkins {
   std::vector<Affine> bind;  // by node
 
   TwoSkins() {
-    const auto joint = [&](const char* name, Json children) {
+    const auto joint = [&](const char* name, const std::vector<Index>& children) {
       bind.push_back(Affine(Eigen::Translation3d(random.vector()) * random.rotation()));
       Json node = {{"name", name}, {"translation", numbers(random.vector())}};
       node["rotation"] = numbers(random.rotation().coeffs());
-      if (!children.empty()) node["children"] = std::move(children);
-      return scene.addNode(std::move(node));
+      if (!children.empty()) node["children"] = children;
+      return scene.addNode(node);
     };
-    leg = joint("leg", Json::array());
-    arm = joint("arm", Json::array());
+    leg = joint("leg", {});
+    arm = joint("arm", {});
     chest = joint("chest", {arm});
     hip = joint("hip", {chest, leg});
     bodySkin = scene.addSkin({hip, chest, arm, leg}, inverses({hip, chest, arm, leg}));
@@ -86,11 +88,12 @@ struct TwoSkins {
       tangents.push_back(1);
       for (int k = 0; k < 3; ++k) morph.push_back(static_cast<float>(random.in(-0.1, 0.1)));
     }
-    Json& primitive = scene.json()["meshes"][mesh]["primitives"][0];
-    primitive["attributes"]["NORMAL"] = addFloatAccessor(scene.asset(), normals, 3, 34962);
-    primitive["attributes"]["TANGENT"] = addFloatAccessor(scene.asset(), tangents, 4, 34962);
-    primitive["targets"] = {{{"POSITION", addFloatAccessor(scene.asset(), morph, 3, 34962, true)},
-                             {"NORMAL", addFloatAccessor(scene.asset(), morph, 3, 34962)}}};
+    gltf::Primitive& primitive = scene.primitiveOf(mesh);
+    primitive.attributes.set("NORMAL", addFloatAccessor(scene.asset(), normals, 3, kVertexTarget));
+    primitive.attributes.set("TANGENT", addFloatAccessor(scene.asset(), tangents, 4, kVertexTarget));
+    gltf::Attributes& target = primitive.targets.emplace_back();
+    target.set("POSITION", addFloatAccessor(scene.asset(), morph, 3, kVertexTarget, true));
+    target.set("NORMAL", addFloatAccessor(scene.asset(), morph, 3, kVertexTarget));
     return mesh;
   }
 
@@ -103,28 +106,28 @@ struct TwoSkins {
     }
     const Index input = addFloatAccessor(scene.asset(), times, 1, 0, true);
     const Index output = addFloatAccessor(scene.asset(), values, 4);
-    scene.json()["animations"].push_back(
-        {{"channels", {{{"sampler", 0}, {"target", {{"node", node}, {"path", "rotation"}}}}}},
-         {"samplers", {{{"input", input}, {"output", output}}}}});
+    gltf::Animation& clip = scene.asset().document.animations.emplace_back();
+    clip.samplers.push_back({{}, input, output});
+    clip.channels.push_back({{}, 0, {{}, node, "rotation"}});
   }
 };
 
 // The nodes' local transforms at a time of an animation, written down from the format's definition.
 std::vector<Transform> localsAt(const Asset& asset, Index animation, double seconds) {
   std::vector<Transform> locals;
-  for (const Json& node : elements(asset, "nodes")) locals.push_back(decompose(nodeTransform(node)));
-  const Json& source = elements(asset, "animations")[animation];
-  for (const Json& channel : source.at("channels")) {
-    const Json& sampler = source.at("samplers")[channel.at("sampler").get<Index>()];
-    const std::vector<float> times = readFloats(asset, sampler.at("input").get<Index>());
-    const std::vector<float> values = readFloats(asset, sampler.at("output").get<Index>());
+  for (const gltf::Node& node : asset.document.nodes) locals.push_back(decompose(nodeTransform(node)));
+  const gltf::Animation& source = asset.document.animations[animation];
+  for (const gltf::AnimationChannel& channel : source.channels) {
+    const gltf::AnimationSampler& sampler = source.samplers[channel.sampler];
+    const std::vector<float> times = readFloats(asset, sampler.input);
+    const std::vector<float> values = readFloats(asset, sampler.output);
     std::size_t key = 0;
     while (key + 2 < times.size() && times[key + 1] <= seconds) ++key;
     const std::size_t next = std::min(key + 1, times.size() - 1);
     const double span = times[next] - times[key];
     const double share = span > 0 ? std::clamp((seconds - times[key]) / span, 0.0, 1.0) : 0;
-    const std::string path = channel.at("target").at("path");
-    Transform& local = locals[channel.at("target").at("node").get<Index>()];
+    const std::string& path = channel.target.path;
+    Transform& local = locals[*channel.target.node];
     const auto at = [&](std::size_t k, Index components, Index i) { return double{values[components * k + i]}; };
     if (path == "rotation") {
       const Quat a(at(key, 4, 3), at(key, 4, 0), at(key, 4, 1), at(key, 4, 2));
@@ -144,24 +147,25 @@ struct Shown {
 
 // All vertices of all skinned nodes, node by node, as a viewer places them.
 Shown show(const Asset& asset, const std::vector<Transform>& locals) {
-  const SceneGraph graph = readSceneGraph(asset);
+  const SceneGraph graph = readSceneGraph(asset.document);
   std::vector<Affine> world(locals.size());
   for (const Index n : graph.allNodes) {
     world[n] = (graph.parent[n] ? world[*graph.parent[n]] : Affine::Identity()) * locals[n].toAffine();
   }
   Shown result;
-  for (const Json& node : elements(asset, "nodes")) {
-    if (!node.contains("skin")) continue;
-    const SkinBinding binding = readSkinBinding(asset, node.at("skin").get<Index>());
-    for (const Json& primitive : elements(asset, "meshes")[node.at("mesh").get<Index>()].at("primitives")) {
-      const auto read = [&](const Json& attributes, const char* name) {
-        return attributes.contains(name) ? readFloats(asset, attributes.at(name).get<Index>()) : std::vector<float>();
+  for (const gltf::Node& node : asset.document.nodes) {
+    if (!node.skin) continue;
+    const SkinBinding binding = readSkinBinding(asset, *node.skin);
+    for (const gltf::Primitive& primitive : asset.document.meshes[*node.mesh].primitives) {
+      const auto read = [&](const gltf::Attributes& attributes, const char* name) {
+        const std::optional<Index> accessor = attributes.find(name);
+        return accessor ? readFloats(asset, *accessor) : std::vector<float>();
       };
-      const std::vector<float> p = read(primitive.at("attributes"), "POSITION");
-      const std::vector<float> n = read(primitive.at("attributes"), "NORMAL");
-      const std::vector<float> t = read(primitive.at("attributes"), "TANGENT");
+      const std::vector<float> p = read(primitive.attributes, "POSITION");
+      const std::vector<float> n = read(primitive.attributes, "NORMAL");
+      const std::vector<float> t = read(primitive.attributes, "TANGENT");
       const std::vector<float> m =
-          primitive.contains("targets") ? read(primitive.at("targets")[0], "POSITION") : std::vector<float>();
+          primitive.targets.empty() ? std::vector<float>() : read(primitive.targets[0], "POSITION");
       const InfluenceSet set = readInfluenceSets(asset, primitive).at(0);
       for (std::size_t v = 0; 3 * v < p.size(); ++v) {
         Mat4 map = Mat4::Zero();
@@ -192,8 +196,8 @@ void expectSame(const std::vector<Vec3>& a, const std::vector<Vec3>& b, const ch
 }
 
 void expectClipsLookTheSame(const Asset& before, const Asset& after) {
-  ASSERT_EQ(elementCount(before, "animations"), elementCount(after, "animations"));
-  for (Index animation = 0; animation < elementCount(before, "animations"); ++animation) {
+  ASSERT_EQ(before.document.animations.size(), after.document.animations.size());
+  for (Index animation = 0; animation < before.document.animations.size(); ++animation) {
     for (double seconds = -0.1; seconds < 2; seconds += 0.13) {
       const Shown a = show(before, localsAt(before, animation, seconds));
       const Shown b = show(after, localsAt(after, animation, seconds));
@@ -207,7 +211,7 @@ void expectClipsLookTheSame(const Asset& before, const Asset& after) {
 
 std::vector<Transform> standing(const Asset& asset) {
   std::vector<Transform> locals;
-  for (const Json& node : elements(asset, "nodes")) locals.push_back(decompose(nodeTransform(node)));
+  for (const gltf::Node& node : asset.document.nodes) locals.push_back(decompose(nodeTransform(node)));
   return locals;
 }
 
@@ -274,10 +278,10 @@ TEST(RestPose, AMeshThatIsShownWithoutASkinTooStaysAsItIsThere) {
   setRestPose(asset, skeleton, otherPose(asset, skeleton, c.random));
   checkAsset(asset);
   expectClipsLookTheSame(before, asset);
-  EXPECT_EQ(asset.json()["nodes"][statue], before.json()["nodes"][statue]);
-  EXPECT_EQ(asset.json()["meshes"][mesh]["name"], before.json()["meshes"][mesh]["name"]);
+  EXPECT_EQ(documentJson(asset)["nodes"][statue], documentJson(before)["nodes"][statue]);
+  EXPECT_EQ(asset.document.meshes[mesh].name, before.document.meshes[mesh].name);
   const auto positions = [&](const Asset& of) {
-    return readFloats(of, of.json()["meshes"][mesh]["primitives"][0]["attributes"]["POSITION"].get<Index>());
+    return readFloats(of, *of.document.meshes[mesh].primitives[0].attributes.find("POSITION"));
   };
   EXPECT_EQ(positions(asset), positions(before));
 }
@@ -288,9 +292,7 @@ TEST(RestPose, SharedVerticesAreRightInThePoseAndCounted) {
   const Index mesh = c.scene.addTetrahedron();
   const std::vector<std::uint8_t> joints = {0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0};
   const std::vector<float> weights = {0.5f, 0.5f, 0, 0, 0.25f, 0.75f, 0, 0, 1, 0, 0, 0, 0.5f, 0.5f, 0, 0};
-  Json& attributes = c.scene.json()["meshes"][mesh]["primitives"][0]["attributes"];
-  attributes["JOINTS_0"] = addAccessor(c.scene.asset(), {4, 4, ComponentType::kU8, false}, joints, 34962);
-  attributes["WEIGHTS_0"] = addFloatAccessor(c.scene.asset(), weights, 4, 34962);
+  c.scene.bind(mesh, joints, weights);
   const Index body = c.scene.addNode({{"name", "body"}, {"mesh", mesh}, {"skin", c.coatSkin}});
   c.scene.addScene({c.hip, body});
   Asset asset = c.scene.build();
@@ -311,9 +313,7 @@ TEST(RestPose, WhatMovesAsAWholeKeepsItsClips) {
   const Index mesh = c.scene.addTetrahedron();
   const std::vector<std::uint8_t> joints = {0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0};
   const std::vector<float> weights(16, 0.25f);
-  Json& attributes = c.scene.json()["meshes"][mesh]["primitives"][0]["attributes"];
-  attributes["JOINTS_0"] = addAccessor(c.scene.asset(), {4, 4, ComponentType::kU8, false}, joints, 34962);
-  attributes["WEIGHTS_0"] = addFloatAccessor(c.scene.asset(), weights, 4, 34962);
+  c.scene.bind(mesh, joints, weights);
   const Index body = c.scene.addNode({{"name", "body"}, {"mesh", mesh}, {"skin", c.coatSkin}});
   c.scene.addScene({c.hip, body});
   c.addTurn(c.chest, 4);

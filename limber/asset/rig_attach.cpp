@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "limber/asset/accessor_sweep.h"
+#include "limber/asset/joint_radius.h"
 #include "limber/asset/node_edit.h"
 #include "limber/asset/rig_io.h"
 #include "limber/asset/skinned_nodes.h"
@@ -19,12 +19,6 @@ namespace {
 
 constexpr const char* kRigName = "limber_rig";
 
-Json vectorJson(const double* values, int count) {
-  Json result = Json::array();
-  for (int i = 0; i < count; ++i) result.push_back(values[i]);
-  return result;
-}
-
 Transform rounded(Transform t) {
   for (int i = 0; i < 3; ++i) t.translation[i] = shortDouble(t.translation[i]);
   for (int i = 0; i < 3; ++i) t.scale[i] = shortDouble(t.scale[i]);
@@ -32,15 +26,13 @@ Transform rounded(Transform t) {
   return t;
 }
 
-Json jointJson(const Joint& joint, const Transform& rest, const std::string& name, bool withRadius) {
-  Json node = Json::object();
-  node["name"] = name;
-  node["translation"] = vectorJson(rest.translation.data(), 3);
-  if (!rest.rotation.coeffs().isApprox(Quat::Identity().coeffs(), 0)) {
-    node["rotation"] = vectorJson(rest.rotation.coeffs().data(), 4);
-  }
-  if (rest.scale != Vec3::Ones()) node["scale"] = vectorJson(rest.scale.data(), 3);
-  if (withRadius) node["extras"]["limber_radius"] = shortDouble(joint.radius);
+gltf::Node jointNode(const Joint& joint, const Transform& rest, const std::string& name, bool withRadius) {
+  gltf::Node node;
+  node.name = name;
+  node.translation = rest.translation;
+  if (!rest.rotation.coeffs().isApprox(Quat::Identity().coeffs(), 0)) node.rotation = rest.rotation.coeffs();
+  if (rest.scale != Vec3::Ones()) node.scale = rest.scale;
+  if (withRadius) storeRadius(node, joint.radius);
   return node;
 }
 
@@ -58,7 +50,7 @@ void checkArguments(const Asset& asset, const Geometry& geometry, const Skeleton
                                                      weights.vertexCount(), geometry.positions.size()));
   }
   for (const PrimitiveInstance& instance : geometry.instances) {
-    if (instance.node < elementCount(asset, "nodes") && instance.mesh < elementCount(asset, "meshes")) continue;
+    if (instance.node < asset.document.nodes.size() && instance.mesh < asset.document.meshes.size()) continue;
     throw Error(ErrorCode::kBadArgument, "the geometry is not that of this asset");
   }
 }
@@ -72,11 +64,11 @@ struct RigNodes {
 
 RigNodes addRigNodes(Asset& asset, const Skeleton& skeleton) {
   UniqueNames names;
-  for (const Json& node : elements(asset, "nodes")) names.add(nameOf(node));
-  Json& nodes = asset.json()["nodes"];
+  std::vector<gltf::Node>& nodes = asset.document.nodes;
+  for (const gltf::Node& node : nodes) names.add(node.name);
   RigNodes rig;
-  rig.root = static_cast<Index>(nodes.size());
-  nodes.push_back({{"name", names.add(kRigName)}, {"children", Json::array()}});
+  rig.root = addElement(nodes, gltf::Node());
+  nodes[rig.root].name = names.add(kRigName);
 
   std::vector<Affine> globals;
   for (Index j = 0; j < skeleton.jointCount(); ++j) {
@@ -90,10 +82,9 @@ RigNodes addRigNodes(Asset& asset, const Skeleton& skeleton) {
                   fmt::format("joint '{}'", joint.name));
     }
     const bool withRadius = skeleton.boneShape == BoneShape::kSphere || joint.radius > 0;
-    const auto node = static_cast<Index>(nodes.size());
-    nodes.push_back(jointJson(joint, rest, names.add(joint.name), withRadius));
+    const Index node = addElement(nodes, jointNode(joint, rest, names.add(joint.name), withRadius));
     rig.joints.push_back(node);
-    nodes[joint.parent ? rig.joints[*joint.parent] : rig.root]["children"].push_back(node);
+    nodes[joint.parent ? rig.joints[*joint.parent] : rig.root].children.push_back(node);
   }
   return rig;
 }

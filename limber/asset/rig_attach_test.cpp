@@ -9,6 +9,7 @@
 
 #include "limber/asset/scene_graph.h"
 #include "limber/asset/testing/attached_rig.h"
+#include "limber/asset/testing/document_json.h"
 #include "limber/asset/testing/scene_builder.h"
 #include "warning_kinds.h"
 
@@ -17,6 +18,7 @@ namespace {
 
 using testing::attach;
 using testing::Attached;
+using testing::documentJson;
 using ::testing::HasSubstr;
 using testing::mixedWeights;
 using testing::SceneBuilder;
@@ -30,22 +32,21 @@ std::string numbered(std::string name, Index number) {
 
 // Linear blend skinning as glTF defines it, straight from the document: the world positions of one skinned primitive.
 std::vector<Vec3> skinnedPositions(const Asset& asset, Index node, Index primitive = 0) {
-  const Json& json = asset.json();
-  const Json& attributes =
-      json["meshes"][json["nodes"][node]["mesh"].get<Index>()]["primitives"][primitive]["attributes"];
-  const Json& skin = json["skins"][json["nodes"][node]["skin"].get<Index>()];
-  const SceneGraph graph = readSceneGraph(asset);
-  const std::vector<float> inverseBinds = readFloats(asset, skin["inverseBindMatrices"].get<Index>());
+  const gltf::Node& shown = asset.document.nodes[node];
+  const gltf::Attributes& attributes = asset.document.meshes[*shown.mesh].primitives[primitive].attributes;
+  const gltf::Skin& skin = asset.document.skins[*shown.skin];
+  const SceneGraph graph = readSceneGraph(asset.document);
+  const std::vector<float> inverseBinds = readFloats(asset, *skin.inverseBindMatrices);
   std::vector<Mat4> matrices;
-  for (std::size_t j = 0; j < skin["joints"].size(); ++j) {
+  for (std::size_t j = 0; j < skin.joints.size(); ++j) {
     const Eigen::Map<const Eigen::Matrix4f> inverseBind(&inverseBinds[16 * j]);
-    matrices.push_back(graph.world[skin["joints"][j].get<Index>()].matrix() * inverseBind.cast<double>());
+    matrices.push_back(graph.world[skin.joints[j]].matrix() * inverseBind.cast<double>());
   }
-  const std::vector<float> stored = readFloats(asset, attributes["POSITION"].get<Index>());
+  const std::vector<float> stored = readFloats(asset, *attributes.find("POSITION"));
   std::vector<Vec3> result(stored.size() / 3, Vec3::Zero());
-  for (Index set = 0; attributes.contains(numbered("JOINTS_", set)); ++set) {
-    const auto joints = readIndices(asset, attributes[numbered("JOINTS_", set)].get<Index>());
-    const auto weights = readFloats(asset, attributes[numbered("WEIGHTS_", set)].get<Index>());
+  for (Index set = 0; attributes.find(numbered("JOINTS_", set)); ++set) {
+    const auto joints = readIndices(asset, *attributes.find(numbered("JOINTS_", set)));
+    const auto weights = readFloats(asset, *attributes.find(numbered("WEIGHTS_", set)));
     for (std::size_t i = 0; i < weights.size(); ++i) {
       const Vec4 p(stored[i / 4 * 3], stored[i / 4 * 3 + 1], stored[i / 4 * 3 + 2], 1);
       result[i / 4] += weights[i] * (matrices.at(joints[i]) * p).head<3>();
@@ -79,12 +80,15 @@ void expectBufferKept(const Asset& before, const Asset& after) {
 }
 
 Index rigRoot(const Asset& asset) {
-  const Json& nodes = asset.json()["nodes"];
-  for (Index n = 0; n < nodes.size(); ++n) {
-    if (nodes[n].value("name", "") == "limber_rig") return n;
+  for (Index n = 0; n < asset.document.nodeCount(); ++n) {
+    if (asset.document.nodes[n].name == "limber_rig") return n;
   }
   ADD_FAILURE() << "no limber_rig";
   return 0;
+}
+
+Index lastNode(const Asset& asset) {
+  return asset.document.nodeCount() - 1;
 }
 
 TEST(AttachRig, TheBindPoseShowsTheModelWhereItWas) {
@@ -101,9 +105,9 @@ TEST(AttachRig, AMovedJointTakesItsVerticesAlong) {
   scene.addNode({{"mesh", scene.addTetrahedron()}, {"scale", {2, 3, 4}}, {"translation", {1, 1, 1}}});
   Attached rigged = attach(scene.build());
   // The middle joint turns a quarter about z.
-  Json& joint = rigged.after.json()["nodes"][rigRoot(rigged.after) + 2];
-  ASSERT_EQ(joint["name"], "handle_1");
-  joint["rotation"] = {0, 0, std::sqrt(0.5), std::sqrt(0.5)};
+  gltf::Node& joint = rigged.after.document.nodes[rigRoot(rigged.after) + 2];
+  ASSERT_EQ(joint.name, "handle_1");
+  joint.rotation = Vec4(0, 0, std::sqrt(0.5), std::sqrt(0.5));
 
   const Skeleton skeleton = threeJoints();
   std::vector<Transform> pose = restLocals(skeleton);
@@ -121,8 +125,7 @@ TEST(AttachRig, AMovedJointTakesItsVerticesAlong) {
     }
     expected.push_back(sum.cast<float>());
   }
-  const Index moved = static_cast<Index>(rigged.after.json()["nodes"].size() - 1);
-  expectPositions(skinnedPositions(rigged.after, moved), expected);
+  expectPositions(skinnedPositions(rigged.after, lastNode(rigged.after)), expected);
   EXPECT_GT((expected[1] - rigged.geometry.positions[1]).norm(), 0.1);  // or the test would say nothing
 }
 
@@ -136,10 +139,10 @@ TEST(AttachRig, NothingElseChanges) {
   scene.addNode({{"name", "body"}, {"mesh", mesh}, {"extras", {{"kept", true}}}});
   scene.addNode({{"name", "lamp"}, {"translation", {1, 2, 3}}});
   scene.addScene({0, 1});
-  scene.json()["materials"] = Json::array({{{"name", "skin"}}});
-  scene.json()["extras"] = {{"whole", "document"}};
+  scene.asset().document.materials.emplace_back().name = "skin";
+  scene.asset().document.extras.change() = {{"whole", "document"}};
   const Attached rigged = attach(scene.build());
-  const Json &before = rigged.before.json(), &after = rigged.after.json();
+  const Json before = documentJson(rigged.before), after = documentJson(rigged.after);
   for (const char* key : {"asset", "materials", "extras"}) EXPECT_EQ(before[key], after[key]);
   expectPrefix(before, after, "accessors");
   expectPrefix(before, after, "bufferViews");
@@ -169,14 +172,14 @@ TEST(AttachRig, ANodeWithATransformKeepsItAndHandsItsMeshToTheRoot) {
   const Index parent = scene.addNode({{"children", {node}}, {"scale", {2, 2, 2}}});
   scene.addScene({parent});
   const Attached rigged = attach(scene.build());
-  const Json& nodes = rigged.after.json()["nodes"];
+  const Json nodes = documentJson(rigged.after)["nodes"];
   EXPECT_EQ(nodes[node], body);
-  EXPECT_EQ(nodes[parent], rigged.before.json()["nodes"][parent]);
-  const auto moved = static_cast<Index>(nodes.size() - 1);
+  EXPECT_EQ(nodes[parent], documentJson(rigged.before)["nodes"][parent]);
+  const Index moved = lastNode(rigged.after);
   EXPECT_EQ(nodes[moved]["name"], "body_skinned");
   EXPECT_EQ(nodes[moved]["mesh"], mesh);
   EXPECT_FALSE(nodes[moved].contains("translation"));
-  EXPECT_THAT(rigged.after.json()["scenes"][0]["nodes"].get<std::vector<Index>>(), ::testing::Contains(moved));
+  EXPECT_THAT(rigged.after.document.scenes[0].nodes, ::testing::Contains(moved));
   expectPositions(skinnedPositions(rigged.after, moved), rigged.geometry.positions);
 }
 
@@ -184,7 +187,7 @@ TEST(AttachRig, JointsAreNamedOnceAndSayTheirRadius) {
   SceneBuilder scene;
   scene.addNode({{"name", "handle_1"}, {"mesh", scene.addTetrahedron()}});
   const Attached rigged = attach(scene.build());
-  const Json& nodes = rigged.after.json()["nodes"];
+  const Json nodes = documentJson(rigged.after)["nodes"];
   std::set<std::string> names;
   for (const Json& node : nodes) EXPECT_TRUE(names.insert(node["name"].get<std::string>()).second) << node["name"];
   EXPECT_EQ(names.count("handle_1_2"), 1u);
@@ -196,7 +199,7 @@ TEST(AttachRig, JointsAreNamedOnceAndSayTheirRadius) {
   EXPECT_EQ(first["translation"].dump(), "[0.1,0.2,0.3]");  // as short as single precision allows
   EXPECT_EQ(first["extras"]["limber_radius"].dump(), "0.1");
   EXPECT_FALSE(first.contains("rotation"));
-  EXPECT_EQ(rigged.after.json()["skins"][0]["skeleton"], rigRoot(rigged.after));
+  EXPECT_EQ(rigged.after.document.skins[0].skeleton, rigRoot(rigged.after));
 }
 
 TEST(AttachRig, EachShowingOfAMeshGetsWeightsOfItsOwn) {
@@ -206,15 +209,15 @@ TEST(AttachRig, EachShowingOfAMeshGetsWeightsOfItsOwn) {
   scene.addNode({{"mesh", mesh}});
   scene.addNode({{"mesh", mesh}, {"translation", {3, 0, 0}}});
   const Attached rigged = attach(scene.build());
-  const Json& json = rigged.after.json();
-  ASSERT_EQ(json["meshes"].size(), 3u);
-  EXPECT_EQ(json["skins"].size(), 2u);  // two of them stand in the same place
+  const gltf::Document& document = rigged.after.document;
+  ASSERT_EQ(document.meshes.size(), 3u);
+  EXPECT_EQ(document.skins.size(), 2u);  // two of them stand in the same place
   const auto attribute = [&](Index m, const char* name) {
-    return json["meshes"][m]["primitives"][0]["attributes"][name];
+    return document.meshes[m].primitives[0].attributes.find(name);
   };
   EXPECT_EQ(attribute(0, "POSITION"), attribute(2, "POSITION"));
   EXPECT_NE(attribute(0, "WEIGHTS_0"), attribute(1, "WEIGHTS_0"));
-  const Index nodes[] = {0, 1, static_cast<Index>(json["nodes"].size() - 1)};
+  const Index nodes[] = {0, 1, lastNode(rigged.after)};
   for (std::size_t i = 0; i < 3; ++i) {
     expectPositions(skinnedPositions(rigged.after, nodes[i]),
                     positionsOf(rigged.geometry, rigged.geometry.instances[i]));
@@ -229,7 +232,7 @@ TEST(AttachRig, AMeshThatAnotherSceneShowsStaysAsItIs) {
   scene.addScene({0});
   scene.addScene({1});
   const Attached rigged = attach(scene.build());
-  const Json &before = rigged.before.json(), &after = rigged.after.json();
+  const Json before = documentJson(rigged.before), after = documentJson(rigged.after);
   EXPECT_EQ(after["meshes"][0], before["meshes"][0]);
   EXPECT_EQ(after["nodes"][1], before["nodes"][1]);
   EXPECT_EQ(after["scenes"][1], before["scenes"][1]);
@@ -244,10 +247,10 @@ TEST(AttachRig, TheRigIsInEverySceneThatShowsTheMesh) {
   scene.addScene({1, 0});
   scene.addScene({1});
   const Attached rigged = attach(scene.build());
-  const Json& scenes = rigged.after.json()["scenes"];
-  EXPECT_EQ(scenes[0]["nodes"].size(), 2u);
-  EXPECT_EQ(scenes[1]["nodes"].size(), 3u);
-  EXPECT_EQ(scenes[2]["nodes"].size(), 1u);
+  const std::vector<gltf::Scene>& scenes = rigged.after.document.scenes;
+  EXPECT_EQ(scenes[0].nodes.size(), 2u);
+  EXPECT_EQ(scenes[1].nodes.size(), 3u);
+  EXPECT_EQ(scenes[2].nodes.size(), 1u);
 }
 
 TEST(AttachRig, MorphWeightsMoveWithTheMesh) {
@@ -261,8 +264,8 @@ TEST(AttachRig, MorphWeightsMoveWithTheMesh) {
                                     {"translation", {0, 1, 0}}});
   scene.addClip(node, "weights", 1);
   const Attached rigged = attach(scene.build());
-  const Json& json = rigged.after.json();
-  const auto moved = static_cast<Index>(json["nodes"].size() - 1);
+  const Json json = documentJson(rigged.after);
+  const Index moved = lastNode(rigged.after);
   EXPECT_EQ(json["nodes"][moved]["weights"], Json::array({0.5}));
   EXPECT_FALSE(json["nodes"][node].contains("weights"));
   EXPECT_EQ(json["animations"][0]["channels"][0]["target"]["node"], moved);
@@ -279,7 +282,7 @@ TEST(AttachRig, AnAnimationThatMovedTheMeshIsTold) {
   const Attached rigged = attach(scene.build());
   ASSERT_EQ(warningKinds(rigged.after.warnings), std::vector<std::string>{"node-animation"});
   EXPECT_EQ(rigged.after.warnings.items()[0].count, 1u);
-  EXPECT_EQ(rigged.after.json()["animations"], rigged.before.json()["animations"]);
+  EXPECT_EQ(documentJson(rigged.after)["animations"], documentJson(rigged.before)["animations"]);
 }
 
 TEST(AttachRig, GpuInstancesBecomeNodes) {
@@ -290,15 +293,15 @@ TEST(AttachRig, GpuInstancesBecomeNodes) {
   const Index node = scene.addNode(
       {{"name", "tree"}, {"mesh", mesh}, {"extensions", {{"EXT_mesh_gpu_instancing", {{"attributes", attributes}}}}}});
   scene.addScene({node});
-  scene.json()["extensionsUsed"] = {"EXT_mesh_gpu_instancing", "KHR_other"};
-  scene.json()["extensionsRequired"] = {"EXT_mesh_gpu_instancing"};
+  scene.asset().document.extensionsUsed = {"EXT_mesh_gpu_instancing", "KHR_other"};
+  scene.asset().document.extensionsRequired = {"EXT_mesh_gpu_instancing"};
   const Attached rigged = attach(scene.build());
-  const Json& json = rigged.after.json();
+  const Json json = documentJson(rigged.after);
   EXPECT_EQ(json["nodes"][node], Json({{"name", "tree"}}));
   EXPECT_EQ(json["extensionsUsed"], Json::array({"KHR_other"}));
   EXPECT_FALSE(json.contains("extensionsRequired"));
   EXPECT_EQ(warningKinds(rigged.after.warnings), std::vector<std::string>{"expanded-instances"});
-  const auto last = static_cast<Index>(json["nodes"].size() - 1);
+  const Index last = lastNode(rigged.after);
   expectPositions(skinnedPositions(rigged.after, last - 1), positionsOf(rigged.geometry, rigged.geometry.instances[0]));
   expectPositions(skinnedPositions(rigged.after, last), positionsOf(rigged.geometry, rigged.geometry.instances[1]));
 }
@@ -307,8 +310,7 @@ TEST(AttachRig, AFlattenedNodeIsSkinnedFlat) {
   SceneBuilder scene;
   scene.addNode({{"mesh", scene.addTetrahedron()}, {"scale", {1, 0, 1}}, {"translation", {0, 2, 0}}});
   const Attached rigged = attach(scene.build());
-  const auto moved = static_cast<Index>(rigged.after.json()["nodes"].size() - 1);
-  expectPositions(skinnedPositions(rigged.after, moved), rigged.geometry.positions);
+  expectPositions(skinnedPositions(rigged.after, lastNode(rigged.after)), rigged.geometry.positions);
 }
 
 TEST(AttachRig, WeightsAreTidy) {
@@ -320,10 +322,10 @@ TEST(AttachRig, WeightsAreTidy) {
   for (Index slot = 2; slot < 4; ++slot) weights.joints[slot] = 2;               // unused slots that name a joint
   for (std::size_t i = 4; i < 8; ++i) weights.weights[i] = i < 7 ? 0.3333f : 0;  // do not sum to 1
   attachRig(asset, geometry, threeJoints(), weights);
-  const Json& attributes = asset.json()["meshes"][0]["primitives"][0]["attributes"];
-  const auto joints = readIndices(asset, attributes["JOINTS_0"].get<Index>());
-  const auto stored = readFloats(asset, attributes["WEIGHTS_0"].get<Index>());
-  EXPECT_EQ(accessorInfo(asset, attributes["JOINTS_0"].get<Index>()).type, ComponentType::kU8);
+  const gltf::Attributes& attributes = asset.document.meshes[0].primitives[0].attributes;
+  const auto joints = readIndices(asset, *attributes.find("JOINTS_0"));
+  const auto stored = readFloats(asset, *attributes.find("WEIGHTS_0"));
+  EXPECT_EQ(accessorInfo(asset, *attributes.find("JOINTS_0")).type, ComponentType::kU8);
   for (std::size_t v = 0; v < 4; ++v) {
     float sum = 0;
     for (std::size_t i = 4 * v; i < 4 * v + 4; ++i) {
@@ -334,7 +336,7 @@ TEST(AttachRig, WeightsAreTidy) {
     }
     EXPECT_NEAR(sum, 1, 6e-8);  // an ulp
   }
-  EXPECT_FALSE(attributes.contains("JOINTS_1"));
+  EXPECT_FALSE(attributes.find("JOINTS_1"));
 }
 
 TEST(AttachRig, EightInfluencesTakeASecondSet) {
@@ -349,7 +351,7 @@ TEST(AttachRig, EightInfluencesTakeASecondSet) {
   scene.addNode({{"mesh", scene.addTetrahedron()}});
   const Attached rigged = attach(scene.build(), skeleton, 7, 8);
   expectPositions(skinnedPositions(rigged.after, 0), rigged.geometry.positions);
-  EXPECT_TRUE(rigged.after.json()["meshes"][0]["primitives"][0]["attributes"].contains("WEIGHTS_1"));
+  EXPECT_TRUE(rigged.after.document.meshes[0].primitives[0].attributes.find("WEIGHTS_1"));
   const AssetSkeleton read = readSkeleton(rigged.after);
   EXPECT_EQ(read.skeleton.joints.size(), 9u);
   const SkinWeights weights = readWeights(rigged.after, rigged.geometry, read);
@@ -371,7 +373,7 @@ TEST(AttachRig, MoreThan256JointsTakeShorts) {
   SkinWeights weights = mixedWeights(4, 1, 1);
   weights.joints[0] = 256;
   attachRig(asset, geometry, skeleton, weights);
-  const Index joints = asset.json()["meshes"][0]["primitives"][0]["attributes"]["JOINTS_0"].get<Index>();
+  const Index joints = *asset.document.meshes[0].primitives[0].attributes.find("JOINTS_0");
   EXPECT_EQ(accessorInfo(asset, joints).type, ComponentType::kU16);
   EXPECT_EQ(readIndices(asset, joints)[0], 256u);
 }

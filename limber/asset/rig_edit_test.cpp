@@ -2,15 +2,19 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "limber/asset/extensions.h"
 #include "limber/asset/node_edit.h"
 #include "limber/asset/rig_io.h"
 #include "limber/asset/scene_graph.h"
+#include "limber/asset/testing/document_json.h"
 #include "limber/asset/testing/scene_builder.h"
 
 namespace limber {
 namespace {
 
 using ::testing::Contains;
+using testing::documentJson;
+using testing::editDocument;
 using testing::SceneBuilder;
 using testing::translation;
 
@@ -35,16 +39,17 @@ struct Character {
         {{"name", "Armature"}, {"children", {hip, body}}, {"scale", {0.5, 0.5, 0.5}}, {"translation", {7, 0, 0}}});
     lamp = scene.addNode({{"name", "lamp"}});
     scene.addScene({armature, lamp});
-    scene.json()["cameras"] = Json::array({{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}}});
+    editDocument(scene.asset(), [](Json& json) {
+      json["cameras"] = Json::array({{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}}});
+    });
     scene.addClip(chest, "rotation", 4);
     scene.addClip(lamp, "translation", 3);
   }
 };
 
 Index nodeNamed(const Asset& asset, const std::string& name) {
-  const Json& nodes = elements(asset, "nodes");
-  for (Index n = 0; n < nodes.size(); ++n) {
-    if (nameOf(nodes[n]) == name) return n;
+  for (Index n = 0; n < asset.document.nodeCount(); ++n) {
+    if (asset.document.nodes[n].name == name) return n;
   }
   ADD_FAILURE() << "no node " << name;
   return 0;
@@ -67,14 +72,14 @@ TEST(RemoveRig, LeavesTheModelWhereItStood) {
   removeRig(asset);
   checkAsset(asset);
   EXPECT_FALSE(hasRig(asset));
-  EXPECT_FALSE(asset.json().contains("skins"));
+  EXPECT_FALSE(documentJson(asset).contains("skins"));
   expectSamePositions(before, collectGeometry(asset));
 }
 
 TEST(RemoveRig, LeavesAPosedModelInItsBindPose) {
   Character character;
-  character.scene.node(character.chest)["rotation"] = {0, 0, 1, 0};
-  character.scene.node(character.chest)["translation"] = {3, 3, 3};
+  character.scene.node(character.chest).rotation = Vec4(0, 0, 1, 0);
+  character.scene.node(character.chest).translation = Vec3(3, 3, 3);
   Asset asset = character.scene.build();
   const Geometry before = collectGeometry(asset);
   removeRig(asset);
@@ -84,14 +89,14 @@ TEST(RemoveRig, LeavesAPosedModelInItsBindPose) {
 TEST(RemoveRig, TakesJointsOutThatHoldNothing) {
   Character character;
   Asset asset = character.scene.build();
-  const Affine eyeBefore = readSceneGraph(asset).world[character.camera];
+  const Affine eyeBefore = readSceneGraph(asset.document).world[character.camera];
   removeRig(asset);
   std::vector<std::string> names;
-  for (const Json& node : asset.json()["nodes"]) names.push_back(node["name"]);
+  for (const gltf::Node& node : asset.document.nodes) names.push_back(node.name);
   // chest and hip stay: the hat and the camera hang on them.
   EXPECT_THAT(names, ::testing::UnorderedElementsAre("hat", "chest", "eye", "hip", "body", "Armature", "lamp"));
-  EXPECT_TRUE(readSceneGraph(asset).world[nodeNamed(asset, "eye")].isApprox(eyeBefore, 1e-6));
-  EXPECT_EQ(asset.json()["nodes"][nodeNamed(asset, "lamp")], Json({{"name", "lamp"}}));
+  EXPECT_TRUE(readSceneGraph(asset.document).world[nodeNamed(asset, "eye")].isApprox(eyeBefore, 1e-6));
+  EXPECT_EQ(documentJson(asset)["nodes"][nodeNamed(asset, "lamp")], Json({{"name", "lamp"}}));
 }
 
 TEST(RemoveRig, TakesAnArmatureOutThatHeldOnlyJoints) {
@@ -106,31 +111,29 @@ TEST(RemoveRig, TakesAnArmatureOutThatHeldOnlyJoints) {
   scene.addScene({armature, body});
   Asset asset = scene.build();
   removeRig(asset);
-  EXPECT_EQ(asset.json()["nodes"], Json::array({{{"name", "body"}, {"mesh", mesh}}}));
-  EXPECT_EQ(asset.json()["scenes"][0]["nodes"], Json::array({0}));
+  EXPECT_EQ(documentJson(asset)["nodes"], Json::array({{{"name", "body"}, {"mesh", mesh}}}));
+  EXPECT_EQ(asset.document.scenes[0].nodes, std::vector<Index>{0});
 }
 
 TEST(RemoveRig, TakesTheMovementOfJointsOutAndNoOther) {
   Character character;
-  character.scene.json()["animations"][1]["name"] = "swing";
+  gltf::Animation& both = character.scene.asset().document.animations[1];
+  both.name = "swing";
   // A clip that moves both: its channel of the chest goes, and only that sampler.
-  Json& both = character.scene.json()["animations"][1];
-  const Json channel = {{"sampler", 1}, {"target", {{"node", character.hip}, {"path", "translation"}}}};
-  both["channels"].insert(both["channels"].begin(), channel);
-  const Json sampler = both["samplers"][0];
-  both["samplers"].push_back(sampler);
-  both["channels"][1]["sampler"] = 0;
-  both["samplers"][0]["interpolation"] = "STEP";
+  both.channels.insert(both.channels.begin(), {{}, 1, {{}, character.hip, "translation"}});
+  both.samplers.push_back(both.samplers[0]);
+  both.channels[1].sampler = 0;
+  both.samplers[0].interpolation = Interpolation::kStep;
   Asset asset = character.scene.build();
   removeRig(asset);
   checkAsset(asset);
-  const Json& animations = asset.json()["animations"];
+  const std::vector<gltf::Animation>& animations = asset.document.animations;
   ASSERT_EQ(animations.size(), 1u);
-  EXPECT_EQ(animations[0]["name"], "swing");
-  ASSERT_EQ(animations[0]["channels"].size(), 1u);
-  EXPECT_EQ(animations[0]["channels"][0]["target"]["node"], nodeNamed(asset, "lamp"));
-  ASSERT_EQ(animations[0]["samplers"].size(), 1u);
-  EXPECT_EQ(animations[0]["samplers"][0]["interpolation"], "STEP");
+  EXPECT_EQ(animations[0].name, "swing");
+  ASSERT_EQ(animations[0].channels.size(), 1u);
+  EXPECT_EQ(animations[0].channels[0].target.node, nodeNamed(asset, "lamp"));
+  ASSERT_EQ(animations[0].samplers.size(), 1u);
+  EXPECT_EQ(animations[0].samplers[0].interpolation, Interpolation::kStep);
 }
 
 // Two joints, and all vertices on the first.
@@ -162,18 +165,18 @@ TEST(RemoveRig, UndoesAttachRig) {
   scene.addScene({0, 1, 3});
   scene.addClip(2, "weights", 1);
   Asset asset = std::move(scene.asset());
-  const Json before = asset.json();
+  const Json before = documentJson(asset);
   for (int round = 0; round < 3; ++round) {
     attachSimply(asset);
     EXPECT_TRUE(hasRig(asset));
-    EXPECT_NE(asset.json()["nodes"], before["nodes"]);
+    EXPECT_NE(documentJson(asset)["nodes"], before["nodes"]);
     removeRig(asset);
+    const Json after = documentJson(asset);
     for (const char* key : {"nodes", "scenes", "animations"}) {
-      EXPECT_EQ(nlohmann::json(asset.json()[key]), nlohmann::json(before[key]))
-          << key;  // whatever the order of members
+      EXPECT_EQ(nlohmann::json(after[key]), nlohmann::json(before[key])) << key;  // whatever the order of members
     }
-    EXPECT_EQ(asset.json()["meshes"][0]["primitives"], before["meshes"][0]["primitives"]);
-    EXPECT_FALSE(asset.json().contains("skins"));
+    EXPECT_EQ(after["meshes"][0]["primitives"], before["meshes"][0]["primitives"]);
+    EXPECT_FALSE(after.contains("skins"));
   }
 }
 
@@ -181,51 +184,54 @@ TEST(RemoveRig, WithoutASkinDoesNothing) {
   SceneBuilder scene;
   scene.addNode({{"mesh", scene.addTetrahedron()}});
   Asset asset = scene.build();
-  const Json before = asset.json();
+  const Json before = documentJson(asset);
   removeRig(asset);
-  EXPECT_EQ(asset.json(), before);
+  EXPECT_EQ(documentJson(asset), before);
 }
 
 TEST(RemoveRig, AccessorsOfTheRigGoAndTheirBytesStay) {
   Character character;
   Asset asset = character.scene.build();
-  const Json before = asset.json();
+  const Json before = documentJson(asset);
   const Bytes bytes = asset.buffers[0].bytes;
-  const std::vector<float> hat =
-      readFloats(asset, before["meshes"][character.hatMesh]["primitives"][0]["attributes"]["POSITION"].get<Index>());
+  const auto hatPositions = [&] {
+    return readFloats(asset, *asset.document.meshes[character.hatMesh].primitives[0].attributes.find("POSITION"));
+  };
+  const std::vector<float> hat = hatPositions();
   removeRig(asset);
   // Inverse binds, joints, weights, and the two accessors of the chest's clip.
-  EXPECT_EQ(asset.json()["accessors"].size(), before["accessors"].size() - 5);
-  EXPECT_EQ(asset.json()["bufferViews"], before["bufferViews"]);
+  EXPECT_EQ(asset.document.accessors.size(), before["accessors"].size() - 5);
+  EXPECT_EQ(documentJson(asset)["bufferViews"], before["bufferViews"]);
   EXPECT_EQ(asset.buffers[0].bytes, bytes);
-  const Json& attributes = asset.json()["meshes"][character.hatMesh]["primitives"][0]["attributes"];
-  EXPECT_EQ(readFloats(asset, attributes["POSITION"].get<Index>()), hat);
+  EXPECT_EQ(hatPositions(), hat);
 }
 
 TEST(RemoveRig, AccessorsStayWhereAnUnknownExtensionMayNameThem) {
   Character character;
-  character.scene.json()["meshes"][0]["primitives"][0]["extensions"] = {{"EXT_mesh_manifold", {{"indices", 1}}}};
+  changeExtension(character.scene.primitiveOf(0), "EXT_mesh_manifold") = {{"indices", 1}};
   Asset asset = character.scene.build();
-  const Json accessors = asset.json()["accessors"];
+  const Json accessors = documentJson(asset)["accessors"];
   removeRig(asset);
-  EXPECT_EQ(asset.json()["accessors"], accessors);
+  EXPECT_EQ(documentJson(asset)["accessors"], accessors);
 }
 
 TEST(DeleteNodes, RenumbersWhatNamesNodes) {
   SceneBuilder scene;
   for (const char* name : {"a", "b", "c", "d"}) scene.addNode({{"name", name}});
-  scene.node(1)["children"] = {0, 3};
-  scene.node(3)["extensions"] = {{"MSFT_lod", {{"ids", {2, 0}}}}};
+  scene.node(1).children = {0, 3};
+  changeExtension(scene.node(3), "MSFT_lod") = {{"ids", {2, 0}}};
   scene.addScene({1, 2});
   scene.addClip(3, "translation", 3);
   scene.addClip(0, "translation", 3);
-  Json pointer = {{"path", "pointer"}, {"extensions", {{"KHR_animation_pointer", {{"pointer", "/nodes/3/rotation"}}}}}};
   scene.addClip(3, "rotation", 4);
-  scene.json()["animations"][2]["channels"][0]["target"] = pointer;
-  scene.json()["extensions"] = {{"VRM", {{"humanBones", {{{"node", 3}}}}}}};
   Asset& asset = scene.asset();
+  gltf::AnimationChannel::Target& target = asset.document.animations[2].channels[0].target;
+  target.node.reset();
+  target.path = "pointer";
+  changeExtension(target, "KHR_animation_pointer") = {{"pointer", "/nodes/3/rotation"}};
+  changeExtension(asset.document, "VRM") = {{"humanBones", {{{"node", 3}}}}};
   deleteNodes(asset, {false, true, true, true});
-  const Json& json = asset.json();
+  const Json json = documentJson(asset);
   ASSERT_EQ(json["nodes"].size(), 3u);
   EXPECT_EQ(json["nodes"][0]["children"], Json::array({2}));
   EXPECT_EQ(json["nodes"][2]["extensions"]["MSFT_lod"]["ids"], Json::array({1}));
@@ -258,17 +264,18 @@ SkinWeights evenWeights(std::size_t vertices, std::initializer_list<Index> joint
 TEST(ReplaceWeights, KeepsJointsSkinsAndClips) {
   Character character;
   Asset asset = character.scene.build();
-  const Asset before = asset.clone();
+  const Json before = documentJson(asset);
   const Geometry geometry = collectGeometry(asset);
   const AssetSkeleton skeleton = readSkeleton(asset);
   ASSERT_EQ(skeleton.jointNode, (std::vector<Index>{character.hip, character.chest}));
   const SkinWeights weights = evenWeights(geometry.positions.size(), {0, 1});
   replaceWeights(asset, geometry, skeleton, weights);
   checkAsset(asset);
-  EXPECT_EQ(asset.json()["skins"][0], before.json()["skins"][0]);
-  EXPECT_EQ(asset.json()["animations"], before.json()["animations"]);
-  EXPECT_EQ(asset.json()["nodes"][character.body], before.json()["nodes"][character.body]);
-  EXPECT_EQ(asset.json()["nodes"][character.hip], before.json()["nodes"][character.hip]);
+  const Json after = documentJson(asset);
+  EXPECT_EQ(after["skins"][0], before["skins"][0]);
+  EXPECT_EQ(after["animations"], before["animations"]);
+  EXPECT_EQ(after["nodes"][character.body], before["nodes"][character.body]);
+  EXPECT_EQ(after["nodes"][character.hip], before["nodes"][character.hip]);
   const SkinWeights read = readWeights(asset, collectGeometry(asset), readSkeleton(asset));
   EXPECT_EQ(read.joints, weights.joints);
   EXPECT_EQ(read.weights, weights.weights);
@@ -279,12 +286,12 @@ TEST(ReplaceWeights, APartThatHungOnAJointBendsFromNowOn) {
   Asset asset = character.scene.build();
   const Geometry before = collectGeometry(asset);
   replaceWeights(asset, before, readSkeleton(asset), evenWeights(before.positions.size(), {1, 0}));
-  const Json& nodes = asset.json()["nodes"];
+  const std::vector<gltf::Node>& nodes = asset.document.nodes;
   const Index hat = nodeNamed(asset, "hat_skinned");
-  EXPECT_EQ(nodes[hat]["mesh"], character.hatMesh);
-  EXPECT_FALSE(nodes[character.hat].contains("mesh"));
-  EXPECT_EQ(asset.json()["skins"].size(), 2u);
-  EXPECT_THAT(asset.json()["scenes"][0]["nodes"].get<std::vector<Index>>(), Contains(hat));
+  EXPECT_EQ(nodes[hat].mesh, character.hatMesh);
+  EXPECT_FALSE(nodes[character.hat].mesh);
+  EXPECT_EQ(asset.document.skins.size(), 2u);
+  EXPECT_THAT(asset.document.scenes[0].nodes, Contains(hat));
   EXPECT_TRUE(asset.warnings.empty());  // the chest's movement reaches it by its weights
   // Bind pose and stored pose are one here: the hat is where it was, though its skin now says so.
   const Geometry after = collectGeometry(asset);
@@ -308,18 +315,18 @@ TEST(ReplaceWeights, ASkinIsGivenTheJointsThatItLacks) {
   scene.bindRigidly(lower, {0, 0, 0, 0});
   const Index upperSkin = scene.addSkin({tip}, {translation(0, -1, 0)});
   const Index lowerSkin = scene.addSkin({root}, {translation(0, 0, 0)});
-  scene.json()["skins"][upperSkin]["skeleton"] = tip;
+  scene.asset().document.skins[upperSkin].skeleton = tip;
   scene.addNode({{"name", "upper"}, {"mesh", upper}, {"skin", upperSkin}});
   scene.addNode({{"name", "lower"}, {"mesh", lower}, {"skin", lowerSkin}});
   Asset asset = scene.build();
-  const std::vector<float> oldBinds = readFloats(asset, asset.json()["skins"][upperSkin]["inverseBindMatrices"]);
+  const std::vector<float> oldBinds = readFloats(asset, *asset.document.skins[upperSkin].inverseBindMatrices);
   const Geometry geometry = collectGeometry(asset);
   replaceWeights(asset, geometry, readSkeleton(asset), evenWeights(8, {0, 1}));
   checkAsset(asset);
-  const Json& skin = asset.json()["skins"][upperSkin];
-  EXPECT_EQ(skin["joints"], Json::array({tip, root}));
-  EXPECT_FALSE(skin.contains("skeleton"));  // the tip is above itself only
-  const std::vector<float> binds = readFloats(asset, skin["inverseBindMatrices"].get<Index>());
+  const gltf::Skin& skin = asset.document.skins[upperSkin];
+  EXPECT_EQ(skin.joints, (std::vector<Index>{tip, root}));
+  EXPECT_FALSE(skin.skeleton);  // the tip is above itself only
+  const std::vector<float> binds = readFloats(asset, *skin.inverseBindMatrices);
   ASSERT_EQ(binds.size(), 32u);
   EXPECT_TRUE(std::equal(oldBinds.begin(), oldBinds.end(), binds.begin()));
   EXPECT_EQ(binds[16 + 13], 0);  // the root stands in the origin
@@ -341,8 +348,8 @@ TEST(ReplaceWeights, SkeletonsThatShareAMeshGetACommonRoot) {
   replaceWeights(asset, geometry, readSkeleton(asset), evenWeights(8, {0, 1}));
   checkAsset(asset);
   const Index root = nodeNamed(asset, "limber_common_root");
-  EXPECT_EQ(asset.json()["nodes"][root]["children"], Json::array({left, right}));
-  EXPECT_EQ(asset.json()["scenes"][0]["nodes"], Json::array({first, second, root}));
+  EXPECT_EQ(asset.document.nodes[root].children, (std::vector<Index>{left, right}));
+  EXPECT_EQ(asset.document.scenes[0].nodes, (std::vector<Index>{first, second, root}));
   const Geometry after = collectGeometry(asset);
   ASSERT_EQ(after.positions.size(), 8u);
   expectSamePositions(geometry, after);
@@ -350,22 +357,22 @@ TEST(ReplaceWeights, SkeletonsThatShareAMeshGetACommonRoot) {
 
 TEST(ReplaceWeights, MakesInverseBindsWhereThereWereNone) {
   Character character;
-  character.scene.json()["skins"][0].erase("inverseBindMatrices");
+  character.scene.asset().document.skins[0].inverseBindMatrices.reset();
   Asset asset = character.scene.build();
   const Geometry geometry = collectGeometry(asset);
   replaceWeights(asset, geometry, readSkeleton(asset), evenWeights(geometry.positions.size(), {0, 1}));
-  EXPECT_TRUE(asset.json()["skins"][0].contains("inverseBindMatrices"));
+  EXPECT_TRUE(asset.document.skins[0].inverseBindMatrices);
   ASSERT_FALSE(asset.warnings.empty());
   EXPECT_EQ(asset.warnings.items()[0].kind, "missing-inverse-binds");
 }
 
 TEST(ReplaceWeights, ASkeletonRootThatIsNoneIsLeftOut) {
   Character character;
-  character.scene.json()["skins"][0]["skeleton"] = character.chest;
+  character.scene.asset().document.skins[0].skeleton = character.chest;
   Asset asset = character.scene.build();
   const Geometry geometry = collectGeometry(asset);
   replaceWeights(asset, geometry, readSkeleton(asset), evenWeights(geometry.positions.size(), {0, 1}));
-  EXPECT_FALSE(asset.json()["skins"][0].contains("skeleton"));
+  EXPECT_FALSE(asset.document.skins[0].skeleton);
   ASSERT_FALSE(asset.warnings.empty());
   EXPECT_EQ(asset.warnings.items()[0].kind, "skeleton-root");
 }

@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "limber/asset/accessor.h"
 #include "limber/asset/bind_pose.h"
+#include "limber/asset/joint_radius.h"
 #include "limber/asset/rig_io.h"
 #include "limber/asset/unique_names.h"
 #include "limber/asset/weight_attributes.h"
@@ -15,13 +15,12 @@
 namespace limber {
 
 bool hasRig(const Asset& asset) {
-  const Json& nodes = elements(asset, "nodes");
-  return std::any_of(nodes.begin(), nodes.end(), [](const Json& node) { return node.contains("skin"); });
+  const std::vector<gltf::Node>& nodes = asset.document.nodes;
+  return std::any_of(nodes.begin(), nodes.end(), [](const gltf::Node& node) { return node.skin.has_value(); });
 }
 
 namespace {
 
-constexpr const char* kRadiusKey = "limber_radius";
 constexpr Index kMaxSlots = 8;
 
 // Joints, and the nodes that have a joint above and a joint below.
@@ -38,14 +37,6 @@ std::vector<bool> skeletonNodes(const SceneGraph& graph, const std::vector<bool>
   return result;
 }
 
-std::optional<double> storedRadius(const Json& node) {
-  const Json* extras = member(node, "extras");
-  const Json* radius = extras && extras->is_object() ? member(*extras, kRadiusKey) : nullptr;
-  if (!radius || !radius->is_number()) return std::nullopt;
-  const double value = radius->get<double>();
-  return std::isfinite(value) && value >= 0 ? std::optional(value) : std::nullopt;
-}
-
 // The rest transform that brings a joint to `bind` below a parent that stands at `parent`; the node's own one where
 // that cannot be.
 Transform restTransform(const Affine& parent, const Affine& bind, const Affine& stored) {
@@ -57,10 +48,10 @@ Transform restTransform(const Affine& parent, const Affine& bind, const Affine& 
 }  // namespace
 
 AssetSkeleton readSkeleton(const Asset& asset) {
-  const SceneGraph graph = readSceneGraph(asset);
+  const SceneGraph graph = readSceneGraph(asset.document);
   const BindPose pose = readBindPose(asset, graph);
   const std::vector<bool> wanted = skeletonNodes(graph, pose.isJoint);
-  const Json& nodes = elements(asset, "nodes");
+  const std::vector<gltf::Node>& nodes = asset.document.nodes;
 
   AssetSkeleton result;
   UniqueNames names;
@@ -70,7 +61,7 @@ AssetSkeleton readSkeleton(const Asset& asset) {
   for (const Index n : graph.allNodes) {
     if (!wanted[n]) continue;
     Joint joint;
-    const std::string name = nameOf(nodes[n]);
+    const std::string& name = nodes[n].name;
     joint.name = names.add(name.empty() ? fmt::format("joint_{}", n) : name);
     if (graph.parent[n]) joint.parent = jointOfNode[*graph.parent[n]];
     const Affine above = joint.parent ? globals[*joint.parent] : Affine::Identity();
@@ -110,7 +101,7 @@ void addInfluence(std::vector<JointInfluence>& influences, JointInfluence added)
 class WeightReader {
  public:
   WeightReader(const Asset& asset, const Geometry& geometry, const AssetSkeleton& skeleton)
-      : asset_(asset), nodes_(elements(asset, "nodes")), graph_(readSceneGraph(asset)), geometry_(geometry) {
+      : asset_(asset), nodes_(asset.document.nodes), graph_(readSceneGraph(asset.document)), geometry_(geometry) {
     jointOfNode_.resize(graph_.nodeCount());
     for (Index j = 0; j < skeleton.jointNode.size(); ++j) jointOfNode_[skeleton.jointNode[j]] = j;
   }
@@ -118,14 +109,14 @@ class WeightReader {
   SkinWeights read() {
     result_.slots = 4;
     for (const PrimitiveInstance& instance : geometry_.instances) {
-      if (nodes_[instance.node].contains("skin") && primitiveOf(instance).at("attributes").contains("JOINTS_1")) {
+      if (nodes_[instance.node].skin && primitiveOf(instance).attributes.find("JOINTS_1")) {
         result_.slots = kMaxSlots;
       }
     }
     result_.joints.assign(geometry_.positions.size() * result_.slots, 0);
     result_.weights.assign(geometry_.positions.size() * result_.slots, 0.0f);
     for (const PrimitiveInstance& instance : geometry_.instances) {
-      if (const std::optional<Index> skin = indexMember(nodes_[instance.node], "skin")) {
+      if (const std::optional<Index> skin = nodes_[instance.node].skin) {
         readSkinned(instance, *skin);
       } else {
         readRigid(instance);
@@ -135,8 +126,8 @@ class WeightReader {
   }
 
  private:
-  const Json& primitiveOf(const PrimitiveInstance& instance) const {
-    return elements(asset_, "meshes")[instance.mesh].at("primitives")[instance.primitive];
+  const gltf::Primitive& primitiveOf(const PrimitiveInstance& instance) const {
+    return asset_.document.meshes[instance.mesh].primitives[instance.primitive];
   }
 
   void readSkinned(const PrimitiveInstance& instance, Index skin) {
@@ -175,7 +166,7 @@ class WeightReader {
   }
 
   const Asset& asset_;
-  const Json& nodes_;
+  const std::vector<gltf::Node>& nodes_;
   SceneGraph graph_;
   const Geometry& geometry_;
   std::vector<std::optional<Index>> jointOfNode_;

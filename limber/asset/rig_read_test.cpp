@@ -1,7 +1,6 @@
 // readSkeleton and readWeights.
 #include <gtest/gtest.h>
 
-#include "limber/asset/accessor.h"
 #include "limber/asset/testing/attached_rig.h"
 #include "limber/asset/testing/scene_builder.h"
 
@@ -93,13 +92,10 @@ TEST(ReadWeights, SaysWhatTheFileSays) {
   const Index skin = scene.addSkin({root, tip}, {});
   const std::vector<std::uint8_t> joints = {0, 1, 1, 0, 0, 1, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0};
   const std::vector<float> weights = {0.25f, 0.5f, 0.25f, 0, 0, 0, 0, 0, -1, 0.5f, 0, 0, 3, 0, 0, 0};
-  Asset& asset = scene.asset();
-  const Index j = addAccessor(asset, {4, 4, ComponentType::kU8, false}, joints, kVertexTarget);
-  const Index w = addFloatAccessor(asset, weights, 4, kVertexTarget);
-  scene.json()["meshes"][mesh]["primitives"][0]["attributes"]["JOINTS_0"] = j;
-  scene.json()["meshes"][mesh]["primitives"][0]["attributes"]["WEIGHTS_0"] = w;
+  scene.bind(mesh, joints, weights);
   scene.addNode({{"mesh", mesh}, {"skin", skin}});
   scene.addNode({{"mesh", loose}});
+  const Asset& asset = scene.asset();
   const Geometry geometry = collectGeometry(asset);
   const SkinWeights read = readWeights(asset, geometry, readSkeleton(asset));
   for (const PrimitiveInstance& instance : geometry.instances) {

@@ -4,8 +4,7 @@
 #include <map>
 #include <string>
 #include <string_view>
-
-#include <nlohmann/json.hpp>
+#include <utility>
 
 #include "limber/asset/accessor_sweep.h"
 #include "limber/asset/bind_pose.h"
@@ -30,10 +29,11 @@ bool near(const Affine& a, const Affine& b) {
 
 class RigRemover {
  public:
-  explicit RigRemover(Asset& asset) : asset_(asset), graph_(readSceneGraph(asset)), pose_(readBindPose(asset, graph_)) {
+  explicit RigRemover(Asset& asset)
+      : asset_(asset), graph_(readSceneGraph(asset.document)), pose_(readBindPose(asset, graph_)) {
     isJoint_.assign(graph_.nodeCount(), false);
-    for (const Json& skin : elements(asset, "skins")) {
-      for (const Json& joint : skin.at("joints")) isJoint_[joint.get<Index>()] = true;
+    for (const gltf::Skin& skin : asset.document.skins) {
+      for (const Index joint : skin.joints) isJoint_[joint] = true;
     }
   }
 
@@ -42,14 +42,14 @@ class RigRemover {
     giveMeshesBack(keep);
     removeJointChannels();
     placeKeptNodes(keep);
-    for (Json& node : asset_.json()["nodes"]) node.erase("skin");
+    for (gltf::Node& node : asset_.document.nodes) node.skin.reset();
     removeAttributes();
-    asset_.json().erase("skins");
+    asset_.document.skins.clear();
     deleteNodes(asset_, keep);
   }
 
  private:
-  const Json& node(Index n) const { return elements(asset_, "nodes")[n]; }
+  gltf::Node& node(Index n) const { return asset_.document.nodes[n]; }
 
   // Joints and what hangs on them go unless they, or nodes below them, hold something that is not the rig's. So do
   // nodes above that held nothing but joints (an exporter's "Armature", limber's own "limber_rig").
@@ -60,8 +60,8 @@ class RigRemover {
     }
     for (auto at = graph_.allNodes.rbegin(); at != graph_.allNodes.rend(); ++at) {
       const Index n = *at;
-      const bool holds = node(n).contains("mesh") || node(n).contains("camera") || node(n).contains("extensions");
-      const bool ofRig = onJoint[n] || (lostChild[n] && !node(n).contains("extras"));
+      const bool holds = node(n).mesh || node(n).camera || node(n).extensions.exists();
+      const bool ofRig = onJoint[n] || (lostChild[n] && !node(n).extras.exists());
       keep[n] = keep[n] || holds || !ofRig;  // keep[n] may have been set by a child
       if (!graph_.parent[n]) continue;
       if (keep[n]) {
@@ -77,24 +77,21 @@ class RigRemover {
   // and again piles nothing up: recognised by the name, where that node has no mesh and stands in the mesh's place.
   void giveMeshesBack(std::vector<bool>& keep) {
     std::map<std::string, std::vector<Index>> byName;
-    for (Index n = 0; n < graph_.nodeCount(); ++n) byName[nameOf(node(n))].push_back(n);
+    for (Index n = 0; n < graph_.nodeCount(); ++n) byName[node(n).name].push_back(n);
     for (Index n = 0; n < graph_.nodeCount(); ++n) {
-      const std::string name = nameOf(node(n));
+      gltf::Node& shown = node(n);
+      const std::string& name = shown.name;
       const std::size_t length = name.size() - std::min(name.size(), std::string_view(kSkinnedSuffix).size());
-      const bool moved = node(n).contains("skin") && node(n).contains("mesh") && !graph_.parent[n] &&
-                         !node(n).contains("children") && !node(n).contains("extras") &&
-                         name.compare(length, std::string::npos, kSkinnedSuffix) == 0;
+      const bool moved = shown.skin && shown.mesh && !graph_.parent[n] && shown.children.empty() &&
+                         !shown.extras.exists() && name.compare(length, std::string::npos, kSkinnedSuffix) == 0;
       if (!moved) continue;
       const auto source = byName.find(name.substr(0, length));
       if (source == byName.end() || source->second.size() != 1) continue;
       const Index home = source->second[0];
-      const Affine& place = pose_.skinToWorld[*indexMember(node(n), "skin")];
-      if (node(home).contains("mesh") || !keep[home] || !near(place, pose_.nodeWorld[home])) continue;
-      Json& nodes = asset_.json()["nodes"];
-      for (const char* key : {"mesh", "weights"}) {
-        if (nodes[n].contains(key)) nodes[home][key] = nodes[n][key];
-      }
-      nodes[n].erase("mesh");
+      const Affine& place = pose_.skinToWorld[*shown.skin];
+      if (node(home).mesh || !keep[home] || !near(place, pose_.nodeWorld[home])) continue;
+      node(home).mesh = std::exchange(shown.mesh, std::nullopt);
+      if (!shown.weights.empty()) node(home).weights = shown.weights;
       retargetMorphChannels(asset_, n, home);
       keep[n] = false;
     }
@@ -104,16 +101,15 @@ class RigRemover {
   void removeJointChannels() {
     removeChannels(asset_, [&](Index n, std::string_view path) {
       if (n >= graph_.nodeCount() || path == "weights") return false;
-      return isJoint_[n] || (node(n).contains("skin") && !node(n).contains("children"));
+      return isJoint_[n] || (node(n).skin && node(n).children.empty());
     });
   }
 
   std::vector<bool> animatedNodes() const {
     std::vector<bool> animated(graph_.nodeCount(), false);
-    for (const Json& animation : elements(asset_, "animations")) {
-      for (const Json& channel : animation.at("channels")) {
-        const std::optional<Index> target = indexMember(channel.at("target"), "node");
-        if (target && *target < animated.size()) animated[*target] = true;
+    for (const gltf::Animation& animation : asset_.document.animations) {
+      for (const gltf::AnimationChannel& channel : animation.channels) {
+        if (channel.target.node) animated[*channel.target.node] = true;
       }
     }
     return animated;
@@ -121,8 +117,8 @@ class RigRemover {
 
   // Where a node stands from now on: as in the bind pose, and a skinned one where its skin had its mesh.
   Affine placeOf(Index n) const {
-    const std::optional<Index> skin = indexMember(node(n), "skin");
-    const Affine place = skin && node(n).contains("mesh") ? pose_.skinToWorld[*skin] : pose_.nodeWorld[n];
+    const gltf::Node& placed = node(n);
+    const Affine place = placed.skin && placed.mesh ? pose_.skinToWorld[*placed.skin] : pose_.nodeWorld[n];
     return near(place, graph_.world[n]) ? graph_.world[n] : place;
   }
 
@@ -139,17 +135,14 @@ class RigRemover {
         world[n] = stays;
         continue;
       }
-      Json& target = asset_.json()["nodes"][n];
-      setNodeTransform(target, local, !animated[n]);
-      world[n] = above * nodeTransform(target);
+      setNodeTransform(node(n), local, !animated[n]);
+      world[n] = above * nodeTransform(node(n));
     }
   }
 
   void removeAttributes() {
-    const auto meshes = asset_.json().find("meshes");
-    if (meshes == asset_.json().end()) return;
-    for (Json& mesh : *meshes) {
-      for (Json& primitive : mesh["primitives"]) eraseWeightAttributes(primitive);
+    for (gltf::Mesh& mesh : asset_.document.meshes) {
+      for (gltf::Primitive& primitive : mesh.primitives) eraseWeightAttributes(primitive);
     }
   }
 
@@ -162,7 +155,7 @@ class RigRemover {
 }  // namespace
 
 void removeRig(Asset& asset) {
-  if (elementCount(asset, "skins") == 0) return;
+  if (asset.document.skins.empty()) return;
   const AccessorSweep unused(asset);
   RigRemover(asset).run();
   unused.sweep(asset);

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "limber/asset/accessor.h"
 #include "limber/asset/accessor_sweep.h"
@@ -20,7 +19,11 @@ namespace {
 class Reweighter {
  public:
   Reweighter(Asset& asset, const Geometry& geometry, const AssetSkeleton& skeleton, const SkinWeights& weights)
-      : asset_(asset), geometry_(geometry), skeleton_(skeleton), weights_(weights), graph_(readSceneGraph(asset)) {
+      : asset_(asset),
+        geometry_(geometry),
+        skeleton_(skeleton),
+        weights_(weights),
+        graph_(readSceneGraph(asset.document)) {
     pose_ = readBindPose(asset, graph_);
     for (const Index node : skeleton.jointNode) toJoint_.push_back(inverseBindOf(node));
   }
@@ -43,9 +46,7 @@ class Reweighter {
                 "replace the rig");
   }
 
-  std::optional<Index> skinOf(const MeshGroup& group) const {
-    return indexMember(elements(asset_, "nodes")[group.node], "skin");
-  }
+  std::optional<Index> skinOf(const MeshGroup& group) const { return asset_.document.nodes[group.node].skin; }
 
   // The joints that the new weights of a group name, ascending.
   std::set<Index> usedJoints(const MeshGroup& group) const {
@@ -91,7 +92,7 @@ class Reweighter {
 
     std::vector<float> inverseBinds;
     if (binding.given) {
-      inverseBinds = readFloats(asset_, *indexMember(elements(asset_, "skins")[skin], "inverseBindMatrices"));
+      inverseBinds = readFloats(asset_, *asset_.document.skins[skin].inverseBindMatrices);
       inverseBinds.resize(16 * binding.joints.size());
     } else {
       asset_.warnings.add("missing-inverse-binds", "skins without inverse bind matrices are given them");
@@ -100,23 +101,21 @@ class Reweighter {
       const Mat4 matrix = (inverseBindOf(nodes[j]) * pose_.skinToWorld[skin]).matrix();
       for (int i = 0; i < 16; ++i) inverseBinds.push_back(static_cast<float>(matrix(i % 4, i / 4)));
     }
-    const Index accessor = addFloatAccessor(asset_, inverseBinds, 16);
-    Json& target = asset_.json()["skins"][skin];
-    target["inverseBindMatrices"] = accessor;
-    target["joints"] = nodes;
+    gltf::Skin& target = asset_.document.skins[skin];
+    target.inverseBindMatrices = addFloatAccessor(asset_, inverseBinds, 16);
+    target.joints = nodes;
     touched_.push_back(skin);
   }
 
   // "skeleton" is optional, and wrong where it is not above all joints: of the first `old` of them because the file
   // says so, of the others because they are new.
   void checkSkeletonRoot(Index skin, std::size_t old, const std::vector<Index>& nodes) {
-    Json& target = asset_.json()["skins"][skin];
-    const std::optional<Index> root = indexMember(target, "skeleton");
+    std::optional<Index>& root = asset_.document.skins[skin].skeleton;
     if (!root) return;
     const auto outside =
         std::find_if(nodes.begin(), nodes.end(), [&](Index node) { return !isAtOrBelow(node, *root); });
     if (outside == nodes.end()) return;
-    target.erase("skeleton");
+    root.reset();
     if (outside >= nodes.begin() + static_cast<std::ptrdiff_t>(old)) return;
     asset_.warnings.add("skeleton-root",
                         "skins name a skeleton root that is not above their joints: the name is left out",
@@ -155,7 +154,7 @@ class Reweighter {
   // A part that hung on a joint gets a skin of its own, with just the joints that it needs.
   Index skinForRigidPart(SkinnedNodes& skinned, const MeshGroup& group) {
     SkinJoints joints;
-    joints.name = nameOf(elements(asset_, "nodes")[group.node]);
+    joints.name = asset_.document.nodes[group.node].name;
     for (const Index joint : usedJoints(group)) {
       joints.nodes.push_back(skeleton_.jointNode[joint]);
       joints.toJoint.push_back(toJoint_[joint]);
@@ -179,21 +178,13 @@ class Reweighter {
     }
     if (roots.empty()) return;
 
-    Json& nodes = asset_.json()["nodes"];
-    const auto common = static_cast<Index>(nodes.size());
-    nodes.push_back({{"name", "limber_common_root"}, {"children", roots}});
-    const auto scenes = asset_.json().find("scenes");
-    if (scenes == asset_.json().end()) return;
-    for (Json& scene : *scenes) {
-      const Json* shown = member(scene, "nodes");
-      if (!shown) continue;
-      Json kept = Json::array();
-      for (const Json& node : *shown) {
-        if (roots.count(node.get<Index>()) == 0) kept.push_back(node);
-      }
-      if (kept.size() == shown->size()) continue;
-      kept.push_back(common);
-      scene["nodes"] = std::move(kept);
+    gltf::Node above;
+    above.name = "limber_common_root";
+    above.children.assign(roots.begin(), roots.end());
+    const Index common = addElement(asset_.document.nodes, std::move(above));
+    for (gltf::Scene& scene : asset_.document.scenes) {
+      const std::size_t joined = std::erase_if(scene.nodes, [&](Index node) { return roots.count(node) > 0; });
+      if (joined > 0) scene.nodes.push_back(common);
     }
   }
 

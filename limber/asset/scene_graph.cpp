@@ -1,66 +1,32 @@
 // Builds the node tree without recursion: a hostile file may nest nodes as deep as it likes.
 #include "limber/asset/scene_graph.h"
 
-#include <nlohmann/json.hpp>
-
 #include "limber/core/transform.h"
 
 namespace limber {
 
-const Json* member(const Json& object, const char* key) {
-  const auto found = object.find(key);
-  return found == object.end() ? nullptr : &*found;
-}
-
-std::optional<Index> indexMember(const Json& object, const char* key) {
-  const Json* value = member(object, key);
-  if (!value || !value->is_number()) return std::nullopt;
-  const double index = value->get<double>();  // some writers give whole numbers as 3.0
-  if (!(index >= 0 && index < kNoIndex)) return std::nullopt;
-  return static_cast<Index>(index);
-}
-
-std::string nameOf(const Json& object) {
-  const Json* name = member(object, "name");
-  return name && name->is_string() ? name->get<std::string>() : std::string();
-}
-
-const Json& elements(const Asset& asset, const char* kind) {
-  static const Json kNone = Json::array();
-  const Json* list = member(asset.json(), kind);
-  return list ? *list : kNone;
-}
-
-Index elementCount(const Asset& asset, const char* kind) {
-  return static_cast<Index>(elements(asset, kind).size());
-}
-
-Affine nodeTransform(const Json& node) {
-  if (const Json* matrix = member(node, "matrix")) {
+Affine nodeTransform(const gltf::Node& node) {
+  if (node.matrix) {
     Affine result;
-    for (int i = 0; i < 16; ++i) result.matrix()(i % 4, i / 4) = (*matrix)[i].get<double>();
+    result.matrix() = *node.matrix;
     result.makeAffine();
     return result;
   }
   Transform transform;
-  if (const Json* t = member(node, "translation")) {
-    for (int i = 0; i < 3; ++i) transform.translation[i] = (*t)[i].get<double>();
-  }
-  if (const Json* r = member(node, "rotation")) {
-    for (int i = 0; i < 4; ++i) transform.rotation.coeffs()[i] = (*r)[i].get<double>();
+  if (node.translation) transform.translation = *node.translation;
+  if (node.rotation) {
+    transform.rotation.coeffs() = *node.rotation;
     const double length = transform.rotation.norm();
     transform.rotation = length > 0 ? transform.rotation.normalized() : Quat::Identity();
   }
-  if (const Json* s = member(node, "scale")) {
-    for (int i = 0; i < 3; ++i) transform.scale[i] = (*s)[i].get<double>();
-  }
+  if (node.scale) transform.scale = *node.scale;
   return transform.toAffine();
 }
 
 namespace {
 
 // Depth first from `roots`; children in file order. A node met twice (which checkAsset forbids) is taken once.
-std::vector<Index> depthFirst(const Json& nodes, const std::vector<Index>& roots) {
+std::vector<Index> depthFirst(const std::vector<gltf::Node>& nodes, const std::vector<Index>& roots) {
   std::vector<Index> order;
   std::vector<bool> met(nodes.size(), false);
   std::vector<Index> stack(roots.rbegin(), roots.rend());
@@ -70,9 +36,7 @@ std::vector<Index> depthFirst(const Json& nodes, const std::vector<Index>& roots
     if (met[node]) continue;
     met[node] = true;
     order.push_back(node);
-    if (const Json* children = member(nodes[node], "children")) {
-      for (auto child = children->rbegin(); child != children->rend(); ++child) stack.push_back(child->get<Index>());
-    }
+    stack.insert(stack.end(), nodes[node].children.rbegin(), nodes[node].children.rend());
   }
   return order;
 }
@@ -87,35 +51,27 @@ std::vector<Index> rootsOf(const SceneGraph& graph) {
 
 }  // namespace
 
-std::vector<Index> sceneNodes(const Asset& asset, Index scene) {
-  std::vector<Index> roots;
-  if (const Json* list = member(elements(asset, "scenes")[scene], "nodes")) {
-    for (const Json& root : *list) roots.push_back(root.get<Index>());
-  }
-  return depthFirst(elements(asset, "nodes"), roots);
+std::vector<Index> sceneNodes(const gltf::Document& document, Index scene) {
+  return depthFirst(document.nodes, document.scenes[scene].nodes);
 }
 
-SceneGraph readSceneGraph(const Asset& asset) {
-  const Json& nodes = elements(asset, "nodes");
-  const Index count = elementCount(asset, "nodes");
+SceneGraph readSceneGraph(const gltf::Document& document) {
+  const Index count = document.nodeCount();
   SceneGraph graph;
   graph.parent.resize(count);
   graph.local.resize(count);
   for (Index n = 0; n < count; ++n) {
-    graph.local[n] = nodeTransform(nodes[n]);
-    if (const Json* children = member(nodes[n], "children")) {
-      for (const Json& child : *children) graph.parent[child.get<Index>()] = n;
-    }
+    graph.local[n] = nodeTransform(document.nodes[n]);
+    for (const Index child : document.nodes[n].children) graph.parent[child] = n;
   }
 
-  graph.allNodes = depthFirst(nodes, rootsOf(graph));
+  graph.allNodes = depthFirst(document.nodes, rootsOf(graph));
   graph.world = graph.local;
   for (const Index n : graph.allNodes) {
     if (graph.parent[n]) graph.world[n] = graph.world[*graph.parent[n]] * graph.local[n];
   }
 
-  const bool hasScene = elementCount(asset, "scenes") > 0;
-  graph.order = hasScene ? sceneNodes(asset, indexMember(asset.json(), "scene").value_or(0)) : graph.allNodes;
+  graph.order = document.scenes.empty() ? graph.allNodes : sceneNodes(document, document.scene.value_or(0));
   graph.shown.assign(count, false);
   for (const Index n : graph.order) graph.shown[n] = true;
   return graph;

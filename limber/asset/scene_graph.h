@@ -2,10 +2,9 @@
 #pragma once
 
 #include <optional>
-#include <string>
 #include <vector>
 
-#include "limber/asset/asset.h"
+#include "limber/asset/gltf.h"
 #include "limber/core/types.h"
 
 namespace limber {
@@ -20,23 +19,14 @@ struct SceneGraph {
   Index nodeCount() const { return static_cast<Index>(parent.size()); }
 };
 
-// The default scene is json["scene"], else the first one; all root nodes where the document has no scene. The asset
+// The default scene is document.scene, else the first one; all root nodes where the document has no scene. The document
 // must have passed checkAsset (a tree, indices in range).
-SceneGraph readSceneGraph(const Asset& asset);
+SceneGraph readSceneGraph(const gltf::Document& document);
 
-// The transform of a node as its JSON has it: "matrix", or translation, rotation and scale.
-Affine nodeTransform(const Json& node);
+// The transform of a node: its matrix, or its translation, rotation and scale.
+Affine nodeTransform(const gltf::Node& node);
 
 // The nodes below the roots of one scene, depth first.
-std::vector<Index> sceneNodes(const Asset& asset, Index scene);
-
-// Elements of the document, each empty where the document has none: "nodes", "meshes", "skins", "scenes", ...
-const Json& elements(const Asset& asset, const char* kind);
-Index elementCount(const Asset& asset, const char* kind);
-
-std::optional<Index> indexMember(const Json& object, const char* key);
-const Json* member(const Json& object, const char* key);
-// "name", empty where there is none.
-std::string nameOf(const Json& object);
+std::vector<Index> sceneNodes(const gltf::Document& document, Index scene);
 
 }  // namespace limber

@@ -1,10 +1,8 @@
 #include "limber/asset/skinned_nodes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
-
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "limber/asset/accessor.h"
 #include "limber/asset/extensions.h"
@@ -13,8 +11,6 @@
 namespace limber {
 
 namespace {
-
-constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
 
 std::vector<MeshGroup> groupsOf(const Geometry& geometry) {
   std::vector<MeshGroup> groups;
@@ -27,15 +23,12 @@ std::vector<MeshGroup> groupsOf(const Geometry& geometry) {
   return groups;
 }
 
-std::vector<bool> animatedNodes(const Asset& asset, Index nodeCount) {
-  std::vector<bool> animated(nodeCount, false);
-  const Json& animations = elements(asset, "animations");
-  for (const Json& animation : animations) {
-    for (const Json& channel : animation.at("channels")) {
-      const Json* target = member(channel, "target");
-      const Json* path = target ? member(*target, "path") : nullptr;
-      const std::optional<Index> node = target ? indexMember(*target, "node") : std::nullopt;
-      if (node && *node < nodeCount && path && *path != "weights") animated[*node] = true;
+std::vector<bool> animatedNodes(const gltf::Document& document) {
+  std::vector<bool> animated(document.nodes.size(), false);
+  for (const gltf::Animation& animation : document.animations) {
+    for (const gltf::AnimationChannel& channel : animation.channels) {
+      const gltf::AnimationChannel::Target& target = channel.target;
+      if (target.node && !target.path.empty() && target.path != "weights") animated[*target.node] = true;
     }
   }
   return animated;
@@ -50,19 +43,19 @@ std::array<double, 12> numbersOf(const Affine& affine) {
 }  // namespace
 
 SkinnedNodes::SkinnedNodes(Asset& asset, const Geometry& geometry, std::vector<bool> carries)
-    : asset_(asset), graph_(readSceneGraph(asset)), carries_(std::move(carries)), groups_(groupsOf(geometry)) {
+    : asset_(asset), graph_(readSceneGraph(asset.document)), carries_(std::move(carries)), groups_(groupsOf(geometry)) {
   carries_.resize(graph_.nodeCount(), false);
-  animated_ = animatedNodes(asset, graph_.nodeCount());
+  animated_ = animatedNodes(asset.document);
   scenesOf_.resize(graph_.nodeCount());
-  for (Index scene = 0; scene < elementCount(asset, "scenes"); ++scene) {
-    for (const Index node : sceneNodes(asset, scene)) scenesOf_[node].push_back(scene);
+  for (Index scene = 0; scene < asset.document.scenes.size(); ++scene) {
+    for (const Index node : sceneNodes(asset.document, scene)) scenesOf_[node].push_back(scene);
   }
 
   // A mesh may be changed in place if all nodes that show it are among those that become skinned.
-  std::vector<Index> shown(elementCount(asset, "meshes"), 0), skinned(shown);
-  for (const Json& node : elements(asset, "nodes")) {
-    names_.add(nameOf(node));
-    if (const std::optional<Index> mesh = indexMember(node, "mesh")) ++shown[*mesh];
+  std::vector<Index> shown(asset.document.meshes.size(), 0), skinned(shown);
+  for (const gltf::Node& node : asset.document.nodes) {
+    names_.add(node.name);
+    if (node.mesh) ++shown[*node.mesh];
   }
   for (const MeshGroup& group : groups_) {
     if (group.copy == 0) ++skinned[group.mesh];
@@ -75,10 +68,7 @@ Index SkinnedNodes::meshFor(const MeshGroup& group) {
     ownMeshFree_[group.mesh] = false;
     return group.mesh;
   }
-  Json& meshes = asset_.json()["meshes"];
-  Json copy = meshes[group.mesh];
-  meshes.push_back(std::move(copy));
-  return static_cast<Index>(meshes.size() - 1);
+  return addElement(asset_.document.meshes, gltf::Mesh(asset_.document.meshes[group.mesh]));
 }
 
 Index SkinnedNodes::addSkin(const SkinJoints& joints, const Affine& toWorld) {
@@ -95,25 +85,19 @@ Index SkinnedNodes::addSkin(const SkinJoints& joints, const Affine& toWorld) {
     throw Error(ErrorCode::kBadData, "has inverse bind matrices that are not finite", "skin '" + joints.name + "'",
                 "the model lies too far from the origin or is scaled too much");
   }
-  const Index accessor = addFloatAccessor(asset_, inverseBinds, 16);
-  Json skin = Json::object();
-  if (!joints.name.empty()) skin["name"] = joints.name;
-  skin["inverseBindMatrices"] = accessor;
-  if (joints.skeleton) skin["skeleton"] = *joints.skeleton;
-  skin["joints"] = joints.nodes;
-  Json& skins = asset_.json()["skins"];
-  skins.push_back(std::move(skin));
-  return known->second = static_cast<Index>(skins.size() - 1);
+  gltf::Skin skin;
+  skin.name = joints.name;
+  skin.inverseBindMatrices = addFloatAccessor(asset_, inverseBinds, 16);
+  skin.skeleton = joints.skeleton;
+  skin.joints = joints.nodes;
+  return known->second = addElement(asset_.document.skins, std::move(skin));
 }
 
 // Can the node show a mesh that is in world space already?
 bool SkinnedNodes::standsAtOrigin(const MeshGroup& group) const {
-  const Json& node = elements(asset_, "nodes")[group.node];
-  if (graph_.parent[group.node] || group.copy > 0) return false;
-  if (const Json* extensions = member(node, "extensions"); extensions && extensions->contains(kInstancing))
-    return false;
-  return !node.contains("matrix") && !node.contains("translation") && !node.contains("rotation") &&
-         !node.contains("scale");
+  const gltf::Node& node = asset_.document.nodes[group.node];
+  return !graph_.parent[group.node] && group.copy == 0 && !node.hasTransform() &&
+         extensionOf(node, kInstancingName) == nullptr;
 }
 
 bool SkinnedNodes::loosesAnimation(Index node) const {
@@ -125,38 +109,36 @@ bool SkinnedNodes::loosesAnimation(Index node) const {
 
 // Hands the group's mesh, with its morph weights and their animation, to a new node without a parent.
 Index SkinnedNodes::moveToRoot(const MeshGroup& group, const char* suffix) {
-  Json& nodes = asset_.json()["nodes"];
-  const auto moved = static_cast<Index>(nodes.size());
-  Json node = Json::object();
-  std::string name = nameOf(nodes[group.node]);
-  if (name.empty()) name = nameOf(elements(asset_, "meshes")[group.mesh]);
-  if (!name.empty()) node["name"] = names_.add(name + suffix);
-  if (const Json* weights = member(nodes[group.node], "weights")) node["weights"] = *weights;
-  nodes.push_back(std::move(node));
+  const gltf::Node& source = asset_.document.nodes[group.node];
+  gltf::Node node;
+  const std::string& name = source.name.empty() ? asset_.document.meshes[group.mesh].name : source.name;
+  if (!name.empty()) node.name = names_.add(name + suffix);
+  node.weights = source.weights;
+  const Index moved = addElement(asset_.document.nodes, std::move(node));
 
   if (group.copy == 0) retargetMorphChannels(asset_, group.node, moved);
-  for (const Index scene : scenesOf_[group.node]) asset_.json()["scenes"][scene]["nodes"].push_back(moved);
+  for (const Index scene : scenesOf_[group.node]) asset_.document.scenes[scene].nodes.push_back(moved);
   return moved;
 }
 
 void SkinnedNodes::place(const MeshGroup& group, Index mesh, Index skin) {
-  const bool wasSkinned = elements(asset_, "nodes")[group.node].contains("skin");  // then it stays as the file has it
+  const bool wasSkinned = asset_.document.nodes[group.node].skin.has_value();  // then it stays as the file has it
   if (!wasSkinned && group.copy == 0 && loosesAnimation(group.node)) ++lostAnimations_;
   const bool stays = wasSkinned || standsAtOrigin(group);
   const Index node = stays ? group.node : moveToRoot(group, "_skinned");
-  Json& shown = asset_.json()["nodes"][node];
-  shown["mesh"] = mesh;
-  shown["skin"] = skin;
+  gltf::Node& shown = asset_.document.nodes[node];
+  shown.mesh = mesh;
+  shown.skin = skin;
   if (!stays) takeMeshOff(group);
 }
 
 void SkinnedNodes::placeStatic(const MeshGroup& group, Index mesh) {
   const bool stays = standsAtOrigin(group);
   const Index node = stays ? group.node : moveToRoot(group, "_posed");
-  Json& shown = asset_.json()["nodes"][node];
-  shown["mesh"] = mesh;
-  shown.erase("skin");
-  shown.erase("weights");
+  gltf::Node& shown = asset_.document.nodes[node];
+  shown.mesh = mesh;
+  shown.skin.reset();
+  shown.weights.clear();
   if (!stays) takeMeshOff(group);
 }
 
@@ -168,17 +150,17 @@ void SkinnedNodes::takeMeshOff(const MeshGroup& group) {
     ++expandedInstances_;
     return;
   }
-  Json& old = asset_.json()["nodes"][group.node];
-  old.erase("mesh");
-  old.erase("skin");
-  old.erase("weights");
-  if (eraseExtension(old, kInstancing)) ++expandedInstances_;
+  gltf::Node& old = asset_.document.nodes[group.node];
+  old.mesh.reset();
+  old.skin.reset();
+  old.weights.clear();
+  if (eraseExtension(old, kInstancingName)) ++expandedInstances_;
 }
 
 void SkinnedNodes::showInScenes(Index root) {
   std::set<Index> scenes;
   for (const MeshGroup& group : groups_) scenes.insert(scenesOf_[group.node].begin(), scenesOf_[group.node].end());
-  for (const Index scene : scenes) asset_.json()["scenes"][scene]["nodes"].push_back(root);
+  for (const Index scene : scenes) asset_.document.scenes[scene].nodes.push_back(root);
 }
 
 void SkinnedNodes::finish() {
@@ -187,13 +169,10 @@ void SkinnedNodes::finish() {
   asset_.warnings.add("expanded-instances", "GPU instances are written as meshes of their own, since these cannot bend",
                       {}, expandedInstances_);
   if (expandedInstances_ == 0) return;
-  const Json& nodes = elements(asset_, "nodes");
-  const bool used = std::any_of(nodes.begin(), nodes.end(), [](const Json& node) {
-    const Json* extensions = member(node, "extensions");
-    return extensions && extensions->contains(kInstancing);
-  });
-  if (used) return;
-  undeclareExtension(asset_.json(), kInstancing);
+  const std::vector<gltf::Node>& nodes = asset_.document.nodes;
+  const bool used = std::any_of(nodes.begin(), nodes.end(),
+                                [](const gltf::Node& node) { return extensionOf(node, kInstancingName) != nullptr; });
+  if (!used) undeclareExtension(asset_.document, kInstancingName);
 }
 
 }  // namespace limber

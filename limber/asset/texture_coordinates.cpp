@@ -1,15 +1,12 @@
 #include "limber/asset/texture_coordinates.h"
 
-#include <nlohmann/json.hpp>
-
 #include "limber/asset/accessor.h"
-#include "limber/asset/json_access.h"
 
 namespace limber {
 
 std::vector<Vec2f> readUvs(const Asset& asset, const PrimitiveInstance& instance) {
-  const Json& primitive = elements(asset, "meshes")[instance.mesh].at("primitives")[instance.primitive];
-  const std::optional<Index> accessor = indexMember(primitive.at("attributes"), "TEXCOORD_0");
+  const gltf::Primitive& primitive = asset.document.meshes[instance.mesh].primitives[instance.primitive];
+  const std::optional<Index> accessor = primitive.attributes.find("TEXCOORD_0");
   const std::vector<float> values = accessor ? readFloats(asset, *accessor) : std::vector<float>();
   std::vector<Vec2f> uvs;
   if (values.size() != 2 * std::size_t{instance.vertexCount}) return uvs;

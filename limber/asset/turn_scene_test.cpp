@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "limber/asset/gltf_json.h"
 #include "limber/asset/scene_graph.h"
 
 namespace limber {
@@ -10,10 +11,10 @@ namespace {
 
 const Quat kTurn(0.5, 0.5, 0.5, -0.5);
 
-Asset nodesOf(Json nodes) {
+Asset assetOf(Json nodes, Json scenes) {
+  Json json = {{"asset", {{"version", "2.0"}}}, {"nodes", std::move(nodes)}, {"scenes", std::move(scenes)}};
   Asset asset;
-  asset.json()["asset"] = {{"version", "2.0"}};
-  asset.json()["nodes"] = std::move(nodes);
+  asset.document = gltf::documentOf(std::move(json));
   return asset;
 }
 
@@ -22,27 +23,27 @@ void expectTurned(const SceneGraph& before, const SceneGraph& after, Index node)
 }
 
 TEST(TurnScene, TakesAllAlongButWhatJointsPlace) {
-  Asset asset = nodesOf({{{"name", "a"}, {"children", {1}}, {"translation", {1, 2, 3}}},
+  Asset asset = assetOf({{{"name", "a"}, {"children", {1}}, {"translation", {1, 2, 3}}},
                          {{"name", "b"}, {"scale", {2, 2, 2}}},
                          {{"name", "top"}},
-                         {{"name", "skinned"}, {"mesh", 0}, {"skin", 0}}});
-  asset.json()["scenes"] = {{{"nodes", {0, 2, 3}}}, {{"nodes", {2}}}, {{"nodes", Json::array()}}};
-  const SceneGraph before = readSceneGraph(asset);
+                         {{"name", "skinned"}, {"mesh", 0}, {"skin", 0}}},
+                        {{{"nodes", {0, 2, 3}}}, {{"nodes", {2}}}, {{"nodes", Json::array()}}});
+  const SceneGraph before = readSceneGraph(asset.document);
   turnScene(asset, kTurn, "top");
-  const SceneGraph after = readSceneGraph(asset);
+  const SceneGraph after = readSceneGraph(asset.document);
   ASSERT_EQ(after.nodeCount(), 5u) << "both scenes share one";
   for (const Index node : {0u, 1u, 2u}) expectTurned(before, after, node);
   EXPECT_TRUE(after.world[3].isApprox(before.world[3]));
   EXPECT_TRUE(after.shown[3]);
-  EXPECT_EQ(asset.json()["nodes"][4]["name"], "top_2");
-  EXPECT_EQ(asset.json()["scenes"][1]["nodes"], Json({4}));
+  EXPECT_EQ(asset.document.nodes[4].name, "top_2");
+  EXPECT_EQ(asset.document.scenes[1].nodes, std::vector<Index>{4});
 }
 
 TEST(TurnScene, ADocumentWithoutScenesGetsOne) {
-  Asset asset = nodesOf({{{"name", "a"}}, {{"name", "b"}}});
-  const SceneGraph before = readSceneGraph(asset);
+  Asset asset = assetOf({{{"name", "a"}}, {{"name", "b"}}}, Json::array());
+  const SceneGraph before = readSceneGraph(asset.document);
   turnScene(asset, kTurn, "turned");
-  for (const Index node : {0u, 1u}) expectTurned(before, readSceneGraph(asset), node);
+  for (const Index node : {0u, 1u}) expectTurned(before, readSceneGraph(asset.document), node);
 }
 
 }  // namespace

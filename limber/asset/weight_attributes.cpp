@@ -7,10 +7,8 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "limber/asset/accessor.h"
-#include "limber/asset/scene_graph.h"
 
 namespace limber {
 
@@ -85,13 +83,11 @@ Index addJoints(Asset& asset, const std::vector<Index>& joints, ComponentType ty
 
 }  // namespace
 
-std::vector<InfluenceSet> readInfluenceSets(const Asset& asset, const Json& primitive) {
+std::vector<InfluenceSet> readInfluenceSets(const Asset& asset, const gltf::Primitive& primitive) {
   std::vector<InfluenceSet> sets;
-  const Json* attributes = member(primitive, "attributes");
-  if (!attributes) return sets;
   for (Index n = 0;; ++n) {
-    const std::optional<Index> joints = indexMember(*attributes, fmt::format("JOINTS_{}", n).c_str());
-    const std::optional<Index> weights = indexMember(*attributes, fmt::format("WEIGHTS_{}", n).c_str());
+    const std::optional<Index> joints = primitive.attributes.find(fmt::format("JOINTS_{}", n));
+    const std::optional<Index> weights = primitive.attributes.find(fmt::format("WEIGHTS_{}", n));
     if (!joints || !weights) return sets;
     InfluenceSet set{readIndices(asset, *joints), readFloats(asset, *weights)};
     if (set.joints.size() != set.weights.size()) return sets;
@@ -99,36 +95,33 @@ std::vector<InfluenceSet> readInfluenceSets(const Asset& asset, const Json& prim
   }
 }
 
-void eraseWeightAttributes(Json& primitive) {
-  const auto attributes = primitive.find("attributes");
-  if (attributes == primitive.end()) return;
-  Json kept = Json::object();
-  for (const auto& [key, value] : attributes->items()) {
-    if (key.rfind("JOINTS_", 0) != 0 && key.rfind("WEIGHTS_", 0) != 0) kept[key] = value;
+void eraseWeightAttributes(gltf::Primitive& primitive) {
+  const gltf::Attributes all = primitive.attributes;
+  for (const auto& [name, accessor] : all) {
+    if (name.starts_with("JOINTS_") || name.starts_with("WEIGHTS_")) primitive.attributes.erase(name);
   }
-  if (kept.size() != attributes->size()) *attributes = std::move(kept);
 }
 
-Json addWeightAccessors(Asset& asset, const PrimitiveInstance& source, const SkinWeights& weights,
-                        std::span<const Index> skinJointOf, Index skinJointCount) {
+gltf::Attributes addWeightAccessors(Asset& asset, const PrimitiveInstance& source, const SkinWeights& weights,
+                                    std::span<const Index> skinJointOf, Index skinJointCount) {
   const EncodedWeights encoded = encode(weights, source, skinJointOf);
-  Json attributes = Json::object();
+  gltf::Attributes attributes;
   for (std::size_t set = 0; set < encoded.weights.size(); ++set) {
-    attributes[fmt::format("JOINTS_{}", set)] =
-        skinJointCount <= 256 ? addJoints<std::uint8_t>(asset, encoded.joints[set], ComponentType::kU8)
-                              : addJoints<std::uint16_t>(asset, encoded.joints[set], ComponentType::kU16);
-    attributes[fmt::format("WEIGHTS_{}", set)] = addFloatAccessor(asset, encoded.weights[set], kSetSize, kVertexTarget);
+    attributes.set(fmt::format("JOINTS_{}", set),
+                   skinJointCount <= 256 ? addJoints<std::uint8_t>(asset, encoded.joints[set], ComponentType::kU8)
+                                         : addJoints<std::uint16_t>(asset, encoded.joints[set], ComponentType::kU16));
+    attributes.set(fmt::format("WEIGHTS_{}", set),
+                   addFloatAccessor(asset, encoded.weights[set], kSetSize, kVertexTarget));
   }
   return attributes;
 }
 
 void writeWeightAttributes(Asset& asset, AttributeTarget target, const PrimitiveInstance& source,
                            const SkinWeights& weights, std::span<const Index> skinJointOf, Index skinJointCount) {
-  const Json added = addWeightAccessors(asset, source, weights, skinJointOf, skinJointCount);
-  // Only now: adding accessors may move the document's JSON.
-  Json& primitive = asset.json()["meshes"][target.mesh]["primitives"][target.primitive];
+  const gltf::Attributes added = addWeightAccessors(asset, source, weights, skinJointOf, skinJointCount);
+  gltf::Primitive& primitive = asset.document.meshes[target.mesh].primitives[target.primitive];
   eraseWeightAttributes(primitive);
-  for (const auto& [key, accessor] : added.items()) primitive["attributes"][key] = accessor;
+  for (const auto& [name, accessor] : added) primitive.attributes.set(name, accessor);
 }
 
 }  // namespace limber

@@ -3,8 +3,6 @@
 
 #include <span>
 
-#include <nlohmann/json_fwd.hpp>
-
 #include "limber/asset/geometry.h"
 #include "limber/skeleton/skin_weights.h"
 
@@ -12,8 +10,8 @@ namespace limber {
 
 inline constexpr Index kMaxSkinJoints = 65536;  // of one skin: joint indices are unsigned shorts
 
-// New accessors for the weights of source's range of `weights`: an object {"JOINTS_0": accessor, "WEIGHTS_0":
-// accessor}, with JOINTS_1 and WEIGHTS_1 where a vertex has more than four influences.
+// New accessors for the weights of source's range of `weights`: JOINTS_0 and WEIGHTS_0, with JOINTS_1 and WEIGHTS_1
+// where a vertex has more than four influences.
 //
 // skinJointOf   #J, joint of `weights` -> index into the skin's joints; kNoIndex where the skin lacks it (then no
 // vertex
@@ -21,10 +19,10 @@ inline constexpr Index kMaxSkinJoints = 65536;  // of one skin: joint indices ar
 // Joint indices are unsigned bytes where the skin has at most 256 joints, else unsigned shorts. Weights are floats that
 // sum to 1 in the order stored; an unused slot is joint 0 with weight 0.
 // Throws Error kBadArgument for weights that are negative, not finite or all zero.
-Json addWeightAccessors(Asset& asset, const PrimitiveInstance& source, const SkinWeights& weights,
-                        std::span<const Index> skinJointOf, Index skinJointCount);
+gltf::Attributes addWeightAccessors(Asset& asset, const PrimitiveInstance& source, const SkinWeights& weights,
+                                    std::span<const Index> skinJointOf, Index skinJointCount);
 
-// The same, put into the JSON of a primitive in place of the weights that it had.
+// The same, put into a primitive in place of the weights that it had.
 struct AttributeTarget {
   Index mesh = 0, primitive = 0;
 };
@@ -37,9 +35,9 @@ struct InfluenceSet {
   std::vector<Index> joints;
   std::vector<float> weights;
 };
-std::vector<InfluenceSet> readInfluenceSets(const Asset& asset, const Json& primitive);
+std::vector<InfluenceSet> readInfluenceSets(const Asset& asset, const gltf::Primitive& primitive);
 
-// Takes every JOINTS_n and WEIGHTS_n out of a primitive's JSON.
-void eraseWeightAttributes(Json& primitive);
+// Takes every JOINTS_n and WEIGHTS_n out of a primitive.
+void eraseWeightAttributes(gltf::Primitive& primitive);
 
 }  // namespace limber

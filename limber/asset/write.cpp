@@ -9,8 +9,8 @@
 
 #include "limber/asset/glb.h"
 #include "limber/asset/gltf_files.h"
+#include "limber/asset/gltf_json.h"
 #include "limber/asset/images.h"
-#include "limber/asset/json_access.h"
 #include "limber/asset/json_text.h"
 #include "limber/core/names.h"
 
@@ -28,50 +28,46 @@ std::size_t appendAligned(Bytes& binary, ByteSpan bytes) {
 }
 
 // All buffers one behind the other; moves the document's buffer views along.
-Bytes mergeBuffers(const Asset& asset, Json& json) {
+Bytes mergeBuffers(const Asset& asset, gltf::Document& document) {
   Bytes binary;
   std::vector<std::size_t> start;
   for (const Asset::Buffer& buffer : asset.buffers) start.push_back(appendAligned(binary, buffer.bytes));
-  const JsonView views = JsonView(asset).array("bufferViews");
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    const Index buffer = views[i].requireIndex("buffer", start.size());
-    if (buffer == 0) continue;
-    Json& view = json["bufferViews"][i];
-    view["buffer"] = 0;
-    view["byteOffset"] = start[buffer] + views[i].count("byteOffset").value_or(0);
+  for (gltf::BufferView& view : document.bufferViews) {
+    if (view.buffer == 0) continue;
+    view.byteOffset += start.at(view.buffer);
+    view.buffer = 0;
   }
   return binary;
 }
 
 // Images beside the document become buffer views at the end; an image used twice is stored once.
-void embedImages(const Asset& asset, Json& json, Bytes& binary) {
+void embedImages(const Asset& asset, gltf::Document& document, Bytes& binary) {
   std::map<std::string_view, const Asset::SideFile*> files;
   for (const Asset::SideFile& file : asset.sideFiles) files[file.uri] = &file;
-  std::map<const Asset::SideFile*, std::size_t> viewOf;
-  const JsonView images = JsonView(asset).array("images");
-  for (std::size_t i = 0; i < images.size(); ++i) {
-    const auto file = files.find(images[i].text("uri"));
+  std::map<const Asset::SideFile*, Index> viewOf;
+  for (gltf::Image& image : document.images) {
+    const auto file = files.find(image.uri);
     if (file == files.end()) continue;
-    const auto [view, isNew] = viewOf.try_emplace(file->second, json["bufferViews"].size());
+    const Bytes& bytes = file->second->bytes;
+    const auto [known, isNew] = viewOf.try_emplace(file->second, static_cast<Index>(document.bufferViews.size()));
     if (isNew) {
-      const Bytes& bytes = file->second->bytes;
-      const std::size_t offset = appendAligned(binary, bytes);
-      json["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", offset}, {"byteLength", bytes.size()}});
+      gltf::BufferView view;
+      view.byteOffset = appendAligned(binary, bytes);
+      view.byteLength = bytes.size();
+      document.bufferViews.push_back(std::move(view));
     }
-    Json& image = json["images"][i];
-    image.erase("uri");
-    image["mimeType"] = imageFormat(file->second->bytes).mediaType;
-    image["bufferView"] = view->second;
+    image.uri.clear();
+    image.mimeType = imageFormat(bytes).mediaType;
+    image.bufferView = known->second;
   }
 }
 
 // Only one buffer can be the binary chunk. The first one's name and extras stay; the others have none to stand in.
-void setSingleBuffer(Json& json, std::size_t size) {
-  if (size == 0 && !json.contains("buffers")) return;
-  Json buffer = json.contains("buffers") && !json["buffers"].empty() ? json["buffers"][0] : Json::object();
-  buffer.erase("uri");
-  buffer["byteLength"] = size;
-  json["buffers"] = Json::array({std::move(buffer)});
+void setSingleBuffer(gltf::Document& document, std::size_t size) {
+  if (size == 0 && document.buffers.empty()) return;
+  document.buffers.resize(1);
+  document.buffers[0].uri.clear();
+  document.buffers[0].byteLength = size;
 }
 
 // The folders that a file needs and that are not there yet; gone again unless kept.
@@ -111,11 +107,11 @@ void writeGltf(const Asset& asset, const fs::path& path, std::vector<OutputFile>
 }  // namespace
 
 Bytes writeGlb(const Asset& asset) {
-  Json json = asset.json();
-  Bytes binary = mergeBuffers(asset, json);
-  embedImages(asset, json, binary);
-  setSingleBuffer(json, binary.size());
-  return joinGlb(dumpJson(json, -1), binary);
+  gltf::Document document = asset.document;
+  Bytes binary = mergeBuffers(asset, document);
+  embedImages(asset, document, binary);
+  setSingleBuffer(document, binary.size());
+  return joinGlb(dumpJson(gltf::jsonOf(document), -1), binary);
 }
 
 void writeAsset(const Asset& asset, const fs::path& path, std::span<const OutputFile> companions) {

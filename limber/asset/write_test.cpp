@@ -7,12 +7,14 @@
 
 #include "limber/asset/accessor.h"
 #include "limber/asset/read.h"
+#include "limber/asset/testing/document_json.h"
 #include "limber/asset/testing/gltf_builder.h"
 #include "temporary_folder.h"
 
 namespace limber {
 namespace {
 
+using testing::documentJson;
 using testing::everythingModel;
 using testing::GltfBuilder;
 using testing::pngBytes;
@@ -21,10 +23,10 @@ using testing::TemporaryFolder;
 // The bytes of every buffer view, in order.
 std::vector<Bytes> viewsOf(const Asset& asset) {
   std::vector<Bytes> result;
-  for (const Json& view : asset.json()["bufferViews"]) {
-    const Bytes& buffer = asset.buffers.at(view["buffer"].get<std::size_t>()).bytes;
-    const auto begin = buffer.begin() + view.value("byteOffset", std::ptrdiff_t{0});
-    result.emplace_back(begin, begin + view["byteLength"].get<std::ptrdiff_t>());
+  for (const gltf::BufferView& view : asset.document.bufferViews) {
+    const Bytes& buffer = asset.buffers.at(view.buffer).bytes;
+    const auto begin = buffer.begin() + static_cast<std::ptrdiff_t>(view.byteOffset);
+    result.emplace_back(begin, begin + static_cast<std::ptrdiff_t>(view.byteLength));
   }
   return result;
 }
@@ -59,15 +61,15 @@ TEST(WriteGlb, BuffersBecomeOneAndImagesAreEmbedded) {
   ASSERT_EQ(asset.buffers.size(), 2u);
   const Asset again = readAsset(writeGlb(asset), "m.glb");
   EXPECT_EQ(again.buffers.size(), 1u);
-  EXPECT_EQ(again.json()["buffers"][0]["name"], "data");
-  EXPECT_FALSE(again.json()["buffers"][0].contains("uri"));
+  EXPECT_EQ(documentJson(again)["buffers"][0]["name"], "data");
+  EXPECT_FALSE(documentJson(again)["buffers"][0].contains("uri"));
   std::vector<Bytes> after = viewsOf(again);
   ASSERT_EQ(after.size(), views.size() + 2);
   EXPECT_EQ(after.back(), pngBytes());
   after.resize(views.size());
   EXPECT_EQ(after, views);
   EXPECT_EQ(readFloats(again, added), (std::vector<float>{1, 2, 3}));
-  const Json& image = again.json()["images"][0];
+  const Json image = documentJson(again)["images"][0];
   EXPECT_EQ(image["mimeType"], "image/png");
   EXPECT_EQ(image["name"], "picture");
   EXPECT_EQ(image["bufferView"], views.size() + 1);
@@ -76,16 +78,16 @@ TEST(WriteGlb, BuffersBecomeOneAndImagesAreEmbedded) {
 
 TEST(WriteGlb, AnImageUsedTwiceIsStoredOnce) {
   Asset asset = assetBeside("a.bin", "p.png");
-  asset.json()["images"].push_back(asset.json()["images"][0]);
+  asset.document.images.push_back(gltf::Image(asset.document.images[0]));
   const Asset again = readAsset(writeGlb(asset), "m.glb");
-  EXPECT_EQ(again.json()["images"][0]["bufferView"], again.json()["images"][1]["bufferView"]);
+  EXPECT_EQ(documentJson(again)["images"][0]["bufferView"], documentJson(again)["images"][1]["bufferView"]);
 }
 
 TEST(WriteGlb, DoesNotChangeTheAsset) {
   const Asset asset = assetBeside("a.bin", "p.png");
-  const Json before = asset.json();
+  const Json before = documentJson(asset);
   EXPECT_EQ(writeGlb(asset), writeGlb(asset));
-  EXPECT_EQ(asset.json(), before);
+  EXPECT_EQ(documentJson(asset), before);
 }
 
 TEST(WriteGlb, AnAssetWithoutBytesHasNoBinaryChunk) {
@@ -98,7 +100,7 @@ TEST(WriteAsset, GltfKeepsNamesFoldersAndBytes) {
   writeAsset(asset, folder.path() / "out.gltf");
   EXPECT_EQ(filesIn(folder), (std::set<std::string>{"data/a b.bin", "out.gltf", "textures/p.png"}));
   const Asset again = readAsset(folder.path() / "out.gltf");
-  EXPECT_EQ(again.json(), asset.json());
+  EXPECT_EQ(documentJson(again), documentJson(asset));
   EXPECT_EQ(again.buffers[0].bytes, asset.buffers[0].bytes);
   EXPECT_EQ(again.sideFiles[0].bytes, pngBytes());
 }
@@ -109,12 +111,12 @@ TEST(WriteAsset, GlbToGltfAndBackKeepsEveryView) {
   writeAsset(asset, folder.path() / "out put.gltf");
   EXPECT_EQ(filesIn(folder), (std::set<std::string>{"out put.bin", "out put.gltf"}));
   const Asset gltf = readAsset(folder.path() / "out put.gltf");
-  EXPECT_EQ(gltf.json()["buffers"][0]["uri"], "out%20put.bin");
+  EXPECT_EQ(gltf.document.buffers[0].uri, "out%20put.bin");
   EXPECT_EQ(viewsOf(gltf), viewsOf(asset));
   writeAsset(gltf, folder.path() / "back.GLB");
   const Asset back = readAsset(folder.path() / "back.GLB");
   EXPECT_EQ(viewsOf(back), viewsOf(asset));
-  EXPECT_EQ(back.json(), asset.json());
+  EXPECT_EQ(documentJson(back), documentJson(asset));
 }
 
 TEST(WriteAsset, DataUrisStayInside) {

@@ -5,12 +5,9 @@
 #include <set>
 #include <utility>
 
-#include <nlohmann/json.hpp>
-
 #include "limber/asset/accessor.h"
 #include "limber/asset/geometry.h"
 #include "limber/asset/rig_io.h"
-#include "limber/asset/scene_graph.h"
 #include "limber/mesh/components.h"
 #include "limber/mesh/prepare.h"
 
@@ -20,11 +17,9 @@ namespace {
 
 std::size_t storedVertices(const Asset& asset) {
   std::set<Index> accessors;
-  for (const Json& mesh : elements(asset, "meshes")) {
-    for (const Json& primitive : mesh.at("primitives")) {
-      const Json* attributes = member(primitive, "attributes");
-      const auto position = attributes ? indexMember(*attributes, "POSITION") : std::nullopt;
-      if (position) accessors.insert(*position);
+  for (const gltf::Mesh& mesh : asset.document.meshes) {
+    for (const gltf::Primitive& primitive : mesh.primitives) {
+      if (const auto position = primitive.attributes.find("POSITION")) accessors.insert(*position);
     }
   }
   std::size_t count = 0;
@@ -34,7 +29,7 @@ std::size_t storedVertices(const Asset& asset) {
 
 Index primitiveCount(const Asset& asset) {
   std::size_t count = 0;
-  for (const Json& mesh : elements(asset, "meshes")) count += mesh.at("primitives").size();
+  for (const gltf::Mesh& mesh : asset.document.meshes) count += mesh.primitives.size();
   return static_cast<Index>(count);
 }
 
@@ -98,15 +93,12 @@ SkinWeightInfo inspectWeights(const SkinWeights& weights) {
 
 std::vector<ClipInfo> inspectClips(const Asset& asset) {
   std::vector<ClipInfo> clips;
-  for (const Json& animation : elements(asset, "animations")) {
+  for (const gltf::Animation& animation : asset.document.animations) {
     ClipInfo clip;
-    clip.name = nameOf(animation);
-    if (const Json* channels = member(animation, "channels")) clip.channels = static_cast<Index>(channels->size());
-    const Json* samplers = member(animation, "samplers");
-    for (std::size_t s = 0; samplers && s < samplers->size(); ++s) {
-      const auto input = indexMember((*samplers)[s], "input");
-      if (!input) continue;
-      for (const float time : readFloats(asset, *input)) clip.seconds = std::max(clip.seconds, double{time});
+    clip.name = animation.name;
+    clip.channels = static_cast<Index>(animation.channels.size());
+    for (const gltf::AnimationSampler& sampler : animation.samplers) {
+      for (const float time : readFloats(asset, sampler.input)) clip.seconds = std::max(clip.seconds, double{time});
     }
     clips.push_back(std::move(clip));
   }
@@ -126,29 +118,27 @@ Geometry sceneGeometry(const Asset& asset) {
 }  // namespace
 
 AssetInfo inspectAsset(const Asset& asset) {
+  const gltf::Document& document = asset.document;
+  const auto count = [](const auto& list) { return static_cast<Index>(list.size()); };
   AssetInfo info;
   info.format = asset.format;
   info.storedVertices = storedVertices(asset);
-  info.nodes = elementCount(asset, "nodes");
-  info.meshes = elementCount(asset, "meshes");
+  info.nodes = count(document.nodes);
+  info.meshes = count(document.meshes);
   info.primitives = primitiveCount(asset);
-  info.materials = elementCount(asset, "materials");
-  info.textures = elementCount(asset, "textures");
-  info.images = elementCount(asset, "images");
-  info.skins = elementCount(asset, "skins");
+  info.materials = count(document.materials);
+  info.textures = count(document.textures);
+  info.images = count(document.images);
+  info.skins = count(document.skins);
   info.clips = inspectClips(asset);
   info.warnings = asset.warnings;
-  if (const Json* used = member(asset.json(), "extensionsUsed")) {
-    for (const Json& name : *used) {
-      if (name.is_string()) info.extensions.push_back(name.get<std::string>());
-    }
-  }
+  info.extensions = document.extensionsUsed;
 
   const Geometry geometry = sceneGeometry(asset);
   info.sceneVertices = static_cast<Index>(geometry.positions.size());
   for (const Vec3f& position : geometry.positions) info.bounds.add(position.cast<double>());
   if (!geometry.triangles.empty()) info.surface = inspectSurface(geometry);
-  if (elementCount(asset, "skins") > 0) {  // a motion has a skin that no mesh wears
+  if (!document.skins.empty()) {  // a motion has a skin that no mesh wears
     const AssetSkeleton skeleton = readSkeleton(asset);
     for (const Joint& joint : skeleton.skeleton.joints) info.joints.push_back(joint.name);
     info.anatomy = readAnatomy(skeleton.skeleton);

@@ -3,8 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
 #include "limber/asset/accessor.h"
 
 namespace limber {
@@ -13,7 +11,6 @@ namespace {
 // Two tetrahedra's worth of triangles: one closed, one with a face missing, each with vertices of its own.
 Asset twoTetrahedra() {
   Asset asset;
-  asset.json() = {{"asset", {{"version", "2.0"}}}, {"scene", 0}};
   std::vector<float> positions;
   std::vector<std::uint16_t> indices;
   for (int i = 0; i < 2; ++i) {
@@ -23,14 +20,16 @@ Asset twoTetrahedra() {
     for (const int v : {0, 2, 1, 0, 1, 3, 1, 2, 3}) indices.push_back(std::uint16_t(base + v));
   }
   for (const int v : {0, 3, 2}) indices.push_back(std::uint16_t(v));
-  const Index position = addFloatAccessor(asset, positions, 3, kVertexTarget, true);
-  const Index index =
+  gltf::Primitive primitive;
+  primitive.attributes.set("POSITION", addFloatAccessor(asset, positions, 3, kVertexTarget, true));
+  primitive.indices =
       addAccessor(asset, {Index(indices.size()), 1, ComponentType::kU16, false},
                   {reinterpret_cast<const std::uint8_t*>(indices.data()), indices.size() * 2}, kIndexTarget);
-  asset.json()["meshes"] =
-      Json::array({{{"primitives", Json::array({{{"attributes", {{"POSITION", position}}}, {"indices", index}}})}}});
-  asset.json()["nodes"] = Json::array({{{"mesh", 0}}});
-  asset.json()["scenes"] = Json::array({{{"nodes", {0}}}});
+  gltf::Document& document = asset.document;
+  document.meshes.emplace_back().primitives.push_back(std::move(primitive));
+  document.nodes.emplace_back().mesh = 0;
+  document.scenes.emplace_back().nodes = {0};
+  document.scene = 0;
   asset.format = "glb";
   return asset;
 }
@@ -46,13 +45,17 @@ void addSkin(Asset& asset) {
       weights.push_back(w);
     }
   }
-  Json& attributes = asset.json()["meshes"][0]["primitives"][0]["attributes"];
-  attributes["JOINTS_0"] = addAccessor(asset, {8, 4, ComponentType::kU8, false}, joints, kVertexTarget);
-  attributes["WEIGHTS_0"] = addFloatAccessor(asset, weights, 4, kVertexTarget);
-  asset.json()["nodes"] =
-      Json::array({{{"mesh", 0}, {"skin", 0}}, {{"name", "hip"}, {"children", {2}}}, {{"name", "knee"}}});
-  asset.json()["scenes"][0]["nodes"] = {0, 1};
-  asset.json()["skins"] = Json::array({{{"joints", {1, 2}}}});
+  gltf::Document& document = asset.document;
+  gltf::Attributes& attributes = document.meshes[0].primitives[0].attributes;
+  attributes.set("JOINTS_0", addAccessor(asset, {8, 4, ComponentType::kU8, false}, joints, kVertexTarget));
+  attributes.set("WEIGHTS_0", addFloatAccessor(asset, weights, 4, kVertexTarget));
+  document.nodes[0].skin = 0;
+  gltf::Node& hip = document.nodes.emplace_back();
+  hip.name = "hip";
+  hip.children = {2};
+  document.nodes.emplace_back().name = "knee";
+  document.scenes[0].nodes = {0, 1};
+  document.skins.emplace_back().joints = {1, 2};
 }
 
 TEST(InspectAsset, CountsAMesh) {
@@ -74,8 +77,10 @@ TEST(InspectAsset, CountsAMesh) {
 
 TEST(InspectAsset, AnInstancedMeshIsStoredOnceAndShownTwice) {
   Asset asset = twoTetrahedra();
-  asset.json()["nodes"].push_back({{"mesh", 0}, {"translation", {0, 3, 0}}});
-  asset.json()["scenes"][0]["nodes"].push_back(1);
+  gltf::Node& second = asset.document.nodes.emplace_back();
+  second.mesh = 0;
+  second.translation = Vec3(0, 3, 0);
+  asset.document.scenes[0].nodes.push_back(1);
   const AssetInfo info = inspectAsset(asset);
   EXPECT_EQ(info.storedVertices, 8u);
   EXPECT_EQ(info.sceneVertices, 16u);
@@ -99,12 +104,14 @@ TEST(InspectAsset, ReadsWeightsAsStored) {
 
 TEST(InspectAsset, ReadsClips) {
   Asset asset = twoTetrahedra();
-  const Index times = addFloatAccessor(asset, std::vector<float>{0, 1.5f, 2.25f}, 1, 0, true);
-  const Index values = addFloatAccessor(asset, std::vector<float>(9, 0.f), 3);
-  asset.json()["animations"] = Json::array(
-      {{{"name", "hop"},
-        {"samplers", Json::array({{{"input", times}, {"output", values}}})},
-        {"channels", Json::array({{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}})}}});
+  gltf::Animation& hop = asset.document.animations.emplace_back();
+  hop.name = "hop";
+  gltf::AnimationSampler& sampler = hop.samplers.emplace_back();
+  sampler.input = addFloatAccessor(asset, std::vector<float>{0, 1.5f, 2.25f}, 1, 0, true);
+  sampler.output = addFloatAccessor(asset, std::vector<float>(9, 0.f), 3);
+  gltf::AnimationChannel::Target& target = hop.channels.emplace_back().target;
+  target.node = 0;
+  target.path = "translation";
   const AssetInfo info = inspectAsset(asset);
   ASSERT_EQ(info.clips.size(), 1u);
   EXPECT_EQ(info.clips[0].name, "hop");
@@ -114,7 +121,7 @@ TEST(InspectAsset, ReadsClips) {
 
 TEST(InspectAsset, AFileWithoutATriangleIsToldAsSuch) {
   Asset asset;
-  asset.json() = {{"asset", {{"version", "2.0"}}}, {"nodes", Json::array({{{"name", "alone"}}})}};
+  asset.document.nodes.emplace_back().name = "alone";
   const AssetInfo info = inspectAsset(asset);
   EXPECT_FALSE(info.surface);
   EXPECT_TRUE(info.bounds.empty());

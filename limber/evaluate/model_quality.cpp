@@ -8,7 +8,6 @@
 
 #include "limber/asset/accessor.h"
 #include "limber/asset/geometry.h"
-#include "limber/asset/scene_graph.h"
 #include "limber/evaluate/body_joints.h"
 #include "limber/evaluate/bone_coverage.h"
 #include "limber/evaluate/model_poser.h"
@@ -92,8 +91,8 @@ std::optional<MotionQuality> measureMoving(const SkinnedModel& model, std::span<
 std::vector<Vec2f> textureCoordinates(const Asset& asset, const Geometry& geometry) {
   std::vector<Vec2f> uvs;
   for (const PrimitiveInstance& instance : geometry.instances) {
-    const Json& primitive = elements(asset, "meshes")[instance.mesh].at("primitives")[instance.primitive];
-    const auto accessor = indexMember(primitive.at("attributes"), "TEXCOORD_0");
+    const gltf::Primitive& primitive = asset.document.meshes[instance.mesh].primitives[instance.primitive];
+    const std::optional<Index> accessor = primitive.attributes.find("TEXCOORD_0");
     if (!accessor) continue;
     const std::vector<float> values = readFloats(asset, *accessor);
     if (values.size() != std::size_t{2} * instance.vertexCount) continue;

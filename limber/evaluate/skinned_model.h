@@ -8,7 +8,7 @@
 
 namespace limber {
 
-class Asset;
+struct Asset;
 
 struct SkinnedModel {
   TriMesh mesh;  // vertices as the file has them, not welded, in bind pose

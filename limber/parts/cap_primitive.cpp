@@ -4,10 +4,8 @@
 #include <optional>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "limber/asset/accessor.h"
-#include "limber/asset/scene_graph.h"
 #include "limber/asset/weight_attributes.h"
 #include "limber/parts/part_triangles.h"
 
@@ -81,16 +79,16 @@ std::vector<float> CapPrimitive::meansOf(const char* attribute, std::optional<st
   for (const Mixed& vertex : vertices_) {
     for (const ModelVertex& of : vertex.of) {
       if (values.count(of.instance) > 0) continue;
-      const Json& primitive = primitives_[of.instance];
-      const Json* const attributes = target ? &primitive.at("targets").at(*target) : &primitive.at("attributes");
-      const std::optional<Index> accessor = indexMember(*attributes, attribute);
+      const gltf::Primitive& primitive = primitives_[of.instance];
+      const gltf::Attributes& attributes = target ? primitive.targets[*target] : primitive.attributes;
+      const std::optional<Index> accessor = attributes.find(attribute);
       values[of.instance] = accessor ? readFloats(asset_, *accessor) : std::vector<float>();
     }
   }
   return means(std::move(values), 3);
 }
 
-void CapPrimitive::writeWeights(Asset& asset, Json& attributes) const {
+void CapPrimitive::writeWeights(Asset& asset, gltf::Attributes& attributes) const {
   std::map<Index, std::vector<InfluenceSet>> setsOf;
   std::size_t sets = 1;
   for (const Mixed& vertex : vertices_) {
@@ -119,29 +117,26 @@ void CapPrimitive::writeWeights(Asset& asset, Json& attributes) const {
   }
   for (std::size_t set = 0; set < sets; ++set) {
     const auto* bytes = reinterpret_cast<const std::uint8_t*>(joints[set].data());
-    attributes[fmt::format("JOINTS_{}", set)] =
-        addAccessor(asset, {static_cast<Index>(vertices_.size()), kSetSize, ComponentType::kU16, false},
-                    {bytes, joints[set].size() * sizeof(std::uint16_t)}, kVertexTarget);
-    attributes[fmt::format("WEIGHTS_{}", set)] = addFloatAccessor(asset, weights[set], kSetSize, kVertexTarget);
+    attributes.set(fmt::format("JOINTS_{}", set),
+                   addAccessor(asset, {static_cast<Index>(vertices_.size()), kSetSize, ComponentType::kU16, false},
+                               {bytes, joints[set].size() * sizeof(std::uint16_t)}, kVertexTarget));
+    attributes.set(fmt::format("WEIGHTS_{}", set), addFloatAccessor(asset, weights[set], kSetSize, kVertexTarget));
   }
 }
 
-Json CapPrimitive::write(Asset& asset, Index material, bool skinned, std::size_t targets) const {
-  Json attributes;
-  attributes["POSITION"] = addFloatAccessor(asset, meansOf("POSITION", std::nullopt), 3, kVertexTarget, true);
+gltf::Primitive CapPrimitive::write(Asset& asset, Index material, bool skinned, std::size_t targets) const {
+  gltf::Primitive primitive;
+  const auto setPositions = [&](gltf::Attributes& attributes, std::optional<std::size_t> target) {
+    attributes.set("POSITION", addFloatAccessor(asset, meansOf("POSITION", target), 3, kVertexTarget, true));
+  };
+  setPositions(primitive.attributes, std::nullopt);
   std::vector<float> normals;
   for (const Mixed& vertex : vertices_) normals.insert(normals.end(), vertex.normal.begin(), vertex.normal.end());
-  attributes["NORMAL"] = addFloatAccessor(asset, normals, 3, kVertexTarget);
-  if (skinned) writeWeights(asset, attributes);
-  Json primitive;
-  primitive["attributes"] = std::move(attributes);
-  primitive["indices"] = addTriangleAccessor(asset, indices_, static_cast<Index>(vertices_.size()));
-  primitive["material"] = material;
-  for (std::size_t t = 0; t < targets; ++t) {
-    Json target;
-    target["POSITION"] = addFloatAccessor(asset, meansOf("POSITION", t), 3, kVertexTarget, true);
-    primitive["targets"].push_back(std::move(target));
-  }
+  primitive.attributes.set("NORMAL", addFloatAccessor(asset, normals, 3, kVertexTarget));
+  if (skinned) writeWeights(asset, primitive.attributes);
+  primitive.indices = addTriangleAccessor(asset, indices_, static_cast<Index>(vertices_.size()));
+  primitive.material = material;
+  for (std::size_t t = 0; t < targets; ++t) setPositions(primitive.targets.emplace_back(), t);
   return primitive;
 }
 

@@ -18,8 +18,8 @@ struct ModelVertex {
 // Collects the caps of one mesh; a vertex in the middle of a fan is the mean of those round it, in all that it has.
 class CapPrimitive {
  public:
-  // `primitives`: the JSON of each of geometry.instances, as it was before splitting.
-  CapPrimitive(const Asset& asset, const Geometry& geometry, const std::vector<Json>& primitives)
+  // `primitives`: those of geometry.instances, as it was before splitting.
+  CapPrimitive(const Asset& asset, const Geometry& geometry, const std::vector<gltf::Primitive>& primitives)
       : asset_(asset), geometry_(geometry), primitives_(primitives) {}
 
   // `loop`: where the mesh has the vertices of cap.loop; all in instances with one and the same space.
@@ -28,7 +28,7 @@ class CapPrimitive {
   bool empty() const { return indices_.empty(); }
 
   // Positions, normals, indices; joints and weights where `skinned`; as many morph targets as the mesh has.
-  Json write(Asset& asset, Index material, bool skinned, std::size_t targets) const;
+  gltf::Primitive write(Asset& asset, Index material, bool skinned, std::size_t targets) const;
 
  private:
   struct Mixed {  // one vertex of the caps: a mean of the model's
@@ -38,11 +38,11 @@ class CapPrimitive {
   // An attribute of the vertices, component by component: means.
   std::vector<float> means(std::map<Index, std::vector<float>> values, Index components) const;
   std::vector<float> meansOf(const char* attribute, std::optional<std::size_t> target) const;
-  void writeWeights(Asset& asset, Json& attributes) const;
+  void writeWeights(Asset& asset, gltf::Attributes& attributes) const;
 
   const Asset& asset_;
   const Geometry& geometry_;
-  const std::vector<Json>& primitives_;
+  const std::vector<gltf::Primitive>& primitives_;
   std::vector<Mixed> vertices_;
   std::vector<Triangle> indices_;
 };

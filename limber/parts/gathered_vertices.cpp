@@ -2,8 +2,6 @@
 
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "limber/asset/accessor.h"
 #include "limber/asset/accessor_layout.h"
 
@@ -25,13 +23,9 @@ Index addGathered(Asset& asset, const AccessorInfo& info, const std::vector<T>& 
                      kVertexTarget);
 }
 
-// Attributes of a primitive, or of one morph target.
-Json gatherAttributes(Asset& asset, const Json& attributes, std::span<const Index> vertices) {
-  Json gathered = Json::object();
-  for (const auto& [name, accessor] : attributes.items()) {
-    gathered[name] = gatherAccessor(asset, accessor.get<Index>(), vertices, name == "POSITION");
-  }
-  return gathered;
+// Of a primitive, or of one morph target.
+void gatherAttributes(Asset& asset, gltf::Attributes& attributes, std::span<const Index> vertices) {
+  for (auto& [name, accessor] : attributes) accessor = gatherAccessor(asset, accessor, vertices, name == "POSITION");
 }
 
 }  // namespace
@@ -57,16 +51,11 @@ Index gatherAccessor(Asset& asset, Index accessor, std::span<const Index> elemen
   return added;
 }
 
-Json gatherVertices(Asset& asset, const Json& primitive, std::span<const Index> vertices) {
-  Json gathered = primitive;
-  gathered["attributes"] = gatherAttributes(asset, primitive.at("attributes"), vertices);
-  if (const auto targets = primitive.find("targets"); targets != primitive.end()) {
-    Json moved = Json::array();
-    for (const Json& target : *targets) moved.push_back(gatherAttributes(asset, target, vertices));
-    gathered["targets"] = std::move(moved);
-  }
-  gathered.erase("indices");
-  return gathered;
+gltf::Primitive gatherVertices(Asset& asset, gltf::Primitive primitive, std::span<const Index> vertices) {
+  gatherAttributes(asset, primitive.attributes, vertices);
+  for (gltf::Attributes& target : primitive.targets) gatherAttributes(asset, target, vertices);
+  primitive.indices.reset();
+  return primitive;
 }
 
 }  // namespace limber

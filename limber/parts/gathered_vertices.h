@@ -12,7 +12,7 @@ namespace limber {
 // whole words of four bytes, which glTF asks of vertices. `withBounds`: with min and max, as for positions.
 Index gatherAccessor(Asset& asset, Index accessor, std::span<const Index> elements, bool withBounds);
 
-// A primitive's JSON with its attributes and morph targets gathered, without indices.
-Json gatherVertices(Asset& asset, const Json& primitive, std::span<const Index> vertices);
+// A primitive with its attributes and morph targets gathered, without indices.
+gltf::Primitive gatherVertices(Asset& asset, gltf::Primitive primitive, std::span<const Index> vertices);
 
 }  // namespace limber

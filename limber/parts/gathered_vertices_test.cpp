@@ -4,11 +4,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 #include "limber/asset/accessor.h"
 #include "limber/asset/accessor_layout.h"
-#include "limber/asset/testing/scene_builder.h"
 
 namespace limber {
 namespace {
@@ -25,7 +23,7 @@ Index addValues(Asset& asset, const AccessorInfo& info, const std::vector<T>& va
 }
 
 TEST(GatheredVertices, NormalisedIntegersKeepTheirTypeAndValues) {
-  Asset asset = std::move(testing::SceneBuilder().asset());
+  Asset asset;
   const std::vector<std::uint8_t> colors = {255, 0, 51, 255, 0, 102, 0, 255, 204, 0, 0, 0};
   const Index from = addValues(asset, {3, 4, ComponentType::kU8, true}, colors);
   const Index to = gatherAccessor(asset, from, std::vector<Index>{2, 0, 2}, false);
@@ -39,7 +37,7 @@ TEST(GatheredVertices, NormalisedIntegersKeepTheirTypeAndValues) {
 }
 
 TEST(GatheredVertices, ElementsThatFillNoWholeWordsBecomeFloatsOfTheSameValue) {
-  Asset asset = std::move(testing::SceneBuilder().asset());
+  Asset asset;
   const std::vector<std::uint16_t> values = {0, 65535, 13107, 65535, 0, 26214};
   const Index from = addValues(asset, {2, 3, ComponentType::kU16, true}, values);
   const Index to = gatherAccessor(asset, from, std::vector<Index>{1, 0}, false);
@@ -49,33 +47,40 @@ TEST(GatheredVertices, ElementsThatFillNoWholeWordsBecomeFloatsOfTheSameValue) {
 }
 
 TEST(GatheredVertices, SparseElementsAreReadAsTheyAreAndBoundsAreThoseOfTheNewOnes) {
-  Asset asset = std::move(testing::SceneBuilder().asset());
+  Asset asset;
   const Index from = addFloatAccessor(asset, std::vector<float>{0, 0, 0, 1, 1, 1, 2, 2, 2, 3, 3, 3}, 3, kVertexTarget);
   const Index numbers = addValues(asset, {2, 1, ComponentType::kU16, false}, std::vector<std::uint16_t>{1, 3});
   const Index replaced = addFloatAccessor(asset, std::vector<float>{-5, 7, 9, 30, 40, 50}, 3, kVertexTarget);
-  Json& accessors = asset.json()["accessors"];
-  accessors[from]["sparse"] = {{"count", 2},
-                               {"indices", {{"bufferView", accessors[numbers]["bufferView"]}, {"componentType", 5123}}},
-                               {"values", {{"bufferView", accessors[replaced]["bufferView"]}}}};
+  std::vector<gltf::Accessor>& accessors = asset.document.accessors;
+  gltf::Sparse& sparse = accessors[from].sparse.emplace();
+  sparse.count = 2;
+  sparse.indices.bufferView = accessors[numbers].bufferView.value();
+  sparse.indices.componentType = ComponentType::kU16;
+  sparse.values.bufferView = accessors[replaced].bufferView.value();
   const Index to = gatherAccessor(asset, from, std::vector<Index>{3, 2, 1}, true);
   EXPECT_THAT(readFloats(asset, to), floats({30, 40, 50, 2, 2, 2, -5, 7, 9}));
-  const Json& made = asset.json()["accessors"][to];
-  EXPECT_FALSE(made.contains("sparse"));
-  EXPECT_EQ(made["min"], Json({-5.0, 2.0, 2.0}));
-  EXPECT_EQ(made["max"], Json({30.0, 40.0, 50.0}));
+  EXPECT_FALSE(accessors[to].sparse);
+  EXPECT_THAT(accessors[to].min, ::testing::ElementsAre(-5, 2, 2));
+  EXPECT_THAT(accessors[to].max, ::testing::ElementsAre(30, 40, 50));
 }
 
 TEST(GatheredVertices, MorphTargetsGoAlongAndIndicesDoNot) {
-  Asset asset = std::move(testing::SceneBuilder().asset());
+  Asset asset;
   const Index positions = addFloatAccessor(asset, std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0}, 3, kVertexTarget);
   const Index offsets = addFloatAccessor(asset, std::vector<float>{0, 0, 1, 0, 0, 2, 0, 0, 3}, 3, kVertexTarget);
-  Json primitive = {{"attributes", {{"POSITION", positions}}}, {"indices", 7}, {"material", 2}};
-  primitive["targets"].push_back({{"POSITION", offsets}});
-  const Json gathered = gatherVertices(asset, primitive, std::vector<Index>{2, 1});
-  EXPECT_FALSE(gathered.contains("indices"));
-  EXPECT_EQ(gathered["material"], 2);
-  EXPECT_THAT(readFloats(asset, gathered["attributes"]["POSITION"].get<Index>()), floats({0, 1, 0, 1, 0, 0}));
-  EXPECT_THAT(readFloats(asset, gathered["targets"][0]["POSITION"].get<Index>()), floats({0, 0, 3, 0, 0, 2}));
+  gltf::Primitive primitive;
+  primitive.attributes.set("POSITION", positions);
+  primitive.indices = 7;
+  primitive.material = 2;
+  primitive.targets.emplace_back().set("POSITION", offsets);
+  const gltf::Primitive gathered = gatherVertices(asset, primitive, std::vector<Index>{2, 1});
+  EXPECT_FALSE(gathered.indices);
+  EXPECT_EQ(gathered.material, 2u);
+  const auto read = [&](const gltf::Attributes& attributes) {
+    return readFloats(asset, attributes.find("POSITION").value());
+  };
+  EXPECT_THAT(read(gathered.attributes), floats({0, 1, 0, 1, 0, 0}));
+  EXPECT_THAT(read(gathered.targets.at(0)), floats({0, 0, 3, 0, 0, 2}));
 }
 
 }  // namespace

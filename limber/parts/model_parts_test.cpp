@@ -2,7 +2,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 #include "limber/core/error.h"
 #include "limber/mesh/testing/shapes.h"

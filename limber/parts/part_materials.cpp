@@ -5,13 +5,12 @@
 #include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "limber/asset/accessor_sweep.h"
 #include "limber/asset/node_edit.h"
-#include "limber/asset/scene_graph.h"
 #include "limber/asset/unique_names.h"
 #include "limber/parts/part_triangles.h"
 
@@ -29,16 +28,18 @@ class PartPainter {
   void run() {
     ownMeshes();
     makeMaterials();
-    const std::vector<Json> painted = paintedPrimitives();
+    std::vector<Primitives> painted = paintedPrimitives();
     for (Index m = 0; m < painted.size(); ++m) {
-      if (!painted[m].empty()) asset_.json()["meshes"][m]["primitives"] = painted[m];
+      if (!painted[m].empty()) document_.meshes[m].primitives = std::move(painted[m]);
     }
   }
 
  private:
-  Json& primitiveOf(std::size_t instance) {
+  using Primitives = std::vector<gltf::Primitive>;
+
+  const gltf::Primitive& primitiveOf(std::size_t instance) const {
     const PrimitiveInstance& at = geometry_.instances[instance];
-    return asset_.json()["meshes"][meshOf_.at(at.node)]["primitives"][at.primitive];
+    return document_.meshes[meshOf_.at(at.node)].primitives[at.primitive];
   }
 
   // Nodes that show a mesh together get one each.
@@ -48,13 +49,10 @@ class PartPainter {
     for (const PrimitiveInstance& instance : geometry_.instances) {
       copies += instance.copy > 0;
       if (meshOf_.count(instance.node) > 0) continue;
-      Json& json = asset_.json();
       Index mesh = instance.mesh;
       if (!taken.insert(mesh).second) {
-        mesh = static_cast<Index>(json["meshes"].size());
-        const Json copy = json["meshes"][instance.mesh];
-        json["meshes"].push_back(copy);
-        json["nodes"][instance.node]["mesh"] = mesh;
+        mesh = addElement(document_.meshes, document_.meshes[mesh]);
+        document_.nodes[instance.node].mesh = mesh;
       }
       meshOf_[instance.node] = mesh;
     }
@@ -68,54 +66,46 @@ class PartPainter {
     std::map<Index, Index> countOf;        // part -> how many
     for (std::size_t i = 0; i < triangles_.size(); ++i) {
       if (geometry_.instances[i].copy > 0) continue;
-      const Index material = indexMember(primitiveOf(i), "material").value_or(kNoIndex);
+      const Index material = primitiveOf(i).material.value_or(kNoIndex);
       for (const PartTriangles& run : triangles_[i]) {
         if (needed.try_emplace({run.part, material}, 0).second) ++countOf[run.part];
       }
     }
     UniqueNames names;
-    for (const Json& material : elements(asset_, "materials")) names.add(nameOf(material));
-    Json& materials = asset_.json()["materials"];
-    if (!materials.is_array()) materials = Json::array();
+    for (const gltf::Material& material : document_.materials) names.add(material.name);
     for (auto& [key, number] : needed) {
       const auto [part, original] = key;
-      Json material = original == kNoIndex ? Json::object() : Json(materials[original]);
-      const std::string own = nameOf(material), &name = parts_.names[part];
-      material["name"] = names.add(countOf[part] > 1 && !own.empty() ? fmt::format("{}_{}", name, own) : name);
+      gltf::Material material = original == kNoIndex ? gltf::Material() : document_.materials[original];
+      const std::string &own = material.name, &name = parts_.names[part];
+      material.name = names.add(countOf[part] > 1 && !own.empty() ? fmt::format("{}_{}", name, own) : name);
       tint(part, material);
-      number = static_cast<Index>(materials.size());
-      materials.push_back(std::move(material));
+      number = addElement(document_.materials, std::move(material));
     }
     materialOf_ = std::move(needed);
   }
 
-  void tint(Index part, Json& material) const {
+  void tint(Index part, gltf::Material& material) const {
     if (tints_.empty()) return;
-    Json& surface = material["pbrMetallicRoughness"];
-    if (!surface.is_object()) surface = {{"metallicFactor", 0.0}};
-    Json& factor = surface["baseColorFactor"];
-    if (!factor.is_array()) factor = {1.0, 1.0, 1.0, 1.0};
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto share = static_cast<double>(tints_[part][static_cast<Eigen::Index>(i)]);
-      factor[i] = shortDouble(factor[i].get<double>() * share);
-    }
+    if (!material.pbrMetallicRoughness) material.pbrMetallicRoughness.emplace().metallicFactor = 0;
+    std::optional<Vec4>& color = material.pbrMetallicRoughness->baseColorFactor;
+    if (!color) color = Vec4::Ones();
+    for (Eigen::Index i = 0; i < 3; ++i) (*color)[i] = shortDouble((*color)[i] * static_cast<double>(tints_[part][i]));
   }
 
-  // #meshes, null for those that stay.
-  std::vector<Json> paintedPrimitives() {
-    std::vector<Json> painted(elementCount(asset_, "meshes"));
+  // #meshes, empty for those that stay.
+  std::vector<Primitives> paintedPrimitives() {
+    std::vector<Primitives> painted(document_.meshes.size());
     for (std::size_t i = 0; i < triangles_.size(); ++i) {
       const PrimitiveInstance& instance = geometry_.instances[i];
       if (instance.copy > 0) continue;
-      const Json original = primitiveOf(i);
-      Json& primitives = painted[meshOf_.at(instance.node)];
+      const gltf::Primitive& original = primitiveOf(i);
+      Primitives& primitives = painted[meshOf_.at(instance.node)];
       if (triangles_[i].empty()) primitives.push_back(original);
       for (const PartTriangles& run : triangles_[i]) {
-        Json primitive = original;
-        primitive.erase("mode");
-        primitive["indices"] = addTriangleAccessor(asset_, run.triangles, instance.vertexCount);
-        primitive["material"] = materialOf_.at({run.part, indexMember(original, "material").value_or(kNoIndex)});
-        primitives.push_back(std::move(primitive));
+        gltf::Primitive& primitive = primitives.emplace_back(original);
+        primitive.mode = gltf::kTriangles;
+        primitive.indices = addTriangleAccessor(asset_, run.triangles, instance.vertexCount);
+        primitive.material = materialOf_.at({run.part, original.material.value_or(kNoIndex)});
       }
     }
     keepHidden(painted);
@@ -123,14 +113,14 @@ class PartPainter {
   }
 
   // Primitives without positions are in no geometry.
-  void keepHidden(std::vector<Json>& painted) {
+  void keepHidden(std::vector<Primitives>& painted) const {
     std::set<std::pair<Index, Index>> met;
     for (const PrimitiveInstance& instance : geometry_.instances) {
       met.emplace(meshOf_.at(instance.node), instance.primitive);
     }
     for (Index m = 0; m < painted.size(); ++m) {
       if (painted[m].empty()) continue;
-      const Json& primitives = asset_.json()["meshes"][m]["primitives"];
+      const Primitives& primitives = document_.meshes[m].primitives;
       for (Index p = 0; p < primitives.size(); ++p) {
         if (met.count({m, p}) == 0) painted[m].push_back(primitives[p]);
       }
@@ -138,6 +128,7 @@ class PartPainter {
   }
 
   Asset& asset_;
+  gltf::Document& document_ = asset_.document;
   const Geometry& geometry_;
   const SurfaceParts& parts_;
   std::span<const Vec3f> tints_;

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "limber/asset/scene_graph.h"
 #include "limber/mesh/testing/shapes.h"
 #include "limber/parts/testing/part_meshes_made.h"
 
@@ -13,7 +12,7 @@ namespace {
 
 std::vector<std::string> materialNames(const Asset& asset) {
   std::vector<std::string> names;
-  for (const Json& material : elements(asset, "materials")) names.push_back(nameOf(material));
+  for (const gltf::Material& material : asset.document.materials) names.push_back(material.name);
   return names;
 }
 
@@ -32,12 +31,15 @@ struct TwoMaterials {
       primitives.push_back(std::move(primitive));
       for (Index t = 0; t < ball.triangleCount(); ++t) parts.partOf.push_back(t % 2);
     }
-    builder.json()["materials"] = {
-        {{"name", "cloth"}, {"pbrMetallicRoughness", {{"baseColorFactor", {0.5, 1, 1, 0.25}}}}},
-        {{"name", "skin"}, {"doubleSided", true}}};
+    gltf::Material cloth, skin;
+    cloth.name = "cloth";
+    cloth.pbrMetallicRoughness.emplace().baseColorFactor = Vec4(0.5, 1, 1, 0.25);
+    skin.name = "skin";
+    skin.doubleSided = true;
+    builder.asset().document.materials = {cloth, skin};
     const Index mesh = builder.addMesh(std::move(primitives), "body");
     builder.addNode({{"name", "body"}, {"mesh", mesh}});
-    builder.json()["scenes"] = Json::array({{{"nodes", {0}}}});
+    builder.addScene({0});
     parts.names = {"arm", "leg"};
     asset = std::move(builder.asset());
   }
@@ -48,11 +50,10 @@ TEST(PartMaterials, PartsOfSeveralMaterialsHaveThemAllByName) {
   const Geometry geometry = collectGeometry(model.asset);
   paintParts(model.asset, geometry, model.parts, std::vector<Vec3f>{{0.5f, 0.5f, 1}, {1, 0, 0}});
   EXPECT_THAT(materialNames(model.asset), ::testing::IsSupersetOf({"arm_cloth", "arm_skin", "leg_cloth", "leg_skin"}));
-  for (const Json& material : elements(model.asset, "materials")) {
-    const bool isSkin = nameOf(material).ends_with("skin");
-    EXPECT_EQ(material.contains("doubleSided"), isSkin);
-    if (nameOf(material) == "arm_cloth") {
-      EXPECT_EQ(material["pbrMetallicRoughness"]["baseColorFactor"], Json({0.25, 0.5, 1.0, 0.25}));
+  for (const gltf::Material& material : model.asset.document.materials) {
+    EXPECT_EQ(material.doubleSided, material.name.ends_with("skin"));
+    if (material.name == "arm_cloth") {
+      EXPECT_EQ(material.pbrMetallicRoughness.value().baseColorFactor, Vec4(0.25, 0.5, 1, 0.25));
     }
   }
   // The same triangles, each with its part's material.
@@ -65,12 +66,12 @@ TEST(PartMaterials, WithoutTintsColoursStayAndWithoutMaterialsNoneIsInvented) {
   TwoMaterials model;
   const Geometry geometry = collectGeometry(model.asset);
   paintParts(model.asset, geometry, model.parts, {});
-  for (const Json& material : elements(model.asset, "materials")) {
-    if (!nameOf(material).ends_with("cloth")) {
-      EXPECT_FALSE(material.contains("pbrMetallicRoughness"));
+  for (const gltf::Material& material : model.asset.document.materials) {
+    if (!material.name.ends_with("cloth")) {
+      EXPECT_FALSE(material.pbrMetallicRoughness);
       continue;
     }
-    EXPECT_EQ(material["pbrMetallicRoughness"]["baseColorFactor"], Json({0.5, 1, 1, 0.25}));
+    EXPECT_EQ(material.pbrMetallicRoughness.value().baseColorFactor, Vec4(0.5, 1, 1, 0.25));
   }
   Asset plain = testing::assetOf(testing::icosphere(1));
   const SurfaceParts one{std::vector<Index>(80, 0), {"all"}};

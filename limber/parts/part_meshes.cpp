@@ -4,8 +4,7 @@
 #include <map>
 #include <optional>
 #include <set>
-
-#include <nlohmann/json.hpp>
+#include <utility>
 
 #include "limber/asset/accessor_sweep.h"
 #include "limber/asset/node_edit.h"
@@ -32,10 +31,7 @@ struct NewNode {
   Index part = 0, node = 0;
 };
 
-std::size_t targetCount(const Json& primitive) {
-  const Json* targets = member(primitive, "targets");
-  return targets ? targets->size() : 0;
-}
+using Primitives = std::vector<gltf::Primitive>;
 
 class Splitter {
  public:
@@ -46,9 +42,9 @@ class Splitter {
         throw Error(ErrorCode::kUnsupported, "shows a mesh by GPU instances, which cannot be taken apart", asset.name,
                     "turn instances into meshes first, or write the parts as materials");
       }
-      primitives_.push_back(asset.json()["meshes"][instance.mesh]["primitives"][instance.primitive]);
+      primitives_.push_back(document_.meshes[instance.mesh].primitives[instance.primitive]);
     }
-    for (const Json& node : elements(asset, "nodes")) taken_.insert(nameOf(node));
+    for (const gltf::Node& node : document_.nodes) taken_.insert(node.name);
     makeGroups();
     findScenes();
     findMorphChannels();
@@ -84,8 +80,8 @@ class Splitter {
     std::map<Index, std::size_t> ofNode, ofSkin;
     for (std::size_t i = 0; i < geometry_.instances.size(); ++i) {
       const Index node = geometry_.instances[i].node;
-      const std::optional<Index> skin = indexMember(asset_.json()["nodes"][node], "skin");
-      const std::size_t targets = targetCount(primitives_[i]);
+      const std::optional<Index> skin = document_.nodes[node].skin;
+      const std::size_t targets = primitives_[i].targets.size();
       auto known = ofNode.find(node);
       if (known == ofNode.end()) {
         std::size_t group = groups_.size();
@@ -117,8 +113,8 @@ class Splitter {
   }
 
   void splitGroup(const SplitGroup& group) {
-    std::map<Index, Json> primitivesOf;  // part -> primitives
-    std::vector<Json> left(group.nodes.size(), Json::array());
+    std::map<Index, Primitives> primitivesOf;  // by part
+    std::vector<Primitives> left(group.nodes.size());
     for (const std::size_t i : group.members) {
       for (const PartTriangles& run : triangles_[i]) primitivesOf[run.part].push_back(partPrimitive(i, run));
       if (!triangles_[i].empty()) continue;
@@ -130,10 +126,10 @@ class Splitter {
       for (auto& [part, primitives] : primitivesOf) addCaps(group, part, primitives);
     }
     for (auto& [part, primitives] : primitivesOf) addNode(group, part, std::move(primitives));
-    for (std::size_t n = 0; n < group.nodes.size(); ++n) emptyNode(group, group.nodes[n], left[n]);
+    for (std::size_t n = 0; n < group.nodes.size(); ++n) emptyNode(group, group.nodes[n], std::move(left[n]));
   }
 
-  Json partPrimitive(std::size_t instance, const PartTriangles& run) {
+  gltf::Primitive partPrimitive(std::size_t instance, const PartTriangles& run) {
     std::vector<Index> vertices, number(geometry_.instances[instance].vertexCount, kNoIndex);
     for (const Triangle& t : run.triangles) {
       for (const Index v : t) number[v] = 0;
@@ -145,14 +141,14 @@ class Splitter {
     }
     std::vector<Triangle> triangles = run.triangles;
     for (Triangle& t : triangles) t = {number[t[0]], number[t[1]], number[t[2]]};
-    Json primitive = gatherVertices(asset_, primitives_[instance], vertices);
-    primitive.erase("mode");
-    primitive["indices"] = addTriangleAccessor(asset_, triangles, static_cast<Index>(vertices.size()));
+    gltf::Primitive primitive = gatherVertices(asset_, primitives_[instance], vertices);
+    primitive.mode = gltf::kTriangles;
+    primitive.indices = addTriangleAccessor(asset_, triangles, static_cast<Index>(vertices.size()));
     return primitive;
   }
 
   // Those of the part's caps all of whose vertices this group has.
-  void addCaps(const SplitGroup& group, Index part, Json& primitives) {
+  void addCaps(const SplitGroup& group, Index part, Primitives& primitives) {
     ++stamp_;
     for (const std::size_t i : group.members) {
       for (const PartTriangles& run : triangles_[i]) {
@@ -183,44 +179,42 @@ class Splitter {
 
   Index cutMaterial() {
     if (!cutMaterial_) {
-      Json& materials = asset_.json()["materials"];
-      if (!materials.is_array()) materials = Json::array();
-      cutMaterial_ = static_cast<Index>(materials.size());
-      materials.push_back({{"name", "cut"}, {"pbrMetallicRoughness", {{"metallicFactor", 0.0}}}});
+      gltf::Material material;
+      material.name = "cut";
+      material.pbrMetallicRoughness.emplace().metallicFactor = 0;
+      cutMaterial_ = addElement(document_.materials, std::move(material));
     }
     return *cutMaterial_;
   }
 
-  void addNode(const SplitGroup& group, Index part, Json primitives) {
-    Json& json = asset_.json();
+  void addNode(const SplitGroup& group, Index part, Primitives primitives) {
     const std::string& name = parts_.names[part];
-    const Json& original = json["meshes"][geometry_.instances[group.members[0]].mesh];
-    Json mesh = {{"name", name}, {"primitives", std::move(primitives)}};
+    gltf::Mesh mesh;
+    mesh.name = name;
+    mesh.primitives = std::move(primitives);
     if (group.nodes.size() == 1) {
-      for (const char* key : {"weights", "extras"}) {
-        if (const Json* value = member(original, key)) mesh[key] = *value;
-      }
+      const gltf::Mesh& original = document_.meshes[geometry_.instances[group.members[0]].mesh];
+      mesh.weights = original.weights;
+      mesh.extras = original.extras;
     }
-    Json node = {{"name", names_.add(taken_.count(name) > 0 ? name + "_part" : name)}, {"mesh", json["meshes"].size()}};
-    if (const Json* weights = member(json["nodes"][group.nodes[0]], "weights")) node["weights"] = *weights;
-    if (group.skin) node["skin"] = *group.skin;
-    json["meshes"].push_back(std::move(mesh));
-    const auto number = static_cast<Index>(json["nodes"].size());
-    json["nodes"].push_back(std::move(node));
+    gltf::Node node;
+    node.name = names_.add(taken_.count(name) > 0 ? name + "_part" : name);
+    node.mesh = addElement(document_.meshes, std::move(mesh));
+    node.skin = group.skin;
+    node.weights = document_.nodes[group.nodes[0]].weights;
+    const Index number = addElement(document_.nodes, std::move(node));
     newNodes_.push_back({part, number});
     if (group.skin) {
       showInScenes(group.nodes, number);
     } else {
-      Json& children = json["nodes"][group.nodes[0]]["children"];
-      if (!children.is_array()) children = Json::array();
-      children.push_back(number);
+      document_.nodes[group.nodes[0]].children.push_back(number);
     }
     if (group.targets > 0) copyMorphChannels(group.nodes[0], number);
   }
 
   void findScenes() {
-    for (Index s = 0; s < elementCount(asset_, "scenes"); ++s) {
-      for (const Index node : sceneNodes(asset_, s)) scenesOf_[node].push_back(s);
+    for (Index s = 0; s < document_.scenes.size(); ++s) {
+      for (const Index node : sceneNodes(document_, s)) scenesOf_[node].push_back(s);
     }
   }
 
@@ -230,16 +224,14 @@ class Splitter {
       const auto known = scenesOf_.find(node);
       if (known != scenesOf_.end()) scenes.insert(known->second.begin(), known->second.end());
     }
-    for (const Index s : scenes) asset_.json()["scenes"][s]["nodes"].push_back(number);
+    for (const Index s : scenes) document_.scenes[s].nodes.push_back(number);
   }
 
   void findMorphChannels() {
-    const Json& animations = elements(asset_, "animations");
-    for (std::size_t a = 0; a < animations.size(); ++a) {
-      for (const Json& channel : animations[a]["channels"]) {
-        const Json& target = channel.at("target");
-        const std::optional<Index> node = indexMember(target, "node");
-        if (node && target.value("path", "") == "weights") morphChannels_[*node].emplace_back(a, channel);
+    for (std::size_t a = 0; a < document_.animations.size(); ++a) {
+      for (const gltf::AnimationChannel& channel : document_.animations[a].channels) {
+        const gltf::AnimationChannel::Target& target = channel.target;
+        if (target.node && target.path == "weights") morphChannels_[*target.node].emplace_back(a, channel);
       }
     }
   }
@@ -248,38 +240,39 @@ class Splitter {
     const auto known = morphChannels_.find(from);
     if (known == morphChannels_.end()) return;
     for (const auto& [animation, channel] : known->second) {
-      Json& channels = asset_.json()["animations"][animation]["channels"];
-      channels.push_back(channel);
-      channels.back()["target"]["node"] = to;
+      document_.animations[animation].channels.emplace_back(channel).target.node = to;
     }
   }
 
   // Takes the mesh off; what is no triangles stays on a mesh of its own.
-  void emptyNode(const SplitGroup& group, Index number, const Json& left) {
-    Json& json = asset_.json();
+  void emptyNode(const SplitGroup& group, Index number, Primitives left) {
+    gltf::Node& node = document_.nodes[number];
     if (!left.empty()) {
-      json["nodes"][number]["mesh"] = json["meshes"].size();
-      json["meshes"].push_back({{"primitives", left}});
+      gltf::Mesh mesh;
+      mesh.primitives = std::move(left);
+      node.mesh = addElement(document_.meshes, std::move(mesh));
       return;
     }
-    for (const char* key : {"mesh", "skin", "weights"}) json["nodes"][number].erase(key);
+    node.mesh.reset();
+    node.skin.reset();
+    node.weights.clear();
     if (group.targets > 0) emptied_.insert(number);
   }
 
   // Nodes that carried a skinned mesh and nothing else.
   void dropEmptyNodes() {
-    std::vector<bool> keep(elementCount(asset_, "nodes"), true);
+    std::vector<bool> keep(document_.nodes.size(), true);
     for (const SplitGroup& group : groups_) {
       if (!group.skin) continue;
-      for (const Index node : group.nodes) {
-        const Json& json = asset_.json()["nodes"][node];
-        const auto has = [&](const char* key) { return json.contains(key); };
-        keep[node] = has("mesh") || has("children") || has("camera") || has("extensions") || has("extras");
+      for (const Index number : group.nodes) {
+        const gltf::Node& node = document_.nodes[number];
+        keep[number] =
+            node.mesh || !node.children.empty() || node.camera || node.extensions.exists() || node.extras.exists();
       }
     }
-    for (const Json& skin : elements(asset_, "skins")) {
-      for (const Json& joint : skin.at("joints")) keep[joint.get<std::size_t>()] = true;
-      if (const std::optional<Index> root = indexMember(skin, "skeleton")) keep[*root] = true;
+    for (const gltf::Skin& skin : document_.skins) {
+      for (const Index joint : skin.joints) keep[joint] = true;
+      if (skin.skeleton) keep[*skin.skeleton] = true;
     }
     deleteNodes(asset_, keep);
     std::vector<Index> numberOf(keep.size(), 0);
@@ -289,32 +282,32 @@ class Splitter {
 
   // Meshes that a node showed before and none shows now.
   void dropUnusedMeshes() {
-    Json& json = asset_.json();
     std::set<Index> shown;
-    for (const Json& node : json["nodes"]) {
-      if (const std::optional<Index> mesh = indexMember(node, "mesh")) shown.insert(*mesh);
+    for (const gltf::Node& node : document_.nodes) {
+      if (node.mesh) shown.insert(*node.mesh);
     }
     std::set<Index> taken;
     for (const PrimitiveInstance& instance : geometry_.instances) {
       if (shown.count(instance.mesh) == 0) taken.insert(instance.mesh);
     }
-    Json kept = Json::array();
+    std::vector<gltf::Mesh> kept;
     std::vector<Index> numberOf;
-    for (Index m = 0; m < json["meshes"].size(); ++m) {
+    for (Index m = 0; m < document_.meshes.size(); ++m) {
       numberOf.push_back(static_cast<Index>(kept.size()));
-      if (taken.count(m) == 0) kept.push_back(std::move(json["meshes"][m]));
+      if (taken.count(m) == 0) kept.push_back(std::move(document_.meshes[m]));
     }
-    json["meshes"] = std::move(kept);
-    for (Json& node : json["nodes"]) {
-      if (const std::optional<Index> mesh = indexMember(node, "mesh")) node["mesh"] = numberOf[*mesh];
+    document_.meshes = std::move(kept);
+    for (gltf::Node& node : document_.nodes) {
+      if (node.mesh) node.mesh = numberOf[*node.mesh];
     }
   }
 
   Asset& asset_;
+  gltf::Document& document_ = asset_.document;
   const Geometry& geometry_;
   const SurfaceParts& parts_;
   std::vector<std::vector<PartTriangles>> triangles_;
-  std::vector<Json> primitives_;  // #instances, as they were
+  Primitives primitives_;  // #instances, as they were
   std::vector<SplitGroup> groups_;
   std::set<std::string> taken_;  // names of nodes that were there, such as joints
   UniqueNames names_;
@@ -326,9 +319,10 @@ class Splitter {
   Index stamp_ = 0;
   std::optional<Index> cutMaterial_;
   std::vector<NewNode> newNodes_;
-  std::map<Index, std::vector<Index>> scenesOf_;                              // node -> scenes that show it
-  std::map<Index, std::vector<std::pair<std::size_t, Json>>> morphChannels_;  // node -> animations and their channels
-  std::set<Index> emptied_;                                                   // nodes whose morph targets went on
+  std::map<Index, std::vector<Index>> scenesOf_;  // node -> scenes that show it
+  // node -> animations and their channels
+  std::map<Index, std::vector<std::pair<std::size_t, gltf::AnimationChannel>>> morphChannels_;
+  std::set<Index> emptied_;  // nodes whose morph targets went on
 };
 
 }  // namespace

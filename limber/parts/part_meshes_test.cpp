@@ -7,11 +7,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 #include "limber/asset/read.h"
 #include "limber/asset/rig_io.h"
-#include "limber/asset/scene_graph.h"
 #include "limber/asset/testing/gltf_builder.h"
 #include "limber/asset/write.h"
 #include "limber/core/error.h"
@@ -58,9 +56,9 @@ std::vector<std::array<Corner, 3>> cornersOf(const Asset& asset, const std::set<
   for (const Triangle& t : geometry.triangles) {
     const auto instance = std::find_if(geometry.instances.rbegin(), geometry.instances.rend(),
                                        [&](const PrimitiveInstance& at) { return at.firstVertex <= t[0]; });
-    const Json& primitive = asset.json()["meshes"][instance->mesh]["primitives"][instance->primitive];
-    const std::optional<Index> material = indexMember(primitive, "material");
-    if (material && without.count(nameOf(asset.json()["materials"][*material])) > 0) continue;
+    const std::optional<Index> material =
+        asset.document.meshes[instance->mesh].primitives[instance->primitive].material;
+    if (material && without.count(asset.document.materials[*material].name) > 0) continue;
     std::array<Corner, 3> triangle;
     for (std::size_t c = 0; c < 3; ++c) {
       const Vec3f& p = geometry.positions[t[c]];
@@ -114,9 +112,9 @@ TEST(SplitParts, ARiggedModelKeepsSkinWeightsAndTrianglesAndIsClosed) {
   EXPECT_EQ(parts[0].name, "lower");
   for (const PartNodes& part : parts) {
     ASSERT_EQ(part.nodes.size(), 1u);
-    const Json& node = asset.json()["nodes"][part.nodes[0]];
-    EXPECT_EQ(nameOf(node), part.name + "_part");  // joints have the names themselves
-    EXPECT_TRUE(node.contains("skin"));
+    const gltf::Node& node = asset.document.nodes[part.nodes[0]];
+    EXPECT_EQ(node.name, part.name + "_part");  // joints have the names themselves
+    EXPECT_TRUE(node.skin);
     EXPECT_EQ(oddEdges(asset, part.nodes), 0u);
   }
   EXPECT_EQ(cornersOf(asset, {"cut"}), before);
@@ -155,15 +153,15 @@ TEST(SplitParts, WithoutCapsTheSameTrianglesAreLeft) {
 TEST(SplitParts, AStaticModelHangsItsPartsBelowItsNode) {
   for (const bool unwelded : {false, true}) {
     Asset asset = testing::assetOf(testing::dumbbell(), unwelded);
-    asset.json()["nodes"][0]["scale"] = {-1, 2, 1};
+    asset.document.nodes[0].scale = Vec3(-1, 2, 1);
     const std::vector<std::array<Corner, 3>> before = cornersOf(asset);
     const Geometry geometry = collectGeometry(asset);
     Progress progress;
     const SurfaceParts found = modelParts(asset, geometry, {PartMethod::kAuto, {}, 2}, progress);
     const std::vector<PartNodes> parts = takeApart(asset, geometry, found);
     EXPECT_EQ(cornersOf(asset, {"cut"}), before);
-    EXPECT_EQ(asset.json()["nodes"][0]["children"].size(), 2u);
-    EXPECT_FALSE(asset.json()["nodes"][0].contains("mesh"));
+    EXPECT_EQ(asset.document.nodes[0].children.size(), 2u);
+    EXPECT_FALSE(asset.document.nodes[0].mesh);
     for (const PartNodes& part : parts) EXPECT_EQ(oddEdges(asset, part.nodes), 0u);
     keepForValidator(asset, unwelded ? "split_unwelded" : "split_static");
   }
@@ -182,9 +180,9 @@ TEST(SplitParts, MorphTargetsAndTheirAnimationGoWithEachPart) {
   EXPECT_EQ(cornersOf(asset, {"cut"}), before);
   ASSERT_EQ(split.size(), 2u);
   for (const PartNodes& part : split) {
-    const Json& node = asset.json()["nodes"][part.nodes.at(0)];
-    for (const Json& primitive : asset.json()["meshes"][node["mesh"].get<Index>()]["primitives"]) {
-      EXPECT_EQ(primitive["targets"].size(), 1u);
+    const Index mesh = asset.document.nodes[part.nodes.at(0)].mesh.value();
+    for (const gltf::Primitive& primitive : asset.document.meshes[mesh].primitives) {
+      EXPECT_EQ(primitive.targets.size(), 1u);
     }
   }
   EXPECT_THAT(asset.warnings.items(), ::testing::Contains(::testing::Field(&Warning::kind, "open-cuts")));
@@ -212,10 +210,10 @@ TEST(PaintParts, EachPartHasAMaterialAndNothingElseChanges) {
   const std::vector<Vec3f> tints = {{1, 0, 0}, {0, 0.5f, 0}};
   paintParts(asset, geometry, parts, tints);
   EXPECT_EQ(cornersOf(asset), before);
-  const Json& materials = asset.json()["materials"];
+  const std::vector<gltf::Material>& materials = asset.document.materials;
   ASSERT_EQ(materials.size(), 2u);
-  EXPECT_EQ(nameOf(materials[0]), "lower");
-  EXPECT_EQ(materials[1]["pbrMetallicRoughness"]["baseColorFactor"], Json({0.0, 0.5, 0.0, 1.0}));
+  EXPECT_EQ(materials[0].name, "lower");
+  EXPECT_EQ(materials[1].pbrMetallicRoughness.value().baseColorFactor, Vec4(0, 0.5, 0, 1));
   EXPECT_EQ(cornersOf(asset, {"lower"}).size() + cornersOf(asset, {"upper"}).size(), before.size());
   keepForValidator(asset, "painted_tube");
 }
@@ -225,18 +223,20 @@ TEST(PaintParts, TexturedMaterialsKeepTheirTextures) {
   const Geometry geometry = collectGeometry(asset);
   const SurfaceParts parts{{0, 1}, {"one", "two"}};
   paintParts(asset, geometry, parts, {});
-  for (const Json& primitive : asset.json()["meshes"][geometry.instances[0].mesh]["primitives"]) {
-    const Json& material = asset.json()["materials"][primitive["material"].get<Index>()];
-    EXPECT_TRUE(material["pbrMetallicRoughness"].contains("baseColorTexture"));
-    EXPECT_TRUE(nameOf(material) == "one" || nameOf(material) == "two");
+  for (const gltf::Primitive& primitive : asset.document.meshes[geometry.instances[0].mesh].primitives) {
+    const gltf::Material& material = asset.document.materials.at(primitive.material.value());
+    EXPECT_TRUE(material.pbrMetallicRoughness.value().baseColorTexture);
+    EXPECT_TRUE(material.name == "one" || material.name == "two");
   }
   checkAsset(asset);
 }
 
 TEST(PaintParts, NodesThatShowOneMeshGetOneEach) {
   Asset asset = testing::assetOf(testing::icosphere(1));
-  asset.json()["nodes"].push_back({{"mesh", 0}, {"translation", {9, 0, 0}}});
-  asset.json()["scenes"][0]["nodes"] = {0, 1};
+  gltf::Node other;
+  other.mesh = 0;
+  other.translation = Vec3(9, 0, 0);
+  asset.document.scenes[0].nodes.push_back(addElement(asset.document.nodes, other));
   const std::vector<std::array<Corner, 3>> before = cornersOf(asset);
   const Geometry geometry = collectGeometry(asset);
   SurfaceParts parts;
@@ -245,11 +245,11 @@ TEST(PaintParts, NodesThatShowOneMeshGetOneEach) {
   Asset split = asset.clone();
   paintParts(asset, geometry, parts, {});
   EXPECT_EQ(cornersOf(asset), before);
-  EXPECT_EQ(asset.json()["meshes"].size(), 2u);
+  EXPECT_EQ(asset.document.meshes.size(), 2u);
   EXPECT_EQ(cornersOf(asset, {"c"}).size(), 80u);
   takeApart(split, geometry, parts);
   EXPECT_EQ(cornersOf(split, {"cut"}), before);
-  EXPECT_EQ(split.json()["meshes"].size(), 3u);
+  EXPECT_EQ(split.document.meshes.size(), 3u);
 }
 
 }  // namespace

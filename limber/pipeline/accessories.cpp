@@ -7,10 +7,7 @@
 #include <string_view>
 #include <tuple>
 
-#include <nlohmann/json.hpp>
-
 #include "limber/anatomy/humanoid_words.h"
-#include "limber/asset/scene_graph.h"
 #include "limber/mesh/areas.h"
 #include "limber/mesh/bvh.h"
 
@@ -58,11 +55,11 @@ std::optional<AccessoryName> readAccessoryName(const std::string& name) {
 
 // The first name of the instance that names an accessory: its node's, mesh's or material's.
 std::optional<AccessoryName> accessoryName(const Asset& asset, const PrimitiveInstance& instance) {
-  const Json& mesh = elements(asset, "meshes")[instance.mesh];
-  std::vector<std::string> names = {nameOf(elements(asset, "nodes")[instance.node]), nameOf(mesh)};
-  const Json& primitive = mesh.at("primitives")[instance.primitive];
-  if (const std::optional<Index> material = indexMember(primitive, "material")) {
-    names.push_back(nameOf(elements(asset, "materials")[*material]));
+  const gltf::Document& document = asset.document;
+  const gltf::Mesh& mesh = document.meshes[instance.mesh];
+  std::vector<std::string> names = {document.nodes[instance.node].name, mesh.name};
+  if (const std::optional<Index> material = mesh.primitives[instance.primitive].material) {
+    names.push_back(document.materials[*material].name);
   }
   for (const std::string& name : names) {
     if (std::optional<AccessoryName> found = readAccessoryName(name)) return found;

@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 #include "limber/asset/accessor.h"
 
@@ -15,33 +14,35 @@ struct Named {
   std::string node, mesh, material;
 };
 
-Index addBox(Asset& asset, const Vec3f& low, const Vec3f& high, const Named& names) {
+void addBox(Asset& asset, const Vec3f& low, const Vec3f& high, const Named& names) {
   std::vector<float> positions;
   for (int corner = 0; corner < 8; ++corner) {
     for (int axis = 0; axis < 3; ++axis) positions.push_back((corner >> axis & 1) != 0 ? high[axis] : low[axis]);
   }
   const std::vector<std::uint32_t> corners = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
                                               2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
-  const Index position = addFloatAccessor(asset, positions, 3, kVertexTarget, true);
-  const Index indices =
+  gltf::Document& document = asset.document;
+  gltf::Primitive primitive;
+  primitive.attributes.set("POSITION", addFloatAccessor(asset, positions, 3, kVertexTarget, true));
+  primitive.indices =
       addAccessor(asset, {static_cast<Index>(corners.size()), 1, ComponentType::kU32, false},
                   {reinterpret_cast<const std::uint8_t*>(corners.data()), 4 * corners.size()}, kIndexTarget);
-  Json& json = asset.json();
-  const std::size_t index = json["nodes"].size();
-  json["materials"].push_back({{"name", names.material}});
-  json["meshes"].push_back(
-      {{"name", names.mesh},
-       {"primitives", {{{"attributes", {{"POSITION", position}}}, {"indices", indices}, {"material", index}}}}});
-  json["nodes"].push_back({{"name", names.node}, {"mesh", index}});
-  json["scenes"][0]["nodes"].push_back(index);
-  return static_cast<Index>(index);
+  gltf::Material material;
+  material.name = names.material;
+  primitive.material = addElement(document.materials, std::move(material));
+  gltf::Mesh mesh;
+  mesh.name = names.mesh;
+  mesh.primitives.push_back(std::move(primitive));
+  gltf::Node node;
+  node.name = names.node;
+  node.mesh = addElement(document.meshes, std::move(mesh));
+  document.scenes[0].nodes.push_back(addElement(document.nodes, std::move(node)));
 }
 
 // The body reaches from 0 to 2 in y; the thing touches it at its top end.
 Asset bodyWith(const Named& thing, float size = 0.2f) {
   Asset asset;
-  asset.json()["asset"] = {{"version", "2.0"}};
-  asset.json()["scenes"] = Json::array({{{"nodes", Json::array()}}});
+  asset.document.scenes.emplace_back();
   addBox(asset, {-0.3f, 0, -0.3f}, {0.3f, 2, 0.3f}, {"Body", "Body", "Skin"});
   addBox(asset, {0.31f, 1.8f, -0.1f}, {0.31f + size, 1.8f + size, 0.1f}, thing);
   checkAsset(asset);

@@ -8,11 +8,9 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "limber/asset/geometry.h"
 #include "limber/asset/rig_io.h"
-#include "limber/asset/scene_graph.h"
 #include "limber/core/known_error.h"
 #include "limber/mesh/components.h"
 #include "limber/mesh/prepare.h"
@@ -24,18 +22,18 @@ namespace limber {
 
 namespace {
 
-// Puts an asset back as it was unless the work on it was completed. Stages change the JSON and append to buffers, and
-// never touch bytes that were there: so the JSON and the lengths are enough to keep.
+// Puts an asset back as it was unless the work on it was completed. Stages change the document and append to
+// buffers, and never touch bytes that were there: so the document and the lengths are enough to keep.
 class Rollback {
  public:
-  explicit Rollback(Asset& asset) : asset_(asset), json_(asset.json()), warnings_(asset.warnings) {
+  explicit Rollback(Asset& asset) : asset_(asset), document_(asset.document), warnings_(asset.warnings) {
     for (const Asset::Buffer& buffer : asset.buffers) sizes_.push_back(buffer.bytes.size());
   }
   Rollback(const Rollback&) = delete;
   Rollback& operator=(const Rollback&) = delete;
   ~Rollback() {
     if (done_) return;
-    asset_.json().swap(json_);
+    std::swap(asset_.document, document_);
     std::swap(asset_.warnings, warnings_);
     while (asset_.buffers.size() > sizes_.size()) asset_.buffers.pop_back();
     for (std::size_t b = 0; b < sizes_.size(); ++b) asset_.buffers[b].bytes.resize(sizes_[b]);
@@ -44,7 +42,7 @@ class Rollback {
 
  private:
   Asset& asset_;
-  Json json_;
+  gltf::Document document_;
   Warnings warnings_;
   std::vector<std::size_t> sizes_;
   bool done_ = false;
@@ -132,7 +130,7 @@ void reportBridged(const Asset& asset, const Geometry& geometry, const PreparedM
   }
   for (auto& [index, node] : nodes) {
     if (node.bridged == 0) continue;
-    node.name = nameOf(elements(asset, "nodes")[index]);
+    node.name = asset.document.nodes[index].name;
     if (node.name.empty()) node.name = fmt::format("nodes[{}]", index);
     report.bridged.push_back(std::move(node));
   }
@@ -244,14 +242,12 @@ Rigged makeRig(const Asset& asset, const Geometry& geometry, const PreparedMesh&
 }
 
 void takeRigOut(Asset& asset, AutoRigReport& report) {
-  const Index clips = elementCount(asset, "animations");
+  const std::size_t clips = asset.document.animations.size();
   std::set<Index> joints;
-  for (const Json& skin : elements(asset, "skins")) {
-    for (const Json& joint : skin.at("joints")) joints.insert(joint.get<Index>());
-  }
+  for (const gltf::Skin& skin : asset.document.skins) joints.insert(skin.joints.begin(), skin.joints.end());
   report.removedJoints = static_cast<Index>(joints.size());
   removeRig(asset);
-  report.removedClips = clips - elementCount(asset, "animations");
+  report.removedClips = static_cast<Index>(clips - asset.document.animations.size());
 }
 
 AutoRigReport runStages(Asset& asset, const AutoRigOptions& options, Progress& progress) {

@@ -10,12 +10,23 @@
 
 #include "limber/asset/accessor.h"
 #include "limber/asset/rig_io.h"
+#include "limber/asset/testing/document_json.h"
 
 namespace limber {
 namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+
+// As a mesh on a node of its own.
+void showPrimitive(Asset& asset, gltf::Primitive primitive, const char* name) {
+  gltf::Mesh mesh;
+  mesh.primitives.push_back(std::move(primitive));
+  gltf::Node node;
+  node.name = name;
+  node.mesh = addElement(asset.document.meshes, std::move(mesh));
+  asset.document.scenes[0].nodes.push_back(addElement(asset.document.nodes, std::move(node)));
+}
 
 // A cigar along x as a grid of rings, every vertex stored twice as exporters do at seams; lying off the origin.
 Asset cigar(double scale = 1) {
@@ -39,15 +50,13 @@ Asset cigar(double scale = 1) {
   }
   Asset asset;
   asset.name = "cigar.glb";
-  asset.json()["asset"] = {{"version", "2.0"}};
-  const Index position = addFloatAccessor(asset, positions, 3, kVertexTarget, true);
-  const Index indices =
+  gltf::Primitive primitive;
+  primitive.attributes.set("POSITION", addFloatAccessor(asset, positions, 3, kVertexTarget, true));
+  primitive.indices =
       addAccessor(asset, {static_cast<Index>(corners.size()), 1, ComponentType::kU32, false},
                   {reinterpret_cast<const std::uint8_t*>(corners.data()), 4 * corners.size()}, kIndexTarget);
-  const Json primitive = {{"attributes", {{"POSITION", position}}}, {"indices", indices}};
-  asset.json()["meshes"] = Json::array({{{"primitives", Json::array({primitive})}}});
-  asset.json()["nodes"] = Json::array({{{"name", "cigar"}, {"mesh", 0}}});
-  asset.json()["scenes"] = Json::array({{{"nodes", Json::array({0})}}});
+  asset.document.scenes.emplace_back();
+  showPrimitive(asset, std::move(primitive), "cigar");
   checkAsset(asset);
   return asset;
 }
@@ -148,12 +157,12 @@ TEST(AutoRig, VerticesAtOnePlaceHaveTheSameWeights) {
 TEST(AutoRig, ARiggedModelIsRefusedUnlessToldWhatToDo) {
   Asset asset = cigar();
   rig(asset, withHandles(3));
-  const Json before = asset.json();
+  const Json before = testing::documentJson(asset);
   const Error error = errorOf(asset, withHandles(4));
   EXPECT_EQ(error.code(), ErrorCode::kUnsupported);
   EXPECT_THAT(error.what(), HasSubstr("--replace-rig"));
   EXPECT_THAT(error.what(), HasSubstr("--keep-skeleton"));
-  EXPECT_EQ(asset.json(), before);
+  EXPECT_EQ(testing::documentJson(asset), before);
 }
 
 TEST(AutoRig, ReplacingTheRigIsRiggingTheBareModel) {
@@ -165,7 +174,7 @@ TEST(AutoRig, ReplacingTheRigIsRiggingTheBareModel) {
   EXPECT_EQ(report.removedJoints, 3u);
   EXPECT_EQ(report.removedClips, 0u);
   EXPECT_EQ(rig(bare, options).removedJoints, 0u);
-  EXPECT_EQ(rigged.json()["nodes"], bare.json()["nodes"]);
+  EXPECT_EQ(testing::documentJson(rigged)["nodes"], testing::documentJson(bare)["nodes"]);
   const Geometry geometry = collectGeometry(bare);
   EXPECT_EQ(readWeights(rigged, geometry, readSkeleton(rigged)).weights,
             readWeights(bare, geometry, readSkeleton(bare)).weights);
@@ -174,15 +183,16 @@ TEST(AutoRig, ReplacingTheRigIsRiggingTheBareModel) {
 TEST(AutoRig, KeepingTheSkeletonMakesOnlyWeights) {
   Asset asset = cigar();
   rig(asset, withHandles(4));
-  const Json nodes = asset.json()["nodes"], skins = asset.json()["skins"];
+  const Json before = testing::documentJson(asset);
   AutoRigOptions options;
   options.existingRig = ExistingRig::kKeepSkeleton;
   options.weights.maxInfluences = 1;
   const AutoRigReport report = rig(asset, options);
   EXPECT_EQ(report.joints, 4u);
   EXPECT_TRUE(report.suggestions.empty());
-  EXPECT_EQ(asset.json()["nodes"], nodes);
-  EXPECT_EQ(asset.json()["skins"], skins);
+  const Json after = testing::documentJson(asset);
+  EXPECT_EQ(after["nodes"], before["nodes"]);
+  EXPECT_EQ(after["skins"], before["skins"]);
   const SkinWeights weights = readWeights(asset, collectGeometry(asset), readSkeleton(asset));
   for (Index v = 0; v < weights.vertexCount(); ++v) EXPECT_EQ(weights.weightsOf(v)[0], 1);
 }
@@ -191,18 +201,18 @@ TEST(AutoRig, AJointThatMovedNothingMovesNothingNow) {
   Asset asset = cigar();
   rig(asset, withHandles(3));
   // A control in the middle of the model that no vertex follows.
-  Json& nodes = asset.json()["nodes"];
-  const AssetSkeleton before = readSkeleton(asset);
-  const Index control = static_cast<Index>(nodes.size());
-  nodes.push_back({{"name", "control"}, {"translation", {5, -2, 0}}});
-  for (Json& node : nodes) {
-    if (node.value("name", "") == "limber_rig") node["children"].push_back(control);
+  gltf::Node node;
+  node.name = "control";
+  node.translation = Vec3(5, -2, 0);
+  const Index control = addElement(asset.document.nodes, std::move(node));
+  for (gltf::Node& root : asset.document.nodes) {
+    if (root.name == "limber_rig") root.children.push_back(control);
   }
-  std::vector<float> binds = readFloats(asset, asset.json()["skins"][0]["inverseBindMatrices"].get<Index>());
+  gltf::Skin& skin = asset.document.skins[0];
+  std::vector<float> binds = readFloats(asset, *skin.inverseBindMatrices);
   binds.insert(binds.end(), {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -5, 2, 0, 1});
-  const Index accessor = addFloatAccessor(asset, binds, 16);
-  asset.json()["skins"][0]["inverseBindMatrices"] = accessor;
-  asset.json()["skins"][0]["joints"].push_back(control);
+  skin.inverseBindMatrices = addFloatAccessor(asset, binds, 16);
+  skin.joints.push_back(control);
   checkAsset(asset);
 
   AutoRigOptions options;
@@ -221,11 +231,10 @@ TEST(AutoRig, AJointThatMovedNothingMovesNothingNow) {
 TEST(AutoRig, NodesThatNoBoneReachesAreNamed) {
   Asset asset = cigar();
   const std::vector<float> dust = {5, -1, 0, 5, -1, 0.1f, 6, -1, 0};
-  const Index position = addFloatAccessor(asset, dust, 3, kVertexTarget, true);
-  const Json primitive = {{"attributes", {{"POSITION", position}}}, {"mode", 0}};  // points
-  asset.json()["meshes"].push_back({{"primitives", Json::array({primitive})}});
-  asset.json()["nodes"].push_back({{"name", "dust"}, {"mesh", 1}});
-  asset.json()["scenes"][0]["nodes"].push_back(1);
+  gltf::Primitive primitive;
+  primitive.attributes.set("POSITION", addFloatAccessor(asset, dust, 3, kVertexTarget, true));
+  primitive.mode = 0;  // points
+  showPrimitive(asset, std::move(primitive), "dust");
   checkAsset(asset);
   const AutoRigReport report = rig(asset, withHandles(3));
   ASSERT_EQ(report.bridged.size(), 1u);
@@ -260,7 +269,7 @@ TEST(AutoRig, AKeptSkeletonOfWhichOneJointHoldsAllIsWarnedOf) {
 TEST(AutoRig, ErrorsNameTheFile) {
   Asset asset = cigar();
   EXPECT_EQ(errorOf(asset, withHandles(100000)).where(), "cigar.glb");
-  asset.json()["scenes"][0]["nodes"] = Json::array();
+  asset.document.scenes[0].nodes.clear();
   EXPECT_STREQ(errorOf(asset, withHandles(3)).what(),
                "cigar.glb: has no triangle (limber needs a surface, not points or lines)");
 }
@@ -286,7 +295,7 @@ TEST(AutoRig, CancellingLeavesTheAssetAsItWas) {
   for (const char* stage : {"weld", "rig", "skin", "write rig"}) {
     Asset asset = cigar();
     rig(asset, withHandles(3));
-    const Json json = asset.json();
+    const Json json = testing::documentJson(asset);
     const std::size_t bytes = bytesOf(asset);
     Progress* running = nullptr;
     Progress progress([&](std::string_view name, double) {
@@ -303,7 +312,7 @@ TEST(AutoRig, CancellingLeavesTheAssetAsItWas) {
     }
     if (stage == std::string_view("write rig")) continue;  // past the last question: it may well be finished
     EXPECT_TRUE(cancelled) << stage;
-    EXPECT_EQ(asset.json(), json) << stage;
+    EXPECT_EQ(testing::documentJson(asset), json) << stage;
     EXPECT_EQ(bytesOf(asset), bytes) << stage;
   }
 }
@@ -312,10 +321,10 @@ TEST(AutoRig, WarningsOfReadingAndOfStagesComeTogether) {
   Asset asset = cigar();
   asset.warnings.add("from-reading", "something was converted");
   std::vector<std::uint32_t> corners = {0, 0, 1, 0, 1, 2};
-  asset.json()["meshes"][0]["primitives"].push_back(asset.json()["meshes"][0]["primitives"][0]);
-  const Index indices = addAccessor(asset, {6, 1, ComponentType::kU32, false},
-                                    {reinterpret_cast<const std::uint8_t*>(corners.data()), 24}, kIndexTarget);
-  asset.json()["meshes"][0]["primitives"][1]["indices"] = indices;
+  gltf::Primitive degenerate = asset.document.meshes[0].primitives[0];
+  degenerate.indices = addAccessor(asset, {6, 1, ComponentType::kU32, false},
+                                   {reinterpret_cast<const std::uint8_t*>(corners.data()), 24}, kIndexTarget);
+  asset.document.meshes[0].primitives.push_back(std::move(degenerate));
   const AutoRigReport report = rig(asset, withHandles(3));
   std::vector<std::string> kinds;
   for (const Warning& w : report.warnings.items()) kinds.push_back(w.kind);

@@ -17,9 +17,8 @@ namespace {
 
 constexpr double kNoOffset = 1e-6;
 
-std::string shapeName(const Json& mesh, std::size_t shape) {
-  const Json* extras = member(mesh, "extras");
-  const Json* names = extras && extras->is_object() ? member(*extras, "targetNames") : nullptr;
+std::string shapeName(const gltf::Mesh& mesh, std::size_t shape) {
+  const Json* names = mesh.extras.exists() ? member(*mesh.extras, "targetNames") : nullptr;
   if (names && names->is_array() && shape < names->size() && (*names)[shape].is_string()) {
     return (*names)[shape].get<std::string>();
   }
@@ -44,14 +43,14 @@ std::map<Index, std::vector<const PrimitiveInstance*>> bareMeshes(const Asset& a
   std::map<Index, std::vector<const PrimitiveInstance*>> meshes;
   std::set<std::pair<Index, Index>> seen;
   for (const PrimitiveInstance& instance : geometry.instances) {
-    const Json& primitives = elements(asset, "meshes")[instance.mesh].at("primitives");
+    const std::vector<gltf::Primitive>& primitives = asset.document.meshes[instance.mesh].primitives;
     const bool isBare =
-        std::none_of(primitives.begin(), primitives.end(), [](const Json& p) { return p.contains("targets"); });
+        std::all_of(primitives.begin(), primitives.end(), [](const auto& p) { return p.targets.empty(); });
     if (isBare && seen.insert({instance.mesh, instance.primitive}).second) meshes[instance.mesh].push_back(&instance);
   }
   // Every primitive of a mesh has as many targets; one that is not shown, or has no positions, cannot have any.
   std::erase_if(meshes, [&](const auto& mesh) {
-    return mesh.second.size() != elements(asset, "meshes")[mesh.first].at("primitives").size();
+    return mesh.second.size() != asset.document.meshes[mesh.first].primitives.size();
   });
   return meshes;
 }
@@ -64,9 +63,9 @@ void addTarget(Asset& asset, const PrimitiveInstance& instance, const BlendShape
     if (!offset.allFinite()) offset.setZero();
     values.insert(values.end(), offset.data(), offset.data() + 3);
   }
-  const Index accessor = addFloatAccessor(asset, values, 3, kVertexTarget, true);
-  Json& primitive = asset.json()["meshes"][instance.mesh]["primitives"][instance.primitive];
-  primitive["targets"].push_back({{"POSITION", accessor}});
+  gltf::Attributes target;
+  target.set("POSITION", addFloatAccessor(asset, values, 3, kVertexTarget, true));
+  asset.document.meshes[instance.mesh].primitives[instance.primitive].targets.push_back(std::move(target));
 }
 
 }  // namespace
@@ -74,11 +73,10 @@ void addTarget(Asset& asset, const PrimitiveInstance& instance, const BlendShape
 std::vector<BlendShape> readBlendShapes(const Asset& asset, const Geometry& geometry) {
   std::vector<BlendShape> shapes;
   for (const PrimitiveInstance& instance : geometry.instances) {
-    const Json& mesh = elements(asset, "meshes")[instance.mesh];
-    const Json* targets = member(mesh.at("primitives")[instance.primitive], "targets");
-    if (!targets) continue;
-    for (std::size_t t = 0; t < targets->size(); ++t) {
-      const std::optional<Index> accessor = indexMember((*targets)[t], "POSITION");
+    const gltf::Mesh& mesh = asset.document.meshes[instance.mesh];
+    const std::vector<gltf::Attributes>& targets = mesh.primitives[instance.primitive].targets;
+    for (std::size_t t = 0; t < targets.size(); ++t) {
+      const std::optional<Index> accessor = targets[t].find("POSITION");
       if (!accessor) continue;
       const std::string name = shapeName(mesh, t);
       auto shape = std::find_if(shapes.begin(), shapes.end(), [&](const BlendShape& s) { return s.name == name; });
@@ -108,10 +106,11 @@ std::vector<std::string> addBlendShapes(Asset& asset, const Geometry& geometry, 
       added.insert(shape.name);
     }
     if (names.empty()) continue;
-    Json& json = asset.json()["meshes"][mesh];
-    json["weights"] = std::vector<double>(names.size(), 0);
-    if (!json.contains("extras") || !json["extras"].is_object()) json["extras"] = Json::object();
-    json["extras"]["targetNames"] = std::move(names);
+    gltf::Mesh& shaped = asset.document.meshes[mesh];
+    shaped.weights.assign(names.size(), 0);
+    Json& extras = shaped.extras.change();
+    if (!extras.is_object()) extras = Json::object();
+    extras["targetNames"] = std::move(names);
   }
   std::vector<std::string> inOrder;
   for (const BlendShape& shape : shapes) {

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "limber/asset/accessor.h"
+#include "limber/asset/testing/document_json.h"
 #include "limber/asset/testing/scene_builder.h"
 
 namespace limber {
@@ -34,9 +35,10 @@ SceneBuilder tetrahedra(const std::vector<Json>& nodes) {
 }
 
 void addStoredShape(SceneBuilder& scene, Index mesh, const std::vector<Vec3f>& offsets, const char* name = nullptr) {
-  Json& json = scene.json()["meshes"][mesh];
-  json["primitives"][0]["targets"].push_back({{"POSITION", scene.addPositions(offsets)}});
-  if (name) json["extras"]["targetNames"].push_back(name);
+  gltf::Attributes target;
+  target.set("POSITION", scene.addPositions(offsets));
+  scene.primitiveOf(mesh).targets.push_back(std::move(target));
+  if (name) scene.asset().document.meshes[mesh].extras.change()["targetNames"].push_back(name);
 }
 
 std::vector<Vec3f> alike(const Vec3f& offset, std::size_t count = 4) {
@@ -83,7 +85,7 @@ TEST(BlendShapes, WithoutNamesHaveNumbers) {
   addStoredShape(scene, 0, alike({0, 1, 0}));
   EXPECT_THAT(namesOf(readBlendShapes(scene.asset(), collectGeometry(scene.asset()))), ElementsAre("smile", "shape_1"));
   for (const Json& names : {Json("smile"), Json::array({3, Json()}), Json::object()}) {
-    scene.json()["meshes"][0]["extras"] = {{"targetNames", names}};
+    scene.asset().document.meshes[0].extras.change()["targetNames"] = names;
     EXPECT_THAT(namesOf(readBlendShapes(scene.asset(), collectGeometry(scene.asset()))),
                 ElementsAre("shape_0", "shape_1"));
   }
@@ -99,7 +101,7 @@ TEST(BlendShapes, AddedAreThoseThatAreReadAgain) {
                                       {"wide", {{1, 0, 0}, {-1, 0, 2}, {0, 0, 0}, {3, 1, 4}}}};
     EXPECT_THAT(addBlendShapes(asset, geometry, shapes), ElementsAre("up", "wide"));
     checkAsset(asset);
-    EXPECT_EQ(asset.json()["meshes"][0]["weights"], Json::array({0.0, 0.0}));
+    EXPECT_EQ(testing::documentJson(asset)["meshes"][0]["weights"], Json::array({0.0, 0.0}));
     const std::vector<BlendShape> read = readBlendShapes(asset, geometry);
     ASSERT_THAT(namesOf(read), ElementsAre("up", "wide"));
     for (std::size_t s = 0; s < 2; ++s) {
@@ -116,7 +118,7 @@ TEST(BlendShapes, GoToTheMeshesThatTheyMoveAndThatHaveNone) {
   for (std::size_t v = 8; v < 12; ++v) offsets[v] = {0, 0, 1e-9f};
   EXPECT_THAT(addBlendShapes(asset, collectGeometry(asset), {{"still", alike({0, 0, 1e-9f}, 12)}, {"up", offsets}}),
               ElementsAre("up"));
-  const Json& meshes = asset.json()["meshes"];
+  const Json meshes = testing::documentJson(asset)["meshes"];
   EXPECT_EQ(meshes[0]["extras"]["targetNames"], Json::array({"up"}));
   EXPECT_EQ(meshes[1]["extras"]["targetNames"], Json::array({"own"}));
   EXPECT_EQ(meshes[1]["primitives"][0]["targets"].size(), 1u);
@@ -127,11 +129,10 @@ TEST(BlendShapes, GoToTheMeshesThatTheyMoveAndThatHaveNone) {
 // Every primitive of a mesh must have as many.
 TEST(BlendShapes, LeaveAMeshAloneOfWhichAPartIsNotShown) {
   SceneBuilder scene = tetrahedra({Json::object()});
-  Json points = {{"attributes", Json::object()}, {"mode", 0}};
-  scene.json()["meshes"][0]["primitives"].push_back(points);
+  scene.asset().document.meshes[0].primitives.emplace_back().mode = 0;  // points, none
   Asset asset = scene.asset().clone();
   EXPECT_THAT(addBlendShapes(asset, collectGeometry(asset), {{"up", alike({0, 1, 0})}}), IsEmpty());
-  EXPECT_EQ(asset.json(), scene.json());
+  EXPECT_EQ(testing::documentJson(asset), testing::documentJson(scene.asset()));
 }
 
 TEST(BlendShapes, OfAMeshOnAFlatNodeAreFinite) {

@@ -153,8 +153,7 @@ std::vector<HangingChain> chainsOfTails(const Skeleton& made) {
 
 void writeSprings(Asset& asset, const std::vector<Index>& jointNode, const std::vector<HangingChain>& chains) {
   if (chains.empty()) return;
-  Json& json = asset.json();
-  Json& extension = json["extensions"][kSpringBoneName];
+  Json& extension = changeExtension(asset.document, kSpringBoneName);
   if (!extension.is_object()) extension = Json::object();
   extension["specVersion"] = "1.0";
   Json& springs = extension["springs"];
@@ -170,9 +169,7 @@ void writeSprings(Asset& asset, const std::vector<Index>& jointNode, const std::
     }
     springs.push_back({{"name", chain.name}, {"joints", std::move(joints)}});
   }
-  Json& used = json["extensionsUsed"];
-  if (!used.is_array()) used = Json::array();
-  if (std::find(used.begin(), used.end(), kSpringBoneName) == used.end()) used.push_back(kSpringBoneName);
+  declareExtension(asset.document, kSpringBoneName);
 }
 
 }  // namespace limber

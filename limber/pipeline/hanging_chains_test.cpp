@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "limber/asset/extensions.h"
+
 namespace limber {
 namespace {
 
@@ -105,21 +107,21 @@ TEST(HangingChains, AreWrittenAsSprings) {
   Strip strip(4);
   const std::vector<HangingChain> chains = strip.add();
   Asset asset;
-  asset.json()["asset"] = {{"version", "2.0"}};
   const std::vector<Index> nodes = {10, 11, 12, 13, 14, 15};
   writeSprings(asset, nodes, chains);
-  const Json& springs = asset.json()["extensions"]["VRMC_springBone"]["springs"];
+  const auto written = [&] { return extensionOf(asset.document, "VRMC_springBone")->at("springs"); };
+  const Json springs = written();
   ASSERT_EQ(springs.size(), 1u);
   ASSERT_EQ(springs[0]["joints"].size(), 4u);
   EXPECT_EQ(springs[0]["joints"][0]["node"], 12);
   EXPECT_GT(springs[0]["joints"][0]["gravityPower"], 0);
-  EXPECT_EQ(asset.json()["extensionsUsed"], Json::array({"VRMC_springBone"}));
+  EXPECT_EQ(asset.document.extensionsUsed, std::vector<std::string>{"VRMC_springBone"});
   writeSprings(asset, nodes, chains);
-  EXPECT_EQ(springs.size(), 2u) << "beside those that there are";
-  EXPECT_EQ(asset.json()["extensionsUsed"].size(), 1u);
+  EXPECT_EQ(written().size(), 2u) << "beside those that there are";
+  EXPECT_EQ(asset.document.extensionsUsed.size(), 1u);
   Asset bare;
   writeSprings(bare, nodes, {});
-  EXPECT_FALSE(bare.json().contains("extensions"));
+  EXPECT_FALSE(bare.document.extensions.exists());
 }
 
 }  // namespace

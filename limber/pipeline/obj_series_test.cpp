@@ -10,7 +10,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 #include "limber/asset/accessor.h"
 #include "limber/asset/geometry.h"
@@ -104,10 +103,11 @@ TEST_F(ObjSeriesFiles, TouchingPiecesMoveEachByItsOwn) {
 
 TEST_F(ObjSeriesFiles, KeepTheColorsThatTheyHaveAndNoOthers) {
   const ObjSeries plain = read({put("a0.obj", touchingBoxes(0)), put("a1.obj", touchingBoxes(1))});
-  EXPECT_FALSE(plain.asset.json()["meshes"][0]["primitives"][0]["attributes"].contains("COLOR_0"));
+  EXPECT_FALSE(plain.asset.document.meshes[0].primitives[0].attributes.find("COLOR_0"));
   const ObjSeries red = read({put("b0.obj", touchingBoxes(0, "", " 1 0.5 0.25")), put("b1.obj", touchingBoxes(1))});
-  const Json& attributes = red.asset.json()["meshes"][0]["primitives"][0]["attributes"];
-  const std::vector<float> colors = readFloats(red.asset, attributes["COLOR_0"].get<Index>());
+  const std::optional<Index> accessor = red.asset.document.meshes[0].primitives[0].attributes.find("COLOR_0");
+  ASSERT_TRUE(accessor);
+  const std::vector<float> colors = readFloats(red.asset, *accessor);
   ASSERT_EQ(colors.size(), 64u);
   for (std::size_t i = 0; i < colors.size(); i += 4) {
     EXPECT_EQ(std::vector<float>(colors.begin() + std::ptrdiff_t(i), colors.begin() + std::ptrdiff_t(i) + 4),
@@ -145,9 +145,9 @@ TEST_F(ObjSeriesFiles, AFirstFrameThatCountsBackwardsIsTheSameModel) {
     const Geometry geometry = collectGeometry(series.asset);
     ASSERT_EQ(geometry.positions.size(), 4u) << i;
     EXPECT_EQ(geometry.triangles.size(), 2u) << i;
-    const Json& attributes = series.asset.json()["meshes"][0]["primitives"][0]["attributes"];
-    std::vector<float> values = readFloats(series.asset, attributes.at("TEXCOORD_0").get<Index>());
-    for (const float x : readFloats(series.asset, attributes.at("NORMAL").get<Index>())) values.push_back(x);
+    const gltf::Attributes& attributes = series.asset.document.meshes[0].primitives[0].attributes;
+    std::vector<float> values = readFloats(series.asset, attributes.find("TEXCOORD_0").value());
+    for (const float x : readFloats(series.asset, attributes.find("NORMAL").value())) values.push_back(x);
     seen.push_back(std::move(values));
     EXPECT_EQ(seen[i], seen[0]) << i;
     for (std::size_t v = 0; v < 4; ++v) {

@@ -11,7 +11,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "limber/asset/accessor.h"
 #include "limber/asset/accessor_sweep.h"
@@ -172,16 +171,15 @@ std::string numberedText(std::string_view text, const ObjVertices& vertices) {
   return result;
 }
 
-Json& attributesOf(Asset& asset, const PrimitiveInstance& instance) {
-  return asset.json()["meshes"][instance.mesh]["primitives"][instance.primitive]["attributes"];
+gltf::Attributes& attributesOf(Asset& asset, const PrimitiveInstance& instance) {
+  return asset.document.meshes[instance.mesh].primitives[instance.primitive].attributes;
 }
 
 std::vector<Index> vertexNumbersOf(Asset& asset, const Geometry& geometry, std::size_t count) {
   std::vector<Index> result;
   for (const PrimitiveInstance& instance : geometry.instances) {
-    const Json& attributes = attributesOf(asset, instance);
-    const std::vector<float> colors =
-        attributes.contains(kColor) ? readFloats(asset, attributes[kColor].get<Index>()) : std::vector<float>();
+    const std::optional<Index> accessor = attributesOf(asset, instance).find(kColor);
+    const std::vector<float> colors = accessor ? readFloats(asset, *accessor) : std::vector<float>();
     for (std::size_t i = 0; i + 3 < colors.size(); i += 4) {
       const double number = double{colors[i]} + double{kColorBase} * colors[i + 1];
       if (!(number >= 0 && number < static_cast<double>(count))) break;
@@ -199,15 +197,15 @@ void restoreColors(const std::vector<Vec3f>& colors, const std::vector<Index>& v
                    Asset& asset) {
   const AccessorSweep unused(asset);
   for (const PrimitiveInstance& instance : geometry.instances) {
-    attributesOf(asset, instance).erase(kColor);
+    gltf::Attributes& attributes = attributesOf(asset, instance);
+    attributes.erase(kColor);
     if (colors.empty()) continue;
     std::vector<float> values;
     for (Index i = instance.firstVertex; i < instance.firstVertex + instance.vertexCount; ++i) {
       const Vec3f& color = colors[vertexOf[i]];
       values.insert(values.end(), {color.x(), color.y(), color.z(), 1});
     }
-    const Index accessor = addFloatAccessor(asset, values, 4, kVertexTarget);
-    attributesOf(asset, instance)[kColor] = accessor;
+    attributes.set(kColor, addFloatAccessor(asset, values, 4, kVertexTarget));
   }
   unused.sweep(asset);
 }

@@ -7,6 +7,7 @@
 #include "limber/asset/accessor.h"
 #include "limber/asset/pose_io.h"
 #include "limber/asset/read.h"
+#include "limber/asset/testing/document_json.h"
 #include "limber/asset/write.h"
 #include "limber/core/error.h"
 
@@ -29,19 +30,20 @@ Asset strip() {
       if (i < 3) indices.push_back(static_cast<std::uint16_t>(v + corner));
     }
   }
-  const Index position = addFloatAccessor(asset, positions, 3, kVertexTarget, true);
-  const Index normal = addFloatAccessor(asset, normals, 3, kVertexTarget);
+  gltf::Primitive primitive;
+  primitive.attributes.set("POSITION", addFloatAccessor(asset, positions, 3, kVertexTarget, true));
+  primitive.attributes.set("NORMAL", addFloatAccessor(asset, normals, 3, kVertexTarget));
   const auto* bytes = reinterpret_cast<const std::uint8_t*>(indices.data());
   const AccessorInfo info{static_cast<Index>(indices.size()), 1, ComponentType::kU16, false};
-  const Index index = addAccessor(asset, info, {bytes, 2 * indices.size()}, kIndexTarget);
-  Json& json = asset.json();
-  json["asset"] = {{"version", "2.0"}};
-  json["meshes"] = Json::array(
-      {{{"primitives",
-         Json::array({{{"attributes", {{"POSITION", position}, {"NORMAL", normal}}}, {"indices", index}}})}}});
-  json["nodes"] = Json::array({{{"name", "strip"}, {"mesh", 0}, {"translation", {5, 0, 0}}}});
-  json["scenes"] = Json::array({{{"nodes", {0}}}});
-  json["scene"] = 0;
+  primitive.indices = addAccessor(asset, info, {bytes, 2 * indices.size()}, kIndexTarget);
+  gltf::Document& document = asset.document;
+  document.meshes.emplace_back().primitives.push_back(std::move(primitive));
+  gltf::Node& node = document.nodes.emplace_back();
+  node.name = "strip";
+  node.mesh = 0;
+  node.translation = Vec3(5, 0, 0);
+  document.scenes.emplace_back().nodes = {0};
+  document.scene = 0;
   return asset;
 }
 
@@ -145,9 +147,9 @@ TEST(PoseIo, AWrittenPoseIsReadAgainAndTouchesOnlyWhatMoved) {
   Asset asset = riggedStrip();
   const AssetSkeleton skeleton = readSkeleton(asset);
   Pose pose = readNodePose(asset, skeleton);
-  const Json before = asset.json();
+  const Json before = testing::documentJson(asset);
   writeNodePose(asset, skeleton, pose);
-  EXPECT_EQ(asset.json(), before);
+  EXPECT_EQ(testing::documentJson(asset), before);
 
   editPose(skeleton.skeleton, pose, turned("knee=x:40,y:20"));
   const PosedGeometry here = posedGeometry(asset, skeleton, pose);
@@ -158,9 +160,10 @@ TEST(PoseIo, AWrittenPoseIsReadAgainAndTouchesOnlyWhatMoved) {
   const AssetSkeleton again = readSkeleton(back);
   const Pose stands = readNodePose(back, again);
   EXPECT_LT((jointAt(again, stands, "foot") - jointAt(skeleton, pose, "foot")).norm(), 1e-6);
+  const Json after = testing::documentJson(asset);
   for (std::size_t n = 0; n < before["nodes"].size(); ++n) {
     const bool moved = n == skeleton.jointNode[1];
-    EXPECT_EQ(asset.json()["nodes"][n] == before["nodes"][n], !moved);
+    EXPECT_EQ(after["nodes"][n] == before["nodes"][n], !moved);
   }
   // What is bound stays bound the same way: the vertices stand where the pose takes them.
   const PosedGeometry there = posedGeometry(back, again, stands);
@@ -199,7 +202,7 @@ TEST(PoseIo, AFrozenMeshStandsInThePoseWithoutARig) {
   freezeGeometry(asset, collectGeometry(asset), posed.geometry.positions, posed.normals);
   checkAsset(asset);
   EXPECT_FALSE(hasRig(asset));
-  EXPECT_FALSE(asset.json().contains("skins"));
+  EXPECT_FALSE(testing::documentJson(asset).contains("skins"));
   const Geometry frozen = collectGeometry(asset);
   EXPECT_EQ(frozen.positions, posed.geometry.positions);
   EXPECT_EQ(readNormals(asset, frozen), posed.normals);
@@ -208,7 +211,7 @@ TEST(PoseIo, AFrozenMeshStandsInThePoseWithoutARig) {
 
 TEST(PoseIo, AMirroredPartKeepsItsOutside) {
   Asset asset = strip();
-  asset.json()["nodes"][0]["scale"] = {-1, 1, 1};
+  asset.document.nodes[0].scale = Vec3(-1, 1, 1);
   const Geometry geometry = collectGeometry(asset);
   freezeGeometry(asset, geometry, geometry.positions, readNormals(asset, geometry));
   checkAsset(asset);

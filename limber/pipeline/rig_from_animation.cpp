@@ -20,10 +20,10 @@ namespace {
 
 // Nodes that show a mesh, and those above: what moves them would move the mesh a second time.
 std::vector<bool> nodesOfMeshes(const Asset& asset) {
-  const SceneGraph graph = readSceneGraph(asset);
+  const SceneGraph graph = readSceneGraph(asset.document);
   std::vector<bool> carries(graph.nodeCount(), false);
   for (auto n = graph.allNodes.rbegin(); n != graph.allNodes.rend(); ++n) {
-    if (elements(asset, "nodes")[*n].contains("mesh")) carries[*n] = true;
+    if (asset.document.nodes[*n].mesh) carries[*n] = true;
     if (carries[*n] && graph.parent[*n]) carries[*graph.parent[*n]] = true;
   }
   return carries;

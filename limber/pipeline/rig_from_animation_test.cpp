@@ -12,7 +12,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 #include "limber/asset/accessor.h"
 #include "limber/asset/clip_io.h"
@@ -55,42 +54,60 @@ std::vector<std::uint16_t> stripCorners() {
   return corners;
 }
 
+gltf::AnimationSampler addSampler(Asset& asset, const std::vector<float>& times, const std::vector<float>& values,
+                                  Index components) {
+  gltf::AnimationSampler sampler;
+  sampler.input = addFloatAccessor(asset, times, 1, 0, true);
+  sampler.output = addFloatAccessor(asset, values, components);
+  return sampler;
+}
+
+// A channel for the node 0 by the sampler that is added with it.
+void addChannel(gltf::Animation& clip, const char* path, gltf::AnimationSampler sampler) {
+  gltf::AnimationChannel channel;
+  channel.sampler = addElement(clip.samplers, std::move(sampler));
+  channel.target.node = 0;
+  channel.target.path = path;
+  clip.channels.push_back(std::move(channel));
+}
+
 // A strip with a morph target for each bend, played one after the other, on a node that stands aside and turns as well.
 Asset morphingStrip(int frames, double reach, bool isTurning = true) {
   Asset asset;
   asset.name = "strip.glb";
   const std::vector<float> rest = bentStrip(0);
   const std::vector<std::uint16_t> corners = stripCorners();
-  const Index position = addFloatAccessor(asset, rest, 3, kVertexTarget, true);
+  gltf::Primitive primitive;
+  primitive.attributes.set("POSITION", addFloatAccessor(asset, rest, 3, kVertexTarget, true));
   const AccessorInfo info{static_cast<Index>(corners.size()), 1, ComponentType::kU16, false};
   const auto* bytes = reinterpret_cast<const std::uint8_t*>(corners.data());
-  const Index index = addAccessor(asset, info, {bytes, 2 * corners.size()}, kIndexTarget);
-  Json primitive = {{"attributes", {{"POSITION", position}}}, {"indices", index}, {"material", 0}};
+  primitive.indices = addAccessor(asset, info, {bytes, 2 * corners.size()}, kIndexTarget);
+  primitive.material = 0;
   std::vector<float> times, weights;
   for (int f = 0; f < frames; ++f) {
     std::vector<float> offsets = bentStrip(reach * std::sin(1.0 + 0.5 * f));
     for (std::size_t i = 0; i < offsets.size(); ++i) offsets[i] -= rest[i];
-    primitive["targets"].push_back({{"POSITION", addFloatAccessor(asset, offsets, 3, kVertexTarget, true)}});
+    primitive.targets.emplace_back().set("POSITION", addFloatAccessor(asset, offsets, 3, kVertexTarget, true));
     times.push_back(static_cast<float>(f) / 10);
     for (int t = 0; t < frames; ++t) weights.push_back(t == f ? 1.0f : 0.0f);
   }
-  const Index input = addFloatAccessor(asset, times, 1, 0, true), output = addFloatAccessor(asset, weights, 1);
-  Json& json = asset.json();
-  json["asset"] = {{"version", "2.0"}};
-  json["materials"] = Json::array({{{"name", "paint"}}});
-  json["meshes"] = Json::array({{{"primitives", Json::array({primitive})}}});
-  json["nodes"] = Json::array({{{"name", "strip"}, {"mesh", 0}, {"translation", {5, 0, 0}}}});
-  json["scenes"] = Json::array({{{"nodes", {0}}}});
-  json["scene"] = 0;
-  Json samplers = Json::array({{{"input", input}, {"output", output}}});
-  Json channels = Json::array({{{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}}});
+  gltf::Document& document = asset.document;
+  document.materials.emplace_back().name = "paint";
+  document.meshes.emplace_back().primitives.push_back(std::move(primitive));
+  gltf::Node& node = document.nodes.emplace_back();
+  node.name = "strip";
+  node.mesh = 0;
+  node.translation = Vec3(5, 0, 0);
+  document.scenes.emplace_back().nodes = {0};
+  document.scene = 0;
+  gltf::Animation bend;
+  bend.name = "bend";
+  addChannel(bend, "weights", addSampler(asset, times, weights, 1));
   if (isTurning) {
-    const std::vector<float> ends = {0, times.back()}, turns = {0, 0, 0, 1, 0, std::sqrt(0.5f), 0, std::sqrt(0.5f)};
-    samplers.push_back(
-        {{"input", addFloatAccessor(asset, ends, 1, 0, true)}, {"output", addFloatAccessor(asset, turns, 4)}});
-    channels.push_back({{"sampler", 1}, {"target", {{"node", 0}, {"path", "rotation"}}}});
+    const float half = std::sqrt(0.5f);
+    addChannel(bend, "rotation", addSampler(asset, {0, times.back()}, {0, 0, 0, 1, 0, half, 0, half}, 4));
   }
-  json["animations"] = Json::array({{{"name", "bend"}, {"samplers", samplers}, {"channels", channels}}});
+  document.animations.push_back(std::move(bend));
   checkAsset(asset);
   return asset;
 }
@@ -147,10 +164,10 @@ TEST(RigFromAnimation, MorphTargetsOnATurningNodeBecomeBones) {
   // Written and read again it does what the morphs did.
   const Asset written = readAsset(writeGlb(asset), "strip.glb");
   EXPECT_TRUE(hasRig(written));
-  EXPECT_FALSE(written.json()["meshes"][0]["primitives"][0].contains("targets"));
-  EXPECT_EQ(written.json()["meshes"][0]["primitives"][0]["material"], 0);
-  ASSERT_EQ(written.json()["animations"].size(), 1u);
-  EXPECT_EQ(written.json()["animations"][0]["name"], "bend");
+  EXPECT_TRUE(written.document.meshes[0].primitives[0].targets.empty());
+  EXPECT_EQ(written.document.meshes[0].primitives[0].material, Index{0});
+  ASSERT_EQ(written.document.animations.size(), 1u);
+  EXPECT_EQ(written.document.animations[0].name, "bend");
   EXPECT_LT(farthestApart(before, readAnimation(written, {"bend", 10})), 0.01);
 }
 
@@ -169,8 +186,8 @@ TEST(RigFromAnimation, ARiggedModelIsRiggedAnew) {
   const VertexAnimation before = readAnimation(asset, {"", 20});
   const AnimationRigReport report = rigFromAnimation(asset, readAnimation(asset, {"", 20}), someBones(3), progress);
   EXPECT_LT(report.error, 5e-4);
-  EXPECT_EQ(asset.json()["skins"].size(), 1u);
-  EXPECT_EQ(asset.json()["animations"].size(), 1u);
+  EXPECT_EQ(asset.document.skins.size(), 1u);
+  EXPECT_EQ(asset.document.animations.size(), 1u);
   EXPECT_LT(farthestApart(before, readAnimation(asset, {"", 20})), 0.002);
 }
 
@@ -179,7 +196,7 @@ TEST(RigFromAnimation, RefusesWhatDoesNotMove) {
   EXPECT_THAT(messageOf([&] { readAnimation(still, {}); }), HasSubstr("nothing moves"));
   Asset single = morphingStrip(1, 0.5, false);
   EXPECT_THAT(messageOf([&] { readAnimation(single, {}); }), HasSubstr("a single frame"));
-  still.json().erase("animations");
+  still.document.animations.clear();
   EXPECT_THAT(messageOf([&] { readAnimation(still, {}); }), HasSubstr("strip.glb: has no animation"));
 }
 
@@ -197,11 +214,10 @@ void addTurns(Asset& asset, const std::string& name, const std::vector<float>& t
     const double angle = 0.1 * static_cast<double>(k);
     for (const double value : {0.0, std::sin(angle), 0.0, std::cos(angle)}) turns.push_back(static_cast<float>(value));
   }
-  const Index input = addFloatAccessor(asset, times, 1, 0, true), output = addFloatAccessor(asset, turns, 4);
-  asset.json()["animations"].push_back(
-      {{"name", name},
-       {"samplers", Json::array({{{"input", input}, {"output", output}}})},
-       {"channels", Json::array({{{"sampler", 0}, {"target", {{"node", 0}, {"path", "rotation"}}}}})}});
+  gltf::Animation clip;
+  clip.name = name;
+  addChannel(clip, "rotation", addSampler(asset, times, turns, 4));
+  asset.document.animations.push_back(std::move(clip));
   checkAsset(asset);
 }
 
@@ -225,7 +241,7 @@ TEST(RigFromAnimation, EachClipIsSampledAtItsOwnRate) {
 
 TEST(RigFromAnimation, AClipCalledSoInFullGoesFirst) {
   Asset asset = morphingStrip(12, 0.8);
-  asset.json()["animations"][0]["name"] = "Armature|turn";
+  asset.document.animations[0].name = "Armature|turn";
   addTurns(asset, "turn", {0, 0.5f, 1});
   EXPECT_EQ(readAnimation(asset, {"turn", std::nullopt}).clips[0].count, 3u);
   EXPECT_EQ(readAnimation(asset, {"Armature|turn", std::nullopt}).clips[0].count, 12u);

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "limber/asset/accessor.h"
 #include "limber/asset/rig_io.h"
@@ -191,18 +190,20 @@ Asset surfaceAsset(const std::vector<Vec3>& vertices, const std::vector<std::uin
   for (const Vec3& v : vertices) {
     for (const double x : v) positions.push_back(static_cast<float>(x));
   }
-  const Index positionsAt = addFloatAccessor(asset, positions, 3, kVertexTarget, true);
-  const Index cornersAt =
+  gltf::Primitive primitive;
+  primitive.attributes.set("POSITION", addFloatAccessor(asset, positions, 3, kVertexTarget, true));
+  primitive.indices =
       addAccessor(asset, {static_cast<Index>(corners.size()), 1, ComponentType::kU32, false},
                   {reinterpret_cast<const std::uint8_t*>(corners.data()), 4 * corners.size()}, kIndexTarget);
-  Json& json = asset.json();
-  json["asset"]["version"] = "2.0";
-  json["meshes"] = Json::array(
-      {{{"name", "body"},
-        {"primitives", Json::array({{{"attributes", {{"POSITION", positionsAt}}}, {"indices", cornersAt}}})}}});
-  json["nodes"] = Json::array({{{"name", "body"}, {"mesh", 0}}});
-  json["scenes"] = Json::array({{{"nodes", Json::array({0})}}});
-  json["scene"] = 0;
+  gltf::Mesh mesh;
+  mesh.name = "body";
+  mesh.primitives.push_back(std::move(primitive));
+  gltf::Node node;
+  node.name = "body";
+  node.mesh = addElement(asset.document.meshes, std::move(mesh));
+  gltf::Scene scene;
+  scene.nodes = {addElement(asset.document.nodes, std::move(node))};
+  asset.document.scene = addElement(asset.document.scenes, std::move(scene));
   return asset;
 }
 

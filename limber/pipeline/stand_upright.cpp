@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "limber/asset/motion_io.h"
 #include "limber/asset/turn_scene.h"
@@ -104,14 +103,14 @@ Quat standUpright(Asset& asset, Warnings& warnings) {
   if (!up || isUpright(*up)) return Quat::Identity();
   const Quat turn = turnOfClips(motionOf(asset));
   if (turn.isApprox(Quat::Identity())) {
-    Json before = asset.json();
+    gltf::Document before = asset.document;
     Warnings turned;
     standUpright(asset, *up, true, turned);
     if (const std::optional<Vec3> now = restsAlong(asset); now && isUpright(*now)) {
       warnings.append(turned);
       return Quat::Identity();
     }
-    asset.json() = std::move(before);  // skins may be bound to where their mesh lies
+    asset.document = std::move(before);  // skins may be bound to where their mesh lies
   }
   warnings.add(kTurned,
                fmt::format("the model rests along {}; the new clips are turned to stand along +Y", nameOfAxis(*up)));

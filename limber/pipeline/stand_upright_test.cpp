@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "limber/asset/motion_io.h"
+#include "limber/asset/testing/document_json.h"
 #include "limber/core/numbers.h"
 #include "limber/ik/ik_skeletons.h"
 #include "limber/ik/rotation.h"
@@ -73,11 +74,11 @@ TEST(StandsAlong, PeopleTellTheirUp) {
 
 TEST(StandUpright, OneWhoStandsIsLeftAlone) {
   Asset asset = document(practiceHumanoid());
-  const Json before = asset.json();
+  const Json before = testing::documentJson(asset);
   Warnings warnings;
   EXPECT_TRUE(standUpright(asset, warnings).isApprox(Quat::Identity()));
   EXPECT_TRUE(warnings.empty());
-  EXPECT_EQ(asset.json(), before);
+  EXPECT_EQ(testing::documentJson(asset), before);
 }
 
 TEST(StandUpright, DocumentsAreTurned) {
@@ -94,12 +95,12 @@ TEST(StandUpright, NewClipsStandAsThoseThatAreThere) {
   const Motion motion = motionOf(document(practiceHumanoid(), {standingStill()}));
   for (const Vec3& up : kAxes) {
     Asset asset = document(personAlong(up), {standingStill()});
-    const Json before = asset.json();
+    const Json before = testing::documentJson(asset);
     Warnings warnings;
     RetargetAssetOptions options;
     options.turn = standUpright(asset, warnings);
     EXPECT_THAT(kindsOf(warnings), ElementsAre("turned-upright"));
-    EXPECT_EQ(asset.json(), before);
+    EXPECT_EQ(testing::documentJson(asset), before);
     retargetOnto(asset, motion, options);
     EXPECT_TRUE(upOf(asset)->isApprox(up, 1e-6));
     EXPECT_TRUE(upOf(asset, 0.5)->isApprox(Vec3::UnitY(), 1e-6)) << up.transpose();
@@ -125,12 +126,12 @@ TEST(StandUpright, TellsWhatMayLie) {
 
 TEST(StandUpright, OnlyWarnsWhereItMayNotTurn) {
   Asset asset = document(personAlong(Vec3::UnitZ()));
-  const Json before = asset.json();
+  const Json before = testing::documentJson(asset);
   Warnings warnings;
   standUpright(asset, Vec3::UnitZ(), false, warnings);
   ASSERT_THAT(kindsOf(warnings), ElementsAre("not-upright"));
   EXPECT_EQ(warnings.items()[0].message, "the model stands along +Z and lies where +Y is up");
-  EXPECT_EQ(asset.json(), before);
+  EXPECT_EQ(testing::documentJson(asset), before);
 }
 
 }  // namespace

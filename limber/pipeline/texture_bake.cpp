@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 
 #include "limber/asset/accessor.h"
-#include "limber/asset/json_access.h"
 
 namespace limber {
 
@@ -122,18 +121,18 @@ std::vector<Vec3f> pictureOf(std::span<const Texel> texels, std::span<const Vec3
 }
 
 void setBaseColorPicture(Asset& asset, Index material, ByteSpan png) {
-  constexpr int kClampToEdge = 33071;  // glTF's number
-  const Index view = addBufferView(asset, png);
-  const auto add = [&](const char* kind, Json entry) {
-    Json& list = asset.json()[kind];
-    list.push_back(std::move(entry));
-    return static_cast<Index>(list.size() - 1);
-  };
-  const Index image = add("images", {{"bufferView", view}, {"mimeType", "image/png"}});
-  const Index sampler = add("samplers", {{"wrapS", kClampToEdge}, {"wrapT", kClampToEdge}});
-  const Index texture = add("textures", {{"sampler", sampler}, {"source", image}});
-  Json& base = asset.json()["materials"][material]["pbrMetallicRoughness"];
-  base["baseColorTexture"] = Json::object({{"index", texture}});
+  gltf::Document& document = asset.document;
+  gltf::Image image;
+  image.bufferView = addBufferView(asset, png);
+  image.mimeType = "image/png";
+  gltf::Sampler sampler;
+  sampler.wrapS = sampler.wrapT = gltf::kClampToEdge;
+  gltf::Texture texture;
+  texture.sampler = addElement(document.samplers, std::move(sampler));
+  texture.source = addElement(document.images, std::move(image));
+  gltf::Material& target = document.materials[material];
+  if (!target.pbrMetallicRoughness) target.pbrMetallicRoughness.emplace();
+  target.pbrMetallicRoughness->baseColorTexture.emplace().index = addElement(document.textures, std::move(texture));
 }
 
 }  // namespace limber

@@ -94,13 +94,15 @@ TEST(TextureBake, TheGutterIsFilledFromWhatIsBesideIt) {
 
 TEST(TextureBake, APictureStandsInTheDocument) {
   testing::SceneBuilder scene;
-  scene.json()["materials"] = Json::array({{{"name", "skin"}}});
+  Asset& asset = scene.asset();
+  asset.document.materials.emplace_back().name = "skin";
   const Bytes png = {0x89, 'P', 'N', 'G', 13, 10, 26, 10};
-  setBaseColorPicture(scene.asset(), 0, png);
-  checkAsset(scene.asset());
-  const Json& texture = scene.json()["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"];
-  ASSERT_EQ(texture.at("index"), 0);
-  EXPECT_EQ(imageBytes(scene.asset(), scene.json()["textures"][0].at("source").get<Index>()), png);
+  setBaseColorPicture(asset, 0, png);
+  checkAsset(asset);
+  const gltf::Material& material = asset.document.materials[0];
+  ASSERT_TRUE(material.pbrMetallicRoughness && material.pbrMetallicRoughness->baseColorTexture);
+  ASSERT_EQ(material.pbrMetallicRoughness->baseColorTexture->index, 0u);
+  EXPECT_EQ(imageBytes(asset, asset.document.textures[0].source.value()), png);
 }
 
 }  // namespace

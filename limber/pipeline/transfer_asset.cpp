@@ -11,7 +11,6 @@
 #include "limber/asset/geometry.h"
 #include "limber/asset/json_text.h"
 #include "limber/asset/rig_io.h"
-#include "limber/asset/scene_graph.h"
 #include "limber/asset/unique_names.h"
 #include "limber/core/known_error.h"
 #include "limber/mesh/prepare.h"
@@ -112,13 +111,11 @@ SourceModel readSource(const Asset& asset, Geometry geometry, const Accessories&
 
 void removeOldRig(Asset& target, TransferReport& report) {
   std::set<Index> joints;
-  for (const Json& skin : elements(target, "skins")) {
-    for (const Json& joint : skin.at("joints")) joints.insert(joint.get<Index>());
-  }
-  const Index clips = elementCount(target, "animations");
+  for (const gltf::Skin& skin : target.document.skins) joints.insert(skin.joints.begin(), skin.joints.end());
+  const std::size_t clips = target.document.animations.size();
   report.removedJoints = static_cast<Index>(joints.size());
   removeRig(target);
-  report.removedClips = clips - elementCount(target, "animations");
+  report.removedClips = static_cast<Index>(clips - target.document.animations.size());
 }
 
 std::vector<JointLandmark> templateLandmarks(const Asset& sourceAsset, const SourceModel& source,
@@ -209,16 +206,14 @@ RigTransfer transferInto(const TargetModel& target, const SourceModel& source, s
 // A rig's joints keep their names: nodes of the target that have one of these, as those of an old rig that hold more
 // than it, are the ones to get another.
 void freeNames(const Skeleton& skeleton, Asset& target) {
-  if (elementCount(target, "nodes") == 0) return;
   UniqueNames names;
   std::set<std::string> ofJoints;
   for (const Joint& joint : skeleton.joints) ofJoints.insert(names.add(joint.name));
-  Json& nodes = target.json()["nodes"];
-  for (const Json& node : nodes) {
-    if (!ofJoints.count(nameOf(node))) names.add(nameOf(node));
+  for (const gltf::Node& node : target.document.nodes) {
+    if (!ofJoints.count(node.name)) names.add(node.name);
   }
-  for (Json& node : nodes) {
-    if (ofJoints.count(nameOf(node))) node["name"] = names.add(nameOf(node));
+  for (gltf::Node& node : target.document.nodes) {
+    if (ofJoints.count(node.name)) node.name = names.add(node.name);
   }
 }
 

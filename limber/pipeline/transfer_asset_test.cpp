@@ -8,8 +8,8 @@
 
 #include "limber/asset/accessor.h"
 #include "limber/asset/geometry.h"
-#include "limber/asset/json_access.h"
 #include "limber/asset/rig_io.h"
+#include "limber/asset/testing/document_json.h"
 #include "limber/asset/testing/scene_builder.h"
 #include "limber/pipeline/texture_bake.h"
 #include "limber/transfer/testing/capsule_person.h"
@@ -25,11 +25,14 @@ Asset sceneOf(const TriMesh& mesh, const std::string& name) {
   SceneBuilder scene;
   Json primitives = Json::array({scene.primitive(mesh.positions, mesh.triangles)});
   scene.addNode({{"mesh", scene.addMesh(std::move(primitives))}});
-  scene.json()["scenes"] = Json::array({{{"nodes", Json::array({0})}}});
-  scene.json()["scene"] = 0;
+  scene.asset().document.scene = scene.addScene({0});
   Asset asset = scene.asset().clone();
   asset.name = name;
   return asset;
+}
+
+gltf::Attributes& attributesOf(Asset& asset) {
+  return asset.document.meshes[0].primitives[0].attributes;
 }
 
 Asset riggedPerson(bool withShape = false) {
@@ -38,10 +41,9 @@ Asset riggedPerson(bool withShape = false) {
   if (withShape) {
     std::vector<float> offsets;
     for (const Vec3f& p : person.mesh.positions) offsets.insert(offsets.end(), {0, p.y() > 1.6f ? 0.05f : 0.0f, 0});
-    const Index accessor = addFloatAccessor(asset, offsets, 3, kVertexTarget, true);
-    Json& mesh = asset.json()["meshes"][0];
-    mesh["primitives"][0]["targets"] = Json::array({{{"POSITION", accessor}}});
-    mesh["extras"]["targetNames"] = {"hat"};
+    gltf::Mesh& mesh = asset.document.meshes[0];
+    mesh.primitives[0].targets.emplace_back().set("POSITION", addFloatAccessor(asset, offsets, 3, kVertexTarget, true));
+    mesh.extras.change()["targetNames"] = {"hat"};
   }
   attachRig(asset, collectGeometry(asset), person.skeleton, person.weights);
   return asset;
@@ -113,10 +115,10 @@ TEST(TransferAssetTest, BringsBlendShapesAlong) {
   attachRig(target, collectGeometry(target), turned.skeleton, turned.weights);
   const TransferReport report = transferred(source, target);
   EXPECT_THAT(report.blendShapes, ::testing::ElementsAre("hat"));
-  const Json& mesh = target.json()["meshes"][0];
-  EXPECT_EQ(mesh.at("extras").at("targetNames"), Json::array({"hat"}));
-  const std::vector<float> offsets =
-      readFloats(target, mesh.at("primitives")[0].at("targets")[0].at("POSITION").get<Index>());
+  const gltf::Mesh& mesh = target.document.meshes[0];
+  ASSERT_TRUE(mesh.extras.exists());
+  EXPECT_EQ(mesh.extras->at("targetNames"), Json::array({"hat"}));
+  const std::vector<float> offsets = readFloats(target, mesh.primitives[0].targets.at(0).find("POSITION").value());
   double most = 0;
   for (Index v = 0; v < turned.mesh.vertexCount(); ++v) {
     const bool isHat = capsulePerson().mesh.positions[v].y() > 1.6f;
@@ -129,7 +131,7 @@ TEST(TransferAssetTest, BringsBlendShapesAlong) {
   TransferAssetOptions options = fewRounds();
   options.blendShapes = false;
   EXPECT_TRUE(transferred(source, without, options).blendShapes.empty());
-  EXPECT_FALSE(without.json()["meshes"][0]["primitives"][0].contains("targets"));
+  EXPECT_TRUE(without.document.meshes[0].primitives[0].targets.empty());
 }
 
 // Half as large again, with a rig of its own.
@@ -164,8 +166,7 @@ TEST(TransferAssetTest, ColorsAreThoseOfThePointThatAVertexTakesAfter) {
       return Vec3f(place / 4 + Vec3f::Constant(0.5f));
     };
     transferred(source, target, options);
-    const Json& attributes = target.json()["meshes"][0]["primitives"][0]["attributes"];
-    const std::vector<float> colors = readFloats(target, attributes.at("COLOR_0").get<Index>());
+    const std::vector<float> colors = readFloats(target, attributesOf(target).find("COLOR_0").value());
     ASSERT_EQ(colors.size(), 4 * person.mesh.positions.size());
     for (Index v = 0; v < person.mesh.vertexCount(); ++v) {
       const Vec3f place = 4 * (Vec3f(colors[4 * v], colors[4 * v + 1], colors[4 * v + 2]) - Vec3f::Constant(0.5f));
@@ -205,8 +206,7 @@ TEST(TransferAssetTest, ColorsGoToATextureWhereTheTargetHasRoomForOne) {
     std::vector<float> uvs;
     for (const Vec2f& uv : plan.uvs) uvs.insert(uvs.end(), {uv.x(), uv.y()});
     if (isOverlapping) std::copy_n(uvs.begin(), 6, uvs.begin() + 6);  // the second triangle on the first
-    target.json()["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] =
-        addFloatAccessor(target, uvs, 2, kVertexTarget);
+    attributesOf(target).set("TEXCOORD_0", addFloatAccessor(target, uvs, 2, kVertexTarget));
     SkinWeights weights;
     weights.slots = person.weights.slots;
     for (const Triangle& t : person.mesh.triangles) {
@@ -235,9 +235,8 @@ TEST(TransferAssetTest, ColorsGoToATextureWhereTheTargetHasRoomForOne) {
       return Bytes{0x89, 'P', 'N', 'G', 13, 10, 26, 10};
     };
     transferred(source, target, options);
-    const Json& primitive = target.json()["meshes"][0]["primitives"][0];
-    EXPECT_EQ(primitive.at("attributes").contains("COLOR_0"), isOverlapping);
-    EXPECT_EQ(target.json().contains("textures"), !isOverlapping);
+    EXPECT_EQ(attributesOf(target).find("COLOR_0").has_value(), isOverlapping);
+    EXPECT_EQ(target.document.textures.empty(), isOverlapping);
     EXPECT_EQ(seen.empty(), isOverlapping);
     if (isOverlapping) continue;
     const auto texels = texelsOf(plan.mesh.triangles, plan.uvs, 512);
@@ -258,18 +257,16 @@ TEST(TransferAssetTest, ColorsGoToATextureWhereTheTargetHasRoomForOne) {
 TEST(TransferAssetTest, WithoutColorsTheTargetsOwnStay) {
   Asset target = tallPerson();
   const std::vector<float> red(4 * collectGeometry(target).positions.size(), 0.5f);
-  const Index accessor = addFloatAccessor(target, red, 4, kVertexTarget);
-  target.json()["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = accessor;
+  attributesOf(target).set("COLOR_0", addFloatAccessor(target, red, 4, kVertexTarget));
   transferred(riggedPerson(), target);
-  const Json& attributes = target.json()["meshes"][0]["primitives"][0]["attributes"];
-  EXPECT_EQ(readFloats(target, attributes.at("COLOR_0").get<Index>()), red);
+  EXPECT_EQ(readFloats(target, attributesOf(target).find("COLOR_0").value()), red);
 }
 
 TEST(TransferAssetTest, CanBeCancelledInEveryStage) {
   const Asset source = riggedPerson();
   for (const std::string stage : {"read geometry", "fit target: ", "transfer: "}) {
     Asset target = stage == "fit target: " ? sceneOf(capsulePerson().mesh, "bare.obj") : tallPerson();
-    const Json before = target.json();
+    const Json before = testing::documentJson(target);
     Progress progress([&](std::string_view told, double) {
       if (told.starts_with(stage)) progress.cancel();
     });
@@ -278,7 +275,7 @@ TEST(TransferAssetTest, CanBeCancelledInEveryStage) {
       ADD_FAILURE() << "went on: " << stage;
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), ErrorCode::kCancelled) << stage;
-      EXPECT_EQ(target.json(), before);
+      EXPECT_EQ(testing::documentJson(target), before);
     }
   }
 }
@@ -301,8 +298,7 @@ Asset personAndBox(const char* name) {
   const TriMesh& mesh = capsulePerson().mesh;
   scene.addNode({{"mesh", scene.addMesh(Json::array({scene.primitive(mesh.positions, mesh.triangles)}))}});
   addBox(scene, name, kBack, 0.2f);
-  scene.json()["scenes"] = Json::array({{{"nodes", Json::array({0, 1})}}});
-  scene.json()["scene"] = 0;
+  scene.asset().document.scene = scene.addScene({0, 1});
   Asset asset = scene.asset().clone();
   asset.name = "laden.glb";
   return asset;
@@ -380,11 +376,11 @@ TEST(TransferAssetTest, JointsKeepTheirNamesWhereNodesHaveThem) {
   for (const Joint& joint : skeleton.joints) names.push_back(joint.name);
   for (const Joint& joint : capsulePerson().skeleton.joints) wanted.push_back(joint.name);
   EXPECT_EQ(names, wanted);
-  EXPECT_EQ(target.json()["nodes"][1]["name"], "head_2");
+  EXPECT_EQ(target.document.nodes[1].name, "head_2");
 }
 
 void expectRefused(const Asset& source, Asset& target, const std::string& what) {
-  const Json before = target.json();
+  const Json before = testing::documentJson(target);
   Progress progress;
   try {
     transferOnto(source, target, {}, progress);
@@ -393,7 +389,7 @@ void expectRefused(const Asset& source, Asset& target, const std::string& what) 
     EXPECT_THAT(error.what(), ::testing::HasSubstr(what));
     EXPECT_THAT(error.what(), ::testing::Not(::testing::HasSubstr("\n")));
   }
-  EXPECT_EQ(target.json(), before);
+  EXPECT_EQ(testing::documentJson(target), before);
 }
 
 TEST(TransferAssetTest, RefusesASourceWithoutARig) {
@@ -416,7 +412,7 @@ TEST(TransferAssetTest, RefusesATargetWithoutTriangles) {
   Json primitives =
       Json::array({{{"attributes", {{"POSITION", scene.addPositions({{0, 0, 0}, {1, 0, 0}})}}}, {"mode", 0}}});
   scene.addNode({{"mesh", scene.addMesh(std::move(primitives))}});
-  scene.json()["scenes"] = Json::array({{{"nodes", Json::array({0})}}});
+  scene.addScene({0});
   Asset target = scene.asset().clone();
   target.name = "points.glb";
   expectRefused(riggedPerson(), target, "points.glb: ");

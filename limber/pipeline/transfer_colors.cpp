@@ -5,9 +5,6 @@
 #include <set>
 #include <utility>
 
-#include <nlohmann/json.hpp>
-
-#include "limber/asset/json_access.h"
 #include "limber/asset/texture_coordinates.h"
 #include "limber/core/parallel.h"
 #include "limber/mesh/normals.h"
@@ -70,8 +67,8 @@ std::map<Index, Pictured> picturesOf(const Asset& target, const Geometry& geomet
     if (!done.insert({instance.mesh, instance.primitive}).second) continue;
     const std::vector<Vec2f> own = readUvs(target, instance);
     std::copy(own.begin(), own.end(), uvs.begin() + instance.firstVertex);
-    const Json& primitive = elements(target, "meshes")[instance.mesh].at("primitives")[instance.primitive];
-    std::fill_n(materialOf.begin() + instance.firstVertex, instance.vertexCount, primitive.at("material").get<Index>());
+    const gltf::Primitive& primitive = target.document.meshes[instance.mesh].primitives[instance.primitive];
+    std::fill_n(materialOf.begin() + instance.firstVertex, instance.vertexCount, *primitive.material);
   }
   std::map<Index, Pictured> pictures;
   for (const Triangle& t : geometry.triangles) {

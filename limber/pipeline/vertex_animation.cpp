@@ -6,7 +6,6 @@
 #include <tuple>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "limber/asset/accessor.h"
 #include "limber/asset/clip_io.h"
@@ -14,7 +13,6 @@
 #include "limber/asset/motion_io.h"
 #include "limber/asset/node_edit.h"
 #include "limber/asset/pose_io.h"
-#include "limber/asset/scene_graph.h"
 #include "limber/core/known_error.h"
 #include "limber/skinning/linear_blend.h"
 
@@ -46,14 +44,9 @@ struct MorphTargets {
   std::vector<std::vector<Vec3f>> offsets;  // #targets x #vertices, in world space; empty where a target moves nothing
 };
 
-std::vector<float> numbersOf(const Json& object, const char* key) {
-  const Json* list = member(object, key);
-  return list ? list->get<std::vector<float>>() : std::vector<float>();
-}
-
-std::vector<Vec3f> offsetsOf(const Asset& asset, const Json& target, const PrimitiveInstance& instance) {
+std::vector<Vec3f> offsetsOf(const Asset& asset, const gltf::Attributes& target, const PrimitiveInstance& instance) {
   std::vector<Vec3f> offsets;
-  const std::optional<Index> accessor = indexMember(target, "POSITION");
+  const std::optional<Index> accessor = target.find("POSITION");
   if (!accessor) return offsets;
   const std::vector<float> stored = readFloats(asset, *accessor);
   for (std::size_t i = 0; i + 2 < stored.size(); i += 3) {
@@ -66,37 +59,34 @@ std::vector<Vec3f> offsetsOf(const Asset& asset, const Json& target, const Primi
 std::vector<MorphTargets> morphTargetsOf(const Asset& asset, const Geometry& geometry) {
   std::vector<MorphTargets> result;
   for (const PrimitiveInstance& instance : geometry.instances) {
-    const Json& mesh = elements(asset, "meshes")[instance.mesh];
-    const Json* targets = member(mesh.at("primitives")[instance.primitive], "targets");
-    if (!targets || targets->empty()) continue;
+    const gltf::Mesh& mesh = asset.document.meshes[instance.mesh];
+    const std::vector<gltf::Attributes>& targets = mesh.primitives[instance.primitive].targets;
+    if (targets.empty()) continue;
     MorphTargets morph;
     morph.node = instance.node;
     morph.firstVertex = instance.firstVertex;
-    morph.still = numbersOf(elements(asset, "nodes")[instance.node], "weights");
-    if (morph.still.empty()) morph.still = numbersOf(mesh, "weights");
-    morph.still.resize(targets->size(), 0.0f);
-    for (const Json& target : *targets) morph.offsets.push_back(offsetsOf(asset, target, instance));
+    const std::vector<double>& ownWeights = asset.document.nodes[instance.node].weights;
+    const std::vector<double>& weights = ownWeights.empty() ? mesh.weights : ownWeights;
+    morph.still.assign(weights.begin(), weights.end());
+    morph.still.resize(targets.size(), 0.0f);
+    for (const gltf::Attributes& target : targets) morph.offsets.push_back(offsetsOf(asset, target, instance));
     result.push_back(std::move(morph));
   }
   return result;
 }
 
 // Keys that are not finite or not later than the one before are left out, as readClips does.
-std::optional<MorphTrack> morphTrackOf(const Asset& asset, const Json& sampler, Index node, std::size_t targets) {
-  const std::vector<float> times = readFloats(asset, sampler.at("input").get<Index>());
-  const std::vector<float> values = readFloats(asset, sampler.at("output").get<Index>());
-  const std::string interpolation = sampler.value("interpolation", "LINEAR");
-  const bool isCubic = interpolation == "CUBICSPLINE";
+std::optional<MorphTrack> morphTrackOf(const Asset& asset, const gltf::AnimationSampler& sampler, Index node,
+                                       std::size_t targets) {
+  const std::vector<float> times = readFloats(asset, sampler.input);
+  const std::vector<float> values = readFloats(asset, sampler.output);
+  const bool isCubic = sampler.interpolation == Interpolation::kCubic;
   const std::size_t parts = isCubic ? 3 : 1;
   if (targets == 0 || values.size() < times.size() * targets * parts) return std::nullopt;
   MorphTrack morph;
   morph.node = node;
   morph.tracks.resize((targets + 2) / 3);
-  for (Track<Vec3f>& track : morph.tracks) {
-    track.interpolation = isCubic                   ? Interpolation::kCubic
-                          : interpolation == "STEP" ? Interpolation::kStep
-                                                    : Interpolation::kLinear;
-  }
+  for (Track<Vec3f>& track : morph.tracks) track.interpolation = sampler.interpolation;
   for (std::size_t k = 0; k < times.size(); ++k) {
     const std::vector<float>& earlier = morph.tracks.front().times;
     const float* key = &values[k * targets * parts];
@@ -117,26 +107,25 @@ std::optional<MorphTrack> morphTrackOf(const Asset& asset, const Json& sampler, 
   return morph;
 }
 
-std::vector<MorphTrack> morphTracksOf(const Asset& asset, const Json& animation,
+std::vector<MorphTrack> morphTracksOf(const Asset& asset, const gltf::Animation& animation,
                                       const std::vector<MorphTargets>& targets) {
   std::vector<MorphTrack> tracks;
-  for (const Json& channel : animation.at("channels")) {
+  for (const gltf::AnimationChannel& channel : animation.channels) {
     const ChannelTarget target = channelTarget(channel);
-    const std::optional<Index> sampler = indexMember(channel, "sampler");
-    if (!target.node || target.path != "weights" || !sampler) continue;
+    if (!target.node || target.path != "weights") continue;
     const auto morph =
         std::find_if(targets.begin(), targets.end(), [&](const MorphTargets& m) { return m.node == *target.node; });
     if (morph == targets.end()) continue;
     std::optional<MorphTrack> track =
-        morphTrackOf(asset, animation.at("samplers")[*sampler], *target.node, morph->still.size());
+        morphTrackOf(asset, animation.samplers[channel.sampler], *target.node, morph->still.size());
     if (track) tracks.push_back(std::move(*track));
   }
   return tracks;
 }
 
 bool movesNodes(const Asset& asset) {
-  for (const Json& animation : elements(asset, "animations")) {
-    for (const Json& channel : animation.at("channels")) {
+  for (const gltf::Animation& animation : asset.document.animations) {
+    for (const gltf::AnimationChannel& channel : animation.channels) {
       const ChannelTarget target = channelTarget(channel);
       if (target.node && target.path != "weights") return true;
     }
@@ -149,7 +138,7 @@ class VertexPoser {
  public:
   explicit VertexPoser(const Asset& asset) : geometry_(collectGeometry(asset)) {
     morphs_ = morphTargetsOf(asset, geometry_);
-    if (elementCount(asset, "skins") > 0 || movesNodes(asset)) skeleton_ = animatedSkeleton(asset);
+    if (!asset.document.skins.empty() || movesNodes(asset)) skeleton_ = animatedSkeleton(asset);
     if (skeleton_.jointNode.empty()) return;
     weights_ = readWeights(asset, geometry_, skeleton_);
     normalizeWeights(weights_);
@@ -164,11 +153,11 @@ class VertexPoser {
     std::vector<SampledClip> clips;
     Warnings ignored;  // of reading, which the caller hears of when the rig is read
     std::vector<Clip> moved = skeleton_.jointNode.empty() ? std::vector<Clip>() : readClips(asset, skeleton_, ignored);
-    const Json& animations = elements(asset, "animations");
+    const std::vector<gltf::Animation>& animations = asset.document.animations;
     for (std::size_t a = 0; a < animations.size(); ++a) {
       SampledClip clip;
       if (a < moved.size()) clip.clip = std::move(moved[a]);
-      clip.clip.name = nameOf(animations[a]);
+      clip.clip.name = animations[a].name;
       clip.morphs = morphTracksOf(asset, animations[a], morphs_);
       clips.push_back(std::move(clip));
     }

@@ -25,20 +25,23 @@ SceneBuilder shownTetrahedron() {
 
 void addTarget(SceneBuilder& scene, const Vec3f& offset) {
   const std::vector<Vec3f> offsets(4, offset);
-  scene.json()["meshes"][0]["primitives"][0]["targets"].push_back({{"POSITION", scene.addPositions(offsets)}});
+  scene.primitiveOf(0).targets.emplace_back().set("POSITION", scene.addPositions(offsets));
 }
 
 // A clip of one channel.
 void animate(SceneBuilder& scene, const std::string& clip, Index node, const std::string& path,
              const std::vector<float>& times, const std::vector<float>& values,
-             const std::string& interpolation = "LINEAR") {
+             Interpolation interpolation = Interpolation::kLinear) {
   const Index components = path == "weights" ? 1 : path == "rotation" ? 4 : 3;
-  const Index input = addFloatAccessor(scene.asset(), times, 1, 0, true);
-  const Index output = addFloatAccessor(scene.asset(), values, components);
-  scene.json()["animations"].push_back(
-      {{"name", clip},
-       {"samplers", Json::array({{{"input", input}, {"output", output}, {"interpolation", interpolation}}})},
-       {"channels", Json::array({{{"sampler", 0}, {"target", {{"node", node}, {"path", path}}}}})}});
+  gltf::Animation& added = scene.asset().document.animations.emplace_back();
+  added.name = clip;
+  gltf::AnimationSampler& sampler = added.samplers.emplace_back();
+  sampler.input = addFloatAccessor(scene.asset(), times, 1, 0, true);
+  sampler.output = addFloatAccessor(scene.asset(), values, components);
+  sampler.interpolation = interpolation;
+  gltf::AnimationChannel& channel = added.channels.emplace_back();
+  channel.target.node = node;
+  channel.target.path = path;
 }
 
 VertexAnimation animationOf(SceneBuilder& scene, const VertexAnimationOptions& options = {}) {
@@ -69,7 +72,7 @@ TEST(VertexAnimation, OfAMovedNodeIsTheNodesMotion) {
 
 // Against the interpolations as glTF's specification writes them (appendix C).
 TEST(VertexAnimation, MorphTargetsFollowTheInterpolationOfTheirWeights) {
-  const auto heights = [](const std::string& interpolation, const std::vector<float>& values) {
+  const auto heights = [](Interpolation interpolation, const std::vector<float>& values) {
     SceneBuilder scene = shownTetrahedron();
     addTarget(scene, {0, 1, 0});
     animate(scene, "grow", 0, "weights", {0, 2}, values, interpolation);
@@ -78,9 +81,9 @@ TEST(VertexAnimation, MorphTargetsFollowTheInterpolationOfTheirWeights) {
     for (Index f = 0; f < animation.sequence.frameCount(); ++f) result.push_back(vertexAt(animation, 0, f).y());
     return result;
   };
-  EXPECT_EQ(heights("STEP", {0.25f, 1}), (std::vector<double>{0.25, 0.25, 0.25, 0.25, 1}));
-  EXPECT_EQ(heights("LINEAR", {0, 1}), (std::vector<double>{0, 0.25, 0.5, 0.75, 1}));
-  const std::vector<double> cubic = heights("CUBICSPLINE", {0, 0.5f, 0.25f, -1, 1, 0});
+  EXPECT_EQ(heights(Interpolation::kStep, {0.25f, 1}), (std::vector<double>{0.25, 0.25, 0.25, 0.25, 1}));
+  EXPECT_EQ(heights(Interpolation::kLinear, {0, 1}), (std::vector<double>{0, 0.25, 0.5, 0.75, 1}));
+  const std::vector<double> cubic = heights(Interpolation::kCubic, {0, 0.5f, 0.25f, -1, 1, 0});
   ASSERT_EQ(cubic.size(), 5u);
   for (int f = 0; f < 5; ++f) {
     const double t = f / 4.0, t2 = t * t, t3 = t2 * t, span = 2;
@@ -94,20 +97,20 @@ TEST(VertexAnimation, WeightsThatNothingAnimatesStayAsTheFileHasThem) {
   SceneBuilder scene = shownTetrahedron();
   addTarget(scene, {0, 1, 0});
   addTarget(scene, {0, 0, 1});
-  scene.json()["meshes"][0]["weights"] = {0.5, 0.25};
+  scene.asset().document.meshes[0].weights = {0.5, 0.25};
   animate(scene, "slide", 0, "translation", {0, 1}, {0, 0, 0, 1, 0, 0});
   VertexAnimation animation = animationOf(scene, {"", 1.0});
   EXPECT_LT((vertexAt(animation, 0, 1) - Vec3f(1, 0.5f, 0.25f)).norm(), 1e-6);
   EXPECT_EQ(animation.sequence.rest[animation.pointOf[0]], Vec3f(0, 0, 0)) << "bound without morphs";
-  scene.node(0)["weights"] = {0, 1};
+  scene.node(0).weights = {0, 1};
   EXPECT_LT((vertexAt(animationOf(scene, {"", 1.0}), 0, 1) - Vec3f(1, 0, 1)).norm(), 1e-6) << "the node's count more";
 }
 
 TEST(VertexAnimation, ASkinMovesVerticesByLinearBlend) {
   SceneBuilder scene = shownTetrahedron();
   const Index a = scene.addNode({{"name", "a"}}), b = scene.addNode({{"name", "b"}});
-  scene.json()["scenes"][0]["nodes"] = {0, a, b};
-  scene.json()["nodes"][0]["skin"] = scene.addSkin({a, b}, {Affine::Identity(), Affine::Identity()});
+  scene.asset().document.scenes[0].nodes = {0, a, b};
+  scene.node(0).skin = scene.addSkin({a, b}, {Affine::Identity(), Affine::Identity()});
   scene.bindRigidly(0, {0, 0, 1, 1});
   animate(scene, "lift", b, "translation", {0, 1}, {0, 0, 0, 0, 3, 0});
   const VertexAnimation animation = animationOf(scene, {"", 1.0});
@@ -127,7 +130,7 @@ TEST(VertexAnimation, VerticesThatBeginAndMoveAlikeAreOnePoint) {
   std::vector<Triangle> triangles = SceneBuilder::tetrahedronTriangles();
   for (Triangle t : SceneBuilder::tetrahedronTriangles()) triangles.push_back({t[0] + 4, t[1] + 4, t[2] + 4});
   scene.addScene({scene.addNode({{"mesh", scene.addMesh(Json::array({scene.primitive(twice, triangles)}))}})});
-  scene.json()["meshes"][0]["primitives"][0]["targets"] = Json::array({{{"POSITION", scene.addPositions(offsets)}}});
+  scene.primitiveOf(0).targets.emplace_back().set("POSITION", scene.addPositions(offsets));
   animate(scene, "grow", 0, "weights", {0, 1}, {0, 1});
   const VertexAnimation animation = animationOf(scene);
   EXPECT_EQ(animation.pointOf.size(), 8u);

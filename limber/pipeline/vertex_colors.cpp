@@ -6,26 +6,23 @@
 #include <utility>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "limber/asset/accessor.h"
 #include "limber/asset/accessor_sweep.h"
-#include "limber/asset/json_access.h"
 
 namespace limber {
 
 namespace {
 
-Json& primitiveOf(Asset& asset, const PrimitiveInstance& instance) {
-  return asset.json()["meshes"][instance.mesh]["primitives"][instance.primitive];
+gltf::Primitive& primitiveOf(Asset& asset, const PrimitiveInstance& instance) {
+  return asset.document.meshes[instance.mesh].primitives[instance.primitive];
 }
 
-void whiten(Json& material) {
-  Json& base = material["pbrMetallicRoughness"];
-  if (base.is_null()) base = Json::object();
-  base.erase("baseColorTexture");
-  if (!base.contains("baseColorFactor")) base["baseColorFactor"] = Json::array({1, 1, 1, 1});
-  for (std::size_t channel = 0; channel < 3; ++channel) base["baseColorFactor"][channel] = 1;
+void whiten(gltf::Material& material) {
+  if (!material.pbrMetallicRoughness) material.pbrMetallicRoughness.emplace();
+  gltf::MetallicRoughness& surface = *material.pbrMetallicRoughness;
+  surface.baseColorTexture.reset();
+  if (!surface.baseColorFactor) surface.baseColorFactor = Vec4::Ones();
+  surface.baseColorFactor->head<3>().setOnes();
 }
 
 }  // namespace
@@ -33,15 +30,15 @@ void whiten(Json& material) {
 void addMissingMaterials(Asset& asset, const Geometry& geometry) {
   std::optional<Index> plain;
   for (const PrimitiveInstance& instance : geometry.instances) {
-    if (primitiveOf(asset, instance).contains("material")) continue;
+    gltf::Primitive& primitive = primitiveOf(asset, instance);
+    if (primitive.material) continue;
     if (!plain) {
-      Json& materials = asset.json()["materials"];
-      plain = static_cast<Index>(materials.size());
-      // glTF's default would be metal.
-      materials.push_back(
-          {{"name", "colors"}, {"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 1}}}});
+      gltf::Material material;
+      material.name = "colors";
+      material.pbrMetallicRoughness.emplace().metallicFactor = 0;  // glTF's default would be metal
+      plain = addElement(asset.document.materials, std::move(material));
     }
-    primitiveOf(asset, instance)["material"] = *plain;
+    primitive.material = plain;
   }
 }
 
@@ -56,10 +53,11 @@ void setVertexColors(Asset& asset, const Geometry& geometry, std::span<const Vec
   std::set<Index> materials;
   for (const PrimitiveInstance& instance : geometry.instances) {
     if (!done.insert({instance.mesh, instance.primitive}).second) continue;  // shown twice: as at first
-    const Index material = primitiveOf(asset, instance)["material"].get<Index>();
+    gltf::Primitive& primitive = primitiveOf(asset, instance);
+    const Index material = *primitive.material;
     materials.insert(material);
     if (pictured.count(material) > 0) {
-      primitiveOf(asset, instance)["attributes"].erase("COLOR_0");
+      primitive.attributes.erase("COLOR_0");
       continue;
     }
     std::vector<float> values;
@@ -67,10 +65,9 @@ void setVertexColors(Asset& asset, const Geometry& geometry, std::span<const Vec
       for (int channel = 0; channel < 3; ++channel) values.push_back(std::clamp(color[channel], 0.0f, 1.0f));
       values.push_back(1);
     }
-    const Index accessor = addFloatAccessor(asset, values, 4, kVertexTarget);
-    primitiveOf(asset, instance)["attributes"]["COLOR_0"] = accessor;
+    primitive.attributes.set("COLOR_0", addFloatAccessor(asset, values, 4, kVertexTarget));
   }
-  for (const Index material : materials) whiten(asset.json()["materials"][material]);
+  for (const Index material : materials) whiten(asset.document.materials[material]);
   unused.sweep(asset);
 }
 

@@ -5,6 +5,7 @@
 
 #include "limber/asset/accessor.h"
 #include "limber/asset/read.h"
+#include "limber/asset/testing/document_json.h"
 #include "limber/asset/testing/scene_builder.h"
 #include "limber/asset/write.h"
 
@@ -19,21 +20,22 @@ const std::vector<Vec3f> kCorners = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.25f, 2,
 Asset redTetrahedron() {
   SceneBuilder scene;
   const Index mesh = scene.addTetrahedron();
-  scene.json()["meshes"][mesh]["primitives"][0]["material"] = 0;
-  scene.json()["materials"] = Json::array(
-      {{{"name", "paint"},
-        {"pbrMetallicRoughness",
-         {{"baseColorFactor", {1, 0, 0, 0.5}}, {"baseColorTexture", {{"index", 0}}}, {"metallicFactor", 1}}}}});
-  scene.json()["textures"] = Json::array({{{"source", 0}}});
-  scene.json()["images"] = Json::array({{{"uri", "paint.png"}}});
+  scene.primitiveOf(mesh).material = 0;
+  testing::editDocument(scene.asset(), [](Json& json) {
+    json["materials"] = Json::array(
+        {{{"name", "paint"},
+          {"pbrMetallicRoughness",
+           {{"baseColorFactor", {1, 0, 0, 0.5}}, {"baseColorTexture", {{"index", 0}}}, {"metallicFactor", 1}}}}});
+    json["textures"] = Json::array({{{"source", 0}}});
+    json["images"] = Json::array({{{"uri", "paint.png"}}});
+  });
   scene.addNode({{"mesh", mesh}});
   scene.addScene({0});
   return scene.build();
 }
 
 std::vector<float> colorsOf(const Asset& asset) {
-  const Json& primitive = asset.json()["meshes"][0]["primitives"][0];
-  return readFloats(asset, primitive.at("attributes").at("COLOR_0").get<Index>());
+  return readFloats(asset, asset.document.meshes[0].primitives[0].attributes.find("COLOR_0").value());
 }
 
 TEST(VertexColors, StandInTheFileAndTheMaterialIsWhite) {
@@ -41,7 +43,7 @@ TEST(VertexColors, StandInTheFileAndTheMaterialIsWhite) {
   setVertexColors(asset, collectGeometry(asset), kCorners);
   checkAsset(asset);
   EXPECT_EQ(colorsOf(asset), (std::vector<float>{1, 0, 0, 1, 0, 1, 0, 1, 0, 0, 1, 1, 0.25f, 1, 0, 1}));
-  const Json& material = asset.json()["materials"][0];
+  const Json material = testing::documentJson(asset)["materials"][0];
   EXPECT_EQ(material.at("name"), "paint");
   const Json& base = material.at("pbrMetallicRoughness");
   EXPECT_EQ(base.at("baseColorFactor"), Json::array({1, 1, 1, 0.5}));
@@ -51,10 +53,10 @@ TEST(VertexColors, StandInTheFileAndTheMaterialIsWhite) {
 
 TEST(VertexColors, TakeThePlaceOfOthersAndLeaveNoneBehind) {
   Asset asset = redTetrahedron();
-  const std::size_t bare = asset.json()["accessors"].size();
+  const std::size_t bare = asset.document.accessors.size();
   setVertexColors(asset, collectGeometry(asset), kCorners);
   setVertexColors(asset, collectGeometry(asset), std::vector<Vec3f>(4, Vec3f(0.5f, 0.5f, 0)));
-  EXPECT_EQ(asset.json()["accessors"].size(), bare + 1);
+  EXPECT_EQ(asset.document.accessors.size(), bare + 1);
   EXPECT_EQ(colorsOf(asset)[4], 0.5f);
 }
 
@@ -70,8 +72,8 @@ TEST(VertexColors, OfAMeshThatIsShownTwiceAreThoseOfTheFirst) {
   setVertexColors(asset, collectGeometry(asset), colors);
   checkAsset(asset);
   EXPECT_EQ(colorsOf(asset)[1], 0);
-  ASSERT_EQ(asset.json()["materials"].size(), 1u) << "a plain one, as there was none";
-  const Json& base = asset.json()["materials"][0].at("pbrMetallicRoughness");
+  ASSERT_EQ(asset.document.materials.size(), 1u) << "a plain one, as there was none";
+  const Json base = testing::documentJson(asset)["materials"][0].at("pbrMetallicRoughness");
   EXPECT_EQ(base.at("baseColorFactor"), Json::array({1, 1, 1, 1}));
   EXPECT_EQ(base.at("metallicFactor"), 0);
 }

@@ -2,13 +2,10 @@
 
 #include <algorithm>
 
-#include <nlohmann/json.hpp>
-
 #include "limber/asset/accessor.h"
 #include "limber/asset/geometry.h"
 #include "limber/asset/motion_io.h"
 #include "limber/asset/pose_io.h"
-#include "limber/asset/scene_graph.h"
 #include "limber/preview/palette.h"
 #include "limber/preview/scene_materials.h"
 #include "limber/preview/shapes.h"
@@ -20,29 +17,23 @@ namespace {
 
 // Linear RGB of a primitive's material: its base colour factor; clay where there is none, and for the texture where
 // that is not drawn.
-Vec3f materialColor(const Asset& asset, const Json& primitive, bool isDrawn) {
+Vec3f materialColor(const gltf::Document& document, const gltf::Primitive& primitive, bool isDrawn) {
   const Vec3f clay = linearFromSrgb(190, 181, 172);
-  const auto number = indexMember(primitive, "material");
-  if (!number) return clay;
-  const Json& material = elements(asset, "materials")[*number];
-  const Json* metallicRoughness = member(material, "pbrMetallicRoughness");
-  const Json* factor = metallicRoughness ? member(*metallicRoughness, "baseColorFactor") : nullptr;
-  if (isDrawn && !factor) return Vec3f::Ones();
-  const bool textured = !isDrawn && metallicRoughness && member(*metallicRoughness, "baseColorTexture");
-  if (!factor || !factor->is_array() || factor->size() < 3) return textured ? clay : Vec3f(Vec3f::Constant(0.8f));
-  Vec3f color;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Json& channel = (*factor)[i];
-    color[static_cast<Eigen::Index>(i)] = channel.is_number() ? std::clamp(channel.get<float>(), 0.0f, 1.0f) : 1.0f;
-  }
+  if (!primitive.material) return clay;
+  const std::optional<gltf::MetallicRoughness>& surface = document.materials[*primitive.material].pbrMetallicRoughness;
+  const bool isSaid = surface && surface->baseColorFactor;
+  if (isDrawn && !isSaid) return Vec3f::Ones();
+  const bool textured = !isDrawn && surface && surface->baseColorTexture;
+  if (!isSaid) return textured ? clay : Vec3f(Vec3f::Constant(0.8f));
+  const Vec3f color = surface->baseColorFactor->head<3>().cast<float>().cwiseMax(0.0f).cwiseMin(1.0f);
   return textured ? Vec3f(color.cwiseProduct(clay)) : color;
 }
 
 void colorInstance(const Asset& asset, const PrimitiveInstance& instance, bool isTextured, std::vector<Vec3f>& colors) {
-  const Json& primitive = elements(asset, "meshes")[instance.mesh].at("primitives")[instance.primitive];
-  const Vec3f base = materialColor(asset, primitive, isTextured);
+  const gltf::Primitive& primitive = asset.document.meshes[instance.mesh].primitives[instance.primitive];
+  const Vec3f base = materialColor(asset.document, primitive, isTextured);
   std::fill_n(colors.begin() + instance.firstVertex, instance.vertexCount, base);
-  const auto accessor = indexMember(primitive.at("attributes"), "COLOR_0");
+  const std::optional<Index> accessor = primitive.attributes.find("COLOR_0");
   if (!accessor) return;
   const Index components = accessorInfo(asset, *accessor).components;
   const std::vector<float> values = readFloats(asset, *accessor);

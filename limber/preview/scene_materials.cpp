@@ -14,17 +14,16 @@
 #include "limber/asset/accessor.h"
 #include "limber/asset/extensions.h"
 #include "limber/asset/images.h"
+#include "limber/asset/json_access.h"
 #include "limber/preview/image_decode.h"
 
 namespace limber {
 
 namespace {
 
-TextureWrap wrapOf(const JsonView& sampler, std::string_view key) {
-  constexpr double kClampToEdge = 33071, kMirroredRepeat = 33648;  // glTF's numbers
-  const double wrap = sampler.number(key, 0);
-  if (wrap == kClampToEdge) return TextureWrap::kClamp;
-  return wrap == kMirroredRepeat ? TextureWrap::kMirror : TextureWrap::kRepeat;
+TextureWrap wrapOf(Index wrap) {
+  if (wrap == gltf::kClampToEdge) return TextureWrap::kClamp;
+  return wrap == gltf::kMirroredRepeat ? TextureWrap::kMirror : TextureWrap::kRepeat;
 }
 
 // KHR_texture_transform: first scaled, then turned, then moved.
@@ -46,35 +45,39 @@ struct UvTransform {
 
 class MaterialCollector {
  public:
-  MaterialCollector(const Asset& asset, Scene& scene) : asset_(asset), root_(asset), scene_(scene) {}
+  MaterialCollector(const Asset& asset, Scene& scene) : asset_(asset), document_(asset.document), scene_(scene) {}
 
   // The instance's material as one of the scene's, and its vertices' coordinates; kNoIndex where a colour for each
   // vertex says all.
   Index add(const PrimitiveInstance& instance, std::size_t vertexCount) {
-    const JsonView primitive = root_.array("meshes")[instance.mesh].array("primitives")[instance.primitive];
-    const std::optional<Index> number = primitive.index("material", root_.array("materials").size());
-    if (!number) return kNoIndex;
-    const JsonView material = root_.array("materials")[*number];
-    const bool isTextured = addTexture(instance, primitive, material, vertexCount);
-    const auto [known, isNew] = materials_.try_emplace({*number, isTextured}, kNoIndex);
-    if (isNew) known->second = addMaterial(material, isTextured);
+    const gltf::Primitive& primitive = document_.meshes[instance.mesh].primitives[instance.primitive];
+    if (!primitive.material) return kNoIndex;
+    const Index number = *primitive.material;
+    const bool isTextured = addTexture(instance, primitive, number, vertexCount);
+    const auto [known, isNew] = materials_.try_emplace({number, isTextured}, kNoIndex);
+    if (isNew) known->second = addMaterial(document_.materials[number], isTextured);
     return known->second;
   }
 
  private:
-  static JsonView baseColorTexture(const JsonView& material) {
-    return material.object("pbrMetallicRoughness").object("baseColorTexture");
+  // Null where it has none.
+  static const gltf::TextureUse* baseColorTexture(const gltf::Material& material) {
+    const auto& surface = material.pbrMetallicRoughness;
+    return surface && surface->baseColorTexture ? &*surface->baseColorTexture : nullptr;
   }
 
   // Gives the vertices their coordinates where the material has a texture that can be drawn on them.
-  bool addTexture(const PrimitiveInstance& instance, const JsonView& primitive, const JsonView& material,
+  bool addTexture(const PrimitiveInstance& instance, const gltf::Primitive& primitive, Index material,
                   std::size_t vertexCount) {
-    const JsonView info = baseColorTexture(material);
-    const JsonView transform = extensionOf(info, "KHR_texture_transform");
-    const std::size_t set = transform.count("texCoord").value_or(info.count("texCoord").value_or(0));
-    const std::string key = fmt::format("TEXCOORD_{}", set);
-    const std::optional<Index> accessor = primitive.object("attributes").index(key, root_.array("accessors").size());
-    if (!accessor || !textureOf(info)) return false;
+    const gltf::TextureUse* use = baseColorTexture(document_.materials[material]);
+    if (use == nullptr) return false;
+    constexpr const char* kTransform = "KHR_texture_transform";
+    const std::string place =
+        fmt::format("materials[{}].pbrMetallicRoughness.baseColorTexture.extensions.{}", material, kTransform);
+    const JsonView transform(extensionOf(*use, kTransform), place);
+    const std::size_t set = transform.count("texCoord").value_or(use->texCoord);
+    const std::optional<Index> accessor = primitive.attributes.find(fmt::format("TEXCOORD_{}", set));
+    if (!accessor || !textureOf(use->index)) return false;
     const std::vector<float> values = readFloats(asset_, *accessor);
     if (values.size() != 2 * std::size_t{instance.vertexCount}) return false;
     scene_.uvs.resize(vertexCount, Vec2f::Zero());
@@ -85,15 +88,14 @@ class MaterialCollector {
     return true;
   }
 
-  Index addMaterial(const JsonView& material, bool isTextured) {
+  Index addMaterial(const gltf::Material& material, bool isTextured) {
     SceneMaterial added;
-    if (isTextured) added.texture = textureOf(baseColorTexture(material));
-    const std::string_view mode = material.text("alphaMode", "OPAQUE");
-    added.isOpaque = mode != "MASK" && mode != "BLEND";
+    if (isTextured) added.texture = textureOf(baseColorTexture(material)->index);
+    added.isOpaque = material.alphaMode != "MASK" && material.alphaMode != "BLEND";
     if (!added.isOpaque) {
-      const JsonView factor = material.object("pbrMetallicRoughness").array("baseColorFactor");
-      if (factor.size() == 4) added.opacity = std::clamp(factor[3].asNumber(), 0.0, 1.0);
-      if (mode == "MASK") added.cutoff = material.number("alphaCutoff", 0.5);
+      const auto& surface = material.pbrMetallicRoughness;
+      if (surface && surface->baseColorFactor) added.opacity = std::clamp((*surface->baseColorFactor)[3], 0.0, 1.0);
+      if (material.alphaMode == "MASK") added.cutoff = material.alphaCutoff;
     }
     if (added.isOpaque && !added.texture) return kNoIndex;
     scene_.materials.push_back(std::move(added));
@@ -101,34 +103,28 @@ class MaterialCollector {
   }
 
   // None where it cannot be drawn.
-  std::shared_ptr<const Texture> textureOf(const JsonView& info) {
-    const std::optional<Index> number = info.index("index", root_.array("textures").size());
-    if (!number) return nullptr;
-    const auto [known, isNew] = textures_.try_emplace(*number);
-    if (isNew) known->second = readTexture(root_.array("textures")[*number]);
+  std::shared_ptr<const Texture> textureOf(Index number) {
+    const auto [known, isNew] = textures_.try_emplace(number);
+    if (isNew) known->second = readTexture(number);
     return known->second;
   }
 
-  std::shared_ptr<const Texture> readTexture(const JsonView& texture) {
-    const JsonView samplers = root_.array("samplers");
-    const std::optional<Index> source = texture.index("source", root_.array("images").size());
-    const std::optional<Bytes> file = source ? imageBytes(asset_, *source) : std::nullopt;
+  std::shared_ptr<const Texture> readTexture(Index number) {
+    const gltf::Texture& texture = document_.textures[number];
+    const std::optional<Bytes> file = texture.source ? imageBytes(asset_, *texture.source) : std::nullopt;
     std::optional<DecodedImage> image = file ? decodeImage(*file) : std::nullopt;
     if (!image) {
       scene_.warnings.add("undrawn-textures", "textures cannot be drawn; their surfaces have a plain colour",
-                          texture.path());
+                          fmt::format("textures[{}]", number));
       return nullptr;
     }
-    const std::optional<Index> sampler = texture.index("sampler", samplers.size());
-    const auto wrap = [&](std::string_view key) {
-      return sampler ? wrapOf(samplers[*sampler], key) : TextureWrap::kRepeat;
-    };
-    return std::make_shared<const Texture>(std::move(image->colors), wrap("wrapS"), wrap("wrapT"),
+    const gltf::Sampler sampler = texture.sampler ? document_.samplers[*texture.sampler] : gltf::Sampler();
+    return std::make_shared<const Texture>(std::move(image->colors), wrapOf(sampler.wrapS), wrapOf(sampler.wrapT),
                                            std::move(image->alpha));
   }
 
   const Asset& asset_;
-  JsonView root_;
+  const gltf::Document& document_;
   Scene& scene_;
   std::map<Index, std::shared_ptr<const Texture>> textures_;  // by their numbers in the document
   std::map<std::pair<Index, bool>, Index> materials_;         // by number and whether the texture is drawn

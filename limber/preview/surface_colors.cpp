@@ -1,20 +1,17 @@
 #include "limber/preview/surface_colors.h"
 
-#include <nlohmann/json.hpp>
-
-#include "limber/asset/scene_graph.h"
 #include "limber/preview/image.h"
 #include "limber/preview/palette.h"
 
 namespace limber {
 
 bool hasColors(const Asset& asset) {
-  for (const Json& mesh : elements(asset, "meshes")) {
-    for (const Json& primitive : mesh.at("primitives")) {
-      if (primitive.at("attributes").contains("COLOR_0")) return true;
-      const auto material = indexMember(primitive, "material");
-      const Json* base = material ? member(elements(asset, "materials")[*material], "pbrMetallicRoughness") : nullptr;
-      if (base && (base->contains("baseColorFactor") || base->contains("baseColorTexture"))) return true;
+  for (const gltf::Mesh& mesh : asset.document.meshes) {
+    for (const gltf::Primitive& primitive : mesh.primitives) {
+      if (primitive.attributes.find("COLOR_0")) return true;
+      if (!primitive.material) continue;
+      const auto& surface = asset.document.materials[*primitive.material].pbrMetallicRoughness;
+      if (surface && (surface->baseColorTexture || surface->baseColorFactor)) return true;
     }
   }
   return false;

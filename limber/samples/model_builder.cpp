@@ -4,8 +4,6 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "limber/asset/accessor.h"
 
 namespace limber {
@@ -36,7 +34,7 @@ Index addIndices(Asset& asset, const std::vector<Index>& indices, Index vertexCo
 }
 
 // The triangles of one material with vertices of their own.
-Json addPrimitive(Asset& asset, const SymmetricMesh& mesh, int material) {
+gltf::Primitive addPrimitive(Asset& asset, const SymmetricMesh& mesh, int material) {
   std::vector<Index> newNumber(mesh.positions.size(), kNoIndex), indices;
   std::vector<float> positions, normals;
   Index count = 0;
@@ -51,68 +49,58 @@ Json addPrimitive(Asset& asset, const SymmetricMesh& mesh, int material) {
       indices.push_back(newNumber[v]);
     }
   }
-  Json primitive;
-  primitive["attributes"]["POSITION"] = addFloatAccessor(asset, positions, 3, kVertexTarget, true);
-  primitive["attributes"]["NORMAL"] =
-      addAccessor(asset, {count, 3, ComponentType::kF32, false}, bytesOf(normals), kVertexTarget);
-  primitive["indices"] = addIndices(asset, indices, count);
+  gltf::Primitive primitive;
+  primitive.attributes.set("POSITION", addFloatAccessor(asset, positions, 3, kVertexTarget, true));
+  primitive.attributes.set("NORMAL",
+                           addAccessor(asset, {count, 3, ComponentType::kF32, false}, bytesOf(normals), kVertexTarget));
+  primitive.indices = addIndices(asset, indices, count);
   return primitive;
 }
 
 }  // namespace
 
 ModelBuilder::ModelBuilder(std::string_view name) {
-  Json& json = asset_.json();
-  json = Json::object();
-  json["asset"] = {{"version", "2.0"}, {"generator", "limber sample"}};
-  json["scene"] = 0;
-  json["scenes"] = Json::array({{{"name", std::string(name)}, {"nodes", Json::array()}}});
-  for (const char* key : {"nodes", "meshes", "materials"}) json[key] = Json::array();
+  asset_.document.about.generator = "limber sample";
+  asset_.document.scenes.emplace_back().name = name;
+  asset_.document.scene = 0;
   asset_.name = name;
   asset_.format = "glb";
 }
 
 Index ModelBuilder::addMaterial(const SampleMaterial& material) {
-  Json& materials = asset_.json()["materials"];
-  Json color = Json::array();
-  for (const int channel : material.srgb) color.push_back(linearFactor(channel));
-  color.push_back(1.0);
-  materials.push_back(
-      {{"name", std::string(material.name)},
-       {"pbrMetallicRoughness",
-        {{"baseColorFactor", color}, {"metallicFactor", material.metallic}, {"roughnessFactor", material.roughness}}}});
-  return static_cast<Index>(materials.size() - 1);
+  gltf::Material added;
+  added.name = material.name;
+  gltf::MetallicRoughness& surface = added.pbrMetallicRoughness.emplace();
+  const auto& [red, green, blue] = material.srgb;
+  surface.baseColorFactor = Vec4(linearFactor(red), linearFactor(green), linearFactor(blue), 1);
+  surface.metallicFactor = material.metallic;
+  surface.roughnessFactor = material.roughness;
+  return addElement(asset_.document.materials, std::move(added));
 }
 
 Index ModelBuilder::addMesh(std::string_view name, const SymmetricMesh& mesh, std::span<const Index> materials) {
-  Json primitives = Json::array();
+  gltf::Mesh added;
+  added.name = name;
   for (std::size_t m = 0; m < materials.size(); ++m) {
     const int number = static_cast<int>(m);
     if (std::find(mesh.materials.begin(), mesh.materials.end(), number) == mesh.materials.end()) continue;
-    Json primitive = addPrimitive(asset_, mesh, number);
-    primitive["material"] = materials[m];
-    primitives.push_back(std::move(primitive));
+    added.primitives.push_back(addPrimitive(asset_, mesh, number));
+    added.primitives.back().material = materials[m];
   }
-  Json& meshes = asset_.json()["meshes"];
-  meshes.push_back({{"name", std::string(name)}, {"primitives", std::move(primitives)}});
-  return static_cast<Index>(meshes.size() - 1);
+  return addElement(asset_.document.meshes, std::move(added));
 }
 
 Index ModelBuilder::addNode(std::string_view name, std::optional<Index> mesh, const Transform& placed,
                             std::optional<Index> parent) {
-  Json& json = asset_.json();
-  Json node = {{"name", std::string(name)}};
-  if (mesh) node["mesh"] = *mesh;
-  if (placed.translation != Vec3::Zero()) {
-    node["translation"] = {placed.translation.x(), placed.translation.y(), placed.translation.z()};
-  }
-  if (placed.rotation.coeffs() != Quat::Identity().coeffs()) {
-    node["rotation"] = {placed.rotation.x(), placed.rotation.y(), placed.rotation.z(), placed.rotation.w()};
-  }
-  if (placed.scale != Vec3::Ones()) node["scale"] = {placed.scale.x(), placed.scale.y(), placed.scale.z()};
-  json["nodes"].push_back(std::move(node));
-  const Index index = static_cast<Index>(json["nodes"].size() - 1);
-  Json& siblings = parent ? json["nodes"][*parent]["children"] : json["scenes"][0]["nodes"];
+  gltf::Document& document = asset_.document;
+  gltf::Node node;
+  node.name = name;
+  node.mesh = mesh;
+  if (placed.translation != Vec3::Zero()) node.translation = placed.translation;
+  if (placed.rotation.coeffs() != Quat::Identity().coeffs()) node.rotation = placed.rotation.coeffs();
+  if (placed.scale != Vec3::Ones()) node.scale = placed.scale;
+  const Index index = addElement(document.nodes, std::move(node));
+  std::vector<Index>& siblings = parent ? document.nodes[*parent].children : document.scenes[0].nodes;
   siblings.push_back(index);
   return index;
 }

@@ -5,7 +5,6 @@
 
 #include <array>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "limber/asset/clip_io.h"
@@ -140,9 +139,9 @@ TEST(Flying, ComesWithARigAndABeatOfItsWingsThatRepeats) {
 
 TEST(Robot, SharesMeshesAmongNodes) {
   const Asset robot = makeSample("robot");
-  std::map<int, int> uses;
-  for (const Json& node : robot.json()["nodes"]) {
-    if (node.contains("mesh")) ++uses[node["mesh"].get<int>()];
+  std::map<Index, int> uses;
+  for (const gltf::Node& node : robot.document.nodes) {
+    if (node.mesh) ++uses[*node.mesh];
   }
   int shared = 0;
   for (const auto& [mesh, count] : uses) shared += count > 1;

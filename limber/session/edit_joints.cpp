@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "limber/asset/joint_edit.h"
 #include "limber/asset/node_edit.h"
@@ -21,11 +20,11 @@ constexpr double kSameScale = 1e-6;
 
 // Its clips are the session's, which writes them when a file is made.
 Asset documentToEdit(const RiggedModel& model) {
-  Asset document = documentOf(model);
-  std::vector<bool> moves(document.json().value("nodes", Json::array()).size(), false);
+  Asset asset = documentOf(model);
+  std::vector<bool> moves(asset.document.nodes.size(), false);
   for (const Index node : model.binding.jointNode) moves[node] = true;
-  removeChannels(document, [&](Index node, std::string_view path) { return moves[node] && path != "weights"; });
-  return document;
+  removeChannels(asset, [&](Index node, std::string_view path) { return moves[node] && path != "weights"; });
+  return asset;
 }
 
 // How joints of `from` stand, for those of `to`: in the same places, new ones at rest.

@@ -48,10 +48,8 @@ Bytes movingGlb() {
 // With shins that are a third longer.
 Bytes tallGlb() {
   Asset asset = readAsset(testing::namedPersonGlb(), "tall.glb");
-  for (Json& node : asset.json()["nodes"]) {
-    const std::string name = node.value("name", "");
-    if (name != "leftFoot" && name != "rightFoot") continue;
-    for (Json& coordinate : node["translation"]) coordinate = 1.33 * coordinate.get<double>();
+  for (gltf::Node& node : asset.document.nodes) {
+    if (node.name == "leftFoot" || node.name == "rightFoot") node.translation.value() *= 1.33;
   }
   return writeGlb(asset);
 }

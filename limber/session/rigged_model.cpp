@@ -5,7 +5,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "limber/asset/clip_io.h"
 #include "limber/asset/node_edit.h"
@@ -98,9 +97,9 @@ std::shared_ptr<const RiggedModel> renameJoint(const RiggedModel& model, Index j
   const std::optional<Index> known = model.skeleton().find(name);
   if (known && *known != joint) refuseNameTaken("joint", name);
   auto renamed = std::make_shared<RiggedModel>(model);
-  Asset document = model.asset->clone();
-  document.json()["nodes"][model.binding.jointNode[joint]]["name"] = name;
-  renamed->asset = std::make_shared<const Asset>(std::move(document));
+  Asset asset = model.asset->clone();
+  asset.document.nodes[model.binding.jointNode[joint]].name = name;
+  renamed->asset = std::make_shared<const Asset>(std::move(asset));
   renamed->binding.skeleton.joints[joint].name = name;
   renamed->anatomy = readAnatomy(renamed->skeleton());
   renamed->renamed = true;
@@ -130,7 +129,7 @@ Asset assetWithClips(const RiggedModel& model, const Pose& pose, std::span<const
   const bool untouched = std::all_of(model.clips.begin(), model.clips.end(),
                                      [&](const std::shared_ptr<const Clip>& own) { return holds(clips, own); });
   if (!untouched) {
-    std::vector<bool> moves(asset.json().value("nodes", Json::array()).size(), false);
+    std::vector<bool> moves(asset.document.nodes.size(), false);
     for (const Index node : model.binding.jointNode) moves[node] = true;
     removeChannels(asset, [&](Index node, std::string_view path) { return moves[node] && path != "weights"; });
   }

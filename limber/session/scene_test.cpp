@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "limber/asset/check_asset.h"
 #include "limber/asset/scene_graph.h"
 #include "limber/core/error.h"
 #include "limber/session/scene_places.h"
@@ -248,22 +247,23 @@ TEST(SessionScene, OneFileHoldsAllMembers) {
   const Bytes glb = scene.exportModel(ExportFormat::kGlb);
   const Asset asset = readAsset(glb, "scene.glb");
   checkAsset(asset);
-  EXPECT_EQ(elementCount(asset, "skins"), 3u);
-  EXPECT_EQ(elementCount(asset, "animations"), 2u);
-  EXPECT_EQ(elementCount(asset, "scenes"), 1u);
+  const gltf::Document& document = asset.document;
+  EXPECT_EQ(document.skins.size(), 3u);
+  EXPECT_EQ(document.animations.size(), 2u);
+  EXPECT_EQ(document.scenes.size(), 1u);
   std::set<std::string> names;
-  for (const Json& node : elements(asset, "nodes")) {
-    EXPECT_TRUE(nameOf(node).empty() || names.insert(nameOf(node)).second) << nameOf(node);
+  for (const gltf::Node& node : document.nodes) {
+    EXPECT_TRUE(node.name.empty() || names.insert(node.name).second) << node.name;
   }
   // Each vertex is where the scene shows it, and the prop hangs on its joint.
   const Geometry geometry = collectGeometry(asset);
   std::size_t found = 0;
-  const SceneGraph graph = readSceneGraph(asset);
+  const SceneGraph graph = readSceneGraph(document);
   for (Index node = 0; node < graph.nodeCount(); ++node) {
-    if (nameOf(elements(asset, "nodes")[node]) != "biped") continue;
+    if (document.nodes[node].name != "biped") continue;
     ++found;
     EXPECT_LT(distanceOf(graph.world[node], scene.toScene(2)), 1e-5);
-    EXPECT_EQ(nameOf(elements(asset, "nodes")[*graph.parent[node]]), leaf);
+    EXPECT_EQ(document.nodes[*graph.parent[node]].name, leaf);
   }
   EXPECT_EQ(found, 1u);
   std::size_t vertices = 0;

@@ -189,22 +189,20 @@ void putSession(Asset& asset, const SavedSession& session) {
                             {"rotation", numbersJson<4>(joint.local.rotation.coeffs().data())},
                             {"scale", numbersJson<3>(joint.local.scale.data())}});
   }
-  Json& extras = asset.json()["extras"];
-  if (!extras.is_null() && !extras.is_object()) {
+  gltf::KeptJson& extras = asset.document.extras;
+  if (extras.exists() && !extras->is_null() && !extras->is_object()) {
     throw Error(ErrorCode::kUnsupported, "the document's extras are no object, so a session has no place there",
                 asset.name);
   }
-  extras[kKey] = std::move(json);
+  extras.change()[kKey] = std::move(json);
 }
 
 std::optional<SavedSession> takeSession(Asset& asset) {
-  const JsonView root(asset);
-  const JsonView extras = root.member("extras");
-  if (!extras.exists() || !extras.json().is_object() || !extras.json().contains(kKey)) return std::nullopt;
-  SavedSession session = readSession(extras.object(kKey));
-  Json& json = asset.json()["extras"];
-  json.erase(kKey);
-  if (json.empty()) asset.json().erase("extras");
+  gltf::KeptJson& extras = asset.document.extras;
+  if (!extras.exists() || !extras->contains(kKey)) return std::nullopt;
+  SavedSession session = readSession(JsonView(&*extras, "extras").object(kKey));
+  extras.change().erase(kKey);
+  if (extras->empty()) extras.reset();
   return session;
 }
 

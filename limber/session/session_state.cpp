@@ -4,7 +4,6 @@
 
 #include "limber/anatomy/body_part.h"
 #include "limber/anatomy/part_color.h"
-#include "limber/asset/scene_graph.h"
 #include "limber/ik/limit_outline.h"
 #include "limber/ik/limits_json.h"
 #include "limber/pipeline/transfer_asset.h"
@@ -213,7 +212,7 @@ Json sessionState(const Session& session) {
       {"locked", Json::array()},
       {"edited_rig", rig.edited},
       {"gaps", rig.transfer ? toJson(rig.transfer->gaps) : Json(nullptr)},
-      {"animated", elementCount(*state.base, "animations") > 0},
+      {"animated", !state.base->document.animations.empty()},
       {"dragged", nullptr},
       {"posed", !samePose(state.pose, rig.home)},
       {"undo", textOrNull(session.undoName())},

@@ -149,7 +149,7 @@ TEST(SetDeformer, AFileThatNamesNoneBlendsLinearlyAndABadNameIsRefused) {
   Progress progress;
   const auto savedWith = [&](const Json& deformer) {
     Asset asset = readAsset(session.saveSession(), "saved.glb");
-    Json& kept = asset.json()["extras"]["limber_session"];
+    Json& kept = asset.document.extras.change()["limber_session"];
     EXPECT_FALSE(kept.contains("deformer")) << "as bipedFiles before this were";
     if (!deformer.is_null()) kept["deformer"] = deformer;
     return writeGlb(asset);

@@ -7,6 +7,7 @@
 #include "limber/asset/accessor.h"
 #include "limber/asset/clip_io.h"
 #include "limber/asset/read.h"
+#include "limber/asset/testing/document_json.h"
 #include "limber/asset/testing/npy_bytes.h"
 #include "limber/asset/testing/stored_zip.h"
 #include "limber/asset/write.h"
@@ -25,27 +26,25 @@ using ::testing::HasSubstr;
 Bytes heroGlb() {
   Asset asset = readAsset(testing::namedPersonGlb(), "hero.glb");
   const AssetSkeleton skeleton = readSkeleton(asset);
-  for (const Index node : skeleton.jointNode) {
-    Json& name = asset.json()["nodes"][node]["name"];
-    name = name.get<std::string>() + "_hero";
-  }
+  for (const Index node : skeleton.jointNode) asset.document.nodes[node].name += "_hero";
   const Geometry geometry = collectGeometry(asset);
   std::vector<float> offsets;
   for (const Vec3f& p : geometry.positions) offsets.insert(offsets.end(), {0, p.y() > 1.5f ? 0.1f : 0, 0});
-  const Index accessor = addFloatAccessor(asset, offsets, 3, kVertexTarget, true);
-  Json& mesh = asset.json()["meshes"][0];
-  mesh["primitives"][0]["targets"] = Json::array({{{"POSITION", accessor}}});
-  mesh["extras"]["targetNames"] = {"proud"};
+  gltf::Mesh& mesh = asset.document.meshes[0];
+  mesh.primitives[0].targets.emplace_back().set("POSITION", addFloatAccessor(asset, offsets, 3, kVertexTarget, true));
+  mesh.extras.change()["targetNames"] = {"proud"};
   return writeGlb(asset);
 }
 
 // Half as large again.
 Bytes giantGlb() {
   Asset asset = readAsset(testing::namedPersonGlb(), "giant.glb");
-  asset.json()["nodes"].push_back({{"name", "giant"}, {"scale", {1.5, 1.5, 1.5}}, {"children", Json::array()}});
-  const Index root = static_cast<Index>(asset.json()["nodes"].size() - 1);
-  asset.json()["nodes"][root]["children"] = asset.json()["scenes"][0]["nodes"];
-  asset.json()["scenes"][0]["nodes"] = Json::array({root});
+  std::vector<Index>& roots = asset.document.scenes[0].nodes;
+  gltf::Node giant;
+  giant.name = "giant";
+  giant.scale = Vec3::Constant(1.5);
+  giant.children = roots;
+  roots = {addElement(asset.document.nodes, std::move(giant))};
   return writeGlb(asset);
 }
 
@@ -143,7 +142,7 @@ TEST(TakenRig, AnotherModelsJointsWeightsAndShapesComeOver) {
   EXPECT_EQ(state["own_rig"], true);
   EXPECT_EQ(state["undo"], "transfer_rig");
   EXPECT_LT(state["gaps"]["rms"].get<double>(), 0.5);
-  EXPECT_THAT(rig.asset->json().dump(), HasSubstr("\"proud\""));
+  EXPECT_THAT(testing::documentJson(*rig.asset).dump(), HasSubstr("\"proud\""));
   perform(session, Undo{});
   EXPECT_EQ(session.exportModel(ExportFormat::kGlb), before);
 }

@@ -1,13 +1,15 @@
 // Small glTF documents made in code, for tests.
 #pragma once
 
-#include <initializer_list>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
 #include "limber/asset/accessor.h"
 #include "limber/asset/asset.h"
+#include "limber/asset/gltf_json.h"
 #include "limber/core/transform.h"
 #include "limber/core/types.h"
 
@@ -15,11 +17,9 @@ namespace limber::testing {
 
 class SceneBuilder {
  public:
-  SceneBuilder() { asset_.json()["asset"] = {{"version", "2.0"}}; }
-
   Asset& asset() { return asset_; }
-  Json& json() { return asset_.json(); }
-  Json& node(Index n) { return json()["nodes"][n]; }
+  gltf::Node& node(Index n) { return asset_.document.nodes[n]; }
+  gltf::Primitive& primitiveOf(Index mesh) { return asset_.document.meshes[mesh].primitives[0]; }
 
   static std::vector<Vec3f> tetrahedron(const Vec3f& at = Vec3f::Zero(), float size = 1) {
     return {at, at + size * Vec3f::UnitX(), at + size * Vec3f::UnitY(), at + size * Vec3f::UnitZ()};
@@ -44,7 +44,8 @@ class SceneBuilder {
     return result;
   }
   Index addMesh(Json primitives, const char* name = "mesh") {
-    return add("meshes", {{"name", name}, {"primitives", std::move(primitives)}});
+    const Json mesh = {{"name", name}, {"primitives", std::move(primitives)}};
+    return addElement(asset_.document.meshes, documentWith("meshes", mesh).meshes[0]);
   }
   // One tetrahedron as a mesh of its own.
   Index addTetrahedron(const Vec3f& at = Vec3f::Zero(), float size = 1) {
@@ -52,17 +53,18 @@ class SceneBuilder {
     return addMesh(std::move(primitives));
   }
 
-  Index addNode(Json node) { return add("nodes", std::move(node)); }
+  Index addNode(const Json& node) { return addElement(asset_.document.nodes, documentWith("nodes", node).nodes[0]); }
   Index addSkin(const std::vector<Index>& joints, const std::vector<Affine>& inverseBinds) {
-    Json skin = {{"joints", joints}};
+    gltf::Skin skin;
+    skin.joints = joints;
     if (!inverseBinds.empty()) {
       std::vector<float> values;
       for (const Affine& m : inverseBinds) {
         for (int i = 0; i < 16; ++i) values.push_back(static_cast<float>(m.matrix()(i % 4, i / 4)));
       }
-      skin["inverseBindMatrices"] = addFloatAccessor(asset_, values, 16);
+      skin.inverseBindMatrices = addFloatAccessor(asset_, values, 16);
     }
-    return add("skins", std::move(skin));
+    return addElement(asset_.document.skins, std::move(skin));
   }
   // JOINTS_0 and WEIGHTS_0 of one primitive: each vertex with one joint of the skin.
   void bindRigidly(Index mesh, const std::vector<std::uint8_t>& jointOfVertex) {
@@ -72,22 +74,29 @@ class SceneBuilder {
       joints.insert(joints.end(), {joint, 0, 0, 0});
       weights.insert(weights.end(), {1, 0, 0, 0});
     }
-    const auto count = static_cast<Index>(jointOfVertex.size());
-    const Index j = addAccessor(asset_, {count, 4, ComponentType::kU8, false}, joints, kVertexTarget);
-    const Index w = addFloatAccessor(asset_, weights, 4, kVertexTarget);
-    Json& attributes = json()["meshes"][mesh]["primitives"][0]["attributes"];
-    attributes["JOINTS_0"] = j;
-    attributes["WEIGHTS_0"] = w;
+    bind(mesh, joints, weights);
+  }
+  // The same of four joints and weights for each vertex.
+  void bind(Index mesh, const std::vector<std::uint8_t>& joints, const std::vector<float>& weights) {
+    const auto count = static_cast<Index>(joints.size() / 4);
+    gltf::Attributes& attributes = primitiveOf(mesh).attributes;
+    attributes.set("JOINTS_0", addAccessor(asset_, {count, 4, ComponentType::kU8, false}, joints, kVertexTarget));
+    attributes.set("WEIGHTS_0", addFloatAccessor(asset_, weights, 4, kVertexTarget));
   }
   // A clip with one channel that moves `node` by two keys.
   void addClip(Index node, const char* path, Index components) {
     const Index input = addFloatAccessor(asset_, std::vector<float>{0, 1}, 1, 0, true);
     const Index output = addFloatAccessor(asset_, std::vector<float>(2 * components, 0.5f),
                                           path == std::string("weights") ? 1 : components);
-    add("animations", {{"channels", {{{"sampler", 0}, {"target", {{"node", node}, {"path", path}}}}}},
-                       {"samplers", {{{"input", input}, {"output", output}}}}});
+    gltf::Animation& clip = asset_.document.animations.emplace_back();
+    clip.samplers.push_back({{}, input, output});
+    clip.channels.push_back({{}, 0, {{}, node, path}});
   }
-  Index addScene(const std::vector<Index>& roots) { return add("scenes", {{"nodes", roots}}); }
+  Index addScene(const std::vector<Index>& roots) {
+    gltf::Scene scene;
+    scene.nodes = roots;
+    return addElement(asset_.document.scenes, std::move(scene));
+  }
 
   Asset build() {
     checkAsset(asset_);
@@ -95,10 +104,9 @@ class SceneBuilder {
   }
 
  private:
-  Index add(const char* kind, Json element) {
-    Json& list = json()[kind];
-    list.push_back(std::move(element));
-    return static_cast<Index>(list.size() - 1);
+  // A document that holds a single element.
+  static gltf::Document documentWith(const char* kind, const Json& element) {
+    return gltf::documentOf({{"asset", {{"version", "2.0"}}}, {kind, Json::array({element})}});
   }
 
   Asset asset_;

@@ -127,7 +127,7 @@ inline Asset assetOf(const TriMesh& mesh, bool unwelded = false) {
   Json primitives = Json::array({builder.primitive(positions, triangles)});
   const Index made = builder.addMesh(std::move(primitives), "body");
   builder.addNode({{"name", "body"}, {"mesh", made}, {"translation", {1, 2, 3}}});
-  builder.json()["scenes"] = Json::array({{{"nodes", {0}}}});
+  builder.addScene({0});
   return std::move(builder.asset());
 }
 

@@ -1,0 +1,133 @@
+#include "limber/asset/references.h"
+
+#include <map>
+#include <set>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "limber/asset/gltf_json.h"
+
+namespace limber {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::UnorderedElementsAre;
+
+// Every way of referring to something that limber knows; all numbers differ, so that none is mistaken for another.
+const char* const kEverything = R"({
+  "asset": {"version": "2.0"},
+  "extensions": {"KHR_lights_punctual": {"lights": [{}, {}]}},
+  "scenes": [{"nodes": [1, 2]}],
+  "nodes": [{"mesh": 3, "skin": 4, "camera": 5, "children": [6],
+             "extensions": {"KHR_lights_punctual": {"light": 7},
+                            "MSFT_lod": {"ids": [8, 9]},
+                            "VRMC_node_constraint": {"constraint": {"roll": {"source": 10, "weight": 99}}},
+                            "EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": 11}}}}],
+  "meshes": [{"primitives": [{"attributes": {"POSITION": 12}, "indices": 13, "material": 14,
+                              "targets": [{"NORMAL": 15}],
+                              "extensions": {"KHR_draco_mesh_compression": {"bufferView": 16,
+                                                                            "attributes": {"POSITION": 99}},
+                                             "KHR_materials_variants": {"mappings": [{"material": 17,
+                                                                                      "variants": [18]}]}}}]}],
+  "skins": [{"joints": [19], "skeleton": 20, "inverseBindMatrices": 21}],
+  "animations": [{"samplers": [{"input": 22, "output": 23}],
+                  "channels": [{"sampler": 0, "target": {"node": 24}},
+                               {"sampler": 0, "target": {"extensions": {
+                                   "KHR_animation_pointer": {"pointer": "/materials/25/emissiveFactor"}}}}]}],
+  "materials": [{"normalTexture": {"index": 26}, "occlusionTexture": {"index": 27}, "emissiveTexture": {"index": 28},
+                 "pbrMetallicRoughness": {"baseColorTexture": {"index": 29}, "metallicRoughnessTexture": {"index": 30}},
+                 "extensions": {"KHR_materials_sheen": {"sheenColorTexture": {"index": 31}, "factor": 99}}}],
+  "textures": [{"sampler": 32, "source": 33, "extensions": {"EXT_texture_webp": {"source": 34}}}],
+  "images": [{"bufferView": 35}],
+  "accessors": [{"bufferView": 36, "componentType": 5126, "count": 1, "type": "SCALAR",
+                 "sparse": {"count": 1, "indices": {"bufferView": 37, "componentType": 5121},
+                            "values": {"bufferView": 38}}}],
+  "bufferViews": [{"buffer": 39, "byteLength": 1,
+                   "extensions": {"EXT_meshopt_compression": {"buffer": 40, "byteLength": 99},
+                                  "ACME_table": {"columns": [{"bufferView": 41}]}}}]})";
+
+gltf::Document everything() {
+  return gltf::documentOf(Json::parse(kEverything));
+}
+
+std::map<ElementKind, std::multiset<Index>> referencesOf(const gltf::Document& document) {
+  std::map<ElementKind, std::multiset<Index>> found;
+  visitReferences(document, [&](ElementKind kind, Index number) { found[kind].insert(number); });
+  return found;
+}
+
+TEST(References, AllAreFoundOnceUnderTheirKind) {
+  const auto found = referencesOf(everything());
+  EXPECT_THAT(found.at(ElementKind::kNode), UnorderedElementsAre(1, 2, 6, 8, 9, 10, 19, 20, 24));
+  EXPECT_THAT(found.at(ElementKind::kMesh), ElementsAre(3));
+  EXPECT_THAT(found.at(ElementKind::kSkin), ElementsAre(4));
+  EXPECT_THAT(found.at(ElementKind::kCamera), ElementsAre(5));
+  EXPECT_THAT(found.at(ElementKind::kLight), ElementsAre(7));
+  EXPECT_THAT(found.at(ElementKind::kAccessor), UnorderedElementsAre(11, 12, 13, 15, 21, 22, 23));
+  EXPECT_THAT(found.at(ElementKind::kMaterial), UnorderedElementsAre(14, 17, 25));
+  EXPECT_THAT(found.at(ElementKind::kVariant), ElementsAre(18));
+  EXPECT_THAT(found.at(ElementKind::kTexture), UnorderedElementsAre(26, 27, 28, 29, 30, 31));
+  EXPECT_THAT(found.at(ElementKind::kSampler), ElementsAre(32));
+  EXPECT_THAT(found.at(ElementKind::kImage), UnorderedElementsAre(33, 34));
+  EXPECT_THAT(found.at(ElementKind::kBufferView), UnorderedElementsAre(16, 35, 36, 37, 38, 41));
+  EXPECT_THAT(found.at(ElementKind::kBuffer), UnorderedElementsAre(39, 40));
+}
+
+TEST(References, VisitingChangesNothing) {
+  const gltf::Document document = everything();
+  referencesOf(document);
+  EXPECT_EQ(gltf::jsonOf(document).dump(), Json::parse(kEverything).dump());
+}
+
+TEST(References, AllAreChangedWhereTheyStand) {
+  gltf::Document document = everything();
+  const gltf::Document copy = document;
+  changeReferences(document, [](ElementKind, Index& number) { number += 100; });
+  const auto before = referencesOf(copy);
+  for (const auto& [kind, numbers] : referencesOf(document)) {
+    std::multiset<Index> back;
+    for (const Index number : numbers) back.insert(number - 100);
+    EXPECT_EQ(back, before.at(kind));
+  }
+  // What is no reference stays: 99 in every place, counts and lengths.
+  std::string text = gltf::jsonOf(document).dump();
+  EXPECT_NE(text.find("\"weight\":99"), std::string::npos);
+  EXPECT_NE(text.find("\"POSITION\":99"), std::string::npos);
+  EXPECT_NE(text.find("\"pointer\":\"/materials/125/emissiveFactor\""), std::string::npos);
+  EXPECT_EQ(gltf::jsonOf(copy).dump(), Json::parse(kEverything).dump());  // which shares the extensions' JSON
+}
+
+TEST(References, NumbersTakenOutLeaveListsAndMembers) {
+  gltf::Document document = everything();
+  changeReferences(document, [](ElementKind kind, Index& number) {
+    if (kind == ElementKind::kNode && number != 2 && number != 24) number = kNoIndex;
+  });
+  EXPECT_THAT(document.scenes[0].nodes, ElementsAre(2));
+  EXPECT_TRUE(document.nodes[0].children.empty());
+  EXPECT_FALSE(document.skins[0].skeleton);
+  EXPECT_EQ(document.nodes[0].extensions->at("MSFT_lod"), Json::object());
+  EXPECT_EQ(document.nodes[0].extensions->at("VRMC_node_constraint")["constraint"]["roll"], Json({{"weight", 99}}));
+}
+
+TEST(References, ListsOfADocumentAreCounted) {
+  const gltf::Document document = everything();
+  EXPECT_EQ(elementCount(document, ElementKind::kNode), 1u);
+  EXPECT_EQ(elementCount(document, ElementKind::kLight), 2u);
+  EXPECT_EQ(elementCount(document, ElementKind::kVariant), 0u);
+}
+
+TEST(References, EveryObjectIsSeen) {
+  gltf::Document document = everything();
+  std::size_t objects = 0;
+  forEachObject(document, [&](gltf::Object& object) {
+    ++objects;
+    object.extensions.reset();
+  });
+  EXPECT_EQ(gltf::jsonOf(document).dump().find("extensions"), std::string::npos);
+  EXPECT_EQ(objects, 27u);
+}
+
+}  // namespace
+}  // namespace limber
