@@ -50,6 +50,9 @@ TEST_F(Cli, WrongUsageIsOneLineAndCodeTwo) {
                                              {"rig", "a.glb", "-o", "b.glb", "--up", "+z"},
                                              {"rig", "a.glb", "-o", "b.glb", "--keep-skeleton", "--front", "+z"},
                                              {"rig", "a.glb", "-o", "b.glb", "--template", "auto", "--handles", "5"},
+                                             {"rig", "a.glb", "-o", "b.glb", "--template", "auto", "--rigger", "prop"},
+                                             {"rig", "a.glb", "-o", "b.glb", "--keep-skeleton", "--template", "auto"},
+                                             {"rig", "a.glb", "-o", "b.glb", "--template", "auto", "--up", "+w"},
                                              {"retarget", "a.glb", "b.bvh", "-o", "c.glb", "--save-map", "b.bvh"},
                                              {"retarget", "a.glb", "b.bvh", "-o", "c.glb", "--save-map", "./a.glb"},
                                              {"retarget", "a.glb", "b.bvh", "-o", "c.glb", "--reach", "nan"},
@@ -61,6 +64,15 @@ TEST_F(Cli, WrongUsageIsOneLineAndCodeTwo) {
                                              {"sample", "stool"}}) {
     expectOneLine(run(arguments), 2);
   }
+}
+
+TEST_F(Cli, OptionsAreToldByTheirNamesHere) {
+  EXPECT_THAT(run({"rig", "a.glb", "-o", "b.glb", "--pin", "head=0,1,0"}).error,
+              StartsWith("limber: --pin: takes a template to fit (name one: --template auto)"));
+  EXPECT_THAT(run({"rig", "a.glb", "-o", "b.glb", "--keep-skeleton", "--handles", "3"}).error,
+              AllOf(StartsWith("limber: --handles: "), HasSubstr("leave --keep-skeleton out")));
+  EXPECT_THAT(run({"rig", "a.glb", "-o", "b.glb", "--max-influences", "9"}).error,
+              StartsWith("limber: --max-influences: takes 1 to 8, not 9"));
 }
 
 TEST_F(Cli, RigsAModelAndAccountsForIt) {

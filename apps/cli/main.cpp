@@ -3,24 +3,26 @@
 #include <exception>
 #include <new>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "command.h"
 #include "limber/core/known_error.h"
+#include "limber/pipeline/option_spelling.h"
 #include "progress_line.h"
 
 namespace {
 
 constexpr int kFailed = 1, kUsage = 2, kInterrupted = 130;
 
-int fail(const char* what, int code = kFailed) {
+int fail(std::string_view what, int code = kFailed) {
   if (limber::cli::interrupted()) {
     fmt::print(stderr, "limber: interrupted\n");
     return kInterrupted;
   }
-  fmt::print(stderr, "limber: {}\n", what);
+  fmt::print(stderr, "limber: {}\n", limber::spellOptions(what, limber::OptionSpelling::kProgram));
   return code;
 }
 
@@ -30,7 +32,8 @@ int usage(const CLI::App& program, const std::string& what) {
     at = at->get_subcommands().front();
     command += " " + at->get_name();
   }
-  fmt::print(stderr, "limber: {} (limber{} --help shows how to call it)\n", what, command);
+  fmt::print(stderr, "limber: {} (limber{} --help shows how to call it)\n",
+             limber::spellOptions(what, limber::OptionSpelling::kProgram), command);
   return kUsage;
 }
 

@@ -16,7 +16,7 @@
 #include "limber/asset/write.h"
 #include "limber/core/counted.h"
 #include "limber/pipeline/report_json.h"
-#include "limber/pipeline/template_file.h"
+#include "limber/pipeline/rig_request.h"
 #include "limber/rigging/template_rigger.h"
 #include "progress_line.h"
 
@@ -26,8 +26,9 @@ namespace {
 
 struct RigArguments {
   std::string input, output, report;
-  AutoRigOptions rig;
-  std::string templateName, up, front, pieces = "auto";
+  RigRequest request;
+  AutoRigOptions rig;  // as the request says, once it is complete
+  std::string templateName;
   std::vector<std::string> pins;
   bool replaceRig = false, keepSkeleton = false, strict = false;
   AnimationRigArguments animation;
@@ -126,17 +127,6 @@ void printAccount(const Account& account, const RigArguments& options, const Aut
   if (options.output != "-") account.line(fmt::format("written: {}", options.output));
 }
 
-// "+y", "-z", "x": an axis of the file's space after conversion to glTF's.
-std::optional<Vec3> parseAxis(const std::string& text, std::string_view option) {
-  if (text.empty()) return std::nullopt;
-  const std::size_t at = text[0] == '+' || text[0] == '-' ? 1 : 0;
-  if (text.size() == at + 1) {
-    const char axis = static_cast<char>(text[at] | 0x20);  // lower case
-    if (axis >= 'x' && axis <= 'z') return Vec3((text[0] == '-' ? -1.0 : 1.0) * Vec3::Unit(axis - 'x'));
-  }
-  throw CLI::ValidationError(std::string(option), "takes +x, -x, +y, -y, +z or -z, not " + text);
-}
-
 // "leftHand=0.71,1.43,0.02"
 JointPin parsePin(const std::string& text) {
   const std::size_t equals = text.rfind('=');
@@ -152,18 +142,6 @@ JointPin parsePin(const std::string& text) {
     }
   }
   throw CLI::ValidationError("--pin", "takes JOINT=x,y,z, not " + text);
-}
-
-// A template's name, or a file whose skeleton becomes the template.
-void chooseTemplate(const std::string& name, AutoRigOptions& rig) {
-  if (name.empty()) return;
-  rig.rigger = "template";
-  rig.rig.templateName = name;
-  if (std::filesystem::path(name).extension().empty()) {
-    checkTemplateName(name);
-    return;
-  }
-  rig.rig.templateSkeleton = readTemplateFile(name);
 }
 
 template <class Method>
@@ -188,9 +166,8 @@ RigPrograms findPrograms(const RigArguments& options) {
 // A program that weighs gets a rig, with weights of limber's: the usual ones, or those that cost next to nothing.
 AutoRigReport rigAsTold(Asset& asset, AutoRigOptions rig, const RigPrograms& programs, Progress& progress) {
   if (programs.weights) rig.skinning = programs.weights->takesWeights ? AutoRigOptions().skinning : "nearest-bone";
-  const bool isKept = rig.existingRig == ExistingRig::kKeepSkeleton;
   AutoRigReport report =
-      programs.rigger && !isKept ? rigByProgram(asset, *programs.rigger, rig, progress) : autoRig(asset, rig, progress);
+      programs.rigger ? rigByProgram(asset, *programs.rigger, rig, progress) : autoRig(asset, rig, progress);
   if (programs.weights) {
     report.warnings.append(weightsByProgram(asset, *programs.weights, rig.weights, progress));
     report.skinning = programs.weights->name;
@@ -200,48 +177,39 @@ AutoRigReport rigAsTold(Asset& asset, AutoRigOptions rig, const RigPrograms& pro
   return report;
 }
 
-// What only some riggers take is refused with others.
-void checkRigger(const RigArguments& options, const RigPrograms& programs) {
-  const bool isTemplate = !options.keepSkeleton && options.rig.rigger == "template";
-  if (programs.rigger && options.rig.rig.handles) {
-    throw CLI::ValidationError("--handles", "a program of yours makes as many joints as it does");
-  }
-  if (isTemplate && options.rig.rig.handles) {
-    throw CLI::ValidationError("--handles", "a template has the joints that it has");
-  }
-  if (isTemplate) return;
-  for (const auto& [option, isGiven] : {std::pair{"--pin", !options.pins.empty()},
-                                        {"--up", !options.up.empty()},
-                                        {"--front", !options.front.empty()},
-                                        {"--upright", options.rig.standUpright},
-                                        {"--chains", options.rig.chains}}) {
-    if (isGiven) throw CLI::ValidationError(option, "takes a template to fit: --template NAME");
+// What is wrong with one option is a wrong usage.
+void completeRequest(RigArguments& options) {
+  RigRequest& request = options.request;
+  if (options.replaceRig) request.existingRig = "replace";
+  if (options.keepSkeleton) request.existingRig = "keep-skeleton";
+  if (!options.templateName.empty()) chooseTemplate(request, options.templateName);
+  for (const std::string& pin : options.pins) request.pins.push_back(parsePin(pin));
+  try {
+    options.rig = optionsOf(request);
+  } catch (const Error& error) {
+    if (error.where().empty()) throw;
+    throw CLI::ValidationError(error.what());
   }
 }
 
 void run(RigArguments options) {
   options.common.apply();
   checkOutput(options.output, {".glb", ".gltf"});
+  if (options.animation.frames.empty()) {
+    if (options.input.empty()) throw CLI::RequiredError("IN");
+    checkBeside("--json", options.report, {options.input, options.output, options.templateName});
+  }
+  completeRequest(options);
   if (!options.animation.frames.empty()) {
     return runAnimationRig(options.animation,
-                           {options.output, options.report, options.rig.weights.maxInfluences, options.strict},
+                           {options.output, options.report, options.request.maxInfluences, options.strict},
                            options.common);
   }
-  if (options.input.empty()) throw CLI::RequiredError("IN");
-  checkBeside("--json", options.report, {options.input, options.output, options.templateName});
-  if (options.replaceRig) options.rig.existingRig = ExistingRig::kReplace;
-  if (options.keepSkeleton) options.rig.existingRig = ExistingRig::kKeepSkeleton;
-  chooseTemplate(options.templateName, options.rig);
-  options.rig.rig.up = parseAxis(options.up, "--up");
-  options.rig.rig.front = parseAxis(options.front, "--front");
-  if (options.rig.rig.up && options.rig.rig.front && std::abs(options.rig.rig.up->dot(*options.rig.rig.front)) > 0.5) {
-    throw CLI::ValidationError("--front", "must be square to --up");
-  }
-  for (const std::string& pin : options.pins) options.rig.rig.pins.push_back(parsePin(pin));
   const RigPrograms programs = findPrograms(options);
-  checkRigger(options, programs);
+  if (programs.rigger && options.request.handles) {
+    throw CLI::ValidationError("--handles", "a program of yours makes as many joints as it does");
+  }
   options.adapters.refuseUnused({options.rig.rigger, options.rig.skinning}, programs.rigger || programs.weights);
-  options.rig.weights.pieces = findPieceMode(options.pieces);
 
   TerminalProgress progress(options.common.quiet);
   progress->stage("read");
@@ -308,16 +276,16 @@ void addRigCommand(CLI::App& program) {
   command->add_option("-o,--output", options->output, "the .glb or .gltf to write; - is standard output (GLB)")
       ->required()
       ->type_name("FILE");
-  command->add_option("--handles", options->rig.rig.handles, "handles wanted (default: the best suggested count)")
-      ->check(CLI::Range(Index{1}, kNoIndex - 1).description(""))
+  RigRequest& request = options->request;
+  command->add_option("--handles", request.handles, "handles wanted (default: the best suggested count)")
       ->type_name("N");
-  command->add_option("--max-influences", options->rig.weights.maxInfluences, "joints that may move one vertex, 1 to 8")
-      ->check(CLI::Range(1, 8).description(""))
+  command->add_option("--max-influences", request.maxInfluences, "joints that may move one vertex, 1 to 8")
       ->type_name("K")
       ->capture_default_str();
-  command->add_option("--rigger", options->rig.rigger, "how joints are found, see below")
-      ->type_name("NAME")
-      ->capture_default_str();
+  command
+      ->add_option("--rigger", request.rigger,
+                   "how joints are found, see below (default: sphere-mesh, or template where one is named)")
+      ->type_name("NAME");
   command
       ->add_option("--template", options->templateName,
                    "fit this named skeleton: auto, a name below, or a file with a skeleton (.glb, .bvh, .json, ...)")
@@ -327,17 +295,17 @@ void addRigCommand(CLI::App& program) {
                    "where a joint of the template must be, as JOINT=x,y,z in the file's space; several tell a pose")
       ->type_name("PIN")
       ->allow_extra_args(false);
-  command->add_option("--up", options->up, "the model's up, for a template, as +y (default: found)")->type_name("AXIS");
-  command->add_option("--front", options->front, "where the model looks, for a template, as +z (default: found)")
+  command->add_option("--up", request.up, "the model's up, for a template, as +y (default: found)")->type_name("AXIS");
+  command->add_option("--front", request.front, "where the model looks, for a template, as +z (default: found)")
       ->type_name("AXIS");
-  command->add_flag("--upright", options->rig.standUpright,
+  command->add_flag("--upright", request.upright,
                     "turn a model that surely stands along another axis to stand along +Y");
-  command->add_flag("--chains", options->rig.chains,
+  command->add_flag("--chains", request.chains,
                     "give capes, scarves, braids and tails joints that swing (VRMC_springBone)");
-  command->add_option("--skinning", options->rig.skinning, "how weights are made, see below")
+  command->add_option("--skinning", request.skinning, "how weights are made, see below")
       ->type_name("NAME")
       ->capture_default_str();
-  command->add_option("--pieces", options->pieces, "how pieces that are joined to no other are bound, see below")
+  command->add_option("--pieces", request.pieces, "how pieces that are joined to no other are bound, see below")
       ->type_name("NAME")
       ->capture_default_str();
   CLI::Option* animation = addAnimationRigOptions(*command, options->animation);
@@ -350,9 +318,7 @@ void addRigCommand(CLI::App& program) {
   replace->excludes(animation);
   command->add_flag("--keep-skeleton", options->keepSkeleton, "keep the model's own skeleton, make its weights anew")
       ->excludes(replace)
-      ->excludes(animation)
-      ->excludes("--handles")
-      ->excludes("--template");
+      ->excludes(animation);
   command
       ->add_option("--json", options->report,
                    "write a report: stages, seconds, counts, suggestions, warnings; - is standard output")

@@ -21,10 +21,11 @@
 #include "limber/asset/rig_io.h"
 #include "limber/asset/write.h"
 #include "limber/evaluate/model_quality.h"
-#include "limber/pipeline/auto_rig.h"
+#include "limber/pipeline/option_spelling.h"
 #include "limber/pipeline/pose_asset.h"
 #include "limber/pipeline/report_json.h"
 #include "limber/pipeline/retarget_asset.h"
+#include "limber/pipeline/rig_request.h"
 #include "limber/pipeline/stand_upright.h"
 #include "limber/retarget/retarget_method.h"
 #include "limber/samples/samples.h"
@@ -353,34 +354,13 @@ class Model {
   Asset asset_;
 };
 
-AutoRigOptions rigOptions(const std::string& rigger, const std::string& templateName, const std::string& skinning,
-                          std::optional<Index> handles, Index maxInfluences, const std::string& existing,
-                          const std::map<std::string, Doubles>& pins) {
-  const bool isTemplate = !templateName.empty() || rigger == "template";
-  if (!templateName.empty() && rigger != "template" && rigger != AutoRigOptions().rigger) {
-    refuse("template", fmt::format("is of no use with the rigger {}", rigger));
-  }
-  if (!isTemplate && !pins.empty()) refuse("pins", "are for the joints of a template: name one");
-  if (isTemplate && handles) refuse("handles", "a template has the joints that it has");
-  if (existing == "keep-skeleton" && (isTemplate || handles)) refuse("existing_rig", "keep-skeleton finds no joints");
-  AutoRigOptions options;
-  options.rigger = templateName.empty() ? rigger : "template";
-  if (!templateName.empty()) options.rig.templateName = templateName;
-  options.skinning = skinning;
-  options.rig.handles = handles;
-  options.weights.maxInfluences = maxInfluences;
-  if (existing == "replace")
-    options.existingRig = ExistingRig::kReplace;
-  else if (existing == "keep-skeleton")
-    options.existingRig = ExistingRig::kKeepSkeleton;
-  else if (existing != "refuse")
-    refuse("existing_rig", fmt::format("is refuse, replace or keep-skeleton, not {}", existing));
-  for (const auto& [joint, place] : pins) {
+std::vector<JointPin> pinsFrom(const std::map<std::string, Doubles>& given) {
+  std::vector<JointPin> pins;
+  for (const auto& [joint, place] : given) {
     if (place.ndim() != 1 || place.shape(0) != 3) refuse("pins", fmt::format("{} must be a position (x, y, z)", joint));
-    checkFinite(place, "pins");
-    options.rig.pins.push_back({joint, Vec3(place.at(0), place.at(1), place.at(2))});
+    pins.push_back({joint, Vec3(place.at(0), place.at(1), place.at(2))});
   }
-  return options;
+  return pins;
 }
 
 template <class Methods>
@@ -393,13 +373,17 @@ std::map<std::string, std::string> named(const Methods& methods) {
 constexpr const char* kRigHelp =
     R"(Finds joints and weights. Returns what was done as a dictionary (docs/report.md of the project).
 
-rigger          a name of limber.riggers()
-template        fit this named skeleton instead; "auto": the one that fits best
+rigger          a name of limber.riggers(); None: sphere-mesh, or template where one is named
+template        fit this named skeleton: "auto", a name, or the path of a file with a skeleton (.glb, .bvh, .json, ...)
 skinning        a name of limber.skinning_methods()
+pieces          how pieces that are joined to no other are bound: "auto", "rigid" or "soft"
 handles         how many joints, for riggers that ask; None: what suits the model
 max_influences  joints that a vertex may follow, 1 to 8
 existing_rig    "refuse", "replace" or "keep-skeleton" (weights alone are made anew)
 pins            where joints of a template must be: {"leftHand": (x, y, z)}, metres
+up, front       how the model stands, for a template: "+x", "-x", "+y", ...; None: found
+upright         turn a model that surely stands along another axis to stand along +Y
+chains          give capes, scarves, braids and tails joints that swing (VRMC_springBone)
 progress        called as progress(stage, fraction) a few times a second; what it raises stops the work
 Ctrl-C stops it. Where it does not end well, the model is as it was.)";
 
@@ -418,11 +402,12 @@ void raiseErrors(py::module_& module) {
     try {
       std::rethrow_exception(std::move(raised));
     } catch (const Error& error) {
-      const py::object made = py::reinterpret_borrow<py::object>(type)(error.what());
+      const auto told = [](std::string_view text) { return spellOptions(text, OptionSpelling::kPython); };
+      const py::object made = py::reinterpret_borrow<py::object>(type)(told(error.what()));
       made.attr("code") = std::string(errorCodeName(error.code()));
-      made.attr("message") = error.message();
-      made.attr("where") = error.where();
-      made.attr("remedy") = error.remedy();
+      made.attr("message") = told(error.message());
+      made.attr("where") = told(error.where());
+      made.attr("remedy") = told(error.remedy());
       PyErr_SetObject(type, made.ptr());
     }
   });
@@ -459,16 +444,32 @@ PYBIND11_MODULE(_limber, module) {
                              "first; 0 for an unused one.")
       .def(
           "rig",
-          [](Model& model, const std::string& rigger, const std::optional<std::string>& templateName,
-             const std::string& skinning, std::optional<Index> handles, Index maxInfluences,
-             const std::string& existing, const std::map<std::string, Doubles>& pins, const py::object& progress) {
-            return model.rig(
-                rigOptions(rigger, templateName.value_or(""), skinning, handles, maxInfluences, existing, pins),
-                progress);
+          [](Model& model, const std::optional<std::string>& rigger,
+             const std::optional<std::filesystem::path>& templateName, const std::string& skinning,
+             const std::string& pieces, std::optional<Index> handles, Index maxInfluences, const std::string& existing,
+             const std::map<std::string, Doubles>& pins, const std::optional<std::string>& up,
+             const std::optional<std::string>& front, bool upright, bool chains, const py::object& progress) {
+            RigRequest request;
+            request.rigger = rigger;
+            if (templateName) chooseTemplate(request, templateName->string());
+            request.skinning = skinning;
+            request.pieces = pieces;
+            request.handles = handles;
+            request.maxInfluences = maxInfluences;
+            request.existingRig = existing;
+            request.pins = pinsFrom(pins);
+            request.up = up.value_or("");
+            request.front = front.value_or("");
+            request.upright = upright;
+            request.chains = chains;
+            return model.rig(optionsOf(request), progress);
           },
-          py::arg("rigger") = AutoRigOptions().rigger, py::kw_only(), py::arg("template") = py::none(),
-          py::arg("skinning") = "bone-heat", py::arg("handles") = py::none(), py::arg("max_influences") = 4,
-          py::arg("existing_rig") = "refuse", py::arg("pins") = py::dict(), py::arg("progress") = py::none(), kRigHelp)
+          py::arg("rigger") = py::none(), py::kw_only(), py::arg("template") = py::none(),
+          py::arg("skinning") = RigRequest().skinning, py::arg("pieces") = RigRequest().pieces,
+          py::arg("handles") = py::none(), py::arg("max_influences") = RigRequest().maxInfluences,
+          py::arg("existing_rig") = RigRequest().existingRig, py::arg("pins") = py::dict(), py::arg("up") = py::none(),
+          py::arg("front") = py::none(), py::arg("upright") = false, py::arg("chains") = false,
+          py::arg("progress") = py::none(), kRigHelp)
       .def("attach_rig", &Model::attach, py::arg("names"), py::arg("parents"), py::arg("positions"), py::arg("joints"),
            py::arg("weights"),
            "A rig of your own: J names, (J,) parents with -1 for a root, (J, 3) places in metres; (V, K) joints and "

@@ -10,6 +10,7 @@
 
 #include "limber/asset/json_text.h"
 #include "limber/core/known_error.h"
+#include "limber/pipeline/option_spelling.h"
 
 #define LIMBER_EXPORT extern "C" __attribute__((used, visibility("default")))
 
@@ -23,10 +24,11 @@ struct CallResult {
 };
 
 inline CallResult failure(const Error& error) {
+  const auto told = [](std::string_view text) { return spellOptions(text, OptionSpelling::kJavaScript); };
   Json account = {{"code", std::string(errorCodeName(error.code()))},
-                  {"message", error.message()},
-                  {"where", error.where()},
-                  {"remedy", error.remedy()}};
+                  {"message", told(error.message())},
+                  {"where", told(error.where())},
+                  {"remedy", told(error.remedy())}};
   if (const auto* known = dynamic_cast<const KnownError*>(&error)) {
     account["kind"] = std::string(errorKindName(known->kind()));
     account["values"] = Json::object();

@@ -14,8 +14,12 @@
 import createEngine from './limber_engine.mjs';
 
 /**
- * @typedef {{ handles?: number, maxInfluences?: number, rigger?: string, skinning?: string,
- *             pieces?: 'auto' | 'rigid' | 'soft', chains?: boolean, existingRig?: 'refuse' | 'replace' | 'keep-skeleton' }} RigOptions
+ * As limber/pipeline/rig_request.h has them. template: auto, a name, or a file with a skeleton (.json, .glb, .bvh, ...), by
+ * its name and content; pins: where joints of a template must be, in world space.
+ * @typedef {'x' | '+x' | '-x' | 'y' | '+y' | '-y' | 'z' | '+z' | '-z'} Axis
+ * @typedef {{ handles?: number, maxInfluences?: number, rigger?: string, template?: string | { name: string, bytes: Uint8Array },
+ *             skinning?: string, pieces?: 'auto' | 'rigid' | 'soft', existingRig?: 'refuse' | 'replace' | 'keep-skeleton',
+ *             up?: Axis, front?: Axis, pins?: { [joint: string]: Vector }, upright?: boolean, chains?: boolean }} RigOptions
  * @typedef {'nothing-to-undo' | 'nothing-to-redo' | 'joint-dragged' | 'no-model' | 'no-clip' | 'name-missing'
  *             | 'name-taken' | 'only-root' | 'joint-below-itself' | 'last-member' | 'holds-itself'
  *             | 'model-not-mirrored' | 'nothing-mirrored' | 'joint-locked' | 'pin-outside' | 'handle-count'
@@ -126,7 +130,9 @@ export async function loadLimber(wasm, given = {}) {
   return {
     /** @type {(file: Uint8Array, name: string, options?: RigOptions) => RigResult} */
     rig: (file, name, options = {}) => {
-      const result = call(engine, engine._limber_rig, [], file, name, JSON.stringify(options));
+      const { template, ...others } = options;
+      const [named, bytes, path] = typeof template === 'object' ? [others, template.bytes, template.name] : [options, new Uint8Array(), ''];
+      const result = call(engine, engine._limber_rig, [], file, name, JSON.stringify(named), bytes, path);
       return result.ok ? { ok: true, glb: result.bytes, report: result.account } : result;
     },
     /** The methods there are, by what they do. @type {() => Methods} */

@@ -13,8 +13,9 @@
 #include "limber/asset/write.h"
 #include "limber/core/known_error.h"
 #include "limber/ik/ik_solver.h"
-#include "limber/pipeline/auto_rig.h"
 #include "limber/pipeline/report_json.h"
+#include "limber/pipeline/rig_request.h"
+#include "limber/pipeline/template_file.h"
 #include "limber/retarget/retarget_method.h"
 #include "limber/samples/sample_motions.h"
 #include "limber/samples/sample_poses.h"
@@ -26,60 +27,29 @@ using limber::Json;
 using limber::wasm::CallResult;
 using limber::wasm::guarded;
 
-[[noreturn]] void refuseOption(const std::string& name) {
-  throw limber::Error(limber::ErrorCode::kBadArgument, "no such option, or a value of the wrong kind", name);
-}
-
-limber::ExistingRig existingRigNamed(const std::string& name) {
-  if (name == "refuse") return limber::ExistingRig::kRefuse;
-  if (name == "replace") return limber::ExistingRig::kReplace;
-  if (name == "keep-skeleton") return limber::ExistingRig::kKeepSkeleton;
-  refuseOption("existingRig");
-}
-
-// Larger numbers must not wrap round to small ones.
-limber::Index countOf(const std::string& name, const Json& value) {
-  const std::uint64_t count = value.get<std::uint64_t>();
-  if (count >= limber::kNoIndex) refuseOption(name);
-  return static_cast<limber::Index>(count);
-}
-
-limber::AutoRigOptions optionsFrom(std::string_view text) {
-  const Json json = Json::parse(text, nullptr, false);
-  if (!json.is_object()) throw limber::Error(limber::ErrorCode::kBadArgument, "options are not a JSON object");
-  limber::AutoRigOptions options;
-  for (const auto& [name, value] : json.items()) {
-    if (name == "handles" && value.is_number_unsigned()) {
-      options.rig.handles = countOf(name, value);
-    } else if (name == "maxInfluences" && value.is_number_unsigned()) {
-      options.weights.maxInfluences = countOf(name, value);
-    } else if (name == "rigger" && value.is_string()) {
-      options.rigger = value.get<std::string>();
-    } else if (name == "skinning" && value.is_string()) {
-      options.skinning = value.get<std::string>();
-    } else if (name == "pieces" && value.is_string()) {
-      options.weights.pieces = limber::findPieceMode(value.get<std::string>());
-    } else if (name == "chains" && value.is_boolean()) {
-      options.chains = value.get<bool>();
-    } else if (name == "existingRig" && value.is_string()) {
-      options.existingRig = existingRigNamed(value.get<std::string>());
-    } else {
-      refuseOption(name);
-    }
-  }
-  return options;
+// As the program reads the file that --template names.
+limber::RigRequest requestFrom(std::string_view options, limber::ByteSpan templateFile, std::string_view templateName) {
+  limber::RigRequest request = limber::rigRequestFromJson(options);
+  if (templateName.empty()) return request;
+  request.templateName = templateName;
+  request.templateSkeleton = limber::readTemplateFile(templateFile, templateName);
+  return request;
 }
 
 }  // namespace
 
-// The strings need no final zero. The result is the caller's, to be given back to limber_free_result; null where there
-// is no memory even to tell what went wrong.
+// The strings need no final zero. A template in a file of its own: its name is empty where there is none. The result is
+// the caller's, to be given back to limber_free_result; null where there is no memory even to tell what went wrong.
 LIMBER_EXPORT CallResult* limber_rig(const std::uint8_t* file, std::size_t fileSize, const char* name,
-                                     std::size_t nameSize, const char* options, std::size_t optionsSize) {
+                                     std::size_t nameSize, const char* options, std::size_t optionsSize,
+                                     const std::uint8_t* templateFile, std::size_t templateFileSize,
+                                     const char* templateName, std::size_t templateNameSize) {
   return guarded({name, nameSize}, [&]() -> CallResult {
+    const limber::AutoRigOptions rig = limber::optionsOf(
+        requestFrom({options, optionsSize}, {templateFile, templateFileSize}, {templateName, templateNameSize}));
     limber::Asset asset = limber::readAsset({file, fileSize}, {name, nameSize});
     limber::Progress progress;
-    const limber::AutoRigReport report = limber::autoRig(asset, optionsFrom({options, optionsSize}), progress);
+    const limber::AutoRigReport report = limber::autoRig(asset, rig, progress);
     return {true, limber::writeGlb(asset), limber::dumpReport(limber::toJson(report), -1)};
   });
 }

@@ -174,11 +174,11 @@ Decomposition decomposeWithin(const VertexSequence& sequence, const Decompositio
 void checkOptions(const DecompositionOptions& options) {
   if (options.bones && (*options.bones < 1 || *options.bones > kMostBones)) {
     throw Error(ErrorCode::kBadArgument, fmt::format("a mesh can be given 1 to {} bones", kMostBones), {},
-                fmt::format("choose --bones 1 to {}", kMostBones));
+                fmt::format("choose `bones` 1 to {}", kMostBones));
   }
   if (options.maxInfluences < 1 || options.maxInfluences > kMostInfluences) {
     throw Error(ErrorCode::kBadArgument, fmt::format("a vertex can keep 1 to {} influences", kMostInfluences), {},
-                fmt::format("choose --max-influences 1 to {}", kMostInfluences));
+                fmt::format("choose `max-influences` 1 to {}", kMostInfluences));
   }
   if (options.iterations < 1) throw Error(ErrorCode::kBadArgument, "a decomposition takes an iteration at least");
   if (!(options.tolerance >= 0) || !std::isfinite(options.tolerance)) {

@@ -63,8 +63,10 @@ struct Pieces {
 };
 
 [[noreturn]] void refuseRig(const Asset& asset) {
-  throw Error(ErrorCode::kUnsupported, "the model has a rig of its own", asset.name,
-              "--replace-rig takes it out first, --keep-skeleton keeps its skeleton and makes only the weights anew");
+  throw Error(
+      ErrorCode::kUnsupported, "the model has a rig of its own", asset.name,
+      "`existing-rig: replace` takes it out first, `existing-rig: keep-skeleton` keeps its skeleton and makes only the "
+      "weights anew");
 }
 
 // Joints that the file gives weight. Control joints (IK targets, poles, end sites) move no vertex and must not begin
@@ -295,11 +297,12 @@ AutoRigReport autoRig(Asset& asset, const AutoRigOptions& options, Progress& pro
   const bool rigged = hasRig(asset);
   if (options.chains && (!looksForLimbs || options.existingRig == ExistingRig::kKeepSkeleton)) {
     throw Error(ErrorCode::kBadArgument, "chains need a rigger that looks for limbs", asset.name,
-                "choose the rigger template, or leave chains out");
+                "choose the rigger template, or leave `chains` out");
   }
   if (rigged && options.existingRig == ExistingRig::kRefuse) refuseRig(asset);
   if (!rigged && options.existingRig == ExistingRig::kKeepSkeleton) {
-    throw Error(ErrorCode::kBadArgument, "the model has no skeleton to keep", asset.name, "leave --keep-skeleton out");
+    throw Error(ErrorCode::kBadArgument, "the model has no skeleton to keep", asset.name,
+                "leave `existing-rig: keep-skeleton` out");
   }
   try {
     return runStages(asset, options, progress);

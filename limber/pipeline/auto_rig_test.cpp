@@ -160,8 +160,8 @@ TEST(AutoRig, ARiggedModelIsRefusedUnlessToldWhatToDo) {
   const Json before = testing::documentJson(asset);
   const Error error = errorOf(asset, withHandles(4));
   EXPECT_EQ(error.code(), ErrorCode::kUnsupported);
-  EXPECT_THAT(error.what(), HasSubstr("--replace-rig"));
-  EXPECT_THAT(error.what(), HasSubstr("--keep-skeleton"));
+  EXPECT_THAT(error.what(), HasSubstr("`existing-rig: replace`"));
+  EXPECT_THAT(error.what(), HasSubstr("`existing-rig: keep-skeleton`"));
   EXPECT_EQ(testing::documentJson(asset), before);
 }
 

@@ -93,6 +93,17 @@ class JointOrder {
   Skeleton skeleton_;
 };
 
+// What goes wrong is said of the file of that name.
+template <class Read>
+Skeleton withinTemplate(std::string_view name, Read&& read) {
+  try {
+    return read();
+  } catch (const Error& error) {
+    if (error.where().find(name) != std::string::npos) throw;
+    throw error.within(name);
+  }
+}
+
 }  // namespace
 
 Skeleton parseTemplate(std::string_view text) {
@@ -107,16 +118,15 @@ Skeleton parseTemplate(std::string_view text) {
 }
 
 Skeleton readTemplateFile(const std::filesystem::path& path) {
-  try {
-    if (path.extension() == ".json") {
-      const Bytes text = readFile(path);
-      return parseTemplate({reinterpret_cast<const char*>(text.data()), text.size()});
-    }
-    return readMotion(path).skeleton;
-  } catch (const Error& error) {
-    if (error.where().find(path.string()) != std::string::npos) throw;
-    throw error.within(path.string());
-  }
+  if (path.extension() == ".json") return readTemplateFile(readFile(path), path.string());
+  return withinTemplate(path.string(), [&] { return readMotion(path).skeleton; });
+}
+
+Skeleton readTemplateFile(ByteSpan bytes, std::string_view name) {
+  return withinTemplate(name, [&] {
+    if (!name.ends_with(".json")) return readMotion(bytes, name).skeleton;
+    return parseTemplate({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  });
 }
 
 }  // namespace limber

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string_view>
 
+#include "limber/core/file.h"
 #include "limber/skeleton/skeleton.h"
 
 namespace limber {
@@ -15,5 +16,6 @@ Skeleton parseTemplate(std::string_view json);
 
 // From a .json as above, or the skeleton in rest pose of any other file: a model with a rig, or a motion (readMotion).
 Skeleton readTemplateFile(const std::filesystem::path& path);
+Skeleton readTemplateFile(ByteSpan bytes, std::string_view name);
 
 }  // namespace limber

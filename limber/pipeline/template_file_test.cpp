@@ -55,4 +55,22 @@ TEST(TemplateFile, RefusesAFileThatIsNotThere) {
   EXPECT_THROW(readTemplateFile("/nowhere/template.glb"), Error);
 }
 
+TEST(TemplateFile, BytesAreReadByTheirName) {
+  const std::string_view json = R"({"joints": [{"name": "root", "position": [0, 1, 0]}]})";
+  EXPECT_EQ(readTemplateFile(asBytes(json), "own.json").joints[0].name, "root");
+  const std::string_view bvh =
+      "HIERARCHY\nROOT hips\n{\nOFFSET 0 1 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nEnd Site\n{\nOFFSET 0 1 "
+      "0\n}\n}\n"
+      "MOTION\nFrames: 1\nFrame Time: 0.1\n0 0 0\n";
+  EXPECT_EQ(readTemplateFile(asBytes(bvh), "own.bvh").joints[0].name, "hips");
+  for (const char* name : {"own.json", "own.bvh", "own.glb"}) {
+    try {
+      readTemplateFile(asBytes("nothing"), name);
+      ADD_FAILURE() << name;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.where().rfind(name, 0), 0u) << error.what();
+    }
+  }
+}
+
 }  // namespace limber

@@ -315,7 +315,7 @@ std::vector<Guess> planGuesses(const std::optional<ShapeReading>& shape, const P
     throw Error(ErrorCode::kUnsupported,
                 "the model has no trunk between two sides that are alike, whose curves could be followed",
                 std::string(asked->name),
-                "--up and --front say how it stands; humanoid, quadruped and bird need neither");
+                "`up` and `front` say how it stands; humanoid, quadruped and bird need neither");
   }
   std::vector<Guess> guesses;
   if (asked) {

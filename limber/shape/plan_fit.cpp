@@ -255,7 +255,7 @@ TemplateFit fitPlan(const PlanKind& kind, const ShapeReading& reading) {
     throw Error(ErrorCode::kUnsupported,
                 fmt::format("needs {}{} pairs of legs, and the model has {}", kind.fewestLegs,
                             kind.mostLegs > kind.fewestLegs ? fmt::format(" to {}", kind.mostLegs) : "", legs),
-                std::string(kind.name), "--template auto takes what suits the model");
+                std::string(kind.name), "`template: auto` takes what suits the model");
   }
   return PlanBuilder(kind, reading).build();
 }

@@ -48,7 +48,7 @@ void checkWeightArguments(const TriMesh& mesh, std::span<const Bone> bones, cons
     throw KnownError(ErrorKind::kNoSurface, {ErrorCode::kBadArgument, "the mesh has no triangle"});
   }
   if (options.maxInfluences < 1 || options.maxInfluences > kMostSlots) {
-    throw Error(ErrorCode::kBadArgument, "a vertex can keep 1 to 8 influences", {}, "choose --max-influences 1 to 8");
+    throw Error(ErrorCode::kBadArgument, "a vertex can keep 1 to 8 influences", {}, "choose `max-influences` 1 to 8");
   }
 }
 

@@ -46,9 +46,10 @@ class Model:
     @property
     def weights(self) -> tuple[NDArray[np.uint32], NDArray[np.float32]]:
         """(V, K) joints and (V, K) weights, strongest first; 0 for an unused slot"""
-    def rig(self, rigger: str = "sphere-mesh", *, template: Optional[str] = None, skinning: str = "bone-heat",
-            handles: Optional[int] = None, max_influences: int = 4, existing_rig: str = "refuse",
-            pins: Mapping[str, ArrayLike] = {}, progress: Optional[Callable[[str, float], Any]] = None) -> dict[str, Any]: ...
+    def rig(self, rigger: Optional[str] = None, *, template: Optional[str | os.PathLike[str]] = None, skinning: str = "bone-heat",
+            pieces: str = "auto", handles: Optional[int] = None, max_influences: int = 4, existing_rig: str = "refuse",
+            pins: Mapping[str, ArrayLike] = {}, up: Optional[str] = None, front: Optional[str] = None, upright: bool = False,
+            chains: bool = False, progress: Optional[Callable[[str, float], Any]] = None) -> dict[str, Any]: ...
     def attach_rig(self, names: Sequence[str], parents: ArrayLike, positions: ArrayLike, joints: ArrayLike,
                    weights: ArrayLike) -> None: ...
     def set_weights(self, joints: ArrayLike, weights: ArrayLike) -> None: ...

@@ -40,7 +40,7 @@ def two_joints(vertices):
     return np.tile([0, 1], (len(vertices), 1)), np.stack([1 - upper, upper], axis=1)
 
 
-class Files(unittest.TestCase):
+class InFolder(unittest.TestCase):
     def setUp(self):
         self.folder = tempfile.TemporaryDirectory()
         self.addCleanup(self.folder.cleanup)
@@ -48,6 +48,8 @@ class Files(unittest.TestCase):
     def path(self, name):
         return pathlib.Path(self.folder.name) / name
 
+
+class Files(InFolder):
     def test_same_bytes_as_the_program(self):
         if not PROGRAM:
             self.skipTest("no program to compare with")
@@ -162,7 +164,7 @@ class Arrays(unittest.TestCase):
         self.assertEqual(figures["joints_inside"], 1)
 
 
-class Rigging(unittest.TestCase):
+class Rigging(InFolder):
     def test_methods_have_names(self):
         self.assertIn("template", limber.riggers())
         self.assertIn("bone-heat", limber.skinning_methods())
@@ -181,9 +183,42 @@ class Rigging(unittest.TestCase):
         self.assertEqual(model.rig(handles=5, existing_rig="replace")["counts"]["joints"], 5)
         for wrong in [dict(rigger="x"), dict(skinning="x"), dict(existing_rig="x"), dict(max_influences=0), dict(template="x"), dict(pins={"head": (0, 1, 0)}),
                       dict(template="quadruped", handles=3), dict(template="quadruped", rigger="prop"), dict(existing_rig="keep-skeleton", handles=3),
-                      dict(template="quadruped", pins={"head": (0, 1)})]:
+                      dict(template="quadruped", pins={"head": (0, 1)}), dict(template="quadruped", up="+w"), dict(template="quadruped", up="+y", front="y"),
+                      dict(chains=True), dict(pieces="x"), dict(template=self.path("nothing.bvh"))]:
             with self.assertRaises(limber.Error):
                 limber.sample("quadruped").rig(**wrong)
+
+    def test_errors_name_the_arguments(self):
+        with self.assertRaises(limber.Error) as caught:
+            limber.sample("quadruped").rig(existing_rig="keep-skeleton", handles=3)
+        self.assertEqual((caught.exception.where, caught.exception.remedy), ("handles", 'leave existing_rig="keep-skeleton" out'))
+        with self.assertRaises(limber.Error) as caught:
+            limber.sample("quadruped").rig(max_influences=9)
+        self.assertEqual(caught.exception.where, "max_influences")
+        model = limber.sample("quadruped")
+        model.rig(handles=5)
+        with self.assertRaises(limber.Error) as caught:
+            model.rig()
+        self.assertIn('existing_rig="replace" takes it out first', caught.exception.remedy)
+        self.assertNotIn("`", str(caught.exception))
+
+    def test_same_bytes_with_every_option(self):
+        subprocess.run([PROGRAM, "sample", "biped", "-o", self.path("bare.glb"), "--quiet"], check=True)
+        bare = limber.read(self.path("bare.glb"))
+        humanoid = bare.copy()
+        humanoid.rig(template="humanoid")
+        humanoid.write(self.path("own.glb"))
+        places = dict(zip(humanoid.joint_names, humanoid.joint_positions))
+        hand = tuple(float(c) for c in np.round(places["leftHand"] + (0.01, 0, 0), 3))
+        for options, words in [
+            (dict(template="humanoid", pins={"leftHand": hand}, up="+y", front="+z", upright=True, chains=True, pieces="soft"),
+             ["--template", "humanoid", "--pin", "leftHand=%r,%r,%r" % hand, "--up", "+y", "--front", "+z", "--upright", "--chains", "--pieces", "soft"]),
+            (dict(template=self.path("own.glb")), ["--template", self.path("own.glb")]),
+        ]:
+            model = bare.copy()
+            model.rig(**options)
+            subprocess.run([PROGRAM, "rig", self.path("bare.glb"), *words, "--quiet", "-o", self.path("program.glb")], check=True)
+            self.assertEqual(model.glb(), self.path("program.glb").read_bytes())
 
     def test_a_listener_that_raises_stops_it(self):
         model = limber.sample("winged")

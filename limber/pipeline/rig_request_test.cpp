@@ -1,0 +1,172 @@
+#include "limber/pipeline/rig_request.h"
+
+#include <functional>
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "limber/core/error.h"
+
+namespace limber {
+
+namespace {
+
+using ::testing::HasSubstr;
+
+Error refusalOf(const std::function<void()>& call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    return error;
+  }
+  ADD_FAILURE() << "nothing is refused";
+  return {ErrorCode::kFile, ""};
+}
+
+Error refusalOf(const RigRequest& request) {
+  return refusalOf([&] { optionsOf(request); });
+}
+
+using Change = std::function<void(RigRequest&)>;
+
+// Every option, made to differ from what it is where nobody asks.
+struct NamedChange {
+  const char* option;
+  Change change;
+};
+const std::vector<NamedChange>& templateOptions() {
+  static const std::vector<NamedChange> options = {
+      {"`pins`",
+       [](RigRequest& r) {
+         r.pins = {{"head", Vec3(0, 1, 0)}};
+       }},
+      {"`up`", [](RigRequest& r) { r.up = "+z"; }},
+      {"`front`", [](RigRequest& r) { r.front = "x"; }},
+      {"`upright`", [](RigRequest& r) { r.upright = true; }},
+      {"`chains`", [](RigRequest& r) { r.chains = true; }},
+  };
+  return options;
+}
+
+}  // namespace
+
+TEST(RigRequest, AsksForTheUsualWhereNothingIsSaid) {
+  for (const RigRequest& request : {RigRequest(), rigRequestFromJson("{}")}) {
+    const AutoRigOptions options = optionsOf(request), usual;
+    EXPECT_EQ(options.rigger, usual.rigger);
+    EXPECT_EQ(options.skinning, usual.skinning);
+    EXPECT_EQ(options.weights.maxInfluences, usual.weights.maxInfluences);
+    EXPECT_EQ(options.weights.pieces, usual.weights.pieces);
+    EXPECT_EQ(options.existingRig, usual.existingRig);
+    EXPECT_EQ(options.rig.handles, usual.rig.handles);
+    EXPECT_EQ(options.rig.templateName, usual.rig.templateName);
+    EXPECT_FALSE(options.rig.up || options.rig.front || options.rig.templateSkeleton || options.chains ||
+                 options.standUpright);
+    EXPECT_TRUE(options.rig.pins.empty());
+  }
+}
+
+TEST(RigRequest, ReadsEveryOptionOfJson) {
+  const AutoRigOptions fitted = optionsOf(rigRequestFromJson(R"({"template": "humanoid", "maxInfluences": 8,
+      "skinning": "envelopes", "pieces": "soft", "existingRig": "replace", "up": "-Z", "front": "+x",
+      "pins": {"head": [0, 1.5, -2], "hips": [1, 2, 3]}, "upright": true, "chains": true})"));
+  EXPECT_EQ(fitted.rigger, "template");
+  EXPECT_EQ(fitted.rig.templateName, "humanoid");
+  EXPECT_EQ(fitted.weights.maxInfluences, 8u);
+  EXPECT_EQ(fitted.skinning, "envelopes");
+  EXPECT_EQ(fitted.weights.pieces, PieceMode::kSoft);
+  EXPECT_EQ(fitted.existingRig, ExistingRig::kReplace);
+  EXPECT_EQ(fitted.rig.up.value(), Vec3(0, 0, -1));
+  EXPECT_EQ(fitted.rig.front.value(), Vec3(1, 0, 0));
+  ASSERT_EQ(fitted.rig.pins.size(), 2u);
+  EXPECT_EQ(fitted.rig.pins[0].joint, "head");
+  EXPECT_EQ(fitted.rig.pins[0].place, Vec3(0, 1.5, -2));
+  EXPECT_TRUE(fitted.standUpright && fitted.chains);
+
+  const AutoRigOptions handles = optionsOf(rigRequestFromJson(R"({"rigger": "curve-skeleton", "handles": 7})"));
+  EXPECT_EQ(handles.rigger, "curve-skeleton");
+  EXPECT_EQ(handles.rig.handles, Index{7});
+}
+
+TEST(RigRequest, RefusesOtherJsonByTheKey) {
+  for (const auto& [json, key] : std::vector<std::pair<const char*, const char*>>{
+           {R"({"handels": 3})", "handels"},
+           {R"({"handles": "many"})", "handles"},
+           {R"({"handles": -1})", "handles"},
+           {R"({"handles": 2.5})", "handles"},
+           {R"({"handles": 4294967301})", "handles"},
+           {R"({"chains": 1})", "chains"},
+           {R"({"pins": [1, 2, 3]})", "pins"},
+           {R"({"pins": {"head": [1, 2]}})", "head"},
+           {R"({"pins": {"head": [1, 2, null]}})", "head"},
+           {R"({"rigger": null})", "rigger"},
+           {"[]", "object"},
+           {"{", "options"},
+       }) {
+    const Error error = refusalOf([&, text = json] { rigRequestFromJson(text); });
+    EXPECT_EQ(error.code(), ErrorCode::kBadArgument) << json;
+    EXPECT_THAT(error.what(), HasSubstr(key)) << json;
+  }
+}
+
+TEST(RigRequest, RefusesWhatDoesNotGoTogether) {
+  RigRequest kept;
+  kept.existingRig = "keep-skeleton";
+  std::vector<NamedChange> ofJoints = templateOptions();
+  ofJoints.push_back({"`handles`", [](RigRequest& r) { r.handles = 3; }});
+  ofJoints.push_back({"`rigger`", [](RigRequest& r) { r.rigger = "prop"; }});
+  ofJoints.push_back({"`template`", [](RigRequest& r) { r.templateName = "auto"; }});
+  for (const auto& [option, change] : ofJoints) {
+    RigRequest request = kept;
+    change(request);
+    EXPECT_EQ(refusalOf(request).where(), option);
+  }
+  for (const auto& [option, change] : templateOptions()) {
+    RigRequest request;
+    change(request);
+    EXPECT_EQ(refusalOf(request).where(), option);
+    EXPECT_EQ(refusalOf(request).remedy(), "name one: `template: auto`");
+    request.rigger = "template";
+    EXPECT_EQ(optionsOf(request).rigger, "template");
+    request.rigger.reset();
+    request.templateName = "humanoid";
+    EXPECT_EQ(optionsOf(request).rigger, "template");
+    request.handles = 3;
+    EXPECT_EQ(refusalOf(request).where(), "`handles`");
+  }
+  RigRequest both;
+  both.templateName = "humanoid";
+  both.rigger = "prop";
+  EXPECT_EQ(refusalOf(both).where(), "`template`");
+  both.rigger = "template";
+  EXPECT_EQ(optionsOf(both).rig.templateName, "humanoid");
+}
+
+TEST(RigRequest, RefusesWhatIsOutOfRange) {
+  for (const NamedChange& wrong : std::vector<NamedChange>{
+           {"`handles`", [](RigRequest& r) { r.handles = 0; }},
+           {"`handles`", [](RigRequest& r) { r.handles = kNoIndex; }},
+           {"`max-influences`", [](RigRequest& r) { r.maxInfluences = 0; }},
+           {"`max-influences`", [](RigRequest& r) { r.maxInfluences = 9; }},
+           {"`existing-rig`", [](RigRequest& r) { r.existingRig = "keep"; }},
+           {"`up`", [](RigRequest& r) { r.templateName = "auto", r.up = "++y"; }},
+           {"`front`", [](RigRequest& r) { r.templateName = "auto", r.front = "w"; }},
+           {"`front`", [](RigRequest& r) { r.templateName = "auto", r.up = "+y", r.front = "-y"; }},
+           {"`pins`",
+            [](RigRequest& r) {
+              r.templateName = "auto";
+              r.pins = {{"head", Vec3(0, std::numeric_limits<double>::infinity(), 0)}};
+            }},
+           {"", [](RigRequest& r) { r.templateName = "nobody"; }},
+           {"", [](RigRequest& r) { r.pieces = "nobody"; }},
+       }) {
+    RigRequest request;
+    wrong.change(request);
+    const Error error = refusalOf(request);
+    EXPECT_EQ(error.where(), wrong.option);
+    EXPECT_EQ(error.code(), ErrorCode::kBadArgument);
+  }
+}
+
+}  // namespace limber
