@@ -2,5 +2,14 @@ import type { Limber } from './limber.d.mts';
 export type * from './limber.d.mts';
 export type { Command, KeyOfJoint, PoseKey, Ray, SurfaceDab, Vector } from './commands.js';
 
-/** The engine. wasmBinary: the bytes of limber/wasm, where they are at hand; else they are read or fetched. */
-export function load(options?: { wasmBinary?: Uint8Array | ArrayBuffer }): Promise<Limber>;
+export interface LoadOptions {
+  /** The bytes of limber/wasm, or the code compiled, where it is at hand; else it is read or fetched. */
+  wasmBinary?: BufferSource | WebAssembly.Module;
+  /** How far a call is: the fraction, 0 to 1, of the stage. */
+  onProgress?: (stage: string, fraction: number) => void;
+  /** How errors name options: existingRig: 'replace' (as they do if nothing is said), or --replace-rig. */
+  optionNames?: 'javascript' | 'program';
+}
+
+/** The engine, on this thread. */
+export function load(options?: LoadOptions): Promise<Limber>;

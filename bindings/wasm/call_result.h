@@ -23,8 +23,11 @@ struct CallResult {
   std::string account;
 };
 
+// How errors name options.
+inline OptionSpelling optionSpelling = OptionSpelling::kJavaScript;
+
 inline CallResult failure(const Error& error) {
-  const auto told = [](std::string_view text) { return spellOptions(text, OptionSpelling::kJavaScript); };
+  const auto told = [](std::string_view text) { return spellOptions(text, optionSpelling); };
   Json account = {{"code", std::string(errorCodeName(error.code()))},
                   {"message", told(error.message())},
                   {"where", told(error.where())},

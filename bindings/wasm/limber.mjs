@@ -69,7 +69,7 @@ import createEngine from './limber_engine.mjs';
  *             box: { min: Vector, max: Vector } }} SceneMember
  *
  * @typedef {'rigger' | 'skinning' | 'deformer' | 'solver' | 'retargeting'} MethodKind
- * @typedef {{ [kind in MethodKind]: { name: string, summary: string }[] }} Methods
+ * @typedef {{ [kind in MethodKind | 'template' | 'pieces']: { name: string, summary: string }[] }} Methods
  * @typedef {{ joints: number, influences: number, smoothness: number, stretch: number, volume: number,
  *             target_distance: number | null,
  *             motion: { bone_direction_degrees: number, end_effector_share: number,
@@ -114,12 +114,12 @@ import createEngine from './limber_engine.mjs';
 /**
  * @param {BufferSource | WebAssembly.Module} wasm limber_engine.wasm, or its first part, as its content or compiled
  * @param {{ onProgress?: (stage: string, fraction: number) => void, codecs?: Codecs, rest?: () => BufferSource | WebAssembly.Module,
- *           onInstance?: (instance: WebAssembly.Instance) => void }} [given]
+ *           onInstance?: (instance: WebAssembly.Instance) => void, optionNames?: 'javascript' | 'program' }} [given]
  *   codecs may be put in later; rest: gives the other part of an engine in two (split_engine.mjs), asked once, by the first
- *   call that needs it
+ *   call that needs it; optionNames: how errors name options, existingRig: 'replace' or --replace-rig
  */
 export async function loadLimber(wasm, given = {}) {
-  const { rest, onInstance, ...settings } = given;
+  const { rest, onInstance, optionNames, ...settings } = given;
   const engine = await new Promise((resolve, reject) => {
     const instantiateWasm = (imports, done) => {
       instantiate(wasm, imports, rest).then((instance) => { onInstance?.(instance); done(instance); }).catch(reject);
@@ -127,6 +127,7 @@ export async function loadLimber(wasm, given = {}) {
     };
     createEngine({ ...settings, instantiateWasm }).then(resolve, reject);
   });
+  if (optionNames === 'program') engine._limber_spell_options_as_program();
   return {
     /** @type {(file: Uint8Array, name: string, options?: RigOptions) => RigResult} */
     rig: (file, name, options = {}) => {

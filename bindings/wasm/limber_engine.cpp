@@ -17,9 +17,11 @@
 #include "limber/pipeline/rig_request.h"
 #include "limber/pipeline/template_file.h"
 #include "limber/retarget/retarget_method.h"
+#include "limber/rigging/template_rigger.h"
 #include "limber/samples/sample_motions.h"
 #include "limber/samples/sample_poses.h"
 #include "limber/skinning/deformer.h"
+#include "page_progress.h"
 
 namespace {
 
@@ -48,7 +50,7 @@ LIMBER_EXPORT CallResult* limber_rig(const std::uint8_t* file, std::size_t fileS
     const limber::AutoRigOptions rig = limber::optionsOf(
         requestFrom({options, optionsSize}, {templateFile, templateFileSize}, {templateName, templateNameSize}));
     limber::Asset asset = limber::readAsset({file, fileSize}, {name, nameSize});
-    limber::Progress progress;
+    limber::Progress progress(limber::wasm::reportProgress);
     const limber::AutoRigReport report = limber::autoRig(asset, rig, progress);
     return {true, limber::writeGlb(asset), limber::dumpReport(limber::toJson(report), -1)};
   });
@@ -81,7 +83,9 @@ LIMBER_EXPORT CallResult* limber_methods() {
                        {"skinning", list(limber::weightMethods())},
                        {"deformer", list(limber::deformers())},
                        {"solver", list(limber::ikMethods())},
-                       {"retargeting", list(limber::retargetMethods())}};
+                       {"retargeting", list(limber::retargetMethods())},
+                       {"template", list(limber::namedTemplates())},
+                       {"pieces", list(limber::pieceModes())}};
     return {true, {}, limber::dumpReport(json, -1)};
   });
 }
@@ -109,6 +113,11 @@ LIMBER_EXPORT CallResult* limber_sample_poses() {
     }
     return {true, {}, limber::dumpReport(poses, -1)};
   });
+}
+
+// For a program around the engine: errors name options as that of limber does.
+LIMBER_EXPORT void limber_spell_options_as_program() {
+  limber::wasm::optionSpelling = limber::OptionSpelling::kProgram;
 }
 
 LIMBER_EXPORT int limber_ok(const CallResult* result) {

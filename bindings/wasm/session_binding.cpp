@@ -5,8 +5,6 @@
 #include <cstring>
 #include <memory>
 
-#include <emscripten/emscripten.h>
-
 #include "call_result.h"
 #include "limber/asset/bvh_write.h"
 #include "limber/asset/json_text.h"
@@ -18,6 +16,7 @@
 #include "limber/session/surface_parts.h"
 #include "limber/skeleton/keyframes.h"
 #include "limber/skinning/direct_delta_mush.h"
+#include "page_progress.h"
 
 namespace {
 
@@ -26,6 +25,7 @@ using limber::Index;
 using limber::Json;
 using limber::wasm::CallResult;
 using limber::wasm::guarded;
+using limber::wasm::reportProgress;
 
 // The normals that a page shades surfaces with, as bound; of the rigs that were asked for last.
 class ShadingNormals {
@@ -57,15 +57,6 @@ struct SessionHandle {
 
 std::string textOf(const Json& json) {
   return limber::dumpReport(json, -1);
-}
-
-// The page's listener, if it gave the engine one.
-void reportProgress(std::string_view stage, double fraction) {
-  EM_ASM(
-      {
-        if (Module["onProgress"]) Module["onProgress"](UTF8ToString($0, $1), $2);
-      },
-      stage.data(), stage.size(), fraction);
 }
 
 template <class T>

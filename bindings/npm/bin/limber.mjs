@@ -1,51 +1,51 @@
 #!/usr/bin/env node
-// npx limber rig IN -o OUT: the options of limber rig that the engine takes by itself.
+// npx limber rig IN -o OUT: limber rig by the engine as WebAssembly.
 import { readFileSync, renameSync, rmSync, writeFileSync } from 'node:fs';
-import { basename, resolve } from 'node:path';
+import { basename, extname, resolve } from 'node:path';
 import { parseArgs } from 'node:util';
 import { load } from '../dist/index.mjs';
+import { engineOptions, optionsHelp, parsed, Refused } from './rig_options.mjs';
 
-const usage = `limber rig IN.glb -o OUT.glb [options]     (limber.mjs, the engine as WebAssembly)
+const version = () => JSON.parse(readFileSync(new URL('../package.json', import.meta.url), 'utf8')).version;
 
-  --handles N           how many joints (default: as many as suit the model)
-  --rigger NAME         sphere-mesh, curve-skeleton, template, prop
-  --skinning NAME       bone-heat, geodesic-voxel, bounded-biharmonic, envelopes, nearest-bone
-  --pieces NAME         auto, rigid, soft
-  --max-influences N    joints that a vertex may follow, 1 to 8
-  --chains              what hangs gets joints that swing
-  --replace-rig         take the model's own rig out first
-  --keep-skeleton       keep the model's own skeleton, make its weights anew
-  --json FILE           write the report; - is standard output
-  -q, --quiet           print nothing but errors
-
-The other commands are the native program's.`;
-
-class Refused extends Error {}
+/** What was wrong with a file or in the engine; its words stand for themselves. */
+class Failed extends Error {}
 
 function fail(problem, code = 1) {
   console.error(`limber: ${problem}`);
   process.exitCode = code;
 }
 
-function options(args) {
+async function help() {
+  const { rigger, template, skinning, pieces } = (await load()).methods();
+  const list = (title, methods) => `${title}:\n${methods.map(({ name, summary }) => `  ${name.padEnd(20)}${summary}`).join('\n')}\n`;
+  return `Give a model handles and skin weights (the engine as WebAssembly)
+Usage: limber rig [OPTIONS] IN.glb -o OUT.glb     IN may be - for standard input
+
+Options:
+${optionsHelp}
+
+${list('Riggers', rigger)}${list('Templates', template)}${list('Skinning methods', skinning)}${list('Pieces', pieces)}
+Reads GLB, and glTF in one file. The native program reads other formats and has the other commands.
+
+Example:
+  npx limber rig scan.glb --template humanoid --pin leftHand=0.71,1.43,0.02 -o character.glb`;
+}
+
+function given(args) {
   try {
-    return parseArgs({
-      args, allowPositionals: true, options: {
-        output: { type: 'string', short: 'o' }, handles: { type: 'string' }, rigger: { type: 'string' }, skinning: { type: 'string' },
-        pieces: { type: 'string' }, 'max-influences': { type: 'string' }, chains: { type: 'boolean' }, 'replace-rig': { type: 'boolean' },
-        'keep-skeleton': { type: 'boolean' }, json: { type: 'string' }, quiet: { type: 'boolean', short: 'q' }, help: { type: 'boolean', short: 'h' },
-        version: { type: 'boolean' },
-      },
-    });
+    return parseArgs({ args, allowPositionals: true, options: parsed });
   } catch (error) {
-    throw new Refused(`${error.message} (limber --help shows how to call it)`);
+    throw new Refused(error.message);
   }
 }
 
-function number(text, name) {
-  if (text === undefined) return undefined;
-  if (!/^\d+$/.test(text) || Number(text) < 1) throw new Refused(`--${name} takes a number from 1 on, not ${text}`);
-  return Number(text);
+function read(path) {
+  try {
+    return readFileSync(path === '-' ? 0 : path);
+  } catch (error) {
+    throw new Failed(`${path}: cannot be opened: ${error.message}`);
+  }
 }
 
 /** All or nothing: the file stands in its place once it is whole. */
@@ -59,41 +59,54 @@ function write(path, content) {
   }
 }
 
-async function main() {
-  const { values, positionals: [command, input, ...others] } = options(process.argv.slice(2));
-  if (values.version) return console.log(`limber ${JSON.parse(readFileSync(new URL('../package.json', import.meta.url))).version}`);
-  if (values.help || !command) return console.log(usage);
-  if (command !== 'rig') throw new Refused(`there is no command '${command}' here; there is: rig (the native program has the others)`);
-  if (!input || others.length > 0 || !values.output) throw new Refused('rig takes one model and -o OUT.glb');
-  const { output, json } = values;
+function checkFiles(input, others, { output, json, template = '' }) {
+  if (!input || others.length > 0 || output === undefined) throw new Refused('rig takes one model and -o OUT.glb');
   if (output !== '-' && !/\.glb$/i.test(output)) throw new Refused(`${output}: a .glb is written, or - for standard output`);
-  if (json !== undefined && (json === output || (json !== '-' && [input, output].some((path) => resolve(path) === resolve(json))))) {
-    throw new Refused('--json needs a file of its own');
+  const isTaken = (path) => (json === '-' ? path === '-' : path !== '-' && resolve(path) === resolve(json));
+  if (json !== undefined && (isTaken(output) || (json !== '-' && [input, template].some(isTaken)))) throw new Refused('--json needs a file of its own');
+}
+
+/** A template's name, or what is in the file of one. */
+const templateOf = (name) => (extname(name) ? { name: basename(name), bytes: read(name) } : name);
+
+function tellWarnings(warnings) {
+  for (const { kind, message, where, count } of warnings) {
+    const place = where ? `, ${count === 1 ? 'at' : 'first at'} ${where}` : '';
+    console.error(`warning: ${message}${count > 1 ? ` (${count})` : ''} [${kind}]${place}`);
   }
-  if (values['replace-rig'] && values['keep-skeleton']) throw new Refused('--replace-rig and --keep-skeleton exclude each other');
-  const rig = {
-    handles: number(values.handles, 'handles'), maxInfluences: number(values['max-influences'], 'max-influences'), rigger: values.rigger, skinning: values.skinning,
-    pieces: values.pieces, chains: values.chains,
-    existingRig: values['replace-rig'] ? 'replace' : values['keep-skeleton'] ? 'keep-skeleton' : undefined,
-  };
-  let bytes;
-  try {
-    bytes = readFileSync(input);
-  } catch (error) {
-    return fail(`${input}: cannot be opened: ${error.message}`);
-  }
-  const limber = await load();
-  const result = limber.rig(bytes, basename(input), Object.fromEntries(Object.entries(rig).filter(([, value]) => value !== undefined)));
+}
+
+async function rig(input, { output, json, strict, quiet }, options) {
+  if (options.template) options.template = templateOf(options.template);
+  const bytes = read(input);
+  const limber = await load({ optionNames: 'program' });
+  const result = limber.rig(bytes, basename(input), options);
   if (!result.ok) {
-    const { where, message, remedy } = result.error;
-    return fail(`${where ? `${where}: ` : ''}${message}${remedy ? ` (${remedy})` : ''}`);
+    const { where, message, remedy } = result.error, line = `${where ? `${where}: ` : ''}${message}${remedy ? ` (${remedy})` : ''}`;
+    throw where.startsWith('--') ? new Refused(line) : new Failed(line);
   }
-  const report = `${JSON.stringify(result.report, null, 2)}\n`;
+  const { warnings } = result.report, format = bytes.subarray(0, 4).equals(Buffer.from('glTF')) ? 'glb' : 'gltf';
+  if (strict && warnings.length > 0) throw new Failed(`${warnings[0].message} [${warnings[0].kind}] (--strict takes warnings as errors)`);
+  const report = `${JSON.stringify({ limber: version(), command: 'rig', input: { file: input, format }, output, ...result.report }, null, 2)}\n`;
   if (json !== undefined && json !== '-') write(json, report); // before the model: what cannot be written leaves none
   if (output === '-') process.stdout.write(result.glb);
   else write(output, result.glb);
   if (json === '-') process.stdout.write(report);
-  else if (!values.quiet && output !== '-') console.log(`written: ${output}`);
+  if (quiet) return;
+  tellWarnings(warnings);
+  if (output !== '-' && json !== '-') console.log(`written: ${output}`);
 }
 
-main().catch((error) => fail(error.message, error instanceof Refused ? 2 : 1));
+async function main() {
+  const { values, positionals: [command, input, ...others] } = given(process.argv.slice(2));
+  if (values.version) return console.log(`limber ${version()}`);
+  if (values.help || !command) return console.log(await help());
+  if (command !== 'rig') throw new Refused(`there is no command '${command}' here; there is: rig (the native program has the others)`);
+  checkFiles(input, others, values);
+  return rig(input, values, engineOptions(values));
+}
+
+main().catch((error) => {
+  if (error instanceof Refused) fail(`${error.message} (limber --help shows how to call it)`, 2);
+  else fail(error.message);
+});

@@ -15,9 +15,21 @@ rmSync(work, { recursive: true, force: true });
 mkdirSync(work, { recursive: true });
 const at = (name) => join(work, name);
 const run = (command, args, options = {}) => execFileSync(command, args, { cwd: work, encoding: 'utf8', stdio: ['ignore', 'pipe', 'pipe'], ...options });
+writeFileSync(at('own.json'), '{"joints": [{"name": "root", "position": [0, 1, 0]}, {"name": "top", "parent": "root", "position": [0, 2, 0]}]}');
 writeFileSync(at('package.json'), '{"name": "somebody", "private": true, "type": "module"}');
 run('npm', ['install', '--offline', '--silent', '--no-audit', '--no-fund', tarball]);
 run(program, ['sample', 'biped', '-o', 'model.glb', '--quiet']);
+run(program, ['rig', 'model.glb', '--template', 'humanoid', '-o', 'person.glb', '--quiet']); // a template of one's own
+// Why `npx limber rig` does not take them; every other option of the program it does.
+const notOffered = {
+  'from-animation': 'bones of a mesh that moves are found by the native program alone', clip: 'goes with --from-animation', bones: 'goes with --from-animation',
+  fps: 'goes with --from-animation', 'adapter-folder': 'the engine starts no programs', adapter: 'the engine starts no programs', seed: 'goes with --adapter',
+  threads: 'the engine has one thread',
+};
+/** Of a help text: the options by name, each with its words. */
+const optionsIn = (help) => new Map([...help.matchAll(/^  (?:-\w,)?--([a-z-]+)(.*(?:\n {4,}\S.*)*)/gm)].map(([, name, words]) => [name, words]));
+writeFileSync(at('worker.mjs'), "export { startWorker } from 'limber/worker';");
+const { startWorker } = await import(pathToFileURL(at('worker.mjs')));
 const npx = (...args) => spawnSync('npx', ['--no-install', 'limber', ...args], { cwd: work, encoding: 'utf8' });
 
 const cases = {
@@ -36,6 +48,27 @@ const cases = {
     const broken = limber.rig(new Uint8Array([1, 2, 3]), 'broken.glb');
     assert.ok(!broken.ok && broken.error.where === 'broken.glb');
   },
+  async 'errors name options as its own calls do, and progress is told'() {
+    const { load } = await import(pathToFileURL(at('node_modules/limber/dist/index.mjs')));
+    const stages = new Set();
+    const limber = await load({ onProgress: (stage, fraction) => { assert.ok(fraction >= 0 && fraction <= 1); stages.add(stage.split(':')[0]); } });
+    const model = readFileSync(at('model.glb'));
+    for (const [options, where, remedy] of [
+      [{ existingRig: 'keep-skeleton', handles: 3 }, 'handles', "leave existingRig: 'keep-skeleton' out"], [{ maxInfluences: 9 }, 'maxInfluences', ''],
+      [{ up: '+y' }, 'up', "name one: template: 'auto'"], [{ handles: '3' }, 'handles', ''], [{ handels: 3 }, 'options', ''], [{ handles: NaN }, 'handles', ''],
+      [{ template: { name: 'own.json', bytes: new Uint8Array([1]) } }, 'own.json', null],
+    ]) {
+      const { ok, error } = limber.rig(model, 'model.glb', options);
+      assert.ok(!ok);
+      assert.ok(error.where.startsWith(where), JSON.stringify(error));
+      if (remedy !== null) assert.equal(error.remedy, remedy);
+    }
+    assert.match(limber.rig(readFileSync(at('person.glb')), 'person.glb').error.remedy, /^existingRig: 'replace' takes it out first/);
+    assert.equal(stages.size, 0);
+    assert.ok(limber.rig(model, 'model.glb', { handles: 5 }).ok);
+    assert.ok(stages.has('rig') && stages.has('skin'), [...stages].join());
+    assert.deepEqual(limber.methods().pieces.map(({ name }) => name), ['auto', 'rigid', 'soft']);
+  },
   async 'its code can be handed over'() {
     const { load } = await import(pathToFileURL(at('node_modules/limber/dist/index.mjs')));
     const limber = await load({ wasmBinary: readFileSync(at('node_modules/limber/dist/limber_engine.wasm')) });
@@ -47,13 +80,51 @@ const cases = {
     assert.deepEqual(readFileSync(at('npx.glb')), readFileSync(at('program.glb')));
     assert.equal(JSON.parse(readFileSync(at('report.json'))).counts.joints, 12);
     assert.match(npx('--version').stdout, /^limber \d+\.\d+\.\d+\n$/);
-    assert.match(npx('--help').stdout, /--handles N/);
+  },
+  'the program of the package rigs by every option of the native one'() {
+    const own = ['--template', 'person.glb'], turned = ['--up', '+y', '--front', '+z', '--upright', '--chains'];
+    for (const [model, ...words] of [
+      ['model.glb', '--template', 'humanoid', '--pin', 'leftHand=0.71,1.33,0.02', '--pin', 'head=0,1.6,0', ...turned], ['model.glb', ...own, '--max-influences', '2'],
+      ['model.glb', '--rigger', 'curve-skeleton', '--skinning', 'envelopes', '--pieces', 'rigid'], ['person.glb', '--keep-skeleton', '--max-influences', '8'],
+      ['person.glb', '--replace-rig', '--handles', '9'], ['model.glb', '--template', 'own.json'],
+    ]) {
+      const expected = spawnSync(program, ['rig', model, ...words, '-q', '-o', 'native.glb'], { cwd: work, encoding: 'utf8' });
+      const done = npx('rig', model, ...words, '-q', '-o', 'npx.glb');
+      assert.equal(done.status, expected.status, `${words}: ${done.stderr}${expected.stderr}`);
+      if (expected.status === 0) assert.deepEqual(readFileSync(at('npx.glb')), readFileSync(at('native.glb')), `${words}`);
+      assert.equal(done.stderr, expected.stderr.replace('limber rig --help', 'limber --help'));
+    }
+    const piped = spawnSync('npx', ['--no-install', 'limber', 'rig', '-', '-o', '-', '--handles', '12', '--json', 'piped.json'], { cwd: work, input: readFileSync(at('model.glb')) });
+    assert.deepEqual(piped.stdout, readFileSync(at('program.glb')));
+    const { limber, command, input, output } = JSON.parse(readFileSync(at('piped.json')));
+    assert.deepEqual([command, input, output], ['rig', { file: '-', format: 'glb' }, '-']);
+    assert.match(limber, /^\d+\.\d+\.\d+$/);
+  },
+  'its options are those of the native program, in the same words'() {
+    const native = optionsIn(run(program, ['rig', '--help'])), here = optionsIn(npx('--help').stdout);
+    assert.ok(native.size > 15 && here.size > 10);
+    assert.deepEqual([...native.keys()].filter((name) => !here.has(name)).sort(), Object.keys(notOffered).sort());
+    for (const [name, words] of here) {
+      assert.ok(native.has(name), `--${name} is none of the program's`);
+      const told = words.trim().replace(/^[A-Z]+ +/, '');
+      if (name !== 'output') assert.ok(native.get(name).includes(told), `--${name}: ${told}`); // the native program writes .gltf, too
+    }
+    const lists = run(program, ['rig', '--help']);
+    for (const [line] of npx('--help').stdout.matchAll(/^  [a-z]+(-[a-z]+)* {2,}\S.*$/gm)) assert.ok(lists.includes(line), line);
   },
   'what the program cannot do is one line, and no file'() {
     writeFileSync(at('garbage.glb'), 'glTF');
+    run(program, ['sample', 'stool', '-o', 'lone.glb', '--quiet']); // no template is likely: a warning
     for (const [args, code, words] of [
       [['rig', 'nothing.glb', '-o', 'x.glb'], 1, 'nothing.glb: cannot be opened'], [['rig', 'garbage.glb', '-o', 'x.glb'], 1, 'garbage.glb'],
       [['rig', 'model.glb'], 2, '-o OUT.glb'], [['pose', 'model.glb'], 2, 'there is no command'], [['rig', 'model.glb', '-o', 'x.glb', '--handles', 'many'], 2, '--handles'],
+      [['rig', 'model.glb', '-o', 'x.glb', '--pin', 'head=0,1,0'], 2, '--pin: takes a template to fit (name one: --template auto)'],
+      [['rig', 'model.glb', '-o', 'x.glb', '--template', 'auto', '--pin', 'head=0,1'], 2, '--pin takes JOINT=x,y,z'],
+      [['rig', 'model.glb', '-o', 'x.glb', '--max-influences', '9'], 2, '--max-influences: takes 1 to 8'], [['rig', 'model.glb', '-o', 'x.glb', '--up', '+w'], 2, '--up'],
+      [['rig', 'person.glb', '-o', 'x.glb'], 1, '--replace-rig takes it out first'], [['rig', 'person.glb', '-o', 'x.glb', '--keep-skeleton', '--replace-rig'], 2, 'excludes'],
+      [['rig', 'person.glb', '-o', 'x.glb', '--keep-skeleton', '--handles', '4'], 2, 'leave --keep-skeleton out'],
+      [['rig', 'model.glb', '-o', 'x.glb', '--template', 'nothing.bvh'], 1, 'nothing.bvh: cannot be opened'],
+      [['rig', 'model.glb', '-o', 'x.glb', '--template', 'garbage.glb'], 1, 'garbage.glb'], [['rig', 'lone.glb', '-o', 'x.glb', '--template', 'auto', '--strict'], 1, '--strict'],
       [['rig', 'model.glb', '-o', 'x.glb', '--rigger', 'nobody'], 1, 'nobody'], [['rig', 'model.glb', '-o', 'x.glb', '--colour'], 2, '--colour'],
       [['rig', 'model.glb', '-o', 'x.obj'], 2, 'a .glb is written'], [['rig', 'model.glb', '-o', 'x.glb', '--json', './x.glb'], 2, '--json'],
       [['rig', 'model.glb', '-o', 'x.glb', '--json', 'no/such/folder.json'], 1, 'no/such'],
@@ -65,9 +136,61 @@ const cases = {
       assert.ok(!existsSync(at('x.glb')));
     }
   },
+  async 'in a worker: the same answers, while this thread goes on'() {
+    const worker = await startWorker(), model = readFileSync(at('model.glb')), stages = new Set();
+    let ticks = 0;
+    const ticking = setInterval(() => { ticks += 1; }, 1);
+    const result = await worker.rig(model, 'model.glb', { handles: 12 }, { onProgress: (stage) => stages.add(stage.split(':')[0]) });
+    clearInterval(ticking);
+    assert.ok(result.ok && ticks > 10 && stages.size > 0, `${ticks} ticks, ${[...stages]}`);
+    assert.deepEqual(Buffer.from(result.glb), readFileSync(at('program.glb')));
+    assert.deepEqual(model, readFileSync(at('model.glb'))); // files are copied, not handed over
+    const { ok, error } = await worker.rig(model, 'model.glb', { up: '+y' });
+    assert.ok(!ok && error.where === 'up');
+    assert.ok((await worker.methods()).rigger.length > 1);
+
+    const { load } = await import(pathToFileURL(at('node_modules/limber/dist/index.mjs')));
+    const here = (await load()).createSession(), session = await worker.createSession(), other = await worker.createSession();
+    assert.deepEqual(Object.keys(session).filter((name) => name !== 'fork').sort(), Object.keys(here).filter((name) => name !== 'handle').sort());
+    for (const command of [{ do: 'open_sample', name: 'stool' }, { do: 'set_handles', count: 5 }, { do: 'undo' }, { do: 'turn_joint', joint: 'nobody' }]) {
+      assert.deepEqual(await session.run(command), here.run(command));
+    }
+    assert.deepEqual(await session.model(), here.model());
+    assert.deepEqual((await session.export('glb')).bytes, here.export('glb').bytes);
+    const fork = await session.fork();
+    assert.ok((await fork.run({ do: 'set_handles', count: 4 })).ok);
+    assert.deepEqual(await session.record(), here.record());
+    assert.ok(!(await other.run({ do: 'undo' })).ok);
+    await other.free();
+    worker.stop();
+  },
+  async 'a worker that is stopped says so, and goes on anew'() {
+    const worker = await startWorker(), model = readFileSync(at('model.glb')), cancelled = (answer) => !answer.ok && answer.error.code === 'cancelled';
+    const session = await worker.createSession(), stopping = new AbortController();
+    const slow = worker.rig(model, 'model.glb', { template: 'auto' }, { signal: stopping.signal, onProgress: () => stopping.abort() });
+    const behind = session.run({ do: 'open_sample', name: 'stool' });
+    assert.ok(cancelled(await slow) && cancelled(await behind) && cancelled(await session.run({ do: 'undo' })));
+    assert.ok(cancelled(await worker.rig(model, 'model.glb', {}, { signal: stopping.signal })));
+    assert.ok((await worker.rig(model, 'model.glb', { handles: 5 }, { signal: new AbortController().signal })).ok);
+    const waiting = worker.createSession();
+    worker.stop();
+    await assert.rejects(waiting, (error) => error.error.code === 'cancelled');
+    await session.free();
+    const broken = await (await startWorker({ wasmBinary: new Uint8Array([0, 97, 115, 109, 1, 0, 0, 0]) })).rig(model, 'model.glb'); // a module without content
+    assert.ok(!broken.ok && broken.error.code === 'worker');
+    writeFileSync(at('ends.mjs'), `import { startWorker } from 'limber/worker';
+      console.log((await (await startWorker()).methods()).rigger.length > 1);`);
+    assert.equal(run('node', ['ends.mjs'], { timeout: 60000 }), 'true\n'); // although nobody stopped it
+  },
   'a misspelt field does not compile'() {
     // Each line below "@ts-expect-error" has to be wrong, all others right.
     writeFileSync(at('use.ts'), `import { load, type Command } from 'limber';
+      import { startWorker, WorkerError, type RigResult } from 'limber/worker';
+      const worker = await startWorker(), remote = await worker.createSession(), text: string = new WorkerError({ code: '', message: '', where: '', remedy: '' }).error.code;
+      const rigged: RigResult = await worker.rig(new Uint8Array(), 'a.glb', { pins: { head: [0, 1, 2] }, up: '+y' }, { onProgress: (stage, fraction) => stage.at(fraction) });
+      const turned = await remote.run({ do: 'turn_joint', joint: 'head', axis: [0, 1, 0], degrees: 30 });
+      if (turned.ok) { const skin: Float32Array = turned.skin; } else { const remedy: string = turned.error.remedy; }
+      const names: string[] = (await worker.methods()).template.map(({ name }) => name);
       const limber = await load(), session = limber.createSession();
       session.run({ do: 'turn_joint', joint: 'head', axis: [0, 1, 0], degrees: 30 });
       const list: Command[] = [{ do: 'undo' }, { do: 'begin_drag', joint: 'head', mode: 'turn' }];
@@ -76,6 +199,9 @@ const cases = {
       ${["session.run({ do: 'turn_joint', joint: 'head', axes: [0, 1, 0] });", "session.run({ do: 'turn_joint', degrees: 30 });",
       "session.run({ do: 'turn_joints', joint: 'head' });", "session.run({ do: 'begin_drag', joint: 'head', mode: 'twist' });",
       "session.run({ do: 'move_joint', joint: 'head', offset: [0, 1] });", "limber.rig(new Uint8Array(), 'a.glb', { handle: 3 });",
+      "await worker.rig(new Uint8Array(), 'a.glb', { handle: 3 });", "await remote.run({ do: 'turn_joint', degrees: 30 });", "remote.handle;",
+      "await worker.createSession(3);", "limber.rig(new Uint8Array(), 'a.glb', { up: '+w' });", "limber.rig(new Uint8Array(), 'a.glb', { pins: { head: [0, 1] } });",
+      "limber.rig(new Uint8Array(), 'a.glb', { existingRig: 'keep' });", "limber.rig(new Uint8Array(), 'a.glb', { template: { name: 'own.bvh' } });",
     ].map((wrong) => `// @ts-expect-error\n${wrong}`).join('\n')}`);
     for (const more of [['--module', 'nodenext', '--moduleResolution', 'nodenext'], ['--module', 'esnext', '--moduleResolution', 'bundler']]) {
       const done = spawnSync(join(tools, '.bin/tsc'), ['--noEmit', '--strict', '--target', 'es2022', ...more, 'use.ts'], { cwd: work, encoding: 'utf8' });
@@ -86,9 +212,11 @@ const cases = {
     mkdirSync(at('page'), { recursive: true });
     writeFileSync(at('page/index.html'), '<!doctype html><title>page</title><script type="module" src="./main.js"></script>');
     writeFileSync(at('page/main.js'), `import { load } from 'limber';
-      const limber = await load();
-      const result = limber.rig(new Uint8Array(await (await fetch('./model.glb')).arrayBuffer()), 'model.glb', { handles: 12 });
-      document.title = result.ok ? 'rigged ' + result.glb.length : result.error.message;`);
+      import { startWorker } from 'limber/worker';
+      const model = new Uint8Array(await (await fetch('./model.glb')).arrayBuffer());
+      const told = (result) => (result.ok ? 'rigged ' + result.glb.length : result.error.message);
+      const here = told((await load()).rig(model, 'model.glb', { handles: 12 }));
+      document.title = here + ', ' + told(await (await startWorker()).rig(model, 'model.glb', { handles: 12 }));`);
     mkdirSync(at('page/public'), { recursive: true });
     writeFileSync(at('page/public/model.glb'), readFileSync(at('model.glb')));
     run(join(tools, '.bin/vite'), ['build', 'page', '--outDir', at('built'), '--base', './', '--logLevel', 'error']);
@@ -98,7 +226,8 @@ const cases = {
       const page = await browser.newPage();
       await page.goto(server.address);
       await page.waitForFunction(() => document.title !== 'page', undefined, { timeout: 60000 });
-      assert.equal(await page.title(), `rigged ${readFileSync(at('program.glb')).length}`);
+      const rigged = `rigged ${readFileSync(at('program.glb')).length}`;
+      assert.equal(await page.title(), `${rigged}, ${rigged}`);
     } finally {
       await browser.close();
       server.close();
