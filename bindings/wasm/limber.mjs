@@ -69,7 +69,7 @@ import createEngine from './limber_engine.mjs';
  *             box: { min: Vector, max: Vector } }} SceneMember
  *
  * @typedef {'rigger' | 'skinning' | 'deformer' | 'solver' | 'retargeting'} MethodKind
- * @typedef {{ [kind in MethodKind | 'template' | 'pieces']: { name: string, summary: string }[] }} Methods
+ * @typedef {{ [kind in MethodKind]: { name: string, summary: string }[] }} Methods
  * @typedef {{ joints: number, influences: number, smoothness: number, stretch: number, volume: number,
  *             target_distance: number | null,
  *             motion: { bone_direction_degrees: number, end_effector_share: number,
@@ -138,6 +138,9 @@ export async function loadLimber(wasm, given = {}) {
     },
     /** The methods there are, by what they do. @type {() => Methods} */
     methods: () => call(engine, engine._limber_methods, []).account,
+    /** Templates, and how pieces that are joined to no other are bound.
+     *  @type {() => { [kind in 'template' | 'pieces']: { name: string, summary: string }[] }} */
+    rigChoices: () => call(engine, engine._limber_rig_choices, []).account,
     /** The motions that the engine makes itself; the seconds are those of one repetition.
      *  @type {() => { name: string, summary: string, seconds: number }[]} */
     sampleMotions: () => call(engine, engine._limber_sample_motions, []).account,

@@ -38,6 +38,15 @@ limber::RigRequest requestFrom(std::string_view options, limber::ByteSpan templa
   return request;
 }
 
+template <class Table>
+Json list(const Table& table) {
+  Json names = Json::array();
+  for (const auto& named : table) {
+    names.push_back({{"name", std::string(named.name)}, {"summary", std::string(named.summary)}});
+  }
+  return names;
+}
+
 }  // namespace
 
 // The strings need no final zero. A template in a file of its own: its name is empty where there is none. The result is
@@ -72,20 +81,19 @@ LIMBER_EXPORT CallResult* limber_check_ply(const std::uint8_t* file, std::size_t
 // Every table of methods, by what they do.
 LIMBER_EXPORT CallResult* limber_methods() {
   return guarded({}, []() -> CallResult {
-    const auto list = [](const auto& methods) {
-      Json names = Json::array();
-      for (const auto& method : methods) {
-        names.push_back({{"name", std::string(method.name)}, {"summary", std::string(method.summary)}});
-      }
-      return names;
-    };
     const Json json = {{"rigger", list(limber::riggerMethods())},
                        {"skinning", list(limber::weightMethods())},
                        {"deformer", list(limber::deformers())},
                        {"solver", list(limber::ikMethods())},
-                       {"retargeting", list(limber::retargetMethods())},
-                       {"template", list(limber::namedTemplates())},
-                       {"pieces", list(limber::pieceModes())}};
+                       {"retargeting", list(limber::retargetMethods())}};
+    return {true, {}, limber::dumpReport(json, -1)};
+  });
+}
+
+// What else a rig is chosen by: templates, and how pieces are bound.
+LIMBER_EXPORT CallResult* limber_rig_choices() {
+  return guarded({}, []() -> CallResult {
+    const Json json = {{"template", list(limber::namedTemplates())}, {"pieces", list(limber::pieceModes())}};
     return {true, {}, limber::dumpReport(json, -1)};
   });
 }

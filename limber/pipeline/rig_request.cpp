@@ -1,12 +1,14 @@
 #include "limber/pipeline/rig_request.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "limber/asset/json_keys.h"
+#include "limber/asset/json_access.h"
 #include "limber/asset/json_text.h"
 #include "limber/pipeline/template_file.h"
 #include "limber/rigging/template_rigger.h"
@@ -17,6 +19,9 @@ namespace limber {
 namespace {
 
 constexpr const char* kTemplateRigger = "template";
+constexpr std::string_view kKeys[] = {"handles",  "maxInfluences", "rigger",      "template",
+                                      "skinning", "pieces",        "existingRig", "up",
+                                      "front",    "pins",          "upright",     "chains"};
 
 [[noreturn]] void refuseOption(std::string_view option, std::string problem, std::string remedy = {}) {
   throw Error(ErrorCode::kBadArgument, std::move(problem), fmt::format("`{}`", option), std::move(remedy));
@@ -102,8 +107,11 @@ void readPins(const JsonView& pins, RigRequest& request) {
 
 RigRequest readRequest(const JsonView& json) {
   json.requireObject();
-  allowKeys(json, {"handles", "maxInfluences", "rigger", "template", "skinning", "pieces", "existingRig", "up", "front",
-                   "pins", "upright", "chains"});
+  json.forEachMember([](std::string_view key, const JsonView& value) {
+    if (std::find(std::begin(kKeys), std::end(kKeys), key) != std::end(kKeys)) return;
+    throw Error(ErrorCode::kBadArgument, "there is no such option", value.path(),
+                fmt::format("there are: {}", fmt::join(kKeys, ", ")));
+  });
   RigRequest request;
   request.handles = json.index("handles", kNoIndex);
   request.maxInfluences = json.index("maxInfluences", kNoIndex).value_or(request.maxInfluences);

@@ -17,7 +17,7 @@ function fail(problem, code = 1) {
 }
 
 async function help() {
-  const { rigger, template, skinning, pieces } = (await load()).methods();
+  const limber = await load(), { rigger, skinning } = limber.methods(), { template, pieces } = limber.rigChoices();
   const list = (title, methods) => `${title}:\n${methods.map(({ name, summary }) => `  ${name.padEnd(20)}${summary}`).join('\n')}\n`;
   return `Give a model handles and skin weights (the engine as WebAssembly)
 Usage: limber rig [OPTIONS] IN.glb -o OUT.glb     IN may be - for standard input

@@ -55,7 +55,7 @@ const cases = {
     const model = readFileSync(at('model.glb'));
     for (const [options, where, remedy] of [
       [{ existingRig: 'keep-skeleton', handles: 3 }, 'handles', "leave existingRig: 'keep-skeleton' out"], [{ maxInfluences: 9 }, 'maxInfluences', ''],
-      [{ up: '+y' }, 'up', "name one: template: 'auto'"], [{ handles: '3' }, 'handles', ''], [{ handels: 3 }, 'options', ''], [{ handles: NaN }, 'handles', ''],
+      [{ up: '+y' }, 'up', "name one: template: 'auto'"], [{ handles: '3' }, 'handles', ''], [{ handels: 3 }, 'handels', null], [{ handles: NaN }, 'handles', ''],
       [{ template: { name: 'own.json', bytes: new Uint8Array([1]) } }, 'own.json', null],
     ]) {
       const { ok, error } = limber.rig(model, 'model.glb', options);
@@ -67,7 +67,7 @@ const cases = {
     assert.equal(stages.size, 0);
     assert.ok(limber.rig(model, 'model.glb', { handles: 5 }).ok);
     assert.ok(stages.has('rig') && stages.has('skin'), [...stages].join());
-    assert.deepEqual(limber.methods().pieces.map(({ name }) => name), ['auto', 'rigid', 'soft']);
+    assert.deepEqual(limber.rigChoices().pieces.map(({ name }) => name), ['auto', 'rigid', 'soft']);
   },
   async 'its code can be handed over'() {
     const { load } = await import(pathToFileURL(at('node_modules/limber/dist/index.mjs')));
@@ -148,9 +148,9 @@ const cases = {
     const { ok, error } = await worker.rig(model, 'model.glb', { up: '+y' });
     assert.ok(!ok && error.where === 'up');
     assert.ok((await worker.methods()).rigger.length > 1);
-
     const { load } = await import(pathToFileURL(at('node_modules/limber/dist/index.mjs')));
-    const here = (await load()).createSession(), session = await worker.createSession(), other = await worker.createSession();
+    const limber = await load(), here = limber.createSession(), session = await worker.createSession(), other = await worker.createSession();
+    assert.deepEqual(Object.keys(worker).filter((name) => name !== 'stop').sort(), Object.keys(limber).filter((name) => name !== 'forkSession').sort());
     assert.deepEqual(Object.keys(session).filter((name) => name !== 'fork').sort(), Object.keys(here).filter((name) => name !== 'handle').sort());
     for (const command of [{ do: 'open_sample', name: 'stool' }, { do: 'set_handles', count: 5 }, { do: 'undo' }, { do: 'turn_joint', joint: 'nobody' }]) {
       assert.deepEqual(await session.run(command), here.run(command));
@@ -190,7 +190,7 @@ const cases = {
       const rigged: RigResult = await worker.rig(new Uint8Array(), 'a.glb', { pins: { head: [0, 1, 2] }, up: '+y' }, { onProgress: (stage, fraction) => stage.at(fraction) });
       const turned = await remote.run({ do: 'turn_joint', joint: 'head', axis: [0, 1, 0], degrees: 30 });
       if (turned.ok) { const skin: Float32Array = turned.skin; } else { const remedy: string = turned.error.remedy; }
-      const names: string[] = (await worker.methods()).template.map(({ name }) => name);
+      const names: string[] = (await worker.rigChoices()).template.map(({ name }) => name);
       const limber = await load(), session = limber.createSession();
       session.run({ do: 'turn_joint', joint: 'head', axis: [0, 1, 0], degrees: 30 });
       const list: Command[] = [{ do: 'undo' }, { do: 'begin_drag', joint: 'head', mode: 'turn' }];

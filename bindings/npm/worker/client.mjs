@@ -2,8 +2,8 @@
 // broken) gives { post, stop, hold }, and hands over what the thread says and that it broke.
 
 /** Calls whose answers have no room for an error: they are rejected with one. */
-const plainCalls = new Set(['methods', 'sampleMotions', 'samplePoses', 'createSession', 'forkSession', 'record', 'free']);
-const limberCalls = ['rig', 'methods', 'sampleMotions', 'samplePoses', 'checkPly'];
+const plainCalls = new Set(['methods', 'rigChoices', 'sampleMotions', 'samplePoses', 'createSession', 'forkSession', 'record', 'free']);
+const limberCalls = ['rig', 'methods', 'rigChoices', 'sampleMotions', 'samplePoses', 'checkPly'];
 const sessionCalls = ['open', 'add', 'places', 'memberModel', 'memberPosed', 'memberSkin', 'pickMember', 'addMotion', 'transferRig', 'sourceJoints', 'paths',
   'curve', 'run', 'pick', 'surface', 'weights', 'preview', 'parts', 'skin', 'handles', 'turns', 'model', 'deformation', 'posed', 'export', 'pose', 'record',
   'measures', 'free'];
