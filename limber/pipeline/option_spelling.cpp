@@ -1,6 +1,7 @@
 #include "limber/pipeline/option_spelling.h"
 
 #include <algorithm>
+#include <cstddef>
 
 namespace limber {
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "limber/asset/json_access.h"
 #include "limber/asset/json_text.h"

@@ -2,6 +2,8 @@
 
 #include <functional>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,7 +16,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-Error refusalOf(const std::function<void()>& call) {
+Error rigRefusal(const std::function<void()>& call) {
   try {
     call();
   } catch (const Error& error) {
@@ -24,8 +26,8 @@ Error refusalOf(const std::function<void()>& call) {
   return {ErrorCode::kFile, ""};
 }
 
-Error refusalOf(const RigRequest& request) {
-  return refusalOf([&] { optionsOf(request); });
+Error rigRefusal(const RigRequest& request) {
+  return rigRefusal([&] { optionsOf(request); });
 }
 
 using Change = std::function<void(RigRequest&)>;
@@ -104,7 +106,7 @@ TEST(RigRequest, RefusesOtherJsonByTheKey) {
            {"[]", "object"},
            {"{", "options"},
        }) {
-    const Error error = refusalOf([&, text = json] { rigRequestFromJson(text); });
+    const Error error = rigRefusal([&, text = json] { rigRequestFromJson(text); });
     EXPECT_EQ(error.code(), ErrorCode::kBadArgument) << json;
     EXPECT_THAT(error.what(), HasSubstr(key)) << json;
   }
@@ -120,25 +122,25 @@ TEST(RigRequest, RefusesWhatDoesNotGoTogether) {
   for (const auto& [option, change] : ofJoints) {
     RigRequest request = kept;
     change(request);
-    EXPECT_EQ(refusalOf(request).where(), option);
+    EXPECT_EQ(rigRefusal(request).where(), option);
   }
   for (const auto& [option, change] : templateOptions()) {
     RigRequest request;
     change(request);
-    EXPECT_EQ(refusalOf(request).where(), option);
-    EXPECT_EQ(refusalOf(request).remedy(), "name one: `template: auto`");
+    EXPECT_EQ(rigRefusal(request).where(), option);
+    EXPECT_EQ(rigRefusal(request).remedy(), "name one: `template: auto`");
     request.rigger = "template";
     EXPECT_EQ(optionsOf(request).rigger, "template");
     request.rigger.reset();
     request.templateName = "humanoid";
     EXPECT_EQ(optionsOf(request).rigger, "template");
     request.handles = 3;
-    EXPECT_EQ(refusalOf(request).where(), "`handles`");
+    EXPECT_EQ(rigRefusal(request).where(), "`handles`");
   }
   RigRequest both;
   both.templateName = "humanoid";
   both.rigger = "prop";
-  EXPECT_EQ(refusalOf(both).where(), "`template`");
+  EXPECT_EQ(rigRefusal(both).where(), "`template`");
   both.rigger = "template";
   EXPECT_EQ(optionsOf(both).rig.templateName, "humanoid");
 }
@@ -163,7 +165,7 @@ TEST(RigRequest, RefusesWhatIsOutOfRange) {
        }) {
     RigRequest request;
     wrong.change(request);
-    const Error error = refusalOf(request);
+    const Error error = rigRefusal(request);
     EXPECT_EQ(error.where(), wrong.option);
     EXPECT_EQ(error.code(), ErrorCode::kBadArgument);
   }
