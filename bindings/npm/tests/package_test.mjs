@@ -4,10 +4,11 @@
 //
 // Ends with "N passed, N failed".
 import assert from 'node:assert/strict';
-import { execFileSync, spawnSync } from 'node:child_process';
+import { execFileSync, spawn, spawnSync } from 'node:child_process';
 import { existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { dirname, join, resolve } from 'node:path';
 import { fileURLToPath, pathToFileURL } from 'node:url';
+import { launch, serve } from '../../../apps/studio/tests/page.mjs';
 
 const [tarball, program, work] = process.argv.slice(2).map((path) => resolve(path));
 const tools = join(dirname(fileURLToPath(import.meta.url)), '../../../apps/studio/node_modules');
@@ -31,6 +32,20 @@ const optionsIn = (help) => new Map([...help.matchAll(/^  (?:-\w,)?--([a-z-]+)(.
 writeFileSync(at('worker.mjs'), "export { startWorker } from 'limber/worker';");
 const { startWorker } = await import(pathToFileURL(at('worker.mjs')));
 const npx = (...args) => spawnSync('npx', ['--no-install', 'limber', ...args], { cwd: work, encoding: 'utf8' });
+
+/** The page's title tells what it rigged, on its own thread and in a worker. */
+async function expectRigged(address) {
+  const browser = await launch();
+  try {
+    const page = await browser.newPage();
+    await page.goto(address);
+    await page.waitForFunction(() => document.title !== 'page', undefined, { timeout: 60000 });
+    const rigged = `rigged ${readFileSync(at('program.glb')).length}`;
+    assert.equal(await page.title(), `${rigged}, ${rigged}`);
+  } finally {
+    await browser.close();
+  }
+}
 
 const cases = {
   async 'Node gets the bytes of the program'() {
@@ -220,17 +235,28 @@ const cases = {
     mkdirSync(at('page/public'), { recursive: true });
     writeFileSync(at('page/public/model.glb'), readFileSync(at('model.glb')));
     run(join(tools, '.bin/vite'), ['build', 'page', '--outDir', at('built'), '--base', './', '--logLevel', 'error']);
-    const { launch, serve } = await import('../../../apps/studio/tests/page.mjs');
-    const server = await serve(at('built')), browser = await launch();
+    const server = await serve(at('built'));
     try {
-      const page = await browser.newPage();
-      await page.goto(server.address);
-      await page.waitForFunction(() => document.title !== 'page', undefined, { timeout: 60000 });
-      const rigged = `rigged ${readFileSync(at('program.glb')).length}`;
-      assert.equal(await page.title(), `${rigged}, ${rigged}`);
+      await expectRigged(server.address);
     } finally {
-      await browser.close();
       server.close();
+    }
+  },
+  async 'so does a page that vite serves while it is written'() {
+    const server = spawn(join(tools, '.bin/vite'), ['page', '--host', '127.0.0.1', '--port', '5270'], { cwd: work, env: { ...process.env, NO_COLOR: '1' } });
+    try {
+      const address = await new Promise((resolve, reject) => {
+        let told = '';
+        server.stdout.on('data', (text) => {
+          told += text;
+          const [found] = told.match(/http:\/\/127\.0\.0\.1:\d+\//) ?? [];
+          if (found) resolve(found);
+        });
+        server.on('exit', () => reject(new Error(`vite: ${told}`)));
+      });
+      await expectRigged(address);
+    } finally {
+      server.kill();
     }
   },
 };
