@@ -17,7 +17,7 @@ namespace {
 // the size of its buffers, whichever is more.
 constexpr std::size_t kFreeZeros = 4096;
 
-// glTF allows 252. Others still read well, as long as products of sizes fit 64 bits.
+// glTF allows 252. Others still read well: products of sizes are taken in 64 bits, in WebAssembly too.
 constexpr std::size_t kMaxStride = 65536;
 
 // Numbers of rows and columns of each ElementType.
@@ -50,7 +50,7 @@ ViewLayout viewOf(const Asset& asset, Index view, const std::string& place) {
 }
 
 // Where data begin in their view, checked to be `size` bytes that suit components of `alignment` bytes.
-const std::uint8_t* dataOf(const ViewLayout& view, std::size_t offset, std::size_t size, std::size_t alignment,
+const std::uint8_t* dataOf(const ViewLayout& view, std::size_t offset, std::uint64_t size, std::size_t alignment,
                            const std::string& place) {
   if (offset > view.bytes.size() || size > view.bytes.size() - offset) {
     failAt(place,
@@ -69,8 +69,8 @@ void findData(const Asset& asset, const gltf::Accessor& accessor, const std::str
     if (view.stride > kMaxStride) failAt(place, fmt::format("has a byteStride above {}", kMaxStride));
     layout.stride = view.stride;
   }
-  const std::size_t count = layout.info.count;
-  const std::size_t size = count == 0 ? 0 : (count - 1) * layout.stride + layout.usedSize();
+  const std::uint64_t count = layout.info.count;
+  const std::uint64_t size = count == 0 ? 0 : (count - 1) * layout.stride + layout.usedSize();
   layout.data = dataOf(view, accessor.byteOffset, size, layout.componentBytes, place);
 }
 
@@ -89,7 +89,7 @@ void checkZeroCount(const Asset& asset, const std::string& place, Index count) {
 SparseLayout findSparse(const Asset& asset, const gltf::Sparse& sparse, const std::string& place,
                         const AccessorLayout& layout) {
   SparseLayout result;
-  const std::size_t count = sparse.count;
+  const std::uint64_t count = sparse.count;
   if (count > layout.info.count) failAt(place, "has more substitutions than the accessor has elements");
   result.count = static_cast<Index>(count);
   const std::string indices = place + ".indices", values = place + ".values";
@@ -101,7 +101,7 @@ SparseLayout findSparse(const Asset& asset, const gltf::Sparse& sparse, const st
   const std::size_t indexSize = componentSize(result.indexType);
   result.indices = dataOf(viewOf(asset, sparse.indices.bufferView, indices), sparse.indices.byteOffset,
                           count * indexSize, indexSize, indices);
-  const std::size_t size = count == 0 ? 0 : (count - 1) * layout.elementSize + layout.usedSize();
+  const std::uint64_t size = count == 0 ? 0 : (count - 1) * layout.elementSize + layout.usedSize();
   result.values = dataOf(viewOf(asset, sparse.values.bufferView, values), sparse.values.byteOffset, size,
                          layout.componentBytes, values);
   for (std::size_t i = 0; i < count; ++i) {

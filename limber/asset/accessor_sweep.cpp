@@ -93,7 +93,7 @@ void AccessorSweep::sweep(Asset& asset) const {
   for (const std::optional<Index>& a : places) newIndex[*a] = addElement(kept, std::move(document.accessors[*a]));
   document.accessors = std::move(kept);
   changeReferences(document, [&](ElementKind kind, Index& number) {
-    if (kind == ElementKind::kAccessor) number = newIndex.at(number);
+    if (kind == ElementKind::kAccessor && number < count) number = newIndex[number];
   });
 }
 

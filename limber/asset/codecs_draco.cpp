@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "limber/asset/accessor.h"
 #include "limber/asset/accessor_layout.h"
@@ -16,8 +17,8 @@
 #include "limber/asset/codecs_detail.h"
 #include "limber/asset/document_errors.h"
 #include "limber/asset/extensions.h"
+#include "limber/asset/gltf_json.h"
 #include "limber/asset/json_access.h"
-#include "limber/asset/references.h"
 
 namespace limber {
 
@@ -221,13 +222,23 @@ class DracoReader {
   std::set<std::vector<Index>> weightSets_;  // accessors of one primitive's weights
 };
 
+// The buffer views that anything in the document seems to refer to, the application's own data included.
+void collectViewReferences(const Json& json, std::vector<bool>& used) {
+  for (auto it = json.begin(); it != json.end(); ++it) {
+    if (it->is_structured()) {
+      collectViewReferences(*it, used);
+    } else if (json.is_object() && it.key() == "bufferView" && it->is_number_unsigned()) {
+      const auto view = it->get<std::uint64_t>();
+      if (view < used.size()) used[view] = true;
+    }
+  }
+}
+
 // Puts the pieces in new buffer views. The views of compressed data that nothing refers to any more are used first.
 void placePieces(Asset& asset, const std::map<Index, Piece>& pieces) {
   gltf::Document& document = asset.document;
   std::vector<bool> used(document.bufferViews.size(), false);
-  visitReferences(document, [&](ElementKind kind, Index number) {
-    if (kind == ElementKind::kBufferView && number < used.size()) used[number] = true;
-  });
+  collectViewReferences(gltf::jsonOf(document), used);
   for (const auto& [index, piece] : pieces) {
     Index view = addBufferView(asset, piece.bytes, piece.attribute ? kVertexTarget : kIndexTarget);
     std::vector<gltf::BufferView>& views = document.bufferViews;

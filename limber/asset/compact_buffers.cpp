@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "limber/asset/accessor_layout.h"
+#include "limber/asset/references.h"
 #include "limber/asset/uri.h"
 
 namespace limber {
@@ -85,7 +86,7 @@ void dropUnusedBytes(Asset& asset, const std::set<Index>& buffers) {
 void removeEmptyBuffers(Asset& asset) {
   gltf::Document& document = asset.document;
   std::vector<bool> named(asset.buffers.size(), false);
-  for (const gltf::BufferView& view : document.bufferViews) named.at(view.buffer) = true;
+  for (const gltf::BufferView& view : document.bufferViews) named[view.buffer] = true;
 
   std::vector<Index> newIndex;
   std::vector<Asset::Buffer> kept;
@@ -98,7 +99,9 @@ void removeEmptyBuffers(Asset& asset) {
   }
   asset.buffers = std::move(kept);
   document.buffers = std::move(keptBuffers);
-  for (gltf::BufferView& view : document.bufferViews) view.buffer = newIndex[view.buffer];
+  changeReferences(document, [&](ElementKind kind, Index& number) {
+    if (kind == ElementKind::kBuffer && number < newIndex.size()) number = newIndex[number];
+  });
 }
 
 }  // namespace limber

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -55,14 +57,14 @@ void undeclareExtension(gltf::Document& document, std::string_view name) {
 }
 
 gltf::Attributes instancingOf(const gltf::Node& node, std::string_view place) {
-  gltf::Attributes result;
   const Json* content = extensionOf(node, kInstancingName);
-  if (content == nullptr) return result;
+  if (content == nullptr) return {};
   const std::string path = std::string(place) + ".extensions." + kInstancingName;
-  const JsonView attributes = JsonView(content, path).object("attributes");
-  attributes.forEachMember(
-      [&](std::string_view name, const JsonView& accessor) { result.set(name, accessor.asIndex(kNoIndex)); });
-  return result;
+  std::vector<std::pair<std::string, Index>> list;
+  JsonView(content, path).object("attributes").forEachMember([&](std::string_view name, const JsonView& accessor) {
+    list.emplace_back(name, accessor.asIndex(kNoIndex));
+  });
+  return gltf::Attributes(std::move(list));
 }
 
 const std::string* animationPointer(const gltf::AnimationChannel::Target& target) {

@@ -1,6 +1,7 @@
 #include "limber/asset/gltf.h"
 
 #include <algorithm>
+#include <atomic>
 
 #include <nlohmann/json.hpp>
 
@@ -13,6 +14,8 @@ Json& KeptJson::change() {
     value_ = std::make_shared<Json>(Json::object());
   } else if (value_.use_count() > 1) {
     value_ = std::make_shared<Json>(*value_);
+  } else {
+    std::atomic_thread_fence(std::memory_order_acquire);  // another thread may have read its copy just now
   }
   return *value_;
 }

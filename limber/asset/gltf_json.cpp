@@ -224,9 +224,11 @@ class Reader {
   template <typename T>
   void list(const char* key, std::vector<T>& members, Need need = Need::kOptional);
 
-  void rest(Object& object) {
-    if (Json* all = find("extensions")) {
-      view_.object("extensions");
+  template <typename T>
+  void rest(T& object) {
+    if constexpr (std::is_base_of_v<Element, T>) view_.object("extensions");
+    // In smaller objects another type than an object's is left where it is.
+    if (Json* all = find("extensions"); all != nullptr && all->is_object()) {
       object.extensions = KeptJson(std::exchange(*all, nullptr));
     }
     if (Json* all = find("extras")) object.extras = KeptJson(std::exchange(*all, nullptr));
@@ -345,10 +347,11 @@ class Writer {
     if (find(key) != nullptr) members_.erase(members_.begin() + static_cast<std::ptrdiff_t>(--next_));
   }
   void kept(const char* key, const KeptJson& value) {
-    if (find(key) == nullptr) next_ = members_.size();
+    const Json* found = find(key);
+    if (found == nullptr) next_ = members_.size();
     if (value.exists()) {
       set(key, *value);
-    } else {
+    } else if (found != nullptr && found->is_null()) {  // reading took it out
       erase(key);
     }
   }

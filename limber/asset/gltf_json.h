@@ -2,7 +2,6 @@
 #pragma once
 
 #include "limber/asset/gltf.h"
-#include "limber/core/error.h"
 
 namespace limber::gltf {
 
@@ -12,7 +11,7 @@ namespace limber::gltf {
 Document documentOf(Json json);
 
 // A document that came from JSON and was not changed gives that JSON again, with the order of its keys and the form of
-// its numbers. A list that became empty, as glTF forbids, is left out,
+// its numbers. A list that became empty, as glTF forbids, is left out
 // unless glTF asks for it.
 Json jsonOf(const Document& document);
 

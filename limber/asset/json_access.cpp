@@ -1,6 +1,7 @@
 #include "limber/asset/json_access.h"
 
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -133,6 +134,9 @@ std::size_t JsonView::asCount() const {
   const double number = asNumber();
   if (number < 0 || number > kLargestCount || number != std::floor(number)) {
     fail(fmt::format("must be a whole number that is not negative, and is {}", number));
+  }
+  if (number > static_cast<double>(std::numeric_limits<std::size_t>::max())) {  // of 32 bits in WebAssembly
+    fail(fmt::format("is {}, more than can be counted here", number));
   }
   return static_cast<std::size_t>(number);
 }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
-#include <string_view>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
@@ -31,6 +31,16 @@ bool isPlacedByJoints(const gltf::Node& node) {
   return node.skin && node.children.empty();
 }
 
+// Wherever it stands in there.
+void eraseExtensionWithin(Json& value, const std::string& name) {
+  if (!value.is_structured()) return;
+  if (value.is_object() && value.contains("extensions") && value["extensions"].is_object()) {
+    value["extensions"].erase(name);
+    if (value["extensions"].empty()) value.erase("extensions");
+  }
+  for (Json& inner : value) eraseExtensionWithin(inner, name);
+}
+
 // What no other part must be mixed up with, and cannot be taken over; and what refers to it.
 void dropDocumentExtensions(gltf::Document& document, Warnings& warnings) {
   if (!document.extensions.exists()) return;
@@ -42,7 +52,12 @@ void dropDocumentExtensions(gltf::Document& document, Warnings& warnings) {
   }
   for (const std::string& name : dropped) {
     warnings.add("scene-extensions", "what an extension says of a whole model is left out of a scene", name);
-    forEachObject(document, [&](gltf::Object& object) { eraseExtension(object, name.c_str()); });
+    forEachObject(document, [&](gltf::Object& object) {
+      eraseExtension(object, name.c_str());
+      for (gltf::KeptJson* kept : {&object.extensions, &object.extras, &object.asRead}) {
+        if (kept->exists()) eraseExtensionWithin(kept->change(), name);
+      }
+    });
     undeclareExtension(document, name);
   }
 }

@@ -20,26 +20,33 @@ namespace {
 
 constexpr const char *kLightsName = "KHR_lights_punctual", *kVariantsName = "KHR_materials_variants";
 
-// The lists of a document by their names, as pointers of animations have them.
-struct NamedList {
-  std::string_view name;
+// The lists of a document, as pointers of animations begin with them.
+struct PointedList {
+  std::string_view start;
   ElementKind kind;
 };
-constexpr std::array<NamedList, 15> kLists = {{{"accessors", ElementKind::kAccessor},
-                                               {"animations", ElementKind::kAnimation},
-                                               {"bufferViews", ElementKind::kBufferView},
-                                               {"buffers", ElementKind::kBuffer},
-                                               {"cameras", ElementKind::kCamera},
-                                               {"images", ElementKind::kImage},
-                                               {"lights", ElementKind::kLight},
-                                               {"materials", ElementKind::kMaterial},
-                                               {"meshes", ElementKind::kMesh},
-                                               {"nodes", ElementKind::kNode},
-                                               {"samplers", ElementKind::kSampler},
-                                               {"scenes", ElementKind::kScene},
-                                               {"skins", ElementKind::kSkin},
-                                               {"textures", ElementKind::kTexture},
-                                               {"variants", ElementKind::kVariant}}};
+constexpr std::array<PointedList, 15> kLists = {
+    {{"/accessors/", ElementKind::kAccessor},
+     {"/animations/", ElementKind::kAnimation},
+     {"/bufferViews/", ElementKind::kBufferView},
+     {"/buffers/", ElementKind::kBuffer},
+     {"/cameras/", ElementKind::kCamera},
+     {"/images/", ElementKind::kImage},
+     {"/materials/", ElementKind::kMaterial},
+     {"/meshes/", ElementKind::kMesh},
+     {"/nodes/", ElementKind::kNode},
+     {"/samplers/", ElementKind::kSampler},
+     {"/scenes/", ElementKind::kScene},
+     {"/skins/", ElementKind::kSkin},
+     {"/textures/", ElementKind::kTexture},
+     {"/extensions/KHR_lights_punctual/lights/", ElementKind::kLight},
+     {"/extensions/KHR_materials_variants/variants/", ElementKind::kVariant}}};
+
+bool hasKeyWithin(const Json& value, const char* key) {
+  if (!value.is_structured()) return false;
+  if (value.is_object() && value.contains(key)) return true;
+  return std::any_of(value.begin(), value.end(), [&](const Json& inner) { return hasKeyWithin(inner, key); });
+}
 
 class ReferenceChanger {
  public:
@@ -110,14 +117,13 @@ class ReferenceChanger {
     Json& list = owner[key];
     if (!list.is_structured()) return;
     for (Json& element : list) number(kind, element);
-    if (!list.is_array()) return;
-    for (std::size_t i = list.size(); i-- > 0;) {
-      if (list[i] == kNoIndex) list.erase(i);
-    }
+    if (!list.is_array() || !isChanged_) return;
+    std::erase_if(list.get_ref<Json::array_t&>(), [](const Json& element) { return element == kNoIndex; });
     if (list.empty()) owner.erase(key);
   }
 
-  // Works on a copy, so that documents that share the JSON keep theirs.
+  // Works on a copy, so that documents that share the JSON keep theirs. An extension that says nothing any more without
+  // what it named is set to null, and goes.
   template <typename Act>
   void inExtension(gltf::Object& owner, const char* name, const Act& act) {
     const Json* found = extensionOf(owner, name);
@@ -125,7 +131,12 @@ class ReferenceChanger {
     Json content = *found;
     isChanged_ = false;
     act(content);
-    if (isChanged_) changeExtension(owner, name) = std::move(content);
+    if (!isChanged_) return;
+    if (content.is_null()) {
+      eraseExtension(owner, name);
+    } else {
+      changeExtension(owner, name) = std::move(content);
+    }
   }
   template <typename Act>
   void inEachExtension(gltf::Object& owner, const Act& act) {
@@ -206,22 +217,20 @@ class ReferenceChanger {
 
   // "/materials/3/emissiveFactor", "/extensions/KHR_lights_punctual/lights/0/color"
   std::string changedPointer(const std::string& path) {
-    for (const NamedList& list : kLists) {
-      const std::string key = fmt::format("/{}/", list.name);
-      const std::size_t at = path.find(key), digits = at + key.size();
-      if (at == std::string::npos || (at != 0 && path.rfind("/extensions/", 0) != 0)) continue;
-      std::size_t end = digits;
-      std::uint64_t before = 0;
-      for (; end < path.size() && path[end] >= '0' && path[end] <= '9' && before < kNoIndex; ++end) {
-        before = 10 * before + static_cast<std::uint64_t>(path[end] - '0');
-      }
-      if (end == digits || before >= kNoIndex) continue;
-      auto after = static_cast<Index>(before);
-      change_(list.kind, after);
-      if (after == kNoIndex) return path;
-      return path.substr(0, digits) + fmt::to_string(after) + path.substr(end);
+    const auto* list = std::find_if(kLists.begin(), kLists.end(),
+                                    [&](const PointedList& known) { return path.rfind(known.start, 0) == 0; });
+    if (list == kLists.end()) return path;
+    const std::size_t digits = list->start.size();
+    std::size_t end = digits;
+    std::uint64_t before = 0;
+    for (; end < path.size() && path[end] >= '0' && path[end] <= '9' && before < kNoIndex; ++end) {
+      before = 10 * before + static_cast<std::uint64_t>(path[end] - '0');
     }
-    return path;
+    if (end == digits || before >= kNoIndex) return path;
+    auto after = static_cast<Index>(before);
+    change_(list->kind, after);
+    if (after == kNoIndex) return path;
+    return path.substr(0, digits) + fmt::to_string(after) + path.substr(end);
   }
 
   void nodeOf(gltf::Node& node) {
@@ -230,10 +239,18 @@ class ReferenceChanger {
     one(ElementKind::kCamera, node.camera);
     many(ElementKind::kNode, node.children);
     inExtension(node, kLightsName, [&](Json& light) { one(ElementKind::kLight, light, "light"); });
-    inExtension(node, "MSFT_lod", [&](Json& levels) { many(ElementKind::kNode, levels, "ids"); });
+    inExtension(node, "MSFT_lod", [&](Json& levels) {
+      many(ElementKind::kNode, levels, "ids");
+      if (!levels.contains("ids")) levels = nullptr;
+    });
     inExtension(node, "VRMC_node_constraint", [&](Json& of) {
       if (!of.contains("constraint") || !of["constraint"].is_object()) return;
-      for (Json& kind : of["constraint"]) one(ElementKind::kNode, kind, "source");
+      bool isWhole = true;
+      for (Json& kind : of["constraint"]) {
+        one(ElementKind::kNode, kind, "source");
+        isWhole = isWhole && kind.is_object() && kind.contains("source");
+      }
+      if (!isWhole) of = nullptr;
     });
     inExtension(node, kInstancingName, [&](Json& copies) { many(ElementKind::kAccessor, copies, "attributes"); });
   }

@@ -39,8 +39,9 @@ void forEachObject(gltf::Document& document, const std::function<void(gltf::Obje
 // document refer to, and the document's default scene. Numbers are as the document has them, in range or not.
 void visitReferences(const gltf::Document& document, const std::function<void(ElementKind kind, Index number)>& visit);
 
-// The same to change the numbers. A number set to kNoIndex is taken out: of its list, or as a member of its object; not
-// where a member is required.
+// The same to change the numbers. A number set to kNoIndex is taken out: of its list, or as a member of its object,
+// with the extension where that says nothing without it. Only for references that a document need not have: `change`
+// never sets another (an attribute's accessor, a buffer view's buffer, a texture's use, a sampler's input) to kNoIndex.
 void changeReferences(gltf::Document& document, const std::function<void(ElementKind kind, Index& number)>& change);
 
 // The same for what extensions of the whole document refer to, after nodes were renumbered: `newNode` is the number of

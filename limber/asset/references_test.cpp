@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "limber/asset/extensions.h"
 #include "limber/asset/gltf_json.h"
 
 namespace limber {
@@ -107,8 +108,33 @@ TEST(References, NumbersTakenOutLeaveListsAndMembers) {
   EXPECT_THAT(document.scenes[0].nodes, ElementsAre(2));
   EXPECT_TRUE(document.nodes[0].children.empty());
   EXPECT_FALSE(document.skins[0].skeleton);
-  EXPECT_EQ(document.nodes[0].extensions->at("MSFT_lod"), Json::object());
-  EXPECT_EQ(document.nodes[0].extensions->at("VRMC_node_constraint")["constraint"]["roll"], Json({{"weight", 99}}));
+  EXPECT_FALSE(document.nodes[0].extensions->contains("MSFT_lod"));  // which would say nothing
+  EXPECT_FALSE(document.nodes[0].extensions->contains("VRMC_node_constraint"));
+}
+
+TEST(References, PointersIntoListsOfTheDocumentAlone) {
+  gltf::Document document;
+  gltf::AnimationChannel& channel = document.animations.emplace_back().channels.emplace_back();
+  const auto changed = [&](const char* pointer) {
+    setAnimationPointer(channel.target, pointer);
+    changeReferences(document, [](ElementKind, Index& number) { number += 10; });
+    return *animationPointer(channel.target);
+  };
+  EXPECT_EQ(changed("/nodes/3/scale"), "/nodes/13/scale");
+  EXPECT_EQ(changed("/extensions/KHR_lights_punctual/lights/0/color"),
+            "/extensions/KHR_lights_punctual/lights/10/color");
+  for (const char* other : {"/extensions/ACME_graph/nodes/3/value", "/nodes/", "/nodes/x", "/nodes/4294967295",
+                            "nodes/3", "/nodes/99999999999999999999/scale", ""}) {
+    EXPECT_EQ(changed(other), other);
+  }
+}
+
+TEST(References, OfWhatIsNoNumberNothingIsMade) {
+  for (const char* content : {"3", "[]", "null", R"({"ids": 3})", R"({"ids": [1, "x", -1, 1e300]})"}) {
+    gltf::Document document;
+    changeExtension(document.nodes.emplace_back(), "MSFT_lod") = Json::parse(content);
+    EXPECT_NO_THROW(changeReferences(document, [](ElementKind, Index& number) { number = 0; })) << content;
+  }
 }
 
 TEST(References, ListsOfADocumentAreCounted) {

@@ -8,6 +8,7 @@
 
 #include "limber/asset/accessor_sweep.h"
 #include "limber/asset/node_edit.h"
+#include "limber/asset/references.h"
 #include "limber/asset/scene_graph.h"
 #include "limber/asset/unique_names.h"
 #include "limber/mesh/prepare.h"
@@ -297,9 +298,9 @@ class Splitter {
       if (taken.count(m) == 0) kept.push_back(std::move(document_.meshes[m]));
     }
     document_.meshes = std::move(kept);
-    for (gltf::Node& node : document_.nodes) {
-      if (node.mesh) node.mesh = numberOf[*node.mesh];
-    }
+    changeReferences(document_, [&](ElementKind kind, Index& number) {
+      if (kind == ElementKind::kMesh && number < numberOf.size()) number = numberOf[number];
+    });
   }
 
   Asset& asset_;
