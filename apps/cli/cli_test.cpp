@@ -53,6 +53,9 @@ TEST_F(Cli, WrongUsageIsOneLineAndCodeTwo) {
                                              {"rig", "a.glb", "-o", "b.glb", "--template", "auto", "--rigger", "prop"},
                                              {"rig", "a.glb", "-o", "b.glb", "--keep-skeleton", "--template", "auto"},
                                              {"rig", "a.glb", "-o", "b.glb", "--template", "auto", "--up", "+w"},
+                                             {"rig", "a.glb", "-o", "b.glb", "--template", "nobody"},
+                                             {"rig", "a.glb", "-o", "b.glb", "--template", "no.bvh", "--handles", "5"},
+                                             {"rig", "a.glb", "-o", "b.glb", "--pieces", "nobody"},
                                              {"retarget", "a.glb", "b.bvh", "-o", "c.glb", "--save-map", "b.bvh"},
                                              {"retarget", "a.glb", "b.bvh", "-o", "c.glb", "--save-map", "./a.glb"},
                                              {"retarget", "a.glb", "b.bvh", "-o", "c.glb", "--reach", "nan"},
@@ -73,6 +76,18 @@ TEST_F(Cli, OptionsAreToldByTheirNamesHere) {
               AllOf(StartsWith("limber: --handles: "), HasSubstr("leave --keep-skeleton out")));
   EXPECT_THAT(run({"rig", "a.glb", "-o", "b.glb", "--max-influences", "9"}).error,
               StartsWith("limber: --max-influences: takes 1 to 8, not 9"));
+  EXPECT_THAT(run({"info", "`up`.glb"}).error, StartsWith("limber: `up`.glb: "));  // a file, no option
+}
+
+TEST_F(Cli, ValuesOfRigAreNeverEmpty) {
+  makeRobot();
+  for (const char* option : {"--handles", "--max-influences", "--rigger", "--template", "--pin", "--up", "--front",
+                             "--skinning", "--pieces", "--json", "--from-animation"}) {
+    const Result refused = run({"rig", "robot.glb", "-o", "b.glb", option, ""});
+    expectOneLine(refused, 2);
+    EXPECT_THAT(refused.error, AllOf(StartsWith("limber: " + std::string(option)), HasSubstr("is empty")));
+  }
+  EXPECT_EQ(files(), std::vector<std::string>{"robot.glb"});
 }
 
 TEST_F(Cli, RigsAModelAndAccountsForIt) {

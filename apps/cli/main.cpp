@@ -22,8 +22,15 @@ int fail(std::string_view what, int code = kFailed) {
     fmt::print(stderr, "limber: interrupted\n");
     return kInterrupted;
   }
-  fmt::print(stderr, "limber: {}\n", limber::spellOptions(what, limber::OptionSpelling::kProgram));
+  fmt::print(stderr, "limber: {}\n", what);
   return code;
+}
+
+int fail(const limber::Error& error) {
+  const auto* known = dynamic_cast<const limber::KnownError*>(&error);
+  const bool isOutOfMemory = known && known->kind() == limber::ErrorKind::kOutOfMemory;
+  return fail(limber::spellOptions(error, limber::OptionSpelling::kProgram).what(),
+              isOutOfMemory ? limber::cli::kOutOfMemoryCode : kFailed);
 }
 
 int usage(const CLI::App& program, const std::string& what) {
@@ -32,8 +39,7 @@ int usage(const CLI::App& program, const std::string& what) {
     at = at->get_subcommands().front();
     command += " " + at->get_name();
   }
-  fmt::print(stderr, "limber: {} (limber{} --help shows how to call it)\n",
-             limber::spellOptions(what, limber::OptionSpelling::kProgram), command);
+  fmt::print(stderr, "limber: {} (limber{} --help shows how to call it)\n", what, command);
   return kUsage;
 }
 
@@ -91,9 +97,8 @@ int main(int argc, char** argv) {
     return usage(program, error.what());
   } catch (const std::bad_alloc&) {
     return fail("there is not enough memory for this", limber::cli::kOutOfMemoryCode);
-  } catch (const limber::KnownError& error) {
-    const bool isOutOfMemory = error.kind() == limber::ErrorKind::kOutOfMemory;
-    return fail(error.what(), isOutOfMemory ? limber::cli::kOutOfMemoryCode : kFailed);
+  } catch (const limber::Error& error) {
+    return fail(error);
   } catch (const std::exception& error) {
     return fail(error.what());
   }

@@ -1,6 +1,5 @@
 // limber rig: a static model goes in, a skinned one comes out.
 #include <algorithm>
-#include <filesystem>
 #include <locale>
 #include <sstream>
 
@@ -15,6 +14,7 @@
 #include "limber/asset/read.h"
 #include "limber/asset/write.h"
 #include "limber/core/counted.h"
+#include "limber/pipeline/option_spelling.h"
 #include "limber/pipeline/report_json.h"
 #include "limber/pipeline/rig_request.h"
 #include "limber/rigging/template_rigger.h"
@@ -28,7 +28,7 @@ struct RigArguments {
   std::string input, output, report;
   RigRequest request;
   AutoRigOptions rig;  // as the request says, once it is complete
-  std::string templateName;
+  std::optional<std::string> templateName;
   std::vector<std::string> pins;
   bool replaceRig = false, keepSkeleton = false, strict = false;
   AnimationRigArguments animation;
@@ -182,13 +182,12 @@ void completeRequest(RigArguments& options) {
   RigRequest& request = options.request;
   if (options.replaceRig) request.existingRig = "replace";
   if (options.keepSkeleton) request.existingRig = "keep-skeleton";
-  if (!options.templateName.empty()) chooseTemplate(request, options.templateName);
   for (const std::string& pin : options.pins) request.pins.push_back(parsePin(pin));
   try {
-    options.rig = optionsOf(request);
+    options.rig = options.templateName ? optionsWithTemplate(request, *options.templateName) : optionsOf(request);
   } catch (const Error& error) {
-    if (error.where().empty()) throw;
-    throw CLI::ValidationError(error.what());
+    if (!isOption(error.where())) throw;
+    throw CLI::ValidationError(spellOptions(error, OptionSpelling::kProgram).what());
   }
 }
 
@@ -197,7 +196,7 @@ void run(RigArguments options) {
   checkOutput(options.output, {".glb", ".gltf"});
   if (options.animation.frames.empty()) {
     if (options.input.empty()) throw CLI::RequiredError("IN");
-    checkBeside("--json", options.report, {options.input, options.output, options.templateName});
+    checkBeside("--json", options.report, {options.input, options.output, options.templateName.value_or("")});
   }
   completeRequest(options);
   if (!options.animation.frames.empty()) {
@@ -232,6 +231,14 @@ void run(RigArguments options) {
   // Whatever goes to standard output goes there alone.
   const bool busy = options.output == "-" || options.report == "-";
   printAccount(Account(options.common.quiet, busy ? "-" : ""), options, report);
+}
+
+// CLI11 takes an optional value that is empty for one that is not there.
+void refuseEmptyValues(CLI::App& command) {
+  for (CLI::Option* option :
+       command.get_options([](const CLI::Option* one) { return one->get_items_expected_max() > 0; })) {
+    option->check(CLI::Validator([](const std::string& value) { return value.empty() ? "is empty" : ""; }, ""));
+  }
 }
 
 template <class Method>
@@ -326,6 +333,7 @@ void addRigCommand(CLI::App& program) {
   command->add_flag("--strict", options->strict, "take warnings as errors");
   options->adapters.addTo(*command);
   options->common.addTo(*command);
+  refuseEmptyValues(*command);
   command->footer(rigHelp());
   command->callback([options] { run(*options); });
 }

@@ -402,15 +402,20 @@ void raiseErrors(py::module_& module) {
     try {
       std::rethrow_exception(std::move(raised));
     } catch (const Error& error) {
-      const auto told = [](std::string_view text) { return spellOptions(text, OptionSpelling::kPython); };
-      const py::object made = py::reinterpret_borrow<py::object>(type)(told(error.what()));
-      made.attr("code") = std::string(errorCodeName(error.code()));
-      made.attr("message") = told(error.message());
-      made.attr("where") = told(error.where());
-      made.attr("remedy") = told(error.remedy());
+      const Error told = spellOptions(error, OptionSpelling::kPython);
+      const py::object made = py::reinterpret_borrow<py::object>(type)(told.what());
+      made.attr("code") = std::string(errorCodeName(told.code()));
+      made.attr("message") = told.message();
+      made.attr("where") = told.where();
+      made.attr("remedy") = told.remedy();
       PyErr_SetObject(type, made.ptr());
     }
   });
+}
+
+AutoRigOptions optionsFrom(const RigRequest& request, const std::optional<std::filesystem::path>& templateName) {
+  const py::gil_scoped_release release;  // the file of a template may be large
+  return templateName ? optionsWithTemplate(request, templateName->string()) : optionsOf(request);
 }
 
 }  // namespace
@@ -451,18 +456,17 @@ PYBIND11_MODULE(_limber, module) {
              const std::optional<std::string>& front, bool upright, bool chains, const py::object& progress) {
             RigRequest request;
             request.rigger = rigger;
-            if (templateName) chooseTemplate(request, templateName->string());
             request.skinning = skinning;
             request.pieces = pieces;
             request.handles = handles;
             request.maxInfluences = maxInfluences;
             request.existingRig = existing;
             request.pins = pinsFrom(pins);
-            request.up = up.value_or("");
-            request.front = front.value_or("");
+            request.up = up;
+            request.front = front;
             request.upright = upright;
             request.chains = chains;
-            return model.rig(optionsOf(request), progress);
+            return model.rig(optionsFrom(request, templateName), progress);
           },
           py::arg("rigger") = py::none(), py::kw_only(), py::arg("template") = py::none(),
           py::arg("skinning") = RigRequest().skinning, py::arg("pieces") = RigRequest().pieces,

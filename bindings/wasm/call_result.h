@@ -27,11 +27,11 @@ struct CallResult {
 inline OptionSpelling optionSpelling = OptionSpelling::kJavaScript;
 
 inline CallResult failure(const Error& error) {
-  const auto told = [](std::string_view text) { return spellOptions(text, optionSpelling); };
-  Json account = {{"code", std::string(errorCodeName(error.code()))},
-                  {"message", told(error.message())},
-                  {"where", told(error.where())},
-                  {"remedy", told(error.remedy())}};
+  const Error told = spellOptions(error, optionSpelling);
+  Json account = {{"code", std::string(errorCodeName(told.code()))},
+                  {"message", told.message()},
+                  {"where", told.where()},
+                  {"remedy", told.remedy()}};
   if (const auto* known = dynamic_cast<const KnownError*>(&error)) {
     account["kind"] = std::string(errorKindName(known->kind()));
     account["values"] = Json::object();

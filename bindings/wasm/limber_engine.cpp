@@ -30,12 +30,12 @@ using limber::wasm::CallResult;
 using limber::wasm::guarded;
 
 // As the program reads the file that --template names.
-limber::RigRequest requestFrom(std::string_view options, limber::ByteSpan templateFile, std::string_view templateName) {
-  limber::RigRequest request = limber::rigRequestFromJson(options);
-  if (templateName.empty()) return request;
-  request.templateName = templateName;
-  request.templateSkeleton = limber::readTemplateFile(templateFile, templateName);
-  return request;
+limber::AutoRigOptions optionsFrom(std::string_view json, limber::ByteSpan templateFile,
+                                   std::string_view templateName) {
+  const limber::RigRequest request = limber::rigRequestFromJson(json);
+  if (templateName.empty()) return limber::optionsOf(request);
+  return limber::optionsWithOwnTemplate(request, templateName,
+                                        [&] { return limber::readTemplateFile(templateFile, templateName); });
 }
 
 template <class Table>
@@ -56,11 +56,11 @@ LIMBER_EXPORT CallResult* limber_rig(const std::uint8_t* file, std::size_t fileS
                                      const std::uint8_t* templateFile, std::size_t templateFileSize,
                                      const char* templateName, std::size_t templateNameSize) {
   return guarded({name, nameSize}, [&]() -> CallResult {
-    const limber::AutoRigOptions rig = limber::optionsOf(
-        requestFrom({options, optionsSize}, {templateFile, templateFileSize}, {templateName, templateNameSize}));
+    const limber::AutoRigOptions rig =
+        optionsFrom({options, optionsSize}, {templateFile, templateFileSize}, {templateName, templateNameSize});
     limber::Asset asset = limber::readAsset({file, fileSize}, {name, nameSize});
-    limber::Progress progress(limber::wasm::reportProgress);
-    const limber::AutoRigReport report = limber::autoRig(asset, rig, progress);
+    limber::wasm::PageProgress progress;
+    const limber::AutoRigReport report = limber::autoRig(asset, rig, *progress);
     return {true, limber::writeGlb(asset), limber::dumpReport(limber::toJson(report), -1)};
   });
 }

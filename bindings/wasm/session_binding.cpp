@@ -25,7 +25,7 @@ using limber::Index;
 using limber::Json;
 using limber::wasm::CallResult;
 using limber::wasm::guarded;
-using limber::wasm::reportProgress;
+using limber::wasm::PageProgress;
 
 // The normals that a page shades surfaces with, as bound; of the rigs that were asked for last.
 class ShadingNormals {
@@ -332,8 +332,8 @@ LIMBER_EXPORT void limber_session_free(SessionHandle* handle) {
 LIMBER_EXPORT CallResult* limber_session_open(SessionHandle* handle, int limbsFollow, const std::uint8_t* file,
                                               std::size_t fileSize, const char* name, std::size_t nameSize) {
   return guarded({name, nameSize}, [&] {
-    limber::Progress progress(reportProgress);
-    handle->scene.open({file, fileSize}, {name, nameSize}, progress, limbsFollow != 0);
+    PageProgress progress;
+    handle->scene.open({file, fileSize}, {name, nameSize}, *progress, limbsFollow != 0);
     return stateAfter(handle->scene, limber::OpenFile{});
   });
 }
@@ -341,8 +341,8 @@ LIMBER_EXPORT CallResult* limber_session_open(SessionHandle* handle, int limbsFo
 LIMBER_EXPORT CallResult* limber_session_run(SessionHandle* handle, const char* json, std::size_t size) {
   return guarded({}, [&] {
     const limber::Command command = commandOf(json, size);
-    limber::Progress progress(reportProgress);
-    handle->scene.run(command, progress);
+    PageProgress progress;
+    handle->scene.run(command, *progress);
     return stateAfter(handle->scene, command);
   });
 }
@@ -352,9 +352,9 @@ LIMBER_EXPORT CallResult* limber_session_add(SessionHandle* handle, int limbsFol
                                              const std::uint8_t* file, std::size_t fileSize, const char* name,
                                              std::size_t nameSize) {
   return guarded({name, nameSize}, [&] {
-    limber::Progress progress(reportProgress);
+    PageProgress progress;
     const limber::AddFile command{{name, nameSize}, limbsFollow != 0, asProp != 0};
-    handle->scene.add({file, fileSize}, command, progress);
+    handle->scene.add({file, fileSize}, command, *progress);
     return stateAfter(handle->scene, command);
   });
 }
@@ -405,9 +405,9 @@ LIMBER_EXPORT CallResult* limber_session_add_motion(SessionHandle* handle, int r
 LIMBER_EXPORT CallResult* limber_session_transfer_rig(SessionHandle* handle, const std::uint8_t* file,
                                                       std::size_t fileSize, const char* name, std::size_t nameSize) {
   return guarded({name, nameSize}, [&] {
-    limber::Progress progress(reportProgress);
+    PageProgress progress;
     const limber::TransferRig command{std::string(name, nameSize)};
-    handle->scene.transferRig({file, fileSize}, command, progress);
+    handle->scene.transferRig({file, fileSize}, command, *progress);
     return stateAfter(handle->scene, command);
   });
 }

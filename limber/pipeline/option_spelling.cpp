@@ -2,10 +2,16 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
+#include <optional>
 
 namespace limber {
 
 namespace {
+
+constexpr std::string_view kOptions[] = {"handles", "max-influences", "rigger", "template", "skinning",
+                                         "pieces",  "existing-rig",   "up",     "front",    "pins",
+                                         "upright", "chains",         "bones"};
 
 // "max-influences" or "existing-rig: replace".
 struct WrittenOption {
@@ -15,6 +21,16 @@ struct WrittenOption {
 bool isOptionWord(std::string_view word) {
   return !word.empty() &&
          std::all_of(word.begin(), word.end(), [](char c) { return (c >= 'a' && c <= 'z') || c == '-'; });
+}
+
+// What stands between two backticks.
+std::optional<WrittenOption> parseOption(std::string_view inside) {
+  const std::size_t colon = inside.find(": ");
+  const bool hasValue = colon != std::string_view::npos;
+  const WrittenOption option{inside.substr(0, colon), hasValue ? inside.substr(colon + 2) : std::string_view()};
+  const bool isKnown = std::find(std::begin(kOptions), std::end(kOptions), option.name) != std::end(kOptions);
+  if (!isKnown || (hasValue && !isOptionWord(option.value))) return std::nullopt;
+  return option;
 }
 
 // The words with their hyphens as underscores, or as capitals behind them.
@@ -57,16 +73,22 @@ std::string spellOptions(std::string_view text, OptionSpelling spelling) {
     const std::size_t open = text.find('`');
     const std::size_t close = open == std::string_view::npos ? open : text.find('`', open + 1);
     if (close == std::string_view::npos) break;
-    const std::string_view inside = text.substr(open + 1, close - open - 1);
-    const std::size_t colon = inside.find(": ");
-    const bool hasValue = colon != std::string_view::npos;
-    const WrittenOption option{inside.substr(0, colon), hasValue ? inside.substr(colon + 2) : std::string_view()};
-    const bool isOption = isOptionWord(option.name) && (!hasValue || isOptionWord(option.value));
-    result += text.substr(0, isOption ? open : close);  // a backtick that closes nothing may open
-    if (isOption) result += spelled(option, spelling);
-    text.remove_prefix(isOption ? close + 1 : close);
+    const std::optional<WrittenOption> option = parseOption(text.substr(open + 1, close - open - 1));
+    result += text.substr(0, option ? open : close);  // a backtick that closes nothing may open
+    if (option) result += spelled(*option, spelling);
+    text.remove_prefix(option ? close + 1 : close);
   }
   return result + std::string(text);
+}
+
+bool isOption(std::string_view text) {
+  return text.size() > 2 && text.front() == '`' && text.back() == '`' && parseOption(text.substr(1, text.size() - 2));
+}
+
+Error spellOptions(const Error& error, OptionSpelling spelling) {
+  return Error(error.code(), error.message(),
+               isOption(error.where()) ? spellOptions(error.where(), spelling) : error.where(),
+               spellOptions(error.remedy(), spelling));
 }
 
 }  // namespace limber

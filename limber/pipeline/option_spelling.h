@@ -1,9 +1,12 @@
 // Options by the names that a caller knows. The library writes an option between backticks, alone or with a value:
-// "`existing-rig: replace` takes it out first".
+// "`existing-rig: replace` takes it out first". It does so in what an error says to do, and as the place of an error
+// where one option is to blame; messages, and names of files and joints, are left as they are.
 #pragma once
 
 #include <string>
 #include <string_view>
+
+#include "limber/core/error.h"
 
 namespace limber {
 
@@ -13,7 +16,14 @@ enum class OptionSpelling {
   kJavaScript,  // maxInfluences, template: 'auto', existingRig: 'replace'
 };
 
-// The text with every option in it as the caller writes it. Other text between backticks stays. Linear.
+// The text with every option in it as the caller writes it. Other text between backticks stays, and so does what is
+// called by no option's name. Linear.
 std::string spellOptions(std::string_view text, OptionSpelling spelling);
+
+// "`handles`", and nothing else.
+bool isOption(std::string_view text);
+
+// The error with its remedy, and a place that is an option, as the caller writes them.
+Error spellOptions(const Error& error, OptionSpelling spelling);
 
 }  // namespace limber

@@ -26,10 +26,29 @@ TEST(OptionSpelling, EachCallerReadsItsOwnNames) {
 }
 
 TEST(OptionSpelling, OtherTextStays) {
-  for (const char* text : {"", "nothing to say", "one ` alone", "a `File.glb` of a user's", "``", "`a: `", "`: a`"}) {
+  for (const char* text : {"", "nothing to say", "one ` alone", "a `File.glb` of a user's", "``", "`a: `", "`: a`",
+                           "`model`.glb", "`joint: replace`", "`up: +y`"}) {
     expectSpelled(text, text, text, text);
   }
   expectSpelled("` and `up`", "` and --up", "` and up", "` and up");
+}
+
+TEST(OptionSpelling, OfAnErrorTheRemedyAndAnOptionThatIsToBlame) {
+  const auto told = [](const char* message, const char* where, const char* remedy) {
+    return std::string(
+        spellOptions(Error(ErrorCode::kBadArgument, message, where, remedy), OptionSpelling::kProgram).what());
+  };
+  EXPECT_EQ(told("takes 1 to 8, not `up`", "`max-influences`", "leave `up` out"),
+            "--max-influences: takes 1 to 8, not `up` (leave --up out)");
+  EXPECT_EQ(told("no joint", "`up`.glb", ""), "`up`.glb: no joint");
+  EXPECT_EQ(spellOptions(Error(ErrorCode::kLimit, ""), OptionSpelling::kProgram).code(), ErrorCode::kLimit);
+}
+
+TEST(OptionSpelling, AnOptionStandsAlone) {
+  for (const char* text : {"`up`", "`existing-rig: replace`"}) EXPECT_TRUE(isOption(text)) << text;
+  for (const char* text : {"", "`", "``", "up", "`up", "`up`.glb", "`up` and `front`", "`model`"}) {
+    EXPECT_FALSE(isOption(text)) << text;
+  }
 }
 
 }  // namespace limber

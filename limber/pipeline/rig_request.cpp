@@ -1,16 +1,16 @@
 #include "limber/pipeline/rig_request.h"
 
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <iterator>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "limber/asset/json_access.h"
 #include "limber/asset/json_text.h"
+#include "limber/pipeline/option_spelling.h"
 #include "limber/pipeline/template_file.h"
 #include "limber/rigging/template_rigger.h"
 #include "limber/skinning/weight_steps.h"
@@ -20,9 +20,6 @@ namespace limber {
 namespace {
 
 constexpr const char* kTemplateRigger = "template";
-constexpr std::string_view kKeys[] = {"handles",  "maxInfluences", "rigger",      "template",
-                                      "skinning", "pieces",        "existingRig", "up",
-                                      "front",    "pins",          "upright",     "chains"};
 
 [[noreturn]] void refuseOption(std::string_view option, std::string problem, std::string remedy = {}) {
   throw Error(ErrorCode::kBadArgument, std::move(problem), fmt::format("`{}`", option), std::move(remedy));
@@ -36,8 +33,9 @@ ExistingRig readExistingRig(const std::string& name) {
 }
 
 // "+y", "-z", "x".
-std::optional<Vec3> readAxis(std::string_view option, const std::string& text) {
-  if (text.empty()) return std::nullopt;
+std::optional<Vec3> readAxis(std::string_view option, const std::optional<std::string>& given) {
+  if (!given) return std::nullopt;
+  const std::string& text = *given;
   const std::size_t at = text[0] == '+' || text[0] == '-' ? 1 : 0;
   if (text.size() == at + 1) {
     const char axis = static_cast<char>(text[at] | 0x20);  // lower case
@@ -63,23 +61,23 @@ void checkTogether(const RigRequest& request, const AutoRigOptions& options) {
   const bool isTemplate = options.rigger == kTemplateRigger;
   if (options.existingRig == ExistingRig::kKeepSkeleton) {
     refuseGiven({{"handles", request.handles.has_value()},
-                 {"template", request.templateName.has_value()},
+                 {"template", request.chosenTemplate.has_value()},
                  {"rigger", request.rigger.has_value()},
                  {"pins", !request.pins.empty()},
-                 {"up", !request.up.empty()},
-                 {"front", !request.front.empty()},
+                 {"up", request.up.has_value()},
+                 {"front", request.front.has_value()},
                  {"upright", request.upright},
                  {"chains", request.chains}},
                 "is of no use where the model's own skeleton is kept", "leave `existing-rig: keep-skeleton` out");
   }
-  if (request.templateName && !isTemplate) {
+  if (request.chosenTemplate && !isTemplate) {
     refuseOption("template", fmt::format("is of no use with the rigger {}", options.rigger), "leave `rigger` out");
   }
   if (isTemplate && request.handles) refuseOption("handles", "a template has the joints that it has");
   if (isTemplate) return;
   refuseGiven({{"pins", !request.pins.empty()},
-               {"up", !request.up.empty()},
-               {"front", !request.front.empty()},
+               {"up", request.up.has_value()},
+               {"front", request.front.has_value()},
                {"upright", request.upright},
                {"chains", request.chains}},
               "takes a template to fit", "name one: `template: auto`");
@@ -97,6 +95,26 @@ void checkRanges(const RigRequest& request) {
   }
 }
 
+// `find` looks for a name that the user gave for that option.
+template <class Find>
+auto findNamed(std::string_view option, Find&& find) {
+  try {
+    return find();
+  } catch (const Error& error) {
+    refuseOption(option, error.message(), error.remedy());
+  }
+}
+
+std::string textOf(const JsonView& value) {
+  if (!value.json().is_string()) value.fail("must be a string");
+  return value.json().get<std::string>();
+}
+
+bool flagOf(const JsonView& value) {
+  if (!value.json().is_boolean()) value.fail("must be true or false");
+  return value.json().get<bool>();
+}
+
 void readPins(const JsonView& pins, RigRequest& request) {
   pins.forEachMember([&](std::string_view joint, const JsonView& place) {
     JointPin& pin = request.pins.emplace_back();
@@ -106,35 +124,57 @@ void readPins(const JsonView& pins, RigRequest& request) {
   });
 }
 
+struct JsonOption {
+  std::string_view name;
+  void (*read)(const JsonView& value, RigRequest& request);
+};
+
+constexpr JsonOption kJsonOptions[] = {
+    {"handles", [](const JsonView& value, RigRequest& r) { r.handles = value.asIndex(kNoIndex); }},
+    {"max-influences", [](const JsonView& value, RigRequest& r) { r.maxInfluences = value.asIndex(kNoIndex); }},
+    {"rigger", [](const JsonView& value, RigRequest& r) { r.rigger = textOf(value); }},
+    {"template", [](const JsonView& value, RigRequest& r) { r.chosenTemplate = ChosenTemplate{textOf(value)}; }},
+    {"skinning", [](const JsonView& value, RigRequest& r) { r.skinning = textOf(value); }},
+    {"pieces", [](const JsonView& value, RigRequest& r) { r.pieces = textOf(value); }},
+    {"existing-rig", [](const JsonView& value, RigRequest& r) { r.existingRig = textOf(value); }},
+    {"up", [](const JsonView& value, RigRequest& r) { r.up = textOf(value); }},
+    {"front", [](const JsonView& value, RigRequest& r) { r.front = textOf(value); }},
+    {"pins", readPins},
+    {"upright", [](const JsonView& value, RigRequest& r) { r.upright = flagOf(value); }},
+    {"chains", [](const JsonView& value, RigRequest& r) { r.chains = flagOf(value); }},
+};
+
+std::string jsonKey(const JsonOption& option) {
+  return spellOptions(fmt::format("`{}`", option.name), OptionSpelling::kJavaScript);
+}
+
+// The option is to blame for what is wrong inside its value.
+void readOption(const JsonOption& option, const JsonView& value, RigRequest& request) {
+  try {
+    option.read(value, request);
+  } catch (const Error& error) {
+    std::string inside = error.where().substr(value.path().size());
+    if (inside.starts_with('.')) inside.erase(0, 1);
+    refuseOption(option.name, inside.empty() ? error.message() : inside + " " + error.message(), error.remedy());
+  }
+}
+
 RigRequest readRequest(const JsonView& json) {
   json.requireObject();
-  json.forEachMember([](std::string_view key, const JsonView& value) {
-    if (std::find(std::begin(kKeys), std::end(kKeys), key) != std::end(kKeys)) return;
-    throw Error(ErrorCode::kBadArgument, "there is no such option", value.path(),
-                fmt::format("there are: {}", fmt::join(kKeys, ", ")));
-  });
   RigRequest request;
-  request.handles = json.index("handles", kNoIndex);
-  request.maxInfluences = json.index("maxInfluences", kNoIndex).value_or(request.maxInfluences);
-  if (json.member("rigger").exists()) request.rigger = json.text("rigger");
-  if (json.member("template").exists()) request.templateName = json.text("template");
-  request.skinning = json.text("skinning", request.skinning);
-  request.pieces = json.text("pieces", request.pieces);
-  request.existingRig = json.text("existingRig", request.existingRig);
-  request.up = json.text("up");
-  request.front = json.text("front");
-  request.upright = json.flag("upright", false);
-  request.chains = json.flag("chains", false);
-  readPins(json.object("pins"), request);
+  json.forEachMember([&](std::string_view key, const JsonView& value) {
+    for (const JsonOption& option : kJsonOptions) {
+      if (jsonKey(option) == key) return readOption(option, value, request);
+    }
+    std::vector<std::string> known;
+    for (const JsonOption& option : kJsonOptions) known.push_back(fmt::format("`{}`", option.name));
+    throw Error(ErrorCode::kBadArgument, "there is no such option", std::string(key),
+                fmt::format("there are: {}", fmt::join(known, ", ")));
+  });
   return request;
 }
 
 }  // namespace
-
-void chooseTemplate(RigRequest& request, const std::string& nameOrFile) {
-  request.templateName = nameOrFile;
-  if (!std::filesystem::path(nameOrFile).extension().empty()) request.templateSkeleton = readTemplateFile(nameOrFile);
-}
 
 RigRequest rigRequestFromJson(std::string_view text) {
   try {
@@ -149,28 +189,45 @@ RigRequest rigRequestFromJson(std::string_view text) {
 
 AutoRigOptions optionsOf(const RigRequest& request) {
   AutoRigOptions options;
-  options.rigger = request.rigger.value_or(request.templateName ? kTemplateRigger : options.rigger);
+  options.rigger = request.rigger.value_or(request.chosenTemplate ? kTemplateRigger : options.rigger);
   options.existingRig = readExistingRig(request.existingRig);
   checkRanges(request);
   checkTogether(request, options);
   options.skinning = request.skinning;
   options.weights.maxInfluences = request.maxInfluences;
-  options.weights.pieces = findPieceMode(request.pieces);
+  options.weights.pieces = findNamed("pieces", [&] { return findPieceMode(request.pieces); });
   options.chains = request.chains;
   options.standUpright = request.upright;
   options.rig.handles = request.handles;
   options.rig.up = readAxis("up", request.up);
   options.rig.front = readAxis("front", request.front);
   if (options.rig.up && options.rig.front && std::abs(options.rig.up->dot(*options.rig.front)) > 0.5) {
-    refuseOption("front", "must be square to `up`");
+    refuseOption("front", "is not square to the model's up");
   }
   options.rig.pins = request.pins;
-  options.rig.templateSkeleton = request.templateSkeleton;
-  if (request.templateName) {
-    options.rig.templateName = *request.templateName;
-    if (!request.templateSkeleton) checkTemplateName(*request.templateName);
+  if (request.chosenTemplate) {
+    const auto& [name, skeleton] = *request.chosenTemplate;
+    options.rig.templateName = name;
+    options.rig.templateSkeleton = skeleton;
+    if (!skeleton) findNamed("template", [&] { checkTemplateName(request.chosenTemplate->name); });
   }
   return options;
+}
+
+AutoRigOptions optionsWithOwnTemplate(RigRequest request, std::string_view name,
+                                      const std::function<Skeleton()>& read) {
+  request.chosenTemplate = ChosenTemplate{std::string(name), Skeleton()};
+  AutoRigOptions options = optionsOf(request);
+  options.rig.templateSkeleton = read();
+  return options;
+}
+
+AutoRigOptions optionsWithTemplate(RigRequest request, const std::string& nameOrFile) {
+  if (!std::filesystem::path(nameOrFile).extension().empty()) {
+    return optionsWithOwnTemplate(std::move(request), nameOrFile, [&] { return readTemplateFile(nameOrFile); });
+  }
+  request.chosenTemplate = ChosenTemplate{nameOrFile};
+  return optionsOf(request);
 }
 
 }  // namespace limber

@@ -2,6 +2,7 @@
 // their defaults and their ranges are here alone.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -11,31 +12,37 @@
 
 namespace limber {
 
+struct ChosenTemplate {
+  std::string name;                       // auto, or a name of namedTemplates()
+  std::optional<Skeleton> skeleton = {};  // a user's own; the name is then what it is called
+};
+
 struct RigRequest {
   std::optional<std::string> rigger;  // none: template where one is named, else the one of AutoRigOptions
   std::string skinning = AutoRigOptions().skinning;
-  std::optional<std::string> templateName;              // auto, or a name of namedTemplates()
-  std::optional<Skeleton> templateSkeleton;             // a user's own; templateName is then what it is called
+  std::optional<ChosenTemplate> chosenTemplate;
   std::optional<Index> handles;                         // 1 or more
   Index maxInfluences = WeightOptions().maxInfluences;  // 1 to 8
   std::string pieces = "auto";                          // a name of pieceModes()
   std::string existingRig = "refuse";                   // refuse, replace, keep-skeleton
-  std::string up, front;                                // +x, -x, x, ...; empty: found
+  std::optional<std::string> up, front;                 // +x, -x, x, ...; none: found
   std::vector<JointPin> pins;                           // in world space, metres
   bool upright = false, chains = false;
 };
 
-// Names a template, or the file of one (readTemplateFile), which is what a name with a dot is. Throws as that does.
-void chooseTemplate(RigRequest& request, const std::string& nameOrFile);
-
 // From the options of the package for npm: an object with any of handles, maxInfluences, rigger, template, skinning,
 // pieces, existingRig, up, front, pins ({"leftHand": [x, y, z]}), upright and chains. Throws Error kBadArgument, which
-// names the key, for another key and for a value of the wrong kind.
+// names the option as optionsOf() does, for a value of the wrong kind, and another key as it is.
 RigRequest rigRequestFromJson(std::string_view json);
 
 // Throws Error kBadArgument for what is out of range, does not go together or is called by no name that there is. Where
 // one option is to blame its name is where(), between backticks (spellOptions). A rigger and a method of skinning may
 // be a program of the user's: autoRig() looks for their names.
 AutoRigOptions optionsOf(const RigRequest& request);
+
+// With a template of the user's in place of the request's: read() gives it, once all else is right.
+AutoRigOptions optionsWithOwnTemplate(RigRequest request, std::string_view name, const std::function<Skeleton()>& read);
+// With a template by name, or by its file (readTemplateFile), which is what a name with a dot is.
+AutoRigOptions optionsWithTemplate(RigRequest request, const std::string& nameOrFile);
 
 }  // namespace limber

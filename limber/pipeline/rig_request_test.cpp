@@ -14,6 +14,7 @@ namespace limber {
 
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 Error rigRefusal(const std::function<void()>& call) {
@@ -91,25 +92,61 @@ TEST(RigRequest, ReadsEveryOptionOfJson) {
   EXPECT_EQ(handles.rig.handles, Index{7});
 }
 
-TEST(RigRequest, RefusesOtherJsonByTheKey) {
-  for (const auto& [json, key] : std::vector<std::pair<const char*, const char*>>{
-           {R"({"handels": 3})", "handels"},
-           {R"({"handles": "many"})", "handles"},
-           {R"({"handles": -1})", "handles"},
-           {R"({"handles": 2.5})", "handles"},
-           {R"({"handles": 4294967301})", "handles"},
-           {R"({"chains": 1})", "chains"},
-           {R"({"pins": [1, 2, 3]})", "pins"},
-           {R"({"pins": {"head": [1, 2]}})", "head"},
-           {R"({"pins": {"head": [1, 2, null]}})", "head"},
-           {R"({"rigger": null})", "rigger"},
-           {"[]", "object"},
-           {"{", "options"},
+TEST(RigRequest, RefusesOtherJsonByTheOption) {
+  struct Wrong {
+    const char *json, *where, *message;
+  };
+  for (const auto& [json, where, message] : std::vector<Wrong>{
+           {R"({"handels": 3})", "handels", "no such option"},
+           {R"({"max-influences": 3})", "max-influences", "no such option"},
+           {R"({"handles": "many"})", "`handles`", "must be a number"},
+           {R"({"handles": -1})", "`handles`", "whole number"},
+           {R"({"handles": 2.5})", "`handles`", "whole number"},
+           {R"({"handles": 4294967301})", "`handles`", "4294967301"},
+           {R"({"maxInfluences": []})", "`max-influences`", "must be a number"},
+           {R"({"existingRig": 1})", "`existing-rig`", "must be a string"},
+           {R"({"chains": 1})", "`chains`", "must be true or false"},
+           {R"({"pins": [1, 2, 3]})", "`pins`", "must be an object"},
+           {R"({"pins": {"head": [1, 2]}})", "`pins`", "head is not a position"},
+           {R"({"pins": {"head": [1, 2, null]}})", "`pins`", "head[2] must be a number"},
+           {R"({"rigger": null})", "`rigger`", "must be a string"},
+           {R"({"template": null})", "`template`", "must be a string"},
+           {"[]", "options", "must be an object"},
+           {"{", "options", ""},
        }) {
-    const Error error = rigRefusal([&, text = json] { rigRequestFromJson(text); });
+    const Error error = rigRefusal([text = json] { rigRequestFromJson(text); });
     EXPECT_EQ(error.code(), ErrorCode::kBadArgument) << json;
-    EXPECT_THAT(error.what(), HasSubstr(key)) << json;
+    EXPECT_EQ(error.where(), where) << json;
+    EXPECT_THAT(error.message(), HasSubstr(message)) << json;
   }
+  EXPECT_THAT(rigRefusal([] { rigRequestFromJson(R"({"handels": 3})"); }).remedy(),
+              AllOf(HasSubstr("`handles`"), HasSubstr("`max-influences`")));
+}
+
+TEST(RigRequest, ReadsATemplateOnceAllElseIsRight) {
+  const std::function<Skeleton()> unread = []() -> Skeleton {
+    ADD_FAILURE() << "read too early";
+    return {};
+  };
+  RigRequest wrong;
+  wrong.maxInfluences = 9;
+  EXPECT_EQ(rigRefusal([&] { optionsWithOwnTemplate(wrong, "own.json", unread); }).where(), "`max-influences`");
+  EXPECT_EQ(rigRefusal([&] { optionsWithTemplate(wrong, "nowhere.json"); }).where(), "`max-influences`");
+  EXPECT_THAT(rigRefusal([&] { optionsWithTemplate({}, "nowhere.json"); }).where(), HasSubstr("nowhere.json"));
+  EXPECT_EQ(rigRefusal([&] { optionsWithTemplate({}, "nobody"); }).where(), "`template`");
+
+  const AutoRigOptions named = optionsWithTemplate({}, "humanoid");
+  EXPECT_EQ(named.rig.templateName, "humanoid");
+  EXPECT_FALSE(named.rig.templateSkeleton);
+  const AutoRigOptions own = optionsWithOwnTemplate({}, "own.json", [] {
+    Skeleton skeleton;
+    skeleton.joints.emplace_back().name = "root";
+    return skeleton;
+  });
+  EXPECT_EQ(own.rigger, "template");
+  EXPECT_EQ(own.rig.templateName, "own.json");
+  ASSERT_TRUE(own.rig.templateSkeleton);
+  EXPECT_EQ(own.rig.templateSkeleton->joints[0].name, "root");
 }
 
 TEST(RigRequest, RefusesWhatDoesNotGoTogether) {
@@ -118,7 +155,7 @@ TEST(RigRequest, RefusesWhatDoesNotGoTogether) {
   std::vector<NamedChange> ofJoints = templateOptions();
   ofJoints.push_back({"`handles`", [](RigRequest& r) { r.handles = 3; }});
   ofJoints.push_back({"`rigger`", [](RigRequest& r) { r.rigger = "prop"; }});
-  ofJoints.push_back({"`template`", [](RigRequest& r) { r.templateName = "auto"; }});
+  ofJoints.push_back({"`template`", [](RigRequest& r) { r.chosenTemplate = ChosenTemplate{"auto"}; }});
   for (const auto& [option, change] : ofJoints) {
     RigRequest request = kept;
     change(request);
@@ -132,13 +169,13 @@ TEST(RigRequest, RefusesWhatDoesNotGoTogether) {
     request.rigger = "template";
     EXPECT_EQ(optionsOf(request).rigger, "template");
     request.rigger.reset();
-    request.templateName = "humanoid";
+    request.chosenTemplate = ChosenTemplate{"humanoid"};
     EXPECT_EQ(optionsOf(request).rigger, "template");
     request.handles = 3;
     EXPECT_EQ(rigRefusal(request).where(), "`handles`");
   }
   RigRequest both;
-  both.templateName = "humanoid";
+  both.chosenTemplate = ChosenTemplate{"humanoid"};
   both.rigger = "prop";
   EXPECT_EQ(rigRefusal(both).where(), "`template`");
   both.rigger = "template";
@@ -152,16 +189,19 @@ TEST(RigRequest, RefusesWhatIsOutOfRange) {
            {"`max-influences`", [](RigRequest& r) { r.maxInfluences = 0; }},
            {"`max-influences`", [](RigRequest& r) { r.maxInfluences = 9; }},
            {"`existing-rig`", [](RigRequest& r) { r.existingRig = "keep"; }},
-           {"`up`", [](RigRequest& r) { r.templateName = "auto", r.up = "++y"; }},
-           {"`front`", [](RigRequest& r) { r.templateName = "auto", r.front = "w"; }},
-           {"`front`", [](RigRequest& r) { r.templateName = "auto", r.up = "+y", r.front = "-y"; }},
+           {"`up`", [](RigRequest& r) { r.chosenTemplate = ChosenTemplate{"auto"}, r.up = "++y"; }},
+           {"`front`", [](RigRequest& r) { r.chosenTemplate = ChosenTemplate{"auto"}, r.front = "w"; }},
+           {"`front`", [](RigRequest& r) { r.chosenTemplate = ChosenTemplate{"auto"}, r.up = "+y", r.front = "-y"; }},
            {"`pins`",
             [](RigRequest& r) {
-              r.templateName = "auto";
+              r.chosenTemplate = ChosenTemplate{"auto"};
               r.pins = {{"head", Vec3(0, std::numeric_limits<double>::infinity(), 0)}};
             }},
-           {"", [](RigRequest& r) { r.templateName = "nobody"; }},
-           {"", [](RigRequest& r) { r.pieces = "nobody"; }},
+           {"`up`", [](RigRequest& r) { r.chosenTemplate = ChosenTemplate{"auto"}, r.up = ""; }},
+           {"`front`", [](RigRequest& r) { r.chosenTemplate = ChosenTemplate{"auto"}, r.front = ""; }},
+           {"`template`", [](RigRequest& r) { r.chosenTemplate = ChosenTemplate{"nobody"}; }},
+           {"`template`", [](RigRequest& r) { r.chosenTemplate = ChosenTemplate{""}; }},
+           {"`pieces`", [](RigRequest& r) { r.pieces = "nobody"; }},
        }) {
     RigRequest request;
     wrong.change(request);

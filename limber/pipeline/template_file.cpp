@@ -11,6 +11,7 @@
 #include "limber/asset/json_text.h"
 #include "limber/asset/motion_io.h"
 #include "limber/core/file.h"
+#include "limber/core/known_error.h"
 
 namespace limber {
 
@@ -99,8 +100,7 @@ Skeleton withinTemplate(std::string_view name, Read&& read) {
   try {
     return read();
   } catch (const Error& error) {
-    if (error.where().find(name) != std::string::npos) throw;
-    throw error.within(name);
+    throwWithin(error, name);
   }
 }
 

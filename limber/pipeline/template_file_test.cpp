@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "limber/core/error.h"
+#include "limber/core/known_error.h"
 
 namespace limber {
 
@@ -69,7 +70,17 @@ TEST(TemplateFile, BytesAreReadByTheirName) {
       ADD_FAILURE() << name;
     } catch (const Error& error) {
       EXPECT_EQ(error.where().rfind(name, 0), 0u) << error.what();
+      EXPECT_EQ(error.where().find(name, 1), std::string::npos) << error.what();
     }
+  }
+}
+
+TEST(TemplateFile, AnErrorKeepsItsKind) {
+  try {
+    readTemplateFile(asBytes(""), "own.glb");
+    ADD_FAILURE() << "an empty file is read";
+  } catch (const KnownError& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::kEmptyFile);
   }
 }
 

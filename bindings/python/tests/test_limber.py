@@ -184,7 +184,8 @@ class Rigging(InFolder):
         for wrong in [dict(rigger="x"), dict(skinning="x"), dict(existing_rig="x"), dict(max_influences=0), dict(template="x"), dict(pins={"head": (0, 1, 0)}),
                       dict(template="quadruped", handles=3), dict(template="quadruped", rigger="prop"), dict(existing_rig="keep-skeleton", handles=3),
                       dict(template="quadruped", pins={"head": (0, 1)}), dict(template="quadruped", up="+w"), dict(template="quadruped", up="+y", front="y"),
-                      dict(chains=True), dict(pieces="x"), dict(template=self.path("nothing.bvh"))]:
+                      dict(chains=True), dict(pieces="x"), dict(template=self.path("nothing.bvh")),
+                      dict(template=""), dict(rigger=""), dict(template="quadruped", up=""), dict(template="quadruped", front="")]:
             with self.assertRaises(limber.Error):
                 limber.sample("quadruped").rig(**wrong)
 
@@ -194,6 +195,13 @@ class Rigging(InFolder):
         self.assertEqual((caught.exception.where, caught.exception.remedy), ("handles", 'leave existing_rig="keep-skeleton" out'))
         with self.assertRaises(limber.Error) as caught:
             limber.sample("quadruped").rig(max_influences=9)
+        self.assertEqual(caught.exception.where, "max_influences")
+        for wrong in [dict(template="nobody"), dict(pieces="nobody"), dict(template="quadruped", front="+w")]:
+            with self.assertRaises(limber.Error) as caught:
+                limber.sample("quadruped").rig(**wrong)
+            self.assertEqual(caught.exception.where, list(wrong)[-1])
+        with self.assertRaises(limber.Error) as caught:  # before its file is read
+            limber.sample("quadruped").rig(template=self.path("nothing.bvh"), max_influences=9)
         self.assertEqual(caught.exception.where, "max_influences")
         model = limber.sample("quadruped")
         model.rig(handles=5)
@@ -219,6 +227,18 @@ class Rigging(InFolder):
             model.rig(**options)
             subprocess.run([PROGRAM, "rig", self.path("bare.glb"), *words, "--quiet", "-o", self.path("program.glb")], check=True)
             self.assertEqual(model.glb(), self.path("program.glb").read_bytes())
+
+    def test_other_threads_run_while_a_template_is_read(self):
+        pipe = self.path("own.json")
+        os.mkfifo(pipe)
+        writer = threading.Thread(target=lambda: pipe.write_text('{"joints": [{"name": "root", "position": [0, 1, 0]}, {"name": "top", "parent": "root", "position": [0, 2, 0]}]}'))
+        signal.alarm(60)  # ends the tests where the two wait for each other
+        writer.start()
+        model = limber.sample("biped")
+        model.rig(template=pipe)
+        writer.join()
+        signal.alarm(0)
+        self.assertEqual(model.joint_names, ["root", "top"])
 
     def test_a_listener_that_raises_stops_it(self):
         model = limber.sample("winged")
