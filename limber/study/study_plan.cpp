@@ -16,6 +16,7 @@
 #include "limber/asset/json_text.h"
 #include "limber/core/names.h"
 #include "limber/ik/ik_solver.h"
+#include "limber/pipeline/rig_request.h"
 #include "limber/retarget/retarget_method.h"
 #include "limber/rigging/auto_rigger.h"
 #include "limber/rigging/template_rigger.h"
@@ -87,6 +88,7 @@ class PlanMethods {
   void checkRetargeting(std::string_view name) const {
     if (!adapterOf(name, AdapterKind::kRetarget)) findRetargetMethod(name);
   }
+  bool isProgram(std::string_view rigger) const { return adapterOf(rigger, AdapterKind::kRig).has_value(); }
   // By each solver, or by none where the method solves for no limbs, or is a program that decides for itself.
   std::vector<RetargetCombination> retargetCombinations(const std::string& method,
                                                         const std::vector<std::string>& solvers) const {
@@ -152,6 +154,32 @@ RigSetting settingOf(const JsonView& entry) {
   return setting;
 }
 
+// `limber rig` refuses some options with some riggers; a plan with such a cell is refused before it runs.
+void checkTogether(const JsonView& at, const RigCombination& one, const PlanMethods& methods) {
+  const std::vector<std::string>& arguments = one.setting.arguments;
+  const auto asksFor = [&](std::string_view option) {
+    return std::find(arguments.begin(), arguments.end(), option) != arguments.end();
+  };
+  RigRequest request;
+  if (one.rigger == kOwnSkeleton) {
+    request.existingRig = "keep-skeleton";
+  } else {
+    request.rigger = one.rigger;
+  }
+  if (asksFor("--template")) request.chosenTemplate = ChosenTemplate{"auto"};
+  if (asksFor("--handles")) request.handles = 1;
+  std::string problem;
+  try {
+    optionsOf(request);
+    if (request.handles && methods.isProgram(one.rigger)) problem = "a program makes as many joints as it does";
+  } catch (const Error& error) {
+    problem = error.message();
+  }
+  if (problem.empty()) return;
+  at.fail(fmt::format("the options '{}' do not go with the rigger '{}': {}; name what does as 'pairs'",
+                      one.setting.name, one.rigger, problem));
+}
+
 std::vector<RigSetting> settingsOf(const JsonView& rig) {
   const JsonView list = rig.array("options");
   std::vector<RigSetting> settings;
@@ -187,6 +215,7 @@ std::vector<RigCombination> namedPairs(const JsonView& pairs, const std::vector<
         one.setting = findByName(settings, "set of options", wanted);
       };
       checkAt(name, textOf(name), find);
+      checkTogether(name, one, methods);
     }
     if (const JsonView deformer = pair.member("deformer"); deformer.exists()) {
       one.deformer = textOf(deformer);
@@ -217,6 +246,7 @@ std::vector<RigCombination> rigProduct(const JsonView& rig, std::vector<RigSetti
       for (const RigSetting& setting : settings) {
         for (const std::string& deformer : bendings) {
           combinations.push_back(methods.combination(rigger, skinning, setting));
+          checkTogether(rig.member("options"), combinations.back(), methods);
           combinations.back().deformer = deformer;
         }
       }

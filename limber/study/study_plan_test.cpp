@@ -75,6 +75,8 @@ TEST(StudyPlan, ANameThatIsNoMethodIsAnAdapters) {
     }
     return std::string();
   };
+  EXPECT_THAT(refusal(R"(, "riggers": ["learned"], "options": [{"name": "few", "handles": 3}])"),
+              AllOf(HasSubstr("'few'"), HasSubstr("'learned'")));
   EXPECT_THAT(refusal(R"(, "riggers": ["weigher"])"), HasSubstr("no rigger is called 'weigher'"));
   EXPECT_THAT(refusal(R"(, "riggers": ["broken"])"), HasSubstr("riggers[0]: adapter broken"));
 }
@@ -196,6 +198,12 @@ TEST(StudyPlan, WhatIsWrongIsToldWithItsPlace) {
   EXPECT_THAT(refusalOf(rigPlan(R"(, "pairs": [{"rigger": "own", "skinning": "bone-heat", "options": "x"}])")),
               HasSubstr("rig.pairs[0].options"));
   EXPECT_THAT(refusalOf(rigPlan(R"(, "options": [{"handles": 3}])")), HasSubstr("rig.options[0].name"));
+  const std::string two = R"(, "options": [{"name": "few", "handles": 3}, {"name": "fish", "template": "fish"}])";
+  EXPECT_THAT(refusalOf(rigPlan(two + R"(, "riggers": ["sphere-mesh"])")),
+              AllOf(HasSubstr("rig.options: "), HasSubstr("'fish'"), HasSubstr("'sphere-mesh'"), HasSubstr("pairs")));
+  EXPECT_THAT(refusalOf(rigPlan(two)), AllOf(HasSubstr("'few'"), HasSubstr("'template'")));
+  EXPECT_THAT(refusalOf(rigPlan(two + R"(, "pairs": [{"rigger": "own", "skinning": "bone-heat", "options": "fish"}])")),
+              AllOf(HasSubstr("rig.pairs[0].options: "), HasSubstr("'fish'"), HasSubstr("'own'")));
   EXPECT_THAT(refusalOf(rigPlan(R"(, "options": [{"name": "n", "handles": 0}])")), HasSubstr("handles"));
   EXPECT_THAT(refusalOf(rigPlan(R"(, "options": [{"name": "n", "max_influences": 9}])")), HasSubstr("max_influences"));
   EXPECT_THAT(refusalOf(rigPlan(R"(, "options": [{"name": "n", "pieces": "none"}])")), HasSubstr("pieces"));
