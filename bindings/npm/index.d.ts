@@ -5,7 +5,7 @@ export type { Command, KeyOfJoint, PoseKey, Ray, SurfaceDab, Vector } from './co
 export interface LoadOptions {
   /** The bytes of limber/wasm, or the code compiled, where it is at hand; else it is read or fetched. */
   wasmBinary?: BufferSource | WebAssembly.Module;
-  /** How far a call is: the fraction, 0 to 1, of the stage. */
+  /** How far a call is: the fraction, 0 to 1, of the stage. What it throws stops the call, and is thrown by it. */
   onProgress?: (stage: string, fraction: number) => void;
   /** How errors name options: existingRig: 'replace' (as they do if nothing is said), or --replace-rig. */
   optionNames?: 'javascript' | 'program';

@@ -116,10 +116,13 @@ import createEngine from './limber_engine.mjs';
  * @param {{ onProgress?: (stage: string, fraction: number) => void, codecs?: Codecs, rest?: () => BufferSource | WebAssembly.Module,
  *           onInstance?: (instance: WebAssembly.Instance) => void, optionNames?: 'javascript' | 'program' }} [given]
  *   codecs may be put in later; rest: gives the other part of an engine in two (split_engine.mjs), asked once, by the first
- *   call that needs it; optionNames: how errors name options, existingRig: 'replace' or --replace-rig
+ *   call that needs it; optionNames: how errors name options, existingRig: 'replace' or --replace-rig; onProgress: what it
+ *   throws stops the call, and is thrown by it
  */
 export async function loadLimber(wasm, given = {}) {
-  const { rest, onInstance, optionNames, ...settings } = given;
+  const { rest, onInstance, optionNames, onProgress, ...settings } = given;
+  const thrown = []; // by the listener, during the call that runs
+  if (onProgress) settings.onProgress = listening(onProgress, thrown);
   const engine = await new Promise((resolve, reject) => {
     const instantiateWasm = (imports, done) => {
       instantiate(wasm, imports, rest).then((instance) => { onInstance?.(instance); done(instance); }).catch(reject);
@@ -127,13 +130,14 @@ export async function loadLimber(wasm, given = {}) {
     };
     createEngine({ ...settings, instantiateWasm }).then(resolve, reject);
   });
+  engine.thrown = thrown;
   if (optionNames === 'program') engine._limber_spell_options_as_program();
   return {
     /** @type {(file: Uint8Array, name: string, options?: RigOptions) => RigResult} */
     rig: (file, name, options = {}) => {
-      const { template, ...others } = options;
-      const [named, bytes, path] = typeof template === 'object' ? [others, template.bytes, template.name] : [options, new Uint8Array(), ''];
-      const result = call(engine, engine._limber_rig, [], file, name, JSON.stringify(named), bytes, path);
+      const asked = rigInputs(options);
+      if (!asked.ok) return asked;
+      const result = call(engine, engine._limber_rig, [], file, name, ...asked.inputs);
       return result.ok ? { ok: true, glb: result.bytes, report: result.account } : result;
     },
     /** The methods there are, by what they do. @type {() => Methods} */
@@ -159,6 +163,44 @@ export async function loadLimber(wasm, given = {}) {
   };
 }
 
+/** What the engine asks how far it is: a listener that throws stops the call, which throws that in the end. */
+const listening = (onProgress, thrown) => (stage, fraction) => {
+  if (thrown.length > 0) return true;
+  try {
+    onProgress(stage, fraction);
+    return false;
+  } catch (error) {
+    thrown.push(error);
+    return true;
+  }
+};
+
+const wrongCall = (message, where = '') => ({ ok: false, error: { code: 'bad-argument', message, where, remedy: '' } });
+
+/** Bytes of a file however they are given; null where it is something else. */
+function bytesOf(given) {
+  if (given instanceof Uint8Array) return given;
+  if (ArrayBuffer.isView(given)) return new Uint8Array(given.buffer, given.byteOffset, given.byteLength);
+  if (Array.isArray(given)) return Uint8Array.from(given);
+  const tag = Object.prototype.toString.call(given);
+  return tag === '[object ArrayBuffer]' || tag === '[object SharedArrayBuffer]' ? new Uint8Array(given) : null;
+}
+
+/** Options of rig() as the engine takes them: JSON, and the file of a template. */
+function rigInputs(options) {
+  if (options === null || typeof options !== 'object') return wrongCall('must be an object', 'options');
+  const { template, ...others } = options, isFile = template !== null && typeof template === 'object';
+  if (isFile && (typeof template.name !== 'string' || template.name === '' || !bytesOf(template.bytes))) {
+    return wrongCall("takes a name, or a file as { name: 'own.bvh', bytes }", 'template');
+  }
+  try {
+    const json = JSON.stringify(isFile ? others : options);
+    return { ok: true, inputs: isFile ? [json, template.bytes, template.name] : [json, new Uint8Array(), ''] };
+  } catch (error) {
+    return wrongCall(error.message.split('\n')[0], 'options');
+  }
+}
+
 const compiled = (wasm) => (wasm instanceof WebAssembly.Module ? wasm : new WebAssembly.Module(wasm));
 
 // The first part of an engine in two imports a placeholder for each function of the rest that it names: a number, its place
@@ -180,33 +222,46 @@ async function instantiate(wasm, imports, rest) {
   return instance;
 }
 
-// Copies into the engine's memory. The views on it are taken anew each time: memory that grows replaces them.
+// Copies into the engine's memory; 0 where it has no more. The views on it are taken anew each time: memory that grows
+// replaces them.
 function put(engine, bytes) {
   const at = engine._malloc(Math.max(bytes.length, 1));
-  if (at === 0) throw new RangeError('the engine is out of memory');
-  engine.HEAPU8.set(bytes, at);
+  if (at !== 0) engine.HEAPU8.set(bytes, at);
   return at;
 }
 
 const copyOut = (engine, at, size) => engine.HEAPU8.slice(at, at + size);
 
-// Calls with `leading` arguments as they are, then bytes and texts, each as a place and a size.
+const outOfMemory = () => ({
+  ok: false,
+  error: { code: 'limit', kind: 'out-of-memory', values: {}, message: 'not enough memory', where: '', remedy: 'try a smaller model' },
+});
+
+// Calls with `leading` arguments as they are, then bytes and texts, each as a place and a size. Throws what a listener threw.
 function call(engine, method, leading, ...inputs) {
   const text = new TextEncoder();
-  const blocks = inputs.map((input) => (typeof input === 'string' ? text.encode(input) : input));
-  const places = blocks.map((bytes) => put(engine, bytes));
-  const result = method(...leading, ...blocks.flatMap((bytes, i) => [places[i], bytes.length]));
-  places.forEach((at) => engine._free(at));
-  if (result === 0) {
-    return { ok: false, error: { code: 'limit', kind: 'out-of-memory', values: {}, message: 'not enough memory', where: '', remedy: 'try a smaller model' } };
+  const blocks = inputs.map((input) => (typeof input === 'string' ? text.encode(input) : bytesOf(input)));
+  if (blocks.includes(null)) return wrongCall('takes files as their bytes, a Uint8Array, and all else as text');
+  const places = [];
+  let result = 0;
+  try {
+    for (const bytes of blocks) {
+      const at = put(engine, bytes);
+      if (at === 0) return outOfMemory();
+      places.push(at);
+    }
+    result = method(...leading, ...blocks.flatMap((bytes, i) => [places[i], bytes.length]));
+    if (engine.thrown.length > 0) throw engine.thrown.pop();
+    if (result === 0) return outOfMemory();
+    const account = JSON.parse(new TextDecoder().decode(
+      copyOut(engine, engine._limber_account(result), engine._limber_account_size(result))));
+    return engine._limber_ok(result)
+      ? { ok: true, bytes: copyOut(engine, engine._limber_bytes(result), engine._limber_bytes_size(result)), account }
+      : { ok: false, error: account };
+  } finally {
+    places.forEach((at) => engine._free(at));
+    if (result !== 0) engine._limber_free_result(result);
   }
-  const account = JSON.parse(new TextDecoder().decode(
-    copyOut(engine, engine._limber_account(result), engine._limber_account_size(result))));
-  const answer = engine._limber_ok(result)
-    ? { ok: true, bytes: copyOut(engine, engine._limber_bytes(result), engine._limber_bytes_size(result)), account }
-    : { ok: false, error: account };
-  engine._limber_free_result(result);
-  return answer;
 }
 
 function createSession(engine, handle = engine._limber_session_new()) {

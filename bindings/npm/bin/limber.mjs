@@ -1,15 +1,24 @@
 #!/usr/bin/env node
 // npx limber rig IN -o OUT: limber rig by the engine as WebAssembly.
-import { readFileSync, renameSync, rmSync, writeFileSync } from 'node:fs';
+import { readFileSync, renameSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { basename, extname, resolve } from 'node:path';
-import { parseArgs } from 'node:util';
 import { load } from '../dist/index.mjs';
-import { engineOptions, optionsHelp, parsed, Refused } from './rig_options.mjs';
+import { engineOptions, given, optionsHelp, Refused } from './rig_options.mjs';
 
 const version = () => JSON.parse(readFileSync(new URL('../package.json', import.meta.url), 'utf8')).version;
 
 /** What was wrong with a file or in the engine; its words stand for themselves. */
-class Failed extends Error {}
+class Failed extends Error {
+  constructor(message, code = 1) {
+    super(message);
+    this.code = code;
+  }
+}
+
+const outOfMemoryCode = 3, brokenPipeCode = 141; // the native program's
+
+/** Of an error of Node's, without the code and the paths that it is told with: "ENOENT: no such file or directory, open 'x'". */
+const reasonOf = ({ code, message }) => message.replace(`${code}: `, '').replace(/, \w+( '.*)?$/s, '');
 
 function fail(problem, code = 1) {
   console.error(`limber: ${problem}`);
@@ -32,30 +41,35 @@ Example:
   npx limber rig scan.glb --template humanoid --pin leftHand=0.71,1.43,0.02 -o character.glb`;
 }
 
-function given(args) {
-  try {
-    return parseArgs({ args, allowPositionals: true, options: parsed });
-  } catch (error) {
-    throw new Refused(error.message);
-  }
-}
-
 function read(path) {
   try {
     return readFileSync(path === '-' ? 0 : path);
   } catch (error) {
-    throw new Failed(`${path}: cannot be opened: ${error.message}`);
+    throw new Failed(`${path}: cannot be opened: ${reasonOf(error)}`);
   }
 }
 
-/** All or nothing: the file stands in its place once it is whole. */
-function write(path, content) {
-  const unfinished = `${path}.${process.pid}.part`;
+const isFolder = (path) => statSync(path, { throwIfNoEntry: false })?.isDirectory() ?? false;
+
+/** All or nothing: the files stand in their places once all are whole. */
+function write(files) {
+  const parts = [];
+  let at = '';
   try {
-    writeFileSync(unfinished, content);
-    renameSync(unfinished, path);
+    for (const { path, content } of files) {
+      at = path;
+      if (isFolder(path)) throw new Error('is a folder, not a file');
+      parts.push(`${path}.${process.pid}.part`);
+      writeFileSync(parts.at(-1), content);
+    }
+    files.forEach(({ path }, i) => {
+      at = path;
+      renameSync(parts[i], path);
+    });
+  } catch (error) {
+    throw new Failed(`${at}: ${error.code ? `cannot be written: ${reasonOf(error)}` : error.message}`);
   } finally {
-    rmSync(unfinished, { force: true });
+    for (const part of parts) rmSync(part, { force: true });
   }
 }
 
@@ -82,15 +96,15 @@ async function rig(input, { output, json, strict, quiet }, options) {
   const limber = await load({ optionNames: 'program' });
   const result = limber.rig(bytes, basename(input), options);
   if (!result.ok) {
-    const { where, message, remedy } = result.error, line = `${where ? `${where}: ` : ''}${message}${remedy ? ` (${remedy})` : ''}`;
-    throw where.startsWith('--') ? new Refused(line) : new Failed(line);
+    const { code, where, message, remedy, kind } = result.error, line = `${where ? `${where}: ` : ''}${message}${remedy ? ` (${remedy})` : ''}`;
+    throw code === 'bad-argument' && where.startsWith('--') ? new Refused(line) : new Failed(line, kind === 'out-of-memory' ? outOfMemoryCode : 1);
   }
   const { warnings } = result.report, format = bytes.subarray(0, 4).equals(Buffer.from('glTF')) ? 'glb' : 'gltf';
   if (strict && warnings.length > 0) throw new Failed(`${warnings[0].message} [${warnings[0].kind}] (--strict takes warnings as errors)`);
   const report = `${JSON.stringify({ limber: version(), command: 'rig', input: { file: input, format }, output, ...result.report }, null, 2)}\n`;
-  if (json !== undefined && json !== '-') write(json, report); // before the model: what cannot be written leaves none
+  const files = [{ path: output, content: result.glb }, { path: json, content: report }];
+  write(files.filter(({ path }) => path !== undefined && path !== '-')); // before standard output: what cannot be written leaves nothing
   if (output === '-') process.stdout.write(result.glb);
-  else write(output, result.glb);
   if (json === '-') process.stdout.write(report);
   if (quiet) return;
   tellWarnings(warnings);
@@ -106,7 +120,12 @@ async function main() {
   return rig(input, values, engineOptions(values));
 }
 
+process.stdout.on('error', (error) => { // who reads it has gone, or the disk is full
+  if (error.code === 'EPIPE') process.exit(brokenPipeCode);
+  fail(`standard output cannot be written: ${reasonOf(error)}`);
+});
+
 main().catch((error) => {
   if (error instanceof Refused) fail(`${error.message} (limber --help shows how to call it)`, 2);
-  else fail(error.message);
+  else fail(error.message, error instanceof Failed ? error.code : 1);
 });

@@ -1,6 +1,8 @@
 // The options of `npx limber rig`: the names and the words of the native program's, told once for parsing, reading and help.
 // Those of the native program that are not here are named in tests/package_test.mjs, with the reason.
 
+import { parseArgs } from 'node:util';
+
 export class Refused extends Error {}
 
 const number = (option, text) => {
@@ -10,11 +12,11 @@ const number = (option, text) => {
 
 /** JOINT=x,y,z, several times. */
 function pins(option, texts) {
-  const places = {};
+  const places = Object.create(null); // a joint may have any name
   for (const text of texts) {
     const at = text.lastIndexOf('='), joint = text.slice(0, at), place = text.slice(at + 1).split(',').map((part) => (part.trim() ? Number(part) : NaN));
     if (at < 1 || place.length !== 3 || !place.every(Number.isFinite)) throw new Refused(`--${option} takes JOINT=x,y,z, not ${text}`);
-    if (Object.hasOwn(places, joint)) throw new Refused(`--${option}: ${joint} is pinned twice`);
+    if (joint in places) throw new Refused(`--${option}: ${joint} is pinned twice`);
     places[joint] = place;
   }
   return places;
@@ -45,9 +47,45 @@ export const rigOptions = [
   { name: 'help', short: 'h', help: 'Print this help message and exit' },
 ];
 
+const takesValue = new Set(rigOptions.filter(({ value }) => value).flatMap(({ name, short }) => [`--${name}`, ...(short ? [`-${short}`] : [])]));
+
+/** An option's value joined to it: the next word, also where it begins with a hyphen (--front -z). */
+function joined(words) {
+  const args = [];
+  for (let i = 0; i < words.length; i += 1) {
+    if (words[i] === '--') return [...args, ...words.slice(i)];
+    const isJoined = takesValue.has(words[i]) && i + 1 < words.length;
+    args.push(isJoined ? `${longName(words[i])}=${words[i + 1]}` : words[i]);
+    if (isJoined) i += 1;
+  }
+  return args;
+}
+
+/** What was given: values by name, and the other words. */
+export function given(words) {
+  const { values, positionals, tokens } = parseWords(joined(words)), seen = new Set();
+  for (const { kind, name, value } of tokens) {
+    if (kind !== 'option' || value === undefined) continue;
+    if (value === '') throw new Refused(`--${name}: is empty`);
+    if (seen.has(name) && !parsed[name].multiple) throw new Refused(`--${name}: is given twice`);
+    seen.add(name);
+  }
+  return { values, positionals };
+}
+
+function parseWords(args) {
+  try {
+    return parseArgs({ args, allowPositionals: true, options: parsed, tokens: true });
+  } catch (error) {
+    throw new Refused(error.message.replace(/\s*\n\s*/g, ' '));
+  }
+}
+
 /** For util.parseArgs. */
-export const parsed = Object.fromEntries([...rigOptions, { name: 'version' }].map(({ name, short, value, multiple = false }) =>
+const parsed = Object.fromEntries([...rigOptions, { name: 'version' }].map(({ name, short, value, multiple = false }) =>
   [name, { type: value ? 'string' : 'boolean', multiple, ...(short && { short }) }]));
+
+const longName = (word) => (word.startsWith('--') ? word : `--${rigOptions.find(({ short }) => `-${short}` === word).name}`);
 
 /** The engine's options out of what was given. */
 export function engineOptions(given) {

@@ -5,7 +5,7 @@
 // Ends with "N passed, N failed".
 import assert from 'node:assert/strict';
 import { execFileSync, spawn, spawnSync } from 'node:child_process';
-import { existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { existsSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { dirname, join, resolve } from 'node:path';
 import { fileURLToPath, pathToFileURL } from 'node:url';
 import { launch, serve } from '../../../apps/studio/tests/page.mjs';
@@ -72,17 +72,42 @@ const cases = {
       [{ existingRig: 'keep-skeleton', handles: 3 }, 'handles', "leave existingRig: 'keep-skeleton' out"], [{ maxInfluences: 9 }, 'maxInfluences', ''],
       [{ up: '+y' }, 'up', "name one: template: 'auto'"], [{ handles: '3' }, 'handles', ''], [{ handels: 3 }, 'handels', null], [{ handles: NaN }, 'handles', ''],
       [{ template: { name: 'own.json', bytes: new Uint8Array([1]) } }, 'own.json', null],
+      [{ template: 'nobody' }, 'template', null], [{ pieces: 'nobody' }, 'pieces', null], [{ template: 'humanoid', up: '' }, 'up', ''],
+      [{ template: 'humanoid', pins: { head: [0, 1] } }, 'pins', ''], [{ handles: 99999999999 }, 'handles', ''],
+      [{ template: { name: 'own.json', bytes: new Uint8Array([1]) }, maxInfluences: 9 }, 'maxInfluences', ''], // before its file is read
+      ...[null, { name: '', bytes: new Uint8Array([1]) }, { name: 'own.bvh' }, { bytes: new Uint8Array([1]) }, { name: 'own.bvh', bytes: 'text' }]
+        .map((template) => [{ template }, 'template', '']),
+      [null, 'options', ''], [{ handles: 3n }, 'options', ''],
     ]) {
       const { ok, error } = limber.rig(model, 'model.glb', options);
       assert.ok(!ok);
       assert.ok(error.where.startsWith(where), JSON.stringify(error));
       if (remedy !== null) assert.equal(error.remedy, remedy);
     }
+    for (const wrong of [[undefined, 'model.glb'], ['text'], [model, 3]]) assert.ok(!limber.rig(...wrong).ok);
+    const own = readFileSync(at('own.json')), content = own.buffer.slice(own.byteOffset, own.byteOffset + own.length);
+    assert.deepEqual(limber.rig(model, 'model.glb', { template: { name: 'own.json', bytes: content } }).glb,
+      limber.rig(model, 'model.glb', { template: { name: 'own.json', bytes: own } }).glb);
+    stages.clear();
     assert.match(limber.rig(readFileSync(at('person.glb')), 'person.glb').error.remedy, /^existingRig: 'replace' takes it out first/);
     assert.equal(stages.size, 0);
     assert.ok(limber.rig(model, 'model.glb', { handles: 5 }).ok);
     assert.ok(stages.has('rig') && stages.has('skin'), [...stages].join());
     assert.deepEqual(limber.rigChoices().pieces.map(({ name }) => name), ['auto', 'rigid', 'soft']);
+  },
+  async 'a listener that throws stops its call, and is heard'() {
+    const { load } = await import(pathToFileURL(at('node_modules/limber/dist/index.mjs')));
+    const enough = new Error('enough'), model = readFileSync(at('model.glb'));
+    let told = 0, throws = true;
+    const limber = await load({ onProgress: () => { told += 1; if (throws) throw enough; } });
+    const session = limber.createSession();
+    for (const call of [() => limber.rig(model, 'model.glb', { handles: 5 }), () => session.run({ do: 'open_sample', name: 'stool' })]) {
+      told = 0;
+      assert.throws(call, (error) => error === enough);
+      assert.equal(told, 1);
+    }
+    throws = false;
+    assert.ok(limber.rig(model, 'model.glb', { handles: 5 }).ok && session.run({ do: 'open_sample', name: 'stool' }).ok);
   },
   async 'its code can be handed over'() {
     const { load } = await import(pathToFileURL(at('node_modules/limber/dist/index.mjs')));
@@ -102,6 +127,9 @@ const cases = {
       ['model.glb', '--template', 'humanoid', '--pin', 'leftHand=0.71,1.33,0.02', '--pin', 'head=0,1.6,0', ...turned], ['model.glb', ...own, '--max-influences', '2'],
       ['model.glb', '--rigger', 'curve-skeleton', '--skinning', 'envelopes', '--pieces', 'rigid'], ['person.glb', '--keep-skeleton', '--max-influences', '8'],
       ['person.glb', '--replace-rig', '--handles', '9'], ['model.glb', '--template', 'own.json'],
+      ['model.glb', '--template', 'humanoid', '--up', '+y', '--front', '-z'], ['model.glb', '--template', 'humanoid', '--up', '-x'],
+      ['model.glb', '--template', 'nobody'], ['model.glb', '--pieces', 'nobody'], ['model.glb', '--template', 'humanoid', '--pin', '__proto__=0,1,0'],
+      ...['--handles', '--template', '--up', '--skinning', '--json'].map((option) => ['model.glb', option, '']),
     ]) {
       const expected = spawnSync(program, ['rig', model, ...words, '-q', '-o', 'native.glb'], { cwd: work, encoding: 'utf8' });
       const done = npx('rig', model, ...words, '-q', '-o', 'npx.glb');
@@ -129,6 +157,7 @@ const cases = {
   },
   'what the program cannot do is one line, and no file'() {
     writeFileSync(at('garbage.glb'), 'glTF');
+    mkdirSync(at('folder.glb'));
     run(program, ['sample', 'stool', '-o', 'lone.glb', '--quiet']); // no template is likely: a warning
     for (const [args, code, words] of [
       [['rig', 'nothing.glb', '-o', 'x.glb'], 1, 'nothing.glb: cannot be opened'], [['rig', 'garbage.glb', '-o', 'x.glb'], 1, 'garbage.glb'],
@@ -142,14 +171,21 @@ const cases = {
       [['rig', 'model.glb', '-o', 'x.glb', '--template', 'garbage.glb'], 1, 'garbage.glb'], [['rig', 'lone.glb', '-o', 'x.glb', '--template', 'auto', '--strict'], 1, '--strict'],
       [['rig', 'model.glb', '-o', 'x.glb', '--rigger', 'nobody'], 1, 'nobody'], [['rig', 'model.glb', '-o', 'x.glb', '--colour'], 2, '--colour'],
       [['rig', 'model.glb', '-o', 'x.obj'], 2, 'a .glb is written'], [['rig', 'model.glb', '-o', 'x.glb', '--json', './x.glb'], 2, '--json'],
-      [['rig', 'model.glb', '-o', 'x.glb', '--json', 'no/such/folder.json'], 1, 'no/such'],
+      [['rig', 'model.glb', '-o', 'x.glb', '--json', 'no/such/folder.json'], 1, 'no/such/folder.json: cannot be written: no such file'],
+      [['rig', 'model.glb', '-o', 'no/such/x.glb', '--json', 'left.json', '--handles', '5'], 1, 'no/such/x.glb: cannot be written'],
+      [['rig', 'model.glb', '-o', 'folder.glb', '--json', 'left.json', '--handles', '5'], 1, 'folder.glb: is a folder, not a file'],
+      [['rig', 'model.glb', '-o', 'x.glb', '--handles', '3', '--handles', '5'], 2, '--handles: is given twice'], [['rig', 'model.glb', '-o', 'x.glb', '--handles', '-1'], 2, '--handles'],
+      [['rig', 'model.glb', '-o', 'x.glb', '--handles', '99999999999'], 2, '--handles'], [['rig', 'model.glb', '-o', 'x.glb', '--up'], 2, '--up'],
     ]) {
       const done = npx(...args);
       assert.equal(done.status, code, `${args}: ${done.stderr}`);
       assert.match(done.stderr, /^limber: [^\n]*\n$/);
       assert.ok(done.stderr.includes(words), done.stderr);
-      assert.ok(!existsSync(at('x.glb')));
+      assert.ok(!existsSync(at('x.glb')) && !existsSync(at('left.json')), `${args}`);
     }
+    assert.deepEqual(readdirSync(work).filter((name) => name.endsWith('.part')), []);
+    const cut = spawnSync('bash', ['-o', 'pipefail', '-c', 'npx --no-install limber rig model.glb --handles 12 -o - | head -c 10 | wc -c'], { cwd: work, encoding: 'utf8' });
+    assert.deepEqual([cut.status, cut.stdout.trim(), cut.stderr], [141, '10', '']);
   },
   async 'in a worker: the same answers, while this thread goes on'() {
     const worker = await startWorker(), model = readFileSync(at('model.glb')), stages = new Set();
@@ -177,6 +213,13 @@ const cases = {
     assert.deepEqual(await session.record(), here.record());
     assert.ok(!(await other.run({ do: 'undo' })).ok);
     await other.free();
+    const freed = await other.run({ do: 'undo' });
+    assert.equal(freed.error.message, 'the session was freed');
+    await assert.rejects(other.record(), ({ error: { message } }) => message === 'the session was freed');
+    await other.free();
+    const uncopied = await worker.rig(model, 'model.glb', { handles: () => 5 });
+    assert.ok(!uncopied.ok && uncopied.error.code === 'bad-argument' && uncopied.error.where === 'rig');
+    assert.ok((await worker.methods()).rigger.length > 1);
     worker.stop();
   },
   async 'a worker that is stopped says so, and goes on anew'() {
@@ -193,9 +236,22 @@ const cases = {
     await session.free();
     const broken = await (await startWorker({ wasmBinary: new Uint8Array([0, 97, 115, 109, 1, 0, 0, 0]) })).rig(model, 'model.glb'); // a module without content
     assert.ok(!broken.ok && broken.error.code === 'worker');
+    const enough = new Error('enough'), behindIt = worker.rig(model, 'model.glb', {}, { onProgress: () => { throw enough; } }), next = worker.rig(model, 'model.glb', { handles: 5 });
+    await assert.rejects(behindIt, (error) => error === enough);
+    assert.ok(cancelled(await next) && (await worker.rig(model, 'model.glb', { handles: 5 })).ok);
+    worker.stop();
     writeFileSync(at('ends.mjs'), `import { startWorker } from 'limber/worker';
-      console.log((await (await startWorker()).methods()).rigger.length > 1);`);
+      const worker = await startWorker();
+      console.log(!(await worker.rig(new Uint8Array(), 'a.glb', { handles: () => 5 })).ok && (await worker.methods()).rigger.length > 1);`);
     assert.equal(run('node', ['ends.mjs'], { timeout: 60000 }), 'true\n'); // although nobody stopped it
+  },
+  async 'a worker that cannot start, or ends by itself, says so'() {
+    const { connect, WorkerError } = await import(pathToFileURL(at('node_modules/limber/dist/worker/client.mjs')));
+    const unstarted = connect(() => { throw new Error('no threads here'); }, null), said = /^the worker broke: no threads here$/;
+    for (let i = 0; i < 2; i += 1) assert.match((await unstarted.rig(new Uint8Array(), 'a.glb')).error.message, said);
+    await assert.rejects(unstarted.methods(), (error) => error instanceof WorkerError && said.test(error.message));
+    const killed = connect((tell, broken) => ({ post: ({ id }) => id && setTimeout(broken, 1, 'it ended with code 1'), stop() {}, hold() {} }), null);
+    for (let i = 0; i < 2; i += 1) assert.match((await killed.rig(new Uint8Array(), 'a.glb')).error.message, /it ended with code 1/);
   },
   'a misspelt field does not compile'() {
     // Each line below "@ts-expect-error" has to be wrong, all others right.

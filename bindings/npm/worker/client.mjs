@@ -21,6 +21,7 @@ export function connect(start, module) {
   const waiting = new Map();
   let thread = null, threads = 0, calls = 0;
 
+  const broke = (message) => ({ code: 'worker', message: `the worker broke: ${message}`, where: '', remedy: '' });
   const settle = (id, answer) => {
     const call = waiting.get(id);
     if (!call) return;
@@ -35,13 +36,19 @@ export function connect(start, module) {
   };
   const open = () => {
     const number = (threads += 1);
+    const isCurrent = () => thread !== null && number === threads;
     const tell = ({ id, stage, fraction, ...answer }) => {
-      if (number !== threads) return;
-      if (stage === undefined) settle(id, answer);
-      else waiting.get(id)?.onProgress?.(stage, fraction);
+      if (!isCurrent()) return;
+      if (stage === undefined) return settle(id, answer);
+      try {
+        waiting.get(id)?.onProgress?.(stage, fraction);
+      } catch (thrown) {
+        settle(id, { thrown });
+        end(stopped);
+      }
     };
     thread = start(tell, (message) => {
-      if (number === threads) end({ code: 'worker', message: `the worker broke: ${message}`, where: '', remedy: '' });
+      if (isCurrent()) end(broke(message));
     });
     thread.post({ module });
   };
@@ -49,20 +56,30 @@ export function connect(start, module) {
   function call(target, method, args, { signal, onProgress } = {}) {
     const isPlain = plainCalls.has(method);
     return new Promise((resolve, reject) => {
-      const done = ({ value, error }) => {
+      const done = ({ value, error, ...listener }) => {
         signal?.removeEventListener('abort', abort);
-        if (!error || method === 'free') resolve(value);
+        if ('thrown' in listener) reject(listener.thrown);
+        else if (!error || method === 'free') resolve(value);
         else if (isPlain) reject(new WorkerError(error));
         else resolve({ ok: false, error });
       };
       const abort = () => end(stopped);
       if (signal?.aborted || (target && (target.thread !== threads || !thread))) return done({ error: stopped });
-      if (!thread) open();
+      try {
+        if (!thread) open();
+      } catch (error) {
+        end(broke(error.message));
+        return done({ error: broke(error.message) });
+      }
       if (waiting.size === 0) thread.hold(true);
       const id = (calls += 1);
       waiting.set(id, { done, onProgress });
       signal?.addEventListener('abort', abort);
-      thread.post({ id, session: target?.session, method, args });
+      try {
+        thread.post({ id, session: target?.session, method, args });
+      } catch (error) { // what cannot be copied
+        settle(id, { error: { code: 'bad-argument', message: error.message.split('\n')[0], where: method, remedy: '' } });
+      }
     });
   }
 

@@ -3,7 +3,8 @@ import type { Failure, Limber, LimberError, RigOptions, RigResult, Session } fro
 /** The same calls, answered later. */
 type Later<Calls> = { [Name in keyof Calls]: Calls[Name] extends (...args: infer Args) => infer Answer ? (...args: Args) => Promise<Answer> : never };
 
-/** A session in the worker. Once the worker was stopped every call gives a Failure, code 'cancelled'. */
+/** A session in the worker. Once the worker was stopped, or the session freed, calls give a Failure (code 'cancelled' or
+ *  'bad-argument'); record() and fork(), which have no such value, are rejected with a WorkerError, and free() does nothing. */
 export interface WorkerSession extends Later<Omit<Session, 'handle'>> {
   /** Another session with the same document, to try something in; null during a drag. */
   fork(): Promise<WorkerSession | null>;
@@ -12,7 +13,8 @@ export interface WorkerSession extends Later<Omit<Session, 'handle'>> {
 export interface RigCall {
   /** Stops the worker, as stop() does. */
   signal?: AbortSignal;
-  /** How far it is: the fraction, 0 to 1, of the stage; at most 20 times a second. */
+  /** How far it is: the fraction, 0 to 1, of the stage; at most 20 times a second. What it throws stops the worker, as stop()
+   *  does, and the call is rejected with it. */
   onProgress?: (stage: string, fraction: number) => void;
 }
 

@@ -9,7 +9,9 @@ export { WorkerError } from './client.mjs';
 function start(tell, broken) {
   const thread = new Worker(new URL('./thread_node.mjs', import.meta.url));
   thread.on('message', tell);
+  thread.on('messageerror', ({ message }) => broken(message));
   thread.on('error', ({ message }) => broken(message));
+  thread.on('exit', (code) => broken(`it ended with code ${code}`));
   return { post: (message) => thread.postMessage(message), stop: () => void thread.terminate(), hold: (busy) => (busy ? thread.ref() : thread.unref()) };
 }
 

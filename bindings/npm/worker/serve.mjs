@@ -10,6 +10,13 @@ function buffersIn(value, found = new Set()) {
 
 const leastPause = 50; // milliseconds between two words of progress
 
+/** A session that is no more was asked. */
+class Freed extends Error {}
+
+const errorOf = (error, method) => (error instanceof Freed
+  ? { code: 'bad-argument', message: 'the session was freed', where: method, remedy: 'make another by createSession' }
+  : { code: 'worker', message: String(error), where: method, remedy: '' });
+
 /** Gives what is to be done with each message. */
 export function serve(post) {
   const sessions = new Map();
@@ -27,6 +34,7 @@ export function serve(post) {
     if (method === 'createSession') return keep(limber.createSession());
     if (session === undefined) return limber[method](...args);
     const own = sessions.get(session);
+    if (!own) throw new Freed();
     if (method === 'forkSession') return keep(limber.forkSession(own));
     if (method === 'free') sessions.delete(session);
     return own[method](...args);
@@ -42,7 +50,7 @@ export function serve(post) {
       const value = answer(session, method, args);
       post({ id, value }, [...buffersIn(value)]);
     } catch (error) {
-      post({ id, error: { code: 'worker', message: String(error), where: method, remedy: '' } }, []);
+      post({ id, error: errorOf(error, method) }, []);
     }
   };
 }
