@@ -296,7 +296,7 @@ blender_addon() {
     add_counts 0 0 1
     return 0
   fi
-  counted apps/blender/tests/run.sh build/packages/limber-blender-*.zip build/release/limber "$output/blender_addon"
+  counted apps/blender/tests/run.sh build/packages/limber-blender-*.zip build/release/limber "$output/blender_addon" build/packages/limber-[0-9]*.tgz
 }
 
 documentation_site() {

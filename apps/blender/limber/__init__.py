@@ -1,4 +1,4 @@
-"""limber in Blender: rigs, weights and motions for the objects of the scene, by the program limber."""
+"""limber in Blender: rigs, weights and motions for the objects of the scene, by the program limber, or by its npm package in Node."""
 import os
 
 import bpy
@@ -20,9 +20,35 @@ CORRECTIONS = "limber joints"  # the collection of the empties
 class Preferences(bpy.types.AddonPreferences):
     bl_idname = __package__
     program: bpy.props.StringProperty(name="Program", subtype="FILE_PATH", description="limber itself; empty: looked for on the path")
+    node: bpy.props.StringProperty(name="Node", subtype="FILE_PATH", description="Where there is no program: Node 20 or newer; empty: looked for on the path")
+    package: bpy.props.StringProperty(name="npm package", subtype="DIR_PATH", description="For Node: the folder where limber's package was "
+                                      "installed; empty: beside the add-on, or where npm i -g puts it")
 
     def draw(self, context):
-        self.layout.prop(self, "program")
+        for name in ("program", "node", "package"):
+            self.layout.prop(self, name)
+        self.layout.operator(Find.bl_idname)
+
+
+def found_program(context):
+    """By the preferences. Throws LimberError."""
+    addon = context.preferences.addons.get(__package__)
+    named = [bpy.path.abspath(getattr(addon.preferences, name)) for name in ("program", "node", "package")] if addon else []
+    return program.find(*named)
+
+
+class Find(bpy.types.Operator):
+    """Says what will do the work, or what is missing"""
+    bl_idname = "limber.find"
+    bl_label = "Look for limber"
+
+    def execute(self, context):
+        try:
+            self.report({"INFO"}, str(found_program(context)))
+        except LimberError as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        return {"FINISHED"}
 
 
 class Settings(bpy.types.PropertyGroup):
@@ -111,11 +137,10 @@ class Call(bpy.types.Operator):
         raise NotImplementedError
 
     def start(self, context):
-        preferences = context.preferences.addons.get(__package__)
-        found = program.find(bpy.path.abspath(preferences.preferences.program) if preferences else "")
+        self.program = found_program(context)
         folder = program.new_folder()
         try:
-            self.call = program.Call(found, self.prepare(context, folder.name), folder)
+            self.call = program.Call(self.program, self.prepare(context, folder.name), folder)
         except BaseException:
             folder.cleanup()
             raise
@@ -264,6 +289,14 @@ class Weights(Call):
         return f"weights of {len(objects)} objects"
 
 
+def check_package_retargets(armature, objects, motion):
+    """Throws LimberError for what the npm package does not do."""
+    if not motion.lower().endswith((".bvh", ".glb", ".gltf")):
+        raise LimberError(f"{os.path.basename(motion)} needs the program limber: in Node it reads .bvh, .glb and .gltf")
+    if not objects:
+        raise LimberError(f"no mesh follows {armature.name}: to move an armature alone needs the program limber, not Node")
+
+
 class Retarget(Call):
     """Puts a motion out of a file, or another armature's action, onto the selected armature"""
     bl_idname = "limber.retarget"
@@ -281,7 +314,10 @@ class Retarget(Call):
             motion = os.path.abspath(bpy.path.abspath(settings.motion))
             if not os.path.isfile(motion):
                 raise LimberError("choose a file with a motion, or an armature that has one")
-        scene.write_character(armature, meshes_of(armature), os.path.join(folder, "in.glb"))
+        objects = meshes_of(armature)
+        if self.program.is_package:
+            check_package_retargets(armature, objects, motion)
+        scene.write_character(armature, objects, os.path.join(folder, "in.glb"))
         return ["retarget", "in.glb", motion, "-o", "out.glb"]
 
     def apply(self, context, folder):
@@ -315,7 +351,7 @@ class Panel(bpy.types.Panel):
         layout.operator(Retarget.bl_idname)
 
 
-CLASSES = (Preferences, Settings, Rig, Joints, Weights, Retarget, Panel)
+CLASSES = (Find, Preferences, Settings, Rig, Joints, Weights, Retarget, Panel)
 
 
 def register():

@@ -1,10 +1,12 @@
 # The add-on as Blender runs it, without a window.
 #
-#   blender --background --factory-startup --python-exit-code 1 --python test_addon.py -- ADDON.zip PROGRAM WORK_FOLDER
+#   blender --background --factory-startup --python-exit-code 1 --python test_addon.py -- ADDON.zip PROGRAM WORK_FOLDER [NPM_PACKAGE]
 #
+# With the folder of the npm package the add-on has Node alone, and is to give what the program gives.
 # Ends with "N passed, N failed".
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 import time
@@ -14,13 +16,39 @@ import bpy
 import numpy as np
 from mathutils import Matrix, Quaternion, Vector
 
-ADDON, PROGRAM, WORK = (os.path.abspath(path) for path in sys.argv[sys.argv.index("--") + 1:])
+ADDON, PROGRAM, WORK, *PACKAGE = (os.path.abspath(path) for path in sys.argv[sys.argv.index("--") + 1:])
 os.makedirs(WORK, exist_ok=True)
+NODE = shutil.which("node")
 bpy.ops.preferences.addon_install(overwrite=True, filepath=ADDON)
 bpy.ops.preferences.addon_enable(module="limber")
-bpy.context.preferences.addons["limber"].preferences.program = PROGRAM
 import limber  # noqa: E402  the add-on, now that it is installed
-from limber import glb, scene  # noqa: E402
+from limber import glb, program, scene  # noqa: E402
+
+
+def preferences():
+    return bpy.context.preferences.addons["limber"].preferences
+
+
+def choose_program():
+    """What the tests run with: the program by its name, or nothing but Node on the path and the package by its folder."""
+    mine = preferences()
+    mine.program, mine.node, mine.package = "" if PACKAGE else PROGRAM, "", PACKAGE[0] if PACKAGE else ""
+    if PACKAGE:
+        os.environ["PATH"] = folder_of("node", {"node": NODE})
+
+
+def folder_of(name, programs):
+    """A folder for the path: a program each, as a link, or as the lines of a script."""
+    folder = pathlib.Path(WORK, "path", name)
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    for program, content in programs.items():
+        if content.startswith("/"):
+            (folder / program).symlink_to(content)
+        else:
+            (folder / program).write_text(f"#!/bin/sh\n{content}\n")
+            (folder / program).chmod(0o755)
+    return str(folder)
 
 
 def at(name):
@@ -34,7 +62,7 @@ def run(*arguments):
 def clear():
     bpy.ops.wm.read_factory_settings(use_empty=True)
     bpy.ops.preferences.addon_enable(module="limber")
-    bpy.context.preferences.addons["limber"].preferences.program = PROGRAM
+    choose_program()
 
 
 def sample(name, matrix=Matrix()):
@@ -311,16 +339,16 @@ def what_cannot_be_done_says_so_and_changes_nothing():
     obj.data.vertices[3].co.x = float("nan")
     refused("not a number", bpy.ops.limber.rig)
     obj.data.vertices[3].co.x = 0
-    preferences = bpy.context.preferences.addons["limber"].preferences
-    preferences.program = at("no-such-program")
+    mine = preferences()
+    mine.program = at("no-such-program")
     refused("the program limber is not at", bpy.ops.limber.rig)
     pathlib.Path(at("old")).write_text("#!/bin/sh\necho limber 0.0.9\n")
     os.chmod(at("old"), 0o755)
-    preferences.program = at("old")
+    mine.program = at("old")
     refused("install a newer one", bpy.ops.limber.rig)
-    preferences.program = "/bin/true"
+    mine.program = "/bin/true"
     refused("is not limber", bpy.ops.limber.rig)
-    preferences.program = PROGRAM
+    choose_program()
     bpy.context.scene.limber.template = "humanoid"
     bpy.ops.limber.rig()
     refused("follows the armature", bpy.ops.limber.rig)
@@ -331,6 +359,90 @@ def what_cannot_be_done_says_so_and_changes_nothing():
     bpy.context.scene.limber.motion = at("broken.bvh")
     refused("broken.bvh", bpy.ops.limber.retarget)
     assert obj.find_armature().animation_data is None or obj.find_armature().animation_data.action is None
+
+
+def without_program_or_node_it_says_what_to_install():
+    obj, mine, path = sample("stool"), preferences(), os.environ["PATH"]
+    select(obj)
+    bpy.context.scene.limber.kind = "handles"
+    mine.program = mine.package = ""
+    package = folder_of("package", {})
+    cases = [
+        ({}, "neither the program limber nor Node is on the path: install limber, or Node 20 or newer"),
+        ({"node": "echo v18.19.0"}, "is Node v18.19.0, too old: install Node 20 or newer, or the program limber"),
+        ({"node": "echo hello"}, "is not Node"),
+        ({"node": "echo v20.1.0"}, "neither the program limber nor its npm package: npm i -g"),
+        ({"node": "echo v20.1.0", "npm": f"echo {package}"}, "neither the program limber nor its npm package: npm i -g"),
+        ({"limber": "echo limber 0.0.9", "node": "echo v20.1.0"}, "is limber 0.0.9; 0.1 is needed"),
+    ]
+    try:
+        for programs, words in cases:
+            os.environ["PATH"] = folder_of("poor", programs)
+            refused(words, bpy.ops.limber.find)
+            refused(words, bpy.ops.limber.rig)
+        mine.package = package
+        os.environ["PATH"] = folder_of("poor", {"node": "echo v22.0.0"})
+        refused("does not have limber's npm package", bpy.ops.limber.rig)
+        mine.package, mine.node = "", at("no-such-node")
+        refused("no Node at", bpy.ops.limber.rig)
+    finally:
+        os.environ["PATH"] = path
+    assert not obj.vertex_groups and not obj.modifiers and obj.parent is None and len(bpy.data.objects) == 1
+
+
+def the_program_is_taken_before_node_and_the_package_where_npm_has_it():
+    path, root = os.environ["PATH"], pathlib.Path(folder_of("root", {}))
+    made = root / "limber"
+    (made / "bin").mkdir(parents=True)
+    (made / "package.json").write_text('{"name": "limber", "version": "0.7.1"}')
+    (made / "bin/limber.mjs").write_text("// the package's program")
+    node = {"node": "echo v22.0.0", "npm": f"echo {root}"}
+    try:
+        os.environ["PATH"] = folder_of("rich", {**node, "limber": "echo limber 0.6.0"})
+        found = program.find()
+        assert (found.version, found.is_package, found.command) == ("0.6.0", False, [os.path.join(os.environ["PATH"], "limber")])
+        # What npm i -g puts on the path is the package, for the Node that is new enough.
+        os.environ["PATH"] = folder_of("global", {**node, "limber": str(made / "bin/limber.mjs")})
+        found = program.find()
+        assert (found.version, found.is_package) == ("0.7.1", True)
+        assert found.command == [os.path.join(os.environ["PATH"], "node"), str(made / "bin/limber.mjs")]
+        assert program.find(package=str(made)).command == program.find(package=str(root)).command == found.command
+        beside = pathlib.Path(limber.__file__).parent / "node_modules/limber"
+        shutil.copytree(made, beside)
+        try:
+            assert program.find().command[1] == str(beside / "bin/limber.mjs")
+        finally:
+            shutil.rmtree(beside.parent)
+        (made / "package.json").write_text('{"name": "limber", "version": "0.0.9"}')
+        try:
+            program.find()
+            raise AssertionError("an old package is taken")
+        except limber.LimberError as error:
+            assert "is limber 0.0.9; 0.1 is needed" in str(error), error
+        assert program.find(PROGRAM).command == [PROGRAM]
+    finally:
+        os.environ["PATH"] = path
+
+
+def node_retargets_what_it_can_and_names_the_rest():
+    """The program retargets more: an armature alone, and files of other formats."""
+    obj = sample("biped")
+    select(obj)
+    bpy.context.scene.limber.template = "humanoid"
+    bpy.ops.limber.rig()
+    armature = obj.find_armature()
+    pathlib.Path(at("motion.fbx")).write_text("none")
+    bpy.context.scene.limber.motion = at("motion.fbx")
+    refused("needs the program limber" if PACKAGE else "motion.fbx", bpy.ops.limber.retarget)
+    bpy.data.objects.remove(obj)
+    run("sample", "walk", "-o", at("walk.bvh"))
+    bpy.context.scene.limber.motion = at("walk.bvh")
+    select(armature)
+    if PACKAGE:
+        refused("no mesh follows limber_rig", bpy.ops.limber.retarget)
+    else:
+        assert bpy.ops.limber.retarget() == {"FINISHED"}
+    assert bool(armature.animation_data and armature.animation_data.action) == (not PACKAGE)
 
 
 def beside_blenders_own_weights():
@@ -360,7 +472,8 @@ passed = failed = 0
 for test in (rigs_an_object_and_leaves_the_rest_alone, weights_are_those_of_the_program, weights_for_an_armature_that_is_there,
              retargets_a_file_and_an_action, joints_are_corrected_by_empties, corrections_stay_through_another_fit_and_with_their_model,
              what_changes_meanwhile_is_refused_whole, is_one_step_to_undo,
-             what_cannot_be_done_says_so_and_changes_nothing, beside_blenders_own_weights):
+             what_cannot_be_done_says_so_and_changes_nothing, without_program_or_node_it_says_what_to_install,
+             the_program_is_taken_before_node_and_the_package_where_npm_has_it, node_retargets_what_it_can_and_names_the_rest, beside_blenders_own_weights):
     clear()
     try:
         test()

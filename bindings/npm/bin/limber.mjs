@@ -1,8 +1,9 @@
 #!/usr/bin/env node
-// npx limber rig IN -o OUT: limber rig by the engine as WebAssembly.
+// npx limber rig IN -o OUT: limber rig by the engine as WebAssembly. npx limber retarget: see retarget.mjs.
 import { readFileSync, renameSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { basename, extname, resolve } from 'node:path';
 import { load } from '../dist/index.mjs';
+import { retarget, retargetHelp } from './retarget.mjs';
 import { engineOptions, given, optionsHelp, Refused } from './rig_options.mjs';
 
 const version = () => JSON.parse(readFileSync(new URL('../package.json', import.meta.url), 'utf8')).version;
@@ -30,6 +31,7 @@ async function help() {
   const list = (title, methods) => `${title}:\n${methods.map(({ name, summary }) => `  ${name.padEnd(20)}${summary}`).join('\n')}\n`;
   return `Give a model handles and skin weights (the engine as WebAssembly)
 Usage: limber rig [OPTIONS] IN.glb -o OUT.glb     IN may be - for standard input
+       limber retarget MODEL.glb MOTIONS... -o OUT.glb     limber retarget --help tells more
 
 Options:
 ${optionsHelp}
@@ -114,8 +116,12 @@ async function rig(input, { output, json, strict, quiet }, options) {
 async function main() {
   const { values, positionals: [command, input, ...others] } = given(process.argv.slice(2));
   if (values.version) return console.log(`limber ${version()}`);
+  if (command === 'retarget') {
+    if (values.help) return console.log(retargetHelp);
+    return retarget(input === undefined ? [] : [input, ...others], values, { read, write, tellWarnings, failed: (line) => new Failed(line) });
+  }
   if (values.help || !command) return console.log(await help());
-  if (command !== 'rig') throw new Refused(`there is no command '${command}' here; there is: rig (the native program has the others)`);
+  if (command !== 'rig') throw new Refused(`there is no command '${command}' here; there are: rig, retarget (the native program has the others)`);
   checkFiles(input, others, values);
   return rig(input, values, engineOptions(values));
 }

@@ -33,6 +33,17 @@ writeFileSync(at('worker.mjs'), "export { startWorker } from 'limber/worker';");
 const { startWorker } = await import(pathToFileURL(at('worker.mjs')));
 const npx = (...args) => spawnSync('npx', ['--no-install', 'limber', ...args], { cwd: work, encoding: 'utf8' });
 
+/** Of a GLB: its clips, each with the times and the values of its channels by joint and path, in one list. */
+function clipsIn(glb) {
+  const size = glb.readUInt32LE(12), { animations, accessors, bufferViews, nodes } = JSON.parse(glb.subarray(20, 20 + size)), binary = glb.subarray(28 + size);
+  const numbers = (index) => {
+    const { bufferView, byteOffset = 0, count, type } = accessors[index], begin = (bufferViews[bufferView].byteOffset ?? 0) + byteOffset;
+    return Array.from({ length: count * { SCALAR: 1, VEC3: 3, VEC4: 4 }[type] }, (_, k) => binary.readFloatLE(begin + 4 * k));
+  };
+  return animations.map(({ name, channels, samplers }) => ({ name, channels: Object.fromEntries(channels.map(({ sampler, target }) =>
+    [`${nodes[target.node].name} ${target.path}`, [samplers[sampler].input, samplers[sampler].output].flatMap(numbers)])) }));
+}
+
 /** The page's title tells what it rigged, on its own thread and in a worker. */
 async function expectRigged(address) {
   const browser = await launch();
@@ -142,6 +153,38 @@ const cases = {
     const { limber, command, input, output } = JSON.parse(readFileSync(at('piped.json')));
     assert.deepEqual([command, input, output], ['rig', { file: '-', format: 'glb' }, '-']);
     assert.match(limber, /^\d+\.\d+\.\d+$/);
+  },
+  'the program of the package retargets: the clips of the native one'() {
+    for (const motion of ['walk', 'run']) run(program, ['sample', motion, '-o', `${motion}.bvh`, '--quiet']);
+    run(program, ['retarget', 'person.glb', 'walk.bvh', 'run.bvh', '-o', 'two.glb', '--quiet']); // a motion with two clips
+    for (const motions of [['walk.bvh', 'run.bvh'], ['two.glb']]) {
+      run(program, ['retarget', 'person.glb', ...motions, '-o', 'native.glb', '--quiet']);
+      const done = npx('retarget', 'person.glb', ...motions, '-o', 'npx.glb');
+      assert.deepEqual([done.status, done.stdout], [0, 'written: npx.glb\n'], done.stderr);
+      const clips = clipsIn(readFileSync(at('npx.glb'))), expected = clipsIn(readFileSync(at('native.glb')));
+      assert.deepEqual(clips.map(({ name }) => name), ['walk', 'run']);
+      for (const [i, { name, channels }] of expected.entries()) {
+        assert.equal(clips[i].name, name);
+        assert.deepEqual(Object.keys(clips[i].channels).sort(), Object.keys(channels).sort());
+        for (const [channel, values] of Object.entries(channels)) {
+          assert.ok(values.length > 4 && values.length === clips[i].channels[channel].length, channel);
+          values.forEach((value, k) => assert.ok(Math.abs(value - clips[i].channels[channel][k]) < 1e-6, channel));
+        }
+      }
+    }
+    for (const [args, code, words] of [
+      [['person.glb', '-o', 'x.glb'], 2, 'retarget takes a rigged model, motions and -o OUT.glb'], [['person.glb', 'walk.bvh'], 2, '-o OUT.glb'],
+      [['person.glb', 'walk.bvh', '-o', 'x.gltf'], 2, 'a .glb is written'], [['person.glb', 'walk.bvh', '-o', 'x.glb', '--handles', '3'], 2, '--handles is no option of retarget'],
+      [['model.glb', 'walk.bvh', '-o', 'x.glb'], 1, 'has no rig to move'], [['person.glb', 'nothing.bvh', '-o', 'x.glb'], 1, 'nothing.bvh: cannot be opened'],
+      [['person.glb', 'own.json', '-o', 'x.glb'], 1, 'own.json'], [['walk.bvh', 'walk.bvh', '-o', 'x.glb'], 1, 'walk.bvh'],
+    ]) {
+      const done = npx('retarget', ...args);
+      assert.equal(done.status, code, `${args}: ${done.stderr}`);
+      assert.match(done.stderr, /^limber: [^\n]*\n$/);
+      assert.ok(done.stderr.includes(words), done.stderr);
+      assert.ok(!existsSync(at('x.glb')));
+    }
+    assert.match(npx('retarget', '--help').stdout, /MODEL\.glb MOTIONS/);
   },
   'its options are those of the native program, in the same words'() {
     const native = optionsIn(run(program, ['rig', '--help'])), here = optionsIn(npx('--help').stdout);
