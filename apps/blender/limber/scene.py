@@ -226,6 +226,14 @@ def objects_of(names, folder):
     return objects
 
 
+def add_group(obj, name, vertices, slots, weights):
+    """A vertex group of these weights[vertex, slot]. Blender has no call for many weights: one for those that are whole, and one each."""
+    add, held = obj.vertex_groups.new(name=name).add, weights[vertices, slots]
+    add(vertices[held == 1].tolist(), 1.0, "REPLACE")
+    for vertex, weight in zip(vertices[held != 1].tolist(), held[held != 1].tolist()):
+        add((vertex,), weight, "REPLACE")
+
+
 def apply_weights(objects, names, reader):
     """Vertex groups of these bones anew; all others stay."""
     every = [reader.weights(i) for i in range(len(objects))]
@@ -235,10 +243,8 @@ def apply_weights(objects, names, reader):
     for obj, (joints, weights) in zip(objects, every):
         for group in [group for group in obj.vertex_groups if group.name in names]:
             obj.vertex_groups.remove(group)
-        used = sorted(set(joints[weights > 0].tolist()))
-        groups = {j: obj.vertex_groups.new(name=names[j]) for j in used}
-        for v, slot in zip(*np.nonzero(weights > 0)):
-            groups[joints[v, slot]].add((int(v),), float(weights[v, slot]), "REPLACE")
+        for j in np.unique(joints[weights > 0]).tolist():
+            add_group(obj, names[j], *np.nonzero((joints == j) & (weights > 0)), weights)
 
 
 def bind(obj, armature):
