@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # make_packages.sh BUILD_FOLDER OUTPUT_FOLDER: .deb of the program and of the library, a .tar.gz of the program, a wheel for
 # Debian 12's Python, a package for npm and the add-on for Blender. The .tar.gz and the wheel carry their shared libraries with
-# their notices. Everything is built already. Called by ./dev package.
+# their notices, and all but the add-on (which is limber's alone) those of what is compiled in (notices.sh). Everything is built already. Called by ./dev package.
 set -euo pipefail
 umask 022
 
@@ -23,9 +23,10 @@ manual_page() {
 
 commands_of() { "$limber" "$@" --help | sed -n '/^Subcommands:/,/^$/s/^  \([a-z]\+\) .*/\1/p'; }
 
-# notices <folder>: as Debian's policy has them.
+# notices <folder> <package of notices.sh>: as Debian's policy has them.
 notices() {
   mkdir -p "$1"
+  tools/notices.sh "$2" "$build" build/wasm >"$1/NOTICES"
   cat >"$1/copyright" <<TEXT
 Format: https://www.debian.org/doc/packaging-manuals/copyright-format/1.0/
 Upstream-Name: limber
@@ -34,6 +35,8 @@ Files: *
 Copyright: 2026 the authors of limber
 License: Apache-2.0
  The whole text is in /usr/share/common-licenses/Apache-2.0 on Debian systems.
+Comment: Parts of other projects are compiled in; their notices are in the file
+ NOTICES beside this one.
 TEXT
   gzip -9n <CHANGELOG.md >"$1/changelog.gz"
   gzip -9n >"$1/changelog.Debian.gz" <<TEXT
@@ -47,8 +50,8 @@ TEXT
 
 rm -rf "$build/manual"
 mkdir -p "$manual"/{man/man1,bash-completion/completions,zsh/vendor-completions,fish/vendor_completions.d}
-notices "$manual/doc/limber"
-notices "$build/manual/development/doc/liblimber-dev"
+notices "$manual/doc/limber" program
+notices "$build/manual/development/doc/liblimber-dev" library
 manual_page limber
 for command in $(commands_of); do
   manual_page limber "$command"
@@ -101,6 +104,7 @@ carry_libraries "$limber" "$wheel/limber/lib" "$wheel/limber-$version.dist-info/
 strip "$wheel"/limber/_limber.*.so
 patchelf --set-rpath '$ORIGIN/lib' "$wheel"/limber/_limber.*.so
 cp LICENSE "$wheel/limber-$version.dist-info"
+tools/notices.sh python "$build" build/wasm >"$wheel/limber-$version.dist-info/NOTICES"
 cat >"$wheel/limber-$version.dist-info/METADATA" <<TEXT
 Metadata-Version: 2.1
 Name: limber

@@ -269,6 +269,7 @@ python_module() {
 # What is made for others to install, on a system that has nothing: skipped where none can be made.
 packages_on_bare_debian() {
   need "${packages_installers[@]}" && tools/make_packages.sh build/release build/packages || return 1
+  counted tests/package_notices.sh build/packages build/release "$output/notices" || return 1
   need "${packages_bare[@]}" >/dev/null 2>&1 || true
   if ! command -v mmdebstrap >/dev/null || [ "$(id -u)" != 0 ]; then
     echo "   no mmdebstrap here, or not root: the packages are made, and not tried"
