@@ -1,7 +1,9 @@
 # How long Rig takes from the call to the bound armature, and where the time goes; beside it Blender's own automatic weights for the
 # same armature, measured in turn in the same run. Prints medians; tests nothing.
 #
-#   blender --background --factory-startup --python-exit-code 1 --python measure_rig.py -- ADDON.zip PROGRAM WORK_FOLDER [VERTICES] [RUNS]
+#   blender --background --factory-startup --python-exit-code 1 --python measure_rig.py -- ADDON.zip PROGRAM WORK_FOLDER [VERTICES RUNS [NPM_PACKAGE]]
+#
+# With the folder of the npm package (package in limber-*.tgz) it works in Node.
 import os
 import statistics
 import subprocess
@@ -12,7 +14,7 @@ import bpy
 
 ADDON, PROGRAM, WORK, *MORE = sys.argv[sys.argv.index("--") + 1:]
 ADDON, PROGRAM, WORK = (os.path.abspath(path) for path in (ADDON, PROGRAM, WORK))
-WANTED, RUNS = (int(given) for given in (MORE + ["50000", "5"][len(MORE):]))
+WANTED, RUNS = (int(given) for given in (MORE or ("50000", "5"))[:2])
 os.makedirs(WORK, exist_ok=True)
 bpy.ops.preferences.addon_install(overwrite=True, filepath=ADDON)
 bpy.ops.wm.read_factory_settings(use_empty=True)
@@ -20,6 +22,8 @@ bpy.ops.preferences.addon_enable(module="limber")
 bpy.context.preferences.addons["limber"].preferences.program = PROGRAM
 from limber import glb, program, scene  # noqa: E402
 
+if MORE[2:]:
+    program.find = lambda *_: program.with_node(package=os.path.abspath(MORE[2]))
 SPENT = {}  # seconds by part, of one run
 
 
@@ -81,6 +85,10 @@ def measure(call):
     return time.perf_counter() - started
 
 
+def tell(what, seconds, bare):
+    print(f"{what}: {statistics.median(seconds):.2f} s ({min(seconds):.2f} to {max(seconds):.2f}), {bare} vertices left out")
+
+
 for owner, name, part in ((program, "find", "find the program"), (scene, "write_meshes", "export"), (program.Call, "wait", "program"),
                           (scene, "objects_of", "compare with the scene"), (scene, "make_armature", "import: armature"),
                           (scene, "apply_weights", "import: vertex groups")):
@@ -101,7 +109,7 @@ for run in range(RUNS):
     unbind(person)
     bpy.data.objects.remove(armature)
 print(f"{len(person.data.vertices)} vertices, {RUNS} runs, load {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores")
-print(f"limber, joints and weights, from the call to the bound armature: {statistics.median(ours):.2f} s ({min(ours):.2f} to {max(ours):.2f}), {bare[0]} vertices left out")
+tell("limber, joints and weights, from the call to the bound armature", ours, bare[0])
 for part in parts[0]:
     print(f"  {part:<24}{statistics.median(one[part] for one in parts):.3f} s")
-print(f"Blender's automatic weights for these joints: {statistics.median(theirs):.2f} s ({min(theirs):.2f} to {max(theirs):.2f}), {bare[1]} vertices left out")
+tell("Blender's automatic weights for these joints", theirs, bare[1])
