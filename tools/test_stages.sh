@@ -169,6 +169,23 @@ motions_in_three() {
     counted node tests/three_positions.mjs build/release/limber "$output/three" $motions $characters
 }
 
+# The project's own models, one unrigged, one of pieces, one that flies with a rig of its own; shared ones where they are.
+surfaces_in_three() {
+  local folder=$output/surfaces models=() model
+  mkdir -p "$folder"
+  for model in biped robot flying; do
+    models+=("$folder/$model.glb")
+    build/release/limber sample "$model" --quiet -o "${models[-1]}" || return 1
+  done
+  models+=("$folder/walking.glb")
+  build/release/limber sample walk --quiet -o "$folder/walk.bvh" &&
+    build/release/limber animate "$folder/biped.glb" "$folder/walk.bvh" --quiet -o "${models[-1]}" || return 1
+  for model in ../shared/data/rigged/{cesium_man,fox_khronos,robot_expressive,quaternius_man_casual}.glb; do
+    [ ! -f "$model" ] || models+=("$model")
+  done
+  install_node_packages . && counted node tests/three_surfaces.mjs build/release/limber "$folder" "${models[@]}"
+}
+
 motions_in_blender() {
   local motions motion characters glbs=()
   motions=$(common_motions) || { echo "   skipped: the shared motions are not there"; add_counts 0 0 1; return 0; }
@@ -396,6 +413,7 @@ remaining_stages() {
   stage "WebAssembly in Node against the native program" wasm_smoke
   stage "module for Python" python_module
   stage "motions in three.js" motions_in_three
+  stage "USD in three.js" surfaces_in_three
   stage "studio: types, bundle" build_studio
   stage "studio in a browser: mouse, touch, keyboard, bad files" studio_in_browser
   stage "studio in the program" studio_in_program

@@ -15,6 +15,7 @@
 #include "limber/core/counted.h"
 #include "limber/core/names.h"
 #include "limber/skeleton/clip_edit.h"
+#include "limber/usd/usd_write.h"
 #include "progress_line.h"
 
 namespace limber::cli {
@@ -145,22 +146,28 @@ void append(Motion& motion, Motion other, const std::string& file) {
   motion.warnings.append(other.warnings);
 }
 
-// One BVH for each clip: under the name given, or with the clip's behind it where there are several.
+// Of formats that hold one clip: a file for each, under the name given, or with the clip's behind it where there are
+// several.
+std::vector<fs::path> pathsOfClips(const Motion& motion, const fs::path& output) {
+  if (motion.clips.size() <= 1) return {motion.clips.size(), output};
+  if (output == "-") throw Error(ErrorCode::kBadArgument, "such a file holds one clip", "", "choose it by --clip NAME");
+  std::vector<fs::path> paths;
+  UniqueNames names;
+  for (const Clip& clip : motion.clips) {
+    std::string name = clip.name;
+    std::replace_if(
+        name.begin(), name.end(), [](unsigned char ch) { return ch < 0x20 || ch == '/' || ch == '\\'; }, '_');
+    paths.push_back(output);
+    paths.back().replace_filename(names.add(output.stem().string() + "_" + name) + output.extension().string());
+  }
+  return paths;
+}
+
 std::vector<std::pair<fs::path, Bytes>> bvhFiles(const Motion& motion, const ConvertArguments& options) {
   std::vector<std::pair<fs::path, Bytes>> files;
-  const fs::path output = options.output;
-  UniqueNames names;
-  for (std::size_t c = 0; c < motion.clips.size(); ++c) {
-    fs::path path = output;
-    if (motion.clips.size() > 1) {
-      if (output == "-") throw Error(ErrorCode::kBadArgument, "a BVH holds one clip", "", "choose it by --clip NAME");
-      std::string name = motion.clips[c].name;
-      std::replace_if(
-          name.begin(), name.end(), [](unsigned char ch) { return ch < 0x20 || ch == '/' || ch == '\\'; }, '_');
-      path.replace_filename(names.add(output.stem().string() + "_" + name) + output.extension().string());
-    }
+  for (const fs::path& path : pathsOfClips(motion, options.output)) {
     BvhWriteOptions write;
-    write.clip = c;
+    write.clip = files.size();
     write.metresPerUnit = metresOf(options.outputUnit.empty() ? options.unit : options.outputUnit);
     files.emplace_back(path, writeBvh(motion, write));
   }
@@ -180,15 +187,35 @@ void writeBvhFiles(const Motion& motion, const ConvertArguments& options, const 
 }
 
 // A model keeps all but the animations of its joints, which make room for the clips; from a BVH comes a skeleton.
-void writeModel(std::optional<Asset>& model, const Motion& motion, const ConvertArguments& options) {
-  if (!model) return writeAsset(motionAsset(motion), options.output);
+Asset withClips(std::optional<Asset>& model, const Motion& motion) {
+  if (!model) return motionAsset(motion);
   const AssetSkeleton skeleton = animatedSkeleton(*model);
   removeChannels(*model, [&](Index node, std::string_view path) {
     return path != "weights" &&
            std::find(skeleton.jointNode.begin(), skeleton.jointNode.end(), node) != skeleton.jointNode.end();
   });
   addClips(*model, skeleton, motion.clips);
-  writeAsset(*model, options.output);
+  return std::move(*model);
+}
+
+// A model with its clips, one a file.
+void writeUsdFiles(const Asset& asset, const Motion& motion, const ConvertArguments& options, const Account& account) {
+  std::vector<fs::path> paths = pathsOfClips(motion, options.output);
+  if (paths.empty()) paths.emplace_back(options.output);
+  const std::vector<gltf::Animation>& clips = asset.document.animations;
+  for (std::size_t c = 0; c < paths.size(); ++c) {
+    UsdOptions usd;
+    const std::size_t number = clips.size() - motion.clips.size() + c;  // clips are added behind what is there
+    if (number < clips.size()) usd.clip = clips[number].name;
+    const Warnings warnings = writeUsd(asset, paths[c], usd);
+    account.line(fmt::format("written: {}", paths[c].string()));
+    if (c == 0) printWarnings(warnings, options.common.quiet);
+  }
+}
+
+// Has it a rig, or anything that moves?
+bool hasMotion(const Asset& asset) {
+  return hasRig(asset) || !asset.document.animations.empty();
 }
 
 void run(ConvertArguments options) {
@@ -200,7 +227,7 @@ void run(ConvertArguments options) {
     options.output = options.files.back();
     options.files.pop_back();
   }
-  checkOutput(options.output, {".glb", ".gltf", ".bvh"});
+  checkOutput(options.output, {".glb", ".gltf", ".bvh", ".usda", ".usdz"});
   if (!options.trim.empty()) trimSpan(options.trim);
   if (!options.outputUnit.empty()) metresOf(options.outputUnit);
   const BvhOptions bvh = bvhOptions(options);
@@ -216,6 +243,10 @@ void run(ConvertArguments options) {
       read = readBvh(file, bvh);
     } else {
       Asset asset = readAsset(file);
+      if (isUsdFormat(options.output) && options.files.size() == 1 && !hasMotion(asset)) {
+        progress.finish();
+        return writeUsdFiles(asset, {}, options, account);
+      }
       read = motionOf(asset);
       if (!motion && asset.format != "bvh") model = std::move(asset);
     }
@@ -231,12 +262,15 @@ void run(ConvertArguments options) {
   progress->stage("edit");
   edit(*motion, options, account);
   progress->stage("write");
-  const bool toBvh = isBvh(options.output);
-  if (toBvh) {
+  if (isBvh(options.output)) {
     progress.finish();
     writeBvhFiles(*motion, options, account);
+  } else if (isUsdFormat(options.output)) {
+    const Asset asset = withClips(model, *motion);
+    progress.finish();
+    writeUsdFiles(asset, *motion, options, account);
   } else {
-    writeModel(model, *motion, options);
+    writeAsset(withClips(model, *motion), options.output);
     progress.finish();
     if (options.output != "-")
       account.line(fmt::format("written: {}, {}", options.output, counted(motion->clips.size(), "clip")));
@@ -248,12 +282,15 @@ void run(ConvertArguments options) {
 
 void addConvertCommand(CLI::App& program) {
   auto options = std::make_shared<ConvertArguments>();
-  CLI::App* command = program.add_subcommand("convert", "Convert motions between BVH and glTF; cut, mirror, resample");
+  CLI::App* command =
+      program.add_subcommand("convert", "Convert motions between BVH, glTF and USD; cut, mirror, resample");
   command
       ->add_option("FILES", options->files,
                    "motions over one skeleton (BVH, GLB, glTF, FBX, DAE); the last is the output unless -o names it")
       ->required();
-  command->add_option("-o,--output", options->output, "the .glb, .gltf or .bvh to write; - is standard output (GLB)")
+  command
+      ->add_option("-o,--output", options->output,
+                   "the .glb, .gltf, .bvh, .usda or .usdz to write; - is standard output (GLB)")
       ->type_name("FILE");
   command->add_option("--clip", options->clips, "only the clip of this name; may be given several times")
       ->type_name("NAME")
@@ -280,10 +317,11 @@ void addConvertCommand(CLI::App& program) {
       "A BVH does not say its unit: lengths are kept as numbers, so that 1 is a metre, unless --unit tells. Out of a\n"
       "BVH comes a skeleton with one clip, named after the file. A model keeps all that it has; its clips are the "
       "ones\n"
-      "that are written. A BVH holds one clip: of several each gets a file, OUT_CLIP.bvh.\n"
+      "that are written. A BVH and a USD hold one clip: of several each gets a file, OUT_CLIP.bvh.\n"
       "\nExamples:\n"
       "  limber convert walk.bvh walk.glb --unit cm\n"
       "  limber convert walk.bvh run.bvh -o both.glb --unit cmu --fps 30\n"
+      "  limber convert hero.glb hero.usdz --clip walk\n"
       "  limber convert hero.glb waving.bvh --clip wave --trim 0.5:2 --mirror");
   command->callback([options] { run(*options); });
 }

@@ -1,5 +1,6 @@
 #include "limber/asset/stored_archive.h"
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <utility>
@@ -16,6 +17,27 @@ namespace {
 constexpr std::uint32_t kLocalFile = 0x04034b50, kDirectoryEntry = 0x02014b50, kDirectoryEnd = 0x06054b50;
 constexpr std::size_t kLocalSize = 30, kEntrySize = 46, kEndSize = 22, kMostComment = 65535;
 constexpr std::uint32_t kInZip64 = 0xffffffff;  // in place of a number that stands elsewhere
+
+// CRC-32, the polynomial reversed, a byte at a time by a table.
+class Checksum {
+ public:
+  constexpr Checksum() {
+    for (std::uint32_t byte = 0; byte < table_.size(); ++byte) {
+      std::uint32_t sum = byte;
+      for (int bit = 0; bit < 8; ++bit) sum = (sum >> 1) ^ (sum % 2 == 1 ? 0xedb88320u : 0);
+      table_[byte] = sum;
+    }
+  }
+  std::uint32_t of(ByteSpan bytes) const {
+    std::uint32_t sum = ~std::uint32_t{0};
+    for (const std::uint8_t byte : bytes) sum = table_[(sum ^ byte) & 0xff] ^ (sum >> 8);
+    return ~sum;
+  }
+
+ private:
+  std::array<std::uint32_t, 256> table_ = {};
+};
+constexpr Checksum kChecksum;
 
 class StoredArchive {
  public:
@@ -76,28 +98,99 @@ class StoredArchive {
       refuse(fmt::format("'{}' in it is damaged", path));
     }
     const std::string content = text(local + kLocalSize + number(local + 26, 2) + number(local + 28, 2), size);
-    if (checksum(content) != number(entry + 16, 4)) refuse(fmt::format("'{}' in it is damaged", path));
+    if (kChecksum.of(asBytes(content)) != number(entry + 16, 4)) refuse(fmt::format("'{}' in it is damaged", path));
     return Bytes(content.begin(), content.end());
-  }
-
-  // CRC-32, the polynomial reversed.
-  static std::uint32_t checksum(std::string_view content) {
-    std::uint32_t sum = ~std::uint32_t{0};
-    for (const char c : content) {
-      sum ^= static_cast<unsigned char>(c);
-      for (int bit = 0; bit < 8; ++bit) sum = (sum >> 1) ^ (sum % 2 == 1 ? 0xedb88320u : 0);
-    }
-    return ~sum;
   }
 
   ByteSpan bytes_;
   std::string_view name_;
 };
 
+// Writes the records of an archive.
+class ArchiveWriter {
+ public:
+  explicit ArchiveWriter(std::size_t alignment) : alignment_(alignment) {}
+
+  void add(const StoredFile& file) {
+    const std::size_t at = bytes_.size();
+    const std::size_t padding = paddingFor(at + kLocalSize + file.path.size());
+    put(bytes_, kLocalFile, 4);
+    putCommon(bytes_, file, padding);
+    put(bytes_, file.path);
+    if (padding > 0) {
+      put(bytes_, kPaddingField, 2);
+      put(bytes_, padding - kFieldHeader, 2);
+      bytes_.resize(bytes_.size() + padding - kFieldHeader);
+    }
+    bytes_.insert(bytes_.end(), file.bytes.begin(), file.bytes.end());
+
+    put(directory_, kDirectoryEntry, 4);
+    put(directory_, kVersion, 2);
+    putCommon(directory_, file, 0);
+    for (const int size : {2, 2, 2, 4}) put(directory_, 0, size);  // no comment, first disk, no attributes
+    put(directory_, at, 4);
+    put(directory_, file.path);
+    ++files_;
+    constexpr std::size_t kMostFiles = 65535;
+    if (bytes_.size() + directory_.size() >= kInZip64 - kEndSize || files_ > kMostFiles) {
+      throw Error(ErrorCode::kLimit, "is larger than a ZIP archive can be", file.path);
+    }
+  }
+
+  Bytes finish() {
+    const std::size_t start = bytes_.size();
+    bytes_.insert(bytes_.end(), directory_.begin(), directory_.end());
+    put(bytes_, kDirectoryEnd, 4);
+    put(bytes_, 0, 4);
+    for (int i = 0; i < 2; ++i) put(bytes_, files_, 2);
+    put(bytes_, directory_.size(), 4);
+    put(bytes_, start, 4);
+    put(bytes_, 0, 2);
+    return std::move(bytes_);
+  }
+
+ private:
+  static constexpr std::uint32_t kVersion = 20, kFirstDay = 33;  // of 1980, the earliest that there is
+  static constexpr std::uint32_t kPaddingField = 0x1986;         // as USD's own tools call it
+  static constexpr std::size_t kFieldHeader = 4;
+
+  static void put(Bytes& bytes, std::uint64_t value, int size) {
+    for (int i = 0; i < size; ++i) bytes.push_back(static_cast<std::uint8_t>(value >> (8 * i)));
+  }
+  static void put(Bytes& bytes, const std::string& text) { bytes.insert(bytes.end(), text.begin(), text.end()); }
+
+  // What both records of a file have in common, from the version that reading needs to the length of further fields.
+  static void putCommon(Bytes& bytes, const StoredFile& file, std::size_t further) {
+    put(bytes, kVersion, 2);
+    for (int i = 0; i < 3; ++i) put(bytes, 0, 2);  // no flags, stored, midnight
+    put(bytes, kFirstDay, 2);
+    put(bytes, kChecksum.of(file.bytes), 4);
+    for (int i = 0; i < 2; ++i) put(bytes, file.bytes.size(), 4);
+    put(bytes, file.path.size(), 2);
+    put(bytes, further, 2);
+  }
+
+  // A further field is at least its own header.
+  std::size_t paddingFor(std::size_t begin) const {
+    std::size_t padding = (alignment_ - begin % alignment_) % alignment_;
+    while (padding > 0 && padding < kFieldHeader) padding += alignment_;
+    return padding;
+  }
+
+  std::size_t alignment_, files_ = 0;
+  Bytes bytes_, directory_;
+};
+
 }  // namespace
 
 std::map<std::string, Bytes> readStoredArchive(ByteSpan bytes, std::string_view name) {
   return StoredArchive(bytes, name).files();
+}
+
+Bytes writeStoredArchive(std::span<const StoredFile> files, std::size_t alignment) {
+  ArchiveWriter writer(alignment);
+  for (const StoredFile& file : files) writer.add(file);
+  return writer.finish();
 }
 
 }  // namespace limber

@@ -9,21 +9,13 @@
 #include <nlohmann/json.hpp>
 
 #include "limber/asset/accessor.h"
-#include "limber/asset/json_access.h"
+#include "limber/asset/shape_name.h"
 
 namespace limber {
 
 namespace {
 
 constexpr double kNoOffset = 1e-6;
-
-std::string shapeName(const gltf::Mesh& mesh, std::size_t shape) {
-  const Json* names = mesh.extras.exists() ? member(*mesh.extras, "targetNames") : nullptr;
-  if (names && names->is_array() && shape < names->size() && (*names)[shape].is_string()) {
-    return (*names)[shape].get<std::string>();
-  }
-  return fmt::format("shape_{}", shape);
-}
 
 void addOffsets(const Asset& asset, const PrimitiveInstance& instance, Index accessor, BlendShape& shape) {
   const std::vector<float> values = readFloats(asset, accessor);

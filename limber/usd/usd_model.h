@@ -1,0 +1,48 @@
+// What USD can say of a model, taken out of a document.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "limber/asset/rig_io.h"
+#include "limber/skeleton/clip.h"
+#include "limber/usd/usd_write.h"
+
+namespace limber {
+
+// A blend shape of one mesh: where its vertices go, those that move alone.
+struct UsdShape {
+  std::string name;                  // unique in the model
+  std::vector<int> vertices;         // of the mesh
+  std::vector<Vec3f> offsets;        // in the world, as many as vertices
+  std::vector<Vec3f> normalOffsets;  // as many, or none
+  Track<float> weight;               // over time in seconds; one key where it stands still
+};
+
+// A primitive as one node shows it, in the world of the bind pose.
+struct UsdMesh {
+  std::string name;
+  std::vector<Vec3f> points, normals;  // normals: as many, or none
+  std::vector<Vec2f> uvs;              // as many, or none; v grows upwards
+  std::vector<int> corners;            // three for each triangle
+  std::optional<Index> material;       // of the document
+  int influences = 0;                  // for each vertex; 0: no joint moves the mesh
+  std::vector<int> joints;             // #points * influences
+  std::vector<float> weights;          // likewise, summing to 1
+  std::vector<UsdShape> shapes;
+};
+
+struct UsdModel {
+  std::vector<UsdMesh> meshes;
+  Skeleton skeleton;                // in bind pose; no joints: no rig
+  std::vector<std::string> joints;  // #J paths, "root/child"
+  std::optional<Clip> clip;         // one that has keys
+  Pose stance;                      // #J, how the joints stand without a clip
+  Warnings warnings;
+};
+
+UsdModel readUsdModel(const Asset& asset, const UsdOptions& options);
+
+}  // namespace limber

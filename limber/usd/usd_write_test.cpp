@@ -1,0 +1,198 @@
+#include "limber/usd/usd_write.h"
+
+#include <cstring>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "limber/asset/read.h"
+#include "limber/asset/stored_archive.h"
+#include "limber/asset/testing/gltf_builder.h"
+#include "limber/asset/testing/scene_builder.h"
+#include "limber/usd/usd_text.h"
+
+namespace limber {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using testing::SceneBuilder;
+
+Asset everything() {
+  return readAsset(testing::everythingModel().glb(), "everything.glb");
+}
+
+std::string textOf(const Asset& asset, const UsdOptions& options = {}) {
+  return usdFiles(asset, options).text;
+}
+
+// How often a text stands in another.
+std::size_t timesIn(const std::string& text, const std::string& part) {
+  std::size_t times = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++times;
+  return times;
+}
+
+// The numbers of the property of that name, brackets and commas aside.
+std::vector<double> numbersOf(const std::string& text, const std::string& name) {
+  const std::size_t start = text.find(name + " = [");
+  if (start == std::string::npos) return {};
+  std::string list = text.substr(start + name.size() + 4, text.find(']', start) - start - name.size() - 4);
+  for (char& c : list) c = c == '(' || c == ')' || c == ',' ? ' ' : c;
+  std::vector<double> numbers;
+  const char* at = list.c_str();
+  char* end = nullptr;
+  for (double value = std::strtod(at, &end); end != at; value = std::strtod(at, &end)) {
+    numbers.push_back(value);
+    at = end;
+  }
+  return numbers;
+}
+
+TEST(UsdName, IsAnIdentifier) {
+  EXPECT_EQ(usdName("left.hand 2"), "left_hand_2");
+  EXPECT_EQ(usdName("2nd"), "_2nd");
+  EXPECT_EQ(usdName(""), "_");
+  EXPECT_EQ(usdName("h\xc3\xa4nd"), "h_nd");  // one letter, one underscore
+  EXPECT_EQ(usdName("mixamorig:Hips"), "mixamorig_Hips");
+}
+
+TEST(UsdFiles, AModelWithEverything) {
+  const UsdFiles files = usdFiles(everything());
+  const std::string& text = files.text;
+  EXPECT_EQ(text.rfind("#usda 1.0\n(\n  defaultPrim = \"Model\"\n  metersPerUnit = 1\n  upAxis = \"Y\"\n", 0), 0u);
+  EXPECT_THAT(text, HasSubstr("def SkelRoot \"Model\" ("));
+  EXPECT_THAT(text, HasSubstr("uniform token[] joints = [\"root\", \"root/tip\"]"));
+  EXPECT_THAT(numbersOf(text, "point3f[] points"), ElementsAre(0, 1.5, 0, 1, 1.5, 0, 0, 2.5, 0, 1, 2.5, 0));
+  EXPECT_THAT(numbersOf(text, "normal3f[] normals"), ElementsAre(0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1));
+  EXPECT_THAT(numbersOf(text, "int[] faceVertexIndices"), ElementsAre(0, 1, 2, 2, 1, 3));
+  EXPECT_THAT(numbersOf(text, "int[] primvars:skel:jointIndices"), ElementsAre(0, 0, 0, 1, 1, 0, 1, 0));
+  EXPECT_THAT(numbersOf(text, "float[] primvars:skel:jointWeights"), ElementsAre(1, 0, .5, .5, .75, .25, 1, 0));
+  EXPECT_THAT(text, HasSubstr("elementSize = 2"));
+  // Half a turn about z in a second; the text says w first.
+  EXPECT_THAT(text, HasSubstr("quatf[] rotations.timeSamples = {"));
+  EXPECT_THAT(text, HasSubstr("0: [(1,0,0,0),(1,0,0,0)],"));
+  EXPECT_THAT(text, HasSubstr("[(1,0,0,0),(0,0,0,1)],"));
+  // One shape of two vertices, and its weight.
+  EXPECT_THAT(numbersOf(text, "uniform vector3f[] offsets"), ElementsAre(1, 2, 3, 4, 5, 6));
+  EXPECT_THAT(numbersOf(text, "uniform int[] pointIndices"), ElementsAre(1, 3));
+  EXPECT_THAT(numbersOf(text, "float[] blendShapeWeights"), ElementsAre(0));
+  // The material and its picture.
+  EXPECT_THAT(text, HasSubstr("rel material:binding = </Model/Materials/red>"));
+  EXPECT_THAT(text, HasSubstr("asset inputs:file = @image_0.png@"));
+  ASSERT_EQ(files.images.size(), 1u);
+  EXPECT_EQ(files.images[0].bytes, testing::pngBytes());
+}
+
+TEST(UsdFiles, BindTransformsAreRowsWithTheTranslationLast) {
+  SceneBuilder scene;
+  const Index mesh = scene.addTetrahedron();
+  const Index tip = scene.addNode({{"name", "tip"}, {"translation", {0, 1, 0}}});
+  const Index root = scene.addNode({{"name", "root"}, {"children", {tip}}, {"translation", {2, 0, 0}}});
+  const Index skin = scene.addSkin({root, tip}, {testing::translation(-2, 0, 0), testing::translation(-2, -1, 0)});
+  scene.bindRigidly(mesh, {0, 0, 1, 1});
+  scene.addNode({{"name", "body"}, {"mesh", mesh}, {"skin", skin}});
+  const std::string text = textOf(scene.build());
+  const std::vector<double> bind = numbersOf(text, "uniform matrix4d[] bindTransforms");
+  const std::vector<double> rest = numbersOf(text, "uniform matrix4d[] restTransforms");
+  ASSERT_EQ(bind.size(), 32u);
+  EXPECT_THAT(std::vector<double>(bind.begin() + 28, bind.end()), ElementsAre(2, 1, 0, 1));
+  EXPECT_THAT(std::vector<double>(rest.begin() + 28, rest.end()), ElementsAre(0, 1, 0, 1));
+}
+
+TEST(UsdFiles, WithoutAClipTheJointsStandAsTheirNodesDo) {
+  SceneBuilder scene;
+  const Index mesh = scene.addTetrahedron();
+  const Index root = scene.addNode({{"name", "root"}, {"translation", {0, 5, 0}}});
+  const Index skin = scene.addSkin({root}, {Affine::Identity()});
+  scene.bindRigidly(mesh, {0, 0, 0, 0});
+  scene.addNode({{"name", "body"}, {"mesh", mesh}, {"skin", skin}});
+  const std::string text = textOf(scene.build());
+  EXPECT_THAT(numbersOf(text, "float3[] translations"), ElementsAre(0, 5, 0));
+  EXPECT_THAT(text, Not(HasSubstr("timeSamples")));
+  EXPECT_THAT(text, Not(HasSubstr("endTimeCode")));
+}
+
+TEST(UsdFiles, AModelWithoutARigIsMeshesAlone) {
+  SceneBuilder scene;
+  const Index mesh = scene.addTetrahedron();
+  scene.addNode({{"name", "a b"}, {"mesh", mesh}, {"translation", {1, 0, 0}}});
+  scene.addNode({{"name", "a.b"}, {"mesh", mesh}});
+  const std::string text = textOf(scene.build());
+  EXPECT_THAT(text, Not(HasSubstr("Skel")));
+  EXPECT_THAT(text, HasSubstr("def Mesh \"a_b\""));
+  EXPECT_THAT(text, HasSubstr("def Mesh \"a_b_2\""));
+  EXPECT_THAT(numbersOf(text, "point3f[] points")[0], 1);  // in the world
+}
+
+TEST(UsdFiles, AnimatedNodesWithoutASkinAreJointsToo) {
+  SceneBuilder scene;
+  const Index mesh = scene.addTetrahedron();
+  const Index node = scene.addNode({{"name", "lid"}, {"mesh", mesh}});
+  scene.addClip(node, "translation", 3);
+  const std::string text = textOf(scene.build());
+  EXPECT_THAT(text, HasSubstr("uniform token[] joints = [\"lid\"]"));
+  EXPECT_THAT(text, HasSubstr("float3[] translations.timeSamples"));
+  EXPECT_EQ(numbersOf(text, "int[] primvars:skel:jointIndices").size(), 4u);
+}
+
+TEST(UsdFiles, OneClipAFileAndANameThatIsThere) {
+  Asset asset = everything();
+  asset.document.animations.push_back(asset.document.animations[0]);
+  asset.document.animations[1].name = "stand";
+  asset.document.animations[1].channels.clear();
+  EXPECT_EQ(timesIn(textOf(asset), "def SkelAnimation"), 1u);
+  EXPECT_THAT(textOf(asset, {"turn"}), HasSubstr("rotations.timeSamples"));
+  EXPECT_THAT(textOf(asset, {"stand"}), Not(HasSubstr("timeSamples")));
+  try {
+    textOf(asset, {"run"});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::kBadArgument);
+    EXPECT_THAT(error.what(), HasSubstr("turn, stand"));
+  }
+}
+
+TEST(UsdFiles, StepsHoldUntilTheirKey) {
+  Asset asset = everything();
+  asset.document.animations[0].samplers[0].interpolation = Interpolation::kStep;
+  // The first value again, just before the second key.
+  EXPECT_EQ(timesIn(textOf(asset), "[(1,0,0,0),(1,0,0,0)],"), 2u);
+}
+
+TEST(UsdFiles, VerticesWithoutWeightsStayWithTheFirstJoint) {
+  SceneBuilder scene;
+  const Index mesh = scene.addTetrahedron();
+  const Index root = scene.addNode({{"name", "root"}});
+  const Index skin = scene.addSkin({root}, {});
+  scene.bind(mesh, std::vector<std::uint8_t>(16, 0), {1, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0});
+  scene.addNode({{"name", "body"}, {"mesh", mesh}, {"skin", skin}});
+  EXPECT_THAT(numbersOf(textOf(scene.build()), "float[] primvars:skel:jointWeights"), ElementsAre(1, 1, 1, 1));
+}
+
+TEST(EncodeUsdz, FilesLieAtMultiplesOf64AndComeBack) {
+  const UsdFiles files = usdFiles(everything());
+  const Bytes archive = encodeUsdz(files);
+  const std::map<std::string, Bytes> back = readStoredArchive(archive, "model.usdz");
+  ASSERT_EQ(back.size(), 2u);
+  const Bytes& text = back.at("model.usda");
+  EXPECT_EQ(std::string(text.begin(), text.end()), files.text);
+  EXPECT_EQ(back.at("image_0.png"), files.images[0].bytes);
+  const auto placeOf = [&](const auto& bytes) {
+    return std::search(archive.begin(), archive.end(), bytes.begin(), bytes.end()) - archive.begin();
+  };
+  EXPECT_EQ(placeOf(files.text) % 64, 0);
+  EXPECT_EQ(placeOf(files.images[0].bytes) % 64, 0);
+  EXPECT_EQ(encodeUsdz(files), archive);
+}
+
+TEST(IsUsdFormat, GoesByTheExtension) {
+  EXPECT_TRUE(isUsdFormat("a/b.USDZ"));
+  EXPECT_TRUE(isUsdFormat("b.usda"));
+  EXPECT_FALSE(isUsdFormat("b.glb"));
+}
+
+}  // namespace
+}  // namespace limber
