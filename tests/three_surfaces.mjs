@@ -28,7 +28,8 @@ function withoutMaterials(bytes) {
 async function loadGlb(path) {
   const bytes = withoutMaterials(readFileSync(path));
   const gltf = await new GLTFLoader().parseAsync(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.length), '');
-  return { root: gltf.scene, clips: gltf.animations };
+  const { animations = [] } = JSON.parse(bytes.subarray(20, 20 + bytes.readUInt32LE(12)));
+  return { root: gltf.scene, clips: gltf.animations, names: animations.map(({ name }) => name) };
 }
 
 // Without what makes three.js look for pictures.
@@ -95,9 +96,9 @@ let passed = 0, failed = 0;
 for (const file of files) {
   try {
     const glb = await loadGlb(file);
-    for (const clip of glb.clips.length > 0 ? glb.clips : [undefined]) {
+    for (const [i, clip] of (glb.clips.length > 0 ? glb.clips : [undefined]).entries()) {
       const usda = join(folder, basename(file).replace(/\.glb$/, '.usda'));
-      const options = clip ? ['--clip', clip.name] : [];
+      const options = glb.names[i] ? ['--clip', glb.names[i]] : []; // three.js names those that have no name
       execFileSync(limber, ['convert', file, usda, ...options, '--quiet'], { stdio: ['ignore', 'ignore', 'pipe'] });
       const distance = largestDistance(glb, loadUsd(usda), clip);
       distance < kTolerance ? ++passed : ++failed;
