@@ -220,6 +220,23 @@ TEST_F(Cli, ConvertRefusesWithOneLine) {
   EXPECT_EQ(files(), (std::vector<std::string>{"bad.bvh", "other.bvh", "walk.bvh"}));
 }
 
+TEST_F(Cli, ConvertWritesUsd) {
+  ASSERT_EQ(run({"sample", "flying", "-o", "flying.glb", "-q"}).code, 0);
+  const Result whole = run({"convert", "flying.glb", "flying.usdz", "--clip", "fly"});
+  EXPECT_EQ(whole.code, 0) << whole.error;
+  EXPECT_THAT(whole.out, HasSubstr("written: flying.usdz"));
+  EXPECT_EQ(content("flying.usdz").substr(0, 2), "PK");
+  EXPECT_EQ(run({"convert", "flying.glb", "flying.usda", "-q"}).code, 0);
+  EXPECT_THAT(content("flying.usda"), AllOf(StartsWith("#usda 1.0"), HasSubstr("rotations.timeSamples")));
+  // A model without a rig.
+  makeRobot();
+  EXPECT_EQ(run({"convert", "robot.glb", "robot.usda", "-q"}).code, 0);
+  EXPECT_THAT(content("robot.usda"), Not(HasSubstr("Skel")));
+  const std::vector<std::string> before = files();
+  expectOneLine(run({"convert", "flying.glb", "other.usdz", "--clip", "swim", "-q"}), 1);
+  EXPECT_EQ(files(), before);
+}
+
 TEST_F(Cli, PreviewShowsClips) {
   put("walk.bvh", kWalk);
   EXPECT_EQ(run({"preview", "walk.bvh", "--frames", "3", "--size", "40x30", "-o", "sheet.png"}).code, 0);
