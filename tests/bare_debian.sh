@@ -49,6 +49,7 @@ apt-get -q -y install --no-install-recommends cmake ninja-build g++ ./liblimber-
 cmake -S examples -B build -G Ninja && cmake --build build && examples/run.sh build portable/bin/limber files && say the examples build against the library and run
 INSIDE
 
+rm -rf "$work/files" # of another version there may be others
 mkdir -p "$work/files"
 export work examples # for the hook
 cp "$packages"/*.deb "$packages"/*.tar.gz "$packages"/*.whl "$work/files"
