@@ -10,7 +10,7 @@ import { mkdirSync, readFileSync } from 'node:fs';
 import { basename, join } from 'node:path';
 import { AnimationMixer, Group, Vector3 } from 'three';
 import { BVHLoader } from 'three/examples/jsm/loaders/BVHLoader.js';
-import { GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js';
+import { loadInThree } from './three_glb.mjs';
 
 const kTolerance = 1e-4; // of the skeleton's size, or metres where it is smaller than one
 const kMoments = 7;
@@ -37,19 +37,8 @@ function loadBvh(path) {
   return player(root, clip);
 }
 
-// A GLB without its materials, whose pictures only a browser can read.
-function withoutMaterials(bytes) {
-  const length = bytes.readUInt32LE(12);
-  const document = JSON.parse(bytes.subarray(20, 20 + length));
-  for (const part of ['images', 'textures', 'materials']) delete document[part];
-  for (const mesh of document.meshes ?? []) mesh.primitives.forEach((primitive) => delete primitive.material);
-  const text = Buffer.from(JSON.stringify(document).padEnd(length)); // no longer than it was
-  return Buffer.concat([bytes.subarray(0, 20), text, bytes.subarray(20 + length)]);
-}
-
 async function loadGlb(path) {
-  const bytes = withoutMaterials(readFileSync(path));
-  const gltf = await new GLTFLoader().parseAsync(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.length), '');
+  const gltf = await loadInThree(path);
   return player(gltf.scene, gltf.animations.at(-1));
 }
 

@@ -3,33 +3,21 @@
 //   node tests/three_surfaces.mjs LIMBER OUTPUT_FOLDER FILE.glb...
 //
 // Converts each model, once for each of its clips, to a .usda, loads both with three.js' own loaders, plays them, and
-// compares the world positions of the corners of all triangles at the keys of the clip and between them. Says how large
-// the text is beside the GLB. Ends with "N passed, N failed".
+// compares the world positions of the corners of all triangles at keys of the clip. With LIMBER_SIZES says how far they are
+// apart, and how large the text is beside the GLB. Ends with "N passed, N failed".
 import { execFileSync } from 'node:child_process';
 import { mkdirSync, readFileSync } from 'node:fs';
 import { basename, join } from 'node:path';
 import { AnimationMixer, Box3, Vector3 } from 'three';
-import { GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js';
 import { USDLoader } from 'three/examples/jsm/loaders/USDLoader.js';
+import { loadInThree } from './three_glb.mjs';
 
 const kTolerance = 1e-5; // of the model's size
 const kMostMoments = 24;
 
-// A GLB without its materials, whose pictures only a browser can read.
-function withoutMaterials(bytes) {
-  const length = bytes.readUInt32LE(12);
-  const document = JSON.parse(bytes.subarray(20, 20 + length));
-  for (const part of ['images', 'textures', 'materials']) delete document[part];
-  for (const mesh of document.meshes ?? []) mesh.primitives.forEach((primitive) => delete primitive.material);
-  const text = Buffer.from(JSON.stringify(document).padEnd(length)); // no longer than it was
-  return Buffer.concat([bytes.subarray(0, 20), text, bytes.subarray(20 + length)]);
-}
-
 async function loadGlb(path) {
-  const bytes = withoutMaterials(readFileSync(path));
-  const gltf = await new GLTFLoader().parseAsync(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.length), '');
-  const { animations = [] } = JSON.parse(bytes.subarray(20, 20 + bytes.readUInt32LE(12)));
-  return { root: gltf.scene, clips: gltf.animations, names: animations.map(({ name }) => name) };
+  const { scene, animations, parser } = await loadInThree(path);
+  return { root: scene, clips: animations, names: (parser.json.animations ?? []).map(({ name }) => name) };
 }
 
 // Without what makes three.js look for pictures.

@@ -1,4 +1,5 @@
-// limber convert: motions from one file format to another, cut, mirrored and sampled anew on the way.
+// limber convert: motions, and models that move, from one file format to another, cut, mirrored and sampled anew on the
+// way.
 #include <algorithm>
 #include <cmath>
 
@@ -283,7 +284,7 @@ void run(ConvertArguments options) {
 void addConvertCommand(CLI::App& program) {
   auto options = std::make_shared<ConvertArguments>();
   CLI::App* command =
-      program.add_subcommand("convert", "Convert motions between BVH, glTF and USD; cut, mirror, resample");
+      program.add_subcommand("convert", "Convert motions between BVH and glTF, and to USD; cut, mirror, resample");
   command
       ->add_option("FILES", options->files,
                    "motions over one skeleton (BVH, GLB, glTF, FBX, DAE); the last is the output unless -o names it")

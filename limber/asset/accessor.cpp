@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "limber/asset/accessor_layout.h"
+#include "limber/asset/document_errors.h"
 
 namespace limber {
 
@@ -23,10 +24,6 @@ float toFloat(T value, bool normalized) {
     constexpr double kMax = std::numeric_limits<T>::max();
     return static_cast<float>(std::max(static_cast<double>(value) / kMax, -1.0));
   }
-}
-
-std::string accessorPath(Index accessor) {
-  return fmt::format("accessors[{}]", accessor);
 }
 
 gltf::ElementType elementType(Index components) {
@@ -84,7 +81,7 @@ std::vector<Index> readIndices(const Asset& asset, Index accessor) {
       readElements<T>(
           layout, [](T value) { return Index{value}; }, values);
     } else {
-      throw Error(ErrorCode::kBadData, "must be of an unsigned component type", accessorPath(accessor));
+      throw Error(ErrorCode::kBadData, "must be of an unsigned component type", accessorPlace(accessor));
     }
   });
   return values;

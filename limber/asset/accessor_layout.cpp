@@ -26,10 +26,6 @@ struct Shape {
 };
 constexpr std::array<Shape, 7> kShapes = {{{1, 1}, {1, 2}, {1, 3}, {1, 4}, {2, 2}, {3, 3}, {4, 4}}};
 
-std::string accessorPlace(Index accessor) {
-  return fmt::format("accessors[{}]", accessor);
-}
-
 void setShape(gltf::ElementType type, AccessorLayout& layout) {
   const Shape shape = kShapes[static_cast<std::size_t>(type)];
   const std::size_t components = shape.columns * shape.rows;

@@ -36,10 +36,6 @@ constexpr std::uint8_t kTriangularMesh = 1;
   failAt(place, "its Draco data are broken or do not hold what the accessors say");
 }
 
-std::string accessorPlace(Index accessor) {
-  return fmt::format("accessors[{}]", accessor);
-}
-
 // glTF allows triangle meshes of one version of the bitstream.
 void checkHeader(ByteSpan bytes, const std::string& place) {
   if (bytes.size() < kDracoHeaderSize || std::memcmp(bytes.data(), kDracoMagic.data(), kDracoMagic.size()) != 0)

@@ -16,6 +16,10 @@ namespace limber {
   throw Error(ErrorCode::kBadData, std::move(message), std::move(place));
 }
 
+inline std::string accessorPlace(Index accessor) {
+  return fmt::format("accessors[{}]", accessor);
+}
+
 // Fails unless the number, if there is one, is one of `count` elements. `place()` makes the path of what refers to it.
 template <typename Place>
 void requireElement(std::optional<Index> number, std::size_t count, const Place& place) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 
+#include "limber/asset/accessor_layout.h"
 #include "limber/asset/uri.h"
 
 namespace limber {
@@ -29,9 +30,8 @@ ImageFormat imageFormat(ByteSpan bytes) {
 std::optional<Bytes> imageBytes(const Asset& asset, Index image) {
   const gltf::Image& source = asset.document.images[image];
   if (source.bufferView) {
-    const gltf::BufferView& view = asset.document.bufferViews[*source.bufferView];
-    const auto start = asset.buffers[view.buffer].bytes.begin() + static_cast<std::ptrdiff_t>(view.byteOffset);
-    return Bytes(start, start + static_cast<std::ptrdiff_t>(view.byteLength));
+    const ByteSpan bytes = viewLayout(asset, *source.bufferView).bytes;
+    return Bytes(bytes.begin(), bytes.end());
   }
   if (isDataUri(source.uri)) return decodeDataUri(source.uri).bytes;
   for (const Asset::SideFile& file : asset.sideFiles) {

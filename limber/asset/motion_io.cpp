@@ -22,17 +22,6 @@ std::string stemOf(std::string_view name) {
   return std::filesystem::path(std::string(name)).stem().string();
 }
 
-// #nodes: does a channel move the node?
-std::vector<bool> animatedNodes(const gltf::Document& document) {
-  std::vector<bool> animated(document.nodes.size(), false);
-  for (const gltf::Animation& animation : document.animations) {
-    for (const gltf::AnimationChannel& channel : animation.channels) {
-      if (channel.target.node && channel.target.path != "weights") animated[*channel.target.node] = true;
-    }
-  }
-  return animated;
-}
-
 // Shows nothing itself.
 bool isBare(const gltf::Node& node) {
   return !node.mesh && !node.camera && !node.extensions.exists();

@@ -51,6 +51,17 @@ std::vector<Index> rootsOf(const SceneGraph& graph) {
 
 }  // namespace
 
+std::vector<bool> animatedNodes(const gltf::Document& document) {
+  std::vector<bool> animated(document.nodes.size(), false);
+  for (const gltf::Animation& animation : document.animations) {
+    for (const gltf::AnimationChannel& channel : animation.channels) {
+      const gltf::AnimationChannel::Target& target = channel.target;
+      if (target.node && !target.path.empty() && target.path != "weights") animated[*target.node] = true;
+    }
+  }
+  return animated;
+}
+
 std::vector<Index> sceneNodes(const gltf::Document& document, Index scene) {
   return depthFirst(document.nodes, document.scenes[scene].nodes);
 }

@@ -26,6 +26,9 @@ SceneGraph readSceneGraph(const gltf::Document& document);
 // The transform of a node: its matrix, or its translation, rotation and scale.
 Affine nodeTransform(const gltf::Node& node);
 
+// #nodes: does a channel of an animation move the node? Weights of blend shapes move none.
+std::vector<bool> animatedNodes(const gltf::Document& document);
+
 // The nodes below the roots of one scene, depth first.
 std::vector<Index> sceneNodes(const gltf::Document& document, Index scene);
 

@@ -23,17 +23,6 @@ std::vector<MeshGroup> groupsOf(const Geometry& geometry) {
   return groups;
 }
 
-std::vector<bool> animatedNodes(const gltf::Document& document) {
-  std::vector<bool> animated(document.nodes.size(), false);
-  for (const gltf::Animation& animation : document.animations) {
-    for (const gltf::AnimationChannel& channel : animation.channels) {
-      const gltf::AnimationChannel::Target& target = channel.target;
-      if (target.node && !target.path.empty() && target.path != "weights") animated[*target.node] = true;
-    }
-  }
-  return animated;
-}
-
 std::array<double, 12> numbersOf(const Affine& affine) {
   std::array<double, 12> numbers;
   for (int i = 0; i < 12; ++i) numbers[i] = affine.matrix()(i % 3, i / 3) + 0.0;

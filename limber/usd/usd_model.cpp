@@ -8,6 +8,7 @@
 
 #include "limber/asset/accessor.h"
 #include "limber/asset/clip_io.h"
+#include "limber/asset/clip_name.h"
 #include "limber/asset/geometry.h"
 #include "limber/asset/motion_io.h"
 #include "limber/asset/pose_io.h"
@@ -30,16 +31,11 @@ std::vector<std::string> jointPaths(const Skeleton& skeleton) {
 }
 
 // The number of the clip that is asked for, the first where none is; none where there are none.
-std::optional<Index> chosenClip(const gltf::Document& document, const std::optional<std::string>& name) {
-  const std::vector<gltf::Animation>& all = document.animations;
-  if (!name) return all.empty() ? std::nullopt : std::optional<Index>(0);
-  const auto found =
-      std::find_if(all.begin(), all.end(), [&](const gltf::Animation& animation) { return animation.name == *name; });
-  if (found != all.end()) return static_cast<Index>(found - all.begin());
+std::optional<Index> chosenClip(const Asset& asset, const std::optional<std::string>& name) {
   std::vector<std::string> names;
-  for (const gltf::Animation& animation : all) names.push_back(animation.name);
-  throw Error(ErrorCode::kBadArgument, fmt::format("there is no clip called '{}'", *name), {},
-              names.empty() ? "the model has no clips" : fmt::format("there are: {}", fmt::join(names, ", ")));
+  for (const gltf::Animation& animation : asset.document.animations) names.push_back(animation.name);
+  if (name) return clipNamed(names, *name, asset.name);
+  return names.empty() ? std::nullopt : std::optional<Index>(0);
 }
 
 // The weights of a node's blend shapes over time, one track for each of `count`.
@@ -71,7 +67,7 @@ std::vector<Track<float>> shapeTracks(const Asset& asset, Index node, const gltf
 class ModelReader {
  public:
   ModelReader(const Asset& asset, const UsdOptions& options)
-      : asset_(asset), document_(asset.document), clip_(chosenClip(document_, options.clip)) {}
+      : asset_(asset), document_(asset.document), clip_(chosenClip(asset, options.clip)) {}
 
   UsdModel read() {
     geometry_ = collectGeometry(asset_);

@@ -49,6 +49,10 @@ void appendValue(std::string& out, const Affine& value) {
 
 }  // namespace
 
+std::string usdNumber(double value) {
+  return fmt::format("{:.7g}", value + 0.0);
+}
+
 std::string usdName(std::string_view text) {
   const auto isLetter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
   const auto isDigit = [](char c) { return c >= '0' && c <= '9'; };

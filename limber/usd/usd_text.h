@@ -11,6 +11,12 @@
 
 namespace limber {
 
+// The prim that everything else stands below.
+inline constexpr std::string_view kUsdRoot = "Model";
+
+// A single value, to seven digits.
+std::string usdNumber(double value);
+
 // An identifier of USD: letters, digits and underscores, no digit first. Everything else becomes an underscore.
 std::string usdName(std::string_view text);
 

@@ -1,0 +1,19 @@
+// GLBs in three.js, in Node.
+import { readFileSync } from 'node:fs';
+import { GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js';
+
+// A GLB without its materials, whose pictures only a browser can read.
+function withoutMaterials(bytes) {
+  const length = bytes.readUInt32LE(12);
+  const document = JSON.parse(bytes.subarray(20, 20 + length));
+  for (const part of ['images', 'textures', 'materials']) delete document[part];
+  for (const mesh of document.meshes ?? []) mesh.primitives.forEach((primitive) => delete primitive.material);
+  const text = Buffer.from(JSON.stringify(document).padEnd(length)); // no longer than it was
+  return Buffer.concat([bytes.subarray(0, 20), text, bytes.subarray(20 + length)]);
+}
+
+/** What GLTFLoader makes of a file: { scene, animations, parser, ... }. */
+export async function loadInThree(path) {
+  const bytes = withoutMaterials(readFileSync(path));
+  return new GLTFLoader().parseAsync(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.length), '');
+}
