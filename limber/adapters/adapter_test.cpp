@@ -7,6 +7,7 @@
 
 #include "limber/adapters/adapter_folder.h"
 #include "limber/core/error.h"
+#include "source_folder.h"
 #include "temporary_folder.h"
 #include "testing/made_body.h"
 
@@ -176,7 +177,7 @@ TEST(AdapterFolder, ANameLeadsNowhereElse) {
 }
 
 TEST(AdapterFolder, TheOnesThatComeWithLimberAreRead) {
-  const std::filesystem::path folder = std::filesystem::path(LIMBER_SOURCE_DIR) / "docs/adapters";
+  const std::filesystem::path folder = limber::testing::sourceFolder() / "docs/adapters";
   const std::vector<std::string> names = adapterNames({folder});
   EXPECT_THAT(names, ElementsAre("magicarticulate", "puppeteer", "retarget-script", "rignet", "skintokens", "unirig"));
   for (const std::string& name : names) EXPECT_NO_THROW(EXPECT_TRUE(findAdapter(name, {folder}))) << name;

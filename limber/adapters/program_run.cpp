@@ -15,6 +15,7 @@
 
 #include "limber/asset/utf8.h"
 #include "limber/core/error.h"
+#include "limber/core/folder.h"
 #include "limber/core/split_text.h"
 #include "limber/jobs/job_pool.h"
 #include "limber/jobs/last_line.h"
@@ -50,14 +51,8 @@ class RunFolder {
   fs::path path_;
 };
 
-void makeParent(const fs::path& file) {
-  std::error_code problem;
-  fs::create_directories(file.parent_path(), problem);
-  if (problem) throw Error(ErrorCode::kFile, "cannot be made: " + problem.message(), file.parent_path().string());
-}
-
 void put(const fs::path& file, ByteSpan bytes) {
-  makeParent(file);
+  makeFolder(file.parent_path());
   writeFile(file, bytes);
 }
 
@@ -72,7 +67,7 @@ AdapterPaths prepareRun(const Adapter& adapter, const ProgramInput& input, const
     paths.skeleton = folder / "input" / fmt::format("skeleton{}", extension);
     put(paths.skeleton, input.skeleton);
   }
-  makeParent(paths.output);
+  makeFolder(paths.output.parent_path());
   return paths;
 }
 

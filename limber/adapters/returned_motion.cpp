@@ -135,7 +135,7 @@ void checkFrames(const Motion& motion, Index count, const HandedFrames& handed, 
   const double given = 1 / handed.framesPerSecond, returned = 1 / motion.framesPerSecond;
   if (count > 1 && std::abs(returned - given) > kSameFrameTime * given) {
     throw Error(ErrorCode::kBadData, fmt::format("its frames last {:.6g} s each in place of {:.6g} s", returned, given),
-                where, "the program must keep the frame time that it is given; --frame-rate gives it another");
+                where, "the program must keep the frame time that it is given; --fps gives it another");
   }
   if (count != handed.count) {
     throw Error(ErrorCode::kBadData, fmt::format("has {} frames in place of {}", count, handed.count), where,

@@ -29,7 +29,8 @@ void checkCanRig(const Asset& asset, const Adapter& adapter, const AutoRigOption
   }
   findWeightMethod(options.skinning);
   if (options.existingRig == ExistingRig::kKeepSkeleton) {
-    throw Error(ErrorCode::kBadArgument, "makes a skeleton of its own", adapter.name, "leave `existing-rig: keep-skeleton` out");
+    throw Error(ErrorCode::kBadArgument, "makes a skeleton of its own", adapter.name,
+                "leave `existing-rig: keep-skeleton` out");
   }
   if (hasRig(asset) && options.existingRig == ExistingRig::kRefuse) {
     throw Error(ErrorCode::kUnsupported, "the model has a rig of its own", asset.name,

@@ -37,10 +37,15 @@ void readStream(std::FILE* stream, const fs::path& path, const std::function<voi
   if (std::ferror(stream)) fail(path, "cannot be read", errno);
 }
 
-void writeStream(std::FILE* stream, ByteSpan bytes, const fs::path& path) {
-  if (!bytes.empty() && std::fwrite(bytes.data(), 1, bytes.size(), stream) != bytes.size()) {
-    fail(path, "cannot be written", errno);
-  }
+// Errors name `path`.
+void writeStream(std::FILE* stream, const OutputFile& file, const fs::path& path) {
+  const auto write = [&](ByteSpan bytes) {
+    if (!bytes.empty() && std::fwrite(bytes.data(), 1, bytes.size(), stream) != bytes.size()) {
+      fail(path, "cannot be written", errno);
+    }
+  };
+  write(file.bytes);
+  for (const ByteSpan piece : file.further) write(piece);
   if (std::fflush(stream) != 0) fail(path, "cannot be written", errno);
 }
 
@@ -69,10 +74,10 @@ bool isNoPlainFile(const fs::path& path) {
 }
 
 void writeStraight(const OutputFile& file) {
-  if (file.path == "-") return writeStream(stdout, file.bytes, "standard output");
+  if (file.path == "-") return writeStream(stdout, file, "standard output");
   File stream(std::fopen(file.path.string().c_str(), "wb"));
   if (!stream) fail(file.path, "cannot be written", errno);
-  writeStream(stream.get(), file.bytes, file.path);
+  writeStream(stream.get(), file, file.path);
   closeStream(std::move(stream), file.path);
 }
 
@@ -90,9 +95,9 @@ class PendingFile {
     if (made_) fs::remove(temporary_, ignored);
   }
 
-  void write(ByteSpan bytes) {
+  void write(const OutputFile& file) {
     File stream = openBeside();
-    writeStream(stream.get(), bytes, place_);
+    writeStream(stream.get(), file, place_);
     closeStream(std::move(stream), place_);
   }
 
@@ -146,7 +151,7 @@ void writeFiles(std::span<const OutputFile> files) {
     if (file.path == "-" || isNoPlainFile(file.path)) {
       straight.push_back(&file);
     } else {
-      pending.emplace_back(behindLinks(file.path)).write(file.bytes);
+      pending.emplace_back(behindLinks(file.path)).write(file);
     }
   }
   for (const OutputFile* file : straight) writeStraight(*file);

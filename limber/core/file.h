@@ -25,6 +25,7 @@ void readFileInPieces(const std::filesystem::path& path, const std::function<voi
 struct OutputFile {
   std::filesystem::path path;  // "-" is standard output
   ByteSpan bytes;
+  std::vector<ByteSpan> further = {};  // behind them: what need not be in memory as one piece
 };
 
 // Writes several files as one: each beside its place under a temporary name of its own, and only when all are complete

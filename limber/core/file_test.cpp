@@ -72,6 +72,13 @@ TEST_F(FileTest, AnEmptyFileIsAFile) {
   EXPECT_TRUE(readFile(folder_ / "empty").empty());
 }
 
+TEST_F(FileTest, PiecesAreWrittenOneBehindTheOther) {
+  const OutputFile file{folder_ / "a.bin", asBytes("one "), {asBytes("two "), {}, asBytes("three")}};
+  writeFiles({&file, 1});
+  EXPECT_EQ(text("a.bin"), "one two three");
+  EXPECT_EQ(filesLeft(), 1u);
+}
+
 TEST_F(FileTest, SeveralFilesAreWrittenAllOrNone) {
   const std::array<OutputFile, 2> files = {
       {{folder_ / "good.bin", asBytes("good")}, {folder_ / "no such folder" / "bad.bin", asBytes("bad")}}};

@@ -9,20 +9,38 @@
 
 namespace limber {
 
-std::vector<std::filesystem::path> filesBelow(const std::filesystem::path& folder,
-                                              std::initializer_list<std::string_view> extensions) {
+std::vector<std::filesystem::path> filesBelow(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
   std::error_code problem;
   for (std::filesystem::recursive_directory_iterator it(folder, problem), end; !problem && it != end;
        it.increment(problem)) {
-    const std::string extension = lowerExtension(it->path());
-    if (std::find(extensions.begin(), extensions.end(), extension) == extensions.end()) continue;
     std::error_code ignored;
     if (!it->is_directory(ignored)) files.push_back(it->path());
   }
   if (problem) throw Error(ErrorCode::kFile, "cannot be read: " + problem.message(), folder.string());
   std::sort(files.begin(), files.end());
   return files;
+}
+
+std::vector<std::filesystem::path> filesBelow(const std::filesystem::path& folder,
+                                              std::initializer_list<std::string_view> extensions) {
+  std::vector<std::filesystem::path> files = filesBelow(folder);
+  std::erase_if(files, [&](const std::filesystem::path& file) {
+    return std::find(extensions.begin(), extensions.end(), lowerExtension(file)) == extensions.end();
+  });
+  return files;
+}
+
+void makeFolder(const std::filesystem::path& folder) {
+  std::error_code problem;
+  std::filesystem::create_directories(folder, problem);
+  if (problem) throw Error(ErrorCode::kFile, "cannot be made: " + problem.message(), folder.string());
+}
+
+void removeFolder(const std::filesystem::path& folder) {
+  std::error_code problem;
+  std::filesystem::remove_all(folder, problem);
+  if (problem) throw Error(ErrorCode::kFile, "cannot be removed: " + problem.message(), folder.string());
 }
 
 }  // namespace limber

@@ -32,5 +32,16 @@ TEST(FolderTest, FilesAreFoundAtAnyDepthInOrder) {
   }
 }
 
+TEST(FolderTest, FoldersAreMadeAndRemovedWithWhatIsInThem) {
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "limber_folders_made";
+  removeFolder(folder);
+  makeFolder(folder / "a" / "b");
+  makeFolder(folder / "a" / "b");
+  std::ofstream(folder / "a" / "file") << "x";
+  EXPECT_THROW(makeFolder(folder / "a" / "file" / "c"), Error);
+  removeFolder(folder);
+  EXPECT_FALSE(std::filesystem::exists(folder));
+}
+
 }  // namespace
 }  // namespace limber

@@ -8,10 +8,10 @@
 #include <fmt/format.h>
 
 #include "limber/core/random.h"
+#include "limber/core/rotation.h"
 #include "limber/ik/humanoid_limits.h"
 #include "limber/ik/ik_skeletons.h"
 #include "limber/ik/ik_solver.h"
-#include "limber/ik/rotation.h"
 #include "limber/ik/two_bone.h"
 
 namespace limber {

@@ -9,7 +9,7 @@
 
 #include "limber/core/counted.h"
 #include "limber/core/error.h"
-#include "limber/ik/rotation.h"
+#include "limber/core/rotation.h"
 #include "limber/limbs/roughness.h"
 
 namespace limber {

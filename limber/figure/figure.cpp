@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "limber/core/rotation.h"
+
 namespace limber {
 
 namespace {
@@ -75,7 +77,7 @@ Vec3 bendDirection(const Figure& figure, int limb, const Vec3& upper) {
   const Mat3& trunk = figure.trunkOf(limb);
   const Vec3 down = -trunk.col(1);
   const Vec3 way = isLeg(limb) ? Vec3(-trunk.col(2)) : Vec3(trunk.col(2));
-  return Quat::FromTwoVectors(down, upper) * way;
+  return shortestRotation(down, upper) * way;
 }
 
 Vec3 toesForward(const Figure& figure, int limb) {

@@ -2,9 +2,9 @@
 
 #include <cmath>
 
+#include "limber/core/rotation.h"
 #include "limber/core/rotation_fit.h"
 #include "limber/ik/leap.h"
-#include "limber/ik/rotation.h"
 
 namespace limber {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limber/core/rotation.h"
 #include "limber/ik/goal_iteration.h"
-#include "limber/ik/rotation.h"
 
 namespace limber {
 

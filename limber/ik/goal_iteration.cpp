@@ -1,7 +1,7 @@
 #include "limber/ik/goal_iteration.h"
 
+#include "limber/core/rotation.h"
 #include "limber/core/rotation_fit.h"
-#include "limber/ik/rotation.h"
 
 namespace limber {
 

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "limber/core/error.h"
+#include "limber/core/rotation.h"
 #include "limber/ik/ik_skeletons.h"
-#include "limber/ik/rotation.h"
 
 namespace limber {
 namespace {

@@ -5,10 +5,10 @@
 
 #include <gtest/gtest.h>
 
+#include "limber/core/rotation.h"
 #include "limber/ik/humanoid_limits.h"
 #include "limber/ik/ik_skeletons.h"
 #include "limber/ik/ik_solver.h"
-#include "limber/ik/rotation.h"
 #include "random_values.h"
 
 namespace limber {

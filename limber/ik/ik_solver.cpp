@@ -4,6 +4,7 @@
 
 #include "limber/core/error.h"
 #include "limber/core/names.h"
+#include "limber/core/rotation.h"
 #include "limber/ik/ccd.h"
 #include "limber/ik/damped_least_squares.h"
 #include "limber/ik/fabrik.h"
@@ -11,7 +12,6 @@
 #include "limber/ik/mass_spring.h"
 #include "limber/ik/particle_ik.h"
 #include "limber/ik/pseudo_inverse.h"
-#include "limber/ik/rotation.h"
 #include "limber/ik/selectively_damped.h"
 #include "limber/ik/two_bone.h"
 #include "limber/ik/whole_body.h"

@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 
 #include "limber/core/error.h"
+#include "limber/core/rotation.h"
 #include "limber/ik/ik_skeletons.h"
-#include "limber/ik/rotation.h"
 #include "random_values.h"
 
 namespace limber {

@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "limber/core/error.h"
+#include "limber/core/rotation.h"
 #include "limber/ik/ik_task_rows.h"
-#include "limber/ik/rotation.h"
 #include "limber/skeleton/chain.h"
 
 namespace limber {

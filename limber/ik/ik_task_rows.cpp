@@ -7,7 +7,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "limber/ik/rotation.h"
+#include "limber/core/rotation.h"
 #include "limber/ik/support_polygon.h"
 
 namespace limber {

@@ -6,13 +6,13 @@
 #include "limber/core/error.h"
 #include "limber/core/numbers.h"
 #include "limber/core/parallel.h"
+#include "limber/core/rotation.h"
 #include "limber/ik/humanoid_limits.h"
 #include "limber/ik/ik_skeletons.h"
 #include "limber/ik/ik_solver.h"
 #include "limber/ik/ik_task_rows.h"
 #include "limber/ik/jacobian.h"
 #include "limber/ik/jacobian_iteration.h"
-#include "limber/ik/rotation.h"
 #include "random_values.h"
 
 namespace limber {

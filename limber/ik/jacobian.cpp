@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "limber/core/rotation.h"
 #include "limber/ik/ik_task_rows.h"
-#include "limber/ik/rotation.h"
 
 namespace limber {
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "limber/core/rotation.h"
 #include "limber/core/small_solve.h"
 #include "limber/ik/ik_task_rows.h"
-#include "limber/ik/rotation.h"
 
 namespace limber {
 

@@ -4,11 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include "limber/core/rotation.h"
 #include "limber/core/small_solve.h"
 #include "limber/ik/humanoid_limits.h"
 #include "limber/ik/ik_skeletons.h"
 #include "limber/ik/jacobian_iteration.h"
-#include "limber/ik/rotation.h"
 
 namespace limber {
 namespace {

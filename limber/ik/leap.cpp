@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "limber/ik/rotation.h"
+#include "limber/core/rotation.h"
 
 namespace limber {
 

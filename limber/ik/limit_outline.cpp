@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "limber/ik/rotation.h"
+#include "limber/core/rotation.h"
 
 namespace limber {
 

@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include "limber/core/error.h"
+#include "limber/core/rotation.h"
 #include "limber/ik/limits.h"
-#include "limber/ik/rotation.h"
 
 namespace limber {
 

@@ -10,7 +10,7 @@
 
 #include "limber/core/known_error.h"
 #include "limber/core/numbers.h"
-#include "limber/ik/rotation.h"
+#include "limber/core/rotation.h"
 
 namespace limber {
 

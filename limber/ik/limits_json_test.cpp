@@ -6,9 +6,10 @@
 #include <nlohmann/json.hpp>
 
 #include "limber/core/error.h"
+#include "limber/core/rotation.h"
 #include "limber/ik/humanoid_limits.h"
 #include "limber/ik/ik_skeletons.h"
-#include "limber/ik/rotation.h"
+#include "source_folder.h"
 
 namespace limber {
 namespace {
@@ -112,7 +113,7 @@ TEST(LimitsJson, BadFilesAreRefusedByEntry) {
 
 // The schema lists each type that can be written, so that the two cannot drift apart.
 TEST(LimitsJson, TheSchemaKnowsEveryType) {
-  std::ifstream file(std::string(LIMBER_SOURCE_DIR) + "/docs/limits.schema.json");
+  std::ifstream file(limber::testing::sourceFolder() / "docs/limits.schema.json");
   const nlohmann::json schema = nlohmann::json::parse(file);
   std::vector<std::string> types;
   for (const auto& one : schema["properties"]["joints"]["additionalProperties"]["oneOf"]) {

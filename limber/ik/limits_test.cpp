@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "limber/core/error.h"
-#include "limber/ik/rotation.h"
+#include "limber/core/rotation.h"
 #include "random_values.h"
 
 namespace limber {
@@ -60,7 +60,7 @@ Parts partsOf(const JointLimit& limit, const Quat& local) {
   const Quat r = limit.axes.conjugate() * limit.neutral.conjugate() * local * limit.axes;
   Parts parts;
   parts.bone = r * Vec3(Vec3::UnitY());
-  const Quat swing = Quat::FromTwoVectors(Vec3::UnitY(), parts.bone);
+  const Quat swing = shortestRotation(Vec3::UnitY(), parts.bone);
   const Eigen::AngleAxisd angleAxis(swing);
   const Eigen::AngleAxisd twist(Quat(swing.conjugate() * r));
   parts.swingX = angleAxis.angle() * angleAxis.axis().x();

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "limber/core/error.h"
-#include "limber/ik/rotation.h"
+#include "limber/core/rotation.h"
 
 namespace limber {
 

@@ -7,9 +7,9 @@
 
 #include <gtest/gtest.h>
 
+#include "limber/core/rotation.h"
 #include "limber/ik/humanoid_limits.h"
 #include "limber/ik/ik_skeletons.h"
-#include "limber/ik/rotation.h"
 
 namespace {
 std::atomic<std::size_t> allocations{0};

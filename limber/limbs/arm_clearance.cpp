@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "limber/anatomy/anatomy.h"
+#include "limber/core/rotation.h"
 
 namespace limber {
 
@@ -84,7 +85,7 @@ void ArmClearance::swing(std::size_t arm, Bone bone, const Vec3& way, BodyFrame&
       bone == Bone::kUpper ? std::pair(limb.upper, limb.lower) : std::pair(limb.lower, limb.end);
   const Vec3 from = frame.positions[lower] - frame.positions[upper];
   if (way.norm() < 1e-9 * from.norm()) return;
-  Eigen::AngleAxisd turn(Quat::FromTwoVectors(from, from + way));
+  Eigen::AngleAxisd turn(shortestRotation(from, from + way));
   turn.angle() = kMostSwing * std::tanh(turn.angle() / kMostSwing);
   Limb turned;
   turned.end = upper;

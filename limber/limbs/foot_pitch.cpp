@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "limber/ik/rotation.h"
+#include "limber/core/rotation.h"
 #include "limber/limbs/limb_reach.h"
 #include "limber/limbs/smooth.h"
 

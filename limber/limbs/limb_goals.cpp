@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "limber/ik/rotation.h"
+#include "limber/core/rotation.h"
 #include "limber/limbs/foot_pitch.h"
 #include "limber/limbs/smooth.h"
 #include "limber/limbs/spring.h"

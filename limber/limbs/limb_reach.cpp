@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "limber/core/numbers.h"
-#include "limber/ik/rotation.h"
+#include "limber/core/rotation.h"
 #include "limber/skeleton/chain.h"
 
 namespace limber {

@@ -94,7 +94,7 @@ Skeleton insectSkeleton();
 Skeleton spiderSkeleton();
 Pose scuttleAt(const Skeleton& skeleton, double seconds);
 
-extern const double kScuttlePeriod;  // seconds
+extern const double kScuttlePeriod;                            // seconds
 extern const double kSwimPeriod, kSlitherPeriod, kFlapPeriod;  // seconds
 Pose swimAt(const Skeleton& fish, double seconds);
 Pose slitherAt(const Skeleton& serpent, double seconds);

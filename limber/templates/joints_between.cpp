@@ -4,6 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include "limber/core/rotation.h"
+
 namespace limber {
 
 void placeBetween(const TemplateSkeleton& skeleton, std::vector<Vec3>& places) {
@@ -47,7 +49,7 @@ void placeBetween(const TemplateSkeleton& skeleton, std::vector<Vec3>& places) {
     const double squared = std::max(bone.squaredNorm(), 1e-12);
     const double part = offset.dot(bone) / squared;
     const double scale = std::sqrt(found.squaredNorm() / squared);
-    places[j] = start + part * found + scale * (Quat::FromTwoVectors(bone, found) * (offset - part * bone));
+    places[j] = start + part * found + scale * (shortestRotation(bone, found) * (offset - part * bone));
   }
 }
 

@@ -8,6 +8,7 @@
 
 #include "limber/core/error.h"
 #include "limber/core/parallel.h"
+#include "limber/core/rotation.h"
 #include "limber/core/rotation_fit.h"
 
 namespace limber {
@@ -127,7 +128,7 @@ class Alignment {
         place_[j] = fromBelow;
         continue;
       }
-      const Quat turn = Quat::FromTwoVectors(way, wayThere) * whole_.turn;
+      const Quat turn = shortestRotation(way, wayThere) * whole_.turn;
       place_[j] = *place_[*above] + wayThere.norm() / length * (turn * (rest_[j] - rest_[*above]));
     }
   }

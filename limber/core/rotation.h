@@ -1,4 +1,4 @@
-// Small rotation helpers that limits and solvers share. Angles in radians.
+// Rotations as vectors, their angles, and the one that takes a direction to another. Angles in radians.
 #pragma once
 
 #include <cmath>
