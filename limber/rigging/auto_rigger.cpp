@@ -15,8 +15,8 @@ constexpr RiggerMethod kMethods[] = {
      "Thiery, Guy, Boubekeur: Sphere-Meshes, 2013", &rigWithSphereMesh, false},
     {"curve-skeleton", "joints along curves through the middle of limbs, any number of them",
      "Au, Tai, Chu, Cohen-Or, Lee: Skeleton Extraction by Mesh Contraction, 2008", &rigWithCurveSkeleton, false},
-    {"template", "a named skeleton fitted into the model", "after Baran, Popović: Pinocchio, 2007",
-     &rigWithTemplate, true},
+    {"template", "a named skeleton fitted into the model", "after Baran, Popović: Pinocchio, 2007", &rigWithTemplate,
+     true},
     {kPropRigger, "one joint for all of it: a thing that does not bend", "", &rigAsProp, false},
 };
 

@@ -80,7 +80,7 @@ Index suggestedFrom() {
 }
 
 std::vector<HandleSuggestion> suggestHandles(const SphereMesh& spheres) {
-  return suggestHandles(spheres.errors(suggestedFrom()), spheres.vertexCount());
+  return suggestHandles(spheres.errors(suggestedFrom()), spheres.mostSpheres());
 }
 
 std::vector<HandleSuggestion> suggestHandles(std::vector<double> errors, Index mostHandles) {

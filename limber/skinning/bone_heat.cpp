@@ -25,7 +25,7 @@ bool anySource(const HeatSources& sources) {
   return !sources.joints.empty();
 }
 
-// The factored heat equation, and where heat enters it.
+// The factored heat equation, and where heat enters it. Refers to the mesh and its pieces.
 struct HeatProblem {
   std::unique_ptr<HeatSolver> solver;
   HeatSources sources;
@@ -35,7 +35,8 @@ struct HeatProblem {
 HeatProblem setUp(const BoneHeatOptions& heat, const TriMesh& mesh, std::span<const Bone> bones,
                   const std::vector<Index>& piece) {
   HeatProblem problem;
-  parallelInvoke([&] { problem.solver = std::make_unique<HeatSolver>(robustLaplacian(mesh, piece)); },
+  const auto makeLaplacian = [&] { return robustLaplacian(mesh, piece); };
+  parallelInvoke([&] { problem.solver = std::make_unique<HeatSolver>(makeLaplacian, heat.directBelow); },
                  [&] {
                    const Bvh bvh(mesh);
                    problem.sources = findHeatSources(mesh, bones, &bvh, heat.sources);
@@ -45,26 +46,6 @@ HeatProblem setUp(const BoneHeatOptions& heat, const TriMesh& mesh, std::span<co
     problem.sources = findHeatSources(mesh, bones, nullptr, heat.sources);
   }
   return problem;
-}
-
-// The strongest influences of every vertex; rows of vertices that no heat reaches are empty.
-InfluenceTable solveStrongest(const HeatSolver& solver, Index vertexCount, Index slots) {
-  InfluenceTable byPlace(vertexCount, slots);
-  solver.solve([&](std::span<const Index> joints, const double* weights) {
-    for (std::size_t row = 0; row < vertexCount; ++row) {
-      for (std::size_t k = 0; k < joints.size(); ++k) {
-        byPlace.offer(row, joints[k], static_cast<float>(weights[row * HeatSolver::kBlock + k]));
-      }
-    }
-  });
-  InfluenceTable result(vertexCount, slots);
-  parallelFor(vertexCount, kRange, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v) {
-      const Index row = solver.place(static_cast<Index>(v));
-      for (Index k = 0; k < slots; ++k) result.offer(v, byPlace.jointsOf(row)[k], byPlace.weightsOf(row)[k]);
-    }
-  });
-  return result;
 }
 
 double faded(double weight, const BoneHeatOptions& heat) {
@@ -122,7 +103,7 @@ WeightResult boneHeatWeightsWith(const BoneHeatOptions& heat, const TriMesh& mes
   problem.solver->factorize(problem.sources);
 
   progress.step("solve");
-  InfluenceTable table = solveStrongest(*problem.solver, mesh.vertexCount(), options.maxInfluences);
+  InfluenceTable table = problem.solver->strongest(options.maxInfluences);
   problem.solver.reset();
 
   progress.step("bridge pieces");
@@ -144,18 +125,12 @@ WeightResult boneHeatWeightsWith(const BoneHeatOptions& heat, const TriMesh& mes
 
 Eigen::MatrixXd fullBoneHeat(const BoneHeatOptions& heat, const TriMesh& mesh, std::span<const Bone> bones) {
   checkWeightArguments(mesh, bones, {});
-  HeatProblem problem = setUp(heat, mesh, bones, vertexComponents(mesh));
+  const std::vector<Index> piece = vertexComponents(mesh);
+  HeatProblem problem = setUp(heat, mesh, bones, piece);
   problem.solver->factorize(problem.sources);
   Index jointCount = 0;
   for (const Bone& bone : bones) jointCount = std::max(jointCount, bone.joint + 1);
-  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(mesh.vertexCount(), jointCount);
-  problem.solver->solve([&](std::span<const Index> joints, const double* weights) {
-    for (Index v = 0; v < mesh.vertexCount(); ++v) {
-      const std::size_t row = problem.solver->place(v);
-      for (std::size_t k = 0; k < joints.size(); ++k) result(v, joints[k]) = weights[row * HeatSolver::kBlock + k];
-    }
-  });
-  return result;
+  return problem.solver->all(jointCount);
 }
 
 }  // namespace limber

@@ -15,6 +15,9 @@ struct BoneHeatOptions {
   // Weights fade out between these two, so that no vertex hangs on many joints by a thread.
   double fadeFrom = 0.05;
   double fadeTo = 0.025;
+  // Vertices: more are solved by multigrid, which takes less time and memory then (docs/scale.md), instead of by one
+  // factorisation. Every weight is the same within 1e-3.
+  Index directBelow = 300'000;
 };
 
 // Bone heat (Baran, Popović: Automatic Rigging and Animation of 3D Characters, 2007) on the Laplacian of
@@ -30,7 +33,8 @@ struct BoneHeatOptions {
 // mesh   working mesh: centred, longest side 1
 // bones  in the space of the mesh, at least one
 // Throws Error kBadArgument for no bones, for maxInfluences outside 1 to 8, and kCancelled.
-// Cost: one sparse factorisation, and one pair of triangular solves for every eight joints.
+// Cost: one sparse factorisation, and one pair of triangular solves for every eight joints; O(#V) for what multigrid
+// solves (HeatSolver).
 WeightResult boneHeatWeights(const TriMesh& mesh, std::span<const Bone> bones, const WeightOptions& options,
                              Progress& progress);
 WeightResult boneHeatWeightsWith(const BoneHeatOptions& heat, const TriMesh& mesh, std::span<const Bone> bones,

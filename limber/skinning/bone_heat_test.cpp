@@ -10,6 +10,7 @@
 #include "limber/core/parallel.h"
 #include "limber/mesh/components.h"
 #include "limber/mesh/testing/shapes.h"
+#include "limber/skinning/heat_solver.h"
 #include "warning_kinds.h"
 
 namespace limber {
@@ -95,6 +96,43 @@ TEST_P(BoneHeatCatalogue, SameBitsForAnyNumberOfThreads) {
   setThreadCount(0);
   EXPECT_EQ(one.weights.joints, three.weights.joints);
   EXPECT_EQ(one.weights.weights, three.weights.weights);
+}
+
+TEST_P(BoneHeatCatalogue, MultigridGivesTheWeightsOfTheFactorisation) {
+  BoneHeatOptions multigrid;
+  multigrid.directBelow = 16;
+  const Eigen::MatrixXd full = fullBoneHeat(multigrid, GetParam().mesh, someBones());
+  EXPECT_LT((full - fullBoneHeat({}, GetParam().mesh, someBones())).cwiseAbs().maxCoeff(), 1e-3);
+  EXPECT_GE(full.minCoeff(), 0);
+  EXPECT_LE(full.maxCoeff(), 1 + 1e-3);
+}
+
+TEST(BoneHeat, MultigridGivesTheSameBitsForAnyNumberOfThreads) {
+  BoneHeatOptions multigrid;
+  multigrid.directBelow = 16;
+  const TriMesh mesh = testing::moved(testing::icosphere(3), Vec3f::Constant(0.5f), Vec3f::Zero());
+  setThreadCount(1);
+  const Eigen::MatrixXd one = fullBoneHeat(multigrid, mesh, someBones());
+  setThreadCount(3);
+  const Eigen::MatrixXd three = fullBoneHeat(multigrid, mesh, someBones());
+  setThreadCount(0);
+  EXPECT_EQ(one, three);
+}
+
+TEST(HeatSolver, WhatMultigridDoesNotSettleIsFactored) {
+  const TriMesh mesh = testing::moved(testing::icosphere(3), Vec3f::Constant(0.5f), Vec3f::Zero());
+  const HeatSources sources = findHeatSources(mesh, someBones(), nullptr, {});
+  int made = 0;
+  const auto makeLaplacian = [&] {
+    ++made;
+    return robustLaplacian(mesh, vertexComponents(mesh));
+  };
+  HeatSolver factored(makeLaplacian, mesh.vertexCount());
+  HeatSolver neverSettled(makeLaplacian, 16, -1);
+  factored.factorize(sources);
+  neverSettled.factorize(sources);
+  EXPECT_EQ(neverSettled.all(5), factored.all(5));
+  EXPECT_EQ(made, 3);
 }
 
 INSTANTIATE_TEST_SUITE_P(, BoneHeatCatalogue, ::testing::ValuesIn(catalogue()), testing::MeshName());

@@ -145,7 +145,8 @@ void CollapseGraph::gather(Index source) {
 // A node with many links takes in one with few: only the latter's links are read.
 void CollapseGraph::mergeIntoHub() {
   const Index gone = operation_.gone;
-  if (gone == operation_.kept) return;  // a single node has no edge to itself
+  const Index kept = operation_.kept;
+  if (gone == kept) return;  // a single node has no edge to itself
   const bool lazyGone = lazy(gone);
   const Block block = blocks_[gone];
   for (Index i = 0; i < block.size; ++i) {
@@ -155,6 +156,7 @@ void CollapseGraph::mergeIntoHub() {
   }
   release(block);
   blocks_[gone] = Block{};
+  if (!lazy(kept)) compact(kept);  // no hub any more: its links are kept up to date from now on
 }
 
 void CollapseGraph::joinHub(Index e, EdgeEnd to) {

@@ -151,6 +151,15 @@ TEST(CollapseGraph, ContractsNodesOfManyLinks) {
   }
 }
 
+// Hubs that share their neighbours lose most of their links to each other, and become plain nodes again.
+TEST(CollapseGraph, ContractsHubsThatShrink) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    collapseRandomly(randomCase(70, 40, 12, 1, seed), seed);
+    collapseRandomly(randomCase(70, 40, 12, 0.3, seed), seed);
+    collapseRandomly(randomCase(70, 40, 12, 0, seed), seed);
+  }
+}
+
 TEST(CollapseGraph, OfEdgesThatBecomeOneTheGreaterKeyStays) {
   const std::vector<GraphEdge> triangle = {{0, makeEnd(1, false)}, {1, makeEnd(2, false)}, {0, makeEnd(2, false)}};
   CollapseGraph graph(triangle, {1, 1, 1});

@@ -35,7 +35,7 @@ struct SphereMesh::Cut {
   }
 };
 
-SphereMesh SphereMesh::build(const TriMesh& mesh, Progress& progress) {
+SphereMesh SphereMesh::build(const TriMesh& mesh, Progress& progress, Index mostStartNodes) {
   if (mesh.positions.empty()) throw Error(ErrorCode::kBadData, "the model has no vertex");
   if (mesh.positions.size() > kMostNodes / 2) {
     throw Error(ErrorCode::kLimit,
@@ -51,7 +51,7 @@ SphereMesh SphereMesh::build(const TriMesh& mesh, Progress& progress) {
   parallelFor(points.size(), 16384, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) points[i] = result.frame_.toCollapse(mesh.positions[i]);
   });
-  CollapseStart start = collapseStart(mesh, points, surface, mirror);
+  CollapseStart start = joinNearNodes(collapseStart(mesh, points, surface, mirror), mostStartNodes);
   result.sequence_ = collapse(start.input, progress);
   result.vertexEnds_ = std::move(start.vertexEnds);
   result.nodeCenters_ = std::move(start.nodeCenters);
@@ -62,7 +62,7 @@ SphereMesh SphereMesh::build(const TriMesh& mesh, Progress& progress) {
 }
 
 SphereMesh::Cut SphereMesh::cutAt(Index count) const {
-  if (count < 1 || count > vertexCount()) refuseHandleCount(count, vertexCount());
+  if (count < 1 || count > mostSpheres()) refuseHandleCount(count, mostSpheres());
   Cut cut;
   const auto& merges = sequence_.merges;
   if (count >= sequence_.initialCount) {
@@ -219,7 +219,7 @@ std::vector<Index> SphereMesh::vertexHandles(Index count) const {
 }
 
 std::vector<double> SphereMesh::errors(Index mostCount) const {
-  mostCount = std::min(mostCount, vertexCount());
+  mostCount = std::min(mostCount, mostSpheres());
   const auto& merges = sequence_.merges;
   const auto errorOf = [&](Index madeBy) {
     if (madeBy == kNoIndex) return 0.0;

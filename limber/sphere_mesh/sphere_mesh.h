@@ -7,6 +7,7 @@
 #include "limber/core/progress.h"
 #include "limber/mesh/tri_mesh.h"
 #include "limber/sphere_mesh/collapse_sequence.h"
+#include "limber/sphere_mesh/joined_nodes.h"
 #include "limber/sphere_mesh/sphere_mesh_builder.h"
 #include "limber/surface/mirror_map.h"
 #include "limber/surface/surface_edges.h"
@@ -31,14 +32,18 @@ struct SphereMeshLevel {
 // count up to the number of vertices that have an image.
 class SphereMesh {
  public:
-  // Records the whole collapse. Throws Error kBadData for a mesh without vertices, kLimit for more than 2^30.
-  // Cost: O(#V log #V), two to four microseconds a vertex; 0.9 kB a vertex while it runs.
-  static SphereMesh build(const TriMesh& mesh, Progress& progress);
+  // Records the whole collapse. Of a model with more than mostStartNodes vertices (pairs of images count as one) it
+  // begins with such as are near each other joined (joinNearNodes), which it would merge first. Throws Error kBadData
+  // for a mesh without vertices, kLimit for more than 2^30. Cost: O(#V log #V), two to four microseconds a vertex; 0.9
+  // kB a vertex while it runs.
+  static SphereMesh build(const TriMesh& mesh, Progress& progress, Index mostStartNodes = kMostStartNodes);
 
   Index vertexCount() const { return static_cast<Index>(vertexEnds_.size()); }
+  // As many as vertices, but on models of more than mostStartNodes.
+  Index mostSpheres() const { return sequence_.initialCount + static_cast<Index>(loose_.size()); }
   const std::optional<MirrorPlane>& mirror() const { return mirror_; }
 
-  // Throws Error kBadArgument unless 1 <= count <= vertexCount(). Cost: O(count log #V).
+  // Throws Error kBadArgument unless 1 <= count <= mostSpheres(). Cost: O(count log #V).
   SphereMeshLevel level(Index count) const;
   // For each vertex the sphere of level(count) that stands for it. Cost: O(#V).
   std::vector<Index> vertexHandles(Index count) const;

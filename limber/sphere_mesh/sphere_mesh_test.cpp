@@ -1,5 +1,6 @@
 #include "limber/sphere_mesh/sphere_mesh.h"
 
+#include <cmath>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -86,7 +87,7 @@ TEST(SphereMesh, ExactlyAsManySpheresAsAskedForOnEveryKindOfMesh) {
   for (const auto& [name, mesh] : testing::meshCatalogue()) {
     SCOPED_TRACE(name);
     const SphereMesh spheres = sphereMeshOf(mesh);
-    ASSERT_EQ(spheres.vertexCount(), mesh.vertexCount());
+    ASSERT_EQ(spheres.mostSpheres(), mesh.vertexCount());
     const Index step = std::max<Index>(1, mesh.vertexCount() / 120);
     for (Index count = 1; count <= mesh.vertexCount(); count += count < 60 ? 1 : step)
       expectSound(mesh, spheres, count);
@@ -111,6 +112,39 @@ TEST(SphereMesh, TwoSidesThatTouchNowhereAreMirroredAtEveryCount) {
   for (Vec3f& p : both.positions) p.x() += 3;
   const SphereMesh spheres = sphereMeshOf(both);
   for (Index count = 1; count <= both.vertexCount(); ++count) expectMirrored(spheres, count);
+}
+
+TEST(SphereMesh, NearVerticesOfALargeModelAreOneFromTheStart) {
+  TriMesh cross = testing::cubes({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {1, 1, 0}, {1, 2, 0}});
+  for (int i = 0; i < 4; ++i) cross = testing::subdivided(cross);
+  Progress progress;
+  const SphereMesh whole = SphereMesh::build(cross, progress), joined = SphereMesh::build(cross, progress, 1000);
+  EXPECT_EQ(whole.mostSpheres(), cross.vertexCount());
+  EXPECT_LE(joined.mostSpheres(), 2000u);  // in pairs
+  EXPECT_GT(joined.mostSpheres(), 500u);
+  for (const Index count : {1u, 2u, 17u, 100u, joined.mostSpheres()}) {
+    expectSound(cross, joined, count);
+    expectMirrored(joined, count);
+  }
+}
+
+TEST(SphereMesh, JoiningNearVerticesCostsLittle) {
+  TriMesh hills = testing::ball(6);
+  for (Vec3f& p : hills.positions) {
+    p *= 1 + 0.3f * std::sin(3 * p.x() + 1) * std::sin(4 * p.y()) + 0.2f * std::sin(5 * p.z() + p.x());
+    p.z() *= 0.5f;
+  }
+  Progress progress;
+  const SphereMesh whole = SphereMesh::build(hills, progress), joined = SphereMesh::build(hills, progress, 4000);
+  EXPECT_LE(joined.mostSpheres(), 4000u);
+  const std::vector<double> expected = whole.errors(50), errors = joined.errors(50);
+  double sum = 0, expectedSum = 0;
+  for (Index count = 1; count <= 50; ++count) {
+    EXPECT_LT(errors[count], 1.5 * expected[count]) << count;  // the cheapest merge is another now and then
+    sum += errors[count];
+    expectedSum += expected[count];
+  }
+  EXPECT_LT(sum, 1.1 * expectedSum);
 }
 
 TEST(SphereMesh, HoldingTogetherByOneVertexIsMirroredAtEveryCount) {
