@@ -1,0 +1,16 @@
+// Pictures put into a document.
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "limber/asset/asset.h"
+#include "limber/core/types.h"
+
+namespace limber {
+
+// A new texture of a picture that is embedded, named after its path. None, with a warning "missing-images" or
+// "unsupported-images", where there are no bytes or they are neither PNG nor JPEG.
+std::optional<Index> addEmbeddedTexture(Asset& asset, std::string_view path, const std::optional<Bytes>& bytes);
+
+}  // namespace limber

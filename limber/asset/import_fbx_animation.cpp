@@ -1,0 +1,423 @@
+#include "limber/asset/import_fbx_animation.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <utility>
+
+#include "limber/asset/accessor.h"
+
+namespace limber {
+
+namespace {
+
+constexpr std::array<std::string_view, 3> kKinds = {"Lcl Translation", "Lcl Rotation", "Lcl Scaling"};
+constexpr std::array<std::string_view, 3> kAxes = {"d|X", "d|Y", "d|Z"};
+
+constexpr double kTolerance = 1e-4;                               // radians, or of what a track moves through
+constexpr std::int64_t kShortestSplit = kFbxTicksPerSecond / 24;  // spans up to here are not divided
+constexpr int kMostHalvings = 10;
+// Together all clips of a document may have so many keys more than their curves, for each of these and in any case.
+constexpr std::size_t kMorePerKey = 16, kMoreKeys = std::size_t{1} << 20;
+
+using Row = Eigen::VectorXd;
+
+enum class TrackPath { kTranslation, kRotation, kScale, kWeights };
+
+// One path of one node over time.
+struct FbxTrack {
+  std::vector<std::int64_t> ticks;
+  std::vector<float> times;
+  std::vector<Row> rows;
+  Interpolation interpolation = Interpolation::kLinear;
+};
+
+// What a track shows at a moment; `fromLeft` as FbxCurve::at has it.
+using RowAt = std::function<Row(std::int64_t ticks, bool fromLeft)>;
+
+Row between(const Row& a, const Row& b, double x, bool isRotation) {
+  if (!isRotation) return a + x * (b - a);
+  const Quat from(a.data()), to(b.data());
+  return from.slerp(x, to).coeffs();
+}
+
+double distanceOf(const Row& a, const Row& b, bool isRotation) {
+  const double apart = (a - b).norm();
+  return isRotation ? 2 * std::min(apart, (a + b).norm()) : apart;
+}
+
+class TrackSampler {
+ public:
+  TrackSampler(const RowAt& at, bool isRotation, std::size_t& budget)
+      : at_(at), isRotation_(isRotation), budget_(budget) {}
+
+  // `keys` ascending, at least one.
+  FbxTrack sample(const std::vector<std::int64_t>& keys) {
+    std::vector<Row> here, left;  // at each key, and its limit from the left
+    for (const std::int64_t key : keys) {
+      here.push_back(at_(key, false));
+      left.push_back(at_(key, true));
+    }
+    double reach = 0;
+    for (const Row& row : here) reach = std::max(reach, (row - here[0]).norm());
+    tolerance_ = isRotation_ ? kTolerance : kTolerance * reach;
+    // Whether it stands still between all keys and jumps at some.
+    bool steps = false, stands = true;
+    for (std::size_t k = 0; k + 1 < keys.size(); ++k) {
+      steps = steps || here[k + 1] != left[k + 1];
+      stands = stands && here[k] == left[k + 1] && at_(keys[k] + (keys[k + 1] - keys[k]) / 2, false) == here[k];
+    }
+    FbxTrack track;
+    if (steps && stands) track.interpolation = Interpolation::kStep;
+    for (std::size_t k = 0; k < keys.size(); ++k) {
+      if (k > 0 && track.interpolation == Interpolation::kLinear) {
+        addBetween(track, {keys[k - 1], keys[k]}, here[k - 1], left[k], kMostHalvings);
+        // One tick before: as times in float this may be the same moment, which the next float down then stands for.
+        if (left[k] != here[k] && keys[k] - 1 > keys[k - 1]) add(track, keys[k] - 1, left[k]);
+      }
+      add(track, keys[k], here[k]);
+    }
+    return track;
+  }
+
+ private:
+  struct Span {
+    std::int64_t from, to;
+  };
+
+  static void add(FbxTrack& track, std::int64_t ticks, const Row& row) {
+    track.ticks.push_back(ticks);
+    track.rows.push_back(row);
+  }
+
+  void addBetween(FbxTrack& track, const Span& span, const Row& from, const Row& to, int halvings) {
+    const std::int64_t length = span.to - span.from, middle = span.from + length / 2;
+    if (length <= kShortestSplit || halvings == 0 || budget_ == 0) return;
+    const Row half = at_(middle, false);
+    const bool fits = distanceOf(between(from, to, 0.5, isRotation_), half, isRotation_) <= tolerance_ &&
+                      fitsAt(span, from, to, 0.25) && fitsAt(span, from, to, 0.75);
+    if (fits) return;
+    --budget_;
+    addBetween(track, {span.from, middle}, from, half, halvings - 1);
+    add(track, middle, half);
+    addBetween(track, {middle, span.to}, half, to, halvings - 1);
+  }
+
+  bool fitsAt(const Span& span, const Row& from, const Row& to, double x) const {
+    const auto ticks = span.from + static_cast<std::int64_t>(x * static_cast<double>(span.to - span.from));
+    return distanceOf(between(from, to, x, isRotation_), at_(ticks, false), isRotation_) <= tolerance_;
+  }
+
+  const RowAt& at_;
+  bool isRotation_;
+  std::size_t& budget_;
+  double tolerance_ = 0;
+};
+
+// q and -q are one rotation, but not the same way there.
+void keepNearSide(FbxTrack& track) {
+  for (std::size_t k = 1; k < track.rows.size(); ++k) {
+    if (track.rows[k].dot(track.rows[k - 1]) < 0) track.rows[k] = -track.rows[k];
+  }
+}
+
+// A value that does not change needs no more than the first and the last of its keys.
+void dropRepeated(FbxTrack& track) {
+  const bool isStill =
+      std::all_of(track.rows.begin(), track.rows.end(), [&](const Row& row) { return row == track.rows[0]; });
+  if (!isStill || track.rows.size() < 3) return;
+  track.ticks = {track.ticks.front(), track.ticks.back()};
+  track.rows.resize(2);
+}
+
+// Seconds in single precision, strictly increasing: where keys fall together the earlier one goes down.
+void setTimes(FbxTrack& track, std::int64_t start) {
+  track.times.clear();
+  for (const std::int64_t ticks : track.ticks) {
+    track.times.push_back(
+        static_cast<float>(static_cast<double>(ticks - start) / static_cast<double>(kFbxTicksPerSecond)));
+  }
+  for (std::size_t k = track.times.size(); k-- > 1;) {
+    if (track.times[k - 1] >= track.times[k]) {
+      track.times[k - 1] = std::nextafter(track.times[k], -std::numeric_limits<float>::infinity());
+    }
+  }
+}
+
+void addKeyTicks(const FbxCurve* curve, std::vector<std::int64_t>& ticks) {
+  if (!curve) return;
+  for (const FbxKey& key : curve->keys()) ticks.push_back(key.ticks);
+}
+
+// The keys within a clip, and its ends where it cuts a curve.
+struct ClipRange {
+  std::int64_t start = 0, stop = 0;
+
+  std::vector<std::int64_t> keysOf(std::vector<std::int64_t> ticks) const {
+    std::sort(ticks.begin(), ticks.end());
+    ticks.erase(std::unique(ticks.begin(), ticks.end()), ticks.end());
+    const auto begin = std::lower_bound(ticks.begin(), ticks.end(), start),
+               end = std::upper_bound(ticks.begin(), ticks.end(), stop);
+    std::vector<std::int64_t> result(begin, end);
+    if (begin != ticks.begin() && (result.empty() || result.front() != start)) result.insert(result.begin(), start);
+    if (end != ticks.end() && (result.empty() || result.back() != stop)) result.push_back(stop);
+    return result;
+  }
+};
+
+// Writes the tracks of one clip into the document.
+class ClipWriter {
+ public:
+  ClipWriter(Asset& asset, ClipRange range, std::size_t& budget) : asset_(asset), range_(range), budget_(budget) {}
+
+  void addTrack(Index node, TrackPath path, std::vector<std::int64_t> ticks, const RowAt& at) {
+    const std::vector<std::int64_t> keys = range_.keysOf(std::move(ticks));
+    if (keys.empty()) return;
+    const bool isRotation = path == TrackPath::kRotation;
+    FbxTrack track = TrackSampler(at, isRotation, budget_).sample(keys);
+    if (isRotation) keepNearSide(track);
+    dropRepeated(track);
+    setTimes(track, range_.start);
+    // Two keys of one moment at 0 would begin before it.
+    while (track.times.size() > 1 && track.times[0] < 0) {
+      track.times.erase(track.times.begin());
+      track.rows.erase(track.rows.begin());
+    }
+    std::vector<float> values;
+    for (const Row& row : track.rows) {
+      for (const double value : row) values.push_back(static_cast<float>(value));
+    }
+    if (!std::all_of(values.begin(), values.end(), [](float x) { return std::isfinite(x); })) {
+      asset_.warnings.add("invalid-keys", "animation keys that are not finite or not in order are left out");
+      return;
+    }
+    const auto components = path == TrackPath::kWeights ? 1 : static_cast<Index>(track.rows[0].size());
+    gltf::AnimationSampler sampler;
+    sampler.output = addFloatAccessor(asset_, values, components);
+    sampler.input = inputOf(track.times);
+    sampler.interpolation = track.interpolation;
+    gltf::AnimationChannel channel;
+    channel.sampler = addElement(animation_.samplers, std::move(sampler));
+    channel.target.node = node;
+    constexpr std::array<const char*, 4> kPaths = {"translation", "rotation", "scale", "weights"};
+    channel.target.path = kPaths[static_cast<std::size_t>(path)];
+    animation_.channels.push_back(std::move(channel));
+  }
+
+  void finish(std::string name) {
+    if (animation_.channels.empty()) return;
+    animation_.name = std::move(name);
+    asset_.document.animations.push_back(std::move(animation_));
+  }
+
+ private:
+  // Most tracks of a clip have the same times: they share one accessor.
+  Index inputOf(const std::vector<float>& times) {
+    const auto known = inputs_.find(times);
+    if (known != inputs_.end()) return known->second;
+    return inputs_[times] = addFloatAccessor(asset_, times, 1, 0, true);
+  }
+
+  Asset& asset_;
+  ClipRange range_;
+  std::size_t& budget_;
+  gltf::Animation animation_;
+  std::map<std::vector<float>, Index> inputs_;
+};
+
+// None for a clip without keys.
+std::optional<ClipRange> rangeOf(const FbxClipCurves& clip, Warnings& warnings) {
+  std::vector<std::int64_t> ticks;
+  for (const std::optional<FbxMotion>& motion : clip.motions) {
+    for (std::size_t kind = 0; motion && kind < 3; ++kind) {
+      for (const FbxCurve* curve : motion->curves[kind]) addKeyTicks(curve, ticks);
+    }
+  }
+  for (const auto& [object, curve] : clip.percents) addKeyTicks(curve, ticks);
+  if (ticks.empty()) return std::nullopt;
+  const auto [first, last] = std::minmax_element(ticks.begin(), ticks.end());
+  if (!clip.start || *clip.start > *last || *clip.stop < *first) return ClipRange{*first, *last};
+  if (*first < *clip.start || *last > *clip.stop) {
+    warnings.add("trimmed-clips", "keys outside of their clip's time are cut off", clip.name);
+  }
+  return ClipRange{*clip.start, std::min(*clip.stop, *last)};
+}
+
+// What the models and blend shapes of one clip show.
+class ClipSampler {
+ public:
+  ClipSampler(const FbxModels& models, const FbxClipCurves& clip, double scale)
+      : models_(models), clip_(clip), scale_(scale) {}
+
+  void addModel(Index m, Index node, ClipWriter& writer) const {
+    std::array<std::vector<std::int64_t>, 3> ticks = ticksOf(m);
+    writer.addTrack(node, TrackPath::kTranslation, std::move(ticks[0]),
+                    [&](std::int64_t at, bool fromLeft) { return Row(scale_ * localAt(m, at, fromLeft).translation); });
+    writer.addTrack(node, TrackPath::kRotation, std::move(ticks[1]),
+                    [&](std::int64_t at, bool fromLeft) { return Row(localAt(m, at, fromLeft).rotation.coeffs()); });
+    writer.addTrack(node, TrackPath::kScale, std::move(ticks[2]),
+                    [&](std::int64_t at, bool fromLeft) { return Row(localAt(m, at, fromLeft).scale); });
+  }
+
+  void addShapes(const FbxShapesInUse& use, ClipWriter& writer) const {
+    const auto curveOf = [&](const FbxShapeChannel& channel) -> const FbxCurve* {
+      const auto found = clip_.percents.find(channel.object);
+      return found == clip_.percents.end() ? nullptr : found->second;
+    };
+    std::vector<std::int64_t> ticks;
+    for (const FbxShapeChannel& channel : use.shapes->channels) addKeyTicks(curveOf(channel), ticks);
+    writer.addTrack(use.node, TrackPath::kWeights, std::move(ticks), [&](std::int64_t at, bool fromLeft) {
+      std::vector<double> weights(use.shapes->targets.size(), 0);
+      for (const FbxShapeChannel& channel : use.shapes->channels) {
+        const FbxCurve* curve = curveOf(channel);
+        channel.addWeights(curve ? curve->at(at, fromLeft) : channel.percent, weights);
+      }
+      return Row(Eigen::Map<const Row>(weights.data(), static_cast<Eigen::Index>(weights.size())));
+    });
+  }
+
+ private:
+  FbxPose poseAt(Index m, std::int64_t ticks, bool fromLeft) const {
+    const std::optional<FbxMotion>& motion = clip_.motions[m];
+    return motion ? motion->at(ticks, fromLeft) : models_[m].transform.rest;
+  }
+
+  Transform localAt(Index m, std::int64_t ticks, bool fromLeft) const {
+    if (!models_[m].isCompensated) return models_[m].transform.local(poseAt(m, ticks, fromLeft));
+    return decompose(models_.localOf(m, [&](Index of) { return poseAt(of, ticks, fromLeft); }));
+  }
+
+  void addKeys(Index m, std::size_t kind, std::vector<std::int64_t>& ticks) const {
+    if (!clip_.motions[m]) return;
+    for (const FbxCurve* curve : clip_.motions[m]->curves[kind]) addKeyTicks(curve, ticks);
+  }
+
+  // The keys that count for translation, rotation and scale: those of its own curves, and of what else they depend on.
+  std::array<std::vector<std::int64_t>, 3> ticksOf(Index m) const {
+    std::array<std::vector<std::int64_t>, 3> ticks;
+    if (models_[m].isCompensated) {
+      for (const Index of : models_.chainOf(m)) {
+        for (std::size_t kind = 0; kind < 3; ++kind) addKeys(of, kind, ticks[0]);
+      }
+      ticks[1] = ticks[2] = ticks[0];
+      return ticks;
+    }
+    for (std::size_t kind = 0; kind < 3; ++kind) addKeys(m, kind, ticks[kind]);
+    if (models_[m].transform.turnsAboutPivot()) {
+      ticks[0].insert(ticks[0].end(), ticks[1].begin(), ticks[1].end());
+      ticks[0].insert(ticks[0].end(), ticks[2].begin(), ticks[2].end());
+    }
+    return ticks;
+  }
+
+  const FbxModels& models_;
+  const FbxClipCurves& clip_;
+  double scale_;
+};
+
+}  // namespace
+
+FbxAnimations::FbxAnimations(const FbxObjects& objects, const FbxModels& models, Warnings& warnings)
+    : objects_(objects),
+      models_(models),
+      warnings_(warnings),
+      moves_(models.count(), false),
+      scales_(models.count(), false) {
+  for (Index o = 0; o < objects_.count(); ++o) {
+    if (objects_.is(o, "AnimationStack")) readStack(o);
+  }
+}
+
+void FbxAnimations::readStack(Index stack) {
+  const std::vector<Index> layers = objects_.sources(stack, "AnimationLayer");
+  if (layers.empty()) return;
+  FbxClipCurves clip;
+  clip.name = objects_[stack].name;
+  clip.motions.resize(models_.count());
+  const FbxProperties properties = objects_.properties(stack);
+  constexpr std::int64_t kNone = std::numeric_limits<std::int64_t>::min();
+  const std::int64_t start = properties.integer("LocalStart", kNone), stop = properties.integer("LocalStop", kNone);
+  if (start != kNone && stop != kNone && start < stop) {
+    clip.start = start;
+    clip.stop = stop;
+  }
+  for (const Index node : objects_.sources(layers[0], "AnimationCurveNode")) readCurveNode(node, clip);
+  for (std::size_t l = 1; l < layers.size(); ++l) {
+    if (objects_.sources(layers[l], "AnimationCurveNode").empty()) continue;
+    warnings_.add("animation-layers", "of layered clips only the first layer is kept", clip.name);
+  }
+  clips_.push_back(std::move(clip));
+}
+
+const FbxCurve* FbxAnimations::curveOf(Index node, std::string_view component) {
+  for (const FbxObjects::Link& link : objects_.sources(node)) {
+    if (link.property != component || !objects_.is(link.object, "AnimationCurve")) continue;
+    const auto [known, isNew] = curves_.try_emplace(link.object);
+    if (isNew) known->second = FbxCurve::read(*objects_[link.object].node, warnings_);
+    return known->second ? &*known->second : nullptr;
+  }
+  return nullptr;
+}
+
+void FbxAnimations::readCurveNode(Index node, FbxClipCurves& clip) {
+  for (const FbxObjects::Link& link : objects_.destinations(node)) {
+    if (objects_.is(link.object, "Deformer", "BlendShapeChannel") && link.property == "DeformPercent") {
+      if (const FbxCurve* curve = curveOf(node, "d|DeformPercent")) clip.percents.emplace(link.object, curve);
+      continue;
+    }
+    if (link.property.empty()) continue;  // the layer
+    const auto kind = static_cast<std::size_t>(std::find(kKinds.begin(), kKinds.end(), link.property) - kKinds.begin());
+    const std::optional<Index> model = objects_.is(link.object, "Model") ? models_.modelOf(link.object) : std::nullopt;
+    if (kind == kKinds.size() || !model) {
+      if (!objects_.sources(node).empty()) {
+        warnings_.add("animated-properties", "curves of what is neither a joint's place nor a blend shape are left out",
+                      objects_[link.object].name + "." + std::string(link.property));
+      }
+      continue;
+    }
+    const FbxTransform& transform = models_[*model].transform;
+    std::optional<FbxMotion>& motion = clip.motions[*model];
+    if (!motion) motion.emplace(transform.rest);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const FbxCurve* curve = curveOf(node, kAxes[axis]);
+      motion->curves[kind][axis] = curve;
+      motion->moves[kind] = motion->moves[kind] || curve;
+      if (curve) continue;
+      double& still = motion->still[kind][static_cast<int>(axis)];
+      still = objects_.properties(node).number(kAxes[axis], still);
+    }
+    moves_[*model] = moves_[*model] || motion->moves[kind];
+    for (std::size_t axis = 0; kind == 2 && axis < 3; ++axis) {
+      const FbxCurve* curve = motion->curves[kind][axis];
+      const double rest = transform.rest.scaling[static_cast<int>(axis)];
+      const bool differs = curve ? std::any_of(curve->keys().begin(), curve->keys().end(),
+                                               [&](const FbxKey& key) { return key.value != rest; })
+                                 : motion->still[kind][static_cast<int>(axis)] != rest;
+      if (differs) scales_[*model] = true;
+    }
+  }
+}
+
+void FbxAnimations::addClips(Asset& asset, const std::vector<std::optional<Index>>& nodeOf,
+                             const std::vector<FbxShapesInUse>& shapes, double scale) const {
+  std::size_t budget = kMoreKeys;
+  for (const auto& [object, curve] : curves_) budget += curve ? kMorePerKey * curve->keys().size() : 0;
+  for (const FbxClipCurves& clip : clips_) {
+    const std::optional<ClipRange> range = rangeOf(clip, asset.warnings);
+    if (!range) continue;
+    ClipWriter writer(asset, *range, budget);
+    const ClipSampler sampler(models_, clip, scale);
+    for (Index m = 0; m < models_.count(); ++m) {
+      if (nodeOf[m]) sampler.addModel(m, *nodeOf[m], writer);
+    }
+    for (const FbxShapesInUse& use : shapes) sampler.addShapes(use, writer);
+    writer.finish(clip.name);
+  }
+  if (budget == 0) {
+    asset.warnings.add("coarse-clips", "clips that would take too many keys are coarser than their curves");
+  }
+}
+
+}  // namespace limber

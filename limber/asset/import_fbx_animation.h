@@ -1,0 +1,63 @@
+// FBX animation stacks as glTF animations.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "limber/asset/asset.h"
+#include "limber/asset/import_fbx_models.h"
+#include "limber/asset/import_fbx_skin.h"
+
+namespace limber {
+
+// The blend shapes of one mesh of the document.
+struct FbxShapesInUse {
+  Index node = 0;  // of the document, which has the mesh
+  const FbxShapes* shapes = nullptr;
+};
+
+// What the curves of one stack move.
+struct FbxClipCurves {
+  std::string name;
+  std::optional<std::int64_t> start, stop;        // ticks, as the stack says
+  std::vector<std::optional<FbxMotion>> motions;  // #models
+  std::map<Index, const FbxCurve*> percents;      // by object: of channels of blend shapes
+};
+
+// The curves of a file, and the clips made of them.
+class FbxAnimations {
+ public:
+  FbxAnimations(const FbxObjects& objects, const FbxModels& models, Warnings& warnings);
+
+  // #models: does a curve of any clip move it; does one give it another scale than its rest's?
+  const std::vector<bool>& moves() const { return moves_; }
+  const std::vector<bool>& scales() const { return scales_; }
+
+  // Adds an animation for each stack that moves something. Only the first layer of a stack counts.
+  //
+  // nodeOf  #models, node of the document; none for what the document lacks
+  // scale   from the file's units to metres
+  //
+  // A clip begins where its stack does (LocalStart) and ends with its last key or its stack. Values are linear between
+  // keys: where the curves, or the turning by Euler angles, run otherwise, keys are put between theirs, until what is
+  // shown differs by no more than a ten thousandth of a radian (or of what a track moves through), though none closer
+  // together than 1/48 s. What only steps becomes a track of steps; a step among others two keys one after the other.
+  void addClips(Asset& asset, const std::vector<std::optional<Index>>& nodeOf,
+                const std::vector<FbxShapesInUse>& shapes, double scale) const;
+
+ private:
+  void readStack(Index stack);
+  void readCurveNode(Index node, FbxClipCurves& clip);
+  const FbxCurve* curveOf(Index node, std::string_view component);
+
+  const FbxObjects& objects_;
+  const FbxModels& models_;
+  Warnings& warnings_;
+  std::map<Index, std::optional<FbxCurve>> curves_;  // by object
+  std::vector<FbxClipCurves> clips_;
+  std::vector<bool> moves_, scales_;
+};
+
+}  // namespace limber

@@ -1,0 +1,209 @@
+#include "limber/asset/import_fbx_material.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "limber/asset/embedded_texture.h"
+#include "limber/asset/side_file.h"
+#include "limber/asset/uri.h"
+#include "limber/asset/utf8.h"
+#include "limber/fbx/fbx_values.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kSdkGrey = 0.8;  // DiffuseColor where a file says nothing
+
+double clamped(double value) {
+  return std::clamp(value, 0.0, 1.0);
+}
+
+Vec3 clamped(const Vec3& color) {
+  return color.cwiseMax(0).cwiseMin(1);
+}
+
+// Phong's exponent as the roughness of a highlight of about the same width (Walter and others 2007).
+double roughnessOfExponent(double exponent) {
+  return std::sqrt(2 / (2 + std::max(exponent, 0.0)));
+}
+
+// A file that is embedded: bytes, or in text files their base64.
+std::optional<Bytes> contentOf(const FbxNode& video) {
+  const FbxNode* content = video.find("Content");
+  if (!content || content->values.empty()) return std::nullopt;
+  if (const auto* bytes = std::get_if<Bytes>(&content->values[0])) {
+    return bytes->empty() ? std::nullopt : std::optional<Bytes>(*bytes);
+  }
+  std::string text;
+  for (std::size_t i = 0; i < content->values.size(); ++i) text += fbxText(*content, i).value_or("");
+  if (text.empty()) return std::nullopt;
+  try {
+    return decodeDataUri("data:;base64," + text).bytes;
+  } catch (const Error&) {
+    return Bytes();  // told as no picture that is known
+  }
+}
+
+}  // namespace
+
+FbxMaterials::FbxMaterials(Asset& asset, const FbxObjects& objects, const Resolver& resolver)
+    : asset_(asset), objects_(objects), resolver_(resolver), areAllBlack_(allBlack()) {}
+
+// Exporters that know no colours write black for all of it, which would show nothing of the shape.
+bool FbxMaterials::allBlack() const {
+  bool anyMaterial = false;
+  for (Index o = 0; o < objects_.count(); ++o) {
+    if (!objects_.is(o, "Material")) continue;
+    anyMaterial = true;
+    const bool hasTexture = std::any_of(objects_.sources(o).begin(), objects_.sources(o).end(),
+                                        [](const FbxObjects::Link& link) { return !link.property.empty(); });
+    const bool hasColor = !colorOf(o, "DiffuseColor", "DiffuseFactor", kSdkGrey).isZero(0) ||
+                          !colorOf(o, "EmissiveColor", "EmissiveFactor", 0).isZero(0);
+    if (hasTexture || hasColor) return false;
+  }
+  return anyMaterial;
+}
+
+Index FbxMaterials::material(Index object, const std::vector<std::string>& textureSets) {
+  const auto [known, isNew] = materials_.try_emplace({object, textureSets});
+  if (isNew) known->second = addElement(asset_.document.materials, convert(object, textureSets));
+  return known->second;
+}
+
+Index FbxMaterials::defaultMaterial() {
+  if (!default_) {
+    gltf::Material material;
+    gltf::MetallicRoughness& surface = material.pbrMetallicRoughness.emplace();
+    surface.baseColorFactor = Vec4(kSdkGrey, kSdkGrey, kSdkGrey, 1);
+    surface.metallicFactor = 0;
+    default_ = addElement(asset_.document.materials, std::move(material));
+  }
+  return *default_;
+}
+
+Vec3 FbxMaterials::colorOf(Index object, std::string_view color, std::string_view factor, double otherwise) const {
+  const FbxProperties properties = objects_.properties(object);
+  return clamped(properties.vector(color, Vec3::Constant(otherwise)) * properties.number(factor, 1));
+}
+
+// Blender writes the alpha into TransparencyFactor, Maya always 1; both have the SDK's older "Opacity" beside it.
+// Without that it is what the SDK makes of the transparent colour.
+double FbxMaterials::opacityOf(const FbxProperties& properties) const {
+  double opacity = 1;
+  if (const std::optional<Vec3> color = properties.vector("TransparentColor")) {
+    opacity = 1 - properties.number("TransparencyFactor", 0) * color->mean();
+  }
+  opacity = clamped(properties.number("Opacity", opacity));
+  return opacity == 0 ? 1 : opacity;  // exporters that mean "not set"; a wholly invisible surface helps nobody
+}
+
+gltf::Material FbxMaterials::convert(Index object, const std::vector<std::string>& textureSets) {
+  const FbxProperties properties = objects_.properties(object);
+  gltf::Material result;
+  result.name = objects_[object].name;
+  gltf::MetallicRoughness& surface = result.pbrMetallicRoughness.emplace();
+  surface.baseColorTexture = textureUse(
+      object, {"DiffuseColor", "base_color", "baseColor", "Maya|baseColor", "3dsMax|Parameters|base_color_map"},
+      textureSets);
+  // A texture takes the place of the colour, which its factor still dims.
+  Vec3 base = surface.baseColorTexture ? clamped(Vec3(Vec3::Ones() * properties.number("DiffuseFactor", 1)))
+                                       : colorOf(object, "DiffuseColor", "DiffuseFactor", kSdkGrey);
+  if (areAllBlack_) {
+    base = Vec3::Constant(kSdkGrey);
+    asset_.warnings.add("black-materials", "materials that are all black are made grey", result.name);
+  }
+  const double opacity = opacityOf(properties);
+  surface.baseColorFactor = Vec4(base.x(), base.y(), base.z(), opacity);
+  if (opacity < 1) result.alphaMode = "BLEND";
+  surface.metallicFactor = 0;
+  const double exponent = properties.number("ShininessExponent", properties.number("Shininess", 0));
+  surface.roughnessFactor = clamped(roughnessOfExponent(exponent));
+
+  result.normalTexture = textureUse(object, {"NormalMap"}, textureSets);
+  result.emissiveTexture = textureUse(object, {"EmissiveColor"}, textureSets);
+  result.emissiveFactor = result.emissiveTexture ? clamped(Vec3(Vec3::Ones() * properties.number("EmissiveFactor", 1)))
+                                                 : colorOf(object, "EmissiveColor", "EmissiveFactor", 0);
+  return result;
+}
+
+std::optional<Index> FbxMaterials::textureOf(Index object, std::string_view property) {
+  for (const FbxObjects::Link& link : objects_.sources(object)) {
+    if (link.property != property) continue;
+    if (objects_.is(link.object, "Texture")) return link.object;
+    if (!objects_.is(link.object, "LayeredTexture")) continue;
+    const std::vector<Index> layers = objects_.sources(link.object, "Texture");
+    if (layers.size() > 1) {
+      asset_.warnings.add("layered-textures", "of layered textures only the first is kept", objects_[object].name);
+    }
+    if (!layers.empty()) return layers[0];
+  }
+  return std::nullopt;
+}
+
+std::optional<gltf::TextureUse> FbxMaterials::textureUse(Index object,
+                                                         std::initializer_list<std::string_view> properties,
+                                                         const std::vector<std::string>& textureSets) {
+  for (const std::string_view property : properties) {
+    const std::optional<Index> source = textureOf(object, property);
+    const std::optional<Index> index = source ? texture(*source) : std::nullopt;
+    if (!index) continue;
+    gltf::TextureUse use;
+    use.index = *index;
+    const std::string_view set = objects_.properties(*source).text("UVSet");
+    const auto named = std::find(textureSets.begin(), textureSets.end(), set);
+    if (named != textureSets.end()) use.texCoord = static_cast<Index>(named - textureSets.begin());
+    return use;
+  }
+  return std::nullopt;
+}
+
+std::optional<Index> FbxMaterials::texture(Index object) {
+  const auto [known, isNew] = textures_.try_emplace(object);
+  if (!isNew) return known->second;
+  std::string path;
+  const std::optional<Bytes> picture = pictureOf(object, path);
+  known->second = addEmbeddedTexture(asset_, path, picture);
+  if (!known->second) return std::nullopt;
+  const FbxProperties properties = objects_.properties(object);
+  if (!properties.vector("Translation", Vec3::Zero()).isZero(0) ||
+      properties.vector("Scaling", Vec3::Ones()) != Vec3::Ones() ||
+      !properties.vector("Rotation", Vec3::Zero()).isZero(0)) {
+    asset_.warnings.add("texture-transforms", "textures that are moved, turned or scaled lie as if they were not",
+                        objects_[object].name);
+  }
+  gltf::Sampler sampler;
+  if (properties.integer("WrapModeU", 0) == 1) sampler.wrapS = gltf::kClampToEdge;
+  if (properties.integer("WrapModeV", 0) == 1) sampler.wrapT = gltf::kClampToEdge;
+  if (sampler.wrapS != gltf::kRepeat || sampler.wrapT != gltf::kRepeat) {
+    asset_.document.textures[*known->second].sampler = addElement(asset_.document.samplers, sampler);
+  }
+  return known->second;
+}
+
+// What is embedded, else the file beside the model.
+std::optional<Bytes> FbxMaterials::pictureOf(Index texture, std::string& path) const {
+  std::vector<const FbxNode*> nodes = {objects_[texture].node};
+  for (const Index video : objects_.sources(texture, "Video")) {
+    nodes.push_back(objects_[video].node);
+    if (std::optional<Bytes> content = contentOf(*objects_[video].node)) {
+      path = fbxChildText(*objects_[video].node, "RelativeFilename");
+      if (path.empty()) path = objects_[video].name;
+      return content;
+    }
+  }
+  for (const FbxNode* node : nodes) {
+    for (const char* child : {"RelativeFilename", "FileName", "Filename"}) {
+      const std::string_view name = fbxChildText(*node, child);
+      if (name.empty()) continue;
+      if (path.empty()) path = name;
+      if (std::optional<Bytes> bytes = sideFile(resolver_, name)) {
+        path = name;
+        return bytes;
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace limber
