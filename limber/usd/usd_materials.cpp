@@ -1,6 +1,6 @@
 #include "limber/usd/usd_materials.h"
 
-#include <functional>
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <utility>
@@ -14,125 +14,112 @@ namespace limber {
 
 namespace {
 
-std::string colorText(const Vec3& color) {
-  return fmt::format("({}, {}, {})", usdNumber(color.x()), usdNumber(color.y()), usdNumber(color.z()));
-}
-
-// One texture of a material as it is asked for.
-struct TextureInput {
-  const char* shader;  // the name of its prim
-  const char* output;  // "rgb", "r"
-  std::string scale, bias;
-  bool isColor = false;
-};
-
 class MaterialWriter {
  public:
-  MaterialWriter(const Asset& asset, const std::string& imageStem, UsdText& text, UsdFiles& files)
-      : asset_(asset), document_(asset.document), imageStem_(imageStem), text_(text), files_(files) {}
+  MaterialWriter(const Asset& asset, const std::string& imageStem, UsdFiles& files)
+      : asset_(asset), document_(asset.document), imageStem_(imageStem), files_(files) {}
 
-  std::vector<std::string> write() {
-    if (document_.materials.empty()) return {};
-    UniqueNames names;
-    text_.open("Scope", "Materials");
-    for (const gltf::Material& material : document_.materials) {
-      const std::string name = names.add(usdName(material.name.empty() ? "material" : material.name));
-      paths_.push_back(fmt::format("/{}/Materials/{}", kUsdRoot, name));
-      writeMaterial(material, name);
+  // `path`: of the prim that is made.
+  UsdPrim write(const UsdSurface& surface, bool isColored, std::string name, std::string path) {
+    UsdPrim material{"Material", std::move(name), {}, {}, {}};
+    path_ = std::move(path);
+    colorInput_ = surface.colorInput;
+    textures_.clear();
+    readers_.clear();
+    uses_.clear();
+    material.connect("token", "outputs:surface", path_ + "/Surface.outputs:surface");
+    UsdPrim shader = shaderOf("Surface", "UsdPreviewSurface");
+    for (const UsdInput& input : surface.inputs) addInput(input, isColored, shader);
+    shader.add("token", "outputs:surface");
+    material.children.push_back(std::move(shader));
+    for (std::vector<UsdPrim>* parts : {&readers_, &textures_}) {
+      std::move(parts->begin(), parts->end(), std::back_inserter(material.children));
     }
-    text_.close();
-    return std::move(paths_);
+    for (const std::string& extension : surface.unsaid) {
+      files_.warnings.add("material-extensions", "what some extensions say of materials is left out",
+                          fmt::format("{}: {}", path_, extension));
+    }
+    return material;
   }
 
  private:
-  void writeMaterial(const gltf::Material& material, const std::string& name) {
-    const gltf::MetallicRoughness surface = material.pbrMetallicRoughness.value_or(gltf::MetallicRoughness());
-    const Vec4 color = surface.baseColorFactor.value_or(Vec4::Ones());
-    const bool blends = material.alphaMode == "BLEND", masks = material.alphaMode == "MASK";
-    path_ = paths_.back();
-    textures_.clear();
-    text_.open("Material", name);
-    text_.line(fmt::format("token outputs:surface.connect = <{}/Surface.outputs:surface>", path_));
-    text_.open("Shader", "Surface");
-    text_.line("uniform token info:id = \"UsdPreviewSurface\"");
-    const std::string factors = fmt::format("({}, {}, {}, {})", usdNumber(color.x()), usdNumber(color.y()),
-                                            usdNumber(color.z()), usdNumber(color.w()));
-    input("color3f", "diffuseColor", surface.baseColorTexture, {"BaseColor", "rgb", factors, {}, true},
-          colorText(color.head<3>()));
-    if (blends || masks) {
-      input("float", "opacity", surface.baseColorTexture, {"BaseColor", "a", factors, {}, true}, usdNumber(color.w()));
-    }
-    if (masks) text_.line(fmt::format("float inputs:opacityThreshold = {}", usdNumber(material.alphaCutoff)));
-    const auto scaled = [](double by) { return fmt::format("({0}, {0}, {0}, 1)", usdNumber(by)); };
-    const std::optional<gltf::TextureUse>& rough = surface.metallicRoughnessTexture;
-    input("float", "metallic", rough, {"Metallic", "b", scaled(surface.metallicFactor), {}},
-          usdNumber(surface.metallicFactor));
-    input("float", "roughness", rough, {"Roughness", "g", scaled(surface.roughnessFactor), {}},
-          usdNumber(surface.roughnessFactor));
-    if (material.normalTexture) {
-      input("normal3f", "normal", material.normalTexture, {"Normal", "rgb", "(2, 2, 2, 1)", "(-1, -1, -1, 0)"}, {});
-    }
-    if (material.occlusionTexture) {
-      input("float", "occlusion", material.occlusionTexture, {"Occlusion", "r", {}, {}}, {});
-    }
-    const Vec3& glow = material.emissiveFactor;
-    if (!glow.isZero(0)) {
-      const std::string scale =
-          fmt::format("({}, {}, {}, 1)", usdNumber(glow.x()), usdNumber(glow.y()), usdNumber(glow.z()));
-      input("color3f", "emissiveColor", material.emissiveTexture, {"Emissive", "rgb", scale, {}, true},
-            colorText(glow));
-    }
-    text_.line("token outputs:surface");
-    text_.close();
-    if (!textures_.empty()) writePlaces();
-    for (const auto& [shader, write] : textures_) write();
-    text_.close();
+  static UsdPrim shaderOf(std::string name, const char* id) {
+    UsdPrim shader{"Shader", std::move(name), {}, {}, {}};
+    shader.addUniform("token", "info:id", id);
+    return shader;
   }
 
-  // What all textures of a material read their places on the surface by.
-  void writePlaces() {
-    text_.open("Shader", "Uv");
-    text_.line("uniform token info:id = \"UsdPrimvarReader_float2\"");
-    text_.line("string inputs:varname = \"st\"");
-    text_.line("float2 outputs:result");
-    text_.close();
-  }
-
-  // A connection to the texture where it can be had, else the value, if there is one.
-  void input(std::string_view type, std::string_view name, const std::optional<gltf::TextureUse>& use,
-             const TextureInput& as, const std::string& value) {
-    const std::optional<std::string> image = use ? imagePath(use->index) : std::nullopt;
+  // A connection to the vertices' colours or to the texture where it can be had, else the value, if there is one.
+  void addInput(const UsdInput& input, bool isColored, UsdPrim& shader) {
+    const std::string name = "inputs:" + input.name;
+    const bool isColor = input.name == colorInput_;
+    if (isColored && (isColor || input.name == "opacity")) {
+      shader.connect(input.type, name,
+                     reader(isColor ? "VertexColor" : "VertexOpacity", isColor ? "float3" : "float",
+                            isColor ? "displayColor" : "displayOpacity", input.value));
+      return;
+    }
+    const std::optional<std::string> image = input.texture ? imagePath(input.texture->texture) : std::nullopt;
     if (image) {
-      text_.line(fmt::format("{} inputs:{}.connect = <{}/{}.outputs:{}>", type, name, path_, as.shader, as.output));
-      textures_.try_emplace(as.shader, [this, use = *use, as, image = *image] { writeTexture(use, as, image); });
-    } else if (!value.empty()) {
-      text_.line(fmt::format("{} inputs:{} = {}", type, name, value));
+      shader.connect(input.type, name, textureShader(*input.texture, *image, input.name) + input.channel);
+    } else if (!std::holds_alternative<std::monostate>(input.value)) {
+      shader.add(input.type, name, input.value);
     }
   }
 
-  void writeTexture(const gltf::TextureUse& use, const TextureInput& as, const std::string& image) {
-    const gltf::Texture& texture = document_.textures[use.index];
+  // What reads a primvar; the path of its result.
+  std::string reader(const std::string& name, const std::string& type, const std::string& primvar,
+                     const UsdValue& fallback) {
+    const bool isThere =
+        std::any_of(readers_.begin(), readers_.end(), [&](const UsdPrim& prim) { return prim.name == name; });
+    if (!isThere) {
+      UsdPrim& prim = readers_.emplace_back(shaderOf(name, ("UsdPrimvarReader_" + type).c_str()));
+      prim.add("string", "inputs:varname", primvar);
+      if (!std::holds_alternative<std::monostate>(fallback)) prim.add(type, "inputs:fallback", fallback);
+      prim.add(type, "outputs:result");
+    }
+    return fmt::format("{}/{}.outputs:result", path_, name);
+  }
+
+  // The path of what reads the texture's place on the surface.
+  std::string placeOf(const UsdTexture& texture, const std::string& textureName) {
+    const std::string primvar = uvPrimvar(texture.uvSet);
+    std::string uv = reader("Uv" + primvar.substr(2), "float2", primvar, {});
+    if (!texture.transform) return uv;
+    const std::string name = textureName + "Place";
+    UsdPrim& place = readers_.emplace_back(shaderOf(name, "UsdTransform2d"));
+    place.connect("float2", "inputs:in", std::move(uv));
+    place.add("float", "inputs:rotation", texture.transform->degrees);
+    place.add("float2", "inputs:scale", texture.transform->scale);
+    place.add("float2", "inputs:translation", texture.transform->translation);
+    place.add("float2", "outputs:result");
+    return fmt::format("{}/{}.outputs:result", path_, name);
+  }
+
+  // The path of a texture's outputs, without their names; the same texture read in the same way is there once.
+  std::string textureShader(const UsdTexture& use, const std::string& image, const std::string& inputName) {
+    for (std::size_t i = 0; i < textures_.size(); ++i) {
+      if (uses_[i] == use) return fmt::format("{}/{}.outputs:", path_, textures_[i].name);
+    }
+    const gltf::Texture& texture = document_.textures[use.texture];
     const gltf::Sampler sampler = texture.sampler ? document_.samplers[*texture.sampler] : gltf::Sampler();
     const auto wrap = [](Index mode) {
       return mode == gltf::kClampToEdge ? "clamp" : mode == gltf::kMirroredRepeat ? "mirror" : "repeat";
     };
-    text_.open("Shader", as.shader);
-    text_.line("uniform token info:id = \"UsdUVTexture\"");
-    text_.line(fmt::format("asset inputs:file = @{}@", image));
-    text_.line(fmt::format("float2 inputs:st.connect = <{}/Uv.outputs:result>", path_));
-    text_.line(fmt::format("token inputs:sourceColorSpace = \"{}\"", as.isColor ? "sRGB" : "raw"));
-    text_.line(fmt::format("token inputs:wrapS = \"{}\"", wrap(sampler.wrapS)));
-    text_.line(fmt::format("token inputs:wrapT = \"{}\"", wrap(sampler.wrapT)));
-    if (!as.scale.empty()) text_.line("float4 inputs:scale = " + as.scale);
-    if (!as.bias.empty()) text_.line("float4 inputs:bias = " + as.bias);
-    for (const char* output : {"float outputs:r", "float outputs:g", "float outputs:b", "float outputs:a"})
-      text_.line(output);
-    text_.line("float3 outputs:rgb");
-    text_.close();
-    if (use.extensions.exists()) {
-      files_.warnings.add("texture-transforms", "places of textures are written without what extensions say of them",
-                          path_);
-    }
+    UsdPrim prim = shaderOf(inputName + "Texture", "UsdUVTexture");
+    prim.add("asset", "inputs:file", image);
+    prim.connect("float2", "inputs:st", placeOf(use, prim.name));
+    prim.add("token", "inputs:sourceColorSpace", use.isColor ? "sRGB" : "raw");
+    prim.add("token", "inputs:wrapS", wrap(sampler.wrapS));
+    prim.add("token", "inputs:wrapT", wrap(sampler.wrapT));
+    if (use.scale != Vec4f::Ones()) prim.add("float4", "inputs:scale", use.scale);
+    if (!use.bias.isZero(0)) prim.add("float4", "inputs:bias", use.bias);
+    for (const char* channel : {"r", "g", "b", "a"}) prim.add("float", std::string("outputs:") + channel);
+    prim.add("float3", "outputs:rgb");
+    std::string path = fmt::format("{}/{}.outputs:", path_, prim.name);
+    uses_.push_back(use);
+    textures_.push_back(std::move(prim));
+    return path;
   }
 
   // Where the image of a texture lies beside the stage; taken along at the first call for it.
@@ -156,19 +143,36 @@ class MaterialWriter {
   const Asset& asset_;
   const gltf::Document& document_;
   const std::string& imageStem_;
-  UsdText& text_;
   UsdFiles& files_;
-  std::vector<std::string> paths_;
-  std::map<Index, std::optional<std::string>> images_;     // of the document
-  std::string path_;                                       // of the material that is being written
-  std::map<std::string, std::function<void()>> textures_;  // its textures, by their prims
+  std::map<Index, std::optional<std::string>> images_;  // of the document
+  // Of the material that is being written:
+  std::string path_, colorInput_;
+  std::vector<UsdPrim> readers_, textures_;
+  std::vector<UsdTexture> uses_;  // of textures_
 };
 
 }  // namespace
 
-std::vector<std::string> writeUsdMaterials(const Asset& asset, const std::string& imageStem, UsdText& text,
-                                           UsdFiles& files) {
-  return MaterialWriter(asset, imageStem, text, files).write();
+std::string uvPrimvar(Index uvSet) {
+  return uvSet == 0 ? "st" : fmt::format("st{}", uvSet);
+}
+
+std::vector<std::string> addUsdMaterials(const Asset& asset, const std::vector<UsdSurface>& surfaces,
+                                         const std::set<Index>& colored, const std::string& imageStem, UsdPrim& root,
+                                         UsdFiles& files) {
+  std::vector<std::string> paths;
+  if (surfaces.empty()) return paths;
+  UsdPrim scope{"Scope", "Materials", {}, {}, {}};
+  MaterialWriter writer(asset, imageStem, files);
+  UniqueNames names;
+  for (Index m = 0; m < surfaces.size(); ++m) {
+    const std::string& given = asset.document.materials[m].name;
+    std::string name = names.add(usdName(given.empty() ? "material" : given));
+    paths.push_back(fmt::format("/{}/{}/{}", kUsdRoot, scope.name, name));
+    scope.children.push_back(writer.write(surfaces[m], colored.count(m) > 0, std::move(name), paths.back()));
+  }
+  root.children.push_back(std::move(scope));
+  return paths;
 }
 
 }  // namespace limber

@@ -13,8 +13,9 @@
 #include "limber/asset/motion_io.h"
 #include "limber/asset/pose_io.h"
 #include "limber/asset/shape_name.h"
+#include "limber/asset/shape_tracks.h"
 #include "limber/asset/unique_names.h"
-#include "limber/usd/usd_text.h"
+#include "limber/usd/usd_stage.h"
 
 namespace limber {
 
@@ -38,59 +39,109 @@ std::optional<Index> chosenClip(const Asset& asset, const std::optional<std::str
   return names.empty() ? std::nullopt : std::optional<Index>(0);
 }
 
-// The weights of a node's blend shapes over time, one track for each of `count`.
-std::vector<Track<float>> shapeTracks(const Asset& asset, Index node, const gltf::Mesh& mesh, std::size_t count,
-                                      std::optional<Index> clip) {
-  const std::vector<double>& own = asset.document.nodes[node].weights;
-  const std::vector<double>& standing = own.empty() ? mesh.weights : own;
-  std::vector<Track<float>> tracks(count);
-  for (std::size_t s = 0; s < count; ++s) {
-    tracks[s].times = {0};
-    tracks[s].values = {s < standing.size() ? static_cast<float>(standing[s]) : 0.0f};
-  }
-  if (!clip) return tracks;
-  const gltf::Animation& animation = asset.document.animations[*clip];
-  for (const gltf::AnimationChannel& channel : animation.channels) {
-    if (channel.target.node != node || channel.target.path != "weights") continue;
-    const gltf::AnimationSampler& sampler = animation.samplers[channel.sampler];
-    const std::vector<float> times = readFloats(asset, sampler.input), values = readFloats(asset, sampler.output);
-    const std::size_t perKey = sampler.interpolation == Interpolation::kCubic ? 3 : 1;
-    if (times.empty() || values.size() < times.size() * perKey * count) continue;
-    for (std::size_t s = 0; s < count; ++s) {
-      tracks[s] = {0, sampler.interpolation, times, {}};
-      for (std::size_t k = 0; k < times.size() * perKey; ++k) tracks[s].values.push_back(values[k * count + s]);
-    }
-  }
-  return tracks;
-}
-
 class ModelReader {
  public:
-  ModelReader(const Asset& asset, const UsdOptions& options)
-      : asset_(asset), document_(asset.document), clip_(chosenClip(asset, options.clip)) {}
+  ModelReader(const Asset& asset, const std::vector<UsdSurface>& surfaces)
+      : asset_(asset), document_(asset.document), surfaces_(surfaces), geometry_(collectGeometry(asset)) {}
 
-  UsdModel read() {
-    geometry_ = collectGeometry(asset_);
+  UsdModel read(const UsdOptions& options) {
+    clip_ = chosenClip(asset_, options.clip);
     normals_ = readNormals(asset_, geometry_);
     readRig();
-    for (const PrimitiveInstance& instance : geometry_.instances) addMesh(instance);
+    readMeshes();
     tellOfNodeAnimation();
     return std::move(model_);
   }
 
+  UsdModel readStill(const UsdStillSurface& still) {
+    const std::size_t count = geometry_.positions.size();
+    if (still.points.size() != count || still.normals.size() != count) {
+      throw Error(ErrorCode::kBadArgument,
+                  fmt::format("the surface has {} points and {} normals, and the model {} vertices",
+                              still.points.size(), still.normals.size(), count),
+                  asset_.name);
+    }
+    isStill_ = true;
+    geometry_.positions.assign(still.points.begin(), still.points.end());
+    normals_.assign(still.normals.begin(), still.normals.end());
+    readMeshes();
+    return std::move(model_);
+  }
+
  private:
+  void readMeshes() {
+    for (const PrimitiveInstance& instance : geometry_.instances) addMesh(instance);
+    model_.pointDecimals = decimalsFor(5e-6);
+    model_.moveDecimals = decimalsFor(2e-6);
+  }
+
   void readRig() {
     if (!hasRig(asset_) && !movesNodes()) return;
     const AssetSkeleton rig = animatedSkeleton(asset_);
     weights_ = readWeights(asset_, geometry_, rig);
     normalizeWeights(weights_);
     model_.skeleton = rig.skeleton;
-    model_.joints = jointPaths(rig.skeleton);
     model_.stance = readNodePose(asset_, rig);
     jointNodes_ = rig.jointNode;
-    if (!clip_) return;
-    std::vector<Clip> clips = readClips(asset_, rig, model_.warnings);
-    if (clips[*clip_].duration() > 0) model_.clip = std::move(clips[*clip_]);
+    if (clip_) {
+      std::vector<Clip> clips = readClips(asset_, rig, model_.warnings);
+      if (clips[*clip_].duration() > 0) model_.clip = std::move(clips[*clip_]);
+    }
+    joinRoots();
+    model_.joints = jointPaths(model_.skeleton);
+    foldScales();
+  }
+
+  // Some readers take a skeleton of one root alone: several get a joint above them, which becomes the first.
+  void joinRoots() {
+    std::vector<Joint>& joints = model_.skeleton.joints;
+    if (std::count_if(joints.begin(), joints.end(), [](const Joint& joint) { return !joint.parent; }) < 2) return;
+    UniqueNames names;
+    for (const Joint& joint : joints) names.add(usdName(joint.name));
+    for (Joint& joint : joints) joint.parent = joint.parent ? *joint.parent + 1 : 0;
+    Joint root;
+    root.name = names.add("root");
+    joints.insert(joints.begin(), root);
+    model_.stance.locals.insert(model_.stance.locals.begin(), Transform());
+    for (std::size_t i = 0; i < weights_.joints.size(); ++i) weights_.joints[i] += weights_.weights[i] > 0 ? 1 : 0;
+    if (!model_.clip) return;
+    for (auto& track : model_.clip->translations) ++track.joint;
+    for (auto& track : model_.clip->rotations) ++track.joint;
+    for (auto& track : model_.clip->scales) ++track.joint;
+  }
+
+  // A SkelAnimation's scales have eleven bits. So each joint's frame is scaled, in bind pose and in motion alike, by
+  // what makes its scales 1 where they are uniform and stand still, and at most 1 along x where they change; its
+  // children's translations become lengths in the world.
+  void foldScales() {
+    std::vector<Joint>& joints = model_.skeleton.joints;
+    std::vector<double> own;
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+      own.push_back(std::abs(model_.clip ? joints[j].rest.scale.x() : model_.stance.locals[j].scale.x()));
+    }
+    if (model_.clip) {
+      for (const Track<Vec3f>& track : model_.clip->scales) {
+        own[track.joint] = 0;
+        for (const Vec3f& value : track.values)
+          own[track.joint] = std::max<double>(own[track.joint], std::abs(value.x()));
+      }
+    }
+    std::vector<double> ofParent;
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+      if (!(own[j] > 0)) own[j] = 1;
+      ofParent.push_back(joints[j].parent ? ofParent[*joints[j].parent] * own[*joints[j].parent] : 1);
+      for (Transform* local : {&joints[j].rest, &model_.stance.locals[j]}) {
+        local->translation *= ofParent[j];
+        local->scale /= own[j];
+      }
+    }
+    if (!model_.clip) return;
+    for (Track<Vec3f>& track : model_.clip->translations) {
+      for (Vec3f& value : track.values) value = (value.cast<double>() * ofParent[track.joint]).cast<float>();
+    }
+    for (Track<Vec3f>& track : model_.clip->scales) {
+      for (Vec3f& value : track.values) value = (value.cast<double>() / own[track.joint]).cast<float>();
+    }
   }
 
   bool movesNodes() const {
@@ -105,51 +156,106 @@ class ModelReader {
     const gltf::Mesh& source = document_.meshes[instance.mesh];
     const gltf::Primitive& primitive = source.primitives[instance.primitive];
     UsdMesh mesh;
-    const int first = static_cast<int>(instance.firstVertex);
-    for (; triangle_ < geometry_.triangles.size(); ++triangle_) {
-      const Triangle& t = geometry_.triangles[triangle_];
-      if (t[0] >= instance.firstVertex + instance.vertexCount) break;
-      for (const Index corner : t) mesh.corners.push_back(static_cast<int>(corner) - first);
-    }
+    readCorners(instance, mesh);
     if (mesh.corners.empty()) return;  // points or lines
     const std::string& nodeName = document_.nodes[instance.node].name;
     const std::string& name = nodeName.empty() ? source.name : nodeName;
     mesh.name = names_.add(usdName(name.empty() ? "mesh" : name));
     mesh.material = primitive.material;
-    const auto from = static_cast<std::ptrdiff_t>(instance.firstVertex);
-    const auto to = from + static_cast<std::ptrdiff_t>(instance.vertexCount);
-    mesh.points.assign(geometry_.positions.begin() + from, geometry_.positions.begin() + to);
-    if (primitive.attributes.find("NORMAL")) mesh.normals.assign(normals_.begin() + from, normals_.begin() + to);
+    const bool hasNormals = primitive.attributes.find("NORMAL").has_value();
+    for (const Index v : vertices_) {
+      mesh.points.push_back(geometry_.positions[instance.firstVertex + v]);
+      if (hasNormals) mesh.normals.push_back(normals_[instance.firstVertex + v]);
+    }
     readUvs(primitive, mesh);
-    readInfluences(instance, mesh);
-    readShapes(instance, source, primitive, mesh);
+    readColors(primitive, mesh);
+    if (!isStill_) {
+      readInfluences(instance.firstVertex, mesh);
+      readShapes(instance, source, primitive, mesh);
+    }
     model_.meshes.push_back(std::move(mesh));
   }
 
-  // Those that the base colour's texture asks for.
-  void readUvs(const gltf::Primitive& primitive, UsdMesh& mesh) const {
-    Index set = 0;
-    if (primitive.material) {
-      const auto& surface = document_.materials[*primitive.material].pbrMetallicRoughness;
-      if (surface && surface->baseColorTexture) set = surface->baseColorTexture->texCoord;
+  // The instance's triangles, whose vertices are numbered in the order in which the instance has them.
+  void readCorners(const PrimitiveInstance& instance, UsdMesh& mesh) {
+    const std::size_t first = triangle_;
+    std::vector<int> number(instance.vertexCount, -1);
+    for (; triangle_ < geometry_.triangles.size(); ++triangle_) {
+      const Triangle& t = geometry_.triangles[triangle_];
+      if (t[0] >= instance.firstVertex + instance.vertexCount) break;
+      for (const Index corner : t) number[corner - instance.firstVertex] = 0;
     }
-    const std::optional<Index> accessor = primitive.attributes.find(fmt::format("TEXCOORD_{}", set));
-    if (!accessor) return;
-    const std::vector<float> values = readFloats(asset_, *accessor);
-    for (std::size_t v = 0; v + 1 < values.size(); v += 2) mesh.uvs.emplace_back(values[v], 1 - values[v + 1]);
+    vertices_.clear();
+    for (Index v = 0; v < instance.vertexCount; ++v) {
+      if (number[v] < 0) continue;
+      number[v] = static_cast<int>(vertices_.size());
+      vertices_.push_back(v);
+    }
+    for (std::size_t t = first; t < triangle_; ++t) {
+      for (const Index corner : geometry_.triangles[t]) mesh.corners.push_back(number[corner - instance.firstVertex]);
+    }
   }
 
-  void readInfluences(const PrimitiveInstance& instance, UsdMesh& mesh) const {
-    const Index end = instance.firstVertex + instance.vertexCount;
-    for (Index v = instance.firstVertex; v < end && weights_.slots > 0; ++v) {
+  // Those that the material's textures ask for; the first where none does.
+  void readUvs(const gltf::Primitive& primitive, UsdMesh& mesh) const {
+    std::set<Index> sets = {0};
+    if (primitive.material && !surfaces_[*primitive.material].uvSets.empty())
+      sets = surfaces_[*primitive.material].uvSets;
+    for (const Index set : sets) {
+      const std::optional<Index> accessor = primitive.attributes.find(fmt::format("TEXCOORD_{}", set));
+      if (!accessor) continue;
+      const std::vector<float> values = readFloats(asset_, *accessor);
+      std::vector<Vec2f>& uvs = mesh.uvs[set];
+      for (const Index v : vertices_) uvs.emplace_back(values[2 * v], 1 - values[2 * v + 1]);
+    }
+  }
+
+  void readColors(const gltf::Primitive& primitive, UsdMesh& mesh) {
+    const std::optional<Index> accessor = primitive.attributes.find("COLOR_0");
+    if (!accessor) return;
+    const UsdSurface* surface = primitive.material ? &surfaces_[*primitive.material] : nullptr;
+    const Vec4f factor = surface != nullptr ? surface->baseColor : Vec4f(Vec4f::Ones());
+    const std::size_t parts = accessorInfo(asset_, *accessor).components;
+    const std::vector<float> values = readFloats(asset_, *accessor);
+    bool isWhite = true;
+    for (const Index v : vertices_) {
+      Vec4f color = Vec4f::Ones();
+      for (std::size_t i = 0; i < std::min<std::size_t>(parts, 4); ++i)
+        color[static_cast<int>(i)] = values[parts * v + i];
+      isWhite = isWhite && color == Vec4f::Ones();
+      color.array() *= factor.array();
+      mesh.colors.emplace_back(color.head<3>());
+      mesh.opacities.push_back(color.w());
+    }
+    const bool isLost = surface != nullptr && surface->isTextured;
+    if (isLost && !isWhite) {
+      model_.warnings.add("vertex-colors", "colours of vertices below a texture are left out", mesh.name);
+    }
+    if (isLost || isWhite) mesh.colors.clear();
+    if (isLost || isWhite || surface == nullptr || !surface->hasOpacity) mesh.opacities.clear();
+    keepOneOfAll(mesh.colors);
+    keepOneOfAll(mesh.opacities);
+  }
+  template <typename Value>
+  static void keepOneOfAll(std::vector<Value>& values) {
+    if (std::all_of(values.begin(), values.end(), [&](const Value& value) { return value == values[0]; })) {
+      values.resize(std::min<std::size_t>(values.size(), 1));
+    }
+  }
+
+  void readInfluences(Index firstVertex, UsdMesh& mesh) const {
+    for (const Index v : vertices_) {
       for (Index slot = 0; slot < weights_.slots; ++slot) {
-        if (weights_.weightsOf(v)[slot] > 0) mesh.influences = std::max(mesh.influences, static_cast<int>(slot) + 1);
+        if (weights_.weightsOf(firstVertex + v)[slot] > 0) {
+          mesh.influences = std::max(mesh.influences, static_cast<int>(slot) + 1);
+        }
       }
     }
-    for (Index v = instance.firstVertex; v < end && mesh.influences > 0; ++v) {
+    if (mesh.influences == 0) return;
+    for (const Index v : vertices_) {
       for (int slot = 0; slot < mesh.influences; ++slot) {
-        mesh.joints.push_back(static_cast<int>(weights_.jointsOf(v)[slot]));
-        mesh.weights.push_back(weights_.weightsOf(v)[slot]);
+        mesh.joints.push_back(static_cast<int>(weights_.jointsOf(firstVertex + v)[slot]));
+        mesh.weights.push_back(weights_.weightsOf(firstVertex + v)[slot]);
       }
       // A vertex that the file gives no weights stays with the first joint, where USD would have it nowhere.
       float& strongest = mesh.weights[mesh.weights.size() - static_cast<std::size_t>(mesh.influences)];
@@ -161,7 +267,7 @@ class ModelReader {
                   UsdMesh& mesh) {
     const std::size_t count = primitive.targets.size();
     if (count == 0) return;
-    std::vector<Track<float>> tracks = shapeTracks(asset_, instance.node, source, count, clip_);
+    std::vector<Track<float>> tracks = shapeTracks(asset_, instance.node, count, clip_);
     const Mat3 linear = instance.toWorld.linear(), turn = linear.inverse().transpose();
     for (std::size_t s = 0; s < count; ++s) {
       const auto offsetsOf = [&](const char* attribute, const Mat3& by) {
@@ -179,15 +285,28 @@ class ModelReader {
       const std::vector<Vec3f> normals = hasNormals ? offsetsOf("NORMAL", turn) : std::vector<Vec3f>();
       UsdShape shape;
       shape.name = shapeNames_.add(usdName(shapeName(source, s)));
-      for (std::size_t v = 0; v < offsets.size(); ++v) {
+      for (std::size_t number = 0; number < vertices_.size(); ++number) {
+        const Index v = vertices_[number];
         if (offsets[v].isZero(0) && (!hasNormals || normals[v].isZero(0))) continue;
-        shape.vertices.push_back(static_cast<int>(v));
+        shape.vertices.push_back(static_cast<int>(number));
         shape.offsets.push_back(offsets[v]);
         if (hasNormals) shape.normalOffsets.push_back(normals[v]);
       }
       shape.weight = std::move(tracks[s]);
       mesh.shapes.push_back(std::move(shape));
     }
+  }
+
+  // The fewest that step by that much of the model's size or less.
+  int decimalsFor(double step) const {
+    constexpr int kMost = 12;
+    Box box;
+    for (const UsdMesh& mesh : model_.meshes) {
+      for (const Vec3f& point : mesh.points) box.add(point.cast<double>());
+    }
+    int decimals = 0;
+    for (double unit = 1; decimals < kMost && unit > step * box.diagonal(); unit /= 10) ++decimals;
+    return decimals;
   }
 
   void tellOfNodeAnimation() {
@@ -203,20 +322,27 @@ class ModelReader {
 
   const Asset& asset_;
   const gltf::Document& document_;
-  std::optional<Index> clip_;
+  const std::vector<UsdSurface>& surfaces_;
   Geometry geometry_;
+  bool isStill_ = false;
+  std::optional<Index> clip_;
   std::vector<Vec3f> normals_;
   SkinWeights weights_;
   std::vector<Index> jointNodes_;
-  std::size_t triangle_ = 0;  // the next of the geometry's
+  std::size_t triangle_ = 0;     // the next of the geometry's
+  std::vector<Index> vertices_;  // of the instance that is being read: those that have triangles
   UniqueNames names_, shapeNames_;
   UsdModel model_;
 };
 
 }  // namespace
 
-UsdModel readUsdModel(const Asset& asset, const UsdOptions& options) {
-  return ModelReader(asset, options).read();
+UsdModel readUsdModel(const Asset& asset, const std::vector<UsdSurface>& surfaces, const UsdOptions& options) {
+  return ModelReader(asset, surfaces).read(options);
+}
+
+UsdModel readStillUsdModel(const Asset& asset, const std::vector<UsdSurface>& surfaces, const UsdStillSurface& still) {
+  return ModelReader(asset, surfaces).readStill(still);
 }
 
 }  // namespace limber

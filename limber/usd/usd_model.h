@@ -8,6 +8,7 @@
 
 #include "limber/asset/rig_io.h"
 #include "limber/skeleton/clip.h"
+#include "limber/usd/usd_surface.h"
 #include "limber/usd/usd_write.h"
 
 namespace limber {
@@ -21,16 +22,18 @@ struct UsdShape {
   Track<float> weight;               // over time in seconds; one key where it stands still
 };
 
-// A primitive as one node shows it, in the world of the bind pose.
+// A primitive as one node shows it, in the world of the bind pose: the vertices that have triangles.
 struct UsdMesh {
   std::string name;
-  std::vector<Vec3f> points, normals;  // normals: as many, or none
-  std::vector<Vec2f> uvs;              // as many, or none; v grows upwards
-  std::vector<int> corners;            // three for each triangle
-  std::optional<Index> material;       // of the document
-  int influences = 0;                  // for each vertex; 0: no joint moves the mesh
-  std::vector<int> joints;             // #points * influences
-  std::vector<float> weights;          // likewise, summing to 1
+  std::vector<Vec3f> points, normals;       // normals: as many, or none
+  std::map<Index, std::vector<Vec2f>> uvs;  // by their sets, as many of each; v grows upwards
+  std::vector<Vec3f> colors;                // as many, one for all, or none; times the material's
+  std::vector<float> opacities;             // likewise
+  std::vector<int> corners;                 // three for each triangle
+  std::optional<Index> material;            // of the document
+  int influences = 0;                       // for each vertex; 0: no joint moves the mesh
+  std::vector<int> joints;                  // #points * influences
+  std::vector<float> weights;               // likewise, summing to 1
   std::vector<UsdShape> shapes;
 };
 
@@ -40,9 +43,13 @@ struct UsdModel {
   std::vector<std::string> joints;  // #J paths, "root/child"
   std::optional<Clip> clip;         // one that has keys
   Pose stance;                      // #J, how the joints stand without a clip
+  // Of text, so that rounding is at most 2.5 millionths of the model's size, and 1 where joints add theirs up.
+  int pointDecimals = 6, moveDecimals = 6;
   Warnings warnings;
 };
 
-UsdModel readUsdModel(const Asset& asset, const UsdOptions& options);
+// `surfaces`: of the document's materials.
+UsdModel readUsdModel(const Asset& asset, const std::vector<UsdSurface>& surfaces, const UsdOptions& options);
+UsdModel readStillUsdModel(const Asset& asset, const std::vector<UsdSurface>& surfaces, const UsdStillSurface& still);
 
 }  // namespace limber

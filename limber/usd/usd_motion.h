@@ -2,7 +2,7 @@
 #pragma once
 
 #include "limber/usd/usd_model.h"
-#include "limber/usd/usd_text.h"
+#include "limber/usd/usd_stage.h"
 
 namespace limber {
 
@@ -18,15 +18,13 @@ class UsdMotion {
   // The last moment of all, in seconds; 0 where everything stands still.
   double duration() const;
 
-  // The prim "Motion": joints and weights of blend shapes, sampled at the keys of what moves; each once where it stands
-  // still.
-  void write(UsdText& text) const;
+  // The prim "Motion": joints and weights of blend shapes, sampled at the keys of what moves, but where interpolation
+  // between the neighbours gives the same; each once where it stands still.
+  UsdPrim prim() const;
 
  private:
-  void writeJoints(UsdText& text) const;
-  void writeShapes(UsdText& text) const;
-  void valuesOverTime(std::string_view name, const std::vector<double>& moments, const UsdText::Values& values,
-                      UsdText& text) const;
+  void addJoints(UsdPrim& prim) const;
+  void addShapes(UsdPrim& prim) const;
   Pose poseAt(double seconds) const;
 
   const UsdModel& model_;

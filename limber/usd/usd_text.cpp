@@ -8,153 +8,156 @@ namespace limber {
 
 namespace {
 
-void appendNumbers(std::string& out, std::initializer_list<float> values, int digits) {
-  char before = '(';
-  for (const float value : values) {
-    out += before;
-    appendUsd(out, value, digits);
-    before = ',';
-  }
-  out += ')';
-}
-
-void appendValue(std::string& out, int value) {
-  fmt::format_to(std::back_inserter(out), "{}", value);
-}
-void appendValue(std::string& out, float value) {
-  appendUsd(out, value);
-}
-void appendValue(std::string& out, const Vec2f& value) {
-  appendUsd(out, value);
-}
-void appendValue(std::string& out, const Vec3f& value) {
-  appendUsd(out, value);
-}
-
-// Rows, which in USD are the images of the axes and, last, the translation.
-void appendValue(std::string& out, const Affine& value) {
-  const char* before = "(";
-  for (int row = 0; row < 4; ++row) {
-    out += before;
-    const char* between = "(";
-    for (int column = 0; column < 4; ++column) {
-      fmt::format_to(std::back_inserter(out), "{}{:.10g}", between, value.matrix()(column, row) + 0.0);
-      between = ",";
+class UsdTextWriter {
+ public:
+  std::string write(const UsdStage& stage) {
+    line("#usda 1.0");
+    line("(");
+    ++depth_;
+    line(fmt::format("defaultPrim = \"{}\"", kUsdRoot));
+    line("metersPerUnit = 1");
+    line("upAxis = \"Y\"");
+    if (stage.endTimeCode > 0) {
+      line("startTimeCode = 0");
+      line(fmt::format("endTimeCode = {}", stage.endTimeCode));
+      line(fmt::format("timeCodesPerSecond = {}", stage.timeCodesPerSecond));
     }
-    out += ')';
-    before = ",";
+    --depth_;
+    line(")");
+    writePrim(stage.root);
+    return std::move(out_);
   }
-  out += ')';
-}
+
+ private:
+  void line(std::string_view text) {
+    out_.append(depth_, ' ');
+    out_ += text;
+    out_ += '\n';
+  }
+
+  void writePrim(const UsdPrim& prim) {
+    line(fmt::format("def {} \"{}\"{}", prim.type, prim.name, prim.schemas.empty() ? "" : " ("));
+    if (!prim.schemas.empty()) {
+      line(fmt::format(" prepend apiSchemas = [\"{}\"]", fmt::join(prim.schemas, "\", \"")));
+      line(")");
+    }
+    line("{");
+    ++depth_;
+    for (const UsdProperty& property : prim.properties) writeProperty(property);
+    for (const UsdPrim& child : prim.children) writePrim(child);
+    --depth_;
+    line("}");
+  }
+
+  void writeProperty(const UsdProperty& property) {
+    const bool isRelationship = property.type.empty();
+    decimals_ = property.decimals;
+    type_ = property.type;
+    const std::string start = fmt::format("{}{} {}", property.isUniform && !isRelationship ? "uniform " : "",
+                                          isRelationship ? "rel" : property.type, property.name);
+    if (!property.samples.empty()) writeSamples(start, property);
+    if (!property.samples.empty() && std::holds_alternative<std::monostate>(property.value)) return;
+    out_.append(depth_, ' ');
+    out_ += start;
+    if (!property.targets.empty()) {
+      const std::string targets = fmt::format("<{}>", fmt::join(property.targets, ">, <"));
+      out_ += isRelationship ? " = " : ".connect = ";
+      out_ += property.targets.size() > 1 ? fmt::format("[{}]", targets) : targets;
+    } else if (!std::holds_alternative<std::monostate>(property.value)) {
+      out_ += " = ";
+      std::visit([this](const auto& held) { append(held); }, property.value);
+    }
+    writeMetadata(property);
+    out_ += '\n';
+  }
+
+  void writeSamples(const std::string& start, const UsdProperty& property) {
+    line(start + ".timeSamples = {");
+    for (const auto& [time, value] : property.samples) {
+      out_.append(depth_, ' ');
+      fmt::format_to(std::back_inserter(out_), " {}: ", time);
+      std::visit([this](const auto& held) { append(held); }, value);
+      out_ += ",\n";
+    }
+    line("}");
+  }
+
+  void writeMetadata(const UsdProperty& property) {
+    if (!property.elementSize && property.interpolation.empty()) return;
+    out_ += " (\n";
+    if (property.elementSize) line(fmt::format(" elementSize = {}", *property.elementSize));
+    if (!property.interpolation.empty()) line(fmt::format(" interpolation = \"{}\"", property.interpolation));
+    out_.append(depth_, ' ');
+    out_ += ')';
+  }
+
+  void append(std::monostate) {}
+  void append(bool value) { out_ += value ? '1' : '0'; }
+  void append(int value) { fmt::format_to(std::back_inserter(out_), "{}", value); }
+  void append(float value) {
+    if (type_ == "half3[]") value = static_cast<float>(Eigen::half(value));  // what readers make of it
+    if (!decimals_) {
+      fmt::format_to(std::back_inserter(out_), "{}", value + 0.0f);  // no negative zeros
+      return;
+    }
+    fmt::format_to(std::back_inserter(out_), "{:.{}f}", value, *decimals_);
+    if (*decimals_ > 0) {
+      while (out_.back() == '0') out_.pop_back();
+      if (out_.back() == '.') out_.pop_back();
+    }
+    if (out_.ends_with("-0")) out_.replace(out_.size() - 2, 2, "0");
+  }
+  void append(double value) { fmt::format_to(std::back_inserter(out_), "{:.10g}", value + 0.0); }
+  void append(const std::string& value) {
+    const std::string_view quote = type_ != "asset" ? "\"" : value.find('@') == std::string::npos ? "@" : "@@@";
+    out_ += quote;
+    out_ += value;
+    out_ += quote;
+  }
+  void append(const Vec2f& value) { appendTuple(value.x(), value.y()); }
+  void append(const Vec3f& value) { appendTuple(value.x(), value.y(), value.z()); }
+  void append(const Vec4f& value) { appendTuple(value.x(), value.y(), value.z(), value.w()); }
+  void append(const Eigen::Quaternionf& value) { appendTuple(value.w(), value.x(), value.y(), value.z()); }
+  // Rows, which in USD are the images of the axes and, last, the translation.
+  void append(const Affine& value) {
+    for (int row = 0; row < 4; ++row) {
+      const Vec4 column = value.matrix().col(row);
+      out_ += row == 0 ? '(' : ',';
+      appendTuple(column.x(), column.y(), column.z(), column.w());
+    }
+    out_ += ')';
+  }
+  template <typename Value>
+  void append(const std::vector<Value>& values) {
+    out_ += '[';
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (i > 0) out_ += ',';
+      append(values[i]);
+    }
+    out_ += ']';
+  }
+  template <typename... Numbers>
+  void appendTuple(Numbers... numbers) {
+    char before = '(';
+    const auto appendOne = [&](auto number) {
+      out_ += before;
+      append(number);
+      before = ',';
+    };
+    (appendOne(numbers), ...);
+    out_ += ')';
+  }
+
+  std::string out_;
+  std::size_t depth_ = 0;
+  std::string_view type_;        // of the property that is being written
+  std::optional<int> decimals_;  // likewise
+};
 
 }  // namespace
 
-std::string usdNumber(double value) {
-  return fmt::format("{:.7g}", value + 0.0);
-}
-
-std::string usdName(std::string_view text) {
-  const auto isLetter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
-  const auto isDigit = [](char c) { return c >= '0' && c <= '9'; };
-  std::string name;
-  for (const char c : text) {
-    if (static_cast<unsigned char>(c) >= 0x80 && static_cast<unsigned char>(c) < 0xc0) continue;  // inside a letter
-    name += isLetter(c) || isDigit(c) ? c : '_';
-  }
-  if (name.empty() || isDigit(name[0])) name.insert(0, "_");
-  return name;
-}
-
-void appendUsd(std::string& out, float value, int digits) {
-  value += 0.0f;  // no negative zeros
-  if (digits > 0) {
-    fmt::format_to(std::back_inserter(out), "{:.{}g}", value, digits);
-  } else {
-    fmt::format_to(std::back_inserter(out), "{}", value);
-  }
-}
-
-void appendUsd(std::string& out, const Vec2f& value, int digits) {
-  appendNumbers(out, {value.x(), value.y()}, digits);
-}
-
-void appendUsd(std::string& out, const Vec3f& value, int digits) {
-  appendNumbers(out, {value.x(), value.y(), value.z()}, digits);
-}
-
-void appendUsd(std::string& out, const Eigen::Quaternionf& value, int digits) {
-  appendNumbers(out, {value.w(), value.x(), value.y(), value.z()}, digits);
-}
-
-void UsdText::indent() {
-  out_.append(2 * depth_, ' ');
-}
-
-void UsdText::line(std::string_view text) {
-  indent();
-  out_ += text;
-  out_ += '\n';
-}
-
-void UsdText::open(std::string_view type, std::string_view name, const std::vector<std::string_view>& schemas) {
-  line(fmt::format("def {} \"{}\"{}", type, name, schemas.empty() ? "" : " ("));
-  if (!schemas.empty()) {
-    std::string list;
-    for (const std::string_view schema : schemas) list += fmt::format("{}\"{}\"", list.empty() ? "" : ", ", schema);
-    line(fmt::format("  prepend apiSchemas = [{}]", list));
-    line(")");
-  }
-  line("{");
-  ++depth_;
-}
-
-void UsdText::close() {
-  --depth_;
-  line("}");
-}
-
-template <typename Value>
-void UsdText::arrayOf(std::string_view name, std::span<const Value> values, const std::vector<std::string>& metadata) {
-  indent();
-  fmt::format_to(std::back_inserter(out_), "{} = [", name);
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (i > 0) out_ += ',';
-    appendValue(out_, values[i]);
-  }
-  out_ += metadata.empty() ? "]\n" : "] (\n";
-  if (metadata.empty()) return;
-  for (const std::string& entry : metadata) line("  " + entry);
-  line(")");
-}
-
-void UsdText::array(std::string_view name, std::span<const int> values, const std::vector<std::string>& metadata) {
-  arrayOf(name, values, metadata);
-}
-void UsdText::array(std::string_view name, std::span<const float> values, const std::vector<std::string>& metadata) {
-  arrayOf(name, values, metadata);
-}
-void UsdText::array(std::string_view name, std::span<const Vec2f> values, const std::vector<std::string>& metadata) {
-  arrayOf(name, values, metadata);
-}
-void UsdText::array(std::string_view name, std::span<const Vec3f> values, const std::vector<std::string>& metadata) {
-  arrayOf(name, values, metadata);
-}
-void UsdText::matrices(std::string_view name, std::span<const Affine> values) {
-  arrayOf(name, values, {});
-}
-
-void UsdText::list(std::string_view start, std::size_t number, const Values& values, std::string_view end) {
-  indent();
-  out_ += start;
-  values(number, out_);
-  out_ += end;
-  out_ += '\n';
-}
-
-void UsdText::tokens(std::string_view name, const std::vector<std::string>& values) {
-  std::string list;
-  for (const std::string& value : values) list += fmt::format("{}\"{}\"", list.empty() ? "" : ", ", value);
-  line(fmt::format("{} = [{}]", name, list));
+std::string usdText(const UsdStage& stage) {
+  return UsdTextWriter().write(stage);
 }
 
 }  // namespace limber

@@ -6,11 +6,13 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "limber/asset/accessor.h"
+#include "limber/asset/geometry.h"
 #include "limber/asset/read.h"
 #include "limber/asset/stored_archive.h"
 #include "limber/asset/testing/gltf_builder.h"
 #include "limber/asset/testing/scene_builder.h"
-#include "limber/usd/usd_text.h"
+#include "limber/usd/usd_stage.h"
 
 namespace limber {
 namespace {
@@ -24,8 +26,12 @@ Asset everything() {
   return readAsset(testing::everythingModel().glb(), "everything.glb");
 }
 
-std::string textOf(const Asset& asset, const UsdOptions& options = {}) {
-  return usdFiles(asset, options).text;
+std::string textOf(const UsdFiles& files) {
+  return {files.stage.begin(), files.stage.end()};
+}
+std::string textOf(const Asset& asset, UsdOptions options = {}) {
+  options.form = UsdForm::kText;
+  return textOf(usdFiles(asset, options));
 }
 
 // How often a text stands in another.
@@ -51,6 +57,19 @@ std::vector<double> numbersOf(const std::string& text, const std::string& name) 
   return numbers;
 }
 
+TEST(StillUsdFiles, HoldTheSurfaceThatIsGivenAndNothingThatMoves) {
+  const Asset asset = everything();
+  const Geometry geometry = collectGeometry(asset);
+  std::vector<Vec3f> points = geometry.positions;
+  const std::vector<Vec3f> normals(points.size(), Vec3f(0, 0, 1));
+  const Bytes before = stillUsdFiles(asset, {points, normals}).stage;
+  EXPECT_LT(before.size(), usdFiles(asset).stage.size());
+  for (Vec3f& point : points) point.y() += 1;
+  EXPECT_NE(stillUsdFiles(asset, {points, normals}).stage, before);
+  points.pop_back();
+  EXPECT_THROW(stillUsdFiles(asset, {points, normals}), Error);
+}
+
 TEST(UsdName, IsAnIdentifier) {
   EXPECT_EQ(usdName("left.hand 2"), "left_hand_2");
   EXPECT_EQ(usdName("2nd"), "_2nd");
@@ -60,11 +79,11 @@ TEST(UsdName, IsAnIdentifier) {
 }
 
 TEST(UsdFiles, AModelWithEverything) {
-  const UsdFiles files = usdFiles(everything());
-  const std::string& text = files.text;
-  EXPECT_EQ(text.rfind("#usda 1.0\n(\n  defaultPrim = \"Model\"\n  metersPerUnit = 1\n  upAxis = \"Y\"\n", 0), 0u);
+  const UsdFiles files = usdFiles(everything(), {{}, "image", UsdForm::kText});
+  const std::string text = textOf(files);
+  EXPECT_EQ(text.rfind("#usda 1.0\n(\n defaultPrim = \"Model\"\n metersPerUnit = 1\n upAxis = \"Y\"\n", 0), 0u);
   EXPECT_THAT(text, HasSubstr("def SkelRoot \"Model\" ("));
-  EXPECT_THAT(text, HasSubstr("uniform token[] joints = [\"root\", \"root/tip\"]"));
+  EXPECT_THAT(text, HasSubstr("uniform token[] joints = [\"root\",\"root/tip\"]"));
   EXPECT_THAT(numbersOf(text, "point3f[] points"), ElementsAre(0, 1.5, 0, 1, 1.5, 0, 0, 2.5, 0, 1, 2.5, 0));
   EXPECT_THAT(numbersOf(text, "normal3f[] normals"), ElementsAre(0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1));
   EXPECT_THAT(numbersOf(text, "int[] faceVertexIndices"), ElementsAre(0, 1, 2, 2, 1, 3));
@@ -111,8 +130,65 @@ TEST(UsdFiles, WithoutAClipTheJointsStandAsTheirNodesDo) {
   scene.addNode({{"name", "body"}, {"mesh", mesh}, {"skin", skin}});
   const std::string text = textOf(scene.build());
   EXPECT_THAT(numbersOf(text, "float3[] translations"), ElementsAre(0, 5, 0));
+  const std::vector<double> rest = numbersOf(text, "uniform matrix4d[] restTransforms");
+  ASSERT_EQ(rest.size(), 16u);
+  EXPECT_EQ(rest[13], 5);
   EXPECT_THAT(text, Not(HasSubstr("timeSamples")));
   EXPECT_THAT(text, Not(HasSubstr("endTimeCode")));
+}
+
+TEST(UsdFiles, SeveralRootsGetAJointAbove) {
+  SceneBuilder scene;
+  const Index mesh = scene.addTetrahedron();
+  const Index left = scene.addNode({{"name", "root"}}), right = scene.addNode({{"name", "right"}});
+  const Index skin = scene.addSkin({left, right}, {});
+  scene.bindRigidly(mesh, {0, 0, 1, 1});
+  scene.addNode({{"name", "body"}, {"mesh", mesh}, {"skin", skin}});
+  const std::string text = textOf(scene.build());
+  EXPECT_THAT(text, HasSubstr("joints = [\"root_2\",\"root_2/root\",\"root_2/right\"]"));
+  EXPECT_THAT(numbersOf(text, "int[] primvars:skel:jointIndices"), ElementsAre(1, 1, 2, 2));
+}
+
+TEST(UsdFiles, ScalesThatStandStillGoIntoTheFrames) {
+  SceneBuilder scene;
+  const Index mesh = scene.addTetrahedron();
+  const Index tip = scene.addNode({{"name", "tip"}, {"translation", {0, 3, 0}}});
+  const Index root = scene.addNode({{"name", "root"}, {"children", {tip}}, {"scale", {0.01, 0.01, 0.01}}});
+  const Index skin = scene.addSkin({root, tip}, {Affine(Eigen::Scaling(100.0)), Affine(Eigen::Scaling(100.0))});
+  scene.bindRigidly(mesh, {0, 0, 1, 1});
+  scene.addNode({{"name", "body"}, {"mesh", mesh}, {"skin", skin}});
+  const std::string text = textOf(scene.build());
+  EXPECT_THAT(numbersOf(text, "half3[] scales"), ElementsAre(1, 1, 1, 1, 1, 1));
+  EXPECT_THAT(numbersOf(text, "float3[] translations"), ElementsAre(0, 0, 0, 0, 0.03, 0));
+}
+
+TEST(UsdFiles, VerticesWithoutTrianglesAreLeftOut) {
+  SceneBuilder scene;
+  const Index mesh = scene.addTetrahedron();
+  scene.addNode({{"mesh", mesh}});
+  Asset asset = scene.build();
+  const std::vector<std::uint8_t> one = {3, 1, 2};
+  asset.document.meshes[mesh].primitives[0].indices = addAccessor(asset, {3, 1, ComponentType::kU8}, one, kIndexTarget);
+  const std::string text = textOf(asset);
+  EXPECT_EQ(numbersOf(text, "point3f[] points").size(), 9u);
+  EXPECT_THAT(numbersOf(text, "int[] faceVertexIndices"), ElementsAre(2, 0, 1));
+}
+
+TEST(UsdFiles, ColoursOfVerticesAreMultipliedByTheMaterials) {
+  Asset asset = everything();
+  gltf::Document& document = asset.document;
+  document.materials[0].pbrMetallicRoughness->baseColorTexture.reset();
+  document.materials[0].pbrMetallicRoughness->baseColorFactor = Vec4(1, 0.5, 0.5, 0.5);
+  document.materials[0].alphaMode = "BLEND";
+  const std::vector<float> colors = {1, 1, 1, 1, 0, 1, 0.5, 1, 0, 0, 0, 0.5, 1, 1, 1, 1};
+  document.meshes[0].primitives[0].attributes.set("COLOR_0", addFloatAccessor(asset, colors, 4, kVertexTarget));
+  const std::string text = textOf(asset);
+  EXPECT_THAT(numbersOf(text, "color3f[] primvars:displayColor"),
+              ElementsAre(1, .5, .5, 0, .5, .25, 0, 0, 0, 1, .5, .5));
+  EXPECT_THAT(numbersOf(text, "float[] primvars:displayOpacity"), ElementsAre(.5, .5, .25, .5));
+  EXPECT_THAT(text, HasSubstr("inputs:diffuseColor.connect = </Model/Materials/red/VertexColor.outputs:result>"));
+  EXPECT_THAT(text, HasSubstr("inputs:opacity.connect = </Model/Materials/red/VertexOpacity.outputs:result>"));
+  EXPECT_THAT(text, HasSubstr("float3 inputs:fallback = (1,0.5,0.5)"));
 }
 
 TEST(UsdFiles, AModelWithoutARigIsMeshesAlone) {
@@ -175,15 +251,14 @@ TEST(UsdFiles, VerticesWithoutWeightsStayWithTheFirstJoint) {
 TEST(EncodeUsdz, FilesLieAtMultiplesOf64AndComeBack) {
   const UsdFiles files = usdFiles(everything());
   const Bytes archive = encodeUsdz(files);
-  const std::map<std::string, Bytes> back = readStoredArchive(archive, "model.usdz");
+  const std::map<std::string, Bytes> back = readZipArchive(archive, "model.usdz");
   ASSERT_EQ(back.size(), 2u);
-  const Bytes& text = back.at("model.usda");
-  EXPECT_EQ(std::string(text.begin(), text.end()), files.text);
+  EXPECT_EQ(back.at("model.usdc"), files.stage);
   EXPECT_EQ(back.at("image_0.png"), files.images[0].bytes);
   const auto placeOf = [&](const auto& bytes) {
     return std::search(archive.begin(), archive.end(), bytes.begin(), bytes.end()) - archive.begin();
   };
-  EXPECT_EQ(placeOf(files.text) % 64, 0);
+  EXPECT_EQ(placeOf(files.stage) % 64, 0);
   EXPECT_EQ(placeOf(files.images[0].bytes) % 64, 0);
   EXPECT_EQ(encodeUsdz(files), archive);
 }
@@ -191,6 +266,7 @@ TEST(EncodeUsdz, FilesLieAtMultiplesOf64AndComeBack) {
 TEST(IsUsdFormat, GoesByTheExtension) {
   EXPECT_TRUE(isUsdFormat("a/b.USDZ"));
   EXPECT_TRUE(isUsdFormat("b.usda"));
+  EXPECT_TRUE(isUsdFormat("b.usdc"));
   EXPECT_FALSE(isUsdFormat("b.glb"));
 }
 
