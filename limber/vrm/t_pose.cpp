@@ -1,0 +1,196 @@
+#include "limber/vrm/t_pose.h"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "limber/anatomy/anatomy.h"
+#include "limber/asset/geometry.h"
+#include "limber/asset/humanoid_nodes.h"
+#include "limber/asset/pose_io.h"
+#include "limber/core/rotation.h"
+#include "limber/matching/neutral_pose.h"
+#include "limber/vrm/vrm_bones.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kSamePlace = 1e-6;  // of the skeleton's size
+
+std::optional<Index> jointOf(std::span<const HumanoidJoint> bones, std::string_view bone) {
+  const auto found = std::find_if(bones.begin(), bones.end(), [&](const HumanoidJoint& j) { return j.bone == bone; });
+  return found == bones.end() ? std::nullopt : std::optional(found->joint);
+}
+
+// The neutral pose as locals. Joints that it moves without turning their parents have their translations changed.
+Pose poseOf(const NeutralPose& neutral, const Skeleton& skeleton, const Pose& resting) {
+  const Quat back = neutral.toBody.conjugate();
+  Box box;
+  for (const Vec3& place : neutral.positions) box.add(place);
+  Pose pose = resting;
+  std::vector<Affine> globals;
+  for (Index j = 0; j < skeleton.jointCount(); ++j) {
+    const std::optional<Index> parent = skeleton.joints[j].parent;
+    const Quat above = parent ? Quat(back * neutral.rotations[*parent]) : Quat::Identity();
+    Transform& local = pose.locals[j];
+    local.rotation = (above.conjugate() * back * neutral.rotations[j]).normalized();
+    const Affine parentGlobal = parent ? globals[*parent] : Affine::Identity();
+    const Vec3 wanted = back * neutral.positions[j];
+    if ((parentGlobal * local.translation - wanted).norm() > kSamePlace * box.diagonal()) {
+      local.translation = parentGlobal.inverse(Eigen::Affine) * wanted;
+    }
+    globals.push_back(parentGlobal * local.toAffine());
+  }
+  return pose;
+}
+
+// Turns single bones of a pose to where they are to point.
+class BoneAimer {
+ public:
+  BoneAimer(const Skeleton& skeleton, TPose& tPose, std::span<const HumanoidJoint> bones)
+      : skeleton_(skeleton), tPose_(tPose), bones_(bones) {}
+
+  // The bone from one joint to the other; nothing where either is missing. `direction` in VRM's space; its own height
+  // is kept where `levelOnly`, so that it is turned about the vertical alone.
+  void aim(std::string_view from, std::string_view to, const Vec3& direction, bool levelOnly = false) {
+    const std::optional<Index> joint = jointOf(bones_, from), end = jointOf(bones_, to);
+    if (!joint || !end) return;
+    const std::vector<Vec3> places = posePositions(skeleton_, tPose_.pose);
+    Vec3 now = tPose_.toVrm * (places[*end] - places[*joint]), wanted = direction;
+    if (levelOnly) now.y() = 0;
+    if (now.norm() < 1e-9 || angleBetween(shortestRotation(now, wanted), Quat::Identity()) < 1e-9) return;
+    turn(*joint, tPose_.toVrm.conjugate() * shortestRotation(now, wanted) * tPose_.toVrm);
+  }
+
+ private:
+  // `by` in the skeleton's space.
+  void turn(Index joint, const Quat& by) {
+    Quat above = Quat::Identity();
+    for (std::optional<Index> j = skeleton_.joints[joint].parent; j; j = skeleton_.joints[*j].parent) {
+      above = tPose_.pose.locals[*j].rotation * above;
+    }
+    Quat& local = tPose_.pose.locals[joint].rotation;
+    local = (above.conjugate() * by * above * local).normalized();
+  }
+
+  const Skeleton& skeleton_;
+  TPose& tPose_;
+  std::span<const HumanoidJoint> bones_;
+};
+
+void aimLimbs(BoneAimer& aimer) {
+  for (const std::string side : {"left", "right"}) {
+    const Vec3 outward = side == "left" ? Vec3(Vec3::UnitX()) : Vec3(-Vec3::UnitX());
+    const Vec3 down = -Vec3::UnitY(), ahead = Vec3::UnitZ();
+    aimer.aim(side + "UpperArm", side + "LowerArm", outward);
+    aimer.aim(side + "LowerArm", side + "Hand", outward);
+    aimer.aim(side + "Hand", side + "MiddleProximal", outward);
+    for (const char* finger : {"Index", "Middle", "Ring", "Little"}) {
+      const std::string name = side + finger;
+      aimer.aim(name + "Proximal", name + "Intermediate", outward);
+      aimer.aim(name + "Intermediate", name + "Distal", outward);
+    }
+    aimer.aim(side + "UpperLeg", side + "LowerLeg", down);
+    aimer.aim(side + "LowerLeg", side + "Foot", down);
+    aimer.aim(side + "Foot", side + "Toes", ahead, true);
+  }
+}
+
+void lift(TPose& tPose, const Skeleton& skeleton, std::span<const HumanoidJoint> bones, double by) {
+  const Index hips = *jointOf(bones, "hips");
+  const std::optional<Index> parent = skeleton.joints[hips].parent;
+  const Affine above = parent ? poseGlobals(skeleton, tPose.pose)[*parent] : Affine::Identity();
+  const Mat3 toLocal = above.linear().inverse();
+  if (toLocal.allFinite()) tPose.pose.locals[hips].translation += toLocal * (tPose.toVrm.conjugate() * Vec3(0, by, 0));
+}
+
+// #J: does the joint hang on a foot, or is it one?
+std::vector<bool> footJoints(const Skeleton& skeleton, std::span<const HumanoidJoint> bones) {
+  std::vector<bool> isFoot(skeleton.jointCount());
+  for (const char* bone : {"leftFoot", "rightFoot"}) isFoot[*jointOf(bones, bone)] = true;
+  for (Index j = 0; j < skeleton.jointCount(); ++j) {
+    if (skeleton.joints[j].parent && isFoot[*skeleton.joints[j].parent]) isFoot[j] = true;
+  }
+  return isFoot;
+}
+
+void putOnGround(TPose& tPose, const Skeleton& skeleton, std::span<const HumanoidJoint> bones) {
+  const std::vector<bool> isFoot = footJoints(skeleton, bones);
+  const std::vector<Vec3> places = posePositions(skeleton, tPose.pose);
+  double lowest = std::numeric_limits<double>::infinity();
+  for (Index j = 0; j < skeleton.jointCount(); ++j) {
+    if (isFoot[j]) lowest = std::min(lowest, (tPose.toVrm * places[j]).y());
+  }
+  lift(tPose, skeleton, bones, -lowest);
+}
+
+void putOnGround(TPose& tPose, const Asset& asset, const AssetSkeleton& rig, std::span<const HumanoidJoint> bones) {
+  if (asset.document.meshes.empty()) return putOnGround(tPose, rig.skeleton, bones);
+  const Geometry geometry = collectGeometry(asset);
+  const SkinWeights weights = readWeights(asset, geometry, rig);
+  const std::vector<Affine> skin = skinTransforms(rig.skeleton, tPose.pose);
+  const std::vector<bool> isFoot = footJoints(rig.skeleton, bones);
+  std::optional<double> lowest;
+  for (Index v = 0; v < geometry.positions.size() && weights.slots > 0; ++v) {
+    const auto joints = weights.jointsOf(v);
+    const auto shares = weights.weightsOf(v);  // strongest first
+    if (!(shares[0] > 0) || !isFoot[joints[0]]) continue;
+    Vec3 place = Vec3::Zero();
+    double sum = 0;
+    for (Index slot = 0; slot < weights.slots; ++slot) {
+      place += shares[slot] * (skin[joints[slot]] * geometry.positions[v].cast<double>());
+      sum += shares[slot];
+    }
+    const double height = (tPose.toVrm * place).y() / sum;
+    if (!lowest || height < *lowest) lowest = height;
+  }
+  if (!lowest) return putOnGround(tPose, rig.skeleton, bones);
+  lift(tPose, rig.skeleton, bones, -*lowest);
+}
+
+}  // namespace
+
+TPose tPoseOf(const Skeleton& skeleton, std::span<const Pose> motion, std::span<const HumanoidJoint> bones) {
+  const SkeletonMap map = matchSkeletons(skeleton, skeleton);
+  const Pose resting = uprightPose(skeleton, motion, map, MapSide::kTarget);
+  const NeutralPose neutral =
+      neutralPose(skeleton, resting, map, MapSide::kTarget, readAnatomy(skeleton, resting).axes);
+  TPose tPose{poseOf(neutral, skeleton, resting), neutral.toBody};
+  BoneAimer aimer(skeleton, tPose, bones);
+  aimLimbs(aimer);
+  return tPose;
+}
+
+TPose madeTPose(const Asset& asset, const AssetSkeleton& rig, std::span<const HumanoidJoint> bones) {
+  const Pose standing = readNodePose(asset, rig);
+  TPose tPose = tPoseOf(rig.skeleton, std::span(&standing, 1), bones);
+  putOnGround(tPose, asset, rig, bones);
+  return tPose;
+}
+
+TPose vrmRestPose(const Asset& asset, const AssetSkeleton& rig, std::span<const HumanoidJoint> bones) {
+  if (hasAllBones(asset.document, kVrmName) || hasAllBones(asset.document, kVrmAnimationName)) {
+    return {readNodePose(asset, rig), Quat::Identity()};
+  }
+  if (hasAllBones(asset.document, kVrm0Name)) return {readNodePose(asset, rig), Quat(0, 0, 1, 0)};  // faces -Z
+  return madeTPose(asset, rig, bones);
+}
+
+TPose vrmRestPose(const Motion& motion, std::span<const HumanoidJoint> bones) {
+  constexpr int kMostPoses = 100;  // of each clip, evenly spaced
+  std::vector<Pose> poses;
+  for (const Clip& clip : motion.clips) {
+    for (int i = 0; i < kMostPoses; ++i) {
+      poses.push_back(restPose(motion.skeleton));
+      sampleClip(clip, clip.duration() * i / kMostPoses, poses.back());
+    }
+  }
+  TPose tPose = tPoseOf(motion.skeleton, poses, bones);
+  putOnGround(tPose, motion.skeleton, bones);
+  return tPose;
+}
+
+}  // namespace limber

@@ -1,0 +1,37 @@
+// The pose that a VRM rests in.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "limber/asset/asset.h"
+#include "limber/asset/rig_io.h"
+#include "limber/skeleton/humanoid_bones.h"
+#include "limber/skeleton/motion.h"
+#include "limber/skeleton/pose.h"
+
+namespace limber {
+
+struct TPose {
+  Pose pose;                      // #J locals, in the skeleton's own space
+  Quat toVrm = Quat::Identity();  // from there to VRM's space: up +Y, facing +Z
+};
+
+// As VRM's definition of its T-pose has it (VRMC_vrm 1.0, tpose.md): standing straight, arms, hands and fingers along
+// the X axis, legs straight down, feet along Z. Made of the neutral pose (limber/matching); turns about a limb's own
+// axis (palms down, thumbs outward) are as the rest pose has them. Lengths of bones stay. Not moved to the ground.
+//
+// motion  poses that may stand in for a rest pose that lies
+// bones   of vrmBones
+TPose tPoseOf(const Skeleton& skeleton, std::span<const Pose> motion, std::span<const HumanoidJoint> bones);
+
+// The same of a model, with its hips moved so that the soles are on the ground, y = 0: the lowest of the vertices that
+// follow a foot most.
+TPose madeTPose(const Asset& asset, const AssetSkeleton& rig, std::span<const HumanoidJoint> bones);
+
+// How a model rests as a VRM: one that is a VRM (1.0, 0.x), or a motion for VRMs, as its nodes stand; else madeTPose.
+TPose vrmRestPose(const Asset& asset, const AssetSkeleton& rig, std::span<const HumanoidJoint> bones);
+// The same of a motion without a model, on the lowest joint below its feet.
+TPose vrmRestPose(const Motion& motion, std::span<const HumanoidJoint> bones);
+
+}  // namespace limber

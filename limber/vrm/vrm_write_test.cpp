@@ -1,0 +1,211 @@
+#include "limber/vrm/vrm_write.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "limber/asset/clip_io.h"
+#include "limber/asset/pose_io.h"
+#include "limber/asset/turn_scene.h"
+#include "limber/asset/write.h"
+#include "limber/vrm/testing/avatars.h"
+#include "warning_kinds.h"
+
+namespace limber {
+namespace {
+
+using testing::avatarOf;
+using testing::bonePlace;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using testing::mixamoPerson;
+using testing::warningKinds;
+
+const Json& vrmOf(const Asset& asset) {
+  return *extensionOf(asset.document, "VRMC_vrm");
+}
+
+void expectTPose(const Asset& asset) {
+  for (const auto& [side, sign] : {std::pair<std::string, double>("left", 1.0), {"right", -1.0}}) {
+    const Vec3 shoulder = bonePlace(asset, side + "UpperArm"), hand = bonePlace(asset, side + "Hand");
+    EXPECT_NEAR((hand - shoulder).normalized().x(), sign, 1e-6) << side;
+    EXPECT_NEAR((hand - shoulder).norm(), 0.51, 1e-6) << side;  // as long as it was
+    const Vec3 hip = bonePlace(asset, side + "UpperLeg"), foot = bonePlace(asset, side + "Foot");
+    EXPECT_NEAR((foot - hip).normalized().y(), -1, 1e-6) << side;
+    EXPECT_GT(bonePlace(asset, side + "Toes").z(), foot.z()) << side;
+  }
+}
+
+TEST(MakeVrm, APersonStandsInTPoseOnTheGroundAndItsBonesAreNamed) {
+  Asset asset = avatarOf(mixamoPerson());
+  makeVrm(asset);
+  checkAsset(asset);
+  expectTPose(asset);
+  EXPECT_EQ(vrmOf(asset)["specVersion"], "1.0");
+  EXPECT_EQ(vrmOf(asset)["humanoid"]["humanBones"].size(), 22u);
+  EXPECT_THAT(asset.document.extensionsUsed, ElementsAre("VRMC_vrm"));
+  // The lowest triangle of a foot is that at its toes' end.
+  const SceneGraph graph = readSceneGraph(asset.document);
+  double lowest = 1;
+  for (const Affine& node : graph.world) lowest = std::min(lowest, node.translation().y());
+  EXPECT_NEAR(lowest, 0, 1e-6);
+}
+
+TEST(MakeVrm, OneWhoFacesElsewhereIsTurned) {
+  Skeleton person = mixamoPerson();
+  for (Joint& joint : person.joints) {
+    if (!joint.parent) joint.rest = decompose(Affine(testing::turn(Vec3::UnitY(), 90)) * joint.rest.toAffine());
+  }
+  Asset asset = avatarOf(person);
+  makeVrm(asset);
+  expectTPose(asset);
+}
+
+TEST(MakeVrm, ClipsShowWhatTheyDid) {
+  Motion motion;
+  motion.name = "hero";
+  motion.skeleton = mixamoPerson();
+  Clip clip;
+  clip.name = "wave";
+  const Index arm = motion.skeleton.find("mixamorig:LeftForeArm").value();
+  clip.rotations.push_back(
+      {arm,
+       Interpolation::kLinear,
+       {0, 1},
+       {Eigen::Quaternionf::Identity(), Eigen::Quaternionf(Eigen::AngleAxisf(1.0f, Vec3f::UnitY()))}});
+  motion.clips.push_back(clip);
+  Asset asset = avatarOf(motion);
+  makeVrm(asset);
+  const AssetSkeleton rig = readSkeleton(asset);
+  Warnings warnings;
+  const std::vector<Clip> clips = readClips(asset, rig, warnings);
+  ASSERT_EQ(clips.size(), 1u);
+  for (const double seconds : {0.0, 0.5, 1.0}) {
+    Pose before = restPose(motion.skeleton), after = readNodePose(asset, rig);
+    sampleClip(clip, seconds, before);
+    sampleClip(clips[0], seconds, after);
+    const std::vector<Vec3> expected = posePositions(motion.skeleton, before);
+    const std::vector<Vec3> shown = posePositions(rig.skeleton, after);
+    for (Index j = 0; j < expected.size(); ++j) {
+      const Index same = rig.skeleton.find(motion.skeleton.joints[j].name).value();
+      EXPECT_LT((expected[j] - shown[same]).norm(), 1e-6) << motion.skeleton.joints[j].name << " at " << seconds;
+    }
+  }
+}
+
+// Legs and feet of a rig for inverse kinematics: on a root of their own, and moved there.
+TEST(MakeVrm, LegsThatHangBesideTheBodyHangOnIt) {
+  Motion motion;
+  motion.name = "hero";
+  const Skeleton whole = mixamoPerson();
+  const std::vector<Affine> globals = restGlobals(whole);
+  Joint root;
+  root.name = "Root";
+  motion.skeleton.joints.push_back(root);
+  for (Index j = 0; j < whole.jointCount(); ++j) {
+    Joint joint = whole.joints[j];
+    const bool isBeside = joint.name.ends_with("UpLeg") || !joint.parent;
+    joint.parent = isBeside ? 0 : *joint.parent + 1;
+    if (isBeside) joint.rest = decompose(globals[j]);
+    motion.skeleton.joints.push_back(joint);
+  }
+  Clip clip;
+  clip.name = "squat";
+  const Index hips = motion.skeleton.find("mixamorig:Hips").value(),
+              leg = motion.skeleton.find("mixamorig:LeftUpLeg").value();
+  const Vec3f place = motion.skeleton.joints[leg].rest.translation.cast<float>();
+  clip.translations.push_back({hips, Interpolation::kLinear, {0, 1}, {Vec3f(0, 0.95f, 0), Vec3f(0, 0.5f, 0.1f)}});
+  clip.translations.push_back({leg, Interpolation::kLinear, {0, 1}, {place, place - Vec3f(0, 0.45f, 0)}});
+  motion.clips.push_back(clip);
+  Asset asset = avatarOf(motion);
+  makeVrm(asset);
+  checkAsset(asset);
+  EXPECT_THAT(warningKinds(asset.warnings), ElementsAre("vrm-meta", "vrm-moved-bones"));
+  expectTPose(asset);
+  const AssetSkeleton rig = readSkeleton(asset);
+  EXPECT_EQ(rig.skeleton.joints[rig.skeleton.find("mixamorig:LeftUpLeg").value()].parent,
+            rig.skeleton.find("mixamorig:Hips"));
+  Warnings warnings;
+  const std::vector<Clip> clips = readClips(asset, rig, warnings);
+  for (const double seconds : {0.0, 0.5, 1.0}) {
+    Pose before = restPose(motion.skeleton), after = readNodePose(asset, rig);
+    sampleClip(clip, seconds, before);
+    sampleClip(clips[0], seconds, after);
+    const std::vector<Vec3> expected = posePositions(motion.skeleton, before);
+    const std::vector<Vec3> shown = posePositions(rig.skeleton, after);
+    for (const Joint& joint : whole.joints) {
+      const Index a = motion.skeleton.find(joint.name).value(), b = rig.skeleton.find(joint.name).value();
+      EXPECT_LT((expected[a] - shown[b]).norm(), 1e-6) << joint.name << " at " << seconds;
+    }
+  }
+}
+
+TEST(MakeVrm, WhatIsMissingIsNamed) {
+  Asset animal = avatarOf(testing::dog().skeleton);
+  try {
+    makeVrm(animal);
+    FAIL() << "a dog is no VRM";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::kUnsupported);
+    EXPECT_THAT(error.what(), HasSubstr("leftUpperArm"));
+  }
+  Asset bare;
+  bare.document.nodes.emplace_back();
+  EXPECT_THROW(makeVrm(bare), Error);
+}
+
+TEST(MakeVrm, MetaIsMarkedAndNarrow) {
+  Asset asset = avatarOf(mixamoPerson());
+  makeVrm(asset);
+  const Json& meta = vrmOf(asset)["meta"];
+  EXPECT_EQ(meta["name"], "hero");
+  EXPECT_EQ(meta["authors"], Json::array({"(to be filled in)"}));
+  EXPECT_EQ(meta["avatarPermission"], "onlyAuthor");
+  EXPECT_EQ(meta["commercialUsage"], "personalNonProfit");
+  EXPECT_EQ(meta["modification"], "prohibited");
+  EXPECT_EQ(meta["creditNotation"], "required");
+  for (const char* flag : {"allowExcessivelyViolentUsage", "allowExcessivelySexualUsage", "allowAntisocialOrHateUsage",
+                           "allowPoliticalOrReligiousUsage", "allowRedistribution"}) {
+    EXPECT_EQ(meta[flag], false) << flag;
+  }
+  EXPECT_THAT(warningKinds(asset.warnings), ElementsAre("vrm-meta"));
+}
+
+TEST(MakeVrm, SecondTimeNothingChanges) {
+  Asset asset = avatarOf(mixamoPerson());
+  VrmMeta meta;
+  meta.name = "Hero";
+  meta.authors = {"Ada", "Grace"};
+  meta.allowed = {"everyone"};
+  makeVrm(asset, meta);
+  EXPECT_TRUE(asset.warnings.empty());
+  const Bytes once = writeGlb(asset);
+  makeVrm(asset);
+  EXPECT_EQ(writeGlb(asset), once);
+  EXPECT_EQ(vrmOf(asset)["meta"]["authors"], Json::array({"Ada", "Grace"}));
+  EXPECT_THROW(makeVrm(asset, meta), Error);  // which would allow what the model denies
+}
+
+TEST(MakeVrm, AnewRiggedOneKeepsItsMetaAndGetsNewBones) {
+  Asset asset = avatarOf(mixamoPerson());
+  changeExtension(asset.document, "VRMC_vrm") = {
+      {"meta", {{"name", "Hero"}, {"authors", {"Ada"}}, {"avatarPermission", "everyone"}}},
+      {"humanoid", {{"humanBones", Json::object()}}}};
+  makeVrm(asset);
+  expectTPose(asset);
+  EXPECT_EQ(vrmOf(asset)["meta"]["avatarPermission"], "everyone");
+}
+
+TEST(MakeVrm, BlendShapesCalledAsExpressionsBecomeSuch) {
+  Asset asset = avatarOf(mixamoPerson());
+  testing::nameShapes(asset, 0, {"smile", "happy", "Aa", "blinkLeft"});
+  makeVrm(asset);
+  const Json& preset = vrmOf(asset)["expressions"]["preset"];
+  EXPECT_EQ(preset.size(), 2u);
+  EXPECT_EQ(preset["happy"]["morphTargetBinds"][0]["index"], 1);
+  EXPECT_EQ(preset["blinkLeft"]["morphTargetBinds"][0]["index"], 3);
+  const Index node = preset["happy"]["morphTargetBinds"][0]["node"].get<Index>();
+  EXPECT_EQ(asset.document.nodes[node].name, "body");
+}
+
+}  // namespace
+}  // namespace limber
