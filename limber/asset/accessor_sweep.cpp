@@ -15,7 +15,7 @@ namespace {
 
 // Extensions of primitives, nodes, skins, animations and the document that name no accessor, or whose accessors are
 // followed here.
-constexpr std::array<std::string_view, 17> kTransparent = {"EXT_mesh_gpu_instancing",
+constexpr std::array<std::string_view, 19> kTransparent = {"EXT_mesh_gpu_instancing",
                                                            "KHR_animation_pointer",
                                                            "KHR_draco_mesh_compression",
                                                            "KHR_lights_punctual",
@@ -31,7 +31,9 @@ constexpr std::array<std::string_view, 17> kTransparent = {"EXT_mesh_gpu_instanc
                                                            "EXT_lights_image_based",
                                                            "VRM",
                                                            "VRMC_vrm",
-                                                           "VRMC_springBone"};
+                                                           "VRMC_node_constraint",
+                                                           "VRMC_springBone",
+                                                           "VRMC_vrm_animation"};
 
 bool transparent(const gltf::Object& object) {
   if (!object.extensions.exists()) return true;

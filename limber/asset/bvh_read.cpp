@@ -1,12 +1,12 @@
 #include "limber/asset/bvh_read.h"
 
-#include <array>
 #include <cmath>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "limber/asset/bvh_axes.h"
 #include "limber/asset/bvh_frames.h"
 #include "limber/asset/bvh_hierarchy.h"
 #include "limber/asset/bvh_line.h"
@@ -62,32 +62,6 @@ class LineSplitter {
   std::size_t number_ = 0;
   bool afterReturn_ = false;
 };
-
-// The sign that Z is up: heads lie above feet along Z.
-bool standsAlongZ(const std::vector<BvhJoint>& joints) {
-  const auto names = [](const std::string& name, std::string_view part) {
-    for (std::size_t at = 0; at + part.size() <= name.size(); ++at) {
-      if (isWord(std::string_view(name).substr(at, part.size()), part)) return true;
-    }
-    return false;
-  };
-  std::vector<Vec3> places(joints.size());
-  std::array<Vec3, 2> sums = {Vec3::Zero(), Vec3::Zero()};  // heads, feet
-  std::array<double, 2> counts = {0, 0};
-  for (std::size_t j = 0; j < joints.size(); ++j) {
-    places[j] = joints[j].offset;
-    if (joints[j].parent) places[j] += places[*joints[j].parent];
-    const std::string& name = joints[j].name;
-    const bool foot = names(name, "foot") || names(name, "toe") || names(name, "ankle");
-    if (!foot && !names(name, "head")) continue;
-    sums[foot] += places[j];
-    counts[foot] += 1;
-  }
-  if (counts[0] == 0 || counts[1] == 0) return false;
-  const Vec3 upwards = sums[0] / counts[0] - sums[1] / counts[1];
-  constexpr double kClearly = 4;  // people stand within a few degrees of it; a beast's head lies before its feet, too
-  return upwards.z() > kClearly * std::abs(upwards.y());
-}
 
 // From Z up to Y up: a quarter turn about X.
 template <typename Vector>

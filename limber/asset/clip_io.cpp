@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <map>
 #include <utility>
 
@@ -267,10 +269,67 @@ class ClipReader {
   std::map<Index, NodeTracks> nodes_;  // of the animation being read
 };
 
+// Accessors that share a buffer view, which is made when all are there.
+class SharedView {
+ public:
+  explicit SharedView(Asset& asset) : asset_(asset) {}
+
+  // Times where there is one component, rotations where there are four.
+  Index add(std::span<const float> values, Index components) {
+    gltf::Accessor accessor;
+    accessor.count = values.size() / components;
+    accessor.type = components == 1   ? gltf::ElementType::kScalar
+                    : components == 3 ? gltf::ElementType::kVec3
+                                      : gltf::ElementType::kVec4;
+    accessor.byteOffset = bytes_.size();
+    if (components == 1) {
+      accessor.min = {shortDouble(values.front())};
+      accessor.max = {shortDouble(values.back())};
+    }
+    if (components == 4 && std::all_of(values.begin(), values.end(), isFraction)) {
+      accessor.componentType = gltf::ComponentType::kI16;
+      accessor.normalized = true;
+      for (const float value : values) append(static_cast<std::int16_t>(std::lround(value * kFractions)));
+    } else {
+      for (const float value : values) append(value);
+    }
+    accessors_.push_back(addElement(asset_.document.accessors, std::move(accessor)));
+    return accessors_.back();
+  }
+
+  void finish() {
+    const Index view = addBufferView(asset_, bytes_);
+    for (const Index accessor : accessors_) asset_.document.accessors[accessor].bufferView = view;
+    bytes_.clear();
+    accessors_.clear();
+  }
+
+ private:
+  static constexpr float kFractions = 32767, kNearlyWhole = 4e-3f;
+
+  static bool isFraction(float value) {
+    const float fractions = value * kFractions;
+    return std::abs(fractions) <= kFractions && std::abs(fractions - std::round(fractions)) < kNearlyWhole;
+  }
+
+  template <typename Number>
+  void append(Number number) {
+    const std::size_t end = bytes_.size();
+    bytes_.resize(end + sizeof(number));
+    std::memcpy(bytes_.data() + end, &number, sizeof(number));
+  }
+
+  Asset& asset_;
+  Bytes bytes_;
+  std::vector<Index> accessors_;
+};
+
 // Writes animations into one document.
 class ClipWriter {
  public:
-  ClipWriter(Asset& asset, const AssetSkeleton& skeleton) : asset_(asset), skeleton_(skeleton) {
+  ClipWriter(Asset& asset, const AssetSkeleton& skeleton, const ClipWriteOptions& options)
+      : asset_(asset), skeleton_(skeleton) {
+    if (options.compact) shared_.emplace(asset);
     const SceneGraph graph = readSceneGraph(asset.document);
     nodePose_ = readNodePose(asset, skeleton);
     for (Index j = 0; j < skeleton.skeleton.jointCount(); ++j) {
@@ -294,6 +353,7 @@ class ClipWriter {
     if (animation_.channels.empty()) {  // glTF wants one
       addSampler(0, kRotation, constantTrack(Eigen::Quaternionf(nodeLocal_[0].rotation.cast<float>())));
     }
+    if (shared_) shared_->finish();
     const std::string name = names_.add(clip.name.empty() ? "clip" : clip.name);
     animation_.name = name;
     asset_.document.animations.push_back(std::move(animation_));
@@ -408,7 +468,8 @@ class ClipWriter {
       values.insert(values.end(), numbers(value).data(), numbers(value).data() + numbers(value).size());
     }
     const Index times = input(track.times);
-    const Index output = addFloatAccessor(asset_, values, static_cast<Index>(numbers(track.values[0]).size()));
+    const auto components = static_cast<Index>(numbers(track.values[0]).size());
+    const Index output = shared_ ? shared_->add(values, components) : addFloatAccessor(asset_, values, components);
     const Index sampler = addElement(animation_.samplers, {{}, times, output, track.interpolation});
     const Index node = skeleton_.jointNode[j];
     animation_.channels.push_back({{}, sampler, {{}, node, path}});
@@ -419,7 +480,7 @@ class ClipWriter {
   Index input(const std::vector<float>& times) {
     const auto known = inputs_.find(times);
     if (known != inputs_.end()) return known->second;
-    return inputs_[times] = addFloatAccessor(asset_, times, 1, 0, true);
+    return inputs_[times] = shared_ ? shared_->add(times, 1) : addFloatAccessor(asset_, times, 1, 0, true);
   }
 
   Asset& asset_;
@@ -428,6 +489,7 @@ class ClipWriter {
   std::vector<Transform> nodeLocal_;  // #J, as the nodes have it
   std::vector<Affine> frames_;        // #J, above a root joint; identity elsewhere
   UniqueNames names_;
+  std::optional<SharedView> shared_;  // of compact clips
   // Of the clip being written:
   gltf::Animation animation_;
   std::map<std::vector<float>, Index> inputs_;
@@ -446,13 +508,14 @@ std::vector<Clip> readClips(const Asset& asset, const AssetSkeleton& skeleton, W
   return clips;
 }
 
-std::vector<std::string> addClips(Asset& asset, const AssetSkeleton& skeleton, std::span<const Clip> clips) {
+std::vector<std::string> addClips(Asset& asset, const AssetSkeleton& skeleton, std::span<const Clip> clips,
+                                  const ClipWriteOptions& options) {
   const Index nodeCount = asset.document.nodeCount();
   const bool fits =
       !skeleton.jointNode.empty() && skeleton.jointNode.size() == skeleton.skeleton.joints.size() &&
       std::all_of(skeleton.jointNode.begin(), skeleton.jointNode.end(), [&](Index node) { return node < nodeCount; });
   if (!fits) throw Error(ErrorCode::kBadArgument, "the skeleton is not that of this asset");
-  ClipWriter writer(asset, skeleton);
+  ClipWriter writer(asset, skeleton, options);
   std::vector<std::string> names;
   for (const Clip& clip : clips) {
     try {

@@ -19,6 +19,12 @@ namespace limber {
 // of length 0, are left out (warning "invalid-keys"). Morph weights and movement of other nodes are not part of a clip.
 std::vector<Clip> readClips(const Asset& asset, const AssetSkeleton& skeleton, Warnings& warnings);
 
+struct ClipWriteOptions {
+  // Fewer bytes: the numbers of a clip share a buffer view, and rotations whose values are all 16-bit fractions
+  // (n / 32767) are written as such, without loss. Readers of glTF 2.0 take both; others may not.
+  bool compact = false;
+};
+
 // Adds one animation for each clip; nothing else of the document changes, but that a joint that gets a channel has its
 // transform as translation, rotation and scale. Clips without a name become "clip"; names that are there already get a
 // number behind them. `skeleton` is readSkeleton(asset). Returns the names as they are written.
@@ -27,6 +33,7 @@ std::vector<Clip> readClips(const Asset& asset, const AssetSkeleton& skeleton, W
 // are, interpolation too; tracks of one value have one key, and none where the node has that value. Tracks of equal
 // times share one accessor. Throws Error kBadArgument where the skeleton is not of that asset, kBadData as checkClip
 // does, with the clip's name, and where a root stands below a node without an inverse (a scale of 0).
-std::vector<std::string> addClips(Asset& asset, const AssetSkeleton& skeleton, std::span<const Clip> clips);
+std::vector<std::string> addClips(Asset& asset, const AssetSkeleton& skeleton, std::span<const Clip> clips,
+                                  const ClipWriteOptions& options = {});
 
 }  // namespace limber

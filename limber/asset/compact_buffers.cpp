@@ -72,7 +72,37 @@ bool cutBuffer(Asset& asset, Index buffer, Ranges& ranges) {
   return true;
 }
 
+std::vector<bool> usedViews(const gltf::Document& document) {
+  std::vector<bool> used(document.bufferViews.size(), false);
+  visitReferences(document, [&](ElementKind kind, Index number) {
+    if (kind == ElementKind::kBufferView && number < used.size()) used[number] = true;
+  });
+  return used;
+}
+
 }  // namespace
+
+BufferViewSweep::BufferViewSweep(const Asset& asset) : usedBefore_(usedViews(asset.document)) {}
+
+void BufferViewSweep::sweep(Asset& asset) const {
+  gltf::Document& document = asset.document;
+  const std::vector<bool> used = usedViews(document);
+  std::vector<Index> number(used.size());
+  std::vector<gltf::BufferView> kept;
+  std::set<Index> buffers;
+  for (Index view = 0; view < used.size(); ++view) {
+    if (!used[view] && view < usedBefore_.size() && usedBefore_[view]) {
+      buffers.insert(document.bufferViews[view].buffer);
+    } else {
+      number[view] = addElement(kept, std::move(document.bufferViews[view]));
+    }
+  }
+  document.bufferViews = std::move(kept);
+  changeReferences(document, [&](ElementKind kind, Index& view) {
+    if (kind == ElementKind::kBufferView && view < number.size()) view = number[view];
+  });
+  dropUnusedBytes(asset, buffers);
+}
 
 void dropUnusedBytes(Asset& asset, const std::set<Index>& buffers) {
   std::vector<Ranges> covered = coveredRanges(asset);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <set>
+#include <vector>
 
 #include "limber/asset/asset.h"
 #include "limber/core/types.h"
@@ -15,5 +16,16 @@ void dropUnusedBytes(Asset& asset, const std::set<Index>& buffers);
 
 // Takes out the buffers that hold no bytes and that no buffer view names; renumbers the others in the views.
 void removeEmptyBuffers(Asset& asset);
+
+// Made before an edit, swept after it, and after the accessors are (AccessorSweep): buffer views that something used
+// before and nothing uses now leave the list, and their bytes the buffers. Views have other numbers then.
+class BufferViewSweep {
+ public:
+  explicit BufferViewSweep(const Asset& asset);
+  void sweep(Asset& asset) const;
+
+ private:
+  std::vector<bool> usedBefore_;
+};
 
 }  // namespace limber

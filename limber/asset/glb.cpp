@@ -94,29 +94,35 @@ GlbChunks splitGlb(ByteSpan file, Warnings& warnings) {
   return chunks;
 }
 
-Bytes joinGlb(std::string_view json, ByteSpan binary) {
-  const std::size_t jsonSize = padded(json.size()), binarySize = padded(binary.size());
-  const std::size_t binaryChunk = binary.empty() ? 0 : kChunkHeaderSize + binarySize;
+std::size_t BinaryChunk::add(ByteSpan bytes) {
+  static constexpr std::uint8_t kZeros[3] = {};
+  const std::size_t start = padded(size);
+  pieces.push_back(bytes);
+  if (const std::size_t behind = padded(bytes.size()) - bytes.size(); behind > 0) pieces.push_back({kZeros, behind});
+  size = start + bytes.size();
+  return start;
+}
+
+Bytes glbHead(std::string_view json, const BinaryChunk& binary) {
+  const std::size_t jsonSize = padded(json.size()), binarySize = padded(binary.size);
+  const std::size_t binaryChunk = binary.size == 0 ? 0 : kChunkHeaderSize + binarySize;
   const std::size_t length = kHeaderSize + kChunkHeaderSize + jsonSize + binaryChunk;
   if (length > std::numeric_limits<std::uint32_t>::max()) {
     throw Error(ErrorCode::kLimit, "the model is too large for a GLB (4 GiB)", {}, "write it as .gltf");
   }
-  Bytes file;
-  file.reserve(length);
-  append(file, kMagic);
-  append(file, 2);
-  append(file, static_cast<std::uint32_t>(length));
-  append(file, static_cast<std::uint32_t>(jsonSize));
-  append(file, kJson);
-  file.insert(file.end(), json.begin(), json.end());
-  file.resize(kHeaderSize + kChunkHeaderSize + jsonSize, ' ');
-  if (!binary.empty()) {
-    append(file, static_cast<std::uint32_t>(binarySize));
-    append(file, kBinary);
-    file.insert(file.end(), binary.begin(), binary.end());
-    file.resize(length, 0);
+  Bytes head;
+  append(head, kMagic);
+  append(head, 2);
+  append(head, static_cast<std::uint32_t>(length));
+  append(head, static_cast<std::uint32_t>(jsonSize));
+  append(head, kJson);
+  head.insert(head.end(), json.begin(), json.end());
+  head.resize(kHeaderSize + kChunkHeaderSize + jsonSize, ' ');
+  if (binaryChunk > 0) {
+    append(head, static_cast<std::uint32_t>(binarySize));
+    append(head, kBinary);
   }
-  return file;
+  return head;
 }
 
 }  // namespace limber

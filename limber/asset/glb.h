@@ -1,8 +1,10 @@
 // The GLB container: a header, a JSON chunk, and at most one binary chunk.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "limber/core/error.h"
 #include "limber/core/file.h"
@@ -19,7 +21,18 @@ struct GlbChunks {
 };
 GlbChunks splitGlb(ByteSpan file, Warnings& warnings);
 
-// Throws Error kLimit where the file would reach 4 GiB, which the container cannot say.
-Bytes joinGlb(std::string_view json, ByteSpan binary);
+// What the binary chunk is written from: pieces one behind the other, each at a multiple of 4 bytes. They are referred
+// to, not copied, and must outlive this.
+struct BinaryChunk {
+  std::vector<ByteSpan> pieces;  // and zeros behind each that needs them
+  std::size_t size = 0;          // without the zeros behind the last
+
+  // Returns where the piece begins.
+  std::size_t add(ByteSpan bytes);
+};
+
+// A GLB until the first byte of its binary chunk. Throws Error kLimit where the file would reach 4 GiB, which the
+// container cannot say.
+Bytes glbHead(std::string_view json, const BinaryChunk& binary);
 
 }  // namespace limber

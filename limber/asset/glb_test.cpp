@@ -48,8 +48,24 @@ TEST(Glb, SplitsChunks) {
 TEST(Glb, JoinsAsTheSpecificationSays) {
   for (std::size_t size : {0u, 1u, 4u, 7u}) {
     const Bytes binary(size, 7);
-    EXPECT_EQ(joinGlb("{\"a\":12}", binary), GltfBuilder::glbOf("{\"a\":12}", binary));
+    BinaryChunk chunk;
+    EXPECT_EQ(chunk.add(binary), 0u);
+    Bytes file = glbHead("{\"a\":12}", chunk);
+    for (const ByteSpan piece : chunk.pieces) file.insert(file.end(), piece.begin(), piece.end());
+    EXPECT_EQ(file, GltfBuilder::glbOf("{\"a\":12}", binary));
   }
+}
+
+TEST(Glb, PiecesBeginAtMultiplesOfFour) {
+  const Bytes three(3, 1), four(4, 2);
+  BinaryChunk chunk;
+  EXPECT_EQ(chunk.add(three), 0u);
+  EXPECT_EQ(chunk.add(four), 4u);
+  EXPECT_EQ(chunk.add(three), 8u);
+  EXPECT_EQ(chunk.size, 11u);
+  Bytes binary;
+  for (const ByteSpan piece : chunk.pieces) binary.insert(binary.end(), piece.begin(), piece.end());
+  EXPECT_EQ(binary, (Bytes{1, 1, 1, 0, 2, 2, 2, 2, 1, 1, 1, 0}));
 }
 
 TEST(Glb, EveryTruncationIsAnError) {

@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include <assimp/GltfMaterial.h>
 #include <assimp/material.h>
 #include <assimp/scene.h>
 
-#include "limber/asset/accessor.h"
-#include "limber/asset/images.h"
+#include "limber/asset/embedded_texture.h"
 #include "limber/asset/import_text.h"
 
 namespace limber {
@@ -90,23 +88,7 @@ std::optional<gltf::TextureUse> MaterialImporter::textureUse(const aiMaterial& m
 std::optional<Index> MaterialImporter::texture(const std::string& path) {
   const auto [known, isNew] = textures_.try_emplace(path);
   if (!isNew) return known->second;
-  const std::optional<Bytes> bytes = imageBytes(path);
-  if (!bytes) {
-    asset_.warnings.add("missing-images", "textures that cannot be found are left out", validUtf8(path));
-    return std::nullopt;
-  }
-  const std::string_view mime = imageFormat(*bytes).mediaType;
-  if (mime.empty()) {
-    asset_.warnings.add("unsupported-images", "textures that are neither PNG nor JPEG are left out", validUtf8(path));
-    return std::nullopt;
-  }
-  gltf::Image image;
-  image.name = validUtf8(path);
-  image.bufferView = addBufferView(asset_, *bytes);
-  image.mimeType = mime;
-  gltf::Texture texture;
-  texture.source = addElement(asset_.document.images, std::move(image));
-  return known->second = addElement(asset_.document.textures, std::move(texture));
+  return known->second = addEmbeddedTexture(asset_, path, imageBytes(path));
 }
 
 std::optional<Bytes> MaterialImporter::imageBytes(const std::string& path) {

@@ -22,7 +22,6 @@
 #include "limber/asset/import_scene.h"
 #include "limber/asset/import_skin.h"
 #include "limber/asset/import_text.h"
-#include "limber/asset/ply_check.h"
 #include "limber/asset/write.h"
 #include "limber/core/names.h"
 
@@ -34,8 +33,7 @@ struct Format {
   const char* extension;  // as Assimp knows it
   const char* label;
 };
-constexpr Format kFormats[] = {{"obj", "OBJ"}, {"ply", "PLY"}, {"stl", "STL"},
-                               {"off", "OFF"}, {"fbx", "FBX"}, {"dae", "DAE"}};
+constexpr Format kFormats[] = {{"obj", "OBJ"}, {"stl", "STL"}, {"off", "OFF"}, {"dae", "DAE"}};
 
 const Format* formatNamed(std::string_view extension) {
   const auto found = std::find_if(std::begin(kFormats), std::end(kFormats),
@@ -56,8 +54,6 @@ const Format* formatByContent(ByteSpan bytes) {
   std::string head(reinterpret_cast<const char*>(bytes.data()), std::min(bytes.size(), kHead));
   const auto starts = [&](std::string_view text) { return head.rfind(text, 0) == 0; };
   const auto holds = [&](std::string_view text) { return head.find(text) != std::string::npos; };
-  if (starts("ply\n") || starts("ply\r")) return formatNamed("ply");
-  if (starts("Kaydara FBX Binary") || starts("; FBX") || holds("FBXHeaderExtension")) return formatNamed("fbx");
   if (holds("<COLLADA")) return formatNamed("dae");
   if (starts("OFF") || starts("COFF") || starts("NOFF") || starts("CNOFF")) return formatNamed("off");
   if (isBinaryStl(bytes) || (starts("solid") && holds("facet"))) return formatNamed("stl");
@@ -84,33 +80,6 @@ struct Convention {
   double scale = 1;
   Mat3 axes = Mat3::Identity();
 };
-
-template <typename T>
-T metadata(const aiScene& scene, const char* key, T otherwise) {
-  T value = otherwise;
-  return scene.mMetaData && scene.mMetaData->Get(key, value) ? value : otherwise;
-}
-
-double fbxUnitInCentimetres(const aiScene& scene) {
-  const double unit = metadata<double>(scene, "UnitScaleFactor", 0);
-  const double stored = unit > 0 ? unit : metadata<float>(scene, "UnitScaleFactor", 1);
-  return stored > 0 && std::isfinite(stored) ? stored : 1;
-}
-
-// FBX names the axes that point right, up and out of the screen.
-Convention fbxConvention(const aiScene& scene) {
-  Convention result;
-  result.scale = 0.01 * fbxUnitInCentimetres(scene);
-  Mat3 axes = Mat3::Zero();
-  const char* kNames[] = {"CoordAxis", "UpAxis", "FrontAxis"};
-  for (int row = 0; row < 3; ++row) {
-    const int axis = metadata<std::int32_t>(scene, kNames[row], row);
-    const int sign = metadata<std::int32_t>(scene, (std::string(kNames[row]) + "Sign").c_str(), 1);
-    if (axis >= 0 && axis < 3) axes(row, axis) = sign < 0 ? -1 : 1;
-  }
-  if (std::abs(axes.determinant()) == 1) result.axes = axes;
-  return result;
-}
 
 // Assimp puts a COLLADA file's unit and up axis into the top of its tree.
 Convention daeConvention(aiScene& scene) {
@@ -154,35 +123,18 @@ Error importError(std::string message) {
   return Error(ErrorCode::kBadData, message.empty() ? "the importer does not say why" : validUtf8(message));
 }
 
-// Assimp fills up what a cut file lacks, or leaves it out.
-void checkComplete(const aiScene& scene, const PlyCounts& announced) {
-  std::uint64_t vertices = 0, faces = 0;
-  for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
-    vertices += scene.mMeshes[m]->mNumVertices;
-    faces += scene.mMeshes[m]->mNumFaces;
-  }
-  if (vertices < announced.vertices || (announced.faces > 0 && faces < announced.faces)) {
-    throw Error(ErrorCode::kBadData, fmt::format("it announces {} vertices and {} faces and holds {} and {}",
-                                                 announced.vertices, announced.faces, vertices, faces));
-  }
-}
-
 Asset readWithAssimp(ByteSpan bytes, const Format& format, const Resolver& resolver) {
   const std::string mainName = std::string("model.") + format.extension;
   auto* io = new ImportIo(bytes, mainName, resolver);
   Assimp::Importer importer;
-  importer.SetIOHandler(io);  // owns it from here
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
+  importer.SetIOHandler(io);                                            // owns it from here
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);  // no made-up mesh where there is only motion
-  const aiScene* scene = importer.ReadFile(mainName, 0);
-  if (scene && format.extension == std::string_view("ply")) checkComplete(*scene, checkPly(bytes));
-  if (scene) scene = importer.ApplyPostProcessing(aiProcess_Triangulate);
+  const aiScene* scene = importer.ReadFile(mainName, aiProcess_Triangulate);
   if (!scene || !scene->mRootNode) throw importError(importer.GetErrorString());
 
   auto& edited = const_cast<aiScene&>(*scene);  // the importer owns it and is done with it
   if (format.extension == std::string_view("stl")) dropNormals(edited);
   Convention convention;
-  if (format.extension == std::string_view("fbx")) convention = fbxConvention(edited);
   if (format.extension == std::string_view("dae")) convention = daeConvention(edited);
   Asset asset = convertScene(*scene, *io, convention.scale, convention.axes);
   warnOfConversion(asset, convention);
@@ -233,7 +185,6 @@ SandboxLimits limitsFor(std::size_t size) {
 
 Asset importModel(ByteSpan bytes, std::string_view name, const Resolver& resolver) {
   const Format& format = formatOf(bytes, name);
-  if (format.extension == std::string_view("ply")) checkPly(bytes);
   try {
     const Bytes message =
         runIsolated([&] { return pack(readWithAssimp(bytes, format, resolver)); }, limitsFor(bytes.size()));

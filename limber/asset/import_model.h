@@ -7,11 +7,11 @@
 
 namespace limber {
 
-// An OBJ, PLY, STL, OFF, FBX or DAE file as a glTF document: node tree, meshes with normals, texture coordinates and
+// An OBJ, STL, OFF or DAE file as a glTF document: node tree, meshes with normals, texture coordinates and
 // colours, base colours and textures, skins and node animations. Polygons are triangulated, equal corners share a
 // vertex. The format is told from the content where that is possible, else from the extension of `name`.
 //
-// Converted to metres and +Y up where the file says what it has (FBX, DAE), with a warning "converted-units" or
+// Converted to metres and +Y up where the file says what it has (DAE), with a warning "converted-units" or
 // "converted-axes". What does not come along (lights, cameras, morph targets, textures that are missing or neither PNG
 // nor JPEG) is a warning too. Textures and material libraries are opened through `resolver` only.
 //

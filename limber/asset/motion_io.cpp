@@ -8,9 +8,11 @@
 #include "limber/asset/accessor.h"
 #include "limber/asset/clip_io.h"
 #include "limber/asset/clip_name.h"
+#include "limber/asset/humanoid_nodes.h"
 #include "limber/asset/node_edit.h"
 #include "limber/asset/scene_graph.h"
 #include "limber/asset/unique_names.h"
+#include "limber/core/file_view.h"
 #include "limber/core/known_error.h"
 #include "limber/core/names.h"
 
@@ -42,6 +44,36 @@ std::vector<bool> movingTree(const Asset& asset, const SceneGraph& graph) {
     wanted[n] = inside[n] && graph.shown[n];
   }
   return wanted;
+}
+
+// The skeleton of a motion for VRMs: its bones, under their names whatever the nodes are called, and nodes between.
+AssetSkeleton vrmAnimationSkeleton(const gltf::Document& document, const std::vector<HumanoidNode>& bones) {
+  const SceneGraph graph = readSceneGraph(document);
+  std::vector<bool> below(graph.nodeCount()), inside(graph.nodeCount());
+  std::vector<std::string_view> boneOfNode(graph.nodeCount());
+  UniqueNames names;
+  for (const HumanoidNode& bone : bones) {
+    boneOfNode[bone.node] = bone.bone;
+    names.add(std::string(bone.bone));
+  }
+  for (auto n = graph.allNodes.rbegin(); n != graph.allNodes.rend(); ++n) {
+    if (graph.parent[*n] && (below[*n] || !boneOfNode[*n].empty())) below[*graph.parent[*n]] = true;
+  }
+  AssetSkeleton result;
+  std::vector<std::optional<Index>> jointOfNode(graph.nodeCount());
+  for (const Index n : graph.allNodes) {
+    const std::optional<Index> parent = graph.parent[n];
+    inside[n] = !boneOfNode[n].empty() || (parent && inside[*parent] && below[n]);
+    if (!inside[n]) continue;
+    Joint joint;
+    joint.name = boneOfNode[n].empty() ? names.add(document.nodes[n].name) : std::string(boneOfNode[n]);
+    if (parent) joint.parent = jointOfNode[*parent];
+    joint.rest = decompose(joint.parent ? graph.local[n] : graph.world[n]);
+    jointOfNode[n] = result.skeleton.jointCount();
+    result.jointNode.push_back(n);
+    result.skeleton.joints.push_back(std::move(joint));
+  }
+  return result;
 }
 
 Vec3 rounded(const Vec3& v) {
@@ -99,6 +131,8 @@ bool isSkeletonAlone(const Asset& asset) {
 }
 
 AssetSkeleton animatedSkeleton(const Asset& asset) {
+  const std::vector<HumanoidNode> bones = humanoidNodes(asset.document, kVrmAnimationName);
+  if (!bones.empty()) return vrmAnimationSkeleton(asset.document, bones);
   if (!asset.document.skins.empty()) return readSkeleton(asset);
   const SceneGraph graph = readSceneGraph(asset.document);
   const std::vector<bool> wanted = movingTree(asset, graph);
@@ -140,16 +174,17 @@ Motion motionOf(const Asset& asset) {
   return motion;
 }
 
-Motion readMotion(ByteSpan bytes, std::string_view name, const BvhOptions& bvh, const Resolver& resolver) {
-  if (looksLikeBvh(bytes)) return readBvh(bytes, name, bvh);
+Motion readMotion(ByteSpan bytes, std::string_view name, const MotionOptions& options, const Resolver& resolver) {
+  if (looksLikeBvh(bytes)) return readBvh(bytes, name, options.bvh);
+  if (looksLikeNpz(bytes)) return readSmplMotion(bytes, name, options.smpl);
   return motionOf(readAsset(bytes, name, resolver));
 }
 
-Motion readMotion(const std::filesystem::path& path, const BvhOptions& bvh) {
-  if (lowerExtension(path) == ".bvh") return readBvh(path, bvh);  // in pieces
-  if (path != "-") return motionOf(readAsset(path));
-  const Bytes bytes = readFile(path);
-  return readMotion(bytes, "standard input", bvh);
+Motion readMotion(const std::filesystem::path& path, const MotionOptions& options) {
+  if (lowerExtension(path) == ".bvh") return readBvh(path, options.bvh);  // in pieces
+  const FileView file(path);
+  if (path == "-") return readMotion(file.bytes(), "standard input", options);
+  return readMotion(file.bytes(), path.filename().string(), options, folderResolver(path.parent_path()));
 }
 
 Asset motionAsset(const Motion& motion) {

@@ -7,22 +7,31 @@
 #include "limber/asset/bvh_read.h"
 #include "limber/asset/read.h"
 #include "limber/asset/rig_io.h"
+#include "limber/asset/smpl_motion.h"
 #include "limber/skeleton/motion.h"
 
 namespace limber {
 
-// The motion in a file: BVH (bvh_read.h), glTF, or any other model with animations that readAsset reads (FBX, DAE).
-// Throws Error as those do, and kBadData where the file has neither a skeleton nor anything that moves. A skeleton
-// without clips is a motion too.
-Motion readMotion(const std::filesystem::path& path, const BvhOptions& bvh = {});
-Motion readMotion(ByteSpan bytes, std::string_view name, const BvhOptions& bvh = {}, const Resolver& resolver = {});
+// What files leave open.
+struct MotionOptions {
+  BvhOptions bvh;
+  SmplOptions smpl;
+};
+
+// The motion in a file: BVH (bvh_read.h), arrays in SMPL's form (smpl_motion.h), glTF, or any other model with
+// animations that readAsset reads (FBX, DAE). Throws Error as those do, and kBadData where the file has neither a
+// skeleton nor anything that moves. A skeleton without clips is a motion too.
+Motion readMotion(const std::filesystem::path& path, const MotionOptions& options = {});
+Motion readMotion(ByteSpan bytes, std::string_view name, const MotionOptions& options = {},
+                  const Resolver& resolver = {});
 
 // The motion in a document: its skeleton (animatedSkeleton) and all its clips (readClips).
 Motion motionOf(const Asset& asset);
 
-// What of the document moves: readSkeleton where it has a skin; else one joint for each node that is animated, stands
-// between such, or hangs on one without showing anything itself (the end of a bone). Rest pose is then as the nodes
-// stand. Throws Error kBadData where nothing is animated either.
+// What of the document moves: of a motion for VRMs (VRMC_vrm_animation) its humanoid bones, called by VRM's names, with
+// the nodes between them (its expressions and its gaze are not read); else readSkeleton where it has a skin; else one
+// joint for each node that is animated, stands between such, or hangs on one without showing anything itself (the end
+// of a bone). Rest pose is then as the nodes stand. Throws Error kBadData where nothing is animated either.
 AssetSkeleton animatedSkeleton(const Asset& asset);
 
 // The clip of that name, in full or behind the last '|' (Blender's exporters put the armature's name before); the first

@@ -49,7 +49,8 @@ ChannelTarget parsePointer(const std::string& pointer) {
   return {static_cast<Index>(number), at < pointer.size() ? pointer.substr(at + 1) : std::string()};
 }
 
-// Takes the samplers out that no channel of the animation names, and renumbers the others.
+}  // namespace
+
 void removeUnusedSamplers(gltf::Animation& animation) {
   std::vector<Index> newIndex(animation.samplers.size(), kNoIndex);
   for (const gltf::AnimationChannel& channel : animation.channels) newIndex.at(channel.sampler) = 0;
@@ -60,8 +61,6 @@ void removeUnusedSamplers(gltf::Animation& animation) {
   for (gltf::AnimationChannel& channel : animation.channels) channel.sampler = newIndex[channel.sampler];
   animation.samplers = std::move(kept);
 }
-
-}  // namespace
 
 ChannelTarget channelTarget(const gltf::AnimationChannel& channel) {
   if (const std::string* pointer = animationPointer(channel.target)) return parsePointer(*pointer);
@@ -91,6 +90,7 @@ void retargetMorphChannels(Asset& asset, Index from, Index to) {
       }
     }
   }
+  moveVrmMesh(asset.document, from, to);
 }
 
 void deleteNodes(Asset& asset, const std::vector<bool>& keep) {

@@ -32,11 +32,14 @@ ChannelTarget channelTarget(const gltf::AnimationChannel& channel);
 // are left empty. `drop` sees the node, if the channel has one, and the path ("translation", ...).
 void removeChannels(Asset& asset, const std::function<bool(Index node, std::string_view path)>& drop);
 
-// Lets the animation of morph weights of one node drive another.
+// Takes the samplers out that no channel of the animation names, and renumbers the others.
+void removeUnusedSamplers(gltf::Animation& animation);
+
+// Lets the animation of morph weights of one node, and the expressions of a VRM, drive another.
 void retargetMorphChannels(Asset& asset, Index from, Index to);
 
 // Deletes the nodes for which `keep` is false (#nodes) and renumbers every reference to a node: children, scenes,
-// skins, animation channels (KHR_animation_pointer too), MSFT_lod, VRMC_springBone. Channels and springs of deleted
+// skins, animation channels (KHR_animation_pointer too), MSFT_lod, those of VRM. Channels and springs of deleted
 // nodes go. Where other extensions seem to name nodes, a warning "node-references" is added to the asset's.
 void deleteNodes(Asset& asset, const std::vector<bool>& keep);
 

@@ -1,7 +1,9 @@
 #include "limber/asset/read.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <map>
 #include <new>
 
 #include "limber/asset/bvh_read.h"
@@ -9,9 +11,14 @@
 #include "limber/asset/extensions.h"
 #include "limber/asset/glb.h"
 #include "limber/asset/gltf_document.h"
+#include "limber/asset/import_fbx.h"
 #include "limber/asset/motion_io.h"
+#include "limber/asset/ply.h"
+#include "limber/asset/stored_archive.h"
+#include "limber/core/file_view.h"
 #include "limber/core/known_error.h"
 #include "limber/core/names.h"
+#include "limber/fbx/fbx_parse.h"
 #ifdef LIMBER_IMPORT
 #include "limber/asset/import_model.h"
 #endif
@@ -60,6 +67,23 @@ Asset readGltf(ByteSpan bytes, const Resolver& resolver) {
   return asset;
 }
 
+bool looksLikeArchive(ByteSpan bytes) {
+  constexpr std::array<std::uint8_t, 4> kEntry = {'P', 'K', 3, 4};
+  return bytes.size() >= 4 && std::equal(kEntry.begin(), kEntry.end(), bytes.begin());
+}
+
+// An FBX file that a page hands over together with the pictures beside it, which it cannot open one by one.
+Asset readFbxArchive(ByteSpan bytes) {
+  const std::map<std::string, Bytes> files = readZipArchive(bytes, {});
+  const auto model =
+      std::find_if(files.begin(), files.end(), [](const auto& file) { return looksLikeFbx(file.second); });
+  if (model == files.end()) throw Error(ErrorCode::kBadData, "is an archive without an FBX file");
+  return importFbx(model->second, [&](std::string_view path) -> std::optional<Bytes> {
+    const auto file = files.find(std::string(path));
+    return file == files.end() ? std::nullopt : std::optional<Bytes>(file->second);
+  });
+}
+
 Asset readAny(ByteSpan bytes, std::string_view name, const Resolver& resolver) {
   if (bytes.empty()) throw KnownError(ErrorKind::kEmptyFile, {ErrorCode::kBadData, "is empty"});
   if (looksLikeGlb(bytes) || looksLikeJson(bytes)) return readGltf(bytes, resolver);
@@ -72,21 +96,25 @@ Asset readAny(ByteSpan bytes, std::string_view name, const Resolver& resolver) {
     throw KnownError(ErrorKind::kNoGlb, {ErrorCode::kBadData, "is no GLB: it does not start with \"glTF\""});
   }
   if (extension == ".gltf") throw Error(ErrorCode::kBadData, "is no glTF: it is not a JSON object");
+  if (looksLikeFbx(bytes)) return importFbx(bytes, resolver);
+  if (extension == ".fbx" && looksLikeArchive(bytes)) return readFbxArchive(bytes);
+  if (extension == ".fbx") throw Error(ErrorCode::kBadData, "is no FBX file: it does not start as one");
+  if (looksLikePly(bytes)) return readPly(bytes, resolver);
 #ifdef LIMBER_IMPORT
   return importModel(bytes, name, resolver);
 #else
   throw KnownError(ErrorKind::kUnknownFormat, {ErrorCode::kUnsupported,
                                                "is of a format that limber does not read here",
                                                {},
-                                               "convert it to GLB or glTF, which are read"});
+                                               "convert it to GLB, glTF, FBX or PLY, which are read"});
 #endif
 }
 
 // The skeleton of a motion as nodes, and its clip.
-Asset readBvhAsset(ByteSpan bytes, std::string_view name) {
-  Asset asset = motionAsset(readBvh(bytes, name));
+Asset motionFileAsset(const Motion& motion, std::string_view name, const char* format) {
+  Asset asset = motionAsset(motion);
   asset.name = name;
-  asset.format = "bvh";
+  asset.format = format;
   checkAsset(asset);
   return asset;
 }
@@ -103,7 +131,9 @@ Resolver folderResolver(const fs::path& folder) {
 }
 
 Asset readAsset(ByteSpan bytes, std::string_view name, const Resolver& resolver) {
-  if (looksLikeBvh(bytes) || lowerExtension(std::string(name)) == ".bvh") return readBvhAsset(bytes, name);
+  const std::string extension = lowerExtension(std::string(name));
+  if (looksLikeBvh(bytes) || extension == ".bvh") return motionFileAsset(readBvh(bytes, name), name, "bvh");
+  if (looksLikeNpz(bytes) || extension == ".npz") return motionFileAsset(readSmplMotion(bytes, name), name, "npz");
   try {
     Asset asset = readAny(bytes, name, resolver);
     asset.name = name;
@@ -117,9 +147,9 @@ Asset readAsset(ByteSpan bytes, std::string_view name, const Resolver& resolver)
 }
 
 Asset readAsset(const fs::path& path) {
-  const Bytes bytes = readFile(path);
-  if (path == "-") return readAsset(bytes, "standard input");
-  return readAsset(bytes, path.filename().string(), folderResolver(path.parent_path()));
+  const FileView file(path);
+  if (path == "-") return readAsset(file.bytes(), "standard input");
+  return readAsset(file.bytes(), path.filename().string(), folderResolver(path.parent_path()));
 }
 
 }  // namespace limber

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "limber/asset/extensions.h"
+#include "limber/asset/humanoid_nodes.h"
 #include "limber/asset/json_access.h"
 
 namespace limber {
@@ -259,28 +260,65 @@ class ReferenceChanger {
   bool isChanged_ = false;  // of the extension that is being walked
 };
 
+// The new number of the node that a member names; none where it names none, or one that is gone.
+class NewNumbers {
+ public:
+  explicit NewNumbers(const std::vector<Index>& newNode) : newNode_(newNode) {}
+
+  std::optional<Index> of(const Json& number) const {
+    if (!number.is_number()) return std::nullopt;
+    const auto before = number.get<double>();
+    if (!(before >= 0 && before < static_cast<double>(newNode_.size()))) return std::nullopt;
+    const Index renumbered = newNode_[static_cast<std::size_t>(before)];
+    return renumbered == kNoIndex ? std::nullopt : std::optional(renumbered);
+  }
+  std::optional<Index> of(const Json& holder, const char* key) const {
+    const Json* node = member(holder, key);
+    return node != nullptr ? of(*node) : std::nullopt;
+  }
+
+  // Takes the elements, or members, out of a list whose "node" is gone.
+  void inEach(Json& list) const {
+    if (!list.is_structured()) return;
+    for (auto holder = list.begin(); holder != list.end();) {
+      if (const auto number = of(*holder, "node")) {
+        (*holder)["node"] = *number;
+        ++holder;
+      } else {
+        holder = list.erase(holder);
+      }
+    }
+  }
+  // The same with a list that is a member, where there is one.
+  void inEach(Json& owner, const char* key) const {
+    if (owner.is_object() && owner.contains(key)) inEach(owner[key]);
+  }
+  // VRM 0.x writes -1 where nothing is meant.
+  void orMinusOne(Json& owner, const char* key) const {
+    if (!owner.is_object() || !owner.contains(key)) return;
+    const auto number = of(owner, key);
+    owner[key] = number ? Json(*number) : Json(-1);
+  }
+
+ private:
+  const std::vector<Index>& newNode_;
+};
+
 // Renumbers the nodes of VRMC_springBone's springs: those of deleted joints go, and the extension where none is left.
 // False where colliders hang on deleted nodes: these are kept as they are.
-bool renumberSprings(gltf::Document& document, const std::vector<Index>& newNode) {
+bool renumberSprings(gltf::Document& document, const NewNumbers& newNumber) {
   Json& extension = changeExtension(document, kSpringBoneName);
-  const auto newNumber = [&](const Json& holder, const char* key) -> std::optional<Index> {
-    const Json* node = holder.is_object() ? member(holder, key) : nullptr;
-    if (node == nullptr || !node->is_number()) return std::nullopt;
-    const double number = node->get<double>();
-    if (!(number >= 0 && number < static_cast<double>(newNode.size()))) return std::nullopt;
-    const Index renumbered = newNode[static_cast<std::size_t>(number)];
-    return renumbered == kNoIndex ? std::nullopt : std::optional(renumbered);
-  };
   Json kept = Json::array();
   for (Json& spring : extension["springs"]) {
     if (!spring.is_object()) continue;
     Json& joints = spring["joints"];
-    if (!joints.is_array() ||
-        !std::all_of(joints.begin(), joints.end(), [&](const Json& joint) { return newNumber(joint, "node"); })) {
+    if (!joints.is_array() || !std::all_of(joints.begin(), joints.end(), [&](const Json& joint) {
+          return newNumber.of(joint, "node").has_value();
+        })) {
       continue;
     }
-    for (Json& joint : joints) joint["node"] = *newNumber(joint, "node");
-    if (const auto center = newNumber(spring, "center")) {
+    for (Json& joint : joints) joint["node"] = *newNumber.of(joint, "node");
+    if (const auto center = newNumber.of(spring, "center")) {
       spring["center"] = *center;
     } else {
       spring.erase("center");
@@ -297,7 +335,7 @@ bool renumberSprings(gltf::Document& document, const std::vector<Index>& newNode
   if (colliders == extension.end() || !colliders->is_array()) return true;
   bool allKept = true;
   for (Json& collider : *colliders) {
-    if (const auto node = newNumber(collider, "node")) {
+    if (const auto node = newNumber.of(collider, "node")) {
       collider["node"] = *node;
     } else {
       allKept = false;
@@ -305,6 +343,66 @@ bool renumberSprings(gltf::Document& document, const std::vector<Index>& newNode
   }
   return allKept;
 }
+
+Json* memberToChange(Json& object, const char* key) {
+  return object.is_object() && object.contains(key) ? &object[key] : nullptr;
+}
+
+// Bones, expressions and annotations of nodes that are gone go; what else a VRM says of itself (who may use it) stays.
+void renumberVrm(Json& vrm, const NewNumbers& newNumber) {
+  if (Json* humanoid = memberToChange(vrm, "humanoid")) newNumber.inEach(*humanoid, "humanBones");
+  if (Json* firstPerson = memberToChange(vrm, "firstPerson")) newNumber.inEach(*firstPerson, "meshAnnotations");
+  Json* expressions = memberToChange(vrm, "expressions");
+  for (const char* kind : {"preset", "custom"}) {
+    Json* named = expressions != nullptr ? memberToChange(*expressions, kind) : nullptr;
+    if (named == nullptr || !named->is_object()) continue;
+    for (Json& expression : *named) newNumber.inEach(expression, "morphTargetBinds");
+  }
+}
+
+void renumberVrm0(Json& vrm, const NewNumbers& newNumber) {
+  if (Json* humanoid = memberToChange(vrm, "humanoid")) newNumber.inEach(*humanoid, "humanBones");
+  if (Json* firstPerson = memberToChange(vrm, "firstPerson")) newNumber.orMinusOne(*firstPerson, "firstPersonBone");
+  Json* springs = memberToChange(vrm, "secondaryAnimation");
+  if (springs == nullptr) return;
+  if (Json* groups = memberToChange(*springs, "boneGroups"); groups != nullptr && groups->is_array()) {
+    for (Json& group : *groups) {
+      newNumber.orMinusOne(group, "center");
+      Json* bones = memberToChange(group, "bones");
+      if (bones == nullptr || !bones->is_array()) continue;
+      Json kept = Json::array();
+      for (const Json& bone : *bones) {
+        if (const auto number = newNumber.of(bone)) kept.push_back(*number);
+      }
+      *bones = std::move(kept);
+    }
+  }
+  if (Json* groups = memberToChange(*springs, "colliderGroups"); groups != nullptr && groups->is_array()) {
+    for (Json& group : *groups) newNumber.orMinusOne(group, "node");  // groups are named by their places
+  }
+}
+
+void renumberVrmAnimation(Json& animation, const NewNumbers& newNumber) {
+  if (Json* humanoid = memberToChange(animation, "humanoid")) newNumber.inEach(*humanoid, "humanBones");
+  Json* expressions = memberToChange(animation, "expressions");
+  for (const char* kind : {"preset", "custom"}) {
+    if (expressions != nullptr) newNumber.inEach(*expressions, kind);
+  }
+  const Json* lookAt = memberToChange(animation, "lookAt");
+  if (lookAt == nullptr) return;
+  if (const auto number = newNumber.of(*lookAt, "node")) {
+    animation["lookAt"]["node"] = *number;
+  } else {
+    animation.erase("lookAt");
+  }
+}
+
+struct NodeNamingExtension {
+  const char* name;
+  void (*renumber)(Json&, const NewNumbers&);
+};
+constexpr std::array<NodeNamingExtension, 3> kVrmExtensions = {
+    {{kVrmName, renumberVrm}, {kVrm0Name, renumberVrm0}, {kVrmAnimationName, renumberVrmAnimation}}};
 
 // Does anything in there look like the number of a node?
 bool seemsToNameNodes(const Json& value) {
@@ -319,12 +417,16 @@ bool seemsToNameNodes(const Json& value) {
   return false;
 }
 
-// Does an extension of the whole document, other than that of springs?
+// Does an extension of the whole document, other than those that are renumbered here?
 bool otherExtensionsNameNodes(const gltf::Document& document) {
   if (!document.extensions.exists()) return false;
+  const auto isKnown = [](const std::string& name) {
+    return name == kSpringBoneName ||
+           std::any_of(kVrmExtensions.begin(), kVrmExtensions.end(), [&](const auto& vrm) { return vrm.name == name; });
+  };
   const auto& all = document.extensions->items();
-  return std::any_of(all.begin(), all.end(), [](const auto& extension) {
-    return extension.key() != kSpringBoneName && seemsToNameNodes(extension.value());
+  return std::any_of(all.begin(), all.end(), [&](const auto& extension) {
+    return !isKnown(extension.key()) && seemsToNameNodes(extension.value());
   });
 }
 
@@ -431,9 +533,31 @@ void changeReferences(gltf::Document& document, const std::function<void(Element
 }
 
 bool renumberDocumentExtensions(gltf::Document& document, const std::vector<Index>& newNode) {
+  const NewNumbers newNumber(newNode);
+  for (const NodeNamingExtension& vrm : kVrmExtensions) {
+    if (extensionOf(document, vrm.name) != nullptr) vrm.renumber(changeExtension(document, vrm.name), newNumber);
+  }
   const Json* springs = extensionOf(document, kSpringBoneName);
-  const bool springsKept = springs == nullptr || !springs->is_object() || renumberSprings(document, newNode);
+  const bool springsKept = springs == nullptr || !springs->is_object() || renumberSprings(document, newNumber);
   return springsKept && !otherExtensionsNameNodes(document);
+}
+
+void moveVrmMesh(gltf::Document& document, Index from, Index to) {
+  if (extensionOf(document, kVrmName) == nullptr) return;
+  Json& vrm = changeExtension(document, kVrmName);
+  const auto move = [&](Json* list) {
+    if (list == nullptr || !list->is_array()) return;
+    for (Json& holder : *list) {
+      if (holder.is_object() && holder.contains("node") && holder["node"] == from) holder["node"] = to;
+    }
+  };
+  if (Json* firstPerson = memberToChange(vrm, "firstPerson")) move(memberToChange(*firstPerson, "meshAnnotations"));
+  Json* expressions = memberToChange(vrm, "expressions");
+  for (const char* kind : {"preset", "custom"}) {
+    Json* named = expressions != nullptr ? memberToChange(*expressions, kind) : nullptr;
+    if (named == nullptr || !named->is_object()) continue;
+    for (Json& expression : *named) move(memberToChange(expression, "morphTargetBinds"));
+  }
 }
 
 }  // namespace limber

@@ -46,8 +46,12 @@ void changeReferences(gltf::Document& document, const std::function<void(Element
 
 // The same for what extensions of the whole document refer to, after nodes were renumbered: `newNode` is the number of
 // each of the nodes as it is now, kNoIndex where it is gone. Springs of VRMC_springBone with a node that is gone go,
-// and the extension with the last of them. False where something there may now name another node: colliders of such
-// nodes, any other extension that seems to name nodes.
+// and the extension with the last of them; so do bones, annotations and expressions of a VRM (1.0, 0.x, animation) that
+// name one, while the extension stays. False where something there may now name another node: colliders of
+// VRMC_springBone on such nodes, any other extension that seems to name nodes.
 bool renumberDocumentExtensions(gltf::Document& document, const std::vector<Index>& newNode);
+
+// What a VRM 1.0 says of the mesh of one node (expressions, what the wearer sees) it says of another from now on.
+void moveVrmMesh(gltf::Document& document, Index from, Index to);
 
 }  // namespace limber

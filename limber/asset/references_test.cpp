@@ -155,5 +155,42 @@ TEST(References, EveryObjectIsSeen) {
   EXPECT_EQ(objects, 27u);
 }
 
+// Nodes 0 to 3 become none, 5, none, 7.
+TEST(References, VrmsKeepTheirNodesAndLoseWhatIsGone) {
+  gltf::Document document;
+  document.extensions.change() = Json::parse(R"({
+    "VRMC_vrm": {"meta": {"name": "a"}, "humanoid": {"humanBones": {"hips": {"node": 1}, "head": {"node": 0}}},
+                 "firstPerson": {"meshAnnotations": [{"node": 2, "type": "both"}, {"node": 3, "type": "auto"}]},
+                 "expressions": {"preset": {"happy": {"morphTargetBinds": [{"node": 1, "index": 2, "weight": 1}, {"node": 0}]}},
+                                 "custom": {"wink": {"morphTargetBinds": [{"node": 3}]}}}},
+    "VRM": {"meta": {"texture": 1}, "humanoid": {"humanBones": [{"bone": "hips", "node": 1}, {"bone": "head", "node": 2}]},
+            "firstPerson": {"firstPersonBone": 0},
+            "secondaryAnimation": {"boneGroups": [{"bones": [0, 1, 3], "center": -1}],
+                                   "colliderGroups": [{"node": 0}, {"node": 3}]}},
+    "VRMC_vrm_animation": {"humanoid": {"humanBones": {"hips": {"node": 3}, "head": {"node": 0}}},
+                           "expressions": {"preset": {"aa": {"node": 1}, "oh": {"node": 2}}}, "lookAt": {"node": 0}}
+  })");
+  EXPECT_TRUE(renumberDocumentExtensions(document, {kNoIndex, 5, kNoIndex, 7}));
+  const Json expected = Json::parse(R"({
+    "VRMC_vrm": {"meta": {"name": "a"}, "humanoid": {"humanBones": {"hips": {"node": 5}}},
+                 "firstPerson": {"meshAnnotations": [{"node": 7, "type": "auto"}]},
+                 "expressions": {"preset": {"happy": {"morphTargetBinds": [{"node": 5, "index": 2, "weight": 1}]}},
+                                 "custom": {"wink": {"morphTargetBinds": [{"node": 7}]}}}},
+    "VRM": {"meta": {"texture": 1}, "humanoid": {"humanBones": [{"bone": "hips", "node": 5}]},
+            "firstPerson": {"firstPersonBone": -1},
+            "secondaryAnimation": {"boneGroups": [{"bones": [5, 7], "center": -1}],
+                                   "colliderGroups": [{"node": -1}, {"node": 7}]}},
+    "VRMC_vrm_animation": {"humanoid": {"humanBones": {"hips": {"node": 7}}},
+                           "expressions": {"preset": {"aa": {"node": 5}}}}
+  })");
+  EXPECT_EQ(document.extensions->dump(), expected.dump());
+
+  moveVrmMesh(document, 7, 9);
+  const Json& vrm = document.extensions->at("VRMC_vrm");
+  EXPECT_EQ(vrm["firstPerson"]["meshAnnotations"][0]["node"], 9);
+  EXPECT_EQ(vrm["expressions"]["custom"]["wink"]["morphTargetBinds"][0]["node"], 9);
+  EXPECT_EQ(vrm["humanoid"]["humanBones"]["hips"]["node"], 5);
+}
+
 }  // namespace
 }  // namespace limber

@@ -159,7 +159,9 @@ class VertexMover {
 // Binds every skin that a mesh is shown with where its joints' nodes stand now, its vertices with it.
 class Rebinder {
  public:
-  explicit Rebinder(Asset& asset) : asset_(asset), graph_(readSceneGraph(asset.document)) {}
+  // stretches  by node, of those that have one
+  Rebinder(Asset& asset, std::map<Index, Mat3> stretches)
+      : asset_(asset), graph_(readSceneGraph(asset.document)), stretches_(std::move(stretches)) {}
 
   // skinToWorld  #skins: where each skin's mesh space lies in the world; it stays there
   void run(const std::vector<Affine>& skinToWorld) {
@@ -207,7 +209,10 @@ class Rebinder {
     std::vector<float> inverseBinds;
     for (std::size_t j = 0; j < binding.joints.size(); ++j) {
       const Affine& joint = graph_.world[binding.joints[j]];
-      maps.push_back(fromWorld * joint * binding.inverseBinds[j]);
+      const auto stretch = stretches_.find(binding.joints[j]);
+      Affine inJoint = binding.inverseBinds[j];
+      if (stretch != stretches_.end()) inJoint = stretch->second * inJoint;
+      maps.push_back(fromWorld * joint * inJoint);
       const Affine toJoint = inverseOrThrow(joint, fmt::format("nodes[{}]", binding.joints[j])) * toWorld;
       for (int i = 0; i < 16; ++i) inverseBinds.push_back(static_cast<float>(toJoint.matrix()(i % 4, i / 4)));
     }
@@ -223,6 +228,7 @@ class Rebinder {
 
   Asset& asset_;
   SceneGraph graph_;
+  std::map<Index, Mat3> stretches_;
   std::map<std::pair<Index, Index>, std::vector<Index>> nodesOfUse_;  // by mesh and skin
   std::vector<Index> usesLeft_;                                       // #meshes, by skins, and one without a skin
 };
@@ -286,14 +292,25 @@ void holdInClips(Asset& asset, const std::vector<ChangedPart>& parts) {
 
 }  // namespace
 
-void setRestPose(Asset& asset, const AssetSkeleton& skeleton, const Pose& pose) {
+void setRestPose(Asset& asset, const AssetSkeleton& skeleton, const Pose& pose, std::span<const Mat3> stretch) {
+  if (!stretch.empty() && stretch.size() != skeleton.jointNode.size()) {
+    throw Error(ErrorCode::kBadArgument, "a stretch for each joint, or none");
+  }
+  std::map<Index, Mat3> stretches;
+  for (std::size_t j = 0; j < stretch.size(); ++j) stretches.emplace(skeleton.jointNode[j], stretch[j]);
   const AccessorSweep unused(asset);
   const SceneGraph before = readSceneGraph(asset.document);
   const std::vector<Affine> skinToWorld = readBindPose(asset, before).skinToWorld;
   writeNodePose(asset, skeleton, pose);
-  Rebinder(asset).run(skinToWorld);
+  Rebinder(asset, std::move(stretches)).run(skinToWorld);
   holdInClips(asset, changedParts(before, readSceneGraph(asset.document), skeleton.jointNode));
   unused.sweep(asset);
+}
+
+void setNodePose(Asset& asset, const AssetSkeleton& skeleton, const Pose& pose) {
+  const SceneGraph before = readSceneGraph(asset.document);
+  writeNodePose(asset, skeleton, pose);
+  holdInClips(asset, changedParts(before, readSceneGraph(asset.document), skeleton.jointNode));
 }
 
 }  // namespace limber

@@ -1,6 +1,8 @@
 // A new rest pose for a rigged Asset: the pose that it stands in becomes the one that it is bound in.
 #pragma once
 
+#include <span>
+
 #include "limber/asset/rig_io.h"
 #include "limber/skeleton/pose.h"
 
@@ -21,6 +23,13 @@ namespace limber {
 //
 // skeleton  readSkeleton(asset) of the asset as it is
 // pose      as of readNodePose
-void setRestPose(Asset& asset, const AssetSkeleton& skeleton, const Pose& pose);
+//
+// stretch   #J maps in the joints' own frames, by which what is bound to each is deformed on the way; what hangs on the
+//           joint, other joints among it, is not. Empty: none
+void setRestPose(Asset& asset, const AssetSkeleton& skeleton, const Pose& pose, std::span<const Mat3> stretch = {});
+
+// The joint nodes alone stand in that pose: the surface follows by its weights, skins stay bound where they are, and
+// clips show every vertex where they did, held by keys as above. Throws as writeNodePose does.
+void setNodePose(Asset& asset, const AssetSkeleton& skeleton, const Pose& pose);
 
 }  // namespace limber

@@ -229,7 +229,7 @@ TEST(DeleteNodes, RenumbersWhatNamesNodes) {
   target.node.reset();
   target.path = "pointer";
   changeExtension(target, "KHR_animation_pointer") = {{"pointer", "/nodes/3/rotation"}};
-  changeExtension(asset.document, "VRM") = {{"humanBones", {{{"node", 3}}}}};
+  changeExtension(asset.document, "OTHER_humanoid") = {{"humanBones", {{{"node", 3}}}}};
   deleteNodes(asset, {false, true, true, true});
   const Json json = documentJson(asset);
   ASSERT_EQ(json["nodes"].size(), 3u);

@@ -1,13 +1,14 @@
 #include "limber/asset/stored_archive.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "limber/core/error.h"
+#include "limber/core/inflate.h"
 
 namespace limber {
 
@@ -16,6 +17,8 @@ namespace {
 // Signatures and sizes in bytes of the records that APPNOTE.TXT 6.3 (PKWARE) lays down.
 constexpr std::uint32_t kLocalFile = 0x04034b50, kDirectoryEntry = 0x02014b50, kDirectoryEnd = 0x06054b50;
 constexpr std::size_t kLocalSize = 30, kEntrySize = 46, kEndSize = 22, kMostComment = 65535;
+constexpr std::uint32_t kStored = 0, kDeflated = 8;  // ways of packing
+constexpr std::size_t kMostUnpacked = 2'000'000'000;
 constexpr std::uint32_t kInZip64 = 0xffffffff;  // in place of a number that stands elsewhere
 
 // CRC-32, the polynomial reversed, a byte at a time by a table.
@@ -39,23 +42,26 @@ class Checksum {
 };
 constexpr Checksum kChecksum;
 
-class StoredArchive {
+class ZipArchive {
  public:
-  StoredArchive(ByteSpan bytes, std::string_view name) : bytes_(bytes), name_(name) {}
+  ZipArchive(ByteSpan bytes, std::string_view name) : bytes_(bytes), name_(name) {}
 
   std::map<std::string, Bytes> files() const {
     const std::size_t end = directoryEnd();
     const std::uint64_t count = number(end + 10, 2);
     std::size_t at = number(end + 16, 4);
     std::map<std::string, Bytes> files;
-    std::size_t read = 0;  // entries that share their bytes would make memory grow beyond the archive
+    std::size_t packed = 0;  // entries that share their bytes would make memory grow beyond the archive
+    std::size_t unpacked = 0;
     for (std::uint64_t i = 0; i < count; ++i) {
       if (number(at, 4) != kDirectoryEntry) refuse("its directory is damaged");
       const std::size_t nameSize = number(at + 28, 2);
       std::string path = text(at + kEntrySize, nameSize);
+      packed += number(at + 20, 4);
+      if (packed > bytes_.size()) refuse("files in it share their bytes");
+      unpacked += number(at + 24, 4);
+      if (unpacked > kMostUnpacked) refuse("holds more than 2 GB", ErrorCode::kLimit);
       Bytes content = contentOf(at, path);
-      read += content.size();
-      if (read > bytes_.size()) refuse("files in it share their bytes");
       if (!files.emplace(path, std::move(content)).second) refuse(fmt::format("holds '{}' twice", path));
       at += kEntrySize + nameSize + number(at + 30, 2) + number(at + 32, 2);
     }
@@ -89,17 +95,32 @@ class StoredArchive {
 
   Bytes contentOf(std::size_t entry, const std::string& path) const {
     if (number(entry + 8, 2) % 2 == 1) refuse(fmt::format("'{}' in it is encrypted", path), ErrorCode::kUnsupported);
-    const std::uint32_t size = number(entry + 24, 4), local = number(entry + 42, 4);
-    if (number(entry + 10, 2) != 0) {
-      refuse(fmt::format("'{}' in it is compressed", path), ErrorCode::kUnsupported, "save it by numpy.savez");
+    const std::uint32_t packed = number(entry + 20, 4), size = number(entry + 24, 4), local = number(entry + 42, 4);
+    const std::uint32_t method = number(entry + 10, 2);
+    if (method != kStored && method != kDeflated) {
+      refuse(fmt::format("'{}' in it is compressed in another way than by deflate", path), ErrorCode::kUnsupported);
     }
-    if (size == kInZip64 || local == kInZip64) refuse("is larger than 4 GB", ErrorCode::kUnsupported);
-    if (number(entry + 20, 4) != size || number(local, 4) != kLocalFile) {
-      refuse(fmt::format("'{}' in it is damaged", path));
+    if (packed == kInZip64 || size == kInZip64 || local == kInZip64) {
+      refuse("is larger than 4 GB", ErrorCode::kUnsupported);
     }
-    const std::string content = text(local + kLocalSize + number(local + 26, 2) + number(local + 28, 2), size);
-    if (kChecksum.of(asBytes(content)) != number(entry + 16, 4)) refuse(fmt::format("'{}' in it is damaged", path));
-    return Bytes(content.begin(), content.end());
+    const auto damaged = [&] { refuse(fmt::format("'{}' in it is damaged", path)); };
+    if (number(local, 4) != kLocalFile) damaged();
+    const std::size_t begin = std::size_t{local} + kLocalSize + number(local + 26, 2) + number(local + 28, 2);
+    if (begin > bytes_.size() || packed > bytes_.size() - begin) refuse("is cut off, or no ZIP archive");
+    const ByteSpan data = bytes_.subspan(begin, packed);
+    if (method == kStored ? size != data.size() : size / kMostInflatedPerByte > data.size()) damaged();
+    Bytes content(size);
+    if (method == kStored) {
+      std::copy(data.begin(), data.end(), content.begin());
+    } else {
+      try {
+        inflate(data, content);
+      } catch (const Error&) {
+        damaged();
+      }
+    }
+    if (kChecksum.of(content) != number(entry + 16, 4)) damaged();
+    return content;
   }
 
   ByteSpan bytes_;
@@ -183,8 +204,8 @@ class ArchiveWriter {
 
 }  // namespace
 
-std::map<std::string, Bytes> readStoredArchive(ByteSpan bytes, std::string_view name) {
-  return StoredArchive(bytes, name).files();
+std::map<std::string, Bytes> readZipArchive(ByteSpan bytes, std::string_view name) {
+  return ZipArchive(bytes, name).files();
 }
 
 Bytes writeStoredArchive(std::span<const StoredFile> files, std::size_t alignment) {

@@ -20,18 +20,11 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::size_t appendAligned(Bytes& binary, ByteSpan bytes) {
-  binary.resize((binary.size() + 3) / 4 * 4);
-  const std::size_t start = binary.size();
-  binary.insert(binary.end(), bytes.begin(), bytes.end());
-  return start;
-}
-
 // All buffers one behind the other; moves the document's buffer views along.
-Bytes mergeBuffers(const Asset& asset, gltf::Document& document) {
-  Bytes binary;
+BinaryChunk mergeBuffers(const Asset& asset, gltf::Document& document) {
+  BinaryChunk binary;
   std::vector<std::size_t> start;
-  for (const Asset::Buffer& buffer : asset.buffers) start.push_back(appendAligned(binary, buffer.bytes));
+  for (const Asset::Buffer& buffer : asset.buffers) start.push_back(binary.add(buffer.bytes));
   for (gltf::BufferView& view : document.bufferViews) {
     if (view.buffer == 0) continue;
     view.byteOffset += start.at(view.buffer);
@@ -41,7 +34,7 @@ Bytes mergeBuffers(const Asset& asset, gltf::Document& document) {
 }
 
 // Images beside the document become buffer views at the end; an image used twice is stored once.
-void embedImages(const Asset& asset, gltf::Document& document, Bytes& binary) {
+void embedImages(const Asset& asset, gltf::Document& document, BinaryChunk& binary) {
   std::map<std::string_view, const Asset::SideFile*> files;
   for (const Asset::SideFile& file : asset.sideFiles) files[file.uri] = &file;
   std::map<const Asset::SideFile*, Index> viewOf;
@@ -52,7 +45,7 @@ void embedImages(const Asset& asset, gltf::Document& document, Bytes& binary) {
     const auto [known, isNew] = viewOf.try_emplace(file->second, static_cast<Index>(document.bufferViews.size()));
     if (isNew) {
       gltf::BufferView view;
-      view.byteOffset = appendAligned(binary, bytes);
+      view.byteOffset = binary.add(bytes);
       view.byteLength = bytes.size();
       document.bufferViews.push_back(std::move(view));
     }
@@ -69,6 +62,20 @@ void setSingleBuffer(gltf::Document& document, std::size_t size) {
   document.buffers[0].uri.clear();
   document.buffers[0].byteLength = size;
 }
+
+// A GLB in pieces, most of which stay in the asset.
+struct Glb {
+  explicit Glb(const Asset& asset) {
+    gltf::Document document = asset.document;
+    binary = mergeBuffers(asset, document);
+    embedImages(asset, document, binary);
+    setSingleBuffer(document, binary.size);
+    head = glbHead(dumpJson(gltf::jsonOf(document), -1), binary);
+  }
+
+  BinaryChunk binary;
+  Bytes head;
+};
 
 // The folders that a file needs and that are not there yet; gone again unless kept.
 class NewFolders {
@@ -107,19 +114,19 @@ void writeGltf(const Asset& asset, const fs::path& path, std::vector<OutputFile>
 }  // namespace
 
 Bytes writeGlb(const Asset& asset) {
-  gltf::Document document = asset.document;
-  Bytes binary = mergeBuffers(asset, document);
-  embedImages(asset, document, binary);
-  setSingleBuffer(document, binary.size());
-  return joinGlb(dumpJson(gltf::jsonOf(document), -1), binary);
+  const Glb glb(asset);
+  Bytes file = glb.head;
+  file.reserve(file.size() + glb.binary.size + 3);
+  for (const ByteSpan piece : glb.binary.pieces) file.insert(file.end(), piece.begin(), piece.end());
+  return file;
 }
 
 void writeAsset(const Asset& asset, const fs::path& path, std::span<const OutputFile> companions) {
   const std::string extension = lowerExtension(path);
   if (path == "-" || extension == ".glb") {
-    const Bytes glb = writeGlb(asset);
+    const Glb glb(asset);
     std::vector<OutputFile> outputs(companions.begin(), companions.end());
-    outputs.push_back({path, glb});
+    outputs.push_back({path, glb.head, glb.binary.pieces});
     writeFiles(outputs);
   } else if (extension == ".gltf") {
     writeGltf(asset, path, {companions.begin(), companions.end()});

@@ -1,0 +1,27 @@
+// What readers of arrays in SMPL's layout share: each refusal names the array.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "limber/asset/npz.h"
+#include "limber/core/types.h"
+
+namespace limber {
+
+// Throws Error kBadData, where() being "array.npy".
+[[noreturn]] void refuseSmplArray(const std::string& array, std::string what);
+
+// The array of that name of a body (pipeline/smpl_body.h). Throws Error kBadData where there is none; else as npzArray
+// does.
+NpyArray neededSmplArray(const NpzFiles& body, const std::string& array);
+
+void checkSmplShape(const NpyArray& array, const std::string& name, const std::vector<std::size_t>& wanted);
+
+// How many rows of three there are, at least one.
+std::size_t smplRowsOfThree(const NpyArray& array, const std::string& name);
+
+// Three by three, all finite in single precision.
+std::vector<Vec3> smplPoints(const NpyArray& array, const std::string& name);
+
+}  // namespace limber
