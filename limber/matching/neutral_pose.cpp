@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "limber/ik/rotation.h"
+#include "limber/core/rotation.h"
 #include "limber/matching/loose_joints.h"
 #include "limber/skeleton/chain.h"
 

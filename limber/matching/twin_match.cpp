@@ -7,7 +7,7 @@
 #include <Eigen/SVD>
 
 #include "limber/anatomy/half_body.h"
-#include "limber/ik/rotation.h"
+#include "limber/core/rotation.h"
 
 namespace limber {
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "limber/ik/rotation.h"
+#include "limber/core/rotation.h"
 #include "limber/limbs/arm_clearance.h"
 #include "limber/limbs/hand_goals.h"
 #include "limber/limbs/limb_reach.h"

@@ -40,9 +40,10 @@ struct LoopOptions {
   double shortest = 0.4;        // seconds
   double framesPerSecond = 30;  // at which poses are compared; fewer where the clip has more than 1500 such frames
   double largestError = 0.03;   // of the skeleton's size
+  Index body = 0;               // the joint whose travel does not count; joints above it do not count either
 };
 
-// The loop with the least error per second of its length, comparing joints relative to the root (its height counts, its
+// The loop with the least error per second of its length, comparing joints relative to the body (its height counts, its
 // place and heading do not) at this and the next frame, so that speeds match too; nullopt where none is good enough or
 // nothing moves. Cost: O(frames^2 * joints).
 std::optional<ClipLoop> findLoop(const Skeleton& skeleton, const Clip& clip, const LoopOptions& options = {});

@@ -221,6 +221,17 @@ TEST(ClipEdit, FindsAPeriodWhateverTheRootDoes) {
   EXPECT_LT(loop->error, 0.01);
 }
 
+TEST(ClipEdit, FindsAPeriodBelowARootThatStaysBehind) {
+  Clip clip = swinging(2.2);
+  for (auto& track : clip.rotations) ++track.joint;
+  ++clip.translations[0].joint;
+  LoopOptions options;
+  options.body = 1;
+  const std::optional<ClipLoop> loop = findLoop(chain(4), clip, options);
+  ASSERT_TRUE(loop);
+  EXPECT_LT(loop->error, 0.01);
+}
+
 TEST(ClipEdit, FindsNoLoopWhereNothingRepeatsOrMoves) {
   const Skeleton skeleton = chain(3);
   LoopOptions strict;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "limber/skeleton/clip_edit.h"
 #include "limber/skeleton/motion.h"
@@ -13,19 +14,30 @@ namespace {
 constexpr double kMostLoopFrames = 1500;
 constexpr double kStill = 1e-4;  // of the skeleton's size: less movement than this is none
 
-// Joint positions with the root's place on the ground and its heading (turn about +Y) taken out.
-std::vector<Vec3> standingPoints(const Skeleton& skeleton, const Clip& clip, double seconds) {
+// The joints that the body travels with: all but those above it, which may stay where they are.
+std::vector<Index> travellers(const Skeleton& skeleton, Index body) {
+  std::vector<bool> above(skeleton.jointCount(), false);
+  for (std::optional<Index> j = skeleton.joints[body].parent; j; j = skeleton.joints[*j].parent) above[*j] = true;
+  std::vector<Index> joints;
+  for (Index j = 0; j < skeleton.jointCount(); ++j) {
+    if (!above[j]) joints.push_back(j);
+  }
+  return joints;
+}
+
+// Positions of joints with the body's place on the ground and its heading (turn about +Y) taken out.
+std::vector<Vec3> standingPoints(const Skeleton& skeleton, const Clip& clip, std::span<const Index> joints, Index body,
+                                 const Quat& rest, double seconds) {
   Pose pose = restPose(skeleton);
   sampleClip(clip, seconds, pose);
   const std::vector<Affine> globals = poseGlobals(skeleton, pose);
   std::vector<Vec3> points;
-  for (const Affine& global : globals) points.push_back(global.translation());
-  const Quat turn(decompose(globals.front()).rotation);
-  const Quat rest(decompose(skeleton.joints.front().rest.toAffine()).rotation);
+  for (const Index j : joints) points.push_back(globals[j].translation());
+  const Quat turn(decompose(globals[body]).rotation);
   const Quat since = turn * rest.inverse();
   const double heading = 2 * std::atan2(since.y(), since.w());  // the twist about +Y
   const Eigen::AngleAxisd back(-heading, Vec3::UnitY());
-  const Vec3 origin(points.front().x(), 0, points.front().z());
+  const Vec3 place = globals[body].translation(), origin(place.x(), 0, place.z());
   for (Vec3& point : points) point = back * (point - origin);
   return points;
 }
@@ -40,11 +52,15 @@ double meanSquare(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
 
 std::optional<ClipLoop> findLoop(const Skeleton& skeleton, const Clip& clip, const LoopOptions& options) {
   const double duration = clip.duration();
-  if (skeleton.joints.empty() || duration < options.shortest) return std::nullopt;
+  if (options.body >= skeleton.jointCount() || duration < options.shortest) return std::nullopt;
+  const Quat rest(decompose(restGlobals(skeleton)[options.body]).rotation);
   const double rate = std::min(options.framesPerSecond, kMostLoopFrames / duration);
   const Index frames = frameCount(clip, rate);
+  const std::vector<Index> joints = travellers(skeleton, options.body);
   std::vector<std::vector<Vec3>> poses;
-  for (Index k = 0; k < frames; ++k) poses.push_back(standingPoints(skeleton, clip, std::min(k / rate, duration)));
+  for (Index k = 0; k < frames; ++k) {
+    poses.push_back(standingPoints(skeleton, clip, joints, options.body, rest, std::min(k / rate, duration)));
+  }
   Box box;
   double movement = 0;
   for (const Affine& global : restGlobals(skeleton)) box.add(global.translation());

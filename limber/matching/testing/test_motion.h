@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "limber/anatomy/testing/bodies.h"
+#include "limber/core/rotation.h"
 #include "limber/ik/ik_skeletons.h"
-#include "limber/ik/rotation.h"
 #include "limber/matching/retarget_setup.h"
 
 namespace limber::testing {

@@ -1,0 +1,116 @@
+#include "limber/motion_mix/crossfade_motions.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "limber/core/error.h"
+#include "limber/motion_mix/testing/sample_clip.h"
+#include "limber/skeleton/clip_edit.h"
+
+namespace limber {
+namespace {
+
+using limber::testing::jointPaths;
+using limber::testing::sampleClip;
+
+class CrossfadeMotions : public ::testing::Test {
+ protected:
+  static Vec3 headingAt(const std::vector<std::vector<Vec3>>& frames, std::size_t from, std::size_t to) {
+    Vec3 way = frames[to][0] - frames[from][0];
+    way.y() = 0;
+    return way.normalized();
+  }
+
+  const Skeleton skeleton = limber::testing::sampleSkeleton();
+  const ClipWithContacts walk = sampleClip("walk"), run = sampleClip("run");
+};
+
+TEST_F(CrossfadeMotions, GoesOnWhereItIsAndAsItHeads) {
+  // The run begins elsewhere and heads elsewhere.
+  Clip aside = turnClip(run.clip, skeleton, Quat(Eigen::AngleAxisd(2.0, Vec3::UnitY())));
+  for (Track<Vec3f>& track : aside.translations) {
+    for (Vec3f& value : track.values) value += track.joint == 0 ? Vec3f(5, 0, -7) : Vec3f(0, 0, 0);
+  }
+  const ClipWithContacts both = crossfadeMotions(skeleton, walk, {aside, {}}, {0.3, std::nullopt});
+  const auto frames = jointPaths(skeleton, both.clip), first = jointPaths(skeleton, walk.clip);
+  EXPECT_LT((headingAt(frames, 0, 60) - headingAt(frames, frames.size() - 43, frames.size() - 1)).norm(), 0.02);
+  // Nothing is faster from frame to frame than it is in the run.
+  double fastest = 0, fastestOfRun = 0;
+  for (std::size_t f = 1; f < frames.size(); ++f) {
+    for (std::size_t j = 0; j < frames[f].size(); ++j) {
+      fastest = std::max(fastest, (frames[f][j] - frames[f - 1][j]).norm());
+    }
+  }
+  const auto ran = jointPaths(skeleton, run.clip);
+  for (std::size_t f = 1; f < ran.size(); ++f) {
+    for (std::size_t j = 0; j < ran[f].size(); ++j) {
+      fastestOfRun = std::max(fastestOfRun, (ran[f][j] - ran[f - 1][j]).norm());
+    }
+  }
+  EXPECT_LT(fastest, 1.05 * fastestOfRun);
+  // The first is as it was until a second before the earliest transition.
+  for (std::size_t f = 0; f < 60; ++f) {
+    for (std::size_t j = 0; j < frames[f].size(); ++j) ASSERT_LT((frames[f][j] - first[f][j]).norm(), 1e-5);
+  }
+}
+
+TEST_F(CrossfadeMotions, FeetSlideNoMoreAndNothingIsRougher) {
+  const std::pair<ClipWithContacts, ClipWithContacts> pairs[] = {
+      {walk, run}, {run, walk}, {walk, walk}, {sampleClip("sneak"), walk}};
+  for (const auto& [a, b] : pairs) {
+    SCOPED_TRACE(a.clip.name + " " + b.clip.name);
+    for (const double seconds : {0.2, 0.5}) {
+      const Clip clip = crossfadeMotions(skeleton, a, b, {seconds, std::nullopt}).clip;
+      const double slide =
+          std::max(limber::testing::toesSlide(skeleton, a.clip), limber::testing::toesSlide(skeleton, b.clip));
+      const double jerk =
+          std::max(limber::testing::jerkOf(skeleton, a.clip), limber::testing::jerkOf(skeleton, b.clip));
+      EXPECT_LT(limber::testing::toesSlide(skeleton, clip), slide + 0.01) << seconds;
+      EXPECT_LT(limber::testing::jerkOf(skeleton, clip), 1.1 * jerk) << seconds;
+    }
+  }
+}
+
+// A loop into itself goes on as if nothing were.
+TEST_F(CrossfadeMotions, AWalkIntoItselfIsAWalk) {
+  const Clip clip = crossfadeMotions(skeleton, walk, walk, {0.3, std::nullopt}).clip;
+  const auto frames = jointPaths(skeleton, clip);
+  const Index toes = skeleton.find("leftToes").value();
+  for (std::size_t f = 66; f < frames.size(); ++f) {  // a stride later: 1.2 m further
+    EXPECT_NEAR((frames[f][toes] - frames[f - 66][toes]).z(), 1.2, 0.01) << f;
+  }
+}
+
+TEST_F(CrossfadeMotions, AllAreJoinedAndLastAsLongAsAllLessTheTransitions) {
+  const ClipWithContacts all[] = {walk, run, walk};
+  const auto [joined, spans] = joinMotions(skeleton, all, {0.3, std::nullopt});
+  const double sum = 2 * walk.clip.duration() + run.clip.duration();
+  EXPECT_LT(joined.clip.duration(), sum);
+  EXPECT_GT(joined.clip.duration(), sum - 2 * (0.3 + 2));  // at most a second of each side is left out
+  EXPECT_EQ(joined.feet.size(), 2u);
+  checkClip(joined.clip, skeleton);
+  const ClipWithContacts one[] = {walk};
+  const JoinedMotions alone = joinMotions(skeleton, one);
+  EXPECT_EQ(alone.motion.clip.duration(), walk.clip.duration());
+  ASSERT_EQ(alone.spans.size(), 1u);
+  EXPECT_EQ(alone.spans[0].to, walk.clip.duration());
+
+  // Each plays until the next one, that begins before, plays alone.
+  ASSERT_EQ(spans.size(), 3u);
+  EXPECT_EQ(spans[0].from, 0);
+  EXPECT_NEAR(spans[2].to, joined.clip.duration(), 1e-9);
+  for (std::size_t i = 0; i + 1 < spans.size(); ++i) {
+    EXPECT_NEAR(spans[i].to - spans[i + 1].from, 0.3, 1.0 / 60) << i;
+    EXPECT_LT(spans[i].from, spans[i + 1].from);
+  }
+}
+
+TEST_F(CrossfadeMotions, ATransitionLongerThanAMotionIsRefused) {
+  EXPECT_THROW(crossfadeMotions(skeleton, walk, run, {2.5, std::nullopt}), Error);
+  EXPECT_THROW(crossfadeMotions(skeleton, walk, run, {0, std::nullopt}), Error);
+  EXPECT_THROW(joinMotions(skeleton, {}), Error);
+}
+
+}  // namespace
+}  // namespace limber

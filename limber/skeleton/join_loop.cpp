@@ -1,0 +1,231 @@
+#include "limber/skeleton/join_loop.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <optional>
+
+#include "limber/core/error.h"
+#include "limber/skeleton/clip_edit.h"
+#include "limber/skeleton/motion.h"
+#include "limber/skeleton/pose.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kLongestFade = 0.2;     // seconds, of a difference in speed
+constexpr double kFadePart = 1.0 / 3;    // of the clip, likewise at most
+constexpr double kClosed = 1e-4;         // of the skeleton's size: ends that are no farther apart are one
+constexpr double kStraightAhead = 1e-6;  // radians: less of a turn is none
+
+// How the body travels in one cycle: over the ground along a circle, or straight.
+class Travel {
+ public:
+  Travel(const Affine& from, const Affine& to, bool turns) {
+    const Quat since(decompose(to).rotation * decompose(from).rotation.inverse());
+    if (turns) turn_ = std::remainder(2 * std::atan2(since.y(), since.w()), 2 * std::numbers::pi);
+    const Vec3 offset = to.translation() - Eigen::AngleAxisd(turn_, Vec3::UnitY()) * from.translation();
+    // A turn about +Y takes z + ix to e^(i angle) of it.
+    offset_ = {offset.z(), offset.x()};
+  }
+
+  // The part u of a cycle. All of these are powers of one motion, so that speeds go on from cycle to cycle.
+  Affine part(double u) const {
+    const std::complex<double> i(0, 1);
+    const std::complex<double> moved = std::abs(turn_) < kStraightAhead
+                                           ? u * offset_
+                                           : offset_ * (std::exp(i * turn_ * u) - 1.0) / (std::exp(i * turn_) - 1.0);
+    Affine result = Affine::Identity();
+    result.linear() = Eigen::AngleAxisd(turn_ * u, Vec3::UnitY()).toRotationMatrix();
+    result.translation() = Vec3(moved.imag(), 0, moved.real());
+    return result;
+  }
+
+ private:
+  double turn_ = 0;
+  std::complex<double> offset_;
+};
+
+Vec3 rotationVector(const Quat& to, const Quat& from) {
+  Quat turn = to * from.conjugate();
+  if (turn.w() < 0) turn.coeffs() *= -1;
+  const Eigen::AngleAxisd angle(turn);
+  return angle.angle() * angle.axis();
+}
+
+Quat rotationBy(const Vec3& vector) {
+  const double angle = vector.norm();
+  return angle > 0 ? Quat(Eigen::AngleAxisd(angle, vector / angle)) : Quat::Identity();
+}
+
+// A Transform's three parts as differences of another's.
+struct Offset {
+  Vec3 translation = Vec3::Zero(), rotation = Vec3::Zero(), scale = Vec3::Zero();
+
+  Offset() = default;
+  Offset(const Transform& to, const Transform& from)
+      : translation(to.translation - from.translation),
+        rotation(rotationVector(to.rotation, from.rotation)),
+        scale(to.scale - from.scale) {}
+
+  void add(double weight, const Offset& other) {
+    translation += weight * other.translation;
+    rotation += weight * other.rotation;
+    scale += weight * other.scale;
+  }
+
+  Transform on(Transform value) const {
+    value.translation += translation;
+    value.rotation = (rotationBy(rotation) * value.rotation).normalized();
+    value.scale += scale;
+    return value;
+  }
+};
+
+// The offset to each pose of what is to be a cycle.
+class Seam {
+ public:
+  Seam(const std::vector<Pose>& poses, Index joint, double duration)
+      : duration_(duration), fade_(std::min(kLongestFade, duration * kFadePart)) {
+    const auto at = [&](std::size_t frame) -> const Transform& { return poses[frame].locals[joint]; };
+    const std::size_t last = poses.size() - 1;
+    gap_ = Offset(at(last), at(0));
+    // Speeds at the ends, of second order, where there are frames for it.
+    const double step = duration / static_cast<double>(last);
+    const std::size_t k = std::min<std::size_t>(2, last / 2);
+    const auto speed = [&](const Transform& one, const Transform& two, const Transform& end, double sign) {
+      Offset result;
+      result.add(sign * (k == 2 ? 2.0 : 1.0) / step, Offset(one, end));
+      if (k == 2) result.add(sign * -0.5 / step, Offset(two, end));
+      return result;
+    };
+    speedGap_ = speed(at(last - 1), at(last - k), at(last), -1);
+    speedGap_.add(-1, speed(at(1), at(k), at(0), 1));
+  }
+
+  Offset at(double seconds) const {
+    const double u = seconds / duration_, rest = duration_ - seconds;
+    Offset result;
+    result.add(0.5 - u * u * (3 - 2 * u), gap_);
+    const auto bump = [&](double t) { return t < fade_ ? t * (1 - t / fade_) * (1 - t / fade_) : 0; };
+    result.add(0.5 * (bump(seconds) + bump(rest)), speedGap_);
+    return result;
+  }
+
+ private:
+  double duration_, fade_;
+  Offset gap_, speedGap_;
+};
+
+double farthestJoint(const Skeleton& skeleton, const Pose& a, const Pose& b) {
+  const std::vector<Vec3> one = posePositions(skeleton, a), other = posePositions(skeleton, b);
+  double result = 0;
+  for (std::size_t j = 0; j < one.size(); ++j) result = std::max(result, (one[j] - other[j]).norm());
+  return result;
+}
+
+// A joint that carries the movement: it has moving tracks, and none of those above it has.
+struct Carrier {
+  Index joint = 0;
+  Affine above = Affine::Identity();  // what it hangs on stands still
+
+  void move(const Affine& by, Pose& pose) const {
+    Transform& local = pose.locals[joint];
+    local = decompose(above.inverse(Eigen::Affine) * by * above * local.toAffine());
+  }
+};
+
+class Carriers {
+ public:
+  Carriers(const Skeleton& skeleton, const Clip& clip, const Pose& first, Index body) {
+    std::vector<bool> moves(skeleton.jointCount(), false), turns(moves), carried(moves);
+    const auto mark = [](const auto& tracks, std::vector<bool>& marks) {
+      for (const auto& track : tracks) marks[track.joint] = marks[track.joint] || track.times.size() > 1;
+    };
+    mark(clip.translations, moves);
+    mark(clip.rotations, moves);
+    mark(clip.scales, moves);
+    mark(clip.rotations, turns);
+    const std::vector<Affine> globals = poseGlobals(skeleton, first);
+    std::vector<std::optional<Index>> carrier(skeleton.jointCount());
+    for (Index j = 0; j < skeleton.jointCount(); ++j) {
+      const std::optional<Index> parent = skeleton.joints[j].parent;
+      if (parent) carrier[j] = carrier[*parent];
+      if (carrier[j] || !moves[j]) continue;
+      carrier[j] = j;
+      all_.push_back({j, parent ? globals[*parent] : Affine::Identity()});
+    }
+    turns_ = carrier[body] && turns[*carrier[body]];
+  }
+
+  bool turnTheBody() const { return turns_; }
+  void move(const Affine& by, Pose& pose) const {
+    for (const Carrier& carrier : all_) carrier.move(by, pose);
+  }
+
+ private:
+  std::vector<Carrier> all_;
+  bool turns_ = false;
+};
+
+}  // namespace
+
+JoinedLoop joinLoop(const Skeleton& skeleton, const Clip& clip, Index body) {
+  if (body >= skeleton.jointCount()) throw Error(ErrorCode::kBadArgument, "the body is no joint of the skeleton");
+  JoinedLoop result;
+  result.clip = clip;
+  const double duration = clip.duration();
+  if (duration <= 0) return result;
+  Clip frames = resampleClip(clip, frameRateOf(clip));
+  std::vector<float> times;
+  const auto longest = [&](const auto& tracks) {
+    for (const auto& track : tracks) times = track.times.size() > times.size() ? track.times : times;
+  };
+  longest(frames.translations);
+  longest(frames.rotations);
+  longest(frames.scales);
+  if (times.size() < 3) return result;
+
+  std::vector<Pose> poses(times.size(), restPose(skeleton));
+  for (std::size_t k = 0; k < times.size(); ++k) sampleClip(clip, times[k], poses[k]);
+  const std::vector<Pose> before = poses;
+  const Carriers carriers(skeleton, frames, poses.front(), body);
+  const Travel travel(poseGlobals(skeleton, poses.front())[body], poseGlobals(skeleton, poses.back())[body],
+                      carriers.turnTheBody());
+  const auto partAt = [&](std::size_t k) { return travel.part(times[k] / duration); };
+  for (std::size_t k = 0; k < times.size(); ++k) carriers.move(partAt(k).inverse(Eigen::Isometry), poses[k]);
+  result.gap = farthestJoint(skeleton, poses.back(), poses.front());
+  Box box;
+  for (const Vec3& place : restPositions(skeleton)) box.add(place);
+  if (result.gap <= kClosed * box.diagonal()) return result;
+  for (Index j = 0; j < skeleton.jointCount(); ++j) {
+    const Seam seam(poses, j, duration);
+    for (std::size_t k = 0; k < times.size(); ++k) poses[k].locals[j] = seam.at(times[k]).on(poses[k].locals[j]);
+  }
+  poses.back() = poses.front();
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    carriers.move(partAt(k), poses[k]);
+    result.largestChange = std::max(result.largestChange, farthestJoint(skeleton, poses[k], before[k]));
+  }
+  // Tracks that are of one key stand still, ends included.
+  const auto write = [&](auto& tracks, auto&& value) {
+    for (auto& track : tracks) {
+      if (track.times.size() == 1) continue;
+      for (std::size_t k = 0; k < times.size(); ++k) track.values[k] = value(poses[k].locals[track.joint]);
+    }
+  };
+  write(frames.translations, [](const Transform& local) { return Vec3f(local.translation.cast<float>()); });
+  write(frames.rotations, [](const Transform& local) { return Eigen::Quaternionf(local.rotation.cast<float>()); });
+  write(frames.scales, [](const Transform& local) { return Vec3f(local.scale.cast<float>()); });
+  for (auto& track : frames.rotations) {
+    for (std::size_t k = 1; k < track.values.size(); ++k) {
+      if (track.values[k].coeffs().dot(track.values[k - 1].coeffs()) < 0) track.values[k].coeffs() *= -1;
+    }
+  }
+  result.clip = std::move(frames);
+  return result;
+}
+
+}  // namespace limber
