@@ -244,6 +244,10 @@ std::string join(const std::vector<std::string>& words, bool withNoise) {
 
 }  // namespace
 
+bool isNoiseWord(std::string_view word) {
+  return has(kNoise, word);
+}
+
 BodyName readBodyName(std::string_view name) {
   if (name.substr(0, 2) == "__") return {};  // MakeHuman's links
   constexpr std::array<std::string_view, 4> kXsensSpine = {"L5", "L3", "T12", "T8"};

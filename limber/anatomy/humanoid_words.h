@@ -48,6 +48,9 @@ struct BodyName {
 // The words of a name in small letters, numbers apart: "mixamorig:LeftUpLeg" -> left, up, leg; "Ear1.R" -> ear, 1, r.
 std::vector<std::string> wordsOfName(std::string_view name);
 
+// Is it a word of programs and pipelines that says nothing of the body ("mixamorig", "def")?
+bool isNoiseWord(std::string_view word);
+
 // Reads one name, without its neighbours. Helpers and ends are kNone.
 BodyName readBodyName(std::string_view name);
 

@@ -151,7 +151,39 @@ Side sideOf(detail::BodySide side) {
                                             : Side::kCenter;
 }
 
+// Of "lhand", a side without a capital or a separator, the first letter goes.
+std::vector<std::string> wordsWithoutSide(std::string_view name, Side side) {
+  const std::vector<std::string> tokens = detail::wordsOfName(name);
+  const bool hasWord =
+      std::any_of(tokens.begin(), tokens.end(), [](const std::string& token) { return sideOf(token).has_value(); });
+  std::vector<std::string> words;
+  bool taken = side == Side::kCenter;
+  for (const std::string& token : tokens) {
+    const bool begins = !hasWord && token.size() > 2 && token[0] == (side == Side::kLeft ? 'l' : 'r');
+    if (!taken && begins) words.push_back(token.substr(1));
+    if (!taken && (begins || sideOf(token) == side)) {
+      taken = true;
+    } else {
+      words.push_back(token);
+    }
+  }
+  return words;
+}
+
 }  // namespace
+
+NameParts partsOfName(std::string_view name) {
+  NameParts parts;
+  parts.side = readJointWords(name).side;
+  parts.words = wordsWithoutSide(name, parts.side);
+  const auto says = [](const std::string& word) {
+    return !detail::isNoiseWord(word) && std::isdigit(static_cast<unsigned char>(word.front())) == 0;
+  };
+  if (std::any_of(parts.words.begin(), parts.words.end(), says)) {
+    std::erase_if(parts.words, [](const std::string& word) { return detail::isNoiseWord(word); });
+  }
+  return parts;
+}
 
 bool saysHips(std::string_view name) {
   return readJointWords(name).word == static_cast<std::size_t>(BodyWord::kHips);
@@ -177,21 +209,8 @@ std::vector<std::optional<NamedPartner>> partnersByName(const Skeleton& skeleton
   for (Index j = 0; j < skeleton.jointCount(); ++j) {
     const Side side = words[j].side;
     if (side == Side::kCenter) continue;
-    const std::vector<std::string> tokens = detail::wordsOfName(skeleton.joints[j].name);
-    const bool hasWord =
-        std::any_of(tokens.begin(), tokens.end(), [](const std::string& token) { return sideOf(token).has_value(); });
     std::string rest;
-    bool taken = false;
-    for (const std::string& token : tokens) {
-      if (!taken && sideOf(token) == side) {
-        taken = true;
-      } else if (!taken && !hasWord && token.size() > 2 && token[0] == (side == Side::kLeft ? 'l' : 'r')) {
-        taken = true;  // "lhand"
-        rest.append("_").append(token, 1);
-      } else {
-        rest.append("_").append(token);
-      }
-    }
+    for (const std::string& word : wordsWithoutSide(skeleton.joints[j].name, side)) rest.append("_").append(word);
     (side == Side::kLeft ? bare[rest].left : bare[rest].right).push_back(j);
   }
   std::vector<std::optional<NamedPartner>> partners(skeleton.jointCount());

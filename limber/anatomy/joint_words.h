@@ -29,6 +29,15 @@ struct JointWords {
 
 JointWords readJointWords(std::string_view name);
 
+// A name taken apart, to be spelled in another way.
+struct NameParts {
+  std::vector<std::string> words;  // in small letters, numbers apart, without the side; "mixamorig", "DEF" and the like
+                                   // only where there is nothing else
+  Side side = Side::kCenter;
+};
+
+NameParts partsOfName(std::string_view name);
+
 // Whether the name is one of the pelvis.
 bool saysHips(std::string_view name);
 // Whether one of its words is that of a bone in the palm or the middle of the foot, such as "IndexMetacarpal".

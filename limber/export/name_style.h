@@ -1,0 +1,26 @@
+// How programs spell the names of joints: words, numbers and the side.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "limber/anatomy/anatomy.h"
+
+namespace limber {
+
+enum class NameStyle {
+  kSnake,   // upper_arm_twist_01_l
+  kPascal,  // LeftUpperArmTwist01
+  kCamel,   // leftUpperArmTwist01
+  kDotted,  // upper_arm_twist.01.L
+  kMixamo,  // mixamorig:LeftUpperArmTwist01
+};
+
+// The words, in small letters and numbers apart, as one name without its side.
+std::string spellStem(std::span<const std::string> words, NameStyle style);
+
+// A name of that stem.
+std::string spellName(std::string_view stem, Side side, NameStyle style);
+
+}  // namespace limber
