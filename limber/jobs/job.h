@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -19,7 +20,10 @@ struct JobLimits {
 
 struct Job {
   std::vector<std::string> command;  // the program's path, then its arguments; no shell reads them
-  std::filesystem::path folder;      // that it works in
+  // Where there is one, run in place of `command`, in a child of this process: what is loaded and made here it finds
+  // ready. Returns the exit code. This process must have no other threads then, or none that hold a lock.
+  std::function<int()> work;
+  std::filesystem::path folder;  // that it works in
   JobLimits limits;
   std::optional<int> outOfMemoryCode;             // by which the program says that memory did not suffice
   std::size_t mostOutput = std::size_t{1} << 20;  // bytes kept of each stream: the last

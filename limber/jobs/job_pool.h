@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -16,9 +17,16 @@ using JobChain = std::vector<Job>;
 
 // Is given the number of a chain and the results of the jobs that ran, in order.
 using ChainDone = std::function<void(std::size_t chain, const std::vector<JobResult>& results)>;
+// Gives the next chain, none once there are no more.
+using NextChain = std::function<std::optional<JobChain>()>;
 
-// Runs the chains, `atOnce` (1 or more) side by side and begun in order; `done` is called in this thread as each ends.
-// Throws Error kCancelled as Progress does, and what `done` throws; whatever leaves ends all processes that still run.
+// Runs the chains, `atOnce` (1 or more) side by side and begun in order. In this thread are called: `next` as there is
+// room for a chain, `done` as one ends, `meanwhile` some fifty times a second. What they throw leaves, and whatever
+// leaves ends all processes that still run. Only chains that run are held.
+void runJobs(const NextChain& next, int atOnce, const std::function<void()>& meanwhile, const ChainDone& done);
+
+// The same for chains that are all there; progress is their share that has ended. Throws Error kCancelled as Progress
+// does.
 void runJobs(std::span<const JobChain> chains, int atOnce, Progress& progress, const ChainDone& done);
 
 }  // namespace limber

@@ -1,11 +1,13 @@
 #include "limber/jobs/job_pool.h"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
 #include <fstream>
 #include <new>
 #include <string>
@@ -54,6 +56,33 @@ TEST(JobPool, TellsCodesAndOutput) {
   EXPECT_EQ(result.error, "why\n");
   EXPECT_GT(result.peakMemory, 0u);
   EXPECT_EQ(runOne(shell("true")).outcome, JobOutcome::kDone);
+}
+
+TEST(JobPool, RunsWorkInAChild) {
+  int here = 0;
+  Job job;
+  job.work = [&] {
+    here = 1;
+    std::fprintf(stderr, "from within");
+    return 5;
+  };
+  const JobResult result = runOne(job);
+  EXPECT_EQ(result.outcome, JobOutcome::kFailed);
+  EXPECT_EQ(result.code, 5);
+  EXPECT_EQ(result.error, "from within");
+  EXPECT_EQ(here, 0);
+}
+
+// A file's lock that a child still held would outlive the program that was ended.
+TEST(JobPool, WorkHasNoneOfTheProgramsFiles) {
+  const testing::TemporaryFolder folder;
+  const int file = open((folder.path() / "lock").c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0600);
+  ASSERT_GE(file, 0);
+  Job job;
+  job.work = [file] { return fcntl(file, F_GETFD) < 0 ? 0 : 1; };
+  EXPECT_EQ(runOne(job).code, 0);
+  EXPECT_GE(fcntl(file, F_GETFD), 0);
+  close(file);
 }
 
 TEST(JobPool, TellsASignalFromACode) {

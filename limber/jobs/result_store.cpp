@@ -11,6 +11,7 @@
 
 #include "limber/core/error.h"
 #include "limber/core/file.h"
+#include "limber/core/folder.h"
 
 namespace limber {
 
@@ -32,9 +33,7 @@ void removeLeftovers(const fs::path& folder) {
 }  // namespace
 
 ResultStore::ResultStore(fs::path folder) : folder_(std::move(folder)) {
-  std::error_code problem;
-  fs::create_directories(folder_, problem);
-  if (problem) throw Error(ErrorCode::kFile, "cannot be made: " + problem.message(), folder_.string());
+  makeFolder(folder_);
   lock_ = open((folder_ / "lock").c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666);
   if (lock_ < 0)
     throw Error(ErrorCode::kFile, std::string("cannot be written: ") + std::strerror(errno), folder_.string());

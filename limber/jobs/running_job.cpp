@@ -1,5 +1,6 @@
 // fork and exec rather than posix_spawn: only a child between the two can limit its own memory before the program
-// begins. It calls nothing there but what is safe after a fork, so other threads of this process do not matter.
+// begins. It calls nothing there but what is safe after a fork, so other threads of this process do not matter but to
+// work that runs in the child itself.
 #include "limber/jobs/running_job.h"
 
 #include <fcntl.h>
@@ -11,6 +12,7 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <cstdio>
 #include <cstring>
 #include <utility>
 
@@ -44,6 +46,7 @@ void limitMemory(std::size_t bytes) {
 
 struct ChildStart {
   char* const* arguments;
+  const std::function<int()>* work;
   const char* folder;
   std::size_t memory;
   pid_t parent, group;
@@ -54,6 +57,26 @@ struct ChildStart {
   const int reason = errno;
   const ssize_t told = write(start.status, &reason, sizeof reason);
   _exit(told == sizeof reason ? kCannotRun : kCannotRun - 1);
+}
+
+// What exec would close: pipes of guards, which would not see this program's end, and locks of files.
+void closeInherited() {
+#ifdef __linux__
+  if (close_range(STDERR_FILENO + 1, ~0u, 0) == 0) return;
+#endif
+  const long most = sysconf(_SC_OPEN_MAX);
+  for (int file = STDERR_FILENO + 1; file < most; ++file) close(file);
+}
+
+// In place of exec. None of this process's files are written, flushed or removed by the child's end.
+[[noreturn]] void doWork(const ChildStart& start) {
+  closeInherited();
+  std::signal(SIGINT, SIG_DFL);
+  std::signal(SIGTERM, SIG_DFL);
+  const int code = (*start.work)();
+  std::fflush(stdout);
+  std::fflush(stderr);
+  _exit(code);
 }
 
 // Between fork and exec.
@@ -70,6 +93,7 @@ struct ChildStart {
   if (nothing >= 0 && dup2(nothing, STDIN_FILENO) >= 0 && dup2(start.out, STDOUT_FILENO) >= 0 &&
       dup2(start.error, STDERR_FILENO) >= 0 && chdir(start.folder) == 0) {
     if (nothing > STDERR_FILENO) close(nothing);
+    if (*start.work) doWork(start);
     execv(start.arguments[0], start.arguments);
   }
   failBeforeProgram(start);
@@ -87,7 +111,7 @@ int startErrorFrom(int pipe) {
 }  // namespace
 
 RunningJob::RunningJob(const Job& job) : job_(job) {
-  if (job.command.empty()) throw Error(ErrorCode::kBadArgument, "a job has no command");
+  if (job.command.empty() && !job.work) throw Error(ErrorCode::kBadArgument, "a job has no command");
   std::vector<char*> arguments;
   for (std::string& argument : job_.command) arguments.push_back(argument.data());
   arguments.push_back(nullptr);
@@ -95,8 +119,9 @@ RunningJob::RunningJob(const Job& job) : job_(job) {
   Pipe out, error, status;
   startedAt_ = secondsNow();
   deadline_ = startedAt_ + job.limits.seconds;
-  const ChildStart start{arguments.data(), folder.c_str(), job.limits.memory, getpid(),
-                         group_.id(),      out.writing(),  error.writing(),   status.writing()};
+  const ChildStart start{arguments.data(), &job_.work,    folder.c_str(),  job.limits.memory, getpid(),
+                         group_.id(),      out.writing(), error.writing(), status.writing()};
+  if (job_.work) std::fflush(nullptr);  // or the child would write what is still to be written here
   pid_ = fork();
   if (pid_ < 0) {
     throw Error(ErrorCode::kFile, std::string("cannot start a process: ") + std::strerror(errno));

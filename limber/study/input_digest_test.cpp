@@ -1,10 +1,12 @@
 #include "limber/study/input_digest.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <fstream>
 
 #include "limber/core/error.h"
+#include "limber/jobs/sha256.h"
 #include "temporary_folder.h"
 
 namespace limber {
@@ -15,13 +17,31 @@ std::filesystem::path put(const std::filesystem::path& folder, const std::string
   return folder / name;
 }
 
+std::string digestOf(const std::filesystem::path& file) {
+  return InputDigests().of(file).all;
+}
+
 TEST(InputDigest, ChangesWithTheInput) {
   const testing::TemporaryFolder folder;
-  const std::string before = inputDigest(put(folder.path(), "a.glb", "one"));
-  EXPECT_EQ(inputDigest(put(folder.path(), "b.glb", "one")), before);  // the name alone is nothing
-  EXPECT_NE(inputDigest(put(folder.path(), "a.obj", "one")), before);  // the format is
-  EXPECT_NE(inputDigest(put(folder.path(), "a.glb", "two")), before);
-  EXPECT_THROW(inputDigest(folder.path() / "missing.glb"), Error);
+  const std::string before = digestOf(put(folder.path(), "a.glb", "one"));
+  EXPECT_EQ(digestOf(put(folder.path(), "b.glb", "one")), before);  // the name alone is nothing
+  EXPECT_NE(digestOf(put(folder.path(), "a.obj", "one")), before);  // the format is
+  EXPECT_NE(digestOf(put(folder.path(), "a.glb", "two")), before);
+  EXPECT_THROW(digestOf(folder.path() / "missing.glb"), Error);
+  EXPECT_EQ(InputDigests().of(folder.path() / "a.glb").bytes, sha256OfFile(folder.path() / "a.glb"));
+}
+
+// Neither is opened: both would be read without end.
+TEST(InputDigest, RefusesPipesAndFilesTooLarge) {
+  const testing::TemporaryFolder folder;
+  const std::filesystem::path pipe = folder.path() / "pipe.glb";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_THROW(digestOf(pipe), Error);
+  const std::filesystem::path model = put(folder.path(), "a.glb", "four");
+  EXPECT_NO_THROW(InputDigests(4).of(model));
+  EXPECT_THROW(InputDigests(3).of(model), Error);
+  put(folder.path(), "skin.mtl", "far more than the model holds itself");
+  EXPECT_THROW(InputDigests(30).of(put(folder.path(), "a.obj", "mtllib skin.mtl")), Error);
 }
 
 TEST(InputDigest, SeesFilesThatAreNamed) {
@@ -30,14 +50,14 @@ TEST(InputDigest, SeesFilesThatAreNamed) {
   put(folder.path(), "my skin.png", "red");
   put(folder.path(), "other.png", "blue");
   const std::filesystem::path model = put(folder.path(), "a.obj", "mtllib skin.mtl\nv 0 0 0\n");
-  const std::string before = inputDigest(model);
+  const std::string before = digestOf(model);
   put(folder.path(), "other.png", "green");
-  EXPECT_EQ(inputDigest(model), before);
+  EXPECT_EQ(digestOf(model), before);
   put(folder.path(), "my skin.png", "green");
-  const std::string after = inputDigest(model);
+  const std::string after = digestOf(model);
   EXPECT_NE(after, before);
   put(folder.path(), "skin.mtl", "map_Kd none");
-  EXPECT_NE(inputDigest(model), after);
+  EXPECT_NE(digestOf(model), after);
 }
 
 }  // namespace

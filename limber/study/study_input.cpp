@@ -18,11 +18,6 @@ namespace {
 
 constexpr std::string_view kSampleGroup = "samples";
 
-std::vector<fs::path> filesIn(const fs::path& folder, InputKind kind) {
-  if (kind == InputKind::kMotion) return filesBelow(folder, {".bvh", ".glb", ".gltf", ".fbx", ".dae"});
-  return filesBelow(folder, {".glb", ".gltf", ".obj", ".ply", ".stl", ".off", ".fbx", ".dae"});
-}
-
 void addFile(const fs::path& file, std::vector<StudyInput>& inputs) {
   const bool isKnown = std::any_of(inputs.begin(), inputs.end(), [&](const StudyInput& i) { return i.file == file; });
   if (isKnown) return;
@@ -63,6 +58,11 @@ void nameInputs(std::vector<StudyInput>& inputs) {
 
 }  // namespace
 
+std::vector<fs::path> inputFilesBelow(const fs::path& folder, InputKind kind) {
+  if (kind == InputKind::kMotion) return filesBelow(folder, {".bvh", ".npz", ".glb", ".gltf", ".fbx", ".dae"});
+  return filesBelow(folder, {".glb", ".gltf", ".obj", ".ply", ".stl", ".off", ".fbx", ".dae"});
+}
+
 std::vector<StudyInput> findInputs(std::span<const std::string> names, InputKind kind, const fs::path& folder,
                                    const fs::path& samples) {
   std::vector<StudyInput> inputs;
@@ -80,7 +80,7 @@ std::vector<StudyInput> findInputs(std::span<const std::string> names, InputKind
     const fs::path place = fs::absolute(folder / name).lexically_normal();
     std::error_code unseen;
     if (fs::is_directory(place, unseen)) {
-      const std::vector<fs::path> files = filesIn(place, kind);
+      const std::vector<fs::path> files = inputFilesBelow(place, kind);
       if (files.empty()) throw Error(ErrorCode::kFile, "holds nothing that can be read", place.string());
       for (const fs::path& file : files) addFile(file, inputs);
     } else if (fs::exists(place, unseen)) {

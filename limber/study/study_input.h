@@ -17,6 +17,9 @@ struct StudyInput {
   std::string sample;          // that the file is to be made of; empty: it is there
 };
 
+// The files of a folder, at any depth, that limber reads as such, by their paths in order. Throws Error kFile.
+std::vector<std::filesystem::path> inputFilesBelow(const std::filesystem::path& folder, InputKind kind);
+
 // In the order of the names, those of a folder by their paths. `folder` is what relative paths are seen from; samples
 // are to be made in `samples`. Throws Error kFile: a name that is no file or folder, a folder without such files.
 std::vector<StudyInput> findInputs(std::span<const std::string> names, InputKind kind,

@@ -56,8 +56,8 @@ struct StudyPlan {
 
 // Lists of methods are multiplied out, in the order of the plan; "all" stands for all of limber's own. A rigger,
 // skinning or retargeting method that is none of these is an adapter (findAdapter) in `adapterFolders`. Throws Error
-// kBadData that names the entry: not JSON, another version, a key or a method that is not known, options of `limber rig`
-// that do not go with a rigger, nothing to run; and as findAdapter.
+// kBadData that names the entry: not JSON, another version, a key or a method that is not known, options of `limber
+// rig` that do not go with a rigger, nothing to run; and as findAdapter.
 StudyPlan studyPlanFromJson(std::string_view text, const std::vector<std::filesystem::path>& adapterFolders = {});
 
 // A plan of samples that runs as it is.

@@ -12,6 +12,7 @@
 #include "limber/rigging/auto_rigger.h"
 #include "limber/skinning/deformer.h"
 #include "limber/skinning/weight_method.h"
+#include "source_folder.h"
 #include "temporary_folder.h"
 
 namespace limber {
@@ -225,7 +226,7 @@ TEST(StudyPlan, TheExampleIsAPlan) {
 
 // Every key of the schema is read, and only these are, so that the two cannot drift apart.
 TEST(StudyPlan, TheSchemaKnowsEveryKey) {
-  std::ifstream file(std::string(LIMBER_SOURCE_DIR) + "/docs/study.schema.json");
+  std::ifstream file(limber::testing::sourceFolder() / "docs/study.schema.json");
   const nlohmann::json schema = nlohmann::json::parse(file);
   const auto keysOf = [](const nlohmann::json& object) {
     EXPECT_EQ(object["additionalProperties"], false);

@@ -23,8 +23,8 @@ struct KindRankings {
 // Of the kinds of cells that have any value of a measure with a better side.
 std::vector<KindRankings> studyRankings(const StudyResult& study);
 
-std::string_view kindTitle(CellKind kind);            // "Rigs", "Retargeting"
-std::string measureTitle(const Measure& measure);     // "joints in common (0 to 1; more is better)"
-std::string numberText(double value);                 // "3.125", "failed" where it is infinite
+std::string_view kindTitle(CellKind kind);         // "Rigs", "Retargeting"
+std::string measureTitle(const Measure& measure);  // "joints in common (0 to 1; more is better)"
+std::string numberText(double value);              // "3.125", "failed" where it is infinite
 
 }  // namespace limber

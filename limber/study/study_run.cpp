@@ -12,6 +12,7 @@
 #include "limber/asset/json_access.h"
 #include "limber/asset/json_text.h"
 #include "limber/asset/utf8.h"
+#include "limber/core/folder.h"
 #include "limber/jobs/job_key.h"
 #include "limber/jobs/job_pool.h"
 #include "limber/jobs/last_line.h"
@@ -27,18 +28,6 @@ namespace {
 // kWork is also what a study's folder is known by.
 constexpr const char *kCells = "cells", *kPictures = "pictures", *kWork = ".limber-study", *kSamples = "samples";
 constexpr std::size_t kMostProblem = 1000;  // bytes of a program's own words
-
-void makeFolder(const fs::path& folder) {
-  std::error_code problem;
-  fs::create_directories(folder, problem);
-  if (problem) throw Error(ErrorCode::kFile, "cannot be made: " + problem.message(), folder.string());
-}
-
-void removeAll(const fs::path& folder) {
-  std::error_code problem;
-  fs::remove_all(folder, problem);
-  if (problem) throw Error(ErrorCode::kFile, "cannot be removed: " + problem.message(), folder.string());
-}
 
 // What a command said last, without who says it.
 std::string wordsOf(const std::string& text) {
@@ -118,7 +107,7 @@ class StudyRun {
         output_(fs::absolute(options.output).lexically_normal()),
         progress_(progress),
         store_(prepared(output_) / kCells) {
-    removeAll(output_ / kWork);
+    removeFolder(output_ / kWork);
     for (const char* folder : {kWork, kPictures, kSamples}) makeFolder(output_ / folder);
     program_ = sha256OfFile(options.program);
   }
@@ -189,7 +178,7 @@ class StudyRun {
 
   const std::string& digestOf(const fs::path& file) {
     std::string& digest = digests_[file.string()];
-    if (digest.empty()) digest = inputDigest(file);
+    if (digest.empty()) digest = inputs_.of(file).all;
     return digest;
   }
 
@@ -288,7 +277,7 @@ class StudyRun {
       store_.keep(open[i], dumpReport(keptJson(result, plan_.limits)));
       for (const std::size_t cell : cells) study.results[cell] = result;
       study.ran += cells.size();
-      removeAll(output_ / kWork / open[i]);
+      removeFolder(output_ / kWork / open[i]);
     });
   }
 
@@ -350,7 +339,8 @@ class StudyRun {
   fs::path output_;
   Progress& progress_;
   ResultStore store_;
-  std::string program_;                         // its digest
+  std::string program_;  // its digest
+  InputDigests inputs_;
   std::map<std::string, std::string> digests_;  // of inputs, by path
 };
 

@@ -1,0 +1,13 @@
+#!/bin/bash
+# A batch in shards by GNU parallel, on this machine or on those of --sshlogin (docs/cluster.md):
+#
+#   limber_parallel.sh PLAN OUT SHARDS [OPTION OF PARALLEL...]
+#
+# Started again, it goes on: outputs and records say what is done, not parallel's own log, which counts by number alone.
+set -uo pipefail
+plan=$1 out=$2 shards=$3
+shift 3
+limber=${LIMBER:-limber}
+seq "$shards" | parallel --will-cite --jobs "${LIMBER_SHARDS_AT_ONCE:-$(nproc)}" --line-buffer "$@" \
+  "$limber" batch "$plan" -o "$out" --shard "{}/$shards" --jobs 1 --quiet
+"$limber" batch status "$out" --merge "$out.records.jsonl"

@@ -1,0 +1,267 @@
+#include "limber/batch/batch_plan.h"
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+#include <set>
+#include <system_error>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "limber/adapters/job_limits.h"
+#include "limber/asset/json_access.h"
+#include "limber/asset/json_keys.h"
+#include "limber/asset/json_text.h"
+#include "limber/asset/utf8.h"
+#include "limber/batch/path_pattern.h"
+#include "limber/core/names.h"
+#include "limber/study/study_input.h"
+
+namespace limber {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::string_view kVersionKey = "limber_batch";
+
+std::string textOf(const JsonView& value) {
+  if (!value.exists() || !value.json().is_string() || value.json().get_ref<const std::string&>().empty()) {
+    value.fail("is not a text");
+  }
+  return value.json().get<std::string>();
+}
+
+std::vector<std::string> textsOf(const JsonView& list) {
+  std::vector<std::string> texts;
+  for (std::size_t i = 0; i < list.size(); ++i) texts.push_back(textOf(list[i]));
+  return texts;
+}
+
+Json parsed(std::string_view text) {
+  Warnings warnings;
+  Json json = parseJson(text, warnings);
+  if (warnings.empty()) return json;
+  const Warning& first = warnings.items().front();
+  throw Error(ErrorCode::kBadData, first.message, first.where);
+}
+
+// Calls `take` for each line that is not blank; errors say which.
+template <typename Take>
+void forEachLine(const fs::path& file, const Take& take) {
+  const Bytes bytes = readFile(file);
+  std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  for (std::size_t number = 1; !text.empty(); ++number) {
+    std::string_view line = text.substr(0, text.find('\n'));
+    text.remove_prefix(std::min(text.size(), line.size() + 1));
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    if (line.find_first_not_of(" \t") == std::string_view::npos) continue;
+    try {
+      take(line);
+    } catch (const Error& error) {
+      throw error.within(fmt::format("line {}", number)).within(file.string());
+    }
+  }
+}
+
+// Gathers what the inputs of a plan stand for.
+class EntryList {
+ public:
+  explicit EntryList(fs::path folder) : folder_(std::move(folder)) {}
+
+  void add(const JsonView& input) {
+    if (input.json().is_object()) {
+      addObject(input, {});
+    } else {
+      addName(textOf(input), input);
+    }
+  }
+
+  std::vector<BatchEntry> take(const std::string& extension) {
+    nameOutputs(extension);
+    return std::move(entries_);
+  }
+
+ private:
+  void addObject(const JsonView& object, const fs::path& listFolder) {
+    object.requireObject();
+    allowKeys(object, {"path", "sha256", "options"});
+    BatchEntry entry;
+    entry.input = (listFolder / textOf(object.member("path"))).lexically_normal().generic_string();
+    entry.sha256 = object.text("sha256");
+    constexpr std::size_t kDigits = 64;
+    if (!entry.sha256.empty() &&
+        (entry.sha256.size() != kDigits || entry.sha256.find_first_not_of("0123456789abcdef") != std::string::npos)) {
+      object.member("sha256").fail("is not 64 hexadecimal digits in lower case");
+    }
+    entry.options = textsOf(object.array("options"));
+    addEntry(std::move(entry));
+  }
+
+  void addFile(const std::string& file) {
+    BatchEntry entry;
+    entry.input = fs::path(file).lexically_normal().generic_string();
+    addEntry(std::move(entry));
+  }
+
+  void addEntry(BatchEntry entry) {
+    if (!known_.insert(entry.input).second) {
+      throw Error(ErrorCode::kBadData, fmt::format("the plan names '{}' twice", entry.input));
+    }
+    entries_.push_back(std::move(entry));
+  }
+
+  void addName(const std::string& name, const JsonView& place) {
+    if (isPathPattern(name)) {
+      const std::vector<std::string> files = filesMatching(folder_, name);
+      if (files.empty()) place.fail("matches no file");
+      for (const std::string& file : files) addFile(file);
+      return;
+    }
+    const fs::path path = folder_ / name, listFolder = fs::path(name).parent_path();
+    std::error_code unseen;
+    if (fs::is_directory(path, unseen)) return addFolder(path);
+    if (!fs::exists(path, unseen)) {
+      throw Error(ErrorCode::kFile, "is not there", path.string(), "paths in a plan are seen from the plan's folder");
+    }
+    const std::string extension = lowerExtension(path);
+    if (extension == ".txt") {
+      forEachLine(path, [&](std::string_view line) { addFile((listFolder / line).generic_string()); });
+    } else if (extension == ".jsonl") {
+      forEachLine(path, [&](std::string_view line) {
+        const Json json = parsed(line);
+        addObject(JsonView(json), listFolder);
+      });
+    } else {
+      addFile(name);
+    }
+  }
+
+  void addFolder(const fs::path& path) {
+    std::set<fs::path> files;
+    for (const InputKind kind : {InputKind::kModel, InputKind::kMotion}) {
+      for (const fs::path& file : inputFilesBelow(path, kind)) files.insert(file);
+    }
+    if (files.empty()) throw Error(ErrorCode::kFile, "holds nothing that can be read", path.string());
+    for (const fs::path& file : files) addFile(file.lexically_relative(folder_).generic_string());
+  }
+
+  // Within the folder of outputs, wherever the input lies.
+  static fs::path placeOf(const std::string& input) {
+    fs::path place;
+    for (const fs::path& part : fs::path(input).relative_path()) {
+      if (part != "..") place /= part;
+    }
+    return place;
+  }
+
+  void nameOutputs(const std::string& extension) {
+    std::map<std::string, std::size_t> users;
+    const auto plain = [&](const BatchEntry& entry) {
+      return placeOf(entry.input).replace_extension(extension).generic_string();
+    };
+    for (const BatchEntry& entry : entries_) ++users[plain(entry)];
+    std::set<std::string> taken;
+    for (BatchEntry& entry : entries_) {
+      entry.output = plain(entry);
+      if (users[entry.output] > 1) {
+        fs::path place = placeOf(entry.input);
+        std::string own = place.extension().string();
+        std::replace(own.begin(), own.end(), '.', '_');
+        entry.output = place.replace_filename(place.stem().string() + own + extension).generic_string();
+      }
+      if (!taken.insert(entry.output).second) {
+        throw Error(ErrorCode::kBadData, fmt::format("two inputs would be written to '{}'", entry.output), entry.input,
+                    "give each a batch of its own");
+      }
+    }
+  }
+
+  fs::path folder_;
+  std::vector<BatchEntry> entries_;
+  std::set<std::string> known_;
+};
+
+std::vector<std::string> commandOf(const JsonView& list, std::span<const std::string_view> commands) {
+  std::vector<std::string> command = textsOf(list);
+  if (command.empty()) list.fail("is not a list of texts");
+  if (std::find(commands.begin(), commands.end(), command.front()) == commands.end()) {
+    list[0].fail(fmt::format("is no command of a batch; there are: {}", fmt::join(commands, ", ")));
+  }
+  for (const std::string_view word : {kBatchInput, kBatchOutput}) {
+    if (std::count(command.begin(), command.end(), word) != 1) {
+      list.fail(fmt::format("does not hold \"{}\" once, as an element of its own", word));
+    }
+  }
+  return command;
+}
+
+std::string extensionOf(const JsonView& value) {
+  std::string extension = textOf(value);
+  if (extension.size() < 2 || extension.front() != '.' || extension.find_first_of("/\\") != std::string::npos) {
+    value.fail("is no extension such as \".glb\"");
+  }
+  for (const std::string_view several : {".gltf", ".obj", ".usda"}) {
+    if (extension == several) value.fail("is a format of several files; take one that is whole, such as \".glb\"");
+  }
+  return extension;
+}
+
+BatchPlan planOf(const JsonView& root, const fs::path& folder, std::span<const std::string_view> commands) {
+  root.requireObject();
+  if (root.count(kVersionKey) != 1) root.fail(fmt::format("has no \"{}\": 1", kVersionKey));
+  allowKeys(root, {kVersionKey, "command", "output", "inputs", "limits"});
+  BatchPlan plan;
+  plan.folder = folder;
+  plan.command = commandOf(root.array("command"), commands);
+  const std::string extension = extensionOf(root.member("output"));
+  readJobLimits(root.object("limits"), plan.limits);
+  const JsonView inputs = root.array("inputs");
+  if (inputs.size() == 0) root.fail("names no inputs");
+  EntryList entries(folder);
+  for (std::size_t i = 0; i < inputs.size(); ++i) entries.add(inputs[i]);
+  plan.entries = entries.take(extension);
+  return plan;
+}
+
+}  // namespace
+
+BatchShard parseBatchShard(std::string_view text) {
+  BatchShard shard;
+  const std::size_t slash = text.find('/');
+  const auto number = [&](std::string_view digits, std::size_t& value) {
+    const auto [end, problem] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    return problem == std::errc() && end == digits.data() + digits.size() && value > 0;
+  };
+  if (slash != std::string_view::npos && number(text.substr(0, slash), shard.number) &&
+      number(text.substr(slash + 1), shard.count) && shard.number <= shard.count) {
+    return shard;
+  }
+  throw Error(ErrorCode::kBadArgument, fmt::format("\"{}\" is no shard", validUtf8(text)), {},
+              "write its number and how many there are: 3/16");
+}
+
+BatchPlan readBatchPlan(const fs::path& file, std::span<const std::string_view> commands) {
+  const Bytes bytes = readFile(file);
+  try {
+    const Json json = parsed({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    const fs::path folder = fs::absolute(file == "-" ? "plan" : file).parent_path();
+    return planOf(JsonView(json), folder.lexically_normal(), commands);
+  } catch (const Error& error) {
+    throw error.within(file == "-" ? "standard input" : file.string());
+  }
+}
+
+std::string exampleBatchPlan() {
+  return R"({
+  "limber_batch": 1,
+  "command": ["rig", "{input}", "-o", "{output}", "--handles", "20"],
+  "output": ".glb",
+  "inputs": ["."],
+  "limits": {"seconds": 60, "memory_mb": 2048}
+}
+)";
+}
+
+}  // namespace limber

@@ -1,0 +1,137 @@
+#include "limber/batch/batch_record.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <system_error>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "limber/asset/json_access.h"
+#include "limber/asset/json_text.h"
+#include "limber/core/error.h"
+#include "limber/core/names.h"
+
+namespace limber {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::string_view kRecordExtension = ".jsonl";
+
+[[noreturn]] void refuseFile(const std::string& name, const char* what) {
+  throw Error(ErrorCode::kFile, std::string(what) + ": " + std::strerror(errno), name);
+}
+
+// Up to and with the last end of a line.
+std::string_view wholeLines(std::string_view text) {
+  const std::size_t end = text.rfind('\n');
+  return text.substr(0, end == std::string_view::npos ? 0 : end + 1);
+}
+
+}  // namespace
+
+std::string batchRecordLine(const BatchRecord& record) {
+  Json warnings = Json::object();
+  for (const auto& [kind, count] : record.warnings) warnings[kind] = count;
+  const Json json = {{"input", record.input},
+                     {"output", record.output},
+                     {"outcome", jobOutcomeName(record.outcome)},
+                     {"problem", record.problem},
+                     {"warnings", std::move(warnings)},
+                     {"seconds", record.seconds},
+                     {"peak_memory", record.peakMemory},
+                     {"input_sha256", record.inputSha256},
+                     {"output_sha256", record.outputSha256},
+                     {"key", record.key},
+                     {"limits", {{"seconds", record.limits.seconds}, {"memory", record.limits.memory}}}};
+  return dumpReport(json, -1) + "\n";
+}
+
+BatchRecord parseBatchRecord(std::string_view line) {
+  Warnings ignored;
+  const Json json = parseJson(line, ignored);
+  const JsonView root(json);
+  BatchRecord record;
+  record.input = root.text("input");
+  record.output = root.text("output");
+  if (record.output.empty()) root.fail("names no output");
+  record.outcome = findJobOutcome(root.text("outcome"));
+  record.problem = root.text("problem");
+  root.object("warnings").forEachMember([&](std::string_view kind, const JsonView& count) {
+    record.warnings.emplace_back(kind, count.asCount());
+  });
+  record.seconds = root.number("seconds", 0);
+  record.peakMemory = root.count("peak_memory").value_or(0);
+  record.inputSha256 = root.text("input_sha256");
+  record.outputSha256 = root.text("output_sha256");
+  record.key = root.text("key");
+  record.limits.seconds = root.object("limits").number("seconds", 0);
+  record.limits.memory = root.object("limits").count("memory").value_or(0);
+  return record;
+}
+
+std::map<std::string, BatchRecord> readBatchRecords(const fs::path& folder) {
+  std::vector<fs::path> files;
+  std::error_code problem;
+  for (fs::directory_iterator it(folder, problem), end; !problem && it != end; it.increment(problem)) {
+    if (lowerExtension(it->path()) == kRecordExtension) files.push_back(it->path());
+  }
+  std::sort(files.begin(), files.end());
+  std::map<std::string, BatchRecord> records;
+  for (const fs::path& file : files) {
+    const Bytes bytes = readFile(file);
+    std::string_view text = wholeLines({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    for (std::size_t number = 1; !text.empty(); ++number) {
+      const std::string_view line = text.substr(0, text.find('\n'));
+      text.remove_prefix(line.size() + 1);
+      try {
+        BatchRecord record = parseBatchRecord(line);
+        std::string output = record.output;
+        records.insert_or_assign(std::move(output), std::move(record));
+      } catch (const Error& error) {
+        throw error.within(fmt::format("line {}", number)).within(file.string());
+      }
+    }
+  }
+  return records;
+}
+
+BatchRecordFile::BatchRecordFile(const fs::path& file) : name_(file.string()) {
+  file_ = open(name_.c_str(), O_CREAT | O_RDWR | O_APPEND | O_CLOEXEC, 0666);
+  if (file_ < 0) refuseFile(name_, "cannot be written");
+  if (flock(file_, LOCK_EX | LOCK_NB) != 0) {
+    close(file_);
+    throw Error(ErrorCode::kFile, "another program is working at this part of the batch", name_,
+                "wait for it, or end it");
+  }
+  const Bytes bytes = readFile(file);
+  const std::size_t whole = wholeLines({reinterpret_cast<const char*>(bytes.data()), bytes.size()}).size();
+  if (whole < bytes.size() && ftruncate(file_, static_cast<off_t>(whole)) != 0) {
+    close(file_);
+    refuseFile(name_, "cannot be cut to its whole lines");
+  }
+}
+
+BatchRecordFile::~BatchRecordFile() {
+  close(file_);
+}
+
+void BatchRecordFile::append(const BatchRecord& record) {
+  const std::string line = batchRecordLine(record);
+  std::string_view left = line;
+  while (!left.empty()) {
+    const ssize_t written = write(file_, left.data(), left.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) refuseFile(name_, "cannot be written");
+    left.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+}  // namespace limber

@@ -1,0 +1,54 @@
+// What became of the entries of a batch: a line of JSON each.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "limber/jobs/job.h"
+
+namespace limber {
+
+struct BatchRecord {
+  std::string input, output;  // as BatchEntry
+  JobOutcome outcome = JobOutcome::kDone;
+  std::string problem;                                        // empty where it is done
+  std::vector<std::pair<std::string, std::size_t>> warnings;  // kinds, and how often each
+  double seconds = 0;
+  std::size_t peakMemory = 0;             // bytes
+  std::string inputSha256, outputSha256;  // of the files' bytes; the output's is empty where it is not done
+  std::string key;   // of the program, the command and all that it reads: equal keys, equal outputs
+  JobLimits limits;  // that it ran within
+};
+
+// One line with its end.
+std::string batchRecordLine(const BatchRecord& record);
+// Throws Error kBadData where the text is no such line.
+BatchRecord parseBatchRecord(std::string_view line);
+
+// The last record of each output in the files of a folder (*.jsonl); none where there is no such folder. A line that
+// was not written to its end does not count. Throws Error kFile, and kBadData for lines that are none.
+std::map<std::string, BatchRecord> readBatchRecords(const std::filesystem::path& folder);
+
+// A file that lines are appended to, whole even where this program is killed. One at a time may have it open, in any
+// process of this system.
+class BatchRecordFile {
+ public:
+  // Makes the file, or takes away what stands behind its last line. Throws Error kFile: it cannot be written, or
+  // another program has it open.
+  explicit BatchRecordFile(const std::filesystem::path& file);
+  BatchRecordFile(const BatchRecordFile&) = delete;
+  BatchRecordFile& operator=(const BatchRecordFile&) = delete;
+  ~BatchRecordFile();
+
+  void append(const BatchRecord& record);
+
+ private:
+  std::string name_;
+  int file_ = -1;
+};
+
+}  // namespace limber

@@ -1,0 +1,61 @@
+// Runs a batch, or one of its shards: a command done to many files, each in a child of this process.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "limber/batch/batch_plan.h"
+
+namespace limber {
+
+// Where the parts of a batch's folder are, besides the outputs themselves.
+struct BatchFolder {
+  std::filesystem::path root;
+
+  // What the batch is known by: {"limber_batch": 1, "outputs": [...]}, in the order of the plan.
+  std::filesystem::path plan() const { return root / ".limber-batch" / "plan.json"; }
+  std::filesystem::path records() const { return root / ".limber-batch" / "records"; }
+  std::filesystem::path recordsOf(const BatchShard& shard) const;
+  std::filesystem::path unfinished(const BatchShard& shard) const;
+};
+
+// A command as the program's own does it: its arguments, without the program's name; returns the exit code, and hands
+// over the warnings that it gave, by kind. What it says of an error goes to standard error.
+using BatchWarnings = std::vector<std::pair<std::string, std::size_t>>;
+using BatchCommand = std::function<int(const std::vector<std::string>& arguments, BatchWarnings& warnings)>;
+
+// How far a shard is.
+struct BatchProgress {
+  std::size_t entries = 0, kept = 0, done = 0, failed = 0;  // kept: done or failed before, as they stand
+  double seconds = 0;                                       // that this run has taken
+  double perSecond = 0;    // entries that ran, over the last minute; 0 while it is not known
+  double secondsLeft = 0;  // for what is left, at that pace; 0 while it is not known
+};
+
+struct BatchOptions {
+  std::filesystem::path program;  // limber's own (ownProgram): another one makes everything anew
+  std::filesystem::path output;   // made where it is missing
+  BatchShard shard;
+  int jobs = 1;             // at once
+  int outOfMemoryCode = 0;  // by which the command says that memory did not suffice
+  bool retries = false;     // what did not end well is done again
+  BatchCommand command;     // called in a child, with "--threads 1" where the plan says nothing of threads
+  std::function<void(const BatchProgress&)> tell;  // some fifty times a second; may throw to end the run
+};
+
+// An input that is no plain file, or has more bytes than an entry may have memory, fails unread: it may have no end.
+//
+// An entry's output is written aside, hashed and renamed to its place; then its line is appended to the shard's
+// records. So whatever ends a batch, an output is whole or not there, and the next run does what has no line. An entry
+// with a line of the same key is left alone while its output has the bytes that the line tells; an entry that ran out
+// of time or memory is done again where there is more of it, one that crashed always.
+//
+// A folder of an earlier plan is taken over: what is right in there stays. Throws Error kFile: the folder holds other
+// things and no batch, it cannot be written, or the shard is running already.
+BatchProgress runBatch(const BatchPlan& plan, const BatchOptions& options);
+
+}  // namespace limber

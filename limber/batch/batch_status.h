@@ -1,0 +1,41 @@
+// How a batch stands, from the records of all its shards.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "limber/jobs/job.h"
+
+namespace limber {
+
+// Entries that failed alike.
+struct BatchFailures {
+  JobOutcome outcome = JobOutcome::kFailed;
+  std::string problem;
+  std::size_t count = 0;
+  std::string example;  // an input
+};
+
+struct BatchStatus {
+  std::size_t entries = 0, done = 0, failed = 0;
+  std::size_t lost = 0;                                       // done, but their outputs are no longer there
+  double seconds = 0, slowest = 0;                            // of all that ran, and of one
+  std::size_t peakMemory = 0;                                 // bytes, of one
+  std::vector<BatchFailures> failures;                        // the most frequent first
+  std::vector<std::pair<std::string, std::size_t>> warnings;  // kinds, and how many entries have each; likewise
+
+  std::size_t open() const { return entries - done - failed; }  // not run yet, or lost
+  bool isWell() const { return done == entries; }
+};
+
+// Cost: O(n log n) in the number of records; outputs are looked for, not opened. Throws Error kFile: the folder is no
+// batch's; and as readBatchRecords does.
+BatchStatus batchStatus(const std::filesystem::path& output);
+
+// The last record of each entry of the plan, a line each, in its order: the batch's table as one file.
+std::string mergedBatchRecords(const std::filesystem::path& output);
+
+}  // namespace limber

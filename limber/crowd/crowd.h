@@ -1,0 +1,61 @@
+// Many bodies of differing builds in one document, each with its own clip, its own offset in time and its own place.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "limber/core/progress.h"
+#include "limber/crowd/body_build.h"
+#include "limber/pipeline/clip_edits.h"
+#include "limber/pipeline/retarget_asset.h"
+
+namespace limber {
+
+struct CrowdOptions {
+  Index bodies = 100;             // at least 1
+  Index builds = 8;               // differing ones, of the characters in turn; at least one of each character
+  Index offsets = 8;              // moments of its cycle at which a body may begin, evenly over it; at least 1
+  double variety = 1;             // 0: as the characters are, to 1: as adults differ (randomBuild)
+  std::uint64_t seed = 1;         // of builds, clips, offsets, places
+  double framesPerSecond = 30;    // of the keys, above 0
+  std::optional<double> spacing;  // metres from body to body; none: 1.25 times the widest of them
+  double heading = 0;             // degrees by which a body may face aside of the others, to either side
+  RetargetAssetOptions retarget;  // `frameRate`, `matches` and `turn` are set here
+  ClipEdits edits;                // loops and travel; rate and tolerance are the crowd's own
+};
+
+struct CrowdBody {
+  Index build = 0, clip = 0;
+  double offset = 0;          // seconds of its clip at which it begins
+  Vec3 place = Vec3::Zero();  // on the ground, metres
+  double heading = 0;         // degrees about +Y
+};
+
+struct Crowd {
+  Asset asset;
+  std::vector<CrowdBody> bodies;   // each a node "body_1", ... with the above as extras ("limber_crowd")
+  std::vector<Asset> builds;       // the bodies that are in it, one each, without clips
+  std::vector<std::string> clips;  // names
+  double seconds = 0;              // of the one animation, "crowd"
+};
+
+// The crowd. A body's clip begins at its offset and is repeated until the longest of all has gone round once; in the
+// last frame before it is repeated it goes over to its first frame, so clips should be loops (ClipEdits::loop), and
+// those that travel start anew from their place.
+//
+// What the file holds: geometry and inverse binds once a build, and of these what differs alone (indices, texture
+// coordinates, weights and pictures are one for all builds of a character); nodes, a skin and channels for each body;
+// keys once a build and clip, over as many frames as the animation and one cycle have, of which every offset shows a
+// window, and samplers once a build, clip and offset. The first n bodies have the builds, clips and offsets that they
+// have in a larger crowd.
+//
+// Cost: builds times motions retargetings, on all threads; then linear in bodies times joints. Throws as retargetOnto
+// does, with the character's name, kBadArgument for options out of their ranges, kUnsupported for a skeleton alone,
+// kLimit where bodies times nodes are more than 10 million.
+Crowd makeCrowd(std::span<const Asset> characters, std::span<const Motion> motions, const CrowdOptions& options,
+                Progress& progress);
+
+}  // namespace limber
