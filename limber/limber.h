@@ -1,5 +1,5 @@
-// All of limber that other programs include. What is reached from here is installed; everything else is the library's own and may
-// change at any time.
+// All of limber that other programs include. What is reached from here is installed; everything else is the library's
+// own and may change at any time.
 #pragma once
 
 // Errors, warnings, progress and cancelling.
@@ -9,6 +9,7 @@
 // Models and motions: files in, files out, and what is in them.
 #include "limber/asset/asset.h"
 #include "limber/asset/clip_io.h"
+#include "limber/asset/export_fbx.h"
 #include "limber/asset/geometry.h"
 #include "limber/asset/mesh_asset.h"
 #include "limber/asset/mesh_export.h"
@@ -30,6 +31,9 @@
 
 // Poses and motions on it.
 #include "limber/ik/ik_solver.h"
+#include "limber/motion_mix/blend_motions.h"
+#include "limber/motion_mix/crossfade_motions.h"
+#include "limber/pipeline/combine_motions.h"
 #include "limber/pipeline/pose_asset.h"
 #include "limber/pipeline/retarget_asset.h"
 #include "limber/pipeline/stand_upright.h"

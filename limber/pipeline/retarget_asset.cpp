@@ -8,6 +8,7 @@
 #include "limber/asset/rig_io.h"
 #include "limber/core/error.h"
 #include "limber/limbs/body_skin.h"
+#include "limber/motion_mix/planted_feet.h"
 #include "limber/pipeline/stand_upright.h"
 #include "limber/skeleton/clip_edit.h"
 
@@ -31,6 +32,12 @@ std::vector<std::string> doubtfulMatches(const SkeletonMap& map, const Skeleton&
   return lines;
 }
 
+SkeletonMap mapFor(const Skeleton& source, const Skeleton& target, const RetargetAssetOptions& options) {
+  if (options.mapJson) return skeletonMapFromJson(*options.mapJson, source, target);
+  if (options.matches) return options.matches->match(source, target, options.unlikeBodies);
+  return matchSkeletons(source, target, options.unlikeBodies);
+}
+
 // Null, with a warning, where the character has a skin whose surface cannot be read: it moves all the same.
 std::shared_ptr<const BodySkin> bodySkinOf(Asset& asset) {
   try {
@@ -49,32 +56,41 @@ bool canMove(const Asset& asset) {
   return hasRig(asset) || isSkeletonAlone(asset);
 }
 
-std::vector<RetargetedClip> retargetOnto(Asset& asset, const Motion& given, const RetargetAssetOptions& options) {
+CharacterClips retargetedClips(Asset& asset, const Motion& given, const RetargetAssetOptions& options, bool withFeet) {
   const RetargetMethod& method = findRetargetMethod(options.method);
   if (!canMove(asset)) throw Error(ErrorCode::kUnsupported, "the model has no rig to move", asset.name);
   if (given.clips.empty()) throw Error(ErrorCode::kUnsupported, "holds no motion", given.name);
   const Motion motion = asItRests(given);
   const AssetSkeleton character = animatedSkeleton(asset);
-  const SkeletonMap map = options.mapJson ? skeletonMapFromJson(*options.mapJson, motion.skeleton, character.skeleton)
-                                          : matchSkeletons(motion.skeleton, character.skeleton, options.unlikeBodies);
+  const SkeletonMap map = mapFor(motion.skeleton, character.skeleton, options);
   RetargetOptions retarget = options.retarget;
   retarget.characterStands = !isSkeletonAlone(asset);
   if (hasRig(asset)) retarget.skin = bodySkinOf(asset);
-  std::vector<RetargetedClip> reports;
-  std::vector<Clip> clips;
+  CharacterClips result;
   for (std::size_t c = 0; c < motion.clips.size(); ++c) {
     const Clip& clip = motion.clips[c];
     const double rate = options.frameRate.value_or(frameRateOf(motion, c));
-    clips.push_back(turnClip(retargetClip(method, motion.skeleton, clip, character.skeleton, map, retarget, rate),
-                             character.skeleton, options.turn));
-    clips.back().name = motion.clips.size() == 1 ? motion.name : clip.name;
-    reports.push_back({clips.back().name, frameCount(clip, rate), rate, map,
-                       doubtfulMatches(map, motion.skeleton, character.skeleton),
-                       skeletonMapToJson(map, motion.skeleton, character.skeleton)});
+    ClipWithContacts& made = result.clips.emplace_back();
+    made.clip = retargetClip(method, motion.skeleton, clip, character.skeleton, map, retarget, rate);
+    made.clip.name = motion.clips.size() == 1 ? motion.name : clip.name;
+    if (withFeet) made.feet = plantedFeet(motion.skeleton, clip, character.skeleton, map, retarget, rate);
+    result.reports.push_back({made.clip.name, frameCount(clip, rate), rate, map,
+                              doubtfulMatches(map, motion.skeleton, character.skeleton),
+                              skeletonMapToJson(map, motion.skeleton, character.skeleton)});
+  }
+  return result;
+}
+
+std::vector<RetargetedClip> retargetOnto(Asset& asset, const Motion& motion, const RetargetAssetOptions& options) {
+  CharacterClips made = retargetedClips(asset, motion, options, false);
+  const AssetSkeleton character = animatedSkeleton(asset);
+  std::vector<Clip> clips;
+  for (ClipWithContacts& one : made.clips) {
+    clips.push_back(turnClip(std::move(one.clip), character.skeleton, options.turn));
   }
   const std::vector<std::string> written = addClips(asset, character, clips);
-  for (std::size_t c = 0; c < reports.size(); ++c) reports[c].name = written[c];
-  return reports;
+  for (std::size_t c = 0; c < written.size(); ++c) made.reports[c].name = written[c];
+  return made.reports;
 }
 
 }  // namespace limber

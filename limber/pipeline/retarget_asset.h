@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "limber/asset/rig_io.h"
+#include "limber/matching/skeleton_matches.h"
 #include "limber/retarget/retarget_clip.h"
 #include "limber/skeleton/motion.h"
 
@@ -18,6 +19,7 @@ struct RetargetAssetOptions {
   std::optional<double> frameRate;     // of the clips; none: each motion's own
   std::optional<std::string> mapJson;  // joints matched as this map says (skeleton_map.h)
   bool unlikeBodies = false;           // as matchSkeletons; with a map that map says
+  SkeletonMatches* matches = nullptr;  // of several characters, each skeleton's made once; null: made anew
   Quat turn = Quat::Identity();        // of the clips, about the origin (standUpright)
 };
 
@@ -32,6 +34,14 @@ struct RetargetedClip {
 
 // Has the document a rig, or is it a skeleton alone?
 bool canMove(const Asset& asset);
+
+// What a motion is on the character, neither turned (RetargetAssetOptions::turn) nor added: a clip for each of its
+// clips. Contacts are of the character's feet (plantedFeet), where asked for. Throws as retargetOnto does.
+struct CharacterClips {
+  std::vector<ClipWithContacts> clips;
+  std::vector<RetargetedClip> reports;
+};
+CharacterClips retargetedClips(Asset& asset, const Motion& motion, const RetargetAssetOptions& options, bool withFeet);
 
 // A clip for each clip of `motion`, added to the document: called as the motion, or, where it has several, as they are.
 // Throws Error kUnsupported where the document cannot move or the motion has no clip, and as matchSkeletons does.

@@ -10,6 +10,7 @@
 
 #include "limber/asset/json_access.h"
 #include "limber/asset/json_text.h"
+#include "limber/export/engine_target.h"
 #include "limber/pipeline/option_spelling.h"
 #include "limber/pipeline/template_file.h"
 #include "limber/rigging/template_rigger.h"
@@ -142,6 +143,7 @@ constexpr JsonOption kJsonOptions[] = {
     {"pins", readPins},
     {"upright", [](const JsonView& value, RigRequest& r) { r.upright = flagOf(value); }},
     {"chains", [](const JsonView& value, RigRequest& r) { r.chains = flagOf(value); }},
+    {"target", [](const JsonView& value, RigRequest& r) { r.target = textOf(value); }},
 };
 
 std::string jsonKey(const JsonOption& option) {
@@ -196,6 +198,7 @@ AutoRigOptions optionsOf(const RigRequest& request) {
   options.skinning = request.skinning;
   options.weights.maxInfluences = request.maxInfluences;
   options.weights.pieces = findNamed("pieces", [&] { return findPieceMode(request.pieces); });
+  findNamed("target", [&] { return &findTarget(request.target); });
   options.chains = request.chains;
   options.standUpright = request.upright;
   options.rig.handles = request.handles;
@@ -212,6 +215,14 @@ AutoRigOptions optionsOf(const RigRequest& request) {
     if (!skeleton) findNamed("template", [&] { checkTemplateName(request.chosenTemplate->name); });
   }
   return options;
+}
+
+void finishRig(Asset& asset, const RigRequest& request, AutoRigReport& report) {
+  Warnings ofRig = std::exchange(asset.warnings, {});
+  toTarget(asset, findTarget(request.target));
+  report.warnings.append(asset.warnings);
+  ofRig.append(asset.warnings);
+  asset.warnings = std::move(ofRig);
 }
 
 AutoRigOptions optionsWithOwnTemplate(RigRequest request, std::string_view name,

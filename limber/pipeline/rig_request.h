@@ -28,17 +28,21 @@ struct RigRequest {
   std::optional<std::string> up, front;                 // +x, -x, x, ...; none: found
   std::vector<JointPin> pins;                           // in world space, metres
   bool upright = false, chains = false;
+  std::string target = "gltf";  // a name of engineTargets(): what the caller makes of the rigged model (toTarget)
 };
 
 // From the options of the package for npm: an object with any of handles, maxInfluences, rigger, template, skinning,
-// pieces, existingRig, up, front, pins ({"leftHand": [x, y, z]}), upright and chains. Throws Error kBadArgument, which
-// names the option as optionsOf() does, for a value of the wrong kind, and another key as it is.
+// pieces, existingRig, up, front, pins ({"leftHand": [x, y, z]}), upright, chains and target. Throws Error
+// kBadArgument, which names the option as optionsOf() does, for a value of the wrong kind, and another key as it is.
 RigRequest rigRequestFromJson(std::string_view json);
 
 // Throws Error kBadArgument for what is out of range, does not go together or is called by no name that there is. Where
 // one option is to blame its name is where(), between backticks (spellOptions). A rigger and a method of skinning may
 // be a program of the user's: autoRig() looks for their names.
 AutoRigOptions optionsOf(const RigRequest& request);
+
+// The model that was rigged, as the request's target expects it. What it cannot give goes to the report's warnings.
+void finishRig(Asset& asset, const RigRequest& request, AutoRigReport& report);
 
 // With a template of the user's in place of the request's: read() gives it, once all else is right.
 AutoRigOptions optionsWithOwnTemplate(RigRequest request, std::string_view name, const std::function<Skeleton()>& read);

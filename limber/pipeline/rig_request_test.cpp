@@ -70,6 +70,16 @@ TEST(RigRequest, AsksForTheUsualWhereNothingIsSaid) {
   }
 }
 
+TEST(RigRequest, KnowsTheTargets) {
+  EXPECT_EQ(rigRequestFromJson("{}").target, "gltf");
+  EXPECT_EQ(rigRequestFromJson(R"({"target": "godot"})").target, "godot");
+  RigRequest request;
+  request.target = "maya";
+  const Error error = rigRefusal(request);
+  EXPECT_EQ(error.where(), "`target`");
+  EXPECT_THAT(error.remedy(), HasSubstr("unreal"));
+}
+
 TEST(RigRequest, ReadsEveryOptionOfJson) {
   const AutoRigOptions fitted = optionsOf(rigRequestFromJson(R"({"template": "humanoid", "maxInfluences": 8,
       "skinning": "envelopes", "pieces": "soft", "existingRig": "replace", "up": "-Z", "front": "+x",

@@ -6,7 +6,7 @@
 
 #include "limber/asset/motion_io.h"
 #include "limber/asset/turn_scene.h"
-#include "limber/ik/rotation.h"
+#include "limber/core/rotation.h"
 #include "limber/matching/neutral_pose.h"
 #include "limber/skeleton/clip_edit.h"
 

@@ -7,8 +7,8 @@
 #include "limber/asset/motion_io.h"
 #include "limber/asset/testing/document_json.h"
 #include "limber/core/numbers.h"
+#include "limber/core/rotation.h"
 #include "limber/ik/ik_skeletons.h"
-#include "limber/ik/rotation.h"
 #include "limber/pipeline/retarget_asset.h"
 
 namespace limber {

@@ -21,7 +21,7 @@ constexpr int kCommandsVersion = 2;  // 1 knew no motions that are put on as the
 
 // In the order of the variant. The formatter would put each on a line of its own.
 // clang-format off
-constexpr std::array<std::string_view, 65> kNames = {
+constexpr std::array<std::string_view, 66> kNames = {
     "open_sample",   "open_file",      "set_handles",   "choose_methods",    "pin_joint",
     "unpin_joint",   "begin_drag",     "update_drag",   "turn_drag",         "move_drag",
     "end_drag",      "cancel_drag",    "turn_joint",    "move_joint",        "set_ik",
@@ -34,7 +34,8 @@ constexpr std::array<std::string_view, 65> kNames = {
     "delete_joint",  "reparent_joint", "place_joint",   "set_turn",          "apply_pose",
     "apply_tasks",   "undo",           "redo",          "add_sample",        "add_file",
     "remove_member", "choose_member",  "rename_member", "place_member",      "attach_member",
-    "detach_member", "set_clock",      "set_deformer",  "transfer_rig",      "rig_from_animation"};
+    "detach_member", "set_clock",      "set_deformer",  "transfer_rig",      "rig_from_animation",
+    "join_clips"};
 // clang-format on
 static_assert(kNames.size() == std::variant_size_v<Command>);
 
@@ -232,6 +233,12 @@ void visitFields(Visitor& field, SetContact& c) {
   field("from", c.from);
   field("to", c.to);
   field("contact", c.contact);
+}
+template <class Visitor>
+void visitFields(Visitor& field, JoinClips& c) {
+  field("clips", c.clips);
+  field("seconds", c.seconds);
+  field.optional("into", c.into);
 }
 template <class Visitor>
 void visitFields(Visitor& field, AddClip& c) {

@@ -245,6 +245,14 @@ struct SetContact {
   ContactChange contact = ContactChange::kPlanted;
 };
 
+// Clips of the model one after the other, each going over into the next one for so many seconds (joinMotions): a new
+// clip, named after all of them, or one that came of this in place of what it was.
+struct JoinClips {
+  std::vector<std::string> clips;
+  double seconds = 0.3;
+  std::string into;  // empty: a new one
+};
+
 // Clips are named; one at a time is shown. A new clip has no keys.
 struct AddClip {
   std::string clip;
@@ -382,7 +390,7 @@ using Command =
                  DeleteKey, EditKeys, DeleteKeys, SetJointKey, SetInterpolation, SetTangents, PasteKeys, PaintWeights,
                  LockWeights, MirrorWeights, AddJoint, DeleteJoint, ReparentJoint, PlaceJoint, SetTurn, ApplyPose,
                  ApplyTasks, Undo, Redo, AddSample, AddFile, RemoveMember, ChooseMember, RenameMember, PlaceMember,
-                 AttachMember, DetachMember, SetClock, SetDeformer, TransferRig, RigFromAnimation>;
+                 AttachMember, DetachMember, SetClock, SetDeformer, TransferRig, RigFromAnimation, JoinClips>;
 
 // "auto", "flat", "free", as in JSON.
 std::string_view keyTangentsName(KeyTangents tangents);

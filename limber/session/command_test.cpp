@@ -79,7 +79,8 @@ std::vector<Command> oneOfEach() {
           SetClock{2.0 / 3},
           SetDeformer{"delta-mush"},
           TransferRig{"hero.glb"},
-          RigFromAnimation{12}};
+          RigFromAnimation{12},
+          JoinClips{{"walk", "wave"}, 0.5, "both"}};
 }
 
 // The one of that kind, wherever it stands.
@@ -136,6 +137,9 @@ TEST(Command, JsonKeepsEveryCommandAndEveryField) {
   EXPECT_EQ(only<SetJointKey>(back).turn, Vec3(0, 30, 0));
   EXPECT_EQ(only<SetContact>(back).contact, ContactChange::kFound);
   EXPECT_EQ(only<SetContact>(back).to, 0.5);
+  EXPECT_EQ(only<JoinClips>(back).clips, (std::vector<std::string>{"walk", "wave"}));
+  EXPECT_EQ(only<JoinClips>(back).seconds, 0.5);
+  EXPECT_EQ(only<JoinClips>(back).into, "both");
   EXPECT_TRUE(only<AddMotion>(back).retarget);
   EXPECT_TRUE(only<AddSampleMotion>(back).retarget);
   EXPECT_EQ(only<SetTangents>(back).tangents, KeyTangents::kFree);

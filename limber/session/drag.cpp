@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "limber/core/error.h"
-#include "limber/ik/rotation.h"
+#include "limber/core/rotation.h"
 #include "limber/session/clip_curves.h"
 #include "limber/skeleton/chain.h"
 

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "limber/core/error.h"
-#include "limber/ik/rotation.h"
+#include "limber/core/rotation.h"
 #include "limber/session/testing/two_armed_body.h"
 
 namespace limber {

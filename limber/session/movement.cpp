@@ -171,6 +171,12 @@ Clip retargeted(ClipSource& source, const RiggedModel& rig) {
   return turnClip(std::move(made.clip), skeleton, turnToStand(skeleton));
 }
 
+// From its beginning, unless it is shown already.
+void showOther(Movement& movement, std::size_t clip) {
+  if (movement.chosen != clip) movement.seconds = 0;
+  movement.chosen = clip;
+}
+
 // The motion below the layer.
 void makeAnew(SessionClip& entry, const RiggedModel& rig, ClipSource source) {
   Clip made = retargeted(source, rig);
@@ -282,8 +288,7 @@ void retargetMotion(Movement& movement, const RiggedModel& rig, const RetargetMo
     if (!known || known->motion != source.motion || known->clip != source.clip) continue;
     source.contactEdits = known->contactEdits;
     makeAnew(movement.clips[c], rig, std::move(source));
-    if (movement.chosen != c) movement.seconds = 0;
-    movement.chosen = c;
+    showOther(movement, c);
     return;
   }
   Clip made = retargeted(source, rig);
@@ -292,8 +297,38 @@ void retargetMotion(Movement& movement, const RiggedModel& rig, const RetargetMo
                        [&](const std::string& name) { return findClip(movement, name).has_value(); });
   auto clip = std::make_shared<const Clip>(std::move(made));
   movement.clips.push_back({{clip, std::move(source), clip}});
-  movement.chosen = movement.clips.size() - 1;
-  movement.seconds = 0;
+  showOther(movement, movement.clips.size() - 1);
+}
+
+void joinClips(Movement& movement, const RiggedModel& rig, const JoinClips& command) {
+  if (command.clips.size() < 2) refuse("a sequence takes two clips or more");
+  std::optional<std::size_t> into;
+  if (!command.into.empty()) into = requireClip(movement, command.into);
+  if (into && !movement.clips[*into].sequence) refuse(fmt::format("the clip '{}' is no sequence", command.into));
+  const Skeleton& skeleton = rig.skeleton();
+  const Quat stands = turnToStand(skeleton);
+  std::vector<ClipWithContacts> clips;
+  for (const std::string& name : command.clips) {
+    if (name == command.into) refuse(fmt::format("the clip '{}' cannot be a part of itself", name));
+    const Clip& clip = *movement.clips[requireClip(movement, name)].clip;
+    clips.push_back({turnClip(clip, skeleton, stands.conjugate()), {}});
+  }
+  JoinedMotions joined = joinMotions(skeleton, clips, {command.seconds, std::nullopt});
+  Clip made = turnClip(std::move(joined.motion.clip), skeleton, stands);
+  if (!into) {
+    made.name = freeName(fmt::format("{}", fmt::join(command.clips, "_")),
+                         [&](const std::string& name) { return findClip(movement, name).has_value(); });
+    movement.clips.emplace_back();
+  } else {
+    made.name = command.into;
+    setInterpolation(made, interpolationOf(*movement.clips[*into].base));
+  }
+  const std::size_t at = into.value_or(movement.clips.size() - 1);
+  SessionClip& entry = movement.clips[at];
+  entry.sequence = {command.clips, command.seconds, std::move(joined.spans)};
+  entry.authored.reset();
+  setBase(entry, skeleton, std::make_shared<const Clip>(std::move(made)));
+  showOther(movement, at);
 }
 
 void setContactOf(Movement& movement, const RiggedModel& rig, const SetContact& command) {
@@ -373,8 +408,7 @@ void addClip(Movement& movement, const std::string& name) {
   auto clip = std::make_shared<Clip>();
   clip->name = name;
   movement.clips.push_back({{std::move(clip), {}}});
-  movement.chosen = movement.clips.size() - 1;
-  movement.seconds = 0;
+  showOther(movement, movement.clips.size() - 1);
 }
 
 void removeClip(Movement& movement, const std::string& name) {
@@ -393,6 +427,9 @@ void renameClip(Movement& movement, const std::string& from, const std::string& 
   if (from == to) return;
   requireFreeName(movement, to);
   rename(movement.clips[at], to);
+  for (SessionClip& entry : movement.clips) {
+    if (entry.sequence) std::replace(entry.sequence->clips.begin(), entry.sequence->clips.end(), from, to);
+  }
 }
 
 void chooseClip(Movement& movement, const std::string& name) {

@@ -8,6 +8,7 @@
 
 #include "limber/limbs/contact_track.h"
 #include "limber/matching/skeleton_map.h"
+#include "limber/motion_mix/crossfade_motions.h"
 #include "limber/session/command.h"
 #include "limber/session/rigged_model.h"
 #include "limber/skeleton/clip_layer.h"
@@ -25,6 +26,13 @@ struct ClipSource {
   std::vector<FootSpans> feet = {};  // of the motion's skeleton, as the clip has them (ClipWithContacts)
 };
 
+// Of which clips a clip was joined, and while each of them plays in it.
+struct ClipSequence {
+  std::vector<std::string> clips;
+  double seconds = 0;  // that they overlap
+  std::vector<JoinedMotions::Span> spans;
+};
+
 // What a clip is made of. A clip that was made by hand is its keys; recorded motion is left as it is, and what is
 // corrected in it is a layer on top, which stays when the motion below is retargeted anew.
 struct ClipContent {
@@ -32,6 +40,7 @@ struct ClipContent {
   std::optional<ClipSource> source;
   std::shared_ptr<const Clip> base = {};  // recorded, without the layer; null: made by hand
   ClipLayer layer = {};
+  std::optional<ClipSequence> sequence = {};
 };
 
 // A clip as it was last edited, on the rig that it was edited on: other rigs start from it, so that going there and
@@ -87,6 +96,8 @@ void retargetMotion(Movement& movement, const RiggedModel& rig, const RetargetMo
 // Makes the chosen clip anew with what the user says of a foot. Throws where the clip is from no motion, or keeps no
 // such foot.
 void setContactOf(Movement& movement, const RiggedModel& rig, const SetContact& command);
+// Chooses what it makes. Throws as joinMotions does.
+void joinClips(Movement& movement, const RiggedModel& rig, const JoinClips& command);
 void addClip(Movement& movement, const std::string& name);
 void removeClip(Movement& movement, const std::string& name);
 void renameClip(Movement& movement, const std::string& from, const std::string& to);

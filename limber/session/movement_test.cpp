@@ -162,6 +162,51 @@ TEST(Movement, AUserSaysWhetherAFootStands) {
   EXPECT_TRUE(feet().empty());
 }
 
+TEST(Movement, ClipsAreJoinedOverlappingAndJoinedAnew) {
+  Session session = walking();
+  act(session, JoinClips{{"walk", "walk"}, 0.2, {}});
+  const auto shown = [&]() -> const SessionClip& {
+    return session.state().movement.clips[session.state().movement.chosen.value()];
+  };
+  EXPECT_EQ(shown().clip->name, "walk_walk");
+  EXPECT_TRUE(shown().base);
+  const Json sequence = sessionState(session)["clips"][1]["sequence"];
+  ASSERT_EQ(sequence["clips"].size(), 2u);
+  EXPECT_EQ(sequence["clips"][0]["from"], 0);
+  EXPECT_NEAR(sequence["clips"][0]["to"].get<double>() - sequence["clips"][1]["from"].get<double>(), 0.2, 0.04);
+  EXPECT_NEAR(sequence["clips"][1]["to"].get<double>(), shown().clip->duration(), 1e-6);
+  EXPECT_TRUE(sessionState(session)["clips"][0]["sequence"].is_null());
+
+  // In its place, with what was corrected on top.
+  act(session, SetTime{0.1});
+  act(session, TurnJoint{"head", Vec3::UnitX(), 20});
+  act(session, SetKey{0.1});
+  act(session, JoinClips{{"walk", "walk", "walk"}, 0.2, "walk_walk"});
+  EXPECT_EQ(session.state().movement.clips.size(), 2u);
+  EXPECT_EQ(shown().clip->name, "walk_walk");
+  EXPECT_EQ(sessionState(session)["clips"][1]["sequence"]["clips"].size(), 3u);
+  EXPECT_FALSE(shown().layer.empty());
+  EXPECT_EQ(session.undoName(), "join_clips");
+
+  act(session, RenameClip{"walk", "stroll"});
+  EXPECT_EQ(sessionState(session)["clips"][1]["sequence"]["clips"][2]["clip"], "stroll");
+  act(session, AddClip{"empty"});
+  const std::size_t clips = session.state().movement.clips.size();
+  EXPECT_THROW(act(session, JoinClips{{"stroll"}, 0.2, {}}), Error);
+  EXPECT_THROW(act(session, JoinClips{{"stroll", "walk"}, 0.2, {}}), Error) << "is called otherwise now";
+  EXPECT_THROW(act(session, JoinClips{{"stroll", "empty"}, 0.2, {}}), Error);
+  EXPECT_THROW(act(session, JoinClips{{"stroll", "stroll"}, 0, {}}), Error);
+  EXPECT_THROW(act(session, JoinClips{{"stroll", "stroll"}, 5, {}}), Error);
+  EXPECT_THROW(act(session, JoinClips{{"stroll", "stroll"}, 0.2, "stroll"}), Error) << "is no sequence";
+  EXPECT_THROW(act(session, JoinClips{{"stroll", "walk_walk"}, 0.2, "walk_walk"}), Error);
+  EXPECT_EQ(session.state().movement.clips.size(), clips);
+
+  // On another rig it stays what it is, and can be joined anew there.
+  act(session, ChooseClip{"walk_walk"});
+  act(session, SetHandles{25});
+  EXPECT_FALSE(sessionState(session)["clips"][1]["sequence"].is_null());
+}
+
 TEST(Movement, AModelsOwnMotionPutBackIsTheSame) {
   for (const char* method : {"limb-ik", "spacetime", "aligned"}) {
     Session session(movingFiles);

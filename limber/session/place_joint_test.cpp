@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "limber/core/error.h"
-#include "limber/ik/rotation.h"
+#include "limber/core/rotation.h"
 #include "limber/session/clip_curves.h"
 #include "limber/session/session.h"
 #include "limber/session/session_state.h"

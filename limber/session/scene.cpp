@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "limber/asset/read.h"
 #include "limber/session/refuse.h"
 #include "limber/session/scene_io.h"
 #include "limber/session/scene_places.h"
@@ -206,7 +207,18 @@ SessionScene::~SessionScene() = default;
 SessionScene::SessionScene(SessionScene&&) noexcept = default;
 SessionScene& SessionScene::operator=(SessionScene&&) noexcept = default;
 
+void SessionScene::beginLive(Skeleton source) {
+  now_.members[now_.chosen].session->beginLive(std::move(source));
+}
+void SessionScene::showLive(const Pose& source, double seconds) {
+  now_.members[now_.chosen].session->showLive(source, seconds);
+}
+void SessionScene::endLive() {
+  now_.members[now_.chosen].session->endLive();
+}
+
 void SessionScene::run(const Command& command, Progress& progress) {
+  endLive();
   std::visit(Runner{*this, command, progress}, command);
 }
 
@@ -217,6 +229,7 @@ void SessionScene::open(ByteSpan bytes, std::string_view name, Progress& progres
 }
 
 void SessionScene::add(ByteSpan bytes, const AddFile& command, Progress& progress) {
+  endLive();
   requireReady();
   auto session = std::make_shared<Session>(files_, record_);
   session->add(bytes, command, progress);
@@ -251,6 +264,10 @@ std::optional<SceneHit> SessionScene::pick(const Ray& ray) const {
     least = distance;
   }
   return nearest;
+}
+
+EncodedModel SessionScene::saveModel(std::string_view extension, const WriteModelOptions& options) const {
+  return encodeModel(readAsset(exportModel(ExportFormat::kGlb), "model.glb"), extension, options);
 }
 
 Bytes SessionScene::exportModel(ExportFormat format) const {

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "limber/export/write_model.h"
 #include "limber/session/session.h"
 
 namespace limber {
@@ -65,6 +66,10 @@ class SessionScene {
   void add(ByteSpan bytes, const AddFile& command, Progress& progress);
   void addMotion(ByteSpan bytes, const AddMotion& command);
   void transferRig(ByteSpan bytes, const TransferRig& command, Progress& progress);
+  // Of the chosen member, as its session's; a command of the scene ends it, too.
+  void beginLive(Skeleton source);
+  void showLive(const Pose& source, double seconds);
+  void endLive();
 
   bool isOpen() const { return session().isOpen(); }
   // There is always one; its session has no model before one is opened.
@@ -84,6 +89,8 @@ class SessionScene {
   // As Session::exportModel for one member. For several a GLB holds all of them, below a node for each; what is
   // attached is a child of its joint's node. The other formats hold the surfaces of all.
   Bytes exportModel(ExportFormat format) const;
+  // The same GLB's content in a format (".glb", ".usdz"), as the options say (encodeModel).
+  EncodedModel saveModel(std::string_view extension, const WriteModelOptions& options = {}) const;
   std::span<const Command> record() const { return record_->commands(); }
 
  private:

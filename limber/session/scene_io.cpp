@@ -32,6 +32,15 @@ Bytes sceneGlb(std::span<const SceneMember> members) {
   return writeGlb(mergeAssets(std::move(parts)));
 }
 
+// The members' materials and meshes in the order of sceneMesh(), without regard to where they stand.
+Asset sceneMaterials(std::span<const SceneMember> members) {
+  std::vector<AssetPart> parts;
+  for (const SceneMember& member : members) {
+    parts.push_back({member.session->state().rig->asset->clone(), member.name, Affine::Identity(), std::nullopt});
+  }
+  return mergeAssets(std::move(parts));
+}
+
 // Puts a mesh behind what is there.
 void append(ExportMesh& all, ExportMesh mesh) {
   const auto vertices = static_cast<Index>(all.positions.size()), textures = static_cast<Index>(all.textures.size()),
@@ -73,7 +82,8 @@ ExportMesh sceneMesh(std::span<const SceneMember> members) {
 }  // namespace
 
 Bytes exportScene(std::span<const SceneMember> members, ExportFormat format) {
-  return format == ExportFormat::kGlb ? sceneGlb(members) : encodeMesh(sceneMesh(members), format);
+  if (format == ExportFormat::kGlb) return sceneGlb(members);
+  return encodeMesh(sceneMesh(members), format == ExportFormat::kUsdz ? sceneMaterials(members) : Asset(), format);
 }
 
 }  // namespace limber

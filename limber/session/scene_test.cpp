@@ -327,6 +327,7 @@ TEST(SessionScene, SeveralSurfacesGoIntoOneMesh) {
   std::size_t triangles = 0;
   for (std::size_t m = 0; m < 3; ++m) triangles += stateOf(scene, m).rig->geometry->triangles.size();
   EXPECT_EQ(stl.size(), 84 + 50 * triangles);
+  EXPECT_GT(scene.exportModel(ExportFormat::kUsdz).size(), 0u);
 }
 
 }  // namespace

@@ -20,6 +20,7 @@
 #include "limber/samples/samples.h"
 #include "limber/session/apply_pose.h"
 #include "limber/session/edit_joints.h"
+#include "limber/session/live_character.h"
 #include "limber/session/mirror_pose.h"
 #include "limber/session/pose_transfer.h"
 #include "limber/session/refuse.h"
@@ -584,6 +585,9 @@ struct Session::Runner {
   void operator()(const SetContact& c) const {
     move([&](SessionState& next) { setContactOf(next.movement, *next.rig, c); });
   }
+  void operator()(const JoinClips& c) const {
+    move([&](SessionState& next) { joinClips(next.movement, *next.rig, c); });
+  }
   // A clip without keys shows nothing yet: the pose stays.
   void operator()(const AddClip& c) const {
     SessionState next = state();
@@ -667,6 +671,7 @@ Session::Session(Session&&) noexcept = default;
 Session& Session::operator=(Session&&) noexcept = default;
 
 void Session::run(const Command& command, Progress& progress) {
+  endLive();
   std::visit(Runner{*this, command, progress}, command);
 }
 
@@ -689,6 +694,7 @@ Bytes Session::fileOf(const std::string& name) const {
 }
 
 void Session::addMotion(ByteSpan bytes, const AddMotion& command) {
+  endLive();
   requireOpen();
   if (drag_) refuseDragged();
   SessionState next = state_;
@@ -697,6 +703,7 @@ void Session::addMotion(ByteSpan bytes, const AddMotion& command) {
 }
 
 void Session::transferRig(ByteSpan bytes, const TransferRig& command, Progress& progress) {
+  endLive();
   requireOpen();
   if (drag_) refuseDragged();
   SessionState next = state_;
@@ -705,6 +712,7 @@ void Session::transferRig(ByteSpan bytes, const TransferRig& command, Progress& 
 }
 
 void Session::start(Asset source, const Command& command, Opening how, Progress& progress) {
+  endLive();
   const std::optional<SavedSession> saved = takeSession(source);
   state_ = startState(std::make_shared<const Asset>(std::move(source)), saved, how.asProp, progress);
   if (!saved && how.limbsFollow) letLimbsFollow(state_);
@@ -759,10 +767,39 @@ void Session::commit(const Command& command, SessionState next) {
 }
 
 void Session::showMoment(double seconds) {
+  endLive();
   requireOpen();
   if (drag_) refuseDragged();
   setTime(state_.movement, seconds);
   show(state_);
+}
+
+void Session::beginLive(Skeleton source) {
+  requireOpen();
+  if (drag_) refuseDragged();
+  endLive();
+  live_ = std::make_unique<LiveCharacter>(state_.rig, std::move(source));
+  beforeLive_ = state_.pose;
+}
+
+void Session::showLive(const Pose& source, double seconds) {
+  requireLive();
+  state_.pose = live_->next(source, seconds);
+}
+
+void Session::endLive() {
+  if (!live_) return;
+  state_.pose = std::move(beforeLive_);
+  live_.reset();
+}
+
+Motion Session::recordedLive() const {
+  return requireLive().recorded();
+}
+
+const LiveCharacter& Session::requireLive() const {
+  if (!live_) refuse("no motion is live");
+  return *live_;
 }
 
 void Session::requireOpen() const {
@@ -784,6 +821,7 @@ Session Session::fork() const {
   if (drag_) refuseDragged();
   Session session(files_, std::make_shared<CommandRecord>(*record_));
   session.state_ = state_;
+  if (live_) session.state_.pose = beforeLive_;
   return session;
 }
 

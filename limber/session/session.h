@@ -23,6 +23,8 @@ namespace limber {
 
 // What the user works on, at one moment. Copies share everything large, so that each undo step is one.
 // Of ApplyTasks.
+class LiveCharacter;
+
 struct TaskOutcome {
   std::string task, outcome;  // as it was asked for; taskOutcome()
   bool met = false;
@@ -60,7 +62,7 @@ struct Opening {
 
 inline constexpr std::size_t kMostSteps = 200;  // that an undo history keeps
 
-enum class ExportFormat { kGlb, kObj, kStl, kPly };
+enum class ExportFormat { kGlb, kObj, kStl, kPly, kUsdz };
 
 // Only the last of several updates of a drag, counts of handles or moments of a clip in a row is recorded; such counts
 // are one undo step, and moments none. A command that fails, or is cancelled through `progress`, leaves everything as
@@ -107,6 +109,15 @@ class Session {
   // SetTime, without a place in the record.
   void showMoment(double seconds);
 
+  // A motion that comes frame by frame (live_character.h): the pose follows it, nothing is recorded, and there is
+  // nothing to undo. endLive() puts the pose back, as every command does first. showLive() throws Error kBadArgument
+  // where nothing is live, beginLive() during a drag and as matchSkeletons does.
+  void beginLive(Skeleton source);
+  void showLive(const Pose& source, double seconds);
+  void endLive();
+  // What has come of it. Throws likewise.
+  Motion recordedLive() const;
+
   // What the ray meets: a handle (see pickHandle) or else the surface.
   std::optional<PickHit> pick(const Ray& ray, double slope) const;
   // The surface alone, for a brush. Quick while rig and pose stay: the tree of the surface is kept.
@@ -119,7 +130,7 @@ class Session {
 
   // GLB: the rigged model with its clips, its joints standing in the pose; other programs blend its weights linearly,
   // whatever the deformer, as glTF knows nothing else. The others: the posed surface alone as the deformer bends it, an
-  // OBJ without its materials.
+  // OBJ without its materials, a USDZ with them.
   Bytes exportModel(ExportFormat format) const;
   // See session_file.h. Motions are not part of it, the clips made of them are.
   Bytes saveSession() const;
@@ -140,12 +151,15 @@ class Session {
   bool goesOnWithLast(const Command& command) const;
   void start(Asset source, const Command& command, Opening how, Progress& progress);
   void requireOpen() const;
+  const LiveCharacter& requireLive() const;
   Bytes fileOf(const std::string& name) const;
 
   Resolver files_;
   SessionState state_;
   std::vector<Step> undo_, redo_;
   std::unique_ptr<Drag> drag_;
+  std::unique_ptr<LiveCharacter> live_;
+  Pose beforeLive_;
   std::unique_ptr<Brush> brush_;  // what it keeps is only for speed
   std::shared_ptr<CommandRecord> record_;
   std::size_t stepsMade_ = 0;

@@ -10,6 +10,7 @@
 #include "limber/ik/ik_solver.h"
 #include "limber/ik/limits_json.h"
 #include "limber/rigging/prop_rigger.h"
+#include "limber/usd/usd_write.h"
 
 namespace limber {
 
@@ -169,14 +170,15 @@ ExportMesh posedMesh(const SessionState& state) {
   return exportMesh(*state.rig->asset, geometry);
 }
 
-Bytes encodeMesh(const ExportMesh& mesh, ExportFormat format) {
+Bytes encodeMesh(const ExportMesh& mesh, const Asset& asset, ExportFormat format) {
   if (format == ExportFormat::kObj) return encodeObj(mesh, {});
+  if (format == ExportFormat::kUsdz) return encodeUsdz(stillUsdFiles(asset, {mesh.positions, mesh.normals}));
   return format == ExportFormat::kStl ? encodeStl(mesh) : encodePly(mesh);
 }
 
 Bytes exportState(const SessionState& state, ExportFormat format) {
   if (format == ExportFormat::kGlb) return writeGlb(posedDocument(state));
-  return encodeMesh(posedMesh(state), format);
+  return encodeMesh(posedMesh(state), *state.rig->asset, format);
 }
 
 Bytes savedState(const SessionState& state) {

@@ -20,7 +20,8 @@ SessionState startState(std::shared_ptr<const Asset> source, const std::optional
 Asset posedDocument(const SessionState& state);
 // The posed surface alone, as the deformer bends it.
 ExportMesh posedMesh(const SessionState& state);
-Bytes encodeMesh(const ExportMesh& mesh, ExportFormat format);
+// `asset`: with the materials of a USDZ; its collectGeometry() has the mesh's vertices in their order.
+Bytes encodeMesh(const ExportMesh& mesh, const Asset& asset, ExportFormat format);
 
 // Session::exportModel and saveSession.
 Bytes exportState(const SessionState& state, ExportFormat format);

@@ -99,6 +99,15 @@ Json feetJson(const ClipSource& source) {
   return list;
 }
 
+Json sequenceJson(const std::optional<ClipSequence>& sequence) {
+  if (!sequence) return nullptr;
+  Json clips = Json::array();
+  for (std::size_t i = 0; i < sequence->clips.size(); ++i) {
+    clips.push_back({{"clip", sequence->clips[i]}, {"from", sequence->spans[i].from}, {"to", sequence->spans[i].to}});
+  }
+  return {{"seconds", sequence->seconds}, {"clips", std::move(clips)}};
+}
+
 Json clipsJson(const Movement& movement) {
   Json clips = Json::array();
   for (const SessionClip& entry : movement.clips) {
@@ -119,6 +128,7 @@ Json clipsJson(const Movement& movement) {
                      {"joint_keys", jointKeysJson(entry)},
                      {"interpolation", interpolationName(interpolationOf(clip))},
                      {"source", std::move(source)},
+                     {"sequence", sequenceJson(entry.sequence)},
                      {"feet", entry.source ? feetJson(*entry.source) : Json::array()}});
   }
   return clips;

@@ -12,9 +12,11 @@ namespace limber {
 //  "motions": [{"name", "joints": [{"name", "parent"}], "clips": [{"name", "duration"}]}],
 //  "clips": [{"name", "duration", "recorded" (its keys are those of the layer on it), "keys": [seconds],
 //  "joint_keys": [{"joint": index, "seconds": [...]}] (the same for each joint that has any), "interpolation",
-//  "source": null or {"motion", "clip", "method", "reach", "contacts"}, "feet": of the motion, that
-//  are kept where they stand: [{"foot": its joint, "part", "planted": [[from, to] seconds], "edited": whether the user
-//  said something of it}]}], "clip": the chosen one's index or null,
+//  "source": null or {"motion", "clip", "method", "reach", "contacts"},
+//  "sequence": null or {"seconds" (that they overlap), "clips": [{"clip", "from", "to"}]} (JoinClips),
+//  "feet": of the motion, that are kept where they stand: [{"foot": its joint, "part", "planted": [[from, to] seconds],
+//  "edited": whether the user said something of it}]}],
+//  "clip": the chosen one's index or null,
 //  "seconds",
 //  "snap": {"degrees", "step" (metres)} (snap.h),
 //  "match": of the chosen clip, where it is from a motion: [{"part", "source": [joints], "target": [joints],

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "limber/core/numbers.h"
-#include "limber/ik/rotation.h"
+#include "limber/core/rotation.h"
 #include "limber/session/session.h"
 
 namespace limber {

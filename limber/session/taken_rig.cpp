@@ -14,7 +14,7 @@ namespace limber {
 namespace {
 
 Asset bodyIn(ByteSpan bytes, const std::string& file, const Resolver& files) {
-  if (lowerExtension(file) == ".npz") return smplBody(readStoredArchive(bytes, file), file);
+  if (lowerExtension(file) == ".npz") return smplBody(readZipArchive(bytes, file), file);
   return readAsset(bytes, file, files);
 }
 
