@@ -8,9 +8,9 @@
 
 #include "limber/asset/json_text.h"
 #include "limber/asset/read.h"
-#include "limber/asset/write.h"
 #include "limber/core/counted.h"
 #include "limber/core/names.h"
+#include "limber/export/write_model.h"
 #include "limber/pipeline/obj_series.h"
 #include "limber/pipeline/report_json.h"
 #include "limber/pipeline/rig_from_animation.h"
@@ -89,7 +89,7 @@ void runAnimationRig(const AnimationRigArguments& arguments, const AnimationRigO
   options.bones = arguments.bones;
   options.maxInfluences = output.maxInfluences;
   const std::string format = model.asset.format;
-  const AnimationRigReport report = rigFromAnimation(model.asset, std::move(model.animation), options, *progress);
+  AnimationRigReport report = rigFromAnimation(model.asset, std::move(model.animation), options, *progress);
   if (output.strict) refuseWarnings(report.warnings);
   progress->stage("write");
   std::string text;
@@ -104,7 +104,10 @@ void runAnimationRig(const AnimationRigArguments& arguments, const AnimationRigO
     text = dumpReport(json) + "\n";
     companions.push_back({output.report, asBytes(text)});
   }
-  writeAsset(model.asset, output.output, companions);
+  WriteModelOptions write;
+  write.target = output.target;
+  write.companions = companions;
+  report.warnings.append(writeModel(model.asset, output.output, write));
   progress.finish();
   const bool busy = output.output == "-" || output.report == "-";
   printAnimationRig(Account(common.quiet, busy ? "-" : ""), report, output.output);

@@ -24,6 +24,7 @@ struct AnimationRigOutput {
   std::string output, report;
   Index maxInfluences = 4;
   bool strict = false;
+  std::string target;  // a name of engineTargets()
 };
 
 // Reads, rigs, writes and prints the account.

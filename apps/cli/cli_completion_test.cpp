@@ -29,7 +29,7 @@ TEST_F(Cli, BashCompletesCommandsAndOptions) {
   put("script", run({"completion", "bash"}).out);
   const auto completed = [&](const std::string& words, int at) {
     return said(folder_, "bash -c '. ./script; COMP_WORDS=(" + words + "); COMP_CWORD=" + std::to_string(at) +
-                              "; _limber; echo \"[${COMPREPLY[*]}]\"'");
+                             "; _limber; echo \"[${COMPREPLY[*]}]\"'");
   };
   EXPECT_EQ(completed("limber stud", 1), "[study studio]\n");
   EXPECT_EQ(completed("limber evaluate mod", 2), "[model]\n");

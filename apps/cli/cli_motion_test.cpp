@@ -226,6 +226,8 @@ TEST_F(Cli, ConvertWritesUsd) {
   EXPECT_EQ(whole.code, 0) << whole.error;
   EXPECT_THAT(whole.out, HasSubstr("written: flying.usdz"));
   EXPECT_EQ(content("flying.usdz").substr(0, 2), "PK");
+  EXPECT_EQ(run({"convert", "flying.glb", "flying.usdc", "-q"}).code, 0);
+  EXPECT_THAT(content("flying.usdc"), StartsWith("PXR-USDC"));
   EXPECT_EQ(run({"convert", "flying.glb", "flying.usda", "-q"}).code, 0);
   EXPECT_THAT(content("flying.usda"), AllOf(StartsWith("#usda 1.0"), HasSubstr("rotations.timeSamples")));
   // A model without a rig.
@@ -234,6 +236,22 @@ TEST_F(Cli, ConvertWritesUsd) {
   EXPECT_THAT(content("robot.usda"), Not(HasSubstr("Skel")));
   const std::vector<std::string> before = files();
   expectOneLine(run({"convert", "flying.glb", "other.usdz", "--clip", "swim", "-q"}), 1);
+  EXPECT_EQ(files(), before);
+}
+
+TEST_F(Cli, ConvertWritesMotionsForAvatars) {
+  ASSERT_EQ(run({"sample", "walk", "-o", "walk.bvh", "-q"}).code, 0);
+  const Result whole = run({"convert", "walk.bvh", "walk.vrma"});
+  EXPECT_EQ(whole.code, 0) << whole.error;
+  EXPECT_THAT(whole.out, HasSubstr("written: walk.vrma"));
+  EXPECT_THAT(content("walk.vrma"), AllOf(StartsWith("glTF"), HasSubstr("VRMC_vrm_animation"), HasSubstr("leftHand")));
+  // And back: a skeleton called by VRM's names.
+  EXPECT_EQ(run({"convert", "walk.vrma", "back.bvh", "-q"}).code, 0);
+  EXPECT_THAT(content("back.bvh"), HasSubstr("JOINT leftUpperArm"));
+  // A skeleton alone is no avatar.
+  const std::vector<std::string> before = files();
+  expectOneLine(run({"convert", "walk.bvh", "walk.vrm", "-q"}), 1);
+  expectOneLine(run({"convert", "walk.vrma", "other.vrma", "--clip", "swim", "-q"}), 1);
   EXPECT_EQ(files(), before);
 }
 

@@ -237,7 +237,7 @@ TEST_F(Cli, ErrorsOfTheGeometryNameTheFile) {
 }
 
 TEST_F(Cli, TheOutputsNameIsCheckedBeforeAnyWork) {
-  for (const char* name : {"out.fbx", "out", "out.png"}) {
+  for (const char* name : {"out.3ds", "out", "out.png"}) {
     const Result result = run({"rig", "missing.glb", "-o", name});
     expectOneLine(result, 1);
     EXPECT_THAT(result.error, AllOf(HasSubstr(name), HasSubstr(".glb"), Not(HasSubstr("missing"))));

@@ -27,6 +27,11 @@ bool isSamePlace(const std::string& a, const std::string& b) {
   return place(a) == place(b);
 }
 
+Warnings& allGiven() {
+  static Warnings all;
+  return all;
+}
+
 }  // namespace
 
 void Common::addTo(CLI::App& command) {
@@ -44,7 +49,12 @@ void Account::line(std::string_view text) const {
   if (!quiet_) fmt::print(toError_ ? stderr : stdout, "{}\n", text);
 }
 
+const Warnings& givenWarnings() {
+  return allGiven();
+}
+
 void printWarnings(const Warnings& warnings, bool quiet) {
+  allGiven().append(warnings);
   if (quiet) return;
   for (const Warning& warning : warnings.items()) {
     const std::string_view at = warning.count == 1 ? "at" : "first at";
@@ -74,7 +84,7 @@ std::string joinNames(const std::vector<std::string>& names) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-void checkOutput(std::string_view path, std::initializer_list<std::string_view> extensions) {
+void checkOutput(std::string_view path, const std::vector<std::string_view>& extensions) {
   if (path == "-") return;
   const std::string extension = lowerExtension(path);
   if (std::find(extensions.begin(), extensions.end(), extension) != extensions.end()) return;

@@ -1,9 +1,9 @@
 // What the subcommands share: how they are added, and where they print.
 #pragma once
 
-#include <initializer_list>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -27,6 +27,8 @@ void addAnimateCommand(CLI::App& program);
 void addStudioCommand(CLI::App& program);
 void addTransferCommand(CLI::App& program);
 void addStudyCommand(CLI::App& program);
+void addBatchCommand(CLI::App& program);
+void addCrowdCommand(CLI::App& program);
 void addCompletionCommand(CLI::App& program);
 void addMotionEvaluation(CLI::App& evaluate);  // subcommands of evaluate
 void addRetargetingEvaluation(CLI::App& evaluate);
@@ -58,6 +60,8 @@ class Account {
 
 // On standard error, a line for each kind.
 void printWarnings(const Warnings& warnings, bool quiet);
+// All that printWarnings was given since this process began, or since it was forked.
+const Warnings& givenWarnings();
 // Throws an Error that names the first warning if there is one.
 void refuseWarnings(const Warnings& warnings);
 // Throws an Error that names the first that was skipped, where nothing else is left to compare.
@@ -65,7 +69,7 @@ void refuseNothing(bool isEmpty, const Warnings& skipped);
 std::string joinNames(const std::vector<std::string>& names);
 
 // Throws Error kBadArgument unless the name ends in one of the extensions (".glb") or is "-".
-void checkOutput(std::string_view path, std::initializer_list<std::string_view> extensions);
+void checkOutput(std::string_view path, const std::vector<std::string_view>& extensions);
 
 // A file written beside the result, named by `option`, must take the place of none of the others: throws
 // CLI::ValidationError where it does, by whatever path.

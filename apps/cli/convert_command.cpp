@@ -5,19 +5,23 @@
 
 #include <fmt/format.h>
 
+#include "clip_arguments.h"
 #include "command.h"
+#include "fbx_arguments.h"
 #include "limber/anatomy/skeleton_mirror.h"
 #include "limber/asset/bvh_write.h"
-#include "limber/asset/clip_io.h"
 #include "limber/asset/motion_io.h"
-#include "limber/asset/node_edit.h"
+#include "limber/asset/replace_clips.h"
 #include "limber/asset/unique_names.h"
-#include "limber/asset/write.h"
 #include "limber/core/counted.h"
 #include "limber/core/names.h"
+#include "limber/export/write_model.h"
 #include "limber/skeleton/clip_edit.h"
-#include "limber/usd/usd_write.h"
+#include "motion_arguments.h"
 #include "progress_line.h"
+#include "target_arguments.h"
+#include "vrm_arguments.h"
+#include "vrma_files.h"
 
 namespace limber::cli {
 
@@ -27,11 +31,18 @@ namespace fs = std::filesystem;
 
 struct ConvertArguments {
   std::vector<std::string> files;
-  std::string output, unit = "m", outputUnit, up = "auto", trim;
+  std::string output, unit = "m", outputUnit, trim;
   std::vector<std::string> clips;
-  std::optional<double> fps;
-  bool mirror = false, loop = false;
+  bool mirror = false;
+  MotionArguments motionFiles;
+  ClipArguments clipEdits;
+  TargetArguments target;
+  FbxArguments fbx;
+  VrmArguments vrm;
   Common common;
+
+  // Are the clips to be anything else than they were?
+  bool editsClips() const { return mirror || !trim.empty() || clipEdits.edits.any(); }
 };
 
 double metresOf(const std::string& unit) {
@@ -47,12 +58,10 @@ double metresOf(const std::string& unit) {
               "use m, dm, cm, mm, in, ft, cmu, or how many metres it has");
 }
 
-BvhOptions bvhOptions(const ConvertArguments& options) {
-  BvhOptions bvh;
-  bvh.metresPerUnit = metresOf(options.unit);
-  if (options.up == "y") bvh.up = UpAxis::kY;
-  if (options.up == "z") bvh.up = UpAxis::kZ;
-  return bvh;
+MotionOptions motionOptions(const ConvertArguments& options) {
+  MotionOptions motion = options.motionFiles.options();
+  motion.bvh.metresPerUnit = metresOf(options.unit);
+  return motion;
 }
 
 bool isBvh(const std::string& path) {
@@ -96,25 +105,16 @@ std::vector<Clip> chosenClips(std::vector<Clip> clips, const std::vector<std::st
   return chosen;
 }
 
-// What the options do to each clip, in this order: loop, trim, mirror, fps.
-void edit(Motion& motion, const ConvertArguments& options, const Account& account) {
+// What comes before the edits of clips that commands share.
+void trimAndMirror(Motion& motion, const ConvertArguments& options) {
   const SkeletonMirror mirror = options.mirror ? mirrorOf(motion.skeleton) : SkeletonMirror{};
   for (Clip& clip : motion.clips) {
-    if (options.loop) {
-      const std::optional<ClipLoop> loop = findLoop(motion.skeleton, clip);
-      if (loop) clip = trimClip(clip, loop->begin, loop->end);
-      account.line(loop ? fmt::format("{}: loops from {:.3f} to {:.3f} s, the ends {:.2g} of its size apart", clip.name,
-                                      loop->begin, loop->end, loop->error)
-                        : fmt::format("{}: no loop found, left as it is", clip.name));
-    }
     if (!options.trim.empty()) {
       const auto [from, to] = trimSpan(options.trim);
       clip = trimClip(clip, from, to);
     }
     if (options.mirror) clip = mirrorClip(clip, motion.skeleton, mirror);
-    if (options.fps) clip = resampleClip(clip, *options.fps);
   }
-  if (options.fps) motion.framesPerSecond = *options.fps;
 }
 
 void describe(const std::string& file, const Motion& motion, const Account& account) {
@@ -187,31 +187,46 @@ void writeBvhFiles(const Motion& motion, const ConvertArguments& options, const 
   }
 }
 
-// A model keeps all but the animations of its joints, which make room for the clips; from a BVH comes a skeleton.
-Asset withClips(std::optional<Asset>& model, const Motion& motion) {
-  if (!model) return motionAsset(motion);
-  const AssetSkeleton skeleton = animatedSkeleton(*model);
-  removeChannels(*model, [&](Index node, std::string_view path) {
-    return path != "weights" &&
-           std::find(skeleton.jointNode.begin(), skeleton.jointNode.end(), node) != skeleton.jointNode.end();
-  });
-  addClips(*model, skeleton, motion.clips);
-  return std::move(*model);
+// A model keeps all but the animations of its joints, which make room for the clips; from a motion comes a skeleton.
+Asset withClips(std::optional<Asset>& model, const Motion& motion, const ConvertArguments& options,
+                const Account& account) {
+  Asset asset;
+  std::vector<std::string> names;
+  if (model) {
+    asset = std::move(*model);
+    names = replaceClips(asset, animatedSkeleton(asset), motion.clips);
+  } else {
+    asset = motionAsset(motion);
+    for (const gltf::Animation& animation : asset.document.animations) names.push_back(animation.name);
+  }
+  options.clipEdits.tell(editClips(asset, names, options.clipEdits.edits), account);
+  return asset;
 }
 
-// A model with its clips, one a file.
-void writeUsdFiles(const Asset& asset, const Motion& motion, const ConvertArguments& options, const Account& account) {
-  std::vector<fs::path> paths = pathsOfClips(motion, options.output);
+// A model with its clips, one a file where the format holds one.
+void writeModelFiles(const Asset& asset, const Motion& motion, const ConvertArguments& options,
+                     const Account& account) {
+  std::vector<fs::path> paths;
+  if (holdsOneClip(options.output)) paths = pathsOfClips(motion, options.output);
   if (paths.empty()) paths.emplace_back(options.output);
   const std::vector<gltf::Animation>& clips = asset.document.animations;
   for (std::size_t c = 0; c < paths.size(); ++c) {
-    UsdOptions usd;
+    WriteModelOptions write;
+    write.target = options.target.target;
+    write.vrm = options.vrm.meta;
+    options.fbx.setIn(write);
     const std::size_t number = clips.size() - motion.clips.size() + c;  // clips are added behind what is there
-    if (number < clips.size()) usd.clip = clips[number].name;
-    const Warnings warnings = writeUsd(asset, paths[c], usd);
-    account.line(fmt::format("written: {}", paths[c].string()));
+    if (number < clips.size()) write.clip = clips[number].name;
+    const Warnings warnings = writeModel(asset, paths[c], write);
+    const std::string holds = holdsOneClip(paths[c]) ? "" : ", " + counted(motion.clips.size(), "clip");
+    if (paths[c] != "-") account.line(fmt::format("written: {}{}", paths[c].string(), holds));
     if (c == 0) printWarnings(warnings, options.common.quiet);
   }
+}
+
+// Does it hold a motion alone, without a model?
+bool isMotionFormat(const std::string& path) {
+  return isBvh(path) || isVrmaFormat(path);
 }
 
 // Has it a rig, or anything that moves?
@@ -228,10 +243,18 @@ void run(ConvertArguments options) {
     options.output = options.files.back();
     options.files.pop_back();
   }
-  checkOutput(options.output, {".glb", ".gltf", ".bvh", ".usda", ".usdz"});
+  std::vector<std::string_view> formats = modelExtensions();
+  formats.insert(formats.end(), {".vrma", ".bvh"});
+  checkOutput(options.output, formats);
+  options.target.check();
+  options.clipEdits.check();
+  if (options.clipEdits.edits.tolerance && isBvh(options.output)) {
+    throw Error(ErrorCode::kBadArgument, "a BVH has all frames: --tolerance has nothing to leave out", options.output,
+                "write a .glb, or fewer frames by --fps");
+  }
   if (!options.trim.empty()) trimSpan(options.trim);
   if (!options.outputUnit.empty()) metresOf(options.outputUnit);
-  const BvhOptions bvh = bvhOptions(options);
+  const MotionOptions reading = motionOptions(options);
   const Account account(options.common.quiet, options.output);
 
   TerminalProgress progress(options.common.quiet);
@@ -240,16 +263,16 @@ void run(ConvertArguments options) {
   std::optional<Asset> model;  // the first file, where it is one
   for (const std::string& file : options.files) {
     Motion read;
-    if (isBvh(file)) {
-      read = readBvh(file, bvh);
+    if (isBvh(file) || lowerExtension(file) == ".npz") {
+      read = readMotion(file, reading);
     } else {
       Asset asset = readAsset(file);
-      if (isUsdFormat(options.output) && options.files.size() == 1 && !hasMotion(asset)) {
+      if (!isMotionFormat(options.output) && options.files.size() == 1 && !hasMotion(asset)) {
         progress.finish();
-        return writeUsdFiles(asset, {}, options, account);
+        return writeModelFiles(asset, {}, options, account);
       }
       read = motionOf(asset);
-      if (!motion && asset.format != "bvh") model = std::move(asset);
+      if (!motion && asset.format != "bvh" && asset.format != "npz") model = std::move(asset);
     }
     progress.finish();
     describe(file, read, account);
@@ -261,20 +284,21 @@ void run(ConvertArguments options) {
   }
   motion->clips = chosenClips(std::move(motion->clips), options.clips);
   progress->stage("edit");
-  edit(*motion, options, account);
-  progress->stage("write");
-  if (isBvh(options.output)) {
+  trimAndMirror(*motion, options);
+  if (isMotionFormat(options.output)) {
+    const std::vector<ClipEditReport> reports = editClips(*motion, options.clipEdits.edits);
     progress.finish();
-    writeBvhFiles(*motion, options, account);
-  } else if (isUsdFormat(options.output)) {
-    const Asset asset = withClips(model, *motion);
-    progress.finish();
-    writeUsdFiles(asset, *motion, options, account);
+    options.clipEdits.tell(reports, account);
+    if (isBvh(options.output)) {
+      writeBvhFiles(*motion, options, account);
+    } else {
+      const VrmaSource source{model ? &*model : nullptr, &*motion, options.editsClips()};
+      writeVrmaFiles(source, pathsOfClips(*motion, options.output), options.common.quiet, account);
+    }
   } else {
-    writeAsset(withClips(model, *motion), options.output);
+    const Asset asset = withClips(model, *motion, options, account);
     progress.finish();
-    if (options.output != "-")
-      account.line(fmt::format("written: {}, {}", options.output, counted(motion->clips.size(), "clip")));
+    writeModelFiles(asset, *motion, options, account);
   }
   printWarnings(motion->warnings, options.common.quiet);
 }
@@ -283,23 +307,21 @@ void run(ConvertArguments options) {
 
 void addConvertCommand(CLI::App& program) {
   auto options = std::make_shared<ConvertArguments>();
-  CLI::App* command =
-      program.add_subcommand("convert", "Convert motions between BVH and glTF, and to USD; cut, mirror, resample");
+  CLI::App* command = program.add_subcommand(
+      "convert", "Convert models and motions from one format to another; cut, mirror, loop, resample");
   command
       ->add_option("FILES", options->files,
-                   "motions over one skeleton (BVH, GLB, glTF, FBX, DAE); the last is the output unless -o names it")
+                   "motions over one skeleton (BVH, SMPL's .npz, GLB, glTF, VRM, VRMA, FBX, DAE); the last is the "
+                   "output unless -o names it")
       ->required();
-  command
-      ->add_option("-o,--output", options->output,
-                   "the .glb, .gltf, .bvh, .usda or .usdz to write; - is standard output (GLB)")
-      ->type_name("FILE");
+  command->add_option("-o,--output", options->output, "a .bvh or .vrma, or " + modelOutputHelp())->type_name("FILE");
   command->add_option("--clip", options->clips, "only the clip of this name; may be given several times")
       ->type_name("NAME")
       ->allow_extra_args(false);
   command->add_option("--trim", options->trim, "only what lies between two moments, in seconds")->type_name("FROM:TO");
   command->add_flag("--mirror", options->mirror, "left for right");
-  command->add_flag("--loop", options->loop, "cut each clip to its best loop, where it has one");
-  command->add_option("--fps", options->fps, "sample anew, so many frames a second")
+  options->clipEdits.addTo(*command);
+  command->add_option("--fps", options->clipEdits.edits.frameRate, "sample anew, so many frames a second")
       ->check(numberIn(0.01, 10000))
       ->type_name("RATE");
   command
@@ -309,20 +331,28 @@ void addConvertCommand(CLI::App& program) {
       ->capture_default_str();
   command->add_option("--output-unit", options->outputUnit, "the same for the BVH to write (default: --unit)")
       ->type_name("UNIT");
-  command->add_option("--up", options->up, "which axis of a BVH points up; auto tells it from heads and feet")
-      ->check(CLI::IsMember({"auto", "y", "z"}))
-      ->type_name("AXIS")
-      ->capture_default_str();
+  options->motionFiles.addTo(*command);
+  options->target.addTo(*command);
+  options->fbx.addTo(*command);
+  options->vrm.addTo(*command);
   options->common.addTo(*command);
   command->footer(
+      TargetArguments::list() +
+      "\n"
       "A BVH does not say its unit: lengths are kept as numbers, so that 1 is a metre, unless --unit tells. Out of a\n"
       "BVH comes a skeleton with one clip, named after the file. A model keeps all that it has; its clips are the "
       "ones\n"
-      "that are written. A BVH and a USD hold one clip: of several each gets a file, OUT_CLIP.bvh.\n"
+      "that are written. A BVH, a USD and a VRMA hold one clip: of several each gets a file, OUT_CLIP.bvh.\n"
+      "Edits come in the order trim, mirror, loop, root motion, fps, tolerance.\n"
       "\nExamples:\n"
       "  limber convert walk.bvh walk.glb --unit cm\n"
       "  limber convert walk.bvh run.bvh -o both.glb --unit cmu --fps 30\n"
+      "  limber convert amass_walk.npz walk.bvh --fps 30\n"
+      "  limber convert walk.glb game.glb --loop --root-joint --tolerance 1\n"
+      "  limber convert hero.glb hero.fbx --target unreal\n"
       "  limber convert hero.glb hero.usdz --clip walk\n"
+      "  limber convert hero.glb hero.vrm --vrm-author Ada --vrm-allow everyone\n"
+      "  limber convert hero.glb wave.vrma --clip wave\n"
       "  limber convert hero.glb waving.bvh --clip wave --trim 0.5:2 --mirror");
   command->callback([options] { run(*options); });
 }

@@ -10,6 +10,7 @@
 #include "limber/asset/json_text.h"
 #include "limber/asset/read.h"
 #include "limber/core/file.h"
+#include "limber/core/folder.h"
 #include "limber/core/known_error.h"
 #include "limber/evaluate/anatomy_table.h"
 #include "limber/evaluate/ik_evaluation.h"
@@ -294,7 +295,7 @@ void runIk(const SolverOptions& options) {
   const std::vector<IkScore> scores = evaluateIk(options.evaluation, *progress);
   if (!options.plots.empty()) {
     const std::filesystem::path folder = options.plots;
-    std::filesystem::create_directories(folder);
+    makeFolder(folder);
     writeText((folder / kIkPlotFiles.solved).string(), ikSolvedPlot(scores));
     writeText((folder / kIkPlotFiles.time).string(), ikTimePlot(scores));
   }

@@ -1,4 +1,6 @@
 // limber: any 3D model becomes limber.
+#include "program.h"
+
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -53,7 +55,7 @@ std::string wrongCommand(const CLI::App& program, int argc, char** argv) {
       known.push_back(command->get_name());
       if (i < argc && command->get_name() == argv[i]) next = command;
     }
-    if (known.empty()) return {};
+    if (known.empty() || at->get_require_subcommand_min() == 0) return {};
     if (i >= argc) return fmt::format("a command is missing; there are: {}", limber::cli::joinNames(known));
     if (!next) return fmt::format("there is no command '{}'; there are: {}", argv[i], limber::cli::joinNames(known));
     at = next;
@@ -63,26 +65,30 @@ std::string wrongCommand(const CLI::App& program, int argc, char** argv) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+namespace limber::cli {
+
+int runProgram(int argc, char** argv) {
   CLI::App program("Makes any 3D model limber: a static mesh goes in, a rigged and skinned character comes out.",
                    "limber");
   program.set_version_flag("--version", "limber " LIMBER_VERSION);
   program.require_subcommand(1);
-  limber::cli::addRigCommand(program);
-  limber::cli::addInfoCommand(program);
-  limber::cli::addPreviewCommand(program);
-  limber::cli::addSampleCommand(program);
-  limber::cli::addEvaluateCommand(program);
-  limber::cli::addPoseCommand(program);
-  limber::cli::addConvertCommand(program);
-  limber::cli::addPartsCommand(program);
-  limber::cli::addSessionCommand(program);
-  limber::cli::addRetargetCommand(program);
-  limber::cli::addAnimateCommand(program);
-  limber::cli::addTransferCommand(program);
-  limber::cli::addStudyCommand(program);
-  limber::cli::addStudioCommand(program);
-  limber::cli::addCompletionCommand(program);
+  addRigCommand(program);
+  addInfoCommand(program);
+  addPreviewCommand(program);
+  addSampleCommand(program);
+  addEvaluateCommand(program);
+  addPoseCommand(program);
+  addConvertCommand(program);
+  addPartsCommand(program);
+  addSessionCommand(program);
+  addRetargetCommand(program);
+  addAnimateCommand(program);
+  addTransferCommand(program);
+  addStudyCommand(program);
+  addStudioCommand(program);
+  addBatchCommand(program);
+  addCrowdCommand(program);
+  addCompletionCommand(program);
   program.footer("limber COMMAND --help shows the options of a command, with an example.");
   if (const std::string problem = wrongCommand(program, argc, argv); !problem.empty()) return usage(program, problem);
   try {
@@ -91,15 +97,21 @@ int main(int argc, char** argv) {
     } catch (const CLI::Success& request) {  // --help, --version
       program.exit(request);
     }
-    limber::cli::flushOutput();
+    flushOutput();
     return 0;
   } catch (const CLI::ParseError& error) {
     return usage(program, error.what());
   } catch (const std::bad_alloc&) {
-    return fail("there is not enough memory for this", limber::cli::kOutOfMemoryCode);
-  } catch (const limber::Error& error) {
+    return fail("there is not enough memory for this", kOutOfMemoryCode);
+  } catch (const Error& error) {
     return fail(error);
   } catch (const std::exception& error) {
     return fail(error.what());
   }
+}
+
+}  // namespace limber::cli
+
+int main(int argc, char** argv) {
+  return limber::cli::runProgram(argc, argv);
 }

@@ -12,8 +12,8 @@
 #include "limber/asset/pose_io.h"
 #include "limber/asset/read.h"
 #include "limber/asset/rest_pose.h"
-#include "limber/asset/write.h"
 #include "limber/core/names.h"
+#include "limber/export/write_model.h"
 #include "limber/ik/ik_solver.h"
 #include "limber/ik/limits_json.h"
 #include "limber/pipeline/body_masses.h"
@@ -130,25 +130,36 @@ void writePose(const Asset& asset, const AssetSkeleton& skeleton, const Pose& po
   writeFile(file, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
 }
 
-void writeResult(Asset& asset, const AssetSkeleton& skeleton, const Pose& pose, const PoseArguments& options) {
-  if (isPoseFile(options.output)) return writePose(asset, skeleton, pose, options.output);
+// A format that holds one clip shows the pose, and not a clip's.
+Warnings writeModelInPose(const Asset& asset, const std::string& file) {
+  WriteModelOptions still;
+  still.isStill = true;
+  return writeModel(asset, file, still);
+}
+
+Warnings writeResult(Asset& asset, const AssetSkeleton& skeleton, const Pose& pose, const PoseArguments& options) {
+  if (isPoseFile(options.output)) {
+    writePose(asset, skeleton, pose, options.output);
+    return {};
+  }
   if (!options.bake) {
     options.setRest ? setRestPose(asset, skeleton, pose) : writeNodePose(asset, skeleton, pose);
-    return writeAsset(asset, options.output);
+    return writeModelInPose(asset, options.output);
   }
   const PosedGeometry posed = posedGeometry(asset, skeleton, pose, findDeformer(options.deformer));
-  if (isMeshFormat(options.output)) return writeMesh(exportMesh(asset, posed.geometry), options.output);
+  if (isMeshFormat(options.output)) {
+    writeMesh(exportMesh(asset, posed.geometry), options.output);
+    return {};
+  }
   freezeGeometry(asset, collectGeometry(asset), posed.geometry.positions, posed.normals);
-  writeAsset(asset, options.output);
+  return writeModelInPose(asset, options.output);
 }
 
 void run(PoseArguments options) {
   options.common.apply();
-  if (options.bake) {
-    checkOutput(options.output, {".glb", ".gltf", ".obj", ".stl", ".ply"});
-  } else if (!isPoseFile(options.output)) {
-    checkOutput(options.output, {".glb", ".gltf"});
-  }
+  std::vector<std::string_view> formats = modelExtensions();
+  if (options.bake) formats.insert(formats.end(), {".obj", ".stl", ".ply"});
+  if (options.bake || !isPoseFile(options.output)) checkOutput(options.output, formats);
   findIkMethod(options.pose.solver);
   findDeformer(options.deformer);
   options.pose.ik.rootMotion = rootMotionOf(options.rootMotion);
@@ -173,7 +184,8 @@ void run(PoseArguments options) {
                        {options.pose.ik, massesFor(edits, asset, skeleton)});
   }
   progress->stage("write");
-  writeResult(asset, skeleton, pose, options);
+  Warnings warnings = asset.warnings;
+  warnings.append(writeResult(asset, skeleton, pose, options));
   progress.finish();
 
   const Account account(options.common.quiet, options.output);
@@ -183,7 +195,7 @@ void run(PoseArguments options) {
   for (std::size_t t = 0; t < tasks.tasks.size(); ++t) {
     account.line(fmt::format("{}: {}", edits.tasks[t].where, taskOutcome(tasks.tasks[t])));
   }
-  printWarnings(asset.warnings, options.common.quiet);
+  printWarnings(warnings, options.common.quiet);
   if (options.output != "-") account.line(fmt::format("written: {}", options.output));
 }
 
@@ -224,9 +236,7 @@ void addPoseCommand(CLI::App& program) {
   auto options = std::make_shared<PoseArguments>();
   CLI::App* command = program.add_subcommand("pose", "Turn, move and reach the joints of a rigged model");
   command->add_option("IN", options->input, "the rigged model; - is standard input")->required();
-  command
-      ->add_option("-o,--output", options->output,
-                   "the .glb or .gltf to write, or the pose alone as .pose.json; - is standard output (GLB)")
+  command->add_option("-o,--output", options->output, modelOutputHelp() + "; or the pose alone as .pose.json")
       ->required()
       ->type_name("FILE");
   const auto addMany = [&](const char* name, std::vector<std::string>& values, const char* description,

@@ -2,19 +2,24 @@
 #include <fmt/format.h>
 
 #include "adapter_arguments.h"
+#include "characters_arguments.h"
+#include "clip_arguments.h"
+#include "combine_arguments.h"
 #include "command.h"
 #include "limber/adapters/retarget_by_program.h"
 #include "limber/asset/motion_io.h"
 #include "limber/asset/read.h"
-#include "limber/asset/write.h"
 #include "limber/core/counted.h"
 #include "limber/core/file.h"
+#include "limber/export/write_model.h"
 #include "limber/ik/ik_solver.h"
 #include "limber/pipeline/auto_rig.h"
 #include "limber/pipeline/retarget_asset.h"
 #include "limber/pipeline/stand_upright.h"
 #include "limber/rigging/template_rigger.h"
+#include "motion_arguments.h"
 #include "progress_line.h"
+#include "target_arguments.h"
 
 namespace limber::cli {
 
@@ -28,7 +33,13 @@ struct RetargetArguments {
   bool noContacts = false, noSmoothing = false, hasGround = false;
   const CLI::App* command = nullptr;
   AdapterArguments adapters;
+  MotionArguments motionFiles;
+  ClipArguments clipEdits;
+  TargetArguments target;
   std::optional<Adapter> program;  // of the user's, in place of a method of limber's
+  CharactersArguments characters;
+  CombineArguments combineArguments;
+  std::optional<CombineOptions> combine;
   Common common;
 };
 
@@ -63,11 +74,14 @@ std::optional<Adapter> findProgram(const RetargetArguments& options) {
 
 void prepare(RetargetArguments& options) {
   options.common.apply();
-  checkOutput(options.output, {".glb", ".gltf"});
+  if (!options.characters.isGiven()) checkOutput(options.output, modelExtensions());
+  options.clipEdits.check();
+  options.target.check();
   std::vector<std::string> others = options.motions;
   others.insert(others.end(), {options.model, options.output});
   checkBeside("--save-map", options.saveMapFile, others);
   options.program = findProgram(options);
+  options.combine = options.combineArguments.options(options.motions.size(), options.program.has_value());
   findIkMethod(options.retarget.retarget.solver);
   options.retarget.retarget.rootScale = rootScaleOf(options.rootScale);
   options.retarget.retarget.contacts = !options.noContacts;
@@ -80,14 +94,28 @@ void prepare(RetargetArguments& options) {
   }
 }
 
+std::vector<RetargetedClip> addCombined(Asset& asset, const RetargetArguments& options, Progress& progress,
+                                        Warnings& warnings) {
+  progress.stage("retarget");
+  const MotionOptions reading = options.motionFiles.options();
+  std::vector<Motion> motions;
+  for (const std::string& file : options.motions) {
+    motions.push_back(readMotion(file, reading));
+    warnings.append(motions.back().warnings);
+  }
+  return combineOnto(asset, motions, options.retarget, *options.combine);
+}
+
 // Adds all motions' clips; the map that is saved is that of the first motion.
 std::vector<RetargetedClip> addMotions(Asset& asset, const RetargetArguments& options, Progress& progress,
                                        Warnings& warnings) {
+  if (options.combine) return addCombined(asset, options, progress, warnings);
   std::vector<RetargetedClip> clips;
+  const MotionOptions reading = options.motionFiles.options();
   for (std::size_t i = 0; i < options.motions.size(); ++i) {
     progress.stage("retarget");
     const std::string& file = options.motions[i];
-    const Motion motion = readMotion(file);
+    const Motion motion = readMotion(file, reading);
     warnings.append(motion.warnings);
     try {
       ProgramClips made;
@@ -105,13 +133,22 @@ std::vector<RetargetedClip> addMotions(Asset& asset, const RetargetArguments& op
   return clips;
 }
 
-void tell(const RetargetArguments& options, const std::vector<RetargetedClip>& clips, const Warnings& warnings) {
+std::vector<ClipEditReport> edit(Asset& asset, const RetargetArguments& options,
+                                 const std::vector<RetargetedClip>& clips) {
+  std::vector<std::string> names;
+  for (const RetargetedClip& clip : clips) names.push_back(clip.name);
+  return editClips(asset, names, options.clipEdits.edits);
+}
+
+void tell(const RetargetArguments& options, const std::vector<RetargetedClip>& clips,
+          const std::vector<ClipEditReport>& edits, const Warnings& warnings) {
   const Account account(options.common.quiet, options.output);
   for (const RetargetedClip& clip : clips) {
     account.line(fmt::format(
         "{:<24} {} at {:g} a second, {}", clip.name, counted(clip.frames, "frame"), clip.framesPerSecond,
         options.program ? "by " + options.program->name : counted(clip.map.matches.size(), "part") + " matched"));
   }
+  options.clipEdits.tell(edits, account);
   if (!clips.empty() && !clips.front().doubtful.empty()) {
     account.line("matches to look at (--save-map writes them all, --map reads them again):");
     for (const std::string& line : clips.front().doubtful) account.line("  " + line);
@@ -120,13 +157,38 @@ void tell(const RetargetArguments& options, const std::vector<RetargetedClip>& c
   if (options.output != "-") account.line(fmt::format("written: {}", options.output));
 }
 
-void write(const Asset& asset, const RetargetArguments& options, const std::vector<RetargetedClip>& clips) {
+void write(const Asset& asset, const RetargetArguments& options, const std::vector<RetargetedClip>& clips,
+           Warnings& warnings) {
   std::vector<OutputFile> companions;
   if (!options.saveMapFile.empty()) companions.push_back({options.saveMapFile, asBytes(clips.front().mapJson)});
-  writeAsset(asset, options.output, companions);
+  WriteModelOptions write;
+  write.target = options.target.target;
+  if (holdsOneClip(options.output) && !clips.empty()) write.clip = clips.front().name;
+  write.companions = companions;
+  warnings.append(writeModel(asset, options.output, write));
+}
+
+// Then the first file is a motion, too.
+void runCharacters(RetargetArguments options) {
+  for (const char* option : {"--save-map", "--blend", "--crossfade", "--sequence"}) {
+    if (options.command->count(option) > 0) throw CLI::ValidationError(option, "is for one character");
+  }
+  options.motions.insert(options.motions.begin(), options.model);
+  prepare(options);
+  if (options.program) throw CLI::ValidationError("--method", "programs of yours retarget one character at a time");
+  CharactersJob job = options.characters.job();
+  const MotionOptions reading = options.motionFiles.options();
+  for (const std::string& file : options.motions) job.motions.push_back(readMotion(file, reading));
+  job.folder = options.output;
+  job.retarget = options.retarget;
+  job.edits = options.clipEdits.edits;
+  job.write.target = options.target.target;
+  options.characters.run(job, options.common.quiet);
 }
 
 void runRetarget(RetargetArguments options) {
+  if (options.characters.isGiven()) return runCharacters(std::move(options));
+  if (options.motions.empty()) throw CLI::RequiredError("MOTIONS");
   prepare(options);
   TerminalProgress progress(options.common.quiet);
   progress->stage("read");
@@ -137,10 +199,11 @@ void runRetarget(RetargetArguments options) {
   Warnings warnings = asset.warnings;
   options.retarget.turn = standUpright(asset, warnings);
   const std::vector<RetargetedClip> clips = addMotions(asset, options, *progress, warnings);
+  const std::vector<ClipEditReport> edits = edit(asset, options, clips);
   progress->stage("write");
-  write(asset, options, clips);
+  write(asset, options, clips, warnings);
   progress.finish();
-  tell(options, clips, warnings);
+  tell(options, clips, edits, warnings);
 }
 
 // What to do where a motion does not fit the rig that was made.
@@ -194,10 +257,11 @@ void runAnimate(RetargetArguments options) {
     if (rigged || error.code() != ErrorCode::kUnsupported) throw;
     throw Error(error.code(), error.message(), error.where(), remedyFor(matches));
   }
+  const std::vector<ClipEditReport> edits = edit(asset, options, clips);
   progress->stage("write");
-  write(asset, options, clips);
+  write(asset, options, clips, warnings);
   progress.finish();
-  tell(options, clips, warnings);
+  tell(options, clips, edits, warnings);
 }
 
 std::string retargetHelp(const char* examples) {
@@ -205,23 +269,23 @@ std::string retargetHelp(const char* examples) {
   for (const RetargetMethod& method : retargetMethods())
     text += fmt::format("  {:<12}{}\n", method.name, method.summary);
   text += "\nPrograms of yours retarget (--method NAME), too: docs/adapters.md.\n";
-  return text + "\nMotions: .bvh, and .glb, .gltf, .fbx and .dae with animations. docs/retargeting.md tells more.\n" +
+  return text + TargetArguments::list() +
+         "\nMotions: .bvh, .npz in SMPL's form (docs/motion-files.md), and .glb, .gltf, .vrma, .fbx and .dae with "
+         "animations.\ndocs/retargeting.md tells more, docs/combining.md of --blend, --crossfade and --sequence.\n" +
          "\nExamples:\n" + examples;
 }
 
 void addOptions(CLI::App& command, const std::shared_ptr<RetargetArguments>& options) {
   RetargetOptions& retarget = options->retarget.retarget;
   command.add_option("MOTIONS", options->motions, "files with motions; each becomes a clip named after it")->required();
-  command.add_option("-o,--output", options->output, "the .glb or .gltf to write; - is standard output (GLB)")
-      ->required()
-      ->type_name("FILE");
+  command.add_option("-o,--output", options->output, modelOutputHelp())->required()->type_name("FILE");
   command.add_option("--method", options->retarget.method, "see below")->type_name("NAME")->capture_default_str();
   command.add_option("--map", options->mapFile, "which joints follow which, in JSON (docs/skeleton_map.schema.json)")
       ->type_name("FILE");
   command.add_option("--save-map", options->saveMapFile, "write that map, to correct and use again")->type_name("FILE");
   command.add_flag("--unlike-bodies", options->retarget.unlikeBodies,
                    "let limbs without a partner follow others from front to back: forelegs or wings follow arms");
-  command.add_option("--frame-rate", options->frameRate, "frames a second of the clips (default: each motion's own)")
+  command.add_option("--fps", options->frameRate, "frames a second of the clips (default: each motion's own)")
       ->check(numberIn(1, 1000))
       ->type_name("N");
   command.add_option("--root-scale", options->rootScale, "how far the character goes for a metre of the motion")
@@ -248,7 +312,11 @@ void addOptions(CLI::App& command, const std::shared_ptr<RetargetArguments>& opt
           "height of the ground in the motion, in its unit (default: measured)")
       ->check(numberIn(-1e9, 1e9))
       ->type_name("Y");
+  options->motionFiles.addTo(command);
   options->command = &command;
+  options->clipEdits.addTo(command);
+  options->combineArguments.addTo(command);
+  options->target.addTo(command);
   options->adapters.addTo(command);
   options->common.addTo(command);
 }
@@ -260,9 +328,13 @@ void addRetargetCommand(CLI::App& program) {
   CLI::App* command = program.add_subcommand("retarget", "Put motions onto a rigged character");
   command->add_option("MODEL", options->model, "the rigged model, or a skeleton alone, such as a .bvh")->required();
   addOptions(*command, options);
+  command->get_option("MOTIONS")->required(false);  // MODEL is the first of them with --characters
+  options->characters.addTo(*command);
   command->footer(
       retargetHelp("  limber retarget hero.glb motions/*.bvh -o hero_all.glb\n"
-                   "  limber retarget hero.glb dance.fbx -o dancing.glb --save-map map.json"));
+                   "  limber retarget hero.glb dance.fbx -o dancing.glb --save-map map.json\n"
+                   "  limber retarget hero.glb walk.bvh run.bvh --blend 0.4 -o jogging.glb\n"
+                   "  limber retarget --characters heroes.txt motions/*.bvh -o out"));
   command->callback([options] { runRetarget(*options); });
 }
 

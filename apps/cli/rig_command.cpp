@@ -12,13 +12,14 @@
 #include "limber/adapters/rig_by_program.h"
 #include "limber/asset/json_text.h"
 #include "limber/asset/read.h"
-#include "limber/asset/write.h"
 #include "limber/core/counted.h"
+#include "limber/export/write_model.h"
 #include "limber/pipeline/option_spelling.h"
 #include "limber/pipeline/report_json.h"
 #include "limber/pipeline/rig_request.h"
 #include "limber/rigging/template_rigger.h"
 #include "progress_line.h"
+#include "target_arguments.h"
 
 namespace limber::cli {
 
@@ -32,6 +33,7 @@ struct RigArguments {
   std::vector<std::string> pins;
   bool replaceRig = false, keepSkeleton = false, strict = false;
   AnimationRigArguments animation;
+  TargetArguments target;
   AdapterArguments adapters;
   Common common;
 };
@@ -183,6 +185,7 @@ void completeRequest(RigArguments& options) {
   if (options.replaceRig) request.existingRig = "replace";
   if (options.keepSkeleton) request.existingRig = "keep-skeleton";
   for (const std::string& pin : options.pins) request.pins.push_back(parsePin(pin));
+  request.target = options.target.target;
   try {
     options.rig = options.templateName ? optionsWithTemplate(request, *options.templateName) : optionsOf(request);
   } catch (const Error& error) {
@@ -193,16 +196,17 @@ void completeRequest(RigArguments& options) {
 
 void run(RigArguments options) {
   options.common.apply();
-  checkOutput(options.output, {".glb", ".gltf"});
+  checkOutput(options.output, modelExtensions());
   if (options.animation.frames.empty()) {
     if (options.input.empty()) throw CLI::RequiredError("IN");
     checkBeside("--json", options.report, {options.input, options.output, options.templateName.value_or("")});
   }
   completeRequest(options);
   if (!options.animation.frames.empty()) {
-    return runAnimationRig(options.animation,
-                           {options.output, options.report, options.request.maxInfluences, options.strict},
-                           options.common);
+    return runAnimationRig(
+        options.animation,
+        {options.output, options.report, options.request.maxInfluences, options.strict, options.request.target},
+        options.common);
   }
   const RigPrograms programs = findPrograms(options);
   if (programs.rigger && options.request.handles) {
@@ -214,6 +218,7 @@ void run(RigArguments options) {
   progress->stage("read");
   Asset asset = readAsset(options.input);
   AutoRigReport report = rigAsTold(asset, options.rig, programs, *progress);
+  finishRig(asset, options.request, report);
   if (options.strict) refuseWarnings(report.warnings);
   progress->stage("write");
   // The report is written with the model, so it cannot tell how long that took.
@@ -224,7 +229,9 @@ void run(RigArguments options) {
     text = dumpReport(reportJson(options, asset.format, report)) + "\n";
     companions.push_back({options.report, asBytes(text)});
   }
-  writeAsset(asset, options.output, companions);
+  WriteModelOptions write;
+  write.companions = companions;
+  report.warnings.append(writeModel(asset, options.output, write));
   progress.finish();
   report.stages = progress->stages();
 
@@ -261,6 +268,7 @@ std::string listNamed(std::string_view title, const Table& table) {
 std::string rigHelp() {
   return listMethods("Riggers", riggerMethods()) + listNamed("Templates", namedTemplates()) +
          listMethods("Skinning methods", weightMethods()) + listNamed("Pieces", pieceModes()) +
+         TargetArguments::list() +
          "\nPrograms of yours rig (--rigger NAME) and make weights (--skinning NAME), too: docs/adapters.md.\n"
          "\nReads GLB, glTF, OBJ, PLY, STL, OFF, FBX and DAE. The result appears under its name only when it is\n"
          "complete; a file of that name is replaced, also where it is the input.\n"
@@ -268,6 +276,7 @@ std::string rigHelp() {
          "  limber rig dragon.glb --handles 20 -o rigged.glb\n"
          "  limber rig scan.obj --template humanoid --pin leftHand=0.71,1.43,0.02 -o character.glb\n"
          "  limber rig person.glb --keep-skeleton --max-influences 8 -o weighted.glb --json report.json\n"
+         "  limber rig scan.obj --template humanoid --target unreal -o character.glb\n"
          "  limber rig scan.obj --rigger unirig --seed 7 -o character.glb\n"
          "  limber rig --from-animation baked.glb --bones 30 -o rigged.glb\n"
          "  limber rig --from-animation frames/ --fps 24 -o rigged.glb\n"
@@ -280,9 +289,7 @@ void addRigCommand(CLI::App& program) {
   auto options = std::make_shared<RigArguments>();
   CLI::App* command = program.add_subcommand("rig", "Give a model handles and skin weights");
   command->add_option("IN", options->input, "the model; - is standard input");
-  command->add_option("-o,--output", options->output, "the .glb or .gltf to write; - is standard output (GLB)")
-      ->required()
-      ->type_name("FILE");
+  command->add_option("-o,--output", options->output, modelOutputHelp())->required()->type_name("FILE");
   RigRequest& request = options->request;
   command->add_option("--handles", request.handles, "handles wanted (default: the best suggested count)")
       ->type_name("N");
@@ -315,6 +322,7 @@ void addRigCommand(CLI::App& program) {
   command->add_option("--pieces", request.pieces, "how pieces that are joined to no other are bound, see below")
       ->type_name("NAME")
       ->capture_default_str();
+  options->target.addTo(*command);
   CLI::Option* animation = addAnimationRigOptions(*command, options->animation);
   for (const char* other : {"IN", "--handles", "--rigger", "--template", "--pin", "--up", "--front", "--upright",
                             "--chains", "--skinning", "--pieces"}) {

@@ -16,6 +16,9 @@ namespace {
 
 void tellThisMachine(const ServeEvents::Listening& now) {
   fmt::print("The studio is on {} until Ctrl+C\n", now.address);
+  if (now.live) {
+    fmt::print("Live motion: VMC by UDP to 127.0.0.1:{}, BVH by TCP to 127.0.0.1:{}\n", now.live->vmc, now.live->bvh);
+  }
   flushOutput();
 }
 
@@ -37,11 +40,16 @@ void tellOfDevice(const std::string& from, int device, int devices) {
   flushOutput();
 }
 
+void tellOfSender(const std::string& what) {
+  fmt::print(stderr, "live motion: {}\n", what);
+}
+
 }  // namespace
 
 void addStudioCommand(CLI::App& program) {
   const auto options = std::make_shared<ServeOptions>();
   const auto address = std::make_shared<std::string>();
+  const auto live = std::make_shared<LivePorts>();
   CLI::App* command = program.add_subcommand("studio", "Rig, pose and animate in the browser");
   command->add_option("--port", options->port, "where it listens; 0 takes a free one")
       ->check(CLI::Range(0, 65535).description(""))
@@ -58,13 +66,30 @@ void addStudioCommand(CLI::App& program) {
       ->type_name("N")
       ->capture_default_str()
       ->needs(host);
+  const auto wantsLive = std::make_shared<bool>(false);
+  CLI::Option* isLive = command
+                            ->add_flag("--live", *wantsLive,
+                                       "puts motion that other programs of this machine send on the character: VMC's\n"
+                                       "packets, or a BVH line by line (docs/motion-files.md)")
+                            ->excludes(host);
+  const auto addPort = [&](const char* name, int& port, const char* about) {
+    command->add_option(name, port, about)
+        ->check(CLI::Range(0, 65535).description(""))
+        ->type_name("N")
+        ->capture_default_str()
+        ->needs(isLive);
+  };
+  addPort("--vmc-port", live->vmc, "where --live gets VMC by UDP; 0 takes a free one");
+  addPort("--bvh-port", live->bvh, "where --live gets BVH by TCP; 0 takes a free one");
   command->footer(
       "The page is served on this machine's own address (127.0.0.1) until Ctrl+C; what is opened in it stays on the "
       "machine.\n\n--host shows a QR code for the phone's camera. The address in it opens the page on one device and "
       "is used up\nthen; the certificate is made on first use and kept in ~/.local/share/limber.\n\nExamples:\n"
-      "  limber studio --port 0\n  limber studio --host\n  limber studio --host 192.168.1.20 --devices 25");
-  command->callback([options, address, host] {
-    if (host->count() == 0) return serveStudio(*options, {tellThisMachine, nullptr});
+      "  limber studio --port 0\n  limber studio --host\n  limber studio --host 192.168.1.20 --devices 25\n  limber "
+      "studio --live");
+  command->callback([options, address, host, live, wantsLive] {
+    if (*wantsLive) options->live = *live;
+    if (host->count() == 0) return serveStudio(*options, {tellThisMachine, nullptr, tellOfSender});
     options->host = *address;
     const int devices = options->devices;
     serveStudio(*options, {[devices](const ServeEvents::Listening& now) { tellNetwork(now, devices); },

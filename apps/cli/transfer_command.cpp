@@ -10,9 +10,9 @@
 #include "command.h"
 #include "limber/asset/json_text.h"
 #include "limber/asset/read.h"
-#include "limber/asset/write.h"
 #include "limber/core/counted.h"
 #include "limber/core/names.h"
+#include "limber/export/write_model.h"
 #include "limber/pipeline/smpl_body.h"
 #include "limber/pipeline/transfer_asset.h"
 #include "limber/preview/surface_colors.h"
@@ -80,7 +80,7 @@ Asset readSource(const std::filesystem::path& path) {
 
 void runTransferCommand(TransferArguments options) {
   options.common.apply();
-  checkOutput(options.output, {".glb", ".gltf"});
+  checkOutput(options.output, modelExtensions());
   checkBeside("--report", options.report, {options.source, options.target, options.output});
   options.transfer.blendShapes = !options.noShapes;
   options.transfer.ownSkeleton = !options.ignoreRig;
@@ -105,7 +105,9 @@ void runTransferCommand(TransferArguments options) {
   const std::string text = reportText(options, report);
   std::vector<OutputFile> companions;
   if (!options.report.empty()) companions.push_back({options.report, asBytes(text)});
-  writeAsset(target, options.output, companions);
+  WriteModelOptions write;
+  write.companions = companions;
+  report.warnings.append(writeModel(target, options.output, write));
   progress.finish();
   printAccount(options, report);
 }
@@ -121,9 +123,7 @@ void addTransferCommand(CLI::App& program) {
       ->required();
   command->add_option("TARGET", options->target, "the model that gets them: a scan, a sculpture, another character")
       ->required();
-  command->add_option("-o,--output", options->output, "the .glb or .gltf to write; - is standard output (GLB)")
-      ->required()
-      ->type_name("FILE");
+  command->add_option("-o,--output", options->output, modelOutputHelp())->required()->type_name("FILE");
   command->add_option("--max-influences", options->transfer.rig.maxInfluences, "joints that move a vertex, at most")
       ->check(CLI::Range(1, 8).description(""))
       ->type_name("N")

@@ -208,16 +208,46 @@ void runUntilInterrupted(httplib::Server& server, const std::function<void()>& l
   server.listen_after_bind();
 }
 
-void serveThisMachine(int port, const ServeEvents& events) {
+// A page that listens gets events until it goes or the server stops.
+void answerWithLive(httplib::Server& server, LiveFeed& feed, httplib::Response& response) {
+  std::optional<LiveFeed::Place> free = feed.enter();
+  if (!free) {
+    response.status = 503;
+    return;
+  }
+  const auto place = std::make_shared<LiveFeed::Place>(std::move(*free));
+  const auto seen = std::make_shared<LiveFeed::Seen>();
+  response.set_chunked_content_provider(
+      "text/event-stream", [&server, &feed, place, seen](std::size_t, httplib::DataSink& sink) {
+        constexpr std::chrono::milliseconds kLook(100);
+        const std::string events = feed.next(*seen, kLook);
+        if (!server.is_running()) return false;
+        // A comment, by which the server finds out that the page has gone.
+        return events.empty() ? sink.write(":\n\n", 3) : sink.write(events.data(), events.size());
+      });
+}
+
+void serveThisMachine(const ServeOptions& options, const ServeEvents& events) {
   BoundedServer server(nullptr, kMostConnections);
   setHeaders(server);
   const Site site{"http", {kLoopback, "localhost"}};
   server.set_pre_routing_handler([&](const httplib::Request& request, httplib::Response& response) {
     return checkRequest(site, request, response);
   });
+  LiveFeed feed;
+  std::optional<LiveReceiver> receiver;
+  if (options.live) {
+    receiver.emplace(*options.live, feed, events.refused);
+    server.Get("/live",
+               [&](const httplib::Request&, httplib::Response& response) { answerWithLive(server, feed, response); });
+  }
   server.Get(".*", answerWithFile);
-  port = bindTo(server, kLoopback, port);
-  runUntilInterrupted(server, [&] { events.listening({fmt::format("http://{}:{}/", kLoopback, port), "", false}); });
+  const int port = bindTo(server, kLoopback, options.port);
+  runUntilInterrupted(server, [&] {
+    ServeEvents::Listening now{fmt::format("http://{}:{}/{}", kLoopback, port, receiver ? "?live" : ""), "", false};
+    if (receiver) now.live = receiver->ports();
+    events.listening(now);
+  });
 }
 
 // That other machines reach this one by: the one that is wished for where this machine has it.
@@ -253,8 +283,11 @@ void serveNetwork(const ServeOptions& options, const ServeEvents& events) {
 }  // namespace
 
 void serveStudio(const ServeOptions& options, const ServeEvents& events) {
+  if (options.host && options.live) {
+    throw Error(ErrorCode::kBadArgument, "live motion is for this machine alone", "", "leave out --host or --live");
+  }
   if (options.host) return serveNetwork(options, events);
-  serveThisMachine(options.port, events);
+  serveThisMachine(options, events);
 }
 
 }  // namespace limber::cli

@@ -1,0 +1,223 @@
+// limber batch: one command done to many files, and how far that is.
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <unistd.h>
+#include <nlohmann/json.hpp>
+
+#include "command.h"
+#include "limber/asset/json_text.h"
+#include "limber/batch/batch_run.h"
+#include "limber/batch/batch_status.h"
+#include "limber/core/counted.h"
+#include "limber/core/file.h"
+#include "limber/core/parallel.h"
+#include "limber/jobs/own_program.h"
+#include "program.h"
+#include "progress_line.h"
+
+namespace limber::cli {
+
+namespace {
+
+// Those that make one file of one.
+constexpr std::string_view kBatchCommands[] = {"rig",  "animate",  "retarget", "convert", "preview",
+                                               "pose", "transfer", "evaluate", "info"};
+constexpr double kMegabyte = 1 << 20;
+
+struct BatchArguments {
+  std::string plan, output, shard = "1/1";
+  int jobs = 0;  // 0: as many as there are processors for
+  bool retries = false, prints = false, quiet = false;
+};
+
+struct BatchStatusArguments {
+  std::string folder, merged;
+  bool json = false, quiet = false;
+};
+
+std::string timeText(double seconds) {
+  constexpr double kMinute = 60, kHour = 3600;
+  if (seconds < 2 * kMinute) return fmt::format("{:.0f} s", seconds);
+  if (seconds < 2 * kHour) return fmt::format("{:.0f} min", seconds / kMinute);
+  return fmt::format("{:.1f} h", seconds / kHour);
+}
+
+// One line on a terminal; elsewhere a line now and then, for logs.
+class BatchLine {
+ public:
+  explicit BatchLine(bool quiet) : isQuiet_(quiet), isTerminal_(isatty(STDERR_FILENO) != 0) {}
+
+  void show(const BatchProgress& at) {
+    const double pause = isTerminal_ ? 0.2 : 30;  // seconds
+    if (isQuiet_ || at.seconds - shownAt_ < pause) return;
+    shownAt_ = at.seconds;
+    std::string text = fmt::format("{} of {}, {} failed", at.done + at.failed, at.entries, at.failed);
+    if (at.perSecond > 0) {
+      text += fmt::format(", {:.3g} a second, about {} left", at.perSecond, timeText(at.secondsLeft));
+    }
+    fmt::print(stderr, "{}{}{}", isTerminal_ ? "\r" : "", text, isTerminal_ ? "\x1b[K" : "\n");
+    std::fflush(stderr);
+    isShown_ = true;
+  }
+  void clear() const {
+    if (isShown_ && isTerminal_) fmt::print(stderr, "\r\x1b[K");
+  }
+
+ private:
+  bool isQuiet_, isTerminal_, isShown_ = false;
+  double shownAt_ = 0;
+};
+
+// In a child of the batch: as the program does it by itself.
+int runInChild(const std::vector<std::string>& arguments, BatchWarnings& warnings) {
+  std::vector<std::string> words = {"limber"};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> pointers;
+  for (std::string& word : words) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
+  const int code = runProgram(static_cast<int>(words.size()), pointers.data());
+  for (const Warning& warning : givenWarnings().items()) warnings.emplace_back(warning.kind, warning.count);
+  return code;
+}
+
+// Not everything is done: said by the exit code, beside the account.
+void failUnless(bool isWell, std::string_view what) {
+  if (!isWell) throw Error(ErrorCode::kBadData, std::string(what), {}, "limber batch status tells which and why");
+}
+
+void runPlan(const BatchArguments& arguments) {
+  if (arguments.prints) {
+    fmt::print("{}", exampleBatchPlan());
+    return;
+  }
+  if (arguments.plan.empty()) throw CLI::RequiredError("PLAN");
+  if (arguments.output.empty()) throw CLI::RequiredError("--output");
+  BatchOptions options;
+  options.shard = parseBatchShard(arguments.shard);
+  const BatchPlan plan = readBatchPlan(arguments.plan, kBatchCommands);
+  options.program = ownProgram();
+  options.output = arguments.output;
+  options.jobs = arguments.jobs > 0 ? arguments.jobs : std::max(1, threadCount());
+  options.outOfMemoryCode = kOutOfMemoryCode;
+  options.retries = arguments.retries;
+  options.command = runInChild;
+  TerminalProgress cancel(true);
+  BatchLine line(arguments.quiet);
+  options.tell = [&](const BatchProgress& at) {
+    cancel->update(0);
+    line.show(at);
+  };
+  const BatchProgress end = runBatch(plan, options);
+  line.clear();
+  Account(arguments.quiet, {})
+      .line(fmt::format("{}: {} run in {}, {} kept from before; {} failed", counted(end.entries, "entry", "entries"),
+                        end.done + end.failed - end.kept, timeText(end.seconds), end.kept, end.failed));
+  failUnless(end.failed == 0, counted(end.failed, "entry", "entries") + " failed");
+}
+
+Json toJson(const BatchStatus& status) {
+  Json failures = Json::array(), warnings = Json::object();
+  for (const BatchFailures& one : status.failures) {
+    failures.push_back({{"outcome", jobOutcomeName(one.outcome)},
+                        {"problem", one.problem},
+                        {"count", one.count},
+                        {"example", one.example}});
+  }
+  for (const auto& [kind, count] : status.warnings) warnings[kind] = count;
+  return {{"entries", status.entries},
+          {"done", status.done},
+          {"failed", status.failed},
+          {"open", status.open()},
+          {"lost", status.lost},
+          {"seconds", status.seconds},
+          {"slowest", status.slowest},
+          {"peak_memory", status.peakMemory},
+          {"failures", std::move(failures)},
+          {"warnings", std::move(warnings)}};
+}
+
+void tell(const BatchStatus& status, const Account& account) {
+  account.line(fmt::format("{}: {} done, {} failed, {} open", counted(status.entries, "entry", "entries"), status.done,
+                           status.failed, status.open()));
+  if (status.lost > 0) account.line(fmt::format("{} whose output is gone", counted(status.lost, "entry", "entries")));
+  account.line(fmt::format("{} of work, the slowest {:.2f} s, at most {:.0f} MB", timeText(status.seconds),
+                           status.slowest, static_cast<double>(status.peakMemory) / kMegabyte));
+  for (const BatchFailures& one : status.failures) {
+    account.line(
+        fmt::format("  {:>7} {}: {} (such as {})", one.count, jobOutcomeName(one.outcome), one.problem, one.example));
+  }
+  for (const auto& [kind, count] : status.warnings) {
+    account.line(fmt::format("  {:>7} with warning {}", count, kind));
+  }
+}
+
+void runStatus(const BatchStatusArguments& arguments) {
+  const BatchStatus status = batchStatus(arguments.folder);
+  if (!arguments.merged.empty()) writeText(arguments.merged, mergedBatchRecords(arguments.folder));
+  if (arguments.json) {
+    fmt::print("{}\n", dumpReport(toJson(status)));
+  } else {
+    tell(status, Account(arguments.quiet, arguments.merged));
+  }
+  failUnless(status.isWell(), fmt::format("{} of {} are not done", status.entries - status.done,
+                                          counted(status.entries, "entry", "entries")));
+}
+
+void addStatus(CLI::App& batch) {
+  auto arguments = std::make_shared<BatchStatusArguments>();
+  CLI::App* command = batch.add_subcommand("status", "How far a batch is, and what failed, over all its shards");
+  command->add_option("FOLDER", arguments->folder, "the folder of outputs")->required();
+  command
+      ->add_option("--merge", arguments->merged, "write the records of all shards as one file, a line for each entry")
+      ->type_name("FILE");
+  command->add_flag("--json{true}", arguments->json, "print the account as JSON");
+  command->add_flag("--quiet,-q", arguments->quiet, "print nothing but errors");
+  command->footer(
+      "Exit code 0 where every entry of the plan is done and its output there.\n"
+      "\nExample:\n"
+      "  limber batch status out --merge records.jsonl");
+  command->callback([arguments] { runStatus(*arguments); });
+}
+
+}  // namespace
+
+void addBatchCommand(CLI::App& program) {
+  auto arguments = std::make_shared<BatchArguments>();
+  CLI::App* command = program.add_subcommand("batch", "Do one command to many files; go on where it was stopped");
+  command->add_option("PLAN", arguments->plan, "what to do, in JSON (docs/batch.schema.json); - is standard input");
+  command->add_option("-o,--output", arguments->output, "the folder to write; a batch that was stopped there goes on")
+      ->type_name("FOLDER");
+  command->add_option("--shard", arguments->shard, "only this part of the entries: its number, and how many there are")
+      ->type_name("I/N")
+      ->capture_default_str();
+  command->add_option("--jobs", arguments->jobs, "entries at once (default: as many as there are processors for)")
+      ->check(CLI::Range(1, 1024).description(""))
+      ->type_name("N");
+  command->add_flag("--retry", arguments->retries, "do again what failed");
+  command->add_flag("--example", arguments->prints, "print a plan that runs as it is, in a folder with models");
+  command->add_flag("--quiet,-q", arguments->quiet, "print nothing but errors");
+  command->require_subcommand(0, 1);
+  addStatus(*command);
+  command->footer(fmt::format(
+      "Commands: {}.\n"
+      "Each entry is a process of its own, within limits of time and memory: what is damaged, endless or huge costs\n"
+      "itself alone. Outputs come to their places whole, and a line for each stands in FOLDER/.limber-batch/records:\n"
+      "its outcome, seconds, memory, warnings, hashes. A batch that was stopped, however it was, goes on; what has "
+      "the\n"
+      "same bytes, command and program is not done again. Exit code 0 where all is done. docs/scale.md tells more.\n"
+      "\nExamples:\n"
+      "  limber batch --example > plan.json\n"
+      "  limber batch plan.json -o out\n"
+      "  limber batch plan.json -o out --shard 3/16\n"
+      "  limber batch status out",
+      fmt::join(kBatchCommands, ", ")));
+  command->callback([command, arguments] {
+    if (command->get_subcommands().empty()) runPlan(*arguments);
+  });
+}
+
+}  // namespace limber::cli

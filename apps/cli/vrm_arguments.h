@@ -1,0 +1,18 @@
+// What limber is told of a VRM that it writes.
+#pragma once
+
+#include "limber/vrm/vrm_meta.h"
+
+namespace CLI {
+class App;
+}
+
+namespace limber::cli {
+
+struct VrmArguments {
+  VrmMeta meta;
+
+  void addTo(CLI::App& command);
+};
+
+}  // namespace limber::cli

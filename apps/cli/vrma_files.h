@@ -1,0 +1,25 @@
+// Motions as files for VRMs.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "limber/asset/asset.h"
+#include "limber/skeleton/motion.h"
+#include "limber/vrm/vrma_write.h"
+
+namespace limber::cli {
+
+class Account;
+
+struct VrmaSource {
+  const Asset* model = nullptr;    // null: a skeleton alone
+  const Motion* motion = nullptr;  // over the model's animatedSkeleton
+  bool isEdited = false;           // its clips are no longer the model's: weights of blend shapes do not fit
+};
+
+// A file for each clip of the motion, all or none; `paths` are as many.
+void writeVrmaFiles(const VrmaSource& source, const std::vector<std::filesystem::path>& paths, bool quiet,
+                    const Account& account);
+
+}  // namespace limber::cli
