@@ -21,6 +21,7 @@
 #include "limber/asset/rig_io.h"
 #include "limber/asset/write.h"
 #include "limber/evaluate/model_quality.h"
+#include "limber/export/engine_target.h"
 #include "limber/pipeline/option_spelling.h"
 #include "limber/pipeline/pose_asset.h"
 #include "limber/pipeline/report_json.h"
@@ -245,11 +246,12 @@ class Model {
     return {arrayOf<Index>(std::move(skin.joints), slots), arrayOf<float>(std::move(skin.weights), slots)};
   }
 
-  py::object rig(const AutoRigOptions& options, const py::object& listener) {
+  py::object rig(const RigRequest& request, const AutoRigOptions& options, const py::object& listener) {
     PythonProgress progress(listener);
     AutoRigReport report;
     Asset rigged = asset_.clone();  // so that other calls meanwhile, and what goes wrong, find the document as it was
     progress.run([&](Progress& told) { report = autoRig(rigged, options, told); });
+    finishRig(rigged, request, report);
     asset_ = std::move(rigged);
     return pythonOf(toJson(report));
   }
@@ -384,6 +386,7 @@ pins            where joints of a template must be: {"leftHand": (x, y, z)}, met
 up, front       how the model stands, for a template: "+x", "-x", "+y", ...; None: found
 upright         turn a model that surely stands along another axis to stand along +Y
 chains          give capes, scarves, braids and tails joints that swing (VRMC_springBone)
+target          joints' names, root and axes as another program expects them: a name of limber.targets()
 progress        called as progress(stage, fraction) a few times a second; what it raises stops the work
 Ctrl-C stops it. Where it does not end well, the model is as it was.)";
 
@@ -453,7 +456,8 @@ PYBIND11_MODULE(_limber, module) {
              const std::optional<std::filesystem::path>& templateName, const std::string& skinning,
              const std::string& pieces, std::optional<Index> handles, Index maxInfluences, const std::string& existing,
              const std::map<std::string, Doubles>& pins, const std::optional<std::string>& up,
-             const std::optional<std::string>& front, bool upright, bool chains, const py::object& progress) {
+             const std::optional<std::string>& front, bool upright, bool chains, const std::string& target,
+             const py::object& progress) {
             RigRequest request;
             request.rigger = rigger;
             request.skinning = skinning;
@@ -466,14 +470,15 @@ PYBIND11_MODULE(_limber, module) {
             request.front = front;
             request.upright = upright;
             request.chains = chains;
-            return model.rig(optionsFrom(request, templateName), progress);
+            request.target = target;
+            return model.rig(request, optionsFrom(request, templateName), progress);
           },
           py::arg("rigger") = py::none(), py::kw_only(), py::arg("template") = py::none(),
           py::arg("skinning") = RigRequest().skinning, py::arg("pieces") = RigRequest().pieces,
           py::arg("handles") = py::none(), py::arg("max_influences") = RigRequest().maxInfluences,
           py::arg("existing_rig") = RigRequest().existingRig, py::arg("pins") = py::dict(), py::arg("up") = py::none(),
           py::arg("front") = py::none(), py::arg("upright") = false, py::arg("chains") = false,
-          py::arg("progress") = py::none(), kRigHelp)
+          py::arg("target") = RigRequest().target, py::arg("progress") = py::none(), kRigHelp)
       .def("attach_rig", &Model::attach, py::arg("names"), py::arg("parents"), py::arg("positions"), py::arg("joints"),
            py::arg("weights"),
            "A rig of your own: J names, (J,) parents with -1 for a root, (J, 3) places in metres; (V, K) joints and "
@@ -506,6 +511,8 @@ PYBIND11_MODULE(_limber, module) {
       "riggers", [] { return named(riggerMethods()); }, "Names, and what each does.");
   module.def(
       "skinning_methods", [] { return named(weightMethods()); }, "Names, and what each does.");
+  module.def(
+      "targets", [] { return named(engineTargets()); }, "Names, and what each does.");
   module.def(
       "deformers", [] { return named(deformers()); }, "Names, and what each does.");
   module.def(

@@ -19,7 +19,8 @@ import createEngine from './limber_engine.mjs';
  * @typedef {'x' | '+x' | '-x' | 'y' | '+y' | '-y' | 'z' | '+z' | '-z'} Axis
  * @typedef {{ handles?: number, maxInfluences?: number, rigger?: string, template?: string | { name: string, bytes: Uint8Array },
  *             skinning?: string, pieces?: 'auto' | 'rigid' | 'soft', existingRig?: 'refuse' | 'replace' | 'keep-skeleton',
- *             up?: Axis, front?: Axis, pins?: { [joint: string]: Vector }, upright?: boolean, chains?: boolean }} RigOptions
+ *             up?: Axis, front?: Axis, pins?: { [joint: string]: Vector }, upright?: boolean, chains?: boolean,
+ *             target?: 'gltf' | 'unreal' | 'unity' | 'godot' | 'blender' | 'vrm' | 'mixamo' }} RigOptions
  * @typedef {'nothing-to-undo' | 'nothing-to-redo' | 'joint-dragged' | 'no-model' | 'no-clip' | 'name-missing'
  *             | 'name-taken' | 'only-root' | 'joint-below-itself' | 'last-member' | 'holds-itself'
  *             | 'model-not-mirrored' | 'nothing-mirrored' | 'joint-locked' | 'pin-outside' | 'handle-count'
@@ -49,6 +50,7 @@ import createEngine from './limber_engine.mjs';
  *                      joint_keys: { joint: number, seconds: number[] }[], interpolation: 'step' | 'linear' | 'cubic',
  *                      source: { motion: string, clip: string, method: string, reach: number,
  *                                contacts: boolean } | null,
+ *                      sequence: { seconds: number, clips: { clip: string, from: number, to: number }[] } | null,
  *                      feet: { foot: string, part: string | null, planted: [number, number][], edited: boolean }[] }[],
  *             clip: number | null, seconds: number, snap: { degrees: number, step: number },
  *             match: { part: string, source: string[], target: string[], confidence: number, by: string }[],
@@ -98,8 +100,14 @@ import createEngine from './limber_engine.mjs';
  * 20 numbers each, the joints and their moments.
  * @typedef {{ form: 'weights' } | { form: 'engine' }
  *           | { form: 'rows', places: Float32Array, ranges: Float32Array, entries: Float32Array }} Deformation
- * @typedef {'glb' | 'obj' | 'stl' | 'ply' | 'bvh' | 'session'} ExportFormat
+ * @typedef {'glb' | 'obj' | 'stl' | 'ply' | 'usdz' | 'bvh' | 'session'} ExportFormat
  * @typedef {ReturnType<typeof createSession>} Session
+ *
+ * matrices: of each row (frame) and joint the first three rows of its matrix, 12 numbers. A body shows at frame f, of 0 to frames, row
+ * `row` + f of its table; place: its matrix, column by column.
+ * @typedef {{ frames: number, seconds: number, builds: SurfaceModel[],
+ *             tables: { frames: number, joints: number, matrices: Float32Array }[],
+ *             bodies: { build: number, table: number, row: number, place: number[] }[] }} Crowd
  *
  * Decoders of compressed glTF, which the engine asks while it opens a file; they answer at once. A file that needs one that
  * is not there is refused. Both give null for broken data.
@@ -142,8 +150,8 @@ export async function loadLimber(wasm, given = {}) {
     },
     /** The methods there are, by what they do. @type {() => Methods} */
     methods: () => call(engine, engine._limber_methods, []).account,
-    /** Templates, and how pieces that are joined to no other are bound.
-     *  @type {() => { [kind in 'template' | 'pieces']: { name: string, summary: string }[] }} */
+    /** Templates, how pieces that are joined to no other are bound, and other programs that saveModel knows.
+     *  @type {() => { [kind in 'template' | 'pieces' | 'target']: { name: string, summary: string }[] }} */
     rigChoices: () => call(engine, engine._limber_rig_choices, []).account,
     /** The motions that the engine makes itself; the seconds are those of one repetition.
      *  @type {() => { name: string, summary: string, seconds: number }[]} */
@@ -153,6 +161,9 @@ export async function loadLimber(wasm, given = {}) {
     samplePoses: () => call(engine, engine._limber_sample_poses, []).account,
     /** Is a PLY file whole? For readers that would not notice. @type {(file: Uint8Array, name: string) => { ok: true } | Failure} */
     checkPly: (file, name) => call(engine, engine._limber_check_ply, [], file, name),
+    /** What draws a file of `limber crowd`: all bodies of a build at once, each by a row of matrices of its own. Another file has
+     *  no bodies. @type {(file: Uint8Array, name: string) => { ok: true, crowd: Crowd } | Failure} */
+    crowd: (file, name) => crowdOf(call(engine, engine._limber_crowd, [], file, name)),
     createSession: () => createSession(engine),
     /** Another session with the same document, to try something in; null during a drag.
      *  @type {(session: Session) => Session | null} */
@@ -305,13 +316,24 @@ function createSession(engine, handle = engine._limber_session_new()) {
       const result = call(engine, engine._limber_session_pick_member, [handle, ...ray.origin, ...ray.direction]);
       return result.ok ? { ok: true, hit: result.account } : result;
     },
-    /** Motions of a BVH file or of a model; `retarget`: as in the command add_motion.
+    /** Motions of a BVH file, of arrays in SMPL's form (.npz, not compressed) or of a model; `retarget`: as in the command add_motion.
      *  @type {(file: Uint8Array, name: string, retarget?: boolean) => StepResult} */
     addMotion: (file, name, retarget = false) =>
       step(call(engine, engine._limber_session_add_motion, [handle, Number(retarget)], file, name)),
     /** The rig of another model, or of a body in SMPL's layout (.npz), as the command transfer_rig.
      *  @type {(file: Uint8Array, name: string) => StepResult} */
     transferRig: (file, name) => step(call(engine, engine._limber_session_transfer_rig, [handle], file, name)),
+    /** A motion that comes live, as the program sends it (limber/asset/live_text.h): its skeleton, then its frames. Nothing of it is
+     *  recorded, and the next command ends it. @type {(skeleton: string) => { ok: true } | Failure} */
+    liveBegin: (skeleton) => call(engine, engine._limber_session_live_begin, [handle], skeleton),
+    /** Seven numbers for each of its joints, at a moment in seconds.
+     *  @type {(pose: Float32Array, seconds: number) => { ok: true, skin: Float32Array, pinned: number[] } | Failure} */
+    liveFrame: (pose, seconds) =>
+      step(call(engine, engine._limber_session_live_frame, [handle, seconds], new Uint8Array(pose.buffer, pose.byteOffset, pose.byteLength))),
+    /** The character stands as it did before. @type {() => { ok: true, skin: Float32Array, pinned: number[] } | Failure} */
+    liveEnd: () => step(call(engine, engine._limber_session_live_end, [handle])),
+    /** What has come of it, as a BVH. @type {() => { ok: true, bytes: Uint8Array } | Failure} */
+    liveRecorded: () => call(engine, engine._limber_session_live_recorded, [handle]),
     /** Where the joints stand that the chosen clip's motion was made for: x, y, z each; empty where there are none.
      *  @type {() => { ok: true, places: Float32Array } | Failure} */
     sourceJoints: () => {
@@ -386,6 +408,14 @@ function createSession(engine, handle = engine._limber_session_new()) {
     posed: () => posed(call(engine, engine._limber_session_posed, [handle])),
     /** @type {(format: ExportFormat) => { ok: true, bytes: Uint8Array } | Failure} */
     export: (format) => call(engine, engine._limber_session_export, [handle], format),
+    /** The rigged model with its clips, standing in the pose, as another program expects it: names of rigChoices().target. USD holds
+     *  the named clip alone, or none. Formats of several files come as a ZIP archive of them.
+     *  @type {(extension: '.glb' | '.gltf' | '.fbx' | '.vrm' | '.usda' | '.usdc' | '.usdz', target?: string, clip?: string)
+     *           => { ok: true, bytes: Uint8Array, warnings: SessionState['warnings'] } | Failure} */
+    saveModel: (extension, target = 'gltf', clip = '') => {
+      const result = call(engine, engine._limber_session_save_model, [handle], extension, target, clip);
+      return result.ok ? { ok: true, bytes: result.bytes, warnings: result.account.warnings } : result;
+    },
     /** The pose that is shown, as the text of a file: for apply_pose, on this model or another.
      *  @type {(name: string) => { ok: true, pose: string } | Failure} */
     pose: (name) => {
@@ -424,9 +454,13 @@ const posed = (result) => (result.ok ? { ok: true, posed: new Float32Array(resul
 function surfaceModel(result, bent) {
   if (!result.ok) return result;
   if (!bent.ok) return bent;
-  const { bytes, account: { arrays, textures, ...rest } } = result;
-  const view = (Type, { offset, size }) => new Type(bytes.buffer, offset, size / Type.BYTES_PER_ELEMENT);
-  const model = {
+  return { ok: true, model: surfaceIn(result.bytes, result.account, bent.deformation) };
+}
+
+/** Views of bytes that begin at a multiple of 4. */
+function surfaceIn(bytes, { arrays, textures, ...rest }, deformation) {
+  const view = (Type, { offset, size }) => new Type(bytes.buffer, bytes.byteOffset + offset, size / Type.BYTES_PER_ELEMENT);
+  return {
     positions: view(Float32Array, arrays.positions),
     normals: view(Float32Array, arrays.normals),
     uvs: view(Float32Array, arrays.uvs),
@@ -434,8 +468,18 @@ function surfaceModel(result, bent) {
     weights: view(Float32Array, arrays.weights),
     joints: view(Uint16Array, arrays.joints),
     textures: textures.map(({ offset, size }) => bytes.slice(offset, offset + size)),
-    deformation: bent.deformation,
+    deformation,
     ...rest,
   };
-  return { ok: true, model };
+}
+
+function crowdOf(result) {
+  if (!result.ok) return result;
+  const { bytes, account: { tables, builds, ...rest } } = result;
+  const part = ({ offset, size }) => bytes.subarray(offset, offset + size);
+  return { ok: true, crowd: {
+    tables: tables.map(({ matrices, ...table }) => ({ ...table, matrices: new Float32Array(bytes.buffer, matrices.offset, matrices.size / 4) })),
+    builds: builds.map((build) => surfaceIn(part(build.bytes), build.account, { form: 'weights' })),
+    ...rest,
+  } };
 }

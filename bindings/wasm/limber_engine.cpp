@@ -7,11 +7,12 @@
 #include <nlohmann/json.hpp>
 
 #include "call_result.h"
-#include "limber/asset/ply_check.h"
+#include "limber/asset/ply.h"
 #include "limber/asset/pose_file.h"
 #include "limber/asset/read.h"
 #include "limber/asset/write.h"
 #include "limber/core/known_error.h"
+#include "limber/export/engine_target.h"
 #include "limber/ik/ik_solver.h"
 #include "limber/pipeline/report_json.h"
 #include "limber/pipeline/rig_request.h"
@@ -30,9 +31,8 @@ using limber::wasm::CallResult;
 using limber::wasm::guarded;
 
 // As the program reads the file that --template names.
-limber::AutoRigOptions optionsFrom(std::string_view json, limber::ByteSpan templateFile,
+limber::AutoRigOptions optionsFrom(const limber::RigRequest& request, limber::ByteSpan templateFile,
                                    std::string_view templateName) {
-  const limber::RigRequest request = limber::rigRequestFromJson(json);
   if (templateName.empty()) return limber::optionsOf(request);
   return limber::optionsWithOwnTemplate(request, templateName,
                                         [&] { return limber::readTemplateFile(templateFile, templateName); });
@@ -56,11 +56,13 @@ LIMBER_EXPORT CallResult* limber_rig(const std::uint8_t* file, std::size_t fileS
                                      const std::uint8_t* templateFile, std::size_t templateFileSize,
                                      const char* templateName, std::size_t templateNameSize) {
   return guarded({name, nameSize}, [&]() -> CallResult {
+    const limber::RigRequest request = limber::rigRequestFromJson({options, optionsSize});
     const limber::AutoRigOptions rig =
-        optionsFrom({options, optionsSize}, {templateFile, templateFileSize}, {templateName, templateNameSize});
+        optionsFrom(request, {templateFile, templateFileSize}, {templateName, templateNameSize});
     limber::Asset asset = limber::readAsset({file, fileSize}, {name, nameSize});
     limber::wasm::PageProgress progress;
-    const limber::AutoRigReport report = limber::autoRig(asset, rig, *progress);
+    limber::AutoRigReport report = limber::autoRig(asset, rig, *progress);
+    limber::finishRig(asset, request, report);
     return {true, limber::writeGlb(asset), limber::dumpReport(limber::toJson(report), -1)};
   });
 }
@@ -70,7 +72,7 @@ LIMBER_EXPORT CallResult* limber_check_ply(const std::uint8_t* file, std::size_t
                                            std::size_t nameSize) {
   return guarded({name, nameSize}, [&]() -> CallResult {
     try {
-      limber::checkPly({file, fileSize});
+      limber::readPly({file, fileSize}, {});
     } catch (const limber::Error& error) {
       limber::throwWithin(error, {name, nameSize});
     }
@@ -90,10 +92,12 @@ LIMBER_EXPORT CallResult* limber_methods() {
   });
 }
 
-// What else a rig is chosen by: templates, and how pieces are bound.
+// What else a rig is chosen by: templates, how pieces are bound, and what it is made for.
 LIMBER_EXPORT CallResult* limber_rig_choices() {
   return guarded({}, []() -> CallResult {
-    const Json json = {{"template", list(limber::namedTemplates())}, {"pieces", list(limber::pieceModes())}};
+    const Json json = {{"template", list(limber::namedTemplates())},
+                       {"pieces", list(limber::pieceModes())},
+                       {"target", list(limber::engineTargets())}};
     return {true, {}, limber::dumpReport(json, -1)};
   });
 }

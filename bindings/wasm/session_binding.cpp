@@ -2,12 +2,12 @@
 // arrays out. limber.mjs is the typed face of these functions; nobody else calls them.
 #include <algorithm>
 #include <cstdint>
-#include <cstring>
 #include <memory>
 
 #include "call_result.h"
 #include "limber/asset/bvh_write.h"
 #include "limber/asset/json_text.h"
+#include "limber/asset/live_text.h"
 #include "limber/asset/mesh_export.h"
 #include "limber/session/clip_curves.h"
 #include "limber/session/measures.h"
@@ -17,15 +17,19 @@
 #include "limber/skeleton/keyframes.h"
 #include "limber/skinning/direct_delta_mush.h"
 #include "page_progress.h"
+#include "surface_bytes.h"
 
 namespace {
 
 using limber::Bytes;
 using limber::Index;
 using limber::Json;
+using limber::wasm::bytesOf;
 using limber::wasm::CallResult;
 using limber::wasm::guarded;
 using limber::wasm::PageProgress;
+using limber::wasm::surfaceOf;
+using limber::wasm::weightsArray;
 
 // The normals that a page shades surfaces with, as bound; of the rigs that were asked for last.
 class ShadingNormals {
@@ -57,13 +61,6 @@ struct SessionHandle {
 
 std::string textOf(const Json& json) {
   return limber::dumpReport(json, -1);
-}
-
-template <class T>
-Bytes bytesOf(const std::vector<T>& values) {
-  Bytes bytes(values.size() * sizeof(T));
-  if (!bytes.empty()) std::memcpy(bytes.data(), values.data(), bytes.size());
-  return bytes;
 }
 
 template <class Vector>
@@ -118,36 +115,6 @@ Json tangentsJson(const limber::SessionState& state, Index joint) {
   return list;
 }
 
-constexpr Index kSlots = 4;  // influences that a page draws with
-
-// The strongest of each vertex, scaled to a sum of 1; a vertex without any follows joint 0.
-void strongest(const limber::SkinWeights& weights, std::vector<std::uint16_t>& joints, std::vector<float>& values) {
-  const std::size_t count = weights.vertexCount();
-  joints.assign(count * kSlots, 0);
-  values.assign(count * kSlots, 0.0f);
-  const Index slots = std::min(kSlots, weights.slots);
-  for (Index v = 0; v < count; ++v) {
-    float sum = 0;
-    for (Index k = 0; k < slots; ++k) sum += weights.weightsOf(v)[k];
-    if (!(sum > 0)) values[std::size_t{v} * kSlots] = 1;
-    for (Index k = 0; k < slots && sum > 0; ++k) {
-      joints[std::size_t{v} * kSlots + k] = static_cast<std::uint16_t>(weights.jointsOf(v)[k]);
-      values[std::size_t{v} * kSlots + k] = weights.weightsOf(v)[k] / sum;
-    }
-  }
-}
-
-// What a page draws the weights with: #S * 4 floats, then as many joints in 16 bits.
-Bytes weightsArray(const limber::SkinWeights& weights) {
-  std::vector<std::uint16_t> joints;
-  std::vector<float> values;
-  strongest(weights, joints, values);
-  Bytes bytes = bytesOf(values);
-  const Bytes behind = bytesOf(joints);
-  bytes.insert(bytes.end(), behind.begin(), behind.end());
-  return bytes;
-}
-
 limber::Command commandOf(const char* json, std::size_t size) {
   limber::Warnings warnings;
   return limber::commandFromJson(limber::parseJson({json, size}, warnings));
@@ -160,50 +127,6 @@ Json hitJson(const std::optional<limber::SurfaceHit>& hit) {
           {"normal", {hit->normal.x(), hit->normal.y(), hit->normal.z()}},
           {"joint", hit->joint},
           {"inside", {hit->inside.x(), hit->inside.y(), hit->inside.z()}}};
-}
-
-// The surface as bound, and what it looks like. The account says where in the bytes each array is: all of 4 byte
-// elements first, then joints, then the textures' files.
-CallResult modelOf(const limber::SessionState& state) {
-  const limber::RiggedModel& rig = *state.rig;
-  const limber::ExportMesh mesh = limber::exportMesh(*rig.asset, *rig.geometry);
-  CallResult result{true, {}, {}};
-  Json arrays = Json::object();
-  const auto add = [&](const char* name, const Bytes& bytes) {
-    arrays[name] = {{"offset", result.bytes.size()}, {"size", bytes.size()}};
-    result.bytes.insert(result.bytes.end(), bytes.begin(), bytes.end());
-  };
-  std::vector<std::uint16_t> joints;
-  std::vector<float> weights;
-  strongest(rig.weights, joints, weights);
-  add("positions", bytesOf(mesh.positions));
-  add("normals", bytesOf(mesh.normals));
-  add("uvs", bytesOf(mesh.uvs));
-  add("triangles", bytesOf(mesh.triangles));
-  add("weights", bytesOf(weights));
-  add("joints", bytesOf(joints));
-
-  Json json = {
-      {"arrays", nullptr}, {"parts", Json::array()}, {"materials", Json::array()}, {"textures", Json::array()}};
-  for (const limber::ExportPart& part : mesh.parts) {
-    json["parts"].push_back({{"name", part.name},
-                             {"first", 3 * part.firstTriangle},
-                             {"count", 3 * part.triangleCount},
-                             {"material", part.material ? Json(*part.material) : Json(nullptr)}});
-  }
-  for (const limber::ExportMaterial& material : mesh.materials) {
-    const limber::Vec4f& c = material.color;
-    json["materials"].push_back({{"name", material.name},
-                                 {"color", {c[0], c[1], c[2], c[3]}},
-                                 {"texture", material.texture ? Json(*material.texture) : Json(nullptr)}});
-  }
-  for (const limber::ExportTexture& texture : mesh.textures) {
-    json["textures"].push_back({{"offset", result.bytes.size()}, {"size", texture.bytes.size()}});
-    result.bytes.insert(result.bytes.end(), texture.bytes.begin(), texture.bytes.end());
-  }
-  json["arrays"] = std::move(arrays);
-  result.account = textOf(json);
-  return result;
 }
 
 // What bends the surface that a page draws.
@@ -305,10 +228,11 @@ Bytes exported(const limber::SessionScene& scene, std::string_view format) {
   if (format == "obj") return scene.exportModel(limber::ExportFormat::kObj);
   if (format == "stl") return scene.exportModel(limber::ExportFormat::kStl);
   if (format == "ply") return scene.exportModel(limber::ExportFormat::kPly);
+  if (format == "usdz") return scene.exportModel(limber::ExportFormat::kUsdz);
   if (format == "bvh") return motionOf(scene.session().state());
   if (format == "session") return scene.session().saveSession();
   throw limber::Error(limber::ErrorCode::kBadArgument, "no format is called '" + std::string(format) + "'", {},
-                      "there are: glb, obj, stl, ply, bvh, session");
+                      "there are: glb, obj, stl, ply, usdz, bvh, session");
 }
 
 }  // namespace
@@ -370,7 +294,7 @@ LIMBER_EXPORT CallResult* limber_session_places(const SessionHandle* handle) {
 
 // As limber_session_model and _skin, of any member.
 LIMBER_EXPORT CallResult* limber_session_member_model(const SessionHandle* handle, Index member) {
-  return guarded({}, [&] { return modelOf(handle->scene.members()[member].session->state()); });
+  return guarded({}, [&] { return surfaceOf(*handle->scene.members()[member].session->state().rig); });
 }
 LIMBER_EXPORT CallResult* limber_session_member_skin(const SessionHandle* handle, Index member) {
   return guarded({}, [&]() -> CallResult {
@@ -410,6 +334,31 @@ LIMBER_EXPORT CallResult* limber_session_transfer_rig(SessionHandle* handle, con
     handle->scene.transferRig({file, fileSize}, command, *progress);
     return stateAfter(handle->scene, command);
   });
+}
+
+// A motion that comes live: its skeleton as limber/asset/live_text.h has it, then seven numbers for each of its joints.
+LIMBER_EXPORT CallResult* limber_session_live_begin(SessionHandle* handle, const char* skeleton, std::size_t size) {
+  return guarded({}, [&]() -> CallResult {
+    handle->scene.beginLive(limber::liveSkeletonFrom({skeleton, size}));
+    return {true, {}, "{}"};
+  });
+}
+LIMBER_EXPORT CallResult* limber_session_live_frame(SessionHandle* handle, double seconds, const std::uint8_t* values,
+                                                    std::size_t size) {
+  return guarded({}, [&]() -> CallResult {
+    handle->scene.showLive(limber::livePoseFrom({values, size}), seconds);
+    return {true, bytesOf(skinArray(handle->session())), pinnedOf(handle->session().state())};
+  });
+}
+LIMBER_EXPORT CallResult* limber_session_live_end(SessionHandle* handle) {
+  return guarded({}, [&]() -> CallResult {
+    handle->scene.endLive();
+    return {true, bytesOf(skinArray(handle->session())), pinnedOf(handle->session().state())};
+  });
+}
+// What has come of it, as a BVH.
+LIMBER_EXPORT CallResult* limber_session_live_recorded(const SessionHandle* handle) {
+  return guarded({}, [&]() -> CallResult { return {true, limber::writeBvh(handle->session().recordedLive()), "{}"}; });
 }
 
 // Three numbers for each joint of the skeleton that the chosen clip comes from.
@@ -500,7 +449,7 @@ LIMBER_EXPORT CallResult* limber_session_turns(const SessionHandle* handle) {
 }
 
 LIMBER_EXPORT CallResult* limber_session_model(const SessionHandle* handle) {
-  return guarded({}, [&] { return modelOf(handle->session().state()); });
+  return guarded({}, [&] { return surfaceOf(*handle->session().state().rig); });
 }
 
 // How the surface is bent in drawing, and as it stands now where the engine does that.
@@ -513,6 +462,21 @@ LIMBER_EXPORT CallResult* limber_session_posed(const SessionHandle* handle) {
 
 LIMBER_EXPORT CallResult* limber_session_export(const SessionHandle* handle, const char* format, std::size_t size) {
   return guarded({}, [&]() -> CallResult { return {true, exported(handle->scene, {format, size}), "{}"}; });
+}
+
+// The model in a format (".glb", ".usdz"), as a target expects it; warnings come with it. `clip`: of formats that hold
+// one; empty: none.
+LIMBER_EXPORT CallResult* limber_session_save_model(const SessionHandle* handle, const char* extension,
+                                                    std::size_t extensionSize, const char* target,
+                                                    std::size_t targetSize, const char* clip, std::size_t clipSize) {
+  return guarded({}, [&]() -> CallResult {
+    limber::WriteModelOptions options;
+    options.target = {target, targetSize};
+    options.isStill = clipSize == 0;
+    if (!options.isStill) options.clip = {clip, clipSize};
+    limber::EncodedModel model = handle->scene.saveModel({extension, extensionSize}, options);
+    return {true, std::move(model.bytes), textOf({{"warnings", limber::toJson(model.warnings)}})};
+  });
 }
 
 // The pose that is shown, as the text of a file.

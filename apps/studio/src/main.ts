@@ -54,16 +54,20 @@ const page = createPageStore();
 const journal = new Journal();
 const studio = createStudio(page, journal);
 studio.ask = ask;
+studio.onCrowd = async (crowd, name) => {
+  const { showCrowd } = await arriving(import('./panels/crowd_dialog'));
+  showCrowd(crowd, name, app);
+};
 const poses = new PoseShelf(studio, page, new PoseStore());
 const stage = stageOrApology();
-const { viewport, handles, model, comparison, gizmo, others, places } = stage;
+const { viewport, handles, comparison, gizmo, places } = stage;
 const clips = timeline(studio, page, openSheet);
 let sheet: ContactSheet | null = null;
 
 const app = document.getElementById('app')!, toasts = status(studio, page);
 const desk = { ...stage, studio, page, app };
 app.replaceChildren(
-  toolbar(studio, page, journal, viewport, model, others, arMenu(desk)),
+  toolbar(studio, page, journal, viewport, arMenu(desk)),
   element('main', { class: 'stage' }, viewport.canvas, facts(page), hint(page, viewport), poseTools(page), views(viewport), arButton(desk), comparisonPanel(studio, page, comparison)),
   element('aside', { class: 'side' }, scenePanel(studio, page, places), doubts(studio, page), posePanel(studio, page, poses, viewport), paintPanel(studio, page), retargetPanel(studio, page), methodsPanel(studio, page), outliner(studio, page, handles)),
   clips,
@@ -79,6 +83,10 @@ loadedWhenOpened(studio, page, 'keyEditor', async () => {
 loadedWhenOpened(studio, page, 'feet', async () => {
   const { feetEditor } = await import('./panels/feet_editor');
   return () => feetEditor(studio, page);
+}, clips);
+loadedWhenOpened(studio, page, 'sequence', async () => {
+  const { sequenceEditor } = await import('./panels/sequence_editor');
+  return () => sequenceEditor(studio, page);
 }, clips);
 loadedWhenOpened(studio, page, 'shelf', async () => {
   const { motionShelf } = await import('./panels/motion_shelf');
@@ -99,6 +107,7 @@ async function openSheet() {
     await sheet.open();
   });
 }
+if (asked.live) void import('./panels/live_panel').then(({ livePanel }) => viewport.canvas.after(livePanel(studio)));
 bindShortcuts(studio, page, viewport, handles, poses);
 bindPlayer(studio, page);
 bindJournal(journal, studio, page, viewport);

@@ -29,7 +29,7 @@ const server = await serve(dist);
 const browser = await launch({ options: ['--use-fake-device-for-media-stream', `--use-file-for-fake-video-capture=${film}`] });
 // Frames are drawn in software: on a small screen there are more of them.
 const { page, context, errors } = await openStudio(browser, server.address, {
-  width: 240, height: 320, touch: true, search: '?sample=stool', permissions: ['camera'], prepare: (made) => made.addInitScript(logTracker, strip),
+  width: 240, height: 320, deviceScaleFactor: 1, touch: true, search: '?sample=stool', permissions: ['camera'], prepare: (made) => made.addInitScript(logTracker, strip),
 });
 page.setDefaultTimeout(60_000);
 const finger = await context.newCDPSession(page);

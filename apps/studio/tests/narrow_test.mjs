@@ -14,7 +14,7 @@ const [dist, output] = process.argv.slice(2).map((path) => resolve(path));
 mkdirSync(output, { recursive: true });
 const server = await serve(dist), browser = await launch();
 const width = 390, height = 844;
-const { page, context, errors } = await openStudio(browser, server.address, { width, height, touch: true, isMobile: true, search: '?sample=biped' });
+const { page, context, errors } = await openStudio(browser, server.address, { width, height, touch: true, isMobile: true, deviceScaleFactor: 1, search: '?sample=biped' });
 page.setDefaultTimeout(20_000);
 const wire = await context.newCDPSession(page);
 const touch = (type, ...points) => wire.send('Input.dispatchTouchEvent', { type, touchPoints: points.map(({ x, y }, id) => ({ x, y, id })) });

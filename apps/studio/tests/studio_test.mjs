@@ -10,6 +10,7 @@ import { join, resolve } from 'node:path';
 import { gzipSync } from 'node:zlib';
 import { walkBvh } from './walk_bvh.mjs';
 import { chooseMotion, download as downloadFrom, jointPlace, jointPosition, launch, motionPlayed, openStudio, runCases, serve, sessionState, settled } from './page.mjs';
+import { readUsd } from './usd_points.mjs';
 
 const [dist, program, output, faulty] = process.argv.slice(2).map((path) => resolve(path));
 mkdirSync(output, { recursive: true });
@@ -361,13 +362,11 @@ const cases = {
   async 'a USDZ holds the posed surface'() {
     const usdz = await download(() => page.locator('#export-as').selectOption('usdz'));
     assert.equal(usdz.readUInt32LE(0), 0x04034b50); // a ZIP archive
-    const text = usdz.toString('latin1');
-    assert.match(text, /point3f\[\] points/);
-    assert.doesNotMatch(text, /NaN/);
-    // Each vertex is in it once: parts of several materials hold their own vertices alone.
-    const written = [...text.matchAll(/point3f\[\] points = \[([^\]]*)\]/g)].reduce((sum, [, points]) => sum + points.split('(').length - 1, 0);
-    const vertices = Number((await page.locator('#facts').textContent()).match(/([\d,]+) vertices/)[1].replaceAll(',', ''));
-    assert.ok(written >= vertices && written < 1.1 * vertices, `${written} points of ${vertices} vertices`);
+    const { points, skinned } = readUsd(usdz), written = points.length;
+    assert.equal(skinned, 0);
+    assert.ok(points.flat().every(Number.isFinite));
+    const triangles = Number((await page.locator('#facts').textContent()).match(/([\d,]+) triangles/)[1].replaceAll(',', ''));
+    assert.equal(written, 3 * triangles); // three.js gives each triangle points of its own
   },
   async 'the keys are listed under ?'() {
     await page.keyboard.press('?');
@@ -400,10 +399,11 @@ const cases = {
     const small = await openStudio(browser, server.address, { width: 480, height: 360, search: '?sample=stool' });
     const files = [{ name: 'half.glb', buffer: Buffer.from('glTF\x02\0\0\0 nothing') }, { name: 'model.blend', buffer: Buffer.from('BLENDER') }];
     if (faulty) {
-      for (const entry of readdirSync(faulty, { recursive: true, withFileTypes: true })) {
-        if (!entry.isFile() || !/\.gl(b|tf)$/.test(entry.name)) continue;
-        const buffer = readFileSync(join(entry.parentPath, entry.name));
-        if (buffer.length < 4e6) files.push({ name: entry.name, buffer });
+      // Some of them: the program reads them all, by the same engine.
+      const all = readdirSync(faulty, { recursive: true, withFileTypes: true }).filter((entry) => entry.isFile() && /\.gl(b|tf)$/.test(entry.name));
+      for (const { parentPath, name } of all.filter((_, i) => i % 6 === 0)) {
+        const buffer = readFileSync(join(parentPath, name));
+        if (buffer.length < 4e6) files.push({ name, buffer });
       }
     }
     let told = 0;

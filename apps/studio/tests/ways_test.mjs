@@ -10,6 +10,7 @@ import { createRequire } from 'node:module';
 import { join, resolve } from 'node:path';
 import { overlayBarriers, pictureOfScreen, turnScreen } from './ar_phone.mjs';
 import { download, dragMouse, jointPlace, jointPosition, launch, openStudio, runCases, serve, sessionState, settled } from './page.mjs';
+import { readUsd } from './usd_points.mjs';
 import { emulatePhone } from './xr_phone.mjs';
 
 const [dist, output] = process.argv.slice(2).map((path) => resolve(path));
@@ -137,11 +138,8 @@ const cases = {
         const { href, children } = await page.evaluate(() => ({ ...globalThis.quickLook, bytes: null }));
         assert.deepEqual(children, ['IMG']);
         assert.ok(href.startsWith('blob:'));
-        // A USDZ is a ZIP archive whose files are not packed.
-        const top = await page.evaluate(async () => {
-          const [, points] = new TextDecoder('latin1').decode(await globalThis.quickLook.bytes).match(/point3f\[\] points = \[(.*?)\]/s);
-          return [...points.matchAll(/\(([^)]*)\)/g)].reduce((most, [, point]) => Math.max(most, Number(point.split(',')[1])), -Infinity);
-        });
+        const bytes = await page.evaluate(async () => [...new Uint8Array(await globalThis.quickLook.bytes)]);
+        const top = readUsd(bytes).points.reduce((most, [, y]) => Math.max(most, y), -Infinity);
         return { href, top };
       };
       const before = await heights();

@@ -27,7 +27,7 @@ function fail(problem, code = 1) {
 }
 
 async function help() {
-  const limber = await load(), { rigger, skinning } = limber.methods(), { template, pieces } = limber.rigChoices();
+  const limber = await load(), { rigger, skinning } = limber.methods(), { template, pieces, target } = limber.rigChoices();
   const list = (title, methods) => `${title}:\n${methods.map(({ name, summary }) => `  ${name.padEnd(20)}${summary}`).join('\n')}\n`;
   return `Give a model handles and skin weights (the engine as WebAssembly)
 Usage: limber rig [OPTIONS] IN.glb -o OUT.glb     IN may be - for standard input
@@ -36,7 +36,7 @@ Usage: limber rig [OPTIONS] IN.glb -o OUT.glb     IN may be - for standard input
 Options:
 ${optionsHelp}
 
-${list('Riggers', rigger)}${list('Templates', template)}${list('Skinning methods', skinning)}${list('Pieces', pieces)}
+${list('Riggers', rigger)}${list('Templates', template)}${list('Skinning methods', skinning)}${list('Pieces', pieces)}${list('Targets', target)}
 Reads GLB, and glTF in one file. The native program reads other formats and has the other commands.
 
 Example:

@@ -37,6 +37,7 @@ export const rigOptions = [
   { name: 'front', value: 'AXIS', field: 'front', read: text, help: 'where the model looks, for a template, as +z (default: found)' },
   { name: 'upright', field: 'upright', read: flag, help: 'turn a model that surely stands along another axis to stand along +Y' },
   { name: 'chains', field: 'chains', read: flag, help: 'give capes, scarves, braids and tails joints that swing (VRMC_springBone)' },
+  { name: 'target', value: 'NAME', field: 'target', read: text, help: "joints' names, root and axes as another program expects them, see below" },
   { name: 'skinning', value: 'NAME', field: 'skinning', read: text, help: 'how weights are made, see below' },
   { name: 'pieces', value: 'NAME', field: 'pieces', read: text, help: 'how pieces that are joined to no other are bound, see below' },
   { name: 'replace-rig', field: 'existingRig', read: () => 'replace', help: "take the model's own rig and its joint animation out first" },

@@ -10,7 +10,7 @@ Lengths are metres, +Y is up, quaternions are (x, y, z, w). What cannot be done 
 code, message, where and remedy.
 """
 from ._limber import (Error, Model, __version__, deformers, read, retargeting_methods, riggers, sample,
-                      skinning_methods)
+                      skinning_methods, targets)
 
 __all__ = ["Error", "Model", "__version__", "deformers", "read", "retargeting_methods", "riggers", "sample",
-           "skinning_methods"]
+           "skinning_methods", "targets"]

@@ -5,7 +5,7 @@ import { documentOfTab, mayHaveDocuments } from './remembered';
 import { openSample, samples } from './samples';
 
 const parameters = new URLSearchParams(location.search);
-export const asked = { address: parameters.get('model') || null, scene: parameters.get('scene') || null, sample: parameters.get('sample') };
+export const asked = { address: parameters.get('model') || null, scene: parameters.get('scene') || null, sample: parameters.get('sample'), live: parameters.has('live') };
 
 const [visit] = performance.getEntriesByType('navigation') as PerformanceNavigationTiming[];
 /** The document that this tab had before it was reloaded. */

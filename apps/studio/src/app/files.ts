@@ -1,10 +1,10 @@
 // Files as a user brings them: one, several that belong together, a folder, a ZIP archive.
-import { unzipSync } from 'three/examples/jsm/libs/fflate.module.js';
+import { unzipSync, zipSync } from 'three/examples/jsm/libs/fflate.module.js';
 import { EngineError, refusal, unreadable } from '../engine/client';
 import { say } from '../words/say';
 
 const mostUnpacked = 500e6, mostFiles = 1000; // bytes and files that an archive holds
-export const motionFiles = '.bvh,.glb,.gltf';
+export const motionFiles = '.bvh,.npz,.vrma,.fbx,.glb,.gltf';
 const model = /\.(glb|gltf|vrm|obj|fbx|stl|ply|limber)$/i;
 
 /** All that was dropped, whole folders too; each file's path stands in webkitRelativePath or its name. */
@@ -69,6 +69,15 @@ async function movingModels(files: File[]): Promise<Set<File>> {
   return new Set(models.filter((_, i) => moves[i]));
 }
 
+const fbxShape = /(?:\0\x01|")Geometry(?:::|\S)/; // how an object of that class is named, in a binary file and in text
+
+/** FBX files without a surface, which can only be motions. */
+async function fbxMotions(files: File[]): Promise<Set<File>> {
+  const fbx = files.filter(({ name }) => /\.fbx$/i.test(name));
+  const texts = await Promise.all(fbx.map(async (file) => new TextDecoder('latin1').decode(await file.arrayBuffer())));
+  return new Set(fbx.filter((_, i) => !fbxShape.test(texts[i]!)));
+}
+
 const poseStart = 200; // bytes of a file in which a pose says that it is one
 
 /** Poses, whatever they are called; and what is called so, whatever it holds. */
@@ -90,6 +99,15 @@ async function reportAmong(files: File[]): Promise<File | null> {
 
 const glbJson = 20, glbJsonLength = 12; // bytes: where a GLB's JSON begins, and where its length is told
 
+const crowdNote = '"limber_crowd"'; // in what a crowd's file says of each of its bodies
+
+/** Of any file. */
+export function isCrowd(glb: Uint8Array): boolean {
+  if (glb.length < glbJson || new TextDecoder('latin1').decode(glb.subarray(0, 4)) !== 'glTF') return false;
+  const length = new DataView(glb.buffer, glb.byteOffset).getUint32(glbJsonLength, true);
+  return new TextDecoder('latin1').decode(glb.subarray(glbJson, glbJson + length)).includes(crowdNote);
+}
+
 /** Whether a glTF's JSON has animations; one that cannot be read has none. */
 async function hasAnimation(file: File): Promise<boolean> {
   let text: Blob = file;
@@ -110,8 +128,8 @@ export async function sorted(files: File[]): Promise<Brought> {
       inside.forEach((bytes, path) => all.push(new File([bytes as BlobPart], fileName(path))));
     }
   }
-  const moving = await movingModels(all);
-  const motions = all.filter((file) => /\.bvh$/i.test(file.name) || moving.has(file));
+  const moving = new Set([...await movingModels(all), ...await fbxMotions(all)]);
+  const motions = all.filter((file) => /\.(bvh|npz|vrma)$/i.test(file.name) || moving.has(file));
   const poses = await posesAmong(all);
   const found = all.find((file) => model.test(file.name) && !moving.has(file)) ?? null;
   const report = await reportAmong(all);
@@ -152,6 +170,15 @@ export async function withBuffers(bytes: Uint8Array, beside: Map<string, File>):
     changed = true;
   }
   return changed ? new TextEncoder().encode(JSON.stringify(document)) : bytes;
+}
+
+/** An FBX file with the pictures that came with it in one archive, which the engine reads as it is. */
+export async function withPictures(bytes: Uint8Array, name: string, beside: Map<string, File>): Promise<Uint8Array> {
+  const pictures = [...beside].filter(([path]) => /\.(png|jpe?g)$/i.test(path));
+  if (pictures.length === 0) return bytes;
+  const files: Record<string, Uint8Array> = { [name]: bytes };
+  for (const [path, file] of pictures) files[path] = new Uint8Array(await file.arrayBuffer());
+  return zipSync(files, { level: 0 });
 }
 
 function decoded(uri: string): string {

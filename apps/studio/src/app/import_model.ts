@@ -1,9 +1,8 @@
 // Models in formats that the engine does not read in a browser, brought into GLB. Loaded when the first one is opened.
 import {
-  BufferAttribute, BufferGeometry, DirectionalLight, LoadingManager, Mesh, type MeshPhongMaterial, MeshStandardMaterial, Object3D, Scene, SRGBColorSpace, type TypedArray,
+  BufferAttribute, BufferGeometry, LoadingManager, Mesh, MeshStandardMaterial, Object3D, Scene, type TypedArray,
 } from 'three';
 import { GLTFExporter } from 'three/examples/jsm/exporters/GLTFExporter.js';
-import { FBXLoader } from 'three/examples/jsm/loaders/FBXLoader.js';
 import { MTLLoader } from 'three/examples/jsm/loaders/MTLLoader.js';
 import { OBJLoader } from 'three/examples/jsm/loaders/OBJLoader.js';
 import { PLYLoader } from 'three/examples/jsm/loaders/PLYLoader.js';
@@ -51,21 +50,6 @@ async function parseObj(text: string, beside: Beside): Promise<Object3D> {
   const model = reader.parse(text);
   // The reader makes normals up, one for each triangle, which would tear the surface at every edge.
   if (!/^vn\s/m.test(text)) model.traverse((part) => { if (part instanceof Mesh) part.geometry.deleteAttribute('normal'); });
-  return model;
-}
-
-const fbxGrey = 0.8; // sRGB; DiffuseColor where a file says nothing (the FBX SDK's default)
-
-/** In FBX a picture takes the place of the diffuse colour, which the reader multiplies it with; and exporters that know no
- *  colour write black for all of it, which would show nothing of the shape. */
-function withFbxColors(model: Object3D): Object3D {
-  const materials = new Set<MeshPhongMaterial>();
-  model.traverse((part) => {
-    if (part instanceof Mesh) [part.material as MeshPhongMaterial | MeshPhongMaterial[]].flat().forEach((material) => materials.add(material));
-  });
-  for (const { map, color } of materials) if (map) color.setScalar(1);
-  const black = [...materials].every(({ map, color, emissive }) => !map && color.getHex() === 0 && emissive.getHex() === 0);
-  if (black) materials.forEach(({ color }) => color.setRGB(fbxGrey, fbxGrey, fbxGrey, SRGBColorSpace));
   return model;
 }
 
@@ -119,20 +103,20 @@ async function parse(bytes: Uint8Array, name: string, beside: Beside): Promise<O
   const buffer = bytes.slice().buffer;
   switch (name.split('.').pop()?.toLowerCase()) {
     case 'obj': return parseObj(new TextDecoder().decode(bytes), beside);
-    case 'fbx': return withFbxColors(new FBXLoader(beside.manager).parse(buffer, ''));
     case 'stl': {
       const geometry = new STLLoader().parse(buffer);
       geometry.deleteAttribute('normal'); // of each triangle: what it is shaded by without any
       return meshOf(geometry);
     }
     case 'ply': return meshOf(new PLYLoader().parse(buffer));
+    case 'usd': case 'usda': case 'usdc': case 'usdz':
+      throw refusal(say('the studio writes USD, and does not read it'), name, say('open the model that it was made of: GLB, FBX or another'));
     default: throw refusal(say('a file of this kind cannot be opened'), name, say('open GLB, glTF, VRM, OBJ, FBX, STL, PLY or BVH'));
   }
 }
 
 /** `beside`: files that it may refer to, by name. */
 export async function toGlb(bytes: Uint8Array, name: string, beside = new Map<string, File>()): Promise<Uint8Array> {
-  if (/\.vrm$/i.test(name)) return bytes; // a GLB with extensions
   let model: Object3D;
   try {
     const readers = new Beside(beside);
@@ -142,18 +126,15 @@ export async function toGlb(bytes: Uint8Array, name: string, beside = new Map<st
     if (error instanceof EngineError) throw error;
     throw unreadable(name, error);
   }
-  const others: Object3D[] = [];
   let meshes = 0;
   model.traverse((part) => {
-    if (part instanceof Mesh) {
-      ++meshes;
-      part.geometry = weld(part.geometry as BufferGeometry);
-    } else if (part instanceof DirectionalLight || 'isLight' in part || 'isCamera' in part) others.push(part);
+    if (!(part instanceof Mesh)) return;
+    ++meshes;
+    part.geometry = weld(part.geometry as BufferGeometry);
   });
-  others.forEach((part) => part.removeFromParent());
   if (meshes === 0) throw refusal(say('there is no surface in the file'), name, say('is it the right file?'));
   const scene = new Scene();
   scene.add(model);
-  const glb = await new GLTFExporter().parseAsync(scene, { binary: true, animations: model.animations });
+  const glb = await new GLTFExporter().parseAsync(scene, { binary: true });
   return new Uint8Array(glb as ArrayBuffer);
 }

@@ -117,6 +117,8 @@ export interface PageState {
   keyEditor: KeyEditor | null;
   /** Whether the rows of feet that stand are shown. */
   feet: boolean;
+  /** Whether the rows of clips that follow each other are shown. */
+  sequence: boolean;
   chosenKeys: readonly KeyPlace[];
   /** The character before and after the moment that is shown, and the selected joint's path. */
   ghosts: boolean;
@@ -169,7 +171,7 @@ export const createPageStore = (): PageStore => new Store<PageState>({
   session: null, model: null, others: [], arranging: false, mode: 'move', display: 'handles', parts: null, bones: true, wireframe: false,
   selected: null, also: new Set(), bothSides: false, hovered: null, pinned: [], looked: false, work: null, notice: null, help: false,
   seconds: 0, playing: false, speed: 1, loop: true, autoKey: true, gizmo: false, gizmoSpace: 'world', snapping: false, selecting: false, limits: false, correcting: false,
-  span: 0.3, keyEditor: null, feet: false, chosenKeys: [], ghosts: false, ghostsShown: [], paths: null, curve: null,
+  span: 0.3, keyEditor: null, feet: false, sequence: false, chosenKeys: [], ghosts: false, ghostsShown: [], paths: null, curve: null,
   painting: false, brush: { mode: 'add', size: 0.05, strength: 0.5 }, placing: false,
   methods: null, sampleMotions: [], ownMotions: [], shelf: false, samplePoses: [], ownPoses: [], poseLibrary: false, copiedPose: null, comparison: null, report: [], hiddenParts: new Set(), sourceModel: null, sourceShown: true, ar: null,
 });

@@ -1,6 +1,6 @@
 // Everything that a user can do, each a call on the engine's session; panels and the view call this and nothing else.
 // What belongs to one idea is in one file of calls/.
-import type { ExportFormat } from '../engine/messages';
+import type { ExportFormat, SaveAs, SavedModel } from '../engine/messages';
 import { clipCalls } from './calls/clips';
 import { comparingCalls } from './calls/comparing';
 import { Core } from './calls/core';
@@ -8,6 +8,7 @@ import { dragCalls } from './calls/drags';
 import { ghostCalls } from './calls/ghosts';
 import { jointCalls } from './calls/joints';
 import { keyingCalls } from './calls/keying';
+import { liveCalls } from './calls/live';
 import { memberCalls } from './calls/members';
 import { motionCalls } from './calls/motions';
 import { bindParts } from './calls/parts';
@@ -22,6 +23,8 @@ import type { PageStore } from './state';
 /** What leaves the engine, and how it is stopped. */
 const outcomeCalls = (core: Core) => ({
   async exportFile(format: ExportFormat): Promise<Uint8Array | null> { return core.guard(() => core.engine.ask({ kind: 'export', format })); },
+  async targets(): Promise<string[] | null> { return core.guard(() => core.engine.ask({ kind: 'targets' })); },
+  async saveModel(as: SaveAs): Promise<SavedModel | null> { return core.guard(() => core.engine.ask({ kind: 'save', as })); },
   async record(): Promise<string | null> { return core.guard(() => core.engine.ask({ kind: 'record' })); },
   async stop() {
     core.page.set({ comparison: null });
@@ -36,12 +39,12 @@ function allCalls(core: Core, journal: Journal) {
   return {
     ...openingCalls(core, journal, clips, motions, rig, comparing), ...members, ...motions, ...clips, ...keying, ...ghostCalls(core),
     ...posing, ...dragCalls(core, rig), ...selectionCalls(core, joints, members, rig), ...rig, ...joints, ...comparing,
-    ...outcomeCalls(core),
+    ...liveCalls(core, motions), ...outcomeCalls(core),
   };
 }
 
 export type Studio = ReturnType<typeof allCalls> &
-  Pick<Core, 'run' | 'guard' | 'idle' | 'readStance' | 'onStance' | 'onWeights' | 'onOpened' | 'onPoses' | 'ask'>;
+  Pick<Core, 'run' | 'guard' | 'idle' | 'readStance' | 'onStance' | 'onWeights' | 'onOpened' | 'onPoses' | 'onCrowd' | 'ask'>;
 
 export function createStudio(page: PageStore, journal: Journal): Studio {
   const core = new Core(page);

@@ -1,5 +1,5 @@
 // What the device itself shows models in AR with: Apple's Quick Look, Google's Scene Viewer, whatever a file is shared with.
-import { posedUsdz } from '../app/export_usdz';
+import { chosenClip } from '../app/clips';
 import { stemOf } from '../app/saved_files';
 import { element } from '../ui/dom';
 import { say } from '../words/say';
@@ -8,9 +8,18 @@ import { modelFile, publicAddress, shareable } from './ways';
 
 const kept = 60_000; // milliseconds that the viewer has to fetch what it is given
 
-/** The scene as it is posed now. A link with rel=ar that has nothing but a picture in it opens Quick Look. */
+/** What moves now moves there, too; else the surface as it stands. What bends it otherwise than linearly has no movement there. */
+async function shownUsdz({ studio, page: { now } }: Desk): Promise<Uint8Array | null> {
+  const clip = chosenClip(now.session);
+  if (!now.playing || !clip || now.session?.deformer !== 'linear-blend') return studio.exportFile('usdz');
+  return (await studio.saveModel({ format: 'usdz', target: 'gltf', clip: clip.name }))?.bytes ?? null;
+}
+
+/** The scene as it stands or moves now. A link with rel=ar that has nothing but a picture in it opens Quick Look. */
 export async function openQuickLook(desk: Desk) {
-  const file = modelFile('usdz', await posedUsdz(desk) as BlobPart);
+  const bytes = await shownUsdz(desk);
+  if (!bytes) return;
+  const file = modelFile('usdz', bytes as BlobPart);
   const link = element('a', { rel: 'ar', href: URL.createObjectURL(file), download: file.name, class: 'quick-look', hidden: true }, element('img', { alt: say('AR Quick Look') }));
   document.body.append(link);
   link.click();
@@ -45,7 +54,7 @@ export function openSceneViewer({ page }: Desk): Promise<void> {
 export async function shareModel(desk: Desk) {
   const format = shareable();
   if (!format) throw new Error('this browser shares no models');
-  const bytes = format === 'usdz' ? await posedUsdz(desk) : await desk.studio.exportFile('glb');
+  const bytes = format === 'usdz' ? await shownUsdz(desk) : await desk.studio.exportFile('glb');
   if (!bytes) return;
   await navigator.share({ files: [modelFile(format, bytes as BlobPart, stemOf(desk.page.now))] }).catch((error: unknown) => {
     if (!(error instanceof DOMException && error.name === 'AbortError')) throw error; // thought better of it

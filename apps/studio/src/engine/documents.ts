@@ -4,7 +4,7 @@ import type { Failure, loadLimber, Session } from '@engine/limber.mjs';
 import { chosenClip, momentOf } from '../app/clips';
 import {
   canBeNamed, opensModel, type Answers, type Command, type ExportFormat, type LimberError, type MotionPreview, type MotionRequest,
-  type OtherMember, type Ray, type Request, type SessionState, type Stance, type Step, type Trial, type Variant, type Vector,
+  type OtherMember, type Ray, type Request, type SaveAs, type SessionState, type Stance, type Step, type Trial, type Variant, type Vector,
 } from './messages';
 
 type Limber = Awaited<ReturnType<typeof loadLimber>>;
@@ -102,6 +102,22 @@ export class Documents {
     if (movesAll.has(command.do)) step.stance.others = this.otherSkins();
     if (!changesWeights.has(command.do)) return step;
     return { ...step, weights: { ...orThrow(this.session.weights()).weights, deformation: orThrow(this.session.deformation()).deformation } };
+  }
+
+  liveBegin(skeleton: string): Answers['live-begin'] {
+    orThrow(this.session.liveBegin(skeleton));
+    return null;
+  }
+  liveFrame(pose: Float32Array, seconds: number): Answers['live-frame'] { return this.liveStance(this.session.liveFrame(pose, seconds)); }
+  liveEnd(): Answers['live-end'] { return this.liveStance(this.session.liveEnd()); }
+  liveRecorded(): Answers['live-recorded'] { return orThrow(this.session.liveRecorded()).bytes; }
+
+  private liveStance(made: ReturnType<Session['liveEnd']>): Stance {
+    const { skin, pinned } = orThrow(made);
+    this.pinned = pinned;
+    const stance = this.stance(skin);
+    if (this.standing() !== '') stance.others = this.otherSkins();
+    return stance;
   }
 
   restore(requests: Request[]): Answers['restore'] {
@@ -220,9 +236,12 @@ export class Documents {
   surface(rays: Ray[]) { return rays.map((ray) => orThrow(this.session.surface(ray)).hit); }
   preview(stroke: Command | null) { return orThrow(stroke ? this.session.preview(stroke) : this.session.weights()).weights; }
   parts() { return orThrow(this.session.parts()).parts; }
+  crowd(bytes: Uint8Array, name: string): Answers['crowd'] { return orThrow(this.limber.crowd(bytes, name)).crowd; }
   checkPly(bytes: Uint8Array, name: string) { orThrow(this.limber.checkPly(bytes, name)); }
   methods() { return this.limber.methods(); }
   export(format: ExportFormat) { return orThrow(this.session.export(format)).bytes; }
+  targets(): Answers['targets'] { return this.limber.rigChoices().target.map(({ name }) => name); }
+  save({ format, target, clip }: SaveAs): Answers['save'] { return orThrow(this.session.saveModel(`.${format}`, target, clip)); }
   record() { return JSON.stringify(this.session.record(), null, 1); }
 
   sourceModel(): Answers['source-model'] {

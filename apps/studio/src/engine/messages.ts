@@ -1,11 +1,11 @@
 // What the page and the worker that holds the engine say to each other.
 import type {
-  Command, Deformation, ErrorKind, ExportFormat, LimberError, Measures, MethodKind, Methods, PickHit, Placement, Ray, SceneMember, SessionState,
+  Command, Crowd, Deformation, ErrorKind, ExportFormat, LimberError, Measures, MethodKind, Methods, PickHit, Placement, Ray, SceneMember, SessionState,
   SurfaceHit, SurfaceModel, SurfaceParts, Tangent, WeightArrays,
 } from '@engine/limber.mjs';
 
 export type {
-  Command, Deformation, ErrorKind, ExportFormat, LimberError, Measures, MethodKind, Methods, PickHit, Placement, Ray, SceneMember, SessionState,
+  Command, Crowd, Deformation, ErrorKind, ExportFormat, LimberError, Measures, MethodKind, Methods, PickHit, Placement, Ray, SceneMember, SessionState,
   SurfaceHit, SurfaceModel, SurfaceParts, Tangent, WeightArrays,
 };
 export type Vector = [number, number, number];
@@ -78,6 +78,14 @@ export interface Curve {
   tangents: Tangent[];
 }
 
+export type ModelFormat = 'glb' | 'gltf' | 'fbx' | 'vrm' | 'usdz' | 'usda' | 'usdc';
+
+/** `clip`: of formats that hold one; empty: none. */
+export interface SaveAs { format: ModelFormat; target: string; clip: string }
+
+/** Formats of several files as a ZIP archive of them; the warnings say what is not in it. */
+export interface SavedModel { bytes: Uint8Array; warnings: SessionState['warnings'] }
+
 /** A motion on its way to the model: from a file, or one that the engine makes. */
 export type MotionRequest =
   | { kind: 'motion'; bytes: Uint8Array; name: string; retarget?: boolean }
@@ -130,10 +138,17 @@ export type Request =
   | { kind: 'add'; bytes: Uint8Array; name: string; limbsFollow: boolean; asProp: boolean }
   /** Fails where the file is cut off. */
   | { kind: 'check-ply'; bytes: Uint8Array; name: string }
+  | { kind: 'crowd'; bytes: Uint8Array; name: string }
   /** Put on the model as well, or not added, where `retarget` says so. */
   | { kind: 'motion'; bytes: Uint8Array; name: string; retarget?: boolean }
   /** The rig of the model in the file, on the model. */
   | { kind: 'transfer'; bytes: Uint8Array; name: string }
+  /** A motion that comes live: its skeleton as text, then seven numbers for each of its joints, frame by frame. */
+  | { kind: 'live-begin'; skeleton: string }
+  | { kind: 'live-frame'; pose: Float32Array; seconds: number }
+  | { kind: 'live-end' }
+  /** What has come of it, as a BVH. */
+  | { kind: 'live-recorded' }
   | { kind: 'run'; command: Command }
   | { kind: 'try-motion'; motion: MotionRequest }
   | { kind: 'sample-motions' }
@@ -169,13 +184,22 @@ export type Request =
   /** For each of the others what makes it, in order. */
   | { kind: 'compare'; commands: Command[][] }
   | { kind: 'export'; format: ExportFormat }
+  /** The names of the programs that models are saved for; the model for one of them, with the named clip where the format
+   *  holds one. */
+  | { kind: 'targets' }
+  | { kind: 'save'; as: SaveAs }
   | { kind: 'record' };
 
 /** The answer to each kind of request. */
 export interface Answers {
+  'live-begin': null;
+  'live-frame': Stance;
+  'live-end': Stance;
+  'live-recorded': Uint8Array;
   open: Step;
   add: Step;
   'check-ply': void;
+  crowd: Crowd;
   motion: Step;
   transfer: Step;
   run: Step;
@@ -203,6 +227,8 @@ export interface Answers {
   /** What the document itself measures, each variant or why there is none, and how all stand. */
   compare: { measures: Measures; variants: (Variant | LimberError)[]; stance: Stance };
   export: Uint8Array;
+  targets: string[];
+  save: SavedModel;
   record: string;
 }
 

@@ -13,10 +13,15 @@ function answer(documents: Documents, request: Request): Answers[Kind] {
   switch (request.kind) {
     case 'open': return documents.open(request.bytes, request.name, request.limbsFollow);
     case 'add': return documents.add(request);
+    case 'crowd': return documents.crowd(request.bytes, request.name);
     case 'check-ply': return documents.checkPly(request.bytes, request.name);
     case 'motion': return documents.addMotion(request);
     case 'transfer': return documents.transfer(request);
     case 'run': return documents.run(request.command);
+    case 'live-begin': return documents.liveBegin(request.skeleton);
+    case 'live-frame': return documents.liveFrame(request.pose, request.seconds);
+    case 'live-end': return documents.liveEnd();
+    case 'live-recorded': return documents.liveRecorded();
     case 'pick': return documents.pick(request.ray, request.slope);
     case 'pick-member': return documents.pickMember(request.ray);
     case 'surface': return documents.surface(request.rays);
@@ -39,6 +44,8 @@ function answer(documents: Documents, request: Request): Answers[Kind] {
     case 'methods': return documents.methods();
     case 'compare': return documents.compare(request.commands);
     case 'export': return documents.export(request.format);
+    case 'targets': return documents.targets();
+    case 'save': return documents.save(request.as);
     case 'record': return documents.record();
   }
 }
@@ -108,7 +115,7 @@ class RestOfEngine {
 /** The files that a request brings. */
 function filesIn(request: Request): Uint8Array[] {
   switch (request.kind) {
-    case 'open': case 'add': case 'motion': case 'transfer': return [request.bytes];
+    case 'open': case 'add': case 'motion': case 'transfer': case 'crowd': return [request.bytes];
     case 'try-motion': case 'preview-motion': return request.motion.kind === 'motion' ? [request.motion.bytes] : [];
     case 'restore': return request.requests.flatMap(filesIn);
     default: return [];

@@ -13,7 +13,7 @@ const leastDrag = 4; // pixels: less is a press
 
 export function feetEditor(studio: Studio, page: PageStore): HTMLElement {
   const now = element('div', { class: 'now' });
-  const root = element('div', { class: 'lanes feet', id: 'feet', role: 'group', 'aria-label': say('Feet that stand') });
+  const root = element('div', { class: 'lanes spans', id: 'feet', role: 'group', 'aria-label': say('Feet that stand') });
   const change = (foot: Foot, from: number, to: number, contact: 'planted' | 'free' | 'found') =>
     void studio.run({ do: 'set_contact', foot: foot.foot, from: Math.max(0, from), to, contact });
   let drawn: unknown = null;

@@ -4,10 +4,11 @@ import { setTextSize, textSize, type TextSize } from '../app/text_size';
 import { element } from '../ui/dom';
 import { keptLanguage, languageChoices, languages, say, type Words } from '../words/say';
 
-export type Outlet = 'obj' | 'stl' | 'bvh' | 'usdz' | 'limber' | 'session' | 'record' | 'pictures';
+export type Outlet = 'model' | 'obj' | 'stl' | 'bvh' | 'usdz' | 'limber' | 'session' | 'record' | 'pictures';
 
 /** What leaves the page besides GLB. */
 const outlets: [Outlet, Words][] = [
+  ['model', 'FBX, VRM, USD\u2026 for another program'],
   ['obj', 'OBJ, posed surface'], ['stl', 'STL, posed surface'], ['bvh', 'BVH, the clip'], ['usdz', 'USDZ, for AR Quick Look'],
   ['limber', 'Limber file, everything to go on with'], ['session', 'Session in a GLB'], ['record', 'Commands, for limber session replay'],
   ['pictures', 'Pictures and films\u2026'],

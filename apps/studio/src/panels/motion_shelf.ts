@@ -45,7 +45,7 @@ export function motionShelf(studio: Studio, page: PageStore): HTMLElement {
 
   const samples = element('ul', { class: 'cards', id: 'shelf-samples' }), own = element('ul', { class: 'cards', id: 'shelf-own' });
   const search = element('input', { type: 'search', class: 'select search', id: 'shelf-search', 'aria-label': say('Search your motions'), placeholder: say('Search') });
-  const none = element('p', { class: 'hint-line' }, say('Drop a folder of BVH or GLB motions on the page, or choose it here: it becomes a shelf of your own.'));
+  const none = element('p', { class: 'hint-line' }, say('Drop a folder of BVH, NPZ, VRMA, FBX or GLB motions on the page, or choose it here: it becomes a shelf of your own.'));
   const about = element('p', { class: 'hint-line', role: 'status', id: 'shelf-about' });
   const files = fileInput('shelf-files', { accept: motionFiles }, (chosen) => void studio.openFiles(chosen));
   const folder = fileInput('shelf-folder', { folder: true }, (chosen) => void studio.openFiles(chosen));
@@ -54,7 +54,7 @@ export function motionShelf(studio: Studio, page: PageStore): HTMLElement {
       button(say('Close'), hide, { id: 'close-shelf' })),
     samples, element('h3', {}, say('Your motions')), none, search, own,
     element('div', { class: 'row foot' }, files, folder, about,
-      button(say('Add files'), () => files.click(), { icon: 'add', label: say('Add motions (BVH, GLB)'), id: 'shelf-add-files' }),
+      button(say('Add files'), () => files.click(), { icon: 'add', label: say('Add motions (BVH, NPZ, VRMA, FBX, GLB)'), id: 'shelf-add-files' }),
       button(say('Add a folder'), () => folder.click(), { icon: 'open', label: say('Add a folder of motions'), id: 'shelf-add-folder' })));
 
   const seen = new IntersectionObserver((entries) => {

@@ -41,18 +41,20 @@ export function timeline(studio: Studio, page: PageStore, openSheet: () => Promi
   const ghosts = button('', () => studio.showGhosts(!page.now.ghosts), { icon: 'ghosts', label: say('Ghosts: before and after, and the selected joint\u2019s path'), id: 'ghosts' });
   const feet = button(say('Feet'), () => page.set({ feet: !page.now.feet }), { icon: 'pin', label: say('While which foot stands'), id: 'open-feet' });
   feet.setAttribute('aria-controls', 'feet');
+  const sequence = button(say('Join'), () => page.set({ sequence: !page.now.sequence }), { icon: 'sequence', label: say('Clips that follow each other'), id: 'open-sequence' });
+  sequence.setAttribute('aria-controls', 'sequence');
   const sheet = button('', () => void openSheet(), { icon: 'sheet', label: say('Contact sheet: the clip at a glance'), id: 'open-sheet' });
   const add = button(say('New clip'), () => void studio.addClip(), { icon: 'add', label: say('A clip of your own poses'), id: 'add-clip' });
-  const motion = button(say('Motion file'), () => file.click(), { icon: 'open', label: say('Play a motion (BVH, GLB) on the model; several come to the shelf'), id: 'open-motion' });
+  const motion = button(say('Motion file'), () => file.click(), { icon: 'open', label: say('Play a motion (BVH, NPZ, VRMA, FBX, GLB) on the model; several come to the shelf'), id: 'open-motion' });
   const shelf = button(say('Motions'), () => page.set({ shelf: true }), { icon: 'motions', label: say('Motions to try on the model'), id: 'open-shelf' });
   const remove = button('', () => void studio.run({ do: 'remove_clip', clip: chosenClip(page.now.session)?.name ?? '' }), { icon: 'erase', label: say('Remove this clip'), id: 'remove-clip' });
 
   const card = element('section', { class: 'card timeline', 'aria-label': say('Timeline'), id: 'timeline' },
     element('div', { class: 'row tools' }, play, clips, add, shelf, motion, file,
-      element('div', { class: 'row clip-tools' }, speed, loop, feet, sheet, key, auto, blend, erase, between, remove)),
+      element('div', { class: 'row clip-tools' }, speed, loop, feet, sequence, sheet, key, auto, blend, erase, between, remove)),
     element('div', { class: 'row moment' }, keyToggle(page), ghosts, element('div', { class: 'track' }, scrub, track), time));
   let listed = '';
-  page.watch(({ session, seconds, playing, autoKey, span, ghosts: seen, loop: again, feet: standing }) => {
+  page.watch(({ session, seconds, playing, autoKey, span, ghosts: seen, loop: again, feet: standing, sequence: joined }) => {
     const clip = chosenClip(session);
     const names = session?.clips.map(({ name }) => name) ?? [];
     if (names.join('\n') !== listed || clips.childElementCount === 0) {
@@ -68,6 +70,8 @@ export function timeline(studio: Studio, page: PageStore, openSheet: () => Promi
     ghosts.setAttribute('aria-pressed', String(seen));
     feet.hidden = !clip || clip.feet.length === 0;
     feet.setAttribute('aria-expanded', String(standing));
+    sequence.hidden = !clip;
+    sequence.setAttribute('aria-expanded', String(joined));
     // Recorded motion has no curves of its own to choose; its corrections have a span.
     blend.hidden = !clip?.recorded;
     between.hidden = clip?.recorded ?? false;

@@ -4,10 +4,10 @@ import { samples, scenes } from '../app/samples';
 import { mediaTypes, stemOf } from '../app/saved_files';
 import type { PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
-import type { ModelView } from '../scene/model_view';
-import type { OthersView } from '../scene/others_view';
+import type { ExportFormat } from '../engine/messages';
 import type { Viewport } from '../scene/viewport';
 import { button, element, icon, offer } from '../ui/dom';
+import { arriving } from '../ui/loaded_when_opened';
 import { addDialog } from './add_dialog';
 import { moreMenu, type MenuEntry } from './more_menu';
 import { pictureDialog } from './picture_dialog';
@@ -19,10 +19,10 @@ const filmRate = 30; // pictures a second
 const movingRate = 20; // pictures a second of an animated PNG, each of which is a whole picture
 const turnSeconds = 4; // of a film all the way round
 
-export function toolbar(studio: Studio, page: PageStore, journal: Journal, viewport: Viewport, model: ModelView, others: OthersView, augmented: MenuEntry[]): HTMLElement {
+export function toolbar(studio: Studio, page: PageStore, journal: Journal, viewport: Viewport, augmented: MenuEntry[]): HTMLElement {
   const kept = recent(studio, journal), adding = addDialog(studio);
   const file = element('input', {
-    type: 'file', accept: '.glb,.gltf,.vrm,.obj,.fbx,.stl,.ply,.bvh,.json,.zip,.limber,.bin,.mtl,.png,.jpg,.jpeg', multiple: true, hidden: true, id: 'file',
+    type: 'file', accept: '.glb,.gltf,.vrm,.obj,.fbx,.stl,.ply,.bvh,.npz,.vrma,.json,.zip,.limber,.bin,.mtl,.png,.jpg,.jpeg', multiple: true, hidden: true, id: 'file',
   });
   file.addEventListener('change', () => {
     const chosen = [...file.files ?? []];
@@ -41,7 +41,7 @@ export function toolbar(studio: Studio, page: PageStore, journal: Journal, viewp
   });
 
   const stem = () => stemOf(page.now);
-  const save = async (format: Exclude<keyof typeof mediaTypes, 'usdz'>) => {
+  const save = async (format: Exclude<ExportFormat, 'ply'>) => {
     const bytes = await studio.exportFile(format);
     const ending = format === 'session' ? '_session.glb' : format === 'bvh' ? '.bvh' : `_posed.${format}`;
     if (bytes) offer(bytes as BlobPart, mediaTypes[format], stem() + ending);
@@ -75,9 +75,9 @@ export function toolbar(studio: Studio, page: PageStore, journal: Journal, viewp
       offer(await viewport.turn(filmRate, turnSeconds, background), 'video/webm', `${stem()}_turn.webm`);
     }),
   });
-  const saveUsdz = async () => {
-    const { posedUsdz } = await import('../app/export_usdz');
-    offer(await posedUsdz({ model, others, viewport }) as BlobPart, mediaTypes.usdz, `${stem()}_posed.usdz`);
+  const saveModel = async () => {
+    const make = await studio.guard(() => arriving(import('./save_dialog')));
+    if (make) await make.saveDialog(studio, page);
   };
   const saveRecord = async () => {
     const record = await studio.record();
@@ -85,7 +85,7 @@ export function toolbar(studio: Studio, page: PageStore, journal: Journal, viewp
   };
   const more = moreMenu((outlet) => {
     if (outlet === 'pictures') pictures.open(chosenClip(page.now.session) !== null);
-    else if (outlet === 'usdz') void saveUsdz();
+    else if (outlet === 'model') void saveModel();
     else if (outlet === 'limber') offer(studio.limberFile() as BlobPart, 'application/zip', `${stem()}.limber`);
     else if (outlet === 'record') void saveRecord();
     else void save(outlet);

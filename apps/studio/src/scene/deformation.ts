@@ -1,6 +1,6 @@
 // How the surface bends where its weights alone do not say: by rows of moments (DeformRows of the engine), which the graphics
 // card sums up, or by the engine, which then gives the surface for each frame.
-import { BufferAttribute, BufferGeometry, DataTexture, FloatType, Material, Matrix4, Quaternion, RGBAFormat, Vector3, Vector4 } from 'three';
+import { BufferAttribute, BufferGeometry, DataTexture, FloatType, Material, RGBAFormat } from 'three';
 import type { Deformation } from '../engine/messages';
 import { jointMotions } from './joint_motions';
 
@@ -13,7 +13,7 @@ const entriesAcross = 400; // 2000 texels, which is less than any card takes
 type Uniforms = Record<string, { value: unknown }>;
 
 /** The material's vertices go where these lines, in place of three.js' own, take them. */
-function patch(material: Material, name: string, uniforms: Uniforms, lines: { declare: string; begin: string; normal: string; position: string }) {
+export function patch(material: Material, name: string, uniforms: Uniforms, lines: { declare: string; begin: string; normal: string; position: string }) {
   material.onBeforeCompile = (shader) => {
     Object.assign(shader.uniforms, uniforms);
     for (const [chunk, code] of [
@@ -66,7 +66,7 @@ const rowLines = {
 export class RowSurface {
   readonly entries: { value: DataTexture };
 
-  constructor(private rows: Rows, private geometry: BufferGeometry) {
+  constructor(rows: Rows, private geometry: BufferGeometry) {
     geometry.setAttribute('rowPlace', new BufferAttribute(rows.places, 3));
     geometry.setAttribute('rowRange', new BufferAttribute(rows.ranges, 2));
     this.entries = { value: textureOf(rows.entries) };
@@ -74,7 +74,6 @@ export class RowSurface {
 
   /** Others, for the same vertices. */
   take(rows: Rows) {
-    this.rows = rows;
     for (const [name, values] of [['rowPlace', rows.places], ['rowRange', rows.ranges]] as const) {
       const attribute = this.geometry.getAttribute(name) as BufferAttribute;
       attribute.copyArray(values);
@@ -82,29 +81,6 @@ export class RowSurface {
     }
     this.entries.value.dispose();
     this.entries.value = textureOf(rows.entries);
-  }
-
-  /** Where the card draws a vertex. */
-  place(vertex: number, at: Vector3, matrices: Float32Array, motions: Float32Array): Vector3 {
-    const { places, ranges, entries } = this.rows, place = new Vector3().fromArray(places, 3 * vertex);
-    const moment = new Vector4(), turn = new Vector4(), sum = new Vector4(0, 0, 0, 0), pivot = sum.clone(), shift = new Vector3(), matrix = new Matrix4();
-    const arm = at.clone().sub(place), stretched = arm.clone();
-    const first = ranges[2 * vertex]!, end = first + ranges[2 * vertex + 1]!;
-    for (let entry = first; entry < end; ++entry) {
-      for (let i = 0; i < 4; ++i) {
-        const [joint, x, y, z, weight] = [0, 1, 2, 3, 4].map((k) => entries[perEntry * entry + 4 * k + i]!) as [number, number, number, number, number];
-        if (weight === 0) continue;
-        moment.set(x, y, z, weight).applyMatrix4(matrix.fromArray(matrices, 16 * joint));
-        shift.add(new Vector3(moment.x - x, moment.y - y, moment.z - z));
-        turn.fromArray(motions, 16 * joint);
-        if (pivot.lengthSq() === 0) pivot.copy(turn);
-        sum.addScaledVector(turn, pivot.dot(turn) < 0 ? -weight : weight);
-        [arm.x, arm.y, arm.z].forEach((along, column) =>
-          stretched.addScaledVector(new Vector3().fromArray(motions, 16 * joint + 4 + 4 * column), weight * along));
-      }
-    }
-    if (sum.lengthSq() > 0) stretched.applyQuaternion(new Quaternion(sum.x, sum.y, sum.z, sum.w).normalize());
-    return at.copy(place).add(shift).add(stretched);
   }
 
   dispose() { this.entries.value.dispose(); }
@@ -134,7 +110,6 @@ export class RowMotion {
   bend(material: Material) {
     patch(material, 'rows', { rowEntries: this.surface.entries, jointMotions: { value: this.texture } }, rowLines);
   }
-  place(vertex: number, at: Vector3, matrices: Float32Array): Vector3 { return this.surface.place(vertex, at, matrices, this.motions); }
   dispose() { this.texture.dispose(); }
 }
 
@@ -163,10 +138,5 @@ export class PosedSurface {
       position: '#include <skinning_vertex>\nif (posedGiven) transformed = posedPosition;',
     });
   }
-  /** null where the weights say it. */
-  place(vertex: number, at: Vector3): Vector3 | null {
-    return this.given.value ? at.fromBufferAttribute(this.attribute('posedPosition'), vertex) : null;
-  }
-
   private attribute(name: string) { return this.geometry.getAttribute(name) as BufferAttribute; }
 }

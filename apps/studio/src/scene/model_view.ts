@@ -1,13 +1,13 @@
 // The model's surface, moved by the engine's matrices on the graphics card.
 import {
-  Bone, DetachedBindMode, BufferAttribute, BufferGeometry, Color, DoubleSide, Group, Material, Matrix4, Mesh, MeshStandardMaterial,
-  RepeatWrapping, Skeleton, SkinnedMesh, SRGBColorSpace, Texture, Vector3,
+  Bone, DetachedBindMode, BufferAttribute, BufferGeometry, Color, Group, Material, Matrix4, MeshStandardMaterial, Skeleton, SkinnedMesh, Texture,
 } from 'three';
 import type { Display } from '../app/state';
 import type { PaintedWeights, SurfaceModel, SurfaceParts } from '../engine/messages';
 import { PosedSurface, RowMotion, RowSurface } from './deformation';
 import { heatColor, jointColor } from './palette';
 import { readyForStretch, showStretch } from './stretch';
+import { loadTexture, plainMaterial } from './surface_look';
 
 /** Takes its matrices as they come from the engine instead of making them from bones. */
 class EngineSkeleton extends Skeleton {
@@ -31,17 +31,6 @@ export interface Likeness {
 }
 
 const heatSteps = 255; // from cold to hot
-
-async function loadTexture(bytes: Uint8Array): Promise<Texture> {
-  const bitmap = await createImageBitmap(new Blob([bytes as BlobPart]), { imageOrientation: 'flipY' });
-  const texture = new Texture(bitmap);
-  texture.flipY = false;
-  texture.colorSpace = SRGBColorSpace;
-  texture.wrapS = texture.wrapT = RepeatWrapping;
-  texture.anisotropy = 4;
-  texture.needsUpdate = true;
-  return texture;
-}
 
 export class ModelView {
   readonly root = new Group();
@@ -148,47 +137,12 @@ export class ModelView {
     this.meshes.forEach((mesh, part) => { mesh.visible = !parts.has(part); });
   }
 
-  /** The surface as it stands now, without a skeleton, for programs that know none. */
-  posed(): Group {
-    const group = new Group();
-    const at = new Vector3();
-    for (const mesh of this.meshes) {
-      const geometry = new BufferGeometry(), { index, vertices } = ownVertices(mesh.geometry.index!);
-      const positions = new Float32Array(3 * vertices.length), uv = mesh.geometry.getAttribute('uv') as BufferAttribute | undefined;
-      vertices.forEach((vertex, v) => this.place(mesh, vertex, at).toArray(positions, 3 * v));
-      geometry.setIndex(index);
-      geometry.setAttribute('position', new BufferAttribute(positions, 3));
-      if (uv) geometry.setAttribute('uv', new BufferAttribute(new Float32Array(vertices.flatMap((vertex) => [uv.getX(vertex), uv.getY(vertex)])), 2));
-      geometry.computeVertexNormals();
-      const material = new MeshStandardMaterial({
-        color: mesh.userData['color'] as Color, map: mesh.userData['map'] as Texture | null, roughness: 0.75, metalness: 0,
-      });
-      group.add(new Mesh(geometry, material));
-    }
-    return group;
-  }
-
-  private place(mesh: SkinnedMesh, vertex: number, at: Vector3): Vector3 {
-    const model = this.model!, matrices = this.skeleton!.boneMatrices;
-    const from = new Vector3().fromBufferAttribute(mesh.geometry.getAttribute('position') as BufferAttribute, vertex);
-    if (this.rows && matrices) return this.rows.motion.place(vertex, at.copy(from), matrices);
-    if (this.posedSurface?.place(vertex, at)) return at;
-    at.set(0, 0, 0);
-    for (let i = 4 * vertex; i < 4 * vertex + 4; ++i) {
-      const weight = model.weights[i] ?? 0;
-      if (weight === 0 || !matrices) continue;
-      at.addScaledVector(from.clone().applyMatrix4(new Matrix4().fromArray(matrices, 16 * (model.joints[i] ?? 0))), weight);
-    }
-    return at;
-  }
-
   private addPart(part: SurfaceModel['parts'][number]) {
     const geometry = new BufferGeometry();
     for (const [name, attribute] of Object.entries(this.geometry!.attributes)) geometry.setAttribute(name, attribute);
     geometry.setIndex(new BufferAttribute(this.model!.triangles.subarray(part.first, part.first + part.count), 1));
     const source = part.material === null ? null : this.model!.materials[part.material] ?? null;
-    const color = source ? new Color(...source.color.slice(0, 3) as [number, number, number]) : new Color('#b9c0ca');
-    const material = new MeshStandardMaterial({ color, roughness: 0.75, metalness: 0, side: DoubleSide });
+    const material = plainMaterial(source), color = material.color.clone();
     (this.rows?.motion ?? this.posedSurface)?.bend(material);
     readyForStretch(material);
     const mesh = new SkinnedMesh(geometry, material);
@@ -259,14 +213,4 @@ export class ModelView {
     this.rows = this.posedSurface = null;
     this.geometry?.dispose();
   }
-}
-
-/** The vertices that these triangles have, and the triangles by their places among them. */
-function ownVertices(triangles: BufferAttribute): { index: number[]; vertices: number[] } {
-  const places = new Map<number, number>(), index: number[] = [];
-  for (const vertex of triangles.array) {
-    if (!places.has(vertex)) places.set(vertex, places.size);
-    index.push(places.get(vertex)!);
-  }
-  return { index, vertices: [...places.keys()] };
 }

@@ -1,5 +1,5 @@
 // The members of the scene that are not chosen, each where it stands.
-import { Group, type Object3D } from 'three';
+import { Group } from 'three';
 import type { OtherMember, Stance } from '../engine/messages';
 import { ModelView } from './model_view';
 import type { Places } from './places';
@@ -39,15 +39,6 @@ export class OthersView {
     this.views.forEach(({ root }, member) => {
       root.matrix.copy(places.of(member));
       root.updateMatrixWorld(true);
-    });
-  }
-
-  /** The surfaces as they stand, without skeletons. */
-  posed(): Object3D[] {
-    return [...this.views.values()].map((view) => {
-      const group = view.posed();
-      group.applyMatrix4(view.root.matrix);
-      return group;
     });
   }
 }

@@ -45,6 +45,7 @@ const icons = {
   add: 'M10 4v12M4 10h12',
   edit: 'M4 16l1-4 8-8 3 3-8 8z',
   compare: 'M3 5h6v10H3zM11 5h6v10h-6z',
+  sequence: 'M2 4h10v5H2zM8 11h10v5H8z',
   sheet: 'M3 4h14v12H3zM3 10h14M8 4v12M13 4v12',
   eye: 'M2 10s3-5 8-5 8 5 8 5-3 5-8 5-8-5-8-5zM10 8a2 2 0 1 0 .01 0',
   recent: 'M10 3a7 7 0 1 0 .01 0M10 6v4l3 2',

@@ -7,6 +7,7 @@ export const english: Record<Counted, Forms> = {
   '{count} triangles': { one: '{count} triangle', other: '{count} triangles' },
   '{count} handles': { one: '{count} handle', other: '{count} handles' },
   '{count} joints': { one: '{count} joint', other: '{count} joints' },
+  '{count} bodies': { one: '{count} body', other: '{count} bodies' },
   '{count} parts': { one: '{count} part', other: '{count} parts' },
   '{count} keys': { one: '{count} key', other: '{count} keys' },
   '{count} keys chosen': { one: '{count} key chosen', other: '{count} keys chosen' },

@@ -1,6 +1,6 @@
 // What all calls share: the engine, the store, and how a step of the one comes into the other.
 import { EngineClient, EngineError } from '../../engine/client';
-import type { Command, PaintedWeights, SessionState, Stance, Step } from '../../engine/messages';
+import type { Command, Crowd, PaintedWeights, SessionState, Stance, Step } from '../../engine/messages';
 import { stageName } from '../../words/engine';
 import { say } from '../../words/say';
 import { keysThere } from '../keys';
@@ -20,6 +20,8 @@ export class Core {
   onOpened: () => void = () => {};
   /** Files of poses were brought. */
   onPoses: (files: File[]) => Promise<void> = async () => {};
+  /** A file of many bodies was opened. */
+  onCrowd: (crowd: Crowd, name: string) => Promise<void> = async () => {};
   /** Something is to be replaced: whether the user agrees. */
   ask: (title: string, detail: string, yes: string) => Promise<boolean> = async () => true;
 

@@ -4,7 +4,7 @@ import type { Request, Step } from '../../engine/messages';
 import { counted } from '../../ui/counted';
 import { told } from '../../words/engine';
 import { say } from '../../words/say';
-import { sorted, withBuffers, type Brought } from '../files';
+import { isCrowd, sorted, withBuffers, withPictures, type Brought } from '../files';
 import type { Journal, KeptDocument } from '../journal';
 import { fromLimberFile, toLimberFile } from '../limber_file';
 import { openSample, sceneRecord } from '../samples';
@@ -29,7 +29,7 @@ export function openingCalls(
   engine.onChange = (request, place) => journal.add(request, place);
 
   /** Of models that are asked for while another one is being opened the last is opened, the others never. */
-  async function open(make: () => Promise<Opened>) {
+  async function open(make: () => Promise<Opened | null>) {
     const mine = ++openings, before = opening;
     page.set({ playing: false });
     forgetMoment();
@@ -37,7 +37,8 @@ export function openingCalls(
       await before;
       if (mine !== openings) return;
       page.set({ notice: null }); // before, not after: what cannot be kept is told while it opens
-      show(await make());
+      const opened = await make();
+      if (opened) show(opened);
     });
     await opening;
   }
@@ -57,7 +58,12 @@ export function openingCalls(
     core.onOpened();
   }
 
-  const openBytes = async (bytes: Uint8Array, name: string) => ({ step: await engine.ask({ kind: 'open', bytes, name, limbsFollow: true }) });
+  /** A crowd is to be looked at; the model that is worked on stays. */
+  async function openBytes(bytes: Uint8Array, name: string): Promise<Opened | null> {
+    if (!isCrowd(bytes)) return { step: await engine.ask({ kind: 'open', bytes, name, limbsFollow: true }) };
+    await core.onCrowd(await engine.ask({ kind: 'crowd', bytes, name }), name);
+    return null;
+  }
 
   /** A document by all that was done; one that was kept goes on where it is. */
   async function restore(requests: Request[], name: string, kept: KeptDocument | null = null): Promise<Opened> {
@@ -85,8 +91,9 @@ export function openingCalls(
   /** What the engine reads of it. */
   async function readModel(file: File, beside: Map<string, File>): Promise<{ bytes: Uint8Array; name: string }> {
     const { name } = file, bytes = new Uint8Array(await file.arrayBuffer());
-    if (/\.glb$/i.test(name)) return { bytes, name };
+    if (/\.(glb|vrm)$/i.test(name)) return { bytes, name };
     if (/\.gltf$/i.test(name)) return { bytes: await withBuffers(bytes, beside), name };
+    if (/\.fbx$/i.test(name)) return { bytes: await withPictures(bytes, name, beside), name };
     if (/\.ply$/i.test(name)) await engine.ask({ kind: 'check-ply', bytes, name });
     const { toGlb } = await import('../import_model');
     return { bytes: await toGlb(bytes, name, beside), name };
