@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <string>
 
+#include "limber/core/rotation.h"
 #include "limber/ik/ik_skeletons.h"
-#include "limber/ik/rotation.h"
 #include "limber/retarget/motion_smoothing.h"
 #include "limber/retarget/retarget_clip.h"
 

@@ -55,7 +55,7 @@ export work examples # for the hook
 cp "$packages"/*.deb "$packages"/*.tar.gz "$packages"/*.whl "$work/files"
 mmdebstrap --variant=apt --hook-dir=/usr/share/mmdebstrap/hooks/file-mirror-automount \
   --customize-hook='mkdir "$1/limber" && cp -r "$work/files/." "$work/inside.sh" "$examples" "$1/limber"' \
-  --customize-hook='chroot "$1" bash /limber/inside.sh' \
+  --customize-hook='chroot "$1" env -u CMAKE_CXX_COMPILER_LAUNCHER bash /limber/inside.sh' \
   bookworm /dev/null >"$work/bare.log" 2>&1 </dev/null
 if ! grep -q '^bare: it stands$' "$work/bare.log"; then
   grep -E '^E: ' "$work/bare.log" | head -n 1

@@ -10,6 +10,7 @@
 #include "limber/session/scene.h"
 #include "limber/skeleton/pose.h"
 #include "shared_data.h"
+#include "source_folder.h"
 
 namespace limber {
 namespace {
@@ -17,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 fs::path exampleFolder() {
-  return fs::path(LIMBER_SOURCE_DIR) / "samples/scenes";
+  return limber::testing::sourceFolder() / "samples/scenes";
 }
 
 std::string textOf(const fs::path& path) {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "limber/core/names.h"
+#include "source_folder.h"
 
 namespace limber::testing {
 
@@ -21,7 +22,7 @@ namespace limber::testing {
 inline std::optional<std::filesystem::path> sharedDataFolder() {
   const char* named = std::getenv("LIMBER_SHARED_DATA");
   const std::filesystem::path folder =
-      named && *named ? std::filesystem::path(named) : std::filesystem::path(LIMBER_SOURCE_DIR) / "../shared/data";
+      named && *named ? std::filesystem::path(named) : sourceFolder() / "../shared/data";
   std::error_code error;
   if (!std::filesystem::is_directory(folder, error)) return std::nullopt;
   return std::filesystem::canonical(folder);

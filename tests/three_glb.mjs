@@ -12,8 +12,16 @@ function withoutMaterials(bytes) {
   return Buffer.concat([bytes.subarray(0, 20), text, bytes.subarray(20 + length)]);
 }
 
-/** What GLTFLoader makes of a file: { scene, animations, parser, ... }. */
-export async function loadInThree(path) {
+/** What GLTFLoader makes of a file: { scene, animations, parser, ... }; `plugins` are those of its extensions. */
+export async function loadInThree(path, plugins = []) {
   const bytes = withoutMaterials(readFileSync(path));
-  return new GLTFLoader().parseAsync(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.length), '');
+  const loader = new GLTFLoader();
+  for (const plugin of plugins) loader.register(plugin);
+  return loader.parseAsync(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.length), '');
+}
+
+/** { root, clips, names }: a model with the clips' names as the file has them, for three.js names those that have none. */
+export async function loadGlb(path) {
+  const { scene, animations, parser } = await loadInThree(path);
+  return { root: scene, clips: animations, names: (parser.json.animations ?? []).map(({ name }) => name) };
 }

@@ -1,76 +1,51 @@
-// Does three.js show a model that limber wrote as USD where it shows the GLB that it was made of?
+// Do other programs show a model that limber wrote as USD where they show the GLB that it was made of?
 //
 //   node tests/three_surfaces.mjs LIMBER OUTPUT_FOLDER FILE.glb...
 //
-// Converts each model, once for each of its clips, to a .usda, loads both with three.js' own loaders, plays them, and
-// compares the world positions of the corners of all triangles at keys of the clip. With LIMBER_SIZES says how far they are
-// apart, and how large the text is beside the GLB. Ends with "N passed, N failed".
+// Converts each model, once for each of its clips, to a .usda, a .usdc and a .usdz. three.js loads these and the GLB with its
+// own loaders and plays them: the world positions of the corners of all triangles at keys of the clip have to be the same.
+// tinyusdz, which refuses what three.js passes over, has to read them, and to find the same triangles and materials in text
+// and crate. With LIMBER_SIZES says how far they are apart, and how large they are beside the GLB. Ends with
+// "N passed, N failed".
 import { execFileSync } from 'node:child_process';
 import { mkdirSync, readFileSync } from 'node:fs';
 import { basename, join } from 'node:path';
-import { AnimationMixer, Box3, Vector3 } from 'three';
 import { USDLoader } from 'three/examples/jsm/loaders/USDLoader.js';
-import { loadInThree } from './three_glb.mjs';
+import { loadGlb } from './three_glb.mjs';
+import { corners, largestDistances } from './three_show.mjs';
+import { readStrictly } from './tiny_usd.mjs';
 
 const kTolerance = 1e-5; // of the model's size
-const kMostMoments = 24;
+const kForms = ['usda', 'usdc', 'usdz'];
 
-async function loadGlb(path) {
-  const { scene, animations, parser } = await loadInThree(path);
-  return { root: scene, clips: animations, names: (parser.json.animations ?? []).map(({ name }) => name) };
-}
+// What three.js makes of pictures, which only a browser reads: elements that never load.
+globalThis.document ??= { createElementNS: () => ({ addEventListener() {}, removeEventListener() {} }) };
 
-// Without what makes three.js look for pictures.
 function loadUsd(path) {
-  const text = readFileSync(path, 'utf8').replace(/asset inputs:file = .*/g, '');
-  const root = new USDLoader().parse(text);
+  const bytes = readFileSync(path);
+  const root = new USDLoader().parse(path.endsWith('.usda') ? bytes.toString() : Uint8Array.from(bytes).buffer);
   return { root, clips: root.animations ?? [] };
 }
 
-function show({ root, clips }, name, seconds) {
-  const clip = clips.find((one) => one.name === name) ?? clips[0];
-  if (clip) {
-    const mixer = new AnimationMixer(root);
-    const action = mixer.clipAction(clip);
-    action.setLoop(2200).clampWhenFinished = true; // LoopOnce
-    action.play();
-    mixer.setTime(seconds);
-  }
-  root.updateMatrixWorld(true);
-}
-
-// The corners of all triangles in the world, mesh after mesh.
-function corners(root) {
-  const found = [];
-  root.traverse((object) => {
-    if (!object.isMesh) return;
-    if (object.isSkinnedMesh) object.skeleton.update();
-    const { index } = object.geometry, count = (index ?? object.geometry.attributes.position).count;
-    for (let i = 0; i < count; ++i) {
-      found.push(object.getVertexPosition(index ? index.getX(i) : i, new Vector3()).applyMatrix4(object.matrixWorld));
+// Throws unless text and crate are the same to tinyusdz, but for the rounding of text.
+async function compareStrictly(paths, corners) {
+  const [text, ...crates] = await Promise.all(paths.map(readStrictly));
+  const found = text.meshes.reduce((sum, mesh) => sum + mesh.corners.length, 0);
+  if (found !== corners) throw new Error(`tinyusdz finds ${found / 3} triangles for ${corners / 3}`);
+  const largest = text.meshes.reduce((most, { points }) => points.reduce((so, value) => Math.max(so, Math.abs(value)), most), 0);
+  const rounded = (_, value) => (typeof value === 'number' ? Number(value.toPrecision(5)) : value);
+  for (const crate of crates) {
+    const same = text.meshes.length === crate.meshes.length && text.meshes.every((mesh, m) => {
+      const other = crate.meshes[m];
+      // Corner by corner: vertices that are the same once rounded are one to tinyusdz.
+      return mesh.name === other.name && mesh.corners.length === other.corners.length && mesh.corners.every((corner, i) =>
+        [0, 1, 2].every((axis) => Math.abs(mesh.points[3 * corner + axis] - other.points[3 * other.corners[i] + axis]) <= kTolerance * largest));
+    });
+    if (!same) throw new Error('tinyusdz reads other triangles from the crate than from the text');
+    if (JSON.stringify(text.materials, rounded) !== JSON.stringify(crate.materials, rounded)) {
+      throw new Error('tinyusdz reads other materials from the crate than from the text');
     }
-  });
-  return found;
-}
-
-function momentsOf(clip) {
-  if (!clip) return [0];
-  const keys = [...new Set(clip.tracks.flatMap((track) => [...track.times]))].sort((a, b) => a - b);
-  const step = Math.max(1, Math.ceil(keys.length / kMostMoments));
-  return keys.filter((_, i) => i % step === 0);
-}
-
-function largestDistance(glb, usd, clip) {
-  let largest = 0, size = 0;
-  for (const seconds of momentsOf(clip)) {
-    show(glb, clip?.name, seconds);
-    show(usd, undefined, seconds);
-    const expected = corners(glb.root), shown = corners(usd.root);
-    if (expected.length !== shown.length) throw new Error(`has ${shown.length / 3} triangles for ${expected.length / 3}`);
-    size = Math.max(size, new Box3().setFromPoints(expected).getSize(new Vector3()).length());
-    expected.forEach((place, i) => { largest = Math.max(largest, place.distanceTo(shown[i])); });
   }
-  return largest / size;
 }
 
 const [limber, folder, ...files] = process.argv.slice(2);
@@ -85,14 +60,21 @@ for (const file of files) {
   try {
     const glb = await loadGlb(file);
     for (const [i, clip] of (glb.clips.length > 0 ? glb.clips : [undefined]).entries()) {
-      const usda = join(folder, basename(file).replace(/\.glb$/, '.usda'));
+      const paths = kForms.map((form) => join(folder, basename(file).replace(/\.glb$/, `.${form}`)));
       const options = glb.names[i] ? ['--clip', glb.names[i]] : []; // three.js names those that have no name
-      execFileSync(limber, ['convert', file, usda, ...options, '--quiet'], { stdio: ['ignore', 'ignore', 'pipe'] });
-      const distance = largestDistance(glb, loadUsd(usda), clip);
-      distance < kTolerance ? ++passed : ++failed;
-      const ratio = readFileSync(usda).length / readFileSync(file).length;
-      if (!(distance < kTolerance)) console.log(`${file}: '${clip?.name ?? ''}': the surface is ${distance} of its size away`);
-      if (process.env.LIMBER_SIZES) console.log(`${file}: '${clip?.name ?? ''}': ${distance.toExponential(1)}, text ${ratio.toFixed(2)} times the GLB`);
+      for (const path of paths) {
+        execFileSync(limber, ['convert', file, path, ...options, '--quiet'], { stdio: ['ignore', 'ignore', 'pipe'] });
+      }
+      const distances = largestDistances(glb, paths.map(loadUsd), clip);
+      await compareStrictly(paths, corners(glb.root).length);
+      const isSame = distances.every((distance) => distance < kTolerance);
+      isSame ? ++passed : ++failed;
+      const told = `${file}: '${clip?.name ?? ''}': ${distances.map((distance) => distance.toExponential(1)).join(', ')}`;
+      if (!isSame) console.log(`${told} of its size away, as ${kForms.join(', ')}`);
+      if (process.env.LIMBER_SIZES) {
+        const ratios = paths.map((path) => (readFileSync(path).length / readFileSync(file).length).toFixed(2));
+        console.log(`${told}; ${ratios.join(', ')} times the GLB`);
+      }
     }
   } catch (error) {
     ++failed;

@@ -55,6 +55,7 @@ done
 
 # The page, where its parts are built (./dev studio) and there is a browser to draw it.
 if [ -f dist/index.html ] && command -v chromium >/dev/null; then
+  export LIMBER_PIXEL_DENSITY=1
   node apps/studio/tests/pictures.mjs dist $images
   # The states of augmented reality, as its tests meet them.
   node apps/studio/tests/ar_test.mjs dist $limber $work
@@ -88,6 +89,14 @@ done
 once walk 0:1.1
 $limber retarget $work/biped_template.glb $work/walk_once.bvh -o $work/walk.glb --quiet
 $limber preview $work/walk.glb --frames 8 --size 160x200 --view 80,5 -o $images/retarget_walk.png --quiet
+# Motions combined (docs/combining.md).
+$limber sample walk -o $work/walk.bvh --quiet
+$limber sample run -o $work/run.bvh --quiet
+combined="$limber retarget $work/biped_template.glb $work/walk.bvh $work/run.bvh --quiet"
+$combined --crossfade 0.4 -o $work/off.glb
+$limber preview $work/off.glb --frames 16 --size 240x150 --view 80,5 -o $images/combine_crossfade.png --quiet
+$combined --blend 0:1:5 -o $work/gaits.glb
+$limber preview $work/gaits.glb --clip walk_run_0.50 --frames 16 --size 240x150 --view 80,5 -o $images/combine_blend.png --quiet
 
 once quadruped-walk 0:0.9
 $limber retarget $work/quadruped_template.glb $work/quadruped-walk_once.bvh -o $work/fox_walk.glb --quiet

@@ -12,10 +12,10 @@ studio=$(cd "$(dirname "$0")/.." && pwd)/apps/studio
 one_of_each_folder() { awk '{ folder = $0; sub(/\/[^\/]*$/, "", folder) } folder == "/usr/include" || !seen[folder]++'; }
 
 # compiled_in <build> <pattern of objects>: Debian packages whose headers were taken. The headers of the C library and of the compiler ask for
-# no notice.
+# no notice. ninja names headers as seen from the build.
 compiled_in() {
   ninja -C "$1" -t deps | awk -v wanted="$2" '/: #deps/ { take = $1 ~ wanted && $1 !~ /_tests\.dir/ } /^ / && take { print $1 }' | sort -u |
-    one_of_each_folder | xargs readlink -f | { grep '^/usr/' || true; } | sort -u | { xargs -r dpkg-query -S 2>/dev/null || true; } | cut -d: -f1 |
+    one_of_each_folder | (cd "$1" && xargs readlink -f) | { grep '^/usr/' || true; } | sort -u | { xargs -r dpkg-query -S 2>/dev/null || true; } | cut -d: -f1 |
     { grep -vE '^(libc6-dev|linux-libc-dev|libstdc\+\+-[0-9]+-dev|libgcc-[0-9]+-dev|libclang.*)$' || true; } | sort -u
 }
 

@@ -2,7 +2,7 @@
 
 packages_release=(cmake ninja-build g++ libeigen3-dev libcli11-dev libfmt-dev nlohmann-json3-dev libassimp-dev
   libmeshoptimizer-dev libdraco-dev libpng-dev libjpeg-dev libtbb-dev libzip-dev libssl-dev pkg-config)
-packages_tests=("${packages_release[@]}" libgtest-dev libgmock-dev libembree-dev)
+packages_tests=("${packages_release[@]}" libgtest-dev libgmock-dev libembree-dev zlib1g-dev)
 packages_bench=("${packages_tests[@]}" libbenchmark-dev nodejs)
 packages_sanitize=("${packages_tests[@]}" clang libclang-rt-14-dev lld)
 packages_wasm=(cmake ninja-build libeigen3-dev libfmt-dev nlohmann-json3-dev emscripten nodejs zstd)
@@ -13,6 +13,7 @@ packages_installers=(dpkg-dev file help2man patchelf python3-wheel) # for ./dev 
 packages_blender=(blender python3-numpy xvfb xauth) # for the add-on's tests
 packages_bare=(mmdebstrap) # for a Debian with nothing on it
 packages_browser=(chromium fonts-dejavu-core)
+packages_cluster=(slurmctld slurmd slurm-client munge parallel) # for batches by engines
 packages_site=(cmake doxygen mkdocs mkdocs-material)
 packages_format=(clang-format)
 packages_lint=("${packages_release[@]}" clang clang-tidy)
@@ -63,10 +64,11 @@ need() {
     { echo "apt could not install: ${missing[*]}" >&2; tail -n 20 "$apt_log" >&2; return 1; }
 }
 
+# One at a time, for stages that run at once.
 apt_log=build/apt.log
 apt_quietly() {
   mkdir -p build
-  apt_run "$@" >"$apt_log" 2>&1
+  { flock 9 && apt_run "$@" >"$apt_log" 2>&1 9>&-; } 9>build/apt.lock
 }
 
 # On a system without apt: the programs that are not there, and the Debian names of everything, for its own packager.

@@ -6,12 +6,18 @@ build_wasm() {
     zstd --ultra -22 -q -f build/wasm/limber_engine_first.wasm build/wasm/limber_engine_rest.wasm
 }
 
-# install_node_packages <folder>: what its package-lock.json names, unless it is there.
+# install_node_packages <folder>: what its package-lock.json names, unless it is there. One at a time, for stages that
+# run at once.
 install_node_packages() {
-  local folder=$1 log=build/npm.log
-  [ "$folder/node_modules/.package-lock.json" -nt "$folder/package-lock.json" ] && return 0
+  local folder=$1 log=build/npm.log status=0
   mkdir -p build
-  npm --prefix "$folder" ci --silent --no-progress </dev/null >"$log" 2>&1 || { tail -n 20 "$log" >&2; return 1; }
+  exec 8>build/npm.lock
+  flock 8
+  if [ ! "$folder/node_modules/.package-lock.json" -nt "$folder/package-lock.json" ]; then
+    npm --prefix "$folder" ci --silent --no-progress </dev/null >"$log" 2>&1 8>&- || { status=1; tail -n 20 "$log" >&2; }
+  fi
+  exec 8>&-
+  return $status
 }
 
 # The program with dist/ in it; tests and benchmarks are left as an earlier configuration has them.

@@ -26,6 +26,48 @@ stage() {
   echo "   $((SECONDS - started)) s"
 }
 
+# stages_at_once: of its input, a line each: a function without arguments, then the title of its stage. For stages that
+# keep one processor busy and write into folders of their own: as many at a time as there are processors, told in their
+# order. Where one fails all others come to their end before it sums up and exits.
+stages_at_once() {
+  local logs=$PWD/$output/stages failed= name title counts
+  local -A titles=() names=()
+  rm -rf "$logs"
+  mkdir -p "$logs"
+  while read -r name title; do
+    names[${#names[@]}]=$name titles[$name]=$title
+    [ "$(jobs -r | wc -l)" -lt "$jobs" ] || wait -n || true
+    stage_apart "$name" "$logs" &
+  done
+  wait
+  local i
+  for ((i = 0; i < ${#names[@]}; ++i)); do
+    name=${names[$i]}
+    echo "== ${titles[$name]}"
+    cat "$logs/$name.log"
+    read -r -a counts <"$logs/$name.counts"
+    add_counts "${counts[@]:0:3}"
+    if [ "${counts[3]}" = 0 ]; then
+      echo "   ${counts[4]} s"
+    else
+      failed=yes
+      echo "== ${titles[$name]} FAILED after ${counts[4]} s"
+    fi
+  done
+  [ -n "$failed" ] || return 0
+  [ $total_failed -gt 0 ] || total_failed=1
+  summary
+  exit 1
+}
+
+# stage_apart <function> <folder>: what it prints, and its counts, status and seconds, in files named after it.
+stage_apart() {
+  local status=0 started=$SECONDS
+  total_passed=0 total_failed=0 total_skipped=0
+  "$1" >"$2/$1.log" 2>&1 </dev/null || status=$?
+  echo "$total_passed $total_failed $total_skipped $status $((SECONDS - started))" >"$2/$1.counts"
+}
+
 # One check of our own, counted as one test.
 check() {
   local what=$1
@@ -47,7 +89,7 @@ add_counts_of() {
 
 # Adds the counts of a script, and shows what else it said if it failed.
 counted() {
-  local log=$output/counted.log status=0
+  local log=$output/counted_$BASHPID.log status=0
   "$@" >"$log" 2>&1 || status=$?
   if add_counts_of "$log"; then
     echo "   $(tail -n 1 "$log")"
@@ -59,13 +101,16 @@ counted() {
 }
 
 # counted_at_once: the commands of its input, a line each, as many at a time as there are processors; the first that fails
-# lets no other begin.
+# lets no other begin. Says which took longest.
 counted_at_once() {
   local logs=$PWD/$output/at_once status=0 log
-  rm -rf "$logs"
-  mkdir -p "$logs"
+  rm -rf "$logs" "${logs}_seconds"
+  mkdir -p "$logs" "${logs}_seconds"
   # xargs begins no other command once one ends with 255.
-  nl -w 2 -n rz -s ' ' | xargs -P "$jobs" -L 1 sh -c 'log=$1/$2; shift 2; "$@" >"$log" 2>&1 </dev/null || exit 255' - "$logs" 2>/dev/null || status=1
+  nl -w 2 -n rz -s ' ' | xargs -P "$jobs" -L 1 bash -c '
+    log=$1/$2; shift 2; "$@" >"$log" 2>&1 </dev/null || exit 255
+    echo "$SECONDS s ${*:1:2}" >"${log/at_once/at_once_seconds}"' - "$logs" 2>/dev/null || status=1
+  echo "   $(cat "${logs}_seconds"/* 2>/dev/null | sort -rn | head -n 4 | sed 's|[^ ]*/||' | paste -sd , | sed 's/,/, /g')"
   for log in "$logs"/*; do
     if add_counts_of "$log" && [[ $(tail -n 1 "$log") == *' 0 failed' ]]; then continue; fi
     status=1
@@ -169,21 +214,70 @@ motions_in_three() {
     counted node tests/three_positions.mjs build/release/limber "$output/three" $motions $characters
 }
 
-# The project's own models, one unrigged, one of pieces, one that flies with a rig of its own; shared ones where they are.
-surfaces_in_three() {
-  local folder=$output/surfaces models=() model
+crowds_in_three() {
+  install_node_packages . && counted node tests/crowd_test.mjs build/release/limber "$output/crowd"
+}
+
+# The project's own models, one unrigged, one of pieces, one that flies with a rig of its own; shared ones where they are:
+# their paths, one a line.
+models_in_motion() {
+  local folder=$1 model
   mkdir -p "$folder"
   for model in biped robot flying; do
-    models+=("$folder/$model.glb")
-    build/release/limber sample "$model" --quiet -o "${models[-1]}" || return 1
+    build/release/limber sample "$model" --quiet -o "$folder/$model.glb" || return 1
+    echo "$folder/$model.glb"
   done
-  models+=("$folder/walking.glb")
   build/release/limber sample walk --quiet -o "$folder/walk.bvh" &&
-    build/release/limber animate "$folder/biped.glb" "$folder/walk.bvh" --quiet -o "${models[-1]}" || return 1
+    build/release/limber animate "$folder/biped.glb" "$folder/walk.bvh" --quiet -o "$folder/walking.glb" || return 1
+  echo "$folder/walking.glb"
   for model in ../shared/data/rigged/{cesium_man,fox_khronos,robot_expressive,quaternius_man_casual}.glb; do
-    [ ! -f "$model" ] || models+=("$model")
+    [ ! -f "$model" ] || echo "$model"
   done
-  install_node_packages . && counted node tests/three_surfaces.mjs build/release/limber "$folder" "${models[@]}"
+}
+
+surfaces_in_three() {
+  local folder=$output/surfaces models
+  models=$(models_in_motion "$folder") || return 1
+  install_node_packages . && counted node tests/three_surfaces.mjs build/release/limber "$folder" $models
+}
+
+# Leaves the files, and where three.js shows them, for Blender. A skeleton alone is one of them.
+fbx_in_three() {
+  local folder=$output/fbx models
+  models=$(models_in_motion "$folder") || return 1
+  build/release/limber convert "$folder/walk.bvh" "$folder/skeleton.glb" --quiet || return 1
+  install_node_packages . &&
+    LIMBER_CORNERS=1 counted node tests/three_fbx.mjs build/release/limber "$folder" $models "$folder/skeleton.glb"
+}
+
+# What fbx_in_three left; a skeleton alone has no surface.
+fbx_in_blender() {
+  need blender python3-numpy || return 1
+  rm -f "$output/fbx/skeleton.fbx"
+  counted blender_script tests/blender_fbx.py "$output"/fbx/*.fbx
+}
+
+# Shared models, where they are, as limber reads them and as three.js does.
+fbx_read() {
+  local files
+  mapfile -t files < <(find ../shared/data/{creatures,rigged,meshes} -iname '*.fbx' 2>/dev/null | sort)
+  [ ${#files[@]} -gt 0 ] || { echo "   skipped: the shared models are not there"; add_counts 0 0 1; return 0; }
+  install_node_packages . && counted node tests/fbx_read.mjs build/release/limber "$output/fbx_read" "${files[@]}"
+}
+
+# The project's own person with a clip, and shared ones where they are: as VRM 1.0 with motions, and by way of VRM 0.x.
+avatars_in_three() {
+  local folder=$output/avatars models=() model walking
+  mkdir -p "$folder"
+  walking=$folder/walking.glb
+  build/release/limber sample biped --quiet -o "$folder/biped.glb" &&
+    build/release/limber sample walk --quiet -o "$folder/walk.bvh" &&
+    build/release/limber animate "$folder/biped.glb" "$folder/walk.bvh" --quiet -o "$walking" || return 1
+  for model in $(sed -n 's/.*"\([^"]*\.glb\)".*/\1/p' tests/shared_people.h); do
+    [ ! -f "../shared/data/rigged/$model" ] || models+=("../shared/data/rigged/$model")
+  done
+  install_node_packages . && counted node tests/three_vrm.mjs build/release/limber "$folder" "$walking" "${models[@]}" &&
+    counted node tests/three_vrm0.mjs build/release/limber "$folder" "$walking" "${models[@]:0:4}"
 }
 
 motions_in_blender() {
@@ -196,12 +290,14 @@ motions_in_blender() {
     build/release/limber convert "$motion" "${glbs[-1]}" --quiet || return 1
   done
   characters=$(characters_in_motion) || return 1
-  counted blender_script "${glbs[@]}" $characters
+  counted blender_script tests/blender_positions.py "${glbs[@]}" $characters
 }
 
 # Blender says goodbye after the script's last line.
 blender_script() {
-  blender --background --factory-startup --python tests/blender_positions.py -- "$@" </dev/null | grep -v '^\(Blender\|Data are loaded\|glTF import\|$\)'
+  local script=$1
+  shift
+  blender --background --factory-startup --python "$script" -- "$@" </dev/null | grep -v '^\(Blender\|Data are loaded\|glTF import\|FBX version\|$\)'
   return "${PIPESTATUS[0]}"
 }
 
@@ -246,6 +342,8 @@ node apps/studio/tests/beside_test.mjs dist $output/studio
 node apps/studio/tests/keep_test.mjs dist build/release/limber $output/studio
 node apps/studio/tests/dope_test.mjs dist $output/studio
 node apps/studio/tests/feet_test.mjs dist $output/studio
+node apps/studio/tests/sequence_test.mjs dist $output/studio
+node apps/studio/tests/crowd_view_test.mjs dist build/release/limber $output/studio
 node apps/studio/tests/pose_test.mjs dist $output/studio
 node apps/studio/tests/tools_test.mjs dist $output/studio
 node apps/studio/tests/paint_test.mjs dist $output/studio
@@ -261,6 +359,7 @@ node apps/studio/tests/poses_test.mjs dist $output/studio
 node apps/studio/tests/ar_test.mjs dist build/release/limber $output/studio
 node apps/studio/tests/ar_trouble_test.mjs dist $output/studio
 node apps/studio/tests/ways_test.mjs dist $output/studio
+node apps/studio/tests/save_test.mjs dist build/release/limber $output/studio
 node apps/studio/tests/headset_test.mjs dist build/release/limber $output/studio
 node apps/studio/tests/install_test.mjs dist build/release/limber $output/studio
 node apps/studio/tests/card_test.mjs
@@ -273,8 +372,9 @@ TESTS
 studio_in_program() {
   need "${packages_studio[@]}" && build_program_with_studio &&
     counted node apps/studio/tests/program_test.mjs build/release/limber dist || return 1
-  command -v chromium >/dev/null || { echo "   no chromium here: limber studio --host is not tried"; add_counts 0 0 1; return 0; }
-  counted node apps/studio/tests/host_test.mjs build/release/limber dist "$output/studio"
+  command -v chromium >/dev/null || { echo "   no chromium here: limber studio --host and --live are not tried"; add_counts 0 0 1; return 0; }
+  counted node apps/studio/tests/host_test.mjs build/release/limber dist "$output/studio" &&
+    counted node apps/studio/tests/live_test.mjs build/release/limber "$output/studio"
 }
 
 # The module as it is built, against the program; and the tour of it.
@@ -283,10 +383,14 @@ python_module() {
     PYTHONPATH=build/release/python LIMBER_PROGRAM=build/release/limber counted bindings/python/tests/run.sh "$output/python"
 }
 
-# What is made for others to install, on a system that has nothing: skipped where none can be made.
+# What is made for others to install.
+make_packages() {
+  need "${packages_installers[@]}" && tools/make_packages.sh build/release build/packages &&
+    counted tests/package_notices.sh build/packages build/release "$output/notices"
+}
+
+# The packages on a system that has nothing: skipped where none can be made.
 packages_on_bare_debian() {
-  need "${packages_installers[@]}" && tools/make_packages.sh build/release build/packages || return 1
-  counted tests/package_notices.sh build/packages build/release "$output/notices" || return 1
   need "${packages_bare[@]}" >/dev/null 2>&1 || true
   if ! command -v mmdebstrap >/dev/null || [ "$(id -u)" != 0 ]; then
     echo "   no mmdebstrap here, or not root: the packages are made, and not tried"
@@ -315,6 +419,28 @@ blender_addon() {
     return 0
   fi
   counted apps/blender/tests/run.sh build/packages/limber-blender-*.zip build/release/limber "$output/blender_addon" build/packages/limber-[0-9]*.tgz
+}
+
+# 300 models; damaged ones among them where the shared ones are there.
+batch_of_many() {
+  local folder
+  folder=$(shared_data)/broken || folder=
+  counted node tests/batch_test.mjs build/release/limber "$output/batch" $folder && grep '^|' "$output/counted_$BASHPID.log"
+}
+
+batch_by_engines() {
+  need "${packages_cluster[@]}" >/dev/null 2>&1 || true
+  if ! command -v slurmctld >/dev/null && ! command -v parallel >/dev/null; then
+    echo "   neither Slurm nor GNU parallel here: batches by engines are not tried"
+    add_counts 0 0 1
+    return 0
+  fi
+  counted tests/batch_engines.sh build/release/limber "$output/engines"
+}
+
+kubernetes_job() {
+  install_node_packages . && install_node_packages apps/studio &&
+    counted node tests/kubernetes_job.mjs apps/studio/node_modules/.bin/tsc "$output/kubernetes"
 }
 
 documentation_site() {
@@ -398,34 +524,50 @@ release_stages() {
   if [ -n "$quick" ]; then stage "the project's own samples" model_tests release '^(?!.*Samples)'; fi
 }
 
-# Fitting a template takes some ten seconds under sanitizers, as do surfaces made from distance fields. Of the tests that
-# do it over and over one runs every time; ./dev test --sanitize runs them all.
-minutes_under_sanitizers='TemplateRigger\.[^N]|PersonTemplate\.[^N]|PosedBodies\.[HOL]|FigureSearch\.([KGC]|Fe)|PinnedJointsOfATemplateStand|SampleMotionsMove|SampleFoxWalks|PosesStartFrom'
-minutes_under_sanitizers+='|AnyNumberOfThreadsAndReadsBack/(winged|flying|theropod)|ClosedSymmetricModelOnItsFeet/(winged|flying)|PlanFit\.[^A]|ShapeReading\.[^S]|ShapeReadingTest\..*/[^s]|BodyCurves\.[^A]'
-minutes_under_sanitizers+='|EveryWeightMethod|WeightMethods\.[GK]|GeodesicVoxel\.[^P]|LegBend\.OverstretchedLegs|BodyVolume\.RefusesAFace|AnatomicalFrame\.Follows|FeetDirection\.IsUnknown|TransferAssetTest'
-minutes_under_sanitizers+='|Cli\.(AnimateRigs|PeopleOfFiles|RigsOfASplit|TheClipThatWasAdded|AStudy|APicture|PreviewShows)|Transfer\.[CW]|ArmFlatness\.W'
-minutes_under_sanitizers+='|JointLandmarks\.WhatHas|StandingFeet\.Bodies|Render\.IsTheSame|FigureSearch\.FindsOne|TemplateEmbedding\.OfMany'
+# slow_tests <folder of logs>: a regex of the tests that took long there, but for the quickest of each suite where that
+# took no more than ten times as long. Sanitizers make ten times of all of it: ./dev test --sanitize runs them all.
+slow_tests() {
+  local long_milliseconds=400
+  sed -nE 's/^\[       OK \] ([^ ]+) \(([0-9]+) ms\)/\2 \1/p' "$1"/*.log | sort -n |
+    awk -v long=$long_milliseconds '{ split($2, name, "."); if ($1 > long && (seen[name[1]] || $1 > 10 * long)) print $2; seen[name[1]] = 1 }' |
+    sed 's/\./\\./g' | paste -sd '|' | sed 's/^/^(/; s/$/)$/'
+}
 
 remaining_stages() {
+  local slow
+  slow=$(slow_tests $output/programs)
   stage "every model, every count of handles" model_tests release
   stage "faulty files, through the program" broken_files
+  stage "batches, killed and gone on with" batch_of_many
+  stage "batches by Slurm and GNU parallel" batch_by_engines
+  stage "Kubernetes file against its schema" kubernetes_job
   stage "WebAssembly build" build_wasm
-  stage "WebAssembly in Node against the native program" wasm_smoke
-  stage "module for Python" python_module
-  stage "motions in three.js" motions_in_three
-  stage "USD in three.js" surfaces_in_three
+  stages_at_once <<'STAGES'
+wasm_smoke WebAssembly in Node against the native program
+python_module module for Python
+surfaces_in_three USD in three.js
+avatars_in_three VRM in three-vrm
+fbx_in_three FBX in three.js
+fbx_read FBX read as three.js reads it
+motions_in_three motions in three.js
+crowds_in_three crowds in three.js
+STAGES
+  if [ -n "$blender" ]; then stage "FBX in Blender" fbx_in_blender; fi
   stage "studio: types, bundle" build_studio
   stage "studio in a browser: mouse, touch, keyboard, bad files" studio_in_browser
   stage "studio in the program" studio_in_program
   stage "glTF validator over every file written" validate_written_files
   stage "installed package, and the examples built against it" install_and_use
-  stage "packages, installed on a Debian with nothing on it" packages_on_bare_debian
-  stage "npm package" npm_package
+  stage "packages for others to install" make_packages
+  stages_at_once <<'STAGES'
+packages_on_bare_debian packages, installed on a Debian with nothing on it
+npm_package npm package
+documentation_site documentation as a site
+STAGES
   stage "add-on in Blender" blender_addon
-  stage "documentation as a site" documentation_site
   stage "sanitizer build, clang++ with warnings as errors" build_sanitize
   sanitizer_options
-  stage "unit tests under sanitizers" unit_tests sanitize "$minutes_under_sanitizers"
+  stage "unit tests under sanitizers" unit_tests sanitize "$slow"
   # All other models, and templates, take minutes there: ./dev test --sanitize has them.
   LIMBER_MATRIX_HANDLES=10 LIMBER_MATRIX_FRAMES=60 stage "the project's own samples at 10 handles under sanitizers" \
     model_tests sanitize '^(?!.*Samples)|Template|MatchedByTheirForm'

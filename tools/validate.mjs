@@ -1,4 +1,4 @@
-// Runs the Khronos glTF validator over every .glb and .gltf below the folders given.
+// Runs the Khronos glTF validator over every .glb, .gltf, .vrm and .vrma below the folders given.
 //
 //   node tools/validate.mjs FOLDER...
 //
@@ -7,12 +7,14 @@
 import { readFileSync, readdirSync, existsSync, statSync } from 'node:fs';
 import { basename, dirname, extname, join, resolve, sep } from 'node:path';
 import { createRequire } from 'node:module';
+import { cpus } from 'node:os';
+import { Worker, isMainThread, parentPort, workerData } from 'node:worker_threads';
 
 const { validateBytes } = createRequire(import.meta.url)('gltf-validator');
 
 const kError = 0, kWarning = 1;
 
-const isGltf = (path) => ['.glb', '.gltf'].includes(extname(path).toLowerCase());
+const isGltf = (path) => ['.glb', '.gltf', '.vrm', '.vrma'].includes(extname(path).toLowerCase());
 
 // A source may have any name: told by its content.
 const looksLikeGltf = (bytes) => /^(glTF|\s*\{)/.test(bytes.subarray(0, 64).toString('latin1'));
@@ -71,17 +73,25 @@ async function complaintsAbout(path) {
       `${severity === kError ? 'error' : 'warning'} ${code} ${count} times, ${before.get(code)?.count ?? 0} in its source: ${example}`);
 }
 
-const folders = process.argv.slice(2);
-const missing = folders.filter((folder) => !existsSync(folder) || !statSync(folder).isDirectory());
-if (folders.length === 0 || missing.length > 0) {
-  console.error(missing.length > 0 ? `no such folder: ${missing.join(', ')}` : 'usage: node tools/validate.mjs FOLDER...');
-  process.exit(2);
+if (isMainThread) {
+  await validateFolders(process.argv.slice(2));
+} else {
+  for (const path of workerData) parentPort.postMessage([path, await complaintsAbout(path)]);
 }
-let passed = 0, failed = 0;
-for (const path of folders.flatMap(filesBelow)) {
-  const complaints = await complaintsAbout(path);
-  complaints.length === 0 ? ++passed : ++failed;
-  for (const complaint of complaints) console.log(`${path}: ${complaint}`);
+
+async function validateFolders(folders) {
+  const missing = folders.filter((folder) => !existsSync(folder) || !statSync(folder).isDirectory());
+  if (folders.length === 0 || missing.length > 0) {
+    console.error(missing.length > 0 ? `no such folder: ${missing.join(', ')}` : 'usage: node tools/validate.mjs FOLDER...');
+    process.exit(2);
+  }
+  const paths = folders.flatMap(filesBelow), threads = Math.max(1, cpus().length), complaints = new Map();
+  await Promise.all(Array.from({ length: threads }, (_, at) => new Promise((done, stopped) => {
+    new Worker(new URL(import.meta.url), { workerData: paths.filter((_, i) => i % threads === at) })
+      .on('message', ([path, found]) => complaints.set(path, found)).on('error', stopped).on('exit', done);
+  })));
+  for (const path of paths) for (const complaint of complaints.get(path) ?? ['was not validated']) console.log(`${path}: ${complaint}`);
+  const failed = paths.filter((path) => complaints.get(path)?.length !== 0).length;
+  console.log(`${paths.length - failed} passed, ${failed} failed`);
+  process.exit(failed > 0 ? 1 : 0);
 }
-console.log(`${passed} passed, ${failed} failed`);
-process.exit(failed > 0 ? 1 : 0);

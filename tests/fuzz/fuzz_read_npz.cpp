@@ -1,14 +1,24 @@
-// Archives of arrays: any bytes are a body or an Error.
+// Archives of arrays: any bytes are a body, a motion that keeps its rules, or an Error.
 #include <cstddef>
 #include <cstdint>
 
+#include "limber/asset/smpl_motion.h"
 #include "limber/asset/stored_archive.h"
-#include "limber/core/error.h"
 #include "limber/pipeline/smpl_body.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  limber::NpzFiles files;
   try {
-    limber::smplBody(limber::readStoredArchive({data, size}, "fuzz.npz"), "fuzz.npz");
+    files = limber::readZipArchive({data, size}, "fuzz.npz");
+  } catch (const limber::Error&) {
+    return 0;
+  }
+  try {
+    limber::smplBody(files, "fuzz.npz");
+  } catch (const limber::Error&) {
+  }
+  try {
+    limber::checkMotion(limber::readSmplMotion(files, "fuzz.npz"));
   } catch (const limber::Error&) {
   }
   return 0;
