@@ -89,31 +89,66 @@ add_counts_of() {
 
 # Adds the counts of a script, and shows what else it said if it failed.
 counted() {
+  counted_by logged "$@"
+}
+
+# The same for one that drives a whole browser or window, which meets what is not ours: a click that was lost, a machine that
+# stood still for seconds. It may fail once, and the run says so.
+counted_or_again() {
+  counted_by logged_or_again "$@"
+}
+
+# counted_by <logged|logged_or_again> <command>...
+counted_by() {
   local log=$output/counted_$BASHPID.log status=0
-  "$@" >"$log" 2>&1 || status=$?
+  rm -f "$log.unsteady"
+  "$1" "$log" "${@:2}" || status=$?
   if add_counts_of "$log"; then
     echo "   $(tail -n 1 "$log")"
   elif [ $status -eq 0 ]; then
     status=1
   fi
+  say_unsteady "$log"
   [ $status -eq 0 ] || head -n 60 "$log"
   return $status
 }
 
-# counted_at_once: the commands of its input, a line each, as many at a time as there are processors; the first that fails
-# lets no other begin. Says which took longest.
+# logged <log> <command>...
+logged() {
+  "${@:2}" >"$1" 2>&1 </dev/null
+}
+
+# What it said when it failed is kept as <log>.unsteady.
+logged_or_again() {
+  logged "$@" && return 0
+  mv "$1" "$1.unsteady"
+  logged "$@"
+}
+
+# say_unsteady <log>: what failed at first.
+say_unsteady() {
+  [ ! -f "$1.unsteady" ] || { grep -m 3 '^FAILED' "$1.unsteady" || tail -n 3 "$1.unsteady"; } | sed 's/^/   UNSTEADY, failed at first: /'
+}
+
+# counted_at_once: as counted_or_again, the commands of its input, a line each, as many at a time as there are processors; the
+# first that fails again lets no other begin. Says which took longest.
 counted_at_once() {
-  local logs=$PWD/$output/at_once status=0 log
+  local logs=$PWD/$output/at_once status=0 log name commands
   rm -rf "$logs" "${logs}_seconds"
   mkdir -p "$logs" "${logs}_seconds"
+  commands=$(cat)
+  export -f logged logged_or_again
   # xargs begins no other command once one ends with 255.
-  nl -w 2 -n rz -s ' ' | xargs -P "$jobs" -L 1 bash -c '
-    log=$1/$2; shift 2; "$@" >"$log" 2>&1 </dev/null || exit 255
+  nl -w 2 -n rz -s ' ' <<<"$commands" | xargs -P "$jobs" -L 1 bash -c '
+    log=$1/$2; shift 2; logged_or_again "$log" "$@" || exit 255
     echo "$SECONDS s ${*:1:2}" >"${log/at_once/at_once_seconds}"' - "$logs" 2>/dev/null || status=1
   echo "   $(cat "${logs}_seconds"/* 2>/dev/null | sort -rn | head -n 4 | sed 's|[^ ]*/||' | paste -sd , | sed 's/,/, /g')"
-  for log in "$logs"/*; do
+  for log in "$logs"/??; do
+    name=${log##*/} name=$(sed -n "${name#0}p" <<<"$commands" | cut -d ' ' -f 1-2)
+    say_unsteady "$log" | sed "s|^|   $name:|"
     if add_counts_of "$log" && [[ $(tail -n 1 "$log") == *' 0 failed' ]]; then continue; fi
     status=1
+    echo "$name FAILED"
     head -n 60 "$log"
   done
   return $status
@@ -335,7 +370,7 @@ studio_in_browser() {
   local faulty
   faulty=$(shared_data)/broken || faulty=
   # By the clock, so with nothing beside it.
-  counted node apps/studio/tests/kill_test.mjs dist $output/studio || return 1
+  counted_or_again node apps/studio/tests/kill_test.mjs dist $output/studio || return 1
   counted_at_once <<TESTS
 node apps/studio/tests/studio_test.mjs dist build/release/limber $output/studio $faulty
 node apps/studio/tests/beside_test.mjs dist $output/studio
@@ -371,10 +406,10 @@ TESTS
 
 studio_in_program() {
   need "${packages_studio[@]}" && build_program_with_studio &&
-    counted node apps/studio/tests/program_test.mjs build/release/limber dist || return 1
+    counted_or_again node apps/studio/tests/program_test.mjs build/release/limber dist || return 1
   command -v chromium >/dev/null || { echo "   no chromium here: limber studio --host and --live are not tried"; add_counts 0 0 1; return 0; }
-  counted node apps/studio/tests/host_test.mjs build/release/limber dist "$output/studio" &&
-    counted node apps/studio/tests/live_test.mjs build/release/limber "$output/studio"
+  counted_or_again node apps/studio/tests/host_test.mjs build/release/limber dist "$output/studio" &&
+    counted_or_again node apps/studio/tests/live_test.mjs build/release/limber "$output/studio"
 }
 
 # The module as it is built, against the program; and the tour of it.
@@ -407,7 +442,7 @@ packages_on_bare_debian() {
 npm_package() {
   need "${packages_browser[@]}" >/dev/null 2>&1 || true
   command -v chromium >/dev/null || { echo "   no chromium here: the npm package is not tried"; add_counts 0 0 1; return 0; }
-  counted node bindings/npm/tests/package_test.mjs build/packages/limber-*.tgz build/release/limber "$output/npm"
+  counted_or_again node bindings/npm/tests/package_test.mjs build/packages/limber-*.tgz build/release/limber "$output/npm"
 }
 
 # The add-on in Blender, without a window and in one: skipped where there is no Blender to be had.
@@ -418,7 +453,7 @@ blender_addon() {
     add_counts 0 0 1
     return 0
   fi
-  counted apps/blender/tests/run.sh build/packages/limber-blender-*.zip build/release/limber "$output/blender_addon" build/packages/limber-[0-9]*.tgz
+  counted_or_again apps/blender/tests/run.sh build/packages/limber-blender-*.zip build/release/limber "$output/blender_addon" build/packages/limber-[0-9]*.tgz
 }
 
 # 300 models; damaged ones among them where the shared ones are there.

@@ -10,7 +10,7 @@ import { inSeconds, number, say } from '../words/say';
 /** What a program that drives the page can ask of it. */
 export interface CrowdProbe {
   crowd: Crowd;
-  /** Milliseconds that the page took to place all joints of all bodies, of each frame that was drawn. */
+  /** Milliseconds that the page took to place all joints of all bodies, of the last hundred frames. */
   placing: number[];
   /** The crowd as it is drawn at a moment, or what is drawn without it: pixels, row by row from below, four bytes each. */
   pixels(seconds: number, drawn: boolean): { width: number; height: number; bytes: Uint8Array };
@@ -42,6 +42,7 @@ export function showCrowd(crowd: Crowd, name: string, into: HTMLElement) {
     const begun = performance.now();
     view.show(seconds);
     placing.push(performance.now() - begun);
+    if (placing.length > 100) placing.shift();
     scrub.value = String(seconds);
     time.textContent = `${number(seconds, 2)} / ${inSeconds(crowd.seconds, 2)}`;
     viewport.draw();
