@@ -117,14 +117,15 @@ by_slurm() {
 }
 
 by_parallel() {
-  local out=$output/parallel
+  local out=$output/parallel plan="$output/a \$plan.json"
+  cp "$output/plan.json" "$plan"
   # Killed in the middle, with all that it started; then told to go on.
-  setsid "$root/integrations/gnu-parallel/limber_parallel.sh" "$output/plan.json" "$out" 4 >/dev/null 2>&1 &
+  setsid "$root/integrations/gnu-parallel/limber_parallel.sh" "$plan" "$out" 4 >/dev/null 2>&1 &
   timeout 30 sh -c 'until ls "$1"/models/*.glb >/dev/null 2>&1; do sleep 0.02; done' - "$out"
   kill -KILL -- "-$!" 2>/dev/null
   wait 2>/dev/null
   check "it was killed before the end" test "$(ls "$out"/models/*.glb | wc -l)" -lt "$models"
-  check "it goes on to a good end" "$root/integrations/gnu-parallel/limber_parallel.sh" "$output/plan.json" "$out" 4 >/dev/null
+  check "it goes on to a good end" "$root/integrations/gnu-parallel/limber_parallel.sh" "$plan" "$out" 4 >/dev/null
   check "parallel's outputs are those of one go" is_whole "$out"
   check "parallel's merge has a line for each" test "$(records_of "$out")" = "$models"
 }

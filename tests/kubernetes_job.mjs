@@ -1,12 +1,12 @@
 // Is the Kubernetes file an Indexed Job that a cluster would take? Its schema is that of npm kubernetes-models: values by its
 // validator, fields that it does not know by the compiler of TypeScript. What fields have to do with each other is
-// checked here. Nothing runs it.
+// checked here; its script runs with a program that only ends.
 //
 //   node tests/kubernetes_job.mjs TSC OUTPUT_FOLDER
 //
 // Ends with "N passed, N failed".
 import { spawnSync } from 'node:child_process';
-import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { chmodSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { load } from 'js-yaml';
@@ -59,6 +59,16 @@ check('it is Indexed, and a pod that fails is not started again in place',
 check('there is a shard for each index', container.args.join(' ').includes(`$((JOB_COMPLETION_INDEX + 1))/${spec.completions}"`));
 check('a pod has the processors that its jobs ask for',
   new RegExp(`--jobs ${container.resources.requests.cpu}\\b`).test(container.args.join(' ')));
+// Entries that failed are no reason for another try; all else is told to the cluster.
+const program = join(folder, 'limber');
+const endsWith = (code) => {
+  writeFileSync(program, `#!/bin/sh\nexit ${code}\n`);
+  chmodSync(program, 0o755);
+  const env = { ...process.env, PATH: `${folder}:${process.env.PATH}`, JOB_COMPLETION_INDEX: '0' };
+  return spawnSync(container.command[0], [...container.command.slice(1), ...container.args], { env }).status;
+};
+check('exit codes of the program are those of the pod, but for 1',
+  [0, 1, 2, 3, 4].map(endsWith).join() === '0,0,2,3,4');
 check('policies of failure name a container of the pod',
   spec.podFailurePolicy.rules.every(({ onExitCodes }) => pod.containers.some(({ name }) => name === onExitCodes.containerName)));
 check('no root', pod.securityContext.runAsNonRoot === true && pod.securityContext.runAsUser > 0);

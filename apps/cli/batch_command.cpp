@@ -1,6 +1,8 @@
 // limber batch: one command done to many files, and how far that is.
 #include <algorithm>
+#include <exception>
 #include <filesystem>
+#include <new>
 #include <string>
 #include <vector>
 
@@ -27,6 +29,7 @@ namespace {
 constexpr std::string_view kBatchCommands[] = {"rig",  "animate",  "retarget", "convert", "preview",
                                                "pose", "transfer", "evaluate", "info"};
 constexpr double kMegabyte = 1 << 20;
+constexpr int kWrongCode = 2, kStoppedCode = 4;  // exit codes: as of a wrong call; the batch itself could not go on
 
 struct BatchArguments {
   std::string plan, output, shard = "1/1";
@@ -89,6 +92,20 @@ void failUnless(bool isWell, std::string_view what) {
   if (!isWell) throw Error(ErrorCode::kBadData, std::string(what), {}, "limber batch status tells which and why");
 }
 
+// What ends `work`, but for cancelling and want of memory, ends the program with this exit code.
+template <typename Work>
+auto withExitCode(int code, const Work& work) {
+  try {
+    return work();
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    const auto* known = dynamic_cast<const Error*>(&error);
+    if (known && known->code() == ErrorCode::kCancelled) throw;
+    throw CLI::RuntimeError(error.what(), code);
+  }
+}
+
 void runPlan(const BatchArguments& arguments) {
   if (arguments.prints) {
     fmt::print("{}", exampleBatchPlan());
@@ -97,9 +114,10 @@ void runPlan(const BatchArguments& arguments) {
   if (arguments.plan.empty()) throw CLI::RequiredError("PLAN");
   if (arguments.output.empty()) throw CLI::RequiredError("--output");
   BatchOptions options;
-  options.shard = parseBatchShard(arguments.shard);
-  const BatchPlan plan = readBatchPlan(arguments.plan, kBatchCommands);
-  options.program = ownProgram();
+  const BatchPlan plan = withExitCode(kWrongCode, [&] {
+    options.shard = parseBatchShard(arguments.shard);
+    return readBatchPlan(arguments.plan, kBatchCommands, arguments.output);
+  });
   options.output = arguments.output;
   options.jobs = arguments.jobs > 0 ? arguments.jobs : std::max(1, threadCount());
   options.outOfMemoryCode = kOutOfMemoryCode;
@@ -111,7 +129,10 @@ void runPlan(const BatchArguments& arguments) {
     cancel->update(0);
     line.show(at);
   };
-  const BatchProgress end = runBatch(plan, options);
+  const BatchProgress end = withExitCode(kStoppedCode, [&] {
+    options.program = ownProgram();
+    return runBatch(plan, options);
+  });
   line.clear();
   Account(arguments.quiet, {})
       .line(fmt::format("{}: {} run in {}, {} kept from before; {} failed", counted(end.entries, "entry", "entries"),
@@ -208,7 +229,9 @@ void addBatchCommand(CLI::App& program) {
       "itself alone. Outputs come to their places whole, and a line for each stands in FOLDER/.limber-batch/records:\n"
       "its outcome, seconds, memory, warnings, hashes. A batch that was stopped, however it was, goes on; what has "
       "the\n"
-      "same bytes, command and program is not done again. Exit code 0 where all is done. docs/scale.md tells more.\n"
+      "same bytes, command and program is not done again. docs/scale.md tells more.\n"
+      "\nExit code 0 where all is done, 1 where some entries failed, 2 where the plan or the call is wrong,\n"
+      "4 where the batch itself could not go on: its folder cannot be written, or another program is at this shard.\n"
       "\nExamples:\n"
       "  limber batch --example > plan.json\n"
       "  limber batch plan.json -o out\n"

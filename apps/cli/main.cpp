@@ -99,6 +99,8 @@ int runProgram(int argc, char** argv) {
     }
     flushOutput();
     return 0;
+  } catch (const CLI::RuntimeError& error) {  // of a command with exit codes of its own
+    return fail(error.what(), error.get_exit_code());
   } catch (const CLI::ParseError& error) {
     return usage(program, error.what());
   } catch (const std::bad_alloc&) {

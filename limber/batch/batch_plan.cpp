@@ -65,10 +65,38 @@ void forEachLine(const fs::path& file, const Take& take) {
   }
 }
 
+// The path without links, also where its end is not there yet.
+fs::path withoutLinks(const fs::path& path) {
+  std::error_code problem;
+  const fs::path absolute = fs::absolute(path, problem).lexically_normal();
+  const fs::path found = fs::weakly_canonical(absolute, problem);
+  return problem ? absolute : found;
+}
+
+// The folder that a batch writes to; it may be none.
+class OutputFolder {
+ public:
+  explicit OutputFolder(const fs::path& path) : path_(path.empty() ? path : withoutLinks(path)) {}
+
+  bool holds(const fs::path& file) {
+    if (path_.empty()) return false;
+    const auto [known, isNew] = known_.try_emplace(file.parent_path());
+    if (isNew) {
+      const fs::path folder = withoutLinks(file.parent_path());
+      known->second = std::mismatch(path_.begin(), path_.end(), folder.begin(), folder.end()).first == path_.end();
+    }
+    return known->second;
+  }
+
+ private:
+  fs::path path_;
+  std::map<fs::path, bool> known_;  // by the files' folders
+};
+
 // Gathers what the inputs of a plan stand for.
 class EntryList {
  public:
-  explicit EntryList(fs::path folder) : folder_(std::move(folder)) {}
+  EntryList(fs::path folder, const fs::path& outputs) : folder_(std::move(folder)), outputs_(outputs) {}
 
   void add(const JsonView& input) {
     if (input.json().is_object()) {
@@ -114,7 +142,8 @@ class EntryList {
 
   void addName(const std::string& name, const JsonView& place) {
     if (isPathPattern(name)) {
-      const std::vector<std::string> files = filesMatching(folder_, name);
+      std::vector<std::string> files = filesMatching(folder_, name);
+      std::erase_if(files, [&](const std::string& file) { return outputs_.holds(folder_ / file); });
       if (files.empty()) place.fail("matches no file");
       for (const std::string& file : files) addFile(file);
       return;
@@ -141,7 +170,9 @@ class EntryList {
   void addFolder(const fs::path& path) {
     std::set<fs::path> files;
     for (const InputKind kind : {InputKind::kModel, InputKind::kMotion}) {
-      for (const fs::path& file : inputFilesBelow(path, kind)) files.insert(file);
+      for (const fs::path& file : inputFilesBelow(path, kind)) {
+        if (!outputs_.holds(file)) files.insert(file);
+      }
     }
     if (files.empty()) throw Error(ErrorCode::kFile, "holds nothing that can be read", path.string());
     for (const fs::path& file : files) addFile(file.lexically_relative(folder_).generic_string());
@@ -179,6 +210,7 @@ class EntryList {
   }
 
   fs::path folder_;
+  OutputFolder outputs_;
   std::vector<BatchEntry> entries_;
   std::set<std::string> known_;
 };
@@ -208,7 +240,8 @@ std::string extensionOf(const JsonView& value) {
   return extension;
 }
 
-BatchPlan planOf(const JsonView& root, const fs::path& folder, std::span<const std::string_view> commands) {
+BatchPlan planOf(const JsonView& root, const fs::path& folder, std::span<const std::string_view> commands,
+                 const fs::path& outputs) {
   root.requireObject();
   if (root.count(kVersionKey) != 1) root.fail(fmt::format("has no \"{}\": 1", kVersionKey));
   allowKeys(root, {kVersionKey, "command", "output", "inputs", "limits"});
@@ -219,7 +252,7 @@ BatchPlan planOf(const JsonView& root, const fs::path& folder, std::span<const s
   readJobLimits(root.object("limits"), plan.limits);
   const JsonView inputs = root.array("inputs");
   if (inputs.size() == 0) root.fail("names no inputs");
-  EntryList entries(folder);
+  EntryList entries(folder, outputs);
   for (std::size_t i = 0; i < inputs.size(); ++i) entries.add(inputs[i]);
   plan.entries = entries.take(extension);
   return plan;
@@ -242,12 +275,12 @@ BatchShard parseBatchShard(std::string_view text) {
               "write its number and how many there are: 3/16");
 }
 
-BatchPlan readBatchPlan(const fs::path& file, std::span<const std::string_view> commands) {
+BatchPlan readBatchPlan(const fs::path& file, std::span<const std::string_view> commands, const fs::path& outputs) {
   const Bytes bytes = readFile(file);
   try {
     const Json json = parsed({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
     const fs::path folder = fs::absolute(file == "-" ? "plan" : file).parent_path();
-    return planOf(JsonView(json), folder.lexically_normal(), commands);
+    return planOf(JsonView(json), folder.lexically_normal(), commands, outputs);
   } catch (const Error& error) {
     throw error.within(file == "-" ? "standard input" : file.string());
   }

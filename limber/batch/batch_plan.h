@@ -39,11 +39,13 @@ BatchShard parseBatchShard(std::string_view text);
 // limber reads, at any depth; patterns, in which * and ? stand for what is within a name and ** for folders; lists of
 // paths (.txt: one a line; .jsonl: {"path", "sha256", "options"}); files. An output is called as its input, seen from
 // the plan's folder, with the plan's extension; inputs that would be called alike keep theirs ("a_obj.glb",
-// "a_stl.glb").
+// "a_stl.glb"). What folders and patterns find below `outputs`, the batch's folder of outputs, is left out: the same
+// plan has the same entries once it has run.
 //
 // `commands` are those that a batch may run. Throws Error kBadData at the place of what is wrong, kFile where an input
 // is not there (of lists, only the list is looked for). Cost: O(n log n) in the number of entries; no input is opened.
-BatchPlan readBatchPlan(const std::filesystem::path& file, std::span<const std::string_view> commands);
+BatchPlan readBatchPlan(const std::filesystem::path& file, std::span<const std::string_view> commands,
+                        const std::filesystem::path& outputs = {});
 
 // A plan that runs as it is, in a folder with models.
 std::string exampleBatchPlan();

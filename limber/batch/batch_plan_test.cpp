@@ -93,6 +93,22 @@ TEST(BatchPlan, StaysInItsFolderOfOutputs) {
   EXPECT_THAT(plan.entries[1].output, HasSubstr("out/a.glb"));
 }
 
+TEST(BatchPlan, LeavesOutWhatItHasWritten) {
+  const testing::TemporaryFolder folder;
+  for (const char* name :
+       {"a.obj", "deep/b.obj", "deep/out/a.glb", "deep/out/.limber-batch/unfinished-1-of-1/0/a.glb"}) {
+    put(folder.path() / name);
+  }
+  std::filesystem::create_directory_symlink(folder.path() / "deep/out", folder.path() / "results");
+  const auto outputsFor = [&](const std::string& inputs) {
+    planWith(folder.path(), inputs);
+    return outputsOf(readBatchPlan(folder.path() / "plan.json", kCommands, folder.path() / "results"));
+  };
+  EXPECT_THAT(outputsFor(R"(".")"), ElementsAre("a.glb", "deep/b.glb"));
+  EXPECT_THAT(outputsFor(R"("**/?.*")"), ElementsAre("a.glb", "deep/b.glb"));
+  EXPECT_THAT(outputsFor(R"("deep/out/a.glb")"), ElementsAre("deep/out/a.glb"));  // named by itself
+}
+
 TEST(BatchPlan, RefusesWhatIsWrong) {
   const testing::TemporaryFolder folder;
   put(folder.path() / "a.obj");

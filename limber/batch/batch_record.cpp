@@ -42,6 +42,7 @@ std::string batchRecordLine(const BatchRecord& record) {
   for (const auto& [kind, count] : record.warnings) warnings[kind] = count;
   const Json json = {{"input", record.input},
                      {"output", record.output},
+                     {"run", record.run},
                      {"outcome", jobOutcomeName(record.outcome)},
                      {"problem", record.problem},
                      {"warnings", std::move(warnings)},
@@ -62,6 +63,7 @@ BatchRecord parseBatchRecord(std::string_view line) {
   record.input = root.text("input");
   record.output = root.text("output");
   if (record.output.empty()) root.fail("names no output");
+  record.run = root.count("run").value_or(0);  // none before there were numbers
   record.outcome = findJobOutcome(root.text("outcome"));
   record.problem = root.text("problem");
   root.object("warnings").forEachMember([&](std::string_view kind, const JsonView& count) {
@@ -93,8 +95,8 @@ std::map<std::string, BatchRecord> readBatchRecords(const fs::path& folder) {
       text.remove_prefix(line.size() + 1);
       try {
         BatchRecord record = parseBatchRecord(line);
-        std::string output = record.output;
-        records.insert_or_assign(std::move(output), std::move(record));
+        const auto [known, isNew] = records.try_emplace(record.output);
+        if (isNew || record.run >= known->second.run) known->second = std::move(record);
       } catch (const Error& error) {
         throw error.within(fmt::format("line {}", number)).within(file.string());
       }
@@ -107,7 +109,10 @@ BatchRecordFile::BatchRecordFile(const fs::path& file) : name_(file.string()) {
   file_ = open(name_.c_str(), O_CREAT | O_RDWR | O_APPEND | O_CLOEXEC, 0666);
   if (file_ < 0) refuseFile(name_, "cannot be written");
   if (flock(file_, LOCK_EX | LOCK_NB) != 0) {
+    const int reason = errno;
     close(file_);
+    errno = reason;
+    if (reason != EWOULDBLOCK) refuseFile(name_, "cannot be locked");
     throw Error(ErrorCode::kFile, "another program is working at this part of the batch", name_,
                 "wait for it, or end it");
   }

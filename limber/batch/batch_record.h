@@ -14,6 +14,7 @@ namespace limber {
 
 struct BatchRecord {
   std::string input, output;  // as BatchEntry
+  std::size_t run = 0;        // of the batch, in which it was written: later ones have higher numbers
   JobOutcome outcome = JobOutcome::kDone;
   std::string problem;                                        // empty where it is done
   std::vector<std::pair<std::string, std::size_t>> warnings;  // kinds, and how often each
@@ -29,8 +30,9 @@ std::string batchRecordLine(const BatchRecord& record);
 // Throws Error kBadData where the text is no such line.
 BatchRecord parseBatchRecord(std::string_view line);
 
-// The last record of each output in the files of a folder (*.jsonl); none where there is no such folder. A line that
-// was not written to its end does not count. Throws Error kFile, and kBadData for lines that are none.
+// The last record of each output in the files of a folder (*.jsonl): that of the latest run, of one run's the last
+// line. None where there is no such folder. A line that was not written to its end does not count. Throws Error kFile,
+// and kBadData for lines that are none.
 std::map<std::string, BatchRecord> readBatchRecords(const std::filesystem::path& folder);
 
 // A file that lines are appended to, whole even where this program is killed. One at a time may have it open, in any

@@ -16,6 +16,7 @@ BatchRecord recordOf(const std::string& name) {
   BatchRecord record;
   record.input = name + ".obj";
   record.output = name + ".glb";
+  record.run = 3;
   record.outcome = JobOutcome::kTimedOut;
   record.problem = "more than 2 s\n\"quoted\"";
   record.warnings = {{"converted-units", 1}, {"loose-vertices", 12}};
@@ -38,6 +39,7 @@ TEST(BatchRecord, ComesBackFromItsLine) {
   EXPECT_EQ(line.find('\n'), line.size() - 1);
   EXPECT_EQ(batchRecordLine(parseBatchRecord(line)), line);
   const BatchRecord back = parseBatchRecord(line);
+  EXPECT_EQ(back.run, record.run);
   EXPECT_EQ(back.outcome, record.outcome);
   EXPECT_EQ(back.problem, record.problem);
   EXPECT_EQ(back.warnings, record.warnings);
@@ -65,6 +67,20 @@ TEST(BatchRecord, LastOneCountsAndTornOnesDoNot) {
   const BatchRecordFile opened(file);
   EXPECT_EQ(wholeTextOf(file), whole);
   EXPECT_TRUE(readBatchRecords(folder.path() / "missing").empty());
+}
+
+TEST(BatchRecord, TheLatestRunCountsWhateverItsFile) {
+  const testing::TemporaryFolder folder;
+  BatchRecord before = recordOf("a"), after = before;
+  before.run = 0;
+  after.outcome = JobOutcome::kDone;
+  const auto outcome = [&] { return readBatchRecords(folder.path()).at("a.glb").outcome; };
+  BatchRecordFile(folder.path() / "5-of-16.jsonl").append(before);
+  BatchRecordFile(folder.path() / "1-of-1.jsonl").append(after);
+  EXPECT_EQ(outcome(), JobOutcome::kDone);
+  before.run = after.run + 1;
+  BatchRecordFile(folder.path() / "1-of-1.jsonl").append(before);
+  EXPECT_EQ(outcome(), JobOutcome::kTimedOut);
 }
 
 TEST(BatchRecord, OneAtATimeWrites) {

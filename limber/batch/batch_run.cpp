@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <deque>
+#include <exception>
 #include <map>
+#include <new>
 #include <optional>
 #include <system_error>
 
@@ -31,6 +33,7 @@ constexpr std::string_view kWarningsFile = "warnings.json", kThreads = "--thread
 constexpr std::size_t kMostProblem = 1000;    // bytes of a command's own words
 constexpr std::size_t kMostOutput = 1 << 16;  // bytes kept of what a command prints
 constexpr double kPaceSpan = 60;              // seconds that the pace is taken over
+constexpr double kTurn = 0.02;                // seconds that entries are looked at before those that run are
 constexpr int kNoWarningsCode = 1;
 
 // Entries that ran, over the last while.
@@ -62,6 +65,7 @@ class BatchRun {
     removeFolder(unfinished());
     makeFolder(unfinished());
     known_ = readBatchRecords(folder_.records());
+    for (const auto& [output, record] : known_) number_ = std::max(number_, record.run + 1);
     program_ = sha256OfFile(options.program);
     for (std::size_t i = options.shard.number - 1; i < plan.entries.size(); i += options.shard.count) ++state_.entries;
     next_ = options.shard.number - 1;
@@ -70,7 +74,9 @@ class BatchRun {
   BatchProgress run() {
     begun_ = secondsNow();
     runJobs([&] { return nextChain(); }, options_.jobs, [&] { tell(); },
-            [&](std::size_t chain, const std::vector<JobResult>& results) { take(chain, results.back()); });
+            [&](std::size_t chain, const std::vector<JobResult>& results) {
+              if (!results.empty()) take(chain, results.back());
+            });
     removeFolder(unfinished());
     tell();
     return state_;
@@ -86,13 +92,11 @@ class BatchRun {
   static fs::path prepared(const BatchPlan& plan, const BatchOptions& options) {
     const BatchFolder folder{fs::absolute(options.output).lexically_normal()};
     std::error_code unseen;
-    const bool isMarked = fs::is_regular_file(folder.plan(), unseen);
-    if (!isMarked && fs::exists(folder.root, unseen) && !fs::is_empty(folder.root, unseen)) {
-      // Another shard may be at this very point: its mark comes with a folder of its own.
-      if (!fs::is_directory(folder.records(), unseen)) {
-        throw Error(ErrorCode::kFile, "holds other files than a batch's", folder.root.string(),
-                    "name a folder that is empty or new");
-      }
+    const bool isUsed = fs::exists(folder.root, unseen) && !fs::is_empty(folder.root, unseen);
+    // Another shard may be at this very point, or was ended at it: its own folder comes before all else.
+    if (isUsed && !fs::exists(folder.own(), unseen)) {
+      throw Error(ErrorCode::kFile, "holds other files than a batch's", folder.root.string(),
+                  "name a folder that is empty or new");
     }
     makeFolder(folder.records());
     Json outputs = Json::array();
@@ -113,13 +117,27 @@ class BatchRun {
     return key.hex();
   }
 
-  const std::string& digestBeside(const std::string& argument) {
-    const auto [place, isNew] = beside_.try_emplace(argument);
+  // Of the file that the argument names, by itself or as --name=file; empty where it names none.
+  std::string digestBeside(const std::string& argument) {
+    if (const auto known = beside_.find(argument); known != beside_.end()) return known->second;
+    const std::size_t equals = argument.starts_with("--") ? argument.find('=') : std::string::npos;
+    const fs::path named = equals == std::string::npos ? argument : argument.substr(equals + 1);
     std::error_code unseen;
-    if (isNew && !argument.empty() && fs::is_regular_file(plan_.folder / argument, unseen)) {
-      place->second = inputs_.of(plan_.folder / argument).all;
+    std::string digest;
+    if (!named.empty() && fs::is_regular_file(plan_.folder / named, unseen)) {
+      digest = inputs_.of(plan_.folder / named).all;
     }
-    return place->second;
+    return beside_.emplace(argument, std::move(digest)).first->second;
+  }
+
+  // A file that cannot be read has others.
+  static bool hasBytes(const fs::path& file, const std::string& sha256) {
+    std::error_code unseen;
+    try {
+      return fs::is_regular_file(file, unseen) && sha256OfFile(file) == sha256;
+    } catch (const Error&) {
+      return false;
+    }
   }
 
   // Is what is recorded of an entry what it would come to now?
@@ -127,11 +145,8 @@ class BatchRun {
     if (record.key != key) return false;
     const JobLimits &now = plan_.limits, &then = record.limits;
     switch (record.outcome) {
-      case JobOutcome::kDone: {
-        const fs::path place = folder_.root / record.output;
-        std::error_code unseen;
-        return fs::is_regular_file(place, unseen) && sha256OfFile(place) == record.outputSha256;
-      }
+      case JobOutcome::kDone:
+        return hasBytes(folder_.root / record.output, record.outputSha256);
       case JobOutcome::kFailed:
         return !options_.retries;
       case JobOutcome::kTimedOut:
@@ -143,26 +158,41 @@ class BatchRun {
     }
   }
 
+  // Digests of the entry's files; what is wrong with these, empty where nothing is.
+  std::string identify(const BatchEntry& entry, BatchRecord& record) {
+    const fs::path input = plan_.folder / entry.input;
+    try {
+      const InputDigest digest = inputs_.of(input);
+      record.inputSha256 = digest.bytes;
+      record.key = keyOf(entry, digest.all);
+    } catch (const Error& error) {  // without the input's own name, so that alike failures read alike
+      return validUtf8(error.where() == input.string() ? error.message() : error.what());
+    } catch (const std::bad_alloc&) {
+      return "takes more memory to be looked at than there is";
+    } catch (const std::exception& error) {
+      return validUtf8(error.what());
+    }
+    const bool isWanted = entry.sha256.empty() || entry.sha256 == record.inputSha256;
+    return isWanted ? "" : "has other bytes than the plan says";
+  }
+
+  // The next entry that is to run; an empty chain after a while without one.
   std::optional<JobChain> nextChain() {
-    for (; next_ < plan_.entries.size(); tell()) {
-      const std::size_t number = next_;
+    const double turnEnd = secondsNow() + kTurn;
+    while (next_ < plan_.entries.size()) {
+      if (secondsNow() > turnEnd) {
+        ++begunChains_;
+        return JobChain{};
+      }
+      const BatchEntry& entry = plan_.entries[next_];
       next_ += options_.shard.count;
-      const BatchEntry& entry = plan_.entries[number];
       BatchRecord record;
       record.input = entry.input;
       record.output = entry.output;
+      record.run = number_;
       record.limits = plan_.limits;
-      try {
-        const fs::path input = plan_.folder / entry.input;
-        const InputDigest digest = inputs_.of(input);
-        record.inputSha256 = digest.bytes;
-        record.key = keyOf(entry, digest.all);
-        if (!entry.sha256.empty() && entry.sha256 != record.inputSha256) {
-          throw Error(ErrorCode::kBadData, "has other bytes than the plan says");
-        }
-      } catch (const Error& error) {
+      if (record.problem = identify(entry, record); !record.problem.empty()) {
         record.outcome = JobOutcome::kFailed;
-        record.problem = validUtf8(error.where().empty() ? error.what() : error.message());
         keep(std::move(record));
         continue;
       }
@@ -171,8 +201,8 @@ class BatchRun {
         ++(known->second.outcome == JobOutcome::kDone ? state_.done : state_.failed);
         continue;
       }
-      open_.emplace(begunJobs_, Open{std::move(record), unfinished() / std::to_string(begunJobs_)});
-      return JobChain{jobOf(entry, open_.at(begunJobs_++).work)};
+      open_.emplace(begunChains_, Open{std::move(record), unfinished() / std::to_string(begunChains_)});
+      return JobChain{jobOf(entry, open_.at(begunChains_++).work)};
     }
     return std::nullopt;
   }
@@ -186,9 +216,10 @@ class BatchRun {
                                                  : word);
     }
     arguments.insert(arguments.end(), entry.options.begin(), entry.options.end());
-    if (std::find(arguments.begin(), arguments.end(), kThreads) == arguments.end()) {
-      arguments.insert(arguments.end(), {std::string(kThreads), "1"});
-    }
+    const bool saysThreads = std::any_of(arguments.begin(), arguments.end(), [](const std::string& argument) {
+      return argument.substr(0, argument.find('=')) == kThreads;
+    });
+    if (!saysThreads) arguments.insert(arguments.end(), {std::string(kThreads), "1"});
     Job job;
     job.folder = plan_.folder;
     job.limits = plan_.limits;
@@ -292,7 +323,8 @@ class BatchRun {
   InputDigests inputs_;
   std::map<std::string, std::string> beside_;  // digests of files that the command names, by argument
   std::map<std::size_t, Open> open_;           // by the number of their chain
-  std::size_t next_ = 0, begunJobs_ = 0;
+  std::size_t number_ = 1;                     // of this run
+  std::size_t next_ = 0, begunChains_ = 0;
   BatchProgress state_;
   Pace pace_;
   double begun_ = 0;
@@ -305,7 +337,7 @@ fs::path BatchFolder::recordsOf(const BatchShard& shard) const {
 }
 
 fs::path BatchFolder::unfinished(const BatchShard& shard) const {
-  return root / ".limber-batch" / fmt::format("unfinished-{}-of-{}", shard.number, shard.count);
+  return own() / fmt::format("unfinished-{}-of-{}", shard.number, shard.count);
 }
 
 BatchProgress runBatch(const BatchPlan& plan, const BatchOptions& options) {

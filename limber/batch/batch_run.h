@@ -16,9 +16,11 @@ namespace limber {
 struct BatchFolder {
   std::filesystem::path root;
 
+  // All that is no output. A folder without it is no batch's.
+  std::filesystem::path own() const { return root / ".limber-batch"; }
   // What the batch is known by: {"limber_batch": 1, "outputs": [...]}, in the order of the plan.
-  std::filesystem::path plan() const { return root / ".limber-batch" / "plan.json"; }
-  std::filesystem::path records() const { return root / ".limber-batch" / "records"; }
+  std::filesystem::path plan() const { return own() / "plan.json"; }
+  std::filesystem::path records() const { return own() / "records"; }
   std::filesystem::path recordsOf(const BatchShard& shard) const;
   std::filesystem::path unfinished(const BatchShard& shard) const;
 };

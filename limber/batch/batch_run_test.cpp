@@ -165,6 +165,41 @@ TEST_F(BatchRunTest, SeesFilesThatTheCommandNames) {
   EXPECT_EQ(runBatch(one, options()).kept, 1u);
   put("walk.bvh", "longer steps");
   EXPECT_EQ(runBatch(one, options()).kept, 0u);
+  one.command.back() = "--motion=walk.bvh";
+  runBatch(one, options());
+  EXPECT_EQ(runBatch(one, options()).kept, 1u);
+  put("walk.bvh", "steps");
+  EXPECT_EQ(runBatch(one, options()).kept, 0u);
+}
+
+TEST_F(BatchRunTest, AFileThatTheCommandNamesIsRefusedForEachEntry) {
+  put("a.obj", "a");
+  put("b.obj", "b");
+  put("large.bvh", "");
+  BatchPlan two = plan({"a", "b"});
+  two.command.emplace_back("large.bvh");
+  two.limits.memory = std::size_t{1} << 30;
+  fs::resize_file(folder_.path() / "large.bvh", two.limits.memory + 1);
+  EXPECT_EQ(runBatch(two, options()).failed, 2u);
+  for (const auto& [output, record] : records()) EXPECT_THAT(record.problem, HasSubstr("large.bvh: is larger than"));
+}
+
+TEST_F(BatchRunTest, ThreadsAreAddedWhereNothingIsSaidOfThem) {
+  put("a.obj", "a");
+  BatchPlan one = plan({"a"});
+  one.command.emplace_back("--threads=4");
+  runBatch(one, options());
+  EXPECT_EQ(textOf(output() / "sub/a.glb"), "copy --threads=4 a");
+}
+
+TEST_F(BatchRunTest, WhatRunsIsWatchedWhileOthersAreLookedAt) {
+  put("endless.obj", "endless");
+  BatchPlan many = plan({"endless"});
+  many.limits.seconds = 0.05;
+  for (int i = 0; i < 10000; ++i) many.entries.push_back({"missing.obj", std::to_string(i) + ".glb", {}, {}});
+  EXPECT_EQ(runBatch(many, options()).failed, many.entries.size());
+  const std::string lines = textOf(BatchFolder{output()}.recordsOf({}));
+  EXPECT_LT(lines.find("timed-out"), lines.rfind("9999.glb"));
 }
 
 TEST_F(BatchRunTest, ShardsMakeTheWhole) {
@@ -207,6 +242,25 @@ TEST_F(BatchRunTest, GoesOnWhereItWasStopped) {
   const BatchProgress end = runBatch(plan(names), options());
   EXPECT_EQ(end.kept, before);
   EXPECT_EQ(end.done, names.size());
+}
+
+TEST_F(BatchRunTest, ALaterRunCountsInHoweverManyShards) {
+  put("a.obj", "fail");
+  put("b.obj", "b");
+  BatchOptions second = options();
+  second.shard = {2, 2};
+  runBatch(plan({"b", "a"}), second);
+  EXPECT_EQ(batchStatus(output()).failed, 1u);
+  put("a.obj", "a");
+  runBatch(plan({"b", "a"}), options());
+  EXPECT_TRUE(batchStatus(output()).isWell());
+  EXPECT_EQ(records().at("sub/a.glb").run, 2u);
+}
+
+TEST_F(BatchRunTest, TakesAFolderThatAnotherShardHasJustBegun) {
+  fs::create_directories(BatchFolder{output()}.own());
+  put("a.obj", "a");
+  EXPECT_EQ(runBatch(plan({"a"}), options()).done, 1u);
 }
 
 TEST_F(BatchRunTest, RefusesAFolderOfOtherFiles) {

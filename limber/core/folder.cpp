@@ -9,14 +9,29 @@
 
 namespace limber {
 
+namespace {
+
+// A folder that is gone by the time it is looked into holds nothing: others may be at work there.
+void addFilesBelow(const std::filesystem::path& folder, std::vector<std::filesystem::path>& files,
+                   std::error_code& problem) {
+  for (std::filesystem::directory_iterator it(folder, problem), end; !problem && it != end; it.increment(problem)) {
+    std::error_code ignored;
+    if (!it->is_directory(ignored)) {
+      files.push_back(it->path());
+    } else if (!it->is_symlink(ignored)) {
+      addFilesBelow(it->path(), files, problem);
+      if (problem == std::errc::no_such_file_or_directory) problem.clear();
+      if (problem) return;
+    }
+  }
+}
+
+}  // namespace
+
 std::vector<std::filesystem::path> filesBelow(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
   std::error_code problem;
-  for (std::filesystem::recursive_directory_iterator it(folder, problem), end; !problem && it != end;
-       it.increment(problem)) {
-    std::error_code ignored;
-    if (!it->is_directory(ignored)) files.push_back(it->path());
-  }
+  addFilesBelow(folder, files, problem);
   if (problem) throw Error(ErrorCode::kFile, "cannot be read: " + problem.message(), folder.string());
   std::sort(files.begin(), files.end());
   return files;

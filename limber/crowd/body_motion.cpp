@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "limber/asset/clip_io.h"
 #include "limber/asset/motion_io.h"
@@ -16,6 +17,17 @@ namespace {
 
 void removeClips(Asset& asset) {
   removeChannels(asset, [](Index, std::string_view) { return true; });
+}
+
+// Tracks of one value keep one key. A clip in which all stands then has no duration to be held by a second key.
+template <typename Value>
+void keepOneKeyOfStill(std::vector<Track<Value>>& tracks) {
+  for (Track<Value>& track : tracks) {
+    const auto isFirst = [&](const Value& value) { return value.isApprox(track.values.front(), 0); };
+    if (!std::all_of(track.values.begin(), track.values.end(), isFirst)) continue;
+    track.times.resize(1);
+    track.values.resize(1);
+  }
 }
 
 }  // namespace
@@ -63,7 +75,10 @@ void lengthenClips(BodyMotion& body, Index frames, double framesPerSecond) {
     PoseSequence all;
     all.frameSeconds = once.frameSeconds;
     for (std::size_t f = 0; f < frames + cycle; ++f) all.poses.push_back(once.poses[f % cycle]);
-    lengthened.push_back(clipOf(character.skeleton, all, body.clips[c].name));
+    Clip clip = clipOf(character.skeleton, all, body.clips[c].name);
+    keepOneKeyOfStill(clip.translations);
+    keepOneKeyOfStill(clip.rotations);
+    lengthened.push_back(std::move(clip));
   }
   addClips(body.moving, character, lengthened);
 }

@@ -13,6 +13,7 @@
 #include "limber/core/parallel.h"
 #include "limber/crowd/testing/dragon.h"
 #include "limber/crowd/testing/moved_nodes.h"
+#include "limber/retarget/retarget_clip.h"
 #include "limber/samples/sample_motions.h"
 
 namespace limber {
@@ -26,10 +27,9 @@ CrowdOptions fewBodies() {
   return options;
 }
 
-Crowd crowdOf(const CrowdOptions& options) {
+Crowd crowdOf(const CrowdOptions& options, const std::vector<Motion>& motions = {makeSampleMotion("flap")}) {
   std::vector<Asset> characters;
   characters.push_back(dragon());
-  const std::vector<Motion> motions = {makeSampleMotion("flap")};
   Progress progress;
   return makeCrowd(characters, motions, options, progress);
 }
@@ -82,6 +82,27 @@ TEST(Crowd, IsTheSameForAnyNumberOfThreads) {
   const Bytes one = writeGlb(crowdOf(fewBodies()).asset);
   setThreadCount(0);
   EXPECT_EQ(writeGlb(crowdOf(fewBodies()).asset), one);
+}
+
+// The first frame of a motion, as often as asked.
+Motion heldPose(const Motion& motion, std::size_t frames) {
+  PoseSequence all = sampleFrames(motion.skeleton, motion.clips[0], 30);
+  all.poses.assign(frames, all.poses.front());
+  Motion held = motion;
+  held.clips = {clipOf(motion.skeleton, all, "held")};
+  return held;
+}
+
+TEST(Crowd, TakesPosesThatAreHeld) {
+  const Motion flap = makeSampleMotion("flap");
+  for (const std::size_t frames : {1, 30}) {
+    const Crowd still = crowdOf(fewBodies(), {heldPose(flap, frames)});
+    const Crowd both = crowdOf(fewBodies(), {heldPose(flap, frames), flap});
+    EXPECT_EQ(still.bodies.size(), both.bodies.size());
+    EXPECT_GT(both.seconds, 0.5);
+    const std::vector<Vec3> first = jointsAt(still.asset, 0, 0), last = jointsAt(still.asset, 0, still.seconds);
+    for (std::size_t j = 0; j < first.size(); ++j) EXPECT_LT((last[j] - first[j]).norm(), 1e-6);
+  }
 }
 
 TEST(Crowd, RefusesNothing) {

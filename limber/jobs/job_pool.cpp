@@ -57,20 +57,21 @@ void runJobs(const NextChain& next, int atOnce, const std::function<void()>& mea
   bool hasMore = true;
   while (hasMore || !running.empty()) {
     meanwhile();
-    while (hasMore && running.size() < static_cast<std::size_t>(atOnce)) {
+    bool isAskedAgain = false;
+    while (!isAskedAgain && hasMore && running.size() < static_cast<std::size_t>(atOnce)) {
       std::optional<JobChain> chain = next();
       hasMore = chain.has_value();
       if (!hasMore) break;
       const std::size_t number = begun++;
       if (chain->empty()) {
         done(number, {});
+        isAskedAgain = true;
         continue;
       }
       auto job = std::make_unique<RunningJob>(chain->front());
       running.push_back({number, std::move(*chain), std::move(job), {}});
     }
-    if (running.empty()) continue;
-    waitForNews(running);
+    if (!isAskedAgain && !running.empty()) waitForNews(running);
     for (std::size_t i = 0; i < running.size();) {
       if (goOn(running[i])) {
         ++i;

@@ -17,7 +17,8 @@ using JobChain = std::vector<Job>;
 
 // Is given the number of a chain and the results of the jobs that ran, in order.
 using ChainDone = std::function<void(std::size_t chain, const std::vector<JobResult>& results)>;
-// Gives the next chain, none once there are no more.
+// Gives the next chain, none once there are no more. Who has none yet and long to look gives an empty one: those that
+// run are looked after before it is asked again.
 using NextChain = std::function<std::optional<JobChain>()>;
 
 // Runs the chains, `atOnce` (1 or more) side by side and begun in order. In this thread are called: `next` as there is

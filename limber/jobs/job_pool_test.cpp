@@ -12,6 +12,7 @@
 #include <new>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "limber/core/error.h"
 #include "limber/core/sanitizers.h"
@@ -215,6 +216,21 @@ TEST(JobPool, CancellingEndsWhatRuns) {
   EXPECT_THROW(runJobs({&chain, 1}, 1, progress, [](std::size_t, const auto&) {}), Error);
   EXPECT_LT(secondsNow() - start, 20);
   canceller.join();
+}
+
+TEST(JobPool, WhatRunsIsWatchedWhileTheNextIsLookedFor) {
+  Job endless = shell("sleep 100");
+  endless.limits.seconds = 0.1;
+  bool isBegun = false, isOver = false;
+  const double start = secondsNow();
+  const auto next = [&]() -> std::optional<JobChain> {
+    if (!std::exchange(isBegun, true)) return JobChain{endless};
+    if (isOver || secondsNow() - start > 20) return std::nullopt;
+    return JobChain{};
+  };
+  runJobs(
+      next, 2, [] {}, [&](std::size_t chain, const std::vector<JobResult>&) { isOver = isOver || chain == 0; });
+  EXPECT_TRUE(isOver);
 }
 
 TEST(JobPool, RefusesWhatMakesNoSense) {

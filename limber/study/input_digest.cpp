@@ -58,6 +58,7 @@ std::set<std::string> InputDigests::namedBeside(const fs::path& file) {
     const fs::path one = folder / open.back();
     open.pop_back();
     if (standsAlone(one)) continue;
+    check(one);
     const Bytes bytes = readFile(one);
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     for (const std::string& extension : names.extensions) {
@@ -75,7 +76,7 @@ std::set<std::string> InputDigests::namedBeside(const fs::path& file) {
   return found;
 }
 
-std::string InputDigests::digestOf(const fs::path& file) const {
+void InputDigests::check(const fs::path& file) const {
   std::error_code problem;
   const fs::file_status status = fs::status(file, problem);
   if (fs::exists(status) && !fs::is_regular_file(status)) {
@@ -86,6 +87,10 @@ std::string InputDigests::digestOf(const fs::path& file) const {
     throw Error(ErrorCode::kFile,
                 fmt::format("is larger than the {:.0f} MB allowed", std::ceil(std::ldexp(most_, -20))), file.string());
   }
+}
+
+std::string InputDigests::digestOf(const fs::path& file) const {
+  check(file);
   return sha256OfFile(file);
 }
 

@@ -34,6 +34,7 @@ class InputDigests {
     std::set<std::string, std::less<>> extensions;
   };
 
+  void check(const std::filesystem::path& file) const;  // throws where it is not to be read
   std::string digestOf(const std::filesystem::path& file) const;
   const FolderNames& namesIn(const std::filesystem::path& folder);
   std::set<std::string> namedBeside(const std::filesystem::path& file);

@@ -42,6 +42,8 @@ TEST(InputDigest, RefusesPipesAndFilesTooLarge) {
   EXPECT_THROW(InputDigests(3).of(model), Error);
   put(folder.path(), "skin.mtl", "far more than the model holds itself");
   EXPECT_THROW(InputDigests(30).of(put(folder.path(), "a.obj", "mtllib skin.mtl")), Error);
+  std::filesystem::resize_file(folder.path() / "skin.mtl", std::uintmax_t{1} << 40);
+  EXPECT_THROW(InputDigests(30).of(folder.path() / "a.obj"), Error);
 }
 
 TEST(InputDigest, SeesFilesThatAreNamed) {
