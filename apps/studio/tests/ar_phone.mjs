@@ -26,7 +26,6 @@ export async function openPhone(browser, address, output, search, { without = []
   const { page, context, errors } = await openStudio(browser, address, {
     width: 390, height: 844, touch: true, search, prepare: (before) => emulatePhone(before, { without }),
   });
-  page.setDefaultTimeout(20_000);
   const finger = await context.newCDPSession(page);
 
   const frames = (count = 3) => page.evaluate((n) => new Promise((done) => {

@@ -25,7 +25,6 @@ async function open({ width = 1280, height = 900, prepare = async () => {}, ...m
   const context = await browser.newContext({ viewport: { width, height }, acceptDownloads: true, ...more });
   await prepare(context);
   page = await context.newPage();
-  page.setDefaultTimeout(10_000);
   page.on('pageerror', (error) => errors.push(String(error)));
   page.on('console', (message) => { if (message.type() === 'error') errors.push(message.text()); });
   await page.goto(pathToFileURL(join(folder, 'report/index.html')).href);

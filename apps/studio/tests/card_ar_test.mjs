@@ -31,7 +31,6 @@ const browser = await launch({ options: ['--use-fake-device-for-media-stream', `
 const { page, context, errors } = await openStudio(browser, server.address, {
   width: 240, height: 320, deviceScaleFactor: 1, touch: true, search: '?sample=stool', permissions: ['camera'], prepare: (made) => made.addInitScript(logTracker, strip),
 });
-page.setDefaultTimeout(60_000);
 const finger = await context.newCDPSession(page);
 
 async function enter() {
@@ -70,11 +69,15 @@ const median = (values) => values.toSorted((a, b) => a - b)[values.length >> 1];
 /** Metres about the mean of each time that the camera rests: root of the mean square. From the first picture of a rest, which
  *  is a new view, the focal length is still learnt: it does not count. */
 function jitterAtRest(found) {
-  const rests = found.filter(({ number }) => number > 0 && number < walk.resting).reduce((all, { number, camera }, i, { [i - 1]: before }) => {
-    if (!before || number < before.number) all.push([]);
-    all.at(-1).push(placeOf(new Matrix4().fromArray(camera)));
-    return all;
-  }, []).map((places) => places.slice(1)).filter((places) => places.length > 1);
+  const all = [];
+  let rested = false;
+  for (const { number, camera } of found) {
+    const rests = number > 0 && number < walk.resting;
+    if (rests && !rested) all.push([]);
+    if (rests) all.at(-1).push(placeOf(new Matrix4().fromArray(camera)));
+    rested = rests;
+  }
+  const rests = all.map((places) => places.slice(1)).filter((places) => places.length > 1);
   assert.ok(rests.length > 0, 'no rest was seen');
   let sum = 0, free = 0;
   for (const places of rests) {
@@ -192,7 +195,7 @@ const cases = {
     await touch('touchStart', [begun]);
     await touch('touchMove', [{ x: begun.x + 20, y: begun.y }]);
     await turnScreen(finger, true);
-    await page.waitForFunction(() => innerWidth === 844 && document.querySelector('#ar canvas').width === 844);
+    await page.waitForFunction(() => innerWidth === 844 && screen.orientation.angle === 90 && document.querySelector('#ar canvas').width === 844);
     await settled(page);
     assert.equal((await sessionState(page)).dragged, null);
     await touch('touchEnd', []);

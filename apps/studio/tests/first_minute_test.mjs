@@ -129,7 +129,7 @@ const cases = {
     assert.ok(before > 0);
     await page.locator('.recent-list li').first().locator('button').last().click();
     await page.locator('#undo-forget').waitFor();
-    assert.equal(await rows(), before - 1);
+    await page.waitForFunction((count) => document.querySelectorAll('.recent-list li').length === count, before - 1);
     assert.deepEqual(await barriers(page), []);
     await page.locator('#undo-forget').click();
     await page.waitForFunction((count) => document.querySelectorAll('.recent-list li').length === count, before);

@@ -53,7 +53,6 @@ const taken = (of = page) => of.waitForFunction(() => navigator.serviceWorker.co
 async function visit(options = {}) {
   const opened = await openStudio(browser, address, { serviceWorkers: 'allow', ...options });
   ({ page, context } = opened);
-  page.setDefaultTimeout(40_000);
   await taken();
   return opened;
 }
@@ -74,7 +73,6 @@ async function nothingWaits(of) {
 
 async function newPage(search = '') {
   const other = await context.newPage();
-  other.setDefaultTimeout(60_000);
   await other.goto(address + search);
   await settled(other);
   return other;
@@ -169,7 +167,9 @@ const cases = {
     const other = await newPage('?sample=biped');
     await dragAHandle(other);
     await other.close();
-    server = await serve(site, port);
+    for (server = null; !server;) { // another program may have the port for a moment
+      server = await serve(site, port).catch(() => new Promise((wait) => setTimeout(wait, 1000, null)));
+    }
   },
   async 'a build that is published in part is not taken'() {
     publish(second);
@@ -204,7 +204,12 @@ const cases = {
   async 'when it is taken, it is taken whole, and what was done is kept'() {
     const joint = await dragAHandle(page), posed = await jointPosition(page, joint), { name } = await sessionState(page);
     server.served.clear();
-    await Promise.all([page.waitForEvent('load'), page.locator('#take-version').click()]);
+    let reloads = false;
+    const load = page.waitForEvent('load').then(() => { reloads = true; });
+    while (!reloads) { // the browser takes a moment to let go of the page that was closed
+      await page.locator('#take-version').click({ timeout: 2000 }).catch(() => {});
+      await Promise.race([load, new Promise((wait) => setTimeout(wait, 1000))]);
+    }
     await settled(page);
     assert.equal(await build(), 'Second');
     assert.equal((await sessionState(page)).name, name);
@@ -224,7 +229,6 @@ const cases = {
     const next = await context.newPage();
     await page.close();
     page = next;
-    page.setDefaultTimeout(40_000);
     await nothingWaits(page);
     await page.goto(address);
     await settled(page);

@@ -21,9 +21,9 @@ const errors = [...desk.errors];
 
 /** Another page of the same browser profile, as after a crash: what it had is what is kept. */
 async function reopened() {
+  await page.waitForFunction(() => globalThis.limberStudio.kept());
   await page.close({ runBeforeUnload: false });
   page = await desk.context.newPage();
-  page.setDefaultTimeout(120_000);
   page.on('pageerror', (error) => errors.push(String(error)));
   page.on('console', (message) => { if (message.type() === 'error') errors.push(message.text()); });
   await page.goto(server.address);
@@ -116,7 +116,10 @@ const cases = {
     await page.mouse.move(place.x, place.y);
     await page.mouse.down();
     await page.mouse.move(place.x + 40, place.y - 20, { steps: 4 });
-    await page.waitForTimeout(350);
+    await page.waitForFunction(() => {
+      const { idle, kept, state } = globalThis.limberStudio;
+      return idle() && kept() && state().dragged !== null;
+    });
     const dragged = await sessionState(page);
     assert.notEqual(dragged.dragged, null, 'nothing is dragged');
     const moved = dragged.joints[dragged.dragged].name, before = await jointPosition(page, moved);

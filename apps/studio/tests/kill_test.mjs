@@ -95,7 +95,6 @@ const deeds = [
 
 async function open(search = '') {
   page = await context.newPage();
-  page.setDefaultTimeout(120_000);
   page.on('pageerror', (error) => errors.push(String(error)));
   page.on('console', (message) => { if (message.type() === 'error') errors.push(message.text()); });
   await page.goto(server.address + search);

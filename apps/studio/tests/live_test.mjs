@@ -66,7 +66,7 @@ const stateShown = () => page.locator('#live-state').textContent();
 
 /** Until the page follows what `send` sends again and again. */
 async function followed(send) {
-  for (let i = 0; i < 200 && await stateShown() !== 'Following live motion'; ++i) {
+  for (const end = Date.now() + 60_000; Date.now() < end && await stateShown() !== 'Following live motion';) {
     await send();
     await new Promise((wait) => setTimeout(wait, 20));
   }
@@ -76,7 +76,7 @@ async function followed(send) {
 const reaches = (joint, least, most) => page.waitForFunction(([name, low, high]) => {
   const height = globalThis.limberStudio.position(name)[1];
   return low <= height && height <= high;
-}, [joint, least, most], { polling: 15, timeout: 10_000 });
+}, [joint, least, most], { polling: 15 });
 
 const cases = {
   async 'the page waits, and what it says can be reached and read'() {
@@ -112,13 +112,13 @@ const cases = {
       await page.evaluate(() => { globalThis.moved.length = 0; });
       const sent = performance.timeOrigin + performance.now();
       await sendVmc(i % 2 ? 20 : -20);
-      await page.waitForFunction(() => globalThis.moved.length > 0, undefined, { polling: 15, timeout: 10_000 });
+      await page.waitForFunction(() => globalThis.moved.length > 0, undefined, { polling: 15 });
       taken.push(await page.evaluate(() => globalThis.moved[0]) - sent);
     }
     await page.evaluate(() => { globalThis.moved = null; });
     taken.sort((a, b) => a - b);
     console.log(`packet to pose: median ${taken[30].toFixed(1)} ms, 90 % below ${taken[54].toFixed(1)} ms`);
-    assert.ok(taken[0] > 0);
+    assert.equal(taken.length, 60); // told, not judged: they are by the clocks of two processes
   },
   async 'paused, the character stands as before; following again, it moves'() {
     await page.locator('#live-pause').click();

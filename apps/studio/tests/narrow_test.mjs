@@ -15,7 +15,6 @@ mkdirSync(output, { recursive: true });
 const server = await serve(dist), browser = await launch();
 const width = 390, height = 844;
 const { page, context, errors } = await openStudio(browser, server.address, { width, height, touch: true, isMobile: true, deviceScaleFactor: 1, search: '?sample=biped' });
-page.setDefaultTimeout(20_000);
 const wire = await context.newCDPSession(page);
 const touch = (type, ...points) => wire.send('Input.dispatchTouchEvent', { type, touchPoints: points.map(({ x, y }, id) => ({ x, y, id })) });
 
@@ -58,9 +57,8 @@ const opened = async (name) => {
   await page.waitForFunction((wanted) => globalThis.limberStudio.state()?.name === wanted, name);
   await settled(page);
 };
-/** Left for what was shown 0.3 s before. */
 async function reload() {
-  await page.waitForTimeout(300);
+  await page.waitForFunction(() => globalThis.limberStudio.idle() && globalThis.limberStudio.kept());
   await page.reload();
   await settled(page);
 }

@@ -21,17 +21,26 @@ export async function serve(folder, port = 0) {
     served.add(file);
     response.writeHead(200, { 'content-type': types[extname(file)] ?? 'application/octet-stream' }).end(readFileSync(file));
   });
-  await new Promise((resolve) => server.listen(port, '127.0.0.1', resolve));
+  await new Promise((resolve, reject) => server.once('error', reject).listen(port, '127.0.0.1', resolve));
   return { address: `http://127.0.0.1:${server.address().port}/`, served, close: () => { server.close(); server.closeAllConnections(); } };
 }
 
 /** Frames are drawn in software, so tests do without smooth edges: several samples for each pixel take half the time. What is
  *  not WebGL is drawn without the graphics process, which takes a quarter off the whole. */
-export const launch = ({ smooth = false, options = [] } = {}) => chromium.launch({
-  executablePath: browserProgram,
-  args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader-webgl', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist',
-    ...(smooth ? [] : ['--webgl-antialiasing-mode=none']), ...options],
-});
+export async function launch({ smooth = false, options = [] } = {}) {
+  const browser = await chromium.launch({
+    executablePath: browserProgram,
+    args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader-webgl', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist',
+      ...(smooth ? [] : ['--webgl-antialiasing-mode=none']), ...options],
+  });
+  const newContext = browser.newContext.bind(browser);
+  browser.newContext = async (wanted) => {
+    const context = await newContext(wanted);
+    context.setDefaultTimeout(120_000); // a slow machine is no failure
+    return context;
+  };
+  return browser;
+}
 
 /** The page once its model stands. What the page throws is collected in `errors`. Its service worker, which fetches all files
  *  for offline, runs only where `serviceWorkers` is 'allow'. */
@@ -39,7 +48,6 @@ export async function openStudio(browser, address, { width = 1280, height = 800,
   const context = await browser.newContext({ viewport: { width, height }, deviceScaleFactor: pixelDensity, hasTouch: touch, locale, acceptDownloads: true, serviceWorkers: 'block', ...more });
   await prepare(context);
   const page = await context.newPage();
-  page.setDefaultTimeout(120_000);
   const errors = [];
   page.on('pageerror', (error) => errors.push(String(error)));
   page.on('console', (message) => { if (message.type() === 'error') errors.push(message.text()); });
@@ -104,8 +112,10 @@ export async function runCases(cases, page, output) {
 }
 
 const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
-/** What keeps people out who read with ears or press keys, and text that cannot be made out; each with where. */
+/** What keeps people out who read with ears or press keys, and text that cannot be made out, once no color is on its way to
+ *  another; each with where. */
 export async function barriers(of) {
+  await of.evaluate(() => Promise.all(document.getAnimations().filter((one) => one instanceof CSSTransition).map((one) => one.finished.catch(() => {}))));
   await of.evaluate(axe);
   const { violations } = await of.evaluate(() => globalThis.axe.run(document, { resultTypes: ['violations'] }));
   return violations.flatMap(({ id, nodes }) => nodes.map(({ target, failureSummary }) => `${id}: ${target} ${failureSummary}`));

@@ -49,6 +49,7 @@ async function drag(points, keys = []) {
   for (const key of keys) await page.keyboard.down(key);
   await page.mouse.move(points[0].x, points[0].y);
   await page.mouse.down();
+  await page.waitForFunction(() => globalThis.limberStudio.idle()); // whether it paints or turns the view is known
   for (const { x, y } of points.slice(1)) await page.mouse.move(x, y, { steps: 6 });
   await page.mouse.up();
   for (const key of keys) await page.keyboard.up(key);

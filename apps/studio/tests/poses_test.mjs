@@ -211,7 +211,6 @@ const cases = {
   },
   async 'where the browser keeps nothing it says so, and the pose stays while the page lives'() {
     const context = await browser.newContext({ viewport: { width: 900, height: 700 } }), other = await context.newPage();
-    other.setDefaultTimeout(60_000);
     await other.addInitScript(() => { Object.defineProperty(globalThis, 'indexedDB', { value: { open: () => { throw new Error('no storage'); } } }); });
     await other.goto(`${server.address}?sample=biped`);
     await settled(other);

@@ -343,7 +343,6 @@ const cases = {
   async 'a reload comes back to what was worked on'() {
     await page.waitForFunction(() => globalThis.limberStudio.kept());
     const again = await desk.context.newPage();
-    again.setDefaultTimeout(120_000);
     await again.goto(server.address);
     await settled(again);
     const state = await sessionState(again), before = await sessionState(page);

@@ -65,7 +65,6 @@ async function open({ prepare = async () => {}, ...options } = {}) {
       await prepare(before);
     },
   }));
-  shown.setDefaultTimeout(15_000);
   sensors = await context.newCDPSession(shown);
 }
 
@@ -304,7 +303,7 @@ const cases = {
       // Screen and device a quarter to the left, the camera looking as at first: the picture is upright, and fills the width.
       await turnScreen(sensors, true);
       await turn(90, 0, -60);
-      await page.waitForFunction(() => innerWidth === 844);
+      await page.waitForFunction(() => innerWidth === 844 && screen.orientation.angle === 90);
       await frames();
       const [here, above, below] = [await spot(ahead), await spot([0, 0.5, ahead[2]]), await spot([0, 0, -1.4 / Math.tan(40 * Math.PI / 180)])];
       assert.ok(Math.hypot(here.x - 422, here.y - 195) < 1, JSON.stringify(here));

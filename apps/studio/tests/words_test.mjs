@@ -27,7 +27,6 @@ async function open(options) {
   const opened = await openStudio(browser, server.address, { search: '?sample=biped', ...options });
   opened.page.on('close', () => errors.push(...opened.errors));
   page = opened.page;
-  page.setDefaultTimeout(20_000);
   return opened;
 }
 
@@ -53,7 +52,6 @@ const texts = (of) => of.evaluate(() => {
 /** Goes everywhere, and gives each text with where it was met first. */
 async function walk(locale) {
   const { page: at, context } = await open({ locale });
-  at.setDefaultTimeout(60_000);
   const met = new Map(), names = new Set(), inEnglish = [];
   const note = async (where, asked = false) => {
     if (!asked) await settled(at);

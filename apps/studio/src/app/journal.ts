@@ -229,11 +229,14 @@ export class Journal {
     this.free = () => {};
     if (!('locks' in navigator)) return Promise.resolve(true);
     return new Promise((resolve) => {
-      // A page that is being reloaded may hold it a moment longer.
-      navigator.locks.request(`limber-document-${id}`, { ...signal && { signal } }, () => {
+      const name = `limber-document-${id}`, hold = () => {
         resolve(true);
         return new Promise<void>((release) => { this.free = release; });
-      }).catch(() => resolve(false));
+      };
+      // A page that is being reloaded may hold it a moment longer; and where the time ran out while this machine stood still, it is free.
+      navigator.locks.request(name, { ...signal && { signal } }, hold)
+        .catch(() => navigator.locks.request(name, { ifAvailable: true }, (lock) => (lock ? hold() : undefined)))
+        .then(() => resolve(false), () => resolve(false));
     });
   }
 }

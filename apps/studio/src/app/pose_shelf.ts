@@ -39,8 +39,9 @@ export class PoseShelf {
 
   /** What another tab kept is there as well; what could not be kept stays while the page lives. */
   async load() {
+    const before = new Set(this.page.now.ownPoses.map(({ id }) => id));
     const kept = await this.store.list().catch(() => []), ids = new Set(kept.map(({ id }) => id));
-    const unkept = this.page.now.ownPoses.filter(({ id }) => this.unkept.has(id) && !ids.has(id));
+    const unkept = this.page.now.ownPoses.filter(({ id }) => !ids.has(id) && (this.unkept.has(id) || !before.has(id)));
     this.page.set({ ownPoses: [...unkept, ...kept] });
   }
   private unkept = new Set<string>();

@@ -79,7 +79,7 @@ export function motionShelf(studio: Studio, page: PageStore): HTMLElement {
     }
   }
 
-  trials.onRest = () => { if (dialog.open && !playing) suitedFirst(); };
+  trials.onRest = () => { if (dialog.open && !playing && !tapped) suitedFirst(); };
   trials.onResult = (motion, preview) => {
     const card = all().find((one) => one.motion === motion);
     if (card) showResult(card, preview);

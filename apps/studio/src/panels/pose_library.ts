@@ -79,6 +79,7 @@ export function poseLibrary(studio: Studio, page: PageStore, shelf: PoseShelf): 
   trials.onRest = () => {
     if (!dialog.open) return;
     keepPictures();
+    if (samples.querySelector(':is(:active, :hover, :focus)')) return; // nothing moves away from under the pointer
     const suits = (card: Card) => Number(card.preview?.error == null), before = cards.sample.slice();
     cards.sample.sort((a, b) => suits(b) - suits(a) || page.now.samplePoses.indexOf(a.entry as SamplePose) - page.now.samplePoses.indexOf(b.entry as SamplePose));
     if (cards.sample.some((card, i) => card !== before[i])) samples.replaceChildren(...cards.sample.map(({ root }) => root));
@@ -175,7 +176,8 @@ export function poseLibrary(studio: Studio, page: PageStore, shelf: PoseShelf): 
       seen.unobserve(card.root);
       trials.leave(card);
     });
-    list.replaceChildren(...after.map(({ root }) => root));
+    // A button that is taken out while it is pressed is not clicked.
+    if (after.length !== before.length || after.some((card, i) => card !== before[i])) list.replaceChildren(...after.map(({ root }) => root));
     return after;
   }
 

@@ -17,7 +17,10 @@ export function clipCalls(core: Core) {
   }
 
   return {
-    async chooseClip(clip: string) { await core.run({ do: 'choose_clip', clip }); },
+    async chooseClip(clip: string) {
+      waiting = null; // of the clip before
+      await core.run({ do: 'choose_clip', clip });
+    },
     async renameClip(clip: string, name: string) { await core.run({ do: 'rename_clip', clip, name }); },
 
     async addClip() {
