@@ -9,7 +9,7 @@
 
 namespace limber {
 
-std::optional<Index> addEmbeddedTexture(Asset& asset, std::string_view path, const std::optional<Bytes>& bytes) {
+std::optional<Index> addEmbeddedImage(Asset& asset, std::string_view path, const std::optional<Bytes>& bytes) {
   if (!bytes) {
     asset.warnings.add("missing-images", "textures that cannot be found are left out", validUtf8(path));
     return std::nullopt;
@@ -23,8 +23,14 @@ std::optional<Index> addEmbeddedTexture(Asset& asset, std::string_view path, con
   image.name = validUtf8(path);
   image.bufferView = addBufferView(asset, *bytes);
   image.mimeType = mime;
+  return addElement(asset.document.images, std::move(image));
+}
+
+std::optional<Index> addEmbeddedTexture(Asset& asset, std::string_view path, const std::optional<Bytes>& bytes) {
+  const std::optional<Index> image = addEmbeddedImage(asset, path, bytes);
+  if (!image) return std::nullopt;
   gltf::Texture texture;
-  texture.source = addElement(asset.document.images, std::move(image));
+  texture.source = *image;
   return addElement(asset.document.textures, std::move(texture));
 }
 

@@ -9,8 +9,11 @@
 
 namespace limber {
 
-// A new texture of a picture that is embedded, named after its path. None, with a warning "missing-images" or
-// "unsupported-images", where there are no bytes or they are neither PNG nor JPEG.
+// A new picture that is embedded, named after its path. None, with a warning "missing-images" or "unsupported-images",
+// where there are no bytes or they are neither PNG nor JPEG.
+std::optional<Index> addEmbeddedImage(Asset& asset, std::string_view path, const std::optional<Bytes>& bytes);
+
+// The same, and a new texture of it, which is returned.
 std::optional<Index> addEmbeddedTexture(Asset& asset, std::string_view path, const std::optional<Bytes>& bytes);
 
 }  // namespace limber

@@ -13,6 +13,7 @@
 #include "limber/asset/shape_tracks.h"
 #include "limber/asset/unique_names.h"
 #include "limber/asset/weight_attributes.h"
+#include "limber/core/srgb.h"
 
 namespace limber {
 
@@ -27,11 +28,6 @@ struct FbxLayerKind {
 };
 constexpr FbxLayerKind kFbxNormals = {"LayerElementNormal", "Normals", 101}, kFbxUvs = {"LayerElementUV", "UV", 101},
                        kFbxColors = {"LayerElementColor", "Colors", 101};
-
-double srgbOf(double linear) {
-  const double encoded = linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
-  return static_cast<float>(encoded);  // the same by any library's powers
-}
 
 class FbxGeometryWriter {
  public:

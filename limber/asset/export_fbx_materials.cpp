@@ -8,6 +8,14 @@
 
 namespace limber {
 
+namespace {
+
+void tellOfMissing(const std::string& where, Warnings& warnings) {
+  warnings.add("missing-images", "textures that are neither PNG nor JPEG are left out", where);
+}
+
+}  // namespace
+
 FbxId FbxMaterialWriter::material(std::optional<Index> number) {
   if (const auto known = materials_.find(number); known != materials_.end()) return known->second;
   static const gltf::Material kDefault;
@@ -66,7 +74,11 @@ void FbxMaterialWriter::writeTextures(const gltf::Material& material, FbxId id) 
 
 void FbxMaterialWriter::connect(const gltf::TextureUse& use, FbxId material, std::string_view property) {
   const gltf::Texture& source = asset_.document.textures[use.index];
-  const std::optional<FbxId> picture = source.source ? video(*source.source) : std::nullopt;
+  if (!source.source) {  // in a format that an extension of the texture knows
+    tellOfMissing(fmt::format("textures[{}]", use.index), warnings_);
+    return;
+  }
+  const std::optional<FbxId> picture = video(*source.source);
   if (!picture) return;
   if (use.extensions.exists()) {
     warnings_.add("texture-transforms", "places of textures are written without what extensions say of them",
@@ -97,8 +109,7 @@ std::optional<FbxId> FbxMaterialWriter::video(Index image) {
   std::optional<Bytes> bytes = imageBytes(asset_, image);
   const std::string_view extension = bytes ? imageFormat(*bytes).extension : std::string_view();
   if (extension != ".png" && extension != ".jpg") {
-    warnings_.add("missing-images", "textures that are neither PNG nor JPEG are left out",
-                  fmt::format("images[{}]", image));
+    tellOfMissing(fmt::format("images[{}]", image), warnings_);
     return std::nullopt;
   }
   const std::string& file = files_[image] = fileOf(image, extension);

@@ -6,12 +6,14 @@
 #include <gtest/gtest.h>
 
 #include "limber/asset/clip_moment.h"
+#include "limber/asset/export_fbx_angles.h"
 #include "limber/asset/geometry.h"
 #include "limber/asset/read.h"
 #include "limber/asset/testing/gltf_builder.h"
 #include "limber/asset/testing/scene_builder.h"
 #include "limber/core/numbers.h"
 #include "limber/fbx/testing/fbx_reader.h"
+#include "warning_kinds.h"
 
 namespace limber {
 namespace {
@@ -241,6 +243,15 @@ TEST(EncodeFbx, PrimitivesBecomeOneGeometryWithMaterialNumbers) {
   EXPECT_THAT(below, ElementsAre(&surface, &file.object("Material b"), &file.object("Material a")));
 }
 
+TEST(EncodeFbx, TexturesWithoutAnImageOfItsOwnFormatsAreTold) {
+  Asset asset = everything();
+  asset.document.textures[0].source.reset();
+  asset.document.textures[0].extensions.change()["EXT_texture_webp"] = {{"source", 0}};
+  const FbxFileView file(asset);
+  EXPECT_EQ(file.count("Texture"), 0u);
+  EXPECT_THAT(testing::warningKinds(file.warnings()), ::testing::Contains("missing-images"));
+}
+
 TEST(EncodeFbx, NodesThatShowOneMeshShareItsGeometry) {
   SceneBuilder scene;
   const Index mesh = scene.addTetrahedron();
@@ -303,6 +314,27 @@ TEST(EncodeFbx, WeightsOfBlendShapesMoveInPercent) {
   const FbxNode& node = *file.below(channel, "DeformPercent").front();
   const FbxNode& curve = *file.below(node, "d|DeformPercent").front();
   EXPECT_THAT(FbxFileView::array<float>(curve, "KeyValueFloat"), ElementsAre(50));
+}
+
+// The model's scale is mirrored on x, the clip knows the node's own rotation alone.
+TEST(EncodeFbx, MirroredNodesTurnAsTheirClipsSay) {
+  for (const Vec3& scale : {Vec3(1, 1, -1), Vec3(-1, -2, 1), Vec3(1, -1, 1)}) {
+    SceneBuilder scene;
+    const Json numbers = {scale.x(), scale.y(), scale.z()};
+    scene.addClip(scene.addNode({{"name", "thing"}, {"mesh", scene.addTetrahedron()}, {"scale", numbers}}), "rotation",
+                  4);
+    const FbxFileView file(scene.build());
+    const FbxNode& model = file.object("Model thing");
+    const FbxNode& node = *file.below(model, "Lcl Rotation").front();
+    const auto degrees = [&](const char* axis) {
+      return double{FbxFileView::array<float>(*file.below(node, axis).front(), "KeyValueFloat").at(0)};
+    };
+    const Quat turn = eulerRotation({degrees("d|X"), degrees("d|Y"), degrees("d|Z")});
+    const Vec3 shown(FbxFileView::property(model, "Lcl Scaling").data());
+    const Mat3 got = turn.toRotationMatrix() * shown.asDiagonal();
+    const Mat3 wanted = Quat(0.5, 0.5, 0.5, 0.5).toRotationMatrix() * scale.asDiagonal();
+    EXPECT_LT((got - wanted).cwiseAbs().maxCoeff(), 1e-6) << scale.transpose();
+  }
 }
 
 TEST(EncodeFbx, SameDocumentSameBytes) {

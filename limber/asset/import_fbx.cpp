@@ -49,8 +49,9 @@ FbxConvention conventionOf(const FbxFile& file) {
 
 class FbxConverter {
  public:
-  FbxConverter(const FbxFile& file, const Resolver& resolver)
+  FbxConverter(const FbxFile& file, std::size_t fileSize, const Resolver& resolver)
       : convention_(conventionOf(file)),
+        budget_(fileSize),
         objects_(file),
         models_(objects_),
         animations_(objects_, models_, asset_.warnings),
@@ -85,8 +86,11 @@ class FbxConverter {
     for (Index m = 0; m < models_.count(); ++m) {
       for (const Index geometry : objects_.sources(models_[m].object, "Geometry")) {
         if (!objects_.is(geometry, "Geometry", "Mesh")) continue;
-        MeshPart part{m, geometry, readFbxSkin(objects_, models_, geometry, m, asset_.warnings),
-                      readFbxShapes(objects_, geometry, asset_.warnings)};
+        MeshPart part{m, geometry, {}, {}};
+        if (!objects_.sources(geometry, "Deformer").empty()) {
+          part.skin = readFbxSkin(objects_, models_, geometry, m, budget_, asset_.warnings);
+          part.shapes = readFbxShapes(objects_, geometry, budget_, asset_.warnings);
+        }
         if (part.skin) joints_.insert(part.skin->joints.begin(), part.skin->joints.end());
         hasMesh_.insert(m);
         if (!part.skin) hasRigidMesh_.insert(m);
@@ -124,9 +128,13 @@ class FbxConverter {
   }
 
   void setLocal(gltf::Node& node, Index model) {
+    if (!models_[model].isCompensated) return setOwnLocal(node, models_[model].transform);
     Affine local = models_.restLocal(model);
     local.translation() *= convention_.scale;
-    const bool mayHaveMatrix = !animations_.moves()[model] && joints_.count(model) == 0;
+    const std::vector<Index> chain = models_.chainOf(model);  // all of it moves a compensated model
+    const bool mayHaveMatrix = joints_.count(model) == 0 && std::none_of(chain.begin(), chain.end(), [&](Index of) {
+                                 return animations_.moves()[of];
+                               });
     bool isSheared = false;
     decompose(local, &isSheared);
     if (isSheared && !mayHaveMatrix) {
@@ -134,6 +142,17 @@ class FbxConverter {
                           objects_[models_[model].object].name);
     }
     setNodeTransform(node, local, mayHaveMatrix);
+  }
+
+  // As the tracks of it are: a matrix would not tell a rotation from a scale of 0.
+  void setOwnLocal(gltf::Node& node, const FbxTransform& transform) const {
+    const Transform local = transform.localMirroredOnX(transform.rest);
+    const Vec3 translation = convention_.scale * local.translation;
+    if (translation != Vec3::Zero()) node.translation = translation.unaryExpr(&shortDouble);
+    if (local.rotation.coeffs() != Quat::Identity().coeffs()) {
+      node.rotation = local.rotation.coeffs().unaryExpr(&shortDouble);
+    }
+    if (local.scale != Vec3::Ones()) node.scale = local.scale.unaryExpr(&shortDouble);
   }
 
   void addPart(MeshPart& part) {
@@ -166,14 +185,13 @@ class FbxConverter {
   }
 
   std::optional<Index> addMesh(const MeshPart& part, const FbxMeshPlan& plan, const std::string& name) {
-    const FbxNode& geometry = *objects_[part.geometry].node;
+    FbxMesh made = importFbxMesh(asset_, *objects_[part.geometry].node, name, plan, budget_);
     const std::vector<Index> materials = objects_.sources(models_[part.model].object, "Material");
-    const std::vector<std::string> textureSets = fbxTextureSets(geometry);
     gltf::Mesh mesh;
     mesh.name = objects_[part.geometry].name.empty() ? name : objects_[part.geometry].name;
-    for (FbxPrimitive& one : importFbxPrimitives(asset_, geometry, name, plan)) {
+    for (FbxPrimitive& one : made.primitives) {
       one.primitive.material = one.material < materials.size()
-                                   ? materials_.material(materials[one.material], textureSets)
+                                   ? materials_.material(materials[one.material], made.textureSets)
                                    : materials_.defaultMaterial();
       mesh.primitives.push_back(std::move(one.primitive));
     }
@@ -254,6 +272,7 @@ class FbxConverter {
   }
 
   FbxConvention convention_;
+  FbxBudget budget_;
   Asset asset_;
   gltf::Document& document_ = asset_.document;
   FbxObjects objects_;
@@ -273,7 +292,7 @@ class FbxConverter {
 
 Asset importFbx(ByteSpan bytes, const Resolver& resolver) {
   try {
-    Asset asset = FbxConverter(parseFbx(bytes), resolver).convert();
+    Asset asset = FbxConverter(parseFbx(bytes), bytes.size(), resolver).convert();
     asset.format = "fbx";
     return asset;
   } catch (const Error& error) {

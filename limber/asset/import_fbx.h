@@ -12,9 +12,11 @@ namespace limber {
 //
 // What does not come along is a warning: lights, cameras, constraints, curves and surfaces that are no polygons
 // ("other-geometry"), caches of points, other layers of clips than the first, textures that are missing or neither PNG
-// nor JPEG. Pictures are opened through `resolver` only.
+// nor JPEG or of other properties than colour, normals and emission ("other-textures"). Pictures are opened through
+// `resolver` only.
 //
-// Throws Error kBadData for a broken file or one with a position that is not finite, kUnsupported for other versions.
+// Throws Error kBadData for a broken file or one with a position that is not finite, kUnsupported for other versions,
+// kLimit where its meshes would hold far more than those of a file of its size (FbxBudget).
 // The result has not passed checkAsset yet.
 Asset importFbx(ByteSpan bytes, const Resolver& resolver);
 

@@ -15,12 +15,18 @@ namespace {
 
 constexpr std::array<std::string_view, 3> kKinds = {"Lcl Translation", "Lcl Rotation", "Lcl Scaling"};
 constexpr std::array<std::string_view, 3> kAxes = {"d|X", "d|Y", "d|Z"};
+constexpr std::string_view kPercent = "d|DeformPercent";
 
 constexpr double kTolerance = 1e-4;                               // radians, or of what a track moves through
 constexpr std::int64_t kShortestSplit = kFbxTicksPerSecond / 24;  // spans up to here are not divided
 constexpr int kMostHalvings = 10;
 // Together all clips of a document may have so many keys more than their curves, for each of these and in any case.
 constexpr std::size_t kMorePerKey = 16, kMoreKeys = std::size_t{1} << 20;
+
+// In what glTF can say of it: files have the same number in several precisions.
+bool differs(double a, double b) {
+  return static_cast<float>(a) != static_cast<float>(b);
+}
 
 using Row = Eigen::VectorXd;
 
@@ -227,29 +233,29 @@ class ClipWriter {
   std::map<std::vector<float>, Index> inputs_;
 };
 
-// None for a clip without keys.
-std::optional<ClipRange> rangeOf(const FbxClipCurves& clip, Warnings& warnings) {
+// A clip of numbers that stand still is a moment.
+ClipRange rangeOf(const FbxClipCurves& clip, Warnings& warnings) {
   std::vector<std::int64_t> ticks;
   for (const std::optional<FbxMotion>& motion : clip.motions) {
     for (std::size_t kind = 0; motion && kind < 3; ++kind) {
       for (const FbxCurve* curve : motion->curves[kind]) addKeyTicks(curve, ticks);
     }
   }
-  for (const auto& [object, curve] : clip.percents) addKeyTicks(curve, ticks);
-  if (ticks.empty()) return std::nullopt;
+  for (const auto& [object, percent] : clip.percents) addKeyTicks(percent.curve, ticks);
+  if (ticks.empty()) return {clip.start.value_or(0), clip.start.value_or(0)};
   const auto [first, last] = std::minmax_element(ticks.begin(), ticks.end());
-  if (!clip.start || *clip.start > *last || *clip.stop < *first) return ClipRange{*first, *last};
+  if (!clip.start || *clip.start > *last || *clip.stop < *first) return {*first, *last};
   if (*first < *clip.start || *last > *clip.stop) {
     warnings.add("trimmed-clips", "keys outside of their clip's time are cut off", clip.name);
   }
-  return ClipRange{*clip.start, std::min(*clip.stop, *last)};
+  return {*clip.start, std::min(*clip.stop, *last)};
 }
 
 // What the models and blend shapes of one clip show.
 class ClipSampler {
  public:
-  ClipSampler(const FbxModels& models, const FbxClipCurves& clip, double scale)
-      : models_(models), clip_(clip), scale_(scale) {}
+  ClipSampler(const FbxModels& models, const FbxClipCurves& clip, std::int64_t start, double scale)
+      : models_(models), clip_(clip), start_(start), scale_(scale) {}
 
   void addModel(Index m, Index node, ClipWriter& writer) const {
     std::array<std::vector<std::int64_t>, 3> ticks = ticksOf(m);
@@ -262,17 +268,21 @@ class ClipSampler {
   }
 
   void addShapes(const FbxShapesInUse& use, ClipWriter& writer) const {
-    const auto curveOf = [&](const FbxShapeChannel& channel) -> const FbxCurve* {
+    const auto percentOf = [&](const FbxShapeChannel& channel) {
       const auto found = clip_.percents.find(channel.object);
-      return found == clip_.percents.end() ? nullptr : found->second;
+      return found == clip_.percents.end() ? FbxPercent{nullptr, channel.percent} : found->second;
     };
     std::vector<std::int64_t> ticks;
-    for (const FbxShapeChannel& channel : use.shapes->channels) addKeyTicks(curveOf(channel), ticks);
+    for (const FbxShapeChannel& channel : use.shapes->channels) {
+      const FbxPercent percent = percentOf(channel);
+      addKeyTicks(percent.curve, ticks);
+      if (!percent.curve && differs(percent.still, channel.percent)) ticks.push_back(start_);
+    }
     writer.addTrack(use.node, TrackPath::kWeights, std::move(ticks), [&](std::int64_t at, bool fromLeft) {
       std::vector<double> weights(use.shapes->targets.size(), 0);
       for (const FbxShapeChannel& channel : use.shapes->channels) {
-        const FbxCurve* curve = curveOf(channel);
-        channel.addWeights(curve ? curve->at(at, fromLeft) : channel.percent, weights);
+        const FbxPercent percent = percentOf(channel);
+        channel.addWeights(percent.curve ? percent.curve->at(at, fromLeft) : percent.still, weights);
       }
       return Row(Eigen::Map<const Row>(weights.data(), static_cast<Eigen::Index>(weights.size())));
     });
@@ -285,13 +295,16 @@ class ClipSampler {
   }
 
   Transform localAt(Index m, std::int64_t ticks, bool fromLeft) const {
-    if (!models_[m].isCompensated) return models_[m].transform.local(poseAt(m, ticks, fromLeft));
+    if (!models_[m].isCompensated) return models_[m].transform.localMirroredOnX(poseAt(m, ticks, fromLeft));
     return decompose(models_.localOf(m, [&](Index of) { return poseAt(of, ticks, fromLeft); }));
   }
 
   void addKeys(Index m, std::size_t kind, std::vector<std::int64_t>& ticks) const {
-    if (!clip_.motions[m]) return;
-    for (const FbxCurve* curve : clip_.motions[m]->curves[kind]) addKeyTicks(curve, ticks);
+    if (!clip_.motions[m] || !clip_.motions[m]->moves[kind]) return;
+    const std::array<const FbxCurve*, 3>& curves = clip_.motions[m]->curves[kind];
+    for (const FbxCurve* curve : curves) addKeyTicks(curve, ticks);
+    const bool isStill = std::none_of(curves.begin(), curves.end(), [](const FbxCurve* curve) { return curve; });
+    if (isStill) ticks.push_back(start_);
   }
 
   // The keys that count for translation, rotation and scale: those of its own curves, and of what else they depend on.
@@ -314,6 +327,7 @@ class ClipSampler {
 
   const FbxModels& models_;
   const FbxClipCurves& clip_;
+  std::int64_t start_;  // of the clip
   double scale_;
 };
 
@@ -339,7 +353,7 @@ void FbxAnimations::readStack(Index stack) {
   const FbxProperties properties = objects_.properties(stack);
   constexpr std::int64_t kNone = std::numeric_limits<std::int64_t>::min();
   const std::int64_t start = properties.integer("LocalStart", kNone), stop = properties.integer("LocalStop", kNone);
-  if (start != kNone && stop != kNone && start < stop) {
+  if (isFbxTime(start) && isFbxTime(stop) && start < stop) {
     clip.start = start;
     clip.stop = stop;
   }
@@ -364,7 +378,9 @@ const FbxCurve* FbxAnimations::curveOf(Index node, std::string_view component) {
 void FbxAnimations::readCurveNode(Index node, FbxClipCurves& clip) {
   for (const FbxObjects::Link& link : objects_.destinations(node)) {
     if (objects_.is(link.object, "Deformer", "BlendShapeChannel") && link.property == "DeformPercent") {
-      if (const FbxCurve* curve = curveOf(node, "d|DeformPercent")) clip.percents.emplace(link.object, curve);
+      const FbxCurve* curve = curveOf(node, kPercent);
+      const std::optional<double> still = objects_.properties(node).number(kPercent);
+      if (curve || still) clip.percents.emplace(link.object, FbxPercent{curve, still.value_or(0)});
       continue;
     }
     if (link.property.empty()) continue;  // the layer
@@ -380,22 +396,22 @@ void FbxAnimations::readCurveNode(Index node, FbxClipCurves& clip) {
     const FbxTransform& transform = models_[*model].transform;
     std::optional<FbxMotion>& motion = clip.motions[*model];
     if (!motion) motion.emplace(transform.rest);
+    const Vec3 rest = FbxMotion(transform.rest).still[kind];
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const FbxCurve* curve = curveOf(node, kAxes[axis]);
       motion->curves[kind][axis] = curve;
-      motion->moves[kind] = motion->moves[kind] || curve;
-      if (curve) continue;
       double& still = motion->still[kind][static_cast<int>(axis)];
-      still = objects_.properties(node).number(kAxes[axis], still);
+      if (!curve) still = objects_.properties(node).number(kAxes[axis], still);
+      motion->moves[kind] = motion->moves[kind] || curve || differs(still, rest[static_cast<int>(axis)]);
     }
     moves_[*model] = moves_[*model] || motion->moves[kind];
     for (std::size_t axis = 0; kind == 2 && axis < 3; ++axis) {
       const FbxCurve* curve = motion->curves[kind][axis];
-      const double rest = transform.rest.scaling[static_cast<int>(axis)];
-      const bool differs = curve ? std::any_of(curve->keys().begin(), curve->keys().end(),
-                                               [&](const FbxKey& key) { return key.value != rest; })
-                                 : motion->still[kind][static_cast<int>(axis)] != rest;
-      if (differs) scales_[*model] = true;
+      const double own = rest[static_cast<int>(axis)];
+      const bool scales = curve ? std::any_of(curve->keys().begin(), curve->keys().end(),
+                                              [&](const FbxKey& key) { return key.value != own; })
+                                : differs(motion->still[kind][static_cast<int>(axis)], own);
+      if (scales) scales_[*model] = true;
     }
   }
 }
@@ -405,10 +421,9 @@ void FbxAnimations::addClips(Asset& asset, const std::vector<std::optional<Index
   std::size_t budget = kMoreKeys;
   for (const auto& [object, curve] : curves_) budget += curve ? kMorePerKey * curve->keys().size() : 0;
   for (const FbxClipCurves& clip : clips_) {
-    const std::optional<ClipRange> range = rangeOf(clip, asset.warnings);
-    if (!range) continue;
-    ClipWriter writer(asset, *range, budget);
-    const ClipSampler sampler(models_, clip, scale);
+    const ClipRange range = rangeOf(clip, asset.warnings);
+    ClipWriter writer(asset, range, budget);
+    const ClipSampler sampler(models_, clip, range.start, scale);
     for (Index m = 0; m < models_.count(); ++m) {
       if (nodeOf[m]) sampler.addModel(m, *nodeOf[m], writer);
     }

@@ -18,12 +18,18 @@ struct FbxShapesInUse {
   const FbxShapes* shapes = nullptr;
 };
 
-// What the curves of one stack move.
+// The weight of a blend shape's channel in one clip: a curve, else a number.
+struct FbxPercent {
+  const FbxCurve* curve = nullptr;
+  double still = 0;
+};
+
+// What one stack moves.
 struct FbxClipCurves {
   std::string name;
   std::optional<std::int64_t> start, stop;        // ticks, as the stack says
   std::vector<std::optional<FbxMotion>> motions;  // #models
-  std::map<Index, const FbxCurve*> percents;      // by object: of channels of blend shapes
+  std::map<Index, FbxPercent> percents;           // by object: of channels of blend shapes
 };
 
 // The curves of a file, and the clips made of them.
@@ -31,7 +37,7 @@ class FbxAnimations {
  public:
   FbxAnimations(const FbxObjects& objects, const FbxModels& models, Warnings& warnings);
 
-  // #models: does a curve of any clip move it; does one give it another scale than its rest's?
+  // #models: does any clip move it, or hold it elsewhere than its rest; does one give it another scale than its rest's?
   const std::vector<bool>& moves() const { return moves_; }
   const std::vector<bool>& scales() const { return scales_; }
 
@@ -44,6 +50,7 @@ class FbxAnimations {
   // keys: where the curves, or the turning by Euler angles, run otherwise, keys are put between theirs, until what is
   // shown differs by no more than a ten thousandth of a radian (or of what a track moves through), though none closer
   // together than 1/48 s. What only steps becomes a track of steps; a step among others two keys one after the other.
+  // What a clip holds elsewhere than the rest, without a curve, gets one key where the clip begins.
   void addClips(Asset& asset, const std::vector<std::optional<Index>>& nodeOf,
                 const std::vector<FbxShapesInUse>& shapes, double scale) const;
 

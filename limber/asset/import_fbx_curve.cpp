@@ -39,24 +39,33 @@ double secant(const FbxKey& a, const FbxKey& b) {
 // Runs of keys share their flags and data.
 struct KeyRuns {
   std::vector<std::int64_t> flags, counts;
-  std::vector<double> numbers;            // kDataPerKey each
-  std::vector<std::uint32_t> weightBits;  // one each
+  std::vector<double> numbers;  // kDataPerKey each
 };
 
 KeyRuns keyRuns(const FbxNode& node) {
-  KeyRuns runs{fbxIntegers(node, "KeyAttrFlags"),
-               fbxIntegers(node, "KeyAttrRefCount"),
-               fbxNumbers(node, "KeyAttrDataFloat"),
-               {}};
-  // Text files have the bits of these floats as integers, or as the floats that they are.
+  KeyRuns runs{fbxIntegers(node, "KeyAttrFlags"), fbxIntegers(node, "KeyAttrRefCount"),
+               fbxNumbers(node, "KeyAttrDataFloat")};
+  // Text files since 7.2 have the bits of these floats as integers, older ones and binary files the floats themselves.
   const FbxNode* data = node.find("KeyAttrDataFloat");
-  const auto* whole =
-      data && !data->values.empty() ? std::get_if<std::vector<std::int64_t>>(&data->values[0]) : nullptr;
-  for (std::size_t i = 2; i < runs.numbers.size(); i += kDataPerKey) {
-    runs.weightBits.push_back(whole ? static_cast<std::uint32_t>((*whole)[i])
-                                    : bitCast<std::uint32_t>(static_cast<float>(runs.numbers[i])));
+  const auto* bits = data && !data->values.empty() ? std::get_if<std::vector<std::int64_t>>(&data->values[0]) : nullptr;
+  for (std::size_t i = 0; bits && i < bits->size(); ++i) {
+    runs.numbers[i] = bitCast<float>(static_cast<std::uint32_t>((*bits)[i]));
   }
   return runs;
+}
+
+// Does it go on beyond its keys other than by standing still? The letter is a number in binary files.
+bool isExtrapolated(const FbxNode& node) {
+  constexpr std::string_view kModes = "AKMR";  // repeats on top of itself, at its slope, mirrored, repeats
+  for (const char* end : {"Pre-Extrapolation", "Post-Extrapolation"}) {
+    const FbxNode* beyond = node.find(end);
+    const FbxNode* type = beyond ? beyond->find("Type") : nullptr;
+    if (!type) continue;
+    const std::string_view text = fbxText(*type, 0).value_or("");
+    const std::int64_t letter = text.empty() ? fbxInteger(*type, 0).value_or(0) : text[0];
+    if (std::any_of(kModes.begin(), kModes.end(), [&](char mode) { return mode == letter; })) return true;
+  }
+  return false;
 }
 
 void setShape(FbxKey& key, std::int64_t flags, const KeyRuns& runs, std::size_t run) {
@@ -69,8 +78,8 @@ void setShape(FbxKey& key, std::int64_t flags, const KeyRuns& runs, std::size_t 
   if (key.shape != Shape::kCubic || kDataPerKey * run + 1 >= runs.numbers.size()) return;
   key.slope = runs.numbers[kDataPerKey * run];
   key.nextSlope = runs.numbers[kDataPerKey * run + 1];
-  if (run >= runs.weightBits.size()) return;
-  const std::uint32_t bits = runs.weightBits[run];
+  if (kDataPerKey * run + 2 >= runs.numbers.size()) return;
+  const auto bits = bitCast<std::uint32_t>(static_cast<float>(runs.numbers[kDataPerKey * run + 2]));
   const auto weightOf = [](std::uint32_t word) {
     return std::clamp(kWeightUnit * static_cast<std::int16_t>(word & 0xffff), 0.0, 1.0);
   };
@@ -139,8 +148,7 @@ std::optional<FbxCurve> FbxCurve::read(const FbxNode& node, Warnings& warnings) 
       inRun = 0;
     }
     ++inRun;
-    constexpr std::int64_t kMostTicks = std::int64_t{1} << 55;  // nine days; differences stay within 64 bits
-    if (!std::isfinite(static_cast<float>(values[k])) || std::abs(static_cast<double>(times[k])) > double{kMostTicks}) {
+    if (!std::isfinite(static_cast<float>(values[k])) || !isFbxTime(times[k])) {
       ++left;
       continue;
     }
@@ -160,6 +168,9 @@ std::optional<FbxCurve> FbxCurve::read(const FbxNode& node, Warnings& warnings) 
   }
   warnings.add("invalid-keys", "animation keys that are not finite or not in order are left out", {}, left);
   if (keys.empty()) return std::nullopt;
+  if (keys.size() > 1 && isExtrapolated(node)) {
+    warnings.add("extrapolated-curves", "curves that go on beyond their keys (cycles, slopes) stand still there");
+  }
   setAutomaticSlopes(keys, flags);
   return FbxCurve(std::move(keys));
 }

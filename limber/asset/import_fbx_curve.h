@@ -13,6 +13,12 @@ namespace limber {
 
 inline constexpr std::int64_t kFbxTicksPerSecond = 46186158000;
 
+// Within nine days of 0: differences stay within 64 bits. The SDK writes times without end as the largest integers.
+inline bool isFbxTime(std::int64_t ticks) {
+  constexpr std::int64_t kMostTicks = std::int64_t{1} << 55;
+  return ticks >= -kMostTicks && ticks <= kMostTicks;
+}
+
 struct FbxKey {
   enum class Shape { kStep, kStepToNext, kLinear, kCubic };  // until the next key; kStepToNext has its value at once
 
@@ -29,7 +35,7 @@ class FbxCurve {
   explicit FbxCurve(std::vector<FbxKey> keys) : keys_(std::move(keys)) {}
 
   // Of a node "AnimationCurve"; none where it has no usable key. Keys that are not finite, and of keys at one time all
-  // but the last, are left out and counted.
+  // but the last, are left out and counted. One that repeats or goes on beyond its keys is a warning.
   static std::optional<FbxCurve> read(const FbxNode& node, Warnings& warnings);
 
   const std::vector<FbxKey>& keys() const { return keys_; }

@@ -1,7 +1,9 @@
 #include "limber/asset/import_fbx_material.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include "limber/asset/embedded_texture.h"
 #include "limber/asset/side_file.h"
@@ -14,6 +16,17 @@ namespace limber {
 namespace {
 
 constexpr double kSdkGrey = 0.8;  // DiffuseColor where a file says nothing
+
+// Properties that textures are read of: the SDK's own, and those of shaders, as their plug-ins name them.
+constexpr std::array<std::string_view, 7> kColorMaps = {"DiffuseColor",
+                                                        "base_color",
+                                                        "baseColor",
+                                                        "Maya|baseColor",
+                                                        "3dsMax|Parameters|base_color_map",
+                                                        "Maya|TEX_color_map",
+                                                        "3dsMax|main|base_color_map"};
+constexpr std::array<std::string_view, 3> kNormalMaps = {"NormalMap", "Maya|TEX_normal_map", "3dsMax|main|norm_map"};
+constexpr std::array<std::string_view, 1> kEmissionMaps = {"EmissiveColor"};
 
 double clamped(double value) {
   return std::clamp(value, 0.0, 1.0);
@@ -103,9 +116,7 @@ gltf::Material FbxMaterials::convert(Index object, const std::vector<std::string
   gltf::Material result;
   result.name = objects_[object].name;
   gltf::MetallicRoughness& surface = result.pbrMetallicRoughness.emplace();
-  surface.baseColorTexture = textureUse(
-      object, {"DiffuseColor", "base_color", "baseColor", "Maya|baseColor", "3dsMax|Parameters|base_color_map"},
-      textureSets);
+  surface.baseColorTexture = textureUse(object, kColorMaps, textureSets);
   // A texture takes the place of the colour, which its factor still dims.
   Vec3 base = surface.baseColorTexture ? clamped(Vec3(Vec3::Ones() * properties.number("DiffuseFactor", 1)))
                                        : colorOf(object, "DiffuseColor", "DiffuseFactor", kSdkGrey);
@@ -120,11 +131,25 @@ gltf::Material FbxMaterials::convert(Index object, const std::vector<std::string
   const double exponent = properties.number("ShininessExponent", properties.number("Shininess", 0));
   surface.roughnessFactor = clamped(roughnessOfExponent(exponent));
 
-  result.normalTexture = textureUse(object, {"NormalMap"}, textureSets);
-  result.emissiveTexture = textureUse(object, {"EmissiveColor"}, textureSets);
+  result.normalTexture = textureUse(object, kNormalMaps, textureSets);
+  result.emissiveTexture = textureUse(object, kEmissionMaps, textureSets);
   result.emissiveFactor = result.emissiveTexture ? clamped(Vec3(Vec3::Ones() * properties.number("EmissiveFactor", 1)))
                                                  : colorOf(object, "EmissiveColor", "EmissiveFactor", 0);
+  warnOfOthers(object);
   return result;
+}
+
+void FbxMaterials::warnOfOthers(Index object) {
+  const auto isIn = [](std::span<const std::string_view> names, std::string_view name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  for (const auto& [source, property] : objects_.sources(object)) {
+    const bool isTexture = objects_.is(source, "Texture") || objects_.is(source, "LayeredTexture");
+    const bool isRead = isIn(kColorMaps, property) || isIn(kNormalMaps, property) || isIn(kEmissionMaps, property);
+    if (!isTexture || property.empty() || isRead || !others_.insert(property).second) continue;
+    asset_.warnings.add("other-textures", "textures of what is neither colour nor normals nor emission are left out",
+                        objects_[object].name + "." + validUtf8(property));
+  }
 }
 
 std::optional<Index> FbxMaterials::textureOf(Index object, std::string_view property) {
@@ -141,8 +166,7 @@ std::optional<Index> FbxMaterials::textureOf(Index object, std::string_view prop
   return std::nullopt;
 }
 
-std::optional<gltf::TextureUse> FbxMaterials::textureUse(Index object,
-                                                         std::initializer_list<std::string_view> properties,
+std::optional<gltf::TextureUse> FbxMaterials::textureUse(Index object, std::span<const std::string_view> properties,
                                                          const std::vector<std::string>& textureSets) {
   for (const std::string_view property : properties) {
     const std::optional<Index> source = textureOf(object, property);
@@ -161,10 +185,11 @@ std::optional<gltf::TextureUse> FbxMaterials::textureUse(Index object,
 std::optional<Index> FbxMaterials::texture(Index object) {
   const auto [known, isNew] = textures_.try_emplace(object);
   if (!isNew) return known->second;
-  std::string path;
-  const std::optional<Bytes> picture = pictureOf(object, path);
-  known->second = addEmbeddedTexture(asset_, path, picture);
-  if (!known->second) return std::nullopt;
+  const std::optional<Index> picture = image(object);
+  if (!picture) return std::nullopt;
+  gltf::Texture made;
+  made.source = *picture;
+  known->second = addElement(asset_.document.textures, std::move(made));
   const FbxProperties properties = objects_.properties(object);
   if (!properties.vector("Translation", Vec3::Zero()).isZero(0) ||
       properties.vector("Scaling", Vec3::Ones()) != Vec3::Ones() ||
@@ -182,28 +207,30 @@ std::optional<Index> FbxMaterials::texture(Index object) {
 }
 
 // What is embedded, else the file beside the model.
-std::optional<Bytes> FbxMaterials::pictureOf(Index texture, std::string& path) const {
+std::optional<Index> FbxMaterials::image(Index texture) {
   std::vector<const FbxNode*> nodes = {objects_[texture].node};
   for (const Index video : objects_.sources(texture, "Video")) {
-    nodes.push_back(objects_[video].node);
-    if (std::optional<Bytes> content = contentOf(*objects_[video].node)) {
-      path = fbxChildText(*objects_[video].node, "RelativeFilename");
-      if (path.empty()) path = objects_[video].name;
-      return content;
+    const FbxNode& node = *objects_[video].node;
+    nodes.push_back(&node);
+    if (const auto known = imageOfVideo_.find(video); known != imageOfVideo_.end()) return known->second;
+    if (const std::optional<Bytes> content = contentOf(node)) {
+      const std::string_view path = fbxChildText(node, "RelativeFilename");
+      return imageOfVideo_[video] = addEmbeddedImage(asset_, path.empty() ? objects_[video].name : path, content);
     }
   }
+  std::string missing;
   for (const FbxNode* node : nodes) {
     for (const char* child : {"RelativeFilename", "FileName", "Filename"}) {
-      const std::string_view name = fbxChildText(*node, child);
+      const std::string name(fbxChildText(*node, child));
       if (name.empty()) continue;
-      if (path.empty()) path = name;
-      if (std::optional<Bytes> bytes = sideFile(resolver_, name)) {
-        path = name;
-        return bytes;
+      if (const auto known = imageOfFile_.find(name); known != imageOfFile_.end()) return known->second;
+      if (const std::optional<Bytes> bytes = sideFile(resolver_, name)) {
+        return imageOfFile_[name] = addEmbeddedImage(asset_, name, bytes);
       }
+      if (missing.empty()) missing = name;
     }
   }
-  return std::nullopt;
+  return addEmbeddedImage(asset_, missing, std::nullopt);
 }
 
 }  // namespace limber

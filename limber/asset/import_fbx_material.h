@@ -3,7 +3,10 @@
 
 #include <map>
 #include <optional>
+#include <set>
+#include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -29,10 +32,12 @@ class FbxMaterials {
   double opacityOf(const FbxProperties& properties) const;
   // The object of class Texture that stands for a property.
   std::optional<Index> textureOf(Index object, std::string_view property);
-  std::optional<gltf::TextureUse> textureUse(Index object, std::initializer_list<std::string_view> properties,
+  std::optional<gltf::TextureUse> textureUse(Index object, std::span<const std::string_view> properties,
                                              const std::vector<std::string>& textureSets);
   std::optional<Index> texture(Index object);
-  std::optional<Bytes> pictureOf(Index texture, std::string& path) const;
+  // The picture of a texture object: one for all textures that take it from one place.
+  std::optional<Index> image(Index texture);
+  void warnOfOthers(Index object);
   bool allBlack() const;
 
   Asset& asset_;
@@ -40,7 +45,9 @@ class FbxMaterials {
   const Resolver& resolver_;
   bool areAllBlack_;
   std::map<std::pair<Index, std::vector<std::string>>, Index> materials_;
-  std::map<Index, std::optional<Index>> textures_;  // by object
+  std::map<Index, std::optional<Index>> textures_, imageOfVideo_;  // by object
+  std::map<std::string, std::optional<Index>> imageOfFile_;        // by its name in the file
+  std::set<std::string_view> others_;                              // properties whose textures are left out
   std::optional<Index> default_;
 };
 

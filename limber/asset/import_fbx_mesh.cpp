@@ -13,6 +13,7 @@
 #include "limber/asset/joined_primitive.h"
 #include "limber/asset/triangulate_polygon.h"
 #include "limber/asset/utf8.h"
+#include "limber/core/srgb.h"
 #include "limber/fbx/fbx_values.h"
 
 namespace limber {
@@ -109,21 +110,26 @@ Vec3 areaNormal(const FbxPolygons& polygons, Index polygon) {
 
 class FbxMeshBuilder {
  public:
-  FbxMeshBuilder(Asset& asset, const FbxNode& geometry, std::string name, const FbxMeshPlan& plan)
-      : asset_(asset), geometry_(geometry), name_(std::move(name)), plan_(plan), polygons_(readPolygons(geometry)) {
+  FbxMeshBuilder(Asset& asset, const FbxNode& geometry, std::string name, const FbxMeshPlan& plan, FbxBudget& budget)
+      : asset_(asset),
+        geometry_(geometry),
+        name_(std::move(name)),
+        plan_(plan),
+        budget_(budget),
+        polygons_(readPolygons(geometry)) {
     const Mat3 linear = plan.placement.linear();
     isMirrored_ = linear.determinant() < 0;
     const Mat3 inverse = linear.inverse();
     toNormals_ = inverse.allFinite() ? Mat3(inverse.transpose()) : Mat3(Mat3::Identity());
   }
 
-  std::vector<FbxPrimitive> build() {
+  FbxMesh build() {
     makePositions();
     for (const FbxNode& child : geometry_.children) addLayer(child);
     makeTriangles();
     if (triangles_.empty()) return {};
     joinCorners();
-    return primitives();
+    return {primitives(), std::move(textureSets_)};
   }
 
  private:
@@ -136,8 +142,7 @@ class FbxMeshBuilder {
         throw Error(ErrorCode::kBadData, "a position is beyond what single precision can hold");
       }
     }
-    VertexAttribute& positions = attributes_.emplace_back(VertexAttribute{"POSITION", 3, {}});
-    positions.values.reserve(3 * polygons_.corners.size());
+    VertexAttribute& positions = attributes_.emplace_back(forCorners("POSITION", 3));
     for (const Index point : polygons_.corners) {
       positions.values.insert(positions.values.end(), placed[point].data(), placed[point].data() + 3);
     }
@@ -147,16 +152,35 @@ class FbxMeshBuilder {
                         static_cast<std::size_t>(std::count(used.begin(), used.end(), false)));
   }
 
+  // An empty attribute with room for all corners.
+  VertexAttribute forCorners(std::string name, Index components) {
+    budget_.spend(components * polygons_.corners.size());
+    VertexAttribute attribute{std::move(name), components, {}};
+    attribute.values.reserve(components * polygons_.corners.size());
+    return attribute;
+  }
+
   void addLayer(const FbxNode& node) {
     if (node.name == "LayerElementNormal") {
       if (!hasNormals_) addNormals(Layer(node, "Normals", "NormalsIndex", 3));
     } else if (node.name == "LayerElementUV") {
-      textureSets_ += addNumbers(Layer(node, "UV", "UVIndex", 2), fmt::format("TEXCOORD_{}", textureSets_), 2);
+      if (!hasRoom(textureSets_.size())) return;
+      const bool isAdded =
+          addNumbers(Layer(node, "UV", "UVIndex", 2), fmt::format("TEXCOORD_{}", textureSets_.size()), 2);
+      if (isAdded) textureSets_.push_back(validUtf8(fbxChildText(node, "Name")));
     } else if (node.name == "LayerElementColor") {
+      if (!hasRoom(colors_)) return;
       colors_ += addNumbers(Layer(node, "Colors", "ColorIndex", 4), fmt::format("COLOR_{}", colors_), 4);
     } else if (node.name == "LayerElementMaterial") {
       if (materials_.empty()) readMaterials(Layer(node, "Materials", "", 1));
     }
+  }
+
+  bool hasRoom(std::size_t sets) {
+    if (sets < kMostSets) return true;
+    asset_.warnings.add("attribute-sets", "texture coordinates and colours beyond eight sets of each are left out",
+                        name_);
+    return false;
   }
 
   void warnOfLayer(std::string_view what) {
@@ -166,8 +190,7 @@ class FbxMeshBuilder {
 
   void addNormals(const Layer& layer) {
     if (!layer.isKnown()) return warnOfLayer("NORMAL");
-    VertexAttribute normals{"NORMAL", 3, {}};
-    normals.values.reserve(3 * polygons_.corners.size());
+    VertexAttribute normals = forCorners("NORMAL", 3);
     std::size_t made = 0;
     for (Index c = 0; c < polygons_.corners.size(); ++c) {
       const double* row = layer.row(polygons_, c);
@@ -185,31 +208,31 @@ class FbxMeshBuilder {
     hasNormals_ = true;
   }
 
-  // 1 where there is one more attribute then.
-  int addNumbers(const Layer& layer, std::string attribute, Index components) {
+  // Texture coordinates (2 components) or colours (4). False where the layer holds none.
+  bool addNumbers(const Layer& layer, std::string attribute, Index components) {
     if (!layer.isKnown()) {
       warnOfLayer(attribute);
-      return 0;
+      return false;
     }
-    VertexAttribute result{std::move(attribute), components, {}};
-    result.values.reserve(components * polygons_.corners.size());
+    VertexAttribute result = forCorners(std::move(attribute), components);
     const bool isTexture = components == 2;
     for (Index c = 0; c < polygons_.corners.size(); ++c) {
       const double* row = layer.row(polygons_, c);
       for (Index i = 0; i < components; ++i) {
-        const double value = row ? row[i] : isTexture ? 0 : 1;
-        result.values.push_back(
-            static_cast<float>(isTexture && i == 1 ? 1 - value : value));  // glTF counts v downwards
+        double value = row ? row[i] : isTexture ? 0 : 1;
+        if (isTexture && i == 1) value = 1 - value;  // glTF counts v downwards
+        if (!isTexture && i < 3) value = linearOf(value);
+        result.values.push_back(static_cast<float>(value));
       }
     }
     const bool isFinite =
         std::all_of(result.values.begin(), result.values.end(), [](float x) { return std::isfinite(x); });
     if (!isFinite) {
       warnOfLayer(result.name);
-      return 0;
+      return false;
     }
     attributes_.push_back(std::move(result));
-    return 1;
+    return true;
   }
 
   void readMaterials(const Layer& layer) {
@@ -309,6 +332,7 @@ class FbxMeshBuilder {
     result.attributes = addJoinedAttributes(asset_, attributes_, {}, 0, own.kept);
     std::vector<Index> points;  // control point of each vertex
     for (const Index corner : own.kept) points.push_back(polygons_.corners[corner]);
+    budget_.spend(2 * plan_.weights.slots * points.size());
     for (const auto& [name, accessor] : addJoinedAttributes(asset_, {}, plan_.weights, plan_.jointCount, points)) {
       result.attributes.set(name, accessor);
     }
@@ -328,6 +352,7 @@ class FbxMeshBuilder {
 
   Index addTarget(const FbxShapeTarget& shape, const std::vector<Vec3>& rows, const Mat3& map,
                   const std::vector<Index>& points, bool withBounds) {
+    budget_.spend(3 * points.size());
     std::vector<float> values(3 * points.size(), 0.0f);
     for (std::size_t v = 0; v < points.size(); ++v) {
       const auto found = std::lower_bound(shape.points.begin(), shape.points.end(), points[v]);
@@ -340,16 +365,19 @@ class FbxMeshBuilder {
   }
 
   static constexpr double kMostMaterials = 65536;
+  static constexpr std::size_t kMostSets = 8;
 
   Asset& asset_;
   const FbxNode& geometry_;
   std::string name_;
   const FbxMeshPlan& plan_;
+  FbxBudget& budget_;
   FbxPolygons polygons_;
   bool isMirrored_ = false, hasNormals_ = false;
   Mat3 toNormals_;
   std::vector<VertexAttribute> attributes_;  // of the corners
-  int textureSets_ = 0, colors_ = 0;
+  std::vector<std::string> textureSets_;     // their names
+  std::size_t colors_ = 0;
   std::vector<Index> materials_;     // #polygons
   std::vector<Triangle> triangles_;  // of corners
   JoinedVertices joined_;
@@ -361,17 +389,9 @@ Index fbxControlPointCount(const FbxNode& geometry) {
   return static_cast<Index>(fbxNumbers(geometry, "Vertices").size() / 3);
 }
 
-std::vector<std::string> fbxTextureSets(const FbxNode& geometry) {
-  std::vector<std::string> names;
-  for (const FbxNode& child : geometry.children) {
-    if (child.name == "LayerElementUV") names.push_back(validUtf8(fbxChildText(child, "Name")));
-  }
-  return names;
-}
-
-std::vector<FbxPrimitive> importFbxPrimitives(Asset& asset, const FbxNode& geometry, const std::string& name,
-                                              const FbxMeshPlan& plan) {
-  return FbxMeshBuilder(asset, geometry, name, plan).build();
+FbxMesh importFbxMesh(Asset& asset, const FbxNode& geometry, const std::string& name, const FbxMeshPlan& plan,
+                      FbxBudget& budget) {
+  return FbxMeshBuilder(asset, geometry, name, plan, budget).build();
 }
 
 }  // namespace limber

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "limber/asset/asset.h"
+#include "limber/asset/import_fbx_budget.h"
 #include "limber/asset/import_fbx_objects.h"
 #include "limber/core/types.h"
 #include "limber/skeleton/skin_weights.h"
@@ -31,17 +32,20 @@ struct FbxPrimitive {
   Index material = 0;  // place among the model's materials
 };
 
+struct FbxMesh {
+  std::vector<FbxPrimitive> primitives;  // none where the geometry has no triangles
+  std::vector<std::string> textureSets;  // what the file calls TEXCOORD_0, TEXCOORD_1, ...
+};
+
 // How many control points a geometry has.
 Index fbxControlPointCount(const FbxNode& geometry);
 
-// The names of its sets of texture coordinates: TEXCOORD_0, TEXCOORD_1, ...
-std::vector<std::string> fbxTextureSets(const FbxNode& geometry);
-
-// One primitive for each material that polygons have, with normals, all sets of texture coordinates and colours.
-// Polygons are triangulated (triangulatePolygon). Corners of one control point that are alike are one vertex; vertices
-// keep the order of their control points. Throws Error kBadData for a position that is not finite or a polygon that
-// names a point out of range. Repairs are counted in the asset's warnings.
-std::vector<FbxPrimitive> importFbxPrimitives(Asset& asset, const FbxNode& geometry, const std::string& name,
-                                              const FbxMeshPlan& plan);
+// One primitive for each material that polygons have, with normals, up to eight sets of texture coordinates and as many
+// of colours, which are sRGB in the file and linear in the document. Polygons are triangulated (triangulatePolygon).
+// Corners of one control point that are alike are one vertex; vertices keep the order of their control points. Throws
+// Error kBadData for a position that is not finite or a polygon that names a point out of range, kLimit beyond the
+// budget. Repairs are counted in the asset's warnings.
+FbxMesh importFbxMesh(Asset& asset, const FbxNode& geometry, const std::string& name, const FbxMeshPlan& plan,
+                      FbxBudget& budget);
 
 }  // namespace limber

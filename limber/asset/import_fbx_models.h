@@ -19,7 +19,7 @@ namespace limber {
 struct FbxMotion {
   std::array<std::array<const FbxCurve*, 3>, 3> curves = {};
   std::array<Vec3, 3> still;
-  std::array<bool, 3> moves = {};  // by kind
+  std::array<bool, 3> moves = {};  // by kind: by a curve, or away from the rest for the whole clip
 
   explicit FbxMotion(const FbxPose& rest) : still{rest.translation, rest.rotation, rest.scaling} {}
   FbxPose at(std::int64_t ticks, bool fromLeft) const;

@@ -35,8 +35,14 @@ bool isInvertible(const Affine& map) {
 
 class SkinReader {
  public:
-  SkinReader(const FbxObjects& objects, const FbxModels& models, Index meshModel, Index points, Warnings& warnings)
-      : objects_(objects), models_(models), meshModel_(meshModel), warnings_(warnings), rows_(points) {}
+  SkinReader(const FbxObjects& objects, const FbxModels& models, Index meshModel, Index points, FbxBudget& budget,
+             Warnings& warnings)
+      : objects_(objects),
+        models_(models),
+        meshModel_(meshModel),
+        budget_(budget),
+        warnings_(warnings),
+        rows_(points) {}
 
   std::optional<FbxSkin> read(Index geometry) {
     for (const Index skin : objects_.sources(geometry, "Deformer")) {
@@ -105,6 +111,7 @@ class SkinReader {
       skin_.inverseBinds.push_back(skin_.toBound.inverse());
       skin_.needsOwnModel = true;
     }
+    budget_.spend(2 * kMostInfluences * rows_.size());
     skin_.weights.slots = kMostInfluences;
     skin_.weights.joints.assign(rows_.size() * kMostInfluences, 0);
     skin_.weights.weights.assign(rows_.size() * kMostInfluences, 0.0f);
@@ -128,6 +135,7 @@ class SkinReader {
   const FbxObjects& objects_;
   const FbxModels& models_;
   Index meshModel_;
+  FbxBudget& budget_;
   Warnings& warnings_;
   std::vector<std::vector<FbxInfluence>> rows_;  // #control points
   FbxSkin skin_;
@@ -164,9 +172,9 @@ FbxShapeTarget readTarget(const FbxNode& node, std::string name, Index pointCoun
 }  // namespace
 
 std::optional<FbxSkin> readFbxSkin(const FbxObjects& objects, const FbxModels& models, Index geometry, Index meshModel,
-                                   Warnings& warnings) {
+                                   FbxBudget& budget, Warnings& warnings) {
   const Index points = fbxControlPointCount(*objects[geometry].node);
-  return SkinReader(objects, models, meshModel, points, warnings).read(geometry);
+  return SkinReader(objects, models, meshModel, points, budget, warnings).read(geometry);
 }
 
 void FbxShapeChannel::addWeights(double percentage, std::vector<double>& weights) const {
@@ -181,7 +189,7 @@ void FbxShapeChannel::addWeights(double percentage, std::vector<double>& weights
   weights[targets[last]] += share;
 }
 
-FbxShapes readFbxShapes(const FbxObjects& objects, Index geometry, Warnings& warnings) {
+FbxShapes readFbxShapes(const FbxObjects& objects, Index geometry, FbxBudget& budget, Warnings& warnings) {
   constexpr double kMostMoves = 1 << 26;  // vertices times targets: 768 megabytes of a document
   const Index points = fbxControlPointCount(*objects[geometry].node);
   FbxShapes result;
@@ -214,6 +222,7 @@ FbxShapes readFbxShapes(const FbxObjects& objects, Index geometry, Warnings& war
         const std::string& name =
             order.size() == 1 && !objects[object].name.empty() ? objects[object].name : objects[shape].name;
         result.targets.push_back(readTarget(*objects[shape].node, name, points, warnings));
+        budget.spend(12 * result.targets.back().points.size());  // moves and normals in double precision
       }
       if (!channel.targets.empty()) result.channels.push_back(std::move(channel));
     }

@@ -21,9 +21,9 @@ struct FbxSkin {
 
 // Of all clusters of all skins of the geometry; none where it has no usable cluster. Where a cluster lacks a matrix,
 // the models' rest transforms stand in. Weights that are not positive and control points out of range are left out,
-// counted.
+// counted. Throws Error kLimit beyond the budget.
 std::optional<FbxSkin> readFbxSkin(const FbxObjects& objects, const FbxModels& models, Index geometry, Index meshModel,
-                                   Warnings& warnings);
+                                   FbxBudget& budget, Warnings& warnings);
 
 // A channel of blend shapes: targets that come in one after the other as its percentage rises.
 struct FbxShapeChannel {
@@ -41,6 +41,7 @@ struct FbxShapes {
   std::vector<FbxShapeChannel> channels;
 };
 
-FbxShapes readFbxShapes(const FbxObjects& objects, Index geometry, Warnings& warnings);
+// Throws Error kLimit beyond the budget.
+FbxShapes readFbxShapes(const FbxObjects& objects, Index geometry, FbxBudget& budget, Warnings& warnings);
 
 }  // namespace limber

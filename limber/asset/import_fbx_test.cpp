@@ -10,10 +10,13 @@
 
 #include "limber/asset/accessor.h"
 #include "limber/asset/geometry.h"
+#include "limber/asset/import_fbx_budget.h"
 #include "limber/asset/import_fbx_curve.h"
+#include "limber/asset/import_fbx_mesh.h"
 #include "limber/asset/import_fbx_transform.h"
 #include "limber/asset/scene_graph.h"
 #include "limber/asset/shape_name.h"
+#include "limber/asset/testing/gltf_builder.h"
 #include "limber/core/numbers.h"
 #include "warning_kinds.h"
 
@@ -45,12 +48,12 @@ std::string number(const char* name, double value) {
 }
 
 // In metres.
-Asset importText(const std::string& objects, const std::string& connections) {
+Asset importText(const std::string& objects, const std::string& connections, const Resolver& resolver = {}) {
   const std::string text =
       "; FBX 7.4.0 project file\nFBXHeaderExtension:  {\nFBXVersion: 7400\n}\nGlobalSettings:  {\n" +
       properties(number("UnitScaleFactor", 100)) + "}\nObjects:  {\n" + objects + "}\nConnections:  {\n" + connections +
       "}\n";
-  Asset asset = importFbx(asBytes(text), {});
+  Asset asset = importFbx(asBytes(text), resolver);
   checkAsset(asset);
   return asset;
 }
@@ -137,6 +140,23 @@ TEST(ImportFbx7, ScalesComeDownAsInheritTypeSays) {
   EXPECT_LT((tip(2) - Vec3(2 - 1, 0, 0)).norm(), 1e-6);
 }
 
+// glTF allows no matrix where there are tracks.
+TEST(ImportFbx7, WhatIsShearedByAParentThatMovesHasNoMatrix) {
+  const std::string curves =
+      "AnimationStack: 10, \"AnimStack::Swing\", \"\" {\n}\nAnimationLayer: 11, \"AnimLayer::Base\", \"\" {\n}\n"
+      "AnimationCurveNode: 12, \"AnimCurveNode::R\", \"\" {\n" +
+      properties("P: \"d|X\", \"Number\", \"\", \"A\",90\n") + "}\n";
+  const auto child = [&](const std::string& objects, const std::string& links) {
+    const Asset asset = importText(
+        model(1, "Parent", "Null", vector("Lcl Scaling", {2, 1, 1})) +
+            model(2, "Child", "Null", vector("Lcl Rotation", {0, 0, 30}) + number("InheritType", 0)) + objects,
+        link(1, 0) + link(2, 1) + links);
+    return asset.document.nodes.at(1);
+  };
+  EXPECT_TRUE(child("", "").matrix);
+  EXPECT_FALSE(child(curves, link(11, 10) + link(12, 11) + link(12, 1, "Lcl Rotation")).matrix);
+}
+
 TEST(ImportFbx7, ARigidMeshBelowAnArmatureScaledAHundredTimes) {
   // A hat of 0.2 m in units of centimetres, below a bone of an armature of its own that is scaled 100 times.
   const Asset asset = importText(
@@ -161,14 +181,15 @@ std::string shapes(std::int64_t flags, const std::vector<double>& data, std::int
   return wholes("KeyAttrFlags", {flags}) + array("KeyAttrDataFloat", data) + wholes("KeyAttrRefCount", {count});
 }
 
-// A model 1 whose property is moved by curves of x, y and z.
+// A model 1 whose property is moved by curves of x, y and z, or stands still where the curves' node says.
 Asset animated(const std::string& lines, const char* property, const std::array<std::string, 3>& curves,
-               const std::string& stack = {}) {
+               const std::string& stack = {}, const std::string& still = {}) {
   std::string objects =
       model(1, "Arm", "LimbNode", lines) +
       fmt::format("AnimationStack: 10, \"AnimStack::Swing\", \"\" {{\n{}}}\n", properties(stack)) +
       "AnimationLayer: 11, \"AnimLayer::Base\", \"\" {\n}\nAnimationCurveNode: 12, \"AnimCurveNode::R\", "
-      "\"\" {\n}\n";
+      "\"\" {\n" +
+      properties(still) + "}\n";
   std::string links = link(1, 0) + link(11, 10) + link(12, 11) + link(12, 1, property);
   const char* axes[] = {"d|X", "d|Y", "d|Z"};
   for (int i = 0; i < 3; ++i) {
@@ -224,16 +245,65 @@ TEST(ImportFbx7, AnglesAreRightBetweenKeysToo) {
 }
 
 TEST(ImportFbx7, SlopesOfCubicKeysAreHermites) {
-  // One slope at the first key, another one at the second: 0 + 3 t at the start, -2 at the end, over a second.
-  const Asset asset =
-      animated({}, "Lcl Translation", {curve(20, {0, 1}, {0, 1}, shapes(0x8 | 0x400, {3, -2, 0, 0}, 2)), "", ""});
-  const ReadTrack track = trackOf(asset, "translation");
-  EXPECT_GT(track.times.size(), 5u);
-  for (std::size_t k = 0; k < track.times.size(); ++k) {
-    const double t = track.times[k], t2 = t * t, t3 = t2 * t;
-    const double wanted = (t3 - 2 * t2 + t) * 3 + (-2 * t3 + 3 * t2) * 1 + (t3 - t2) * -2;
-    EXPECT_NEAR(track.values[3 * k], wanted, 1e-6);
+  // One slope at the first key, another one at the second: 0 + start t at the start, end at the end, over a second.
+  const auto expectSlopes = [](const std::vector<double>& data, double start, double end) {
+    const Asset asset =
+        animated({}, "Lcl Translation", {curve(20, {0, 1}, {0, 1}, shapes(0x8 | 0x400, data, 2)), "", ""});
+    const ReadTrack track = trackOf(asset, "translation");
+    EXPECT_GT(track.times.size(), 5u);
+    for (std::size_t k = 0; k < track.times.size(); ++k) {
+      const double t = track.times[k], t2 = t * t, t3 = t2 * t;
+      const double wanted = (t3 - 2 * t2 + t) * start + (-2 * t3 + 3 * t2) * 1 + (t3 - t2) * end;
+      EXPECT_NEAR(track.values[3 * k], wanted, 1e-6);
+    }
+  };
+  expectSlopes({1077936128, -1073741824, 0, 0}, 3, -2);  // as text has them since 7.2: the bits of floats
+  expectSlopes({3.5, -2, 0, 0}, 3.5, -2);                // and before
+}
+
+// What stands still between the keys of another part is shown by the node itself.
+TEST(ImportFbx7, MirroredModelsTurnAsTheirCurvesSay) {
+  for (const Vec3& scale : {Vec3(1, 1, -2), Vec3(-1, -3, 1), Vec3(1, -1, 1), Vec3(-1, -1, -1)}) {
+    const Asset asset = animated(vector("Lcl Scaling", scale) + vector("Lcl Rotation", {0, 20, 0}), "Lcl Rotation",
+                                 {"", curve(21, {0, 1}, {20, 50}), curve(22, {0, 1}, {0, 70})});
+    const Vec3 shown = asset.document.nodes.at(0).scale.value_or(Vec3::Ones());
+    const ReadTrack track = trackOf(asset, "rotation");
+    for (const double t : {0.0, 1.0}) {
+      const Mat3 got = rotationAt(track, t).toRotationMatrix() * shown.asDiagonal();
+      const Mat3 wanted = turns({0, 20 + 30 * t, 70 * t}, {0, 1, 2}) * scale.asDiagonal();
+      EXPECT_LT((got - wanted).cwiseAbs().maxCoeff(), 1e-6) << scale.transpose();
+    }
+    const Mat3 rest = turns({0, 20, 0}, {0, 1, 2}) * scale.asDiagonal();
+    EXPECT_LT((readSceneGraph(asset.document).world[0].linear() - rest).cwiseAbs().maxCoeff(), 1e-6);
   }
+}
+
+TEST(ImportFbx7, WhatGrowsFromNothingKeepsItsRotation) {
+  const Asset asset = animated(vector("Lcl Scaling", {0, 0, 0}) + vector("Lcl Rotation", {0, 90, 0}), "Lcl Scaling",
+                               {curve(20, {0, 1}, {0, 1}), curve(21, {0, 1}, {0, 1}), curve(22, {0, 1}, {0, 1})});
+  const Quat shown(asset.document.nodes.at(0).rotation.value());
+  EXPECT_LT(shown.angularDistance(Quat(turns({0, 90, 0}, {0, 1, 2}))), 1e-6);
+}
+
+// Joints that a take holds elsewhere than the rest have no curves there.
+TEST(ImportFbx7, WhatATakeHoldsStillHasOneKey) {
+  const std::string still = "P: \"d|X\", \"Number\", \"\", \"A\",90\n";
+  const Asset asset = animated({}, "Lcl Rotation", {}, {}, still);
+  const ReadTrack track = trackOf(asset, "rotation");
+  EXPECT_EQ(track.times, std::vector<float>{0});
+  EXPECT_LT(rotationAt(track, 0).angularDistance(Quat(turns({90, 0, 0}, {0, 1, 2}))), 1e-6);
+  EXPECT_EQ(asset.document.animations.at(0).channels.size(), 1u);
+  EXPECT_TRUE(animated(vector("Lcl Rotation", {90, 0, 0}), "Lcl Rotation", {}, {}, still).document.animations.empty());
+}
+
+TEST(ImportFbx7, CurvesThatGoOnBeyondTheirKeysAreTold) {
+  const auto kinds = [](const char* mode) {
+    const std::string beyond = fmt::format("Post-Extrapolation:  {{\nType: {}\nRepetition: -1\n}}\n", mode);
+    return warningKinds(animated({}, "Lcl Translation", {curve(20, {0, 1}, {0, 1}, beyond), "", ""}).warnings);
+  };
+  EXPECT_TRUE(kinds("C").empty());
+  EXPECT_EQ(kinds("R"), std::vector<std::string>{"extrapolated-curves"});
+  EXPECT_EQ(kinds("82"), std::vector<std::string>{"extrapolated-curves"});  // as binary files have it
 }
 
 TEST(ImportFbx7, StepsStaySteps) {
@@ -264,6 +334,14 @@ TEST(ImportFbx7, AClipBeginsAndEndsWithItsStack) {
   EXPECT_EQ(track.values[6], 3);
   EXPECT_EQ(asset.document.animations[0].name, "Swing");
   EXPECT_EQ(warningKinds(asset.warnings), std::vector<std::string>{"trimmed-clips"});
+}
+
+TEST(ImportFbx7, AStackWithoutEndsHasThoseOfItsKeys) {
+  const std::string span =
+      "P: \"LocalStart\", \"KTime\", \"Time\", \"\",-9223372036854775807\n"
+      "P: \"LocalStop\", \"KTime\", \"Time\", \"\",46186158000\n";
+  const Asset asset = animated({}, "Lcl Translation", {curve(20, {2, 4}, {0, 2}), "", ""}, span);
+  EXPECT_EQ(trackOf(asset, "translation").times, (std::vector<float>{0, 2}));
 }
 
 TEST(ImportFbx7, PolygonsLayersAndMaterials) {
@@ -363,6 +441,115 @@ TEST(ImportFbx7, BlendShapesWithOneInBetween) {
   const std::vector<float> moves = readFloats(asset, *mesh.primitives[0].targets[1].find("POSITION"));
   EXPECT_EQ(moves, (std::vector<float>{0, 0, 0, 0, 3, 0, 0, 0, 0}));
   EXPECT_EQ(shapeName(mesh, 0), "half");
+}
+
+TEST(ImportFbx7, ATakeMayHoldABlendShape) {
+  const std::string shape = fmt::format("Geometry: 7, \"Geometry::up\", \"Shape\" {{\n{}{}}}\n", wholes("Indexes", {1}),
+                                        array("Vertices", {0, 1, 0}));
+  const std::string curves =
+      "AnimationStack: 10, \"AnimStack::Smile\", \"\" {\n}\nAnimationLayer: 11, \"AnimLayer::Base\", \"\" {\n}\n"
+      "AnimationCurveNode: 12, \"AnimCurveNode::\", \"\" {\n" +
+      properties("P: \"d|DeformPercent\", \"Number\", \"\", \"A\",75\n") + "}\n";
+  const Asset asset = importText(
+      model(1, "Face", "Mesh") + triangle(3) + shape + "Deformer: 5, \"Deformer::b\", \"BlendShape\" {\n}\n" +
+          "Deformer: 6, \"SubDeformer::Smile\", \"BlendShapeChannel\" {\nDeformPercent: 0\n}\n" + curves,
+      link(1, 0) + link(3, 1) + link(5, 3) + link(6, 5) + link(7, 6) + link(11, 10) + link(12, 11) +
+          link(12, 6, "DeformPercent"));
+  EXPECT_EQ(trackOf(asset, "weights").values, std::vector<float>{0.75f});
+}
+
+// A triangle with such layers on model 1.
+Asset importLayers(const std::string& layers, const std::string& objects = {}, const std::string& links = {},
+                   const Resolver& resolver = {}) {
+  const std::string geometry = "Geometry: 3, \"Geometry::Tri\", \"Mesh\" {\n" + array("Vertices", kTriangle) +
+                               wholes("PolygonVertexIndex", {0, 1, -3}) + layers + "}\n";
+  return importText(model(1, "Tri", "Mesh") + geometry + objects, link(1, 0) + link(3, 1) + links, resolver);
+}
+
+std::string layerForAll(const char* element, const char* name, const char* values, const std::vector<double>& row) {
+  return fmt::format(
+      "{}: 0 {{\nName: \"{}\"\nMappingInformationType: \"AllSame\"\nReferenceInformationType: \"Direct\"\n{}}}\n",
+      element, name, array(values, row));
+}
+
+TEST(ImportFbx7, ColorsAreLinearButAlphaIsAsItWas) {
+  const Asset asset = importLayers(layerForAll("LayerElementColor", "", "Colors", {0.5, 1, 0, 0.5}));
+  const gltf::Primitive& primitive = asset.document.meshes.at(0).primitives.at(0);
+  const std::vector<float> colors = readFloats(asset, *primitive.attributes.find("COLOR_0"));
+  EXPECT_NEAR(colors[0], 0.21404114, 1e-7);
+  EXPECT_EQ(colors[1], 1);
+  EXPECT_EQ(colors[2], 0);
+  EXPECT_EQ(colors[3], 0.5f);
+}
+
+TEST(ImportFbx7, MoreThanEightSetsAreLeftOut) {
+  std::string layers;
+  for (int i = 0; i < 10; ++i) layers += layerForAll("LayerElementUV", "", "UV", {0, 0});
+  const Asset asset = importLayers(layers);
+  const gltf::Attributes& attributes = asset.document.meshes.at(0).primitives.at(0).attributes;
+  EXPECT_TRUE(attributes.find("TEXCOORD_7"));
+  EXPECT_FALSE(attributes.find("TEXCOORD_8"));
+  EXPECT_EQ(testing::countOf(asset.warnings, "attribute-sets"), 2u);
+}
+
+TEST(ImportFbx7, MeshesBeyondTheBudgetAreRefused) {
+  const FbxFile file = parseFbx(asBytes("FBXHeaderExtension:  {\nFBXVersion: 7400\n}\n" + triangle(3)));
+  Asset asset;
+  const auto importWith = [&](std::size_t left) {
+    FbxBudget budget(0);
+    budget.spend((std::size_t{1} << 26) - left);
+    importFbxMesh(asset, file.root.children.at(1), "Tri", {}, budget);
+  };
+  importWith(9);  // three positions
+  try {
+    importWith(8);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::kLimit);
+  }
+}
+
+std::string texture(int id, const std::string& lines = {}) {
+  return fmt::format("Texture: {}, \"Texture::t{}\", \"\" {{\n{}RelativeFilename: \"skin.png\"\n}}\n", id, id,
+                     properties(lines));
+}
+
+TEST(ImportFbx7, TexturesOfOnePictureShareIt) {
+  const std::string materials = "Material: 5, \"Material::A\", \"\" {\n}\nMaterial: 6, \"Material::B\", \"\" {\n}\n";
+  const std::string layer =
+      "LayerElementMaterial: 0 {\nMappingInformationType: \"ByPolygon\"\n" + wholes("Materials", {0, 1}) + "}\n";
+  const std::string geometry = "Geometry: 3, \"Geometry::Tri\", \"Mesh\" {\n" + array("Vertices", kTriangle) +
+                               wholes("PolygonVertexIndex", {0, 1, -3, 0, 2, -2}) + layer + "}\n";
+  const std::string links =
+      link(1, 0) + link(3, 1) + link(5, 1) + link(6, 1) + link(7, 5, "DiffuseColor") + link(8, 6, "Maya|TEX_color_map");
+  const std::string objects = model(1, "Tri", "Mesh") + geometry + materials + texture(7) + texture(8);
+  const std::string video = "Video: 9, \"Video::skin\", \"Clip\" {\nContent: , \"iVBORw0KGgo=\"\n}\n";
+  const Resolver folder = [](std::string_view) { return testing::pngBytes(); };
+  for (const Asset& asset :
+       {importText(objects, links, folder), importText(objects + video, links + link(9, 7) + link(9, 8))}) {
+    EXPECT_EQ(asset.document.images.size(), 1u);
+    EXPECT_EQ(asset.document.textures.size(), 2u);
+    EXPECT_TRUE(asset.document.materials.at(1).pbrMetallicRoughness->baseColorTexture);
+    EXPECT_TRUE(asset.warnings.empty());
+  }
+}
+
+TEST(ImportFbx7, TexturesThatAreLeftOutAreTold) {
+  const Asset asset = importLayers(
+      "", "Material: 5, \"Material::A\", \"\" {\n}\n" + texture(7),
+      link(5, 1) + link(7, 5, "SpecularColor") + link(7, 5, "TransparentColor") + link(7, 5, "TransparentColor"));
+  EXPECT_EQ(warningKinds(asset.warnings), std::vector<std::string>{"other-textures"});
+  EXPECT_EQ(asset.warnings.items()[0].where, "A.SpecularColor");
+  EXPECT_EQ(asset.warnings.items()[0].count, 2u);
+}
+
+TEST(ImportFbx7, AnEmptySetOfTextureCoordinatesDoesNotCount) {
+  const std::string named = "P: \"UVSet\", \"KString\", \"\", \"\", \"map\"\n";
+  const Asset asset =
+      importLayers("LayerElementUV: 0 {\nName: \"none\"\n}\n" + layerForAll("LayerElementUV", "map", "UV", {0, 0}),
+                   "Material: 5, \"Material::A\", \"\" {\n}\n" + texture(7, named),
+                   link(5, 1) + link(7, 5, "DiffuseColor"), [](std::string_view) { return testing::pngBytes(); });
+  EXPECT_EQ(asset.document.materials.at(0).pbrMetallicRoughness->baseColorTexture->texCoord, 0u);
 }
 
 TEST(ImportFbx7, WhatIsLostIsSaid) {

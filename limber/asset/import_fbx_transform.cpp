@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "limber/asset/fbx_mirror.h"
 #include "limber/core/numbers.h"
 
 namespace limber {
@@ -33,6 +34,14 @@ Transform FbxTransform::local(const FbxPose& pose) const {
   result.rotation = (preRotation * fbxRotation(pose.rotation, rotationOrder) * postRotationInverse).normalized();
   result.scale = pose.scaling;
   result.translation = pose.translation + rotationOffset + rotationPivot + result.rotation * rotationArm(pose.scaling);
+  return result;
+}
+
+Transform FbxTransform::localMirroredOnX(const FbxPose& pose) const {
+  Transform result = local(pose);
+  const Vec3 half = halfTurnOfMirror(rest.scaling);
+  result.rotation = result.rotation * Quat(Mat3(half.asDiagonal()));
+  result.scale = result.scale.cwiseProduct(half);
   return result;
 }
 

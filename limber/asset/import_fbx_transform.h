@@ -30,6 +30,9 @@ struct FbxTransform {
   Affine geometric = Affine::Identity();  // of the mesh alone, not of children
 
   Transform local(const FbxPose& pose) const;
+  // The same map with what the rest's scaling mirrors mirrored on x alone (halfTurnOfMirror). The node has it so, and a
+  // track of rotations alone has to fit the node's scale.
+  Transform localMirroredOnX(const FbxPose& pose) const;
 
   // Does the place depend on how the model is turned or scaled?
   bool turnsAboutPivot() const { return !rotationArm(Vec3::Ones()).isZero(0) || !scalingPivot.isZero(0); }

@@ -19,6 +19,7 @@
 #include "limber/asset/triangulate_polygon.h"
 #include "limber/core/bits.h"
 #include "limber/core/parse_number.h"
+#include "limber/core/srgb.h"
 
 namespace limber {
 
@@ -243,6 +244,19 @@ double colorScale(ScalarType type) {
   }
 }
 
+// Of a colour's component as the file has it. Bytes, which most scans have, go by a table: powers would take as long as
+// all the rest of reading.
+double linearColor(double stored, double scale) {
+  constexpr double kByteScale = 1.0 / 255;
+  static const std::array<double, 256> kBytes = [] {
+    std::array<double, 256> linear;
+    for (std::size_t byte = 0; byte < linear.size(); ++byte) linear[byte] = linearOf(kByteScale * double(byte));
+    return linear;
+  }();
+  const bool isByte = scale == kByteScale && stored >= 0 && stored <= 255 && stored == std::floor(stored);
+  return isByte ? kBytes[static_cast<std::size_t>(stored)] : linearOf(scale * stored);
+}
+
 class PlyReader {
  public:
   PlyReader(ByteSpan bytes, const Resolver& resolver)
@@ -276,6 +290,7 @@ class PlyReader {
       std::size_t attribute;
       Index component;
       double scale;
+      bool isSrgb;
     };
     std::vector<std::optional<Column>> columns;
     for (const Property& property : element.properties) {
@@ -283,8 +298,9 @@ class PlyReader {
                                        [&](const Target& known) { return known.name == property.name; });
       columns.emplace_back();
       if (target == std::end(kTargets) || property.countType) continue;
-      const double scale = target->attribute == "COLOR_0" ? colorScale(property.type) : 1;
-      columns.back() = Column{attributeNamed(target->attribute), target->component, scale};
+      const bool isColor = target->attribute == "COLOR_0";
+      columns.back() = Column{attributeNamed(target->attribute), target->component,
+                              isColor ? colorScale(property.type) : 1, isColor && target->component < 3};
     }
     for (const char* axis : {"x", "y", "z"}) {
       if (std::none_of(element.properties.begin(), element.properties.end(),
@@ -304,8 +320,9 @@ class PlyReader {
           continue;
         }
         VertexAttribute& attribute = mesh_.attributes[columns[p]->attribute];
+        const double stored = body_.next(property.type), scale = columns[p]->scale;
         attribute.values[v * std::size_t{attribute.components} + columns[p]->component] =
-            static_cast<float>(columns[p]->scale * body_.next(property.type));
+            static_cast<float>(columns[p]->isSrgb ? linearColor(stored, scale) : scale * stored);
       }
     }
   }

@@ -17,6 +17,7 @@ namespace limber {
 namespace {
 
 using ::testing::ElementsAre;
+using ::testing::FloatEq;
 using ::testing::HasSubstr;
 using testing::warningKinds;
 
@@ -95,6 +96,20 @@ TEST(Ply, NumbersMayBeginWithTheByteOfASpace) {
     EXPECT_EQ(attributeOf(read(binaryTriangle(false, x)), "POSITION")[0], x) << first;
     EXPECT_EQ(attributeOf(read(binaryTriangle(false, x, "\r\n")), "POSITION")[0], x) << first;
   }
+}
+
+// As three.js and Blender take them.
+TEST(Ply, ColorsAreSrgbInTheFileAndLinearInTheDocument) {
+  const auto colorOf = [](const char* type, const char* row) {
+    std::string text = std::string("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n") +
+                       "property float z\n";
+    for (const char* name : {"red", "green", "blue", "alpha"}) {
+      text += std::string("property ") + type + ' ' + name + '\n';
+    }
+    return attributeOf(read(text + "end_header\n0 0 0 " + row + "\n"), "COLOR_0");
+  };
+  EXPECT_THAT(colorOf("uchar", "51 255 0 51"), ElementsAre(FloatEq(0.033104766f), 1, 0, FloatEq(0.2f)));
+  EXPECT_THAT(colorOf("float", "0.2 1 0 0.2"), ElementsAre(FloatEq(0.033104766f), 1, 0, FloatEq(0.2f)));
 }
 
 TEST(Ply, PolygonsAreCutIntoTriangles) {

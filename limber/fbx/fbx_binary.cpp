@@ -96,8 +96,11 @@ class BinaryParser {
 
   FbxValue value(std::size_t end) {
     switch (take(1, end)[0]) {
-      case 'C':
-        return scalar<std::uint8_t>(end) != 0;
+      case 'C': {
+        const auto byte = scalar<std::uint8_t>(end);
+        if (byte > 1) return std::int16_t{byte};  // a letter
+        return byte == 1;
+      }
       case 'Y':
         return scalar<std::int16_t>(end);
       case 'I':

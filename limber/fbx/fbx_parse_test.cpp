@@ -120,6 +120,17 @@ TEST(FbxParse, BinaryRecordsOfBothWidths) {
   }
 }
 
+// "Type: C" of a curve: one byte, as truths are.
+TEST(FbxParse, ALetterInABinaryFileIsItsNumber) {
+  const BinaryWriter writer{7400};
+  const std::string letters = writer.leaf(27, "Type", {"CR", std::string("C\0", 2), "C\1"});
+  const FbxFile file = parse(writer.header() + letters + writer.end());
+  const FbxNode& type = *file.root.find("Type");
+  EXPECT_EQ(fbxInteger(type, 0), 'R');
+  EXPECT_EQ(std::get<bool>(type.values[1]), false);
+  EXPECT_EQ(std::get<bool>(type.values[2]), true);
+}
+
 TEST(FbxParse, TextRecords) {
   const FbxFile file = parse(
       "; FBX 7.4.0 project file\n\nFBXHeaderExtension:  {\n\tFBXVersion: 7400 ; a comment\n}\n"

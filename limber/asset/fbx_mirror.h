@@ -1,0 +1,15 @@
+// Negative scales as decompose() has them, for tracks that know nothing of each other.
+#pragma once
+
+#include "limber/core/types.h"
+
+namespace limber {
+
+// The diagonal of the half turn H (or none) that leaves of a scale S at most x mirrored: R S = (R H) (H S) for every
+// rotation R, and H S is what decompose() finds of R S. A scale of 0 counts as not mirrored.
+inline Vec3 halfTurnOfMirror(const Vec3& scale) {
+  const Vec3 sign = scale.unaryExpr([](double component) { return component < 0 ? -1.0 : 1.0; });
+  return {sign.prod() * sign.x(), sign.y(), sign.z()};
+}
+
+}  // namespace limber

@@ -1,0 +1,31 @@
+// How much a document made of an FBX file may hold.
+#pragma once
+
+#include <cstddef>
+
+#include "limber/core/error.h"
+
+namespace limber {
+
+// One value of a layer may stand for millions of corners, and one geometry for thousands of models: numbers of vertices
+// are held to a multiple of the file's size. Most files hold more of them than are made.
+class FbxBudget {
+ public:
+  explicit FbxBudget(std::size_t fileSize) : left_(kFreeNumbers + kNumbersPerByte * fileSize) {}
+
+  // Before so many numbers (floats, indices) are made. Throws Error kLimit.
+  void spend(std::size_t numbers) {
+    if (numbers > left_) {
+      throw Error(ErrorCode::kLimit, "its meshes take more memory than those of a file of its size may", {},
+                  "export it with fewer copies of its meshes");
+    }
+    left_ -= numbers;
+  }
+
+ private:
+  static constexpr std::size_t kFreeNumbers = std::size_t{1} << 26, kNumbersPerByte = 16;
+
+  std::size_t left_;
+};
+
+}  // namespace limber
