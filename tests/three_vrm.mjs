@@ -61,7 +61,8 @@ function momentsOf(clip) {
   return keys.filter((_, i) => i % Math.max(1, Math.ceil(keys.length / kMostMoments)) === 0);
 }
 
-const bonesOf = (vrm) => Object.entries(vrm.humanoid.humanBones).map(([name, { node }]) => ({ name, node }));
+// Those that a motion for VRMs turns: eyes go by its gaze.
+const bonesOf = (vrm) => Object.entries(vrm.humanoid.humanBones).map(([name, { node }]) => ({ name, node })).filter(({ name }) => !name.endsWith('Eye'));
 
 // What is wrong with how it stands.
 function faultsOfRest({ root, vrm }) {

@@ -70,7 +70,9 @@ void writeVrmaFiles(const VrmaSource& source, const std::vector<std::filesystem:
   std::vector<Bytes> files;
   for (std::size_t c = 0; c < motion.clips.size(); ++c) {
     const std::vector<ExpressionTrack> expressions = expressionsOf(source, motion.clips[c], warnings);
-    files.push_back(writeGlb(vrmAnimation(read.skeleton, read.clips[c], read.rest, read.bones, expressions)));
+    const Asset made = vrmAnimation(read.skeleton, read.clips[c], read.rest, read.bones, expressions);
+    warnings.append(made.warnings);
+    files.push_back(writeGlb(made));
   }
   std::vector<OutputFile> outputs;
   for (std::size_t c = 0; c < files.size(); ++c) outputs.push_back({paths[c], files[c]});

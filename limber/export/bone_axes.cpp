@@ -33,7 +33,8 @@ enum class BoneKind {
   kLowerLeg,
   kFoot,
   kToes,
-  kFace
+  kEye,
+  kJaw
 };
 
 struct KindAxes {
@@ -56,7 +57,8 @@ constexpr std::array kKindAxes = {
     KindAxes{BoneKind::kLowerLeg, Way::kDown, 2, Way::kBack, -1, Way::kFront},
     KindAxes{BoneKind::kFoot, Way::kFront, 2, Way::kUp, 0, Way::kFront},
     KindAxes{BoneKind::kToes, Way::kFront, 2, Way::kDown, 1, Way::kDown},
-    KindAxes{BoneKind::kFace, Way::kFront, 2, Way::kUp, 1, Way::kUp},
+    KindAxes{BoneKind::kEye, Way::kFront, 2, Way::kDown, 1, Way::kUp},
+    KindAxes{BoneKind::kJaw, Way::kFront, 2, Way::kUp, 1, Way::kUp},
 };
 
 struct BoneKindName {
@@ -70,7 +72,7 @@ constexpr std::array kKindOfBone = {
     BoneKindName{"Shoulder", BoneKind::kShoulder}, BoneKindName{"Hand", BoneKind::kHand},
     BoneKindName{"UpperLeg", BoneKind::kUpperLeg}, BoneKindName{"LowerLeg", BoneKind::kLowerLeg},
     BoneKindName{"Foot", BoneKind::kFoot},         BoneKindName{"Toes", BoneKind::kToes},
-    BoneKindName{"Eye", BoneKind::kFace},          BoneKindName{"jaw", BoneKind::kFace},
+    BoneKindName{"Eye", BoneKind::kEye},           BoneKindName{"jaw", BoneKind::kJaw},
 };
 
 constexpr double kNoBone = 1e-6;  // of the body's size: shorter bones have no direction
@@ -119,8 +121,13 @@ class BoneTurner {
       const std::optional<Index> next = nextInPart(j);
       const Vec3 bone = next ? Vec3(place(*next) - place(j)) : sum[j];
       const std::optional<Index> parent = skeleton_.joints[j].parent;
-      const bool hasBone = bone.norm() > kNoBone * anatomy_.size;
-      directions_.push_back(hasBone ? bone.normalized() : parent ? directions_[*parent] : anatomy_.axes.up);
+      if (bone.norm() > kNoBone * anatomy_.size) {
+        directions_.push_back(bone.normalized());
+      } else if (const BoneKind kind = kindOf(j).kind; kind == BoneKind::kEye || kind == BoneKind::kJaw) {
+        directions_.push_back(anatomy_.axes.front);
+      } else {
+        directions_.push_back(parent ? directions_[*parent] : anatomy_.axes.up);
+      }
     }
   }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <optional>
 #include <set>
 #include <utility>
 #include <vector>
@@ -11,6 +13,7 @@
 
 #include "limber/anatomy/humanoid_joints.h"
 #include "limber/asset/accessor_sweep.h"
+#include "limber/asset/humanoid_nodes.h"
 #include "limber/asset/node_edit.h"
 #include "limber/asset/rig_io.h"
 #include "limber/asset/root_joint.h"
@@ -67,29 +70,52 @@ const Json* member(const Json* json, const char* name) {
   return found == json->end() ? nullptr : &*found;
 }
 
-// Numbers of nodes that `list` names by the member "node".
-void addNodesOf(const Json* list, std::set<Index>& nodes) {
+// The node whose number is that member.
+std::optional<Index> nodeIn(const Json* json, const char* name, const gltf::Document& document) {
+  const Json* node = member(json, name);
+  if (node == nullptr || !node->is_number_unsigned() || node->get<std::uint64_t>() >= document.nodeCount()) {
+    return std::nullopt;
+  }
+  return node->get<Index>();
+}
+
+// The nodes that `list` names by the member "node".
+void addNodesOf(const Json* list, const gltf::Document& document, std::set<Index>& nodes) {
   if (list == nullptr || !list->is_array()) return;
   for (const Json& entry : *list) {
-    const Json* node = member(&entry, "node");
-    if (node != nullptr && node->is_number_unsigned()) nodes.insert(node->get<Index>());
+    if (const std::optional<Index> node = nodeIn(&entry, "node", document)) nodes.insert(*node);
   }
 }
 
-// Nodes in whose own axes something is said: what they hold, colliders of springs, the place of the eyes.
-std::set<Index> nodesThatKeepAxes(const gltf::Document& document) {
+// A node of VRM that turns as another one does, its source: by as much in its own axes as that one in its own, or as
+// seen from what each of them hangs on ("roll").
+void addConstraint(const gltf::Document& document, const SceneGraph& graph, Index turned, std::set<Index>& nodes) {
+  const Json* constraint = member(member(&*document.nodes[turned].extensions, "VRMC_node_constraint"), "constraint");
+  if (const auto source = nodeIn(member(constraint, "rotation"), "source", document)) nodes.insert(*source);
+  const auto source = nodeIn(member(constraint, "roll"), "source", document);
+  if (!source || graph.parent[*source] == graph.parent[turned]) return;
+  for (const Index node : {*source, turned}) {
+    if (graph.parent[node]) nodes.insert(*graph.parent[node]);
+  }
+}
+
+// Nodes in whose own axes something is said: what they hold, colliders of springs, constraints, the place of the eyes.
+std::set<Index> nodesThatKeepAxes(const gltf::Document& document, const SceneGraph& graph) {
   std::set<Index> nodes;
   for (Index n = 0; n < document.nodeCount(); ++n) {
     const gltf::Node& node = document.nodes[n];
     if ((node.mesh && !node.skin) || node.camera || node.extensions.exists()) nodes.insert(n);
+    if (node.extensions.exists()) addConstraint(document, graph, n, nodes);
+  }
+  for (const char* extension : {kVrmName, kVrm0Name}) {
+    for (const HumanoidNode& bone : humanoidNodes(document, extension)) {
+      if (bone.bone == "head") nodes.insert(bone.node);
+    }
   }
   if (!document.extensions.exists()) return nodes;
   const Json& extensions = *document.extensions;
-  addNodesOf(member(member(&extensions, "VRMC_springBone"), "colliders"), nodes);
-  addNodesOf(member(member(member(&extensions, "VRM"), "secondaryAnimation"), "colliderGroups"), nodes);
-  const Json* vrm = member(&extensions, "VRMC_vrm");
-  const Json* head = member(member(member(member(vrm, "humanoid"), "humanBones"), "head"), "node");
-  if (head != nullptr && head->is_number_unsigned()) nodes.insert(head->get<Index>());
+  addNodesOf(member(member(&extensions, "VRMC_springBone"), "colliders"), document, nodes);
+  addNodesOf(member(member(member(&extensions, "VRM"), "secondaryAnimation"), "colliderGroups"), document, nodes);
   return nodes;
 }
 
@@ -157,7 +183,7 @@ class TargetMaker {
 
   std::vector<FrameChange> frameChanges(const std::vector<Quat>& turns) {
     const SceneGraph graph = readSceneGraph(asset_.document);
-    const std::set<Index> keep = nodesThatKeepAxes(asset_.document);
+    const std::set<Index> keep = nodesThatKeepAxes(asset_.document, graph);
     const std::vector<bool> uneven = unevenlyScaled(asset_);
     std::vector<FrameChange> changes(graph.parent.size());
     std::size_t kept = 0;

@@ -8,8 +8,10 @@
 
 #include "limber/anatomy/humanoid_joints.h"
 #include "limber/asset/rig_io.h"
+#include "limber/asset/scene_graph.h"
 #include "limber/asset/testing/scene_builder.h"
 #include "limber/asset/write.h"
+#include "limber/export/bone_axes.h"
 #include "limber/export/testing/gltf_player.h"
 
 namespace limber {
@@ -128,10 +130,11 @@ Asset person() {
                                                                    {"Hand", {0.7, 1.42, 0}},
                                                                    {"MiddleProximal", {0.79, 1.42, 0}},
                                                                    {"MiddleIntermediate", {0.83, 1.42, 0}},
-                                                                   {"MiddleDistal", {0.86, 1.42, 0}}};
-  static const std::vector<const char*> kParents = {"hips",       "UpperLeg",       "LowerLeg",          "Foot",
-                                                    "upperChest", "Shoulder",       "UpperArm",          "LowerArm",
-                                                    "Hand",       "MiddleProximal", "MiddleIntermediate"};
+                                                                   {"MiddleDistal", {0.86, 1.42, 0}},
+                                                                   {"Eye", {0.03, 1.68, 0.08}}};
+  static const std::vector<const char*> kParents = {"hips",       "UpperLeg",       "LowerLeg",           "Foot",
+                                                    "upperChest", "Shoulder",       "UpperArm",           "LowerArm",
+                                                    "Hand",       "MiddleProximal", "MiddleIntermediate", "head"};
   SceneBuilder builder;
   std::vector<std::string> names;
   std::vector<std::optional<Index>> parents;
@@ -148,7 +151,7 @@ Asset person() {
       Vec3 place = kLimbs[i].second;
       if (side == "right") place.x() = -place.x();
       const std::string parent = kParents[i];
-      const bool central = parent == "hips" || parent == "upperChest";
+      const bool central = parent == "hips" || parent == "upperChest" || parent == "head";
       add(side + kLimbs[i].first, central ? parent : side + parent, place);
     }
   }
@@ -227,6 +230,56 @@ TEST(ToTarget, GivesGodotTheAxesOfItsReferencePoses) {
   EXPECT_TRUE(near(godot.y("RightLowerArm"), -left));
   EXPECT_TRUE(near(godot.x("LeftUpperLeg"), -left));
   EXPECT_TRUE(near(godot.x("LeftLowerLeg"), left));
+}
+
+// They have no child to tell where they look.
+TEST(ToTarget, EyesLookToTheFront) {
+  const Converted godot("godot"), blender("blender"), unreal("unreal");
+  const Vec3 up(0, 1, 0), front(0, 0, 1);
+  EXPECT_TRUE(near(godot.y("LeftEye"), front));
+  EXPECT_TRUE(near(godot.z("LeftEye"), -up));
+  EXPECT_TRUE(near(godot.z("RightEye"), -up));
+  EXPECT_TRUE(near(blender.y("eye.R"), front));
+  EXPECT_TRUE(near(unreal.x("eye_l"), front));
+  EXPECT_TRUE(near(unreal.y("eye_l"), up));
+}
+
+TEST(BoneTurns, AJawWithoutAChildLooksToTheFront) {
+  const Skeleton skeleton = readSkeleton(person()).skeleton;
+  const Index jaw = *skeleton.find("leftEye");
+  const std::vector<HumanoidJoint> bones = {{"jaw", jaw}};
+  const Mat3 axes = boneTurns(skeleton, readAnatomy(skeleton), bones, BoneAxes::kAlongY)[jaw].toRotationMatrix();
+  EXPECT_TRUE(near(axes.col(1), Vec3::UnitZ()));
+  EXPECT_TRUE(near(axes.col(2), Vec3::UnitY()));
+}
+
+TEST(ToTarget, LeavesAxesThatVrmSpeaksOf) {
+  Asset asset = person();
+  const auto node = [&](const char* name) {
+    const auto& nodes = asset.document.nodes;
+    return static_cast<Index>(
+        std::find_if(nodes.begin(), nodes.end(), [&](const gltf::Node& each) { return each.name == name; }) -
+        nodes.begin());
+  };
+  const auto constrain = [&](const char* turned, const char* kind, const char* source) {
+    asset.document.nodes[node(turned)].extensions.change()["VRMC_node_constraint"] = {
+        {"constraint", {{kind, {{"source", node(source)}}}}}};
+  };
+  asset.document.extensions.change()["VRM"] = {
+      {"humanoid", {{"humanBones", Json::array({{{"bone", "head"}, {"node", node("head")}}})}}}};
+  constrain("leftMiddleDistal", "rotation", "leftUpperArm");
+  constrain("rightHand", "roll", "rightUpperArm");
+  const std::vector<std::pair<const char*, bool>> kept = {
+      {"head", true},          {"leftMiddleDistal", true}, {"leftUpperArm", true},   {"leftShoulder", false},
+      {"rightShoulder", true}, {"rightLowerArm", true},    {"rightUpperArm", false}, {"leftLowerArm", false}};
+  std::vector<Index> numbers;
+  for (const auto& [name, isKept] : kept) numbers.push_back(node(name));
+  toTarget(asset, findTarget("godot"));
+  const SceneGraph graph = readSceneGraph(asset.document);
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    const Mat3 axes = graph.world[numbers[i]].linear();
+    EXPECT_EQ(axes.isIdentity(1e-6), kept[i].second) << kept[i].first;
+  }
 }
 
 TEST(ToTarget, NamesPeopleAsOthersDo) {

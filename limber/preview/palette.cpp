@@ -4,13 +4,11 @@
 #include <array>
 #include <cmath>
 
+#include "limber/core/srgb.h"
+
 namespace limber {
 
 namespace {
-
-double linearOf(double srgb) {
-  return srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4);
-}
 
 // Hue (0 to 1), saturation and value as usual, to sRGB and from there to linear.
 Vec3f fromHsv(double hue, double saturation, double value) {
@@ -28,9 +26,7 @@ Vec3f linearFromSrgb(int red, int green, int blue) {
 }
 
 std::uint8_t srgbByte(double linear) {
-  const double clamped = std::clamp(linear, 0.0, 1.0);
-  const double srgb = clamped <= 0.0031308 ? 12.92 * clamped : 1.055 * std::pow(clamped, 1 / 2.4) - 0.055;
-  return static_cast<std::uint8_t>(std::lround(srgb * 255));
+  return static_cast<std::uint8_t>(std::lround(srgbOf(std::clamp(linear, 0.0, 1.0)) * 255));
 }
 
 Vec3f jointColor(Index number) {

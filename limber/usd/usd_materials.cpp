@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -125,14 +126,16 @@ class MaterialWriter {
   // Where the image of a texture lies beside the stage; taken along at the first call for it.
   std::optional<std::string> imagePath(Index texture) {
     const std::optional<Index> source = document_.textures[texture].source;
-    if (!source) return std::nullopt;
+    if (!source) {  // in a format that an extension of the texture knows
+      if (lost_.insert(texture).second) tellOfMissing(fmt::format("textures[{}]", texture));
+      return std::nullopt;
+    }
     const auto [known, isNew] = images_.try_emplace(*source);
     if (!isNew) return known->second;
     std::optional<Bytes> bytes = imageBytes(asset_, *source);
     const std::string_view format = bytes ? imageFormat(*bytes).extension : std::string_view();
     if (format != ".png" && format != ".jpg") {
-      files_.warnings.add("missing-images", "textures that are neither PNG nor JPEG are left out",
-                          fmt::format("images[{}]", *source));
+      tellOfMissing(fmt::format("images[{}]", *source));
       return std::nullopt;
     }
     known->second = fmt::format("{}_{}{}", imageStem_, *source, format);
@@ -140,11 +143,16 @@ class MaterialWriter {
     return known->second;
   }
 
+  void tellOfMissing(const std::string& where) {
+    files_.warnings.add("missing-images", "textures that are neither PNG nor JPEG are left out", where);
+  }
+
   const Asset& asset_;
   const gltf::Document& document_;
   const std::string& imageStem_;
   UsdFiles& files_;
   std::map<Index, std::optional<std::string>> images_;  // of the document
+  std::set<Index> lost_;                                // textures without an image
   // Of the material that is being written:
   std::string path_, colorInput_;
   std::vector<UsdPrim> readers_, textures_;
@@ -162,7 +170,7 @@ std::vector<std::string> addUsdMaterials(const Asset& asset, const std::vector<U
                                          UsdFiles& files) {
   std::vector<std::string> paths;
   if (surfaces.empty()) return paths;
-  UsdPrim scope{"Scope", "Materials", {}, {}, {}};
+  UsdPrim scope{"Scope", kUsdMaterials, {}, {}, {}};
   MaterialWriter writer(asset, imageStem, files);
   UniqueNames names;
   for (Index m = 0; m < surfaces.size(); ++m) {

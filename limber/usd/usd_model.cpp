@@ -42,7 +42,9 @@ std::optional<Index> chosenClip(const Asset& asset, const std::optional<std::str
 class ModelReader {
  public:
   ModelReader(const Asset& asset, const std::vector<UsdSurface>& surfaces)
-      : asset_(asset), document_(asset.document), surfaces_(surfaces), geometry_(collectGeometry(asset)) {}
+      : asset_(asset), document_(asset.document), surfaces_(surfaces), geometry_(collectGeometry(asset)) {
+    for (const char* sibling : {kUsdSkeleton, kUsdMaterials}) names_.add(sibling);
+  }
 
   UsdModel read(const UsdOptions& options) {
     clip_ = chosenClip(asset_, options.clip);
@@ -85,7 +87,12 @@ class ModelReader {
     jointNodes_ = rig.jointNode;
     if (clip_) {
       std::vector<Clip> clips = readClips(asset_, rig, model_.warnings);
-      if (clips[*clip_].duration() > 0) model_.clip = std::move(clips[*clip_]);
+      if (clips[*clip_].duration() > 0) {
+        model_.clip = std::move(clips[*clip_]);
+      } else {  // a pose
+        model_.stance = restPose(model_.skeleton);
+        sampleClip(clips[*clip_], 0, model_.stance);
+      }
     }
     joinRoots();
     model_.joints = jointPaths(model_.skeleton);
@@ -329,9 +336,9 @@ class ModelReader {
   std::vector<Vec3f> normals_;
   SkinWeights weights_;
   std::vector<Index> jointNodes_;
-  std::size_t triangle_ = 0;     // the next of the geometry's
-  std::vector<Index> vertices_;  // of the instance that is being read: those that have triangles
-  UniqueNames names_, shapeNames_;
+  std::size_t triangle_ = 0;        // the next of the geometry's
+  std::vector<Index> vertices_;     // of the instance that is being read: those that have triangles
+  UniqueNames names_, shapeNames_;  // of meshes; of all their shapes
   UsdModel model_;
 };
 

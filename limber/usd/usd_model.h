@@ -41,8 +41,8 @@ struct UsdModel {
   std::vector<UsdMesh> meshes;
   Skeleton skeleton;                // in bind pose; no joints: no rig
   std::vector<std::string> joints;  // #J paths, "root/child"
-  std::optional<Clip> clip;         // one that has keys
-  Pose stance;                      // #J, how the joints stand without a clip
+  std::optional<Clip> clip;         // one that lasts
+  Pose stance;                      // #J, how the joints stand without it: as the nodes do, or a clip of no length
   // Of text, so that rounding is at most 2.5 millionths of the model's size, and 1 where joints add theirs up.
   int pointDecimals = 6, moveDecimals = 6;
   Warnings warnings;

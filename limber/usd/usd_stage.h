@@ -14,6 +14,8 @@ namespace limber {
 
 // The prim that everything else stands below.
 inline constexpr std::string_view kUsdRoot = "Model";
+// Those that may stand directly below it beside the meshes.
+inline constexpr const char *kUsdSkeleton = "Skeleton", *kUsdMaterials = "Materials";
 
 // An identifier of USD: letters, digits and underscores, no digit first. Everything else becomes an underscore.
 std::string usdName(std::string_view text);

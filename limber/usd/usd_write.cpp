@@ -21,9 +21,9 @@ namespace {
 constexpr int kNormalDecimals = 3, kColorDecimals = 4, kUvDecimals = 5, kWeightDecimals = 6;
 
 UsdPrim skeletonPrim(const UsdModel& model, const UsdMotion& motion) {
-  UsdPrim prim{"Skeleton", "Skeleton", {"SkelBindingAPI"}, {}, {}};
+  UsdPrim prim{"Skeleton", kUsdSkeleton, {"SkelBindingAPI"}, {}, {}};
   prim.addUniform("token[]", "joints", model.joints);
-  prim.relate("skel:animationSource", {fmt::format("/{}/Skeleton/Motion", kUsdRoot)});
+  prim.relate("skel:animationSource", {fmt::format("/{}/{}/Motion", kUsdRoot, kUsdSkeleton)});
   prim.addUniform("matrix4d[]", "bindTransforms", restGlobals(model.skeleton));
   std::vector<Affine> locals;  // without a clip as the joints stand: three.js shows no others
   for (std::size_t j = 0; j < model.joints.size(); ++j) {
@@ -95,7 +95,7 @@ UsdPrim meshPrim(UsdMesh& mesh, bool hasSkeleton, const gltf::Material* material
   prim.addUniform("token", "subdivisionScheme", "none");
   if (material != nullptr) prim.relate("material:binding", {materialPath});
   if (moves) {
-    prim.relate("skel:skeleton", {fmt::format("/{}/Skeleton", kUsdRoot)});
+    prim.relate("skel:skeleton", {fmt::format("/{}/{}", kUsdRoot, kUsdSkeleton)});
     prim.add("matrix4d", "primvars:skel:geomBindTransform", Affine::Identity());
   }
   if (moves && mesh.influences > 0) {

@@ -137,6 +137,18 @@ TEST(UsdFiles, WithoutAClipTheJointsStandAsTheirNodesDo) {
   EXPECT_THAT(text, Not(HasSubstr("endTimeCode")));
 }
 
+TEST(UsdFiles, AClipOfNoLengthIsAPose) {
+  Asset asset = everything();
+  asset.document.animations[0].samplers.resize(1);
+  asset.document.animations[0].channels.resize(1);
+  const std::vector<float> halfTurn = {0, 0, 1, 0};
+  asset.document.animations[0].samplers[0].input = addFloatAccessor(asset, std::vector<float>{0}, 1, 0, true);
+  asset.document.animations[0].samplers[0].output = addFloatAccessor(asset, halfTurn, 4);
+  const std::string text = textOf(asset);
+  EXPECT_THAT(text, HasSubstr("quatf[] rotations = [(1,0,0,0),(0,0,0,1)]"));
+  EXPECT_THAT(text, Not(HasSubstr("timeSamples")));
+}
+
 TEST(UsdFiles, SeveralRootsGetAJointAbove) {
   SceneBuilder scene;
   const Index mesh = scene.addTetrahedron();
@@ -201,6 +213,30 @@ TEST(UsdFiles, AModelWithoutARigIsMeshesAlone) {
   EXPECT_THAT(text, HasSubstr("def Mesh \"a_b\""));
   EXPECT_THAT(text, HasSubstr("def Mesh \"a_b_2\""));
   EXPECT_THAT(numbersOf(text, "point3f[] points")[0], 1);  // in the world
+}
+
+TEST(UsdFiles, MeshesLeaveTheNamesOfTheirSiblings) {
+  Asset asset = everything();
+  gltf::Document& document = asset.document;
+  for (gltf::Node& node : document.nodes) node.name = node.mesh ? "Materials" : node.name;
+  std::string text = textOf(asset);
+  EXPECT_EQ(timesIn(text, "def Scope \"Materials\""), 1u);
+  EXPECT_THAT(text, HasSubstr("def Mesh \"Materials_2\""));
+  for (gltf::Node& node : document.nodes) node.name = node.mesh ? "Skeleton" : node.name;
+  text = textOf(asset);
+  EXPECT_EQ(timesIn(text, "def Skeleton \"Skeleton\""), 1u);
+  EXPECT_THAT(text, HasSubstr("def Mesh \"Skeleton_2\""));
+}
+
+TEST(UsdFiles, TexturesOfOtherFormatsAreToldOnce) {
+  Asset asset = everything();
+  asset.document.textures[0].source.reset();
+  asset.document.textures[0].extensions.change()["EXT_texture_webp"] = {{"source", 0}};
+  const UsdFiles files = usdFiles(asset);
+  EXPECT_TRUE(files.images.empty());
+  ASSERT_EQ(files.warnings.items().size(), 1u);
+  EXPECT_EQ(files.warnings.items()[0].kind, "missing-images");
+  EXPECT_EQ(files.warnings.items()[0].count, 1u);
 }
 
 TEST(UsdFiles, AnimatedNodesWithoutASkinAreJointsToo) {

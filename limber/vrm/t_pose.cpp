@@ -1,7 +1,10 @@
 #include "limber/vrm/t_pose.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -10,6 +13,8 @@
 #include "limber/asset/geometry.h"
 #include "limber/asset/humanoid_nodes.h"
 #include "limber/asset/pose_io.h"
+#include "limber/asset/scene_graph.h"
+#include "limber/core/numbers.h"
 #include "limber/core/rotation.h"
 #include "limber/matching/neutral_pose.h"
 #include "limber/vrm/vrm_bones.h"
@@ -19,6 +24,23 @@ namespace limber {
 namespace {
 
 constexpr double kSamePlace = 1e-6;  // of the skeleton's size
+// How far from a T-pose they are that still rest in one; the neutral pose may stoop by 25 degrees.
+constexpr double kLimbsOff = 20 * kPi / 180, kTrunkOff = 30 * kPi / 180;  // radians
+
+struct LimbBone {
+  const char *from, *to;  // of VRM, without the side
+  bool isArm;
+};
+constexpr std::array kLimbBones = {LimbBone{"UpperArm", "LowerArm", true}, LimbBone{"LowerArm", "Hand", true},
+                                   LimbBone{"UpperLeg", "LowerLeg", false}, LimbBone{"LowerLeg", "Foot", false}};
+
+Vec3 outwardOf(std::string_view side) {
+  return side == "left" ? Vec3(Vec3::UnitX()) : Vec3(-Vec3::UnitX());
+}
+// Where it points in T-pose, in VRM's space.
+Vec3 directionOf(const LimbBone& bone, std::string_view side) {
+  return bone.isArm ? outwardOf(side) : Vec3(-Vec3::UnitY());
+}
 
 std::optional<Index> jointOf(std::span<const HumanoidJoint> bones, std::string_view bone) {
   const auto found = std::find_if(bones.begin(), bones.end(), [&](const HumanoidJoint& j) { return j.bone == bone; });
@@ -83,19 +105,15 @@ class BoneAimer {
 
 void aimLimbs(BoneAimer& aimer) {
   for (const std::string side : {"left", "right"}) {
-    const Vec3 outward = side == "left" ? Vec3(Vec3::UnitX()) : Vec3(-Vec3::UnitX());
-    const Vec3 down = -Vec3::UnitY(), ahead = Vec3::UnitZ();
-    aimer.aim(side + "UpperArm", side + "LowerArm", outward);
-    aimer.aim(side + "LowerArm", side + "Hand", outward);
+    const Vec3 outward = outwardOf(side);
+    for (const LimbBone& bone : kLimbBones) aimer.aim(side + bone.from, side + bone.to, directionOf(bone, side));
     aimer.aim(side + "Hand", side + "MiddleProximal", outward);
     for (const char* finger : {"Index", "Middle", "Ring", "Little"}) {
       const std::string name = side + finger;
       aimer.aim(name + "Proximal", name + "Intermediate", outward);
       aimer.aim(name + "Intermediate", name + "Distal", outward);
     }
-    aimer.aim(side + "UpperLeg", side + "LowerLeg", down);
-    aimer.aim(side + "LowerLeg", side + "Foot", down);
-    aimer.aim(side + "Foot", side + "Toes", ahead, true);
+    aimer.aim(side + "Foot", side + "Toes", Vec3::UnitZ(), true);
   }
 }
 
@@ -151,6 +169,10 @@ void putOnGround(TPose& tPose, const Asset& asset, const AssetSkeleton& rig, std
   lift(tPose, rig.skeleton, bones, -*lowest);
 }
 
+Quat toVrmOf(std::string_view extension) {
+  return extension == kVrm0Name ? Quat(0, 0, 1, 0) : Quat::Identity();  // 0.x faces -Z
+}
+
 }  // namespace
 
 TPose tPoseOf(const Skeleton& skeleton, std::span<const Pose> motion, std::span<const HumanoidJoint> bones) {
@@ -171,11 +193,31 @@ TPose madeTPose(const Asset& asset, const AssetSkeleton& rig, std::span<const Hu
   return tPose;
 }
 
-TPose vrmRestPose(const Asset& asset, const AssetSkeleton& rig, std::span<const HumanoidJoint> bones) {
-  if (hasAllBones(asset.document, kVrmName) || hasAllBones(asset.document, kVrmAnimationName)) {
-    return {readNodePose(asset, rig), Quat::Identity()};
+bool restsInTPose(const gltf::Document& document, const char* extension) {
+  if (!hasAllBones(document, extension)) return false;
+  const Quat toVrm = toVrmOf(extension);
+  const SceneGraph graph = readSceneGraph(document);
+  std::map<std::string_view, Vec3, std::less<>> places;
+  for (const HumanoidNode& node : humanoidNodes(document, extension)) {
+    places[node.bone] = toVrm * graph.world[node.node].translation();
   }
-  if (hasAllBones(asset.document, kVrm0Name)) return {readNodePose(asset, rig), Quat(0, 0, 1, 0)};  // faces -Z
+  const auto points = [&](std::string_view from, std::string_view to, const Vec3& direction, double most) {
+    const Vec3 bone = places.at(to) - places.at(from);
+    return bone.dot(direction) >= std::cos(most) * bone.norm();
+  };
+  if (!points("hips", "head", Vec3::UnitY(), kTrunkOff)) return false;
+  for (const std::string side : {"left", "right"}) {
+    for (const LimbBone& bone : kLimbBones) {
+      if (!points(side + bone.from, side + bone.to, directionOf(bone, side), kLimbsOff)) return false;
+    }
+  }
+  return true;
+}
+
+TPose vrmRestPose(const Asset& asset, const AssetSkeleton& rig, std::span<const HumanoidJoint> bones) {
+  for (const char* extension : {kVrmName, kVrmAnimationName, kVrm0Name}) {
+    if (restsInTPose(asset.document, extension)) return {readNodePose(asset, rig), toVrmOf(extension)};
+  }
   return madeTPose(asset, rig, bones);
 }
 

@@ -29,7 +29,14 @@ TPose tPoseOf(const Skeleton& skeleton, std::span<const Pose> motion, std::span<
 // follow a foot most.
 TPose madeTPose(const Asset& asset, const AssetSkeleton& rig, std::span<const HumanoidJoint> bones);
 
-// How a model rests as a VRM: one that is a VRM (1.0, 0.x), or a motion for VRMs, as its nodes stand; else madeTPose.
+// Does a VRM, or a motion for VRMs, rest in T-pose as its nodes stand: upper arms and forearms to the sides, thighs and
+// shins down, all within 20 degrees, and the trunk up within 30? False where bones are missing that a VRM must have.
+//
+// extension  of kVrmName, kVrm0Name (which faces -Z), kVrmAnimationName the one that names the bones
+bool restsInTPose(const gltf::Document& document, const char* extension);
+
+// How a model rests as a VRM: one that is a VRM (1.0, 0.x), or a motion for VRMs, as its nodes stand, if that is in
+// T-pose; else madeTPose.
 TPose vrmRestPose(const Asset& asset, const AssetSkeleton& rig, std::span<const HumanoidJoint> bones);
 // The same of a motion without a model, on the lowest joint below its feet.
 TPose vrmRestPose(const Motion& motion, std::span<const HumanoidJoint> bones);

@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <set>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "limber/asset/unique_names.h"
+#include "limber/core/names.h"
 #include "limber/vrm/loose_json.h"
 #include "limber/vrm/vrm_expressions.h"
 
@@ -16,7 +19,7 @@ namespace {
 
 using NamePair = std::pair<std::string_view, const char*>;
 
-constexpr std::array<NamePair, 17> kPresets = {{{"neutral", "neutral"},
+constexpr std::array<NamePair, 18> kPresets = {{{"neutral", "neutral"},
                                                 {"a", "aa"},
                                                 {"i", "ih"},
                                                 {"u", "ou"},
@@ -29,6 +32,7 @@ constexpr std::array<NamePair, 17> kPresets = {{{"neutral", "neutral"},
                                                 {"angry", "angry"},
                                                 {"sorrow", "sad"},
                                                 {"fun", "relaxed"},
+                                                {"surprised", "surprised"},
                                                 {"lookup", "lookUp"},
                                                 {"lookdown", "lookDown"},
                                                 {"lookleft", "lookLeft"},
@@ -89,6 +93,23 @@ void addMaterialBinds(const std::map<std::string, Index>& materials, const Json&
   }
 }
 
+// What each group is in 1.0, null where it is none of its presets: as its preset says, in any case of letters, else as
+// it is called, where no other group says so.
+std::vector<const char*> presetsOf(const Json& groups) {
+  std::vector<const char*> presets;
+  std::set<std::string_view> said;
+  for (const Json& group : groups) {
+    presets.push_back(partnerOf(kPresets, lowerCase(textIn(group, "presetName"))));
+    if (presets.back() != nullptr) said.insert(presets.back());
+  }
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    if (presets[g] != nullptr) continue;
+    const char* called = partnerOf(kPresets, lowerCase(textIn(groups[g], "name")));
+    if (called != nullptr && said.count(called) == 0) presets[g] = called;
+  }
+  return presets;
+}
+
 }  // namespace
 
 Json expressionsOfVrm0(Asset& asset, const Json& blendShapeMaster) {
@@ -103,17 +124,20 @@ Json expressionsOfVrm0(Asset& asset, const Json& blendShapeMaster) {
     if (document.nodes[n].mesh) nodesOfMesh[*document.nodes[n].mesh].push_back(n);
   }
   std::size_t unknown = 0, bindCount = 0;
-  for (const Json& group : listIn(blendShapeMaster, "blendShapeGroups")) {
+  const Json& groups = listIn(blendShapeMaster, "blendShapeGroups");
+  const std::vector<const char*> presets = presetsOf(groups);
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const Json& group = groups[g];
     Json expression = Json::object();
     if (flagIn(group, "isBinary")) expression["isBinary"] = true;
     Json binds = morphBinds(document, nodesOfMesh, group, bindCount);
     if (!binds.empty()) expression["morphTargetBinds"] = std::move(binds);
     addMaterialBinds(materials, group, expression, unknown);
-    const char* presetName = partnerOf(kPresets, textIn(group, "presetName"));
-    if (presetName != nullptr && !preset.contains(presetName)) {
-      preset[presetName] = std::move(expression);
-    } else if (const std::string name = textIn(group, "name"); presetName == nullptr && !name.empty()) {
-      custom[names.add(name)] = std::move(expression);
+    const std::string name = textIn(group, "name");
+    if (presets[g] != nullptr && !preset.contains(presets[g])) {
+      preset[presets[g]] = std::move(expression);
+    } else if (presets[g] != nullptr || !name.empty()) {
+      custom[names.add(name.empty() ? presets[g] : name)] = std::move(expression);
     }
   }
   asset.warnings.add("vrm0-expressions",

@@ -140,6 +140,8 @@ class MaterialConverter {
     material_->doubleSided = number("_CullMode", 2) == 0;
     setSurface();
     material_->normalTexture = texture("_BumpMap");
+    const double depth = number("_BumpScale", 1);
+    if (material_->normalTexture && depth != 1) material_->normalTexture->asRead.change()["scale"] = shown(depth);
     material_->emissiveTexture = texture("_EmissionMap");
     const Json emission = colorOf("_EmissionColor", {0, 0, 0, 1});
     for (Eigen::Index i = 0; i < 3; ++i) {
@@ -181,10 +183,11 @@ class MaterialConverter {
   }
 
   void addOutline(Json& mtoon) {
-    constexpr double kMetres = 0.01;  // widths of 0.x are centimetres, or hundredths of the screen
+    // Widths of 0.x are centimetres, or hundredths of half the screen's height; those of 1.0 metres, or of the whole.
+    constexpr double kOfWorld = 0.01, kOfScreen = 0.005;
     const double mode = number("_OutlineWidthMode", 0);
     mtoon["outlineWidthMode"] = mode == 1 ? "worldCoordinates" : mode == 2 ? "screenCoordinates" : "none";
-    mtoon["outlineWidthFactor"] = shown(kMetres * number("_OutlineWidth", 0));
+    mtoon["outlineWidthFactor"] = shown((mode == 2 ? kOfScreen : kOfWorld) * number("_OutlineWidth", 0));
     addTexture(mtoon, "outlineWidthMultiplyTexture", "_OutlineWidthTexture");
     mtoon["outlineColorFactor"] = colorOf("_OutlineColor", {0, 0, 0, 1});
     const bool isLit = number("_OutlineColorMode", 0) == 1;

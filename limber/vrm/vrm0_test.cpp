@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "limber/skeleton/humanoid_bones.h"
+#include "limber/vrm/t_pose.h"
 #include "limber/vrm/testing/avatars.h"
 #include "limber/vrm/vrm_write.h"
 #include "warning_kinds.h"
@@ -14,6 +15,7 @@ namespace limber {
 namespace {
 
 using ::testing::ElementsAre;
+using ::testing::UnorderedElementsAre;
 
 // A person as VRM 0.x has them: facing -Z, nodes without rotations; a braid of two joints with a side strand, by the
 // letter of the specification.
@@ -136,6 +138,14 @@ TEST(Vrm0, FacesTheOtherWayAndNamesItsBonesAnew) {
   EXPECT_EQ(bones["leftThumbProximal"]["node"], old.strand);
 }
 
+TEST(Vrm0, RestsInTPoseTheOtherWayRound) {
+  OldAvatar old = oldAvatar();
+  changeExtension(old.asset.document, "VRM") = old.vrm;
+  EXPECT_TRUE(restsInTPose(old.asset.document, "VRM"));
+  changeExtension(old.asset.document, "VRMC_vrm") = old.vrm;
+  EXPECT_FALSE(restsInTPose(old.asset.document, "VRMC_vrm"));
+}
+
 TEST(Vrm0, ExpressionsGazeAndWhatTheWearerSees) {
   const Asset asset = upgraded(oldAvatar());
   const Json& vrm = *extensionOf(asset.document, "VRMC_vrm");
@@ -153,6 +163,26 @@ TEST(Vrm0, ExpressionsGazeAndWhatTheWearerSees) {
   EXPECT_EQ(vrm["lookAt"]["rangeMapVerticalDown"]["inputMaxValue"], 90);
   EXPECT_EQ(vrm["lookAt"]["offsetFromHeadBone"], (Json{0.01, 0.06, -0.02}));
   EXPECT_THAT(testing::warningKinds(asset.warnings), ElementsAre("vrm0-curves", "vrm0-expressions", "vrm0-materials"));
+}
+
+TEST(Vrm0, GroupsThatNameNoPresetGoByTheirNames) {
+  OldAvatar old = oldAvatar();
+  Json groups = Json::array();
+  for (const auto& [name, preset] : {std::pair("Surprised", "unknown"), std::pair("Blink_L", ""),
+                                     std::pair("Joy", "unknown"), std::pair("Smile", "Joy"), std::pair("Grin", "joy"),
+                                     std::pair("Wink", "unknown"), std::pair("", "Fun"), std::pair("", "fun")}) {
+    groups.push_back({{"name", name}, {"presetName", preset}});
+  }
+  old.vrm["blendShapeMaster"]["blendShapeGroups"] = groups;
+  const Asset asset = upgraded(std::move(old));
+  const Json& expressions = extensionOf(asset.document, "VRMC_vrm")->at("expressions");
+  const auto names = [](const Json& group) {
+    std::vector<std::string> all;
+    for (const auto& [name, expression] : group.items()) all.push_back(name);
+    return all;
+  };
+  EXPECT_THAT(names(expressions["preset"]), UnorderedElementsAre("surprised", "blinkLeft", "happy", "relaxed"));
+  EXPECT_THAT(names(expressions["custom"]), UnorderedElementsAre("Joy", "Grin", "Wink", "relaxed_2"));
 }
 
 TEST(Vrm0, ChainsSwingToSevenCentimetresBeyondTheirEnds) {
@@ -191,6 +221,21 @@ TEST(Vrm0, MToonGoesOn) {
   EXPECT_EQ(skin.pbrMetallicRoughness->baseColorFactor->x(), 1);
   EXPECT_EQ(skin.pbrMetallicRoughness->baseColorFactor->w(), 0.5);
   EXPECT_EQ(extensionOf(asset.document.materials[1], "VRMC_materials_mtoon"), nullptr);
+}
+
+TEST(Vrm0, MToonKeepsTheDepthOfNormalsAndOutlinesOfTheScreen) {
+  OldAvatar old = oldAvatar();
+  old.asset.document.textures.emplace_back();
+  Json& skin = old.vrm["materialProperties"][0];
+  skin["floatProperties"]["_BumpScale"] = 0.25;
+  skin["floatProperties"]["_OutlineWidthMode"] = 2;
+  skin["textureProperties"]["_BumpMap"] = 0;
+  const Asset asset = upgraded(std::move(old));
+  const gltf::Material& material = asset.document.materials[0];
+  const Json& mtoon = *extensionOf(material, "VRMC_materials_mtoon");
+  EXPECT_EQ(mtoon["outlineWidthMode"], "screenCoordinates");
+  EXPECT_NEAR(mtoon["outlineWidthFactor"].get<double>(), 0.0025, 1e-9);  // of 0.5 hundredths of half the screen
+  EXPECT_EQ(material.normalTexture->asRead->at("scale"), 0.25);
 }
 
 TEST(Vrm0, AnOldAvatarIsWrittenAsANewOne) {

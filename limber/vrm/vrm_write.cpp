@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "limber/asset/clip_io.h"
 #include "limber/asset/extensions.h"
 #include "limber/asset/humanoid_nodes.h"
 #include "limber/asset/json_access.h"
@@ -16,6 +17,7 @@
 #include "limber/asset/turn_scene.h"
 #include "limber/asset/write.h"
 #include "limber/core/names.h"
+#include "limber/core/numbers.h"
 #include "limber/core/rotation.h"
 #include "limber/vrm/hang_bones.h"
 #include "limber/vrm/t_pose.h"
@@ -27,14 +29,38 @@ namespace limber {
 
 namespace {
 
-// The joints' nodes to a T-pose that faces +Z; the bones as "humanoid" has them.
-Json standInTPose(Asset& asset) {
+// Do the nodes stand in a pose of their own: neither at rest nor as a clip begins, which goes on showing it?
+bool isPosed(const Asset& asset, const AssetSkeleton& rig, std::span<const HumanoidJoint> bones) {
+  constexpr double kTurned = 20 * kPi / 180;  // radians
+  const Pose rest = restPose(rig.skeleton), pose = readNodePose(asset, rig);
+  const auto isLike = [&](const Pose& other) {
+    return std::none_of(bones.begin(), bones.end(), [&](const HumanoidJoint& bone) {
+      const Quat &turn = pose.locals[bone.joint].rotation, &otherTurn = other.locals[bone.joint].rotation;
+      return rig.skeleton.joints[bone.joint].parent && angleBetween(turn, otherTurn) > kTurned;
+    });
+  };
+  if (isLike(rest)) return false;
+  Warnings told;  // by whoever reads them for their own sake
+  const std::vector<Clip> clips = readClips(asset, rig, told);
+  return std::none_of(clips.begin(), clips.end(), [&](const Clip& clip) {
+    Pose first = rest;
+    sampleClip(clip, 0, first);
+    return isLike(first);
+  });
+}
+
+// The joints' nodes to a T-pose that faces +Z; the bones as "humanoid" has them. `isVrm`: the nodes are known to have
+// stood in T-pose, and do no longer.
+Json standInTPose(Asset& asset, bool isVrm) {
   if (!hasRig(asset)) {
     throw Error(ErrorCode::kUnsupported, "has no rig, and a VRM needs one", asset.name, "give it one by limber rig");
   }
   const AssetSkeleton read = readSkeleton(asset);
   std::vector<HumanoidJoint> bones = vrmBones(asset, read, asset.warnings);
   const AssetSkeleton rig = hangBones(asset, read, bones);
+  if (isVrm || isPosed(asset, rig, bones)) {
+    asset.warnings.add("vrm-pose", "a VRM rests in T-pose, and the pose of the model's joints is not kept");
+  }
   const TPose tPose = madeTPose(asset, rig, bones);
   setNodePose(asset, rig, tPose.pose);
   constexpr double kFacesFront = 1e-6;  // radians
@@ -65,7 +91,11 @@ void makeVrm(Asset& asset, const VrmMeta& meta) {
   const std::string stem = std::filesystem::path(asset.name).stem().string();
   const Json* keptMeta = member(vrm, "meta");
   vrm["meta"] = vrmMeta(meta, keptMeta != nullptr && keptMeta->is_object() ? keptMeta : nullptr, stem, asset.warnings);
-  if (!hasAllBones(asset.document, kVrmName)) vrm["humanoid"] = standInTPose(asset);
+  if (!hasAllBones(asset.document, kVrmName)) {
+    vrm["humanoid"] = standInTPose(asset, false);
+  } else if (hasRig(asset) && !restsInTPose(asset.document, kVrmName)) {
+    standInTPose(asset, true);
+  }
   if (!isVrm) {
     if (Json expressions = expressionsByName(asset.document); !expressions.is_null()) {
       vrm["expressions"] = std::move(expressions);

@@ -185,6 +185,54 @@ TEST(MakeVrm, SecondTimeNothingChanges) {
   EXPECT_THROW(makeVrm(asset, meta), Error);  // which would allow what the model denies
 }
 
+// Lifts a leg, bends an elbow.
+void poseAvatar(Asset& asset) {
+  const AssetSkeleton rig = readSkeleton(asset);
+  Pose pose = readNodePose(asset, rig);
+  for (const char* joint : {"mixamorig:RightUpLeg", "mixamorig:LeftForeArm"}) {
+    Quat& rotation = pose.locals[rig.skeleton.find(joint).value()].rotation;
+    rotation = rotation * testing::turn(Vec3(1, 1, 0).normalized(), 50);
+  }
+  writeNodePose(asset, rig, pose);
+}
+
+TEST(MakeVrm, APosedOneStandsInTPoseAgainAndSaysSo) {
+  for (const double degrees : {0.0, 90.0}) {
+    Skeleton person = mixamoPerson();
+    person.joints[0].rest = decompose(Affine(testing::turn(Vec3::UnitY(), degrees)) * person.joints[0].rest.toAffine());
+    Asset asset = avatarOf(person);
+    makeVrm(asset);
+    const std::vector<Affine> before = readSceneGraph(asset.document).world;
+    poseAvatar(asset);
+    asset.warnings = {};
+    makeVrm(asset);
+    expectTPose(asset);
+    const std::vector<Affine> after = readSceneGraph(asset.document).world;
+    for (std::size_t n = 0; n < before.size(); ++n) {
+      EXPECT_LT((after[n].translation() - before[n].translation()).norm(), 1e-6) << asset.document.nodes[n].name;
+    }
+    EXPECT_THAT(warningKinds(asset.warnings), ElementsAre("vrm-pose"));
+  }
+}
+
+TEST(MakeVrm, TellsOfThePoseOfAModelThatNoClipShows) {
+  Asset asset = avatarOf(mixamoPerson());
+  poseAvatar(asset);
+  Asset shown = asset.clone();
+  makeVrm(asset);
+  expectTPose(asset);
+  EXPECT_THAT(warningKinds(asset.warnings), ElementsAre("vrm-meta", "vrm-pose"));
+  Index head = 0;
+  while (shown.document.nodes[head].name != "mixamorig:Head") ++head;
+  const std::vector<float> still = {0, 0, 0, 1, 0, 0, 0, 1};
+  gltf::Animation& clip = shown.document.animations.emplace_back();
+  const Index input = addFloatAccessor(shown, std::vector<float>{0, 1}, 1, 0, true);
+  clip.samplers.push_back({{}, input, addFloatAccessor(shown, still, 4)});
+  clip.channels.push_back({{}, 0, {{}, head, "rotation"}});
+  makeVrm(shown);
+  EXPECT_THAT(warningKinds(shown.warnings), ElementsAre("vrm-meta"));
+}
+
 TEST(MakeVrm, AnewRiggedOneKeepsItsMetaAndGetsNewBones) {
   Asset asset = avatarOf(mixamoPerson());
   changeExtension(asset.document, "VRMC_vrm") = {

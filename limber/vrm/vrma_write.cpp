@@ -300,6 +300,14 @@ std::optional<Track<float>> trackOf(const Asset& asset, const gltf::Animation& a
   return common;
 }
 
+// Such a file has a place of its own for gaze ("lookAt"), and forbids it elsewhere.
+bool isEye(std::string_view bone) {
+  return bone == "leftEye" || bone == "rightEye";
+}
+bool isGaze(const ExpressionTrack& expression) {
+  return expression.isPreset && expression.name.starts_with("look");  // lookUp, lookDown, lookLeft, lookRight
+}
+
 }  // namespace
 
 std::vector<ExpressionTrack> expressionTracks(const Asset& asset, Index animation) {
@@ -320,7 +328,28 @@ std::vector<ExpressionTrack> expressionTracks(const Asset& asset, Index animatio
 
 Asset vrmAnimation(const Skeleton& skeleton, const Clip& clip, const TPose& rest, std::span<const HumanoidJoint> bones,
                    std::span<const ExpressionTrack> expressions) {
-  return AnimationMaker(skeleton, clip, rest, bones).make(expressions);
+  std::vector<HumanoidJoint> kept;
+  std::size_t leftOut = 0;
+  for (const HumanoidJoint& bone : bones) {
+    if (!isEye(bone.bone)) {
+      kept.push_back(bone);
+    } else if (std::any_of(clip.rotations.begin(), clip.rotations.end(),
+                           [&](const auto& track) { return track.joint == bone.joint && track.times.size() > 1; })) {
+      ++leftOut;
+    }
+  }
+  std::vector<ExpressionTrack> shown;
+  for (const ExpressionTrack& expression : expressions) {
+    if (isGaze(expression)) {
+      ++leftOut;
+    } else {
+      shown.push_back(expression);
+    }
+  }
+  Asset made = AnimationMaker(skeleton, clip, rest, kept).make(shown);
+  made.warnings.add("vrma-gaze", "turns of the eyes, and expressions of where they look, are left out", clip.name,
+                    leftOut);
+  return made;
 }
 
 bool isVrmaFormat(const std::filesystem::path& path) {

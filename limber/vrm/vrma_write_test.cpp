@@ -89,6 +89,32 @@ TEST(VrmAnimation, RestsInTPoseWithoutRotations) {
   EXPECT_NEAR((at("rightFoot") - at("rightUpperLeg")).normalized().y(), -1, 1e-6);
 }
 
+TEST(VrmAnimation, LeavesGazeOutAndSaysSo) {
+  Motion motion = swinging();
+  Joint eye;
+  eye.name = "LeftEye";
+  eye.parent = motion.skeleton.find("mixamorig:Head");
+  eye.rest.translation = {0.03, 0.05, 0.08};
+  motion.skeleton.joints.push_back(eye);
+  Warnings warnings;
+  std::vector<HumanoidJoint> bones = vrmBones(motion.skeleton, motion.name, warnings);
+  std::erase_if(bones, [](const HumanoidJoint& bone) { return bone.bone == "leftEye"; });
+  const std::size_t others = bones.size();
+  bones.push_back({"leftEye", motion.skeleton.jointCount() - 1});
+  motion.clips[0].rotations.push_back(turning(motion.skeleton.jointCount() - 1, Quat::Identity(), Vec3::UnitY()));
+  const Track<float> weight{0, Interpolation::kLinear, {0, 1}, {0, 1}};
+  const std::vector<ExpressionTrack> expressions = {{"lookUp", true, weight}, {"lookout", false, weight}};
+  const Asset made = vrmAnimation(motion.skeleton, motion.clips[0], vrmRestPose(motion, bones), bones, expressions);
+  const Json& said = *extensionOf(made.document, "VRMC_vrm_animation");
+  EXPECT_EQ(said["humanoid"]["humanBones"].size(), others);
+  EXPECT_FALSE(said["humanoid"]["humanBones"].contains("leftEye"));
+  EXPECT_FALSE(said["expressions"].contains("preset"));
+  EXPECT_TRUE(said["expressions"]["custom"].contains("lookout"));
+  ASSERT_EQ(made.warnings.items().size(), 1u);
+  EXPECT_EQ(made.warnings.items()[0].kind, "vrma-gaze");
+  EXPECT_EQ(made.warnings.items()[0].count, 2u);
+}
+
 // What lies between two bones counts with the lower one.
 TEST(VrmAnimation, TwistJointsArePartOfTheirBones) {
   Motion motion = swinging();

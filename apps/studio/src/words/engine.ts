@@ -110,6 +110,8 @@ const warnings: Named = {
   'invalid-normals': 'normals without a direction are made anew', 'decompressed': 'what was compressed is saved uncompressed',
   'trailing-bytes': 'bytes behind the end of the file are left out', 'unknown-extensions': 'extensions of the file that are not known are left as they are',
   'no-motion': 'the file has a skeleton only, and no motion', 'cut-frame': 'the last frame is cut off, and left out',
+  'other-textures': 'textures of what is neither colour nor normals nor emission are left out', 'vrm-pose': 'a VRM rests in T-pose, and the pose of the model\u2019s joints is not kept',
+  'extrapolated-curves': 'curves that go on beyond their keys (cycles, slopes) stand still there',
   'decimal-commas': 'numbers have a comma for the point', 'turned-upright': 'the model lay down, and was turned upright',
 };
 type Warning = SessionState['warnings'][number];
