@@ -69,7 +69,7 @@ bool isBvh(const std::string& path) {
 }
 
 // The seconds of "1.5:3", ":3" or "1.5:".
-std::pair<double, double> trimSpan(const std::string& text) {
+TimeSpan trimSpan(const std::string& text) {
   const std::size_t colon = text.find(':');
   const auto part = [&](const std::string& number, double otherwise) {
     if (number.empty()) return otherwise;
@@ -77,11 +77,11 @@ std::pair<double, double> trimSpan(const std::string& text) {
     const double value = std::strtod(number.c_str(), &end);
     return *end == 0 ? value : std::nan("");
   };
-  std::pair<double, double> span(std::nan(""), std::nan(""));
+  TimeSpan span{std::nan(""), std::nan("")};
   if (colon != std::string::npos) {
     span = {part(text.substr(0, colon), 0), part(text.substr(colon + 1), HUGE_VAL)};
   }
-  if (span.first < span.second) return span;
+  if (span.from < span.to) return span;
   throw Error(ErrorCode::kBadArgument, "\"" + text + "\" is no span of time", "",
               "write its ends in seconds: 1.5:3, 1.5: or :3");
 }
@@ -105,11 +105,16 @@ std::vector<Clip> chosenClips(std::vector<Clip> clips, const std::vector<std::st
   return chosen;
 }
 
+// One of blend shapes alone has no tracks.
+bool moves(const Clip& clip) {
+  return !clip.translations.empty() || !clip.rotations.empty() || !clip.scales.empty();
+}
+
 // What comes before the edits of clips that commands share.
 void trimAndMirror(Motion& motion, const ConvertArguments& options) {
   const SkeletonMirror mirror = options.mirror ? mirrorOf(motion.skeleton) : SkeletonMirror{};
   for (Clip& clip : motion.clips) {
-    if (!options.trim.empty()) {
+    if (!options.trim.empty() && moves(clip)) {
       const auto [from, to] = trimSpan(options.trim);
       clip = trimClip(clip, from, to);
     }
@@ -194,7 +199,9 @@ Asset withClips(std::optional<Asset>& model, const Motion& motion, const Convert
   std::vector<std::string> names;
   if (model) {
     asset = std::move(*model);
-    names = replaceClips(asset, animatedSkeleton(asset), motion.clips);
+    std::optional<TimeSpan> cut;
+    if (!options.trim.empty()) cut = trimSpan(options.trim);
+    names = replaceClips(asset, animatedSkeleton(asset), motion.clips, cut);
   } else {
     asset = motionAsset(motion);
     for (const gltf::Animation& animation : asset.document.animations) names.push_back(animation.name);

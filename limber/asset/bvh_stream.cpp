@@ -70,9 +70,16 @@ void BvhStream::takeRow(std::string_view text) {
   if (!line.atEnd()) throw line.error(fmt::format("has more than the {} numbers of a frame", values_.size()));
   frames_->addFrame(values_);
   const Clip clip = frames_->takeClip(1);
+  // Parts of roots without a channel are as the hierarchy has them, not as the row before left them, turned.
+  const std::vector<BvhJoint>& joints = hierarchy_.joints();
+  for (Index j = 0; j < skeleton_.jointCount(); ++j) {
+    if (joints[j].parent) continue;
+    pose_.locals[j].translation = joints[j].offset;
+    pose_.locals[j].rotation = Quat::Identity();
+  }
   sampleClip(clip, 0, pose_);
   for (Index j = 0; j < skeleton_.jointCount(); ++j) {
-    if (skeleton_.joints[j].parent) continue;
+    if (joints[j].parent) continue;
     pose_.locals[j].translation = turn_ * pose_.locals[j].translation;
     pose_.locals[j].rotation = turn_ * pose_.locals[j].rotation;
   }

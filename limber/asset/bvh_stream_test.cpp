@@ -45,6 +45,27 @@ TEST(BvhStream, MovesAsTheFileDoes) {
   }
 }
 
+// With Z up: what has no channel is turned once, not with every row.
+TEST(BvhStream, RootsMayLackChannels) {
+  for (const char* channels : {"3 Xposition Yposition Zposition", "3 Zrotation Xrotation Yrotation"}) {
+    std::string header = person("0", "0.8");
+    const std::string all = "6 Xposition Yposition Zposition Zrotation Xrotation Yrotation";
+    header.replace(header.find(all), all.size(), channels);
+    header.replace(header.find("OFFSET 0 0 0"), 12, "OFFSET 0 1 2");
+    BvhStream stream;
+    stream.take(header);
+    const std::string row = "0.1 0.2 0.3 0 0 5 0 0 0\n";
+    stream.take(row);
+    const Pose once = stream.pose();
+    stream.take(row);
+    for (std::size_t j = 0; j < once.locals.size(); ++j) {
+      EXPECT_LT((once.locals[j].translation - stream.pose().locals[j].translation).norm(), 1e-9) << j;
+      EXPECT_LT(once.locals[j].rotation.angularDistance(stream.pose().locals[j].rotation), 1e-9) << j;
+    }
+    EXPECT_GT(posePositions(*stream.skeleton(), once)[1].y(), 0.7) << "heads are up";
+  }
+}
+
 TEST(BvhStream, NeedsNoCountOfFrames) {
   BvhStream stream;
   stream.take(person("0.8", "0"));

@@ -242,6 +242,10 @@ NpyArray readNpy(ByteSpan bytes, std::string_view name) {
   return array;
 }
 
+std::vector<std::size_t> readNpyShape(ByteSpan bytes, std::string_view name) {
+  return NpyHeaderText(headerText(bytes, name).first, name).read().shape;
+}
+
 std::optional<NpyArray> npzArray(const NpzFiles& files, const std::string& array) {
   const std::string path = array + ".npy";
   const auto found = files.find(path);

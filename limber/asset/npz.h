@@ -30,6 +30,9 @@ struct NpyArray {
 // numbers; where() is `name`.
 NpyArray readNpy(ByteSpan bytes, std::string_view name);
 
+// Its shape alone, as the header tells it; the numbers are not looked at. Throws likewise.
+std::vector<std::size_t> readNpyShape(ByteSpan bytes, std::string_view name);
+
 // The array of that name, nothing where there is none. Other arrays of the archive are not looked at.
 std::optional<NpyArray> npzArray(const NpzFiles& files, const std::string& array);
 

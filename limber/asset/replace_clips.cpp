@@ -27,7 +27,8 @@ void appendChannels(gltf::Animation& to, gltf::Animation& from) {
 
 }  // namespace
 
-std::vector<std::string> replaceClips(Asset& asset, const AssetSkeleton& skeleton, std::span<const Clip> clips) {
+std::vector<std::string> replaceClips(Asset& asset, const AssetSkeleton& skeleton, std::span<const Clip> clips,
+                                      const std::optional<TimeSpan>& cut) {
   const AccessorSweep accessors(asset);
   const BufferViewSweep views(asset);
   const std::vector<Index>& joints = skeleton.jointNode;
@@ -42,7 +43,9 @@ std::vector<std::string> replaceClips(Asset& asset, const AssetSkeleton& skeleto
     const auto found = std::find_if(left.begin(), left.end(), [&](const gltf::Animation& animation) {
       return animation.name == clips[c].name && !animation.channels.empty();
     });
-    if (found != left.end()) appendChannels(animations[c], *found);
+    if (found == left.end()) continue;
+    if (cut) trimAnimation(asset, *found, *cut);
+    appendChannels(animations[c], *found);
   }
   std::erase_if(left, [](const gltf::Animation& animation) { return animation.channels.empty(); });
   animations.insert(animations.begin(), std::make_move_iterator(left.begin()), std::make_move_iterator(left.end()));

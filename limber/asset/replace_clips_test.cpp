@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "limber/asset/accessor.h"
 #include "limber/asset/clip_io.h"
 #include "limber/asset/read.h"
 #include "limber/asset/testing/gltf_builder.h"
@@ -41,6 +42,19 @@ TEST(ReplaceClips, WeightsStayInTheClipOfTheirName) {
   EXPECT_EQ(turn.channels[0].target.path, "rotation");
   EXPECT_EQ(turn.channels[1].target.path, "weights");
   EXPECT_EQ(turn.channels[1].sampler, 1u);
+}
+
+TEST(ReplaceClips, WeightsAreCutAsTheClipsWere) {
+  Asset asset = withWeights();
+  const AssetSkeleton rig = readSkeleton(asset);
+  const std::vector<Clip> clips = readClips(asset, rig, asset.warnings);
+  replaceClips(asset, rig, std::span(clips).first(1), TimeSpan{0.25, 0.5});
+  checkAsset(asset);
+  const gltf::Animation& turn = asset.document.animations[1];
+  EXPECT_THAT(readFloats(asset, turn.samplers[1].input), ::testing::ElementsAre(0, 0.25f));
+  EXPECT_THAT(readFloats(asset, turn.samplers[1].output), ::testing::ElementsAre(0.25f, 0.5f));
+  const gltf::Animation& wink = asset.document.animations[0];
+  EXPECT_THAT(readFloats(asset, wink.samplers[0].input), ::testing::ElementsAre(0, 1)) << "is none of the clips";
 }
 
 }  // namespace

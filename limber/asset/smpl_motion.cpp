@@ -22,7 +22,8 @@ namespace limber {
 namespace {
 
 constexpr std::size_t kMostSmplFrames = std::size_t{1} << 22;  // their times still differ in single precision
-constexpr double kUsualRate = 30;                              // frames a second
+constexpr std::size_t kMostNumbersOfFrame = 3 * 55;
+constexpr double kUsualRate = 30;  // frames a second
 constexpr double kLowestRate = 1e-6, kHighestRate = 1e6;
 constexpr double kLargestNumber = 1e30;  // leaves single precision room for products
 constexpr std::size_t kHandJoints = 15, kFaceJoints = 3;
@@ -43,9 +44,20 @@ SmplRows rowsOf(NpyArray array, std::string name) {
   return rows;
 }
 
+// Before the numbers are unpacked, which take up to eight times the bytes of the file's.
+void checkLimit(const NpzFiles& arrays, const std::string& name) {
+  const auto found = arrays.find(name + ".npy");
+  if (found == arrays.end()) return;
+  const std::vector<std::size_t> shape = readNpyShape(found->second, found->first);
+  std::size_t room = shape.size() > 1 && shape[0] > kMostSmplFrames ? 0 : kMostSmplFrames * kMostNumbersOfFrame;
+  for (const std::size_t length : shape) room /= std::max<std::size_t>(length, 1);
+  if (room == 0) throw Error(ErrorCode::kLimit, fmt::format("has more than {} frames", kMostSmplFrames), found->first);
+}
+
 // The first of these that there is.
 std::optional<SmplRows> findRows(const NpzFiles& arrays, ArrayNames names) {
   for (const char* name : names) {
+    checkLimit(arrays, name);
     if (std::optional<NpyArray> array = npzArray(arrays, name)) return rowsOf(std::move(*array), name);
   }
   return std::nullopt;

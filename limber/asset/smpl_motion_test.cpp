@@ -229,6 +229,13 @@ TEST(SmplMotion, RefusesWhatIsNoMotion) {
   EXPECT_THAT(refusalOf(parts), HasSubstr("rows of 9 numbers, not of 3"));
 }
 
+// The shape is looked at first: no numbers are there, and none are asked for.
+TEST(SmplMotion, RefusesTooManyFramesByTheirShape) {
+  for (const char* shape : {"(4194305, 66)", "(1, 2000000000)", "(2000000000,)"}) {
+    EXPECT_THAT(refusalOf({{"poses.npy", npyOf(npyHeader("|u1", shape), {})}}), HasSubstr("more than 4194304 frames"));
+  }
+}
+
 // The joints of three vertices on a line, a chain of 24; the first shape makes it twice as long.
 std::shared_ptr<const NpzFiles> lineBody(std::size_t joints) {
   NpzFiles files;

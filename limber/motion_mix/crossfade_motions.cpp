@@ -58,7 +58,7 @@ JoinedMotions joinMotions(const Skeleton& skeleton, std::span<const ClipWithCont
     const MixMotion a(body, joined.motion), b(body, next);
     const double frameSeconds =
         options.frameRate ? 1 / *options.frameRate : std::min(a.frameSeconds(), b.frameSeconds());
-    const Transition transition = findTransition(body, a, b, options.seconds, frameSeconds);
+    const Transition transition = findTransition(body, a, b, {options.seconds, frameSeconds, joined.spans.back().from});
     const std::vector<MixMoment> moments = allMoments(transition, b.duration(), frameSeconds);
     MixedFrames mixed = mixFrames(body, a, b, transition.phases, moments, frameSeconds);
     const auto begin = static_cast<std::size_t>(std::round(*transition.moments.front().a / frameSeconds));

@@ -7,6 +7,7 @@
 #include "limber/core/error.h"
 #include "limber/motion_mix/testing/sample_clip.h"
 #include "limber/skeleton/clip_edit.h"
+#include "limber/skeleton/motion.h"
 
 namespace limber {
 namespace {
@@ -103,6 +104,34 @@ TEST_F(CrossfadeMotions, AllAreJoinedAndLastAsLongAsAllLessTheTransitions) {
   for (std::size_t i = 0; i + 1 < spans.size(); ++i) {
     EXPECT_NEAR(spans[i].to - spans[i + 1].from, 0.3, 1.0 / 60) << i;
     EXPECT_LT(spans[i].from, spans[i + 1].from);
+  }
+}
+
+TEST_F(CrossfadeMotions, AShortMotionBetweenTwoIsNotLeftOut) {
+  for (const char* name : {"jump", "walk", "run"}) {
+    SCOPED_TRACE(name);
+    const ClipWithContacts all[] = {walk, {trimClip(sampleClip(name).clip, 0, 0.8), {}}, run};
+    const auto [joined, spans] = joinMotions(skeleton, all, {0.3, std::nullopt});
+    ASSERT_EQ(spans.size(), 3u);
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_LT(spans[i].from, spans[i].to) << i;
+      if (i == 0) continue;
+      EXPECT_LT(spans[i - 1].from, spans[i].from) << i;
+      EXPECT_LT(spans[i - 1].to, spans[i].to) << i;
+    }
+  }
+}
+
+TEST_F(CrossfadeMotions, KeysMayBeFartherApartThanTheTransitionIsLong) {
+  const ClipWithContacts sparse{resampleClip(walk.clip, 2), {}};
+  const Clip clip = crossfadeMotions(skeleton, sparse, sparse, {0.3, std::nullopt}).clip;
+  EXPECT_NEAR(frameRateOf(clip), 30, 1e-3);
+}
+
+TEST_F(CrossfadeMotions, ATransitionMayLastNearlyAsLongAsAMotion) {
+  const Clip second = resampleClip(trimClip(walk.clip, 0, 1), 30);
+  for (const double seconds : {0.97, 0.99}) {
+    EXPECT_NEAR(crossfadeMotions(skeleton, {second, {}}, {second, {}}, {seconds, 30}).clip.duration(), 1, 0.1);
   }
 }
 

@@ -73,7 +73,7 @@ double swayAt(const std::vector<double>& sways, double frame) {
 MixMotion::MixMotion(const MixBody& body, const ClipWithContacts& motion)
     : body_(&body), name_(motion.clip.name), feet_(motion.feet) {
   checkClip(motion.clip, body.original());
-  frames_ = body.plain().plain(sampleFrames(body.original(), motion.clip, frameRateOf(motion.clip)));
+  frames_ = body.plain().plain(sampleFrames(body.original(), motion.clip, denseFrameRateOf(motion.clip)));
   if (feet_.empty()) feet_ = plantedFeet(body.setup(), frames_);
   feet_ = steadied(std::move(feet_));
   leaveOutFirstPose();

@@ -12,10 +12,10 @@ namespace limber {
 
 class MixMotion {
  public:
-  // The clip at its own rate, and when its feet are planted (plantedFeet), by the joints of the body's legs; without
-  // any, they are read off the clip. A first frame from which it jumps, as the T-pose that some recordings begin with,
-  // is left out, and scales that change are not kept. The body must outlive this. Throws as checkClip
-  // and sampleFrames do.
+  // The clip at its own rate (denseFrameRateOf), and when its feet are planted (plantedFeet), by the joints of the
+  // body's legs; without any, they are read off the clip. A first frame from which it jumps, as the T-pose that some
+  // recordings begin with, is left out, and scales that change are not kept. The body must outlive this. Throws as
+  // checkClip and sampleFrames do.
   MixMotion(const MixBody& body, const ClipWithContacts& motion);
 
   const std::string& name() const { return name_; }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
@@ -91,26 +93,36 @@ bool shareFoot(const Seen& a, const Seen& b) {
 
 class TransitionSearch {
  public:
-  TransitionSearch(const MixBody& body, const MixMotion& a, const MixMotion& b, double seconds, double frameSeconds)
+  TransitionSearch(const MixBody& body, const MixMotion& a, const MixMotion& b, const TransitionOptions& options)
       : a_(a),
         b_(b),
-        frameSeconds_(frameSeconds),
-        frames_(static_cast<std::size_t>(std::max(1.0, std::round(seconds / frameSeconds)))),
-        aReach_(std::min(kReach, (a.duration() - seconds) / 2)),
-        bReach_(std::min(kReach, (b.duration() - seconds) / 2)),
-        first_(std::max(0.0, std::ceil((a.duration() - seconds - aReach_) / frameSeconds - kMoment))),
-        ofA_(body, a, first_ * frameSeconds, a.duration(), frameSeconds),
-        ofB_(body, b, 0, b.duration(), frameSeconds) {}
+        frameSeconds_(options.frameSeconds),
+        frames_(wholeFrames(options.seconds)),
+        bReach_(std::min(kReach, (b.duration() - options.seconds) / 2)),
+        first_(firstFrame(options)),
+        ofA_(body, a, first_ * frameSeconds_, a.duration(), frameSeconds_),
+        ofB_(body, b, 0, b.duration(), frameSeconds_) {}
 
-  Transition run() {
+  std::optional<Transition> run() {
     for (const StridePhases& phases : matchStrides(a_.footfalls(), b_.footfalls())) {
       for (double frame = first_; frame * frameSeconds_ <= a_.duration(); ++frame) consider(phases, frame);
     }
     if (!best_) considerAnyTwo();
-    return std::move(*best_);
+    return std::move(best_);
   }
 
  private:
+  std::size_t wholeFrames(double seconds) const {
+    return static_cast<std::size_t>(std::max(1.0, std::floor(seconds / frameSeconds_ + kMoment)));
+  }
+
+  double firstFrame(const TransitionOptions& options) const {
+    const double reach = std::min(kReach, (a_.duration() - options.from - options.seconds) / 2);
+    const double lasts = static_cast<double>(frames_) * frameSeconds_;
+    const double first = std::floor((a_.duration() - lasts - reach) / frameSeconds_ + kMoment);
+    return std::max(first, options.from > 0 ? std::floor(options.from / frameSeconds_ + kMoment) + 1 : 0);
+  }
+
   // Each at its own speed: a phase is a second.
   void considerAnyTwo() {
     for (double frame = first_; frame * frameSeconds_ <= a_.duration(); ++frame) {
@@ -160,7 +172,7 @@ class TransitionSearch {
   const MixMotion &a_, &b_;
   double frameSeconds_;
   std::size_t frames_;
-  double aReach_, bReach_, first_;
+  double bReach_, first_;
   SeenFrames ofA_, ofB_;
   std::optional<Transition> best_;
   bool shares_ = false;
@@ -169,17 +181,21 @@ class TransitionSearch {
 
 }  // namespace
 
-Transition findTransition(const MixBody& body, const MixMotion& a, const MixMotion& b, double seconds,
-                          double frameSeconds) {
-  const double shortest = std::min(a.duration(), b.duration());
-  if (!(seconds >= frameSeconds) || !(seconds < shortest)) {
-    throw Error(
+Transition findTransition(const MixBody& body, const MixMotion& a, const MixMotion& b,
+                          const TransitionOptions& options) {
+  const double own = a.duration() - options.from, shortest = std::min(own, b.duration());
+  const auto refusal = [&](std::string hint) {
+    return Error(
         ErrorCode::kBadArgument,
-        fmt::format("motions of {:.3g} and {:.3g} s cannot cross within {:.3g} s", a.duration(), b.duration(), seconds),
-        fmt::format("{}, {}", a.name(), b.name()),
-        fmt::format("a transition takes more than one frame and less than {:.3g} s", shortest));
+        fmt::format("motions of {:.3g} and {:.3g} s cannot cross within {:.3g} s", own, b.duration(), options.seconds),
+        fmt::format("{}, {}", a.name(), b.name()), std::move(hint));
+  };
+  if (!(options.seconds >= options.frameSeconds) || !(options.seconds < shortest)) {
+    throw refusal(fmt::format("a transition takes more than one frame and less than {:.3g} s", shortest));
   }
-  return TransitionSearch(body, a, b, seconds, frameSeconds).run();
+  std::optional<Transition> found = TransitionSearch(body, a, b, options).run();
+  if (!found) throw refusal("choose a shorter transition");
+  return std::move(*found);
 }
 
 }  // namespace limber

@@ -12,6 +12,7 @@
 #include "limber/asset/motion_io.h"
 #include "limber/asset/node_edit.h"
 #include "limber/asset/root_joint.h"
+#include "limber/asset/trim_animation.h"
 #include "limber/core/error.h"
 #include "limber/skeleton/join_loop.h"
 #include "limber/skeleton/key_reduction.h"
@@ -156,6 +157,10 @@ std::vector<ClipEditReport> editClips(Asset& asset, std::span<const std::string>
     reports.push_back(std::move(report));
   }
   removeJointChannels(asset, rooted.skeleton, animations);
+  for (std::size_t c = 0; c < clips.size(); ++c) {
+    const std::optional<ClipLoop>& loop = reports[c].loop;
+    if (loop) trimAnimation(asset, asset.document.animations[animations[c]], {loop->begin, loop->end});
+  }
   addClips(asset, rooted.skeleton, clips, {edits.tolerance.has_value()});
   mergeAnimations(asset.document, animations);
   accessors.sweep(asset);

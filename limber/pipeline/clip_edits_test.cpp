@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "limber/asset/accessor.h"
 #include "limber/asset/clip_io.h"
 #include "limber/asset/geometry.h"
 #include "limber/asset/motion_io.h"
@@ -183,6 +184,26 @@ TEST(EditClips, OthersStay) {
   EXPECT_NEAR(after.clips[0].translations[0].values.back().z(), 0, 1e-3);
   EXPECT_NEAR(after.clips[1].translations[0].values.back().z(), 3.9, 1e-4);
   EXPECT_THROW(editClips(asset, std::vector<std::string>{"run"}, edits), Error);
+}
+
+TEST(EditClips, ALoopCutsWhatElseMoves) {
+  Asset asset = motionAsset(walking());
+  const std::vector<float> times = {0, 3}, values = {0, 0, 0, 3, 0, 0};
+  gltf::Animation& walk = asset.document.animations[0];
+  walk.channels.push_back({});
+  walk.channels.back().target.node = addElement(asset.document.nodes, gltf::Node());
+  walk.channels.back().target.path = "translation";
+  walk.channels.back().sampler = static_cast<Index>(walk.samplers.size());
+  walk.samplers.push_back({});
+  walk.samplers.back().input = addFloatAccessor(asset, times, 1);
+  walk.samplers.back().output = addFloatAccessor(asset, values, 3);
+  ClipEdits edits;
+  edits.loop = true;
+  const std::vector<ClipEditReport> reports = editClips(asset, std::vector<std::string>{"walk"}, edits);
+  ASSERT_TRUE(reports[0].loop);
+  const gltf::AnimationSampler& kept = asset.document.animations[0].samplers[0];
+  EXPECT_NEAR(readFloats(asset, kept.input).back(), reports[0].loop->end - reports[0].loop->begin, 1e-5);
+  EXPECT_NEAR(readFloats(asset, kept.output)[0], reports[0].loop->begin, 1e-5);
 }
 
 }  // namespace

@@ -66,9 +66,10 @@ Motion LiveCharacter::recorded() const {
   Motion motion;
   motion.name = "live";
   motion.skeleton = source_;
-  Clip& clip = motion.clips.emplace_back();
+  std::vector<double> seconds;
+  for (const double moment : moments_) seconds.push_back(moment - moments_.front());
+  Clip& clip = motion.clips.emplace_back(clipOfKeys(source_, poses_, seconds));
   clip.name = motion.name;
-  for (std::size_t f = 0; f < poses_.size(); ++f) setKey(clip, source_, poses_[f], moments_[f] - moments_.front());
   motion.framesPerSecond = measuredFrameRate(clip).value_or(motion.framesPerSecond);
   return motion;
 }

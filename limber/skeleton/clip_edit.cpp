@@ -12,7 +12,7 @@ namespace limber {
 
 namespace {
 
-constexpr double kCurveRate = 120;  // keys a second of a curve that becomes lines
+constexpr double kCutCurveRate = 120;  // keys a second of a curve that becomes lines
 
 template <typename Value>
 auto stored(const Value& value) {
@@ -128,7 +128,7 @@ Track<Value> trimmed(const Track<Value>& track, double from, double to) {
       cubic && std::is_same_v<Value, Eigen::Quaternionf> && !(hasKeyAt(track, from) && hasKeyAt(track, to));
   Track<Value> result;
   if (curveCut) {
-    const auto steps = static_cast<Index>(std::ceil((to - from) * kCurveRate));
+    const auto steps = static_cast<Index>(std::ceil((to - from) * kCutCurveRate));
     times.clear();
     for (Index k = 0; k <= steps; ++k) times.push_back(static_cast<float>(from + (to - from) * k / steps));
     times.erase(std::unique(times.begin(), times.end()), times.end());
@@ -211,6 +211,14 @@ Clip trimClip(const Clip& clip, double from, double to) {
                 fmt::format("clip '{}'", clip.name), fmt::format("it lasts {:g} s", clip.duration()));
   }
   return changed(clip, [&](const auto& track) { return trimmed(track, begin, end); });
+}
+
+Track<Vec3f> trimTrack(const Track<Vec3f>& track, double from, double to) {
+  return trimmed(track, from, to);
+}
+
+Track<Eigen::Quaternionf> trimTrack(const Track<Eigen::Quaternionf>& track, double from, double to) {
+  return trimmed(track, from, to);
 }
 
 namespace {

@@ -15,6 +15,10 @@ Clip resampleClip(const Clip& clip, double framesPerSecond);
 // unless from < to and something of the clip lies between.
 Clip trimClip(const Clip& clip, double from, double to);
 
+// The same of one track, between any two moments, 0 <= from < to: outside its keys it stands still.
+Track<Vec3f> trimTrack(const Track<Vec3f>& track, double from, double to);
+Track<Eigen::Quaternionf> trimTrack(const Track<Eigen::Quaternionf>& track, double from, double to);
+
 // The whole movement turned about the origin: its roots, also those without a track. No turn changes nothing.
 Clip turnClip(Clip clip, const Skeleton& skeleton, const Quat& turn);
 

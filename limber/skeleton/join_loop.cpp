@@ -9,6 +9,7 @@
 #include "limber/core/error.h"
 #include "limber/skeleton/clip_edit.h"
 #include "limber/skeleton/motion.h"
+#include "limber/skeleton/moving_roots.h"
 #include "limber/skeleton/pose.h"
 
 namespace limber {
@@ -126,49 +127,42 @@ double farthestJoint(const Skeleton& skeleton, const Pose& a, const Pose& b) {
   return result;
 }
 
-// A joint that carries the movement: it has moving tracks, and none of those above it has.
-struct Carrier {
-  Index joint = 0;
-  Affine above = Affine::Identity();  // what it hangs on stands still
-
-  void move(const Affine& by, Pose& pose) const {
-    Transform& local = pose.locals[joint];
-    local = decompose(above.inverse(Eigen::Affine) * by * above * local.toAffine());
-  }
-};
-
 class Carriers {
  public:
-  Carriers(const Skeleton& skeleton, const Clip& clip, const Pose& first, Index body) {
-    std::vector<bool> moves(skeleton.jointCount(), false), turns(moves), carried(moves);
-    const auto mark = [](const auto& tracks, std::vector<bool>& marks) {
-      for (const auto& track : tracks) marks[track.joint] = marks[track.joint] || track.times.size() > 1;
+  Carriers(const Skeleton& skeleton, const Clip& clip, Index body) : all_(movingRoots(skeleton, clip)) {
+    const auto turns = [&](Index joint) {
+      return std::any_of(clip.rotations.begin(), clip.rotations.end(),
+                         [&](const auto& track) { return track.joint == joint && track.times.size() > 1; });
     };
-    mark(clip.translations, moves);
-    mark(clip.rotations, moves);
-    mark(clip.scales, moves);
-    mark(clip.rotations, turns);
-    const std::vector<Affine> globals = poseGlobals(skeleton, first);
-    std::vector<std::optional<Index>> carrier(skeleton.jointCount());
-    for (Index j = 0; j < skeleton.jointCount(); ++j) {
-      const std::optional<Index> parent = skeleton.joints[j].parent;
-      if (parent) carrier[j] = carrier[*parent];
-      if (carrier[j] || !moves[j]) continue;
-      carrier[j] = j;
-      all_.push_back({j, parent ? globals[*parent] : Affine::Identity()});
+    for (std::optional<Index> j = body; j && !turns_; j = skeleton.joints[*j].parent) {
+      turns_ = turns(*j) && std::any_of(all_.begin(), all_.end(), [&](const auto& root) { return root.joint == *j; });
     }
-    turns_ = carrier[body] && turns[*carrier[body]];
   }
 
   bool turnTheBody() const { return turns_; }
   void move(const Affine& by, Pose& pose) const {
-    for (const Carrier& carrier : all_) carrier.move(by, pose);
+    for (const MovingRoot& root : all_) {
+      Transform& local = pose.locals[root.joint];
+      local = decompose(root.above.inverse(Eigen::Affine) * by * root.above * local.toAffine());
+    }
   }
 
  private:
-  std::vector<Carrier> all_;
+  std::vector<MovingRoot> all_;
   bool turns_ = false;
 };
+
+// Those of the track with the most.
+std::vector<float> longestTimes(const Clip& clip) {
+  std::vector<float> times;
+  const auto keepLonger = [&](const auto& tracks) {
+    for (const auto& track : tracks) times = track.times.size() > times.size() ? track.times : times;
+  };
+  keepLonger(clip.translations);
+  keepLonger(clip.rotations);
+  keepLonger(clip.scales);
+  return times;
+}
 
 }  // namespace
 
@@ -177,21 +171,17 @@ JoinedLoop joinLoop(const Skeleton& skeleton, const Clip& clip, Index body) {
   JoinedLoop result;
   result.clip = clip;
   const double duration = clip.duration();
-  if (duration <= 0) return result;
-  Clip frames = resampleClip(clip, frameRateOf(clip));
-  std::vector<float> times;
-  const auto longest = [&](const auto& tracks) {
-    for (const auto& track : tracks) times = track.times.size() > times.size() ? track.times : times;
-  };
-  longest(frames.translations);
-  longest(frames.rotations);
-  longest(frames.scales);
+  if (duration <= 0 || longestTimes(clip).size() < 3) return result;
+  // Of even steps, which the speeds at the ends are measured by.
+  const double steps = std::max(2.0, std::round(duration * denseFrameRateOf(clip)));
+  Clip frames = resampleClip(clip, steps / duration);
+  const std::vector<float> times = longestTimes(frames);
   if (times.size() < 3) return result;
 
   std::vector<Pose> poses(times.size(), restPose(skeleton));
   for (std::size_t k = 0; k < times.size(); ++k) sampleClip(clip, times[k], poses[k]);
   const std::vector<Pose> before = poses;
-  const Carriers carriers(skeleton, frames, poses.front(), body);
+  const Carriers carriers(skeleton, frames, body);
   const Travel travel(poseGlobals(skeleton, poses.front())[body], poseGlobals(skeleton, poses.back())[body],
                       carriers.turnTheBody());
   const auto partAt = [&](std::size_t k) { return travel.part(times[k] / duration); };

@@ -18,9 +18,10 @@ struct JoinedLoop {
 // Capture" (2022), who spreads offsets over the clip and lets those of speed decay.
 //
 // body  the joint whose travel that is: the pelvis
-// Keys at the clip's frame rate, linear. A clip whose ends agree already, within 1e-4 of the skeleton's size, loops as
-// its maker meant it to and is left as it is; so is one without duration, or with but two frames. The clip has passed
-// checkClip for the skeleton; throws Error kBadArgument where `body` is no joint of it. Cost: O(frames * joints).
+// Linear keys in even steps, about the clip's frame rate (denseFrameRateOf). A clip whose ends agree already, within
+// 1e-4 of the skeleton's size, loops as its maker meant it to and is left as it is; so is one without duration, or with
+// but two frames. The clip has passed checkClip for the skeleton; throws Error kBadArgument where `body` is no joint of
+// it. Cost: O(frames * joints).
 JoinedLoop joinLoop(const Skeleton& skeleton, const Clip& clip, Index body);
 
 }  // namespace limber

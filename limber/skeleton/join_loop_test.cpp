@@ -6,11 +6,12 @@
 #include <numbers>
 
 #include "limber/core/error.h"
+#include "limber/skeleton/clip_edit.h"
 
 namespace limber {
 namespace {
 
-constexpr double kTurn = 2 * std::numbers::pi;
+constexpr double kFullTurn = 2 * std::numbers::pi;
 constexpr double kRate = 60, kSeconds = 1.5;
 
 // hips - knee - foot
@@ -34,10 +35,10 @@ Clip steps(double turn) {
   for (int k = 0; k <= kSeconds * kRate; ++k) {
     const double time = k / kRate, u = time / kSeconds;
     const Quat heading(Eigen::AngleAxisd(turn * u, Vec3::UnitY()));
-    const double swing = 0.5 * std::sin(kTurn * u) + 0.04 * u * u;
+    const double swing = 0.5 * std::sin(kFullTurn * u) + 0.04 * u * u;
     places.times.push_back(static_cast<float>(time));
     const Vec3 at = turn == 0 ? Vec3(0, 1, 1.2 * time) : Vec3(heading * Vec3(-3, 1, 0));
-    places.values.emplace_back((at + Vec3(0, 0.02 * std::cos(kTurn * u) + 0.01 * u, 0)).cast<float>());
+    places.values.emplace_back((at + Vec3(0, 0.02 * std::cos(kFullTurn * u) + 0.01 * u, 0)).cast<float>());
     turns.values.emplace_back((heading * Quat(Eigen::AngleAxisd(0.2 * swing, Vec3::UnitX()))).cast<float>());
     bends.values.emplace_back(Quat(Eigen::AngleAxisd(0.6 + swing, Vec3::UnitX())).cast<float>());
   }
@@ -117,6 +118,23 @@ TEST(JoinLoop, WhatStandsAboveTheBodyStays) {
     const auto with = at(skeleton, joined.clip, time), without = at(leg(), plain.clip, time);
     for (Index j = 0; j < 3; ++j) EXPECT_LT((with[j + 1] - without[j]).norm(), 1e-5);
   }
+}
+
+TEST(JoinLoop, TheSeamIsSmoothWhereTheClipEndsBetweenTwoFrames) {
+  // As sampled 24 times a second and cut.
+  const Clip clip = trimClip(resampleClip(steps(0), 24), 0, 1.41);
+  const JoinedLoop joined = joinLoop(leg(), clip, 0);
+  EXPECT_FLOAT_EQ(joined.clip.duration(), 1.41f);
+  const std::vector<float>& times = joined.clip.rotations[1].times;
+  for (std::size_t k = 1; k < times.size(); ++k) EXPECT_NEAR(times[k] - times[k - 1], 1.41 / 34, 1e-5);
+  EXPECT_LT(kink(joined.clip), 0.5 * kink(clip));
+}
+
+TEST(JoinLoop, KeysFarApartGetFramesBetween) {
+  Clip clip = resampleClip(steps(0), 4);
+  EXPECT_GE(joinLoop(leg(), clip, 0).clip.rotations[1].times.size(), 45u);
+  clip = trimClip(clip, 0, 0.25);
+  EXPECT_EQ(joinLoop(leg(), clip, 0).clip.rotations[1].times.size(), 2u);
 }
 
 TEST(JoinLoop, ShortClipsStay) {

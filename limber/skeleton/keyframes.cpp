@@ -266,6 +266,42 @@ void setKey(Clip& clip, const Skeleton& skeleton, const Pose& pose, double secon
   }
 }
 
+Clip clipOfKeys(const Skeleton& skeleton, std::span<const Pose> poses, std::span<const double> seconds) {
+  Clip clip;
+  std::vector<float> times;
+  std::vector<std::size_t> frames;
+  for (std::size_t f = 0; f < poses.size(); ++f) {
+    const float time = requireTime(seconds[f]);
+    if (!times.empty() && time - times.back() < kKeySnap) {
+      times.pop_back();
+      frames.pop_back();
+    }
+    times.push_back(time);
+    frames.push_back(f);
+  }
+  const auto add = [&](auto& tracks, Index joint, const auto& rest, bool isKept, const auto& part) {
+    Keys<std::decay_t<decltype(rest)>> keys{times, {}, {times.size(), std::nullopt}};
+    for (const std::size_t frame : frames) {
+      keys.values.push_back(part(poses[frame].locals[joint]));
+      isKept = isKept || differs(rest, keys.values.back());
+    }
+    if (!isKept || times.empty()) return;
+    alignSigns(keys);
+    putKeys(tracks.emplace_back(), std::move(keys), Interpolation::kLinear);
+    tracks.back().joint = joint;
+  };
+  const auto translation = [](const Transform& local) { return Vec3f(local.translation.cast<float>()); };
+  const auto rotation = [](const Transform& local) { return Rotation(local.rotation.cast<float>().normalized()); };
+  const auto scale = [](const Transform& local) { return Vec3f(local.scale.cast<float>()); };
+  for (Index j = 0; j < skeleton.jointCount(); ++j) {
+    const Transform& rest = skeleton.joints[j].rest;
+    add(clip.translations, j, translation(rest), false, translation);
+    add(clip.rotations, j, rotation(rest), !skeleton.joints[j].parent, rotation);
+    add(clip.scales, j, scale(rest), false, scale);
+  }
+  return clip;
+}
+
 void setJointKey(Clip& clip, const Skeleton& skeleton, Index joint, const Transform& local, double seconds) {
   setLocal(clip, skeleton, joint, local, requireTime(seconds), keyTimes(clip), interpolationOf(clip));
 }

@@ -33,6 +33,10 @@ void setKey(Clip& clip, const Skeleton& skeleton, const Pose& pose, double secon
 // The same for one joint alone.
 void setJointKey(Clip& clip, const Skeleton& skeleton, Index joint, const Transform& local, double seconds);
 
+// The clip of linear keys that setKey makes of these poses one by one, but in linear time: at `seconds` (#poses), which
+// rise. Neighbouring rotations lie on one side of the sphere.
+Clip clipOfKeys(const Skeleton& skeleton, std::span<const Pose> poses, std::span<const double> seconds);
+
 // Takes the place of a key that is at `to` already.
 void moveKey(Clip& clip, double from, double to);
 void deleteKey(Clip& clip, double seconds);

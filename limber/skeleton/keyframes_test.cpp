@@ -44,6 +44,34 @@ Clip waving() {
   return clip;
 }
 
+TEST(Keyframes, ManyPosesGiveTheClipOfOneByOne) {
+  std::vector<Pose> poses;
+  std::vector<double> seconds;
+  Clip wanted;
+  for (int k = 0; k < 30; ++k) {
+    poses.push_back(elbowBent(k < 3 ? 0 : 20 * k));
+    poses.back().locals[2].translation.y() = k > 10 ? 0.1 * k : 0;
+    seconds.push_back(k == 20 ? 3.6101 : k * k * 0.01);  // one of two keys in one place
+    setKey(wanted, keyedArm(), poses.back(), seconds.back());
+  }
+  const Clip clip = clipOfKeys(keyedArm(), poses, seconds);
+  checkClip(clip, keyedArm());
+  EXPECT_EQ(keyTimes(clip), keyTimes(wanted));
+  EXPECT_EQ(clip.translations.size(), wanted.translations.size());
+  EXPECT_EQ(clip.rotations.size(), wanted.rotations.size());
+  for (double time = 0; time < 8.5; time += 0.03) {
+    Pose a = restPose(keyedArm()), b = a;
+    sampleClip(clip, time, a);
+    sampleClip(wanted, time, b);
+    for (std::size_t j = 0; j < 3; ++j) {
+      EXPECT_LT((a.locals[j].translation - b.locals[j].translation).norm(), 1e-6);
+      EXPECT_LT(a.locals[j].rotation.angularDistance(b.locals[j].rotation), 1e-6);
+    }
+  }
+  const std::vector<Eigen::Quaternionf>& turns = clip.rotations.back().values;
+  for (std::size_t k = 1; k < turns.size(); ++k) EXPECT_GE(turns[k].dot(turns[k - 1]), 0);
+}
+
 TEST(Keyframes, PosesComeBackAtTheirKeysAndBetweenThem) {
   const Clip clip = waving();
   checkClip(clip, keyedArm());

@@ -57,6 +57,12 @@ double frameRateOf(const Clip& clip) {
   return std::clamp(measuredFrameRate(clip).value_or(30), 1.0, 1000.0);
 }
 
+double denseFrameRateOf(const Clip& clip) {
+  constexpr double kSparse = 20, kDense = 30, kRounding = 1e-9;
+  const double rate = frameRateOf(clip);
+  return rate < kSparse ? rate * std::ceil(kDense / rate - kRounding) : rate;
+}
+
 double frameRateOf(const Motion& motion, std::size_t clip) {
   constexpr double kSame = 1e-3;
   const double measured = measuredFrameRate(motion.clips[clip]).value_or(motion.framesPerSecond);

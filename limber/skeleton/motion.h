@@ -26,6 +26,11 @@ std::optional<double> measuredFrameRate(const Clip& clip);
 // The same as a rate to sample the clip at: 1 to 1000, 30 where its keys do not tell.
 double frameRateOf(const Clip& clip);
 
+// The same for work that goes from frame to frame. No recording has fewer than 20 keys a second; of a clip that has,
+// since they were set by hand or reduced, much lies between two keys: there it is the least multiple of their rate that
+// is at least 30, so that keys stay frames.
+double denseFrameRateOf(const Clip& clip);
+
 // Frames a second of one of the clips: the motion's own where they are about the clip's or its keys do not tell, else
 // measuredFrameRate.
 double frameRateOf(const Motion& motion, std::size_t clip);

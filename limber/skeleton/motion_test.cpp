@@ -66,6 +66,14 @@ TEST(Motion, EachClipHasItsOwnRate) {
   EXPECT_EQ(frameRateOf(motion.clips[2]), 30);
 }
 
+TEST(Motion, WorksOnSparseKeysMoreOften) {
+  const auto rate = [](double keys) { return denseFrameRateOf(clipAtRate(keys, 50)); };
+  for (const double usual : {20.0, 24.0, 25.0, 30.0, 60.0, 120.0}) EXPECT_EQ(rate(usual), usual);
+  EXPECT_EQ(rate(4), 32);
+  EXPECT_EQ(rate(2), 30);
+  EXPECT_EQ(rate(15), 30);
+}
+
 TEST(Motion, RefusesRatesThatAreNone) {
   const Clip clip = clipAtRate(30, 30);
   for (const double rate : {0.0, -1.0, std::nan(""), HUGE_VAL}) EXPECT_THROW(frameCount(clip, rate), Error);

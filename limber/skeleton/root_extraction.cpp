@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "limber/core/error.h"
-#include "limber/skeleton/keyframes.h"
+#include "limber/skeleton/moving_roots.h"
 
 namespace limber {
 
@@ -157,15 +157,17 @@ std::vector<float> sorted(std::vector<float> times) {
 Clip clipInPlace(const Skeleton& skeleton, const Clip& clip, const RootTrajectory& trajectory) {
   Clip result = clip;
   const double size = sizeOf(skeleton);
-  for (Index j = 0; j < skeleton.jointCount(); ++j) {
-    if (skeleton.joints[j].parent) continue;
-    const JointMovement joint(skeleton, clip, j);
+  for (const MovingRoot& root : movingRoots(skeleton, clip)) {
+    const Affine toAbove = root.above.inverse(Eigen::Affine);
+    if (!toAbove.matrix().allFinite()) continue;  // below a scale of 0 nothing shows
+    const JointMovement joint(skeleton, clip, root.joint);
     std::vector<float> times = trajectory.times;
     joint.addKeys(times);
     const Movement movement = [&](double seconds) {
-      return decompose(trajectory.at(seconds).toAffine().inverse(Eigen::Isometry) * joint.at(seconds).toAffine());
+      return decompose(toAbove * trajectory.at(seconds).toAffine().inverse(Eigen::Isometry) * root.above *
+                       joint.at(seconds).toAffine());
     };
-    MovementKeys(movement, sorted(std::move(times)), size).writeTo(result, j, !trajectory.headings.empty());
+    MovementKeys(movement, sorted(std::move(times)), size).writeTo(result, root.joint, !trajectory.headings.empty());
   }
   return result;
 }

@@ -9,7 +9,7 @@ namespace limber {
 // linear tracks; all others keep theirs.
 
 // The clip without that travel: the body stays above where it has its rest pose. Feet then slide over the ground, by
-// design.
+// design. It is taken out of the topmost joints that move (movingRoots); what stands still has no part in it.
 Clip clipInPlace(const Skeleton& skeleton, const Clip& clip, const RootTrajectory& trajectory);
 
 // The clip with that travel in `root`, the only root of the skeleton, and the rest of the movement in the joints that

@@ -220,6 +220,30 @@ TEST(RootTrajectory, OfALoopGoesOnAsItBegan) {
   EXPECT_LT((out - in).norm(), 0.3);  // of 3 m/s, turned by three degrees
 }
 
+TEST(ClipInPlace, ARootThatStandsStillStaysSo) {
+  Skeleton skeleton = walker(true);
+  skeleton.joints[0].rest.rotation = Quat(Eigen::AngleAxisd(-1.5, Vec3::UnitX()));
+  skeleton.joints[0].rest.scale = Vec3::Constant(0.5);
+  const Affine toRoot = skeleton.joints[0].rest.toAffine().inverse(Eigen::Affine);
+  for (const bool heading : {false, true}) {
+    const Clip clip = walk(
+        1, 4, [&](double time) { return decompose(toRoot * (heading ? around(time) : straight(time)).toAffine()); });
+    RootMotionOptions options = about(1);
+    options.heading = heading;
+    const RootTrajectory travel = rootTrajectory(skeleton, clip, options);
+    const Clip inPlace = clipInPlace(skeleton, clip, travel);
+    checkClip(inPlace, skeleton);
+    for (const auto& track : inPlace.translations) EXPECT_NE(track.joint, 0u);
+    for (const auto& track : inPlace.rotations) EXPECT_NE(track.joint, 0u);
+    for (double time = 0; time < 4; time += 0.05) {
+      const std::vector<Vec3> before = places(skeleton, clip, time), after = places(skeleton, inPlace, time);
+      for (Index j = 1; j < skeleton.jointCount(); ++j) {
+        EXPECT_LT((travel.at(time).toAffine() * after[j] - before[j]).norm(), 1e-5) << j << " at " << time;
+      }
+    }
+  }
+}
+
 TEST(ClipInPlace, TheBodyStaysAboveItsPlace) {
   const Skeleton skeleton = walker(false);
   for (const bool heading : {false, true}) {

@@ -1,0 +1,19 @@
+// Animations cut to a span of time, whatever they move.
+#pragma once
+
+#include "limber/asset/asset.h"
+
+namespace limber {
+
+struct TimeSpan {
+  double from = 0, to = 0;  // seconds; infinite: to the end
+};
+
+// Cuts what all channels of an animation say (weights of blend shapes, movements of nodes, what KHR_animation_pointer
+// names) to what lies in the span, starting at 0, as trimClip cuts the tracks of joints. What ends before the span
+// stays as it is at its end. Values get new accessors, in floats where they were fractions; those that they had stay in
+// the document (AccessorSweep takes them out). The animation need not be one of the document's. A channel whose keys
+// are not in order, or whose values do not fit them, stays as it is (warning "invalid-keys").
+void trimAnimation(Asset& asset, gltf::Animation& animation, const TimeSpan& span);
+
+}  // namespace limber
