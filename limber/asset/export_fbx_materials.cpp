@@ -11,7 +11,7 @@ namespace limber {
 namespace {
 
 void tellOfMissing(const std::string& where, Warnings& warnings) {
-  warnings.add("missing-images", "textures that are neither PNG nor JPEG are left out", where);
+  warnings.add("unsupported-images", "textures that are neither PNG nor JPEG are left out", where);
 }
 
 }  // namespace

@@ -249,7 +249,7 @@ TEST(EncodeFbx, TexturesWithoutAnImageOfItsOwnFormatsAreTold) {
   asset.document.textures[0].extensions.change()["EXT_texture_webp"] = {{"source", 0}};
   const FbxFileView file(asset);
   EXPECT_EQ(file.count("Texture"), 0u);
-  EXPECT_THAT(testing::warningKinds(file.warnings()), ::testing::Contains("missing-images"));
+  EXPECT_THAT(testing::warningKinds(file.warnings()), ::testing::Contains("unsupported-images"));
 }
 
 TEST(EncodeFbx, NodesThatShowOneMeshShareItsGeometry) {

@@ -17,8 +17,11 @@ namespace {
 
 constexpr double kShareOfBone = 1.0 / 6, kLeastShare = 1e-3;
 
+// The document has their names, too, so that a clip is found in what is saved of it.
 void readOwnClips(RiggedModel& model, Asset& document) {
-  for (Clip& clip : readClips(document, model.binding, document.warnings)) {
+  std::vector<Clip> clips = readClips(document, model.binding, document.warnings);
+  for (std::size_t c = 0; c < clips.size(); ++c) {
+    Clip& clip = clips[c];
     if (clip.translations.empty() && clip.rotations.empty() && clip.scales.empty()) continue;
     const std::string wanted = clip.name.empty() ? "clip" : clip.name;
     const auto taken = [&](const std::shared_ptr<const Clip>& known) { return known->name == clip.name; };
@@ -26,6 +29,7 @@ void readOwnClips(RiggedModel& model, Asset& document) {
     for (int number = 2; std::any_of(model.clips.begin(), model.clips.end(), taken); ++number) {
       clip.name = fmt::format("{} {}", wanted, number);
     }
+    document.document.animations[c].name = clip.name;
     model.clips.push_back(std::make_shared<const Clip>(std::move(clip)));
   }
 }

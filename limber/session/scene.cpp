@@ -267,7 +267,9 @@ std::optional<SceneHit> SessionScene::pick(const Ray& ray) const {
 }
 
 EncodedModel SessionScene::saveModel(std::string_view extension, const WriteModelOptions& options) const {
-  return encodeModel(readAsset(exportModel(ExportFormat::kGlb), "model.glb"), extension, options);
+  const bool isOne = now_.members.size() == 1;
+  const std::string stem = isOne ? std::filesystem::path(session().source().name).stem().string() : "scene";
+  return encodeModel(readAsset(exportModel(ExportFormat::kGlb), stem + ".glb"), extension, options);
 }
 
 Bytes SessionScene::exportModel(ExportFormat format) const {

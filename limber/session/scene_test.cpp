@@ -91,6 +91,23 @@ TEST(SessionScene, OfOneModelIsAsASession) {
   EXPECT_EQ(alone, sessionState(session));
 }
 
+TEST(SessionScene, ClipsWithoutNamesAreSavedByThoseOfTheSession) {
+  SessionScene scene(sceneFiles);
+  run(scene, OpenFile{"person.glb"});
+  walk(scene);
+  Asset asset = readAsset(scene.exportModel(ExportFormat::kGlb), "person.glb");
+  std::vector<gltf::Animation>& animations = asset.document.animations;
+  animations.push_back(animations.front());
+  for (gltf::Animation& animation : animations) animation.name.clear();
+  const Bytes unnamed = writeGlb(asset);
+  SessionScene again([&](std::string_view) { return std::optional<Bytes>(unnamed); });
+  run(again, OpenFile{"unnamed.glb"});
+  WriteModelOptions options;
+  options.clip = "clip 2";
+  const Bytes text = again.saveModel(".usda", options).bytes;
+  EXPECT_THAT(std::string(text.begin(), text.end()), HasSubstr("timeSamples"));
+}
+
 TEST(SessionScene, MembersStandBesideEachOtherOnOneGround) {
   const SessionScene scene = twoAndAProp();
   EXPECT_THAT(namesOf(scene), ElementsAre("person", "person 2", "biped"));

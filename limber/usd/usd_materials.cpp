@@ -144,7 +144,7 @@ class MaterialWriter {
   }
 
   void tellOfMissing(const std::string& where) {
-    files_.warnings.add("missing-images", "textures that are neither PNG nor JPEG are left out", where);
+    files_.warnings.add("unsupported-images", "textures that are neither PNG nor JPEG are left out", where);
   }
 
   const Asset& asset_;

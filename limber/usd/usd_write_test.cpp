@@ -235,7 +235,7 @@ TEST(UsdFiles, TexturesOfOtherFormatsAreToldOnce) {
   const UsdFiles files = usdFiles(asset);
   EXPECT_TRUE(files.images.empty());
   ASSERT_EQ(files.warnings.items().size(), 1u);
-  EXPECT_EQ(files.warnings.items()[0].kind, "missing-images");
+  EXPECT_EQ(files.warnings.items()[0].kind, "unsupported-images");
   EXPECT_EQ(files.warnings.items()[0].count, 1u);
 }
 

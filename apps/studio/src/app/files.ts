@@ -5,6 +5,7 @@ import { say } from '../words/say';
 
 const mostUnpacked = 500e6, mostFiles = 1000; // bytes and files that an archive holds
 export const motionFiles = '.bvh,.npz,.vrma,.fbx,.glb,.gltf';
+export const isMotionFile = ({ name }: File) => motionFiles.split(',').some((ending) => name.toLowerCase().endsWith(ending));
 const model = /\.(glb|gltf|vrm|obj|fbx|stl|ply|limber)$/i;
 
 /** All that was dropped, whole folders too; each file's path stands in webkitRelativePath or its name. */

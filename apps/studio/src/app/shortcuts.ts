@@ -48,7 +48,7 @@ export function bindShortcuts(studio: Studio, page: PageStore, viewport: Viewpor
   addEventListener('keydown', (event) => {
     const target = event.target as HTMLElement;
     if (event.key === ' ' && target.matches('button, summary')) return; // it is pressed
-    if (target.matches('input:not([type=range], [type=checkbox]), select, textarea') || page.now.help) return;
+    if (target.matches('input:not([type=range], [type=checkbox]), select, textarea') || page.now.help || document.querySelector('dialog:modal')) return;
     if (event.altKey && event.key.toLowerCase() === 'r') void studio.resetPose();
     else if (event.altKey) return;
     else if (event.ctrlKey || event.metaKey) {

@@ -73,6 +73,7 @@ export function showCrowd(crowd: Crowd, name: string, into: HTMLElement) {
   dialog.addEventListener('close', () => {
     stop();
     view.dispose();
+    viewport.controls.dispose(); // it listens on the page
     viewport.renderer.dispose();
     viewport.renderer.forceContextLoss();
     dialog.remove();

@@ -1,4 +1,5 @@
 // The menu "More": other formats to save as, what augmented reality needs, the language, the size of the text.
+import { asked } from '../app/beginning';
 import { remember } from '../app/remembered';
 import { setTextSize, textSize, type TextSize } from '../app/text_size';
 import { element } from '../ui/dom';
@@ -18,7 +19,7 @@ const sizes: [TextSize, Words][] = [['normal', 'Normal text'], ['large', 'Large 
 /** Said when the page is made: so it is made anew, with what was worked on last. */
 function setLanguage(choice: (typeof languageChoices)[number]) {
   remember('language', choice);
-  location.assign(location.pathname);
+  location.assign(location.pathname + (asked.live ? '?live' : ''));
 }
 
 export type MenuEntry = { id: string; text: string; act: () => void };

@@ -1,5 +1,5 @@
 // Motions to try on: each plays on the user's own character in a small picture, and is put on it by a click.
-import { motionFiles } from '../app/files';
+import { isMotionFile, motionFiles } from '../app/files';
 import { Trials, type Motion } from '../app/trials';
 import type { PageStore } from '../app/state';
 import type { Studio } from '../app/studio';
@@ -47,8 +47,8 @@ export function motionShelf(studio: Studio, page: PageStore): HTMLElement {
   const search = element('input', { type: 'search', class: 'select search', id: 'shelf-search', 'aria-label': say('Search your motions'), placeholder: say('Search') });
   const none = element('p', { class: 'hint-line' }, say('Drop a folder of BVH, NPZ, VRMA, FBX or GLB motions on the page, or choose it here: it becomes a shelf of your own.'));
   const about = element('p', { class: 'hint-line', role: 'status', id: 'shelf-about' });
-  const files = fileInput('shelf-files', { accept: motionFiles }, (chosen) => void studio.openFiles(chosen));
-  const folder = fileInput('shelf-folder', { folder: true }, (chosen) => void studio.openFiles(chosen));
+  const files = fileInput('shelf-files', { accept: motionFiles }, (chosen) => void studio.openMotions(chosen));
+  const folder = fileInput('shelf-folder', { folder: true }, (chosen) => void studio.openMotions(chosen.filter(isMotionFile)));
   const dialog = element('dialog', { class: 'shelf', id: 'shelf', 'aria-labelledby': 'shelf-title' },
     element('div', { class: 'row head' }, element('h2', { id: 'shelf-title', tabindex: -1, autofocus: true }, say('Motions')),
       button(say('Close'), hide, { id: 'close-shelf' })),

@@ -41,8 +41,9 @@ export async function saveDialog(studio: Studio, page: PageStore) {
   const target = element('select', { class: 'select', id: 'save-target' },
     ...targets.map((name) => option(name, name === plain ? say('as it is') : programs[name] ?? name)));
   const clip = element('select', { class: 'select', id: 'save-clip' },
-    option('', say('the pose, without movement')), ...session.clips.map(({ name }) => option(name, name)));
-  clip.value = chosenClip(session)?.name ?? '';
+    // In a scene the clips of its models have other names than each by itself.
+    option('', say('the pose, without movement')), ...(session.members.length > 1 ? [] : session.clips).map(({ name }) => option(name, name)));
+  clip.value = session.members.length > 1 ? '' : chosenClip(session)?.name ?? '';
   const names = field('Names and axes for', target), moves = field('Clip', clip);
   const told = element('p', { hidden: true }), lost = element('ul', { id: 'save-lost' }), result = element('div', { role: 'status' }, told, lost);
   const close = button(say('Cancel'), () => dialog.close(), { id: 'save-close' });
@@ -69,6 +70,7 @@ export async function saveDialog(studio: Studio, page: PageStore) {
     save.disabled = true;
     const saved = await studio.saveModel(asked);
     save.disabled = false;
+    if (!dialog.open) return; // cancelled
     if (!saved) return dialog.close(); // why not is told on the page
     const file = fileOf(asked.format, saved.bytes, stemOf(page.now) + (asked.target === plain ? '' : `_${asked.target}`));
     offer(file.bytes as BlobPart, file.type, file.name);

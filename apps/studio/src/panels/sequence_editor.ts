@@ -20,8 +20,10 @@ export function sequenceEditor(studio: Studio, page: PageStore): HTMLElement {
     if (drawn === session.clips) return;
     drawn = session.clips;
     const focused = document.activeElement?.closest<HTMLElement>('#sequence .lane')?.dataset['place'];
+    const joined = document.activeElement?.id === 'then';
     root.replaceChildren(...partsOf(clip).map((_, place) => row(clip, place, end)), ending(clip, session.clips), now);
     if (focused) root.querySelector<HTMLElement>(`[data-place="${focused}"] .stand`)?.focus();
+    if (joined) root.querySelector<HTMLElement>('#then')?.focus();
   });
 
   /** The sequence anew; a clip that is none becomes the beginning of a new one. */
@@ -80,7 +82,7 @@ export function sequenceEditor(studio: Studio, page: PageStore): HTMLElement {
   function ending(clip: Clip, clips: readonly Clip[]): HTMLElement {
     const then = element('select', { class: 'select', id: 'then', 'aria-label': say('A clip that follows') },
       element('option', { value: '' }, say('Then\u2026')),
-      ...clips.filter(({ name }) => !clip.sequence || name !== clip.name).map(({ name }) => element('option', { value: name }, name)));
+      ...clips.filter(({ name, duration }) => duration > 0 && (!clip.sequence || name !== clip.name)).map(({ name }) => element('option', { value: name }, name)));
     then.addEventListener('change', () => {
       const name = then.value;
       then.value = '';

@@ -70,7 +70,7 @@ export function timeline(studio: Studio, page: PageStore, openSheet: () => Promi
     ghosts.setAttribute('aria-pressed', String(seen));
     feet.hidden = !clip || clip.feet.length === 0;
     feet.setAttribute('aria-expanded', String(standing));
-    sequence.hidden = !clip;
+    sequence.hidden = still;
     sequence.setAttribute('aria-expanded', String(joined));
     // Recorded motion has no curves of its own to choose; its corrections have a span.
     blend.hidden = !clip?.recorded;

@@ -50,7 +50,7 @@ export function toolbar(studio: Studio, page: PageStore, journal: Journal, viewp
   const onSurface = async (act: () => Promise<void>) => {
     const { display } = page.now;
     if (display === 'handles') page.set({ display: 'surface' });
-    await act();
+    await studio.guard(act);
     page.set({ display });
   };
   const pictures = pictureDialog({

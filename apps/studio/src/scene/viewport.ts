@@ -306,7 +306,7 @@ export class Viewport {
     await this.withoutTools(() => each(async () => {
       this.drawNow();
       this.drawOn(screen, background);
-      track?.requestFrame();
+      (track && 'requestFrame' in track ? track : stream as unknown as CanvasCaptureMediaStreamTrack).requestFrame(); // Firefox has it there
       next += 1000 / rate;
       await new Promise((resolve) => setTimeout(resolve, Math.max(0, next - performance.now())));
     }));

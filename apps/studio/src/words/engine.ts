@@ -111,6 +111,10 @@ const warnings: Named = {
   'trailing-bytes': 'bytes behind the end of the file are left out', 'unknown-extensions': 'extensions of the file that are not known are left as they are',
   'no-motion': 'the file has a skeleton only, and no motion', 'cut-frame': 'the last frame is cut off, and left out',
   'other-textures': 'textures of what is neither colour nor normals nor emission are left out', 'vrm-pose': 'a VRM rests in T-pose, and the pose of the model\u2019s joints is not kept',
+  'vrm-meta': 'authors and permissions are to be filled in', 'lost-textures': 'pictures of metalness, roughness and occlusion are left out',
+  'colored-textures': 'a colour that a picture is multiplied by is lost in most programs', 'renamed-nodes': 'nodes of a name that was taken have a number behind it',
+  'kept-axes': 'joints keep axes that meshes, extensions or uneven scales depend on', 'material-extensions': 'what some extensions say of materials is left out',
+  'no-root-joint': 'the skeleton gets no root joint: nodes that its roots hang below move',
   'extrapolated-curves': 'curves that go on beyond their keys (cycles, slopes) stand still there',
   'decimal-commas': 'numbers have a comma for the point', 'turned-upright': 'the model lay down, and was turned upright',
 };

@@ -45,6 +45,9 @@ export class Core {
     };
   }
 
+  /** Live motion has carried the model away, and the camera with it: what comes next puts both back. */
+  isCarried = false;
+
   /** Nothing that was begun is still under way. */
   get idle() { return this.underWay === 0; }
 
@@ -107,7 +110,9 @@ export class Core {
       this.page.set({ session: state, seconds: state.seconds, chosenKeys: sameClip ? keysThere(before.chosenKeys, state) : [] });
     }
     if (weights) this.changeWeights(weights);
-    const another = !model && state !== null && (state.clip !== before.session?.clip || state.seconds !== before.session?.seconds);
+    const back = this.isCarried && state !== null && state.member === before.session?.member;
+    if (state) this.isCarried = false;
+    const another = back || (!model && state !== null && (state.clip !== before.session?.clip || state.seconds !== before.session?.seconds));
     this.showStance(stance, another);
     if (state) this.followers.forEach((follow) => follow());
   }

@@ -27,6 +27,8 @@ export function liveCalls(core: Core, { openMotions }: MotionCalls) {
     tell(state);
   };
 
+  const isPaused = () => state === 'paused';
+
   async function show({ pose, seconds }: Frame) {
     try {
       if (begun !== skeleton) {
@@ -41,8 +43,12 @@ export function liveCalls(core: Core, { openMotions }: MotionCalls) {
       return;
     }
     begun = skeleton;
+    if (isPaused()) return pauseLive(); // meanwhile
     try {
-      core.showStance(await engine.ask({ kind: 'live-frame', pose, seconds }), true);
+      const stance = await engine.ask({ kind: 'live-frame', pose, seconds });
+      if (isPaused()) return; // meanwhile
+      core.showStance(stance, true);
+      core.isCarried = true;
       become('following');
     } catch (error) {
       if (!(error instanceof EngineError)) throw error;
@@ -70,8 +76,15 @@ export function liveCalls(core: Core, { openMotions }: MotionCalls) {
     become('paused');
     if (begun === '') return;
     begun = '';
-    await core.guard(async () => core.showStance(await engine.ask({ kind: 'live-end' }), false));
+    await core.guard(async () => core.showStance(await engine.ask({ kind: 'live-end' }), core.isCarried));
+    core.isCarried = false;
   }
+
+  // Whatever is done ends it in the engine; the next frame begins anew.
+  core.followSteps(() => {
+    begun = '';
+    if (state === 'following') become('waiting');
+  });
 
   return {
     pauseLive,
