@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 #include "limber/core/error.h"
 
@@ -11,7 +12,7 @@ namespace limber {
 // are held to a multiple of the file's size. Most files hold more of them than are made.
 class FbxBudget {
  public:
-  explicit FbxBudget(std::size_t fileSize) : left_(kFreeNumbers + kNumbersPerByte * fileSize) {}
+  explicit FbxBudget(std::size_t fileSize) : left_(kFreeNumbers + kNumbersPerByte * std::uint64_t{fileSize}) {}
 
   // Before so many numbers (floats, indices) are made. Throws Error kLimit.
   void spend(std::size_t numbers) {
@@ -23,9 +24,9 @@ class FbxBudget {
   }
 
  private:
-  static constexpr std::size_t kFreeNumbers = std::size_t{1} << 26, kNumbersPerByte = 16;
+  static constexpr std::uint64_t kFreeNumbers = std::uint64_t{1} << 26, kNumbersPerByte = 16;
 
-  std::size_t left_;
+  std::uint64_t left_;
 };
 
 }  // namespace limber

@@ -45,10 +45,15 @@ struct KeyRuns {
 KeyRuns keyRuns(const FbxNode& node) {
   KeyRuns runs{fbxIntegers(node, "KeyAttrFlags"), fbxIntegers(node, "KeyAttrRefCount"),
                fbxNumbers(node, "KeyAttrDataFloat")};
-  // Text files since 7.2 have the bits of these floats as integers, older ones and binary files the floats themselves.
+  // Text files since 7.2 have the bits of these floats as integers, older ones and binary files the floats themselves:
+  // whole numbers then, but smaller ones than the bits of any float but zero and what is next to it.
+  constexpr std::int64_t kLeastBits = 1 << 23;
   const FbxNode* data = node.find("KeyAttrDataFloat");
   const auto* bits = data && !data->values.empty() ? std::get_if<std::vector<std::int64_t>>(&data->values[0]) : nullptr;
-  for (std::size_t i = 0; bits && i < bits->size(); ++i) {
+  const bool areBits = bits && std::any_of(bits->begin(), bits->end(), [](std::int64_t number) {
+                         return number >= kLeastBits || number <= -kLeastBits;
+                       });
+  for (std::size_t i = 0; areBits && i < bits->size(); ++i) {
     runs.numbers[i] = bitCast<float>(static_cast<std::uint32_t>((*bits)[i]));
   }
   return runs;

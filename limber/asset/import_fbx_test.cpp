@@ -259,6 +259,7 @@ TEST(ImportFbx7, SlopesOfCubicKeysAreHermites) {
   };
   expectSlopes({1077936128, -1073741824, 0, 0}, 3, -2);  // as text has them since 7.2: the bits of floats
   expectSlopes({3.5, -2, 0, 0}, 3.5, -2);                // and before
+  expectSlopes({3, -2, 0, 0}, 3, -2);
 }
 
 // What stands still between the keys of another part is shown by the node itself.

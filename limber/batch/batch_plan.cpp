@@ -144,7 +144,7 @@ class EntryList {
     if (isPathPattern(name)) {
       std::vector<std::string> files = filesMatching(folder_, name);
       std::erase_if(files, [&](const std::string& file) { return outputs_.holds(folder_ / file); });
-      if (files.empty()) place.fail("matches no file");
+      if (files.empty()) place.fail("matches no file, the batch's outputs left out");
       for (const std::string& file : files) addFile(file);
       return;
     }
@@ -174,7 +174,9 @@ class EntryList {
         if (!outputs_.holds(file)) files.insert(file);
       }
     }
-    if (files.empty()) throw Error(ErrorCode::kFile, "holds nothing that can be read", path.string());
+    if (files.empty()) {
+      throw Error(ErrorCode::kFile, "holds nothing that can be read, the batch's outputs left out", path.string());
+    }
     for (const fs::path& file : files) addFile(file.lexically_relative(folder_).generic_string());
   }
 

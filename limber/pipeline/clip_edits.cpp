@@ -46,8 +46,8 @@ Clip edited(const Skeleton& skeleton, Clip clip, std::optional<Index> root, cons
     options.smoothing = edits.smoothing;
     options.loops = report.loop.has_value();
     const RootTrajectory trajectory = rootTrajectory(skeleton, clip, options);
-    clip =
-        edits.inPlace ? clipInPlace(skeleton, clip, trajectory) : extractRootMotion(skeleton, clip, *root, trajectory);
+    clip = edits.inPlace ? clipInPlace(skeleton, clip, body, trajectory)
+                         : extractRootMotion(skeleton, clip, *root, trajectory);
   }
   if (edits.frameRate) clip = resampleClip(clip, *edits.frameRate);
   return clip;

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "limber/core/error.h"
+#include "limber/skeleton/chain.h"
 #include "limber/skeleton/moving_roots.h"
 
 namespace limber {
@@ -152,12 +153,24 @@ std::vector<float> sorted(std::vector<float> times) {
   return times;
 }
 
+// The joints that carry the body's way: those that move, or the roots where it is held in its place.
+std::vector<MovingRoot> carriersOf(const Skeleton& skeleton, const Clip& clip, Index body) {
+  std::vector<MovingRoot> carriers = movingRoots(skeleton, clip);
+  const auto carriesBody = [&](const MovingRoot& root) { return isAncestorOrSelf(skeleton, root.joint, body); };
+  if (std::any_of(carriers.begin(), carriers.end(), carriesBody)) return carriers;
+  carriers.clear();
+  for (Index j = 0; j < skeleton.jointCount(); ++j) {
+    if (!skeleton.joints[j].parent) carriers.push_back({j});
+  }
+  return carriers;
+}
+
 }  // namespace
 
-Clip clipInPlace(const Skeleton& skeleton, const Clip& clip, const RootTrajectory& trajectory) {
+Clip clipInPlace(const Skeleton& skeleton, const Clip& clip, Index body, const RootTrajectory& trajectory) {
   Clip result = clip;
   const double size = sizeOf(skeleton);
-  for (const MovingRoot& root : movingRoots(skeleton, clip)) {
+  for (const MovingRoot& root : carriersOf(skeleton, clip, body)) {
     const Affine toAbove = root.above.inverse(Eigen::Affine);
     if (!toAbove.matrix().allFinite()) continue;  // below a scale of 0 nothing shows
     const JointMovement joint(skeleton, clip, root.joint);

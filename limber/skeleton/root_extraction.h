@@ -9,8 +9,11 @@ namespace limber {
 // linear tracks; all others keep theirs.
 
 // The clip without that travel: the body stays above where it has its rest pose. Feet then slide over the ground, by
-// design. It is taken out of the topmost joints that move (movingRoots); what stands still has no part in it.
-Clip clipInPlace(const Skeleton& skeleton, const Clip& clip, const RootTrajectory& trajectory);
+// design. It is taken out of the topmost joints that move (movingRoots), and what stands still has no part in it; where
+// none of them carries the body, which is held then, out of the roots.
+//
+// body  the joint that the trajectory was made of
+Clip clipInPlace(const Skeleton& skeleton, const Clip& clip, Index body, const RootTrajectory& trajectory);
 
 // The clip with that travel in `root`, the only root of the skeleton, and the rest of the movement in the joints that
 // hang on it. The joint's own movement, if it has any, goes to these. All other joints are where they were: at the keys

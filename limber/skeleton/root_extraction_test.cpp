@@ -231,7 +231,7 @@ TEST(ClipInPlace, ARootThatStandsStillStaysSo) {
     RootMotionOptions options = about(1);
     options.heading = heading;
     const RootTrajectory travel = rootTrajectory(skeleton, clip, options);
-    const Clip inPlace = clipInPlace(skeleton, clip, travel);
+    const Clip inPlace = clipInPlace(skeleton, clip, 1, travel);
     checkClip(inPlace, skeleton);
     for (const auto& track : inPlace.translations) EXPECT_NE(track.joint, 0u);
     for (const auto& track : inPlace.rotations) EXPECT_NE(track.joint, 0u);
@@ -244,13 +244,31 @@ TEST(ClipInPlace, ARootThatStandsStillStaysSo) {
   }
 }
 
+// Away from its rest, while its chest nods.
+TEST(ClipInPlace, ABodyThatIsHeldStaysWhole) {
+  const Skeleton skeleton = walker(true);
+  const Clip clip = walk(1, 2, [](double) {
+    Transform local;
+    local.translation = {5, 1, 2};
+    return local;
+  });
+  const RootTrajectory travel = rootTrajectory(skeleton, clip, about(1));
+  const Clip inPlace = clipInPlace(skeleton, clip, 1, travel);
+  for (double time = 0; time < 2; time += 0.1) {
+    const std::vector<Vec3> before = places(skeleton, clip, time), after = places(skeleton, inPlace, time);
+    for (Index j = 1; j < skeleton.jointCount(); ++j) {
+      EXPECT_LT((travel.at(time).toAffine() * after[j] - before[j]).norm(), 1e-5) << j << " at " << time;
+    }
+  }
+}
+
 TEST(ClipInPlace, TheBodyStaysAboveItsPlace) {
   const Skeleton skeleton = walker(false);
   for (const bool heading : {false, true}) {
     const Clip clip = walk(0, 6, heading ? around : straight);
     RootMotionOptions options = about(0);
     options.heading = heading;
-    const Clip inPlace = clipInPlace(skeleton, clip, rootTrajectory(skeleton, clip, options));
+    const Clip inPlace = clipInPlace(skeleton, clip, options.body, rootTrajectory(skeleton, clip, options));
     checkClip(inPlace, skeleton);
     for (double time = 0; time < 6; time += 0.05) {
       const Vec3 hips = places(skeleton, inPlace, time)[0], before = places(skeleton, clip, time)[0];
