@@ -131,7 +131,7 @@ say_unsteady() {
 }
 
 # counted_at_once: as counted_or_again, the commands of its input, a line each, as many at a time as there are processors; the
-# first that fails again lets no other begin. Says which took longest.
+# first that fails again lets no other begin. One that takes ten minutes hangs, and fails. Says which took longest.
 counted_at_once() {
   local logs=$PWD/$output/at_once status=0 log name commands
   rm -rf "$logs" "${logs}_seconds"
@@ -140,7 +140,7 @@ counted_at_once() {
   export -f logged logged_or_again
   # xargs begins no other command once one ends with 255.
   nl -w 2 -n rz -s ' ' <<<"$commands" | xargs -P "$jobs" -L 1 bash -c '
-    log=$1/$2; shift 2; logged_or_again "$log" "$@" || exit 255
+    log=$1/$2; shift 2; logged_or_again "$log" timeout 600 "$@" || exit 255
     echo "$SECONDS s ${*:1:2}" >"${log/at_once/at_once_seconds}"' - "$logs" 2>/dev/null || status=1
   echo "   $(cat "${logs}_seconds"/* 2>/dev/null | sort -rn | head -n 4 | sed 's|[^ ]*/||' | paste -sd , | sed 's/,/, /g')"
   for log in "$logs"/??; do
