@@ -119,7 +119,7 @@ by_slurm() {
 by_parallel() {
   local out=$output/parallel plan="$output/a \$plan.json"
   cp "$output/plan.json" "$plan"
-  # Killed in the middle, with all that it started; then told to go on.
+  # Killed in the middle, and told to go on while those that it had started may still be at work.
   setsid "$root/integrations/gnu-parallel/limber_parallel.sh" "$plan" "$out" 4 >/dev/null 2>&1 &
   timeout 30 sh -c 'until ls "$1"/models/*.glb >/dev/null 2>&1; do sleep 0.02; done' - "$out"
   kill -KILL -- "-$!" 2>/dev/null

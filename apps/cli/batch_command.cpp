@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <new>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -125,6 +126,10 @@ void runPlan(const BatchArguments& arguments) {
   options.command = runInChild;
   TerminalProgress cancel(true);
   BatchLine line(arguments.quiet);
+  options.waiting = [&, isTold = arguments.quiet]() mutable {
+    cancel->update(0);
+    if (!std::exchange(isTold, true)) fmt::print(stderr, "another program is at this shard: its end is waited for\n");
+  };
   options.tell = [&](const BatchProgress& at) {
     cancel->update(0);
     line.show(at);
@@ -231,7 +236,7 @@ void addBatchCommand(CLI::App& program) {
       "the\n"
       "same bytes, command and program is not done again. docs/scale.md tells more.\n"
       "\nExit code 0 where all is done, 1 where some entries failed, 2 where the plan or the call is wrong,\n"
-      "4 where the batch itself could not go on: its folder cannot be written, or another program is at this shard.\n"
+      "4 where the batch itself could not go on: its folder cannot be written, or no process started.\n"
       "\nExamples:\n"
       "  limber batch --example > plan.json\n"
       "  limber batch plan.json -o out\n"

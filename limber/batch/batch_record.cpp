@@ -6,8 +6,10 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <system_error>
+#include <thread>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -24,6 +26,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view kRecordExtension = ".jsonl";
+constexpr std::chrono::milliseconds kPause(100);  // between tries for a file that another program has open
 
 [[noreturn]] void refuseFile(const std::string& name, const char* what) {
   throw Error(ErrorCode::kFile, std::string(what) + ": " + std::strerror(errno), name);
@@ -105,34 +108,30 @@ std::map<std::string, BatchRecord> readBatchRecords(const fs::path& folder) {
   return records;
 }
 
-BatchRecordFile::BatchRecordFile(const fs::path& file) : name_(file.string()) {
-  file_ = open(name_.c_str(), O_CREAT | O_RDWR | O_APPEND | O_CLOEXEC, 0666);
-  if (file_ < 0) refuseFile(name_, "cannot be written");
-  if (flock(file_, LOCK_EX | LOCK_NB) != 0) {
-    const int reason = errno;
-    close(file_);
-    errno = reason;
-    if (reason != EWOULDBLOCK) refuseFile(name_, "cannot be locked");
-    throw Error(ErrorCode::kFile, "another program is working at this part of the batch", name_,
-                "wait for it, or end it");
+BatchRecordFile::OpenFile::~OpenFile() {
+  if (number >= 0) close(number);
+}
+
+BatchRecordFile::BatchRecordFile(const fs::path& file, const std::function<void()>& waiting) : name_(file.string()) {
+  file_.number = open(name_.c_str(), O_CREAT | O_RDWR | O_APPEND | O_CLOEXEC, 0666);
+  if (file_.number < 0) refuseFile(name_, "cannot be written");
+  while (flock(file_.number, LOCK_EX | LOCK_NB) != 0) {
+    if (errno != EWOULDBLOCK && errno != EINTR) refuseFile(name_, "cannot be locked");
+    waiting();
+    std::this_thread::sleep_for(kPause);
   }
   const Bytes bytes = readFile(file);
   const std::size_t whole = wholeLines({reinterpret_cast<const char*>(bytes.data()), bytes.size()}).size();
-  if (whole < bytes.size() && ftruncate(file_, static_cast<off_t>(whole)) != 0) {
-    close(file_);
+  if (whole < bytes.size() && ftruncate(file_.number, static_cast<off_t>(whole)) != 0) {
     refuseFile(name_, "cannot be cut to its whole lines");
   }
-}
-
-BatchRecordFile::~BatchRecordFile() {
-  close(file_);
 }
 
 void BatchRecordFile::append(const BatchRecord& record) {
   const std::string line = batchRecordLine(record);
   std::string_view left = line;
   while (!left.empty()) {
-    const ssize_t written = write(file_, left.data(), left.size());
+    const ssize_t written = write(file_.number, left.data(), left.size());
     if (written < 0 && errno == EINTR) continue;
     if (written <= 0) refuseFile(name_, "cannot be written");
     left.remove_prefix(static_cast<std::size_t>(written));

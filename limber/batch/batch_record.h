@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <string>
 #include <string_view>
@@ -39,18 +40,22 @@ std::map<std::string, BatchRecord> readBatchRecords(const std::filesystem::path&
 // process of this system.
 class BatchRecordFile {
  public:
-  // Makes the file, or takes away what stands behind its last line. Throws Error kFile: it cannot be written, or
-  // another program has it open.
-  explicit BatchRecordFile(const std::filesystem::path& file);
+  // Makes the file, or takes away what stands behind its last line. While another one has it open, `waiting` is called
+  // ten times a second; it may throw to give up. Throws Error kFile: it cannot be written.
+  BatchRecordFile(const std::filesystem::path& file, const std::function<void()>& waiting);
   BatchRecordFile(const BatchRecordFile&) = delete;
   BatchRecordFile& operator=(const BatchRecordFile&) = delete;
-  ~BatchRecordFile();
 
   void append(const BatchRecord& record);
 
  private:
+  struct OpenFile {
+    int number = -1;
+    ~OpenFile();
+  };
+
   std::string name_;
-  int file_ = -1;
+  OpenFile file_;
 };
 
 }  // namespace limber

@@ -5,12 +5,18 @@
 
 #include <fstream>
 #include <iterator>
+#include <memory>
+#include <stdexcept>
 
 #include "limber/core/error.h"
 #include "temporary_folder.h"
 
 namespace limber {
 namespace {
+
+void noWaiting() {
+  throw std::logic_error("another one has the file open");
+}
 
 BatchRecord recordOf(const std::string& name) {
   BatchRecord record;
@@ -56,7 +62,7 @@ TEST(BatchRecord, LastOneCountsAndTornOnesDoNot) {
   BatchRecord again = recordOf("b");
   again.outcome = JobOutcome::kDone;
   {
-    BatchRecordFile records(file);
+    BatchRecordFile records(file, noWaiting);
     for (const BatchRecord& record : {recordOf("a"), recordOf("b"), again}) records.append(record);
   }
   const std::string whole = wholeTextOf(file);
@@ -64,7 +70,7 @@ TEST(BatchRecord, LastOneCountsAndTornOnesDoNot) {
   const auto records = readBatchRecords(folder.path());
   EXPECT_EQ(records.size(), 2u);
   EXPECT_EQ(records.at("b.glb").outcome, JobOutcome::kDone);
-  const BatchRecordFile opened(file);
+  const BatchRecordFile opened(file, noWaiting);
   EXPECT_EQ(wholeTextOf(file), whole);
   EXPECT_TRUE(readBatchRecords(folder.path() / "missing").empty());
 }
@@ -75,18 +81,26 @@ TEST(BatchRecord, TheLatestRunCountsWhateverItsFile) {
   before.run = 0;
   after.outcome = JobOutcome::kDone;
   const auto outcome = [&] { return readBatchRecords(folder.path()).at("a.glb").outcome; };
-  BatchRecordFile(folder.path() / "5-of-16.jsonl").append(before);
-  BatchRecordFile(folder.path() / "1-of-1.jsonl").append(after);
+  BatchRecordFile(folder.path() / "5-of-16.jsonl", noWaiting).append(before);
+  BatchRecordFile(folder.path() / "1-of-1.jsonl", noWaiting).append(after);
   EXPECT_EQ(outcome(), JobOutcome::kDone);
   before.run = after.run + 1;
-  BatchRecordFile(folder.path() / "1-of-1.jsonl").append(before);
+  BatchRecordFile(folder.path() / "1-of-1.jsonl", noWaiting).append(before);
   EXPECT_EQ(outcome(), JobOutcome::kTimedOut);
 }
 
 TEST(BatchRecord, OneAtATimeWrites) {
   const testing::TemporaryFolder folder;
-  const BatchRecordFile first(folder.path() / "1-of-1.jsonl");
-  EXPECT_THROW(BatchRecordFile(folder.path() / "1-of-1.jsonl"), Error);
+  const std::filesystem::path file = folder.path() / "1-of-1.jsonl";
+  auto first = std::make_unique<BatchRecordFile>(file, noWaiting);
+  EXPECT_THROW(BatchRecordFile(file, noWaiting), std::logic_error);
+  int tries = 0;
+  BatchRecordFile second(file, [&] {
+    if (++tries == 3) first.reset();
+  });
+  EXPECT_EQ(tries, 3);
+  second.append(recordOf("a"));
+  EXPECT_EQ(readBatchRecords(folder.path()).size(), 1u);
 }
 
 }  // namespace

@@ -60,7 +60,10 @@ class BatchRun {
       : plan_(plan),
         options_(options),
         folder_{prepared(plan, options)},
-        records_(folder_.recordsOf(options.shard)),
+        records_(folder_.recordsOf(options.shard),
+                 [&] {
+                   if (options.waiting) options.waiting();
+                 }),
         inputs_(plan.limits.memory) {
     removeFolder(unfinished());
     makeFolder(unfinished());

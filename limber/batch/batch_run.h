@@ -47,6 +47,7 @@ struct BatchOptions {
   bool retries = false;     // what did not end well is done again
   BatchCommand command;     // called in a child, with "--threads 1" where the plan says nothing of threads
   std::function<void(const BatchProgress&)> tell;  // some fifty times a second; may throw to end the run
+  std::function<void()> waiting;  // ten times a second while another program is at this shard; may throw likewise
 };
 
 // An input that is no plain file, or has more bytes than an entry may have memory, fails unread: it may have no end.
@@ -57,7 +58,10 @@ struct BatchOptions {
 // of time or memory is done again where there is more of it, one that crashed always.
 //
 // A folder of an earlier plan is taken over: what is right in there stays. Throws Error kFile: the folder holds other
-// things and no batch, it cannot be written, or the shard is running already.
+// things and no batch, or it cannot be written.
+//
+// Where another program is at the same shard, its end is waited for: an engine may begin a task anew while what it
+// thinks dead is still at work.
 BatchProgress runBatch(const BatchPlan& plan, const BatchOptions& options);
 
 }  // namespace limber
