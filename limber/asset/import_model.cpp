@@ -46,7 +46,7 @@ bool isBinaryStl(ByteSpan bytes) {
   if (bytes.size() < 84) return false;
   std::uint32_t triangles = 0;
   std::memcpy(&triangles, bytes.data() + 80, sizeof triangles);
-  return triangles > 0 && bytes.size() == 84 + 50 * std::uint64_t{triangles};
+  return bytes.size() == 84 + 50 * std::uint64_t{triangles};
 }
 
 const Format* formatByContent(ByteSpan bytes) {
@@ -56,7 +56,7 @@ const Format* formatByContent(ByteSpan bytes) {
   const auto holds = [&](std::string_view text) { return head.find(text) != std::string::npos; };
   if (holds("<COLLADA")) return formatNamed("dae");
   if (starts("OFF") || starts("COFF") || starts("NOFF") || starts("CNOFF")) return formatNamed("off");
-  if (isBinaryStl(bytes) || (starts("solid") && holds("facet"))) return formatNamed("stl");
+  if ((isBinaryStl(bytes) && bytes.size() > 84) || (starts("solid") && holds("facet"))) return formatNamed("stl");
   return nullptr;
 }
 
@@ -112,10 +112,21 @@ void warnOfConversion(Asset& asset, const Convention& convention) {
   }
 }
 
-// Assimp's own message, without what is said around it already.
-Error importError(std::string message) {
+// Assimp takes STL for binary by its length alone, and otherwise for text.
+void checkStl(ByteSpan bytes) {
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const std::size_t start = text.find_first_not_of(" \t\r\n");
+  if (isBinaryStl(bytes) || (start != std::string_view::npos && text.substr(start, 5) == "solid")) return;
+  throw Error(ErrorCode::kBadData, "its length is not that of the triangles it announces: it is cut off, or no STL");
+}
+
+// Assimp's own message, without what is said around it already, and with the file's own name.
+Error importError(std::string message, const std::string& mainName, std::string_view name) {
   if (message.find("bad_alloc") != std::string::npos) {
     return Error(ErrorCode::kLimit, "it asks for more memory than a file of its size may");
+  }
+  if (const std::size_t at = message.find(mainName); at != std::string::npos) {
+    message.replace(at, mainName.size(), name);
   }
   const std::size_t colon = message.find(": ");
   if (colon <= 4) message.erase(0, colon + 2);  // "OBJ: "
@@ -123,14 +134,15 @@ Error importError(std::string message) {
   return Error(ErrorCode::kBadData, message.empty() ? "the importer does not say why" : validUtf8(message));
 }
 
-Asset readWithAssimp(ByteSpan bytes, const Format& format, const Resolver& resolver) {
+Asset readWithAssimp(ByteSpan bytes, std::string_view name, const Format& format, const Resolver& resolver) {
+  if (format.extension == std::string_view("stl")) checkStl(bytes);
   const std::string mainName = std::string("model.") + format.extension;
   auto* io = new ImportIo(bytes, mainName, resolver);
   Assimp::Importer importer;
   importer.SetIOHandler(io);                                            // owns it from here
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);  // no made-up mesh where there is only motion
   const aiScene* scene = importer.ReadFile(mainName, aiProcess_Triangulate);
-  if (!scene || !scene->mRootNode) throw importError(importer.GetErrorString());
+  if (!scene || !scene->mRootNode) throw importError(importer.GetErrorString(), mainName, name);
 
   auto& edited = const_cast<aiScene&>(*scene);  // the importer owns it and is done with it
   if (format.extension == std::string_view("stl")) dropNormals(edited);
@@ -187,7 +199,7 @@ Asset importModel(ByteSpan bytes, std::string_view name, const Resolver& resolve
   const Format& format = formatOf(bytes, name);
   try {
     const Bytes message =
-        runIsolated([&] { return pack(readWithAssimp(bytes, format, resolver)); }, limitsFor(bytes.size()));
+        runIsolated([&] { return pack(readWithAssimp(bytes, name, format, resolver)); }, limitsFor(bytes.size()));
     Asset asset = unpack(message);
     asset.format = format.extension;
     if (asset.format == "obj") {

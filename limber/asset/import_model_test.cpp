@@ -162,7 +162,7 @@ TEST(ImportObj, APositionThatIsNoNumberIsRefused) {
     const std::string text = std::string("v 0 0 0\nv 1 0 ").append(bad).append("\nv 0 1 0\nf 1 2 3\n");
     const Error error = errorOf(text, "bad.obj");
     EXPECT_EQ(error.code(), ErrorCode::kBadData);
-    EXPECT_THAT(error.what(), HasSubstr("bad.obj: cannot be read as OBJ: vertex 1 has a position"));
+    EXPECT_THAT(error.what(), HasSubstr("bad.obj: cannot be read as OBJ: a vertex has a position that is not"));
   }
 }
 
@@ -254,6 +254,16 @@ TEST(ImportStl, BinaryIsToldFromItsLength) {
   const Asset asset = import(bytes, "standard input");
   EXPECT_EQ(asset.format, "stl");
   EXPECT_DOUBLE_EQ(areaOf(collectGeometry(asset)), 2);
+}
+
+TEST(ImportStl, OneThatIsCutOffIsRefusedInOurWords) {
+  std::string bytes(84 + 2 * 50, '\0');
+  bytes[80] = 2;
+  for (const std::size_t length : {60u, 84u, 100u, 183u}) {
+    EXPECT_EQ(std::string(errorOf(bytes.substr(0, length), "cut.stl").what()),
+              "cut.stl: cannot be read as STL: its length is not that of the triangles it announces: it is cut off, or "
+              "no STL");
+  }
 }
 
 TEST(ImportOff, IsRead) {

@@ -5,9 +5,8 @@
 #include <cmath>
 #include <utility>
 
-#include <fmt/format.h>
-
 #include "limber/asset/joined_primitive.h"
+#include "limber/mesh/normals.h"
 
 namespace limber {
 
@@ -19,25 +18,21 @@ bool allFinite(const std::vector<float>& values) {
   return std::all_of(values.begin(), values.end(), [](float x) { return std::isfinite(x); });
 }
 
+// Which vertex it is, only the reader knows: many have split the file's own at corners.
 void checkPositions(const std::vector<float>& positions) {
-  const auto broken = std::find_if(positions.begin(), positions.end(), [](float x) { return !std::isfinite(x); });
-  if (broken == positions.end()) return;
-  throw Error(ErrorCode::kBadData,
-              fmt::format("vertex {} has a position that is not a finite number", (broken - positions.begin()) / 3));
+  if (!allFinite(positions)) throw Error(ErrorCode::kBadData, "a vertex has a position that is not a finite number");
 }
 
 Vec3 at(const std::vector<float>& values, Index row) {
   return Eigen::Map<const Vec3f>(&values[3 * std::size_t{row}]).cast<double>();
 }
 
-// The normals of the triangles round each vertex, weighted by area; not of unit length.
-std::vector<Vec3> triangleNormals(const std::vector<float>& positions, const std::vector<Index>& corners) {
-  std::vector<Vec3> normals(positions.size() / 3, Vec3::Zero());
-  for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
-    const Vec3 a = at(positions, corners[i]), b = at(positions, corners[i + 1]), c = at(positions, corners[i + 2]);
-    for (std::size_t k = i; k < i + 3; ++k) normals[corners[k]] += (b - a).cross(c - a);
-  }
-  return normals;
+// areaNormals of the mesh's triangles.
+std::vector<Vec3> triangleNormals(const PlainMesh& mesh) {
+  const std::vector<float>& positions = mesh.attributes[0].values;
+  const std::vector<Index>& corners = mesh.corners[2];
+  return areaNormals<Vec3f>({reinterpret_cast<const Vec3f*>(positions.data()), positions.size() / 3},
+                            {reinterpret_cast<const Triangle*>(corners.data()), corners.size() / 3});
 }
 
 // Normals of unit length; those that have no direction are made from the triangles.
@@ -52,7 +47,7 @@ void makeUnitLong(Asset& asset, const PlainMesh& mesh, std::vector<float>& norma
   }
   if (broken.empty()) return;
   asset.warnings.add("invalid-normals", "normals without a direction are made anew", mesh.name, broken.size());
-  const std::vector<Vec3> made = triangleNormals(mesh.attributes[0].values, mesh.corners[2]);
+  const std::vector<Vec3> made = triangleNormals(mesh);
   for (const Index v : broken) {
     const double length = made[v].norm();
     const Vec3f unit = length > 0 && std::isfinite(length) ? Vec3f((made[v] / length).cast<float>()) : Vec3f::UnitY();

@@ -105,10 +105,7 @@ Header parseHeader(std::string_view file) {
     std::string word;
     words >> word;
     if (first || word == "obj_info") continue;
-    if (word == "end_header") {
-      if (header.length == file.size()) break;
-      return header;
-    }
+    if (word == "end_header") return header;
     if (word == "format") {
       words >> word;
       header.encoding = word == "ascii"                  ? Encoding::kText
@@ -324,8 +321,11 @@ class PlyReader {
         attribute.values[v * std::size_t{attribute.components} + columns[p]->component] =
             static_cast<float>(columns[p]->isSrgb ? linearColor(stored, scale) : scale * stored);
       }
+      if (!positionOf(v).allFinite()) refuse(fmt::format("vertex {} has a position that is not a finite number", v));
     }
   }
+
+  Vec3f positionOf(Index v) const { return Eigen::Map<const Vec3f>(&mesh_.attributes[0].values[3 * std::size_t{v}]); }
 
   // Its place in the mesh; the positions' is the first.
   std::size_t attributeNamed(std::string_view name) {
@@ -377,7 +377,7 @@ class PlyReader {
     }
     std::vector<Vec3> points;
     for (const Index v : polygon_) {
-      points.push_back(Eigen::Map<const Vec3f>(&mesh_.attributes[0].values[3 * std::size_t{v}]).cast<double>());
+      points.push_back(positionOf(v).cast<double>());
     }
     cut_.clear();
     triangulatePolygon(points, cut_);

@@ -127,7 +127,8 @@ CurveSkeleton CurveSkeleton::build(const TriMesh& mesh, Progress& progress) {
   skeleton.vertexCount_ = mesh.vertexCount();
   refuseWithoutInside(mesh, CollapseFrame::of(mesh, std::nullopt));
   const std::optional<TriMesh> tidy = withoutStrays(mesh);
-  if (const std::optional<MirrorMap> mirror = findMirror(mesh)) skeleton.mirror_ = mirror->plane;
+  if (const std::optional<MirrorMap> mirror = findMirror(mesh, &progress)) skeleton.mirror_ = mirror->plane;
+  progress.update(0);
   skeleton.frame_ = CollapseFrame::of(mesh, skeleton.mirror_);
   const EvenSurface surface = evenSurface(tidy ? *tidy : mesh, skeleton.frame_, skeleton.mirror_.has_value());
 

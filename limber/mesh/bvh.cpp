@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "limber/core/error.h"
+#include "limber/core/float4.h"
 #include "limber/core/parallel.h"
 
 namespace limber {
@@ -21,8 +22,7 @@ constexpr Index kParallelAbove = 4096;  // triangles; smaller subtrees are built
 constexpr int kStackSize = 512;
 constexpr Index kMostUneven = 16;
 
-// A number for each child of a node. Compilers turn arithmetic on it into one instruction.
-using Lanes = float __attribute__((vector_size(16)));
+using Lanes = Float4;  // a number for each child of a node
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 

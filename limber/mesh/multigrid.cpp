@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "limber/core/float4.h"
 #include "limber/mesh/aggregation.h"
 
 namespace limber {
@@ -16,11 +17,9 @@ namespace multigrid {
 // Of the finest level (Vanek and others 1996, section 3.2); halved on each coarser one.
 constexpr double kStrongLinks = 0.08;
 
-using Quad = float __attribute__((vector_size(16)));  // four numbers
-
 // One number for each right-hand side.
 struct Columns {
-  Quad low, high;
+  Float4 low, high;
 
   void add(float weight, const Columns& other) {
     low += weight * other.low;
@@ -33,7 +32,7 @@ struct Columns {
   }
   float operator[](int column) const { return column < 4 ? low[column] : high[column - 4]; }
   void set(int column, float value) {
-    Quad& half = column < 4 ? low : high;
+    Float4& half = column < 4 ? low : high;
     half[column % 4] = value;
   }
 };

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "limber/core/bits.h"
+#include "limber/mesh/model_box.h"
 
 namespace limber {
 
@@ -57,28 +58,34 @@ void checkInput(std::span<const Vec3f> positions, std::span<const Triangle> tria
   }
 }
 
-// Centre and scale of the box of what has triangles: loose points far off must not shrink the model.
-WorkingFrame frameOf(std::span<const Vec3f> positions, std::span<const Triangle> triangles) {
-  Box box;
-  for (const Triangle& triangle : triangles) {
-    for (const Index v : triangle) box.add(positions[v].cast<double>());
-  }
+WorkingFrame frameOf(const Box& box) {
   WorkingFrame frame;
   frame.offset = box.center();
   if (box.longestSide() > 0) frame.scale = box.longestSide();
   return frame;
 }
 
-constexpr double kFarthest = 1e4;  // longest sides from the centre; what has triangles lies within 0.5
+// Vertices that do not count for the model's size, though they have triangles or are far away from it.
+void warnOfFarVertices(const TriMesh& mesh, const Box& box, Warnings& warnings) {
+  std::vector<bool> isOfSurface(mesh.vertexCount(), false);
+  for (const Triangle& t : mesh.triangles) {
+    for (const Index v : t) isOfSurface[v] = true;
+  }
+  const double farAway = kFarAway * box.longestSide();
+  std::size_t count = 0;
+  for (Index v = 0; v < mesh.vertexCount(); ++v) {
+    const Vec3 p = mesh.position(v);
+    const double outside = (box.min - p).cwiseMax(p - box.max).maxCoeff();
+    if (outside > (isOfSurface[v] ? 0 : farAway)) ++count;
+  }
+  warnings.add("far-vertices", "vertices far away from the rest of the model do not count for its size", {}, count);
+}
 
-// Only vertices without triangles can lie outside the box; one far off would not fit into single precision.
-void moveToFrame(const WorkingFrame& frame, std::vector<Vec3f>& positions, Warnings& warnings) {
+// Far vertices must fit into single precision.
+void moveToFrame(const WorkingFrame& frame, std::vector<Vec3f>& positions) {
+  constexpr double kFarthest = 1e4;  // longest sides from the centre; what counts for the size lies within 0.5
   for (Vec3f& p : positions) {
-    const Vec3 working = frame.toWorking(p.cast<double>());
-    const Vec3 near = working.cwiseMax(-kFarthest).cwiseMin(kFarthest);
-    if (near != working)
-      warnings.add("far-vertices", "loose vertices far from the model count as nearer than they are");
-    p = near.cast<float>();
+    p = frame.toWorking(p.cast<double>()).cwiseMax(-kFarthest).cwiseMin(kFarthest).cast<float>();
   }
 }
 
@@ -105,8 +112,10 @@ PreparedMesh prepareMesh(std::span<const Vec3f> positions, std::span<const Trian
     throw Error(ErrorCode::kBadData, "has no triangle", {}, "limber needs a surface, not points or lines");
   }
 
-  result.frame = frameOf(mesh.positions, mesh.triangles);
-  moveToFrame(result.frame, mesh.positions, result.warnings);
+  const Box box = modelBox(mesh);
+  warnOfFarVertices(mesh, box, result.warnings);
+  result.frame = frameOf(box);
+  moveToFrame(result.frame, mesh.positions);
   return result;
 }
 

@@ -19,14 +19,16 @@ struct WorkingFrame {
 };
 
 struct PreparedMesh {
-  TriMesh mesh;                     // welded, centred, longest side of the box 1, no degenerate triangle
+  TriMesh mesh;                     // welded, centred, longest side of modelBox 1, no degenerate triangle
   std::vector<Index> weldedVertex;  // source vertex -> vertex of mesh; defined for every source vertex
   WorkingFrame frame;
   Warnings warnings;  // kinds: degenerate-triangles, far-vertices
 };
 
 // Welds vertices at equal positions (bit for bit, -0 equal to 0), leaves out triangles that have a repeated vertex
-// after welding (zero-area triangles with three different vertices stay), centres and scales.
+// after welding (zero-area triangles with three different vertices stay), centres and scales. Far pieces (modelBox) and
+// loose vertices lie outside the unit box, at most 1e4 from its middle; far-vertices counts those more than kFarAway
+// away.
 //
 // positions  #S source vertices in world space, finite
 // triangles  indices into positions, in range

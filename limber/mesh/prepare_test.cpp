@@ -92,6 +92,24 @@ TEST(PrepareMesh, LooseVerticesAreKeptAndDoNotShrinkTheModel) {
   EXPECT_DOUBLE_EQ(prepared.frame.scale, 4);
   EXPECT_EQ(prepared.mesh.vertexCount(), 5u);
   EXPECT_EQ(prepared.weldedVertex[4], 4u);
+  ASSERT_EQ(prepared.warnings.items().size(), 1u);
+  EXPECT_EQ(prepared.warnings.items()[0].kind, "far-vertices");
+  positions.back() = {6, 0, 0};
+  EXPECT_TRUE(prepareMesh(positions, kSquareTriangles).warnings.empty());
+}
+
+TEST(PrepareMesh, AFarBitDoesNotShrinkTheModelAndIsTold) {
+  std::vector<Vec3f> positions = kSquare;
+  for (const Vec3f& p : kSquare) positions.push_back(0.1f * p + Vec3f(100, 0, 0));
+  std::vector<Triangle> triangles = kSquareTriangles;
+  triangles.push_back({4, 5, 6});
+  const PreparedMesh prepared = prepareMesh(positions, triangles);
+  EXPECT_DOUBLE_EQ(prepared.frame.scale, 4);
+  EXPECT_EQ(prepared.mesh.triangleCount(), 3u);
+  EXPECT_TRUE(prepared.frame.toSource(prepared.mesh.position(4)).isApprox(Vec3(100, 0, 0), 1e-6));
+  ASSERT_EQ(prepared.warnings.items().size(), 1u);
+  EXPECT_EQ(prepared.warnings.items()[0].kind, "far-vertices");
+  EXPECT_EQ(prepared.warnings.items()[0].count, 4u);
 }
 
 TEST(PrepareMesh, TinyAndHugeModelsBecomeTheSame) {

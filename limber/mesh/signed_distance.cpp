@@ -8,6 +8,7 @@
 #include "limber/core/error.h"
 #include "limber/core/parallel.h"
 #include "limber/mesh/bvh.h"
+#include "limber/mesh/model_box.h"
 #include "limber/mesh/winding_number.h"
 
 namespace limber {
@@ -125,10 +126,7 @@ Vec3 SignedDistance::gradientAt(const Vec3& point) const {
 }
 
 Index cellsForNodes(const TriMesh& mesh, double nodes, double least, double most) {
-  Box box;
-  for (const Triangle& t : mesh.triangles) {
-    for (const Index v : t) box.add(mesh.position(v));
-  }
+  const Box box = modelBox(mesh);
   const Vec3 sides = box.size() / std::max(box.longestSide(), 1e-12);
   return static_cast<Index>(std::clamp(std::cbrt(nodes / std::max(sides.prod(), 1e-3)), least, most));
 }

@@ -114,8 +114,8 @@ std::array<float, N> SignedDistance::atEach(const std::array<std::array<float, N
   return distances;
 }
 
-// Cells along the longest side of the mesh's box for a grid of about so many nodes: more where the mesh fills little of
-// a cube; between `least` and `most`.
+// Cells along the longest side of modelBox for a grid of about so many nodes in it: more where it is little of a cube;
+// between `least` and `most`.
 Index cellsForNodes(const TriMesh& mesh, double nodes, double least, double most);
 
 }  // namespace limber

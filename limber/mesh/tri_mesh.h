@@ -7,7 +7,7 @@
 
 namespace limber {
 
-// positions  #V points; after prepareMesh centred, longest side of the box 1
+// positions  #V points; after prepareMesh centred, longest side of modelBox 1
 // triangles  #F vertex triples, counter-clockwise seen from outside (not to be relied on: scans flip faces)
 // A vertex may belong to no triangle. Edges may have any number of triangles; nothing about a TriMesh is manifold.
 struct TriMesh {

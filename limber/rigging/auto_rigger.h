@@ -34,7 +34,7 @@ struct RigMemory {
 };
 
 struct RigOptions {
-  std::optional<Index> handles;  // joints wanted, 1 to #V; none: the best suggested count
+  std::optional<Index> handles;  // joints wanted, 1 to #V (with a triangle); none: the best suggested count
 
   // Shared by calls for one and the same mesh; null: everything is worked out anew. The answers are the same.
   std::shared_ptr<RigMemory> memory = {};
@@ -86,7 +86,7 @@ struct RiggerMethod {
   std::string_view name;     // "sphere-mesh"
   std::string_view summary;  // one line for --help
   std::string_view paper;    // empty: none
-  AutoRigger rig;
+  AutoRigger rig;      // vertices that no triangle uses say nothing of a model and are left out, if it has a triangle
   bool looksForLimbs;  // is better given a body without what it wears or holds
 };
 

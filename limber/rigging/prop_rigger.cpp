@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "limber/mesh/model_box.h"
+
 namespace limber {
 
 namespace {
@@ -11,8 +13,7 @@ constexpr double kShareOfDiagonal = 0.05;  // the handle's radius: large enough 
 }  // namespace
 
 AutoRig rigAsProp(const TriMesh& mesh, const RigOptions&, Progress&) {
-  Box box;
-  for (const Vec3f& position : mesh.positions) box.add(position.cast<double>());
+  const Box box = modelBox(mesh);
   AutoRig rig;
   rig.skeleton.boneShape = BoneShape::kSphere;
   Joint joint;

@@ -10,6 +10,7 @@
 #include "limber/core/known_error.h"
 #include "limber/core/numbers.h"
 #include "limber/figure/figure_search.h"
+#include "limber/mesh/model_box.h"
 #include "limber/rigging/person_template.h"
 #include "limber/rigging/sphere_mesh_rigger.h"
 #include "limber/shape/plan_fit.h"
@@ -54,8 +55,7 @@ constexpr double kMostAsymmetry = 0.15;    // more than the most symmetric way t
 
 // Each joint once, and where the model may be: the model's size beyond its box is another unit.
 void checkPins(const TriMesh& mesh, const std::vector<JointPin>& pins) {
-  Box box;
-  for (const Vec3f& position : mesh.positions) box.add(position.cast<double>());
+  const Box box = modelBox(mesh);
   const Vec3 margin = Vec3::Constant(box.longestSide());
   for (auto pin = pins.begin(); pin != pins.end(); ++pin) {
     const auto isSame = [&](const JointPin& other) { return other.joint == pin->joint; };

@@ -8,12 +8,11 @@
 #include <fmt/format.h>
 
 #include "limber/core/error.h"
+#include "limber/core/float4.h"
 
 namespace limber {
 
 namespace {
-
-using Float4 = float __attribute__((vector_size(16)));
 
 constexpr double kLongestTurn = 0.05;        // radians between two cached rotations
 constexpr double kLongestPackedTurn = 0.25;  // radians between two packed ones

@@ -5,12 +5,13 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "limber/core/float4.h"
+
 #define LIMBER_INLINE inline __attribute__((always_inline))
 
 namespace limber {
 namespace {
 
-using Float4 = float __attribute__((vector_size(16)));
 using Int4 = std::int32_t __attribute__((vector_size(16)));
 
 LIMBER_INLINE Float4 loadFloat4(const float* from) {

@@ -44,6 +44,20 @@ double chamferWay(const Vec3& between) {
   return 1.7 * along[0] + 1.4 * (along[1] - along[0]) + along[2] - along[1];
 }
 
+TEST(GeodesicVoxel, AFarBitMakesNoCellsLarger) {
+  const TriMesh ball = testing::moved(testing::icosphere(3), Vec3f::Constant(0.5f), Vec3f::Zero());
+  const std::vector<Bone> bones = {point(0, {-0.25, 0, 0}), point(1, {0.2, 0.1, 0})};
+  TriMesh both = ball;
+  const Index first = both.vertexCount();
+  for (const Vec3f& corner : {Vec3f(80, 0, 0), Vec3f(80, 0.01f, 0), Vec3f(80, 0, 0.01f)}) {
+    both.positions.push_back(corner);
+  }
+  both.triangles.push_back({first, first + 1, first + 2});
+  const SkinWeights alone = voxelWeightsOf(ball, bones).weights, weights = voxelWeightsOf(both, bones).weights;
+  for (Index v = 0; v < first; ++v) EXPECT_EQ(pullOf(weights, v, 0), pullOf(alone, v, 0)) << v;
+  EXPECT_NEAR(pullOf(weights, first, 0) + pullOf(weights, first, 1), 1, 1e-6);
+}
+
 TEST(GeodesicVoxel, WaysInAConvexBodyAreStraight) {
   const TriMesh ball = testing::moved(testing::icosphere(3), Vec3f::Constant(0.5f), Vec3f::Zero());
   const std::array<Vec3, 2> at = {Vec3(-0.25, 0, 0), Vec3(0.2, 0.1, 0)};

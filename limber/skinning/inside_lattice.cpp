@@ -8,6 +8,7 @@
 
 #include "limber/core/error.h"
 #include "limber/core/parallel.h"
+#include "limber/mesh/model_box.h"
 #include "limber/mesh/turned_pieces.h"
 
 namespace limber {
@@ -150,11 +151,8 @@ InsideLattice::InsideLattice(const TriMesh& mesh, const InsideQueries& queries, 
     throw Error(ErrorCode::kBadArgument, fmt::format("a lattice of {} cells is asked for", resolution), {},
                 "8 to 512 are possible");
   }
-  Box box;
-  for (const Triangle& t : mesh.triangles) {
-    for (const Index v : t) box.add(mesh.position(v));
-  }
-  if (box.empty()) throw Error(ErrorCode::kBadArgument, "a mesh without triangles has no inside");
+  if (mesh.triangles.empty()) throw Error(ErrorCode::kBadArgument, "a mesh without triangles has no inside");
+  const Box box = modelBox(mesh);
   spacing_ = box.longestSide() > 0 ? box.longestSide() / resolution : 1;
   std::array<Index, 3> size;
   for (int axis = 0; axis < 3; ++axis) {

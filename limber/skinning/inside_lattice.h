@@ -29,7 +29,7 @@ class InsideLattice {
  public:
   static constexpr Index kLeastCells = 8, kMostCells = 512;  // along the longest side
 
-  // resolution  cells along the longest side of the mesh's box, kLeastCells to kMostCells
+  // resolution  cells along the longest side of modelBox, which the grid fills, kLeastCells to kMostCells
   // Throws Error kBadArgument for others, and for a mesh without triangles.
   InsideLattice(const TriMesh& mesh, const InsideQueries& queries, Index resolution);
 

@@ -44,7 +44,8 @@ SphereMesh SphereMesh::build(const TriMesh& mesh, Progress& progress, Index most
   SphereMesh result;
   std::optional<MirrorMap> mirror;
   SurfaceEdges surface;
-  parallelInvoke([&] { mirror = findMirror(mesh); }, [&] { surface = surfaceEdges(mesh); });
+  parallelInvoke([&] { mirror = findMirror(mesh, &progress); }, [&] { surface = surfaceEdges(mesh); });
+  progress.update(0);
   if (mirror) result.mirror_ = mirror->plane;
   result.frame_ = CollapseFrame::of(mesh, result.mirror_);
   std::vector<Vec3f> points(mesh.positions.size());

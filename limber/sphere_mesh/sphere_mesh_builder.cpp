@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "limber/mesh/model_box.h"
 #include "limber/surface/piece_links.h"
 #include "limber/surface/point_tree.h"
 #include "limber/surface/stray_pieces.h"
@@ -179,11 +180,13 @@ void Starter::addSurface() {
     }
   }
   // Vertices with (next to) no surface weigh a little, so that they have a place; where there is no surface at all they
-  // share the whole.
+  // share the whole. What is far outside the model's box pulls no more than what lies at its border.
   const bool hasSurface = std::any_of(weights_.begin(), weights_.end(), [](double weight) { return weight > 0; });
   const double least = (hasSurface ? 1e-6 : 1) / static_cast<double>(points_.size());
   for (Index v = 0; v < points_.size(); ++v) {
-    if (weights[v] < least) add(v, Vec3::Zero(), least);
+    if (weights[v] < least) {
+      add(v, Vec3::Zero(), least / std::max(1.0, points_[v].cast<double>().squaredNorm()));
+    }
   }
   if (!mirror_) return;
   for (std::size_t node = 0; node < nodes; ++node) {
@@ -227,8 +230,7 @@ void Starter::addEdges(const std::vector<VertexPair>& edges) {
 }  // namespace
 
 CollapseFrame CollapseFrame::of(const TriMesh& mesh, const std::optional<MirrorPlane>& mirror) {
-  Box box;
-  for (Index v = 0; v < mesh.vertexCount(); ++v) box.add(mesh.position(v));
+  const Box box = modelBox(mesh);
   CollapseFrame frame;
   frame.origin = box.center();
   if (box.longestSide() > 0) frame.scale = box.longestSide();

@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 
 #include <Eigen/Eigenvalues>
 
 #include "limber/core/parallel.h"
+#include "limber/mesh/model_box.h"
+#include "limber/surface/point_tree.h"
 
 namespace limber {
 
@@ -18,95 +19,15 @@ constexpr double kEnough = 0.98;      // of vertices and of area
 constexpr double kLeastWidth = 0.01;  // mean distance from the plane, of the longest side: less is a sheet in the plane
 constexpr std::size_t kSamples = 400;
 
-// Points hashed by cubic cells, to find the nearest one within a small radius. Those of a cell are sorted along one
-// axis, since the cells of long thin models, and of rows of many pieces, hold thousands.
-class CellHash {
- public:
-  CellHash(const std::vector<Vec3f>& points, float cellSize, int axis)
-      : points_(points), inverseCell_(1 / cellSize), axis_(axis), mask_(std::bit_ceil(points.size() + 1) - 1) {
-    begin_.assign(mask_ + 3, 0);
-    std::vector<Index> bucket(points.size());
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      bucket[i] = bucketOf(cellOf(points[i].x()), cellOf(points[i].y()), cellOf(points[i].z()));
-      ++begin_[bucket[i] + 2];
-    }
-    for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
-    items_.resize(points.size());
-    for (std::size_t i = 0; i < points.size(); ++i) items_[begin_[bucket[i] + 1]++] = static_cast<Index>(i);
-    for (std::size_t b = 0; b + 2 < begin_.size(); ++b) {
-      std::sort(items_.begin() + begin_[b], items_.begin() + begin_[b + 1],
-                [&](Index i, Index j) { return points_[i][axis_] < points_[j][axis_]; });
-    }
-  }
-
-  // The nearest accepted point within `radius` of p, ties by index; kNoIndex if there is none.
-  template <typename Accept>
-  Index nearest(const Vec3f& p, float radius, const Accept& accept) const {
-    Index best = kNoIndex;
-    float bestDistance = radius * radius;
-    const auto take = [&](Index item) {
-      const float distance = (points_[item] - p).squaredNorm();
-      if (distance > bestDistance || (distance == bestDistance && item > best) || !accept(item)) return;
-      best = item;
-      bestDistance = distance;
-    };
-    const auto isBeyond = [&](Index i) {
-      const float along = points_[items_[i]][axis_] - p[axis_];
-      return along * along > bestDistance;
-    };
-    const std::array<int, 6> range = {cellOf(p.x() - radius), cellOf(p.x() + radius), cellOf(p.y() - radius),
-                                      cellOf(p.y() + radius), cellOf(p.z() - radius), cellOf(p.z() + radius)};
-    for (int x = range[0]; x <= range[1]; ++x) {
-      for (int y = range[2]; y <= range[3]; ++y) {
-        for (int z = range[4]; z <= range[5]; ++z) {
-          const Index bucket = bucketOf(x, y, z), begin = begin_[bucket], end = begin_[bucket + 1];
-          const Index middle = firstFrom(begin, end, p[axis_]);
-          for (Index i = middle; i < end && !isBeyond(i); ++i) take(items_[i]);
-          for (Index i = middle; i > begin && !isBeyond(i - 1); --i) take(items_[i - 1]);
-        }
-      }
-    }
-    return best;
-  }
-
- private:
-  // The first of a cell's items whose place along the axis is `least` or more.
-  Index firstFrom(Index begin, Index end, float least) const {
-    const auto found = std::lower_bound(items_.begin() + begin, items_.begin() + end, least,
-                                        [&](Index item, float value) { return points_[item][axis_] < value; });
-    return static_cast<Index>(found - items_.begin());
-  }
-  int cellOf(float x) const { return static_cast<int>(std::floor(x * inverseCell_)); }
-  Index bucketOf(int x, int y, int z) const {
-    std::uint64_t h = static_cast<std::uint32_t>(x) * 0x9e3779b97f4a7c15u;
-    h ^= static_cast<std::uint32_t>(y) * 0xc2b2ae3d27d4eb4fu;
-    h ^= static_cast<std::uint32_t>(z) * 0x165667b19e3779f9u;
-    return static_cast<Index>((h ^ h >> 29) & mask_);
-  }
-
-  const std::vector<Vec3f>& points_;
-  float inverseCell_;
-  int axis_;
-  std::size_t mask_;
-  std::vector<Index> begin_, items_;
-};
-
-int longestAxis(const Box& box) {
-  int axis = 0;
-  box.size().maxCoeff(&axis);
-  return axis;
-}
-
 class MirrorFinder {
  public:
-  MirrorFinder(const TriMesh& mesh, const Box& box)
+  MirrorFinder(const TriMesh& mesh, const Box& box, const Progress* progress)
       : mesh_(mesh),
+        progress_(progress),
         side_(box.longestSide()),
         middle_(box.center()),
         reach_(static_cast<float>(kTolerance * side_)),
-        cells_(mesh.positions,
-               static_cast<float>(side_ * std::max(4 * kTolerance, 1 / std::sqrt(mesh.positions.size() + 1.0))),
-               longestAxis(box)) {
+        tree_(mesh.positions) {
     const std::size_t step = std::max<std::size_t>(1, mesh.positions.size() / kSamples);
     for (std::size_t i = 0; i < mesh.positions.size(); i += step) samples_.push_back(static_cast<Index>(i));
   }
@@ -119,20 +40,23 @@ class MirrorFinder {
     return (q - 2 * (plane.normal.dot(q) - plane.offset) * plane.normal).cast<float>();
   }
   Index imageOf(const MirrorPlane& plane, Index v, float widen = 1) const {
-    return cells_.nearest(reflect(plane, mesh_.positions[v]), widen * reach_, [](Index) { return true; });
+    return tree_.nearest(reflect(plane, mesh_.positions[v]), widen * reach_);
   }
+  bool isCancelled() const { return progress_ && progress_->cancelled(); }
   double sampleFit(const MirrorPlane& plane) const;
   MirrorPlane straightened(MirrorPlane plane) const;
   MirrorPlane refined(const MirrorPlane& plane) const;
   std::optional<MirrorMap> matched(const MirrorPlane& plane) const;
+  void matchLeft(const std::vector<Index>& left, MirrorMap& map) const;
   bool enough(const MirrorMap& map) const;
   void measureSurface();
 
   const TriMesh& mesh_;
+  const Progress* progress_;
   double side_;
   Vec3 middle_;
   float reach_;  // kTolerance in units of the mesh
-  CellHash cells_;
+  PointTree tree_;
   std::vector<Index> samples_;
   Vec3 centroid_ = Vec3::Zero();  // of the surface
   Mat3 principal_ = Mat3::Identity();
@@ -198,11 +122,31 @@ bool MirrorFinder::enough(const MirrorMap& map) const {
          width >= kLeastWidth * side_ * count;
 }
 
+// Vertices that are not each other's nearest, one after the other, take what is left within reach.
+void MirrorFinder::matchLeft(const std::vector<Index>& left, MirrorMap& map) const {
+  std::vector<Vec3f> points;
+  for (const Index v : left) points.push_back(mesh_.positions[v]);
+  PointTree others(points);
+  for (Index i = 0; i < left.size() && !isCancelled(); ++i) {
+    const Index v = left[i];
+    if (map.image[v] != kNoIndex) continue;
+    const Index found = others.nearest(reflect(map.plane, points[i]), reach_);
+    if (found == kNoIndex) continue;
+    map.image[v] = left[found];
+    map.image[left[found]] = v;
+    others.takeOut(i);
+    if (found != i) others.takeOut(found);
+  }
+}
+
 std::optional<MirrorMap> MirrorFinder::matched(const MirrorPlane& plane) const {
   const Index count = mesh_.vertexCount();
   std::vector<Index> nearest(count);
   parallelFor(count, 8192, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v) nearest[v] = imageOf(plane, static_cast<Index>(v));
+    for (std::size_t i = begin; i < end && !isCancelled(); ++i) {
+      const Index v = tree_.order()[i];  // along the curve: images follow each other in memory, too
+      nearest[v] = imageOf(plane, v);
+    }
   });
   MirrorMap map{plane, std::vector<Index>(count, kNoIndex)};
   std::vector<Index> left;
@@ -214,15 +158,7 @@ std::optional<MirrorMap> MirrorFinder::matched(const MirrorPlane& plane) const {
     }
   }
   if (left.size() > count / 4) return std::nullopt;
-  // Those that are not each other's nearest take what is left within reach.
-  for (const Index v : left) {
-    if (map.image[v] != kNoIndex) continue;
-    const Index image = cells_.nearest(reflect(plane, mesh_.positions[v]), reach_,
-                                       [&](Index other) { return map.image[other] == kNoIndex; });
-    if (image == kNoIndex) continue;
-    map.image[v] = image;
-    map.image[image] = v;
-  }
+  matchLeft(left, map);
   if (!enough(map)) return std::nullopt;
   return map;
 }
@@ -255,6 +191,7 @@ std::optional<MirrorMap> MirrorFinder::run() {
                                        axes.col(0),   axes.col(1),   axes.col(2)};
   for (std::size_t i = 0; i < normals.size(); ++i) {
     for (const Vec3& center : {middle_, centroid_}) {
+      if (isCancelled()) return std::nullopt;
       if (i >= 3 && center == middle_) continue;  // the box says nothing about slanting planes
       MirrorPlane plane{normals[i], normals[i].dot(center)};
       if (i >= 3) plane = straightened(plane);
@@ -269,11 +206,12 @@ std::optional<MirrorMap> MirrorFinder::run() {
 
 }  // namespace
 
-std::optional<MirrorMap> findMirror(const TriMesh& mesh) {
-  Box box;
-  for (Index v = 0; v < mesh.vertexCount(); ++v) box.add(mesh.position(v));
+std::optional<MirrorMap> findMirror(const TriMesh& mesh, const Progress* progress) {
+  const Box box = modelBox(mesh);
   if (!(box.longestSide() > 0)) return std::nullopt;
-  return MirrorFinder(mesh, box).run();
+  std::optional<MirrorMap> map = MirrorFinder(mesh, box, progress).run();
+  if (progress && progress->cancelled()) return std::nullopt;
+  return map;
 }
 
 }  // namespace limber

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "limber/core/progress.h"
 #include "limber/mesh/tri_mesh.h"
 
 namespace limber {
@@ -20,10 +21,10 @@ struct MirrorMap {
 };
 
 // Looks for a mirror plane at which at least 98 of 100 vertices, and of the surface's area, have an image within three
-// thousandths of the longest side (a model set in a pose by hand may be no nearer). Planes across x, z and y
-// are tried in this order, through the middle of the box and through the centroid, then those across the principal
-// axes; the first that fits is taken. Connectivity does not matter. Images are mutual: image[image[v]] == v. Cost:
-// O(#V).
-std::optional<MirrorMap> findMirror(const TriMesh& mesh);
+// thousandths of the longest side of modelBox (a model set in a pose by hand may be no nearer). Planes across x, z and
+// y are tried in this order, through the middle of the box and through the centroid, then those across the principal
+// axes; the first that fits is taken. Connectivity does not matter. Images are mutual: image[image[v]] == v. There is
+// none, too, once `progress` (if given; only asked for this, from any thread) is cancelled. Cost: O(#V log #V).
+std::optional<MirrorMap> findMirror(const TriMesh& mesh, const Progress* progress = nullptr);
 
 }  // namespace limber

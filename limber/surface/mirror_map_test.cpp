@@ -109,6 +109,27 @@ TEST(MirrorMap, FindsImagesInALongRowOfPieces) {
   expectMirrors(mesh, *map, 1e-4);
 }
 
+// A bit a thousand times as far away as the model is large: all the rest is one point beside it.
+TEST(MirrorMap, AFarBitHidesNothing) {
+  const TriMesh plain = testing::shuffled(blockBiped(2));
+  const auto expected = findMirror(plain);
+  ASSERT_TRUE(expected);
+  TriMesh bit = testing::octahedron();
+  for (Vec3f& p : bit.positions) p *= 0.1f;
+  const auto map = findMirror(testing::joined(plain, bit, Vec3f(5e3f, 1e4f, 0)));
+  ASSERT_TRUE(map);
+  EXPECT_EQ(map->plane.normal, expected->plane.normal);
+  EXPECT_EQ(unmatched(*map), bit.positions.size());
+  for (Index v = 0; v < plain.vertexCount(); ++v) ASSERT_EQ(map->image[v], expected->image[v]) << v;
+}
+
+TEST(MirrorMap, CanBeCancelled) {
+  Progress progress;
+  EXPECT_TRUE(findMirror(blockBiped(1), &progress));
+  progress.cancel();
+  EXPECT_FALSE(findMirror(blockBiped(1), &progress));
+}
+
 TEST(MirrorMap, ASheetIsNotTheImageOfItself) {
   const auto map = findMirror(testing::jittered(testing::flatGrid(12, 9), 0.2f));
   EXPECT_FALSE(map);

@@ -158,6 +158,39 @@ TEST(MortonOrder, VisitsEveryPointOnceAndKeepsNeighborsTogether) {
   for (Index i = 0; i < order.size(); ++i) ASSERT_EQ(order[i], i);
 }
 
+TEST(PointTree, FindsTheNearestPointThatIsLeft) {
+  std::vector<Vec3f> points = randomPoints(3000, 5);
+  points.push_back({0, 1e7f, 0});  // beside it all others lie in one cell
+  PointTree tree(points);
+  std::vector<bool> isOut(points.size(), false);
+  for (const Vec3f& p : randomPoints(300, 6)) {
+    constexpr float kRadius = 0.06f;
+    Index nearest = kNoIndex;
+    float least = kRadius * kRadius;
+    for (Index i = 0; i < points.size(); ++i) {
+      const float distance = (points[i] - p).squaredNorm();
+      if (isOut[i] || distance > least || (distance == least && nearest != kNoIndex)) continue;
+      nearest = i;
+      least = distance;
+    }
+    ASSERT_EQ(tree.nearest(p, kRadius), nearest);
+    if (nearest == kNoIndex) continue;
+    tree.takeOut(nearest);
+    isOut[nearest] = true;
+  }
+  EXPECT_EQ(PointTree({}).nearest({0, 0, 0}, 1), kNoIndex);
+}
+
+TEST(MortonOrder, WhatCrowdsInOneCellIsOrderedToo) {
+  std::vector<Vec3f> points = randomPoints(2000, 7);
+  const std::vector<Index> alone = mortonOrder(points);
+  points.push_back({0, 1e7f, 0});
+  const std::vector<Index> order = mortonOrder(points);
+  ASSERT_EQ(order.back(), 2000u);
+  EXPECT_EQ(std::vector<Index>(order.begin(), order.end() - 1), alone);
+  EXPECT_EQ(mortonOrder(std::vector<Vec3f>(1000, Vec3f::Ones()))[999], 999u);
+}
+
 }  // namespace
 
 }  // namespace limber

@@ -4,12 +4,14 @@
 #include <array>
 #include <bit>
 #include <numeric>
+#include <utility>
 
 namespace limber {
 
 namespace {
 
 constexpr int kBitsPerAxis = 10;
+constexpr std::size_t kCrowd = 256;  // points of one cell: more only where a model lies in a small part of its box
 
 std::uint32_t spread(std::uint32_t x) {
   x = (x | x << 16) & 0x030000ff;
@@ -36,6 +38,16 @@ std::vector<std::uint32_t> mortonCodes(std::span<const Vec3f> points) {
   return codes;
 }
 
+// Points of one cell, in the order of a curve through their own box.
+void orderCrowd(std::span<const Vec3f> points, std::span<Index> crowd) {
+  std::vector<Vec3f> own;
+  for (const Index i : crowd) own.push_back(points[i]);
+  if (std::all_of(own.begin(), own.end(), [&](const Vec3f& p) { return p == own.front(); })) return;
+  std::vector<Index> ordered;
+  for (const Index i : mortonOrder(own)) ordered.push_back(crowd[i]);
+  std::copy(ordered.begin(), ordered.end(), crowd.begin());
+}
+
 }  // namespace
 
 std::vector<Index> mortonOrder(std::span<const Vec3f> points) {
@@ -51,21 +63,84 @@ std::vector<Index> mortonOrder(std::span<const Vec3f> points) {
     for (const Index i : order) next[begin[digit(i)]++] = i;
     order.swap(next);
   }
+  for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
+    while (end < order.size() && codes[order[end]] == codes[order[begin]]) ++end;
+    if (end - begin > kCrowd) orderCrowd(points, {&order[begin], end - begin});
+  }
   return order;
 }
 
 PointTree::PointTree(std::span<const Vec3f> points) : points_(points), order_(mortonOrder(points)) {
   leaves_ = std::bit_ceil((points.size() + kLeafSize - 1) / kLeafSize);
   boxes_.resize(2 * leaves_);
-  for (std::size_t i = 0; i < order_.size(); ++i) {
-    Box3& box = boxes_[leaves_ + i / kLeafSize];
+  for (Part leaf = leaves_; leaf < 2 * leaves_; ++leaf) boundLeaf(leaf);
+  for (Part part = leaves_ - 1; part > 0; --part) boundInner(part);
+}
+
+void PointTree::boundLeaf(Part leaf) {
+  Box3 box;
+  for (std::size_t i = beginOf(leaf); i < beginOf(leaf + 1); ++i) {
+    if (order_[i] == kNoIndex) continue;
     box.min = box.min.cwiseMin(points_[order_[i]]);
     box.max = box.max.cwiseMax(points_[order_[i]]);
   }
-  for (std::size_t node = leaves_ - 1; node > 0; --node) {
-    boxes_[node].min = boxes_[2 * node].min.cwiseMin(boxes_[2 * node + 1].min);
-    boxes_[node].max = boxes_[2 * node].max.cwiseMax(boxes_[2 * node + 1].max);
+  boxes_[leaf] = box;
+}
+
+void PointTree::boundInner(Part part) {
+  boxes_[part].min = boxes_[2 * part].min.cwiseMin(boxes_[2 * part + 1].min);
+  boxes_[part].max = boxes_[2 * part].max.cwiseMax(boxes_[2 * part + 1].max);
+}
+
+Index PointTree::nearest(const Vec3f& p, float radius) const {
+  struct Visit {
+    Part part = 0;
+    float distance = 0;
+  };
+  std::array<Visit, 64> visits;  // the tree is at most 32 deep
+  std::size_t count = 0;
+  Index best = kNoIndex;
+  float least = radius * radius;
+  const auto add = [&](Part part, float distance) {
+    if (distance <= least) visits[count++] = {part, distance};
+  };
+  add(1, distanceSquared(1, p));
+  while (count > 0) {
+    const Visit visit = visits[--count];
+    if (visit.distance > least) continue;
+    if (visit.part < leaves_) {
+      Part closer = 2 * visit.part, farther = closer + 1;
+      float toCloser = distanceSquared(closer, p), toFarther = distanceSquared(farther, p);
+      if (toFarther < toCloser) {
+        std::swap(closer, farther);
+        std::swap(toCloser, toFarther);
+      }
+      add(farther, toFarther);
+      add(closer, toCloser);
+      continue;
+    }
+    for (std::size_t i = beginOf(visit.part); i < beginOf(visit.part + 1); ++i) {
+      const Index point = order_[i];
+      if (point == kNoIndex) continue;
+      const float apart = (points_[point] - p).squaredNorm();
+      if (apart > least || (apart == least && point > best)) continue;
+      best = point;
+      least = apart;
+    }
   }
+  return best;
+}
+
+void PointTree::takeOut(Index point) {
+  if (placeOf_.empty()) {
+    placeOf_.resize(order_.size());
+    for (std::size_t i = 0; i < order_.size(); ++i) placeOf_[order_[i]] = static_cast<Index>(i);
+  }
+  const std::size_t place = placeOf_[point];
+  order_[place] = kNoIndex;
+  Part part = leaves_ + place / kLeafSize;
+  boundLeaf(part);
+  while ((part /= 2) > 0) boundInner(part);
 }
 
 void PointTree::setPieces(std::span<const Index> pieces) {

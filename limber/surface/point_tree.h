@@ -11,11 +11,13 @@
 
 namespace limber {
 
-// Indices of the points along a Morton curve through their box (1024 cells a side), equal cells by index. Neighbours in
-// space are mostly neighbours in the order. Cost: O(#points).
+// Indices of the points along a Morton curve through their box (1024 cells a side), equal cells by index; what crowds
+// in one cell is ordered along a curve of its own. Neighbours in space are mostly neighbours in the order. Cost:
+// O(#points).
 std::vector<Index> mortonOrder(std::span<const Vec3f> points);
 
-// Finds pairs of near points that belong to different pieces. Pieces may be renamed as they grow together.
+// Finds pairs of near points that belong to different pieces, and the nearest point. Pieces may be renamed as they grow
+// together. Takes the same time wherever the points lie: one far away from the others spoils no cell size.
 class PointTree {
  public:
   explicit PointTree(std::span<const Vec3f> points);
@@ -41,6 +43,11 @@ class PointTree {
     visit(1, 1, 0, reach, pair);
   }
 
+  // The nearest point that is no farther than `radius` from p, of equals the lowest; kNoIndex where there is none.
+  Index nearest(const Vec3f& p, float radius) const;
+  // From now on `nearest` passes over the point; pairs are not to be asked for any more. Cost: O(log #points).
+  void takeOut(Index point);
+
  private:
   struct Box3 {
     Vec3f min = Vec3f::Constant(std::numeric_limits<float>::infinity());
@@ -48,6 +55,12 @@ class PointTree {
   };
   static constexpr Index kLeafSize = 8;
 
+  void boundLeaf(Part leaf);
+  void boundInner(Part part);
+  std::size_t beginOf(Part leaf) const { return std::min((leaf - leaves_) * kLeafSize, order_.size()); }
+  float distanceSquared(Part part, const Vec3f& p) const {
+    return (boxes_[part].min - p).cwiseMax(p - boxes_[part].max).cwiseMax(0.0f).squaredNorm();
+  }
   float distanceSquared(Part a, Part b) const {
     const Box3 &first = boxes_[a], &second = boxes_[b];
     return (first.min - second.max).cwiseMax(second.min - first.max).cwiseMax(0.0f).squaredNorm();
@@ -59,7 +72,8 @@ class PointTree {
 
   std::span<const Vec3f> points_;
   std::span<const Index> pieces_;
-  std::vector<Index> order_;
+  std::vector<Index> order_;    // kNoIndex where a point was taken out
+  std::vector<Index> placeOf_;  // in the order, of each point; made when the first is taken out
   std::size_t leaves_ = 1;      // a power of two; node i has children 2i and 2i + 1, leaf j is node leaves_ + j
   std::vector<Box3> boxes_;     // per node
   std::vector<Index> uniform_;  // per node: the piece of all its points, kNoIndex if mixed
@@ -97,7 +111,6 @@ void PointTree::visit(Part a, Part b, float distance, const Reach& reach, const 
 
 template <typename Pair>
 void PointTree::comparePoints(Part a, Part b, float bound, const Pair& pair) const {
-  const auto beginOf = [&](Part leaf) { return std::min((leaf - leaves_) * kLeafSize, order_.size()); };
   for (std::size_t i = beginOf(a); i < beginOf(a + 1); ++i) {
     for (std::size_t j = a == b ? i + 1 : beginOf(b); j < beginOf(b + 1); ++j) {
       const float distance = (points_[order_[i]] - points_[order_[j]]).squaredNorm();
