@@ -98,6 +98,14 @@ stop_slurm() {
 # Waits for the job's end; whatever became of it.
 wait_for() { timeout 120 sh -c 'while squeue -h -j "$1" 2>/dev/null | grep -q .; do sleep 0.2; done' - "$1"; }
 
+# Does the command end with this code?
+ends_with() {
+  local code=$1
+  shift
+  "$@" >/dev/null 2>&1
+  [ $? = "$code" ]
+}
+
 by_slurm() {
   local out=$output/slurm array merge killed
   trap stop_slurm EXIT
@@ -112,6 +120,12 @@ by_slurm() {
   check "all outputs are there" is_well "$out"
   check "they are those of one go" is_whole "$out"
   check "the merge has a line for each" test "$(records_of "$out")" = "$models"
+  # The folder is whole, of a plan that could be read.
+  echo "{" >"$output/broken.json"
+  read -r array merge < <(cd "$output" && "$root/integrations/slurm/submit.sh" broken.json "$out" 2 --output="$output/slurm-%A_%a.log")
+  wait_for "$merge"
+  check "the merge tells tasks that could not read their plan" grep -q "task 2: code 2" "$output/slurm-$merge.out"
+  check "the merge fails with them" sh -c 'scontrol show job "$1" | grep -q ExitCode=4:' - "$merge"
   stop_slurm
   trap - EXIT
 }
@@ -128,6 +142,10 @@ by_parallel() {
   check "it goes on to a good end" "$root/integrations/gnu-parallel/limber_parallel.sh" "$plan" "$out" 4 >/dev/null
   check "parallel's outputs are those of one go" is_whole "$out"
   check "parallel's merge has a line for each" test "$(records_of "$out")" = "$models"
+  echo "{" >"$plan"
+  check "a plan that cannot be read has no good end" ends_with 4 "$root/integrations/gnu-parallel/limber_parallel.sh" "$plan" "$out" 4
+  sed 's/"models"\]/"models", {"path": "none.glb"}]/' "$output/plan.json" >"$plan"
+  check "an entry that fails is told by the sum" ends_with 1 "$root/integrations/gnu-parallel/limber_parallel.sh" "$plan" "$out" 4
 }
 
 models=60

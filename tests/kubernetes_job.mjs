@@ -5,7 +5,7 @@
 //   node tests/kubernetes_job.mjs TSC OUTPUT_FOLDER
 //
 // Ends with "N passed, N failed".
-import { spawnSync } from 'node:child_process';
+import { spawn, spawnSync } from 'node:child_process';
 import { chmodSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
@@ -69,6 +69,18 @@ const endsWith = (code) => {
 };
 check('exit codes of the program are those of the pod, but for 1',
   [0, 1, 2, 3, 4].map(endsWith).join() === '0,0,2,3,4');
+const jobs = Number(/--jobs (\d+)/.exec(container.args.join(' '))[1]);
+check('a pod has memory for its jobs at the default limit, and for the program itself',
+  parseFloat(container.resources.limits.memory) > 4 * jobs && container.resources.limits.memory.endsWith('Gi'));
+// The shell is the pod's first process: what it does not hand on, the program never hears.
+const endedBy = await new Promise((done) => {
+  writeFileSync(program, "#!/bin/sh\ntrap 'sleep 0.2; exit 4' TERM\necho begun\nwhile :; do sleep 0.05; done\n");
+  const env = { ...process.env, PATH: `${folder}:${process.env.PATH}`, JOB_COMPLETION_INDEX: '0' };
+  const shell = spawn(container.command[0], [...container.command.slice(1), ...container.args], { env });
+  shell.stdout.once('data', () => shell.kill('SIGTERM'));
+  shell.on('exit', (code, signal) => done(code ?? signal));
+});
+check('a pod that is ended waits for its program, and ends with its code', endedBy === 4);
 check('policies of failure name a container of the pod',
   spec.podFailurePolicy.rules.every(({ onExitCodes }) => pod.containers.some(({ name }) => name === onExitCodes.containerName)));
 check('no root', pod.securityContext.runAsNonRoot === true && pod.securityContext.runAsUser > 0);

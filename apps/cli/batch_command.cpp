@@ -30,7 +30,7 @@ namespace {
 constexpr std::string_view kBatchCommands[] = {"rig",  "animate",  "retarget", "convert", "preview",
                                                "pose", "transfer", "evaluate", "info"};
 constexpr double kMegabyte = 1 << 20;
-constexpr int kWrongCode = 2, kStoppedCode = 4;  // exit codes: as of a wrong call; the batch itself could not go on
+constexpr int kWrongCode = 2, kStoppedCode = kStorageCode;  // exit codes: a wrong call; the batch could not go on
 
 struct BatchArguments {
   std::string plan, output, shard = "1/1";
@@ -76,16 +76,29 @@ class BatchLine {
   double shownAt_ = 0;
 };
 
-// In a child of the batch: as the program does it by itself.
+// In a child of the batch: as the program does it by itself, but that an entry's options come after the command's.
 int runInChild(const std::vector<std::string>& arguments, BatchWarnings& warnings) {
-  std::vector<std::string> words = {"limber"};
-  words.insert(words.end(), arguments.begin(), arguments.end());
-  std::vector<char*> pointers;
-  for (std::string& word : words) pointers.push_back(word.data());
-  pointers.push_back(nullptr);
-  const int code = runProgram(static_cast<int>(words.size()), pointers.data());
+  const int code = runProgram(arguments, RepeatedOption::kLastCounts);
   for (const Warning& warning : givenWarnings().items()) warnings.emplace_back(warning.kind, warning.count);
   return code;
+}
+
+// Of the plan's command, with the options of the first entry where it makes no sense without any. Throws Error kBadData
+// where it makes none with these either: no entry could be done.
+CallOutline outlineOf(const BatchPlan& plan) {
+  std::vector<std::string> words = plan.command;
+  CallOutline outline = outlineCall(words, RepeatedOption::kLastCounts);
+  if (!outline.problem.empty() && !plan.entries.empty()) {
+    const std::vector<std::string>& options = plan.entries.front().options;
+    words.insert(words.end(), options.begin(), options.end());
+    outline = outlineCall(words, RepeatedOption::kLastCounts);
+  }
+  if (outline.problem.empty() && outline.hasOutput &&
+      std::find(words.begin(), words.end(), kBatchOutput) == words.end()) {
+    outline.problem = fmt::format("does not hold \"{}\", as an element of its own", kBatchOutput);
+  }
+  if (!outline.problem.empty()) throw Error(ErrorCode::kBadData, outline.problem, "command");
+  return outline;
 }
 
 // Not everything is done: said by the exit code, beside the account.
@@ -93,7 +106,8 @@ void failUnless(bool isWell, std::string_view what) {
   if (!isWell) throw Error(ErrorCode::kBadData, std::string(what), {}, "limber batch status tells which and why");
 }
 
-// What ends `work`, but for cancelling and want of memory, ends the program with this exit code.
+// What ends `work`, but for cancelling and want of memory, ends the program with this exit code; a wrong call with its
+// own.
 template <typename Work>
 auto withExitCode(int code, const Work& work) {
   try {
@@ -103,7 +117,7 @@ auto withExitCode(int code, const Work& work) {
   } catch (const std::exception& error) {
     const auto* known = dynamic_cast<const Error*>(&error);
     if (known && known->code() == ErrorCode::kCancelled) throw;
-    throw CLI::RuntimeError(error.what(), code);
+    throw CLI::RuntimeError(error.what(), known && known->code() == ErrorCode::kBadArgument ? kWrongCode : code);
   }
 }
 
@@ -117,11 +131,18 @@ void runPlan(const BatchArguments& arguments) {
   BatchOptions options;
   const BatchPlan plan = withExitCode(kWrongCode, [&] {
     options.shard = parseBatchShard(arguments.shard);
-    return readBatchPlan(arguments.plan, kBatchCommands, arguments.output);
+    BatchPlan read = readBatchPlan(arguments.plan, kBatchCommands, arguments.output);
+    try {
+      options.takesThreads = outlineOf(read).hasThreads;
+    } catch (const Error& error) {
+      throw error.within(arguments.plan == "-" ? "standard input" : arguments.plan);
+    }
+    return read;
   });
   options.output = arguments.output;
   options.jobs = arguments.jobs > 0 ? arguments.jobs : std::max(1, threadCount());
   options.outOfMemoryCode = kOutOfMemoryCode;
+  options.storageCode = kStorageCode;
   options.retries = arguments.retries;
   options.command = runInChild;
   TerminalProgress cancel(true);
@@ -139,6 +160,7 @@ void runPlan(const BatchArguments& arguments) {
     return runBatch(plan, options);
   });
   line.clear();
+  printWarnings(end.recordWarnings, arguments.quiet);
   Account(arguments.quiet, {})
       .line(fmt::format("{}: {} run in {}, {} kept from before; {} failed", counted(end.entries, "entry", "entries"),
                         end.done + end.failed - end.kept, timeText(end.seconds), end.kept, end.failed));
@@ -159,17 +181,28 @@ Json toJson(const BatchStatus& status) {
           {"failed", status.failed},
           {"open", status.open()},
           {"lost", status.lost},
+          {"outdated", status.outdated},
+          {"left_over", status.leftOver},
           {"seconds", status.seconds},
           {"slowest", status.slowest},
           {"peak_memory", status.peakMemory},
           {"failures", std::move(failures)},
-          {"warnings", std::move(warnings)}};
+          {"warnings", std::move(warnings)},
+          {"record_warnings", toJson(status.recordWarnings)}};
 }
 
 void tell(const BatchStatus& status, const Account& account) {
   account.line(fmt::format("{}: {} done, {} failed, {} open", counted(status.entries, "entry", "entries"), status.done,
                            status.failed, status.open()));
   if (status.lost > 0) account.line(fmt::format("{} whose output is gone", counted(status.lost, "entry", "entries")));
+  if (status.outdated > 0) {
+    account.line(fmt::format("{} done or failed by another command or program than the latest run's",
+                             counted(status.outdated, "entry", "entries")));
+  }
+  if (!status.leftOver.empty()) {
+    account.line(fmt::format("{} of earlier plans still there (such as {})", counted(status.leftOver.size(), "output"),
+                             status.leftOver.front()));
+  }
   account.line(fmt::format("{} of work, the slowest {:.2f} s, at most {:.0f} MB", timeText(status.seconds),
                            status.slowest, static_cast<double>(status.peakMemory) / kMegabyte));
   for (const BatchFailures& one : status.failures) {
@@ -182,7 +215,11 @@ void tell(const BatchStatus& status, const Account& account) {
 }
 
 void runStatus(const BatchStatusArguments& arguments) {
+  if (arguments.json && arguments.merged == "-") {
+    throw CLI::ValidationError("--merge", "to standard output does not go with --json, which prints there, too");
+  }
   const BatchStatus status = batchStatus(arguments.folder);
+  printWarnings(status.recordWarnings, arguments.quiet);
   if (!arguments.merged.empty()) writeText(arguments.merged, mergedBatchRecords(arguments.folder));
   if (arguments.json) {
     fmt::print("{}\n", dumpReport(toJson(status)));
@@ -229,7 +266,8 @@ void addBatchCommand(CLI::App& program) {
   command->require_subcommand(0, 1);
   addStatus(*command);
   command->footer(fmt::format(
-      "Commands: {}.\n"
+      "Commands: {}. What one without -o prints\n"
+      "is the output.\n"
       "Each entry is a process of its own, within limits of time and memory: what is damaged, endless or huge costs\n"
       "itself alone. Outputs come to their places whole, and a line for each stands in FOLDER/.limber-batch/records:\n"
       "its outcome, seconds, memory, warnings, hashes. A batch that was stopped, however it was, goes on; what has "

@@ -2,6 +2,8 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
 #include "testing/cli_fixture.h"
 
 namespace limber {
@@ -9,9 +11,11 @@ namespace {
 
 using ::testing::HasSubstr;
 
-std::string batchPlan(const std::string& inputs) {
-  return R"({"limber_batch": 1, "command": ["convert", "{input}", "-o", "{output}"], "output": ".glb", "inputs": [)" +
-         inputs + "]}";
+std::string batchPlan(const std::string& inputs,
+                      const std::string& command = R"("convert", "{input}", "-o", "{output}")",
+                      const std::string& output = ".glb") {
+  return R"({"limber_batch": 1, "command": [)" + command + R"(], "output": ")" + output + R"(", "inputs": [)" + inputs +
+         "]}";
 }
 
 TEST_F(Cli, ABatchTellsByItsCodeWhoseFaultItIs) {
@@ -25,7 +29,73 @@ TEST_F(Cli, ABatchTellsByItsCodeWhoseFaultItIs) {
   expectOneLine(run({"batch", "none.json", "-o", "wrong"}), 2);
   expectOneLine(run({"batch", "plan.json", "-o", "out", "--shard", "3/2"}), 2);
   put("a_file", "mine");
-  expectOneLine(run({"batch", "plan.json", "-o", "a_file"}), 4);
+  expectOneLine(run({"batch", "plan.json", "-o", "a_file"}), 2);
+  fs::create_directory(folder_ / "foreign");
+  put("foreign/diary.txt", "mine");
+  expectOneLine(run({"batch", "plan.json", "-o", "foreign"}), 2);
+}
+
+TEST_F(Cli, ABatchEndsWhereNothingCanBeWritten) {
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "there is no /dev/full here";
+  makeRobot();
+  put("plan.json", batchPlan(R"("robot.glb")", R"("rig", "{input}", "-o", "{output}", "--json", "/dev/full")"));
+  expectOneLine(run({"batch", "plan.json", "-o", "out", "--quiet"}), 4);
+  EXPECT_THAT(run({"batch", "status", "out"}).out, HasSubstr("0 done, 0 failed, 1 open"));
+}
+
+TEST_F(Cli, EachCommandThatABatchMayRunRunsInOne) {
+  ASSERT_EQ(run({"sample", "biped", "-o", "biped.glb", "-q"}).code, 0);
+  ASSERT_EQ(run({"sample", "walk", "-o", "walk.bvh", "-q"}).code, 0);
+  ASSERT_EQ(run({"rig", "biped.glb", "--template", "humanoid", "-o", "hero.glb", "-q"}).code, 0);
+  const std::string help = run({"batch", "--help"}).out;
+  struct Case {
+    std::string command, arguments, output = ".glb";
+  };
+  for (const Case& one : std::vector<Case>{
+           {"rig", R"("{input}", "-o", "{output}", "--replace-rig")"},
+           {"animate", R"("{input}", "walk.bvh", "-o", "{output}")"},
+           {"retarget", R"("{input}", "walk.bvh", "-o", "{output}")"},
+           {"convert", R"("{input}", "-o", "{output}")"},
+           {"preview", R"("{input}", "-o", "{output}", "--size", "64x64")", ".png"},
+           {"pose", R"("{input}", "-o", "{output}")"},
+           {"transfer", R"("hero.glb", "{input}", "-o", "{output}")"},
+           {"evaluate", R"("weights", "{input}", "hero.glb", "--json")", ".json"},
+           {"evaluate", R"("rig", "{input}", "hero.glb", "--json")", ".json"},
+           {"evaluate", R"("model", "{input}", "--json")", ".json"},
+           {"info", R"("{input}", "--json")", ".json"},
+       }) {
+    EXPECT_THAT(help, HasSubstr(one.command));
+    put("plan.json", batchPlan(R"("hero.glb")", '"' + one.command + "\", " + one.arguments, one.output));
+    const Result result = run({"batch", "plan.json", "-o", "out", "-q"});
+    EXPECT_EQ(result.code, 0) << one.command << ": " << result.error << run({"batch", "status", "out"}).out;
+    EXPECT_TRUE(one.output != ".json" || nlohmann::json::accept(content("out/hero.json"))) << one.command;
+  }
+}
+
+TEST_F(Cli, AnEntrysOptionsCountInPlaceOfThoseOfTheCommand) {
+  makeRobot();
+  const std::string rig = R"("rig", "{input}", "-o", "{output}", "--handles", "5")";
+  put("plan.json", batchPlan(R"({"path": "robot.glb", "options": ["--handles", "9"]})", rig));
+  EXPECT_EQ(run({"batch", "plan.json", "-o", "out", "-q"}).code, 0);
+  EXPECT_EQ(nlohmann::json::parse(run({"info", "out/robot.glb", "--json"}).out).at("joints"), 9);
+}
+
+TEST_F(Cli, ACommandThatMakesNoSenseIsRefusedBeforeTheFirstEntry) {
+  makeRobot();
+  for (const char* command : {R"("rig", "{input}", "-o", "{output}", "--handels", "5")",
+                              R"("rig", "{input}", "-o", "mine.glb")", R"("info", "{input}", "-o", "{output}")",
+                              R"("evaluate", "{input}")", R"("rig", "{input}", "{output}", "-h")"}) {
+    put("plan.json", batchPlan(R"("robot.glb")", command));
+    const Result result = run({"batch", "plan.json", "-o", "out"});
+    expectOneLine(result, 2);
+    EXPECT_THAT(result.error, HasSubstr("plan.json: command: "));
+  }
+  EXPECT_FALSE(fs::exists(folder_ / "out"));
+  put("plan.json", batchPlan(R"({"path": "robot.glb", "options": ["robot.glb"]})",
+                             R"("evaluate", "weights", "{input}")"));  // makes sense with what the entry adds
+  EXPECT_EQ(run({"batch", "plan.json", "-o", "out", "-q"}).code, 1);
+  put("plan.json", batchPlan(R"({"path": "robot.glb", "options": ["--handels", "9"]})"));
+  EXPECT_EQ(run({"batch", "plan.json", "-o", "out", "-q"}).code, 1);  // of an entry's own
 }
 
 TEST_F(Cli, ABatchBelowItsInputsHasTheSameEntriesAgain) {

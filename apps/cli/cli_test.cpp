@@ -204,6 +204,14 @@ TEST_F(Cli, AnUnknownCommandIsNamedAndTheKnownOnesListed) {
   EXPECT_THAT(below.error, AllOf(HasSubstr("'bogus'"), HasSubstr("weights, rig"), HasSubstr("skinning")));
 }
 
+TEST_F(Cli, RetargetNamesTheArgumentThatIsMissing) {
+  EXPECT_THAT(run({"retarget", "-o", "o.glb"}).error, StartsWith("limber: MODEL is required"));
+  EXPECT_THAT(run({"retarget", "hero.glb", "-o", "o.glb"}).error, StartsWith("limber: MOTIONS is required"));
+  const Result many = run({"retarget", "--characters", "heroes.txt", "-o", "o"});
+  expectOneLine(many, 2);
+  EXPECT_THAT(many.error, StartsWith("limber: MOTIONS is required"));
+}
+
 TEST_F(Cli, WhatStandardOutputDoesNotTakeIsAnError) {
   if (!fs::exists("/dev/full")) GTEST_SKIP() << "there is no /dev/full here";
   makeRobot();

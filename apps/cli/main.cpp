@@ -1,6 +1,7 @@
 // limber: any 3D model becomes limber.
 #include "program.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -12,6 +13,7 @@
 
 #include "command.h"
 #include "limber/core/known_error.h"
+#include "limber/core/storage_error.h"
 #include "limber/pipeline/option_spelling.h"
 #include "progress_line.h"
 
@@ -28,11 +30,14 @@ int fail(std::string_view what, int code = kFailed) {
   return code;
 }
 
-int fail(const limber::Error& error) {
+int codeOf(const limber::Error& error) {
   const auto* known = dynamic_cast<const limber::KnownError*>(&error);
-  const bool isOutOfMemory = known && known->kind() == limber::ErrorKind::kOutOfMemory;
-  return fail(limber::spellOptions(error, limber::OptionSpelling::kProgram).what(),
-              isOutOfMemory ? limber::cli::kOutOfMemoryCode : kFailed);
+  if (known && known->kind() == limber::ErrorKind::kOutOfMemory) return limber::cli::kOutOfMemoryCode;
+  return dynamic_cast<const limber::StorageError*>(&error) ? limber::cli::kStorageCode : kFailed;
+}
+
+int fail(const limber::Error& error) {
+  return fail(limber::spellOptions(error, limber::OptionSpelling::kProgram).what(), codeOf(error));
 }
 
 int usage(const CLI::App& program, const std::string& what) {
@@ -45,32 +50,8 @@ int usage(const CLI::App& program, const std::string& what) {
   return kUsage;
 }
 
-// CLI11 would only say that a subcommand is missing. Empty where the words before the first option name commands.
-std::string wrongCommand(const CLI::App& program, int argc, char** argv) {
-  const CLI::App* at = &program;
-  for (int i = 1; i >= argc || argv[i][0] != '-'; ++i) {
-    std::vector<std::string> known;
-    const CLI::App* next = nullptr;
-    for (const CLI::App* command : at->get_subcommands({})) {
-      known.push_back(command->get_name());
-      if (i < argc && command->get_name() == argv[i]) next = command;
-    }
-    if (known.empty() || at->get_require_subcommand_min() == 0) return {};
-    if (i >= argc) return fmt::format("a command is missing; there are: {}", limber::cli::joinNames(known));
-    if (!next) return fmt::format("there is no command '{}'; there are: {}", argv[i], limber::cli::joinNames(known));
-    at = next;
-  }
-  return {};
-}
-
-}  // namespace
-
-namespace limber::cli {
-
-int runProgram(int argc, char** argv) {
-  CLI::App program("Makes any 3D model limber: a static mesh goes in, a rigged and skinned character comes out.",
-                   "limber");
-  program.set_version_flag("--version", "limber " LIMBER_VERSION);
+void addCommands(CLI::App& program) {
+  using namespace limber::cli;
   program.require_subcommand(1);
   addRigCommand(program);
   addInfoCommand(program);
@@ -89,11 +70,82 @@ int runProgram(int argc, char** argv) {
   addBatchCommand(program);
   addCrowdCommand(program);
   addCompletionCommand(program);
+}
+
+// To be called before commands are added.
+void takeRepeated(CLI::App& program, limber::cli::RepeatedOption repeated) {
+  if (repeated == limber::cli::RepeatedOption::kIsRefused) return;
+  program.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+}
+
+void parseCall(CLI::App& program, const std::vector<std::string>& arguments) {
+  program.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));  // CLI11 wants the last first
+}
+
+// Parsing then runs nothing.
+void dropCallbacks(CLI::App& program) {
+  for (CLI::App* command : program.get_subcommands({})) {
+    command->callback({});
+    dropCallbacks(*command);
+  }
+}
+
+// CLI11 would only say that a subcommand is missing. Empty where the words before the first option name commands.
+std::string wrongCommand(const CLI::App& program, const std::vector<std::string>& arguments) {
+  const CLI::App* at = &program;
+  for (std::size_t i = 0; i >= arguments.size() || !arguments[i].starts_with('-'); ++i) {
+    std::vector<std::string> known;
+    const CLI::App* next = nullptr;
+    for (const CLI::App* command : at->get_subcommands({})) {
+      known.push_back(command->get_name());
+      if (i < arguments.size() && command->get_name() == arguments[i]) next = command;
+    }
+    if (known.empty() || at->get_require_subcommand_min() == 0) return {};
+    const std::string there = limber::cli::joinNames(known);
+    if (i >= arguments.size()) return fmt::format("a command is missing; there are: {}", there);
+    if (!next) return fmt::format("there is no command '{}'; there are: {}", arguments[i], there);
+    at = next;
+  }
+  return {};
+}
+
+}  // namespace
+
+namespace limber::cli {
+
+CallOutline outlineCall(const std::vector<std::string>& arguments, RepeatedOption repeated) {
+  CLI::App program;
+  takeRepeated(program, repeated);
+  addCommands(program);
+  dropCallbacks(program);
+  CallOutline outline;
+  outline.problem = wrongCommand(program, arguments);
+  if (!outline.problem.empty()) return outline;
+  try {
+    parseCall(program, arguments);
+  } catch (const CLI::Success&) {
+    outline.problem = "asks for help";
+  } catch (const CLI::ParseError& error) {
+    outline.problem = error.what();
+  }
+  CLI::App* command = &program;
+  while (!command->get_subcommands().empty()) command = command->get_subcommands().front();
+  outline.hasOutput = command->get_option_no_throw("--output") != nullptr;
+  outline.hasThreads = command->get_option_no_throw("--threads") != nullptr;
+  return outline;
+}
+
+int runProgram(const std::vector<std::string>& arguments, RepeatedOption repeated) {
+  CLI::App program("Makes any 3D model limber: a static mesh goes in, a rigged and skinned character comes out.",
+                   "limber");
+  program.set_version_flag("--version", "limber " LIMBER_VERSION);
+  takeRepeated(program, repeated);
+  addCommands(program);
   program.footer("limber COMMAND --help shows the options of a command, with an example.");
-  if (const std::string problem = wrongCommand(program, argc, argv); !problem.empty()) return usage(program, problem);
+  if (const std::string problem = wrongCommand(program, arguments); !problem.empty()) return usage(program, problem);
   try {
     try {
-      program.parse(argc, argv);
+      parseCall(program, arguments);
     } catch (const CLI::Success& request) {  // --help, --version
       program.exit(request);
     }
@@ -115,5 +167,5 @@ int runProgram(int argc, char** argv) {
 }  // namespace limber::cli
 
 int main(int argc, char** argv) {
-  return limber::cli::runProgram(argc, argv);
+  return limber::cli::runProgram({argv + std::min(argc, 1), argv + argc});
 }

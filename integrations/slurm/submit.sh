@@ -7,5 +7,5 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 plan=$1 out=$2 tasks=$3
 shift 3
 array=$(sbatch --parsable --array="1-$tasks" "$@" "$here/limber_batch.sbatch" "$plan" "$out")
-merge=$(sbatch --parsable --dependency="afterany:$array" "$here/limber_merge.sbatch" "$out")
+merge=$(sbatch --parsable --dependency="afterany:$array" "$here/limber_merge.sbatch" "$out" "$array")
 echo "$array $merge"

@@ -15,6 +15,7 @@
 #include "limber/asset/json_text.h"
 #include "limber/asset/utf8.h"
 #include "limber/batch/path_pattern.h"
+#include "limber/core/list_lines.h"
 #include "limber/core/names.h"
 #include "limber/study/study_input.h"
 
@@ -47,22 +48,27 @@ Json parsed(std::string_view text) {
   throw Error(ErrorCode::kBadData, first.message, first.where);
 }
 
-// Calls `take` for each line that is not blank; errors say which.
+// Calls `take` for each line of a list; errors say which.
 template <typename Take>
 void forEachLine(const fs::path& file, const Take& take) {
   const Bytes bytes = readFile(file);
-  std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  for (std::size_t number = 1; !text.empty(); ++number) {
-    std::string_view line = text.substr(0, text.find('\n'));
-    text.remove_prefix(std::min(text.size(), line.size() + 1));
-    if (line.ends_with('\r')) line.remove_suffix(1);
-    if (line.find_first_not_of(" \t") == std::string_view::npos) continue;
+  for (const ListLine& line : listLines({reinterpret_cast<const char*>(bytes.data()), bytes.size()})) {
     try {
-      take(line);
+      take(line.text);
     } catch (const Error& error) {
-      throw error.within(fmt::format("line {}", number)).within(file.string());
+      throw error.within(fmt::format("line {}", line.number)).within(file.string());
     }
   }
+}
+
+// Bytes that are not ASCII as "\xfe".
+std::string withEscapes(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    result += byte < 0x80 ? std::string(1, c) : fmt::format("\\x{:02x}", byte);
+  }
+  return result;
 }
 
 // The path without links, also where its end is not there yet.
@@ -134,6 +140,10 @@ class EntryList {
   }
 
   void addEntry(BatchEntry entry) {
+    if (validUtf8(entry.input) != entry.input) {
+      throw Error(ErrorCode::kBadData, fmt::format("the name '{}' is not UTF-8", withEscapes(entry.input)), {},
+                  "rename the file: records could not tell it from others");
+    }
     if (!known_.insert(entry.input).second) {
       throw Error(ErrorCode::kBadData, fmt::format("the plan names '{}' twice", entry.input));
     }
@@ -195,7 +205,7 @@ class EntryList {
       return placeOf(entry.input).replace_extension(extension).generic_string();
     };
     for (const BatchEntry& entry : entries_) ++users[plain(entry)];
-    std::set<std::string> taken;
+    std::map<std::string, const BatchEntry*> taken;
     for (BatchEntry& entry : entries_) {
       entry.output = plain(entry);
       if (users[entry.output] > 1) {
@@ -204,10 +214,16 @@ class EntryList {
         std::replace(own.begin(), own.end(), '.', '_');
         entry.output = place.replace_filename(place.stem().string() + own + extension).generic_string();
       }
-      if (!taken.insert(entry.output).second) {
+      if (!taken.emplace(entry.output, &entry).second) {
         throw Error(ErrorCode::kBadData, fmt::format("two inputs would be written to '{}'", entry.output), entry.input,
                     "give each a batch of its own");
       }
+    }
+    for (const auto& [output, entry] : taken) {
+      const auto inside = taken.lower_bound(output + "/");
+      if (inside == taken.end() || !inside->first.starts_with(output + "/")) continue;
+      throw Error(ErrorCode::kBadData, fmt::format("the output '{}' would be the folder of another", output),
+                  inside->second->input, "give each a batch of its own");
     }
   }
 
@@ -223,11 +239,11 @@ std::vector<std::string> commandOf(const JsonView& list, std::span<const std::st
   if (std::find(commands.begin(), commands.end(), command.front()) == commands.end()) {
     list[0].fail(fmt::format("is no command of a batch; there are: {}", fmt::join(commands, ", ")));
   }
-  for (const std::string_view word : {kBatchInput, kBatchOutput}) {
-    if (std::count(command.begin(), command.end(), word) != 1) {
-      list.fail(fmt::format("does not hold \"{}\" once, as an element of its own", word));
-    }
+  const auto count = [&](std::string_view word) { return std::count(command.begin(), command.end(), word); };
+  if (count(kBatchInput) != 1) {
+    list.fail(fmt::format("does not hold \"{}\" once, as an element of its own", kBatchInput));
   }
+  if (count(kBatchOutput) > 1) list.fail(fmt::format("holds \"{}\" more than once", kBatchOutput));
   return command;
 }
 
@@ -237,7 +253,8 @@ std::string extensionOf(const JsonView& value) {
     value.fail("is no extension such as \".glb\"");
   }
   for (const std::string_view several : {".gltf", ".obj", ".usda"}) {
-    if (extension == several) value.fail("is a format of several files; take one that is whole, such as \".glb\"");
+    if (!lowerCase(extension).ends_with(several)) continue;
+    value.fail("is a format of several files; take one that is whole, such as \".glb\"");
   }
   return extension;
 }

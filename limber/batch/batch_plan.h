@@ -23,7 +23,7 @@ struct BatchEntry {
 
 struct BatchPlan {
   std::filesystem::path folder;      // that inputs, and other files that the command names, are seen from; absolute
-  std::vector<std::string> command;  // "rig", "{input}", "-o", "{output}", ...: each of the two once
+  std::vector<std::string> command;  // "rig", "{input}", "-o", "{output}", ...: the input once, the output at most once
   JobLimits limits;                  // of each entry
   std::vector<BatchEntry> entries;   // in the order of the plan, files of a folder by their paths
 };
@@ -37,13 +37,14 @@ BatchShard parseBatchShard(std::string_view text);
 
 // A plan in JSON (docs/batch.schema.json), with what its inputs name looked up: folders with everything in them that
 // limber reads, at any depth; patterns, in which * and ? stand for what is within a name and ** for folders; lists of
-// paths (.txt: one a line; .jsonl: {"path", "sha256", "options"}); files. An output is called as its input, seen from
-// the plan's folder, with the plan's extension; inputs that would be called alike keep theirs ("a_obj.glb",
-// "a_stl.glb"). What folders and patterns find below `outputs`, the batch's folder of outputs, is left out: the same
-// plan has the same entries once it has run.
+// paths (.txt: one a line; .jsonl: {"path", "sha256", "options"}; read by listLines); files. An output is called as its
+// input, seen from the plan's folder, with the plan's extension; inputs that would be called alike keep theirs
+// ("a_obj.glb", "a_stl.glb"). What folders and patterns find below `outputs`, the batch's folder of outputs, is left
+// out: the same plan has the same entries once it has run.
 //
-// `commands` are those that a batch may run. Throws Error kBadData at the place of what is wrong, kFile where an input
-// is not there (of lists, only the list is looked for). Cost: O(n log n) in the number of entries; no input is opened.
+// `commands` are those that a batch may run. Throws Error kBadData at the place of what is wrong, also where an output
+// would have to be a file and the folder of another; kFile where an input is not there (of lists, only the list is
+// looked for). Cost: O(n log n) in the number of entries; no input is opened.
 BatchPlan readBatchPlan(const std::filesystem::path& file, std::span<const std::string_view> commands,
                         const std::filesystem::path& outputs = {});
 

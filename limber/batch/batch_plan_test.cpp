@@ -76,10 +76,38 @@ TEST(BatchPlan, ReadsLists) {
   EXPECT_THAT(plan.entries[3].options, ElementsAre("--handles", "9"));
 }
 
+TEST(BatchPlan, ListsMayHaveCommentsAndAByteOrderMark) {
+  const testing::TemporaryFolder folder;
+  put(folder.path() / "some.txt", "\xef\xbb\xbfone.obj\n# two.obj\n three.obj\n");
+  put(folder.path() / "more.jsonl", "\xef\xbb\xbf# four\n{\"path\": \"four.obj\"}");
+  EXPECT_THAT(outputsOf(planWith(folder.path(), R"("some.txt", "more.jsonl")")),
+              ElementsAre("one.glb", "three.glb", "four.glb"));
+}
+
+TEST(BatchPlan, RefusesNamesThatRecordsCannotTellApart) {
+  const testing::TemporaryFolder folder;
+  put(folder.path() / "m/x\xfe.obj");
+  const std::string plan = R"({"limber_batch": 1, "command": ["rig", "{input}", "-o", "{output}"], "output": ".glb",
+    "inputs": [")";
+  for (const char* inputs : {"m", "m/*", "some.txt"}) {
+    put(folder.path() / "some.txt", "m/x\xfe.obj");
+    EXPECT_THAT(problemOf(folder.path(), plan + inputs + "\"]}"), HasSubstr(R"(the name 'm/x\xfe.obj' is not UTF-8)"));
+  }
+}
+
 TEST(BatchPlan, NamesOutputsApart) {
   const testing::TemporaryFolder folder;
   for (const char* name : {"m/a.obj", "m/a.stl", "m/b.obj"}) put(folder.path() / name);
   EXPECT_THAT(outputsOf(planWith(folder.path(), R"("m")")), ElementsAre("m/a_obj.glb", "m/a_stl.glb", "m/b.glb"));
+}
+
+TEST(BatchPlan, RefusesAnOutputThatWouldBeTheFolderOfAnother) {
+  const testing::TemporaryFolder folder;
+  for (const char* name : {"m/fish.obj", "m/fish.glb-old.obj", "m/fish.glb/deep/inner.obj"}) put(folder.path() / name);
+  const std::string plan = R"({"limber_batch": 1, "command": ["rig", "{input}"], "output": ".glb", "inputs": ["m"]})";
+  EXPECT_THAT(problemOf(folder.path(), plan), HasSubstr("the output 'm/fish.glb' would be the folder of another"));
+  std::filesystem::remove(folder.path() / "m/fish.obj");
+  EXPECT_EQ(problemOf(folder.path(), plan), "none");
 }
 
 TEST(BatchPlan, StaysInItsFolderOfOutputs) {
@@ -121,8 +149,13 @@ TEST(BatchPlan, RefusesWhatIsWrong) {
   EXPECT_THAT(problemOf(folder.path(), "{}"), HasSubstr("limber_batch"));
   EXPECT_THAT(problemOf(folder.path(), plan(R"(["study", "{input}", "{output}"])", ".glb", R"("a.obj")")),
               HasSubstr("is no command of a batch; there are: rig, retarget"));
-  EXPECT_THAT(problemOf(folder.path(), plan(R"(["rig", "{input}"])", ".glb", R"("a.obj")")), HasSubstr("{output}"));
-  EXPECT_THAT(problemOf(folder.path(), plan(rig, ".gltf", R"("a.obj")")), HasSubstr("several files"));
+  EXPECT_EQ(problemOf(folder.path(), plan(R"(["rig", "{input}"])", ".json", R"("a.obj")")), "none");
+  EXPECT_THAT(problemOf(folder.path(), plan(R"(["rig", "{output}"])", ".glb", R"("a.obj")")), HasSubstr("{input}"));
+  EXPECT_THAT(problemOf(folder.path(), plan(R"(["rig", "{input}", "{output}", "{output}"])", ".glb", R"("a.obj")")),
+              HasSubstr("{output}"));
+  for (const char* several : {".gltf", ".GLTF", ".posed.Obj"}) {
+    EXPECT_THAT(problemOf(folder.path(), plan(rig, several, R"("a.obj")")), HasSubstr("several files"));
+  }
   EXPECT_THAT(problemOf(folder.path(), plan(rig, ".glb", R"("b.obj")")), HasSubstr("is not there"));
   EXPECT_THAT(problemOf(folder.path(), plan(rig, ".glb", R"("*.stl")")), HasSubstr("inputs[0]: matches no file"));
   EXPECT_THAT(problemOf(folder.path(), plan(rig, ".glb", R"("a.obj", "a.obj")")), HasSubstr("twice"));

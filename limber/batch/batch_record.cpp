@@ -16,6 +16,7 @@
 
 #include "limber/asset/json_access.h"
 #include "limber/asset/json_text.h"
+#include "limber/asset/utf8.h"
 #include "limber/core/error.h"
 #include "limber/core/names.h"
 
@@ -28,8 +29,8 @@ namespace {
 constexpr std::string_view kRecordExtension = ".jsonl";
 constexpr std::chrono::milliseconds kPause(100);  // between tries for a file that another program has open
 
-[[noreturn]] void refuseFile(const std::string& name, const char* what) {
-  throw Error(ErrorCode::kFile, std::string(what) + ": " + std::strerror(errno), name);
+[[noreturn]] void refuseFile(const std::string& name, const char* what, const char* remedy = "") {
+  throw Error(ErrorCode::kFile, std::string(what) + ": " + std::strerror(errno), name, remedy);
 }
 
 // Up to and with the last end of a line.
@@ -53,6 +54,7 @@ std::string batchRecordLine(const BatchRecord& record) {
                      {"peak_memory", record.peakMemory},
                      {"input_sha256", record.inputSha256},
                      {"output_sha256", record.outputSha256},
+                     {"task", record.task},
                      {"key", record.key},
                      {"limits", {{"seconds", record.limits.seconds}, {"memory", record.limits.memory}}}};
   return dumpReport(json, -1) + "\n";
@@ -76,13 +78,14 @@ BatchRecord parseBatchRecord(std::string_view line) {
   record.peakMemory = root.count("peak_memory").value_or(0);
   record.inputSha256 = root.text("input_sha256");
   record.outputSha256 = root.text("output_sha256");
+  record.task = root.text("task");
   record.key = root.text("key");
   record.limits.seconds = root.object("limits").number("seconds", 0);
   record.limits.memory = root.object("limits").count("memory").value_or(0);
   return record;
 }
 
-std::map<std::string, BatchRecord> readBatchRecords(const fs::path& folder) {
+std::map<std::string, BatchRecord> readBatchRecords(const fs::path& folder, Warnings& warnings) {
   std::vector<fs::path> files;
   std::error_code problem;
   for (fs::directory_iterator it(folder, problem), end; !problem && it != end; it.increment(problem)) {
@@ -100,8 +103,10 @@ std::map<std::string, BatchRecord> readBatchRecords(const fs::path& folder) {
         BatchRecord record = parseBatchRecord(line);
         const auto [known, isNew] = records.try_emplace(record.output);
         if (isNew || record.run >= known->second.run) known->second = std::move(record);
-      } catch (const Error& error) {
-        throw error.within(fmt::format("line {}", number)).within(file.string());
+      } catch (const Error&) {
+        warnings.add("damaged-records",
+                     "lines that are no records are passed over; entries that have no other run again",
+                     fmt::format("{}: line {}", validUtf8(file.string()), number));
       }
     }
   }
@@ -116,7 +121,9 @@ BatchRecordFile::BatchRecordFile(const fs::path& file, const std::function<void(
   file_.number = open(name_.c_str(), O_CREAT | O_RDWR | O_APPEND | O_CLOEXEC, 0666);
   if (file_.number < 0) refuseFile(name_, "cannot be written");
   while (flock(file_.number, LOCK_EX | LOCK_NB) != 0) {
-    if (errno != EWOULDBLOCK && errno != EINTR) refuseFile(name_, "cannot be locked");
+    if (errno != EWOULDBLOCK && errno != EINTR) {
+      refuseFile(name_, "cannot be locked", "the folder has to lie on a file system that offers flock");
+    }
     waiting();
     std::this_thread::sleep_for(kPause);
   }

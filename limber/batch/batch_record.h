@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "limber/core/error.h"
 #include "limber/jobs/job.h"
 
 namespace limber {
@@ -22,6 +23,7 @@ struct BatchRecord {
   double seconds = 0;
   std::size_t peakMemory = 0;             // bytes
   std::string inputSha256, outputSha256;  // of the files' bytes; the output's is empty where it is not done
+  std::string task;                       // BatchTask's digest; empty in records of earlier versions
   std::string key;   // of the program, the command and all that it reads: equal keys, equal outputs
   JobLimits limits;  // that it ran within
 };
@@ -32,16 +34,16 @@ std::string batchRecordLine(const BatchRecord& record);
 BatchRecord parseBatchRecord(std::string_view line);
 
 // The last record of each output in the files of a folder (*.jsonl): that of the latest run, of one run's the last
-// line. None where there is no such folder. A line that was not written to its end does not count. Throws Error kFile,
-// and kBadData for lines that are none.
-std::map<std::string, BatchRecord> readBatchRecords(const std::filesystem::path& folder);
+// line. None where there is no such folder. A line that was not written to its end does not count. Lines that are no
+// records, as a power loss can leave them, are passed over with a warning "damaged-records". Throws Error kFile.
+std::map<std::string, BatchRecord> readBatchRecords(const std::filesystem::path& folder, Warnings& warnings);
 
 // A file that lines are appended to, whole even where this program is killed. One at a time may have it open, in any
 // process of this system.
 class BatchRecordFile {
  public:
   // Makes the file, or takes away what stands behind its last line. While another one has it open, `waiting` is called
-  // ten times a second; it may throw to give up. Throws Error kFile: it cannot be written.
+  // ten times a second; it may throw to give up. Throws Error kFile: it cannot be written or locked (flock).
   BatchRecordFile(const std::filesystem::path& file, const std::function<void()>& waiting);
   BatchRecordFile(const BatchRecordFile&) = delete;
   BatchRecordFile& operator=(const BatchRecordFile&) = delete;

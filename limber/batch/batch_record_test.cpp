@@ -29,9 +29,17 @@ BatchRecord recordOf(const std::string& name) {
   record.seconds = 1.25;
   record.peakMemory = 123456789;
   record.inputSha256 = std::string(64, 'a');
+  record.task = "0123456789abcdef";
   record.key = std::string(64, 'b');
   record.limits = {2, 1 << 20};
   return record;
+}
+
+std::map<std::string, BatchRecord> recordsIn(const std::filesystem::path& folder) {
+  Warnings warnings;
+  const auto records = readBatchRecords(folder, warnings);
+  EXPECT_TRUE(warnings.empty());
+  return records;
 }
 
 std::string wholeTextOf(const std::filesystem::path& file) {
@@ -51,6 +59,7 @@ TEST(BatchRecord, ComesBackFromItsLine) {
   EXPECT_EQ(back.warnings, record.warnings);
   EXPECT_EQ(back.seconds, record.seconds);
   EXPECT_EQ(back.peakMemory, record.peakMemory);
+  EXPECT_EQ(back.task, record.task);
   EXPECT_EQ(back.limits.memory, record.limits.memory);
   EXPECT_THROW(parseBatchRecord("{}"), Error);
   EXPECT_THROW(parseBatchRecord(line.substr(0, line.size() / 2)), Error);
@@ -67,12 +76,12 @@ TEST(BatchRecord, LastOneCountsAndTornOnesDoNot) {
   }
   const std::string whole = wholeTextOf(file);
   std::ofstream(file, std::ios::app | std::ios::binary) << batchRecordLine(recordOf("c")).substr(0, 40);
-  const auto records = readBatchRecords(folder.path());
+  const auto records = recordsIn(folder.path());
   EXPECT_EQ(records.size(), 2u);
   EXPECT_EQ(records.at("b.glb").outcome, JobOutcome::kDone);
   const BatchRecordFile opened(file, noWaiting);
   EXPECT_EQ(wholeTextOf(file), whole);
-  EXPECT_TRUE(readBatchRecords(folder.path() / "missing").empty());
+  EXPECT_TRUE(recordsIn(folder.path() / "missing").empty());
 }
 
 TEST(BatchRecord, TheLatestRunCountsWhateverItsFile) {
@@ -80,13 +89,29 @@ TEST(BatchRecord, TheLatestRunCountsWhateverItsFile) {
   BatchRecord before = recordOf("a"), after = before;
   before.run = 0;
   after.outcome = JobOutcome::kDone;
-  const auto outcome = [&] { return readBatchRecords(folder.path()).at("a.glb").outcome; };
+  const auto outcome = [&] { return recordsIn(folder.path()).at("a.glb").outcome; };
   BatchRecordFile(folder.path() / "5-of-16.jsonl", noWaiting).append(before);
   BatchRecordFile(folder.path() / "1-of-1.jsonl", noWaiting).append(after);
   EXPECT_EQ(outcome(), JobOutcome::kDone);
   before.run = after.run + 1;
   BatchRecordFile(folder.path() / "1-of-1.jsonl", noWaiting).append(before);
   EXPECT_EQ(outcome(), JobOutcome::kTimedOut);
+}
+
+TEST(BatchRecord, LinesThatAreNoneArePassedOverWithAWarning) {
+  const testing::TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "1-of-1.jsonl";
+  std::ofstream(file, std::ios::binary) << batchRecordLine(recordOf("a")) << "garbage\n"
+                                        << std::string(8, '\0') << batchRecordLine(recordOf("b")) << "[1]\n"
+                                        << batchRecordLine(recordOf("c"));
+  Warnings warnings;
+  const auto records = readBatchRecords(folder.path(), warnings);
+  EXPECT_EQ(records.size(), 2u);
+  EXPECT_TRUE(records.contains("c.glb"));
+  ASSERT_EQ(warnings.items().size(), 1u);
+  EXPECT_EQ(warnings.items()[0].kind, "damaged-records");
+  EXPECT_EQ(warnings.items()[0].count, 3u);
+  EXPECT_EQ(warnings.items()[0].where, file.string() + ": line 2");
 }
 
 TEST(BatchRecord, OneAtATimeWrites) {
@@ -100,7 +125,7 @@ TEST(BatchRecord, OneAtATimeWrites) {
   });
   EXPECT_EQ(tries, 3);
   second.append(recordOf("a"));
-  EXPECT_EQ(readBatchRecords(folder.path()).size(), 1u);
+  EXPECT_EQ(recordsIn(folder.path()).size(), 1u);
 }
 
 }  // namespace

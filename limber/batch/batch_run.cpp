@@ -1,6 +1,9 @@
 #include "limber/batch/batch_run.h"
 
 #include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
 #include <deque>
 #include <exception>
 #include <map>
@@ -15,12 +18,13 @@
 #include "limber/asset/json_text.h"
 #include "limber/asset/utf8.h"
 #include "limber/batch/batch_record.h"
+#include "limber/batch/batch_task.h"
 #include "limber/core/error.h"
 #include "limber/core/folder.h"
 #include "limber/core/progress.h"
 #include "limber/jobs/job_key.h"
 #include "limber/jobs/job_pool.h"
-#include "limber/jobs/last_line.h"
+#include "limber/study/command_words.h"
 #include "limber/study/input_digest.h"
 
 namespace limber {
@@ -29,12 +33,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::string_view kWarningsFile = "warnings.json", kThreads = "--threads", kSpeaker = "limber: ";
-constexpr std::size_t kMostProblem = 1000;    // bytes of a command's own words
+constexpr std::string_view kThreads = "--threads";
 constexpr std::size_t kMostOutput = 1 << 16;  // bytes kept of what a command prints
 constexpr double kPaceSpan = 60;              // seconds that the pace is taken over
 constexpr double kTurn = 0.02;                // seconds that entries are looked at before those that run are
-constexpr int kNoWarningsCode = 1;
 
 // Entries that ran, over the last while.
 class Pace {
@@ -59,7 +61,9 @@ class BatchRun {
   BatchRun(const BatchPlan& plan, const BatchOptions& options)
       : plan_(plan),
         options_(options),
-        folder_{prepared(plan, options)},
+        prints_(std::find(plan.command.begin(), plan.command.end(), kBatchOutput) == plan.command.end()),
+        tasks_(plan, options.program),
+        folder_{prepared()},
         records_(folder_.recordsOf(options.shard),
                  [&] {
                    if (options.waiting) options.waiting();
@@ -67,9 +71,8 @@ class BatchRun {
         inputs_(plan.limits.memory) {
     removeFolder(unfinished());
     makeFolder(unfinished());
-    known_ = readBatchRecords(folder_.records());
+    known_ = readBatchRecords(folder_.records(), state_.recordWarnings);
     for (const auto& [output, record] : known_) number_ = std::max(number_, record.run + 1);
-    program_ = sha256OfFile(options.program);
     for (std::size_t i = options.shard.number - 1; i < plan.entries.size(); i += options.shard.count) ++state_.entries;
     next_ = options.shard.number - 1;
   }
@@ -88,49 +91,36 @@ class BatchRun {
  private:
   struct Open {  // an entry that runs
     BatchRecord record;
-    fs::path work;  // a folder of its own, for its output and warnings
+    fs::path work;  // a folder for its output alone
+
+    fs::path made() const { return work / fs::path(record.output).filename(); }
+    fs::path warnings() const { return fs::path(work) += ".json"; }
   };
 
   // The folder, marked as a batch's before anything else is in it.
-  static fs::path prepared(const BatchPlan& plan, const BatchOptions& options) {
-    const BatchFolder folder{fs::absolute(options.output).lexically_normal()};
+  fs::path prepared() {
+    const BatchFolder folder{fs::absolute(options_.output).lexically_normal()};
     std::error_code unseen;
-    const bool isUsed = fs::exists(folder.root, unseen) && !fs::is_empty(folder.root, unseen);
+    const fs::file_status found = fs::status(folder.root, unseen);
+    if (unseen == std::errc::not_a_directory || (fs::exists(found) && !fs::is_directory(found))) {
+      throw Error(ErrorCode::kBadArgument, "is a file, or lies in one", folder.root.string(), "name a folder");
+    }
+    const bool isUsed = fs::exists(found) && !fs::is_empty(folder.root, unseen);
     // Another shard may be at this very point, or was ended at it: its own folder comes before all else.
     if (isUsed && !fs::exists(folder.own(), unseen)) {
-      throw Error(ErrorCode::kFile, "holds other files than a batch's", folder.root.string(),
+      throw Error(ErrorCode::kBadArgument, "holds other files than a batch's", folder.root.string(),
                   "name a folder that is empty or new");
     }
     makeFolder(folder.records());
-    Json outputs = Json::array();
-    for (const BatchEntry& entry : plan.entries) outputs.push_back(entry.output);
-    writeFile(folder.plan(), asBytes(dumpReport({{"limber_batch", 1}, {"outputs", std::move(outputs)}}, 0) + "\n"));
+    writeFile(folder.plan(), asBytes(plannedOutputsText(plannedOutputs(plan_, tasks_))));
     return folder.root;
   }
 
   fs::path unfinished() const { return folder_.unfinished(options_.shard); }
 
-  // All that the output depends on. Files that the command names besides count with their bytes.
-  std::string keyOf(const BatchEntry& entry, const std::string& inputKey) {
-    JobKey key;
-    key.add("limber batch entry 1").add(program_).add(inputKey);
-    for (const std::string& argument : plan_.command) key.add(argument).add(digestBeside(argument));
-    key.add("options");
-    for (const std::string& option : entry.options) key.add(option).add(digestBeside(option));
-    return key.hex();
-  }
-
-  // Of the file that the argument names, by itself or as --name=file; empty where it names none.
-  std::string digestBeside(const std::string& argument) {
-    if (const auto known = beside_.find(argument); known != beside_.end()) return known->second;
-    const std::size_t equals = argument.starts_with("--") ? argument.find('=') : std::string::npos;
-    const fs::path named = equals == std::string::npos ? argument : argument.substr(equals + 1);
-    std::error_code unseen;
-    std::string digest;
-    if (!named.empty() && fs::is_regular_file(plan_.folder / named, unseen)) {
-      digest = inputs_.of(plan_.folder / named).all;
-    }
-    return beside_.emplace(argument, std::move(digest)).first->second;
+  // All that the output depends on.
+  static std::string keyOf(const BatchTask& task, const std::string& inputKey) {
+    return JobKey().add("limber batch entry 2").add(task.digest).add(inputKey).hex();
   }
 
   // A file that cannot be read has others.
@@ -161,13 +151,25 @@ class BatchRun {
     }
   }
 
-  // Digests of the entry's files; what is wrong with these, empty where nothing is.
+  // Why no file can be put there; empty where nothing is in the way.
+  static std::string obstacleAt(const fs::path& place) {
+    std::error_code problem;
+    const fs::file_status found = fs::symlink_status(place, problem);
+    if (fs::is_directory(found)) return "a folder lies where the output is to be";
+    return problem == std::errc::not_a_directory ? "a file lies where the output's folder is to be" : "";
+  }
+
+  // Digests of the entry's files; what is wrong with these or with its output's place, empty where nothing is.
   std::string identify(const BatchEntry& entry, BatchRecord& record) {
     const fs::path input = plan_.folder / entry.input;
+    const BatchTask task = tasks_.of(entry);
+    record.task = task.digest;
+    if (std::string obstacle = obstacleAt(folder_.root / entry.output); !obstacle.empty()) return obstacle;
     try {
+      if (task.problem) throw *task.problem;
       const InputDigest digest = inputs_.of(input);
       record.inputSha256 = digest.bytes;
-      record.key = keyOf(entry, digest.all);
+      record.key = keyOf(task, digest.all);
     } catch (const Error& error) {  // without the input's own name, so that alike failures read alike
       return validUtf8(error.where() == input.string() ? error.message() : error.what());
     } catch (const std::bad_alloc&) {
@@ -204,43 +206,54 @@ class BatchRun {
         ++(known->second.outcome == JobOutcome::kDone ? state_.done : state_.failed);
         continue;
       }
-      open_.emplace(begunChains_, Open{std::move(record), unfinished() / std::to_string(begunChains_)});
-      return JobChain{jobOf(entry, open_.at(begunChains_++).work)};
+      const Open open{std::move(record), unfinished() / std::to_string(begunChains_)};
+      Job job = jobOf(entry, open);
+      open_.emplace(begunChains_++, open);
+      return JobChain{std::move(job)};
     }
     return std::nullopt;
   }
 
-  Job jobOf(const BatchEntry& entry, const fs::path& work) const {
-    makeFolder(work);
+  Job jobOf(const BatchEntry& entry, const Open& open) const {
+    makeFolder(open.work);
     std::vector<std::string> arguments;
     for (const std::string& word : plan_.command) {
       arguments.push_back(word == kBatchInput    ? (plan_.folder / entry.input).string()
-                          : word == kBatchOutput ? (work / fs::path(entry.output).filename()).string()
+                          : word == kBatchOutput ? open.made().string()
                                                  : word);
     }
     arguments.insert(arguments.end(), entry.options.begin(), entry.options.end());
     const bool saysThreads = std::any_of(arguments.begin(), arguments.end(), [](const std::string& argument) {
       return argument.substr(0, argument.find('=')) == kThreads;
     });
-    if (!saysThreads) arguments.insert(arguments.end(), {std::string(kThreads), "1"});
+    if (options_.takesThreads && !saysThreads) arguments.insert(arguments.end(), {std::string(kThreads), "1"});
     Job job;
     job.folder = plan_.folder;
     job.limits = plan_.limits;
     job.mostOutput = kMostOutput;
     if (options_.outOfMemoryCode != 0) job.outOfMemoryCode = options_.outOfMemoryCode;
-    job.work = [&command = options_.command, arguments, work] {
-      BatchWarnings warnings;
-      const int code = command(arguments, warnings);
-      if (code != 0 || warnings.empty()) return code;
-      try {
-        writeFile(work / kWarningsFile, asBytes(dumpReport(Json(warnings))));
-      } catch (const Error& error) {
-        fmt::print(stderr, "{}{}\n", kSpeaker, error.what());
-        return kNoWarningsCode;
-      }
-      return 0;
+    job.work = [this, arguments, made = open.made(), warnings = open.warnings()] {
+      return runInChild(arguments, made, warnings);
     };
     return job;
+  }
+
+  int runInChild(const std::vector<std::string>& arguments, const fs::path& made, const fs::path& warningsFile) const {
+    BatchWarnings warnings;
+    try {
+      if (prints_ && !std::freopen(made.c_str(), "wb", stdout)) failToPrint(made);
+      const int code = options_.command(arguments, warnings);
+      if (prints_ && (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)) failToPrint(made);
+      if (code == 0 && !warnings.empty()) writeFile(warningsFile, asBytes(dumpReport(Json(warnings))));
+      return code;
+    } catch (const Error& error) {
+      fmt::print(stderr, "{}{}\n", kSpeaker, error.what());
+      return options_.storageCode;
+    }
+  }
+
+  [[noreturn]] static void failToPrint(const fs::path& made) {
+    throw Error(ErrorCode::kFile, fmt::format("cannot be written: {}", std::strerror(errno)), made.string());
   }
 
   static BatchWarnings warningsIn(const fs::path& file) {
@@ -251,20 +264,21 @@ class BatchRun {
     return parseJson({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, ignored).get<BatchWarnings>();
   }
 
-  // What the command said last, with the input's name taken out, so that alike failures read alike.
-  static std::string wordsOf(const std::string& text, const fs::path& input) {
-    const std::string line = validUtf8(lastLine(text, kMostProblem));
-    std::string words = line.starts_with(kSpeaker) ? line.substr(kSpeaker.size()) : line;
-    for (const std::string& name : {validUtf8(input.string()), validUtf8(input.filename().string())}) {
-      for (std::size_t at = 0; (at = words.find(name, at)) != std::string::npos; at += kBatchInput.size()) {
-        words.replace(at, name.size(), kBatchInput);
-      }
+  // What the command said last, with the entry's own names taken out, so that alike failures read alike.
+  std::string wordsOf(const std::string& text, const Open& open) const {
+    std::string words = commandWords(text);
+    const fs::path input = plan_.folder / open.record.input;
+    for (const auto& [name, by] : {std::pair{open.made(), kBatchOutput},
+                                   {open.work / "", ""},
+                                   {input, kBatchInput},
+                                   {input.filename(), kBatchInput}}) {
+      words = replaced(std::move(words), validUtf8(name.string()), by);
     }
     return words;
   }
 
-  std::string problemOf(const JobResult& result, const fs::path& input) const {
-    const std::string words = wordsOf(result.error, input);
+  std::string problemOf(const JobResult& result, const Open& open) const {
+    const std::string words = wordsOf(result.error, open);
     if (result.outcome == JobOutcome::kFailed && !words.empty()) return words;
     Job job;
     job.limits = plan_.limits;
@@ -272,32 +286,48 @@ class BatchRun {
   }
 
   void take(std::size_t chain, const JobResult& result) {
-    auto node = open_.extract(chain);
-    BatchRecord& record = node.mapped().record;
-    const fs::path work = node.mapped().work, made = work / fs::path(record.output).filename();
+    Open open = std::move(open_.extract(chain).mapped());
+    BatchRecord& record = open.record;
     record.outcome = result.outcome;
     record.seconds = result.seconds;
     record.peakMemory = result.peakMemory;
-    if (result.outcome == JobOutcome::kDone) {
-      takeOutput(work, made, record);
-    } else {
-      record.problem = problemOf(result, plan_.folder / record.input);
+    if (result.outcome == JobOutcome::kFailed && result.code == options_.storageCode) {
+      throw Error(ErrorCode::kFile, commandWords(result.error), {},
+                  "mend that and call it again: it goes on from here");
     }
+    if (result.outcome == JobOutcome::kDone) {
+      record.problem = problemWithOutput(open);
+      if (!record.problem.empty()) record.outcome = JobOutcome::kFailed;
+    } else {
+      record.problem = problemOf(result, open);
+    }
+    if (record.outcome == JobOutcome::kDone) takeOutput(open);
     pace_.add(secondsNow());
     keep(std::move(record));
-    removeFolder(work);
+    removeFolder(open.work);
+    std::error_code unseen;
+    fs::remove(open.warnings(), unseen);
   }
 
-  void takeOutput(const fs::path& work, const fs::path& made, BatchRecord& record) const {
-    std::error_code problem;
-    if (!fs::is_regular_file(made, problem)) {
-      record.outcome = JobOutcome::kFailed;
-      record.problem = "the command wrote no output";
-      return;
+  // What is in the way of taking what was made; empty where nothing is.
+  static std::string problemWithOutput(const Open& open) {
+    const fs::path made = open.made();
+    std::error_code unseen;
+    if (!fs::is_regular_file(made, unseen) || fs::file_size(made, unseen) == 0) return "the command wrote no output";
+    for (const fs::path& file : filesBelow(open.work)) {
+      if (file == made) continue;
+      return fmt::format("the command wrote '*{}' beside its output, which would be lost (take a format of one file)",
+                         validUtf8(file.extension().string()));
     }
+    return {};
+  }
+
+  void takeOutput(Open& open) const {
+    BatchRecord& record = open.record;
+    const fs::path made = open.made(), place = folder_.root / record.output;
     record.outputSha256 = sha256OfFile(made);
-    record.warnings = warningsIn(work / kWarningsFile);
-    const fs::path place = folder_.root / record.output;
+    record.warnings = warningsIn(open.warnings());
+    std::error_code problem;
     makeFolder(place.parent_path());
     fs::rename(made, place, problem);
     if (problem) throw Error(ErrorCode::kFile, "cannot be written: " + problem.message(), place.string());
@@ -319,14 +349,14 @@ class BatchRun {
 
   const BatchPlan& plan_;
   const BatchOptions& options_;
+  bool prints_;  // its output, rather than writing a file
+  BatchTasks tasks_;
   BatchFolder folder_;
   BatchRecordFile records_;
   std::map<std::string, BatchRecord> known_;  // by output
-  std::string program_;                       // its digest
   InputDigests inputs_;
-  std::map<std::string, std::string> beside_;  // digests of files that the command names, by argument
-  std::map<std::size_t, Open> open_;           // by the number of their chain
-  std::size_t number_ = 1;                     // of this run
+  std::map<std::size_t, Open> open_;  // by the number of their chain
+  std::size_t number_ = 1;            // of this run
   std::size_t next_ = 0, begunChains_ = 0;
   BatchProgress state_;
   Pace pace_;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "limber/batch/batch_plan.h"
+#include "limber/core/error.h"
 
 namespace limber {
 
@@ -18,7 +19,7 @@ struct BatchFolder {
 
   // All that is no output. A folder without it is no batch's.
   std::filesystem::path own() const { return root / ".limber-batch"; }
-  // What the batch is known by: {"limber_batch": 1, "outputs": [...]}, in the order of the plan.
+  // What the batch is known by: the PlannedOutputs of the latest run.
   std::filesystem::path plan() const { return own() / "plan.json"; }
   std::filesystem::path records() const { return own() / "records"; }
   std::filesystem::path recordsOf(const BatchShard& shard) const;
@@ -26,7 +27,7 @@ struct BatchFolder {
 };
 
 // A command as the program's own does it: its arguments, without the program's name; returns the exit code, and hands
-// over the warnings that it gave, by kind. What it says of an error goes to standard error.
+// over the warnings that it gave, by kind. What it says of an error goes to standard error; it throws nothing.
 using BatchWarnings = std::vector<std::pair<std::string, std::size_t>>;
 using BatchCommand = std::function<int(const std::vector<std::string>& arguments, BatchWarnings& warnings)>;
 
@@ -34,31 +35,36 @@ using BatchCommand = std::function<int(const std::vector<std::string>& arguments
 struct BatchProgress {
   std::size_t entries = 0, kept = 0, done = 0, failed = 0;  // kept: done or failed before, as they stand
   double seconds = 0;                                       // that this run has taken
-  double perSecond = 0;    // entries that ran, over the last minute; 0 while it is not known
-  double secondsLeft = 0;  // for what is left, at that pace; 0 while it is not known
+  double perSecond = 0;     // entries that ran, over the last minute; 0 while it is not known
+  double secondsLeft = 0;   // for what is left, at that pace; 0 while it is not known
+  Warnings recordWarnings;  // of reading the records, before the first entry runs
 };
 
 struct BatchOptions {
   std::filesystem::path program;  // limber's own (ownProgram): another one makes everything anew
   std::filesystem::path output;   // made where it is missing
   BatchShard shard;
-  int jobs = 1;             // at once
-  int outOfMemoryCode = 0;  // by which the command says that memory did not suffice
-  bool retries = false;     // what did not end well is done again
-  BatchCommand command;     // called in a child, with "--threads 1" where the plan says nothing of threads
+  int jobs = 1;              // at once
+  int outOfMemoryCode = 0;   // by which the command says that memory did not suffice
+  int storageCode = 4;       // by which it says that nothing can be written there (StorageError); not 0
+  bool retries = false;      // what did not end well is done again
+  BatchCommand command;      // called in a child; what it prints is the output where the plan names none
+  bool takesThreads = true;  // does the command? Then "--threads 1" is added where the plan says nothing of threads
   std::function<void(const BatchProgress&)> tell;  // some fifty times a second; may throw to end the run
   std::function<void()> waiting;  // ten times a second while another program is at this shard; may throw likewise
 };
 
 // An input that is no plain file, or has more bytes than an entry may have memory, fails unread: it may have no end.
 //
+// A disk that is full, can only be read or fails is no entry's fault: it ends the batch, and the entry has no line.
+//
 // An entry's output is written aside, hashed and renamed to its place; then its line is appended to the shard's
 // records. So whatever ends a batch, an output is whole or not there, and the next run does what has no line. An entry
 // with a line of the same key is left alone while its output has the bytes that the line tells; an entry that ran out
 // of time or memory is done again where there is more of it, one that crashed always.
 //
-// A folder of an earlier plan is taken over: what is right in there stays. Throws Error kFile: the folder holds other
-// things and no batch, or it cannot be written.
+// A folder of an earlier plan is taken over: what is right in there stays. Throws Error kBadArgument where the folder
+// is a file, or holds other things and no batch; kFile where nothing can be written.
 //
 // Where another program is at the same shard, its end is waited for: an engine may begin a task anew while what it
 // thinks dead is still at work.

@@ -21,10 +21,12 @@ namespace limber {
 namespace {
 
 namespace fs = std::filesystem;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using ::testing::SizeIs;
 
-constexpr int kNoMemoryCode = 3, kNoOutputCode = 9;
+constexpr int kNoMemoryCode = 3, kStorageCode = 5, kNoOutputCode = 9;
 
 std::string textOf(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
@@ -43,6 +45,15 @@ int copyOrMisbehave(const std::vector<std::string>& arguments, BatchWarnings& wa
   if (text == "huge") return kNoMemoryCode;
   if (text == "nothing") return 0;
   if (text == "warn") warnings.emplace_back("odd", 2);
+  if (text == "full" || text == "refused") {
+    std::fprintf(stderr, "limber: %s: cannot be written: %s\n", arguments.at(2).c_str(), text.c_str());
+    return text == "full" ? kStorageCode : 1;
+  }
+  if (text == "several") std::ofstream(fs::path(arguments.at(2)).replace_extension(".bin")) << text;
+  if (text == "print") {
+    std::printf("%s", arguments.at(2).c_str());
+    return 0;
+  }
   std::ofstream out(arguments.at(2), std::ios::binary);
   for (const std::string& argument : arguments) {
     if (argument != arguments[1] && argument != arguments[2]) out << argument << ' ';
@@ -70,11 +81,15 @@ class BatchRunTest : public ::testing::Test {
     options.output = output();
     options.jobs = 2;
     options.outOfMemoryCode = kNoMemoryCode;
+    options.storageCode = kStorageCode;
     options.command = copyOrMisbehave;
     return options;
   }
   fs::path output() const { return folder_.path() / "out"; }
-  std::map<std::string, BatchRecord> records() const { return readBatchRecords(BatchFolder{output()}.records()); }
+  std::map<std::string, BatchRecord> records() const {
+    Warnings warnings;
+    return readBatchRecords(BatchFolder{output()}.records(), warnings);
+  }
 
   testing::TemporaryFolder folder_;
 };
@@ -192,6 +207,83 @@ TEST_F(BatchRunTest, ThreadsAreAddedWhereNothingIsSaidOfThem) {
   EXPECT_EQ(textOf(output() / "sub/a.glb"), "copy --threads=4 a");
 }
 
+TEST_F(BatchRunTest, NoThreadsAreAddedToACommandThatTakesNone) {
+  put("a.obj", "a");
+  BatchOptions without = options();
+  without.takesThreads = false;
+  runBatch(plan({"a"}), without);
+  EXPECT_EQ(textOf(output() / "sub/a.glb"), "copy a");
+}
+
+TEST_F(BatchRunTest, WhatIsPrintedIsTheOutputWhereThePlanNamesNone) {
+  put("a.obj", "print");
+  BatchPlan printing = plan({"a"});
+  printing.command = {"copy", std::string(kBatchInput), "words"};
+  EXPECT_EQ(runBatch(printing, options()).done, 1u);
+  EXPECT_EQ(textOf(output() / "sub/a.glb"), "words");
+}
+
+TEST_F(BatchRunTest, AFullDiskEndsTheBatchAndIsNoEntrysFailure) {
+  put("a.obj", "full");
+  put("b.obj", "b");
+  BatchOptions oneByOne = options();
+  oneByOne.jobs = 1;
+  try {
+    runBatch(plan({"b", "a"}), oneByOne);
+    FAIL() << "went on";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::kFile);
+    EXPECT_THAT(error.what(), HasSubstr("a.glb: cannot be written: full"));
+  }
+  EXPECT_THAT(records(), SizeIs(1));
+  put("a.obj", "a");
+  const BatchProgress end = runBatch(plan({"b", "a"}), options());
+  EXPECT_EQ(end.kept, 1u);
+  EXPECT_EQ(end.done, 2u);
+}
+
+TEST_F(BatchRunTest, AlikeFailuresReadAlikeWhereverTheEntryWorks) {
+  put("a.obj", "refused");
+  put("b.obj", "refused");
+  runBatch(plan({"a", "b"}), options());
+  const BatchStatus status = batchStatus(output());
+  ASSERT_THAT(status.failures, SizeIs(1));
+  EXPECT_EQ(status.failures[0].problem, "{output}: cannot be written: refused");
+}
+
+TEST_F(BatchRunTest, FilesBesideTheOutputAreNotLostUnsaid) {
+  put("a.obj", "several");
+  EXPECT_EQ(runBatch(plan({"a"}), options()).failed, 1u);
+  EXPECT_THAT(records().at("sub/a.glb").problem, HasSubstr("'*.bin' beside its output"));
+}
+
+TEST_F(BatchRunTest, AnOutputMayHaveAnyName) {
+  put("a.obj", "warn");
+  BatchPlan one = plan({"a"});
+  for (const char* name : {"warnings.json", "0.json", "0"}) {
+    one.entries[0].output = name;
+    EXPECT_EQ(runBatch(one, options()).done, 1u);
+    EXPECT_EQ(textOf(output() / name), "copy --threads 1 warn");
+    EXPECT_EQ(records().at(name).warnings, (BatchWarnings{{"odd", 2}}));
+  }
+}
+
+TEST_F(BatchRunTest, WhatLiesInAnOutputsPlaceCostsThatEntryAlone) {
+  for (const char* name : {"a", "b", "c"}) put(std::string(name) + ".obj", name);
+  fs::create_directories(output() / ".limber-batch");
+  fs::create_directories(output() / "sub/a.glb");
+  std::ofstream(output() / "file") << "mine";
+  BatchPlan three = plan({"a", "b", "c"});
+  three.entries[2].output = "file/c.glb";
+  const BatchProgress end = runBatch(three, options());
+  EXPECT_EQ(end.done, 1u);
+  EXPECT_EQ(records().at("sub/a.glb").problem, "a folder lies where the output is to be");
+  EXPECT_EQ(records().at("file/c.glb").problem, "a file lies where the output's folder is to be");
+  fs::remove(output() / "sub/a.glb");
+  fs::remove(output() / "file");
+  EXPECT_EQ(runBatch(three, options()).done, 3u);
+}
+
 TEST_F(BatchRunTest, WhatRunsIsWatchedWhileOthersAreLookedAt) {
   put("endless.obj", "endless");
   BatchPlan many = plan({"endless"});
@@ -257,6 +349,67 @@ TEST_F(BatchRunTest, ALaterRunCountsInHoweverManyShards) {
   EXPECT_EQ(records().at("sub/a.glb").run, 2u);
 }
 
+TEST_F(BatchRunTest, StatusCountsEntriesOfAnotherTaskAsOpen) {
+  for (const char* name : {"a", "b", "walk"}) put(std::string(name) + ".obj", name);
+  BatchPlan two = plan({"a", "b"});
+  two.command.emplace_back("walk.obj");
+  BatchOptions first = options();
+  first.shard = {1, 2};
+  runBatch(two, options());
+  const auto expectOneOpen = [&] {
+    runBatch(two, first);
+    EXPECT_EQ(batchStatus(output()).outdated, 1u);
+    EXPECT_EQ(batchStatus(output()).open(), 1u);
+    EXPECT_THAT(mergedBatchRecords(output()), Not(HasSubstr("b.glb")));
+    runBatch(two, options());
+    EXPECT_TRUE(batchStatus(output()).isWell());
+  };
+  two.command.emplace_back("--other");
+  expectOneOpen();
+  put("walk.obj", "other steps");
+  expectOneOpen();
+  two.entries[1].options = {"--more"};
+  expectOneOpen();
+}
+
+TEST_F(BatchRunTest, StatusOfAnEarlierVersionsFolderIsAsItWas) {
+  put("a.obj", "a");
+  runBatch(plan({"a"}), options());
+  const auto without = [](const fs::path& file, const char* key) {
+    std::string text = textOf(file);
+    const std::size_t begin = text.find(key), end = text.find(',', begin);
+    std::ofstream(file, std::ios::binary) << text.erase(begin, end + 1 - begin);
+  };
+  without(BatchFolder{output()}.recordsOf({}), "\"task\"");
+  EXPECT_EQ(batchStatus(output()).outdated, 1u);
+  without(BatchFolder{output()}.plan(), "\"task\"");
+  EXPECT_TRUE(batchStatus(output()).isWell());
+}
+
+TEST_F(BatchRunTest, StatusNamesOutputsOfEarlierPlans) {
+  for (const char* name : {"a", "b", "c"}) put(std::string(name) + ".obj", name);
+  put("fail.obj", "fail");
+  runBatch(plan({"a", "b", "c", "fail"}), options());
+  runBatch(plan({"a"}), options());
+  fs::remove(output() / "sub/c.glb");
+  EXPECT_THAT(batchStatus(output()).leftOver, ElementsAre("sub/b.glb"));
+  EXPECT_TRUE(batchStatus(output()).isWell());
+}
+
+TEST_F(BatchRunTest, GoesOnPastRecordsThatAreDamaged) {
+  for (const char* name : {"a", "b"}) put(std::string(name) + ".obj", name);
+  runBatch(plan({"a", "b"}), options());
+  const fs::path file = BatchFolder{output()}.recordsOf({});
+  const std::string lines = textOf(file);
+  std::ofstream(file, std::ios::binary) << "garbage" << lines;  // what stood in the first line is lost
+  EXPECT_EQ(batchStatus(output()).open(), 1u);
+  EXPECT_THAT(batchStatus(output()).recordWarnings.items(), SizeIs(1));
+  const BatchProgress end = runBatch(plan({"a", "b"}), options());
+  EXPECT_EQ(end.kept, 1u);
+  EXPECT_THAT(end.recordWarnings.items(), SizeIs(1));
+  EXPECT_TRUE(batchStatus(output()).isWell());
+}
+
 TEST_F(BatchRunTest, TakesAFolderThatAnotherShardHasJustBegun) {
   fs::create_directories(BatchFolder{output()}.own());
   put("a.obj", "a");
@@ -266,8 +419,17 @@ TEST_F(BatchRunTest, TakesAFolderThatAnotherShardHasJustBegun) {
 TEST_F(BatchRunTest, RefusesAFolderOfOtherFiles) {
   fs::create_directories(output());
   std::ofstream(output() / "diary.txt") << "mine";
-  EXPECT_THROW(runBatch(plan({}), options()), Error);
   EXPECT_THROW(batchStatus(output()), Error);
+  BatchOptions elsewhere = options();
+  for (const char* place : {"out", "out/diary.txt", "out/diary.txt/in"}) {
+    elsewhere.output = folder_.path() / place;
+    try {
+      runBatch(plan({}), elsewhere);
+      ADD_FAILURE() << place;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::kBadArgument) << error.what();
+    }
+  }
   EXPECT_EQ(textOf(output() / "diary.txt"), "mine");
 }
 

@@ -3,13 +3,11 @@
 #include <algorithm>
 #include <system_error>
 
-#include <nlohmann/json.hpp>
-
-#include "limber/asset/json_access.h"
-#include "limber/asset/json_text.h"
 #include "limber/batch/batch_record.h"
 #include "limber/batch/batch_run.h"
+#include "limber/batch/batch_task.h"
 #include "limber/core/error.h"
+#include "limber/core/file.h"
 
 namespace limber {
 
@@ -17,33 +15,25 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::vector<std::string> outputsOf(const BatchFolder& folder) {
+bool isThere(const fs::path& file) {
   std::error_code unseen;
-  if (!fs::is_regular_file(folder.plan(), unseen)) {
+  return fs::is_regular_file(file, unseen);
+}
+
+PlannedOutputs plannedIn(const BatchFolder& folder) {
+  if (!isThere(folder.plan())) {
     throw Error(ErrorCode::kFile, "is no folder of a batch", folder.root.string(), "name the one that -o named");
   }
   const Bytes bytes = readFile(folder.plan());
   try {
-    Warnings ignored;
-    const Json json = parseJson({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, ignored);
-    const JsonView root(json);
-    if (root.count("limber_batch") != 1) root.fail("is of another version");
-    return root.array("outputs").json().get<std::vector<std::string>>();
+    return parsePlannedOutputs({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
   } catch (const Error& error) {
     throw error.within(folder.plan().string());
-  } catch (const Json::exception&) {
-    throw Error(ErrorCode::kBadData, "has outputs that are no texts", folder.plan().string());
   }
 }
 
-// The records of the plan as it is now, in its order; nothing for what has none.
-std::vector<BatchRecord> recordsOf(const BatchFolder& folder, const std::vector<std::string>& outputs) {
-  std::map<std::string, BatchRecord> known = readBatchRecords(folder.records());
-  std::vector<BatchRecord> records;
-  for (const std::string& output : outputs) {
-    if (const auto found = known.find(output); found != known.end()) records.push_back(std::move(found->second));
-  }
-  return records;
+bool isOutdated(const BatchRecord& record, const std::string& task) {
+  return !task.empty() && record.task != task;
 }
 
 void add(const BatchRecord& record, const fs::path& root, BatchStatus& status,
@@ -59,8 +49,7 @@ void add(const BatchRecord& record, const fs::path& root, BatchStatus& status,
     return;
   }
   for (const auto& [kind, count] : record.warnings) ++warnings[kind];
-  std::error_code unseen;
-  if (fs::is_regular_file(root / record.output, unseen)) {
+  if (isThere(root / record.output)) {
     ++status.done;
   } else {
     ++status.lost;
@@ -72,11 +61,23 @@ void add(const BatchRecord& record, const fs::path& root, BatchStatus& status,
 BatchStatus batchStatus(const fs::path& output) {
   const BatchFolder folder{output};
   BatchStatus status;
-  const std::vector<std::string> outputs = outputsOf(folder);
-  status.entries = outputs.size();
+  const PlannedOutputs planned = plannedIn(folder);
+  status.entries = planned.outputs.size();
+  std::map<std::string, BatchRecord> known = readBatchRecords(folder.records(), status.recordWarnings);
   std::map<std::pair<JobOutcome, std::string>, BatchFailures> failures;
   std::map<std::string, std::size_t> warnings;
-  for (const BatchRecord& record : recordsOf(folder, outputs)) add(record, folder.root, status, failures, warnings);
+  for (std::size_t i = 0; i < planned.outputs.size(); ++i) {
+    const auto node = known.extract(planned.outputs[i]);
+    if (node.empty()) continue;
+    if (isOutdated(node.mapped(), planned.taskOf(i))) {
+      ++status.outdated;
+    } else {
+      add(node.mapped(), folder.root, status, failures, warnings);
+    }
+  }
+  for (const auto& [place, record] : known) {
+    if (record.outcome == JobOutcome::kDone && isThere(folder.root / place)) status.leftOver.push_back(place);
+  }
   for (auto& [kind, alike] : failures) status.failures.push_back(std::move(alike));
   status.warnings.assign(warnings.begin(), warnings.end());
   const auto byCount = [](const auto& list, auto count) {
@@ -89,8 +90,15 @@ BatchStatus batchStatus(const fs::path& output) {
 
 std::string mergedBatchRecords(const fs::path& output) {
   const BatchFolder folder{output};
+  const PlannedOutputs planned = plannedIn(folder);
+  Warnings told;  // by batchStatus
+  const std::map<std::string, BatchRecord> known = readBatchRecords(folder.records(), told);
   std::string lines;
-  for (const BatchRecord& record : recordsOf(folder, outputsOf(folder))) lines += batchRecordLine(record);
+  for (std::size_t i = 0; i < planned.outputs.size(); ++i) {
+    const auto found = known.find(planned.outputs[i]);
+    if (found == known.end() || isOutdated(found->second, planned.taskOf(i))) continue;
+    lines += batchRecordLine(found->second);
+  }
   return lines;
 }
 

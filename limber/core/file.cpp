@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "limber/core/error.h"
+#include "limber/core/storage_error.h"
 
 namespace limber {
 
@@ -37,20 +38,34 @@ void readStream(std::FILE* stream, const fs::path& path, const std::function<voi
   if (std::ferror(stream)) fail(path, "cannot be read", errno);
 }
 
+// Would other files fare alike?
+bool isOfStorage(int reason) {
+#ifdef EDQUOT
+  if (reason == EDQUOT) return true;
+#endif
+  return reason == ENOSPC || reason == EROFS || reason == EIO;
+}
+
+[[noreturn]] void failToWrite(const fs::path& path, int reason) {
+  const std::string what = std::string("cannot be written: ") + std::strerror(reason);
+  if (isOfStorage(reason)) throw StorageError(ErrorCode::kFile, what, path.string());
+  throw Error(ErrorCode::kFile, what, path.string());
+}
+
 // Errors name `path`.
 void writeStream(std::FILE* stream, const OutputFile& file, const fs::path& path) {
   const auto write = [&](ByteSpan bytes) {
     if (!bytes.empty() && std::fwrite(bytes.data(), 1, bytes.size(), stream) != bytes.size()) {
-      fail(path, "cannot be written", errno);
+      failToWrite(path, errno);
     }
   };
   write(file.bytes);
   for (const ByteSpan piece : file.further) write(piece);
-  if (std::fflush(stream) != 0) fail(path, "cannot be written", errno);
+  if (std::fflush(stream) != 0) failToWrite(path, errno);
 }
 
 void closeStream(File stream, const fs::path& path) {
-  if (std::fclose(stream.release()) != 0) fail(path, "cannot be written", errno);
+  if (std::fclose(stream.release()) != 0) failToWrite(path, errno);
 }
 
 // What a link points to, also where nothing is there yet: the link stays, the file behind it is replaced.
@@ -58,9 +73,9 @@ fs::path behindLinks(fs::path path) {
   constexpr int kMostLinks = 40;
   std::error_code problem;
   for (int links = 0; fs::is_symlink(fs::symlink_status(path, problem)); ++links) {
-    if (links == kMostLinks) fail(path, "cannot be written", ELOOP);
+    if (links == kMostLinks) failToWrite(path, ELOOP);
     path = path.parent_path() / fs::read_symlink(path, problem);
-    if (problem) throw Error(ErrorCode::kFile, "cannot be written: " + problem.message(), path.string());
+    if (problem) failToWrite(path, problem.value());
   }
   return path;
 }
@@ -76,7 +91,7 @@ bool isNoPlainFile(const fs::path& path) {
 void writeStraight(const OutputFile& file) {
   if (file.path == "-") return writeStream(stdout, file, "standard output");
   File stream(std::fopen(file.path.string().c_str(), "wb"));
-  if (!stream) fail(file.path, "cannot be written", errno);
+  if (!stream) failToWrite(file.path, errno);
   writeStream(stream.get(), file, file.path);
   closeStream(std::move(stream), file.path);
 }
@@ -104,7 +119,7 @@ class PendingFile {
   void publish() {
     std::error_code problem;
     fs::rename(temporary_, place_, problem);
-    if (problem) throw Error(ErrorCode::kFile, "cannot be written: " + problem.message(), place_.string());
+    if (problem) failToWrite(place_, problem.value());
     made_ = false;
   }
 
@@ -120,7 +135,7 @@ class PendingFile {
       if (made_) return stream;
       if (errno != EEXIST) break;
     }
-    fail(place_, "cannot be written", errno);
+    failToWrite(place_, errno);
   }
 
   fs::path place_, temporary_;

@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "limber/core/error.h"
+#include "limber/core/storage_error.h"
 
 namespace limber {
 namespace {
@@ -145,7 +146,7 @@ TEST_F(FileTest, APipeIsWrittenIntoAndStaysAPipe) {
 TEST_F(FileTest, AFullDeviceLeavesTheOtherFilesUnwritten) {
   if (!fs::is_character_file("/dev/full")) GTEST_SKIP() << "there is no /dev/full";
   const std::array<OutputFile, 2> files = {{{folder_ / "good.bin", asBytes("good")}, {"/dev/full", asBytes("bad")}}};
-  EXPECT_THROW(writeFiles(files), Error);
+  EXPECT_THROW(writeFiles(files), StorageError);
   EXPECT_TRUE(fs::is_character_file("/dev/full"));
   EXPECT_EQ(filesLeft(), 0u);
 }

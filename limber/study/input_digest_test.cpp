@@ -62,5 +62,26 @@ TEST(InputDigest, SeesFilesThatAreNamed) {
   EXPECT_NE(digestOf(model), after);
 }
 
+TEST(InputDigest, SeesFilesInFoldersBelowThatAreNamed) {
+  const testing::TemporaryFolder folder;
+  std::filesystem::create_directories(folder.path() / "my textures" / "wood");
+  put(folder.path(), "skin.mtl", "map_Kd my%20textures/wood/dark%20oak.png");
+  const auto expectSeen = [&](const std::string& name, const std::string& text) {
+    put(folder.path(), name, "one");
+    const std::filesystem::path model = put(folder.path(), "a.fbx", text);
+    const std::string before = digestOf(model);
+    put(folder.path(), name, "two");
+    EXPECT_NE(digestOf(model), before) << text;
+  };
+  expectSeen("my textures/skin.png", R"("uri": "my%20textures/skin.png")");
+  expectSeen("my textures/skin.png", R"(C:\models\my textures\skin.png)");
+  expectSeen("my textures/wood/oak.png", R"(.\my textures\wood\oak.png)");
+  expectSeen("my textures/wood/dark oak.png", "mtllib skin.mtl");
+  const std::filesystem::path model = put(folder.path(), "a.obj", "f 1/2/3 textures/skin.png my textures/other.png");
+  const std::string before = digestOf(model);
+  put(folder.path(), "my textures/skin.png", "three");
+  EXPECT_EQ(digestOf(model), before);
+}
+
 }  // namespace
 }  // namespace limber

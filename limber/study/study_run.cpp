@@ -15,8 +15,8 @@
 #include "limber/core/folder.h"
 #include "limber/jobs/job_key.h"
 #include "limber/jobs/job_pool.h"
-#include "limber/jobs/last_line.h"
 #include "limber/jobs/result_store.h"
+#include "limber/study/command_words.h"
 #include "limber/study/input_digest.h"
 
 namespace limber {
@@ -27,22 +27,11 @@ namespace {
 
 // kWork is also what a study's folder is known by.
 constexpr const char *kCells = "cells", *kPictures = "pictures", *kWork = ".limber-study", *kSamples = "samples";
-constexpr std::size_t kMostProblem = 1000;  // bytes of a program's own words
-
-// What a command said last, without who says it.
-std::string wordsOf(const std::string& text) {
-  const std::string line = lastLine(text, kMostProblem);
-  constexpr std::string_view kSpeaker = "limber: ";
-  return validUtf8(line.starts_with(kSpeaker) ? std::string_view(line).substr(kSpeaker.size()) : line);
-}
 
 // Files by their names alone, so that tables do not depend on where a study runs.
 std::string withoutFolders(std::string text, std::span<const fs::path> inputs) {
   for (const fs::path& input : inputs) {
-    const std::string file = validUtf8(input.string()), name = validUtf8(input.filename().string());
-    for (std::size_t at = 0; (at = text.find(file, at)) != std::string::npos; at += name.size()) {
-      text.replace(at, file.size(), name);
-    }
+    text = replaced(std::move(text), validUtf8(input.string()), validUtf8(input.filename().string()));
   }
   return text;
 }
@@ -170,7 +159,7 @@ class StudyRun {
     }
     runJobs(chains, options_.jobs, progress_, [&](std::size_t i, const std::vector<JobResult>& results) {
       if (results.back().outcome == JobOutcome::kDone) return;
-      const std::string words = wordsOf(results.back().error);
+      const std::string words = commandWords(results.back().error);
       throw Error(ErrorCode::kFile, words.empty() ? jobOutcomeText(chains[i].front(), results.back()) : words,
                   names[i]);
     });
@@ -299,7 +288,7 @@ class StudyRun {
       if (result.outcome != JobOutcome::kDone) {
         taken.outcome = result.outcome;
         taken.problem = fmt::format("{}: {}", step.name, jobOutcomeText(jobs[s], result));
-        const std::string words = withoutFolders(wordsOf(result.error), cell.inputs);
+        const std::string words = withoutFolders(commandWords(result.error), cell.inputs);
         if (!words.empty()) taken.problem += ": " + words;
         break;
       }

@@ -1,0 +1,39 @@
+#include "limber/batch/batch_task.h"
+
+#include <gtest/gtest.h>
+
+#include "limber/jobs/own_program.h"
+
+namespace limber {
+namespace {
+
+TEST(BatchTask, PlannedOutputsComeBackFromTheirText) {
+  BatchPlan plan;
+  plan.command = {"rig"};
+  plan.entries = {{"a.obj", "a.glb", {}, {}}, {"b.obj", "b.glb", {}, {"--handles", "9"}}, {"c.obj", "c.glb", {}, {}}};
+  BatchTasks tasks(plan, ownProgram());
+  const PlannedOutputs planned = plannedOutputs(plan, tasks);
+  EXPECT_EQ(planned.taskOf(2), planned.task);
+  EXPECT_NE(planned.taskOf(1), planned.task);
+  const PlannedOutputs back = parsePlannedOutputs(plannedOutputsText(planned));
+  EXPECT_EQ(back.outputs, planned.outputs);
+  EXPECT_EQ(back.task, planned.task);
+  EXPECT_EQ(back.others, planned.others);
+  EXPECT_EQ(parsePlannedOutputs(R"({"limber_batch": 1, "outputs": ["a.glb"]})").taskOf(0), "");
+  for (const char* wrong : {"", "{}", R"({"limber_batch": 1, "outputs": [1]})",
+                            R"({"limber_batch": 1, "outputs": [], "tasks": [[0, "a"]]})"}) {
+    EXPECT_THROW(parsePlannedOutputs(wrong), Error) << wrong;
+  }
+}
+
+TEST(BatchTask, DependsOnWhereOptionsBegin) {
+  BatchPlan plan;
+  plan.command = {"rig", "--quiet"};
+  BatchTasks tasks(plan, ownProgram());
+  BatchPlan shorter;
+  shorter.command = {"rig"};
+  EXPECT_NE(tasks.of({}).digest, BatchTasks(shorter, ownProgram()).of({{}, {}, {}, {"--quiet"}}).digest);
+}
+
+}  // namespace
+}  // namespace limber
