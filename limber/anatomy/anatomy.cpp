@@ -17,23 +17,78 @@ constexpr std::array<std::string_view, kPartKinds> kKindNames = {"trunk", "neck"
                                                                  "arm",   "wing", "fin",  "finger", "ear",
                                                                  "jaw",   "eye",  "hair", "prop",   "other"};
 
-std::vector<std::uint32_t> allowedStates(const BodyReading& reading, std::span<const FixedLabel> fixed) {
-  constexpr std::uint32_t kAll = (1u << kPartStates) - 1;
-  std::vector<std::uint32_t> ofJoint(reading.tree.size(), kAll);
-  for (const FixedLabel& label : fixed) {
-    std::uint32_t mask = 0;
-    for (std::size_t s = 0; s < kPartStates; ++s) {
-      if (kindOf(static_cast<PartState>(s)) == label.kind) mask |= 1u << s;
-    }
-    if (label.joint < ofJoint.size() && mask != 0) ofJoint[label.joint] = mask;
+constexpr std::uint32_t kAllStates = (1u << kPartStates) - 1;
+
+bool isDeclared(const Joint& joint) {
+  return !joint.declaredBone.empty();
+}
+
+std::uint32_t statesWhere(const auto& fits) {
+  std::uint32_t mask = 0;
+  for (std::size_t s = 0; s < kPartStates; ++s) {
+    if (fits(static_cast<PartState>(s))) mask |= 1u << s;
+  }
+  return mask;
+}
+
+std::uint32_t statesOfBone(std::string_view bone) {
+  const BodyPart part = bodyPartNamed(bone).value_or(body_part::kTrunk);  // no other has a name for its middle joints
+  return statesWhere([&](PartState state) {
+    const bool isLimb = part.kind == PartKind::kLeg || part.kind == PartKind::kArm;
+    return kindOf(state) == part.kind && (!isLimb || segmentOf(state) == part.segment);
+  });
+}
+
+// #half joints: which states each may have, as the user has set and, where names have a say, as the file declares.
+std::vector<std::uint32_t> allowedStates(const BodyReading& reading, const AnatomyOptions& options) {
+  std::vector<std::uint32_t> ofJoint;
+  for (const Joint& joint : reading.skeleton.joints) {
+    ofJoint.push_back(options.names && isDeclared(joint) ? statesOfBone(joint.declaredBone) : kAllStates);
+  }
+  std::vector<bool> isFixed(ofJoint.size());
+  for (const FixedLabel& label : options.fixed) {
+    const std::uint32_t mask = statesWhere([&](PartState state) { return kindOf(state) == label.kind; });
+    if (label.joint >= ofJoint.size() || mask == 0) continue;
+    ofJoint[label.joint] = mask;
+    isFixed[label.joint] = true;
   }
   std::vector<std::uint32_t> allowed;
   for (const HalfJoint& half : reading.body.joints) {
     std::uint32_t both = ofJoint[half.joint];
+    if (half.partner && isFixed[*half.partner] && !isFixed[half.joint]) both = ofJoint[*half.partner];
     if (half.partner && (both & ofJoint[*half.partner]) != 0) both &= ofJoint[*half.partner];
     allowed.push_back(both);
   }
   return allowed;
+}
+
+// Under each guess of the axes, and the field of the likeliest.
+struct Guesses {
+  std::vector<double> scores;  // axesScore
+  std::size_t best = 0;
+  std::optional<PartField> field;
+};
+
+Guesses readUnderEach(const BodyReading& reading, std::span<const std::uint32_t> allowed) {
+  const PartWeights& weights = fittedPartWeights();
+  StateScores steady(reading.measures.size());
+  addScores(reading.measures.steadyFeatures(), weights, steady);
+  Guesses guesses;
+  for (const Axes& axes : reading.guesses) {
+    StateScores own = steady;
+    addScores(reading.measures.features(axes), weights, own);
+    PartField other(reading.body, own, weights, allowed);
+    guesses.scores.push_back(axesScore(reading.measures, axes, other, weights));
+    if (guesses.field && guesses.scores.back() <= guesses.scores[guesses.best]) continue;
+    guesses.best = guesses.scores.size() - 1;
+    guesses.field.emplace(std::move(other));
+  }
+  return guesses;
+}
+
+Skeleton withoutDeclaredBones(Skeleton skeleton) {
+  for (Joint& joint : skeleton.joints) joint.declaredBone = {};
+  return skeleton;
 }
 
 }  // namespace
@@ -96,23 +151,12 @@ Anatomy readAnatomy(const Skeleton& skeleton, const Pose& pose, const AnatomyOpt
   anatomy.partOf.resize(skeleton.jointCount());
   if (skeleton.joints.empty()) return anatomy;
   const BodyReading reading(skeleton, pose, options.names);
-  const std::vector<std::uint32_t> allowed = allowedStates(reading, options.fixed);
-  const PartWeights& weights = fittedPartWeights();
-  StateScores steady(reading.measures.size());
-  addScores(reading.measures.steadyFeatures(), weights, steady);
-
-  std::vector<double> scores;
-  std::optional<PartField> field;  // of the best guess so far
-  std::size_t best = 0;
-  for (const Axes& axes : reading.guesses) {
-    StateScores own = steady;
-    addScores(reading.measures.features(axes), weights, own);
-    PartField other(reading.body, own, weights, allowed);
-    scores.push_back(axesScore(reading.measures, axes, other, weights));
-    if (field && scores.back() <= scores[best]) continue;
-    best = scores.size() - 1;
-    field.emplace(std::move(other));
+  const Guesses guesses = readUnderEach(reading, allowedStates(reading, options));
+  const bool isPossible = guesses.field->logSum() > static_cast<double>(kNever) / 2;
+  if (!isPossible && options.names && std::any_of(skeleton.joints.begin(), skeleton.joints.end(), isDeclared)) {
+    return readAnatomy(withoutDeclaredBones(skeleton), pose, options);
   }
+  const auto& [scores, best, field] = guesses;
   double all = 0, sameSides = 0;
   const Axes& axes = reading.guesses[best];
   for (std::size_t g = 0; g < scores.size(); ++g) {

@@ -41,7 +41,7 @@ std::optional<PartKind> partKindNamed(std::string_view name);
 std::optional<Side> sideNamed(std::string_view name);
 Side opposite(Side side);
 
-// What a label rests on.
+// What a label rests on; bones that the file declares are names, too.
 enum class Evidence { kForm, kNames, kBoth, kUser };
 std::string_view nameOf(Evidence evidence);
 
@@ -88,7 +88,7 @@ struct FixedLabel {
 };
 
 struct AnatomyOptions {
-  bool names = true;  // whether joints' names have a say
+  bool names = true;  // whether joints' names, and the bones that the file declares them to be, have a say
   std::span<const FixedLabel> fixed;
 };
 
@@ -96,7 +96,9 @@ struct AnatomyOptions {
 // state (a kind, for limbs with the segment) has a score by where and how it lies and by its name, each pair of parent
 // and child one for their states; the weights are learned from labelled skeletons (tools/fit_anatomy.cpp). Up, front
 // and left are read along with the states: each possible direction is one reading, and the likeliest stands.
-// Confidences are the field's own marginals. Lafferty, McCallum, Pereira 2001; exact inference on trees.
+// Confidences are the field's own marginals. Lafferty, McCallum, Pereira 2001; exact inference on trees. Bones that the
+// file declares (Joint::declaredBone) are certain, and so are left and right where they have sides; all else is read
+// around them. Only where no body can have them as they hang are they passed over.
 //
 // Any finite skeleton gets an answer; a body without any form (all joints in one place) has all joints in one trunk or
 // in none. Throws Error kBadData where a position is not finite. Cost: about linear in the joints; 0.6 ms for 100.

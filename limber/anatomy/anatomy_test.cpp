@@ -253,6 +253,47 @@ TEST(Anatomy, LabelsOfJointsThatAreNotThereChangeNothing) {
   EXPECT_EQ(one.parts.size(), other.parts.size());
 }
 
+TEST(Anatomy, DeclaredBonesAreCertainAndTellTheFront) {
+  const Skeleton facingBack = turnedAsAWhole(limber::testing::declaredPerson(), Quat(0, 0, 1, 0));
+  const Anatomy anatomy = readAnatomy(facingBack);
+  EXPECT_LT((anatomy.axes.front + Vec3::UnitZ()).norm(), 1e-6);
+  EXPECT_GT(anatomy.confidence, 0.99);
+  for (Index j = 0; j < facingBack.jointCount(); ++j) {
+    const std::string_view bone = facingBack.joints[j].declaredBone;
+    if (bone.starts_with("left") || bone.starts_with("right")) {
+      EXPECT_EQ(nameOf(bodyPartAt(anatomy, j).value()), bone);
+    }
+    EXPECT_GT(anatomy.parts[anatomy.partOf[j].value()].confidence, 0.99) << bone;
+  }
+}
+
+TEST(Anatomy, ALabelOfTheUsersIsAboveADeclaredBone) {
+  const Skeleton person = limber::testing::declaredPerson();
+  const auto jointOf = [&](std::string_view bone) {
+    const auto found = std::find_if(person.joints.begin(), person.joints.end(),
+                                    [&](const Joint& joint) { return joint.declaredBone == bone; });
+    return static_cast<Index>(found - person.joints.begin());
+  };
+  const FixedLabel label{jointOf("rightToes"), PartKind::kProp};
+  const Anatomy anatomy = readAnatomy(person, {.fixed = {&label, 1}});
+  for (const char* toes : {"leftToes", "rightToes"}) {
+    EXPECT_EQ(anatomy.parts[anatomy.partOf[jointOf(toes)].value()].kind, PartKind::kProp) << toes;
+  }
+}
+
+TEST(Anatomy, BonesThatNoBodyCanHaveArePassedOver) {
+  Skeleton person = personWith(NameHabit::kMixamo).skeleton;
+  const Anatomy plain = readAnatomy(person);
+  person.joints[person.find("mixamorig:Head").value()].declaredBone = "leftToes";
+  person.joints[person.find("mixamorig:HeadTop_End").value()].declaredBone = "hips";
+  const Anatomy anatomy = readAnatomy(person);
+  ASSERT_EQ(anatomy.parts.size(), plain.parts.size());
+  for (std::size_t p = 0; p < plain.parts.size(); ++p) {
+    EXPECT_EQ(anatomy.parts[p].kind, plain.parts[p].kind);
+    EXPECT_EQ(anatomy.parts[p].joints, plain.parts[p].joints);
+  }
+}
+
 TEST(Anatomy, PlacesThatAreNoNumbersAreRefusedByName) {
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e200}) {
     Skeleton person = personWith(NameHabit::kVrm).skeleton;

@@ -13,7 +13,7 @@ constexpr std::size_t kFingerJoints = 3;  // that a hand's finger has, its metac
 
 // A metacarpal in the palm is told by its name alone.
 void trimFinger(LimbPieces& limb, const Skeleton& skeleton) {
-  const auto nameAt = [&](Index joint) { return std::string_view(skeleton.joints[joint].name); };
+  const auto nameAt = [&](Index joint) { return readNameOf(skeleton.joints[joint]); };
   std::vector<Index>& joints = limb.joints;
   const bool isThumb = limb.part->pair == 0;
   if (!isThumb && joints.size() > 1 && saysMetapodial(nameAt(joints.front()))) joints.erase(joints.begin());
@@ -88,7 +88,7 @@ void BodyPieces::findCenter(const Skeleton& skeleton, const JointTree& tree) {
                     trunkPart->joints.front() != *pelvis;
     // A joint called hips that carries them all is believed.
     for (std::optional<Index> up = pelvis; up; up = tree.parent(*up)) {
-      if (!saysHips(skeleton.joints[*up].name)) continue;
+      if (!saysHips(readNameOf(skeleton.joints[*up]))) continue;
       pelvis = up;
       pelvisIsGuess = false;
       break;

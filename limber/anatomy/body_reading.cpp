@@ -1,6 +1,7 @@
 #include "limber/anatomy/body_reading.h"
 
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -34,6 +35,20 @@ std::vector<Axes> guessesFor(const Vec3& lateral) {
   return guesses;
 }
 
+// Positive where most declared bones of the side that `lateral` points to are left ones, negative where most are right
+// ones, 0 where no pair is declared.
+int declaredLeft(const Skeleton& skeleton, const HalfBody& body, std::span<const JointWords> words) {
+  int votes = 0;
+  for (const HalfJoint& half : body.joints) {
+    if (!half.partner) continue;
+    for (const auto& [joint, sign] : {std::pair(half.joint, 1), std::pair(*half.partner, -1)}) {
+      if (skeleton.joints[joint].declaredBone.empty() || words[joint].side == Side::kCenter) continue;
+      votes += words[joint].side == Side::kLeft ? sign : -sign;
+    }
+  }
+  return votes;
+}
+
 }  // namespace
 
 BodyReading::BodyReading(const Skeleton& read, const Pose& pose, bool names)
@@ -45,7 +60,8 @@ BodyReading::BodyReading(const Skeleton& read, const Pose& pose, bool names)
                     names ? partnersByName(skeleton, words) : std::vector<std::optional<NamedPartner>>())),
       measures(body, words),
       guesses(guessesFor(body.lateral)) {
-  if (body.sidesByName) std::erase_if(guesses, [&](const Axes& guess) { return guess.left().dot(body.lateral) < 0; });
+  const int left = body.sidesByName ? 1 : names ? declaredLeft(skeleton, body, words) : 0;
+  std::erase_if(guesses, [&](const Axes& guess) { return left * guess.left().dot(body.lateral) < 0; });
   if (body.hasPairs) return;
   const std::vector<Axes> across = guessesFor(Vec3::UnitZ());
   guesses.insert(guesses.end(), across.begin(), across.end());

@@ -21,7 +21,9 @@ struct BodyReading {
   JointTree tree;
   HalfBody body;
   BodyMeasures measures;
-  std::vector<Axes> guesses;  // left or right along the fold's lateral, up along any axis that lies in its plane
+  // Left or right along the fold's lateral, as the file declares it or else both; up along any axis that lies in its
+  // plane.
+  std::vector<Axes> guesses;
 };
 
 // How much all labellings under a guess say for it: their scores count each joint as if it were independent of the

@@ -15,16 +15,19 @@ class HumanoidReader {
   explicit HumanoidReader(const Skeleton& skeleton) : skeleton_(skeleton), body_(skeleton) {}
 
   std::vector<HumanoidJoint> read() {
+    for (const HumanoidJoint& declared : declaredJoints(skeleton_)) give(declared.bone, declared.joint, 1);
     // Where a joint on the ground carries legs and spine, the hips are the one on the way up that is called so.
     std::vector<Index> trunk = body_.trunk;
-    const auto isHips = [&](Index joint) { return saysHips(skeleton_.joints[joint].name); };
+    const auto isHips = [&](Index joint) { return saysHips(readNameOf(skeleton_.joints[joint])); };
     const auto named = std::find_if(trunk.rbegin(), trunk.rend(), isHips);
     const std::optional<Index> hips = named == trunk.rend() ? body_.pelvis : std::optional(*named);
     trunk.erase(trunk.begin(), named.base());
     if (hips) give("hips", *hips, body_.centerConfidence);
-    if (!trunk.empty()) give("spine", trunk.front(), body_.centerConfidence);
-    if (trunk.size() > 1) give("chest", trunk[trunk.size() / 2], body_.centerConfidence);
-    if (trunk.size() > 2) give("upperChest", trunk.back(), body_.centerConfidence);
+    if (!declaresSpine()) {
+      if (!trunk.empty()) give("spine", trunk.front(), body_.centerConfidence);
+      if (trunk.size() > 1) give("chest", trunk[trunk.size() / 2], body_.centerConfidence);
+      if (trunk.size() > 2) give("upperChest", trunk.back(), body_.centerConfidence);
+    }
     if (!body_.neck.empty()) give("neck", body_.neck.front(), body_.centerConfidence);
     if (body_.head) give("head", *body_.head, body_.centerConfidence);
     for (const LimbPieces& limb : body_.limbs) addLimb(limb);
@@ -36,6 +39,10 @@ class HumanoidReader {
   }
 
  private:
+  bool declaresSpine() const {
+    return given_.count("spine") > 0 || given_.count("chest") > 0 || given_.count("upperChest") > 0;
+  }
+
   void give(std::string_view name, Index joint, double confidence) {
     const std::span<const std::string_view> bones = humanoidBones();
     const auto bone = std::find(bones.begin(), bones.end(), name);

@@ -20,6 +20,24 @@ std::map<std::string, std::string> jointsByBone(const Skeleton& skeleton) {
   return bones;
 }
 
+TEST(HumanoidJoints, DeclaredOnesAreAsTheFileSays) {
+  Skeleton person = declaredPerson();
+  for (const HumanoidJoint& joint : humanoidJoints(person)) {
+    EXPECT_EQ(joint.bone, person.joints[joint.joint].declaredBone);
+    EXPECT_EQ(joint.confidence, 1);
+  }
+  EXPECT_EQ(humanoidJoints(person).size(), person.joints.size());
+  // A spine of one bone has no more than that, and what is not declared is read.
+  for (Joint& joint : person.joints) {
+    for (const char* bone : {"chest", "upperChest", "leftHand"}) {
+      if (joint.declaredBone == bone) joint.declaredBone = {};
+    }
+  }
+  const auto bones = jointsByBone(person);
+  EXPECT_EQ(bones.count("chest") + bones.count("upperChest"), 0U);
+  EXPECT_EQ(bones.count("leftHand"), 1U);
+}
+
 TEST(HumanoidJoints, PeopleUnderTheNamesOfSeveralPrograms) {
   for (const NameHabit habit : kNameHabits) {
     const MadeBody person = personWith(habit);

@@ -185,6 +185,10 @@ NameParts partsOfName(std::string_view name) {
   return parts;
 }
 
+std::string_view readNameOf(const Joint& joint) {
+  return joint.declaredBone.empty() ? std::string_view(joint.name) : joint.declaredBone;
+}
+
 bool saysHips(std::string_view name) {
   return readJointWords(name).word == static_cast<std::size_t>(BodyWord::kHips);
 }
@@ -197,7 +201,7 @@ bool saysMetapodial(std::string_view name) {
 
 std::vector<JointWords> wordsOfJoints(const Skeleton& skeleton) {
   std::vector<JointWords> words;
-  for (const Joint& joint : skeleton.joints) words.push_back(readJointWords(joint.name));
+  for (const Joint& joint : skeleton.joints) words.push_back(readJointWords(readNameOf(joint)));
   return words;
 }
 
@@ -210,7 +214,8 @@ std::vector<std::optional<NamedPartner>> partnersByName(const Skeleton& skeleton
     const Side side = words[j].side;
     if (side == Side::kCenter) continue;
     std::string rest;
-    for (const std::string& word : wordsWithoutSide(skeleton.joints[j].name, side)) rest.append("_").append(word);
+    for (const std::string& word : wordsWithoutSide(readNameOf(skeleton.joints[j]), side))
+      rest.append("_").append(word);
     (side == Side::kLeft ? bare[rest].left : bare[rest].right).push_back(j);
   }
   std::vector<std::optional<NamedPartner>> partners(skeleton.jointCount());

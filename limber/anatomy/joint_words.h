@@ -29,6 +29,9 @@ struct JointWords {
 
 JointWords readJointWords(std::string_view name);
 
+// By which a joint is read: the bone that its file declares it to be, else its name.
+std::string_view readNameOf(const Joint& joint);
+
 // A name taken apart, to be spelled in another way.
 struct NameParts {
   std::vector<std::string> words;  // in small letters, numbers apart, without the side; "mixamorig", "DEF" and the like

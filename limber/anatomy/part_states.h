@@ -4,7 +4,7 @@
 #include <array>
 #include <string_view>
 
-#include "limber/anatomy/anatomy.h"
+#include "limber/anatomy/body_part.h"
 
 namespace limber {
 
@@ -42,6 +42,30 @@ constexpr PartKind kindOf(PartState state) {
       PartKind::kArm,   PartKind::kArm,   PartKind::kArm,  PartKind::kWing, PartKind::kFin,  PartKind::kFinger,
       PartKind::kEar,   PartKind::kJaw,   PartKind::kEye,  PartKind::kHair, PartKind::kProp};
   return kKinds[static_cast<std::size_t>(state)];
+}
+
+// kWhole of what is told apart by its kind alone.
+constexpr Segment segmentOf(PartState state) {
+  switch (state) {
+    case PartState::kLegBase:
+    case PartState::kArmBase:
+      return Segment::kBase;
+    case PartState::kLegUpper:
+    case PartState::kArmUpper:
+      return Segment::kUpper;
+    case PartState::kLegMiddle:
+    case PartState::kArmMiddle:
+      return Segment::kMiddle;
+    case PartState::kLegHock:
+      return Segment::kHock;
+    case PartState::kLegEnd:
+    case PartState::kArmEnd:
+      return Segment::kEnd;
+    case PartState::kLegToes:
+      return Segment::kToes;
+    default:
+      return Segment::kWhole;
+  }
 }
 
 }  // namespace limber

@@ -56,4 +56,18 @@ std::vector<HumanoidNode> humanoidNodes(const gltf::Document& document, const ch
   return nodes;
 }
 
+std::vector<HumanoidNode> declaredBones(const gltf::Document& document) {
+  for (const char* extension : {kVrmName, kVrm0Name, kVrmAnimationName}) {
+    std::vector<HumanoidNode> nodes = humanoidNodes(document, extension);
+    if (!nodes.empty()) return nodes;
+  }
+  return {};
+}
+
+std::vector<std::string_view> declaredBoneOfNode(const gltf::Document& document) {
+  std::vector<std::string_view> bones(document.nodes.size());
+  for (const HumanoidNode& node : declaredBones(document)) bones[node.node] = node.bone;
+  return bones;
+}
+
 }  // namespace limber

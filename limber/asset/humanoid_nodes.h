@@ -22,6 +22,11 @@ struct HumanoidNode {
 // the document does not have the extension.
 std::vector<HumanoidNode> humanoidNodes(const gltf::Document& document, const char* extension);
 
+// What the first of VRM 1.0, VRM 0.x and a motion for VRMs says that names any bone.
+std::vector<HumanoidNode> declaredBones(const gltf::Document& document);
+// #nodes: the same by node, empty where a node is declared to be no bone.
+std::vector<std::string_view> declaredBoneOfNode(const gltf::Document& document);
+
 // The name in VRM 1.0 of a bone of VRM 0.x, which counts a thumb's joints otherwise ("leftThumbProximal" is
 // "leftThumbMetacarpal"); any other as it is.
 std::string_view boneOfVrm0(std::string_view name);

@@ -11,7 +11,8 @@ bool hasRig(const Asset& asset);
 
 // The skeleton that the skins of the scene use together, one joint for each joint node (and for each node between
 // joints, so that the tree is whole), in bind pose: globals are the inverses of the inverse bind matrices where the
-// skin gives them, else the nodes' transforms. Names are made unique. jointNode[j] is the node of joint j.
+// skin gives them, else the nodes' transforms. Names are made unique, and joints keep the bones that the file declares
+// them to be (humanoid_nodes.h). jointNode[j] is the node of joint j.
 struct AssetSkeleton {
   Skeleton skeleton;
   std::vector<Index> jointNode;

@@ -7,6 +7,7 @@
 
 #include "limber/asset/accessor.h"
 #include "limber/asset/bind_pose.h"
+#include "limber/asset/humanoid_nodes.h"
 #include "limber/asset/joint_radius.h"
 #include "limber/asset/rig_io.h"
 #include "limber/asset/unique_names.h"
@@ -52,6 +53,7 @@ AssetSkeleton readSkeleton(const Asset& asset) {
   const BindPose pose = readBindPose(asset, graph);
   const std::vector<bool> wanted = skeletonNodes(graph, pose.isJoint);
   const std::vector<gltf::Node>& nodes = asset.document.nodes;
+  const std::vector<std::string_view> declared = declaredBoneOfNode(asset.document);
 
   AssetSkeleton result;
   UniqueNames names;
@@ -68,6 +70,7 @@ AssetSkeleton readSkeleton(const Asset& asset) {
     joint.rest = restTransform(above, pose.nodeWorld[n], graph.local[n]);
     const std::optional<double> radius = storedRadius(nodes[n]);
     joint.radius = radius.value_or(0);
+    joint.declaredBone = declared[n];
     allRadii = allRadii && radius;
     globals.push_back(above * joint.rest.toAffine());
     jointOfNode[n] = result.skeleton.jointCount();

@@ -152,13 +152,17 @@ class TargetMaker {
  private:
   // The root joint, which leaves the nodes above it where these stand still.
   void placeRoot() {
-    try {
-      const std::optional<Index> own = findRootJoint(asset_, skeleton_);
-      root_ = own ? skeleton_.jointNode[*own] : addRootJoint(asset_, std::string(target_.rootName)).jointNode.front();
-    } catch (const Error& error) {
-      if (error.code() != ErrorCode::kUnsupported) throw;
-      asset_.warnings.add("no-root-joint", "the skeleton gets no root joint: nodes that its roots hang below move");
-      return;
+    if (const std::optional<Index> own = findRootJoint(asset_, skeleton_)) {
+      root_ = skeleton_.jointNode[*own];
+    } else {
+      try {
+        root_ = addRootJoint(asset_, std::string(target_.rootName)).jointNode.front();
+      } catch (const Error& error) {
+        if (error.code() != ErrorCode::kUnsupported) throw;
+        asset_.warnings.add("no-root-joint", "the skeleton gets no root joint: a node " + error.message(),
+                            error.where());
+        return;
+      }
     }
     const SceneGraph graph = readSceneGraph(asset_.document);
     rootScale_ = evenScaleOf(graph.world[*root_]);

@@ -7,6 +7,10 @@
 #include <gtest/gtest.h>
 
 #include "limber/anatomy/humanoid_joints.h"
+#include "limber/anatomy/testing/bodies.h"
+#include "limber/asset/extensions.h"
+#include "limber/asset/motion_io.h"
+#include "limber/asset/node_edit.h"
 #include "limber/asset/rig_io.h"
 #include "limber/asset/scene_graph.h"
 #include "limber/asset/testing/scene_builder.h"
@@ -60,6 +64,23 @@ Asset movingArm(bool isUneven) {
   return builder.build();
 }
 
+TEST(ToTarget, NamesBonesAsTheFileDeclaresThemWhicheverWayTheyFace) {
+  Motion motion;
+  motion.skeleton = testing::turnedAsAWhole(testing::declaredPerson(), Quat(0, 0, 1, 0));
+  Asset asset = motionAsset(motion);
+  asset.document.nodes.front().mesh = addElement(asset.document.meshes, {});
+  asset.document.nodes.front().skin = 0;
+  Json bones = Json::array();
+  for (Index j = 0; j < motion.skeleton.jointCount(); ++j) {
+    bones.push_back({{"bone", motion.skeleton.joints[j].declaredBone}, {"node", j}});
+  }
+  changeExtension(asset.document, "VRM") = {{"humanoid", {{"humanBones", bones}}}};
+  toTarget(asset, findTarget("vrm"));
+  for (Index j = 0; j < motion.skeleton.jointCount(); ++j) {
+    EXPECT_EQ(asset.document.nodes[j].name, motion.skeleton.joints[j].declaredBone);
+  }
+}
+
 TEST(ToTarget, LeavesWhatIsSeenAsItWas) {
   for (const bool isUneven : {false, true}) {
     const Asset before = movingArm(isUneven);
@@ -90,6 +111,21 @@ TEST(ToTarget, LeavesAModelForGltfAndOneWithoutARigToTheByte) {
   const Bytes bareBefore = writeGlb(bare);
   toTarget(bare, findTarget("unreal"));
   EXPECT_EQ(writeGlb(bare), bareBefore);
+}
+
+TEST(ToTarget, SaysWhyASkeletonGetsNoRoot) {
+  Asset arm = movingArm(false);
+  std::vector<gltf::Node>& nodes = arm.document.nodes;
+  nodes[2].children = {};
+  gltf::Node stretched;
+  stretched.scale = Vec3(1, 2, 1);
+  stretched.children = {3};
+  nodes[1].children.push_back(static_cast<Index>(nodes.size()));
+  nodes.push_back(std::move(stretched));
+  toTarget(arm, findTarget("unity"));
+  ASSERT_EQ(arm.warnings.items().size(), 1u);
+  EXPECT_EQ(arm.warnings.items()[0].kind, "no-root-joint");
+  EXPECT_NE(arm.warnings.items()[0].message.find("stretched"), std::string::npos);
 }
 
 TEST(ToTarget, TurnsJointsOfUnevenScaleByQuartersAndSaysSo) {

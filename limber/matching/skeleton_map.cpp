@@ -296,8 +296,8 @@ class Matcher {
   bool toesTell(const Skeleton& skeleton, const BodyPieces& body, const LimbPieces& leg, std::size_t toes) const {
     // Of the body's size: feet of shared bodies that stand differ by 0.002 at most, others by 0.02.
     constexpr double kRaised = 0.006;
-    const bool isEnd =
-        toes + 1 == leg.joints.size() && readJointWords(skeleton.joints[leg.joints[toes]].name).has(NameMark::kEnd);
+    const bool isEnd = toes + 1 == leg.joints.size() &&
+                       readJointWords(readNameOf(skeleton.joints[leg.joints[toes]])).has(NameMark::kEnd);
     if (isEnd || standOnMany()) return !isEnd;
     const std::vector<Vec3> rest = restPositions(skeleton);
     double low = std::numeric_limits<double>::infinity(), high = -low;

@@ -49,6 +49,20 @@ TEST(SkeletonMap, NumberedPeopleByShape) {
   }
 }
 
+TEST(SkeletonMap, DeclaredBonesAreWithoutDoubtWhicheverWayTheyFace) {
+  const Skeleton a = limber::testing::personWith(limber::testing::NameHabit::kCmu).skeleton;
+  const Skeleton b = limber::testing::turnedAsAWhole(limber::testing::declaredPerson(), Quat(0, 0, 1, 0));
+  const SkeletonMap map = matchSkeletons(a, b);
+  for (const Joint& joint : b.joints) {
+    const std::string bone(joint.declaredBone);
+    const bool isLimb = bone.starts_with("left") || bone.starts_with("right");
+    if (!isLimb && bone != "hips" && bone != "head") continue;
+    ASSERT_TRUE(matchOf(map, bone)) << bone;
+    EXPECT_EQ(namesOf(b, matchOf(map, bone)->target), std::vector<std::string>{joint.name});
+    EXPECT_GE(matchOf(map, bone)->confidence, kDoubtful) << bone;
+  }
+}
+
 TEST(SkeletonMap, FamiliesByEqualNames) {
   Skeleton snake;
   for (int i = 0; i < 9; ++i) {

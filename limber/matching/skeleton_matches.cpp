@@ -21,6 +21,8 @@ void addBytes(std::string& key, const Skeleton& skeleton) {
   for (const Joint& joint : skeleton.joints) {
     addBytes(key, static_cast<std::uint64_t>(joint.name.size()));
     key += joint.name;
+    addBytes(key, static_cast<std::uint64_t>(joint.declaredBone.size()));
+    key += joint.declaredBone;
     addBytes(key, joint.parent.value_or(kNoIndex));
     addBytes(key, joint.radius);
     for (int i = 0; i < 3; ++i) addBytes(key, joint.rest.translation[i]);

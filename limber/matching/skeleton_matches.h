@@ -12,7 +12,8 @@
 
 namespace limber {
 
-// Two skeletons are the same where their joints have the same names, parents and rest transforms, whatever file they
+// Two skeletons are the same where their joints have the same names, declared bones, parents and rest
+// transforms, whatever file they
 // came from. For any number of threads: what two ask for at once is made by one, while the other waits.
 class SkeletonMatches {
  public:

@@ -8,6 +8,16 @@
 namespace limber {
 namespace {
 
+TEST(SkeletonMatches, OtherDeclaredBonesAreAnotherSkeleton) {
+  const Skeleton person = practiceHumanoid();
+  Skeleton declared = person;
+  declared.joints[0].declaredBone = "hips";
+  SkeletonMatches matches;
+  matches.match(person, person, false);
+  matches.match(person, declared, false);
+  EXPECT_EQ(matches.made(), 2U);
+}
+
 TEST(SkeletonMatches, AreMadeOnceForEachPairAndAsWithoutThem) {
   const Skeleton source = practiceHumanoid();
   Skeleton taller = source;

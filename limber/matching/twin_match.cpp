@@ -270,8 +270,11 @@ class TwinMatcher {
 
   double namesInCommon(const Twins& twins) const {
     double common = 0;
-    for (Index j = 0; j < target_.jointCount(); ++j)
-      common += target_.joints[j].name == source_.joints[twins.sourceOf[j]].name;
+    for (Index j = 0; j < target_.jointCount(); ++j) {
+      const Joint &one = target_.joints[j], &other = source_.joints[twins.sourceOf[j]];
+      const bool declared = !one.declaredBone.empty() && !other.declaredBone.empty();
+      common += declared ? one.declaredBone == other.declaredBone : one.name == other.name;
+    }
     return common;
   }
 

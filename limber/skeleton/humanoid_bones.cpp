@@ -95,4 +95,15 @@ std::vector<HumanoidJoint> jointsCalledAsBones(const Skeleton& skeleton) {
   return joints;
 }
 
+std::vector<HumanoidJoint> declaredJoints(const Skeleton& skeleton) {
+  std::vector<HumanoidJoint> joints;
+  for (const NamedBone& bone : kBones) {
+    const auto found = std::find_if(skeleton.joints.begin(), skeleton.joints.end(),
+                                    [&](const Joint& joint) { return joint.declaredBone == bone.name; });
+    if (found != skeleton.joints.end())
+      joints.push_back({bone.name, static_cast<Index>(found - skeleton.joints.begin()), 1});
+  }
+  return joints;
+}
+
 }  // namespace limber

@@ -26,4 +26,7 @@ struct HumanoidJoint {
 // has made. humanoidJoints (limber/anatomy) reads those of others.
 std::vector<HumanoidJoint> jointsCalledAsBones(const Skeleton& skeleton);
 
+// Joints that their file declares to be bones (Joint::declaredBone), each bone once, in the same order.
+std::vector<HumanoidJoint> declaredJoints(const Skeleton& skeleton);
+
 }  // namespace limber

@@ -1,13 +1,12 @@
 #include "limber/skeleton/root_extraction.h"
 
 #include <algorithm>
-#include <cmath>
-#include <functional>
 
 #include <fmt/format.h>
 
 #include "limber/core/error.h"
 #include "limber/skeleton/chain.h"
+#include "limber/skeleton/movement_keys.h"
 #include "limber/skeleton/moving_roots.h"
 
 namespace limber {
@@ -15,9 +14,6 @@ namespace limber {
 namespace {
 
 constexpr double kBetweenKeys = 2.5e-7;  // of the skeleton's size, and radians: how far linear tracks may be off
-constexpr float kSameScale = 5e-7f;      // relative: the same but for rounding
-constexpr double kAside = 0.2113;  // of the time between two keys: where a cubic is farthest from its middle's line
-constexpr int kMostHalvings = 8;   // of the time between two keys
 
 template <typename Value>
 const Track<Value>* trackOfJoint(const std::vector<Track<Value>>& tracks, Index joint) {
@@ -46,17 +42,9 @@ class JointMovement {
   bool turnsOrGrows() const { return rotation_ || scale_; }
 
   void addKeys(std::vector<float>& times) const {
-    const auto add = [&](const auto* track) {
-      if (!track) return;
-      for (const float time : track->times) {
-        // A step is a line as long as time itself has steps.
-        if (track->interpolation == Interpolation::kStep && time > 0) times.push_back(std::nextafter(time, 0.0f));
-        times.push_back(time);
-      }
-    };
-    add(translation_);
-    add(rotation_);
-    add(scale_);
+    if (translation_) addKeyTimes(*translation_, times);
+    if (rotation_) addKeyTimes(*rotation_, times);
+    if (scale_) addKeyTimes(*scale_, times);
   }
 
  private:
@@ -66,91 +54,10 @@ class JointMovement {
   const Track<Vec3f>* scale_;
 };
 
-using Movement = std::function<Transform(double seconds)>;
-
-// Linear keys of a movement, as many as it takes.
-class MovementKeys {
- public:
-  MovementKeys(const Movement& movement, const std::vector<float>& times, double size)
-      : movement_(movement), size_(size) {
-    for (const float time : times) {
-      const Key next = keyAt(time);
-      if (!keys_.empty()) divide(Key(keys_.back()), next, 0);
-      keys_.push_back(next);
-    }
-  }
-
-  // In place of what the clip has of that joint; rotations and scales only where they are `changed`.
-  void writeTo(Clip& clip, Index joint, bool changed) const {
-    const auto replace = [&](auto& tracks, auto&& value) {
-      std::erase_if(tracks, [&](const auto& track) { return track.joint == joint; });
-      auto& track = tracks.emplace_back();
-      track.joint = joint;
-      for (const Key& key : keys_) {
-        track.times.push_back(key.time);
-        track.values.push_back(value(key.local));
-      }
-    };
-    replace(clip.translations, [](const Transform& local) { return Vec3f(local.translation.cast<float>()); });
-    if (!changed) return;
-    replace(clip.rotations, [](const Transform& local) { return Eigen::Quaternionf(local.rotation.cast<float>()); });
-    auto& turns = clip.rotations.back().values;
-    for (std::size_t k = 1; k < turns.size(); ++k) {
-      if (turns[k].coeffs().dot(turns[k - 1].coeffs()) < 0) turns[k].coeffs() *= -1;
-    }
-    replace(clip.scales, [](const Transform& local) { return Vec3f(local.scale.cast<float>()); });
-    Track<Vec3f>& scales = clip.scales.back();
-    const Vec3f first = scales.values.front();
-    const auto isFirst = [&](const Vec3f& scale) { return (scale - first).norm() <= kSameScale * first.norm(); };
-    if (!std::all_of(scales.values.begin(), scales.values.end(), isFirst)) return;
-    scales.times = {0};
-    scales.values = {first};
-  }
-
- private:
-  struct Key {
-    float time = 0;
-    Transform local;
-  };
-
-  Key keyAt(float time) const { return {time, movement_(time)}; }
-
-  // From the line between two keys.
-  double distance(const Key& from, const Key& to, double time, const Transform& local) const {
-    const double u = (time - from.time) / (double{to.time} - from.time);
-    const Vec3 line = (1 - u) * from.local.translation + u * to.local.translation;
-    return (line - local.translation).norm() / size_ +
-           from.local.rotation.slerp(u, to.local.rotation).angularDistance(local.rotation);
-  }
-
-  void divide(const Key& from, const Key& to, int depth) {
-    const float middle = from.time + (to.time - from.time) / 2;
-    if (depth == kMostHalvings || !(middle > from.time && middle < to.time)) return;
-    const Key between = keyAt(middle);
-    // Of a curve that bends both ways the middle alone may lie on the line.
-    const double aside = from.time + kAside * (double{to.time} - from.time);
-    const double off = std::max(distance(from, to, middle, between.local), distance(from, to, aside, movement_(aside)));
-    if (off <= kBetweenKeys) return;
-    divide(from, between, depth + 1);
-    keys_.push_back(between);
-    divide(between, to, depth + 1);
-  }
-
-  const Movement& movement_;
-  double size_;
-  std::vector<Key> keys_;
-};
-
 double sizeOf(const Skeleton& skeleton) {
   Box box;
   for (const Affine& global : restGlobals(skeleton)) box.add(global.translation());
   return std::max(box.diagonal(), 1e-9);
-}
-
-std::vector<float> sorted(std::vector<float> times) {
-  std::sort(times.begin(), times.end());
-  times.erase(std::unique(times.begin(), times.end()), times.end());
-  return times;
 }
 
 // The joints that carry the body's way: those that move, or the roots where it is held in its place.
@@ -176,11 +83,12 @@ Clip clipInPlace(const Skeleton& skeleton, const Clip& clip, Index body, const R
     const JointMovement joint(skeleton, clip, root.joint);
     std::vector<float> times = trajectory.times;
     joint.addKeys(times);
-    const Movement movement = [&](double seconds) {
+    const MovingTransform movement = [&](double seconds) {
       return decompose(toAbove * trajectory.at(seconds).toAffine().inverse(Eigen::Isometry) * root.above *
                        joint.at(seconds).toAffine());
     };
-    MovementKeys(movement, sorted(std::move(times)), size).writeTo(result, root.joint, !trajectory.headings.empty());
+    MovementKeys(movement, std::move(times), size, kBetweenKeys)
+        .writeTo(result, root.joint, !trajectory.headings.empty());
   }
   return result;
 }
@@ -209,14 +117,14 @@ Clip extractRootMotion(const Skeleton& skeleton, const Clip& clip, Index root, c
     const JointMovement joint(skeleton, clip, j);
     std::vector<float> times = rootTimes;
     joint.addKeys(times);
-    const Movement movement = [&](double seconds) {
+    const MovingTransform movement = [&](double seconds) {
       return decompose(toRest * trajectory.at(seconds).toAffine().inverse(Eigen::Isometry) *
                        before.at(seconds).toAffine() * joint.at(seconds).toAffine());
     };
-    MovementKeys(movement, sorted(std::move(times)), size).writeTo(result, j, turns);
+    MovementKeys(movement, std::move(times), size, kBetweenKeys).writeTo(result, j, turns);
   }
-  const Movement movement = [&](double seconds) { return decompose(trajectory.at(seconds).toAffine() * rest); };
-  MovementKeys(movement, trajectory.times, size).writeTo(result, root, turns);
+  const MovingTransform movement = [&](double seconds) { return decompose(trajectory.at(seconds).toAffine() * rest); };
+  MovementKeys(movement, trajectory.times, size, kBetweenKeys).writeTo(result, root, turns);
   return result;
 }
 

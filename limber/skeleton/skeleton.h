@@ -16,6 +16,9 @@ struct Joint {
   std::optional<Index> parent;  // always less than the joint's own index; none for a root
   Transform rest;               // local to the parent's frame
   double radius = 0;            // of the sphere fitted there; 0 where the skeleton has none
+  // The bone of a person that its file says it is, whatever it is called (one of humanoidBones(), which live forever);
+  // empty where the file says nothing.
+  std::string_view declaredBone = {};
 };
 
 // What a joint's bone is: the sphere round it, or the segments from it to its children (a leaf: a short one of its

@@ -1,7 +1,6 @@
 #include "limber/vrm/hang_bones.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <optional>
 #include <set>
@@ -13,14 +12,14 @@
 #include "limber/asset/pose_io.h"
 #include "limber/asset/replace_clips.h"
 #include "limber/skeleton/chain.h"
+#include "limber/skeleton/movement_keys.h"
 #include "limber/vrm/vrm_bones.h"
 
 namespace limber {
 
 namespace {
 
-constexpr double kSampleRate = 60;     // samples a second between keys
-constexpr double kMostSamples = 3600;  // samples between two keys, however far apart
+constexpr double kBetweenKeys = 5e-6;  // of the skeleton's size, and radians: how far linear tracks may be off
 
 struct Move {
   Index node = 0, parent = 0;  // nodes: what is moved, and where to
@@ -57,16 +56,19 @@ std::vector<Index> upward(const Skeleton& skeleton, Index joint) {
 }
 
 template <typename Value>
-void addMoments(const std::vector<Track<Value>>& tracks, const std::set<Index>& joints, std::set<float>& moments) {
+void addKeyTimesOf(const std::vector<Track<Value>>& tracks, const std::set<Index>& joints, std::vector<float>& times) {
   for (const Track<Value>& track : tracks) {
-    if (joints.count(track.joint) == 0) continue;
-    moments.insert(track.times.begin(), track.times.end());
-    for (std::size_t k = 1; k < track.times.size(); ++k) {
-      const double from = track.times[k - 1], to = track.times[k];
-      const double steps = std::min(std::ceil((to - from) * kSampleRate), kMostSamples);
-      for (int i = 1; i < steps; ++i) moments.insert(static_cast<float>(from + (to - from) * i / steps));
-    }
+    if (joints.count(track.joint) > 0) addKeyTimes(track, times);
   }
+}
+
+// The skeleton's size as what hangs on that joint measures it: in its own, maybe scaled, frame.
+double sizeSeenFrom(const Skeleton& skeleton, std::optional<Index> joint) {
+  const std::vector<Affine> globals = restGlobals(skeleton);
+  Box box;
+  for (const Affine& global : globals) box.add(global.translation());
+  const double scale = joint ? globals[*joint].linear().colwise().norm().maxCoeff() : 1;
+  return std::max(box.diagonal(), 1e-9) / std::max(scale, 1e-9);
 }
 
 // The clips of a rig on the same joints under other parents.
@@ -110,28 +112,18 @@ class ClipMover {
     if (parent) {
       for (const Index j : upward(from_.skeleton, *parent)) deciding.insert(j);
     }
-    std::set<float> moments = {0};
-    addMoments(clip.translations, deciding, moments);
-    addMoments(clip.rotations, deciding, moments);
-    addMoments(clip.scales, deciding, moments);
-    Track<Vec3f> translation{moved, Interpolation::kLinear, {}, {}}, scale = translation;
-    Track<Eigen::Quaternionf> rotation{moved, Interpolation::kLinear, {}, {}};
+    std::vector<float> times = {0};
+    addKeyTimesOf(clip.translations, deciding, times);
+    addKeyTimesOf(clip.rotations, deciding, times);
+    addKeyTimesOf(clip.scales, deciding, times);
     Pose pose = restPose(from_.skeleton);
-    Quat before = Quat::Identity();
-    for (const float moment : moments) {
-      sampleClip(clip, moment, pose);
+    const MovingTransform movement = [&](double seconds) {
+      sampleClip(clip, seconds, pose);
       const std::vector<Affine> globals = poseGlobals(from_.skeleton, pose);
-      Transform local = decompose(parent ? globals[*parent].inverse(Eigen::Affine) * globals[joint] : globals[joint]);
-      if (local.rotation.dot(before) < 0) local.rotation.coeffs() = -local.rotation.coeffs();
-      before = local.rotation;
-      for (std::vector<float>* times : {&translation.times, &rotation.times, &scale.times}) times->push_back(moment);
-      translation.values.emplace_back(local.translation.cast<float>());
-      rotation.values.emplace_back(local.rotation.cast<float>().normalized());
-      scale.values.emplace_back(local.scale.cast<float>());
-    }
-    result.translations.push_back(std::move(translation));
-    result.rotations.push_back(std::move(rotation));
-    result.scales.push_back(std::move(scale));
+      return decompose(parent ? globals[*parent].inverse(Eigen::Affine) * globals[joint] : globals[joint]);
+    };
+    MovementKeys(movement, std::move(times), sizeSeenFrom(from_.skeleton, parent), kBetweenKeys)
+        .writeTo(result, moved, true);
   }
 
   const AssetSkeleton& from_;

@@ -173,6 +173,39 @@ Quat toVrmOf(std::string_view extension) {
   return extension == kVrm0Name ? Quat(0, 0, 1, 0) : Quat::Identity();  // 0.x faces -Z
 }
 
+// Do limbs and trunk point as in T-pose, as the nodes stand?
+bool pointsAsTPose(const gltf::Document& document, const char* extension) {
+  const Quat toVrm = toVrmOf(extension);
+  const SceneGraph graph = readSceneGraph(document);
+  std::map<std::string_view, Vec3, std::less<>> places;
+  for (const HumanoidNode& node : humanoidNodes(document, extension)) {
+    places[node.bone] = toVrm * graph.world[node.node].translation();
+  }
+  const auto points = [&](std::string_view from, std::string_view to, const Vec3& direction, double most) {
+    const Vec3 bone = places.at(to) - places.at(from);
+    return bone.dot(direction) >= std::cos(most) * bone.norm();
+  };
+  if (!points("hips", "head", Vec3::UnitY(), kTrunkOff)) return false;
+  for (const std::string side : {"left", "right"}) {
+    for (const LimbBone& bone : kLimbBones) {
+      if (!points(side + bone.from, side + bone.to, directionOf(bone, side), kLimbsOff)) return false;
+    }
+  }
+  return true;
+}
+
+// Is a bone turned, against the joint above it, otherwise than as it is bound and than in the T-pose made of that?
+bool hasPosedBone(const Asset& asset, const AssetSkeleton& rig, std::span<const HumanoidJoint> bones) {
+  const Pose standing = readNodePose(asset, rig), bound = restPose(rig.skeleton);
+  const Pose made = tPoseOf(rig.skeleton, std::span(&standing, 1), bones).pose;
+  return std::any_of(bones.begin(), bones.end(), [&](const HumanoidJoint& bone) {
+    const auto turnFrom = [&](const Pose& other) {
+      return angleBetween(standing.locals[bone.joint].rotation, other.locals[bone.joint].rotation);
+    };
+    return rig.skeleton.joints[bone.joint].parent && std::min(turnFrom(bound), turnFrom(made)) > kLimbsOff;
+  });
+}
+
 }  // namespace
 
 TPose tPoseOf(const Skeleton& skeleton, std::span<const Pose> motion, std::span<const HumanoidJoint> bones) {
@@ -193,30 +226,16 @@ TPose madeTPose(const Asset& asset, const AssetSkeleton& rig, std::span<const Hu
   return tPose;
 }
 
-bool restsInTPose(const gltf::Document& document, const char* extension) {
-  if (!hasAllBones(document, extension)) return false;
-  const Quat toVrm = toVrmOf(extension);
-  const SceneGraph graph = readSceneGraph(document);
-  std::map<std::string_view, Vec3, std::less<>> places;
-  for (const HumanoidNode& node : humanoidNodes(document, extension)) {
-    places[node.bone] = toVrm * graph.world[node.node].translation();
-  }
-  const auto points = [&](std::string_view from, std::string_view to, const Vec3& direction, double most) {
-    const Vec3 bone = places.at(to) - places.at(from);
-    return bone.dot(direction) >= std::cos(most) * bone.norm();
-  };
-  if (!points("hips", "head", Vec3::UnitY(), kTrunkOff)) return false;
-  for (const std::string side : {"left", "right"}) {
-    for (const LimbBone& bone : kLimbBones) {
-      if (!points(side + bone.from, side + bone.to, directionOf(bone, side), kLimbsOff)) return false;
-    }
-  }
-  return true;
+bool restsInTPose(const Asset& asset, const char* extension) {
+  if (!hasAllBones(asset.document, extension) || !pointsAsTPose(asset.document, extension)) return false;
+  if (!hasRig(asset)) return true;
+  const AssetSkeleton rig = readSkeleton(asset);
+  return !hasPosedBone(asset, rig, bonesNamedBy(asset.document, extension, rig));
 }
 
 TPose vrmRestPose(const Asset& asset, const AssetSkeleton& rig, std::span<const HumanoidJoint> bones) {
   for (const char* extension : {kVrmName, kVrmAnimationName, kVrm0Name}) {
-    if (restsInTPose(asset.document, extension)) return {readNodePose(asset, rig), toVrmOf(extension)};
+    if (restsInTPose(asset, extension)) return {readNodePose(asset, rig), toVrmOf(extension)};
   }
   return madeTPose(asset, rig, bones);
 }

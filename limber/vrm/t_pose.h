@@ -30,10 +30,12 @@ TPose tPoseOf(const Skeleton& skeleton, std::span<const Pose> motion, std::span<
 TPose madeTPose(const Asset& asset, const AssetSkeleton& rig, std::span<const HumanoidJoint> bones);
 
 // Does a VRM, or a motion for VRMs, rest in T-pose as its nodes stand: upper arms and forearms to the sides, thighs and
-// shins down, all within 20 degrees, and the trunk up within 30? False where bones are missing that a VRM must have.
+// shins down, all within 20 degrees, and the trunk up within 30? And is no bone posed (a head, a hand, a finger):
+// turned against the joint above it by more than 20 degrees both from the bind pose, which the skins tell, and from
+// tPoseOf? False where bones are missing that a VRM must have.
 //
 // extension  of kVrmName, kVrm0Name (which faces -Z), kVrmAnimationName the one that names the bones
-bool restsInTPose(const gltf::Document& document, const char* extension);
+bool restsInTPose(const Asset& asset, const char* extension);
 
 // How a model rests as a VRM: one that is a VRM (1.0, 0.x), or a motion for VRMs, as its nodes stand, if that is in
 // T-pose; else madeTPose.

@@ -24,12 +24,19 @@ Asset posedVrm(const char* joint, const Vec3& axis, double degrees) {
 
 TEST(RestsInTPose, GoesByLimbsAndTrunk) {
   const Vec3 x = Vec3::UnitX(), y = Vec3::UnitY();
-  EXPECT_TRUE(restsInTPose(posedVrm("mixamorig:LeftForeArm", y, 10).document, kVrmName));
-  EXPECT_FALSE(restsInTPose(posedVrm("mixamorig:LeftForeArm", y, 30).document, kVrmName));
-  EXPECT_FALSE(restsInTPose(posedVrm("mixamorig:RightUpLeg", x, -40).document, kVrmName));
-  EXPECT_FALSE(restsInTPose(posedVrm("mixamorig:Spine", x, 60).document, kVrmName));
-  EXPECT_FALSE(restsInTPose(posedVrm("mixamorig:Hips", y, 90).document, kVrmName));
-  EXPECT_FALSE(restsInTPose(posedVrm("mixamorig:Hips", y, 0).document, kVrm0Name));  // is none
+  EXPECT_TRUE(restsInTPose(posedVrm("mixamorig:LeftForeArm", y, 10), kVrmName));
+  EXPECT_FALSE(restsInTPose(posedVrm("mixamorig:LeftForeArm", y, 30), kVrmName));
+  EXPECT_FALSE(restsInTPose(posedVrm("mixamorig:RightUpLeg", x, -40), kVrmName));
+  EXPECT_FALSE(restsInTPose(posedVrm("mixamorig:Spine", x, 60), kVrmName));
+  EXPECT_FALSE(restsInTPose(posedVrm("mixamorig:Hips", y, 90), kVrmName));
+  EXPECT_FALSE(restsInTPose(posedVrm("mixamorig:Hips", y, 0), kVrm0Name));  // is none
+}
+
+TEST(RestsInTPose, GoesByTheBindPoseForWhatPointsAnywhere) {
+  for (const char* joint : {"mixamorig:Head", "mixamorig:LeftHand", "mixamorig:RightToeBase"}) {
+    EXPECT_TRUE(restsInTPose(posedVrm(joint, Vec3::UnitX(), 10), kVrmName)) << joint;
+    EXPECT_FALSE(restsInTPose(posedVrm(joint, Vec3::UnitX(), 30), kVrmName)) << joint;
+  }
 }
 
 TEST(VrmRestPose, OfAPosedVrmIsATPose) {

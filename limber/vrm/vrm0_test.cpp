@@ -141,9 +141,9 @@ TEST(Vrm0, FacesTheOtherWayAndNamesItsBonesAnew) {
 TEST(Vrm0, RestsInTPoseTheOtherWayRound) {
   OldAvatar old = oldAvatar();
   changeExtension(old.asset.document, "VRM") = old.vrm;
-  EXPECT_TRUE(restsInTPose(old.asset.document, "VRM"));
+  EXPECT_TRUE(restsInTPose(old.asset, "VRM"));
   changeExtension(old.asset.document, "VRMC_vrm") = old.vrm;
-  EXPECT_FALSE(restsInTPose(old.asset.document, "VRMC_vrm"));
+  EXPECT_FALSE(restsInTPose(old.asset, "VRMC_vrm"));
 }
 
 TEST(Vrm0, ExpressionsGazeAndWhatTheWearerSees) {

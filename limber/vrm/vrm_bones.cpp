@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "limber/anatomy/body_pieces.h"
 #include "limber/anatomy/humanoid_joints.h"
 #include "limber/asset/humanoid_nodes.h"
 #include "limber/skeleton/chain.h"
@@ -28,17 +29,6 @@ bool isRequired(std::string_view bone) {
 bool needsItsParent(std::string_view bone) {
   if (bone.find("Thumb") != std::string_view::npos) return !bone.ends_with("Metacarpal");
   return bone == "upperChest" || bone.ends_with("Intermediate") || bone.ends_with("Distal");
-}
-
-std::vector<HumanoidJoint> saidByFile(const Asset& asset, const AssetSkeleton& rig) {
-  std::vector<HumanoidNode> nodes = humanoidNodes(asset.document, kVrmName);
-  if (nodes.empty()) nodes = humanoidNodes(asset.document, kVrm0Name);
-  std::vector<HumanoidJoint> joints;
-  for (const HumanoidNode& node : nodes) {
-    const auto joint = std::find(rig.jointNode.begin(), rig.jointNode.end(), node.node);
-    if (joint != rig.jointNode.end()) joints.push_back({node.bone, static_cast<Index>(joint - rig.jointNode.begin())});
-  }
-  return joints;
 }
 
 // A thumb of two joints has the first two bones of VRM's three.
@@ -129,8 +119,17 @@ std::vector<std::string_view> missingOf(const std::vector<HumanoidJoint>& joints
   return missing;
 }
 
+// What to do about missing bones; `forPeople` where it is a person's skeleton that lacks some.
+std::string helpWithout(const Skeleton& skeleton, std::string_view forPeople) {
+  const BodyPieces body(skeleton);
+  const bool hasArms = body.anatomy.pairsOf(PartKind::kArm) > 0;
+  if (body.anatomy.pairsOf(PartKind::kLeg) > 1 || (body.isAnimal() && !hasArms))
+    return "VRM is for people, and this is read as an animal; glTF, FBX and USD take it as it is";
+  return std::string(forPeople);
+}
+
 std::vector<HumanoidJoint> checked(const Skeleton& skeleton, std::vector<HumanoidJoint> read, std::string_view name,
-                                   Warnings& warnings) {
+                                   std::string_view forPeople, Warnings& warnings) {
   takeHipsThatCarryLegs(skeleton, read);
   std::vector<std::string_view> leftOut;
   std::vector<HumanoidJoint> joints = allowed(skeleton, read, leftOut);
@@ -138,8 +137,7 @@ std::vector<HumanoidJoint> checked(const Skeleton& skeleton, std::vector<Humanoi
   if (const std::vector<std::string_view> missing = missingOf(joints); !missing.empty()) {
     throw Error(ErrorCode::kUnsupported,
                 fmt::format("has no joints for bones that a VRM must have: {}", fmt::join(missing, ", ")),
-                std::string(name),
-                "VRM is for people with a head, two arms and two legs; limber rig gives them joints");
+                std::string(name), helpWithout(skeleton, forPeople));
   }
   warnings.add("vrm-bones",
                fmt::format("bones hang elsewhere than VRM allows and are left out: {}", fmt::join(leftOut, ", ")), {},
@@ -149,6 +147,16 @@ std::vector<HumanoidJoint> checked(const Skeleton& skeleton, std::vector<Humanoi
 
 }  // namespace
 
+std::vector<HumanoidJoint> bonesNamedBy(const gltf::Document& document, const char* extension,
+                                        const AssetSkeleton& rig) {
+  std::vector<HumanoidJoint> joints;
+  for (const HumanoidNode& node : humanoidNodes(document, extension)) {
+    const auto joint = std::find(rig.jointNode.begin(), rig.jointNode.end(), node.node);
+    if (joint != rig.jointNode.end()) joints.push_back({node.bone, static_cast<Index>(joint - rig.jointNode.begin())});
+  }
+  return joints;
+}
+
 bool hasAllBones(const gltf::Document& document, const char* extension) {
   std::vector<HumanoidJoint> bones;
   for (const HumanoidNode& node : humanoidNodes(document, extension)) bones.push_back({node.bone, node.node});
@@ -156,15 +164,16 @@ bool hasAllBones(const gltf::Document& document, const char* extension) {
 }
 
 std::vector<HumanoidJoint> vrmBones(const Asset& asset, const AssetSkeleton& rig, Warnings& warnings) {
-  std::vector<HumanoidJoint> joints = saidByFile(asset, rig);
+  std::vector<HumanoidJoint> joints = declaredJoints(rig.skeleton);
   if (!missingOf(joints).empty()) joints = withThumbsFromTheirFirst(humanoidJoints(rig.skeleton));
-  return checked(rig.skeleton, joints, asset.name, warnings);
+  return checked(rig.skeleton, joints, asset.name,
+                 "limber rig --replace-rig --template humanoid gives a person a rig that has all of them", warnings);
 }
 
 std::vector<HumanoidJoint> vrmBones(const Skeleton& skeleton, std::string_view name, Warnings& warnings) {
   std::vector<HumanoidJoint> joints = jointsCalledAsBones(skeleton);
   if (!missingOf(joints).empty()) joints = withThumbsFromTheirFirst(humanoidJoints(skeleton));
-  return checked(skeleton, joints, name, warnings);
+  return checked(skeleton, joints, name, "limber retarget puts the motion on a person that has all of them", warnings);
 }
 
 }  // namespace limber

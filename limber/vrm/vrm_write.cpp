@@ -53,7 +53,8 @@ bool isPosed(const Asset& asset, const AssetSkeleton& rig, std::span<const Human
 // stood in T-pose, and do no longer.
 Json standInTPose(Asset& asset, bool isVrm) {
   if (!hasRig(asset)) {
-    throw Error(ErrorCode::kUnsupported, "has no rig, and a VRM needs one", asset.name, "give it one by limber rig");
+    throw Error(ErrorCode::kUnsupported, "has no rig, and a VRM needs one", asset.name,
+                "give it one by limber rig --template humanoid");
   }
   const AssetSkeleton read = readSkeleton(asset);
   std::vector<HumanoidJoint> bones = vrmBones(asset, read, asset.warnings);
@@ -93,7 +94,7 @@ void makeVrm(Asset& asset, const VrmMeta& meta) {
   vrm["meta"] = vrmMeta(meta, keptMeta != nullptr && keptMeta->is_object() ? keptMeta : nullptr, stem, asset.warnings);
   if (!hasAllBones(asset.document, kVrmName)) {
     vrm["humanoid"] = standInTPose(asset, false);
-  } else if (hasRig(asset) && !restsInTPose(asset.document, kVrmName)) {
+  } else if (hasRig(asset) && !restsInTPose(asset, kVrmName)) {
     standInTPose(asset, true);
   }
   if (!isVrm) {

@@ -7,6 +7,7 @@
 #include "limber/asset/pose_io.h"
 #include "limber/asset/turn_scene.h"
 #include "limber/asset/write.h"
+#include "limber/core/rotation.h"
 #include "limber/vrm/testing/avatars.h"
 #include "warning_kinds.h"
 
@@ -92,7 +93,7 @@ TEST(MakeVrm, ClipsShowWhatTheyDid) {
   }
 }
 
-// Legs and feet of a rig for inverse kinematics: on a root of their own, and moved there.
+// Legs and feet of a rig for inverse kinematics: on a root of their own, and moved there. Its locals are centimetres.
 TEST(MakeVrm, LegsThatHangBesideTheBodyHangOnIt) {
   Motion motion;
   motion.name = "hero";
@@ -100,12 +101,14 @@ TEST(MakeVrm, LegsThatHangBesideTheBodyHangOnIt) {
   const std::vector<Affine> globals = restGlobals(whole);
   Joint root;
   root.name = "Root";
+  root.rest.scale = Vec3::Constant(100);
   motion.skeleton.joints.push_back(root);
   for (Index j = 0; j < whole.jointCount(); ++j) {
     Joint joint = whole.joints[j];
     const bool isBeside = joint.name.ends_with("UpLeg") || !joint.parent;
     joint.parent = isBeside ? 0 : *joint.parent + 1;
     if (isBeside) joint.rest = decompose(globals[j]);
+    joint.rest.translation /= 100;
     motion.skeleton.joints.push_back(joint);
   }
   Clip clip;
@@ -113,8 +116,12 @@ TEST(MakeVrm, LegsThatHangBesideTheBodyHangOnIt) {
   const Index hips = motion.skeleton.find("mixamorig:Hips").value(),
               leg = motion.skeleton.find("mixamorig:LeftUpLeg").value();
   const Vec3f place = motion.skeleton.joints[leg].rest.translation.cast<float>();
-  clip.translations.push_back({hips, Interpolation::kLinear, {0, 1}, {Vec3f(0, 0.95f, 0), Vec3f(0, 0.5f, 0.1f)}});
-  clip.translations.push_back({leg, Interpolation::kLinear, {0, 1}, {place, place - Vec3f(0, 0.45f, 0)}});
+  clip.rotations.push_back({hips,
+                            Interpolation::kLinear,
+                            {0, 1},
+                            {Eigen::Quaternionf::Identity(), testing::turn(Vec3(1, 2, 0), 170).cast<float>()}});
+  clip.translations.push_back({hips, Interpolation::kLinear, {0, 1}, {Vec3f(0, 0.0095f, 0), Vec3f(0, 0.005f, 0.001f)}});
+  clip.translations.push_back({leg, Interpolation::kLinear, {0, 1}, {place, place - Vec3f(0, 0.0045f, 0)}});
   motion.clips.push_back(clip);
   Asset asset = avatarOf(motion);
   makeVrm(asset);
@@ -126,7 +133,7 @@ TEST(MakeVrm, LegsThatHangBesideTheBodyHangOnIt) {
             rig.skeleton.find("mixamorig:Hips"));
   Warnings warnings;
   const std::vector<Clip> clips = readClips(asset, rig, warnings);
-  for (const double seconds : {0.0, 0.5, 1.0}) {
+  for (const double seconds : {0.0, 0.2917, 0.5, 0.5083, 0.8417, 1.0}) {
     Pose before = restPose(motion.skeleton), after = readNodePose(asset, rig);
     sampleClip(clip, seconds, before);
     sampleClip(clips[0], seconds, after);
@@ -134,7 +141,7 @@ TEST(MakeVrm, LegsThatHangBesideTheBodyHangOnIt) {
     const std::vector<Vec3> shown = posePositions(rig.skeleton, after);
     for (const Joint& joint : whole.joints) {
       const Index a = motion.skeleton.find(joint.name).value(), b = rig.skeleton.find(joint.name).value();
-      EXPECT_LT((expected[a] - shown[b]).norm(), 1e-6) << joint.name << " at " << seconds;
+      EXPECT_LT((expected[a] - shown[b]).norm(), 2e-5) << joint.name << " at " << seconds;
     }
   }
 }
@@ -146,7 +153,21 @@ TEST(MakeVrm, WhatIsMissingIsNamed) {
     FAIL() << "a dog is no VRM";
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::kUnsupported);
-    EXPECT_THAT(error.what(), HasSubstr("leftUpperArm"));
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("leftUpperArm"), HasSubstr("an animal"), Not(HasSubstr("limber rig"))));
+  }
+  const Skeleton whole = mixamoPerson();
+  Skeleton handless;
+  for (Joint joint : whole.joints) {
+    if (joint.name.ends_with("Hand")) continue;
+    if (joint.parent) joint.parent = handless.find(whole.joints[*joint.parent].name);
+    handless.joints.push_back(joint);
+  }
+  Asset person = avatarOf(handless);
+  try {
+    makeVrm(person);
+    FAIL() << "hands are missing";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("have: leftHand, rightHand ("), HasSubstr("--replace-rig")));
   }
   Asset bare;
   bare.document.nodes.emplace_back();
@@ -213,6 +234,21 @@ TEST(MakeVrm, APosedOneStandsInTPoseAgainAndSaysSo) {
     }
     EXPECT_THAT(warningKinds(asset.warnings), ElementsAre("vrm-pose"));
   }
+}
+
+TEST(MakeVrm, AHeadThatLooksAsideLooksAheadAgain) {
+  Asset asset = avatarOf(mixamoPerson());
+  makeVrm(asset);
+  const AssetSkeleton rig = readSkeleton(asset);
+  const Index head = rig.skeleton.find("mixamorig:Head").value();
+  const Pose before = readNodePose(asset, rig);
+  Pose aside = before;
+  aside.locals[head].rotation = before.locals[head].rotation * testing::turn(Vec3::UnitY(), 50);
+  writeNodePose(asset, rig, aside);
+  asset.warnings = {};
+  makeVrm(asset);
+  EXPECT_LT(angleBetween(readNodePose(asset, rig).locals[head].rotation, before.locals[head].rotation), 1e-6);
+  EXPECT_THAT(warningKinds(asset.warnings), ElementsAre("vrm-pose"));
 }
 
 TEST(MakeVrm, TellsOfThePoseOfAModelThatNoClipShows) {

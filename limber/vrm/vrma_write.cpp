@@ -7,11 +7,14 @@
 #include <set>
 #include <utility>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "limber/asset/accessor.h"
+#include "limber/asset/clip_io.h"
 #include "limber/asset/extensions.h"
 #include "limber/asset/humanoid_nodes.h"
+#include "limber/asset/motion_io.h"
 #include "limber/asset/node_edit.h"
 #include "limber/core/names.h"
 #include "limber/core/rotation.h"
@@ -27,6 +30,7 @@ constexpr double kRate = 60;           // a second, between keys where a bone tu
 constexpr double kSameTurn = 1e-7;     // radians
 constexpr double kBeforeStep = 1e-4;   // seconds
 constexpr double kMostBetween = 3600;  // moments between two keys, however far apart
+constexpr double kLostPlace = 1e-3;    // of the skeleton's size: what keys 60 times a second miss between them
 
 // A skeleton's joints at one moment, in VRM's space: how far each is turned from its rest pose, and where it is.
 struct Moment {
@@ -72,6 +76,7 @@ class AnimationMaker {
     for (const ExpressionTrack& expression : expressions) addExpression(expression, extension);
     changeExtension(document, kVrmAnimationName) = std::move(extension);
     declareExtension(document, kVrmAnimationName);
+    tellOfLostPlaces();
     return std::move(asset_);
   }
 
@@ -242,6 +247,50 @@ class AnimationMaker {
     const Index output = addFloatAccessor(asset_, values, components);
     const Index sampler = addElement(animation.samplers, {{}, input->second, output, interpolation});
     animation.channels.push_back({{}, sampler, {{}, node, path}});
+  }
+
+  // How far joints are, as the file has them, from where the clip has them.
+  struct Miss {
+    double distance = 0;
+    std::size_t bone = 0;
+    double seconds = 0;
+  };
+
+  Miss largestMiss() const {
+    Warnings ignored;
+    const AssetSkeleton made = animatedSkeleton(asset_);
+    const std::vector<Clip> clips = readClips(asset_, made, ignored);
+    std::set<float> times;
+    for (const auto& [time, moment] : moments_) times.insert(time);
+    for (const auto* tracks : {&clip_.translations, &clip_.scales}) {
+      for (const Track<Vec3f>& track : *tracks) times.insert(track.times.begin(), track.times.end());
+    }
+    Pose pose = restPose(skeleton_), shown = restPose(made.skeleton);
+    Miss largest;
+    for (const double seconds : times) {
+      sampleClip(clip_, seconds, pose);
+      if (!clips.empty()) sampleClip(clips.front(), seconds, shown);
+      const std::vector<Vec3> wanted = posePositions(skeleton_, pose), places = posePositions(made.skeleton, shown);
+      for (Index j = 0; j < made.skeleton.jointCount(); ++j) {
+        const std::size_t bone = made.jointNode[j];
+        const double distance = (places[j] - rest_.toVrm * wanted[bones_[bone].joint]).norm();
+        if (distance > largest.distance) largest = {distance, bone, seconds};
+      }
+    }
+    return largest;
+  }
+
+  void tellOfLostPlaces() {
+    Box box;
+    for (const Vec3& place : posePositions(skeleton_, rest_.pose)) box.add(place);
+    const Miss largest = largestMiss();
+    if (largest.distance <= kLostPlace * box.diagonal()) return;
+    asset_.warnings.add(
+        "vrma-lengths",
+        fmt::format("lengths and scales of bones that change are left out: joints are up to {:.2g} m from where the "
+                    "clip has them ({} at {:.2f} s)",
+                    largest.distance, bones_[largest.bone].bone, largest.seconds),
+        clip_.name);
   }
 
   const Skeleton& skeleton_;

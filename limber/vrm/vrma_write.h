@@ -27,8 +27,10 @@ std::vector<ExpressionTrack> expressionTracks(const Asset& asset, Index animatio
 // One clip as nodes without a mesh: a node for each bone, as `rest` has them but without rotations; rotations of all
 // bones, and the way of the hips. Rotations are those of whole bones: what joints between two bones do is part of the
 // lower one's. Keys are the clip's own; where those of several joints meet in a bone, or curves are cubic, between them
-// 60 times a second. Other joints, lengths and scales that change have no place in such a file. Nor have eyes and the
-// expressions lookUp, lookDown, lookLeft and lookRight: a warning "vrma-gaze" of the asset's where the clip moves some.
+// 60 times a second. Other joints, lengths and scales that change have no place in such a file: a warning
+// "vrma-lengths" of the asset's where joints of bones are for that more than 0.001 of the skeleton's size from where
+// the clip has them, with the largest distance in metres. Nor have eyes and the expressions lookUp, lookDown, lookLeft
+// and lookRight: a warning "vrma-gaze" where the clip moves some.
 //
 // bones  vrmBones of the clip's skeleton
 Asset vrmAnimation(const Skeleton& skeleton, const Clip& clip, const TPose& rest, std::span<const HumanoidJoint> bones,

@@ -10,6 +10,7 @@
 #include "limber/core/rotation.h"
 #include "limber/vrm/testing/avatars.h"
 #include "limber/vrm/vrm_bones.h"
+#include "warning_kinds.h"
 
 namespace limber {
 namespace {
@@ -72,6 +73,28 @@ TEST(VrmAnimation, BonesAreWhereTheClipHasThem) {
       const Index joint = back.skeleton.find(bone.bone).value();
       EXPECT_LT((places[joint] - expected[bone.joint]).norm(), 1e-5) << bone.bone << " at " << seconds;
     }
+  }
+}
+
+TEST(VrmAnimation, SaysHowFarJointsAreWhereLengthsAndScalesChange) {
+  Warnings warnings;
+  for (const bool isScaled : {false, true}) {
+    Motion motion = swinging();
+    const std::vector<HumanoidJoint> bones = vrmBones(motion.skeleton, motion.name, warnings);
+    const TPose rest = vrmRestPose(motion, bones);
+    EXPECT_TRUE(vrmAnimation(motion.skeleton, motion.clips[0], rest, bones).warnings.items().empty());
+    const Index shin = motion.skeleton.find("mixamorig:LeftLeg").value(), hips = 0;
+    const Vec3f knee = motion.skeleton.joints[shin].rest.translation.cast<float>();
+    if (isScaled) {
+      motion.clips[0].scales.push_back({hips, Interpolation::kLinear, {0, 1}, {Vec3f::Zero(), Vec3f::Ones()}});
+    } else {
+      motion.clips[0].translations.push_back({shin, Interpolation::kLinear, {0, 1}, {knee, knee + Vec3f(0.04f, 0, 0)}});
+    }
+    const Asset made = vrmAnimation(motion.skeleton, motion.clips[0], rest, bones);
+    ASSERT_EQ(testing::warningKinds(made.warnings), std::vector<std::string>{"vrma-lengths"});
+    const std::string& text = made.warnings.items()[0].message;
+    EXPECT_NE(text.find(isScaled ? "at 0.00 s" : "0.04 m"), std::string::npos) << text;
+    EXPECT_EQ(made.warnings.items()[0].where, "swing");
   }
 }
 

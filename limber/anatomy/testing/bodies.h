@@ -10,6 +10,7 @@
 
 #include "limber/anatomy/body_part.h"
 #include "limber/core/numbers.h"
+#include "limber/skeleton/humanoid_bones.h"
 
 namespace limber::testing {
 
@@ -213,6 +214,16 @@ inline MadeBody personWith(NameHabit habit) {
 
 inline Skeleton vrmPerson() {
   return personWith(NameHabit::kVrm).skeleton;
+}
+
+// The same with numbers for names, whose file declares its bones.
+inline Skeleton declaredPerson() {
+  Skeleton person = vrmPerson();
+  for (const HumanoidJoint& called : jointsCalledAsBones(person)) {
+    person.joints[called.joint].declaredBone = called.bone;
+    person.joints[called.joint].name = "n" + std::to_string(called.joint);
+  }
+  return person;
 }
 
 // Of joints that go on from each other, each at `step` from the one before.
