@@ -61,6 +61,7 @@ TEST_F(CliClips, WhatMakesNoSenseIsOneLine) {
                                         {"walk.bvh", "a.glb", "--tolerance", "0"},
                                         {"walk.bvh", "a.glb", "--tolerance", "nan"},
                                         {"walk.bvh", "a.glb", "--root-motion", "xyz"},
+                                        {"walk.bvh", "a.glb", "--in-place", "--root-joint"},
                                         {"walk.bvh", "a.glb", "--in-place", "--root-motion", "sideways"},
                                         {"walk.bvh", "a.glb", "--in-place", "--root-smoothing", "-1"}}) {
     call.insert(call.begin(), "convert");

@@ -14,12 +14,14 @@ void ClipArguments::addTo(CLI::App& command) {
   const char* group = "Loops, root motion, fewer keys (in this order; docs/root-motion.md)";
   command.add_flag("--loop", edits.loop, "cut each clip to its best loop, where it has one, and join the ends")
       ->group(group);
-  command.add_flag("--in-place", edits.inPlace, "walk on the spot: without the body's travel")->group(group);
+  CLI::Option* inPlace =
+      command.add_flag("--in-place", edits.inPlace, "walk on the spot: without the body's travel")->group(group);
   command
       .add_flag(
           "--root-joint{root}", rootJoint_,
           "hand the travel to a root joint; where there is none it is made, called root or as in --root-joint=NAME")
       ->each([this](const std::string& name) { edits.rootJoint = name; })
+      ->excludes(inPlace)
       ->group(group);
   command
       .add_option_function<std::string>(

@@ -9,7 +9,10 @@
 #include "command.h"
 #include "fbx_arguments.h"
 #include "limber/anatomy/skeleton_mirror.h"
+#include "limber/asset/accessor_sweep.h"
 #include "limber/asset/bvh_write.h"
+#include "limber/asset/clip_io.h"
+#include "limber/asset/compact_buffers.h"
 #include "limber/asset/motion_io.h"
 #include "limber/asset/replace_clips.h"
 #include "limber/asset/unique_names.h"
@@ -105,7 +108,7 @@ std::vector<Clip> chosenClips(std::vector<Clip> clips, const std::vector<std::st
   return chosen;
 }
 
-// One of blend shapes alone has no tracks.
+// One of blend shapes or other nodes alone has no tracks.
 bool moves(const Clip& clip) {
   return !clip.translations.empty() || !clip.rotations.empty() || !clip.scales.empty();
 }
@@ -122,14 +125,20 @@ void trimAndMirror(Motion& motion, const ConvertArguments& options) {
   }
 }
 
-void describe(const std::string& file, const Motion& motion, const Account& account) {
-  account.line(fmt::format("{}: {}, {}", file, counted(motion.skeleton.jointCount(), "joint"),
-                           counted(motion.clips.size(), "clip")));
+// The clips as they were written.
+void describe(const Motion& motion, const ConvertArguments& options, const Account& account) {
   for (std::size_t c = 0; c < motion.clips.size(); ++c) {
     const Clip& clip = motion.clips[c];
-    const double rate = frameRateOf(motion, c);
-    account.line(fmt::format("  {:<30} {:8.3f} s, {} at {:.6g} a second", clip.name, clip.duration(),
-                             counted(frameCount(clip, rate), "frame"), rate));
+    if (!moves(clip)) {
+      account.line(fmt::format("  {:<30} moves no joint", clip.name));
+      continue;
+    }
+    std::string line = fmt::format("  {:<30} {:8.3f} s", clip.name, clip.duration());
+    if (!options.clipEdits.edits.tolerance) {
+      const double rate = frameRateOf(motion, c);
+      line += fmt::format(", {} at {:.6g} a second", counted(frameCount(clip, rate), "frame"), rate);
+    }
+    account.line(line);
   }
 }
 
@@ -192,21 +201,40 @@ void writeBvhFiles(const Motion& motion, const ConvertArguments& options, const 
   }
 }
 
+// Takes the clips out that were not asked for.
+void keepClips(Asset& asset, const std::vector<std::string>& names) {
+  if (names.empty()) return;
+  const AccessorSweep accessors(asset);
+  const BufferViewSweep views(asset);
+  std::erase_if(asset.document.animations, [&](const gltf::Animation& animation) {
+    return std::find(names.begin(), names.end(), animation.name) == names.end();
+  });
+  accessors.sweep(asset);
+  views.sweep(asset);
+}
+
 // A model keeps all but the animations of its joints, which make room for the clips; from a motion comes a skeleton.
-Asset withClips(std::optional<Asset>& model, const Motion& motion, const ConvertArguments& options,
-                const Account& account) {
+// The motion has the clips as they are edited afterwards.
+Asset withClips(std::optional<Asset>& model, Motion& motion, const ConvertArguments& options,
+                std::vector<ClipEditReport>& reports) {
   Asset asset;
   std::vector<std::string> names;
   if (model) {
     asset = std::move(*model);
+    keepClips(asset, options.clips);
     std::optional<TimeSpan> cut;
     if (!options.trim.empty()) cut = trimSpan(options.trim);
-    names = replaceClips(asset, animatedSkeleton(asset), motion.clips, cut);
+    names = replaceClips(asset, movingSkeleton(asset), motion.clips, cut);
   } else {
     asset = motionAsset(motion);
     for (const gltf::Animation& animation : asset.document.animations) names.push_back(animation.name);
   }
-  options.clipEdits.tell(editClips(asset, names, options.clipEdits.edits), account);
+  if (!options.clipEdits.edits.any()) return asset;
+  asset.warnings = {};  // the motion has them
+  reports = editClips(asset, names, options.clipEdits.edits);
+  motion.warnings.append(asset.warnings);
+  const std::vector<Clip> clips = readClips(asset, animatedSkeleton(asset), asset.warnings);
+  motion.clips.assign(clips.end() - static_cast<std::ptrdiff_t>(motion.clips.size()), clips.end());
   return asset;
 }
 
@@ -236,9 +264,9 @@ bool isMotionFormat(const std::string& path) {
   return isBvh(path) || isVrmaFormat(path);
 }
 
-// Has it a rig, or anything that moves?
-bool hasMotion(const Asset& asset) {
-  return hasRig(asset) || !asset.document.animations.empty();
+// Is more to be done than to bring a model, which may be still or move by blend shapes alone, into another format?
+bool needsJoints(const ConvertArguments& options) {
+  return options.files.size() > 1 || isMotionFormat(options.output) || options.mirror || options.clipEdits.edits.any();
 }
 
 void run(ConvertArguments options) {
@@ -274,15 +302,9 @@ void run(ConvertArguments options) {
       read = readMotion(file, reading);
     } else {
       Asset asset = readAsset(file);
-      if (!isMotionFormat(options.output) && options.files.size() == 1 && !hasMotion(asset)) {
-        progress.finish();
-        return writeModelFiles(asset, {}, options, account);
-      }
-      read = motionOf(asset);
+      read = motionOf(asset, needsJoints(options) ? animatedSkeleton(asset) : movingSkeleton(asset));
       if (!motion && asset.format != "bvh" && asset.format != "npz") model = std::move(asset);
     }
-    progress.finish();
-    describe(file, read, account);
     if (motion) {
       append(*motion, std::move(read), file);
     } else {
@@ -292,10 +314,10 @@ void run(ConvertArguments options) {
   motion->clips = chosenClips(std::move(motion->clips), options.clips);
   progress->stage("edit");
   trimAndMirror(*motion, options);
+  std::vector<ClipEditReport> reports;
   if (isMotionFormat(options.output)) {
-    const std::vector<ClipEditReport> reports = editClips(*motion, options.clipEdits.edits);
+    reports = editClips(*motion, options.clipEdits.edits);
     progress.finish();
-    options.clipEdits.tell(reports, account);
     if (isBvh(options.output)) {
       writeBvhFiles(*motion, options, account);
     } else {
@@ -303,10 +325,12 @@ void run(ConvertArguments options) {
       writeVrmaFiles(source, pathsOfClips(*motion, options.output), options.common.quiet, account);
     }
   } else {
-    const Asset asset = withClips(model, *motion, options, account);
+    const Asset asset = withClips(model, *motion, options, reports);
     progress.finish();
     writeModelFiles(asset, *motion, options, account);
   }
+  describe(*motion, options, account);
+  options.clipEdits.tell(reports, account);
   printWarnings(motion->warnings, options.common.quiet);
 }
 

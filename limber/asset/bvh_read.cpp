@@ -205,8 +205,8 @@ class BvhReader {
       }
     }
     if (bad == 0) return;
-    warnings_.add("bad-numbers", "numbers are not finite, and those of the frame before stand in", where(lineNumber),
-                  bad);
+    warnings_.add("bad-numbers", "numbers are not finite or too large, and those of the frame before stand in",
+                  where(lineNumber), bad);
   }
 
   void reportFrames() {

@@ -31,8 +31,8 @@ struct BvhOptions {
 //
 // Accepted: any blanks and line ends, decimal commas, several roots, rotations that are constant (one key). Warnings:
 // "converted-axes", "frame-count" (more or fewer frames than announced), "cut-frame" (the last row is incomplete and
-// left out), "bad-numbers" (not finite: the frame before stands in), "frame-time" (not positive: 1/30 s), "no-motion",
-// "duplicate-names", "decimal-commas", "trailing-text".
+// left out), "bad-numbers" (not finite, or too large: the frame before stands in), "frame-time" (not positive: 1/30 s),
+// "no-motion", "duplicate-names", "decimal-commas", "trailing-text".
 //
 // Throws Error kBadData with file and line ("walk.bvh: line 187") for everything else, kLimit beyond 2^22 frames,
 // kBadArgument for a unit that is not positive. Time is linear in the file; memory that of the result and one line.

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "limber/asset/accessor.h"
+#include "limber/asset/mirrored_scale.h"
 #include "limber/asset/node_edit.h"
 #include "limber/asset/pose_io.h"
 #include "limber/asset/scene_graph.h"
@@ -58,6 +59,19 @@ struct NodeTracks {
     add(scale);
   }
 
+  // From a node's own numbers to those that decompose() finds, and back: a half turn undoes itself.
+  void turnMirror(const gltf::Node& node) {
+    const Vec3 half = halfTurnOfMirror(node.scale.value_or(Vec3::Ones()));
+    if (half == Vec3::Ones()) return;
+    const Eigen::Quaternionf turn(Eigen::Matrix3f(half.cast<float>().asDiagonal()));
+    if (rotation) {
+      for (Eigen::Quaternionf& value : rotation->values) value = value * turn;
+    }
+    if (scale) {
+      for (Vec3f& value : scale->values) value = value.cwiseProduct(half.cast<float>());
+    }
+  }
+
   Transform at(double seconds, const Transform& otherwise) const {
     Transform result = otherwise;
     if (translation) result.translation = sampleTrack(*translation, seconds);
@@ -66,6 +80,11 @@ struct NodeTracks {
     return result;
   }
 };
+
+// The node's own numbers; those that decompose() finds of a matrix.
+Transform ownTransform(const gltf::Node& node) {
+  return turnedMirror(decompose(nodeTransform(node)), halfTurnOfMirror(node.scale.value_or(Vec3::Ones())));
+}
 
 // What the nodes above a root joint do to it, if they stand still.
 Affine frameAbove(const SceneGraph& graph, Index node) {
@@ -121,6 +140,7 @@ class ClipReader {
       if (!channel.target.node) continue;
       readChannel(animation.samplers[channel.sampler], channel.target.path, *channel.target.node);
     }
+    for (auto& [node, tracks] : nodes_) tracks.turnMirror(asset_.document.nodes[node]);
     for (Index j = 0; j < skeleton_.skeleton.jointCount(); ++j) addJoint(j, clip);
     return clip;
   }
@@ -334,7 +354,7 @@ class ClipWriter {
     nodePose_ = readNodePose(asset, skeleton);
     for (Index j = 0; j < skeleton.skeleton.jointCount(); ++j) {
       const Index node = skeleton.jointNode[j];
-      nodeLocal_.push_back(decompose(graph.local[node]));
+      nodeLocal_.push_back(ownTransform(asset.document.nodes[node]));
       const bool root = !skeleton.skeleton.joints[j].parent;
       frames_.push_back(root ? frameAbove(graph, node) : Affine::Identity());
     }
@@ -350,7 +370,7 @@ class ClipWriter {
     for (const auto& track : clip.rotations) joints[track.joint].rotation = track;
     for (const auto& track : clip.scales) joints[track.joint].scale = track;
     for (Index j = 0; j < joints.size(); ++j) writeJoint(j, joints[j]);
-    if (animation_.channels.empty()) {  // glTF wants one
+    if (animation_.channels.empty() && !joints.empty()) {  // glTF wants one
       addSampler(0, kRotation, constantTrack(Eigen::Quaternionf(nodeLocal_[0].rotation.cast<float>())));
     }
     if (shared_) shared_->finish();
@@ -377,6 +397,7 @@ class ClipWriter {
       tracks.scale = constantTrack(Vec3f(joint.rest.scale.cast<float>()));
     }
     if (framed) intoFrame(j, tracks);
+    tracks.turnMirror(asset_.document.nodes[skeleton_.jointNode[j]]);
     const Transform& local = nodeLocal_[j];
     if (tracks.translation) writeTrack(j, kTranslation, *tracks.translation, Vec3f(local.translation.cast<float>()));
     if (tracks.rotation) {
@@ -512,7 +533,7 @@ std::vector<std::string> addClips(Asset& asset, const AssetSkeleton& skeleton, s
                                   const ClipWriteOptions& options) {
   const Index nodeCount = asset.document.nodeCount();
   const bool fits =
-      !skeleton.jointNode.empty() && skeleton.jointNode.size() == skeleton.skeleton.joints.size() &&
+      skeleton.jointNode.size() == skeleton.skeleton.joints.size() &&
       std::all_of(skeleton.jointNode.begin(), skeleton.jointNode.end(), [&](Index node) { return node < nodeCount; });
   if (!fits) throw Error(ErrorCode::kBadArgument, "the skeleton is not that of this asset");
   ClipWriter writer(asset, skeleton, options);

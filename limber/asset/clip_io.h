@@ -17,6 +17,8 @@ namespace limber {
 // Movement of nodes above a root joint is part of that joint's tracks; it is then sampled at all keys and 60 times a
 // second between (warning "moving-parents"). Keys that are not finite or not later than the one before, and rotations
 // of length 0, are left out (warning "invalid-keys"). Morph weights and movement of other nodes are not part of a clip.
+// Where a node's scale mirrors, tracks have rotations and scales as decompose() finds them, which the rest pose has,
+// too.
 std::vector<Clip> readClips(const Asset& asset, const AssetSkeleton& skeleton, Warnings& warnings);
 
 struct ClipWriteOptions {
@@ -31,8 +33,9 @@ struct ClipWriteOptions {
 //
 // A joint without a track is kept in its rest pose, also where its node stands otherwise. Values are written as they
 // are, interpolation too; tracks of one value have one key, and none where the node has that value. Tracks of equal
-// times share one accessor. Throws Error kBadArgument where the skeleton is not of that asset, kBadData as checkClip
-// does, with the clip's name, and where a root stands below a node without an inverse (a scale of 0).
+// times share one accessor. Of a skeleton without joints the animations have no channel. Throws Error kBadArgument
+// where the skeleton is not of that asset, kBadData as checkClip does, with the clip's name, and where a root stands
+// below a node without an inverse (a scale of 0).
 std::vector<std::string> addClips(Asset& asset, const AssetSkeleton& skeleton, std::span<const Clip> clips,
                                   const ClipWriteOptions& options = {});
 

@@ -38,7 +38,11 @@ Vec3 randomVector(std::mt19937& random) {
 std::vector<Affine> nodeWorldsAt(const Asset& asset, const gltf::Animation& animation, double time) {
   const SceneGraph graph = readSceneGraph(asset.document);
   std::vector<Transform> locals;
-  for (const Affine& local : graph.local) locals.push_back(decompose(local));
+  for (const gltf::Node& node : asset.document.nodes) {
+    Transform& local = locals.emplace_back(decompose(nodeTransform(node)));
+    if (node.rotation) local.rotation = Quat(*node.rotation);
+    if (node.scale) local = {local.translation, Quat(node.rotation.value_or(Vec4(0, 0, 0, 1))), *node.scale};
+  }
   for (const gltf::AnimationChannel& channel : animation.channels) {
     const gltf::AnimationSampler& sampler = animation.samplers.at(channel.sampler);
     const std::vector<float> times = readFloats(asset, sampler.input);
@@ -221,6 +225,36 @@ TEST(ClipIo, CarriesNodesAboveTheRootIntoItsTracks) {
       EXPECT_LT(largestError(other, skeleton, clips[c], other.document.animations[c], 31), 1e-5) << seed;
     }
     writeAsset(other, limber::testing::testOutputFolder() / fmt::format("clip_io_armature_{}.glb", seed));
+  }
+}
+
+// With the bind pose of a skin, and as the nodes stand.
+TEST(ClipIo, MirroredNodesMoveAsTheDocumentHasThem) {
+  const auto mirrored = [](unsigned seed, bool moving) {
+    Asset asset = belowArmature(randomMotion(seed));
+    std::vector<gltf::Node>& nodes = asset.document.nodes;
+    nodes[0].scale = Vec3(1, 1, -1);
+    nodes[2].scale = Vec3(1, -2, 1);
+    nodes[3].scale = Vec3(-1, -1, 1);
+    nodes[5].matrix = nodeTransform(nodes[5]).matrix() * Vec4(1, -1, 1, 1).asDiagonal();
+    nodes[5].translation.reset();
+    nodes[5].rotation.reset();
+    if (!moving) asset.document.animations.clear();
+    return asset;
+  };
+  for (unsigned seed = 0; seed < 10; ++seed) {
+    Asset asset = mirrored(seed, true), still = mirrored(seed, false);
+    for (const bool hasSkin : {true, false}) {
+      if (!hasSkin) asset.document.skins.clear();
+      const AssetSkeleton skeleton = animatedSkeleton(asset);
+      Warnings warnings;
+      const std::vector<Clip> clips = readClips(asset, skeleton, warnings);
+      if (hasSkin) addClips(still, skeleton, clips);
+      for (std::size_t c = 0; c < clips.size(); ++c) {
+        EXPECT_LT(largestError(asset, skeleton, clips[c], asset.document.animations[c], 31), 2e-5) << seed;
+        EXPECT_LT(largestError(still, skeleton, clips[c], still.document.animations[c], 31), 2e-5) << seed;
+      }
+    }
   }
 }
 

@@ -10,7 +10,6 @@
 #include "limber/asset/export_fbx_angles.h"
 #include "limber/asset/export_fbx_curves.h"
 #include "limber/asset/extensions.h"
-#include "limber/asset/fbx_mirror.h"
 #include "limber/asset/shape_tracks.h"
 #include "limber/asset/unique_names.h"
 #include "limber/skeleton/motion.h"
@@ -88,22 +87,12 @@ class FbxClipWriter {
         value = space_.local(transform, !modelOf(track.joint).parent).translation;
       }
     }
-    for (Track<Eigen::Quaternionf> track : clip.rotations) {
+    for (const Track<Eigen::Quaternionf>& track : clip.rotations) {
       const Quat turn = space_.local(Transform(), !modelOf(track.joint).parent).rotation;
-      const Quat half(Mat3(mirrorOf(track.joint).asDiagonal()));
-      for (Eigen::Quaternionf& value : track.values) value = value * half.cast<float>();
       curves[{track.joint, kRotation}] = fbxKeys(track, turn);
     }
-    for (Track<Vec3f> track : clip.scales) {
-      for (Vec3f& value : track.values) value = value.cwiseProduct(mirrorOf(track.joint).cast<float>());
-      curves[{track.joint, kScaling}] = fbxKeys(track);
-    }
+    for (const Track<Vec3f>& track : clip.scales) curves[{track.joint, kScaling}] = fbxKeys(track);
     return curves;
-  }
-
-  // Models stand as decompose() finds them, tracks go with the node's own numbers.
-  Vec3 mirrorOf(Index joint) const {
-    return halfTurnOfMirror(asset_.document.nodes[skeleton_.jointNode[joint]].scale.value_or(Vec3::Ones()));
   }
 
   // What any of the clips moves, all of them say: programs that go from one clip to another leave the rest as it was.

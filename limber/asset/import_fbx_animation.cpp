@@ -157,18 +157,20 @@ void addKeyTicks(const FbxCurve* curve, std::vector<std::int64_t>& ticks) {
   for (const FbxKey& key : curve->keys()) ticks.push_back(key.ticks);
 }
 
-// The keys within a clip, and its ends where it cuts a curve.
+// The keys within a clip, and its ends where it cuts a curve; of one that stands still its end in any case.
 struct ClipRange {
   std::int64_t start = 0, stop = 0;
+  bool isStill = false;
 
   std::vector<std::int64_t> keysOf(std::vector<std::int64_t> ticks) const {
+    if (ticks.empty()) return ticks;
     std::sort(ticks.begin(), ticks.end());
     ticks.erase(std::unique(ticks.begin(), ticks.end()), ticks.end());
     const auto begin = std::lower_bound(ticks.begin(), ticks.end(), start),
                end = std::upper_bound(ticks.begin(), ticks.end(), stop);
     std::vector<std::int64_t> result(begin, end);
     if (begin != ticks.begin() && (result.empty() || result.front() != start)) result.insert(result.begin(), start);
-    if (end != ticks.end() && (result.empty() || result.back() != stop)) result.push_back(stop);
+    if ((end != ticks.end() || isStill) && (result.empty() || result.back() != stop)) result.push_back(stop);
     return result;
   }
 };
@@ -233,22 +235,27 @@ class ClipWriter {
   std::map<std::vector<float>, Index> inputs_;
 };
 
-// A clip of numbers that stand still is a moment.
+// A clip of numbers that stand still is a moment; one of curves that do lasts as long as its stack says.
 ClipRange rangeOf(const FbxClipCurves& clip, Warnings& warnings) {
   std::vector<std::int64_t> ticks;
+  bool isStill = true;
+  const auto add = [&](const FbxCurve* curve) {
+    addKeyTicks(curve, ticks);
+    isStill = isStill && (!curve || curve->isStill());
+  };
   for (const std::optional<FbxMotion>& motion : clip.motions) {
     for (std::size_t kind = 0; motion && kind < 3; ++kind) {
-      for (const FbxCurve* curve : motion->curves[kind]) addKeyTicks(curve, ticks);
+      for (const FbxCurve* curve : motion->curves[kind]) add(curve);
     }
   }
-  for (const auto& [object, percent] : clip.percents) addKeyTicks(percent.curve, ticks);
+  for (const auto& [object, percent] : clip.percents) add(percent.curve);
   if (ticks.empty()) return {clip.start.value_or(0), clip.start.value_or(0)};
   const auto [first, last] = std::minmax_element(ticks.begin(), ticks.end());
   if (!clip.start || *clip.start > *last || *clip.stop < *first) return {*first, *last};
   if (*first < *clip.start || *last > *clip.stop) {
     warnings.add("trimmed-clips", "keys outside of their clip's time are cut off", clip.name);
   }
-  return {*clip.start, std::min(*clip.stop, *last)};
+  return {*clip.start, isStill ? *clip.stop : std::min(*clip.stop, *last), isStill};
 }
 
 // What the models and blend shapes of one clip show.

@@ -180,6 +180,13 @@ std::optional<FbxCurve> FbxCurve::read(const FbxNode& node, Warnings& warnings) 
   return FbxCurve(std::move(keys));
 }
 
+bool FbxCurve::isStill() const {
+  return std::all_of(keys_.begin(), keys_.end(), [&](const FbxKey& key) {
+    const bool isStraight = key.shape != FbxKey::Shape::kCubic || (key.slope == 0 && key.nextSlope == 0);
+    return key.value == keys_.front().value && (isStraight || keys_.size() == 1);
+  });
+}
+
 double FbxCurve::at(std::int64_t ticks, bool fromLeft) const {
   using Shape = FbxKey::Shape;
   const auto next = fromLeft ? std::lower_bound(keys_.begin(), keys_.end(), ticks,

@@ -44,6 +44,9 @@ class FbxCurve {
   // differs where a step ends.
   double at(std::int64_t ticks, bool fromLeft = false) const;
 
+  // Does it have one value at all times?
+  bool isStill() const;
+
  private:
   std::vector<FbxKey> keys_;
 };

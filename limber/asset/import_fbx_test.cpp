@@ -337,6 +337,18 @@ TEST(ImportFbx7, AClipBeginsAndEndsWithItsStack) {
   EXPECT_EQ(warningKinds(asset.warnings), std::vector<std::string>{"trimmed-clips"});
 }
 
+TEST(ImportFbx7, AClipThatStandsStillLastsAsLongAsItsStack) {
+  const std::string span = fmt::format(
+      "P: \"LocalStart\", \"KTime\", \"Time\", \"\",0\nP: \"LocalStop\", \"KTime\", "
+      "\"Time\", \"\",{}\n",
+      3 * kSecond);
+  const Asset still = animated({}, "Lcl Translation", {curve(20, {0}, {5}), "", ""}, span);
+  EXPECT_EQ(trackOf(still, "translation").times, (std::vector<float>{0, 3}));
+  EXPECT_EQ(still.document.animations[0].channels.size(), 1u);
+  const Asset moving = animated({}, "Lcl Translation", {curve(20, {0, 2}, {5, 6}), "", ""}, span);
+  EXPECT_EQ(trackOf(moving, "translation").times, (std::vector<float>{0, 2}));
+}
+
 TEST(ImportFbx7, AStackWithoutEndsHasThoseOfItsKeys) {
   const std::string span =
       "P: \"LocalStart\", \"KTime\", \"Time\", \"\",-9223372036854775807\n"

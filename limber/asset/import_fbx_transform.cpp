@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "limber/asset/fbx_mirror.h"
+#include "limber/asset/mirrored_scale.h"
 #include "limber/core/numbers.h"
 
 namespace limber {
@@ -38,11 +38,7 @@ Transform FbxTransform::local(const FbxPose& pose) const {
 }
 
 Transform FbxTransform::localMirroredOnX(const FbxPose& pose) const {
-  Transform result = local(pose);
-  const Vec3 half = halfTurnOfMirror(rest.scaling);
-  result.rotation = result.rotation * Quat(Mat3(half.asDiagonal()));
-  result.scale = result.scale.cwiseProduct(half);
-  return result;
+  return turnedMirror(local(pose), halfTurnOfMirror(rest.scaling));
 }
 
 FbxTransform fbxTransform(const FbxProperties& model) {

@@ -67,6 +67,7 @@ AssetSkeleton vrmAnimationSkeleton(const gltf::Document& document, const std::ve
     if (!inside[n]) continue;
     Joint joint;
     joint.name = boneOfNode[n].empty() ? names.add(document.nodes[n].name) : std::string(boneOfNode[n]);
+    joint.declaredBone = boneOfNode[n];
     if (parent) joint.parent = jointOfNode[*parent];
     joint.rest = decompose(joint.parent ? graph.local[n] : graph.world[n]);
     jointOfNode[n] = result.skeleton.jointCount();
@@ -130,12 +131,13 @@ bool isSkeletonAlone(const Asset& asset) {
   return !document.skins.empty() || !document.animations.empty() || document.nodes.size() > 1;
 }
 
-AssetSkeleton animatedSkeleton(const Asset& asset) {
+AssetSkeleton movingSkeleton(const Asset& asset) {
   const std::vector<HumanoidNode> bones = humanoidNodes(asset.document, kVrmAnimationName);
   if (!bones.empty()) return vrmAnimationSkeleton(asset.document, bones);
   if (!asset.document.skins.empty()) return readSkeleton(asset);
   const SceneGraph graph = readSceneGraph(asset.document);
   const std::vector<bool> wanted = movingTree(asset, graph);
+  const std::vector<std::string_view> declared = declaredBoneOfNode(asset.document);
   AssetSkeleton result;
   UniqueNames names;
   std::vector<std::optional<Index>> jointOfNode(graph.nodeCount());
@@ -146,20 +148,29 @@ AssetSkeleton animatedSkeleton(const Asset& asset) {
     joint.name = names.add(name.empty() ? "joint_" + std::to_string(n) : name);
     if (graph.parent[n]) joint.parent = jointOfNode[*graph.parent[n]];
     joint.rest = decompose(joint.parent ? graph.local[n] : graph.world[n]);
+    joint.declaredBone = declared[n];
     jointOfNode[n] = result.skeleton.jointCount();
     result.jointNode.push_back(n);
     result.skeleton.joints.push_back(std::move(joint));
   }
-  if (result.jointNode.empty()) {
-    throw KnownError(ErrorKind::kNoMotion,
-                     {ErrorCode::kBadData, "has neither a skeleton nor anything that moves", asset.name},
-                     {{"name", asset.name}});
-  }
   return result;
 }
 
+AssetSkeleton animatedSkeleton(const Asset& asset) {
+  AssetSkeleton skeleton = movingSkeleton(asset);
+  if (skeleton.jointNode.empty()) {
+    throw KnownError(ErrorKind::kNoMotion,
+                     {ErrorCode::kBadData, "has no joints: neither a skeleton nor nodes that move", asset.name},
+                     {{"name", asset.name}});
+  }
+  return skeleton;
+}
+
 Motion motionOf(const Asset& asset) {
-  const AssetSkeleton skeleton = animatedSkeleton(asset);
+  return motionOf(asset, animatedSkeleton(asset));
+}
+
+Motion motionOf(const Asset& asset, const AssetSkeleton& skeleton) {
   Motion motion;
   motion.name = stemOf(asset.name);
   motion.skeleton = skeleton.skeleton;

@@ -20,19 +20,24 @@ struct MotionOptions {
 
 // The motion in a file: BVH (bvh_read.h), arrays in SMPL's form (smpl_motion.h), glTF, or any other model with
 // animations that readAsset reads (FBX, DAE). Throws Error as those do, and kBadData where the file has neither a
-// skeleton nor anything that moves. A skeleton without clips is a motion too.
+// skeleton nor nodes that move. A skeleton without clips is a motion too.
 Motion readMotion(const std::filesystem::path& path, const MotionOptions& options = {});
 Motion readMotion(ByteSpan bytes, std::string_view name, const MotionOptions& options = {},
                   const Resolver& resolver = {});
 
-// The motion in a document: its skeleton (animatedSkeleton) and all its clips (readClips).
+// The motion in a document: its skeleton (animatedSkeleton, or the one given) and all its clips (readClips).
 Motion motionOf(const Asset& asset);
+Motion motionOf(const Asset& asset, const AssetSkeleton& skeleton);
 
 // What of the document moves: of a motion for VRMs (VRMC_vrm_animation) its humanoid bones, called by VRM's names, with
 // the nodes between them (its expressions and its gaze are not read); else readSkeleton where it has a skin; else one
 // joint for each node that is animated, stands between such, or hangs on one without showing anything itself (the end
-// of a bone). Rest pose is then as the nodes stand. Throws Error kBadData where nothing is animated either.
+// of a bone). Rest pose is then as the nodes stand. Throws Error kBadData where nothing is animated either, as in a
+// model that moves by blend shapes alone.
 AssetSkeleton animatedSkeleton(const Asset& asset);
+
+// The same, without joints there.
+AssetSkeleton movingSkeleton(const Asset& asset);
 
 // The clip of that name, in full or behind the last '|' (Blender's exporters put the armature's name before); the first
 // where none is named, and where the document has none an empty one (the rest pose). Over the animatedSkeleton of the

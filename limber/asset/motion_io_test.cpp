@@ -8,7 +8,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "limber/asset/extensions.h"
 #include "limber/asset/testing/gltf_builder.h"
+#include "limber/asset/testing/scene_builder.h"
 #include "limber/asset/write.h"
 #include "shared_data.h"
 #include "temporary_folder.h"
@@ -49,6 +51,20 @@ TEST(MotionIo, BvhComesOutOfGltfAsItWentIn) {
   for (const double seconds : {0.0, 0.02, 0.07, 0.1}) EXPECT_LT(largestDistanceAt(motion, back, seconds), 1e-6);
 }
 
+TEST(MotionIo, JointsKeepTheBonesThatTheirFileDeclares) {
+  Motion motion = readMotion(asBytes(kBvh), "walk.bvh");
+  for (const bool hasSkin : {true, false}) {
+    Asset asset = motionAsset(motion);
+    if (!hasSkin) asset.document.skins.clear();
+    changeExtension(asset.document, "VRM") = {
+        {"humanoid", {{"humanBones", {{{"bone", "hips"}, {"node", 0}}, {{"bone", "spine"}, {"node", 1}}}}}}};
+    const Skeleton skeleton = animatedSkeleton(asset).skeleton;
+    EXPECT_EQ(skeleton.joints.at(0).declaredBone, "hips");
+    EXPECT_EQ(skeleton.joints.at(1).declaredBone, "spine");
+    EXPECT_EQ(skeleton.joints.at(2).declaredBone, "");
+  }
+}
+
 TEST(MotionIo, FindsClipsByName) {
   Motion motion = readMotion(asBytes(kBvh), "walk.bvh");
   motion.clips.push_back(motion.clips[0]);
@@ -69,6 +85,19 @@ TEST(MotionIo, FindsClipsByName) {
   }
   motion.clips.clear();
   EXPECT_EQ(findClip(motionAsset(motion), "").duration(), 0);
+}
+
+TEST(MotionIo, BlendShapesAloneMoveNoJoint) {
+  testing::SceneBuilder scene;
+  const Index node = scene.addNode({{"mesh", scene.addTetrahedron()}});
+  scene.addScene({node});
+  scene.addClip(node, "weights", 1);
+  const Asset asset = std::move(scene.asset());
+  const Motion motion = motionOf(asset, movingSkeleton(asset));
+  EXPECT_TRUE(motion.skeleton.joints.empty());
+  ASSERT_EQ(motion.clips.size(), 1u);
+  EXPECT_TRUE(motion.clips[0].rotations.empty());
+  EXPECT_THROW(motionOf(asset), Error);
 }
 
 TEST(MotionIo, ABvhIsAModelToo) {

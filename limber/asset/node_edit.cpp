@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include "limber/asset/extensions.h"
+#include "limber/asset/mirrored_scale.h"
 #include "limber/asset/references.h"
-#include "limber/core/transform.h"
 
 namespace limber {
 
@@ -21,9 +21,11 @@ double shortDouble(double value) {
 }
 
 void setNodeTransform(gltf::Node& node, const Affine& local, bool mayHaveMatrix) {
+  const Vec3 half = halfTurnOfMirror(node.scale.value_or(Vec3::Ones()));
   node.clearTransform();
   bool sheared = false;
-  const Transform t = decompose(local, &sheared);
+  Transform t = decompose(local, &sheared);
+  if (half != Vec3::Ones()) t = turnedMirror(t, half);
   if (sheared && mayHaveMatrix) {
     node.matrix = local.matrix().unaryExpr(&shortDouble);
     return;

@@ -17,7 +17,8 @@ namespace limber {
 double shortDouble(double value);
 
 // Writes a local transform into a node: translation, rotation, scale, each only where it says something; "matrix" where
-// the transform has shear and `mayHaveMatrix` (an animated node may not).
+// the transform has shear and `mayHaveMatrix` (an animated node may not). What the node's scale mirrored it mirrors
+// still, so that the node's animations fit it as they did.
 void setNodeTransform(gltf::Node& node, const Affine& local, bool mayHaveMatrix);
 
 // What the target of an animation's channel names, by KHR_animation_pointer too: a node, and what of it

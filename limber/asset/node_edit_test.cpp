@@ -1,10 +1,11 @@
-// What refers to nodes that go: springs. The rest is tested with rigs and joints.
+// Transforms of mirrored nodes, and what refers to nodes that go: springs. The rest is tested with rigs and joints.
 #include "limber/asset/node_edit.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "limber/asset/extensions.h"
+#include "limber/asset/scene_graph.h"
 
 namespace limber {
 namespace {
@@ -21,6 +22,18 @@ const Json kTwoSprings = Json::parse(R"({
   "specVersion": "1.0",
   "springs": [{"name": "gone", "joints": [{"node": 1}, {"node": 2}]},
               {"name": "kept", "joints": [{"node": 3, "stiffness": 1}, {"node": 4}], "center": 2}]})");
+
+TEST(SetNodeTransform, WhatIsMirroredStaysMirroredOnItsAxes) {
+  gltf::Node node;
+  node.scale = Vec3(1, 2, -1);
+  Transform wanted{{1, 2, 3}, Quat(0.5, 0.5, -0.5, 0.5), {3, 1, -2}};
+  setNodeTransform(node, wanted.toAffine(), false);
+  EXPECT_TRUE(node.scale->isApprox(wanted.scale, 1e-6));
+  EXPECT_TRUE(nodeTransform(node).isApprox(wanted.toAffine(), 1e-6));
+  wanted.scale = {3, 1, 2};  // not mirrored any more
+  setNodeTransform(node, wanted.toAffine(), false);
+  EXPECT_TRUE(nodeTransform(node).isApprox(wanted.toAffine(), 1e-6));
+}
 
 TEST(DeleteNodes, SpringsOfTheirsGoAndOthersAreRenumbered) {
   Asset asset = withSprings(kTwoSprings);

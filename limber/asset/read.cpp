@@ -15,6 +15,7 @@
 #include "limber/asset/motion_io.h"
 #include "limber/asset/ply.h"
 #include "limber/asset/stored_archive.h"
+#include "limber/asset/weight_repair.h"
 #include "limber/core/file_view.h"
 #include "limber/core/known_error.h"
 #include "limber/core/names.h"
@@ -138,6 +139,7 @@ Asset readAsset(ByteSpan bytes, std::string_view name, const Resolver& resolver)
     Asset asset = readAny(bytes, name, resolver);
     asset.name = name;
     checkAsset(asset);
+    repairWeights(asset);
     return asset;
   } catch (const Error& error) {
     throwWithin(error, name);

@@ -44,6 +44,18 @@ TEST(ReplaceClips, WeightsStayInTheClipOfTheirName) {
   EXPECT_EQ(turn.channels[1].sampler, 1u);
 }
 
+TEST(ReplaceClips, AModelWithoutJointsKeepsItsWeights) {
+  Asset asset = withWeights();
+  asset.document.animations.erase(asset.document.animations.begin());  // "turn"
+  const std::vector<Clip> clips = readClips(asset, {}, asset.warnings);
+  replaceClips(asset, {}, clips, TimeSpan{0, 0.5});
+  checkAsset(asset);
+  ASSERT_EQ(asset.document.animations.size(), 1u);
+  ASSERT_EQ(asset.document.animations[0].channels.size(), 1u);
+  EXPECT_EQ(asset.document.animations[0].name, "wink");
+  EXPECT_THAT(readFloats(asset, asset.document.animations[0].samplers[0].input), ::testing::ElementsAre(0, 0.5f));
+}
+
 TEST(ReplaceClips, WeightsAreCutAsTheClipsWere) {
   Asset asset = withWeights();
   const AssetSkeleton rig = readSkeleton(asset);

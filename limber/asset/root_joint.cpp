@@ -187,22 +187,28 @@ AssetSkeleton below(AssetSkeleton skeleton, Joint root, Index node) {
   return skeleton;
 }
 
-}  // namespace
-
-std::optional<Index> findRootJoint(const Asset& asset, const AssetSkeleton& skeleton) {
-  const std::vector<Joint>& joints = skeleton.skeleton.joints;
+// The only root, where it stands as one for engines does.
+std::optional<Index> rootOnGround(const Skeleton& skeleton) {
+  const std::vector<Joint>& joints = skeleton.joints;
   const auto isRoot = [](const Joint& joint) { return !joint.parent; };
   if (joints.size() < 2 || std::count_if(joints.begin(), joints.end(), isRoot) != 1) return std::nullopt;
   const auto root = static_cast<Index>(std::find_if(joints.begin(), joints.end(), isRoot) - joints.begin());
   Box box;
-  const std::vector<Vec3> places = restPositions(skeleton.skeleton);
+  const std::vector<Vec3> places = restPositions(skeleton);
   for (const Vec3& place : places) box.add(place);
   const double most = kOnGround * box.diagonal();
   if (places[root].norm() > most || places[root].y() - box.min.y() > most) return std::nullopt;
-  if (!hasRig(asset)) return root;
+  return root;
+}
+
+}  // namespace
+
+std::optional<Index> findRootJoint(const Asset& asset, const AssetSkeleton& skeleton) {
+  const std::optional<Index> root = rootOnGround(skeleton.skeleton);
+  if (!root || !hasRig(asset)) return root;
   const SkinWeights weights = readWeights(asset, collectGeometry(asset), skeleton);
-  for (std::size_t i = 0; i < weights.weights.size(); ++i) {
-    if (weights.joints[i] == root && weights.weights[i] > 0) return std::nullopt;
+  for (Index v = 0; v < weights.vertexCount(); ++v) {
+    if (weights.jointsOf(v)[0] == *root && weights.weightsOf(v)[0] > 0) return std::nullopt;  // the strongest
   }
   return root;
 }
@@ -252,6 +258,10 @@ AssetSkeleton addRootJoint(Asset& asset, const std::string& name) {
   }
   joinSkins(asset, bind, skeleton, node, world);
   unused.sweep(asset);
+  if (const std::optional<Index> own = rootOnGround(skeleton.skeleton)) {
+    asset.warnings.add("second-root", "the skeleton's own root carries vertices, so it gets another one above it",
+                       skeleton.skeleton.joints[*own].name);
+  }
   return below(skeleton, std::move(joint), node);
 }
 

@@ -142,6 +142,7 @@ TEST(AddRootJoint, SeveralRoots) {
   checkAsset(asset);
   expectSame(before, shown(asset));
   EXPECT_EQ(skeleton.skeleton.joints[0].name, "root_2");
+  EXPECT_TRUE(asset.warnings.empty());
   const auto isRoot = [](const Joint& joint) { return !joint.parent; };
   EXPECT_EQ(std::count_if(skeleton.skeleton.joints.begin(), skeleton.skeleton.joints.end(), isRoot), 1);
   EXPECT_THAT(asset.document.scenes[0].nodes, Contains(skeleton.jointNode[0]));
@@ -162,7 +163,7 @@ TEST(AddRootJoint, NotWhereThatWouldMoveSomething) {
 TEST(AddRootJoint, AboveASkeletonAlone) {
   Motion motion;
   motion.name = "pair";
-  for (const char* name : {"left", "right"}) motion.skeleton.joints.push_back({name, std::nullopt, {}, 0});
+  for (const char* name : {"left", "right"}) motion.skeleton.joints.emplace_back().name = name;
   Asset asset = motionAsset(motion);
   const AssetSkeleton skeleton = addRootJoint(asset, "ground");
   checkAsset(asset);
@@ -179,6 +180,39 @@ TEST(FindRootJoint, IsOnTheGroundAndCarriesNothing) {
   const std::optional<Index> found = findRootJoint(asset, skeleton);
   ASSERT_TRUE(found);
   EXPECT_EQ(skeleton.skeleton.joints[*found].name, "root");
+}
+
+// A joint at the origin and one above it, between which the vertices' weights are divided.
+Asset standing(float weightOfRoot) {
+  SceneBuilder scene;
+  const Index mesh = scene.addTetrahedron();
+  const Index hips = scene.addNode({{"name", "hips"}, {"translation", {0, 1, 0}}});
+  const Index own = scene.addNode({{"name", "root"}, {"children", {hips}}});
+  const Index skin = scene.addSkin({own, hips}, {translation(0, 0, 0), translation(0, -1, 0)});
+  std::vector<std::uint8_t> joints;
+  std::vector<float> weights;
+  for (int v = 0; v < 4; ++v) {
+    joints.insert(joints.end(), {0, 1, 0, 0});
+    weights.insert(weights.end(), {weightOfRoot, 1 - weightOfRoot, 0, 0});
+  }
+  scene.bind(mesh, joints, weights);
+  const Index body = scene.addNode({{"mesh", mesh}, {"skin", skin}});
+  scene.addScene({own, body});
+  return scene.build();
+}
+
+TEST(FindRootJoint, MayHaveALittleOfVertices) {
+  const Asset asset = standing(0.1f);
+  EXPECT_EQ(findRootJoint(asset, animatedSkeleton(asset)), 0u);
+}
+
+TEST(AddRootJoint, SaysWhereAnotherRootWas) {
+  Asset asset = standing(0.9f);
+  EXPECT_FALSE(findRootJoint(asset, animatedSkeleton(asset)));
+  addRootJoint(asset);
+  ASSERT_EQ(asset.warnings.items().size(), 1u);
+  EXPECT_EQ(asset.warnings.items()[0].kind, "second-root");
+  EXPECT_EQ(asset.warnings.items()[0].where, "root");
 }
 
 }  // namespace

@@ -212,7 +212,7 @@ void repairNumbers(SmplRows& rows, Warnings& warnings) {
   for (std::size_t i = 0; i < rows.values.size(); ++i) {
     if (std::abs(rows.values[i]) <= kLargestNumber) continue;
     rows.values[i] = i < rows.width ? 0 : rows.values[i - rows.width];
-    warnings.add("bad-numbers", "numbers are not finite, and those of the frame before stand in",
+    warnings.add("bad-numbers", "numbers are not finite or too large, and those of the frame before stand in",
                  fmt::format("{}.npy: row {}", rows.name, i / rows.width));
   }
 }

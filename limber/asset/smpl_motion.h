@@ -38,9 +38,9 @@ struct SmplOptions {
 // or lowered as a whole until the lowest joint of all frames is as high as that of the rest pose.
 //
 // Warnings: "converted-axes" (Z up turned to Y up), "hand-components" (hands as another number of values than 45: the
-// components of a model, left at rest), "bad-numbers" (not finite: the frame before stands in), "frame-rate".
-// Throws Error kBadData naming the array: none of poses, of another shape than the above, of other numbers of frames,
-// no frame; kLimit beyond 2^22 frames; kUnsupported as readNpy does; where() begins with `name`.
+// components of a model, left at rest), "bad-numbers" (not finite, or too large: the frame before stands in),
+// "frame-rate". Throws Error kBadData naming the array: none of poses, of another shape than the above, of other
+// numbers of frames, no frame; kLimit beyond 2^22 frames; kUnsupported as readNpy does; where() begins with `name`.
 Motion readSmplMotion(const NpzFiles& arrays, std::string_view name, const SmplOptions& options = {});
 
 // The same from the archive (readZipArchive).

@@ -186,11 +186,13 @@ TEST(SmplMotion, MendsNumbersAndRates) {
   NpzFiles files = swaying(22);
   std::vector<double> poses = swayingPoses(8, 22, UpAxis::kY);
   poses[66 + 5] = std::nan("");
-  poses[0] = HUGE_VAL;
+  poses[0] = 1e300;
   files["poses.npy"] = npyDoubles({8, 22, 3}, poses);
   files["mocap_framerate.npy"] = npyNumber(0);
   const Motion motion = readSmplMotion(files, "bad.npz");
   EXPECT_EQ(testing::countOf(motion.warnings, "bad-numbers"), 2u);
+  EXPECT_THAT(motion.warnings.items(),
+              ::testing::Contains(::testing::Field(&Warning::message, HasSubstr("too large"))));
   EXPECT_EQ(testing::countOf(motion.warnings, "frame-rate"), 1u);
   EXPECT_EQ(motion.framesPerSecond, 30);
   files.erase("mocap_framerate.npy");

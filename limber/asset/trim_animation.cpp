@@ -12,10 +12,13 @@
 #include "limber/asset/accessor_layout.h"
 #include "limber/asset/node_edit.h"
 #include "limber/skeleton/clip_edit.h"
+#include "limber/skeleton/join_loop.h"
 
 namespace limber {
 
 namespace {
+
+constexpr float kClosed = 1e-4f;  // weights that are no farther apart are one, as joinLoop has it
 
 std::size_t valuesPerKey(Interpolation interpolation) {
   return interpolation == Interpolation::kCubic ? 3 : 1;
@@ -43,10 +46,9 @@ std::optional<SamplerKeys> readKeys(const Asset& asset, const gltf::AnimationSam
 
 // One key where the span is empty: everything ends before it.
 template <typename Value>
-Track<Value> trimmedTrack(const SamplerKeys& keys, std::vector<Value> values, const TimeSpan& span) {
+Track<Value> trimmedTrack(const Track<Value>& whole, const TimeSpan& span) {
   const bool still = !(span.from < span.to);
-  Track<Value> track = trimTrack(Track<Value>{0, keys.interpolation, keys.times, std::move(values)}, span.from,
-                                 still ? span.from + 1 : span.to);
+  Track<Value> track = trimTrack(whole, span.from, still ? span.from + 1 : span.to);
   if (still) {
     track.times.resize(1);
     track.values.resize(valuesPerKey(track.interpolation));
@@ -61,7 +63,8 @@ SamplerKeys trimmedRotations(const SamplerKeys& keys, const TimeSpan& span) {
     values.emplace_back(keys.numbers.data() + 4 * v);
     if (v % perKey == perKey / 2) values.back().normalize();
   }
-  const Track<Eigen::Quaternionf> track = trimmedTrack(keys, std::move(values), span);
+  const Track<Eigen::Quaternionf> track =
+      trimmedTrack(Track<Eigen::Quaternionf>{0, keys.interpolation, keys.times, std::move(values)}, span);
   SamplerKeys result{track.interpolation, track.times, {}, 4};
   for (const Eigen::Quaternionf& value : track.values) {
     result.numbers.insert(result.numbers.end(), value.coeffs().begin(), value.coeffs().end());
@@ -70,7 +73,8 @@ SamplerKeys trimmedRotations(const SamplerKeys& keys, const TimeSpan& span) {
 }
 
 // Three numbers at a time.
-SamplerKeys trimmedNumbers(const SamplerKeys& keys, const TimeSpan& span) {
+template <typename Change>
+SamplerKeys changedNumbers(const SamplerKeys& keys, const Change& change) {
   SamplerKeys result{keys.interpolation, {}, {}, keys.width};
   for (std::size_t first = 0; first < keys.width; first += 3) {
     const std::size_t count = std::min<std::size_t>(3, keys.width - first);
@@ -78,7 +82,8 @@ SamplerKeys trimmedNumbers(const SamplerKeys& keys, const TimeSpan& span) {
     for (std::size_t v = 0; v < values.size(); ++v) {
       std::copy_n(keys.numbers.data() + v * keys.width + first, count, values[v].data());
     }
-    const Track<Vec3f> track = trimmedTrack(keys, std::move(values), span);
+    const Track<Vec3f> track = change(Track<Vec3f>{0, keys.interpolation, keys.times, std::move(values)});
+    result.interpolation = track.interpolation;
     result.times = track.times;
     result.numbers.resize(track.values.size() * keys.width);
     for (std::size_t v = 0; v < track.values.size(); ++v) {
@@ -86,6 +91,15 @@ SamplerKeys trimmedNumbers(const SamplerKeys& keys, const TimeSpan& span) {
     }
   }
   return result;
+}
+
+// Does each number end as it begins?
+bool isClosed(const SamplerKeys& keys) {
+  const std::size_t perKey = valuesPerKey(keys.interpolation), value = perKey / 2 * keys.width;
+  const auto first = keys.numbers.begin() + static_cast<std::ptrdiff_t>(value);
+  const auto last = keys.numbers.end() - static_cast<std::ptrdiff_t>(perKey * keys.width - value);
+  return std::equal(first, first + static_cast<std::ptrdiff_t>(keys.width), last,
+                    [](float a, float b) { return std::abs(a - b) <= kClosed; });
 }
 
 // Switches stay whole numbers.
@@ -104,12 +118,12 @@ Index addValues(Asset& asset, AccessorInfo info, const std::vector<float>& numbe
   return addAccessor(asset, info, bytes);
 }
 
-}  // namespace
-
-void trimAnimation(Asset& asset, gltf::Animation& animation, const TimeSpan& span) {
-  std::vector<bool> isRotation(animation.samplers.size(), false);
+void cutAnimation(Asset& asset, gltf::Animation& animation, const TimeSpan& span, bool joinsWeights) {
+  std::vector<bool> isRotation(animation.samplers.size(), false), isJoined(animation.samplers.size(), false);
   for (const gltf::AnimationChannel& channel : animation.channels) {
-    if (channelTarget(channel).path == "rotation") isRotation[channel.sampler] = true;
+    const std::string path = channelTarget(channel).path;
+    if (path == "rotation") isRotation[channel.sampler] = true;
+    if (path.rfind("weights", 0) == 0) isJoined[channel.sampler] = joinsWeights;
   }
   std::vector<std::optional<SamplerKeys>> all;
   double duration = 0;
@@ -125,7 +139,9 @@ void trimAnimation(Asset& asset, gltf::Animation& animation, const TimeSpan& spa
       continue;
     }
     const bool turns = isRotation[s] && all[s]->width == 4;
-    const SamplerKeys keys = turns ? trimmedRotations(*all[s], within) : trimmedNumbers(*all[s], within);
+    SamplerKeys keys = turns ? trimmedRotations(*all[s], within)
+                             : changedNumbers(*all[s], [&](const auto& track) { return trimmedTrack(track, within); });
+    if (isJoined[s] && !isClosed(keys)) keys = changedNumbers(keys, joinTrack);
     gltf::AnimationSampler& sampler = animation.samplers[s];
     const auto [input, isNew] = inputs.try_emplace(keys.times, 0);
     if (isNew) input->second = addFloatAccessor(asset, keys.times, 1, 0, true);
@@ -133,6 +149,16 @@ void trimAnimation(Asset& asset, gltf::Animation& animation, const TimeSpan& spa
     sampler.output = addValues(asset, accessorInfo(asset, sampler.output), keys.numbers);
     sampler.interpolation = keys.interpolation;
   }
+}
+
+}  // namespace
+
+void trimAnimation(Asset& asset, gltf::Animation& animation, const TimeSpan& span) {
+  cutAnimation(asset, animation, span, false);
+}
+
+void loopAnimation(Asset& asset, gltf::Animation& animation, const TimeSpan& span) {
+  cutAnimation(asset, animation, span, true);
 }
 
 }  // namespace limber

@@ -10,8 +10,12 @@
 namespace limber {
 namespace {
 
+using ::testing::AllOf;
+using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::FloatNear;
+using ::testing::Ge;
+using ::testing::Le;
 using ::testing::Pointwise;
 
 class TrimAnimation : public ::testing::Test {
@@ -77,6 +81,24 @@ TEST_F(TrimAnimation, WhatEndsBeforeStandsStill) {
   EXPECT_THAT(times(), ElementsAre(0));
   EXPECT_THAT(values(), ElementsAre(1, 2, 3));
   EXPECT_EQ(values(1)[1], 1);
+}
+
+TEST_F(TrimAnimation, ALoopJoinsWeightsAlone) {
+  add("weights", Interpolation::kLinear, {0, 0.5, 1, 2}, {0, 1, 1, 0, 0.5, 0.5, 0.25, 0, 1, 0, 0, 1}, 1);
+  add("translation", Interpolation::kLinear, {0, 1}, {0, 0, 0, 1, 2, 3}, 3);
+  add("weights", Interpolation::kStep, {0, 1}, {0, 1}, 1);
+  add("weights", Interpolation::kCubic, {0, 0.5, 1}, {0, 0.5, 0, 0, 1, 0, 0, 0.5, 0}, 1);  // closed
+  loopAnimation(asset, animation, {0, 1});
+  const std::vector<float> frames = times(), joined = values();
+  EXPECT_FLOAT_EQ(frames.back(), 1);
+  ASSERT_EQ(joined.size(), 3 * frames.size());
+  EXPECT_THAT(std::vector(joined.end() - 3, joined.end()), ElementsAre(0.125f, 0.5f, 1));
+  EXPECT_THAT(std::vector(joined.begin(), joined.begin() + 3), ElementsAre(0.125f, 0.5f, 1));
+  EXPECT_THAT(joined, Each(AllOf(Ge(0), Le(1))));
+  for (std::size_t v = 3; v < joined.size(); ++v) EXPECT_LT(std::abs(joined[v] - joined[v - 3]), 0.15f) << v;
+  EXPECT_THAT(values(1), ElementsAre(0, 0, 0, 1, 2, 3));
+  EXPECT_THAT(values(2), ElementsAre(0, 1));
+  EXPECT_THAT(values(3), ElementsAre(0, 0.5f, 0, 0, 1, 0, 0, 0.5f, 0));
 }
 
 TEST_F(TrimAnimation, KeysOutOfOrderStay) {

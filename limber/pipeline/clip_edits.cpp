@@ -67,12 +67,26 @@ struct RootedSkeleton {
   std::optional<Index> root;
 };
 
+void tellOfFollowers(Asset& asset, const AssetSkeleton& skeleton, Index root) {
+  if (!hasRig(asset)) return;
+  const SkinWeights weights = readWeights(asset, collectGeometry(asset), skeleton);
+  std::size_t followers = 0;
+  for (std::size_t i = 0; i < weights.weights.size(); ++i) {
+    if (weights.joints[i] == root && weights.weights[i] > 0) ++followers;
+  }
+  asset.warnings.add("root-weights", "vertices follow the root joint in part, and its travel likewise",
+                     skeleton.skeleton.joints[root].name, followers);
+}
+
 // With the root joint that is asked for.
 RootedSkeleton withRootJoint(Asset& asset, const ClipEdits& edits) {
   RootedSkeleton result{animatedSkeleton(asset), std::nullopt};
   if (!edits.rootJoint) return result;
   result.root = findRootJoint(asset, result.skeleton);
-  if (result.root) return result;
+  if (result.root) {
+    tellOfFollowers(asset, result.skeleton, *result.root);
+    return result;
+  }
   result.skeleton = addRootJoint(asset, *edits.rootJoint);
   result.root = 0;
   return result;
@@ -159,7 +173,7 @@ std::vector<ClipEditReport> editClips(Asset& asset, std::span<const std::string>
   removeJointChannels(asset, rooted.skeleton, animations);
   for (std::size_t c = 0; c < clips.size(); ++c) {
     const std::optional<ClipLoop>& loop = reports[c].loop;
-    if (loop) trimAnimation(asset, asset.document.animations[animations[c]], {loop->begin, loop->end});
+    if (loop) loopAnimation(asset, asset.document.animations[animations[c]], {loop->begin, loop->end});
   }
   addClips(asset, rooted.skeleton, clips, {edits.tolerance.has_value()});
   mergeAnimations(asset.document, animations);
@@ -174,8 +188,10 @@ std::vector<ClipEditReport> editClips(Motion& motion, const ClipEdits& edits) {
   if (edits.rootJoint) {
     Motion still = motion;
     still.clips.clear();
+    still.warnings = {};
     Asset asset = motionAsset(still);
     RootedSkeleton rooted = withRootJoint(asset, edits);
+    motion.warnings.append(asset.warnings);
     std::vector<Index> number;
     for (const Joint& joint : motion.skeleton.joints) number.push_back(*rooted.skeleton.skeleton.find(joint.name));
     for (Clip& clip : motion.clips) renumberJoints(clip, number);

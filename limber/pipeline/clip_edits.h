@@ -37,10 +37,11 @@ struct ClipEditReport {
 Index bodyJoint(const Skeleton& skeleton);
 
 // Edits the animations of these names; all others stay as they are, and so does what else theirs move (weights of blend
-// shapes, other nodes), but that it is cut to a loop, too (trimAnimation). With `rootJoint` the skeleton has a root
-// joint afterwards (root_joint.h), and the clips of other names leave it where it is. What the clips took before leaves
-// the file. Without a skin the ends of bones count as the surface. Throws Error kBadArgument where a name is no
-// animation's, and as addRootJoint, extractRootMotion and resampleClip do.
+// shapes, other nodes), but that it is cut to a loop, too, with the weights joined (loopAnimation). With `rootJoint`
+// the skeleton has a root joint afterwards (root_joint.h), and the clips of other names leave it where it is; warning
+// "root-weights" where vertices follow it besides other joints: these move by as much of the travel as their weight
+// says. What the clips took before leaves the file. Without a skin the ends of bones count as the surface. Throws Error
+// kBadArgument where a name is no animation's, and as addRootJoint, extractRootMotion and resampleClip do.
 std::vector<ClipEditReport> editClips(Asset& asset, std::span<const std::string> names, const ClipEdits& edits);
 
 // The same for all clips of a motion. The tolerance has no meaning there and is left out.

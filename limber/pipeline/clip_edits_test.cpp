@@ -10,6 +10,7 @@
 #include "limber/asset/clip_io.h"
 #include "limber/asset/geometry.h"
 #include "limber/asset/motion_io.h"
+#include "limber/asset/testing/scene_builder.h"
 #include "limber/asset/write.h"
 #include "limber/core/error.h"
 #include "limber/skeleton/pose.h"
@@ -170,6 +171,27 @@ TEST(EditClips, AMotionGetsARootJoint) {
   EXPECT_NEAR(posePositions(motion.skeleton, pose)[1].z(), 3.9, 1e-4);
 }
 
+TEST(EditClips, AModelsOwnRootTakesTheTravelOfVerticesThatFollowItInPart) {
+  testing::SceneBuilder scene;
+  const Index mesh = scene.addTetrahedron();
+  const Index hips = scene.addNode({{"name", "hips"}, {"translation", {0, 1, 0}}});
+  const Index root = scene.addNode({{"name", "root"}, {"children", {hips}}});
+  const Index skin = scene.addSkin({root, hips}, {});
+  scene.bind(mesh, {0, 1, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0},
+             {0.1f, 0.9f, 0, 0, 0.2f, 0.8f, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0});
+  scene.addScene({root, scene.addNode({{"mesh", mesh}, {"skin", skin}})});
+  scene.addClip(hips, "translation", 3);
+  Asset asset = scene.build();
+  asset.document.animations[0].name = "walk";
+  ClipEdits edits;
+  edits.rootJoint = "mover";
+  editClips(asset, std::vector<std::string>{"walk"}, edits);
+  EXPECT_EQ(animatedSkeleton(asset).skeleton.jointCount(), 2u);
+  ASSERT_EQ(asset.warnings.items().size(), 1u);
+  EXPECT_EQ(asset.warnings.items()[0].kind, "root-weights");
+  EXPECT_EQ(asset.warnings.items()[0].count, 2u);
+}
+
 TEST(EditClips, OthersStay) {
   Asset asset = motionAsset(walking());
   asset.document.animations.push_back(asset.document.animations[0]);
@@ -186,7 +208,7 @@ TEST(EditClips, OthersStay) {
   EXPECT_THROW(editClips(asset, std::vector<std::string>{"run"}, edits), Error);
 }
 
-TEST(EditClips, ALoopCutsWhatElseMoves) {
+TEST(EditClips, ALoopCutsWhatElseMovesAndJoinsWeights) {
   Asset asset = motionAsset(walking());
   const std::vector<float> times = {0, 3}, values = {0, 0, 0, 3, 0, 0};
   gltf::Animation& walk = asset.document.animations[0];
@@ -197,6 +219,11 @@ TEST(EditClips, ALoopCutsWhatElseMoves) {
   walk.samplers.push_back({});
   walk.samplers.back().input = addFloatAccessor(asset, times, 1);
   walk.samplers.back().output = addFloatAccessor(asset, values, 3);
+  // Three weights of blend shapes of the same numbers.
+  walk.samplers.push_back(walk.samplers.back());
+  walk.channels.push_back(walk.channels.back());
+  walk.channels.back().target.path = "weights";
+  ++walk.channels.back().sampler;
   ClipEdits edits;
   edits.loop = true;
   const std::vector<ClipEditReport> reports = editClips(asset, std::vector<std::string>{"walk"}, edits);
@@ -204,6 +231,9 @@ TEST(EditClips, ALoopCutsWhatElseMoves) {
   const gltf::AnimationSampler& kept = asset.document.animations[0].samplers[0];
   EXPECT_NEAR(readFloats(asset, kept.input).back(), reports[0].loop->end - reports[0].loop->begin, 1e-5);
   EXPECT_NEAR(readFloats(asset, kept.output)[0], reports[0].loop->begin, 1e-5);
+  const std::vector<float> weights = readFloats(asset, asset.document.animations[0].samplers[1].output);
+  EXPECT_NEAR(weights[0], 0.5 * (reports[0].loop->begin + reports[0].loop->end), 1e-5);
+  EXPECT_EQ(weights[0], weights[weights.size() - 3]);
 }
 
 }  // namespace

@@ -207,8 +207,10 @@ Clip trimClip(const Clip& clip, double from, double to) {
   if (clip.duration() == 0 && from <= 0 && to > 0) return clip;  // a pose
   const double begin = std::max(from, 0.0), end = std::min(to, clip.duration());
   if (!(begin < end)) {
-    throw Error(ErrorCode::kBadArgument, fmt::format("nothing of it lies between {:g} and {:g} s", from, to),
-                fmt::format("clip '{}'", clip.name), fmt::format("it lasts {:g} s", clip.duration()));
+    const std::string span =
+        std::isfinite(to) ? fmt::format("between {:g} and {:g} s", from, to) : fmt::format("after {:g} s", from);
+    throw Error(ErrorCode::kBadArgument, "nothing of it lies " + span, fmt::format("clip '{}'", clip.name),
+                fmt::format("it lasts {:g} s", clip.duration()));
   }
   return changed(clip, [&](const auto& track) { return trimmed(track, begin, end); });
 }

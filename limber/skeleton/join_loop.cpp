@@ -61,63 +61,55 @@ Quat rotationBy(const Vec3& vector) {
   return angle > 0 ? Quat(Eigen::AngleAxisd(angle, vector / angle)) : Quat::Identity();
 }
 
-// A Transform's three parts as differences of another's.
-struct Offset {
-  Vec3 translation = Vec3::Zero(), rotation = Vec3::Zero(), scale = Vec3::Zero();
+// By what a Transform differs from another: translation, rotation vector, scale.
+using Offset = Eigen::Matrix<double, 9, 1>;
 
-  Offset() = default;
-  Offset(const Transform& to, const Transform& from)
-      : translation(to.translation - from.translation),
-        rotation(rotationVector(to.rotation, from.rotation)),
-        scale(to.scale - from.scale) {}
+Offset offsetTo(const Transform& to, const Transform& from) {
+  Offset offset;
+  offset << to.translation - from.translation, rotationVector(to.rotation, from.rotation), to.scale - from.scale;
+  return offset;
+}
 
-  void add(double weight, const Offset& other) {
-    translation += weight * other.translation;
-    rotation += weight * other.rotation;
-    scale += weight * other.scale;
-  }
+Transform movedBy(const Offset& offset, Transform value) {
+  value.translation += offset.head<3>();
+  value.rotation = (rotationBy(offset.segment<3>(3)) * value.rotation).normalized();
+  value.scale += offset.tail<3>();
+  return value;
+}
 
-  Transform on(Transform value) const {
-    value.translation += translation;
-    value.rotation = (rotationBy(rotation) * value.rotation).normalized();
-    value.scale += scale;
-    return value;
-  }
-};
-
-// The offset to each pose of what is to be a cycle.
+// The difference to add to each value of what is to be a cycle.
+template <typename Difference>
 class Seam {
  public:
-  Seam(const std::vector<Pose>& poses, Index joint, double duration)
-      : duration_(duration), fade_(std::min(kLongestFade, duration * kFadePart)) {
-    const auto at = [&](std::size_t frame) -> const Transform& { return poses[frame].locals[joint]; };
-    const std::size_t last = poses.size() - 1;
-    gap_ = Offset(at(last), at(0));
+  // between(f, g): by what frame f, of frames 0 to `last` in even steps, differs from frame g.
+  template <typename Between>
+  Seam(std::size_t last, double duration, const Between& between)
+      : duration_(duration), fade_(std::min(kLongestFade, duration * kFadePart)), gap_(between(last, 0)) {
     // Speeds at the ends, of second order, where there are frames for it.
     const double step = duration / static_cast<double>(last);
     const std::size_t k = std::min<std::size_t>(2, last / 2);
-    const auto speed = [&](const Transform& one, const Transform& two, const Transform& end, double sign) {
-      Offset result;
-      result.add(sign * (k == 2 ? 2.0 : 1.0) / step, Offset(one, end));
-      if (k == 2) result.add(sign * -0.5 / step, Offset(two, end));
+    const auto speed = [&](std::size_t one, std::size_t two, std::size_t end, double sign) {
+      Difference result = Difference::Zero();
+      result += sign * (k == 2 ? 2.0 : 1.0) / step * between(one, end);
+      if (k == 2) result += sign * -0.5 / step * between(two, end);
       return result;
     };
-    speedGap_ = speed(at(last - 1), at(last - k), at(last), -1);
-    speedGap_.add(-1, speed(at(1), at(k), at(0), 1));
+    speedGap_ = speed(last - 1, last - k, last, -1);
+    speedGap_ -= speed(1, k, 0, 1);
   }
 
-  Offset at(double seconds) const {
+  Difference at(double seconds) const {
     const double u = seconds / duration_, rest = duration_ - seconds;
-    Offset result;
-    result.add(0.5 - u * u * (3 - 2 * u), gap_);
+    Difference result = Difference::Zero();
+    result += (0.5 - u * u * (3 - 2 * u)) * gap_;
     const auto bump = [&](double t) { return t < fade_ ? t * (1 - t / fade_) * (1 - t / fade_) : 0; };
-    result.add(0.5 * (bump(seconds) + bump(rest)), speedGap_);
+    result += 0.5 * (bump(seconds) + bump(rest)) * speedGap_;
     return result;
   }
 
  private:
   double duration_, fade_;
-  Offset gap_, speedGap_;
+  Difference gap_, speedGap_;
 };
 
 double farthestJoint(const Skeleton& skeleton, const Pose& a, const Pose& b) {
@@ -164,6 +156,12 @@ std::vector<float> longestTimes(const Clip& clip) {
   return times;
 }
 
+// Speeds at the ends are measured by even steps. The clip has a duration.
+Clip inEvenSteps(const Clip& clip) {
+  const double duration = clip.duration(), steps = std::max(2.0, std::round(duration * denseFrameRateOf(clip)));
+  return resampleClip(clip, steps / duration);
+}
+
 }  // namespace
 
 JoinedLoop joinLoop(const Skeleton& skeleton, const Clip& clip, Index body) {
@@ -172,9 +170,7 @@ JoinedLoop joinLoop(const Skeleton& skeleton, const Clip& clip, Index body) {
   result.clip = clip;
   const double duration = clip.duration();
   if (duration <= 0 || longestTimes(clip).size() < 3) return result;
-  // Of even steps, which the speeds at the ends are measured by.
-  const double steps = std::max(2.0, std::round(duration * denseFrameRateOf(clip)));
-  Clip frames = resampleClip(clip, steps / duration);
+  Clip frames = inEvenSteps(clip);
   const std::vector<float> times = longestTimes(frames);
   if (times.size() < 3) return result;
 
@@ -191,8 +187,12 @@ JoinedLoop joinLoop(const Skeleton& skeleton, const Clip& clip, Index body) {
   for (const Vec3& place : restPositions(skeleton)) box.add(place);
   if (result.gap <= kClosed * box.diagonal()) return result;
   for (Index j = 0; j < skeleton.jointCount(); ++j) {
-    const Seam seam(poses, j, duration);
-    for (std::size_t k = 0; k < times.size(); ++k) poses[k].locals[j] = seam.at(times[k]).on(poses[k].locals[j]);
+    const Seam<Offset> seam(times.size() - 1, duration, [&](std::size_t f, std::size_t g) {
+      return offsetTo(poses[f].locals[j], poses[g].locals[j]);
+    });
+    for (std::size_t k = 0; k < times.size(); ++k) {
+      poses[k].locals[j] = movedBy(seam.at(times[k]), poses[k].locals[j]);
+    }
   }
   poses.back() = poses.front();
   for (std::size_t k = 0; k < times.size(); ++k) {
@@ -216,6 +216,29 @@ JoinedLoop joinLoop(const Skeleton& skeleton, const Clip& clip, Index body) {
   }
   result.clip = std::move(frames);
   return result;
+}
+
+Track<Vec3f> joinTrack(const Track<Vec3f>& track) {
+  Clip clip;
+  clip.translations = {track};
+  const double duration = clip.duration();
+  if (duration <= 0 || track.times.size() < 2 || track.interpolation == Interpolation::kStep) return track;
+  Track<Vec3f> frames = std::move(inEvenSteps(clip).translations.front());
+  std::vector<Vec3f>& values = frames.values;
+  if (values.size() < 3) return track;
+  Vec3f least = values.front(), most = least;
+  for (const Vec3f& value : values) {
+    least = least.cwiseMin(value);
+    most = most.cwiseMax(value);
+  }
+  const Seam<Vec3> seam(values.size() - 1, duration,
+                        [&](std::size_t f, std::size_t g) { return Vec3((values[f] - values[g]).cast<double>()); });
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const Vec3 joined = values[k].cast<double>() + seam.at(frames.times[k]);
+    values[k] = joined.cast<float>().cwiseMax(least).cwiseMin(most);
+  }
+  values.back() = values.front();
+  return frames;
 }
 
 }  // namespace limber

@@ -24,4 +24,8 @@ struct JoinedLoop {
 // it. Cost: O(frames * joints).
 JoinedLoop joinLoop(const Skeleton& skeleton, const Clip& clip, Index body);
 
+// The same of plain numbers, such as weights of blend shapes, however close the ends are. None leaves the range that it
+// had. A track of steps jumps as it is, so it stays, as does one of one key. The track begins at 0.
+Track<Vec3f> joinTrack(const Track<Vec3f>& track);
+
 }  // namespace limber

@@ -1,7 +1,7 @@
 // Negative scales as decompose() has them, for tracks that know nothing of each other.
 #pragma once
 
-#include "limber/core/types.h"
+#include "limber/core/transform.h"
 
 namespace limber {
 
@@ -10,6 +10,13 @@ namespace limber {
 inline Vec3 halfTurnOfMirror(const Vec3& scale) {
   const Vec3 sign = scale.unaryExpr([](double component) { return component < 0 ? -1.0 : 1.0; });
   return {sign.prod() * sign.x(), sign.y(), sign.z()};
+}
+
+// The same map in other numbers: R H and H S. Twice is none.
+inline Transform turnedMirror(Transform transform, const Vec3& half) {
+  transform.rotation = transform.rotation * Quat(Mat3(half.asDiagonal()));
+  transform.scale = transform.scale.cwiseProduct(half);
+  return transform;
 }
 
 }  // namespace limber
